@@ -1,0 +1,16 @@
+#pragma once
+// 64-bit content hashes (XXH3): for worlds, runs and readings. Not a defence against an attacker.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace sf::base {
+
+/// Hash of `size` bytes, chained from `seed`: hash(b, hash(a)) names the sequence a, b.
+std::uint64_t hash_bytes(const void* data, std::size_t size, std::uint64_t seed = 0);
+
+/// 16 lower-case hexadecimal digits.
+std::string hash_text(std::uint64_t hash);
+
+}  // namespace sf::base

@@ -1,0 +1,27 @@
+#pragma once
+// Where a run is kept: the farm and the simulation know only this.
+
+#include <span>
+
+#include "base/reading.h"
+#include "base/report.h"
+
+namespace sf::base {
+
+/// What one tick did. Spans live for the call.
+struct TickRecord {
+  std::uint64_t tick = 0;
+  std::int64_t time = 0;                  ///< [ns] simulated
+  std::span<const Report> reports;        ///< every mover's true state
+  std::span<const Twist> commands;        ///< one per report, what its controller asked for
+  std::span<const std::uint8_t> contacts; ///< one per report, 1 where a wall or a robot stopped it
+  std::span<const ReadingBlock> readings; ///< delivered this tick
+};
+
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  virtual void write(const TickRecord& record) = 0;
+};
+
+}  // namespace sf::base

@@ -1,0 +1,34 @@
+# A room is a folder, a namespace, a target and a folder of tests.
+
+find_package(fmt REQUIRED)
+find_package(Threads REQUIRED)
+find_package(Vulkan REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(nlohmann_json REQUIRED)
+
+# Debian's VTK 9.1 asks for MPI while it is being found; nothing of ours uses it.
+find_package(MPI QUIET COMPONENTS C)
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel ImagingCore ImagingSources IOImage RenderingFreeType)
+
+# Flags every target of ours is built with. Contraction is off so that host and device round alike.
+add_library(house INTERFACE)
+target_include_directories(house INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_options(house INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off
+                       $<$<BOOL:${SENSORFARM_WERROR}>:-Werror>)
+if(SENSORFARM_SANITIZE)
+  target_compile_options(house INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  target_link_options(house INTERFACE -fsanitize=address,undefined)
+endif()
+
+# add_room(NAME [PUBLIC targets...] [PRIVATE targets...])
+function(add_room name)
+  cmake_parse_arguments(ROOM "" "" "PUBLIC;PRIVATE" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${name}/*.cpp)
+  if(sources)
+    add_library(${name} STATIC ${sources})
+    target_link_libraries(${name} PUBLIC house Threads::Threads ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE house ${ROOM_PUBLIC})
+  endif()
+endfunction()
