@@ -24,7 +24,7 @@ class ByteWriter {
   explicit ByteWriter(Bytes& out) : out_(out) {}
 
   template <class T>
-    requires std::is_arithmetic_v<T>
+  requires std::is_arithmetic_v<T>
   void put(T value) {
     const std::size_t at = out_.size();
     out_.resize(at + sizeof(T));
@@ -53,8 +53,7 @@ class ByteReader {
   explicit ByteReader(std::span<const std::uint8_t> in) : in_(in) {}
 
   template <class T>
-    requires std::is_arithmetic_v<T>
-  T get() {
+  requires std::is_arithmetic_v<T> T get() {
     T value{};
     if (!take(sizeof(T))) return value;
     std::memcpy(&value, in_.data() + at_ - sizeof(T), sizeof(T));

@@ -1,6 +1,7 @@
 #pragma once
 // Two families of errors. A broken contract inside the farm is a `check` that aborts with the values.
-// What the user gave us (a file, an option, a machine) is an `InputError` that says where, what was expected and what to do.
+// What the user gave us (a file, an option, a machine) is an `InputError` that says where, what was expected and what
+// to do.
 
 #include <stdexcept>
 #include <string>
@@ -13,7 +14,8 @@ class InputError : public std::runtime_error {
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
   /// @param line 1-based; 0 when the whole file is meant.
   InputError(const std::string& file, int line, const std::string& message)
-      : std::runtime_error(file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + message) {}
+      : std::runtime_error(file + (line > 0 ? std::string(":").append(std::to_string(line)) : std::string()) + ": " +
+                           message) {}
 };
 
 /// No usable device: its own type, since programs end with exit code 3.
@@ -27,7 +29,7 @@ void check(bool condition, const char* file, int line, const std::string& messag
 
 }  // namespace sf::base
 
-#define SF_CHECK(condition, message)                                  \
-  do {                                                                \
+#define SF_CHECK(condition, message)                                         \
+  do {                                                                       \
     if (!(condition)) ::sf::base::check(false, __FILE__, __LINE__, message); \
   } while (false)

@@ -46,9 +46,7 @@ inline Pose compose(const Pose& X_AB, const Pose& X_BC) {
 }
 
 /// Point `p_B` expressed in A.
-inline Vec2 transform(const Pose& X_AB, Vec2 p_B) {
-  return Vec2{X_AB.x, X_AB.y} + rotate(X_AB.yaw, p_B);
-}
+inline Vec2 transform(const Pose& X_AB, Vec2 p_B) { return Vec2{X_AB.x, X_AB.y} + rotate(X_AB.yaw, p_B); }
 
 /// The same heading in [-pi, pi].
 inline double wrap_angle(double angle) { return std::remainder(angle, 2.0 * M_PI); }

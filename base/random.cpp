@@ -21,7 +21,8 @@ std::array<std::uint32_t, 4> random_words(const Draw& draw, std::uint32_t index)
   // The key takes the seed; the counter takes what is asked. A draw's 64-bit tick and its stream share a word each with
   // what stays small (sensor below 2^16, stream below 2^8).
   const philox4x32_key_t key = {{static_cast<std::uint32_t>(draw.seed), static_cast<std::uint32_t>(draw.seed >> 32)}};
-  const philox4x32_ctr_t counter = {{index, draw.a, draw.b << 8 | static_cast<std::uint32_t>(draw.stream), fold(draw.c)}};
+  const philox4x32_ctr_t counter = {
+      {index, draw.a, draw.b << 8 | static_cast<std::uint32_t>(draw.stream), fold(draw.c)}};
   const philox4x32_ctr_t words = philox4x32(counter, key);
   return {words.v[0], words.v[1], words.v[2], words.v[3]};
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Counter-based random numbers: a pure function of (seed, stream, counter), so that noise is the same for any thread
-// count, batch order or subset of robots. Philox 4x32-10 (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC11).
+// count, batch order or subset of robots. Philox 4x32-10 (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3",
+// SC11).
 
 #include <array>
 #include <cstdint>

@@ -13,15 +13,16 @@ inline constexpr std::uint32_t kNoHit = 0xFFFFFFFFu;
 
 /// One reading of one sensor. The spans live until the next tick of the farm that returned them.
 struct ReadingBlock {
-  std::uint32_t mover = 0;   ///< row in `world::World::movers`
-  std::uint32_t sensor = 0;  ///< 0-based among the mover's sensors of this kind
-  std::uint8_t kind = 0;     ///< wire id of the kind; 1 = laser
-  std::uint32_t sequence = 0;  ///< counts this sensor's readings from 0
-  std::int64_t time = 0;     ///< [ns] simulated time of the measurement (not of its delivery)
-  Pose X_WM;                 ///< the mover's pose it was measured at
-  Pose X_WS;                 ///< the sensor's pose it was measured at
+  std::uint32_t mover = 0;         ///< row in `world::World::movers`
+  std::uint32_t sensor = 0;        ///< 0-based among the mover's sensors of this kind
+  std::uint8_t kind = 0;           ///< wire id of the kind; 1 = laser
+  std::uint32_t sequence = 0;      ///< counts this sensor's readings from 0
+  std::int64_t time = 0;           ///< [ns] simulated time of the measurement (not of its delivery)
+  Pose X_WM;                       ///< the mover's pose it was measured at
+  Pose X_WS;                       ///< the sensor's pose it was measured at
   std::span<const double> values;  ///< laser: ranges [m], one per sample, in order of bearing from -fov/2 to +fov/2
-  std::span<const std::uint32_t> hits;  ///< laser: model row that each beam met, or kNoHit; empty where not known (interpolated)
+  std::span<const std::uint32_t>
+      hits;  ///< laser: model row that each beam met, or kNoHit; empty where not known (interpolated)
 };
 
 }  // namespace sf::base

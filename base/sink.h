@@ -11,11 +11,11 @@ namespace sf::base {
 /// What one tick did. Spans live for the call.
 struct TickRecord {
   std::uint64_t tick = 0;
-  std::int64_t time = 0;                  ///< [ns] simulated
-  std::span<const Report> reports;        ///< every mover's true state
-  std::span<const Twist> commands;        ///< one per report, what its controller asked for
-  std::span<const std::uint8_t> contacts; ///< one per report, 1 where a wall or a robot stopped it
-  std::span<const ReadingBlock> readings; ///< delivered this tick
+  std::int64_t time = 0;                   ///< [ns] simulated
+  std::span<const Report> reports;         ///< every mover's true state
+  std::span<const Twist> commands;         ///< one per report, what its controller asked for
+  std::span<const std::uint8_t> contacts;  ///< one per report, 1 where a wall or a robot stopped it
+  std::span<const ReadingBlock> readings;  ///< delivered this tick
 };
 
 class Sink {

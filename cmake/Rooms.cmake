@@ -3,6 +3,7 @@
 find_package(fmt REQUIRED)
 find_package(Threads REQUIRED)
 find_package(Vulkan REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
 
@@ -13,7 +14,7 @@ find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel ImagingCore 
 # Flags every target of ours is built with. Contraction is off so that host and device round alike.
 add_library(house INTERFACE)
 target_include_directories(house INTERFACE ${CMAKE_SOURCE_DIR})
-target_compile_options(house INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off
+target_compile_options(house INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -ffp-contract=off
                        $<$<BOOL:${SENSORFARM_WERROR}>:-Werror>)
 if(SENSORFARM_SANITIZE)
   target_compile_options(house INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)

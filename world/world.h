@@ -1,8 +1,9 @@
 #pragma once
-// What stands still, and what the movers are made of: the whole of a world file, understood once and immutable after load.
+// What stands still, and what the movers are made of: the whole of a world file, understood once and immutable after
+// load.
 //
-// A world is 2.5-D: flat outlines with a range of heights. The static part is a list of wall segments; movers (robots and
-// linked objects) carry their outlines with them. Tables of rows, joined by row number.
+// A world is 2.5-D: flat outlines with a range of heights. The static part is a list of wall segments; movers (robots
+// and linked objects) carry their outlines with them. Tables of rows, joined by row number.
 
 #include <cstdint>
 #include <map>
@@ -19,49 +20,50 @@ using base::Vec2;
 inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
 /// One straight piece of surface, visible from both sides.
-/// Rule: `a != b`. Where `solid_left`, it belongs to a closed simple outline with the solid on the left of a -> b.
+/// Rule: `a != b`. Where `solid_left`, it belongs to closed simple outlines of a bounded solid, which lies on the left of
+/// a -> b: counter-clockwise around it, clockwise around its holes.
 struct Segment {
   Vec2 a;
-  Vec2 b;                    ///< [m] world frame for walls, mover frame for bodies
+  Vec2 b;  ///< [m] world frame for walls, mover frame for bodies
   double z_min = 0.0;
-  double z_max = 0.0;        ///< [m] a beam at height z sees it when z_min <= z < z_max
-  std::uint32_t model = 0;   ///< row in `World::models`
-  bool solid_left = true;    ///< false: a thin or self-crossing outline; nothing is known about sides
-  bool seen_by_laser = true; ///< false: `laser_return 0` or a negative `ranger_return`
-  bool stops_robots = true;  ///< false: `obstacle_return 0`
+  double z_max = 0.0;         ///< [m] a beam at height z sees it when z_min <= z < z_max
+  std::uint32_t model = 0;    ///< row in `World::models`
+  bool solid_left = true;     ///< false: a thin or self-crossing outline; nothing is known about sides
+  bool seen_by_laser = true;  ///< false: `laser_return 0` or a negative `ranger_return`
+  bool stops_robots = true;   ///< false: `obstacle_return 0`
 };
 
 /// A named thing of the world file, static or carried by a mover.
 struct Model {
-  std::string name;          ///< unique in the world; "parent.child" for nested models without a name of their own
-  std::string type;          ///< the world file's word for it
+  std::string name;              ///< unique in the world; "parent.child" for nested models without a name of their own
+  std::string type;              ///< the world file's word for it
   std::uint32_t parent = kNone;  ///< row of the enclosing model
   std::uint32_t mover = kNone;   ///< row in `World::movers` when it moves (or is carried), else kNone
-  Pose X_WM;                 ///< at load
-  Vec2 size;                 ///< [m] bounding box
+  Pose X_WM;                     ///< at load
+  Vec2 size;                     ///< [m] bounding box
   std::uint32_t color = 0xFF808080u;  ///< 0xAARRGGBB
-  bool is_bitmap = false;    ///< its outline came from a picture (a floor plan)
+  bool is_bitmap = false;             ///< its outline came from a picture (a floor plan)
 };
 
 /// Noise of a laser. All zero: none. Ranges are disturbed only where a beam met something.
 struct LaserNoise {
   double range_sigma = 0.0;         ///< [m] constant part of the range's standard deviation
   double range_proportional = 0.0;  ///< [-] part of the standard deviation per metre of range
-  double angle_sigma = 0.0;         ///< [rad] standard deviation of each beam's bearing; turns the beam before it is cast
+  double angle_sigma = 0.0;  ///< [rad] standard deviation of each beam's bearing; turns the beam before it is cast
 };
 
 /// A scanning range finder. Bearings run from -fov/2 to +fov/2, both ends cast exactly; one sample looks at bearing 0.
 struct Laser {
-  std::string name;          ///< unique among the mover's sensors
-  Pose X_MS;                 ///< sensor in the mover's frame; z is the height above the mover's origin
-  double fov = M_PI;         ///< [rad] in [0, 2 pi]
-  std::uint32_t samples = 180;     ///< in [1, 1'000'000]
-  double range_min = 0.0;    ///< [m] echoes nearer than this read range_min
-  double range_max = 8.0;    ///< [m] > 0; what a beam reads that meets nothing
-  std::uint32_t resolution = 1;    ///< cast every n-th beam (and the last), interpolate the rest
-  double rate = 10.0;        ///< [Hz] > 0
-  double phase = 0.0;        ///< [s] time of the first reading
-  double latency = 0.0;      ///< [s] from measurement to delivery
+  std::string name;              ///< unique among the mover's sensors
+  Pose X_MS;                     ///< sensor in the mover's frame; z is the height above the mover's origin
+  double fov = M_PI;             ///< [rad] in [0, 2 pi]
+  std::uint32_t samples = 180;   ///< in [1, 1'000'000]
+  double range_min = 0.0;        ///< [m] echoes nearer than this read range_min
+  double range_max = 8.0;        ///< [m] > 0; what a beam reads that meets nothing
+  std::uint32_t resolution = 1;  ///< cast every n-th beam (and the last), interpolate the rest
+  double rate = 10.0;            ///< [Hz] > 0
+  double phase = 0.0;            ///< [s] time of the first reading
+  double latency = 0.0;          ///< [s] from measurement to delivery
   LaserNoise noise;
   std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, of the drawn field of view
 };
@@ -70,24 +72,24 @@ enum class Drive { differential, omni, car };
 
 /// Something that moves: a robot, or a linked object that follows its packets.
 struct Mover {
-  std::string name;          ///< the model's name
-  std::uint32_t model = 0;   ///< row in `World::models`
-  std::uint32_t id = 0;      ///< number on the wire, unique among robots (or among tags)
-  bool is_tag = false;       ///< follows tag packets (`tag<N>`); else V2V packets of robot `id`
-  Pose X_WM;                 ///< at load
-  std::vector<Segment> body; ///< outline in its own frame, z above its own origin; carried models included
-  double radius = 0.0;       ///< [m] of the circle about its origin that holds the body
+  std::string name;           ///< the model's name
+  std::uint32_t model = 0;    ///< row in `World::models`
+  std::uint32_t id = 0;       ///< number on the wire, unique among robots (or among tags)
+  bool is_tag = false;        ///< follows tag packets (`tag<N>`); else V2V packets of robot `id`
+  Pose X_WM;                  ///< at load
+  std::vector<Segment> body;  ///< outline in its own frame, z above its own origin; carried models included
+  double radius = 0.0;        ///< [m] of the circle about its origin that holds the body
   Drive drive = Drive::differential;
-  double max_forward = 0.5;  ///< [m/s] > 0
-  double max_turn = M_PI / 2;///< [rad/s] > 0
-  double wheelbase = 1.0;    ///< [m] car only
+  double max_forward = 0.5;    ///< [m/s] > 0
+  double max_turn = M_PI / 2;  ///< [rad/s] > 0
+  double wheelbase = 1.0;      ///< [m] car only
   std::vector<Laser> lasers;
 };
 
 /// Something to tell the user that did not stop the load.
 struct Warning {
   std::string file;
-  int line = 0;              ///< 1-based
+  int line = 0;  ///< 1-based
   std::string message;
 };
 
@@ -97,16 +99,16 @@ struct Extent {
 
 struct World {
   std::string name;
-  std::string file;          ///< as given by the user
+  std::string file;  ///< as given by the user
   std::vector<Model> models;
-  std::vector<Segment> walls;///< static segments in the world frame
+  std::vector<Segment> walls;  ///< static segments in the world frame
   std::vector<Mover> movers;
   std::map<std::string, int> kept;  ///< entity types that we do not model but keep as bodies, with their count
-  std::uint32_t magnets = 0; ///< models with a magnetic moment (counted; the sensor comes later)
-  double interval = 0.1;     ///< [s] simulated time per tick (`interval_sim`)
+  std::uint32_t magnets = 0;        ///< models with a magnetic moment (counted; the sensor comes later)
+  double interval = 0.1;            ///< [s] simulated time per tick (`interval_sim`)
   Extent extent;
   std::vector<Warning> warnings;
-  std::uint64_t hash = 0;    ///< of everything above that a reading depends on
+  std::uint64_t hash = 0;  ///< of everything above that a reading depends on
 };
 
 /// How to read.
@@ -123,8 +125,8 @@ World load_world(const std::string& file, const LoadOptions& options = {});
 /// Moves everything by (dx, dy): for tests far from the origin.
 void translate(World& world, double dx, double dy);
 
-/// Grows or shrinks `movers` to `count` copies of the first robot (a mover that is not a tag) at free poses: copy k stands
-/// clear of walls and of copies 0..k-1, drawn from (seed, k) alone. Copy 0 is drawn as well.
+/// Grows or shrinks `movers` to `count` copies of the first robot (a mover that is not a tag) at free poses: copy k
+/// stands clear of walls and of copies 0..k-1, drawn from (seed, k) alone. Copy 0 is drawn as well.
 /// @throws base::InputError when there is no robot, or no room.
 void clone_robots(World& world, std::uint32_t count, std::uint64_t seed);
 

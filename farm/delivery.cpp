@@ -1,0 +1,58 @@
+#include "farm/delivery.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace sf::farm {
+
+Delivery::Delivery(const world::World& world) {
+  for (const world::Mover& mover : world.movers) {
+    std::vector<std::int64_t>& own = latencies_.emplace_back();
+    for (const world::Laser& laser : mover.lasers) {
+      own.push_back(std::llround(laser.latency * 1e9));
+      any_ = any_ || own.back() > 0;
+    }
+  }
+}
+
+std::int64_t Delivery::latency_of(const base::ReadingBlock& block) const {
+  return latencies_[block.mover][block.sensor];
+}
+
+void Delivery::hold(const base::ReadingBlock& block, std::int64_t due) {
+  auto place = std::find_if(waiting_.begin(), waiting_.end(), [](const Waiting& w) { return !w.used; });
+  if (place == waiting_.end()) place = waiting_.insert(waiting_.end(), Waiting{});
+  place->values.assign(block.values.begin(), block.values.end());
+  place->hits.assign(block.hits.begin(), block.hits.end());
+  place->block = block;
+  place->due = due;
+  place->used = true;
+}
+
+std::span<const base::ReadingBlock> Delivery::deliver(std::int64_t now, std::span<const base::ReadingBlock> measured) {
+  if (!any_) return measured;
+  for (Waiting* lent : lent_) lent->used = false;
+  lent_.clear();
+  ready_.clear();
+  delivered_.clear();
+  for (const base::ReadingBlock& block : measured)
+    if (latency_of(block) > 0) hold(block, block.time + latency_of(block));
+  for (Waiting& w : waiting_)
+    if (w.used && w.due <= now) ready_.push_back(&w);
+  std::sort(ready_.begin(), ready_.end(), [](const Waiting* p, const Waiting* q) {
+    return std::tie(p->due, p->block.mover, p->block.sensor, p->block.sequence) <
+           std::tie(q->due, q->block.mover, q->block.sensor, q->block.sequence);
+  });
+  for (Waiting* w : ready_) {
+    w->block.values = w->values;
+    w->block.hits = w->hits;
+    delivered_.push_back(w->block);
+  }
+  lent_.swap(ready_);
+  for (const base::ReadingBlock& block : measured)
+    if (latency_of(block) == 0) delivered_.push_back(block);
+  return delivered_;
+}
+
+}  // namespace sf::farm

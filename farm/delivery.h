@@ -1,0 +1,41 @@
+#pragma once
+// Latency: a reading is measured now and delivered later.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/reading.h"
+#include "world/world.h"
+
+namespace sf::farm {
+
+/// Holds back the readings of sensors with a latency. Sensors without one cost nothing here.
+class Delivery {
+ public:
+  explicit Delivery(const world::World& world);
+
+  /// Takes what was measured at `now` [ns] and gives what is delivered at `now`: first what waited, oldest first, then
+  /// what has no latency. Blocks live until the next call.
+  std::span<const base::ReadingBlock> deliver(std::int64_t now, std::span<const base::ReadingBlock> measured);
+
+ private:
+  struct Waiting {
+    base::ReadingBlock block;
+    std::int64_t due = 0;
+    std::vector<double> values;
+    std::vector<std::uint32_t> hits;
+    bool used = false;
+  };
+  std::int64_t latency_of(const base::ReadingBlock& block) const;
+  void hold(const base::ReadingBlock& block, std::int64_t due);
+
+  std::vector<std::vector<std::int64_t>> latencies_;  ///< [ns] by mover and sensor
+  bool any_ = false;
+  std::vector<Waiting> waiting_;  ///< places are reused, with their memory
+  std::vector<Waiting*> ready_;
+  std::vector<Waiting*> lent_;  ///< delivered last time, free from now on
+  std::vector<base::ReadingBlock> delivered_;
+};
+
+}  // namespace sf::farm

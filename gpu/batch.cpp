@@ -1,0 +1,138 @@
+#include "gpu/batch.h"
+
+#include <array>
+#include <vector>
+
+#include "base/error.h"
+#include "gpu/buffer_vk.h"
+#include "gpu/kernel_vk.h"
+
+namespace sf::gpu {
+
+namespace {
+
+struct Copy {
+  VkBuffer from;
+  VkBuffer to;
+  VkBufferCopy region;
+};
+
+}  // namespace
+
+struct Batch::Vk {
+  Device::Vk* device = nullptr;
+  VkCommandPool pool = VK_NULL_HANDLE;
+  std::array<VkCommandBuffer, 3> commands{};  ///< up, run, down
+  VkFence done = VK_NULL_HANDLE;
+  std::vector<Copy> ups;
+  std::vector<Copy> downs;
+
+  VkCommandBuffer run() const { return commands[1]; }
+};
+
+namespace {
+
+void start(VkCommandBuffer commands, VkCommandBufferUsageFlags flags) {
+  VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  begin.flags = flags;
+  must(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
+}
+
+void wait_between(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags wrote, VkPipelineStageFlags to,
+                  VkAccessFlags reads) {
+  VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+  barrier.srcAccessMask = wrote;
+  barrier.dstAccessMask = reads;
+  vkCmdPipelineBarrier(commands, from, to, 0, 1, &barrier, 0, nullptr, 0, nullptr);
+}
+
+constexpr VkPipelineStageFlags kCompute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
+constexpr VkPipelineStageFlags kTransfer = VK_PIPELINE_STAGE_TRANSFER_BIT;
+
+void record_copies(VkCommandBuffer commands, const std::vector<Copy>& copies) {
+  for (const Copy& copy : copies) vkCmdCopyBuffer(commands, copy.from, copy.to, 1, &copy.region);
+}
+
+}  // namespace
+
+Batch::Batch(Device& device) : vk_(std::make_unique<Vk>()) {
+  vk_->device = &device.vk();
+  VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+  pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+  pool.queueFamilyIndex = vk_->device->family;
+  must(vkCreateCommandPool(vk_->device->device, &pool, nullptr, &vk_->pool), "vkCreateCommandPool");
+  VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+  allocate.commandPool = vk_->pool;
+  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  allocate.commandBufferCount = static_cast<std::uint32_t>(vk_->commands.size());
+  must(vkAllocateCommandBuffers(vk_->device->device, &allocate, vk_->commands.data()), "vkAllocateCommandBuffers");
+  VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+  must(vkCreateFence(vk_->device->device, &fence, nullptr, &vk_->done), "vkCreateFence");
+}
+
+Batch::~Batch() {
+  vkDestroyFence(vk_->device->device, vk_->done, nullptr);
+  vkDestroyCommandPool(vk_->device->device, vk_->pool, nullptr);
+}
+
+void Batch::begin() {
+  start(vk_->run(), 0);
+  wait_between(vk_->run(), kTransfer | VK_PIPELINE_STAGE_HOST_BIT,
+               VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_HOST_WRITE_BIT, kCompute | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+               VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+}
+
+void Batch::dispatch(const Kernel& kernel, const Buffer& counts, std::size_t offset) {
+  const Kernel::Vk& k = kernel.vk();
+  vkCmdBindPipeline(vk_->run(), VK_PIPELINE_BIND_POINT_COMPUTE, k.pipeline);
+  vkCmdBindDescriptorSets(vk_->run(), VK_PIPELINE_BIND_POINT_COMPUTE, k.layout, 0, 1, &k.set, 0, nullptr);
+  vkCmdDispatchIndirect(vk_->run(), counts.vk().table.buffer, offset);
+}
+
+void Batch::barrier() {
+  wait_between(vk_->run(), kCompute, VK_ACCESS_SHADER_WRITE_BIT, kCompute, VK_ACCESS_SHADER_READ_BIT);
+}
+
+void Batch::end() {
+  wait_between(vk_->run(), kCompute, VK_ACCESS_SHADER_WRITE_BIT, kTransfer | VK_PIPELINE_STAGE_HOST_BIT,
+               VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_HOST_READ_BIT);
+  must(vkEndCommandBuffer(vk_->run()), "vkEndCommandBuffer");
+}
+
+void Batch::up(const Buffer& table, std::size_t offset, std::size_t size) {
+  const Buffer::Vk& b = table.vk();
+  if (b.staging.buffer && size > 0) vk_->ups.push_back({b.staging.buffer, b.table.buffer, {offset, offset, size}});
+}
+
+void Batch::down(const Buffer& table, std::size_t offset, std::size_t size) {
+  const Buffer::Vk& b = table.vk();
+  if (b.staging.buffer && size > 0) vk_->downs.push_back({b.table.buffer, b.staging.buffer, {offset, offset, size}});
+}
+
+void Batch::run() {
+  std::array<VkCommandBuffer, 3> used{};
+  std::uint32_t count = 0;
+  const auto add_copies = [&](std::vector<Copy>& copies, VkCommandBuffer commands, bool before) {
+    if (copies.empty()) return;
+    start(commands, VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT);
+    record_copies(commands, copies);
+    if (!before)
+      wait_between(commands, kTransfer, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
+                   VK_ACCESS_HOST_READ_BIT);
+    must(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
+    used[count++] = commands;
+    copies.clear();
+  };
+  add_copies(vk_->ups, vk_->commands[0], true);
+  used[count++] = vk_->run();
+  add_copies(vk_->downs, vk_->commands[2], false);
+
+  VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
+  submit.commandBufferCount = count;
+  submit.pCommandBuffers = used.data();
+  must(vkQueueSubmit(vk_->device->queue, 1, &submit, vk_->done), "vkQueueSubmit");
+  must(vkWaitForFences(vk_->device->device, 1, &vk_->done, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  must(vkResetFences(vk_->device->device, 1, &vk_->done), "vkResetFences");
+}
+
+}  // namespace sf::gpu

@@ -1,0 +1,26 @@
+#pragma once
+// The Vulkan handles behind gpu::Buffer, for the sources of this room only.
+
+#include "gpu/buffer.h"
+#include "gpu/vk.h"
+
+namespace sf::gpu {
+
+/// A VkBuffer with its memory.
+struct Storage {
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+};
+
+struct Buffer::Vk {
+  Device::Vk* device = nullptr;
+  Role role = Role::upload;
+  Texel texel = Texel::u32;
+  std::size_t texels = 0;
+  Storage table;    ///< what kernels see
+  Storage staging;  ///< what the host sees, where that is not the table itself
+  VkBufferView view = VK_NULL_HANDLE;
+  void* mapped = nullptr;
+};
+
+}  // namespace sf::gpu

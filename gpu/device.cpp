@@ -1,0 +1,90 @@
+#include "gpu/device.h"
+
+#include "base/error.h"
+#include "gpu/self_check.h"
+#include "gpu/vk.h"
+
+namespace sf::gpu {
+
+namespace {
+
+std::string why_none(const Instance& instance, const Considered& considered) {
+  if (!instance.problem.empty())
+    return "no Vulkan device: " + instance.problem + "; install a driver (Debian: mesa-vulkan-drivers)";
+  if (considered.facts.empty()) return "no Vulkan device found; install a driver (Debian: mesa-vulkan-drivers)";
+  std::string line = "no usable Vulkan device among " + std::to_string(considered.facts.size()) + ":";
+  for (const DeviceFacts& facts : considered.facts) line += " " + facts.name + " " + facts.reason + ";";
+  line.back() = '.';
+  return line;
+}
+
+void open(Device::Vk& vk) {
+  vkGetPhysicalDeviceProperties(vk.physical, &vk.properties);
+  vkGetPhysicalDeviceMemoryProperties(vk.physical, &vk.memory);
+  vk.family = static_cast<std::uint32_t>(compute_family(vk.physical));
+
+  const float priority = 1.0f;
+  VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+  queue.queueFamilyIndex = vk.family;
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  VkPhysicalDeviceFeatures features{};
+  features.shaderFloat64 = VK_TRUE;
+  VkDeviceCreateInfo create{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+  create.queueCreateInfoCount = 1;
+  create.pQueueCreateInfos = &queue;
+  create.pEnabledFeatures = &features;
+  if (const VkResult result = vkCreateDevice(vk.physical, &create, nullptr, &vk.device); result != VK_SUCCESS)
+    throw base::DeviceError("the Vulkan device " + vk.facts.name + " could not be opened (vkCreateDevice gave " +
+                            std::to_string(result) + ")");
+  vkGetDeviceQueue(vk.device, vk.family, 0, &vk.queue);
+}
+
+}  // namespace
+
+int Device::Vk::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const {
+  for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i)
+    if ((allowed >> i & 1u) && (memory.memoryTypes[i].propertyFlags & wanted) == wanted) return static_cast<int>(i);
+  return -1;
+}
+
+Survey survey_devices(const std::string& wanted) {
+  const Instance instance;
+  Considered considered = consider(instance);
+  choose(considered, wanted);
+  return {considered.facts, instance.problem};
+}
+
+Device::Device(const std::string& wanted) : vk_(std::make_unique<Vk>()) {
+  vk_->instance = std::make_unique<Instance>();
+  Considered considered = consider(*vk_->instance);
+  const int row = choose(considered, wanted);
+  if (row < 0) throw base::DeviceError(why_none(*vk_->instance, considered));
+  vk_->physical = considered.handles[static_cast<std::size_t>(row)];
+  vk_->facts = considered.facts[static_cast<std::size_t>(row)];
+  open(*vk_);
+  if (const std::string fault = self_check(*this); !fault.empty()) {
+    vkDestroyDevice(vk_->device, nullptr);
+    throw base::DeviceError("the Vulkan device " + vk_->facts.name + " was refused: " + fault);
+  }
+}
+
+Device::~Device() {
+  if (!vk_->device) return;
+  vkDeviceWaitIdle(vk_->device);
+  vkDestroyDevice(vk_->device, nullptr);
+}
+
+const DeviceFacts& Device::facts() const { return vk_->facts; }
+
+bool Device::unified() const {
+  return vk_->memory_type(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                   VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT) >= 0;
+}
+
+std::string Device::validation_messages() const {
+  const std::scoped_lock guard(vk_->instance->lock);
+  return vk_->instance->messages;
+}
+
+}  // namespace sf::gpu

@@ -1,0 +1,54 @@
+#pragma once
+// Which Vulkan device computes, and why the others do not. No Vulkan type leaves this room.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sf::gpu {
+
+/// One Vulkan device as it was considered.
+struct DeviceFacts {
+  std::string name;       ///< as the driver gives it
+  std::string driver;     ///< driver name and version
+  std::string api;        ///< Vulkan version, e.g. "1.3.230"
+  std::string kind;       ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other"
+  bool software = false;  ///< computed on the CPU
+  bool chosen = false;
+  std::string reason;  ///< why it was refused or not chosen; empty for the chosen one
+};
+
+/// Opens Vulkan and considers every device.
+/// `wanted` is empty (best usable device), a row number of the list, or a part of a device's name.
+/// Throws nothing for "no device": the list then has no chosen row. `problem` says what is wrong with Vulkan itself, if
+/// anything.
+struct Survey {
+  std::vector<DeviceFacts> devices;
+  std::string problem;
+};
+Survey survey_devices(const std::string& wanted);
+
+/// One open device with one compute queue. Used by one thread at a time; must outlive all that is made on it.
+class Device {
+ public:
+  /// @throws base::DeviceError: one line that lists every device considered and why it was refused.
+  explicit Device(const std::string& wanted = "");
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  const DeviceFacts& facts() const;
+  /// Host and device share memory: uploads and downloads copy nothing.
+  bool unified() const;
+  /// Messages of the validation layer so far; it is on when the environment has SENSORFARM_VALIDATE=1. "" when silent.
+  std::string validation_messages() const;
+
+  struct Vk;  ///< the Vulkan handles, for this room only
+  Vk& vk() const { return *vk_; }
+
+ private:
+  std::unique_ptr<Vk> vk_;
+};
+
+}  // namespace sf::gpu

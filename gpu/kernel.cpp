@@ -1,0 +1,107 @@
+#include "gpu/kernel.h"
+
+#include <array>
+#include <vector>
+
+#include "base/error.h"
+#include "gpu/buffer_vk.h"
+#include "gpu/kernel_vk.h"
+
+namespace sf::gpu {
+
+namespace {
+
+void make_layout(Kernel::Vk& vk, std::uint32_t tables) {
+  std::vector<VkDescriptorSetLayoutBinding> bindings(tables);
+  for (std::uint32_t i = 0; i < tables; ++i)
+    bindings[i] = {i, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+  VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+  set.bindingCount = tables;
+  set.pBindings = bindings.data();
+  must(vkCreateDescriptorSetLayout(vk.device->device, &set, nullptr, &vk.tables), "vkCreateDescriptorSetLayout");
+
+  VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
+  layout.setLayoutCount = 1;
+  layout.pSetLayouts = &vk.tables;
+  must(vkCreatePipelineLayout(vk.device->device, &layout, nullptr, &vk.layout), "vkCreatePipelineLayout");
+}
+
+void make_set(Kernel::Vk& vk, std::uint32_t tables) {
+  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, tables};
+  VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+  pool.maxSets = 1;
+  pool.poolSizeCount = 1;
+  pool.pPoolSizes = &size;
+  must(vkCreateDescriptorPool(vk.device->device, &pool, nullptr, &vk.pool), "vkCreateDescriptorPool");
+  VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+  allocate.descriptorPool = vk.pool;
+  allocate.descriptorSetCount = 1;
+  allocate.pSetLayouts = &vk.tables;
+  must(vkAllocateDescriptorSets(vk.device->device, &allocate, &vk.set), "vkAllocateDescriptorSets");
+}
+
+void make_pipeline(Kernel::Vk& vk, std::span<const std::uint32_t> spirv) {
+  VkShaderModuleCreateInfo code{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
+  code.codeSize = spirv.size_bytes();
+  code.pCode = spirv.data();
+  VkShaderModule module = VK_NULL_HANDLE;
+  must(vkCreateShaderModule(vk.device->device, &code, nullptr, &module), "vkCreateShaderModule");
+  VkComputePipelineCreateInfo create{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+  create.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  create.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  create.stage.module = module;
+  create.stage.pName = "main";
+  create.layout = vk.layout;
+  must(vkCreateComputePipelines(vk.device->device, VK_NULL_HANDLE, 1, &create, nullptr, &vk.pipeline),
+       "vkCreateComputePipelines");
+  vkDestroyShaderModule(vk.device->device, module, nullptr);
+}
+
+}  // namespace
+
+std::uint32_t group_size_of(std::span<const std::uint32_t> spirv) {
+  // SPIR-V: five words of header, then instructions whose first word is (word count << 16 | opcode).
+  constexpr std::uint32_t kExecutionMode = 16;
+  constexpr std::uint32_t kLocalSize = 17;
+  for (std::size_t at = 5; at < spirv.size();) {
+    const std::uint32_t words = spirv[at] >> 16;
+    if (words == 0) return 0;
+    if ((spirv[at] & 0xFFFFu) == kExecutionMode && words >= 6 && spirv[at + 2] == kLocalSize) return spirv[at + 3];
+    at += words;
+  }
+  return 0;
+}
+
+Kernel::Kernel(Device& device, std::span<const std::uint32_t> spirv, std::uint32_t tables)
+    : vk_(std::make_unique<Vk>()) {
+  vk_->device = &device.vk();
+  vk_->group_size = group_size_of(spirv);
+  SF_CHECK(vk_->group_size > 0, "a SPIR-V module without LocalSize");
+  make_layout(*vk_, tables);
+  make_set(*vk_, tables);
+  make_pipeline(*vk_, spirv);
+}
+
+Kernel::~Kernel() {
+  const VkDevice device = vk_->device->device;
+  vkDestroyPipeline(device, vk_->pipeline, nullptr);
+  vkDestroyPipelineLayout(device, vk_->layout, nullptr);
+  vkDestroyDescriptorPool(device, vk_->pool, nullptr);
+  vkDestroyDescriptorSetLayout(device, vk_->tables, nullptr);
+}
+
+void Kernel::bind(std::span<Buffer* const> tables) {
+  std::vector<VkWriteDescriptorSet> writes(tables.size(), {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET});
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    writes[i].dstSet = vk_->set;
+    writes[i].dstBinding = static_cast<std::uint32_t>(i);
+    writes[i].descriptorCount = 1;
+    writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+    writes[i].pTexelBufferView = &tables[i]->vk().view;
+  }
+  vkUpdateDescriptorSets(vk_->device->device, static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
+}
+
+std::uint32_t Kernel::group_size() const { return vk_->group_size; }
+
+}  // namespace sf::gpu

@@ -1,0 +1,19 @@
+#pragma once
+// The Vulkan handles behind gpu::Kernel, for the sources of this room only.
+
+#include "gpu/kernel.h"
+#include "gpu/vk.h"
+
+namespace sf::gpu {
+
+struct Kernel::Vk {
+  Device::Vk* device = nullptr;
+  VkDescriptorSetLayout tables = VK_NULL_HANDLE;
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  std::uint32_t group_size = 0;
+};
+
+}  // namespace sf::gpu

@@ -1,0 +1,55 @@
+#pragma once
+// The Vulkan handles behind gpu::Device, for the sources of this room only.
+
+#include <vulkan/vulkan.h>
+
+#include <mutex>
+#include <string>
+
+#include "gpu/device.h"
+
+namespace sf::gpu {
+
+/// Aborts with the call's name: a Vulkan call that fails after start-up is our bug or a lost device.
+void must(VkResult result, const char* call);
+
+struct Instance {
+  VkInstance handle = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+  std::string problem;   ///< why there is no instance
+  std::string messages;  ///< of the validation layer
+  std::mutex lock;
+
+  Instance();
+  ~Instance();
+};
+
+struct Device::Vk {
+  std::unique_ptr<Instance> instance;
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;
+  std::uint32_t family = 0;
+  VkPhysicalDeviceProperties properties{};
+  VkPhysicalDeviceMemoryProperties memory{};
+  DeviceFacts facts;
+
+  /// Row of a memory type with all of `wanted` among `allowed`, or -1.
+  int memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
+};
+
+/// All physical devices of `instance`, considered but none chosen yet: row i of `facts` belongs to row i of `handles`.
+/// A non-empty `reason` says what the device lacks.
+struct Considered {
+  std::vector<VkPhysicalDevice> handles;
+  std::vector<DeviceFacts> facts;
+};
+Considered consider(const Instance& instance);
+
+/// Marks the chosen row, gives the others a reason, and returns the chosen row or -1.
+int choose(Considered& considered, const std::string& wanted);
+
+/// Compute queue family with the fewest other talents, or -1.
+int compute_family(VkPhysicalDevice physical);
+
+}  // namespace sf::gpu

@@ -1,0 +1,96 @@
+#pragma once
+// Movers as obstacles: where their outlines are this tick, who is near whom, and what each sensor may meet of them.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "sensors/scene/sectors.h"
+#include "world/world.h"
+
+namespace sf::sensors {
+
+using base::Pose;
+
+/// All movers' outlines in the world frame. Exact segments of movers follow those of the walls: id = walls + row.
+class Bodies {
+ public:
+  Bodies(const world::World& world, const Sight* any_wall);
+
+  /// Moves every outline to its mover's pose. One pose per mover.
+  void place(std::span<const Pose> poses, base::Workers& workers);
+
+  /// Exact outlines in the world frame, in order of id, as of the last `place`.
+  std::span<const ExactSegment> segments() const { return segments_; }
+  /// For each, how near other parts of the same mover come, as `wall_clearances` gives it [m].
+  std::vector<float> own_clearances(double cap) const;
+  double largest_radius() const { return largest_; }  ///< [m]
+  /// What beams report that meet them, in the same order.
+  const std::vector<std::uint32_t>& models() const { return models_; }
+
+  /// Prepares for views at world height `z` [m]: to be called for each before the first `collect`. Gives its number.
+  std::uint32_t watch_height(double z);
+
+  /// A viewpoint among the movers.
+  struct View {
+    Vec2 origin;               ///< [m] world
+    std::uint32_t height = 0;  ///< as `watch_height` numbers it
+    double yaw = 0.0;          ///< [rad]
+    double fov = 0.0;          ///< [rad] nothing outside of yaw +- fov / 2 is looked at
+    Vec2 cell_centre;          ///< [m] what entries are relative to
+    double range = 0.0;        ///< [m]
+    double spread = 0.0;       ///< [rad] as in CellShape
+    std::uint32_t self = 0;    ///< mover that carries the sensor, and is never seen
+  };
+  /// Scratch of one thread.
+  struct Near {
+    double nearest;  ///< [m] from the view to the circle round the body
+    std::uint32_t body;
+  };
+  struct Scratch {
+    std::vector<Near> near;
+    std::vector<Near> sorted;
+    std::vector<std::uint32_t> counts;
+  };
+  /// Collects what `view` may meet of other movers, and for each sector the least clearance of what is in it [m].
+  /// Movers that nearer ones hide are left out.
+  void collect(const View& view, Scratch& scratch, SectorLists& lists, float clearances[SF_SECTORS]) const;
+
+ private:
+  struct Body {
+    std::uint32_t first = 0, count = 0;  ///< rows of local_ and segments_
+    double radius = 0.0;
+  };
+  void index();
+  void measure_clearances(std::size_t first, std::size_t last, Sight::Nearby& nearby);
+  void find_near(const View& view, Scratch& scratch) const;
+  void add_body(const View& view, std::uint32_t body, double bearing, double wide, SectorLists& lists) const;
+  template <class Visit>
+  void each_near(Vec2 p, double reach, Visit visit) const;
+
+  std::vector<Body> bodies_;
+  std::vector<world::Segment> local_;   ///< mover frame
+  std::vector<ExactSegment> segments_;  ///< world frame
+  std::vector<std::uint32_t> models_;
+  std::vector<Pose> poses_;
+  std::vector<float> clearances_;      ///< [m] per mover: to walls and other movers, at least
+  std::vector<Sight::Nearby> nearby_;  ///< per thread
+  const Sight* walls_;
+  std::uint32_t wall_count_;
+  double largest_ = 0.0;  ///< [m] radius
+  struct Height {
+    double z;
+    std::vector<float> opaque;  ///< [m] per mover: radius about its origin that no beam at this height passes
+  };
+  std::vector<Height> heights_;
+  std::vector<double> loaded_z_;  ///< [m] per mover: heights are those at load, the world is 2.5-D
+
+  // Movers by cell of a grid over where they are.
+  Vec2 low_;
+  double cell_ = 1.0;
+  int columns_ = 1, rows_ = 1;
+  std::vector<std::uint32_t> cell_first_, cell_items_, cell_next_;
+};
+
+}  // namespace sf::sensors

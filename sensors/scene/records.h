@@ -1,0 +1,89 @@
+#ifndef SENSORS_SCENE_RECORDS_H
+#define SENSORS_SCENE_RECORDS_H
+// What host and device agree on about casting rays. Read by both compilers.
+//
+// A lane owns four adjacent beams of one sensor, so that each segment it loads serves four.
+// A sector list holds the segments that beams of one direction sector may meet from anywhere in one cell, near to far,
+// in chunks of four; coordinates are relative to the cell's centre.
+
+#define SF_SECTORS 32
+#define SF_CHUNK 4
+#define SF_BEAMS_PER_LANE 4
+#define SF_ROW_TEXELS 6
+#define SF_NO_HIT 0xFFFFFFFFu
+
+// What a 32-bit search may be wrong by, as a share of the largest coordinate (sectors.h derives it).
+#define SF_BAND 9.5367431640625e-7 /* 2^-20 */
+
+// A surface within this distance [m] of a sensor counts as touching it: beams into it read 0, beams off it pass.
+#define SF_TOUCH 1e-9
+
+#ifdef __cplusplus
+
+#include <cstdint>
+
+namespace sf::sensors {
+
+/// One sensor that is due: where it looks from and which tables serve it. Six texels of 16 bytes.
+struct RayRow {
+  float offset_x;  ///< [m] sensor relative to the centre of its cell
+  float offset_y;
+  float heading_cos;  ///< of the sensor's yaw in the world
+  float heading_sin;
+  float heading_sectors;  ///< [sectors] yaw in [0, SF_SECTORS)
+  float band;             ///< [m] SF_BAND times the largest coordinate in its lists
+  float reach;            ///< [m] range_max and a little: nothing farther matters
+  std::uint32_t spare;
+  std::uint32_t wall_lists;   ///< first of SF_SECTORS list headers
+  std::uint32_t mover_lists;  ///< first of SF_SECTORS list headers
+  std::uint32_t beams;        ///< first lane in the beam tables
+  std::uint32_t out;          ///< first lane in the result tables
+  double origin_x;            ///< [m] world
+  double origin_y;
+  double heading_cos64;
+  double heading_sin64;
+  double range_max;  ///< [m]
+  double range_min;  ///< [m]
+};
+static_assert(sizeof(RayRow) == SF_ROW_TEXELS * 16);
+
+/// One sector list: where it is and how close together the things in it may come.
+struct ListHeader {
+  std::uint32_t first;  ///< chunk
+  std::uint32_t count;  ///< [chunks]
+  float clearance;      ///< [m] movers: no two surfaces in it, nor one of it and a wall, are nearer; walls: +inf
+  std::uint32_t spare;
+};
+static_assert(sizeof(ListHeader) == 16);
+
+/// A segment as the search sees it: start and extent, relative to the cell's centre, seen from its right.
+struct ListEntry {
+  float ax, ay;  ///< [m]
+  float ex, ey;  ///< [m]
+};
+static_assert(sizeof(ListEntry) == 16);
+
+/// A segment as the decision sees it: two texels.
+struct ExactSegment {
+  double ax, ay, bx, by;  ///< [m] world
+};
+static_assert(sizeof(ExactSegment) == 32);
+
+/// What else is known of a segment: two words.
+struct SegmentFacts {
+  float clearance;      ///< [m] no surface comes nearer, but those that share an end with it at a fair angle
+  std::uint32_t model;  ///< what a beam that meets it reports
+};
+static_assert(sizeof(SegmentFacts) == 8);
+
+/// Whose beams a lane casts: two words.
+struct Lane {
+  std::uint32_t row;   ///< of the due sensor
+  std::uint32_t lane;  ///< within the sensor
+};
+static_assert(sizeof(Lane) == 8);
+
+}  // namespace sf::sensors
+
+#endif
+#endif

@@ -1,0 +1,113 @@
+#pragma once
+// What rays can meet, on the device: walls and movers as exact segments, and sector lists where sensors are.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "gpu/batch.h"
+#include "gpu/buffer.h"
+#include "sensors/scene/bodies.h"
+#include "sensors/scene/cells.h"
+#include "sensors/scene/sectors.h"
+#include "world/world.h"
+
+namespace sf::sensors {
+
+/// How much room the lists have before the oldest make way. When one tick alone needs more, the room doubles.
+struct SceneOptions {
+  std::uint32_t pool_chunks = 1u << 20;  ///< 84 bytes each; memory is touched only as far as used
+  std::uint32_t pool_cells = 1u << 14;
+};
+
+/// Sensors that can share lists: one height, one range.
+struct Family {
+  double z = 0.0;       ///< [m] world height of the sensors
+  double range = 0.0;   ///< [m]
+  double spread = 0.0;  ///< [rad] largest of its sensors, as in CellShape
+  double fov = 0.0;     ///< [rad] largest of its sensors, with all that noise may add
+};
+
+/// A sensor about to look.
+struct Viewpoint {
+  std::uint32_t family = 0;
+  std::uint32_t self = 0;  ///< mover that carries it
+  Pose X_WS;
+};
+
+/// Not thread-safe. `world` need not outlive it.
+class Scene {
+ public:
+  Scene(const world::World& world, gpu::Device& device, base::Workers& workers, const SceneOptions& options);
+  ~Scene();
+
+  /// Registers a family; to be called for all before the first tick. Equal height and range give the same number.
+  std::uint32_t add_family(const Family& family);
+
+  /// Takes this tick's poses, one per mover.
+  void place(std::span<const Pose> poses);
+
+  /// Makes lists for all `views` and fills what `rows` says of them (all but beams and out), row by row.
+  /// @return true when tables were replaced, so that kernels must be bound again.
+  bool serve(std::span<const Viewpoint> views, std::span<RayRow> rows);
+
+  /// Names what changed since the last call for copying to the device.
+  void upload(gpu::Batch& batch);
+
+  gpu::Buffer& headers() { return *headers_; }
+  gpu::Buffer& entries() { return *entries_; }
+  gpu::Buffer& ids() { return *ids_; }
+  gpu::Buffer& nearest() { return *nearest_; }
+  gpu::Buffer& segments() { return *segments_; }
+  gpu::Buffer& facts() { return *facts_; }
+
+  struct Counts {
+    std::uint64_t cells_built = 0;  ///< ever
+    std::uint32_t cells_held = 0;   ///< now
+  };
+  Counts counts() const;
+
+ private:
+  struct FamilyTables;
+  struct Miss;
+  struct Scratch;
+
+  Vec2 centre_of(const FamilyTables& family, const CellKey& key) const;
+  CellKey key_of(const Viewpoint& view) const;
+  void find_cells(std::span<const Viewpoint> views);
+  void build_missing();
+  void forget_found();
+  void fill_walls(const Viewpoint& view, std::size_t row, RayRow& out);
+  bool fill_movers(std::span<const Viewpoint> views, std::span<RayRow> rows);
+  bool fill_some_movers(std::span<const Viewpoint> views, std::span<RayRow> rows);
+  void grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t views, std::uint32_t mover_chunks);
+  ListTables tables();
+
+  base::Workers& workers_;
+  gpu::Device& device_;
+  SceneOptions options_;
+  std::vector<world::Segment> walls_;
+  std::vector<double> breaks_;                            ///< [m] heights at which the set of visible walls changes
+  std::map<std::size_t, std::unique_ptr<Sight>> sights_;  ///< by the interval between breaks
+  std::vector<std::unique_ptr<FamilyTables>> families_;
+  std::unique_ptr<Sight> all_walls_;
+  std::unique_ptr<Bodies> bodies_;
+  CellPool pool_;
+  std::vector<CellKey> keys_;  ///< of this tick's views
+  std::vector<CellKey> missing_;
+  std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
+  std::vector<std::uint32_t> fresh_slots_;         ///< cells built since the last upload
+  std::uint32_t mover_chunks_ = 0;                 ///< capacity for movers' lists, behind the pool
+  std::uint32_t mover_chunks_used_ = 0;            ///< may exceed the capacity while a tick is being retried
+  std::uint32_t view_capacity_ = 0;                ///< rows of movers' headers
+  std::size_t views_served_ = 0;
+  bool replaced_ = false;  ///< tables were, since `serve` began
+  bool upload_all_ = true;
+
+  std::unique_ptr<gpu::Buffer> headers_, entries_, ids_, nearest_, segments_, facts_;
+};
+
+}  // namespace sf::sensors

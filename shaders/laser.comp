@@ -1,0 +1,116 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// The laser range finder: every beam of every sensor that is due, in one dispatch.
+
+#include "sensors/scene/records.h"
+
+layout(local_size_x = 64) in;
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;        // SF_ROW_TEXELS a sensor: RayRow
+layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;          // two words a lane: Lane
+layout(binding = 2, rgba32f) uniform readonly imageBuffer directions;    // two texels a lane: four cosines, four sines
+layout(binding = 3, r32f) uniform readonly imageBuffer bearings;         // a lane's middle bearing [sectors]
+layout(binding = 4, rgba32ui) uniform readonly uimageBuffer directions64;  // a texel a beam: cosine, sine
+layout(binding = 5, rgba32ui) uniform readonly uimageBuffer headers;     // ListHeader
+layout(binding = 6, rgba32f) uniform readonly imageBuffer entries;       // ListEntry
+layout(binding = 7, r32ui) uniform readonly uimageBuffer ids;            // exact segment of each entry
+layout(binding = 8, r32f) uniform readonly imageBuffer nearest;          // [m] least distance of each chunk
+layout(binding = 9, rgba32ui) uniform readonly uimageBuffer segments;    // two texels a segment: ExactSegment
+layout(binding = 10, r32ui) uniform readonly uimageBuffer facts;         // two words a segment: SegmentFacts
+layout(binding = 11, rgba32ui) uniform writeonly uimageBuffer ranges;    // two texels a lane: four doubles [m]
+layout(binding = 12, rgba32ui) uniform writeonly uimageBuffer hits;      // a texel a lane: four models
+layout(binding = 13, r32ui) uniform writeonly uimageBuffer doubts;       // a word a lane: 1 where 32 bits were not enough
+
+#include "shaders/lib/decide.glsl"
+#include "shaders/lib/rays.glsl"
+
+Beam64 exact_beam(int slot, dvec2 origin, dvec2 heading) {
+  const uvec4 words = imageLoad(directions64, slot);
+  const double c = packDouble2x32(words.xy);
+  const double s = packDouble2x32(words.zw);
+  precise double x = heading.x * c - heading.y * s;
+  precise double y = heading.y * c + heading.x * s;
+  return Beam64(origin, dvec2(x, y));
+}
+
+uint model_of(uint id) { return id == SF_NO_HIT ? SF_NO_HIT : imageLoad(facts, 2 * int(id) + 1).x; }
+
+void main() {
+  const int lane = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
+  const int row = SF_ROW_TEXELS * int(imageLoad(lanes, 2 * lane).x);
+  const int own = int(imageLoad(lanes, 2 * lane + 1).x);
+
+  const vec4 place = uintBitsToFloat(imageLoad(rows, row));
+  const vec4 look = uintBitsToFloat(imageLoad(rows, row + 1));
+  const uvec4 tables = imageLoad(rows, row + 2);
+  const vec2 o = place.xy;
+  const float band = look.y;
+  const int lane_beams = int(tables.z) + own;
+
+  // Search in 32 bits: walls, then movers.
+  const vec4 bc = imageLoad(directions, 2 * lane_beams);
+  const vec4 bs = imageLoad(directions, 2 * lane_beams + 1);
+  const Beams d = Beams(place.z * bc - place.w * bs, place.w * bc + place.z * bs);
+  const int sector = int(floor(look.x + imageLoad(bearings, lane_beams).x)) & (SF_SECTORS - 1);
+  const uvec4 walls = imageLoad(headers, int(tables.x) + sector);
+  const uvec4 movers = imageLoad(headers, int(tables.y) + sector);
+  Nearest best = Nearest(vec4(look.z), vec4(1.0), ivec4(-1), false);
+  search_list(walls, o, d, band, best);
+  search_list(movers, o, d, band, best);
+
+  // Prove each winner, or look at all in 64 bits.
+  const float clearance = uintBitsToFloat(movers.z);
+  vec4 farthest;
+  bool sure = !best.edge_on;
+  for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+    const bool p = proven(best.entry[i], o, vec2(d.dx[i], d.dy[i]), band, clearance, farthest[i], best.above[i], best.below[i]);
+    sure = sure && p;
+  }
+  const float bound = max(max(farthest.x, farthest.y), max(farthest.z, farthest.w));
+
+  const uvec4 origin_words = imageLoad(rows, row + 3);
+  const uvec4 heading_words = imageLoad(rows, row + 4);
+  const uvec4 range_words = imageLoad(rows, row + 5);
+  const dvec2 origin = dvec2(packDouble2x32(origin_words.xy), packDouble2x32(origin_words.zw));
+  const dvec2 heading = dvec2(packDouble2x32(heading_words.xy), packDouble2x32(heading_words.zw));
+  const double range_max = packDouble2x32(range_words.xy);
+  Beam64 beams[SF_BEAMS_PER_LANE];
+  Decision decisions[SF_BEAMS_PER_LANE];
+  uint winner[SF_BEAMS_PER_LANE];
+  for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+    beams[i] = exact_beam(SF_BEAMS_PER_LANE * lane_beams + i, origin, heading);
+    decisions[i] = Decision(range_max, SF_NO_HIT);
+    winner[i] = best.entry[i] < 0 ? SF_NO_HIT : imageLoad(ids, best.entry[i]).x;
+  }
+
+  // A proven lane goes round once, with its winners; another with every entry that may be nearer than the farthest winner.
+  int chunk = int(walls.x);
+  int end = chunk + int(walls.y);
+  int k = 0;
+  bool movers_left = true;
+  bool more = true;
+  while (more) {
+    const bool here = chunk < end;
+    const uint id = here ? imageLoad(ids, SF_CHUNK * chunk + k).x : SF_NO_HIT;
+    for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) decide(sure ? winner[i] : id, beams[i], decisions[i]);
+    k = k + 1;
+    chunk = k == SF_CHUNK ? chunk + 1 : chunk;
+    k = k == SF_CHUNK ? 0 : k;
+    bool done = chunk >= end || imageLoad(nearest, chunk).x > bound;
+    const bool turn = done && movers_left;
+    chunk = turn ? int(movers.x) : chunk;
+    end = turn ? int(movers.x + movers.y) : end;
+    k = turn ? 0 : k;
+    movers_left = movers_left && !turn;
+    done = done && !turn;
+    more = !sure && !done;
+  }
+
+  const double range_min = packDouble2x32(range_words.zw);
+  for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) decisions[i].range = max(decisions[i].range, range_min);
+  const int out_lane = int(tables.w) + own;
+  imageStore(ranges, 2 * out_lane, uvec4(unpackDouble2x32(decisions[0].range), unpackDouble2x32(decisions[1].range)));
+  imageStore(ranges, 2 * out_lane + 1, uvec4(unpackDouble2x32(decisions[2].range), unpackDouble2x32(decisions[3].range)));
+  imageStore(hits, out_lane,
+             uvec4(model_of(decisions[0].id), model_of(decisions[1].id), model_of(decisions[2].id), model_of(decisions[3].id)));
+  imageStore(doubts, out_lane, uvec4(sure ? 0u : 1u));
+}

@@ -1,0 +1,29 @@
+#pragma once
+// Worlds made by hand, for tests and benchmarks: the same scene for both.
+
+#include <cstdint>
+
+#include "world/world.h"
+
+namespace sf::scenes {
+
+/// A closed, cave-like bitmap of n x n cells, `size` [m] on a side, centred on the origin: merged boundary runs, no
+/// movers.
+world::World cave(std::uint32_t n, double size, std::uint64_t seed);
+
+/// A closed square of `size` [m] with `count` boxes at any angle, some of them overlapping.
+world::World boxes(std::uint32_t count, double size, std::uint64_t seed);
+
+/// A laser like the SICK LMS-200 in its 361-ray mode.
+world::Laser laser(std::uint32_t samples = 361, double fov = M_PI, double range_max = 8.0);
+
+/// Adds a robot: a 16-sided disc of 0.165 m carrying `laser`.
+std::uint32_t add_robot(world::World& world, const base::Pose& pose, const world::Laser& laser);
+
+/// Adds `count` such robots at free places, no two nearer than half a metre where there is room.
+void add_robots(world::World& world, std::uint32_t count, const world::Laser& laser, std::uint64_t seed);
+
+/// Adds a closed outline, solid on the left of its edges.
+void add_outline(world::World& world, const std::vector<base::Vec2>& corners, const std::string& name);
+
+}  // namespace sf::scenes
