@@ -1,0 +1,52 @@
+#pragma once
+// Who may speak for which id, and since when they have been silent. No clock is read here: time is always passed in.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "netio/endpoint.h"
+#include "netio/reason.h"
+
+namespace sf::netio {
+
+inline constexpr std::int64_t kSilence = 2'000'000'000;  ///< [ns] after exactly this long a sender is silent
+
+/// The rule, for one space of ids (robots, or tags): the first sender of an id binds it until two seconds of silence.
+/// A packet whose sequence is not newer than the last of its line is stale; it neither keeps the binding nor is used,
+/// so a sender that starts its count again is taken after two seconds. Lines (one per packet type) count apart.
+class Bindings {
+ public:
+  static constexpr std::size_t kLines = 2;
+
+  /// @param ids that exist, in any order.
+  explicit Bindings(std::span<const std::uint32_t> ids);
+
+  /// Position of `id` among the ids in ascending order; nothing for an id that does not exist.
+  std::optional<std::size_t> row(std::uint32_t id) const;
+
+  /// accepted, wrong_source or stale; of a known id only. `now` [ns] on any clock that does not go back.
+  Reason admit(std::uint32_t id, std::size_t line, std::uint32_t sequence, const Endpoint& source, std::int64_t now);
+
+  /// A packet of `id` was accepted less than two seconds before `now`. False for unknown ids.
+  bool heard(std::uint32_t id, std::int64_t now) const;
+
+  /// Who spoke last for `id`, be it silent since; nothing when it was never heard.
+  std::optional<Endpoint> source(std::uint32_t id) const;
+
+ private:
+  struct Line {
+    std::uint32_t sequence = 0;
+    std::optional<std::int64_t> last;  ///< [ns] when a packet of it was accepted
+  };
+  struct Speaker {
+    std::uint32_t id = 0;
+    Endpoint source;
+    std::optional<std::int64_t> last;
+    Line lines[kLines];
+  };
+  std::vector<Speaker> speakers_;  ///< by id
+};
+
+}  // namespace sf::netio

@@ -1,0 +1,36 @@
+#include "netio/endpoint.h"
+
+#include <arpa/inet.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include "base/error.h"
+
+namespace sf::netio {
+
+std::uint32_t resolve(const std::string& host) {
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_DGRAM;
+  addrinfo* found = nullptr;
+  const int failure = getaddrinfo(host.c_str(), nullptr, &hints, &found);
+  if (failure != 0) {
+    throw base::InputError("no IPv4 address for '" + host + "' (" + gai_strerror(failure) +
+                           "): give a dotted address such as 127.0.0.1, or a host name this machine knows");
+  }
+  const std::uint32_t address = ntohl(reinterpret_cast<const sockaddr_in*>(found->ai_addr)->sin_addr.s_addr);
+  freeaddrinfo(found);
+  return address;
+}
+
+std::string text(const Endpoint& endpoint) {
+  std::string line;
+  for (int shift = 24; shift >= 0; shift -= 8) {
+    line += std::to_string(endpoint.address >> shift & 0xFFu);
+    line += shift > 0 ? '.' : ':';
+  }
+  return line + std::to_string(endpoint.port);
+}
+
+}  // namespace sf::netio

@@ -1,0 +1,86 @@
+#pragma once
+// Datagrams in, states out. Nothing a stranger sends stops it, and nothing is allocated after construction.
+//
+//   Inbox inbox({.robots = ids});
+//   inbox.receive(now, [&](const Packet& packet) { ... });        // each accepted V2V, TAG and SUBSCRIBE
+//   if (inbox.heard(7, now) && inbox.wants(7, kind, now)) ...      // send to *inbox.address(7)
+//
+// One thread. No clock is read: `now` is any clock in ns that does not go back.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "netio/bindings.h"
+#include "netio/endpoint.h"
+#include "netio/packets.h"
+#include "netio/ports.h"
+#include "netio/reason.h"
+#include "netio/socket.h"
+
+namespace sf::netio {
+
+struct InboxOptions {
+  Endpoint bind = {kLoopback, kInboxPort};  ///< address 0 (0.0.0.0): every interface of the machine
+  std::size_t receive_buffer = 4u << 20;    ///< [byte] asked of the kernel
+  std::vector<std::uint32_t> robots;        ///< ids that the world has, each in [0, kMaxId], no two equal
+  std::vector<std::uint32_t> tags;          ///< each in [kMinTag, kMaxId]
+};
+
+class Inbox {
+ public:
+  /// Datagrams taken by one receive at most: a flood may not hold the tick.
+  static constexpr std::size_t kMaxPerReceive = 65'536;
+
+  /// @throws base::InputError when the address cannot be bound, or an id does not fit a packet.
+  explicit Inbox(const InboxOptions& options);
+
+  /// Takes every datagram that waits and gives `take(const Packet&)` each accepted one, in order of arrival.
+  /// Returns how many were taken from the socket.
+  template <class Take>
+  std::size_t receive(std::int64_t now, Take&& take) {
+    std::size_t taken = 0;
+    Packet packet;
+    while (taken < kMaxPerReceive) {
+      const std::size_t n = batch_.fill(socket_);
+      if (n == 0) break;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (accept(batch_.bytes(i), batch_.source(i), now, packet) == Reason::accepted) take(packet);
+      }
+      taken += n;
+    }
+    return taken;
+  }
+
+  /// One datagram, from wherever: decides, counts, and fills `packet` when accepted (else it holds
+  /// nothing of use). receive() is this for a socket.
+  Reason accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now, Packet& packet);
+
+  /// A V2V or SUBSCRIBE of `robot` was accepted less than two seconds before `now`.
+  bool heard(std::uint32_t robot, std::int64_t now) const { return robots_.heard(robot, now); }
+
+  /// heard, and its last SUBSCRIBE since it is heard asked for sensor kind `kind` in [0, 31] (none: it wants all).
+  bool wants(std::uint32_t robot, std::uint32_t kind, std::int64_t now) const;
+
+  /// Where `robot` sends from. Its readings go to this address, at each sensor's own port.
+  std::optional<Endpoint> address(std::uint32_t robot) const { return robots_.source(robot); }
+
+  std::uint16_t port() const { return bound_endpoint(socket_).port; }
+  const Counts& counts() const { return counts_; }
+  /// For poll(2) between ticks; read from it only through receive.
+  int descriptor() const { return socket_.descriptor(); }
+
+ private:
+  Reason judge(const Packet& packet, const Endpoint& source, std::int64_t now);
+  Reason judge_robot(const Packet& packet, const Endpoint& source, std::int64_t now);
+
+  Bindings robots_;
+  Bindings tags_;
+  std::vector<std::uint32_t> kinds_;  ///< per robot row: mask of its last SUBSCRIBE, 0 for all
+  Counts counts_;
+  Socket socket_;
+  ReceiveBatch batch_;
+};
+
+}  // namespace sf::netio

@@ -1,0 +1,70 @@
+#pragma once
+// Datagrams out: queued into storage made once, sent many at a time, never holding the tick for more than a moment.
+//
+//   Outbox outbox;
+//   outbox.queue({address, port}, bytes);   // copies
+//   outbox.flush();                         // once per tick
+//
+// One thread.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "base/bytes.h"
+#include "netio/endpoint.h"
+#include "netio/laser_packets.h"
+#include "netio/socket.h"
+
+namespace sf::netio {
+
+struct OutboxOptions {
+  Endpoint bind = {0, 0};              ///< where packets come from; 0.0.0.0 lets the route choose the interface
+  std::size_t capacity = 1024;         ///< datagrams held; a full outbox flushes itself
+  std::size_t send_buffer = 1u << 20;  ///< [byte] asked of the kernel
+  int patience_ms = 5;  ///< longest wait in one flush for a full socket; what is still unsent then is dropped
+};
+
+struct OutboxCounts {
+  std::uint64_t queued = 0;       ///< sent + failed + dropped + those still waiting for a flush
+  std::uint64_t sent = 0;         ///< handed to the kernel
+  std::uint64_t sent_bytes = 0;   ///< UDP payload of these
+  std::uint64_t failed = 0;       ///< refused by the kernel: unreachable network, no permission to broadcast, ...
+  std::uint64_t dropped = 0;      ///< the socket stayed full for `patience_ms`
+  std::uint64_t not_numbers = 0;  ///< laser datagrams never queued, for a NaN among their ranges
+  std::string first_failure;      ///< "192.0.2.1:10000: Network is unreachable"; empty while failed is 0
+};
+
+class Outbox {
+ public:
+  /// @throws base::InputError when no socket can be opened or bound.
+  explicit Outbox(const OutboxOptions& options = {});
+  ~Outbox();
+  Outbox(Outbox&&) noexcept;
+
+  /// Keeps a copy of at most kMaxDatagram bytes for the next flush.
+  void queue(const Endpoint& to, std::span<const std::uint8_t> bytes);
+
+  /// Queues all datagrams of one laser scan. `header`'s type is ignored.
+  void queue_laser(const Endpoint& to, Wire wire, const Header& header, std::span<const double> ranges,
+                   double range_max);
+
+  /// Sends all that is queued, in order.
+  void flush();
+
+  const OutboxCounts& counts() const { return counts_; }
+  Endpoint endpoint() const { return bound_endpoint(socket_); }
+
+ private:
+  struct Storage;
+  void fail(std::size_t i, int error);
+
+  OutboxOptions options_;
+  OutboxCounts counts_;
+  Socket socket_;
+  base::Bytes scratch_;
+  std::unique_ptr<Storage> storage_;
+};
+
+}  // namespace sf::netio

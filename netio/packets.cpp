@@ -1,0 +1,218 @@
+#include "netio/packets.h"
+
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+#include "netio/laser_packets.h"
+
+namespace sf::netio {
+
+namespace {
+
+constexpr std::size_t kV2vBytes = 68;
+constexpr std::size_t kTagBytes = 104;
+constexpr std::size_t kSubscribeBytes = 4;
+constexpr std::uint32_t kDockingBit = 1;
+
+Reason judge(std::span<const double> values, double limit) {
+  for (const double value : values) {
+    if (!std::isfinite(value)) return Reason::not_finite;
+  }
+  for (const double value : values) {
+    if (std::abs(value) > limit) return Reason::out_of_range;
+  }
+  return Reason::accepted;
+}
+
+/// The first reason of several that is not `accepted`; a NaN anywhere comes before a range anywhere.
+Reason worst(std::initializer_list<Reason> reasons) {
+  Reason found = Reason::accepted;
+  for (const Reason reason : reasons) {
+    if (reason == Reason::not_finite) return reason;
+    if (found == Reason::accepted) found = reason;
+  }
+  return found;
+}
+
+Reason judge(const V2v& state) {
+  const base::Pose& pose = state.X_WR;
+  const base::Twist& twist = state.velocity;
+  const Reason numbers =
+      worst({judge(std::array{pose.x, pose.y, pose.z}, kMaxPosition), judge(std::array{pose.yaw}, kMaxYaw),
+             judge(std::array{twist.forward, twist.left, twist.turn}, kMaxSpeed)});
+  if (numbers != Reason::accepted) return numbers;
+  return state.follows == kNone || state.follows <= kMaxId ? Reason::accepted : Reason::out_of_range;
+}
+
+Reason judge(const Tag& state) {
+  const auto& q = state.orientation;
+  const Reason numbers = worst({judge(state.position, kMaxPosition), judge(q, 2.0), judge(state.linear, kMaxSpeed),
+                                judge(state.angular, kMaxSpeed)});
+  if (numbers != Reason::accepted) return numbers;
+  const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  return std::abs(norm - 1.0) <= 1e-3 ? Reason::accepted : Reason::out_of_range;
+}
+
+template <std::size_t n>
+std::array<double, n> get_doubles(base::ByteReader& reader) {
+  std::array<double, n> values{};
+  for (double& value : values) value = reader.get<double>();
+  return values;
+}
+
+template <std::size_t n>
+void put_doubles(const std::array<double, n>& values, base::ByteWriter& writer) {
+  for (const double value : values) writer.put(value);
+}
+
+Reason check_size(std::size_t size, std::size_t expected) {
+  if (size == expected) return Reason::accepted;
+  return size < expected ? Reason::too_short : Reason::too_long;
+}
+
+Reason read_v2v(base::ByteReader& reader, Packet& packet) {
+  V2v state;
+  const auto v = get_doubles<7>(reader);
+  state.X_WR = {v[0], v[1], v[2], v[3]};
+  state.velocity = {v[4], v[5], v[6]};
+  state.follows = reader.get<std::uint32_t>();
+  state.checkpoint = reader.get<std::uint32_t>();
+  const auto flags = reader.get<std::uint32_t>();
+  state.docking = flags == kDockingBit;
+  packet.body = state;
+  const Reason reason = judge(state);
+  if (reason != Reason::accepted) return reason;
+  return flags <= kDockingBit ? Reason::accepted : Reason::out_of_range;
+}
+
+Reason read_tag(base::ByteReader& reader, Packet& packet) {
+  Tag state;
+  state.position = get_doubles<3>(reader);
+  state.orientation = get_doubles<4>(reader);
+  state.linear = get_doubles<3>(reader);
+  state.angular = get_doubles<3>(reader);
+  packet.body = state;
+  const Reason reason = judge(state);
+  if (reason != Reason::accepted) return reason;
+  return packet.header.robot >= kMinTag ? Reason::accepted : Reason::out_of_range;
+}
+
+Reason read_body(std::span<const std::uint8_t> payload, Packet& packet) {
+  base::ByteReader reader(payload);
+  Reason reason = Reason::accepted;
+  switch (packet.header.type) {
+    case Type::v2v:
+      reason = check_size(payload.size(), kV2vBytes);
+      return reason == Reason::accepted ? read_v2v(reader, packet) : reason;
+    case Type::tag:
+      reason = check_size(payload.size(), kTagBytes);
+      return reason == Reason::accepted ? read_tag(reader, packet) : reason;
+    case Type::subscribe:
+      packet.body = Subscribe{reader.get<std::uint32_t>()};
+      return check_size(payload.size(), kSubscribeBytes);
+    case Type::laser:
+    case Type::laser_extended: {
+      LaserPart part;
+      reason = packet.header.type == Type::laser ? read_laser(payload, part) : read_laser_extended(payload, part);
+      packet.body = part;
+      return reason;
+    }
+  }
+  return Reason::unknown_type;
+}
+
+Reason read_header(base::ByteReader& reader, Header& header) {
+  for (const std::uint8_t letter : kMagic) {
+    if (reader.get<std::uint8_t>() != letter) return Reason::bad_magic;
+  }
+  if (reader.get<std::uint8_t>() != kVersion) return Reason::unknown_version;
+  header.type = static_cast<Type>(reader.get<std::uint8_t>());
+  header.robot = reader.get<std::uint16_t>();
+  header.sensor = reader.get<std::uint16_t>();
+  reader.get<std::uint16_t>();  // reserved: ignored, so that a later version may use it compatibly
+  header.sequence = reader.get<std::uint32_t>();
+  header.time = reader.get<std::int64_t>();
+  return Reason::accepted;
+}
+
+void start(Header header, Type type, base::Bytes& out) {
+  header.type = type;
+  out.clear();
+  base::ByteWriter writer(out);
+  put_header(header, writer);
+}
+
+}  // namespace
+
+Reason decode(std::span<const std::uint8_t> bytes, Packet& packet) {
+  if (bytes.size() < kHeaderBytes) return Reason::too_short;
+  base::ByteReader reader(bytes);
+  Packet read;
+  Reason reason = read_header(reader, read.header);
+  if (reason != Reason::accepted) return reason;
+
+  reason = read_body(bytes.subspan(kHeaderBytes), read);
+  if (reason != Reason::accepted) return reason;
+  if (read.header.time < 0 || read.header.time > kMaxTime) return Reason::out_of_range;
+  packet = read;
+  return Reason::accepted;
+}
+
+void put_header(const Header& header, base::ByteWriter& writer) {
+  SF_CHECK(header.time >= 0 && header.time <= kMaxTime, "timestamp " + std::to_string(header.time) + " ns in a packet");
+  writer.put_bytes(kMagic.data(), kMagic.size());
+  writer.put(kVersion);
+  writer.put(static_cast<std::uint8_t>(header.type));
+  writer.put(header.robot);
+  writer.put(header.sensor);
+  writer.put(std::uint16_t{0});
+  writer.put(header.sequence);
+  writer.put(header.time);
+}
+
+void encode(const Header& header, const V2v& state, base::Bytes& out) {
+  SF_CHECK(judge(state) == Reason::accepted,
+           "V2V of robot " + std::to_string(header.robot) + ": " + std::string(name(judge(state))));
+  start(header, Type::v2v, out);
+  base::ByteWriter writer(out);
+  put_doubles(std::array{state.X_WR.x, state.X_WR.y, state.X_WR.z, state.X_WR.yaw}, writer);
+  put_doubles(std::array{state.velocity.forward, state.velocity.left, state.velocity.turn}, writer);
+  writer.put(state.follows);
+  writer.put(state.checkpoint);
+  writer.put(state.docking ? kDockingBit : std::uint32_t{0});
+}
+
+void encode(const Header& header, const Tag& state, base::Bytes& out) {
+  SF_CHECK(header.robot >= kMinTag, "tag id 0 in a packet");
+  SF_CHECK(judge(state) == Reason::accepted,
+           "TAG " + std::to_string(header.robot) + ": " + std::string(name(judge(state))));
+  start(header, Type::tag, out);
+  base::ByteWriter writer(out);
+  put_doubles(state.position, writer);
+  put_doubles(state.orientation, writer);
+  put_doubles(state.linear, writer);
+  put_doubles(state.angular, writer);
+}
+
+void encode(const Header& header, const Subscribe& request, base::Bytes& out) {
+  start(header, Type::subscribe, out);
+  base::ByteWriter writer(out);
+  writer.put(request.kinds);
+}
+
+base::Report report(const Header& header, const V2v& state, std::uint32_t mover) {
+  return {mover, header.time, state.X_WR, state.velocity};
+}
+
+base::Report report(const Header& header, const Tag& state, std::uint32_t mover) {
+  const auto& [x, y, z, w] = state.orientation;
+  const double yaw = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
+  const base::Vec2 velocity = base::rotate(-yaw, {state.linear[0], state.linear[1]});
+  return {mover,
+          header.time,
+          {state.position[0], state.position[1], state.position[2], yaw},
+          {velocity.x, velocity.y, state.angular[2]}};
+}
+
+}  // namespace sf::netio

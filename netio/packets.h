@@ -1,0 +1,97 @@
+#pragma once
+// The farm's packets as values, and their bytes. docs/packets.md gives every byte and every limit; this is its code.
+//
+// Decoding is total: any bytes give a packet or one Reason. Encoding is for those who keep the limits: a value that the
+// decoder would refuse is our bug and aborts.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <variant>
+
+#include "base/bytes.h"
+#include "base/pose.h"
+#include "base/report.h"
+#include "netio/reason.h"
+
+namespace sf::netio {
+
+inline constexpr std::array<std::uint8_t, 4> kMagic = {'S', 'F', 'P', 'K'};
+inline constexpr std::uint8_t kVersion = 1;
+inline constexpr std::size_t kHeaderBytes = 24;
+inline constexpr std::size_t kMaxDatagram = 1400;    ///< [byte] no packet of ours is longer, so none is fragmented
+inline constexpr std::uint32_t kMaxId = 0xFFFFu;     ///< of a robot, and of a sensor
+inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;  ///< V2V: follows nobody, heads for no checkpoint
+inline constexpr std::uint32_t kMinTag = 1;          ///< tags are 1 to kMaxId; the thesis has 1 to 32
+inline constexpr double kMaxPosition = 1e7;          ///< [m] of each coordinate: every UTM coordinate fits
+inline constexpr double kMaxYaw = 1e6;               ///< [rad] a heading that was never wrapped
+inline constexpr double kMaxSpeed = 1e3;             ///< [m/s], and [rad/s]
+inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 years: differences cannot overflow
+
+/// Below 64: a reading of the sensor kind with that number; 64 more: its extended form; from 128: states sent to the
+/// farm.
+enum class Type : std::uint8_t { laser = 1, laser_extended = 65, v2v = 128, tag = 129, subscribe = 130 };
+
+struct Header {
+  Type type = Type::v2v;
+  std::uint16_t robot = 0;     ///< whose reading or state; in a TAG the tag's id
+  std::uint16_t sensor = 0;    ///< 0-based among the robot's sensors of this kind; 0 in states
+  std::uint32_t sequence = 0;  ///< counts up by one per message of this type (and sensor), wraps to 0
+  std::int64_t time = 0;       ///< [ns] in [0, kMaxTime]: when it was measured, not when it was sent
+};
+
+/// A robot says where it is.
+struct V2v {
+  base::Pose X_WR;                   ///< the robot in the world
+  base::Twist velocity;              ///< in the robot's own frame
+  std::uint32_t follows = kNone;     ///< robot id in [0, kMaxId], or kNone
+  std::uint32_t checkpoint = kNone;  ///< any number, or kNone
+  bool docking = false;
+};
+
+/// An overhead camera says where a tag is. All in the world frame.
+struct Tag {
+  std::array<double, 3> position{};               ///< [m]
+  std::array<double, 4> orientation{0, 0, 0, 1};  ///< unit quaternion x, y, z, w; its norm within 0.001 of 1
+  std::array<double, 3> linear{};                 ///< [m/s]
+  std::array<double, 3> angular{};                ///< [rad/s]
+};
+
+/// A robot asks for readings without moving anything.
+struct Subscribe {
+  std::uint32_t kinds = 0;  ///< bit k: kind k (bit 1: laser); 0: all
+};
+
+/// One datagram of a laser scan: the whole scan, or one part of an extended one. `words` lives as long as the datagram.
+struct LaserPart {
+  std::uint32_t total = 0;  ///< rays of the whole scan
+  std::uint32_t first = 0;  ///< ray that this part begins with
+  std::uint32_t count = 0;  ///< rays in this part
+  std::uint16_t part = 0;
+  std::uint16_t parts = 1;
+  bool extended = false;
+  std::span<const std::uint8_t> words;  ///< `count` little-endian words, 2 bytes each, or 4 when extended
+};
+
+struct Packet {
+  Header header;
+  std::variant<V2v, Tag, Subscribe, LaserPart> body;
+};
+
+/// Reads any bytes. Fills `packet` only when the answer is Reason::accepted.
+Reason decode(std::span<const std::uint8_t> bytes, Packet& packet);
+
+/// Replace what `out` holds; its capacity is kept. The header's type is set by the function.
+void encode(const Header& header, const V2v& state, base::Bytes& out);
+void encode(const Header& header, const Tag& state, base::Bytes& out);
+void encode(const Header& header, const Subscribe& request, base::Bytes& out);
+
+/// Appends the 24 bytes that every packet begins with.
+void put_header(const Header& header, base::ByteWriter& writer);
+
+/// The state of world mover `mover`, as the farm takes it in. A tag's tilt is left out; its velocity is turned into its
+/// frame.
+base::Report report(const Header& header, const V2v& state, std::uint32_t mover);
+base::Report report(const Header& header, const Tag& state, std::uint32_t mover);
+
+}  // namespace sf::netio

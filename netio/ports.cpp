@@ -1,0 +1,63 @@
+#include "netio/ports.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "base/error.h"
+
+namespace sf::netio {
+
+namespace {
+
+constexpr std::uint64_t kLastPort = 65535;
+
+struct Taken {
+  std::uint64_t port = 0;
+  std::size_t use = 0;
+  std::uint32_t sensor = 0;
+};
+
+std::string describe(const PortUse& use, std::uint32_t sensor) {
+  const std::string name = use.name.empty() ? "robot" : "robot '" + use.name + "'";
+  return name + " (id " + std::to_string(use.robot) + ") sensor " + std::to_string(sensor);
+}
+
+std::string describe(const PortRule& rule) {
+  return "base " + std::to_string(rule.base) + " + id * " + std::to_string(rule.stride) + " + sensor";
+}
+
+[[noreturn]] void refuse_range(const PortUse& use, std::uint32_t sensor) {
+  throw base::InputError(describe(use, sensor) + " needs port " + std::to_string(port(use.rule, use.robot, sensor)) +
+                         " (" + describe(use.rule) +
+                         "), but ports are 1 to 65535 and ids at most 65535: use a lower base port, or lower ids");
+}
+
+[[noreturn]] void refuse_shared(const PortUse& a, std::uint32_t sensor_a, const PortUse& b, std::uint32_t sensor_b) {
+  const std::string remedy = a.robot == b.robot && a.rule.base == b.rule.base
+                                 ? "give each robot its own id"
+                                 : "raise the stride to at least " + std::to_string(std::max(a.sensors, b.sensors)) +
+                                       ", or move the base ports apart";
+  throw base::InputError(describe(a, sensor_a) + " and " + describe(b, sensor_b) + " share port " +
+                         std::to_string(port(a.rule, a.robot, sensor_a)) + " (" + describe(a.rule) + "): " + remedy);
+}
+
+}  // namespace
+
+void require_ports(std::span<const PortUse> uses) {
+  std::vector<Taken> taken;
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    for (std::uint32_t sensor = uses[i].first; sensor - uses[i].first < uses[i].sensors; ++sensor) {
+      const std::uint64_t at = port(uses[i].rule, uses[i].robot, sensor);
+      if (at == 0 || at > kLastPort || uses[i].robot > kLastPort) refuse_range(uses[i], sensor);
+      taken.push_back({at, i, sensor});
+    }
+  }
+
+  std::stable_sort(taken.begin(), taken.end(), [](const Taken& a, const Taken& b) { return a.port < b.port; });
+  for (std::size_t i = 1; i < taken.size(); ++i) {
+    if (taken[i].port != taken[i - 1].port) continue;
+    refuse_shared(uses[taken[i - 1].use], taken[i - 1].sensor, uses[taken[i].use], taken[i].sensor);
+  }
+}
+
+}  // namespace sf::netio

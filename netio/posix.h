@@ -1,0 +1,28 @@
+#pragma once
+// Ours and POSIX's words for one thing. Included by .cpp files only.
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+#include "netio/endpoint.h"
+
+namespace sf::netio {
+
+inline sockaddr_in to_posix(const Endpoint& endpoint) {
+  sockaddr_in posix{};
+  posix.sin_family = AF_INET;
+  posix.sin_addr.s_addr = htonl(endpoint.address);
+  posix.sin_port = htons(endpoint.port);
+  return posix;
+}
+
+inline Endpoint from_posix(const sockaddr_in& posix) { return {ntohl(posix.sin_addr.s_addr), ntohs(posix.sin_port)}; }
+
+inline std::string error_text(int error) { return std::generic_category().message(error); }
+
+}  // namespace sf::netio

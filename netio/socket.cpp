@@ -1,0 +1,126 @@
+#include "netio/socket.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "netio/posix.h"
+
+namespace sf::netio {
+
+namespace {
+
+std::string remedy(int error) {
+  switch (error) {
+    case EADDRINUSE:
+      return "another program has this port; end it or choose another port";
+    case EADDRNOTAVAIL:
+      return "this machine does not have that address; use one that `ip address` lists, or 0.0.0.0 for all";
+    case EACCES:
+      return "ports below 1024 need root; choose a higher one";
+    default:
+      return "check the address and the port";
+  }
+}
+
+/// The kernel's ceiling holds for ordinary users only; root may pass it.
+void ask_buffer(int descriptor, int force_option, int option, std::size_t size) {
+  if (size == 0) return;
+  const int bytes = static_cast<int>(size);
+  if (setsockopt(descriptor, SOL_SOCKET, force_option, &bytes, sizeof bytes) == 0) return;
+  setsockopt(descriptor, SOL_SOCKET, option, &bytes, sizeof bytes);
+}
+
+}  // namespace
+
+Socket::~Socket() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+Socket open_udp(const Endpoint& endpoint, const SocketBuffers& buffers) {
+  Socket opened(socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (opened.descriptor() < 0) {
+    throw base::InputError("no UDP socket for " + text(endpoint) + ": " + error_text(errno) +
+                           "; raise `ulimit -n`, or use fewer ports");
+  }
+  const sockaddr_in address = to_posix(endpoint);
+  if (bind(opened.descriptor(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    const int error = errno;
+    throw base::InputError("cannot bind UDP " + text(endpoint) + ": " + error_text(error) + "; " + remedy(error));
+  }
+  ask_buffer(opened.descriptor(), SO_RCVBUFFORCE, SO_RCVBUF, buffers.receive);
+  ask_buffer(opened.descriptor(), SO_SNDBUFFORCE, SO_SNDBUF, buffers.send);
+  return opened;
+}
+
+Endpoint bound_endpoint(const Socket& socket) {
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  const int failed = getsockname(socket.descriptor(), reinterpret_cast<sockaddr*>(&address), &size);
+  SF_CHECK(failed == 0, "getsockname: " + error_text(errno));
+  return from_posix(address);
+}
+
+std::size_t receive_buffer(const Socket& socket) {
+  int bytes = 0;
+  socklen_t size = sizeof bytes;
+  const int failed = getsockopt(socket.descriptor(), SOL_SOCKET, SO_RCVBUF, &bytes, &size);
+  SF_CHECK(failed == 0, "getsockopt: " + error_text(errno));
+  return static_cast<std::size_t>(bytes);
+}
+
+void allow_open_files(std::size_t count) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= count) return;
+  if (limit.rlim_max >= count) {
+    limit.rlim_cur = count;
+    if (setrlimit(RLIMIT_NOFILE, &limit) == 0) return;
+  }
+  throw base::InputError(std::to_string(count) + " open files are needed and this machine allows " +
+                         std::to_string(limit.rlim_max) + ": raise the hard limit (`ulimit -Hn`), or use fewer robots");
+}
+
+struct ReceiveBatch::Storage {
+  std::vector<std::uint8_t> slots;
+  std::vector<sockaddr_in> sources;
+  std::vector<iovec> vectors;
+  std::vector<mmsghdr> messages;
+};
+
+ReceiveBatch::ReceiveBatch(std::size_t capacity) : storage_(std::make_unique<Storage>()) {
+  Storage& s = *storage_;
+  s.slots.resize(capacity * kSlotBytes);
+  s.sources.resize(capacity);
+  s.vectors.resize(capacity);
+  s.messages.resize(capacity);
+  for (std::size_t i = 0; i < capacity; ++i) {
+    s.vectors[i] = {s.slots.data() + i * kSlotBytes, kSlotBytes};
+    s.messages[i].msg_hdr.msg_name = &s.sources[i];
+    s.messages[i].msg_hdr.msg_iov = &s.vectors[i];
+    s.messages[i].msg_hdr.msg_iovlen = 1;
+  }
+}
+
+ReceiveBatch::~ReceiveBatch() = default;
+
+std::size_t ReceiveBatch::fill(const Socket& socket) {
+  Storage& s = *storage_;
+  for (mmsghdr& message : s.messages) message.msg_hdr.msg_namelen = sizeof(sockaddr_in);
+  int taken = -1;
+  do {
+    taken = recvmmsg(socket.descriptor(), s.messages.data(), static_cast<unsigned>(s.messages.size()), MSG_DONTWAIT,
+                     nullptr);
+  } while (taken < 0 && errno == EINTR);
+  return taken < 0 ? 0 : static_cast<std::size_t>(taken);
+}
+
+std::span<const std::uint8_t> ReceiveBatch::bytes(std::size_t i) const {
+  return {storage_->slots.data() + i * kSlotBytes, storage_->messages[i].msg_len};
+}
+
+Endpoint ReceiveBatch::source(std::size_t i) const { return from_posix(storage_->sources[i]); }
+
+}  // namespace sf::netio

@@ -1,0 +1,60 @@
+// Nothing is allocated on the way in or out once the boxes stand. This program's `new` is counted.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "netio/inbox.h"
+#include "netio/outbox.h"
+#include "tests/netio/examples.h"
+
+namespace {
+
+std::atomic<std::uint64_t> allocations = 0;
+
+}  // namespace
+
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  ++allocations;
+  return std::malloc(size > 0 ? size : 1);
+}
+void* operator new(std::size_t size) {
+  if (void* memory = operator new(size, std::nothrow)) return memory;
+  throw std::bad_alloc();
+}
+void* operator new[](std::size_t size) { return operator new(size); }
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return operator new(size, std::nothrow); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+
+namespace sf::netio {
+namespace {
+
+TEST(Allocation, NoneOnTheWayInOrOut) {
+  Inbox inbox({.bind = {kLoopback, 0}, .robots = {7}, .tags = {12}});
+  Outbox outbox;
+  const Endpoint to{kLoopback, inbox.port()};
+  const std::vector<double> scan(1000, 5.0);
+  const std::vector<base::Bytes> packets = examples();
+
+  const std::uint64_t before = allocations;
+  std::size_t taken = 0;
+  for (int round = 0; round < 20; ++round) {
+    for (const base::Bytes& packet : packets) outbox.queue(to, packet);
+    outbox.queue_laser(to, Wire::farm, {.robot = 7}, scan, 100.0);
+    outbox.flush();
+    taken += inbox.receive(round, [](const Packet&) {});
+  }
+  EXPECT_EQ(allocations - before, 0u);
+  EXPECT_GT(taken, 0u);
+  EXPECT_EQ(outbox.counts().sent, 20u * 8u);
+}
+
+}  // namespace
+}  // namespace sf::netio

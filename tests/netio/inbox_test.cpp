@@ -1,0 +1,212 @@
+#include "netio/inbox.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "base/error.h"
+#include "netio/outbox.h"
+#include "tests/netio/examples.h"
+
+namespace sf::netio {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr Endpoint kAlice{kLoopback, 5001};
+constexpr Endpoint kBob{kLoopback, 5002};
+constexpr std::uint32_t kLaser = 1;
+
+InboxOptions options() { return {.bind = {kLoopback, 0}, .robots = {7, 3}, .tags = {12}}; }
+
+base::Bytes v2v(std::uint16_t robot, std::uint32_t sequence) {
+  base::Bytes out;
+  encode({.robot = robot, .sequence = sequence}, V2v{}, out);
+  return out;
+}
+
+base::Bytes subscribe(std::uint32_t sequence, std::uint32_t kinds) {
+  base::Bytes out;
+  encode({.robot = 7, .sequence = sequence}, Subscribe{kinds}, out);
+  return out;
+}
+
+struct InboxTest : testing::Test {
+  Inbox inbox{options()};
+  Packet packet;
+  Reason say(const base::Bytes& bytes, std::int64_t now = 0, const Endpoint& who = kAlice) {
+    return inbox.accept(bytes, who, now, packet);
+  }
+};
+
+TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
+  base::Bytes long_packet = v2v_example();
+  long_packet.push_back(0);
+  EXPECT_EQ(say({}), Reason::too_short);
+  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 0, 'X')), Reason::bad_magic);
+  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 4, 2)), Reason::unknown_version);
+  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 5, 0)), Reason::unknown_type);
+  EXPECT_EQ(say(long_packet), Reason::too_long);
+  EXPECT_EQ(say(patched(v2v_example(), 24, std::numeric_limits<double>::quiet_NaN())), Reason::not_finite);
+  EXPECT_EQ(say(patched(v2v_example(), 24, 2e7)), Reason::out_of_range);
+  EXPECT_EQ(say(laser_example()), Reason::wrong_direction);
+  EXPECT_EQ(say(v2v(8, 0)), Reason::unknown_robot);
+  EXPECT_EQ(say(patched<std::uint16_t>(tag_example(), 6, 7)), Reason::unknown_tag);  // a robot's id is no tag's
+  EXPECT_EQ(say(v2v_example()), Reason::accepted);
+  EXPECT_EQ(say(v2v(7, 10), 0, kBob), Reason::wrong_source);
+  EXPECT_EQ(say(v2v_example()), Reason::stale);
+  for (std::size_t i = 0; i < kReasons; ++i) EXPECT_EQ(inbox.counts().of[i], 1u) << name(static_cast<Reason>(i));
+  EXPECT_EQ(inbox.counts().dropped(), kReasons - 1);
+}
+
+TEST_F(InboxTest, DroppedPacketsAreNotHeard) {
+  say(patched(v2v_example(), 24, 2e7));
+  say(laser_example());
+  EXPECT_FALSE(inbox.heard(7, 0));
+  EXPECT_FALSE(inbox.address(7));
+}
+
+TEST_F(InboxTest, EitherPacketIsHeardForTwoSeconds) {
+  say(v2v(7, 0), 0);
+  EXPECT_TRUE(inbox.heard(7, 2 * kSecond - 1));
+  EXPECT_FALSE(inbox.heard(7, 2 * kSecond));
+  say(subscribe(0, 0), 3 * kSecond);
+  EXPECT_TRUE(inbox.heard(7, 5 * kSecond - 1));
+  EXPECT_FALSE(inbox.heard(7, 5 * kSecond));
+  EXPECT_FALSE(inbox.heard(3, 0));
+  EXPECT_EQ(inbox.address(7), kAlice);
+}
+
+TEST_F(InboxTest, TagsMakeNoRobotHeard) {
+  Inbox both({.bind = {kLoopback, 0}, .robots = {12}, .tags = {12}});
+  EXPECT_EQ(both.accept(tag_example(), kAlice, 0, packet), Reason::accepted);
+  EXPECT_FALSE(both.heard(12, 0));
+  EXPECT_EQ(both.accept(v2v(12, 0), kBob, 0, packet), Reason::accepted);  // tags bind apart from robots
+}
+
+TEST_F(InboxTest, ARobotWantsAllKindsUntilItChooses) {
+  EXPECT_FALSE(inbox.wants(7, kLaser, 0));   // not heard
+  EXPECT_FALSE(inbox.wants(99, kLaser, 0));  // unknown
+  say(v2v(7, 0), 0);
+  EXPECT_TRUE(inbox.wants(7, kLaser, 0));
+  say(subscribe(0, 1u << 2), 0);
+  EXPECT_FALSE(inbox.wants(7, kLaser, 0));
+  EXPECT_TRUE(inbox.wants(7, 2, 0));
+  say(v2v(7, 1), kSecond);  // states do not undo the choice
+  EXPECT_FALSE(inbox.wants(7, kLaser, kSecond));
+  say(subscribe(1, 0), kSecond);  // 0 is all again
+  EXPECT_TRUE(inbox.wants(7, kLaser, kSecond));
+  EXPECT_TRUE(inbox.wants(7, 31, kSecond));
+}
+
+TEST_F(InboxTest, SilenceForgetsTheChoice) {
+  say(subscribe(0, 1u << 2), 0);
+  say(v2v(7, 0), 2 * kSecond);
+  EXPECT_TRUE(inbox.wants(7, kLaser, 2 * kSecond));
+}
+
+TEST_F(InboxTest, StrangersCannotChoose) {
+  say(v2v(7, 0), 0);
+  EXPECT_EQ(say(subscribe(0, 1u << 2), 0, kBob), Reason::wrong_source);
+  EXPECT_TRUE(inbox.wants(7, kLaser, 0));
+}
+
+TEST_F(InboxTest, AMillionRandomAndMutatedDatagrams) {
+  std::mt19937 random(20260101);  // NOLINT: the same datagrams every time
+  const std::vector<base::Bytes> seeds = examples();
+  std::uint64_t accepted = 0;
+  base::Bytes bytes;
+  for (int i = 0; i < 1'000'000; ++i) {
+    if (i % 4 == 0) {
+      bytes.resize(random() % 160);
+      for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
+    } else {
+      bytes = seeds[random() % seeds.size()];
+      for (std::uint32_t edits = random() % 4; edits > 0; --edits)
+        bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
+      if (random() % 8 == 0) bytes.resize(random() % 200);
+    }
+    const Endpoint source{kLoopback, static_cast<std::uint16_t>(random() % 3)};
+    const std::int64_t now = std::int64_t{i} * (kSecond / 100);
+    if (inbox.accept(bytes, source, now, packet) != Reason::accepted) continue;
+    ++accepted;
+    if (const auto* state = std::get_if<V2v>(&packet.body)) {
+      ASSERT_LE(std::abs(state->X_WR.x), kMaxPosition);
+      ASSERT_LE(std::abs(state->velocity.turn), kMaxSpeed);
+    }
+  }
+  EXPECT_EQ(inbox.counts().total(), 1'000'000u);
+  EXPECT_EQ(inbox.counts()[Reason::accepted], accepted);
+  for (std::size_t i = 0; i < kReasons; ++i) EXPECT_GT(inbox.counts().of[i], 0u) << name(static_cast<Reason>(i));
+}
+
+struct LoopbackTest : testing::Test {
+  Inbox inbox{options()};
+  Outbox outbox;
+  Endpoint to{kLoopback, inbox.port()};
+
+  /// Receives until `count` datagrams came; gives up, failing, after ten million empty looks.
+  std::vector<Packet> receive(std::size_t count, std::int64_t now) {
+    std::vector<Packet> packets;
+    std::size_t taken = 0;
+    for (int looks = 0; taken < count && looks < 10'000'000; ++looks) {
+      taken += inbox.receive(now, [&](const Packet& packet) { packets.push_back(packet); });
+    }
+    EXPECT_EQ(taken, count);
+    return packets;
+  }
+};
+
+TEST_F(LoopbackTest, StatesArriveWithTheirSender) {
+  outbox.queue(to, v2v_example());
+  outbox.queue(to, tag_example());
+  outbox.queue(to, base::Bytes{});
+  outbox.flush();
+  const std::vector<Packet> packets = receive(3, 0);
+  ASSERT_EQ(packets.size(), 2u);
+  EXPECT_EQ(std::get<V2v>(packets[0].body).X_WR.x, 1.5);
+  EXPECT_EQ(packets[1].header.robot, 12);
+  EXPECT_EQ(inbox.counts()[Reason::too_short], 1u);
+  ASSERT_TRUE(inbox.address(7));
+  EXPECT_EQ(*inbox.address(7), (Endpoint{kLoopback, outbox.endpoint().port}));
+}
+
+TEST_F(LoopbackTest, SurvivesThousandsOfRandomDatagrams) {
+  std::mt19937 random(7);
+  base::Bytes bytes;
+  for (int round = 0; round < 100; ++round) {
+    for (int i = 0; i < 50; ++i) {
+      bytes.assign(random() % 1401, static_cast<std::uint8_t>(random()));
+      for (std::size_t k = 0; k < bytes.size(); k += 1 + random() % 16) bytes[k] = static_cast<std::uint8_t>(random());
+      outbox.queue(to, bytes);
+    }
+    outbox.flush();
+    receive(50, round);
+  }
+  EXPECT_EQ(inbox.counts().total(), 5000u);
+}
+
+TEST_F(LoopbackTest, ATakenPortIsOneClearError) {
+  try {
+    Inbox second({.bind = {kLoopback, inbox.port()}});
+    FAIL() << "bound twice";
+  } catch (const base::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("127.0.0.1:" + std::to_string(inbox.port())), std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find("choose another port"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Inbox, AForeignAddressIsOneClearError) {
+  EXPECT_THROW(Inbox({.bind = {resolve("192.0.2.1"), 0}}), base::InputError);
+}
+
+TEST(Inbox, IdsThatDoNotFitAPacketAreRefused) {
+  EXPECT_THROW(Inbox({.bind = {kLoopback, 0}, .robots = {65'536}}), base::InputError);
+  EXPECT_THROW(Inbox({.bind = {kLoopback, 0}, .tags = {0}}), base::InputError);
+}
+
+TEST(Inbox, BindsToLoopbackUnlessToldOtherwise) { EXPECT_EQ(InboxOptions{}.bind, (Endpoint{0x7F000001u, 9000})); }
+
+}  // namespace
+}  // namespace sf::netio

@@ -1,0 +1,249 @@
+#include "netio/packets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "tests/netio/examples.h"
+
+namespace sf::netio {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+Reason reason_of(const base::Bytes& bytes) {
+  Packet packet;
+  return decode(bytes, packet);
+}
+
+template <class Body>
+Body body_of(const base::Bytes& bytes) {
+  Packet packet;
+  EXPECT_EQ(decode(bytes, packet), Reason::accepted);
+  return std::get<Body>(packet.body);
+}
+
+/// The bytes of docs/packets.md below `<!-- example: NAME -->`.
+base::Bytes documented(const std::string& example) {
+  std::ifstream file(SF_SOURCE_DIR "/docs/packets.md");
+  std::string line;
+  while (std::getline(file, line) && line != "<!-- example: " + example + " -->") {
+  }
+  std::getline(file, line);  // opening fence
+  base::Bytes bytes;
+  while (std::getline(file, line) && line != "```") {
+    std::istringstream row(line.substr(4));
+    for (unsigned byte = 0; row >> std::hex >> byte;) bytes.push_back(static_cast<std::uint8_t>(byte));
+  }
+  return bytes;
+}
+
+TEST(Packets, BytesAreTheDocumentedOnes) {
+  EXPECT_EQ(laser_example(), documented("laser"));
+  EXPECT_EQ(laser_extended_example(), documented("laser_extended"));
+  EXPECT_EQ(v2v_example(), documented("v2v"));
+  EXPECT_EQ(tag_example(), documented("tag"));
+  EXPECT_EQ(subscribe_example(), documented("subscribe"));
+  EXPECT_EQ(thesis_example(), documented("thesis"));
+}
+
+TEST(Packets, HeaderComesBack) {
+  base::Bytes bytes;
+  encode({.robot = 0xFFFF, .sensor = 0xABCD, .sequence = 0xFEDCBA98u, .time = kMaxTime}, Subscribe{}, bytes);
+  Packet packet;
+  ASSERT_EQ(decode(bytes, packet), Reason::accepted);
+  EXPECT_EQ(packet.header.type, Type::subscribe);
+  EXPECT_EQ(packet.header.robot, 0xFFFF);
+  EXPECT_EQ(packet.header.sensor, 0xABCD);
+  EXPECT_EQ(packet.header.sequence, 0xFEDCBA98u);
+  EXPECT_EQ(packet.header.time, kMaxTime);
+}
+
+TEST(Packets, V2vComesBack) {
+  base::Bytes bytes;
+  const V2v sent{.X_WR = {-kMaxPosition, kMaxPosition, 0.1, -kMaxYaw},
+                 .velocity = {kMaxSpeed, -0.0, -1e-300},
+                 .follows = kMaxId,
+                 .checkpoint = 0};
+  encode({.robot = 1}, sent, bytes);
+  const auto got = body_of<V2v>(bytes);
+  EXPECT_EQ(got.X_WR.x, sent.X_WR.x);
+  EXPECT_EQ(got.X_WR.y, sent.X_WR.y);
+  EXPECT_EQ(got.X_WR.z, sent.X_WR.z);
+  EXPECT_EQ(got.X_WR.yaw, sent.X_WR.yaw);
+  EXPECT_EQ(got.velocity.forward, sent.velocity.forward);
+  EXPECT_TRUE(std::signbit(got.velocity.left));
+  EXPECT_EQ(got.velocity.turn, sent.velocity.turn);
+  EXPECT_EQ(got.follows, kMaxId);
+  EXPECT_EQ(got.checkpoint, 0u);
+  EXPECT_FALSE(got.docking);
+}
+
+TEST(Packets, NobodyAndNowhereAreReserved) {
+  base::Bytes bytes;
+  encode({}, V2v{}, bytes);
+  EXPECT_EQ(body_of<V2v>(bytes).follows, kNone);
+  EXPECT_EQ(body_of<V2v>(bytes).checkpoint, kNone);
+}
+
+TEST(Packets, TagComesBack) {
+  const auto got = body_of<Tag>(tag_example());
+  EXPECT_EQ(got.position, (std::array<double, 3>{3, 4, 0.5}));
+  EXPECT_EQ(got.orientation, (std::array<double, 4>{0, 0, 0.6, 0.8}));
+  EXPECT_EQ(got.linear, (std::array<double, 3>{0.5, 0, 0}));
+  EXPECT_EQ(got.angular, (std::array<double, 3>{0, 0, 0.25}));
+}
+
+TEST(Packets, SubscribeComesBack) { EXPECT_EQ(body_of<Subscribe>(subscribe_example()).kinds, 2u); }
+
+TEST(Packets, ReservedBytesOfTheHeaderAreIgnored) {
+  EXPECT_EQ(reason_of(patched<std::uint16_t>(v2v_example(), 10, 0xFFFF)), Reason::accepted);
+}
+
+TEST(Packets, EveryShorterPrefixIsTooShort) {
+  for (const base::Bytes& whole : examples()) {
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+      EXPECT_EQ(reason_of({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}), Reason::too_short)
+          << size;
+    }
+  }
+}
+
+TEST(Packets, OneByteMoreIsTooLong) {
+  for (base::Bytes bytes : examples()) {
+    bytes.push_back(0);
+    EXPECT_EQ(reason_of(bytes), Reason::too_long);
+  }
+}
+
+TEST(Packets, EachLetterOfTheMagicCounts) {
+  for (std::size_t i = 0; i < kMagic.size(); ++i)
+    EXPECT_EQ(reason_of(patched<std::uint8_t>(v2v_example(), i, 0)), Reason::bad_magic);
+}
+
+TEST(Packets, OtherVersionsAreUnknown) {
+  for (const int version : {0, 2, 255})
+    EXPECT_EQ(reason_of(patched(v2v_example(), 4, static_cast<std::uint8_t>(version))), Reason::unknown_version);
+}
+
+TEST(Packets, OtherTypesAreUnknown) {
+  for (int type = 0; type < 256; ++type) {
+    if (type == 1 || type == 65 || (type >= 128 && type <= 130)) continue;
+    EXPECT_EQ(reason_of(patched(v2v_example(), 5, static_cast<std::uint8_t>(type))), Reason::unknown_type) << type;
+  }
+}
+
+TEST(Packets, NoRealOfAStateMayBeNanOrInfinite) {
+  for (const double bad : {kNan, kInf, -kInf}) {
+    for (std::size_t i = 0; i < 7; ++i)
+      EXPECT_EQ(reason_of(patched(v2v_example(), 24 + 8 * i, bad)), Reason::not_finite) << i;
+    for (std::size_t i = 0; i < 13; ++i)
+      EXPECT_EQ(reason_of(patched(tag_example(), 24 + 8 * i, bad)), Reason::not_finite) << i;
+  }
+}
+
+TEST(Packets, NanComesBeforeOutOfRange) {
+  EXPECT_EQ(reason_of(patched(patched(v2v_example(), 24, 1e300), 72, kNan)), Reason::not_finite);
+}
+
+TEST(Packets, StatesEndAtTheirLimits) {
+  struct Limit {
+    std::size_t offset;
+    double limit;
+  };
+  const Limit v2v[] = {{24, 1e7}, {32, 1e7}, {40, 1e7}, {48, 1e6}, {56, 1e3}, {64, 1e3}, {72, 1e3}};
+  const Limit tag[] = {{24, 1e7}, {32, 1e7},  {40, 1e7},  {80, 1e3}, {88, 1e3},
+                       {96, 1e3}, {104, 1e3}, {112, 1e3}, {120, 1e3}};
+  const auto check = [](const base::Bytes& bytes, const Limit& at) {
+    for (const double sign : {1.0, -1.0}) {
+      EXPECT_EQ(reason_of(patched(bytes, at.offset, sign * at.limit)), Reason::accepted) << at.offset;
+      EXPECT_EQ(reason_of(patched(bytes, at.offset, sign * std::nextafter(at.limit, kInf))), Reason::out_of_range)
+          << at.offset;
+    }
+  };
+  for (const Limit& at : v2v) check(v2v_example(), at);
+  for (const Limit& at : tag) check(tag_example(), at);
+}
+
+TEST(Packets, WholeNumbersEndAtTheirLimits) {
+  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 80, 65535)), Reason::accepted);      // last robot id
+  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 80, 65536)), Reason::out_of_range);  // no robot, not "none"
+  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 80, 0xFFFFFFFE)), Reason::out_of_range);  // next to "none"
+  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 84, 0xFFFFFFFE)), Reason::accepted);      // any checkpoint
+  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 88, 2)), Reason::out_of_range);           // an unknown flag
+  EXPECT_EQ(reason_of(patched<std::uint16_t>(tag_example(), 6, 0)), Reason::out_of_range);            // tags begin at 1
+  EXPECT_EQ(reason_of(patched<std::uint16_t>(tag_example(), 6, 1)), Reason::accepted);                // the first tag
+  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, -1)), Reason::out_of_range);           // before time
+  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, 0)), Reason::accepted);         // the first moment
+  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, kMaxTime)), Reason::accepted);  // the last
+  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, kMaxTime + 1)), Reason::out_of_range);  // past it
+}
+
+TEST(Packets, OrientationsAreUnitQuaternions) {
+  EXPECT_EQ(reason_of(patched(tag_example(), 72, 0.0)), Reason::out_of_range);                   // norm 0.6
+  EXPECT_EQ(reason_of(patched(patched(tag_example(), 64, 0.0), 72, 1.0009)), Reason::accepted);  // within 0.001
+  EXPECT_EQ(reason_of(patched(patched(tag_example(), 64, 0.0), 72, 1.0011)), Reason::out_of_range);
+  EXPECT_EQ(reason_of(patched(patched(tag_example(), 64, 0.0), 72, 0.9989)), Reason::out_of_range);
+  EXPECT_EQ(reason_of(patched(tag_example(), 64, 1e200)), Reason::out_of_range);  // its square overflows
+}
+
+TEST(Packets, RefusedBytesLeaveThePacketAlone) {
+  Packet packet;
+  packet.header.sequence = 77;
+  decode(patched(v2v_example(), 24, kNan), packet);
+  EXPECT_EQ(packet.header.sequence, 77u);
+}
+
+TEST(Packets, OurOwnBadNumbersAbort) {
+  base::Bytes out;
+  EXPECT_DEATH(encode({}, V2v{.X_WR = {kNan, 0, 0, 0}}, out), "not finite");
+  EXPECT_DEATH(encode({.time = -1}, Subscribe{}, out), "timestamp -1");
+  EXPECT_DEATH(encode({.robot = 0}, Tag{}, out), "tag id 0");
+}
+
+TEST(Packets, AStateIsAReport) {
+  Packet packet;
+  ASSERT_EQ(decode(v2v_example(), packet), Reason::accepted);
+  const base::Report got = report(packet.header, std::get<V2v>(packet.body), 5);
+  EXPECT_EQ(got.mover, 5u);
+  EXPECT_EQ(got.time, 1'500'000'000);
+  EXPECT_EQ(got.X_WM.y, -2.25);
+  EXPECT_EQ(got.velocity.turn, -0.125);
+}
+
+TEST(Packets, ATagsVelocityTurnsIntoItsOwnFrame) {
+  // Turned by +90 degrees and moving along world x: that is to its right.
+  const double half = std::sqrt(0.5);
+  const base::Report got =
+      report({.robot = 1}, Tag{.orientation = {0, 0, half, half}, .linear = {2, 0, 0}, .angular = {9, 9, 0.5}}, 3);
+  EXPECT_NEAR(got.X_WM.yaw, M_PI / 2, 1e-12);
+  EXPECT_NEAR(got.velocity.forward, 0.0, 1e-12);
+  EXPECT_NEAR(got.velocity.left, -2.0, 1e-12);
+  EXPECT_EQ(got.velocity.turn, 0.5);
+}
+
+TEST(Reason, EachHasItsOwnName) {
+  for (std::size_t i = 0; i < kReasons; ++i) {
+    EXPECT_FALSE(name(static_cast<Reason>(i)).empty());
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(name(static_cast<Reason>(i)), name(static_cast<Reason>(j)));
+  }
+  EXPECT_EQ(name(Reason::stale), "stale");
+}
+
+TEST(Reason, CountsSayWhatHappened) {
+  Counts counts;
+  EXPECT_EQ(text(counts), "nothing received");
+  counts.add(Reason::accepted);
+  counts.add(Reason::stale);
+  counts.add(Reason::stale);
+  EXPECT_EQ(counts.total(), 3u);
+  EXPECT_EQ(counts.dropped(), 2u);
+  EXPECT_EQ(text(counts), "accepted 1, stale 2");
+}
+
+}  // namespace
+}  // namespace sf::netio

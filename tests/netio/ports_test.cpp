@@ -1,0 +1,56 @@
+#include "netio/ports.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "base/error.h"
+
+namespace sf::netio {
+namespace {
+
+std::string refusal(const std::vector<PortUse>& uses) {
+  try {
+    require_ports(uses);
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+PortUse use(std::uint32_t robot, std::uint32_t sensors, PortRule rule = {}) { return {robot, sensors, rule, "roomba"}; }
+
+TEST(Ports, AreBasePlusRobotTimesStridePlusSensor) {
+  EXPECT_EQ(port({}, 0, 0), 10000u);
+  EXPECT_EQ(port({}, 7, 0), 10056u);
+  EXPECT_EQ(port({}, 7, 3), 10059u);
+  EXPECT_EQ(port({20000, 2}, 5, 1), 20011u);
+  EXPECT_EQ(port({65535, 65535}, 0xFFFFFFFFu, 7), 65535u + 0xFFFFFFFFull * 65535u + 7u);  // no wrap
+}
+
+TEST(Ports, AFleetWithinTheRuleIsAccepted) {
+  std::vector<PortUse> fleet;
+  for (std::uint32_t id = 0; id <= 6941; ++id) fleet.push_back(use(id, 8));  // the last port is 65535
+  EXPECT_EQ(refusal(fleet), "");
+  EXPECT_EQ(refusal({}), "");
+  EXPECT_EQ(refusal({use(70'000, 0)}), "");  // a robot without sensors needs no port
+}
+
+TEST(Ports, PastTheLastPortIsRefused) {
+  EXPECT_NE(refusal({use(6942, 1)}).find("needs port 65536"), std::string::npos);
+  EXPECT_EQ(refusal({use(6941, 8)}), "");
+  EXPECT_NE(refusal({use(6941, 9)}).find("sensor 8 needs port 65536"), std::string::npos);
+  EXPECT_NE(refusal({use(70'000, 1, {1000, 0})}), "");  // an id that does not fit a packet
+  EXPECT_NE(refusal({use(0, 1, {0, 8})}).find("needs port 0"), std::string::npos);
+}
+
+TEST(Ports, TwoSensorsOnOnePortAreRefused) {
+  EXPECT_EQ(refusal({use(1, 9), use(3, 1)}), "");  // runs past its stride, into nobody
+  EXPECT_NE(refusal({use(1, 9), use(2, 1)}).find("raise the stride to at least 9"), std::string::npos);
+  EXPECT_NE(refusal({use(4, 1), use(4, 1)}).find("share port 10032"), std::string::npos);
+  EXPECT_NE(refusal({use(4, 1), use(4, 1)}).find("its own id"), std::string::npos);
+  EXPECT_NE(refusal({use(1, 1, {10000, 8}), use(0, 1, {10008, 8})}), "");  // two sensor types
+}
+
+}  // namespace
+}  // namespace sf::netio
