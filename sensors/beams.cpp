@@ -5,14 +5,6 @@
 
 namespace sf::sensors {
 
-double bearing_of(const world::Laser& laser, std::uint32_t i) {
-  if (laser.samples < 2) return 0.0;
-  // Both ends exactly, and -b for every b: count from the nearer end.
-  const double last = laser.samples - 1;
-  const double step = laser.fov / last;
-  return 2.0 * i <= last ? -0.5 * laser.fov + i * step : 0.5 * laser.fov - (last - i) * step;
-}
-
 BeamPlan plan_beams(const world::Laser& laser, bool with_noise) {
   constexpr double kMostSpread = 0.5 * (2.0 * M_PI / SF_SECTORS);
   BeamPlan plan;
@@ -36,7 +28,7 @@ void write_beams(const world::Laser& laser, const BeamPlan& plan, const std::vec
     for (std::size_t i = 0; i < SF_BEAMS_PER_LANE; ++i) {
       // Places without a beam repeat the last one.
       const std::size_t k = plan.packed ? std::min(SF_BEAMS_PER_LANE * lane + i, count - 1) : lane;
-      const double bearing = bearing_of(laser, plan.samples[k]) + (turns.empty() ? 0.0 : turns[k]);
+      const double bearing = world::bearing_of(laser, plan.samples[k]) + (turns.empty() ? 0.0 : turns[k]);
       low = i == 0 ? bearing : std::min(low, bearing);
       high = i == 0 ? bearing : std::max(high, bearing);
       const double c = std::cos(bearing);

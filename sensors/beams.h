@@ -23,9 +23,6 @@ struct BeamPlan {
   std::size_t place(std::size_t k) const { return packed ? k : SF_BEAMS_PER_LANE * k; }
 };
 
-/// Bearing of sample `i` in the sensor's frame [rad], from -fov/2 to +fov/2; 0 when there is only one.
-double bearing_of(const world::Laser& laser, std::uint32_t i);
-
 BeamPlan plan_beams(const world::Laser& laser, bool with_noise);
 
 /// Rows of the device's beam tables for one laser, from its first lane on.

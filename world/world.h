@@ -68,6 +68,14 @@ struct Laser {
   std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, of the drawn field of view
 };
 
+/// Bearing of sample `i` in the sensor's frame [rad]; both ends of the field of view exactly, and -b for every b.
+inline double bearing_of(const Laser& laser, std::uint32_t i) {
+  if (laser.samples < 2) return 0.0;
+  const double last = laser.samples - 1;
+  const double step = laser.fov / last;
+  return 2.0 * i <= last ? -0.5 * laser.fov + i * step : 0.5 * laser.fov - (last - i) * step;
+}
+
 enum class Drive { differential, omni, car };
 
 /// Something that moves: a robot, or a linked object that follows its packets.

@@ -1,0 +1,17 @@
+#pragma once
+// The subcommands. Each returns the exit code: 0 when all went well. They throw base::InputError (2) and base::DeviceError (3).
+
+#include "apps/options.h"
+
+namespace sf::apps {
+
+int devices(const Options& options);
+int check(const Options& options);
+int draw(const Options& options);
+int sense(const Options& options);
+int run(const Options& options);
+int serve(const Options& options);
+int plot(const Options& options);
+int listen(const Options& options);
+
+}  // namespace sf::apps

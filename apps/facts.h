@@ -1,0 +1,52 @@
+#pragma once
+// What commands print: facts as rows of a table for people, or as JSON for programs. nlohmann/json lives in the source.
+
+#include <string>
+#include <vector>
+
+#include "base/reading.h"
+#include "farm/farm.h"
+#include "gpu/device.h"
+#include "netio/inbox.h"
+#include "netio/listener.h"
+#include "netio/outbox.h"
+#include "world/world.h"
+
+namespace sf::apps {
+
+/// How a run or a service went.
+struct RunFacts {
+  std::string device;
+  bool software = false;
+  std::uint32_t robots = 0;
+  std::uint64_t ticks = 0;
+  double simulated_s = 0.0;
+  double wall_s = 0.0;
+  std::uint64_t contacts = 0;   ///< robot-ticks in which something stopped a robot
+  double move_s = 0.0;          ///< [s] controllers and motion
+  double out_s = 0.0;           ///< [s] packets and recording
+  farm::FarmStats farm;
+  std::uint64_t hash = 0;
+  bool interrupted = false;
+  bool sent = false;            ///< `outbox` counts
+  netio::OutboxCounts outbox;
+  bool received = false;        ///< `inbox` counts
+  netio::Counts inbox;
+  std::string recording;        ///< file; empty: none
+};
+
+std::string json_of(const gpu::Survey& survey);
+std::string json_of(const world::World& world);
+std::string json_of(const RunFacts& facts);
+std::string json_of(const netio::Summary& summary);
+/// One laser reading; infinite ranges are null.
+std::string json_of(const world::World& world, const base::ReadingBlock& reading);
+
+std::string text_of(const gpu::Survey& survey);
+std::string text_of(const world::World& world);
+std::string text_of(const RunFacts& facts);
+std::string text_of(const netio::Summary& summary);
+/// Comma-separated: a comment line with the poses, a heading, one line per beam.
+std::string text_of(const world::World& world, const base::ReadingBlock& reading);
+
+}  // namespace sf::apps

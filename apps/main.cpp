@@ -1,0 +1,45 @@
+// sensorfarm: one program, its subcommands, and what becomes of errors.
+
+#include <cstdio>
+#include <exception>
+
+#include "apps/command_line.h"
+#include "apps/commands.h"
+#include "base/error.h"
+
+namespace {
+
+int dispatch(const sf::apps::Options& options) {
+  using sf::apps::Command;
+  switch (options.command) {
+    case Command::devices: return sf::apps::devices(options);
+    case Command::check: return sf::apps::check(options);
+    case Command::draw: return sf::apps::draw(options);
+    case Command::sense: return sf::apps::sense(options);
+    case Command::run: return sf::apps::run(options);
+    case Command::serve: return sf::apps::serve(options);
+    case Command::plot: return sf::apps::plot(options);
+    case Command::listen: return sf::apps::listen(options);
+  }
+  return 1;
+}
+
+int fail(int code, const char* what) {
+  std::fprintf(stderr, "sensorfarm: %s\n", what);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const sf::apps::Parsed parsed = sf::apps::parse_command_line(argc, argv);
+    return parsed.exit_code ? *parsed.exit_code : dispatch(parsed.options);
+  } catch (const sf::base::InputError& error) {
+    return fail(2, error.what());
+  } catch (const sf::base::DeviceError& error) {
+    return fail(3, error.what());
+  } catch (const std::exception& error) {
+    return fail(1, error.what());
+  }
+}

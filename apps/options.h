@@ -1,0 +1,48 @@
+#pragma once
+// What the user asked for, as plain values: filled by the command line, read by the commands.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "base/pose.h"
+#include "netio/laser_packets.h"
+#include "world/world.h"
+
+namespace sf::apps {
+
+enum class Command { devices, check, draw, sense, run, serve, plot, listen };
+
+struct Options {
+  Command command = Command::devices;
+  bool json = false;
+  std::string device;  ///< row or part of a name; empty: the best
+
+  std::string world;   ///< world file, or the recording's folder for `plot`
+  world::LoadOptions load;
+  std::string out;     ///< picture, or folder for `plot`
+
+  std::optional<base::Pose> pose;  ///< of the robot, for `sense`
+  std::string robot;
+  std::uint32_t sensor = 0;
+  bool no_return_inf = false;
+
+  std::uint32_t robots = 0;  ///< clones; 0: the world's own
+  double duration = 60.0;    ///< [s]; serve and listen: 0 is until stopped
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  std::string record;        ///< folder; empty: no recording
+  bool record_readings = false;
+  bool real_time = false;
+  std::string send;          ///< host; empty: nobody
+  netio::Wire wire = netio::Wire::farm;
+  std::uint32_t laser_port = 10000;  ///< base of the lasers' ports
+  std::uint32_t ports_per_robot = 8;
+
+  std::string bind = "127.0.0.1";
+  std::uint32_t port = 9000;
+  double rate = 0.0;       ///< [Hz]; 0: the world's own
+  double silence = 3.0;    ///< [s] after which `listen` ends
+};
+
+}  // namespace sf::apps

@@ -1,0 +1,101 @@
+// `plot`: pictures from a recording, later and elsewhere. Scans are computed again from the recorded poses and world.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/commands.h"
+#include "apps/progress.h"
+#include "base/error.h"
+#include "farm/farm.h"
+#include "record/recording.h"
+#include "viz/occupancy.h"
+#include "viz/trajectory_figure.h"
+
+namespace sf::apps {
+
+namespace {
+
+std::vector<viz::Track> tracks_of(const record::Recording& recording, const world::World& world) {
+  std::vector<viz::Track> tracks;
+  for (std::size_t m = 0; m < recording.states.size(); ++m) {
+    if (world.movers[m].is_tag) continue;
+    viz::Track track{world.movers[m].name, std::nullopt, {}, {}, 1e-9 * static_cast<double>(recording.end_time)};
+    for (const record::StateSample& s : recording.states[m]) {
+      track.poses.push_back(s.X_WM);
+      track.contacts.push_back(s.contact);
+    }
+    tracks.push_back(std::move(track));
+  }
+  return tracks;
+}
+
+/// Fine enough to show walls, coarse enough for a page.
+double cell_for(const world::Extent& extent) {
+  const double longest = std::max(extent.x_max - extent.x_min, extent.y_max - extent.y_min);
+  return std::clamp(longest / 800.0, 0.03, 1.0);
+}
+
+/// Marks beams that ended on something that moves, which belongs on no map.
+void mark_moving(const world::World& world, const base::ReadingBlock& reading, std::vector<std::uint8_t>& moving) {
+  moving.assign(reading.hits.size(), 0);
+  for (std::size_t i = 0; i < moving.size(); ++i)
+    moving[i] = reading.hits[i] != base::kNoHit && world.models[reading.hits[i]].mover != world::kNone;
+}
+
+/// Computes every laser's scan once a simulated second from where its robot was.
+void map_scans(const record::Recording& recording, const world::World& world, gpu::Device& device, viz::OccupancyGrid& grid) {
+  farm::FarmOptions quiet;
+  quiet.noise = false;
+  farm::Farm farm(world, device, quiet);
+  farm.hear_all();
+  const auto every = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / recording.info.interval)));
+  std::vector<base::Report> reports;
+  std::vector<std::uint8_t> moving;
+  const std::size_t ticks = recording.states.empty() ? 0 : recording.states[0].size();
+  Progress progress("mapping");
+  for (std::size_t t = 0; t < ticks; t += every) {
+    reports.clear();
+    for (std::uint32_t m = 0; m < recording.states.size(); ++m) {
+      const record::StateSample& s = recording.states[m][t];
+      reports.push_back({m, s.time, s.X_WM, s.velocity});
+    }
+    // Slow sensors look too: each tick is as far from the last as their period.
+    const auto now = static_cast<std::int64_t>(t + 1) * 1'000'000'000'000;
+    for (const base::ReadingBlock& r : farm.tick(now, reports)) {
+      const world::Laser& laser = world.movers[r.mover].lasers[r.sensor];
+      mark_moving(world, r, moving);
+      const double step = laser.samples > 1 ? laser.fov / (laser.samples - 1) : 0.0;
+      grid.add_scan(r.X_WS, r.values, world::bearing_of(laser, 0), step, laser.range_max, laser.range_min, moving);
+    }
+    progress.show(static_cast<double>(t) / static_cast<double>(ticks));
+  }
+}
+
+}  // namespace
+
+int plot(const Options& options) {
+  const record::Recording recording = record::open_recording(options.world);
+  for (const std::string& damage : recording.damage) std::fprintf(stderr, "sensorfarm: %s: %s\n", recording.file.c_str(), damage.c_str());
+  if (recording.truncated) std::fprintf(stderr, "sensorfarm: %s was not finished; its %llu whole ticks are drawn\n", recording.file.c_str(), static_cast<unsigned long long>(recording.ticks));
+  const world::World world = world::from_snapshot(recording.info.snapshot);
+  const std::filesystem::path folder = options.out.empty() ? std::filesystem::path(recording.file).parent_path() : std::filesystem::path(options.out);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw base::InputError(folder.string(), 0, "cannot be made a folder: " + error.message() + "; name another with -o");
+
+  const std::string trajectories = (folder / "trajectories.png").string();
+  viz::draw_trajectories(world, tracks_of(recording, world), trajectories);
+  std::fprintf(stderr, "sensorfarm: wrote %s\n", trajectories.c_str());
+
+  gpu::Device device(options.device);
+  viz::OccupancyGrid grid(world.extent, cell_for(world.extent));
+  map_scans(recording, world, device, grid);
+  const std::string occupancy = (folder / "occupancy.png").string();
+  viz::draw_occupancy(world, grid, occupancy);
+  std::fprintf(stderr, "sensorfarm: wrote %s\n", occupancy.c_str());
+  return 0;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,115 @@
+// `run`: a simulated fleet in the loop, recorded and sent as asked.
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "apps/commands.h"
+#include "apps/facts.h"
+#include "apps/lend.h"
+#include "apps/post.h"
+#include "apps/progress.h"
+#include "apps/record_run.h"
+#include "apps/simulation.h"
+#include "apps/stop.h"
+
+namespace sf::apps {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Where readings go: a recording, the network, both or neither.
+class Outputs {
+ public:
+  Outputs(const world::World& world, const Options& options) : world_(world), options_(options), no_return_(world, options.no_return_inf) {
+    if (!options.send.empty()) {
+      rule_ = require_laser_ports(world, options);
+      address_ = netio::resolve(options.send);
+      outbox_.emplace();
+    }
+    if (!options.record.empty()) recorder_.emplace(options.record, run_info(world, options));
+  }
+
+  void write(base::TickRecord tick) {
+    const auto start = Clock::now();
+    tick.readings = no_return_.apply(tick.readings);
+    if (outbox_) {
+      for (const base::ReadingBlock& reading : tick.readings) post(*outbox_, world_, reading, address_, rule_, options_.wire);
+      outbox_->flush();
+    }
+    if (recorder_) recorder_->write(tick);
+    seconds_ += seconds_since(start);
+  }
+
+  void finish(RunFacts& facts) {
+    facts.out_s = seconds_;
+    if (outbox_) {
+      facts.sent = true;
+      facts.outbox = outbox_->counts();
+    }
+    if (!recorder_) return;
+    recorder_->finish();
+    facts.recording = fmt::format("{} ({:.1f} MB)", recorder_->path(), static_cast<double>(recorder_->size()) * 1e-6);
+  }
+
+ private:
+  const world::World& world_;
+  const Options& options_;
+  NoReturn no_return_;
+  netio::PortRule rule_;
+  std::uint32_t address_ = 0;
+  std::optional<netio::Outbox> outbox_;
+  std::optional<record::Recorder> recorder_;
+  double seconds_ = 0.0;
+};
+
+/// Waits until `simulated` [s] have passed since `start`, or not at all when it is late already.
+void keep_pace(Clock::time_point start, double simulated) {
+  std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(simulated)));
+}
+
+}  // namespace
+
+int run(const Options& options) {
+  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed);
+  gpu::Device device(options.device);
+  Simulation simulation(world, device, options.seed, options.threads);
+  Outputs outputs(world, options);
+  catch_stop_signals();
+
+  const auto ticks = static_cast<std::uint64_t>(std::llround(options.duration / world.interval));
+  RunFacts facts;
+  const auto start = Clock::now();
+  {
+    Progress progress("simulating");
+    for (; facts.ticks < ticks && !stop_requested(); ++facts.ticks) {
+      const base::TickRecord tick = simulation.step();
+      outputs.write(tick);
+      for (const std::uint8_t contact : tick.contacts) facts.contacts += contact;
+      const double simulated = static_cast<double>(facts.ticks + 1) * world.interval;
+      progress.show(simulated / options.duration, fmt::format("{:.0f} s of {:g} s", simulated, options.duration));
+      if (options.real_time) keep_pace(start, simulated);
+    }
+  }
+  facts.wall_s = seconds_since(start);
+  facts.simulated_s = static_cast<double>(facts.ticks) * world.interval;
+  facts.interrupted = facts.ticks < ticks;
+  facts.device = device.facts().name;
+  facts.software = device.facts().software;
+  for (const world::Mover& mover : world.movers) facts.robots += !mover.is_tag;
+  facts.move_s = simulation.move_seconds();
+  facts.farm = simulation.farm().stats();
+  facts.hash = simulation.farm().hash();
+  outputs.finish(facts);
+  std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
+  return 0;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,152 @@
+// `serve`: robots live elsewhere. Their states come in, what they would sense goes back to them.
+
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <variant>
+#include <vector>
+
+#include "apps/commands.h"
+#include "apps/facts.h"
+#include "apps/post.h"
+#include "apps/stop.h"
+#include "netio/inbox.h"
+#include "robots/fleet.h"
+
+namespace sf::apps {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::uint32_t kLaserKind = 1;
+
+/// Who on the wire is which mover.
+struct Names {
+  std::map<std::uint32_t, std::uint32_t> robots;
+  std::map<std::uint32_t, std::uint32_t> tags;
+};
+
+Names names_of(const world::World& world) {
+  Names names;
+  for (std::uint32_t i = 0; i < world.movers.size(); ++i)
+    (world.movers[i].is_tag ? names.tags : names.robots)[world.movers[i].id] = i;
+  return names;
+}
+
+std::vector<std::uint32_t> ids_of(const std::map<std::uint32_t, std::uint32_t>& rows) {
+  std::vector<std::uint32_t> ids;
+  for (const auto& [id, row] : rows) ids.push_back(id);
+  return ids;
+}
+
+class Service {
+ public:
+  Service(const world::World& world, gpu::Device& device, const Options& options)
+      : world_(world), options_(options), names_(names_of(world)), rule_(require_laser_ports(world, options)),
+        inbox_({.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
+                .robots = ids_of(names_.robots), .tags = ids_of(names_.tags)}),
+        farm_(world, device, farm::FarmOptions{.seed = options.seed}), fleet_(world), no_return_(world, options.no_return_inf) {
+    reports_.reserve(netio::Inbox::kMaxPerReceive);
+  }
+
+  std::uint16_t port() const { return inbox_.port(); }
+
+  /// Sleeps until `when`, taking in what comes meanwhile.
+  void wait_until(Clock::time_point start, Clock::time_point when) {
+    for (;;) {
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(when - Clock::now()).count();
+      if (left <= 0 || stop_requested()) return;
+      pollfd ready{inbox_.descriptor(), POLLIN, 0};
+      poll(&ready, 1, static_cast<int>(std::min<long>(left, 100)));
+      take_in((Clock::now() - start).count());
+    }
+  }
+
+  void tick(std::int64_t now) {
+    take_in(now);
+    for (const auto& [id, row] : names_.robots) farm_.hear(row, inbox_.heard(id, now) && inbox_.wants(id, kLaserKind, now));
+    const auto readings = no_return_.apply(farm_.tick(now, fleet_.predict(now)));
+    for (const base::ReadingBlock& reading : readings) {
+      // A reading that was on its way when its robot fell silent has nobody to go to.
+      const auto to = inbox_.address(world_.movers[reading.mover].id);
+      if (to) post(outbox_, world_, reading, to->address, rule_, options_.wire);
+    }
+    outbox_.flush();
+    ++ticks_;
+  }
+
+  RunFacts facts() const {
+    RunFacts facts;
+    facts.robots = static_cast<std::uint32_t>(names_.robots.size());
+    facts.ticks = ticks_;
+    facts.farm = farm_.stats();
+    facts.hash = farm_.hash();
+    facts.sent = facts.received = true;
+    facts.outbox = outbox_.counts();
+    facts.inbox = inbox_.counts();
+    return facts;
+  }
+
+ private:
+  void take_in(std::int64_t now) {
+    reports_.clear();
+    inbox_.receive(now, [&](const netio::Packet& packet) {
+      if (const auto* state = std::get_if<netio::V2v>(&packet.body)) {
+        reports_.push_back(netio::report(packet.header, *state, names_.robots.at(packet.header.robot)));
+      } else if (const auto* tag = std::get_if<netio::Tag>(&packet.body)) {
+        reports_.push_back(netio::report(packet.header, *tag, names_.tags.at(packet.header.robot)));
+      } else {
+        return;
+      }
+      // Senders' clocks are their own: a state is true when it arrives.
+      reports_.back().time = now;
+    });
+    fleet_.apply(reports_);
+  }
+
+  const world::World& world_;
+  const Options& options_;
+  Names names_;
+  netio::PortRule rule_;
+  netio::Inbox inbox_;
+  netio::Outbox outbox_;
+  farm::Farm farm_;
+  robots::Fleet fleet_;
+  NoReturn no_return_;
+  std::vector<base::Report> reports_;
+  std::uint64_t ticks_ = 0;
+};
+
+}  // namespace
+
+int serve(const Options& options) {
+  const world::World world = world::load_world(options.world, options.load);
+  gpu::Device device(options.device);
+  Service service(world, device, options);
+  catch_stop_signals();
+  const double interval = options.rate > 0.0 ? 1.0 / options.rate : world.interval;
+  std::fprintf(stderr, "sensorfarm: serving %zu movers of %s on %s:%u, %g ticks/s, on %s; Ctrl-C ends it\n", world.movers.size(),
+               world.file.c_str(), options.bind.c_str(), service.port(), 1.0 / interval, device.facts().name.c_str());
+
+  const auto start = Clock::now();
+  const auto step = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(interval));
+  for (auto next = start; !stop_requested(); next = std::max(next + step, Clock::now() - step)) {
+    service.wait_until(start, next);
+    if (stop_requested()) break;
+    const auto now = Clock::now() - start;
+    if (options.duration > 0.0 && std::chrono::duration<double>(now).count() >= options.duration) break;
+    service.tick(now.count());
+  }
+
+  RunFacts facts = service.facts();
+  facts.device = device.facts().name;
+  facts.software = device.facts().software;
+  facts.wall_s = facts.simulated_s = std::chrono::duration<double>(Clock::now() - start).count();
+  std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
+  return 0;
+}
+
+}  // namespace sf::apps

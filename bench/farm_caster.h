@@ -1,0 +1,12 @@
+#pragma once
+// The farm as a caster: one whole tick a round, hash and all.
+
+#include "bench/caster.h"
+#include "gpu/device.h"
+
+namespace sf::bench {
+
+/// `scans` and `device` must outlive it.
+std::unique_ptr<Caster> make_farm_caster(const Scans& scans, gpu::Device& device);
+
+}  // namespace sf::bench

@@ -1,0 +1,34 @@
+#pragma once
+// The question that every caster is asked: the same walls, the same robots, the same beams.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "world/world.h"
+
+namespace sf::bench {
+
+/// Scans of a fleet whose robots are seen by nobody: what all casters can do.
+struct Scans {
+  std::string scene;
+  world::World world;                           ///< movers carry `laser` and have no bodies
+  world::Laser laser;                           ///< of every robot
+  std::vector<std::vector<base::Pose>> rounds;  ///< X_WM per round and robot; round k is asked at turns k, k + n, ...
+  std::vector<base::Vec2> beams;                ///< unit, in the sensor's frame, from -fov/2 to +fov/2
+
+  std::size_t robots() const { return world.movers.size(); }
+  std::size_t rays() const { return robots() * beams.size(); }  ///< per round
+  base::Pose X_WS(std::size_t round, std::size_t robot) const {
+    return base::compose(rounds[round][robot], laser.X_MS);
+  }
+};
+
+/// `count` robots at random free places of `world`, whose own movers are left out. They turn and shift by a few
+/// millimetres from round to round, so that nothing can be answered from memory but what stands still.
+Scans make_scans(const std::string& scene, world::World world, std::uint32_t count, const world::Laser& laser);
+
+/// The cave that the demo and the tests run in, `worlds/cave.world`, without its robot.
+world::World load_cave();
+
+}  // namespace sf::bench

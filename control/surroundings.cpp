@@ -1,0 +1,80 @@
+#include "control/surroundings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::control {
+
+namespace {
+
+constexpr std::uint8_t kLaser = 1;
+constexpr std::uint32_t kBeams = 512;  // of one laser are looked at
+constexpr double kSideways = 1.8;      // [rad] beams farther from straight ahead say nothing about where to go
+
+}  // namespace
+
+struct Surroundings::Sum {
+  double ahead = HUGE_VAL;
+  double left = 0.0, right = 0.0;
+  double lefts = 0.0, rights = 0.0;
+};
+
+Surroundings::Surroundings(const world::Mover& mover) {
+  double half_width = 0.0;
+  for (const world::Segment& s : mover.body) {
+    front_ = std::max({front_, s.a.x, s.b.x});
+    half_width = std::max({half_width, std::abs(s.a.y), std::abs(s.b.y)});
+  }
+  half_width_ = 1.15 * half_width + 0.01;
+
+  for (const world::Laser& laser : mover.lasers) {
+    View view{{laser.X_MS.x, laser.X_MS.y}, laser.range_max, {}};
+    const std::uint32_t stride = (laser.samples + kBeams - 1) / kBeams;
+    for (std::uint32_t i = 0; i < laser.samples; i += stride) {
+      const double along = laser.samples > 1 ? static_cast<double>(i) / (laser.samples - 1) - 0.5 : 0.0;
+      const double bearing = base::wrap_angle(laser.X_MS.yaw + along * laser.fov);
+      if (std::abs(bearing) > kSideways) continue;
+      view.beams.push_back({i, static_cast<float>(std::cos(bearing)), static_cast<float>(std::sin(bearing))});
+      if (std::abs(bearing) < 0.6) sight_ = std::max(sight_, laser.X_MS.x + laser.range_max - front_);
+    }
+    views_.push_back(std::move(view));
+  }
+  if (!std::isfinite(sight_)) sight_ = 1e3;
+}
+
+void Surroundings::add(const View& view, std::span<const double> ranges, Sum& sum) const {
+  for (const Beam& beam : view.beams) {
+    if (beam.sample >= ranges.size() || std::isnan(ranges[beam.sample])) continue;
+    const double range = std::max(ranges[beam.sample], 0.0);
+
+    // Something is in the way when it is in the lane that the body sweeps.
+    if (range < view.range_max) {
+      const double x = view.p_MS.x + range * beam.x;
+      const double y = view.p_MS.y + range * beam.y;
+      if (x >= 0.0 && std::abs(y) < half_width_) sum.ahead = std::min(sum.ahead, x - front_);
+    }
+    const double free = std::min({range, view.range_max, sight_});
+    if (beam.y > 0.05f) {
+      sum.left += free;
+      sum.lefts += 1.0;
+    } else if (beam.y < -0.05f) {
+      sum.right += free;
+      sum.rights += 1.0;
+    }
+  }
+}
+
+Clearance Surroundings::look(std::span<const base::ReadingBlock> readings) const {
+  Sum sum;
+  for (const base::ReadingBlock& block : readings) {
+    if (block.kind == kLaser && block.sensor < views_.size()) add(views_[block.sensor], block.values, sum);
+  }
+  const double left = sum.lefts > 0.0 ? sum.left / sum.lefts : 0.0;
+  const double right = sum.rights > 0.0 ? sum.right / sum.rights : 0.0;
+  const bool both = sum.lefts > 0.0 && sum.rights > 0.0;
+  const double ahead =
+      sum.ahead == HUGE_VAL ? std::max(sight_, 0.0) : std::clamp(sum.ahead, 0.0, std::max(sight_, 0.0));
+  return {ahead, both ? left : 0.0, both ? right : 0.0};
+}
+
+}  // namespace sf::control

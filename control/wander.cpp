@@ -1,0 +1,114 @@
+#include "control/wander.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+
+namespace sf::control {
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+}  // namespace
+
+WanderSettings wander_settings(const world::Mover& mover, double sight) {
+  WanderSettings s;
+  s.speed = 0.8 * mover.max_forward;
+  s.turn = std::min(0.8 * mover.max_turn, 1.5);
+  // What it can stop in comfortably, but well within what it sees.
+  s.stop = std::min(std::max(0.5 * mover.radius, 0.4 * mover.max_forward), 0.3 * sight);
+  s.resume = std::min(2.0 * s.stop, 0.6 * sight);
+  s.slow = std::min(5.0 * s.stop, 0.95 * sight);
+  s.turns_in_place = mover.drive != world::Drive::car;
+  return s;
+}
+
+Wander::Wander(const world::Mover& mover, std::uint32_t robot, std::uint64_t seed)
+    : surroundings_(mover), settings_(wander_settings(mover, surroundings_.sight())), robot_(robot), seed_(seed) {}
+
+double Wander::random() {
+  return base::random_uniform({.seed = seed_, .stream = base::Stream::wander, .a = robot_, .c = draws_++}, 0)[0];
+}
+
+base::Twist Wander::step(const Input& input) {
+  const Clearance clearance = surroundings_.look(input.readings);
+  turned_ += std::abs(base::wrap_angle(input.state.X_WM.yaw - last_yaw_));
+  last_yaw_ = input.state.X_WM.yaw;
+  choose(input, clearance);
+  switch (mode_) {
+    case Mode::turn:
+      return turn();
+    case Mode::back:
+      return {-0.5 * settings_.speed, 0.0, settings_.turns_in_place ? 0.0 : -side_ * settings_.turn};
+    case Mode::cruise:
+      break;
+  }
+  return cruise(clearance, input.time);
+}
+
+void Wander::choose(const Input& input, const Clearance& clearance) {
+  // Met something: away from it first, then some random angle to the side.
+  if (input.contact) {
+    if (mode_ == Mode::back) return start_turn(clearance, 0.5 + 2.0 * random());
+    start_turn(clearance, 0.5 + 2.0 * random());
+    return start_back(input.time);
+  }
+  const bool blocked = surroundings_.sight() > 0.0 && clearance.ahead < settings_.stop;
+  switch (mode_) {
+    case Mode::cruise:
+      if (blocked) start_turn(clearance, 0.0);
+      return;
+    case Mode::back:
+      if (input.time < until_) return;
+      mode_ = Mode::turn;
+      turned_ = 0.0;
+      return;
+    case Mode::turn: {
+      // After a whole round without a way out, less will do.
+      const double enough = turned_ > 2.0 * M_PI ? settings_.stop : settings_.resume;
+      const bool free = surroundings_.sight() <= 0.0 || clearance.ahead >= enough;
+      if (turned_ >= least_ && free) mode_ = Mode::cruise;
+      if (turned_ > 4.0 * M_PI) start_back(input.time);
+      return;
+    }
+  }
+}
+
+void Wander::start_turn(const Clearance& clearance, double least) {
+  const double difference = clearance.left - clearance.right;
+  const bool alike = std::abs(difference) <= 0.1 * std::max(clearance.left, clearance.right);
+  side_ = alike ? (random() < 0.5 ? -1.0 : 1.0) : (difference > 0.0 ? 1.0 : -1.0);
+  mode_ = Mode::turn;
+  least_ = least;
+  turned_ = 0.0;
+}
+
+void Wander::start_back(std::int64_t time) {
+  mode_ = Mode::back;
+  until_ = time + kSecond * 3 / 10 + static_cast<std::int64_t>(0.5 * kSecond * random());
+}
+
+base::Twist Wander::turn() const {
+  // A car goes round in a tight bend, as far as it is let.
+  return {settings_.turns_in_place ? 0.0 : 0.3 * settings_.speed, 0.0, side_ * settings_.turn};
+}
+
+base::Twist Wander::cruise(const Clearance& clearance, std::int64_t time) {
+  if (time >= drift_until_) {
+    drift_ = 0.25 * settings_.turn * (2.0 * random() - 1.0);
+    drift_until_ = time + static_cast<std::int64_t>((2.0 + 4.0 * random()) * kSecond);
+  }
+  if (surroundings_.sight() <= 0.0) return {settings_.speed, 0.0, drift_};
+
+  // 1 at the stop distance, 0 where it is free: slower, and more towards the freer side.
+  const double near =
+      std::clamp((settings_.slow - clearance.ahead) / std::max(settings_.slow - settings_.stop, 1e-9), 0.0, 1.0);
+  const double sides = clearance.left + clearance.right;
+  const double freer = sides > 0.0 ? (clearance.left - clearance.right) / sides : 0.0;
+  const double steer = settings_.turn * (0.3 + 0.7 * near) * std::clamp(2.0 * freer, -1.0, 1.0);
+  return {settings_.speed * (1.0 - 0.75 * near), 0.0, std::clamp(steer + drift_, -settings_.turn, settings_.turn)};
+}
+
+}  // namespace sf::control

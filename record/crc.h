@@ -1,0 +1,12 @@
+#pragma once
+// CRC-32 as MCAP uses it: the polynomial of ISO 3309 / IEEE 802.3, reflected.
+
+#include <cstdint>
+#include <span>
+
+namespace sf::record {
+
+/// Of `bytes`, continued from `before`: crc(ab) == crc(b, crc(a)). 0 of nothing.
+std::uint32_t crc_of(std::span<const std::uint8_t> bytes, std::uint32_t before = 0);
+
+}  // namespace sf::record

@@ -1,0 +1,34 @@
+#pragma once
+// What every mover was, wanted and met at one tick, to the bit: `sensorfarm_msgs/msg/Fleet`.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/pose.h"
+#include "base/sink.h"
+
+namespace sf::record {
+
+struct MoverState {
+  std::uint32_t mover = 0;  ///< row in `RunInfo::movers`
+  bool contact = false;     ///< a wall or a robot stopped it
+  base::Pose X_WM;
+  base::Twist velocity;  ///< in the mover's frame
+  base::Twist command;   ///< what its controller asked for; zero where there is none
+};
+
+struct FleetState {
+  std::uint64_t tick = 0;
+  std::int64_t time = 0;  ///< [ns] simulated
+  std::vector<MoverState> states;
+};
+
+/// Appends one message. Rule: `commands` and `contacts` are empty, or one per report.
+void encode_fleet(const base::TickRecord& record, base::Bytes& out);
+
+/// @returns false when the bytes are no Fleet; `fleet` is then half filled. Its capacity is reused.
+bool decode_fleet(std::span<const std::uint8_t> message, FleetState& fleet);
+
+}  // namespace sf::record

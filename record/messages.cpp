@@ -1,0 +1,102 @@
+#include "record/messages.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "record/cdr.h"
+
+namespace sf::record {
+
+using base::Bytes;
+using base::Pose;
+using base::Twist;
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+void put_header(CdrWriter& cdr, std::int64_t time, std::string_view frame) {
+  SF_CHECK(time >= 0, "time " + std::to_string(time) + " ns");
+  cdr.put(static_cast<std::int32_t>(time / kSecond));
+  cdr.put(static_cast<std::uint32_t>(time % kSecond));
+  cdr.put(frame);
+}
+
+/// Position and the quaternion (x, y, z, w) of a turn about +z.
+void put_pose(CdrWriter& cdr, const Pose& pose) {
+  const double half = 0.5 * pose.yaw;
+  for (const double value : {pose.x, pose.y, pose.z, 0.0, 0.0, std::sin(half), std::cos(half)}) cdr.put(value);
+}
+
+void put_twist(CdrWriter& cdr, const Twist& twist) {
+  for (const double value : {twist.forward, twist.left, 0.0, 0.0, 0.0, twist.turn}) cdr.put(value);
+}
+
+void put_covariance(CdrWriter& cdr) {
+  for (int i = 0; i < 36; ++i) cdr.put(0.0);
+}
+
+}  // namespace
+
+void encode_odometry(const Transform& transform, const Twist& velocity, Bytes& out) {
+  CdrWriter cdr(out);
+  put_header(cdr, transform.time, transform.parent);
+  cdr.put(transform.child);
+  put_pose(cdr, transform.X_PC);
+  put_covariance(cdr);
+  put_twist(cdr, velocity);
+  put_covariance(cdr);
+}
+
+void encode_twist(std::int64_t time, std::string_view frame, const Twist& twist, Bytes& out) {
+  CdrWriter cdr(out);
+  put_header(cdr, time, frame);
+  put_twist(cdr, twist);
+}
+
+void encode_transforms(std::span<const Transform> transforms, Bytes& out) {
+  CdrWriter cdr(out);
+  cdr.put_count(transforms.size());
+  for (const Transform& transform : transforms) {
+    put_header(cdr, transform.time, transform.parent);
+    cdr.put(transform.child);
+    put_pose(cdr, transform.X_PC);
+  }
+}
+
+void encode_scan(const Scan& scan, std::span<const double> ranges, Bytes& out) {
+  CdrWriter cdr(out);
+  put_header(cdr, scan.time, scan.frame);
+  cdr.put(-0.5F * scan.fov);
+  cdr.put(0.5F * scan.fov);
+  cdr.put(ranges.size() > 1 ? scan.fov / static_cast<float>(ranges.size() - 1) : 0.0F);
+  cdr.put(0.0F);
+  cdr.put(scan.scan_time);
+  cdr.put(scan.range_min);
+  cdr.put(scan.range_max);
+  cdr.put_count(ranges.size());
+  for (const double range : ranges) cdr.put(static_cast<float>(range));
+  cdr.put_count(0);
+}
+
+std::optional<Scan> decode_scan(std::span<const std::uint8_t> message) {
+  CdrReader cdr(message);
+  Scan scan;
+  scan.time = cdr.get<std::int32_t>() * kSecond;
+  scan.time += cdr.get<std::uint32_t>();
+  scan.frame = cdr.get_string();
+  const auto angle_min = cdr.get<float>();
+  scan.fov = cdr.get<float>() - angle_min;
+  cdr.get<float>();  // angle_increment
+  cdr.get<float>();  // time_increment
+  scan.scan_time = cdr.get<float>();
+  scan.range_min = cdr.get<float>();
+  scan.range_max = cdr.get<float>();
+  scan.ranges.resize(cdr.get_count(sizeof(float)));
+  for (float& range : scan.ranges) range = cdr.get<float>();
+  cdr.get_count(sizeof(float));
+  if (!cdr.good()) return std::nullopt;
+  return scan;
+}
+
+}  // namespace sf::record

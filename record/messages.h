@@ -1,0 +1,50 @@
+#pragma once
+// The ROS messages of a recording as CDR. Every `encode` appends one whole message to `out`.
+// REP-103 units and frames, REP-105 names. Time is simulated, [ns] >= 0.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/pose.h"
+
+namespace sf::record {
+
+/// One frame in another.
+struct Transform {
+  std::int64_t time = 0;  ///< [ns]
+  std::string_view parent;
+  std::string_view child;
+  base::Pose X_PC;
+};
+
+/// One sweep of a laser.
+struct Scan {
+  std::int64_t time = 0;      ///< [ns] of the measurement
+  std::string frame;          ///< of the sensor: x along bearing 0
+  float fov = 0.0F;           ///< [rad] bearings run from -fov/2 to +fov/2, both included
+  float scan_time = 0.0F;     ///< [s] from one scan to the next
+  float range_min = 0.0F;     ///< [m]
+  float range_max = 0.0F;     ///< [m]
+  std::vector<float> ranges;  ///< [m] one per sample; range_max or infinity where nothing echoed
+};
+
+/// Truth, not wheel odometry: the covariances are zero.
+/// @param velocity in the child frame.
+void encode_odometry(const Transform& transform, const base::Twist& velocity, base::Bytes& out);
+
+void encode_twist(std::int64_t time, std::string_view frame, const base::Twist& twist, base::Bytes& out);
+
+void encode_transforms(std::span<const Transform> transforms, base::Bytes& out);
+
+/// @param ranges [m] rounded to float32 on the way; `scan.ranges` is not looked at.
+void encode_scan(const Scan& scan, std::span<const double> ranges, base::Bytes& out);
+
+/// @returns nothing when the bytes are no LaserScan.
+std::optional<Scan> decode_scan(std::span<const std::uint8_t> message);
+
+}  // namespace sf::record

@@ -1,0 +1,77 @@
+#pragma once
+// Keeps a run in DIR/run.mcap as it happens:
+//
+//   Recorder recorder(dir, info);           // world and run info are in the file, under its name
+//   for (...) recorder.write(tick_record);  // one chunk, one write(2)
+//   recorder.finish();                      // summary and indexes; says so when the disk did not keep up
+//
+// A process killed at any time leaves a file that holds every tick whose `write` returned.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/sink.h"
+#include "record/file.h"
+#include "record/mcap_writer.h"
+#include "record/messages.h"
+#include "record/run_info.h"
+
+namespace sf::record {
+
+/// One thread. A recording already in the directory is replaced in one step, once the new one holds its world.
+class Recorder : public base::Sink {
+ public:
+  /// Makes the directory. Rule: `info.snapshot` is not empty; rates and interval are positive.
+  /// @throws base::InputError when the directory cannot be written, another run is being recorded there, or the fleet
+  /// has more topics than a file can hold.
+  Recorder(const std::string& directory, RunInfo info);
+  /// Finishes, if nobody did, and keeps silent when that fails: call `finish` to know.
+  ~Recorder() override;
+
+  /// Rule: every report's mover is a row of `info.movers`, every reading's sensor a row of its lasers; time does not go
+  /// back.
+  /// @throws base::InputError when the tick could not be kept whole (a full disk). All ticks before it are; the
+  /// recorder takes no more.
+  void write(const base::TickRecord& record) override;
+  /// Seals the file. Further calls do nothing. @throws base::InputError when it could not be.
+  void finish();
+
+  const std::string& path() const { return file_.path(); }
+  std::uint64_t size() const { return file_.size(); }  ///< [byte] in the file
+
+ private:
+  struct MoverChannels {
+    std::uint16_t odometry = 0;
+    std::uint16_t command = 0;
+    std::vector<std::uint16_t> scans;  ///< one per laser when readings are kept
+    std::vector<std::string> frames;   ///< one per laser
+  };
+
+  void add_channels();
+  void add_mover_channels(std::uint16_t odometry, std::uint16_t twist, std::uint16_t scan);
+  void write_run_info();
+  void write_laser_frames();
+  void write_transforms(const base::TickRecord& record);
+  void write_odometry(const base::TickRecord& record);
+  void write_reading(const base::ReadingBlock& reading, std::int64_t time);
+  void add(std::uint16_t channel, std::uint32_t sequence, std::int64_t log_time, std::int64_t true_time);
+  void flush();
+
+  RunInfo info_;
+  GrowingFile file_;
+  McapWriter mcap_;
+  std::uint16_t info_channel_ = 0, fleet_channel_ = 0, transform_channel_ = 0, static_channel_ = 0;
+  std::vector<MoverChannels> channels_;  ///< by mover
+  std::int64_t next_odometry_ = 0;       ///< [ns]
+  std::uint32_t ticks_ = 0;              ///< written so far
+  std::uint32_t odometries_ = 0;
+  bool finished_ = false;
+
+  // Kept from tick to tick for their capacity.
+  base::Bytes message_;
+  std::vector<Transform> transforms_;
+  Scan scan_;
+};
+
+}  // namespace sf::record

@@ -1,0 +1,124 @@
+#include "record/run_info.h"
+
+#include <cctype>
+#include <map>
+
+#include "record/cdr.h"
+
+namespace sf::record {
+
+namespace {
+
+/// ROS names: letters, digits, '_'; no digit first.
+std::string ros_name(const std::string& name, const std::string& otherwise) {
+  std::string text;
+  for (const char c : name) text += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  if (text.empty()) return otherwise;
+  return std::isdigit(static_cast<unsigned char>(text[0])) != 0 ? "_" + text : text;
+}
+
+/// Names given so far, each with the number to try next should it come again.
+using Taken = std::map<std::string, int>;
+
+std::string unique(const std::string& name, Taken& taken) {
+  const auto [known, is_new] = taken.try_emplace(name, 2);
+  if (is_new) return name;
+  std::string candidate;
+  do {
+    candidate = name + "_" + std::to_string(known->second++);
+  } while (!taken.try_emplace(candidate, 2).second);
+  return candidate;
+}
+
+void put_pose(CdrWriter& cdr, const base::Pose& pose) {
+  for (const double value : {pose.x, pose.y, pose.z, pose.yaw}) cdr.put(value);
+}
+
+void put_laser(CdrWriter& cdr, const LaserInfo& laser) {
+  cdr.put(std::string_view(laser.name));
+  cdr.put(std::string_view(laser.topic));
+  put_pose(cdr, laser.X_MS);
+  cdr.put(laser.fov);
+  cdr.put(laser.samples);
+  cdr.put(laser.range_min);
+  cdr.put(laser.range_max);
+  cdr.put(laser.rate);
+}
+
+LaserInfo get_laser(CdrReader& cdr) {
+  LaserInfo laser;
+  laser.name = cdr.get_string();
+  laser.topic = cdr.get_string();
+  for (double* value : {&laser.X_MS.x, &laser.X_MS.y, &laser.X_MS.z, &laser.X_MS.yaw}) *value = cdr.get<double>();
+  laser.fov = cdr.get<double>();
+  laser.samples = cdr.get<std::uint32_t>();
+  laser.range_min = cdr.get<double>();
+  laser.range_max = cdr.get<double>();
+  laser.rate = cdr.get<double>();
+  return laser;
+}
+
+}  // namespace
+
+void name_frames(RunInfo& info) {
+  Taken frames = {{"world", 2}};
+  for (MoverInfo& mover : info.movers) {
+    mover.frame = unique(ros_name(mover.name, "robot"), frames);
+    Taken lasers = {{"odom", 2}, {"cmd_vel", 2}};
+    for (LaserInfo& laser : mover.lasers) {
+      laser.topic = "/" + mover.frame + "/" + unique(ros_name(laser.name, "laser"), lasers) + "/scan";
+    }
+  }
+}
+
+void encode_run_info(const RunInfo& info, base::Bytes& out) {
+  CdrWriter cdr(out);
+  cdr.put(std::string_view(info.world));
+  cdr.put(info.world_hash);
+  cdr.put(info.seed);
+  cdr.put(std::string_view(info.mode));
+  cdr.put(info.interval);
+  cdr.put(info.record_readings);
+  cdr.put(info.odometry_rate);
+  cdr.put_count(info.movers.size());
+  for (const MoverInfo& mover : info.movers) {
+    cdr.put(std::string_view(mover.name));
+    cdr.put(std::string_view(mover.frame));
+    cdr.put(mover.id);
+    cdr.put_count(mover.lasers.size());
+    for (const LaserInfo& laser : mover.lasers) put_laser(cdr, laser);
+  }
+  cdr.put_count(info.options.size());
+  for (const auto& [key, value] : info.options) {
+    cdr.put(std::string_view(key));
+    cdr.put(std::string_view(value));
+  }
+}
+
+bool decode_run_info(std::span<const std::uint8_t> message, RunInfo& info) {
+  constexpr std::size_t kLeastMover = 16, kLeastLaser = 80, kLeastOption = 10;  // [byte]
+  CdrReader cdr(message);
+  info.world = cdr.get_string();
+  info.world_hash = cdr.get<std::uint64_t>();
+  info.seed = cdr.get<std::uint64_t>();
+  info.mode = cdr.get_string();
+  info.interval = cdr.get<double>();
+  info.record_readings = cdr.get<bool>();
+  info.odometry_rate = cdr.get<double>();
+  info.movers.resize(cdr.get_count(kLeastMover));
+  for (MoverInfo& mover : info.movers) {
+    mover.name = cdr.get_string();
+    mover.frame = cdr.get_string();
+    mover.id = cdr.get<std::uint32_t>();
+    mover.lasers.resize(cdr.get_count(kLeastLaser));
+    for (LaserInfo& laser : mover.lasers) laser = get_laser(cdr);
+  }
+  info.options.resize(cdr.get_count(kLeastOption));
+  for (auto& [key, value] : info.options) {
+    key = cdr.get_string();
+    value = cdr.get_string();
+  }
+  return cdr.good();
+}
+
+}  // namespace sf::record

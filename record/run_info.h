@@ -1,0 +1,54 @@
+#pragma once
+// What a run was made of: with the world and the states, enough to compute every scan again.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/pose.h"
+
+namespace sf::record {
+
+struct LaserInfo {
+  std::string name;   ///< unique among the mover's lasers
+  std::string topic;  ///< of its scans; set by the recorder
+  base::Pose X_MS;    ///< sensor in the mover's frame
+  double fov = 0.0;   ///< [rad]
+  std::uint32_t samples = 0;
+  double range_min = 0.0;  ///< [m]
+  double range_max = 0.0;  ///< [m]
+  double rate = 10.0;      ///< [Hz] > 0
+};
+
+struct MoverInfo {
+  std::string name;               ///< as in the world
+  std::string frame;              ///< its name as ROS allows it, unique in the run; set by the recorder
+  std::uint32_t id = 0;           ///< number on the wire
+  std::vector<LaserInfo> lasers;  ///< in the order of `base::ReadingBlock::sensor`
+};
+
+struct RunInfo {
+  std::string world;  ///< name
+  std::uint64_t world_hash = 0;
+  std::uint64_t seed = 0;
+  std::string mode = "exact";
+  double interval = 0.1;  ///< [s] simulated time per tick
+  bool record_readings = false;
+  double odometry_rate = 1.0;     ///< [Hz] of the Odometry and TwistStamped messages; 0: none; states come every tick
+  std::vector<MoverInfo> movers;  ///< in the rows of `base::Report::mover`
+  std::vector<std::pair<std::string, std::string>> options;  ///< whatever else a run was told
+  base::Bytes snapshot;                                      ///< the world, not empty
+};
+
+/// Gives every mover a frame and every laser a topic: names with all but [A-Za-z0-9_] turned to '_', made unique.
+void name_frames(RunInfo& info);
+
+/// `sensorfarm_msgs/msg/RunInfo`, all but the snapshot.
+void encode_run_info(const RunInfo& info, base::Bytes& out);
+/// @returns false when the bytes are no RunInfo; `info` is then half filled.
+bool decode_run_info(std::span<const std::uint8_t> message, RunInfo& info);
+
+}  // namespace sf::record

@@ -1,0 +1,97 @@
+#include "record/schemas.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "base/error.h"
+
+namespace sf::record {
+
+namespace {
+
+struct Definition {
+  std::string_view name;  ///< package/Name
+  std::string_view fields;
+};
+
+constexpr std::array kDefinitions = {
+    Definition{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
+    Definition{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
+    Definition{"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
+    Definition{"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
+    Definition{"geometry_msgs/Quaternion", "float64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n"},
+    Definition{"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
+    Definition{"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
+    Definition{"geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
+    Definition{"geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
+    Definition{"geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"},
+    Definition{"geometry_msgs/TransformStamped",
+               "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"},
+    Definition{"nav_msgs/Odometry",
+               "std_msgs/Header header\nstring child_frame_id\n"
+               "geometry_msgs/PoseWithCovariance pose\ngeometry_msgs/TwistWithCovariance twist\n"},
+    Definition{"sensor_msgs/LaserScan",
+               "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\n"
+               "float32 time_increment\nfloat32 scan_time\nfloat32 range_min\nfloat32 range_max\n"
+               "float32[] ranges\nfloat32[] intensities\n"},
+    Definition{"geometry_msgs/TwistStamped", "std_msgs/Header header\ngeometry_msgs/Twist twist\n"},
+    Definition{"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
+
+    Definition{"sensorfarm_msgs/Pose", "float64 x\nfloat64 y\nfloat64 z\nfloat64 yaw\n"},
+    Definition{"sensorfarm_msgs/Twist", "float64 forward\nfloat64 left\nfloat64 turn\n"},
+    Definition{"sensorfarm_msgs/State",
+               "uint32 mover\nbool contact\nsensorfarm_msgs/Pose pose\n"
+               "sensorfarm_msgs/Twist velocity\nsensorfarm_msgs/Twist command\n"},
+    Definition{"sensorfarm_msgs/Fleet", "std_msgs/Header header\nuint64 tick\nsensorfarm_msgs/State[] states\n"},
+    Definition{"sensorfarm_msgs/Laser",
+               "string name\nstring topic\nsensorfarm_msgs/Pose pose\nfloat64 fov\nuint32 samples\n"
+               "float64 range_min\nfloat64 range_max\nfloat64 rate\n"},
+    Definition{"sensorfarm_msgs/Mover", "string name\nstring frame\nuint32 id\nsensorfarm_msgs/Laser[] lasers\n"},
+    Definition{"sensorfarm_msgs/Option", "string key\nstring value\n"},
+    Definition{"sensorfarm_msgs/RunInfo",
+               "string world\nuint64 world_hash\nuint64 seed\nstring mode\nfloat64 interval\n"
+               "bool readings\nfloat64 odometry_rate\n"
+               "sensorfarm_msgs/Mover[] movers\nsensorfarm_msgs/Option[] options\n"},
+};
+
+const Definition& find(std::string_view name) {
+  const auto found = std::find_if(kDefinitions.begin(), kDefinitions.end(),
+                                  [&](const Definition& definition) { return definition.name == name; });
+  SF_CHECK(found != kDefinitions.end(), "no message type " + std::string(name));
+  return *found;
+}
+
+/// Adds the types that `fields` mention, and theirs, in order of first mention.
+void add_needed(std::string_view fields, std::vector<std::string_view>& needed) {
+  while (!fields.empty()) {
+    std::string_view type = fields.substr(0, fields.find(' '));
+    fields.remove_prefix(fields.find('\n') + 1);
+    type = type.substr(0, type.find('['));
+    if (type.find('/') == std::string_view::npos) continue;
+    if (std::find(needed.begin(), needed.end(), type) != needed.end()) continue;
+    needed.push_back(type);
+    add_needed(find(type).fields, needed);
+  }
+}
+
+}  // namespace
+
+std::string schema_text(std::string_view type) {
+  constexpr std::string_view kMiddle = "/msg/";
+  const std::size_t middle = type.find(kMiddle);
+  SF_CHECK(middle != std::string_view::npos, "not a message type: " + std::string(type));
+  const std::string name =
+      std::string(type.substr(0, middle)) + "/" + std::string(type.substr(middle + kMiddle.size()));
+
+  const Definition& definition = find(name);
+  std::string text(definition.fields);
+  std::vector<std::string_view> needed;
+  add_needed(definition.fields, needed);
+  for (const std::string_view other : needed) {
+    text += std::string(80, '=') + "\nMSG: " + std::string(other) + "\n" + std::string(find(other).fields);
+  }
+  return text;
+}
+
+}  // namespace sf::record

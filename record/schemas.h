@@ -1,0 +1,20 @@
+#pragma once
+// The message types of a recording, as ROS 2 names and defines them.
+
+#include <string>
+#include <string_view>
+
+namespace sf::record {
+
+inline constexpr std::string_view kOdometry = "nav_msgs/msg/Odometry";
+inline constexpr std::string_view kLaserScan = "sensor_msgs/msg/LaserScan";
+inline constexpr std::string_view kTwistStamped = "geometry_msgs/msg/TwistStamped";
+inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
+inline constexpr std::string_view kFleet = "sensorfarm_msgs/msg/Fleet";
+inline constexpr std::string_view kRunInfo = "sensorfarm_msgs/msg/RunInfo";
+
+/// The `ros2msg` text of one of the types above: its fields, then every type it needs, each once, behind a line of 80
+/// '=' and a line `MSG: package/Name`.
+std::string schema_text(std::string_view type);
+
+}  // namespace sf::record

@@ -1,0 +1,45 @@
+#include "robots/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::robots {
+
+namespace {
+
+double finite(double v) { return std::isfinite(v) ? v : 0.0; }
+
+// sin(x)/x; below the threshold the next term of the series is under half an ulp.
+double sinc(double x) { return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x; }
+
+}  // namespace
+
+base::Twist follow(const world::Mover& mover, const base::Twist& command) {
+  base::Twist v{finite(command.forward), finite(command.left), finite(command.turn)};
+  v.turn = std::clamp(v.turn, -mover.max_turn, mover.max_turn);
+  if (mover.drive == world::Drive::omni) {
+    const double speed = std::hypot(v.forward, v.left);
+    if (speed > mover.max_forward) {
+      v.forward *= mover.max_forward / speed;
+      v.left *= mover.max_forward / speed;
+    }
+    return v;
+  }
+  v.left = 0.0;
+  v.forward = std::clamp(v.forward, -mover.max_forward, mover.max_forward);
+  if (mover.drive == world::Drive::car) {
+    const double sharpest = std::abs(v.forward) * std::tan(kMaxSteer) / mover.wheelbase;
+    v.turn = std::clamp(v.turn, -sharpest, sharpest);
+  }
+  return v;
+}
+
+base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double dt) {
+  // The integral of R(yaw + w t) v over dt is R(yaw + w dt/2) v sinc(w dt/2) dt: the chord of the arc.
+  const double half = 0.5 * velocity.turn * dt;
+  const double chord = sinc(half) * dt;
+  const base::Vec2 d = base::rotate(X_WM.yaw + half, {chord * velocity.forward, chord * velocity.left});
+  return {X_WM.x + d.x, X_WM.y + d.y, X_WM.z, base::wrap_angle(X_WM.yaw + velocity.turn * dt)};
+}
+
+}  // namespace sf::robots

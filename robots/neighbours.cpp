@@ -1,0 +1,33 @@
+#include "robots/neighbours.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace sf::robots {
+
+void Neighbours::build(std::span<const base::Report> reports, double cell) {
+  cell_ = cell;
+  starts_.assign(std::bit_ceil(2 * std::max<std::size_t>(reports.size(), 1)) + 1, 0);
+  rows_.resize(reports.size());
+  bucket_of_.resize(reports.size());
+
+  // Counting sort: after the second pass `starts_[at]` is the end of bucket `at - 1`, which is where it starts.
+  for (std::size_t row = 0; row < reports.size(); ++row) {
+    const std::size_t at = bucket(cell_of(reports[row].X_WM.x), cell_of(reports[row].X_WM.y));
+    bucket_of_[row] = static_cast<std::uint32_t>(at);
+    ++starts_[at];
+  }
+  std::uint32_t sum = 0;
+  for (std::uint32_t& start : starts_) start = sum += start;
+  for (std::size_t row = reports.size(); row-- > 0;) {
+    rows_[--starts_[bucket_of_[row]]] = static_cast<std::uint32_t>(row);
+  }
+}
+
+std::size_t Neighbours::bucket(std::int64_t x, std::int64_t y) const {
+  std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(y);
+  h = (h ^ (h >> 32)) * 0xBF58476D1CE4E5B9u;
+  return (h ^ (h >> 29)) & (starts_.size() - 2);
+}
+
+}  // namespace sf::robots

@@ -1,0 +1,47 @@
+#pragma once
+// Which movers are near? A hashed grid of points, filled anew each tick.
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/pose.h"
+#include "base/report.h"
+
+namespace sf::robots {
+
+/// Not for several threads while it is built.
+class Neighbours {
+ public:
+  /// @param reports one per row; their number must not grow between calls if nothing is to be allocated
+  /// @param cell [m] > 0, about twice the reach of a query
+  void build(std::span<const base::Report> reports, double cell);
+
+  /// True as soon as `predicate(row)` is true for a row whose cell, when built, was within `reach` [m] of `p`. Rows
+  /// farther away may be asked about, and a row more than once.
+  template <class Predicate>
+  bool any(base::Vec2 p, double reach, Predicate&& predicate) const {
+    const std::int64_t x1 = cell_of(p.x + reach), y1 = cell_of(p.y + reach);
+    for (std::int64_t y = cell_of(p.y - reach); y <= y1; ++y) {
+      for (std::int64_t x = cell_of(p.x - reach); x <= x1; ++x) {
+        const std::size_t at = bucket(x, y);
+        for (std::uint32_t e = starts_[at]; e < starts_[at + 1]; ++e) {
+          if (predicate(rows_[e])) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  std::int64_t cell_of(double v) const { return static_cast<std::int64_t>(std::floor(v / cell_)); }
+  std::size_t bucket(std::int64_t x, std::int64_t y) const;
+
+  double cell_ = 1.0;
+  std::vector<std::uint32_t> starts_;  ///< per bucket, into rows_; one more at the end
+  std::vector<std::uint32_t> rows_;
+  std::vector<std::uint32_t> bucket_of_;  ///< per row
+};
+
+}  // namespace sf::robots

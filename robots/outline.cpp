@@ -1,0 +1,124 @@
+#include "robots/outline.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "world/wall_grid.h"
+
+namespace sf::robots {
+
+namespace {
+
+using base::Vec2;
+using world::segments_meet;
+
+struct Heights {
+  double min, max;
+};
+
+bool overlap(const Edge& e, Heights z) { return e.z_min < z.max && z.min < e.z_max; }
+
+// Winding number of the solid outlines around p (Sunday, "Inclusion of a point in a polygon", 2001), at heights z.
+bool inside(std::span<const Edge> edges, Vec2 p, Heights z) {
+  int winding = 0;
+  for (const Edge& e : edges) {
+    if (!e.solid || !overlap(e, z)) continue;
+    const double side = cross(e.b - e.a, p - e.a);
+    if (e.a.y <= p.y && e.b.y > p.y && side > 0.0) ++winding;
+    if (e.a.y > p.y && e.b.y <= p.y && side < 0.0) --winding;
+  }
+  return winding != 0;
+}
+
+bool follows(const Edge& e, const Edge& before) {
+  return e.a.x == before.b.x && e.a.y == before.b.y && e.z_min == before.z_min && e.z_max == before.z_max;
+}
+
+// Inradius about the origin of one closed outline; 0 when the origin is outside.
+double inradius(std::span<const Edge> loop) {
+  if (!inside(loop, {0.0, 0.0}, {loop.front().z_min, loop.front().z_max})) return 0.0;
+  double nearest = HUGE_VAL;
+  for (const Edge& e : loop) nearest = std::min(nearest, world::distance({0.0, 0.0}, e.a, e.b));
+  return nearest;
+}
+
+// The largest inradius among the chains of edges that follow one another.
+double largest_inradius(std::span<const Edge> edges) {
+  double largest = 0.0;
+  std::size_t first = 0;
+  for (std::size_t i = 1; i <= edges.size(); ++i) {
+    if (i < edges.size() && follows(edges[i], edges[i - 1])) continue;
+    largest = std::max(largest, inradius(edges.subspan(first, i - first)));
+    first = i;
+  }
+  return largest;
+}
+
+// For outlines whose edges do not meet: then a chain of edges is inside as a whole or not at all, and its first corner
+// tells.
+bool any_inside(std::span<const Edge> chains, Vec2 shift, const Placed& outer) {
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    const Edge& e = chains[i];
+    if (i > 0 && follows(e, chains[i - 1])) continue;
+    const Vec2 p = e.a + shift;
+    if (dot(p, p) <= outer.radius * outer.radius && inside(outer.edges, p, {e.z_min, e.z_max})) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Outline outline_of(const world::Mover& mover) {
+  Outline outline;
+  outline.z_min = HUGE_VAL;
+  outline.z_max = -HUGE_VAL;
+  for (const world::Segment& s : mover.body) {
+    if (!s.stops_robots) continue;
+    outline.edges.push_back({s.a, s.b, s.z_min, s.z_max, s.solid_left});
+    outline.radius = std::max({outline.radius, length(s.a), length(s.b)});
+    outline.z_min = std::min(outline.z_min, s.z_min);
+    outline.z_max = std::max(outline.z_max, s.z_max);
+  }
+  if (outline.edges.empty()) return {.step = 1.0};
+  const double inner = largest_inradius(outline.edges);
+  outline.step = inner > 0.0 ? inner / 4.0 : outline.radius / 16.0;
+  return outline;
+}
+
+Placed place(const Outline& outline, const base::Pose& X_WM, std::span<Edge> memory) {
+  SF_CHECK(memory.size() >= outline.edges.size(), "room for " + std::to_string(memory.size()) + " edges");
+  const double c = std::cos(X_WM.yaw);
+  const double s = std::sin(X_WM.yaw);
+  const auto turn = [c, s](Vec2 p) { return Vec2{c * p.x - s * p.y, s * p.x + c * p.y}; };
+  for (std::size_t i = 0; i < outline.edges.size(); ++i) {
+    const Edge& e = outline.edges[i];
+    memory[i] = {turn(e.a), turn(e.b), e.z_min + X_WM.z, e.z_max + X_WM.z, e.solid};
+  }
+  return {{X_WM.x, X_WM.y}, outline.radius, memory.first(outline.edges.size())};
+}
+
+bool touches(const Placed& placed, const world::Segment& wall) {
+  const Vec2 a = wall.a - placed.origin;
+  const Vec2 b = wall.b - placed.origin;
+  if (world::distance({0.0, 0.0}, a, b) > placed.radius * (1.0 + 1e-12)) return false;
+  const Heights z{wall.z_min, wall.z_max};
+  for (const Edge& e : placed.edges) {
+    if (overlap(e, z) && segments_meet(a, b, e.a, e.b)) return true;
+  }
+  return dot(a, a) <= placed.radius * placed.radius && inside(placed.edges, a, z);
+}
+
+bool touches(const Placed& p, const Placed& q) {
+  const Vec2 d = q.origin - p.origin;
+  if (dot(d, d) > (p.radius + q.radius) * (p.radius + q.radius) * (1.0 + 1e-12)) return false;
+  for (const Edge& e : p.edges) {
+    if (world::distance(d, e.a, e.b) > q.radius * (1.0 + 1e-12)) continue;
+    for (const Edge& f : q.edges) {
+      if (overlap(e, {f.z_min, f.z_max}) && segments_meet(e.a, e.b, f.a + d, f.b + d)) return true;
+    }
+  }
+  return any_inside(p.edges, Vec2{} - d, q) || any_inside(q.edges, d, p);
+}
+
+}  // namespace sf::robots

@@ -1,0 +1,52 @@
+#pragma once
+// A mover's footprint, and whether it touches a wall or another footprint. Two things touch only where their ranges of
+// heights overlap, so a low robot passes under a bridge.
+
+#include <span>
+#include <vector>
+
+#include "base/pose.h"
+#include "world/world.h"
+
+namespace sf::robots {
+
+struct Edge {
+  base::Vec2 a;
+  base::Vec2 b;
+  double z_min = 0.0;
+  double z_max = 0.0;  ///< [m] exclusive
+  bool solid = true;   ///< part of a closed outline, the inside on the left of a -> b
+};
+
+/// The part of a mover's body that stops at things. No edges: it passes through everything.
+struct Outline {
+  std::vector<Edge> edges;  ///< [m] mover frame
+  double radius = 0.0;      ///< [m] of the circle about the origin that holds the edges
+  double z_min = 0.0;
+  double z_max = 0.0;  ///< [m] of all edges
+  double step = 0.0;   ///< [m] > 0, farthest any point of it may travel between two tests
+};
+
+/// `step` is a quarter of the inradius about the origin of the outline that holds the origin (radius / 16 where none
+/// does): no wall is jumped at the heights of that outline. Smaller parts carried on it are tested at the same steps.
+Outline outline_of(const world::Mover& mover);
+
+/// An outline put somewhere. Coordinates are relative to `origin`, so that they are as exact far from the world's
+/// origin.
+struct Placed {
+  base::Vec2 origin;    ///< [m] world frame
+  double radius = 0.0;  ///< [m]
+  std::span<const Edge>
+      edges;  ///< turned and lifted, relative to `origin`; lives as long as the memory given to `place`
+};
+
+/// @param memory keeps the turned edges; at least as many as the outline has
+Placed place(const Outline& outline, const base::Pose& X_WM, std::span<Edge> memory);
+
+/// Crosses, touches, or has the wall's end inside. A wall's own solid side is not looked at.
+bool touches(const Placed& placed, const world::Segment& wall);
+
+/// Edges meet, or one is inside the other.
+bool touches(const Placed& p, const Placed& q);
+
+}  // namespace sf::robots

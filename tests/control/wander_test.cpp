@@ -1,0 +1,273 @@
+#include "control/wander.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "robots/fleet.h"
+#include "tests/robots/scenes.h"
+
+namespace sf::control {
+namespace {
+
+using base::Pose;
+using base::ReadingBlock;
+using base::Twist;
+using base::Vec2;
+
+constexpr std::int64_t kTick = 100'000'000;
+
+world::Laser laser(double fov, std::uint32_t samples, double range_max, const Pose& X_MS = {}) {
+  world::Laser l;
+  l.X_MS = X_MS;
+  l.fov = fov;
+  l.samples = samples;
+  l.range_max = range_max;
+  return l;
+}
+
+// The range along a bearing: walls and the bodies of other movers, brute force.
+double cast(const world::World& world, std::span<const base::Report> reports, std::size_t own, Vec2 p, double bearing,
+            double range_max) {
+  const Vec2 u{std::cos(bearing), std::sin(bearing)};
+  double range = range_max;
+  const auto meet = [&](Vec2 a, Vec2 b) {
+    const double area = cross(u, b - a);
+    const double t = cross(a - p, b - a) / area, s = cross(a - p, u) / area;
+    if (area != 0.0 && t >= 0.0 && s >= 0.0 && s <= 1.0) range = std::min(range, t);
+  };
+  for (const auto& wall : world.walls) meet(wall.a, wall.b);
+  for (std::size_t row = 0; row < reports.size(); ++row) {
+    if (row == own) continue;
+    for (const auto& s : world.movers[row].body)
+      meet(transform(reports[row].X_WM, s.a), transform(reports[row].X_WM, s.b));
+  }
+  return range;
+}
+
+// A fleet of wanderers with ideal lasers.
+struct Walk {
+  explicit Walk(const world::World& w, std::uint64_t seed = 1) : world(w), fleet(world) {
+    for (std::uint32_t row = 0; row < world.movers.size(); ++row) wanderers.emplace_back(world.movers[row], row, seed);
+  }
+  void tick() {
+    std::vector<Twist> commands;
+    for (std::uint32_t row = 0; row < wanderers.size(); ++row) {
+      const base::Report& state = fleet.reports()[row];
+      const auto& lasers = world.movers[row].lasers;
+      std::vector<std::vector<double>> ranges(lasers.size());
+      std::vector<ReadingBlock> blocks;
+      for (std::uint32_t i = 0; i < lasers.size(); ++i) {
+        const Pose X_WS = compose(state.X_WM, lasers[i].X_MS);
+        for (std::uint32_t k = 0; k < lasers[i].samples; ++k) {
+          const double along = lasers[i].samples > 1 ? double(k) / (lasers[i].samples - 1) - 0.5 : 0.0;
+          ranges[i].push_back(cast(world, fleet.reports(), row, {X_WS.x, X_WS.y}, X_WS.yaw + along * lasers[i].fov,
+                                   lasers[i].range_max));
+        }
+        blocks.push_back({.mover = row, .sensor = i, .kind = 1, .values = ranges[i]});
+      }
+      commands.push_back(wanderers[row].step({state.time, state, blocks, fleet.contacts()[row] != 0}));
+    }
+    fleet.move(commands, kTick);
+    for (const auto contact : fleet.contacts()) contacts += contact;
+  }
+  world::World world;
+  robots::Fleet fleet;
+  std::vector<Wander> wanderers;
+  int contacts = 0;
+};
+
+// What one robot has seen of a boxed world after a while.
+struct Walked {
+  double distance = 0.0;      // [m]
+  std::size_t cells = 0;      // of 1 m visited
+  double longest_stay = 0.0;  // [s] within 0.2 m of one place
+  int contacts = 0;
+};
+
+Walked walk(const world::World& world, double seconds, std::uint64_t seed = 1) {
+  Walk w(world, seed);
+  Walked result;
+  std::set<std::pair<int, int>> cells;
+  Pose last = w.fleet.reports()[0].X_WM, anchor = last;
+  double stay = 0.0;
+  for (int i = 0; i < seconds * 10; ++i) {
+    w.tick();
+    const Pose X = w.fleet.reports()[0].X_WM;
+    result.distance += std::hypot(X.x - last.x, X.y - last.y);
+    stay = std::hypot(X.x - anchor.x, X.y - anchor.y) < 0.2 ? stay + 0.1 : 0.0;
+    if (stay == 0.0) anchor = X;
+    result.longest_stay = std::max(result.longest_stay, stay);
+    cells.insert({int(std::floor(X.x)), int(std::floor(X.y))});
+    last = X;
+  }
+  result.cells = cells.size();
+  result.contacts = w.contacts;
+  return result;
+}
+
+world::World arena() {
+  world::World world = scenes::boxed_world(8, 8);
+  scenes::add_outline(world.walls, scenes::rectangle({5, 5}, 1.5, 0.5));
+  scenes::add_outline(world.walls, scenes::rectangle({2, 6}, 0.4, 1.5));
+  return world;
+}
+
+TEST(Wander, with_a_scanner_covers_ground_and_meets_nothing) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    world::World world = arena();
+    scenes::add_create(world, {2, 2, 0, 0.3}).lasers.push_back(laser(M_PI, 181, 8.0, {0.1, 0, 0, 0}));
+    const Walked w = walk(world, 60, seed);
+    EXPECT_GT(w.distance, 10.0) << "seed " << seed;
+    EXPECT_GT(w.cells, 12u) << "seed " << seed;
+    EXPECT_LT(w.longest_stay, 6.0) << "seed " << seed;
+    EXPECT_LE(w.contacts, 3) << "seed " << seed;
+  }
+}
+
+TEST(Wander, with_twelve_single_beams_keeps_moving) {
+  world::World world = arena();
+  world::Mover& mover = scenes::add_create(world, {2, 2, 0, 0.3});
+  for (int i = 0; i < 12; ++i) {
+    const double yaw = M_PI * i / 6;
+    mover.lasers.push_back(laser(0, 1, 0.5, {0.16 * std::cos(yaw), 0.16 * std::sin(yaw), 0, yaw}));
+  }
+  const Walked w = walk(world, 120);
+  EXPECT_GT(w.distance, 12.0);
+  EXPECT_GT(w.cells, 12u);
+  EXPECT_LT(w.longest_stay, 10.0);
+}
+
+TEST(Wander, without_a_laser_walks_by_touch) {
+  world::World world = arena();
+  scenes::add_create(world, {2, 2, 0, 0.3});
+  const Walked w = walk(world, 120);
+  EXPECT_GT(w.distance, 12.0);
+  EXPECT_GT(w.cells, 12u);
+  EXPECT_LT(w.longest_stay, 10.0);
+  EXPECT_GT(w.contacts, 0);
+}
+
+TEST(Wander, a_tiny_robot_with_short_sight) {
+  world::World world = scenes::boxed_world(1, 1);
+  std::vector<Vec2> corners;
+  for (int i = 0; i < 12; ++i) corners.push_back(0.035 * Vec2{std::cos(M_PI * i / 6), std::sin(M_PI * i / 6)});
+  world::Mover& mover = scenes::add_mover(world, {0.5, 0.5, 0, 1}, corners);
+  mover.max_forward = 0.3;
+  for (int i = -2; i <= 2; ++i) mover.lasers.push_back(laser(0, 1, 0.1, {0.035, 0, 0, 0.5 * i}));
+  EXPECT_GT(walk(world, 60).distance, 3.0);
+}
+
+TEST(Wander, a_car_keeps_moving) {
+  world::World world = arena();
+  world::Mover& mover = scenes::add_square(world, {2, 2, 0, 0.3});
+  mover.drive = world::Drive::car;
+  mover.wheelbase = 0.3;
+  mover.lasers.push_back(laser(M_PI, 61, 8.0));
+  const Walked w = walk(world, 120);
+  EXPECT_GT(w.distance, 12.0);
+  EXPECT_GT(w.cells, 6u);
+}
+
+TEST(Wander, a_crowd_keeps_moving) {
+  world::World world = arena();
+  for (int i = 0; i < 12; ++i) {
+    scenes::add_create(world, {1.0 + i % 4, 1.0 + i / 4, 0, 0.5 * i}).lasers.push_back(laser(M_PI, 61, 8.0));
+  }
+  Walk w(world);
+  std::vector<double> distance(12);
+  for (int i = 0; i < 600; ++i) {
+    w.tick();
+    for (int k = 0; k < 12; ++k) distance[k] += 0.1 * std::abs(w.fleet.reports()[k].velocity.forward);
+  }
+  for (const double d : distance) EXPECT_GT(d, 5.0);
+}
+
+TEST(Wander, the_same_walk_again_and_another_with_another_seed) {
+  world::World world = arena();
+  scenes::add_create(world, {2, 2, 0, 0.3}).lasers.push_back(laser(M_PI, 61, 8.0));
+  Walk a(world, 1), b(world, 1), c(world, 2);
+  for (int i = 0; i < 300; ++i) a.tick(), b.tick(), c.tick();
+  EXPECT_EQ(a.fleet.reports()[0].X_WM.x, b.fleet.reports()[0].X_WM.x);
+  EXPECT_NE(a.fleet.reports()[0].X_WM.x, c.fleet.reports()[0].X_WM.x);
+}
+
+// ---- What it makes of odd readings.
+
+TEST(Wander, stays_finite_whatever_it_reads) {
+  world::World world = scenes::empty_world();
+  world::Mover& mover = scenes::add_create(world, {});
+  mover.lasers.push_back(laser(M_PI, 37, 8.0));
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  for (const double range : {0.0, 1e-300, 0.3, 8.0, inf, -inf, -1.0, nan}) {
+    Wander wander(mover, 0, 1);
+    const std::vector<double> ranges(37, range);
+    const std::vector<ReadingBlock> blocks{{.kind = 1, .values = ranges}};
+    for (int i = 0; i < 200; ++i) {
+      const Twist v = wander.step({i * kTick, {.X_WM = {0, 0, 0, 0.1 * i}}, blocks, i % 17 == 0});
+      ASSERT_TRUE(std::isfinite(v.forward) && std::isfinite(v.left) && std::isfinite(v.turn)) << range;
+      ASSERT_LE(std::abs(v.forward), mover.max_forward);
+      ASSERT_LE(std::abs(v.turn), mover.max_turn);
+    }
+  }
+}
+
+TEST(Wander, ignores_readings_that_are_not_its_own_lasers) {
+  world::World world = scenes::empty_world();
+  world::Mover& mover = scenes::add_create(world, {});
+  mover.lasers.push_back(laser(M_PI, 3, 8.0));
+  const std::vector<double> zeros(3, 0.0), few;
+  Wander wander(mover, 0, 1);
+  const std::vector<ReadingBlock> blocks{
+      {.sensor = 7, .kind = 1, .values = zeros}, {.kind = 9, .values = zeros}, {.kind = 1, .values = few}};
+  EXPECT_GT(wander.step({0, {}, blocks, false}).forward, 0.3);
+}
+
+TEST(Wander, backs_off_from_what_it_met_then_turns) {
+  world::World world = scenes::empty_world();
+  Wander wander(scenes::add_create(world, {}), 0, 1);
+  EXPECT_GT(wander.step({0, {}, {}, false}).forward, 0.0);
+  EXPECT_LT(wander.step({kTick, {}, {}, true}).forward, 0.0);
+  const Twist later = wander.step({20 * kTick, {}, {}, false});
+  EXPECT_EQ(later.forward, 0.0);
+  EXPECT_NE(later.turn, 0.0);
+}
+
+// ---- What is ahead.
+
+struct Look {
+  double range;
+  double ahead;
+  const char* why;
+};
+
+TEST(Surroundings, ahead_is_measured_from_the_front_in_the_lane) {
+  world::World world = scenes::empty_world();
+  world::Mover mover = scenes::add_square(world, {});
+  mover.lasers.push_back(laser(0, 1, 2.0, {0.1, 0, 0, 0}));
+  const Surroundings surroundings(mover);
+  EXPECT_NEAR(surroundings.sight(), 1.9, 1e-12);
+  for (const Look& look : {Look{1.1, 1.0, "0.1 on the body, 0.2 to its front"}, Look{2.0, 1.9, "nothing in range"},
+                           Look{5.0, 1.9, "beyond range"}, Look{0.0, 0.0, "within the body"}}) {
+    const std::vector<double> ranges{look.range};
+    const std::vector<ReadingBlock> blocks{{.kind = 1, .values = ranges}};
+    EXPECT_NEAR(surroundings.look(blocks).ahead, look.ahead, 1e-6) << look.why;
+  }
+}
+
+TEST(Surroundings, things_beside_the_lane_are_not_ahead) {
+  world::World world = scenes::empty_world();
+  world::Mover mover = scenes::add_square(world, {});
+  mover.lasers.push_back(laser(M_PI, 3, 4.0));
+  const std::vector<double> ranges{0.5, 3.0, 1.5};  // right, ahead, left
+  const std::vector<ReadingBlock> blocks{{.kind = 1, .values = ranges}};
+  const Clearance c = Surroundings(mover).look(blocks);
+  EXPECT_NEAR(c.ahead, 2.8, 1e-6);
+  EXPECT_NEAR(c.left, 1.5, 1e-6);
+  EXPECT_NEAR(c.right, 0.5, 1e-6);
+}
+
+}  // namespace
+}  // namespace sf::control

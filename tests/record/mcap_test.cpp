@@ -1,0 +1,313 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+
+#include "base/error.h"
+#include "record/crc.h"
+#include "record/mcap_reader.h"
+#include "record/mcap_writer.h"
+
+namespace sf::record {
+namespace {
+
+using base::Bytes;
+
+/// The CRC bit by bit, to check the one in use.
+std::uint32_t slow_crc(std::span<const std::uint8_t> bytes) {
+  std::uint32_t crc = 0xFFFFFFFFu;
+  for (const std::uint8_t byte : bytes) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (0xEDB88320u & (0u - (crc & 1u)));
+  }
+  return ~crc;
+}
+
+/// A file put together by hand, in the order of the specification.
+struct Hand {
+  Bytes bytes;
+  Hand& u8(std::initializer_list<int> values) {
+    for (const int value : values) bytes.push_back(static_cast<std::uint8_t>(value));
+    return *this;
+  }
+  Hand& number(std::uint64_t value, int size) {
+    for (int i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+    return *this;
+  }
+  Hand& u16(std::uint64_t value) { return number(value, 2); }
+  Hand& u32(std::uint64_t value) { return number(value, 4); }
+  Hand& u64(std::uint64_t value) { return number(value, 8); }
+  Hand& text(const std::string& text) {
+    u32(text.size());
+    bytes.insert(bytes.end(), text.begin(), text.end());
+    return *this;
+  }
+  Hand& record(int opcode, std::uint64_t length) { return u8({opcode}).u64(length); }
+  Hand& raw(const Bytes& other) {
+    bytes.insert(bytes.end(), other.begin(), other.end());
+    return *this;
+  }
+  std::uint64_t size() const { return bytes.size(); }
+};
+
+const Bytes kMagic = {0x89, 0x4D, 0x43, 0x41, 0x50, 0x30, 0x0D, 0x0A};
+
+Bytes tiny_file() {
+  McapWriter writer("p", "lib");
+  const auto schema = writer.add_schema("S", "ros2msg", "bool b\n");
+  const auto channel = writer.add_channel(schema, "/t", "cdr", {{"k", "v"}});
+  const Bytes world = {7, 8};
+  writer.add_attachment({.log_time = 1, .create_time = 2, .name = "w", .media_type = "m", .data = world});
+  writer.add_metadata({"M", {{"a", "b"}}});
+  const Bytes data = {0, 1, 0, 0, 1};
+  writer.add_message({channel, 3, 1000, 999, data});
+  writer.finish();
+  const auto pending = writer.pending();
+  return {pending.begin(), pending.end()};
+}
+
+Bytes tiny_file_by_hand() {
+  Hand file;
+  file.raw(kMagic);
+  file.record(0x01, 12).text("p").text("lib");
+  const Bytes schema = Hand().record(0x03, 2 + 5 + 11 + 11).u16(1).text("S").text("ros2msg").text("bool b\n").bytes;
+  file.raw(schema);
+  const Bytes channel = Hand()
+                            .record(0x04, 2 + 2 + 6 + 7 + 4 + 10)
+                            .u16(1)
+                            .u16(1)
+                            .text("/t")
+                            .text("cdr")
+                            .u32(10)
+                            .text("k")
+                            .text("v")
+                            .bytes;
+  file.raw(channel);
+
+  const std::uint64_t attachment_at = file.size();
+  const Bytes attachment = Hand().u64(1).u64(2).text("w").text("m").u64(2).u8({7, 8}).bytes;
+  file.record(0x09, attachment.size() + 4).raw(attachment).u32(slow_crc(attachment));
+  const std::uint64_t metadata_at = file.size();
+  file.record(0x0C, 5 + 4 + 10).text("M").u32(10).text("a").text("b");
+
+  const std::uint64_t chunk_at = file.size();
+  const Bytes message = Hand().record(0x05, 22 + 5).u16(1).u32(3).u64(1000).u64(999).u8({0, 1, 0, 0, 1}).bytes;
+  file.record(0x06, 8 + 8 + 8 + 4 + 4 + 8 + 36).u64(1000).u64(1000).u64(36).u32(slow_crc(message)).text("").u64(36);
+  file.raw(message);
+  const std::uint64_t index_at = file.size();
+  file.record(0x07, 2 + 4 + 16).u16(1).u32(16).u64(1000).u64(0);
+  const std::uint32_t data_crc = slow_crc(file.bytes);
+  const std::uint64_t index_end = file.size();
+  file.record(0x0F, 4).u32(data_crc);
+
+  const std::uint64_t summary_at = file.size();
+  Hand summary;
+  summary.raw(schema).raw(channel);
+  summary.record(0x0B, 8 + 2 + 4 * 4 + 8 + 8 + 4 + 10).u64(1).u16(1).u32(1).u32(1).u32(1).u32(1).u64(1000).u64(1000);
+  summary.u32(10).u16(1).u64(1);
+  const std::uint64_t chunk_index_at = summary_at + summary.size();
+  summary.record(0x08, 4 * 8 + 4 + 10 + 8 + 4 + 8 + 8).u64(1000).u64(1000).u64(chunk_at).u64(index_at - chunk_at);
+  summary.u32(10).u16(1).u64(index_at).u64(index_end - index_at).text("").u64(36).u64(36);
+  const std::uint64_t attachment_index_at = summary_at + summary.size();
+  summary.record(0x0A, 5 * 8 + 5 + 5).u64(attachment_at).u64(metadata_at - attachment_at).u64(1).u64(2).u64(2);
+  summary.text("w").text("m");
+  const std::uint64_t metadata_index_at = summary_at + summary.size();
+  summary.record(0x0D, 8 + 8 + 5).u64(metadata_at).u64(chunk_at - metadata_at).text("M");
+  const std::uint64_t offsets_at = summary_at + summary.size();
+
+  const std::uint64_t channels_at = summary_at + schema.size();
+  const std::uint64_t statistics_at = channels_at + channel.size();
+  summary.record(0x0E, 17).u8({0x03}).u64(summary_at).u64(channels_at - summary_at);
+  summary.record(0x0E, 17).u8({0x04}).u64(channels_at).u64(statistics_at - channels_at);
+  summary.record(0x0E, 17).u8({0x0B}).u64(statistics_at).u64(chunk_index_at - statistics_at);
+  summary.record(0x0E, 17).u8({0x08}).u64(chunk_index_at).u64(attachment_index_at - chunk_index_at);
+  summary.record(0x0E, 17).u8({0x0A}).u64(attachment_index_at).u64(metadata_index_at - attachment_index_at);
+  summary.record(0x0E, 17).u8({0x0D}).u64(metadata_index_at).u64(offsets_at - metadata_index_at);
+  summary.record(0x02, 20).u64(summary_at).u64(offsets_at);
+  const std::uint32_t summary_crc = slow_crc(summary.bytes);
+  return file.raw(summary.bytes).u32(summary_crc).raw(kMagic).bytes;
+}
+
+McapContents read(const Bytes& bytes) { return read_mcap(bytes, "f.mcap"); }
+
+/// Magic, header, a schema and a channel 1, then whatever the case adds.
+Hand opening() {
+  Hand file;
+  file.raw(kMagic).record(0x01, 8).text("").text("");
+  file.record(0x03, 2 + 4 + 4 + 4).u16(1).text("").text("").text("");
+  file.record(0x04, 4 + 4 + 4 + 4).u16(1).u16(1).text("").text("").u32(0);
+  return file;
+}
+
+TEST(Crc, agrees_with_the_definition) {
+  const std::string digits = "123456789";
+  const Bytes bytes(digits.begin(), digits.end());
+  EXPECT_EQ(crc_of(bytes), 0xCBF43926u);  // the check value of CRC-32/ISO-HDLC
+  EXPECT_EQ(slow_crc(bytes), 0xCBF43926u);
+  const std::span all(bytes);
+  EXPECT_EQ(crc_of(all.subspan(4), crc_of(all.first(4))), 0xCBF43926u);
+  EXPECT_EQ(crc_of({}, 5u), 5u);
+  EXPECT_EQ(crc_of({}), 0u);
+}
+
+TEST(McapWriter, a_tiny_file_is_what_the_specification_says_byte_by_byte) {
+  EXPECT_EQ(tiny_file(), tiny_file_by_hand());
+}
+
+TEST(McapWriter, draining_at_any_time_makes_no_difference) {
+  const Bytes data = {1, 2, 3};
+  const auto write = [&](bool drain) {
+    McapWriter writer("p", "lib");
+    Bytes file;
+    const auto take = [&] {
+      file.insert(file.end(), writer.pending().begin(), writer.pending().end());
+      writer.drained();
+    };
+    const auto channel = writer.add_channel(writer.add_schema("S", "", ""), "/t", "cdr");
+    for (std::uint32_t i = 0; i < 5; ++i) {
+      if (drain) take();
+      writer.add_message({channel, i, i, i, data});
+      if (drain) take();
+      writer.end_chunk();
+    }
+    if (drain) take();
+    writer.finish();
+    take();
+    return file;
+  };
+  EXPECT_EQ(write(true), write(false));
+}
+
+TEST(McapWriter, an_empty_chunk_is_not_written) {
+  McapWriter writer("", "");
+  const std::size_t before = writer.pending().size();
+  writer.end_chunk();
+  EXPECT_EQ(writer.pending().size(), before);
+}
+
+TEST(McapWriter, messages_that_go_back_in_time_are_indexed_by_their_extremes) {
+  McapWriter writer("", "");
+  const auto channel = writer.add_channel(writer.add_schema("S", "", ""), "/t", "cdr");
+  for (const std::uint64_t time : {50u, 20u, 70u}) writer.add_message({channel, 0, time, time, {}});
+  const std::size_t before = writer.pending().size();
+  writer.end_chunk();
+  std::uint64_t first = 0, last = 0;
+  std::memcpy(&first, writer.pending().data() + before + 9, 8);
+  std::memcpy(&last, writer.pending().data() + before + 17, 8);
+  EXPECT_EQ(first, 20u);
+  EXPECT_EQ(last, 70u);
+}
+
+TEST(McapReader, reads_the_tiny_file) {
+  const Bytes file = tiny_file_by_hand();
+  const McapContents contents = read(file);
+  EXPECT_FALSE(contents.truncated);
+  EXPECT_TRUE(contents.damage.empty());
+  EXPECT_EQ(contents.profile, "p");
+  EXPECT_EQ(contents.library, "lib");
+  EXPECT_EQ(contents.schemas.at(1).text, "bool b\n");
+  EXPECT_EQ(contents.channels.at(1).topic, "/t");
+  EXPECT_EQ(contents.channels.at(1).metadata, (TextPairs{{"k", "v"}}));
+  ASSERT_EQ(contents.messages.size(), 1u);
+  EXPECT_EQ(contents.messages[0].sequence, 3u);
+  EXPECT_EQ(contents.messages[0].log_time, 1000u);
+  EXPECT_EQ(contents.messages[0].publish_time, 999u);
+  EXPECT_EQ(contents.messages[0].data.size(), 5u);
+  ASSERT_EQ(contents.attachments.size(), 1u);
+  EXPECT_EQ(contents.attachments[0].data[1], 8);
+  EXPECT_EQ(contents.metadata.at(0).pairs, (TextPairs{{"a", "b"}}));
+}
+
+TEST(McapReader, messages_outside_chunks_are_read_too) {
+  Hand file = opening();
+  file.record(0x05, 22 + 1).u16(1).u32(9).u64(1).u64(1).u8({5});
+  const McapContents contents = read(file.bytes);
+  ASSERT_EQ(contents.messages.size(), 1u);
+  EXPECT_EQ(contents.messages[0].data[0], 5);
+  EXPECT_TRUE(contents.truncated);  // no footer
+}
+
+TEST(McapReader, opcodes_of_later_versions_are_passed_over) {
+  Hand file = opening();
+  file.record(0x10, 3).u8({1, 2, 3}).record(0x80, 0);
+  file.record(0x05, 22).u16(1).u32(9).u64(1).u64(1);
+  EXPECT_EQ(read(file.bytes).messages.size(), 1u);
+}
+
+TEST(McapReader, what_is_no_MCAP_file_is_refused) {
+  const std::vector<Bytes> corpus = {
+      {}, {0x89}, Bytes(8, 0), {'#', 'R', 'O', 'S', 'B', 'A', 'G', ' ', 'V', '2', '.', '0'}};
+  for (const Bytes& bytes : corpus) EXPECT_THROW(read(bytes), base::InputError);
+  EXPECT_TRUE(read(kMagic).truncated);  // the magic alone is a file cut early
+}
+
+/// Bad records, each with the reason it is bad. All must be left out, and all but cuts must be told.
+TEST(McapReader, bad_records_are_left_out_and_told) {
+  const std::vector<std::pair<const char*, Bytes>> corpus = {
+      {"schema shorter than its fields", Hand().record(0x03, 1).u8({1}).bytes},
+      {"schema with the reserved id 0", Hand().record(0x03, 14).u16(0).text("").text("").text("").bytes},
+      {"schema with text beyond the record", Hand().record(0x03, 14).u16(2).text("").text("").u32(0xFFFFFFFF).bytes},
+      {"channel of an unknown schema", Hand().record(0x04, 16).u16(2).u16(9).text("").text("").u32(0).bytes},
+      {"channel whose map is longer than the record",
+       Hand().record(0x04, 16).u16(2).u16(1).text("").text("").u32(99).bytes},
+      {"message of an unknown channel", Hand().record(0x05, 22).u16(2).u32(0).u64(0).u64(0).bytes},
+      {"message shorter than its head", Hand().record(0x05, 21).u16(1).u32(0).u64(0).u32(0).u8({0, 0, 0}).bytes},
+      {"chunk shorter than its head", Hand().record(0x06, 3).u8({1, 2, 3}).bytes},
+      {"chunk in an unknown compression", Hand().record(0x06, 43).u64(0).u64(0).u64(0).u32(0).text("lz4").u64(0).bytes},
+      {"chunk with more records than bytes", Hand().record(0x06, 40).u64(0).u64(0).u64(9).u32(0).text("").u64(9).bytes},
+      {"chunk with a wrong CRC", Hand()
+                                     .record(0x06, 71)
+                                     .u64(0)
+                                     .u64(0)
+                                     .u64(31)
+                                     .u32(1)
+                                     .text("")
+                                     .u64(31)
+                                     .record(5, 22)
+                                     .u16(1)
+                                     .u32(0)
+                                     .u64(0)
+                                     .u64(0)
+                                     .bytes},
+      {"attachment larger than the record",
+       Hand().record(0x09, 36).u64(0).u64(0).text("").text("").u64(~0ull).u32(0).bytes},
+      {"attachment with a wrong CRC", Hand().record(0x09, 36).u64(0).u64(0).text("").text("").u64(0).u32(1).bytes},
+      {"metadata without its map", Hand().record(0x0C, 4).text("").bytes},
+      {"data end with a wrong CRC", Hand().record(0x0F, 4).u32(1).bytes},
+  };
+  for (const auto& [reason, bytes] : corpus) {
+    const Bytes file = opening().raw(bytes).record(0x05, 22).u16(1).u32(77).u64(0).u64(0).bytes;
+    const McapContents contents = read(file);
+    EXPECT_EQ(contents.damage.size(), 1u) << reason;
+    ASSERT_EQ(contents.messages.size(), 1u) << reason;  // and what follows is still read
+    EXPECT_EQ(contents.messages[0].sequence, 77u) << reason;
+    EXPECT_TRUE(contents.attachments.empty()) << reason;
+  }
+}
+
+TEST(McapReader, a_length_beyond_the_file_ends_it) {
+  for (const std::uint64_t length : {std::uint64_t{1}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
+    const McapContents contents = read(opening().record(0x05, length).bytes);
+    EXPECT_TRUE(contents.truncated);
+    EXPECT_TRUE(contents.messages.empty());
+  }
+}
+
+TEST(McapReader, damage_is_told_a_hundred_times_and_no_more) {
+  Hand file = opening();
+  for (int i = 0; i < 1000; ++i) file.record(0x05, 0);
+  EXPECT_EQ(read(file.bytes).damage.size(), 100u);
+}
+
+TEST(McapReader, a_cut_at_any_byte_gives_what_was_whole_before_it) {
+  const Bytes file = tiny_file();
+  for (std::size_t size = kMagic.size(); size < file.size(); ++size) {
+    const McapContents contents = read(Bytes(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)));
+    EXPECT_TRUE(contents.truncated) << size;
+    EXPECT_TRUE(contents.damage.empty()) << size << ": " << contents.damage.front();
+  }
+  EXPECT_FALSE(read(file).truncated);
+}
+
+}  // namespace
+}  // namespace sf::record

@@ -1,0 +1,212 @@
+#include "record/messages.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "record/fleet.h"
+#include "record/run_info.h"
+#include "tests/record/sample.h"
+
+namespace sf::record {
+namespace {
+
+using base::Bytes;
+
+/// An independent look at a message: fields at offsets counted by hand, the encapsulation included.
+template <class T>
+T at(const Bytes& bytes, std::size_t offset) {
+  T value{};
+  if (offset + sizeof(T) > bytes.size()) throw std::out_of_range("offset " + std::to_string(offset));
+  std::memcpy(&value, bytes.data() + offset, sizeof(T));
+  return value;
+}
+
+Scan sample_scan() {
+  return {
+      .time = 12'000'000'034, .frame = "r/l", .fov = 2.0F, .scan_time = 0.1F, .range_min = 0.25F, .range_max = 8.0F};
+}
+
+TEST(Messages, a_scan_lies_where_ROS_expects_it) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  Bytes out;
+  encode_scan(sample_scan(), std::vector<double>{1.0 / 3.0, 8.0, infinity}, out);
+  EXPECT_EQ(at<std::int32_t>(out, 4), 12);
+  EXPECT_EQ(at<std::uint32_t>(out, 8), 34u);
+  EXPECT_EQ(at<std::uint32_t>(out, 12), 4u);  // "r/l" and its terminator
+  EXPECT_EQ(std::memcmp(out.data() + 16, "r/l", 4), 0);
+  EXPECT_EQ(at<float>(out, 20), -1.0F);  // angle_min
+  EXPECT_EQ(at<float>(out, 24), 1.0F);   // angle_max
+  EXPECT_EQ(at<float>(out, 28), 1.0F);   // angle_increment: three beams, two gaps
+  EXPECT_EQ(at<float>(out, 32), 0.0F);   // time_increment
+  EXPECT_EQ(at<float>(out, 36), 0.1F);   // scan_time
+  EXPECT_EQ(at<float>(out, 40), 0.25F);
+  EXPECT_EQ(at<float>(out, 44), 8.0F);
+  EXPECT_EQ(at<std::uint32_t>(out, 48), 3u);
+  EXPECT_EQ(at<float>(out, 52), static_cast<float>(1.0 / 3.0));
+  EXPECT_EQ(at<float>(out, 56), 8.0F);
+  EXPECT_EQ(at<float>(out, 60), std::numeric_limits<float>::infinity());
+  EXPECT_EQ(at<std::uint32_t>(out, 64), 0u);  // no intensities
+  EXPECT_EQ(out.size(), 68u);
+}
+
+TEST(Messages, a_scan_of_one_beam_has_no_increment) {
+  Bytes out;
+  encode_scan(sample_scan(), std::vector<double>{1.0}, out);
+  EXPECT_EQ(at<float>(out, 28), 0.0F);
+}
+
+TEST(Messages, a_scan_comes_back) {
+  Bytes out;
+  encode_scan(sample_scan(), std::vector<double>{0.5, 8.0}, out);
+  const auto scan = decode_scan(out);
+  ASSERT_TRUE(scan);
+  EXPECT_EQ(scan->time, 12'000'000'034);
+  EXPECT_EQ(scan->frame, "r/l");
+  EXPECT_EQ(scan->fov, 2.0F);
+  EXPECT_EQ(scan->ranges, (std::vector<float>{0.5F, 8.0F}));
+}
+
+TEST(Messages, no_cut_of_a_message_is_taken_for_one) {
+  const test::SampleTick tick(3);
+  RunInfo info = test::sample_info(true);
+  name_frames(info);
+  Bytes scan, fleet, run;
+  encode_scan(sample_scan(), std::vector<double>{0.5, 8.0}, scan);
+  encode_fleet(tick.record, fleet);
+  encode_run_info(info, run);
+  FleetState state;
+  for (std::size_t size = 0; size < scan.size(); ++size) EXPECT_FALSE(decode_scan(std::span(scan).first(size)));
+  for (std::size_t size = 0; size < fleet.size(); ++size)
+    EXPECT_FALSE(decode_fleet(std::span(fleet).first(size), state));
+  for (std::size_t size = 0; size < run.size(); ++size) EXPECT_FALSE(decode_run_info(std::span(run).first(size), info));
+}
+
+TEST(Messages, odometry_lies_where_ROS_expects_it) {
+  Bytes out;
+  encode_odometry({1'500'000'000, "world", "r", {1.0, 2.0, 3.0, M_PI / 2}}, {0.5, -0.25, 0.125}, out);
+  // 4 + stamp 8 + "world" 4 + 6 | 22 -> 24: "r" 4 + 2 | 30 -> 36: the pose, 8-aligned behind the encapsulation
+  EXPECT_EQ(at<std::uint32_t>(out, 8), 500'000'000u);
+  EXPECT_EQ(std::memcmp(out.data() + 16, "world", 6), 0);
+  EXPECT_EQ(std::memcmp(out.data() + 28, "r", 2), 0);
+  EXPECT_EQ(at<double>(out, 36), 1.0);
+  EXPECT_EQ(at<double>(out, 44), 2.0);
+  EXPECT_EQ(at<double>(out, 52), 3.0);
+  EXPECT_EQ(at<double>(out, 60), 0.0);                    // x
+  EXPECT_EQ(at<double>(out, 68), 0.0);                    // y
+  EXPECT_DOUBLE_EQ(at<double>(out, 76), std::sqrt(0.5));  // z
+  EXPECT_DOUBLE_EQ(at<double>(out, 84), std::sqrt(0.5));  // w
+  const std::size_t twist = 92 + 36 * 8;
+  EXPECT_EQ(at<double>(out, twist), 0.5);
+  EXPECT_EQ(at<double>(out, twist + 8), -0.25);
+  EXPECT_EQ(at<double>(out, twist + 40), 0.125);
+  EXPECT_EQ(out.size(), twist + 48 + 36 * 8);
+}
+
+TEST(Messages, commands_and_transforms_lie_where_ROS_expects_them) {
+  Bytes twist;
+  encode_twist(0, "abc", {0.5, 0.0, 0.125}, twist);
+  EXPECT_EQ(at<double>(twist, 20), 0.5);  // stamp 8, string 8: 16 behind the encapsulation
+  EXPECT_EQ(at<double>(twist, 60), 0.125);
+  EXPECT_EQ(twist.size(), 68u);
+
+  Bytes transforms;
+  const std::vector<Transform> two = {{0, "abc", "abc", {1.0, 2.0, 3.0, 0.0}}, {0, "abc", "abc", {4.0, 5.0, 6.0, 0.0}}};
+  encode_transforms(two, transforms);
+  EXPECT_EQ(at<std::uint32_t>(transforms, 4), 2u);
+  EXPECT_EQ(at<double>(transforms, 36), 1.0);   // count 4, stamp 8, strings 16: 28 -> 32 behind the encapsulation
+  EXPECT_EQ(at<double>(transforms, 84), 1.0);   // w
+  EXPECT_EQ(at<double>(transforms, 116), 4.0);  // 88 + stamp 8, strings 16: 112 behind the encapsulation
+}
+
+TEST(Messages, a_fleet_comes_back_to_the_bit) {
+  const test::SampleTick tick(3);
+  Bytes out;
+  encode_fleet(tick.record, out);
+  FleetState fleet;
+  ASSERT_TRUE(decode_fleet(out, fleet));
+  EXPECT_EQ(fleet.tick, 3u);
+  EXPECT_EQ(fleet.time, 300'000'000);
+  ASSERT_EQ(fleet.states.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const MoverState& state = fleet.states[i];
+    EXPECT_EQ(state.mover, i);
+    EXPECT_EQ(state.contact, tick.contacts[i] != 0);
+    EXPECT_EQ(std::memcmp(&state.X_WM, &tick.reports[i].X_WM, sizeof(base::Pose)), 0);
+    EXPECT_EQ(std::memcmp(&state.velocity, &tick.reports[i].velocity, sizeof(base::Twist)), 0);
+    EXPECT_EQ(std::memcmp(&state.command, &tick.commands[i], sizeof(base::Twist)), 0);
+  }
+}
+
+TEST(Messages, a_fleet_without_commands_and_contacts_says_zero) {
+  test::SampleTick tick(3);
+  tick.record.commands = {};
+  tick.record.contacts = {};
+  Bytes out;
+  encode_fleet(tick.record, out);
+  FleetState fleet;
+  ASSERT_TRUE(decode_fleet(out, fleet));
+  EXPECT_FALSE(fleet.states[0].contact || fleet.states[1].contact);
+  EXPECT_EQ(fleet.states[1].command.forward, 0.0);
+}
+
+TEST(Messages, run_info_comes_back) {
+  RunInfo info = test::sample_info(true);
+  name_frames(info);
+  Bytes out;
+  encode_run_info(info, out);
+  RunInfo back;
+  ASSERT_TRUE(decode_run_info(out, back));
+  EXPECT_EQ(back.world, "a world");
+  EXPECT_EQ(back.world_hash, info.world_hash);
+  EXPECT_EQ(back.seed, 42u);
+  EXPECT_EQ(back.mode, "exact");
+  EXPECT_EQ(back.interval, 0.1);
+  EXPECT_TRUE(back.record_readings);
+  EXPECT_EQ(back.odometry_rate, 5.0);
+  EXPECT_EQ(back.options, info.options);
+  ASSERT_EQ(back.movers.size(), 2u);
+  EXPECT_EQ(back.movers[0].name, "roomba:1");
+  EXPECT_EQ(back.movers[1].id, 9u);
+  ASSERT_EQ(back.movers[0].lasers.size(), 2u);
+  const LaserInfo& laser = back.movers[0].lasers[0];
+  EXPECT_EQ(laser.X_MS.yaw, 0.3);
+  EXPECT_EQ(laser.samples, 4u);
+  EXPECT_EQ(back.movers[0].lasers[1].range_min, 0.5);
+  EXPECT_EQ(back.movers[0].lasers[1].rate, 5.0);
+}
+
+TEST(RunInfo, names_become_unique_ROS_names) {
+  RunInfo info;
+  const auto frame_of = [&](const std::string& name) {
+    info.movers.push_back({.name = name});
+    name_frames(info);
+    return info.movers.back().frame;
+  };
+  EXPECT_EQ(frame_of("roomba1"), "roomba1");
+  EXPECT_EQ(frame_of("roomba:1"), "roomba_1");    // a colon is no ROS character
+  EXPECT_EQ(frame_of("roomba.1"), "roomba_1_2");  // and the result must not meet another
+  EXPECT_EQ(frame_of("3at"), "_3at");             // no digit first
+  EXPECT_EQ(frame_of(""), "robot");               // no name at all
+  EXPECT_EQ(frame_of("world"), "world_2");        // the root's name is taken
+  EXPECT_EQ(frame_of("f\xC3\xBC"), "f__");        // bytes beyond ASCII
+}
+
+TEST(RunInfo, a_laser_does_not_take_the_topics_of_its_robot) {
+  RunInfo info;
+  info.movers = {{.name = "r", .lasers = {{.name = "odom"}, {.name = "a b"}, {.name = "a b"}}}};
+  name_frames(info);
+  EXPECT_EQ(info.movers[0].lasers[0].topic, "/r/odom_2/scan");
+  EXPECT_EQ(info.movers[0].lasers[1].topic, "/r/a_b/scan");
+  EXPECT_EQ(info.movers[0].lasers[2].topic, "/r/a_b_2/scan");
+}
+
+TEST(Messages, a_time_before_zero_is_our_bug) {
+  Bytes out;
+  EXPECT_DEATH(encode_twist(-1, "r", {}, out), "time -1 ns");
+}
+
+}  // namespace
+}  // namespace sf::record

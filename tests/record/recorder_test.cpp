@@ -1,0 +1,281 @@
+#include "record/recorder.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <functional>
+#include <map>
+
+#include "base/error.h"
+#include "record/mcap_reader.h"
+#include "record/recording.h"
+#include "tests/record/sample.h"
+
+namespace sf::record {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bytes_of;
+using test::fresh_directory;
+using test::sample_info;
+using test::SampleTick;
+
+void write_ticks(Recorder& recorder, std::uint64_t first, std::uint64_t count) {
+  for (std::uint64_t tick = first; tick < first + count; ++tick) recorder.write(SampleTick(tick).record);
+}
+
+std::string message_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "nothing thrown";
+}
+
+std::map<std::string, std::size_t> topics_of(const base::Bytes& file) {
+  const McapContents contents = read_mcap(file, "run.mcap");
+  std::map<std::string, std::size_t> topics;
+  for (const McapMessage& message : contents.messages) ++topics[contents.channels.at(message.channel).topic];
+  return topics;
+}
+
+TEST(Recorder, the_world_is_in_the_file_before_the_first_tick) {
+  const std::string directory = fresh_directory("first");
+  const Recorder recorder(directory, sample_info(false));
+  const Recording recording = open_recording(directory);
+  EXPECT_TRUE(recording.truncated);
+  EXPECT_EQ(recording.ticks, 0u);
+  EXPECT_EQ(recording.info.snapshot, sample_info(false).snapshot);
+  EXPECT_FALSE(fs::exists(directory + "/run.mcap.new"));
+}
+
+TEST(Recorder, every_tick_is_readable_as_soon_as_write_returns) {
+  const std::string directory = fresh_directory("live");
+  Recorder recorder(directory, sample_info(false));
+  for (std::uint64_t tick = 0; tick < 4; ++tick) {
+    write_ticks(recorder, tick, 1);
+    EXPECT_EQ(open_recording(directory).ticks, tick + 1);
+    EXPECT_EQ(recorder.size(), fs::file_size(recorder.path()));
+  }
+}
+
+// Kept below the build directory: a sample for readers that are not ours.
+TEST(Recorder, topics_are_as_documented) {
+  const std::string directory = fresh_directory("sample");
+  Recorder recorder(directory, sample_info(true));
+  write_ticks(recorder, 0, 10);
+  recorder.finish();
+  const auto topics = topics_of(bytes_of(recorder.path()));
+  const std::map<std::string, std::size_t> expected = {
+      {"/run", 1},
+      {"/tf_static", 1},
+      {"/fleet", 10},
+      {"/tf", 10},
+      {"/roomba_1/odom", 5},  // 5 Hz of 10
+      {"/roomba_1/cmd_vel", 5},
+      {"/roomba_1/front/scan", 10},
+      {"/roomba_1/front_2/scan", 10},
+      {"/roomba_1_2/odom", 5},
+      {"/roomba_1_2/cmd_vel", 5},
+      {"/roomba_1_2/laser/scan", 10},
+  };
+  EXPECT_EQ(topics, expected);
+}
+
+TEST(Recorder, without_readings_and_odometry_only_the_exact_states_and_frames_remain) {
+  const std::string directory = fresh_directory("lean");
+  RunInfo info = sample_info(false);
+  info.odometry_rate = 0.0;
+  Recorder recorder(directory, info);
+  write_ticks(recorder, 0, 3);
+  recorder.finish();
+  const std::map<std::string, std::size_t> expected = {{"/run", 1}, {"/tf_static", 1}, {"/fleet", 3}, {"/tf", 3}};
+  EXPECT_EQ(topics_of(bytes_of(recorder.path())), expected);
+}
+
+TEST(Recorder, the_same_run_gives_the_same_bytes) {
+  base::Bytes files[2];
+  for (base::Bytes& file : files) {
+    Recorder recorder(fresh_directory("same"), sample_info(true));
+    write_ticks(recorder, 0, 5);
+    recorder.finish();
+    file = bytes_of(recorder.path());
+  }
+  EXPECT_EQ(files[0], files[1]);
+}
+
+TEST(Recorder, the_destructor_finishes) {
+  const std::string directory = fresh_directory("destructor");
+  { Recorder(directory, sample_info(false)).write(SampleTick(0).record); }
+  EXPECT_FALSE(open_recording(directory).truncated);
+}
+
+TEST(Recorder, finishing_twice_is_finishing_once) {
+  Recorder recorder(fresh_directory("twice"), sample_info(false));
+  recorder.finish();
+  const auto size = recorder.size();
+  recorder.finish();
+  EXPECT_EQ(recorder.size(), size);
+}
+
+TEST(Recorder, a_killed_process_leaves_every_tick_it_wrote) {
+  const std::string directory = fresh_directory("killed");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    Recorder recorder(directory, sample_info(true));
+    write_ticks(recorder, 0, 7);
+    ::raise(SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  const Recording recording = open_recording(directory);
+  EXPECT_TRUE(recording.truncated);
+  EXPECT_TRUE(recording.damage.empty());
+  EXPECT_EQ(recording.ticks, 7u);
+  EXPECT_EQ(recording.scans.size(), 21u);
+}
+
+TEST(Recorder, an_older_recording_is_replaced_whole) {
+  const std::string directory = fresh_directory("replaced");
+  {
+    Recorder recorder(directory, sample_info(true));
+    write_ticks(recorder, 0, 5);
+  }
+  std::ofstream(directory + "/run.mcap.new") << "left by a process that was killed before it began";
+  Recorder recorder(directory, sample_info(false));
+  EXPECT_EQ(open_recording(directory).ticks, 0u);
+  EXPECT_EQ(bytes_of(recorder.path()).size(), recorder.size());  // nothing of the old ones behind the new
+}
+
+TEST(Recorder, a_recording_that_cannot_begin_leaves_the_older_one) {
+  const std::string directory = fresh_directory("kept");
+  {
+    Recorder recorder(directory, sample_info(true));
+    write_ticks(recorder, 0, 5);
+  }
+  RunInfo info = sample_info(false);
+  info.movers.resize(40'000);  // two topics each
+  EXPECT_NE(message_of([&] { Recorder(directory, info); }).find("needs 80004 topics"), std::string::npos);
+  EXPECT_EQ(open_recording(directory).ticks, 5u);
+  EXPECT_FALSE(fs::exists(directory + "/run.mcap.new"));
+}
+
+TEST(Recorder, a_second_recorder_in_the_same_place_is_refused_while_the_first_lives) {
+  const std::string directory = fresh_directory("second");
+  {
+    Recorder first(directory, sample_info(false));
+    EXPECT_NE(message_of([&] { Recorder(directory, sample_info(false)); }).find("another run is being recorded here"),
+              std::string::npos);
+    write_ticks(first, 0, 2);
+  }
+  EXPECT_EQ(open_recording(directory).ticks, 2u);
+  EXPECT_NO_THROW(Recorder(directory, sample_info(false)));
+}
+
+TEST(Recorder, a_place_that_cannot_be_written_is_refused_with_the_reason) {
+  EXPECT_NE(message_of([] { Recorder("/dev/null/run", sample_info(false)); }).find("cannot be made a directory"),
+            std::string::npos);  // below a file
+  const std::string directory = fresh_directory("occupied");
+  fs::create_directories(directory + "/run.mcap.new");
+  EXPECT_NE(message_of([&] { Recorder(directory, sample_info(false)); }).find("Is a directory"), std::string::npos);
+}
+
+/// Bounds the size of every file of this process, as a full disk would.
+class FullDisk {
+ public:
+  explicit FullDisk(std::uint64_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit bound = {bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &bound);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_ = {};
+  void (*handler_)(int) = nullptr;
+};
+
+TEST(Recorder, a_full_disk_is_told_and_loses_no_tick_before_it) {
+  const std::string directory = fresh_directory("full");
+  std::uint64_t kept = 0;
+  std::string told;
+  {
+    Recorder recorder(directory, sample_info(true));
+    write_ticks(recorder, 0, 2);
+    const std::uint64_t whole = recorder.size();
+    const FullDisk disk(whole + 5000);
+    told = message_of([&] {
+      for (kept = 2; kept < 100; ++kept) write_ticks(recorder, kept, 1);
+    });
+    EXPECT_NO_THROW(recorder.finish());  // nothing more to lose
+  }
+  EXPECT_NE(told.find("run.mcap: cannot take more than"), std::string::npos) << told;
+  EXPECT_LT(kept, 100u);
+  const Recording recording = open_recording(directory);
+  EXPECT_TRUE(recording.truncated);
+  EXPECT_GE(recording.ticks, kept);
+  EXPECT_LE(recording.ticks, kept + 1);  // of the cut chunk, what was whole
+}
+
+TEST(Recorder, a_full_disk_at_the_end_is_told) {
+  Recorder recorder(fresh_directory("full_end"), sample_info(false));
+  const FullDisk disk(recorder.size());
+  EXPECT_NE(message_of([&] { recorder.finish(); }).find("cannot take more than"), std::string::npos);
+}
+
+TEST(Recorder, a_full_disk_at_the_start_leaves_nothing) {
+  const std::string directory = fresh_directory("full_start");
+  const FullDisk disk(100);
+  EXPECT_NE(message_of([&] { Recorder(directory, sample_info(false)); }).find("cannot take more"), std::string::npos);
+  EXPECT_TRUE(fs::is_empty(directory));
+}
+
+TEST(Recorder, broken_contracts_abort_with_the_values) {
+  const std::string directory = fresh_directory("contracts");
+  RunInfo worldless = sample_info(false);
+  worldless.snapshot.clear();
+  EXPECT_DEATH(Recorder(directory, worldless), "without its world");
+  EXPECT_DEATH(Recorder(directory, sample_info(false)).write(SampleTick(0, 3).record), "mover 2");
+  const auto wrong_sensor = [&] {
+    SampleTick tick(0);
+    tick.readings[2].sensor = 1;
+    Recorder(directory, sample_info(true)).write(tick.record);
+  };
+  EXPECT_DEATH(wrong_sensor(), "mover 1 sensor 1");
+}
+
+// A hundred robots must stay reasonable: the figures in docs/recordings.md.
+TEST(Recorder, bytes_per_tick_of_a_hundred_robots) {
+  RunInfo info = sample_info(false);
+  info.odometry_rate = 1.0;
+  info.movers.clear();
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    info.movers.push_back({.name = "robot" + std::to_string(i), .id = i, .lasers = {{.name = "laser0"}}});
+  }
+  Recorder recorder(fresh_directory("hundred"), info);
+  const auto start = recorder.size();
+  for (std::uint64_t tick = 0; tick < 600; ++tick) {
+    SampleTick sample(tick, 100);
+    sample.record.readings = {};
+    recorder.write(sample.record);
+  }
+  recorder.finish();
+  const auto per_tick = (recorder.size() - start) / 600;
+  RecordProperty("bytes_per_tick", std::to_string(per_tick));
+  EXPECT_LT(per_tick, 32'000u);
+  EXPECT_GT(per_tick, 8'800u);  // 88 bytes a state
+}
+
+}  // namespace
+}  // namespace sf::record

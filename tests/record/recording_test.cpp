@@ -1,0 +1,246 @@
+#include "record/recording.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+
+#include "base/error.h"
+#include "record/mcap_writer.h"
+#include "record/schemas.h"
+#include "tests/record/sample.h"
+
+namespace sf::record {
+namespace {
+
+using base::Bytes;
+using test::SampleTick;
+
+/// A finished recording, and how long it was after the start and after every tick.
+struct Sample {
+  Bytes bytes;
+  std::vector<std::size_t> sizes;
+};
+
+const Sample& sample() {
+  static const Sample kept = [] {
+    Sample sample;
+    // Tests may run side by side, each in a process of its own.
+    const std::string directory = test::fresh_directory("to_read_" + std::to_string(::getpid()));
+    Recorder recorder(directory, test::sample_info(true));
+    sample.sizes.push_back(recorder.size());
+    for (std::uint64_t tick = 0; tick < 3; ++tick) {
+      recorder.write(SampleTick(tick).record);
+      sample.sizes.push_back(recorder.size());
+    }
+    recorder.finish();
+    sample.bytes = test::bytes_of(recorder.path());
+    std::filesystem::remove_all(directory);
+    return sample;
+  }();
+  return kept;
+}
+
+bool same(const StateSample& a, const StateSample& b) {
+  return a.tick == b.tick && a.time == b.time && a.contact == b.contact &&
+         std::memcmp(&a.X_WM, &b.X_WM, sizeof(a.X_WM)) == 0 &&
+         std::memcmp(&a.velocity, &b.velocity, sizeof(a.velocity)) == 0 &&
+         std::memcmp(&a.command, &b.command, sizeof(a.command)) == 0;
+}
+
+bool same(const ScanSample& a, const ScanSample& b) {
+  return a.mover == b.mover && a.sensor == b.sensor && a.sequence == b.sequence && a.delivered == b.delivered &&
+         a.scan.time == b.scan.time && a.scan.ranges == b.scan.ranges;
+}
+
+/// Whether all of `part` is the beginning of `whole`.
+bool is_prefix(const Recording& part, const Recording& whole) {
+  const auto begins = [](const auto& a, const auto& b) {
+    return a.size() <= b.size() &&
+           std::equal(a.begin(), a.end(), b.begin(), [](const auto& x, const auto& y) { return same(x, y); });
+  };
+  if (part.states.size() != whole.states.size()) return false;
+  for (std::size_t mover = 0; mover < part.states.size(); ++mover) {
+    if (!begins(part.states[mover], whole.states[mover])) return false;
+  }
+  return begins(part.scans, whole.scans) && part.info.snapshot == whole.info.snapshot;
+}
+
+TEST(Recording, a_run_comes_back) {
+  const Recording recording = read_recording(sample().bytes, "run.mcap");
+  EXPECT_FALSE(recording.truncated);
+  EXPECT_TRUE(recording.damage.empty());
+  EXPECT_EQ(recording.ticks, 3u);
+  EXPECT_EQ(recording.end_time, 200'000'000);
+  EXPECT_EQ(recording.info.world_hash, test::sample_info(true).world_hash);
+  EXPECT_EQ(recording.info.snapshot, test::sample_info(true).snapshot);
+  ASSERT_EQ(recording.states.size(), 2u);
+  for (std::uint32_t mover = 0; mover < 2; ++mover) {
+    ASSERT_EQ(recording.states[mover].size(), 3u);
+    for (std::uint64_t tick = 0; tick < 3; ++tick) {
+      const SampleTick given(tick);
+      const StateSample expected = {tick,
+                                    given.record.time,
+                                    given.contacts[mover] != 0,
+                                    given.reports[mover].X_WM,
+                                    given.reports[mover].velocity,
+                                    given.commands[mover]};
+      EXPECT_TRUE(same(recording.states[mover][tick], expected));
+    }
+  }
+}
+
+TEST(Recording, scans_come_back_as_float32) {
+  const Recording recording = read_recording(sample().bytes, "run.mcap");
+  ASSERT_EQ(recording.scans.size(), 9u);
+  for (std::size_t i = 0; i < 9; ++i) {
+    const SampleTick given(i / 3);
+    const base::ReadingBlock& reading = given.readings[i % 3];
+    const ScanSample& scan = recording.scans[i];
+    EXPECT_EQ(scan.mover, reading.mover);
+    EXPECT_EQ(scan.sensor, reading.sensor);
+    EXPECT_EQ(scan.sequence, reading.sequence);
+    EXPECT_EQ(scan.delivered, given.record.time);
+    EXPECT_EQ(scan.scan.time, reading.time);
+    ASSERT_EQ(scan.scan.ranges.size(), reading.values.size());
+    for (std::size_t beam = 0; beam < reading.values.size(); ++beam) {
+      EXPECT_EQ(scan.scan.ranges[beam], static_cast<float>(reading.values[beam]));
+    }
+  }
+}
+
+TEST(Recording, a_cut_at_any_byte_gives_a_prefix_with_every_whole_tick) {
+  const Recording whole = read_recording(sample().bytes, "run.mcap");
+  const std::vector<std::size_t>& sizes = sample().sizes;
+  for (std::size_t size = 0; size < sample().bytes.size(); ++size) {
+    // In a buffer of exactly this size, so that a read past the cut is seen.
+    const Bytes cut(sample().bytes.begin(), sample().bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    Recording part;
+    try {
+      part = read_recording(cut, "run.mcap");
+    } catch (const base::InputError&) {
+      EXPECT_LT(size, sizes[0]) << "refused, though the world is inside";
+      continue;
+    }
+    EXPECT_TRUE(part.truncated) << size;
+    EXPECT_TRUE(part.damage.empty()) << size;
+    EXPECT_TRUE(is_prefix(part, whole)) << size;
+    const auto whole_ticks = std::upper_bound(sizes.begin() + 1, sizes.end(), size) - (sizes.begin() + 1);
+    EXPECT_GE(part.ticks, static_cast<std::uint64_t>(whole_ticks)) << size;
+  }
+}
+
+TEST(Recording, no_flipped_bit_changes_a_number_silently) {
+  const Recording whole = read_recording(sample().bytes, "run.mcap");
+  Bytes bytes = sample().bytes;
+  std::mt19937 random(1);
+  int told = 0;
+  constexpr int kFlips = 20'000;
+  for (int i = 0; i < kFlips; ++i) {
+    const std::size_t at = random() % bytes.size();
+    const auto bit = static_cast<std::uint8_t>(1u << (random() % 8));
+    bytes[at] ^= bit;
+    try {
+      const Recording part = read_recording(bytes, "run.mcap");
+      const bool tells = part.truncated || !part.damage.empty();
+      const bool equal = is_prefix(part, whole) && part.ticks == whole.ticks && part.scans.size() == whole.scans.size();
+      EXPECT_TRUE(tells || equal) << "byte " << at;
+      told += tells ? 1 : 0;
+    } catch (const base::InputError&) {
+      ++told;
+    }
+    bytes[at] ^= bit;
+  }
+  EXPECT_GT(told, kFlips / 2);  // most of the file is data
+}
+
+TEST(Recording, torn_and_garbled_files_neither_crash_nor_hang) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 3000; ++i) {
+    Bytes bytes = sample().bytes;
+    for (int k = 0; k < 20; ++k) bytes[8 + random() % (bytes.size() - 8)] = static_cast<std::uint8_t>(random());
+    if (i % 2 == 0) bytes.resize(8 + random() % (bytes.size() - 8));
+    if (i % 3 == 0) bytes.insert(bytes.begin() + 8 + random() % (bytes.size() - 8), 1 + random() % 50, 0xFF);
+    try {
+      const Recording recording = read_recording(bytes, "run.mcap");
+      EXPECT_LE(recording.info.movers.size(), bytes.size());
+    } catch (const base::InputError&) {
+    }
+  }
+}
+
+std::string refusal(const Bytes& bytes) {
+  try {
+    read_recording(bytes, "dir/run.mcap");
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "read";
+}
+
+Bytes finished(McapWriter& writer) {
+  writer.finish();
+  return {writer.pending().begin(), writer.pending().end()};
+}
+
+void add_run_info(McapWriter& writer, const RunInfo& info) {
+  Bytes message;
+  encode_run_info(info, message);
+  const auto schema = writer.add_schema(kRunInfo, "ros2msg", schema_text(kRunInfo));
+  writer.add_message({.channel = writer.add_channel(schema, "/run", "cdr"), .data = message});
+}
+
+TEST(Recording, what_is_no_recording_of_ours_is_refused_with_the_reason) {
+  EXPECT_NE(refusal({'P', 'K', 3, 4}).find("dir/run.mcap: not an MCAP file"), std::string::npos);
+  EXPECT_NE(refusal({}).find("not an MCAP file"), std::string::npos);
+
+  McapWriter foreign("ros2", "somebody else");
+  EXPECT_NE(refusal(finished(foreign)).find("not a run of ours"), std::string::npos);
+
+  McapWriter worldless("ros2", "sensorfarm");
+  add_run_info(worldless, {});
+  EXPECT_NE(refusal(finished(worldless)).find("no whole world inside"), std::string::npos);
+}
+
+TEST(Recording, a_state_of_a_mover_that_is_not_there_is_left_out_and_told) {
+  McapWriter writer("ros2", "sensorfarm");
+  const Bytes world = {1};
+  writer.add_attachment({.name = "world.bin", .data = world});
+  add_run_info(writer, {.movers = {{.name = "only"}}});
+  Bytes message;
+  encode_fleet(SampleTick(0, 2).record, message);
+  const auto schema = writer.add_schema(kFleet, "ros2msg", schema_text(kFleet));
+  writer.add_message({.channel = writer.add_channel(schema, "/fleet", "cdr"), .data = message});
+  const Recording recording = read_recording(finished(writer), "run.mcap");
+  EXPECT_EQ(recording.ticks, 0u);
+  EXPECT_EQ(recording.damage.size(), 1u);
+}
+
+TEST(Recording, a_place_without_a_recording_is_refused_with_advice) {
+  const auto refusal_of = [](const std::string& directory) -> std::string {
+    try {
+      open_recording(directory);
+    } catch (const base::InputError& error) {
+      return error.what();
+    }
+    return "read";
+  };
+  EXPECT_NE(refusal_of("/nowhere/at/all").find("/nowhere/at/all/run.mcap: no such recording"), std::string::npos);
+  const std::string directory = test::fresh_directory("no_file");
+  std::filesystem::create_directories(directory + "/run.mcap");
+  EXPECT_NE(refusal_of(directory).find("is not a file"), std::string::npos);
+  std::filesystem::remove(directory + "/run.mcap");
+  std::ofstream(directory + "/run.mcap").close();
+  EXPECT_NE(refusal_of(directory).find("not an MCAP file"), std::string::npos);  // empty
+}
+
+TEST(Recording, the_file_itself_may_be_named) {
+  Recorder recorder(test::fresh_directory("by_name"), test::sample_info(false));
+  recorder.write(SampleTick(0).record);
+  EXPECT_EQ(open_recording(recorder.path()).ticks, 1u);
+}
+
+}  // namespace
+}  // namespace sf::record

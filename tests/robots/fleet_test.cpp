@@ -1,0 +1,262 @@
+#include "robots/fleet.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/robots/scenes.h"
+
+namespace sf::robots {
+namespace {
+
+using base::Pose;
+using base::Report;
+using base::Twist;
+using base::Vec2;
+
+constexpr std::int64_t kTick = 100'000'000;
+
+// The one robot of a world after `ticks` of one command.
+struct Driven {
+  Report report;
+  int contacts = 0;  // ticks with contact
+};
+
+Driven run(const world::World& world, const Twist& command, int ticks, std::size_t row = 0) {
+  Fleet fleet(world);
+  std::vector<Twist> commands(world.movers.size());
+  commands[row] = command;
+  Driven result;
+  for (int i = 0; i < ticks; ++i) {
+    fleet.move(commands, kTick);
+    result.contacts += fleet.contacts()[row];
+  }
+  result.report = fleet.reports()[row];
+  return result;
+}
+
+TEST(Fleet, starts_at_rest_where_the_world_says) {
+  world::World world = scenes::boxed_world(4, 4);
+  scenes::add_square(world, {2, 2, 0, 1});
+  const Fleet fleet(world);
+  ASSERT_EQ(fleet.reports().size(), 1u);
+  EXPECT_EQ(fleet.reports()[0].X_WM.yaw, 1.0);
+  EXPECT_EQ(fleet.reports()[0].velocity.forward, 0.0);
+  EXPECT_EQ(fleet.reports()[0].time, 0);
+}
+
+TEST(Fleet, drives_freely) {
+  world::World world = scenes::boxed_world(4, 4);
+  scenes::add_square(world, {1, 2, 0, 0});
+  const Driven r = run(world, {0.5, 0, 0}, 10);
+  EXPECT_NEAR(r.report.X_WM.x, 1.5, 1e-12);
+  EXPECT_EQ(r.report.time, 10 * kTick);
+  EXPECT_EQ(r.report.velocity.forward, 0.5);
+  EXPECT_EQ(r.contacts, 0);
+}
+
+TEST(Fleet, stops_at_a_wall_head_on) {
+  world::World world = scenes::boxed_world(4, 4);
+  scenes::add_square(world, {3, 2, 0, 0});
+  const Driven r = run(world, {0.5, 0, 0}, 50);
+  EXPECT_LT(r.report.X_WM.x, 3.8) << "0.2 m before the wall at 4 m";
+  EXPECT_GT(r.report.X_WM.x, 3.75) << "within one step";
+  EXPECT_GT(r.contacts, 30);
+  EXPECT_EQ(r.report.velocity.forward, 0.0);
+}
+
+TEST(Fleet, slides_along_a_wall_without_contact) {
+  world::World world = scenes::boxed_world(4, 4);
+  scenes::add_square(world, {1, 3.799, 0, 0});
+  const Driven r = run(world, {0.5, 0, 0}, 20);
+  EXPECT_EQ(r.contacts, 0);
+  EXPECT_NEAR(r.report.X_WM.x, 2.0, 1e-9);
+}
+
+TEST(Fleet, stops_in_a_corner) {
+  world::World world = scenes::boxed_world(4, 4);
+  scenes::add_create(world, {3, 3, 0, M_PI / 4});
+  const Driven r = run(world, {0.5, 0, 0}, 100);
+  EXPECT_LT(r.report.X_WM.x, 4 - 0.16);
+  EXPECT_LT(r.report.X_WM.y, 4 - 0.16);
+  EXPECT_GT(r.report.X_WM.x, 3.75);
+}
+
+TEST(Fleet, meets_the_end_of_a_wall) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {1, 0}, {3, 0});  // its end points at the robot
+  scenes::add_square(world, {0, 0, 0, 0});
+  const Driven r = run(world, {0.5, 0, 0}, 50);
+  EXPECT_LT(r.report.X_WM.x, 0.8);
+  EXPECT_GT(r.contacts, 0);
+}
+
+TEST(Fleet, passes_beside_the_end_of_a_wall) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {1, 0.201}, {1, 3});
+  scenes::add_square(world, {0, 0, 0, 0});
+  EXPECT_EQ(run(world, {0.5, 0, 0}, 50).contacts, 0);
+}
+
+TEST(Fleet, passes_under_a_bridge) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {1, -1}, {1, 1}, 1.0, 1.5);
+  scenes::add_square(world, {0, 0, 0, 0});
+  EXPECT_NEAR(run(world, {0.5, 0, 0}, 50).report.X_WM.x, 2.5, 1e-9);
+}
+
+TEST(Fleet, passes_what_does_not_stop_robots) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {1, -1}, {1, 1});
+  world.walls[0].stops_robots = false;
+  scenes::add_square(world, {0, 0, 0, 0});
+  EXPECT_NEAR(run(world, {0.5, 0, 0}, 50).report.X_WM.x, 2.5, 1e-9);
+}
+
+TEST(Fleet, does_not_slip_between_diagonal_cells) {
+  // Two solid cells that share one corner: no gap, though neither has a wall across the way.
+  world::World world = scenes::empty_world();
+  scenes::add_bitmap(world, {{false, true}, {true, false}}, 1.0);
+  scenes::add_create(world, {0.4, 0.4, 0, M_PI / 4});
+  const Driven r = run(world, {0.5, 0, 0}, 100);
+  EXPECT_LT(r.report.X_WM.x, 1.0);
+  EXPECT_GT(r.contacts, 0);
+}
+
+TEST(Fleet, does_not_jump_a_thin_wall_at_speed) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {1, -1}, {1, 1});
+  scenes::add_square(world, {0, 0, 0, 0}).max_forward = 100.0;  // 10 m a tick
+  const Driven r = run(world, {100, 0, 0}, 5);
+  EXPECT_LT(r.report.X_WM.x, 0.8);
+  EXPECT_GT(r.report.X_WM.x, 0.74);
+}
+
+TEST(Fleet, does_not_jump_a_post_at_speed) {
+  world::World world = scenes::empty_world();
+  scenes::add_outline(world.walls, scenes::rectangle({1, 0.03}, 0.01, 0.01));
+  scenes::add_square(world, {0, 0, 0, 0}).max_forward = 100.0;
+  EXPECT_LT(run(world, {100, 0, 0}, 5).report.X_WM.x, 0.8);
+}
+
+TEST(Fleet, two_robots_meet_head_on) {
+  world::World world = scenes::empty_world();
+  scenes::add_square(world, {0, 0, 0, 0});
+  scenes::add_square(world, {2, 0, 0, M_PI});
+  Fleet fleet(world);
+  for (int i = 0; i < 50; ++i) fleet.move(std::vector<Twist>{{0.5, 0, 0}, {0.5, 0, 0}}, kTick);
+  const double apart = fleet.reports()[1].X_WM.x - fleet.reports()[0].X_WM.x;
+  EXPECT_GT(apart, 0.4);
+  EXPECT_LT(apart, 0.51);
+  EXPECT_EQ(fleet.contacts()[0], 1);
+  EXPECT_EQ(fleet.contacts()[1], 1);
+}
+
+TEST(Fleet, fast_robots_do_not_jump_each_other) {
+  world::World world = scenes::empty_world();
+  scenes::add_square(world, {0, 0, 0, 0}).max_forward = 50.0;
+  scenes::add_square(world, {3, 0, 0, M_PI}).max_forward = 50.0;
+  Fleet fleet(world);
+  for (int i = 0; i < 3; ++i) fleet.move(std::vector<Twist>{{50, 0, 0}, {50, 0, 0}}, kTick);
+  EXPECT_GT(fleet.reports()[1].X_WM.x - fleet.reports()[0].X_WM.x, 0.4);
+}
+
+TEST(Fleet, a_standing_robot_reports_no_contact) {
+  world::World world = scenes::empty_world();
+  scenes::add_square(world, {0, 0, 0, 0});
+  scenes::add_square(world, {0.41, 0, 0, 0});
+  EXPECT_EQ(run(world, {}, 3).contacts, 0);
+}
+
+TEST(Fleet, blocked_ahead_still_turns_where_it_can) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {0.30, -1}, {0.30, 1});
+  scenes::add_create(world, {0, 0, 0, 0});
+  const Driven r = run(world, {0.5, 0, 0.5}, 12);
+  EXPECT_GT(r.report.X_WM.yaw, 0.5);
+  EXPECT_GT(r.contacts, 0);
+}
+
+TEST(Fleet, a_square_wedged_in_a_slot_cannot_turn) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {-3, 0.21}, {3, 0.21});
+  scenes::add_wall(world, {-3, -0.21}, {3, -0.21});
+  scenes::add_square(world, {0, 0, 0, 0});
+  const Driven r = run(world, {0, 0, 1}, 20);
+  EXPECT_LT(std::abs(r.report.X_WM.yaw), 0.1);
+  EXPECT_GT(r.contacts, 10);
+}
+
+TEST(Fleet, a_car_does_not_turn_in_place) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {0.22, -1}, {0.22, 1});
+  scenes::add_square(world, {0, 0, 0, 0}).drive = world::Drive::car;
+  const Driven r = run(world, {0.5, 0, 1}, 10);
+  EXPECT_EQ(r.report.X_WM.yaw, 0.0);
+  EXPECT_EQ(r.contacts, 10);
+}
+
+TEST(Fleet, overlapping_starts_come_apart) {
+  for (const double offset : {0.0, 0.1, 0.35}) {
+    world::World world = scenes::empty_world();
+    scenes::add_square(world, {0, 0, 0, 0});
+    scenes::add_square(world, {offset, 0, 0, 0});
+    EXPECT_NEAR(run(world, {0.5, 0, 0}, 20, 1).report.X_WM.x, offset + 1.0, 1e-9) << "away: free";
+    if (offset == 0.0) continue;
+    const Driven towards = run(world, {-0.5, 0, 0}, 20, 1);
+    EXPECT_NEAR(towards.report.X_WM.x, offset, 1e-9) << "nearer: refused";
+    EXPECT_EQ(towards.contacts, 20);
+  }
+}
+
+TEST(Fleet, a_start_across_a_wall_leaves_to_the_origin_side_only) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {0.1, -1}, {0.1, 1});
+  scenes::add_square(world, {0, 0, 0, 0});
+  EXPECT_NEAR(run(world, {-0.5, 0, 0}, 20).report.X_WM.x, -1.0, 1e-9);
+  EXPECT_NEAR(run(world, {0.5, 0, 0}, 20).report.X_WM.x, 0.0, 1e-9) << "never through";
+}
+
+TEST(Fleet, a_robot_that_overlaps_one_wall_is_still_stopped_by_another) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {0.1, -1}, {0.1, 1});
+  scenes::add_wall(world, {-0.6, -1}, {-0.6, 1});
+  scenes::add_square(world, {0, 0, 0, 0});
+  EXPECT_GT(run(world, {-0.5, 0, 0}, 20).report.X_WM.x, -0.4);
+}
+
+TEST(Fleet, the_same_100_km_away) {
+  world::World near = scenes::boxed_world(4, 4), far = scenes::boxed_world(4, 4, {1e5, -1e5});
+  scenes::add_create(near, {2, 2, 0, 0.7});
+  scenes::add_create(far, {1e5 + 2, -1e5 + 2, 0, 0.7});
+  const Driven a = run(near, {0.5, 0, 0.1}, 200), b = run(far, {0.5, 0, 0.1}, 200);
+  EXPECT_NEAR(a.report.X_WM.x, b.report.X_WM.x - 1e5, 1e-7);
+  EXPECT_NEAR(a.report.X_WM.y, b.report.X_WM.y + 1e5, 1e-7);
+  EXPECT_EQ(a.contacts, b.contacts);
+}
+
+TEST(Fleet, reports_newest_wins) {
+  world::World world = scenes::empty_world();
+  scenes::add_square(world, {});
+  Fleet fleet(world);
+  const auto at = [](std::int64_t time, double x) { return Report{.mover = 0, .time = time, .X_WM = {x, 0, 0, 0}}; };
+  EXPECT_EQ(fleet.apply(std::vector<Report>{at(20, 2), at(10, 1)}), 1u) << "an older one comes late";
+  EXPECT_EQ(fleet.reports()[0].X_WM.x, 2.0);
+  EXPECT_EQ(fleet.apply(std::vector<Report>{at(20, 3)}), 1u) << "the same time replaces";
+  EXPECT_EQ(fleet.reports()[0].X_WM.x, 3.0);
+}
+
+TEST(Fleet, predicts_along_the_arc_for_a_while) {
+  world::World world = scenes::empty_world();
+  scenes::add_square(world, {});
+  Fleet fleet(world);
+  fleet.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {1, 0, 0}}});
+  EXPECT_NEAR(fleet.predict(3 * kTick)[0].X_WM.x, 0.2, 1e-12);
+  EXPECT_EQ(fleet.predict(3 * kTick)[0].time, 3 * kTick);
+  EXPECT_EQ(fleet.predict(0)[0].X_WM.x, 0.0) << "never backwards";
+  EXPECT_NEAR(fleet.predict(100 * kTick)[0].X_WM.x, 0.5, 1e-12) << "coasts half a second";
+  EXPECT_EQ(fleet.reports()[0].X_WM.x, 0.0) << "what is known stays";
+}
+
+}  // namespace
+}  // namespace sf::robots

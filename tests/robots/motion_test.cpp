@@ -1,0 +1,90 @@
+#include "robots/motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace sf::robots {
+namespace {
+
+using base::Pose;
+using base::Twist;
+
+void expect_pose(const Pose& actual, const Pose& expected, double tolerance = 1e-12) {
+  EXPECT_NEAR(actual.x, expected.x, tolerance);
+  EXPECT_NEAR(actual.y, expected.y, tolerance);
+  EXPECT_NEAR(actual.z, expected.z, tolerance);
+  EXPECT_NEAR(base::wrap_angle(actual.yaw - expected.yaw), 0.0, tolerance);
+}
+
+TEST(Advance, straight) { expect_pose(advance({1, 2, 3, M_PI / 2}, {0.5, 0, 0}, 2.0), {1, 3, 3, M_PI / 2}); }
+
+TEST(Advance, turn_in_place) { expect_pose(advance({1, 2, 0, 0}, {0, 0, 1}, 0.5), {1, 2, 0, 0.5}); }
+
+TEST(Advance, sideways) { expect_pose(advance({0, 0, 0, 0}, {0, 0.5, 0}, 2.0), {0, 1, 0, 0}); }
+
+TEST(Advance, quarter_circle) {
+  // Radius v/w = 2 m: ends at (R sin, R (1 - cos)).
+  expect_pose(advance({}, {1.0, 0, 0.5}, M_PI), {2, 2, 0, M_PI / 2});
+}
+
+TEST(Advance, full_circle_comes_back) { expect_pose(advance({5, 6, 0, 1}, {1, 0.3, 2}, M_PI), {5, 6, 0, 1}); }
+
+TEST(Advance, many_small_steps_are_one_large) {
+  Pose X{0.3, -0.2, 0, 2};
+  for (int i = 0; i < 1000; ++i) X = advance(X, {0.4, -0.1, 0.7}, 0.01);
+  expect_pose(X, advance({0.3, -0.2, 0, 2}, {0.4, -0.1, 0.7}, 10.0), 1e-11);
+}
+
+TEST(Advance, tiny_turns_agree_with_the_straight_line) {
+  // Around the place where the series takes over.
+  for (const double turn : {1e-9, 1.9e-4, 2.1e-4}) {
+    const Pose X = advance({}, {1, 0, turn}, 1.0);
+    EXPECT_NEAR(X.x, std::sin(turn) / turn, 1e-15) << turn;
+    EXPECT_NEAR(X.y, 2.0 * std::pow(std::sin(turn / 2), 2) / turn, 1e-12) << turn;
+  }
+}
+
+TEST(Advance, yaw_is_wrapped) { EXPECT_LE(std::abs(advance({0, 0, 0, 3}, {0, 0, 1}, 20.0).yaw), M_PI); }
+
+world::Mover mover(world::Drive drive) {
+  world::Mover m;
+  m.drive = drive;
+  m.max_forward = 0.5;
+  m.max_turn = 1.0;
+  m.wheelbase = 0.25;
+  return m;
+}
+
+TEST(Follow, differential_clamps_and_cannot_slide) {
+  const Twist v = follow(mover(world::Drive::differential), {-3, 0.4, 7});
+  EXPECT_EQ(v.forward, -0.5);
+  EXPECT_EQ(v.left, 0.0);
+  EXPECT_EQ(v.turn, 1.0);
+}
+
+TEST(Follow, omni_keeps_its_direction) {
+  const Twist v = follow(mover(world::Drive::omni), {3, -4, -0.5});
+  EXPECT_NEAR(v.forward, 0.3, 1e-15);
+  EXPECT_NEAR(v.left, -0.4, 1e-15);
+  EXPECT_EQ(v.turn, -0.5);
+}
+
+TEST(Follow, car_turns_no_sharper_than_it_steers) {
+  EXPECT_EQ(follow(mover(world::Drive::car), {0, 0, 1}).turn, 0.0);
+  EXPECT_NEAR(follow(mover(world::Drive::car), {-0.1, 0, 1}).turn, 0.1 * std::tan(kMaxSteer) / 0.25, 1e-15);
+}
+
+TEST(Follow, what_is_not_finite_is_zero) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  for (const auto drive : {world::Drive::differential, world::Drive::omni, world::Drive::car}) {
+    const Twist v = follow(mover(drive), {nan, inf, -inf});
+    EXPECT_EQ(v.forward, 0.0);
+    EXPECT_EQ(v.left, 0.0);
+    EXPECT_EQ(v.turn, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace sf::robots

@@ -1,0 +1,143 @@
+#include "viz/axes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tests/viz/png.h"
+#include "viz/ticks.h"
+
+namespace sf::viz {
+namespace {
+
+TEST(Ticks, RoundDown) {
+  EXPECT_DOUBLE_EQ(round_down(1.0), 1.0);
+  EXPECT_DOUBLE_EQ(round_down(1.99), 1.0);
+  EXPECT_DOUBLE_EQ(round_down(2.0), 2.0);
+  EXPECT_DOUBLE_EQ(round_down(0.5), 0.5);
+  EXPECT_DOUBLE_EQ(round_down(0.049), 0.02);
+  EXPECT_DOUBLE_EQ(round_down(999.0), 500.0);
+  EXPECT_DOUBLE_EQ(round_down(1000.0), 1000.0);
+}
+
+TEST(Ticks, StepIsAtLeastWhatWasAsked) {
+  for (const double smallest : {0.001, 0.9, 1.0, 1.1, 2.0, 2.1, 5.0, 5.1, 70.0, 9999.0}) {
+    const Ticks ticks = make_ticks(0.0, 20.0 * smallest, smallest);
+    EXPECT_GE(ticks.step, smallest * (1 - 1e-9));
+    EXPECT_LE(ticks.step, smallest * 2.5 * (1 + 1e-9));
+    EXPECT_DOUBLE_EQ(round_down(ticks.step), ticks.step) << "1, 2 or 5";
+  }
+}
+
+TEST(Ticks, EndsAreIncluded) {
+  const Ticks ticks = make_ticks(-1.0, 1.0, 0.5);
+  ASSERT_EQ(ticks.at.size(), 5u);
+  EXPECT_DOUBLE_EQ(ticks.at.front(), -1.0);
+  EXPECT_DOUBLE_EQ(ticks.at.back(), 1.0);
+}
+
+TEST(Ticks, TextHasNoMinusZero) {
+  EXPECT_EQ(tick_text(-0.0, 1), "0.0");
+  EXPECT_EQ(tick_text(-0.04, 1), "0.0");
+  EXPECT_EQ(tick_text(-0.4, 1), "-0.4");
+  EXPECT_EQ(tick_text(100000.25, 2), "100000.25");
+}
+
+struct Shape {
+  const char* reason;
+  world::Extent extent;
+};
+
+class LayoutOf : public testing::TestWithParam<Shape> {};
+
+TEST_P(LayoutOf, ShowsEverythingAtOneScale) {
+  FigurePlan plan;
+  plan.title = "a title";
+  plan.subtitle = "and what is below it";
+  plan.extent = GetParam().extent;
+  for (int i = 0; i < 9; ++i) plan.legend.push_back({Sample::line, 0xFF000000u, "an item of the legend"});
+  const FigureLayout at = lay_out(plan);
+  EXPECT_LE(std::max(at.width, at.height), 1602);
+  EXPECT_GE(std::max(at.width, at.height), 1500);
+  EXPECT_LE(at.shown.x_min, plan.extent.x_min);
+  EXPECT_LE(at.shown.y_min, plan.extent.y_min);
+  EXPECT_GE(at.shown.x_max, plan.extent.x_max);
+  EXPECT_GE(at.shown.y_max, plan.extent.y_max);
+  EXPECT_NEAR((at.shown.x_max - at.shown.x_min) * at.scale, at.plot.x_max - at.plot.x_min, 1.0);
+  EXPECT_NEAR((at.shown.y_max - at.shown.y_min) * at.scale, at.plot.y_max - at.plot.y_min, 1.0);
+  EXPECT_LT(at.plot.x_max, at.width);
+  EXPECT_LE(at.legend_top + (at.legend.back().row + 1) * kLegendRow, at.height);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, LayoutOf,
+                         testing::Values(Shape{"wide", {0, 0, 80, 40}}, Shape{"tall", {0, 0, 10, 60}},
+                                         Shape{"square", {-5, -5, 5, 5}}, Shape{"a corridor", {0, 0, 200, 2}},
+                                         Shape{"a shaft", {0, 0, 1, 300}}, Shape{"a line along x", {0, 3, 10, 3}},
+                                         Shape{"a point", {4, 4, 4, 4}}, Shape{"a table top", {0, 0, 0.4, 0.3}},
+                                         Shape{"far away", {100000, 99990, 100024, 100006}}),
+                         [](const auto& shape) {
+                           std::string name = shape.param.reason;
+                           std::replace(name.begin(), name.end(), ' ', '_');
+                           return name;
+                         });
+
+TEST(Layout, LabelsDoNotRunIntoEachOther) {  // long numbers stand further apart
+  for (const double offset : {0.0, 1e5, 1e7}) {
+    FigurePlan plan;
+    plan.extent = {offset, 0, offset + 1.3, 0.7};
+    const FigureLayout at = lay_out(plan);
+    const Ticks ticks = make_ticks(at.shown.x_min, at.shown.x_max, at.tick_spacing / at.scale);
+    ASSERT_GE(ticks.at.size(), 2u);
+    for (const double value : ticks.at)
+      EXPECT_LT(text_size(tick_text(value, ticks.decimals), small_text()).x, ticks.step * at.scale) << value;
+  }
+}
+
+TEST(Axes, PixelsAndMetresAgree) {
+  FigurePlan plan;
+  plan.extent = {0, 0, 20, 10};
+  plan.margin = 0.0;
+  const Axes axes(plan);
+  const PixelBox& plot = axes.layout().plot;
+  EXPECT_NEAR(axes.pixel({0, 0}).x, plot.x_min, 1e-9);
+  EXPECT_NEAR(axes.pixel({0, 0}).y, plot.y_max, 1.0);
+  EXPECT_NEAR(axes.pixel({20, 10}).x, plot.x_max, 1.0);
+  EXPECT_NEAR(axes.pixel({20, 10}).y, plot.y_min, 1.0);
+}
+
+TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // nothing is cut off
+  FigurePlan plan;
+  plan.title = std::string(200, 'W');
+  plan.subtitle = std::string(300, 'w');
+  plan.extent = {99999000, -99999000, 99999020, -99998990};
+  plan.legend.assign(12, {Sample::block, 0xFF00FF00u, "something to be known", 0xFF000000u});
+  plan.bar = ColorBar{"robot", "the first", "the last of them all", {0xFF000000u, 0xFFFF0000u}};
+  Axes axes(plan);
+  const std::string path = testing::TempDir() + "axes.png";
+  axes.save(path);
+  const scenes::Picture p = scenes::read_png(path);
+  constexpr std::uint32_t white = 0xFFFFFFFFu;
+  EXPECT_EQ(p.count(white, 0, 0, p.width, 8), 8 * p.width);
+  EXPECT_EQ(p.count(white, 0, p.height - 8, p.width, p.height), 8 * p.width);
+  EXPECT_EQ(p.count(white, 0, 0, 8, p.height), 8 * p.height);
+  EXPECT_EQ(p.count(white, p.width - 8, 0, p.width, p.height), 8 * p.height);
+}
+
+TEST(Axes, TitleAndLegendAreThere) {
+  FigurePlan plan;
+  plan.title = "TITLE";
+  plan.extent = {0, 0, 10, 5};
+  plan.legend = {{Sample::block, 0xFF00AA00u, "green"}};
+  Axes axes(plan);
+  const FigureLayout at = axes.layout();
+  const std::string path = testing::TempDir() + "legend.png";
+  axes.save(path);
+  const scenes::Picture p = scenes::read_png(path);
+  EXPECT_GT(p.count(0xFF202020u, 0, 0, p.width, at.plot.y_min - 2), 100) << "the title's own colour";
+  EXPECT_GT(p.count(0xFF00AA00u, 0, at.plot.y_max, p.width, p.height), 300) << "the legend's block";
+}
+
+}  // namespace
+}  // namespace sf::viz

@@ -1,0 +1,297 @@
+#include "viz/canvas.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+#include "base/error.h"
+#include "tests/viz/png.h"
+#include "viz/legend.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr std::uint32_t kWhite = 0xFFFFFFFFu;
+constexpr std::uint32_t kBlack = 0xFF000000u;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+int darkness(const Canvas& canvas) {
+  int sum = 0;
+  for (int y = 0; y < canvas.height(); ++y)
+    for (int x = 0; x < canvas.width(); ++x) sum += 255 - static_cast<int>(canvas.pixel(x, y) & 0xFFu);
+  return sum;
+}
+
+/// How much of the picture is black, in pixels.
+double area_of(const Canvas& canvas) { return darkness(canvas) / 255.0; }
+
+TEST(Canvas, StartsAsBackground) {
+  const Canvas canvas(3, 2, 0xFF123456u);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 3; ++x) EXPECT_EQ(canvas.pixel(x, y), 0xFF123456u);
+}
+
+TEST(Canvas, PolygonFillsWholePixels) {  // whole pixels: no grey anywhere
+  Canvas canvas(8, 8, kWhite);
+  const Vec2 box[] = {{2, 3}, {5, 3}, {5, 7}, {2, 7}};
+  canvas.polygon(box, kBlack);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(canvas.pixel(x, y), x >= 2 && x < 5 && y >= 3 && y < 7 ? kBlack : kWhite) << x << ", " << y;
+}
+
+TEST(Canvas, PolygonCoversItsArea) {  // any slope: coverage sums to the area, here of a triangle of 20 x 11 / 2
+  Canvas canvas(32, 32, kWhite);
+  const Vec2 triangle[] = {{3.3, 4.2}, {23.3, 4.2}, {9.1, 15.2}};
+  canvas.polygon(triangle, kBlack);
+  EXPECT_NEAR(area_of(canvas), 110.0, 0.3);
+}
+
+TEST(Canvas, PolygonDirectionDoesNotMatter) {
+  Canvas one(16, 16, kWhite);
+  Canvas other(16, 16, kWhite);
+  const Vec2 there[] = {{2, 2}, {13, 4}, {7, 12}};
+  const Vec2 back[] = {{7, 12}, {13, 4}, {2, 2}};
+  one.polygon(there, kBlack);
+  other.polygon(back, kBlack);
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x) EXPECT_EQ(one.pixel(x, y), other.pixel(x, y));
+}
+
+TEST(Canvas, OverlapOfOneShapeIsPaintedOnce) {  // the middle of two overlapping squares is no darker than the rest
+  Canvas canvas(12, 12, kWhite);
+  std::vector<Line> edges;
+  for (const double d : {0.0, 3.0}) {
+    const Vec2 p[] = {{1 + d, 1 + d}, {7 + d, 1 + d}, {7 + d, 7 + d}, {1 + d, 7 + d}};
+    for (int i = 0; i < 4; ++i) edges.push_back({p[i], p[(i + 1) % 4]});
+  }
+  canvas.area(edges, 0x80000000u);
+  EXPECT_EQ(canvas.pixel(2, 2), canvas.pixel(5, 5));
+  EXPECT_EQ(canvas.pixel(8, 8), canvas.pixel(5, 5));
+  EXPECT_NE(canvas.pixel(5, 5), kWhite);
+}
+
+TEST(Canvas, HoleStaysEmpty) {  // an outline the other way round takes away
+  Canvas canvas(12, 12, kWhite);
+  const Vec2 outer[] = {{1, 1}, {11, 1}, {11, 11}, {1, 11}};
+  const Vec2 inner[] = {{4, 4}, {4, 8}, {8, 8}, {8, 4}};
+  std::vector<Line> edges;
+  for (int i = 0; i < 4; ++i) edges.push_back({outer[i], outer[(i + 1) % 4]});
+  for (int i = 0; i < 4; ++i) edges.push_back({inner[i], inner[(i + 1) % 4]});
+  canvas.area(edges, kBlack);
+  EXPECT_EQ(canvas.pixel(5, 5), kWhite);
+  EXPECT_EQ(canvas.pixel(2, 5), kBlack);
+}
+
+TEST(Canvas, AreaMayReachFarOutside) {  // clipped on all sides: everything inside is covered
+  Canvas canvas(10, 6, kWhite);
+  const Vec2 huge[] = {{-1e7, -1e7}, {1e7, -1e7}, {1e7, 1e7}, {-1e7, 1e7}};
+  canvas.polygon(huge, kBlack);
+  EXPECT_NEAR(area_of(canvas), 60.0, 1e-9);
+}
+
+TEST(Canvas, AreaAcrossOneSideIsCut) {  // each side in turn: half of the square remains
+  for (const Vec2 shift : {Vec2{-5, 0}, Vec2{5, 0}, Vec2{0, -5}, Vec2{0, 5}}) {
+    Canvas canvas(10, 10, kWhite);
+    std::vector<Vec2> box{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+    for (Vec2& p : box) p = p + shift;
+    canvas.polygon(box, kBlack);
+    EXPECT_NEAR(area_of(canvas), 50.0, 1e-9) << shift.x << ", " << shift.y;
+  }
+}
+
+TEST(Canvas, LineCoversLengthTimesWidth) {
+  for (const double width : {0.4, 1.0, 1.5, 4.0}) {
+    Canvas canvas(80, 80, kWhite);
+    canvas.line({10, 12}, {66, 54}, width, kBlack);
+    const double ends = width >= 1.0 ? M_PI * width * width / 4.0 : 0.8 * width;
+    EXPECT_NEAR(area_of(canvas), 70.0 * width + ends, 0.03 * 70.0 * width + 0.6) << width;
+  }
+}
+
+TEST(Canvas, JointsOfAPolylineAreNotDarker) {
+  Canvas one(40, 10, kWhite);
+  Canvas many(40, 10, kWhite);
+  one.line({5, 5}, {35, 5}, 2.0, 0x80000000u);
+  std::vector<Vec2> points;
+  for (int i = 0; i <= 300; ++i) points.push_back({5.0 + i / 10.0, 5.0});
+  many.polyline(points, 2.0, 0x80000000u);
+  for (int y = 0; y < 10; ++y)
+    for (int x = 0; x < 40; ++x) EXPECT_EQ(one.pixel(x, y), many.pixel(x, y)) << x << ", " << y;
+}
+
+TEST(Canvas, OnePointIsADot) {
+  Canvas canvas(9, 9, kWhite);
+  const Vec2 point{4.5, 4.5};
+  canvas.polyline({&point, 1}, 3.0, kBlack);
+  EXPECT_EQ(canvas.pixel(4, 4), kBlack);
+  EXPECT_EQ(canvas.pixel(0, 4), kWhite);
+}
+
+TEST(Canvas, ClipKeepsTheRest) {
+  Canvas canvas(10, 10, kWhite);
+  canvas.clip({2, 3, 6, 7});
+  const Vec2 all[] = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+  canvas.polygon(all, kBlack);
+  canvas.line({0, 0}, {10, 10}, 3.0, kBlack);
+  TextStyle style;
+  style.color = kBlack;
+  canvas.text({0, 5}, "MMMM", style);
+  EXPECT_NEAR(area_of(canvas), 16.0, 1e-9);
+}
+
+TEST(Canvas, ClipOutsideThePictureDrawsNothing) {
+  Canvas canvas(10, 10, kWhite);
+  canvas.clip({20, 20, 30, 30});
+  canvas.disc({5, 5}, 4, kBlack);
+  canvas.line({0, 0}, {10, 10}, 3.0, kBlack);
+  EXPECT_EQ(darkness(canvas), 0);
+}
+
+TEST(Canvas, PointsThatAreNotFiniteAreLeftOut) {
+  Canvas canvas(10, 10, kWhite);
+  canvas.line({kNaN, 1}, {5, 5}, 2.0, kBlack);
+  canvas.line({1, 1}, {5, std::numeric_limits<double>::infinity()}, 2.0, kBlack);
+  canvas.disc({kNaN, kNaN}, 3, kBlack);
+  EXPECT_EQ(darkness(canvas), 0);
+}
+
+TEST(Canvas, NothingIsDrawnFromNothing) {
+  Canvas canvas(4, 4, kWhite);
+  canvas.polyline({}, 1.0, kBlack);
+  canvas.polygon({}, kBlack);
+  canvas.area({}, kBlack);
+  canvas.text({1, 1}, "", {});
+  EXPECT_EQ(darkness(canvas), 0);
+}
+
+TEST(Canvas, DiscHasItsArea) {
+  Canvas canvas(40, 40, kWhite);
+  canvas.disc({20, 20}, 12, kBlack);
+  EXPECT_NEAR(area_of(canvas), M_PI * 144.0, 1.5);  // its corners lie on the circle, its sides 0.03 px within
+}
+
+TEST(Canvas, OpacityMixes) {
+  Canvas canvas(3, 3, kWhite);
+  const Vec2 all[] = {{0, 0}, {3, 0}, {3, 3}, {0, 3}};
+  canvas.polygon(all, 0x80FF0000u);
+  EXPECT_NEAR(static_cast<double>(canvas.pixel(1, 1) & 0xFFu), 127.0, 1.0);
+  EXPECT_EQ(canvas.pixel(1, 1) >> 16 & 0xFFu, 255u);
+}
+
+TEST(Canvas, ImageRepeatsLargeCells) {  // a cell of 4 x 4 pixels is one colour to its border
+  Canvas canvas(8, 4, kWhite);
+  const std::uint32_t cells[] = {0xFF112233u, 0xFF445566u};
+  canvas.image({0, 0}, {8, 4}, {2, 1, cells});
+  EXPECT_EQ(canvas.pixel(3, 3), cells[0]);
+  EXPECT_EQ(canvas.pixel(4, 0), cells[1]);
+}
+
+TEST(Canvas, ImageAveragesSmallCells) {  // a checker board of half pixels is grey
+  Canvas canvas(2, 2, kWhite);
+  std::vector<std::uint32_t> cells;
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) cells.push_back((i + j) % 2 ? kWhite : kBlack);
+  canvas.image({0, 0}, {2, 2}, {4, 4, cells});
+  EXPECT_EQ(canvas.pixel(1, 1), 0xFF808080u);
+}
+
+TEST(Canvas, ImageStartsWithItsTopRow) {
+  Canvas canvas(1, 2, kWhite);
+  const std::uint32_t cells[] = {0xFF010203u, 0xFF040506u};
+  canvas.image({0, 0}, {1, 2}, {1, 2, cells});
+  EXPECT_EQ(canvas.pixel(0, 0), cells[0]);
+}
+
+TEST(Canvas, TextLiesInItsBox) {
+  TextStyle style;
+  style.color = kBlack;
+  const Vec2 size = text_size("Robot 7", style);
+  ASSERT_GT(size.x, 40.0);
+  ASSERT_GT(size.y, 12.0);
+  Canvas canvas(200, 60, kWhite);
+  canvas.text({20, 30}, "Robot 7", style);
+  EXPECT_GT(area_of(canvas), 60.0);
+  canvas.clip(
+      {20, static_cast<int>(30 - size.y / 2) - 1, 21 + static_cast<int>(size.x), static_cast<int>(31 + size.y / 2)});
+  const Vec2 all[] = {{0, 0}, {200, 0}, {200, 60}, {0, 60}};
+  canvas.polygon(all, kWhite);
+  EXPECT_EQ(darkness(canvas), 0) << "text outside of the box that text_size told";
+}
+
+TEST(Canvas, TextAnchors) {  // the same text ends, is centred, or starts at the point
+  for (const auto& [anchor, from, to] : {std::tuple{Anchor::start, 100, 200}, {Anchor::end, 0, 100}}) {
+    Canvas canvas(200, 40, kWhite);
+    TextStyle style;
+    style.across = anchor;
+    canvas.text({100, 20}, "IMI", style);
+    canvas.clip({from, 0, to, 40});
+    const Vec2 all[] = {{0, 0}, {200, 0}, {200, 40}, {0, 40}};
+    EXPECT_GT(darkness(canvas), 0);
+    canvas.polygon(all, kWhite);
+    EXPECT_EQ(darkness(canvas), 0);
+  }
+}
+
+TEST(Canvas, TextUpwardsIsTall) {
+  TextStyle style;
+  const Vec2 flat = text_size("metres", style);
+  style.upwards = true;
+  const Vec2 tall = text_size("metres", style);
+  EXPECT_GT(tall.y, tall.x);
+  EXPECT_NEAR(tall.y, flat.x, 4.0);
+}
+
+TEST(Canvas, DashesLeaveGaps) {  // 100 px of 6 on, 4 off: 60 % of the line
+  Canvas canvas(120, 10, kWhite);
+  const Line line{{10, 5}, {110, 5}};
+  draw_dashes(canvas, {&line, 1}, 1.0, 5.0, 5.0, kBlack);
+  EXPECT_GT(area_of(canvas), 45.0);
+  EXPECT_LT(area_of(canvas), 70.0);
+}
+
+TEST(Canvas, DashesRunOnAcrossSegments) {  // a line in pieces shorter than a dash looks like the whole line
+  Canvas whole(120, 10, kWhite);
+  Canvas pieces(120, 10, kWhite);
+  const Line line{{10, 5}, {110, 5}};
+  std::vector<Line> parts;
+  for (int i = 0; i < 50; ++i) parts.push_back({{10.0 + 2 * i, 5}, {12.0 + 2 * i, 5}});
+  draw_dashes(whole, {&line, 1}, 1.0, 8.0, 8.0, kBlack);
+  draw_dashes(pieces, parts, 1.0, 8.0, 8.0, kBlack);
+  EXPECT_NEAR(area_of(whole), area_of(pieces), 1.0);
+}
+
+TEST(Canvas, PngReadsBackTheSame) {
+  Canvas canvas(31, 17, 0xFFFAFBFCu);
+  canvas.disc({9, 5}, 3, 0xFFD55E00u);
+  const std::string path = testing::TempDir() + "canvas.png";
+  canvas.save_png(path);
+  const scenes::Picture picture = scenes::read_png(path);
+  ASSERT_EQ(picture.width, 31);
+  ASSERT_EQ(picture.height, 17);
+  for (int y = 0; y < 17; ++y)
+    for (int x = 0; x < 31; ++x) ASSERT_EQ(picture.at(x, y), canvas.pixel(x, y)) << x << ", " << y;
+}
+
+TEST(Canvas, UnwritablePathIsNamed) {
+  const Canvas canvas(4, 4, kWhite);
+  for (const std::string& path : {testing::TempDir() + "no/such/folder/a.png", testing::TempDir()}) {
+    try {
+      canvas.save_png(path);
+      ADD_FAILURE() << path << " was written";
+    } catch (const base::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(Canvas, FullDiskIsAnError) {  // the bytes fit into the stream's buffer, not onto the device
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this machine";
+  EXPECT_THROW(Canvas(4, 4, kWhite).save_png("/dev/full"), base::InputError);
+}
+
+}  // namespace
+}  // namespace sf::viz

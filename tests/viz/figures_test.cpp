@@ -1,0 +1,277 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/error.h"
+#include "tests/viz/png.h"
+#include "tests/viz/scenes.h"
+#include "viz/axes.h"
+#include "viz/color.h"
+#include "viz/occupancy.h"
+#include "viz/sight.h"
+#include "viz/trajectory_figure.h"
+#include "viz/world_figure.h"
+
+namespace sf::viz {
+namespace {
+
+using base::Pose;
+
+constexpr std::uint32_t kWhite = 0xFFFFFFFFu;
+
+std::string file(const char* name) { return testing::TempDir() + name; }
+
+/// A room of 6 m x 4 m in walls of 0.5 m, nothing in it.
+world::World room() { return scenes::make_world(6, 4, 0, 0); }
+
+/// The picture of a room, and where points of the world are on it. The plot's place is found by its frame.
+struct Seen {
+  scenes::Picture picture;
+  int left = 0, top = 0, right = 0, bottom = 0;
+  world::Extent shown;
+
+  std::uint32_t at(double x, double y) const {
+    return picture.at(static_cast<int>(left + (x - shown.x_min) / (shown.x_max - shown.x_min) * (right - left)),
+                      static_cast<int>(bottom - (y - shown.y_min) / (shown.y_max - shown.y_min) * (bottom - top)));
+  }
+};
+
+Seen see(const std::string& path, double margin) {
+  constexpr std::uint32_t frame = 0xFF404040u;
+  Seen seen{scenes::read_png(path), 0, 0, 0, 0, {-0.5, -0.5, 6.5, 4.5}};
+  const scenes::Picture& p = seen.picture;
+  const int x_mid = p.width / 2;
+  const int y_mid = p.height / 3;
+  while (seen.top < p.height - 1 && p.count(frame, x_mid - 50, seen.top, x_mid + 50, seen.top + 1) < 100) ++seen.top;
+  seen.bottom = p.height - 1;
+  while (seen.bottom > 0 && p.count(frame, x_mid + 100, seen.bottom, x_mid + 150, seen.bottom + 1) < 50) --seen.bottom;
+  while (seen.left < p.width - 1 && p.count(frame, seen.left, y_mid, seen.left + 1, y_mid + 60) < 60) ++seen.left;
+  seen.right = p.width - 1;
+  while (seen.right > 0 && p.count(frame, seen.right, y_mid, seen.right + 1, y_mid + 60) < 60) --seen.right;
+  ++seen.left, ++seen.top;
+  const double pad = margin * 7.0;
+  seen.shown = {-0.5 - pad, -0.5 - pad, 6.5 + pad, 4.5 + pad};
+  return seen;
+}
+
+TEST(WorldFigure, WallsAreWhereTheyShouldBe) {
+  draw_world(room(), file("room.png"));
+  const Seen seen = see(file("room.png"), 0.03);
+  EXPECT_EQ(seen.at(3.27, 2.27), kWhite) << "inside the room";
+  EXPECT_EQ(seen.at(-0.6, 2.27), kWhite) << "outside of the walls";
+  for (const auto& [x, y] : {std::pair{-0.25, 2.2}, {6.25, 2.2}, {3.2, -0.25}, {3.2, 4.25}, {-0.25, -0.25}})
+    EXPECT_LT(to_lab(seen.at(x, y)).lightness, 0.8) << x << ", " << y << " is within a wall";
+  EXPECT_LT(to_lab(seen.at(3.2, 0.0)).lightness, 0.6) << "the wall's edge";
+}
+
+TEST(WorldFigure, RobotAndItsViewAreThere) {
+  world::World world = room();
+  world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.2, 0, 0}, 0xFF2E7D32u, 3.0));
+  draw_world(world, file("robot.png"));
+  const Seen seen = see(file("robot.png"), 0.03);
+  const Lab body = to_lab(seen.at(1.92, 2.25));
+  EXPECT_LT(body.a, -0.03) << "a green body";
+  const Lab view = to_lab(seen.at(4.27, 2.27));
+  EXPECT_LT(view.b, -0.02) << "a blue field of view ahead";
+  EXPECT_GT(view.lightness, 0.85) << "which is translucent";
+  EXPECT_EQ(seen.at(0.77, 2.27), kWhite) << "and not behind";
+  EXPECT_EQ(seen.at(5.27, 2.27), kWhite) << "nor beyond range_max";
+}
+
+TEST(WorldFigure, ViewStopsAtWalls) {
+  world::World world = room();
+  world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.2, 0, 0}, 0xFF2E7D32u, 30.0));
+  draw_world(world, file("view.png"));
+  const Seen seen = see(file("view.png"), 0.03);
+  EXPECT_NE(seen.at(5.27, 2.27), kWhite);
+  EXPECT_EQ(seen.at(6.62, 2.27), kWhite);
+}
+
+TEST(WorldFigure, WhatAllWallsAreNotIsDrawnToo) {  // every mixture of flags: none disappears
+  for (int flags = 0; flags < 8; ++flags) {
+    world::World world = room();
+    for (world::Segment& s : world.walls) {
+      s.solid_left = flags & 1;
+      s.seen_by_laser = flags & 2;
+      s.stops_robots = flags & 4;
+    }
+    draw_world(world, file("flags.png"));
+    const Seen seen = see(file("flags.png"), 0.03);
+    int dark = 0;
+    for (double x = 0.5; x < 5.5; x += 0.01) dark += to_lab(seen.at(x, 0.0)).lightness < 0.8 ? 1 : 0;
+    EXPECT_GT(dark, 60) << flags;
+  }
+}
+
+TEST(WorldFigure, OddWorldsCanBeDrawn) {  // nothing at all; no model rows; a name from the file; a robot without a body
+  world::World empty;
+  empty.extent = {0, 0, 0, 0};
+  EXPECT_NO_THROW(draw_world(empty, file("empty.png")));
+  world::World world = room();
+  world.name.clear();
+  world.file = "some/where/cave.world";
+  world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.2, 0, 0}, 0xFF2E7D32u, 3.0));
+  world.movers[0].body.clear();
+  world.movers[0].is_tag = true;
+  world.movers[0].lasers[0].fov = 0.0;
+  world.models.clear();
+  EXPECT_NO_THROW(draw_world(world, file("odd.png")));
+}
+
+TEST(WorldFigure, SameWorldSamePicture) {
+  const world::World world = scenes::make_world(24, 16, 40, 30);
+  draw_world(world, file("once.png"));
+  draw_world(world, file("twice.png"));
+  EXPECT_EQ(scenes::read_png(file("once.png")).rgb, scenes::read_png(file("twice.png")).rgb);
+}
+
+TEST(WorldFigure, FarFromTheOriginIsTheSamePlot) {  // 100 km away: the labels differ, walls and robots do not
+  world::World near = room();
+  near.movers.push_back(scenes::make_robot(near, 1, {2.0, 2.2, 0, 0}, 0xFF2E7D32u, 3.0));
+  world::World far = near;
+  for (world::Segment& s : far.walls) s.a = s.a + Vec2{100000, 100000}, s.b = s.b + Vec2{100000, 100000};
+  far.movers[0].X_WM.x += 100000, far.movers[0].X_WM.y += 100000;
+  far.extent = {99999.5, 99999.5, 100006.5, 100004.5};
+  draw_world(near, file("near.png"));
+  draw_world(far, file("far.png"));
+  const Seen a = see(file("near.png"), 0.03);
+  const Seen b = see(file("far.png"), 0.03);
+  for (const auto& [x, y] : {std::pair{1.92, 2.25}, {4.27, 2.27}, {0.77, 2.27}, {-0.25, 2.2}, {6.62, 2.27}})
+    EXPECT_EQ(a.at(x, y), b.at(x, y)) << x << ", " << y;
+}
+
+TEST(Sight, BeamsEndAtTheFirstWallOrAtRangeMax) {
+  const world::World world = room();
+  world::Laser laser;
+  laser.fov = M_PI;
+  laser.range_max = 3.0;
+  const auto ends = beam_ends(world, {5.0, 2.0, 0.5, 0}, laser, 3);
+  EXPECT_NEAR(ends[0].y, 0.0, 1e-9);  // right: the wall
+  EXPECT_NEAR(ends[1].x, 6.0, 1e-9);  // ahead: the wall
+  EXPECT_NEAR(ends[2].y, 4.0, 1e-9);  // left: the wall
+  const auto back = beam_ends(world, {5.0, 2.0, 0.5, M_PI}, laser, 3);
+  EXPECT_NEAR(back[1].x, 2.0, 1e-9);  // nothing within range_max
+}
+
+TEST(Sight, SeesOnlyWhatSpansItsHeight) {  // z_min <= z < z_max, as the segment's contract says
+  const world::World world = room();
+  world::Laser laser;
+  laser.fov = 0.1;
+  laser.range_max = 30.0;
+  EXPECT_NEAR(beam_ends(world, {5.0, 2.0, 0.0, 0}, laser, 3)[1].x, 6.0, 1e-9);
+  EXPECT_NEAR(beam_ends(world, {5.0, 2.0, 1.0, 0}, laser, 3)[1].x, 35.0, 1e-9);
+}
+
+/// One robot along y = 2 from x = 1 to x = 5, stopped at its end.
+Track straight() {
+  Track track;
+  track.name = "one";
+  track.duration = 4.0;
+  for (int i = 0; i <= 40; ++i) track.poses.push_back({1.0 + 0.1 * i, 2.0, 0, 0});
+  return track;
+}
+
+TEST(TrajectoryFigure, LineHasItsColour) {
+  Track track = straight();
+  track.color = 0xFFFF00FFu;
+  draw_trajectories(room(), {&track, 1}, file("track.png"));
+  const Seen seen = see(file("track.png"), 0.03);
+  EXPECT_EQ(seen.at(3.03, 2.0), 0xFFFF00FFu);
+  EXPECT_EQ(seen.at(3.03, 2.1), kWhite);
+  EXPECT_EQ(seen.at(0.8, 2.1), kWhite);
+  EXPECT_EQ(seen.at(5.0, 2.0), 0xFFFF00FFu) << "a disc at the end";
+  EXPECT_EQ(seen.at(1.0, 2.0), kWhite) << "an open ring at the start";
+}
+
+TEST(TrajectoryFigure, ContactIsMarked) {
+  Track track = straight();
+  draw_trajectories(room(), {&track, 1}, file("free.png"));
+  track.contacts.assign(track.poses.size(), 0);
+  track.contacts[20] = track.contacts[21] = 1;
+  draw_trajectories(room(), {&track, 1}, file("stopped.png"));
+  const Seen before = see(file("free.png"), 0.03);
+  const Seen after = see(file("stopped.png"), 0.03);
+  EXPECT_NE(before.at(3.0, 2.0), after.at(3.0, 2.0));
+  EXPECT_EQ(before.at(3.3, 2.0), after.at(3.3, 2.0)) << "the line beside it";
+}
+
+TEST(TrajectoryFigure, PoseThatIsNotFiniteBreaksTheLine) {
+  Track track = straight();
+  track.color = 0xFFFF00FFu;
+  for (std::size_t i = 18; i < 23; ++i) track.poses[i].x = std::numeric_limits<double>::quiet_NaN();
+  draw_trajectories(room(), {&track, 1}, file("broken.png"));
+  const Seen seen = see(file("broken.png"), 0.03);
+  EXPECT_EQ(seen.at(3.03, 2.0), kWhite);
+  EXPECT_EQ(seen.at(2.33, 2.0), 0xFFFF00FFu);
+}
+
+TEST(TrajectoryFigure, LaterTracksLieOnTop) {
+  Track tracks[] = {straight(), straight()};
+  tracks[0].color = 0xFFFF0000u;
+  tracks[1].color = 0xFF0000FFu;
+  draw_trajectories(room(), tracks, file("over.png"));
+  EXPECT_EQ(see(file("over.png"), 0.03).at(3.03, 2.0), 0xFF0000FFu);
+}
+
+TEST(TrajectoryFigure, WhatLeavesTheWorldIsShown) {  // the figure grows with the tracks
+  Track track = straight();
+  track.poses.push_back({60.0, 2.0, 0, 0});
+  draw_trajectories(room(), {&track, 1}, file("away.png"));
+  const scenes::Picture p = scenes::read_png(file("away.png"));
+  EXPECT_GT(p.width, 2 * p.height);
+}
+
+TEST(TrajectoryFigure, NoTrackAndEmptyTracksCanBeDrawn) {
+  EXPECT_NO_THROW(draw_trajectories(room(), {}, file("none.png")));
+  const std::vector<Track> tracks(30);
+  EXPECT_NO_THROW(draw_trajectories(room(), tracks, file("still.png")));
+}
+
+TEST(TrajectoryFigureDeathTest, ContactsMustMatchPoses) {
+  Track track = straight();
+  track.contacts.assign(3, 0);
+  EXPECT_DEATH(draw_trajectories(room(), {&track, 1}, file("never.png")), "3 contacts for 41 poses");
+}
+
+TEST(OccupancyFigure, CellsHaveTheirColours) {
+  const world::World world = room();
+  OccupancyGrid grid(world.extent, 0.1);
+  grid.add_scan({3.0, 2.0, 0, 0}, scenes::scan(world, {3.0, 2.0, 0, 0}, 2 * M_PI, 1441, 8.0), -M_PI, 2 * M_PI / 1440,
+                8.0);
+  draw_occupancy(world, grid, file("grid.png"));
+  const Seen seen = see(file("grid.png"), 0.0);
+  EXPECT_EQ(seen.at(3.25, 2.25), kWhite) << "free";
+  EXPECT_EQ(seen.at(-0.35, 2.25), 0xFF474B50u) << "unexplored";
+  const Lab wall = to_lab(seen.at(6.05, 2.05));
+  EXPECT_LT(wall.b, -0.15) << "occupied";
+}
+
+TEST(OccupancyFigure, OneCellCanBeDrawn) {
+  EXPECT_NO_THROW(draw_occupancy({}, OccupancyGrid({0, 0, 1, 1}, 1.0), file("cell.png")));
+}
+
+TEST(Figures, UnwritablePathIsNamed) {
+  const std::string path = file("no/such/folder/x.png");
+  const auto named = [&](auto&& draw) {
+    try {
+      draw();
+    } catch (const base::InputError& error) {
+      return std::string(error.what()).find(path) == 0;
+    }
+    return false;
+  };
+  EXPECT_TRUE(named([&] { draw_world(room(), path); }));
+  EXPECT_TRUE(named([&] { draw_trajectories(room(), {}, path); }));
+  EXPECT_TRUE(named([&] { draw_occupancy(room(), OccupancyGrid({0, 0, 1, 1}, 0.5), path); }));
+}
+
+TEST(Figures, ManyRobotsCanBeDrawn) {  // the large case, once: 1000 robots in a world of 2000 segments
+  const world::World world = scenes::make_world(80, 40, 500, 1000, 8.0);
+  EXPECT_NO_THROW(draw_world(world, file("many.png")));
+  EXPECT_EQ(scenes::read_png(file("many.png")).width, 1600);
+}
+
+}  // namespace
+}  // namespace sf::viz

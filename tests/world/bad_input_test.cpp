@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/world/read_world.h"
+
+namespace sf::world {
+namespace {
+
+struct Bad {
+  const char* reason;
+  std::string text;
+  int line;
+  const char* says;
+};
+
+// One reason each; the line is the one a user must look at.
+const std::vector<Bad>& corpus() {
+  static const std::vector<Bad> cases = {
+      {"string without end", "name \"x\nmodel()", 1, "closing quote"},
+      {"string without end at the end of the file", "\n\nname \"x", 3, "closing quote"},
+      {"parenthesis without end", "model(\n pose [0 0 0 0]\n", 1, "never closed"},
+      {"parenthesis that closes nothing", "model()\n)", 2, "closes nothing"},
+      {"tuple without end", "model(\n size [1 2", 2, "never closed"},
+      {"tuple that holds a parenthesis", "model(\n size [1 2 )", 2, "tuple of 'size'"},
+      {"commas in a tuple", "model( size [1, 2] )", 1, "blanks"},
+      {"stray character", "model( size ; )", 1, "unexpected ';'"},
+      {"zero byte", std::string("model(\n\0)", 9), 2, "\\x00"},
+      {"half a number", "model(\n size [1x 2 3] )", 2, "not a number"},
+      {"infinite number", "model( size [1e999 2 3] )", 1, "not a number"},
+      {"not a number", "model( size [-nan 2 3] )", 1, "not a number"},
+      {"two dots", "model( size [1.2.3 2 3] )", 1, "not a number"},
+      {"huge length", "model( pose [1e8 0 0 0] )", 1, "too large"},
+      {"property without value", "model(\n size\n color \"red\" )", 2, "needs a value"},
+      {"property at the end", "name", 1, "needs a value"},
+      {"number where a property belongs", "model( 3 )", 1, "expected a property"},
+      {"string at the top", "\"x\"", 1, "expected include"},
+      {"pose too short", "model(\n pose [1 2] )", 2, "[x y z yaw]"},
+      {"size too short", "model( size [1] )", 1, "[x y z]"},
+      {"size that is no tuple", "model( size 1 )", 1, "expects a tuple"},
+      {"size of words", "model( size [\"a\" \"b\" \"c\"] )", 1, "tuple of numbers"},
+      {"negative size", "model( size [1 -1 1] )", 1, "not negative"},
+      {"number as a name", "model( name 3 )", 1, "expects a \"string\""},
+      {"text as a number", "model( boundary \"yes\" )", 1, "one number"},
+      {"missing include", "\ninclude \"nowhere.inc\"", 2, "nowhere.inc"},
+      {"include without a name", "include 3", 1, "include \"file\""},
+      {"missing bitmap", "model(\n bitmap \"nowhere.png\" )", 2, "nowhere.png"},
+      {"bitmap without area", "model( size [0 1 1] bitmap \"bitmaps/cave.png\" )", 1, "above zero"},
+      {"define without a body", "define a model\nmodel()", 1, "expected '('"},
+      {"define without a base", "define a (", 1, "define NEW-NAME"},
+      {"define of itself", "\ndefine a a( )", 2, "defined by itself"},
+      {"block without points", "model(\n block( z [0 1] ) )", 2, "'points' is missing"},
+      {"block with one point", "model( block( points 1 point[0] [0 0] ) )", 1, "from 2"},
+      {"block with half a point", "model( block( points 2.5 ) )", 1, "whole number"},
+      {"block that lacks a point", "model(\n block( points 3 point[0] [0 0] point[1] [1 0] ) )", 2, "point[2]"},
+      {"block upside down", "model( block( points 2 point[0] [0 0] point[1] [1 0] z [1 0] ) )", 1, "min not above max"},
+      {"index given twice", "model( block( points 2\n point[0] [0 0]\n point[0] [1 0] ) )", 3, "given twice"},
+      {"no samples", "position( laser(\n samples 0 ) )", 2, "from 1 to 1000000"},
+      {"too many samples", "position( laser( samples 1000001 ) )", 1, "from 1 to 1000000"},
+      {"half a sample", "position( laser( samples 1.5 ) )", 1, "whole number"},
+      {"more than a turn", "position( laser(\n fov 361 ) )", 2, "0 to 360"},
+      {"field of view below zero", "position( laser( fov -1 ) )", 1, "0 to 360"},
+      {"no range", "position( laser( range_max 0 ) )", 1, "more than 0"},
+      {"range below zero", "position( ranger( sensor(\n range [-1 5] ) ) )", 2, "smallest range"},
+      {"range turned round", "position( ranger( sensor( range [5 1] ) ) )", 1, "smallest range"},
+      {"range of one number", "position( ranger( sensor( range [5] ) ) )", 1, "[min max]"},
+      {"noise of one number", "position( laser( noise [0.1] ) )", 1, "[constant proportional angular]"},
+      {"noise below zero", "position( laser( noise [0.1 -1 0] ) )", 1, "not negative"},
+      {"no rate", "position( laser( rate 0 ) )", 1, "above zero"},
+      {"no interval", "position( laser( update_interval 0 ) )", 1, "above zero"},
+      {"phase below zero", "position( laser( phase -1 ) )", 1, "expected 0 to"},
+      {"resolution of zero", "position( laser( resolution 0 ) )", 1, "from 1"},
+      {"array that lacks a transducer", "position( ranger(\n scount 2 spose[0] [0 0 0] ) )", 2, "spose[1]"},
+      {"empty array", "position( ranger( scount 0 ) )", 1, "from 1"},
+      {"robot that cannot move", "position( velocity_bounds [0 0] )", 1, "can move"},
+      {"unknown drive", "position( drive \"legs\" )", 1, "\"diff\", \"omni\" or \"car\""},
+      {"two robots of one number", "position( name \"roomba1\" )\nposition( name \"pioneer1\" )", 2, "robot 1"},
+      {"two tags of one number", "model( name \"tag4\" )\nmodel( model( name \"tag4\" ) )", 2, "tag 4"},
+      {"unknown unit of length", "unit_length \"ft\"", 1, "\"m\", \"cm\" or \"mm\""},
+      {"unknown unit of angle", "unit_angle \"grad\"", 1, "degrees"},
+      {"no time per tick", "interval_sim 0", 1, "milliseconds"},
+  };
+  return cases;
+}
+
+TEST(BadInput, IsRefusedWithItsLineAndWhatWasExpected) {
+  for (const Bad& bad : corpus()) {
+    const std::string error = error_of(bad.text);
+    EXPECT_TRUE(error.starts_with(fmt::format("test.world:{}: ", bad.line))) << bad.reason << ": " << error;
+    EXPECT_NE(error.find(bad.says), std::string::npos) << bad.reason << ": " << error;
+  }
+}
+
+// The printed listing of a five-element array numbers every element 0: four of them would be lost.
+TEST(BadInput, AnArrayThatRepeatsItsFirstElementIsRefused) {
+  const std::string error = error_of(
+      "define array magnetometer\n(\n scount 5\n spose[0] [ -0.15 0 0 ]\n spose[0] [ -0.075 0 0 ]\n spose[0] [ 0 0 0 "
+      "]\n)\n");
+  EXPECT_TRUE(error.starts_with("test.world:5: 'spose[0]' is given twice")) << error;
+}
+
+TEST(BadInput, AbsurdNestingIsRefusedNotAStackOverflow) {
+  std::string text;
+  for (int i = 0; i < 100'000; ++i) text += "model(";
+  EXPECT_NE(error_of(text).find("nested deeper"), std::string::npos);
+}
+
+TEST(BadInput, NestingThroughMacrosCountsToo) {
+  std::string text = "define a0 model()\n";
+  for (int i = 1; i < 200; ++i) text += fmt::format("define a{} model( a{}() )\n", i, i - 1);
+  EXPECT_NE(error_of(text).find("nested deeper"), std::string::npos);
+}
+
+TEST(BadInput, MacrosThatDoubleEachTimeAreRefusedNotSwallowed) {
+  std::string text = "define a0 model( size [1 1 1] )\n";
+  for (int i = 1; i < 60; ++i) {
+    text += fmt::format("define a{0} model( a{1}() a{1}() )\n", i, i - 1);
+  }
+  EXPECT_NE(error_of(text).find("grow to more than"), std::string::npos);
+}
+
+class Files : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) / fmt::format("bad_input_{}", ::getpid());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return (folder_ / name).string();
+  }
+  static std::string error(const std::string& file) {
+    try {
+      load_world(file);
+    } catch (const base::InputError& caught) {
+      return caught.what();
+    }
+    return {};
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(Files, AMissingFileSaysSo) {
+  EXPECT_NE(error((folder_ / "none.world").string()).find("no such file"), std::string::npos);
+}
+
+TEST_F(Files, AFolderIsNoWorld) { EXPECT_NE(error(folder_.string()).find("not a file"), std::string::npos); }
+
+TEST_F(Files, ACircleOfIncludesIsShownWhole) {
+  const std::string a = write("a.world", "include \"b.inc\"\n");
+  write("b.inc", "\ninclude \"c.inc\"\n");
+  write("c.inc", "include \"a.world\"\n");
+  const std::string text = error(a);
+  EXPECT_NE(text.find("c.inc:1: this include closes a circle"), std::string::npos) << text;
+  EXPECT_LT(text.find("b.inc ->"), text.find("c.inc ->")) << text;
+}
+
+TEST_F(Files, IncludesThatDoubleEachTimeAreRefused) {
+  const std::string a = write("f0.world", "include \"f1.inc\"\ninclude \"f1.inc\"\n");
+  for (int i = 1; i < 30; ++i) {
+    write(fmt::format("f{}.inc", i), fmt::format("include \"f{0}.inc\"\ninclude \"f{0}.inc\"\n", i + 1));
+  }
+  write("f30.inc", "");
+  EXPECT_NE(error(a).find("includes"), std::string::npos);
+}
+
+TEST_F(Files, AnErrorInAnIncludeNamesTheInclude) {
+  const std::string a = write("a.world", "include \"b.inc\"\nthing()");
+  write("b.inc", "define thing model(\n size [1 )\n");
+  EXPECT_NE(error(a).find("b.inc:2: "), std::string::npos);
+}
+
+TEST_F(Files, APictureThatIsNoneIsNamed) {
+  write("x.png", "hello");
+  EXPECT_NE(error(write("a.world", "model( bitmap \"x.png\" )")).find("neither a PNG nor a PGM"), std::string::npos);
+}
+
+TEST_F(Files, ABrokenPictureIsNamed) {
+  write("x.png", "\x89PNG\r\n\x1a\n and then nothing");
+  EXPECT_NE(error(write("a.world", "model( bitmap \"x.png\" )")).find("broken PNG"), std::string::npos);
+  write("y.pgm", "P5 3 3 255\nabc");
+  EXPECT_NE(error(write("b.world", "model( bitmap \"y.pgm\" )")).find("fewer pixels"), std::string::npos);
+  write("z.pgm", "P2 20000 1 255\n0");
+  EXPECT_NE(error(write("c.world", "model( bitmap \"z.pgm\" )")).find("20000 x 1"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sf::world

@@ -1,0 +1,68 @@
+#include "world/keys.h"
+
+#include <gtest/gtest.h>
+
+#include "world/colors.h"
+#include "world/movers.h"
+
+namespace sf::world {
+namespace {
+
+TEST(Keys, EditDistanceCountsSlips) {
+  EXPECT_EQ(edit_distance("", ""), 0u);
+  EXPECT_EQ(edit_distance("", "abc"), 3u);
+  EXPECT_EQ(edit_distance("pose", "pose"), 0u);
+  EXPECT_EQ(edit_distance("pose", "posee"), 1u);       // put in
+  EXPECT_EQ(edit_distance("pose", "pse"), 1u);         // left out
+  EXPECT_EQ(edit_distance("pose", "pise"), 1u);        // mistaken
+  EXPECT_EQ(edit_distance("samples", "smaples"), 1u);  // swapped
+  EXPECT_EQ(edit_distance("range_max", "range_min"), 2u);
+}
+
+TEST(Keys, ShortWordsAreSuggestedForOneSlipOnly) {
+  const std::vector<std::string_view> words{"fov", "z"};
+  EXPECT_EQ(suggest("fow", words), "; did you mean 'fov'?");
+  EXPECT_EQ(suggest("abc", words), "");
+}
+
+TEST(Keys, IndicesDoNotMatter) {
+  EXPECT_TRUE(is_known_key(Where::block, "point[17]"));
+  EXPECT_TRUE(is_known_key(Where::model, "block[2].point[17]"));
+  EXPECT_FALSE(is_known_key(Where::model, "point[17]"));
+}
+
+TEST(Keys, KeysAreKnownWhereTheyAreRead) {
+  EXPECT_TRUE(is_known_key(Where::laser, "samples"));
+  EXPECT_FALSE(is_known_key(Where::model, "samples"));
+  EXPECT_TRUE(is_known_key(Where::ranger, "pose"));
+  EXPECT_FALSE(is_known_key(Where::world, "pose"));
+}
+
+TEST(Colors, AreSortedSoThatEveryNameIsFound) {
+  for (const char* name :
+       {"aliceblue", "black", "red", "LightBlue", "steel blue", "DarkRed", "yellowgreen", "white", "grey"}) {
+    EXPECT_TRUE(color_of(name)) << name;
+  }
+  EXPECT_EQ(color_of("red"), 0xFFFF0000u);
+  EXPECT_EQ(color_of("gray0"), 0xFF000000u);
+  EXPECT_EQ(color_of("grey100"), 0xFFFFFFFFu);
+  EXPECT_EQ(color_of("red4"), 0xFF8C0000u);
+  EXPECT_FALSE(color_of("gray101"));
+  EXPECT_FALSE(color_of("red5"));
+  EXPECT_FALSE(color_of("1"));
+  EXPECT_FALSE(color_of(""));
+}
+
+TEST(Links, ComeFromNames) {
+  EXPECT_EQ(link_of("roomba12")->number, 12u);
+  EXPECT_EQ(link_of("/khepera3")->number, 3u);
+  EXPECT_EQ(link_of("roomba0")->number, 0u);
+  EXPECT_TRUE(link_of("tag32")->is_tag);
+  EXPECT_FALSE(link_of("tag0"));
+  EXPECT_FALSE(link_of("roomba-1"));
+  EXPECT_FALSE(link_of("roomba"));
+  EXPECT_FALSE(link_of("pioneer2dx"));
+}
+
+}  // namespace
+}  // namespace sf::world

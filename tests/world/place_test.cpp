@@ -1,0 +1,196 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "base/error.h"
+#include "tests/robots/scenes.h"
+#include "world/wall_grid.h"
+#include "world/world.h"
+
+namespace sf::world {
+namespace {
+
+double nearest_wall(const World& world, Vec2 p) {
+  double nearest = HUGE_VAL;
+  for (const Segment& wall : world.walls) nearest = std::min(nearest, distance(p, wall.a, wall.b));
+  return nearest;
+}
+
+Vec2 at(const Mover& mover) { return {mover.X_WM.x, mover.X_WM.y}; }
+
+// Two rooms of 6 m x 6 m without a door between them; the robot is in the left one.
+World two_rooms() {
+  World world = scenes::boxed_world(12, 6);
+  scenes::add_wall(world, {6, 0}, {6, 6});
+  scenes::add_outline(world.walls, scenes::rectangle({3, 3}, 2, 2));
+  scenes::add_create(world, {1, 1, 0.2, 0});
+  return world;
+}
+
+TEST(CloneRobots, all_stand_clear) {
+  World world = two_rooms();
+  clone_robots(world, 40, 1);
+  ASSERT_EQ(world.movers.size(), 40u);
+  for (const Mover& mover : world.movers) {
+    EXPECT_GE(nearest_wall(world, at(mover)), mover.radius + 0.05 - 1e-12);
+    EXPECT_LE(std::abs(mover.X_WM.yaw), M_PI);
+    EXPECT_EQ(mover.X_WM.z, 0.2) << "at the first robot's height";
+    for (const Mover& other : world.movers) {
+      if (&other == &mover) continue;
+      EXPECT_GE(length(at(other) - at(mover)), 2 * mover.radius + 0.05);
+    }
+  }
+}
+
+TEST(CloneRobots, all_could_have_come_from_where_the_first_stood) {
+  World world = two_rooms();
+  clone_robots(world, 60, 1);
+  for (const Mover& mover : world.movers) {
+    const Vec2 p = at(mover);
+    EXPECT_TRUE(p.x > 0 && p.x < 6 && p.y > 0 && p.y < 6) << "outside, or behind the wall: " << p.x << ", " << p.y;
+    EXPECT_FALSE(std::abs(p.x - 3) < 1 && std::abs(p.y - 3) < 1) << "in the block";
+  }
+}
+
+TEST(CloneRobots, a_door_leads_to_the_other_room) {
+  World world = scenes::boxed_world(12, 6);
+  scenes::add_wall(world, {6, 1}, {6, 6});
+  scenes::add_create(world, {1, 1, 0, 0});
+  clone_robots(world, 60, 1);
+  EXPECT_TRUE(std::any_of(world.movers.begin(), world.movers.end(), [](const Mover& m) { return m.X_WM.x > 6; }));
+}
+
+TEST(CloneRobots, a_first_robot_in_a_solid_means_the_largest_free_region) {
+  World world = two_rooms();
+  world.movers[0].X_WM = {3, 3, 0, 0};
+  scenes::add_wall(world, {-20, -20}, {-20, 20});
+  clone_robots(world, 20, 1);
+  for (const Mover& mover : world.movers) EXPECT_GE(nearest_wall(world, at(mover)), mover.radius);
+}
+
+TEST(CloneRobots, poses_do_not_depend_on_the_count) {
+  World few = two_rooms(), many = two_rooms();
+  clone_robots(few, 10, 7);
+  clone_robots(many, 60, 7);
+  for (std::size_t k = 0; k < few.movers.size(); ++k) {
+    EXPECT_EQ(few.movers[k].X_WM.x, many.movers[k].X_WM.x);
+    EXPECT_EQ(few.movers[k].X_WM.yaw, many.movers[k].X_WM.yaw);
+  }
+}
+
+TEST(CloneRobots, another_seed_gives_other_poses) {
+  World a = two_rooms(), b = two_rooms();
+  clone_robots(a, 1, 1);
+  clone_robots(b, 1, 2);
+  EXPECT_NE(a.movers[0].X_WM.x, b.movers[0].X_WM.x);
+}
+
+TEST(CloneRobots, the_same_100_km_away) {
+  World world = scenes::boxed_world(6, 6, {1e5, 1e5});
+  scenes::add_create(world, {1e5 + 3, 1e5 + 3, 0, 0});
+  clone_robots(world, 30, 1);
+  for (const Mover& mover : world.movers) {
+    EXPECT_GT(nearest_wall(world, at(mover)), 0.2);
+    EXPECT_LT(std::abs(mover.X_WM.x - 1e5 - 3), 3.0);
+  }
+}
+
+TEST(CloneRobots, something_100_km_away_does_not_coarsen_the_room) {
+  World world = two_rooms();
+  scenes::add_wall(world, {1e5, 1e5}, {1e5, 1e5 + 1});
+  clone_robots(world, 40, 1);
+  for (const Mover& mover : world.movers) EXPECT_TRUE(mover.X_WM.x > 0 && mover.X_WM.x < 6);
+}
+
+TEST(CloneRobots, bridges_do_not_matter_to_low_robots) {
+  World world = scenes::boxed_world(1, 1);
+  for (double x = 0.1; x < 1.0; x += 0.1) scenes::add_wall(world, {x, 0}, {x, 1}, 1.0, 2.0);
+  scenes::add_create(world, {0.5, 0.5, 0, 0});
+  EXPECT_NO_THROW(clone_robots(world, 1, 1));
+}
+
+TEST(CloneRobots, no_room_is_said_with_numbers) {
+  World world = scenes::boxed_world(2, 2);
+  scenes::add_create(world, {1, 1, 0, 0});
+  try {
+    clone_robots(world, 1000, 1);
+    FAIL() << "1000 robots do not fit 2 m x 2 m";
+  } catch (const base::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(" of 1000 robots"), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find("scene.world: placed "), 0u) << error.what();
+  }
+}
+
+TEST(CloneRobots, no_robot_or_none_asked_for_is_refused) {
+  World empty = scenes::boxed_world(2, 2);
+  EXPECT_THROW(clone_robots(empty, 3, 1), base::InputError);
+  World tags = two_rooms();
+  tags.movers[0].is_tag = true;
+  EXPECT_THROW(clone_robots(tags, 3, 1), base::InputError) << "a tag is not a robot";
+  World world = two_rooms();
+  EXPECT_THROW(clone_robots(world, 0, 1), base::InputError);
+}
+
+// A tag, two robots with a carried model each, and a post, in an order that mixes them.
+World mixed() {
+  World world = scenes::boxed_world(8, 8);
+  scenes::add_create(world, {6, 6, 0, 0}).is_tag = true;
+  world.movers[0].name = world.models[1].name = "tag3";
+  world.movers[0].id = 3;
+  scenes::add_create(world, {2, 2, 0, M_PI / 2});
+  world.movers[1].name = world.models[2].name = "roomba17";
+  world.models.push_back(
+      {.name = "roomba17.laser:0", .type = "laser", .parent = 2, .mover = 1, .X_WM = {2, 2.1, 0, M_PI / 2}});
+  world.models.push_back({.name = "hat", .type = "model", .parent = 2, .mover = 1, .X_WM = {2, 2, 0, 0}});
+  scenes::add_create(world, {4, 4, 0, 0});
+  world.models.push_back({.name = "post", .type = "model"});
+  scenes::add_outline(world.walls, scenes::rectangle({4, 4}, 0.1, 0.1));
+  for (auto s = world.walls.end() - 4; s != world.walls.end(); ++s)
+    s->model = static_cast<std::uint32_t>(world.models.size() - 1);
+  world.movers[1].body[0].model = 4;  // a piece of the hat
+  return world;
+}
+
+TEST(CloneRobots, rows_names_and_ids) {
+  World world = mixed();
+  clone_robots(world, 3, 1);
+  ASSERT_EQ(world.movers.size(), 4u);
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const Mover& mover = world.movers[k];
+    const std::string name = "roomba" + std::to_string(k + 1);
+    EXPECT_EQ(mover.name, name);
+    EXPECT_EQ(mover.id, k + 1);
+    EXPECT_EQ(world.models[mover.model].name, name);
+    EXPECT_EQ(world.models[mover.model].X_WM.x, mover.X_WM.x);
+    EXPECT_EQ(world.models[mover.body[0].model].name, name + ".hat");
+    EXPECT_EQ(world.models[mover.body[1].model].name, name);
+  }
+  EXPECT_EQ(world.movers[3].name, "tag3");
+  EXPECT_EQ(world.models[world.movers[3].model].name, "tag3");
+  EXPECT_EQ(world.models[world.walls.back().model].name, "post");
+}
+
+TEST(CloneRobots, models_stay_consistent) {
+  World world = mixed();
+  clone_robots(world, 5, 1);
+  std::set<std::string> names;
+  for (const Model& model : world.models) {
+    EXPECT_TRUE(names.insert(model.name).second) << model.name << " twice";
+    if (model.parent == kNone) continue;
+    const Model& parent = world.models.at(model.parent);
+    EXPECT_EQ(parent.mover, model.mover);
+    if (model.type != "laser") continue;
+    EXPECT_NEAR(std::hypot(model.X_WM.x - parent.X_WM.x, model.X_WM.y - parent.X_WM.y), 0.1, 1e-12);
+  }
+  EXPECT_EQ(names.size(), 3u + 5u * 3u) << "walls, post, tag; three models a robot";
+}
+
+TEST(CloneRobots, copies_keep_clear_of_tags) {
+  World world = mixed();
+  clone_robots(world, 60, 1);
+  for (std::size_t k = 0; k < 60; ++k) EXPECT_GT(length(at(world.movers[k]) - at(world.movers[60])), 0.33 + 0.05);
+}
+
+}  // namespace
+}  // namespace sf::world

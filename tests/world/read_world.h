@@ -1,0 +1,34 @@
+#pragma once
+// Worlds written inside tests.
+
+#include <string>
+
+#include "base/error.h"
+#include "world/stage.h"
+
+namespace sf::world {
+
+inline World read_world(const std::string& text, const LoadOptions& options = {}) {
+  return build_world(SF_SOURCE_DIR "/worlds/test.world", text, options);
+}
+
+/// What the error says, without the path: "test.world:3: ...". Empty when the world loads.
+inline std::string error_of(const std::string& text) {
+  try {
+    read_world(text);
+  } catch (const base::InputError& error) {
+    const std::string what = error.what();
+    const auto at = what.find("test.world");
+    return at == std::string::npos ? what : what.substr(at);
+  }
+  return {};
+}
+
+/// All warnings, one a line: "3: ...".
+inline std::string warnings_of(const World& world) {
+  std::string all;
+  for (const Warning& warning : world.warnings) all += std::to_string(warning.line) + ": " + warning.message + "\n";
+  return all;
+}
+
+}  // namespace sf::world

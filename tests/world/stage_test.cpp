@@ -1,0 +1,320 @@
+#include "world/stage.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/world/read_world.h"
+
+namespace sf::world {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+const Mover& only_mover(const World& world) {
+  EXPECT_EQ(world.movers.size(), 1u);
+  return world.movers.at(0);
+}
+
+// --- Grammar ---
+
+TEST(Stage, BracketsNeedNoBlanksAndAllLineEndsCount) {
+  const World world = read_world("define box model(size[1 2 3])\r\nbox(pose[1 2 0 0])\rbox(\n)# end");
+  ASSERT_EQ(world.models.size(), 2u);
+  EXPECT_EQ(world.models[0].size.y, 2.0);
+  EXPECT_EQ(world.models[0].type, "box");
+}
+
+TEST(Stage, AMacroIsCopiedAndOverridden) {
+  const World world = read_world(
+      "define a model( size [1 1 1] color \"red\" model() )\ndefine b a( color \"blue\" )\nb( size [2 2 2] model() )");
+  ASSERT_EQ(world.models.size(), 3u);
+  EXPECT_EQ(world.models[0].size.x, 2.0);
+  EXPECT_EQ(world.models[0].color, 0xFF0000FFu);
+}
+
+TEST(Stage, TheFirstDefineCountsAndTheSecondIsMentioned) {
+  const World world = read_world("define a model( size [1 1 1] )\ndefine a model( size [2 2 2] )\na()");
+  EXPECT_EQ(world.models[0].size.x, 1.0);
+  EXPECT_NE(warnings_of(world).find("2: 'a' is defined again"), std::string::npos);
+}
+
+TEST(Stage, TheLastOfTwoEqualPropertiesCounts) {
+  const World world = read_world("model( size [1 1 1]\n size [2 2 2] )");
+  EXPECT_EQ(world.models[0].size.x, 2.0);
+  EXPECT_NE(warnings_of(world).find("2: 'size' is given twice"), std::string::npos);
+}
+
+TEST(Stage, ExponentsAreNumbersToo) { EXPECT_EQ(read_world("model( size [1e-1 +2 .5] )").models[0].size.x, 0.1); }
+
+// --- Units ---
+
+TEST(Stage, CentimetresAndRadians) {
+  const World world =
+      read_world("unit_length \"cm\" unit_angle \"radians\" model( pose [100 50 0 1.5] size [10 20 30] )");
+  EXPECT_DOUBLE_EQ(world.models[0].X_WM.x, 1.0);
+  EXPECT_DOUBLE_EQ(world.models[0].X_WM.yaw, 1.5);
+  EXPECT_DOUBLE_EQ(world.walls[0].z_max, 0.3);
+}
+
+TEST(Stage, UnitsCountForTheWholeFileWhereverTheyStand) {
+  EXPECT_DOUBLE_EQ(read_world("model( size [10 20 30] ) unit_length \"mm\"").models[0].size.x, 0.01);
+}
+
+// --- Bodies ---
+
+TEST(Stage, AModelWithoutBlocksIsABoxOfItsSize) {
+  const World world = read_world("model( size [2 1 0.5] pose [10 0 0 90] )");
+  ASSERT_EQ(world.walls.size(), 4u);
+  EXPECT_NEAR(world.extent.x_min, 9.5, 1e-12);
+  EXPECT_NEAR(world.extent.y_max, 1.0, 1e-12);
+  EXPECT_EQ(world.walls[0].z_max, 0.5);
+  EXPECT_TRUE(world.walls[0].solid_left);
+}
+
+TEST(Stage, NoblocksIsNoBody) { EXPECT_TRUE(read_world("model( noblocks 1 )").walls.empty()); }
+
+TEST(Stage, BlocksAreScaledTogetherToTheSize) {
+  const World world = read_world(
+      "model( size [2 4 1] block( points 4 point[0] [0 0] point[1] [5 0] point[2] [5 5] point[3] [0 5] z [0 10] )"
+      " block( points 4 point[0] [5 5] point[1] [10 5] point[2] [10 20] point[3] [5 20] z [5 20] ) )");
+  ASSERT_EQ(world.walls.size(), 8u);
+  EXPECT_EQ(world.extent.x_min, -1.0);
+  EXPECT_EQ(world.extent.x_max, 1.0);
+  EXPECT_EQ(world.extent.y_min, -2.0);
+  EXPECT_EQ(world.extent.y_max, 2.0);
+  EXPECT_DOUBLE_EQ(world.walls[0].z_max, 0.5);
+  EXPECT_DOUBLE_EQ(world.walls[4].z_min, 0.25);
+  EXPECT_DOUBLE_EQ(world.walls[4].z_max, 1.0);
+}
+
+TEST(Stage, BlocksOfTheOldestFormAreTheSame) {
+  const std::string points =
+      "points 3 block[0].point[0] [0 0] block[0].point[1] [1 0] block[0].point[2] [0 1] block[0].z [0 1]";
+  const World old_form = read_world("model( size [1 1 1] blocks 1 block[0]." + points + " )");
+  const World new_form =
+      read_world("model( size [1 1 1] block( points 3 point[0] [0 0] point[1] [1 0] point[2] [0 1] ) )");
+  EXPECT_EQ(old_form.hash, new_form.hash);
+  EXPECT_EQ(warnings_of(old_form), "");
+}
+
+TEST(Stage, AClockwiseBlockIsTurnedSoThatItsSolidIsOnTheLeft) {
+  const World world =
+      read_world("model( size [1 1 1] block( points 3 point[0] [0 0] point[1] [0 1] point[2] [1 0] ) )");
+  double area = 0.0;
+  for (const Segment& wall : world.walls) area += cross(wall.a, wall.b);
+  EXPECT_DOUBLE_EQ(area, 1.0);
+}
+
+TEST(Stage, AThinWallIsOneSegmentWithoutSides) {
+  const World world = read_world("model( size [0 2 1] block( points 2 point[0] [3 0] point[1] [3 1] ) )");
+  ASSERT_EQ(world.walls.size(), 1u);
+  EXPECT_FALSE(world.walls[0].solid_left);
+  EXPECT_EQ(world.walls[0].a.x, 0.0);
+  EXPECT_EQ(std::abs(world.walls[0].a.y), 1.0);
+}
+
+TEST(Stage, ABoundaryIsAFrameOfFourWalls) {
+  const World world = read_world("model( size [4 2 1] boundary 1 )");
+  ASSERT_EQ(world.walls.size(), 8u);
+  double area = 0.0;
+  for (const Segment& wall : world.walls) area += cross(wall.a, wall.b) / 2;
+  EXPECT_NEAR(area, 4 * 2 - 3.98 * 1.98, 1e-12);  // the frame is solid, what it encloses is not
+}
+
+TEST(Stage, AnOriginShiftsTheBodyNotThePose) {
+  const World world = read_world("model( size [1 1 1] pose [5 0 0 90] origin [1 0 0.5 0] )");
+  EXPECT_EQ(world.models[0].X_WM.x, 5.0);
+  EXPECT_NEAR(world.extent.y_max, 1.5, 1e-12);
+  EXPECT_EQ(world.walls[0].z_min, 0.5);
+}
+
+TEST(Stage, ChildrenStandOnTheirParentUnlessItSaysOtherwise) {
+  const World on = read_world("model( size [1 1 0.4] pose [0 0 0.1 0] model( pose [0 0 0.05 0] ) )");
+  EXPECT_DOUBLE_EQ(on.models[1].X_WM.z, 0.55);
+  const World in = read_world("model( size [1 1 0.4] pose [0 0 0.1 0] stack_children 0 model( pose [0 0 0.05 0] ) )");
+  EXPECT_DOUBLE_EQ(in.models[1].X_WM.z, 0.15000000000000002);
+}
+
+TEST(Stage, BitmapWallsStopRobotsUnlessStagesRuleIsAskedFor) {
+  const std::string text =
+      "model( size [16 16 1] bitmap \"bitmaps/cave.png\" obstacle_return 0 ) model( obstacle_return 0 )";
+  const World ours = read_world(text);
+  EXPECT_TRUE(ours.walls.front().stops_robots);
+  EXPECT_FALSE(ours.walls.back().stops_robots);  // only floor plans are made solid
+  LoadOptions options;
+  options.stage_obstacles = true;
+  EXPECT_FALSE(read_world(text, options).walls.front().stops_robots);
+}
+
+TEST(Stage, ReturnsHideFromLasers) {
+  EXPECT_FALSE(read_world("model( laser_return 0 )").walls[0].seen_by_laser);
+  EXPECT_FALSE(read_world("model( ranger_return -1 )").walls[0].seen_by_laser);
+  EXPECT_TRUE(read_world("model( laser_return 2 )").walls[0].seen_by_laser);
+  EXPECT_TRUE(read_world("model( ranger_return 0.5 )").walls[0].seen_by_laser);
+}
+
+TEST(Stage, ABitmapIsDarkSolidAndUpright) {
+  const World world =
+      build_world(SF_SOURCE_DIR "/worlds/x.world", "model( size [16 16 0.8] bitmap \"bitmaps/cave.png\" )");
+  EXPECT_EQ(world.extent.x_min, -8.0);
+  EXPECT_EQ(world.extent.y_max, 8.0);
+  double area = 0.0;
+  for (const Segment& wall : world.walls) area += cross(wall.a, wall.b) / 2;
+  EXPECT_GT(area, 0.45 * 256);
+  EXPECT_LT(area, 0.55 * 256);
+}
+
+// --- Movers ---
+
+TEST(Stage, APositionMovesAndCarriesWhatIsInIt) {
+  const World world = read_world(
+      "position( name \"r0\" pose [3 4 0 90] size [0.4 0.4 0.2] model( name \"mast\" size [0.1 0.1 0.5] pose [0.1 0 0 "
+      "0] ) )");
+  const Mover& robot = only_mover(world);
+  EXPECT_TRUE(world.walls.empty());
+  ASSERT_EQ(robot.body.size(), 8u);
+  EXPECT_EQ(robot.X_WM.x, 3.0);
+  EXPECT_DOUBLE_EQ(robot.X_WM.yaw, M_PI / 2);
+  EXPECT_DOUBLE_EQ(robot.body[4].z_min, 0.2);  // on top of the robot, whatever the robot's pose
+  EXPECT_DOUBLE_EQ(robot.body[4].z_max, 0.7);
+  EXPECT_EQ(world.models[1].name, "r0.mast");
+  EXPECT_EQ(world.models[1].mover, 0u);
+  EXPECT_DOUBLE_EQ(world.models[1].X_WM.y, 4.1);
+  EXPECT_DOUBLE_EQ(robot.radius, std::hypot(0.2, 0.2));
+}
+
+TEST(Stage, BoundsDriveAndWheelbaseAreRead) {
+  const World world = read_world(
+      "position( drive \"car\" wheelbase 0.3 velocity_bounds [-1 2 0 0 0 0 -90 45] ) position( drive \"omni\" ) "
+      "position()");
+  EXPECT_EQ(world.movers[0].drive, Drive::car);
+  EXPECT_EQ(world.movers[0].wheelbase, 0.3);
+  EXPECT_EQ(world.movers[0].max_forward, 2.0);
+  EXPECT_DOUBLE_EQ(world.movers[0].max_turn, 45 * kDegree);
+  EXPECT_EQ(world.movers[1].drive, Drive::omni);
+  EXPECT_EQ(world.movers[2].drive, Drive::differential);
+  EXPECT_EQ(world.movers[2].max_forward, 1.0);  // Stage's own default
+  EXPECT_DOUBLE_EQ(world.movers[2].max_turn, 90 * kDegree);
+}
+
+TEST(Stage, NumbersComeFromNamesAndTheRestFillsTheGaps) {
+  const World world = read_world(
+      "position( name \"a\" ) position( name \"roomba1\" ) model( name \"tag1\" ) model( name \"khepera3\" ) "
+      "position() position() position()");
+  std::vector<std::uint32_t> ids;
+  for (const Mover& mover : world.movers) ids.push_back(mover.id);
+  EXPECT_EQ(ids, (std::vector<std::uint32_t>{0, 1, 1, 3, 2, 4, 5}));
+  EXPECT_TRUE(world.movers[2].is_tag);
+  EXPECT_FALSE(world.movers[3].is_tag);
+}
+
+TEST(Stage, OtherNamesLinkNothing) {
+  const World world = read_world(
+      "model( name \"roomba\" ) model( name \"tag\" ) model( name \"tag0\" ) model( name \"roombax1\" )"
+      " model( name \"mytag1\" ) model( name \"tag1b\" ) model( name \"tag12345678901\" )");
+  EXPECT_TRUE(world.movers.empty());
+}
+
+TEST(Stage, ARobotOnARobotIsCarried) {
+  const World world = read_world("position( name \"r\" position( name \"tag3\" ) )");
+  EXPECT_EQ(only_mover(world).body.size(), 8u);
+  EXPECT_NE(warnings_of(world).find("'tag3' is carried by 'r'"), std::string::npos);
+}
+
+TEST(Stage, ATagOnAShelfMovesByItself) {
+  const World world =
+      read_world("model( name \"shelf\" pose [1 0 0 90] size [1 1 1] model( name \"tag5\" pose [1 0 0 0] ) )");
+  const Mover& tag = only_mover(world);
+  EXPECT_EQ(world.walls.size(), 4u);
+  EXPECT_DOUBLE_EQ(tag.X_WM.y, 1.0);
+  EXPECT_DOUBLE_EQ(tag.X_WM.z, 1.0);
+  EXPECT_EQ(tag.name, "shelf.tag5");
+}
+
+TEST(Stage, NamesAreUnique) {
+  const World world =
+      read_world("model( name \"a\" ) model( name \"a\" ) model() model() model( model() model( name \"/b\" ) )");
+  std::vector<std::string> names;
+  for (const Model& model : world.models) names.push_back(model.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"a", "a#2", "model:0", "model:1", "model:2", "model:2.model:0", "b"}));
+  EXPECT_NE(warnings_of(world).find("a second model named 'a'"), std::string::npos);
+}
+
+// --- What is kept, ignored, suggested ---
+
+TEST(Stage, TypesThatAreNotModelledAreKeptCountedAndMentionedOnce) {
+  const World world =
+      read_world("position( fiducial() camera() )\nposition( fiducial( fov 60 ) bumper( size [.1 .1 .1 0] ) )");
+  EXPECT_EQ(world.kept, (std::map<std::string, int>{{"bumper", 1}, {"camera", 1}, {"fiducial", 2}}));
+  EXPECT_EQ(world.warnings.size(), 3u) << warnings_of(world);
+  EXPECT_EQ(world.movers[0].body.size(), 8u);  // the camera is a box; a fiducial finder is nothing to run into
+}
+
+TEST(Stage, AnUnknownTypeIsKeptWithASuggestion) {
+  const World world = read_world("define mybot position()\n\nmybto( size [1 1 1] )");
+  EXPECT_EQ(world.kept.at("mybto"), 1);
+  EXPECT_EQ(world.walls.size(), 4u);
+  EXPECT_NE(warnings_of(world).find("3: unknown type 'mybto'; did you mean 'mybot'?"), std::string::npos)
+      << warnings_of(world);
+}
+
+TEST(Stage, AMisspeltKeyGetsASuggestionAndOneWarningHoweverOftenItsMacroIsUsed) {
+  const World world = read_world("define a model(\n sise [1 1 1] )\na() a() a()");
+  EXPECT_EQ(warnings_of(world), "2: unknown property 'sise' of 'a' is ignored; did you mean 'size'?\n");
+}
+
+TEST(Stage, SuggestionsAreOfKeysValidThere) {
+  EXPECT_NE(warnings_of(read_world("position( laser( sampels 3 ) )")).find("did you mean 'samples'"),
+            std::string::npos);
+  EXPECT_NE(warnings_of(read_world("position( ranger( sensor( rnage [0 1] ) ) )")).find("did you mean 'range'"),
+            std::string::npos);
+  EXPECT_NE(warnings_of(read_world("unit_lenght \"m\"")).find("did you mean 'unit_length'"), std::string::npos);
+  EXPECT_EQ(warnings_of(read_world("model( sampels 3 )")).find("did you mean"), std::string::npos);
+}
+
+TEST(Stage, KeysOfStageThatAreNotModelledPassSilently) {
+  const World world = read_world(
+      "quit_time 3600 paused 1 speedup 2 threads 4 window( size [1 2] bogus 3 )\n"
+      "position( ctrl \"wander\" gui_nose 1 localization \"gps\" localization_origin [0 0 0 0] trail_length 400 joules "
+      "10 )");
+  EXPECT_EQ(warnings_of(world), "");
+}
+
+TEST(Stage, BlocksAndSensorsOutsideTheirPlaceAreMentioned) {
+  const World world = read_world("block( points 0 )\nmodel( sensor() )");
+  EXPECT_NE(warnings_of(world).find("1: 'block' is ignored here"), std::string::npos);
+  EXPECT_NE(warnings_of(world).find("2: 'sensor' is ignored here"), std::string::npos);
+}
+
+TEST(Stage, MagnetsAreCountedInEitherSpelling) {
+  EXPECT_EQ(read_world("model( magnetic_moment 1 ) model( magneticmoment 2 ) model( magnetic_moment 0 )").magnets, 2u);
+}
+
+TEST(Stage, ColoursByNameNumberAndRandomly) {
+  const World world = read_world(
+      "model( color \"steel blue\" ) model( color \"gray50\" ) model( color_rgba [1 0 0.2 0.4] ) model( color "
+      "\"random\" )"
+      " model( color \"no such\" ) model()");
+  EXPECT_EQ(world.models[0].color, 0xFF4682B4u);
+  EXPECT_EQ(world.models[1].color, 0xFF808080u);
+  EXPECT_EQ(world.models[2].color, 0x66FF0033u);
+  EXPECT_EQ(world.models[3].color >> 24, 0xFFu);
+  EXPECT_EQ(world.models[4].color, world.models[5].color);
+  EXPECT_NE(warnings_of(world).find("unknown colour"), std::string::npos);
+}
+
+TEST(Stage, TheIntervalIsInMilliseconds) {
+  EXPECT_DOUBLE_EQ(read_world("interval_sim 50").interval, 0.05);
+  EXPECT_DOUBLE_EQ(read_world("").interval, 0.1);
+}
+
+TEST(Stage, AnEmptyWorldIsAWorld) {
+  const World world = read_world("# nothing\n");
+  EXPECT_TRUE(world.models.empty());
+  EXPECT_EQ(world.extent.x_max, 0.0);
+  EXPECT_EQ(world.name, "test");
+}
+
+}  // namespace
+}  // namespace sf::world

@@ -1,0 +1,88 @@
+#include "world/wall_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "base/random.h"
+
+namespace sf::world {
+namespace {
+
+TEST(SegmentsMeet, case_by_case) {
+  EXPECT_TRUE(segments_meet({0, 0}, {2, 2}, {0, 2}, {2, 0})) << "a plain crossing";
+  EXPECT_FALSE(segments_meet({0, 0}, {1, 1}, {0, 3}, {3, 0})) << "lines cross, segments do not";
+  EXPECT_TRUE(segments_meet({0, 0}, {1, 1}, {1, 1}, {2, 0})) << "a shared end";
+  EXPECT_TRUE(segments_meet({0, 0}, {2, 0}, {1, 0}, {1, 5})) << "an end on the other";
+  EXPECT_TRUE(segments_meet({0, 0}, {2, 0}, {1, 0}, {3, 0})) << "overlapping on one line";
+  EXPECT_TRUE(segments_meet({0, 0}, {3, 0}, {1, 0}, {2, 0})) << "one within the other";
+  EXPECT_FALSE(segments_meet({0, 0}, {1, 0}, {2, 0}, {3, 0})) << "apart on one line";
+  EXPECT_FALSE(segments_meet({0, 0}, {1, 0}, {0, 1}, {1, 1})) << "parallel";
+}
+
+TEST(Distance, ends_and_middle) {
+  EXPECT_EQ(distance({0, 1}, {-1, 0}, {1, 0}), 1.0);
+  EXPECT_EQ(distance({4, 4}, {-1, 0}, {1, 0}), 5.0);
+  EXPECT_EQ(distance({3, 4}, {0, 0}, {0, 0}), 5.0) << "a point";
+}
+
+std::vector<Segment> random_walls(std::uint32_t count, Vec2 around, double spread, double longest) {
+  std::vector<Segment> walls;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto u = base::random_uniform({.seed = 7, .a = i}, 0);
+    const auto v = base::random_uniform({.seed = 7, .a = i}, 1);
+    const Vec2 a = around + spread * Vec2{u[0] - 0.5, u[1] - 0.5};
+    const double length = longest * v[0] * v[0] * v[0];
+    Vec2 d = length * Vec2{std::cos(6.3 * v[1]), std::sin(6.3 * v[1])};
+    if (i % 5 == 0) d.y = 0.0;
+    if (i % 5 == 1) d.x = 0.0;
+    walls.push_back({.a = a, .b = a + d, .model = i});
+  }
+  return walls;
+}
+
+// Every wall that really passes through the box is asked about, none outside it.
+void expect_same_as_brute_force(const std::vector<Segment>& walls, Vec2 around, double spread) {
+  const WallGrid grid(walls, 0.5);
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    const auto u = base::random_uniform({.seed = 9, .a = i}, 0);
+    const Vec2 p = around + spread * Vec2{u[0] - 0.5, u[1] - 0.5};
+    const double reach = 0.1 + 2.0 * base::random_uniform({.seed = 9, .a = i}, 1)[0];
+    std::set<std::uint32_t> met;
+    grid.any(box_around(p, reach), [&](const Segment& wall) {
+      if (distance(p, wall.a, wall.b) <= reach) met.insert(wall.model);
+      return false;
+    });
+    std::set<std::uint32_t> expected;
+    for (const Segment& wall : walls) {
+      if (distance(p, wall.a, wall.b) <= reach) expected.insert(wall.model);
+    }
+    ASSERT_EQ(met, expected) << "query " << i;
+  }
+}
+
+TEST(WallGrid, finds_what_brute_force_finds) { expect_same_as_brute_force(random_walls(2000, {}, 40, 20), {}, 50); }
+
+TEST(WallGrid, finds_it_100_km_away) {
+  const Vec2 far{1e5, -1e5};
+  expect_same_as_brute_force(random_walls(2000, far, 40, 20), far, 50);
+}
+
+TEST(WallGrid, finds_walls_of_100_km) { expect_same_as_brute_force(random_walls(500, {}, 40, 2e5), {}, 50); }
+
+TEST(WallGrid, stops_at_the_first_yes) {
+  const WallGrid grid(random_walls(100, {}, 1, 1), 0.5);
+  int asked = 0;
+  EXPECT_TRUE(grid.any(box_around({}, 1), [&](const Segment&) { return ++asked == 3; }));
+  EXPECT_EQ(asked, 3);
+}
+
+TEST(WallGrid, empty_and_enormous_queries) {
+  EXPECT_FALSE(WallGrid({}, 0.5).any(box_around({}, 1e12), [](const Segment&) { return true; }));
+  const WallGrid one({{.a = {0, 0}, .b = {1, 0}}}, 0.5);
+  EXPECT_TRUE(one.any(box_around({}, 1e12), [](const Segment&) { return true; })) << "more cells than walls";
+}
+
+}  // namespace
+}  // namespace sf::world

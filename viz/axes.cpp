@@ -1,0 +1,150 @@
+#include "viz/axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "viz/color.h"
+#include "viz/ticks.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr std::uint32_t kFrame = 0xFF404040u;
+constexpr std::uint32_t kGrid = 0x28808080u;
+
+Ticks ticks_x(const FigureLayout& at) { return make_ticks(at.shown.x_min, at.shown.x_max, at.tick_spacing / at.scale); }
+Ticks ticks_y(const FigureLayout& at) { return make_ticks(at.shown.y_min, at.shown.y_max, at.tick_spacing / at.scale); }
+
+/// The middle of a one-pixel line.
+double crisp(double pixel) { return std::floor(pixel) + 0.5; }
+
+void draw_grid(Canvas& canvas, const FigureLayout& at) {
+  std::vector<Line> lines;
+  for (const double x : ticks_x(at).at) {
+    const double px = crisp(at.plot.x_min + (x - at.shown.x_min) * at.scale);
+    lines.push_back({{px, at.plot.y_min + 0.0}, {px, at.plot.y_max + 0.0}});
+  }
+  for (const double y : ticks_y(at).at) {
+    const double py = crisp(at.plot.y_max - (y - at.shown.y_min) * at.scale);
+    lines.push_back({{at.plot.x_min + 0.0, py}, {at.plot.x_max + 0.0, py}});
+  }
+  canvas.lines(lines, 1.0, kGrid);
+}
+
+void draw_ticks(Canvas& canvas, const FigureLayout& at) {
+  TextStyle style = small_text();
+  style.across = Anchor::middle;
+  style.down = Anchor::start;
+  const Ticks xs = ticks_x(at);
+  for (const double x : xs.at) {
+    const double px = crisp(at.plot.x_min + (x - at.shown.x_min) * at.scale);
+    canvas.line({px, at.plot.y_max + 1.0}, {px, at.plot.y_max + 6.0}, 1.0, kFrame);
+    canvas.text({px, at.plot.y_max + 11.0}, tick_text(x, xs.decimals), style);
+  }
+  style.across = Anchor::end;
+  style.down = Anchor::middle;
+  const Ticks ys = ticks_y(at);
+  for (const double y : ys.at) {
+    const double py = crisp(at.plot.y_max - (y - at.shown.y_min) * at.scale);
+    canvas.line({at.plot.x_min - 6.0, py}, {at.plot.x_min - 1.0, py}, 1.0, kFrame);
+    canvas.text({at.plot.x_min - 11.0, py}, tick_text(y, ys.decimals), style);
+  }
+}
+
+void draw_frame(Canvas& canvas, const PixelBox& plot) {
+  const double x0 = plot.x_min - 0.5;
+  const double y0 = plot.y_min - 0.5;
+  const double x1 = plot.x_max + 0.5;
+  const double y1 = plot.y_max + 0.5;
+  const Vec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
+  canvas.polyline(corners, 1.0, kFrame);
+}
+
+/// `text` shortened until it is at most `width` [px] wide.
+std::string fitted(std::string text, const TextStyle& style, double width) {
+  if (text_size(text, style).x <= width) return text;
+  while (!text.empty() && text_size(text + "...", style).x > width) text.pop_back();
+  return text + "...";
+}
+
+void draw_names(Canvas& canvas, const FigureLayout& at, const FigurePlan& plan) {
+  const double room = at.width - at.plot.x_min - 20.0;
+  TextStyle style;
+  style.size = 28;
+  style.bold = true;
+  canvas.text({at.plot.x_min + 0.0, 42.0}, fitted(plan.title, style, room), style);
+  style = small_text();
+  style.size = 19;
+  style.color = 0xFF505050u;
+  canvas.text({at.plot.x_min + 0.0, 77.0}, fitted(plan.subtitle, style, room), style);
+
+  style = small_text();
+  style.across = Anchor::middle;
+  canvas.text({0.5 * (at.plot.x_min + at.plot.x_max), at.plot.y_max + 52.0}, "x [m]", style);
+  style.upwards = true;
+  canvas.text({38.0, 0.5 * (at.plot.y_min + at.plot.y_max)}, "y [m]", style);
+}
+
+void draw_scale_bar(Canvas& canvas, const FigureLayout& at) {
+  const double metres = round_down((at.plot.x_max - at.plot.x_min) / at.scale / 6.0);
+  const double right = crisp(at.plot.x_max);
+  const double left = crisp(right - metres * at.scale);
+  const double y = at.plot.y_max + 52.5;
+  const Line strokes[] = {{{left, y}, {right, y}}, {{left, y - 6}, {left, y + 6}}, {{right, y - 6}, {right, y + 6}}};
+  canvas.lines(strokes, 2.0, kFrame);
+  TextStyle style = small_text();
+  style.across = Anchor::end;
+  canvas.text({left - 10.0, y},
+              metres >= 1000.0 ? fmt::format("{:g} km", metres / 1000.0) : fmt::format("{:g} m", metres), style);
+}
+
+void draw_bar(Canvas& canvas, const FigureLayout& at, const ColorBar& bar) {
+  const double x0 = at.plot.x_max + 28.0;
+  const double x1 = x0 + 20.0;
+  const double high = std::min<double>(at.plot.y_max - at.plot.y_min, 520.0);
+  const double y1 = at.plot.y_max;
+  const double y0 = y1 - high;
+  std::vector<std::uint32_t> colors(bar.colors.rbegin(), bar.colors.rend());
+  canvas.image({x0, y0}, {x1, y1}, {1, static_cast<int>(colors.size()), colors});
+  const Vec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
+  canvas.polyline(corners, 1.0, kFrame);
+  TextStyle style = small_text();
+  style.down = Anchor::start;
+  canvas.text({x1 + 9.0, y0}, bar.high, style);
+  style.down = Anchor::end;
+  canvas.text({x1 + 9.0, y1}, bar.low, style);
+  style.down = Anchor::middle;
+  style.across = Anchor::start;
+  style.upwards = true;
+  canvas.text({x1 + 10.0, 0.5 * (y0 + y1)}, bar.title, style);
+}
+
+}  // namespace
+
+Axes::Axes(FigurePlan plan)
+    : plan_(std::move(plan)), layout_(lay_out(plan_)), canvas_(layout_.width, layout_.height, 0xFFFFFFFFu) {
+  canvas_.clip(layout_.plot);
+  const PixelBox& p = layout_.plot;
+  const Vec2 corners[] = {{p.x_min + 0.0, p.y_min + 0.0},
+                          {p.x_max + 0.0, p.y_min + 0.0},
+                          {p.x_max + 0.0, p.y_max + 0.0},
+                          {p.x_min + 0.0, p.y_max + 0.0}};
+  canvas_.polygon(corners, plan_.background);
+  draw_grid(canvas_, layout_);
+}
+
+void Axes::save(const std::string& path) {
+  canvas_.unclip();
+  draw_frame(canvas_, layout_.plot);
+  draw_ticks(canvas_, layout_);
+  draw_names(canvas_, layout_, plan_);
+  draw_scale_bar(canvas_, layout_);
+  if (plan_.bar) draw_bar(canvas_, layout_, *plan_.bar);
+  draw_legend(canvas_, {layout_.plot.x_min + 0.0, layout_.legend_top}, plan_.legend, layout_.legend);
+  canvas_.save_png(path);
+}
+
+}  // namespace sf::viz

@@ -1,0 +1,76 @@
+#pragma once
+// The frame of a figure of a piece of the world, seen from above, north (+y) up: title, axes in metres, grid, legend,
+// scale bar.
+//
+//   Axes axes({.title = "cave", .extent = world.extent, .legend = {...}});
+//   axes.canvas().line(axes.pixel(a), axes.pixel(b), 1.5, 0xFF000000);   // clipped to the plot
+//   axes.save("cave.png");
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "viz/canvas.h"
+#include "viz/legend.h"
+#include "world/world.h"
+
+namespace sf::viz {
+
+/// A strip of colours on the right of the plot.
+struct ColorBar {
+  std::string title;
+  std::string low;                    ///< text at the lower end
+  std::string high;                   ///< text at the upper end
+  std::vector<std::uint32_t> colors;  ///< from low to high, at least one
+};
+
+struct FigurePlan {
+  std::string title;
+  std::string subtitle;
+  world::Extent extent;                    ///< [m] what must be shown; finite; a figure of no size is given some
+  double margin = 0.03;                    ///< [-] part of the longer side left free around `extent`
+  std::uint32_t background = 0xFFFFFFFFu;  ///< of the plot
+  std::vector<LegendItem> legend;
+  std::optional<ColorBar> bar;
+  int long_side = 1600;  ///< [px] of the whole picture, in [600, 8000]
+};
+
+/// Where everything is. All [px] but `shown`.
+struct FigureLayout {
+  int width = 0;
+  int height = 0;
+  PixelBox plot;
+  world::Extent shown;         ///< [m] the corners of the plot; holds the plan's extent
+  double scale = 1.0;          ///< [px/m] the same along x and y
+  double tick_spacing = 90.0;  ///< at least; room for the widest label along x
+  std::vector<LegendPlace> legend;
+  double legend_top = 0.0;
+};
+FigureLayout lay_out(const FigurePlan& plan);
+
+class Axes {
+ public:
+  /// Paints background and grid. What is drawn on the canvas until `save` stays inside the plot.
+  explicit Axes(FigurePlan plan);
+
+  Canvas& canvas() { return canvas_; }
+  const FigureLayout& layout() const { return layout_; }
+  /// [px] of a point of the world [m].
+  Vec2 pixel(Vec2 p_W) const {
+    return {layout_.plot.x_min + (p_W.x - layout_.shown.x_min) * layout_.scale,
+            layout_.plot.y_max - (p_W.y - layout_.shown.y_min) * layout_.scale};
+  }
+  double scale() const { return layout_.scale; }
+
+  /// Adds frame, ticks, texts and legend, and writes the picture.
+  /// @throws base::InputError naming the path when it cannot be written.
+  void save(const std::string& path);
+
+ private:
+  FigurePlan plan_;
+  FigureLayout layout_;
+  Canvas canvas_;
+};
+
+}  // namespace sf::viz

@@ -1,0 +1,263 @@
+#include "viz/canvas.h"
+
+#include <vtkFreeTypeTools.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPNGWriter.h>
+#include <vtkTextProperty.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "base/error.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr int kLargestSide = 16384;
+constexpr int kDotsPerInch = 72;  // so that a point of VTK's font size is a pixel
+
+using Channels = std::array<std::uint8_t, 3>;
+
+Channels channels(std::uint32_t color) {
+  return {static_cast<std::uint8_t>(color >> 16), static_cast<std::uint8_t>(color >> 8),
+          static_cast<std::uint8_t>(color)};
+}
+
+float opacity(std::uint32_t color) { return static_cast<float>(color >> 24) / 255.0f; }
+
+void blend(std::uint8_t* pixel, const Channels& color, float amount) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float old = pixel[c];
+    pixel[c] = static_cast<std::uint8_t>(old + (static_cast<float>(color[c]) - old) * amount + 0.5f);
+  }
+}
+
+/// VTK's built-in face has Latin letters only and draws square brackets round, so a whole one is used where it is
+/// installed.
+const std::string& font_file(bool bold) {
+  static const auto installed = [](const char* path) { return std::filesystem::exists(path) ? path : ""; };
+  static const std::string regular = installed("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf");
+  static const std::string heavy = installed("/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf");
+  return bold ? heavy : regular;
+}
+
+/// The alpha of `text`, tightly boxed.
+void render_text(const std::string& text, const TextStyle& style, vtkImageData* into) {
+  vtkNew<vtkTextProperty> property;
+  property->SetFontFamilyToArial();
+  if (const std::string& file = font_file(style.bold); !file.empty()) {
+    property->SetFontFamily(VTK_FONT_FILE);
+    property->SetFontFile(file.c_str());
+  }
+  property->SetFontSize(style.size);
+  property->SetBold(style.bold);
+  property->SetOrientation(style.upwards ? 90.0 : 0.0);
+  property->SetColor(1.0, 1.0, 1.0);
+  vtkFreeTypeTools* fonts = vtkFreeTypeTools::GetInstance();
+  fonts->ScaleToPowerTwoOff();
+  int size[2] = {0, 0};
+  SF_CHECK(fonts->RenderString(property, text, kDotsPerInch, into, size), "cannot render '" + text + "'");
+}
+
+double anchored(double at, double size, Anchor anchor) {
+  if (anchor == Anchor::start) return at;
+  return anchor == Anchor::middle ? at - 0.5 * size : at - size;
+}
+
+std::vector<Vec2> circle(Vec2 center, double radius) {
+  const int corners = std::clamp(static_cast<int>(4.0 * radius), 16, 360);
+  std::vector<Vec2> points;
+  points.reserve(static_cast<std::size_t>(corners));
+  for (int i = 0; i < corners; ++i) points.push_back(center + base::rotate(2.0 * M_PI * i / corners, {radius, 0.0}));
+  return points;
+}
+
+std::string why(int error) { return error != 0 ? std::strerror(error) : "unknown reason"; }
+
+}  // namespace
+
+struct Canvas::Surface {
+  Surface(int w, int h) : width(w), height(h), strokes(w, h), areas(w, h), clip{0, 0, w, h} {
+    pixels->SetDimensions(w, h, 1);
+    pixels->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
+    data = static_cast<std::uint8_t*>(pixels->GetScalarPointer());
+  }
+  /// VTK's first row is the lowest one.
+  std::uint8_t* at(int x, int y) const {
+    const auto row = static_cast<std::size_t>(height - 1 - y);
+    return data + 3 * (row * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+  }
+  void paint(CoverageRows& rows, bool edges, std::uint32_t color) {
+    const Channels rgb = channels(color);
+    const float whole = opacity(color);
+    rows.drain([&](int y, int x_min, std::span<float> part) {
+      if (edges) sum_edges(part);
+      std::uint8_t* pixel = at(x_min, y);
+      for (const float covered : part) {
+        if (covered > 0.002f) blend(pixel, rgb, covered * whole);
+        pixel += 3;
+      }
+    });
+  }
+  void stamp(vtkImageData* text, int left, int top, std::uint32_t color, float gain) {
+    int extent[6];
+    text->GetExtent(extent);
+    const int parts = text->GetNumberOfScalarComponents();
+    const Channels rgb = channels(color);
+    for (int j = extent[2]; j <= extent[3]; ++j) {
+      const int y = top + extent[3] - j;
+      if (y < clip.y_min || y >= clip.y_max) continue;
+      for (int i = extent[0]; i <= extent[1]; ++i) {
+        const int x = left + i - extent[0];
+        if (x < clip.x_min || x >= clip.x_max) continue;
+        const auto* texel = static_cast<const std::uint8_t*>(text->GetScalarPointer(i, j, 0));
+        const float alpha = static_cast<float>(texel[parts - 1]) / 255.0f;
+        if (alpha > 0.0f) blend(at(x, y), rgb, std::min(1.0f, alpha * gain) * opacity(color));
+      }
+    }
+  }
+
+  int width;
+  int height;
+  vtkNew<vtkImageData> pixels;
+  std::uint8_t* data = nullptr;
+  CoverageRows strokes;
+  CoverageRows areas;
+  PixelBox clip;
+};
+
+Vec2 text_size(const std::string& text, const TextStyle& style) {
+  if (text.empty()) return {};
+  vtkNew<vtkImageData> image;
+  render_text(text, style, image);
+  const int* size = image->GetDimensions();
+  return {static_cast<double>(size[0]), static_cast<double>(size[1])};
+}
+
+Canvas::Canvas(int width, int height, std::uint32_t background) {
+  SF_CHECK(width >= 1 && height >= 1 && width <= kLargestSide && height <= kLargestSide,
+           "a canvas of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+  surface_ = std::make_unique<Surface>(width, height);
+  const Channels rgb = channels(background);
+  std::uint8_t* pixel = surface_->data;
+  for (int i = 0; i < width * height; ++i, pixel += 3) std::copy(rgb.begin(), rgb.end(), pixel);
+}
+Canvas::~Canvas() = default;
+Canvas::Canvas(Canvas&&) noexcept = default;
+Canvas& Canvas::operator=(Canvas&&) noexcept = default;
+
+int Canvas::width() const { return surface_->width; }
+int Canvas::height() const { return surface_->height; }
+
+void Canvas::clip(const PixelBox& box) {
+  surface_->clip = {std::max(box.x_min, 0), std::max(box.y_min, 0), std::min(box.x_max, width()),
+                    std::min(box.y_max, height())};
+}
+void Canvas::unclip() { surface_->clip = {0, 0, width(), height()}; }
+
+void Canvas::polyline(std::span<const Vec2> points, double line_width, std::uint32_t color) {
+  if (points.size() == 1) add_line(surface_->strokes, surface_->clip, points[0], points[0], line_width);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i)
+    add_line(surface_->strokes, surface_->clip, points[i], points[i + 1], line_width);
+  surface_->paint(surface_->strokes, false, color);
+}
+
+void Canvas::lines(std::span<const Line> lines, double line_width, std::uint32_t color) {
+  for (const Line& l : lines) add_line(surface_->strokes, surface_->clip, l.a, l.b, line_width);
+  surface_->paint(surface_->strokes, false, color);
+}
+
+void Canvas::line(Vec2 a, Vec2 b, double line_width, std::uint32_t color) {
+  const Line one{a, b};
+  lines({&one, 1}, line_width, color);
+}
+
+void Canvas::polygon(std::span<const Vec2> points, std::uint32_t color) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    add_edge(surface_->areas, surface_->clip, points[i], points[(i + 1) % points.size()]);
+  surface_->paint(surface_->areas, true, color);
+}
+
+void Canvas::area(std::span<const Line> edges, std::uint32_t color) {
+  for (const Line& e : edges) add_edge(surface_->areas, surface_->clip, e.a, e.b);
+  surface_->paint(surface_->areas, true, color);
+}
+
+void Canvas::disc(Vec2 center, double radius, std::uint32_t color) { polygon(circle(center, radius), color); }
+
+void Canvas::ring(Vec2 center, double radius, double line_width, std::uint32_t color) {
+  std::vector<Vec2> points = circle(center, radius);
+  points.push_back(points.front());
+  polyline(points, line_width, color);
+}
+
+void Canvas::text(Vec2 at, const std::string& text, const TextStyle& style) {
+  if (text.empty()) return;
+  vtkNew<vtkImageData> image;
+  render_text(text, style, image);
+  const int* size = image->GetDimensions();
+  const int left = static_cast<int>(std::lround(anchored(at.x, size[0], style.across)));
+  const int top = static_cast<int>(std::lround(anchored(at.y, size[1], style.down)));
+  if (style.halo >> 24) {
+    for (int dy = -2; dy <= 2; ++dy)
+      for (int dx = -2; dx <= 2; ++dx)
+        if (dx * dx + dy * dy <= 5) surface_->stamp(image, left + dx, top + dy, style.halo, 0.5f);
+  }
+  surface_->stamp(image, left, top, style.color, 1.0f);
+}
+
+void Canvas::image(Vec2 from, Vec2 to, const Cells& cells) {
+  SF_CHECK(cells.columns > 0 && cells.rows > 0 && to.x > from.x && to.y > from.y &&
+               cells.colors.size() == static_cast<std::size_t>(cells.columns) * static_cast<std::size_t>(cells.rows),
+           "image of " + std::to_string(cells.columns) + " x " + std::to_string(cells.rows));
+  const PixelBox& clip = surface_->clip;
+  const Vec2 step{cells.columns / (to.x - from.x), cells.rows / (to.y - from.y)};
+  const int y_end = std::min(clip.y_max, static_cast<int>(std::ceil(to.y)));
+  const int x_end = std::min(clip.x_max, static_cast<int>(std::ceil(to.x)));
+  for (int y = std::max(clip.y_min, static_cast<int>(std::floor(from.y))); y < y_end; ++y) {
+    const double v = (y - from.y) * step.y;
+    for (int x = std::max(clip.x_min, static_cast<int>(std::floor(from.x))); x < x_end; ++x) {
+      const double u = (x - from.x) * step.x;
+      const BoxMean mean = box_mean(cells, u, u + step.x, v, v + step.y);
+      Channels rgb;
+      for (std::size_t c = 0; c < 3; ++c) rgb[c] = static_cast<std::uint8_t>(mean.rgb[c] + 0.5);
+      blend(surface_->at(x, y), rgb, static_cast<float>(std::min(1.0, mean.area / (step.x * step.y))));
+    }
+  }
+}
+
+std::uint32_t Canvas::pixel(int x, int y) const {
+  SF_CHECK(x >= 0 && y >= 0 && x < width() && y < height(),
+           "pixel " + std::to_string(x) + ", " + std::to_string(y) + " is outside the picture");
+  const std::uint8_t* p = surface_->at(x, y);
+  return 0xFF000000u | static_cast<std::uint32_t>(p[0]) << 16 | static_cast<std::uint32_t>(p[1]) << 8 | p[2];
+}
+
+void Canvas::save_png(const std::string& path) const {
+  // VTK's writer prints its own errors, so it writes to memory and the file is ours.
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetInputData(surface_->pixels);
+  writer->WriteToMemoryOn();
+  writer->SetCompressionLevel(6);
+  writer->Write();
+  vtkUnsignedCharArray* png = writer->GetResult();
+  SF_CHECK(png != nullptr && png->GetNumberOfValues() > 0, "VTK made no PNG");
+
+  errno = 0;
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  if (file) file.write(reinterpret_cast<const char*>(png->GetPointer(0)), png->GetNumberOfValues());
+  if (file) file.close();
+  if (!file)
+    throw base::InputError(path, 0,
+                           "cannot write the picture (" + why(errno) +
+                               "): name a file in a folder that exists, can be written and has room");
+}
+
+}  // namespace sf::viz

@@ -1,0 +1,87 @@
+#pragma once
+// A picture in memory: VTK holds the pixels, renders the text and writes the PNG; lines and areas are our own coverage.
+// Nothing here opens a window or asks for OpenGL, so it works on a machine without a display.
+//
+// Coordinates are pixels, x right, y down, (0, 0) the upper left corner of the picture. Colours are 0xAARRGGBB; alpha
+// is the opacity of the whole shape, however often it overlaps itself. Points that are not finite are left out. One
+// thread at a time may draw, whichever canvas it draws on: VTK's font cache is shared.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "base/pose.h"
+#include "viz/raster.h"
+#include "viz/resample.h"
+
+namespace sf::viz {
+
+/// A straight line between two points, in pixels or in metres as the user of it says.
+struct Line {
+  Vec2 a;
+  Vec2 b;
+};
+
+/// Where the given point lies on the text's box.
+enum class Anchor { start, middle, end };
+
+struct TextStyle {
+  int size = 18;  ///< [px] em height, > 0
+  std::uint32_t color = 0xFF202020u;
+  bool bold = false;
+  bool upwards = false;              ///< turned by 90 degrees, read from below
+  Anchor across = Anchor::start;     ///< start: the point is at the left of the text's box
+  Anchor down = Anchor::middle;      ///< start: the point is at the top of the text's box
+  std::uint32_t halo = 0x00000000u;  ///< colour of a soft border that keeps text readable over lines; alpha 0: none
+};
+
+/// [px] width and height of the box that `text` (UTF-8, one line) takes on the picture.
+Vec2 text_size(const std::string& text, const TextStyle& style);
+
+class Canvas {
+ public:
+  /// @param width, height [px] in [1, 16384]
+  Canvas(int width, int height, std::uint32_t background);
+  ~Canvas();
+  Canvas(Canvas&&) noexcept;
+  Canvas& operator=(Canvas&&) noexcept;
+
+  int width() const;
+  int height() const;
+
+  /// Keeps what is drawn from now on inside `box`. The whole picture at first.
+  void clip(const PixelBox& box);
+  void unclip();
+
+  /// A line through all points, with round joins and ends. @param line_width [px] > 0
+  void polyline(std::span<const Vec2> points, double line_width, std::uint32_t color);
+  /// The union of many lines, painted once. @param line_width [px] > 0
+  void lines(std::span<const Line> lines, double line_width, std::uint32_t color);
+  void line(Vec2 a, Vec2 b, double line_width, std::uint32_t color);
+
+  /// A closed polygon, first point not repeated.
+  void polygon(std::span<const Vec2> points, std::uint32_t color);
+  /// Areas given by the directed edges of closed outlines in any order; outlines of one direction make their union.
+  void area(std::span<const Line> edges, std::uint32_t color);
+  void disc(Vec2 center, double radius, std::uint32_t color);
+  void ring(Vec2 center, double radius, double line_width, std::uint32_t color);
+
+  void text(Vec2 at, const std::string& text, const TextStyle& style);
+
+  /// Spreads `cells`, the top row first, over [from, to): repeated where a cell is larger than a pixel, averaged where
+  /// smaller.
+  void image(Vec2 from, Vec2 to, const Cells& cells);
+
+  /// 0xFFRRGGBB of a pixel inside the picture.
+  std::uint32_t pixel(int x, int y) const;
+
+  /// @throws base::InputError naming the path when it cannot be written.
+  void save_png(const std::string& path) const;
+
+ private:
+  struct Surface;
+  std::unique_ptr<Surface> surface_;
+};
+
+}  // namespace sf::viz

@@ -1,0 +1,103 @@
+#include "viz/legend.h"
+
+#include <array>
+#include <cmath>
+
+#include "viz/color.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr double kSampleWidth = 34.0;
+constexpr double kTextGap = 9.0;
+constexpr double kItemGap = 30.0;
+
+void draw_sample(Canvas& canvas, Vec2 left, const LegendItem& item) {
+  const Vec2 right = left + Vec2{kSampleWidth, 0.0};
+  const Vec2 middle = 0.5 * (left + right);
+  const Line line{left, right};
+  switch (item.sample) {
+    case Sample::block: {
+      const std::array<Vec2, 5> box{left + Vec2{0, -9}, right + Vec2{0, -9}, right + Vec2{0, 9}, left + Vec2{0, 9},
+                                    left + Vec2{0, -9}};
+      canvas.polygon(std::span(box).first(4), item.color);
+      if (item.edge >> 24) canvas.polyline(box, 1.5, item.edge);
+      return;
+    }
+    case Sample::line:
+      return canvas.line(left, right, 2.5, item.color);
+    case Sample::dashed:
+      return draw_dashes(canvas, {&line, 1}, 2.0, 9.0, 3.5, item.color);
+    case Sample::dotted:
+      return draw_dashes(canvas, {&line, 1}, 2.0, 2.0, 4.0, item.color);
+    case Sample::dot:
+      canvas.disc(middle, 7.5, 0xFFFFFFFFu);
+      return canvas.disc(middle, 6.0, item.color);
+    case Sample::ring:
+      return canvas.ring(middle, 5.5, 2.0, item.color);
+    case Sample::cross:
+      return draw_cross(canvas, middle, 5.0, 2.0, item.color);
+    case Sample::robot:
+      canvas.disc(middle, 9.0, with_opacity(item.color, 0.45));
+      canvas.ring(middle, 9.0, 1.5, item.color);
+      return canvas.line(middle, middle + Vec2{9.0, 0.0}, 2.0, item.color);
+  }
+}
+
+}  // namespace
+
+TextStyle small_text() {
+  TextStyle style;
+  style.size = 18;
+  style.color = 0xFF303030u;
+  return style;
+}
+
+std::vector<LegendPlace> place_legend(std::span<const LegendItem> items, double width) {
+  std::vector<LegendPlace> places;
+  LegendPlace next;
+  for (const LegendItem& item : items) {
+    const double wide = kSampleWidth + kTextGap + text_size(item.text, small_text()).x;
+    if (next.x > 0.0 && next.x + wide > width) next = {0.0, next.row + 1};
+    places.push_back(next);
+    next.x += wide + kItemGap;
+  }
+  return places;
+}
+
+void draw_legend(Canvas& canvas, Vec2 at, std::span<const LegendItem> items, std::span<const LegendPlace> places) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Vec2 left = at + Vec2{places[i].x, (places[i].row + 0.5) * kLegendRow};
+    draw_sample(canvas, left, items[i]);
+    canvas.text(left + Vec2{kSampleWidth + kTextGap, 0.0}, items[i].text, small_text());
+  }
+}
+
+void draw_cross(Canvas& canvas, Vec2 at, double reach, double line_width, std::uint32_t color) {
+  const std::array<Line, 2> strokes{Line{at - Vec2{reach, reach}, at + Vec2{reach, reach}},
+                                    Line{at - Vec2{reach, -reach}, at + Vec2{reach, -reach}}};
+  canvas.lines(strokes, line_width, color);
+}
+
+void draw_dashes(Canvas& canvas, std::span<const Line> lines, double line_width, double on, double off,
+                 std::uint32_t color) {
+  std::vector<Line> dashes;
+  const double period = on + off;
+  double done = 0.0;
+  Vec2 end{NAN, NAN};
+  for (const Line& l : lines) {
+    if (l.a.x != end.x || l.a.y != end.y) done = 0.0;
+    end = l.b;
+    const double whole = length(l.b - l.a);
+    if (!(whole > 0.0) || !(whole < 1e6)) continue;
+    const Vec2 along = (1.0 / whole) * (l.b - l.a);
+    for (double from = -std::fmod(done, period); from < whole; from += period) {
+      if (from + on <= 0.0) continue;
+      dashes.push_back({l.a + std::max(from, 0.0) * along, l.a + std::min(from + on, whole) * along});
+    }
+    done += whole;
+  }
+  canvas.lines(dashes, line_width, color);
+}
+
+}  // namespace sf::viz

@@ -1,0 +1,45 @@
+#pragma once
+// What the marks of a figure mean: rows of samples with a text beside each.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "viz/canvas.h"
+
+namespace sf::viz {
+
+enum class Sample { block, line, dashed, dotted, dot, ring, cross, robot };
+
+struct LegendItem {
+  Sample sample = Sample::line;
+  std::uint32_t color = 0xFF000000u;
+  std::string text;
+  std::uint32_t edge = 0x00000000u;  ///< outline of a block; alpha 0: none
+};
+
+/// The style of all small text beside a figure.
+TextStyle small_text();
+
+/// [px]
+inline constexpr double kLegendRow = 30.0;
+
+/// Where each item stands when rows are at most `width` [px] wide: its left end and its row.
+struct LegendPlace {
+  double x = 0.0;
+  int row = 0;
+};
+std::vector<LegendPlace> place_legend(std::span<const LegendItem> items, double width);
+
+/// @param at [px] left end and top of the first row
+void draw_legend(Canvas& canvas, Vec2 at, std::span<const LegendItem> items, std::span<const LegendPlace> places);
+
+/// An x of two strokes: where something stopped. @param reach [px] from its middle to its ends, along x and y
+void draw_cross(Canvas& canvas, Vec2 at, double reach, double line_width, std::uint32_t color);
+
+/// A polyline in dashes. @param on, off [px] lengths of dash and gap
+void draw_dashes(Canvas& canvas, std::span<const Line> lines, double line_width, double on, double off,
+                 std::uint32_t color);
+
+}  // namespace sf::viz

@@ -1,0 +1,86 @@
+#include "viz/walls.h"
+
+#include <array>
+#include <map>
+#include <tuple>
+
+#include "viz/color.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr std::uint32_t kSlate = 0xFF64707Du;
+constexpr std::uint32_t kQuiet = 0xFFB4BAC2u;
+constexpr std::uint32_t kUnseen = 0xFF9A9A9Au;
+
+enum class Kind { solid, passable, unseen };
+
+Kind kind_of(const world::Segment& s) {
+  if (!s.seen_by_laser) return Kind::unseen;
+  return s.stops_robots ? Kind::solid : Kind::passable;
+}
+
+struct Paint {
+  std::uint32_t fill;
+  std::uint32_t edge;
+};
+
+Paint paint_of(const world::World& world, std::uint32_t model, Kind kind, WallColors colors) {
+  std::uint32_t base = kSlate;
+  if (colors == WallColors::quiet)
+    base = kQuiet;
+  else if (model < world.models.size() && !world.models[model].is_bitmap)
+    base = world.models[model].color;
+  if (kind == Kind::unseen) return {0x00000000u, kUnseen};
+  const std::uint32_t edge = mix(base, 0xFF000000u, colors == WallColors::quiet ? 0.25 : 0.4);
+  return {with_opacity(base, kind == Kind::solid ? 0.75 : 0.3), edge};
+}
+
+/// The walls of one model and kind, on the canvas.
+struct Group {
+  std::vector<Line> all;
+  std::vector<Line> closed;
+};
+
+void draw_group(Canvas& canvas, const Group& group, Kind kind, const Paint& paint) {
+  if (!group.closed.empty() && paint.fill >> 24) canvas.area(group.closed, paint.fill);
+  if (kind == Kind::solid) canvas.lines(group.all, 1.4, paint.edge);
+  if (kind == Kind::passable) draw_dashes(canvas, group.all, 1.4, 8.0, 4.0, paint.edge);
+  if (kind == Kind::unseen) draw_dashes(canvas, group.all, 1.4, 1.5, 4.0, paint.edge);
+}
+
+}  // namespace
+
+void draw_walls(Axes& axes, const world::World& world, WallColors colors) {
+  // What a laser does not see lies beneath what it sees.
+  std::map<std::tuple<bool, std::uint32_t, Kind>, Group> groups;
+  for (const world::Segment& s : world.walls) {
+    const Kind kind = kind_of(s);
+    Group& group = groups[{kind != Kind::unseen, s.model, kind}];
+    const Line line{axes.pixel(s.a), axes.pixel(s.b)};
+    group.all.push_back(line);
+    if (s.solid_left) group.closed.push_back(line);
+  }
+  for (const auto& [key, group] : groups) {
+    const Kind kind = std::get<Kind>(key);
+    draw_group(axes.canvas(), group, kind, paint_of(world, std::get<std::uint32_t>(key), kind, colors));
+  }
+}
+
+std::vector<LegendItem> wall_legend(const world::World& world, WallColors colors) {
+  std::array<const world::Segment*, 3> seen{};
+  for (const world::Segment& s : world.walls) {
+    auto& first = seen[static_cast<std::size_t>(kind_of(s))];
+    if (first == nullptr) first = &s;
+  }
+  std::vector<LegendItem> items;
+  const auto paint = [&](Kind kind) {
+    return paint_of(world, seen[static_cast<std::size_t>(kind)]->model, kind, colors);
+  };
+  if (seen[0]) items.push_back({Sample::block, paint(Kind::solid).fill, "wall", paint(Kind::solid).edge});
+  if (seen[1]) items.push_back({Sample::dashed, paint(Kind::passable).edge, "seen, stops no robot"});
+  if (seen[2]) items.push_back({Sample::dotted, paint(Kind::unseen).edge, "not seen by lasers"});
+  return items;
+}
+
+}  // namespace sf::viz

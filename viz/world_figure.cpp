@@ -1,0 +1,186 @@
+#include "viz/world_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "viz/axes.h"
+#include "viz/color.h"
+#include "viz/sight.h"
+#include "viz/walls.h"
+
+namespace sf::viz {
+namespace {
+
+using base::Pose;
+using world::Laser;
+using world::Mover;
+using world::World;
+
+constexpr std::size_t kNamedMovers = 20;
+constexpr std::size_t kOutlinedViews = 300;
+constexpr double kSmallestMark = 4.0;  // [px] radius under which a body is drawn as a dot
+constexpr std::uint32_t kTagColor = 0xFFC2187Bu;
+
+bool crowded(const World& world) { return world.movers.size() > kNamedMovers; }
+
+std::uint32_t color_of(const World& world, const Mover& mover) {
+  return mover.model < world.models.size() ? world.models[mover.model].color | 0xFF000000u : 0xFF808080u;
+}
+
+/// The outline of what a laser covers, counter-clockwise in the world; a full turn has no corner at the sensor. [px]
+std::vector<Vec2> view_outline(const Axes& axes, const World& world, const Pose& X_WS, const Laser& laser) {
+  std::vector<Vec2> points;
+  const bool whole_turn = laser.fov > 2.0 * M_PI - 1e-3;
+  if (!whole_turn) points.push_back(axes.pixel({X_WS.x, X_WS.y}));
+  const double arc = laser.fov * laser.range_max * axes.scale();
+  const int beams = std::clamp(static_cast<int>(arc), 16, crowded(world) ? 240 : 2000);
+  for (const Vec2 end : beam_ends(world, X_WS, laser, beams)) points.push_back(axes.pixel(end));
+  return points;
+}
+
+/// Few views one by one, so that overlaps show; many as one translucent union with thin outlines while these can be
+/// told apart.
+void draw_views(Axes& axes, const World& world) {
+  const bool many = crowded(world);
+  std::map<std::uint32_t, std::vector<Line>> unions;
+  for (const Mover& mover : world.movers) {
+    for (const Laser& laser : mover.lasers) {
+      std::vector<Vec2> outline = view_outline(axes, world, compose(mover.X_WM, laser.X_MS), laser);
+      const std::uint32_t edge = mix(laser.color, 0xFF404040u, 0.3);
+      if (!many) axes.canvas().polygon(outline, with_opacity(laser.color, 0.13));
+      outline.push_back(outline.front());
+      if (!many) axes.canvas().polyline(outline, 1.0, with_opacity(edge, 0.55));
+      auto& edges = unions[laser.color | 0xFF000000u];
+      for (std::size_t i = 0; many && i + 1 < outline.size(); ++i) edges.push_back({outline[i], outline[i + 1]});
+    }
+  }
+  for (const auto& [color, edges] : unions) {
+    if (!many) continue;
+    axes.canvas().area(edges, with_opacity(color, 0.12));
+    if (world.movers.size() <= kOutlinedViews)
+      axes.canvas().lines(edges, 0.5, with_opacity(mix(color, 0xFF404040u, 0.3), 0.22));
+  }
+}
+
+void draw_heading(Axes& axes, const Mover& mover, double reach, double line_width, std::uint32_t color) {
+  const Vec2 at = axes.pixel({mover.X_WM.x, mover.X_WM.y});
+  axes.canvas().line(at, at + base::rotate(-mover.X_WM.yaw, {reach, 0.0}), line_width, color);
+}
+
+void draw_body(Axes& axes, const World& world, const Mover& mover) {
+  const std::uint32_t color = color_of(world, mover);
+  const std::uint32_t edge = mix(color, 0xFF000000u, 0.45);
+  const double radius = mover.radius * axes.scale();
+  Canvas& canvas = axes.canvas();
+  if (radius < kSmallestMark || mover.body.empty()) {
+    canvas.disc(axes.pixel({mover.X_WM.x, mover.X_WM.y}), std::max(radius, 2.4), color);
+    return draw_heading(axes, mover, std::max(2.2 * radius, 6.0), 1.2, edge);
+  }
+  std::vector<Line> outline;
+  std::vector<Line> closed;
+  for (const world::Segment& s : mover.body) {
+    outline.push_back({axes.pixel(transform(mover.X_WM, s.a)), axes.pixel(transform(mover.X_WM, s.b))});
+    if (s.solid_left) closed.push_back(outline.back());
+  }
+  canvas.area(closed, with_opacity(color, 0.75));
+  canvas.lines(outline, 1.4, edge);
+  draw_heading(axes, mover, radius, std::clamp(radius / 8.0, 1.4, 3.0), edge);
+}
+
+/// A dashed circle around what follows a tag.
+void draw_tag(Axes& axes, const Mover& mover) {
+  const Vec2 middle = axes.pixel({mover.X_WM.x, mover.X_WM.y});
+  const double radius = std::max(mover.radius * axes.scale(), kSmallestMark) + 4.0;
+  std::vector<Line> circle;
+  for (int i = 0; i < 64; ++i)
+    circle.push_back({middle + base::rotate(i * M_PI / 32, {radius, 0.0}),
+                      middle + base::rotate((i + 1) * M_PI / 32, {radius, 0.0})});
+  draw_dashes(axes.canvas(), circle, 2.0, 6.0, 3.0, kTagColor);
+}
+
+void draw_name(Axes& axes, const Mover& mover) {
+  TextStyle style = small_text();
+  style.halo = 0xFFFFFFFFu;
+  style.across = Anchor::middle;
+  style.down = Anchor::start;
+  const Vec2 at = axes.pixel({mover.X_WM.x, mover.X_WM.y});
+  axes.canvas().text(at + Vec2{0.0, std::max(mover.radius * axes.scale(), kSmallestMark) + 7.0}, mover.name, style);
+}
+
+/// "laser 270 deg, 8 m": what all lasers of one colour share, or a range of it.
+std::vector<LegendItem> view_legend(const World& world) {
+  struct Seen {
+    std::set<double> fovs, ranges;
+  };
+  std::map<std::uint32_t, Seen> by_color;
+  for (const Mover& mover : world.movers)
+    for (const Laser& laser : mover.lasers) {
+      Seen& seen = by_color[laser.color | 0xFF000000u];
+      seen.fovs.insert(std::round(laser.fov * 1800.0 / M_PI) / 10.0);
+      seen.ranges.insert(laser.range_max);
+    }
+  const auto span = [](const std::set<double>& values) {
+    return values.size() == 1 ? fmt::format("{:g}", *values.begin())
+                              : fmt::format("{:g} to {:g}", *values.begin(), *values.rbegin());
+  };
+  std::vector<LegendItem> items;
+  for (const auto& [color, seen] : by_color)
+    items.push_back({Sample::block, with_opacity(color, 0.13),
+                     fmt::format("laser, {} deg, {} m", span(seen.fovs), span(seen.ranges)),
+                     with_opacity(mix(color, 0xFF404040u, 0.3), 0.55)});
+  return items;
+}
+
+std::vector<LegendItem> legend_of(const World& world) {
+  std::vector<LegendItem> items = wall_legend(world, WallColors::of_models);
+  const auto first = [&](bool tag) {
+    return std::find_if(world.movers.begin(), world.movers.end(), [&](const Mover& m) { return m.is_tag == tag; });
+  };
+  if (const auto robot = first(false); robot != world.movers.end())
+    items.push_back({Sample::robot, color_of(world, *robot), "robot and heading"});
+  if (first(true) != world.movers.end()) items.push_back({Sample::dashed, kTagColor, "follows a tag"});
+  const auto views = view_legend(world);
+  items.insert(items.end(), views.begin(), views.end());
+  return items;
+}
+
+std::string count(std::size_t n, const char* one) { return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s"); }
+
+std::string subtitle_of(const World& world) {
+  const auto tags = static_cast<std::size_t>(
+      std::count_if(world.movers.begin(), world.movers.end(), [](const Mover& m) { return m.is_tag; }));
+  std::size_t lasers = 0;
+  for (const Mover& mover : world.movers) lasers += mover.lasers.size();
+  std::string text = count(world.movers.size() - tags, "robot") + ", " + count(lasers, "laser") + ", ";
+  if (tags > 0) text += count(tags, "tag") + ", ";
+  text += count(world.walls.size(), "wall segment");
+  return text + fmt::format(", {:.4g} m x {:.4g} m", world.extent.x_max - world.extent.x_min,
+                            world.extent.y_max - world.extent.y_min);
+}
+
+}  // namespace
+
+void draw_world(const World& world, const std::string& png_path) {
+  FigurePlan plan;
+  plan.title = world.name.empty() ? std::filesystem::path(world.file).filename().string() : world.name;
+  plan.subtitle = subtitle_of(world);
+  plan.extent = world.extent;
+  plan.legend = legend_of(world);
+  Axes axes(std::move(plan));
+  draw_views(axes, world);
+  draw_walls(axes, world, WallColors::of_models);
+  for (const Mover& mover : world.movers) draw_body(axes, world, mover);
+  for (const Mover& mover : world.movers)
+    if (mover.is_tag) draw_tag(axes, mover);
+  for (const Mover& mover : world.movers)
+    if (!crowded(world)) draw_name(axes, mover);
+  axes.save(png_path);
+}
+
+}  // namespace sf::viz

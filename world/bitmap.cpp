@@ -1,0 +1,67 @@
+#include "world/bitmap.h"
+
+namespace sf::world {
+
+namespace {
+
+// +1 where the solid begins in the direction of counting, -1 where it ends, 0 inside either.
+int step(std::uint8_t before, std::uint8_t after) { return int{after} - int{before}; }
+
+// Along the line between rows j - 1 and j. Solid above lies on the left of a run to the right.
+void horizontal_runs(const Grid& grid, std::uint32_t j, std::vector<Run>& runs) {
+  const std::vector<std::uint8_t> outside(grid.width, 0);
+  const std::uint8_t* below = j > 0 ? grid.solid.data() + std::size_t{j - 1} * grid.width : outside.data();
+  const std::uint8_t* above = j < grid.height ? grid.solid.data() + std::size_t{j} * grid.width : outside.data();
+  int current = 0;
+  std::uint32_t begin = 0;
+  for (std::uint32_t i = 0; i <= grid.width; ++i) {
+    const int here = i < grid.width ? step(below[i], above[i]) : 0;
+    if (here == current) continue;
+    if (current > 0) runs.push_back({{begin, j}, {i, j}});
+    if (current < 0) runs.push_back({{i, j}, {begin, j}});
+    current = here;
+    begin = i;
+  }
+}
+
+struct Open {
+  std::int8_t side = 0;
+  std::uint32_t begin = 0;
+};
+
+// All vertical lines at once, row by row, as the cells lie in memory. Solid on the right lies on the left of a run
+// downwards.
+std::vector<std::vector<Run>> vertical_runs(const Grid& grid) {
+  std::vector<std::vector<Run>> runs(grid.width + 1);
+  std::vector<Open> open(grid.width + 1);
+  for (std::uint32_t j = 0; j <= grid.height; ++j) {
+    const std::uint8_t* row = j < grid.height ? grid.solid.data() + std::size_t{j} * grid.width : nullptr;
+    std::uint8_t left = 0;
+    for (std::uint32_t i = 0; i <= grid.width; ++i) {
+      const std::uint8_t right = row != nullptr && i < grid.width ? row[i] : std::uint8_t{0};
+      const int here = step(left, right);
+      left = right;
+      if (here == open[i].side) continue;
+      if (open[i].side > 0) runs[i].push_back({{i, j}, {i, open[i].begin}});
+      if (open[i].side < 0) runs[i].push_back({{i, open[i].begin}, {i, j}});
+      open[i] = {static_cast<std::int8_t>(here), j};
+    }
+  }
+  return runs;
+}
+
+}  // namespace
+
+std::vector<Run> outline(const Grid& grid) {
+  std::vector<Run> runs;
+  for (std::uint32_t j = 0; j <= grid.height; ++j) horizontal_runs(grid, j, runs);
+  for (const auto& column : vertical_runs(grid)) runs.insert(runs.end(), column.begin(), column.end());
+  return runs;
+}
+
+base::Vec2 corner_position(const Grid& grid, Corner corner, double size_x, double size_y) {
+  return {size_x * (static_cast<double>(corner.i) / grid.width - 0.5),
+          size_y * (static_cast<double>(corner.j) / grid.height - 0.5)};
+}
+
+}  // namespace sf::world

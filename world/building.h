@@ -1,0 +1,49 @@
+#pragma once
+// A world while it is being built from the tree of its file.
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "world/keys.h"
+#include "world/properties.h"
+#include "world/shape.h"
+
+namespace sf::world {
+
+/// Where the children of a model are put.
+struct Parent {
+  std::uint32_t model = kNone;
+  std::uint32_t mover = kNone;
+  Pose X_WP;          ///< the parent in the world
+  Pose X_MP;          ///< the parent in its mover's frame, when there is one
+  double lift = 0.0;  ///< [m] the parent's height, when it stacks its children
+  std::string name;
+  std::string name_in_mover;                     ///< empty for the mover itself
+  std::map<std::string, std::uint32_t> unnamed;  ///< how many children of each word have no name
+};
+
+struct Building {
+  const LoadOptions& options;
+  Source source;
+  World world;
+  Bitmaps bitmaps;
+  std::set<std::string> names;
+  std::set<std::string> told;                         ///< types that were warned about
+  std::vector<std::optional<std::uint32_t>> numbers;  ///< per mover: what its name says
+  std::vector<Place> places;                          ///< per mover: where it is written
+  std::vector<std::string_view> types;                ///< every type and macro, to suggest from
+};
+
+/// Adds the children of `entity`, of kind `kind`, and all that is in them: models, and warnings for what belongs
+/// elsewhere.
+/// @throws base::InputError with file and line.
+void add_children(Building& b, const Entity& entity, Kind kind, Parent& parent);
+
+/// Warns about properties that are not known `where`, with the nearest one that is.
+void check_keys(Source& source, const Entity& entity, Where where);
+
+}  // namespace sf::world

@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <limits>
+
+#include "base/bytes.h"
+#include "base/hash.h"
+#include "world/rows.h"
+#include "world/world.h"
+
+namespace sf::world {
+
+namespace {
+
+Extent extent_of(const World& world) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Extent extent{kFar, kFar, -kFar, -kFar};
+  const auto include = [&](Vec2 p) {
+    extent = {std::min(extent.x_min, p.x), std::min(extent.y_min, p.y), std::max(extent.x_max, p.x),
+              std::max(extent.y_max, p.y)};
+  };
+  for (const Segment& wall : world.walls) {
+    include(wall.a);
+    include(wall.b);
+  }
+  for (const Mover& mover : world.movers) {
+    include({mover.X_WM.x, mover.X_WM.y});
+    for (const Segment& segment : mover.body) {
+      include(transform(mover.X_WM, segment.a));
+      include(transform(mover.X_WM, segment.b));
+    }
+  }
+  return extent.x_min <= extent.x_max ? extent : Extent{};
+}
+
+double radius_of(const Mover& mover) {
+  double radius = 0.0;
+  for (const Segment& segment : mover.body) radius = std::max({radius, length(segment.a), length(segment.b)});
+  return radius;
+}
+
+std::uint64_t hash_of(const World& world) {
+  std::vector<std::uint8_t> bytes;
+  base::ByteWriter out(bytes);
+  out.put(world.interval);
+  out.put(static_cast<std::uint64_t>(world.models.size()));
+  for (const Model& model : world.models) put(out, model, Rows::physics);
+  out.put(static_cast<std::uint64_t>(world.walls.size()));
+  for (const Segment& wall : world.walls) put(out, wall);
+  out.put(static_cast<std::uint64_t>(world.movers.size()));
+  for (const Mover& mover : world.movers) put(out, mover, Rows::physics);
+  return base::hash_bytes(bytes.data(), bytes.size());
+}
+
+}  // namespace
+
+void finish(World& world) {
+  for (Mover& mover : world.movers) mover.radius = radius_of(mover);
+  world.extent = extent_of(world);
+  world.hash = hash_of(world);
+}
+
+void translate(World& world, double dx, double dy) {
+  const auto move = [&](auto& p) {
+    p.x += dx;
+    p.y += dy;
+  };
+  for (Segment& wall : world.walls) {
+    move(wall.a);
+    move(wall.b);
+  }
+  for (Model& model : world.models) move(model.X_WM);
+  for (Mover& mover : world.movers) move(mover.X_WM);
+  finish(world);
+}
+
+}  // namespace sf::world

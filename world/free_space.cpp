@@ -1,0 +1,237 @@
+#include "world/free_space.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "world/wall_grid.h"
+
+namespace sf::world {
+
+namespace {
+
+constexpr double kMostCells = 2000.0;      // of the coarse grid, each way
+constexpr double kOpenWorld = 10.0;        // [m] around the first robot that are used at least
+constexpr std::uint32_t kAttempts = 4000;  // draws per copy; a random packing is full long before
+
+double clear_radius(const Mover& robot) { return robot.radius + kPlaceMargin; }
+
+std::vector<Segment> walls_at_height(const World& world, const Mover& robot) {
+  double z_min = HUGE_VAL, z_max = -HUGE_VAL;
+  for (const Segment& s : robot.body) {
+    z_min = std::min(z_min, s.z_min + robot.X_WM.z);
+    z_max = std::max(z_max, s.z_max + robot.X_WM.z);
+  }
+  std::vector<Segment> walls;
+  for (const Segment& wall : world.walls) {
+    const bool matters = wall.stops_robots || wall.seen_by_laser;
+    if (matters && wall.z_min < z_max && z_min < wall.z_max) walls.push_back(wall);
+  }
+  return walls;
+}
+
+bool clear_of_walls(const WallGrid& walls, Vec2 p, double radius) {
+  return !walls.any(box_around(p, radius), [&](const Segment& w) { return distance(p, w.a, w.b) < radius; });
+}
+
+bool wall_between(const WallGrid& walls, Vec2 p, Vec2 q) {
+  const Box box{{std::min(p.x, q.x), std::min(p.y, q.y)}, {std::max(p.x, q.x), std::max(p.y, q.y)}};
+  return walls.any(box, [&](const Segment& w) { return segments_meet(p, q, w.a, w.b); });
+}
+
+bool in_solid(const WallGrid& walls, Vec2 p) {
+  int winding = 0;
+  for (const Segment& w : walls.walls()) {
+    if (!w.solid_left) continue;
+    const double side = base::cross(w.b - w.a, p - w.a);
+    if (w.a.y <= p.y && w.b.y > p.y && side > 0.0) ++winding;
+    if (w.a.y > p.y && w.b.y <= p.y && side < 0.0) --winding;
+  }
+  return winding != 0;
+}
+
+// ---- The coarse grid and the region a robot can reach in it.
+
+struct Region {
+  Vec2 corner;        // [m] lower left
+  double cell = 0.0;  // [m]
+  std::uint32_t columns = 0;
+  std::uint32_t rows = 0;
+  std::vector<std::uint32_t> cells;  // reachable ones, in a fixed order
+
+  Vec2 centre(std::uint32_t at) const {
+    return {corner.x + (at % columns + 0.5) * cell, corner.y + (at / columns + 0.5) * cell};
+  }
+};
+
+// Cells of half the robot's circle, larger in large worlds, but never wider than the circle: two neighbouring centres
+// that are both clear have no wall between them, since every point between is nearer to one of them than its circle
+// reaches.
+Region grid_over(const WallGrid& walls, const Mover& robot) {
+  const Vec2 p{robot.X_WM.x, robot.X_WM.y};
+  Box box = box_around(p, kOpenWorld);
+  for (const Segment& w : walls.walls()) {
+    box.min = {std::min({box.min.x, w.a.x, w.b.x}), std::min({box.min.y, w.a.y, w.b.y})};
+    box.max = {std::max({box.max.x, w.a.x, w.b.x}), std::max({box.max.y, w.a.y, w.b.y})};
+  }
+  const double radius = clear_radius(robot);
+  const Box most = box_around(p, 2.0 * radius * kMostCells / 2.0);
+  box.min = {std::max(box.min.x, most.min.x), std::max(box.min.y, most.min.y)};
+  box.max = {std::min(box.max.x, most.max.x), std::min(box.max.y, most.max.y)};
+
+  const Vec2 size = box.max - box.min;
+  Region region{.corner = box.min};
+  region.cell = std::max(0.5 * radius, std::sqrt(size.x * size.y) / kMostCells);
+  region.columns = static_cast<std::uint32_t>(std::ceil(size.x / region.cell));
+  region.rows = static_cast<std::uint32_t>(std::ceil(size.y / region.cell));
+  return region;
+}
+
+enum class Cell : std::uint8_t { unknown, blocked, reached };
+
+// Reached cells from `first`, appended to region.cells. Cells are looked at only when the flood comes to them.
+void flood(Region& region, std::vector<Cell>& state, const WallGrid& walls, double radius, std::uint32_t first) {
+  std::size_t next = region.cells.size();
+  const auto visit = [&](std::uint32_t to) {
+    if (state[to] != Cell::unknown) return;
+    if (!clear_of_walls(walls, region.centre(to), radius)) {
+      state[to] = Cell::blocked;
+      return;
+    }
+    state[to] = Cell::reached;
+    region.cells.push_back(to);
+  };
+  for (visit(first); next < region.cells.size(); ++next) {
+    const std::uint32_t at = region.cells[next];
+    if (at % region.columns > 0) visit(at - 1);
+    if (at % region.columns + 1 < region.columns) visit(at + 1);
+    if (at >= region.columns) visit(at - region.columns);
+    if (at / region.columns + 1 < region.rows) visit(at + region.columns);
+  }
+}
+
+// The nearest clear cell within sight of p, or kNone.
+std::uint32_t cell_near(const Region& region, const WallGrid& walls, double radius, Vec2 p) {
+  const double reach = 2.0 * radius + region.cell;
+  const auto index = [&](double v, std::uint32_t count) {
+    return static_cast<std::uint32_t>(std::clamp(std::floor(v / region.cell), 0.0, count - 1.0));
+  };
+  std::uint32_t nearest = kNone;
+  double least = HUGE_VAL;
+  for (std::uint32_t y = index(p.y - reach - region.corner.y, region.rows);
+       y <= index(p.y + reach - region.corner.y, region.rows); ++y) {
+    for (std::uint32_t x = index(p.x - reach - region.corner.x, region.columns);
+         x <= index(p.x + reach - region.corner.x, region.columns); ++x) {
+      const Vec2 centre = region.centre(y * region.columns + x);
+      const double away = length(centre - p);
+      if (away >= least || !clear_of_walls(walls, centre, radius) || wall_between(walls, p, centre)) continue;
+      least = away;
+      nearest = y * region.columns + x;
+    }
+  }
+  return nearest;
+}
+
+void take_largest(Region& region, std::vector<Cell>& state, const WallGrid& walls, double radius) {
+  std::vector<std::uint32_t> largest;
+  for (std::uint32_t at = 0; at < state.size(); ++at) {
+    if (state[at] != Cell::unknown) continue;
+    region.cells.clear();
+    flood(region, state, walls, radius, at);
+    if (region.cells.size() > largest.size() && !in_solid(walls, region.centre(at))) largest.swap(region.cells);
+  }
+  region.cells.swap(largest);
+}
+
+Region reachable(const WallGrid& walls, const Mover& robot) {
+  Region region = grid_over(walls, robot);
+  const double radius = clear_radius(robot);
+  const Vec2 p{robot.X_WM.x, robot.X_WM.y};
+  std::vector<Cell> state(static_cast<std::size_t>(region.columns) * region.rows, Cell::unknown);
+  const std::uint32_t first = in_solid(walls, p) ? kNone : cell_near(region, walls, radius, p);
+  if (first != kNone) {
+    flood(region, state, walls, radius, first);
+  } else {
+    take_largest(region, state, walls, radius);
+  }
+  return region;
+}
+
+// ---- Poses drawn one after another.
+
+// Points kept in lists per bucket of a hash, so that the memory follows the copies and not the world.
+class Crowd {
+ public:
+  Crowd(std::uint32_t count, double apart) : apart_(apart), heads_(2 * static_cast<std::size_t>(count) + 1, kNone) {}
+
+  bool clear(Vec2 p) const {
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        for (std::uint32_t k = heads_[bucket(p, dx, dy)]; k != kNone; k = next_[k]) {
+          if (length(points_[k] - p) < apart_) return false;
+        }
+      }
+    }
+    return true;
+  }
+  void add(Vec2 p) {
+    const std::size_t at = bucket(p, 0, 0);
+    next_.push_back(heads_[at]);
+    heads_[at] = static_cast<std::uint32_t>(points_.size());
+    points_.push_back(p);
+  }
+
+ private:
+  std::size_t bucket(Vec2 p, int dx, int dy) const {
+    const auto x = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p.x / apart_)) + dx);
+    const auto y = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p.y / apart_)) + dy);
+    return static_cast<std::size_t>(((x * 0x9E3779B97F4A7C15u + y) * 0xBF58476D1CE4E5B9u >> 20) % heads_.size());
+  }
+  double apart_;  // [m] between any two
+  std::vector<std::uint32_t> heads_;
+  std::vector<std::uint32_t> next_;
+  std::vector<Vec2> points_;
+};
+
+bool clear_of_tags(const World& world, Vec2 p, double radius) {
+  return std::none_of(world.movers.begin(), world.movers.end(), [&](const Mover& mover) {
+    return mover.is_tag && length(Vec2{mover.X_WM.x, mover.X_WM.y} - p) < radius + mover.radius;
+  });
+}
+
+}  // namespace
+
+std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32_t count, std::uint64_t seed) {
+  const double radius = clear_radius(robot);
+  const WallGrid walls(walls_at_height(world, robot), 2.0 * radius);
+  const Region region = reachable(walls, robot);
+  Crowd crowd(count, 2.0 * robot.radius + kPlaceMargin);
+  std::vector<Pose> poses;
+  const auto draw = [&](std::uint32_t k) {
+    for (std::uint32_t attempt = 0; attempt < kAttempts && !region.cells.empty(); ++attempt) {
+      const base::Draw key{.seed = seed, .stream = base::Stream::place, .a = k, .b = attempt};
+      const auto [which, turn] = base::random_uniform(key, 0);
+      const auto [x, y] = base::random_uniform(key, 1);
+      const Vec2 centre =
+          region.centre(region.cells[static_cast<std::size_t>(which * static_cast<double>(region.cells.size()))]);
+      const Vec2 p = centre + region.cell * Vec2{x - 0.5, y - 0.5};
+      if (!clear_of_walls(walls, p, radius) || !clear_of_tags(world, p, radius) || !crowd.clear(p)) continue;
+      crowd.add(p);
+      poses.push_back({p.x, p.y, robot.X_WM.z, M_PI * (2.0 * turn - 1.0)});
+      return true;
+    }
+    return false;
+  };
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (draw(k)) continue;
+    throw base::InputError(world.file, 0,
+                           "placed " + std::to_string(k) + " of " + std::to_string(count) + " robots like '" +
+                               robot.name +
+                               "': there is no free place for more; make the world larger or ask for fewer");
+  }
+  return poses;
+}
+
+}  // namespace sf::world

@@ -1,0 +1,153 @@
+#include "world/keys.h"
+
+#include <algorithm>
+#include <array>
+
+namespace sf::world {
+
+namespace {
+
+using Words = std::span<const std::string_view>;
+
+// clang-format off
+constexpr auto kWorld = std::to_array<std::string_view>({"name", "interval_sim", "unit_length", "unit_angle",
+  // known, not modelled
+  "quit_time", "resolution", "show_clock", "show_clock_interval", "threads", "speedup", "paused", "confirm_on_quit",
+  "interval_real", "gui_disable", "gui_interval", "ppm"});
+
+constexpr auto kModel = std::to_array<std::string_view>({"name", "pose", "size", "origin", "color", "color_rgba", "bitmap", "boundary", "stack_children",
+  "noblocks", "obstacle_return", "laser_return", "ranger_return", "magnetic_moment", "magneticmoment",
+  "magnetometer_return", "blocks", "block[].points", "block[].point[]", "block[].z",
+  // known, not modelled
+  "ctrl", "update_interval", "gui_nose", "gui_grid", "gui_outline", "gui_move", "gui_movemask", "gui_boundary",
+  "fiducial_return", "fiducial_key", "blob_return", "blobfinder_return", "gripper_return", "puck_return", "mass", "friction",
+  "map_resolution", "say", "alwayson", "thread_safe", "joules", "kjoules", "joules_capacity", "watts", "give_watts",
+  "take_watts", "trail_length", "trail_interval", "event_queue", "debug", "rebuild_displaylist", "block[].color"});
+
+constexpr auto kPosition = std::to_array<std::string_view>({"drive", "wheelbase", "velocity_bounds",
+  // known, not modelled
+  "velocity", "acceleration_bounds", "localization", "localization_origin", "odom_error", "odom"});
+
+constexpr auto kSensing = std::to_array<std::string_view>({"noise", "resolution", "rate", "phase", "latency", "update_interval"});
+
+constexpr auto kLaser = std::to_array<std::string_view>({"fov", "samples", "range_min", "range_max", "laser_color",
+  // known, not modelled: Stage's older name of `resolution` is read as such
+  "laser_sample_skip"});
+
+constexpr auto kRanger = std::to_array<std::string_view>({"scount", "sview", "spose[]", "spose3[]",
+  // known, not modelled
+  "ssize", "sraycount"});
+
+constexpr auto kSensor = std::to_array<std::string_view>({"pose", "size", "range", "view", "fov", "samples", "color", "color_rgba", "name"});
+
+constexpr auto kBlock = std::to_array<std::string_view>({"points", "point[]", "z",
+  // known, not modelled
+  "color", "color_rgba", "glow"});
+
+constexpr auto kKeptTypes = std::to_array<std::string_view>({"actuator", "blinkenlight", "blobfinder", "bumper", "camera", "charger", "fiducial", "gripper",
+  "laneedge", "lightindicator", "magnetometer", "map", "powerpack", "puck", "sonar", "speech", "wifi"});
+constexpr auto kBodiless = std::to_array<std::string_view>({"blobfinder", "bumper", "fiducial", "laneedge", "magnetometer", "powerpack", "ranger", "sonar",
+  "speech", "wifi"});
+constexpr auto kIgnoredTypes = std::to_array<std::string_view>({"window", "gui", "menu"});
+// clang-format on
+
+bool has(Words words, std::string_view word) { return std::find(words.begin(), words.end(), word) != words.end(); }
+
+// `block[2].point[13]` is a `block[].point[]`.
+std::string without_indices(std::string_view key) {
+  std::string plain;
+  bool inside = false;
+  for (const char c : key) {
+    if (c == ']') inside = false;
+    if (!inside) plain += c;
+    if (c == '[') inside = true;
+  }
+  return plain;
+}
+
+std::vector<Words> words_at(Where where) {
+  switch (where) {
+    case Where::world:
+      return {kWorld};
+    case Where::position:
+      return {kModel, kPosition};
+    case Where::laser:
+      return {kModel, kSensing, kLaser};
+    case Where::ranger:
+      return {kModel, kSensing, kRanger};
+    case Where::sensor:
+      return {kSensor, kSensing};
+    case Where::block:
+      return {kBlock};
+    case Where::model:
+    case Where::kept:
+      break;
+  }
+  return {kModel};
+}
+
+}  // namespace
+
+Kind kind_of(std::string_view type) {
+  if (type == "model") return Kind::model;
+  if (type == "position") return Kind::position;
+  if (type == "laser") return Kind::laser;
+  if (type == "ranger") return Kind::ranger;
+  if (has(kIgnoredTypes, type)) return Kind::ignored;
+  return has(kKeptTypes, type) ? Kind::kept : Kind::unknown;
+}
+
+bool bodiless(std::string_view type) { return has(kBodiless, type); }
+
+std::vector<std::string_view> known_types() {
+  std::vector<std::string_view> types{"model", "position", "laser", "ranger", "sensor", "block"};
+  types.insert(types.end(), kKeptTypes.begin(), kKeptTypes.end());
+  types.insert(types.end(), kIgnoredTypes.begin(), kIgnoredTypes.end());
+  return types;
+}
+
+bool is_known_key(Where where, std::string_view key) {
+  const std::string plain = without_indices(key);
+  const auto words = words_at(where);
+  return std::any_of(words.begin(), words.end(), [&](Words list) { return has(list, plain); });
+}
+
+std::string suggest_key(Where where, std::string_view key) {
+  std::vector<std::string_view> candidates;
+  for (const Words list : words_at(where)) candidates.insert(candidates.end(), list.begin(), list.end());
+  return suggest(without_indices(key), candidates);
+}
+
+std::string suggest(std::string_view word, std::span<const std::string_view> candidates) {
+  std::uint32_t best = word.size() <= 4 ? 2 : 3;  // one more than we accept
+  std::string_view nearest;
+  for (const std::string_view candidate : candidates) {
+    const std::uint32_t distance = edit_distance(word, candidate);
+    if (distance >= best) continue;
+    best = distance;
+    nearest = candidate;
+  }
+  return nearest.empty() ? std::string() : "; did you mean '" + std::string(nearest) + "'?";
+}
+
+std::uint32_t edit_distance(std::string_view a, std::string_view b) {
+  constexpr std::size_t kLongest = 64;  // no key is longer, and rows stay on the stack
+  if (a.size() > kLongest || b.size() > kLongest) return a == b ? 0 : kLongest;
+  std::array<std::array<std::uint32_t, kLongest + 1>, 3> rows{};
+  for (std::uint32_t j = 0; j <= b.size(); ++j) rows[0][j] = j;
+  for (std::uint32_t i = 1; i <= a.size(); ++i) {
+    auto& row = rows[i % 3];
+    const auto& above = rows[(i - 1) % 3];
+    const auto& two_above = rows[(i + 1) % 3];
+    row[0] = i;
+    for (std::uint32_t j = 1; j <= b.size(); ++j) {
+      const std::uint32_t change = a[i - 1] == b[j - 1] ? 0 : 1;
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + change});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) row[j] = std::min(row[j], two_above[j - 2] + 1);
+    }
+  }
+  return rows[a.size() % 3][b.size()];
+}
+
+}  // namespace sf::world

@@ -1,0 +1,95 @@
+#include "world/movers.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <initializer_list>
+#include <map>
+
+namespace sf::world {
+
+namespace {
+
+std::optional<std::uint32_t> number_of(std::string_view digits) {
+  if (digits.empty() || digits.size() > 9) return std::nullopt;
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  return value;
+}
+
+// -------------------------------------------------------------------------------------------------------------
+
+void read_bounds(const Source& source, const Entity& entity, Mover& mover) {
+  mover.max_forward = 1.0;  // Stage's own
+  const auto bounds = tuple(source, entity, "velocity_bounds", 2, "[xmin xmax ymin ymax zmin zmax yawmin yawmax]");
+  if (!bounds) return;
+  const Place at = find(entity, "velocity_bounds")->at;
+  mover.max_forward = metres(source, at, (*bounds)[1]);
+  if (bounds->size() >= 8) mover.max_turn = source.radians * (*bounds)[7];
+  if (!(mover.max_forward > 0.0) || !(mover.max_turn > 0.0 && mover.max_turn <= 1e6)) {
+    fail(source, at, "'velocity_bounds' expects a robot that can move: xmax (2nd) and yawmax (8th) above zero");
+  }
+}
+
+Drive drive_of(const Source& source, const Entity& entity) {
+  const std::string drive = text(source, entity, "drive", "diff");
+  if (drive == "diff") return Drive::differential;
+  if (drive == "omni") return Drive::omni;
+  if (drive == "car") return Drive::car;
+  fail(source, find(entity, "drive")->at,
+       fmt::format("'drive' is \"{}\"; expected \"diff\", \"omni\" or \"car\"", drive));
+}
+
+}  // namespace
+
+std::optional<Link> link_of(std::string_view name) {
+  if (name.starts_with('/')) name.remove_prefix(1);
+  for (const std::string_view robot : {"roomba", "pioneer", "khepera"}) {
+    if (!name.starts_with(robot)) continue;
+    if (const auto number = number_of(name.substr(robot.size()))) return Link{*number, false};
+  }
+  if (!name.starts_with("tag")) return std::nullopt;
+  const auto number = number_of(name.substr(3));
+  if (!number || *number == 0) return std::nullopt;
+  return Link{*number, true};
+}
+
+std::uint32_t add_mover(Building& b, const Entity& entity, const Model& model, std::optional<Link> link) {
+  Mover mover;
+  mover.name = model.name;
+  mover.model = static_cast<std::uint32_t>(b.world.models.size());
+  mover.X_WM = model.X_WM;
+  mover.is_tag = link && link->is_tag;
+  mover.drive = drive_of(b.source, entity);
+  mover.wheelbase = length(b.source, entity, "wheelbase", 1.0);
+  if (!(mover.wheelbase > 0.0))
+    fail(b.source, find(entity, "wheelbase")->at, "'wheelbase' expects a length above zero");
+  read_bounds(b.source, entity, mover);
+  b.world.movers.push_back(std::move(mover));
+  b.numbers.push_back(link ? std::optional(link->number) : std::nullopt);
+  b.places.push_back(entity.at);
+  return static_cast<std::uint32_t>(b.world.movers.size() - 1);
+}
+
+void number_movers(Building& b) {
+  std::map<std::pair<bool, std::uint32_t>, std::uint32_t> taken;
+  auto& movers = b.world.movers;
+  for (std::uint32_t m = 0; m < movers.size(); ++m) {
+    if (!b.numbers[m]) continue;
+    movers[m].id = *b.numbers[m];
+    const auto [first, fresh] = taken.try_emplace({movers[m].is_tag, movers[m].id}, m);
+    if (fresh) continue;
+    fail(b.source, b.places[m],
+         fmt::format("'{}' and '{}' both follow the packets of {} {}; give each its own number",
+                     movers[first->second].name, movers[m].name, movers[m].is_tag ? "tag" : "robot", movers[m].id));
+  }
+  std::uint32_t next = 0;
+  for (std::uint32_t m = 0; m < movers.size(); ++m) {
+    if (b.numbers[m]) continue;
+    while (taken.contains({false, next})) ++next;
+    movers[m].id = next++;
+  }
+}
+
+}  // namespace sf::world

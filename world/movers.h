@@ -1,0 +1,29 @@
+#pragma once
+// Which models move, and by which number packets know them.
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "world/building.h"
+
+namespace sf::world {
+
+/// `roomba<N>`, `pioneer<N>`, `khepera<N>` follow the V2V packets of robot N; `tag<N>` follows tag N.
+struct Link {
+  std::uint32_t number = 0;
+  bool is_tag = false;
+};
+
+/// What a model's own name links it to. Tags count from 1, robots from 0; more than nine digits are no number.
+std::optional<Link> link_of(std::string_view name);
+
+/// Adds a mover for `model`, which becomes the next row of the models, and returns its row.
+/// @throws base::InputError for bounds, a drive or a wheelbase that no robot can have.
+std::uint32_t add_mover(Building& b, const Entity& entity, const Model& model, std::optional<Link> link);
+
+/// Gives every mover its number: from names first; every other robot gets the smallest one left, from 0, in file order.
+/// @throws base::InputError when two robots, or two tags, have the same number.
+void number_movers(Building& b);
+
+}  // namespace sf::world

@@ -1,0 +1,45 @@
+#pragma once
+// A world file while its tokens are being read into a tree.
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "world/entities.h"
+#include "world/syntax.h"
+
+namespace sf::world {
+
+struct Reading {
+  Document document;
+  std::map<std::string, Entity, std::less<>> macros;
+  std::vector<std::string> open_files;  ///< the chain of includes being read
+  std::uint32_t file = 0;               ///< row of the file being read
+  std::vector<Token> tokens;
+  std::size_t at = 0;
+  std::uint32_t weight = 0;  ///< of everything read so far
+  int includes = 0;
+};
+
+inline const Token& now(const Reading& r) { return r.tokens[r.at]; }
+inline const Token& next(const Reading& r) { return r.tokens[std::min(r.at + 1, r.tokens.size() - 1)]; }
+inline Place place(const Reading& r, const Token& token) { return {r.file, token.line}; }
+
+/// @throws base::InputError, always, with the file being read.
+[[noreturn]] void fail(const Reading& r, int line, const std::string& message);
+void warn(Reading& r, int line, std::string message);
+
+/// A token as an error quotes it.
+std::string shown(const Token& token);
+
+/// Reads `key value` and moves on. @throws base::InputError when there is no value.
+Property read_property(Reading& r);
+
+/// Of two equal properties the last wins, with a warning when both stand in the same parentheses.
+/// @param written the keys of these parentheses so far.
+/// @throws base::InputError for two equal indices: an element would be lost.
+void add_property(Reading& r, Entity& entity, std::unordered_set<std::string>& written, Property property);
+
+}  // namespace sf::world

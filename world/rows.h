@@ -1,0 +1,26 @@
+#pragma once
+// A world's tables as bytes, row by row: what the hash and the snapshot share.
+
+#include "base/bytes.h"
+#include "world/world.h"
+
+namespace sf::world {
+
+/// How much of a row is written: all of it, or what a reading depends on (no colours).
+enum class Rows { all, physics };
+
+void put(base::ByteWriter& out, const Pose& pose);
+void put(base::ByteWriter& out, const Segment& segment);
+void put(base::ByteWriter& out, const Model& model, Rows rows);
+void put(base::ByteWriter& out, const Mover& mover, Rows rows);
+
+Pose get_pose(base::ByteReader& in);
+Segment get_segment(base::ByteReader& in);
+Model get_model(base::ByteReader& in);
+/// @throws base::InputError when it promises more rows than bytes are left for.
+Mover get_mover(base::ByteReader& in);
+
+/// A count of rows of at least `row_size` bytes each. @throws base::InputError when the bytes cannot hold them.
+std::uint32_t get_count(base::ByteReader& in, std::size_t row_size);
+
+}  // namespace sf::world

@@ -1,0 +1,201 @@
+#include "world/shape.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "base/error.h"
+#include "world/outline.h"
+#include "world/picture.h"
+
+namespace sf::world {
+
+namespace {
+
+constexpr std::uint32_t kMostPoints = 2'000;  // checking a polygon against itself is quadratic
+constexpr std::size_t kMostRuns = 20'000'000;
+constexpr double kBoundary = 0.01;  // [m] thickness of the walls that `boundary 1` adds
+
+struct Block {
+  std::vector<Vec2> points;
+  double z_min = 0.0;
+  double z_max = 1.0;
+};
+
+Vec2 read_point(const Source& source, const Entity& entity, const std::string& key) {
+  const auto point = tuple(source, entity, key, 2, "[x y]");
+  if (!point) fail(source, entity.at, fmt::format("'{}' of this '{}' is missing", key, entity.word));
+  const Place at = find(entity, key)->at;
+  return {metres(source, at, (*point)[0]), metres(source, at, (*point)[1])};
+}
+
+/// @param prefix empty for `block( ... )`, `block[2].` for the older form inside the model.
+Block read_block(Source& source, const Entity& entity, const std::string& prefix) {
+  Block block;
+  if (find(entity, prefix + "points") == nullptr) {
+    fail(source, entity.at, fmt::format("'{}points' is missing; expected the number of corners", prefix));
+  }
+  const std::uint32_t count = whole(source, entity, prefix + "points", 0, 2, kMostPoints);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    block.points.push_back(read_point(source, entity, fmt::format("{}point[{}]", prefix, i)));
+  }
+  const std::string beyond = fmt::format("{}point[{}]", prefix, count);
+  if (const Property* extra = find(entity, beyond)) {
+    warn(source, extra->at, fmt::format("'{}' is not used: 'points' says {}", beyond, count));
+  }
+  if (const auto z = tuple(source, entity, prefix + "z", 2, "[min max]")) {
+    const Place at = find(entity, prefix + "z")->at;
+    block.z_min = metres(source, at, (*z)[0]);
+    block.z_max = metres(source, at, (*z)[1]);
+    if (block.z_max < block.z_min) fail(source, at, "'z' expects [min max] with min not above max");
+  }
+  return block;
+}
+
+std::vector<Block> read_blocks(Source& source, const Entity& entity) {
+  std::vector<Block> blocks;
+  const std::uint32_t old_form = whole(source, entity, "blocks", 0, 0, kMostPoints);
+  for (std::uint32_t i = 0; i < old_form; ++i)
+    blocks.push_back(read_block(source, entity, fmt::format("block[{}].", i)));
+  for (const Entity& child : entity.children) {
+    if (child.type == "block") blocks.push_back(read_block(source, child, ""));
+  }
+  return blocks;
+}
+
+// All blocks of a model are scaled together: their bounding box becomes size.x by size.y about the origin, their
+// greatest height size.z. An extent of zero stays zero.
+void scale_to(std::vector<Block>& blocks, const Size& size) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Vec2 low{kFar, kFar}, high{-kFar, -kFar};
+  double top = 0.0;
+  for (const Block& block : blocks) {
+    for (const Vec2 p : block.points) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    top = std::max(top, block.z_max);
+  }
+  const auto scaled = [](double value, double from, double to, double target) {
+    return to > from ? ((value - from) / (to - from) - 0.5) * target : 0.0;
+  };
+  for (Block& block : blocks) {
+    for (Vec2& p : block.points) p = {scaled(p.x, low.x, high.x, size.x), scaled(p.y, low.y, high.y, size.y)};
+    if (top <= 0.0) continue;
+    block.z_min *= size.z / top;
+    block.z_max *= size.z / top;
+  }
+}
+
+void append(std::vector<Segment>& segments, const std::vector<Vec2>& points, double z_min, double z_max) {
+  const Outline outline = outline_of(points);
+  for (const Edge& edge : outline.edges) {
+    Segment segment;
+    segment.a = edge.a;
+    segment.b = edge.b;
+    segment.z_min = z_min;
+    segment.z_max = z_max;
+    segment.solid_left = outline.solid_left;
+    segments.push_back(segment);
+  }
+}
+
+std::vector<Vec2> rectangle(double x, double y) {
+  return {{-x / 2, -y / 2}, {x / 2, -y / 2}, {x / 2, y / 2}, {-x / 2, y / 2}};
+}
+
+// A frame around the model: the outer faces of four walls, and the inner ones, which look the other way.
+void append_boundary(std::vector<Segment>& segments, const Size& size) {
+  append(segments, rectangle(size.x, size.y), 0.0, size.z);
+  if (size.x <= 2 * kBoundary || size.y <= 2 * kBoundary) return;
+  const std::size_t inner = segments.size();
+  append(segments, rectangle(size.x - 2 * kBoundary, size.y - 2 * kBoundary), 0.0, size.z);
+  for (std::size_t i = inner; i < segments.size(); ++i) std::swap(segments[i].a, segments[i].b);
+}
+
+// Stage: dark is solid. Transparent is free. The picture's top row is the plan's far (+y) edge.
+Grid grid_of(const Picture& picture) {
+  Grid grid{picture.width, picture.height, std::vector<std::uint8_t>(picture.value.size())};
+  for (std::uint32_t row = 0; row < picture.height; ++row) {
+    const std::size_t from = std::size_t{row} * picture.width;
+    const std::size_t to = std::size_t{picture.height - 1 - row} * picture.width;
+    for (std::uint32_t i = 0; i < picture.width; ++i) {
+      const bool opaque = picture.opaque.empty() || picture.opaque[from + i] != 0;
+      grid.solid[to + i] = opaque && picture.value[from + i] <= 127 ? 1 : 0;
+    }
+  }
+  return grid;
+}
+
+const Traced& bitmap_of(Source& source, Bitmaps& bitmaps, const Entity& entity) {
+  const Place at = find(entity, "bitmap")->at;
+  const std::string name = text(source, entity, "bitmap", "");
+  const std::string file = find_file(source.document, at, name);
+  if (file.empty()) {
+    fail(source, at,
+         fmt::format("cannot find the bitmap \"{}\"; expected it beside this file, beside the world file or along "
+                     "$STAGEPATH",
+                     name));
+  }
+  auto& traced = bitmaps[file];
+  if (!traced) traced = trace(grid_of(read_picture(file, Channel::first)), file);
+  return *traced;
+}
+
+}  // namespace
+
+std::shared_ptr<const Traced> trace(Grid grid, const std::string& file) {
+  std::vector<Run> runs = outline(grid);
+  if (runs.size() > kMostRuns) {
+    throw base::InputError(
+        file, 0, fmt::format("an outline of {} pieces; expected a floor plan, not a photograph", runs.size()));
+  }
+  return std::make_shared<const Traced>(Traced{{grid.width, grid.height, {}}, std::move(runs)});
+}
+
+std::vector<Segment> bitmap_segments(const Traced& traced, const Size& size) {
+  std::vector<Segment> segments(traced.runs.size());
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    segments[i].a = corner_position(traced.grid, traced.runs[i].a, size.x, size.y);
+    segments[i].b = corner_position(traced.grid, traced.runs[i].b, size.x, size.y);
+    segments[i].z_max = size.z;
+  }
+  return segments;
+}
+
+std::vector<Segment> shape_of(Source& source, Bitmaps& bitmaps, const Entity& entity, const Size& size, bool is_box) {
+  std::vector<Segment> segments;
+  if (flag(source, entity, "noblocks", false)) return segments;
+  const bool has_bitmap = find(entity, "bitmap") != nullptr;
+  const bool has_boundary = flag(source, entity, "boundary", false);
+  std::vector<Block> blocks = read_blocks(source, entity);
+
+  if (has_bitmap && (size.x <= 0.0 || size.y <= 0.0)) {
+    fail(source, find(entity, "bitmap")->at, "a bitmap needs a 'size' above zero in x and y");
+  }
+  if (has_bitmap) segments = bitmap_segments(bitmap_of(source, bitmaps, entity), size);
+  scale_to(blocks, size);
+  for (const Block& block : blocks) append(segments, block.points, block.z_min, block.z_max);
+  if (has_boundary) append_boundary(segments, size);
+  if (is_box && !has_bitmap && !has_boundary && blocks.empty())
+    append(segments, rectangle(size.x, size.y), 0.0, size.z);
+
+  const auto vanished = [](const Segment& s) { return s.a.x == s.b.x && s.a.y == s.b.y; };
+  segments.erase(std::remove_if(segments.begin(), segments.end(), vanished), segments.end());
+  return segments;
+}
+
+Size size_of(const Source& source, const Entity& entity, const Size& fallback) {
+  const auto values = tuple(source, entity, "size", 2, "[x y z]");
+  if (!values) return fallback;
+  const Place at = find(entity, "size")->at;
+  const auto& v = *values;
+  const Size size{metres(source, at, v[0]), metres(source, at, v[1]),
+                  v.size() > 2 ? metres(source, at, v[2]) : fallback.z};
+  if (size.x < 0.0 || size.y < 0.0 || size.z < 0.0) fail(source, at, "'size' expects lengths that are not negative");
+  return size;
+}
+
+}  // namespace sf::world

@@ -1,0 +1,104 @@
+#include <algorithm>
+
+#include "base/bytes.h"
+#include "base/error.h"
+#include "world/rows.h"
+#include "world/world.h"
+
+namespace sf::world {
+
+namespace {
+
+constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
+constexpr std::uint16_t kVersion = 1;
+
+template <class Row, class Get>
+void get_rows(base::ByteReader& in, std::vector<Row>& rows, std::size_t row_size, Get get) {
+  rows.resize(get_count(in, row_size));
+  for (Row& row : rows) row = get(in);
+}
+
+[[noreturn]] void refuse(const std::string& reason) { throw base::InputError("broken world snapshot: " + reason); }
+
+// Rows that name other rows must name rows that exist: what reads a world relies on it.
+void check_links(const World& world) {
+  const auto models = world.models.size();
+  const auto movers = world.movers.size();
+  const auto known = [&](const Segment& s) { return s.model < models; };
+  bool good = std::all_of(world.walls.begin(), world.walls.end(), known);
+  for (const Model& m : world.models)
+    good &= (m.parent == kNone || m.parent < models) && (m.mover == kNone || m.mover < movers);
+  for (const Mover& m : world.movers) good &= m.model < models && std::all_of(m.body.begin(), m.body.end(), known);
+  if (!good) refuse("a row names a row that is not there");
+}
+
+void get_extras(base::ByteReader& in, World& world) {
+  for (std::uint32_t left = get_count(in, 8); left > 0; --left) {
+    const std::string type = in.get_string();
+    world.kept[type] = in.get<std::int32_t>();
+  }
+  get_rows(in, world.warnings, 12, [](base::ByteReader& bytes) {
+    Warning warning;
+    warning.file = bytes.get_string();
+    warning.line = bytes.get<std::int32_t>();
+    warning.message = bytes.get_string();
+    return warning;
+  });
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> snapshot(const World& world) {
+  std::vector<std::uint8_t> bytes;
+  base::ByteWriter out(bytes);
+  out.put(kMagic);
+  out.put(kVersion);
+  out.put_string(world.name);
+  out.put_string(world.file);
+  out.put(world.magnets);
+  out.put(world.interval);
+  out.put(static_cast<std::uint32_t>(world.models.size()));
+  for (const Model& model : world.models) put(out, model, Rows::all);
+  out.put(static_cast<std::uint32_t>(world.walls.size()));
+  for (const Segment& wall : world.walls) put(out, wall);
+  out.put(static_cast<std::uint32_t>(world.movers.size()));
+  for (const Mover& mover : world.movers) put(out, mover, Rows::all);
+  out.put(static_cast<std::uint32_t>(world.kept.size()));
+  for (const auto& [type, count] : world.kept) {
+    out.put_string(type);
+    out.put(static_cast<std::int32_t>(count));
+  }
+  out.put(static_cast<std::uint32_t>(world.warnings.size()));
+  for (const Warning& warning : world.warnings) {
+    out.put_string(warning.file);
+    out.put(static_cast<std::int32_t>(warning.line));
+    out.put_string(warning.message);
+  }
+  out.put(world.hash);
+  return bytes;
+}
+
+World from_snapshot(const std::vector<std::uint8_t>& bytes) {
+  base::ByteReader in(bytes);
+  if (in.get<std::uint32_t>() != kMagic) refuse("these bytes are no world");
+  const auto version = in.get<std::uint16_t>();
+  if (version != kVersion) refuse("version " + std::to_string(version) + "; expected " + std::to_string(kVersion));
+
+  World world;
+  world.name = in.get_string();
+  world.file = in.get_string();
+  world.magnets = in.get<std::uint32_t>();
+  world.interval = in.get<double>();
+  get_rows(in, world.models, 60, get_model);
+  get_rows(in, world.walls, 53, get_segment);
+  get_rows(in, world.movers, 80, get_mover);
+  get_extras(in, world);
+  const auto hash = in.get<std::uint64_t>();
+  if (!in.good() || in.left() != 0) refuse("cut short, or longer than it says");
+  check_links(world);
+  finish(world);
+  if (world.hash != hash) refuse("its content does not have the hash it was saved with");
+  return world;
+}
+
+}  // namespace sf::world

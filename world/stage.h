@@ -1,0 +1,15 @@
+#pragma once
+// Stage world files, from disk or from memory.
+
+#include <string>
+
+#include "world/world.h"
+
+namespace sf::world {
+
+/// Builds the world that `text` describes. `file` names errors and is where includes and bitmaps are looked for; it is
+/// not read.
+/// @throws base::InputError with file and line.
+World build_world(const std::string& file, const std::string& text, const LoadOptions& options = {});
+
+}  // namespace sf::world

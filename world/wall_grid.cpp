@@ -1,0 +1,112 @@
+#include "world/wall_grid.h"
+
+#include <bit>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace sf::world {
+
+namespace {
+
+constexpr double kGrowth = 8.0;        // cell edge from one level to the next
+constexpr double kLongest = 64.0;      // cells a wall may span on its level
+constexpr std::uint32_t kLevels = 12;  // 8^11 finest cells: 8.6e9 of them in a row
+constexpr double kFarthest = 4.0e15;   // cell numbers stay exact integers
+
+double side(Vec2 a, Vec2 b, Vec2 p) { return base::cross(b - a, p - a); }
+
+bool within(double p, double a, double b) { return std::min(a, b) <= p && p <= std::max(a, b); }
+
+}  // namespace
+
+double distance(Vec2 p, Vec2 a, Vec2 b) {
+  const Vec2 u = b - a;
+  const double uu = dot(u, u);
+  const double t = uu > 0.0 ? std::clamp(dot(p - a, u) / uu, 0.0, 1.0) : 0.0;
+  const Vec2 d = p - a - t * u;
+  return std::sqrt(dot(d, d));
+}
+
+bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+  const double sc = side(a, b, c);
+  const double sd = side(a, b, d);
+  if ((sc > 0.0 && sd > 0.0) || (sc < 0.0 && sd < 0.0)) return false;
+  const double sa = side(c, d, a);
+  const double sb = side(c, d, b);
+  if ((sa > 0.0 && sb > 0.0) || (sa < 0.0 && sb < 0.0)) return false;
+  if (sa != 0.0 || sb != 0.0 || sc != 0.0 || sd != 0.0) return true;
+
+  // All four on one line: the segments meet where their ranges do.
+  const auto on = [](Vec2 p, Vec2 q, Vec2 r) { return within(p.x, q.x, r.x) && within(p.y, q.y, r.y); };
+  return on(a, c, d) || on(b, c, d) || on(c, a, b);
+}
+
+WallGrid::WallGrid(std::vector<Segment> walls, double cell) : walls_(std::move(walls)) {
+  SF_CHECK(cell > 0.0 && std::isfinite(cell), "cell edge " + std::to_string(cell));
+  for (std::uint32_t level = 0; level < kLevels; ++level) cells_.push_back(cell * std::pow(kGrowth, level));
+
+  // Count, then fill: buckets lie one after another.
+  std::size_t count = 0;
+  std::vector<bool> used(kLevels, false);
+  starts_.assign(2, 0);
+  for (const Segment& wall : walls_) {
+    used[level_of(wall)] = true;
+    for_each_bucket(wall, [&](std::size_t) { ++count; });
+  }
+  for (std::uint32_t level = 0; level < kLevels; ++level) {
+    if (used[level]) used_.push_back(level);
+  }
+  starts_.assign(std::bit_ceil(std::max<std::size_t>(count, 1)) + 1, 0);
+  entries_.resize(count);
+  for (const Segment& wall : walls_) for_each_bucket(wall, [&](std::size_t at) { ++starts_[at + 1]; });
+  for (std::size_t at = 1; at < starts_.size(); ++at) starts_[at] += starts_[at - 1];
+  std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
+  for (std::uint32_t row = 0; row < walls_.size(); ++row) {
+    for_each_bucket(walls_[row], [&](std::size_t at) { entries_[next[at]++] = row; });
+  }
+}
+
+std::int64_t WallGrid::cell_of(double v, double cell) {
+  return static_cast<std::int64_t>(std::clamp(std::floor(v / cell), -kFarthest, kFarthest));
+}
+
+std::size_t WallGrid::bucket(std::uint32_t level, std::int64_t x, std::int64_t y) const {
+  // Finaliser of SplitMix64 (Steele et al., 2014) over the three numbers.
+  std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(y);
+  h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9u + level;
+  h = (h ^ (h >> 27)) * 0x94D049BB133111EBu;
+  return (h ^ (h >> 31)) & (starts_.size() - 2);
+}
+
+std::uint32_t WallGrid::level_of(const Segment& wall) const {
+  const double span = std::max(std::abs(wall.b.x - wall.a.x), std::abs(wall.b.y - wall.a.y));
+  std::uint32_t level = 0;
+  while (level + 1 < kLevels && span > kLongest * cells_[level]) ++level;
+  return level;
+}
+
+template <class Visit>
+void WallGrid::for_each_bucket(const Segment& wall, Visit&& visit) const {
+  const std::uint32_t level = level_of(wall);
+  const double cell = cells_[level];
+  const double slack = 1e-6 * cell;  // far above rounding at 100 km, far below a cell
+  const Vec2 p = wall.a.x <= wall.b.x ? wall.a : wall.b;
+  const Vec2 q = wall.a.x <= wall.b.x ? wall.b : wall.a;
+
+  // Column by column: the cells the wall crosses there.
+  const std::int64_t last = cell_of(q.x, cell);
+  for (std::int64_t x = cell_of(p.x, cell); x <= last; ++x) {
+    const auto y_at = [&](double at) {
+      const double t = q.x > p.x ? std::clamp((at - p.x) / (q.x - p.x), 0.0, 1.0) : 0.0;
+      return p.y + t * (q.y - p.y);
+    };
+    double y0 = y_at(static_cast<double>(x) * cell - slack);
+    double y1 = q.x > p.x ? y_at(static_cast<double>(x + 1) * cell + slack) : q.y;
+    if (y0 > y1) std::swap(y0, y1);
+    const std::int64_t top = cell_of(y1 + slack, cell);
+    for (std::int64_t y = cell_of(y0 - slack, cell); y <= top; ++y) visit(bucket(level, x, y));
+  }
+}
+
+}  // namespace sf::world

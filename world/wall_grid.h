@@ -1,0 +1,97 @@
+#pragma once
+// Which walls are near? A hashed uniform grid with coarser levels for long walls.
+//
+// Memory is bounded by the number of walls, never by the extent of the world: a wall lies on the finest level on which
+// it crosses few cells, and cells are buckets of one hash table. Built once; queries allocate nothing and may run on
+// any thread.
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/pose.h"
+#include "world/world.h"
+
+namespace sf::world {
+
+/// Axis-aligned, closed. [m] world frame
+struct Box {
+  Vec2 min;
+  Vec2 max;
+};
+
+inline Box box_around(Vec2 centre, double reach) {
+  return {{centre.x - reach, centre.y - reach}, {centre.x + reach, centre.y + reach}};
+}
+
+/// Distance from `p` to the nearest point of the segment. [m] >= 0
+double distance(Vec2 p, Vec2 a, Vec2 b);
+
+/// Whether two closed segments share a point. Touching counts.
+bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d);
+
+class WallGrid {
+ public:
+  /// @param walls copied; those the caller wants to meet
+  /// @param cell [m] > 0, edge of the finest cells: about the size of a typical query
+  WallGrid(std::vector<Segment> walls, double cell);
+
+  /// True as soon as `predicate(const Segment&)` is true for a wall whose bounding box meets `box`. A wall may be asked
+  /// about more than once; the order is fixed.
+  template <class Predicate>
+  bool any(const Box& box, Predicate&& predicate) const;
+
+  std::span<const Segment> walls() const { return walls_; }
+
+ private:
+  struct Cells {
+    std::int64_t x0, y0, x1, y1;
+  };
+  static std::int64_t cell_of(double v, double cell);
+  static Cells cells_of(const Box& box, double cell);
+  static bool meet(const Box& box, const Segment& wall);
+  std::size_t bucket(std::uint32_t level, std::int64_t x, std::int64_t y) const;
+  std::uint32_t level_of(const Segment& wall) const;
+  template <class Visit>
+  void for_each_bucket(const Segment& wall, Visit&& visit) const;
+
+  std::vector<Segment> walls_;
+  std::vector<double> cells_;           ///< [m] cell edge per level
+  std::vector<std::uint32_t> used_;     ///< levels that hold any wall
+  std::vector<std::uint32_t> starts_;   ///< per bucket, into entries_; one more at the end
+  std::vector<std::uint32_t> entries_;  ///< rows of walls_
+};
+
+inline WallGrid::Cells WallGrid::cells_of(const Box& box, double cell) {
+  return {cell_of(box.min.x, cell), cell_of(box.min.y, cell), cell_of(box.max.x, cell), cell_of(box.max.y, cell)};
+}
+
+inline bool WallGrid::meet(const Box& box, const Segment& wall) {
+  return std::min(wall.a.x, wall.b.x) <= box.max.x && std::max(wall.a.x, wall.b.x) >= box.min.x &&
+         std::min(wall.a.y, wall.b.y) <= box.max.y && std::max(wall.a.y, wall.b.y) >= box.min.y;
+}
+
+template <class Predicate>
+bool WallGrid::any(const Box& box, Predicate&& predicate) const {
+  for (const std::uint32_t level : used_) {
+    const Cells cells = cells_of(box, cells_[level]);
+    const double count = static_cast<double>(cells.x1 - cells.x0 + 1) * static_cast<double>(cells.y1 - cells.y0 + 1);
+    if (count > static_cast<double>(walls_.size())) {
+      return std::any_of(walls_.begin(), walls_.end(),
+                         [&](const Segment& wall) { return meet(box, wall) && predicate(wall); });
+    }
+    for (std::int64_t y = cells.y0; y <= cells.y1; ++y) {
+      for (std::int64_t x = cells.x0; x <= cells.x1; ++x) {
+        const std::size_t at = bucket(level, x, y);
+        for (std::uint32_t e = starts_[at]; e < starts_[at + 1]; ++e) {
+          const Segment& wall = walls_[entries_[e]];
+          if (meet(box, wall) && predicate(wall)) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace sf::world
