@@ -59,13 +59,11 @@ void main() {
 
   // Prove each winner, or look at all in 64 bits.
   const float clearance = uintBitsToFloat(movers.z);
-  vec4 farthest;
   bool sure = !best.edge_on;
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
-    const bool p = proven(best.entry[i], o, vec2(d.dx[i], d.dy[i]), band, clearance, farthest[i], best.above[i], best.below[i]);
+    const bool p = proven(best.entry[i], o, vec2(d.dx[i], d.dy[i]), band, clearance, best.below[i]);
     sure = sure && p;
   }
-  const float bound = max(max(farthest.x, farthest.y), max(farthest.z, farthest.w));
 
   const uvec4 origin_words = imageLoad(rows, row + 3);
   const uvec4 heading_words = imageLoad(rows, row + 4);
@@ -82,7 +80,8 @@ void main() {
     winner[i] = best.entry[i] < 0 ? SF_NO_HIT : imageLoad(ids, best.entry[i]).x;
   }
 
-  // A proven lane goes round once, with its winners; another with every entry that may be nearer than the farthest winner.
+  // A proven lane goes round once, with its winners; another with every entry, until what is left is farther than all that
+  // 64 bits have found.
   int chunk = int(walls.x);
   int end = chunk + int(walls.y);
   int k = 0;
@@ -95,7 +94,8 @@ void main() {
     k = k + 1;
     chunk = k == SF_CHUNK ? chunk + 1 : chunk;
     k = k == SF_CHUNK ? 0 : k;
-    bool done = chunk >= end || imageLoad(nearest, chunk).x > bound;
+    const double found = max(max(decisions[0].range, decisions[1].range), max(decisions[2].range, decisions[3].range));
+    bool done = chunk >= end || double(imageLoad(nearest, chunk).x) > found;
     const bool turn = done && movers_left;
     chunk = turn ? int(movers.x) : chunk;
     end = turn ? int(movers.x + movers.y) : end;

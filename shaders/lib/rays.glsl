@@ -53,7 +53,7 @@ void search_list(uvec4 header, vec2 o, Beams d, float band, inout Nearest best) 
 }
 
 // True when the winner of a beam needs no further look.
-bool proven(int entry, vec2 o, vec2 d, float band, float clearance, out float farthest, float above, float below) {
+bool proven(int entry, vec2 o, vec2 d, float band, float clearance, float below) {
   const vec4 s = imageLoad(entries, max(entry, 0));
   const vec2 w = s.xy - o;
   const float error = 2.0 * band * (abs(s.z) + abs(s.w));
@@ -62,6 +62,5 @@ bool proven(int entry, vec2 o, vec2 d, float band, float clearance, out float fa
   const float margin = band + 4.0 * tau;
   const uint id = imageLoad(ids, max(entry, 0)).x;
   const float own = uintBitsToFloat(imageLoad(facts, 2 * int(id)).x);
-  farthest = (above + error) / below;
   return entry < 0 || (c >= margin && c <= below - margin && tau < min(own, clearance));
 }
