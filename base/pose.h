@@ -31,7 +31,7 @@ inline Vec2 operator-(Vec2 p, Vec2 q) { return {p.x - q.x, p.y - q.y}; }
 inline Vec2 operator*(double s, Vec2 p) { return {s * p.x, s * p.y}; }
 inline double dot(Vec2 p, Vec2 q) { return p.x * q.x + p.y * q.y; }
 inline double cross(Vec2 p, Vec2 q) { return p.x * q.y - p.y * q.x; }
-inline double length(Vec2 p) { return std::hypot(p.x, p.y); }
+inline double length(Vec2 p) { return std::sqrt(p.x * p.x + p.y * p.y); }
 
 inline Vec2 rotate(double yaw, Vec2 p) {
   const double c = std::cos(yaw);

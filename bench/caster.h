@@ -48,7 +48,9 @@ class Results {
     for (std::size_t i = 0; i < ranges_.size(); ++i) count += std::isnan(ranges_[i]) || hits_[i] == kPoisonHit;
     return count;
   }
-  double range(std::size_t robot, std::size_t beam) const { return static_cast<double>(ranges_[robot * beams_ + beam]); }
+  double range(std::size_t robot, std::size_t beam) const {
+    return static_cast<double>(ranges_[robot * beams_ + beam]);
+  }
   std::uint64_t hash() const { return base::hash_bytes(ranges_.data(), ranges_.size() * sizeof(Real)); }
 
  private:

@@ -20,7 +20,8 @@ class EmbreeCaster final : public Caster {
   ~EmbreeCaster() override;
 
   std::string name() const override {
-    return std::string(use_.packets ? "embree, 8-ray packets" : "embree, single rays") + (use_.robust ? ", robust" : "");
+    return std::string(use_.packets ? "embree, 8-ray packets" : "embree, single rays") +
+           (use_.robust ? ", robust" : "");
   }
   void poison() override { results_.poison(); }
   void cast(std::size_t round) override {
@@ -46,7 +47,7 @@ class EmbreeCaster final : public Caster {
   Results<float> results_;
   RTCDevice device_;
   RTCScene scene_;
-  std::vector<std::uint32_t> models_;   ///< by primitive
+  std::vector<std::uint32_t> models_;     ///< by primitive
   std::vector<float> beams_x_, beams_y_;  ///< padded to whole packets with the last beam
   base::Workers workers_;
 };
@@ -86,8 +87,8 @@ void EmbreeCaster::add_walls(RTCGeometry geometry) {
     if (s.seen_by_laser && s.z_min <= z && z < s.z_max) seen.push_back(s);
   auto* const vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * seen.size()));
-  auto* const quads = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                                                     RTC_FORMAT_UINT4, 4 * sizeof(unsigned), seen.size()));
+  auto* const quads = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), seen.size()));
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const base::Vec2 corners[4] = {seen[i].a, seen[i].b, seen[i].b, seen[i].a};
     for (std::size_t k = 0; k < 4; ++k) {

@@ -1,6 +1,5 @@
 #include "bench/scans.h"
 
-#include "sensors/beams.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::bench {
@@ -29,7 +28,7 @@ Scans make_scans(const std::string& scene, world::World world, std::uint32_t cou
       poses.push_back(base::compose(mover.X_WM, {0.002 * round, 0.001 * round, 0.0, 0.1 * round}));
   }
   for (std::uint32_t i = 0; i < laser.samples; ++i) {
-    const double bearing = sensors::bearing_of(laser, i);
+    const double bearing = world::bearing_of(laser, i);
     scans.beams.push_back({std::cos(bearing), std::sin(bearing)});
   }
   return scans;

@@ -181,7 +181,9 @@ void Bodies::collect(const View& view, Scratch& scratch, SectorLists& lists, flo
       const Vec2 p = Vec2{poses_[other].x, poses_[other].y} - view.origin;
       const double distance = length(p);
       if (distance > n.nearest) break;
-      const double half = opaque[other] > 0.0f ? std::asin(std::min(1.0, opaque[other] / distance)) : 0.0;
+      // From inside of a body nothing is behind it.
+      if (opaque[other] <= 0.0f || distance <= bodies_[other].radius) continue;
+      const double half = std::asin(opaque[other] / distance);
       const double bearing = std::atan2(p.y, p.x);
       screen.cover(bearing - half, bearing + half);
     }
@@ -192,6 +194,7 @@ void Bodies::collect(const View& view, Scratch& scratch, SectorLists& lists, flo
     const double bearing = std::atan2(p.y, p.x);
     const double wide = around ? M_PI : std::asin(bodies_[n.body].radius / distance) + 1e-6;
     if (screen.covers(bearing - wide, bearing + wide)) continue;
+    if (view.depth && !around && view.depth->hides(view.origin, view.origin + p, bodies_[n.body].radius)) continue;
 
     const std::size_t before = lists.items.size();
     add_body(view, n.body, bearing, wide, lists);

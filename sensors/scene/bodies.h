@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "sensors/scene/depth.h"
 #include "sensors/scene/sectors.h"
 #include "world/world.h"
 
@@ -25,6 +26,7 @@ class Bodies {
   std::span<const ExactSegment> segments() const { return segments_; }
   /// For each, how near other parts of the same mover come, as `wall_clearances` gives it [m].
   std::vector<float> own_clearances(double cap) const;
+  std::size_t count() const { return bodies_.size(); }
   double largest_radius() const { return largest_; }  ///< [m]
   /// What beams report that meet them, in the same order.
   const std::vector<std::uint32_t>& models() const { return models_; }
@@ -42,6 +44,7 @@ class Bodies {
     double range = 0.0;        ///< [m]
     double spread = 0.0;       ///< [rad] as in CellShape
     std::uint32_t self = 0;    ///< mover that carries the sensor, and is never seen
+    const Depth* depth = nullptr;  ///< of the walls at this height; none when the view lies in a solid
   };
   /// Scratch of one thread.
   struct Near {

@@ -56,6 +56,7 @@ struct Scene::FamilyTables {
   Family family;
   CellShape shape;
   const Sight* sight = nullptr;
+  const Depth* depth = nullptr;
   std::uint32_t height = 0;
 };
 
@@ -115,6 +116,10 @@ std::uint32_t Scene::add_family(const Family& family) {
   tables->family = family;
   tables->shape = {cell_size(family.range), family.range, family.spread + 5e-4};
   tables->sight = sight.get();
+  // Only movers are looked up in it.
+  auto& depth = depths_[interval];
+  if (!depth && bodies_->count() > 1) depth = std::make_unique<Depth>(*sight, workers_);
+  tables->depth = depth.get();
   tables->height = bodies_->watch_height(family.z);
   families_.push_back(std::move(tables));
   return static_cast<std::uint32_t>(families_.size() - 1);
@@ -241,7 +246,8 @@ bool Scene::fill_some_movers(std::span<const Viewpoint> views, std::span<RayRow>
                         centre_of(family, keys_[i]),
                         family.family.range,
                         family.shape.spread,
-                        view.self},
+                        view.self,
+                        keys_[i].family % 2 == 1 ? nullptr : family.depth},
                        scratch.bodies, scratch.lists, clearances);
       const std::uint32_t chunks = scratch.lists.all_chunks();
       const std::uint32_t at = next.fetch_add(chunks);

@@ -92,6 +92,7 @@ class Scene {
   std::vector<world::Segment> walls_;
   std::vector<double> breaks_;                            ///< [m] heights at which the set of visible walls changes
   std::map<std::size_t, std::unique_ptr<Sight>> sights_;  ///< by the interval between breaks
+  std::map<std::size_t, std::unique_ptr<Depth>> depths_;  ///< likewise
   std::vector<std::unique_ptr<FamilyTables>> families_;
   std::unique_ptr<Sight> all_walls_;
   std::unique_ptr<Bodies> bodies_;

@@ -26,9 +26,20 @@ std::vector<world::Segment> surfaces(const world::World& world, std::span<const 
   return all;
 }
 
-Answer cast(std::span<const world::Segment> surfaces, Vec2 origin, double direction, double range_max) {
-  const Wide dx = std::cos(static_cast<Wide>(direction));
-  const Wide dy = std::sin(static_cast<Wide>(direction));
+std::vector<world::Segment> within(std::span<const world::Segment> all, Vec2 origin, double range) {
+  std::vector<world::Segment> near;
+  const double reach = 1.001 * range + 0.001;
+  for (const world::Segment& s : all) {
+    const bool aside_x = std::max(s.a.x, s.b.x) < origin.x - reach || std::min(s.a.x, s.b.x) > origin.x + reach;
+    const bool aside_y = std::max(s.a.y, s.b.y) < origin.y - reach || std::min(s.a.y, s.b.y) > origin.y + reach;
+    if (!aside_x && !aside_y) near.push_back(s);
+  }
+  return near;
+}
+
+Answer cast(std::span<const world::Segment> surfaces, Vec2 origin, long double direction, double range_max) {
+  const Wide dx = std::cos(direction);
+  const Wide dy = std::sin(direction);
   Wide best = range_max;
   Answer answer{range_max, 0xFFFFFFFFu, std::numeric_limits<double>::infinity()};
   for (const world::Segment& s : surfaces) {

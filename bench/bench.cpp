@@ -1,0 +1,173 @@
+// Runs all measurements as Google benchmarks: `sensorfarm_bench [--results=FOLDER] [--benchmark_filter=...]`.
+//
+// Contests are run whole when the first of their entrants is asked for, since what counts is that methods take turns;
+// the benchmarks then tell each method's turns one by one.
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstring>
+#include <map>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "bench/embree_caster.h"
+#include "bench/farm_caster.h"
+#include "bench/grid.h"
+#include "bench/report.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::bench {
+
+namespace {
+
+constexpr const char* kReference = "embree, 8-ray packets";
+
+/// What is measured once and told many times.
+struct Session {
+  gpu::Device device;
+  Book book;
+  std::map<std::string, Outcome> contests;
+};
+
+struct ScanCase {
+  std::uint32_t robots;
+  double range;
+  std::size_t turns;
+};
+constexpr ScanCase kScanCases[] = {{1'000, 8.0, 41}, {1'000, 0.75, 41}, {10'000, 8.0, 15}, {10'000, 0.75, 15}};
+constexpr std::size_t kMethods = 6;
+
+const Outcome& contest(Session& session, const ScanCase& c) {
+  const std::string name = fmt::format("{}/{}", c.robots, c.range);
+  const auto known = session.contests.find(name);
+  if (known != session.contests.end()) return known->second;
+  const Scans scans = make_scans("cave", load_cave(), c.robots, scenes::laser(361, M_PI, c.range));
+  std::vector<std::unique_ptr<Caster>> casters;
+  casters.push_back(make_farm_caster(scans, session.device));
+  casters.push_back(make_grid_caster(scans, "plain C++ grid", walk_portable));
+  casters.push_back(make_grid_caster(scans, "plain C++ grid, -march=native", walk_native));
+  for (const EmbreeUse use : {EmbreeUse{true, false}, EmbreeUse{true, true}, EmbreeUse{false, false}})
+    if (auto caster = make_embree_caster(scans, use)) casters.push_back(std::move(caster));
+  const Outcome outcome = compete(scans, casters, kReference, c.turns);
+  session.book.contests.push_back(outcome);
+  return session.contests[name] = outcome;
+}
+
+void tell(benchmark::State& state, const std::vector<Cost>& costs, std::size_t rays, const Verdict& verdict,
+          std::uint64_t hash) {
+  std::size_t k = 0;
+  double cpu_s = 0.0;
+  for (auto _ : state) {
+    state.SetIterationTime(costs[k % costs.size()].wall_s);
+    cpu_s += costs[k++ % costs.size()].cpu_s;
+  }
+  state.counters["Mrays/s"] = benchmark::Counter(1e-6 * static_cast<double>(rays * k), benchmark::Counter::kIsRate,
+                                                 benchmark::Counter::kIs1000);
+  state.counters["cpu_ms"] = 1e3 * cpu_s / static_cast<double>(k);
+  state.SetLabel(fmt::format("max error {:.1e} m of {} beams, hash {}", verdict.max_error_m, verdict.beams,
+                             base::hash_text(hash)));
+}
+
+void tell_entrant(benchmark::State& state, Session& session, const ScanCase& c, std::size_t which) {
+  const Outcome& outcome = contest(session, c);
+  if (which >= outcome.entrants.size()) return state.SkipWithError("built without Embree");
+  const Entrant& e = outcome.entrants[which];
+  tell(state, e.turns, outcome.rays, e.verdict, e.hash);
+  state.counters["ratio"] = e.ratio;
+}
+
+struct DriveCase {
+  std::uint32_t robots;
+  double range;
+  bool wander;
+  std::size_t ticks;
+};
+constexpr DriveCase kDriveCases[] = {{100, 8.0, false, 101},  {100, 8.0, true, 201},  {100, 0.75, true, 201},
+                                     {1'000, 8.0, false, 41}, {1'000, 8.0, true, 61}, {1'000, 0.75, true, 61}};
+constexpr std::size_t kWarmUp = 20;
+
+void tell_drive(benchmark::State& state, Session& session, const DriveCase& c) {
+  // A thousand bodies need more room than the cave has: three times as long, as many caverns.
+  const bool large = c.robots > 100;
+  world::World world = large ? scenes::cave(1500, 48.0, 3) : load_cave();
+  scenes::add_robots(world, c.robots, scenes::laser(361, M_PI, c.range), 1);
+  const DriveResult result = drive(large ? "large cave" : "cave", world, session.device, c.wander, kWarmUp, c.ticks);
+  session.book.drives.push_back(result);
+  tell(state, result.ticks, result.rays, result.verdict, result.hash);
+  state.counters["x_real_time"] = result.interval_s / result.typical.wall_s;
+}
+
+void tell_facts(benchmark::State& state, Session& session, const std::function<std::vector<Fact>()>& measure) {
+  for (auto _ : state)
+    for (const Fact& fact : measure()) {
+      state.counters[fact.what] = fact.value;
+      session.book.facts.push_back(fact);
+    }
+}
+
+const char* method_key(std::size_t which) {
+  constexpr const char* kKeys[kMethods] = {"farm", "grid", "grid_native", "embree8", "embree8_robust", "embree1"};
+  return kKeys[which];
+}
+
+void register_all(Session& session) {
+  const auto once = [](benchmark::internal::Benchmark* b) { b->Unit(benchmark::kMillisecond)->Iterations(1); };
+  for (const ScanCase& c : kScanCases)
+    for (std::size_t which = 0; which < kMethods; ++which)
+      benchmark::RegisterBenchmark(fmt::format("scan/cave/{}/{}m/{}", c.robots, c.range, method_key(which)).c_str(),
+                                   [&session, &c, which](benchmark::State& s) { tell_entrant(s, session, c, which); })
+          ->UseManualTime()
+          ->Unit(benchmark::kMillisecond)
+          ->Iterations(static_cast<benchmark::IterationCount>(c.turns));
+  for (const DriveCase& c : kDriveCases)
+    benchmark::RegisterBenchmark(
+        fmt::format("tick/{}/{}m/{}", c.robots, c.range, c.wander ? "wandering" : "standing").c_str(),
+        [&session, &c](benchmark::State& s) { tell_drive(s, session, c); })
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond)
+        ->Iterations(static_cast<benchmark::IterationCount>(c.ticks));
+  once(benchmark::RegisterBenchmark("start",
+                                    [&session](benchmark::State& s) { tell_facts(s, session, measure_start); }));
+  once(benchmark::RegisterBenchmark("small_ticks", [&session](benchmark::State& s) {
+    tell_facts(s, session, [&session] { return measure_ticks(session.device); });
+  }));
+  once(benchmark::RegisterBenchmark("lists", [&session](benchmark::State& s) {
+    tell_facts(s, session, [&session] { return measure_lists(session.device); });
+  }));
+}
+
+int run(int argc, char** argv) {
+  std::string folder;
+  benchmark::Initialize(&argc, argv);
+  for (int i = 1; i < argc; ++i)
+    if (std::strncmp(argv[i], "--results=", 10) == 0)
+      folder = argv[i] + 10;
+    else
+      throw base::InputError(std::string(argv[i]) + ": expected --results=FOLDER or an option of Google Benchmark");
+  Session session;
+  benchmark::AddCustomContext("device", session.device.facts().name + ", " + session.device.facts().driver);
+  register_all(session);
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  if (!folder.empty()) write_csv(session.book, folder);
+  fmt::print("{}", tables(session.book));
+  return 0;
+}
+
+}  // namespace
+
+}  // namespace sf::bench
+
+int main(int argc, char** argv) {
+  try {
+    return sf::bench::run(argc, argv);
+  } catch (const sf::base::DeviceError& error) {
+    fmt::print(stderr, "sensorfarm_bench: {}\n", error.what());
+    return 3;
+  } catch (const sf::base::InputError& error) {
+    fmt::print(stderr, "sensorfarm_bench: {}\n", error.what());
+    return 2;
+  }
+}

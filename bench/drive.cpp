@@ -1,0 +1,99 @@
+#include "bench/drive.h"
+
+#include "base/error.h"
+#include "bench/poison.h"
+#include "control/wander.h"
+
+namespace sf::bench {
+
+namespace {
+
+constexpr std::uint64_t kSeed = 7;
+constexpr std::size_t kJudgedRobots = 12;
+
+farm::FarmStats operator-(const farm::FarmStats& p, const farm::FarmStats& q) {
+  farm::FarmStats d;
+  d.ticks = p.ticks - q.ticks;
+  d.rays = p.rays - q.rays;
+  d.readings = p.readings - q.readings;
+  d.doubts = p.doubts - q.doubts;
+  d.cells_built = p.cells_built - q.cells_built;
+  d.place_s = p.place_s - q.place_s;
+  d.lists_s = p.lists_s - q.lists_s;
+  d.device_s = p.device_s - q.device_s;
+  d.collect_s = p.collect_s - q.collect_s;
+  return d;
+}
+
+}  // namespace
+
+Drive::Drive(const world::World& world, gpu::Device& device)
+    : world_(world),
+      farm_(world, device),
+      fleet_(world),
+      commands_(world.movers.size()),
+      interval_(std::llround(1e9 / world.movers[0].lasers[0].rate)) {
+  farm_.hear_all();
+  for (std::uint32_t row = 0; row < world.movers.size(); ++row)
+    controllers_.push_back(std::make_unique<control::Wander>(world.movers[row], row, kSeed));
+}
+
+void Drive::tick(bool wander) {
+  const double start = now().wall_s;
+  if (wander) {
+    decide();
+    decide_s_ += now().wall_s - start;
+    const double decided = now().wall_s;
+    fleet_.move(commands_, interval_);
+    move_s_ += now().wall_s - decided;
+  }
+  readings_ = farm_.tick(time_, fleet_.reports());
+  time_ += interval_;
+}
+
+/// Every robot has one laser here, so that its reading is the row of its number.
+void Drive::decide() {
+  for (const base::ReadingBlock& reading : readings_) {
+    const std::uint32_t row = reading.mover;
+    const control::Input input{time_, fleet_.reports()[row], {&reading, 1}, fleet_.contacts()[row] != 0};
+    commands_[row] = controllers_[row]->step(input);
+  }
+}
+
+std::vector<base::Pose> Drive::poses() const {
+  std::vector<base::Pose> poses;
+  for (const base::Report& report : fleet_.reports()) poses.push_back(report.X_WM);
+  return poses;
+}
+
+DriveResult drive(const std::string& scene, const world::World& world, gpu::Device& device, bool wander,
+                  std::size_t warm_up, std::size_t ticks) {
+  Drive fleet(world, device);
+  const world::Laser& laser = world.movers[0].lasers[0];
+  DriveResult result{scene, wander ? "wandering" : "standing", world.movers.size(), world.movers.size() * laser.samples,
+                     laser.range_max};
+  result.interval_s = 1e-9 * static_cast<double>(fleet.interval());
+  for (std::size_t k = 0; k < warm_up; ++k) fleet.tick(wander);
+  const farm::FarmStats before = fleet.farm().stats();
+  const double move_before = fleet.move_s();
+  const double decide_before = fleet.decide_s();
+
+  for (std::size_t k = 0; k < ticks; ++k) {
+    // Robots decide on what they read; standing ones do not read, so that their results can be spoilt every time.
+    if (!wander) poison(fleet.readings());
+    const Cost start = now();
+    fleet.tick(wander);
+    result.ticks.push_back(now() - start);
+    SF_CHECK(unwritten(fleet.readings()) == 0, "the farm left rays unanswered");
+  }
+  const auto n = static_cast<double>(ticks);
+  result.typical = median(result.ticks);
+  result.stages = fleet.farm().stats() - before;
+  result.move_s = (fleet.move_s() - move_before) / n;
+  result.decide_s = (fleet.decide_s() - decide_before) / n;
+  result.hash = hash_ranges(fleet.readings());
+  result.verdict = judge(fleet.readings(), world, fleet.poses(), kJudgedRobots);
+  return result;
+}
+
+}  // namespace sf::bench

@@ -1,0 +1,103 @@
+#include "bench/facts.h"
+
+#include <cstdlib>
+
+#include "base/error.h"
+#include "bench/contest.h"
+#include "bench/farm_caster.h"
+#include "bench/poison.h"
+#include "farm/farm.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::bench {
+
+namespace {
+
+constexpr int kRepeats = 21;
+
+/// Median of what one tick costs, every sensor due in each.
+Cost tick_cost(farm::Farm& farm) {
+  std::vector<Cost> costs;
+  std::int64_t time = 0;
+  for (int k = 0; k < kRepeats + 2; ++k, time += 100'000'000) {
+    const Cost start = now();
+    farm.tick(time, {});
+    if (k >= 2) costs.push_back(now() - start);
+  }
+  return median(costs);
+}
+
+double first_tick(const world::World& world, gpu::Device& device) {
+  farm::Farm farm(world, device);
+  farm.hear_all();
+  const double start = now().wall_s;
+  farm.tick(0, {});
+  return now().wall_s - start;
+}
+
+}  // namespace
+
+std::vector<Fact> measure_start() {
+  world::World world = load_cave();
+  scenes::add_robots(world, 1, scenes::laser(), 1);
+  std::vector<Fact> facts;
+  setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+  {
+    const double start = now().wall_s;
+    gpu::Device device;
+    facts.push_back({"opening the device, self-check included, nothing cached", 1e3 * (now().wall_s - start), "ms"});
+    facts.push_back({"first tick of one robot, kernel compiled", 1e3 * first_tick(world, device), "ms"});
+  }
+  unsetenv("MESA_SHADER_CACHE_DISABLE");
+  {
+    gpu::Device device;
+    first_tick(world, device);
+  }
+  const double start = now().wall_s;
+  gpu::Device device;
+  facts.push_back({"opening the device, kernels from the driver's cache", 1e3 * (now().wall_s - start), "ms"});
+  facts.push_back({"first tick of one robot, kernel from the driver's cache", 1e3 * first_tick(world, device), "ms"});
+  return facts;
+}
+
+std::vector<Fact> measure_ticks(gpu::Device& device) {
+  std::vector<Fact> facts;
+  const world::World thousand = make_scans("cave", load_cave(), 1000, scenes::laser()).world;
+  farm::Farm unheard(thousand, device);
+  facts.push_back({"tick of 1000 robots, none heard", 1e6 * tick_cost(unheard).wall_s, "us"});
+
+  const world::World one = make_scans("cave", load_cave(), 1, scenes::laser(1)).world;
+  farm::Farm single(one, device);
+  single.hear_all();
+  facts.push_back({"tick of 1 robot with 1 beam", 1e6 * tick_cost(single).wall_s, "us"});
+
+  const Scans many = make_scans("cave", load_cave(), 1, scenes::laser(100'000));
+  std::vector<std::unique_ptr<Caster>> casters;
+  casters.push_back(make_farm_caster(many, device));
+  const Entrant farm = compete(many, casters, "", kRepeats).entrants[0];
+  SF_CHECK(farm.verdict.max_error_m < 1e-6, "100 000 beams of one sensor are wrong");
+  facts.push_back({"scan of 1 robot with 100 000 beams, 8 m", 1e3 * farm.typical.wall_s, "ms"});
+  facts.push_back({"rays of 1 robot with 100 000 beams, 8 m", mrays_per_s(many.rays(), farm.typical), "M/s"});
+  return facts;
+}
+
+std::vector<Fact> measure_lists(gpu::Device& device) {
+  std::vector<Fact> facts;
+  for (const double range : {8.0, 0.75}) {
+    const Scans scans = make_scans("cave", load_cave(), 1000, scenes::laser(361, M_PI, range));
+    farm::Farm farm(scans.world, device);
+    farm.hear_all();
+    const Cost start = now();
+    farm.tick(0, {});
+    const Cost first = now() - start;
+    const Cost later = tick_cost(farm);
+    const auto cells = static_cast<double>(farm.stats().cells_built);
+    const std::string at = " at " + std::string(range > 1.0 ? "8" : "0.75") + " m";
+    facts.push_back({"cells that 1000 robots need" + at, cells, "cells"});
+    facts.push_back({"lists of a new cell" + at + ", one core", 1e6 * (first.cpu_s - later.cpu_s) / cells, "us"});
+    facts.push_back({"first tick of 1000 robots" + at, 1e3 * first.wall_s, "ms"});
+  }
+  return facts;
+}
+
+}  // namespace sf::bench

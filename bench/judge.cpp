@@ -1,0 +1,54 @@
+#include "bench/judge.h"
+
+#include <algorithm>
+
+#include "tests/sensors/brute_force.h"
+
+namespace sf::bench {
+
+namespace {
+
+constexpr double kAtVertex = 1e-5;  ///< [m]
+
+std::size_t stride(std::size_t all, std::size_t wanted) { return std::max<std::size_t>(1, all / wanted); }
+
+template <class RangeOf>
+void judge_robot(std::span<const world::Segment> surfaces, const base::Pose& X_WS, const world::Laser& laser,
+                 RangeOf range_of, Verdict& verdict) {
+  for (std::uint32_t i = 0; i < laser.samples; ++i) {
+    const double direction = X_WS.yaw + world::bearing_of(laser, i);
+    const oracle::Answer answer = oracle::cast(surfaces, {X_WS.x, X_WS.y}, direction, laser.range_max);
+    ++verdict.beams;
+    if (answer.silhouette < kAtVertex)
+      ++verdict.at_vertex;
+    else
+      verdict.max_error_m = std::max(verdict.max_error_m, std::fabs(answer.range - range_of(i)));
+  }
+}
+
+}  // namespace
+
+Verdict judge(const Caster& caster, const Scans& scans, std::size_t round, std::size_t robots) {
+  const double z = scans.world.movers[0].X_WM.z + scans.laser.X_MS.z;
+  const auto walls = oracle::surfaces(scans.world, scans.rounds[round], world::kNone, z);
+  Verdict verdict;
+  for (std::size_t robot = 0; robot < scans.robots(); robot += stride(scans.robots(), robots))
+    judge_robot(
+        walls, scans.X_WS(round, robot), scans.laser, [&](std::size_t i) { return caster.range(robot, i); }, verdict);
+  return verdict;
+}
+
+Verdict judge(std::span<const base::ReadingBlock> readings, const world::World& world,
+              std::span<const base::Pose> poses, std::size_t robots) {
+  Verdict verdict;
+  for (std::size_t k = 0; k < readings.size(); k += stride(readings.size(), robots)) {
+    const base::ReadingBlock& r = readings[k];
+    const world::Laser& laser = world.movers[r.mover].lasers[r.sensor];
+    const auto seen = oracle::surfaces(world, poses, r.mover, r.X_WS.z);
+    judge_robot(
+        seen, r.X_WS, laser, [&](std::size_t i) { return r.values[i]; }, verdict);
+  }
+  return verdict;
+}
+
+}  // namespace sf::bench

@@ -1,0 +1,115 @@
+#include "bench/report.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "base/error.h"
+#include "base/hash.h"
+
+namespace sf::bench {
+
+namespace {
+
+void write(const std::string& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << text;
+  if (!out.flush())
+    throw base::InputError(file, 0, "cannot be written: name a folder that exists with --results=FOLDER");
+}
+
+/// A field that may hold a comma.
+std::string quoted(const std::string& text) { return "\"" + text + "\""; }
+
+std::string scans_csv(const std::vector<Outcome>& contests) {
+  std::string text =
+      "scene,method,robots,rays,range_m,wall_ms_median,cpu_ms_median,mrays_per_s,ratio_to_embree8,"
+      "cpu_ratio_to_embree8,max_error_m,hash\n";
+  for (const Outcome& o : contests)
+    for (const Entrant& e : o.entrants)
+      text += fmt::format("{},{},{},{},{},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.3g},{}\n", quoted(o.scene),
+                          quoted(e.method), o.robots, o.rays, o.range_m, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
+                          mrays_per_s(o.rays, e.typical), e.ratio, e.cpu_ratio, e.verdict.max_error_m,
+                          base::hash_text(e.hash));
+  return text;
+}
+
+/// What a tick's stages take on average [ms], and what was special.
+struct Stages {
+  double move, place, lists, device, collect, decide, doubts, cells;
+};
+
+Stages stages_of(const DriveResult& d) {
+  const auto n = static_cast<double>(d.ticks.size());
+  const double lanes = static_cast<double>(d.stages.rays) / 4.0;
+  return {1e3 * d.move_s,
+          1e3 * d.stages.place_s / n,
+          1e3 * d.stages.lists_s / n,
+          1e3 * d.stages.device_s / n,
+          1e3 * d.stages.collect_s / n,
+          1e3 * d.decide_s,
+          static_cast<double>(d.stages.doubts) / lanes,
+          static_cast<double>(d.stages.cells_built) / n};
+}
+
+std::string ticks_csv(const std::vector<DriveResult>& drives) {
+  std::string text =
+      "scene,what,robots,rays,range_m,wall_ms_median,cpu_ms_median,mrays_per_s,real_time_factor,move_ms,place_ms,"
+      "lists_ms,device_ms,collect_ms,decide_ms,lanes_in_doubt,cells_built_per_tick,max_error_m,hash\n";
+  for (const DriveResult& d : drives) {
+    const Stages s = stages_of(d);
+    text += fmt::format(
+        "{},{},{},{},{},{:.3f},{:.3f},{:.2f},{:.1f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.4f},"
+        "{:.1f},{:.3g},{}\n",
+        quoted(d.scene), d.what, d.robots, d.rays, d.range_m, 1e3 * d.typical.wall_s, 1e3 * d.typical.cpu_s,
+        mrays_per_s(d.rays, d.typical), d.interval_s / d.typical.wall_s, s.move, s.place, s.lists, s.device, s.collect,
+        s.decide, s.doubts, s.cells, d.verdict.max_error_m, base::hash_text(d.hash));
+  }
+  return text;
+}
+
+std::string facts_csv(const std::vector<Fact>& facts) {
+  std::string text = "what,value,unit\n";
+  for (const Fact& f : facts) text += fmt::format("{},{:.4g},{}\n", quoted(f.what), f.value, f.unit);
+  return text;
+}
+
+}  // namespace
+
+void write_csv(const Book& book, const std::string& folder) {
+  if (!book.contests.empty()) write(folder + "/scans.csv", scans_csv(book.contests));
+  if (!book.drives.empty()) write(folder + "/ticks.csv", ticks_csv(book.drives));
+  if (!book.facts.empty()) write(folder + "/facts.csv", facts_csv(book.facts));
+}
+
+std::string tables(const Book& book) {
+  std::string text;
+  for (const Outcome& o : book.contests) {
+    text += fmt::format("\n{}: {} robots, {} rays, {} m\n{:<32} {:>9} {:>9} {:>8} {:>7} {:>7} {:>10}  {}\n", o.scene,
+                        o.robots, o.rays, o.range_m, "method", "wall ms", "cpu ms", "Mrays/s", "ratio", "(cpu)",
+                        "max err m", "hash");
+    for (const Entrant& e : o.entrants)
+      text += fmt::format("{:<32} {:>9.2f} {:>9.2f} {:>8.1f} {:>7.2f} {:>7.2f} {:>10.1e}  {}\n", e.method,
+                          1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, mrays_per_s(o.rays, e.typical), e.ratio,
+                          e.cpu_ratio, e.verdict.max_error_m, base::hash_text(e.hash));
+  }
+  if (!book.drives.empty())
+    text += fmt::format(
+        "\nwhole ticks\n{:<34} {:>8} {:>8} {:>8} {:>6} | {:>6} {:>6} {:>7} {:>7} {:>7} {:>6} | {:>6} {:>7} {:>8}\n", "",
+        "wall ms", "cpu ms", "Mrays/s", "x real", "move", "place", "lists", "device", "collect", "decide", "doubts",
+        "cells/t", "max err");
+  for (const DriveResult& d : book.drives) {
+    const Stages s = stages_of(d);
+    text += fmt::format(
+        "{:<34} {:>8.2f} {:>8.2f} {:>8.1f} {:>6.1f} | {:>6.2f} {:>6.2f} {:>7.2f} {:>7.2f} {:>7.2f} {:>6.2f} | "
+        "{:>5.2f}% {:>7.1f} {:>8.1e}\n",
+        fmt::format("{} {} {}, {} m", d.scene, d.robots, d.what, d.range_m), 1e3 * d.typical.wall_s,
+        1e3 * d.typical.cpu_s, mrays_per_s(d.rays, d.typical), d.interval_s / d.typical.wall_s, s.move, s.place,
+        s.lists, s.device, s.collect, s.decide, 100.0 * s.doubts, s.cells, d.verdict.max_error_m);
+  }
+  if (!book.facts.empty()) text += "\nsingle figures\n";
+  for (const Fact& f : book.facts) text += fmt::format("{:<60} {:>10.4g} {}\n", f.what, f.value, f.unit);
+  return text;
+}
+
+}  // namespace sf::bench

@@ -1,0 +1,27 @@
+#pragma once
+// Results as files for later and as tables for now.
+
+#include <string>
+#include <vector>
+
+#include "bench/contest.h"
+#include "bench/drive.h"
+#include "bench/facts.h"
+
+namespace sf::bench {
+
+/// All that was measured.
+struct Book {
+  std::vector<Outcome> contests;
+  std::vector<DriveResult> drives;
+  std::vector<Fact> facts;
+};
+
+/// Writes scans.csv, ticks.csv and facts.csv into `folder`; a part of which nothing was measured keeps its old file.
+/// @throws base::InputError when a file cannot be written.
+void write_csv(const Book& book, const std::string& folder);
+
+/// The same as text for people.
+std::string tables(const Book& book);
+
+}  // namespace sf::bench

@@ -1,0 +1,35 @@
+#pragma once
+// How deep in a solid, or how far from one, every place is: tells cheaply, and never wrongly, that walls hide something.
+//
+// A point that lies deeper in a solid than s sin(alpha), seen at distance s, hides every ray within alpha of it.
+
+#include <vector>
+
+#include "base/parallel.h"
+#include "sensors/scene/sight.h"
+
+namespace sf::sensors {
+
+/// Signed distance to the nearest wall on a grid, negative inside solids, cut off at a metre. Immutable after construction.
+class Depth {
+ public:
+  /// @param most_points of the grid; its spacing follows, at least 5 cm.
+  Depth(const Sight& sight, base::Workers& workers, std::size_t most_points = 300'000);
+
+  /// True only when walls hide the whole disc of `radius` around `p` from `origin`, which lies in no solid. Often false
+  /// though they do.
+  bool hides(Vec2 origin, Vec2 p, double radius) const;
+
+ private:
+  bool is_on_grid(Vec2 q) const;
+  /// Of the grid's nearest point: the signed distance at `q` differs by at most the distance between them.
+  float at(Vec2 q) const;
+
+  Vec2 low_;
+  double spacing_ = 0.05;  ///< [m]
+  double per_spacing_ = 20.0;
+  int columns_ = 0, rows_ = 0;
+  std::vector<float> signed_;  ///< [m]
+};
+
+}  // namespace sf::sensors

@@ -1,0 +1,32 @@
+#pragma once
+// Chance for tests: the same on every machine.
+
+#include <cstdint>
+
+#include "base/random.h"
+
+namespace sf::trial {
+
+/// Numbers drawn one after the other from `seed`.
+class Chance {
+ public:
+  explicit Chance(std::uint64_t seed) : seed_(seed) {}
+  /// Uniform in (low, high).
+  double between(double low, double high) {
+    return low + (high - low) * base::random_uniform({seed_, base::Stream::place, 77, 0, count_++}, 0)[0];
+  }
+  /// Uniform in {0, ..., count - 1}.
+  std::uint32_t below(std::uint32_t count) {
+    return base::random_words({seed_, base::Stream::place, 78, 0, count_++}, 0)[0] % count;
+  }
+  base::Vec2 in_square(double half) {
+    const double x = between(-half, half);
+    return {x, between(-half, half)};
+  }
+
+ private:
+  std::uint64_t seed_;
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace sf::trial

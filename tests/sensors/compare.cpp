@@ -1,0 +1,160 @@
+#include "tests/sensors/compare.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <sstream>
+
+#include "tests/sensors/brute_force.h"
+
+namespace sf::trial {
+
+using base::Pose;
+using base::Vec2;
+
+gpu::Device& device() {
+  static gpu::Device device;
+  return device;
+}
+
+Tally& Tally::operator+=(const Tally& other) {
+  beams += other.beams;
+  met += other.met;
+  ambiguous += other.ambiguous;
+  silhouettes += other.silhouettes;
+  wrong += other.wrong;
+  worst = std::max(worst, other.worst);
+  worst_grazing = std::max(worst_grazing, other.worst_grazing);
+  if (example.empty()) example = other.example;
+  return *this;
+}
+
+std::string text(const Tally& t) {
+  std::ostringstream out;
+  out << t.beams << " beams, " << t.met << " met something, worst " << t.worst << " m (" << t.worst_grazing
+      << " m below 1 mrad), " << t.ambiguous << " at a silhouette, " << t.silhouettes << " decided otherwise, "
+      << t.wrong << " wrong";
+  return out.str();
+}
+
+namespace {
+
+/// Bearings as the contract has them: both ends exactly at the ends of the field of view.
+long double bearing(const world::Laser& laser, std::size_t i) {
+  if (laser.samples < 2) return 0.0L;
+  return static_cast<long double>(laser.fov) *
+         (static_cast<long double>(i) / static_cast<long double>(laser.samples - 1) - 0.5L);
+}
+
+/// A beam of a reading and what the farm said of it.
+struct Said {
+  const base::ReadingBlock& reading;
+  std::size_t beam;
+  double range;
+  std::uint32_t model;
+};
+
+std::string describe(const oracle::Truth& truth, const Said& said) {
+  std::ostringstream out;
+  out.precision(17);
+  out << "mover " << said.reading.mover << " at (" << said.reading.X_WS.x << ", " << said.reading.X_WS.y << "; "
+      << said.reading.X_WS.yaw << "), beam " << said.beam << " of " << said.reading.values.size() << ": " << said.range
+      << " m of model " << static_cast<std::int32_t>(said.model) << ", expected " << truth.first.range << " m of model "
+      << static_cast<std::int32_t>(truth.first.model) << " (sine " << truth.first.sine << ", " << truth.right.size()
+      << " right answers)";
+  return out.str();
+}
+
+void compare_beam(const oracle::Truth& truth, const Said& said, Tally& tally) {
+  const double range = said.range;
+  const std::uint32_t model = said.model;
+  ++tally.beams;
+  tally.met += model != base::kNoHit;
+  tally.ambiguous += truth.ambiguous;
+  const double error = std::fabs(static_cast<double>(range - truth.first.range));
+  const bool known = std::any_of(truth.right.begin(), truth.right.end(), [&](const oracle::Meeting& m) {
+    return m.model == model && std::fabs(static_cast<double>(range - m.range)) <= oracle::rounding(m);
+  });
+  if (known && error <= 1e-5) {
+    double& worst = truth.first.sine >= 1e-3 ? tally.worst : tally.worst_grazing;
+    worst = std::max(worst, error);
+    return;
+  }
+  if (known) {
+    ++tally.silhouettes;
+    return;
+  }
+  if (++tally.wrong == 1) tally.example = describe(truth, said);
+}
+
+}  // namespace
+
+Tally compare(const world::World& world, std::span<const Pose> poses, std::span<const base::ReadingBlock> readings) {
+  Tally tally;
+  for (const base::ReadingBlock& r : readings) {
+    const world::Laser& laser = world.movers[r.mover].lasers[r.sensor];
+    const Vec2 origin{r.X_WS.x, r.X_WS.y};
+    const auto all = oracle::surfaces(world, poses, r.mover, r.X_WS.z);
+    const auto near = oracle::within(all, origin, laser.range_max);
+    // The oracle is slow: of a fan with very many beams, some thousand all over it.
+    const std::size_t stride = r.values.size() / 5000 + 1;
+    for (std::size_t i = 0; i < r.values.size(); i += stride) {
+      const auto truth = oracle::judge(near, origin, r.X_WS.yaw + bearing(laser, i), laser.range_max);
+      compare_beam(truth, {r, i, r.values[i], r.hits[i]}, tally);
+    }
+  }
+  return tally;
+}
+
+Run::Run(const world::World& world, const farm::FarmOptions& options) : farm(world, device(), options) {
+  farm.hear_all();
+  readings = farm.tick(0, {});
+}
+
+Tally sweep(const world::World& world, const farm::FarmOptions& options) {
+  const Run run(world, options);
+  std::vector<Pose> poses;
+  for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
+  EXPECT_GE(run.readings.size(), 1u);
+  return compare(world, poses, run.readings);
+}
+
+void expect_exact(const std::string& name, const Tally& tally, double most) {
+  std::cout << "[ measured ] " << name << ": " << text(tally) << "\n";
+  EXPECT_GT(tally.beams, 0u) << name;
+  EXPECT_EQ(tally.wrong, 0u) << name << ": " << tally.example;
+  EXPECT_LE(tally.worst, most) << name;
+}
+
+world::Laser eye(std::uint32_t samples, double fov, double range_max) {
+  world::Laser laser;
+  laser.name = "eye";
+  laser.X_MS = {0.0, 0.0, 0.1, 0.0};
+  laser.samples = samples;
+  laser.fov = fov;
+  laser.range_max = range_max;
+  return laser;
+}
+
+std::uint32_t add_eye(world::World& world, const Pose& pose, const world::Laser& laser) {
+  world::Mover mover;
+  const auto number = static_cast<std::uint32_t>(world.movers.size());
+  mover.name = "eye" + std::to_string(number);
+  mover.id = number + 1;
+  mover.model = static_cast<std::uint32_t>(world.models.size());
+  mover.X_WM = pose;
+  world.models.push_back({mover.name, "position"});
+  world.models.back().mover = number;
+  mover.lasers.push_back(laser);
+  world.movers.push_back(mover);
+  return number;
+}
+
+std::uint32_t aim(world::World& world, Vec2 from, Vec2 target, const world::Laser& laser) {
+  const double yaw = std::atan2(target.y - from.y, target.x - from.x);
+  return add_eye(world, {from.x, from.y, 0.0, yaw}, laser);
+}
+
+}  // namespace sf::trial

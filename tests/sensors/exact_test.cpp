@@ -1,0 +1,90 @@
+// Every range against the independent answer: real floor plans and made ones, near and far from the origin.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "base/random.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::trial {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr std::uint32_t kRobots = 6;  ///< each beam is checked against every segment in long double: slow with ASan
+#else
+constexpr std::uint32_t kRobots = 40;
+#endif
+constexpr double kRanges[] = {0.75, 8.0, 30.0, 100.0};
+
+/// Robots with bodies at random free poses, two of four ranges each time so that families mix.
+world::World with_robots(world::World world, double range, std::uint64_t seed) {
+  scenes::add_robots(world, kRobots, scenes::laser(181, M_PI, range), seed);
+  return world;
+}
+
+TEST(Exact, ClosedCave) {
+  for (const double range : kRanges) {
+    const Tally tally = sweep(with_robots(scenes::cave(500, 16.0, 3), range, 1));
+    expect_exact("cave, " + std::to_string(range) + " m", tally);
+    EXPECT_GT(tally.met, tally.beams / 10);
+  }
+}
+
+TEST(Exact, ClosedCaveAHundredKilometresAway) {
+  for (const double range : kRanges) {
+    world::World world = with_robots(scenes::cave(500, 16.0, 3), range, 1);
+    world::translate(world, 1e5, -1e5);
+    expect_exact("cave at 100 km, " + std::to_string(range) + " m", sweep(world));
+  }
+}
+
+/// Coordinates there are multiples of 2 nm: the moved world is another one, but it is measured as exactly.
+TEST(Exact, ClosedCaveTenThousandKilometresAway) {
+  for (const double range : {0.75, 30.0}) {
+    world::World world = with_robots(scenes::cave(500, 16.0, 3), range, 2);
+    world::translate(world, 1e7, 1e7);
+    expect_exact("cave at 10 000 km, " + std::to_string(range) + " m", sweep(world));
+  }
+}
+
+TEST(Exact, OverlappingBoxesAtAnyAngle) {
+  for (const double range : kRanges)
+    expect_exact("boxes, " + std::to_string(range) + " m", sweep(with_robots(scenes::boxes(60, 20.0, 5), range, 3)));
+  world::World world = with_robots(scenes::boxes(300, 150.0, 6), 100.0, 4);
+  expect_exact("wide boxes, 100 m", sweep(world));
+  world::translate(world, -1e5, 1e5);
+  expect_exact("wide boxes at 100 km, 100 m", sweep(world));
+}
+
+/// World files: robots of the file's first kind at random free poses.
+void file_test(const std::string& file) {
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
+  world::World world = world::load_world(file);
+  const bool robots = !world.movers.empty() && !world.movers[0].lasers.empty() && !world.movers[0].is_tag;
+  if (robots) {
+    world::clone_robots(world, kRobots, 7);
+    for (world::Mover& mover : world.movers)
+      for (world::Laser& laser : mover.lasers) {
+        laser.noise = {};
+        laser.range_min = 0.0;
+        laser.resolution = 1;
+      }
+  } else {
+    world.movers.clear();
+    scenes::add_robots(world, kRobots, scenes::laser(181, 2.0 * M_PI, 30.0), 7);
+  }
+  const Tally tally = sweep(world);
+  expect_exact(std::filesystem::path(file).filename().string(), tally);
+  world::translate(world, 1e5, 1e5);
+  expect_exact(std::filesystem::path(file).filename().string() + " at 100 km", sweep(world));
+}
+
+TEST(Exact, CaveWorld) { file_test(SF_SOURCE_DIR "/worlds/cave.world"); }
+TEST(Exact, RoomsWorld) { file_test(SF_SOURCE_DIR "/worlds/rooms.world"); }
+TEST(Exact, StageSimpleWorld) { file_test(SF_SOURCE_DIR "/../shared/data/stage/simple.world"); }
+TEST(Exact, RosMap) { file_test(SF_SOURCE_DIR "/../shared/data/maps/warehouse.yaml"); }
+
+}  // namespace
+}  // namespace sf::trial

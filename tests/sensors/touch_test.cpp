@@ -1,0 +1,104 @@
+// Sensors where they should not be: on walls, at corners, in solids.
+
+#include <gtest/gtest.h>
+
+#include "tests/sensors/chance.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Vec2;
+
+constexpr double kFar = 8.0;
+
+world::World unit_box() {
+  world::World world;
+  scenes::add_outline(world, {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, "box");
+  return world;
+}
+
+/// Range of one beam from (0.5, 1 + above) at `heading`: the top of the unit box is at y = 1.
+double look(double above, double heading) {
+  world::World world = unit_box();
+  add_eye(world, {0.5, 1.0 + above, 0.0, heading}, eye(1, 0.0, kFar));
+  return Run(world).readings[0].values[0];
+}
+
+constexpr double kUp = 0.5 * M_PI;
+constexpr double kDown = -0.5 * M_PI;
+
+TEST(Touch, ASensorOnASurfaceReadsZeroIntoItAndLooksFreelyOffIt) {
+  // On it, and half a nanometre on either side: less than the touch of 1 nm.
+  for (const double above : {0.0, 0.5e-9, -0.5e-9}) {
+    EXPECT_EQ(look(above, kUp), kFar) << above;
+    EXPECT_LE(look(above, kDown), 1e-9) << above;
+    EXPECT_LE(look(above, kDown + 1.0), 2e-9) << above;
+    EXPECT_EQ(look(above, kUp - 1.5), kFar) << above;
+  }
+  EXPECT_EQ(look(0.0, kDown), 0.0);
+}
+
+TEST(Touch, BeyondTheTouchASensorIsOnOneSide) {
+  // Outside: the gap, and the open.
+  EXPECT_NEAR(look(2e-9, kDown), 2e-9, 1e-15);
+  EXPECT_EQ(look(2e-9, kUp), kFar);
+  // Inside: the way out, both ways.
+  EXPECT_NEAR(look(-2e-9, kUp), 2e-9, 1e-15);
+  EXPECT_NEAR(look(-2e-9, kDown), 1.0 - 2e-9, 1e-12);
+}
+
+TEST(Touch, InsideASolidASensorReadsTheWayOut) {
+  EXPECT_NEAR(look(-0.25, kUp), 0.25, 1e-12);
+  EXPECT_NEAR(look(-0.25, kDown), 0.75, 1e-12);
+  EXPECT_NEAR(look(-0.25, 0.0), 0.5, 1e-12);
+}
+
+/// A thin wall has no inside: it stops beams from either side, and touches as a solid on the left of a -> b would.
+TEST(Touch, AThinWallIsSeenFromBothSides) {
+  world::World world;
+  scenes::add_outline(world, {{-1, 0}, {1, 0}}, "wall");
+  world.walls.pop_back();
+  world.walls[0].solid_left = false;
+  add_eye(world, {0, 1, 0, kDown}, eye(1, 0.0, kFar));
+  add_eye(world, {0, -1, 0, kUp}, eye(1, 0.0, kFar));
+  add_eye(world, {0, 0, 0, kUp}, eye(1, 0.0, kFar));
+  add_eye(world, {0, 0, 0, kDown}, eye(1, 0.0, kFar));
+  const Run run(world);
+  EXPECT_NEAR(run.readings[0].values[0], 1.0, 1e-12);
+  EXPECT_NEAR(run.readings[1].values[0], 1.0, 1e-12);
+  EXPECT_EQ(run.readings[2].values[0], 0.0);
+  EXPECT_EQ(run.readings[3].values[0], kFar);
+}
+
+/// On walls and within nanometres of them, on corners, at odd angles: the rule of the touch holds beam by beam.
+TEST(Touch, EverywhereOnTheWallsOfBoxesAndACave) {
+  for (const bool bitmap : {false, true}) {
+    world::World world = bitmap ? scenes::cave(60, 8.0, 2) : scenes::boxes(20, 10.0, 8);
+    Chance chance(3);
+    for (int i = 0; i < 150; ++i) {
+      const world::Segment s = world.walls[chance.below(static_cast<std::uint32_t>(world.walls.size()))];
+      const Vec2 e = s.b - s.a;
+      const double along = i % 4 == 0 ? 0.0 : i % 4 == 1 ? 0.5 : chance.between(0.0, 1.0);
+      constexpr double kAside[] = {0.0, 0.5e-9, -0.5e-9, 3e-9, -3e-9, 1e-6, -1e-6};
+      const Vec2 p = s.a + along * e + (kAside[i % 7] / length(e)) * Vec2{e.y, -e.x};
+      add_eye(world, {p.x, p.y, 0.0, chance.between(-M_PI, M_PI)}, eye(37, 2.0 * M_PI, kFar));
+    }
+    expect_exact(bitmap ? "on the walls of a cave" : "on the walls of boxes", sweep(world));
+  }
+}
+
+/// Boxes overlap: from inside of several, the first surface in any direction is the answer.
+TEST(Touch, InsideOverlappingSolids) {
+  world::World world = scenes::boxes(120, 10.0, 9);
+  Chance chance(5);
+  for (int i = 0; i < 150; ++i) {
+    const Vec2 p = chance.in_square(4.5);
+    add_eye(world, {p.x, p.y, 0.0, chance.between(-M_PI, M_PI)}, eye(61, 2.0 * M_PI, kFar));
+  }
+  expect_exact("inside overlapping solids", sweep(world));
+}
+
+}  // namespace
+}  // namespace sf::trial
