@@ -1,7 +1,5 @@
 // `serve`: robots live elsewhere. Their states come in, what they would sense goes back to them.
 
-#include <poll.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -59,8 +57,7 @@ class Service {
     for (;;) {
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(when - Clock::now()).count();
       if (left <= 0 || stop_requested()) return;
-      pollfd ready{inbox_.descriptor(), POLLIN, 0};
-      poll(&ready, 1, static_cast<int>(std::min<long>(left, 100)));
+      inbox_.wait(static_cast<int>(std::min<long>(left, 100)));
       take_in((Clock::now() - start).count());
     }
   }

@@ -69,7 +69,10 @@ void Simulation::decide(std::int64_t time) {
       if (!controllers_[m]) continue;
       const std::uint32_t first = m == 0 ? 0 : first_[m - 1];
       const std::span<const base::ReadingBlock> own{sorted_.data() + first, first_[m] - first};
-      commands_[m] = controllers_[m]->step({time, fleet_.reports()[m], own, fleet_.contacts()[m] != 0});
+      // A controller runs at its lasers' rate: between readings the last command stands, unless the bumper speaks.
+      const bool contact = fleet_.contacts()[m] != 0;
+      if (own.empty() && !contact && !world_.movers[m].lasers.empty()) continue;
+      commands_[m] = controllers_[m]->step({time, fleet_.reports()[m], own, contact});
     }
   });
 }

@@ -1,5 +1,7 @@
 #include "netio/inbox.h"
 
+#include <poll.h>
+
 #include <algorithm>
 #include <string>
 
@@ -32,6 +34,11 @@ Inbox::Inbox(const InboxOptions& options)
       batch_(kBatch) {
   require_ids(options.robots, 0, "robot");
   require_ids(options.tags, kMinTag, "tag");
+}
+
+void Inbox::wait(int timeout_ms) const {
+  pollfd readable{socket_.descriptor(), POLLIN, 0};
+  poll(&readable, 1, timeout_ms);
 }
 
 Reason Inbox::accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now, Packet& packet) {

@@ -68,8 +68,8 @@ class Inbox {
 
   std::uint16_t port() const { return bound_endpoint(socket_).port; }
   const Counts& counts() const { return counts_; }
-  /// For poll(2) between ticks; read from it only through receive.
-  int descriptor() const { return socket_.descriptor(); }
+  /// Sleeps until a datagram waits, a signal comes, or `timeout_ms` >= 0 has passed.
+  void wait(int timeout_ms) const;
 
  private:
   Reason judge(const Packet& packet, const Endpoint& source, std::int64_t now);

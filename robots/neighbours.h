@@ -1,6 +1,7 @@
 #pragma once
 // Which movers are near? A hashed grid of points, filled anew each tick.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -35,7 +36,10 @@ class Neighbours {
   }
 
  private:
-  std::int64_t cell_of(double v) const { return static_cast<std::int64_t>(std::floor(v / cell_)); }
+  std::int64_t cell_of(double v) const {
+    constexpr double kFarthest = 4.0e15;  // whatever was reported, cell numbers stay integers
+    return static_cast<std::int64_t>(std::clamp(std::floor(v / cell_), -kFarthest, kFarthest));
+  }
   std::size_t bucket(std::int64_t x, std::int64_t y) const;
 
   double cell_ = 1.0;

@@ -164,7 +164,7 @@ Region reachable(const WallGrid& walls, const Mover& robot) {
 // Points kept in lists per bucket of a hash, so that the memory follows the copies and not the world.
 class Crowd {
  public:
-  Crowd(std::uint32_t count, double apart) : apart_(apart), heads_(2 * static_cast<std::size_t>(count) + 1, kNone) {}
+  Crowd(std::size_t count, double apart) : apart_(apart), heads_(2 * count + 1, kNone) {}
 
   bool clear(Vec2 p) const {
     for (int dy = -1; dy <= 1; ++dy) {
@@ -207,7 +207,7 @@ std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32
   const double radius = clear_radius(robot);
   const WallGrid walls(walls_at_height(world, robot), 2.0 * radius);
   const Region region = reachable(walls, robot);
-  Crowd crowd(count, 2.0 * robot.radius + kPlaceMargin);
+  Crowd crowd(std::min<std::size_t>(count, region.cells.size()), 2.0 * robot.radius + kPlaceMargin);
   std::vector<Pose> poses;
   const auto draw = [&](std::uint32_t k) {
     for (std::uint32_t attempt = 0; attempt < kAttempts && !region.cells.empty(); ++attempt) {

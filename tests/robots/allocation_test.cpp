@@ -24,6 +24,8 @@ std::atomic<long> allocations{0};
 namespace sf::robots {
 namespace {
 
+constexpr std::int64_t kTick = 100'000'000;
+
 TEST(Allocation, counts_at_all) {
   const long before = allocations;
   ::operator delete(::operator new(100));  // called by name: cannot be optimised away
@@ -38,8 +40,8 @@ TEST(Allocation, none_while_robots_move_and_collide) {
   long contacts = 0;
   const long before = allocations;
   for (int tick = 0; tick < 200; ++tick) {
-    fleet.move(commands, 100'000'000);
-    fleet.predict(tick * 100'000'000);
+    fleet.move(commands, kTick);
+    fleet.predict(tick * kTick);
     for (const auto contact : fleet.contacts()) contacts += contact;
   }
   EXPECT_EQ(allocations - before, 0);

@@ -37,6 +37,7 @@ struct Meeting {
   long double range = 0.0L;  ///< [m]
   std::uint32_t model = 0;
   double sine = 0.0;  ///< of the angle between beam and surface
+  double arm = 0.0;   ///< [m] from the sensor to the surface's start
 };
 
 /// Everything a beam may be told.
@@ -50,7 +51,8 @@ struct Truth {
 /// Surfaces within kTouch count as 0 into them, and not at all off them; the solid is on the left of a segment.
 Truth judge(std::span<const world::Segment> surfaces, base::Vec2 origin, long double direction, double range_max);
 
-/// What 64-bit arithmetic may be wrong by [m] at `meeting`: the beam's direction is rounded, and so is the quotient.
+/// What 64-bit arithmetic may be wrong by [m] at `meeting`: the beam's direction is rounded, and so are the products
+/// with the surface's start. A surface seen edge-on within rounding may be met anywhere along it.
 double rounding(const Meeting& meeting);
 
 }  // namespace sf::oracle

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "base/pose.h"
 #include "base/random.h"
 
 namespace sf::trial {

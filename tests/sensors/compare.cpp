@@ -108,13 +108,13 @@ Tally compare(const world::World& world, std::span<const Pose> poses, std::span<
   return tally;
 }
 
-Run::Run(const world::World& world, const farm::FarmOptions& options) : farm(world, device(), options) {
+Glance::Glance(const world::World& world, const farm::FarmOptions& options) : farm(world, device(), options) {
   farm.hear_all();
   readings = farm.tick(0, {});
 }
 
 Tally sweep(const world::World& world, const farm::FarmOptions& options) {
-  const Run run(world, options);
+  const Glance run(world, options);
   std::vector<Pose> poses;
   for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
   EXPECT_GE(run.readings.size(), 1u);

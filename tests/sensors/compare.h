@@ -50,10 +50,10 @@ world::Laser eye(std::uint32_t samples, double fov, double range_max);
 std::uint32_t aim(world::World& world, base::Vec2 from, base::Vec2 target, const world::Laser& laser);
 
 /// One tick at time 0 of a farm that hears everyone; the farm outlives the readings.
-struct Run {
+struct Glance {
   farm::Farm farm;
   std::span<const base::ReadingBlock> readings;
-  explicit Run(const world::World& world, const farm::FarmOptions& options = {});
+  explicit Glance(const world::World& world, const farm::FarmOptions& options = {});
 };
 
 }  // namespace sf::trial

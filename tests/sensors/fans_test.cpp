@@ -27,7 +27,7 @@ TEST(Fans, AHundredThousandSamples) {
   world::World world = scenes::boxes(30, 16.0, 2);
   for (const double fov : {1e-6, 180 * kDegree, 360 * kDegree})
     add_eye(world, {0.1, 0.2, 0, 1.0}, eye(100'000, fov, 100.0));
-  const Run run(world);
+  const Glance run(world);
   for (const auto& reading : run.readings) EXPECT_EQ(reading.values.size(), 100'000u);
   expect_exact("100 000 samples", sweep(world));
 }
@@ -47,7 +47,7 @@ TEST(Fans, SymmetricWorldGivesASymmetricScan) {
   world::World world;
   scenes::add_outline(world, {{2, -1}, {3, -1}, {3, 1}, {2, 1}}, "box");
   add_eye(world, {}, eye(362, M_PI, 8.0));
-  const Run run(world);
+  const Glance run(world);
   const auto values = run.readings[0].values;
   for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(values[i], values[values.size() - 1 - i], 1e-12);
 }

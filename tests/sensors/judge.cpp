@@ -43,7 +43,8 @@ bool meet(const world::Segment& s, Vec2 origin, Wide dx, Wide dy, Crossing& out)
   if (t < -kTouch - 1e-11L) return false;
   if (t <= kTouch && below < 0.0L && !out.uncertain) return false;
   t = std::max(t, 0.0L);
-  out.meeting = {t, s.model, static_cast<double>(std::fabs(below) / std::hypot(ex, ey))};
+  const Wide sine = std::fabs(below) / std::hypot(ex, ey);
+  out.meeting = {t, s.model, static_cast<double>(sine), static_cast<double>(std::hypot(wx, wy))};
   out.a = s.a;
   out.b = s.b;
   return true;
@@ -79,8 +80,8 @@ Wide firm_range(const std::vector<Crossing>& crossings, Wide range_max) {
 }  // namespace
 
 double rounding(const Meeting& meeting) {
-  const double sine = std::max(meeting.sine, 1e-12);
-  return 1e-12 + 2e-15 * (static_cast<double>(meeting.range) + 1.0) / sine;
+  const double sine = std::max(meeting.sine, 1e-16);
+  return 1e-12 + 1e-15 * (static_cast<double>(meeting.range) + meeting.arm) / sine;
 }
 
 Truth judge(std::span<const world::Segment> surfaces, Vec2 origin, Wide direction, double range_max) {
@@ -94,7 +95,7 @@ Truth judge(std::span<const world::Segment> surfaces, Vec2 origin, Wide directio
   const Wide firm = firm_range(crossings, range_max);
 
   Truth truth;
-  truth.first = {range_max, kNothing, 1.0};
+  truth.first = {range_max, kNothing, 1.0, 0.0};
   if (firm >= range_max - 1e-9) truth.right.push_back(truth.first);
   for (const Crossing& c : crossings) {
     const Wide slack = rounding(c.meeting);

@@ -34,7 +34,7 @@ void look_at_everything(world::World& world, double half, double range, std::uin
 TEST(OddWorlds, NoWallsAtAll) {
   world::World world;
   add_eye(world, {1, 2, 0, 3}, eye(361, 2.0 * M_PI, 8.0));
-  const Run run(world);
+  const Glance run(world);
   ASSERT_EQ(run.readings.size(), 1u);
   for (const double range : run.readings[0].values) EXPECT_EQ(range, 8.0);
   for (const std::uint32_t hit : run.readings[0].hits) EXPECT_EQ(hit, base::kNoHit);
@@ -42,7 +42,7 @@ TEST(OddWorlds, NoWallsAtAll) {
 
 TEST(OddWorlds, NoRobotsAtAll) {
   const world::World world = scenes::boxes(3, 5.0, 1);
-  EXPECT_TRUE(Run(world).readings.empty());
+  EXPECT_TRUE(Glance(world).readings.empty());
 }
 
 TEST(OddWorlds, OneSegment) {
@@ -87,7 +87,7 @@ TEST(OddWorlds, OfCoincidentSurfacesTheFirstIsNamed) {
   scenes::add_outline(world, {{1, -1}, {2, -1}, {2, 1}, {1, 1}}, "first");
   scenes::add_outline(world, {{1, -1}, {2, -1}, {2, 1}, {1, 1}}, "second");
   add_eye(world, {}, eye(41, 0.5, 8.0));
-  const Run run(world);
+  const Glance run(world);
   for (const std::uint32_t hit : run.readings[0].hits) EXPECT_EQ(hit, world.walls[0].model);
 }
 
@@ -134,7 +134,7 @@ TEST(OddWorlds, BeamsPassASlitOfTwentyMicrometres) {
     world::World moved = world;
     add_eye(moved, {}, eye(1, 0.0, 8.0));
     world::translate(moved, far, far);
-    EXPECT_NEAR(Run(moved).readings[0].values[0], 7.0, 1e-9);
+    EXPECT_NEAR(Glance(moved).readings[0].values[0], 7.0, 1e-9);
   }
 }
 

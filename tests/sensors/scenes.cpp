@@ -92,13 +92,18 @@ void add_outline(world::World& world, const std::vector<Vec2>& corners, const st
   }
 }
 
+void add_room(world::World& world, Vec2 centre, double size) {
+  const double h = 0.5 * size;
+  const double g = h + 0.1;
+  const auto at = [centre](double x, double y) { return centre + Vec2{x, y}; };
+  add_outline(world, {at(-g, -g), at(g, -g), at(g, g), at(-g, g)}, "border");
+  add_outline(world, {at(-h, -h), at(-h, h), at(h, h), at(h, -h)}, "border");
+}
+
 world::World boxes(std::uint32_t count, double size, std::uint64_t seed) {
   world::World world;
   const double h = 0.5 * size;
-  // The border is a ring: an outline round a hole.
-  const double g = h + 0.1;
-  add_outline(world, {{-g, -g}, {g, -g}, {g, g}, {-g, g}}, "border");
-  add_outline(world, {{-h, -h}, {-h, h}, {h, h}, {h, -h}}, "border");
+  add_room(world, {}, size);
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto p = base::random_uniform({seed, base::Stream::place, i, 2, 0}, 0);
     const auto q = base::random_uniform({seed, base::Stream::place, i, 3, 0}, 0);

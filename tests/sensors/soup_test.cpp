@@ -68,10 +68,7 @@ void cook(world::World& world, Vec2 centre, std::uint64_t seed) {
     for (std::size_t i = first; i < world.walls.size() && moved.size() == 2; ++i) world.walls[i].solid_left = false;
     corners.insert(corners.end(), moved.begin(), moved.end());
   }
-  std::vector<Vec2> room;
-  for (const Vec2 p : {Vec2{-kBowl, -kBowl}, Vec2{-kBowl, kBowl}, Vec2{kBowl, kBowl}, Vec2{kBowl, -kBowl}})
-    room.push_back(centre + p);
-  scenes::add_outline(world, room, "room");
+  scenes::add_room(world, centre, 2.0 * kBowl);
   for (int i = 0; i < 20; ++i) {
     const Vec2 p = centre + chance.in_square(0.99 * kBowl);
     add_eye(world, {p.x, p.y, 0.0, chance.between(-M_PI, M_PI)}, eye(91, 2.0 * M_PI, kRange));

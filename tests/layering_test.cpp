@@ -1,0 +1,265 @@
+// The house's plan as a test: which room may include which, and behind which door each heavy library lives.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace sf {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Rooms = std::set<std::string>;
+
+// What each room may include beside itself. `shaders` stands for the compiled kernels, which only their hosts may name.
+const std::map<std::string, Rooms> kMayInclude{
+    {"base", {}},
+    {"gpu", {"base", "shaders"}},
+    {"world", {"base"}},
+    {"robots", {"world", "base"}},
+    {"sensors", {"robots", "world", "gpu", "base", "shaders"}},
+    {"control", {"sensors", "robots", "world", "base"}},
+    {"shaders", {"sensors", "base"}},
+    {"farm", {"sensors", "robots", "world", "gpu", "base"}},
+    {"record", {"base"}},
+    {"netio", {"base"}},
+    {"viz", {"farm", "record", "sensors", "robots", "world", "gpu", "base"}},
+    {"scenarios", {"viz", "netio", "record", "farm", "control", "sensors", "robots", "world", "gpu", "base"}},
+};
+const Rooms kMayIncludeAnything{"apps", "bench", "tests"};
+
+// Libraries that cost seconds per file that includes them: never in a header, in one source each, some in one room
+// only.
+struct Heavy {
+  std::string prefix;
+  std::string room;  ///< empty: any
+};
+const std::vector<Heavy> kHeavy{{"CLI/", "apps"},    {"nlohmann/", ""},   {"vtk", "viz"},
+                                {"opencv2/", "viz"}, {"asio", "netio"},   {"spng.h", ""},
+                                {"yaml-cpp/", ""},   {"spdlog/", "base"}, {"embree", "bench"}};
+
+// The machine's sockets, which only netio opens.
+const std::vector<std::string> kSockets{"sys/socket.h", "netinet/", "arpa/",     "netdb.h",
+                                        "sys/epoll.h",  "poll.h",   "sys/poll.h"};
+
+struct Source {
+  std::string path;  ///< from the root, e.g. "viz/canvas.cpp"
+  std::string text;
+};
+
+bool starts_with(const std::string& text, const std::string& prefix) {
+  return text.compare(0, prefix.size(), prefix) == 0;
+}
+bool is_header(const std::string& path) { return fs::path(path).extension() == ".h"; }
+std::string room_of(const std::string& path) { return path.substr(0, path.find('/')); }
+
+std::string complain_of_quoted(const Source& source, const std::string& target) {
+  const std::string from = room_of(source.path);
+  const std::string to = room_of(target);
+  const bool known =
+      target.find('/') != std::string::npos && (kMayInclude.count(to) > 0 || kMayIncludeAnything.count(to) > 0);
+  if (!known) return "is not a full path from the root";
+  if (from == to || kMayIncludeAnything.count(from) > 0) return "";
+  const auto row = kMayInclude.find(from);
+  if (row == kMayInclude.end()) return "stands in a room that is not in the plan";
+  if (row->second.count(to) == 0) return "points from " + from + " to " + to + ", which is not in the plan";
+  if (to == "shaders" && !std::regex_match(target, std::regex("shaders/\\w+\\.comp\\.h")))
+    return "is not a compiled kernel";
+  return "";
+}
+
+std::string complain_of_angled(const Source& source, const std::string& target) {
+  const std::string room = room_of(source.path);
+  if (room == "tests") return "";
+  if (starts_with(target, "vulkan/") && room != "gpu") return "is for gpu only";
+  for (const std::string& sockets : kSockets)
+    if (starts_with(target, sockets) && room != "netio") return "is for netio only";
+  for (const Heavy& heavy : kHeavy) {
+    if (!starts_with(target, heavy.prefix)) continue;
+    if (is_header(source.path)) return "is too heavy for a header";
+    if (!heavy.room.empty() && heavy.room != room) return "is for " + heavy.room + " only";
+  }
+  return "";
+}
+
+std::string complain_of_include(const Source& source, const std::string& rest) {
+  static const std::regex kTarget("\\s*([\"<])([^\">]+)[\">].*");
+  std::smatch m;
+  if (!std::regex_match(rest, m, kTarget)) return "cannot be read";
+  const std::string why = m[1] == "\"" ? complain_of_quoted(source, m[2]) : complain_of_angled(source, m[2]);
+  return why;
+}
+
+/// "path:line: what stands there: what is wrong with it", one for each.
+std::vector<std::string> complaints(const Source& source) {
+  static const std::regex kInclude("\\s*#\\s*include(.*)");
+  static const std::regex kVulkan("\\b(Vk|vk|PFN_vk)[A-Z]\\w*");
+  const std::string room = room_of(source.path);
+  std::vector<std::string> found;
+  std::istringstream lines(source.text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    std::smatch m;
+    std::string why;
+    if (std::regex_match(line, m, kInclude)) {
+      why = complain_of_include(source, m[1]);
+    } else if (room != "gpu" && room != "tests" && std::regex_search(line, kVulkan)) {
+      why = "names a type of Vulkan outside gpu";
+    }
+    if (!why.empty()) found.push_back(source.path + ":" + std::to_string(number) + ": " + line + ": " + why);
+  }
+  return found;
+}
+
+/// Sources outside tests that include `heavy`.
+std::vector<std::string> users_of(const Heavy& heavy, const std::vector<Source>& sources) {
+  const std::regex include("#\\s*include\\s*<" + heavy.prefix);
+  std::vector<std::string> users;
+  for (const Source& source : sources)
+    if (room_of(source.path) != "tests" && std::regex_search(source.text, include)) users.push_back(source.path);
+  return users;
+}
+
+bool is_source(const fs::path& path) {
+  static const std::set<std::string> kEndings{".h", ".cpp", ".comp", ".glsl"};
+  return kEndings.count(path.extension().string()) > 0;
+}
+
+std::string read(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool is_room(const fs::path& folder) {
+  const std::string name = folder.filename().string();
+  return fs::is_directory(folder) && name[0] != '.' && !starts_with(name, "build") && name != "out";
+}
+
+/// Everything of ours that a compiler reads.
+std::vector<Source> read_sources() {
+  std::vector<Source> sources;
+  for (const auto& room : fs::directory_iterator(SF_SOURCE_DIR)) {
+    if (!is_room(room.path())) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(room.path()))
+      if (entry.is_regular_file() && is_source(entry.path()))
+        sources.push_back({fs::relative(entry.path(), SF_SOURCE_DIR).generic_string(), read(entry.path())});
+  }
+  return sources;
+}
+
+}  // namespace
+
+TEST(Layering, EveryArrowIsInThePlan) {
+  const std::vector<Source> sources = read_sources();
+  ASSERT_GT(sources.size(), 100u) << "the sources were not found";
+  for (const Source& source : sources)
+    for (const std::string& complaint : complaints(source)) ADD_FAILURE() << complaint;
+}
+
+TEST(Layering, EveryRoomIsInThePlan) {
+  for (const Source& source : read_sources()) {
+    const std::string room = room_of(source.path);
+    EXPECT_TRUE(kMayInclude.count(room) > 0 || kMayIncludeAnything.count(room) > 0) << source.path;
+  }
+}
+
+TEST(Layering, ThePlanHasNoCircles) {
+  // Rooms are below one another: whoever may be included by A may not include A, at any distance.
+  for (const auto& [room, below] : kMayInclude) {
+    if (room == "shaders") continue;
+    std::vector<std::string> open(below.begin(), below.end());
+    Rooms reached;
+    while (!open.empty()) {
+      const std::string next = open.back();
+      open.pop_back();
+      if (next == "shaders" || !reached.insert(next).second) continue;
+      const Rooms& more = kMayInclude.at(next);
+      open.insert(open.end(), more.begin(), more.end());
+    }
+    EXPECT_EQ(reached.count(room), 0u) << room;
+  }
+}
+
+TEST(Layering, HeavyLibrariesHaveOneSourceEach) {
+  const std::vector<Source> sources = read_sources();
+  for (const Heavy& heavy : kHeavy) {
+    const auto users = users_of(heavy, sources);
+    EXPECT_LE(users.size(), 1u) << heavy.prefix << " in " << testing::PrintToString(users);
+  }
+}
+
+TEST(Layering, KernelsReadSharedHeadersOnly) {
+  // A header that both compilers read says so with a guard, since GLSL has no `#pragma once`, and includes nothing.
+  static const std::regex kOurs("#\\s*include\\s*\"((sensors|base)/[^\"]+)\"");
+  for (const Source& source : read_sources()) {
+    if (room_of(source.path) != "shaders") continue;
+    for (std::sregex_iterator m(source.text.begin(), source.text.end(), kOurs), end; m != end; ++m) {
+      const std::string header = read(fs::path(SF_SOURCE_DIR) / (*m)[1].str());
+      EXPECT_NE(header.find("#ifndef"), std::string::npos) << source.path << " includes " << (*m)[1];
+      EXPECT_EQ(header.find("#pragma once"), std::string::npos) << source.path << " includes " << (*m)[1];
+    }
+  }
+}
+
+// The judge itself: each rule is broken once, and its neighbour that is allowed stands beside it.
+TEST(LayeringJudge, TakesWhatThePlanAllows) {
+  for (const Source& fine :
+       std::vector<Source>{{"base/a.cpp", "#include \"base/a.h\"\n#include <vector>\n"},
+                           {"viz/a.cpp", "#include \"farm/farm.h\"\n#include <vtkNew.h>\n"},
+                           {"gpu/a.h", "#include <vulkan/vulkan.h>\nVkBuffer buffer;\n"},
+                           {"gpu/a.cpp", "#include \"shaders/a.comp.h\"\n"},
+                           {"netio/a.cpp", "#include <sys/socket.h>\n"},
+                           {"shaders/a.comp", "#include \"sensors/scene/records.h\"\n"},
+                           {"apps/a.cpp", "#include <CLI/CLI.hpp>\n#include \"netio/inbox.h\"\n"},
+                           {"tests/a.cpp", "#include <nlohmann/json.hpp>\n#include \"gpu/vk.h\"\n"},
+                           {"world/a.cpp", "// #include \"gpu/device.h\"\nstruct Vkontakte {};\n"}})
+    EXPECT_TRUE(complaints(fine).empty()) << testing::PrintToString(complaints(fine));
+}
+
+TEST(LayeringJudge, FindsEachBrokenRule) {
+  for (const Source& broken :
+       std::vector<Source>{{"base/a.cpp", "#include \"world/world.h\""},             // upwards
+                           {"world/a.cpp", "#include \"robots/fleet.h\""},           // upwards, one floor
+                           {"netio/a.cpp", "#include \"record/mcap.h\""},            // sideways
+                           {"farm/a.cpp", "#include \"netio/inbox.h\""},             // the farm knows no sockets
+                           {"control/a.cpp", "#include \"farm/farm.h\""},            // controllers know no farm
+                           {"viz/a.cpp", "#include \"apps/options.h\""},             // nobody knows the program
+                           {"shaders/a.comp", "#include \"world/world.h\""},         // kernels read records only
+                           {"sensors/a.cpp", "#include \"shaders/lib/rays.glsl\""},  // hosts read compiled kernels only
+                           {"world/a.cpp", "#include \"shape.h\""},                  // not from the root
+                           {"world/a.cpp", "#include \"../gpu/vk.h\""},              // not from the root
+                           {"attic/a.cpp", "#include \"base/pose.h\""},              // a room without a row
+                           {"world/a.cpp", "  #  include<vulkan/vulkan.h>"},         // Vulkan's header
+                           {"world/a.cpp", "VkDevice device;"},                      // Vulkan's types
+                           {"farm/a.cpp", "vkQueueSubmit(queue);"},                  // Vulkan's functions
+                           {"record/a.cpp", "#include <vtkImageData.h>"},            // VTK's door is viz
+                           {"apps/a.h", "#include <CLI/CLI.hpp>"},                   // in a header
+                           {"viz/a.h", "#include <vtkNew.h>"},                       // in a header, in the right room
+                           {"world/a.cpp", "#include <CLI/App.hpp>"},    // the command line is the program's
+                           {"apps/a.cpp", "#include <poll.h>"},          // sockets are netio's
+                           {"robots/a.cpp", "#include <netinet/in.h>"},  // sockets are netio's
+                           {"base/a.cpp", "#include HEADER"}})           // cannot be judged
+    EXPECT_EQ(complaints(broken).size(), 1u) << broken.path << ": " << broken.text;
+}
+
+TEST(LayeringJudge, NamesFileAndLine) {
+  const auto found = complaints({"base/a.cpp", "// one\n// two\n#include \"gpu/vk.h\"\n"});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(starts_with(found[0], "base/a.cpp:3: ")) << found[0];
+}
+
+TEST(LayeringJudge, CountsUsersOfHeavyLibraries) {
+  const std::vector<Source> sources{{"apps/a.cpp", "#include <CLI/CLI.hpp>"},
+                                    {"apps/b.cpp", "#include <CLI/App.hpp>"},
+                                    {"tests/c.cpp", "#include <CLI/CLI.hpp>"}};
+  EXPECT_EQ(users_of({"CLI/", "apps"}, sources).size(), 2u);
+}
+
+}  // namespace sf

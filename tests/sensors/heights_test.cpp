@@ -1,0 +1,97 @@
+// The world is 2.5-D: what a beam sees depends on its height and on what echoes.
+
+#include <gtest/gtest.h>
+
+#include "tests/sensors/compare.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::trial {
+namespace {
+
+/// A box from 2 to 3 m ahead, with a range of heights.
+void add_box(world::World& world, double z_min, double z_max, bool seen = true) {
+  const std::size_t first = world.walls.size();
+  scenes::add_outline(world, {{2, -1}, {3, -1}, {3, 1}, {2, 1}}, "box" + std::to_string(first));
+  for (std::size_t i = first; i < world.walls.size(); ++i) {
+    world.walls[i].z_min = z_min;
+    world.walls[i].z_max = z_max;
+    world.walls[i].seen_by_laser = seen;
+  }
+}
+
+/// What a beam straight ahead at height `z` reads.
+double look(world::World world, double z) {
+  world::Laser laser = eye(1, 0.0, 8.0);
+  laser.X_MS.z = z;
+  add_eye(world, {}, laser);
+  return Glance(world).readings[0].values[0];
+}
+
+TEST(Heights, ABeamSeesWhatSpansItsHeight) {
+  world::World world;
+  add_box(world, 0.1, 0.3);
+  EXPECT_EQ(look(world, 0.05), 8.0) << "under it";
+  EXPECT_NEAR(look(world, 0.2), 2.0, 1e-12) << "into it";
+  EXPECT_EQ(look(world, 0.35), 8.0) << "over it";
+  EXPECT_NEAR(look(world, 0.1), 2.0, 1e-12) << "its lower face belongs to it";
+  EXPECT_EQ(look(world, 0.3), 8.0) << "its upper face does not";
+  EXPECT_EQ(look(world, std::nextafter(0.1, 0.0)), 8.0) << "just under it";
+  EXPECT_NEAR(look(world, std::nextafter(0.3, 0.0)), 2.0, 1e-12) << "just below its top";
+}
+
+TEST(Heights, UnderABridgeAndOverALowBoxTheWallBehindIsSeen) {
+  world::World world;
+  add_box(world, 0.5, 1.0);
+  add_box(world, 0.0, 0.05);
+  scenes::add_outline(world, {{5, -1}, {6, -1}, {6, 1}, {5, 1}}, "behind");
+  EXPECT_NEAR(look(world, 0.2), 5.0, 1e-12);
+}
+
+TEST(Heights, WhatDoesNotEchoIsNotSeen) {
+  world::World world;
+  add_box(world, 0.0, 1.0, false);
+  EXPECT_EQ(look(world, 0.2), 8.0);
+}
+
+/// A sensor is within a solid only at the solid's heights: over a low box it looks freely.
+TEST(Heights, OverALowBoxASensorIsNotInside) {
+  world::World world;
+  add_box(world, 0.0, 0.05);
+  scenes::add_outline(world, {{5, -1}, {6, -1}, {6, 1}, {5, 1}}, "behind");
+  world::Laser laser = eye(1, 0.0, 8.0);
+  add_eye(world, {2.5, 0, 0, 0}, laser);
+  EXPECT_NEAR(Glance(world).readings[0].values[0], 2.5, 1e-12);
+}
+
+TEST(Heights, SensorsOfManyHeightsAndRangesShareAWorld) {
+  world::World world = scenes::boxes(40, 16.0, 4);
+  for (std::size_t i = 0; i < world.walls.size(); ++i) world.walls[i].z_max = 0.02 * static_cast<double>(i / 4 % 12);
+  for (int i = 0; i < 12; ++i) {
+    world::Laser laser = eye(181, 6.0, i % 2 ? 8.0 : 3.0);
+    laser.X_MS.z = 0.02 * i;
+    add_eye(world, {0.01 * i, 0.0, 0.01 * i, 0.3 * i}, laser);
+    laser.range_max = 30.0;
+    laser.X_MS.z += 0.013;
+    world.movers.back().lasers.push_back(laser);
+  }
+  expect_exact("heights and ranges", sweep(world));
+}
+
+/// The pose of a sensor: turned, off the robot's centre, above it.
+TEST(Heights, TheSensorsPoseIsComposedWithTheMovers) {
+  world::World world;
+  add_box(world, 0.4, 0.6);
+  world::Laser laser = eye(1, 0.0, 8.0);
+  laser.X_MS = {0.25, 0.5, 0.3, -M_PI / 2};
+  add_eye(world, {0.5, -0.25, 0.2, M_PI / 2}, laser);
+  const Glance glance(world);
+  const auto& r = glance.readings[0];
+  EXPECT_NEAR(r.X_WS.x, 0.0, 1e-15);
+  EXPECT_NEAR(r.X_WS.y, 0.0, 1e-15);
+  EXPECT_NEAR(r.X_WS.yaw, 0.0, 1e-15);
+  EXPECT_DOUBLE_EQ(r.X_WS.z, 0.5);
+  EXPECT_NEAR(r.values[0], 2.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace sf::trial

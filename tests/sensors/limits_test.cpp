@@ -1,0 +1,109 @@
+// Where the farm refuses, and what still works just before.
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "tests/sensors/chance.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Vec2;
+
+void add_thin(std::vector<world::Segment>& out, Vec2 a, Vec2 b, std::uint32_t model) {
+  world::Segment s;
+  s.a = a;
+  s.b = b;
+  s.z_max = 1.0;
+  s.model = model;
+  s.solid_left = false;
+  out.push_back(s);
+}
+
+/// `count` rails beside the x axis, 40 um from it at most, all within one direction sector; a wall behind them.
+/// A beam along the axis passes between all of them, and each looks edge-on.
+world::World rails(int count) {
+  world::World world;
+  world.models.push_back({"rails", "model"});
+  for (int i = 0; i < count; ++i) {
+    const double x = 1.0 + 5.0 * i / count;
+    const double y = (i % 2 ? 1.0 : -1.0) * 4e-5;
+    add_thin(world.walls, {x, y}, {x + 2e-4, y}, 0);
+  }
+  world.models.push_back({"behind", "model"});
+  add_thin(world.walls, {7, -0.2}, {7, 0.2}, 1);
+  add_eye(world, {0.0, 0.0, 0.0, 0.05}, eye(5, 0.1, 8.0));
+  return world;
+}
+
+/// Thin rails are listed twice, once for each side that a point of the cell may see: 11 000 of them are 22 000 entries.
+TEST(Limits, ListsNearlyAsLongAsTheBoundAreReadToTheEnd) {
+  const world::World world = rails(11'000);
+  const Glance glance(world);
+  EXPECT_NEAR(glance.readings[0].values[0], 7.0, 1e-12) << "the last of the list is what the first beam meets";
+  EXPECT_EQ(glance.readings[0].hits[0], 1u);
+  EXPECT_GT(glance.farm.stats().doubts, 0u) << "the test is meant to send every entry to the 64-bit decision";
+  expect_exact("11 000 rails", sweep(world));
+}
+
+/// A mover with nearly as many segments as its bound, beside walls with nearly as many as theirs.
+TEST(Limits, WallsAndMoversTogetherStayWithinTheLoopsBudget) {
+  world::World world = rails(11'000);
+  const std::uint32_t m = add_eye(world, {6.0, 0.0, 0.0, 0.0}, eye(1, 0.0, 8.0));
+  world::Mover& mover = world.movers[m];
+  mover.lasers.clear();
+  for (int i = 0; i < 5'900; ++i) {
+    const double y = (i % 2 ? 1.0 : -1.0) * 4e-5;
+    add_thin(mover.body, {5e-5 * i, y}, {5e-5 * i + 1e-5, y}, mover.model);
+  }
+  add_thin(mover.body, {0.5, -0.01}, {0.5, 0.01}, mover.model);
+  mover.radius = 0.51;
+  const Glance glance(world);
+  EXPECT_NEAR(glance.readings[0].values[0], 6.5, 1e-12) << "the last of the mover's list";
+  EXPECT_EQ(glance.readings[0].hits[0], mover.model);
+}
+
+TEST(Limits, MoreWallsInOneSectorThanTheBoundAreRefused) {
+  try {
+    const Glance glance(rails(12'500));
+    FAIL() << "read " << glance.readings[0].values[0];
+  } catch (const base::InputError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("24000"), std::string::npos) << what;
+    EXPECT_NE(what.find("lower range_max or simplify the world"), std::string::npos) << what;
+  }
+}
+
+TEST(Limits, MoreOfMoversInOneSectorThanTheBoundAreRefused) {
+  world::World world;
+  add_eye(world, {}, eye(1, 0.0, 8.0));
+  const std::uint32_t m = add_eye(world, {3.0, 0.0, 0.0, 0.0}, eye(1, 0.0, 8.0));
+  for (int i = 0; i < 12'500; ++i) add_thin(world.movers[m].body, {0.0, 1e-6 * i}, {0.0, 1e-6 * (i + 1)}, 0);
+  world.movers[m].radius = 0.02;
+  EXPECT_THROW(Glance{world}, base::InputError);
+}
+
+/// Some more numbers of the device: a dispatch of several rows of groups, and one whose last lanes are padding.
+TEST(Limits, AMillionBeamsOfOneSensor) {
+  world::World world = scenes::boxes(10, 8.0, 1);
+  add_eye(world, {0.3, 0.2, 0, 0}, eye(1'000'000, 2.0 * M_PI, 12.0));
+  expect_exact("a million beams", sweep(world));
+}
+
+/// Far away, cells are counted in more than 32 bits: a short range makes small cells.
+TEST(Limits, ShortRangesFarAway) {
+  for (const double far : {1e5, 1e7}) {
+    world::World world;
+    scenes::add_outline(world, {{far + 0.01, -1}, {far + 1, -1}, {far + 1, 1}, {far + 0.01, 1}}, "wall");
+    add_eye(world, {far, 0, 0, 0}, eye(5, 0.1, 0.02));
+    add_eye(world, {far - 4.0, 0, 0, 0}, eye(5, 0.1, 0.02));
+    const Tally tally = sweep(world);
+    expect_exact("a range of 2 cm at " + std::to_string(far) + " m", tally);
+    EXPECT_EQ(tally.met, 5u);
+  }
+}
+
+}  // namespace
+}  // namespace sf::trial

@@ -1,0 +1,151 @@
+// Robots and linked objects see each other where they were reported, and never themselves.
+
+#include <gtest/gtest.h>
+
+#include "tests/sensors/brute_force.h"
+#include "tests/sensors/chance.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Pose;
+
+std::vector<Pose> poses_of(const world::World& world) {
+  std::vector<Pose> poses;
+  for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
+  return poses;
+}
+
+TEST(Movers, ARobotNeverSeesItself) {
+  world::World world;
+  scenes::add_robot(world, {}, scenes::laser(361, 2.0 * M_PI, 8.0));
+  const Glance glance(world);
+  for (const std::uint32_t hit : glance.readings[0].hits) EXPECT_EQ(hit, base::kNoHit);
+}
+
+TEST(Movers, AnotherIsSeenWhereItWasReported) {
+  world::World world;
+  scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
+  const std::uint32_t other = scenes::add_robot(world, {50, 0, 0, 0}, eye(1, 0.0, 8.0));
+  world.movers[other].is_tag = true;  // a linked object is a mover like any other
+  farm::Farm farm(world, device());
+  farm.hear(0, true);
+  for (int k = 0; k < 5; ++k) {
+    const double x = 1.0 + 0.5 * k;
+    const base::Report report{other, 0, {x, 0, 0, M_PI / 8 * k}, {}};
+    const auto readings = farm.tick(k * 100'000'000ll, {&report, 1});
+    ASSERT_EQ(readings.size(), 1u);
+    EXPECT_NEAR(readings[0].values[0], x - 0.165, 1e-12);
+    EXPECT_EQ(readings[0].hits[0], world.movers[other].model);
+    EXPECT_EQ(readings[0].X_WM.x, 0.0);
+  }
+  // Without a report it stays.
+  EXPECT_NEAR(farm.tick(500'000'000, {})[0].values[0], 3.0 - 0.165, 1e-12);
+}
+
+TEST(Movers, OnlyTheirEchoingPartsAtTheBeamsHeightAreSeen) {
+  world::World world;
+  scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
+  const std::uint32_t other = scenes::add_robot(world, {2, 0, 0, 0}, eye(1, 0.0, 8.0));
+  for (world::Segment& s : world.movers[other].body) s.z_max = 0.05;
+  EXPECT_EQ(Glance(world).readings[0].values[0], 8.0) << "the beam passes over it";
+  world.movers[other].X_WM.z = 0.08;
+  EXPECT_NEAR(Glance(world).readings[0].values[0], 1.835, 1e-12) << "raised into the beam";
+  for (world::Segment& s : world.movers[other].body) s.seen_by_laser = false;
+  EXPECT_EQ(Glance(world).readings[0].values[0], 8.0) << "it does not echo";
+}
+
+/// From nearly apart to one inside the other, and with sensors inside each other's bodies.
+TEST(Movers, OverlappingRobots) {
+  world::World world;
+  for (int i = 0; i < 12; ++i)
+    scenes::add_robot(world, {0.05 * i * i, 0.01 * i, 0.0, 0.5 * i}, scenes::laser(181, 2.0 * M_PI, 8.0));
+  expect_exact("overlapping robots", sweep(world));
+}
+
+/// A sensor inside a robot, whose way out is blocked by a third robot that reaches into the same body.
+TEST(Movers, InsideARobotAThirdThatReachesInIsSeen) {
+  world::World world;
+  add_eye(world, {-0.05, 0, 0, 0}, eye(61, 1.0, 8.0));
+  scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
+  scenes::add_robot(world, {0.2, 0, 0, 0}, eye(1, 0.0, 8.0));
+  const Glance glance(world);
+  EXPECT_NEAR(glance.readings[0].values[30], 0.2 - 0.165 + 0.05, 1e-9);
+  expect_exact("a third robot inside", sweep(world));
+}
+
+/// Robots against a wall: apart by nothing, a picometre, ... and pressed into it.
+TEST(Movers, RobotsTouchingAWall) {
+  for (const double gap : {0.0, 1e-12, 1e-9, 1e-7, 1e-5, 1e-3, -1e-9, -1e-3}) {
+    world::World world;
+    scenes::add_outline(world, {{1, -2}, {2, -2}, {2, 2}, {1, 2}}, "wall");
+    for (int i = 0; i < 4; ++i)
+      scenes::add_robot(world, {1.0 - 0.165 - gap, -1.2 + 0.8 * i, 0.0, 0.0}, eye(1, 0.0, 8.0));
+    for (int i = 0; i < 20; ++i) aim(world, {-1.0 + 0.05 * i, -2.0 + 0.21 * i}, {1.0, -0.4}, eye(33, 0.05, 8.0));
+    expect_exact("robots touching a wall, gap " + std::to_string(1e9 * gap) + " nm", sweep(world));
+  }
+}
+
+/// A crowd so dense that robots hide robots and many overlap, near and far from the origin.
+TEST(Movers, ADenseCrowd) {
+  for (const double far : {0.0, 1e5}) {
+    world::World world = scenes::boxes(8, 7.0, 6);
+    Chance chance(7);
+    for (int i = 0; i < 90; ++i) {
+      const base::Vec2 p = chance.in_square(3.3);
+      world::Laser laser = scenes::laser(91, i % 3 ? 2.0 * M_PI : 2.0, i % 2 ? 8.0 : 0.75);
+      scenes::add_robot(world, {p.x, p.y, 0.0, chance.between(-4.0, 4.0)}, laser);
+    }
+    world::translate(world, far, -far);
+    expect_exact("a dense crowd", sweep(world));
+  }
+}
+
+/// A crowd that moves: every tick is right, not only the first.
+TEST(Movers, EveryTickOfAMovingCrowd) {
+  world::World world = scenes::boxes(8, 12.0, 6);
+  scenes::add_robots(world, 20, scenes::laser(61, 4.0, 8.0), 3);
+  farm::Farm farm(world, device());
+  farm.hear_all();
+  Chance chance(9);
+  Tally tally;
+  std::vector<Pose> poses = poses_of(world);
+  for (int k = 0; k < 12; ++k) {
+    std::vector<base::Report> reports;
+    for (std::uint32_t m = 0; m < poses.size(); ++m) {
+      poses[m].x += chance.between(-0.3, 0.3);
+      poses[m].y += chance.between(-0.3, 0.3);
+      poses[m].yaw += chance.between(-1.0, 1.0);
+      reports.push_back({m, 0, poses[m], {}});
+    }
+    tally += compare(world, poses, farm.tick(k * 100'000'000ll, reports));
+  }
+  EXPECT_EQ(tally.beams, 12u * 20u * 61u);
+  expect_exact("a moving crowd", tally);
+}
+
+/// Long and thin movers that are wider than several direction sectors, with open outlines.
+TEST(Movers, LongThinMovers) {
+  world::World world;
+  Chance chance(11);
+  for (int i = 0; i < 10; ++i) {
+    const base::Vec2 p = chance.in_square(3.0);
+    const std::uint32_t m = add_eye(world, {p.x, p.y, 0.0, chance.between(-4.0, 4.0)}, eye(181, 2.0 * M_PI, 8.0));
+    world::Mover& mover = world.movers[m];
+    mover.radius = 1.5;
+    world::Segment s;
+    s.a = {-1.5, 0.0};
+    s.b = {1.5, 0.001};
+    s.z_max = 1.0;
+    s.solid_left = false;
+    s.model = mover.model;
+    mover.radius = base::length(s.b);
+    mover.body = {s};
+  }
+  expect_exact("long thin movers", sweep(world));
+}
+
+}  // namespace
+}  // namespace sf::trial
