@@ -14,7 +14,7 @@ struct Workers::State {
   std::condition_variable wake;
   std::condition_variable done;
   std::vector<std::thread> threads;
-  const std::function<void(std::size_t, std::size_t, unsigned)>* body = nullptr;
+  Job job{};
   std::size_t count = 0;
   std::size_t piece = 1;
   std::atomic<std::size_t> next{0};
@@ -26,7 +26,7 @@ struct Workers::State {
     for (;;) {
       const std::size_t first = next.fetch_add(piece);
       if (first >= count) return;
-      (*body)(first, std::min(first + piece, count), thread);
+      job.call(job.body, first, std::min(first + piece, count), thread);
     }
   }
 
@@ -62,16 +62,15 @@ Workers::~Workers() {
 
 unsigned Workers::threads() const { return static_cast<unsigned>(state_->threads.size()) + 1; }
 
-void Workers::run(std::size_t count, std::size_t piece,
-                  const std::function<void(std::size_t, std::size_t, unsigned)>& body) {
+void Workers::run_job(std::size_t count, std::size_t piece, Job job) {
   State& s = *state_;
   if (s.threads.empty() || count <= piece) {
-    if (count > 0) body(0, count, 0);
+    if (count > 0) job.call(job.body, 0, count, 0);
     return;
   }
   {
     const std::scoped_lock guard(s.lock);
-    s.body = &body;
+    s.job = job;
     s.count = count;
     s.piece = std::max<std::size_t>(1, piece);
     s.next = 0;

@@ -36,14 +36,14 @@ class Bodies {
 
   /// A viewpoint among the movers.
   struct View {
-    Vec2 origin;               ///< [m] world
-    std::uint32_t height = 0;  ///< as `watch_height` numbers it
-    double yaw = 0.0;          ///< [rad]
-    double fov = 0.0;          ///< [rad] nothing outside of yaw +- fov / 2 is looked at
-    Vec2 cell_centre;          ///< [m] what entries are relative to
-    double range = 0.0;        ///< [m]
-    double spread = 0.0;       ///< [rad] as in CellShape
-    std::uint32_t self = 0;    ///< mover that carries the sensor, and is never seen
+    Vec2 origin;                   ///< [m] world
+    std::uint32_t height = 0;      ///< as `watch_height` numbers it
+    double yaw = 0.0;              ///< [rad]
+    double fov = 0.0;              ///< [rad] nothing outside of yaw +- fov / 2 is looked at
+    Vec2 cell_centre;              ///< [m] what entries are relative to
+    double range = 0.0;            ///< [m]
+    double spread = 0.0;           ///< [rad] as in CellShape
+    std::uint32_t self = 0;        ///< mover that carries the sensor, and is never seen
     const Depth* depth = nullptr;  ///< of the walls at this height; none when the view lies in a solid
   };
   /// Scratch of one thread.

@@ -1,5 +1,6 @@
 #pragma once
-// How deep in a solid, or how far from one, every place is: tells cheaply, and never wrongly, that walls hide something.
+// How deep in a solid, or how far from one, every place is: tells cheaply, and never wrongly, that walls hide
+// something.
 //
 // A point that lies deeper in a solid than s sin(alpha), seen at distance s, hides every ray within alpha of it.
 
@@ -10,7 +11,8 @@
 
 namespace sf::sensors {
 
-/// Signed distance to the nearest wall on a grid, negative inside solids, cut off at a metre. Immutable after construction.
+/// Signed distance to the nearest wall on a grid, negative inside solids, cut off at a metre. Immutable after
+/// construction.
 class Depth {
  public:
   /// @param most_points of the grid; its spacing follows, at least 5 cm.

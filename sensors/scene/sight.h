@@ -28,7 +28,7 @@ class Sight {
   Sight(const world::World& world, double z, double typical_range);
 
   const std::vector<SightSegment>& segments() const { return segments_; }
-  Vec2 low() const { return low_; }    ///< [m] corner of their bounding box
+  Vec2 low() const { return low_; }  ///< [m] corner of their bounding box
   Vec2 high() const { return high_; }
 
   /// Scratch of one thread.
