@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <vector>
 
 #include "base/error.h"
@@ -125,7 +126,11 @@ void Farm::hear_all() { std::fill(s_->heard.begin(), s_->heard.end(), true); }
 
 std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const base::Report> reports) {
   State& s = *s_;
-  for (const base::Report& report : reports) s.poses.at(report.mover) = report.X_WM;
+  for (const base::Report& report : reports) {
+    const base::Pose& X = report.X_WM;
+    SF_CHECK(std::isfinite(X.x + X.y + X.yaw), "the pose of mover " + std::to_string(report.mover) + " is not finite");
+    s.poses.at(report.mover) = X;
+  }
   s.find_due(now);
   s.measure(now);
   Stopwatch watch;

@@ -8,9 +8,9 @@ namespace sf::sensors {
 
 /// Names one cell of one family of sensors.
 struct CellKey {
-  std::uint32_t family = 0;  ///< which sensors share it, and whether viewpoints may lie inside solids
-  std::int32_t x = 0;
-  std::int32_t y = 0;
+  std::int64_t family = 0;  ///< which sensors share it, and whether viewpoints may lie inside solids
+  std::int64_t x = 0;
+  std::int64_t y = 0;
   bool operator==(const CellKey&) const = default;
 };
 

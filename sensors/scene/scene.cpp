@@ -135,12 +135,14 @@ void Scene::place(std::span<const Pose> poses) {
 CellKey Scene::key_of(const Viewpoint& view) const {
   const FamilyTables& family = *families_[view.family];
   const bool inside = family.sight->inside_solid({view.X_WS.x, view.X_WS.y});
-  return {2 * view.family + (inside ? 1u : 0u), static_cast<std::int32_t>(std::floor(view.X_WS.x / family.shape.size)),
-          static_cast<std::int32_t>(std::floor(view.X_WS.y / family.shape.size))};
+  return {2 * std::int64_t{view.family} + inside,
+          static_cast<std::int64_t>(std::floor(view.X_WS.x / family.shape.size)),
+          static_cast<std::int64_t>(std::floor(view.X_WS.y / family.shape.size))};
 }
 
 Vec2 Scene::centre_of(const FamilyTables& family, const CellKey& key) const {
-  return {(key.x + 0.5) * family.shape.size, (key.y + 0.5) * family.shape.size};
+  return {(static_cast<double>(key.x) + 0.5) * family.shape.size,
+          (static_cast<double>(key.y) + 0.5) * family.shape.size};
 }
 
 void Scene::find_cells(std::span<const Viewpoint> views) {
@@ -172,7 +174,7 @@ void Scene::build_missing() {
     Scratch& scratch = *scratch_[thread];
     for (std::size_t i = first; i < last; ++i) {
       const CellKey& key = missing_[i];
-      const FamilyTables& family = *families_[key.family / 2];
+      const FamilyTables& family = *families_[static_cast<std::size_t>(key.family / 2)];
       collect(*family.sight, family.shape, centre_of(family, key), key.family % 2 == 1, scratch.nearby, scratch.lists);
       std::uint32_t slot;
       {
