@@ -78,13 +78,16 @@ void Lasers::Tables::plan(const world::World& world) {
   std::size_t samples = 0;
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
     const world::Mover& mover = world.movers[m];
+    std::size_t beams = 0;
+    for (const world::Laser& laser : mover.lasers) beams += laser.samples / laser.resolution;
     for (std::uint32_t i = 0; i < mover.lasers.size(); ++i) {
       LaserRow row;
       row.laser = mover.lasers[i];
       row.plan = plan_beams(row.laser, options.noise);
       row.height = mover.X_WM.z + row.laser.X_MS.z;
       const double turn = options.noise ? kMostSigmas * row.laser.noise.angle_sigma : 0.0;
-      row.family = scene.add_family({row.height, row.laser.range_max, row.plan.spread, row.laser.fov + 2.0 * turn});
+      row.family = scene.add_family({row.height, row.laser.range_max, row.plan.spread, row.laser.fov + 2.0 * turn,
+                                     static_cast<std::uint32_t>(std::min<std::size_t>(beams, 1'000'000))});
       row.turns = options.noise && row.laser.noise.angle_sigma > 0.0;
       row.shaped = row.laser.resolution > 1 || !row.plan.packed || (options.noise && has_range_noise(row.laser.noise));
       row.out = out_lanes;

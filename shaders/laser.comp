@@ -42,34 +42,36 @@ void main() {
   const vec4 place = uintBitsToFloat(imageLoad(rows, row));
   const vec4 look = uintBitsToFloat(imageLoad(rows, row + 1));
   const uvec4 tables = imageLoad(rows, row + 2);
-  const vec2 o = place.xy;
+  const uvec4 heading_words = imageLoad(rows, row + 4);
+  const dvec2 heading = dvec2(packDouble2x32(heading_words.xy), packDouble2x32(heading_words.zw));
+  const vec2 turn = vec2(heading);
   const float band = look.y;
   const int lane_beams = int(tables.z) + own;
 
   // Search in 32 bits: walls, then movers.
   const vec4 bc = imageLoad(directions, 2 * lane_beams);
   const vec4 bs = imageLoad(directions, 2 * lane_beams + 1);
-  const Beams d = Beams(place.z * bc - place.w * bs, place.w * bc + place.z * bs);
+  const Beams d = Beams(turn.x * bc - turn.y * bs, turn.y * bc + turn.x * bs);
   const int sector = int(floor(look.x + imageLoad(bearings, lane_beams).x)) & (SF_SECTORS - 1);
   const uvec4 walls = imageLoad(headers, int(tables.x) + sector);
   const uvec4 movers = imageLoad(headers, int(tables.y) + sector);
   Nearest best = Nearest(vec4(look.z), vec4(1.0), ivec4(-1), false);
-  search_list(walls, o, d, band, best);
-  search_list(movers, o, d, band, best);
+  search_list(walls, place.xy, d, band, best);
+  const ivec4 wall_entries = best.entry;
+  search_list(movers, place.zw, d, band, best);
 
   // Prove each winner, or look at all in 64 bits.
   const float clearance = uintBitsToFloat(movers.z);
   bool sure = !best.edge_on;
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+    const vec2 o = best.entry[i] == wall_entries[i] ? place.xy : place.zw;
     const bool p = proven(best.entry[i], o, vec2(d.dx[i], d.dy[i]), band, clearance, best.below[i]);
     sure = sure && p;
   }
 
   const uvec4 origin_words = imageLoad(rows, row + 3);
-  const uvec4 heading_words = imageLoad(rows, row + 4);
   const uvec4 range_words = imageLoad(rows, row + 5);
   const dvec2 origin = dvec2(packDouble2x32(origin_words.xy), packDouble2x32(origin_words.zw));
-  const dvec2 heading = dvec2(packDouble2x32(heading_words.xy), packDouble2x32(heading_words.zw));
   const double range_max = packDouble2x32(range_words.xy);
   Beam64 beams[SF_BEAMS_PER_LANE];
   Decision decisions[SF_BEAMS_PER_LANE];

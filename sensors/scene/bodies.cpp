@@ -146,9 +146,10 @@ std::uint32_t Bodies::watch_height(double z) {
 
 void Bodies::find_near(const View& view, Scratch& scratch) const {
   scratch.near.clear();
-  each_near(view.origin, view.range + largest_, [&](std::uint32_t body) {
+  each_near(view.origin, view.range + view.radius + largest_, [&](std::uint32_t body) {
     if (body == view.self || bodies_[body].count == 0) return;
-    const double nearest = length(Vec2{poses_[body].x, poses_[body].y} - view.origin) - bodies_[body].radius;
+    const double nearest =
+        length(Vec2{poses_[body].x, poses_[body].y} - view.origin) - bodies_[body].radius - view.radius;
     if (nearest <= view.range) scratch.near.push_back({nearest, body});
   });
 
@@ -180,21 +181,24 @@ void Bodies::collect(const View& view, Scratch& scratch, SectorLists& lists, flo
       const std::uint32_t other = scratch.sorted[hiding].body;
       const Vec2 p = Vec2{poses_[other].x, poses_[other].y} - view.origin;
       const double distance = length(p);
-      if (distance > n.nearest) break;
+      if (distance + view.radius > n.nearest) break;
       // From inside of a body nothing is behind it.
-      if (opaque[other] <= 0.0f || distance <= bodies_[other].radius) continue;
-      const double half = std::asin(opaque[other] / distance);
+      const double hidden = opaque[other] - view.radius;
+      if (hidden <= 0.0 || distance <= bodies_[other].radius + view.radius) continue;
+      const double half = std::asin(hidden / distance);
       const double bearing = std::atan2(p.y, p.x);
       screen.cover(bearing - half, bearing + half);
     }
     if (screen.covers_all()) break;
     const Vec2 p = Vec2{poses_[n.body].x, poses_[n.body].y} - view.origin;
     const double distance = length(p);
-    const bool around = distance <= 1.001 * bodies_[n.body].radius + 1e-6;
+    const double radius = bodies_[n.body].radius + view.radius;
+    const bool around = distance <= 1.001 * radius + 1e-6;
     const double bearing = std::atan2(p.y, p.x);
-    const double wide = around ? M_PI : std::asin(bodies_[n.body].radius / distance) + 1e-6;
+    const double wide = around ? M_PI : std::asin(radius / distance) + 1e-6;
     if (screen.covers(bearing - wide, bearing + wide)) continue;
-    if (view.depth && !around && view.depth->hides(view.origin, view.origin + p, bodies_[n.body].radius)) continue;
+    if (view.depth && !around && view.depth->hides(view.origin, view.radius, view.origin + p, bodies_[n.body].radius))
+      continue;
 
     const std::size_t before = lists.items.size();
     add_body(view, n.body, bearing, wide, lists);
@@ -221,15 +225,16 @@ void Bodies::add_body(const View& view, std::uint32_t number, double bearing, do
     const Vec2 b = Vec2{s.bx, s.by} - view.origin;
     // Outside of the body only its facing sides can be met first.
     const double facing = cross(b - a, {-a.x, -a.y});
-    const bool keep_front = near || facing < 1e-6;
-    const bool keep_back = near || (!local.solid_left && facing > -1e-6);
-    const Vec2 shift = view.origin - view.cell_centre;
-    const double nearest = std::max(0.0, distance_to_segment({}, a, b) - 1e-6);
+    const double unsure = view.radius * length(b - a) + 1e-6;
+    const bool keep_front = near || facing < unsure;
+    const bool keep_back = near || (!local.solid_left && facing > -unsure);
+    const double nearest = std::max(0.0, distance_to_segment({}, a, b) - view.radius - 1e-6);
     if (nearest > view.range) continue;
     const auto add = [&](Vec2 from, Vec2 to) {
-      lists.candidates.push_back({from + shift, to + shift, nearest, wall_count_ + row});
+      lists.candidates.push_back({from, to, nearest, wall_count_ + row});
       if (near) return lists.add_everywhere();
-      if (wide < kTwoSectors) return lists.add_interval(bearing - with_spread, bearing + with_spread);
+      if (wide < kTwoSectors || view.radius > 0.0)
+        return lists.add_interval(bearing - with_spread, bearing + with_spread);
       const double bearing_a = std::atan2(a.y, a.x);
       const double bearing_b = bearing_a + std::atan2(cross(a, b), dot(a, b));
       lists.add_interval(std::min(bearing_a, bearing_b) - view.spread, std::max(bearing_a, bearing_b) + view.spread);

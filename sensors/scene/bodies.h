@@ -34,13 +34,13 @@ class Bodies {
   /// Prepares for views at world height `z` [m]: to be called for each before the first `collect`. Gives its number.
   std::uint32_t watch_height(double z);
 
-  /// A viewpoint among the movers.
+  /// A viewpoint among the movers, or a small disc of them: the lasers of one robot.
   struct View {
-    Vec2 origin;                   ///< [m] world
+    Vec2 origin;                   ///< [m] world; entries are relative to it
+    double radius = 0.0;           ///< [m] of the disc round the origin that holds all viewpoints; 0: the origin alone
     std::uint32_t height = 0;      ///< as `watch_height` numbers it
     double yaw = 0.0;              ///< [rad]
     double fov = 0.0;              ///< [rad] nothing outside of yaw +- fov / 2 is looked at
-    Vec2 cell_centre;              ///< [m] what entries are relative to
     double range = 0.0;            ///< [m]
     double spread = 0.0;           ///< [rad] as in CellShape
     std::uint32_t self = 0;        ///< mover that carries the sensor, and is never seen

@@ -48,18 +48,19 @@ float Depth::at(Vec2 q) const {
   return signed_[static_cast<std::size_t>(row) * columns_ + column];
 }
 
-bool Depth::hides(Vec2 origin, Vec2 p, double radius) const {
+bool Depth::hides(Vec2 origin, double origin_radius, Vec2 p, double radius) const {
   if (signed_.empty()) return false;
   const double distance = length(p - origin);
   const double end = distance - radius;
   const Vec2 along = (1.0 / distance) * (p - origin);
-  const double widening = 1.0001 * radius / distance;
+  const double widening = (radius - origin_radius) / distance;
   const double off = 0.7072 * spacing_;
-  for (double s = 0.0; s < end;) {
+  for (double s = origin_radius; s < end;) {
     // Depth grows by at most a metre per metre: what is missing tells how far to go.
     const Vec2 q = origin + s * along;
     const double here = is_on_grid(q) ? at(q) : kCutOff;
-    const double missing = s * widening + 1e-6 + off + here;
+    const double wide = 1.0001 * (origin_radius + s * widening) + 1e-6;
+    const double missing = wide + off + here;
     if (missing < 0.0) return true;
     s += std::max(0.5 * spacing_, here > 0.0 ? here - off : missing - 2.0 * off);
   }

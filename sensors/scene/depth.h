@@ -2,7 +2,8 @@
 // How deep in a solid, or how far from one, every place is: tells cheaply, and never wrongly, that walls hide
 // something.
 //
-// A point that lies deeper in a solid than s sin(alpha), seen at distance s, hides every ray within alpha of it.
+// All straight ways from one disc to another pass through their hull. Where a point on its axis lies deeper in a solid
+// than the hull is wide there, none gets through.
 
 #include <vector>
 
@@ -18,9 +19,9 @@ class Depth {
   /// @param most_points of the grid; its spacing follows, at least 5 cm.
   Depth(const Sight& sight, base::Workers& workers, std::size_t most_points = 300'000);
 
-  /// True only when walls hide the whole disc of `radius` around `p` from `origin`, which lies in no solid. Often false
-  /// though they do.
-  bool hides(Vec2 origin, Vec2 p, double radius) const;
+  /// True only when walls hide every point within `radius` of `p` from every point within `origin_radius` of `origin`,
+  /// of which none that is asked for lies in a solid. Often false though they do.
+  bool hides(Vec2 origin, double origin_radius, Vec2 p, double radius) const;
 
  private:
   bool is_on_grid(Vec2 q) const;

@@ -28,8 +28,8 @@ namespace sf::sensors {
 struct RayRow {
   float offset_x;  ///< [m] sensor relative to the centre of its cell
   float offset_y;
-  float heading_cos;  ///< of the sensor's yaw in the world
-  float heading_sin;
+  float mover_offset_x;  ///< [m] sensor relative to what the movers' lists are relative to
+  float mover_offset_y;
   float heading_sectors;  ///< [sectors] yaw in [0, SF_SECTORS)
   float band;             ///< [m] SF_BAND times the largest coordinate in its lists
   float reach;            ///< [m] range_max and a little: nothing farther matters

@@ -20,8 +20,12 @@ constexpr std::uint32_t kMostMoverChunks = 3'000;
 static_assert((kMostWallChunks + kMostMoverChunks) * (1 + SF_CHUNK) + 16 < 65'535);
 constexpr double kClearanceCap = 0.05;  ///< [m]
 
-/// Lists for small cells are short, but each cell costs: a 32nd of the range balances them (docs/performance.md).
-double cell_size(double range) { return std::clamp(range / 32.0, 1e-3, 4.0); }
+/// Lists for small cells are short, but each cell costs: a 32nd of the range suits a scanner of some hundred beams, few
+/// beams are not worth so many (docs/performance.md).
+double cell_size(double range, std::uint32_t beams) {
+  const double fewer = std::clamp(std::sqrt(361.0 / std::max(1u, beams)), 1.0, 6.0);
+  return std::clamp(fewer * range / 32.0, 1e-3, 4.0);
+}
 
 std::vector<double> height_breaks(const std::vector<world::Segment>& walls) {
   std::vector<double> breaks;
@@ -114,7 +118,7 @@ std::uint32_t Scene::add_family(const Family& family) {
   }
   auto tables = std::make_unique<FamilyTables>();
   tables->family = family;
-  tables->shape = {cell_size(family.range), family.range, family.spread + 5e-4};
+  tables->shape = {cell_size(family.range, family.beams), family.range, family.spread + 5e-4};
   tables->sight = sight.get();
   // Only movers are looked up in it.
   auto& depth = depths_[interval];
@@ -148,7 +152,11 @@ Vec2 Scene::centre_of(const FamilyTables& family, const CellKey& key) const {
 void Scene::find_cells(std::span<const Viewpoint> views) {
   keys_.resize(views.size());
   workers_.run(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) keys_[i] = key_of(views[i]);
+    for (std::size_t i = first; i < last; ++i) {
+      const bool same = i > first && views[i].family == views[i - 1].family && views[i].X_WS.x == views[i - 1].X_WS.x &&
+                        views[i].X_WS.y == views[i - 1].X_WS.y;
+      keys_[i] = same ? keys_[i - 1] : key_of(views[i]);
+    }
   });
   pool_.begin_tick();
   missing_.clear();
@@ -202,11 +210,12 @@ bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {
     grow(2 * options_.pool_cells, 2 * options_.pool_chunks, view_capacity_, mover_chunks_);
   for (std::size_t i = 0; i < views.size(); ++i) fill_walls(views[i], i, rows[i]);
 
-  if (views.size() > view_capacity_)
-    grow(options_.pool_cells, options_.pool_chunks, static_cast<std::uint32_t>(2 * views.size()), mover_chunks_);
-  while (!fill_some_movers(views, rows))
+  find_groups(views);
+  if (groups_.size() > view_capacity_)
+    grow(options_.pool_cells, options_.pool_chunks, static_cast<std::uint32_t>(2 * groups_.size()), mover_chunks_);
+  while (!fill_some_movers(views))
     grow(options_.pool_cells, options_.pool_chunks, view_capacity_, 2 * mover_chunks_used_);
-  views_served_ = views.size();
+  name_movers(views, rows);
   return replaced_;
 }
 
@@ -219,8 +228,6 @@ void Scene::fill_walls(const Viewpoint& view, std::size_t row, RayRow& out) {
   out.offset_y = static_cast<float>(view.X_WS.y - centre.y);
   out.heading_cos64 = std::cos(yaw);
   out.heading_sin64 = std::sin(yaw);
-  out.heading_cos = static_cast<float>(out.heading_cos64);
-  out.heading_sin = static_cast<float>(out.heading_sin64);
   out.heading_sectors = static_cast<float>(sectors < 0.0 ? sectors + SF_SECTORS : sectors);
   out.band = static_cast<float>(SF_BAND * (family.shape.reach() + 2.0 * bodies_->largest_radius()));
   out.reach = static_cast<float>(family.family.range * (1.0 + 1e-6) + out.band);
@@ -230,34 +237,50 @@ void Scene::fill_walls(const Viewpoint& view, std::size_t row, RayRow& out) {
   out.range_max = family.family.range;
 }
 
-bool Scene::fill_some_movers(std::span<const Viewpoint> views, std::span<RayRow> rows) {
+void Scene::find_groups(std::span<const Viewpoint> views) {
+  groups_.clear();
+  for (std::size_t i = 0; i < views.size();) {
+    Group group{i, i, {views[i].X_WS.x, views[i].X_WS.y}, 0.0, false};
+    Vec2 low = group.origin;
+    Vec2 high = group.origin;
+    for (; i < views.size() && views[i].self == views[group.first].self && views[i].family == views[group.first].family;
+         ++i) {
+      const Pose& X = views[i].X_WS;
+      low = {std::min(low.x, X.x), std::min(low.y, X.y)};
+      high = {std::max(high.x, X.x), std::max(high.y, X.y)};
+      group.in_solid = group.in_solid || keys_[i].family % 2 == 1;
+    }
+    group.end = i;
+    if (low.x != high.x || low.y != high.y) {
+      group.origin = 0.5 * (low + high);
+      group.radius = 0.5 * length(high - low) * (1.0 + 1e-9) + 1e-9;
+    }
+    groups_.push_back(group);
+  }
+}
+
+bool Scene::fill_some_movers(std::span<const Viewpoint> views) {
   std::atomic<std::uint32_t> next{0};
   std::atomic<std::uint32_t> longest{0};
   const ListTables out = tables();
-  ListHeader* const headers = headers_->host<ListHeader>().data();
-  workers_.run(views.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
+  ListHeader* const headers = headers_->host<ListHeader>().data() + std::size_t{SF_SECTORS} * options_.pool_cells;
+  workers_.run(groups_.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
     Scratch& scratch = *scratch_[thread];
     for (std::size_t i = first; i < last; ++i) {
-      const Viewpoint& view = views[i];
+      const Group& group = groups_[i];
+      const Viewpoint& view = views[group.first];
       const FamilyTables& family = *families_[view.family];
+      const double fov = group.end - group.first == 1 ? family.family.fov : 2.0 * M_PI;
       float clearances[SF_SECTORS];
-      bodies_->collect({{view.X_WS.x, view.X_WS.y},
-                        family.height,
-                        view.X_WS.yaw,
-                        family.family.fov,
-                        centre_of(family, keys_[i]),
-                        family.family.range,
-                        family.shape.spread,
-                        view.self,
-                        keys_[i].family % 2 == 1 ? nullptr : family.depth},
+      bodies_->collect({group.origin, group.radius, family.height, view.X_WS.yaw, fov, family.family.range,
+                        family.shape.spread, view.self, group.in_solid ? nullptr : family.depth},
                        scratch.bodies, scratch.lists, clearances);
       const std::uint32_t chunks = scratch.lists.all_chunks();
       const std::uint32_t at = next.fetch_add(chunks);
       for (std::uint32_t s = 0; s < SF_SECTORS; ++s)
         if (scratch.lists.chunks(s) > kMostMoverChunks) longest = scratch.lists.chunks(s);
       if (at + chunks > mover_chunks_) continue;
-      rows[i].mover_lists = static_cast<std::uint32_t>(SF_SECTORS * (options_.pool_cells + i));
-      ListHeader* const own = headers + rows[i].mover_lists;
+      ListHeader* const own = headers + SF_SECTORS * i;
       write_lists(scratch.lists, options_.pool_chunks + at, out, own);
       for (std::uint32_t s = 0; s < SF_SECTORS; ++s) own[s].clearance = clearances[s];
     }
@@ -265,6 +288,15 @@ bool Scene::fill_some_movers(std::span<const Viewpoint> views, std::span<RayRow>
   refuse_if_too_long(longest, kMostMoverChunks, "movers");
   mover_chunks_used_ = next;
   return mover_chunks_used_ <= mover_chunks_;
+}
+
+void Scene::name_movers(std::span<const Viewpoint> views, std::span<RayRow> rows) const {
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    for (std::size_t i = groups_[g].first; i < groups_[g].end; ++i) {
+      rows[i].mover_lists = static_cast<std::uint32_t>(SF_SECTORS * (options_.pool_cells + g));
+      rows[i].mover_offset_x = static_cast<float>(views[i].X_WS.x - groups_[g].origin.x);
+      rows[i].mover_offset_y = static_cast<float>(views[i].X_WS.y - groups_[g].origin.y);
+    }
 }
 
 void Scene::grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t views, std::uint32_t mover_chunks) {
@@ -308,7 +340,7 @@ void Scene::upload(gpu::Batch& batch) {
       batch.up(*headers_, std::size_t{SF_SECTORS} * slot * 16, SF_SECTORS * 16);
     }
     chunks_up(pool, mover_chunks_used_);
-    batch.up(*headers_, std::size_t{SF_SECTORS} * options_.pool_cells * 16, views_served_ * SF_SECTORS * 16);
+    batch.up(*headers_, std::size_t{SF_SECTORS} * options_.pool_cells * 16, groups_.size() * SF_SECTORS * 16);
     batch.up(*segments_, walls_.size() * sizeof(ExactSegment), bodies_->segments().size_bytes());
   }
   upload_all_ = false;

@@ -25,10 +25,11 @@ struct SceneOptions {
 
 /// Sensors that can share lists: one height, one range.
 struct Family {
-  double z = 0.0;       ///< [m] world height of the sensors
-  double range = 0.0;   ///< [m]
-  double spread = 0.0;  ///< [rad] largest of its sensors, as in CellShape
-  double fov = 0.0;     ///< [rad] largest of its sensors, with all that noise may add
+  double z = 0.0;             ///< [m] world height of the sensors
+  double range = 0.0;         ///< [m]
+  double spread = 0.0;        ///< [rad] largest of its sensors, as in CellShape
+  double fov = 0.0;           ///< [rad] largest of its sensors, with all that noise may add
+  std::uint32_t beams = 361;  ///< that one robot casts in a tick: many are worth small cells
 };
 
 /// A sensor about to look.
@@ -72,17 +73,26 @@ class Scene {
 
  private:
   struct FamilyTables;
-  struct Miss;
+  /// Views of one robot and family, which share a list of movers.
+  struct Group {
+    std::size_t first;
+    std::size_t end;
+    Vec2 origin;
+    double radius;
+    bool in_solid;  ///< some view is
+  };
   struct Scratch;
 
   Vec2 centre_of(const FamilyTables& family, const CellKey& key) const;
   CellKey key_of(const Viewpoint& view) const;
   void find_cells(std::span<const Viewpoint> views);
+  void find_groups(std::span<const Viewpoint> views);
   void build_missing();
   void forget_found();
   void fill_walls(const Viewpoint& view, std::size_t row, RayRow& out);
   bool fill_movers(std::span<const Viewpoint> views, std::span<RayRow> rows);
-  bool fill_some_movers(std::span<const Viewpoint> views, std::span<RayRow> rows);
+  bool fill_some_movers(std::span<const Viewpoint> views);
+  void name_movers(std::span<const Viewpoint> views, std::span<RayRow> rows) const;
   void grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t views, std::uint32_t mover_chunks);
   ListTables tables();
 
@@ -99,13 +109,13 @@ class Scene {
   CellPool pool_;
   std::vector<CellKey> keys_;  ///< of this tick's views
   std::vector<CellKey> missing_;
+  std::vector<Group> groups_;                      ///< of this tick's views
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
   std::vector<std::uint32_t> fresh_slots_;         ///< cells built since the last upload
   std::uint32_t mover_chunks_ = 0;                 ///< capacity for movers' lists, behind the pool
   std::uint32_t mover_chunks_used_ = 0;            ///< may exceed the capacity while a tick is being retried
-  std::uint32_t view_capacity_ = 0;                ///< rows of movers' headers
-  std::size_t views_served_ = 0;
-  bool replaced_ = false;  ///< tables were, since `serve` began
+  std::uint32_t view_capacity_ = 0;                ///< groups of movers' headers
+  bool replaced_ = false;                          ///< tables were, since `serve` began
   bool upload_all_ = true;
 
   std::unique_ptr<gpu::Buffer> headers_, entries_, ids_, nearest_, segments_, facts_;
