@@ -1,32 +1,56 @@
 #include "apps/command_line.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
-#include <cmath>
-#include <map>
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include "apps/wording.h"
 
 namespace sf::apps {
 
 namespace {
 
-/// "X,Y,YAW_DEG" as a pose.
-base::Pose parse_pose(const std::string& text) {
-  double v[3];
-  int used = 0;
-  const bool three = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &v[0], &v[1], &v[2], &used) == 3;
-  if (!three || static_cast<std::size_t>(used) != text.size() || !std::isfinite(v[0] + v[1] + v[2]))
-    throw CLI::ValidationError("--pose", "expected X,Y,YAW_DEG such as 1.5,-2,90, got '" + text + "'");
-  return {v[0], v[1], 0.0, v[2] * M_PI / 180.0};
+CLI::Validator whole(std::uint64_t first, std::uint64_t last) {
+  return {[first, last](std::string& text) { return refuse_whole(text, first, last); }, ""};
+}
+
+CLI::Validator number(double first, double last) {
+  return {[first, last](std::string& text) { return refuse_number(text, first, last); }, ""};
+}
+
+CLI::Validator one_of(const std::string& a, const std::string& b) {
+  return {[a, b](std::string& text) { return refuse_choice(text, a, b); }, ""};
+}
+
+CLI::Validator not_empty(const std::string& what) {
+  return {[what](std::string& text) { return refuse_empty(text, what); }, ""};
+}
+
+CLI::Validator pose() {
+  return {[](std::string& text) {
+            return read_pose(text) ? "" : fmt::format("expected X,Y,YAW_DEG such as 1.5,-2,90, got '{}'", text);
+          },
+          ""};
 }
 
 void add_json(CLI::App& app, Options& o) { app.add_flag("--json", o.json, "Print facts as JSON on standard output"); }
 
+/// CLI11's own envname would set what all subcommands share after the one that was called has set it.
 void add_device(CLI::App& app, Options& o) {
-  app.add_option("--device", o.device, "Vulkan device: its row in `devices`, or part of its name")->envname("SENSORFARM_DEVICE");
+  app.add_option("--device", o.device,
+                 "Vulkan device: its row in `devices`, or part of its name (else $SENSORFARM_DEVICE, else the best)")
+      ->type_name("NAME");
 }
 
 void add_world(CLI::App& app, Options& o) {
-  app.add_option("world", o.world, "World file: Stage .world (3.x or 4.x), or ROS map .yaml")->required();
-  app.add_flag("--stage-obstacles", o.load.stage_obstacles, "As in Stage, floor plans with obstacle_return 0 stop nobody");
+  app.add_option("world", o.world, "World file: Stage .world (3.x or 4.x), or ROS map .yaml")
+      ->required()
+      ->type_name("FILE");
+  app.add_flag("--stage-obstacles", o.load.stage_obstacles,
+               "As in Stage, floor plans with obstacle_return 0 stop nobody");
   app.add_flag("--stage-noise", o.load.stage_noise, "As in Stage, the first number of `noise` is a variance");
   app.add_flag("--unknown-is-wall", o.load.unknown_is_wall, "Unknown cells of a ROS map are walls");
 }
@@ -35,27 +59,44 @@ void add_no_return(CLI::App& app, Options& o) {
   app.add_option_function<std::string>(
          "--no-return", [&o](const std::string& text) { o.no_return_inf = text == "inf"; },
          "What a beam reads that meets nothing: max (range_max) or inf (null in JSON)")
-      ->check(CLI::IsMember({"max", "inf"}))
+      ->check(one_of("max", "inf"))
+      ->type_name("max|inf")
       ->default_str("max");
 }
 
 void add_ports(CLI::App& app, Options& o) {
-  app.add_option("--laser-port", o.laser_port, "Base of the lasers' ports: port = base + robot id * ports per robot + sensor")
-      ->check(CLI::Range(1u, 65535u))
+  app.add_option("--laser-port", o.laser_port,
+                 "Base of the lasers' ports: port = base + robot id * ports per robot + sensor")
+      ->check(whole(1, 65535))
+      ->type_name("PORT")
       ->capture_default_str();
-  app.add_option("--ports-per-robot", o.ports_per_robot, "Ports per robot")->check(CLI::Range(1u, 65535u))->capture_default_str();
-  static const std::map<std::string, netio::Wire> kWires{{"farm", netio::Wire::farm}, {"thesis", netio::Wire::thesis}};
-  app.add_option("--wire", o.wire, "Layout of sensor packets: farm (docs/packets.md) or thesis (plain)")
-      ->transform(CLI::CheckedTransformer(kWires, CLI::ignore_case));
+  app.add_option("--ports-per-robot", o.ports_per_robot, "Ports per robot")
+      ->check(whole(1, 65535))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option_function<std::string>(
+         "--wire",
+         [&o](const std::string& text) { o.wire = text == "thesis" ? netio::Wire::thesis : netio::Wire::farm; },
+         "Layout of sensor packets: farm (docs/packets.md) or thesis (plain)")
+      ->check(one_of("farm", "thesis"))
+      ->type_name("farm|thesis")
+      ->default_str("farm");
+}
+
+void add_seed(CLI::App& app, Options& o, const std::string& what) {
+  app.add_option("--seed", o.seed, what)->check(whole(0, UINT64_MAX))->type_name("K")->capture_default_str();
 }
 
 void add_robots(CLI::App& app, Options& o) {
-  app.add_option("--robots", o.robots, "Clone the world's first robot to this many free poses")->check(CLI::Range(1u, 65535u));
-  app.add_option("--seed", o.seed, "Seed of poses, wandering and noise")->capture_default_str();
+  app.add_option("--robots", o.robots, "Clone the world's first robot to this many free poses")
+      ->check(whole(1, 65535))
+      ->type_name("N");
+  add_seed(app, o, "Seed of poses, wandering and noise");
 }
 
 void add_devices(CLI::App& app, Options& o) {
-  CLI::App* sub = app.add_subcommand("devices", "List the Vulkan devices: chosen, or refused and why (exit 3 when none is usable)");
+  CLI::App* sub =
+      app.add_subcommand("devices", "List the Vulkan devices: chosen, or refused and why (exit 3 when none is usable)");
   add_json(*sub, o);
   add_device(*sub, o);
   sub->callback([&o] { o.command = Command::devices; });
@@ -71,7 +112,7 @@ void add_check(CLI::App& app, Options& o) {
 void add_draw(CLI::App& app, Options& o) {
   CLI::App* sub = app.add_subcommand("draw", "Draw the world as understood, seen from above");
   add_world(*sub, o);
-  sub->add_option("-o,--out", o.out, "PNG file to write")->required();
+  sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(not_empty("a file"))->type_name("FILE");
   sub->callback([&o] { o.command = Command::draw; });
 }
 
@@ -81,42 +122,71 @@ void add_sense(CLI::App& app, Options& o) {
   add_json(*sub, o);
   add_device(*sub, o);
   add_no_return(*sub, o);
-  sub->add_option_function<std::string>("--pose", [&o](const std::string& text) { o.pose = parse_pose(text); },
-                                        "Where the robot stands: X,Y,YAW_DEG [m, degrees]");
-  sub->add_option("--robot", o.robot, "Name of the robot (default: the first)");
-  sub->add_option("--sensor", o.sensor, "Number of its sensor, from 0")->capture_default_str();
+  sub->add_option_function<std::string>(
+         "--pose", [&o](const std::string& text) { o.pose = read_pose(text); },
+         "Where the robot stands: X,Y,YAW_DEG [m, degrees]")
+      ->check(pose())
+      ->type_name("POSE");
+  sub->add_option("--robot", o.robot, "Name of the robot (default: the first that has a sensor)")->type_name("NAME");
+  sub->add_option("--sensor", o.sensor, "Number of its sensor, from 0")
+      ->check(whole(0, 65535))
+      ->type_name("N")
+      ->capture_default_str();
   sub->callback([&o] { o.command = Command::sense; });
 }
 
 void add_run(CLI::App& app, Options& o) {
-  CLI::App* sub = app.add_subcommand("run", "Simulate a fleet that wanders, with every robot's lasers, as fast as it goes");
+  CLI::App* sub =
+      app.add_subcommand("run", "Simulate a fleet that wanders, with every robot's lasers, as fast as it goes");
   add_world(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
   add_robots(*sub, o);
   add_no_return(*sub, o);
   add_ports(*sub, o);
-  sub->add_option("--duration", o.duration, "Simulated time [s]")->check(CLI::Range(0.0, 1e9))->capture_default_str();
-  sub->add_option("--threads", o.threads, "Threads of the host's part (0: all); never changes a reading")->check(CLI::Range(0u, 256u));
-  sub->add_option("--record", o.record, "Folder to record the run into (run.mcap)");
-  sub->add_flag("--record-readings", o.record_readings, "Record the readings too, not only what they can be computed from");
+  sub->add_option("--duration", o.duration, "Simulated time [s]")
+      ->check(number(0.0, 1e9))
+      ->type_name("S")
+      ->capture_default_str();
+  sub->add_option("--threads", o.threads, "Threads of the host's part (0: all); never changes a reading")
+      ->check(whole(0, 256))
+      ->type_name("N");
+  auto* record = sub->add_option("--record", o.record, "Folder to record the run into (run.mcap)")
+                     ->check(not_empty("a folder"))
+                     ->type_name("DIR");
+  sub->add_flag("--record-readings", o.record_readings,
+                "Record the readings too, not only what they can be computed from")
+      ->needs(record);
   sub->add_flag("--real-time", o.real_time, "One simulated second per second");
-  sub->add_option("--send", o.send, "Send every reading as UDP packets to this host");
+  sub->add_option("--send", o.send, "Send every reading as UDP packets to this host")
+      ->check(not_empty("a host"))
+      ->type_name("HOST");
   sub->callback([&o] { o.command = Command::run; });
 }
 
 void add_serve(CLI::App& app, Options& o) {
-  CLI::App* sub = app.add_subcommand("serve", "Virtual sensors for robots that live elsewhere: V2V packets in, laser packets out");
+  CLI::App* sub =
+      app.add_subcommand("serve", "Virtual sensors for robots that live elsewhere: V2V packets in, laser packets out");
   add_world(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
   add_no_return(*sub, o);
   add_ports(*sub, o);
-  sub->add_option("--bind", o.bind, "Address to listen on (0.0.0.0: every interface)")->capture_default_str();
-  sub->add_option("--port", o.port, "UDP port to listen on (0: any free one)")->check(CLI::Range(0u, 65535u))->capture_default_str();
-  sub->add_option("--rate", o.rate, "Ticks per second (default: the world's interval_sim)")->check(CLI::Range(0.1, 10000.0));
-  sub->add_option("--seed", o.seed, "Seed of noise")->capture_default_str();
-  auto* duration = sub->add_option("--duration", o.duration, "Stop after this long [s] (0: when told to)")->check(CLI::Range(0.0, 1e9));
+  sub->add_option("--bind", o.bind, "Address to listen on (0.0.0.0: every interface)")
+      ->check(not_empty("an address"))
+      ->type_name("ADDR")
+      ->capture_default_str();
+  sub->add_option("--port", o.port, "UDP port to listen on (0: any free one)")
+      ->check(whole(0, 65535))
+      ->type_name("PORT")
+      ->capture_default_str();
+  sub->add_option("--rate", o.rate, "Ticks per second (default: the world's interval_sim)")
+      ->check(number(0.1, 10000.0))
+      ->type_name("HZ");
+  add_seed(*sub, o, "Seed of noise");
+  auto* duration = sub->add_option("--duration", o.duration, "Stop after this long [s] (0: when told to)")
+                       ->check(number(0.0, 1e9))
+                       ->type_name("S");
   sub->callback([&o, duration] {
     o.command = Command::serve;
     if (duration->count() == 0) o.duration = 0.0;
@@ -125,8 +195,10 @@ void add_serve(CLI::App& app, Options& o) {
 
 void add_plot(CLI::App& app, Options& o) {
   CLI::App* sub = app.add_subcommand("plot", "Draw trajectories and an occupancy map from a recorded run");
-  sub->add_option("recording", o.world, "Folder of the recording")->required();
-  sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)");
+  sub->add_option("recording", o.world, "Folder of the recording")->required()->type_name("DIR");
+  sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)")
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
   add_device(*sub, o);
   sub->callback([&o] { o.command = Command::plot; });
 }
@@ -137,11 +209,53 @@ void add_listen(CLI::App& app, Options& o) {
   add_json(*sub, o);
   add_robots(*sub, o);
   add_ports(*sub, o);
-  sub->add_option("--bind", o.bind, "Address to listen on")->capture_default_str();
+  sub->add_option("--bind", o.bind, "Address to listen on")
+      ->check(not_empty("an address"))
+      ->type_name("ADDR")
+      ->capture_default_str();
   sub->add_option("--silence", o.silence, "End when nothing came for this long after the first packet [s]")
-      ->check(CLI::Range(0.1, 1e6))
+      ->check(number(0.1, 1e6))
+      ->type_name("S")
       ->capture_default_str();
   sub->callback([&o] { o.command = Command::listen; });
+}
+
+std::string names_of(const std::vector<const CLI::App*>& subcommands) {
+  std::string names;
+  for (const CLI::App* sub : subcommands) names += (names.empty() ? "" : ", ") + sub->get_name();
+  return names;
+}
+
+std::vector<std::string> options_of(const CLI::App& sub) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : sub.get_options())
+    names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+  return names;
+}
+
+/// The first argument that nobody wanted; CLI11 names all, from the last on.
+std::string explain_extras(const CLI::App& app, const CLI::App& sub, int argc, const char* const* argv) {
+  const std::vector<std::string> rest = app.remaining(true);
+  const auto* const found =
+      std::find_if(argv + 1, argv + argc, [&](const char* a) { return std::count(rest.begin(), rest.end(), a) > 0; });
+  const std::string word = found == argv + argc ? "" : *found;
+  return fmt::format("'{}' was not expected{}", word, suggest_option(word, options_of(sub)));
+}
+
+/// What was wrong with the arguments, in one line that ends with where help is.
+std::string explain(const CLI::App& app, const CLI::ParseError& error, int argc, const char* const* argv) {
+  const std::vector<CLI::App*> used = app.get_subcommands();
+  if (used.empty()) {
+    const std::string all = names_of(app.get_subcommands([](const CLI::App*) { return true; }));
+    const std::string what = argc > 1 ? fmt::format("'{}' is no subcommand; expected one of {}", argv[1], all)
+                                      : fmt::format("expected a subcommand: {}", all);
+    return what + "; see `sensorfarm --help`";
+  }
+  std::string what = error.what();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) what = explain_extras(app, *used[0], argc, argv);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
+    what = what.substr(0, what.find(':')) + " needs a value after it";
+  return fmt::format("{}; see `sensorfarm {} --help`", what, used[0]->get_name());
 }
 
 }  // namespace
@@ -153,6 +267,7 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   Options& o = parsed.options;
+  if (const char* device = std::getenv("SENSORFARM_DEVICE")) o.device = device;
   add_devices(app, o);
   add_check(app, o);
   add_draw(app, o);
@@ -165,7 +280,10 @@ Parsed parse_command_line(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // CLI11 has a code for each mistake; ours is 2 for all of them.
-    parsed.exit_code = app.exit(error) == 0 ? 0 : 2;
+    const bool fine = error.get_exit_code() == 0;
+    if (fine) app.exit(error);
+    if (!fine) std::fprintf(stderr, "sensorfarm: %s\n", explain(app, error, argc, argv).c_str());
+    parsed.exit_code = fine ? 0 : 2;
   }
   return parsed;
 }

@@ -22,17 +22,17 @@ struct RunFacts {
   std::uint64_t ticks = 0;
   double simulated_s = 0.0;
   double wall_s = 0.0;
-  std::uint64_t contacts = 0;   ///< robot-ticks in which something stopped a robot
-  double move_s = 0.0;          ///< [s] controllers and motion
-  double out_s = 0.0;           ///< [s] packets and recording
+  std::uint64_t contacts = 0;  ///< robot-ticks in which something stopped a robot
+  double move_s = 0.0;         ///< [s] controllers and motion
+  double out_s = 0.0;          ///< [s] packets and recording
   farm::FarmStats farm;
   std::uint64_t hash = 0;
   bool interrupted = false;
-  bool sent = false;            ///< `outbox` counts
+  bool sent = false;  ///< `outbox` counts
   netio::OutboxCounts outbox;
-  bool received = false;        ///< `inbox` counts
+  bool received = false;  ///< `inbox` counts
   netio::Counts inbox;
-  std::string recording;        ///< file; empty: none
+  std::string recording;  ///< file; empty: none
 };
 
 std::string json_of(const gpu::Survey& survey);
@@ -46,7 +46,9 @@ std::string text_of(const gpu::Survey& survey);
 std::string text_of(const world::World& world);
 std::string text_of(const RunFacts& facts);
 std::string text_of(const netio::Summary& summary);
-/// Comma-separated: a comment line with the poses, a heading, one line per beam.
+/// Comma-separated: a heading, then one line per beam.
 std::string text_of(const world::World& world, const base::ReadingBlock& reading);
+/// Where robot and sensor stood, in one line for people.
+std::string place_of(const world::World& world, const base::ReadingBlock& reading);
 
 }  // namespace sf::apps

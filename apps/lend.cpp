@@ -33,7 +33,8 @@ world::Mover create_robot(std::uint32_t model) {
 }  // namespace
 
 bool lend_robot(world::World& world) {
-  if (std::any_of(world.movers.begin(), world.movers.end(), [](const world::Mover& m) { return !m.is_tag; })) return false;
+  if (std::any_of(world.movers.begin(), world.movers.end(), [](const world::Mover& m) { return !m.is_tag; }))
+    return false;
   const auto model = static_cast<std::uint32_t>(world.models.size());
   world::Model row;
   row.name = "roomba1";
@@ -46,10 +47,15 @@ bool lend_robot(world::World& world) {
   return true;
 }
 
-world::World load_with_robots(const std::string& file, const world::LoadOptions& options, std::uint32_t count, std::uint64_t seed) {
+world::World load_with_robots(const std::string& file, const world::LoadOptions& options, std::uint32_t count,
+                              std::uint64_t seed) {
   world::World world = world::load_world(file, options);
   const bool lent = lend_robot(world);
-  if (lent) std::fprintf(stderr, "sensorfarm: %s has no robot; it is lent a Create with a laser of 361 rays, 180 degrees, 8 m\n", file.c_str());
+  if (lent)
+    std::fprintf(stderr,
+                 "sensorfarm: %s has no robot; it is lent 'roomba1' (id 1), a Create with a laser of 361 rays, 180 "
+                 "degrees, 8 m\n",
+                 file.c_str());
   if (count > 0 || lent) world::clone_robots(world, std::max(1u, count), seed);
   return world;
 }

@@ -18,13 +18,27 @@ void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
 
 std::uint32_t find_robot(const world::World& world, const std::string& name) {
   std::string known;
+  std::size_t others = 0;
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
     const world::Mover& mover = world.movers[i];
     if (name.empty() ? !mover.lasers.empty() : mover.name == name) return i;
-    if (i < 20) known += (known.empty() ? "" : ", ") + mover.name;
+    if (mover.lasers.empty()) continue;
+    if (++others <= 10) known += (known.empty() ? "" : ", ") + mover.name;
   }
-  if (name.empty()) throw base::InputError(world.file, 0, "no robot has a sensor");
-  throw base::InputError(world.file, 0, "has no robot '" + name + "'; it has " + known + (world.movers.size() > 20 ? ", ..." : ""));
+  if (name.empty()) throw base::InputError(world.file, 0, "no robot has a sensor; give one a laser( ) or a ranger( )");
+  if (others > 10) known += ", ... (" + std::to_string(others) + " in all)";
+  throw base::InputError(world.file, 0,
+                         "has no robot '" + name + "'; with sensors it has " + (known.empty() ? "none" : known));
+}
+
+void require_sensor(const world::World& world, const world::Mover& robot, std::uint32_t sensor) {
+  const std::size_t count = robot.lasers.size();
+  if (sensor < count) return;
+  const std::string has = count == 0   ? "no sensor"
+                          : count == 1 ? "one sensor, --sensor 0"
+                                       : "sensors 0 to " + std::to_string(count - 1);
+  throw base::InputError(world.file, 0,
+                         robot.name + " has " + has + ", but --sensor " + std::to_string(sensor) + " was asked for");
 }
 
 }  // namespace
@@ -55,9 +69,7 @@ int sense(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
   const std::uint32_t mover = find_robot(world, options.robot);
   const world::Mover& robot = world.movers[mover];
-  if (options.sensor >= robot.lasers.size())
-    throw base::InputError(world.file, 0, robot.name + " has " + std::to_string(robot.lasers.size()) + " sensors, so --sensor " +
-                                              std::to_string(options.sensor) + " is none of them; count from 0");
+  require_sensor(world, robot, options.sensor);
   base::Pose X_WM = robot.X_WM;
   if (options.pose) X_WM = {options.pose->x, options.pose->y, X_WM.z, options.pose->yaw};
 
@@ -71,6 +83,7 @@ int sense(const Options& options) {
     if (options.no_return_inf && reading.hits[i] == base::kNoHit && ranges[i] >= robot.lasers[options.sensor].range_max)
       ranges[i] = std::numeric_limits<double>::infinity();
   reading.values = ranges;
+  if (!options.json) std::fprintf(stderr, "sensorfarm: %s\n", place_of(world, reading).c_str());
   print(options.json ? json_of(world, reading) : text_of(world, reading));
   return 0;
 }

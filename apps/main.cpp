@@ -12,14 +12,22 @@ namespace {
 int dispatch(const sf::apps::Options& options) {
   using sf::apps::Command;
   switch (options.command) {
-    case Command::devices: return sf::apps::devices(options);
-    case Command::check: return sf::apps::check(options);
-    case Command::draw: return sf::apps::draw(options);
-    case Command::sense: return sf::apps::sense(options);
-    case Command::run: return sf::apps::run(options);
-    case Command::serve: return sf::apps::serve(options);
-    case Command::plot: return sf::apps::plot(options);
-    case Command::listen: return sf::apps::listen(options);
+    case Command::devices:
+      return sf::apps::devices(options);
+    case Command::check:
+      return sf::apps::check(options);
+    case Command::draw:
+      return sf::apps::draw(options);
+    case Command::sense:
+      return sf::apps::sense(options);
+    case Command::run:
+      return sf::apps::run(options);
+    case Command::serve:
+      return sf::apps::serve(options);
+    case Command::plot:
+      return sf::apps::plot(options);
+    case Command::listen:
+      return sf::apps::listen(options);
   }
   return 1;
 }
@@ -34,7 +42,10 @@ int fail(int code, const char* what) {
 int main(int argc, char** argv) {
   try {
     const sf::apps::Parsed parsed = sf::apps::parse_command_line(argc, argv);
-    return parsed.exit_code ? *parsed.exit_code : dispatch(parsed.options);
+    const int code = parsed.exit_code ? *parsed.exit_code : dispatch(parsed.options);
+    // A full disk must not pass for an answer.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return fail(2, "standard output cannot be written");
+    return code;
   } catch (const sf::base::InputError& error) {
     return fail(2, error.what());
   } catch (const sf::base::DeviceError& error) {

@@ -18,9 +18,9 @@ struct Options {
   bool json = false;
   std::string device;  ///< row or part of a name; empty: the best
 
-  std::string world;   ///< world file, or the recording's folder for `plot`
+  std::string world;  ///< world file, or the recording's folder for `plot`
   world::LoadOptions load;
-  std::string out;     ///< picture, or folder for `plot`
+  std::string out;  ///< picture, or folder for `plot`
 
   std::optional<base::Pose> pose;  ///< of the robot, for `sense`
   std::string robot;
@@ -31,18 +31,18 @@ struct Options {
   double duration = 60.0;    ///< [s]; serve and listen: 0 is until stopped
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  std::string record;        ///< folder; empty: no recording
+  std::string record;  ///< folder; empty: no recording
   bool record_readings = false;
   bool real_time = false;
-  std::string send;          ///< host; empty: nobody
+  std::string send;  ///< host; empty: nobody
   netio::Wire wire = netio::Wire::farm;
   std::uint32_t laser_port = 10000;  ///< base of the lasers' ports
   std::uint32_t ports_per_robot = 8;
 
   std::string bind = "127.0.0.1";
   std::uint32_t port = 9000;
-  double rate = 0.0;       ///< [Hz]; 0: the world's own
-  double silence = 3.0;    ///< [s] after which `listen` ends
+  double rate = 0.0;     ///< [Hz]; 0: the world's own
+  double silence = 3.0;  ///< [s] after which `listen` ends
 };
 
 }  // namespace sf::apps

@@ -45,7 +45,8 @@ void mark_moving(const world::World& world, const base::ReadingBlock& reading, s
 }
 
 /// Computes every laser's scan once a simulated second from where its robot was.
-void map_scans(const record::Recording& recording, const world::World& world, gpu::Device& device, viz::OccupancyGrid& grid) {
+void map_scans(const record::Recording& recording, const world::World& world, gpu::Device& device,
+               viz::OccupancyGrid& grid) {
   farm::FarmOptions quiet;
   quiet.noise = false;
   farm::Farm farm(world, device, quiet);
@@ -77,13 +78,19 @@ void map_scans(const record::Recording& recording, const world::World& world, gp
 
 int plot(const Options& options) {
   const record::Recording recording = record::open_recording(options.world);
-  for (const std::string& damage : recording.damage) std::fprintf(stderr, "sensorfarm: %s: %s\n", recording.file.c_str(), damage.c_str());
-  if (recording.truncated) std::fprintf(stderr, "sensorfarm: %s was not finished; its %llu whole ticks are drawn\n", recording.file.c_str(), static_cast<unsigned long long>(recording.ticks));
+  for (const std::string& damage : recording.damage)
+    std::fprintf(stderr, "sensorfarm: %s: %s\n", recording.file.c_str(), damage.c_str());
+  if (recording.truncated)
+    std::fprintf(stderr, "sensorfarm: %s was not finished; its %llu whole ticks are drawn\n", recording.file.c_str(),
+                 static_cast<unsigned long long>(recording.ticks));
   const world::World world = world::from_snapshot(recording.info.snapshot);
-  const std::filesystem::path folder = options.out.empty() ? std::filesystem::path(recording.file).parent_path() : std::filesystem::path(options.out);
+  const std::filesystem::path folder =
+      options.out.empty() ? std::filesystem::path(recording.file).parent_path() : std::filesystem::path(options.out);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw base::InputError(folder.string(), 0, "cannot be made a folder: " + error.message() + "; name another with -o");
+  if (error)
+    throw base::InputError(folder.string(), 0,
+                           "cannot be made a folder: " + error.message() + "; name another with -o");
 
   const std::string trajectories = (folder / "trajectories.png").string();
   viz::draw_trajectories(world, tracks_of(recording, world), trajectories);

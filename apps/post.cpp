@@ -27,7 +27,8 @@ std::span<const base::ReadingBlock> NoReturn::apply(std::span<const base::Readin
   for (base::ReadingBlock& r : blocks_) {
     const double range_max = world_.movers[r.mover].lasers[r.sensor].range_max;
     for (std::size_t i = 0; i < r.values.size(); ++i)
-      at[i] = r.hits[i] == base::kNoHit && r.values[i] >= range_max ? std::numeric_limits<double>::infinity() : r.values[i];
+      at[i] =
+          r.hits[i] == base::kNoHit && r.values[i] >= range_max ? std::numeric_limits<double>::infinity() : r.values[i];
     r.values = {at, r.values.size()};
     at += r.values.size();
   }

@@ -13,8 +13,8 @@
 
 namespace sf::apps {
 
-/// Ports that `options` give the lasers. @throws base::InputError when two sensors would share one, one is past 65535, or the
-/// chosen wire cannot carry a sensor's scans.
+/// Ports that `options` give the lasers. @throws base::InputError when two sensors would share one, one is past 65535,
+/// or the chosen wire cannot carry a sensor's scans.
 netio::PortRule require_laser_ports(const world::World& world, const Options& options);
 
 /// Beams that met nothing read infinity from here on, where the user asked for it.

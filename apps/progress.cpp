@@ -20,7 +20,8 @@ void Progress::show(double part, const std::string& note) {
   next_ = now + std::chrono::milliseconds(100);
   constexpr int kWidth = 30;
   const int done = static_cast<int>(std::clamp(part, 0.0, 1.0) * kWidth);
-  const std::string line = fmt::format("\r\033[K{} [{:#<{}}{:.<{}}] {:3.0f} % {}", what_, "", done, "", kWidth - done, 100.0 * part, note);
+  const std::string line =
+      fmt::format("\r\033[K{} [{:#<{}}{:.<{}}] {:3.0f} % {}", what_, "", done, "", kWidth - done, 100.0 * part, note);
   std::fputs(line.c_str(), stderr);
   std::fflush(stderr);
   drawn_ = true;

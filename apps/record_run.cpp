@@ -14,7 +14,8 @@ record::RunInfo run_info(const world::World& world, const Options& options) {
   for (const world::Mover& mover : world.movers) {
     record::MoverInfo row{mover.name, "", mover.id, {}};
     for (const world::Laser& laser : mover.lasers)
-      row.lasers.push_back({laser.name, "", laser.X_MS, laser.fov, laser.samples, laser.range_min, laser.range_max, laser.rate});
+      row.lasers.push_back(
+          {laser.name, "", laser.X_MS, laser.fov, laser.samples, laser.range_min, laser.range_max, laser.rate});
     info.movers.push_back(std::move(row));
   }
   return info;

@@ -1,5 +1,6 @@
 // `run`: a simulated fleet in the loop, recorded and sent as asked.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -28,7 +29,8 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 /// Where readings go: a recording, the network, both or neither.
 class Outputs {
  public:
-  Outputs(const world::World& world, const Options& options) : world_(world), options_(options), no_return_(world, options.no_return_inf) {
+  Outputs(const world::World& world, const Options& options)
+      : world_(world), options_(options), no_return_(world, options.no_return_inf) {
     if (!options.send.empty()) {
       rule_ = require_laser_ports(world, options);
       address_ = netio::resolve(options.send);
@@ -41,7 +43,8 @@ class Outputs {
     const auto start = Clock::now();
     tick.readings = no_return_.apply(tick.readings);
     if (outbox_) {
-      for (const base::ReadingBlock& reading : tick.readings) post(*outbox_, world_, reading, address_, rule_, options_.wire);
+      for (const base::ReadingBlock& reading : tick.readings)
+        post(*outbox_, world_, reading, address_, rule_, options_.wire);
       outbox_->flush();
     }
     if (recorder_) recorder_->write(tick);
@@ -70,9 +73,12 @@ class Outputs {
   double seconds_ = 0.0;
 };
 
-/// Waits until `simulated` [s] have passed since `start`, or not at all when it is late already.
+/// Waits until `simulated` [s] have passed since `start`, not at all when it is late already, nor longer than it is
+/// wanted.
 void keep_pace(Clock::time_point start, double simulated) {
-  std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(simulated)));
+  const auto due = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(simulated));
+  while (Clock::now() < due && !stop_requested())
+    std::this_thread::sleep_until(std::min(due, Clock::now() + std::chrono::milliseconds(100)));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "apps/commands.h"
 #include "apps/facts.h"
+#include "apps/lend.h"
 #include "apps/post.h"
 #include "apps/stop.h"
 #include "netio/inbox.h"
@@ -43,10 +44,16 @@ std::vector<std::uint32_t> ids_of(const std::map<std::uint32_t, std::uint32_t>& 
 class Service {
  public:
   Service(const world::World& world, gpu::Device& device, const Options& options)
-      : world_(world), options_(options), names_(names_of(world)), rule_(require_laser_ports(world, options)),
+      : world_(world),
+        options_(options),
+        names_(names_of(world)),
+        rule_(require_laser_ports(world, options)),
         inbox_({.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
-                .robots = ids_of(names_.robots), .tags = ids_of(names_.tags)}),
-        farm_(world, device, farm::FarmOptions{.seed = options.seed}), fleet_(world), no_return_(world, options.no_return_inf) {
+                .robots = ids_of(names_.robots),
+                .tags = ids_of(names_.tags)}),
+        farm_(world, device, farm::FarmOptions{.seed = options.seed}),
+        fleet_(world),
+        no_return_(world, options.no_return_inf) {
     reports_.reserve(netio::Inbox::kMaxPerReceive);
   }
 
@@ -64,7 +71,8 @@ class Service {
 
   void tick(std::int64_t now) {
     take_in(now);
-    for (const auto& [id, row] : names_.robots) farm_.hear(row, inbox_.heard(id, now) && inbox_.wants(id, kLaserKind, now));
+    for (const auto& [id, row] : names_.robots)
+      farm_.hear(row, inbox_.heard(id, now) && inbox_.wants(id, kLaserKind, now));
     const auto readings = no_return_.apply(farm_.tick(now, fleet_.predict(now)));
     for (const base::ReadingBlock& reading : readings) {
       // A reading that was on its way when its robot fell silent has nobody to go to.
@@ -120,13 +128,14 @@ class Service {
 }  // namespace
 
 int serve(const Options& options) {
-  const world::World world = world::load_world(options.world, options.load);
+  const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
   gpu::Device device(options.device);
   Service service(world, device, options);
   catch_stop_signals();
   const double interval = options.rate > 0.0 ? 1.0 / options.rate : world.interval;
-  std::fprintf(stderr, "sensorfarm: serving %zu movers of %s on %s:%u, %g ticks/s, on %s; Ctrl-C ends it\n", world.movers.size(),
-               world.file.c_str(), options.bind.c_str(), service.port(), 1.0 / interval, device.facts().name.c_str());
+  std::fprintf(stderr, "sensorfarm: serving %zu movers of %s on %s:%u, %g ticks/s, on %s; Ctrl-C ends it\n",
+               world.movers.size(), world.file.c_str(), options.bind.c_str(), service.port(), 1.0 / interval,
+               device.facts().name.c_str());
 
   const auto start = Clock::now();
   const auto step = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(interval));

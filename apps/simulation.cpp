@@ -23,8 +23,13 @@ farm::FarmOptions farm_options(std::uint64_t seed, unsigned threads) {
 }  // namespace
 
 Simulation::Simulation(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads)
-    : world_(world), farm_(world, device, farm_options(seed, threads)), fleet_(world), workers_(threads),
-      commands_(world.movers.size()), obeyed_(world.movers.size()), first_(world.movers.size() + 1),
+    : world_(world),
+      farm_(world, device, farm_options(seed, threads)),
+      fleet_(world),
+      workers_(threads),
+      commands_(world.movers.size()),
+      obeyed_(world.movers.size()),
+      first_(world.movers.size() + 1),
       interval_(std::llround(world.interval * 1e9)) {
   farm_.hear_all();
   std::size_t lasers = 0;

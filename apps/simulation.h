@@ -37,10 +37,10 @@ class Simulation {
   base::Workers workers_;
   std::vector<std::unique_ptr<control::Controller>> controllers_;  ///< per mover; none for tags
   std::vector<base::Twist> commands_;
-  std::vector<base::Twist> obeyed_;              ///< what the tick just recorded was told to do
-  std::vector<std::uint32_t> first_;             ///< per mover: range of its readings in `sorted_`
+  std::vector<base::Twist> obeyed_;   ///< what the tick just recorded was told to do
+  std::vector<std::uint32_t> first_;  ///< per mover: range of its readings in `sorted_`
   std::vector<base::ReadingBlock> sorted_;
-  std::int64_t interval_;                        ///< [ns]
+  std::int64_t interval_;  ///< [ns]
   std::uint64_t tick_ = 0;
   double move_s_ = 0.0;
 };

@@ -17,6 +17,14 @@ std::string rate(double per_second) {
 
 std::string device_text(const RunFacts& f) { return f.device + (f.software ? " (software: computed on the CPU)" : ""); }
 
+/// In quotes where a comma, a quote or a line end would be misread.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
 }  // namespace
 
 std::string text_of(const gpu::Survey& survey) {
@@ -24,7 +32,8 @@ std::string text_of(const gpu::Survey& survey) {
   for (std::size_t i = 0; i < survey.devices.size(); ++i) {
     const gpu::DeviceFacts& d = survey.devices[i];
     text += fmt::format("{} {}  {}\n", d.chosen ? "*" : " ", i, d.name);
-    text += fmt::format("     {}, Vulkan {}, {}{}\n", d.kind, d.api, d.driver, d.software ? " (software: computed on the CPU)" : "");
+    text += fmt::format("     {}, Vulkan {}, {}{}\n", d.kind, d.api, d.driver,
+                        d.software ? " (software: computed on the CPU)" : "");
     text += d.chosen ? "     chosen\n" : fmt::format("     refused: {}\n", d.reason);
   }
   return text;
@@ -72,9 +81,11 @@ std::string text_of(const RunFacts& f) {
   text += row("", rate(computing > 0.0 ? static_cast<double>(f.farm.rays) / computing : 0.0) + " while sensing");
   if (f.contacts > 0) text += row("contacts", fmt::format("{} robot-ticks", f.contacts));
   if (f.sent) {
-    text += row("packets sent", fmt::format("{} ({:.1f} MB)", f.outbox.sent, static_cast<double>(f.outbox.sent_bytes) * 1e-6));
+    text += row("packets sent",
+                fmt::format("{} ({:.1f} MB)", f.outbox.sent, static_cast<double>(f.outbox.sent_bytes) * 1e-6));
     if (f.outbox.failed + f.outbox.dropped > 0)
-      text += row("packets not sent", fmt::format("{} failed ({}), {} dropped", f.outbox.failed, f.outbox.first_failure, f.outbox.dropped));
+      text += row("packets not sent",
+                  fmt::format("{} failed ({}), {} dropped", f.outbox.failed, f.outbox.first_failure, f.outbox.dropped));
   }
   if (f.received) text += row("packets received", netio::text(f.inbox));
   if (!f.recording.empty()) text += row("recording", f.recording);
@@ -89,7 +100,8 @@ std::string text_of(const RunFacts& f) {
 }
 
 std::string text_of(const netio::Summary& s) {
-  std::string text = row("packets received", fmt::format("{} ({:.1f} MB) on {} ports", s.datagrams, static_cast<double>(s.bytes) * 1e-6, s.ports));
+  std::string text = row("packets received", fmt::format("{} ({:.1f} MB) on {} ports", s.datagrams,
+                                                         static_cast<double>(s.bytes) * 1e-6, s.ports));
   text += row("packets good", fmt::format("{} ({} rays)", s.good, s.rays));
   text += row("packets lost", fmt::format("{} ({} duplicates, {} reordered)", s.lost, s.duplicates, s.reordered));
   if (s.counts.dropped() > 0) text += row("by reason", netio::text(s.counts));
@@ -97,18 +109,23 @@ std::string text_of(const netio::Summary& s) {
   return text;
 }
 
-std::string text_of(const world::World& world, const base::ReadingBlock& reading) {
+std::string place_of(const world::World& world, const base::ReadingBlock& reading) {
   const world::Mover& mover = world.movers[reading.mover];
-  const world::Laser& laser = mover.lasers[reading.sensor];
   const base::Pose& R = reading.X_WM;
   const base::Pose& S = reading.X_WS;
-  std::string text = fmt::format("# robot {} at x {:.6f} m, y {:.6f} m, yaw {:.6f} rad; sensor {} at x {:.6f} m, y {:.6f} m, z {:.6f} m, yaw {:.6f} rad\n",
-                                 mover.name, R.x, R.y, base::wrap_angle(R.yaw), laser.name, S.x, S.y, S.z, base::wrap_angle(S.yaw));
-  text += "bearing_rad,range_m,hit\n";
+  constexpr double kDegrees = 180.0 / M_PI;
+  return fmt::format("{} at ({:.6f}, {:.6f}) m, {:.6f} deg; its {} at ({:.6f}, {:.6f}, {:.6f}) m, {:.6f} deg",
+                     mover.name, R.x, R.y, kDegrees * base::wrap_angle(R.yaw), mover.lasers[reading.sensor].name, S.x,
+                     S.y, S.z, kDegrees * base::wrap_angle(S.yaw));
+}
+
+std::string text_of(const world::World& world, const base::ReadingBlock& reading) {
+  const world::Laser& laser = world.movers[reading.mover].lasers[reading.sensor];
+  std::string text = "bearing_rad,range_m,hit\n";
   for (std::uint32_t i = 0; i < reading.values.size(); ++i) {
     const std::uint32_t hit = reading.hits[i];
-    text += fmt::format("{:.9f},{:.9f},{}\n", world::bearing_of(laser, i), reading.values[i],
-                        hit == base::kNoHit ? "" : world.models[hit].name);
+    text += fmt::format("{:.12f},{:.9f},{}\n", world::bearing_of(laser, i), reading.values[i],
+                        hit == base::kNoHit ? "" : csv_field(world.models[hit].name));
   }
   return text;
 }

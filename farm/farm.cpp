@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 #include <cmath>
 #include <vector>
 
@@ -148,9 +149,10 @@ base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint32_t sensor, const 
   const auto row = std::find_if(owners.begin(), owners.end(),
                                 [&](const sensors::LaserOwner& o) { return o.mover == mover && o.sensor == sensor; });
   SF_CHECK(row != owners.end(), "mover " + std::to_string(mover) + " has no sensor " + std::to_string(sensor));
-  s.poses[mover] = X_WM;
+  const base::Pose stands = std::exchange(s.poses[mover], X_WM);
   s.due.assign(1, {static_cast<std::uint32_t>(row - owners.begin()), 0});
   s.measure(0);
+  s.poses[mover] = stands;
   return s.blocks.front();
 }
 

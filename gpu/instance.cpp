@@ -39,7 +39,8 @@ bool wants_validation() {
 }  // namespace
 
 void must(VkResult result, const char* call) {
-  base::check(result == VK_SUCCESS, __FILE__, __LINE__, std::string(call) + " gave VkResult " + std::to_string(result));
+  if (result == VK_SUCCESS) return;
+  base::check(false, __FILE__, __LINE__, std::string(call) + " gave VkResult " + std::to_string(result));
 }
 
 Instance::Instance() {

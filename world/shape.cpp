@@ -140,7 +140,11 @@ const Traced& bitmap_of(Source& source, Bitmaps& bitmaps, const Entity& entity) 
                      name));
   }
   auto& traced = bitmaps[file];
-  if (!traced) traced = trace(grid_of(read_picture(file, Channel::first)), file);
+  try {
+    if (!traced) traced = trace(grid_of(read_picture(file, Channel::first)), file);
+  } catch (const base::InputError& error) {
+    fail(source, at, fmt::format("'bitmap': {}", error.what()));
+  }
   return *traced;
 }
 

@@ -14,7 +14,7 @@ namespace {
 #if defined(__SANITIZE_ADDRESS__)
 constexpr std::uint32_t kRobots = 6;  ///< each beam is checked against every segment in long double: slow with ASan
 #else
-constexpr std::uint32_t kRobots = 40;
+constexpr std::uint32_t kRobots = 24;
 #endif
 constexpr double kRanges[] = {0.75, 8.0, 30.0, 100.0};
 

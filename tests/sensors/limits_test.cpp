@@ -22,14 +22,14 @@ void add_thin(std::vector<world::Segment>& out, Vec2 a, Vec2 b, std::uint32_t mo
   out.push_back(s);
 }
 
-/// `count` rails beside the x axis, 40 um from it at most, all within one direction sector; a wall behind them.
+/// `count` rails beside the x axis, 4 um from it, all within one direction sector; a wall behind them.
 /// A beam along the axis passes between all of them, and each looks edge-on.
 world::World rails(int count) {
   world::World world;
   world.models.push_back({"rails", "model"});
   for (int i = 0; i < count; ++i) {
     const double x = 1.0 + 5.0 * i / count;
-    const double y = (i % 2 ? 1.0 : -1.0) * 4e-5;
+    const double y = (i % 2 ? 1.0 : -1.0) * 4e-6;
     add_thin(world.walls, {x, y}, {x + 2e-4, y}, 0);
   }
   world.models.push_back({"behind", "model"});
@@ -55,7 +55,7 @@ TEST(Limits, WallsAndMoversTogetherStayWithinTheLoopsBudget) {
   world::Mover& mover = world.movers[m];
   mover.lasers.clear();
   for (int i = 0; i < 5'900; ++i) {
-    const double y = (i % 2 ? 1.0 : -1.0) * 4e-5;
+    const double y = (i % 2 ? 1.0 : -1.0) * 4e-6;
     add_thin(mover.body, {5e-5 * i, y}, {5e-5 * i + 1e-5, y}, mover.model);
   }
   add_thin(mover.body, {0.5, -0.01}, {0.5, 0.01}, mover.model);
@@ -79,9 +79,10 @@ TEST(Limits, MoreWallsInOneSectorThanTheBoundAreRefused) {
 TEST(Limits, MoreOfMoversInOneSectorThanTheBoundAreRefused) {
   world::World world;
   add_eye(world, {}, eye(1, 0.0, 8.0));
-  const std::uint32_t m = add_eye(world, {3.0, 0.0, 0.0, 0.0}, eye(1, 0.0, 8.0));
-  for (int i = 0; i < 12'500; ++i) add_thin(world.movers[m].body, {0.0, 1e-6 * i}, {0.0, 1e-6 * (i + 1)}, 0);
-  world.movers[m].radius = 0.02;
+  const std::uint32_t m = add_eye(world, {7.0, 0.0, 0.0, 0.0}, eye(1, 0.0, 8.0));
+  const auto at = [](int i) { return Vec2{0.0, 1e-4 * i - 0.625}; };
+  for (int i = 0; i < 12'500; ++i) add_thin(world.movers[m].body, at(i), at(i + 1), 0);
+  world.movers[m].radius = 0.63;
   EXPECT_THROW(Glance{world}, base::InputError);
 }
 

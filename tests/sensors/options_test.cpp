@@ -87,8 +87,7 @@ TEST(Options, BearingsAndLanes) {
   EXPECT_EQ(world::bearing_of(fan, 0), -M_PI / 2);
   EXPECT_EQ(world::bearing_of(fan, 360), M_PI / 2);
   EXPECT_EQ(world::bearing_of(fan, 180), 0.0);
-  for (std::uint32_t i = 0; i < 361; ++i)
-    EXPECT_EQ(world::bearing_of(fan, i), -world::bearing_of(fan, 360 - i)) << i;
+  for (std::uint32_t i = 0; i < 361; ++i) EXPECT_EQ(world::bearing_of(fan, i), -world::bearing_of(fan, 360 - i)) << i;
   EXPECT_EQ(world::bearing_of(eye(1, 3.0, 8.0), 0), 0.0);
 
   EXPECT_TRUE(sensors::plan_beams(fan, false).packed);
@@ -104,18 +103,18 @@ TEST(Options, BearingsAndLanes) {
 
 /// Tables of a lane whose beams do not fill it repeat the last one.
 TEST(Options, TheLastLaneIsFilledUp) {
-  const world::Laser laser = eye(5, 0.4, 8.0);
+  const world::Laser laser = eye(5, 0.2, 8.0);
   const sensors::BeamPlan plan = sensors::plan_beams(laser, false);
   ASSERT_EQ(plan.lanes(), 2u);
   std::vector<float> directions(16), middles(2);
   std::vector<double> directions64(16);
   write_beams(laser, plan, {}, {directions.data(), middles.data(), directions64.data()});
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(directions64[8 + 2 * i], std::cos(0.2));
-    EXPECT_EQ(directions64[8 + 2 * i + 1], std::sin(0.2));
-    EXPECT_EQ(directions[8 + i], static_cast<float>(std::cos(0.2)));
+    EXPECT_EQ(directions64[8 + 2 * i], std::cos(0.1));
+    EXPECT_EQ(directions64[8 + 2 * i + 1], std::sin(0.1));
+    EXPECT_EQ(directions[8 + i], static_cast<float>(std::cos(0.1)));
   }
-  EXPECT_NEAR(middles[1], 0.2 * SF_SECTORS / (2.0 * M_PI), 1e-6);
+  EXPECT_NEAR(middles[1], 0.1 * SF_SECTORS / (2.0 * M_PI), 1e-6);
 }
 
 }  // namespace

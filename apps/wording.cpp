@@ -1,0 +1,63 @@
+#include "apps/wording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "world/keys.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr double kFarthest = 1e7;  ///< [m] as in world files and packets
+
+}  // namespace
+
+std::string refuse_whole(const std::string& text, std::uint64_t first, std::uint64_t last) {
+  std::uint64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error == std::errc() && stop == end && value >= first && value <= last) return "";
+  return fmt::format("expected a whole number from {} to {}, got '{}'", first, last, text);
+}
+
+std::string refuse_number(const std::string& text, double first, double last) {
+  char* stop = nullptr;
+  const double value = std::strtod(text.c_str(), &stop);
+  if (!text.empty() && *stop == '\0' && value >= first && value <= last) return "";
+  return fmt::format("expected a number from {:g} to {:g}, got '{}'", first, last, text);
+}
+
+std::string refuse_choice(const std::string& text, const std::string& a, const std::string& b) {
+  return text == a || text == b ? "" : fmt::format("expected {} or {}, got '{}'", a, b, text);
+}
+
+std::string refuse_empty(const std::string& text, const std::string& what) {
+  return text.empty() ? fmt::format("expected {}, got ''", what) : "";
+}
+
+std::optional<base::Pose> read_pose(const std::string& text) {
+  double v[3];
+  int used = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &v[0], &v[1], &v[2], &used) != 3) return std::nullopt;
+  if (static_cast<std::size_t>(used) != text.size()) return std::nullopt;
+  if (!std::all_of(v, v + 3, [](double value) { return std::fabs(value) <= kFarthest; })) return std::nullopt;
+  return base::Pose{v[0], v[1], 0.0, v[2] * M_PI / 180.0};
+}
+
+std::string suggest_option(const std::string& word, const std::vector<std::string>& names) {
+  if (word.compare(0, 2, "--") != 0) return "";
+  const std::string bare = word.substr(2);
+  if (std::count(names.begin(), names.end(), bare) > 0) return "; options stand after the subcommand";
+  std::string found = world::suggest(bare, std::vector<std::string_view>(names.begin(), names.end()));
+  const std::size_t quote = found.find('\'');
+  return quote == std::string::npos ? "" : found.insert(quote + 1, "--");
+}
+
+}  // namespace sf::apps

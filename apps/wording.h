@@ -1,0 +1,31 @@
+#pragma once
+// What arguments may be, and how a wrong one is refused: the words of the command line, without CLI11.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/pose.h"
+
+namespace sf::apps {
+
+/// Each gives what was expected and what came instead, or "" when `text` is fine.
+
+/// A whole number in [first, last], digits only: -1 is not the largest there is.
+std::string refuse_whole(const std::string& text, std::uint64_t first, std::uint64_t last);
+/// A number in [first, last]; not-a-number is in no range.
+std::string refuse_number(const std::string& text, double first, double last);
+/// One of two words.
+std::string refuse_choice(const std::string& text, const std::string& a, const std::string& b);
+/// @param what was expected, with its article.
+std::string refuse_empty(const std::string& text, const std::string& what);
+
+/// "X,Y,YAW_DEG" [m, m, degrees], each within 1e7, as a pose; nothing where it is none.
+std::optional<base::Pose> read_pose(const std::string& text);
+
+/// What the unexpected argument `word` may have been meant to be: `; did you mean '--x'?` or nothing.
+/// @param names of the subcommand's options, without dashes.
+std::string suggest_option(const std::string& word, const std::vector<std::string>& names);
+
+}  // namespace sf::apps

@@ -1,0 +1,133 @@
+// `check` and `draw`: what was understood, in numbers and as a picture.
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+
+namespace {
+
+// A box, a floor plan, a robot with two lasers of either dialect, a magnet and two slips.
+const char* const kWorld = R"(name "small"
+model( name "box" pose [3 0 0 0] size [1 2 1] )
+model( name "plan" pose [0 5 0 0] size [4 4 1] bitmap "plan.pgm" )
+position(
+  name "roomba7"
+  size [0.3 0.3 0.1]
+  laser( samples 5 range_maxx 3 )
+  ranger( sensor( range [0 2] fov 30 samples 3 ) )
+)
+model( name "magnet" pose [0 -3 0 0] size [0.1 0.1 0.1] magnetic_moment 10000 )
+gearbox( pose [0 -4 0 0] )
+)";
+
+// Two cells that meet in a corner, and a pair that is one wall: 4 + 4 + 4 runs, of which none is merged across the
+// corner.
+const char* const kPlan = "P2\n4 4\n255\n0 255 255 255\n255 0 255 255\n255 255 255 255\n255 255 0 0\n";
+
+std::string small_world(const Folder& folder) {
+  folder.write("plan.pgm", kPlan);
+  return folder.write("small.world", kWorld);
+}
+
+std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
+  return value;
+}
+
+void expect_picture(const std::string& path) {
+  const std::string bytes = read_file(path);
+  ASSERT_GT(bytes.size(), 1000u) << path;
+  EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n") << path;
+  EXPECT_GE(big_endian(bytes, 16), 400u) << path;
+  EXPECT_GE(big_endian(bytes, 20), 400u) << path;
+}
+
+}  // namespace
+
+TEST(Check, JsonCountsWhatIsThere) {
+  const Folder folder;
+  const Outcome outcome = run_program({"check", small_world(folder), "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json facts(outcome.out);
+  EXPECT_EQ(facts.number("/robots"), 1);
+  EXPECT_EQ(facts.number("/sensors/laser"), 2);
+  EXPECT_EQ(facts.number("/magnets"), 1);
+  EXPECT_GE(facts.number("/models"), 5);
+  // Box 4, magnet 4, gear-box 4, and three outlines of 4 in the floor plan; the robot's own body is no wall.
+  EXPECT_EQ(facts.number("/segments"), 24);
+  ASSERT_EQ(facts.size("/extent"), 4u);
+  EXPECT_EQ(facts.number("/extent/0"), -2);
+  EXPECT_EQ(facts.number("/extent/2"), 3.5);
+  EXPECT_EQ(facts.number("/extent/3"), 7);
+}
+
+TEST(Check, WarningsNameFileAndLineAndSuggest) {
+  const Folder folder;
+  const std::string world = small_world(folder);
+  const Json facts(run_program({"check", world, "--json"}).out);
+  ASSERT_EQ(facts.size("/warnings"), 2u);
+  EXPECT_EQ(facts.text("/warnings/0/file"), world);
+  EXPECT_EQ(facts.number("/warnings/0/line"), 7);
+  EXPECT_NE(facts.text("/warnings/0/message").find("did you mean 'range_max'?"), std::string::npos);
+  EXPECT_EQ(facts.number("/warnings/1/line"), 11);
+  const Outcome text = run_program({"check", world});
+  EXPECT_EQ(text.code, 0);
+  EXPECT_NE(text.out.find(world + ":7: "), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find(world + ":11: "), std::string::npos) << text.out;
+}
+
+TEST(Check, NamesThatAreNoUtf8StillGiveJson) {
+  const Folder folder;
+  const std::string world = folder.write("latin.world",
+                                         "name \"K\xfc"
+                                         "che\"\nmodel( name \"T\xfcr\" size [1 1 1] )\n");
+  const Outcome outcome = run_program({"check", world, "--json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(Json(outcome.out).number("/segments"), 4);
+}
+
+TEST(Check, RosMapsAreWorlds) {
+  const Folder folder;
+  folder.write("plan.pgm", kPlan);
+  const std::string map = folder.write("map.yaml",
+                                       "image: plan.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\n"
+                                       "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  const Json facts(run_program({"check", map, "--json"}).out);
+  EXPECT_EQ(facts.number("/robots"), 0);
+  EXPECT_EQ(facts.number("/segments"), 12);
+}
+
+TEST(Check, EveryWorldOfStageAndRosLoads) {
+  const std::string data = SF_SOURCE_DIR "/../shared/data/";
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no shared data here";
+  std::size_t seen = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
+    const std::string ending = entry.path().extension().string();
+    if (ending != ".world" && ending != ".yaml") continue;
+    ++seen;
+    const Outcome outcome = run_program({"check", entry.path().string(), "--json"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Json facts(outcome.out);
+    EXPECT_GT(facts.number("/segments"), 100) << entry.path();
+    EXPECT_LE(facts.size("/warnings"), 3u) << entry.path() << ": a file that works is not complained about";
+    if (entry.path().filename() == "hospital.world") {
+      EXPECT_EQ(facts.number("/robots"), 1000);
+    }
+  }
+  EXPECT_GE(seen, 5u);
+}
+
+TEST(Draw, WritesAPictureWithoutADisplay) {
+  const Folder folder;
+  const Outcome outcome = run_program({"draw", small_world(folder), "-o", folder.path("small.png")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  expect_picture(folder.path("small.png"));
+}
+
+}  // namespace sf

@@ -1,0 +1,31 @@
+#pragma once
+// What the program prints with --json, by JSON pointers such as "/beams/0/range_m".
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sf {
+
+class Json {
+ public:
+  /// Fails the test when `text` is no JSON; nothing is in it then.
+  explicit Json(const std::string& text);
+  ~Json();
+
+  /// Each fails the test, and gives 0, "" or false, where nothing of that type stands.
+  double number(const std::string& pointer) const;
+  std::string text(const std::string& pointer) const;
+  bool flag(const std::string& pointer) const;
+  std::size_t size(const std::string& pointer) const;  ///< of an array or object
+
+  bool has(const std::string& pointer) const;
+  bool is_null(const std::string& pointer) const;
+  std::vector<std::string> keys() const;  ///< of the whole
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace sf

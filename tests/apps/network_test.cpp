@@ -1,0 +1,271 @@
+// `run --send` to `listen`, and `serve` to robots that live elsewhere, over loopback.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <thread>
+
+#include "netio/laser_packets.h"
+#include "netio/outbox.h"
+#include "netio/packets.h"
+#include "netio/socket.h"
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+
+namespace {
+
+// Two robots in a room; what they read is worked out by `sense`.
+const char* const kRoom = R"(
+model( name "room" size [6 4 1] boundary 1 noblocks 0 color "gray" )
+define bot position( size [0.3 0.3 0.1] laser( samples 91 fov 180 range_max 8 pose [0.1 0 -0.06 0] size [0 0 0.04] ) )
+bot( name "roomba1" pose [-2 0 0 0] )
+bot( name "roomba2" pose [2 1 0 0] )
+)";
+
+/// A robot elsewhere: one socket that it speaks from, one that it hears its sensor on.
+class Robot {
+ public:
+  Robot(std::uint16_t id, unsigned service, unsigned hears)
+      : id_(id),
+        service_{netio::kLoopback, static_cast<std::uint16_t>(service)},
+        ears_(netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(hears)})),
+        batch_(16) {}
+
+  base::Bytes state(const base::Pose& X_WR) {
+    netio::Header header;
+    header.robot = id_;
+    header.sequence = sequence_++;
+    netio::V2v state;
+    state.X_WR = X_WR;
+    base::Bytes bytes;
+    netio::encode(header, state, bytes);
+    return bytes;
+  }
+  void say(const base::Pose& X_WR) { send(state(X_WR)); }
+  void send(const base::Bytes& bytes) {
+    mouth_.queue(service_, bytes);
+    mouth_.flush();
+  }
+
+  /// Ranges of the newest scan that waits; empty when none does.
+  std::vector<double> hear() {
+    std::vector<double> ranges;
+    while (const std::size_t count = batch_.fill(ears_)) {
+      for (std::size_t i = 0; i < count; ++i) {
+        netio::Packet packet;
+        EXPECT_EQ(netio::decode(batch_.bytes(i), packet), netio::Reason::accepted);
+        EXPECT_EQ(packet.header.robot, id_);
+        EXPECT_EQ(packet.header.sensor, 0u);
+        const auto& scan = std::get<netio::LaserPart>(packet.body);
+        ranges.clear();
+        for (std::uint32_t k = 0; k < scan.count; ++k) ranges.push_back(netio::range(scan, k));
+      }
+    }
+    return ranges;
+  }
+
+ private:
+  std::uint16_t id_;
+  netio::Endpoint service_;
+  netio::Socket ears_;
+  netio::Outbox mouth_;
+  netio::ReceiveBatch batch_;
+  std::uint32_t sequence_ = 0;
+};
+
+/// Polls for up to a minute.
+bool until(const std::function<bool()>& done) {
+  for (int i = 0; i < 3000; ++i) {
+    if (done()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return false;
+}
+
+struct Service {
+  Folder folder;
+  std::string world = folder.write("room.world", kRoom);
+  unsigned lasers = free_ports(24);
+  Program program{{"serve", world, "--port", "0", "--rate", "50", "--json", "--laser-port", std::to_string(lasers)}};
+  unsigned port = 0;
+
+  Service() {
+    if (!program.says("; Ctrl-C ends it")) return;
+    const std::string said = program.err();
+    port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
+  }
+  unsigned hears(unsigned robot) const { return lasers + 8 * robot; }
+};
+
+std::vector<double> sensed(const std::string& world, const std::string& robot, const std::string& pose) {
+  const Json scan(run_program({"sense", world, "--robot", robot, "--pose", pose, "--json"}).out);
+  std::vector<double> ranges;
+  for (std::size_t i = 0; i < scan.size("/beams"); ++i)
+    ranges.push_back(scan.number("/beams/" + std::to_string(i) + "/range_m"));
+  return ranges;
+}
+
+void run_to_listener(const std::string& wire) {
+  const std::string base = std::to_string(free_ports(40));
+  const Words both{our_world("cave.world"), "--robots", "4", "--json", "--wire", wire, "--laser-port", base};
+  Words listen{"listen"}, run{"run"};
+  listen.insert(listen.end(), both.begin(), both.end());
+  run.insert(run.end(), both.begin(), both.end());
+  listen.insert(listen.end(), {"--silence", "100"});
+  run.insert(run.end(), {"--duration", "3", "--send", "127.0.0.1"});
+  Program listener(listen);
+  ASSERT_TRUE(listener.says("listening on 4 ports")) << listener.err();
+  const Outcome sent = run_program(run);
+  ASSERT_EQ(sent.code, 0) << sent.err;
+  listener.signal(SIGINT);
+  const Outcome received = listener.wait();
+  EXPECT_EQ(received.code, 0) << received.err;
+  const Json out(sent.out), in(received.out);
+  EXPECT_EQ(out.number("/packets/sent"), 4 * 30);
+  EXPECT_EQ(out.number("/packets/failed"), 0);
+  EXPECT_EQ(in.number("/packets"), 4 * 30);
+  EXPECT_EQ(in.number("/good"), 4 * 30);
+  EXPECT_EQ(in.number("/rays"), out.number("/rays"));
+  EXPECT_EQ(in.number("/lost"), 0);
+}
+
+}  // namespace
+
+TEST(SendAndListen, EveryPacketArrivesAndIsGood) { run_to_listener("farm"); }
+TEST(SendAndListen, EveryPacketArrivesInTheThesisLayout) { run_to_listener("thesis"); }
+
+TEST(SendAndListen, PortsThatCollideAreRefusedAtLoad) {
+  const Folder folder;
+  const std::string world = folder.write("w.world",
+                                         "position( name \"roomba1\" laser( ) laser( ) )\n"
+                                         "position( name \"roomba2\" pose [2 0 0 0] laser( ) )\n");
+  for (const Words& words : std::vector<Words>{{"run", world, "--send", "127.0.0.1", "--ports-per-robot", "1"},
+                                               {"serve", world, "--port", "0", "--ports-per-robot", "1"},
+                                               {"listen", world, "--ports-per-robot", "1"}}) {
+    const Outcome outcome = run_program(words);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(count_lines(outcome.err), 1u);
+    EXPECT_NE(outcome.err.find("roomba1"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("roomba2"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(SendAndListen, PortsPastTheLastAreRefusedAtLoad) {
+  const Outcome outcome = run_program({"serve", our_world("rooms.world"), "--port", "0", "--laser-port", "65530"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("65535"), std::string::npos) << outcome.err;
+}
+
+TEST(SendAndListen, WhatTheThesisCannotCarryIsRefusedAtLoad) {
+  const Folder folder;
+  for (const std::string laser : {"laser( samples 362 )", "laser( range_max 65.6 )"}) {
+    const std::string world = folder.write("w.world", "position( name \"roomba1\" " + laser + " )\n");
+    const Outcome outcome = run_program({"run", world, "--send", "127.0.0.1", "--wire", "thesis", "--duration", "0.1"});
+    EXPECT_EQ(outcome.code, 2) << laser;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  }
+}
+
+TEST(SendAndListen, APortThatIsTakenIsNamed) {
+  const unsigned base = free_ports(16);
+  const netio::Socket taken = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + 9)});
+  const Folder folder;
+  const std::string world = folder.write("w.world", "position( name \"roomba1\" laser( ) laser( ) )\n");
+  const Outcome outcome = run_program({"listen", world, "--laser-port", std::to_string(base)});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find(std::to_string(base + 9)), std::string::npos) << outcome.err;
+}
+
+TEST(Serve, RobotsReadWhatSenseReadsWhereTheySayTheyAre) {
+  Service service;
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
+  const std::vector<double> expected = sensed(service.world, "roomba1", "-1,0.5,30");
+  // It is heard from its first packet on; the scan may still be of the place at load.
+  std::vector<double> ranges;
+  const bool agreed = until([&] {
+    one.say({-1.0, 0.5, 0.0, M_PI / 6});
+    ranges = one.hear();
+    bool same = ranges.size() == expected.size();
+    for (std::size_t i = 0; same && i < ranges.size(); ++i) same = std::fabs(ranges[i] - expected[i]) <= 0.000501;
+    return same;
+  });
+  EXPECT_TRUE(agreed) << testing::PrintToString(ranges);
+  // The other never spoke: nothing is sent to it.
+  EXPECT_TRUE(two.hear().empty());
+  service.program.signal(SIGTERM);
+  const Outcome outcome = service.program.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json facts(outcome.out);
+  EXPECT_EQ(facts.number("/robots"), 2);
+  EXPECT_GE(facts.number("/packets/sent"), 1);
+  EXPECT_GE(facts.number("/received/accepted"), 1);
+  EXPECT_EQ(facts.number("/rays"), 91 * facts.number("/readings")) << "one laser was computed, not two";
+}
+
+TEST(Serve, RobotsSeeEachOther) {
+  Service service;
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
+  // One at the origin looks along x, where the other stands with its near side 1 m from the laser.
+  std::vector<double> ranges;
+  const bool seen = until([&] {
+    one.say({0.0, 0.0, 0.0, 0.0});
+    two.say({1.25, 0.0, 0.0, 0.0});
+    ranges = one.hear();
+    return ranges.size() == 91 && std::fabs(ranges[45] - 1.0) <= 0.000501;
+  });
+  EXPECT_TRUE(seen) << testing::PrintToString(ranges);
+}
+
+TEST(Serve, StrangersAreCountedAndDropped) {
+  Service service;
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  const unsigned spare = service.lasers + 1;
+  Robot one(1, service.port, service.hears(1)), impostor(1, service.port, spare), nobody(99, service.port, spare + 1);
+  ASSERT_TRUE(until([&] {
+    one.say({-1.0, 0.5, 0.0, 0.0});
+    return !one.hear().empty();
+  }));
+  impostor.say({2.0, 0.0, 0.0, 0.0});
+  nobody.say({0.0, 0.0, 0.0, 0.0});
+  nobody.send({1, 2, 3});
+  base::Bytes no_number = one.state({});
+  const double nan = std::nan("");
+  std::memcpy(no_number.data() + netio::kHeaderBytes, &nan, sizeof nan);
+  one.send(no_number);
+  // They stand before these in the service's queue, so that what answers these has seen them.
+  for (int answered = 0; answered < 3;) {
+    ASSERT_TRUE(until([&] {
+      one.say({-1.0, 0.5, 0.0, 0.0});
+      return !one.hear().empty();
+    }));
+    ++answered;
+  }
+  service.program.signal(SIGINT);
+  const Outcome outcome = service.program.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json facts(outcome.out);
+  EXPECT_EQ(facts.number("/received/wrong source"), 1);
+  EXPECT_EQ(facts.number("/received/unknown robot"), 1);
+  EXPECT_EQ(facts.number("/received/too short"), 1);
+  EXPECT_EQ(facts.number("/received/not finite"), 1);
+}
+
+TEST(Serve, APortThatIsTakenIsNamed) {
+  const unsigned port = free_ports(1);
+  const netio::Socket taken = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(port)});
+  const Outcome outcome = run_program({"serve", our_world("rooms.world"), "--port", std::to_string(port)});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find(std::to_string(port)), std::string::npos) << outcome.err;
+}
+
+}  // namespace sf

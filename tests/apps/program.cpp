@@ -1,0 +1,163 @@
+#include "tests/apps/program.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <thread>
+
+#include "base/error.h"
+#include "netio/socket.h"
+
+extern char** environ;
+
+namespace sf {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void nap() { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }
+
+std::vector<std::string> environment_of(const Environment& added) {
+  std::vector<std::string> words;
+  for (char** word = environ; *word != nullptr; ++word) {
+    const std::string text = *word;
+    const std::string name = text.substr(0, text.find('='));
+    bool keep = name != "DISPLAY" && name != "WAYLAND_DISPLAY" && name != "SENSORFARM_DEVICE";
+    for (const auto& [key, value] : added) keep = keep && name != key;
+    if (keep) words.push_back(text);
+  }
+  for (const auto& [key, value] : added) words.push_back(key + "=" + value);
+  return words;
+}
+
+std::vector<char*> pointers(std::vector<std::string>& words) {
+  std::vector<char*> all;
+  for (std::string& word : words) all.push_back(word.data());
+  all.push_back(nullptr);
+  return all;
+}
+
+}  // namespace
+
+Folder::Folder() {
+  std::string name = (std::filesystem::temp_directory_path() / "sensorfarm_test_XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) std::abort();
+  path_ = name;
+}
+
+Folder::~Folder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::string Folder::write(const std::string& name, const std::string& text) const {
+  std::ofstream(path(name), std::ios::binary) << text;
+  return path(name);
+}
+
+Program::Program(const Words& arguments, const Environment& environment, const std::string& out)
+    : out_(out.empty() ? folder_.path("out") : out) {
+  Words words{SF_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<std::string> variables = environment_of(environment);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&files, 1, out_.c_str(), O_WRONLY | O_CREAT, 0600);
+  posix_spawn_file_actions_addopen(&files, 2, folder_.path("err").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+  const int failed =
+      posix_spawn(&pid_, SF_PROGRAM, &files, nullptr, pointers(words).data(), pointers(variables).data());
+  posix_spawn_file_actions_destroy(&files);
+  if (failed != 0) ADD_FAILURE() << "cannot start " << SF_PROGRAM;
+  ended_ = failed != 0;
+}
+
+Program::~Program() {
+  if (!running()) return;
+  kill(pid_, SIGKILL);
+  waitpid(pid_, &status_, 0);
+}
+
+std::string Program::err() const { return read_file(folder_.path("err")); }
+
+bool Program::running() {
+  if (!ended_) ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;
+  return !ended_;
+}
+
+bool Program::says(const std::string& text) {
+  const auto deadline = Clock::now() + std::chrono::minutes(1);
+  while (err().find(text) == std::string::npos) {
+    if (!running() || Clock::now() > deadline) return err().find(text) != std::string::npos;
+    nap();
+  }
+  return true;
+}
+
+void Program::signal(int number) const { kill(pid_, number); }
+
+Outcome Program::wait() {
+  const auto deadline = Clock::now() + std::chrono::minutes(2);
+  while (running()) {
+    if (Clock::now() > deadline) {
+      ADD_FAILURE() << "did not end within two minutes; it said: " << err();
+      kill(pid_, SIGKILL);
+    }
+    nap();
+  }
+  Outcome outcome;
+  outcome.code = WIFEXITED(status_) ? WEXITSTATUS(status_) : -1;
+  outcome.signal = WIFSIGNALED(status_) ? WTERMSIG(status_) : 0;
+  outcome.out = out_ == "/dev/full" ? "" : read_file(out_);
+  outcome.err = err();
+  return outcome;
+}
+
+Outcome run_program(const Words& arguments, const Environment& environment) {
+  return Program(arguments, environment).wait();
+}
+
+Environment no_device() { return {{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}}; }
+
+std::string our_world(const std::string& name) { return SF_SOURCE_DIR "/worlds/" + name; }
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::size_t count_lines(const std::string& text) {
+  std::istringstream lines(text);
+  std::size_t count = 0;
+  for (std::string line; std::getline(lines, line);) count += !line.empty();
+  return count;
+}
+
+unsigned free_ports(unsigned count) {
+  // Tests may run at once: each begins to look somewhere else.
+  unsigned base = 11'000 + static_cast<unsigned>(getpid()) * 64 % 20'000;
+  for (int attempt = 0; attempt < 200; ++attempt, base = 11'000 + (base + count) % 20'000) {
+    try {
+      std::vector<netio::Socket> sockets;
+      for (unsigned i = 0; i < count; ++i)
+        sockets.push_back(netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + i)}));
+      return base;
+    } catch (const base::InputError&) {
+      continue;
+    }
+  }
+  ADD_FAILURE() << "no free ports";
+  return 0;
+}
+
+}  // namespace sf

@@ -1,0 +1,152 @@
+// `run` and `plot`: a fleet in the loop, its summary, its recording and its pictures.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+
+namespace {
+
+Words run_words(const std::string& world, const Words& more) {
+  Words words{"run", our_world(world), "--json"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+Json run(const std::string& world, const Words& more) {
+  const Outcome outcome = run_program(run_words(world, more));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return Json(outcome.out);
+}
+
+std::string hash(const std::string& world, const Words& more) { return run(world, more).text("/hash"); }
+
+void expect_png(const std::string& path) {
+  const std::string bytes = read_file(path);
+  EXPECT_GT(bytes.size(), 1000u) << path;
+  EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n") << path;
+}
+
+/// Until the recording holds more than the world: the loop is running then.
+bool records(Program& program, const std::string& file, std::uintmax_t bytes) {
+  for (int i = 0; i < 6000 && program.running(); ++i) {
+    std::error_code none_yet;
+    const auto size = std::filesystem::file_size(file, none_yet);
+    if (!none_yet && size > bytes) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+}  // namespace
+
+TEST(Run, TheSummaryHasItsFacts) {
+  const Json facts = run("cave.world", {"--robots", "10", "--duration", "2"});
+  EXPECT_NE(facts.text("/device"), "");
+  EXPECT_EQ(facts.number("/robots"), 10);
+  EXPECT_EQ(facts.number("/ticks"), 20);
+  EXPECT_NEAR(facts.number("/simulated_s"), 2.0, 1e-9);
+  EXPECT_GT(facts.number("/wall_s"), 0.0);
+  EXPECT_NEAR(facts.number("/real_time_factor"), 2.0 / facts.number("/wall_s"), 1e-6 / facts.number("/wall_s"));
+  // 10 Hz, 20 ticks of 0.1 s, 10 robots, 361 beams.
+  EXPECT_EQ(facts.number("/rays"), 20 * 10 * 361);
+  EXPECT_GT(facts.number("/rays_per_s"), 0.0);
+  EXPECT_EQ(facts.text("/hash").size(), 16u);
+  EXPECT_FALSE(facts.flag("/interrupted"));
+}
+
+TEST(Run, TheSameSeedGivesTheSameBytesWhateverTheThreads) {
+  const Words seven{"--robots", "12", "--duration", "3", "--seed", "7"};
+  const std::string first = hash("rooms.world", {"--duration", "3", "--seed", "7"});
+  EXPECT_EQ(hash("rooms.world", {"--duration", "3", "--seed", "7"}), first);
+  EXPECT_NE(hash("rooms.world", {"--duration", "3", "--seed", "8"}), first);
+  const std::string many = hash("cave.world", seven);
+  for (const std::string threads : {"1", "2", "3"}) {
+    Words words = seven;
+    words.insert(words.end(), {"--threads", threads});
+    EXPECT_EQ(hash("cave.world", words), many) << threads;
+  }
+}
+
+TEST(Run, StandardErrorIsSilentWhereNobodyWatches) {
+  EXPECT_EQ(run_program(run_words("cave.world", {"--duration", "1"})).err, "");
+}
+
+TEST(Run, NoTimeIsNoTick) { EXPECT_EQ(run("cave.world", {"--duration", "0"}).number("/ticks"), 0); }
+
+TEST(Run, ARealTimeSecondTakesASecond) {
+  EXPECT_GE(run("cave.world", {"--duration", "0.5", "--real-time"}).number("/wall_s"), 0.5);
+}
+
+TEST(Run, MoreRobotsThanFitAreRefused) {
+  const Outcome outcome = run_program(run_words("rooms.world", {"--robots", "60000"}));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(count_lines(outcome.err), 1u);
+  EXPECT_NE(outcome.err.find("no free place"), std::string::npos) << outcome.err;
+}
+
+TEST(Run, ARecordingIsDrawnElsewhere) {
+  const Folder folder;
+  const Json facts = run("cave.world", {"--robots", "4", "--duration", "5", "--record", folder.path("here")});
+  EXPECT_NE(facts.text("/recording").find("run.mcap"), std::string::npos);
+  std::filesystem::create_directory(folder.path("there"));
+  std::filesystem::rename(folder.path("here/run.mcap"), folder.path("there/run.mcap"));
+  const Outcome outcome = run_program({"plot", folder.path("there"), "-o", folder.path("deep/pictures")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  expect_png(folder.path("deep/pictures/trajectories.png"));
+  expect_png(folder.path("deep/pictures/occupancy.png"));
+}
+
+TEST(Run, RecordingDoesNotChangeTheRun) {
+  const Folder folder;
+  const Words plain{"--robots", "3", "--duration", "2"};
+  Words recorded = plain;
+  recorded.insert(recorded.end(), {"--record", folder.path("r"), "--record-readings"});
+  EXPECT_EQ(hash("cave.world", recorded), hash("cave.world", plain));
+}
+
+TEST(Run, AKilledRunCanBeDrawn) {
+  const Folder folder;
+  Program program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
+  ASSERT_TRUE(records(program, folder.path("r/run.mcap"), 60'000)) << program.err();
+  program.signal(SIGKILL);
+  EXPECT_EQ(program.wait().signal, SIGKILL);
+  const Outcome outcome = run_program({"plot", folder.path("r"), "-o", folder.path("p")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("was not finished"), std::string::npos) << outcome.err;
+  expect_png(folder.path("p/trajectories.png"));
+  expect_png(folder.path("p/occupancy.png"));
+}
+
+TEST(Run, StoppingIsNoFailure) {
+  for (const int stop : {SIGINT, SIGTERM}) {
+    const Folder folder;
+    Program program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
+    ASSERT_TRUE(records(program, folder.path("r/run.mcap"), 60'000)) << program.err();
+    program.signal(stop);
+    const Outcome outcome = program.wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Json facts(outcome.out);
+    EXPECT_TRUE(facts.flag("/interrupted"));
+    EXPECT_GT(facts.number("/ticks"), 0);
+    EXPECT_LT(facts.number("/simulated_s"), 1e6);
+  }
+}
+
+TEST(Run, NothingOfADamagedRecordingIsBelieved) {
+  const Folder folder;
+  std::filesystem::create_directory(folder.path("r"));
+  folder.write("r/run.mcap", "this is no recording, whatever its name says");
+  const Outcome outcome = run_program({"plot", folder.path("r")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  EXPECT_NE(outcome.err.find("run.mcap"), std::string::npos);
+}
+
+}  // namespace sf

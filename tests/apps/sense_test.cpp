@@ -1,0 +1,172 @@
+// `sense` against a ruler: ranges that can be worked out by hand.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <regex>
+
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+constexpr double kExact = 1e-5;  ///< [m] what the farm promises
+constexpr double kRuler = 1e-8;  ///< [m] what it does where rays are steep: nine decimals are printed
+
+// A wall whose face is at x = 0 beside the way along y, a robot with a single forward beam, and a fan that looks
+// around.
+std::string wall_world(const Folder& folder, double x) {
+  const auto at = [](double v) { return std::to_string(v); };
+  return folder.write("wall.world", "model( name \"long wall\" pose [" + at(x + 0.5) +
+                                        " 0 0 0] size [1 400 1] )\n"
+                                        "position( name \"scout\" pose [" +
+                                        at(x - 1.0) +
+                                        " 0 0 0] size [0.3 0.3 0.1]\n"
+                                        "  laser( samples 1 range_max 100 size [0 0 0.2] )\n"
+                                        "  laser( samples 181 fov 180 range_max 8 size [0 0 0.2] ) )\n");
+}
+
+Json sense(Words words) {
+  words.insert(words.begin(), "sense");
+  words.push_back("--json");
+  const Outcome outcome = run_program(words);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return Json(outcome.out);
+}
+
+std::string beam(std::size_t i, const std::string& key) { return "/beams/" + std::to_string(i) + "/" + key; }
+
+}  // namespace
+
+TEST(Sense, SaysWhoLooksFromWhere) {
+  const Json scan = sense({our_world("rooms.world")});
+  EXPECT_EQ(scan.text("/robot"), "roomba1");
+  EXPECT_EQ(scan.number("/sensor"), 0);
+  EXPECT_EQ(scan.text("/kind"), "laser");
+  ASSERT_EQ(scan.size("/pose"), 3u);
+  EXPECT_EQ(scan.number("/pose/0"), -3);
+  EXPECT_EQ(scan.number("/pose/1"), -1.5);
+  EXPECT_EQ(scan.number("/pose/2"), 0);
+  ASSERT_EQ(scan.size("/sensor_pose"), 3u);
+  EXPECT_NEAR(scan.number("/sensor_pose/0"), -2.9, 1e-12);
+  ASSERT_EQ(scan.size("/beams"), 181u);
+}
+
+TEST(Sense, ARobotOneMetreFromAWallReadsOneMetre) {
+  const Folder folder;
+  const Json scan = sense({wall_world(folder, 0.0)});
+  ASSERT_EQ(scan.size("/beams"), 1u);
+  EXPECT_EQ(scan.number(beam(0, "range_m")), 1.0);
+  EXPECT_EQ(scan.number(beam(0, "bearing_rad")), 0.0);
+  EXPECT_EQ(scan.text(beam(0, "hit")), "long wall");
+}
+
+TEST(Sense, EveryBeamOfAFanFollowsTheCosine) {
+  const Folder folder;
+  const Json scan = sense({wall_world(folder, 0.0), "--sensor", "1", "--no-return", "inf"});
+  ASSERT_EQ(scan.size("/beams"), 181u);
+  for (std::size_t i = 0; i < 181; ++i) {
+    const double bearing = (static_cast<double>(i) - 90.0) * kDegree;
+    EXPECT_NEAR(scan.number(beam(i, "bearing_rad")), bearing, 1e-11);
+    const double range = 1.0 / std::cos(bearing);
+    if (range < 8.0 && i > 0 && i < 180) {
+      EXPECT_NEAR(scan.number(beam(i, "range_m")), range, kRuler) << i;
+    } else {
+      EXPECT_TRUE(scan.is_null(beam(i, "range_m"))) << i;
+      EXPECT_TRUE(scan.is_null(beam(i, "hit"))) << i;
+    }
+  }
+}
+
+TEST(Sense, GrazingIncidenceIsExactAtTheOriginAndFarAway) {
+  // 0.1 m beside the wall, a tenth of a degree off parallel, then 1 mrad: 57.3 m and 99.8 m ahead.
+  for (const double x : {0.0, 100'000.0}) {
+    const Folder folder;
+    const std::string world = wall_world(folder, x);
+    for (const double away : {0.1, 0.0574}) {
+      const std::string pose = std::to_string(x - 0.1) + ",3," + std::to_string(90.0 - away);
+      const Json scan = sense({world, "--pose", pose, "--no-return", "inf"});
+      const double range = 0.1 / std::sin(away * kDegree);
+      EXPECT_NEAR(scan.number(beam(0, "range_m")), range, kExact) << pose;
+      EXPECT_NEAR(scan.number("/pose/2"), (90.0 - away) * kDegree, 1e-12);
+    }
+  }
+}
+
+TEST(Sense, PoseMovesTheRobotAndItsSensor) {
+  const Json scan = sense({our_world("cave.world"), "--pose", "-1,2,90"});
+  EXPECT_EQ(scan.number("/pose/0"), -1);
+  EXPECT_EQ(scan.number("/pose/1"), 2);
+  EXPECT_NEAR(scan.number("/pose/2"), M_PI / 2, 1e-15);
+  // The scanner stands 0.1 m ahead of the robot's centre, which is now towards +y.
+  EXPECT_NEAR(scan.number("/sensor_pose/0"), -1.0, 1e-12);
+  EXPECT_NEAR(scan.number("/sensor_pose/1"), 2.1, 1e-12);
+  EXPECT_NEAR(scan.number("/sensor_pose/2"), M_PI / 2, 1e-15);
+}
+
+TEST(Sense, RobotsAndNestedModelsAreNamedAndTheOwnBodyIsNotSeen) {
+  const Folder folder;
+  const std::string body = " size [0.4 0.4 0.4] laser( samples 1 size [0 0 0.1] pose [0 0 -0.3 0] ) ";
+  const std::string world = folder.write("two.world", "position( name \"anna\" pose [0 0 0 0]" + body +
+                                                          ")\n"
+                                                          "position( name \"bert\" pose [2 0 0 0]" +
+                                                          body +
+                                                          ")\n"
+                                                          "model( name \"house\" pose [0 3 0 0] size [0.1 0.1 0.1]\n"
+                                                          "  stack_children 0 model( name \"door\" size [1 1 1] ) )\n");
+  const Json ahead = sense({world});
+  EXPECT_EQ(ahead.text("/robot"), "anna");
+  EXPECT_EQ(ahead.text(beam(0, "hit")), "bert");
+  EXPECT_NEAR(ahead.number(beam(0, "range_m")), 1.8, kRuler);
+  const Json left = sense({world, "--pose", "0,0,90"});
+  EXPECT_EQ(left.text(beam(0, "hit")), "house.door");
+  EXPECT_NEAR(left.number(beam(0, "range_m")), 2.5, kRuler);
+  const Json other = sense({world, "--robot", "bert", "--pose", "0,1,0"});
+  EXPECT_EQ(other.text("/robot"), "bert");
+  EXPECT_TRUE(other.is_null(beam(0, "hit")));
+}
+
+TEST(Sense, WhatMetNothingReadsRangeMaxOrNull) {
+  const Folder folder;
+  const std::string world = folder.write("empty.world", "position( name \"a\" laser( samples 3 range_max 5 ) )\n");
+  EXPECT_EQ(sense({world}).number(beam(1, "range_m")), 5.0);
+  EXPECT_TRUE(sense({world, "--no-return", "inf"}).is_null(beam(1, "range_m")));
+}
+
+TEST(Sense, RangesHaveNineDecimals) {
+  const std::string text = run_program({"sense", our_world("rooms.world"), "--json"}).out;
+  const std::regex with_nine("\"range_m\": \\d+\\.\\d{9}[,}]");
+  const auto count = std::distance(std::sregex_iterator(text.begin(), text.end(), with_nine), std::sregex_iterator());
+  EXPECT_EQ(count, 181);
+}
+
+TEST(Sense, CsvHasAHeadingAndOneLinePerBeam) {
+  const Outcome outcome = run_program({"sense", our_world("rooms.world")});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out.rfind("bearing_rad,range_m,hit\n-1.570796326795,1.300000000,south\n", 0), 0u) << outcome.out;
+  EXPECT_EQ(count_lines(outcome.out), 182u);
+}
+
+TEST(Sense, NoiseIsOff) {
+  const Words words{"sense", our_world("rooms.world"), "--robot", "roomba2", "--json"};
+  const Json scan(run_program(words).out);
+  // roomba2's first laser is noisy by 1 cm; due ahead of it is the far wall's face, 5 m are not enough.
+  EXPECT_EQ(scan.number(beam(135, "range_m")), 5.0);
+  EXPECT_EQ(run_program(words).out, run_program(words).out);
+}
+
+TEST(Sense, AWorldWithoutRobotsIsLentOne) {
+  const Folder folder;
+  const std::string world = folder.write("bare.world", "model( name \"wall\" pose [2.5 0 0 0] size [1 4 1] )\n");
+  const Outcome outcome = run_program({"sense", world, "--pose", "0,0,0", "--json"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.err.find("no robot"), std::string::npos);
+  const Json scan(outcome.out);
+  ASSERT_EQ(scan.size("/beams"), 361u);
+  EXPECT_NEAR(scan.number(beam(180, "range_m")), 2.0, kRuler);
+}
+
+}  // namespace sf

@@ -1,0 +1,203 @@
+// Wrong usage and wrong files: exit code 2 and one line that says what was expected. No device: 3.
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+
+namespace {
+
+const Words kSubcommands{"devices", "check", "draw", "sense", "run", "serve", "plot", "listen"};
+
+struct Wrong {
+  Words arguments;
+  std::string said;  ///< somewhere in the line
+};
+
+void expect_refused(const Words& arguments, const std::string& said) {
+  const Outcome outcome = run_program(arguments);
+  EXPECT_EQ(outcome.code, 2) << said << "\n" << outcome.err;
+  EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  EXPECT_NE(outcome.err.find(said), std::string::npos) << "'" << said << "' is not in: " << outcome.err;
+  EXPECT_EQ(outcome.err.rfind("sensorfarm: ", 0), 0u) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+}
+
+}  // namespace
+
+TEST(Usage, EverySubcommandHasHelp) {
+  const Outcome all = run_program({"--help"});
+  EXPECT_EQ(all.code, 0);
+  for (const std::string& name : kSubcommands) {
+    EXPECT_NE(all.out.find("\n  " + name + " "), std::string::npos) << name;
+    const Outcome one = run_program({name, "--help"});
+    EXPECT_EQ(one.code, 0) << name;
+    EXPECT_NE(one.out.find("--help"), std::string::npos) << name;
+    EXPECT_EQ(one.err, "") << name;
+  }
+}
+
+TEST(Usage, HelpNamesTheOptions) {
+  const std::vector<std::pair<std::string, Words>> options{
+      {"devices", {"--json", "--device", "SENSORFARM_DEVICE"}},
+      {"check", {"--json", "--stage-noise", "--stage-obstacles"}},
+      {"draw", {"-o,--out"}},
+      {"sense", {"--pose", "--robot", "--sensor", "--json", "--no-return", "--device"}},
+      {"run",
+       {"--robots", "--duration", "--seed", "--record", "--record-readings", "--real-time", "--send", "--json",
+        "--wire", "--threads", "--stage-obstacles"}},
+      {"serve", {"--bind", "--rate", "--port", "--laser-port", "--wire", "--json"}},
+      {"plot", {"-o,--out"}},
+      {"listen", {"--robots", "--json", "--wire"}}};
+  for (const auto& [name, words] : options) {
+    const std::string help = run_program({name, "--help"}).out;
+    for (const std::string& word : words) EXPECT_NE(help.find(word), std::string::npos) << name << " " << word;
+  }
+}
+
+TEST(Usage, VersionIsPrinted) {
+  const Outcome outcome = run_program({"--version"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out.rfind("sensorfarm ", 0), 0u);
+}
+
+TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
+  const std::string world = our_world("rooms.world");
+  const Folder folder;
+  for (const auto& [arguments, said] : std::vector<Wrong>{
+           {{}, "expected a subcommand: devices, check"},  // nothing at all
+           {{"frob"}, "'frob' is no subcommand"},          // unknown subcommand
+           {{"run"}, "world is required"},                 // no world
+           {{"draw", world}, "--out is required"},         // no picture
+           {{"plot"}, "recording is required"},            // no recording
+           {{"run", world, "--duraton", "3"}, "'--duraton' was not expected; did you mean '--duration'?"},
+           {{"--json", "check", world}, "options stand after the subcommand"},
+           {{"check", world, "another"}, "'another' was not expected"},  // two worlds
+           {{"run", world, "--duration"}, "--duration needs a value"},   // cut short
+           {{"run", world, "--duration", "-1"}, "from 0 to"},            // time does not go back
+           {{"run", world, "--duration", "nan"}, "got 'nan'"},           // would never end
+           {{"run", world, "--duration", "inf"}, "got 'inf'"},           // would never end
+           {{"run", world, "--duration", "5s"}, "got '5s'"},             // a unit
+           {{"run", world, "--robots", "0"}, "from 1 to 65535"},         // fewest
+           {{"run", world, "--robots", "65536"}, "from 1 to 65535"},     // ids are 16 bits
+           {{"run", world, "--robots", "2.5"}, "got '2.5'"},             // half a robot
+           {{"run", world, "--seed", "-1"}, "got '-1'"},                 // must not wrap
+           {{"run", world, "--threads", "257"}, "from 0 to 256"},        // most threads
+           {{"run", world, "--send", ""}, "expected a host"},            // an unset variable in a script
+           {{"run", world, "--record", ""}, "expected a folder"},        // the same
+           {{"run", world, "--record-readings"}, "requires --record"},   // nowhere to record to
+           {{"run", world, "--wire", "telegraph"}, "expected farm or thesis"},
+           {{"sense", world, "--no-return", "0"}, "expected max or inf"},
+           {{"sense", world, "--pose", "1,2"}, "expected X,Y,YAW_DEG"},      // no heading
+           {{"sense", world, "--pose", "1,2,3,4"}, "expected X,Y,YAW_DEG"},  // one too many
+           {{"sense", world, "--pose", "1,2,nan"}, "expected X,Y,YAW_DEG"},  // not a number
+           {{"sense", world, "--sensor", "-1"}, "got '-1'"},                 // must not wrap
+           {{"sense", world, "--sensor", "1"}, "roomba1 has one sensor"},    // past the last
+           {{"sense", world, "--robot", "tag3"}, "tag3 has no sensor"},      // there, but blind
+           {{"sense", world, "--robot", "bob"}, "no robot 'bob'; with sensors it has roomba1, roomba2"},
+           {{"serve", world, "--rate", "0"}, "from 0.1 to 10000"},  // would never tick
+           {{"serve", world, "--port", "65536"}, "from 0 to 65535"},
+           {{"serve", world, "--bind", "192.0.2.1"}, "192.0.2.1"},  // not this machine's
+           {{"run", world, "--send", "no.such.host.invalid"}, "no.such.host.invalid"},
+           {{"draw", world, "-o", folder.path("none/x.png")}, "none/x.png"},
+           {{"draw", world, "-o", folder.path()}, "picture"},  // a folder
+           {{"run", world, "--duration", "0.1", "--record", "/proc/none"}, "/proc/none"},
+           {{"plot", folder.path()}, "no such recording"}})  // nothing was recorded there
+    expect_refused(arguments, said);
+}
+
+TEST(Usage, WrongFilesAreRefusedByEveryCommandThatReadsAWorld) {
+  const Folder folder;
+  const std::string broken = folder.write("broken.world", "model\n(\n  size [1 1\n  color \"red\"\n)\n");
+  for (const Words& command :
+       std::vector<Words>{{"check"}, {"sense"}, {"run"}, {"serve"}, {"listen"}, {"draw", "-o", folder.path("x.png")}}) {
+    Words words = command;
+    words.insert(words.begin() + 1, folder.path("none.world"));
+    expect_refused(words, "none.world: no such file");
+    words[1] = folder.path();
+    expect_refused(words, "not a file");
+    words[1] = broken;
+    expect_refused(words, "broken.world:4: expected");
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.path("x.png")));
+}
+
+TEST(Usage, PicturesThatCannotBeReadNameTheLineThatAsksForThem) {
+  const Folder folder;
+  folder.write("notes.png", "not a picture");
+  const std::string world = folder.write("w.world", "model( size [1 1 1]\nbitmap \"notes.png\" )\n");
+  expect_refused({"check", world}, "w.world:2: ");
+  expect_refused({"check", world}, "notes.png");
+}
+
+TEST(Usage, AnAnswerThatCannotBeWrittenIsNoSuccess) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "the machine has no /dev/full";
+  const Outcome outcome = Program({"check", our_world("rooms.world")}, {}, "/dev/full").wait();
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("standard output"), std::string::npos);
+}
+
+TEST(NoDevice, EndsWithThreeAndOneLine) {
+  const std::string world = our_world("rooms.world");
+  const Folder folder;
+  for (const Words& words : std::vector<Words>{{"devices"},
+                                               {"sense", world},
+                                               {"sense", world, "--json"},
+                                               {"run", world, "--duration", "0.1"},
+                                               {"run", world, "--duration", "0.1", "--json"},
+                                               {"serve", world, "--port", "0", "--duration", "0.1"}}) {
+    const Outcome outcome = run_program(words, no_device());
+    EXPECT_EQ(outcome.code, 3) << words[0];
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+    EXPECT_NE(outcome.err.find("no Vulkan device"), std::string::npos) << outcome.err;
+    // Never an empty scan, nor a summary of nothing.
+    EXPECT_EQ(outcome.out, "") << words[0];
+  }
+}
+
+TEST(NoDevice, WorldsCanStillBeCheckedAndDrawn) {
+  const Folder folder;
+  EXPECT_EQ(run_program({"check", our_world("rooms.world")}, no_device()).code, 0);
+  EXPECT_EQ(run_program({"draw", our_world("rooms.world"), "-o", folder.path("x.png")}, no_device()).code, 0);
+}
+
+TEST(Devices, TheChosenOneIsNamed) {
+  const Outcome outcome = run_program({"devices", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json facts(outcome.out);
+  ASSERT_GE(facts.size("/devices"), 1u);
+  std::size_t chosen = 0;
+  for (std::size_t i = 0; i < facts.size("/devices"); ++i) {
+    const std::string row = "/devices/" + std::to_string(i);
+    EXPECT_NE(facts.text(row + "/name"), "");
+    facts.flag(row + "/software");
+    const bool is_chosen = facts.flag(row + "/chosen");
+    chosen += is_chosen;
+    EXPECT_EQ(facts.text(row + "/reason").empty(), is_chosen) << "who is refused is told why";
+  }
+  EXPECT_EQ(chosen, 1u);
+}
+
+TEST(Devices, NoSuchDeviceEndsWithThree) {
+  for (const std::string command : {"devices", "sense", "run"}) {
+    Words words{command};
+    if (command != "devices") words.push_back(our_world("rooms.world"));
+    words.insert(words.end(), {"--device", "no such device"});
+    const Outcome outcome = run_program(words);
+    EXPECT_EQ(outcome.code, 3) << command;
+    EXPECT_NE(outcome.err.find("no such device"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(Devices, TheEnvironmentChoosesAndTheOptionOverrules) {
+  const Environment wrong{{"SENSORFARM_DEVICE", "no such device"}};
+  EXPECT_EQ(run_program({"devices"}, wrong).code, 3);
+  EXPECT_EQ(run_program({"devices", "--device", "0"}, wrong).code, 0);
+  EXPECT_EQ(run_program({"devices"}, {{"SENSORFARM_DEVICE", "0"}}).code, 0);
+}
+
+}  // namespace sf

@@ -1,0 +1,72 @@
+// A tick allocates nothing once it has seen its world. This program's `new` is counted, of the calling thread alone:
+// the Vulkan driver's own threads do as they like.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "tests/farm/small_farm.h"
+
+namespace {
+
+thread_local bool counting = false;
+thread_local std::uint64_t allocations = 0;
+
+}  // namespace
+
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  if (counting) ++allocations;
+  return std::malloc(size > 0 ? size : 1);
+}
+void* operator new(std::size_t size) {
+  if (void* memory = operator new(size, std::nothrow)) return memory;
+  throw std::bad_alloc();
+}
+void* operator new[](std::size_t size) { return operator new(size); }
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return operator new(size, std::nothrow); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+
+namespace sf::farm {
+namespace {
+
+std::uint64_t allocations_per_lap(const world::World& world, const FarmOptions& options) {
+  Farm farm(world, device(), options);
+  farm.hear_all();
+  std::vector<std::vector<base::Report>> reports;
+  for (int k = 0; k < 8; ++k) reports.push_back(reports_at(world, k));
+  // Two laps to warm up, one that counts: the same cells, the same neighbours.
+  for (int k = 0; k < 24; ++k) {
+    if (k == 16) allocations = 0;
+    counting = k >= 16;
+    farm.tick(k * 100'000'000ll, reports[static_cast<std::size_t>(k % 8)]);
+    counting = false;
+  }
+  return allocations;
+}
+
+TEST(Allocation, TheCountCounts) {
+  counting = true;
+  allocations = 0;
+  const auto made = std::make_unique<std::vector<int>>(100);
+  counting = false;
+  EXPECT_EQ(allocations, 2u);
+}
+
+TEST(Allocation, NoneInATickAfterWarmUp) {
+  for (const unsigned threads : {1u, 2u}) EXPECT_EQ(allocations_per_lap(small_world(20), {.threads = threads}), 0u);
+}
+
+TEST(Allocation, NoneWithNoiseAndLatencyEither) {
+  world::World world = small_world(20, {.range_sigma = 0.01, .angle_sigma = 0.001});
+  for (world::Mover& mover : world.movers) mover.lasers[0].latency = 0.25;
+  EXPECT_EQ(allocations_per_lap(world, {.threads = 2}), 0u);
+}
+
+}  // namespace
+}  // namespace sf::farm

@@ -1,0 +1,138 @@
+// The same calls give the same bytes, whatever the threads, the pool and the company.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/hash.h"
+#include "tests/farm/small_farm.h"
+#include "tests/sensors/chance.h"
+
+namespace sf::farm {
+namespace {
+
+constexpr world::LaserNoise kNoise{.range_sigma = 0.01, .range_proportional = 0.005, .angle_sigma = 0.003};
+
+std::uint64_t run(const world::World& world, const FarmOptions& options, int ticks = 12) {
+  Farm farm(world, device(), options);
+  farm.hear_all();
+  for (int k = 0; k < ticks; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
+  EXPECT_EQ(farm.stats().readings, world.movers.size() * static_cast<std::size_t>(ticks));
+  return farm.hash();
+}
+
+TEST(Determinism, TheSameSeedGivesTheSameBytes) {
+  const world::World world = small_world(30, kNoise);
+  EXPECT_EQ(run(world, {.seed = 1}), run(world, {.seed = 1}));
+  EXPECT_NE(run(world, {.seed = 1}), run(world, {.seed = 2}));
+}
+
+TEST(Determinism, WhateverTheThreads) {
+  const world::World world = small_world(30, kNoise);
+  const std::uint64_t one = run(world, {.seed = 1, .threads = 1});
+  for (const unsigned threads : {2u, 3u, 7u}) EXPECT_EQ(run(world, {.seed = 1, .threads = threads}), one) << threads;
+}
+
+/// So small that cells are evicted every tick, and that the pool must grow within one.
+TEST(Determinism, WhateverThePool) {
+  const world::World world = small_world(30, kNoise);
+  const std::uint64_t large = run(world, {.seed = 1});
+  for (const std::uint32_t chunks : {32u, 1024u, 16'384u})
+    for (const std::uint32_t cells : {1u, 8u, 40u})
+      EXPECT_EQ(run(world, {.seed = 1, .scene = {chunks, cells}}), large) << chunks << " chunks, " << cells << " cells";
+}
+
+TEST(Determinism, EvictedCellsAreBuiltAgain) {
+  const world::World world = small_world(30);
+  Farm farm(world, device(), {.scene = {16'384, 32}});
+  farm.hear_all();
+  for (int k = 0; k < 12; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
+  Farm roomy(world, device());
+  roomy.hear_all();
+  for (int k = 0; k < 12; ++k) roomy.tick(k * 100'000'000ll, reports_at(world, k));
+  EXPECT_GT(farm.stats().cells_built, roomy.stats().cells_built) << "the test is meant to evict";
+  EXPECT_EQ(farm.hash(), roomy.hash());
+}
+
+/// Readings of robot 0 with `others` about.
+std::vector<Kept> of_first(const world::World& world, bool hear_others) {
+  Farm farm(world, device(), {.seed = 3});
+  farm.hear(0, true);
+  if (hear_others) farm.hear_all();
+  std::vector<Kept> kept;
+  for (int k = 0; k < 6; ++k)
+    for (const auto& r : farm.tick(k * 100'000'000ll, reports_at(world, k)))
+      if (r.mover == 0) kept.push_back(keep(r));
+  EXPECT_EQ(kept.size(), 6u);
+  return kept;
+}
+
+/// Robots that a robot cannot sense change none of its readings: they are far, or behind walls, or do not echo.
+TEST(Determinism, RobotsThatCannotBeSensedChangeNothing) {
+  world::World alone;
+  scenes::add_room(alone, {}, 6.0);
+  scenes::add_outline(alone, {{1, -1}, {2, -1}, {2, 1}, {1, 1}}, "box");
+  world::Laser laser = scenes::laser(kBeams, 2.0 * M_PI, 8.0);
+  laser.noise = kNoise;
+  scenes::add_robot(alone, {-1, 0, 0, 0}, laser);
+  const std::vector<Kept> expected = of_first(alone, false);
+
+  world::World company = alone;
+  for (int i = 0; i < 20; ++i) {
+    scenes::add_robot(company, {100.0 + i, 3.0 * i, 0, 0}, laser);              // far
+    scenes::add_robot(company, {4.0 + 0.5 * i, 0.3 * i - 3.0, 0, 0.1}, laser);  // behind the room's wall
+    scenes::add_robot(company, {-1.0 + 0.05 * i, 0.4, 0, 0.1}, laser);          // among it, but not echoing
+    for (world::Segment& s : company.movers.back().body) s.seen_by_laser = false;
+  }
+  EXPECT_EQ(of_first(company, true), expected);
+  EXPECT_EQ(of_first(company, false), expected);
+}
+
+/// A robot's readings do not depend on who else is due in its tick.
+TEST(Determinism, WhateverTheBatch) {
+  world::World world = small_world(12, kNoise);
+  const std::vector<Kept> alone = of_first(world, false);
+  EXPECT_EQ(of_first(world, true), alone);
+  for (std::size_t i = 1; i < world.movers.size(); ++i)
+    world.movers[i].lasers[0].rate = 1.0 + 2.0 * static_cast<double>(i);
+  EXPECT_EQ(of_first(world, true), alone);
+}
+
+/// What a tool asks for in between changes nothing that follows.
+TEST(Determinism, SenseLeavesNoTrace) {
+  const world::World world = small_world(5, kNoise);
+  Farm asked(world, device(), {.seed = 1});
+  Farm plain(world, device(), {.seed = 1});
+  for (Farm* farm : {&asked, &plain}) {
+    farm->hear_all();
+    farm->tick(0, {});
+  }
+  const base::Pose elsewhere{0.5, 0.25, 0.0, 1.0};
+  const base::ReadingBlock block = asked.sense(2, 0, elsewhere);
+  EXPECT_EQ(block.values.size(), kBeams);
+  EXPECT_EQ(block.X_WM.x, 0.5);
+  asked.tick(100'000'000, {});
+  plain.tick(100'000'000, {});
+  EXPECT_EQ(asked.hash(), plain.hash());
+}
+
+/// A fixed scene has a fixed hash. Beams at multiples of 22.5 degrees, poses on a lattice, no noise: of the C library
+/// it depends on sin and cos of multiples of pi/8 and of 1/4 alone.
+TEST(Determinism, GoldenHash) {
+  if (device().facts().name.find("llvmpipe") == std::string::npos)
+    GTEST_SKIP() << "the hash is lavapipe's; this is " << device().facts().name;
+  world::World world;
+  scenes::add_room(world, {}, 12.0);
+  for (int i = 0; i < 12; ++i) {
+    const base::Vec2 p{static_cast<double>(i % 4) * 2.5 - 4.0, static_cast<double>(i / 4) * 3.0 - 3.5};
+    scenes::add_outline(world, {p, p + base::Vec2{0.75, 0.25}, p + base::Vec2{0.5, 1.0}}, "wedge");
+  }
+  for (int i = 0; i < 24; ++i) {
+    const world::Laser laser = scenes::laser(17, 2.0 * M_PI, 8.0);
+    scenes::add_robot(world, {-5.0 + 0.375 * i, 5.0 - 0.25 * (7 * i % 40), 0.0, i * M_PI / 8}, laser);
+  }
+  EXPECT_EQ(base::hash_text(run(world, {}, 3)), "481e228d891753d3");
+}
+
+}  // namespace
+}  // namespace sf::farm

@@ -1,0 +1,121 @@
+// When sensors are due, and what that costs.
+
+#include "farm/schedule.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/farm/small_farm.h"
+
+namespace sf::farm {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+TEST(Schedule, DueAtPhasePlusWholePeriods) {
+  EXPECT_EQ(readings_begun(-1, 10.0, 0.0), 0u) << "before time began";
+  EXPECT_EQ(readings_begun(0, 10.0, 0.0), 1u) << "the first at once";
+  EXPECT_EQ(readings_begun(kSecond / 10 - 2, 10.0, 0.0), 1u) << "2 ns early";
+  EXPECT_EQ(readings_begun(kSecond / 10, 10.0, 0.0), 2u) << "on time";
+  EXPECT_EQ(readings_begun(kSecond, 10.0, 0.0), 11u);
+  EXPECT_EQ(readings_begun(kSecond / 4 - 1, 10.0, 0.25), 0u) << "before its phase";
+  EXPECT_EQ(readings_begun(kSecond / 4, 10.0, 0.25), 1u) << "at its phase";
+  EXPECT_EQ(readings_begun(100 * kSecond, 0.01, 0.0), 2u) << "slower than a tick a second";
+}
+
+/// phase + k / rate, rounded to a nanosecond, begins reading k: for odd rates too, and after a year.
+TEST(Schedule, ExactToANanosecondAfterAYear) {
+  for (const double rate : {1.0, 10.0, 13.37, 30.0, 37.5, 1.0 / 3.0, 333.3, 1000.0})
+    for (const double years : {0.0, 0.1, 1.0, 10.0})
+      for (int i = 1; i <= 200; ++i) {
+        const auto k = static_cast<std::uint64_t>(years * 31'556'952.0 * rate) + static_cast<std::uint64_t>(i);
+        const long double due = 1e9L * static_cast<long double>(k) / static_cast<long double>(rate);
+        const auto on_time = static_cast<std::int64_t>(std::ceil(due));
+        ASSERT_EQ(readings_begun(on_time + 1, rate, 0.0), k + 1) << rate << " Hz, reading " << k << " is late";
+        ASSERT_EQ(readings_begun(on_time - 3, rate, 0.0), k) << rate << " Hz, reading " << k << " is early";
+      }
+}
+
+TEST(Schedule, CountsEveryReadingOnceWhateverTheTick) {
+  for (const std::int64_t dt : {std::int64_t{1'000'003}, std::int64_t{16'666'667}, std::int64_t{99'999'999}}) {
+    std::uint64_t before = 0;
+    for (std::int64_t now = 0; now < 20 * kSecond; now += dt) {
+      const std::uint64_t begun = readings_begun(now, 10.0, 0.03);
+      EXPECT_LE(begun, before + 1);
+      before = begun;
+    }
+    EXPECT_EQ(before, 200u) << dt;
+  }
+}
+
+TEST(Schedule, RatesAndPhasesInAFarm) {
+  world::World world = small_world(3);
+  world.movers[0].lasers[0].rate = 10.0;
+  world.movers[1].lasers[0].rate = 2.0;
+  world.movers[2].lasers[0].rate = 10.0;
+  world.movers[2].lasers[0].phase = 0.05;
+  Farm farm(world, device());
+  farm.hear_all();
+  std::vector<int> counts(3, 0);
+  for (int k = 0; k < 100; ++k)  // 2 s of 20 ms
+    for (const auto& r : farm.tick(k * 20'000'000ll, {})) {
+      EXPECT_EQ(r.sequence, static_cast<std::uint32_t>(counts[r.mover]++));
+      EXPECT_EQ(r.time, k * 20'000'000ll);
+      const double late = 1e-9 * static_cast<double>(r.time) - world.movers[r.mover].lasers[0].phase -
+                          r.sequence / world.movers[r.mover].lasers[0].rate;
+      EXPECT_GE(late, -1e-9);
+      EXPECT_LT(late, 0.02);
+    }
+  EXPECT_EQ(counts, (std::vector<int>{20, 4, 20}));
+}
+
+/// A tick longer than the period: one reading a tick, numbered by when the latest was due.
+TEST(Schedule, TenSecondTicksAndMicrosecondTicks) {
+  const world::World world = small_world(1);
+  Farm slow(world, device());
+  slow.hear_all();
+  for (int k = 0; k < 5; ++k) {
+    const auto readings = slow.tick(k * 10 * kSecond, {});
+    ASSERT_EQ(readings.size(), 1u);
+    EXPECT_EQ(readings[0].sequence, 100u * static_cast<std::uint32_t>(k));
+  }
+  Farm fast(world, device());
+  fast.hear_all();
+  std::size_t readings = 0;
+  for (std::int64_t now = 0; now < kSecond / 5; now += 1000) readings += fast.tick(now, {}).size();
+  EXPECT_EQ(readings, 2u) << "at 0 and at 0.1 s";
+  EXPECT_EQ(fast.stats().ticks, 200'000u);
+}
+
+TEST(Schedule, AYearOfSimulatedTime) {
+  const world::World world = small_world(1);
+  Farm farm(world, device());
+  farm.hear_all();
+  constexpr std::int64_t kDay = 86'400 * kSecond;
+  for (int day = 0; day <= 366; ++day) {
+    const auto readings = farm.tick(day * kDay, {});
+    ASSERT_EQ(readings.size(), 1u) << day;
+    EXPECT_EQ(readings[0].sequence, 864'000u * static_cast<std::uint32_t>(day));
+  }
+}
+
+TEST(Schedule, NothingIsComputedForTheUnheard) {
+  const world::World world = small_world(4);
+  Farm farm(world, device());
+  EXPECT_TRUE(farm.tick(0, {}).empty());
+  EXPECT_EQ(farm.stats().rays, 0u);
+  EXPECT_EQ(farm.stats().cells_built, 0u);
+  farm.hear(2, true);
+  const auto readings = farm.tick(kSecond / 10, {});
+  ASSERT_EQ(readings.size(), 1u);
+  EXPECT_EQ(readings[0].mover, 2u);
+  EXPECT_EQ(readings[0].sequence, 1u) << "numbered by when it is due: the first was not heard";
+  EXPECT_EQ(farm.stats().rays, kBeams);
+  farm.hear(2, false);
+  EXPECT_TRUE(farm.tick(kSecond / 5, {}).empty());
+  EXPECT_EQ(farm.stats().rays, kBeams);
+}
+
+}  // namespace
+}  // namespace sf::farm

@@ -1,0 +1,29 @@
+// The validation layer has nothing to say: a message of its is an error of ours.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/farm/small_farm.h"
+
+namespace sf::farm {
+namespace {
+
+TEST(Validation, TheLayerIsSilent) {
+  setenv("SENSORFARM_VALIDATE", "1", 1);
+  {
+    gpu::Device device;
+    if (device.validation_messages().find("not installed") != std::string::npos)
+      GTEST_SKIP() << "the validation layer is not installed";
+    world::World world = small_world(20, {.range_sigma = 0.01, .angle_sigma = 0.001});
+    Farm farm(world, device, {.scene = {1024, 8}});  // so small that its tables are replaced
+    farm.hear_all();
+    for (int k = 0; k < 4; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
+    EXPECT_GT(farm.stats().readings, 0u);
+    EXPECT_EQ(device.validation_messages(), "");
+  }
+  unsetenv("SENSORFARM_VALIDATE");
+}
+
+}  // namespace
+}  // namespace sf::farm

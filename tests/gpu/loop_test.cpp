@@ -1,0 +1,64 @@
+// Mesa before 25 ends a shader's loops after 65 535 turns in all, silently. Hosts must know.
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "gpu/batch.h"
+#include "gpu/buffer.h"
+#include "gpu/device.h"
+#include "gpu/kernel.h"
+#include "shaders/loop.comp.h"
+
+namespace sf::gpu {
+namespace {
+
+constexpr std::uint32_t kLimit = 65'535;
+
+/// What the device makes of counting to `n`: in one loop, and in two loops of n / 2 turns.
+struct Counted {
+  std::uint32_t one;
+  std::uint32_t two;
+};
+
+Counted count_to(std::uint32_t n) {
+  Device device;
+  Kernel kernel(device, loop_comp_spv, 2);
+  Buffer counts(device, Role::upload, Texel::u32, 64);
+  Buffer sums(device, Role::download, Texel::u32x4, 64);
+  Buffer groups(device, Role::upload, Texel::u32, 4);
+  for (std::uint32_t& count : counts.host<std::uint32_t>()) count = n;
+  for (std::uint32_t& sum : sums.host<std::uint32_t>()) sum = 0xDEADBEEFu;
+  for (std::uint32_t& group : groups.host<std::uint32_t>()) group = 1;
+  Buffer* const tables[] = {&counts, &sums};
+  kernel.bind(tables);
+  Batch batch(device);
+  batch.begin();
+  batch.dispatch(kernel, groups, 0);
+  batch.end();
+  batch.up(counts, 0, counts.bytes());
+  batch.up(groups, 0, groups.bytes());
+  batch.down(sums, 0, sums.bytes());
+  batch.run();
+  const auto words = sums.host<std::uint32_t>();
+  for (std::size_t row = 1; row < 64; ++row) EXPECT_EQ(words[4 * row], words[0]) << "lanes differ";
+  return {words[0], words[1]};
+}
+
+/// The farm's bounds keep all loops of an invocation below this together.
+TEST(Loops, FortyFiveThousandTurnsAreCountedByEveryDriver) {
+  const Counted counted = count_to(22'500);
+  EXPECT_EQ(counted.one, 22'500u);
+  EXPECT_EQ(counted.two, 22'500u) << "45 000 turns in all";
+}
+
+/// Documents the driver at hand. Neither answer is a failure; any other is.
+TEST(Loops, SeventyThousandTurnsMayBeCutOff) {
+  const Counted counted = count_to(70'000);
+  std::cout << "[ measured ] 70 000 turns of one loop: " << counted.one << " on " << Device().facts().driver << "\n";
+  EXPECT_TRUE(counted.one == 70'000u || counted.one == kLimit) << counted.one;
+  EXPECT_TRUE(counted.two == 70'000u || counted.two < kLimit) << counted.two;
+}
+
+}  // namespace
+}  // namespace sf::gpu
