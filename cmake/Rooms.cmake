@@ -20,6 +20,7 @@ target_compile_options(house INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconve
 if(SENSORFARM_SANITIZE)
   target_compile_options(house INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(house INTERFACE -fsanitize=address,undefined)
+  target_sources(house INTERFACE ${CMAKE_SOURCE_DIR}/tests/keep_loaded.cpp)
 endif()
 
 # add_room(NAME [PUBLIC targets...] [PRIVATE targets...])

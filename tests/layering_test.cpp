@@ -139,7 +139,8 @@ std::string read(const fs::path& path) {
 
 bool is_room(const fs::path& folder) {
   const std::string name = folder.filename().string();
-  return fs::is_directory(folder) && name[0] != '.' && !starts_with(name, "build") && name != "out";
+  return fs::is_directory(folder) && name[0] != '.' && !starts_with(name, "build") && name != "out" &&
+         name != "node_modules";
 }
 
 /// Everything of ours that a compiler reads.

@@ -155,6 +155,7 @@ TEST(SendAndListen, PortsThatCollideAreRefusedAtLoad) {
     EXPECT_EQ(count_lines(outcome.err), 1u);
     EXPECT_NE(outcome.err.find("roomba1"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find("roomba2"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("--ports-per-robot"), std::string::npos) << "says what to do: " << outcome.err;
   }
 }
 

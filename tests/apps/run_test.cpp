@@ -94,7 +94,9 @@ TEST(Run, MoreRobotsThanFitAreRefused) {
 TEST(Run, ARecordingIsDrawnElsewhere) {
   const Folder folder;
   const Json facts = run("cave.world", {"--robots", "4", "--duration", "5", "--record", folder.path("here")});
-  EXPECT_NE(facts.text("/recording").find("run.mcap"), std::string::npos);
+  EXPECT_EQ(facts.text("/recording"), folder.path("here/run.mcap"));
+  EXPECT_EQ(facts.number("/recording_bytes"),
+            static_cast<double>(std::filesystem::file_size(folder.path("here/run.mcap"))));
   std::filesystem::create_directory(folder.path("there"));
   std::filesystem::rename(folder.path("here/run.mcap"), folder.path("there/run.mcap"));
   const Outcome outcome = run_program({"plot", folder.path("there"), "-o", folder.path("deep/pictures")});

@@ -15,22 +15,26 @@ thread_local std::uint64_t allocations = 0;
 
 }  // namespace
 
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+// All of them, since sanitizers compare which one allocated with which one frees; out of line for the same reason.
+#define SF_COUNTED [[gnu::noinline]]
+SF_COUNTED void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   if (counting) ++allocations;
   return std::malloc(size > 0 ? size : 1);
 }
-void* operator new(std::size_t size) {
+SF_COUNTED void* operator new(std::size_t size) {
   if (void* memory = operator new(size, std::nothrow)) return memory;
   throw std::bad_alloc();
 }
-void* operator new[](std::size_t size) { return operator new(size); }
-void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return operator new(size, std::nothrow); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+SF_COUNTED void* operator new[](std::size_t size) { return operator new(size); }
+SF_COUNTED void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return operator new(size, std::nothrow);
+}
+SF_COUNTED void operator delete(void* memory) noexcept { std::free(memory); }
+SF_COUNTED void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+SF_COUNTED void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+SF_COUNTED void operator delete[](void* memory) noexcept { std::free(memory); }
+SF_COUNTED void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+SF_COUNTED void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
 
 namespace sf::farm {
 namespace {
