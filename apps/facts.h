@@ -32,7 +32,8 @@ struct RunFacts {
   netio::OutboxCounts outbox;
   bool received = false;  ///< `inbox` counts
   netio::Counts inbox;
-  std::string recording;  ///< file; empty: none
+  std::string recording;             ///< file; empty: none
+  std::uint64_t recorded_bytes = 0;  ///< its size
 };
 
 std::string json_of(const gpu::Survey& survey);

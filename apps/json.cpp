@@ -107,7 +107,10 @@ std::string json_of(const RunFacts& f) {
                        {"dropped", f.outbox.dropped},
                        {"first_failure", f.outbox.first_failure}};
   if (f.received) json["received"] = reasons(f.inbox);
-  if (!f.recording.empty()) json["recording"] = f.recording;
+  if (!f.recording.empty()) {
+    json["recording"] = f.recording;
+    json["recording_bytes"] = f.recorded_bytes;
+  }
   return print(json);
 }
 

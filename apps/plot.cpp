@@ -31,10 +31,10 @@ std::vector<viz::Track> tracks_of(const record::Recording& recording, const worl
   return tracks;
 }
 
-/// Fine enough to show walls, coarse enough for a page.
+/// [m] Fine enough to show walls, coarse enough for a page; whole centimetres.
 double cell_for(const world::Extent& extent) {
   const double longest = std::max(extent.x_max - extent.x_min, extent.y_max - extent.y_min);
-  return std::clamp(longest / 800.0, 0.03, 1.0);
+  return std::clamp(std::ceil(longest / 8.0) / 100.0, 0.03, 1.0);
 }
 
 /// Marks beams that ended on something that moves, which belongs on no map.

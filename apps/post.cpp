@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "base/error.h"
+
 namespace sf::apps {
 
 netio::PortRule require_laser_ports(const world::World& world, const Options& options) {
@@ -13,7 +15,11 @@ netio::PortRule require_laser_ports(const world::World& world, const Options& op
     for (const world::Laser& laser : mover.lasers)
       netio::require_wire(options.wire, laser.samples, laser.range_max, mover.name + "." + laser.name);
   }
-  netio::require_ports(uses);
+  try {
+    netio::require_ports(uses);
+  } catch (const base::InputError& error) {
+    throw base::InputError(std::string(error.what()) + " (--laser-port is the base, --ports-per-robot the stride)");
+  }
   return rule;
 }
 

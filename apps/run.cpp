@@ -59,7 +59,8 @@ class Outputs {
     }
     if (!recorder_) return;
     recorder_->finish();
-    facts.recording = fmt::format("{} ({:.1f} MB)", recorder_->path(), static_cast<double>(recorder_->size()) * 1e-6);
+    facts.recording = recorder_->path();
+    facts.recorded_bytes = recorder_->size();
   }
 
  private:

@@ -58,6 +58,7 @@ class Service {
   }
 
   std::uint16_t port() const { return inbox_.port(); }
+  std::size_t robots() const { return names_.robots.size(); }
 
   /// Sleeps until `when`, taking in what comes meanwhile.
   void wait_until(Clock::time_point start, Clock::time_point when) {
@@ -133,9 +134,9 @@ int serve(const Options& options) {
   Service service(world, device, options);
   catch_stop_signals();
   const double interval = options.rate > 0.0 ? 1.0 / options.rate : world.interval;
-  std::fprintf(stderr, "sensorfarm: serving %zu movers of %s on %s:%u, %g ticks/s, on %s; Ctrl-C ends it\n",
-               world.movers.size(), world.file.c_str(), options.bind.c_str(), service.port(), 1.0 / interval,
-               device.facts().name.c_str());
+  std::fprintf(stderr, "sensorfarm: serving %zu robot%s of %s on %s:%u, %g ticks/s, on %s; Ctrl-C ends it\n",
+               service.robots(), service.robots() == 1 ? "" : "s", world.file.c_str(), options.bind.c_str(),
+               service.port(), 1.0 / interval, device.facts().name.c_str());
 
   const auto start = Clock::now();
   const auto step = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(interval));

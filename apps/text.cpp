@@ -88,7 +88,8 @@ std::string text_of(const RunFacts& f) {
                   fmt::format("{} failed ({}), {} dropped", f.outbox.failed, f.outbox.first_failure, f.outbox.dropped));
   }
   if (f.received) text += row("packets received", netio::text(f.inbox));
-  if (!f.recording.empty()) text += row("recording", f.recording);
+  if (!f.recording.empty())
+    text += row("recording", fmt::format("{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6));
   text += row("time: move", stage(f.move_s));
   text += row("  place movers", stage(f.farm.place_s));
   text += row("  sector lists", stage(f.farm.lists_s));

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <utility>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
