@@ -39,7 +39,7 @@ class EmbreeCaster final : public Caster {
   void cast_packets(std::size_t robot, const base::Pose& X_WS);
   void cast_single(std::size_t robot, const base::Pose& X_WS);
   std::uint32_t model_of(unsigned primitive) const {
-    return primitive == RTC_INVALID_GEOMETRY_ID ? base::kNoHit : models_[primitive];
+    return primitive == RTC_INVALID_GEOMETRY_ID ? base::kNoHit : models_[primitive / 2];
   }
 
   const Scans& scans_;
@@ -47,14 +47,14 @@ class EmbreeCaster final : public Caster {
   Results<float> results_;
   RTCDevice device_;
   RTCScene scene_;
-  std::vector<std::uint32_t> models_;     ///< by primitive
+  std::vector<std::uint32_t> models_;     ///< by wall
   std::vector<float> beams_x_, beams_y_;  ///< padded to whole packets with the last beam
   base::Workers workers_;
 };
 
 EmbreeCaster::EmbreeCaster(const Scans& scans, const EmbreeUse& use)
     : scans_(scans), use_(use), results_(scans), device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
-  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_QUAD);
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   add_walls(geometry);
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
   rtcCommitGeometry(geometry);
@@ -79,7 +79,7 @@ EmbreeCaster::~EmbreeCaster() {
   rtcReleaseDevice(device_);
 }
 
-/// One upright quad a wall.
+/// Two triangles a wall: found faster than one upright quad, or one triangle with the wall as its section.
 void EmbreeCaster::add_walls(RTCGeometry geometry) {
   const double z = scans_.world.movers[0].X_WM.z + scans_.laser.X_MS.z;
   std::vector<world::Segment> seen;
@@ -87,8 +87,8 @@ void EmbreeCaster::add_walls(RTCGeometry geometry) {
     if (s.seen_by_laser && s.z_min <= z && z < s.z_max) seen.push_back(s);
   auto* const vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * seen.size()));
-  auto* const quads = static_cast<unsigned*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), seen.size()));
+  auto* const triangles = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), 2 * seen.size()));
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const base::Vec2 corners[4] = {seen[i].a, seen[i].b, seen[i].b, seen[i].a};
     for (std::size_t k = 0; k < 4; ++k) {
@@ -96,8 +96,9 @@ void EmbreeCaster::add_walls(RTCGeometry geometry) {
       v[0] = static_cast<float>(corners[k].x);
       v[1] = static_cast<float>(corners[k].y);
       v[2] = k < 2 ? -0.5f : 1.0f;
-      quads[4 * i + k] = static_cast<unsigned>(4 * i + k);
     }
+    constexpr unsigned kCorners[6] = {0, 1, 2, 0, 2, 3};
+    for (std::size_t k = 0; k < 6; ++k) triangles[6 * i + k] = static_cast<unsigned>(4 * i) + kCorners[k];
     models_.push_back(seen[i].model);
   }
 }
