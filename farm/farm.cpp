@@ -47,6 +47,7 @@ struct Farm::State {
   std::vector<std::uint64_t> begun;  ///< per laser row: readings begun
   std::vector<sensors::LaserDue> due;
   std::vector<base::ReadingBlock> blocks;
+  std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
   FarmStats stats;
   std::uint64_t hash = 0;
 
@@ -62,6 +63,7 @@ struct Farm::State {
     for (const world::Mover& mover : w.movers) poses.push_back(mover.X_WM);
     due.reserve(begun.size());
     blocks.reserve(begun.size());
+    hashes.reserve(begun.size());
   }
 
   void find_due(std::int64_t now);
@@ -109,12 +111,17 @@ void Farm::State::measure(std::int64_t now) {
 }
 
 void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
-  for (const base::ReadingBlock& r : readings) {
-    const std::uint64_t head[] = {r.mover, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
-    hash = base::hash_bytes(head, sizeof head, hash);
-    hash = base::hash_bytes(r.values.data(), r.values.size_bytes(), hash);
-    hash = base::hash_bytes(r.hits.data(), r.hits.size_bytes(), hash);
-  }
+  hashes.resize(readings.size());
+  workers.run(readings.size(), 16, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) {
+      const base::ReadingBlock& r = readings[i];
+      const std::uint64_t head[] = {r.mover, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
+      hashes[i] = base::hash_bytes(head, sizeof head);
+      hashes[i] = base::hash_bytes(r.values.data(), r.values.size_bytes(), hashes[i]);
+      hashes[i] = base::hash_bytes(r.hits.data(), r.hits.size_bytes(), hashes[i]);
+    }
+  });
+  hash = base::hash_bytes(hashes.data(), hashes.size() * sizeof hashes[0], hash);
 }
 
 Farm::Farm(const world::World& world, gpu::Device& device, const FarmOptions& options)

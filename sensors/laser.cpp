@@ -227,7 +227,7 @@ bool Lasers::prepare(std::span<const LaserDue> due, std::span<const Pose> poses)
 void Lasers::Tables::bind() {
   gpu::Buffer* const tables[] = {rows.get(),         lanes.get(),       directions.get(), middles.get(),
                                  directions64.get(), &scene.headers(),  &scene.entries(), &scene.ids(),
-                                 &scene.nearest(),   &scene.segments(), &scene.facts(),   ranges.get(),
+                                 &scene.nearest(),   &scene.segments(), &scene.models(),  ranges.get(),
                                  hits.get(),         doubts.get()};
   kernel->bind(tables);
   bound = true;

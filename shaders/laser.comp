@@ -12,10 +12,10 @@ layout(binding = 3, r32f) uniform readonly imageBuffer bearings;         // a la
 layout(binding = 4, rgba32ui) uniform readonly uimageBuffer directions64;  // a texel a beam: cosine, sine
 layout(binding = 5, rgba32ui) uniform readonly uimageBuffer headers;     // ListHeader
 layout(binding = 6, rgba32f) uniform readonly imageBuffer entries;       // ListEntry
-layout(binding = 7, r32ui) uniform readonly uimageBuffer ids;            // exact segment of each entry
+layout(binding = 7, r32ui) uniform readonly uimageBuffer ids;            // exact segment of each entry, and its clearance
 layout(binding = 8, r32f) uniform readonly imageBuffer nearest;          // [m] least distance of each chunk
 layout(binding = 9, rgba32ui) uniform readonly uimageBuffer segments;    // two texels a segment: ExactSegment
-layout(binding = 10, r32ui) uniform readonly uimageBuffer facts;         // two words a segment: SegmentFacts
+layout(binding = 10, r32ui) uniform readonly uimageBuffer models;        // what a beam reports that meets the segment
 layout(binding = 11, rgba32ui) uniform writeonly uimageBuffer ranges;    // two texels a lane: four doubles [m]
 layout(binding = 12, rgba32ui) uniform writeonly uimageBuffer hits;      // a texel a lane: four models
 layout(binding = 13, r32ui) uniform writeonly uimageBuffer doubts;       // a word a lane: 1 where 32 bits were not enough
@@ -32,7 +32,7 @@ Beam64 exact_beam(int slot, dvec2 origin, dvec2 heading) {
   return Beam64(origin, dvec2(x, y));
 }
 
-uint model_of(uint id) { return id == SF_NO_HIT ? SF_NO_HIT : imageLoad(facts, 2 * int(id) + 1).x; }
+uint model_of(uint id) { return id == SF_NO_HIT ? SF_NO_HIT : imageLoad(models, int(id)).x; }
 
 void main() {
   const int lane = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
@@ -56,18 +56,21 @@ void main() {
   const uvec4 walls = imageLoad(headers, int(tables.x) + sector);
   const uvec4 movers = imageLoad(headers, int(tables.y) + sector);
   Nearest best = Nearest(vec4(look.z), vec4(1.0), ivec4(-1), false);
-  search_list(walls, place.xy, d, band, best);
-  const ivec4 wall_entries = best.entry;
-  search_list(movers, place.zw, d, band, best);
+  search_lists(walls, movers, place, d, band, best);
 
   // Prove each winner, or look at all in 64 bits.
   const float clearance = uintBitsToFloat(movers.z);
-  bool sure = !best.edge_on;
+  bool sure[SF_BEAMS_PER_LANE];
+  uint winner[SF_BEAMS_PER_LANE];
+  uint open = 0u;  // beams in doubt
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
-    const vec2 o = best.entry[i] == wall_entries[i] ? place.xy : place.zw;
-    const bool p = proven(best.entry[i], o, vec2(d.dx[i], d.dy[i]), band, clearance, best.below[i]);
-    sure = sure && p;
+    const bool is_wall = uint(best.entry[i]) - SF_CHUNK * walls.x < SF_CHUNK * walls.y;
+    const vec2 o = is_wall ? place.xy : place.zw;
+    winner[i] = imageLoad(ids, max(best.entry[i], 0)).x;
+    sure[i] = proven(best.entry[i], winner[i], o, vec2(d.dx[i], d.dy[i]), band, clearance, best.below[i]) && !best.edge_on;
+    open |= sure[i] ? 0u : 1u << i;
   }
+  const bool doubtful = open != 0u;
 
   const uvec4 origin_words = imageLoad(rows, row + 3);
   const uvec4 range_words = imageLoad(rows, row + 5);
@@ -75,36 +78,40 @@ void main() {
   const double range_max = packDouble2x32(range_words.xy);
   Beam64 beams[SF_BEAMS_PER_LANE];
   Decision decisions[SF_BEAMS_PER_LANE];
-  uint winner[SF_BEAMS_PER_LANE];
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
     beams[i] = exact_beam(SF_BEAMS_PER_LANE * lane_beams + i, origin, heading);
     decisions[i] = Decision(range_max, SF_NO_HIT);
-    winner[i] = best.entry[i] < 0 ? SF_NO_HIT : imageLoad(ids, best.entry[i]).x;
+    decide(best.entry[i] < 0 || !sure[i] ? SF_NO_HIT : winner[i], beams[i], decisions[i]);
   }
 
-  // A proven lane goes round once, with its winners; another with every entry, until what is left is farther than all that
-  // 64 bits have found.
+  // A beam in doubt meets every entry, until what is left is farther than what 64 bits have found; one beam after another.
   int chunk = int(walls.x);
   int end = chunk + int(walls.y);
   int k = 0;
   bool movers_left = true;
-  bool more = true;
-  while (more) {
-    const bool here = chunk < end;
-    const uint id = here ? imageLoad(ids, SF_CHUNK * chunk + k).x : SF_NO_HIT;
-    for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) decide(sure ? winner[i] : id, beams[i], decisions[i]);
+  Decision found = Decision(range_max, SF_NO_HIT);
+  while (open != 0u) {
+    const int now = findLSB(open);
+    const dvec2 direction = now < 2 ? (now == 0 ? beams[0].direction : beams[1].direction)
+                                    : (now == 2 ? beams[2].direction : beams[3].direction);
+    decide(chunk < end ? imageLoad(ids, SF_CHUNK * chunk + k).x : SF_NO_HIT, Beam64(origin, direction), found);
     k = k + 1;
     chunk = k == SF_CHUNK ? chunk + 1 : chunk;
     k = k == SF_CHUNK ? 0 : k;
-    const double found = max(max(decisions[0].range, decisions[1].range), max(decisions[2].range, decisions[3].range));
-    bool done = chunk >= end || double(imageLoad(nearest, chunk).x) > found;
-    const bool turn = done && movers_left;
-    chunk = turn ? int(movers.x) : chunk;
-    end = turn ? int(movers.x + movers.y) : end;
-    k = turn ? 0 : k;
-    movers_left = movers_left && !turn;
-    done = done && !turn;
-    more = !sure && !done;
+    const bool list_done = chunk >= end || double(imageLoad(nearest, chunk).x) > found.range;
+    const bool beam_done = list_done && !movers_left;
+    chunk = beam_done ? int(walls.x) : list_done ? int(movers.x) : chunk;
+    end = beam_done ? int(walls.x + walls.y) : list_done ? int(movers.x + movers.y) : end;
+    k = list_done ? 0 : k;
+    movers_left = list_done ? beam_done : movers_left;
+    for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+      const bool mine = beam_done && now == i;
+      decisions[i].range = mine ? found.range : decisions[i].range;
+      decisions[i].id = mine ? found.id : decisions[i].id;
+    }
+    found.range = beam_done ? range_max : found.range;
+    found.id = beam_done ? SF_NO_HIT : found.id;
+    open = beam_done ? open & (open - 1u) : open;
   }
 
   const double range_min = packDouble2x32(range_words.zw);
@@ -114,5 +121,5 @@ void main() {
   imageStore(ranges, 2 * out_lane + 1, uvec4(unpackDouble2x32(decisions[2].range), unpackDouble2x32(decisions[3].range)));
   imageStore(hits, out_lane,
              uvec4(model_of(decisions[0].id), model_of(decisions[1].id), model_of(decisions[2].id), model_of(decisions[3].id)));
-  imageStore(doubts, out_lane, uvec4(sure ? 0u : 1u));
+  imageStore(doubts, out_lane, uvec4(doubtful ? 1u : 0u));
 }

@@ -83,10 +83,13 @@ void Bodies::index() {
            static_cast<std::size_t>((X.x - low_.x) / cell_);
   };
   cell_first_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
-  for (const Pose& X : poses_) ++cell_first_[cell_of(X) + 1];
+  // Movers that no beam can meet are nobody's neighbours.
+  for (std::uint32_t i = 0; i < poses_.size(); ++i)
+    if (bodies_[i].count > 0) ++cell_first_[cell_of(poses_[i]) + 1];
   for (std::size_t i = 1; i < cell_first_.size(); ++i) cell_first_[i] += cell_first_[i - 1];
   cell_next_.assign(cell_first_.begin(), cell_first_.end() - 1);
-  for (std::uint32_t i = 0; i < poses_.size(); ++i) cell_items_[cell_next_[cell_of(poses_[i])]++] = i;
+  for (std::uint32_t i = 0; i < poses_.size(); ++i)
+    if (bodies_[i].count > 0) cell_items_[cell_next_[cell_of(poses_[i])]++] = i;
 }
 
 template <class Visit>
@@ -106,6 +109,7 @@ void Bodies::each_near(Vec2 p, double reach, Visit visit) const {
 
 void Bodies::measure_clearances(std::size_t first, std::size_t last, Sight::Nearby& nearby) {
   for (std::size_t i = first; i < last; ++i) {
+    if (bodies_[i].count == 0) continue;
     const Vec2 p{poses_[i].x, poses_[i].y};
     double least = kLookout;
     each_near(p, bodies_[i].radius + largest_ + kLookout, [&](std::uint32_t other) {
@@ -147,11 +151,14 @@ std::uint32_t Bodies::watch_height(double z) {
 void Bodies::find_near(const View& view, Scratch& scratch) const {
   scratch.near.clear();
   each_near(view.origin, view.range + view.radius + largest_, [&](std::uint32_t body) {
-    if (body == view.self || bodies_[body].count == 0) return;
+    if (body == view.self) return;
     const double nearest =
         length(Vec2{poses_[body].x, poses_[body].y} - view.origin) - bodies_[body].radius - view.radius;
     if (nearest <= view.range) scratch.near.push_back({nearest, body});
   });
+
+  scratch.sorted.clear();
+  if (scratch.near.empty()) return;
 
   // Near to far, by distance in steps that cost no more than they order.
   constexpr std::uint32_t kSteps = 256;

@@ -28,14 +28,16 @@ std::size_t CellPool::home_of(const CellKey& key) const {
   return base::hash_bytes(&key, sizeof key) & (table_.size() - 1);
 }
 
-std::uint32_t CellPool::find(const CellKey& key) {
-  for (std::size_t at = home_of(key); table_[at] != kNone; at = (at + 1) & (table_.size() - 1)) {
-    Slot& slot = slots_[table_[at]];
-    if (!(slot.key == key)) continue;
-    slot.tick = tick_;
-    return table_[at];
-  }
+std::uint32_t CellPool::slot_of(const CellKey& key) const {
+  for (std::size_t at = home_of(key); table_[at] != kNone; at = (at + 1) & (table_.size() - 1))
+    if (slots_[table_[at]].key == key) return table_[at];
   return kNone;
+}
+
+std::uint32_t CellPool::find(const CellKey& key) {
+  const std::uint32_t slot = slot_of(key);
+  if (slot != kNone) slots_[slot].tick = tick_;
+  return slot;
 }
 
 std::uint32_t CellPool::insert(const CellKey& key, std::uint32_t chunks) {

@@ -32,6 +32,8 @@ class CellPool {
   void begin_tick() { ++tick_; }
   /// The slot of `key`, kept for this tick, or kNone.
   std::uint32_t find(const CellKey& key);
+  /// The slot of `key`, or kNone; may be asked by several threads at once.
+  std::uint32_t slot_of(const CellKey& key) const;
   /// Room for `key` (not in the pool) with `chunks` chunks: its slot, or kNone when this tick's cells fill the pool.
   std::uint32_t insert(const CellKey& key, std::uint32_t chunks);
 

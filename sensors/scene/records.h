@@ -12,10 +12,17 @@
 #define SF_ROW_TEXELS 6
 #define SF_NO_HIT 0xFFFFFFFFu
 
+// A list names a segment by its row (24 bits) and by how clear of others it is (8 bits above them): code k is 2^-k
+// metres, 127 nothing at all.
+#define SF_ROW_BITS 24
+#define SF_ROW_MASK 0xFFFFFFu
+#define SF_NO_CLEARANCE 127
+
 // What a 32-bit search may be wrong by, as a share of the largest coordinate (sectors.h derives it).
 #define SF_BAND 9.5367431640625e-7 /* 2^-20 */
 
-// A surface within this distance [m] of a sensor counts as touching it: beams into it read 0, beams off it pass.
+// A surface within this distance [m] along the beam counts as touching the sensor: beams into it read 0, beams off it
+// pass.
 #define SF_TOUCH 1e-9
 
 #ifdef __cplusplus
@@ -68,13 +75,6 @@ struct ExactSegment {
   double ax, ay, bx, by;  ///< [m] world
 };
 static_assert(sizeof(ExactSegment) == 32);
-
-/// What else is known of a segment: two words.
-struct SegmentFacts {
-  float clearance;      ///< [m] no surface comes nearer, but those that share an end with it at a fair angle
-  std::uint32_t model;  ///< what a beam that meets it reports
-};
-static_assert(sizeof(SegmentFacts) == 8);
 
 /// Whose beams a lane casts: two words.
 struct Lane {

@@ -14,10 +14,10 @@ namespace sf::sensors {
 namespace {
 
 /// Loops of one lane together stay below the 65 535 turns after which older Mesa ends them silently: a search visits
-/// each chunk once, a decision each entry once.
-constexpr std::uint32_t kMostWallChunks = 6'000;  ///< per sector
-constexpr std::uint32_t kMostMoverChunks = 3'000;
-static_assert((kMostWallChunks + kMostMoverChunks) * (1 + SF_CHUNK) + 16 < 65'535);
+/// each chunk once, a decision each entry once for each of a lane's beams.
+constexpr std::uint32_t kMostWallChunks = 2'800;  ///< per sector
+constexpr std::uint32_t kMostMoverChunks = 1'000;
+static_assert((kMostWallChunks + kMostMoverChunks) * (1 + SF_BEAMS_PER_LANE * SF_CHUNK) + 16 < 65'535);
 constexpr double kClearanceCap = 0.05;  ///< [m]
 
 /// Lists for small cells are short, but each cell costs: a 32nd of the range suits a scanner of some hundred beams, few
@@ -84,16 +84,21 @@ Scene::Scene(const world::World& world, gpu::Device& device, base::Workers& work
   // Exact segments: walls now, movers each tick.
   const std::size_t count = walls_.size() + bodies_->segments().size();
   segments_ = std::make_unique<gpu::Buffer>(device, gpu::Role::upload, gpu::Texel::u32x4, 2 * count + 2);
-  facts_ = std::make_unique<gpu::Buffer>(device, gpu::Role::upload, gpu::Texel::u32, 2 * count + 2);
+  models_ = std::make_unique<gpu::Buffer>(device, gpu::Role::upload, gpu::Texel::u32, count + 1);
+  if (count >= SF_ROW_MASK)
+    throw base::InputError("the world has " + std::to_string(count) + " segments; at most " +
+                           std::to_string(SF_ROW_MASK - 1) + " are supported");
   const auto exact = segments_->host<ExactSegment>();
-  const auto facts = facts_->host<SegmentFacts>();
-  const std::vector<float> clearances = wall_clearances(walls_, kClearanceCap);
-  for (std::size_t i = 0; i < walls_.size(); ++i) {
-    exact[i] = {walls_[i].a.x, walls_[i].a.y, walls_[i].b.x, walls_[i].b.y};
-    facts[i] = {clearances[i], walls_[i].model};
-  }
+  const auto models = models_->host<std::uint32_t>();
+  std::vector<float> clearances = wall_clearances(walls_, kClearanceCap);
   const std::vector<float> own = bodies_->own_clearances(kClearanceCap);
-  for (std::size_t i = 0; i < own.size(); ++i) facts[walls_.size() + i] = {own[i], bodies_->models()[i]};
+  clearances.insert(clearances.end(), own.begin(), own.end());
+  for (std::size_t i = 0; i < walls_.size(); ++i)
+    exact[i] = {walls_[i].a.x, walls_[i].a.y, walls_[i].b.x, walls_[i].b.y};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    models[i] = i < walls_.size() ? walls_[i].model : bodies_->models()[i - walls_.size()];
+    words_.push_back(list_word(i, clearances[i]));
+  }
 
   grow(options.pool_cells, options.pool_chunks, 64, 4096);
 }
@@ -170,7 +175,8 @@ void Scene::find_cells(std::span<const Viewpoint> views) {
 }
 
 ListTables Scene::tables() {
-  return {entries_->host<ListEntry>().data(), ids_->host<std::uint32_t>().data(), nearest_->host<float>().data()};
+  return {entries_->host<ListEntry>().data(), ids_->host<std::uint32_t>().data(), nearest_->host<float>().data(),
+          words_.data()};
 }
 
 void Scene::build_missing() {
@@ -207,8 +213,10 @@ bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {
   replaced_ = false;
   find_cells(views);
   for (build_missing(); !missing_.empty(); build_missing())
-    grow(2 * options_.pool_cells, 2 * options_.pool_chunks, view_capacity_, mover_chunks_);
-  for (std::size_t i = 0; i < views.size(); ++i) fill_walls(views[i], i, rows[i]);
+    grow(2 * options_.pool_cells + 64, 2 * options_.pool_chunks + 4096, view_capacity_, mover_chunks_);
+  workers_.run(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) fill_walls(views[i], i, rows[i]);
+  });
 
   find_groups(views);
   if (groups_.size() > view_capacity_)
@@ -231,7 +239,7 @@ void Scene::fill_walls(const Viewpoint& view, std::size_t row, RayRow& out) {
   out.heading_sectors = static_cast<float>(sectors < 0.0 ? sectors + SF_SECTORS : sectors);
   out.band = static_cast<float>(SF_BAND * (family.shape.reach() + 2.0 * bodies_->largest_radius()));
   out.reach = static_cast<float>(family.family.range * (1.0 + 1e-6) + out.band);
-  out.wall_lists = SF_SECTORS * pool_.find(keys_[row]);
+  out.wall_lists = SF_SECTORS * pool_.slot_of(keys_[row]);
   out.origin_x = view.X_WS.x;
   out.origin_y = view.X_WS.y;
   out.range_max = family.family.range;
@@ -331,7 +339,7 @@ void Scene::upload(gpu::Batch& batch) {
     chunks_up(0, pool + mover_chunks_used_);
     batch.up(*headers_, 0, headers_->bytes());
     batch.up(*segments_, 0, segments_->bytes());
-    batch.up(*facts_, 0, facts_->bytes());
+    batch.up(*models_, 0, models_->bytes());
   } else {
     for (const std::uint32_t slot : fresh_slots_) {
       const ListHeader* own = headers_->host<ListHeader>().data() + std::size_t{SF_SECTORS} * slot;

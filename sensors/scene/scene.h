@@ -63,7 +63,7 @@ class Scene {
   gpu::Buffer& ids() { return *ids_; }
   gpu::Buffer& nearest() { return *nearest_; }
   gpu::Buffer& segments() { return *segments_; }
-  gpu::Buffer& facts() { return *facts_; }
+  gpu::Buffer& models() { return *models_; }
 
   struct Counts {
     std::uint64_t cells_built = 0;  ///< ever
@@ -107,7 +107,8 @@ class Scene {
   std::unique_ptr<Sight> all_walls_;
   std::unique_ptr<Bodies> bodies_;
   CellPool pool_;
-  std::vector<CellKey> keys_;  ///< of this tick's views
+  std::vector<std::uint32_t> words_;  ///< of every exact segment, as lists call it
+  std::vector<CellKey> keys_;         ///< of this tick's views
   std::vector<CellKey> missing_;
   std::vector<Group> groups_;                      ///< of this tick's views
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
@@ -118,7 +119,7 @@ class Scene {
   bool replaced_ = false;                          ///< tables were, since `serve` began
   bool upload_all_ = true;
 
-  std::unique_ptr<gpu::Buffer> headers_, entries_, ids_, nearest_, segments_, facts_;
+  std::unique_ptr<gpu::Buffer> headers_, entries_, ids_, nearest_, segments_, models_;
 };
 
 }  // namespace sf::sensors

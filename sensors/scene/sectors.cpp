@@ -105,6 +105,13 @@ void collect(const Sight& sight, const CellShape& shape, Vec2 centre, bool both_
   lists.sort();
 }
 
+std::uint32_t list_word(std::uint32_t row, float clearance) {
+  if (clearance <= 0.0f) return row | std::uint32_t{SF_NO_CLEARANCE} << SF_ROW_BITS;
+  const double halvings = std::ceil(-std::log2(static_cast<double>(clearance)));
+  const auto code = static_cast<std::uint32_t>(std::clamp(halvings, 0.0, static_cast<double>(SF_NO_CLEARANCE)));
+  return row | code << SF_ROW_BITS;
+}
+
 void write_lists(const SectorLists& lists, std::uint32_t first_chunk, const ListTables& tables, ListHeader* headers) {
   std::uint32_t chunk = first_chunk;
   for (std::uint32_t sector = 0; sector < SF_SECTORS; ++sector) {
@@ -125,7 +132,7 @@ void write_lists(const SectorLists& lists, std::uint32_t first_chunk, const List
         const Vec2 e = c.b - c.a;
         entry = {static_cast<float>(c.a.x), static_cast<float>(c.a.y), static_cast<float>(e.x),
                  static_cast<float>(e.y)};
-        id = c.id;
+        id = tables.words[c.id];
       }
     }
   }

@@ -68,11 +68,15 @@ struct SectorLists {
 void collect(const Sight& sight, const CellShape& shape, Vec2 centre, bool both_sides, Sight::Nearby& nearby,
              SectorLists& lists);
 
+/// What a list calls segment `row`, of which others keep `clearance` [m] away.
+std::uint32_t list_word(std::uint32_t row, float clearance);
+
 /// Where finished lists are written: the device's tables.
 struct ListTables {
-  ListEntry* entries;  ///< SF_CHUNK per chunk
-  std::uint32_t* ids;  ///< SF_CHUNK per chunk
-  float* nearest;      ///< [m] one per chunk
+  ListEntry* entries;          ///< SF_CHUNK per chunk
+  std::uint32_t* ids;          ///< SF_CHUNK per chunk, as `words` gives them
+  float* nearest;              ///< [m] one per chunk
+  const std::uint32_t* words;  ///< `list_word` of every exact segment
 };
 
 /// Writes all lists from `first_chunk` on and their SF_SECTORS headers. Padding entries are never met.

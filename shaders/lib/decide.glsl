@@ -11,7 +11,8 @@ struct Decision {
 };
 
 // Both ends use the same doubles for every segment that shares them, so no beam slips between two neighbours.
-void decide(uint id, Beam64 beam, inout Decision best) {
+void decide(uint word, Beam64 beam, inout Decision best) {
+  const uint id = word == SF_NO_HIT ? SF_NO_HIT : word & SF_ROW_MASK;
   const int row = 2 * int(id == SF_NO_HIT ? 0u : id);
   const uvec4 words_a = imageLoad(segments, row);
   const uvec4 words_b = imageLoad(segments, row + 1);

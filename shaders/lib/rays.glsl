@@ -42,25 +42,35 @@ void search_chunk(int chunk, vec2 o, Beams d, float band, inout Nearest best) {
   }
 }
 
-// Searches one list until nothing in it can be nearer.
-void search_list(uvec4 header, vec2 o, Beams d, float band, inout Nearest best) {
-  int chunk = int(header.x);
-  const int end = chunk + int(header.y);
-  while (chunk < end && any(greaterThan(best.above, imageLoad(nearest, chunk).x * best.below))) {
-    search_chunk(chunk, o, d, band, best);
+// Searches the walls, then the movers, near to far, until nothing that is left can be nearer. `o` is the sensor in the frame of the walls'
+// entries, then of the movers'. One loop for both: lavapipe runs a loop's body once more, in vain, after the last lane has left.
+void search_lists(uvec4 walls, uvec4 movers, vec4 o, Beams d, float band, inout Nearest best) {
+  bool at_walls = walls.y > 0u;
+  int chunk = int(at_walls ? walls.x : movers.x);
+  int end = chunk + int(at_walls ? walls.y : movers.y);
+  bool more = chunk < end;
+  while (more) {
+    search_chunk(chunk, at_walls ? o.xy : o.zw, d, band, best);
     ++chunk;
+    more = chunk < end && any(greaterThan(best.above, imageLoad(nearest, chunk).x * best.below));
+    const bool turn = !more && at_walls;
+    chunk = turn ? int(movers.x) : chunk;
+    end = turn ? int(movers.x + movers.y) : end;
+    at_walls = at_walls && !turn;
+    more = more || (turn && movers.y > 0u);
   }
 }
 
-// True when the winner of a beam needs no further look.
-bool proven(int entry, vec2 o, vec2 d, float band, float clearance, float below) {
+// [m] how near other surfaces come to the segment that a list's word names, at least: a power of two, made of its exponent.
+float clearance_of(uint word) { return uintBitsToFloat((SF_NO_CLEARANCE - (word >> SF_ROW_BITS)) << 23); }
+
+// True when the winner of a beam needs no further look. `word` is what its list calls it.
+bool proven(int entry, uint word, vec2 o, vec2 d, float band, float clearance, float below) {
   const vec4 s = imageLoad(entries, max(entry, 0));
   const vec2 w = s.xy - o;
   const float error = 2.0 * band * (abs(s.z) + abs(s.w));
   const float tau = error / below;
   const float c = d.x * w.y - d.y * w.x;
   const float margin = band + 4.0 * tau;
-  const uint id = imageLoad(ids, max(entry, 0)).x;
-  const float own = uintBitsToFloat(imageLoad(facts, 2 * int(id)).x);
-  return entry < 0 || (c >= margin && c <= below - margin && tau < min(own, clearance));
+  return entry < 0 || (c >= margin && c <= below - margin && tau < min(clearance_of(word), clearance));
 }

@@ -108,6 +108,18 @@ TEST(Sectors, IntervalsWrapAround) {
   EXPECT_EQ(sectors_of(0.0, 100.0).size(), 32u);
 }
 
+/// A list's word never promises more clearance than there is, and at least half of it.
+TEST(Sectors, WordsRoundClearanceDown) {
+  for (const float clearance : {0.05f, 0.03f, 1.0f / 64, 1e-3f, 1e-9f, 1e-30f}) {
+    const double promised = std::ldexp(1.0, -static_cast<int>(list_word(5, clearance) >> SF_ROW_BITS));
+    EXPECT_LE(promised, clearance);
+    EXPECT_GT(2.0 * promised, clearance);
+  }
+  EXPECT_EQ(list_word(5, 0.0f) >> SF_ROW_BITS, std::uint32_t{SF_NO_CLEARANCE}) << "code 127 is no clearance at all";
+  EXPECT_EQ(list_word(5, 1e-44f) >> SF_ROW_BITS, std::uint32_t{SF_NO_CLEARANCE}) << "too little to say";
+  EXPECT_EQ(list_word(0xABCDEF, 0.01f) & SF_ROW_MASK, 0xABCDEFu);
+}
+
 /// What is written for the device: padding is in front of nothing, each chunk's least distance is a lower bound.
 TEST(Sectors, WrittenListsArePadded) {
   const world::World world = scenes::boxes(7, 8.0, 5);
@@ -119,8 +131,10 @@ TEST(Sectors, WrittenListsArePadded) {
   std::vector<ListEntry> entries(SF_CHUNK * (chunks + 3));
   std::vector<std::uint32_t> ids(entries.size(), 7);
   std::vector<float> nearest(chunks + 3, -1.0f);
+  std::vector<std::uint32_t> words;
+  for (std::uint32_t row = 0; row < world.walls.size(); ++row) words.push_back(list_word(row, 0.01f));
   ListHeader headers[SF_SECTORS];
-  write_lists(lists, 3, {entries.data(), ids.data(), nearest.data()}, headers);
+  write_lists(lists, 3, {entries.data(), ids.data(), nearest.data(), words.data()}, headers);
   EXPECT_EQ(headers[0].first, 3u);
   EXPECT_EQ(headers[SF_SECTORS - 1].first + headers[SF_SECTORS - 1].count, chunks + 3);
   for (std::uint32_t s = 0; s < SF_SECTORS; ++s) {
@@ -132,6 +146,7 @@ TEST(Sectors, WrittenListsArePadded) {
         EXPECT_LT(entries[at].ex * entries[at].ay - entries[at].ey * entries[at].ax, -1e20f);
         continue;
       }
+      EXPECT_EQ(ids[at] & SF_ROW_MASK, lists.candidates[lists.order[lists.first[s] + k]].id);
       EXPECT_LE(nearest[at / SF_CHUNK], lists.candidates[lists.order[lists.first[s] + k]].nearest);
     }
   }
