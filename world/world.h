@@ -20,8 +20,8 @@ using base::Vec2;
 inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
 /// One straight piece of surface, visible from both sides.
-/// Rule: `a != b`. Where `solid_left`, it belongs to closed simple outlines of a bounded solid, which lies on the left of
-/// a -> b: counter-clockwise around it, clockwise around its holes.
+/// Rule: `a != b`. Where `solid_left`, it belongs to closed simple outlines of a bounded solid, which lies on the left
+/// of a -> b: counter-clockwise around it, clockwise around its holes.
 struct Segment {
   Vec2 a;
   Vec2 b;  ///< [m] world frame for walls, mover frame for bodies
