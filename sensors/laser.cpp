@@ -3,127 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
-#include "base/error.h"
 #include "base/random.h"
-#include "sensors/beams.h"
+#include "sensors/laser_tables.h"
 #include "shaders/laser.comp.h"
 
 namespace sf::sensors {
 
 namespace {
 
-/// Groups along x of a dispatch; more rows of groups follow along y. Devices promise 65 535.
-constexpr std::uint32_t kGroupsAcross = 32'768;
-
-/// One laser, planned at load.
-struct LaserRow {
-  world::Laser laser;
-  BeamPlan plan;
-  double height = 0.0;  ///< [m] of the beams in the world, fixed at load: the world is 2.5-D
-  std::uint32_t family = 0;
-  std::uint32_t beams = 0;  ///< first lane of its beam tables
-  std::uint32_t out = 0;    ///< first lane of its results
-  std::size_t values = 0;   ///< first of its samples in the host's own results
-  bool turns = false;       ///< has angular noise: beams are its own and change
-  bool shaped = false;      ///< results are reworked on the host
-};
-
 /// Lasers with the same beams share their tables.
 using BeamKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 
-bool has_range_noise(const world::LaserNoise& noise) {
-  return noise.range_sigma > 0.0 || noise.range_proportional > 0.0;
-}
-
 }  // namespace
-
-struct Lasers::Tables {
-  Scene& scene;
-  base::Workers& workers;
-  LaserOptions options;
-  std::vector<LaserOwner> owners;
-  std::vector<LaserRow> lasers;
-  std::unique_ptr<gpu::Kernel> kernel;
-  std::unique_ptr<gpu::Buffer> rows, lanes, groups, directions, middles, directions64, ranges, hits, doubts;
-  std::vector<LaserDue> due;
-  std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, that `lanes` holds
-  std::vector<Viewpoint> views;
-  std::vector<RayRow> ray_rows;
-  std::vector<double> values;  ///< [m] results reworked on the host
-  std::vector<std::uint32_t> met;
-  std::vector<std::vector<double>> turned;  ///< scratch per thread
-  std::uint32_t out_lanes = 0;
-  std::uint32_t due_lanes = 0;
-  std::uint64_t rays = 0;
-  std::uint64_t doubts_seen = 0;
-  bool bound = false;
-  bool beams_changed = true;
-
-  Tables(Scene& s, base::Workers& w, const LaserOptions& o) : scene(s), workers(w), options(o) {}
-  void plan(const world::World& world);
-  void make_tables(gpu::Device& device, std::uint32_t beam_lanes);
-  void write_all_beams();
-  void write_lanes();
-  void turn_beams(const LaserDue& d, unsigned thread);
-  void shape(const LaserDue& d);
-  void bind();
-  BeamTables beam_tables(std::uint32_t lane) const {
-    return {directions->host<float>().data() + 8 * std::size_t{lane}, middles->host<float>().data() + lane,
-            directions64->host<double>().data() + 8 * std::size_t{lane}};
-  }
-};
-
-void Lasers::Tables::plan(const world::World& world) {
-  std::size_t samples = 0;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    const world::Mover& mover = world.movers[m];
-    std::size_t beams = 0;
-    for (const world::Laser& laser : mover.lasers) beams += laser.samples / laser.resolution;
-    for (std::uint32_t i = 0; i < mover.lasers.size(); ++i) {
-      LaserRow row;
-      row.laser = mover.lasers[i];
-      row.plan = plan_beams(row.laser, options.noise);
-      row.height = mover.X_WM.z + row.laser.X_MS.z;
-      const double turn = options.noise ? kMostSigmas * row.laser.noise.angle_sigma : 0.0;
-      row.family = scene.add_family({row.height, row.laser.range_max, row.plan.spread, row.laser.fov + 2.0 * turn,
-                                     static_cast<std::uint32_t>(std::min<std::size_t>(beams, 1'000'000))});
-      row.turns = options.noise && row.laser.noise.angle_sigma > 0.0;
-      row.shaped = row.laser.resolution > 1 || !row.plan.packed || (options.noise && has_range_noise(row.laser.noise));
-      row.out = out_lanes;
-      row.values = samples;
-      out_lanes += row.plan.lanes();
-      if (row.shaped) samples += row.laser.samples;
-      owners.push_back({m, i});
-      lasers.push_back(std::move(row));
-    }
-  }
-  values.resize(samples);
-  met.resize(samples);
-}
-
-void Lasers::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) {
-  using gpu::Role;
-  using gpu::Texel;
-  const std::size_t group = kernel->group_size();
-  const std::size_t count = std::max<std::size_t>(1, lasers.size());
-  // Lanes are padded to whole groups, and groups to whole rows of groups where there are many.
-  const std::size_t most_groups = out_lanes / group + 1;
-  const std::size_t padded = (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * group;
-  rows = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32x4, SF_ROW_TEXELS * count);
-  lanes = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32, 2 * padded);
-  groups = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32, 4);
-  directions = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::f32x4, 2 * std::size_t{beam_lanes} + 2);
-  middles = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::f32, std::size_t{beam_lanes} + 1);
-  directions64 = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32x4, 4 * std::size_t{beam_lanes} + 4);
-  ranges = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32x4, 2 * std::size_t{out_lanes} + 2);
-  hits = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32x4, std::size_t{out_lanes} + 1);
-  doubts = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32, std::size_t{out_lanes} + 1);
-}
-
-void Lasers::Tables::write_all_beams() {
-  for (const LaserRow& row : lasers) write_beams(row.laser, row.plan, {}, beam_tables(row.beams));
-}
 
 Lasers::Lasers(const world::World& world, Scene& scene, gpu::Device& device, base::Workers& workers,
                const LaserOptions& options)
@@ -154,45 +47,6 @@ const std::vector<LaserOwner>& Lasers::owners() const { return t_->owners; }
 std::uint64_t Lasers::rays() const { return t_->rays; }
 std::uint64_t Lasers::doubts() const { return t_->doubts_seen; }
 
-void Lasers::Tables::turn_beams(const LaserDue& d, unsigned thread) {
-  const LaserRow& row = lasers[d.row];
-  std::vector<double>& turns = turned[thread];
-  turns.resize(row.plan.samples.size());
-  const base::Draw draw{options.seed, base::Stream::angle_noise, owners[d.row].mover, owners[d.row].sensor, d.sequence};
-  for (std::size_t k = 0; k < turns.size(); ++k) {
-    const double normal = base::random_normal(draw, row.plan.samples[k])[0];
-    turns[k] = row.laser.noise.angle_sigma * std::clamp(normal, -kMostSigmas, kMostSigmas);
-  }
-  write_beams(row.laser, row.plan, turns, beam_tables(row.beams));
-}
-
-void Lasers::Tables::write_lanes() {
-  const bool same = lanes_written.size() == due.size() &&
-                    std::equal(due.begin(), due.end(), lanes_written.begin(),
-                               [](const LaserDue& d, std::uint32_t row) { return d.row == row; });
-  if (same) return;
-  lanes_written.clear();
-  const auto table = lanes->host<Lane>();
-  std::size_t at = 0;
-  for (std::uint32_t i = 0; i < due.size(); ++i) {
-    for (std::uint32_t lane = 0; lane < lasers[due[i].row].plan.lanes(); ++lane) table[at++] = {i, lane};
-    lanes_written.push_back(due[i].row);
-  }
-  due_lanes = static_cast<std::uint32_t>(at);
-  const std::uint32_t group = kernel->group_size();
-  const std::uint32_t needed = (due_lanes + group - 1) / group;
-  const std::uint32_t across = std::min(needed, kGroupsAcross);
-  const std::uint32_t down = across > 0 ? (needed + across - 1) / across : 0;
-  // Padding repeats the last lane, which then is written more than once with the same values.
-  const Lane last = at > 0 ? table[at - 1] : Lane{0, 0};
-  std::fill(table.begin() + static_cast<std::ptrdiff_t>(at), table.begin() + std::ptrdiff_t{across} * down * group,
-            last);
-  const auto counts = groups->host<std::uint32_t>();
-  counts[0] = across;
-  counts[1] = down;
-  counts[2] = across > 0 ? 1 : 0;
-}
-
 bool Lasers::prepare(std::span<const LaserDue> due, std::span<const Pose> poses) {
   Tables& t = *t_;
   t.due.assign(due.begin(), due.end());
@@ -222,15 +76,6 @@ bool Lasers::prepare(std::span<const LaserDue> due, std::span<const Pose> poses)
   const bool again = replaced || !t.bound;
   if (again) t.bind();
   return again;
-}
-
-void Lasers::Tables::bind() {
-  gpu::Buffer* const tables[] = {rows.get(),         lanes.get(),       directions.get(), middles.get(),
-                                 directions64.get(), &scene.headers(),  &scene.entries(), &scene.ids(),
-                                 &scene.nearest(),   &scene.segments(), &scene.models(),  ranges.get(),
-                                 hits.get(),         doubts.get()};
-  kernel->bind(tables);
-  bound = true;
 }
 
 void Lasers::record(gpu::Batch& batch) { batch.dispatch(*t_->kernel, *t_->groups, 0); }

@@ -1,0 +1,72 @@
+// Lists of movers, made each tick: one for all lasers of a robot that look at one height as far.
+
+#include <algorithm>
+#include <atomic>
+
+#include "sensors/scene/scene_parts.h"
+
+namespace sf::sensors {
+
+void Scene::find_groups(std::span<const Viewpoint> views) {
+  groups_.clear();
+  for (std::size_t i = 0; i < views.size();) {
+    Group group{i, i, {views[i].X_WS.x, views[i].X_WS.y}, 0.0, false};
+    Vec2 low = group.origin;
+    Vec2 high = group.origin;
+    for (; i < views.size() && views[i].self == views[group.first].self && views[i].family == views[group.first].family;
+         ++i) {
+      const Pose& X = views[i].X_WS;
+      low = {std::min(low.x, X.x), std::min(low.y, X.y)};
+      high = {std::max(high.x, X.x), std::max(high.y, X.y)};
+      group.in_solid = group.in_solid || keys_[i].family % 2 == 1;
+    }
+    group.end = i;
+    if (low.x != high.x || low.y != high.y) {
+      group.origin = 0.5 * (low + high);
+      group.radius = 0.5 * length(high - low) * (1.0 + 1e-9) + 1e-9;
+    }
+    groups_.push_back(group);
+  }
+}
+
+bool Scene::fill_some_movers(std::span<const Viewpoint> views) {
+  std::atomic<std::uint32_t> next{0};
+  std::atomic<std::uint32_t> longest{0};
+  const ListTables out = tables();
+  ListHeader* const headers = headers_->host<ListHeader>().data() + std::size_t{SF_SECTORS} * options_.pool_cells;
+  workers_.run(groups_.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
+    Scratch& scratch = *scratch_[thread];
+    for (std::size_t i = first; i < last; ++i) {
+      const Group& group = groups_[i];
+      const Viewpoint& view = views[group.first];
+      const FamilyTables& family = *families_[view.family];
+      const double fov = group.end - group.first == 1 ? family.family.fov : 2.0 * M_PI;
+      float clearances[SF_SECTORS];
+      bodies_->collect({group.origin, group.radius, family.height, view.X_WS.yaw, fov, family.family.range,
+                        family.shape.spread, view.self, group.in_solid ? nullptr : family.depth},
+                       scratch.bodies, scratch.lists, clearances);
+      const std::uint32_t chunks = scratch.lists.all_chunks();
+      const std::uint32_t at = next.fetch_add(chunks);
+      for (std::uint32_t s = 0; s < SF_SECTORS; ++s)
+        if (scratch.lists.chunks(s) > kMostMoverChunks) longest = scratch.lists.chunks(s);
+      if (at + chunks > mover_chunks_) continue;
+      ListHeader* const own = headers + SF_SECTORS * i;
+      write_lists(scratch.lists, options_.pool_chunks + at, out, own);
+      for (std::uint32_t s = 0; s < SF_SECTORS; ++s) own[s].clearance = clearances[s];
+    }
+  });
+  refuse_if_too_long(longest, kMostMoverChunks, "movers");
+  mover_chunks_used_ = next;
+  return mover_chunks_used_ <= mover_chunks_;
+}
+
+void Scene::name_movers(std::span<const Viewpoint> views, std::span<RayRow> rows) const {
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    for (std::size_t i = groups_[g].first; i < groups_[g].end; ++i) {
+      rows[i].mover_lists = static_cast<std::uint32_t>(SF_SECTORS * (options_.pool_cells + g));
+      rows[i].mover_offset_x = static_cast<float>(views[i].X_WS.x - groups_[g].origin.x);
+      rows[i].mover_offset_y = static_cast<float>(views[i].X_WS.y - groups_[g].origin.y);
+    }
+}
+
+}  // namespace sf::sensors

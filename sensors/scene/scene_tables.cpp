@@ -1,0 +1,62 @@
+// The device's tables: how they grow, and what of them travels.
+
+#include <cstring>
+
+#include "sensors/scene/scene_parts.h"
+
+namespace sf::sensors {
+
+ListTables Scene::tables() {
+  return {entries_->host<ListEntry>().data(), ids_->host<std::uint32_t>().data(), nearest_->host<float>().data(),
+          words_.data()};
+}
+
+void Scene::grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t views, std::uint32_t mover_chunks) {
+  const auto replace = [&](std::unique_ptr<gpu::Buffer>& table, gpu::Texel texel, std::size_t texels) {
+    auto larger = std::make_unique<gpu::Buffer>(device_, gpu::Role::upload, texel, texels);
+    if (table) std::memcpy(larger->host<std::uint8_t>().data(), table->host<std::uint8_t>().data(), table->bytes());
+    table = std::move(larger);
+  };
+  const std::size_t chunks = std::size_t{pool_chunks} + mover_chunks;
+  if (chunks != std::size_t{options_.pool_chunks} + mover_chunks_ || !entries_) {
+    replace(entries_, gpu::Texel::f32x4, SF_CHUNK * chunks);
+    replace(ids_, gpu::Texel::u32, SF_CHUNK * chunks);
+    replace(nearest_, gpu::Texel::f32, chunks);
+  }
+  if (pool_cells != options_.pool_cells || views != view_capacity_)
+    replace(headers_, gpu::Texel::u32x4, std::size_t{SF_SECTORS} * (pool_cells + views));
+  pool_.grow(pool_cells, pool_chunks);
+  options_ = {pool_chunks, pool_cells};
+  view_capacity_ = views;
+  mover_chunks_ = mover_chunks;
+  replaced_ = upload_all_ = true;
+}
+
+void Scene::upload(gpu::Batch& batch) {
+  const std::size_t pool = options_.pool_chunks;
+  const auto chunks_up = [&](std::size_t first, std::size_t count) {
+    batch.up(*entries_, first * SF_CHUNK * 16, count * SF_CHUNK * 16);
+    batch.up(*ids_, first * SF_CHUNK * 4, count * SF_CHUNK * 4);
+    batch.up(*nearest_, first * 4, count * 4);
+  };
+  if (upload_all_) {
+    chunks_up(0, pool + mover_chunks_used_);
+    batch.up(*headers_, 0, headers_->bytes());
+    batch.up(*segments_, 0, segments_->bytes());
+    batch.up(*models_, 0, models_->bytes());
+  } else {
+    for (const std::uint32_t slot : fresh_slots_) {
+      const ListHeader* own = headers_->host<ListHeader>().data() + std::size_t{SF_SECTORS} * slot;
+      const ListHeader& last = own[SF_SECTORS - 1];
+      chunks_up(own->first, last.first + last.count - own->first);
+      batch.up(*headers_, std::size_t{SF_SECTORS} * slot * 16, SF_SECTORS * 16);
+    }
+    chunks_up(pool, mover_chunks_used_);
+    batch.up(*headers_, std::size_t{SF_SECTORS} * options_.pool_cells * 16, groups_.size() * SF_SECTORS * 16);
+    batch.up(*segments_, walls_.size() * sizeof(ExactSegment), bodies_->segments().size_bytes());
+  }
+  upload_all_ = false;
+  fresh_slots_.clear();
+}
+
+}  // namespace sf::sensors

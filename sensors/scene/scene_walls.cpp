@@ -1,0 +1,93 @@
+// Lists of walls: which cell each sensor stands in, and the cells that have no lists yet.
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <tuple>
+
+#include "sensors/scene/scene_parts.h"
+
+namespace sf::sensors {
+
+CellKey Scene::key_of(const Viewpoint& view) const {
+  const FamilyTables& family = *families_[view.family];
+  const bool inside = family.sight->inside_solid({view.X_WS.x, view.X_WS.y});
+  return {2 * std::int64_t{view.family} + inside,
+          static_cast<std::int64_t>(std::floor(view.X_WS.x / family.shape.size)),
+          static_cast<std::int64_t>(std::floor(view.X_WS.y / family.shape.size))};
+}
+
+Vec2 Scene::centre_of(const FamilyTables& family, const CellKey& key) const {
+  return {(static_cast<double>(key.x) + 0.5) * family.shape.size,
+          (static_cast<double>(key.y) + 0.5) * family.shape.size};
+}
+
+void Scene::find_cells(std::span<const Viewpoint> views) {
+  keys_.resize(views.size());
+  workers_.run(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) {
+      const bool same = i > first && views[i].family == views[i - 1].family && views[i].X_WS.x == views[i - 1].X_WS.x &&
+                        views[i].X_WS.y == views[i - 1].X_WS.y;
+      keys_[i] = same ? keys_[i - 1] : key_of(views[i]);
+    }
+  });
+  pool_.begin_tick();
+  missing_.clear();
+  for (const CellKey& key : keys_)
+    if (pool_.find(key) == CellPool::kNone) missing_.push_back(key);
+  const auto order = [](const CellKey& p, const CellKey& q) {
+    return std::tie(p.family, p.x, p.y) < std::tie(q.family, q.x, q.y);
+  };
+  std::sort(missing_.begin(), missing_.end(), order);
+  missing_.erase(std::unique(missing_.begin(), missing_.end()), missing_.end());
+}
+
+void Scene::build_missing() {
+  std::mutex pool_lock;
+  const ListTables out = tables();
+  ListHeader* const headers = headers_->host<ListHeader>().data();
+  std::uint32_t longest = 0;
+  workers_.run(missing_.size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
+    Scratch& scratch = *scratch_[thread];
+    for (std::size_t i = first; i < last; ++i) {
+      const CellKey& key = missing_[i];
+      const FamilyTables& family = *families_[static_cast<std::size_t>(key.family / 2)];
+      collect(*family.sight, family.shape, centre_of(family, key), key.family % 2 == 1, scratch.nearby, scratch.lists);
+      std::uint32_t slot;
+      {
+        const std::scoped_lock guard(pool_lock);
+        for (std::uint32_t s = 0; s < SF_SECTORS; ++s) longest = std::max(longest, scratch.lists.chunks(s));
+        slot = longest > kMostWallChunks ? CellPool::kNone : pool_.insert(key, scratch.lists.all_chunks());
+        if (slot != CellPool::kNone) fresh_slots_.push_back(slot);
+      }
+      if (slot != CellPool::kNone)
+        write_lists(scratch.lists, pool_.first_chunk(slot), out, headers + std::size_t{SF_SECTORS} * slot);
+    }
+  });
+  refuse_if_too_long(longest, kMostWallChunks, "walls");
+  forget_found();
+}
+
+void Scene::forget_found() {
+  std::erase_if(missing_, [this](const CellKey& key) { return pool_.find(key) != CellPool::kNone; });
+}
+
+void Scene::fill_walls(const Viewpoint& view, std::size_t row, RayRow& out) {
+  const FamilyTables& family = *families_[view.family];
+  const Vec2 centre = centre_of(family, keys_[row]);
+  const double yaw = view.X_WS.yaw;
+  const double sectors = std::remainder(yaw, 2.0 * M_PI) * (SF_SECTORS / (2.0 * M_PI));
+  out.offset_x = static_cast<float>(view.X_WS.x - centre.x);
+  out.offset_y = static_cast<float>(view.X_WS.y - centre.y);
+  out.heading_cos64 = std::cos(yaw);
+  out.heading_sin64 = std::sin(yaw);
+  out.heading_sectors = static_cast<float>(sectors < 0.0 ? sectors + SF_SECTORS : sectors);
+  out.band = static_cast<float>(SF_BAND * (family.shape.reach() + 2.0 * bodies_->largest_radius()));
+  out.reach = static_cast<float>(family.family.range * (1.0 + 1e-6) + out.band);
+  out.wall_lists = SF_SECTORS * pool_.slot_of(keys_[row]);
+  out.origin_x = view.X_WS.x;
+  out.origin_y = view.X_WS.y;
+  out.range_max = family.family.range;
+}
+
+}  // namespace sf::sensors
