@@ -90,6 +90,8 @@ std::string json_of(const RunFacts& f) {
             {"rays", f.farm.rays},
             {"rays_per_s", f.wall_s > 0.0 ? static_cast<double>(f.farm.rays) / f.wall_s : 0.0},
             {"readings", f.farm.readings},
+            {"lanes_in_doubt", f.farm.doubts},
+            {"cells_built", f.farm.cells_built},
             {"contacts", f.contacts},
             {"hash", base::hash_text(f.hash)},
             {"interrupted", f.interrupted},
