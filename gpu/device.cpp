@@ -14,8 +14,7 @@ std::string why_none(const Instance& instance, const Considered& considered) {
   if (considered.facts.empty()) return "no Vulkan device found; install a driver (Debian: mesa-vulkan-drivers)";
   std::string line = "no usable Vulkan device among " + std::to_string(considered.facts.size()) + ":";
   for (const DeviceFacts& facts : considered.facts) line += " " + facts.name + " " + facts.reason + ";";
-  line.back() = '.';
-  return line;
+  return line + " name another with --device or SENSORFARM_DEVICE, or install a driver";
 }
 
 void open(Device::Vk& vk) {
