@@ -59,7 +59,7 @@ void main() {
   search_lists(walls, movers, place, d, band, best);
 
   // Prove each winner, or look at all in 64 bits.
-  const float clearance = uintBitsToFloat(movers.z);
+  const float movers_to_walls = uintBitsToFloat(movers.z);
   bool sure[SF_BEAMS_PER_LANE];
   uint winner[SF_BEAMS_PER_LANE];
   uint open = 0u;  // beams in doubt
@@ -67,7 +67,9 @@ void main() {
     const bool is_wall = uint(best.entry[i]) - SF_CHUNK * walls.x < SF_CHUNK * walls.y;
     const vec2 o = is_wall ? place.xy : place.zw;
     winner[i] = imageLoad(ids, max(best.entry[i], 0)).x;
-    sure[i] = proven(best.entry[i], winner[i], o, vec2(d.dx[i], d.dy[i]), band, clearance, best.below[i]) && !best.edge_on;
+    sure[i] = proven(best.entry[i], winner[i], o, vec2(d.dx[i], d.dy[i]), band,
+                     is_wall ? movers_to_walls : 1e30, best.below[i]) &&
+              !best.edge_on;
     open |= sure[i] ? 0u : 1u << i;
   }
   const bool doubtful = open != 0u;

@@ -24,6 +24,7 @@ Bodies::Bodies(const world::World& world, const Sight* any_wall)
       if (!s.seen_by_laser) continue;
       local_.push_back(s);
       models_.push_back(s.model);
+      owners_.push_back(static_cast<std::uint32_t>(bodies_.size()));
     }
     body.count = static_cast<std::uint32_t>(local_.size()) - body.first;
     bodies_.push_back(body);
@@ -111,18 +112,20 @@ void Bodies::measure_clearances(std::size_t first, std::size_t last, Sight::Near
   for (std::size_t i = first; i < last; ++i) {
     if (bodies_[i].count == 0) continue;
     const Vec2 p{poses_[i].x, poses_[i].y};
-    double least = kLookout;
+    double to_movers = kLookout;
     each_near(p, bodies_[i].radius + largest_ + kLookout, [&](std::uint32_t other) {
       if (other == i) return;
       const double gap = length(Vec2{poses_[other].x, poses_[other].y} - p) - bodies_[i].radius - bodies_[other].radius;
-      least = std::min(least, gap);
+      to_movers = std::min(to_movers, gap);
     });
+    double to_walls = kLookout;
     walls_->near(p, bodies_[i].radius + kLookout, nearby);
     for (const std::uint32_t row : nearby.found) {
       const SightSegment& s = walls_->segments()[row];
-      least = std::min(least, distance_to_segment(p, s.a, s.b) - bodies_[i].radius);
+      to_walls = std::min(to_walls, distance_to_segment(p, s.a, s.b) - bodies_[i].radius);
     }
-    clearances_[i] = static_cast<float>(std::max(0.0, 0.99 * least));
+    const auto at_least = [](double gap) { return static_cast<float>(std::max(0.0, 0.99 * gap)); };
+    clearances_[i] = {at_least(to_walls), at_least(std::min(to_walls, to_movers))};
   }
 }
 
@@ -211,7 +214,7 @@ void Bodies::collect(const View& view, Scratch& scratch, SectorLists& lists, flo
     add_body(view, n.body, bearing, wide, lists);
     for (std::size_t at = before; at < lists.items.size(); ++at) {
       float& least = clearances[lists.items[at].sector];
-      least = std::min(least, clearances_[n.body]);
+      least = std::min(least, clearances_[n.body].walls);
     }
   }
   lists.sort();

@@ -26,6 +26,8 @@ class Bodies {
   std::span<const ExactSegment> segments() const { return segments_; }
   /// For each, how near other parts of the same mover come, as `wall_clearances` gives it [m].
   std::vector<float> own_clearances(double cap) const;
+  /// How near walls and other movers come to the mover of segment `row`, at least, as of the last `place` [m].
+  float clearance_of(std::size_t row) const { return clearances_[owners_[row]].anyone; }
   std::size_t count() const { return bodies_.size(); }
   double largest_radius() const { return largest_; }  ///< [m]
   /// What beams report that meet them, in the same order.
@@ -56,7 +58,8 @@ class Bodies {
     std::vector<Near> sorted;
     std::vector<std::uint32_t> counts;
   };
-  /// Collects what `view` may meet of other movers, and for each sector the least clearance of what is in it [m].
+  /// Collects what `view` may meet of other movers, and for each sector how near to walls any of it is,
+  /// at least [m].
   /// Movers that nearer ones hide are left out.
   void collect(const View& view, Scratch& scratch, SectorLists& lists, float clearances[SF_SECTORS]) const;
 
@@ -76,8 +79,13 @@ class Bodies {
   std::vector<world::Segment> local_;   ///< mover frame
   std::vector<ExactSegment> segments_;  ///< world frame
   std::vector<std::uint32_t> models_;
+  std::vector<std::uint32_t> owners_;  ///< mover of each segment
   std::vector<Pose> poses_;
-  std::vector<float> clearances_;      ///< [m] per mover: to walls and other movers, at least
+  struct Clearance {
+    float walls;   ///< [m] to the nearest wall, at least
+    float anyone;  ///< [m] to the nearest wall or mover, at least
+  };
+  std::vector<Clearance> clearances_;  ///< per mover, as of the last `place`
   std::vector<Sight::Nearby> nearby_;  ///< per thread
   const Sight* walls_;
   std::uint32_t wall_count_;

@@ -58,7 +58,7 @@ static_assert(sizeof(RayRow) == SF_ROW_TEXELS * 16);
 struct ListHeader {
   std::uint32_t first;  ///< chunk
   std::uint32_t count;  ///< [chunks]
-  float clearance;      ///< [m] movers: no two surfaces in it, nor one of it and a wall, are nearer; walls: +inf
+  float clearance;      ///< [m] movers: none of it is nearer to a wall; walls: +inf
   std::uint32_t spare;
 };
 static_assert(sizeof(ListHeader) == 16);

@@ -71,8 +71,8 @@ Scene::Scene(const world::World& world, gpu::Device& device, base::Workers& work
   const auto exact = segments_->host<ExactSegment>();
   const auto models = models_->host<std::uint32_t>();
   std::vector<float> clearances = wall_clearances(walls_, kClearanceCap);
-  const std::vector<float> own = bodies_->own_clearances(kClearanceCap);
-  clearances.insert(clearances.end(), own.begin(), own.end());
+  own_clearances_ = bodies_->own_clearances(kClearanceCap);
+  clearances.insert(clearances.end(), own_clearances_.begin(), own_clearances_.end());
   for (std::size_t i = 0; i < walls_.size(); ++i)
     exact[i] = {walls_[i].a.x, walls_[i].a.y, walls_[i].b.x, walls_[i].b.y};
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -119,6 +119,9 @@ void Scene::place(std::span<const Pose> poses) {
   const auto moved = bodies_->segments();
   if (!moved.empty())
     std::memcpy(segments_->host<ExactSegment>().data() + walls_.size(), moved.data(), moved.size_bytes());
+  for (std::uint32_t row = 0; row < moved.size(); ++row)
+    words_[walls_.size() + row] = list_word(static_cast<std::uint32_t>(walls_.size()) + row,
+                                            std::min(own_clearances_[row], bodies_->clearance_of(row)));
 }
 
 bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {

@@ -107,8 +107,9 @@ class Scene {
   std::unique_ptr<Sight> all_walls_;
   std::unique_ptr<Bodies> bodies_;
   CellPool pool_;
-  std::vector<std::uint32_t> words_;  ///< of every exact segment, as lists call it
-  std::vector<CellKey> keys_;         ///< of this tick's views
+  std::vector<std::uint32_t> words_;   ///< of every exact segment, as lists call it
+  std::vector<float> own_clearances_;  ///< [m] of movers' segments: how near their own mover's others come
+  std::vector<CellKey> keys_;          ///< of this tick's views
   std::vector<CellKey> missing_;
   std::vector<Group> groups_;                      ///< of this tick's views
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread

@@ -107,8 +107,9 @@ void collect(const Sight& sight, const CellShape& shape, Vec2 centre, bool both_
 
 std::uint32_t list_word(std::uint32_t row, float clearance) {
   if (clearance <= 0.0f) return row | std::uint32_t{SF_NO_CLEARANCE} << SF_ROW_BITS;
-  const double halvings = std::ceil(-std::log2(static_cast<double>(clearance)));
-  const auto code = static_cast<std::uint32_t>(std::clamp(halvings, 0.0, static_cast<double>(SF_NO_CLEARANCE)));
+  int exponent = 0;
+  std::frexp(clearance, &exponent);  // 2^(exponent - 1) <= clearance
+  const auto code = static_cast<std::uint32_t>(std::clamp(1 - exponent, 0, SF_NO_CLEARANCE));
   return row | code << SF_ROW_BITS;
 }
 

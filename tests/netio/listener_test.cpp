@@ -1,6 +1,7 @@
 #include "netio/listener.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <memory>
 #include <thread>
@@ -200,9 +201,13 @@ TEST(Outbox, ScansWithANanAreCountedNotSent) {
 
 TEST(Endpoint, ResolvesAndPrints) {
   EXPECT_EQ(resolve("127.0.0.1"), kLoopback);
-  EXPECT_EQ(resolve("localhost"), kLoopback);
   EXPECT_EQ(text(Endpoint{0xC0000201u, 10008}), "192.0.2.1:10008");
   EXPECT_THROW(resolve("no host has a space"), base::InputError);
+}
+
+TEST(Endpoint, ResolvesNames) {
+  if (access("/etc/hosts", R_OK) != 0) GTEST_SKIP() << "this machine has no /etc/hosts, so it need not know localhost";
+  EXPECT_EQ(resolve("localhost"), kLoopback);
 }
 
 }  // namespace
