@@ -22,8 +22,6 @@ class Batch {
   void begin();
   /// Runs `kernel` with the group counts (x, y, z as u32) found in `counts` at `offset` [bytes] when the batch runs.
   void dispatch(const Kernel& kernel, const Buffer& counts, std::size_t offset);
-  /// What was written by dispatches before is visible to those after.
-  void barrier();
   void end();
 
   /// This tick's bytes to copy, from the host view up or from the device down.

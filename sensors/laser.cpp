@@ -51,7 +51,6 @@ bool Lasers::prepare(std::span<const LaserDue> due, std::span<const Pose> poses)
   Tables& t = *t_;
   t.due.assign(due.begin(), due.end());
   t.views.resize(due.size());
-  t.ray_rows.resize(due.size());
   for (std::size_t i = 0; i < due.size(); ++i) {
     const LaserRow& row = t.lasers[due[i].row];
     const std::uint32_t mover = t.owners[due[i].row].mover;
@@ -60,14 +59,14 @@ bool Lasers::prepare(std::span<const LaserDue> due, std::span<const Pose> poses)
     t.views[i] = {row.family, mover, X_WS};
     t.rays += row.plan.samples.size();
   }
-  const bool replaced = t.scene.serve(t.views, t.ray_rows);
+  const auto ray_rows = t.rows->host<RayRow>().first(due.size());
+  const bool replaced = t.scene.serve(t.views, ray_rows);
   for (std::size_t i = 0; i < due.size(); ++i) {
     const LaserRow& row = t.lasers[due[i].row];
-    t.ray_rows[i].beams = row.beams;
-    t.ray_rows[i].out = row.out;
-    t.ray_rows[i].range_min = row.laser.range_min;
+    ray_rows[i].beams = row.beams;
+    ray_rows[i].out = row.out;
+    ray_rows[i].range_min = row.laser.range_min;
   }
-  std::copy(t.ray_rows.begin(), t.ray_rows.end(), t.rows->host<RayRow>().begin());
   t.write_lanes();
   t.workers.run(due.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
     for (std::size_t i = first; i < last; ++i)

@@ -61,7 +61,13 @@ void Lasers::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) 
 }
 
 void Lasers::Tables::write_all_beams() {
-  for (const LaserRow& row : lasers) write_beams(row.laser, row.plan, {}, beam_tables(row.beams));
+  // Tables were given out in order of rows: one that lies behind all written so far is new, others are shared.
+  std::uint32_t written = 0;
+  for (const LaserRow& row : lasers) {
+    if (row.beams < written) continue;
+    write_beams(row.laser, row.plan, {}, beam_tables(row.beams));
+    written += row.plan.lanes();
+  }
 }
 
 void Lasers::Tables::turn_beams(const LaserDue& d, unsigned thread) {
@@ -88,7 +94,7 @@ void Lasers::Tables::write_lanes() {
     for (std::uint32_t lane = 0; lane < lasers[due[i].row].plan.lanes(); ++lane) table[at++] = {i, lane};
     lanes_written.push_back(due[i].row);
   }
-  due_lanes = static_cast<std::uint32_t>(at);
+  const auto due_lanes = static_cast<std::uint32_t>(at);
   const std::uint32_t group = kernel->group_size();
   const std::uint32_t needed = (due_lanes + group - 1) / group;
   const std::uint32_t across = std::min(needed, kGroupsAcross);

@@ -41,12 +41,10 @@ struct Lasers::Tables {
   std::vector<LaserDue> due;
   std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, that `lanes` holds
   std::vector<Viewpoint> views;
-  std::vector<RayRow> ray_rows;
   std::vector<double> values;  ///< [m] results reworked on the host
   std::vector<std::uint32_t> met;
   std::vector<std::vector<double>> turned;  ///< scratch per thread
   std::uint32_t out_lanes = 0;
-  std::uint32_t due_lanes = 0;
   std::uint64_t rays = 0;
   std::uint64_t doubts_seen = 0;
   bool bound = false;

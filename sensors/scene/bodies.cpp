@@ -122,7 +122,7 @@ void Bodies::measure_clearances(std::size_t first, std::size_t last, Sight::Near
     walls_->near(p, bodies_[i].radius + kLookout, nearby);
     for (const std::uint32_t row : nearby.found) {
       const SightSegment& s = walls_->segments()[row];
-      to_walls = std::min(to_walls, distance_to_segment(p, s.a, s.b) - bodies_[i].radius);
+      to_walls = std::min(to_walls, world::distance(p, s.a, s.b) - bodies_[i].radius);
     }
     const auto at_least = [](double gap) { return static_cast<float>(std::max(0.0, 0.99 * gap)); };
     clearances_[i] = {at_least(to_walls), at_least(std::min(to_walls, to_movers))};
@@ -140,7 +140,7 @@ std::uint32_t Bodies::watch_height(double z) {
     for (std::uint32_t row = bodies_[i].first; row < bodies_[i].first + bodies_[i].count; ++row) {
       const world::Segment& s = local_[row];
       if (z - loaded_z_[i] < s.z_min || z - loaded_z_[i] >= s.z_max) continue;
-      least = std::min(least, distance_to_segment({}, s.a, s.b));
+      least = std::min(least, world::distance({}, s.a, s.b));
       if (!s.solid_left || (s.a.y <= 0.0) == (s.b.y <= 0.0)) continue;
       const double side = cross(s.b - s.a, {-s.a.x, -s.a.y});
       winding += s.a.y <= 0.0 ? (side > 0.0) : -(side < 0.0);
@@ -238,7 +238,7 @@ void Bodies::add_body(const View& view, std::uint32_t number, double bearing, do
     const double unsure = view.radius * length(b - a) + 1e-6;
     const bool keep_front = near || facing < unsure;
     const bool keep_back = near || (!local.solid_left && facing > -unsure);
-    const double nearest = std::max(0.0, distance_to_segment({}, a, b) - view.radius - 1e-6);
+    const double nearest = std::max(0.0, world::distance({}, a, b) - view.radius - 1e-6);
     if (nearest > view.range) continue;
     const auto add = [&](Vec2 from, Vec2 to) {
       lists.candidates.push_back({from, to, nearest, wall_count_ + row});

@@ -11,17 +11,10 @@ namespace {
 
 bool same(Vec2 p, Vec2 q) { return p.x == q.x && p.y == q.y; }
 
-/// Ends p and q on both sides of line ab, or one on it; segments of one line are left to the distances of their ends.
-bool straddles(Vec2 a, Vec2 b, Vec2 p, Vec2 q) {
-  const double sp = cross(b - a, p - a);
-  const double sq = cross(b - a, q - a);
-  return (sp != 0.0 || sq != 0.0) && ((sp <= 0.0 && sq >= 0.0) || (sp >= 0.0 && sq <= 0.0));
-}
-
 double separation(const world::Segment& s, const world::Segment& t) {
-  if (straddles(s.a, s.b, t.a, t.b) && straddles(t.a, t.b, s.a, s.b)) return 0.0;
-  return std::min({distance_to_segment(s.a, t.a, t.b), distance_to_segment(s.b, t.a, t.b),
-                   distance_to_segment(t.a, s.a, s.b), distance_to_segment(t.b, s.a, s.b)});
+  if (world::segments_meet(s.a, s.b, t.a, t.b)) return 0.0;
+  return std::min({world::distance(s.a, t.a, t.b), world::distance(s.b, t.a, t.b), world::distance(t.a, s.a, s.b),
+                   world::distance(t.b, s.a, s.b)});
 }
 
 /// True when `t` starts at an end of `s` and leaves it at a fair angle: then their distance grows with that from the
@@ -40,17 +33,10 @@ bool fair_neighbour(const world::Segment& s, const world::Segment& t) {
 }  // namespace
 
 std::vector<float> wall_clearances(const std::vector<world::Segment>& walls, double cap) {
-  // All heights together: what is far from everything is far from what a beam can see.
-  world::World flat;
-  flat.walls = walls;
   double total = 0.0;
-  for (world::Segment& s : flat.walls) {
-    s.z_min = 0.0;
-    s.z_max = 1.0;
-    total += length(s.b - s.a);
-  }
+  for (const world::Segment& s : walls) total += length(s.b - s.a);
   const double typical = walls.empty() ? 1.0 : total / static_cast<double>(walls.size());
-  const Sight all(flat, 0.5, 4.0 * std::max(typical, cap));
+  const Sight all = Sight::of_all_heights(walls, 4.0 * std::max(typical, cap));
   std::vector<float> clearances(walls.size(), 0.0f);
   Sight::Nearby nearby;
   for (const SightSegment& sight : all.segments()) {

@@ -29,7 +29,7 @@ Depth::Depth(const Sight& sight, base::Workers& workers, std::size_t most_points
         double least = kCutOff;
         sight.near(p, kCutOff, nearby[thread]);
         for (const std::uint32_t i : nearby[thread].found)
-          least = std::min(least, distance_to_segment(p, sight.segments()[i].a, sight.segments()[i].b));
+          least = std::min(least, world::distance(p, sight.segments()[i].a, sight.segments()[i].b));
         const bool inside = least > 1e-6 && sight.inside_solid(p);
         signed_[row * columns_ + column] = static_cast<float>(inside ? -least : least);
       }

@@ -32,16 +32,6 @@ std::vector<double> height_breaks(const std::vector<world::Segment>& walls) {
   return breaks;
 }
 
-std::unique_ptr<Sight> flat_sight(const std::vector<world::Segment>& walls) {
-  world::World flat;
-  for (world::Segment s : walls) {
-    s.z_min = 0.0;
-    s.z_max = 1.0;
-    flat.walls.push_back(s);
-  }
-  return std::make_unique<Sight>(flat, 0.5, 2.0);
-}
-
 }  // namespace
 
 void refuse_if_too_long(std::uint32_t chunks, std::uint32_t most, const char* what) {
@@ -56,7 +46,7 @@ Scene::Scene(const world::World& world, gpu::Device& device, base::Workers& work
       options_(options),
       walls_(world.walls),
       breaks_(height_breaks(walls_)),
-      all_walls_(flat_sight(walls_)),
+      all_walls_(std::make_unique<Sight>(Sight::of_all_heights(walls_, 2.0))),
       pool_(options.pool_cells, options.pool_chunks) {
   bodies_ = std::make_unique<Bodies>(world, all_walls_.get());
   for (unsigned i = 0; i < workers.threads(); ++i) scratch_.push_back(std::make_unique<Scratch>());

@@ -92,7 +92,7 @@ void collect(const Sight& sight, const CellShape& shape, Vec2 centre, bool both_
     const SightSegment& s = sight.segments()[i];
     Candidate candidate{s.a - centre, s.b - centre, 0.0, s.row};
     if (!clip(candidate.a, candidate.b, shape.reach())) continue;
-    candidate.nearest = std::max(0.0, distance_to_segment({}, candidate.a, candidate.b) - radius);
+    candidate.nearest = std::max(0.0, world::distance({}, candidate.a, candidate.b) - radius);
 
     // The cell's signed distance from the segment's line: positive on its left.
     const Vec2 e = s.b - s.a;

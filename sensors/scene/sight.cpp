@@ -28,11 +28,14 @@ int clamp_index(double value, int count) {
 
 }  // namespace
 
-double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 e = b - a;
-  const Vec2 w = p - a;
-  const double u = std::clamp(dot(w, e) / dot(e, e), 0.0, 1.0);
-  return length(w - u * e);
+Sight Sight::of_all_heights(const std::vector<world::Segment>& walls, double typical_range) {
+  world::World flat;
+  flat.walls = walls;
+  for (world::Segment& s : flat.walls) {
+    s.z_min = 0.0;
+    s.z_max = 1.0;
+  }
+  return {flat, 0.5, typical_range};
 }
 
 Sight::Sight(const world::World& world, double z, double typical_range) {

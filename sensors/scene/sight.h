@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "world/wall_grid.h"
 #include "world/world.h"
 
 namespace sf::sensors {
@@ -18,14 +19,14 @@ struct SightSegment {
   bool solid_left;
 };
 
-/// Distance from `p` to segment ab [m].
-double distance_to_segment(Vec2 p, Vec2 a, Vec2 b);
-
 /// Immutable after construction; may be asked by several threads, each with its own `Nearby`.
 class Sight {
  public:
   /// The walls that a beam at height `z` [m] sees. `world` need not outlive it.
   Sight(const world::World& world, double z, double typical_range);
+
+  /// As if a beam were at every height at once: what is far from all of it is far from whatever any beam can meet.
+  static Sight of_all_heights(const std::vector<world::Segment>& walls, double typical_range);
 
   const std::vector<SightSegment>& segments() const { return segments_; }
   Vec2 low() const { return low_; }  ///< [m] corner of their bounding box

@@ -99,7 +99,7 @@ TEST(Clearance, NothingComesNearer) {
         const world::Segment& t = world.walls[j];
         const auto same = [](Vec2 u, Vec2 v) { return u.x == v.x && u.y == v.y; };
         if (i == j || same(s.a, t.b) || same(s.b, t.a)) continue;  // neighbours of one outline: right angles here
-        EXPECT_GE(distance_to_segment(p, t.a, t.b), clearances[i]) << i << ", " << j;
+        EXPECT_GE(world::distance(p, t.a, t.b), clearances[i]) << i << ", " << j;
       }
     }
 }
@@ -114,7 +114,7 @@ TEST(Sight, FindsEverythingNear) {
     const double radius = chance.between(0.01, 5.0);
     sight.near(p, radius, nearby);
     for (std::uint32_t k = 0; k < sight.segments().size(); ++k) {
-      const bool near = distance_to_segment(p, sight.segments()[k].a, sight.segments()[k].b) <= radius;
+      const bool near = world::distance(p, sight.segments()[k].a, sight.segments()[k].b) <= radius;
       const auto found = std::count(nearby.found.begin(), nearby.found.end(), k);
       EXPECT_TRUE(found == 1 || (found == 0 && !near));
     }
@@ -138,9 +138,9 @@ TEST(Sight, KnowsInsideFromOutside) {
 }
 
 TEST(Sight, DistanceToASegment) {
-  EXPECT_DOUBLE_EQ(distance_to_segment({0.5, 2}, {0, 0}, {1, 0}), 2.0);
-  EXPECT_DOUBLE_EQ(distance_to_segment({-3, 4}, {0, 0}, {1, 0}), 5.0) << "before its start";
-  EXPECT_DOUBLE_EQ(distance_to_segment({4, 4}, {0, 0}, {1, 0}), 5.0) << "behind its end";
+  EXPECT_DOUBLE_EQ(world::distance({0.5, 2}, {0, 0}, {1, 0}), 2.0);
+  EXPECT_DOUBLE_EQ(world::distance({-3, 4}, {0, 0}, {1, 0}), 5.0) << "before its start";
+  EXPECT_DOUBLE_EQ(world::distance({4, 4}, {0, 0}, {1, 0}), 5.0) << "behind its end";
 }
 
 /// Walls hide a disc only where every beam from the other disc to it meets a wall first.
