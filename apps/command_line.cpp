@@ -21,8 +21,8 @@ CLI::Validator number(double first, double last) {
   return {[first, last](std::string& text) { return refuse_number(text, first, last); }, ""};
 }
 
-CLI::Validator one_of(const std::string& a, const std::string& b) {
-  return {[a, b](std::string& text) { return refuse_choice(text, a, b); }, ""};
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  return {[words](std::string& text) { return refuse_choice(text, words); }, ""};
 }
 
 CLI::Validator not_empty(const std::string& what) {
@@ -59,28 +59,43 @@ void add_no_return(CLI::App& app, Options& o) {
   app.add_option_function<std::string>(
          "--no-return", [&o](const std::string& text) { o.no_return_inf = text == "inf"; },
          "What a beam reads that meets nothing: max (range_max) or inf (null in JSON)")
-      ->check(one_of("max", "inf"))
+      ->check(one_of({"max", "inf"}))
       ->type_name("max|inf")
       ->default_str("max");
 }
 
 void add_ports(CLI::App& app, Options& o) {
-  app.add_option("--laser-port", o.laser_port,
-                 "Base of the lasers' ports: port = base + robot id * ports per robot + sensor")
-      ->check(whole(1, 65535))
-      ->type_name("PORT")
-      ->capture_default_str();
+  for (const sensors::SensorKind* kind : sensors::kinds())
+    app.add_option(fmt::format("--{}-port", kind->name), o.base_ports[kind->id],
+                   fmt::format("Base of {} ports: port = base + robot id * ports per robot + sensor", kind->name))
+        ->check(whole(1, 65535))
+        ->type_name("PORT")
+        ->capture_default_str();
   app.add_option("--ports-per-robot", o.ports_per_robot, "Ports per robot")
       ->check(whole(1, 65535))
       ->type_name("N")
       ->capture_default_str();
   app.add_option_function<std::string>(
          "--wire",
-         [&o](const std::string& text) { o.wire = text == "thesis" ? netio::Wire::thesis : netio::Wire::farm; },
+         [&o](const std::string& text) { o.wire = text == "thesis" ? sensors::Wire::thesis : sensors::Wire::farm; },
          "Layout of sensor packets: farm (docs/packets.md) or thesis (plain)")
-      ->check(one_of("farm", "thesis"))
+      ->check(one_of({"farm", "thesis"}))
       ->type_name("farm|thesis")
       ->default_str("farm");
+}
+
+void add_kind(CLI::App& app, Options& o) {
+  std::vector<std::string> names;
+  for (const sensors::SensorKind* kind : sensors::kinds()) names.emplace_back(kind->name);
+  app.add_option_function<std::string>(
+         "--kind",
+         [&o](const std::string& text) {
+           for (const sensors::SensorKind* kind : sensors::kinds())
+             if (kind->name == text) o.kind = kind->id;
+         },
+         "Kind of its sensor: " + either(names) + " (default: the first that it has)")
+      ->check(one_of(names))
+      ->type_name("KIND");
 }
 
 void add_seed(CLI::App& app, Options& o, const std::string& what) {
@@ -128,7 +143,8 @@ void add_sense(CLI::App& app, Options& o) {
       ->check(pose())
       ->type_name("POSE");
   sub->add_option("--robot", o.robot, "Name of the robot (default: the first that has a sensor)")->type_name("NAME");
-  sub->add_option("--sensor", o.sensor, "Number of its sensor, from 0")
+  add_kind(*sub, o);
+  sub->add_option("--sensor", o.sensor, "Number of its sensor of that kind, from 0")
       ->check(whole(0, 65535))
       ->type_name("N")
       ->capture_default_str();
@@ -137,7 +153,7 @@ void add_sense(CLI::App& app, Options& o) {
 
 void add_run(CLI::App& app, Options& o) {
   CLI::App* sub =
-      app.add_subcommand("run", "Simulate a fleet that wanders, with every robot's lasers, as fast as it goes");
+      app.add_subcommand("run", "Simulate a fleet that wanders, with every robot's sensors, as fast as it goes");
   add_world(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
@@ -166,7 +182,7 @@ void add_run(CLI::App& app, Options& o) {
 
 void add_serve(CLI::App& app, Options& o) {
   CLI::App* sub =
-      app.add_subcommand("serve", "Virtual sensors for robots that live elsewhere: V2V packets in, laser packets out");
+      app.add_subcommand("serve", "Virtual sensors for robots that live elsewhere: V2V packets in, sensor packets out");
   add_world(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
@@ -194,7 +210,8 @@ void add_serve(CLI::App& app, Options& o) {
 }
 
 void add_plot(CLI::App& app, Options& o) {
-  CLI::App* sub = app.add_subcommand("plot", "Draw trajectories and an occupancy map from a recorded run");
+  CLI::App* sub =
+      app.add_subcommand("plot", "Draw trajectories, an occupancy map and recorded readings from a recorded run");
   sub->add_option("recording", o.world, "Folder of the recording")->required()->type_name("DIR");
   sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)")
       ->check(not_empty("a folder"))
@@ -268,6 +285,8 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   app.get_formatter()->column_width(34);
   Options& o = parsed.options;
   if (const char* device = std::getenv("SENSORFARM_DEVICE")) o.device = device;
+  o.load.sensors = sensors::vocabulary();
+  for (const sensors::SensorKind* kind : sensors::kinds()) o.base_ports[kind->id] = kind->base_port;
   add_devices(app, o);
   add_check(app, o);
   add_draw(app, o);

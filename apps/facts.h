@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "apps/post.h"
 #include "base/reading.h"
 #include "farm/farm.h"
 #include "gpu/device.h"
 #include "netio/inbox.h"
 #include "netio/listener.h"
-#include "netio/outbox.h"
+#include "sensors/roster.h"
 #include "world/world.h"
 
 namespace sf::apps {
@@ -28,28 +29,34 @@ struct RunFacts {
   farm::FarmStats farm;
   std::uint64_t hash = 0;
   bool interrupted = false;
-  bool sent = false;  ///< `outbox` counts
-  netio::OutboxCounts outbox;
+  bool sent = false;  ///< `post` counts
+  PostCounts post;
   bool received = false;  ///< `inbox` counts
   netio::Counts inbox;
   std::string recording;             ///< file; empty: none
   std::uint64_t recorded_bytes = 0;  ///< its size
 };
 
+std::size_t count_robots(const world::World& world);
+/// All that stand still or are carried.
+std::size_t count_magnets(const world::World& world);
+/// Numbers in one element of a reading.
+std::size_t element_width(const sensors::SensorKind& kind);
+
 std::string json_of(const gpu::Survey& survey);
-std::string json_of(const world::World& world);
+std::string json_of(const world::World& world, const sensors::Roster& roster);
 std::string json_of(const RunFacts& facts);
 std::string json_of(const netio::Summary& summary);
-/// One laser reading; infinite ranges are null.
-std::string json_of(const world::World& world, const base::ReadingBlock& reading);
+/// One reading; what is infinite or missing is null.
+std::string json_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading);
 
 std::string text_of(const gpu::Survey& survey);
-std::string text_of(const world::World& world);
+std::string text_of(const world::World& world, const sensors::Roster& roster);
 std::string text_of(const RunFacts& facts);
 std::string text_of(const netio::Summary& summary);
-/// Comma-separated: a heading, then one line per beam.
+/// Comma-separated: a heading, then one line per element; what is missing is left out between its commas.
 std::string text_of(const world::World& world, const base::ReadingBlock& reading);
 /// Where robot and sensor stood, in one line for people.
-std::string place_of(const world::World& world, const base::ReadingBlock& reading);
+std::string place_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading);
 
 }  // namespace sf::apps

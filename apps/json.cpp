@@ -5,6 +5,7 @@
 
 #include "apps/facts.h"
 #include "base/hash.h"
+#include "sensors/laser_packets.h"
 
 namespace sf::apps {
 
@@ -32,10 +33,34 @@ Json reasons(const netio::Counts& counts) {
   return json;
 }
 
-std::size_t count_robots(const world::World& world) {
-  std::size_t robots = 0;
-  for (const world::Mover& mover : world.movers) robots += !mover.is_tag;
-  return robots;
+std::uint64_t count_rays(const netio::Summary& summary) {
+  const auto lasers = summary.of.find(std::string(sensors::find_kind(sensors::kLaserId)->name));
+  return lasers == summary.of.end() ? 0 : lasers->second.elements;
+}
+
+Json number_json(double value, bool whole) {
+  if (whole && std::isfinite(value)) return static_cast<std::int64_t>(value);
+  return value;  // printed as null where it is not finite
+}
+
+/// One element's columns, by name.
+Json element_json(const sensors::SensorKind& kind, std::span<const double> values) {
+  Json json = Json::object();
+  std::size_t at = 0;
+  for (const sensors::Column& column : kind.columns) {
+    Json numbers = Json::array();
+    for (std::uint32_t k = 0; k < column.width; ++k) numbers.push_back(number_json(values[at++], column.whole));
+    json[std::string(column.name)] = column.width == 1 ? numbers[0] : numbers;
+  }
+  return json;
+}
+
+/// Beams have as many decimals as a ruler will ever need: nlohmann/json prints no fixed number.
+std::string beam_json(const world::World& world, const base::ReadingBlock& reading, std::uint32_t i) {
+  const world::Laser& laser = world.movers[reading.mover].lasers[reading.sensor];
+  const std::uint32_t hit = reading.hits[i];
+  return fmt::format("{{\"bearing_rad\": {:.12f}, \"range_m\": {}, \"hit\": {}}}", world::bearing_of(laser, i),
+                     metres(reading.values[i]), hit == base::kNoHit ? "null" : dump(world.models[hit].name));
 }
 
 }  // namespace
@@ -55,9 +80,12 @@ std::string json_of(const gpu::Survey& survey) {
   return print(json);
 }
 
-std::string json_of(const world::World& world) {
-  std::size_t lasers = 0;
-  for (const world::Mover& mover : world.movers) lasers += mover.lasers.size();
+std::string json_of(const world::World& world, const sensors::Roster& roster) {
+  Json sensors = Json::object();
+  for (const sensors::SensorKind* kind : sensors::kinds()) {
+    const auto* group = roster.group(kind->id);
+    sensors[std::string(kind->name)] = group == nullptr ? 0 : group->rows.size();
+  }
   Json warnings = Json::array();
   for (const world::Warning& w : world.warnings)
     warnings.push_back({{"file", w.file}, {"line", w.line}, {"message", w.message}});
@@ -68,10 +96,13 @@ std::string json_of(const world::World& world) {
                 {"models", world.models.size()},
                 {"robots", count_robots(world)},
                 {"tags", world.movers.size() - count_robots(world)},
-                {"sensors", {{"laser", lasers}}},
+                {"sensors", sensors},
                 {"segments", world.walls.size()},
                 {"segments_with_movers", segments},
-                {"magnets", world.magnets},
+                {"magnets", count_magnets(world)},
+                {"magnet_cutoff", world.magnet_cutoff},
+                {"paint", world.stripes.size()},
+                {"road_resolution", world.road_resolution},
                 {"extent", {e.x_min, e.y_min, e.x_max, e.y_max}},
                 {"interval_s", world.interval},
                 {"kept", world.kept},
@@ -87,11 +118,11 @@ std::string json_of(const RunFacts& f) {
             {"simulated_s", f.simulated_s},
             {"wall_s", f.wall_s},
             {"real_time_factor", f.wall_s > 0.0 ? f.simulated_s / f.wall_s : 0.0},
-            {"rays", f.farm.rays},
-            {"rays_per_s", f.wall_s > 0.0 ? static_cast<double>(f.farm.rays) / f.wall_s : 0.0},
+            {"rays", f.farm.work.rays},
+            {"rays_per_s", f.wall_s > 0.0 ? static_cast<double>(f.farm.work.rays) / f.wall_s : 0.0},
             {"readings", f.farm.readings},
-            {"lanes_in_doubt", f.farm.doubts},
-            {"cells_built", f.farm.cells_built},
+            {"lanes_in_doubt", f.farm.work.doubts},
+            {"cells_built", f.farm.work.cells_built},
             {"contacts", f.contacts},
             {"hash", base::hash_text(f.hash)},
             {"interrupted", f.interrupted},
@@ -102,12 +133,11 @@ std::string json_of(const RunFacts& f) {
               {"device", f.farm.device_s},
               {"collect", f.farm.collect_s},
               {"out", f.out_s}}}};
+  if (f.farm.work.dipoles > 0) json["dipoles"] = f.farm.work.dipoles;
   if (f.sent)
-    json["packets"] = {{"sent", f.outbox.sent},
-                       {"bytes", f.outbox.sent_bytes},
-                       {"failed", f.outbox.failed},
-                       {"dropped", f.outbox.dropped},
-                       {"first_failure", f.outbox.first_failure}};
+    json["packets"] = {{"sent", f.post.packets.sent},       {"bytes", f.post.packets.sent_bytes},
+                       {"failed", f.post.packets.failed},   {"dropped", f.post.packets.dropped},
+                       {"not_numbers", f.post.not_numbers}, {"first_failure", f.post.packets.first_failure}};
   if (f.received) json["received"] = reasons(f.inbox);
   if (!f.recording.empty()) {
     json["recording"] = f.recording;
@@ -117,10 +147,13 @@ std::string json_of(const RunFacts& f) {
 }
 
 std::string json_of(const netio::Summary& s) {
+  Json sensors = Json::object();
+  for (const auto& [kind, share] : s.of) sensors[kind] = {{"good", share.good}, {"elements", share.elements}};
   return print({{"packets", s.datagrams},
                 {"bytes", s.bytes},
                 {"good", s.good},
-                {"rays", s.rays},
+                {"rays", count_rays(s)},
+                {"sensors", sensors},
                 {"lost", s.lost},
                 {"duplicates", s.duplicates},
                 {"reordered", s.reordered},
@@ -129,22 +162,24 @@ std::string json_of(const netio::Summary& s) {
                 {"by_reason", reasons(s.counts)}});
 }
 
-std::string json_of(const world::World& world, const base::ReadingBlock& reading) {
-  const world::Mover& mover = world.movers[reading.mover];
-  const world::Laser& laser = mover.lasers[reading.sensor];
-  const Json head{{"robot", mover.name}, {"sensor", reading.sensor},        {"sensor_name", laser.name},
-                  {"kind", "laser"},     {"pose", pose_json(reading.X_WM)}, {"sensor_pose", pose_json(reading.X_WS)}};
-  // Beams are lines of their own, with as many decimals as a ruler will ever need: nlohmann/json prints no fixed
-  // number.
+std::string json_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading) {
+  const sensors::SensorKind& kind = *sensors::find_kind(reading.kind);
+  Json head{{"robot", world.movers[reading.mover].name}, {"sensor", reading.sensor},
+            {"sensor_name", roster.row(reading).name},   {"kind", kind.name},
+            {"pose", pose_json(reading.X_WM)},           {"sensor_pose", pose_json(reading.X_WS)}};
+  if (kind.list.empty()) {
+    head.update(element_json(kind, reading.values));
+    return dump(head) + "\n";
+  }
+  // Elements are lines of their own.
   std::string text = dump(head);
   text.back() = ',';
-  text += "\n\"beams\": [";
-  for (std::uint32_t i = 0; i < reading.values.size(); ++i) {
-    const std::uint32_t hit = reading.hits[i];
-    text += fmt::format("{}\n  {{\"bearing_rad\": {:.12f}, \"range_m\": {}, \"hit\": {}}}", i == 0 ? "" : ",",
-                        world::bearing_of(laser, i), metres(reading.values[i]),
-                        hit == base::kNoHit ? "null" : dump(world.models[hit].name));
-  }
+  text += fmt::format("\n\"{}\": [", kind.list);
+  const std::size_t width = element_width(kind);
+  for (std::size_t i = 0; i < reading.values.size() / width; ++i)
+    text += (i == 0 ? "\n  " : ",\n  ") + (kind.id == sensors::kLaserId
+                                               ? beam_json(world, reading, static_cast<std::uint32_t>(i))
+                                               : dump(element_json(kind, reading.values.subspan(i * width, width))));
   return text + "\n]}\n";
 }
 

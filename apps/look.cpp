@@ -7,6 +7,7 @@
 #include "apps/commands.h"
 #include "apps/facts.h"
 #include "apps/lend.h"
+#include "apps/wording.h"
 #include "base/error.h"
 #include "viz/world_figure.h"
 
@@ -16,29 +17,66 @@ namespace {
 
 void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
 
-std::uint32_t find_robot(const world::World& world, const std::string& name) {
+/// The kind asked for, or the first that the mover has; null when it has none.
+const sensors::SensorKind* kind_of(const sensors::Roster& roster, std::uint8_t kind, std::uint32_t mover) {
+  for (const sensors::Roster::Group& group : roster.groups()) {
+    const bool asked = kind == 0 || group.kind->id == kind;
+    if (asked && !roster.of(group.kind->id, mover).empty()) return group.kind;
+  }
+  return nullptr;
+}
+
+[[noreturn]] void refuse_blind_world(const world::World& world, std::uint8_t kind) {
+  std::vector<std::string> words;
+  for (const sensors::SensorKind* known : sensors::kinds())
+    if (kind == 0 || known->id == kind) words.push_back("a " + std::string(known->name) + "( )");
+  throw base::InputError(world.file, 0, "no robot has such a sensor; give one " + either(words));
+}
+
+std::uint32_t find_robot(const world::World& world, const sensors::Roster& roster, const Options& options) {
   std::string known;
   std::size_t others = 0;
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
-    const world::Mover& mover = world.movers[i];
-    if (name.empty() ? !mover.lasers.empty() : mover.name == name) return i;
-    if (mover.lasers.empty()) continue;
-    if (++others <= 10) known += (known.empty() ? "" : ", ") + mover.name;
+    const bool senses = kind_of(roster, options.kind, i) != nullptr;
+    if (options.robot.empty() ? senses : world.movers[i].name == options.robot) return i;
+    if (senses && ++others <= 10) known += (known.empty() ? "" : ", ") + world.movers[i].name;
   }
-  if (name.empty()) throw base::InputError(world.file, 0, "no robot has a sensor; give one a laser( ) or a ranger( )");
+  if (options.robot.empty()) refuse_blind_world(world, options.kind);
   if (others > 10) known += ", ... (" + std::to_string(others) + " in all)";
-  throw base::InputError(world.file, 0,
-                         "has no robot '" + name + "'; with sensors it has " + (known.empty() ? "none" : known));
+  throw base::InputError(
+      world.file, 0, "has no robot '" + options.robot + "'; with sensors it has " + (known.empty() ? "none" : known));
 }
 
-void require_sensor(const world::World& world, const world::Mover& robot, std::uint32_t sensor) {
-  const std::size_t count = robot.lasers.size();
-  if (sensor < count) return;
-  const std::string has = count == 0   ? "no sensor"
-                          : count == 1 ? "one sensor, --sensor 0"
-                                       : "sensors 0 to " + std::to_string(count - 1);
+/// "laser 0 to 2, magnetometer 0".
+std::string all_sensors_of(const sensors::Roster& roster, std::uint32_t mover) {
+  std::string text;
+  for (const sensors::Roster::Group& group : roster.groups()) {
+    const std::size_t count = roster.of(group.kind->id, mover).size();
+    if (count == 0) continue;
+    text += (text.empty() ? "" : ", ") + std::string(group.kind->name) + " 0";
+    if (count > 1) text += " to " + std::to_string(count - 1);
+  }
+  return text;
+}
+
+/// Kind of the sensor that was asked for, which is there.
+const sensors::SensorKind& require_sensor(const world::World& world, const sensors::Roster& roster,
+                                          const Options& options, std::uint32_t mover) {
+  const sensors::SensorKind* kind = kind_of(roster, options.kind, mover);
+  if (kind != nullptr && options.sensor < roster.of(kind->id, mover).size()) return *kind;
+  const std::string has = all_sensors_of(roster, mover);
+  const std::string& robot = world.movers[mover].name;
+  if (has.empty()) throw base::InputError(world.file, 0, robot + " has no sensor");
+  if (kind == nullptr) kind = sensors::find_kind(options.kind);
   throw base::InputError(world.file, 0,
-                         robot.name + " has " + has + ", but --sensor " + std::to_string(sensor) + " was asked for");
+                         robot + " has no " + std::string(kind->name) + " " + std::to_string(options.sensor) +
+                             "; it has " + has + " (--kind, --sensor)");
+}
+
+/// Where the user asked for it, beams that met nothing read infinity.
+void mark_no_return(const sensors::SensorRow& row, const base::ReadingBlock& reading, std::vector<double>& values) {
+  for (std::size_t i = 0; i < reading.hits.size(); ++i)
+    if (reading.hits[i] == base::kNoHit && values[i] >= row.limit) values[i] = std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -54,7 +92,8 @@ int devices(const Options& options) {
 
 int check(const Options& options) {
   const world::World world = world::load_world(options.world, options.load);
-  print(options.json ? json_of(world) : text_of(world));
+  const sensors::Roster roster(world);
+  print(options.json ? json_of(world, roster) : text_of(world, roster));
   return 0;
 }
 
@@ -67,24 +106,22 @@ int draw(const Options& options) {
 
 int sense(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
-  const std::uint32_t mover = find_robot(world, options.robot);
-  const world::Mover& robot = world.movers[mover];
-  require_sensor(world, robot, options.sensor);
-  base::Pose X_WM = robot.X_WM;
+  const sensors::Roster roster(world);
+  const std::uint32_t mover = find_robot(world, roster, options);
+  const sensors::SensorKind& kind = require_sensor(world, roster, options, mover);
+  base::Pose X_WM = world.movers[mover].X_WM;
   if (options.pose) X_WM = {options.pose->x, options.pose->y, X_WM.z, options.pose->yaw};
 
   gpu::Device device(options.device);
   farm::FarmOptions quiet;
   quiet.noise = false;
   farm::Farm farm(world, device, quiet);
-  base::ReadingBlock reading = farm.sense(mover, options.sensor, X_WM);
-  std::vector<double> ranges(reading.values.begin(), reading.values.end());
-  for (std::size_t i = 0; i < ranges.size(); ++i)
-    if (options.no_return_inf && reading.hits[i] == base::kNoHit && ranges[i] >= robot.lasers[options.sensor].range_max)
-      ranges[i] = std::numeric_limits<double>::infinity();
-  reading.values = ranges;
-  if (!options.json) std::fprintf(stderr, "sensorfarm: %s\n", place_of(world, reading).c_str());
-  print(options.json ? json_of(world, reading) : text_of(world, reading));
+  base::ReadingBlock reading = farm.sense(mover, kind.id, options.sensor, X_WM);
+  std::vector<double> values(reading.values.begin(), reading.values.end());
+  if (options.no_return_inf) mark_no_return(roster.row(reading), reading, values);
+  reading.values = values;
+  if (!options.json) std::fprintf(stderr, "sensorfarm: %s\n", place_of(world, roster, reading).c_str());
+  print(options.json ? json_of(world, roster, reading) : text_of(world, reading));
   return 0;
 }
 

@@ -2,11 +2,12 @@
 // What the user asked for, as plain values: filled by the command line, read by the commands.
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
 #include "base/pose.h"
-#include "netio/laser_packets.h"
+#include "sensors/kind.h"
 #include "world/world.h"
 
 namespace sf::apps {
@@ -24,7 +25,8 @@ struct Options {
 
   std::optional<base::Pose> pose;  ///< of the robot, for `sense`
   std::string robot;
-  std::uint32_t sensor = 0;
+  std::uint8_t kind = 0;     ///< of its sensor; 0: the first it has
+  std::uint32_t sensor = 0;  ///< among its sensors of that kind
   bool no_return_inf = false;
 
   std::uint32_t robots = 0;  ///< clones; 0: the world's own
@@ -35,8 +37,8 @@ struct Options {
   bool record_readings = false;
   bool real_time = false;
   std::string send;  ///< host; empty: nobody
-  netio::Wire wire = netio::Wire::farm;
-  std::uint32_t laser_port = 10000;  ///< base of the lasers' ports
+  sensors::Wire wire = sensors::Wire::farm;
+  std::map<std::uint8_t, std::uint32_t> base_ports;  ///< by sensor kind; every kind is in it
   std::uint32_t ports_per_robot = 8;
 
   std::string bind = "127.0.0.1";

@@ -6,10 +6,12 @@
 #include <filesystem>
 
 #include "apps/commands.h"
+#include "apps/plot_readings.h"
 #include "apps/progress.h"
 #include "base/error.h"
 #include "farm/farm.h"
 #include "record/recording.h"
+#include "sensors/laser_packets.h"
 #include "viz/occupancy.h"
 #include "viz/trajectory_figure.h"
 
@@ -50,7 +52,7 @@ void map_scans(const record::Recording& recording, const world::World& world, gp
   farm::FarmOptions quiet;
   quiet.noise = false;
   farm::Farm farm(world, device, quiet);
-  farm.hear_all();
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.hear(m, 1u << sensors::kLaserId);
   const auto every = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / recording.info.interval)));
   std::vector<base::Report> reports;
   std::vector<std::uint8_t> moving;
@@ -95,6 +97,8 @@ int plot(const Options& options) {
   const std::string trajectories = (folder / "trajectories.png").string();
   viz::draw_trajectories(world, tracks_of(recording, world), trajectories);
   std::fprintf(stderr, "sensorfarm: wrote %s\n", trajectories.c_str());
+  for (const std::string& file : draw_readings(recording, folder.string()))
+    std::fprintf(stderr, "sensorfarm: wrote %s\n", file.c_str());
 
   gpu::Device device(options.device);
   viz::OccupancyGrid grid(world.extent, cell_for(world.extent));

@@ -3,35 +3,60 @@
 #include <limits>
 
 #include "base/error.h"
+#include "netio/packets.h"
 
 namespace sf::apps {
 
-netio::PortRule require_laser_ports(const world::World& world, const Options& options) {
-  const netio::PortRule rule{options.laser_port, options.ports_per_robot};
+namespace {
+
+void require_wire(const world::World& world, const sensors::Roster::Group& group, sensors::Wire wire) {
+  for (const sensors::SensorRow& row : group.rows) {
+    const std::string why = group.kind->refuse(row, wire);
+    if (!why.empty()) throw base::InputError(world.movers[row.mover].name + "." + row.name + ": " + why);
+  }
+}
+
+std::vector<netio::PortUse> uses_of(const world::World& world, const sensors::Roster& roster, const Options& options) {
   std::vector<netio::PortUse> uses;
-  for (const world::Mover& mover : world.movers) {
-    if (mover.lasers.empty()) continue;
-    uses.push_back({mover.id, static_cast<std::uint32_t>(mover.lasers.size()), rule, mover.name, 0});
-    for (const world::Laser& laser : mover.lasers)
-      netio::require_wire(options.wire, laser.samples, laser.range_max, mover.name + "." + laser.name);
+  for (const sensors::Roster::Group& group : roster.groups())
+    for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+      const auto rows = roster.of(group.kind->id, m);
+      if (rows.empty()) continue;
+      uses.push_back({world.movers[m].id, static_cast<std::uint32_t>(rows.size()), port_rule(options, *group.kind),
+                      world.movers[m].name, 0, std::string(group.kind->name)});
+    }
+  return uses;
+}
+
+}  // namespace
+
+netio::PortRule port_rule(const Options& options, const sensors::SensorKind& kind) {
+  return {options.base_ports.at(kind.id), options.ports_per_robot};
+}
+
+void require_sendable(const world::World& world, const sensors::Roster& roster, const Options& options) {
+  std::string bases;
+  for (const sensors::Roster::Group& group : roster.groups()) {
+    require_wire(world, group, options.wire);
+    bases += (bases.empty() ? "--" : ", --") + std::string(group.kind->name) + "-port";
   }
   try {
-    netio::require_ports(uses);
+    netio::require_ports(uses_of(world, roster, options));
   } catch (const base::InputError& error) {
-    throw base::InputError(std::string(error.what()) + " (--laser-port is the base, --ports-per-robot the stride)");
+    throw base::InputError(std::string(error.what()) + " (base: " + bases + "; stride: --ports-per-robot)");
   }
-  return rule;
 }
 
 std::span<const base::ReadingBlock> NoReturn::apply(std::span<const base::ReadingBlock> readings) {
   if (!infinite_) return readings;
   std::size_t count = 0;
-  for (const base::ReadingBlock& r : readings) count += r.values.size();
+  for (const base::ReadingBlock& r : readings) count += r.hits.size();
   ranges_.resize(count);
   blocks_.assign(readings.begin(), readings.end());
   double* at = ranges_.data();
   for (base::ReadingBlock& r : blocks_) {
-    const double range_max = world_.movers[r.mover].lasers[r.sensor].range_max;
+    if (r.hits.empty()) continue;  // no beams
+    const double range_max = roster_.row(r).limit;
     for (std::size_t i = 0; i < r.values.size(); ++i)
       at[i] =
           r.hits[i] == base::kNoHit && r.values[i] >= range_max ? std::numeric_limits<double>::infinity() : r.values[i];
@@ -41,16 +66,35 @@ std::span<const base::ReadingBlock> NoReturn::apply(std::span<const base::Readin
   return blocks_;
 }
 
-void post(netio::Outbox& outbox, const world::World& world, const base::ReadingBlock& reading, std::uint32_t address,
-          const netio::PortRule& rule, netio::Wire wire) {
-  const world::Mover& mover = world.movers[reading.mover];
+Post::Post(const world::World& world, const sensors::Roster& roster, const Options& options)
+    : world_(world), roster_(roster), options_(options) {
+  payload_.reserve(netio::kMaxDatagram);
+  packet_.reserve(netio::kMaxDatagram);
+}
+
+void Post::queue(const base::ReadingBlock& reading, std::uint32_t address) {
+  const sensors::SensorKind& kind = *roster_.group(reading.kind)->kind;
+  const sensors::SensorRow& row = roster_.row(reading);
   netio::Header header;
-  header.robot = static_cast<std::uint16_t>(mover.id);
+  header.robot = static_cast<std::uint16_t>(world_.movers[reading.mover].id);
   header.sensor = static_cast<std::uint16_t>(reading.sensor);
   header.sequence = reading.sequence;
   header.time = reading.time;
-  const auto port = static_cast<std::uint16_t>(netio::port(rule, mover.id, reading.sensor));
-  outbox.queue_laser({address, port}, wire, header, reading.values, mover.lasers[reading.sensor].range_max);
+  const auto port = static_cast<std::uint16_t>(netio::port(port_rule(options_, kind), header.robot, reading.sensor));
+
+  const std::uint32_t parts = kind.parts(row, options_.wire);
+  for (std::uint32_t part = 0; part < parts; ++part) {
+    payload_.clear();
+    const std::uint8_t type = kind.encode(row, reading, options_.wire, part, payload_);
+    if (type == 0) {
+      ++not_numbers_;
+    } else if (options_.wire == sensors::Wire::thesis) {
+      outbox_.queue({address, port}, payload_);
+    } else {
+      netio::frame(header, type, payload_, packet_);
+      outbox_.queue({address, port}, packet_);
+    }
+  }
 }
 
 }  // namespace sf::apps

@@ -3,36 +3,63 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "apps/options.h"
 #include "base/reading.h"
 #include "netio/outbox.h"
 #include "netio/ports.h"
+#include "sensors/roster.h"
 #include "world/world.h"
 
 namespace sf::apps {
 
-/// Ports that `options` give the lasers. @throws base::InputError when two sensors would share one, one is past 65535,
-/// or the chosen wire cannot carry a sensor's scans.
-netio::PortRule require_laser_ports(const world::World& world, const Options& options);
+/// Ports of a kind's sensors.
+netio::PortRule port_rule(const Options& options, const sensors::SensorKind& kind);
+
+/// @throws base::InputError when two sensors would share a port, one is past 65535, or the chosen wire cannot carry a
+/// sensor's readings.
+void require_sendable(const world::World& world, const sensors::Roster& roster, const Options& options);
 
 /// Beams that met nothing read infinity from here on, where the user asked for it.
 class NoReturn {
  public:
-  NoReturn(const world::World& world, bool infinite) : world_(world), infinite_(infinite) {}
+  /// `roster` must outlive it.
+  NoReturn(const sensors::Roster& roster, bool infinite) : roster_(roster), infinite_(infinite) {}
   /// The same readings, or copies that live until the next call.
   std::span<const base::ReadingBlock> apply(std::span<const base::ReadingBlock> readings);
 
  private:
-  const world::World& world_;
+  const sensors::Roster& roster_;
   bool infinite_;
   std::vector<base::ReadingBlock> blocks_;
   std::vector<double> ranges_;
 };
 
-/// Queues one reading to its robot's address, at its sensor's port.
-void post(netio::Outbox& outbox, const world::World& world, const base::ReadingBlock& reading, std::uint32_t address,
-          const netio::PortRule& rule, netio::Wire wire);
+struct PostCounts {
+  netio::OutboxCounts packets;
+  std::uint64_t not_numbers = 0;  ///< packets never made, for a value that is not a number where none may be missing
+};
+
+/// Readings as packets. World, roster and options must outlive it.
+class Post {
+ public:
+  Post(const world::World& world, const sensors::Roster& roster, const Options& options);
+
+  /// Queues one reading's packets to `address`, at its sensor's port.
+  void queue(const base::ReadingBlock& reading, std::uint32_t address);
+  void flush() { outbox_.flush(); }
+  PostCounts counts() const { return {outbox_.counts(), not_numbers_}; }
+
+ private:
+  const world::World& world_;
+  const sensors::Roster& roster_;
+  const Options& options_;
+  netio::Outbox outbox_;
+  std::uint64_t not_numbers_ = 0;
+  base::Bytes payload_;
+  base::Bytes packet_;
+};
 
 }  // namespace sf::apps

@@ -1,8 +1,31 @@
 #include "apps/record_run.h"
 
+#include "sensors/laser_packets.h"
+
 namespace sf::apps {
 
-record::RunInfo run_info(const world::World& world, const Options& options) {
+namespace {
+
+record::KindInfo kind_info(const sensors::SensorKind& kind) {
+  record::KindInfo info{kind.id, std::string(kind.name), std::string(kind.list), {}};
+  for (const sensors::Column& column : kind.columns)
+    info.columns.push_back({std::string(column.name), column.width, column.whole});
+  return info;
+}
+
+/// Every kind but the laser, which has a message type of the world's own and a row of its own facts.
+void add_kinds(const sensors::Roster& roster, record::RunInfo& info) {
+  for (const sensors::Roster::Group& group : roster.groups()) {
+    if (group.kind->id == sensors::kLaserId) continue;
+    info.kinds.push_back(kind_info(*group.kind));
+    for (const sensors::SensorRow& row : group.rows)
+      info.movers[row.mover].sensors.push_back({group.kind->id, row.name, "", row.X_MS, row.rate});
+  }
+}
+
+}  // namespace
+
+record::RunInfo run_info(const world::World& world, const sensors::Roster& roster, const Options& options) {
   record::RunInfo info;
   info.world = world.name.empty() ? world.file : world.name;
   info.world_hash = world.hash;
@@ -12,12 +35,13 @@ record::RunInfo run_info(const world::World& world, const Options& options) {
   info.options = {{"no_return", options.no_return_inf ? "inf" : "max"}};
   info.snapshot = world::snapshot(world);
   for (const world::Mover& mover : world.movers) {
-    record::MoverInfo row{mover.name, "", mover.id, {}};
+    record::MoverInfo row{mover.name, "", mover.id, {}, {}};
     for (const world::Laser& laser : mover.lasers)
       row.lasers.push_back(
           {laser.name, "", laser.X_MS, laser.fov, laser.samples, laser.range_min, laser.range_max, laser.rate});
     info.movers.push_back(std::move(row));
   }
+  add_kinds(roster, info);
   return info;
 }
 

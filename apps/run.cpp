@@ -29,23 +29,21 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 /// Where readings go: a recording, the network, both or neither.
 class Outputs {
  public:
-  Outputs(const world::World& world, const Options& options)
-      : world_(world), options_(options), no_return_(world, options.no_return_inf) {
+  Outputs(const world::World& world, const sensors::Roster& roster, const Options& options)
+      : no_return_(roster, options.no_return_inf) {
     if (!options.send.empty()) {
-      rule_ = require_laser_ports(world, options);
       address_ = netio::resolve(options.send);
-      outbox_.emplace();
+      post_.emplace(world, roster, options);
     }
-    if (!options.record.empty()) recorder_.emplace(options.record, run_info(world, options));
+    if (!options.record.empty()) recorder_.emplace(options.record, run_info(world, roster, options));
   }
 
   void write(base::TickRecord tick) {
     const auto start = Clock::now();
     tick.readings = no_return_.apply(tick.readings);
-    if (outbox_) {
-      for (const base::ReadingBlock& reading : tick.readings)
-        post(*outbox_, world_, reading, address_, rule_, options_.wire);
-      outbox_->flush();
+    if (post_) {
+      for (const base::ReadingBlock& reading : tick.readings) post_->queue(reading, address_);
+      post_->flush();
     }
     if (recorder_) recorder_->write(tick);
     seconds_ += seconds_since(start);
@@ -53,9 +51,9 @@ class Outputs {
 
   void finish(RunFacts& facts) {
     facts.out_s = seconds_;
-    if (outbox_) {
+    if (post_) {
       facts.sent = true;
-      facts.outbox = outbox_->counts();
+      facts.post = post_->counts();
     }
     if (!recorder_) return;
     recorder_->finish();
@@ -64,12 +62,9 @@ class Outputs {
   }
 
  private:
-  const world::World& world_;
-  const Options& options_;
   NoReturn no_return_;
-  netio::PortRule rule_;
   std::uint32_t address_ = 0;
-  std::optional<netio::Outbox> outbox_;
+  std::optional<Post> post_;
   std::optional<record::Recorder> recorder_;
   double seconds_ = 0.0;
 };
@@ -86,9 +81,11 @@ void keep_pace(Clock::time_point start, double simulated) {
 
 int run(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed);
+  const sensors::Roster roster(world);
+  if (!options.send.empty()) require_sendable(world, roster, options);
   gpu::Device device(options.device);
   Simulation simulation(world, device, options.seed, options.threads);
-  Outputs outputs(world, options);
+  Outputs outputs(world, roster, options);
   catch_stop_signals();
 
   const auto ticks = static_cast<std::uint64_t>(std::llround(options.duration / world.interval));

@@ -20,7 +20,6 @@ namespace sf::apps {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::uint32_t kLaserKind = 1;
 
 /// Who on the wire is which mover.
 struct Names {
@@ -43,17 +42,17 @@ std::vector<std::uint32_t> ids_of(const std::map<std::uint32_t, std::uint32_t>& 
 
 class Service {
  public:
-  Service(const world::World& world, gpu::Device& device, const Options& options)
+  Service(const world::World& world, const sensors::Roster& roster, gpu::Device& device, const Options& options)
       : world_(world),
-        options_(options),
+        roster_(roster),
         names_(names_of(world)),
-        rule_(require_laser_ports(world, options)),
         inbox_({.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
                 .robots = ids_of(names_.robots),
                 .tags = ids_of(names_.tags)}),
+        post_(world, roster, options),
         farm_(world, device, farm::FarmOptions{.seed = options.seed}),
         fleet_(world),
-        no_return_(world, options.no_return_inf) {
+        no_return_(roster, options.no_return_inf) {
     reports_.reserve(netio::Inbox::kMaxPerReceive);
   }
 
@@ -72,15 +71,14 @@ class Service {
 
   void tick(std::int64_t now) {
     take_in(now);
-    for (const auto& [id, row] : names_.robots)
-      farm_.hear(row, inbox_.heard(id, now) && inbox_.wants(id, kLaserKind, now));
+    for (const auto& [id, row] : names_.robots) farm_.hear(row, wanted(id, now));
     const auto readings = no_return_.apply(farm_.tick(now, fleet_.predict(now)));
     for (const base::ReadingBlock& reading : readings) {
       // A reading that was on its way when its robot fell silent has nobody to go to.
       const auto to = inbox_.address(world_.movers[reading.mover].id);
-      if (to) post(outbox_, world_, reading, to->address, rule_, options_.wire);
+      if (to) post_.queue(reading, to->address);
     }
-    outbox_.flush();
+    post_.flush();
     ++ticks_;
   }
 
@@ -91,12 +89,20 @@ class Service {
     facts.farm = farm_.stats();
     facts.hash = farm_.hash();
     facts.sent = facts.received = true;
-    facts.outbox = outbox_.counts();
+    facts.post = post_.counts();
     facts.inbox = inbox_.counts();
     return facts;
   }
 
  private:
+  /// Bit k: robot `id` is heard, and wants its sensors of kind k.
+  std::uint32_t wanted(std::uint32_t id, std::int64_t now) const {
+    std::uint32_t kinds = 0;
+    for (const sensors::Roster::Group& group : roster_.groups())
+      if (inbox_.wants(id, group.kind->id, now)) kinds |= 1u << group.kind->id;
+    return kinds;
+  }
+
   void take_in(std::int64_t now) {
     reports_.clear();
     inbox_.receive(now, [&](const netio::Packet& packet) {
@@ -114,11 +120,10 @@ class Service {
   }
 
   const world::World& world_;
-  const Options& options_;
+  const sensors::Roster& roster_;
   Names names_;
-  netio::PortRule rule_;
   netio::Inbox inbox_;
-  netio::Outbox outbox_;
+  Post post_;
   farm::Farm farm_;
   robots::Fleet fleet_;
   NoReturn no_return_;
@@ -130,8 +135,10 @@ class Service {
 
 int serve(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
+  const sensors::Roster roster(world);
+  require_sendable(world, roster, options);
   gpu::Device device(options.device);
-  Service service(world, device, options);
+  Service service(world, roster, device, options);
   catch_stop_signals();
   const double interval = options.rate > 0.0 ? 1.0 / options.rate : world.interval;
   std::fprintf(stderr, "sensorfarm: serving %zu robot%s of %s on %s:%u, %g ticks/s, on %s; Ctrl-C ends it\n",

@@ -32,13 +32,11 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, std::uint
       first_(world.movers.size() + 1),
       interval_(std::llround(world.interval * 1e9)) {
   farm_.hear_all();
-  std::size_t lasers = 0;
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
     const world::Mover& mover = world.movers[i];
     controllers_.push_back(mover.is_tag ? nullptr : std::make_unique<control::Wander>(mover, i, seed));
-    lasers += mover.lasers.size();
   }
-  sorted_.reserve(lasers);
+  sorted_.reserve(farm_.roster().count());
 }
 
 base::TickRecord Simulation::step() {

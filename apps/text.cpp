@@ -4,12 +4,13 @@
 
 #include "apps/facts.h"
 #include "base/hash.h"
+#include "sensors/laser_packets.h"
 
 namespace sf::apps {
 
 namespace {
 
-std::string row(const char* name, const std::string& value) { return fmt::format("  {:<18} {}\n", name, value); }
+std::string row(std::string_view name, const std::string& value) { return fmt::format("  {:<18} {}\n", name, value); }
 
 std::string rate(double per_second) {
   return per_second >= 1e6 ? fmt::format("{:.1f} million/s", per_second * 1e-6) : fmt::format("{:.0f}/s", per_second);
@@ -23,6 +24,59 @@ std::string csv_field(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
+}
+
+std::string sensors_text(const sensors::Roster& roster) {
+  std::string text;
+  for (const sensors::Roster::Group& group : roster.groups()) {
+    std::size_t elements = 0;
+    for (const sensors::SensorRow& sensor : group.rows) elements += sensor.elements;
+    const std::string list = group.kind->list.empty() ? "" : fmt::format(" ({} {} in all)", elements, group.kind->list);
+    text += row(group.kind->name, fmt::format("{}{}", group.rows.size(), list));
+  }
+  return text;
+}
+
+std::string paint_text(const world::World& world) {
+  if (world.stripes.empty()) return "";
+  const double cell = world.road_resolution;
+  return row("paint", fmt::format("{} stripes, seen {}", world.stripes.size(),
+                                  cell > 0.0 ? fmt::format("as a raster of {:g} m", cell) : "exactly"));
+}
+
+std::string magnets_text(const world::World& world) {
+  const std::size_t magnets = count_magnets(world);
+  if (magnets == 0) return "";
+  const double cutoff = world.magnet_cutoff;
+  return row("magnets", fmt::format("{}{}", magnets, cutoff > 0.0 ? fmt::format(", felt within {:g} m", cutoff) : ""));
+}
+
+std::string missing_or(double value, bool whole) {
+  if (std::isnan(value)) return "";
+  return whole ? fmt::format("{:.0f}", value) : fmt::format("{}", value);
+}
+
+std::string beams_csv(const world::World& world, const base::ReadingBlock& reading) {
+  const world::Laser& laser = world.movers[reading.mover].lasers[reading.sensor];
+  std::string text = "bearing_rad,range_m,hit\n";
+  for (std::uint32_t i = 0; i < reading.values.size(); ++i) {
+    const std::uint32_t hit = reading.hits[i];
+    text += fmt::format("{:.12f},{:.9f},{}\n", world::bearing_of(laser, i), reading.values[i],
+                        hit == base::kNoHit ? "" : csv_field(world.models[hit].name));
+  }
+  return text;
+}
+
+/// `distance_m,points`; a vector's columns are `vector_T_x,vector_T_y,vector_T_z`.
+std::string csv_heading(const sensors::SensorKind& kind) {
+  std::string text;
+  for (const sensors::Column& column : kind.columns)
+    for (std::uint32_t k = 0; k < column.width; ++k) {
+      if (!text.empty()) text += ',';
+      text += column.name;
+      if (column.width > 1) text += column.width <= 3 ? fmt::format("_{}", "xyz"[k]) : fmt::format("_{}", k);
+    }
+  return text + "\n";
 }
 
 }  // namespace
@@ -39,15 +93,8 @@ std::string text_of(const gpu::Survey& survey) {
   return text;
 }
 
-std::string text_of(const world::World& world) {
-  std::size_t lasers = 0;
-  std::size_t rays = 0;
-  std::size_t robots = 0;
-  for (const world::Mover& mover : world.movers) {
-    robots += !mover.is_tag;
-    lasers += mover.lasers.size();
-    for (const world::Laser& laser : mover.lasers) rays += laser.samples;
-  }
+std::string text_of(const world::World& world, const sensors::Roster& roster) {
+  const std::size_t robots = count_robots(world);
   const world::Extent& e = world.extent;
   std::string text;
   for (const world::Warning& w : world.warnings) text += fmt::format("{}:{}: warning: {}\n", w.file, w.line, w.message);
@@ -55,9 +102,9 @@ std::string text_of(const world::World& world) {
   text += row("models", fmt::format("{}", world.models.size()));
   text += row("robots", fmt::format("{}", robots));
   if (world.movers.size() > robots) text += row("tags", fmt::format("{}", world.movers.size() - robots));
-  text += row("lasers", fmt::format("{} ({} rays in all)", lasers, rays));
+  text += roster.groups().empty() ? row("sensors", "none") : sensors_text(roster);
   text += row("wall segments", fmt::format("{}", world.walls.size()));
-  if (world.magnets > 0) text += row("magnets", fmt::format("{} (counted only)", world.magnets));
+  text += paint_text(world) + magnets_text(world);
   text += row("extent", fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max));
   text += row("tick", fmt::format("{:g} s", world.interval));
   for (const auto& [type, count] : world.kept) text += row("kept as bodies", fmt::format("{} x {}", count, type));
@@ -65,6 +112,35 @@ std::string text_of(const world::World& world) {
   text += row("warnings", fmt::format("{}", world.warnings.size()));
   return text;
 }
+
+namespace {
+
+/// What was computed, and how fast: of the whole run, and while it sensed.
+std::string work_text(const RunFacts& f) {
+  const double sensing = f.farm.place_s + f.farm.lists_s + f.farm.device_s + f.farm.collect_s;
+  const auto rows = [&](const char* what, std::uint64_t count) {
+    const auto per = [&](double seconds) { return rate(seconds > 0.0 ? static_cast<double>(count) / seconds : 0.0); };
+    return row(what, fmt::format("{}, {} of the whole run", count, per(f.wall_s))) +
+           row("", per(sensing) + " while sensing");
+  };
+  const sensors::Work& work = f.farm.work;
+  std::string text = work.rays > 0 || work.dipoles == 0 ? rows("rays", work.rays) : "";
+  if (work.dipoles > 0) text += rows("dipoles", work.dipoles);
+  return text;
+}
+
+std::string packets_text(const PostCounts& post) {
+  const netio::OutboxCounts& packets = post.packets;
+  std::string text =
+      row("packets sent", fmt::format("{} ({:.1f} MB)", packets.sent, static_cast<double>(packets.sent_bytes) * 1e-6));
+  if (packets.failed + packets.dropped > 0)
+    text += row("packets not sent",
+                fmt::format("{} failed ({}), {} dropped", packets.failed, packets.first_failure, packets.dropped));
+  if (post.not_numbers > 0) text += row("packets not made", fmt::format("{}: not a number in them", post.not_numbers));
+  return text;
+}
+
+}  // namespace
 
 std::string text_of(const RunFacts& f) {
   const double ticks = f.ticks > 0 ? static_cast<double>(f.ticks) : 1.0;
@@ -75,18 +151,9 @@ std::string text_of(const RunFacts& f) {
   text += row("ticks", fmt::format("{}", f.ticks));
   text += row("simulated", fmt::format("{:.1f} s in {:.2f} s: {:.1f} x real time", f.simulated_s, f.wall_s,
                                        f.wall_s > 0.0 ? f.simulated_s / f.wall_s : 0.0));
-  text += row("rays", fmt::format("{}, {} of the whole run", f.farm.rays,
-                                  rate(f.wall_s > 0.0 ? static_cast<double>(f.farm.rays) / f.wall_s : 0.0)));
-  const double computing = f.farm.place_s + f.farm.lists_s + f.farm.device_s + f.farm.collect_s;
-  text += row("", rate(computing > 0.0 ? static_cast<double>(f.farm.rays) / computing : 0.0) + " while sensing");
+  text += work_text(f);
   if (f.contacts > 0) text += row("contacts", fmt::format("{} robot-ticks", f.contacts));
-  if (f.sent) {
-    text += row("packets sent",
-                fmt::format("{} ({:.1f} MB)", f.outbox.sent, static_cast<double>(f.outbox.sent_bytes) * 1e-6));
-    if (f.outbox.failed + f.outbox.dropped > 0)
-      text += row("packets not sent",
-                  fmt::format("{} failed ({}), {} dropped", f.outbox.failed, f.outbox.first_failure, f.outbox.dropped));
-  }
+  if (f.sent) text += packets_text(f.post);
   if (f.received) text += row("packets received", netio::text(f.inbox));
   if (!f.recording.empty())
     text += row("recording", fmt::format("{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6));
@@ -100,33 +167,53 @@ std::string text_of(const RunFacts& f) {
   return text;
 }
 
+namespace {
+
+/// " (laser 120 with 43320 beams, laneedge 30)".
+std::string shares_text(const netio::Summary& summary) {
+  std::string text;
+  for (const sensors::SensorKind* kind : sensors::kinds()) {
+    const auto found = summary.of.find(std::string(kind->name));
+    if (found == summary.of.end()) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kind->name, found->second.good);
+    if (!kind->list.empty()) text += fmt::format(" with {} {}", found->second.elements, kind->list);
+  }
+  return text.empty() ? "" : " (" + text + ")";
+}
+
+}  // namespace
+
 std::string text_of(const netio::Summary& s) {
   std::string text = row("packets received", fmt::format("{} ({:.1f} MB) on {} ports", s.datagrams,
                                                          static_cast<double>(s.bytes) * 1e-6, s.ports));
-  text += row("packets good", fmt::format("{} ({} rays)", s.good, s.rays));
+  text += row("packets good", fmt::format("{}{}", s.good, shares_text(s)));
   text += row("packets lost", fmt::format("{} ({} duplicates, {} reordered)", s.lost, s.duplicates, s.reordered));
   if (s.counts.dropped() > 0) text += row("by reason", netio::text(s.counts));
   if (s.silent_ports > 0) text += row("silent ports", fmt::format("{}", s.silent_ports));
   return text;
 }
 
-std::string place_of(const world::World& world, const base::ReadingBlock& reading) {
+std::string place_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading) {
   const world::Mover& mover = world.movers[reading.mover];
   const base::Pose& R = reading.X_WM;
   const base::Pose& S = reading.X_WS;
   constexpr double kDegrees = 180.0 / M_PI;
   return fmt::format("{} at ({:.6f}, {:.6f}) m, {:.6f} deg; its {} at ({:.6f}, {:.6f}, {:.6f}) m, {:.6f} deg",
-                     mover.name, R.x, R.y, kDegrees * base::wrap_angle(R.yaw), mover.lasers[reading.sensor].name, S.x,
-                     S.y, S.z, kDegrees * base::wrap_angle(S.yaw));
+                     mover.name, R.x, R.y, kDegrees * base::wrap_angle(R.yaw), roster.row(reading).name, S.x, S.y, S.z,
+                     kDegrees * base::wrap_angle(S.yaw));
 }
 
 std::string text_of(const world::World& world, const base::ReadingBlock& reading) {
-  const world::Laser& laser = world.movers[reading.mover].lasers[reading.sensor];
-  std::string text = "bearing_rad,range_m,hit\n";
-  for (std::uint32_t i = 0; i < reading.values.size(); ++i) {
-    const std::uint32_t hit = reading.hits[i];
-    text += fmt::format("{:.12f},{:.9f},{}\n", world::bearing_of(laser, i), reading.values[i],
-                        hit == base::kNoHit ? "" : csv_field(world.models[hit].name));
+  if (reading.kind == sensors::kLaserId) return beams_csv(world, reading);
+  const sensors::SensorKind& kind = *sensors::find_kind(reading.kind);
+  std::string text = csv_heading(kind);
+  const std::size_t width = element_width(kind);
+  for (std::size_t first = 0; first + width <= reading.values.size(); first += width) {
+    std::size_t at = first;
+    for (const sensors::Column& column : kind.columns)
+      for (std::uint32_t k = 0; k < column.width; ++k, ++at)
+        text += (at == first ? "" : ",") + missing_or(reading.values[at], column.whole);
+    text += "\n";
   }
   return text;
 }

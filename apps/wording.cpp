@@ -34,8 +34,15 @@ std::string refuse_number(const std::string& text, double first, double last) {
   return fmt::format("expected a number from {:g} to {:g}, got '{}'", first, last, text);
 }
 
-std::string refuse_choice(const std::string& text, const std::string& a, const std::string& b) {
-  return text == a || text == b ? "" : fmt::format("expected {} or {}, got '{}'", a, b, text);
+std::string either(const std::vector<std::string>& words) {
+  std::string text = words.front();
+  for (std::size_t i = 1; i < words.size(); ++i) text += (i + 1 == words.size() ? " or " : ", ") + words[i];
+  return text;
+}
+
+std::string refuse_choice(const std::string& text, const std::vector<std::string>& words) {
+  const bool known = std::count(words.begin(), words.end(), text) > 0;
+  return known ? "" : fmt::format("expected {}, got '{}'", either(words), text);
 }
 
 std::string refuse_empty(const std::string& text, const std::string& what) {

@@ -16,10 +16,13 @@ namespace sf::apps {
 std::string refuse_whole(const std::string& text, std::uint64_t first, std::uint64_t last);
 /// A number in [first, last]; not-a-number is in no range.
 std::string refuse_number(const std::string& text, double first, double last);
-/// One of two words.
-std::string refuse_choice(const std::string& text, const std::string& a, const std::string& b);
+/// One of some words, at least one.
+std::string refuse_choice(const std::string& text, const std::vector<std::string>& words);
 /// @param what was expected, with its article.
 std::string refuse_empty(const std::string& text, const std::string& what);
+
+/// "a, b or c". @param words at least one.
+std::string either(const std::vector<std::string>& words);
 
 /// "X,Y,YAW_DEG" [m, m, degrees], each within 1e7, as a pose; nothing where it is none.
 std::optional<base::Pose> read_pose(const std::string& text);

@@ -91,7 +91,7 @@ std::vector<Fact> measure_lists(gpu::Device& device) {
     farm.tick(0, {});
     const Cost first = now() - start;
     const Cost later = tick_cost(farm);
-    const auto cells = static_cast<double>(farm.stats().cells_built);
+    const auto cells = static_cast<double>(farm.stats().work.cells_built);
     const std::string at = " at " + std::string(range > 1.0 ? "8" : "0.75") + " m";
     facts.push_back({"cells that 1000 robots need" + at, cells, "cells"});
     facts.push_back({"lists of a new cell" + at + ", one core", 1e6 * (first.cpu_s - later.cpu_s) / cells, "us"});

@@ -6,18 +6,19 @@
 
 namespace sf::farm {
 
-Delivery::Delivery(const world::World& world) {
-  for (const world::Mover& mover : world.movers) {
-    std::vector<std::int64_t>& own = latencies_.emplace_back();
-    for (const world::Laser& laser : mover.lasers) {
-      own.push_back(std::llround(laser.latency * 1e9));
-      any_ = any_ || own.back() > 0;
-    }
-  }
+namespace {
+
+std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
+
+}  // namespace
+
+Delivery::Delivery(const sensors::Roster& roster) : roster_(roster) {
+  for (const auto& group : roster.groups())
+    for (const sensors::SensorRow& row : group.rows) any_ = any_ || nanoseconds(row.latency) > 0;
 }
 
 std::int64_t Delivery::latency_of(const base::ReadingBlock& block) const {
-  return latencies_[block.mover][block.sensor];
+  return nanoseconds(roster_.row(block).latency);
 }
 
 void Delivery::hold(const base::ReadingBlock& block, std::int64_t due) {
@@ -41,8 +42,8 @@ std::span<const base::ReadingBlock> Delivery::deliver(std::int64_t now, std::spa
   for (Waiting& w : waiting_)
     if (w.used && w.due <= now) ready_.push_back(&w);
   std::sort(ready_.begin(), ready_.end(), [](const Waiting* p, const Waiting* q) {
-    return std::tie(p->due, p->block.mover, p->block.sensor, p->block.sequence) <
-           std::tie(q->due, q->block.mover, q->block.sensor, q->block.sequence);
+    return std::tie(p->due, p->block.mover, p->block.kind, p->block.sensor, p->block.sequence) <
+           std::tie(q->due, q->block.mover, q->block.kind, q->block.sensor, q->block.sequence);
   });
   for (Waiting* w : ready_) {
     w->block.values = w->values;

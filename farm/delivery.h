@@ -6,14 +6,15 @@
 #include <vector>
 
 #include "base/reading.h"
-#include "world/world.h"
+#include "sensors/roster.h"
 
 namespace sf::farm {
 
 /// Holds back the readings of sensors with a latency. Sensors without one cost nothing here.
 class Delivery {
  public:
-  explicit Delivery(const world::World& world);
+  /// `roster` must outlive it.
+  explicit Delivery(const sensors::Roster& roster);
 
   /// Takes what was measured at `now` [ns] and gives what is delivered at `now`: first what waited, oldest first, then
   /// what has no latency. Blocks live until the next call.
@@ -30,7 +31,7 @@ class Delivery {
   std::int64_t latency_of(const base::ReadingBlock& block) const;
   void hold(const base::ReadingBlock& block, std::int64_t due);
 
-  std::vector<std::vector<std::int64_t>> latencies_;  ///< [ns] by mover and sensor
+  const sensors::Roster& roster_;
   bool any_ = false;
   std::vector<Waiting> waiting_;  ///< places are reused, with their memory
   std::vector<Waiting*> ready_;

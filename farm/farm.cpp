@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -12,7 +13,6 @@
 #include "farm/delivery.h"
 #include "farm/schedule.h"
 #include "gpu/batch.h"
-#include "sensors/laser.h"
 
 namespace sf::farm {
 
@@ -35,77 +35,94 @@ class Stopwatch {
 
 }  // namespace
 
+/// One kind at work: its instruments, and which of them are due.
+struct Station {
+  const sensors::Roster::Group* group = nullptr;
+  std::unique_ptr<sensors::Instruments> instruments;
+  std::vector<std::uint64_t> begun;  ///< per row: readings begun
+  std::vector<sensors::Due> due;
+};
+
 struct Farm::State {
   const world::World& world;
   base::Workers workers;
-  sensors::Scene scene;
-  sensors::Lasers lasers;
+  sensors::Roster roster;
+  std::vector<Station> stations;
   gpu::Batch batch;
   Delivery delivery;
   std::vector<base::Pose> poses;     ///< per mover
-  std::vector<bool> heard;           ///< per mover
-  std::vector<std::uint64_t> begun;  ///< per laser row: readings begun
-  std::vector<sensors::LaserDue> due;
+  std::vector<std::uint32_t> heard;  ///< per mover: bits of kinds
   std::vector<base::ReadingBlock> blocks;
   std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
   FarmStats stats;
   std::uint64_t hash = 0;
 
   State(const world::World& w, gpu::Device& device, const FarmOptions& options)
-      : world(w),
-        workers(options.threads),
-        scene(w, device, workers, options.scene),
-        lasers(w, scene, device, workers, {options.seed, options.noise}),
-        batch(device),
-        delivery(w),
-        heard(w.movers.size(), false),
-        begun(lasers.owners().size(), 0) {
+      : world(w), workers(options.threads), roster(w), batch(device), delivery(roster), heard(w.movers.size(), 0) {
     for (const world::Mover& mover : w.movers) poses.push_back(mover.X_WM);
-    due.reserve(begun.size());
-    blocks.reserve(begun.size());
-    hashes.reserve(begun.size());
+    const sensors::Site site{w, device, workers, options.seed, options.noise, options.scene};
+    for (const auto& group : roster.groups()) {
+      stations.push_back({&group, group.kind->make(site), std::vector<std::uint64_t>(group.rows.size(), 0), {}});
+      stations.back().due.reserve(group.rows.size());
+    }
+    blocks.reserve(roster.count());
+    hashes.reserve(roster.count());
   }
 
-  void find_due(std::int64_t now);
+  bool find_due(std::int64_t now);
+  void prepare();
   void measure(std::int64_t now);
   void add_to_hash(std::span<const base::ReadingBlock> readings);
 };
 
-void Farm::State::find_due(std::int64_t now) {
-  due.clear();
-  for (std::uint32_t row = 0; row < begun.size(); ++row) {
-    const sensors::LaserOwner owner = lasers.owners()[row];
-    const world::Laser& laser = world.movers[owner.mover].lasers[owner.sensor];
-    const std::uint64_t should = readings_begun(now, laser.rate, laser.phase);
-    if (should <= begun[row]) continue;
-    begun[row] = should;
-    // A sensor's readings are numbered by when they are due: one that nobody heard leaves a gap, and its noise to
-    // itself.
-    if (heard[owner.mover]) due.push_back({row, should - 1});
+bool Farm::State::find_due(std::int64_t now) {
+  bool any = false;
+  for (Station& station : stations) {
+    station.due.clear();
+    const std::uint32_t kind = 1u << station.group->kind->id;
+    for (std::uint32_t i = 0; i < station.begun.size(); ++i) {
+      const sensors::SensorRow& row = station.group->rows[i];
+      const std::uint64_t should = readings_begun(now, row.rate, row.phase);
+      if (should <= station.begun[i]) continue;
+      station.begun[i] = should;
+      // A sensor's readings are numbered by when they are due: one that nobody heard leaves a gap, and its noise to
+      // itself.
+      if ((heard[row.mover] & kind) != 0) station.due.push_back({i, should - 1});
+    }
+    any = any || !station.due.empty();
   }
+  return any;
+}
+
+void Farm::State::prepare() {
+  bool again = false;
+  for (Station& station : stations) again |= station.instruments->prepare(station.due, poses);
+  if (!again) return;
+  batch.begin();
+  for (Station& station : stations) station.instruments->record_measure(batch);
+  batch.barrier();
+  for (Station& station : stations) station.instruments->record_derive(batch);
+  batch.end();
 }
 
 void Farm::State::measure(std::int64_t now) {
-  blocks.clear();
-  if (due.empty()) return;
   Stopwatch watch;
-  scene.place(poses);
+  for (Station& station : stations)
+    if (!station.due.empty()) station.instruments->place(poses);
   watch.lap(stats.place_s);
-  if (lasers.prepare(due, poses)) {
-    batch.begin();
-    lasers.record(batch);
-    batch.end();
-  }
-  scene.upload(batch);
-  lasers.copies(batch);
+  prepare();
+  for (Station& station : stations) station.instruments->copies(batch);
   watch.lap(stats.lists_s);
   batch.run();
   watch.lap(stats.device_s);
-  lasers.collect(blocks);
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    blocks[i].time = now;
-    blocks[i].sequence = static_cast<std::uint32_t>(due[i].sequence);
-    blocks[i].X_WM = poses[blocks[i].mover];
+  for (Station& station : stations) {
+    const std::size_t first = blocks.size();
+    station.instruments->collect(blocks);
+    for (std::size_t i = first; i < blocks.size(); ++i) {
+      blocks[i].time = now;
+      blocks[i].sequence = static_cast<std::uint32_t>(station.due[i - first].sequence);
+      blocks[i].X_WM = poses[blocks[i].mover];
+    }
   }
   watch.lap(stats.collect_s);
 }
@@ -115,7 +132,7 @@ void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
   workers.run(readings.size(), 16, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const base::ReadingBlock& r = readings[i];
-      const std::uint64_t head[] = {r.mover, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
+      const std::uint64_t head[] = {r.mover, r.kind, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
       hashes[i] = base::hash_bytes(head, sizeof head);
       hashes[i] = base::hash_bytes(r.values.data(), r.values.size_bytes(), hashes[i]);
       hashes[i] = base::hash_bytes(r.hits.data(), r.hits.size_bytes(), hashes[i]);
@@ -129,8 +146,10 @@ Farm::Farm(const world::World& world, gpu::Device& device, const FarmOptions& op
 
 Farm::~Farm() = default;
 
-void Farm::hear(std::uint32_t mover, bool heard) { s_->heard.at(mover) = heard; }
-void Farm::hear_all() { std::fill(s_->heard.begin(), s_->heard.end(), true); }
+void Farm::hear(std::uint32_t mover, std::uint32_t kinds) { s_->heard.at(mover) = kinds; }
+void Farm::hear_all() { std::fill(s_->heard.begin(), s_->heard.end(), kAllKinds); }
+
+const sensors::Roster& Farm::roster() const { return s_->roster; }
 
 std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const base::Report> reports) {
   State& s = *s_;
@@ -139,8 +158,8 @@ std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const
     SF_CHECK(std::isfinite(X.x + X.y + X.yaw), "the pose of mover " + std::to_string(report.mover) + " is not finite");
     s.poses.at(report.mover) = X;
   }
-  s.find_due(now);
-  s.measure(now);
+  s.blocks.clear();
+  if (s.find_due(now)) s.measure(now);
   Stopwatch watch;
   const auto delivered = s.delivery.deliver(now, s.blocks);
   s.add_to_hash(delivered);
@@ -150,16 +169,22 @@ std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const
   return delivered;
 }
 
-base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint32_t sensor, const base::Pose& X_WM) {
+base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t kind, std::uint32_t sensor, const base::Pose& X_WM) {
   State& s = *s_;
-  const auto& owners = s.lasers.owners();
-  const auto row = std::find_if(owners.begin(), owners.end(),
-                                [&](const sensors::LaserOwner& o) { return o.mover == mover && o.sensor == sensor; });
-  SF_CHECK(row != owners.end(), "mover " + std::to_string(mover) + " has no sensor " + std::to_string(sensor));
+  s.blocks.clear();
+  for (Station& station : s.stations) {
+    station.due.clear();
+    const auto& rows = station.group->rows;
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const sensors::SensorRow& r) {
+      return station.group->kind->id == kind && r.mover == mover && r.sensor == sensor;
+    });
+    if (row != rows.end()) station.due.push_back({static_cast<std::uint32_t>(row - rows.begin()), 0});
+  }
   const base::Pose stands = std::exchange(s.poses[mover], X_WM);
-  s.due.assign(1, {static_cast<std::uint32_t>(row - owners.begin()), 0});
   s.measure(0);
   s.poses[mover] = stands;
+  SF_CHECK(s.blocks.size() == 1, "mover " + std::to_string(mover) + " has no sensor " + std::to_string(sensor) +
+                                     " of kind " + std::to_string(kind));
   return s.blocks.front();
 }
 
@@ -167,9 +192,13 @@ std::uint64_t Farm::hash() const { return s_->hash; }
 
 FarmStats Farm::stats() const {
   FarmStats stats = s_->stats;
-  stats.rays = s_->lasers.rays();
-  stats.doubts = s_->lasers.doubts();
-  stats.cells_built = s_->scene.counts().cells_built;
+  for (const Station& station : s_->stations) {
+    const sensors::Work work = station.instruments->work();
+    stats.work.rays += work.rays;
+    stats.work.doubts += work.doubts;
+    stats.work.cells_built += work.cells_built;
+    stats.work.dipoles += work.dipoles;
+  }
   return stats;
 }
 

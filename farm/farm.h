@@ -17,7 +17,7 @@
 #include "base/reading.h"
 #include "base/report.h"
 #include "gpu/device.h"
-#include "sensors/scene/scene.h"
+#include "sensors/roster.h"
 #include "world/world.h"
 
 namespace sf::farm {
@@ -32,25 +32,31 @@ struct FarmOptions {
 /// What the ticks so far cost and did.
 struct FarmStats {
   std::uint64_t ticks = 0;
-  std::uint64_t rays = 0;
   std::uint64_t readings = 0;
-  std::uint64_t doubts = 0;       ///< lanes of four beams that 32 bits could not prove
-  std::uint64_t cells_built = 0;  ///< lists made
-  double place_s = 0.0;           ///< [s] host: movers' outlines
-  double lists_s = 0.0;           ///< [s] host: what each sensor may meet
-  double device_s = 0.0;          ///< [s] submit to done
-  double collect_s = 0.0;         ///< [s] host: noise, interpolation, delivery
+  sensors::Work work;      ///< of all kinds together
+  double place_s = 0.0;    ///< [s] host: movers' outlines
+  double lists_s = 0.0;    ///< [s] host: what each sensor may meet
+  double device_s = 0.0;   ///< [s] submit to done
+  double collect_s = 0.0;  ///< [s] host: noise, interpolation, delivery
 };
 
-/// Not thread-safe. `world` and `device` must outlive it.
+inline constexpr std::uint32_t kAllKinds = 0xFFFFFFFFu;
+
+/// Not thread-safe. `world` and `device` must outlive it. Only kinds of sensors that the world has are built.
 class Farm {
  public:
+  /// @throws base::InputError for a sensor whose settings make no sense, base::DeviceError when the device is too
+  /// small.
   Farm(const world::World& world, gpu::Device& device, const FarmOptions& options = {});
   ~Farm();
 
-  /// Which movers' sensors are computed: nobody's at first.
-  void hear(std::uint32_t mover, bool heard);
+  /// Which of a mover's sensors are computed: none at first.
+  /// @param kinds bit k: those of the kind with wire id k.
+  void hear(std::uint32_t mover, std::uint32_t kinds);
+  void hear(std::uint32_t mover, bool) = delete;
   void hear_all();
+
+  const sensors::Roster& roster() const;
 
   /// Computes every heard sensor that is due at `now` and returns what is delivered at `now` (latency may delay a
   /// reading). Movers without a report stay where they were. A sensor is due at phase + k / rate for k = 0, 1, ...: at
@@ -59,8 +65,9 @@ class Farm {
   /// @return blocks that live until the next tick.
   std::span<const base::ReadingBlock> tick(std::int64_t now, std::span<const base::Report> reports);
 
-  /// Computes one laser at once, due or not, as if its mover stood at `X_WM`; noise off unless the options say so.
-  base::ReadingBlock sense(std::uint32_t mover, std::uint32_t sensor, const base::Pose& X_WM);
+  /// Computes one sensor at once, due or not, as if its mover stood at `X_WM`; noise off unless the options say so.
+  /// @param kind wire id.
+  base::ReadingBlock sense(std::uint32_t mover, std::uint8_t kind, std::uint32_t sensor, const base::Pose& X_WM);
 
   /// Hash of all readings delivered so far, in order.
   std::uint64_t hash() const;

@@ -89,6 +89,10 @@ void Batch::dispatch(const Kernel& kernel, const Buffer& counts, std::size_t off
   vkCmdDispatchIndirect(vk_->run(), counts.vk().table.buffer, offset);
 }
 
+void Batch::barrier() {
+  wait_between(vk_->run(), kCompute, VK_ACCESS_SHADER_WRITE_BIT, kCompute, VK_ACCESS_SHADER_READ_BIT);
+}
+
 void Batch::end() {
   wait_between(vk_->run(), kCompute, VK_ACCESS_SHADER_WRITE_BIT, kTransfer | VK_PIPELINE_STAGE_HOST_BIT,
                VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_HOST_READ_BIT);

@@ -22,6 +22,8 @@ class Batch {
   void begin();
   /// Runs `kernel` with the group counts (x, y, z as u32) found in `counts` at `offset` [bytes] when the batch runs.
   void dispatch(const Kernel& kernel, const Buffer& counts, std::size_t offset);
+  /// What is dispatched from here on sees what the dispatches before wrote.
+  void barrier();
   void end();
 
   /// This tick's bytes to copy, from the host view up or from the device down.

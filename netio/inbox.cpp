@@ -56,9 +56,6 @@ Reason Inbox::judge(const Packet& packet, const Endpoint& source, std::int64_t n
     case Type::tag:
       if (!tags_.row(packet.header.robot)) return Reason::unknown_tag;
       return tags_.admit(packet.header.robot, kStateLine, packet.header.sequence, source, now);
-    case Type::laser:
-    case Type::laser_extended:
-      break;
   }
   return Reason::wrong_direction;
 }

@@ -3,7 +3,6 @@
 #include <sys/epoll.h>
 
 #include <array>
-#include <cmath>
 #include <string>
 
 #include "base/error.h"
@@ -19,75 +18,62 @@ constexpr std::size_t kBatch = 64;
 constexpr std::size_t kSpareFiles = 64;       ///< descriptors that the rest of the process may want
 constexpr std::size_t kMaxPerDrain = 65'536;  ///< so that a flood cannot keep `stop` from being seen
 constexpr int kMaxLastDrains = 100;
-constexpr int kLookMs = 50;           ///< how often `stop` is looked at while nothing comes
-constexpr double kRangeSlack = 1e-3;  ///< [m] one count of the coarser wire
+constexpr int kLookMs = 50;  ///< how often `stop` is looked at while nothing comes
 
 struct Stream {
   StreamPlan plan;
   Socket socket;
   Track track;
   std::uint64_t good = 0;
+  std::uint64_t elements = 0;
 };
 
 std::vector<PortUse> uses_of(const std::vector<StreamPlan>& streams) {
   std::vector<PortUse> uses;
   for (const StreamPlan& plan : streams) {
-    uses.push_back({plan.robot, 1, plan.rule, "", plan.sensor});
+    uses.push_back({plan.robot, 1, plan.rule, "", plan.sensor, plan.kind});
   }
   return uses;
 }
 
-/// The plain form saturates, so its largest word says "this or more".
-bool plausible(const LaserPart& scan, double range_max) {
-  if (range_max <= 0.0) return true;
-  for (std::uint32_t i = 0; i < scan.count; ++i) {
-    const double metres = range(scan, i);
-    if (std::isinf(metres) || (!scan.extended && metres >= kLaserRange)) continue;
-    if (metres > range_max + kRangeSlack) return false;
-  }
-  return true;
-}
-
-Reason check(const StreamPlan& plan, const LaserPart& scan) {
-  if (plan.samples != 0 && scan.total != plan.samples) return Reason::out_of_range;
-  return plausible(scan, plan.range_max) ? Reason::accepted : Reason::out_of_range;
-}
-
-Reason read(Wire wire, std::span<const std::uint8_t> bytes, const StreamPlan& plan, Header& header, LaserPart& scan) {
-  if (wire == Wire::thesis) return read_laser(bytes, scan);
+/// What lies behind the header, when that is a reading's and this stream's own.
+Reason unframe(std::span<const std::uint8_t> bytes, const StreamPlan& plan, Header& header,
+               std::span<const std::uint8_t>& payload) {
   Packet packet;
   const Reason reason = decode(bytes, packet);
   if (reason != Reason::accepted) return reason;
-  const auto* laser = std::get_if<LaserPart>(&packet.body);
-  if (laser == nullptr) return Reason::wrong_direction;
+  const auto* reading = std::get_if<Reading>(&packet.body);
+  if (reading == nullptr) return Reason::wrong_direction;
   header = packet.header;
-  scan = *laser;
+  payload = reading->payload;
   return header.robot == plan.robot && header.sensor == plan.sensor ? Reason::accepted : Reason::wrong_source;
 }
 
 }  // namespace
 
 struct Listener::Streams {
-  Wire wire = Wire::farm;
+  bool headerless = false;
+  Judge judge;
   Socket epoll;
   std::vector<Stream> rows;
   ReceiveBatch batch{kBatch};
   Counts counts;
   std::uint64_t bytes = 0;
-  std::uint64_t rays = 0;
 };
 
 Listener::Listener(const ListenerOptions& options) : streams_(std::make_unique<Streams>()) {
+  SF_CHECK(options.judge != nullptr, "a listener without a judge");
   require_ports(uses_of(options.streams));
   allow_open_files(options.streams.size() + kSpareFiles);
   Streams& s = *streams_;
-  s.wire = options.wire;
+  s.headerless = options.headerless;
+  s.judge = options.judge;
   s.epoll = Socket(epoll_create1(EPOLL_CLOEXEC));
   if (s.epoll.descriptor() < 0) throw base::InputError("no epoll set: " + error_text(errno) + "; raise `ulimit -n`");
 
   for (const StreamPlan& plan : options.streams) {
     const auto own_port = static_cast<std::uint16_t>(port(plan.rule, plan.robot, plan.sensor));
-    s.rows.push_back({plan, open_udp({options.address, own_port}, {.receive = options.receive_buffer}), {}, 0});
+    s.rows.push_back({plan, open_udp({options.address, own_port}, {.receive = options.receive_buffer}), {}, 0, 0});
     epoll_event readable{};
     readable.events = EPOLLIN;
     readable.data.u64 = s.rows.size() - 1;
@@ -131,17 +117,18 @@ Reason Listener::accept(std::size_t i, std::span<const std::uint8_t> bytes) {
   Streams& s = *streams_;
   Stream& stream = s.rows[i];
   Header header;
-  LaserPart scan;
-  Reason reason = read(s.wire, bytes, stream.plan, header, scan);
-  if (reason == Reason::accepted) reason = check(stream.plan, scan);
-  s.counts.add(reason);
+  std::span<const std::uint8_t> payload = bytes;
+  Verdict verdict;
+  if (!s.headerless) verdict.reason = unframe(bytes, stream.plan, header, payload);
+  if (verdict.reason == Reason::accepted) verdict = s.judge(i, header, payload);
+  s.counts.add(verdict.reason);
   s.bytes += bytes.size();
-  if (reason != Reason::accepted) return reason;
+  if (verdict.reason != Reason::accepted) return verdict.reason;
 
   ++stream.good;
-  s.rays += scan.count;
-  if (s.wire == Wire::farm) see(stream.track, std::uint64_t{header.sequence} * scan.parts + scan.part);
-  return reason;
+  stream.elements += verdict.elements;
+  if (!s.headerless) see(stream.track, std::uint64_t{header.sequence} * verdict.parts + verdict.part);
+  return Reason::accepted;
 }
 
 Summary Listener::summary() const {
@@ -149,7 +136,6 @@ Summary Listener::summary() const {
   Summary sum;
   sum.datagrams = s.counts.total();
   sum.bytes = s.bytes;
-  sum.rays = s.rays;
   sum.good = s.counts[Reason::accepted];
   sum.counts = s.counts;
   sum.ports = s.rows.size();
@@ -158,6 +144,9 @@ Summary Listener::summary() const {
     sum.duplicates += stream.track.duplicates;
     sum.reordered += stream.track.reordered;
     sum.silent_ports += stream.good == 0 ? 1 : 0;
+    Summary::Share& share = sum.of[stream.plan.kind];
+    share.good += stream.good;
+    share.elements += stream.elements;
   }
   if (!s.rows.empty()) sum.receive_buffer = receive_buffer(s.rows.front().socket);
   return sum;

@@ -1,23 +1,27 @@
 #pragma once
-// The other end of a run: takes every sensor's packets on its own port, counts and checks them.
+// The other end of a run: takes every sensor's packets on its own port, counts and checks them. What a payload should
+// say is for a judge to tell, who knows the sensors.
 //
 // One socket per port, since Linux has no way for an ordinary user to take a range of ports with one; one epoll set
 // over all, so that a thousand quiet ports cost nothing, and recvmmsg on each that has something.
 //
-//   Listener listener({.streams = streams});      // ports are bound when this returns: start the sender now
-//   listener.run(stop, 500);                      // or drain(), between other work
+//   Listener listener({.streams = streams, .judge = judge});  // ports are bound: start the sender now
+//   listener.run(stop, 500);                                  // or drain(), between other work
 //   Summary summary = listener.summary();
 //
 // One thread; only `stop` may be set by another.
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "netio/endpoint.h"
-#include "netio/laser_packets.h"
+#include "netio/packets.h"
 #include "netio/ports.h"
 #include "netio/reason.h"
 
@@ -27,23 +31,32 @@ namespace sf::netio {
 struct StreamPlan {
   std::uint32_t robot = 0;
   std::uint32_t sensor = 0;
-  std::uint32_t samples = 0;  ///< rays of each scan; 0: any number
-  double range_max =
-      0.0;  ///< [m] no finite range may be larger by more than 1 mm (saturated words aside); 0: not checked
   PortRule rule;
+  std::string kind = "sensor";  ///< for the error where ports collide
 };
+
+/// What a payload turned out to be.
+struct Verdict {
+  Reason reason = Reason::accepted;
+  std::uint32_t elements = 0;  ///< beams, or whatever the sensor has several of, in this datagram
+  std::uint32_t part = 0;      ///< which datagram of its reading
+  std::uint32_t parts = 1;     ///< >= 1, the same for every reading of a stream
+};
+
+/// Judges any bytes that came for stream `stream` (a row of the plan) with a reading's header of its robot and sensor.
+using Judge = std::function<Verdict(std::size_t stream, const Header&, std::span<const std::uint8_t> payload)>;
 
 struct ListenerOptions {
   std::uint32_t address = kLoopback;
   std::size_t receive_buffer = 1u << 20;  ///< [byte] per port, asked of the kernel
-  Wire wire = Wire::farm;                 ///< the thesis' layout has no sequence: loss and order cannot be seen in it
+  bool headerless = false;                ///< datagrams are payloads; without a sequence, loss and order cannot be seen
   std::vector<StreamPlan> streams;        ///< one per sensor
+  Judge judge;                            ///< not empty
 };
 
 struct Summary {
   std::uint64_t datagrams = 0;
   std::uint64_t bytes = 0;  ///< UDP payload
-  std::uint64_t rays = 0;   ///< in good datagrams
   std::uint64_t good = 0;   ///< decoded, plausible, and what their port should carry
   Counts counts;            ///< the same datagrams by reason
   std::uint64_t lost = 0;   ///< by gaps in sequences from 0; see Track
@@ -52,6 +65,13 @@ struct Summary {
   std::uint64_t ports = 0;
   std::uint64_t silent_ports = 0;  ///< nothing good came
   std::size_t receive_buffer = 0;  ///< [byte] granted to the first port
+
+  /// Of the streams of one kind: what came of them.
+  struct Share {
+    std::uint64_t good = 0;      ///< datagrams
+    std::uint64_t elements = 0;  ///< in these
+  };
+  std::map<std::string, Share> of;  ///< by `StreamPlan::kind`
 };
 
 class Listener {

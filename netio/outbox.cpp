@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "netio/packets.h"
 #include "netio/posix.h"
 
 namespace sf::netio {
@@ -24,7 +25,6 @@ Outbox::Outbox(const OutboxOptions& options)
       storage_(std::make_unique<Storage>()) {
   SF_CHECK(options.capacity >= 1, "an outbox that holds nothing");
   Storage& s = *storage_;
-  scratch_.reserve(kMaxDatagram);
   s.slots.resize(options.capacity * kMaxDatagram);
   s.destinations.resize(options.capacity);
   s.vectors.resize(options.capacity);
@@ -50,18 +50,6 @@ void Outbox::queue(const Endpoint& to, std::span<const std::uint8_t> bytes) {
   s.vectors[i].iov_len = bytes.size();
   if (!bytes.empty()) std::memcpy(s.vectors[i].iov_base, bytes.data(), bytes.size());
   ++counts_.queued;
-}
-
-void Outbox::queue_laser(const Endpoint& to, Wire wire, const Header& header, std::span<const double> ranges,
-                         double range_max) {
-  const std::uint32_t parts = laser_parts(wire, static_cast<std::uint32_t>(ranges.size()), range_max);
-  for (std::uint32_t part = 0; part < parts; ++part) {
-    if (encode_laser(wire, header, ranges, range_max, part, scratch_)) {
-      queue(to, scratch_);
-    } else {
-      ++counts_.not_numbers;
-    }
-  }
 }
 
 void Outbox::flush() {

@@ -12,9 +12,7 @@
 #include <span>
 #include <string>
 
-#include "base/bytes.h"
 #include "netio/endpoint.h"
-#include "netio/laser_packets.h"
 #include "netio/socket.h"
 
 namespace sf::netio {
@@ -27,13 +25,12 @@ struct OutboxOptions {
 };
 
 struct OutboxCounts {
-  std::uint64_t queued = 0;       ///< sent + failed + dropped + those still waiting for a flush
-  std::uint64_t sent = 0;         ///< handed to the kernel
-  std::uint64_t sent_bytes = 0;   ///< UDP payload of these
-  std::uint64_t failed = 0;       ///< refused by the kernel: unreachable network, no permission to broadcast, ...
-  std::uint64_t dropped = 0;      ///< the socket stayed full for `patience_ms`
-  std::uint64_t not_numbers = 0;  ///< laser datagrams never queued, for a NaN among their ranges
-  std::string first_failure;      ///< "192.0.2.1:10000: Network is unreachable"; empty while failed is 0
+  std::uint64_t queued = 0;      ///< sent + failed + dropped + those still waiting for a flush
+  std::uint64_t sent = 0;        ///< handed to the kernel
+  std::uint64_t sent_bytes = 0;  ///< UDP payload of these
+  std::uint64_t failed = 0;      ///< refused by the kernel: unreachable network, no permission to broadcast, ...
+  std::uint64_t dropped = 0;     ///< the socket stayed full for `patience_ms`
+  std::string first_failure;     ///< "192.0.2.1:10000: Network is unreachable"; empty while failed is 0
 };
 
 class Outbox {
@@ -45,10 +42,6 @@ class Outbox {
 
   /// Keeps a copy of at most kMaxDatagram bytes for the next flush.
   void queue(const Endpoint& to, std::span<const std::uint8_t> bytes);
-
-  /// Queues all datagrams of one laser scan. `header`'s type is ignored.
-  void queue_laser(const Endpoint& to, Wire wire, const Header& header, std::span<const double> ranges,
-                   double range_max);
 
   /// Sends all that is queued, in order.
   void flush();
@@ -63,7 +56,6 @@ class Outbox {
   OutboxOptions options_;
   OutboxCounts counts_;
   Socket socket_;
-  base::Bytes scratch_;
   std::unique_ptr<Storage> storage_;
 };
 

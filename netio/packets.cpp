@@ -4,7 +4,6 @@
 #include <string>
 
 #include "base/error.h"
-#include "netio/laser_packets.h"
 
 namespace sf::netio {
 
@@ -111,15 +110,10 @@ Reason read_body(std::span<const std::uint8_t> payload, Packet& packet) {
     case Type::subscribe:
       packet.body = Subscribe{reader.get<std::uint32_t>()};
       return check_size(payload.size(), kSubscribeBytes);
-    case Type::laser:
-    case Type::laser_extended: {
-      LaserPart part;
-      reason = packet.header.type == Type::laser ? read_laser(payload, part) : read_laser_extended(payload, part);
-      packet.body = part;
-      return reason;
-    }
   }
-  return Reason::unknown_type;
+  if (kind_of(packet.header.type) == 0) return Reason::unknown_type;
+  packet.body = Reading{payload};
+  return payload.size() <= kMaxDatagram - kHeaderBytes ? Reason::accepted : Reason::too_long;
 }
 
 Reason read_header(base::ByteReader& reader, Header& header) {
@@ -199,6 +193,13 @@ void encode(const Header& header, const Subscribe& request, base::Bytes& out) {
   start(header, Type::subscribe, out);
   base::ByteWriter writer(out);
   writer.put(request.kinds);
+}
+
+void frame(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out) {
+  SF_CHECK(kind_of(Type{type}) != 0, "type " + std::to_string(type) + " is no reading's");
+  SF_CHECK(kHeaderBytes + payload.size() <= kMaxDatagram, std::to_string(payload.size()) + " bytes of payload");
+  start(header, Type{type}, out);
+  out.insert(out.end(), payload.begin(), payload.end());
 }
 
 base::Report report(const Header& header, const V2v& state, std::uint32_t mover) {

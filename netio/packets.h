@@ -1,6 +1,7 @@
 #pragma once
 // The farm's packets as values, and their bytes. docs/packets.md gives every byte and every limit; this is its code.
 //
+// What a reading's payload says is its sensor kind's business: here it is any bytes behind a header.
 // Decoding is total: any bytes give a packet or one Reason. Encoding is for those who keep the limits: a value that the
 // decoder would refuse is our bug and aborts.
 
@@ -28,9 +29,15 @@ inline constexpr double kMaxYaw = 1e6;               ///< [rad] a heading that w
 inline constexpr double kMaxSpeed = 1e3;             ///< [m/s], and [rad/s]
 inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 years: differences cannot overflow
 
-/// Below 64: a reading of the sensor kind with that number; 64 more: its extended form; from 128: states sent to the
-/// farm.
-enum class Type : std::uint8_t { laser = 1, laser_extended = 65, v2v = 128, tag = 129, subscribe = 130 };
+/// From 128: states sent to the farm. Below 64: a reading of the sensor kind with that number; 64 more: its second
+/// form.
+enum class Type : std::uint8_t { v2v = 128, tag = 129, subscribe = 130 };
+
+/// The sensor kind in [1, 63] whose readings, of either form, are sent as `type`; 0 when it is no reading's.
+constexpr std::uint8_t kind_of(Type type) {
+  const auto number = static_cast<std::uint8_t>(type);
+  return number < 128 ? number % 64 : std::uint8_t{0};
+}
 
 struct Header {
   Type type = Type::v2v;
@@ -59,23 +66,17 @@ struct Tag {
 
 /// A robot asks for readings without moving anything.
 struct Subscribe {
-  std::uint32_t kinds = 0;  ///< bit k: kind k (bit 1: laser); 0: all
+  std::uint32_t kinds = 0;  ///< bit k: sensor kind k; 0: all
 };
 
-/// One datagram of a laser scan: the whole scan, or one part of an extended one. `words` lives as long as the datagram.
-struct LaserPart {
-  std::uint32_t total = 0;  ///< rays of the whole scan
-  std::uint32_t first = 0;  ///< ray that this part begins with
-  std::uint32_t count = 0;  ///< rays in this part
-  std::uint16_t part = 0;
-  std::uint16_t parts = 1;
-  bool extended = false;
-  std::span<const std::uint8_t> words;  ///< `count` little-endian words, 2 bytes each, or 4 when extended
+/// A sensor's reading, or a part of one; its kind reads it.
+struct Reading {
+  std::span<const std::uint8_t> payload;  ///< lives as long as the datagram
 };
 
 struct Packet {
   Header header;
-  std::variant<V2v, Tag, Subscribe, LaserPart> body;
+  std::variant<V2v, Tag, Subscribe, Reading> body;
 };
 
 /// Reads any bytes. Fills `packet` only when the answer is Reason::accepted.
@@ -85,6 +86,10 @@ Reason decode(std::span<const std::uint8_t> bytes, Packet& packet);
 void encode(const Header& header, const V2v& state, base::Bytes& out);
 void encode(const Header& header, const Tag& state, base::Bytes& out);
 void encode(const Header& header, const Subscribe& request, base::Bytes& out);
+
+/// A reading of type `type`, one of a sensor kind's two; replaces what `out` holds.
+/// Rule: header and payload together take at most kMaxDatagram.
+void frame(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out);
 
 /// Appends the 24 bytes that every packet begins with.
 void put_header(const Header& header, base::ByteWriter& writer);

@@ -19,7 +19,7 @@ struct Taken {
 
 std::string describe(const PortUse& use, std::uint32_t sensor) {
   const std::string name = use.name.empty() ? "robot" : "robot '" + use.name + "'";
-  return name + " (id " + std::to_string(use.robot) + ") sensor " + std::to_string(sensor);
+  return name + " (id " + std::to_string(use.robot) + ") " + use.kind + " " + std::to_string(sensor);
 }
 
 std::string describe(const PortRule& rule) {

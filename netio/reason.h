@@ -19,10 +19,10 @@ enum class Reason : std::uint8_t {
   too_long,         ///< more bytes than its type has
   not_finite,       ///< a NaN or an infinity among its numbers
   out_of_range,     ///< a number outside the range that docs/packets.md gives
-  wrong_direction,  ///< a reading sent to the farm, or a state sent to a listener
+  wrong_direction,  ///< a reading sent to the farm, or a state to a listener
   unknown_robot,    ///< a robot id that the world does not have
   unknown_tag,      ///< a tag id that the world does not have
-  wrong_source,     ///< the id is bound to another sender, or the packet came to another sensor's port
+  wrong_source,     ///< the id is bound to another sender, or it came to another sensor's port
   stale,            ///< its sequence is not newer than one already taken
 };
 inline constexpr std::size_t kReasons = 13;

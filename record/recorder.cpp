@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "record/fleet.h"
-#include "record/schemas.h"
+#include "record/readings.h"
 
 namespace sf::record {
 
@@ -14,25 +14,11 @@ namespace {
 constexpr std::uint8_t kLaser = 1;  // wire id of the kind
 constexpr std::size_t kMostChannels = 0xFFFF;
 
-// rosbag2 asks for these: "" means the reader's own choice; latched topics must say that they are.
-const TextPairs kPlain = {{"offered_qos_profiles", ""}};
-const TextPairs kLatched = {
-    {"offered_qos_profiles",
-     "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n  deadline:\n    sec: 0\n    nsec: 0\n"
-     "  lifespan:\n    sec: 0\n    nsec: 0\n  liveliness: 1\n  liveliness_lease_duration:\n"
-     "    sec: 0\n    nsec: 0\n  avoid_ros_namespace_conventions: false\n"}};
-
 RunInfo named(RunInfo info) {
   SF_CHECK(!info.snapshot.empty(), "a recording without its world");
   SF_CHECK(info.interval > 0.0 && info.odometry_rate >= 0.0, std::to_string(info.interval));
   name_frames(info);
   return info;
-}
-
-std::size_t count_channels(const RunInfo& info) {
-  std::size_t count = 4;
-  for (const MoverInfo& mover : info.movers) count += 2 + (info.record_readings ? mover.lasers.size() : 0);
-  return count;
 }
 
 TextPairs summary_of(const RunInfo& info) {
@@ -49,9 +35,6 @@ TextPairs summary_of(const RunInfo& info) {
   return pairs;
 }
 
-/// "/robot/laser/scan" -> "robot/laser".
-std::string frame_of(const LaserInfo& laser) { return laser.topic.substr(1, laser.topic.rfind('/') - 1); }
-
 }  // namespace
 
 Recorder::Recorder(const std::string& directory, RunInfo info)
@@ -63,9 +46,9 @@ Recorder::Recorder(const std::string& directory, RunInfo info)
   }
   mcap_.add_attachment({.name = "world.bin", .media_type = "application/octet-stream", .data = info_.snapshot});
   mcap_.add_metadata({"sensorfarm", summary_of(info_)});
-  add_channels();
+  channels_ = add_channels(mcap_, info_);
   write_run_info();
-  write_laser_frames();
+  write_sensor_frames();
   flush();
   file_.publish();
   info_.snapshot = {};
@@ -79,63 +62,41 @@ Recorder::~Recorder() {
   }
 }
 
-void Recorder::add_channels() {
-  const auto schema = [&](std::string_view type) { return mcap_.add_schema(type, "ros2msg", schema_text(type)); };
-  info_channel_ = mcap_.add_channel(schema(kRunInfo), "/run", "cdr", kLatched);
-  fleet_channel_ = mcap_.add_channel(schema(kFleet), "/fleet", "cdr", kPlain);
-  const std::uint16_t transforms = schema(kTransforms);
-  transform_channel_ = mcap_.add_channel(transforms, "/tf", "cdr", kPlain);
-  static_channel_ = mcap_.add_channel(transforms, "/tf_static", "cdr", kLatched);
-  const std::uint16_t odometry = info_.odometry_rate > 0.0 ? schema(kOdometry) : std::uint16_t{0};
-  const std::uint16_t twist = info_.odometry_rate > 0.0 ? schema(kTwistStamped) : std::uint16_t{0};
-  add_mover_channels(odometry, twist, info_.record_readings ? schema(kLaserScan) : std::uint16_t{0});
-}
-
-void Recorder::add_mover_channels(std::uint16_t odometry, std::uint16_t twist, std::uint16_t scan) {
-  for (const MoverInfo& mover : info_.movers) {
-    MoverChannels& channels = channels_.emplace_back();
-    if (odometry != 0) {
-      channels.odometry = mcap_.add_channel(odometry, "/" + mover.frame + "/odom", "cdr", kPlain);
-      channels.command = mcap_.add_channel(twist, "/" + mover.frame + "/cmd_vel", "cdr", kPlain);
-    }
-    for (const LaserInfo& laser : mover.lasers) {
-      channels.frames.push_back(frame_of(laser));
-      if (scan != 0) channels.scans.push_back(mcap_.add_channel(scan, laser.topic, "cdr", kPlain));
-    }
-  }
-}
-
 void Recorder::write_run_info() {
   message_.clear();
   encode_run_info(info_, message_);
-  add(info_channel_, 0, 0, 0);
+  add(channels_.info, 0, 0, 0);
 }
 
-void Recorder::write_laser_frames() {
+void Recorder::write_sensor_frames() {
   transforms_.clear();
   for (std::size_t row = 0; row < info_.movers.size(); ++row) {
     const MoverInfo& mover = info_.movers[row];
     for (std::size_t k = 0; k < mover.lasers.size(); ++k) {
-      transforms_.push_back({0, mover.frame, channels_[row].frames[k], mover.lasers[k].X_MS});
+      transforms_.push_back({0, mover.frame, channels_.movers[row].frames[k], mover.lasers[k].X_MS});
+    }
+    for (std::size_t k = 0; k < mover.sensors.size(); ++k) {
+      transforms_.push_back({0, mover.frame, channels_.movers[row].readings[k].frame, mover.sensors[k].X_MS});
     }
   }
   message_.clear();
   encode_transforms(transforms_, message_);
-  add(static_channel_, 0, 0, 0);
+  add(channels_.statics, 0, 0, 0);
 }
 
 void Recorder::write(const base::TickRecord& record) {
   SF_CHECK(!finished_, "tick " + std::to_string(record.tick) + " after the end of the recording");
   for (const base::Report& report : record.reports) {
-    SF_CHECK(report.mover < channels_.size(), "mover " + std::to_string(report.mover));
+    SF_CHECK(report.mover < channels_.movers.size(), "mover " + std::to_string(report.mover));
   }
   message_.clear();
   encode_fleet(record, message_);
-  add(fleet_channel_, ticks_, record.time, record.time);
+  add(channels_.fleet, ticks_, record.time, record.time);
   write_transforms(record);
   if (info_.odometry_rate > 0.0 && record.time >= next_odometry_) write_odometry(record);
   for (const base::ReadingBlock& reading : record.readings) {
-    if (info_.record_readings) write_reading(reading, record.time);
+    if (!info_.record_readings) break;
+    reading.kind == kLaser ? write_scan(reading, record.time) : write_reading(reading, record.time);
   }
   flush();
   ++ticks_;
@@ -148,7 +109,7 @@ void Recorder::write_transforms(const base::TickRecord& record) {
   }
   message_.clear();
   encode_transforms(transforms_, message_);
-  add(transform_channel_, ticks_, record.time, record.time);
+  add(channels_.transforms, ticks_, record.time, record.time);
 }
 
 void Recorder::write_odometry(const base::TickRecord& record) {
@@ -157,23 +118,22 @@ void Recorder::write_odometry(const base::TickRecord& record) {
     const std::string& frame = info_.movers[report.mover].frame;
     message_.clear();
     encode_odometry({record.time, "world", frame, report.X_WM}, report.velocity, message_);
-    add(channels_[report.mover].odometry, odometries_, record.time, record.time);
+    add(channels_.movers[report.mover].odometry, odometries_, record.time, record.time);
     if (record.commands.empty()) continue;
     message_.clear();
     encode_twist(record.time, frame, record.commands[i], message_);
-    add(channels_[report.mover].command, odometries_, record.time, record.time);
+    add(channels_.movers[report.mover].command, odometries_, record.time, record.time);
   }
   ++odometries_;
   const auto period = std::max<std::int64_t>(1, std::llround(1e9 / info_.odometry_rate));
   next_odometry_ = (record.time / period + 1) * period;
 }
 
-void Recorder::write_reading(const base::ReadingBlock& reading, std::int64_t time) {
-  SF_CHECK(reading.kind == kLaser, "kind " + std::to_string(reading.kind));
-  SF_CHECK(reading.mover < channels_.size() && reading.sensor < channels_[reading.mover].scans.size(),
+void Recorder::write_scan(const base::ReadingBlock& reading, std::int64_t time) {
+  SF_CHECK(reading.mover < channels_.movers.size() && reading.sensor < channels_.movers[reading.mover].scans.size(),
            "mover " + std::to_string(reading.mover) + " sensor " + std::to_string(reading.sensor));
   const LaserInfo& laser = info_.movers[reading.mover].lasers[reading.sensor];
-  const MoverChannels& channels = channels_[reading.mover];
+  const MoverChannels& channels = channels_.movers[reading.mover];
   scan_.time = reading.time;
   scan_.frame = channels.frames[reading.sensor];
   scan_.fov = static_cast<float>(laser.fov);
@@ -183,6 +143,20 @@ void Recorder::write_reading(const base::ReadingBlock& reading, std::int64_t tim
   message_.clear();
   encode_scan(scan_, reading.values, message_);
   add(channels.scans[reading.sensor], reading.sequence, time, reading.time);
+}
+
+void Recorder::write_reading(const base::ReadingBlock& reading, std::int64_t time) {
+  SF_CHECK(reading.mover < channels_.movers.size(), "mover " + std::to_string(reading.mover));
+  std::uint32_t before = 0;  // of the same kind
+  for (const SensorChannel& sensor : channels_.movers[reading.mover].readings) {
+    if (sensor.kind->id != reading.kind || before++ < reading.sensor) continue;
+    message_.clear();
+    encode_reading(*sensor.kind, reading.time, sensor.frame, reading.values, message_);
+    add(sensor.channel, reading.sequence, time, reading.time);
+    return;
+  }
+  SF_CHECK(false, "mover " + std::to_string(reading.mover) + " kind " + std::to_string(reading.kind) + " sensor " +
+                      std::to_string(reading.sensor));
 }
 
 void Recorder::add(std::uint16_t channel, std::uint32_t sequence, std::int64_t log_time, std::int64_t true_time) {

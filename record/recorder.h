@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/sink.h"
+#include "record/channels.h"
 #include "record/file.h"
 #include "record/mcap_writer.h"
 #include "record/messages.h"
@@ -29,8 +30,8 @@ class Recorder : public base::Sink {
   /// Finishes, if nobody did, and keeps silent when that fails: call `finish` to know.
   ~Recorder() override;
 
-  /// Rule: every report's mover is a row of `info.movers`, every reading's sensor a row of its lasers; time does not go
-  /// back.
+  /// Rule: every report's mover is a row of `info.movers`, every reading's sensor one of its lasers or sensors; time
+  /// does not go back.
   /// @throws base::InputError when the tick could not be kept whole (a full disk). All ticks before it are; the
   /// recorder takes no more.
   void write(const base::TickRecord& record) override;
@@ -41,19 +42,11 @@ class Recorder : public base::Sink {
   std::uint64_t size() const { return file_.size(); }  ///< [byte] in the file
 
  private:
-  struct MoverChannels {
-    std::uint16_t odometry = 0;
-    std::uint16_t command = 0;
-    std::vector<std::uint16_t> scans;  ///< one per laser when readings are kept
-    std::vector<std::string> frames;   ///< one per laser
-  };
-
-  void add_channels();
-  void add_mover_channels(std::uint16_t odometry, std::uint16_t twist, std::uint16_t scan);
   void write_run_info();
-  void write_laser_frames();
+  void write_sensor_frames();
   void write_transforms(const base::TickRecord& record);
   void write_odometry(const base::TickRecord& record);
+  void write_scan(const base::ReadingBlock& reading, std::int64_t time);
   void write_reading(const base::ReadingBlock& reading, std::int64_t time);
   void add(std::uint16_t channel, std::uint32_t sequence, std::int64_t log_time, std::int64_t true_time);
   void flush();
@@ -61,10 +54,9 @@ class Recorder : public base::Sink {
   RunInfo info_;
   GrowingFile file_;
   McapWriter mcap_;
-  std::uint16_t info_channel_ = 0, fleet_channel_ = 0, transform_channel_ = 0, static_channel_ = 0;
-  std::vector<MoverChannels> channels_;  ///< by mover
-  std::int64_t next_odometry_ = 0;       ///< [ns]
-  std::uint32_t ticks_ = 0;              ///< written so far
+  Channels channels_;
+  std::int64_t next_odometry_ = 0;  ///< [ns]
+  std::uint32_t ticks_ = 0;         ///< written so far
   std::uint32_t odometries_ = 0;
   bool finished_ = false;
 

@@ -8,17 +8,20 @@
 #include "base/error.h"
 #include "record/file.h"
 #include "record/mcap_reader.h"
+#include "record/readings.h"
 #include "record/schemas.h"
 
 namespace sf::record {
 
 namespace {
 
-/// Which mover and laser a topic belongs to.
-struct ScanTopic {
+/// Which sensor a topic belongs to.
+struct SensorTopic {
   std::uint32_t mover = 0;
-  std::uint32_t sensor = 0;
+  const KindInfo* kind = nullptr;  ///< null: a laser
+  std::uint32_t sensor = 0;        ///< among the mover's of its kind
 };
+using Topics = std::map<std::string, SensorTopic>;
 
 std::string file_in(const std::string& directory) {
   std::error_code ignored;
@@ -53,11 +56,16 @@ void read_info(const McapContents& contents, Recording& recording) {
   recording.info.snapshot.assign(world->data.begin(), world->data.end());
 }
 
-std::map<std::string, ScanTopic> scan_topics(const RunInfo& info) {
-  std::map<std::string, ScanTopic> topics;
+Topics sensor_topics(const RunInfo& info) {
+  Topics topics;
   for (std::uint32_t mover = 0; mover < info.movers.size(); ++mover) {
     const auto& lasers = info.movers[mover].lasers;
-    for (std::uint32_t sensor = 0; sensor < lasers.size(); ++sensor) topics[lasers[sensor].topic] = {mover, sensor};
+    for (std::uint32_t i = 0; i < lasers.size(); ++i) topics[lasers[i].topic] = {mover, nullptr, i};
+    std::map<std::uint8_t, std::uint32_t> before;  // by kind
+    for (const SensorInfo& sensor : info.movers[mover].sensors) {
+      const KindInfo* kind = find_kind(info, sensor.kind);
+      if (kind != nullptr) topics[sensor.topic] = {mover, kind, before[sensor.kind]++};
+    }
   }
   return topics;
 }
@@ -75,7 +83,7 @@ bool read_fleet(const McapMessage& message, FleetState& fleet, Recording& record
   return true;
 }
 
-bool read_scan(const McapMessage& message, const ScanTopic& topic, Recording& recording) {
+bool read_scan(const McapMessage& message, const SensorTopic& topic, Recording& recording) {
   std::optional<Scan> scan = decode_scan(message.data);
   if (!scan) return false;
   recording.scans.push_back(
@@ -83,22 +91,35 @@ bool read_scan(const McapMessage& message, const ScanTopic& topic, Recording& re
   return true;
 }
 
+bool read_reading(const McapMessage& message, const SensorTopic& topic, Recording& recording) {
+  ReadingSample sample{topic.mover, topic.kind->id, topic.sensor, message.sequence,
+                       static_cast<std::int64_t>(message.log_time)};
+  if (!decode_reading(*topic.kind, message.data, sample.time, sample.values)) return false;
+  recording.readings.push_back(std::move(sample));
+  return true;
+}
+
+/// @return false when it should have been understood and was not; a type that we do not read is no damage.
+bool read_message(const McapMessage& message, std::string_view type, const std::string& name, const Topics& topics,
+                  FleetState& fleet, Recording& recording) {
+  if (type == kFleet) return read_fleet(message, fleet, recording);
+  const auto found = topics.find(name);
+  if (type == kLaserScan)
+    return found != topics.end() && found->second.kind == nullptr && read_scan(message, found->second, recording);
+  if (found == topics.end() || found->second.kind == nullptr) return true;
+  return type == type_of(*found->second.kind) && read_reading(message, found->second, recording);
+}
+
 void read_messages(const McapContents& contents, Recording& recording) {
   constexpr std::size_t kMostDamage = 100;
-  const auto topics = scan_topics(recording.info);
+  const Topics topics = sensor_topics(recording.info);
   recording.states.resize(recording.info.movers.size());
   FleetState fleet;
   for (const McapMessage& message : contents.messages) {
-    const std::string_view type = type_of(contents, message);
-    const std::string& topic = contents.channels.at(message.channel).topic;
-    bool understood = true;
-    if (type == kFleet) understood = read_fleet(message, fleet, recording);
-    if (type == kLaserScan) {
-      const auto found = topics.find(topic);
-      understood = found != topics.end() && read_scan(message, found->second, recording);
-    }
-    if (understood || recording.damage.size() >= kMostDamage) continue;
-    recording.damage.push_back(topic + " at " + std::to_string(message.log_time) + " ns: not understood, left out");
+    const std::string& name = contents.channels.at(message.channel).topic;
+    if (read_message(message, type_of(contents, message), name, topics, fleet, recording)) continue;
+    if (recording.damage.size() >= kMostDamage) continue;
+    recording.damage.push_back(name + " at " + std::to_string(message.log_time) + " ns: not understood, left out");
   }
 }
 

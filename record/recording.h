@@ -31,11 +31,23 @@ struct ScanSample {
   Scan scan;
 };
 
+/// One kept reading of a sensor of any other kind.
+struct ReadingSample {
+  std::uint32_t mover = 0;   ///< row in `RunInfo::movers`
+  std::uint8_t kind = 0;     ///< id of a row of `RunInfo::kinds`
+  std::uint32_t sensor = 0;  ///< among the mover's sensors of this kind
+  std::uint32_t sequence = 0;
+  std::int64_t delivered = 0;  ///< [ns] simulated time of the tick that delivered it
+  std::int64_t time = 0;       ///< [ns] of the measurement
+  std::vector<double> values;  ///< element by element, as the kind's columns say
+};
+
 struct Recording {
   std::string file;
   RunInfo info;                                  ///< with the world's snapshot
   std::vector<std::vector<StateSample>> states;  ///< by mover, then by tick
   std::vector<ScanSample> scans;                 ///< in order of delivery; empty when not recorded
+  std::vector<ReadingSample> readings;           ///< likewise
   std::uint64_t ticks = 0;                       ///< ticks in the file
   std::int64_t end_time = 0;                     ///< [ns] simulated time of the last one
   bool truncated = false;                        ///< not finished: killed, or still running; every whole tick is here

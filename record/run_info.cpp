@@ -3,6 +3,7 @@
 #include <cctype>
 #include <map>
 
+#include "base/error.h"
 #include "record/cdr.h"
 
 namespace sf::record {
@@ -34,6 +35,10 @@ void put_pose(CdrWriter& cdr, const base::Pose& pose) {
   for (const double value : {pose.x, pose.y, pose.z, pose.yaw}) cdr.put(value);
 }
 
+void get_pose(CdrReader& cdr, base::Pose& pose) {
+  for (double* value : {&pose.x, &pose.y, &pose.z, &pose.yaw}) *value = cdr.get<double>();
+}
+
 void put_laser(CdrWriter& cdr, const LaserInfo& laser) {
   cdr.put(std::string_view(laser.name));
   cdr.put(std::string_view(laser.topic));
@@ -49,7 +54,7 @@ LaserInfo get_laser(CdrReader& cdr) {
   LaserInfo laser;
   laser.name = cdr.get_string();
   laser.topic = cdr.get_string();
-  for (double* value : {&laser.X_MS.x, &laser.X_MS.y, &laser.X_MS.z, &laser.X_MS.yaw}) *value = cdr.get<double>();
+  get_pose(cdr, laser.X_MS);
   laser.fov = cdr.get<double>();
   laser.samples = cdr.get<std::uint32_t>();
   laser.range_min = cdr.get<double>();
@@ -58,15 +63,94 @@ LaserInfo get_laser(CdrReader& cdr) {
   return laser;
 }
 
+void put_kind(CdrWriter& cdr, const KindInfo& kind) {
+  cdr.put(kind.id);
+  cdr.put(std::string_view(kind.name));
+  cdr.put(std::string_view(kind.list));
+  cdr.put_count(kind.columns.size());
+  for (const ColumnInfo& column : kind.columns) {
+    cdr.put(std::string_view(column.name));
+    cdr.put(column.width);
+    cdr.put(column.whole);
+  }
+}
+
+KindInfo get_kind(CdrReader& cdr) {
+  constexpr std::size_t kLeastColumn = 10;  // [byte]
+  KindInfo kind;
+  kind.id = cdr.get<std::uint8_t>();
+  kind.name = cdr.get_string();
+  kind.list = cdr.get_string();
+  kind.columns.resize(cdr.get_count(kLeastColumn));
+  for (ColumnInfo& column : kind.columns) {
+    column.name = cdr.get_string();
+    column.width = cdr.get<std::uint32_t>();
+    column.whole = cdr.get<bool>();
+  }
+  return kind;
+}
+
+void put_sensor(CdrWriter& cdr, const SensorInfo& sensor) {
+  cdr.put(sensor.kind);
+  cdr.put(std::string_view(sensor.name));
+  cdr.put(std::string_view(sensor.topic));
+  put_pose(cdr, sensor.X_MS);
+  cdr.put(sensor.rate);
+}
+
+SensorInfo get_sensor(CdrReader& cdr) {
+  SensorInfo sensor;
+  sensor.kind = cdr.get<std::uint8_t>();
+  sensor.name = cdr.get_string();
+  sensor.topic = cdr.get_string();
+  get_pose(cdr, sensor.X_MS);
+  sensor.rate = cdr.get<double>();
+  return sensor;
+}
+
+void put_mover(CdrWriter& cdr, const MoverInfo& mover) {
+  cdr.put(std::string_view(mover.name));
+  cdr.put(std::string_view(mover.frame));
+  cdr.put(mover.id);
+  cdr.put_count(mover.lasers.size());
+  for (const LaserInfo& laser : mover.lasers) put_laser(cdr, laser);
+  cdr.put_count(mover.sensors.size());
+  for (const SensorInfo& sensor : mover.sensors) put_sensor(cdr, sensor);
+}
+
+MoverInfo get_mover(CdrReader& cdr) {
+  constexpr std::size_t kLeastLaser = 80, kLeastSensor = 50;  // [byte]
+  MoverInfo mover;
+  mover.name = cdr.get_string();
+  mover.frame = cdr.get_string();
+  mover.id = cdr.get<std::uint32_t>();
+  mover.lasers.resize(cdr.get_count(kLeastLaser));
+  for (LaserInfo& laser : mover.lasers) laser = get_laser(cdr);
+  mover.sensors.resize(cdr.get_count(kLeastSensor));
+  for (SensorInfo& sensor : mover.sensors) sensor = get_sensor(cdr);
+  return mover;
+}
+
 }  // namespace
+
+const KindInfo* find_kind(const RunInfo& info, std::uint8_t id) {
+  for (const KindInfo& kind : info.kinds)
+    if (kind.id == id) return &kind;
+  return nullptr;
+}
 
 void name_frames(RunInfo& info) {
   Taken frames = {{"world", 2}};
   for (MoverInfo& mover : info.movers) {
     mover.frame = unique(ros_name(mover.name, "robot"), frames);
-    Taken lasers = {{"odom", 2}, {"cmd_vel", 2}};
+    Taken sensors = {{"odom", 2}, {"cmd_vel", 2}};
     for (LaserInfo& laser : mover.lasers) {
-      laser.topic = "/" + mover.frame + "/" + unique(ros_name(laser.name, "laser"), lasers) + "/scan";
+      laser.topic = "/" + mover.frame + "/" + unique(ros_name(laser.name, "laser"), sensors) + "/scan";
+    }
+    for (SensorInfo& sensor : mover.sensors) {
+      const KindInfo* kind = find_kind(info, sensor.kind);
+      SF_CHECK(kind != nullptr, "sensor kind " + std::to_string(sensor.kind));
+      sensor.topic = "/" + mover.frame + "/" + unique(ros_name(sensor.name, kind->name), sensors) + "/" + kind->name;
     }
   }
 }
@@ -80,14 +164,10 @@ void encode_run_info(const RunInfo& info, base::Bytes& out) {
   cdr.put(info.interval);
   cdr.put(info.record_readings);
   cdr.put(info.odometry_rate);
+  cdr.put_count(info.kinds.size());
+  for (const KindInfo& kind : info.kinds) put_kind(cdr, kind);
   cdr.put_count(info.movers.size());
-  for (const MoverInfo& mover : info.movers) {
-    cdr.put(std::string_view(mover.name));
-    cdr.put(std::string_view(mover.frame));
-    cdr.put(mover.id);
-    cdr.put_count(mover.lasers.size());
-    for (const LaserInfo& laser : mover.lasers) put_laser(cdr, laser);
-  }
+  for (const MoverInfo& mover : info.movers) put_mover(cdr, mover);
   cdr.put_count(info.options.size());
   for (const auto& [key, value] : info.options) {
     cdr.put(std::string_view(key));
@@ -96,7 +176,7 @@ void encode_run_info(const RunInfo& info, base::Bytes& out) {
 }
 
 bool decode_run_info(std::span<const std::uint8_t> message, RunInfo& info) {
-  constexpr std::size_t kLeastMover = 16, kLeastLaser = 80, kLeastOption = 10;  // [byte]
+  constexpr std::size_t kLeastKind = 18, kLeastMover = 20, kLeastOption = 10;  // [byte]
   CdrReader cdr(message);
   info.world = cdr.get_string();
   info.world_hash = cdr.get<std::uint64_t>();
@@ -105,14 +185,10 @@ bool decode_run_info(std::span<const std::uint8_t> message, RunInfo& info) {
   info.interval = cdr.get<double>();
   info.record_readings = cdr.get<bool>();
   info.odometry_rate = cdr.get<double>();
+  info.kinds.resize(cdr.get_count(kLeastKind));
+  for (KindInfo& kind : info.kinds) kind = get_kind(cdr);
   info.movers.resize(cdr.get_count(kLeastMover));
-  for (MoverInfo& mover : info.movers) {
-    mover.name = cdr.get_string();
-    mover.frame = cdr.get_string();
-    mover.id = cdr.get<std::uint32_t>();
-    mover.lasers.resize(cdr.get_count(kLeastLaser));
-    for (LaserInfo& laser : mover.lasers) laser = get_laser(cdr);
-  }
+  for (MoverInfo& mover : info.movers) mover = get_mover(cdr);
   info.options.resize(cdr.get_count(kLeastOption));
   for (auto& [key, value] : info.options) {
     key = cdr.get_string();

@@ -47,11 +47,17 @@ constexpr std::array kDefinitions = {
     Definition{"sensorfarm_msgs/Laser",
                "string name\nstring topic\nsensorfarm_msgs/Pose pose\nfloat64 fov\nuint32 samples\n"
                "float64 range_min\nfloat64 range_max\nfloat64 rate\n"},
-    Definition{"sensorfarm_msgs/Mover", "string name\nstring frame\nuint32 id\nsensorfarm_msgs/Laser[] lasers\n"},
+    Definition{"sensorfarm_msgs/Column", "string name\nuint32 width\nbool whole\n"},
+    Definition{"sensorfarm_msgs/Kind", "uint8 id\nstring name\nstring list\nsensorfarm_msgs/Column[] columns\n"},
+    Definition{"sensorfarm_msgs/Sensor",
+               "uint8 kind\nstring name\nstring topic\nsensorfarm_msgs/Pose pose\nfloat64 rate\n"},
+    Definition{"sensorfarm_msgs/Mover",
+               "string name\nstring frame\nuint32 id\nsensorfarm_msgs/Laser[] lasers\n"
+               "sensorfarm_msgs/Sensor[] sensors\n"},
     Definition{"sensorfarm_msgs/Option", "string key\nstring value\n"},
     Definition{"sensorfarm_msgs/RunInfo",
                "string world\nuint64 world_hash\nuint64 seed\nstring mode\nfloat64 interval\n"
-               "bool readings\nfloat64 odometry_rate\n"
+               "bool readings\nfloat64 odometry_rate\nsensorfarm_msgs/Kind[] kinds\n"
                "sensorfarm_msgs/Mover[] movers\nsensorfarm_msgs/Option[] options\n"},
 };
 
@@ -84,10 +90,13 @@ std::string schema_text(std::string_view type) {
   const std::string name =
       std::string(type.substr(0, middle)) + "/" + std::string(type.substr(middle + kMiddle.size()));
 
-  const Definition& definition = find(name);
-  std::string text(definition.fields);
+  return with_needed_types(find(name).fields);
+}
+
+std::string with_needed_types(std::string_view fields) {
+  std::string text(fields);
   std::vector<std::string_view> needed;
-  add_needed(definition.fields, needed);
+  add_needed(fields, needed);
   for (const std::string_view other : needed) {
     text += std::string(80, '=') + "\nMSG: " + std::string(other) + "\n" + std::string(find(other).fields);
   }

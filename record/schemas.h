@@ -16,5 +16,7 @@ inline constexpr std::string_view kRunInfo = "sensorfarm_msgs/msg/RunInfo";
 /// The `ros2msg` text of one of the types above: its fields, then every type it needs, each once, behind a line of 80
 /// '=' and a line `MSG: package/Name`.
 std::string schema_text(std::string_view type);
+/// The same for a type of its own, given its fields, a line each.
+std::string with_needed_types(std::string_view fields);
 
 }  // namespace sf::record

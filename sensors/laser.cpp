@@ -2,153 +2,160 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
 
 #include "base/random.h"
-#include "sensors/laser_tables.h"
-#include "shaders/laser.comp.h"
+#include "sensors/casts.h"
+#include "sensors/laser_packets.h"
 
 namespace sf::sensors {
 
 namespace {
 
-/// Lasers with the same beams share their tables.
-using BeamKey = std::tuple<double, std::uint32_t, std::uint32_t>;
+/// Where the host's own results of one laser lie.
+struct Shaping {
+  bool needed = false;     ///< results are reworked on the host
+  std::size_t values = 0;  ///< first of its samples
+};
 
-}  // namespace
-
-Lasers::Lasers(const world::World& world, Scene& scene, gpu::Device& device, base::Workers& workers,
-               const LaserOptions& options)
-    : t_(std::make_unique<Tables>(scene, workers, options)) {
-  t_->plan(world);
-  t_->turned.resize(workers.threads());
-  t_->kernel = std::make_unique<gpu::Kernel>(device, laser_comp_spv, 14);
-  std::uint32_t beam_lanes = 0;
-  std::map<BeamKey, std::uint32_t> shared;
-  for (LaserRow& row : t_->lasers) {
-    const BeamKey key{row.laser.fov, row.laser.samples, row.laser.resolution};
-    const auto known = shared.find(key);
-    if (!row.turns && known != shared.end()) {
-      row.beams = known->second;
-      continue;
-    }
-    row.beams = beam_lanes;
-    if (!row.turns) shared[key] = beam_lanes;
-    beam_lanes += row.plan.lanes();
-  }
-  t_->make_tables(device, beam_lanes);
-  t_->write_all_beams();
+bool has_range_noise(const world::LaserNoise& noise) {
+  return noise.range_sigma > 0.0 || noise.range_proportional > 0.0;
 }
 
-Lasers::~Lasers() = default;
-
-const std::vector<LaserOwner>& Lasers::owners() const { return t_->owners; }
-std::uint64_t Lasers::rays() const { return t_->rays; }
-std::uint64_t Lasers::doubts() const { return t_->doubts_seen; }
-
-bool Lasers::prepare(std::span<const LaserDue> due, std::span<const Pose> poses) {
-  Tables& t = *t_;
-  t.due.assign(due.begin(), due.end());
-  t.views.resize(due.size());
-  for (std::size_t i = 0; i < due.size(); ++i) {
-    const LaserRow& row = t.lasers[due[i].row];
-    const std::uint32_t mover = t.owners[due[i].row].mover;
-    Pose X_WS = base::compose(poses[mover], row.laser.X_MS);
-    X_WS.z = row.height;
-    t.views[i] = {row.family, mover, X_WS};
-    t.rays += row.plan.samples.size();
-  }
-  const auto ray_rows = t.rows->host<RayRow>().first(due.size());
-  const bool replaced = t.scene.serve(t.views, ray_rows);
-  for (std::size_t i = 0; i < due.size(); ++i) {
-    const LaserRow& row = t.lasers[due[i].row];
-    ray_rows[i].beams = row.beams;
-    ray_rows[i].out = row.out;
-    ray_rows[i].range_min = row.laser.range_min;
-  }
-  t.write_lanes();
-  t.workers.run(due.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
-    for (std::size_t i = first; i < last; ++i)
-      if (t.lasers[t.due[i].row].turns) t.turn_beams(t.due[i], thread);
-  });
-  const bool again = replaced || !t.bound;
-  if (again) t.bind();
-  return again;
+std::vector<Fan> fans_of(const world::World& world) {
+  std::vector<Fan> fans;
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m)
+    for (std::uint32_t i = 0; i < world.movers[m].lasers.size(); ++i) fans.push_back({world.movers[m].lasers[i], m, i});
+  return fans;
 }
 
-void Lasers::record(gpu::Batch& batch) { batch.dispatch(*t_->kernel, *t_->groups, 0); }
+class Lasers : public Instruments {
+ public:
+  explicit Lasers(const Site& site);
 
-void Lasers::copies(gpu::Batch& batch) {
-  Tables& t = *t_;
-  batch.up(*t.rows, 0, t.due.size() * sizeof(RayRow));
-  batch.up(*t.lanes, 0, t.lanes->bytes());
-  batch.up(*t.groups, 0, t.groups->bytes());
-  const bool turning = std::any_of(t.lasers.begin(), t.lasers.end(), [](const LaserRow& row) { return row.turns; });
-  if (t.beams_changed || turning) {
-    batch.up(*t.directions, 0, t.directions->bytes());
-    batch.up(*t.middles, 0, t.middles->bytes());
-    batch.up(*t.directions64, 0, t.directions64->bytes());
-    t.beams_changed = false;
+  void place(std::span<const Pose> poses) override { casts_.place(poses); }
+  bool prepare(std::span<const Due> due, std::span<const Pose> poses) override {
+    due_.assign(due.begin(), due.end());
+    return casts_.prepare(due, poses);
   }
-  batch.down(*t.ranges, 0, t.ranges->bytes());
-  batch.down(*t.hits, 0, t.hits->bytes());
-  batch.down(*t.doubts, 0, t.doubts->bytes());
+  void record_measure(gpu::Batch& batch) override { casts_.record(batch); }
+  void copies(gpu::Batch& batch) override { casts_.copies(batch, true); }
+  void collect(std::vector<base::ReadingBlock>& out) override;
+  Work work() const override { return casts_.work(); }
+
+ private:
+  void shape(std::size_t i);
+
+  base::Workers& workers_;
+  std::uint64_t seed_;
+  bool noise_;
+  Casts casts_;
+  std::vector<Shaping> shaping_;  ///< per laser
+  std::vector<Due> due_;
+  std::vector<double> values_;  ///< [m] results reworked on the host
+  std::vector<std::uint32_t> met_;
+};
+
+Lasers::Lasers(const Site& site)
+    : workers_(site.workers), seed_(site.seed), noise_(site.noise), casts_(site, site.world, fans_of(site.world)) {
+  std::size_t samples = 0;
+  for (std::uint32_t i = 0; i < casts_.fans().size(); ++i) {
+    const world::Laser& laser = casts_.fans()[i].laser;
+    const bool needed = laser.resolution > 1 || !casts_.plan(i).packed || (noise_ && has_range_noise(laser.noise));
+    shaping_.push_back({needed, samples});
+    if (needed) samples += laser.samples;
+  }
+  values_.resize(samples);
+  met_.resize(samples);
 }
 
-void Lasers::Tables::shape(const LaserDue& d) {
-  const LaserRow& row = lasers[d.row];
-  const double* const cast = ranges->host<double>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
-  const std::uint32_t* const cast_hits = hits->host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
-  double* const out = values.data() + row.values;
-  std::uint32_t* const out_hits = met.data() + row.values;
-  const base::Draw draw{options.seed, base::Stream::range_noise, owners[d.row].mover, owners[d.row].sensor, d.sequence};
-  const world::LaserNoise& noise = row.laser.noise;
+void Lasers::shape(std::size_t i) {
+  const Due& due = due_[i];
+  const Fan& fan = casts_.fans()[due.row];
+  const FanResults results = casts_.results(i);
+  const BeamPlan& plan = *results.plan;
+  const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
+  const double* const cast = casts_.ranges().host<double>().data() + first;
+  const std::uint32_t* const cast_hits = casts_.hits().host<std::uint32_t>().data() + first;
+  double* const out = values_.data() + shaping_[due.row].values;
+  std::uint32_t* const out_hits = met_.data() + shaping_[due.row].values;
+  const base::Draw draw{seed_, base::Stream::range_noise, fan.mover, fan.sensor, due.sequence};
+  const world::LaserNoise& noise = fan.laser.noise;
 
   std::uint32_t before = 0;
-  for (std::size_t k = 0; k < row.plan.samples.size(); ++k) {
-    const std::uint32_t i = row.plan.samples[k];
-    double range = cast[row.plan.place(k)];
-    const std::uint32_t hit = cast_hits[row.plan.place(k)];
-    if (options.noise && has_range_noise(noise) && hit != SF_NO_HIT) {
+  for (std::size_t k = 0; k < plan.samples.size(); ++k) {
+    const std::uint32_t sample = plan.samples[k];
+    double range = cast[plan.place(k)];
+    const std::uint32_t hit = cast_hits[plan.place(k)];
+    if (noise_ && has_range_noise(noise) && hit != SF_NO_HIT) {
       const double sigma = std::hypot(noise.range_sigma, noise.range_proportional * range);
-      range = std::clamp(range + sigma * base::random_normal(draw, i)[0], row.laser.range_min, row.laser.range_max);
+      range =
+          std::clamp(range + sigma * base::random_normal(draw, sample)[0], fan.laser.range_min, fan.laser.range_max);
     }
-    out[i] = range;
-    out_hits[i] = hit;
+    out[sample] = range;
+    out_hits[sample] = hit;
     // What `resolution` left out lies on a straight line between its neighbours.
-    for (std::uint32_t j = before + 1; j < i; ++j) {
-      const double part = static_cast<double>(j - before) / (i - before);
+    for (std::uint32_t j = before + 1; j < sample; ++j) {
+      const double part = static_cast<double>(j - before) / (sample - before);
       out[j] = out[before] + part * (range - out[before]);
       out_hits[j] = out_hits[before] == hit ? hit : base::kNoHit;
     }
-    before = i;
+    before = sample;
   }
 }
 
 void Lasers::collect(std::vector<base::ReadingBlock>& out) {
-  Tables& t = *t_;
-  t.workers.run(t.due.size(), 8, [&t](std::size_t first, std::size_t last, unsigned) {
+  workers_.run(due_.size(), 8, [this](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i)
-      if (t.lasers[t.due[i].row].shaped) t.shape(t.due[i]);
+      if (shaping_[due_[i].row].needed) shape(i);
   });
-  const auto doubts = t.doubts->host<std::uint32_t>();
-  for (std::size_t i = 0; i < t.due.size(); ++i) {
-    const LaserRow& row = t.lasers[t.due[i].row];
+  casts_.count();
+  const std::span<const double> ranges = casts_.ranges().host<double>();
+  const std::span<const std::uint32_t> hits = casts_.hits().host<std::uint32_t>();
+  for (std::size_t i = 0; i < due_.size(); ++i) {
+    const Fan& fan = casts_.fans()[due_[i].row];
+    const FanResults results = casts_.results(i);
+    const Shaping& shaping = shaping_[due_[i].row];
+    const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
     base::ReadingBlock block;
-    block.mover = t.owners[t.due[i].row].mover;
-    block.sensor = t.owners[t.due[i].row].sensor;
-    block.kind = 1;
-    block.X_WS = t.views[i].X_WS;
-    const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{row.out};
-    block.values = row.shaped ? std::span(t.values).subspan(row.values, row.laser.samples)
-                              : std::span<const double>(t.ranges->host<double>()).subspan(first, row.laser.samples);
-    block.hits = row.shaped
-                     ? std::span(t.met).subspan(row.values, row.laser.samples)
-                     : std::span<const std::uint32_t>(t.hits->host<std::uint32_t>()).subspan(first, row.laser.samples);
-    for (std::uint32_t lane = 0; lane < row.plan.lanes(); ++lane) t.doubts_seen += doubts[row.out + lane];
+    block.mover = fan.mover;
+    block.sensor = fan.sensor;
+    block.kind = kLaser;
+    block.X_WS = results.X_WS;
+    block.values = shaping.needed ? std::span<const double>(values_).subspan(shaping.values, fan.laser.samples)
+                                  : ranges.subspan(first, fan.laser.samples);
+    block.hits = shaping.needed ? std::span<const std::uint32_t>(met_).subspan(shaping.values, fan.laser.samples)
+                                : hits.subspan(first, fan.laser.samples);
     out.push_back(block);
   }
 }
+
+std::vector<SensorRow> rows_of(const world::World& world) {
+  std::vector<SensorRow> rows;
+  for (const Fan& fan : fans_of(world)) {
+    const world::Laser& laser = fan.laser;
+    rows.push_back({fan.mover, fan.sensor, laser.name, laser.X_MS, laser.rate, laser.phase, laser.latency,
+                    laser.samples, laser.range_max});
+  }
+  return rows;
+}
+
+constexpr Column kColumns[] = {{"range_m"}};
+
+}  // namespace
+
+constinit const SensorKind laser_kind{
+    .id = kLaser,
+    .name = "laser",
+    .word = {},  // world reads `laser` and `ranger` itself: Stage knows them
+    .base_port = 10000,
+    .list = "beams",
+    .columns = kColumns,
+    .rows = rows_of,
+    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Lasers>(site); },
+    .refuse = refuse_laser,
+    .parts = laser_parts,
+    .encode = encode_laser,
+    .decode = decode_laser,
+};
 
 }  // namespace sf::sensors

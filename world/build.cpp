@@ -38,6 +38,12 @@ double interval_of(const Source& source, const Entity& root) {
        fmt::format("'interval_sim' is {}; expected milliseconds from 0.001 to 1000000", milliseconds));
 }
 
+double reach(const Source& source, const Entity& root, std::string_view key) {
+  const double value = length(source, root, key, 0.0);
+  if (value < 0.0) fail(source, find(root, key)->at, fmt::format("'{}' is {} m; expected 0 or more", key, value));
+  return value;
+}
+
 }  // namespace
 
 World build_world(const std::string& file, const std::string& content, const LoadOptions& options) {
@@ -50,6 +56,8 @@ World build_world(const std::string& file, const std::string& content, const Loa
   b.world.file = file;
   b.world.name = text(b.source, document.root, "name", std::filesystem::path(file).stem().string());
   b.world.interval = interval_of(b.source, document.root);
+  b.world.road_resolution = reach(b.source, document.root, "road_resolution");
+  b.world.magnet_cutoff = reach(b.source, document.root, "magnet_cutoff");
   Parent nowhere;
   add_children(b, document.root, Kind::unknown, nowhere);
   number_movers(b);

@@ -44,6 +44,7 @@ struct Building {
 void add_children(Building& b, const Entity& entity, Kind kind, Parent& parent);
 
 /// Warns about properties that are not known `where`, with the nearest one that is.
-void check_keys(Source& source, const Entity& entity, Where where);
+/// @param own further properties known there.
+void check_keys(Source& source, const Entity& entity, Where where, std::span<const std::string_view> own = {});
 
 }  // namespace sf::world

@@ -21,6 +21,9 @@ Extent extent_of(const World& world) {
     include(wall.a);
     include(wall.b);
   }
+  for (const Stripe& stripe : world.stripes)
+    for (const Vec2 p : stripe.line) include(p);
+  for (const Magnet& magnet : world.magnets) include(magnet.p);
   for (const Mover& mover : world.movers) {
     include({mover.X_WM.x, mover.X_WM.y});
     for (const Segment& segment : mover.body) {
@@ -45,6 +48,12 @@ std::uint64_t hash_of(const World& world) {
   for (const Model& model : world.models) put(out, model, Rows::physics);
   out.put(static_cast<std::uint64_t>(world.walls.size()));
   for (const Segment& wall : world.walls) put(out, wall);
+  out.put(world.road_resolution);
+  out.put(static_cast<std::uint64_t>(world.stripes.size()));
+  for (const Stripe& stripe : world.stripes) put(out, stripe, Rows::physics);
+  out.put(world.magnet_cutoff);
+  out.put(static_cast<std::uint64_t>(world.magnets.size()));
+  for (const Magnet& magnet : world.magnets) put(out, magnet);
   out.put(static_cast<std::uint64_t>(world.movers.size()));
   for (const Mover& mover : world.movers) put(out, mover, Rows::physics);
   return base::hash_bytes(bytes.data(), bytes.size());
@@ -67,6 +76,9 @@ void translate(World& world, double dx, double dy) {
     move(wall.a);
     move(wall.b);
   }
+  for (Stripe& stripe : world.stripes)
+    for (Vec2& p : stripe.line) move(p);
+  for (Magnet& magnet : world.magnets) move(magnet.p);
   for (Model& model : world.models) move(model.X_WM);
   for (Mover& mover : world.movers) move(mover.X_WM);
   finish(world);

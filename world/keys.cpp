@@ -11,13 +11,14 @@ using Words = std::span<const std::string_view>;
 
 // clang-format off
 constexpr auto kWorld = std::to_array<std::string_view>({"name", "interval_sim", "unit_length", "unit_angle",
+  "road_resolution", "magnet_cutoff",
   // known, not modelled
   "quit_time", "resolution", "show_clock", "show_clock_interval", "threads", "speedup", "paused", "confirm_on_quit",
   "interval_real", "gui_disable", "gui_interval", "ppm"});
 
 constexpr auto kModel = std::to_array<std::string_view>({"name", "pose", "size", "origin", "color", "color_rgba", "bitmap", "boundary", "stack_children",
   "noblocks", "obstacle_return", "laser_return", "ranger_return", "magnetic_moment", "magneticmoment",
-  "magnetometer_return", "blocks", "block[].points", "block[].point[]", "block[].z",
+  "magnetometer_return", "laneedge_return", "blocks", "block[].points", "block[].point[]", "block[].z",
   // known, not modelled
   "ctrl", "update_interval", "gui_nose", "gui_grid", "gui_outline", "gui_move", "gui_movemask", "gui_boundary",
   "fiducial_return", "fiducial_key", "blob_return", "blobfinder_return", "gripper_return", "puck_return", "mass", "friction",
@@ -43,6 +44,11 @@ constexpr auto kSensor = std::to_array<std::string_view>({"pose", "size", "range
 constexpr auto kBlock = std::to_array<std::string_view>({"points", "point[]", "z",
   // known, not modelled
   "color", "color_rgba", "glow"});
+
+constexpr auto kRoad = std::to_array<std::string_view>({"name", "rndf", "magnetic_moment", "magnet_spacing", "magnet_size", "magnet_top", "magnet_lanes"});
+
+constexpr auto kPath = std::to_array<std::string_view>({"name", "pose", "pieces", "straight[]", "arc[]", "left", "right", "paint_width", "dash",
+  "magnetic_moment", "magnet_spacing", "magnet_size", "magnet_top"});
 
 constexpr auto kKeptTypes = std::to_array<std::string_view>({"actuator", "blinkenlight", "blobfinder", "bumper", "camera", "charger", "fiducial", "gripper",
   "laneedge", "lightindicator", "magnetometer", "map", "powerpack", "puck", "sonar", "speech", "wifi"});
@@ -79,6 +85,14 @@ std::vector<Words> words_at(Where where) {
       return {kSensor, kSensing};
     case Where::block:
       return {kBlock};
+    case Where::device:
+      return {kModel, kSensing};
+    case Where::sensing:
+      return {kSensing};
+    case Where::road:
+      return {kRoad};
+    case Where::path:
+      return {kPath};
     case Where::model:
     case Where::kept:
       break;
@@ -93,6 +107,8 @@ Kind kind_of(std::string_view type) {
   if (type == "position") return Kind::position;
   if (type == "laser") return Kind::laser;
   if (type == "ranger") return Kind::ranger;
+  if (type == "road") return Kind::road;
+  if (type == "path") return Kind::path;
   if (has(kIgnoredTypes, type)) return Kind::ignored;
   return has(kKeptTypes, type) ? Kind::kept : Kind::unknown;
 }
@@ -100,20 +116,20 @@ Kind kind_of(std::string_view type) {
 bool bodiless(std::string_view type) { return has(kBodiless, type); }
 
 std::vector<std::string_view> known_types() {
-  std::vector<std::string_view> types{"model", "position", "laser", "ranger", "sensor", "block"};
+  std::vector<std::string_view> types{"model", "position", "laser", "ranger", "sensor", "block", "road", "path"};
   types.insert(types.end(), kKeptTypes.begin(), kKeptTypes.end());
   types.insert(types.end(), kIgnoredTypes.begin(), kIgnoredTypes.end());
   return types;
 }
 
-bool is_known_key(Where where, std::string_view key) {
+bool is_known_key(Where where, std::string_view key, std::span<const std::string_view> own) {
   const std::string plain = without_indices(key);
   const auto words = words_at(where);
-  return std::any_of(words.begin(), words.end(), [&](Words list) { return has(list, plain); });
+  return has(own, plain) || std::any_of(words.begin(), words.end(), [&](Words list) { return has(list, plain); });
 }
 
-std::string suggest_key(Where where, std::string_view key) {
-  std::vector<std::string_view> candidates;
+std::string suggest_key(Where where, std::string_view key, std::span<const std::string_view> own) {
+  std::vector<std::string_view> candidates(own.begin(), own.end());
   for (const Words list : words_at(where)) candidates.insert(candidates.end(), list.begin(), list.end());
   return suggest(without_indices(key), candidates);
 }

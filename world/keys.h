@@ -11,10 +11,10 @@
 namespace sf::world {
 
 /// Where a property stands.
-enum class Where { world, model, position, laser, ranger, sensor, block, kept };
+enum class Where { world, model, position, laser, ranger, sensor, block, device, sensing, road, path, kept };
 
 /// How a type of the world file is understood.
-enum class Kind { model, position, laser, ranger, kept, ignored, unknown };
+enum class Kind { model, position, laser, ranger, road, path, kept, ignored, unknown };
 
 Kind kind_of(std::string_view type);
 
@@ -25,10 +25,11 @@ bool bodiless(std::string_view type);
 std::vector<std::string_view> known_types();
 
 /// True for keys that are read there, and for Stage's own keys that are not modelled. Indices do not matter.
-bool is_known_key(Where where, std::string_view key);
+/// @param own further keys valid there, with empty indices.
+bool is_known_key(Where where, std::string_view key, std::span<const std::string_view> own = {});
 
 /// `; did you mean 'x'?` or nothing: the nearest of the keys valid there.
-std::string suggest_key(Where where, std::string_view key);
+std::string suggest_key(Where where, std::string_view key, std::span<const std::string_view> own = {});
 
 /// `; did you mean 'x'?` for the nearest candidate within two slips (one, for words of up to four letters), else
 /// nothing.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "world/devices.h"
 #include "world/keys.h"
 #include "world/lasers.h"
 #include "world/movers.h"
@@ -40,10 +41,6 @@ void keep(Building& b, const Entity& entity, const std::string& type, bool is_kn
   const std::string what = is_known ? fmt::format("'{}' is not modelled", type)
                                     : fmt::format("unknown type '{}'{}", type, suggest(type, b.types));
   warn(b.source, entity.at, what + (is_known ? ": " : " ") + "kept as a body that does nothing");
-}
-
-bool is_magnet(const Source& source, const Entity& entity) {
-  return number(source, entity, "magnetic_moment", number(source, entity, "magneticmoment", 0.0)) != 0.0;
 }
 
 // --- Names
@@ -87,6 +84,7 @@ void add_body(Building& b, const Entity& entity, const Model& model, const Size&
   const bool seen =
       number(source, entity, "laser_return", 1.0) != 0.0 && number(source, entity, "ranger_return", 1.0) >= 0.0;
   const bool is_plan = model.is_bitmap && !b.options.stage_obstacles;
+  const bool seen_as_paint = flag(source, entity, "laneedge_return", true);
   const bool stops = is_plan || flag(source, entity, "obstacle_return", true);
   auto& segments = model.mover == kNone ? b.world.walls : b.world.movers[model.mover].body;
   for (const Segment& local : shape_of(b.source, b.bitmaps, entity, size, is_box)) {
@@ -96,6 +94,7 @@ void add_body(Building& b, const Entity& entity, const Model& model, const Size&
     segment.model = static_cast<std::uint32_t>(b.world.models.size());
     segment.seen_by_laser = seen;
     segment.stops_robots = stops;
+    segment.seen_by_laneedge = seen_as_paint;
     segments.push_back(segment);
   }
 }
@@ -115,9 +114,10 @@ void add_lasers(Building& b, const Entity& entity, const Model& model, const Pos
 /// What the file says of a model before anything is derived from it.
 struct Said {
   Kind kind = Kind::model;
-  bool is_lane_edge = false;  ///< a laser of that name measures the edge of the lane, no ranges
-  std::string name;           ///< as written, or made up
-  Pose X_PB;                  ///< children stand on top of their parent, unless it says otherwise
+  bool is_lane_edge = false;           ///< a laser of that name measures the edge of the lane, no ranges
+  const SensorWord* sensor = nullptr;  ///< the kind that measures with it; null: none, or one that is read here
+  std::string name;                    ///< as written, or made up
+  Pose X_PB;                           ///< children stand on top of their parent, unless it says otherwise
   Size size;
 };
 
@@ -130,6 +130,11 @@ Said read_said(Building& b, const Entity& entity, Parent& parent) {
   said.X_PB.z += parent.lift;
   said.size = size_of(b.source, entity, default_size(said.kind));
 
+  said.sensor = sensor_word(b, said.is_lane_edge ? "laneedge" : entity.type);
+  if (said.sensor != nullptr) {
+    check_keys(b.source, entity, Where::device, said.sensor->keys);
+    return said;
+  }
   check_keys(b.source, entity, where_of(said.kind));
   if (said.is_lane_edge) keep(b, entity, "laneedge", true);
   if (said.kind == Kind::kept || said.kind == Kind::unknown) keep(b, entity, entity.type, said.kind == Kind::kept);
@@ -146,6 +151,7 @@ Model model_of(Building& b, const Entity& entity, const Parent& parent, const Sa
   model.size = {said.size.x, said.size.y};
   model.color = paint(b.source, entity, "color", kStageRed, static_cast<std::uint32_t>(b.world.models.size()));
   model.is_bitmap = find(entity, "bitmap") != nullptr;
+  model.pixel = pixel_of(b.source, b.bitmaps, entity, said.size);
   return model;
 }
 
@@ -160,7 +166,6 @@ bool becomes_mover(Building& b, const Entity& entity, const Parent& parent, cons
 void add_model(Building& b, const Entity& entity, Parent& parent) {
   const Said said = read_said(b, entity, parent);
   Model model = model_of(b, entity, parent, said);
-  if (is_magnet(b.source, entity)) ++b.world.magnets;
 
   Parent own;  // of the model's own children
   own.X_MP = compose(parent.X_MP, said.X_PB);
@@ -171,8 +176,12 @@ void add_model(Building& b, const Entity& entity, Parent& parent) {
   }
 
   const Pose X_B = compose(model.mover == kNone ? model.X_WM : own.X_MP, pose(b.source, entity, "origin"));
-  add_body(b, entity, model, said.size, !bodiless(entity.type), X_B);
-  if ((said.kind == Kind::laser && !said.is_lane_edge) || said.kind == Kind::ranger) {
+  const bool is_box = !bodiless(entity.type) && (said.sensor == nullptr || said.kind == Kind::laser);
+  add_body(b, entity, model, said.size, is_box, X_B);
+  add_magnet(b, entity, model, said.size, X_B);
+  if (said.sensor != nullptr) {
+    add_sensor(b, entity, model, *said.sensor, X_B, said.size.z, own.name_in_mover);
+  } else if ((said.kind == Kind::laser && !said.is_lane_edge) || said.kind == Kind::ranger) {
     add_lasers(b, entity, model, X_B, said.size.z, own.name_in_mover);
   }
 
@@ -187,13 +196,13 @@ void add_model(Building& b, const Entity& entity, Parent& parent) {
 
 }  // namespace
 
-void check_keys(Source& source, const Entity& entity, Where where) {
+void check_keys(Source& source, const Entity& entity, Where where, std::span<const std::string_view> own) {
   if (where == Where::kept) return;
   for (const Property& property : entity.properties) {
-    if (is_known_key(where, property.key)) continue;
+    if (is_known_key(where, property.key, own)) continue;
     warn(source, property.at,
          fmt::format("unknown property '{}' of '{}' is ignored{}", property.key, entity.word,
-                     suggest_key(where, property.key)));
+                     suggest_key(where, property.key, own)));
   }
 }
 

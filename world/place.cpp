@@ -55,8 +55,9 @@ Kept keep_others(const World& world, std::uint32_t count) {
   return kept;
 }
 
-void retarget(std::vector<Segment>& segments, const std::vector<std::uint32_t>& rows) {
-  for (Segment& s : segments) s.model = rows[s.model];
+template <class Row>
+void retarget(std::vector<Row>& table, const std::vector<std::uint32_t>& rows) {
+  for (Row& row : table) row.model = rows[row.model];
 }
 
 // Copy k of the robot in row `original` of the world's movers, its models appended to `models`.
@@ -84,6 +85,7 @@ Mover copy_of(const World& world, std::uint32_t original, std::uint32_t k, const
   copy.X_WM = X_WM;
   copy.model = rows[copy.model];
   retarget(copy.body, rows);
+  retarget(copy.magnets, rows);
   return copy;
 }
 
@@ -105,9 +107,11 @@ void clone_robots(World& world, std::uint32_t count, std::uint64_t seed) {
     if (!tag.is_tag) continue;
     tag.model = kept.model_rows[tag.model];
     retarget(tag.body, kept.model_rows);
+    retarget(tag.magnets, kept.model_rows);
     movers.push_back(std::move(tag));
   }
   retarget(world.walls, kept.model_rows);
+  retarget(world.magnets, kept.model_rows);
   world.models = std::move(models);
   world.movers = std::move(movers);
   finish(world);

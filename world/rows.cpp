@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::size_t kSegmentBytes = 6 * 8 + 4 + 1;
 constexpr std::size_t kLaserBytes = 100;
+constexpr std::size_t kSensorBytes = 64;   // at least
+constexpr std::size_t kSettingBytes = 12;  // at least
 
 void put_vec(ByteWriter& out, Vec2 p) {
   out.put(p.x);
@@ -48,6 +50,53 @@ Laser get_laser(ByteReader& in) {
   return laser;
 }
 
+// Where it was written says nothing about what is measured.
+void put_setting(ByteWriter& out, const Setting& setting, Rows rows) {
+  out.put_string(setting.key);
+  out.put(static_cast<std::uint32_t>(setting.numbers.size()));
+  for (const double value : setting.numbers) out.put(value);
+  out.put_string(setting.text);
+  if (rows == Rows::physics) return;
+  out.put(static_cast<std::int32_t>(setting.line));
+  out.put_string(setting.file);
+}
+
+Setting get_setting(ByteReader& in) {
+  Setting setting;
+  setting.key = in.get_string();
+  setting.numbers.resize(get_count(in, sizeof(double)));
+  for (double& value : setting.numbers) value = in.get<double>();
+  setting.text = in.get_string();
+  setting.line = in.get<std::int32_t>();
+  setting.file = in.get_string();
+  return setting;
+}
+
+void put_sensor(ByteWriter& out, const Sensor& sensor, Rows rows) {
+  out.put_string(sensor.type);
+  out.put_string(sensor.name);
+  put(out, sensor.X_MS);
+  for (const double value : {sensor.height, sensor.metres, sensor.radians}) out.put(value);
+  out.put(static_cast<std::uint32_t>(sensor.settings.size()));
+  for (const Setting& setting : sensor.settings) put_setting(out, setting, rows);
+  if (rows == Rows::physics) return;
+  out.put(static_cast<std::int32_t>(sensor.line));
+  out.put_string(sensor.file);
+}
+
+Sensor get_sensor(ByteReader& in) {
+  Sensor sensor;
+  sensor.type = in.get_string();
+  sensor.name = in.get_string();
+  sensor.X_MS = get_pose(in);
+  for (double* value : {&sensor.height, &sensor.metres, &sensor.radians}) *value = in.get<double>();
+  sensor.settings.resize(get_count(in, kSettingBytes));
+  for (Setting& setting : sensor.settings) setting = get_setting(in);
+  sensor.line = in.get<std::int32_t>();
+  sensor.file = in.get_string();
+  return sensor;
+}
+
 }  // namespace
 
 void put(ByteWriter& out, const Pose& pose) {
@@ -69,7 +118,8 @@ void put(ByteWriter& out, const Segment& segment) {
   out.put(segment.z_min);
   out.put(segment.z_max);
   out.put(segment.model);
-  const int flags = (segment.solid_left ? 1 : 0) | (segment.seen_by_laser ? 2 : 0) | (segment.stops_robots ? 4 : 0);
+  const int flags = (segment.solid_left ? 1 : 0) | (segment.seen_by_laser ? 2 : 0) | (segment.stops_robots ? 4 : 0) |
+                    (segment.seen_by_laneedge ? 8 : 0);
   out.put(static_cast<std::uint8_t>(flags));
 }
 
@@ -84,7 +134,38 @@ Segment get_segment(ByteReader& in) {
   segment.solid_left = (flags & 1) != 0;
   segment.seen_by_laser = (flags & 2) != 0;
   segment.stops_robots = (flags & 4) != 0;
+  segment.seen_by_laneedge = (flags & 8) != 0;
   return segment;
+}
+
+void put(ByteWriter& out, const Stripe& stripe, Rows rows) {
+  out.put(static_cast<std::uint32_t>(stripe.line.size()));
+  for (const Vec2 p : stripe.line) put_vec(out, p);
+  out.put(stripe.width);
+  if (rows == Rows::all) out.put(stripe.color);
+}
+
+Stripe get_stripe(ByteReader& in) {
+  Stripe stripe;
+  stripe.line.resize(get_count(in, 2 * sizeof(double)));
+  for (Vec2& p : stripe.line) p = get_vec(in);
+  stripe.width = in.get<double>();
+  stripe.color = in.get<std::uint32_t>();
+  return stripe;
+}
+
+void put(ByteWriter& out, const Magnet& magnet) {
+  put_vec(out, magnet.p);
+  for (const double value : {magnet.z, magnet.moment, magnet.radius}) out.put(value);
+  out.put(magnet.model);
+}
+
+Magnet get_magnet(ByteReader& in) {
+  Magnet magnet;
+  magnet.p = get_vec(in);
+  for (double* value : {&magnet.z, &magnet.moment, &magnet.radius}) *value = in.get<double>();
+  magnet.model = in.get<std::uint32_t>();
+  return magnet;
 }
 
 void put(ByteWriter& out, const Model& model, Rows rows) {
@@ -96,6 +177,7 @@ void put(ByteWriter& out, const Model& model, Rows rows) {
   put_vec(out, model.size);
   if (rows == Rows::all) out.put(model.color);
   out.put(static_cast<std::uint8_t>(model.is_bitmap ? 1 : 0));
+  out.put(model.pixel);
 }
 
 Model get_model(ByteReader& in) {
@@ -108,6 +190,7 @@ Model get_model(ByteReader& in) {
   model.size = get_vec(in);
   model.color = in.get<std::uint32_t>();
   model.is_bitmap = in.get<std::uint8_t>() != 0;
+  model.pixel = in.get<double>();
   return model;
 }
 
@@ -123,6 +206,10 @@ void put(ByteWriter& out, const Mover& mover, Rows rows) {
   for (const Segment& segment : mover.body) put(out, segment);
   out.put(static_cast<std::uint32_t>(mover.lasers.size()));
   for (const Laser& laser : mover.lasers) put_laser(out, laser, rows);
+  out.put(static_cast<std::uint32_t>(mover.sensors.size()));
+  for (const Sensor& sensor : mover.sensors) put_sensor(out, sensor, rows);
+  out.put(static_cast<std::uint32_t>(mover.magnets.size()));
+  for (const Magnet& magnet : mover.magnets) put(out, magnet);
 }
 
 Mover get_mover(ByteReader& in) {
@@ -141,6 +228,10 @@ Mover get_mover(ByteReader& in) {
   for (Segment& segment : mover.body) segment = get_segment(in);
   mover.lasers.resize(get_count(in, kLaserBytes));
   for (Laser& laser : mover.lasers) laser = get_laser(in);
+  mover.sensors.resize(get_count(in, kSensorBytes));
+  for (Sensor& sensor : mover.sensors) sensor = get_sensor(in);
+  mover.magnets.resize(get_count(in, kMagnetBytes));
+  for (Magnet& magnet : mover.magnets) magnet = get_magnet(in);
   return mover;
 }
 

@@ -6,17 +6,25 @@
 
 namespace sf::world {
 
+inline constexpr std::size_t kMagnetBytes = 44;
+inline constexpr std::size_t kStripeBytes = 16;  ///< at least
+
 /// How much of a row is written: all of it, or what a reading depends on (no colours).
 enum class Rows { all, physics };
 
 void put(base::ByteWriter& out, const Pose& pose);
 void put(base::ByteWriter& out, const Segment& segment);
+void put(base::ByteWriter& out, const Stripe& stripe, Rows rows);
+void put(base::ByteWriter& out, const Magnet& magnet);
 void put(base::ByteWriter& out, const Model& model, Rows rows);
 void put(base::ByteWriter& out, const Mover& mover, Rows rows);
 
 Pose get_pose(base::ByteReader& in);
 Segment get_segment(base::ByteReader& in);
+Magnet get_magnet(base::ByteReader& in);
 Model get_model(base::ByteReader& in);
+/// @throws base::InputError when it promises more points than bytes are left for.
+Stripe get_stripe(base::ByteReader& in);
 /// @throws base::InputError when it promises more rows than bytes are left for.
 Mover get_mover(base::ByteReader& in);
 

@@ -159,6 +159,12 @@ std::shared_ptr<const Traced> trace(Grid grid, const std::string& file) {
   return std::make_shared<const Traced>(Traced{{grid.width, grid.height, {}}, std::move(runs)});
 }
 
+double pixel_of(Source& source, Bitmaps& bitmaps, const Entity& entity, const Size& size) {
+  if (find(entity, "bitmap") == nullptr) return 0.0;
+  const Grid& grid = bitmap_of(source, bitmaps, entity).grid;
+  return std::max(size.x / grid.width, size.y / grid.height);
+}
+
 std::vector<Segment> bitmap_segments(const Traced& traced, const Size& size) {
   std::vector<Segment> segments(traced.runs.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {

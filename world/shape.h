@@ -30,6 +30,9 @@ using Bitmaps = std::map<std::string, std::shared_ptr<const Traced>>;
 /// @throws base::InputError for a block or bitmap that cannot be read.
 std::vector<Segment> shape_of(Source& source, Bitmaps& bitmaps, const Entity& entity, const Size& size, bool is_box);
 
+/// [m] larger side of a pixel of the bitmap that `entity` shows on `size`; 0 when it shows none.
+double pixel_of(Source& source, Bitmaps& bitmaps, const Entity& entity, const Size& size);
+
 /// Segments of a traced grid shown on size.x by size.y, from 0 to size.z.
 std::vector<Segment> bitmap_segments(const Traced& traced, const Size& size);
 

@@ -10,7 +10,7 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 1;
+constexpr std::uint16_t kVersion = 2;
 
 template <class Row, class Get>
 void get_rows(base::ByteReader& in, std::vector<Row>& rows, std::size_t row_size, Get get) {
@@ -24,11 +24,15 @@ void get_rows(base::ByteReader& in, std::vector<Row>& rows, std::size_t row_size
 void check_links(const World& world) {
   const auto models = world.models.size();
   const auto movers = world.movers.size();
-  const auto known = [&](const Segment& s) { return s.model < models; };
+  const auto known = [&](const auto& row) { return row.model < models; };
   bool good = std::all_of(world.walls.begin(), world.walls.end(), known);
+  good &= std::all_of(world.magnets.begin(), world.magnets.end(), known);
   for (const Model& m : world.models)
     good &= (m.parent == kNone || m.parent < models) && (m.mover == kNone || m.mover < movers);
-  for (const Mover& m : world.movers) good &= m.model < models && std::all_of(m.body.begin(), m.body.end(), known);
+  for (const Mover& m : world.movers) {
+    good &= m.model < models && std::all_of(m.body.begin(), m.body.end(), known);
+    good &= std::all_of(m.magnets.begin(), m.magnets.end(), known);
+  }
   if (!good) refuse("a row names a row that is not there");
 }
 
@@ -55,12 +59,17 @@ std::vector<std::uint8_t> snapshot(const World& world) {
   out.put(kVersion);
   out.put_string(world.name);
   out.put_string(world.file);
-  out.put(world.magnets);
+  out.put(world.road_resolution);
+  out.put(world.magnet_cutoff);
   out.put(world.interval);
   out.put(static_cast<std::uint32_t>(world.models.size()));
   for (const Model& model : world.models) put(out, model, Rows::all);
   out.put(static_cast<std::uint32_t>(world.walls.size()));
   for (const Segment& wall : world.walls) put(out, wall);
+  out.put(static_cast<std::uint32_t>(world.stripes.size()));
+  for (const Stripe& stripe : world.stripes) put(out, stripe, Rows::all);
+  out.put(static_cast<std::uint32_t>(world.magnets.size()));
+  for (const Magnet& magnet : world.magnets) put(out, magnet);
   out.put(static_cast<std::uint32_t>(world.movers.size()));
   for (const Mover& mover : world.movers) put(out, mover, Rows::all);
   out.put(static_cast<std::uint32_t>(world.kept.size()));
@@ -87,10 +96,13 @@ World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   World world;
   world.name = in.get_string();
   world.file = in.get_string();
-  world.magnets = in.get<std::uint32_t>();
+  world.road_resolution = in.get<double>();
+  world.magnet_cutoff = in.get<double>();
   world.interval = in.get<double>();
-  get_rows(in, world.models, 60, get_model);
+  get_rows(in, world.models, 68, get_model);
   get_rows(in, world.walls, 53, get_segment);
+  get_rows(in, world.stripes, kStripeBytes, get_stripe);
+  get_rows(in, world.magnets, kMagnetBytes, get_magnet);
   get_rows(in, world.movers, 80, get_mover);
   get_extras(in, world);
   const auto hash = in.get<std::uint64_t>();

@@ -7,7 +7,9 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/pose.h"
@@ -26,11 +28,12 @@ struct Segment {
   Vec2 a;
   Vec2 b;  ///< [m] world frame for walls, mover frame for bodies
   double z_min = 0.0;
-  double z_max = 0.0;         ///< [m] a beam at height z sees it when z_min <= z < z_max
-  std::uint32_t model = 0;    ///< row in `World::models`
-  bool solid_left = true;     ///< false: a thin or self-crossing outline; nothing is known about sides
-  bool seen_by_laser = true;  ///< false: `laser_return 0` or a negative `ranger_return`
-  bool stops_robots = true;   ///< false: `obstacle_return 0`
+  double z_max = 0.0;            ///< [m] a beam at height z sees it when z_min <= z < z_max
+  std::uint32_t model = 0;       ///< row in `World::models`
+  bool solid_left = true;        ///< false: a thin or self-crossing outline; nothing is known about sides
+  bool seen_by_laser = true;     ///< false: `laser_return 0` or a negative `ranger_return`
+  bool stops_robots = true;      ///< false: `obstacle_return 0`
+  bool seen_by_laneedge = true;  ///< false: `laneedge_return 0`
 };
 
 /// A named thing of the world file, static or carried by a mover.
@@ -43,6 +46,54 @@ struct Model {
   Vec2 size;                     ///< [m] bounding box
   std::uint32_t color = 0xFF808080u;  ///< 0xAARRGGBB
   bool is_bitmap = false;             ///< its outline came from a picture (a floor plan)
+  double pixel = 0.0;                 ///< [m] larger side of that picture's pixels; 0: no picture
+};
+
+/// One painted stripe: a band of constant width along a line. Every dash is a stripe of its own.
+/// Rule: at least two points, neighbours distinct; the line turns by less than 90 degrees at each.
+struct Stripe {
+  std::vector<Vec2> line;             ///< [m] its middle, world frame
+  double width = 0.0;                 ///< [m] > 0
+  std::uint32_t color = 0xFFFFFFFFu;  ///< 0xAARRGGBB
+};
+
+/// A permanent magnet: a point dipole at the middle of its model, its moment along the world's +z.
+struct Magnet {
+  Vec2 p;                   ///< [m] world frame, or the mover's frame where a mover carries it
+  double z = 0.0;           ///< [m] likewise
+  double moment = 0.0;      ///< [A m^2] not 0; negative: the south pole is up
+  double radius = 0.0;      ///< [m] > 0: nearer than this the field stays what it is at this distance
+  std::uint32_t model = 0;  ///< row in `World::models`
+};
+
+/// One property of a sensor as the world file has it, for the kind that reads it.
+struct Setting {
+  std::string key;              ///< with its index, e.g. `spose[3]`
+  std::vector<double> numbers;  ///< as written, finite; empty where it is a text
+  std::string text;             ///< as written; empty where it is numbers
+  int line = 0;                 ///< 1-based, in `file`
+  std::string file;
+};
+
+/// A sensor that a mover carries, as the world file describes it. What its settings mean is its kind's business
+/// (sensors/<type>.cpp).
+struct Sensor {
+  std::string type;      ///< the kind's word, e.g. `magnetometer`
+  std::string name;      ///< unique among the mover's sensors
+  Pose X_MS;             ///< the model's frame in the mover's, its origin included; z is its foot
+  double height = 0.0;   ///< [m] of the model
+  double metres = 1.0;   ///< [m] per unit of length of the file
+  double radians = 1.0;  ///< [rad] per unit of angle of the file
+  std::vector<Setting> settings;
+  int line = 0;  ///< 1-based, of the model in `file`
+  std::string file;
+};
+
+/// A word that a world file may use for a sensor, and the properties it may have beside those of every model and of
+/// every sensor (rate, phase, latency, noise).
+struct SensorWord {
+  std::string_view type;
+  std::span<const std::string_view> keys;  ///< indices left empty: `spose[]`
 };
 
 /// Noise of a laser. All zero: none. Ranges are disturbed only where a beam met something.
@@ -92,6 +143,8 @@ struct Mover {
   double max_turn = M_PI / 2;  ///< [rad/s] > 0
   double wheelbase = 1.0;      ///< [m] car only
   std::vector<Laser> lasers;
+  std::vector<Sensor> sensors;  ///< of all other kinds, in file order
+  std::vector<Magnet> magnets;  ///< that it carries
 };
 
 /// Something to tell the user that did not stop the load.
@@ -109,10 +162,13 @@ struct World {
   std::string name;
   std::string file;  ///< as given by the user
   std::vector<Model> models;
-  std::vector<Segment> walls;  ///< static segments in the world frame
+  std::vector<Segment> walls;    ///< static segments in the world frame
+  std::vector<Stripe> stripes;   ///< road paint: seen by lane edge sensors only
+  double road_resolution = 0.0;  ///< [m] of the raster that stripes are seen in; 0: they are seen exactly
+  std::vector<Magnet> magnets;   ///< that stand still
+  double magnet_cutoff = 0.0;    ///< [m] magnets farther away along the ground are left out; 0: none is
   std::vector<Mover> movers;
   std::map<std::string, int> kept;  ///< entity types that we do not model but keep as bodies, with their count
-  std::uint32_t magnets = 0;        ///< models with a magnetic moment (counted; the sensor comes later)
   double interval = 0.1;            ///< [s] simulated time per tick (`interval_sim`)
   Extent extent;
   std::vector<Warning> warnings;
@@ -121,9 +177,10 @@ struct World {
 
 /// How to read.
 struct LoadOptions {
-  bool stage_obstacles = false;  ///< keep Stage's rule that `obstacle_return 0` floor plans do not stop robots
-  bool stage_noise = false;      ///< read `noise`'s first number as Stage does, as a variance
-  bool unknown_is_wall = false;  ///< ROS maps: unknown cells are walls
+  bool stage_obstacles = false;         ///< keep Stage's rule that `obstacle_return 0` floor plans do not stop robots
+  bool stage_noise = false;             ///< read `noise`'s first number as Stage does, as a variance
+  bool unknown_is_wall = false;         ///< ROS maps: unknown cells are walls
+  std::span<const SensorWord> sensors;  ///< kinds that are modelled; others are kept as bodies that do nothing
 };
 
 /// Reads a Stage world (either dialect) or a ROS map_server map (`.yaml`).

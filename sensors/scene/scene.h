@@ -12,16 +12,11 @@
 #include "gpu/buffer.h"
 #include "sensors/scene/bodies.h"
 #include "sensors/scene/cells.h"
+#include "sensors/scene/options.h"
 #include "sensors/scene/sectors.h"
 #include "world/world.h"
 
 namespace sf::sensors {
-
-/// How much room the lists have before the oldest make way. When one tick alone needs more, the room doubles.
-struct SceneOptions {
-  std::uint32_t pool_chunks = 1u << 20;  ///< 84 bytes each; memory is touched only as far as used
-  std::uint32_t pool_cells = 1u << 14;
-};
 
 /// Sensors that can share lists: one height, one range.
 struct Family {

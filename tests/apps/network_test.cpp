@@ -11,10 +11,10 @@
 #include <map>
 #include <thread>
 
-#include "netio/laser_packets.h"
 #include "netio/outbox.h"
 #include "netio/packets.h"
 #include "netio/socket.h"
+#include "sensors/laser_packets.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 
@@ -64,9 +64,11 @@ class Robot {
         EXPECT_EQ(netio::decode(batch_.bytes(i), packet), netio::Reason::accepted);
         EXPECT_EQ(packet.header.robot, id_);
         EXPECT_EQ(packet.header.sensor, 0u);
-        const auto& scan = std::get<netio::LaserPart>(packet.body);
+        sensors::LaserPart scan;
+        EXPECT_EQ(sensors::read_laser(std::get<netio::Reading>(packet.body).payload, false, scan),
+                  sensors::Fault::none);
         ranges.clear();
-        for (std::uint32_t k = 0; k < scan.count; ++k) ranges.push_back(netio::range(scan, k));
+        for (std::uint32_t k = 0; k < scan.count; ++k) ranges.push_back(sensors::range_of(scan, k));
       }
     }
     return ranges;

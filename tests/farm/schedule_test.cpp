@@ -104,17 +104,17 @@ TEST(Schedule, NothingIsComputedForTheUnheard) {
   const world::World world = small_world(4);
   Farm farm(world, device());
   EXPECT_TRUE(farm.tick(0, {}).empty());
-  EXPECT_EQ(farm.stats().rays, 0u);
-  EXPECT_EQ(farm.stats().cells_built, 0u);
-  farm.hear(2, true);
+  EXPECT_EQ(farm.stats().work.rays, 0u);
+  EXPECT_EQ(farm.stats().work.cells_built, 0u);
+  farm.hear(2, 1u << 1);
   const auto readings = farm.tick(kSecond / 10, {});
   ASSERT_EQ(readings.size(), 1u);
   EXPECT_EQ(readings[0].mover, 2u);
   EXPECT_EQ(readings[0].sequence, 1u) << "numbered by when it is due: the first was not heard";
-  EXPECT_EQ(farm.stats().rays, kBeams);
-  farm.hear(2, false);
+  EXPECT_EQ(farm.stats().work.rays, kBeams);
+  farm.hear(2, ~(1u << 1));
   EXPECT_TRUE(farm.tick(kSecond / 5, {}).empty());
-  EXPECT_EQ(farm.stats().rays, kBeams);
+  EXPECT_EQ(farm.stats().work.rays, kBeams);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// libFuzzer target: any bytes through the decoder, the inbox' rules and the listener's, without a socket in the way.
+// libFuzzer target: any bytes through the decoder, the inbox' rules and the listener's with the laser's judgement,
+// without a socket in the way.
 //
 //   cmake -S . -B build/fuzz -G Ninja -DSENSORFARM_FUZZ=ON -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang
 //   ninja -C build/fuzz packets_fuzz && build/fuzz/packets_fuzz -max_total_time=60
@@ -14,6 +15,7 @@
 
 #include "netio/inbox.h"
 #include "netio/listener.h"
+#include "sensors/laser_packets.h"
 
 namespace {
 
@@ -43,13 +45,24 @@ void round_trip(const netio::Packet& packet, std::span<const std::uint8_t> bytes
   for (std::size_t i = 0; i < again.size(); ++i) require(again[i] == bytes[i] || i == 10 || i == 11);  // reserved
 }
 
-void read_scan(std::span<const std::uint8_t> bytes) {
-  netio::Packet packet;
-  if (netio::decode(bytes, packet) != netio::Reason::accepted) return;
-  const auto* scan = std::get_if<netio::LaserPart>(&packet.body);
-  if (scan == nullptr) return;
-  require(std::uint64_t{scan->first} + scan->count <= scan->total && scan->part < scan->parts);
-  for (std::uint32_t i = 0; i < scan->count; ++i) require(netio::range(*scan, i) >= 0.0);
+/// A laser of 3 beams up to 8 m, and one of whatever: the two streams of the listener below.
+sensors::SensorRow laser_of(std::size_t stream) {
+  sensors::SensorRow row;
+  row.elements = stream == 0 ? 3 : 0;
+  row.limit = stream == 0 ? 8.0 : 100.0;
+  return row;
+}
+
+netio::Verdict judge_scan(std::size_t stream, const netio::Header& header, std::span<const std::uint8_t> payload) {
+  const auto type = static_cast<std::uint8_t>(header.type);
+  const sensors::Part part = sensors::decode_laser(laser_of(stream), payload, type, sensors::Wire::farm);
+  if (part.fault != sensors::Fault::none) return {netio::Reason::out_of_range};
+
+  sensors::LaserPart scan;
+  require(sensors::read_laser(payload, type > sensors::kExtended, scan) == sensors::Fault::none);
+  require(std::uint64_t{scan.first} + scan.count <= scan.total && scan.part < scan.parts);
+  for (std::uint32_t i = 0; i < scan.count; ++i) require(sensors::range_of(scan, i) >= 0.0);
+  return {netio::Reason::accepted, part.elements, part.part, part.parts};
 }
 
 }  // namespace
@@ -58,8 +71,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static netio::Inbox inbox({.bind = {netio::kLoopback, 0}, .robots = {0, 7, 40'000}, .tags = {1, 12}});
   static const std::uint32_t free_base =
       20'000 + static_cast<std::uint32_t>(getpid()) % 5'000 * 2;  // for fuzzers side by side
-  static netio::Listener listener({.streams = {{.robot = 7, .samples = 3, .range_max = 8.0, .rule = {free_base, 8}},
-                                               {.robot = 7, .sensor = 1, .range_max = 100.0, .rule = {free_base, 8}}}});
+  static netio::Listener listener(
+      {.streams = {{.robot = 7, .rule = {free_base, 8}}, {.robot = 7, .sensor = 1, .rule = {free_base, 8}}},
+       .judge = judge_scan});
   static std::int64_t now = 0;
 
   base::ByteReader reader({data, size});
@@ -77,7 +91,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const std::uint32_t id = packet.header.robot;
       if (packet.header.type != netio::Type::tag) require(inbox.heard(id, now) && inbox.address(id) == source);
     }
-    read_scan(bytes);
     listener.accept(sender & 1, bytes);
   }
   return 0;

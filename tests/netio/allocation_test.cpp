@@ -40,20 +40,23 @@ TEST(Allocation, NoneOnTheWayInOrOut) {
   Inbox inbox({.bind = {kLoopback, 0}, .robots = {7}, .tags = {12}});
   Outbox outbox;
   const Endpoint to{kLoopback, inbox.port()};
-  const std::vector<double> scan(1000, 5.0);
+  const base::Bytes payload(1376, 5);
+  base::Bytes framed;
+  framed.reserve(kMaxDatagram);
   const std::vector<base::Bytes> packets = examples();
 
   const std::uint64_t before = allocations;
   std::size_t taken = 0;
   for (int round = 0; round < 20; ++round) {
     for (const base::Bytes& packet : packets) outbox.queue(to, packet);
-    outbox.queue_laser(to, Wire::farm, {.robot = 7}, scan, 100.0);
+    frame({.robot = 7}, 1, payload, framed);
+    outbox.queue(to, framed);
     outbox.flush();
     taken += inbox.receive(round, [](const Packet&) {});
   }
   EXPECT_EQ(allocations - before, 0u);
   EXPECT_GT(taken, 0u);
-  EXPECT_EQ(outbox.counts().sent, 20u * 8u);
+  EXPECT_EQ(outbox.counts().sent, 20u * 6u);
 }
 
 }  // namespace

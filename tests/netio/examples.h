@@ -5,24 +5,24 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "netio/laser_packets.h"
 #include "netio/packets.h"
 
 namespace sf::netio {
 
-inline base::Bytes laser_example() {
+/// A reading of kind 1 in its plain form. What its payload says is of no concern here: a count and three words.
+inline base::Bytes reading_example() {
+  const std::uint8_t payload[] = {0x03, 0x00, 0xe8, 0x03, 0xfa, 0x00, 0x40, 0x1f};
   base::Bytes out;
-  encode_laser(Wire::farm, {.robot = 7, .sequence = 258, .time = 1'500'000'000}, std::vector{1.0, 0.25, 8.0}, 8.0, 0,
-               out);
+  frame({.robot = 7, .sequence = 258, .time = 1'500'000'000}, 1, payload, out);
   return out;
 }
 
-inline base::Bytes laser_extended_example() {
-  std::vector<double> ranges(342, 1.0);
-  ranges[340] = 81.9175;
-  ranges[341] = INFINITY;
+/// The same kind's second form.
+inline base::Bytes extended_example() {
+  const std::uint8_t payload[] = {0x56, 0x01, 0x00, 0x00, 0x54, 0x01, 0x00, 0x00, 0x01, 0x00, 0x02, 0x00,
+                                  0x02, 0x00, 0x00, 0x00, 0xe7, 0x7f, 0x0c, 0x00, 0xff, 0xff, 0xff, 0xff};
   base::Bytes out;
-  encode_laser(Wire::farm, {.robot = 7, .sensor = 1, .sequence = 4, .time = 2'000'000'000}, ranges, 100.0, 1, out);
+  frame({.robot = 7, .sensor = 1, .sequence = 4, .time = 2'000'000'000}, 65, payload, out);
   return out;
 }
 
@@ -47,15 +47,12 @@ inline base::Bytes subscribe_example() {
   return out;
 }
 
-inline base::Bytes thesis_example() {
-  base::Bytes out;
-  encode_laser(Wire::thesis, {}, std::vector{1.0, 0.25, 8.0}, 8.0, 0, out);
-  return out;
-}
+/// States that are sent to the farm.
+inline std::vector<base::Bytes> states() { return {v2v_example(), tag_example(), subscribe_example()}; }
 
 /// The farm's own packets, in order of type number.
 inline std::vector<base::Bytes> examples() {
-  return {laser_example(), laser_extended_example(), v2v_example(), tag_example(), subscribe_example()};
+  return {reading_example(), extended_example(), v2v_example(), tag_example(), subscribe_example()};
 }
 
 /// Overwrites the value at `offset`.

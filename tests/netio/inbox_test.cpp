@@ -49,7 +49,7 @@ TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
   EXPECT_EQ(say(long_packet), Reason::too_long);
   EXPECT_EQ(say(patched(v2v_example(), 24, std::numeric_limits<double>::quiet_NaN())), Reason::not_finite);
   EXPECT_EQ(say(patched(v2v_example(), 24, 2e7)), Reason::out_of_range);
-  EXPECT_EQ(say(laser_example()), Reason::wrong_direction);
+  EXPECT_EQ(say(reading_example()), Reason::wrong_direction);
   EXPECT_EQ(say(v2v(8, 0)), Reason::unknown_robot);
   EXPECT_EQ(say(patched<std::uint16_t>(tag_example(), 6, 7)), Reason::unknown_tag);  // a robot's id is no tag's
   EXPECT_EQ(say(v2v_example()), Reason::accepted);
@@ -61,7 +61,7 @@ TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
 
 TEST_F(InboxTest, DroppedPacketsAreNotHeard) {
   say(patched(v2v_example(), 24, 2e7));
-  say(laser_example());
+  say(reading_example());
   EXPECT_FALSE(inbox.heard(7, 0));
   EXPECT_FALSE(inbox.address(7));
 }

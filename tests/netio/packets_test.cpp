@@ -3,14 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
+#include "tests/netio/documented.h"
 #include "tests/netio/examples.h"
 
 namespace sf::netio {
 namespace {
+
+using test::documented;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -27,28 +28,12 @@ Body body_of(const base::Bytes& bytes) {
   return std::get<Body>(packet.body);
 }
 
-/// The bytes of docs/packets.md below `<!-- example: NAME -->`.
-base::Bytes documented(const std::string& example) {
-  std::ifstream file(SF_SOURCE_DIR "/docs/packets.md");
-  std::string line;
-  while (std::getline(file, line) && line != "<!-- example: " + example + " -->") {
-  }
-  std::getline(file, line);  // opening fence
-  base::Bytes bytes;
-  while (std::getline(file, line) && line != "```") {
-    std::istringstream row(line.substr(4));
-    for (unsigned byte = 0; row >> std::hex >> byte;) bytes.push_back(static_cast<std::uint8_t>(byte));
-  }
-  return bytes;
-}
-
 TEST(Packets, BytesAreTheDocumentedOnes) {
-  EXPECT_EQ(laser_example(), documented("laser"));
-  EXPECT_EQ(laser_extended_example(), documented("laser_extended"));
+  EXPECT_EQ(reading_example(), documented("laser"));
+  EXPECT_EQ(extended_example(), documented("laser_extended"));
   EXPECT_EQ(v2v_example(), documented("v2v"));
   EXPECT_EQ(tag_example(), documented("tag"));
   EXPECT_EQ(subscribe_example(), documented("subscribe"));
-  EXPECT_EQ(thesis_example(), documented("thesis"));
 }
 
 TEST(Packets, HeaderComesBack) {
@@ -105,18 +90,57 @@ TEST(Packets, ReservedBytesOfTheHeaderAreIgnored) {
 }
 
 TEST(Packets, EveryShorterPrefixIsTooShort) {
-  for (const base::Bytes& whole : examples()) {
-    for (std::size_t size = 0; size < whole.size(); ++size) {
+  const auto check = [](const base::Bytes& whole, std::size_t least) {
+    for (std::size_t size = 0; size < least; ++size) {
       EXPECT_EQ(reason_of({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}), Reason::too_short)
           << size;
     }
-  }
+  };
+  for (const base::Bytes& state : states()) check(state, state.size());
+  check(reading_example(), kHeaderBytes);  // how long a reading is, its kind knows
 }
 
 TEST(Packets, OneByteMoreIsTooLong) {
-  for (base::Bytes bytes : examples()) {
+  for (base::Bytes bytes : states()) {
     bytes.push_back(0);
     EXPECT_EQ(reason_of(bytes), Reason::too_long);
+  }
+  base::Bytes reading = reading_example();
+  reading.resize(kMaxDatagram);
+  EXPECT_EQ(reason_of(reading), Reason::accepted);  // the longest datagram
+  reading.push_back(0);
+  EXPECT_EQ(reason_of(reading), Reason::too_long);
+}
+
+TEST(Packets, AReadingsPayloadIsWhatLiesBehindItsHeader) {
+  const base::Bytes bytes = reading_example();
+  Packet packet;
+  ASSERT_EQ(decode(bytes, packet), Reason::accepted);
+  EXPECT_EQ(kind_of(packet.header.type), 1);
+  EXPECT_EQ(packet.header.robot, 7);
+  EXPECT_EQ(packet.header.sequence, 258u);
+  EXPECT_EQ(packet.header.time, 1'500'000'000);
+  const auto payload = std::get<Reading>(packet.body).payload;
+  EXPECT_EQ(payload.data(), bytes.data() + kHeaderBytes);  // a view, not a copy
+  EXPECT_EQ(payload.size(), 8u);
+}
+
+TEST(Packets, AReadingMayBeEmpty) {
+  base::Bytes bytes;
+  frame({}, 31, {}, bytes);
+  EXPECT_EQ(bytes.size(), kHeaderBytes);
+  EXPECT_TRUE(body_of<Reading>(bytes).payload.empty());
+}
+
+TEST(Packets, TypesBelow128AreReadingsOfTheirKind) {
+  for (int type = 0; type < 256; ++type) {
+    const bool is_reading = type < 128 && type % 64 != 0;  // kind 0 is nobody's
+    EXPECT_EQ(kind_of(Type(type)), is_reading ? type % 64 : 0) << type;
+    const bool is_state = type >= 128 && type <= 130;
+    if (is_state) continue;
+    EXPECT_EQ(reason_of(patched(reading_example(), 5, static_cast<std::uint8_t>(type))),
+              is_reading ? Reason::accepted : Reason::unknown_type)
+        << type;
   }
 }
 
@@ -128,13 +152,6 @@ TEST(Packets, EachLetterOfTheMagicCounts) {
 TEST(Packets, OtherVersionsAreUnknown) {
   for (const int version : {0, 2, 255})
     EXPECT_EQ(reason_of(patched(v2v_example(), 4, static_cast<std::uint8_t>(version))), Reason::unknown_version);
-}
-
-TEST(Packets, OtherTypesAreUnknown) {
-  for (int type = 0; type < 256; ++type) {
-    if (type == 1 || type == 65 || (type >= 128 && type <= 130)) continue;
-    EXPECT_EQ(reason_of(patched(v2v_example(), 5, static_cast<std::uint8_t>(type))), Reason::unknown_type) << type;
-  }
 }
 
 TEST(Packets, NoRealOfAStateMayBeNanOrInfinite) {
@@ -203,6 +220,10 @@ TEST(Packets, OurOwnBadNumbersAbort) {
   EXPECT_DEATH(encode({}, V2v{.X_WR = {kNan, 0, 0, 0}}, out), "not finite");
   EXPECT_DEATH(encode({.time = -1}, Subscribe{}, out), "timestamp -1");
   EXPECT_DEATH(encode({.robot = 0}, Tag{}, out), "tag id 0");
+  EXPECT_DEATH(frame({}, 0, {}, out), "type 0 is no reading's");
+  EXPECT_DEATH(frame({}, 64, {}, out), "type 64 is no reading's");    // kind 0's second form
+  EXPECT_DEATH(frame({}, 128, {}, out), "type 128 is no reading's");  // a state's
+  EXPECT_DEATH(frame({}, 1, base::Bytes(kMaxDatagram - kHeaderBytes + 1), out), "1377 bytes of payload");
 }
 
 TEST(Packets, AStateIsAReport) {

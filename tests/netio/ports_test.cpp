@@ -49,7 +49,17 @@ TEST(Ports, TwoSensorsOnOnePortAreRefused) {
   EXPECT_NE(refusal({use(1, 9), use(2, 1)}).find("raise the stride to at least 9"), std::string::npos);
   EXPECT_NE(refusal({use(4, 1), use(4, 1)}).find("share port 10032"), std::string::npos);
   EXPECT_NE(refusal({use(4, 1), use(4, 1)}).find("its own id"), std::string::npos);
-  EXPECT_NE(refusal({use(1, 1, {10000, 8}), use(0, 1, {10008, 8})}), "");  // two sensor types
+}
+
+TEST(Ports, TwoKindsAreToldApart) {
+  const PortUse lasers{1, 1, {10000, 8}, "roomba", 0, "laser"};
+  const PortUse others{0, 9, {10000, 8}, "tug", 0, "magnetometer"};
+  EXPECT_EQ(refusal({lasers, {0, 9, {20000, 8}, "tug", 0, "magnetometer"}}), "");
+  const std::string text = refusal({lasers, others});
+  EXPECT_NE(text.find("'roomba' (id 1) laser 0 and robot 'tug' (id 0) magnetometer 8 share port 10008"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("move the base ports apart"), std::string::npos) << text;
 }
 
 }  // namespace

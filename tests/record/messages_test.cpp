@@ -176,6 +176,21 @@ TEST(Messages, run_info_comes_back) {
   EXPECT_EQ(laser.samples, 4u);
   EXPECT_EQ(back.movers[0].lasers[1].range_min, 0.5);
   EXPECT_EQ(back.movers[0].lasers[1].rate, 5.0);
+  ASSERT_EQ(back.kinds.size(), 2u);
+  EXPECT_EQ(back.kinds[0].id, 2);
+  EXPECT_EQ(back.kinds[0].list, "");
+  EXPECT_EQ(back.kinds[1].name, "array");
+  EXPECT_EQ(back.kinds[1].list, "elements");
+  ASSERT_EQ(back.kinds[1].columns.size(), 3u);
+  EXPECT_EQ(back.kinds[1].columns[1].name, "vector_T");
+  EXPECT_EQ(back.kinds[1].columns[1].width, 3u);
+  EXPECT_TRUE(back.kinds[1].columns[2].whole);
+  ASSERT_EQ(back.movers[0].sensors.size(), 3u);
+  EXPECT_EQ(back.movers[0].sensors[0].X_MS.x, 0.5);
+  EXPECT_EQ(back.movers[0].sensors[1].kind, 2);
+  EXPECT_EQ(back.movers[0].sensors[1].topic, "/roomba_1/_3rd_edge/edge");
+  EXPECT_EQ(back.movers[0].sensors[1].rate, 4.0);
+  EXPECT_TRUE(back.movers[1].sensors.empty());
 }
 
 TEST(RunInfo, names_become_unique_ROS_names) {

@@ -79,6 +79,9 @@ TEST(Recorder, topics_are_as_documented) {
       {"/roomba_1/cmd_vel", 5},
       {"/roomba_1/front/scan", 10},
       {"/roomba_1/front_2/scan", 10},
+      {"/roomba_1/front_3/array", 10},
+      {"/roomba_1/_3rd_edge/edge", 10},
+      {"/roomba_1/rear/array", 10},
       {"/roomba_1_2/odom", 5},
       {"/roomba_1_2/cmd_vel", 5},
       {"/roomba_1_2/laser/scan", 10},
@@ -95,6 +98,15 @@ TEST(Recorder, without_readings_and_odometry_only_the_exact_states_and_frames_re
   recorder.finish();
   const std::map<std::string, std::size_t> expected = {{"/run", 1}, {"/tf_static", 1}, {"/fleet", 3}, {"/tf", 3}};
   EXPECT_EQ(topics_of(bytes_of(recorder.path())), expected);
+}
+
+TEST(Recorder, every_sensor_has_a_frame_whatever_its_kind) {
+  Recorder recorder(fresh_directory("frames"), sample_info(false));
+  recorder.finish();
+  const base::Bytes file = bytes_of(recorder.path());
+  const std::string text(file.begin(), file.end());
+  for (const char* frame : {"roomba_1/front", "roomba_1/front_2", "roomba_1/front_3", "roomba_1/_3rd_edge"})
+    EXPECT_NE(text.find(std::string(frame) + '\0'), std::string::npos) << frame;
 }
 
 TEST(Recorder, the_same_run_gives_the_same_bytes) {
@@ -138,6 +150,7 @@ TEST(Recorder, a_killed_process_leaves_every_tick_it_wrote) {
   EXPECT_TRUE(recording.damage.empty());
   EXPECT_EQ(recording.ticks, 7u);
   EXPECT_EQ(recording.scans.size(), 21u);
+  EXPECT_EQ(recording.readings.size(), 21u);
 }
 
 TEST(Recorder, an_older_recording_is_replaced_whole) {
@@ -253,6 +266,18 @@ TEST(Recorder, broken_contracts_abort_with_the_values) {
     Recorder(directory, sample_info(true)).write(tick.record);
   };
   EXPECT_DEATH(wrong_sensor(), "mover 1 sensor 1");
+  const auto wrong_kind = [&](std::uint8_t kind, std::uint32_t sensor) {
+    SampleTick tick(0);
+    tick.readings[3].kind = kind;
+    tick.readings[3].sensor = sensor;
+    Recorder(directory, sample_info(true)).write(tick.record);
+  };
+  EXPECT_DEATH(wrong_kind(4, 0), "mover 0 kind 4 sensor 0");  // no such kind
+  EXPECT_DEATH(wrong_kind(3, 2), "mover 0 kind 3 sensor 2");  // two of them only
+  EXPECT_DEATH(wrong_kind(2, 0), "10 values in a reading of kind edge");
+  RunInfo kindless = sample_info(true);
+  kindless.kinds.pop_back();
+  EXPECT_DEATH(Recorder(directory, kindless), "sensor kind 3");
 }
 
 // A hundred robots must stay reasonable: the figures in docs/recordings.md.

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "record/mcap_writer.h"
+#include "record/readings.h"
 #include "record/schemas.h"
 #include "tests/record/sample.h"
 
@@ -55,6 +56,11 @@ bool same(const ScanSample& a, const ScanSample& b) {
          a.scan.time == b.scan.time && a.scan.ranges == b.scan.ranges;
 }
 
+bool same(const ReadingSample& a, const ReadingSample& b) {
+  return a.mover == b.mover && a.kind == b.kind && a.sensor == b.sensor && a.sequence == b.sequence &&
+         a.delivered == b.delivered && a.time == b.time && a.values == b.values;
+}
+
 /// Whether all of `part` is the beginning of `whole`.
 bool is_prefix(const Recording& part, const Recording& whole) {
   const auto begins = [](const auto& a, const auto& b) {
@@ -65,7 +71,8 @@ bool is_prefix(const Recording& part, const Recording& whole) {
   for (std::size_t mover = 0; mover < part.states.size(); ++mover) {
     if (!begins(part.states[mover], whole.states[mover])) return false;
   }
-  return begins(part.scans, whole.scans) && part.info.snapshot == whole.info.snapshot;
+  return begins(part.scans, whole.scans) && begins(part.readings, whole.readings) &&
+         part.info.snapshot == whole.info.snapshot;
 }
 
 TEST(Recording, a_run_comes_back) {
@@ -111,6 +118,23 @@ TEST(Recording, scans_come_back_as_float32) {
   }
 }
 
+TEST(Recording, readings_of_other_kinds_come_back_to_the_bit) {
+  const Recording recording = read_recording(sample().bytes, "run.mcap");
+  ASSERT_EQ(recording.readings.size(), 9u);
+  for (std::size_t i = 0; i < 9; ++i) {
+    const SampleTick given(i / 3);
+    const base::ReadingBlock& reading = given.readings[3 + i % 3];
+    const ReadingSample expected{reading.mover,
+                                 reading.kind,
+                                 reading.sensor,
+                                 reading.sequence,
+                                 given.record.time,
+                                 reading.time,
+                                 {reading.values.begin(), reading.values.end()}};
+    EXPECT_TRUE(same(recording.readings[i], expected)) << i;
+  }
+}
+
 TEST(Recording, a_cut_at_any_byte_gives_a_prefix_with_every_whole_tick) {
   const Recording whole = read_recording(sample().bytes, "run.mcap");
   const std::vector<std::size_t>& sizes = sample().sizes;
@@ -145,7 +169,8 @@ TEST(Recording, no_flipped_bit_changes_a_number_silently) {
     try {
       const Recording part = read_recording(bytes, "run.mcap");
       const bool tells = part.truncated || !part.damage.empty();
-      const bool equal = is_prefix(part, whole) && part.ticks == whole.ticks && part.scans.size() == whole.scans.size();
+      const bool equal = is_prefix(part, whole) && part.ticks == whole.ticks &&
+                         part.scans.size() == whole.scans.size() && part.readings.size() == whole.readings.size();
       EXPECT_TRUE(tells || equal) << "byte " << at;
       told += tells ? 1 : 0;
     } catch (const base::InputError&) {
@@ -161,7 +186,7 @@ TEST(Recording, torn_and_garbled_files_neither_crash_nor_hang) {
   for (int i = 0; i < 3000; ++i) {
     Bytes bytes = sample().bytes;
     for (int k = 0; k < 20; ++k) bytes[8 + random() % (bytes.size() - 8)] = static_cast<std::uint8_t>(random());
-    if (i % 2 == 0) bytes.resize(8 + random() % (bytes.size() - 8));
+    if (i % 2 == 0) bytes.resize(9 + random() % (bytes.size() - 8));
     if (i % 3 == 0) bytes.insert(bytes.begin() + 8 + random() % (bytes.size() - 8), 1 + random() % 50, 0xFF);
     try {
       const Recording recording = read_recording(bytes, "run.mcap");
@@ -216,6 +241,30 @@ TEST(Recording, a_state_of_a_mover_that_is_not_there_is_left_out_and_told) {
   const Recording recording = read_recording(finished(writer), "run.mcap");
   EXPECT_EQ(recording.ticks, 0u);
   EXPECT_EQ(recording.damage.size(), 1u);
+}
+
+TEST(Recording, a_reading_that_its_kind_does_not_explain_is_left_out_and_told) {
+  McapWriter writer("ros2", "sensorfarm");
+  const Bytes world = {1};
+  writer.add_attachment({.name = "world.bin", .data = world});
+  RunInfo info = test::sample_info(true);
+  name_frames(info);
+  add_run_info(writer, info);
+  const KindInfo edge = test::edge_kind();
+  Bytes message;
+  encode_reading(edge, 0, "f", std::vector<double>{1, 2, 3, 4, 5}, message);
+  const auto schema = writer.add_schema(type_of(edge), "ros2msg", schema_text(edge));
+  const auto own = writer.add_channel(schema, info.movers[0].sensors[1].topic, "cdr");
+  const auto other = writer.add_channel(schema, info.movers[0].sensors[0].topic, "cdr");  // an array's
+  const auto foreign = writer.add_channel(schema, "/somebody/else", "cdr");
+  writer.add_message({.channel = own, .data = message});
+  writer.add_message({.channel = own, .data = std::span(message).first(message.size() - 1)});
+  writer.add_message({.channel = other, .data = message});
+  writer.add_message({.channel = foreign, .data = message});
+  writer.end_chunk();
+  const Recording recording = read_recording(finished(writer), "run.mcap");
+  EXPECT_EQ(recording.readings.size(), 1u);
+  EXPECT_EQ(recording.damage.size(), 2u);  // what is not ours at all is no damage
 }
 
 TEST(Recording, a_place_without_a_recording_is_refused_with_advice) {

@@ -1,5 +1,5 @@
 #pragma once
-// A small made-up run: two robots, three lasers, numbers that do not round.
+// A small made-up run: two robots, three lasers, three sensors of two other kinds, numbers that do not round.
 
 #include <filesystem>
 #include <fstream>
@@ -11,6 +11,17 @@
 
 namespace sf::record::test {
 
+/// One row of a number, a count and a vector.
+inline KindInfo edge_kind() {
+  return {.id = 2, .name = "edge", .columns = {{"distance_m", 1}, {"points", 1, true}, {"normal_W", 3}}};
+}
+
+/// Elements of a number, a vector and a count.
+inline KindInfo array_kind() {
+  return {
+      .id = 3, .name = "array", .list = "elements", .columns = {{"field_T", 1}, {"vector_T", 3}, {"hits", 1, true}}};
+}
+
 inline RunInfo sample_info(bool readings) {
   RunInfo info;
   info.world = "a world";
@@ -19,11 +30,15 @@ inline RunInfo sample_info(bool readings) {
   info.interval = 0.1;
   info.record_readings = readings;
   info.odometry_rate = 5.0;
+  info.kinds = {edge_kind(), array_kind()};
   info.movers = {
       {.name = "roomba:1",
        .id = 7,
        .lasers = {{.name = "front", .X_MS = {0.1, 0.0, 0.2, 0.3}, .fov = 3.0, .samples = 4, .range_max = 8.0},
-                  {.name = "front", .fov = 0.0, .samples = 1, .range_min = 0.5, .range_max = 80.0, .rate = 5.0}}},
+                  {.name = "front", .fov = 0.0, .samples = 1, .range_min = 0.5, .range_max = 80.0, .rate = 5.0}},
+       .sensors = {{.kind = 3, .name = "front", .X_MS = {0.5, 0.0, 0.1, 0.0}},
+                   {.kind = 2, .name = "3rd edge", .rate = 4.0},
+                   {.kind = 3, .name = "rear"}}},
       {.name = "roomba.1", .id = 9, .lasers = {{.name = "", .fov = 1.0, .samples = 2, .range_max = 4.0}}}};
   info.options = {{"noise", "off"}, {"", "empty key"}};
   info.snapshot = {1, 2, 3, 0, 255};
@@ -47,10 +62,18 @@ struct SampleTick {
       commands.push_back({0.5, t / 17.0, -t / 19.0});
       contacts.push_back(static_cast<std::uint8_t>((tick + m) % 2));
     }
-    ranges = {{t / 3.0, 8.0, 0.0, 2.5}, {t}, {1.0 / 3.0, 4.0}};
+    ranges = {{t / 3.0, 8.0, 0.0, 2.5},
+              {t},
+              {1.0 / 3.0, 4.0},
+              {t, 1.0, 2.0, 3.0, 4.0, -t, -1.0, -2.0, -3.0, 5.0},  // two elements
+              {t / 7.0, 61.0, 0.1, 0.2, 0.3},
+              {1.0 / t, 1.0, 2.0, 3.0, 0.0}};
     readings = {{.mover = 0, .sensor = 0, .kind = 1, .sequence = 5, .time = time / 2, .values = ranges[0]},
                 {.mover = 0, .sensor = 1, .kind = 1, .sequence = 6, .time = time, .values = ranges[1]},
-                {.mover = 1, .sensor = 0, .kind = 1, .sequence = 7, .time = time, .values = ranges[2]}};
+                {.mover = 1, .sensor = 0, .kind = 1, .sequence = 7, .time = time, .values = ranges[2]},
+                {.mover = 0, .sensor = 0, .kind = 3, .sequence = 8, .time = time / 2, .values = ranges[3]},
+                {.mover = 0, .sensor = 0, .kind = 2, .sequence = 9, .time = time, .values = ranges[4]},
+                {.mover = 0, .sensor = 1, .kind = 3, .sequence = 10, .time = time, .values = ranges[5]}};
     record = {tick, time, reports, commands, contacts, readings};
   }
   SampleTick(const SampleTick&) = delete;

@@ -44,7 +44,7 @@ TEST(Limits, ListsNearlyAsLongAsTheBoundAreReadToTheEnd) {
   const Glance glance(world);
   EXPECT_NEAR(glance.readings[0].values[0], 7.0, 1e-12) << "the last of the list is what the first beam meets";
   EXPECT_EQ(glance.readings[0].hits[0], 1u);
-  EXPECT_GT(glance.farm.stats().doubts, 0u) << "the test is meant to send every entry to the 64-bit decision";
+  EXPECT_GT(glance.farm.stats().work.doubts, 0u) << "the test is meant to send every entry to the 64-bit decision";
   expect_exact("5 500 rails", sweep(world));
 }
 

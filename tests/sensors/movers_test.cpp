@@ -31,7 +31,7 @@ TEST(Movers, AnotherIsSeenWhereItWasReported) {
   const std::uint32_t other = scenes::add_robot(world, {50, 0, 0, 0}, eye(1, 0.0, 8.0));
   world.movers[other].is_tag = true;  // a linked object is a mover like any other
   farm::Farm farm(world, device());
-  farm.hear(0, true);
+  farm.hear(0, farm::kAllKinds);
   for (int k = 0; k < 5; ++k) {
     const double x = 1.0 + 0.5 * k;
     const base::Report report{other, 0, {x, 0, 0, M_PI / 8 * k}, {}};

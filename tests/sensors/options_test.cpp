@@ -57,7 +57,7 @@ TEST(Options, ResolutionCastsEveryNthBeam) {
   for (const std::size_t between : {1u, 2u, 3u})
     EXPECT_NEAR(some[between], all[0] + (all[4] - all[0]) * static_cast<double>(between) / 4.0, 1e-12);
   EXPECT_NEAR(some[6], 0.5 * (all[4] + all[8]), 1e-12);
-  EXPECT_EQ(glance.farm.stats().rays, 10u + 4u) << "beams left out cost nothing";
+  EXPECT_EQ(glance.farm.stats().work.rays, 10u + 4u) << "beams left out cost nothing";
 }
 
 TEST(Options, InterpolatedBeamsNameWhatBothNeighboursMet) {

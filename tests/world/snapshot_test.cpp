@@ -13,12 +13,29 @@ TEST(Snapshot, ARoundTripKeepsEverything) {
   World world = rooms();
   world.warnings.push_back({"some.world", 3, "text"});
   world.kept["camera"] = 2;
-  world.magnets = 7;
+  world.magnets.push_back({{1.0, 2.0}, -0.04, 0.5, 0.01, 1});
+  world.stripes.push_back({{{0.0, 0.0}, {1.0, 0.5}, {2.0, 0.5}}, 0.02, 0xFFFFCC00u});
+  world.road_resolution = 0.005;
+  world.magnet_cutoff = 3.0;
+  world.movers.at(0).magnets.push_back({{0.1, 0.0}, 0.2, -1.0, 0.02, 0});
+  world.movers.at(0).sensors.push_back(
+      {"magnetometer",
+       "m",
+       {0.2, 0.0, 0.1, 0.0},
+       0.05,
+       0.01,
+       1.0,
+       {{"scount", {5.0}, "", 7, "some.world"}, {"sum", {}, "vector", 8, "some.world"}},
+       6,
+       "some.world"});
+  finish(world);
   const auto bytes = snapshot(world);
   const World again = from_snapshot(bytes);
   EXPECT_EQ(again.hash, world.hash);
   EXPECT_EQ(snapshot(again), bytes);  // so also names, colours, warnings and counts
   EXPECT_EQ(again.extent.x_max, world.extent.x_max);
+  EXPECT_EQ(again.movers.at(0).sensors.at(0).settings.at(1).text, "vector");
+  EXPECT_EQ(again.stripes.at(0).line.at(1).y, 0.5);
   EXPECT_EQ(again.movers.at(1).lasers.at(0).color, world.movers.at(1).lasers.at(0).color);
 }
 

@@ -287,8 +287,56 @@ TEST(Stage, BlocksAndSensorsOutsideTheirPlaceAreMentioned) {
   EXPECT_NE(warnings_of(world).find("2: 'sensor' is ignored here"), std::string::npos);
 }
 
-TEST(Stage, MagnetsAreCountedInEitherSpelling) {
-  EXPECT_EQ(read_world("model( magnetic_moment 1 ) model( magneticmoment 2 ) model( magnetic_moment 0 )").magnets, 2u);
+TEST(Stage, MagnetsAreReadInEitherSpelling) {
+  const World world = read_world(
+      "model( pose [1 2 -0.09 30] size [0.05 0.04 0.1] magnetic_moment 10000 ) model( magneticmoment -2 )\n"
+      "model( magnetic_moment 0 ) model( magnetic_moment 5 magnetometer_return 0 )");
+  ASSERT_EQ(world.magnets.size(), 2u);
+  const Magnet& m = world.magnets[0];
+  EXPECT_EQ(m.moment, 1.0) << "the file counts 1e-4 A m^2";
+  EXPECT_EQ(m.p.x, 1.0);
+  EXPECT_EQ(m.p.y, 2.0);
+  EXPECT_NEAR(m.z, -0.04, 1e-15) << "the middle of the model";
+  EXPECT_EQ(m.radius, 0.02) << "half the smaller side";
+  EXPECT_EQ(m.model, 0u);
+  EXPECT_EQ(world.magnets[1].moment, -2e-4);
+}
+
+TEST(Stage, ARobotsMagnetMovesWithIt) {
+  const World world =
+      read_world("position( name \"a\" pose [3 0 0 90] model( pose [0.1 0 0.2 0] magnetic_moment 1 ) )");
+  EXPECT_TRUE(world.magnets.empty());
+  ASSERT_EQ(world.movers.at(0).magnets.size(), 1u);
+  EXPECT_EQ(world.movers[0].magnets[0].p.x, 0.1);
+}
+
+TEST(Stage, AMagnetWithoutAWidthHasNoRadius) {
+  EXPECT_EQ(error_of("\nmodel( size [0 0.1 0.1] magnetic_moment 1 )"),
+            "test.world:2: a magnet needs a 'size' above zero in x and y: half the smaller one is its radius");
+}
+
+TEST(Stage, KindsThatAreGivenClaimTheirSensors) {
+  constexpr std::string_view keys[] = {"scount", "spose[]"};
+  const SensorWord words[] = {{"magnetometer", keys}, {"laneedge", {}}};
+  LoadOptions options;
+  options.sensors = words;
+  const World world = read_world(
+      "position( name \"a\"\n magnetometer( pose [0.2 0 0.1 90] scount 2 spose[1] [1 2 3] rate 5 color \"red\"\n scont "
+      "3 )\n"
+      " laser( name \"laneedge\" range_max 1 ) )\nmagnetometer()",
+      options);
+  const Mover& mover = world.movers.at(0);
+  EXPECT_TRUE(mover.lasers.empty()) << "a laser of that name is a lane edge sensor";
+  ASSERT_EQ(mover.sensors.size(), 2u);
+  EXPECT_EQ(mover.sensors[0].type, "magnetometer");
+  EXPECT_EQ(mover.sensors[0].line, 2);
+  ASSERT_EQ(mover.sensors[0].settings.size(), 3u) << "what every model may say is no setting";
+  EXPECT_EQ(mover.sensors[0].settings[1].numbers, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(mover.sensors[1].type, "laneedge");
+  EXPECT_EQ(warnings_of(world),
+            "3: unknown property 'scont' of 'magnetometer' is ignored; did you mean 'scount'?\n"
+            "4: unknown property 'range_max' of 'laser' is ignored\n"
+            "5: 'magnetometer' is carried by no robot: kept as a body that measures nothing\n");
 }
 
 TEST(Stage, ColoursByNameNumberAndRandomly) {

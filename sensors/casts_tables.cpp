@@ -1,8 +1,11 @@
-#include "sensors/laser_tables.h"
+#include "sensors/casts_tables.h"
 
 #include <algorithm>
+#include <map>
+#include <tuple>
 
 #include "base/random.h"
+#include "shaders/laser.comp.h"
 
 namespace sf::sensors {
 
@@ -11,41 +14,61 @@ namespace {
 /// Groups along x of a dispatch; more rows of groups follow along y. Devices promise 65 535.
 constexpr std::uint32_t kGroupsAcross = 32'768;
 
+/// Fans with the same beams share their tables.
+using BeamKey = std::tuple<double, std::uint32_t, std::uint32_t>;
+
 }  // namespace
 
-void Lasers::Tables::plan(const world::World& world) {
-  std::size_t samples = 0;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    const world::Mover& mover = world.movers[m];
-    std::size_t beams = 0;
-    for (const world::Laser& laser : mover.lasers) beams += laser.samples / laser.resolution;
-    for (std::uint32_t i = 0; i < mover.lasers.size(); ++i) {
-      LaserRow row;
-      row.laser = mover.lasers[i];
-      row.plan = plan_beams(row.laser, options.noise);
-      row.height = mover.X_WM.z + row.laser.X_MS.z;
-      const double turn = options.noise ? kMostSigmas * row.laser.noise.angle_sigma : 0.0;
-      row.family = scene.add_family({row.height, row.laser.range_max, row.plan.spread, row.laser.fov + 2.0 * turn,
-                                     static_cast<std::uint32_t>(std::min<std::size_t>(beams, 1'000'000))});
-      row.turns = options.noise && row.laser.noise.angle_sigma > 0.0;
-      row.shaped = row.laser.resolution > 1 || !row.plan.packed || (options.noise && has_range_noise(row.laser.noise));
-      row.out = out_lanes;
-      row.values = samples;
-      out_lanes += row.plan.lanes();
-      if (row.shaped) samples += row.laser.samples;
-      owners.push_back({m, i});
-      lasers.push_back(std::move(row));
+Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<Fan> f)
+    : workers(site.workers),
+      seed(site.seed),
+      noise(site.noise),
+      scene(world, site.device, site.workers, site.scene),
+      fans(std::move(f)) {
+  plan(world);
+  turned.resize(workers.threads());
+  kernel = std::make_unique<gpu::Kernel>(site.device, laser_comp_spv, 14);
+  std::uint32_t beam_lanes = 0;
+  std::map<BeamKey, std::uint32_t> shared;
+  for (std::size_t i = 0; i < fans.size(); ++i) {
+    FanRow& row = fan_rows[i];
+    const BeamKey key{fans[i].laser.fov, fans[i].laser.samples, fans[i].laser.resolution};
+    const auto known = shared.find(key);
+    if (!row.turns && known != shared.end()) {
+      row.beams = known->second;
+      continue;
     }
+    row.beams = beam_lanes;
+    if (!row.turns) shared[key] = beam_lanes;
+    beam_lanes += row.plan.lanes();
   }
-  values.resize(samples);
-  met.resize(samples);
+  make_tables(site.device, beam_lanes);
+  write_all_beams();
 }
 
-void Lasers::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) {
+void Casts::Tables::plan(const world::World& world) {
+  std::vector<std::size_t> beams(world.movers.size(), 0);
+  for (const Fan& fan : fans) beams[fan.mover] += fan.laser.samples / fan.laser.resolution;
+  for (const Fan& fan : fans) {
+    FanRow row;
+    row.plan = plan_beams(fan.laser, noise);
+    row.height = world.movers[fan.mover].X_WM.z + fan.laser.X_MS.z;
+    const double turn = noise ? kMostSigmas * fan.laser.noise.angle_sigma : 0.0;
+    row.family = scene.add_family({row.height, fan.laser.range_max, row.plan.spread, fan.laser.fov + 2.0 * turn,
+                                   static_cast<std::uint32_t>(std::min<std::size_t>(beams[fan.mover], 1'000'000))});
+    row.turns = noise && fan.laser.noise.angle_sigma > 0.0;
+    any_turns = any_turns || row.turns;
+    row.out = out_lanes;
+    out_lanes += row.plan.lanes();
+    fan_rows.push_back(std::move(row));
+  }
+}
+
+void Casts::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) {
   using gpu::Role;
   using gpu::Texel;
   const std::size_t group = kernel->group_size();
-  const std::size_t count = std::max<std::size_t>(1, lasers.size());
+  const std::size_t count = std::max<std::size_t>(1, fans.size());
   // Lanes are padded to whole groups, and groups to whole rows of groups where there are many.
   const std::size_t most_groups = out_lanes / group + 1;
   const std::size_t padded = (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * group;
@@ -60,38 +83,40 @@ void Lasers::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) 
   doubts = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32, std::size_t{out_lanes} + 1);
 }
 
-void Lasers::Tables::write_all_beams() {
+void Casts::Tables::write_all_beams() {
   // Tables were given out in order of rows: one that lies behind all written so far is new, others are shared.
   std::uint32_t written = 0;
-  for (const LaserRow& row : lasers) {
+  for (std::size_t i = 0; i < fans.size(); ++i) {
+    const FanRow& row = fan_rows[i];
     if (row.beams < written) continue;
-    write_beams(row.laser, row.plan, {}, beam_tables(row.beams));
+    write_beams(fans[i].laser, row.plan, {}, beam_tables(row.beams));
     written += row.plan.lanes();
   }
 }
 
-void Lasers::Tables::turn_beams(const LaserDue& d, unsigned thread) {
-  const LaserRow& row = lasers[d.row];
+void Casts::Tables::turn_beams(const Due& d, unsigned thread) {
+  const Fan& fan = fans[d.row];
+  const FanRow& row = fan_rows[d.row];
   std::vector<double>& turns = turned[thread];
   turns.resize(row.plan.samples.size());
-  const base::Draw draw{options.seed, base::Stream::angle_noise, owners[d.row].mover, owners[d.row].sensor, d.sequence};
+  const base::Draw draw{seed, base::Stream::angle_noise, fan.mover, fan.sensor, d.sequence};
   for (std::size_t k = 0; k < turns.size(); ++k) {
     const double normal = base::random_normal(draw, row.plan.samples[k])[0];
-    turns[k] = row.laser.noise.angle_sigma * std::clamp(normal, -kMostSigmas, kMostSigmas);
+    turns[k] = fan.laser.noise.angle_sigma * std::clamp(normal, -kMostSigmas, kMostSigmas);
   }
-  write_beams(row.laser, row.plan, turns, beam_tables(row.beams));
+  write_beams(fan.laser, row.plan, turns, beam_tables(row.beams));
 }
 
-void Lasers::Tables::write_lanes() {
-  const bool same = lanes_written.size() == due.size() &&
-                    std::equal(due.begin(), due.end(), lanes_written.begin(),
-                               [](const LaserDue& d, std::uint32_t row) { return d.row == row; });
+void Casts::Tables::write_lanes() {
+  const bool same =
+      lanes_written.size() == due.size() && std::equal(due.begin(), due.end(), lanes_written.begin(),
+                                                       [](const Due& d, std::uint32_t row) { return d.row == row; });
   if (same) return;
   lanes_written.clear();
   const auto table = lanes->host<Lane>();
   std::size_t at = 0;
   for (std::uint32_t i = 0; i < due.size(); ++i) {
-    for (std::uint32_t lane = 0; lane < lasers[due[i].row].plan.lanes(); ++lane) table[at++] = {i, lane};
+    for (std::uint32_t lane = 0; lane < fan_rows[due[i].row].plan.lanes(); ++lane) table[at++] = {i, lane};
     lanes_written.push_back(due[i].row);
   }
   const auto due_lanes = static_cast<std::uint32_t>(at);
@@ -109,7 +134,7 @@ void Lasers::Tables::write_lanes() {
   counts[2] = across > 0 ? 1 : 0;
 }
 
-void Lasers::Tables::bind() {
+void Casts::Tables::bind() {
   gpu::Buffer* const tables[] = {rows.get(),         lanes.get(),       directions.get(), middles.get(),
                                  directions64.get(), &scene.headers(),  &scene.entries(), &scene.ids(),
                                  &scene.nearest(),   &scene.segments(), &scene.models(),  ranges.get(),

@@ -1,0 +1,23 @@
+#include "apps/facts.h"
+
+namespace sf::apps {
+
+std::size_t count_robots(const world::World& world) {
+  std::size_t robots = 0;
+  for (const world::Mover& mover : world.movers) robots += !mover.is_tag;
+  return robots;
+}
+
+std::size_t count_magnets(const world::World& world) {
+  std::size_t magnets = world.magnets.size();
+  for (const world::Mover& mover : world.movers) magnets += mover.magnets.size();
+  return magnets;
+}
+
+std::size_t element_width(const sensors::SensorKind& kind) {
+  std::size_t width = 0;
+  for (const sensors::Column& column : kind.columns) width += column.width;
+  return width;
+}
+
+}  // namespace sf::apps

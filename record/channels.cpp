@@ -1,0 +1,84 @@
+#include "record/channels.h"
+
+#include <map>
+#include <string_view>
+
+#include "record/readings.h"
+#include "record/schemas.h"
+
+namespace sf::record {
+
+namespace {
+
+// rosbag2 asks for these: "" means the reader's own choice; latched topics must say that they are.
+const TextPairs kPlain = {{"offered_qos_profiles", ""}};
+const TextPairs kLatched = {
+    {"offered_qos_profiles",
+     "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n  deadline:\n    sec: 0\n    nsec: 0\n"
+     "  lifespan:\n    sec: 0\n    nsec: 0\n  liveliness: 1\n  liveliness_lease_duration:\n"
+     "    sec: 0\n    nsec: 0\n  avoid_ros_namespace_conventions: false\n"}};
+
+/// "/robot/laser/scan" -> "robot/laser".
+std::string frame_of(const std::string& topic) { return topic.substr(1, topic.rfind('/') - 1); }
+
+std::uint16_t add_schema(McapWriter& mcap, std::string_view type) {
+  return mcap.add_schema(type, "ros2msg", schema_text(type));
+}
+
+void add_motion(McapWriter& mcap, const RunInfo& info, Channels& channels) {
+  const std::uint16_t odometry = add_schema(mcap, kOdometry);
+  const std::uint16_t twist = add_schema(mcap, kTwistStamped);
+  for (std::size_t row = 0; row < info.movers.size(); ++row) {
+    const std::string topic = "/" + info.movers[row].frame;
+    channels.movers[row].odometry = mcap.add_channel(odometry, topic + "/odom", "cdr", kPlain);
+    channels.movers[row].command = mcap.add_channel(twist, topic + "/cmd_vel", "cdr", kPlain);
+  }
+}
+
+void add_readings(McapWriter& mcap, const RunInfo& info, Channels& channels) {
+  const std::uint16_t scan = add_schema(mcap, kLaserScan);
+  std::map<std::uint8_t, std::uint16_t> schemas;  // by kind
+  for (const KindInfo& kind : info.kinds)
+    schemas[kind.id] = mcap.add_schema(type_of(kind), "ros2msg", schema_text(kind));
+  for (std::size_t row = 0; row < info.movers.size(); ++row) {
+    const MoverInfo& mover = info.movers[row];
+    for (const LaserInfo& laser : mover.lasers)
+      channels.movers[row].scans.push_back(mcap.add_channel(scan, laser.topic, "cdr", kPlain));
+    for (std::size_t i = 0; i < mover.sensors.size(); ++i)
+      channels.movers[row].readings[i].channel =
+          mcap.add_channel(schemas.at(mover.sensors[i].kind), mover.sensors[i].topic, "cdr", kPlain);
+  }
+}
+
+void add_frames(const RunInfo& info, Channels& channels) {
+  for (const MoverInfo& mover : info.movers) {
+    MoverChannels& row = channels.movers.emplace_back();
+    for (const LaserInfo& laser : mover.lasers) row.frames.push_back(frame_of(laser.topic));
+    for (const SensorInfo& sensor : mover.sensors)
+      row.readings.push_back({0, frame_of(sensor.topic), find_kind(info, sensor.kind)});
+  }
+}
+
+}  // namespace
+
+std::size_t count_channels(const RunInfo& info) {
+  std::size_t count = 4;
+  for (const MoverInfo& mover : info.movers)
+    count += 2 + (info.record_readings ? mover.lasers.size() + mover.sensors.size() : 0);
+  return count;
+}
+
+Channels add_channels(McapWriter& mcap, const RunInfo& info) {
+  Channels channels;
+  channels.info = mcap.add_channel(add_schema(mcap, kRunInfo), "/run", "cdr", kLatched);
+  channels.fleet = mcap.add_channel(add_schema(mcap, kFleet), "/fleet", "cdr", kPlain);
+  const std::uint16_t transforms = add_schema(mcap, kTransforms);
+  channels.transforms = mcap.add_channel(transforms, "/tf", "cdr", kPlain);
+  channels.statics = mcap.add_channel(transforms, "/tf_static", "cdr", kLatched);
+  add_frames(info, channels);
+  if (info.odometry_rate > 0.0) add_motion(mcap, info, channels);
+  if (info.record_readings) add_readings(mcap, info, channels);
+  return channels;
+}
+
+}  // namespace sf::record

@@ -1,0 +1,38 @@
+#pragma once
+// The topics of a recording, and which channel of its file each is.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "record/mcap_writer.h"
+#include "record/run_info.h"
+
+namespace sf::record {
+
+/// A sensor of any kind but laser.
+struct SensorChannel {
+  std::uint16_t channel = 0;  ///< 0: readings are not kept
+  std::string frame;
+  const KindInfo* kind = nullptr;  ///< row of the run info that the channels were made of
+};
+
+struct MoverChannels {
+  std::uint16_t odometry = 0;  ///< 0: not kept, nor are commands
+  std::uint16_t command = 0;
+  std::vector<std::uint16_t> scans;     ///< one per laser when readings are kept
+  std::vector<std::string> frames;      ///< one per laser
+  std::vector<SensorChannel> readings;  ///< one per sensor of another kind
+};
+
+struct Channels {
+  std::uint16_t info = 0, fleet = 0, transforms = 0, statics = 0;
+  std::vector<MoverChannels> movers;
+};
+
+std::size_t count_channels(const RunInfo& info);
+
+/// Adds every schema and channel. Rule: frames and topics are named. @param info outlives the channels
+Channels add_channels(McapWriter& mcap, const RunInfo& info);
+
+}  // namespace sf::record

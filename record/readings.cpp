@@ -1,0 +1,112 @@
+#include "record/readings.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "base/error.h"
+#include "record/cdr.h"
+#include "record/schemas.h"
+
+namespace sf::record {
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+
+std::string field_of(const KindInfo& kind, const ColumnInfo& column) {
+  std::string name = column.name;
+  std::transform(name.begin(), name.end(), name.begin(), lower);
+  std::string type = column.whole ? "uint32" : "float64";
+  if (!kind.list.empty()) {
+    type += "[]";
+  } else if (column.width > 1) {
+    type += "[" + std::to_string(column.width) + "]";
+  }
+  return type + " " + name + "\n";
+}
+
+std::uint32_t whole_number(double value) {
+  return value > 0.0 ? static_cast<std::uint32_t>(std::min(value, 4294967295.0)) : 0u;  // a NaN counts nothing
+}
+
+void put_number(CdrWriter& cdr, const ColumnInfo& column, double value) {
+  if (column.whole) {
+    cdr.put(whole_number(value));
+  } else {
+    cdr.put(value);
+  }
+}
+
+/// Whether a message can hold that many elements: a number takes at least four bytes of it.
+bool fits(const KindInfo& kind, std::size_t elements, std::size_t message) {
+  return elements <= message && element_width(kind) * elements <= message / 4;
+}
+
+}  // namespace
+
+std::string type_of(const KindInfo& kind) {
+  std::string name = kind.name;
+  if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return "sensorfarm_msgs/msg/" + name;
+}
+
+std::string schema_text(const KindInfo& kind) {
+  std::string fields = "std_msgs/Header header\n";
+  for (const ColumnInfo& column : kind.columns) fields += field_of(kind, column);
+  return with_needed_types(fields);
+}
+
+std::size_t element_width(const KindInfo& kind) {
+  std::size_t width = 0;
+  for (const ColumnInfo& column : kind.columns) width += column.width;
+  return width;
+}
+
+void encode_reading(const KindInfo& kind, std::int64_t time, std::string_view frame, std::span<const double> values,
+                    base::Bytes& out) {
+  SF_CHECK(time >= 0, "time " + std::to_string(time) + " ns");
+  const std::size_t width = element_width(kind);
+  const bool whole = width > 0 && values.size() % width == 0;
+  SF_CHECK(whole && (!kind.list.empty() || values.size() == width),
+           std::to_string(values.size()) + " values in a reading of kind " + kind.name);
+
+  CdrWriter cdr(out);
+  cdr.put(static_cast<std::int32_t>(time / kSecond));
+  cdr.put(static_cast<std::uint32_t>(time % kSecond));
+  cdr.put(frame);
+  const std::size_t elements = values.size() / width;
+  std::size_t first = 0;
+  for (const ColumnInfo& column : kind.columns) {
+    if (!kind.list.empty()) cdr.put_count(elements * column.width);
+    for (std::size_t i = 0; i < elements; ++i)
+      for (std::size_t k = 0; k < column.width; ++k) put_number(cdr, column, values[width * i + first + k]);
+    first += column.width;
+  }
+}
+
+bool decode_reading(const KindInfo& kind, std::span<const std::uint8_t> message, std::int64_t& time,
+                    std::vector<double>& values) {
+  CdrReader cdr(message);
+  time = cdr.get<std::int32_t>() * kSecond;
+  time += cdr.get<std::uint32_t>();
+  cdr.get_string();  // frame
+
+  const std::size_t width = element_width(kind);
+  std::size_t elements = 1;  // unless there is a list: then as many as its first array has
+  std::size_t first = 0;
+  for (const ColumnInfo& column : kind.columns) {
+    const std::size_t numbers = kind.list.empty() ? column.width : cdr.get_count(sizeof(std::uint32_t));
+    if (first == 0 && column.width > 0) elements = numbers / column.width;
+    if (column.width == 0 || numbers != elements * column.width || !fits(kind, elements, message.size())) return false;
+    values.resize(elements * width);
+    for (std::size_t i = 0; i < elements; ++i)
+      for (std::size_t k = 0; k < column.width; ++k)
+        values[width * i + first + k] = column.whole ? cdr.get<std::uint32_t>() : cdr.get<double>();
+    first += column.width;
+  }
+  return first > 0 && cdr.good();
+}
+
+}  // namespace sf::record

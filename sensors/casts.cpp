@@ -1,0 +1,90 @@
+#include "sensors/casts.h"
+
+#include "sensors/casts_tables.h"
+
+namespace sf::sensors {
+
+Casts::Casts(const Site& site, const world::World& world, std::vector<Fan> fans)
+    : t_(std::make_unique<Tables>(site, world, std::move(fans))) {}
+
+Casts::~Casts() = default;
+
+const std::vector<Fan>& Casts::fans() const { return t_->fans; }
+const BeamPlan& Casts::plan(std::uint32_t fan) const { return t_->fan_rows[fan].plan; }
+Work Casts::work() const { return {t_->rays, t_->doubts_seen, t_->scene.counts().cells_built, 0}; }
+
+void Casts::place(std::span<const Pose> poses) { t_->scene.place(poses); }
+
+bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+  Tables& t = *t_;
+  t.due.assign(due.begin(), due.end());
+  t.views.resize(due.size());
+  for (std::size_t i = 0; i < due.size(); ++i) {
+    const FanRow& row = t.fan_rows[due[i].row];
+    const Fan& fan = t.fans[due[i].row];
+    Pose X_WS = base::compose(poses[fan.mover], fan.laser.X_MS);
+    X_WS.z = row.height;
+    t.views[i] = {row.family, fan.mover, X_WS};
+    t.rays += row.plan.samples.size();
+  }
+  const auto ray_rows = t.rows->host<RayRow>().first(due.size());
+  const bool replaced = t.scene.serve(t.views, ray_rows);
+  for (std::size_t i = 0; i < due.size(); ++i) {
+    const FanRow& row = t.fan_rows[due[i].row];
+    ray_rows[i].beams = row.beams;
+    ray_rows[i].out = row.out;
+    ray_rows[i].range_min = t.fans[due[i].row].laser.range_min;
+  }
+  t.write_lanes();
+  if (t.any_turns)
+    t.workers.run(due.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
+      for (std::size_t i = first; i < last; ++i)
+        if (t.fan_rows[t.due[i].row].turns) t.turn_beams(t.due[i], thread);
+    });
+  const bool again = replaced || !t.bound;
+  if (again) t.bind();
+  return again;
+}
+
+void Casts::record(gpu::Batch& batch) { batch.dispatch(*t_->kernel, *t_->groups, 0); }
+
+void Casts::copies(gpu::Batch& batch, bool results) {
+  Tables& t = *t_;
+  t.scene.upload(batch);
+  batch.up(*t.rows, 0, t.due.size() * sizeof(RayRow));
+  batch.up(*t.lanes, 0, t.lanes->bytes());
+  batch.up(*t.groups, 0, t.groups->bytes());
+  if (t.beams_changed || t.any_turns) {
+    batch.up(*t.directions, 0, t.directions->bytes());
+    batch.up(*t.middles, 0, t.middles->bytes());
+    batch.up(*t.directions64, 0, t.directions64->bytes());
+    t.beams_changed = false;
+  }
+  batch.down(*t.doubts, 0, t.doubts->bytes());
+  if (!results) return;
+  batch.down(*t.ranges, 0, t.ranges->bytes());
+  batch.down(*t.hits, 0, t.hits->bytes());
+}
+
+FanResults Casts::results(std::size_t i) const {
+  const FanRow& row = t_->fan_rows[t_->due[i].row];
+  return {row.out, row.beams, &row.plan, t_->views[i].X_WS};
+}
+
+void Casts::count() {
+  const auto doubts = t_->doubts->host<std::uint32_t>();
+  for (const Due& due : t_->due) {
+    const FanRow& row = t_->fan_rows[due.row];
+    for (std::uint32_t lane = 0; lane < row.plan.lanes(); ++lane) t_->doubts_seen += doubts[row.out + lane];
+  }
+}
+
+gpu::Buffer& Casts::ranges() { return *t_->ranges; }
+gpu::Buffer& Casts::hits() { return *t_->hits; }
+gpu::Buffer& Casts::directions64() { return *t_->directions64; }
+gpu::Buffer& Casts::rows() { return *t_->rows; }
+gpu::Buffer& Casts::lanes() { return *t_->lanes; }
+gpu::Buffer& Casts::groups() { return *t_->groups; }
+std::uint32_t Casts::group_size() const { return t_->kernel->group_size(); }
+
+}  // namespace sf::sensors

@@ -1,0 +1,141 @@
+#pragma once
+// A kind of sensor: all that the farm, the wire, the recorder and the commands know of it, as one table.
+//
+// A new kind x is four files and one line: sensors/x.h (records that host and device share), sensors/x.cpp (its
+// SensorKind), shaders/x.comp (physics), tests/sensors/x_test.cpp (proof), and `farm_sensor(<wire id> x DEVICE)` in
+// sensors/CMakeLists.txt.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/bytes.h"
+#include "base/parallel.h"
+#include "base/reading.h"
+#include "gpu/batch.h"
+#include "gpu/device.h"
+#include "sensors/scene/options.h"
+#include "world/world.h"
+
+namespace sf::sensors {
+
+using base::Pose;
+
+/// One sensor of a world, as every room but its own kind sees it.
+struct SensorRow {
+  std::uint32_t mover = 0;     ///< row in `World::movers`
+  std::uint32_t sensor = 0;    ///< 0-based among the mover's sensors of this kind
+  std::string name;            ///< unique among the mover's sensors
+  Pose X_MS;                   ///< sensor in the mover's frame
+  double rate = 10.0;          ///< [Hz] > 0
+  double phase = 0.0;          ///< [s] time of the first reading
+  double latency = 0.0;        ///< [s] from measurement to delivery
+  std::uint32_t elements = 1;  ///< rows of a reading: beams of a laser, elements of an array, else 1
+  double limit = 0.0;          ///< largest value an element gives, in the unit of its first column
+};
+
+/// One sensor that is due.
+struct Due {
+  std::uint32_t row = 0;       ///< in the kind's rows of this world
+  std::uint64_t sequence = 0;  ///< counts this sensor's readings; names its noise
+};
+
+/// What instruments of all kinds are given. All of it outlives them.
+struct Site {
+  const world::World& world;
+  gpu::Device& device;
+  base::Workers& workers;
+  std::uint64_t seed = 0;  ///< of all noise
+  bool noise = true;       ///< false: none, whatever the world says
+  SceneOptions scene;
+};
+
+/// What instruments did since they were made.
+struct Work {
+  std::uint64_t rays = 0;         ///< beams cast
+  std::uint64_t doubts = 0;       ///< lanes of four beams that 32 bits could not prove
+  std::uint64_t cells_built = 0;  ///< sector lists made
+  std::uint64_t dipoles = 0;      ///< magnet and element pairs summed
+};
+
+/// All sensors of one kind, a batch at a time. One thread.
+class Instruments {
+ public:
+  virtual ~Instruments() = default;
+
+  /// Takes this tick's poses, one per mover, before `prepare`.
+  virtual void place(std::span<const Pose>) {}
+  /// Host work before the batch, also when nothing is due. @return true when the batch must be recorded again.
+  virtual bool prepare(std::span<const Due> due, std::span<const Pose> poses) = 0;
+  /// Kernels that read the world, then those that read what these wrote: a barrier lies between.
+  virtual void record_measure(gpu::Batch& batch) = 0;
+  virtual void record_derive(gpu::Batch&) {}
+  /// This tick's copies, up and down.
+  virtual void copies(gpu::Batch& batch) = 0;
+  /// Host work after the batch: appends one block per due sensor, in order. The farm fills in time, sequence and X_WM.
+  /// Spans live until the next `prepare`.
+  virtual void collect(std::vector<base::ReadingBlock>& out) = 0;
+  virtual Work work() const = 0;
+};
+
+/// One column of a reading. A reading's values lie row by row (element by element), its columns one after another.
+struct Column {
+  std::string_view name;    ///< as in JSON and CSV, with its unit: `distance_m`
+  std::uint32_t width = 1;  ///< numbers: 3 for a vector
+  bool whole = false;       ///< counts things
+};
+
+/// Which bytes readings are sent as: docs/packets.md, or the thesis' plain layout.
+enum class Wire { farm, thesis };
+
+/// What is wrong with a payload.
+enum class Fault { none, too_short, too_long, out_of_range };
+
+/// What one datagram of a reading holds.
+struct Part {
+  Fault fault = Fault::none;
+  std::uint32_t elements = 0;  ///< in this part
+  std::uint32_t part = 0;
+  std::uint32_t parts = 1;
+};
+
+/// Types on the wire: a kind's own id (below 64), or this much more for its second form.
+inline constexpr std::uint8_t kExtended = 64;
+
+struct SensorKind {
+  std::uint8_t id = 0;          ///< on the wire, in [1, 31]
+  std::string_view name;        ///< the word for it everywhere, e.g. "laser"
+  world::SensorWord word;       ///< in world files; empty for the kind that world reads itself
+  std::uint32_t base_port = 0;  ///< of its packets, unless told otherwise
+  std::string_view list;        ///< JSON name of the list of elements; empty: a reading is one row
+  std::span<const Column> columns;
+
+  /// Every sensor of this kind, by mover and in file order.
+  /// @throws base::InputError with file and line for settings that it cannot have.
+  std::vector<SensorRow> (*rows)(const world::World& world);
+  /// For a world that has some. @throws base::DeviceError when the device cannot hold its tables.
+  std::unique_ptr<Instruments> (*make)(const Site& site);
+
+  /// Why `wire` cannot carry this sensor's readings and what to do; empty when it can.
+  std::string (*refuse)(const SensorRow& sensor, Wire wire);
+  /// Datagrams of one reading.
+  std::uint32_t (*parts)(const SensorRow& sensor, Wire wire);
+  /// Appends the payload of datagram `part`. Values that the wire cannot hold saturate, never wrap.
+  /// @return its type, or 0 when a value is not a number and nothing may be sent.
+  std::uint8_t (*encode)(const SensorRow& sensor, const base::ReadingBlock& reading, Wire wire, std::uint32_t part,
+                         base::Bytes& out);
+  /// Judges any bytes that claim to be such a payload.
+  Part (*decode)(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire);
+};
+
+/// Every kind there is, by id: generated from sensors/CMakeLists.txt.
+std::span<const SensorKind* const> kinds();
+/// @return null when no kind has that id.
+const SensorKind* find_kind(std::uint8_t id);
+/// What world files may call sensors: for world::LoadOptions.
+std::span<const world::SensorWord> vocabulary();
+
+}  // namespace sf::sensors

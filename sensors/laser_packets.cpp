@@ -1,0 +1,169 @@
+#include "sensors/laser_packets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr double kPlainPerMetre = 1e3;
+constexpr double kExtendedPerMetre = 1e4;
+constexpr double kRangeSlack = 1e-3;            ///< [m] one count of the coarser wire
+constexpr std::size_t kMaxPayload = 1400 - 24;  ///< [byte] of an unfragmented datagram, behind the header
+constexpr std::size_t kPartHeaderBytes = 16;
+static_assert(kPartHeaderBytes + 4 * kPartRays <= kMaxPayload);
+
+bool fits_plain(const SensorRow& sensor) { return sensor.elements <= kPlainRays && sensor.limit <= kPlainRange; }
+
+std::uint32_t parts_of(std::uint32_t rays) { return (rays + kPartRays - 1) / kPartRays; }
+
+template <class Word>
+Word to_word(double metres, double per_metre, Word largest) {
+  const double units = std::floor(metres * per_metre + 0.5);
+  if (!(units > 0.0)) return 0;
+  return units >= static_cast<double>(largest) ? largest : static_cast<Word>(units);
+}
+
+std::uint16_t plain_word(double metres) { return to_word<std::uint16_t>(metres, kPlainPerMetre, 0xFFFF); }
+
+std::uint32_t extended_word(double metres) {
+  if (metres == std::numeric_limits<double>::infinity()) return kNoReturn;
+  return to_word<std::uint32_t>(metres, kExtendedPerMetre, kNoReturn - 1);
+}
+
+void put_plain(std::span<const double> ranges, base::ByteWriter& writer) {
+  writer.put(static_cast<std::uint16_t>(ranges.size()));
+  for (const double metres : ranges) writer.put(plain_word(metres));
+}
+
+void put_extended(std::uint32_t total, std::uint32_t part, std::span<const double> ranges, base::ByteWriter& writer) {
+  writer.put(total);
+  writer.put(part * kPartRays);
+  writer.put(static_cast<std::uint16_t>(part));
+  writer.put(static_cast<std::uint16_t>(parts_of(total)));
+  writer.put(static_cast<std::uint16_t>(ranges.size()));
+  writer.put(std::uint16_t{0});
+  for (const double metres : ranges) writer.put(extended_word(metres));
+}
+
+bool has_nan(std::span<const double> ranges) {
+  return std::any_of(ranges.begin(), ranges.end(), [](double metres) { return std::isnan(metres); });
+}
+
+Fault take_words(std::span<const std::uint8_t> rest, std::size_t word, LaserPart& scan) {
+  if (rest.size() < scan.count * word) return Fault::too_short;
+  if (rest.size() > scan.count * word) return Fault::too_long;
+  scan.words = rest;
+  return Fault::none;
+}
+
+Fault read_plain(std::span<const std::uint8_t> payload, LaserPart& scan) {
+  base::ByteReader reader(payload);
+  scan.total = scan.count = reader.get<std::uint16_t>();
+  if (!reader.good()) return Fault::too_short;
+  const Fault size = take_words(payload.subspan(reader.position()), 2, scan);
+  if (size != Fault::none) return size;
+  return scan.count >= 1 && scan.count <= kPlainRays ? Fault::none : Fault::out_of_range;
+}
+
+Fault read_extended(std::span<const std::uint8_t> payload, LaserPart& scan) {
+  base::ByteReader reader(payload);
+  scan.total = reader.get<std::uint32_t>();
+  scan.first = reader.get<std::uint32_t>();
+  scan.part = reader.get<std::uint16_t>();
+  scan.parts = reader.get<std::uint16_t>();
+  scan.count = reader.get<std::uint16_t>();
+  reader.get<std::uint16_t>();  // reserved
+  if (!reader.good()) return Fault::too_short;
+  const Fault size = take_words(payload.subspan(reader.position()), 4, scan);
+  if (size != Fault::none) return size;
+
+  // The split is fixed, so each field follows from the total and the part: nothing a receiver adds up can surprise it.
+  if (scan.total < 1 || scan.total > kExtendedRays) return Fault::out_of_range;
+  if (scan.parts != parts_of(scan.total) || scan.part >= scan.parts) return Fault::out_of_range;
+  if (scan.first != scan.part * kPartRays) return Fault::out_of_range;
+  return scan.count == std::min(kPartRays, scan.total - scan.first) ? Fault::none : Fault::out_of_range;
+}
+
+/// The plain form saturates, so its largest word says "this or more".
+bool plausible(const LaserPart& scan, double range_max) {
+  if (range_max <= 0.0) return true;
+  for (std::uint32_t i = 0; i < scan.count; ++i) {
+    const double metres = range_of(scan, i);
+    if (std::isinf(metres) || (!scan.extended && metres >= kPlainRange)) continue;
+    if (metres > range_max + kRangeSlack) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string refuse_laser(const SensorRow& sensor, Wire wire) {
+  if (sensor.elements > kExtendedRays)
+    return std::to_string(sensor.elements) + " samples, but a scan is sent with at most " +
+           std::to_string(kExtendedRays) + ": lower `samples`";
+  if (wire == Wire::farm || fits_plain(sensor)) return "";
+  return std::to_string(sensor.elements) + " samples up to " + std::to_string(sensor.limit) +
+         " m do not fit the thesis' layout, which holds 361 rays up to 65.535 m: lower `samples` or `range_max`, or "
+         "send the farm's own packets (`--wire farm`)";
+}
+
+std::uint32_t laser_parts(const SensorRow& sensor, Wire wire) {
+  return wire == Wire::thesis || fits_plain(sensor) ? 1 : parts_of(sensor.elements);
+}
+
+std::uint8_t encode_laser(const SensorRow& sensor, const base::ReadingBlock& scan, Wire wire, std::uint32_t part,
+                          base::Bytes& out) {
+  const std::span<const double> ranges = scan.values;
+  const auto total = static_cast<std::uint32_t>(ranges.size());
+  SF_CHECK(total >= 1 && total == sensor.elements && total <= kExtendedRays && part < laser_parts(sensor, wire),
+           "part " + std::to_string(part) + " of a scan of " + std::to_string(ranges.size()) + " rays, of " +
+               std::to_string(sensor.elements) + " samples");
+  const bool plain = fits_plain(sensor);
+  SF_CHECK(plain || wire == Wire::farm, "a scan of " + std::to_string(total) + " rays in the thesis' layout");
+
+  const auto mine = plain ? ranges : ranges.subspan(part * kPartRays, std::min(kPartRays, total - part * kPartRays));
+  if (has_nan(mine)) return 0;
+  base::ByteWriter writer(out);
+  if (plain) {
+    put_plain(mine, writer);
+  } else {
+    put_extended(total, part, mine, writer);
+  }
+  return plain ? kLaserId : kLaserId + kExtended;
+}
+
+Part decode_laser(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire) {
+  const bool extended = wire == Wire::farm && type == kLaserId + kExtended;
+  if (!extended && type != kLaserId) return {.fault = Fault::out_of_range};
+  LaserPart scan;
+  Part part{.fault = read_laser(payload, extended, scan)};
+  if (part.fault != Fault::none) return part;
+
+  const bool whole = sensor.elements == 0 || scan.total == sensor.elements;
+  if (!whole || !plausible(scan, sensor.limit)) return {.fault = Fault::out_of_range};
+  part.elements = scan.count;
+  part.part = scan.part;
+  part.parts = scan.parts;
+  return part;
+}
+
+Fault read_laser(std::span<const std::uint8_t> payload, bool extended, LaserPart& scan) {
+  scan = {};
+  scan.extended = extended;
+  return extended ? read_extended(payload, scan) : read_plain(payload, scan);
+}
+
+double range_of(const LaserPart& scan, std::uint32_t i) {
+  SF_CHECK(i < scan.count, "ray " + std::to_string(i) + " of " + std::to_string(scan.count));
+  if (!scan.extended)
+    return base::ByteReader(scan.words.subspan(2 * std::size_t{i})).get<std::uint16_t>() / kPlainPerMetre;
+  const auto word = base::ByteReader(scan.words.subspan(4 * std::size_t{i})).get<std::uint32_t>();
+  return word == kNoReturn ? std::numeric_limits<double>::infinity() : word / kExtendedPerMetre;
+}
+
+}  // namespace sf::sensors

@@ -1,0 +1,14 @@
+#pragma once
+// How much room a scene's lists are given.
+
+#include <cstdint>
+
+namespace sf::sensors {
+
+/// How much room the lists have before the oldest make way. When one tick alone needs more, the room doubles.
+struct SceneOptions {
+  std::uint32_t pool_chunks = 1u << 20;  ///< 84 bytes each; memory is touched only as far as used
+  std::uint32_t pool_cells = 1u << 14;
+};
+
+}  // namespace sf::sensors

@@ -1,0 +1,106 @@
+#include "sensors/settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr double kMostSeconds = 1e6;
+constexpr double kFastest = 1e6;   // [Hz]
+constexpr double kSlowest = 1e-6;  // [Hz]
+
+const std::vector<double>& numbers(const world::Sensor& sensor, const world::Setting& setting, std::size_t least,
+                                   const std::string& meaning) {
+  if (setting.numbers.size() >= least && setting.text.empty()) return setting.numbers;
+  refuse(sensor, setting.key, fmt::format("'{}' expects {}", setting.key, meaning));
+}
+
+/// `unit` is what one of the file's is worth in SI; bounds and fallback are in SI.
+double scaled(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most,
+              double unit, const char* name) {
+  const world::Setting* setting = find(sensor, key);
+  if (setting == nullptr) return fallback;
+  const double value = unit * numbers(sensor, *setting, 1, "a number").front();
+  if (value >= least && value <= most) return value;
+  refuse(sensor, key,
+         fmt::format("'{}' is {:g}; expected {:g} to {:g}{}", key, value / unit, least / unit, most / unit, name));
+}
+
+double rate_of(const world::Sensor& sensor, double fallback) {
+  const world::Setting* rate = find(sensor, "rate");
+  const world::Setting* interval = find(sensor, "update_interval");
+  if (rate != nullptr) return number(sensor, "rate", fallback, kSlowest, kFastest);
+  if (interval != nullptr) return 1000.0 / number(sensor, "update_interval", 100.0, 1e3 / kFastest, 1e3 / kSlowest);
+  return fallback;
+}
+
+}  // namespace
+
+void refuse(const world::Sensor& sensor, std::string_view key, const std::string& message) {
+  const world::Setting* setting = find(sensor, key);
+  if (setting != nullptr) throw base::InputError(setting->file, setting->line, message);
+  throw base::InputError(sensor.file, sensor.line, message);
+}
+
+const world::Setting* find(const world::Sensor& sensor, std::string_view key) {
+  const auto found = std::find_if(sensor.settings.begin(), sensor.settings.end(),
+                                  [&](const world::Setting& setting) { return setting.key == key; });
+  return found == sensor.settings.end() ? nullptr : &*found;
+}
+
+double number(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most) {
+  return scaled(sensor, key, fallback, least, most, 1.0, "");
+}
+
+double length(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most) {
+  return scaled(sensor, key, fallback, least, most, sensor.metres, "");
+}
+
+double angle(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most) {
+  return scaled(sensor, key, fallback, least, most, sensor.radians, "");
+}
+
+std::uint32_t whole(const world::Sensor& sensor, std::string_view key, std::uint32_t fallback, std::uint32_t least,
+                    std::uint32_t most) {
+  const double value = number(sensor, key, fallback, least, most);
+  if (value == std::floor(value)) return static_cast<std::uint32_t>(value);
+  refuse(sensor, key, fmt::format("'{}' is {:g}; expected a whole number from {} to {}", key, value, least, most));
+}
+
+std::size_t choice(const world::Sensor& sensor, std::string_view key, std::size_t fallback,
+                   std::span<const std::string_view> words) {
+  const world::Setting* setting = find(sensor, key);
+  if (setting == nullptr) return fallback;
+  const auto found = std::find(words.begin(), words.end(), setting->text);
+  if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+  std::string expected;
+  for (const std::string_view word : words) expected += fmt::format("{}\"{}\"", expected.empty() ? "" : " or ", word);
+  refuse(sensor, key, fmt::format("'{}' is \"{}\"; expected {}", key, setting->text, expected));
+}
+
+std::optional<std::vector<double>> tuple(const world::Sensor& sensor, std::string_view key, std::size_t least,
+                                         const std::string& meaning) {
+  const world::Setting* setting = find(sensor, key);
+  if (setting == nullptr) return std::nullopt;
+  return numbers(sensor, *setting, least, meaning);
+}
+
+SensorRow common_row(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind) {
+  SensorRow row;
+  row.mover = mover;
+  row.sensor = number_of_kind;
+  row.name = sensor.name;
+  row.X_MS = sensor.X_MS;
+  row.rate = rate_of(sensor, row.rate);
+  row.phase = number(sensor, "phase", 0.0, 0.0, kMostSeconds);
+  row.latency = number(sensor, "latency", 0.0, 0.0, kMostSeconds);
+  return row;
+}
+
+}  // namespace sf::sensors

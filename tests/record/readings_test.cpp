@@ -1,0 +1,155 @@
+#include "record/readings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "tests/record/sample.h"
+
+namespace sf::record {
+namespace {
+
+using base::Bytes;
+using test::array_kind;
+using test::edge_kind;
+
+template <class T>
+T at(const Bytes& bytes, std::size_t offset) {
+  T value{};
+  if (offset + sizeof(T) > bytes.size()) throw std::out_of_range("offset " + std::to_string(offset));
+  std::memcpy(&value, bytes.data() + offset, sizeof(T));
+  return value;
+}
+
+Bytes encoded(const KindInfo& kind, const std::vector<double>& values) {
+  Bytes out;
+  encode_reading(kind, 12'000'000'034, "r/s", values, out);
+  return out;
+}
+
+TEST(Readings, a_kind_is_a_message_type_of_its_own) {
+  EXPECT_EQ(type_of(edge_kind()), "sensorfarm_msgs/msg/Edge");
+  const std::string text = schema_text(edge_kind());
+  EXPECT_EQ(text.rfind("std_msgs/Header header\nfloat64 distance_m\nuint32 points\nfloat64[3] normal_w\n=", 0), 0u)
+      << text;
+  EXPECT_NE(text.find("MSG: builtin_interfaces/Time\n"), std::string::npos);
+}
+
+TEST(Readings, a_kind_with_a_list_has_an_array_per_column) {
+  const std::string text = schema_text(array_kind());
+  EXPECT_EQ(text.rfind("std_msgs/Header header\nfloat64[] field_t\nfloat64[] vector_t\nuint32[] hits\n=", 0), 0u)
+      << text;
+}
+
+TEST(Readings, one_row_lies_where_its_definition_says) {
+  const Bytes out = encoded(edge_kind(), {0.25, 61.0, 1.0, 2.0, 3.0});
+  EXPECT_EQ(at<std::int32_t>(out, 4), 12);
+  EXPECT_EQ(at<std::uint32_t>(out, 8), 34u);
+  EXPECT_EQ(std::memcmp(out.data() + 16, "r/s", 4), 0);
+  EXPECT_EQ(at<double>(out, 20), 0.25);        // 16 behind the encapsulation
+  EXPECT_EQ(at<std::uint32_t>(out, 28), 61u);  // then 4 of padding
+  EXPECT_EQ(at<double>(out, 36), 1.0);
+  EXPECT_EQ(at<double>(out, 52), 3.0);
+  EXPECT_EQ(out.size(), 60u);
+}
+
+TEST(Readings, a_list_lies_column_by_column) {
+  const Bytes out = encoded(array_kind(), {1.5, 1, 2, 3, 7, 2.5, 4, 5, 6, 8});
+  EXPECT_EQ(at<std::uint32_t>(out, 20), 2u);  // field_t: 16 behind the encapsulation, then 4 of padding
+  EXPECT_EQ(at<double>(out, 28), 1.5);
+  EXPECT_EQ(at<double>(out, 36), 2.5);
+  EXPECT_EQ(at<std::uint32_t>(out, 44), 6u);  // vector_t: two of three
+  EXPECT_EQ(at<double>(out, 52), 1.0);
+  EXPECT_EQ(at<double>(out, 92), 6.0);
+  EXPECT_EQ(at<std::uint32_t>(out, 100), 2u);  // hits
+  EXPECT_EQ(at<std::uint32_t>(out, 104), 7u);
+  EXPECT_EQ(at<std::uint32_t>(out, 108), 8u);
+  EXPECT_EQ(out.size(), 112u);
+}
+
+TEST(Readings, readings_of_any_shape_come_back_to_the_bit) {
+  std::mt19937 random(3);  // NOLINT: the same shapes every time
+  for (int i = 0; i < 2000; ++i) {
+    KindInfo kind{.id = 9, .name = "any", .list = random() % 2 == 0 ? "rows" : ""};
+    for (std::uint32_t c = 1 + random() % 4; c > 0; --c)
+      kind.columns.push_back(
+          {"c" + std::to_string(c), 1 + static_cast<std::uint32_t>(random() % 4), random() % 3 == 0});
+    const std::size_t elements = kind.list.empty() ? 1 : random() % 5;
+    std::vector<double> sent;
+    for (std::size_t e = 0; e < elements; ++e)
+      for (const ColumnInfo& column : kind.columns)
+        for (std::uint32_t k = 0; k < column.width; ++k)
+          sent.push_back(column.whole ? static_cast<double>(random()) : static_cast<double>(random()) / 7.0 - 1e8);
+    std::vector<double> got{99.0};
+    std::int64_t time = 0;
+    ASSERT_TRUE(decode_reading(kind, encoded(kind, sent), time, got)) << i;
+    EXPECT_EQ(time, 12'000'000'034);
+    ASSERT_EQ(got, sent) << i;
+  }
+}
+
+TEST(Readings, what_is_not_there_stays_not_a_number) {
+  std::vector<double> got;
+  std::int64_t time = 0;
+  ASSERT_TRUE(decode_reading(edge_kind(), encoded(edge_kind(), {std::nan(""), 0, 0, 0, 0}), time, got));
+  EXPECT_TRUE(std::isnan(got[0]));
+}
+
+TEST(Readings, counts_saturate) {
+  const auto count = [](double value) { return at<std::uint32_t>(encoded(edge_kind(), {0, value, 0, 0, 0}), 28); };
+  EXPECT_EQ(count(-1.0), 0u);
+  EXPECT_EQ(count(std::nan("")), 0u);
+  EXPECT_EQ(count(4294967295.0), 4294967295u);  // the last
+  EXPECT_EQ(count(4294967296.0), 4294967295u);  // one past it: u32 would wrap to 0
+  EXPECT_EQ(count(std::numeric_limits<double>::infinity()), 4294967295u);
+}
+
+TEST(Readings, no_cut_of_a_message_is_taken_for_one) {
+  std::vector<double> values;
+  std::int64_t time = 0;
+  for (const auto& [kind, sent] : {std::pair{edge_kind(), std::vector<double>{1, 2, 3, 4, 5}},
+                                   std::pair{array_kind(), std::vector<double>{1, 2, 3, 4, 5, 1, 2, 3, 4, 5}}}) {
+    const Bytes whole = encoded(kind, sent);
+    for (std::size_t size = 0; size < whole.size(); ++size)
+      EXPECT_FALSE(decode_reading(kind, std::span(whole).first(size), time, values)) << kind.name << " " << size;
+  }
+}
+
+TEST(Readings, arrays_of_different_lengths_are_no_reading) {
+  std::vector<double> values;
+  std::int64_t time = 0;
+  Bytes bytes = encoded(array_kind(), {1.5, 1, 2, 3, 7, 2.5, 4, 5, 6, 8});
+  bytes[44] = 5;  // vector_t: not two of three
+  EXPECT_FALSE(decode_reading(array_kind(), bytes, time, values));
+  bytes[44] = 6;
+  bytes[20] = 1;  // field_t: one element, where the others have two
+  EXPECT_FALSE(decode_reading(array_kind(), bytes, time, values));
+}
+
+TEST(Readings, kinds_that_make_no_sense_are_not_read) {
+  std::vector<double> values;
+  std::int64_t time = 0;
+  const Bytes bytes = encoded(edge_kind(), {1, 2, 3, 4, 5});
+  KindInfo kind{.id = 2, .name = "edge"};
+  EXPECT_FALSE(decode_reading(kind, bytes, time, values));  // nothing in it
+  kind.columns = {{"a", 0}};
+  EXPECT_FALSE(decode_reading(kind, bytes, time, values));  // a column of nothing
+  kind.columns = {{"a", 0xFFFFFFFF}};
+  EXPECT_FALSE(decode_reading(kind, bytes, time, values));  // more than there is memory for
+  kind.columns = {{"a", 1}, {"b", 0xFFFFFFFF}};
+  kind.list = "rows";
+  EXPECT_FALSE(decode_reading(kind, encoded(array_kind(), {1, 2, 3, 4, 5}), time, values));
+}
+
+TEST(Readings, broken_contracts_abort_with_the_values) {
+  EXPECT_DEATH(encoded(edge_kind(), {1, 2, 3, 4}), "4 values in a reading of kind edge");
+  EXPECT_DEATH(encoded(edge_kind(), std::vector<double>(10)), "10 values");  // two rows, where there is no list
+  EXPECT_DEATH(encoded(array_kind(), std::vector<double>(6)), "6 values in a reading of kind array");
+  EXPECT_DEATH(encoded({.id = 4, .name = "none"}, {}), "0 values");
+}
+
+}  // namespace
+}  // namespace sf::record
