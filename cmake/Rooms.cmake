@@ -6,6 +6,7 @@ find_package(Vulkan REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_path(TOMLPLUSPLUS toml++/toml.h REQUIRED)  # headers only (libtomlplusplus-dev)
 
 # Debian's VTK 9.1 asks for MPI while it is being found; nothing of ours uses it.
 find_package(MPI QUIET COMPONENTS C)

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "viz/axes.h"
 #include "viz/color.h"
+#include "viz/ground.h"
 #include "viz/walls.h"
 
 namespace sf::viz {
@@ -156,6 +157,8 @@ void draw_trajectories(const World& world, std::span<const Track> tracks, const 
                  std::to_string(track.poses.size()) + " poses");
   const Weight weight = weight_for(tracks.size());
   Axes axes(plan_of(world, tracks));
+  draw_paint(axes, world);
+  draw_magnets(axes, world);
   draw_walls(axes, world, WallColors::quiet);
   for (std::size_t i = 0; i < tracks.size(); ++i)
     draw_path(axes, tracks[i], weight.line, with_opacity(color_of(tracks, i), weight.opacity));

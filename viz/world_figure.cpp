@@ -11,6 +11,7 @@
 
 #include "viz/axes.h"
 #include "viz/color.h"
+#include "viz/ground.h"
 #include "viz/sight.h"
 #include "viz/walls.h"
 
@@ -139,6 +140,8 @@ std::vector<LegendItem> view_legend(const World& world) {
 
 std::vector<LegendItem> legend_of(const World& world) {
   std::vector<LegendItem> items = wall_legend(world, WallColors::of_models);
+  const auto ground = ground_legend(world);
+  items.insert(items.end(), ground.begin(), ground.end());
   const auto first = [&](bool tag) {
     return std::find_if(world.movers.begin(), world.movers.end(), [&](const Mover& m) { return m.is_tag == tag; });
   };
@@ -157,9 +160,12 @@ std::string subtitle_of(const World& world) {
       std::count_if(world.movers.begin(), world.movers.end(), [](const Mover& m) { return m.is_tag; }));
   std::size_t lasers = 0;
   for (const Mover& mover : world.movers) lasers += mover.lasers.size();
-  std::string text = count(world.movers.size() - tags, "robot") + ", " + count(lasers, "laser") + ", ";
+  std::string text = count(world.movers.size() - tags, "robot") + ", ";
+  if (lasers > 0) text += count(lasers, "laser") + ", ";
   if (tags > 0) text += count(tags, "tag") + ", ";
   text += count(world.walls.size(), "wall segment");
+  if (!world.stripes.empty()) text += ", " + count(world.stripes.size(), "stripe");
+  if (!world.magnets.empty()) text += ", " + count(world.magnets.size(), "magnet");
   return text + fmt::format(", {:.4g} m x {:.4g} m", world.extent.x_max - world.extent.x_min,
                             world.extent.y_max - world.extent.y_min);
 }
@@ -173,6 +179,8 @@ void draw_world(const World& world, const std::string& png_path) {
   plan.extent = world.extent;
   plan.legend = legend_of(world);
   Axes axes(std::move(plan));
+  draw_paint(axes, world);
+  draw_magnets(axes, world);
   draw_views(axes, world);
   draw_walls(axes, world, WallColors::of_models);
   for (const Mover& mover : world.movers) draw_body(axes, world, mover);

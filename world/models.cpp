@@ -9,6 +9,7 @@
 #include "world/lasers.h"
 #include "world/movers.h"
 #include "world/paint.h"
+#include "world/road.h"
 
 namespace sf::world {
 
@@ -216,6 +217,10 @@ void add_children(Building& b, const Entity& entity, Kind kind, Parent& parent) 
     } else if (child.type == "block" || child.type == "sensor") {
       const char* home = child.type == "block" ? "a model" : "a ranger";
       warn(b.source, child.at, fmt::format("'{}' is ignored here; expected it inside {}", child.word, home));
+    } else if (kind_of(child.type) == Kind::road || kind_of(child.type) == Kind::path) {
+      if (parent.model != kNone)
+        fail(b.source, child.at, fmt::format("'{}' is part of a model; expected it at the top level", child.word));
+      kind_of(child.type) == Kind::road ? add_road(b, child) : add_path(b, child);
     } else {
       add_model(b, child, parent);
     }

@@ -1,0 +1,155 @@
+// What is wrong is refused with the line it stands in and what was expected.
+
+#include <gtest/gtest.h>
+
+#include "tests/world/rndf_text.h"
+#include "world/roads/rndf.h"
+
+namespace sf::world {
+namespace {
+
+struct Wrong {
+  std::string from, to;  ///< first `from` of the small network turned into `to`
+  std::string error;     ///< what the refusal begins with
+};
+
+void expect_refused(const std::vector<Wrong>& corpus) {
+  EXPECT_EQ(refusal_of(std::string(kSmallRndf)), "");
+  for (const Wrong& wrong : corpus) {
+    const std::string error = refusal_of(small_with(wrong.from, wrong.to));
+    EXPECT_EQ(error.substr(0, wrong.error.size()), wrong.error) << wrong.from << " -> " << wrong.to;
+  }
+}
+
+TEST(RndfRefusals, Ids) {
+  expect_refused({
+      {"segment 2\n", "segment 1\n", "small.rndf:30: segment 1 is already in line 6"},
+      {"zone 3\n", "zone 2\n", "small.rndf:39: zone or segment 2 is already in line 30"},
+      {"lane 1.2\n", "lane 1.1\n", "small.rndf:21: lane 1.1 is already in line 9"},
+      {"lane 1.2\n", "lane 2.2\n", "small.rndf:21: lane 2.2 stands in segment 1; expected 1.1"},
+      {"lane 1.2\n", "lane 1.0\n", "small.rndf:21: lane 1.0 stands in segment 1"},
+      {"spot 3.1\n", "spot 4.1\n", "small.rndf:50: spot 4.1 stands in zone 3"},
+      {"spot 3.1\n", "spot 3.0\n", "small.rndf:50: spot 3.0 stands in zone 3"},
+      {"perimeter 3.0\n", "perimeter 3.1\n", "small.rndf:42: perimeter 3.1 stands in zone 3; expected 3.0"},
+      {"1.1.2 40", "1.1.1 40", "small.rndf:18: way-point 1.1.1 is already in line 17"},
+      {"1.1.2 40", "1.2.2 40", "small.rndf:18: way-point 1.2.2 stands in lane 1.1; expected 1.1.1, 1.1.2"},
+      {"1.1.2 40", "1.1.0 40", "small.rndf:18: way-point 1.1.0 stands in lane 1.1"},
+      {"3.0.2 40", "3.1.2 40", "small.rndf:46: way-point 3.1.2 stands in perimeter 3.0"},
+      {"1.1.1 40", "1.1.4 40", "small.rndf:18: way-point 1.1.2 comes after 1.1.4; expected them in driving direction"},
+      {"checkpoint 3.1.2 2", "checkpoint 3.1.2 1", "small.rndf:52: checkpoint 1 is already in line 14"},
+      {"stop 1.1.3\n", "stop 1.1.3\nstop 1.1.3\n", "small.rndf:16: stop 1.1.3 is given twice"},
+      {"exit 1.1.3 2.1.1\n", "exit 1.1.3 2.1.1\nexit 1.1.3 2.1.1\n",
+       "small.rndf:17: exit 1.1.3 to 2.1.1 is already in line 16"},
+  });
+}
+
+TEST(RndfRefusals, References) {
+  expect_refused({
+      {"exit 1.1.3 2.1.1", "exit 1.1.3 2.1.9",
+       "small.rndf:16: the exit leads to way-point 2.1.9, which does not exist"},
+      {"exit 1.1.3 2.1.1", "exit 1.1.3 9.1.1", "small.rndf:16: the exit leads to way-point 9.1.1"},
+      {"exit 1.1.3 2.1.1", "exit 1.1.3 3.1.1", "small.rndf:16: the exit leads to 3.1.1, a point of a parking spot"},
+      {"exit 1.1.3 2.1.1", "exit 1.1.4 2.1.1", "small.rndf:16: the exit leaves way-point 1.1.4, which does not exist"},
+      {"exit 1.1.3 2.1.1", "exit 1.2.1 2.1.1", "small.rndf:16: exit 1.2.1 stands in lane 1.1"},
+      {"exit 3.0.3", "exit 3.0.5", "small.rndf:44: the exit leaves way-point 3.0.5, which does not exist"},
+      {"exit 2.1.2 3.0.1", "exit 2.1.2 3.0.5", "small.rndf:34: the exit leads to way-point 3.0.5"},
+      {"checkpoint 1.1.2 1", "checkpoint 1.1.9 1", "small.rndf:14: checkpoint 1 names way-point 1.1.9"},
+      {"checkpoint 1.1.2 1", "checkpoint 1.2.1 1", "small.rndf:14: checkpoint 1.2.1 stands in lane 1.1"},
+      {"checkpoint 3.1.2 2", "checkpoint 3.1.3 2", "small.rndf:52: checkpoint 2 names way-point 3.1.3"},
+      {"stop 1.1.3", "stop 1.1.4", "small.rndf:15: the stop names way-point 1.1.4, which does not exist"},
+  });
+}
+
+TEST(RndfRefusals, Counts) {
+  expect_refused({
+      {"num_segments 2", "num_segments 3", "small.rndf:2: 'num_segments' says 3, but the file has 2"},
+      {"num_segments 2", "num_segments 1", "small.rndf:2: 'num_segments' says 1, but the file has 2"},
+      {"num_segments 2\n", "", "small.rndf:1: 'num_segments' is missing in the file; expected 'num_segments 2'"},
+      {"num_zones 1", "num_zones 0", "small.rndf:3: 'num_zones' says 0, but the file has 1"},
+      {"num_lanes 2", "num_lanes 1", "small.rndf:7: 'num_lanes' says 1, but segment 1 has 2"},
+      {"num_waypoints 3", "num_waypoints 4", "small.rndf:10: 'num_waypoints' says 4, but lane 1.1 has 3"},
+      {"num_waypoints 3\n", "", "small.rndf:9: 'num_waypoints' is missing in lane 1.1"},
+      {"num_spots 1", "num_spots 2", "small.rndf:40: 'num_spots' says 2, but zone 3 has 1"},
+      {"num_perimeterpoints 4", "num_perimeterpoints 3",
+       "small.rndf:43: 'num_perimeterpoints' says 3, but perimeter 3.0 has 4"},
+      {"3.1.2 40.001350 -82.997500\n", "", "small.rndf:50: spot 3.1 has 1 points; expected two"},
+      {"3.1.2 40.001350 -82.997500\n", "3.1.2 40.001350 -82.9975\n3.1.3 40.0014 -82.9975\n",
+       "small.rndf:50: spot 3.1 has 3 points; expected two"},
+  });
+}
+
+TEST(RndfRefusals, Numbers) {
+  expect_refused({
+      {"num_segments 2", "num_segments", "small.rndf:2: the number of segments is missing after 'num_segments'"},
+      {"num_segments 2", "num_segments two",
+       "small.rndf:2: the number of segments is 'two'; expected a whole number from 1"},
+      {"num_segments 2", "num_segments 0", "small.rndf:2: the number of segments is '0'"},
+      {"num_segments 2", "num_segments -2", "small.rndf:2: the number of segments is '-2'"},
+      {"num_segments 2", "num_segments 2.5", "small.rndf:2: the number of segments is '2.5'"},
+      {"num_segments 2", "num_segments 32769", "small.rndf:2: the number of segments is '32769'"},
+      {"num_segments 2", "num_segments 99999999999999999999", "small.rndf:2: the number of segments is '9999"},
+      {"num_segments 2", "num_segments 2 2", "small.rndf:2: '2' was not expected after '2'"},
+      {"num_waypoints 3", "num_waypoints 0", "small.rndf:10: the number of way-points is '0'"},
+      {"lane_width 12", "lane_width -12", "small.rndf:11: the width is '-12'"},
+      {"lane_width 12", "lane_width 12ft", "small.rndf:11: the width is '12ft'; expected a number"},
+      {"lane_width 12", "lane_width 40000", "small.rndf:11: the width is '40000'"},
+      {"checkpoint 1.1.2 1", "checkpoint 1.1.2 0", "small.rndf:14: the checkpoint's id is '0'"},
+      {"checkpoint 1.1.2 1", "checkpoint 1.1.2", "small.rndf:14: the checkpoint's id is missing"},
+      {"40.000000 -83.000000", "91.000000 -83.000000",
+       "small.rndf:17: the latitude is '91.000000'; expected degrees from -90 to 90"},
+      {"40.000000 -83.000000", "40.000000 -181.000000", "small.rndf:17: the longitude is '-181.000000'"},
+      {"40.000000 -83.000000", "nan -83.000000", "small.rndf:17: the latitude is 'nan'; expected a number"},
+      {"40.000000 -83.000000", "40.000000 inf", "small.rndf:17: the longitude is 'inf'"},
+      {"40.000000 -83.000000", "40.000000", "small.rndf:17: the longitude is missing"},
+      {"40.000000 -83.000000", "40,000000 -83,000000", "small.rndf:17: the latitude is '40,000000'"},
+      {"40.000000 -83.000000", "40.000000 -83.000000 5", "small.rndf:17: '5' was not expected"},
+      {"1.1.1 40", "1.1 40", "small.rndf:17: the way-point is '1.1'; expected three numbers joined by points"},
+      {"1.1.1 40", "1.1.1.1 40", "small.rndf:17: the way-point is '1.1.1.1'"},
+      {"1.1.1 40", "1.1.99999 40", "small.rndf:17: the way-point is '1.1.99999'"},
+      {"exit 1.1.3 2.1.1", "exit 1.1.3", "small.rndf:16: the entry of this exit is missing"},
+      {"left_boundary double_yellow", "left_boundary dashed",
+       "small.rndf:12: 'left_boundary' is 'dashed'; expected one of double_yellow, solid_yellow, solid_white, "
+       "broken_white"},
+      {"left_boundary double_yellow", "left_boundary", "small.rndf:12: 'left_boundary' is ''; expected one of"},
+  });
+}
+
+TEST(RndfRefusals, Places) {
+  expect_refused({
+      {"segment 1\n", "stop 1.1.3\nsegment 1\n", "small.rndf:6: 'stop' stands in the file; expected it in a lane"},
+      {"num_lanes 2\n", "num_lanes 2\nexit 1.1.3 2.1.1\n",
+       "small.rndf:8: 'exit' stands in segment 1; expected it in a lane or a perimeter"},
+      {"segment 1\n", "1.1.1 40 -83\nsegment 1\n",
+       "small.rndf:6: '1.1.1' stands in the file; expected way-points in lanes"},
+      {"segment 1\n", "lane 1.1\nsegment 1\n", "small.rndf:6: 'lane' stands in the file; expected it in a segment"},
+      {"end_zone\n", "end_zone\nend_zone\n", "small.rndf:57: 'end_zone' stands in the file; expected it in a zone"},
+      {"lane_width 12\n", "lane_width 12\nlane_width 13\n", "small.rndf:12: 'lane_width' is given twice in lane 1.1"},
+      {"RNDF_name small\n", "", "small.rndf: 'RNDF_name' is missing"},
+      {"zone_name Lot\nperimeter 3.0\n", "zone_name Lot\n/*", "small.rndf:42: this comment is never closed"},
+      {"exit 1.1.3 2.1.1", "/* exit 1.1.3 2.1.1", "small.rndf:16: this comment is never closed; expected */"},
+  });
+}
+
+TEST(RndfRefusals, OtherFiles) {
+  EXPECT_EQ(refusal_of(""), "small.rndf: 'RNDF_name' is missing; expected a route network definition file");
+  EXPECT_NE(refusal_of("MDF_name x\nRNDF y\n").find("this is an MDF"), std::string::npos);
+  EXPECT_NE(refusal_of("hello world\n").find("'RNDF_name' is missing"), std::string::npos);
+  EXPECT_NE(refusal_of("{\"json\": 1}\n").find(":1: '{\"json\":' is no statement"), std::string::npos);
+  EXPECT_NE(refusal_of("\x89PNG\r\n\x1a\n").find(":1: "), std::string::npos);
+  EXPECT_NE(refusal_of(std::string("RNDF_name x\nnum\0segments", 24)).find(":2: byte 0x00 is no text"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(std::string(5'000'000, 'a')).find("is no statement"), std::string::npos);
+  std::string words;
+  for (char a = 'a'; a <= 'z'; ++a)
+    for (char b = 'a'; b <= 'z'; ++b) words += std::string{a, b, '\n'};
+  EXPECT_NE(refusal_of(words).find("keywords that no RNDF has"), std::string::npos);
+}
+
+TEST(RndfRefusals, MissingFile) {
+  EXPECT_THROW(read_rndf("/nowhere/x.rndf"), base::InputError);
+  EXPECT_THROW(read_rndf("/dev/zero"), base::InputError);
+  EXPECT_THROW(read_rndf("/"), base::InputError);
+}
+
+}  // namespace
+}  // namespace sf::world

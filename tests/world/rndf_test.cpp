@@ -1,0 +1,223 @@
+// What a route network says, and what real files do with its rules.
+
+#include "world/roads/rndf.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/world/rndf_text.h"
+
+namespace sf::world {
+namespace {
+
+std::string shared(const std::string& name) { return SF_SOURCE_DIR "/../shared/data/rndf/" + name; }
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+std::string replace_all(std::string text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+TEST(Rndf, EveryStatementIsRead) {
+  const Rndf rndf = small_rndf();
+  EXPECT_EQ(rndf.name, "small");
+  EXPECT_EQ(rndf.format_version, "1.0");
+  EXPECT_EQ(rndf.creation_date, "1-Jan-07");
+  EXPECT_TRUE(rndf.warnings.empty()) << lines_of(rndf.warnings);
+  ASSERT_EQ(rndf.segments.size(), 2u);
+  EXPECT_EQ(rndf.segments[0].name, "Main_Street");
+  EXPECT_EQ(rndf.segments[1].name, "");
+  const RndfLane& lane = rndf.segments[0].lanes[0];
+  EXPECT_EQ(lane.number, 1);
+  EXPECT_EQ(lane.width_ft, 12.0);
+  EXPECT_EQ(lane.left, Boundary::double_yellow);
+  EXPECT_EQ(lane.right, Boundary::solid_white);
+  EXPECT_EQ(lane.checkpoints[0].id, 1);
+  EXPECT_EQ(lane.checkpoints[0].at, (PointId{1, 1, 2}));
+  EXPECT_EQ(lane.stops[0].at, (PointId{1, 1, 3}));
+  EXPECT_EQ(lane.exits[0].from, (PointId{1, 1, 3}));
+  EXPECT_EQ(lane.exits[0].to, (PointId{2, 1, 1}));
+  EXPECT_EQ(lane.points[2].latitude, 40.0);
+  EXPECT_EQ(lane.points[2].longitude, -82.998);
+  EXPECT_EQ(lane.points[2].line, 19);
+  EXPECT_FALSE(rndf.segments[1].lanes[0].width_ft.has_value());
+  EXPECT_EQ(rndf.segments[1].lanes[0].left, Boundary::none);
+  const RndfZone& zone = rndf.zones[0];
+  EXPECT_EQ(zone.id, 3);
+  EXPECT_EQ(zone.name, "Lot");
+  EXPECT_EQ(zone.perimeter.size(), 4u);
+  EXPECT_EQ(zone.exits[0].to, (PointId{1, 2, 1}));
+  EXPECT_EQ(zone.spots[0].width_ft, 10.0);
+  EXPECT_EQ(zone.spots[0].checkpoints[0].at, (PointId{3, 1, 2}));
+}
+
+TEST(Rndf, Counts) {
+  const RoadCounts c = count(small_rndf());
+  EXPECT_EQ(c.segments, 2u);
+  EXPECT_EQ(c.lanes, 3u);
+  EXPECT_EQ(c.zones, 1u);
+  EXPECT_EQ(c.spots, 1u);
+  EXPECT_EQ(c.lane_waypoints, 7u);
+  EXPECT_EQ(c.points, 13u);
+  EXPECT_EQ(c.exits, 3u);
+  EXPECT_EQ(c.stops, 1u);
+  EXPECT_EQ(c.checkpoints, 2u);
+}
+
+// Each with one thing that real files do.
+TEST(Rndf, RealHabitsChangeNothing) {
+  const std::string small(kSmallRndf);
+  const std::vector<std::string> habits{
+      replace_all(small, "\n", "\r\n"),
+      replace_all(small, "\n", "\t\t\t\r\n"),                          // a spreadsheet's empty cells
+      with(replace_all(small, "\n", "\r\n"), "small\r\n", "small\n"),  // mixed ends
+      replace_all(small, "\n", "\r"),
+      replace_all(small, " ", "\t"),
+      replace_all(small, "\n", "\n\n \t\n"),
+      replace_all(small, "\n", " /* remark */\n"),
+      replace_all(small, "\n", "\n/* remark */\n"),
+      "/* over\nseveral\nlines */" + small,
+      "\xEF\xBB\xBF" + small,
+      small.substr(0, small.size() - 1),  // no end of the last line
+      with(small, "format_version 1.0\n", ""),
+      with(small, "creation_date 1-Jan-07\n", ""),
+      with(with(small, "num_segments 2\n", ""), "end_file", "num_segments 2\nend_file"),  // header at the end
+      with(with(small, "lane_width 12\n", ""), "end_lane", "lane_width 12\nend_lane"),
+      with(with(small, "num_perimeterpoints 4\n", ""), "3.0.1 40.0011", "num_perimeterpoints 4\n3.0.1 40.0011"),
+      with(small, "1.1.1 40.000000 -83.000000", "1.1.1 +40.0000000000 -8.3e1"),  // more decimals, signs, exponents
+      with(small, "lane_width 12\n", "lane_width 12.0\n"),
+      with(small, "1-Jan-07", "10/25/2007 6:30:28 PM"),
+      with(small, "segment_name Main_Street", "segment_name"),
+      with(small, "segment_name Main_Street", "segment_name\t\t"),
+      with(small, "segment_name Main_Street", "segment_name Main Street"),
+      with(small, "segment_name Main_Street\n", "")};
+  for (const std::string& text : habits) {
+    const Rndf rndf = parse_rndf("small.rndf", text);
+    const RoadCounts c = count(rndf);
+    EXPECT_TRUE(rndf.warnings.empty()) << lines_of(rndf.warnings) << text;
+    EXPECT_EQ(c.points, 13u) << text;
+    EXPECT_EQ(c.exits, 3u) << text;
+    EXPECT_EQ(rndf.segments[0].lanes[0].width_ft, 12.0) << text;
+    EXPECT_EQ(rndf.segments[0].lanes[0].points[0].longitude, -83.0) << text;
+    EXPECT_EQ(rndf.segments[0].lanes[0].right, Boundary::solid_white) << text;
+  }
+}
+
+TEST(Rndf, NamesMayHoldBlanksOrNothing) {
+  EXPECT_EQ(parse_rndf("x", small_with("Main_Street", "Main  Street /* the old one */ ")).segments[0].name,
+            "Main  Street");
+  EXPECT_EQ(parse_rndf("x", small_with("RNDF_name small", "RNDF_name")).name, "");
+}
+
+TEST(Rndf, WidthOfNoughtIsNotKnown) {
+  EXPECT_FALSE(parse_rndf("x", small_with("lane_width 12", "lane_width 0")).segments[0].lanes[0].width_ft.has_value());
+  EXPECT_FALSE(parse_rndf("x", small_with("lane_width 12", "lane_width")).segments[0].lanes[0].width_ft.has_value());
+}
+
+// Every end may be missing: one warning, the same network.
+TEST(Rndf, MissingEndsAreWarnings) {
+  for (const std::string end :
+       {"end_lane\n", "end_segment\n", "end_perimeter\n", "end_spot\n", "end_zone\n", "end_file\n"}) {
+    const Rndf rndf = parse_rndf("x", small_with(end, ""));
+    EXPECT_EQ(rndf.warnings.size(), 1u) << end << lines_of(rndf.warnings);
+    EXPECT_NE(lines_of(rndf.warnings).find(end.substr(0, end.size() - 1)), std::string::npos) << end;
+    EXPECT_EQ(count(rndf).points, 13u) << end;
+  }
+  std::string none(kSmallRndf);
+  for (const std::string end :
+       {"end_lane\n", "end_segment\n", "end_perimeter\n", "end_spot\n", "end_zone\n", "end_file\n"})
+    none = replace_all(none, end, "");
+  EXPECT_EQ(count(parse_rndf("x", none)).exits, 3u);
+}
+
+// What the extension for traffic lights adds is named once each; nothing else changes.
+TEST(Rndf, ExtensionIsReadOver) {
+  const std::string text =
+      with(with(std::string(kSmallRndf), "segment 1\n", "num_intersections 1\nsegment 1\nspeed_limit 25\n"), "end_file",
+           "intersection 1\nnum_trafficlights 1\ntrafficlight 1.1\ngroup_id 3\nposition 40 -83 "
+           "5\norientation 1\nend_trafficlight\ntrafficlight 1.2\nend_intersection\nend_file");
+  const Rndf rndf = parse_rndf("x", with(text, "lane 1.1\n", "lane 1.1\nlane_type car_lane\nlight 1.1.3 1.1\n"));
+  EXPECT_EQ(count(rndf).points, 13u);
+  EXPECT_EQ(count_of(lines_of(rndf.warnings), "'trafficlight'"), 1u);
+  EXPECT_EQ(rndf.warnings.size(), 12u) << lines_of(rndf.warnings);
+}
+
+TEST(Rndf, UnknownWordsAreNamedOnceWithTheNearest) {
+  const Rndf rndf = parse_rndf("x", small_with("stop 1.1.3\n", "stopp 1.1.3\nstopp 1.1.2\n"));
+  EXPECT_EQ(lines_of(rndf.warnings), "15: unknown keyword 'stopp' is ignored; did you mean 'stop'?\n");
+}
+
+TEST(Rndf, WhatFollowsTheEndIsIgnored) {
+  const Rndf rndf = parse_rndf("x", std::string(kSmallRndf) + "segment 9\n");
+  EXPECT_EQ(rndf.warnings.size(), 1u);
+  EXPECT_EQ(rndf.segments.size(), 2u);
+}
+
+TEST(Rndf, LeftOutNumbersAreAWarning) {
+  const std::string text =
+      with(small_with("1.2.2 40.000050 -83", "1.2.7 40.000050 -83"), "num_waypoints 2", "num_waypoints 2");
+  const Rndf rndf = parse_rndf("x", text);
+  EXPECT_EQ(rndf.warnings.size(), 1u) << lines_of(rndf.warnings);
+  EXPECT_EQ(rndf.segments[0].lanes[1].points[1].id, (PointId{1, 2, 7}));
+}
+
+TEST(Rndf, OnePointMakesALane) {
+  const std::string text =
+      with(with(small_with("num_waypoints 2", "num_waypoints 1"), "1.2.2 40.000050 -83.000000\n", ""), "lane 1.2",
+           "lane 1.2");
+  EXPECT_EQ(parse_rndf("x", text).segments[0].lanes[1].points.size(), 1u);
+}
+
+// ------------------------------------------------------------------------------------------ public files
+
+void expect_counts(const std::string& name, const RoadCounts& expected) {
+  const RoadCounts c = count(read_rndf(shared(name)));
+  EXPECT_EQ(c.segments, expected.segments) << name;
+  EXPECT_EQ(c.lanes, expected.lanes) << name;
+  EXPECT_EQ(c.zones, expected.zones) << name;
+  EXPECT_EQ(c.spots, expected.spots) << name;
+  EXPECT_EQ(c.lane_waypoints, expected.lane_waypoints) << name;
+  EXPECT_EQ(c.points, expected.points) << name;
+  EXPECT_EQ(c.exits, expected.exits) << name;
+  EXPECT_EQ(c.stops, expected.stops) << name;
+  EXPECT_EQ(c.checkpoints, expected.checkpoints) << name;
+}
+
+// Counted from the files with grep: lines that begin with each keyword.
+TEST(RndfFiles, Counts) {
+  if (!std::filesystem::exists(shared(""))) GTEST_SKIP() << "no shared data beside the sources";
+  expect_counts("darpa_sample/Sample_RNDF_Rev_1.5.rndf", {13, 21, 1, 6, 146, 164, 49, 21, 17});
+  expect_counts("darpa_sample/uce_rndf_1_final_event.rndf", {60, 77, 8, 114, 628, 941, 156, 41, 170});
+  expect_counts("utexas/swri_site_visit.rndf", {3, 6, 0, 0, 60, 60, 14, 4, 12});
+  expect_counts("utexas/swri_site_visit_with_zones.rndf", {3, 6, 3, 1, 60, 92, 28, 4, 13});
+  expect_counts("utexas/prc_large.rndf", {6, 12, 1, 2, 115, 131, 33, 10, 18});
+  expect_counts("utexas/prc_osm.rndf", {70, 70, 0, 0, 431, 431, 0, 0, 0});
+  expect_counts("terminus_negative/mcity_generated.rndf", {33, 33, 0, 0, 572, 572, 67, 0, 0});
+}
+
+TEST(RndfFiles, InvalidOnesAreRefusedForTheirReason) {
+  if (!std::filesystem::exists(shared(""))) GTEST_SKIP() << "no shared data beside the sources";
+  const std::vector<std::pair<std::string, std::string>> wrong{
+      {"duplicate_exit_it.rndf", ":12: exit 1.1.2 to 2.1.2 is already in line 11"},
+      {"duplicate_lane_id.rndf", ":15: lane 1.1 is already in line 8"},
+      {"duplicate_segments_id.rndf", ":17: segment 1 is already in line 5"},
+      {"duplicate_waypoint_id.rndf", ":15: way-point 1.1.1 is already in line 11"}};
+  for (const auto& [name, reason] : wrong) {
+    try {
+      read_rndf(shared("terminus_negative/" + name));
+      ADD_FAILURE() << name << " was read";
+    } catch (const base::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(name + reason), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sf::world

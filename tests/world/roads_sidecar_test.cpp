@@ -1,0 +1,128 @@
+// What stands beside a network: its place, its scale, its finer widths.
+
+#include "world/roads/sidecar.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/world/rndf_text.h"
+#include "world/roads/roads.h"
+
+namespace sf::world {
+namespace {
+
+RoadSidecar read(const std::string& text) {
+  std::vector<Warning> warnings;
+  return parse_sidecar("small.toml", text, warnings);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    const RoadSidecar sidecar = read(text);
+    check_against(sidecar, small_rndf());
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Sidecar, EveryKeyIsRead) {
+  const RoadSidecar s = read(R"(
+origin = [40.0, -83]
+scale = 0.142857
+position = [1, 2.5]
+heading_deg = 90
+lane_width_m = 0.5
+paint_width_m = 0.015
+dash_length_m = 0.4
+dash_gap_m = 1.2
+stop_width_m = 0.05
+spot_width_m = 0.45
+[lanes."1.2"]
+width_m = 0.6
+left = "solid_white"
+right = "none"
+[points."1.2.1"]
+position = [3, -4]
+)");
+  EXPECT_EQ(s.origin->latitude, 40.0);
+  EXPECT_EQ(s.origin->longitude, -83.0);
+  EXPECT_EQ(s.scale, 0.142857);
+  EXPECT_EQ(s.position.y, 2.5);
+  EXPECT_DOUBLE_EQ(s.heading, M_PI / 2);
+  EXPECT_EQ(s.lane_width, 0.5);
+  EXPECT_EQ(s.paint_width, 0.015);
+  EXPECT_EQ(s.dash_length, 0.4);
+  EXPECT_EQ(s.dash_gap, 1.2);
+  EXPECT_EQ(s.stop_width, 0.05);
+  EXPECT_EQ(s.spot_width, 0.45);
+  const RoadSidecar::Lane& lane = s.lanes.at({1, 2, 0});
+  EXPECT_EQ(lane.width, 0.6);
+  EXPECT_EQ(lane.left, Boundary::solid_white);
+  EXPECT_EQ(lane.right, Boundary::none);
+  EXPECT_EQ(s.points.at({1, 2, 1}).p.y, -4.0);
+}
+
+TEST(Sidecar, NothingIsFine) {
+  const RoadSidecar s = read("");
+  EXPECT_EQ(s.scale, 1.0);
+  EXPECT_FALSE(s.origin || s.lane_width || s.spot_width);
+}
+
+TEST(Sidecar, UnknownKeysAreWarnings) {
+  std::vector<Warning> warnings;
+  parse_sidecar("small.toml",
+                "lane_with_m = 1\n[lanes.\"1.1\"]\nwide = 2\n[points.\"1.1.1\"]\nposition = [0, 0]\nz = 1\n", warnings);
+  EXPECT_EQ(
+      lines_of(warnings),
+      "1: unknown key 'lane_with_m' is ignored; did you mean 'lane_width_m'?\n3: unknown key 'wide' is ignored\n6: "
+      "unknown key 'z' is ignored\n");
+}
+
+TEST(Sidecar, WhatIsWrongIsRefused) {
+  const std::vector<std::pair<std::string, std::string>> corpus{
+      {"scale = ", "small.toml:1: not TOML"},
+      {"\n\nscale = 0", "small.toml:3: 'scale' expects a number from 1e-6"},
+      {"scale = -1", "small.toml:1: 'scale' expects a number from 0"},
+      {"scale = nan", "small.toml:1: 'scale' expects a number"},
+      {"scale = \"1/7\"", "small.toml:1: 'scale' expects a number"},
+      {"scale = true", "small.toml:1: 'scale' expects a number"},
+      {"origin = [91, 0]", "small.toml:1: 'origin' expects a number from -90 to 90"},
+      {"origin = [0, 181]", "small.toml:1: 'origin' expects a number from -180 to 180"},
+      {"origin = 40", "small.toml:1: 'origin' expects [latitude, longitude]"},
+      {"origin = [40]", "small.toml:1: 'origin' expects [latitude, longitude]"},
+      {"position = [1, 2, 3]", "small.toml:1: 'position' expects [x, y]"},
+      {"position = [1e8, 0]", "small.toml:1: 'position' expects a number"},
+      {"heading_deg = inf", "small.toml:1: 'heading_deg' expects a number"},
+      {"lane_width_m = 0", "small.toml:1: 'lane_width_m' is 0"},
+      {"dash_length_m = -1", "small.toml:1: 'dash_length_m' expects"},
+      {"lanes = 3", "small.toml:1: 'lanes' expects a table"},
+      {"[lanes.\"1\"]", "small.toml:1: '1' is no lane"},
+      {"[lanes.\"1.9\"]", "small.toml:1: small.rndf has no lane 1.9"},
+      {"[lanes.\"1.1\"]\nleft = \"dotted\"", "small.toml:2: 'left' expects one of double_yellow"},
+      {"[points.\"1.1\"]", "small.toml:1: '1.1' is no way-point"},
+      {"[points.\"1.1.1\"]", "small.toml:1: 'position' is missing"},
+      {"[points.\"1.1.9\"]\nposition = [0, 0]", "small.toml:1: small.rndf has no point 1.1.9"}};
+  for (const auto& [text, error] : corpus) EXPECT_EQ(refusal(text).substr(0, error.size()), error) << text;
+}
+
+// load_roads takes the file of the same name with .toml for .rndf.
+TEST(Sidecar, StandsBesideItsNetwork) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "sf_sidecar_test";
+  std::filesystem::create_directories(folder);
+  const std::string rndf = (folder / "small.rndf").string();
+  std::ofstream(rndf) << kSmallRndf;
+  std::filesystem::remove(folder / "small.toml");
+  std::vector<Warning> warnings;
+  EXPECT_EQ(load_roads(rndf, warnings).scale, 1.0);
+  std::ofstream(folder / "small.toml") << "scale = 0.5\nspeed = 3\n";
+  warnings.clear();
+  EXPECT_EQ(load_roads(rndf, warnings).scale, 0.5);
+  EXPECT_NE(lines_of(warnings).find("2: unknown key 'speed'"), std::string::npos);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace sf::world

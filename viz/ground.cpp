@@ -1,0 +1,73 @@
+#include "viz/ground.h"
+
+#include <algorithm>
+
+namespace sf::viz {
+
+namespace {
+
+using world::Stripe;
+
+constexpr std::uint32_t kAsphalt = 0xFFC3C8CEu;
+constexpr std::uint32_t kNorth = 0xFFC62828u;
+constexpr std::uint32_t kSouth = 0xFF1565C0u;
+constexpr double kShoulder = 7.0;  // [px] of asphalt on either side of a stripe
+constexpr double kThinnest = 1.3;  // [px] of a stripe
+
+/// Stripes have square ends, lines of a canvas round ones: each piece is a quadrilateral.
+void add_band(Axes& axes, const Stripe& stripe, std::vector<Line>& edges) {
+  const double half = 0.5 * std::max(stripe.width, kThinnest / axes.scale());
+  for (std::size_t i = 0; i + 1 < stripe.line.size(); ++i) {
+    const Vec2 along = stripe.line[i + 1] - stripe.line[i];
+    const Vec2 aside = half / base::length(along) * Vec2{-along.y, along.x};
+    const Vec2 corners[] = {axes.pixel(stripe.line[i] + aside), axes.pixel(stripe.line[i] - aside),
+                            axes.pixel(stripe.line[i + 1] - aside), axes.pixel(stripe.line[i + 1] + aside)};
+    for (int k = 0; k < 4; ++k) edges.push_back({corners[k], corners[(k + 1) % 4]});
+  }
+}
+
+}  // namespace
+
+void draw_paint(Axes& axes, const world::World& world) {
+  if (world.stripes.empty()) return;
+  std::vector<Line> asphalt;
+  double widest = 0.0;
+  for (const Stripe& stripe : world.stripes) {
+    widest = std::max(widest, stripe.width * axes.scale());
+    for (std::size_t i = 0; i + 1 < stripe.line.size(); ++i)
+      asphalt.push_back({axes.pixel(stripe.line[i]), axes.pixel(stripe.line[i + 1])});
+  }
+  axes.canvas().lines(asphalt, widest + 2.0 * kShoulder, kAsphalt);
+
+  std::vector<std::uint32_t> colors;
+  for (const Stripe& stripe : world.stripes) colors.push_back(stripe.color);
+  std::sort(colors.begin(), colors.end());
+  colors.erase(std::unique(colors.begin(), colors.end()), colors.end());
+  for (const std::uint32_t color : colors) {
+    std::vector<Line> edges;
+    for (const Stripe& stripe : world.stripes)
+      if (stripe.color == color) add_band(axes, stripe, edges);
+    axes.canvas().area(edges, color);
+  }
+}
+
+void draw_magnets(Axes& axes, const world::World& world) {
+  for (const world::Magnet& magnet : world.magnets) {
+    const double radius = std::clamp(magnet.radius * axes.scale(), 0.8, 6.0);
+    axes.canvas().disc(axes.pixel(magnet.p), radius, magnet.moment > 0.0 ? kNorth : kSouth);
+  }
+}
+
+std::vector<LegendItem> ground_legend(const world::World& world) {
+  std::vector<LegendItem> items;
+  if (!world.stripes.empty()) items.push_back({Sample::block, kAsphalt, "road, with its paint"});
+  const auto has = [&](bool north) {
+    return std::any_of(world.magnets.begin(), world.magnets.end(),
+                       [&](const world::Magnet& m) { return (m.moment > 0.0) == north; });
+  };
+  if (has(true)) items.push_back({Sample::dot, kNorth, "magnet, north pole up"});
+  if (has(false)) items.push_back({Sample::dot, kSouth, "magnet, south pole up"});
+  return items;
+}
+
+}  // namespace sf::viz

@@ -1,0 +1,207 @@
+#include "viz/series_figure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/error.h"
+#include "viz/canvas.h"
+#include "viz/color.h"
+#include "viz/legend.h"
+#include "viz/ticks.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr std::uint32_t kFrame = 0xFF404040u;
+constexpr std::uint32_t kGrid = 0x28808080u;
+constexpr std::size_t kNamed = 7;
+
+// [px]
+constexpr double kEdge = 26.0;
+constexpr double kHeader = 100.0;     ///< title and subtitle
+constexpr double kPanelTitle = 34.0;  ///< above each plot
+constexpr double kTicksBelow = 68.0;  ///< labels and the axis' name, below the last plot
+constexpr double kAxisName = 34.0;    ///< left of the labels
+constexpr double kSmallestStep = 60.0;
+
+struct Span {
+  double from = 0.0, to = 1.0;
+};
+
+/// One panel on the picture.
+struct Place {
+  PixelBox plot;
+  Span time;   ///< [s]
+  Span shown;  ///< of the values
+  std::vector<LegendItem> legend;
+  std::vector<LegendPlace> legend_at;
+  double legend_top = 0.0;
+
+  Vec2 pixel(double t, double value) const {
+    return {plot.x_min + (t - time.from) / (time.to - time.from) * (plot.x_max - plot.x_min),
+            plot.y_max - (value - shown.from) / (shown.to - shown.from) * (plot.y_max - plot.y_min)};
+  }
+};
+
+template <class Take>
+void widen(std::optional<Span>& span, const std::vector<double>& numbers, Take&& take) {
+  for (const double number : numbers) {
+    if (!take(number)) continue;
+    span = span ? Span{std::min(span->from, number), std::max(span->to, number)} : Span{number, number};
+  }
+}
+
+Span time_span(const SeriesPlan& plan) {
+  std::optional<Span> span;
+  for (const Panel& panel : plan.panels)
+    for (const Series& series : panel.series) widen(span, series.times, [](double t) { return std::isfinite(t); });
+  if (!span) return {0.0, 1.0};
+  return span->to > span->from ? *span : Span{span->from - 0.5, span->to + 0.5};
+}
+
+/// With some air above and below, and never empty.
+Span value_span(const Panel& panel) {
+  std::optional<Span> span;
+  for (const Series& series : panel.series) widen(span, series.values, [](double v) { return std::isfinite(v); });
+  if (!span) return {0.0, 1.0};
+  const double size = span->to - span->from;
+  const double pad = size > 0.0 ? 0.06 * size : std::max(0.05 * std::abs(span->from), 1e-12);
+  return {span->from - pad, span->to + pad};
+}
+
+/// Rows of the series that are named: all, or seven from the first to the last.
+std::vector<std::size_t> named_rows(std::size_t count) {
+  std::vector<std::size_t> rows;
+  for (std::size_t k = 0; k < std::min(count, kNamed); ++k)
+    rows.push_back(count <= kNamed ? k : k * (count - 1) / (kNamed - 1));
+  return rows;
+}
+
+double widest_label(const Span& shown, double height) {
+  const Ticks ticks = make_ticks(shown.from, shown.to, kSmallestStep / height * (shown.to - shown.from));
+  double widest = 0.0;
+  for (const double value : ticks.at)
+    widest = std::max(widest, text_size(tick_text(value, ticks.decimals), small_text()).x);
+  return widest;
+}
+
+double plot_height(std::size_t panels) { return panels == 1 ? 620.0 : panels == 2 ? 420.0 : 300.0; }
+
+std::vector<Place> lay_out(const SeriesPlan& plan) {
+  const double height = plot_height(plan.panels.size());
+  double left = 0.0;
+  for (const Panel& panel : plan.panels) left = std::max(left, widest_label(value_span(panel), height));
+  left += kEdge + kAxisName + 14.0;
+
+  std::vector<Place> places;
+  double top = kHeader;
+  for (const Panel& panel : plan.panels) {
+    Place& place = places.emplace_back();
+    place.time = time_span(plan);
+    place.shown = value_span(panel);
+    if (!panel.title.empty()) top += kPanelTitle;
+    place.plot = {static_cast<int>(left), static_cast<int>(top), plan.width - static_cast<int>(kEdge),
+                  static_cast<int>(top + height)};
+    for (const std::size_t row : named_rows(panel.series.size()))
+      place.legend.push_back({Sample::line, row_color(row, panel.series.size()), panel.series[row].name});
+    place.legend_at = place_legend(place.legend, place.plot.x_max - place.plot.x_min);
+    const bool last = &panel == &plan.panels.back();
+    place.legend_top = place.plot.y_max + (last ? kTicksBelow + 8.0 : 20.0);
+    const int rows = place.legend_at.empty() ? 0 : place.legend_at.back().row + 1;
+    top = place.legend_top + rows * kLegendRow + 14.0;
+  }
+  return places;
+}
+
+/// The middle of a one-pixel line.
+double crisp(double pixel) { return std::floor(pixel) + 0.5; }
+
+Ticks ticks_of(const Span& span, double pixels, double smallest) {
+  return make_ticks(span.from, span.to, smallest / pixels * (span.to - span.from));
+}
+
+void draw_scales(Canvas& canvas, const Place& at, bool with_time) {
+  const PixelBox& p = at.plot;
+  TextStyle style = small_text();
+  style.across = Anchor::end;
+  const Ticks values = ticks_of(at.shown, p.y_max - p.y_min, kSmallestStep);
+  for (const double value : values.at) {
+    const double y = crisp(at.pixel(at.time.from, value).y);
+    canvas.line({p.x_min + 0.0, y}, {p.x_max + 0.0, y}, 1.0, kGrid);
+    canvas.text({p.x_min - 11.0, y}, tick_text(value, values.decimals), style);
+  }
+  style.across = Anchor::middle;
+  style.down = Anchor::start;
+  const Ticks times = ticks_of(at.time, p.x_max - p.x_min, 110.0);
+  for (const double time : times.at) {
+    const double x = crisp(at.pixel(time, at.shown.from).x);
+    canvas.line({x, p.y_min + 0.0}, {x, p.y_max + 0.0}, 1.0, kGrid);
+    if (with_time) canvas.text({x, p.y_max + 11.0}, tick_text(time, times.decimals), style);
+  }
+  if (with_time) canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, "time [s]", style);
+}
+
+void draw_curve(Canvas& canvas, const Place& at, const Series& series, std::uint32_t color) {
+  std::vector<Line> lines;
+  std::optional<Vec2> last;
+  for (std::size_t i = 0; i < series.values.size(); ++i) {
+    if (!std::isfinite(series.values[i]) || !std::isfinite(series.times[i])) {
+      last.reset();
+      continue;
+    }
+    const Vec2 here = at.pixel(series.times[i], series.values[i]);
+    lines.push_back({last.value_or(here), here});
+    last = here;
+  }
+  canvas.lines(lines, 2.0, color);
+}
+
+void draw_panel(Canvas& canvas, const Panel& panel, const Place& at, bool with_time) {
+  draw_scales(canvas, at, with_time);
+  canvas.clip(at.plot);
+  for (std::size_t i = 0; i < panel.series.size(); ++i)
+    draw_curve(canvas, at, panel.series[i], row_color(i, panel.series.size()));
+  canvas.unclip();
+
+  const double x0 = at.plot.x_min - 0.5, y0 = at.plot.y_min - 0.5, x1 = at.plot.x_max + 0.5, y1 = at.plot.y_max + 0.5;
+  const Vec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
+  canvas.polyline(corners, 1.0, kFrame);
+  TextStyle style = small_text();
+  style.bold = true;
+  canvas.text({x0, y0 - 0.5 * kPanelTitle}, panel.title, style);
+  style.bold = false;
+  style.across = Anchor::middle;
+  style.upwards = true;
+  canvas.text({38.0, 0.5 * (y0 + y1)}, panel.y_name, style);
+  draw_legend(canvas, {at.plot.x_min + 0.0, at.legend_top}, at.legend, at.legend_at);
+}
+
+}  // namespace
+
+void draw_series(const SeriesPlan& plan, const std::string& png_path) {
+  SF_CHECK(!plan.panels.empty() && plan.panels.size() <= 16, std::to_string(plan.panels.size()) + " panels");
+  SF_CHECK(plan.width >= 600 && plan.width <= 8000, "width " + std::to_string(plan.width) + " px");
+  for (const Panel& panel : plan.panels)
+    for (const Series& series : panel.series)
+      SF_CHECK(series.times.size() == series.values.size(), "series " + series.name + " has " +
+                                                                std::to_string(series.times.size()) + " times for " +
+                                                                std::to_string(series.values.size()) + " values");
+
+  const std::vector<Place> places = lay_out(plan);
+  const Place& last = places.back();
+  const int rows = last.legend_at.empty() ? 0 : last.legend_at.back().row + 1;
+  Canvas canvas(plan.width, static_cast<int>(last.legend_top + rows * kLegendRow + kEdge), 0xFFFFFFFFu);
+  TextStyle style;
+  style.size = 28;
+  style.bold = true;
+  canvas.text({last.plot.x_min + 0.0, 42.0}, plan.title, style);
+  style = small_text();
+  style.size = 19;
+  style.color = 0xFF505050u;
+  canvas.text({last.plot.x_min + 0.0, 77.0}, plan.subtitle, style);
+  for (std::size_t i = 0; i < places.size(); ++i) draw_panel(canvas, plan.panels[i], places[i], i + 1 == places.size());
+  canvas.save_png(png_path);
+}
+
+}  // namespace sf::viz

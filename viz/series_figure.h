@@ -1,0 +1,36 @@
+#pragma once
+// Numbers over time: panels one below another, over one axis of seconds.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace sf::viz {
+
+/// One quantity, in order of time. Rule: as many times as values.
+struct Series {
+  std::string name;
+  std::vector<double> times;   ///< [s] finite
+  std::vector<double> values;  ///< in the panel's unit; the line is broken where one is not finite
+};
+
+struct Panel {
+  std::string title;   ///< above its plot; may be empty
+  std::string y_name;  ///< of its axis, with the unit: `distance [m]`
+  std::vector<Series> series;
+};
+
+struct SeriesPlan {
+  std::string title;
+  std::string subtitle;
+  std::vector<Panel> panels;  ///< at least one, at most 16
+  int width = 1600;           ///< [px] of the picture, in [600, 8000]
+};
+
+/// Draws every series in a colour of its own, told by its row. Up to seven are named below their panel; of more, seven
+/// from the first to the last.
+/// @throws base::InputError naming the path when it cannot be written.
+void draw_series(const SeriesPlan& plan, const std::string& png_path);
+
+}  // namespace sf::viz

@@ -1,0 +1,64 @@
+#include "world/road.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "world/magnet_row.h"
+#include "world/roads/roads.h"
+
+namespace sf::world {
+
+namespace {
+
+RoadNetwork read_network(Building& b, const Entity& entity) {
+  const Property* rndf = find(entity, "rndf");
+  const std::string name = text(b.source, entity, "rndf", "");
+  if (rndf == nullptr || name.empty()) fail(b.source, entity.at, "a road needs its network: rndf \"FILE\"");
+  const std::string file = find_file(b.source.document, rndf->at, name);
+  if (file.empty())
+    fail(
+        b.source, rndf->at,
+        fmt::format("cannot find the road network \"{}\"; expected it beside this file, beside the world file or along "
+                    "$STAGEPATH",
+                    name));
+  return load_roads(file, b.source.warnings);
+}
+
+/// Lanes named like "1.1 3.2", or "all".
+std::vector<const RoadLane*> named_lanes(const Building& b, const Entity& entity, const RoadNetwork& roads) {
+  const std::string names = " " + text(b.source, entity, "magnet_lanes", "all") + " ";
+  std::vector<const RoadLane*> lanes;
+  for (const RoadLane& lane : roads.lanes)
+    if (names == " all " || names.find(" " + name_of(roads, lane) + " ") != std::string::npos) lanes.push_back(&lane);
+  const auto words = static_cast<std::size_t>(std::count(names.begin(), names.end(), ' ')) - 1;
+  if (names != " all " && lanes.size() != words)
+    fail(b.source, find(entity, "magnet_lanes")->at,
+         fmt::format("'magnet_lanes' is \"{}\"; expected \"all\", or lanes that {} has, such as \"1.1 1.2\"",
+                     text(b.source, entity, "magnet_lanes", ""), roads.file));
+  return lanes;
+}
+
+}  // namespace
+
+void add_road(Building& b, const Entity& entity) {
+  check_keys(b.source, entity, Where::road);
+  const RoadNetwork roads = read_network(b, entity);
+  Model model;
+  model.name = text(b.source, entity, "name", roads.name.empty() ? "road" : roads.name);
+  while (!b.names.insert(model.name).second) model.name += "#";
+  model.type = "road";
+  b.world.models.push_back(model);
+  const std::vector<Stripe> paint = paint_of(roads);
+  b.world.stripes.insert(b.world.stripes.end(), paint.begin(), paint.end());
+
+  const auto row = read_magnet_row(b.source, entity);
+  if (!row) return;
+  for (const RoadLane* lane : named_lanes(b, entity, roads))
+    place_magnets(b, entity, *row, length_of(*lane), [&](double s) {
+      const Vec2 p = point_at(lane->centre, s);
+      return Pose{p.x, p.y, 0.0, 0.0};
+    });
+}
+
+}  // namespace sf::world

@@ -1,0 +1,199 @@
+#include "world/roads/mdf.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "base/error.h"
+#include "world/entities.h"
+#include "world/keys.h"
+
+namespace sf::world {
+
+namespace {
+
+enum class Block { file, checkpoints, speed_limits };
+
+constexpr std::array<std::string_view, 12> kKeywords{"MDF_name",         "RNDF",
+                                                     "RNDF_name",        "format_version",
+                                                     "creation_date",    "checkpoints",
+                                                     "num_checkpoints",  "end_checkpoints",
+                                                     "speed_limits",     "num_speed_limits",
+                                                     "end_speed_limits", "end_file"};
+
+class MdfReader {
+ public:
+  MdfReader(const std::string& file, std::string_view text) : statements_(file, text) { mdf_.file = file; }
+
+  Mdf read() {
+    while (!ended_ && statements_.next()) statement();
+    end_block("at the end of the file");
+    if (seen_.count("MDF_name") == 0)
+      throw base::InputError(mdf_.file, 0, "'MDF_name' is missing; expected a mission data file");
+    if (!ended_) warn(statements_.line(), "'end_file' is missing at the end of the file");
+    if (ended_ && statements_.next())
+      warn(now().line, fmt::format("{} comes after 'end_file'; it and what follows is ignored", quoted(now().keyword)));
+    check_count("num_checkpoints", mdf_.checkpoints.size());
+    check_count("num_speed_limits", mdf_.speed_limits.size());
+    return std::move(mdf_);
+  }
+
+ private:
+  const Statement& now() const { return statements_.now(); }
+  void warn(int line, std::string message) { mdf_.warnings.push_back({mdf_.file, line, std::move(message)}); }
+
+  void statement() {
+    const std::string_view word = now().keyword;
+    if (is_number(word)) return row();
+    if (std::find(kKeywords.begin(), kKeywords.end(), word) == kKeywords.end()) return unknown();
+    const std::string once(word == "RNDF_name" ? "RNDF" : word);
+    if (!seen_.insert(once).second) statements_.fail(fmt::format("'{}' is given twice; expected it once", word));
+    if (word == "MDF_name") mdf_.name = now().rest;
+    if (once == "RNDF") mdf_.rndf_name = now().rest;
+    if (word == "format_version") mdf_.format_version = now().rest;
+    if (word == "creation_date") mdf_.creation_date = now().rest;
+    if (word.starts_with("num_")) return promise();
+    if (word == "checkpoints") return begin(Block::checkpoints);
+    if (word == "speed_limits") return begin(Block::speed_limits);
+    if (word.starts_with("end_")) return end();
+  }
+
+  void unknown() {
+    const std::string_view word = now().keyword;
+    if (word == "num_segments" || word == "segment")
+      statements_.fail(fmt::format("'{}' stands in an RNDF; expected an MDF", word));
+    const bool plain = word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") ==
+                       std::string_view::npos;
+    if (!plain || word.size() > 40 || unknown_.size() > 20)
+      statements_.fail(
+          fmt::format("{} is no statement; expected a keyword of MDF such as 'checkpoints'", quoted(word)));
+    if (unknown_.emplace(word).second)
+      warn(now().line, fmt::format("unknown keyword '{}' is ignored{}", word, suggest(word, kKeywords)));
+  }
+
+  void begin(Block block) {
+    statements_.expect_fields(0);
+    end_block(fmt::format("before '{}'", now().keyword));
+    block_ = block;
+    begun_ = now().line;
+  }
+
+  void end() {
+    statements_.expect_fields(0);
+    const std::string_view word = now().keyword;
+    if (word == "end_file") {
+      end_block("before 'end_file'");
+      ended_ = true;
+      return;
+    }
+    if (word.substr(4) != name_of(block_))
+      statements_.fail(fmt::format("'{}' ends what is not open; expected '{}' before it", word, word.substr(4)));
+    block_ = Block::file;
+  }
+
+  static std::string_view name_of(Block block) {
+    return block == Block::checkpoints ? "checkpoints" : block == Block::speed_limits ? "speed_limits" : "file";
+  }
+
+  // A block may lack its end.
+  void end_block(const std::string& because) {
+    if (block_ == Block::file) return;
+    warn(begun_, fmt::format("'{0}' has no 'end_{0}'; it ends {1}", name_of(block_), because));
+    block_ = Block::file;
+  }
+
+  void promise() {
+    const int value = statements_.whole(0, 0, "the number");
+    statements_.expect_fields(1);
+    promises_[std::string(now().keyword)] = {value, now().line};
+  }
+
+  void check_count(const std::string& keyword, std::size_t have) {
+    const auto said = promises_.find(keyword);
+    if (said == promises_.end())
+      throw base::InputError(mdf_.file, 0, fmt::format("'{0}' is missing; expected '{0} {1}'", keyword, have));
+    if (static_cast<std::size_t>(said->second.first) == have) return;
+    throw base::InputError(mdf_.file, said->second.second,
+                           fmt::format("'{}' says {}, but there are {}; mend the number or what it counts", keyword,
+                                       said->second.first, have));
+  }
+
+  void row() {
+    if (block_ == Block::checkpoints) return checkpoint();
+    if (block_ == Block::speed_limits) return speed_limit();
+    statements_.fail(
+        fmt::format("{} stands alone; expected numbers between 'checkpoints' and 'end_checkpoints' or 'speed_limits' "
+                    "and 'end_speed_limits'",
+                    quoted(now().keyword)));
+  }
+
+  void checkpoint() {
+    statements_.expect_fields(0);
+    mdf_.checkpoints.push_back({statements_.keyword_whole(1, "the checkpoint's id"), now().line});
+  }
+
+  void speed_limit() {
+    const SpeedLimit limit{statements_.keyword_whole(1, "the id of the segment or zone"),
+                           statements_.decimal(0, "the lowest speed"), statements_.decimal(1, "the highest speed"),
+                           now().line};
+    statements_.expect_fields(2);
+    if (limit.least_mph < 0.0 || limit.most_mph < limit.least_mph || limit.most_mph > kMostRoadNumber)
+      statements_.fail(
+          fmt::format("speeds from {} to {} miles per hour; expected the lowest (0: none), then the highest",
+                      now().fields[0], now().fields[1]));
+    const auto [old, fresh] = limited_.emplace(limit.id, limit.line);
+    if (!fresh)
+      statements_.fail(fmt::format("{} has a speed limit in line {} already; expected one for each segment or zone",
+                                   limit.id, old->second));
+    mdf_.speed_limits.push_back(limit);
+  }
+
+  Statements statements_;
+  Mdf mdf_;
+  Block block_ = Block::file;
+  int begun_ = 0;  ///< line where the block began
+  std::set<std::string, std::less<>> seen_;
+  std::set<std::string, std::less<>> unknown_;
+  std::map<std::string, std::pair<int, int>> promises_;  ///< count and line, by keyword
+  std::map<int, int> limited_;                           ///< line, by segment or zone
+  bool ended_ = false;
+};
+
+}  // namespace
+
+Mdf parse_mdf(const std::string& file, std::string_view text) { return MdfReader(file, text).read(); }
+
+Mdf read_mdf(const std::string& file) { return parse_mdf(file, read_text(file)); }
+
+std::vector<Warning> check_against(const Mdf& mdf, const Rndf& rndf) {
+  std::set<int> checkpoints;
+  std::set<int> places;
+  for (const RndfSegment& segment : rndf.segments) {
+    places.insert(segment.id);
+    for (const RndfLane& lane : segment.lanes)
+      for (const RndfCheckpoint& checkpoint : lane.checkpoints) checkpoints.insert(checkpoint.id);
+  }
+  for (const RndfZone& zone : rndf.zones) {
+    places.insert(zone.id);
+    for (const RndfSpot& spot : zone.spots)
+      for (const RndfCheckpoint& checkpoint : spot.checkpoints) checkpoints.insert(checkpoint.id);
+  }
+
+  for (const MdfCheckpoint& wanted : mdf.checkpoints)
+    if (checkpoints.count(wanted.id) == 0)
+      throw base::InputError(mdf.file, wanted.line,
+                             fmt::format("checkpoint {} does not exist in {}; expected one of its {}", wanted.id,
+                                         rndf.file, checkpoints.size()));
+  std::vector<Warning> warnings;
+  for (const SpeedLimit& limit : mdf.speed_limits)
+    if (places.count(limit.id) == 0)
+      warnings.push_back({mdf.file, limit.line,
+                          fmt::format("speed limit for {}, but {} has no such segment or zone", limit.id, rndf.file)});
+  return warnings;
+}
+
+}  // namespace sf::world

@@ -1,0 +1,155 @@
+#pragma once
+// A road network in the metres of the world: lanes as smooth lines with edges and paint, and how one gets from one to
+// the next. Tables of rows in file order, joined by row number; immutable after it is built.
+//
+//   RoadNetwork roads = load_roads("site.rndf", warnings);         // world/roads/roads.h
+//   for (const Step& step : successors(roads, *find_point(roads, {1, 2, 3}))) ... step.to, step.length
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "world/roads/curve.h"
+#include "world/roads/rndf.h"
+#include "world/roads/sidecar.h"
+#include "world/world.h"
+
+namespace sf::world {
+
+/// A point by its place in the tables.
+struct PointRef {
+  enum class Kind : std::uint8_t { lane, perimeter, spot };
+  Kind kind = Kind::lane;
+  std::uint32_t row = 0;    ///< in `lanes`, `zones` or `spots`
+  std::uint32_t index = 0;  ///< among the points of that row; spot: 0 where it is entered, 1 where it ends
+
+  friend bool operator==(const PointRef&, const PointRef&) = default;
+};
+
+struct LanePoint {
+  PointId id;
+  Vec2 p;            ///< [m] world frame
+  double s = 0.0;    ///< [m] along the lane's centre line, from 0 to the lane's length, never falling
+  double yaw = 0.0;  ///< [rad] driving direction here; 0 where the lane has one point only
+};
+
+/// Rule: where the lane has one way-point (or all coincide), the centre line has one point and there are no edges.
+struct RoadLane {
+  std::uint32_t segment = 0;  ///< row in `segments`
+  int number = 0;             ///< in the file
+  double width = 0.0;         ///< [m] > 0
+  Boundary left = Boundary::none;
+  Boundary right = Boundary::none;
+  std::vector<LanePoint> points;  ///< at least one, in driving direction
+  Curve centre;                   ///< knots: `points`
+  std::vector<Vec2> left_edge;    ///< [m] half the width to the left of the centre line, in driving direction
+  std::vector<Vec2> right_edge;   ///< [m] likewise
+};
+inline double length_of(const RoadLane& lane) { return lane.centre.s.back(); }
+
+struct RoadSegment {
+  int id = 0;
+  std::string name;
+  std::uint32_t first_lane = 0;  ///< rows [first_lane, first_lane + lanes) of `lanes`
+  std::uint32_t lanes = 0;
+};
+
+struct PerimeterPoint {
+  PointId id;
+  Vec2 p;  ///< [m] world frame
+};
+
+struct RoadZone {
+  int id = 0;
+  std::string name;
+  std::vector<PerimeterPoint> perimeter;  ///< closed: the last is joined to the first
+  std::uint32_t first_spot = 0;           ///< rows [first_spot, first_spot + spots) of `spots`
+  std::uint32_t spots = 0;
+};
+
+struct RoadSpot {
+  std::uint32_t zone = 0;  ///< row in `zones`
+  int number = 0;
+  double width = 0.0;  ///< [m] > 0
+  Vec2 entry;          ///< [m] world frame
+  Vec2 end;            ///< [m] where a car's front comes to stand
+};
+
+struct RoadExit {
+  PointRef from;
+  PointRef to;
+  double length = 0.0;  ///< [m] of `connection_of`
+};
+
+/// Across the lane, as wide as the lane. None on lanes without a direction.
+struct StopLine {
+  PointRef at;
+  Vec2 left;   ///< [m] its end on the lane's left edge
+  Vec2 right;  ///< [m]
+};
+
+struct RoadCheckpoint {
+  int id = 0;
+  PointRef at;
+  Vec2 p;  ///< [m] world frame
+};
+
+/// Sizes of paint, scaled. [m] > 0
+struct RoadPaint {
+  double line_width = 0.0;
+  double dash_length = 0.0;
+  double dash_gap = 0.0;
+  double stop_width = 0.0;
+};
+
+struct RoadNetwork {
+  std::string name;
+  std::string file;
+  double scale = 1.0;       ///< [-] metres here per metre of the RNDF
+  double tolerance = 1e-3;  ///< [m] of all polylines against their curves
+  std::vector<RoadSegment> segments;
+  std::vector<RoadLane> lanes;
+  std::vector<RoadZone> zones;
+  std::vector<RoadSpot> spots;
+  std::vector<RoadExit> exits;  ///< sorted by `from` in the order of the tables, then as in the file
+  std::vector<StopLine> stops;
+  std::vector<RoadCheckpoint> checkpoints;  ///< sorted by id
+  RoadPaint paint;
+  RoadCounts counts;
+  Extent extent;                                    ///< [m] of all points, edges and spots
+  std::vector<std::pair<PointId, PointRef>> index;  ///< sorted: see `find_point`
+};
+
+/// Builds the network. @throws base::InputError where the sidecar names what is not there, or the network is too large.
+RoadNetwork build_network(const Rndf& rndf, const RoadSidecar& sidecar, std::vector<Warning>& warnings);
+
+/// Nothing where the network has no such point.
+std::optional<PointRef> find_point(const RoadNetwork& network, PointId id);
+/// Null where the network has no such checkpoint. Lives as long as the network.
+const RoadCheckpoint* find_checkpoint(const RoadNetwork& network, int id);
+
+PointId id_of(const RoadNetwork& network, PointRef at);
+Vec2 position_of(const RoadNetwork& network, PointRef at);
+/// Driving direction [rad]; nothing for perimeter points, and for lanes without one.
+std::optional<double> yaw_of(const RoadNetwork& network, PointRef at);
+/// "1.2": as the file has it.
+std::string name_of(const RoadNetwork& network, const RoadLane& lane);
+
+/// One way on from a point.
+struct Step {
+  enum class Way : std::uint8_t { lane, exit, zone };
+  Way way = Way::lane;  ///< along the lane, over an exit, or freely across a zone
+  PointRef to;
+  double length = 0.0;  ///< [m] along the lane; of the exit's connection; straight across a zone
+};
+
+/// Where one can go from `at`: on along the lane, over its exits; from a perimeter point also to every spot of the zone
+/// and to every perimeter point that has exits; within a spot to its end, and from its end to every perimeter point
+/// that has exits.
+std::vector<Step> successors(const RoadNetwork& network, PointRef at);
+
+/// The way an exit takes: from the lane's direction into that of the entry; straight where a direction is not known.
+Curve connection_of(const RoadNetwork& network, const RoadExit& exit);
+
+}  // namespace sf::world

@@ -1,0 +1,241 @@
+#include "world/roads/rndf_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/error.h"
+#include "world/keys.h"
+
+namespace sf::world {
+
+namespace {
+
+// Keywords of the format's extension for traffic lights and crosswalks ("RNDF 1.1", Stanford VLR). Nothing of theirs is
+// modelled here, and none of them changes what the other lines mean.
+constexpr std::array<std::string_view, 20> kExtension{"num_intersections",
+                                                      "num_crosswalks",
+                                                      "speed_limit",
+                                                      "offroad",
+                                                      "lane_type",
+                                                      "cross",
+                                                      "light",
+                                                      "crosswalk",
+                                                      "crosswalk_width",
+                                                      "crosswalk_p1",
+                                                      "crosswalk_p2",
+                                                      "end_crosswalk",
+                                                      "intersection",
+                                                      "num_trafficlights",
+                                                      "trafficlight",
+                                                      "group_id",
+                                                      "position",
+                                                      "orientation",
+                                                      "end_trafficlight",
+                                                      "end_intersection"};
+
+// A text that uses more unknown words than this is something else.
+constexpr std::size_t kMostUnknown = 50;
+
+bool is_extension(std::string_view keyword) {
+  return std::find(kExtension.begin(), kExtension.end(), keyword) != kExtension.end();
+}
+
+bool is_word(std::string_view keyword) {
+  return std::all_of(keyword.begin(), keyword.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+std::string_view name_of(RndfBlock block) {
+  constexpr std::array<std::string_view, 6> kNames{"file", "segment", "lane", "zone", "perimeter", "spot"};
+  return kNames[static_cast<std::size_t>(block)];
+}
+
+}  // namespace
+
+/// Where a keyword may stand, whether once, and what it does. Keywords that begin or end a block end what is still open
+/// inside of its parent.
+struct RndfReader::Rule {
+  std::vector<RndfBlock> blocks;
+  bool once = false;
+  bool unwinds = false;
+  void (*act)(RndfReader&) = nullptr;
+};
+
+const std::map<std::string_view, RndfReader::Rule>& RndfReader::rules() {
+  using B = RndfBlock;
+  using R = RndfReader;
+  static const std::map<std::string_view, Rule> rules{
+      {"RNDF_name", {{B::file}, true, false, [](R& r) { r.rndf_.name = r.now().rest; }}},
+      {"format_version", {{B::file}, true, false, [](R& r) { r.rndf_.format_version = r.now().rest; }}},
+      {"creation_date", {{B::file}, true, false, [](R& r) { r.rndf_.creation_date = r.now().rest; }}},
+      {"num_segments", {{B::file}, true, false, [](R& r) { r.promise(1, "the number of segments"); }}},
+      {"num_zones", {{B::file}, true, false, [](R& r) { r.promise(0, "the number of zones"); }}},
+      {"segment", {{B::file}, false, true, [](R& r) { r.begin_segment(); }}},
+      {"num_lanes", {{B::segment}, true, false, [](R& r) { r.promise(1, "the number of lanes"); }}},
+      {"segment_name", {{B::segment}, true, false, [](R& r) { r.rndf_.segments.back().name = r.now().rest; }}},
+      {"lane", {{B::segment}, false, true, [](R& r) { r.begin_lane(); }}},
+      {"num_waypoints", {{B::lane}, true, false, [](R& r) { r.promise(1, "the number of way-points"); }}},
+      {"lane_width", {{B::lane}, true, false, [](R& r) { r.read_width(r.lane().width_ft); }}},
+      {"left_boundary", {{B::lane}, true, false, [](R& r) { r.read_boundary(r.lane().left); }}},
+      {"right_boundary", {{B::lane}, true, false, [](R& r) { r.read_boundary(r.lane().right); }}},
+      {"stop", {{B::lane}, false, false, [](R& r) { r.read_stop(); }}},
+      {"exit", {{B::lane, B::perimeter}, false, false, [](R& r) { r.read_exit(); }}},
+      {"checkpoint", {{B::lane, B::spot}, false, false, [](R& r) { r.read_checkpoint(); }}},
+      {"end_lane", {{B::lane}, false, true, [](R& r) { r.end_block(B::lane); }}},
+      {"end_segment", {{B::segment}, false, true, [](R& r) { r.end_block(B::segment); }}},
+      {"zone", {{B::file}, false, true, [](R& r) { r.begin_zone(); }}},
+      {"num_spots", {{B::zone}, true, false, [](R& r) { r.promise(0, "the number of spots"); }}},
+      {"zone_name", {{B::zone}, true, false, [](R& r) { r.zone().name = r.now().rest; }}},
+      {"perimeter", {{B::zone}, true, true, [](R& r) { r.begin_perimeter(); }}},
+      {"num_perimeterpoints",
+       {{B::perimeter}, true, false, [](R& r) { r.promise(1, "the number of perimeter points"); }}},
+      {"end_perimeter", {{B::perimeter}, false, true, [](R& r) { r.end_block(B::perimeter); }}},
+      {"spot", {{B::zone}, false, true, [](R& r) { r.begin_spot(); }}},
+      {"spot_width", {{B::spot}, true, false, [](R& r) { r.read_width(r.spot().width_ft); }}},
+      {"end_spot", {{B::spot}, false, true, [](R& r) { r.end_block(B::spot); }}},
+      {"end_zone", {{B::zone}, false, true, [](R& r) { r.end_block(B::zone); }}},
+      {"end_file", {{B::file}, false, true, [](R& r) { r.end_file(); }}}};
+  return rules;
+}
+
+RndfReader::RndfReader(const std::string& file, std::string_view text) : statements_(file, text) {
+  rndf_.file = file;
+  open_.push_back({RndfBlock::file, 1, "the file", {}, {}});
+}
+
+void RndfReader::warn(int line, std::string message) {
+  rndf_.warnings.push_back({statements_.file(), line, std::move(message)});
+}
+
+void RndfReader::warn_once(std::string_view keyword, std::string message) {
+  if (unknown_.emplace(keyword).second) warn(now().line, std::move(message));
+  if (unknown_.size() > kMostUnknown)
+    statements_.fail(fmt::format("{} keywords that no RNDF has; is this one?", unknown_.size()));
+}
+
+Rndf RndfReader::read() {
+  while (!ended_ && statements_.next()) statement();
+  if (!ended_) {
+    check_name();
+    while (open_.size() > 1) close_implied("at the end of the file");
+    warn(statements_.line(), "'end_file' is missing at the end of the file");
+    close();
+  } else if (statements_.next()) {
+    warn(now().line, fmt::format("{} comes after 'end_file'; it and what follows is ignored", quoted(now().keyword)));
+  }
+  return std::move(rndf_);
+}
+
+void RndfReader::statement() {
+  const std::string_view keyword = now().keyword;
+  if (is_number(keyword)) return waypoint();
+  const auto rule = rules().find(keyword);
+  if (rule == rules().end()) return unknown();
+  apply(keyword, rule->second);
+}
+
+void RndfReader::unknown() {
+  const std::string_view keyword = now().keyword;
+  if (keyword == "MDF_name") statements_.fail("this is an MDF; expected an RNDF");
+  if (is_extension(keyword)) return warn_once(keyword, fmt::format("'{}' is known but not modelled; ignored", keyword));
+  if (!is_word(keyword) || keyword.size() > 40)
+    statements_.fail(
+        fmt::format("{} is no statement; expected a keyword of RNDF such as 'segment' or 'exit'", quoted(keyword)));
+  std::vector<std::string_view> known(kExtension.begin(), kExtension.end());
+  for (const auto& [word, rule] : rules()) known.push_back(word);
+  warn_once(keyword, fmt::format("unknown keyword '{}' is ignored{}", keyword, suggest(keyword, known)));
+}
+
+void RndfReader::apply(std::string_view keyword, const Rule& rule) {
+  const auto may = [&](const Open& open) {
+    return std::find(rule.blocks.begin(), rule.blocks.end(), open.block) != rule.blocks.end();
+  };
+  if (!may(open_.back())) {
+    const bool above = std::any_of(open_.begin(), open_.end(), may);
+    if (!rule.unwinds || !above)
+      statements_.fail(fmt::format("'{}' stands in {}; expected it in a {}{}", keyword, open_.back().name,
+                                   name_of(rule.blocks[0]),
+                                   rule.blocks.size() > 1 ? fmt::format(" or a {}", name_of(rule.blocks[1])) : ""));
+    while (!may(open_.back())) close_implied(fmt::format("before '{}'", keyword));
+  }
+  if (rule.once && !open_.back().seen.emplace(keyword).second)
+    statements_.fail(fmt::format("'{}' is given twice in {}; expected it once", keyword, open_.back().name));
+  rule.act(*this);
+}
+
+// ---------------------------------------------------------------------------------------------------- blocks
+
+void RndfReader::open(RndfBlock block, std::string name) {
+  open_.push_back({block, now().line, std::move(name), {}, {}});
+}
+
+// What is missing may be none; what is said must be so.
+void RndfReader::check_promise(const Open& open, std::string_view keyword, std::size_t have) {
+  const auto said = open.promises.find(keyword);
+  if (said == open.promises.end()) {
+    const std::string message = fmt::format("'{0}' is missing in {1}; expected '{0} {2}'", keyword, open.name, have);
+    if (have > 0) throw base::InputError(statements_.file(), open.line, message);
+    return warn(open.line, message);
+  }
+  if (static_cast<std::size_t>(said->second.count) == have) return;
+  throw base::InputError(statements_.file(), said->second.line,
+                         fmt::format("'{}' says {}, but {} has {}; mend the number or what it counts", keyword,
+                                     said->second.count, open.name, have));
+}
+
+void RndfReader::check_name() const {
+  if (open_.front().seen.count("RNDF_name") > 0) return;
+  throw base::InputError(statements_.file(), 0, "'RNDF_name' is missing; expected a route network definition file");
+}
+
+// Ends the innermost block.
+void RndfReader::close() {
+  const Open& last = open_.back();
+  switch (last.block) {
+    case RndfBlock::file:
+      check_promise(last, "num_segments", rndf_.segments.size());
+      check_promise(last, "num_zones", rndf_.zones.size());
+      break;
+    case RndfBlock::segment:
+      check_promise(last, "num_lanes", rndf_.segments.back().lanes.size());
+      break;
+    case RndfBlock::lane:
+      check_promise(last, "num_waypoints", lane().points.size());
+      break;
+    case RndfBlock::zone:
+      check_promise(last, "num_spots", zone().spots.size());
+      if (zone().perimeter.empty())
+        throw base::InputError(statements_.file(), last.line,
+                               fmt::format("{} has no perimeter; expected 'perimeter {}.0'", last.name, zone().id));
+      break;
+    case RndfBlock::perimeter:
+      check_promise(last, "num_perimeterpoints", zone().perimeter.size());
+      if (zone().perimeter.size() < 3)
+        warn(last.line, fmt::format("{} has fewer than three points: no area", last.name));
+      break;
+    case RndfBlock::spot:
+      if (spot().points.size() != 2)
+        throw base::InputError(statements_.file(), last.line,
+                               fmt::format("{} has {} points; expected two, where it is entered and where it ends",
+                                           last.name, spot().points.size()));
+      break;
+  }
+  open_.pop_back();
+}
+
+void RndfReader::close_implied(const std::string& because) {
+  const Open& last = open_.back();
+  warn(last.line, fmt::format("{} has no 'end_{}'; it ends {}", last.name, name_of(last.block), because));
+  close();
+}
+
+void RndfReader::end_block(RndfBlock block) {
+  statements_.expect_fields(0);
+  SF_CHECK(open_.back().block == block, "a block ends that is not the innermost");
+  close();
+}
+
+}  // namespace sf::world

@@ -1,0 +1,197 @@
+// What the statements of an RNDF put into it.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "world/roads/rndf_reader.h"
+
+namespace sf::world {
+
+namespace {
+
+PointId key(int segment, int lane = 0) {
+  return {static_cast<std::uint16_t>(segment), static_cast<std::uint16_t>(lane), 0};
+}
+
+/// Segments and zones are {id, 0, 0}, lanes and spots {id, lane, 0}.
+std::string shown(PointId id) {
+  if (id.point > 0) return text_of(id);
+  return id.lane > 0 ? fmt::format("{}.{}", id.segment, id.lane) : fmt::format("{}", id.segment);
+}
+
+}  // namespace
+
+void RndfReader::promise(int least, std::string_view what) {
+  const int value = statements_.whole(0, least, what);
+  statements_.expect_fields(1);
+  open_.back().promises.emplace(now().keyword, Promise{value, now().line});
+}
+
+void RndfReader::claim(PointId id, std::string_view what) {
+  const auto [old, fresh] = claimed_.emplace(id, now().line);
+  if (!fresh)
+    statements_.fail(
+        fmt::format("{} {} is already in line {}; expected an id of its own", what, shown(id), old->second));
+}
+
+void RndfReader::begin_segment() {
+  const int id = statements_.whole(0, 1, "the segment's id");
+  statements_.expect_fields(1);
+  claim(key(id), "segment");
+  rndf_.segments.push_back({id, {}, {}, now().line});
+  open(RndfBlock::segment, fmt::format("segment {}", id));
+}
+
+void RndfReader::begin_lane() {
+  const PointId id = statements_.pair(0, "the lane's id");
+  statements_.expect_fields(1);
+  const int segment = rndf_.segments.back().id;
+  if (id.segment != segment || id.lane == 0)
+    statements_.fail(fmt::format("lane {}.{} stands in segment {}; expected {}.1, {}.2, ...", id.segment, id.lane,
+                                 segment, segment, segment));
+  claim(id, "lane");
+  RndfLane lane;
+  lane.number = id.lane;
+  lane.line = now().line;
+  rndf_.segments.back().lanes.push_back(std::move(lane));
+  open(RndfBlock::lane, fmt::format("lane {}.{}", id.segment, id.lane));
+}
+
+void RndfReader::begin_zone() {
+  const int id = statements_.whole(0, 1, "the zone's id");
+  statements_.expect_fields(1);
+  claim(key(id), "zone or segment");
+  rndf_.zones.push_back({id, {}, {}, {}, {}, now().line});
+  open(RndfBlock::zone, fmt::format("zone {}", id));
+}
+
+void RndfReader::begin_perimeter() {
+  const PointId id = statements_.pair(0, "the perimeter's id");
+  statements_.expect_fields(1);
+  if (id != key(zone().id))
+    statements_.fail(
+        fmt::format("perimeter {}.{} stands in zone {}; expected {}.0", id.segment, id.lane, zone().id, zone().id));
+  open(RndfBlock::perimeter, fmt::format("perimeter {}.0", zone().id));
+}
+
+void RndfReader::begin_spot() {
+  const PointId id = statements_.pair(0, "the spot's id");
+  statements_.expect_fields(1);
+  if (id.segment != zone().id || id.lane == 0)
+    statements_.fail(fmt::format("spot {}.{} stands in zone {}; expected {}.1, {}.2, ...", id.segment, id.lane,
+                                 zone().id, zone().id, zone().id));
+  claim(id, "spot");
+  RndfSpot spot;
+  spot.number = id.lane;
+  spot.line = now().line;
+  zone().spots.push_back(std::move(spot));
+  open(RndfBlock::spot, fmt::format("spot {}.{}", id.segment, id.lane));
+}
+
+void RndfReader::end_file() {
+  statements_.expect_fields(0);
+  check_name();
+  close();
+  ended_ = true;
+}
+
+std::vector<RndfPoint>& RndfReader::points() {
+  switch (open_.back().block) {
+    case RndfBlock::lane:
+      return lane().points;
+    case RndfBlock::perimeter:
+      return zone().perimeter;
+    case RndfBlock::spot:
+      return spot().points;
+    default:
+      break;
+  }
+  statements_.fail(fmt::format("{} stands in {}; expected way-points in lanes, perimeters and spots only",
+                               quoted(now().keyword), open_.back().name));
+}
+
+// The id that a line names must be of the block it stands in.
+PointId RndfReader::own(PointId id, std::string_view what) const {
+  const RndfBlock block = open_.back().block;
+  const bool of_lane = block == RndfBlock::lane;
+  const PointId here =
+      of_lane ? key(rndf_.segments.back().id, rndf_.segments.back().lanes.back().number)
+              : key(rndf_.zones.back().id, block == RndfBlock::spot ? rndf_.zones.back().spots.back().number : 0);
+  if (id.segment == here.segment && id.lane == here.lane && id.point > 0) return id;
+  statements_.fail(fmt::format("{} {} stands in {}; expected {}.{}.1, {}.{}.2, ...", what, text_of(id),
+                               open_.back().name, here.segment, here.lane, here.segment, here.lane));
+}
+
+void RndfReader::waypoint() {
+  std::vector<RndfPoint>& row = points();
+  const RndfPoint point{own(statements_.keyword_point("the way-point"), "way-point"),
+                        statements_.decimal(0, "the latitude"), statements_.decimal(1, "the longitude"), now().line};
+  statements_.expect_fields(2);
+  if (std::abs(point.latitude) > 90.0)
+    statements_.fail(fmt::format("the latitude is {}; expected degrees from -90 to 90", quoted(now().fields[0])));
+  if (std::abs(point.longitude) > 180.0)
+    statements_.fail(fmt::format("the longitude is {}; expected degrees from -180 to 180", quoted(now().fields[1])));
+  claim(point.id, "way-point");
+  const int expected = row.empty() ? 1 : row.back().id.point + 1;
+  if (point.id.point < expected)
+    statements_.fail(fmt::format("way-point {} comes after {}; expected them in driving direction, 1, 2, 3, ...",
+                                 text_of(point.id), text_of(row.back().id)));
+  if (point.id.point > expected && open_.back().seen.emplace("gap").second)
+    warn(now().line,
+         fmt::format("way-point {} follows where {} was expected; numbers are left out", text_of(point.id), expected));
+  row.push_back(point);
+}
+
+void RndfReader::read_boundary(Boundary& boundary) {
+  const auto read = now().fields.empty() ? std::nullopt : boundary_of(now().fields[0]);
+  if (!read)
+    statements_.fail(
+        fmt::format("'{}' is {}; expected one of {}", now().keyword, quoted(now().rest), boundary_words()));
+  statements_.expect_fields(1);
+  boundary = *read;
+}
+
+// 0 is how some files say that nothing is known.
+void RndfReader::read_width(std::optional<double>& width_ft) {
+  if (now().fields.empty()) return;
+  const double feet = statements_.decimal(0, "the width");
+  statements_.expect_fields(1);
+  if (feet < 0.0 || feet > kMostRoadNumber)
+    statements_.fail(
+        fmt::format("the width is {}; expected feet from 0 to {}", quoted(now().fields[0]), kMostRoadNumber));
+  if (feet > 0.0) width_ft = feet;
+}
+
+void RndfReader::read_exit() {
+  const RndfExit exit{own(statements_.point(0, "the exit"), "exit"), statements_.point(1, "the entry of this exit"),
+                      now().line};
+  statements_.expect_fields(2);
+  const auto [old, fresh] = exits_.emplace(std::pair(exit.from, exit.to), exit.line);
+  if (!fresh)
+    statements_.fail(fmt::format("exit {} to {} is already in line {}; expected it once", text_of(exit.from),
+                                 text_of(exit.to), old->second));
+  (open_.back().block == RndfBlock::lane ? lane().exits : zone().exits).push_back(exit);
+}
+
+void RndfReader::read_stop() {
+  const RndfStop stop{own(statements_.point(0, "the stop"), "stop"), now().line};
+  statements_.expect_fields(1);
+  if (!stops_.insert(stop.at).second)
+    statements_.fail(fmt::format("stop {} is given twice; expected it once", text_of(stop.at)));
+  lane().stops.push_back(stop);
+}
+
+void RndfReader::read_checkpoint() {
+  const PointId at = own(statements_.point(0, "the checkpoint's way-point"), "checkpoint");
+  const RndfCheckpoint checkpoint{statements_.whole(1, 1, "the checkpoint's id"), at, now().line};
+  statements_.expect_fields(2);
+  const auto [old, fresh] = checkpoints_.emplace(checkpoint.id, checkpoint.line);
+  if (!fresh)
+    statements_.fail(
+        fmt::format("checkpoint {} is already in line {}; expected an id of its own", checkpoint.id, old->second));
+  (open_.back().block == RndfBlock::lane ? lane().checkpoints : spot().checkpoints).push_back(checkpoint);
+}
+
+}  // namespace sf::world

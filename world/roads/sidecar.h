@@ -1,0 +1,53 @@
+#pragma once
+// What an RNDF cannot say: where it lies in the world, at which scale, and widths finer than feet. A TOML file beside
+// it, `site.toml` for `site.rndf`; keys in docs/roads.md.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "world/roads/geodesy.h"
+#include "world/roads/rndf.h"
+
+namespace sf::world {
+
+/// Lengths are metres of the world, after scaling. Nothing: not said.
+struct RoadSidecar {
+  struct Lane {
+    std::optional<double> width;  ///< [m] in (0, 10 000]
+    std::optional<Boundary> left;
+    std::optional<Boundary> right;
+    int line = 0;
+  };
+  struct Point {
+    Vec2 p;  ///< [m] world frame, in place of latitude and longitude
+    int line = 0;
+  };
+
+  std::string file;                  ///< empty: there is none
+  std::optional<Geodetic> origin;    ///< else the network's first point
+  double scale = 1.0;                ///< [-] metres of the world per metre of the RNDF, in (0, 1000]
+  Vec2 position;                     ///< [m] of the origin in the world
+  double heading = 0.0;              ///< [rad] of the RNDF's east in the world, counter-clockwise from +x
+  std::optional<double> lane_width;  ///< [m] of every lane that has no width of its own below
+  std::optional<double> paint_width;
+  std::optional<double> dash_length;
+  std::optional<double> dash_gap;
+  std::optional<double> stop_width;  ///< [m] of stop lines, along the lane
+  std::optional<double> spot_width;  ///< [m] of every parking spot
+  std::map<PointId, Lane> lanes;     ///< by {segment, lane, 0}
+  std::map<PointId, Point> points;
+};
+
+/// The sidecar of `rndf_file`: defaults where there is no such file. Unknown keys are warnings.
+/// @throws base::InputError with file and line.
+RoadSidecar read_sidecar(const std::string& rndf_file, std::vector<Warning>& warnings);
+
+/// Likewise from memory; `file` names errors.
+RoadSidecar parse_sidecar(const std::string& file, std::string_view text, std::vector<Warning>& warnings);
+
+/// Checks that every lane and point the sidecar names is in `rndf`. @throws base::InputError
+void check_against(const RoadSidecar& sidecar, const Rndf& rndf);
+
+}  // namespace sf::world
