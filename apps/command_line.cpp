@@ -36,6 +36,24 @@ CLI::Validator pose() {
           ""};
 }
 
+CLI::Validator line() {
+  return {[](std::string& text) {
+            return read_line(text)
+                       ? ""
+                       : fmt::format("expected X0,Y0,X1,Y1 of two points such as -1,0,2,0.5, got '{}'", text);
+          },
+          ""};
+}
+
+CLI::Validator extent() {
+  return {[](std::string& text) {
+            const auto e = read_line(text);
+            const bool fine = e && (*e)[0] < (*e)[2] && (*e)[1] < (*e)[3];
+            return fine ? "" : fmt::format("expected XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1, got '{}'", text);
+          },
+          ""};
+}
+
 void add_json(CLI::App& app, Options& o) { app.add_flag("--json", o.json, "Print facts as JSON on standard output"); }
 
 /// CLI11's own envname would set what all subcommands share after the one that was called has set it.
@@ -120,6 +138,9 @@ void add_devices(CLI::App& app, Options& o) {
 void add_check(CLI::App& app, Options& o) {
   CLI::App* sub = app.add_subcommand("check", "Say what was understood of a world, and every warning with its line");
   add_world(*sub, o);
+  sub->add_option("--rndf", o.rndf, "Road network that a mission (.mdf) is checked against")
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
   add_json(*sub, o);
   sub->callback([&o] { o.command = Command::check; });
 }
@@ -129,6 +150,31 @@ void add_draw(CLI::App& app, Options& o) {
   add_world(*sub, o);
   sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(not_empty("a file"))->type_name("FILE");
   sub->callback([&o] { o.command = Command::draw; });
+}
+
+void add_field(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand("field", "Draw the field of a world's magnets at one height, and along a line");
+  add_world(*sub, o);
+  add_device(*sub, o);
+  sub->add_option("--height", o.height, "Height in the world [m]")
+      ->required()
+      ->check(number(-1e6, 1e6))
+      ->type_name("Z");
+  sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(not_empty("a file"))->type_name("FILE");
+  sub->add_option_function<std::string>(
+         "--line", [&o](const std::string& text) { o.line = read_line(text); },
+         "Ends of the profile's line [m] (default: along the magnets)")
+      ->check(line())
+      ->type_name("X0,Y0,X1,Y1");
+  sub->add_option_function<std::string>(
+         "--extent", [&o](const std::string& text) { o.extent = read_line(text); },
+         "What the map must show [m] (default: all magnets)")
+      ->check(extent())
+      ->type_name("X0,Y0,X1,Y1");
+  sub->add_option("--csv", o.csv, "File to write the profile's numbers to")
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
+  sub->callback([&o] { o.command = Command::field; });
 }
 
 void add_sense(CLI::App& app, Options& o) {
@@ -290,6 +336,7 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   add_devices(app, o);
   add_check(app, o);
   add_draw(app, o);
+  add_field(app, o);
   add_sense(app, o);
   add_run(app, o);
   add_serve(app, o);

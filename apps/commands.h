@@ -9,6 +9,7 @@ namespace sf::apps {
 int devices(const Options& options);
 int check(const Options& options);
 int draw(const Options& options);
+int field(const Options& options);
 int sense(const Options& options);
 int run(const Options& options);
 int serve(const Options& options);

@@ -7,6 +7,7 @@
 #include "apps/commands.h"
 #include "apps/facts.h"
 #include "apps/lend.h"
+#include "apps/roads.h"
 #include "apps/wording.h"
 #include "base/error.h"
 #include "viz/world_figure.h"
@@ -91,6 +92,7 @@ int devices(const Options& options) {
 }
 
 int check(const Options& options) {
+  if (const auto code = check_roads(options)) return *code;
   const world::World world = world::load_world(options.world, options.load);
   const sensors::Roster roster(world);
   print(options.json ? json_of(world, roster) : text_of(world, roster));
@@ -98,6 +100,7 @@ int check(const Options& options) {
 }
 
 int draw(const Options& options) {
+  if (const auto code = draw_roads(options)) return *code;
   const world::World world = world::load_world(options.world, options.load);
   viz::draw_world(world, options.out);
   std::fprintf(stderr, "sensorfarm: wrote %s\n", options.out.c_str());

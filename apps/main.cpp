@@ -18,6 +18,8 @@ int dispatch(const sf::apps::Options& options) {
       return sf::apps::check(options);
     case Command::draw:
       return sf::apps::draw(options);
+    case Command::field:
+      return sf::apps::field(options);
     case Command::sense:
       return sf::apps::sense(options);
     case Command::run:

@@ -1,6 +1,7 @@
 #pragma once
 // What the user asked for, as plain values: filled by the command line, read by the commands.
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -12,7 +13,7 @@
 
 namespace sf::apps {
 
-enum class Command { devices, check, draw, sense, run, serve, plot, listen };
+enum class Command { devices, check, draw, field, sense, run, serve, plot, listen };
 
 struct Options {
   Command command = Command::devices;
@@ -21,7 +22,13 @@ struct Options {
 
   std::string world;  ///< world file, or the recording's folder for `plot`
   world::LoadOptions load;
+  std::string rndf;  ///< network that `check` holds a mission against; empty: none
   std::string out;  ///< picture, or folder for `plot`
+
+  double height = 0.0;                          ///< [m] of the field's figure
+  std::optional<std::array<double, 4>> line;    ///< [m] of its profile: x, y of both ends
+  std::optional<std::array<double, 4>> extent;  ///< [m] of its map: x, y of the lower left and upper right corner
+  std::string csv;                              ///< file for its profile; empty: none
 
   std::optional<base::Pose> pose;  ///< of the robot, for `sense`
   std::string robot;

@@ -1,9 +1,11 @@
 #include "apps/simulation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "control/wander.h"
+#include "sensors/laser_packets.h"
 
 namespace sf::apps {
 
@@ -74,7 +76,9 @@ void Simulation::decide(std::int64_t time) {
       const std::span<const base::ReadingBlock> own{sorted_.data() + first, first_[m] - first};
       // A controller runs at its lasers' rate: between readings the last command stands, unless the bumper speaks.
       const bool contact = fleet_.contacts()[m] != 0;
-      if (own.empty() && !contact && !world_.movers[m].lasers.empty()) continue;
+      const bool looked =
+          std::any_of(own.begin(), own.end(), [](const base::ReadingBlock& r) { return r.kind == sensors::kLaserId; });
+      if (!looked && !contact && !world_.movers[m].lasers.empty()) continue;
       commands_[m] = controllers_[m]->step({time, fleet_.reports()[m], own, contact});
     }
   });

@@ -58,6 +58,16 @@ std::optional<base::Pose> read_pose(const std::string& text) {
   return base::Pose{v[0], v[1], 0.0, v[2] * M_PI / 180.0};
 }
 
+std::optional<std::array<double, 4>> read_line(const std::string& text) {
+  std::array<double, 4> v{};
+  int used = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf,%lf%n", &v[0], &v[1], &v[2], &v[3], &used) != 4) return std::nullopt;
+  if (static_cast<std::size_t>(used) != text.size()) return std::nullopt;
+  if (!std::all_of(v.begin(), v.end(), [](double value) { return std::fabs(value) <= kFarthest; })) return std::nullopt;
+  if (v[0] == v[2] && v[1] == v[3]) return std::nullopt;
+  return v;
+}
+
 std::string suggest_option(const std::string& word, const std::vector<std::string>& names) {
   if (word.compare(0, 2, "--") != 0) return "";
   const std::string bare = word.substr(2);

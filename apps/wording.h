@@ -1,6 +1,7 @@
 #pragma once
 // What arguments may be, and how a wrong one is refused: the words of the command line, without CLI11.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,6 +27,9 @@ std::string either(const std::vector<std::string>& words);
 
 /// "X,Y,YAW_DEG" [m, m, degrees], each within 1e7, as a pose; nothing where it is none.
 std::optional<base::Pose> read_pose(const std::string& text);
+
+/// "X0,Y0,X1,Y1" [m], each within 1e7 and the two points distinct; nothing where it is none.
+std::optional<std::array<double, 4>> read_line(const std::string& text);
 
 /// What the unexpected argument `word` may have been meant to be: `; did you mean '--x'?` or nothing.
 /// @param names of the subcommand's options, without dashes.

@@ -108,9 +108,10 @@ void Casts::Tables::turn_beams(const Due& d, unsigned thread) {
 }
 
 void Casts::Tables::write_lanes() {
-  const bool same =
-      lanes_written.size() == due.size() && std::equal(due.begin(), due.end(), lanes_written.begin(),
-                                                       [](const Due& d, std::uint32_t row) { return d.row == row; });
+  // Tables are born with anything in them: the first tick writes them, even when nothing is due.
+  const bool same = bound && lanes_written.size() == due.size() &&
+                    std::equal(due.begin(), due.end(), lanes_written.begin(),
+                               [](const Due& d, std::uint32_t row) { return d.row == row; });
   if (same) return;
   lanes_written.clear();
   const auto table = lanes->host<Lane>();

@@ -29,44 +29,58 @@ Labels::Labels(const PixelBox& plot)
     : plot_(plot),
       columns_(static_cast<int>((plot.x_max - plot.x_min) / kCell) + 1),
       rows_(static_cast<int>((plot.y_max - plot.y_min) / kCell) + 1),
-      ground_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0) {}
+      cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), bare) {}
 
-void Labels::mark(Vec2 p, double radius) {
-  const auto cell = [](double x, int least, int most) { return std::clamp(static_cast<int>(x / kCell), least, most); };
-  const double x = p.x - plot_.x_min;
-  const double y = p.y - plot_.y_min;
-  if (!(x > -radius && y > -radius && x < kCell * columns_ + radius && y < kCell * rows_ + radius)) return;
-  for (int j = cell(y - radius, 0, rows_ - 1); j <= cell(y + radius, 0, rows_ - 1); ++j)
-    for (int i = cell(x - radius, 0, columns_ - 1); i <= cell(x + radius, 0, columns_ - 1); ++i)
-      ground_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)] = 1;
+Labels::Cells Labels::cells_of(const LabelBox& box) const {
+  const auto cell = [](double x, int most) {
+    return static_cast<int>(std::clamp(std::floor(x / kCell), 0.0, static_cast<double>(most)));
+  };
+  return {cell(box.low.x - plot_.x_min, columns_ - 1), cell(box.high.x - plot_.x_min, columns_ - 1),
+          cell(box.low.y - plot_.y_min, rows_ - 1), cell(box.high.y - plot_.y_min, rows_ - 1)};
 }
+
+void Labels::mark(const LabelBox& box, Cell as) {
+  const bool outside =
+      box.high.x < plot_.x_min || box.low.x > plot_.x_max || box.high.y < plot_.y_min || box.low.y > plot_.y_max;
+  if (outside || !std::isfinite(box.low.x + box.high.x + box.low.y + box.high.y)) return;
+  const Cells c = cells_of(box);
+  for (int j = c.j_min; j <= c.j_max; ++j)
+    for (int i = c.i_min; i <= c.i_max; ++i) at(i, j) = static_cast<std::uint8_t>(at(i, j) | as);
+}
+
+void Labels::forbid(const LabelBox& box) { mark(box, taken); }
 
 void Labels::avoid(std::span<const Vec2> line, double width) {
   const double radius = std::max(0.5 * width, 1.0);
+  const Vec2 reach{radius, radius};
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
     const Vec2 d = line[i + 1] - line[i];
     const int steps = static_cast<int>(std::min(length(d) / kCell, 1e4)) + 1;
-    for (int k = 0; k <= steps; ++k) mark(line[i] + (static_cast<double>(k) / steps) * d, radius);
+    for (int k = 0; k <= steps; ++k) {
+      const Vec2 p = line[i] + (static_cast<double>(k) / steps) * d;
+      mark({p - reach, p + reach}, drawn);
+    }
   }
 }
 
-bool Labels::is_free(const LabelBox& box) const {
+bool Labels::is_without(const LabelBox& box, int bits) const {
   const bool inside = box.low.x > plot_.x_min + 2 && box.low.y > plot_.y_min + 2 && box.high.x < plot_.x_max - 2 &&
                       box.high.y < plot_.y_max - 2;
-  return inside && std::none_of(taken_.begin(), taken_.end(), [&](const LabelBox& b) { return overlap(box, b); });
+  if (!inside) return false;
+  const Cells c = cells_of(box);
+  for (int j = c.j_min; j <= c.j_max; ++j)
+    for (int i = c.i_min; i <= c.i_max; ++i)
+      if ((at(i, j) & bits) != 0) return false;
+  return true;
 }
 
-// The part of the box that lies over something, in [0, 1].
+// The part of the box that lies over something drawn, in [0, 1].
 double Labels::covered(const LabelBox& box) const {
-  const auto cell = [](double x, int most) { return std::clamp(static_cast<int>(x / kCell), 0, most); };
+  const Cells c = cells_of(box);
   int hit = 0;
-  int all = 0;
-  for (int j = cell(box.low.y - plot_.y_min, rows_ - 1); j <= cell(box.high.y - plot_.y_min, rows_ - 1); ++j)
-    for (int i = cell(box.low.x - plot_.x_min, columns_ - 1); i <= cell(box.high.x - plot_.x_min, columns_ - 1); ++i) {
-      ++all;
-      hit += ground_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)];
-    }
-  return all > 0 ? static_cast<double>(hit) / all : 0.0;
+  for (int j = c.j_min; j <= c.j_max; ++j)
+    for (int i = c.i_min; i <= c.i_max; ++i) hit += (at(i, j) & drawn) != 0 ? 1 : 0;
+  return static_cast<double>(hit) / ((c.i_max - c.i_min + 1) * (c.j_max - c.j_min + 1));
 }
 
 bool Labels::place(Canvas& canvas, std::span<const Vec2> marks, const std::string& text, const TextStyle& style,
@@ -86,7 +100,7 @@ bool Labels::place(Canvas& canvas, std::span<const Vec2> marks, const std::strin
         if (cost >= least) continue;
         const LabelBox box = box_beside(mark, (k * 2.0 - 2.0) * M_PI / kDirections, away, size);
         const double whole = cost + 3.0 * rules.clear_cost * covered(box);
-        if (whole >= least || !is_free(box)) continue;
+        if (whole >= least || !is_without(box, taken)) continue;
         least = whole;
         best = Best{box, mark, away};
       }
@@ -98,7 +112,7 @@ bool Labels::place(Canvas& canvas, std::span<const Vec2> marks, const std::strin
   centred.across = Anchor::middle;
   centred.down = Anchor::middle;
   canvas.text(0.5 * (box.low + box.high), text, centred);
-  taken_.push_back(box);
+  forbid({box.low + Vec2{1.0, 1.0}, box.high - Vec2{1.0, 1.0}});
   return true;
 }
 

@@ -15,9 +15,6 @@ struct LabelBox {
   Vec2 low;   ///< upper left corner
   Vec2 high;  ///< lower right corner
 };
-inline bool overlap(const LabelBox& a, const LabelBox& b) {
-  return a.low.x < b.high.x && b.low.x < a.high.x && a.low.y < b.high.y && b.low.y < a.high.y;
-}
 
 /// How far from its mark a label may be moved.
 struct LabelRules {
@@ -35,7 +32,10 @@ class Labels {
   /// Ground that labels should rather not cover: a line of `width`, or the inside of a closed outline.
   void avoid(std::span<const Vec2> line, double width);
   /// A box that no label may cover.
-  void forbid(const LabelBox& box) { taken_.push_back(box); }
+  void forbid(const LabelBox& box);
+
+  /// True where nothing is drawn, no label stands, and the plot goes on.
+  bool is_bare(const LabelBox& box) const { return is_without(box, drawn | taken); }
 
   /// Finds a place for `text` beside one of `marks` (the first that does best), draws it and keeps others off it.
   /// False, and nothing drawn, where there is no room.
@@ -43,15 +43,27 @@ class Labels {
              const LabelRules& rules = {});
 
  private:
-  bool is_free(const LabelBox& box) const;
+  enum Cell : std::uint8_t { bare = 0, drawn = 1, taken = 2 };
+  /// Cells that a box touches: [i_min, i_max] x [j_min, j_max], inside the plot.
+  struct Cells {
+    int i_min = 0, i_max = 0, j_min = 0, j_max = 0;
+  };
+  Cells cells_of(const LabelBox& box) const;
+  std::uint8_t& at(int i, int j) {
+    return cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)];
+  }
+  std::uint8_t at(int i, int j) const {
+    return cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)];
+  }
+  /// Inside the plot, and no cell of it has one of `bits`.
+  bool is_without(const LabelBox& box, int bits) const;
   double covered(const LabelBox& box) const;
-  void mark(Vec2 p, double radius);
+  void mark(const LabelBox& box, Cell as);
 
   PixelBox plot_;
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<std::uint8_t> ground_;  ///< one cell of 4 x 4 pixels each: 1 where something is drawn
-  std::vector<LabelBox> taken_;
+  std::vector<std::uint8_t> cells_;  ///< of 4 x 4 pixels each: bits of Cell
 };
 
 }  // namespace sf::viz

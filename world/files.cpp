@@ -44,8 +44,8 @@ std::string find_file(const Document& document, Place from, const std::string& n
 
 std::string read_text(const std::string& file) {
   std::error_code error;
-  if (!fs::exists(file, error)) throw base::InputError(file, 0, "no such file; give the path of a world file");
-  if (!is_file(file)) throw base::InputError(file, 0, "not a file; give the path of a world file");
+  if (!fs::exists(file, error)) throw base::InputError(file, 0, "no such file; give the path of a file that is there");
+  if (!is_file(file)) throw base::InputError(file, 0, "not a file; give the path of a file that is there");
   if (fs::file_size(file, error) > kMostBytes || error) {
     throw base::InputError(file, 0, fmt::format("larger than {} MiB: not a world file", kMostBytes >> 20));
   }

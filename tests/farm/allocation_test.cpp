@@ -7,6 +7,7 @@
 #include <new>
 
 #include "tests/farm/small_farm.h"
+#include "tests/sensors/magnet_scenes.h"
 
 namespace {
 
@@ -70,6 +71,20 @@ TEST(Allocation, NoneWithNoiseAndLatencyEither) {
   world::World world = small_world(20, {.range_sigma = 0.01, .angle_sigma = 0.001});
   for (world::Mover& mover : world.movers) mover.lasers[0].latency = 0.25;
   EXPECT_EQ(allocations_per_lap(world, {.threads = 2}), 0u);
+}
+
+/// Magnets that stand and magnets that move, with and without a cut-off.
+TEST(Allocation, NoneWithMagnetometersEither) {
+  world::World world = scenes::sheet(300, 6.0, 1);
+  for (int i = 0; i < 12; ++i) {
+    const auto m = scenes::add_carrier(world, {0.4 * i - 2.0, 0.0, 0.0, 0.0}, scenes::five());
+    world.movers[m].sensors[0].settings.push_back(scenes::setting("noise", {0.01}));
+    world.movers[m].magnets.push_back(scenes::magnet({0.1, 0.0}));
+  }
+  for (const double cutoff : {0.0, 1.0}) {
+    world.magnet_cutoff = cutoff;
+    EXPECT_EQ(allocations_per_lap(world, {.threads = 2}), 0u) << cutoff;
+  }
 }
 
 }  // namespace

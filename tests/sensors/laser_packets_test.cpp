@@ -200,7 +200,11 @@ TEST(LaserPackets, CountsThatDoNotFitAreRefused) {
   EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 343)), Fault::out_of_range);                // one ray missing
   EXPECT_EQ(extended(patched<std::uint32_t>(part, 4, 341)), Fault::out_of_range);                // begins elsewhere
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 8, 2)), Fault::out_of_range);                  // part 2 of 2
-  EXPECT_EQ(extended(patched<std::uint16_t>(part, 10, 3)), Fault::out_of_range);                 // 3 parts for 342 rays
+  base::Bytes behind =
+      patched<std::uint32_t>(patched<std::uint16_t>(patched<std::uint16_t>(part, 8, 2), 12, 340), 4, 680);
+  behind.resize(16 + 4 * 340);
+  EXPECT_EQ(extended(behind), Fault::out_of_range);  // the same with all else in order: what is left would wrap
+  EXPECT_EQ(extended(patched<std::uint16_t>(part, 10, 3)), Fault::out_of_range);  // 3 parts for 342 rays
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 12, 1)), Fault::too_long);
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 12, 3)), Fault::too_short);
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 14, 9)), Fault::none);  // reserved: ignored

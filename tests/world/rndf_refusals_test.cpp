@@ -78,6 +78,27 @@ TEST(RndfRefusals, Counts) {
   });
 }
 
+// Nothing may be empty but zones and spots, whether its number is left out or not.
+TEST(RndfRefusals, NothingIsEmpty) {
+  const std::string head = "RNDF_name x\nnum_segments 1\nnum_zones 0\n";
+  EXPECT_NE(refusal_of("RNDF_name x\nend_file\n").find("'num_segments' is missing"), std::string::npos);
+  EXPECT_NE(refusal_of(head + "segment 1\nend_segment\nend_file\n").find(":4: 'num_lanes' is missing"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(head + "segment 1\nnum_lanes 1\nlane 1.1\nend_lane\nend_segment\nend_file\n")
+                .find(":6: 'num_waypoints' is missing"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(with(with(small_with("num_perimeterpoints 4\nexit 3.0.3 1.2.1\n", ""), "exit 2.1.2 3.0.1\n", ""),
+                            "3.0.1 40.001100 -82.997900\n3.0.2 40.001100 -82.997000\n3.0.3 40.001600 -82.997000\n3.0.4 "
+                            "40.001600 -82.997900\n",
+                            ""))
+                .find("'num_perimeterpoints' is missing"),
+            std::string::npos);
+  EXPECT_EQ(
+      refusal_of(with(head, "num_zones 0\n", "") +
+                 "segment 1\nnum_lanes 1\nlane 1.1\nnum_waypoints 1\n1.1.1 0 0\nend_lane\nend_segment\nend_file\n"),
+      "");
+}
+
 TEST(RndfRefusals, Numbers) {
   expect_refused({
       {"num_segments 2", "num_segments", "small.rndf:2: the number of segments is missing after 'num_segments'"},

@@ -110,6 +110,11 @@ TEST(Rndf, RealHabitsChangeNothing) {
   }
 }
 
+TEST(Rndf, EveryEndOfLineIsOneLine) {
+  for (const std::string end : {"\n", "\r\n", "\r"})
+    EXPECT_EQ(parse_rndf("x", replace_all(std::string(kSmallRndf), "\n", end)).zones[0].spots[0].points[1].line, 54);
+}
+
 TEST(Rndf, NamesMayHoldBlanksOrNothing) {
   EXPECT_EQ(parse_rndf("x", small_with("Main_Street", "Main  Street /* the old one */ ")).segments[0].name,
             "Main  Street");

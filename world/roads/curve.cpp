@@ -139,10 +139,12 @@ Curve smooth_curve(std::span<const Vec2> waypoints, const Sampling& sampling) {
   add_point(curve, p[0], tangents[0]);
   for (std::size_t i = 0; i + 1 < p.size(); ++i) {
     const double here = length(p[i + 1] - p[i]);
-    const double before = i > 0 ? length(p[i] - p[i - 1]) : here;
-    const double after = i + 2 < p.size() ? length(p[i + 2] - p[i + 1]) : here;
-    flatten(curve, span_of(p[i], tangents[i], std::min(here, before), p[i + 1], tangents[i + 1], std::min(here, after)),
-            sampling, 0);
+    const double start = i > 0 ? std::min(here, length(p[i] - p[i - 1])) : here;
+    const double end = i + 2 < p.size() ? std::min(here, length(p[i + 2] - p[i + 1])) : here;
+    // The first and the last span are arcs: either end reaches as far as the other.
+    const Bezier span =
+        span_of(p[i], tangents[i], i > 0 ? start : end, p[i + 1], tangents[i + 1], i + 2 < p.size() ? end : start);
+    flatten(curve, span, sampling, 0);
     curve.tangents.back() = tangents[i + 1];
     knots.push_back(curve.points.size() - 1);
   }

@@ -183,11 +183,12 @@ std::vector<Warning> check_against(const Mdf& mdf, const Rndf& rndf) {
       for (const RndfCheckpoint& checkpoint : spot.checkpoints) checkpoints.insert(checkpoint.id);
   }
 
+  const std::string has =
+      checkpoints.empty() ? "it has none" : fmt::format("expected one of its {}", checkpoints.size());
   for (const MdfCheckpoint& wanted : mdf.checkpoints)
     if (checkpoints.count(wanted.id) == 0)
       throw base::InputError(mdf.file, wanted.line,
-                             fmt::format("checkpoint {} does not exist in {}; expected one of its {}", wanted.id,
-                                         rndf.file, checkpoints.size()));
+                             fmt::format("checkpoint {} does not exist in {}; {}", wanted.id, rndf.file, has));
   std::vector<Warning> warnings;
   for (const SpeedLimit& limit : mdf.speed_limits)
     if (places.count(limit.id) == 0)

@@ -172,12 +172,13 @@ void RndfReader::open(RndfBlock block, std::string name) {
   open_.push_back({block, now().line, std::move(name), {}, {}});
 }
 
-// What is missing may be none; what is said must be so.
+// Only zones and spots may be none, and then nothing need be said of them.
 void RndfReader::check_promise(const Open& open, std::string_view keyword, std::size_t have) {
   const auto said = open.promises.find(keyword);
   if (said == open.promises.end()) {
     const std::string message = fmt::format("'{0}' is missing in {1}; expected '{0} {2}'", keyword, open.name, have);
-    if (have > 0) throw base::InputError(statements_.file(), open.line, message);
+    if (have > 0 || (keyword != "num_zones" && keyword != "num_spots"))
+      throw base::InputError(statements_.file(), open.line, message);
     return warn(open.line, message);
   }
   if (static_cast<std::size_t>(said->second.count) == have) return;

@@ -1,0 +1,63 @@
+// `field`: the field of a world's magnets as a picture, and as numbers along a line.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include "apps/commands.h"
+#include "apps/progress.h"
+#include "base/error.h"
+#include "viz/field_figure.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr double kGauss = 1e-4;  // [T]
+
+void refuse_without_magnets(const world::World& world) {
+  const bool carried = std::any_of(world.movers.begin(), world.movers.end(),
+                                   [](const world::Mover& mover) { return !mover.magnets.empty(); });
+  if (world.magnets.empty() && !carried)
+    throw base::InputError(world.file, 0,
+                           "has no magnets, so it has no field; give a model a 'magnetic_moment' (10000 is 1 A m^2)");
+}
+
+void write_csv(const std::string& path, const viz::FieldView& view, const viz::FieldSamples& samples) {
+  std::ofstream file(path, std::ios::trunc);
+  file << "along_m,x_m,y_m,z_m,field_gauss,x_gauss,y_gauss,z_gauss,magnitudes_gauss\n";
+  for (const viz::ProfilePoint& p : samples.profile)
+    file << fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", p.along, p.p.x, p.p.y,
+                        view.height, std::hypot(p.field.x, p.field.y, p.field.z) / kGauss, p.field.x / kGauss,
+                        p.field.y / kGauss, p.field.z / kGauss, p.field.magnitudes / kGauss);
+  file.close();
+  if (!file)
+    throw base::InputError(path, 0, "cannot be written; name a file in a folder that exists and can be written");
+}
+
+}  // namespace
+
+int field(const Options& options) {
+  const world::World world = world::load_world(options.world, options.load);
+  refuse_without_magnets(world);
+  viz::FieldWish wish{.height = options.height};
+  if (options.line) wish.line = {{(*options.line)[0], (*options.line)[1]}, {(*options.line)[2], (*options.line)[3]}};
+  if (options.extent)
+    wish.extent = {(*options.extent)[0], (*options.extent)[1], (*options.extent)[2], (*options.extent)[3]};
+  const viz::FieldView view = viz::field_view(world, wish);
+
+  gpu::Device device(options.device);
+  Progress progress("summing magnets");
+  const viz::FieldSamples samples = viz::sample_field(world, device, view, [&](double part) { progress.show(part); });
+  viz::draw_field(world, view, samples, options.out);
+  std::fprintf(stderr, "sensorfarm: wrote %s\n", options.out.c_str());
+  if (options.csv.empty()) return 0;
+  write_csv(options.csv, view, samples);
+  std::fprintf(stderr, "sensorfarm: wrote %s\n", options.csv.c_str());
+  return 0;
+}
+
+}  // namespace sf::apps

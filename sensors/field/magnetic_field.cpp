@@ -1,0 +1,143 @@
+#include "sensors/field/magnetic_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "sensors/field/field_tables.h"
+#include "shaders/magnetometer.comp.h"
+#include "shaders/magnetometer_magnitudes.comp.h"
+
+namespace sf::sensors {
+
+using base::Vec2;
+
+namespace {
+
+constexpr double kLeastRadius = 1e-9;  // [m] whose inverse cubed is still a number in 32 bits
+constexpr std::size_t kLeastCells = 1u << 20;
+constexpr std::size_t kLeastMovingCells = 1u << 12;
+
+/// Cells of a list: few enough to be filled each tick where magnets move.
+std::size_t most_cells(std::size_t magnets, std::size_t least) { return std::max(least, 8 * magnets); }
+
+template <class Rows>
+std::uint32_t count_of(const Rows& rows) {
+  return static_cast<std::uint32_t>(rows.size());
+}
+
+}  // namespace
+
+DipoleRow dipole_row(const world::Magnet& magnet, Vec2 p, double z) {
+  return {p.x, p.y, z, static_cast<float>(magnet.moment),
+          static_cast<float>(1.0 / std::max(magnet.radius, kLeastRadius))};
+}
+
+MagneticField::MagneticField(const world::World& world, gpu::Device& device, base::Workers& workers, bool magnitudes)
+    : t_(std::make_unique<Tables>(world, device, workers, magnitudes)) {
+  std::vector<Pose> poses;
+  for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
+  place(poses);
+}
+
+MagneticField::~MagneticField() = default;
+
+MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::Workers& k, bool magnitudes)
+    : world(w), device(d), workers(k), cutoff(w.magnet_cutoff) {
+  using gpu::Role;
+  using gpu::Texel;
+  standing = count_of(world.magnets);
+  for (const world::Mover& mover : world.movers) moving += count_of(mover.magnets);
+  const auto code = magnitudes ? std::span<const std::uint32_t>(magnetometer_magnitudes_comp_spv)
+                               : std::span<const std::uint32_t>(magnetometer_comp_spv);
+  kernel = std::make_unique<gpu::Kernel>(device, code, 5);
+  // A turn may load magnets behind the last one, and counts them as nothing.
+  const std::size_t rows = std::size_t{standing} + moving + SF_FIELD_UNROLL;
+  dipoles = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32x4, 2 * rows);
+  groups = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32, 4);
+  std::ranges::fill(dipoles->host<std::uint32_t>(), 0u);
+  write_standing();
+}
+
+void MagneticField::Tables::write_standing() {
+  std::vector<Vec2> at;
+  for (const world::Magnet& magnet : world.magnets) at.push_back(magnet.p);
+  standing_grid.build(at, cutoff, most_cells(at.size(), kLeastCells));
+  const auto rows = dipoles->host<DipoleRow>();
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const world::Magnet& magnet = world.magnets[standing_grid.order()[i]];
+    rows[i] = dipole_row(magnet, magnet.p, magnet.z);
+  }
+}
+
+void MagneticField::Tables::write_moving() {
+  moving_grid.build(moving_places, cutoff, most_cells(moving_places.size(), kLeastMovingCells));
+  const auto rows = dipoles->host<DipoleRow>().subspan(standing);
+  for (std::size_t i = 0; i < moving_rows.size(); ++i) rows[i] = moving_rows[moving_grid.order()[i]];
+}
+
+void MagneticField::place(std::span<const Pose> poses) {
+  Tables& t = *t_;
+  if (t.moving == 0) return;
+  t.moving_places.clear();
+  t.moving_rows.clear();
+  for (std::size_t m = 0; m < t.world.movers.size(); ++m) {
+    const world::Mover& mover = t.world.movers[m];
+    for (const world::Magnet& magnet : mover.magnets) {
+      const Vec2 p = base::transform(poses[m], magnet.p);
+      t.moving_places.push_back(p);
+      t.moving_rows.push_back(dipole_row(magnet, p, mover.X_WM.z + magnet.z));
+    }
+  }
+  t.write_moving();
+}
+
+bool MagneticField::prepare(std::span<const Place> places, std::span<const std::uint32_t> ends) {
+  Tables& t = *t_;
+  SF_CHECK(ends.empty() ? places.empty() : ends.back() == places.size(), "groups that are not the places");
+  t.gather(places, ends);
+  t.workers.run(ends.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t g = first; g < last; ++g) {
+      t.write_places(g, places.first(ends[g]).last(t.asked[g].places));
+      t.find_spans(g);
+    }
+  });
+  t.plan_items();
+  t.sort_items();
+  t.deal_items();
+  const bool again = !t.bound;
+  if (again) t.bind();
+  return again;
+}
+
+void MagneticField::record(gpu::Batch& batch) { batch.dispatch(*t_->kernel, *t_->groups, 0); }
+
+void MagneticField::copies(gpu::Batch& batch) {
+  Tables& t = *t_;
+  const std::size_t first = t.standing_sent ? t.standing * sizeof(DipoleRow) : 0;
+  batch.up(*t.dipoles, first, t.dipoles->bytes() - first);
+  t.standing_sent = true;
+  batch.up(*t.items, 0, t.items->bytes());
+  batch.up(*t.spans, 0, t.asked.size() * t.stride * sizeof(MagnetSpan));
+  batch.up(*t.places, 0, t.asked.size() * SF_FIELD_PLACES * sizeof(PlaceRow));
+  batch.up(*t.groups, 0, t.groups->bytes());
+  batch.down(*t.results, 0, t.planned.size() * SF_FIELD_PLACES * sizeof(FieldSum));
+}
+
+FieldSum MagneticField::at(std::size_t group, std::size_t i) const {
+  const PlaceGroup& asked = t_->asked.at(group);
+  const auto results = t_->results->host<FieldSum>();
+  FieldSum sum;
+  for (std::uint32_t item = asked.item; item < asked.item + asked.items; ++item) {
+    const FieldSum& part = results[std::size_t{item} * SF_FIELD_PLACES + i];
+    sum.x += part.x;
+    sum.y += part.y;
+    sum.z += part.z;
+    sum.magnitudes += part.magnitudes;
+  }
+  return {kPermeability * sum.x, kPermeability * sum.y, kPermeability * sum.z, kPermeability * sum.magnitudes};
+}
+
+std::uint64_t MagneticField::dipoles() const { return t_->dipoles_summed; }
+
+}  // namespace sf::sensors

@@ -1,0 +1,41 @@
+#include "sensors/field/survey.h"
+
+#include <algorithm>
+
+namespace sf::sensors {
+
+namespace {
+
+/// Places of one batch: half a second or so with 200 000 magnets and no cut-off.
+constexpr std::size_t kBatch = std::size_t{SF_FIELD_PLACES} * 1024;
+
+}  // namespace
+
+std::vector<FieldSum> survey(const world::World& world, gpu::Device& device, std::span<const Place> places,
+                             const SurveyOptions& options) {
+  base::Workers workers(options.threads);
+  MagneticField field(world, device, workers, options.magnitudes);
+  gpu::Batch batch(device);
+  std::vector<FieldSum> sums;
+  std::vector<std::uint32_t> ends;
+  for (std::size_t first = 0; first < places.size(); first += kBatch) {
+    const auto some = places.subspan(first, std::min(kBatch, places.size() - first));
+    ends.clear();
+    for (std::size_t end = 0; end < some.size();) {
+      end = std::min(end + SF_FIELD_PLACES, some.size());
+      ends.push_back(static_cast<std::uint32_t>(end));
+    }
+    if (field.prepare(some, ends)) {
+      batch.begin();
+      field.record(batch);
+      batch.end();
+    }
+    field.copies(batch);
+    batch.run();
+    for (std::size_t i = 0; i < some.size(); ++i) sums.push_back(field.at(i / SF_FIELD_PLACES, i % SF_FIELD_PLACES));
+    if (options.progress) options.progress(static_cast<double>(sums.size()) / static_cast<double>(places.size()));
+  }
+  return sums;
+}
+
+}  // namespace sf::sensors

@@ -1,0 +1,149 @@
+#include "sensors/laneedge.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "sensors/casts.h"
+#include "sensors/laneedge_packets.h"
+#include "sensors/laneedge_settings.h"
+#include "sensors/paint/edge_fit.h"
+#include "sensors/paint/excerpt.h"
+#include "sensors/paint/road.h"
+
+namespace sf::sensors {
+
+namespace {
+
+std::vector<Fan> fans_of(const std::vector<LaneEdge>& edges) {
+  std::vector<Fan> fans;
+  for (const LaneEdge& edge : edges) fans.push_back({edge.fan, edge.row.mover, edge_noise_name(edge.row.sensor)});
+  return fans;
+}
+
+/// Whether beams can meet anything but paint.
+bool anything_else(const world::World& world) {
+  const auto bodies = std::count_if(world.movers.begin(), world.movers.end(),
+                                    [](const world::Mover& mover) { return !mover.body.empty(); });
+  return !world.walls.empty() || (bodies > 0 && world.movers.size() > 1);
+}
+
+/// Rays against the excerpt, exactly; where the road is a raster, into that as well; then lines through what they met.
+class LaneEdges : public Instruments {
+ public:
+  explicit LaneEdges(const Site& site);
+
+  void place(std::span<const Pose> poses) override { casts_.place(poses); }
+  bool prepare(std::span<const Due> due, std::span<const Pose> poses) override;
+  void record_measure(gpu::Batch& batch) override;
+  void record_derive(gpu::Batch& batch) override { fit_.record(batch); }
+  void copies(gpu::Batch& batch) override;
+  void collect(std::vector<base::ReadingBlock>& out) override;
+  Work work() const override { return casts_.work(); }
+
+ private:
+  void make_road(const Site& site);
+  void bind();
+
+  std::vector<LaneEdge> edges_;
+  bool exact_;  ///< paint is seen as it is, not in pixels
+  Excerpt excerpt_;
+  Casts casts_;
+  bool casting_;  ///< there is something for `casts_` to meet
+  std::optional<Road> road_;
+  EdgeFit fit_;
+  std::vector<Due> due_;
+  std::vector<std::uint32_t> lanes_;  ///< first of each due fan's results
+  bool bound_ = false;
+};
+
+LaneEdges::LaneEdges(const Site& site)
+    : edges_(lane_edges_of(site.world)),
+      exact_(!(site.world.road_resolution > 0.0) || site.world.stripes.empty()),
+      excerpt_(excerpt_of(site.world, exact_)),
+      casts_(site, excerpt_.world, fans_of(edges_)),
+      casting_(exact_ || anything_else(excerpt_.world)),
+      fit_(site, edges_, excerpt_.grains) {
+  if (!exact_) make_road(site);
+}
+
+void LaneEdges::make_road(const Site& site) {
+  double longest = 0.0;
+  for (const LaneEdge& edge : edges_) longest = std::max(longest, edge.fan.range_max);
+  const PaintRaster raster(excerpt_.paint, site.world.road_resolution, longest, site.world.file);
+  road_.emplace(site, raster, casts_, excerpt_.paint_tag, casting_);
+}
+
+bool LaneEdges::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+  due_.assign(due.begin(), due.end());
+  const bool again = casts_.prepare(due, poses) || !bound_;
+  lanes_.resize(due.size());
+  for (std::size_t i = 0; i < due.size(); ++i) lanes_[i] = casts_.results(i).lane;
+  if (road_) road_->prepare(due.size());
+  fit_.prepare(due, lanes_);
+  if (again) bind();
+  return again;
+}
+
+void LaneEdges::bind() {
+  if (road_)
+    road_->bind(fit_.tables());
+  else
+    fit_.bind(casts_.lanes(), casts_.ranges(), casts_.hits());
+  bound_ = true;
+}
+
+void LaneEdges::record_measure(gpu::Batch& batch) {
+  if (casting_) casts_.record(batch);
+  if (casting_) batch.barrier();
+  if (road_)
+    road_->record(batch);
+  else
+    fit_.record_points(batch, casts_.groups());
+}
+
+void LaneEdges::copies(gpu::Batch& batch) {
+  casts_.copies(batch, false);
+  if (road_) road_->copies(batch);
+  fit_.copies(batch);
+}
+
+void LaneEdges::collect(std::vector<base::ReadingBlock>& out) {
+  if (casting_) casts_.count();
+  for (std::size_t i = 0; i < due_.size(); ++i) {
+    const LaneEdge& edge = edges_[due_[i].row];
+    base::ReadingBlock block;
+    block.mover = edge.row.mover;
+    block.sensor = edge.row.sensor;
+    block.kind = kLaneEdge;
+    block.X_WS = casts_.results(i).X_WS;
+    block.values = fit_.reading(i);
+    out.push_back(block);
+  }
+}
+
+std::vector<SensorRow> rows_of(const world::World& world) {
+  std::vector<SensorRow> rows;
+  for (const LaneEdge& edge : lane_edges_of(world)) rows.push_back(edge.row);
+  return rows;
+}
+
+constexpr Column kColumns[] = {{"distance_m"}, {"points", 1, true}, {"residual_m"}, {"sigma_m"}};
+
+}  // namespace
+
+constinit const SensorKind laneedge_kind{
+    .id = kLaneEdge,
+    .name = "laneedge",
+    .word = {"laneedge", kLaneEdgeKeys},
+    .base_port = 20000,
+    .list = "",
+    .columns = kColumns,
+    .rows = rows_of,
+    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<LaneEdges>(site); },
+    .refuse = refuse_lane_edge,
+    .parts = lane_edge_parts,
+    .encode = encode_lane_edge,
+    .decode = decode_lane_edge,
+};
+
+}  // namespace sf::sensors

@@ -1,0 +1,54 @@
+#include "sensors/laneedge_packets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "sensors/laneedge.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr std::size_t kFarmBytes = 12;
+constexpr std::size_t kThesisBytes = 2;
+
+/// Nearest whole number of `unit`, in [0, most]; `most` where it is not a number.
+template <class Word>
+Word in_units(double value, double unit, Word most) {
+  if (std::isnan(value)) return most;
+  return static_cast<Word>(std::clamp(std::floor(value / unit + 0.5), 0.0, static_cast<double>(most)));
+}
+
+}  // namespace
+
+std::string refuse_lane_edge(const SensorRow&, Wire) { return ""; }
+
+std::uint32_t lane_edge_parts(const SensorRow&, Wire) { return 1; }
+
+std::uint8_t encode_lane_edge(const SensorRow&, const base::ReadingBlock& reading, Wire wire, std::uint32_t part,
+                              base::Bytes& out) {
+  SF_CHECK(part == 0 && reading.values.size() == 4, "a lane edge reading is four numbers in one datagram");
+  constexpr auto kMost32 = std::numeric_limits<std::uint32_t>::max();
+  const double distance = reading.values[0];
+  base::ByteWriter writer(out);
+  writer.put(std::isnan(distance) ? kNoEdge : in_units<std::uint16_t>(distance, 1e-3, kNoEdge - 1));
+  if (wire == Wire::thesis) return kLaneEdge;
+  writer.put(in_units<std::uint16_t>(reading.values[1], 1.0, 65'535));
+  writer.put(in_units<std::uint32_t>(reading.values[2], 1e-6, kMost32));
+  writer.put(in_units<std::uint32_t>(reading.values[3], 1e-6, kMost32));
+  return kLaneEdge;
+}
+
+Part decode_lane_edge(const SensorRow&, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire) {
+  const std::size_t bytes = wire == Wire::thesis ? kThesisBytes : kFarmBytes;
+  Part part;
+  part.elements = 1;
+  if (wire == Wire::farm && type != kLaneEdge) part.fault = Fault::out_of_range;
+  if (payload.size() < bytes) part.fault = Fault::too_short;
+  if (payload.size() > bytes) part.fault = Fault::too_long;
+  return part;
+}
+
+}  // namespace sf::sensors

@@ -1,0 +1,25 @@
+#pragma once
+// Lane edge readings as payloads, little-endian; docs/packets.md gives every byte. Metres here, whole wire units there,
+// rounded to nearest; they saturate and never wrap.
+//
+//   farm    u16 distance [mm] in [0, 65534], 65535 no edge in sight; u16 points; u32 residual [um]; u32 sigma [um]
+//   thesis  u16 distance [mm], 65535 no edge in sight
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "sensors/kind.h"
+
+namespace sf::sensors {
+
+inline constexpr std::uint16_t kNoEdge = 65'535;  ///< on the wire: no edge in sight
+
+std::string refuse_lane_edge(const SensorRow& sensor, Wire wire);   ///< never refuses
+std::uint32_t lane_edge_parts(const SensorRow& sensor, Wire wire);  ///< one
+/// @return its type. A sensor that sees no edge says so: no reading is withheld.
+std::uint8_t encode_lane_edge(const SensorRow& sensor, const base::ReadingBlock& reading, Wire wire, std::uint32_t part,
+                              base::Bytes& out);
+Part decode_lane_edge(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire);
+
+}  // namespace sf::sensors

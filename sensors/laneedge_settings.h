@@ -1,0 +1,36 @@
+#pragma once
+// What a world file may say of a lane edge sensor.
+
+#include <vector>
+
+#include "sensors/kind.h"
+#include "sensors/laneedge.h"
+
+namespace sf::sensors {
+
+/// One lane edge sensor as it was set up.
+struct LaneEdge {
+  SensorRow row;
+  world::Laser fan;           ///< its rays; X_MS at half of the model's height
+  base::Vec2 perpendicular;   ///< unit vector in the sensor's frame along which the distance is meant
+  bool single = false;        ///< one or two rays: the first one's range is the reading
+  double distance_max = 0.0;  ///< [m] an edge farther away is out of sight
+};
+
+/// Settings of a lane edge sensor, beside those of all sensors.
+inline constexpr std::string_view kLaneEdgeKeys[] = {"fov", "samples", "range_max", "range_min", "perpendicular"};
+
+/// A share of range_max: ranges from here on are "near the maximum" and no points.
+inline constexpr double kNearMaximum = 0.99;
+/// Most that an edge's distance may exceed range_max by extrapolation.
+inline constexpr double kFarthest = 10.0;
+
+extern const SensorKind laneedge_kind;
+
+/// @throws base::InputError with file and line for a setting that it cannot have.
+LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number);
+
+/// All of a world, by mover and in file order.
+std::vector<LaneEdge> lane_edges_of(const world::World& world);
+
+}  // namespace sf::sensors

@@ -1,0 +1,180 @@
+#include "sensors/magnetometer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/random.h"
+#include "sensors/field/magnetic_field.h"
+#include "sensors/magnetometer_packets.h"
+#include "sensors/settings.h"
+
+namespace sf::sensors {
+
+namespace {
+
+/// One array of a world.
+struct Array {
+  Magnetometer settings;
+  SensorRow row;
+  double height = 0.0;             ///< [m] of its origin in the world, fixed at load: the world is 2.5-D
+  std::size_t values = 0;          ///< first of its results
+  std::vector<base::Vec2> facing;  ///< of each element: its x axis in the sensor's frame
+};
+
+std::vector<Array> arrays_of(const world::World& world) {
+  std::vector<Array> arrays;
+  std::size_t values = 0;
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    std::uint32_t number_of_kind = 0;
+    for (const world::Sensor& sensor : world.movers[m].sensors) {
+      if (sensor.type != magnetometer_kind.word.type) continue;
+      Array array{read_magnetometer(sensor), common_row(sensor, m, number_of_kind++), 0.0, values};
+      array.row.X_MS.z += sensor.height / 2.0;
+      array.row.elements = static_cast<std::uint32_t>(array.settings.X_SE.size());
+      array.row.limit = std::max(std::abs(array.settings.least), std::abs(array.settings.most));
+      array.height = world.movers[m].X_WM.z + array.row.X_MS.z;
+      for (const Pose& X_SE : array.settings.X_SE) array.facing.push_back(base::rotate(X_SE.yaw, {1.0, 0.0}));
+      values += kMagnetometerColumns * array.settings.X_SE.size();
+      arrays.push_back(std::move(array));
+    }
+  }
+  return arrays;
+}
+
+/// `p` in a frame whose x axis is `facing`, of unit length.
+base::Vec2 along(base::Vec2 facing, base::Vec2 p) { return {base::dot(facing, p), base::cross(facing, p)}; }
+
+bool any_magnitudes(const std::vector<Array>& arrays) {
+  return std::any_of(arrays.begin(), arrays.end(), [](const Array& a) { return a.settings.magnitudes; });
+}
+
+class Magnetometers : public Instruments {
+ public:
+  explicit Magnetometers(const Site& site);
+
+  void place(std::span<const Pose> poses) override { field_.place(poses); }
+  bool prepare(std::span<const Due> due, std::span<const Pose> poses) override;
+  void record_measure(gpu::Batch& batch) override { field_.record(batch); }
+  void copies(gpu::Batch& batch) override { field_.copies(batch); }
+  void collect(std::vector<base::ReadingBlock>& out) override;
+  Work work() const override { return {.dipoles = field_.dipoles()}; }
+
+ private:
+  void read(std::size_t i);
+
+  base::Workers& workers_;
+  std::uint64_t seed_;
+  bool noise_;
+  std::vector<Array> arrays_;
+  MagneticField field_;
+  std::vector<Due> due_;
+  std::vector<Pose> X_WS_;             ///< per due array
+  std::vector<std::uint32_t> groups_;  ///< per due array: its first group
+  std::vector<Place> places_;
+  std::vector<std::uint32_t> ends_;  ///< per group
+  std::vector<double> values_;       ///< [T] of all arrays
+};
+
+Magnetometers::Magnetometers(const Site& site)
+    : workers_(site.workers),
+      seed_(site.seed),
+      noise_(site.noise),
+      arrays_(arrays_of(site.world)),
+      field_(site.world, site.device, site.workers, any_magnitudes(arrays_)) {
+  if (!arrays_.empty()) values_.resize(arrays_.back().values + kMagnetometerColumns * arrays_.back().row.elements);
+}
+
+bool Magnetometers::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+  due_.assign(due.begin(), due.end());
+  X_WS_.clear();
+  groups_.clear();
+  places_.clear();
+  ends_.clear();
+  for (const Due& d : due_) {
+    const Array& array = arrays_[d.row];
+    Pose X_WS = base::compose(poses[array.row.mover], array.row.X_MS);
+    X_WS.z = array.height;
+    X_WS_.push_back(X_WS);
+    const base::Vec2 x_S = base::rotate(X_WS.yaw, {1.0, 0.0});
+    groups_.push_back(static_cast<std::uint32_t>(ends_.size()));
+    const auto& X_SE = array.settings.X_SE;
+    for (std::size_t i = 0; i < X_SE.size(); ++i) {
+      const base::Vec2 p{x_S.x * X_SE[i].x - x_S.y * X_SE[i].y, x_S.y * X_SE[i].x + x_S.x * X_SE[i].y};
+      places_.push_back({X_WS.x + p.x, X_WS.y + p.y, X_WS.z + X_SE[i].z});
+      const bool full = (i + 1) % SF_FIELD_PLACES == 0 || i + 1 == X_SE.size();
+      if (full) ends_.push_back(static_cast<std::uint32_t>(places_.size()));
+    }
+  }
+  return field_.prepare(places_, ends_);
+}
+
+void Magnetometers::read(std::size_t i) {
+  const Due& due = due_[i];
+  const Array& array = arrays_[due.row];
+  const Magnetometer& m = array.settings;
+  const base::Draw draw{seed_, base::Stream::field_noise, array.row.mover, array.row.sensor, due.sequence};
+  const base::Vec2 facing = base::rotate(X_WS_[i].yaw, {1.0, 0.0});
+  for (std::uint32_t e = 0; e < m.X_SE.size(); ++e) {
+    const FieldSum sum = field_.at(groups_[i] + e / SF_FIELD_PLACES, e % SF_FIELD_PLACES);
+    const base::Vec2 b_S = along(facing, {sum.x, sum.y});
+    const base::Vec2 b_E = along(array.facing[e], b_S);
+    std::array<double, 3> b{b_E.x, b_E.y, sum.z};
+    double extra = 0.0;
+    if (noise_ && m.sigma > 0.0) {
+      const auto xy = base::random_normal(draw, 2 * e);
+      const auto zf = base::random_normal(draw, 2 * e + 1);
+      b = {b[0] + m.sigma * xy[0], b[1] + m.sigma * xy[1], b[2] + m.sigma * zf[0]};
+      extra = m.sigma * zf[1];
+    }
+    const double field = m.magnitudes ? sum.magnitudes + extra : std::hypot(b[0], b[1], b[2]);
+    double* const out = values_.data() + array.values + kMagnetometerColumns * e;
+    out[0] = std::clamp(field, m.least, m.most);
+    for (std::size_t k = 0; k < 3; ++k) out[k + 1] = std::clamp(b[k], m.least, m.most);
+  }
+}
+
+void Magnetometers::collect(std::vector<base::ReadingBlock>& out) {
+  workers_.run(due_.size(), 64, [this](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) read(i);
+  });
+  for (std::size_t i = 0; i < due_.size(); ++i) {
+    const Array& array = arrays_[due_[i].row];
+    base::ReadingBlock block;
+    block.mover = array.row.mover;
+    block.sensor = array.row.sensor;
+    block.kind = kMagnetometer;
+    block.X_WS = X_WS_[i];
+    block.values =
+        std::span<const double>(values_).subspan(array.values, kMagnetometerColumns * array.settings.X_SE.size());
+    out.push_back(block);
+  }
+}
+
+std::vector<SensorRow> rows_of(const world::World& world) {
+  std::vector<SensorRow> rows;
+  for (Array& array : arrays_of(world)) rows.push_back(std::move(array.row));
+  return rows;
+}
+
+constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssensitivity", "ssize", "sum"};
+constexpr Column kColumns[] = {{"field_T"}, {"vector_T", 3}};
+
+}  // namespace
+
+constinit const SensorKind magnetometer_kind{
+    .id = kMagnetometer,
+    .name = "magnetometer",
+    .word = {"magnetometer", kKeys},
+    .base_port = 30000,
+    .list = "sensors",
+    .columns = kColumns,
+    .rows = rows_of,
+    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Magnetometers>(site); },
+    .refuse = refuse_magnetometer,
+    .parts = magnetometer_parts,
+    .encode = encode_magnetometer,
+    .decode = decode_magnetometer,
+};
+
+}  // namespace sf::sensors

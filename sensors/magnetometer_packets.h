@@ -1,0 +1,37 @@
+#pragma once
+// Readings of magnetometer arrays as payloads, little-endian; docs/packets.md gives every byte. Tesla here and 1e-4
+// Gauss (1e-8 T) there, rounded to nearest (half away from zero); words saturate and never wrap.
+//
+//   farm:   u16 count, u16 0, then for each element i32 field, x, y, z
+//   thesis: for each element i32 field; the count is what is left of the datagram
+//
+// Of a row they read `elements` and `limit`.
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "base/bytes.h"
+#include "base/reading.h"
+#include "sensors/kind.h"
+
+namespace sf::sensors {
+
+/// Always empty: every array fits both forms.
+std::string refuse_magnetometer(const SensorRow& sensor, Wire wire);
+
+/// Always 1.
+std::uint32_t magnetometer_parts(const SensorRow& sensor, Wire wire);
+
+/// Appends the payload of a reading. @return its type, or 0, with nothing appended, when a value is NaN.
+std::uint8_t encode_magnetometer(const SensorRow& sensor, const base::ReadingBlock& reading, Wire wire,
+                                 std::uint32_t part, base::Bytes& out);
+
+/// Takes a payload for what this array may have sent: as many elements, none beyond its limit by more than a unit. A
+/// row of no elements, or of no limit, leaves that unchecked.
+Part decode_magnetometer(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire);
+
+/// [T] word `i` of a payload that `decode_magnetometer` took: four an element, or one in the thesis' form.
+double magnetometer_word(std::span<const std::uint8_t> payload, Wire wire, std::uint32_t i);
+
+}  // namespace sf::sensors

@@ -1,0 +1,114 @@
+#include "sensors/paint/road.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "shaders/paint_raster.comp.h"
+
+namespace sf::sensors {
+
+namespace {
+
+/// [cells] of a ray: 32-bit reals name a place that far away within a thousandth of a cell, and a ray's steps stay
+/// below the turns that older Mesa allows.
+constexpr double kLongestRay = 8192.0;
+
+void refuse_long_rays(const Site& site, const Casts& casts, double cell) {
+  for (const Fan& fan : casts.fans()) {
+    if (fan.laser.range_max <= kLongestRay * cell) continue;
+    throw base::InputError(
+        site.world.file, 0,
+        fmt::format("road_resolution {:g} m is too fine for the lane edge sensor '{}', whose range_max is {:g} m; "
+                    "expected at most {:g} pixels along a ray; use at least {:g} m, or 0 for exact paint",
+                    cell, fan.laser.name, fan.laser.range_max, kLongestRay, fan.laser.range_max / kLongestRay));
+  }
+}
+
+}  // namespace
+
+Road::Road(const Site& site, const PaintRaster& raster, Casts& casts, std::uint32_t tag, bool with_casts)
+    : workers_(site.workers),
+      casts_(casts),
+      cell_(raster.cell()),
+      columns_(static_cast<double>(raster.columns()) * PaintRaster::kBlock),
+      rows_(static_cast<double>(raster.rows()) * PaintRaster::kBlock),
+      first_column_(static_cast<double>(raster.first_column())),
+      first_row_(static_cast<double>(raster.first_row())),
+      block_columns_(raster.columns()),
+      block_rows_(raster.rows()),
+      tag_(tag),
+      with_casts_(with_casts),
+      kernel_(site.device, paint_raster_comp_spv, 11),
+      place_(site.device, gpu::Role::upload, gpu::Texel::u32x4, SF_ROAD_TEXELS * casts.fans().size()),
+      groups_(site.device, gpu::Role::upload, gpu::Texel::u32, 4),
+      directory_(site.device, gpu::Role::upload, gpu::Texel::u32, raster.directory().size()),
+      blocks_(site.device, gpu::Role::upload, gpu::Texel::u32, raster.blocks().size() + 4) {
+  refuse_long_rays(site, casts, cell_);
+  SF_CHECK(kernel_.group_size() == casts.group_size(), "the raster's rays are the cast's lanes, beam by beam");
+  std::memcpy(directory_.host<std::uint32_t>().data(), raster.directory().data(), 4 * raster.directory().size());
+  std::memcpy(blocks_.host<std::uint32_t>().data(), raster.blocks().data(), 4 * raster.blocks().size());
+}
+
+RoadRow Road::row_of(std::size_t i) const {
+  const RayRow& ray = casts_.rows().host<RayRow>()[i];
+  const double x = ray.origin_x / cell_;
+  const double y = ray.origin_y / cell_;
+  const double column = std::floor(x) - first_column_;
+  const double row = std::floor(y) - first_row_;
+  const bool near = column >= 0.0 && row >= 0.0 && column < columns_ && row < rows_;
+  RoadRow r{};
+  r.column = near ? static_cast<std::int32_t>(column) : -1;
+  r.row = near ? static_cast<std::int32_t>(row) : -1;
+  r.x = static_cast<float>(x - std::floor(x));
+  r.y = static_cast<float>(y - std::floor(y));
+  r.heading_cos = ray.heading_cos64;
+  r.heading_sin = ray.heading_sin64;
+  r.lane = ray.out;
+  r.beams = ray.beams;
+  r.flags = with_casts_ ? SF_EDGE_CAST : 0u;
+  r.reach = static_cast<float>(ray.range_max / cell_);
+  r.cell = cell_;
+  r.range_max = ray.range_max;
+  r.tag = tag_;
+  r.columns = block_columns_;
+  r.rows = block_rows_;
+  return r;
+}
+
+void Road::prepare(std::size_t due) {
+  due_ = due;
+  const auto rows = place_.host<RoadRow>();
+  workers_.run(due, 256, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) rows[i] = row_of(i);
+  });
+  // One invocation a beam where the cast has one a lane.
+  const auto lanes = casts_.groups().host<std::uint32_t>();
+  const auto groups = groups_.host<std::uint32_t>();
+  groups[0] = lanes[0];
+  groups[1] = SF_BEAMS_PER_LANE * lanes[1];
+  groups[2] = lanes[2];
+}
+
+void Road::bind(const PointTables& out) {
+  gpu::Buffer* const tables[] = {
+      &place_,        &casts_.lanes(), &casts_.directions64(), &directory_,  &blocks_,   &casts_.ranges(),
+      &casts_.hits(), &out.rows,       &out.directions,        &out.normals, &out.points};
+  kernel_.bind(tables);
+}
+
+void Road::record(gpu::Batch& batch) { batch.dispatch(kernel_, groups_, 0); }
+
+void Road::copies(gpu::Batch& batch) {
+  batch.up(place_, 0, due_ * sizeof(RoadRow));
+  batch.up(groups_, 0, groups_.bytes());
+  if (!fresh_) return;
+  batch.up(directory_, 0, directory_.bytes());
+  batch.up(blocks_, 0, blocks_.bytes());
+  fresh_ = false;
+}
+
+}  // namespace sf::sensors

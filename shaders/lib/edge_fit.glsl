@@ -1,0 +1,210 @@
+// From the points of a fan to the distance of a lane edge. Who includes this gives the tables rows, points, grains,
+// order, readings and mixtures.
+//
+// 1. A line through all points, and a parabola beside it. If they lie on it as well as their source allows, that is it.
+// 2. Otherwise candidates: lines through every window of the fan of an eighth, a third and two thirds of its width. All
+//    points vote (line_fit.h, `vote`); the best candidate's inliers make a line, and that line's inliers the last one.
+// All loops leave at the top: lavapipe asks for it.
+
+#include "sensors/paint/line_fit.h"
+
+#define SF_WINDOWS 16
+
+// One sensor's fan.
+struct EdgeFan {
+  int first;  // of its points
+  int lanes;
+  bool packed;
+};
+
+struct Points {
+  double w[SF_BEAMS_PER_LANE], x[SF_BEAMS_PER_LANE], y[SF_BEAMS_PER_LANE];
+  uint grain[SF_BEAMS_PER_LANE];
+};
+
+Points points_of(EdgeFan fan, int own) {
+  Points p;
+  for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+    const uvec4 words = imageLoad(points, fan.first + SF_BEAMS_PER_LANE * own + i);
+    p.x[i] = packDouble2x32(words.xy);
+    p.y[i] = packDouble2x32(words.zw);
+    p.w[i] = p.x[i] < double(SF_NOWHERE) ? 1.0 : 0.0;
+    p.grain[i] = p.x[i] < double(SF_NOWHERE) ? words.x & SF_GRAIN_MASK : 0u;
+  }
+  return p;
+}
+
+Moments moments_of_all(EdgeFan fan, out uint grain) {
+  Moments m = Moments(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+  grain = 0u;
+  int own = 0;
+  while (own < fan.lanes) {
+    const Points p = points_of(fan, own);
+    for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+      add_point(m, p.w[i], p.x[i], p.y[i]);
+      grain = max(grain, p.grain[i]);
+    }
+    ++own;
+  }
+  return m;
+}
+
+// Of the points of lanes [first, end) that lie within `allowed` of `line`.
+Moments moments_near(EdgeFan fan, int first, int end, Line line, double allowed) {
+  Moments m = Moments(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+  int own = first;
+  while (own < end) {
+    const Points p = points_of(fan, own);
+    for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+      const double v = across(line, p.x[i], p.y[i]);
+      const double w = v <= allowed && v >= -allowed ? p.w[i] : 0.0;
+      add_point(m, w, p.x[i], p.y[i]);
+    }
+    ++own;
+  }
+  return m;
+}
+
+Trend trend_near(EdgeFan fan, int end, Line line, double allowed) {
+  Trend s = no_trend();
+  int own = 0;
+  while (own < end) {
+    const Points p = points_of(fan, own);
+    for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+      const double v = across(line, p.x[i], p.y[i]);
+      const double w = v <= allowed && v >= -allowed ? p.w[i] : 0.0;
+      add_to_trend(s, w, along(line, p.x[i], p.y[i]), v);
+    }
+    ++own;
+  }
+  return s;
+}
+
+// Lanes of the k-th window: an eighth of the fan, nine times; a third, five times; two thirds, twice.
+ivec2 window(EdgeFan fan, int k) {
+  const int least = min(fan.lanes, fan.packed ? 1 : 2);
+  const int width = max(least, k < 9 ? fan.lanes / 8 : k < 14 ? fan.lanes / 3 : 2 * fan.lanes / 3);
+  const int at = k < 9 ? k : k < 14 ? k - 9 : k - 14;
+  const int last = k < 9 ? 8 : k < 14 ? 4 : 1;
+  const int first = (fan.lanes - width) * at / last;
+  return ivec2(first, first + width);
+}
+
+struct Candidate {
+  Line line;
+  double allowed;
+  Ballot ballot;
+  float votes;
+};
+
+Candidate candidate(EdgeFan fan, int k, bool wanted, double source) {
+  const ivec2 lanes = window(fan, k);
+  Line anywhere = Line(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0);
+  const Moments m = moments_near(fan, wanted ? lanes.x : 0, wanted ? lanes.y : 0, anywhere, 1e30);
+  const Line line = line_through(m);
+  // A bend within the fan may take points this far off: a part of how wide the fan is on the edge.
+  precise double wide = sqrt(line.spread * 12.0) * double(fan.lanes) / double(lanes.y - lanes.x);
+  precise double allowed = 0.625 * source + 0.015625 * wide;
+  return Candidate(line, allowed, ballot(line, allowed), 0.0);
+}
+
+Candidate elect(EdgeFan fan, bool wanted, double source) {
+  const Line none = Line(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0);
+  Candidate best = Candidate(none, 0.0, ballot(none, 0.0), -1e30);
+  // Of a wide fan every other lane votes.
+  const int stride = fan.lanes >= 12 ? 2 : 1;
+  int k = wanted ? 0 : SF_WINDOWS;
+  while (k < SF_WINDOWS) {
+    Candidate c[4];
+    for (int i = 0; i < 4; ++i) c[i] = candidate(fan, k + i, wanted, source);
+    int own = 0;
+    while (own < fan.lanes) {
+      const Points p = points_of(fan, own);
+      for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+        const float w = float(p.w[i]), x = float(p.x[i]), y = float(p.y[i]);
+        for (int j = 0; j < 4; ++j) c[j].votes = c[j].votes + vote(c[j].ballot, w, x, y);
+      }
+      own += stride;
+    }
+    for (int i = 0; i < 4; ++i) {
+      if (c[i].line.spread > 0.0 && c[i].votes > best.votes) best = c[i];
+    }
+    k += 4;
+  }
+  return best;
+}
+
+// [m^2] what range and bearing noise do to a point across the line, at its middle.
+double noise_across(Line line, double range_sigma, double range_proportional, double angle_sigma) {
+  precise double r2 = line.px * line.px + line.py * line.py;
+  const double safe = r2 > 0.0 ? r2 : 1.0;
+  precise double out_of = line.nx * line.px + line.ny * line.py;
+  precise double beside = line.tx * line.px + line.ty * line.py;
+  precise double radial = (range_sigma * range_sigma + range_proportional * range_proportional * r2) / safe;
+  precise double variance = radial * out_of * out_of + angle_sigma * angle_sigma * beside * beside;
+  return variance;
+}
+
+void main() {
+  const int at = SF_EDGE_TEXELS * int(imageLoad(order, int(gl_GlobalInvocationID.x)).x);
+  const uvec4 where = imageLoad(rows, at);
+  const uvec4 e_words = imageLoad(rows, at + 1);
+  const uvec4 noises = imageLoad(rows, at + 3);
+  const uvec4 others = imageLoad(rows, at + 4);
+  const uvec4 last = imageLoad(rows, at + 5);
+  const double ex = packDouble2x32(e_words.xy), ey = packDouble2x32(e_words.zw);
+  const double range_sigma = packDouble2x32(noises.xy), range_proportional = packDouble2x32(noises.zw);
+  const double angle_sigma = packDouble2x32(others.xy), distance_max = packDouble2x32(others.zw);
+  const bool packed = (where.w & SF_EDGE_PACKED) != 0u;
+  const bool single = (where.w & SF_EDGE_SINGLE) != 0u;
+  const int beams = int(where.z);
+  const int lanes = packed ? (beams + SF_BEAMS_PER_LANE - 1) / SF_BEAMS_PER_LANE : beams;
+  const EdgeFan fan = EdgeFan(SF_BEAMS_PER_LANE * int(where.x), lanes, packed);
+
+  // All points.
+  uint grain_row;
+  const Moments all = moments_of_all(fan, grain_row);
+  const uvec4 grain_words = imageLoad(grains, int(grain_row));
+  const double grain = packDouble2x32(grain_words.xy);
+  Line line = line_through(all);
+  double noise = sqrt(noise_across(line, range_sigma, range_proportional, angle_sigma));
+  const double source = tolerance(grain, noise);
+  Trend trend = trend_near(fan, lanes, line, 1e30);
+  Bend bend = bend_of(trend);
+
+  // Those of one edge among several.
+  const bool mixed = !single && trend.n > 2.5 && !is_one_edge(trend, bend, source);
+  const Candidate best = elect(fan, mixed, source);
+  const int again = mixed ? lanes : 0;
+  const Moments near = moments_near(fan, 0, again, best.line, best.allowed);
+  const Line second = line_through(near);
+  const Moments nearer = moments_near(fan, 0, again, second, best.allowed);
+  const Line third = line_through(nearer);
+  const Trend third_trend = trend_near(fan, again, third, best.allowed);
+  if (mixed) {
+    line = third;
+    trend = third_trend;
+    bend = bend_of(third_trend);
+    noise = sqrt(noise_across(third, range_sigma, range_proportional, angle_sigma));
+  }
+
+  const double floor_of_noise = 9.313225746154785e-10;
+  const Doubt doubt = Doubt(grain, noise > floor_of_noise ? noise : floor_of_noise);
+  const Fitted fitted = fit_at(line, trend, bend, doubt, ex, ey, distance_max);
+
+  // A single ray is its own reading.
+  const Points start = points_of(fan, 0);
+  precise double first = sqrt(start.x[0] * start.x[0] + start.y[0] * start.y[0]);
+  precise double spread = range_proportional * first;
+  precise double along_ray = sqrt(range_sigma * range_sigma + spread * spread + grain * grain / 12.0);
+  const double nan = packDouble2x32(uvec2(0u, 0x7ff80000u));
+  const bool seen = single ? start.w[0] > 0.0 : fitted.seen;
+  const double distance = single ? first : fitted.distance;
+  const double sigma = single ? along_ray : fitted.sigma;
+  const double points = single ? start.w[0] : fitted.points;
+  const double residual = single ? 0.0 : fitted.residual;
+  const int out_row = 2 * int(last.y);
+  imageStore(readings, out_row, uvec4(unpackDouble2x32(seen ? distance : nan), unpackDouble2x32(points)));
+  imageStore(readings, out_row + 1, uvec4(unpackDouble2x32(seen ? residual : 0.0), unpackDouble2x32(seen ? sigma : nan)));
+  imageStore(mixtures, int(last.y), uvec4(mixed ? 1u : 0u));
+}

@@ -1,0 +1,89 @@
+// `field`: a picture and numbers of a world's magnets.
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/apps/program.h"
+
+namespace sf {
+namespace {
+
+std::string magnets(const Folder& folder) {
+  return folder.write("magnets.world",
+                      "define magnet model( size [0.025 0.025 0.1] magnetic_moment 10000 )\n"
+                      "magnet( pose [0 0 -0.1 0] ) magnet( pose [0.071 0 -0.1 0] )\n");
+}
+
+TEST(Field, WritesAPicture) {
+  const Folder folder;
+  const Outcome outcome =
+      run_program({"field", our_world("six_magnets.world"), "--height", "0.075", "-o", folder.path("six.png")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("wrote"), std::string::npos);
+  EXPECT_EQ(read_file(folder.path("six.png")).substr(1, 3), "PNG");
+}
+
+/// Right above a magnet of 1 A m^2, 12.5 cm from its middle, next to another: more than a Gauss.
+TEST(Field, WritesNumbersAlongALine) {
+  const Folder folder;
+  const Outcome outcome = run_program({"field", magnets(folder), "--height", "0.075", "-o", folder.path("x.png"),
+                                       "--line", "0,-1,0,1", "--extent", "-1,-1,1,1", "--csv", folder.path("x.csv")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  std::istringstream csv(read_file(folder.path("x.csv")));
+  std::string line, middle;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "along_m,x_m,y_m,z_m,field_gauss,x_gauss,y_gauss,z_gauss,magnitudes_gauss");
+  std::size_t rows = 0;
+  while (std::getline(csv, line)) {
+    if (rows == 600) middle = line;
+    ++rows;
+  }
+  EXPECT_EQ(rows, 1201u);
+  double along, x, y, z, field;
+  char comma;
+  std::istringstream(middle) >> along >> comma >> x >> comma >> y >> comma >> z >> comma >> field;
+  EXPECT_EQ(along, 1.0);
+  EXPECT_NEAR(y, 0.0, 1e-12);
+  EXPECT_EQ(z, 0.075);
+  EXPECT_NEAR(field, 1.5143, 1e-4) << "1.024 upwards, and the other one's 0.427 upwards and 0.434 aside";
+}
+
+struct Refusal {
+  Words arguments;
+  std::string says;
+};
+
+TEST(Field, RefusesWhatMakesNoSense) {
+  const Folder folder;
+  const std::string world = magnets(folder), png = folder.path("x.png");
+  const std::string bare = folder.write("bare.world", "name \"bare\"\n");
+  const Refusal refusals[] = {
+      {{"field", bare, "--height", "1", "-o", png}, "has no magnets"},
+      {{"field", world, "-o", png}, "--height is required"},
+      {{"field", world, "--height", "1"}, "--out is required"},
+      {{"field", world, "--height", "high", "-o", png}, "--height"},
+      {{"field", world, "--height", "nan", "-o", png}, "--height"},
+      {{"field", world, "--height", "1", "-o", png, "--line", "1,2,3"}, "X0,Y0,X1,Y1"},
+      {{"field", world, "--height", "1", "-o", png, "--line", "1,2,1,2"}, "X0,Y0,X1,Y1"},
+      {{"field", world, "--height", "1", "-o", png, "--line", "1,2,nan,2"}, "X0,Y0,X1,Y1"},
+      {{"field", world, "--height", "1", "-o", png, "--line", "1,2,3,4,5"}, "X0,Y0,X1,Y1"},
+      {{"field", world, "--height", "1", "-o", png, "--extent", "1,2,0,4"}, "XMIN,YMIN,XMAX,YMAX"},
+      {{"field", world, "--height", "1", "-o", folder.path("none/x.png")}, "none/x.png"},
+      {{"field", world, "--height", "1", "-o", png, "--csv", folder.path("none/x.csv")}, "none/x.csv"},
+      {{"field", folder.path("none.world"), "--height", "1", "-o", png}, "none.world"},
+  };
+  for (const Refusal& refusal : refusals) {
+    const Outcome outcome = run_program(refusal.arguments);
+    EXPECT_EQ(outcome.code, 2) << refusal.says << ": " << outcome.err;
+    EXPECT_NE(outcome.err.find(refusal.says), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(Field, NeedsADevice) {
+  const Folder folder;
+  EXPECT_EQ(run_program({"field", magnets(folder), "--height", "1", "-o", folder.path("x.png")}, no_device()).code, 3);
+}
+
+}  // namespace
+}  // namespace sf

@@ -1,0 +1,332 @@
+// Every kind of sensor through every command: the same words, files and packets for all of them.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+#include "netio/outbox.h"
+#include "netio/packets.h"
+#include "netio/socket.h"
+#include "record/recording.h"
+#include "sensors/kind.h"
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+#include "tests/netio/documented.h"
+
+namespace sf {
+
+namespace {
+
+constexpr std::uint8_t kLaneEdge = 2;
+constexpr std::uint8_t kMagnetometer = 3;
+
+bool has_kind(std::uint8_t id) { return sensors::find_kind(id) != nullptr; }
+
+// A magnet of 1 A m^2, and robots that carry a laser and two elements 0.5 m and 1 m ahead, as high as the magnet.
+const char* const kWorld = R"(
+define bot position
+(
+  size [0.3 0.3 0.1]
+  laser( samples 3 fov 90 range_max 8 size [0 0 0.04] pose [0 0 -0.06 0] )
+  magnetometer( name "array" pose [0.5 0 -0.1 0] size [0.02 0.3 0.1] scount 2 spose[0] [0 0 0] spose[1] [0.5 0 0] )
+)
+bot( name "one" pose [0 0 0 0] )
+bot( name "two" pose [0 50 0 0] )
+position( name "blind" pose [0 80 0 0] )
+model( name "magnet" pose [1.5 0 0 0] size [0.1 0.1 0.1] magnetic_moment 10000 )
+)";
+
+struct Kinds : testing::Test {
+  void SetUp() override {
+    if (!has_kind(kMagnetometer)) GTEST_SKIP() << "built without the magnetometer";
+  }
+  Folder folder;
+  std::string world = folder.write("kinds.world", kWorld);
+};
+
+/// `words` after a subcommand, its world and what all of these tests want.
+Outcome run(const std::string& command, const std::string& world, const Words& more) {
+  Words words{command, world};
+  words.insert(words.end(), more.begin(), more.end());
+  return run_program(words);
+}
+
+/// Two kinds of ports that nobody has.
+Words free_bases(unsigned& base) {
+  base = free_ports(80);
+  return {"--laser-port", std::to_string(base), "--magnetometer-port", std::to_string(base + 40)};
+}
+
+}  // namespace
+
+TEST_F(Kinds, AMagnetometerIsSensedByHand) {
+  const Outcome outcome = run("sense", world, {"--kind", "magnetometer", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json reading(outcome.out);
+  EXPECT_EQ(reading.text("/robot"), "one");
+  EXPECT_EQ(reading.text("/kind"), "magnetometer");
+  EXPECT_EQ(reading.text("/sensor_name"), "array");
+  EXPECT_EQ(reading.size("/sensor_pose"), 3u);
+  ASSERT_EQ(reading.size("/sensors"), 2u);
+  ASSERT_EQ(reading.size("/sensors/0/vector_T"), 3u);
+  // In the plane of a dipole the field is mu0 / (4 pi) m / r^3, against the moment: 1 m and 0.5 m away.
+  EXPECT_NEAR(reading.number("/sensors/0/field_T"), 1e-7, 1e-13);
+  EXPECT_NEAR(reading.number("/sensors/0/vector_T/2"), -1e-7, 1e-13);
+  EXPECT_NEAR(reading.number("/sensors/1/field_T"), 8e-7, 1e-12);
+  EXPECT_NEAR(reading.number("/sensors/1/vector_T/0"), 0.0, 1e-12);
+}
+
+TEST_F(Kinds, PoseMovesAnySensor) {
+  const Json reading(run("sense", world, {"--kind", "magnetometer", "--json", "--pose", "0.5,0,0"}).out);
+  EXPECT_NEAR(reading.number("/sensors/0/field_T"), 8e-7, 1e-12);
+}
+
+TEST_F(Kinds, CsvHasAColumnPerNumberAndALinePerElement) {
+  const Outcome outcome = run("sense", world, {"--kind", "magnetometer"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.rfind("field_T,vector_T_x,vector_T_y,vector_T_z\n", 0), 0u) << outcome.out;
+  EXPECT_EQ(count_lines(outcome.out), 3u);
+  EXPECT_NE(outcome.err.find("its array at (0.500000, 0.000000, 0.050000) m"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Kinds, WithoutAWordTheFirstKindIsMeant) {
+  EXPECT_EQ(Json(run("sense", world, {"--json"}).out).text("/kind"), "laser");
+  const std::string only = folder.write("only.world", "position( name \"a\" magnetometer( ) )\n");
+  EXPECT_EQ(Json(run("sense", only, {"--json"}).out).text("/kind"), "magnetometer");
+}
+
+TEST_F(Kinds, WhoIsAskedForWhatItHasNotSaysWhatItHas) {
+  struct Wrong {
+    Words arguments;
+    std::string said;
+  };
+  const std::string lasers = folder.write("lasers.world", "position( name \"a\" laser( ) laser( ) )\n");
+  const std::string none = folder.write("none.world", "position( name \"a\" )\n");
+  for (const auto& [arguments, said] : std::vector<Wrong>{
+           {{world, "--sensor", "1"}, "one has no laser 1; it has laser 0, magnetometer 0"},
+           {{world, "--kind", "magnetometer", "--sensor", "1"}, "one has no magnetometer 1; it has laser 0"},
+           {{world, "--robot", "blind"}, "blind has no sensor"},
+           {{lasers, "--kind", "magnetometer"}, "no robot has such a sensor; give one a magnetometer( )"},
+           {{lasers, "--kind", "magnetometer", "--robot", "a"}, "a has no magnetometer 0; it has laser 0 to 1"},
+           {{lasers, "--kind", "magnetometer", "--robot", "b"}, "no robot 'b'; with sensors it has none"},
+           {{none}, "no robot has such a sensor; give one a laser( )"},
+       }) {
+    Words words{"sense"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    const Outcome outcome = run_program(words);
+    EXPECT_EQ(outcome.code, 2) << said;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << said << " is not in: " << outcome.err;
+  }
+}
+
+TEST_F(Kinds, CheckCountsThem) {
+  const Json facts(run("check", world, {"--json"}).out);
+  EXPECT_EQ(facts.number("/sensors/laser"), 2);
+  EXPECT_EQ(facts.number("/sensors/magnetometer"), 2);
+  EXPECT_EQ(facts.size("/sensors"), sensors::kinds().size()) << "kinds that are not there are 0";
+  EXPECT_EQ(facts.number("/magnets"), 1);
+  EXPECT_EQ(facts.number("/magnet_cutoff"), 0);
+  EXPECT_EQ(facts.number("/paint"), 0);
+  EXPECT_EQ(facts.number("/road_resolution"), 0);
+  EXPECT_EQ(facts.size("/warnings"), 0u);
+  const std::string text = run("check", world, {}).out;
+  EXPECT_NE(text.find("magnetometer       2 (4 sensors in all)"), std::string::npos) << text;
+}
+
+TEST_F(Kinds, SettingsThatMakeNoSenseNameTheirLineInEveryCommand) {
+  const std::string bad = folder.write("bad.world", "position\n(\n  magnetometer( scount 99 )\n)\n");
+  for (const std::string command : {"check", "sense", "run", "serve", "listen"}) {
+    const Outcome outcome = run_program({command, bad});
+    EXPECT_EQ(outcome.code, 2) << command;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+    EXPECT_NE(outcome.err.find("bad.world:3: "), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(Kinds, EveryPacketArrivesOnEitherWire) {
+  for (const std::string wire : {"farm", "thesis"}) {
+    unsigned base = 0;
+    const Words bases = free_bases(base);
+    Words listen{"listen", world, "--json", "--wire", wire, "--silence", "100"};
+    listen.insert(listen.end(), bases.begin(), bases.end());
+    Program listener(listen);
+    ASSERT_TRUE(listener.says("listening on 4 ports")) << listener.err();
+    Words words{"--duration", "2", "--send", "127.0.0.1", "--json", "--wire", wire};
+    words.insert(words.end(), bases.begin(), bases.end());
+    const Outcome sent = run("run", world, words);
+    ASSERT_EQ(sent.code, 0) << sent.err;
+    listener.signal(SIGINT);
+    const Outcome received = listener.wait();
+    const Json out(sent.out), in(received.out);
+    EXPECT_EQ(out.number("/packets/sent"), 2 * 20 * 2);
+    EXPECT_EQ(out.number("/packets/not_numbers"), 0);
+    EXPECT_EQ(in.number("/good"), 2 * 20 * 2) << received.out;
+    EXPECT_EQ(in.number("/lost"), 0);
+    EXPECT_EQ(in.number("/silent_ports"), 0);
+    EXPECT_EQ(in.number("/rays"), 2 * 20 * 3);
+    EXPECT_EQ(in.number("/sensors/magnetometer/good"), 2 * 20);
+    EXPECT_EQ(in.number("/sensors/magnetometer/elements"), 2 * 20 * 2);
+    // Each element meets the magnet; a run counts that.
+    EXPECT_EQ(out.number("/dipoles"), 2 * 20 * 2);
+  }
+}
+
+TEST_F(Kinds, KindsThatShareAPortAreToldApart) {
+  const Outcome outcome = run("serve", world, {"--port", "0", "--magnetometer-port", "10008"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  for (const std::string said : {"laser 0", "magnetometer 0", "share port 10008", "--magnetometer-port"})
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << said << " is not in: " << outcome.err;
+}
+
+TEST_F(Kinds, ARobotGetsTheKindsItAsksFor) {
+  unsigned base = 0;
+  Words words{"serve", world, "--port", "0", "--rate", "50", "--json"};
+  const Words bases = free_bases(base);
+  words.insert(words.end(), bases.begin(), bases.end());
+  Program program(words);
+  ASSERT_TRUE(program.says("; Ctrl-C ends it")) << program.err();
+  const std::string said = program.err();
+  const auto service = static_cast<std::uint16_t>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
+
+  const std::uint16_t id = 1;  // the first robot of the file
+  const netio::Socket lasers = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + 8)});
+  const netio::Socket arrays = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + 48)});
+  netio::Outbox mouth;
+  netio::ReceiveBatch batch(16);
+  std::size_t heard = 0;
+  for (std::uint32_t sequence = 0; sequence < 3000 && heard < 3; ++sequence) {
+    base::Bytes request;
+    netio::encode({.robot = id, .sequence = sequence}, netio::Subscribe{1u << kMagnetometer}, request);
+    mouth.queue({netio::kLoopback, service}, request);
+    mouth.flush();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    const std::size_t count = batch.fill(arrays);
+    for (std::size_t i = 0; i < count; ++i) {
+      netio::Packet packet;
+      ASSERT_EQ(netio::decode(batch.bytes(i), packet), netio::Reason::accepted);
+      EXPECT_EQ(netio::kind_of(packet.header.type), kMagnetometer);
+      EXPECT_EQ(batch.bytes(i).size(), 24u + 4u + 2u * 16u);
+    }
+    heard += count;
+  }
+  EXPECT_GE(heard, 3u);
+  EXPECT_EQ(batch.fill(lasers), 0u) << "nobody asked for scans";
+  program.signal(SIGINT);
+  const Json facts(program.wait().out);
+  EXPECT_EQ(facts.number("/rays"), 0);
+  EXPECT_GT(facts.number("/dipoles"), 0);
+}
+
+TEST_F(Kinds, ReadingsAreRecordedToTheBitAndDrawn) {
+  const Words record{"--duration", "2", "--json", "--record", folder.path("r")};
+  Words with_readings = record;
+  with_readings.push_back("--record-readings");
+  ASSERT_EQ(run("run", world, with_readings).code, 0);
+  const record::Recording recording = record::open_recording(folder.path("r"));
+  EXPECT_TRUE(recording.damage.empty());
+  EXPECT_EQ(recording.scans.size(), 2u * 20u);
+  ASSERT_EQ(recording.readings.size(), 2u * 20u);
+  ASSERT_EQ(recording.info.movers[0].sensors.size(), 1u);
+  EXPECT_EQ(recording.info.movers[0].sensors[0].topic, "/one/array/magnetometer");
+  EXPECT_EQ(recording.info.movers[2].sensors.size(), 0u);
+  const record::ReadingSample& first = recording.readings[0];
+  EXPECT_EQ(first.kind, kMagnetometer);
+  ASSERT_EQ(first.values.size(), 8u);
+  const Json now(run("sense", world, {"--kind", "magnetometer", "--json"}).out);
+  EXPECT_EQ(first.values[0], now.number("/sensors/0/field_T"));
+  EXPECT_EQ(first.values[7], now.number("/sensors/1/vector_T/2"));
+
+  const Outcome plot = run_program({"plot", folder.path("r"), "-o", folder.path("p")});
+  EXPECT_EQ(plot.code, 0) << plot.err;
+  EXPECT_EQ(read_file(folder.path("p/magnetometer.png")).substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_FALSE(std::filesystem::exists(folder.path("p/lane_edge.png"))) << "nobody has one";
+
+  ASSERT_EQ(run("run", world, record).code, 0);
+  EXPECT_EQ(run_program({"plot", folder.path("r"), "-o", folder.path("q")}).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder.path("q/magnetometer.png"))) << "nothing was recorded to draw";
+}
+
+/// Robots drive by their lasers: what else they carry, and how often it speaks, moves none of them.
+TEST_F(Kinds, WhatNobodyDrivesByChangesNoPath) {
+  const auto states = [&](const std::string& name, const std::string& sensor) {
+    const std::string file =
+        folder.write(name + ".world", "position( name \"a\" laser( samples 91 fov 180 range_max 2 rate 2 )" + sensor +
+                                          ")\nmodel( size [6 6 1] boundary 1 obstacle_return 1 )\n"
+                                          "model( pose [1 0.3 0 0] size [0.4 0.4 1] magnetic_moment 1 )");
+    EXPECT_EQ(run("run", file, {"--duration", "20", "--record", folder.path(name)}).code, 0);
+    return record::open_recording(folder.path(name)).states.at(0);
+  };
+  const auto alone = states("alone", "");
+  const auto with = states("with", "magnetometer( scount 1 spose[0] [0 0 0] rate 10 )");
+  ASSERT_EQ(alone.size(), with.size());
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    ASSERT_EQ(alone[i].X_WM.x, with[i].X_WM.x) << i;
+    ASSERT_EQ(alone[i].X_WM.yaw, with[i].X_WM.yaw) << i;
+  }
+  EXPECT_NE(alone.front().X_WM.x, alone.back().X_WM.x) << "the robot is meant to drive";
+}
+
+TEST(Wire, MagnetometersSendTheDocumentedBytes) {
+  const sensors::SensorKind* kind = sensors::find_kind(kMagnetometer);
+  if (kind == nullptr) GTEST_SKIP() << "built without the magnetometer";
+  const std::vector<double> values{1.3e-4, 0, -0.5e-4, 1.2e-4, 0.25e-4, 0, 0, -0.25e-4};
+  sensors::SensorRow row;
+  row.elements = 2;
+  row.limit = 1.0;
+  base::Bytes payload, packet, plain;
+  const std::uint8_t type = kind->encode(row, {.kind = kind->id, .values = values}, sensors::Wire::farm, 0, payload);
+  netio::frame({.robot = 7, .sequence = 30, .time = 3'000'000'000}, type, payload, packet);
+  EXPECT_EQ(packet, test::documented("magnetometer"));
+  EXPECT_NE(kind->encode(row, {.kind = kind->id, .values = values}, sensors::Wire::thesis, 0, plain), 0);
+  EXPECT_EQ(plain, test::documented("thesis_magnetometer"));
+}
+
+TEST(Wire, LaneEdgesSendTheDocumentedBytes) {
+  const sensors::SensorKind* kind = sensors::find_kind(kLaneEdge);
+  if (kind == nullptr) GTEST_SKIP() << "built without the lane edge sensor";
+  const std::vector<double> values{0.25, 61, 12e-6, 1.5e-3};
+  base::Bytes payload, packet, plain;
+  const std::uint8_t type = kind->encode({}, {.kind = kind->id, .values = values}, sensors::Wire::farm, 0, payload);
+  netio::frame({.robot = 7, .sequence = 30, .time = 3'000'000'000}, type, payload, packet);
+  EXPECT_EQ(packet, test::documented("lane_edge"));
+  EXPECT_NE(kind->encode({}, {.kind = kind->id, .values = values}, sensors::Wire::thesis, 0, plain), 0);
+  EXPECT_EQ(plain, test::documented("thesis_lane_edge"));
+  // No edge in sight.
+  const std::vector<double> none{NAN, 0, NAN, NAN};
+  plain.clear();
+  kind->encode({}, {.kind = kind->id, .values = none}, sensors::Wire::thesis, 0, plain);
+  EXPECT_EQ(plain, (base::Bytes{0xff, 0xff}));
+}
+
+TEST(LaneEdge, GoesThroughEveryCommand) {
+  if (!has_kind(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
+  const std::string lane = our_world("testpath/testpath.world");
+  const Json facts(run("check", lane, {"--json"}).out);
+  EXPECT_EQ(facts.number("/sensors/laneedge"), 1);
+  EXPECT_GT(facts.number("/paint"), 0);
+
+  const Json reading(run("sense", lane, {"--kind", "laneedge", "--json"}).out);
+  EXPECT_EQ(reading.text("/kind"), "laneedge");
+  EXPECT_GT(reading.number("/distance_m"), 0.1);
+  EXPECT_GT(reading.number("/points"), 2);
+  EXPECT_TRUE(reading.has("/residual_m"));
+  // Far from the lane there is no edge.
+  EXPECT_TRUE(
+      Json(run("sense", lane, {"--kind", "laneedge", "--json", "--pose", "50,50,0"}).out).is_null("/distance_m"));
+  const std::string csv = run("sense", lane, {"--kind", "laneedge", "--pose", "50,50,0"}).out;
+  EXPECT_EQ(csv.rfind("distance_m,points,residual_m,sigma_m\n,0,", 0), 0u) << csv;
+
+  const Folder folder;
+  ASSERT_EQ(run("run", lane, {"--duration", "2", "--record", folder.path("r"), "--record-readings"}).code, 0);
+  EXPECT_EQ(run_program({"plot", folder.path("r")}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder.path("r/lane_edge.png")));
+  EXPECT_TRUE(std::filesystem::exists(folder.path("r/magnetometer.png")));
+}
+
+}  // namespace sf

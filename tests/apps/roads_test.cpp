@@ -1,0 +1,168 @@
+// `check` and `draw` of road networks and missions.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+
+namespace {
+
+const char* const kRoads = R"(RNDF_name two
+num_segments 1
+num_zones 0
+segment 1
+num_lanes 2
+segment_name Straight
+lane 1.1
+num_waypoints 2
+left_boundary double_yellow
+checkpoint 1.1.2 5
+exit 1.1.2 1.2.1
+stop 1.1.2
+1.1.1 40.000000 -83.000000
+1.1.2 40.000000 -82.999000
+end_lane
+lane 1.2
+num_waypoints 2
+lane_width 12
+1.2.1 40.000040 -82.999000
+1.2.2 40.000040 -83.000000
+end_lane
+end_segment
+end_file
+)";
+
+const char* const kMission =
+    "MDF_name go\nRNDF two\ncheckpoints\nnum_checkpoints 1\n5\nend_checkpoints\nspeed_limits\n"
+    "num_speed_limits 2\n1 0 15\n9 0 15\nend_speed_limits\nend_file\n";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(Roads, JsonCountsWhatIsThere) {
+  const Folder folder;
+  const Outcome outcome = run_program({"check", folder.write("two.rndf", kRoads), "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json facts(outcome.out);
+  EXPECT_EQ(facts.text("/network"), "two");
+  EXPECT_EQ(facts.number("/roads/segments"), 1);
+  EXPECT_EQ(facts.number("/roads/lanes"), 2);
+  EXPECT_EQ(facts.number("/roads/zones"), 0);
+  EXPECT_EQ(facts.number("/roads/spots"), 0);
+  EXPECT_EQ(facts.number("/roads/lane_waypoints"), 4);
+  EXPECT_EQ(facts.number("/roads/points"), 4);
+  EXPECT_EQ(facts.number("/roads/exits"), 1);
+  EXPECT_EQ(facts.number("/roads/stops"), 1);
+  EXPECT_EQ(facts.number("/roads/checkpoints"), 1);
+  EXPECT_EQ(facts.number("/stripes"), 3);  // two yellow lines and a stop line
+  EXPECT_EQ(facts.number("/scale"), 1);
+  EXPECT_NEAR(facts.number("/lane_length_m"), 2 * 85.394, 0.01);
+  EXPECT_EQ(facts.size("/warnings"), 1u);
+  EXPECT_EQ(facts.number("/warnings/0/line"), 7);
+}
+
+TEST(Roads, NamesOfAnyBytesAreJson) {
+  const Folder folder;
+  const Outcome outcome = run_program(
+      {"check",
+       folder.write("two.rndf", replaced(kRoads, "RNDF_name two", "RNDF_name a\"b\\c\xFF\xC3\xA4\xED\xA0\x80")),
+       "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string bad = "\xEF\xBF\xBD";
+  EXPECT_EQ(Json(outcome.out).text("/network"), "a\"b\\c" + bad + "\xC3\xA4" + bad + bad + bad);
+}
+
+TEST(Roads, TextNamesWarningsWithTheirLine) {
+  const Folder folder;
+  const std::string file = folder.write("two.rndf", kRoads);
+  const Outcome outcome = run_program({"check", file});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find(file + ":7: warning: lane 1.1 has no lane_width; 12 ft is assumed"), std::string::npos);
+  EXPECT_NE(outcome.out.find("lanes              2 (170.8 m in all)"), std::string::npos) << outcome.out;
+}
+
+TEST(Roads, SidecarIsRead) {
+  const Folder folder;
+  folder.write("two.toml", "scale = 0.5\nlane_width_m = 0.5\n");
+  const Outcome outcome = run_program({"check", folder.write("two.rndf", kRoads), "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(Json(outcome.out).number("/scale"), 0.5);
+  EXPECT_EQ(Json(outcome.out).size("/warnings"), 0u);
+}
+
+TEST(Roads, WhatIsWrongIsOneLineWithItsPlace) {
+  const Folder folder;
+  const std::string file = folder.write("two.rndf", replaced(kRoads, "1.2.1\nstop", "9.9.9\nstop"));
+  const Outcome outcome = run_program({"check", file});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err.find("sensorfarm: " + file + ":11: the exit leads to way-point 9.9.9"), 0u) << outcome.err;
+  EXPECT_EQ(count_lines(outcome.err), 1u);
+}
+
+TEST(Roads, IsDrawn) {
+  const Folder folder;
+  const Outcome outcome = run_program({"draw", folder.write("two.rndf", kRoads), "-o", folder.path("two.png")});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(read_file(folder.path("two.png")).substr(0, 8), "\x89PNG\r\n\x1a\n");
+}
+
+TEST(Missions, AloneForTheirForm) {
+  const Folder folder;
+  const Outcome outcome = run_program({"check", folder.write("go.mdf", kMission), "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json facts(outcome.out);
+  EXPECT_EQ(facts.text("/mission"), "go");
+  EXPECT_EQ(facts.text("/rndf"), "two");
+  EXPECT_TRUE(facts.is_null("/checked_against"));
+  EXPECT_EQ(facts.number("/checkpoints/0"), 5);
+  EXPECT_EQ(facts.size("/speed_limits"), 2u);
+  EXPECT_EQ(facts.size("/warnings"), 0u);
+}
+
+TEST(Missions, AgainstTheirNetwork) {
+  const Folder folder;
+  const std::string rndf = folder.write("two.rndf", kRoads);
+  const std::string mission = folder.write("go.mdf", kMission);
+  const Outcome fine = run_program({"check", mission, "--rndf", rndf, "--json"});
+  ASSERT_EQ(fine.code, 0) << fine.err;
+  EXPECT_EQ(Json(fine.out).text("/checked_against"), rndf);
+  EXPECT_EQ(Json(fine.out).number("/warnings/0/line"), 10);  // a speed limit for 9, which is nowhere
+
+  const Outcome dangling =
+      run_program({"check", folder.write("no.mdf", replaced(kMission, "\n5\n", "\n6\n")), "--rndf", rndf});
+  EXPECT_EQ(dangling.code, 2);
+  EXPECT_NE(dangling.err.find("no.mdf:5: checkpoint 6 does not exist"), std::string::npos) << dangling.err;
+}
+
+TEST(Missions, WrongUseIsExplained) {
+  const Folder folder;
+  const std::string rndf = folder.write("two.rndf", kRoads);
+  const Outcome no_mission = run_program({"check", rndf, "--rndf", rndf});
+  EXPECT_EQ(no_mission.code, 2);
+  EXPECT_NE(no_mission.err.find("--rndf goes with `check` of an .mdf file"), std::string::npos) << no_mission.err;
+  const Outcome no_picture = run_program({"draw", folder.write("go.mdf", kMission), "-o", folder.path("x.png")});
+  EXPECT_EQ(no_picture.code, 2);
+  EXPECT_NE(no_picture.err.find("a mission has no picture"), std::string::npos) << no_picture.err;
+}
+
+TEST(Roads, PublicFilesHaveTheirCounts) {
+  const std::string folder = SF_SOURCE_DIR "/../shared/data/rndf/";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
+  const Outcome outcome = run_program({"check", folder + "darpa_sample/uce_rndf_1_final_event.rndf", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Json facts(outcome.out);
+  EXPECT_EQ(facts.number("/roads/points"), 941);
+  EXPECT_EQ(facts.number("/roads/lane_waypoints"), 628);
+  EXPECT_EQ(facts.number("/roads/checkpoints"), 170);
+  EXPECT_EQ(facts.size("/warnings"), 0u);
+}
+
+}  // namespace
+
+}  // namespace sf

@@ -1,0 +1,74 @@
+// Lane edge readings as bytes.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "sensors/laneedge.h"
+#include "sensors/laneedge_packets.h"
+
+namespace sf::sensors {
+namespace {
+
+base::Bytes encoded(const std::vector<double>& values, Wire wire) {
+  base::ReadingBlock block;
+  block.values = values;
+  base::Bytes out;
+  EXPECT_EQ(encode_lane_edge({}, block, wire, 0, out), kLaneEdge);
+  return out;
+}
+
+TEST(LaneEdgePackets, EveryByte) {
+  const base::Bytes farm = encoded({0.25, 61, 0.000'123, 0.004'567}, Wire::farm);
+  EXPECT_EQ(farm, (base::Bytes{0xFA, 0x00, 61, 0, 123, 0, 0, 0, 0xD7, 0x11, 0, 0}));
+  EXPECT_EQ(encoded({0.25, 61, 0.1, 0.1}, Wire::thesis), (base::Bytes{0xFA, 0x00}));
+}
+
+std::uint16_t millimetres(double metres) {
+  const base::Bytes b = encoded({metres, 2, 0, 0}, Wire::thesis);
+  return static_cast<std::uint16_t>(b[0] | b[1] << 8);
+}
+
+TEST(LaneEdgePackets, RoundsToNearestAndSaturates) {
+  EXPECT_EQ(millimetres(0.0), 0);
+  EXPECT_EQ(millimetres(0.0004), 0);
+  EXPECT_EQ(millimetres(0.0006), 1);
+  EXPECT_EQ(millimetres(1.2344), 1234);
+  EXPECT_EQ(millimetres(65.534), 65'534);
+  EXPECT_EQ(millimetres(65.6), 65'534) << "far is not out of sight";
+  EXPECT_EQ(millimetres(std::numeric_limits<double>::infinity()), 65'534);
+  EXPECT_EQ(millimetres(std::numeric_limits<double>::quiet_NaN()), 65'535);
+  EXPECT_EQ(millimetres(-1.0), 0);
+}
+
+TEST(LaneEdgePackets, NoEdgeInSightKeepsItsPoints) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(encoded({kNan, 1, 0, kNan}, Wire::farm),
+            (base::Bytes{0xFF, 0xFF, 1, 0, 0, 0, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF}));
+  EXPECT_EQ(encoded({0.1, 1e9, 1e9, 1e9}, Wire::farm),
+            (base::Bytes{100, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}));
+}
+
+TEST(LaneEdgePackets, AnyBytesGiveAPartOrAFault) {
+  for (const Wire wire : {Wire::farm, Wire::thesis}) {
+    const std::size_t right = wire == Wire::farm ? 12 : 2;
+    for (std::size_t size = 0; size < 20; ++size) {
+      const std::vector<std::uint8_t> bytes(size, 0xA5);
+      const Fault expected = size < right ? Fault::too_short : size > right ? Fault::too_long : Fault::none;
+      EXPECT_EQ(decode_lane_edge({}, bytes, kLaneEdge, wire).fault, expected) << size;
+    }
+  }
+  EXPECT_EQ(decode_lane_edge({}, std::vector<std::uint8_t>(12), 7, Wire::farm).fault, Fault::out_of_range);
+  EXPECT_EQ(decode_lane_edge({}, std::vector<std::uint8_t>(12), kLaneEdge, Wire::farm).elements, 1u);
+}
+
+TEST(LaneEdgePackets, OneDatagramAndNeverRefused) {
+  for (const Wire wire : {Wire::farm, Wire::thesis}) {
+    EXPECT_EQ(lane_edge_parts({}, wire), 1u);
+    EXPECT_EQ(refuse_lane_edge({}, wire), "");
+  }
+}
+
+}  // namespace
+}  // namespace sf::sensors

@@ -1,0 +1,370 @@
+// The lane edge sensor on paint as it is: definitions one by one, exact geometry, and what must not matter.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "sensors/laneedge_settings.h"
+#include "tests/sensors/chance.h"
+#include "tests/sensors/laneedge_trial.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Pose;
+using base::Vec2;
+using sensors::EdgeReading;
+
+constexpr double kDegrees = M_PI / 180.0;
+constexpr double kWidth = 0.1;
+
+/// Distance from `X_WS` along `bearing` [rad, sensor frame] to the left face of a straight stripe, from its formula
+/// alone.
+long double face_distance(const world::Stripe& s, const Pose& X_WS, double bearing) {
+  const long double tx = static_cast<long double>(s.line[1].x) - s.line[0].x;
+  const long double ty = static_cast<long double>(s.line[1].y) - s.line[0].y;
+  const long double size = std::sqrt(tx * tx + ty * ty);
+  const long double nx = -ty / size;
+  const long double ny = tx / size;
+  const long double off = nx * (static_cast<long double>(X_WS.x) - s.line[0].x) +
+                          ny * (static_cast<long double>(X_WS.y) - s.line[0].y) - 0.5L * s.width;
+  const long double a = static_cast<long double>(X_WS.yaw) + bearing;
+  return -off / (nx * std::cos(a) + ny * std::sin(a));
+}
+
+/// A stripe along +x, its near face `d` metres ahead of a sensor at the origin that sees it askew by `degrees`.
+EdgeReading askew(double d, double degrees, const Settings& settings = {{"perpendicular", {0}}}) {
+  world::World world;
+  world.stripes.push_back(stripe({20.0, 0.0}, {-20.0, 0.0}, kWidth));
+  // The stripe's left side is -y.
+  add_edge_eye(world, {0.0, -d - 0.5 * kWidth, 0.0, (90.0 + degrees) * kDegrees}, settings);
+  return read_edges(world)[0];
+}
+
+TEST(LaneEdge, ReadsTheDistanceToTheFaceAtAnyAngle) {
+  for (const double degrees : {0.0, 1.0, 30.0, 45.0, 60.0, 80.0, 89.0, -1.0, -30.0, -45.0, -60.0, -80.0, -89.0}) {
+    const double d = std::fabs(degrees) > 70.0 ? 0.02 : 0.25;
+    const EdgeReading r = askew(d, degrees);
+    EXPECT_NEAR(r.distance, d / std::cos(degrees * kDegrees), 1e-10) << degrees;
+    EXPECT_GE(r.points, 10) << degrees;
+    EXPECT_LT(r.residual, 1e-12) << degrees;
+    EXPECT_LT(r.sigma, 1e-5) << degrees;
+  }
+}
+
+/// A robot that drives across the edge: its side never meets the line.
+TEST(LaneEdge, AnEdgeParallelToThePerpendicularIsOutOfSight) {
+  const EdgeReading r = askew(0.25, 0.0, {{"perpendicular", {90}}});
+  EXPECT_TRUE(std::isnan(r.distance));
+  EXPECT_EQ(r.points, 61);
+}
+
+/// 1 nm is what touches a surface; farther inside, a sensor stands on paint and reads the way off it.
+TEST(LaneEdge, OnTheEdgeItselfAndOnPaint) {
+  EXPECT_NEAR(askew(0.0, 10.0).distance, 0.0, 1e-9);
+  EXPECT_NEAR(askew(1e-6, 10.0).distance, 1e-6 / std::cos(10.0 * kDegrees), 1e-12);
+  EXPECT_NEAR(askew(-0.04, 0.0).distance, 0.06, 1e-10) << "the far face, 0.1 m beyond the near one";
+}
+
+TEST(LaneEdge, AtTheMaximumNothingIsSeen) {
+  EXPECT_TRUE(std::isnan(askew(1.0, 0.0).distance));
+  EXPECT_EQ(askew(1.0, 0.0).points, 0);
+  EXPECT_TRUE(std::isnan(askew(0.99, 0.0).distance));
+  EXPECT_NEAR(askew(0.985, 0.0).distance, 0.985, 1e-10);
+}
+
+TEST(LaneEdge, WhatIsBehindIsNotSeen) {
+  const EdgeReading r = askew(0.25, 180.0);
+  EXPECT_TRUE(std::isnan(r.distance));
+  EXPECT_EQ(r.points, 0);
+}
+
+TEST(LaneEdge, TheEndOfADashIsNoEdge) {
+  world::World world;
+  world.stripes.push_back(stripe({0.3, 0.0}, {2.0, 0.0}, 0.2));
+  add_edge_eye(world, {});
+  add_edge_eye(world, {1.0, -0.3, 0.0, 0.5 * M_PI});
+  const auto readings = read_edges(world);
+  EXPECT_TRUE(std::isnan(readings[0].distance)) << "only the end is in sight";
+  EXPECT_EQ(readings[0].points, 0);
+  EXPECT_NEAR(readings[1].distance, 0.2, 1e-12);
+}
+
+/// A gap wider than the fan, one that is not, and one seen from far enough.
+TEST(LaneEdge, DashesAreOneEdge) {
+  world::World world;
+  add_dashes(world, {0.0, 0.0}, {20.0, 0.0}, 0.05, 0.3, 0.3);
+  add_edge_eye(world, {0.45, -0.325, 0.0, 0.5 * M_PI});
+  add_edge_eye(world, {0.35, -0.325, 0.0, 0.5 * M_PI});
+  add_edge_eye(world, {0.45, -0.725, 0.0, 0.5 * M_PI});
+  const auto readings = read_edges(world);
+  EXPECT_TRUE(std::isnan(readings[0].distance));
+  EXPECT_NEAR(readings[1].distance, 0.3, 1e-10);
+  EXPECT_NEAR(readings[2].distance, 0.7, 1e-10);
+  EXPECT_LT(readings[2].points, 30);
+}
+
+/// The thesis: samples 2, of which the first ray is the reading, not its projection.
+TEST(LaneEdge, ASingleRayReadsItsRange) {
+  EXPECT_NEAR(askew(0.25, 0.0, {{"samples", {2}}, {"fov", {60}}}).distance, 0.25 / std::cos(30.0 * kDegrees), 1e-12);
+  EXPECT_NEAR(askew(0.25, 0.0, {{"samples", {1}}}).distance, 0.25, 1e-12);
+  EXPECT_EQ(askew(0.25, 0.0, {{"samples", {1}}}).points, 1);
+  EXPECT_TRUE(std::isnan(askew(1.5, 0.0, {{"samples", {1}}}).distance));
+}
+
+/// The thesis' robot looks along -y with its sensor along its own +x, which is its left; ours along +x with the sensor
+/// along +y. Both see the same edge, by default perpendicular to the robot.
+TEST(LaneEdge, TheThesisFrameAndOurs) {
+  world::World world;
+  world.stripes.push_back(stripe({5.0, 0.5}, {-5.0, 0.5}, kWidth));
+  for (const double tilt : {0.0, 20.0, -20.0}) {
+    world::Mover ours;
+    ours.X_WM = {0.0, 0.0, 0.0, tilt * kDegrees};
+    ours.sensors.push_back(edge_sensor({}, {0.0, 0.225, 0.0, 0.5 * M_PI}));
+    world::Mover thesis = ours;
+    thesis.X_WM.yaw += 0.5 * M_PI;
+    thesis.sensors[0] = edge_sensor({}, {0.225, 0.0, 0.0, 0.0});
+    world.movers.push_back(ours);
+    world.movers.push_back(thesis);
+  }
+  const auto readings = read_edges(world);
+  for (std::size_t i = 0; i < readings.size(); i += 2) {
+    const double tilt = 20.0 * kDegrees * (i == 0 ? 0.0 : 1.0);
+    EXPECT_NEAR(readings[i].distance, 0.45 / std::cos(tilt) - 0.225, 1e-12) << i;
+    EXPECT_NEAR(readings[i].distance, readings[i + 1].distance, 1e-12) << i;
+  }
+}
+
+TEST(LaneEdge, ThePerpendicularIsTheRobotsAxisNearestToTheView) {
+  struct Case {
+    double yaw, expected;  ///< [deg] where the sensor looks, where the distance is meant, in the robot's frame
+  };
+  for (const Case c : {Case{0, 0}, Case{44, 0}, Case{45, 90}, Case{46, 90}, Case{90, 90}, Case{135, 90}, Case{136, 180},
+                       Case{180, 180}, Case{-135, -90}, Case{-90, -90}, Case{-45, -90}, Case{-44, 0}}) {
+    const auto edge = sensors::lane_edge_of(edge_sensor({}, {0, 0, 0, c.yaw * kDegrees}), 0, 0);
+    const Vec2 in_robot = base::rotate(c.yaw * kDegrees, edge.perpendicular);
+    EXPECT_NEAR(in_robot.x, std::cos(c.expected * kDegrees), 1e-12) << c.yaw;
+    EXPECT_NEAR(in_robot.y, std::sin(c.expected * kDegrees), 1e-12) << c.yaw;
+  }
+}
+
+TEST(LaneEdge, SettingsThatMakeNoSenseAreRefusedWhereTheyStand) {
+  const Settings bad[] = {{{"samples", {0}}},
+                          {{"samples", {1025}}},
+                          {{"samples", {2.5}}},
+                          {{"fov", {361}}},
+                          {{"fov", {-1}}},
+                          {{"fov", {0}}},
+                          {{"range_max", {0}}},
+                          {{"range_max", {2}}, {"range_min", {3}}},
+                          {{"perpendicular", {1e9}}},
+                          {{"noise", {0, 0}}},
+                          {{"noise", {-1, 0, 0}}},
+                          {{"noise", {0, 0, 400}}}};
+  for (const Settings& settings : bad) {
+    try {
+      sensors::lane_edge_of(edge_sensor(settings), 0, 0);
+      ADD_FAILURE() << settings.back().first;
+    } catch (const base::InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("hand.world:" + std::to_string(7 + settings.size())), std::string::npos)
+          << e.what();
+    }
+  }
+}
+
+TEST(LaneEdge, DefaultsAreThoseOfTheThesis) {
+  const auto edge = sensors::lane_edge_of(edge_sensor({}, {0, 0, 0.02, 0}), 0, 0);
+  EXPECT_EQ(edge.fan.samples, 61u);
+  EXPECT_NEAR(edge.fan.fov, 30.0 * kDegrees, 1e-15);
+  EXPECT_EQ(edge.fan.range_max, 1.0);
+  EXPECT_EQ(edge.fan.range_min, 0.0);
+  EXPECT_FALSE(edge.single);
+  EXPECT_EQ(edge.row.limit, 10.0);
+}
+
+/// Movers hide paint and are none; what only the sensor's own robot carries hides nothing.
+TEST(LaneEdge, AMoverInTheWayIsNoEdge) {
+  world::World world;
+  world.stripes.push_back(stripe({5.0, 0.0}, {-5.0, 0.0}, kWidth));
+  add_edge_eye(world, {0.0, -0.55, 0.0, 0.5 * M_PI});
+  EXPECT_EQ(read_edges(world)[0].points, 61);
+  scenes::add_robot(world, {0.2, -0.25, 0.0, 0.0}, scenes::laser());
+  const EdgeReading half = read_edges(world)[0];
+  EXPECT_GT(half.points, 20);
+  EXPECT_LT(half.points, 60);
+  EXPECT_NEAR(half.distance, 0.5, 1e-10);
+  scenes::add_robot(world, {0.0, -0.25, 0.0, 0.0}, scenes::laser());
+  const EdgeReading hidden = read_edges(world)[0];
+  EXPECT_TRUE(std::isnan(hidden.distance) || hidden.points < 20);
+}
+
+/// Static outlines are edges as well: the thesis' roads were such. One that asks not to be is not.
+TEST(LaneEdge, WallsAtItsHeightAreEdges) {
+  world::World world;
+  scenes::add_outline(world, {{0.4, -2}, {0.5, -2}, {0.5, 2}, {0.4, 2}}, "kerb");
+  for (world::Segment& s : world.walls) s.z_max = 0.01;
+  add_edge_eye(world, {});
+  world.movers[0].sensors[0].X_MS.z = 0.005;
+  EXPECT_NEAR(read_edges(world)[0].distance, 0.4, 1e-12);
+  world.movers[0].sensors[0].X_MS.z = 0.02;
+  EXPECT_TRUE(std::isnan(read_edges(world)[0].distance)) << "over its top";
+  world.movers[0].sensors[0].X_MS.z = 0.005;
+  for (world::Segment& s : world.walls) s.seen_by_laneedge = false;
+  EXPECT_TRUE(std::isnan(read_edges(world)[0].distance));
+  for (world::Segment& s : world.walls) s.seen_by_laneedge = true, s.seen_by_laser = false;
+  EXPECT_TRUE(std::isnan(read_edges(world)[0].distance));
+}
+
+/// Straight stripes at any angle and place, robots round them; `offset` moves all of it.
+struct Scene {
+  world::World world;
+  std::vector<long double> truth;
+};
+
+Scene straight_scene(std::uint32_t sensors_wanted, double most_degrees, std::uint64_t seed, Vec2 offset = {}) {
+  Scene scene;
+  Chance chance(seed);
+  constexpr std::uint32_t kStripes = 40;
+  for (std::uint32_t i = 0; i < sensors_wanted; ++i) {
+    const std::uint32_t k = i % kStripes;
+    const double a = 0.31 * k;
+    const Vec2 o = offset + Vec2{7.0 * (k % 8), 7.0 * (k / 8.0)};
+    const Vec2 t{std::cos(a), std::sin(a)};
+    const Vec2 n{-t.y, t.x};
+    if (i < kStripes) scene.world.stripes.push_back(stripe(o - 3.0 * t, o + 3.0 * t, kWidth));
+    const double tilt = chance.between(-most_degrees, most_degrees) * kDegrees;
+    const double d = chance.between(0.02, std::fabs(tilt) > 60.0 * kDegrees ? 0.1 : 0.6);
+    const Vec2 p = o + chance.between(-0.5, 0.5) * t + (0.5 * kWidth + d) * n;
+    const Pose X_WS{p.x, p.y, 0.0, std::atan2(-n.y, -n.x) + tilt};
+    add_edge_eye(scene.world, X_WS, {{"perpendicular", {0}}});
+    scene.truth.push_back(face_distance(scene.world.stripes[k], X_WS, 0.0));
+  }
+  return scene;
+}
+
+struct Errors {
+  double worst = 0.0;
+  std::size_t seen = 0;
+};
+
+Errors errors(const Scene& scene) {
+  Errors e;
+  const auto readings = read_edges(scene.world);
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    if (std::isnan(readings[i].distance)) continue;
+    ++e.seen;
+    e.worst = std::max(e.worst, std::fabs(static_cast<double>(readings[i].distance - scene.truth[i])));
+  }
+  return e;
+}
+
+/// 1 mm is promised; rounding is what there is.
+TEST(LaneEdge, ExactPaintAgreesWithItsFormula) {
+  const Errors e = errors(straight_scene(4000, 85.0, 3));
+  EXPECT_GE(e.seen, 3990u);
+  EXPECT_LT(e.worst, 1e-9);
+  RecordProperty("worst_nm", std::to_string(e.worst * 1e9));
+}
+
+/// World coordinates are doubles: 1e-11 m at 100 km, 2e-9 m at 10 000 km, seen through points half a metre apart.
+TEST(LaneEdge, FarFromTheOrigin) {
+  const Errors near = errors(straight_scene(1000, 45.0, 5, {1e5, -1e5}));
+  EXPECT_EQ(near.seen, 1000u);
+  EXPECT_LT(near.worst, 1e-8);
+  const Errors far = errors(straight_scene(1000, 45.0, 5, {-1e7, 1e7}));
+  EXPECT_EQ(far.seen, 1000u);
+  EXPECT_LT(far.worst, 1e-6);
+  RecordProperty("worst_100km_nm", std::to_string(near.worst * 1e9));
+  RecordProperty("worst_10000km_nm", std::to_string(far.worst * 1e9));
+}
+
+Vec2 mirrored(Vec2 p) { return {p.x, -p.y}; }
+
+/// Turned, moved and mirrored, with a robot added that hides nothing: the same reading.
+TEST(LaneEdge, WhatMustNotMatter) {
+  world::World world;
+  Chance chance(8);
+  add_dashes(world, {-3.0, 0.0}, {3.0, 0.7}, 0.05, 0.2, 0.1);
+  world.stripes.push_back(arc({0.0, -3.0}, 2.0, 0.3, 2.7, 0.08));
+  for (int i = 0; i < 300; ++i)
+    add_edge_eye(world, {chance.between(-2.5, 2.5), chance.between(-1.5, 1.2), 0.0, chance.between(-M_PI, M_PI)},
+                 {{"perpendicular", {chance.between(-40.0, 40.0)}}});
+  const auto before = read_edges(world);
+
+  world::World moved = world;
+  world::World mirror = world;
+  const Pose X{31.0, -17.0, 0.0, 1.234};
+  for (world::Stripe& s : moved.stripes)
+    for (Vec2& p : s.line) p = base::transform(X, p);
+  for (world::Stripe& s : mirror.stripes)
+    for (Vec2& p : s.line) p = mirrored(p);
+  for (std::size_t i = 0; i < world.movers.size(); ++i) {
+    moved.movers[i].X_WM = base::compose(X, world.movers[i].X_WM);
+    const Pose& p = world.movers[i].X_WM;
+    mirror.movers[i].X_WM = {p.x, -p.y, 0.0, -p.yaw};
+    mirror.movers[i].sensors[0].settings[0].numbers[0] *= -1.0;
+  }
+  world::World crowded = world;
+  scenes::add_robot(crowded, {20.0, 20.0, 0.0, 0.0}, scenes::laser());
+  std::size_t seen = 0;
+  std::size_t differ = 0;
+  for (const world::World* other : {&moved, &mirror, &crowded}) {
+    const auto after = read_edges(*other);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const bool none = std::isnan(before[i].distance);
+      seen += none ? 0 : 1;
+      // A ray on a corner may go either way, and take a point with it.
+      if (before[i].points != after[i].points || none != std::isnan(after[i].distance)) {
+        ++differ;
+        continue;
+      }
+      if (none) continue;
+      EXPECT_NEAR(before[i].distance, after[i].distance, 1e-9 + before[i].sigma) << i;
+    }
+  }
+  EXPECT_GT(seen, 300u);
+  EXPECT_LE(differ, 3u);
+}
+
+/// Two lanes paint the edge that they share: seen once, and the same.
+TEST(LaneEdge, PaintOnPaintIsOnePaint) {
+  world::World world;
+  world.stripes.push_back(stripe({-2, 0}, {2, 0}));
+  world.stripes.push_back(stripe({2, 0}, {-2, 0}));
+  add_edge_eye(world, {0.1, -0.4, 0.0, 1.5});
+  const EdgeReading twice = read_edges(world)[0];
+  world.stripes.pop_back();
+  const EdgeReading once = read_edges(world)[0];
+  EXPECT_EQ(once.distance, twice.distance);
+  EXPECT_EQ(once.points, twice.points);
+}
+
+/// An arc has no line: the reading is off by the bend, and its sigma says so.
+TEST(LaneEdge, AnArcIsOffByItsBendAndSaysSo) {
+  world::World world;
+  std::vector<double> truth;
+  Chance chance(12);
+  constexpr double kRadius = 0.68;
+  world.stripes.push_back(arc({0, 0}, kRadius + 0.015, 0.0, 2.0 * M_PI - 0.01, 0.03, 1e-7));
+  for (int i = 0; i < 500; ++i) {
+    const double a = chance.between(0.5, 5.5);
+    const double d = chance.between(0.05, 0.4);
+    add_edge_eye(world, {(kRadius - d) * std::cos(a), (kRadius - d) * std::sin(a), 0.0, a}, {{"perpendicular", {0}}});
+    truth.push_back(d);
+  }
+  const auto readings = read_edges(world);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const double error = std::fabs(readings[i].distance - truth[i]);
+    worst = std::max(worst, error);
+    EXPECT_LT(error, 1.2 * readings[i].sigma + 1e-6) << i;
+    EXPECT_EQ(readings[i].points, 61);
+  }
+  EXPECT_GT(worst, 1e-3);
+  EXPECT_LT(worst, 3.5e-3);
+}
+
+}  // namespace
+}  // namespace sf::trial

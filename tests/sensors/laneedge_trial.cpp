@@ -1,0 +1,115 @@
+#include "tests/sensors/laneedge_trial.h"
+
+#include <cmath>
+
+#include "sensors/laneedge_settings.h"
+#include "tests/sensors/compare.h"
+
+namespace sf::trial {
+
+using base::Vec2;
+
+world::Sensor edge_sensor(const Settings& settings, const base::Pose& X_MS) {
+  world::Sensor sensor;
+  sensor.type = "laneedge";
+  sensor.name = "edge";
+  sensor.X_MS = X_MS;
+  sensor.radians = M_PI / 180.0;
+  sensor.line = 7;
+  sensor.file = "hand.world";
+  int line = 8;
+  for (const auto& [key, numbers] : settings) sensor.settings.push_back({key, numbers, "", line++, sensor.file});
+  return sensor;
+}
+
+std::uint32_t add_edge_eye(world::World& world, const base::Pose& X_WM, Settings settings) {
+  world::Mover mover;
+  mover.id = static_cast<std::uint32_t>(world.movers.size());
+  mover.name = "eye" + std::to_string(mover.id);
+  mover.X_WM = X_WM;
+  mover.sensors.push_back(edge_sensor(settings));
+  world.movers.push_back(mover);
+  return mover.id;
+}
+
+world::Stripe stripe(Vec2 from, Vec2 to, double width) { return {{from, to}, width}; }
+
+void add_dashes(world::World& world, Vec2 from, Vec2 to, double width, double paint, double gap) {
+  const double all = length(to - from);
+  const Vec2 along = (1.0 / all) * (to - from);
+  for (double at = 0.0; at < all - 1e-6; at += paint + gap)
+    world.stripes.push_back(stripe(from + at * along, from + std::min(at + paint, all) * along, width));
+}
+
+world::Stripe arc(Vec2 centre, double radius, double from, double to, double width, double sagitta) {
+  const double step = std::sqrt(8.0 * sagitta / (radius + width));
+  const int pieces = std::max(2, static_cast<int>(std::ceil(std::fabs(to - from) / step)));
+  world::Stripe s;
+  s.width = width;
+  for (int i = 0; i <= pieces; ++i) {
+    const double a = from + (to - from) * i / pieces;
+    s.line.push_back({centre.x + radius * std::cos(a), centre.y + radius * std::sin(a)});
+  }
+  return s;
+}
+
+struct EdgeRig::State {
+  world::World world;
+  base::Workers workers;
+  sensors::Site site;
+  std::unique_ptr<sensors::Instruments> instruments;
+  gpu::Batch batch;
+  std::size_t rows;
+  std::vector<base::ReadingBlock> blocks;
+
+  State(const world::World& w, std::uint64_t seed, unsigned threads, bool noise, gpu::Device& on)
+      : world(w),
+        workers(threads),
+        site{world, on, workers, seed, noise, {}},
+        instruments(sensors::laneedge_kind.make(site)),
+        batch(on),
+        rows(sensors::laneedge_kind.rows(world).size()) {}
+};
+
+EdgeRig::EdgeRig(const world::World& world, std::uint64_t seed, unsigned threads, bool noise, gpu::Device* on)
+    : s_(std::make_unique<State>(world, seed, threads, noise, on != nullptr ? *on : device())) {}
+
+EdgeRig::~EdgeRig() = default;
+
+const std::vector<base::ReadingBlock>& EdgeRig::tick(const std::vector<sensors::Due>& due,
+                                                     const std::vector<base::Pose>& poses) {
+  State& s = *s_;
+  s.instruments->place(poses);
+  if (s.instruments->prepare(due, poses)) {
+    s.batch.begin();
+    s.instruments->record_measure(s.batch);
+    s.batch.barrier();
+    s.instruments->record_derive(s.batch);
+    s.batch.end();
+  }
+  s.instruments->copies(s.batch);
+  s.batch.run();
+  s.blocks.clear();
+  s.instruments->collect(s.blocks);
+  return s.blocks;
+}
+
+std::vector<sensors::EdgeReading> EdgeRig::read_some(const std::vector<sensors::Due>& due,
+                                                     const std::vector<base::Pose>& poses) {
+  std::vector<sensors::EdgeReading> readings;
+  for (const base::ReadingBlock& block : tick(due, poses))
+    readings.push_back({block.values[0], block.values[1], block.values[2], block.values[3]});
+  return readings;
+}
+
+std::vector<sensors::EdgeReading> EdgeRig::read(std::uint64_t sequence, std::vector<base::Pose> poses) {
+  if (poses.empty())
+    for (const world::Mover& mover : s_->world.movers) poses.push_back(mover.X_WM);
+  std::vector<sensors::Due> due;
+  for (std::uint32_t row = 0; row < s_->rows; ++row) due.push_back({row, sequence});
+  return read_some(due, poses);
+}
+
+std::vector<sensors::EdgeReading> read_edges(const world::World& world) { return EdgeRig(world).read(); }
+
+}  // namespace sf::trial

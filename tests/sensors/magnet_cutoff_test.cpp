@@ -1,0 +1,196 @@
+// Cut-offs: which magnets count, what they leave out, and that the stated bound holds.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "sensors/field/magnet_tree.h"
+#include "sensors/field/survey.h"
+#include "sensors/field/truncation.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/magnet_scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Vec2;
+using scenes::magnet;
+using sensors::Place;
+
+// --- Which magnets count.
+
+double field_z(const world::World& world, const Place& place) {
+  return sensors::survey(world, device(), {&place, 1})[0].z;
+}
+
+/// Along the ground, whatever the height; at exactly the cut-off it counts, a unit in the last place farther it does
+/// not.
+TEST(MagnetCutoff, IsSharpAndAlongTheGround) {
+  world::World world;
+  world.magnets.push_back(magnet({0, 0}));
+  world.magnet_cutoff = 2.0;
+  EXPECT_NE(field_z(world, {2.0, 0, 0.1}), 0.0);
+  EXPECT_NE(field_z(world, {0, -2.0, 100.0}), 0.0);
+  EXPECT_EQ(field_z(world, {std::nextafter(2.0, 3.0), 0, 0.1}), 0.0);
+  EXPECT_EQ(field_z(world, {1.5, 1.5, 0.0}), 0.0);
+}
+
+/// Against a sum over exactly the magnets that are near enough, at places and cut-offs of all sizes.
+TEST(MagnetCutoff, SumsTheMagnetsThatAreNearEnough) {
+  Chance chance(5);
+  for (const double cutoff : {0.05, 0.5, 3.0, 30.0})
+    for (const double offset : {0.0, 1e5}) {
+      world::World world = scenes::sheet(3000, 20.0, 6, true);
+      for (world::Magnet& m : world.magnets) m.p = m.p + Vec2{offset, offset};
+      world.magnet_cutoff = cutoff;
+      std::vector<Place> places;
+      for (int i = 0; i < 250; ++i)
+        places.push_back({offset + chance.between(-12, 12), offset + chance.between(-12, 12), 0.1});
+      const auto sums = sensors::survey(world, device(), places);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const scenes::Exact truth = scenes::exact(world, places[i], cutoff);
+        ASSERT_LE(scenes::apart(truth, sums[i]), 1e-7 * static_cast<double>(truth.magnitudes))
+            << cutoff << ", place " << i;
+      }
+    }
+}
+
+// --- The bound.
+
+/// What one magnet beyond the cut-off may add: the formula against the field itself, and that it falls both ways.
+TEST(MagnetBound, OneMagnet) {
+  Chance chance(7);
+  for (int i = 0; i < 500; ++i) {
+    const double along = chance.between(0.1, 10), above = chance.between(0, 10);
+    world::World world;
+    world.magnets.push_back(magnet({0, 0}));
+    const double field = static_cast<double>(scenes::exact(world, {along, 0, above}).magnitudes);
+    EXPECT_NEAR(sensors::field_beyond(1e-7, along, above), field, 1e-12 * field);
+    EXPECT_LE(sensors::field_beyond(1e-7, 1.1 * along, above), field);
+    EXPECT_LE(sensors::field_beyond(1e-7, along, above + 0.1), field * (1 + 1e-12));
+  }
+}
+
+struct Measured {
+  double bound = 0.0;  ///< [T]
+  double worst = 0.0;  ///< [T] |B - B_cut|
+};
+
+/// Places all over the world, beside it, right at magnets' rims, and where the bound was largest.
+Measured measure(world::World world, double half, double height, std::uint32_t count) {
+  Chance chance(9);
+  std::vector<Place> places;
+  const double cutoff = world.magnet_cutoff;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec2 p = chance.in_square(half + 1.2 * cutoff);
+    const Vec2 m = world.magnets[chance.below(static_cast<std::uint32_t>(world.magnets.size()))].p;
+    const double a = chance.between(-M_PI, M_PI), r = cutoff * chance.between(0.999, 1.01);
+    const bool at_rim = i % 2 == 0;
+    places.push_back({at_rim ? m.x + r * std::cos(a) : p.x, at_rim ? m.y + r * std::sin(a) : p.y, height});
+  }
+  const auto cut = sensors::survey(world, device(), places);
+  Measured result{sensors::truncation_bound(world, height), 0.0};
+  world.magnet_cutoff = 0.0;
+  const auto all = sensors::survey(world, device(), places);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    result.worst = std::max(result.worst, std::hypot(all[i].x - cut[i].x, all[i].y - cut[i].y, all[i].z - cut[i].z));
+  return result;
+}
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::uint32_t kPlaces = 2'000;
+#else
+constexpr std::uint32_t kPlaces = 25'000;
+#endif
+
+/// @param most how many times the largest error that was met the bound may be.
+void expect_bounded(const std::string& name, const world::World& world, double half, double height, double most) {
+  const Measured m = measure(world, half, height, kPlaces);
+  std::cout << "[ measured ] " << name << ": the cut-off leaves out up to " << m.worst << " T, the bound is " << m.bound
+            << " T, " << m.bound / m.worst << " times that\n";
+  EXPECT_GT(m.worst, 0.0) << name;
+  EXPECT_LE(m.worst, m.bound) << name;
+  EXPECT_LE(m.bound, most * m.worst) << name;
+}
+
+TEST(MagnetBound, HoldsOnALine) {
+  world::World world = scenes::line(400, 0.071);
+  world.magnet_cutoff = 1.0;
+  expect_bounded("400 in a line, 1 m", world, 15.0, 0.125, 4.0);
+}
+
+TEST(MagnetBound, HoldsOnASheet) {
+  world::World world;
+  for (int i = 0; i < 60; ++i)
+    for (int j = 0; j < 60; ++j) world.magnets.push_back(magnet({i - 29.5, j - 29.5}));
+  world.magnet_cutoff = 8.0;
+  expect_bounded("60 x 60 in a square, 8 m", world, 30.0, 0.2, 4.0);
+}
+
+TEST(MagnetBound, HoldsWhereMagnetsLieAtRandomEitherWayUp) {
+  world::World world = scenes::sheet(1500, 30.0, 10, true);
+  world.magnet_cutoff = 3.0;
+  expect_bounded("1500 at random, either way up, 3 m", world, 15.0, 0.3, 100.0);
+}
+
+/// Two clusters far apart, and one magnet alone: most of the world is empty.
+TEST(MagnetBound, HoldsWhereMostIsEmpty) {
+  world::World world = scenes::sheet(50, 0.5, 11);
+  for (int i = 0; i < 20; ++i) world.magnets.push_back(magnet({3000.0 + 0.01 * i, 4000.0}, 0.0, 5.0));
+  world.magnets.push_back(magnet({-700.0, 20.0}, 0.0, -0.1));
+  world.magnet_cutoff = 0.7;
+  expect_bounded("two clusters 5 km apart, 0.7 m", world, 1.0, 0.0, 20.0);
+}
+
+/// A sensor just outside of the cut-off of a lone magnet misses all of it.
+TEST(MagnetBound, OfOneMagnetIsItsFieldAtTheCutoff) {
+  world::World world;
+  world.magnets.push_back(magnet({5, 5}));
+  world.magnet_cutoff = 2.0;
+  for (const double height : {0.0, 0.3, 5.0}) {
+    const double field = sensors::field_beyond(1e-7, 2.0, height);
+    EXPECT_GE(sensors::truncation_bound(world, height), field);
+    EXPECT_LE(sensors::truncation_bound(world, height), 1.0001 * field);
+  }
+}
+
+TEST(MagnetBound, IsNothingWithoutACutoffOrWithoutMagnets) {
+  world::World world = scenes::line(10, 0.1);
+  EXPECT_EQ(sensors::truncation_bound(world, 0.1), 0.0);
+  world.magnets.clear();
+  world.magnet_cutoff = 1.0;
+  EXPECT_EQ(sensors::truncation_bound(world, 0.1), 0.0);
+}
+
+/// Movers' magnets may be anywhere: all of them at the cut-off at once.
+TEST(MagnetBound, CountsMovingMagnetsAtTheCutoff) {
+  world::World world;
+  scenes::add_carrier(world, {0, 0, 0.5, 0}, scenes::five());
+  world.movers[0].magnets = {magnet({0.1, 0.0}, 0.2), magnet({-0.1, 0.0}, 0.2, -3.0)};
+  world.magnet_cutoff = 2.0;
+  EXPECT_NEAR(sensors::truncation_bound(world, 0.4), sensors::field_beyond(4e-7, 2.0, 0.3),
+              1e-5 * sensors::field_beyond(4e-7, 2.0, 0.3));
+}
+
+TEST(MagnetBound, FactsAreOfTheWorstElement) {
+  world::World world = scenes::line(100, 0.1);
+  world.magnet_cutoff = 1.5;
+  const sensors::FieldFacts nobody = sensors::field_facts(world);
+  EXPECT_EQ(nobody.magnets, 100u);
+  EXPECT_EQ(nobody.moving, 0u);
+  EXPECT_EQ(nobody.cutoff_m, 1.5);
+  EXPECT_GE(nobody.bound_T, sensors::truncation_bound(world, 0.0));
+
+  scenes::add_carrier(world, {0, 0, 0.1, 0}, scenes::array({{0, 0, 0.5, 0}, {0, 0, 0.2, 0}}, 0.1));
+  world.movers[0].magnets = {magnet({0, 0}, -0.5, 1e-9)};
+  const sensors::FieldFacts facts = sensors::field_facts(world);
+  EXPECT_EQ(facts.moving, 1u);
+  EXPECT_DOUBLE_EQ(facts.height_m, 0.1 + 0.1 + 0.2);
+  EXPECT_EQ(facts.bound_T, sensors::truncation_bound(world, facts.height_m));
+  EXPECT_LE(facts.bound_T, nobody.bound_T * 1.0001);
+}
+
+}  // namespace
+}  // namespace sf::trial

@@ -1,0 +1,151 @@
+// The field of a magnet, boundary case by boundary case, against physics.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sensors/field/survey.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/magnet_scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using scenes::magnet;
+using scenes::magnitude;
+using sensors::FieldSum;
+using sensors::Place;
+
+constexpr double kGauss = 1e-4;
+/// Moments have 32 bits on the device.
+constexpr double kMoment = 1.0 / (1 << 24);
+
+world::World one(const world::Magnet& m) {
+  world::World world;
+  world.magnets.push_back(m);
+  return world;
+}
+
+FieldSum field(const world::World& world, const Place& place) {
+  return sensors::survey(world, device(), {&place, 1}, {.magnitudes = true})[0];
+}
+
+TEST(MagnetField, AboveAndBelowItIsTwiceTheStrengthByTheCube) {
+  for (const double z : {0.5, -0.5}) {
+    const FieldSum b = field(one(magnet({3, 4})), {3, 4, z});
+    EXPECT_NEAR(b.z, 2e-7 / 0.125, 2e-7 / 0.125 * kMoment);
+    EXPECT_EQ(b.x, 0.0);
+    EXPECT_EQ(b.y, 0.0);
+  }
+}
+
+TEST(MagnetField, BesideItPointsDownWithTheStrengthByTheCube) {
+  const FieldSum b = field(one(magnet({0, 0})), {0.3, -0.4, 0.0});
+  EXPECT_NEAR(b.z, -1e-7 / 0.125, 1e-7 / 0.125 * kMoment);
+  EXPECT_NEAR(b.x, 0.0, 1e-7 / 0.125 * 1e-15) << "up to what tells the middle from nowhere";
+}
+
+/// At 45 degrees the vector leans as a dipole's does: B = k / r^3 (1.5, 0, 0.5).
+TEST(MagnetField, AtFortyFiveDegreesItLeans) {
+  const FieldSum b = field(one(magnet({0, 0})), {1, 0, 1});
+  const double k = 1e-7 / std::pow(2.0, 1.5);
+  EXPECT_NEAR(b.x, 1.5 * k, k * 1e-7);
+  EXPECT_NEAR(b.z, 0.5 * k, k * 1e-7);
+}
+
+TEST(MagnetField, ANegativeMomentTurnsItRound) {
+  const FieldSum up = field(one(magnet({0, 0})), {0.1, 0.2, 0.3});
+  const FieldSum down = field(one(magnet({0, 0}, 0, -1)), {0.1, 0.2, 0.3});
+  EXPECT_EQ(up.x, -down.x);
+  EXPECT_EQ(up.y, -down.y);
+  EXPECT_EQ(up.z, -down.z);
+  EXPECT_EQ(up.magnitudes, down.magnitudes);
+}
+
+TEST(MagnetField, InTheMiddleItIsTheFieldAboveItAtTheRadius) {
+  const double most = 2e-7 / std::pow(0.0125, 3);
+  const FieldSum b = field(one(magnet({7, -2}, 0.04)), {7, -2, 0.04});
+  EXPECT_NEAR(b.z, most, most * 4 * kMoment);
+  EXPECT_NEAR(b.magnitudes, most, most * 4 * kMoment);
+  EXPECT_EQ(std::hypot(b.x, b.y), 0.0);
+}
+
+/// Where doubles end: no root of it may leave the numbers.
+TEST(MagnetField, NextToTheMiddleItIsANumber) {
+  for (const double d : {1e-300, 1e-160, 1e-40, 1e-30, 1e-20, 1e-18, 1e-17, 1e-9}) {
+    for (const Place& place : {Place{d, 0, 0}, Place{0, -d, 0}, Place{0, 0, d}, Place{0, 0, -d}, Place{d, d, -d}}) {
+      const FieldSum b = field(one(magnet({0, 0})), place);
+      const double most = 2e-7 / std::pow(0.0125, 3);
+      ASSERT_TRUE(std::isfinite(b.x + b.y + b.z + b.magnitudes)) << d;
+      EXPECT_LE(magnitude(b), most * 1.000001) << d;
+      EXPECT_GE(magnitude(b), 0.0) << d;
+    }
+  }
+}
+
+/// Across the radius, in any direction, the field goes on where it was.
+TEST(MagnetField, AtItsRadiusItIsContinuousAndConstantInside) {
+  Chance chance(1);
+  for (int i = 0; i < 40; ++i) {
+    const double a = chance.between(-M_PI, M_PI), b = chance.between(-1.5, 1.5);
+    const auto at = [&](double r) {
+      return field(one(magnet({0, 0})),
+                   {r * std::cos(b) * std::cos(a), r * std::cos(b) * std::sin(a), r * std::sin(b)});
+    };
+    const FieldSum outside = at(0.0125 * (1 + 1e-9));
+    for (const double r : {0.0125, 0.0125 * (1 - 1e-9), 0.006, 1e-4}) {
+      const FieldSum inside = at(r);
+      EXPECT_NEAR(inside.x, outside.x, 1e-6 * magnitude(outside)) << r;
+      EXPECT_NEAR(inside.y, outside.y, 1e-6 * magnitude(outside)) << r;
+      EXPECT_NEAR(inside.z, outside.z, 1e-6 * magnitude(outside)) << r;
+    }
+  }
+}
+
+TEST(MagnetField, OppositePairsCancelExactly) {
+  world::World world = one(magnet({0.5, 0.25}, 0.1, 2.5));
+  world.magnets.push_back(magnet({0.5, 0.25}, 0.1, -2.5));
+  const FieldSum b = field(world, {0.55, 0.2, 0.3});
+  EXPECT_EQ(b.x, 0.0);
+  EXPECT_EQ(b.y, 0.0);
+  EXPECT_EQ(b.z, 0.0);
+  EXPECT_GT(b.magnitudes, 0.0) << "their magnitudes do not";
+}
+
+/// The number that fixes the unit of the world file's moments.
+TEST(MagnetField, OneAmpereSquareMetreAtAnEighthOfAMetreIsAGauss) {
+  EXPECT_NEAR(field(one(magnet({0, 0})), {0, 0, 0.125}).z / kGauss, 1.024, 1e-6);
+}
+
+TEST(MagnetField, ALineEvery71MillimetresIs181AboveAnd074AtFifteenCentimetres) {
+  const world::World world = scenes::line(201, 0.071);
+  EXPECT_NEAR(magnitude(field(world, {0, 0, 0.125})) / kGauss, 1.81, 0.005);
+  EXPECT_NEAR(magnitude(field(world, {0, 0.15, 0.125})) / kGauss, 0.74, 0.005);
+}
+
+TEST(MagnetField, WithoutMagnetsThereIsNone) {
+  const FieldSum b = field({}, {1, 2, 3});
+  EXPECT_EQ(magnitude(b) + b.magnitudes, 0.0);
+}
+
+/// Moments of 1e-12 to 1e12 A m^2 at 1e-6 to 1e6 m: sixty orders of magnitude of field.
+TEST(MagnetField, NeitherOverflowsNorUnderflows) {
+  for (const double moment : {1e-12, 1e-3, 1.0, 1e6, 1e12})
+    for (const double r : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
+      const world::World world = one(magnet({0, 0}, 0, moment, 1e-9));
+      const Place place{0.6 * r, 0, 0.8 * r};
+      const scenes::Exact truth = scenes::exact(world, place);
+      EXPECT_LE(scenes::apart(truth, field(world, place)), 1e-7 * magnitude(truth))
+          << moment << " A m^2, " << r << " m";
+    }
+}
+
+TEST(MagnetField, BeyondAllDistancesItIsNothing) {
+  for (const double r : {1e12, 1e19, 1e30, 1e150}) {
+    const FieldSum b = field(one(magnet({0, 0})), {r, 0, 0});
+    EXPECT_LE(magnitude(b), 1e-40) << r;
+  }
+}
+
+}  // namespace
+}  // namespace sf::trial

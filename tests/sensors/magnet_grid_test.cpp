@@ -1,0 +1,92 @@
+// The lists of magnets behind a cut-off.
+
+#include "sensors/field/magnet_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/sensors/magnet_scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Vec2;
+
+/// Every magnet within reach is in some span; spans are in order and do not overlap.
+void expect_found(std::span<const Vec2> magnets, const sensors::MagnetGrid& grid, Vec2 centre, double reach) {
+  std::vector<sensors::MagnetSpan> spans(grid.most_spans(reach));
+  spans.resize(grid.find(centre, reach, spans));
+  std::vector<bool> found(magnets.size(), false);
+  std::uint32_t before = 0;
+  for (const sensors::MagnetSpan& span : spans) {
+    ASSERT_LT(span.first, span.end);
+    ASSERT_GE(span.first, before);
+    before = span.end;
+    for (std::uint32_t i = span.first; i < span.end; ++i) found[grid.order()[i]] = true;
+  }
+  for (std::size_t i = 0; i < magnets.size(); ++i) {
+    if (base::length(magnets[i] - centre) <= reach) {
+      EXPECT_TRUE(found[i]) << "magnet " << i;
+    }
+  }
+}
+
+TEST(MagnetGrid, FindsAllThatAreNear) {
+  Chance chance(1);
+  for (int round = 0; round < 60; ++round) {
+    const double offset = round % 3 == 0 ? 1e5 : 0.0;
+    const double cutoff = std::pow(10.0, chance.between(-3, 2));
+    std::vector<Vec2> magnets;
+    const auto count = chance.below(300);
+    for (std::uint32_t i = 0; i < count; ++i)
+      magnets.push_back(Vec2{offset, offset} + chance.in_square(round % 2 == 0 ? 10.0 : 0.01));
+    sensors::MagnetGrid grid;
+    grid.build(magnets, cutoff, 1 << (round % 12));
+    for (int i = 0; i < 30; ++i) {
+      const Vec2 centre = Vec2{offset, offset} + chance.in_square(12.0);
+      expect_found(magnets, grid, centre, cutoff);
+      if (count > 0) expect_found(magnets, grid, magnets[chance.below(count)], cutoff);
+    }
+  }
+}
+
+/// A magnet exactly at the reach, in each direction; cells' edges fall on places too.
+TEST(MagnetGrid, FindsMagnetsAtTheRim) {
+  for (const double offset : {0.0, 1e5}) {
+    std::vector<Vec2> magnets;
+    for (int i = -8; i <= 8; ++i)
+      for (int j = -8; j <= 8; ++j) magnets.push_back({offset + 0.25 * i, offset + 0.25 * j});
+    sensors::MagnetGrid grid;
+    grid.build(magnets, 1.0, 1 << 20);
+    for (const Vec2 centre : magnets) expect_found(magnets, grid, centre, 1.0);
+  }
+}
+
+TEST(MagnetGrid, LeavesMostOthersOut) {
+  const world::World world = scenes::sheet(40'000, 200.0, 3);
+  std::vector<Vec2> magnets;
+  for (const world::Magnet& m : world.magnets) magnets.push_back(m.p);
+  sensors::MagnetGrid grid;
+  grid.build(magnets, 10.0, 1 << 20);
+  std::vector<sensors::MagnetSpan> spans(grid.most_spans(10.0));
+  Chance chance(4);
+  double found = 0;
+  for (int i = 0; i < 100; ++i) {
+    const auto count = grid.find(chance.in_square(80.0), 10.0, spans);
+    for (std::uint32_t s = 0; s < count; ++s) found += spans[s].end - spans[s].first;
+  }
+  EXPECT_LT(found / 100, 1.25 * M_PI * 100.0) << "314 are within 10 m";
+}
+
+TEST(MagnetGrid, HoldsNone) {
+  sensors::MagnetGrid grid;
+  EXPECT_EQ(grid.most_spans(1.0), 0u) << "before it is built";
+  for (const double cutoff : {0.0, 1.0}) {
+    grid.build({}, cutoff, 100);
+    EXPECT_EQ(grid.find({0, 0}, 1.0, {}), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace sf::trial

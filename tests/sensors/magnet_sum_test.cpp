@@ -1,0 +1,254 @@
+// Sums over many magnets: against more than 64 bits, to the bit, and by their properties.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <iostream>
+
+#include "sensors/field/field_tables.h"
+#include "sensors/field/survey.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/magnet_scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using scenes::magnet;
+using scenes::magnitude;
+using sensors::FieldSum;
+using sensors::Place;
+
+constexpr double kGauss = 1e-4;
+
+FieldSum field(const world::World& world, const Place& place) {
+  return sensors::survey(world, device(), {&place, 1}, {.magnitudes = true})[0];
+}
+
+TEST(MagnetSum, TheSumOfMagnitudesIsThat) {
+  const world::World world = scenes::sheet(300, 3.0, 4, true);
+  Chance chance(5);
+  for (int i = 0; i < 50; ++i) {
+    const Place place{chance.between(-2, 2), chance.between(-2, 2), chance.between(0.03, 0.5)};
+    const scenes::Exact truth = scenes::exact(world, place);
+    const FieldSum b = field(world, place);
+    EXPECT_NEAR(b.magnitudes, static_cast<double>(truth.magnitudes), 1e-7 * static_cast<double>(truth.magnitudes));
+    EXPECT_LE(magnitude(b), b.magnitudes * (1 + 1e-12)) << "the vectors' sum is never longer";
+  }
+}
+
+/// Asking for magnitudes runs another kernel, which sums vectors to the same bits.
+TEST(MagnetSum, MagnitudesDoNotChangeVectors) {
+  const world::World world = scenes::sheet(500, 3.0, 4, true);
+  Chance chance(6);
+  std::vector<Place> places;
+  for (int i = 0; i < 203; ++i) places.push_back({chance.between(-2, 2), chance.between(-2, 2), 0.1});
+  const auto plain = sensors::survey(world, device(), places);
+  const auto both = sensors::survey(world, device(), places, {.magnitudes = true});
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    EXPECT_EQ(std::memcmp(&plain[i].x, &both[i].x, 3 * sizeof(double)), 0);
+    EXPECT_EQ(plain[i].magnitudes, 0.0);
+  }
+}
+
+struct Errors {
+  double worst = 0.0;    ///< [T]
+  double largest = 0.0;  ///< [T] |B| of the places
+};
+
+Errors errors(const world::World& world, std::span<const Place> places) {
+  const auto sums = sensors::survey(world, device(), places, {.magnitudes = true});
+  Errors e;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const scenes::Exact truth = scenes::exact(world, places[i]);
+    e.worst = std::max(e.worst, scenes::apart(truth, sums[i]));
+    e.largest = std::max(e.largest, magnitude(truth));
+    EXPECT_NEAR(sums[i].magnitudes, static_cast<double>(truth.magnitudes),
+                1e-7 * static_cast<double>(truth.magnitudes));
+  }
+  return e;
+}
+
+/// `count` places at `height` [m], some of them right above a magnet, where the largest fields are.
+std::vector<Place> places_over(const world::World& world, std::uint32_t count, double half, double height) {
+  Chance chance(11);
+  std::vector<Place> places;
+  const base::Vec2 middle = world.magnets[0].p;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const world::Magnet& m = world.magnets[chance.below(static_cast<std::uint32_t>(world.magnets.size()))];
+    const bool above = i % 4 == 0;
+    places.push_back({above ? m.p.x + chance.between(-0.02, 0.02) : middle.x + chance.between(-half, half),
+                      above ? m.p.y + chance.between(-0.02, 0.02) : middle.y + chance.between(-half, half), height});
+  }
+  return places;
+}
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::uint32_t kMany = 20'000, kPlaces = 50;
+#else
+constexpr std::uint32_t kMany = 200'000, kPlaces = 500;
+#endif
+
+/// The thesis' components in plain doubles, on all cores.
+std::vector<FieldSum> direct_sums(const world::World& world, std::span<const Place> places) {
+  std::vector<FieldSum> sums(places.size());
+  base::Workers workers;
+  workers.run(places.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i)
+      for (const world::Magnet& m : world.magnets) {
+        const double x = places[i].x - m.p.x, y = places[i].y - m.p.y, z = places[i].z - m.z;
+        const double squared = x * x + y * y + z * z;
+        const double k = 1e-7 * m.moment / (squared * squared * std::sqrt(squared));
+        sums[i].x += k * 3 * x * z;
+        sums[i].y += k * 3 * y * z;
+        sums[i].z += k * (2 * z * z - x * x - y * y);
+      }
+  });
+  return sums;
+}
+
+/// A sheet of them, at the origin and 100 km away, near to it and high above it: 2000 places in all.
+TEST(MagnetSum, TwoHundredThousandMagnetsAreRightAnywhere) {
+  for (const double offset : {0.0, 1e5})
+    for (const double height : {0.1, 1.0}) {
+      world::World world = scenes::sheet(kMany, 400.0, 7);
+      for (world::Magnet& m : world.magnets) m.p = m.p + base::Vec2{offset, -offset};
+      const auto places = places_over(world, kPlaces, 100.0, height);
+      const auto sums = sensors::survey(world, device(), places);
+      const auto truths = direct_sums(world, places);
+      double worst = 0.0, largest = 0.0;
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const FieldSum &a = sums[i], &b = truths[i];
+        worst = std::max(worst, std::hypot(a.x - b.x, a.y - b.y, a.z - b.z));
+        largest = std::max(largest, magnitude(b));
+      }
+      std::cout << "[ measured ] " << kMany << " magnets, " << offset / 1e3 << " km off, " << height
+                << " m up: worst error " << worst / largest << " of the largest field, " << largest / kGauss
+                << " Gauss\n";
+      EXPECT_LE(worst, 1e-9 * largest) << "1e-6 is asked for";
+    }
+}
+
+/// All in one spot, so that no list makes them fewer: the loop limit of drivers must not bite, with or without a
+/// cut-off.
+TEST(MagnetSum, TwoHundredThousandMagnetsInOneSpot) {
+  for (const double cutoff : {0.0, 0.5, 1e6}) {
+    world::World world;
+    for (std::uint32_t i = 0; i < 200'000; ++i) world.magnets.push_back(magnet({1.0, 2.0}, 0.0, 1e-6));
+    world.magnet_cutoff = cutoff;
+    const FieldSum b = field(world, {1.0, 2.0, 0.25});
+    const double truth = 0.2 * 2e-7 / std::pow(0.25, 3);
+    EXPECT_NEAR(b.z, truth, 1e-7 * truth) << cutoff;
+    EXPECT_NEAR(b.magnitudes, truth, 1e-7 * truth) << cutoff;
+  }
+}
+
+/// Numbers of magnets and of places round the sizes of turns, items and groups.
+TEST(MagnetSum, EveryNumberOfMagnetsAndPlaces) {
+  Chance chance(8);
+  const auto most = sensors::kMostItemMagnets;
+  for (const std::uint32_t magnets : {1u, 2u, 3u, 4u, 5u, most - 1, most, most + 1, 2 * most, 2 * most + 1}) {
+    const world::World world = scenes::sheet(magnets, 3.0, magnets);
+    for (const std::uint32_t count : {1u, 4u, 5u, 6u, 159u, 160u, 161u}) {
+      if (magnets > 5 && count > 6) continue;
+      const Errors e = errors(world, places_over(world, count, 1.0, 0.1));
+      EXPECT_LE(e.worst, 1e-7 * e.largest) << magnets << " magnets, " << count << " places";
+    }
+  }
+}
+
+// --- To the bit.
+
+/// The kernel in C++, operation by operation: one magnet at one place.
+FieldSum mirrored(const sensors::DipoleRow& m, const Place& p) {
+  const double dx = p.x - m.x, dy = p.y - m.y, dz = (p.z - m.z) + 1e-18;
+  const double along = dx * dx + dy * dy;
+  const double squared = along + dz * dz;
+  const float root = std::sqrt(std::max(static_cast<float>(squared), 1e-37f));
+  const double rough = static_cast<double>(1.0f / root);
+  const double inverse = rough * (1.5 - 0.5 * (squared * rough * rough));
+  const double bounded = std::min(inverse, static_cast<double>(m.inverse_radius));
+  const double scale = static_cast<double>(m.moment) * bounded * (bounded * bounded);
+  const double uz = dz * inverse;
+  const double c = 3.0 * uz * scale * inverse;
+  const double q = 1.0 + 3.0 * uz * uz;
+  const float rough_q = std::sqrt(static_cast<float>(q));
+  const double s = static_cast<double>(rough_q);
+  const double shape = s + (q - s * s) * static_cast<double>(0.5f / rough_q);
+  return {c * dx, c * dy, c * dz - scale, std::abs(scale) * shape};
+}
+
+TEST(MagnetSum, TheKernelIsItsMirrorToTheBit) {
+  if (!device().facts().software) GTEST_SKIP() << "32-bit roots of GPUs need not be correctly rounded";
+  const world::World world = scenes::sheet(50, 1.0, 9, true);
+  const auto places = places_over(world, 301, 0.6, 0.05);
+  const auto sums = sensors::survey(world, device(), places, {.magnitudes = true});
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    FieldSum sum;
+    for (const world::Magnet& m : world.magnets) {
+      const FieldSum b = mirrored(sensors::dipole_row(m, m.p, m.z), places[i]);
+      sum = {sum.x + b.x, sum.y + b.y, sum.z + b.z, sum.magnitudes + b.magnitudes};
+    }
+    sum = {1e-7 * sum.x, 1e-7 * sum.y, 1e-7 * sum.z, 1e-7 * sum.magnitudes};
+    ASSERT_EQ(std::memcmp(&sum, &sums[i], sizeof sum), 0) << "place " << i;
+  }
+}
+
+TEST(MagnetSum, ThreadsAndCompanyChangeNothing) {
+  for (const double cutoff : {0.0, 1.0}) {
+    world::World world = scenes::sheet(3000, 10.0, 10, true);
+    world.magnet_cutoff = cutoff;
+    const auto places = places_over(world, 400, 5.0, 0.1);
+    const auto all = sensors::survey(world, device(), places, {.threads = 1});
+    const auto threaded = sensors::survey(world, device(), places, {.threads = 3});
+    EXPECT_EQ(std::memcmp(all.data(), threaded.data(), all.size() * sizeof all[0]), 0);
+    for (std::size_t i = 0; i < places.size(); i += 40) {
+      const auto group = std::span(places).subspan(i / 5 * 5, 5);
+      const auto alone = sensors::survey(world, device(), group);
+      EXPECT_EQ(std::memcmp(&all[i / 5 * 5], alone.data(), 5 * sizeof alone[0]), 0) << cutoff << ", place " << i;
+    }
+  }
+}
+
+// --- Properties.
+
+/// Two worlds together are the sum of both.
+TEST(MagnetSum, IsLinear) {
+  Chance chance(12);
+  const world::World one_world = scenes::sheet(40, 2.0, 20, true), other = scenes::sheet(30, 2.0, 21, true);
+  world::World both = one_world;
+  both.magnets.insert(both.magnets.end(), other.magnets.begin(), other.magnets.end());
+  for (int i = 0; i < 30; ++i) {
+    const Place place{chance.between(-1, 1), chance.between(-1, 1), chance.between(0.05, 0.4)};
+    const FieldSum a = field(one_world, place), b = field(other, place), c = field(both, place);
+    EXPECT_NEAR(a.x + b.x, c.x, 1e-14 * (a.magnitudes + b.magnitudes));
+    EXPECT_NEAR(a.z + b.z, c.z, 1e-14 * (a.magnitudes + b.magnitudes));
+  }
+}
+
+/// Turned and moved, the world has the same field, turned; mirrored in the plane x = 0, the mirrored one.
+TEST(MagnetSum, TurnsAndMirrorsWithTheWorld) {
+  Chance chance(13);
+  const world::World world = scenes::sheet(60, 2.0, 22, true);
+  for (int i = 0; i < 20; ++i) {
+    const base::Pose X{chance.between(-50, 50), chance.between(-50, 50), 0.0, chance.between(-M_PI, M_PI)};
+    const Place p{chance.between(-1, 1), chance.between(-1, 1), 0.1};
+    world::World turned = world, mirrored_world = world;
+    for (world::Magnet& m : turned.magnets) m.p = base::transform(X, m.p);
+    for (world::Magnet& m : mirrored_world.magnets) m.p.x = -m.p.x;
+    const base::Vec2 q = base::transform(X, {p.x, p.y});
+    const FieldSum b = field(world, p), t = field(turned, {q.x, q.y, p.z}), s = field(mirrored_world, {-p.x, p.y, p.z});
+    const base::Vec2 expected = base::rotate(X.yaw, {b.x, b.y});
+    const double some = 1e-10 * b.magnitudes;
+    EXPECT_NEAR(t.x, expected.x, some);
+    EXPECT_NEAR(t.y, expected.y, some);
+    EXPECT_NEAR(t.z, b.z, some);
+    EXPECT_EQ(s.x, -b.x);
+    EXPECT_EQ(s.y, b.y);
+    EXPECT_EQ(s.z, b.z);
+  }
+}
+
+}  // namespace
+}  // namespace sf::trial

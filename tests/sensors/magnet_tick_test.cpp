@@ -1,0 +1,60 @@
+// A tick with magnetometers is silent to the validation layer, also when its tables are replaced.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "farm/farm.h"
+#include "tests/sensors/magnet_scenes.h"
+
+namespace sf::trial {
+namespace {
+
+/// Robots with arrays and magnets of their own, among magnets that stand still.
+world::World park(double cutoff) {
+  world::World world = scenes::sheet(400, 6.0, 1, true);
+  world.magnet_cutoff = cutoff;
+  Chance chance(2);
+  for (int i = 0; i < 30; ++i) {
+    world::Sensor sensor = scenes::five();
+    sensor.settings.push_back(scenes::setting("noise", {0.01}));
+    const auto m = scenes::add_carrier(world, {chance.between(-3, 3), chance.between(-3, 3), 0, 0}, sensor);
+    world.movers[m].magnets.push_back(scenes::magnet({-0.1, 0.0}, 0.05));
+  }
+  return world;
+}
+
+std::vector<base::Report> reports_at(const world::World& world, int tick) {
+  std::vector<base::Report> reports;
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    base::Pose X = world.movers[m].X_WM;
+    X.x += 0.2 * (tick % 8);
+    X.yaw += 0.3 * tick;
+    reports.push_back({m, 0, X, {}});
+  }
+  return reports;
+}
+
+TEST(MagnetTick, TheValidationLayerIsSilent) {
+  setenv("SENSORFARM_VALIDATE", "1", 1);
+  {
+    gpu::Device device;
+    if (device.validation_messages().find("not installed") != std::string::npos)
+      GTEST_SKIP() << "the validation layer is not installed";
+    for (const double cutoff : {0.0, 1.5}) {
+      const world::World world = park(cutoff);
+      farm::Farm farm(world, device);
+      for (int k = 0; k < 4; ++k) {
+        // More and more robots are heard, so that tables are replaced.
+        for (std::uint32_t m = 0; m < 30; ++m) farm.hear(m, static_cast<int>(m) < 10 * k ? farm::kAllKinds : 0u);
+        farm.tick(k * 100'000'000ll, reports_at(world, k));
+      }
+      EXPECT_EQ(farm.stats().readings, 60u);
+      EXPECT_EQ(device.validation_messages(), "");
+    }
+  }
+  unsetenv("SENSORFARM_VALIDATE");
+}
+
+}  // namespace
+}  // namespace sf::trial

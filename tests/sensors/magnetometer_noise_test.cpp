@@ -1,0 +1,105 @@
+// The magnetometers' noise is a distribution, and each draw is its own.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sensors/magnetometer.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/magnet_scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using scenes::Element;
+using scenes::element;
+
+constexpr double kGauss = sensors::kGauss;
+
+/// Kolmogorov-Smirnov distance from the standard normal distribution times the root of the number: above 1.95 once in a
+/// thousand runs. The seed is fixed.
+double ks(std::vector<double> draws) {
+  std::sort(draws.begin(), draws.end());
+  const double n = static_cast<double>(draws.size());
+  double worst = 0.0;
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    const double p = 0.5 * std::erfc(-draws[i] / std::sqrt(2.0));
+    worst = std::max({worst, std::fabs(p - static_cast<double>(i) / n), std::fabs(static_cast<double>(i + 1) / n - p)});
+  }
+  return worst * std::sqrt(n);
+}
+
+struct NoiseDraws {
+  std::vector<double> of[4];  ///< field (of the sum of magnitudes), x, y, z, in sigmas
+  std::size_t lengths_wrong = 0;
+};
+
+NoiseDraws draw_noise(bool magnitudes) {
+  constexpr double kSigma = 0.02;  // [Gauss]
+  world::World world = scenes::sheet(20, 1.0, 13);
+  for (int i = 0; i < 40; ++i) {
+    world::Sensor sensor = scenes::five();
+    sensor.settings.push_back(scenes::setting("noise", {kSigma}));
+    if (magnitudes) sensor.settings.push_back(scenes::text("sum", "magnitude"));
+    scenes::add_carrier(world, {0.01 * i, 0, 0, 0.1 * i}, sensor);
+  }
+  farm::Farm noisy(world, device(), {.seed = 5}), quiet(world, device(), {.noise = false});
+  noisy.hear_all();
+  quiet.hear_all();
+  NoiseDraws draws;
+  for (int tick = 0; tick < 20; ++tick) {
+    const auto with = noisy.tick(tick * 100'000'000ll, {}), without = quiet.tick(tick * 100'000'000ll, {});
+    for (std::size_t r = 0; r < with.size(); ++r)
+      for (std::size_t e = 0; e < 5; ++e) {
+        const Element n = element(with[r], e), q = element(without[r], e);
+        const double unit = kSigma * kGauss;
+        const double all[] = {(n.field - q.field) / unit, (n.x - q.x) / unit, (n.y - q.y) / unit, (n.z - q.z) / unit};
+        for (std::size_t k = 0; k < 4; ++k) draws.of[k].push_back(all[k]);
+        draws.lengths_wrong += std::fabs(n.field - std::hypot(n.x, n.y, n.z)) > 1e-15;
+      }
+  }
+  return draws;
+}
+
+double correlation(const std::vector<double>& p, const std::vector<double>& q, std::size_t lag) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + lag < p.size(); ++i) sum += p[i] * q[i + lag];
+  return sum / static_cast<double>(p.size() - lag);
+}
+
+/// Each component is normal with the sigma of the file; components, elements, robots and ticks have nothing in common.
+TEST(MagnetometerNoise, IsNormalAndIndependentOnEachComponent) {
+  const NoiseDraws draws = draw_noise(true);
+  const double some = 4.0 / std::sqrt(4000.0);  // four standard deviations
+  for (std::size_t k = 0; k < 4; ++k) {
+    ASSERT_EQ(draws.of[k].size(), 4000u);
+    EXPECT_LT(ks(draws.of[k]), 1.95) << k;
+    for (const std::size_t lag : {1u, 5u, 200u}) EXPECT_LT(std::fabs(correlation(draws.of[k], draws.of[k], lag)), some);
+    for (std::size_t j = 0; j < k; ++j) EXPECT_LT(std::fabs(correlation(draws.of[k], draws.of[j], 0)), some);
+  }
+}
+
+TEST(MagnetometerNoise, TheFieldIsTheLengthOfTheNoisyVector) { EXPECT_EQ(draw_noise(false).lengths_wrong, 0u); }
+
+TEST(MagnetometerNoise, ComesBeforeSaturation) {
+  world::World world;
+  world::Sensor sensor = scenes::five();
+  sensor.settings.push_back(scenes::setting("noise", {1.0}));
+  sensor.settings.push_back(scenes::setting("ssensitivity", {-0.5, 0.5}));
+  for (int i = 0; i < 40; ++i) scenes::add_carrier(world, {0, 0, 0, 0}, sensor);
+  const Glance run(world, {.seed = 9});
+  std::size_t low = 0, high = 0;
+  for (const base::ReadingBlock& r : run.readings)
+    for (const double tesla : r.values) {
+      ASSERT_GE(tesla, -0.5 * kGauss);
+      ASSERT_LE(tesla, 0.5 * kGauss);
+      low += tesla == -0.5 * kGauss;
+      high += tesla == 0.5 * kGauss;
+    }
+  EXPECT_GT(low, 50u);
+  EXPECT_GT(high, 50u);
+}
+
+}  // namespace
+}  // namespace sf::trial

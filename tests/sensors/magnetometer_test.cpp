@@ -1,0 +1,281 @@
+// The magnetometer array as a sensor of the farm: poses and frames, saturation, moving magnets.
+
+#include "sensors/magnetometer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "sensors/field/truncation.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/magnet_scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Pose;
+using base::Vec2;
+using scenes::Element;
+using scenes::element;
+using scenes::magnet;
+
+constexpr double kGauss = sensors::kGauss;
+constexpr double kHigh = 0.125;  // [m] the thesis' magnets' middles below its sensors
+
+/// A robot at `X_WM` with `sensor` over one magnet of 1 A m^2 at (1, 0).
+Glance over_one(const Pose& X_WM, const world::Sensor& sensor, world::World& world) {
+  world.magnets.push_back(magnet({1, 0}));
+  scenes::add_carrier(world, X_WM, sensor);
+  return Glance(world);
+}
+
+TEST(Magnetometer, ReadsOneGaussRightAboveAMagnet) {
+  world::World world;
+  const Glance run = over_one({0.8, 0, 0, 0}, scenes::five(kHigh), world);
+  ASSERT_EQ(run.readings.size(), 1u);
+  const base::ReadingBlock& r = run.readings[0];
+  EXPECT_EQ(r.kind, sensors::kMagnetometer);
+  ASSERT_EQ(r.values.size(), 20u);
+  const Element middle = element(r, 2);
+  EXPECT_NEAR(middle.field / kGauss, 1.024, 1e-6);
+  EXPECT_NEAR(middle.z / kGauss, 1.024, 1e-6);
+  EXPECT_NEAR(std::hypot(middle.x, middle.y), 0.0, 1e-17);
+}
+
+/// Elements keep the order of the file; left and right see the same field, mirrored.
+TEST(Magnetometer, ElementsStandWhereTheFileSaysInItsOrder) {
+  world::World world;
+  const Glance run = over_one({0.8, 0, 0, 0}, scenes::five(kHigh), world);
+  for (int i = 0; i < 5; ++i) {
+    const Element e = element(run.readings[0], static_cast<std::size_t>(i));
+    const scenes::Exact truth = scenes::exact(world, {1.0, 0.075 * (i - 2), kHigh});
+    EXPECT_NEAR(e.y, static_cast<double>(truth.y), 1e-16) << i;
+    EXPECT_NEAR(e.z, static_cast<double>(truth.z), 1e-16) << i;
+    EXPECT_NEAR(e.field, scenes::magnitude(truth), 1e-16) << i;
+  }
+  EXPECT_GT(element(run.readings[0], 4).y, 1e-5) << "left of the magnet the field leans to the left";
+}
+
+/// The vector is in the element's frame: turned back by mover, model and element.
+TEST(Magnetometer, VectorsAreInTheElementsOwnFrame) {
+  Chance chance(1);
+  for (int i = 0; i < 10; ++i) {
+    const Pose X_WM{chance.between(0, 2), chance.between(-1, 1), 0.03, chance.between(-4, 4)};
+    const Pose X_SE{chance.between(-0.2, 0.2), chance.between(-0.2, 0.2), chance.between(0, 0.1),
+                    chance.between(-4, 4)};
+    world::Sensor sensor = scenes::array({X_SE}, 0.1);
+    sensor.X_MS = {0.05, -0.02, 0.1, chance.between(-4, 4)};
+    sensor.height = 0.06;
+    world::World world;
+    const Glance run = over_one(X_WM, sensor, world);
+    const Pose X_WE = base::compose(X_WM, base::compose(sensor.X_MS, X_SE));
+    // The origin of a sensor's frame is at half its model's height.
+    const scenes::Exact truth = scenes::exact(world, {X_WE.x, X_WE.y, X_WE.z + 0.03});
+    const Vec2 flat = base::rotate(-X_WE.yaw, {static_cast<double>(truth.x), static_cast<double>(truth.y)});
+    const Element e = element(run.readings[0], 0);
+    EXPECT_NEAR(e.x, flat.x, 1e-7 * e.field);
+    EXPECT_NEAR(e.y, flat.y, 1e-7 * e.field);
+    EXPECT_NEAR(e.z, static_cast<double>(truth.z), 1e-7 * e.field);
+    EXPECT_NEAR(e.field, scenes::magnitude(truth), 1e-7 * e.field);
+  }
+}
+
+/// The thesis' robot faces -y and its array runs along x from its right to its left: the same readings as the version
+/// that faces +x, on a world turned with it.
+TEST(Magnetometer, TheThesisMinusYFrameReadsTheSame) {
+  std::vector<Pose> thesis, ours;
+  for (int i = 0; i < 5; ++i) {
+    thesis.push_back({0.075 * (i - 2), 0, 0, -M_PI / 2});
+    ours.push_back({0, 0.075 * (i - 2), 0, 0});
+  }
+  world::Sensor theirs = scenes::array(thesis), own = scenes::array(ours);
+  theirs.X_MS = {0, -0.2, 0.1, 0};
+  own.X_MS = {0.2, 0, 0.1, 0};
+  world::World a = scenes::sheet(50, 1.0, 3, true), b = a;
+  scenes::add_carrier(a, {0.1, 0.05, 0, M_PI / 2}, theirs);  // its -y is the world's +x
+  scenes::add_carrier(b, {0.1, 0.05, 0, 0}, own);
+  const Glance first(a), second(b);
+  for (std::size_t e = 0; e < 5; ++e)
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_NEAR(first.readings[0].values[4 * e + k], second.readings[0].values[4 * e + k],
+                  1e-12 * second.readings[0].values[4 * e]);
+}
+
+/// 1 to 16 elements: groups of five, filled or not.
+TEST(Magnetometer, EveryNumberOfElements) {
+  const world::World magnets = scenes::sheet(100, 2.0, 4);
+  for (std::uint32_t count = 1; count <= sensors::kMostElements; ++count) {
+    world::World world = magnets;
+    std::vector<Pose> elements;
+    for (std::uint32_t i = 0; i < count; ++i) elements.push_back({0.03 * i, 0.01 * i, 0.0, 0.1 * i});
+    scenes::add_carrier(world, {0.1, 0, 0, 0}, scenes::array(elements));
+    scenes::add_carrier(world, {-0.3, 0.2, 0, 1}, scenes::array(elements));
+    const Glance run(world);
+    for (const base::ReadingBlock& r : run.readings) {
+      ASSERT_EQ(r.values.size(), 4 * count);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const Pose X_WE = base::compose(r.X_WS, elements[i]);
+        EXPECT_NEAR(r.values[4 * i], scenes::magnitude(scenes::exact(world, {X_WE.x, X_WE.y, X_WE.z})), 1e-11) << i;
+      }
+    }
+  }
+}
+
+// --- Saturation.
+
+TEST(Magnetometer, SaturatesAtBothEnds) {
+  world::Sensor sensor = scenes::array({{0, 0, 0, 0}}, kHigh);
+  sensor.settings.push_back(scenes::setting("ssensitivity", {-0.3, 0.8}));
+  world::World high, low;
+  const Element most = element(over_one({1, 0, 0, 0}, sensor, high).readings[0], 0);
+  EXPECT_EQ(most.field, 0.8 * kGauss);
+  EXPECT_EQ(most.z, 0.8 * kGauss);
+  low.magnets.push_back(magnet({1, 0}, 0, -1.0));
+  scenes::add_carrier(low, {1, 0, 0, 0}, sensor);
+  const Glance run(low);
+  const Element least = element(run.readings[0], 0);
+  EXPECT_EQ(least.z, -0.3 * kGauss);
+  EXPECT_EQ(least.field, 0.8 * kGauss) << "the field has no sign";
+}
+
+TEST(Magnetometer, InTheMiddleOfAMagnetItSaturates) {
+  world::Sensor sensor = scenes::array({{0, 0, 0, 0}}, 0.0);
+  sensor.settings.push_back(scenes::setting("ssensitivity", {-100, 100}));
+  world::World world;
+  const Element e = element(over_one({1, 0, 0, 0}, sensor, world).readings[0], 0);
+  EXPECT_EQ(e.field, 100 * kGauss) << "it is 1024 Gauss";
+}
+
+TEST(Magnetometer, TheSensitivitysDefaultIsWhatTheWireHolds) {
+  const auto m = sensors::read_magnetometer(scenes::array({{0, 0, 0, 0}}));
+  EXPECT_NEAR(m.most, 21.47483647, 1e-12);
+  EXPECT_EQ(m.least, -m.most);
+}
+
+// --- Sums.
+
+/// Arrays of both modes in one world: each its own.
+TEST(Magnetometer, AddsMagnitudesWhereItIsTold) {
+  world::World world = scenes::sheet(200, 1.0, 5, true);
+  world::Sensor told = scenes::five(), untold = scenes::five();
+  told.settings.push_back(scenes::text("sum", "magnitude"));
+  untold.settings.push_back(scenes::text("sum", "vector"));
+  scenes::add_carrier(world, {0, 0, 0, 0.5}, told);
+  scenes::add_carrier(world, {0, 0, 0, 0.5}, untold);
+  const Glance run(world);
+  for (std::size_t e = 0; e < 5; ++e) {
+    const Pose X_WE = base::compose({0, 0, 0.2, 0.5}, {0.2, 0.075 * (static_cast<double>(e) - 2), 0, 0});
+    const scenes::Exact truth = scenes::exact(world, {X_WE.x, X_WE.y, X_WE.z});
+    const Element m = element(run.readings[0], e), v = element(run.readings[1], e);
+    EXPECT_NEAR(m.field, static_cast<double>(truth.magnitudes), 1e-7 * m.field);
+    EXPECT_NEAR(v.field, scenes::magnitude(truth), 1e-7 * m.field);
+    EXPECT_EQ(m.x, v.x) << "the vector is the vectors' sum in both";
+    EXPECT_EQ(m.z, v.z);
+  }
+}
+
+// --- Moving magnets.
+
+/// Robots with magnets and arrays that drive: each tick against the sum over all magnets where they are then. A robot's
+/// own magnets count.
+void expect_moving_magnets(double cutoff) {
+  // An odd number, so that a turn's last magnet is a mover's first one, which counts once.
+  world::World world = scenes::sheet(41, 4.0, 6, true);
+  world.magnet_cutoff = cutoff;
+  Chance chance(7);
+  for (int i = 0; i < 9; ++i) {
+    const auto m =
+        scenes::add_carrier(world, {chance.between(-2, 2), chance.between(-2, 2), 0.01 * i, 0}, scenes::five());
+    for (int k = 0; k < i % 4; ++k) world.movers[m].magnets.push_back(magnet(chance.in_square(0.2), 0.05, k + 1.0));
+  }
+  farm::Farm farm(world, device());
+  farm.hear_all();
+  for (int tick = 0; tick < 5; ++tick) {
+    std::vector<base::Report> reports;
+    world::World now = world;
+    for (std::uint32_t m = 0; m < 9; ++m) {
+      const Pose X{chance.between(-2, 2), chance.between(-2, 2), 0.0, chance.between(-4, 4)};
+      reports.push_back({m, 0, X, {}});
+      for (world::Magnet carried : world.movers[m].magnets) {
+        carried.p = base::transform(X, carried.p);
+        carried.z += world.movers[m].X_WM.z;
+        now.magnets.push_back(carried);
+      }
+    }
+    const auto readings = farm.tick(tick * 100'000'000ll, reports);
+    ASSERT_EQ(readings.size(), 9u);
+    for (const base::ReadingBlock& r : readings)
+      for (std::size_t e = 0; e < 5; ++e) {
+        const Pose X_WE = base::compose(r.X_WS, {0.2, 0.075 * (static_cast<double>(e) - 2), 0, 0});
+        const scenes::Exact truth = scenes::exact(now, {X_WE.x, X_WE.y, X_WE.z}, cutoff);
+        ASSERT_NEAR(element(r, e).field, scenes::magnitude(truth), 1e-7 * static_cast<double>(truth.magnitudes))
+            << "tick " << tick << ", mover " << r.mover;
+      }
+  }
+}
+
+TEST(Magnetometer, MoversMagnetsGoWithThem) { expect_moving_magnets(0.0); }
+TEST(Magnetometer, MoversMagnetsGoWithThemBehindACutoff) { expect_moving_magnets(1.0); }
+
+// --- Properties.
+
+/// World and robot turned and moved together: the same reading, vectors and all, for they are the robot's own.
+TEST(Magnetometer, ReadingsTurnWithTheRobot) {
+  Chance chance(8);
+  world::World world = scenes::sheet(80, 1.5, 9, true);
+  scenes::add_carrier(world, {0.1, -0.1, 0, 0.7}, scenes::five());
+  const Glance still(world);
+  for (int i = 0; i < 5; ++i) {
+    const Pose X{chance.between(-30, 30), chance.between(-30, 30), 0, chance.between(-4, 4)};
+    world::World turned = world;
+    for (world::Magnet& m : turned.magnets) m.p = base::transform(X, m.p);
+    turned.movers[0].X_WM = base::compose(X, turned.movers[0].X_WM);
+    const Glance run(turned);
+    for (std::size_t k = 0; k < 20; ++k)
+      EXPECT_NEAR(run.readings[0].values[k], still.readings[0].values[k], 1e-9 * still.readings[0].values[8]);
+  }
+}
+
+/// The same bits for any number of threads, with noise and a cut-off.
+TEST(Magnetometer, ThreadsChangeNothing) {
+  world::World world = scenes::sheet(500, 5.0, 10, true);
+  world.magnet_cutoff = 1.0;
+  Chance chance(11);
+  for (int i = 0; i < 100; ++i) {
+    world::Sensor sensor = scenes::five();
+    sensor.settings.push_back(scenes::setting("noise", {0.01}));
+    scenes::add_carrier(world, {chance.between(-3, 3), chance.between(-3, 3), 0, 0}, sensor);
+  }
+  std::uint64_t hash = 0;
+  for (const unsigned threads : {1u, 2u, 5u}) {
+    farm::Farm farm(world, device(), {.seed = 3, .threads = threads});
+    farm.hear_all();
+    for (int k = 0; k < 3; ++k) farm.tick(k * 100'000'000ll, {});
+    if (threads == 1) hash = farm.hash();
+    EXPECT_EQ(farm.hash(), hash) << threads << " threads";
+  }
+}
+
+/// A sensor reads the same whoever else is heard.
+TEST(Magnetometer, CompanyChangesNothing) {
+  world::World world = scenes::sheet(500, 5.0, 12);
+  world.magnet_cutoff = 0.8;
+  for (int i = 0; i < 60; ++i) scenes::add_carrier(world, {0.05 * i - 1.5, 0.1, 0, 0}, scenes::five());
+  const Glance all(world);
+  farm::Farm one(world, device());
+  one.hear(31, farm::kAllKinds);
+  const auto alone = one.tick(0, {});
+  ASSERT_EQ(alone.size(), 1u);
+  EXPECT_EQ(std::memcmp(alone[0].values.data(), all.readings[31].values.data(), alone[0].values.size_bytes()), 0);
+}
+
+TEST(Magnetometer, CountsItsWork) {
+  world::World world = scenes::line(10, 0.5);
+  for (int i = 0; i < 3; ++i) scenes::add_carrier(world, {0, 0, 0, 0}, scenes::five());
+  Glance run(world);
+  EXPECT_EQ(run.farm.stats().work.dipoles, 3u * 5u * 10u);
+}
+
+}  // namespace
+}  // namespace sf::trial

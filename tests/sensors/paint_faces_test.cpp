@@ -1,0 +1,141 @@
+// The outline of a stripe, from its definition: the band within half the width of its line.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sensors/paint/faces.h"
+#include "tests/sensors/chance.h"
+#include "tests/sensors/laneedge_trial.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Vec2;
+using sensors::Face;
+
+std::vector<Face> faces_of(const world::Stripe& s) {
+  std::vector<Face> faces;
+  sensors::add_faces(s, faces);
+  return faces;
+}
+
+/// [m^2] signed area of closed outlines, counter-clockwise positive.
+double area(const std::vector<Face>& faces) {
+  double twice = 0.0;
+  for (const Face& f : faces) twice += cross(f.a, f.b);
+  return 0.5 * twice;
+}
+
+/// Every face's end is another's beginning, the same doubles.
+void expect_closed(const std::vector<Face>& faces) {
+  for (const Face& f : faces) {
+    const auto follows = [&](const Face& g) { return g.a.x == f.b.x && g.a.y == f.b.y; };
+    EXPECT_EQ(std::count_if(faces.begin(), faces.end(), follows), 1);
+  }
+}
+
+double distance_to_line(const std::vector<Vec2>& line, Vec2 p) {
+  double least = 1e300;
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    const Vec2 e = line[i + 1] - line[i];
+    const double u = std::clamp(dot(e, p - line[i]) / dot(e, e), 0.0, 1.0);
+    least = std::min(least, length(p - (line[i] + u * e)));
+  }
+  return least;
+}
+
+TEST(PaintFaces, AStraightStripeIsARectangle) {
+  const auto faces = faces_of(stripe({1, 2}, {4, 2}, 0.5));
+  ASSERT_EQ(faces.size(), 4u);
+  expect_closed(faces);
+  EXPECT_DOUBLE_EQ(area(faces), 1.5);
+  EXPECT_EQ(std::count_if(faces.begin(), faces.end(), [](const Face& f) { return f.is_end; }), 2);
+  for (const Face& f : faces) {
+    EXPECT_EQ(f.is_end, f.a.x == f.b.x);
+    EXPECT_TRUE(f.is_solid);
+  }
+}
+
+/// At a right-angled bend's limit a mitre is 1.41 half widths long; the faces beside it keep half a width off the line.
+TEST(PaintFaces, BendsAreMitred) {
+  Chance chance(4);
+  for (int round = 0; round < 200; ++round) {
+    world::Stripe s;
+    s.width = chance.between(0.02, 0.3);
+    double heading = chance.between(-M_PI, M_PI);
+    Vec2 at = chance.in_square(10.0);
+    for (int i = 0; i < 6; ++i) {
+      s.line.push_back(at);
+      at = at + chance.between(1.0, 2.0) * Vec2{std::cos(heading), std::sin(heading)};
+      heading += chance.between(-1.5, 1.5);
+    }
+    const auto faces = faces_of(s);
+    ASSERT_EQ(faces.size(), 2 * (s.line.size() - 1) + 2);
+    expect_closed(faces);
+    for (const Face& f : faces) {
+      if (f.is_end) {
+        EXPECT_NEAR(length(f.b - f.a), s.width, 1e-12);
+        continue;
+      }
+      // Between the mitres of its two ends, half a width off a straight piece: at its middle third for certain.
+      bool parallel = false;
+      for (std::size_t i = 0; i + 1 < s.line.size(); ++i) {
+        const Vec2 e = s.line[i + 1] - s.line[i];
+        parallel = parallel || (std::fabs(cross(e, f.b - f.a)) < 1e-9 &&
+                                std::fabs(std::fabs(cross(e, f.a - s.line[i])) / length(e) - 0.5 * s.width) < 1e-9);
+      }
+      EXPECT_TRUE(parallel);
+    }
+  }
+}
+
+TEST(PaintFaces, PaintLiesOnTheLeft) {
+  Chance chance(9);
+  for (int round = 0; round < 100; ++round) {
+    const world::Stripe s =
+        arc({0, 0}, chance.between(0.5, 3.0), chance.between(-3, 0), chance.between(0.5, 3), 0.1, 1e-4);
+    for (const Face& f : faces_of(s)) {
+      const Vec2 middle = 0.5 * (f.a + f.b);
+      const Vec2 e = (1.0 / length(f.b - f.a)) * (f.b - f.a);
+      const Vec2 inside = middle + 1e-4 * Vec2{-e.y, e.x};
+      const Vec2 outside = middle - 1e-4 * Vec2{-e.y, e.x};
+      const double reach = 0.05;
+      EXPECT_LT(distance_to_line(s.line, inside), f.is_end ? 0.06 : reach);
+      EXPECT_GT(distance_to_line(s.line, outside), f.is_end ? 0.0 : reach);
+    }
+  }
+}
+
+TEST(PaintFaces, ALineThatClosesHasNoEnds) {
+  world::Stripe s = arc({1, 1}, 2.0, 0.0, 2.0 * M_PI, 0.1, 1e-3);
+  s.line.back() = s.line.front();
+  const auto faces = faces_of(s);
+  EXPECT_EQ(std::count_if(faces.begin(), faces.end(), [](const Face& f) { return f.is_end; }), 0);
+  expect_closed(faces);
+  EXPECT_NEAR(area(faces), 2.0 * M_PI * 2.0 * 0.1, 0.005);
+}
+
+/// A band wider than the bend it follows: its inner side runs back, and nothing is claimed of sides.
+TEST(PaintFaces, ABandWiderThanItsBendIsThin) {
+  const auto faces = faces_of(arc({0, 0}, 0.1, 0.0, 2.0, 0.3, 1e-3));
+  for (const Face& f : faces) EXPECT_FALSE(f.is_solid);
+}
+
+TEST(PaintFaces, StripesOnStripesAreOne) {
+  const world::Stripe s = arc({0, 0}, 2.0, 0.0, 1.0, 0.1, 1e-3);
+  world::Stripe turned = s;
+  std::reverse(turned.line.begin(), turned.line.end());
+  world::Stripe nearly = s;
+  for (Vec2& p : nearly.line) p.x += 5e-5;
+  world::Stripe beside = s;
+  for (Vec2& p : beside.line) p.x += 0.2;
+  world::Stripe wider = s;
+  wider.width = 0.15;
+  EXPECT_EQ(sensors::distinct_stripes(std::vector{s, turned, nearly, s}).size(), 1u);
+  EXPECT_EQ(sensors::distinct_stripes(std::vector{s, beside, wider}).size(), 3u);
+}
+
+}  // namespace
+}  // namespace sf::trial

@@ -1,0 +1,107 @@
+#include "viz/series_figure.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "tests/viz/png.h"
+#include "viz/color.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+std::string file(const char* name) { return testing::TempDir() + name; }
+
+/// A series of one value per second.
+Series per_second(const std::string& name, const std::vector<double>& values) {
+  Series series{name, {}, values};
+  for (std::size_t i = 0; i < values.size(); ++i) series.times.push_back(static_cast<double>(i));
+  return series;
+}
+
+SeriesPlan one_panel(const std::vector<Series>& series) {
+  return {"Title", "subtitle", {{"", "distance [m]", series}}};
+}
+
+scenes::Picture drawn(const SeriesPlan& plan, const char* name) {
+  draw_series(plan, file(name));
+  return scenes::read_png(file(name));
+}
+
+/// Pixels of `color` in columns [from, to) parts of the picture's width.
+int colored(const scenes::Picture& p, std::uint32_t color, double from, double to) {
+  return p.count(color, static_cast<int>(from * p.width), 0, static_cast<int>(to * p.width), p.height);
+}
+
+TEST(SeriesFigure, ALineRunsFromItsFirstToItsLastValue) {
+  const scenes::Picture p = drawn(one_panel({per_second("a", {1, 2, 1, 2})}), "line.png");
+  const std::uint32_t color = row_color(0, 1);
+  for (double part = 0.1; part < 0.95; part += 0.05) EXPECT_GT(colored(p, color, part, part + 0.05), 20) << part;
+}
+
+TEST(SeriesFigure, WhatIsMissingIsAGap) {
+  const scenes::Picture p = drawn(one_panel({per_second("a", {1, 1.1, kNan, INFINITY, 1.1, 1})}), "gap.png");
+  const std::uint32_t color = row_color(0, 1);
+  EXPECT_GT(colored(p, color, 0.1, 0.2), 20);
+  EXPECT_GT(colored(p, color, 0.85, 0.95), 20);
+  // Between the second and the fifth of six values: nothing but the grid.
+  for (double part = 0.3; part < 0.75; part += 0.05) EXPECT_EQ(colored(p, color, part, part + 0.05), 0) << part;
+}
+
+TEST(SeriesFigure, ALoneValueIsADot) {
+  const scenes::Picture p = drawn(one_panel({per_second("a", {kNan, 5, kNan})}), "dot.png");
+  EXPECT_GT(colored(p, row_color(0, 1), 0.45, 0.65), 0);
+}
+
+TEST(SeriesFigure, EverySeriesHasItsColor) {
+  std::vector<Series> many;
+  for (int i = 0; i < 12; ++i) many.push_back(per_second("robot" + std::to_string(i), {1.0 * i, i + 0.5}));
+  const scenes::Picture p = drawn(one_panel(many), "many.png");
+  for (std::size_t i = 0; i < many.size(); ++i) EXPECT_GT(colored(p, row_color(i, many.size()), 0, 1), 20) << i;
+}
+
+TEST(SeriesFigure, PanelsStandBelowEachOther) {
+  const Panel panel{"robot", "|B| [G]", {per_second("element 0", {0, 1})}};
+  const scenes::Picture one = drawn({"t", "s", {panel}}, "one.png");
+  const scenes::Picture three = drawn({"t", "s", {panel, panel, panel}}, "three.png");
+  EXPECT_EQ(one.width, 1600);
+  EXPECT_EQ(three.width, 1600);
+  EXPECT_GT(three.height, one.height);
+  const std::uint32_t color = row_color(0, 1);
+  for (int third = 0; third < 3; ++third)
+    EXPECT_GT(three.count(color, 0, third * three.height / 3, three.width, (third + 1) * three.height / 3), 100);
+}
+
+TEST(SeriesFigure, OddDataIsDrawnAllTheSame) {
+  for (const std::vector<Series>& series : {std::vector<Series>{},                   // nobody
+                                            {Series{"a", {}, {}}},                   // said nothing
+                                            {per_second("a", {7})},                  // once
+                                            {per_second("a", {kNan, kNan})},         // saw nothing
+                                            {per_second("a", {0, 0, 0})},            // the same all along, at zero
+                                            {per_second("a", {-1e-7, 1e-7})},        // tiny
+                                            {per_second("a", {1e300, -1e300})},      // huge
+                                            {Series{"a", {0, kNan, 2}, {1, 2, 3}}},  // at no time
+                                            {Series{"a", {1e9, 1e9 + 1}, {1e9, 1e9 + 1}}}})  // far from zero
+    EXPECT_GT(drawn(one_panel(series), "odd.png").height, 600);
+}
+
+TEST(SeriesFigure, ThePictureIsAFunctionOfTheNumbers) {
+  const SeriesPlan plan = one_panel({per_second("a", {1, 2, kNan, 4}), per_second("b", {2, 1, 0, 3})});
+  EXPECT_EQ(drawn(plan, "same1.png").rgb, drawn(plan, "same2.png").rgb);
+}
+
+TEST(SeriesFigure, BrokenContractsAbort) {
+  EXPECT_DEATH(draw_series({"t", "s", {}}, file("x.png")), "0 panels");
+  EXPECT_DEATH(draw_series(one_panel({Series{"a", {1, 2}, {1}}}), file("x.png")), "series a has 2 times for 1 values");
+}
+
+TEST(SeriesFigure, APlaceThatCannotBeWrittenIsNamed) {
+  EXPECT_THROW(draw_series(one_panel({per_second("a", {1})}), "/nowhere/x.png"), base::InputError);
+}
+
+}  // namespace
+}  // namespace sf::viz

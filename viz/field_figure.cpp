@@ -1,0 +1,247 @@
+#include "viz/field_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "viz/color.h"
+#include "viz/legend.h"
+#include "viz/ticks.h"
+
+namespace sf::viz {
+
+namespace {
+
+constexpr double kGauss = 1e-4;  // [T]
+constexpr std::uint32_t kFrame = 0xFF404040u;
+constexpr std::uint32_t kGrid = 0x28808080u;
+constexpr std::uint32_t kVectors = 0xFF0072B2u;
+constexpr std::uint32_t kMagnitudes = 0xFFD55E00u;
+constexpr std::uint32_t kInk = 0xFF15181Cu;   ///< marks on the map, with a
+constexpr std::uint32_t kHalo = 0x90FFFFFFu;  ///< border that is seen where it is dark
+constexpr std::size_t kShades = 160;
+
+// [px]
+constexpr double kRoomForMarks = 9.0;  // a magnet; where they are denser, marks would hide the field
+constexpr double kGap = 96.0;          // from the map to the profile
+constexpr double kProfileHeight = 300.0;
+constexpr double kLegendBelow = 72.0;  // the profile: its labels
+constexpr double kEdge = 18.0;
+constexpr double kRight = 150.0;  // the colour bar
+
+/// A plot: a box of pixels, and what its edges stand for.
+struct Plot {
+  PixelBox box;
+  double x0 = 0.0, x1 = 1.0, y0 = 0.0, y1 = 1.0;
+
+  Vec2 pixel(Vec2 p) const {
+    return {box.x_min + (p.x - x0) / (x1 - x0) * (box.x_max - box.x_min),
+            box.y_max - (p.y - y0) / (y1 - y0) * (box.y_max - box.y_min)};
+  }
+};
+
+/// The middle of a one-pixel line.
+double crisp(double pixel) { return std::floor(pixel) + 0.5; }
+
+void draw_box(Canvas& canvas, const PixelBox& b) {
+  const double x0 = b.x_min - 0.5, y0 = b.y_min - 0.5, x1 = b.x_max + 0.5, y1 = b.y_max + 0.5;
+  const Vec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
+  canvas.polyline(corners, 1.0, kFrame);
+}
+
+void draw_axes(Canvas& canvas, const Plot& plot, const std::string& x_name, const std::string& y_name, bool grid) {
+  const PixelBox& b = plot.box;
+  TextStyle style = small_text();
+  style.across = Anchor::middle;
+  style.down = Anchor::start;
+  const Ticks xs = make_ticks(plot.x0, plot.x1, 110.0 * (plot.x1 - plot.x0) / (b.x_max - b.x_min));
+  for (const double x : xs.at) {
+    const double px = crisp(plot.pixel({x, plot.y0}).x);
+    if (grid) canvas.line({px, b.y_min + 0.0}, {px, b.y_max + 0.0}, 1.0, kGrid);
+    canvas.line({px, b.y_max + 1.0}, {px, b.y_max + 6.0}, 1.0, kFrame);
+    canvas.text({px, b.y_max + 11.0}, tick_text(x, xs.decimals), style);
+  }
+  canvas.text({0.5 * (b.x_min + b.x_max), b.y_max + 40.0}, x_name, style);
+  style.across = Anchor::end;
+  style.down = Anchor::middle;
+  const Ticks ys = make_ticks(plot.y0, plot.y1, 44.0 * (plot.y1 - plot.y0) / (b.y_max - b.y_min));
+  for (const double y : ys.at) {
+    const double py = crisp(plot.pixel({plot.x0, y}).y);
+    if (grid) canvas.line({b.x_min + 0.0, py}, {b.x_max + 0.0, py}, 1.0, kGrid);
+    canvas.line({b.x_min - 6.0, py}, {b.x_min - 1.0, py}, 1.0, kFrame);
+    canvas.text({b.x_min - 11.0, py}, tick_text(y, ys.decimals), style);
+  }
+  style.across = Anchor::middle;
+  style.upwards = true;
+  canvas.text({26.0, 0.5 * (b.y_min + b.y_max)}, y_name, style);
+  draw_box(canvas, b);
+}
+
+/// Colours of |B| from nothing to the most: points of a curve in OKLab (viz/color.h) whose lightness rises evenly from
+/// 0.22 to 0.91 while its hue turns from violet over blue and green to yellow, as saturated as screens can show without
+/// a kink.
+constexpr std::array<std::uint32_t, 21> kAnchors{
+    0xFF250146u, 0xFF250F55u, 0xFF241E62u, 0xFF202C6Bu, 0xFF1C3A71u, 0xFF184776u, 0xFF13547Cu,
+    0xFF0C6082u, 0xFF076D87u, 0xFF0D798Au, 0xFF1B858Du, 0xFF29918Fu, 0xFF379D90u, 0xFF44A98Fu,
+    0xFF52B58Cu, 0xFF62C184u, 0xFF76CD76u, 0xFF92D663u, 0xFFB3DD54u, 0xFFD4E24Cu, 0xFFF3E749u};
+
+std::vector<std::uint32_t> shades() {
+  std::vector<std::uint32_t> colors;
+  for (std::size_t i = 0; i < kShades; ++i) {
+    const double at = static_cast<double>(i) / (kShades - 1) * (kAnchors.size() - 1);
+    const auto below = std::min(static_cast<std::size_t>(at), kAnchors.size() - 2);
+    colors.push_back(mix(kAnchors[below], kAnchors[below + 1], at - static_cast<double>(below)));
+  }
+  return colors;
+}
+
+/// [Gauss] upper end of the colours: the largest on the map, or something where there is no field.
+double top_of(const FieldSamples& samples) {
+  const double most = *std::max_element(samples.map.begin(), samples.map.end()) / kGauss;
+  return most > 0.0 ? most : 1.0;
+}
+
+void draw_bar(Canvas& canvas, const Plot& map, double top) {
+  const Plot bar{{map.box.x_max + 26, map.box.y_min, map.box.x_max + 46, map.box.y_max}, 0.0, 1.0, 0.0, top};
+  std::vector<std::uint32_t> colors = shades();
+  std::reverse(colors.begin(), colors.end());
+  canvas.image({bar.box.x_min + 0.0, bar.box.y_min + 0.0}, {bar.box.x_max + 0.0, bar.box.y_max + 0.0},
+               {1, static_cast<int>(colors.size()), colors});
+  draw_box(canvas, bar.box);
+  double widest = 0.0;
+  const Ticks ticks = make_ticks(0.0, top, 44.0 * top / (bar.box.y_max - bar.box.y_min));
+  for (const double value : ticks.at) {
+    const double y = crisp(bar.pixel({0.0, value}).y);
+    canvas.line({bar.box.x_max + 1.0, y}, {bar.box.x_max + 6.0, y}, 1.0, kFrame);
+    canvas.text({bar.box.x_max + 11.0, y}, tick_text(value, ticks.decimals), small_text());
+    widest = std::max(widest, text_size(tick_text(value, ticks.decimals), small_text()).x);
+  }
+  TextStyle style = small_text();
+  style.across = Anchor::middle;
+  style.upwards = true;
+  canvas.text({bar.box.x_max + widest + 32.0, 0.5 * (bar.box.y_min + bar.box.y_max)}, "|B| [Gauss]", style);
+}
+
+std::vector<world::Magnet> all_magnets(const world::World& world) {
+  std::vector<world::Magnet> all = world.magnets;
+  for (const world::Mover& mover : world.movers)
+    for (world::Magnet m : mover.magnets) {
+      m.p = transform(mover.X_WM, m.p);
+      all.push_back(m);
+    }
+  return all;
+}
+
+/// A circle each, filled where the south pole is up.
+void draw_marks(Canvas& canvas, const world::World& world, const Plot& map) {
+  const double scale = (map.box.x_max - map.box.x_min) / (map.x1 - map.x0);
+  std::vector<world::Magnet> shown;
+  Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
+  for (const world::Magnet& m : all_magnets(world)) {
+    if (m.p.x < map.x0 || m.p.x > map.x1 || m.p.y < map.y0 || m.p.y > map.y1) continue;
+    low = {std::min(low.x, m.p.x), std::min(low.y, m.p.y)};
+    high = {std::max(high.x, m.p.x), std::max(high.y, m.p.y)};
+    shown.push_back(m);
+  }
+  if (shown.empty()) return;
+  const double wide = scale * (high.x - low.x), tall = scale * (high.y - low.y);
+  const auto count = static_cast<double>(shown.size());
+  const double room = shown.size() > 1 ? std::max(std::sqrt(wide * tall / count), std::max(wide, tall) / count) : 50.0;
+  if (room < kRoomForMarks) return;
+  for (const world::Magnet& m : shown) {
+    const double radius = std::clamp(m.radius * scale, 1.5, std::min(7.0, 0.2 * room));
+    const double pen = std::min(1.6, 0.6 * radius);
+    canvas.ring(map.pixel(m.p), radius, 2.5 * pen, kHalo);
+    canvas.ring(map.pixel(m.p), radius, pen, kInk);
+    if (m.moment < 0.0) canvas.disc(map.pixel(m.p), radius, kInk);
+  }
+}
+
+void draw_map(Canvas& canvas, const world::World& world, const FieldView& view, const FieldSamples& samples,
+              const Plot& map) {
+  const double top = top_of(samples);
+  const std::vector<std::uint32_t> colors = shades();
+  std::vector<std::uint32_t> cells;
+  for (const double tesla : samples.map)
+    cells.push_back(colors[static_cast<std::size_t>(std::lround(tesla / kGauss / top * (kShades - 1)))]);
+  canvas.image({map.box.x_min + 0.0, map.box.y_min + 0.0}, {map.box.x_max + 0.0, map.box.y_max + 0.0},
+               {samples.columns, samples.rows, cells});
+
+  canvas.clip(map.box);
+  draw_marks(canvas, world, map);
+  const Line across[] = {{map.pixel(view.line.a), map.pixel(view.line.b)}};
+  canvas.lines(across, 3.0, with_opacity(kHalo, 0.35));
+  draw_dashes(canvas, across, 1.4, 9.0, 6.0, with_opacity(kInk, 0.8));
+  canvas.unclip();
+  draw_axes(canvas, map, "x [m]", "y [m]", false);
+  draw_bar(canvas, map, top);
+}
+
+void draw_curve(Canvas& canvas, const Plot& plot, const std::vector<ProfilePoint>& profile, std::uint32_t color,
+                double (*value)(const ProfilePoint&)) {
+  std::vector<Vec2> points;
+  for (const ProfilePoint& p : profile) points.push_back(plot.pixel({p.along, value(p)}));
+  canvas.polyline(points, 2.2, color);
+}
+
+double vectors(const ProfilePoint& p) { return std::hypot(p.field.x, p.field.y, p.field.z) / kGauss; }
+double magnitudes(const ProfilePoint& p) { return p.field.magnitudes / kGauss; }
+
+const std::array<LegendItem, 2> kCurves{{{Sample::line, kVectors, "magnets summed as vectors, as on the map"},
+                                         {Sample::line, kMagnitudes, "their magnitudes summed"}}};
+
+void draw_profile(Canvas& canvas, const FieldView& view, const FieldSamples& samples, Plot plot) {
+  double top = 0.0;
+  for (const ProfilePoint& p : samples.profile) top = std::max({top, vectors(p), magnitudes(p)});
+  plot.x1 = base::length(view.line.b - view.line.a);
+  plot.y1 = top > 0.0 ? 1.06 * top : 1.0;
+  draw_axes(canvas, plot,
+            fmt::format("along the line from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) [m]", view.line.a.x, view.line.a.y,
+                        view.line.b.x, view.line.b.y),
+            "|B| [Gauss]", true);
+  canvas.clip(plot.box);
+  draw_curve(canvas, plot, samples.profile, kMagnitudes, magnitudes);
+  draw_curve(canvas, plot, samples.profile, kVectors, vectors);
+  canvas.unclip();
+  const auto places = place_legend(kCurves, plot.box.x_max - plot.box.x_min);
+  draw_legend(canvas, {plot.box.x_min + 0.0, plot.box.y_max + kLegendBelow}, kCurves, places);
+}
+
+void draw_names(Canvas& canvas, const world::World& world, const FieldView& view, const FieldSamples& samples) {
+  const std::string file = std::filesystem::path(world.file).filename().string();
+  TextStyle style;
+  style.size = 28;
+  style.bold = true;
+  canvas.text({view.map.x_min + 0.0, 38.0}, "Magnetic field of " + (world.name.empty() ? file : world.name), style);
+  std::size_t magnets = world.magnets.size();
+  for (const world::Mover& mover : world.movers) magnets += mover.magnets.size();
+  std::string text = fmt::format("{} magnet{}, {:g} m above the ground, at most {:.3g} Gauss", magnets,
+                                 magnets == 1 ? "" : "s", view.height, top_of(samples));
+  if (world.magnet_cutoff > 0.0) text += fmt::format(", cut off at {:g} m", world.magnet_cutoff);
+  style = small_text();
+  style.size = 19;
+  style.color = 0xFF505050u;
+  canvas.text({view.map.x_min + 0.0, 74.0}, text, style);
+}
+
+}  // namespace
+
+void draw_field(const world::World& world, const FieldView& view, const FieldSamples& samples,
+                const std::string& png_path) {
+  const double top = view.map.y_max + kGap;
+  const Plot map{view.map, view.extent.x_min, view.extent.x_max, view.extent.y_min, view.extent.y_max};
+  const Plot profile{
+      {view.map.x_min, static_cast<int>(top), view.map.x_max, static_cast<int>(top + kProfileHeight)}, 0, 1, 0, 1};
+  const int rows = place_legend(kCurves, view.map.x_max - view.map.x_min).back().row + 1;
+  const double high = top + kProfileHeight + kLegendBelow + rows * kLegendRow + kEdge;
+  Canvas canvas(view.map.x_max + static_cast<int>(kRight), static_cast<int>(high), 0xFFFFFFFFu);
+  draw_names(canvas, world, view, samples);
+  draw_map(canvas, world, view, samples, map);
+  draw_profile(canvas, view, samples, profile);
+  canvas.save_png(png_path);
+}
+
+}  // namespace sf::viz

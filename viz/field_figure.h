@@ -1,0 +1,62 @@
+#pragma once
+// The field of a world's magnets at one height: a map of |B| from above, and |B| along a line through it.
+//
+//   const FieldView view = field_view(world, {.height = 0.075});
+//   draw_field(world, view, sample_field(world, device, view, {}), "field.png");
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gpu/device.h"
+#include "sensors/field/records.h"
+#include "viz/canvas.h"
+#include "world/world.h"
+
+namespace sf::viz {
+
+/// What is asked for.
+struct FieldWish {
+  double height = 0.0;                  ///< [m] in the world
+  std::optional<Line> line;             ///< [m] of the profile; ends distinct
+  std::optional<world::Extent> extent;  ///< [m] of the map; of some size both ways
+};
+
+/// What is shown.
+struct FieldView {
+  double height = 0.0;   ///< [m] in the world
+  Line line;             ///< [m] of the profile
+  world::Extent extent;  ///< [m] of the map
+  PixelBox map;          ///< where the map is on the picture
+};
+
+/// Fills in what was not asked for: the map holds all magnets, as they were loaded, and where their field fades at this
+/// height; the line runs along the longer side of their bounding box through its middle, as far as the map does.
+/// Rule: the world has a magnet.
+FieldView field_view(const world::World& world, const FieldWish& wish);
+
+/// The field along the profile's line.
+struct ProfilePoint {
+  double along = 0.0;       ///< [m] from the line's start
+  Vec2 p;                   ///< [m]
+  sensors::FieldSum field;  ///< [T], the sum of magnitudes too
+};
+
+struct FieldSamples {
+  int columns = 0;
+  int rows = 0;
+  std::vector<double> map;  ///< [T] |B| in the middles of equal cells, row by row from the top (+y)
+  std::vector<ProfilePoint> profile;
+};
+
+/// Sums the magnets on the device: a cell for each two by two pixels, larger ones where there are very many magnets.
+/// @param progress called now and then with the part in (0, 1] that is done; may be empty.
+FieldSamples sample_field(const world::World& world, gpu::Device& device, const FieldView& view,
+                          const std::function<void(double)>& progress);
+
+/// @throws base::InputError naming the path when it cannot be written.
+void draw_field(const world::World& world, const FieldView& view, const FieldSamples& samples,
+                const std::string& png_path);
+
+}  // namespace sf::viz

@@ -1,0 +1,108 @@
+// Texts of a road network: names beside what they name, ids beside their checkpoints.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "viz/legend.h"
+#include "viz/road_view.h"
+
+namespace sf::viz {
+namespace {
+
+using world::RoadLane;
+using world::RoadNetwork;
+using world::RoadZone;
+
+constexpr std::size_t kLongestName = 32;
+constexpr std::uint32_t kMostLanes = 8;  // of a segment, beside which its name may stand
+
+bool is_in(const Enlarged& places, Vec2 p) {
+  return std::any_of(places.begin(), places.end(), [&](const world::Extent& e) {
+    return p.x > e.x_min && p.x < e.x_max && p.y > e.y_min && p.y < e.y_max;
+  });
+}
+
+bool is_inside(const PixelBox& box, Vec2 p) {
+  return p.x > box.x_min && p.x < box.x_max && p.y > box.y_min && p.y < box.y_max;
+}
+
+TextStyle label_style(int size, std::uint32_t color, bool bold) {
+  TextStyle style = small_text();
+  style.size = size;
+  style.color = color;
+  style.bold = bold;
+  style.halo = 0xFFFFFFFFu;
+  return style;
+}
+
+/// Beside one of several places along the segment.
+void label_segments(const RoadView& view, const RoadNetwork& network, Labels& labels, const Enlarged& elsewhere) {
+  const TextStyle style = label_style(15, 0xFF202020u, true);
+  for (const world::RoadSegment& segment : network.segments) {
+    std::vector<Vec2> marks;
+    for (std::uint32_t i = 0; i < std::min(segment.lanes, kMostLanes); ++i) {
+      const RoadLane& lane = network.lanes[segment.first_lane + i];
+      for (const double part : {0.5, 0.35, 0.65, 0.2, 0.8}) {
+        const Vec2 p = point_at(lane.centre, part * length_of(lane));
+        if (!is_in(elsewhere, p) && is_inside(view.box, view.pixel(p))) marks.push_back(view.pixel(p));
+      }
+    }
+    const std::string number = std::to_string(segment.id);
+    const bool named = !segment.name.empty() && segment.name != number;
+    const std::string whole = named ? number + " " + printable(segment.name, kLongestName) : number;
+    const LabelRules rules{7.0, 90.0, 22.0, 1.0};
+    if (!labels.place(view.canvas, marks, whole, style, rules)) labels.place(view.canvas, marks, number, style, rules);
+  }
+}
+
+void label_zones(const RoadView& view, const RoadNetwork& network, Labels& labels, const Enlarged& elsewhere) {
+  const TextStyle style = label_style(17, 0xFF36522Au, true);
+  for (const RoadZone& zone : network.zones) {
+    Vec2 middle;
+    for (const world::PerimeterPoint& point : zone.perimeter)
+      middle = middle + (1.0 / static_cast<double>(zone.perimeter.size())) * point.p;
+    if (is_in(elsewhere, middle)) continue;
+    const Vec2 marks[] = {view.pixel(middle)};
+    const std::string name = printable(zone.name, kLongestName);
+    labels.place(view.canvas, marks,
+                 fmt::format("{} {}", name.empty() ? "zone" : std::to_string(zone.id),
+                             name.empty() ? std::to_string(zone.id) : name),
+                 style, {0.0, 250.0, 120.0, 2.0});
+  }
+}
+
+void label_checkpoints(const RoadView& view, const RoadNetwork& network, Labels& labels, const Enlarged& elsewhere) {
+  const TextStyle style = label_style(12, kCheckpoint, true);
+  for (const bool on_lanes : {true, false})
+    for (const world::RoadCheckpoint& checkpoint : network.checkpoints) {
+      if ((checkpoint.at.kind == world::PointRef::Kind::lane) != on_lanes || is_in(elsewhere, checkpoint.p)) continue;
+      const Vec2 marks[] = {view.pixel(checkpoint.p)};
+      labels.place(view.canvas, marks, std::to_string(checkpoint.id), style, {5.0, on_lanes ? 40.0 : 32.0, 14.0, 0.5});
+    }
+}
+
+}  // namespace
+
+std::string printable(const std::string& name, std::size_t most) {
+  std::string text;
+  for (const char c : name.substr(0, most)) text += c >= ' ' && c < '\x7f' ? c : '?';
+  return name.size() > most ? text + "..." : text;
+}
+
+void avoid_network(const RoadView& view, const RoadNetwork& network, Labels& labels) {
+  for (const RoadLane& lane : network.lanes) labels.avoid(pixels(view, lane.centre.points), lane.width * view.scale);
+  for (const world::RoadSpot& spot : network.spots)
+    labels.avoid(pixels(view, {spot.entry, spot.end}), spot.width * view.scale);
+  for (const world::RoadCheckpoint& checkpoint : network.checkpoints)
+    labels.avoid(pixels(view, {checkpoint.p, checkpoint.p}), 8.0);
+}
+
+void draw_texts(const RoadView& view, const RoadNetwork& network, Labels& labels, const Enlarged& elsewhere) {
+  label_segments(view, network, labels, elsewhere);
+  label_checkpoints(view, network, labels, elsewhere);
+  label_zones(view, network, labels, elsewhere);
+}
+
+}  // namespace sf::viz

@@ -1,0 +1,53 @@
+#pragma once
+// A piece of a road network on a piece of a picture.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "viz/canvas.h"
+#include "viz/labels.h"
+#include "world/roads/network.h"
+
+namespace sf::viz {
+
+inline constexpr std::uint32_t kRoadGround = 0xFFF3F1EAu;
+inline constexpr std::uint32_t kAsphalt = 0xFF7C8188u;
+inline constexpr std::uint32_t kLaneEdge = 0xFFB4B8BDu;
+inline constexpr std::uint32_t kZone = 0xFFDDE6D5u;
+inline constexpr std::uint32_t kZoneEdge = 0xFF6E8B5Au;
+inline constexpr std::uint32_t kSpot = 0xFFC3CFB8u;
+inline constexpr std::uint32_t kExit = 0x9A1F6FB4u;
+inline constexpr std::uint32_t kStop = 0xFFD7191Cu;
+inline constexpr std::uint32_t kCheckpoint = 0xFF7A1FA2u;
+
+/// Which part of the world stands where on the canvas, north up.
+struct RoadView {
+  Canvas& canvas;      ///< clipped to `box` by whoever draws
+  PixelBox box;        ///< [px]
+  Vec2 corner;         ///< [m] world point at the lower left corner of the box
+  double scale = 1.0;  ///< [px/m]
+
+  Vec2 pixel(Vec2 p_W) const {
+    return {box.x_min + (p_W.x - corner.x) * scale, box.y_max - (p_W.y - corner.y) * scale};
+  }
+};
+
+std::vector<Vec2> pixels(const RoadView& view, const std::vector<Vec2>& line);
+
+/// Lanes, paint, directions, zones, spots, exits, stop lines and checkpoints, without texts.
+void draw_network(const RoadView& view, const world::RoadNetwork& network);
+
+/// At most `most` characters of a name, which may hold any bytes, for a figure.
+std::string printable(const std::string& name, std::size_t most);
+
+/// What texts should rather not cover.
+void avoid_network(const RoadView& view, const world::RoadNetwork& network, Labels& labels);
+
+/// A piece of the world [m] that another view shows larger; empty: none.
+using Enlarged = std::vector<world::Extent>;
+
+/// Names of zones and segments and ids of checkpoints; none of what lies within `elsewhere`.
+void draw_texts(const RoadView& view, const world::RoadNetwork& network, Labels& labels, const Enlarged& elsewhere);
+
+}  // namespace sf::viz
