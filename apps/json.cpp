@@ -5,6 +5,7 @@
 
 #include "apps/facts.h"
 #include "base/hash.h"
+#include "sensors/field/truncation.h"
 #include "sensors/laser_packets.h"
 
 namespace sf::apps {
@@ -86,6 +87,7 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
     const auto* group = roster.group(kind->id);
     sensors[std::string(kind->name)] = group == nullptr ? 0 : group->rows.size();
   }
+  const sensors::FieldFacts field = sensors::field_facts(world);
   Json warnings = Json::array();
   for (const world::Warning& w : world.warnings)
     warnings.push_back({{"file", w.file}, {"line", w.line}, {"message", w.message}});
@@ -100,9 +102,11 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
                 {"segments", world.walls.size()},
                 {"segments_with_movers", segments},
                 {"magnets", count_magnets(world)},
-                {"magnet_cutoff", world.magnet_cutoff},
+                {"magnet_cutoff_m", field.cutoff_m},
+                {"field_truncation_T", field.bound_T},
+                {"field_truncation_height_m", field.height_m},
                 {"paint", world.stripes.size()},
-                {"road_resolution", world.road_resolution},
+                {"road_resolution_m", world.road_resolution},
                 {"extent", {e.x_min, e.y_min, e.x_max, e.y_max}},
                 {"interval_s", world.interval},
                 {"kept", world.kept},

@@ -81,15 +81,16 @@ viz::Panel fields_of(const Channel& channel, std::size_t width) {
   return panel;
 }
 
-/// A reading's row is |B|, then the vector: how far the last element's z is above the first's.
+/// A reading's row is |B|, then the vector. Path followers steer by how much stronger the last element's field is than
+/// the first's.
 viz::SeriesPlan fields(const record::Recording& recording, const std::vector<Channel>& channels, std::size_t width) {
   viz::SeriesPlan plan{"Magnetic field", "", {}};
-  viz::Panel difference{"last element less the first", "Bz [G]", {}};
+  viz::Panel difference{"last element less the first", "|B| [G]", {}};
   const std::size_t drawn = std::min(channels.size(), kMostMagnetometers);
   for (std::size_t i = 0; i < drawn; ++i) {
     plan.panels.push_back(fields_of(channels[i], width));
     difference.series.push_back(series_of(channels[i].name, channels[i], [=](const record::ReadingSample& r) {
-      return r.values.size() > width ? kGauss * (r.values[r.values.size() - 1] - r.values[width - 1]) : NAN;
+      return r.values.size() > width ? kGauss * (r.values[r.values.size() - width] - r.values[0]) : NAN;
     }));
   }
   plan.panels.push_back(std::move(difference));

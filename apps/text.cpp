@@ -2,6 +2,7 @@
 
 #include "apps/facts.h"
 #include "base/hash.h"
+#include "sensors/field/truncation.h"
 
 namespace sf::apps {
 
@@ -36,8 +37,11 @@ std::string paint_text(const world::World& world) {
 std::string magnets_text(const world::World& world) {
   const std::size_t magnets = count_magnets(world);
   if (magnets == 0) return "";
-  const double cutoff = world.magnet_cutoff;
-  return row("magnets", fmt::format("{}{}", magnets, cutoff > 0.0 ? fmt::format(", felt within {:g} m", cutoff) : ""));
+  if (world.magnet_cutoff == 0.0) return row("magnets", fmt::format("{}, all of them felt everywhere", magnets));
+  const sensors::FieldFacts facts = sensors::field_facts(world);
+  return row("magnets", fmt::format("{}, felt within {:g} m", magnets, facts.cutoff_m)) +
+         row("", fmt::format("what is left out is at most {:.3g} T ({:.3g} Gauss), {:g} m above the ground",
+                             facts.bound_T, 1e4 * facts.bound_T, facts.height_m));
 }
 
 }  // namespace

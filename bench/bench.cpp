@@ -15,6 +15,7 @@
 #include "base/hash.h"
 #include "bench/embree_caster.h"
 #include "bench/farm_caster.h"
+#include "bench/field_contest.h"
 #include "bench/grid.h"
 #include "bench/report.h"
 #include "tests/sensors/scenes.h"
@@ -30,6 +31,7 @@ struct Session {
   gpu::Device device;
   Book book;
   std::map<std::string, Outcome> contests;
+  std::vector<FieldOutcome> fields;
 };
 
 struct ScanCase {
@@ -100,6 +102,21 @@ void tell_drive(benchmark::State& state, Session& session, const DriveCase& c) {
   state.counters["x_real_time"] = result.interval_s / result.typical.wall_s;
 }
 
+struct FieldCase {
+  const char* name;
+  FieldScene (*scene)();
+};
+constexpr FieldCase kFieldCases[] = {
+    {"field/simville/10000", [] { return simville_scene(10'000, 31); }},
+    {"field/200000_magnets/10000", [] { return sheet_scene(10'000, 200'000, 10.0, 31); }},
+    {"field/200000_magnets/100/no_cutoff", [] { return sheet_scene(100, 200'000, 0.0, 11); }}};
+
+void tell_field(benchmark::State& state, Session& session, const FieldCase& c) {
+  for (auto _ : state) session.fields.push_back(compete(c.scene(), session.device));
+  for (const FieldEntrant& e : session.fields.back().entrants)
+    state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
+}
+
 void tell_facts(benchmark::State& state, Session& session, const std::function<std::vector<Fact>()>& measure) {
   for (auto _ : state)
     for (const Fact& fact : measure()) {
@@ -129,6 +146,8 @@ void register_all(Session& session) {
         ->UseManualTime()
         ->Unit(benchmark::kMillisecond)
         ->Iterations(static_cast<benchmark::IterationCount>(c.ticks));
+  for (const FieldCase& c : kFieldCases)
+    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_field(s, session, c); }));
   once(benchmark::RegisterBenchmark("start",
                                     [&session](benchmark::State& s) { tell_facts(s, session, measure_start); }));
   once(benchmark::RegisterBenchmark("small_ticks", [&session](benchmark::State& s) {
@@ -153,7 +172,8 @@ int run(int argc, char** argv) {
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   if (!folder.empty()) write_csv(session.book, folder);
-  fmt::print("{}", tables(session.book));
+  if (!folder.empty()) write_csv(session.fields, folder);
+  fmt::print("{}{}", tables(session.book), table(session.fields));
   return 0;
 }
 

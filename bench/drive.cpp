@@ -14,10 +14,11 @@ constexpr std::size_t kJudgedRobots = 12;
 farm::FarmStats operator-(const farm::FarmStats& p, const farm::FarmStats& q) {
   farm::FarmStats d;
   d.ticks = p.ticks - q.ticks;
-  d.rays = p.rays - q.rays;
+  d.work.rays = p.work.rays - q.work.rays;
   d.readings = p.readings - q.readings;
-  d.doubts = p.doubts - q.doubts;
-  d.cells_built = p.cells_built - q.cells_built;
+  d.work.doubts = p.work.doubts - q.work.doubts;
+  d.work.cells_built = p.work.cells_built - q.work.cells_built;
+  d.work.dipoles = p.work.dipoles - q.work.dipoles;
   d.place_s = p.place_s - q.place_s;
   d.lists_s = p.lists_s - q.lists_s;
   d.device_s = p.device_s - q.device_s;

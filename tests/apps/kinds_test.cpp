@@ -130,12 +130,21 @@ TEST_F(Kinds, CheckCountsThem) {
   EXPECT_EQ(facts.number("/sensors/magnetometer"), 2);
   EXPECT_EQ(facts.size("/sensors"), sensors::kinds().size()) << "kinds that are not there are 0";
   EXPECT_EQ(facts.number("/magnets"), 1);
-  EXPECT_EQ(facts.number("/magnet_cutoff"), 0);
+  EXPECT_EQ(facts.number("/magnet_cutoff_m"), 0);
   EXPECT_EQ(facts.number("/paint"), 0);
-  EXPECT_EQ(facts.number("/road_resolution"), 0);
+  EXPECT_EQ(facts.number("/road_resolution_m"), 0);
   EXPECT_EQ(facts.size("/warnings"), 0u);
   const std::string text = run("check", world, {}).out;
   EXPECT_NE(text.find("magnetometer       2 (4 sensors in all)"), std::string::npos) << text;
+}
+
+TEST_F(Kinds, CheckSaysWhatACutOffLeavesOut) {
+  const std::string cut = folder.write("cut.world", "magnet_cutoff 2\n" + std::string(kWorld));
+  const Json facts(run("check", cut, {"--json"}).out);
+  EXPECT_EQ(facts.number("/magnet_cutoff_m"), 2);
+  // 1 A m^2 at 2 m, as high as the elements: 1e-7 / 2^3 T.
+  EXPECT_NEAR(facts.number("/field_truncation_T"), 1.25e-8, 1e-12);
+  EXPECT_NE(run("check", cut, {}).out.find("what is left out is at most 1.25e-08 T"), std::string::npos);
 }
 
 TEST_F(Kinds, SettingsThatMakeNoSenseNameTheirLineInEveryCommand) {

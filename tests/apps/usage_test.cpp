@@ -11,7 +11,7 @@ namespace sf {
 
 namespace {
 
-const Words kSubcommands{"devices", "check", "draw", "sense", "run", "serve", "plot", "listen"};
+const Words kSubcommands{"devices", "check", "draw", "sense", "run", "serve", "plot", "listen", "field"};
 
 struct Wrong {
   Words arguments;
@@ -52,6 +52,7 @@ TEST(Usage, HelpNamesTheOptions) {
         "--wire", "--threads", "--stage-obstacles"}},
       {"serve", {"--bind", "--rate", "--port", "--laser-port", "--wire", "--json"}},
       {"plot", {"-o,--out"}},
+      {"field", {"--height", "-o,--out", "--line", "--extent", "--csv", "--device"}},
       {"listen", {"--robots", "--json", "--wire"}}};
   for (const auto& [name, words] : options) {
     const std::string help = run_program({name, "--help"}).out;

@@ -1,0 +1,33 @@
+#pragma once
+// Who sums magnets in the contest.
+
+#include <memory>
+#include <string>
+
+#include "bench/field_contest.h"
+#include "bench/field_sums.h"
+
+namespace sf::bench {
+
+/// Elements of every array.
+inline constexpr std::size_t kArrayElements = 5;
+
+class FieldMethod {
+ public:
+  virtual ~FieldMethod() = default;
+  virtual std::string name() const = 0;
+  /// Spoils what the last turn gave.
+  virtual void poison() = 0;
+  /// What is measured: from poses to readings.
+  virtual void sum(std::size_t turn) = 0;
+  /// [T] element `e` of robot `robot`, in the element's frame; not a number when it was not written.
+  virtual FieldVector value(std::size_t robot, std::size_t e) const = 0;
+  /// Pairs of a magnet and an element summed so far; 0 where nobody counts.
+  virtual double pairs() const { return 0.0; }
+};
+
+/// `scene` and `device` must outlive them.
+std::unique_ptr<FieldMethod> make_farm_method(const FieldScene& scene, gpu::Device& device);
+std::unique_ptr<FieldMethod> make_plain_method(const FieldScene& scene, const std::string& name, SumField sum);
+
+}  // namespace sf::bench

@@ -1,0 +1,40 @@
+#pragma once
+// The magnetometers' sums in plain C++: the kernel's arithmetic on tables laid out for a compiler's vectors.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sensors/field/magnet_grid.h"
+#include "world/world.h"
+
+namespace sf::bench {
+
+/// Magnets in the order of their grid's cells, a column each, padded with some that are nothing.
+struct MagnetColumns {
+  sensors::MagnetGrid grid;
+  double cutoff = 0.0;                 ///< [m] 0: none
+  std::vector<double> x, y, z;         ///< [m]
+  std::vector<double> moment;          ///< [A m^2]
+  std::vector<double> inverse_radius;  ///< [1/m]
+};
+
+MagnetColumns make_columns(const world::World& world);
+
+struct FieldVector {
+  double x, y, z;  ///< [T]
+};
+
+/// The field of the magnets in `spans` at one place.
+using SumField = FieldVector (*)(const MagnetColumns& magnets, std::span<const sensors::MagnetSpan> spans, double x,
+                                 double y, double z);
+
+/// The same source built twice: for any x86-64, and with every vector instruction of the very processor it was built
+/// on, fused and as wide as they come.
+FieldVector sum_portable(const MagnetColumns& magnets, std::span<const sensors::MagnetSpan> spans, double x, double y,
+                         double z);
+FieldVector sum_native(const MagnetColumns& magnets, std::span<const sensors::MagnetSpan> spans, double x, double y,
+                       double z);
+
+}  // namespace sf::bench

@@ -1,0 +1,142 @@
+#include "bench/lane_methods.h"
+
+#include "sensors/laneedge_settings.h"
+#include "sensors/paint/excerpt.h"
+
+namespace sf::bench {
+
+namespace {
+
+/// The farm's instruments and all that a tick does for them.
+class FarmLanes final : public LaneReader {
+ public:
+  FarmLanes(const LaneScene& scene, gpu::Device& device)
+      : scene_(scene),
+        site_{scene.world, device, workers_, 0, true, {}},
+        instruments_(sensors::laneedge_kind.make(site_)),
+        batch_(device) {
+    for (std::uint32_t row = 0; row < scene.world.movers.size(); ++row) due_.push_back({row, 0});
+  }
+
+  std::string name() const override { return "farm"; }
+  void poison() override {
+    for (const base::ReadingBlock& block : blocks_) const_cast<double&>(block.values[0]) = kPoisonDistance;
+  }
+  void read(std::size_t round) override {
+    const std::vector<base::Pose>& poses = scene_.rounds[round];
+    instruments_->place(poses);
+    if (instruments_->prepare(due_, poses)) {
+      batch_.begin();
+      instruments_->record_measure(batch_);
+      batch_.barrier();
+      instruments_->record_derive(batch_);
+      batch_.end();
+    }
+    instruments_->copies(batch_);
+    batch_.run();
+    blocks_.clear();
+    instruments_->collect(blocks_);
+  }
+  sensors::EdgeReading reading(std::size_t sensor) const override {
+    const auto v = blocks_[sensor].values;
+    return {v[0], v[1], v[2], v[3]};
+  }
+
+ private:
+  const LaneScene& scene_;
+  base::Workers workers_;
+  sensors::Site site_;
+  std::unique_ptr<sensors::Instruments> instruments_;
+  gpu::Batch batch_;
+  std::vector<sensors::Due> due_;
+  std::vector<base::ReadingBlock> blocks_;
+};
+
+class PlainLanes final : public LaneReader {
+ public:
+  PlainLanes(const LaneScene& scene, const LaneKnowledge& known, bool native)
+      : scene_(scene), known_(known), job_(known.job), native_(native), readings_(known.rows.size()) {
+    job_.walk = native ? walk_native : walk_portable;
+  }
+
+  std::string name() const override { return native_ ? "plain C++, -march=native" : "plain C++"; }
+  void poison() override { readings_.assign(readings_.size(), {kPoisonDistance, 0, 0, 0}); }
+  void read(std::size_t round) override {
+    const LaneRead one = native_ ? read_lane_native : read_lane_portable;
+    workers_.run(readings_.size(), 32, [&](std::size_t first, std::size_t last, unsigned) {
+      for (std::size_t i = first; i < last; ++i)
+        one(job_, known_.rows[i], base::compose(scene_.rounds[round][i], known_.X_MS[i]), readings_[i]);
+    });
+  }
+  sensors::EdgeReading reading(std::size_t sensor) const override { return readings_[sensor]; }
+
+ private:
+  const LaneScene& scene_;
+  const LaneKnowledge& known_;
+  LaneJob job_;
+  bool native_;
+  base::Workers workers_;
+  std::vector<sensors::EdgeReading> readings_;
+};
+
+sensors::EdgeRow row_of(const sensors::LaneEdge& edge) {
+  sensors::EdgeRow row{};
+  row.beams = edge.fan.samples;
+  row.flags = SF_EDGE_PACKED;
+  row.perpendicular_x = edge.perpendicular.x;
+  row.perpendicular_y = edge.perpendicular.y;
+  row.range_limit = sensors::kNearMaximum * edge.fan.range_max;
+  row.distance_max = edge.distance_max;
+  row.range_max = static_cast<float>(edge.fan.range_max);
+  return row;
+}
+
+}  // namespace
+
+std::unique_ptr<LaneKnowledge> know(const LaneScene& scene) {
+  auto known = std::make_unique<LaneKnowledge>();
+  const bool exact = !(scene.world.road_resolution > 0.0);
+  const std::vector<sensors::LaneEdge> edges = sensors::lane_edges_of(scene.world);
+  for (const sensors::LaneEdge& edge : edges) {
+    known->rows.push_back(row_of(edge));
+    known->X_MS.push_back(edge.fan.X_MS);
+  }
+  const world::Laser& fan = edges[0].fan;
+  LaneJob& job = known->job;
+  for (std::uint32_t k = 0; k < fan.samples; ++k) {
+    const double bearing = world::bearing_of(fan, k);
+    job.beams.push_back({std::cos(bearing), std::sin(bearing)});
+    job.directions.insert(job.directions.end(), {std::cos(bearing), std::sin(bearing)});
+  }
+  job.range_max = fan.range_max;
+  sensors::Excerpt excerpt = sensors::excerpt_of(scene.world, exact);
+  job.grains = excerpt.grains;
+  job.paint_tag = excerpt.paint_tag;
+  if (exact) {
+    known->faces = excerpt.world.walls;
+    excerpt.world.extent = scene.world.extent;
+    for (const world::Segment& s : known->faces) {
+      excerpt.world.extent.x_min = std::min(excerpt.world.extent.x_min, s.a.x);
+      excerpt.world.extent.y_min = std::min(excerpt.world.extent.y_min, s.a.y);
+      excerpt.world.extent.x_max = std::max(excerpt.world.extent.x_max, s.a.x);
+      excerpt.world.extent.y_max = std::max(excerpt.world.extent.y_max, s.a.y);
+    }
+    known->grid = make_grid(excerpt.world, 0.0, 0.25);
+    job.grid = &known->grid;
+  } else {
+    known->raster = std::make_unique<sensors::PaintRaster>(excerpt.paint, scene.world.road_resolution, fan.range_max,
+                                                           scene.world.file);
+    job.raster = known->raster.get();
+  }
+  return known;
+}
+
+std::unique_ptr<LaneReader> make_farm_lanes(const LaneScene& scene, gpu::Device& device) {
+  return std::make_unique<FarmLanes>(scene, device);
+}
+
+std::unique_ptr<LaneReader> make_plain_lanes(const LaneScene& scene, const LaneKnowledge& known, bool native) {
+  return std::make_unique<PlainLanes>(scene, known, native);
+}
+
+}  // namespace sf::bench

@@ -1,0 +1,46 @@
+#pragma once
+// Who reads lane edges: the farm's instruments, and plain C++.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "bench/lane_scene.h"
+#include "bench/lane_walk.h"
+#include "gpu/device.h"
+#include "sensors/laneedge.h"
+
+namespace sf::bench {
+
+/// Answers one scene, round by round.
+class LaneReader {
+ public:
+  virtual ~LaneReader() = default;
+  virtual std::string name() const = 0;
+  /// Spoils all results, so that one that is not written cannot pass for one that is.
+  virtual void poison() = 0;
+  virtual void read(std::size_t round) = 0;
+  virtual sensors::EdgeReading reading(std::size_t sensor) const = 0;
+};
+
+/// A distance that nobody reads.
+inline constexpr double kPoisonDistance = -7.0;
+
+/// What plain C++ knows of a scene: which rows, which faces.
+struct LaneKnowledge {
+  LaneJob job;
+  SegmentGrid grid;
+  std::unique_ptr<sensors::PaintRaster> raster;
+  std::vector<sensors::EdgeRow> rows;
+  std::vector<base::Pose> X_MS;
+  std::vector<world::Segment> faces;  ///< exact ones; none of a raster
+};
+std::unique_ptr<LaneKnowledge> know(const LaneScene& scene);
+
+/// `scene` and `device` must outlive it.
+std::unique_ptr<LaneReader> make_farm_lanes(const LaneScene& scene, gpu::Device& device);
+/// `scene` and `known` must outlive it.
+std::unique_ptr<LaneReader> make_plain_lanes(const LaneScene& scene, const LaneKnowledge& known, bool native);
+
+}  // namespace sf::bench
