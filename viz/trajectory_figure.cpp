@@ -132,6 +132,7 @@ FigurePlan plan_of(const World& world, std::span<const Track> tracks) {
   plan.subtitle = subtitle_of(world, tracks);
   plan.extent = extent_of(world, tracks);
   plan.legend = wall_legend(world, WallColors::quiet);
+  for (const LegendItem& item : ground_legend(world)) plan.legend.push_back(item);
   const std::uint32_t sample = tracks.empty() ? 0xFF404040u : tracks.size() <= kNamedTracks ? 0xFF404040u : ramp(0.3);
   plan.legend.push_back({Sample::ring, sample, "start"});
   plan.legend.push_back({Sample::dot, sample, "end"});

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/error.h"
 #include "world/entities.h"
 #include "world/ros_map.h"
 #include "world/stage.h"
@@ -13,6 +14,8 @@ World load_world(const std::string& file, const LoadOptions& options) {
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (ending == ".yaml" || ending == ".yml") return load_ros_map(file, options);
+  if (ending == ".rndf" || ending == ".rdf" || ending == ".mdf")
+    throw base::InputError(file, 0, "is no world, but can be part of one: a world file with road( rndf \"FILE\" )");
   return build_world(file, read_text(file), options);
 }
 

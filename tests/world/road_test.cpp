@@ -56,6 +56,15 @@ TEST(Road, WhatIsWrongIsSaid) {
             "test.world:1: 'magnet_spacing' gives more than ten million magnets; expected a larger one");
 }
 
+TEST(Road, ANetworkAloneIsNoWorld) {
+  try {
+    load_world(SF_SOURCE_DIR "/worlds/simville/simville.rndf");
+    FAIL();
+  } catch (const base::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("is no world, but can be part of one"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Road, TwoRoadsHaveNamesOfTheirOwn) {
   const World world = read_world(road("") + road(""));
   EXPECT_NE(world.models[0].name, world.models[1].name);
