@@ -17,6 +17,7 @@
 #include "bench/farm_caster.h"
 #include "bench/field_contest.h"
 #include "bench/grid.h"
+#include "bench/lane_contest.h"
 #include "bench/report.h"
 #include "tests/sensors/scenes.h"
 
@@ -32,6 +33,7 @@ struct Session {
   Book book;
   std::map<std::string, Outcome> contests;
   std::vector<FieldOutcome> fields;
+  std::vector<LaneOutcome> lanes;
 };
 
 struct ScanCase {
@@ -117,6 +119,22 @@ void tell_field(benchmark::State& state, Session& session, const FieldCase& c) {
     state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
 }
 
+struct LaneCase {
+  const char* name;
+  double resolution;  ///< [m] 0: exact
+};
+constexpr LaneCase kLaneCases[] = {{"laneedge/exact/10000", 0.0},
+                                   {"laneedge/raster_5mm/10000", 0.005},
+                                   {"laneedge/raster_20mm/10000", 0.02}};
+constexpr std::size_t kLaneTurns = 15;
+
+void tell_lanes(benchmark::State& state, Session& session, const LaneCase& c) {
+  const LaneScene scene = make_lane_scene(20, 10'000, c.resolution);
+  for (auto _ : state) session.lanes.push_back(compete_lanes(session.device, scene, kLaneTurns));
+  for (const LaneEntrant& e : session.lanes.back().entrants)
+    state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
+}
+
 void tell_facts(benchmark::State& state, Session& session, const std::function<std::vector<Fact>()>& measure) {
   for (auto _ : state)
     for (const Fact& fact : measure()) {
@@ -148,6 +166,8 @@ void register_all(Session& session) {
         ->Iterations(static_cast<benchmark::IterationCount>(c.ticks));
   for (const FieldCase& c : kFieldCases)
     once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_field(s, session, c); }));
+  for (const LaneCase& c : kLaneCases)
+    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_lanes(s, session, c); }));
   once(benchmark::RegisterBenchmark("start",
                                     [&session](benchmark::State& s) { tell_facts(s, session, measure_start); }));
   once(benchmark::RegisterBenchmark("small_ticks", [&session](benchmark::State& s) {
@@ -173,7 +193,8 @@ int run(int argc, char** argv) {
   benchmark::Shutdown();
   if (!folder.empty()) write_csv(session.book, folder);
   if (!folder.empty()) write_csv(session.fields, folder);
-  fmt::print("{}{}", tables(session.book), table(session.fields));
+  if (!folder.empty()) write_lanes(session.lanes, folder);
+  fmt::print("{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes));
   return 0;
 }
 

@@ -109,6 +109,7 @@ LaneOutcome compete_lanes(gpu::Device& device, const LaneScene& scene, std::size
 }
 
 void write_lanes(const std::vector<LaneOutcome>& outcomes, const std::string& folder) {
+  if (outcomes.empty()) return;
   std::ofstream out(folder + "/lanes.csv");
   out << "paint,method,sensors,rays,seen,wall_ms_median,cpu_ms_median,ratio_to_plain,cpu_ratio_to_plain,"
          "max_difference_m,readings_alone,hash\n";

@@ -36,7 +36,8 @@ struct LaneOutcome {
 /// peer, which walks it in 64 bits.
 LaneOutcome compete_lanes(gpu::Device& device, const LaneScene& scene, std::size_t turns);
 
-/// Writes lanes.csv into `folder`. @throws base::InputError when it cannot be written.
+/// Writes lanes.csv into `folder`; keeps the old one where nothing was measured. @throws base::InputError when it
+/// cannot be written.
 void write_lanes(const std::vector<LaneOutcome>& outcomes, const std::string& folder);
 /// The same as text for people.
 std::string lane_table(const std::vector<LaneOutcome>& outcomes);

@@ -41,15 +41,15 @@ struct Stages {
 
 Stages stages_of(const DriveResult& d) {
   const auto n = static_cast<double>(d.ticks.size());
-  const double lanes = static_cast<double>(d.stages.rays) / 4.0;
+  const double lanes = static_cast<double>(d.stages.work.rays) / 4.0;
   return {1e3 * d.move_s,
           1e3 * d.stages.place_s / n,
           1e3 * d.stages.lists_s / n,
           1e3 * d.stages.device_s / n,
           1e3 * d.stages.collect_s / n,
           1e3 * d.decide_s,
-          static_cast<double>(d.stages.doubts) / lanes,
-          static_cast<double>(d.stages.cells_built) / n};
+          static_cast<double>(d.stages.work.doubts) / lanes,
+          static_cast<double>(d.stages.work.cells_built) / n};
 }
 
 std::string ticks_csv(const std::vector<DriveResult>& drives) {

@@ -34,6 +34,8 @@ class CellPool {
   std::uint32_t find(const CellKey& key);
   /// The slot of `key`, or kNone; may be asked by several threads at once.
   std::uint32_t slot_of(const CellKey& key) const;
+  /// Keeps what is in `slot` for this tick.
+  void keep(std::uint32_t slot) { slots_[slot].tick = tick_; }
   /// Room for `key` (not in the pool) with `chunks` chunks: its slot, or kNone when this tick's cells fill the pool.
   std::uint32_t insert(const CellKey& key, std::uint32_t chunks);
 

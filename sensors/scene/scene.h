@@ -74,12 +74,14 @@ class Scene {
     std::size_t end;
     Vec2 origin;
     double radius;
-    bool in_solid;  ///< some view is
+    bool in_solid;       ///< some view is
+    bool alone = false;  ///< no mover can be met: it shares the list of nobody
   };
   struct Scratch;
 
   Vec2 centre_of(const FamilyTables& family, const CellKey& key) const;
   CellKey key_of(const Viewpoint& view) const;
+  bool is_uniform(const FamilyTables& family, Vec2 centre, const Sight::Nearby& nearby) const;
   void find_cells(std::span<const Viewpoint> views);
   void find_groups(std::span<const Viewpoint> views);
   void build_missing();
@@ -102,16 +104,18 @@ class Scene {
   std::unique_ptr<Sight> all_walls_;
   std::unique_ptr<Bodies> bodies_;
   CellPool pool_;
+  std::vector<std::uint8_t> uniform_;  ///< per slot: all of the cell is inside of solids, or all of it outside
   std::vector<std::uint32_t> words_;   ///< of every exact segment, as lists call it
   std::vector<float> own_clearances_;  ///< [m] of movers' segments: how near their own mover's others come
   std::vector<CellKey> keys_;          ///< of this tick's views
+  std::vector<std::uint32_t> slots_;   ///< of this tick's views, where the pool had them already
   std::vector<CellKey> missing_;
   std::vector<Group> groups_;                      ///< of this tick's views
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
   std::vector<std::uint32_t> fresh_slots_;         ///< cells built since the last upload
   std::uint32_t mover_chunks_ = 0;                 ///< capacity for movers' lists, behind the pool
   std::uint32_t mover_chunks_used_ = 0;            ///< may exceed the capacity while a tick is being retried
-  std::uint32_t view_capacity_ = 0;                ///< groups of movers' headers
+  std::uint32_t view_capacity_ = 0;                ///< groups of movers' headers; nobody's are behind them
   bool replaced_ = false;                          ///< tables were, since `serve` began
   bool upload_all_ = true;
 

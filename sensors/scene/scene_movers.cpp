@@ -30,6 +30,10 @@ void Scene::find_groups(std::span<const Viewpoint> views) {
 }
 
 bool Scene::fill_some_movers(std::span<const Viewpoint> views) {
+  if (bodies_->segments().empty()) {
+    for (Group& group : groups_) group.alone = true;
+    return true;
+  }
   std::atomic<std::uint32_t> next{0};
   std::atomic<std::uint32_t> longest{0};
   const ListTables out = tables();
@@ -37,7 +41,7 @@ bool Scene::fill_some_movers(std::span<const Viewpoint> views) {
   workers_.run(groups_.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
     Scratch& scratch = *scratch_[thread];
     for (std::size_t i = first; i < last; ++i) {
-      const Group& group = groups_[i];
+      Group& group = groups_[i];
       const Viewpoint& view = views[group.first];
       const FamilyTables& family = *families_[view.family];
       const double fov = group.end - group.first == 1 ? family.family.fov : 2.0 * M_PI;
@@ -46,6 +50,8 @@ bool Scene::fill_some_movers(std::span<const Viewpoint> views) {
                         family.shape.spread, view.self, group.in_solid ? nullptr : family.depth},
                        scratch.bodies, scratch.lists, clearances);
       const std::uint32_t chunks = scratch.lists.all_chunks();
+      group.alone = chunks == 0;
+      if (group.alone) continue;
       const std::uint32_t at = next.fetch_add(chunks);
       for (std::uint32_t s = 0; s < SF_SECTORS; ++s)
         if (scratch.lists.chunks(s) > kMostMoverChunks) longest = scratch.lists.chunks(s);
@@ -61,12 +67,14 @@ bool Scene::fill_some_movers(std::span<const Viewpoint> views) {
 }
 
 void Scene::name_movers(std::span<const Viewpoint> views, std::span<RayRow> rows) const {
-  for (std::size_t g = 0; g < groups_.size(); ++g)
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const std::size_t set = options_.pool_cells + (groups_[g].alone ? view_capacity_ : g);
     for (std::size_t i = groups_[g].first; i < groups_[g].end; ++i) {
-      rows[i].mover_lists = static_cast<std::uint32_t>(SF_SECTORS * (options_.pool_cells + g));
+      rows[i].mover_lists = static_cast<std::uint32_t>(SF_SECTORS * set);
       rows[i].mover_offset_x = static_cast<float>(views[i].X_WS.x - groups_[g].origin.x);
       rows[i].mover_offset_y = static_cast<float>(views[i].X_WS.y - groups_[g].origin.y);
     }
+  }
 }
 
 }  // namespace sf::sensors

@@ -1,6 +1,8 @@
 // The device's tables: how they grow, and what of them travels.
 
+#include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "sensors/scene/scene_parts.h"
 
@@ -24,8 +26,11 @@ void Scene::grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint3
     replace(nearest_, gpu::Texel::f32, chunks);
   }
   if (pool_cells != options_.pool_cells || views != view_capacity_)
-    replace(headers_, gpu::Texel::u32x4, std::size_t{SF_SECTORS} * (pool_cells + views));
+    replace(headers_, gpu::Texel::u32x4, std::size_t{SF_SECTORS} * (pool_cells + views + 1));
+  const auto nobody = headers_->host<ListHeader>().subspan(std::size_t{SF_SECTORS} * (pool_cells + views), SF_SECTORS);
+  std::fill(nobody.begin(), nobody.end(), ListHeader{0, 0, std::numeric_limits<float>::infinity(), 0});
   pool_.grow(pool_cells, pool_chunks);
+  uniform_.resize(pool_cells);
   options_ = {pool_chunks, pool_cells};
   view_capacity_ = views;
   mover_chunks_ = mover_chunks;

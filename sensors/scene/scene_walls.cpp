@@ -11,10 +11,26 @@ namespace sf::sensors {
 
 CellKey Scene::key_of(const Viewpoint& view) const {
   const FamilyTables& family = *families_[view.family];
-  const bool inside = family.sight->inside_solid({view.X_WS.x, view.X_WS.y});
-  return {2 * std::int64_t{view.family} + inside,
-          static_cast<std::int64_t>(std::floor(view.X_WS.x / family.shape.size)),
-          static_cast<std::int64_t>(std::floor(view.X_WS.y / family.shape.size))};
+  CellKey key{2 * std::int64_t{view.family}, static_cast<std::int64_t>(std::floor(view.X_WS.x / family.shape.size)),
+              static_cast<std::int64_t>(std::floor(view.X_WS.y / family.shape.size))};
+  // A cell without a surface is on one side as a whole: whoever stood in it before has found out.
+  const auto known = [&] {
+    const std::uint32_t slot = pool_.slot_of(key);
+    return slot != CellPool::kNone && uniform_[slot] != 0;
+  };
+  if (known()) return key;
+  key.family |= 1;
+  if (known() || family.sight->inside_solid({view.X_WS.x, view.X_WS.y})) return key;
+  key.family &= ~std::int64_t{1};
+  return key;
+}
+
+bool Scene::is_uniform(const FamilyTables& family, Vec2 centre, const Sight::Nearby& nearby) const {
+  const double reach = family.shape.size * M_SQRT1_2 * (1.0 + 1e-9) + 1e-9 * (1.0 + length(centre));
+  return std::none_of(nearby.found.begin(), nearby.found.end(), [&](std::uint32_t row) {
+    const SightSegment& s = family.sight->segments()[row];
+    return s.solid_left && world::distance(centre, s.a, s.b) <= reach;
+  });
 }
 
 Vec2 Scene::centre_of(const FamilyTables& family, const CellKey& key) const {
@@ -24,17 +40,19 @@ Vec2 Scene::centre_of(const FamilyTables& family, const CellKey& key) const {
 
 void Scene::find_cells(std::span<const Viewpoint> views) {
   keys_.resize(views.size());
+  slots_.resize(views.size());
   workers_.run(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const bool same = i > first && views[i].family == views[i - 1].family && views[i].X_WS.x == views[i - 1].X_WS.x &&
                         views[i].X_WS.y == views[i - 1].X_WS.y;
       keys_[i] = same ? keys_[i - 1] : key_of(views[i]);
+      slots_[i] = same ? slots_[i - 1] : pool_.slot_of(keys_[i]);
     }
   });
   pool_.begin_tick();
   missing_.clear();
-  for (const CellKey& key : keys_)
-    if (pool_.find(key) == CellPool::kNone) missing_.push_back(key);
+  for (std::size_t i = 0; i < keys_.size(); ++i)
+    slots_[i] != CellPool::kNone ? pool_.keep(slots_[i]) : missing_.push_back(keys_[i]);
   const auto order = [](const CellKey& p, const CellKey& q) {
     return std::tie(p.family, p.x, p.y) < std::tie(q.family, q.x, q.y);
   };
@@ -60,8 +78,9 @@ void Scene::build_missing() {
         slot = longest > kMostWallChunks ? CellPool::kNone : pool_.insert(key, scratch.lists.all_chunks());
         if (slot != CellPool::kNone) fresh_slots_.push_back(slot);
       }
-      if (slot != CellPool::kNone)
-        write_lists(scratch.lists, pool_.first_chunk(slot), out, headers + std::size_t{SF_SECTORS} * slot);
+      if (slot == CellPool::kNone) continue;
+      uniform_[slot] = is_uniform(family, centre_of(family, key), scratch.nearby) ? 1 : 0;
+      write_lists(scratch.lists, pool_.first_chunk(slot), out, headers + std::size_t{SF_SECTORS} * slot);
     }
   });
   refuse_if_too_long(longest, kMostWallChunks, "walls");
@@ -84,7 +103,7 @@ void Scene::fill_walls(const Viewpoint& view, std::size_t row, RayRow& out) {
   out.heading_sectors = static_cast<float>(sectors < 0.0 ? sectors + SF_SECTORS : sectors);
   out.band = static_cast<float>(SF_BAND * (family.shape.reach() + 2.0 * bodies_->largest_radius()));
   out.reach = static_cast<float>(family.family.range * (1.0 + 1e-6) + out.band);
-  out.wall_lists = SF_SECTORS * pool_.slot_of(keys_[row]);
+  out.wall_lists = SF_SECTORS * (slots_[row] != CellPool::kNone ? slots_[row] : pool_.slot_of(keys_[row]));
   out.origin_x = view.X_WS.x;
   out.origin_y = view.X_WS.y;
   out.range_max = family.family.range;

@@ -26,6 +26,9 @@ int clamp_index(double value, int count) {
   return static_cast<int>(std::clamp(std::floor(value), 0.0, static_cast<double>(count - 1)));
 }
 
+double least_x(const SightSegment& s) { return std::min(s.a.x, s.b.x); }
+double largest_x(const SightSegment& s) { return std::max(s.a.x, s.b.x); }
+
 }  // namespace
 
 Sight Sight::of_all_heights(const std::vector<world::Segment>& walls, double typical_range) {
@@ -78,7 +81,7 @@ void Sight::index_cells(double typical_range) {
 void Sight::index_bands() {
   bands_ = std::clamp(static_cast<int>(segments_.size() / 8), 1, kMostBands);
   band_ = std::max((high_.y - low_.y) / bands_, 1e-9);
-  fill_buckets(static_cast<std::size_t>(bands_), band_first_, band_items_, [&](auto put) {
+  fill_buckets(static_cast<std::size_t>(bands_), band_first_, from_left_, [&](auto put) {
     for (std::uint32_t i = 0; i < segments_.size(); ++i) {
       const SightSegment& s = segments_[i];
       if (!s.solid_left) continue;
@@ -87,6 +90,15 @@ void Sight::index_bands() {
       for (int band = first; band <= last; ++band) put(static_cast<std::size_t>(band), i);
     }
   });
+  from_right_ = from_left_;
+  for (std::size_t band = 0; band + 1 < band_first_.size(); ++band) {
+    const auto first = static_cast<std::ptrdiff_t>(band_first_[band]);
+    const auto end = static_cast<std::ptrdiff_t>(band_first_[band + 1]);
+    std::sort(from_left_.begin() + first, from_left_.begin() + end,
+              [&](std::uint32_t i, std::uint32_t j) { return least_x(segments_[i]) < least_x(segments_[j]); });
+    std::sort(from_right_.begin() + first, from_right_.begin() + end,
+              [&](std::uint32_t i, std::uint32_t j) { return largest_x(segments_[i]) > largest_x(segments_[j]); });
+  }
 }
 
 void Sight::near(Vec2 p, double radius, Nearby& nearby) const {
@@ -113,12 +125,17 @@ void Sight::near(Vec2 p, double radius, Nearby& nearby) const {
 bool Sight::inside_solid(Vec2 p) const {
   if (segments_.empty() || p.x < low_.x || p.x > high_.x || p.y < low_.y || p.y > high_.y) return false;
   const std::size_t band = static_cast<std::size_t>(clamp_index((p.y - low_.y) / band_, bands_));
+  // A horizontal line crosses closed outlines as often up as down: what lies to one side of p counts, and the side that
+  // has less of the world is looked at.
+  const bool left = p.x - low_.x < high_.x - p.x;
+  const std::vector<std::uint32_t>& items = left ? from_left_ : from_right_;
   int winding = 0;
   for (std::uint32_t at = band_first_[band]; at < band_first_[band + 1]; ++at) {
-    const SightSegment& s = segments_[band_items_[at]];
+    const SightSegment& s = segments_[items[at]];
+    if (left ? least_x(s) > p.x : largest_x(s) < p.x) break;
     const bool below_a = s.a.y <= p.y;
     if (below_a == (s.b.y <= p.y)) continue;
-    const double side = cross(s.b - s.a, p - s.a);
+    const double side = (left ? -1.0 : 1.0) * cross(s.b - s.a, p - s.a);
     if (below_a && side > 0.0) ++winding;
     if (!below_a && side < 0.0) --winding;
   }

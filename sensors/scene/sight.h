@@ -60,7 +60,8 @@ class Sight {
   std::vector<std::uint32_t> cell_first_, cell_items_;  ///< segments by cell
   double band_ = 1.0;
   int bands_ = 1;
-  std::vector<std::uint32_t> band_first_, band_items_;  ///< segments by range of y, for winding numbers
+  std::vector<std::uint32_t> band_first_;              ///< segments by range of y, for winding numbers:
+  std::vector<std::uint32_t> from_left_, from_right_;  ///< each band by least x rising, and by largest x falling
 };
 
 }  // namespace sf::sensors
