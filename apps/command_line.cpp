@@ -64,7 +64,8 @@ void add_device(CLI::App& app, Options& o) {
 }
 
 void add_world(CLI::App& app, Options& o) {
-  app.add_option("world", o.world, "World file: Stage .world (3.x or 4.x), or ROS map .yaml; check and draw also take .rndf, check .mdf")
+  app.add_option("world", o.world,
+                 "World file: Stage .world (3.x or 4.x), or ROS map .yaml; check and draw also take .rndf, check .mdf")
       ->required()
       ->type_name("FILE");
   app.add_flag("--stage-obstacles", o.load.stage_obstacles,

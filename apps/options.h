@@ -23,7 +23,7 @@ struct Options {
   std::string world;  ///< world file, or the recording's folder for `plot`
   world::LoadOptions load;
   std::string rndf;  ///< network that `check` holds a mission against; empty: none
-  std::string out;  ///< picture, or folder for `plot`
+  std::string out;   ///< picture, or folder for `plot`
 
   double height = 0.0;                          ///< [m] of the field's figure
   std::optional<std::array<double, 4>> line;    ///< [m] of its profile: x, y of both ends

@@ -9,7 +9,14 @@
 namespace sf::base {
 
 /// Which question is asked. Two streams with one key never share a number.
-enum class Stream : std::uint32_t { place = 1, wander = 2, range_noise = 3, angle_noise = 4, slip = 5, field_noise = 6 };
+enum class Stream : std::uint32_t {
+  place = 1,
+  wander = 2,
+  range_noise = 3,
+  angle_noise = 4,
+  slip = 5,
+  field_noise = 6
+};
 
 /// Names one draw: all five fields matter.
 struct Draw {

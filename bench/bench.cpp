@@ -123,9 +123,8 @@ struct LaneCase {
   const char* name;
   double resolution;  ///< [m] 0: exact
 };
-constexpr LaneCase kLaneCases[] = {{"laneedge/exact/10000", 0.0},
-                                   {"laneedge/raster_5mm/10000", 0.005},
-                                   {"laneedge/raster_20mm/10000", 0.02}};
+constexpr LaneCase kLaneCases[] = {
+    {"laneedge/exact/10000", 0.0}, {"laneedge/raster_5mm/10000", 0.005}, {"laneedge/raster_20mm/10000", 0.02}};
 constexpr std::size_t kLaneTurns = 15;
 
 void tell_lanes(benchmark::State& state, Session& session, const LaneCase& c) {

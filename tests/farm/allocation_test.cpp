@@ -3,42 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
+#include "tests/counted_new.h"
 #include "tests/farm/small_farm.h"
 #include "tests/sensors/magnet_scenes.h"
 
-namespace {
-
-thread_local bool counting = false;
-thread_local std::uint64_t allocations = 0;
-
-}  // namespace
-
-// All of them, since sanitizers compare which one allocated with which one frees; out of line for the same reason.
-#define SF_COUNTED [[gnu::noinline]]
-SF_COUNTED void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  if (counting) ++allocations;
-  return std::malloc(size > 0 ? size : 1);
-}
-SF_COUNTED void* operator new(std::size_t size) {
-  if (void* memory = operator new(size, std::nothrow)) return memory;
-  throw std::bad_alloc();
-}
-SF_COUNTED void* operator new[](std::size_t size) { return operator new(size); }
-SF_COUNTED void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
-  return operator new(size, std::nothrow);
-}
-SF_COUNTED void operator delete(void* memory) noexcept { std::free(memory); }
-SF_COUNTED void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-SF_COUNTED void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
-SF_COUNTED void operator delete[](void* memory) noexcept { std::free(memory); }
-SF_COUNTED void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-SF_COUNTED void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
-
 namespace sf::farm {
 namespace {
+
+using counted::allocations;
+using counted::counting;
 
 std::uint64_t allocations_per_lap(const world::World& world, const FarmOptions& options) {
   Farm farm(world, device(), options);

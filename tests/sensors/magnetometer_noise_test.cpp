@@ -8,6 +8,7 @@
 #include "sensors/magnetometer.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/magnet_scenes.h"
+#include "tests/sensors/statistics.h"
 
 namespace sf::trial {
 namespace {
@@ -16,19 +17,6 @@ using scenes::Element;
 using scenes::element;
 
 constexpr double kGauss = sensors::kGauss;
-
-/// Kolmogorov-Smirnov distance from the standard normal distribution times the root of the number: above 1.95 once in a
-/// thousand runs. The seed is fixed.
-double ks(std::vector<double> draws) {
-  std::sort(draws.begin(), draws.end());
-  const double n = static_cast<double>(draws.size());
-  double worst = 0.0;
-  for (std::size_t i = 0; i < draws.size(); ++i) {
-    const double p = 0.5 * std::erfc(-draws[i] / std::sqrt(2.0));
-    worst = std::max({worst, std::fabs(p - static_cast<double>(i) / n), std::fabs(static_cast<double>(i + 1) / n - p)});
-  }
-  return worst * std::sqrt(n);
-}
 
 struct NoiseDraws {
   std::vector<double> of[4];  ///< field (of the sum of magnitudes), x, y, z, in sigmas

@@ -7,6 +7,7 @@
 
 #include "tests/sensors/compare.h"
 #include "tests/sensors/scenes.h"
+#include "tests/sensors/statistics.h"
 
 namespace sf::trial {
 namespace {
@@ -14,19 +15,6 @@ namespace {
 constexpr int kRobots = 8;
 constexpr std::uint32_t kBeams = 181;
 constexpr int kTicks = 12;
-
-/// Kolmogorov-Smirnov distance of `draws` from the standard normal distribution, times the root of their number: above
-/// 1.95 once in a thousand runs. Seeds are fixed, so it never changes its mind.
-double ks(std::vector<double> draws) {
-  std::sort(draws.begin(), draws.end());
-  const double n = static_cast<double>(draws.size());
-  double worst = 0.0;
-  for (std::size_t i = 0; i < draws.size(); ++i) {
-    const double p = 0.5 * std::erfc(-draws[i] / std::sqrt(2.0));
-    worst = std::max({worst, std::fabs(p - static_cast<double>(i) / n), std::fabs(static_cast<double>(i + 1) / n - p)});
-  }
-  return worst * std::sqrt(n);
-}
 
 /// Chi-square of `draws` over 40 bins of equal probability: 39 degrees of freedom, above 72 once in a thousand runs.
 double chi_square(const std::vector<double>& draws) {

@@ -1,0 +1,35 @@
+#pragma once
+// Counts what the calling thread allocates: a program's own `new`, replaced. To be included by one source of a program.
+
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+
+namespace sf::counted {
+
+inline thread_local bool counting = false;
+inline thread_local std::uint64_t allocations = 0;
+
+}  // namespace sf::counted
+
+// All of them, since sanitizers compare which one allocated with which one frees; out of line for the same reason.
+#define SF_COUNTED [[gnu::noinline]]
+SF_COUNTED void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  if (sf::counted::counting) ++sf::counted::allocations;
+  return std::malloc(size > 0 ? size : 1);
+}
+SF_COUNTED void* operator new(std::size_t size) {
+  if (void* memory = operator new(size, std::nothrow)) return memory;
+  throw std::bad_alloc();
+}
+SF_COUNTED void* operator new[](std::size_t size) { return operator new(size); }
+SF_COUNTED void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return operator new(size, std::nothrow);
+}
+SF_COUNTED void operator delete(void* memory) noexcept { std::free(memory); }
+SF_COUNTED void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+SF_COUNTED void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+SF_COUNTED void operator delete[](void* memory) noexcept { std::free(memory); }
+SF_COUNTED void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+SF_COUNTED void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
+#undef SF_COUNTED
