@@ -191,7 +191,8 @@ void add_sense(CLI::App& app, Options& o) {
       ->type_name("POSE");
   sub->add_option("--robot", o.robot, "Name of the robot (default: the first that has a sensor)")->type_name("NAME");
   add_kind(*sub, o);
-  sub->add_option("--sensor", o.sensor, "Number of its sensor of that kind, from 0")
+  sub->add_option("--sensor", o.sensor,
+                  "Number of its sensor, from 0: of that kind, or through all its kinds where none is named")
       ->check(whole(0, 65535))
       ->type_name("N")
       ->capture_default_str();

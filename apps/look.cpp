@@ -18,13 +18,9 @@ namespace {
 
 void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
 
-/// The kind asked for, or the first that the mover has; null when it has none.
-const sensors::SensorKind* kind_of(const sensors::Roster& roster, std::uint8_t kind, std::uint32_t mover) {
-  for (const sensors::Roster::Group& group : roster.groups()) {
-    const bool asked = kind == 0 || group.kind->id == kind;
-    if (asked && !roster.of(group.kind->id, mover).empty()) return group.kind;
-  }
-  return nullptr;
+/// Whether the mover has a sensor of that kind; 0: of any.
+bool has_kind(const sensors::Roster& roster, std::uint8_t kind, std::uint32_t mover) {
+  return kind == 0 ? roster.count_of(mover) > 0 : !roster.of(kind, mover).empty();
 }
 
 [[noreturn]] void refuse_blind_world(const world::World& world, std::uint8_t kind) {
@@ -38,7 +34,7 @@ std::uint32_t find_robot(const world::World& world, const sensors::Roster& roste
   std::string known;
   std::size_t others = 0;
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
-    const bool senses = kind_of(roster, options.kind, i) != nullptr;
+    const bool senses = has_kind(roster, options.kind, i);
     if (options.robot.empty() ? senses : world.movers[i].name == options.robot) return i;
     if (senses && ++others <= 10) known += (known.empty() ? "" : ", ") + world.movers[i].name;
   }
@@ -60,18 +56,36 @@ std::string all_sensors_of(const sensors::Roster& roster, std::uint32_t mover) {
   return text;
 }
 
-/// Kind of the sensor that was asked for, which is there.
-const sensors::SensorKind& require_sensor(const world::World& world, const sensors::Roster& roster,
-                                          const Options& options, std::uint32_t mover) {
-  const sensors::SensorKind* kind = kind_of(roster, options.kind, mover);
-  if (kind != nullptr && options.sensor < roster.of(kind->id, mover).size()) return *kind;
+/// A sensor by its kind and its number among the mover's sensors of that kind.
+struct Chosen {
+  const sensors::SensorKind* kind = nullptr;
+  std::uint32_t sensor = 0;
+};
+
+/// Numbers count among one kind where it was named, else through all of the mover's sensors, kind after kind.
+Chosen find_sensor(const sensors::Roster& roster, const Options& options, std::uint32_t mover) {
+  std::uint32_t number = options.sensor;
+  for (const sensors::Roster::Group& group : roster.groups()) {
+    if (options.kind != 0 && group.kind->id != options.kind) continue;
+    const auto count = static_cast<std::uint32_t>(roster.of(group.kind->id, mover).size());
+    if (number < count) return {group.kind, number};
+    number -= count;
+  }
+  return {};
+}
+
+/// The sensor that was asked for, which is there.
+Chosen require_sensor(const world::World& world, const sensors::Roster& roster, const Options& options,
+                      std::uint32_t mover) {
+  const Chosen chosen = find_sensor(roster, options, mover);
+  if (chosen.kind != nullptr) return chosen;
   const std::string has = all_sensors_of(roster, mover);
   const std::string& robot = world.movers[mover].name;
   if (has.empty()) throw base::InputError(world.file, 0, robot + " has no sensor");
-  if (kind == nullptr) kind = sensors::find_kind(options.kind);
+  const sensors::SensorKind* kind = sensors::find_kind(options.kind);
   throw base::InputError(world.file, 0,
-                         robot + " has no " + std::string(kind->name) + " " + std::to_string(options.sensor) +
-                             "; it has " + has + " (--kind, --sensor)");
+                         robot + " has no " + std::string(kind != nullptr ? kind->name : "sensor") + " " +
+                             std::to_string(options.sensor) + "; it has " + has + " (--kind, --sensor)");
 }
 
 /// Where the user asked for it, beams that met nothing read infinity.
@@ -111,7 +125,7 @@ int sense(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
   const sensors::Roster roster(world);
   const std::uint32_t mover = find_robot(world, roster, options);
-  const sensors::SensorKind& kind = require_sensor(world, roster, options, mover);
+  const Chosen chosen = require_sensor(world, roster, options, mover);
   base::Pose X_WM = world.movers[mover].X_WM;
   if (options.pose) X_WM = {options.pose->x, options.pose->y, X_WM.z, options.pose->yaw};
 
@@ -119,7 +133,7 @@ int sense(const Options& options) {
   farm::FarmOptions quiet;
   quiet.noise = false;
   farm::Farm farm(world, device, quiet);
-  base::ReadingBlock reading = farm.sense(mover, kind.id, options.sensor, X_WM);
+  base::ReadingBlock reading = farm.sense(mover, chosen.kind->id, chosen.sensor, X_WM);
   std::vector<double> values(reading.values.begin(), reading.values.end());
   if (options.no_return_inf) mark_no_return(roster.row(reading), reading, values);
   reading.values = values;

@@ -18,7 +18,9 @@ struct LaneEdge {
 };
 
 /// Settings of a lane edge sensor, beside those of all sensors.
-inline constexpr std::string_view kLaneEdgeKeys[] = {"fov", "samples", "range_max", "range_min", "perpendicular"};
+inline constexpr std::string_view kLaneEdgeKeys[] = {"fov", "samples", "range_max", "range_min", "perpendicular",
+                                                     // of the thesis' lasers, for drawing
+                                                     "laser_color"};
 
 /// A share of range_max: ranges from here on are "near the maximum" and no points.
 inline constexpr double kNearMaximum = 0.99;

@@ -99,6 +99,12 @@ TEST_F(Kinds, WithoutAWordTheFirstKindIsMeant) {
   EXPECT_EQ(Json(run("sense", only, {"--json"}).out).text("/kind"), "magnetometer");
 }
 
+TEST_F(Kinds, WithoutAWordNumbersCountThroughAllKinds) {
+  const Json second(run("sense", world, {"--sensor", "1", "--json"}).out);
+  EXPECT_EQ(second.text("/kind"), "magnetometer");
+  EXPECT_EQ(second.number("/sensor"), 0) << "the first of its kind";
+}
+
 TEST_F(Kinds, WhoIsAskedForWhatItHasNotSaysWhatItHas) {
   struct Wrong {
     Words arguments;
@@ -107,7 +113,8 @@ TEST_F(Kinds, WhoIsAskedForWhatItHasNotSaysWhatItHas) {
   const std::string lasers = folder.write("lasers.world", "position( name \"a\" laser( ) laser( ) )\n");
   const std::string none = folder.write("none.world", "position( name \"a\" )\n");
   for (const auto& [arguments, said] : std::vector<Wrong>{
-           {{world, "--sensor", "1"}, "one has no laser 1; it has laser 0, magnetometer 0"},
+           {{world, "--sensor", "2"}, "one has no sensor 2; it has laser 0, magnetometer 0"},
+           {{world, "--kind", "laser", "--sensor", "1"}, "one has no laser 1; it has laser 0, magnetometer 0"},
            {{world, "--kind", "magnetometer", "--sensor", "1"}, "one has no magnetometer 1; it has laser 0"},
            {{world, "--robot", "blind"}, "blind has no sensor"},
            {{lasers, "--kind", "magnetometer"}, "no robot has such a sensor; give one a magnetometer( )"},
@@ -311,6 +318,48 @@ TEST(Wire, LaneEdgesSendTheDocumentedBytes) {
   plain.clear();
   kind->encode({}, {.kind = kind->id, .values = none}, sensors::Wire::thesis, 0, plain);
   EXPECT_EQ(plain, (base::Bytes{0xff, 0xff}));
+}
+
+/// The thesis' listing: its robot faces -y, its `laser` of that name looks along its own +x, the road is a thin model.
+/// Ours faces +x and looks to its left. Both are 0.25 m from the paint's face.
+TEST(LaneEdge, TheThesisListingAndOursReadTheSame) {
+  if (!has_kind(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
+  const Folder folder;
+  const std::string thesis = folder.write("thesis.world", R"(
+define roombalaneedge laser( range_max 0.5 fov 30.0 samples 61 size [0.06 0.03 0.01] name "laneedge" )
+position( name "roomba0" size [0.33 0.33 0.1]
+  roombalaneedge( pose [0 -0.225 -0.1 0] color "blue" laser_color "blue" ) )
+model( name "paint" pose [0.26 0 0 0] size [0.02 4 0.01] color "white" )
+)");
+  const std::string ours = folder.write("ours.world", R"(
+position( name "roomba0" size [0.33 0.33 0.1]
+  laneedge( pose [0.225 0 -0.1 90] size [0.03 0.06 0.01] range_max 0.5 fov 30 samples 61 ) )
+path( pose [-2 0 0 0] pieces 1 straight[0] [4 0.5] left "solid_white" paint_width 0.02 )
+)");
+  for (const std::string& world : {thesis, ours}) {
+    const Json reading(run("sense", world, {"--json"}).out);
+    EXPECT_EQ(reading.text("/kind"), "laneedge");
+    EXPECT_NEAR(reading.number("/distance_m"), 0.25, 1e-9) << world;
+    EXPECT_EQ(reading.number("/points"), 61) << world;
+    EXPECT_LT(reading.number("/residual_m"), 1e-9) << world;
+  }
+}
+
+/// The road as a picture, as the thesis brought it: 5 mm a pixel, seen as it is drawn.
+TEST(LaneEdge, ARoadMayBeAPicture) {
+  if (!has_kind(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
+  const Folder folder;
+  std::string picture = "P5\n200 200\n255\n";
+  for (int row = 0; row < 200; ++row)
+    for (int column = 0; column < 200; ++column) picture += row >= 48 && row < 52 ? '\0' : '\xff';
+  folder.write("road.pgm", picture);
+  const std::string world = folder.write("road.world", R"(
+position( name "a" laneedge( pose [0 0 -0.1 90] size [0.03 0.03 0.01] ) size [0.1 0.1 0.1] )
+model( name "road" bitmap "road.pgm" size [1 1 0.01] )
+)");
+  const Json reading(run("sense", world, {"--json"}).out);
+  EXPECT_NEAR(reading.number("/distance_m"), 0.24, 1e-9) << "row 52 of 200 begins 0.24 m above the middle";
+  EXPECT_GE(reading.number("/points"), 59);
 }
 
 TEST(LaneEdge, GoesThroughEveryCommand) {

@@ -97,7 +97,7 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
            {{"sense", world, "--pose", "1,2,3,4"}, "expected X,Y,YAW_DEG"},                // one too many
            {{"sense", world, "--pose", "1,2,nan"}, "expected X,Y,YAW_DEG"},                // not a number
            {{"sense", world, "--sensor", "-1"}, "got '-1'"},                               // must not wrap
-           {{"sense", world, "--sensor", "1"}, "roomba1 has no laser 1; it has laser 0"},  // past the last
+           {{"sense", world, "--sensor", "1"}, "roomba1 has no sensor 1; it has laser 0"},  // past the last
            {{"sense", world, "--robot", "tag3"}, "tag3 has no sensor"},                    // there, but blind
            {{"sense", world, "--kind", "lidar"}, "--kind: expected laser"},                // somebody else's word
            {{"sense", world, "--robot", "bob"}, "no robot 'bob'; with sensors it has roomba1, roomba2"},
