@@ -108,6 +108,25 @@ TEST(Sidecar, WhatIsWrongIsRefused) {
   for (const auto& [text, error] : corpus) EXPECT_EQ(refusal(text).substr(0, error.size()), error) << text;
 }
 
+// Characters beyond ASCII: in comments, and after a byte order mark, never where they would mean something.
+TEST(Sidecar, CommentsMayBeInAnyLanguage) {
+  std::vector<Warning> warnings;
+  EXPECT_EQ(parse_sidecar("a.toml", "\xEF\xBB\xBF# Maßstab\nscale = 0.5  # ein Halb, ½\n", warnings).scale, 0.5);
+  EXPECT_TRUE(warnings.empty());
+  const auto refused = [&](const std::string& text) {
+    try {
+      parse_sidecar("a.toml", text, warnings);
+    } catch (const base::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string expected = ": a character beyond ASCII; expected such only in comments of their own line";
+  EXPECT_EQ(refused("scale = 1\nLDƒ = 2\n"), "a.toml:2" + expected) << "where toml++ loses its way";
+  EXPECT_EQ(refused("\xC2\xA0scale = 1\n"), "a.toml:1" + expected) << "a blank that is none";
+  EXPECT_EQ(refused("\"a#\" = 1 # ƒ\n"), "a.toml:1" + expected) << "a quote may hide what looks like a comment";
+}
+
 // load_roads takes the file of the same name with .toml for .rndf.
 TEST(Sidecar, StandsBesideItsNetwork) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "sf_sidecar_test";

@@ -136,6 +136,30 @@ void read_frame(const Reader& reader, const toml::table& root, RoadSidecar& into
     into.heading = reader.number(*node, "heading_deg", -1e6, 1e6) * (M_PI / 180.0);
 }
 
+/// The same text in ASCII: comments may be in any language, all else is ours. (toml++ up to 3.3 runs into undefined
+/// behaviour at some characters beyond.)
+std::string in_ascii(const std::string& file, std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
+  std::string plain(text);
+  int line = 1;
+  bool quoted = false;  // some quote stands in the line so far
+  bool comment = false;
+  for (char& c : plain) {
+    if (c == '\n') {
+      ++line;
+      quoted = comment = false;
+    }
+    quoted = quoted || c == '"' || c == '\'';
+    comment = comment || (c == '#' && !quoted);
+    if (static_cast<unsigned char>(c) < 0x80) continue;
+    if (!comment)
+      throw base::InputError(file, line, "a character beyond ASCII; expected such only in comments of their own line");
+    c = '?';
+  }
+  return plain;
+}
+
 }  // namespace
 
 RoadSidecar parse_sidecar(const std::string& file, std::string_view text, std::vector<Warning>& warnings) {
@@ -143,7 +167,7 @@ RoadSidecar parse_sidecar(const std::string& file, std::string_view text, std::v
   sidecar.file = file;
   toml::table root;
   try {
-    root = toml::parse(text, file);
+    root = toml::parse(in_ascii(file, text), file);
   } catch (const toml::parse_error& error) {
     throw base::InputError(file, static_cast<int>(error.source().begin.line),
                            fmt::format("not TOML: {}", error.description()));
