@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "viz/axes.h"
+#include "viz/carried.h"
 #include "viz/color.h"
 #include "viz/ground.h"
 #include "viz/sight.h"
@@ -150,6 +151,8 @@ std::vector<LegendItem> legend_of(const World& world) {
   if (first(true) != world.movers.end()) items.push_back({Sample::dashed, kTagColor, "follows a tag"});
   const auto views = view_legend(world);
   items.insert(items.end(), views.begin(), views.end());
+  const auto carried = carried_legend(world);
+  items.insert(items.end(), carried.begin(), carried.end());
   return items;
 }
 
@@ -184,6 +187,7 @@ void draw_world(const World& world, const std::string& png_path) {
   draw_views(axes, world);
   draw_walls(axes, world, WallColors::of_models);
   for (const Mover& mover : world.movers) draw_body(axes, world, mover);
+  if (!crowded(world)) draw_carried(axes, world);
   for (const Mover& mover : world.movers)
     if (mover.is_tag) draw_tag(axes, mover);
   for (const Mover& mover : world.movers)

@@ -66,6 +66,34 @@ TEST(WorldFigure, WallsAreWhereTheyShouldBe) {
   EXPECT_LT(to_lab(seen.at(3.2, 0.0)).lightness, 0.6) << "the wall's edge";
 }
 
+TEST(WorldFigure, PaintAndMagnetsAreThere) {
+  world::World world = room();
+  world.stripes.push_back({{{1.0, 2.25}, {5.0, 2.25}}, 0.3, 0xFFF2B800u});
+  world.magnets.push_back({{3.0, 1.0}, 0.0, 1.0, 0.05, 0});
+  world.magnets.push_back({{4.0, 1.0}, 0.0, -1.0, 0.05, 0});
+  draw_world(world, file("paint.png"));
+  const Seen seen = see(file("paint.png"), 0.03);
+  EXPECT_EQ(seen.at(3.27, 2.27), 0xFFF2B800u) << "in its colour";
+  EXPECT_NE(seen.at(3.27, 2.42), kWhite) << "on asphalt";
+  EXPECT_EQ(seen.at(5.6, 2.27), kWhite) << "which ends with it";
+  EXPECT_GT(to_lab(seen.at(3.0, 1.0)).a, 0.1) << "red: north is up";
+  EXPECT_LT(to_lab(seen.at(4.0, 1.0)).b, -0.05) << "blue: south is up";
+}
+
+TEST(WorldFigure, SensorsOfOtherKindsAreThere) {
+  world::World world = room();
+  world::Mover robot = scenes::make_robot(world, 1, {2.0, 2.0, 0, 0}, 0xFF2E7D32u, 0.5);
+  robot.sensors.push_back({"laneedge", "e", {0.0, 0.0, 0.0, M_PI / 2}, 0.01, 1.0, M_PI / 180.0, {}, 1, "x.world"});
+  robot.sensors.push_back({"magnetometer", "m", {1.0, -1.0, 0.0, 0.0}, 0.01, 1.0, M_PI / 180.0, {}, 2, "x.world"});
+  world.movers.push_back(robot);
+  draw_world(world, file("carried.png"));
+  const Seen seen = see(file("carried.png"), 0.03);
+  EXPECT_NE(seen.at(2.03, 2.7), kWhite) << "a fan of 1 m to the left";
+  EXPECT_EQ(seen.at(2.53, 2.7), kWhite) << "of 30 degrees";
+  EXPECT_EQ(seen.at(2.03, 3.2), kWhite) << "and no longer";
+  EXPECT_LT(to_lab(seen.at(3.0, 1.0)).lightness, 0.6) << "an element";
+}
+
 TEST(WorldFigure, RobotAndItsViewAreThere) {
   world::World world = room();
   world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.2, 0, 0}, 0xFF2E7D32u, 3.0));
