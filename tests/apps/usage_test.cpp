@@ -93,13 +93,13 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
            {{"run", world, "--record-readings"}, "requires --record"},   // nowhere to record to
            {{"run", world, "--wire", "telegraph"}, "expected farm or thesis"},
            {{"sense", world, "--no-return", "0"}, "expected max or inf"},
-           {{"sense", world, "--pose", "1,2"}, "expected X,Y,YAW_DEG"},                    // no heading
-           {{"sense", world, "--pose", "1,2,3,4"}, "expected X,Y,YAW_DEG"},                // one too many
-           {{"sense", world, "--pose", "1,2,nan"}, "expected X,Y,YAW_DEG"},                // not a number
-           {{"sense", world, "--sensor", "-1"}, "got '-1'"},                               // must not wrap
+           {{"sense", world, "--pose", "1,2"}, "expected X,Y,YAW_DEG"},                     // no heading
+           {{"sense", world, "--pose", "1,2,3,4"}, "expected X,Y,YAW_DEG"},                 // one too many
+           {{"sense", world, "--pose", "1,2,nan"}, "expected X,Y,YAW_DEG"},                 // not a number
+           {{"sense", world, "--sensor", "-1"}, "got '-1'"},                                // must not wrap
            {{"sense", world, "--sensor", "1"}, "roomba1 has no sensor 1; it has laser 0"},  // past the last
-           {{"sense", world, "--robot", "tag3"}, "tag3 has no sensor"},                    // there, but blind
-           {{"sense", world, "--kind", "lidar"}, "--kind: expected laser"},                // somebody else's word
+           {{"sense", world, "--robot", "tag3"}, "tag3 has no sensor"},                     // there, but blind
+           {{"sense", world, "--kind", "lidar"}, "--kind: expected laser"},                 // somebody else's word
            {{"sense", world, "--robot", "bob"}, "no robot 'bob'; with sensors it has roomba1, roomba2"},
            {{"serve", world, "--rate", "0"}, "from 0.1 to 10000"},  // would never tick
            {{"serve", world, "--port", "65536"}, "from 0 to 65535"},

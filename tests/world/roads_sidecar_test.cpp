@@ -127,6 +127,14 @@ TEST(Sidecar, CommentsMayBeInAnyLanguage) {
   EXPECT_EQ(refused("\"a#\" = 1 # ƒ\n"), "a.toml:1" + expected) << "a quote may hide what looks like a comment";
 }
 
+// What is no TOML is the file's fault, whatever the parser takes for granted.
+TEST(Sidecar, NonsenseIsRefused) {
+  std::vector<Warning> warnings;
+  for (const char* text : {"=", ".", "[", "[.]", "[[", "a..b = 1", "a. = 1", "a = {,}", "a = {.}", "a = {=1}",
+                           "a = [,]", "{", "\"", "a = \"", "'''", "[a]b", "a = 1 b = 2", "[lanes.]", "scale 1"})
+    EXPECT_THROW(parse_sidecar("a.toml", text, warnings), base::InputError) << text;
+}
+
 // load_roads takes the file of the same name with .toml for .rndf.
 TEST(Sidecar, StandsBesideItsNetwork) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "sf_sidecar_test";
