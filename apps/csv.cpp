@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "apps/facts.h"
-#include "sensors/laser_packets.h"
 
 namespace sf::apps {
 
@@ -60,7 +59,7 @@ std::string place_of(const world::World& world, const sensors::Roster& roster, c
 }
 
 std::string text_of(const world::World& world, const base::ReadingBlock& reading) {
-  if (reading.kind == sensors::kLaserId) return beams_csv(world, reading);
+  if (reading.kind == base::kLaser) return beams_csv(world, reading);
   const sensors::SensorKind& kind = *sensors::find_kind(reading.kind);
   std::string text = csv_heading(kind);
   const std::size_t width = element_width(kind);

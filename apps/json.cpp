@@ -6,7 +6,6 @@
 #include "apps/facts.h"
 #include "base/hash.h"
 #include "sensors/field/truncation.h"
-#include "sensors/laser_packets.h"
 
 namespace sf::apps {
 
@@ -35,7 +34,7 @@ Json reasons(const netio::Counts& counts) {
 }
 
 std::uint64_t count_rays(const netio::Summary& summary) {
-  const auto lasers = summary.of.find(std::string(sensors::find_kind(sensors::kLaserId)->name));
+  const auto lasers = summary.of.find(std::string(sensors::find_kind(base::kLaser)->name));
   return lasers == summary.of.end() ? 0 : lasers->second.elements;
 }
 
@@ -181,7 +180,7 @@ std::string json_of(const world::World& world, const sensors::Roster& roster, co
   text += fmt::format("\n\"{}\": [", kind.list);
   const std::size_t width = element_width(kind);
   for (std::size_t i = 0; i < reading.values.size() / width; ++i)
-    text += (i == 0 ? "\n  " : ",\n  ") + (kind.id == sensors::kLaserId
+    text += (i == 0 ? "\n  " : ",\n  ") + (kind.id == base::kLaser
                                                ? beam_json(world, reading, static_cast<std::uint32_t>(i))
                                                : dump(element_json(kind, reading.values.subspan(i * width, width))));
   return text + "\n]}\n";

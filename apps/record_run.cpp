@@ -1,7 +1,5 @@
 #include "apps/record_run.h"
 
-#include "sensors/laser_packets.h"
-
 namespace sf::apps {
 
 namespace {
@@ -16,7 +14,7 @@ record::KindInfo kind_info(const sensors::SensorKind& kind) {
 /// Every kind but the laser, which has a message type of the world's own and a row of its own facts.
 void add_kinds(const sensors::Roster& roster, record::RunInfo& info) {
   for (const sensors::Roster::Group& group : roster.groups()) {
-    if (group.kind->id == sensors::kLaserId) continue;
+    if (group.kind->id == base::kLaser) continue;
     info.kinds.push_back(kind_info(*group.kind));
     for (const sensors::SensorRow& row : group.rows)
       info.movers[row.mover].sensors.push_back({group.kind->id, row.name, "", row.X_MS, row.rate});

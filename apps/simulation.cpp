@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "control/wander.h"
-#include "sensors/laser_packets.h"
 
 namespace sf::apps {
 
@@ -77,7 +76,7 @@ void Simulation::decide(std::int64_t time) {
       // A controller runs at its lasers' rate: between readings the last command stands, unless the bumper speaks.
       const bool contact = fleet_.contacts()[m] != 0;
       const bool looked =
-          std::any_of(own.begin(), own.end(), [](const base::ReadingBlock& r) { return r.kind == sensors::kLaserId; });
+          std::any_of(own.begin(), own.end(), [](const base::ReadingBlock& r) { return r.kind == base::kLaser; });
       if (!looked && !contact && !world_.movers[m].lasers.empty()) continue;
       commands_[m] = controllers_[m]->step({time, fleet_.reports()[m], own, contact});
     }

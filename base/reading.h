@@ -11,11 +11,15 @@ namespace sf::base {
 /// Hit value of a beam that met nothing within range.
 inline constexpr std::uint32_t kNoHit = 0xFFFFFFFFu;
 
+/// Wire id of the laser: the one kind that rooms beside `sensors` know by number, since controllers drive by it and
+/// recordings keep it as ROS knows it.
+inline constexpr std::uint8_t kLaser = 1;
+
 /// One reading of one sensor. The spans live until the next tick of the farm that returned them.
 struct ReadingBlock {
   std::uint32_t mover = 0;         ///< row in `world::World::movers`
   std::uint32_t sensor = 0;        ///< 0-based among the mover's sensors of this kind
-  std::uint8_t kind = 0;           ///< wire id of the kind; 1 = laser
+  std::uint8_t kind = 0;           ///< wire id of the kind
   std::uint32_t sequence = 0;      ///< counts this sensor's readings from 0
   std::int64_t time = 0;           ///< [ns] simulated time of the measurement (not of its delivery)
   Pose X_WM;                       ///< the mover's pose it was measured at

@@ -23,4 +23,8 @@ double median(std::vector<double> values);
 /// Medians of both parts, taken apart.
 Cost median(const std::vector<Cost>& costs);
 
+/// [-] How many times as long `reference` took: medians over turns of its time / the other's, of both parts. As many
+/// turns of each.
+Cost ratio(const std::vector<Cost>& reference, const std::vector<Cost>& turns);
+
 }  // namespace sf::bench

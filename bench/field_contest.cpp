@@ -66,13 +66,9 @@ void rate(std::vector<FieldEntrant>& entrants) {
       std::find_if(entrants.begin(), entrants.end(), [](const FieldEntrant& e) { return e.method == kReference; });
   for (FieldEntrant& entrant : entrants) {
     entrant.typical = median(entrant.turns);
-    std::vector<double> wall, cpu;
-    for (std::size_t k = 0; k < entrant.turns.size(); ++k) {
-      wall.push_back(reference->turns[k].wall_s / entrant.turns[k].wall_s);
-      cpu.push_back(reference->turns[k].cpu_s / entrant.turns[k].cpu_s);
-    }
-    entrant.ratio = median(wall);
-    entrant.cpu_ratio = median(cpu);
+    const Cost times = ratio(reference->turns, entrant.turns);
+    entrant.ratio = times.wall_s;
+    entrant.cpu_ratio = times.cpu_s;
   }
 }
 

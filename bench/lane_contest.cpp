@@ -60,13 +60,9 @@ void judge(const LaneReader& reader, const std::vector<sensors::EdgeReading>& ri
 }
 
 void rate(LaneEntrant& entrant, const LaneEntrant& plain) {
-  std::vector<double> wall, cpu;
-  for (std::size_t k = 0; k < entrant.turns.size(); ++k) {
-    wall.push_back(plain.turns[k].wall_s / entrant.turns[k].wall_s);
-    cpu.push_back(plain.turns[k].cpu_s / entrant.turns[k].cpu_s);
-  }
-  entrant.ratio = median(wall);
-  entrant.cpu_ratio = median(cpu);
+  const Cost times = ratio(plain.turns, entrant.turns);
+  entrant.ratio = times.wall_s;
+  entrant.cpu_ratio = times.cpu_s;
   entrant.typical = median(entrant.turns);
 }
 

@@ -7,7 +7,6 @@ namespace sf::control {
 
 namespace {
 
-constexpr std::uint8_t kLaser = 1;
 constexpr std::uint32_t kBeams = 512;  // of one laser are looked at
 constexpr double kSideways = 1.8;      // [rad] beams farther from straight ahead say nothing about where to go
 
@@ -67,7 +66,7 @@ void Surroundings::add(const View& view, std::span<const double> ranges, Sum& su
 Clearance Surroundings::look(std::span<const base::ReadingBlock> readings) const {
   Sum sum;
   for (const base::ReadingBlock& block : readings) {
-    if (block.kind == kLaser && block.sensor < views_.size()) add(views_[block.sensor], block.values, sum);
+    if (block.kind == base::kLaser && block.sensor < views_.size()) add(views_[block.sensor], block.values, sum);
   }
   const double left = sum.lefts > 0.0 ? sum.left / sum.lefts : 0.0;
   const double right = sum.rights > 0.0 ? sum.right / sum.rights : 0.0;

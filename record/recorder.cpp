@@ -11,7 +11,6 @@ namespace sf::record {
 
 namespace {
 
-constexpr std::uint8_t kLaser = 1;  // wire id of the kind
 constexpr std::size_t kMostChannels = 0xFFFF;
 
 RunInfo named(RunInfo info) {
@@ -96,7 +95,7 @@ void Recorder::write(const base::TickRecord& record) {
   if (info_.odometry_rate > 0.0 && record.time >= next_odometry_) write_odometry(record);
   for (const base::ReadingBlock& reading : record.readings) {
     if (!info_.record_readings) break;
-    reading.kind == kLaser ? write_scan(reading, record.time) : write_reading(reading, record.time);
+    reading.kind == base::kLaser ? write_scan(reading, record.time) : write_reading(reading, record.time);
   }
   flush();
   ++ticks_;

@@ -119,7 +119,7 @@ void Lasers::collect(std::vector<base::ReadingBlock>& out) {
     base::ReadingBlock block;
     block.mover = fan.mover;
     block.sensor = fan.sensor;
-    block.kind = kLaser;
+    block.kind = base::kLaser;
     block.X_WS = results.X_WS;
     block.values = shaping.needed ? std::span<const double>(values_).subspan(shaping.values, fan.laser.samples)
                                   : ranges.subspan(first, fan.laser.samples);
@@ -144,7 +144,7 @@ constexpr Column kColumns[] = {{"range_m"}};
 }  // namespace
 
 constinit const SensorKind laser_kind{
-    .id = kLaser,
+    .id = base::kLaser,
     .name = "laser",
     .word = {},  // world reads `laser` and `ranger` itself: Stage knows them
     .base_port = 10000,

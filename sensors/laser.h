@@ -6,8 +6,6 @@
 
 namespace sf::sensors {
 
-inline constexpr std::uint8_t kLaser = 1;  ///< wire id
-
 extern const SensorKind laser_kind;
 
 }  // namespace sf::sensors

@@ -134,12 +134,12 @@ std::uint8_t encode_laser(const SensorRow& sensor, const base::ReadingBlock& sca
   } else {
     put_extended(total, part, mine, writer);
   }
-  return plain ? kLaserId : kLaserId + kExtended;
+  return plain ? base::kLaser : base::kLaser + kExtended;
 }
 
 Part decode_laser(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire) {
-  const bool extended = wire == Wire::farm && type == kLaserId + kExtended;
-  if (!extended && type != kLaserId) return {.fault = Fault::out_of_range};
+  const bool extended = wire == Wire::farm && type == base::kLaser + kExtended;
+  if (!extended && type != base::kLaser) return {.fault = Fault::out_of_range};
   LaserPart scan;
   Part part{.fault = read_laser(payload, extended, scan)};
   if (part.fault != Fault::none) return part;

@@ -15,7 +15,6 @@
 
 namespace sf::sensors {
 
-inline constexpr std::uint8_t kLaserId = 1;                ///< type of the plain form
 inline constexpr std::uint32_t kPlainRays = 361;           ///< most rays of the plain and of the thesis' form
 inline constexpr double kPlainRange = 65.535;              ///< [m] largest range of these two
 inline constexpr std::uint32_t kPartRays = 340;            ///< rays of every extended part but the last

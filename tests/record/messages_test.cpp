@@ -8,6 +8,7 @@
 
 #include "record/fleet.h"
 #include "record/run_info.h"
+#include "tests/record/bytes_at.h"
 #include "tests/record/sample.h"
 
 namespace sf::record {
@@ -15,14 +16,7 @@ namespace {
 
 using base::Bytes;
 
-/// An independent look at a message: fields at offsets counted by hand, the encapsulation included.
-template <class T>
-T at(const Bytes& bytes, std::size_t offset) {
-  T value{};
-  if (offset + sizeof(T) > bytes.size()) throw std::out_of_range("offset " + std::to_string(offset));
-  std::memcpy(&value, bytes.data() + offset, sizeof(T));
-  return value;
-}
+using test::at;
 
 Scan sample_scan() {
   return {

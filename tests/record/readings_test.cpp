@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "tests/record/bytes_at.h"
 #include "tests/record/sample.h"
 
 namespace sf::record {
@@ -14,15 +15,8 @@ namespace {
 
 using base::Bytes;
 using test::array_kind;
+using test::at;
 using test::edge_kind;
-
-template <class T>
-T at(const Bytes& bytes, std::size_t offset) {
-  T value{};
-  if (offset + sizeof(T) > bytes.size()) throw std::out_of_range("offset " + std::to_string(offset));
-  std::memcpy(&value, bytes.data() + offset, sizeof(T));
-  return value;
-}
 
 Bytes encoded(const KindInfo& kind, const std::vector<double>& values) {
   Bytes out;

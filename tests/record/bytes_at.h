@@ -1,0 +1,21 @@
+#pragma once
+// Fields of encoded messages, looked at by hand.
+
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+#include "base/bytes.h"
+
+namespace sf::record::test {
+
+/// An independent look at a message: fields at offsets counted by hand, the encapsulation included.
+template <class T>
+T at(const base::Bytes& bytes, std::size_t offset) {
+  T value{};
+  if (offset + sizeof(T) > bytes.size()) throw std::out_of_range("offset " + std::to_string(offset));
+  std::memcpy(&value, bytes.data() + offset, sizeof(T));
+  return value;
+}
+
+}  // namespace sf::record::test
