@@ -15,7 +15,12 @@ enum class Stream : std::uint32_t {
   range_noise = 3,
   angle_noise = 4,
   slip = 5,
-  field_noise = 6
+  field_noise = 6,
+  range_cone = 7,  ///< sonar and infrared rangers
+  gyro = 8,
+  satellites = 9,
+  link = 10,     ///< delay and loss between a robot and the farm
+  decision = 11  ///< controllers' own choices
 };
 
 /// Names one draw: all five fields matter.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/random.h"
+#include "control/controllers.h"
 
 namespace sf::control {
 
@@ -110,5 +111,21 @@ base::Twist Wander::cruise(const Clearance& clearance, std::int64_t time) {
   const double steer = settings_.turn * (0.3 + 0.7 * near) * std::clamp(2.0 * freer, -1.0, 1.0);
   return {settings_.speed * (1.0 - 0.75 * near), 0.0, std::clamp(steer + drift_, -settings_.turn, settings_.turn)};
 }
+
+namespace {
+
+std::unique_ptr<Controller> make_wander(const Site& site, Settings&) {
+  return std::make_unique<Wander>(site.world.movers[site.mover], site.mover, site.seed);
+}
+
+}  // namespace
+
+constinit const ControllerKind wander_controller{
+    .name = "wander",
+    .summary = "explores without a map: drives where it is free, turns away from what is near",
+    .rate = 10.0,
+    .waits = false,
+    .make = make_wander,
+};
 
 }  // namespace sf::control

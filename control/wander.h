@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "control/controller.h"
+#include "control/controllers.h"
 #include "control/surroundings.h"
 #include "world/world.h"
 

@@ -51,6 +51,7 @@ struct Farm::State {
   gpu::Batch batch;
   Delivery delivery;
   std::vector<base::Pose> poses;     ///< per mover
+  std::vector<base::Report> states;  ///< per mover
   std::vector<std::uint32_t> heard;  ///< per mover: bits of kinds
   std::vector<base::ReadingBlock> blocks;
   std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
@@ -59,8 +60,11 @@ struct Farm::State {
 
   State(const world::World& w, gpu::Device& device, const FarmOptions& options)
       : world(w), workers(options.threads), roster(w), batch(device), delivery(roster), heard(w.movers.size(), 0) {
-    for (const world::Mover& mover : w.movers) poses.push_back(mover.X_WM);
-    const sensors::Site site{w, device, workers, options.seed, options.noise, options.scene};
+    for (const world::Mover& mover : w.movers) {
+      states.push_back({.mover = static_cast<std::uint32_t>(poses.size()), .X_WM = mover.X_WM});
+      poses.push_back(mover.X_WM);
+    }
+    const sensors::Site site{w, device, workers, options.seed, options.noise, options.true_poses, options.scene};
     for (const auto& group : roster.groups()) {
       stations.push_back({&group, group.kind->make(site), std::vector<std::uint64_t>(group.rows.size(), 0), {}});
       stations.back().due.reserve(group.rows.size());
@@ -70,6 +74,7 @@ struct Farm::State {
   }
 
   bool find_due(std::int64_t now);
+  void collect(Station& station, std::int64_t now);
   void prepare();
   void measure(std::int64_t now);
   void add_to_hash(std::span<const base::ReadingBlock> readings);
@@ -115,16 +120,25 @@ void Farm::State::measure(std::int64_t now) {
   watch.lap(stats.lists_s);
   batch.run();
   watch.lap(stats.device_s);
+  for (Station& station : stations)
+    if (!station.group->kind->derived) collect(station, now);
+  const std::size_t measured = blocks.size();
   for (Station& station : stations) {
-    const std::size_t first = blocks.size();
-    station.instruments->collect(blocks);
-    for (std::size_t i = first; i < blocks.size(); ++i) {
-      blocks[i].time = now;
-      blocks[i].sequence = static_cast<std::uint32_t>(station.due[i - first].sequence);
-      blocks[i].X_WM = poses[blocks[i].mover];
-    }
+    if (!station.group->kind->derived) continue;
+    station.instruments->observe(std::span(blocks).first(measured));
+    collect(station, now);
   }
   watch.lap(stats.collect_s);
+}
+
+void Farm::State::collect(Station& station, std::int64_t now) {
+  const std::size_t first = blocks.size();
+  station.instruments->collect(blocks);
+  for (std::size_t i = first; i < blocks.size(); ++i) {
+    blocks[i].time = now;
+    blocks[i].sequence = static_cast<std::uint32_t>(station.due[i - first].sequence);
+    blocks[i].X_WM = poses[blocks[i].mover];
+  }
 }
 
 void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
@@ -157,7 +171,9 @@ std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const
     const base::Pose& X = report.X_WM;
     SF_CHECK(std::isfinite(X.x + X.y + X.yaw), "the pose of mover " + std::to_string(report.mover) + " is not finite");
     s.poses.at(report.mover) = X;
+    s.states[report.mover] = report;
   }
+  for (Station& station : s.stations) station.instruments->follow(s.states, now);
   s.blocks.clear();
   if (s.find_due(now)) s.measure(now);
   Stopwatch watch;

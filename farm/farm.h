@@ -25,6 +25,7 @@ namespace sf::farm {
 struct FarmOptions {
   std::uint64_t seed = 0;  ///< of all noise
   bool noise = true;       ///< false: none, whatever the world says
+  bool true_poses = true;  ///< reports say where movers are; false: where they believe to be
   unsigned threads = 0;    ///< for the host's part; 0: as many as the machine has. Never changes a reading
   sensors::SceneOptions scene;
 };

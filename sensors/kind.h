@@ -15,6 +15,7 @@
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "base/reading.h"
+#include "base/report.h"
 #include "gpu/batch.h"
 #include "gpu/device.h"
 #include "sensors/scene/options.h"
@@ -50,6 +51,7 @@ struct Site {
   base::Workers& workers;
   std::uint64_t seed = 0;  ///< of all noise
   bool noise = true;       ///< false: none, whatever the world says
+  bool true_poses = true;  ///< movers are where their reports say: a simulation; false: these are estimates
   SceneOptions scene;
 };
 
@@ -66,7 +68,10 @@ class Instruments {
  public:
   virtual ~Instruments() = default;
 
-  /// Takes this tick's poses, one per mover, before `prepare`.
+  /// Takes every mover's state, one per mover, each tick, whether something is due or not: for what adds up over time
+  /// (wheels) or is told by the mover (what touches it). @param now [ns]
+  virtual void follow(std::span<const base::Report>, std::int64_t /*now*/) {}
+  /// Takes this tick's poses, one per mover, before `prepare`, when something is due.
   virtual void place(std::span<const Pose>) {}
   /// Host work before the batch, also when nothing is due. @return true when the batch must be recorded again.
   virtual bool prepare(std::span<const Due> due, std::span<const Pose> poses) = 0;
@@ -75,6 +80,9 @@ class Instruments {
   virtual void record_derive(gpu::Batch&) {}
   /// This tick's copies, up and down.
   virtual void copies(gpu::Batch& batch) = 0;
+  /// What other kinds measured this tick, before latency, of heard movers: for kinds that are made of others' readings
+  /// (SensorKind::derived), every tick in which there is any, before `collect`.
+  virtual void observe(std::span<const base::ReadingBlock>) {}
   /// Host work after the batch: appends one block per due sensor, in order. The farm fills in time, sequence and X_WM.
   /// Spans live until the next `prepare`.
   virtual void collect(std::vector<base::ReadingBlock>& out) = 0;
@@ -112,6 +120,7 @@ struct SensorKind {
   std::uint32_t base_port = 0;  ///< of its packets, unless told otherwise
   std::string_view list;        ///< JSON name of the list of elements; empty: a reading is one row
   std::span<const Column> columns;
+  bool derived = false;  ///< made of other kinds' readings: its `observe` is called, and it is collected after them
 
   /// Every sensor of this kind, by mover and in file order.
   /// @throws base::InputError with file and line for settings that it cannot have.
@@ -129,6 +138,10 @@ struct SensorKind {
                          base::Bytes& out);
   /// Judges any bytes that claim to be such a payload.
   Part (*decode)(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire);
+  /// Fills in what a payload says that `decode` found no fault with: `values` are the whole reading's, as in a
+  /// ReadingBlock, of which this part's elements are written. What the wire does not carry stays as it is.
+  void (*read)(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire,
+               std::span<double> values) = nullptr;
 };
 
 /// Every kind there is, by id: generated from sensors/CMakeLists.txt.

@@ -24,14 +24,15 @@ const std::map<std::string, Rooms> kMayInclude{
     {"gpu", {"base", "shaders"}},
     {"world", {"base"}},
     {"robots", {"world", "base"}},
-    {"sensors", {"robots", "world", "gpu", "base", "shaders"}},
-    {"control", {"sensors", "robots", "world", "base"}},
-    {"shaders", {"sensors", "base"}},
-    {"farm", {"sensors", "robots", "world", "gpu", "base"}},
+    {"maps", {"base"}},
+    {"sensors", {"maps", "robots", "world", "gpu", "base", "shaders"}},
+    {"control", {"sensors", "maps", "robots", "world", "base"}},
+    {"shaders", {"sensors", "maps", "base"}},
+    {"farm", {"sensors", "maps", "robots", "world", "gpu", "base"}},
     {"record", {"base"}},
     {"netio", {"base"}},
-    {"viz", {"farm", "record", "sensors", "robots", "world", "gpu", "base"}},
-    {"scenarios", {"viz", "netio", "record", "farm", "control", "sensors", "robots", "world", "gpu", "base"}},
+    {"viz", {"farm", "record", "sensors", "maps", "robots", "world", "gpu", "base"}},
+    {"scenarios", {"viz", "netio", "record", "farm", "control", "sensors", "maps", "robots", "world", "gpu", "base"}},
 };
 const Rooms kMayIncludeAnything{"apps", "bench", "tests"};
 
@@ -42,7 +43,7 @@ struct Heavy {
   std::string room;  ///< empty: any
 };
 const std::vector<Heavy> kHeavy{{"CLI/", "apps"},    {"nlohmann/", ""},  {"vtk", "viz"},    {"opencv2/", "viz"},
-                                {"asio", "netio"},   {"spng.h", ""},     {"yaml-cpp/", ""}, {"toml++/", "world"},
+                                {"asio", "netio"},   {"spng.h", ""},     {"yaml-cpp/", ""}, {"toml++/", ""},
                                 {"spdlog/", "base"}, {"embree", "bench"}};
 
 // The machine's sockets, which only netio opens.

@@ -5,6 +5,7 @@
 // A world is 2.5-D: flat outlines with a range of heights. The static part is a list of wall segments; movers (robots
 // and linked objects) carry their outlines with them. Tables of rows, joined by row number.
 
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -127,7 +128,14 @@ inline double bearing_of(const Laser& laser, std::uint32_t i) {
   return 2.0 * i <= last ? -0.5 * laser.fov + i * step : 0.5 * laser.fov - (last - i) * step;
 }
 
-enum class Drive { differential, omni, car };
+/// Skid: wheels on both sides that cannot be steered (Pioneer 3-AT), which scrub when they turn.
+enum class Drive { differential, omni, car, skid };
+
+/// What stands between a commanded twist and the wheels (robots/command_law.h).
+enum class CommandLaw : std::uint8_t {
+  direct,        ///< nothing
+  player_create  ///< Player's driver for the iRobot Create: whole millimetres, half the radius, at most 2 m of it
+};
 
 /// Something that moves: a robot, or a linked object that follows its packets.
 struct Mover {
@@ -139,12 +147,67 @@ struct Mover {
   std::vector<Segment> body;  ///< outline in its own frame, z above its own origin; carried models included
   double radius = 0.0;        ///< [m] of the circle about its origin that holds the body
   Drive drive = Drive::differential;
-  double max_forward = 0.5;    ///< [m/s] > 0
-  double max_turn = M_PI / 2;  ///< [rad/s] > 0
-  double wheelbase = 1.0;      ///< [m] car only
+  double max_forward = 0.5;                 ///< [m/s] > 0
+  double max_turn = M_PI / 2;               ///< [rad/s] > 0
+  double max_acceleration = HUGE_VAL;       ///< [m/s^2] > 0, speeding up and slowing down
+  double max_turn_acceleration = HUGE_VAL;  ///< [rad/s^2] > 0
+  double wheelbase = 1.0;                   ///< [m] between the axles of a car
+  double track = 0.3;                       ///< [m] > 0, between left and right wheels, as encoders see it
+  CommandLaw command_law = CommandLaw::direct;
   std::vector<Laser> lasers;
   std::vector<Sensor> sensors;  ///< of all other kinds, in file order
   std::vector<Magnet> magnets;  ///< that it carries
+};
+
+/// One piece of a path: a straight, or an arc.
+struct PathPiece {
+  Pose X_WP;               ///< the middle of the lane at its start, x along it
+  double length = 0.0;     ///< [m] > 0, along the middle
+  double curvature = 0.0;  ///< [1/m] positive: to the left; 0: straight
+  double width = 0.0;      ///< [m] > 0, of the lane
+};
+
+/// A lane to be followed (`path( ... )`), piece after piece.
+struct Path {
+  std::string name;
+  std::vector<PathPiece> pieces;  ///< at least one, each beginning where the one before ends
+};
+
+/// What a traffic light shows.
+enum class LightState : std::uint8_t { dark, red, yellow, green, flashing_red, flashing_yellow };
+
+struct LightPhase {
+  LightState state = LightState::red;
+  double duration = 0.0;  ///< [s] > 0
+};
+
+/// A traffic light with a fixed plan (world/lights.h says what it shows when).
+struct Light {
+  std::string name;                ///< unique in the world
+  std::uint32_t model = 0;         ///< row in `World::models`
+  Pose X_WL;                       ///< its lamps face along x, towards who comes
+  bool single = false;             ///< one lamp a side; else three and an indicator on top
+  std::vector<LightPhase> phases;  ///< at least one; over and over
+  double offset = 0.0;             ///< [s] time at which the first phase begins
+  std::vector<std::string>
+      points;  ///< way-points of the road network whose stop lines it governs, "segment.lane.point"
+};
+
+/// What sends infrared light to be seen by receivers: a virtual wall, or a dock.
+struct Emitter {
+  enum class Kind : std::uint8_t { virtual_wall, dock };
+  Kind kind = Kind::virtual_wall;
+  std::uint32_t model = 0;  ///< row in `World::models`
+  Pose X_WE;                ///< its beam looks along x
+  double range = 0.0;       ///< [m] > 0, of the beam (dock: of the two buoys' beams)
+  double fov = 0.0;         ///< [rad] in (0, 2 pi], of the beam, half to each side (dock: of each buoy)
+  double halo = 0.0;        ///< [m] >= 0, around it (dock: of the force field)
+};
+
+/// An edge in the floor: within its outline there is none.
+struct Drop {
+  std::vector<Vec2> outline;  ///< [m] world frame, closed, simple
+  std::uint32_t model = 0;    ///< row in `World::models`
 };
 
 /// Something to tell the user that did not stop the load.
@@ -168,8 +231,13 @@ struct World {
   std::vector<Magnet> magnets;   ///< that stand still
   double magnet_cutoff = 0.0;    ///< [m] magnets farther away along the ground are left out; 0: none is
   std::vector<Mover> movers;
-  std::map<std::string, int> kept;  ///< entity types that we do not model but keep as bodies, with their count
-  double interval = 0.1;            ///< [s] simulated time per tick (`interval_sim`)
+  std::vector<Path> paths;
+  std::vector<Light> lights;
+  std::vector<Emitter> emitters;
+  std::vector<Drop> drops;
+  std::vector<std::string> road_files;  ///< RNDFs that the world is painted from, as load_roads opens them
+  std::map<std::string, int> kept;      ///< entity types that we do not model but keep as bodies, with their count
+  double interval = 0.1;                ///< [s] simulated time per tick (`interval_sim`)
   Extent extent;
   std::vector<Warning> warnings;
   std::uint64_t hash = 0;  ///< of everything above that a reading depends on

@@ -1,0 +1,84 @@
+#ifndef MAPS_GRID_H
+#define MAPS_GRID_H
+// An occupancy grid as the thesis packs it (figure 42): two bits a cell, 4 x 4 cells in 32 bits.
+//
+// Cell (column, row) of word (C, R) is at bits 2 * (4 * (row % 4) + column % 4); words lie row by row. Columns grow
+// along +x, rows along -y: a map reads like a page. Read by both compilers.
+
+#define SF_CELL_UNEXPLORED 0u
+#define SF_CELL_OCCUPIED 1u
+#define SF_CELL_FREE 2u
+
+#ifdef __cplusplus
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "base/pose.h"
+
+namespace sf::maps {
+
+enum class Cell : std::uint8_t { unexplored = SF_CELL_UNEXPLORED, occupied = SF_CELL_OCCUPIED, free = SF_CELL_FREE };
+
+/// Where a map lies and how large it is.
+/// The thesis' offset (O_x, O_y) (equations 9 and 10) is left = -O_x, top = -O_y.
+struct GridPlan {
+  double left = 0.0;                ///< [m] x of the first column's left side
+  double top = 0.0;                 ///< [m] y of the first row's upper side
+  double cell = 0.03;               ///< [m] > 0
+  std::uint32_t word_columns = 30;  ///< in [1, 4096]: 4 cells each
+  std::uint32_t word_rows = 30;
+  bool operator==(const GridPlan&) const = default;
+};
+
+inline std::int64_t columns(const GridPlan& plan) { return 4 * std::int64_t{plan.word_columns}; }
+inline std::int64_t rows(const GridPlan& plan) { return 4 * std::int64_t{plan.word_rows}; }
+
+/// A cell by its place, within the map or not.
+struct CellAt {
+  std::int64_t column = 0;
+  std::int64_t row = 0;
+  bool operator==(const CellAt&) const = default;
+};
+
+/// The cell that holds `p`, by one rule for everyone: floor((x - left) / cell), floor((top - y) / cell), in double.
+inline CellAt cell_at(const GridPlan& plan, base::Vec2 p) {
+  return {static_cast<std::int64_t>(std::floor((p.x - plan.left) / plan.cell)),
+          static_cast<std::int64_t>(std::floor((plan.top - p.y) / plan.cell))};
+}
+
+inline bool contains(const GridPlan& plan, CellAt at) {
+  return at.column >= 0 && at.row >= 0 && at.column < columns(plan) && at.row < rows(plan);
+}
+
+/// [m] the middle of a cell.
+inline base::Vec2 middle(const GridPlan& plan, CellAt at) {
+  return {plan.left + (static_cast<double>(at.column) + 0.5) * plan.cell,
+          plan.top - (static_cast<double>(at.row) + 0.5) * plan.cell};
+}
+
+/// One map.
+struct Grid {
+  GridPlan plan;
+  std::vector<std::uint32_t> words;  ///< word_columns * word_rows
+
+  explicit Grid(const GridPlan& p = {}) : plan(p), words(std::size_t{p.word_columns} * p.word_rows) {}
+
+  std::size_t word_of(CellAt at) const {
+    return static_cast<std::size_t>(at.row / 4) * plan.word_columns + static_cast<std::size_t>(at.column / 4);
+  }
+  static unsigned shift_of(CellAt at) { return static_cast<unsigned>(2 * (4 * (at.row % 4) + at.column % 4)); }
+
+  /// Rule: `contains(plan, at)`.
+  Cell at(CellAt at) const { return static_cast<Cell>((words[word_of(at)] >> shift_of(at)) & 3u); }
+  void set(CellAt at, Cell cell) {
+    std::uint32_t& word = words[word_of(at)];
+    word = (word & ~(3u << shift_of(at))) | (static_cast<std::uint32_t>(cell) << shift_of(at));
+  }
+};
+
+}  // namespace sf::maps
+
+#endif
+#endif
