@@ -144,6 +144,7 @@ constinit const SensorKind laneedge_kind{
     .parts = lane_edge_parts,
     .encode = encode_lane_edge,
     .decode = decode_lane_edge,
+    .read = read_lane_edge,
 };
 
 }  // namespace sf::sensors

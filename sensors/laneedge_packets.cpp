@@ -21,6 +21,12 @@ Word in_units(double value, double unit, Word most) {
   return static_cast<Word>(std::clamp(std::floor(value / unit + 0.5), 0.0, static_cast<double>(most)));
 }
 
+/// The inverse, where all bits set say that there is none.
+template <class Word>
+double from_units(Word word, double unit) {
+  return word == std::numeric_limits<Word>::max() ? std::numeric_limits<double>::quiet_NaN() : word * unit;
+}
+
 }  // namespace
 
 std::string refuse_lane_edge(const SensorRow&, Wire) { return ""; }
@@ -49,6 +55,17 @@ Part decode_lane_edge(const SensorRow&, std::span<const std::uint8_t> payload, s
   if (payload.size() < bytes) part.fault = Fault::too_short;
   if (payload.size() > bytes) part.fault = Fault::too_long;
   return part;
+}
+
+void read_lane_edge(const SensorRow&, std::span<const std::uint8_t> payload, std::uint8_t, Wire wire,
+                    std::span<double> values) {
+  SF_CHECK(values.size() == 4, "a lane edge reading is four numbers");
+  base::ByteReader reader(payload);
+  values[0] = from_units(reader.get<std::uint16_t>(), 1e-3);
+  if (wire == Wire::thesis) return;
+  values[1] = reader.get<std::uint16_t>();
+  values[2] = from_units(reader.get<std::uint32_t>(), 1e-6);
+  values[3] = from_units(reader.get<std::uint32_t>(), 1e-6);
 }
 
 }  // namespace sf::sensors

@@ -21,5 +21,9 @@ std::uint32_t lane_edge_parts(const SensorRow& sensor, Wire wire);  ///< one
 std::uint8_t encode_lane_edge(const SensorRow& sensor, const base::ReadingBlock& reading, Wire wire, std::uint32_t part,
                               base::Bytes& out);
 Part decode_lane_edge(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire);
+/// Fills in the four columns from a payload that `decode_lane_edge` took; the thesis' gives the first alone. NaN where
+/// the wire says none.
+void read_lane_edge(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire,
+                    std::span<double> values);
 
 }  // namespace sf::sensors

@@ -156,6 +156,7 @@ constinit const SensorKind laser_kind{
     .parts = laser_parts,
     .encode = encode_laser,
     .decode = decode_laser,
+    .read = fill_laser,
 };
 
 }  // namespace sf::sensors

@@ -152,6 +152,21 @@ Part decode_laser(const SensorRow& sensor, std::span<const std::uint8_t> payload
   return part;
 }
 
+void fill_laser(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire,
+                std::span<double> values) {
+  LaserPart scan;
+  const Fault fault = read_laser(payload, wire == Wire::farm && type == base::kLaser + kExtended, scan);
+  SF_CHECK(fault == Fault::none && scan.first + scan.count <= values.size(),
+           "a payload of rays " + std::to_string(scan.first) + " to " + std::to_string(scan.first + scan.count) +
+               " for a scan of " + std::to_string(values.size()));
+  const bool beyond = sensor.limit > 0.0 && sensor.limit + kRangeSlack < kPlainRange;
+  for (std::uint32_t i = 0; i < scan.count; ++i) {
+    const double metres = range_of(scan, i);
+    const bool no_return = beyond && !scan.extended && metres >= kPlainRange;
+    values[scan.first + i] = no_return ? std::numeric_limits<double>::infinity() : metres;
+  }
+}
+
 Fault read_laser(std::span<const std::uint8_t> payload, bool extended, LaserPart& scan) {
   scan = {};
   scan.extended = extended;

@@ -2,7 +2,7 @@
 // Laser scans as payloads, in three forms; docs/packets.md gives every byte. Ranges are metres here and whole wire
 // units there, rounded to nearest (half up); they saturate at both ends and never wrap.
 //
-// The first four are the wire part of the laser's SensorKind. Of its rows they read `elements` (samples) and `limit`
+// The first five are the wire part of the laser's SensorKind. Of its rows they read `elements` (samples) and `limit`
 // (range_max).
 
 #include <cstdint>
@@ -36,6 +36,11 @@ std::uint8_t encode_laser(const SensorRow& sensor, const base::ReadingBlock& sca
 /// Takes a payload for what this laser may have sent: as many rays, none farther than range_max by more than 1 mm
 /// (saturated words and no return aside). A row of no elements, or of no limit, leaves that unchecked.
 Part decode_laser(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire);
+
+/// Fills in this part's ranges of a scan's `values`, from a payload that `decode_laser` took. A saturated plain word is
+/// infinite where the laser cannot see as far as it says.
+void fill_laser(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire,
+                std::span<double> values);
 
 /// A receiver's view of a payload: a whole scan, or one part of an extended one.
 struct LaserPart {

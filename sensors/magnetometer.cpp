@@ -175,6 +175,7 @@ constinit const SensorKind magnetometer_kind{
     .parts = magnetometer_parts,
     .encode = encode_magnetometer,
     .decode = decode_magnetometer,
+    .read = read_magnetometer_payload,
 };
 
 }  // namespace sf::sensors

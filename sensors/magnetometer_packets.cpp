@@ -76,6 +76,16 @@ Part decode_magnetometer(const SensorRow& sensor, std::span<const std::uint8_t> 
   return {.elements = static_cast<std::uint32_t>(said)};
 }
 
+void read_magnetometer_payload(const SensorRow&, std::span<const std::uint8_t> payload, std::uint8_t, Wire wire,
+                               std::span<double> values) {
+  base::ByteReader reader(payload.subspan(header_of(wire)));
+  const std::size_t words = words_of(wire);
+  SF_CHECK(reader.left() / (kWord * words) * kMagnetometerColumns == values.size(),
+           std::to_string(payload.size()) + " bytes for " + std::to_string(values.size()) + " values");
+  for (std::size_t e = 0; e < values.size() / kMagnetometerColumns; ++e)
+    for (std::size_t k = 0; k < words; ++k) values[kMagnetometerColumns * e + k] = reader.get<Word>() * kUnit;
+}
+
 double magnetometer_word(std::span<const std::uint8_t> payload, Wire wire, std::uint32_t i) {
   base::ByteReader reader(payload.subspan(header_of(wire) + kWord * std::size_t{i}));
   return reader.get<Word>() * kUnit;

@@ -31,6 +31,10 @@ std::uint8_t encode_magnetometer(const SensorRow& sensor, const base::ReadingBlo
 /// row of no elements, or of no limit, leaves that unchecked.
 Part decode_magnetometer(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire);
 
+/// Fills in all columns from a payload that `decode_magnetometer` took; the thesis' gives each element's field alone.
+void read_magnetometer_payload(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
+                               Wire wire, std::span<double> values);
+
 /// [T] word `i` of a payload that `decode_magnetometer` took: four an element, or one in the thesis' form.
 double magnetometer_word(std::span<const std::uint8_t> payload, Wire wire, std::uint32_t i);
 
