@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "apps/wording.h"
+#include "control/controllers.h"
 
 namespace sf::apps {
 
@@ -27,6 +28,15 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
 
 CLI::Validator not_empty(const std::string& what) {
   return {[what](std::string& text) { return refuse_empty(text, what); }, ""};
+}
+
+CLI::Validator key_and_value() {
+  return {[](std::string& text) {
+            const std::size_t at = text.find('=');
+            return at == std::string::npos || at == 0 ? fmt::format("expected KEY=VALUE such as kp=0.5, got '{}'", text)
+                                                      : "";
+          },
+          ""};
 }
 
 CLI::Validator pose() {
@@ -125,7 +135,19 @@ void add_robots(CLI::App& app, Options& o) {
   app.add_option("--robots", o.robots, "Clone the world's first robot to this many free poses")
       ->check(whole(1, 65535))
       ->type_name("N");
-  add_seed(app, o, "Seed of poses, wandering and noise");
+  add_seed(app, o, "Seed of poses, decisions and noise");
+}
+
+void add_controller(CLI::App& app, Options& o) {
+  std::vector<std::string> names;
+  for (const control::ControllerKind* kind : control::controllers()) names.emplace_back(kind->name);
+  app.add_option("--controller", o.controller, "Who drives: " + either(names))
+      ->check(one_of(names))
+      ->type_name("NAME")
+      ->capture_default_str();
+  app.add_option("--set", o.set, "One of the controller's settings (may be repeated)")
+      ->check(key_and_value())
+      ->type_name("KEY=VALUE");
 }
 
 void add_devices(CLI::App& app, Options& o) {
@@ -201,11 +223,12 @@ void add_sense(CLI::App& app, Options& o) {
 
 void add_run(CLI::App& app, Options& o) {
   CLI::App* sub =
-      app.add_subcommand("run", "Simulate a fleet that wanders, with every robot's sensors, as fast as it goes");
+      app.add_subcommand("run", "Simulate a fleet in the loop, with every robot's sensors, as fast as it goes");
   add_world(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
   add_robots(*sub, o);
+  add_controller(*sub, o);
   add_no_return(*sub, o);
   add_ports(*sub, o);
   sub->add_option("--duration", o.duration, "Simulated time [s]")

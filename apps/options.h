@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/pose.h"
 #include "sensors/kind.h"
@@ -43,7 +44,9 @@ struct Options {
   std::string record;  ///< folder; empty: no recording
   bool record_readings = false;
   bool real_time = false;
-  std::string send;  ///< host; empty: nobody
+  std::string controller = "wander";  ///< who drives
+  std::vector<std::string> set;       ///< its settings, "key=value" each
+  std::string send;                   ///< host; empty: nobody
   sensors::Wire wire = sensors::Wire::farm;
   std::map<std::uint8_t, std::uint32_t> base_ports;  ///< by sensor kind; every kind is in it
   std::uint32_t ports_per_robot = 8;

@@ -12,11 +12,12 @@
 #include "apps/commands.h"
 #include "apps/facts.h"
 #include "apps/lend.h"
+#include "apps/plan.h"
 #include "apps/post.h"
 #include "apps/progress.h"
 #include "apps/record_run.h"
-#include "apps/simulation.h"
 #include "apps/stop.h"
+#include "scenarios/simulation.h"
 
 namespace sf::apps {
 
@@ -79,12 +80,22 @@ void keep_pace(Clock::time_point start, double simulated) {
 
 }  // namespace
 
+namespace {
+
+scenarios::SimulationOptions simulation_options(const Options& options) {
+  scenarios::SimulationOptions simulation{.seed = options.seed, .threads = options.threads};
+  simulation.actor.plan = plan_of(options);
+  return simulation;
+}
+
+}  // namespace
+
 int run(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed);
   const sensors::Roster roster(world);
   if (!options.send.empty()) require_sendable(world, roster, options);
   gpu::Device device(options.device);
-  Simulation simulation(world, device, options.seed, options.threads);
+  scenarios::Simulation simulation(world, device, simulation_options(options));
   Outputs outputs(world, roster, options);
   catch_stop_signals();
 

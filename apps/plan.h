@@ -1,0 +1,18 @@
+#pragma once
+// Who drives, as the command line says it.
+
+#include <string>
+
+#include "apps/options.h"
+#include "control/controllers.h"
+
+namespace sf::apps {
+
+/// "key=value" as a setting: `true` and `false` are flags, numbers numbers; values between commas are a list of
+/// numbers, or of texts where one is none; all else is a text.
+control::Setting setting_of(const std::string& text);
+
+/// `--controller` with its `--set`s.
+control::Plan plan_of(const Options& options);
+
+}  // namespace sf::apps

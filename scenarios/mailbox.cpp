@@ -1,0 +1,61 @@
+#include "scenarios/mailbox.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace sf::scenarios {
+
+Mailbox::Slot& Mailbox::slot_of(const base::ReadingBlock& reading) {
+  for (Slot& slot : slots_)
+    if (slot.kind == reading.kind && slot.sensor == reading.sensor) return slot;
+  Slot& slot = slots_.emplace_back();
+  slot.kind = reading.kind;
+  slot.sensor = reading.sensor;
+  open_.reserve(slots_.size());
+  return slot;
+}
+
+void Mailbox::post(const base::ReadingBlock& reading, std::int64_t now) {
+  const std::uint32_t stream = std::uint32_t{reading.kind} << 16 | reading.sensor;
+  const auto later = netio::fate(link_, {robot_, stream, reading.sequence});
+  if (!later) return;
+  Slot& slot = slot_of(reading);
+  auto place = std::find_if(slot.coming.begin(), slot.coming.end(), [](const Kept& kept) { return !kept.used; });
+  if (place == slot.coming.end()) place = slot.coming.emplace(slot.coming.end());
+  place->block = reading;
+  place->due = now + *later;
+  place->used = true;
+  place->values.assign(reading.values.begin(), reading.values.end());
+  place->hits.assign(reading.hits.begin(), reading.hits.end());
+}
+
+/// The newest that is due takes the place of what is shown; all that is due is then done with.
+void Mailbox::show(Slot& slot, std::int64_t now) {
+  slot.renewed = false;
+  for (Kept& kept : slot.coming) {
+    if (!kept.used || kept.due > now) continue;
+    kept.used = false;
+    if (slot.has && kept.block.sequence <= slot.shown.block.sequence) continue;
+    std::swap(slot.shown, kept);
+    slot.shown.used = kept.used = false;
+    slot.has = slot.renewed = true;
+  }
+}
+
+std::span<const base::ReadingBlock> Mailbox::open(std::int64_t now) {
+  open_.clear();
+  for (Slot& slot : slots_) {
+    show(slot, now);
+    if (!slot.has) continue;
+    base::ReadingBlock& block = open_.emplace_back(slot.shown.block);
+    block.values = slot.shown.values;
+    block.hits = slot.shown.hits;
+  }
+  return open_;
+}
+
+bool Mailbox::renewed(std::uint8_t kind) const {
+  return std::any_of(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.kind == kind && s.renewed; });
+}
+
+}  // namespace sf::scenarios

@@ -1,0 +1,175 @@
+#include "scenarios/simulation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/error.h"
+#include "farm/schedule.h"
+#include "world/roads/roads.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+farm::FarmOptions farm_options(const SimulationOptions& options) {
+  farm::FarmOptions farm;
+  farm.seed = options.seed;
+  farm.threads = options.threads;
+  return farm;
+}
+
+std::optional<world::RoadNetwork> roads_of(const world::World& world) {
+  if (world.road_files.empty()) return std::nullopt;
+  std::vector<world::Warning> heard_at_load;
+  return world::load_roads(world.road_files.front(), heard_at_load);
+}
+
+}  // namespace
+
+Simulation::Simulation(const world::World& world, gpu::Device& device, SimulationOptions options)
+    : world_(world),
+      roads_(roads_of(world)),
+      farm_(world, device, farm_options(options)),
+      fleet_(world),
+      workers_(options.threads),
+      commands_(world.movers.size()),
+      obeyed_(world.movers.size()),
+      first_(world.movers.size() + 1),
+      intents_(world.movers.size()),
+      next_intents_(world.movers.size()),
+      others_(workers_.threads()),
+      signals_(world.lights.size()),
+      start_at_(std::llround(options.start_at * 1e9)),
+      interval_(std::llround(world.interval * 1e9)) {
+  SF_CHECK(options.actors.empty() || options.actors.size() == world.movers.size(),
+           "actors: expected none or one per mover");
+  farm_.hear_all();
+  for (std::uint32_t i = 0; i < world.movers.size(); ++i) drivers_.push_back(make_driver(i, options));
+  for (const Driver& driver : drivers_)
+    if (driver.controller) radio_ = std::max(radio_, driver.controller->radio());
+  for (auto& others : others_) others.reserve(radio_ > 0.0 ? 4 * world.movers.size() : 0);
+  sorted_.reserve(farm_.roster().count());
+}
+
+Simulation::Driver Simulation::make_driver(std::uint32_t mover, const SimulationOptions& options) {
+  Driver driver;
+  const Actor& actor = options.actors.empty() ? options.actor : options.actors[mover];
+  if (world_.movers[mover].is_tag || actor.plan.controller.empty()) return driver;
+  const control::Site site{world_, mover, options.seed, roads()};
+  control::Made made = control::make_controller(site, actor.plan);
+  driver.controller = std::move(made.controller);
+  driver.rate = made.rate;
+  // Who wanders goes by its eyes unless told a rate: one decision for each scan.
+  driver.by_lasers =
+      actor.plan.controller == "wander" && actor.plan.rate == 0.0 && !world_.movers[mover].lasers.empty();
+  driver.direct = driver.by_lasers && actor.link.perfect();
+  if (!driver.direct) driver.mailbox.emplace(actor.link, world_.movers[mover].id);
+  return driver;
+}
+
+bool Simulation::all_done() const {
+  const auto drives = [](const Driver& d) { return d.controller != nullptr; };
+  return std::any_of(drivers_.begin(), drivers_.end(), drives) &&
+         std::all_of(drivers_.begin(), drivers_.end(),
+                     [&](const Driver& d) { return !drives(d) || d.controller->done(); });
+}
+
+base::TickRecord Simulation::step() {
+  const std::int64_t time = static_cast<std::int64_t>(tick_) * interval_;
+  if (tick_ > 0) move();
+  const auto readings = farm_.tick(time, fleet_.reports());
+  const auto start = std::chrono::steady_clock::now();
+  sort_by_mover(readings);
+  decide(time);
+  move_s_ += seconds_since(start);
+  return {tick_++, time, fleet_.reports(), obeyed_, fleet_.contacts(), readings};
+}
+
+void Simulation::move() {
+  const auto start = std::chrono::steady_clock::now();
+  fleet_.move(commands_, interval_);
+  obeyed_ = commands_;
+  move_s_ += seconds_since(start);
+}
+
+void Simulation::sort_by_mover(std::span<const base::ReadingBlock> readings) {
+  std::fill(first_.begin(), first_.end(), 0u);
+  for (const base::ReadingBlock& r : readings) ++first_[r.mover + 1];
+  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  sorted_.resize(readings.size());
+  // Fills each mover's range from its start; afterwards first_[m] is its end, which is where the next one starts.
+  for (const base::ReadingBlock& r : readings) sorted_[first_[r.mover]++] = r;
+}
+
+void Simulation::decide(std::int64_t time) {
+  for (std::size_t i = 0; i < signals_.size(); ++i)
+    signals_[i] = world::signal_at(world_.lights[i], 1e-9 * static_cast<double>(time));
+  if (radio_ > 0.0) neighbours_.build(fleet_.reports(), radio_);
+  workers_.run(drivers_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
+    for (std::size_t m = begin; m < end; ++m) decide_one(static_cast<std::uint32_t>(m), time, thread);
+  });
+  std::copy(next_intents_.begin(), next_intents_.end(), intents_.begin());
+}
+
+void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thread) {
+  Driver& driver = drivers_[mover];
+  driver.stepped = false;
+  if (!driver.controller) return;
+  const std::uint32_t first = mover == 0 ? 0 : first_[mover - 1];
+  const std::span<const base::ReadingBlock> fresh{sorted_.data() + first, first_[mover] - first};
+  if (driver.mailbox)
+    for (const base::ReadingBlock& reading : fresh) driver.mailbox->post(reading, time);
+  const bool contact = fleet_.contacts()[mover] != 0;
+  if (!due(driver, fresh, time, contact)) return;
+
+  std::vector<control::Neighbour>& others = others_[thread];
+  others.clear();
+  const double radio = driver.controller->radio();
+  if (radio > 0.0) find_others(mover, radio, others);
+  const auto readings = driver.mailbox ? driver.mailbox->open(time) : fresh;
+  commands_[mover] =
+      driver.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_});
+  next_intents_[mover] = driver.controller->intent();
+  driver.stepped = true;
+}
+
+/// Between its steps a controller's last command stands.
+bool Simulation::due(Driver& driver, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const {
+  if (driver.by_lasers) {
+    if (driver.mailbox) driver.mailbox->open(time);
+    const bool looked = driver.mailbox ? driver.mailbox->renewed(base::kLaser)
+                                       : std::any_of(fresh.begin(), fresh.end(), [](const base::ReadingBlock& r) {
+                                           return r.kind == base::kLaser;
+                                         });
+    return looked || contact;
+  }
+  const std::uint64_t begun = farm::readings_begun(time, driver.rate, 0.0);
+  if (begun <= driver.begun) return false;
+  driver.begun = begun;
+  return true;
+}
+
+void Simulation::find_others(std::uint32_t mover, double radio, std::vector<control::Neighbour>& others) const {
+  const std::span<const base::Report> reports = fleet_.reports();
+  const base::Vec2 here{reports[mover].X_WM.x, reports[mover].X_WM.y};
+  neighbours_.any(here, radio, [&](std::uint32_t row) {
+    if (row == mover || world_.movers[row].is_tag) return false;
+    const base::Pose& X_WM = reports[row].X_WM;
+    if (base::length(base::Vec2{X_WM.x, X_WM.y} - here) > radio) return false;
+    others.push_back({world_.movers[row].id, reports[row], intents_[row]});
+    return false;
+  });
+  // Rows may come more than once.
+  std::sort(others.begin(), others.end(),
+            [](const control::Neighbour& p, const control::Neighbour& q) { return p.id < q.id; });
+  others.erase(std::unique(others.begin(), others.end(),
+                           [](const control::Neighbour& p, const control::Neighbour& q) { return p.id == q.id; }),
+               others.end());
+}
+
+}  // namespace sf::scenarios

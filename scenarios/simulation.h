@@ -1,0 +1,103 @@
+#pragma once
+// A simulated fleet in the loop: controllers decide, movers move, the farm senses.
+//
+//   Simulation simulation(world, device, {.seed = 7, .plan = {.controller = "wander"}});
+//   while (running) recorder.write(simulation.step());
+//
+// One tick: motion since the last one, readings, decisions. What is decided at a tick is driven until the next.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/sink.h"
+#include "control/controllers.h"
+#include "farm/farm.h"
+#include "netio/link.h"
+#include "robots/fleet.h"
+#include "robots/neighbours.h"
+#include "scenarios/mailbox.h"
+#include "world/lights.h"
+#include "world/roads/network.h"
+#include "world/world.h"
+
+namespace sf::scenarios {
+
+/// Who drives one robot, and how its readings come to it.
+struct Actor {
+  control::Plan plan{.controller = "wander"};  ///< no name: the robot stands
+  netio::LinkPlan link;                        ///< of its readings; V2V and its own state are not delayed
+};
+
+struct SimulationOptions {
+  std::uint64_t seed = 1;     ///< of noise and of controllers' choices
+  unsigned threads = 0;       ///< of the host's part; 0: all. Never changes a result
+  Actor actor;                ///< of every robot
+  std::vector<Actor> actors;  ///< of each mover by row, where not empty; tags always stand
+  double start_at = 0.0;      ///< [s] the start signal is given from here on
+};
+
+/// `world` and `device` must outlive it. One thread at a time. Nothing is allocated by a tick after warm-up.
+class Simulation {
+ public:
+  /// @throws base::InputError for a controller that does not exist, cannot have its settings or lacks what it needs.
+  Simulation(const world::World& world, gpu::Device& device, SimulationOptions options);
+
+  /// One tick of `world.interval`; the first looks at time 0, before anything moved. Spans live until the next.
+  base::TickRecord step();
+
+  const farm::Farm& farm() const { return farm_; }
+  double move_seconds() const { return move_s_; }  ///< [s] spent on controllers and motion
+
+  /// Of one mover; null for those that stand.
+  const control::Controller* controller(std::uint32_t mover) const { return drivers_[mover].controller.get(); }
+  /// The last tick asked it what to do.
+  bool stepped(std::uint32_t mover) const { return drivers_[mover].stepped; }
+  /// All controllers are done; false where there are none.
+  bool all_done() const;
+  const world::RoadNetwork* roads() const { return roads_ ? &*roads_ : nullptr; }
+
+ private:
+  struct Driver {
+    std::unique_ptr<control::Controller> controller;  ///< none: stands
+    double rate = 10.0;                               ///< [Hz]
+    bool by_lasers = false;                           ///< steps when a scan comes or its bumper speaks, not by rate
+    bool direct = false;                              ///< readings are looked at as they come, none is kept
+    bool stepped = false;
+    std::uint64_t begun = 0;  ///< steps so far, by rate
+    std::optional<Mailbox> mailbox;
+  };
+  Driver make_driver(std::uint32_t mover, const SimulationOptions& options);
+  void move();
+  void sort_by_mover(std::span<const base::ReadingBlock> readings);
+  void decide(std::int64_t time);
+  void decide_one(std::uint32_t mover, std::int64_t time, unsigned thread);
+  bool due(Driver& driver, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
+  void find_others(std::uint32_t mover, double radio, std::vector<control::Neighbour>& others) const;
+
+  const world::World& world_;
+  std::optional<world::RoadNetwork> roads_;
+  farm::Farm farm_;
+  robots::Fleet fleet_;
+  robots::Neighbours neighbours_;
+  base::Workers workers_;
+  std::vector<Driver> drivers_;  ///< per mover
+  std::vector<base::Twist> commands_;
+  std::vector<base::Twist> obeyed_;   ///< what the tick just recorded was told to do
+  std::vector<std::uint32_t> first_;  ///< per mover: range of its readings in `sorted_`
+  std::vector<base::ReadingBlock> sorted_;
+  std::vector<base::Intent> intents_;                    ///< per mover, as others hear them now
+  std::vector<base::Intent> next_intents_;               ///< as they will from the next tick on
+  std::vector<std::vector<control::Neighbour>> others_;  ///< per thread
+  std::vector<world::Signal> signals_;
+  double radio_ = 0.0;  ///< [m] farthest that anyone wants to hear
+  std::int64_t start_at_;
+  std::int64_t interval_;  ///< [ns]
+  std::uint64_t tick_ = 0;
+  double move_s_ = 0.0;
+};
+
+}  // namespace sf::scenarios
