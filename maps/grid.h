@@ -12,6 +12,7 @@
 #ifdef __cplusplus
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -19,6 +20,10 @@
 
 namespace sf::maps {
 
+inline constexpr std::uint32_t kMostWordColumns = 4096;  ///< and rows
+inline constexpr std::uint32_t kMostWords = 1u << 20;    ///< of one map: 4 MiB, 4096 x 4096 cells
+
+/// Two bits hold one more state, which no map has.
 enum class Cell : std::uint8_t { unexplored = SF_CELL_UNEXPLORED, occupied = SF_CELL_OCCUPIED, free = SF_CELL_FREE };
 
 /// Where a map lies and how large it is.
@@ -27,13 +32,26 @@ struct GridPlan {
   double left = 0.0;                ///< [m] x of the first column's left side
   double top = 0.0;                 ///< [m] y of the first row's upper side
   double cell = 0.03;               ///< [m] > 0
-  std::uint32_t word_columns = 30;  ///< in [1, 4096]: 4 cells each
-  std::uint32_t word_rows = 30;
+  std::uint32_t word_columns = 30;  ///< in [1, kMostWordColumns]: 4 cells each
+  std::uint32_t word_rows = 30;     ///< likewise; word_columns * word_rows <= kMostWords
   bool operator==(const GridPlan&) const = default;
 };
 
 inline std::int64_t columns(const GridPlan& plan) { return 4 * std::int64_t{plan.word_columns}; }
 inline std::int64_t rows(const GridPlan& plan) { return 4 * std::int64_t{plan.word_rows}; }
+inline std::uint32_t words(const GridPlan& plan) { return plan.word_columns * plan.word_rows; }
+
+/// Finite, and within the limits above and those of packets: nothing that is worked out from it can overflow.
+inline bool is_sound(const GridPlan& plan) {
+  constexpr double kFarthest = 1e7;  // [m]
+  const bool placed = std::abs(plan.left) <= kFarthest && std::abs(plan.top) <= kFarthest;
+  const bool sized = plan.word_columns >= 1 && plan.word_columns <= kMostWordColumns && plan.word_rows >= 1 &&
+                     plan.word_rows <= kMostWordColumns && plan.word_columns <= kMostWords / plan.word_rows;
+  return placed && sized && plan.cell >= 1e-4 && plan.cell <= 1e3;
+}
+
+/// True when every cell is in one of the three states.
+inline bool is_sound(std::uint32_t word) { return (word & (word >> 1) & 0x55555555u) == 0; }
 
 /// A cell by its place, within the map or not.
 struct CellAt {
@@ -42,10 +60,16 @@ struct CellAt {
   bool operator==(const CellAt&) const = default;
 };
 
-/// The cell that holds `p`, by one rule for everyone: floor((x - left) / cell), floor((top - y) / cell), in double.
+/// The whole number at or below `value`, which must be within 2^62.
+inline std::int64_t whole_below(double value) {
+  const auto cut = static_cast<std::int64_t>(value);
+  return cut - (static_cast<double>(cut) > value ? 1 : 0);
+}
+
+/// The cell that holds `p` (within 1e15 cells), by one rule for everyone: floor((x - left) / cell), floor((top - y) /
+/// cell), in double.
 inline CellAt cell_at(const GridPlan& plan, base::Vec2 p) {
-  return {static_cast<std::int64_t>(std::floor((p.x - plan.left) / plan.cell)),
-          static_cast<std::int64_t>(std::floor((plan.top - p.y) / plan.cell))};
+  return {whole_below((p.x - plan.left) / plan.cell), whole_below((plan.top - p.y) / plan.cell)};
 }
 
 inline bool contains(const GridPlan& plan, CellAt at) {

@@ -36,6 +36,8 @@ struct SensorRow {
   double latency = 0.0;        ///< [s] from measurement to delivery
   std::uint32_t elements = 1;  ///< rows of a reading: beams of a laser, elements of an array, else 1
   double limit = 0.0;          ///< largest value an element gives, in the unit of its first column
+  std::uint32_t across = 0;    ///< elements that lie in rows make a picture: so many in a row; 0: they do not
+  double pitch = 0.0;          ///< [m] of such a picture: side of its smallest square
 };
 
 /// One sensor that is due.

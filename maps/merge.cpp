@@ -1,0 +1,77 @@
+#include "maps/merge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace sf::maps {
+
+namespace {
+
+/// [cells] of `other`'s corner from that of `plan`.
+CellAt corner_in(const GridPlan& plan, const GridPlan& other) {
+  return {static_cast<std::int64_t>(std::llround((other.left - plan.left) / plan.cell)),
+          static_cast<std::int64_t>(std::llround((plan.top - other.top) / plan.cell))};
+}
+
+std::int64_t words_below(std::int64_t cells) { return cells >= 0 ? cells / 4 : -((3 - cells) / 4); }
+
+/// Words from the first map's corner: the smallest box that holds all.
+struct WordBox {
+  std::int64_t left = 0, top = 0, right = 0, bottom = 0;
+};
+
+WordBox box_of(std::span<const Grid* const> grids) {
+  WordBox box;
+  for (const Grid* grid : grids) {
+    const CellAt corner = corner_in(grids[0]->plan, grid->plan);
+    box.left = std::min(box.left, words_below(corner.column));
+    box.top = std::min(box.top, words_below(corner.row));
+    box.right = std::max(box.right, -words_below(-(corner.column + columns(grid->plan))));
+    box.bottom = std::max(box.bottom, -words_below(-(corner.row + rows(grid->plan))));
+  }
+  return box;
+}
+
+Cell both(Cell old, Cell more, Precedence precedence) {
+  if (more == Cell::unexplored) return old;
+  return precedence == Precedence::occupied && old == Cell::occupied ? old : more;
+}
+
+}  // namespace
+
+std::string refuse_merge(std::span<const Grid* const> grids) {
+  for (const Grid* grid : grids)
+    if (grid->plan.cell != grids[0]->plan.cell)
+      return "maps with cells of " + std::to_string(grids[0]->plan.cell) + " m and of " +
+             std::to_string(grid->plan.cell) + " m cannot be merged; give them the same `cell`";
+  const WordBox box = box_of(grids);
+  const std::int64_t across = box.right - box.left;
+  const std::int64_t down = box.bottom - box.top;
+  if (across <= kMostWordColumns && down <= kMostWordColumns && across * down <= kMostWords) return "";
+  return "maps that lie so far apart cannot be merged: one of " + std::to_string(4 * across) + " x " +
+         std::to_string(4 * down) + " cells would hold them all; merge those that are neighbours";
+}
+
+Grid merge(std::span<const Grid* const> grids, Precedence precedence) {
+  SF_CHECK(!grids.empty() && refuse_merge(grids).empty(), "maps that cannot be merged");
+  const WordBox box = box_of(grids);
+  const GridPlan& first = grids[0]->plan;
+  const double word = 4.0 * first.cell;
+  Grid merged({first.left + word * static_cast<double>(box.left), first.top - word * static_cast<double>(box.top),
+               first.cell, static_cast<std::uint32_t>(box.right - box.left),
+               static_cast<std::uint32_t>(box.bottom - box.top)});
+  for (const Grid* grid : grids) {
+    const CellAt corner = corner_in(first, grid->plan);
+    const CellAt shift{corner.column - 4 * box.left, corner.row - 4 * box.top};
+    for (std::int64_t row = 0; row < rows(grid->plan); ++row)
+      for (std::int64_t column = 0; column < columns(grid->plan); ++column) {
+        const CellAt to{column + shift.column, row + shift.row};
+        merged.set(to, both(merged.at(to), grid->at({column, row}), precedence));
+      }
+  }
+  return merged;
+}
+
+}  // namespace sf::maps

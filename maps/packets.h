@@ -1,0 +1,75 @@
+#pragma once
+// Maps as payloads, little-endian; docs/packets.md gives every byte.
+//
+//   farm:   f64 left, top, cell; u16 part, parts, word columns, word rows, flags, count; u32 words, at most 335 a part
+//   thesis: two datagrams: u8 word rows, u8 word columns and the first half of the words (half a word more where they
+//           are odd), then the others. Nothing but their lengths tells them apart.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/bytes.h"
+#include "maps/grid.h"
+
+namespace sf::maps {
+
+inline constexpr std::uint32_t kPartWords = 335;        ///< of every part but the last
+inline constexpr std::uint32_t kMostPlainWords = 1022;  ///< of a map in the thesis' form: datagrams below 2048 bytes
+inline constexpr std::uint32_t kMostPlainSide = 255;    ///< word rows and columns of such a map
+inline constexpr std::uint32_t kTruePoses = 1;          ///< flag: made from where the robot was, not from an estimate
+
+inline std::uint32_t parts_of(const GridPlan& plan) { return (words(plan) + kPartWords - 1) / kPartWords; }
+
+/// Words of the first datagram in the thesis' form.
+inline std::uint32_t plain_half(std::uint32_t words) { return (words + 1) / 2; }
+
+/// A receiver's view of a payload of the farm's form.
+struct MapPart {
+  GridPlan plan;
+  std::uint32_t part = 0;
+  std::uint32_t parts = 1;
+  std::uint32_t flags = 0;
+  std::uint32_t first = 0;              ///< word it begins with
+  std::uint32_t count = 0;              ///< words in it
+  std::span<const std::uint8_t> bytes;  ///< 4 * count; alive with the payload
+};
+
+/// Word `i` in [0, part.count).
+std::uint32_t word_of(const MapPart& part, std::uint32_t i);
+
+enum class PartFault { none, too_short, too_long, out_of_range };
+
+/// Any bytes give a part or a fault. Words with a state that no cell has are out of range.
+PartFault read_part(std::span<const std::uint8_t> payload, MapPart& part);
+
+/// Appends part `part` of a map. `word_at(i)` gives word i. @param flags see kTruePoses
+template <class WordAt>
+void put_part(const GridPlan& plan, std::uint32_t part, std::uint32_t flags, WordAt&& word_at, base::Bytes& out) {
+  const std::uint32_t first = part * kPartWords;
+  const std::uint32_t count = words(plan) - first < kPartWords ? words(plan) - first : kPartWords;
+  base::ByteWriter writer(out);
+  writer.put(plan.left);
+  writer.put(plan.top);
+  writer.put(plan.cell);
+  for (const std::uint32_t number : {part, parts_of(plan), plan.word_columns, plan.word_rows, flags, count})
+    writer.put(static_cast<std::uint16_t>(number));
+  for (std::uint32_t i = 0; i < count; ++i) writer.put(std::uint32_t{word_at(first + i)});
+}
+
+/// A receiver's view of one of the thesis' two datagrams.
+struct PlainPart {
+  bool second = false;  ///< it has no rows and columns: whose words these are, the datagram before must have said
+  std::uint32_t word_rows = 0;
+  std::uint32_t word_columns = 0;
+  std::uint32_t count = 0;
+  std::span<const std::uint8_t> bytes;  ///< 4 * count
+};
+
+/// Any bytes give a part or a fault.
+PartFault read_plain(std::span<const std::uint8_t> datagram, PlainPart& part);
+
+/// Word `i` in [0, part.count).
+std::uint32_t word_of(const PlainPart& part, std::uint32_t i);
+
+}  // namespace sf::maps

@@ -1,0 +1,69 @@
+#include "maps/plain_mapper.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace sf::maps {
+
+namespace {
+
+/// Frees every cell of one beam's line. `inside`: none of them needs to be looked for outside of the map.
+void free_line(Grid& grid, CellAt sensor, std::int32_t columns, std::int32_t rows, bool inside) {
+  const bool flat = std::abs(columns) >= std::abs(rows);
+  const std::int32_t steps = std::abs(flat ? columns : rows);
+  const std::int32_t aside = std::abs(flat ? rows : columns);
+  const CellAt along = flat ? CellAt{columns < 0 ? -1 : 1, 0} : CellAt{0, rows < 0 ? -1 : 1};
+  const CellAt across = flat ? CellAt{0, rows < 0 ? -1 : 1} : CellAt{columns < 0 ? -1 : 1, 0};
+  CellAt at = sensor;
+  // (2 i aside + steps) / (2 steps), rounded down, kept as quotient (where `at` is) and remainder.
+  std::int32_t rest = steps;
+  for (std::int32_t i = 0; i <= steps; ++i) {
+    if (inside || contains(grid.plan, at)) grid.set(at, Cell::free);
+    at = {at.column + along.column, at.row + along.row};
+    rest += 2 * aside;
+    if (rest < 2 * steps) continue;
+    rest -= 2 * steps;
+    at = {at.column + across.column, at.row + across.row};
+  }
+}
+
+}  // namespace
+
+void add_ends(Grid& grid, const ScanEnds& scan, std::span<const std::uint32_t> ends) {
+  const CellBox part = intersect(scan.box, cells_of(grid.plan));
+  if (is_empty(part)) return;
+  const bool inside = part.low == scan.box.low && part.high == scan.box.high;
+  for (const std::uint32_t end : ends) free_line(grid, scan.sensor, columns_of(end), rows_of(end), inside);
+  for (const std::uint32_t end : ends) {
+    const CellAt at{scan.sensor.column + columns_of(end), scan.sensor.row + rows_of(end)};
+    if (hit_of(end) && (inside || contains(grid.plan, at))) grid.set(at, Cell::occupied);
+  }
+}
+
+void add_scan(Grid& grid, const ScanView& scan) {
+  std::vector<std::uint32_t> ends(scan.ranges.size());
+  add_ends(grid, trace_ends(grid.plan, scan, ends), ends);
+}
+
+void add_scan(OddsGrid& grid, const ScanView& scan) {
+  Grid covered(grid.plan);
+  add_scan(covered, scan);
+  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+    const auto state = static_cast<Cell>(covered.words[i / 16] >> 2 * (i % 16) & 3u);
+    const std::int32_t more = state == Cell::occupied ? grid.rule.hit : state == Cell::free ? -grid.rule.miss : 0;
+    grid.cells[i] = static_cast<std::int16_t>(std::clamp(grid.cells[i] + more, -grid.rule.limit, grid.rule.limit));
+  }
+}
+
+Grid states_of(const OddsGrid& grid) {
+  Grid states(grid.plan);
+  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+    const std::uint32_t state = grid.cells[i] > 0   ? SF_CELL_OCCUPIED
+                                : grid.cells[i] < 0 ? SF_CELL_FREE
+                                                    : SF_CELL_UNEXPLORED;
+    states.words[i / 16] |= state << 2 * (i % 16);
+  }
+  return states;
+}
+
+}  // namespace sf::maps

@@ -1,0 +1,78 @@
+#include "maps/scan_ends.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace sf::maps {
+
+namespace {
+
+constexpr double kFarthestCell = 1e9;  // [cells] of a sensor from the map's corner: beyond, it is nowhere near
+
+void grow(CellBox& box, CellAt at) {
+  box.low = {std::min(box.low.column, at.column), std::min(box.low.row, at.row)};
+  box.high = {std::max(box.high.column, at.column + 1), std::max(box.high.row, at.row + 1)};
+}
+
+}  // namespace
+
+std::vector<base::Vec2> beam_directions(double fov, std::uint32_t samples) {
+  std::vector<base::Vec2> beams;
+  const double last = samples - 1.0;
+  for (std::uint32_t i = 0; i < samples; ++i) {
+    const double step = samples > 1 ? fov / last : 0.0;
+    const double bearing = samples < 2 ? 0.0 : 2.0 * i <= last ? -0.5 * fov + i * step : 0.5 * fov - (last - i) * step;
+    beams.push_back({std::cos(bearing), std::sin(bearing)});
+  }
+  return beams;
+}
+
+CellBox intersect(const CellBox& a, const CellBox& b) {
+  return {{std::max(a.low.column, b.low.column), std::max(a.low.row, b.low.row)},
+          {std::min(a.high.column, b.high.column), std::min(a.high.row, b.high.row)}};
+}
+
+ScanEnds trace_ends(const GridPlan& plan, const ScanView& scan, std::span<std::uint32_t> ends) {
+  SF_CHECK(scan.range_max <= kFarthestRange * plan.cell && scan.range_min >= 0.0,
+           std::to_string(scan.range_max) + " m on cells of " + std::to_string(plan.cell) + " m");
+  SF_CHECK(scan.beams.size() == scan.ranges.size() && ends.size() == scan.ranges.size(),
+           std::to_string(scan.ranges.size()) + " ranges of " + std::to_string(scan.beams.size()) + " beams");
+  ScanEnds out;
+  const base::Pose& X = scan.X_WS;
+  const base::Vec2 place{(X.x - plan.left) / plan.cell, (plan.top - X.y) / plan.cell};
+  const double c = std::cos(X.yaw);
+  const double s = std::sin(X.yaw);
+  // Also false for what is not a number.
+  if (!(std::abs(place.x) <= kFarthestCell && std::abs(place.y) <= kFarthestCell && std::abs(c + s) <= 2.0)) return out;
+  out.sensor = cell_at(plan, {X.x, X.y});
+  out.within = {place.x - static_cast<double>(out.sensor.column) - 0.5,
+                place.y - static_cast<double>(out.sensor.row) - 0.5};
+
+  std::size_t silent = 0;  // beams from the first on that said nothing
+  std::uint32_t said = 0;
+  CellBox box{{0, 0}, {1, 1}};  // from the sensor's cell
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    const double range = scan.ranges[k];
+    const bool tells = range > scan.range_min || (scan.range_min == 0.0 && range == 0.0);
+    if (tells) {
+      const bool hit = range < scan.range_max;
+      const double r = hit ? range : scan.range_max;
+      const base::Vec2 b = scan.beams[k];
+      const CellAt end = cell_at(plan, {X.x + r * (c * b.x - s * b.y), X.y + r * (s * b.x + c * b.y)});
+      const CellAt from{end.column - out.sensor.column, end.row - out.sensor.row};
+      grow(box, from);
+      said = pack_end(from.column, from.row, hit);
+    }
+    if (!tells && silent == k) ++silent;
+    ends[k] = said;
+  }
+  if (silent == ends.size()) return out;
+  std::fill(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(silent), ends[silent]);
+  out.box = {{box.low.column + out.sensor.column, box.low.row + out.sensor.row},
+             {box.high.column + out.sensor.column, box.high.row + out.sensor.row}};
+  return out;
+}
+
+}  // namespace sf::maps

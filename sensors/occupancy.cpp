@@ -1,0 +1,117 @@
+#include "sensors/occupancy.h"
+
+#include <map>
+#include <utility>
+
+#include "maps/packets.h"
+#include "sensors/occupancy_packets.h"
+
+namespace sf::sensors {
+
+namespace {
+
+class Occupancies : public Instruments {
+ public:
+  explicit Occupancies(const Site& site);
+
+  bool prepare(std::span<const Due> due, std::span<const Pose>) override {
+    due_.assign(due.begin(), due.end());
+    return false;
+  }
+  void record_measure(gpu::Batch&) override {}
+  void copies(gpu::Batch&) override {}
+  void observe(std::span<const base::ReadingBlock> readings) override;
+  void collect(std::vector<base::ReadingBlock>& out) override;
+  Work work() const override { return {}; }
+
+ private:
+  std::vector<Occupancy> maps_;
+  MapBatch batch_;
+  std::uint32_t flags_;
+  std::multimap<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> of_laser_;  ///< (mover, laser) to its maps
+  std::vector<Due> due_;
+  std::vector<MapScan> scans_;
+  std::vector<std::uint32_t> wanted_;
+  std::vector<std::size_t> first_;  ///< per map: its values
+  std::vector<double> values_;      ///< of all maps
+};
+
+std::vector<MapPlan> plans_of(const std::vector<Occupancy>& all) {
+  std::vector<MapPlan> plans;
+  for (const Occupancy& map : all) plans.push_back(map.plan);
+  return plans;
+}
+
+Occupancies::Occupancies(const Site& site)
+    : maps_(occupancies_of(site.world)),
+      batch_(site.device, site.workers, plans_of(maps_)),
+      flags_(site.true_poses ? maps::kTruePoses : 0) {
+  std::size_t values = 0;
+  for (std::uint32_t i = 0; i < maps_.size(); ++i) {
+    of_laser_.emplace(std::pair{maps_[i].row.mover, maps_[i].laser}, i);
+    first_.push_back(values);
+    values += maps_[i].row.elements;
+  }
+  values_.resize(values);
+  scans_.reserve(maps_.size());
+  wanted_.reserve(maps_.size());
+}
+
+void Occupancies::observe(std::span<const base::ReadingBlock> readings) {
+  scans_.clear();
+  wanted_.clear();
+  for (const base::ReadingBlock& r : readings) {
+    if (r.kind != base::kLaser) continue;
+    const auto [first, last] = of_laser_.equal_range({r.mover, r.sensor});
+    for (auto it = first; it != last; ++it) scans_.push_back({it->second, r.X_WS, r.values});
+  }
+  for (const Due& due : due_) wanted_.push_back(due.row);
+  batch_.update(scans_, wanted_);
+}
+
+void Occupancies::collect(std::vector<base::ReadingBlock>& out) {
+  for (const Due& due : due_) {
+    const Occupancy& map = maps_[due.row];
+    const std::span<const std::uint32_t> words = batch_.words(due.row);
+    const std::span<double> values = std::span(values_).subspan(first_[due.row], words.size());
+    std::copy(words.begin(), words.end(), values.begin());
+    base::ReadingBlock block;
+    block.mover = map.row.mover;
+    block.sensor = map.row.sensor;
+    block.kind = kOccupancy;
+    block.X_WS = {map.plan.grid.left, map.plan.grid.top, 0.0, 0.0};
+    block.values = values;
+    block.flags = flags_;
+    out.push_back(block);
+  }
+}
+
+std::vector<SensorRow> rows_of(const world::World& world) {
+  std::vector<SensorRow> rows;
+  for (Occupancy& map : occupancies_of(world)) rows.push_back(std::move(map.row));
+  return rows;
+}
+
+constexpr std::string_view kKeys[] = {"cell", "words", "offset", "laser", "log_odds"};
+constexpr Column kColumns[] = {{"word", 1, true}};
+
+}  // namespace
+
+constinit const SensorKind occupancy_kind{
+    .id = kOccupancy,
+    .name = "occupancy",
+    .word = {"occupancy", kKeys},
+    .base_port = 52000,
+    .list = "words",
+    .columns = kColumns,
+    .derived = true,
+    .rows = rows_of,
+    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Occupancies>(site); },
+    .refuse = refuse_occupancy,
+    .parts = occupancy_parts,
+    .encode = encode_occupancy,
+    .decode = decode_occupancy,
+    .read = read_occupancy,
+};
+
+}  // namespace sf::sensors

@@ -1,0 +1,113 @@
+#include "sensors/occupancy_packets.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "maps/packets.h"
+#include "sensors/occupancy.h"
+
+namespace sf::sensors {
+
+namespace {
+
+maps::GridPlan plan_of(const SensorRow& sensor, const Pose& corner) {
+  return {corner.x, corner.y, sensor.pitch, sensor.across, sensor.elements / sensor.across};
+}
+
+Fault fault_of(maps::PartFault fault) {
+  switch (fault) {
+    case maps::PartFault::none:
+      return Fault::none;
+    case maps::PartFault::too_short:
+      return Fault::too_short;
+    case maps::PartFault::too_long:
+      return Fault::too_long;
+    case maps::PartFault::out_of_range:
+      break;
+  }
+  return Fault::out_of_range;
+}
+
+void put_plain(const SensorRow& sensor, std::span<const double> words, std::uint32_t part, base::Bytes& out) {
+  const std::uint32_t half = maps::plain_half(sensor.elements);
+  base::ByteWriter writer(out);
+  if (part == 0) writer.put(static_cast<std::uint8_t>(sensor.elements / sensor.across));
+  if (part == 0) writer.put(static_cast<std::uint8_t>(sensor.across));
+  for (const double word : part == 0 ? words.first(half) : words.subspan(half))
+    writer.put(static_cast<std::uint32_t>(word));
+}
+
+Part decode_plain(const SensorRow& sensor, std::span<const std::uint8_t> payload) {
+  maps::PlainPart part;
+  const maps::PartFault fault = maps::read_plain(payload, part);
+  if (fault != maps::PartFault::none) return {.fault = fault_of(fault)};
+  const std::uint32_t half = maps::plain_half(sensor.elements);
+  const std::uint32_t expected = part.second ? sensor.elements - half : half;
+  const bool shaped =
+      part.second || (part.word_columns == sensor.across && part.word_rows * part.word_columns == sensor.elements);
+  if (sensor.elements != 0 && (part.count != expected || !shaped)) return {.fault = Fault::out_of_range};
+  return {Fault::none, part.count, part.second ? 1u : 0u, occupancy_parts(sensor, Wire::thesis)};
+}
+
+}  // namespace
+
+std::string refuse_occupancy(const SensorRow& sensor, Wire wire) {
+  if (wire == Wire::farm) return "";
+  const std::uint32_t rows = sensor.elements / sensor.across;
+  const bool fits =
+      sensor.elements <= maps::kMostPlainWords && sensor.across <= maps::kMostPlainSide && rows <= maps::kMostPlainSide;
+  if (fits) return "";
+  return fmt::format(
+      "a map of {} x {} words does not fit the thesis' layout, which holds {} words, at most {} in a row or column: "
+      "lower `words`, or send the farm's own packets (`--wire farm`)",
+      sensor.across, rows, maps::kMostPlainWords, maps::kMostPlainSide);
+}
+
+std::uint32_t occupancy_parts(const SensorRow& sensor, Wire wire) {
+  if (wire == Wire::thesis) return sensor.elements == 1 ? 1 : 2;
+  return (sensor.elements + maps::kPartWords - 1) / maps::kPartWords;
+}
+
+std::uint8_t encode_occupancy(const SensorRow& sensor, const base::ReadingBlock& reading, Wire wire, std::uint32_t part,
+                              base::Bytes& out) {
+  SF_CHECK(reading.values.size() == sensor.elements && part < occupancy_parts(sensor, wire) && sensor.across > 0,
+           fmt::format("part {} of a map of {} words, of {}", part, reading.values.size(), sensor.elements));
+  if (wire == Wire::thesis) {
+    put_plain(sensor, reading.values, part, out);
+    return kOccupancy;
+  }
+  maps::put_part(
+      plan_of(sensor, reading.X_WS), part, reading.flags & maps::kTruePoses,
+      [&](std::uint32_t i) { return static_cast<std::uint32_t>(reading.values[i]); }, out);
+  return kOccupancy;
+}
+
+Part decode_occupancy(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire) {
+  if (type != kOccupancy) return {.fault = Fault::out_of_range};
+  if (wire == Wire::thesis) return decode_plain(sensor, payload);
+  maps::MapPart part;
+  const maps::PartFault fault = maps::read_part(payload, part);
+  if (fault != maps::PartFault::none) return {.fault = fault_of(fault)};
+  const bool mine = sensor.elements == 0 || (maps::words(part.plan) == sensor.elements &&
+                                             part.plan.word_columns == sensor.across && part.plan.cell == sensor.pitch);
+  if (!mine) return {.fault = Fault::out_of_range};
+  return {Fault::none, part.count, part.part, part.parts};
+}
+
+void read_occupancy(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t, Wire wire,
+                    std::span<double> values) {
+  if (wire == Wire::thesis) {
+    maps::PlainPart part;
+    maps::read_plain(payload, part);
+    const std::uint32_t first = part.second ? maps::plain_half(sensor.elements) : 0;
+    for (std::uint32_t i = 0; i < part.count && first + i < values.size(); ++i)
+      values[first + i] = maps::word_of(part, i);
+    return;
+  }
+  maps::MapPart part;
+  maps::read_part(payload, part);
+  for (std::uint32_t i = 0; i < part.count && part.first + i < values.size(); ++i)
+    values[part.first + i] = maps::word_of(part, i);
+}
+
+}  // namespace sf::sensors

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sensors/occupancy.h"
+#include "sensors/settings.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr double kDefaultCell = 0.03;  // [m] the thesis'
+constexpr std::uint32_t kDefaultWords = 30;
+constexpr double kFarthest = 1e7;  // [m]
+constexpr double kMostOdds = 32767.0;
+
+std::uint32_t words_along(const world::Sensor& sensor, double count) {
+  if (count >= 1.0 && count <= maps::kMostWordColumns && count == std::floor(count))
+    return static_cast<std::uint32_t>(count);
+  refuse(sensor, "words",
+         fmt::format("'words' has {:g}; expected whole numbers from 1 to {} (a word is 4 x 4 cells)", count,
+                     maps::kMostWordColumns));
+}
+
+/// Left and top of a map of that size around `place`, on the lattice of all such maps, so that they can be merged
+/// exactly.
+void centre(maps::GridPlan& plan, const Pose& place) {
+  plan.left = plan.cell * std::round(place.x / plan.cell - 0.5 * static_cast<double>(maps::columns(plan)));
+  plan.top = plan.cell * std::round(place.y / plan.cell + 0.5 * static_cast<double>(maps::rows(plan)));
+}
+
+maps::GridPlan grid_of(const world::Sensor& sensor, const Pose& place) {
+  maps::GridPlan plan;
+  plan.cell = length(sensor, "cell", kDefaultCell, 1e-4, 1e3);
+  if (const auto size = tuple(sensor, "words", 2, "[columns rows]")) {
+    plan.word_columns = words_along(sensor, (*size)[0]);
+    plan.word_rows = words_along(sensor, (*size)[1]);
+  } else {
+    plan.word_columns = plan.word_rows = kDefaultWords;
+  }
+  if (plan.word_columns > maps::kMostWords / plan.word_rows)
+    refuse(sensor, "words",
+           fmt::format("a map of {} x {} words is too large; expected at most {} words in all: raise 'cell' or give "
+                       "each robot a part",
+                       plan.word_columns, plan.word_rows, maps::kMostWords));
+  centre(plan, place);
+  if (const auto offset = tuple(sensor, "offset", 2, "[x y]")) {
+    plan.left = -sensor.metres * (*offset)[0];
+    plan.top = -sensor.metres * (*offset)[1];
+  }
+  if (!maps::is_sound(plan))
+    refuse(sensor, "offset", fmt::format("a map more than {:g} m from the world's origin; change 'offset'", kFarthest));
+  return plan;
+}
+
+std::optional<maps::OddsRule> odds_of(const world::Sensor& sensor) {
+  const auto said = tuple(sensor, "log_odds", 1, "0, 1 or [hit miss limit]");
+  if (!said || (said->size() == 1 && said->front() == 0.0)) return std::nullopt;
+  if (said->size() == 1 && said->front() == 1.0) return maps::OddsRule{};
+  const auto fits = [](double v, double least) { return v == std::floor(v) && v >= least && v <= kMostOdds; };
+  const auto& v = *said;
+  if (v.size() != 3 || !fits(v[0], 0.0) || !fits(v[1], 0.0) || !fits(v[2], 1.0))
+    refuse(sensor, "log_odds",
+           fmt::format("'log_odds' expects 0, 1 or [hit miss limit] in whole numbers up to {:g}, such as [85 40 350]",
+                       kMostOdds));
+  return maps::OddsRule{static_cast<std::int32_t>(v[0]), static_cast<std::int32_t>(v[1]),
+                        static_cast<std::int32_t>(v[2])};
+}
+
+std::uint32_t laser_of(const world::Sensor& sensor, const world::Mover& mover) {
+  if (mover.lasers.empty())
+    refuse(sensor, "laser", "a map needs a laser on the same robot; give it a laser( ) or take the map away");
+  const world::Setting* named = find(sensor, "laser");
+  if (named == nullptr) return 0;
+  const auto found = std::find_if(mover.lasers.begin(), mover.lasers.end(),
+                                  [&](const world::Laser& laser) { return laser.name == named->text; });
+  if (found != mover.lasers.end()) return static_cast<std::uint32_t>(found - mover.lasers.begin());
+  std::string names;
+  for (const world::Laser& laser : mover.lasers) names += (names.empty() ? "" : ", ") + laser.name;
+  refuse(sensor, "laser", fmt::format("'{}' has no laser '{}'; it has {}", mover.name, named->text, names));
+}
+
+void fill_from(const world::Sensor& sensor, const world::Laser& laser, MapPlan& plan) {
+  plan.fov = laser.fov;
+  plan.samples = laser.samples;
+  plan.range_min = laser.range_min;
+  plan.range_max = laser.range_max;
+  if (plan.samples > kMostMapBeams)
+    refuse(
+        sensor, "laser",
+        fmt::format("laser '{}' has {} samples; maps are made of at most {}", laser.name, plan.samples, kMostMapBeams));
+  if (!(plan.range_max <= maps::kFarthestRange * plan.grid.cell))
+    refuse(sensor, "cell",
+           fmt::format("laser '{}' looks {:g} m far, which is more than {:g} cells of {:g} m; raise 'cell'", laser.name,
+                       plan.range_max, maps::kFarthestRange, plan.grid.cell));
+}
+
+Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, std::uint32_t m, std::uint32_t number) {
+  Occupancy map;
+  map.row = common_row(sensor, m, number);
+  if (find(sensor, "rate") == nullptr && find(sensor, "update_interval") == nullptr) map.row.rate = 1.0;
+  map.plan.grid = grid_of(sensor, mover.X_WM);
+  map.plan.odds = odds_of(sensor);
+  map.laser = laser_of(sensor, mover);
+  fill_from(sensor, mover.lasers[map.laser], map.plan);
+  map.row.elements = maps::words(map.plan.grid);
+  map.row.limit = 4294967295.0;
+  map.row.across = map.plan.grid.word_columns;
+  map.row.pitch = map.plan.grid.cell;
+  return map;
+}
+
+}  // namespace
+
+std::vector<Occupancy> occupancies_of(const world::World& world) {
+  std::vector<Occupancy> all;
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    std::uint32_t number_of_kind = 0;
+    for (const world::Sensor& sensor : world.movers[m].sensors)
+      if (sensor.type == occupancy_kind.word.type)
+        all.push_back(occupancy_of(sensor, world.movers[m], m, number_of_kind++));
+  }
+  return all;
+}
+
+}  // namespace sf::sensors

@@ -1,0 +1,73 @@
+#pragma once
+// Scans for tests of occupancy maps: of no world, so that every range may occur.
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "maps/plain_mapper.h"
+#include "sensors/occupancy_batch.h"
+#include "tests/sensors/chance.h"
+
+namespace sf::trial {
+
+/// Ranges as lasers have them and as they should not: walls that come and go, nothing in sight, zero, beyond, none.
+inline std::vector<double> odd_ranges(Chance& chance, const sensors::MapPlan& plan) {
+  std::vector<double> ranges;
+  double wall = chance.between(0.0, 1.2 * plan.range_max);
+  for (std::uint32_t k = 0; k < plan.samples; ++k) {
+    if (chance.below(12) == 0) wall = chance.between(0.0, 1.2 * plan.range_max);
+    wall += chance.between(-0.01, 0.01) * plan.range_max;
+    const std::uint32_t odd = chance.below(60);
+    ranges.push_back(odd == 0   ? std::nan("")
+                     : odd == 1 ? std::numeric_limits<double>::infinity()
+                     : odd == 2 ? 0.0
+                     : odd == 3 ? -0.3
+                     : odd == 4 ? plan.range_min
+                                : std::clamp(wall, 0.0, plan.range_max));
+  }
+  return ranges;
+}
+
+/// A robot's place: anywhere on the map, or up to a range beside it.
+inline base::Pose odd_pose(Chance& chance, const sensors::MapPlan& plan) {
+  const double wide = plan.grid.cell * static_cast<double>(maps::columns(plan.grid));
+  const double high = plan.grid.cell * static_cast<double>(maps::rows(plan.grid));
+  const double reach = chance.below(3) == 0 ? plan.range_max : 0.0;
+  base::Pose X{plan.grid.left + chance.between(-reach, wide + reach),
+               plan.grid.top - chance.between(-reach, high + reach), 0.0, chance.between(-10.0, 10.0)};
+  // On a cell's corner, and looking along its sides, now and then.
+  if (chance.below(8) == 0) X.x = plan.grid.left + plan.grid.cell * chance.below(100);
+  if (chance.below(8) == 0) X.y = plan.grid.top - plan.grid.cell * chance.below(100);
+  if (chance.below(8) == 0) X.yaw = 0.25 * M_PI * chance.below(8);
+  return X;
+}
+
+/// The rule's own answer.
+class PlainMaps {
+ public:
+  explicit PlainMaps(const std::vector<sensors::MapPlan>& plans) : plans_(plans) {
+    for (const sensors::MapPlan& plan : plans) {
+      grids_.emplace_back(plan.grid);
+      odds_.emplace_back(plan.grid, plan.odds.value_or(maps::OddsRule{}));
+      beams_.push_back(maps::beam_directions(plan.fov, plan.samples));
+    }
+  }
+  void update(const sensors::MapScan& scan) {
+    const sensors::MapPlan& plan = plans_[scan.map];
+    const maps::ScanView view{scan.X_WS, scan.ranges, beams_[scan.map], plan.range_min, plan.range_max};
+    if (plan.odds) maps::add_scan(odds_[scan.map], view);
+    if (!plan.odds) maps::add_scan(grids_[scan.map], view);
+  }
+  std::vector<std::uint32_t> words(std::uint32_t map) const {
+    return plans_[map].odds ? maps::states_of(odds_[map]).words : grids_[map].words;
+  }
+
+ private:
+  std::vector<sensors::MapPlan> plans_;
+  std::vector<maps::Grid> grids_;
+  std::vector<maps::OddsGrid> odds_;
+  std::vector<std::vector<base::Vec2>> beams_;
+};
+
+}  // namespace sf::trial

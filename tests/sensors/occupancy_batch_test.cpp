@@ -1,0 +1,192 @@
+// Maps on the device agree with the rule, cell by cell: 0 differences, whatever the scan.
+
+#include "sensors/occupancy_batch.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/sensors/map_scans.h"
+
+namespace sf::trial {
+namespace {
+
+gpu::Device& device() {
+  static gpu::Device device;
+  return device;
+}
+
+sensors::MapPlan plan(double fov, std::uint32_t samples, double range_max, double cell = 0.03,
+                      base::Vec2 corner = {0.0, 0.0}) {
+  sensors::MapPlan p;
+  p.grid = {corner.x, corner.y, cell, 30, 30};
+  p.fov = fov;
+  p.samples = samples;
+  p.range_max = range_max;
+  return p;
+}
+
+struct Tally {
+  std::size_t scans = 0;
+  std::size_t cells = 0;      ///< compared
+  std::size_t occupied = 0;   ///< of these
+  std::size_t free = 0;       ///< likewise
+  std::size_t different = 0;  ///< words
+};
+
+/// `rounds` scans into every map; all maps compared after each `every`-th.
+Tally contest(const std::vector<sensors::MapPlan>& plans, std::size_t rounds, std::size_t every, std::uint64_t seed) {
+  base::Workers workers;
+  sensors::MapBatch batch(device(), workers, plans);
+  PlainMaps plain(plans);
+  Chance chance(seed);
+  std::vector<std::uint32_t> wanted;
+  for (std::uint32_t i = 0; i < plans.size(); ++i) wanted.push_back(i);
+  Tally tally;
+  for (std::size_t round = 1; round <= rounds; ++round) {
+    std::vector<std::vector<double>> ranges;
+    std::vector<sensors::MapScan> scans;
+    for (const sensors::MapPlan& p : plans) ranges.push_back(odd_ranges(chance, p));
+    for (std::uint32_t i = 0; i < plans.size(); ++i) scans.push_back({i, odd_pose(chance, plans[i]), ranges[i]});
+    batch.update(scans, wanted);
+    for (const sensors::MapScan& scan : scans) plain.update(scan);
+    tally.scans += scans.size();
+    if (round % every != 0) continue;
+    for (std::uint32_t i = 0; i < plans.size(); ++i) {
+      const auto right = plain.words(i);
+      for (std::size_t w = 0; w < right.size(); ++w) {
+        tally.different += right[w] != batch.words(i)[w];
+        for (unsigned k = 0; k < 32; k += 2) {
+          ++tally.cells;
+          tally.occupied += (right[w] >> k & 3u) == SF_CELL_OCCUPIED;
+          tally.free += (right[w] >> k & 3u) == SF_CELL_FREE;
+        }
+      }
+    }
+  }
+  return tally;
+}
+
+/// Many maps of one plan's kind, here and 100 km away.
+std::vector<sensors::MapPlan> spread(const sensors::MapPlan& kind, std::size_t count) {
+  std::vector<sensors::MapPlan> plans;
+  Chance chance(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    sensors::MapPlan p = kind;
+    const double far = i % 3 == 2 ? 1e5 : 1.0;
+    p.grid.left = chance.between(-far, far);
+    p.grid.top = chance.between(-far, far);
+    plans.push_back(p);
+  }
+  return plans;
+}
+
+TEST(OccupancyBatch, AgreesWithTheRuleOnTheThesisLaser) {
+  const Tally tally = contest(spread(plan(M_PI, 361, 0.75), 50), 40, 5, 1);
+  EXPECT_EQ(tally.different, 0u);
+  EXPECT_EQ(tally.scans, 2'000u);
+  EXPECT_GT(tally.occupied, 20'000u) << "the scans say something";
+  EXPECT_GT(tally.free, 200'000u);
+  RecordProperty("cells", static_cast<int>(tally.cells));
+}
+
+TEST(OccupancyBatch, AgreesWithTheRuleOnOtherLasers) {
+  const std::vector<sensors::MapPlan> kinds{
+      plan(2.0 * M_PI, 720, 2.0),         // all round: candidates go round the back
+      plan(2.0 * M_PI, 7, 3.0),           // few beams, far apart
+      plan(1.9 * M_PI, 100, 1.5),         // a gap behind
+      plan(M_PI / 6, 61, 4.0),            // longer than the map
+      plan(0.0, 1, 3.0),                  // one beam
+      plan(0.0, 5, 3.0),                  // five that look one way
+      plan(1e-9, 9, 3.0),                 // nearly
+      plan(M_PI, 181, 8.0, 0.5),          // coarse cells
+      plan(1.5 * M_PI, 2000, 30.0, 0.1),  // dense and far: everything outside of the map as well
+      plan(M_PI, 361, 0.02),              // within one cell
+  };
+  std::uint64_t seed = 10;
+  for (const sensors::MapPlan& kind : kinds) {
+    const Tally tally = contest(spread(kind, 12), 12, 4, ++seed);
+    EXPECT_EQ(tally.different, 0u) << "fov " << kind.fov << ", " << kind.samples << " beams, " << kind.range_max
+                                   << " m";
+    EXPECT_GT(tally.free + tally.occupied, 0u);
+  }
+}
+
+TEST(OccupancyBatch, AgreesWithTheRuleWhereLasersAreBlindNearby) {
+  sensors::MapPlan kind = plan(M_PI, 181, 1.5);
+  kind.range_min = 0.2;
+  EXPECT_EQ(contest(spread(kind, 20), 10, 2, 30).different, 0u);
+}
+
+TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
+  std::vector<sensors::MapPlan> plans = spread(plan(M_PI, 181, 1.2), 24);
+  for (std::size_t i = 0; i < plans.size(); i += 2) plans[i].odds = maps::OddsRule{};
+  plans[0].odds = maps::OddsRule{32767, 32767, 32767};  // the largest
+  plans[2].odds = maps::OddsRule{1, 1, 1};              // the smallest
+  plans[4].odds = maps::OddsRule{0, 3, 20};             // nothing is ever occupied
+  const Tally tally = contest(plans, 25, 1, 40);
+  EXPECT_EQ(tally.different, 0u);
+  EXPECT_GT(tally.occupied, 1'000u);
+}
+
+TEST(OccupancyBatch, TheFarthestEndsAreStillRight) {
+  // 16 382 cells: the largest numbers that the kernel multiplies.
+  sensors::MapPlan kind = plan(2.0 * M_PI, 97, 16'382 * 0.01, 0.01);
+  kind.grid.word_columns = kind.grid.word_rows = 120;
+  EXPECT_EQ(contest(spread(kind, 4), 8, 2, 50).different, 0u);
+}
+
+TEST(OccupancyBatch, MapsOfDifferentShapes) {
+  std::vector<sensors::MapPlan> plans;
+  Chance chance(60);
+  for (int i = 0; i < 30; ++i) {
+    sensors::MapPlan p = plan(chance.between(0.1, 6.2), 1 + chance.below(400), chance.between(0.1, 3.0),
+                              chance.between(0.01, 0.3), chance.in_square(50.0));
+    p.grid.word_columns = 1 + chance.below(40);
+    p.grid.word_rows = 1 + chance.below(40);
+    plans.push_back(p);
+  }
+  EXPECT_EQ(contest(plans, 10, 1, 61).different, 0u);
+}
+
+TEST(OccupancyBatch, ScansThatSayNothingChangeNothing) {
+  base::Workers workers(2);
+  sensors::MapBatch batch(device(), workers, {plan(M_PI, 3, 1.0), plan(M_PI, 3, 1.0)});
+  const double nan = std::nan("");
+  const std::vector<double> silent{nan, -1.0, nan};
+  const std::vector<double> loud{1.0, 0.5, 1.0};
+  const std::uint32_t all[] = {0, 1};
+  const sensors::MapScan scans[] = {{0, {1.8, -1.8, 0, 0}, silent},  // nothing told
+                                    {1, {1e9, 1e300, 0, 0}, loud}};  // nowhere near
+  batch.update(scans, all);
+  for (const std::uint32_t map : all)
+    for (const std::uint32_t word : batch.words(map)) ASSERT_EQ(word, 0u);
+  const sensors::MapScan mute[] = {{1, {nan, 0, 0, 0}, loud}};
+  batch.update(mute, all);
+  for (const std::uint32_t word : batch.words(1)) ASSERT_EQ(word, 0u);
+}
+
+TEST(OccupancyBatch, OneScanCellByCell) {
+  // Cells of 1 m; the sensor in the middle of cell (10, 10); a beam ahead that hits at 3 m, one to each side that
+  // meets nothing within 4.
+  sensors::MapPlan p = plan(M_PI, 3, 4.0, 1.0, {0.0, 40.0});
+  p.grid.word_columns = p.grid.word_rows = 10;
+  base::Workers workers(1);
+  sensors::MapBatch batch(device(), workers, {p});
+  const std::vector<double> ranges{4.0, 3.0, 4.0};
+  const std::uint32_t all[] = {0};
+  const sensors::MapScan scans[] = {{0, {10.5, 29.5, 0, 0}, ranges}};
+  batch.update(scans, all);
+  maps::Grid grid(p.grid);
+  grid.words.assign(batch.words(0).begin(), batch.words(0).end());
+  for (std::int64_t row = 0; row < 40; ++row)
+    for (std::int64_t column = 0; column < 40; ++column) {
+      const bool ahead = row == 10 && column >= 10 && column < 13;
+      const bool beside = column == 10 && row >= 6 && row <= 14;
+      const maps::Cell expected = row == 10 && column == 13 ? maps::Cell::occupied
+                                  : ahead || beside         ? maps::Cell::free
+                                                            : maps::Cell::unexplored;
+      ASSERT_EQ(grid.at({column, row}), expected) << column << " " << row;
+    }
+}
+
+}  // namespace
+}  // namespace sf::trial
