@@ -4,20 +4,15 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "robots/command_law.h"
 #include "robots/motion.h"
 
 namespace sf::robots {
 
 namespace {
 
-using base::Pose;
 using base::Twist;
-using base::Vec2;
 using world::Segment;
-
-Vec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }
-
-bool moves(const Twist& v) { return v.forward != 0.0 || v.left != 0.0 || v.turn != 0.0; }
 
 std::vector<Outline> outlines_of(const world::World& world) {
   std::vector<Outline> outlines;
@@ -40,9 +35,6 @@ double median_radius(const std::vector<Outline>& outlines) {
   return std::clamp(radii[radii.size() / 2], 0.05, 10.0);
 }
 
-// Not nearer to what was touched already; rounding at 100 km is 1.5e-11.
-bool no_nearer(double after, double before) { return after >= before - 1e-10; }
-
 }  // namespace
 
 Fleet::Fleet(const world::World& world)
@@ -57,6 +49,9 @@ Fleet::Fleet(const world::World& world)
   predicted_ = reports_;
   velocities_.resize(count);
   contacts_.resize(count);
+  refused_.resize(count);
+  struck_.resize(count);
+  told_.resize(count);
   for (auto* memory : {&next_, &now_, &other_}) memory->resize(edges);
   neighbours_.build(reports_, 1.0);
 }
@@ -68,96 +63,31 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
 
   reach_ = {0.0, 0.0};
   for (std::size_t row = 0; row < commands.size(); ++row) {
-    velocities_[row] = follow(world_.movers[row], commands[row]);
+    const world::Mover& mover = world_.movers[row];
+    const Twist wanted = follow(mover, obey(mover, commands[row]));
+    velocities_[row] = approach(mover, reports_[row].velocity, wanted, seconds);
     reach_.others = std::max(reach_.others, std::hypot(velocities_[row].forward, velocities_[row].left) * seconds);
   }
   neighbours_.build(reports_, 4.0 * (widest_ + reach_.others) + 1e-3);
 
   for (std::uint32_t row = 0; row < reports_.size(); ++row) {
-    contacts_[row] = 0;
+    refused_[row] = 0;
+    told_[row] = 0;
     move_one(row, velocities_[row], seconds);
     reports_[row].time += dt;
   }
+  feel();
 }
 
-void Fleet::move_one(std::uint32_t row, const Twist& velocity, double dt) {
-  reports_[row].velocity = velocity;
-  if (!moves(velocity)) return;
-  const Outline& outline = outlines_[row];
-  reach_.own = (std::hypot(velocity.forward, velocity.left) + std::abs(velocity.turn) * outline.radius) * dt;
-  if (clear(row)) {
-    reports_[row].X_WM = advance(reports_[row].X_WM, velocity, dt);
-    return;
+// What was refused a step touches something, and what touched may still: nobody else is looked at.
+void Fleet::feel() {
+  for (std::uint32_t row = 0; row < reports_.size(); ++row)
+    if (refused_[row] != 0 || reports_[row].touched != 0) reports_[row].touched = touch_of(row, reports_).sectors;
+  for (std::uint32_t row = 0; row < reports_.size(); ++row) {
+    if (struck_[row] != 0) reports_[row].touched = touch_of(row, reports_).sectors;
+    struck_[row] = 0;
+    contacts_[row] = refused_[row] != 0 || reports_[row].touched != 0;
   }
-  const auto steps = static_cast<std::int64_t>(std::ceil(reach_.own / outline.step));
-  move_in_steps(row, velocity, dt / static_cast<double>(steps), steps);
-}
-
-void Fleet::move_in_steps(std::uint32_t row, Twist velocity, double dt, std::int64_t steps) {
-  for (std::int64_t i = 0; i < steps; ++i) {
-    if (step(row, velocity, dt)) continue;
-    contacts_[row] = 1;
-    const bool in_place = velocity.forward == 0.0 && velocity.left == 0.0;
-    velocity = {0.0, 0.0, world_.movers[row].drive == world::Drive::car ? 0.0 : velocity.turn};
-    if (in_place || velocity.turn == 0.0 || !step(row, velocity, dt)) {
-      velocity = {};
-      break;
-    }
-  }
-  reports_[row].velocity = velocity;
-}
-
-bool Fleet::step(std::uint32_t row, const Twist& velocity, double dt) {
-  const Pose X_WM = advance(reports_[row].X_WM, velocity, dt);
-  if (refused(row, X_WM)) return false;
-  reports_[row].X_WM = X_WM;
-  return true;
-}
-
-// Nothing within the circle that holds all the mover can sweep this tick.
-bool Fleet::clear(std::uint32_t row) const {
-  const Outline& outline = outlines_[row];
-  if (outline.edges.empty()) return true;
-  const Pose& X_WM = reports_[row].X_WM;
-  const Vec2 p = origin(X_WM);
-  const double radius = outline.radius + reach_.own;
-  const bool wall_near = walls_.any(world::box_around(p, radius), [&](const Segment& wall) {
-    return wall.z_min < X_WM.z + outline.z_max && X_WM.z + outline.z_min < wall.z_max &&
-           world::distance(p, wall.a, wall.b) <= radius;
-  });
-  if (wall_near) return false;
-  return !neighbours_.any(p, radius + widest_ + reach_.others, [&](std::uint32_t other) {
-    if (other == row || outlines_[other].edges.empty()) return false;
-    const Vec2 d = origin(reports_[other].X_WM) - p;
-    const double apart = radius + outlines_[other].radius;
-    return dot(d, d) <= apart * apart;
-  });
-}
-
-bool Fleet::refused(std::uint32_t row, const Pose& X_WM) {
-  const Placed next = place(outlines_[row], X_WM, next_);
-  const bool by_wall = walls_.any(world::box_around(next.origin, next.radius),
-                                  [&](const Segment& wall) { return touches(next, wall) && !leaves(row, X_WM, wall); });
-  if (by_wall) return true;
-  return neighbours_.any(next.origin, next.radius + widest_ + reach_.others, [&](std::uint32_t row_other) {
-    if (row_other == row) return false;
-    const Vec2 d = origin(reports_[row_other].X_WM) - next.origin;
-    const double apart = next.radius + outlines_[row_other].radius;
-    if (dot(d, d) > apart * apart * (1.0 + 1e-12)) return false;
-    const Placed other = place(outlines_[row_other], reports_[row_other].X_WM, other_);
-    return touches(next, other) && !leaves(row, X_WM, other);
-  });
-}
-
-bool Fleet::leaves(std::uint32_t row, const Pose& X_WM, const Segment& wall) {
-  const Placed now = place(outlines_[row], reports_[row].X_WM, now_);
-  return touches(now, wall) &&
-         no_nearer(world::distance(origin(X_WM), wall.a, wall.b), world::distance(now.origin, wall.a, wall.b));
-}
-
-bool Fleet::leaves(std::uint32_t row, const Pose& X_WM, const Placed& other) {
-  const Placed now = place(outlines_[row], reports_[row].X_WM, now_);
-  return touches(now, other) && no_nearer(length(origin(X_WM) - other.origin), length(now.origin - other.origin));
 }
 
 std::size_t Fleet::apply(std::span<const base::Report> reports) {
@@ -166,6 +96,8 @@ std::size_t Fleet::apply(std::span<const base::Report> reports) {
     SF_CHECK(report.mover < reports_.size(), "mover " + std::to_string(report.mover));
     if (report.time < reports_[report.mover].time) continue;
     reports_[report.mover] = report;
+    told_[report.mover] = 1;
+    refused_[report.mover] = 0;
     ++taken;
   }
   return taken;
@@ -180,7 +112,19 @@ std::span<const base::Report> Fleet::predict(std::int64_t time) {
     predicted_[row].time = known.time + ahead;
     predicted_[row].X_WM = advance(known.X_WM, known.velocity, 1e-9 * static_cast<double>(ahead));
   }
+  feel_told();
   return predicted_;
+}
+
+void Fleet::feel_told() {
+  if (std::find(told_.begin(), told_.end(), 1) == told_.end()) return;
+  reach_ = {kPressed, 0.0};
+  neighbours_.build(predicted_, 4.0 * widest_ + 1e-3);
+  for (std::uint32_t row = 0; row < predicted_.size(); ++row) {
+    if (told_[row] == 0) continue;
+    if (!clear(row, predicted_)) predicted_[row].touched |= touch_of(row, predicted_).sectors;
+    contacts_[row] = predicted_[row].touched != 0;
+  }
 }
 
 }  // namespace sf::robots

@@ -34,6 +34,21 @@ base::Twist follow(const world::Mover& mover, const base::Twist& command) {
   return v;
 }
 
+base::Twist approach(const world::Mover& mover, const base::Twist& now, const base::Twist& wanted, double dt) {
+  if (mover.max_acceleration == HUGE_VAL && mover.max_turn_acceleration == HUGE_VAL) return wanted;
+  base::Twist v = wanted;
+  const base::Vec2 change{wanted.forward - now.forward, wanted.left - now.left};
+  const double most = mover.max_acceleration * dt;
+  if (const double needed = base::length(change); needed > most) {
+    v.forward = now.forward + most / needed * change.x;
+    v.left = now.left + most / needed * change.y;
+  }
+  const double most_turn = mover.max_turn_acceleration * dt;
+  if (std::abs(wanted.turn - now.turn) > most_turn)
+    v.turn = now.turn + std::copysign(most_turn, wanted.turn - now.turn);
+  return follow(mover, v);
+}
+
 base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double dt) {
   // The integral of R(yaw + w t) v over dt is R(yaw + w dt/2) v sinc(w dt/2) dt: the chord of the arc.
   const double half = 0.5 * velocity.turn * dt;

@@ -11,11 +11,18 @@ inline constexpr double kMaxSteer = M_PI / 6.0;
 
 /// The nearest twist the mover's drive can follow. Numbers that are not finite become 0.
 /// - |turn| <= max_turn always.
-/// - differential: left = 0, |forward| <= max_forward.
+/// - differential, skid: left = 0, |forward| <= max_forward. A skid drive's wheels scrub; that is a matter of the track
+///   its encoders see (`Mover::track`), not of where it goes.
 /// - omni: the velocity's length <= max_forward, direction kept.
 /// - car (kinematic bicycle): as differential, and |turn| <= |forward| tan(kMaxSteer) / wheelbase: it cannot turn in
 /// place.
 base::Twist follow(const world::Mover& mover, const base::Twist& command);
+
+/// The twist after `dt` [s] > 0 on the way from `now` to `wanted`: both its velocity (its length, for all drives) and
+/// its turn change by no more than the mover's accelerations allow, whether it speeds up or slows down; `wanted`
+/// exactly where they allow it. Then `follow`.
+/// @param wanted as `follow` gives it
+base::Twist approach(const world::Mover& mover, const base::Twist& now, const base::Twist& wanted, double dt);
 
 /// Where a frame that moves with the constant body twist `velocity` is after `dt` [s]: exactly, along an arc.
 /// The yaw of the result is wrapped to [-pi, pi].

@@ -13,23 +13,7 @@ namespace {
 using base::Vec2;
 using world::segments_meet;
 
-struct Heights {
-  double min, max;
-};
-
-bool overlap(const Edge& e, Heights z) { return e.z_min < z.max && z.min < e.z_max; }
-
-// Winding number of the solid outlines around p (Sunday, "Inclusion of a point in a polygon", 2001), at heights z.
-bool inside(std::span<const Edge> edges, Vec2 p, Heights z) {
-  int winding = 0;
-  for (const Edge& e : edges) {
-    if (!e.solid || !overlap(e, z)) continue;
-    const double side = cross(e.b - e.a, p - e.a);
-    if (e.a.y <= p.y && e.b.y > p.y && side > 0.0) ++winding;
-    if (e.a.y > p.y && e.b.y <= p.y && side < 0.0) --winding;
-  }
-  return winding != 0;
-}
+bool overlap(const Edge& e, double z_min, double z_max) { return e.z_min < z_max && z_min < e.z_max; }
 
 bool follows(const Edge& e, const Edge& before) {
   return e.a.x == before.b.x && e.a.y == before.b.y && e.z_min == before.z_min && e.z_max == before.z_max;
@@ -37,7 +21,7 @@ bool follows(const Edge& e, const Edge& before) {
 
 // Inradius about the origin of one closed outline; 0 when the origin is outside.
 double inradius(std::span<const Edge> loop) {
-  if (!inside(loop, {0.0, 0.0}, {loop.front().z_min, loop.front().z_max})) return 0.0;
+  if (!inside(loop, {0.0, 0.0}, loop.front().z_min, loop.front().z_max)) return 0.0;
   double nearest = HUGE_VAL;
   for (const Edge& e : loop) nearest = std::min(nearest, world::distance({0.0, 0.0}, e.a, e.b));
   return nearest;
@@ -62,12 +46,23 @@ bool any_inside(std::span<const Edge> chains, Vec2 shift, const Placed& outer) {
     const Edge& e = chains[i];
     if (i > 0 && follows(e, chains[i - 1])) continue;
     const Vec2 p = e.a + shift;
-    if (dot(p, p) <= outer.radius * outer.radius && inside(outer.edges, p, {e.z_min, e.z_max})) return true;
+    if (dot(p, p) <= outer.radius * outer.radius && inside(outer.edges, p, e.z_min, e.z_max)) return true;
   }
   return false;
 }
 
 }  // namespace
+
+bool inside(std::span<const Edge> edges, Vec2 p, double z_min, double z_max) {
+  int winding = 0;
+  for (const Edge& e : edges) {
+    if (!e.solid || !overlap(e, z_min, z_max)) continue;
+    const double side = cross(e.b - e.a, p - e.a);
+    if (e.a.y <= p.y && e.b.y > p.y && side > 0.0) ++winding;
+    if (e.a.y > p.y && e.b.y <= p.y && side < 0.0) --winding;
+  }
+  return winding != 0;
+}
 
 Outline outline_of(const world::Mover& mover) {
   Outline outline;
@@ -102,11 +97,10 @@ bool touches(const Placed& placed, const world::Segment& wall) {
   const Vec2 a = wall.a - placed.origin;
   const Vec2 b = wall.b - placed.origin;
   if (world::distance({0.0, 0.0}, a, b) > placed.radius * (1.0 + 1e-12)) return false;
-  const Heights z{wall.z_min, wall.z_max};
   for (const Edge& e : placed.edges) {
-    if (overlap(e, z) && segments_meet(a, b, e.a, e.b)) return true;
+    if (overlap(e, wall.z_min, wall.z_max) && segments_meet(a, b, e.a, e.b)) return true;
   }
-  return dot(a, a) <= placed.radius * placed.radius && inside(placed.edges, a, z);
+  return dot(a, a) <= placed.radius * placed.radius && inside(placed.edges, a, wall.z_min, wall.z_max);
 }
 
 bool touches(const Placed& p, const Placed& q) {
@@ -115,7 +109,7 @@ bool touches(const Placed& p, const Placed& q) {
   for (const Edge& e : p.edges) {
     if (world::distance(d, e.a, e.b) > q.radius * (1.0 + 1e-12)) continue;
     for (const Edge& f : q.edges) {
-      if (overlap(e, {f.z_min, f.z_max}) && segments_meet(e.a, e.b, f.a + d, f.b + d)) return true;
+      if (overlap(e, f.z_min, f.z_max) && segments_meet(e.a, e.b, f.a + d, f.b + d)) return true;
     }
   }
   return any_inside(p.edges, Vec2{} - d, q) || any_inside(q.edges, d, p);

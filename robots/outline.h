@@ -31,6 +31,10 @@ struct Outline {
 /// does): no wall is jumped at the heights of that outline. Smaller parts carried on it are tested at the same steps.
 Outline outline_of(const world::Mover& mover);
 
+/// Whether `p` is inside the solid outlines among `edges` that stand somewhere between the heights z_min and z_max [m].
+/// By winding number (Sunday, "Inclusion of a point in a polygon", 2001).
+bool inside(std::span<const Edge> edges, base::Vec2 p, double z_min, double z_max);
+
 /// An outline put somewhere. Coordinates are relative to `origin`, so that they are as exact far from the world's
 /// origin.
 struct Placed {

@@ -6,6 +6,7 @@
 
 #include "world/building.h"
 #include "world/keys.h"
+#include "world/light_plan.h"
 #include "world/movers.h"
 
 namespace sf::world {
@@ -48,7 +49,8 @@ double reach(const Source& source, const Entity& root, std::string_view key) {
 
 World build_world(const std::string& file, const std::string& content, const LoadOptions& options) {
   const Document document = parse(file, content);
-  Building b{options, {document, 1.0, M_PI / 180.0, document.warnings, {}}, {}, {}, {}, {}, {}, {}, known_types()};
+  Building b{options, {document, 1.0, M_PI / 180.0, document.warnings, {}}, {}, {}, {}, {}, {}, {}, known_types(), {},
+             {}};
   b.types.insert(b.types.end(), document.macros.begin(), document.macros.end());
 
   read_units(b.source, document.root);
@@ -61,6 +63,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
   Parent nowhere;
   add_children(b, document.root, Kind::unknown, nowhere);
   number_movers(b);
+  check_stop_lines(b);
 
   b.world.warnings = std::move(b.source.warnings);
   finish(b.world);

@@ -36,6 +36,8 @@ struct Building {
   std::vector<std::optional<std::uint32_t>> numbers;  ///< per mover: what its name says
   std::vector<Place> places;                          ///< per mover: where it is written
   std::vector<std::string_view> types;                ///< every type and macro, to suggest from
+  std::vector<Place> light_places;                    ///< per light: where its way-points are written
+  std::map<std::string, bool> way_points;             ///< of all road networks; true: with a stop line
 };
 
 /// Adds the children of `entity`, of kind `kind`, and all that is in them: models, and warnings for what belongs

@@ -3,6 +3,7 @@
 
 #include "base/bytes.h"
 #include "base/hash.h"
+#include "world/paths.h"
 #include "world/rows.h"
 #include "world/world.h"
 
@@ -24,6 +25,16 @@ Extent extent_of(const World& world) {
   for (const Stripe& stripe : world.stripes)
     for (const Vec2 p : stripe.line) include(p);
   for (const Magnet& magnet : world.magnets) include(magnet.p);
+  for (const Path& path : world.paths)
+    for (const PathPiece& piece : path.pieces) {
+      include({piece.X_WP.x, piece.X_WP.y});
+      const Pose end = along(piece, piece.length);
+      include({end.x, end.y});
+    }
+  for (const Light& light : world.lights) include({light.X_WL.x, light.X_WL.y});
+  for (const Emitter& emitter : world.emitters) include({emitter.X_WE.x, emitter.X_WE.y});
+  for (const Drop& drop : world.drops)
+    for (const Vec2 p : drop.outline) include(p);
   for (const Mover& mover : world.movers) {
     include({mover.X_WM.x, mover.X_WM.y});
     for (const Segment& segment : mover.body) {
@@ -56,6 +67,12 @@ std::uint64_t hash_of(const World& world) {
   for (const Magnet& magnet : world.magnets) put(out, magnet);
   out.put(static_cast<std::uint64_t>(world.movers.size()));
   for (const Mover& mover : world.movers) put(out, mover, Rows::physics);
+  out.put(static_cast<std::uint64_t>(world.lights.size()));
+  for (const Light& light : world.lights) put(out, light);
+  out.put(static_cast<std::uint64_t>(world.emitters.size()));
+  for (const Emitter& emitter : world.emitters) put(out, emitter);
+  out.put(static_cast<std::uint64_t>(world.drops.size()));
+  for (const Drop& drop : world.drops) put(out, drop);
   return base::hash_bytes(bytes.data(), bytes.size());
 }
 
@@ -79,6 +96,12 @@ void translate(World& world, double dx, double dy) {
   for (Stripe& stripe : world.stripes)
     for (Vec2& p : stripe.line) move(p);
   for (Magnet& magnet : world.magnets) move(magnet.p);
+  for (Path& path : world.paths)
+    for (PathPiece& piece : path.pieces) move(piece.X_WP);
+  for (Light& light : world.lights) move(light.X_WL);
+  for (Emitter& emitter : world.emitters) move(emitter.X_WE);
+  for (Drop& drop : world.drops)
+    for (Vec2& p : drop.outline) move(p);
   for (Model& model : world.models) move(model.X_WM);
   for (Mover& mover : world.movers) move(mover.X_WM);
   finish(world);

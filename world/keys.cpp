@@ -19,15 +19,16 @@ constexpr auto kWorld = std::to_array<std::string_view>({"name", "interval_sim",
 constexpr auto kModel = std::to_array<std::string_view>({"name", "pose", "size", "origin", "color", "color_rgba", "bitmap", "boundary", "stack_children",
   "noblocks", "obstacle_return", "laser_return", "ranger_return", "magnetic_moment", "magneticmoment",
   "magnetometer_return", "laneedge_return", "blocks", "block[].points", "block[].point[]", "block[].z",
+  "cliff_return", "ir_emitter", "ir_range", "ir_fov", "ir_halo",
   // known, not modelled
   "ctrl", "update_interval", "gui_nose", "gui_grid", "gui_outline", "gui_move", "gui_movemask", "gui_boundary",
   "fiducial_return", "fiducial_key", "blob_return", "blobfinder_return", "gripper_return", "puck_return", "mass", "friction",
   "map_resolution", "say", "alwayson", "thread_safe", "joules", "kjoules", "joules_capacity", "watts", "give_watts",
   "take_watts", "trail_length", "trail_interval", "event_queue", "debug", "rebuild_displaylist", "block[].color"});
 
-constexpr auto kPosition = std::to_array<std::string_view>({"drive", "wheelbase", "velocity_bounds",
+constexpr auto kPosition = std::to_array<std::string_view>({"drive", "wheelbase", "track", "velocity_bounds", "acceleration_bounds", "command_law",
   // known, not modelled
-  "velocity", "acceleration_bounds", "localization", "localization_origin", "odom_error", "odom"});
+  "velocity", "localization", "localization_origin", "odom_error", "odom"});
 
 constexpr auto kSensing = std::to_array<std::string_view>({"noise", "resolution", "rate", "phase", "latency", "update_interval"});
 
@@ -38,6 +39,8 @@ constexpr auto kLaser = std::to_array<std::string_view>({"fov", "samples", "rang
 constexpr auto kRanger = std::to_array<std::string_view>({"scount", "sview", "spose[]", "spose3[]",
   // known, not modelled
   "ssize", "sraycount"});
+
+constexpr auto kLight = std::to_array<std::string_view>({"lamps", "phases", "phase[]", "offset", "stop_lines"});
 
 constexpr auto kSensor = std::to_array<std::string_view>({"pose", "size", "range", "view", "fov", "samples", "color", "color_rgba", "name"});
 
@@ -81,6 +84,8 @@ std::vector<Words> words_at(Where where) {
       return {kModel, kSensing, kLaser};
     case Where::ranger:
       return {kModel, kSensing, kRanger};
+    case Where::light:
+      return {kModel, kLight};
     case Where::sensor:
       return {kSensor, kSensing};
     case Where::block:
@@ -107,6 +112,7 @@ Kind kind_of(std::string_view type) {
   if (type == "position") return Kind::position;
   if (type == "laser") return Kind::laser;
   if (type == "ranger") return Kind::ranger;
+  if (type == "light") return Kind::light;
   if (type == "road") return Kind::road;
   if (type == "path") return Kind::path;
   if (has(kIgnoredTypes, type)) return Kind::ignored;
@@ -116,7 +122,8 @@ Kind kind_of(std::string_view type) {
 bool bodiless(std::string_view type) { return has(kBodiless, type); }
 
 std::vector<std::string_view> known_types() {
-  std::vector<std::string_view> types{"model", "position", "laser", "ranger", "sensor", "block", "road", "path"};
+  std::vector<std::string_view> types{"model",  "position", "laser", "ranger", "light",
+                                      "sensor", "block",    "road",  "path"};
   types.insert(types.end(), kKeptTypes.begin(), kKeptTypes.end());
   types.insert(types.end(), kIgnoredTypes.begin(), kIgnoredTypes.end());
   return types;

@@ -11,10 +11,10 @@
 namespace sf::world {
 
 /// Where a property stands.
-enum class Where { world, model, position, laser, ranger, sensor, block, device, sensing, road, path, kept };
+enum class Where { world, model, position, laser, ranger, light, sensor, block, device, sensing, road, path, kept };
 
 /// How a type of the world file is understood.
-enum class Kind { model, position, laser, ranger, road, path, kept, ignored, unknown };
+enum class Kind { model, position, laser, ranger, light, road, path, kept, ignored, unknown };
 
 Kind kind_of(std::string_view type);
 

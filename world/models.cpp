@@ -5,8 +5,10 @@
 #include <algorithm>
 
 #include "world/devices.h"
+#include "world/floor.h"
 #include "world/keys.h"
 #include "world/lasers.h"
+#include "world/light_plan.h"
 #include "world/movers.h"
 #include "world/paint.h"
 #include "world/road.h"
@@ -30,6 +32,8 @@ Where where_of(Kind kind) {
       return Where::laser;
     case Kind::ranger:
       return Where::ranger;
+    case Kind::light:
+      return Where::light;
     default:
       return Where::kept;
   }
@@ -68,7 +72,10 @@ std::string joined(const std::string& parent, const std::string& name) {
 // --- Models
 // -------------------------------------------------------------------------------------------------------------
 
-Size default_size(Kind kind) { return kind == Kind::laser ? Size{0.15, 0.15, 0.2} : Size{}; }
+Size default_size(Kind kind) {
+  if (kind == Kind::light) return {0.12, 0.12, 0.6};
+  return kind == Kind::laser ? Size{0.15, 0.15, 0.2} : Size{};
+}
 
 Segment placed(const Segment& local, const Pose& X) {
   Segment segment = local;
@@ -80,7 +87,8 @@ Segment placed(const Segment& local, const Pose& X) {
 }
 
 /// @param X_B the body frame, in the mover's frame for a mover's body, else in the world.
-void add_body(Building& b, const Entity& entity, const Model& model, const Size& size, bool is_box, const Pose& X_B) {
+void add_body(Building& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
+              const Pose& X_B) {
   const Source& source = b.source;
   const bool seen =
       number(source, entity, "laser_return", 1.0) != 0.0 && number(source, entity, "ranger_return", 1.0) >= 0.0;
@@ -88,7 +96,7 @@ void add_body(Building& b, const Entity& entity, const Model& model, const Size&
   const bool seen_as_paint = flag(source, entity, "laneedge_return", true);
   const bool stops = is_plan || flag(source, entity, "obstacle_return", true);
   auto& segments = model.mover == kNone ? b.world.walls : b.world.movers[model.mover].body;
-  for (const Segment& local : shape_of(b.source, b.bitmaps, entity, size, is_box)) {
+  for (const Segment& local : shape) {
     Segment segment = placed(local, X_B);
     const bool lost_in_rounding = segment.a.x == segment.b.x && segment.a.y == segment.b.y;
     if (lost_in_rounding) continue;
@@ -142,6 +150,15 @@ Said read_said(Building& b, const Entity& entity, Parent& parent) {
   return said;
 }
 
+std::vector<Segment> shape_of_model(Building& b, const Entity& entity, const Said& said) {
+  const bool is_light = said.kind == Kind::light;
+  const bool is_box = !is_light && !bodiless(entity.type) && (said.sensor == nullptr || said.kind == Kind::laser);
+  std::vector<Segment> shape = shape_of(b.source, b.bitmaps, entity, said.size, is_box);
+  if (is_light && shape.empty() && !flag(b.source, entity, "noblocks", false))
+    return light_shape(said.size, number(b.source, entity, "lamps", 3.0) == 1.0);
+  return shape;
+}
+
 Model model_of(Building& b, const Entity& entity, const Parent& parent, const Said& said) {
   Model model;
   model.name = unique_name(b, entity, joined(parent.name, said.name));
@@ -177,9 +194,11 @@ void add_model(Building& b, const Entity& entity, Parent& parent) {
   }
 
   const Pose X_B = compose(model.mover == kNone ? model.X_WM : own.X_MP, pose(b.source, entity, "origin"));
-  const bool is_box = !bodiless(entity.type) && (said.sensor == nullptr || said.kind == Kind::laser);
-  add_body(b, entity, model, said.size, is_box, X_B);
+  const std::vector<Segment> shape = shape_of_model(b, entity, said);
+  is_drop(b.source, entity) ? add_drops(b, entity, model, shape, X_B) : add_body(b, entity, model, shape, X_B);
   add_magnet(b, entity, model, said.size, X_B);
+  add_emitter(b, entity, model, said.size, X_B);
+  if (said.kind == Kind::light) add_light(b, entity, model);
   if (said.sensor != nullptr) {
     add_sensor(b, entity, model, *said.sensor, X_B, said.size.z, own.name_in_mover);
   } else if ((said.kind == Kind::laser && !said.is_lane_edge) || said.kind == Kind::ranger) {

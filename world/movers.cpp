@@ -32,13 +32,40 @@ void read_bounds(const Source& source, const Entity& entity, Mover& mover) {
   }
 }
 
+void read_accelerations(const Source& source, const Entity& entity, Mover& mover) {
+  const char* key = "acceleration_bounds";
+  const auto bounds = tuple(source, entity, key, 2, "[xmin xmax ymin ymax zmin zmax yawmin yawmax]");
+  if (!bounds) return;
+  const Place at = find(entity, key)->at;
+  mover.max_acceleration = metres(source, at, (*bounds)[1]);
+  if (bounds->size() >= 8) mover.max_turn_acceleration = source.radians * (*bounds)[7];
+  if (!(mover.max_acceleration > 0.0) || !(mover.max_turn_acceleration > 0.0)) {
+    fail(source, at, "'acceleration_bounds' expects a robot that can speed up: xmax (2nd) and yawmax (8th) above zero");
+  }
+}
+
+double above_zero(const Source& source, const Entity& entity, std::string_view key, double fallback) {
+  const double value = length(source, entity, key, fallback);
+  if (!(value > 0.0)) fail(source, find(entity, key)->at, fmt::format("'{}' expects a length above zero", key));
+  return value;
+}
+
 Drive drive_of(const Source& source, const Entity& entity) {
   const std::string drive = text(source, entity, "drive", "diff");
   if (drive == "diff") return Drive::differential;
   if (drive == "omni") return Drive::omni;
   if (drive == "car") return Drive::car;
+  if (drive == "skid") return Drive::skid;
   fail(source, find(entity, "drive")->at,
-       fmt::format("'drive' is \"{}\"; expected \"diff\", \"omni\" or \"car\"", drive));
+       fmt::format("'drive' is \"{}\"; expected \"diff\", \"omni\", \"car\" or \"skid\"", drive));
+}
+
+CommandLaw command_law_of(const Source& source, const Entity& entity) {
+  const std::string law = text(source, entity, "command_law", "direct");
+  if (law == "direct") return CommandLaw::direct;
+  if (law == "player_create") return CommandLaw::player_create;
+  fail(source, find(entity, "command_law")->at,
+       fmt::format("'command_law' is \"{}\"; expected \"direct\" or \"player_create\"", law));
 }
 
 }  // namespace
@@ -62,10 +89,11 @@ std::uint32_t add_mover(Building& b, const Entity& entity, const Model& model, s
   mover.X_WM = model.X_WM;
   mover.is_tag = link && link->is_tag;
   mover.drive = drive_of(b.source, entity);
-  mover.wheelbase = length(b.source, entity, "wheelbase", 1.0);
-  if (!(mover.wheelbase > 0.0))
-    fail(b.source, find(entity, "wheelbase")->at, "'wheelbase' expects a length above zero");
+  mover.command_law = command_law_of(b.source, entity);
+  mover.wheelbase = above_zero(b.source, entity, "wheelbase", mover.wheelbase);
+  mover.track = above_zero(b.source, entity, "track", mover.track);
   read_bounds(b.source, entity, mover);
+  read_accelerations(b.source, entity, mover);
   b.world.movers.push_back(std::move(mover));
   b.numbers.push_back(link ? std::optional(link->number) : std::nullopt);
   b.places.push_back(entity.at);

@@ -19,7 +19,7 @@ struct Link {
 std::optional<Link> link_of(std::string_view name);
 
 /// Adds a mover for `model`, which becomes the next row of the models, and returns its row.
-/// @throws base::InputError for bounds, a drive or a wheelbase that no robot can have.
+/// @throws base::InputError for bounds, a drive, a command law or lengths that no robot can have.
 std::uint32_t add_mover(Building& b, const Entity& entity, const Model& model, std::optional<Link> link);
 
 /// Gives every mover its number: from names first; every other robot gets the smallest one left, from 0, in file order.

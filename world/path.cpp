@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "world/magnet_row.h"
+#include "world/paths.h"
 #include "world/road.h"
 
 namespace sf::world {
@@ -16,53 +17,33 @@ constexpr double kArcError = 1e-6;  // [m] between an arc and its chords
 constexpr std::uint32_t kMostPieces = 10'000;
 constexpr int kMostDashes = 1'000'000;
 
-/// One piece of the lane: a straight where the radius is 0.
-struct Piece {
-  Pose X_WP;            ///< the middle of the lane at its start
-  double length = 0.0;  ///< [m] along the middle
-  double radius = 0.0;  ///< [m] of the middle
-  double turn = 0.0;    ///< [rad] positive: to the left
-  double width = 0.0;   ///< [m]
-};
-
-/// The middle of the lane `s` metres into the piece.
-Pose along(const Piece& piece, double s) {
-  if (piece.radius == 0.0) return compose(piece.X_WP, {s, 0.0, 0.0, 0.0});
-  const double side = piece.turn > 0.0 ? 1.0 : -1.0;
-  const double angle = s / piece.radius;
-  return compose(piece.X_WP,
-                 {piece.radius * std::sin(angle), side * piece.radius * (1.0 - std::cos(angle)), 0.0, side * angle});
-}
-
-Piece read_straight(const Source& source, const Property& property) {
+PathPiece read_straight(const Source& source, const Property& property) {
   const auto& v = property.values;
   if (v.size() < 2 || v[0].is_text || v[1].is_text)
     fail(source, property.at, fmt::format("'{}' expects [length width]", property.key));
-  return {{}, metres(source, property.at, v[0].number), 0.0, 0.0, metres(source, property.at, v[1].number)};
+  return {{}, metres(source, property.at, v[0].number), 0.0, metres(source, property.at, v[1].number)};
 }
 
-Piece read_arc(const Source& source, const Property& property) {
+PathPiece read_arc(const Source& source, const Property& property) {
   const auto& v = property.values;
   if (v.size() < 3 || v[0].is_text || v[1].is_text || v[2].is_text)
     fail(source, property.at, fmt::format("'{}' expects [radius turn width]", property.key));
-  Piece piece;
-  piece.radius = metres(source, property.at, v[0].number);
-  piece.turn = source.radians * v[1].number;
-  piece.width = metres(source, property.at, v[2].number);
-  piece.length = piece.radius * std::abs(piece.turn);
-  if (!(piece.radius > 0.0) || !(std::abs(piece.turn) <= 2.0 * std::numbers::pi * (1.0 + 1e-12)))
+  const double radius = metres(source, property.at, v[0].number);
+  const double turn = source.radians * v[1].number;
+  const double width = metres(source, property.at, v[2].number);
+  if (!(radius > 0.0) || !(std::abs(turn) <= 2.0 * std::numbers::pi * (1.0 + 1e-12)))
     fail(source, property.at, fmt::format("'{}' expects a radius above zero and at most one turn", property.key));
-  if (!(piece.width < 2.0 * piece.radius))
+  if (!(width < 2.0 * radius))
     fail(source, property.at,
          fmt::format("'{}' is wider than its bend: expected a width below twice the radius", property.key));
-  return piece;
+  return {{}, radius * std::abs(turn), std::copysign(1.0 / radius, turn), width};
 }
 
-std::vector<Piece> read_pieces(Building& b, const Entity& entity) {
+std::vector<PathPiece> read_pieces(Building& b, const Entity& entity) {
   const Source& source = b.source;
   const std::uint32_t count = whole(source, entity, "pieces", 0, 1, kMostPieces);
   if (count == 0) fail(source, entity.at, "a path needs 'pieces', and a straight[i] or an arc[i] for each");
-  std::vector<Piece> pieces;
+  std::vector<PathPiece> pieces;
   Pose X = pose(b.source, entity, "pose");
   for (std::uint32_t i = 0; i < count; ++i) {
     const Property* straight = find(entity, fmt::format("straight[{}]", i));
@@ -70,7 +51,7 @@ std::vector<Piece> read_pieces(Building& b, const Entity& entity) {
     if ((straight == nullptr) == (arc == nullptr))
       fail(source, find(entity, "pieces")->at,
            fmt::format("expected either straight[{0}] or arc[{0}]: 'pieces' is {1}", i, count));
-    Piece piece = straight != nullptr ? read_straight(source, *straight) : read_arc(source, *arc);
+    PathPiece piece = straight != nullptr ? read_straight(source, *straight) : read_arc(source, *arc);
     if (!(piece.length > 0.0) || !(piece.width > 0.0))
       fail(source, (straight != nullptr ? straight : arc)->at, "expected a length and a width above zero");
     piece.X_WP = X;
@@ -117,13 +98,13 @@ Paint read_paint(const Source& source, const Entity& entity, const char* side) {
 }
 
 /// The stripe between `from` and `to` along the middle [m], `offset` to its left.
-Stripe stripe_of(const Piece& piece, double from, double to, double offset, const Paint& paint) {
+Stripe stripe_of(const PathPiece& piece, double from, double to, double offset, const Paint& paint) {
   Stripe stripe{{}, paint.width, paint.color};
   std::uint32_t chords = 1;
-  if (piece.radius > 0.0) {
-    const double outer = piece.radius + std::abs(offset) + paint.width;
+  if (piece.curvature != 0.0) {
+    const double outer = 1.0 / std::abs(piece.curvature) + std::abs(offset) + paint.width;
     const double step = 2.0 * std::acos(1.0 - kArcError / outer);
-    chords = static_cast<std::uint32_t>(std::ceil((to - from) / piece.radius / step));
+    chords = static_cast<std::uint32_t>(std::ceil((to - from) * std::abs(piece.curvature) / step));
   }
   for (std::uint32_t i = 0; i <= chords; ++i)
     stripe.line.push_back(transform(along(piece, from + (to - from) * i / chords), {0.0, offset}));
@@ -131,7 +112,7 @@ Stripe stripe_of(const Piece& piece, double from, double to, double offset, cons
 }
 
 /// Dashes go on from piece to piece: `start` is how far along the path the piece begins.
-void paint_edge(World& world, const Piece& piece, double start, double offset, const Paint& paint) {
+void paint_edge(World& world, const PathPiece& piece, double start, double offset, const Paint& paint) {
   if (paint.dash == 0.0) {
     world.stripes.push_back(stripe_of(piece, 0.0, piece.length, offset, paint));
     return;
@@ -151,7 +132,7 @@ void check_dashes(const Source& source, const Entity& entity, const Paint& paint
        fmt::format("'dash' gives more than {} dashes; expected longer ones", kMostDashes));
 }
 
-void paint_side(World& world, const Piece& piece, double start, double side, const Paint& paint) {
+void paint_side(World& world, const PathPiece& piece, double start, double side, const Paint& paint) {
   if (paint.none) return;
   const double middle = 0.5 * (piece.width + paint.width);
   paint_edge(world, piece, start, side * middle, paint);
@@ -162,32 +143,28 @@ void paint_side(World& world, const Piece& piece, double start, double side, con
 
 void add_path(Building& b, const Entity& entity) {
   check_keys(b.source, entity, Where::path);
-  const std::vector<Piece> pieces = read_pieces(b, entity);
+  Path path{"", read_pieces(b, entity)};
   const Paint left = read_paint(b.source, entity, "left");
   const Paint right = read_paint(b.source, entity, "right");
   Model model;
   model.name = text(b.source, entity, "name", "path");
   for (int k = 2; !b.names.insert(model.name).second; ++k) model.name = fmt::format("path#{}", k);
   model.type = "path";
-  model.X_WM = pieces.front().X_WP;
+  model.X_WM = path.pieces.front().X_WP;
+  path.name = model.name;
   b.world.models.push_back(model);
-  double total = 0.0;
-  for (const Piece& piece : pieces) total += piece.length;
+  const double total = length_of(path);
   check_dashes(b.source, entity, left, total);
   check_dashes(b.source, entity, right, total);
   double start = 0.0;
-  for (const Piece& piece : pieces) {
+  for (const PathPiece& piece : path.pieces) {
     paint_side(b.world, piece, start, 1.0, left);
     paint_side(b.world, piece, start, -1.0, right);
     start += piece.length;
   }
-  const auto row = read_magnet_row(b.source, entity);
-  if (!row) return;
-  place_magnets(b, entity, *row, total, [&](double s) {
-    std::size_t i = 0;
-    for (; i + 1 < pieces.size() && s > pieces[i].length; ++i) s -= pieces[i].length;
-    return along(pieces[i], s);
-  });
+  if (const auto row = read_magnet_row(b.source, entity))
+    place_magnets(b, entity, *row, total, [&](double s) { return along(path, s); });
+  b.world.paths.push_back(std::move(path));
 }
 
 }  // namespace sf::world

@@ -7,15 +7,6 @@ namespace sf::world {
 
 namespace {
 
-/// `s` metres into the piece, on its own line beyond both ends.
-Pose into(const PathPiece& piece, double s) {
-  if (piece.curvature == 0.0) return base::compose(piece.X_WP, {s, 0.0, 0.0, 0.0});
-  const double angle = s * piece.curvature;
-  const double half = std::sin(0.5 * angle);
-  return base::compose(piece.X_WP,
-                       {std::sin(angle) / piece.curvature, 2.0 * half * half / piece.curvature, 0.0, angle});
-}
-
 /// How far along the piece the nearest point of its line is [m], before it is cut to the piece.
 double project(const PathPiece& piece, Vec2 p) {
   const Vec2 q = base::rotate(-piece.X_WP.yaw, p - Vec2{piece.X_WP.x, piece.X_WP.y});
@@ -32,6 +23,14 @@ double project(const PathPiece& piece, Vec2 p) {
 
 }  // namespace
 
+Pose along(const PathPiece& piece, double s) {
+  if (piece.curvature == 0.0) return base::compose(piece.X_WP, {s, 0.0, 0.0, 0.0});
+  const double angle = s * piece.curvature;
+  const double half = std::sin(0.5 * angle);
+  return base::compose(piece.X_WP,
+                       {std::sin(angle) / piece.curvature, 2.0 * half * half / piece.curvature, 0.0, angle});
+}
+
 double length_of(const Path& path) {
   double length = 0.0;
   for (const PathPiece& piece : path.pieces) length += piece.length;
@@ -41,7 +40,7 @@ double length_of(const Path& path) {
 Pose along(const Path& path, double s) {
   std::size_t i = 0;
   for (; i + 1 < path.pieces.size() && s > path.pieces[i].length; ++i) s -= path.pieces[i].length;
-  return into(path.pieces[i], s);
+  return along(path.pieces[i], s);
 }
 
 OnPath nearest(const Path& path, Vec2 p) {
@@ -51,7 +50,7 @@ OnPath nearest(const Path& path, Vec2 p) {
   for (std::uint32_t i = 0; i < path.pieces.size(); ++i) {
     const PathPiece& piece = path.pieces[i];
     const double s = std::clamp(project(piece, p), 0.0, piece.length);
-    const Pose X_WP = into(piece, s);
+    const Pose X_WP = along(piece, s);
     const Vec2 d = p - Vec2{X_WP.x, X_WP.y};
     const double far = base::length(d);
     if (far < least) {

@@ -15,6 +15,9 @@ struct OnPath {
 
 double length_of(const Path& path);  ///< [m]
 
+/// The middle `s` metres into the piece, on its own line before its start and beyond its end.
+Pose along(const PathPiece& piece, double s);
+
 /// The middle `s` metres along the path; before its start and after its end the first and last piece's own line.
 Pose along(const Path& path, double s);
 

@@ -112,6 +112,9 @@ void clone_robots(World& world, std::uint32_t count, std::uint64_t seed) {
   }
   retarget(world.walls, kept.model_rows);
   retarget(world.magnets, kept.model_rows);
+  retarget(world.lights, kept.model_rows);
+  retarget(world.emitters, kept.model_rows);
+  retarget(world.drops, kept.model_rows);
   world.models = std::move(models);
   world.movers = std::move(movers);
   finish(world);

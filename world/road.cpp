@@ -39,6 +39,12 @@ std::vector<const RoadLane*> named_lanes(const Building& b, const Entity& entity
   return lanes;
 }
 
+void keep_way_points(Building& b, const RoadNetwork& roads) {
+  for (const RoadLane& lane : roads.lanes)
+    for (const LanePoint& point : lane.points) b.way_points.try_emplace(text_of(point.id), false);
+  for (const StopLine& stop : roads.stops) b.way_points[text_of(id_of(roads, stop.at))] = true;
+}
+
 }  // namespace
 
 void add_road(Building& b, const Entity& entity) {
@@ -49,6 +55,8 @@ void add_road(Building& b, const Entity& entity) {
   while (!b.names.insert(model.name).second) model.name += "#";
   model.type = "road";
   b.world.models.push_back(model);
+  b.world.road_files.push_back(roads.file);
+  keep_way_points(b, roads);
   const std::vector<Stripe> paint = paint_of(roads);
   b.world.stripes.insert(b.world.stripes.end(), paint.begin(), paint.end());
 

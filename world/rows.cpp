@@ -13,10 +13,21 @@ constexpr std::size_t kSegmentBytes = 6 * 8 + 4 + 1;
 constexpr std::size_t kLaserBytes = 100;
 constexpr std::size_t kSensorBytes = 64;   // at least
 constexpr std::size_t kSettingBytes = 12;  // at least
+constexpr std::size_t kPieceBytes = 56;
+constexpr std::size_t kPhaseBytes = 9;
 
 void put_vec(ByteWriter& out, Vec2 p) {
   out.put(p.x);
   out.put(p.y);
+}
+
+/// One word of an enumeration. @throws base::InputError beyond its last one.
+template <class Word>
+Word get_word(ByteReader& in, Word last, const char* what) {
+  const auto word = in.get<std::uint8_t>();
+  if (word > static_cast<std::uint8_t>(last))
+    throw base::InputError(std::string("broken world snapshot: unknown ") + what);
+  return static_cast<Word>(word);
 }
 
 Vec2 get_vec(ByteReader& in) {
@@ -201,7 +212,10 @@ void put(ByteWriter& out, const Mover& mover, Rows rows) {
   out.put(static_cast<std::uint8_t>(mover.is_tag ? 1 : 0));
   out.put(static_cast<std::uint8_t>(mover.drive));
   put(out, mover.X_WM);
-  for (const double value : {mover.radius, mover.max_forward, mover.max_turn, mover.wheelbase}) out.put(value);
+  out.put(static_cast<std::uint8_t>(mover.command_law));
+  for (const double value : {mover.radius, mover.max_forward, mover.max_turn, mover.max_acceleration,
+                             mover.max_turn_acceleration, mover.wheelbase, mover.track})
+    out.put(value);
   out.put(static_cast<std::uint32_t>(mover.body.size()));
   for (const Segment& segment : mover.body) put(out, segment);
   out.put(static_cast<std::uint32_t>(mover.lasers.size()));
@@ -218,11 +232,11 @@ Mover get_mover(ByteReader& in) {
   mover.model = in.get<std::uint32_t>();
   mover.id = in.get<std::uint32_t>();
   mover.is_tag = in.get<std::uint8_t>() != 0;
-  const auto drive = in.get<std::uint8_t>();
-  if (drive > static_cast<std::uint8_t>(Drive::car)) throw base::InputError("broken world snapshot: unknown drive");
-  mover.drive = static_cast<Drive>(drive);
+  mover.drive = get_word(in, Drive::skid, "drive");
   mover.X_WM = get_pose(in);
-  for (double* value : {&mover.radius, &mover.max_forward, &mover.max_turn, &mover.wheelbase})
+  mover.command_law = get_word(in, CommandLaw::player_create, "command law");
+  for (double* value : {&mover.radius, &mover.max_forward, &mover.max_turn, &mover.max_acceleration,
+                        &mover.max_turn_acceleration, &mover.wheelbase, &mover.track})
     *value = in.get<double>();
   mover.body.resize(get_count(in, kSegmentBytes));
   for (Segment& segment : mover.body) segment = get_segment(in);
@@ -233,6 +247,88 @@ Mover get_mover(ByteReader& in) {
   mover.magnets.resize(get_count(in, kMagnetBytes));
   for (Magnet& magnet : mover.magnets) magnet = get_magnet(in);
   return mover;
+}
+
+void put(ByteWriter& out, const Path& path) {
+  out.put_string(path.name);
+  out.put(static_cast<std::uint32_t>(path.pieces.size()));
+  for (const PathPiece& piece : path.pieces) {
+    put(out, piece.X_WP);
+    for (const double value : {piece.length, piece.curvature, piece.width}) out.put(value);
+  }
+}
+
+Path get_path(ByteReader& in) {
+  Path path;
+  path.name = in.get_string();
+  path.pieces.resize(get_count(in, kPieceBytes));
+  for (PathPiece& piece : path.pieces) {
+    piece.X_WP = get_pose(in);
+    for (double* value : {&piece.length, &piece.curvature, &piece.width}) *value = in.get<double>();
+  }
+  return path;
+}
+
+void put(ByteWriter& out, const Light& light) {
+  out.put_string(light.name);
+  out.put(light.model);
+  put(out, light.X_WL);
+  out.put(static_cast<std::uint8_t>(light.single ? 1 : 0));
+  out.put(light.offset);
+  out.put(static_cast<std::uint32_t>(light.phases.size()));
+  for (const LightPhase& phase : light.phases) {
+    out.put(static_cast<std::uint8_t>(phase.state));
+    out.put(phase.duration);
+  }
+  out.put(static_cast<std::uint32_t>(light.points.size()));
+  for (const std::string& point : light.points) out.put_string(point);
+}
+
+Light get_light(ByteReader& in) {
+  Light light;
+  light.name = in.get_string();
+  light.model = in.get<std::uint32_t>();
+  light.X_WL = get_pose(in);
+  light.single = in.get<std::uint8_t>() != 0;
+  light.offset = in.get<double>();
+  light.phases.resize(get_count(in, kPhaseBytes));
+  for (LightPhase& phase : light.phases) {
+    phase.state = get_word(in, LightState::flashing_yellow, "state of a light");
+    phase.duration = in.get<double>();
+  }
+  light.points.resize(get_count(in, sizeof(std::uint32_t)));
+  for (std::string& point : light.points) point = in.get_string();
+  return light;
+}
+
+void put(ByteWriter& out, const Emitter& emitter) {
+  out.put(static_cast<std::uint8_t>(emitter.kind));
+  out.put(emitter.model);
+  put(out, emitter.X_WE);
+  for (const double value : {emitter.range, emitter.fov, emitter.halo}) out.put(value);
+}
+
+Emitter get_emitter(ByteReader& in) {
+  Emitter emitter;
+  emitter.kind = get_word(in, Emitter::Kind::dock, "emitter");
+  emitter.model = in.get<std::uint32_t>();
+  emitter.X_WE = get_pose(in);
+  for (double* value : {&emitter.range, &emitter.fov, &emitter.halo}) *value = in.get<double>();
+  return emitter;
+}
+
+void put(ByteWriter& out, const Drop& drop) {
+  out.put(drop.model);
+  out.put(static_cast<std::uint32_t>(drop.outline.size()));
+  for (const Vec2 p : drop.outline) put_vec(out, p);
+}
+
+Drop get_drop(ByteReader& in) {
+  Drop drop;
+  drop.model = in.get<std::uint32_t>();
+  drop.outline.resize(get_count(in, 2 * sizeof(double)));
+  for (Vec2& p : drop.outline) p = get_vec(in);
+  return drop;
 }
 
 std::uint32_t get_count(ByteReader& in, std::size_t row_size) {

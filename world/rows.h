@@ -7,7 +7,12 @@
 namespace sf::world {
 
 inline constexpr std::size_t kMagnetBytes = 44;
-inline constexpr std::size_t kStripeBytes = 16;  ///< at least
+inline constexpr std::size_t kStripeBytes = 16;  ///< at least, here and below
+inline constexpr std::size_t kMoverBytes = 119;
+inline constexpr std::size_t kPathBytes = 8;
+inline constexpr std::size_t kLightBytes = 57;
+inline constexpr std::size_t kEmitterBytes = 61;
+inline constexpr std::size_t kDropBytes = 8;
 
 /// How much of a row is written: all of it, or what a reading depends on (no colours).
 enum class Rows { all, physics };
@@ -18,6 +23,10 @@ void put(base::ByteWriter& out, const Stripe& stripe, Rows rows);
 void put(base::ByteWriter& out, const Magnet& magnet);
 void put(base::ByteWriter& out, const Model& model, Rows rows);
 void put(base::ByteWriter& out, const Mover& mover, Rows rows);
+void put(base::ByteWriter& out, const Path& path);
+void put(base::ByteWriter& out, const Light& light);
+void put(base::ByteWriter& out, const Emitter& emitter);
+void put(base::ByteWriter& out, const Drop& drop);
 
 Pose get_pose(base::ByteReader& in);
 Segment get_segment(base::ByteReader& in);
@@ -27,6 +36,11 @@ Model get_model(base::ByteReader& in);
 Stripe get_stripe(base::ByteReader& in);
 /// @throws base::InputError when it promises more rows than bytes are left for.
 Mover get_mover(base::ByteReader& in);
+
+Path get_path(base::ByteReader& in);
+Light get_light(base::ByteReader& in);
+Emitter get_emitter(base::ByteReader& in);
+Drop get_drop(base::ByteReader& in);
 
 /// A count of rows of at least `row_size` bytes each. @throws base::InputError when the bytes cannot hold them.
 std::uint32_t get_count(base::ByteReader& in, std::size_t row_size);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "base/bytes.h"
 #include "base/error.h"
@@ -10,7 +11,13 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 2;
+constexpr std::uint16_t kVersion = 3;
+
+template <class Row>
+void put_rows(base::ByteWriter& out, const std::vector<Row>& rows) {
+  out.put(static_cast<std::uint32_t>(rows.size()));
+  for (const Row& row : rows) put(out, row);
+}
 
 template <class Row, class Get>
 void get_rows(base::ByteReader& in, std::vector<Row>& rows, std::size_t row_size, Get get) {
@@ -33,7 +40,28 @@ void check_links(const World& world) {
     good &= m.model < models && std::all_of(m.body.begin(), m.body.end(), known);
     good &= std::all_of(m.magnets.begin(), m.magnets.end(), known);
   }
+  good &= std::all_of(world.lights.begin(), world.lights.end(), known);
+  good &= std::all_of(world.emitters.begin(), world.emitters.end(), known);
+  good &= std::all_of(world.drops.begin(), world.drops.end(), known);
   if (!good) refuse("a row names a row that is not there");
+}
+
+// What world.h promises of every row, and what reads a world does not look at again.
+void check_rows(const World& world) {
+  bool good = true;
+  for (const Path& path : world.paths) {
+    good &= !path.pieces.empty();
+    for (const PathPiece& piece : path.pieces) good &= piece.length > 0.0 && piece.width > 0.0;
+  }
+  for (const Light& light : world.lights) {
+    good &= !light.phases.empty() && std::isfinite(light.offset);
+    for (const LightPhase& phase : light.phases) good &= phase.duration > 0.0 && std::isfinite(phase.duration);
+  }
+  for (const Emitter& e : world.emitters) good &= e.range > 0.0 && e.fov > 0.0 && e.halo >= 0.0;
+  for (const Drop& drop : world.drops) good &= drop.outline.size() >= 3;
+  for (const Mover& m : world.movers)
+    good &= m.max_acceleration > 0.0 && m.max_turn_acceleration > 0.0 && m.track > 0.0;
+  if (!good) refuse("a row breaks the rules of its table");
 }
 
 void get_extras(base::ByteReader& in, World& world) {
@@ -64,14 +92,18 @@ std::vector<std::uint8_t> snapshot(const World& world) {
   out.put(world.interval);
   out.put(static_cast<std::uint32_t>(world.models.size()));
   for (const Model& model : world.models) put(out, model, Rows::all);
-  out.put(static_cast<std::uint32_t>(world.walls.size()));
-  for (const Segment& wall : world.walls) put(out, wall);
+  put_rows(out, world.walls);
   out.put(static_cast<std::uint32_t>(world.stripes.size()));
   for (const Stripe& stripe : world.stripes) put(out, stripe, Rows::all);
-  out.put(static_cast<std::uint32_t>(world.magnets.size()));
-  for (const Magnet& magnet : world.magnets) put(out, magnet);
+  put_rows(out, world.magnets);
   out.put(static_cast<std::uint32_t>(world.movers.size()));
   for (const Mover& mover : world.movers) put(out, mover, Rows::all);
+  put_rows(out, world.paths);
+  put_rows(out, world.lights);
+  put_rows(out, world.emitters);
+  put_rows(out, world.drops);
+  out.put(static_cast<std::uint32_t>(world.road_files.size()));
+  for (const std::string& file : world.road_files) out.put_string(file);
   out.put(static_cast<std::uint32_t>(world.kept.size()));
   for (const auto& [type, count] : world.kept) {
     out.put_string(type);
@@ -103,11 +135,17 @@ World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   get_rows(in, world.walls, 53, get_segment);
   get_rows(in, world.stripes, kStripeBytes, get_stripe);
   get_rows(in, world.magnets, kMagnetBytes, get_magnet);
-  get_rows(in, world.movers, 80, get_mover);
+  get_rows(in, world.movers, kMoverBytes, get_mover);
+  get_rows(in, world.paths, kPathBytes, get_path);
+  get_rows(in, world.lights, kLightBytes, get_light);
+  get_rows(in, world.emitters, kEmitterBytes, get_emitter);
+  get_rows(in, world.drops, kDropBytes, get_drop);
+  get_rows(in, world.road_files, 4, [](base::ByteReader& from) { return from.get_string(); });
   get_extras(in, world);
   const auto hash = in.get<std::uint64_t>();
   if (!in.good() || in.left() != 0) refuse("cut short, or longer than it says");
   check_links(world);
+  check_rows(world);
   finish(world);
   if (world.hash != hash) refuse("its content does not have the hash it was saved with");
   return world;

@@ -255,7 +255,7 @@ struct LoadOptions {
 /// @throws base::InputError with file, line, what was expected and what to do.
 World load_world(const std::string& file, const LoadOptions& options = {});
 
-/// Moves everything by (dx, dy): for tests far from the origin.
+/// Moves everything by (dx, dy), but not what `road_files` have: for tests far from the origin.
 void translate(World& world, double dx, double dy);
 
 /// Grows or shrinks `movers` to `count` copies of the first robot (a mover that is not a tag) at free poses: copy k

@@ -76,6 +76,53 @@ TEST(Follow, car_turns_no_sharper_than_it_steers) {
   EXPECT_NEAR(follow(mover(world::Drive::car), {-0.1, 0, 1}).turn, 0.1 * std::tan(kMaxSteer) / 0.25, 1e-15);
 }
 
+TEST(Follow, a_skid_drive_goes_where_a_differential_one_goes) {
+  const Twist v = follow(mover(world::Drive::skid), {-3, 0.4, 7});
+  EXPECT_EQ(v.forward, -0.5);
+  EXPECT_EQ(v.left, 0.0);
+  EXPECT_EQ(v.turn, 1.0);
+}
+
+world::Mover lazy(world::Drive drive) {
+  world::Mover m = mover(drive);
+  m.max_acceleration = 2.0;
+  m.max_turn_acceleration = 4.0;
+  return m;
+}
+
+TEST(Approach, without_limits_what_is_wanted_is_had) {
+  const Twist v = approach(mover(world::Drive::differential), {0.1, 0, 0.3}, {0.37, 0, -0.9}, 0.1);
+  EXPECT_EQ(v.forward, 0.37);
+  EXPECT_EQ(v.turn, -0.9);
+}
+
+TEST(Approach, speeds_up_and_slows_down_by_no_more_than_it_may) {
+  const world::Mover m = lazy(world::Drive::differential);
+  EXPECT_DOUBLE_EQ(approach(m, {}, {0.5, 0, 1.0}, 0.1).forward, 0.2);
+  EXPECT_DOUBLE_EQ(approach(m, {}, {0.5, 0, 1.0}, 0.1).turn, 0.4);
+  EXPECT_DOUBLE_EQ(approach(m, {0.5, 0, 1.0}, {}, 0.1).forward, 0.3);
+  EXPECT_DOUBLE_EQ(approach(m, {0.5, 0, 1.0}, {}, 0.1).turn, 0.6);
+  EXPECT_DOUBLE_EQ(approach(m, {0.1, 0, 0}, {-0.5, 0, 0}, 0.1).forward, -0.1) << "through standing";
+  EXPECT_EQ(approach(m, {0.5, 0, 0}, {0.31, 0, 0}, 0.1).forward, 0.31) << "within reach: exactly";
+  EXPECT_EQ(approach(m, {0, 0, 0.9}, {0, 0, 0.55}, 0.1).turn, 0.55);
+}
+
+TEST(Approach, an_omni_changes_its_velocity_in_one_direction) {
+  const Twist v = approach(lazy(world::Drive::omni), {0.3, 0, 0}, {0, 0.4, 0}, 0.1);
+  EXPECT_NEAR(v.forward, 0.3 - 0.2 * 0.6, 1e-15);
+  EXPECT_NEAR(v.left, 0.2 * 0.8, 1e-15);
+}
+
+TEST(Approach, a_car_that_stands_does_not_turn) {
+  const Twist v = approach(lazy(world::Drive::car), {0.1, 0, 0.2}, {0, 0, 0}, 0.1);
+  EXPECT_EQ(v.forward, 0.0);
+  EXPECT_EQ(v.turn, 0.0) << "its steering allows no turn without speed";
+}
+
+TEST(Approach, reports_that_say_too_much_are_followed_back_at_once) {
+  EXPECT_EQ(approach(lazy(world::Drive::differential), {5.0, 0.3, 0}, {0.5, 0, 0}, 0.1).forward, 0.5);
+}
+
 TEST(Follow, what_is_not_finite_is_zero) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const auto drive : {world::Drive::differential, world::Drive::omni, world::Drive::car}) {

@@ -64,16 +64,35 @@ void expect_sound(const World& world) {
   for (const Mover& mover : world.movers) {
     ASSERT_LT(mover.model, world.models.size());
     ASSERT_GT(mover.max_forward, 0.0);
+    ASSERT_GT(mover.max_acceleration, 0.0);
+    ASSERT_GT(mover.track, 0.0);
     for (const Laser& laser : mover.lasers) {
       ASSERT_GE(laser.samples, 1u);
       ASSERT_GT(laser.range_max, 0.0);
       ASSERT_GT(laser.rate, 0.0);
     }
   }
+  for (const Path& path : world.paths) {
+    ASSERT_FALSE(path.pieces.empty());
+    for (const PathPiece& piece : path.pieces) ASSERT_GT(piece.length, 0.0);
+  }
+  for (const Light& light : world.lights) {
+    ASSERT_LT(light.model, world.models.size());
+    ASSERT_FALSE(light.phases.empty());
+    for (const LightPhase& phase : light.phases) ASSERT_GT(phase.duration, 0.0);
+  }
+  for (const Emitter& emitter : world.emitters) {
+    ASSERT_LT(emitter.model, world.models.size());
+    ASSERT_GT(emitter.range, 0.0);
+    ASSERT_GT(emitter.fov, 0.0);
+  }
+  for (const Drop& drop : world.drops) {
+    ASSERT_LT(drop.model, world.models.size());
+    ASSERT_GE(drop.outline.size(), 3u);
+  }
 }
 
-void run(const std::string& file, std::uint32_t times) {
-  const std::string text = read_text(file);
+void run_text(const std::string& file, const std::string& text, std::uint32_t times) {
   std::uint32_t loaded = 0;
   for (std::uint32_t k = 0; k < times; ++k) {
     try {
@@ -85,6 +104,21 @@ void run(const std::string& file, std::uint32_t times) {
   }
   EXPECT_GT(loaded, times / 20) << "hardly any mutant gets past the grammar: too coarse to prove much";
   EXPECT_LT(loaded, times) << "no mutant is refused";
+}
+
+void run(const std::string& file, std::uint32_t times) { run_text(file, read_text(file), times); }
+
+TEST(Mutation, OfWhatStandsInStreets) {
+  run_text(SF_SOURCE_DIR "/worlds/test.world", R"(
+light( name "l" pose [1 2 0 90] lamps 1 phases 2 phase[0] ["green" 8] phase[1] ["flashing red" 2.5] offset 3
+  stop_lines "3.1.11 4.2.5" )
+model( name "wall" pose [1 1 0 45] ir_emitter "virtual_wall" ir_range 2 ir_fov 20 ir_halo 0.4 )
+model( name "dock" ir_emitter "dock" )
+model( name "stairs" cliff_return 1 block( points 3 point[0] [0 0] point[1] [1 0] point[2] [0 1] ) )
+path( pieces 2 straight[0] [1 0.5] arc[1] [0.9 -90 0.5] )
+position( drive "skid" track 0.4 acceleration_bounds [-1 1 0 0 0 0 -90 90] command_law "player_create" )
+)",
+           2000);
 }
 
 TEST(Mutation, OfOurRooms) { run(SF_SOURCE_DIR "/worlds/rooms.world", 2000); }

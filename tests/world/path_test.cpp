@@ -14,6 +14,22 @@ constexpr const char* kThesis = R"(path( pose [1 2 0 0] pieces 3
   left "solid_white" right "solid_yellow" paint_width 0.02
   magnetic_moment 10000 magnet_spacing 0.071 magnet_size [0.025 0.1] ))";
 
+TEST(Path, ItsPiecesAreKept) {
+  const World world = read_world(kThesis);
+  ASSERT_EQ(world.paths.size(), 1u);
+  const Path& path = world.paths[0];
+  EXPECT_EQ(path.name, "path");
+  ASSERT_EQ(path.pieces.size(), 3u);
+  EXPECT_EQ(path.pieces[0].curvature, 0.0);
+  EXPECT_DOUBLE_EQ(path.pieces[1].curvature, 1.0 / 0.93);
+  EXPECT_DOUBLE_EQ(path.pieces[1].length, 0.93 * M_PI / 2);
+  EXPECT_EQ(path.pieces[2].width, 0.45);
+  EXPECT_DOUBLE_EQ(path.pieces[2].X_WP.x, 1.0 + 2.72 + 0.93);
+  EXPECT_DOUBLE_EQ(path.pieces[2].X_WP.y, 2.0 + 0.93);
+  EXPECT_DOUBLE_EQ(path.pieces[2].X_WP.yaw, M_PI / 2);
+  EXPECT_LT(read_world("path( pieces 1 arc[0] [1 -90 0.5] )").paths[0].pieces[0].curvature, 0.0) << "to the right";
+}
+
 TEST(Path, PaintLiesOutsideTheLane) {
   const World world = read_world(kThesis);
   ASSERT_EQ(world.stripes.size(), 6u);

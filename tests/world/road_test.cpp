@@ -22,6 +22,8 @@ TEST(Road, ItsPaintIsTheNetworks) {
   EXPECT_TRUE(world.magnets.empty());
   ASSERT_EQ(world.models.size(), 1u);
   EXPECT_EQ(world.models[0].name, "SimVille");
+  ASSERT_EQ(world.road_files.size(), 1u);
+  EXPECT_EQ(load_roads(world.road_files[0], warnings).lanes.size(), roads.lanes.size()) << "can be opened again";
   EXPECT_EQ(warnings_of(world), "");
 }
 

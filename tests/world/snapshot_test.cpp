@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/error.h"
 #include "base/random.h"
 #include "tests/world/read_world.h"
@@ -8,6 +10,27 @@ namespace sf::world {
 namespace {
 
 World rooms() { return load_world(SF_SOURCE_DIR "/worlds/rooms.world"); }
+
+/// One row of each table that rooms.world has none of.
+void add_street(World& world) {
+  world.paths.push_back({"lane", {{{1.0, 2.0, 0.0, 0.5}, 2.72, 0.0, 0.5}, {{3.0, 2.0, 0.0, 0.5}, 1.46, 1.07, 0.6}}});
+  world.lights.push_back({"light",
+                          1,
+                          {4.0, 2.0, 0.0, 1.0},
+                          true,
+                          {{LightState::green, 8.0}, {LightState::flashing_yellow, 2.5}},
+                          -3.0,
+                          {"3.1.11", "4.2.5"}});
+  world.emitters.push_back({Emitter::Kind::dock, 1, {0.5, 0.25, 0.05, 2.0}, 1.8, 0.7, 0.6});
+  world.drops.push_back({{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}, 1});
+  world.road_files.push_back("some.rndf");
+  Mover& mover = world.movers.at(0);
+  mover.drive = Drive::skid;
+  mover.command_law = CommandLaw::player_create;
+  mover.max_acceleration = 2.0;
+  mover.max_turn_acceleration = 5.0;
+  mover.track = 0.258;
+}
 
 TEST(Snapshot, ARoundTripKeepsEverything) {
   World world = rooms();
@@ -28,6 +51,7 @@ TEST(Snapshot, ARoundTripKeepsEverything) {
        {{"scount", {5.0}, "", 7, "some.world"}, {"sum", {}, "vector", 8, "some.world"}},
        6,
        "some.world"});
+  add_street(world);
   finish(world);
   const auto bytes = snapshot(world);
   const World again = from_snapshot(bytes);
@@ -36,11 +60,57 @@ TEST(Snapshot, ARoundTripKeepsEverything) {
   EXPECT_EQ(again.extent.x_max, world.extent.x_max);
   EXPECT_EQ(again.movers.at(0).sensors.at(0).settings.at(1).text, "vector");
   EXPECT_EQ(again.stripes.at(0).line.at(1).y, 0.5);
+  EXPECT_EQ(again.paths.at(0).pieces.at(1).curvature, 1.07);
+  EXPECT_EQ(again.lights.at(0).phases.at(1).state, LightState::flashing_yellow);
+  EXPECT_EQ(again.lights.at(0).points.at(1), "4.2.5");
+  EXPECT_EQ(again.emitters.at(0).X_WE.yaw, 2.0);
+  EXPECT_EQ(again.drops.at(0).outline.at(2).y, 1.0);
+  EXPECT_EQ(again.road_files.at(0), "some.rndf");
+  EXPECT_EQ(again.movers.at(0).drive, Drive::skid);
+  EXPECT_EQ(again.movers.at(0).command_law, CommandLaw::player_create);
+  EXPECT_EQ(again.movers.at(0).track, 0.258);
+  EXPECT_EQ(again.movers.at(1).max_acceleration, HUGE_VAL);
   EXPECT_EQ(again.movers.at(1).lasers.at(0).color, world.movers.at(1).lasers.at(0).color);
 }
 
+World street() {
+  World world = rooms();
+  add_street(world);
+  finish(world);
+  return world;
+}
+
+TEST(Snapshot, RowsThatBreakTheirRulesAreRefused) {
+  const auto refused = [](auto&& spoil) {
+    World world = street();
+    spoil(world);
+    finish(world);
+    try {
+      from_snapshot(snapshot(world));
+    } catch (const base::InputError& error) {
+      return std::string(error.what()).find("broken world snapshot") != std::string::npos;
+    }
+    return false;
+  };
+  EXPECT_FALSE(refused([](World&) {}));
+  EXPECT_TRUE(refused([](World& w) { w.lights[0].phases.clear(); })) << "a light that shows nothing";
+  EXPECT_TRUE(refused([](World& w) { w.lights[0].phases[1].duration = 0.0; }));
+  EXPECT_TRUE(refused([](World& w) { w.lights[0].phases[1].duration = HUGE_VAL; })) << "a cycle without an end";
+  EXPECT_TRUE(refused([](World& w) { w.lights[0].offset = NAN; }));
+  EXPECT_TRUE(refused([](World& w) { w.lights[0].model = 9999; }));
+  EXPECT_TRUE(refused([](World& w) { w.emitters[0].model = 9999; }));
+  EXPECT_TRUE(refused([](World& w) { w.emitters[0].range = 0.0; }));
+  EXPECT_TRUE(refused([](World& w) { w.drops[0].model = 9999; }));
+  EXPECT_TRUE(refused([](World& w) { w.drops[0].outline.pop_back(); }));
+  EXPECT_TRUE(refused([](World& w) { w.paths[0].pieces.clear(); }));
+  EXPECT_TRUE(refused([](World& w) { w.paths[0].pieces[0].length = 0.0; }));
+  EXPECT_TRUE(refused([](World& w) { w.movers[0].track = 0.0; }));
+  EXPECT_TRUE(refused([](World& w) { w.movers[0].drive = static_cast<Drive>(4); })) << "no such drive";
+  EXPECT_TRUE(refused([](World& w) { w.lights[0].phases[0].state = static_cast<LightState>(6); }));
+}
+
 TEST(Snapshot, EveryCutIsRefused) {
-  const auto bytes = snapshot(rooms());
+  const auto bytes = snapshot(street());
   for (std::size_t size = 0; size < bytes.size(); size += 7) {
     EXPECT_THROW(from_snapshot({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)}), base::InputError)
         << size;
@@ -48,7 +118,7 @@ TEST(Snapshot, EveryCutIsRefused) {
 }
 
 TEST(Snapshot, ChangedBytesAreRefusedOrHarmless) {
-  const auto bytes = snapshot(rooms());
+  const auto bytes = snapshot(street());
   for (std::uint32_t k = 0; k < 2000; ++k) {
     auto changed = bytes;
     const auto words = base::random_words({1, base::Stream::place, 0, 0, 0}, k);
@@ -56,6 +126,7 @@ TEST(Snapshot, ChangedBytesAreRefusedOrHarmless) {
     try {
       const World world = from_snapshot(changed);
       for (const Segment& wall : world.walls) ASSERT_LT(wall.model, world.models.size());
+      for (const Light& light : world.lights) ASSERT_FALSE(light.phases.empty());
     } catch (const base::InputError&) {
       continue;
     }
@@ -85,14 +156,31 @@ TEST(Hash, DependsOnWhatAReadingDependsOn) {
   EXPECT_NE(read_world("model( name \"m\" size [1 1 1] ) position( pose [0 0 0 1] laser() )").hash, hash);
 }
 
+TEST(Hash, DependsOnLightsEmittersHolesAndHowRobotsMove) {
+  const std::string rest = "model( name \"m\" )";
+  const auto hash = [&](const std::string& text) { return read_world(text + rest).hash; };
+  EXPECT_NE(hash("light( name \"l\" phases 1 phase[0] [\"red\" 1] )"),
+            hash("light( name \"l\" phases 1 phase[0] [\"green\" 1] )"));
+  EXPECT_NE(hash("model( ir_emitter \"dock\" )"), hash("model( ir_emitter \"virtual_wall\" )"));
+  EXPECT_NE(hash("model( ir_emitter \"dock\" )"), hash("model( ir_emitter \"dock\" ir_halo 0.2 )"));
+  EXPECT_NE(hash("model( cliff_return 1 size [1 1 1] )"), hash("model( cliff_return 1 size [1 2 1] )"));
+  EXPECT_NE(hash("position( )"), hash("position( track 0.2 )"));
+  EXPECT_NE(hash("position( )"), hash("position( command_law \"player_create\" )"));
+  EXPECT_NE(hash("position( )"), hash("position( acceleration_bounds [-1 1] )"));
+}
+
 TEST(Translate, MovesEverythingThatHasAPlace) {
-  const World before = rooms();
+  const World before = street();
   World after = before;
   translate(after, 100'000.0, -50'000.0);
   EXPECT_EQ(after.walls[3].a.x, before.walls[3].a.x + 100'000.0);
   EXPECT_EQ(after.movers[1].X_WM.y, before.movers[1].X_WM.y - 50'000.0);
   EXPECT_EQ(after.models[2].X_WM.x, before.models[2].X_WM.x + 100'000.0);
   EXPECT_EQ(after.movers[1].body[0].a.x, before.movers[1].body[0].a.x);  // bodies have frames of their own
+  EXPECT_EQ(after.paths[0].pieces[1].X_WP.x, before.paths[0].pieces[1].X_WP.x + 100'000.0);
+  EXPECT_EQ(after.lights[0].X_WL.y, before.lights[0].X_WL.y - 50'000.0);
+  EXPECT_EQ(after.emitters[0].X_WE.x, before.emitters[0].X_WE.x + 100'000.0);
+  EXPECT_EQ(after.drops[0].outline[1].y, before.drops[0].outline[1].y - 50'000.0);
   EXPECT_EQ(after.extent.x_max, before.extent.x_max + 100'000.0);
   EXPECT_NE(after.hash, before.hash);
 }

@@ -1,0 +1,112 @@
+#include "robots/touch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/report.h"
+#include "world/wall_grid.h"
+
+namespace sf::robots {
+
+namespace {
+
+using base::kTouchSectors;
+using base::Vec2;
+
+/// A piece of surface in the mover's frame; heights above the mover's origin.
+struct Surface {
+  Vec2 a, b;
+  double z_min, z_max;
+};
+
+/// Directions between the sectors, in the mover's frame.
+const std::array<Vec2, kTouchSectors + 1>& borders() {
+  static const auto table = [] {
+    std::array<Vec2, kTouchSectors + 1> directions;
+    for (std::uint32_t k = 0; k <= kTouchSectors; ++k) {
+      const double bearing = 2.0 * M_PI * (k % kTouchSectors) / kTouchSectors;
+      directions[k] = {std::cos(bearing), std::sin(bearing)};
+    }
+    return directions;
+  }();
+  return table;
+}
+
+/// The part of 0..1 along a surface. Empty unless `from` < `to`.
+struct Part {
+  double from = 0.0, to = 1.0;
+};
+
+/// Keeps where side(t) = at_a + t (at_b - at_a) >= 0.
+void keep_positive(Part& part, double at_a, double at_b) {
+  if (at_a >= 0.0 && at_b >= 0.0) return;
+  if (at_a < 0.0 && at_b < 0.0) {
+    part = {1.0, 0.0};
+    return;
+  }
+  const double t = at_a / (at_a - at_b);
+  if (at_a < 0.0) part.from = std::max(part.from, t);
+  if (at_b < 0.0) part.to = std::min(part.to, t);
+}
+
+Part within_sector(const Surface& s, std::uint32_t k) {
+  const Vec2 right = borders()[k], left = borders()[k + 1];
+  Part part;
+  keep_positive(part, cross(right, s.a), cross(right, s.b));
+  keep_positive(part, cross(s.a, left), cross(s.b, left));
+  return part;
+}
+
+bool overlap(const Edge& e, const Surface& s) { return e.z_min < s.z_max && s.z_min < e.z_max; }
+
+double distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+  if (world::segments_meet(a, b, c, d)) return 0.0;
+  return std::min(
+      {world::distance(a, c, d), world::distance(b, c, d), world::distance(c, a, b), world::distance(d, a, b)});
+}
+
+// Within kPressed of an edge, or else wholly inside or outside, as its middle is.
+bool presses(const Outline& outline, const Surface& s, const Part& part) {
+  const Vec2 a = s.a + part.from * (s.b - s.a), b = s.a + part.to * (s.b - s.a);
+  for (const Edge& e : outline.edges)
+    if (overlap(e, s) && distance(a, b, e.a, e.b) <= kPressed) return true;
+  return inside(outline.edges, 0.5 * (a + b), s.z_min, s.z_max);
+}
+
+std::uint32_t sectors_of(const Outline& outline, const Surface& s) {
+  if (world::distance({0.0, 0.0}, s.a, s.b) > outline.radius + kPressed) return 0;
+  std::uint32_t sectors = 0;
+  for (std::uint32_t k = 0; k < kTouchSectors; ++k) {
+    const Part part = within_sector(s, k);
+    if (part.from < part.to && presses(outline, s, part)) sectors |= 1u << k;
+  }
+  return sectors;
+}
+
+}  // namespace
+
+std::uint32_t sectors_touched(const Outline& outline, const base::Pose& X_WM, const world::Segment& wall) {
+  const Vec2 p{X_WM.x, X_WM.y};
+  return sectors_of(outline, {base::rotate(-X_WM.yaw, wall.a - p), base::rotate(-X_WM.yaw, wall.b - p),
+                              wall.z_min - X_WM.z, wall.z_max - X_WM.z});
+}
+
+std::uint32_t sectors_touched(const Outline& outline, const base::Pose& X_WM, const Outline& other,
+                              const base::Pose& X_WO) {
+  const Vec2 apart = Vec2{X_WO.x, X_WO.y} - Vec2{X_WM.x, X_WM.y};
+  const Vec2 p_MO = base::rotate(-X_WM.yaw, apart);
+  const double turn = X_WO.yaw - X_WM.yaw, lift = X_WO.z - X_WM.z;
+  const double reach = outline.radius + kPressed;
+  const double c = std::cos(turn), s = std::sin(turn);
+  const auto to_mover = [&](Vec2 q) { return p_MO + Vec2{c * q.x - s * q.y, s * q.x + c * q.y}; };
+  std::uint32_t sectors = 0;
+  for (const Edge& e : other.edges)
+    sectors |= sectors_of(outline, {to_mover(e.a), to_mover(e.b), e.z_min + lift, e.z_max + lift});
+  if (sectors != 0 || length(apart) > reach + other.radius || outline.edges.empty()) return sectors;
+  const Edge& first = outline.edges.front();
+  const Vec2 q = base::rotate(X_WM.yaw - X_WO.yaw, first.a - p_MO);
+  return inside(other.edges, q, first.z_min - lift, first.z_max - lift) ? ~0u : 0u;
+}
+
+}  // namespace sf::robots

@@ -1,0 +1,205 @@
+// How close movers of a fleet come to things, and what they then feel.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/random.h"
+#include "robots/fleet.h"
+#include "tests/robots/scenes.h"
+
+namespace sf::robots {
+namespace {
+
+using base::Pose;
+using base::Report;
+using base::Twist;
+using base::Vec2;
+
+constexpr std::int64_t kTick = 100'000'000;
+
+std::uint32_t bit(int k) { return 1u << ((k + 32) % 32); }
+
+void drive(Fleet& fleet, std::vector<Twist> commands, int ticks = 1) {
+  for (int i = 0; i < ticks; ++i) fleet.move(commands, kTick);
+}
+
+double gap_to(const world::World& world, const Pose& X_WM, const world::Mover& mover) {
+  double gap = HUGE_VAL;
+  for (const world::Segment& s : mover.body)
+    for (const world::Segment& wall : world.walls)
+      gap = std::min({gap, world::distance(transform(X_WM, s.a), wall.a, wall.b),
+                      world::distance(wall.a, transform(X_WM, s.a), transform(X_WM, s.b)),
+                      world::distance(wall.b, transform(X_WM, s.a), transform(X_WM, s.b))});
+  return gap;
+}
+
+TEST(Contact, whatever_a_robot_runs_into_it_comes_within_half_a_millimetre) {
+  for (std::uint32_t k = 0; k < 60; ++k) {
+    const auto u = base::random_uniform({.seed = 31, .stream = base::Stream::place, .a = k}, 0);
+    world::World world = scenes::boxed_world(2, 2);
+    scenes::add_outline(world.walls, scenes::rectangle({1.5, 0.4}, 0.1, 0.1));
+    const Pose X{0.4 + 0.7 * u[0], 0.9 + 0.7 * u[1], 0, 6.28 * std::fmod(7.0 * u[0] + u[1], 1.0)};
+    const world::Mover& mover = k % 2 == 0 ? scenes::add_create(world, X) : scenes::add_square(world, X);
+    Fleet fleet(world);
+    for (int i = 0; i < 100 && fleet.contacts()[0] == 0; ++i) drive(fleet, {{0.2 + 0.3 * u[1], 0, 0}});
+    ASSERT_EQ(fleet.contacts()[0], 1) << k;
+    const double gap = gap_to(world, fleet.reports()[0].X_WM, mover);
+    EXPECT_LE(gap, 5e-4) << k;
+    EXPECT_NE(fleet.reports()[0].touched, 0u) << k;
+    const Pose stopped = fleet.reports()[0].X_WM;
+    drive(fleet, {{0.5, 0, 0}}, 5);
+    EXPECT_LT(std::hypot(fleet.reports()[0].X_WM.x - stopped.x, fleet.reports()[0].X_WM.y - stopped.y), 1e-3)
+        << "and stays there, however long it presses";
+  }
+}
+
+TEST(Contact, is_felt_where_it_presses) {
+  for (const auto& [yaw, sectors] : {std::pair{0.0, bit(0) | bit(-1)}, {M_PI / 2, bit(7) | bit(8)}}) {
+    world::World world = scenes::empty_world();
+    scenes::add_wall(world, {0.5, -1}, {0.5, 1});
+    scenes::add_create(world, {0, 0, 0, 0}).drive = world::Drive::omni;
+    Fleet fleet(world);
+    // Towards the wall with the side that faces it; what is felt is in the robot's own frame.
+    const_cast<world::Mover&>(world.movers[0]).X_WM.yaw = -yaw;
+    Fleet turned(world);
+    drive(turned, {{0.5 * std::cos(yaw), 0.5 * std::sin(yaw), 0}}, 20);
+    EXPECT_EQ(turned.reports()[0].touched, sectors) << yaw;
+    EXPECT_NEAR(turned.reports()[0].X_WM.x, 0.335, 5e-4);
+  }
+}
+
+TEST(Contact, stays_while_it_touches_and_ends_when_it_leaves) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {0.5, -1}, {0.5, 1});
+  scenes::add_create(world, {0, 0, 0, 0});
+  Fleet fleet(world);
+  drive(fleet, {{0.5, 0, 0}}, 20);
+  const std::uint32_t pressed = fleet.reports()[0].touched;
+  EXPECT_NE(pressed, 0u);
+  drive(fleet, {{0, 0, 0}}, 10);
+  EXPECT_EQ(fleet.reports()[0].touched, pressed) << "a bumper stays pressed while its robot stands";
+  EXPECT_EQ(fleet.contacts()[0], 1);
+  drive(fleet, {{-0.005, 0, 0}});  // 0.5 mm: still near enough
+  EXPECT_EQ(fleet.contacts()[0], 1);
+  drive(fleet, {{-0.02, 0, 0}});
+  EXPECT_EQ(fleet.reports()[0].touched, 0u);
+  EXPECT_EQ(fleet.contacts()[0], 0);
+}
+
+TEST(Contact, passing_by_is_none) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {-5, 0.2005}, {5, 0.2005});
+  scenes::add_square(world, {0, 0, 0, 0});
+  Fleet fleet(world);
+  drive(fleet, {{0.5, 0, 0}}, 10);
+  EXPECT_EQ(fleet.reports()[0].touched, 0u) << "half a millimetre beside, but nothing stopped it";
+  EXPECT_EQ(fleet.contacts()[0], 0);
+}
+
+TEST(Contact, who_is_run_into_feels_it_too) {
+  world::World world = scenes::empty_world();
+  scenes::add_square(world, {0, 0, 0, M_PI});  // its back to the other
+  scenes::add_square(world, {1, 0, 0, M_PI});
+  scenes::add_square(world, {-0.4005, 0, 0, 0});  // stands by
+  Fleet fleet(world);
+  drive(fleet, {{}, {0.5, 0, 0}, {}}, 20);
+  EXPECT_EQ(fleet.contacts()[0], 1);
+  EXPECT_EQ(fleet.contacts()[1], 1);
+  EXPECT_NE(fleet.reports()[0].touched & (bit(15) | bit(16)), 0u) << "behind";
+  EXPECT_NE(fleet.reports()[1].touched & (bit(0) | bit(-1)), 0u) << "ahead";
+  EXPECT_EQ(fleet.contacts()[2], 0) << "nobody ran into the third";
+  drive(fleet, {{}, {-0.5, 0, 0}, {}}, 1);
+  EXPECT_EQ(fleet.contacts()[1], 0);
+  EXPECT_EQ(fleet.reports()[0].touched & (bit(15) | bit(16)), 0u) << "released on that side";
+}
+
+TEST(Contact, a_round_robot_that_presses_can_turn_whatever_side_it_presses_with) {
+  for (int k = 0; k < 32; ++k) {
+    world::World world = scenes::empty_world();
+    scenes::add_wall(world, {0.5, -1}, {0.5, 1});
+    world::Mover& mover = scenes::add_create(world, {0.2, 0, 0, k * M_PI / 128});
+    mover.drive = world::Drive::omni;
+    Fleet fleet(world);
+    const double yaw = k * M_PI / 128;
+    drive(fleet, {{0.5 * std::cos(yaw), -0.5 * std::sin(yaw), 0}}, 10);
+    ASSERT_EQ(fleet.contacts()[0], 1);
+    const Pose pressed = fleet.reports()[0].X_WM;
+    drive(fleet, {{0, 0, 1.0}}, 20);
+    EXPECT_NEAR(fleet.reports()[0].X_WM.yaw, base::wrap_angle(yaw + 2.0), 1e-9) << k;
+    EXPECT_NEAR(fleet.reports()[0].X_WM.x, pressed.x, 0.012) << k << ": pushed off by no more than it sticks out";
+    EXPECT_NEAR(fleet.reports()[0].X_WM.y, pressed.y, 0.012) << k;
+  }
+}
+
+TEST(Contact, accelerations_limit_driving_but_not_being_stopped) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {0.5, -1}, {0.5, 1});
+  scenes::add_create(world, {0, 0, 0, 0}).max_acceleration = 1.0;
+  Fleet fleet(world);
+  drive(fleet, {{0.5, 0, 0}});
+  EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.forward, 0.1);
+  EXPECT_NEAR(fleet.reports()[0].X_WM.x, 0.01, 1e-12);
+  drive(fleet, {{0.5, 0, 0}}, 2);
+  EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.forward, 0.3);
+  drive(fleet, {{0, 0, 0}});
+  EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.forward, 0.2) << "rolls on";
+  drive(fleet, {{0.5, 0, 0}}, 20);
+  EXPECT_EQ(fleet.reports()[0].velocity.forward, 0.0) << "stopped at once";
+  drive(fleet, {{-0.5, 0, 0}});
+  EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.forward, -0.1) << "and leaves from standing";
+}
+
+TEST(Contact, the_command_law_comes_first) {
+  world::World world = scenes::empty_world();
+  world::Mover& mover = scenes::add_create(world, {0, 0, 0, 0});
+  mover.track = 0.258;
+  mover.command_law = world::CommandLaw::player_create;
+  Fleet fleet(world);
+  drive(fleet, {{0.1, 0, 0.1}});
+  EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.turn, 0.2);
+}
+
+TEST(Contact, a_robot_that_is_told_presses_on_virtual_things) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {0.5, -1}, {0.5, 1});
+  scenes::add_create(world, {0, 0, 0, 0});
+  scenes::add_create(world, {0, 5, 0, 0});
+  Fleet fleet(world);
+  const auto tell = [&](std::int64_t time, double x) {
+    fleet.apply(std::vector<Report>{{.mover = 0, .time = time, .X_WM = {x, 0, 0, 0}, .velocity = {0.5, 0, 0}}});
+  };
+  tell(kTick, 0.2);
+  EXPECT_EQ(fleet.predict(kTick)[0].touched, 0u);
+  EXPECT_EQ(fleet.contacts()[0], 0);
+  EXPECT_NE(fleet.predict(4 * kTick)[0].touched & (bit(0) | bit(-1)), 0u) << "carried on into the wall";
+  EXPECT_EQ(fleet.contacts()[0], 1);
+  EXPECT_EQ(fleet.predict(kTick)[0].touched, 0u) << "where it is at that time";
+  tell(5 * kTick, 0.45);
+  EXPECT_NE(fleet.predict(5 * kTick)[0].touched, 0u) << "half way through";
+  EXPECT_EQ(fleet.predict(5 * kTick)[1].touched, 0u);
+}
+
+TEST(Contact, what_a_report_says_of_a_real_bumper_stays) {
+  world::World world = scenes::empty_world();
+  scenes::add_create(world, {0, 0, 0, 0});
+  Fleet fleet(world);
+  fleet.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {}, .touched = bit(3)}});
+  EXPECT_EQ(fleet.predict(kTick)[0].touched, bit(3));
+  EXPECT_EQ(fleet.contacts()[0], 1);
+}
+
+TEST(Contact, robots_that_are_told_press_on_each_other) {
+  world::World world = scenes::empty_world();
+  scenes::add_square(world, {0, 0, 0, 0});
+  scenes::add_square(world, {5, 0, 0, 0});
+  Fleet fleet(world);
+  fleet.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}},
+                                  {.mover = 1, .time = kTick, .X_WM = {0.4, 0, 0, 0}}});
+  const auto reports = fleet.predict(kTick);
+  EXPECT_NE(reports[0].touched & (bit(0) | bit(-1)), 0u);
+  EXPECT_NE(reports[1].touched & (bit(15) | bit(16)), 0u);
+}
+
+}  // namespace
+}  // namespace sf::robots

@@ -1,0 +1,75 @@
+#include "world/floor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::world {
+
+namespace {
+
+// A virtual wall reaches 2.4 m (8 feet: the accessory's own range) and is felt all around within 0.45 m (18 inches);
+// the width of its beam, and all three of the dock, are assumptions.
+constexpr double kWallRange = 2.4, kWallFov = 0.4, kWallHalo = 0.45;  // [m], [rad], [m]
+constexpr double kDockRange = 1.8, kDockFov = 0.7, kDockHalo = 0.6;   // [m], [rad], [m]
+
+Emitter::Kind kind_of_emitter(const Source& source, const Entity& entity) {
+  const std::string word = text(source, entity, "ir_emitter", "");
+  if (word == "virtual_wall") return Emitter::Kind::virtual_wall;
+  if (word == "dock") return Emitter::Kind::dock;
+  fail(source, find(entity, "ir_emitter")->at,
+       fmt::format("'ir_emitter' is \"{}\"; expected \"virtual_wall\" or \"dock\"", word));
+}
+
+bool same(Vec2 p, Vec2 q) { return p.x == q.x && p.y == q.y; }
+
+}  // namespace
+
+bool is_drop(const Source& source, const Entity& entity) { return flag(source, entity, "cliff_return", false); }
+
+void add_drops(Building& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
+               const Pose& X_B) {
+  const Place at = find(entity, "cliff_return")->at;
+  if (model.mover != kNone) fail(b.source, at, "a hole in the floor stands still; expected it outside of what moves");
+  if (model.is_bitmap || flag(b.source, entity, "boundary", false))
+    fail(b.source, at, "'cliff_return' expects blocks or a box, neither a bitmap nor a boundary");
+  const auto row = static_cast<std::uint32_t>(b.world.models.size());
+  for (std::size_t i = 0; i < shape.size();) {
+    Drop drop{{}, row};
+    const Vec2 first = shape[i].a;
+    bool closed = false;
+    for (; i < shape.size() && !closed; ++i) {
+      if (!shape[i].solid_left)
+        fail(b.source, at, "'cliff_return' expects outlines of at least three corners that do not cross themselves");
+      drop.outline.push_back(transform(X_B, shape[i].a));
+      closed = same(shape[i].b, first);
+    }
+    b.world.drops.push_back(std::move(drop));
+  }
+}
+
+void add_emitter(Building& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B) {
+  const Source& source = b.source;
+  const Property* property = find(entity, "ir_emitter");
+  if (property == nullptr) return;
+  if (model.mover != kNone)
+    fail(source, property->at, "an infrared emitter stands still; expected it outside of what moves");
+  Emitter emitter;
+  emitter.kind = kind_of_emitter(source, entity);
+  const bool dock = emitter.kind == Emitter::Kind::dock;
+  emitter.model = static_cast<std::uint32_t>(b.world.models.size());
+  emitter.X_WE = X_B;
+  emitter.X_WE.z += 0.5 * size.z;
+  emitter.range = length(source, entity, "ir_range", dock ? kDockRange : kWallRange);
+  emitter.fov = angle(source, entity, "ir_fov", dock ? kDockFov : kWallFov);
+  emitter.halo = length(source, entity, "ir_halo", dock ? kDockHalo : kWallHalo);
+  if (!(emitter.range > 0.0)) fail(source, find(entity, "ir_range")->at, "'ir_range' expects a length above zero");
+  if (!(emitter.fov > 0.0 && emitter.fov <= 2.0 * M_PI * (1.0 + 1e-12)))
+    fail(source, find(entity, "ir_fov")->at, "'ir_fov' expects an angle above zero, to a whole turn");
+  emitter.fov = std::min(emitter.fov, 2.0 * M_PI);
+  if (!(emitter.halo >= 0.0)) fail(source, find(entity, "ir_halo")->at, "'ir_halo' expects a length of 0 or more");
+  b.world.emitters.push_back(emitter);
+}
+
+}  // namespace sf::world
