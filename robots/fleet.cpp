@@ -79,12 +79,15 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
   feel();
 }
 
-// What was refused a step touches something, and what touched may still: nobody else is looked at.
+// What was refused a step touches something, and what touched may still: nobody else is looked at, but whom these
+// were refused by.
 void Fleet::feel() {
-  for (std::uint32_t row = 0; row < reports_.size(); ++row)
-    if (refused_[row] != 0 || reports_[row].touched != 0) reports_[row].touched = touch_of(row, reports_).sectors;
   for (std::uint32_t row = 0; row < reports_.size(); ++row) {
-    if (struck_[row] != 0) reports_[row].touched = touch_of(row, reports_).sectors;
+    contacts_[row] = refused_[row] != 0 || reports_[row].touched != 0;
+    if (contacts_[row] != 0) reports_[row].touched = touch_of(row, reports_).sectors;
+  }
+  for (std::uint32_t row = 0; row < reports_.size(); ++row) {
+    if (struck_[row] != 0 && contacts_[row] == 0) reports_[row].touched = touch_of(row, reports_).sectors;
     struck_[row] = 0;
     contacts_[row] = refused_[row] != 0 || reports_[row].touched != 0;
   }

@@ -60,26 +60,45 @@ Part within_sector(const Surface& s, std::uint32_t k) {
 
 bool overlap(const Edge& e, const Surface& s) { return e.z_min < s.z_max && s.z_min < e.z_max; }
 
-double distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-  if (world::segments_meet(a, b, c, d)) return 0.0;
-  return std::min(
-      {world::distance(a, c, d), world::distance(b, c, d), world::distance(c, a, b), world::distance(d, a, b)});
+/// Whether the segments ab and cd come within kPressed of one another.
+bool near(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+  const auto apart = [](double p, double q, double r, double s) {
+    return std::min(p, q) > std::max(r, s) + kPressed || std::min(r, s) > std::max(p, q) + kPressed;
+  };
+  if (apart(a.x, b.x, c.x, d.x) || apart(a.y, b.y, c.y, d.y)) return false;
+  return world::segments_meet(a, b, c, d) || world::distance(a, c, d) <= kPressed ||
+         world::distance(b, c, d) <= kPressed || world::distance(c, a, b) <= kPressed ||
+         world::distance(d, a, b) <= kPressed;
 }
 
-// Within kPressed of an edge, or else wholly inside or outside, as its middle is.
-bool presses(const Outline& outline, const Surface& s, const Part& part) {
+/// The edges from the first to the last one that a surface comes near to; none: an empty span.
+std::span<const Edge> edges_near(const Outline& outline, const Surface& s) {
+  std::size_t first = 0, end = 0;
+  for (std::size_t i = 0; i < outline.edges.size(); ++i) {
+    const Edge& e = outline.edges[i];
+    if (!overlap(e, s) || !near(s.a, s.b, e.a, e.b)) continue;
+    if (end == 0) first = i;
+    end = i + 1;
+  }
+  return {outline.edges.data() + first, end - first};
+}
+
+// A part is near an edge, or else wholly inside or outside, as its middle is.
+bool presses(const Outline& outline, std::span<const Edge> edges, const Surface& s, const Part& part) {
   const Vec2 a = s.a + part.from * (s.b - s.a), b = s.a + part.to * (s.b - s.a);
-  for (const Edge& e : outline.edges)
-    if (overlap(e, s) && distance(a, b, e.a, e.b) <= kPressed) return true;
+  for (const Edge& e : edges)
+    if (overlap(e, s) && near(a, b, e.a, e.b)) return true;
   return inside(outline.edges, 0.5 * (a + b), s.z_min, s.z_max);
 }
 
 std::uint32_t sectors_of(const Outline& outline, const Surface& s) {
   if (world::distance({0.0, 0.0}, s.a, s.b) > outline.radius + kPressed) return 0;
+  const std::span<const Edge> edges = edges_near(outline, s);
+  if (edges.empty() && !inside(outline.edges, s.a, s.z_min, s.z_max)) return 0;
   std::uint32_t sectors = 0;
   for (std::uint32_t k = 0; k < kTouchSectors; ++k) {
     const Part part = within_sector(s, k);
-    if (part.from < part.to && presses(outline, s, part)) sectors |= 1u << k;
+    if (part.from < part.to && presses(outline, edges, s, part)) sectors |= 1u << k;
   }
   return sectors;
 }
