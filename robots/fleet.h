@@ -80,6 +80,7 @@ class Fleet {
   bool leaves(std::uint32_t row, const base::Pose& X_WM, const Placed& other);
   bool step(std::uint32_t row, const base::Twist& velocity, double dt);
   double press(std::uint32_t row, const base::Twist& velocity, double dt);
+  bool turn_against(std::uint32_t row, const base::Twist& velocity, double dt);
   bool push_off(std::uint32_t row, const base::Twist& velocity, double dt);
   Touch touch_of(std::uint32_t row, std::span<const base::Report> reports);
   void feel();

@@ -62,8 +62,7 @@ void Fleet::move_in_steps(std::uint32_t row, Twist velocity, double dt, std::int
       velocity = {0.0, 0.0, world_.movers[row].drive == world::Drive::car ? 0.0 : velocity.turn};
       if (velocity.turn != 0.0 && step(row, velocity, dt)) continue;
     }
-    const double left = dt - press(row, velocity, dt);
-    if (velocity.turn != 0.0 && push_off(row, velocity, left)) continue;
+    if (velocity.turn != 0.0 && turn_against(row, velocity, dt)) continue;
     velocity = {};
     break;
   }
@@ -80,7 +79,6 @@ bool Fleet::step(std::uint32_t row, const Twist& velocity, double dt) {
 // As far along a refused step as there is nothing in the way; how long that takes [s]. The least part is tried first:
 // who presses already stays.
 double Fleet::press(std::uint32_t row, const Twist& velocity, double dt) {
-  if (!moves(velocity)) return dt;
   const Pose X_start = reports_[row].X_WM;
   const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(outlines_[row].step / kGap))));
   double free = std::ldexp(1.0, -halvings), blocked = 1.0;
@@ -91,6 +89,13 @@ double Fleet::press(std::uint32_t row, const Twist& velocity, double dt) {
   }
   reports_[row].X_WM = advance(X_start, velocity, free * dt);
   return free * dt;
+}
+
+// Who is not near enough yet to push itself off turns until it is.
+bool Fleet::turn_against(std::uint32_t row, const Twist& velocity, double dt) {
+  if (push_off(row, velocity, dt)) return true;
+  const double done = press(row, velocity, dt);
+  return done > 0.0 && push_off(row, velocity, dt - done);
 }
 
 // A body that is not quite round (a disc of sixteen sides) pushes itself off what it presses on when it turns.
