@@ -5,6 +5,7 @@
 
 #include "tests/counted_new.h"
 #include "tests/farm/small_farm.h"
+#include "tests/sensors/host_trial.h"
 #include "tests/sensors/magnet_scenes.h"
 
 namespace sf::farm {
@@ -58,6 +59,25 @@ TEST(Allocation, NoneWithMagnetometersEither) {
     world.magnet_cutoff = cutoff;
     EXPECT_EQ(allocations_per_lap(world, {.threads = 2}), 0u) << cutoff;
   }
+}
+
+/// Sensors that need no device: a roof overhead, a hole in the floor, a dock and a virtual wall.
+TEST(Allocation, NoneWithSensorsOfTheHostEither) {
+  world::World world;
+  for (int i = 0; i < 12; ++i) {
+    const auto m = scenes::add_carrier(world, {0.4 * i - 2.0, 0.0, 0.0, 0.0}, trial::fitted("bumper"));
+    auto& sensors = world.movers[m].sensors;
+    for (const char* type : {"cliff", "irreceiver"}) sensors.push_back(trial::fitted(type));
+    sensors.push_back(trial::fitted("encoder", {scenes::setting("slip", {0.01})}));
+    sensors.push_back(trial::fitted("gyro", {scenes::setting("noise", {0.1}), scenes::setting("bias", {0.1})}));
+    sensors.push_back(trial::fitted("gps", {scenes::setting("noise", {1.0}), scenes::setting("rate", {10.0})}));
+  }
+  trial::add_solid(world, trial::square({0, 0}, 1.5), 0.5, 0.6);
+  world.drops.push_back({trial::square({1, 0}, 0.7), 0});
+  using Kind = world::Emitter::Kind;
+  for (const Kind kind : {Kind::dock, Kind::virtual_wall})
+    world.emitters.push_back({kind, world::kNone, {2, 0, 0, 0}, 2.0, 0.7, 0.5});
+  for (const unsigned threads : {1u, 2u}) EXPECT_EQ(allocations_per_lap(world, {.threads = threads}), 0u) << threads;
 }
 
 }  // namespace

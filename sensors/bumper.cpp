@@ -1,0 +1,140 @@
+#include "sensors/bumper.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sensors/host_instruments.h"
+#include "sensors/plain_packets.h"
+#include "sensors/settings.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr double kTurn = 2.0 * M_PI;
+constexpr double kSector = kTurn / base::kTouchSectors;
+constexpr double kRounding = 1e-9;  // [rad] of degrees made radians
+
+/// Bearings from `from` counter-clockwise to `from` + `sweep` [rad].
+std::uint32_t sectors_of(double from, double sweep) {
+  std::uint32_t sectors = 0;
+  for (std::uint32_t k = 0; k < base::kTouchSectors; ++k) {
+    const double ahead = (k + 0.5) * kSector - from;
+    const double turned = ahead - kTurn * std::floor((ahead + kRounding) / kTurn);
+    if (turned < sweep - kRounding) sectors |= 1u << k;
+  }
+  return sectors;
+}
+
+std::uint32_t read_zone(const world::Sensor& sensor, const world::Setting& setting) {
+  const auto degrees = *tuple(sensor, setting.key, 2, "[from to], bearings counter-clockwise");
+  const double from = sensor.radians * degrees[0];
+  double sweep = sensor.radians * degrees[1] - from;
+  if (sweep < -kRounding) sweep += kTurn;
+  if (!(std::abs(from) <= kTurn) || !(sweep > kRounding && sweep <= kTurn + kRounding))
+    refuse(sensor, setting.key,
+           fmt::format("'{}' is [{:g} {:g}]; expected [from to], an arc counter-clockwise of at most one turn that "
+                       "begins within one turn of straight ahead",
+                       setting.key, degrees[0], degrees[1]));
+  const std::uint32_t sectors = sectors_of(from + sensor.X_MS.yaw, sweep);
+  if (sectors != 0) return sectors;
+  refuse(sensor, setting.key,
+         fmt::format("'{}' is [{:g} {:g}], which holds the middle of none of the {} sectors that contacts are told in; "
+                     "widen it",
+                     setting.key, degrees[0], degrees[1], base::kTouchSectors));
+}
+
+/// Zones that are written but not counted.
+void refuse_more(const world::Sensor& sensor, std::uint32_t zones) {
+  const auto more = std::find_if(sensor.settings.begin(), sensor.settings.end(), [&](const world::Setting& setting) {
+    return setting.key.starts_with("zone[") && std::strtoull(setting.key.c_str() + 5, nullptr, 10) >= zones;
+  });
+  if (more != sensor.settings.end())
+    refuse(sensor, more->key,
+           fmt::format("'{}' is beyond 'zones {}', which counts from 0; raise 'zones' (at most {}) or leave it out",
+                       more->key, zones, kMostBumperZones));
+}
+
+class Bumpers : public HostInstruments {
+ public:
+  explicit Bumpers(const Site& site);
+
+  void follow(std::span<const base::Report> states, std::int64_t) override {
+    for (std::size_t m = 0; m < states.size(); ++m) touched_[m] = states[m].touched;
+  }
+
+ private:
+  void measure(std::span<const Sight> sights) const override;
+
+  std::vector<std::vector<std::uint32_t>> switches_;  ///< per row: the sectors of each
+  std::vector<std::uint32_t> touched_;                ///< per mover
+};
+
+std::vector<SensorRow> rows_of(const world::World& world) {
+  std::vector<SensorRow> rows;
+  for_each_sensor(world, bumper_kind, [&](const Fitted& fitted) {
+    rows.push_back(fitted.row);
+    rows.back().elements = static_cast<std::uint32_t>(read_bumper(fitted.settings).size());
+    rows.back().limit = 1.0;
+  });
+  return rows;
+}
+
+Bumpers::Bumpers(const Site& site)
+    : HostInstruments(site, bumper_kind, rows_of(site.world)), touched_(site.world.movers.size(), 0) {
+  for_each_sensor(site.world, bumper_kind,
+                  [this](const Fitted& fitted) { switches_.push_back(read_bumper(fitted.settings)); });
+}
+
+void Bumpers::measure(std::span<const Sight> sights) const {
+  for (const Sight& sight : sights) {
+    const std::uint32_t touched = touched_[rows()[sight.row].mover];
+    const auto& switches = switches_[sight.row];
+    for (std::size_t i = 0; i < switches.size(); ++i) sight.values[i] = (touched & switches[i]) != 0 ? 1.0 : 0.0;
+  }
+}
+
+constexpr std::string_view kKeys[] = {"zones", "zone[]"};
+constexpr Column kColumns[] = {{"pressed", 1, true}};
+constexpr PlainNumber kNumbers[] = {{1.0, 0.0, 1.0}};
+constexpr PlainForm kForm{kBumper, "bumper", kNumbers};
+
+}  // namespace
+
+std::vector<std::uint32_t> read_bumper(const world::Sensor& sensor) {
+  const std::uint32_t zones = whole(sensor, "zones", 1, 1, kMostBumperZones);
+  refuse_more(sensor, zones);
+  const bool all_round = find(sensor, "zones") == nullptr && find(sensor, "zone[0]") == nullptr;
+  if (all_round) return {0xFFFFFFFFu};
+  std::vector<std::uint32_t> switches;
+  for (std::uint32_t i = 0; i < zones; ++i) {
+    const world::Setting* zone = find(sensor, fmt::format("zone[{}]", i));
+    if (zone == nullptr)
+      refuse(sensor, "zones",
+             fmt::format("'zone[{}]' is missing: 'zones {}' promises zone[0] to zone[{}], each once; number them, or "
+                         "lower 'zones'",
+                         i, zones, zones - 1));
+    switches.push_back(read_zone(sensor, *zone));
+  }
+  return switches;
+}
+
+constinit const SensorKind bumper_kind{
+    .id = kBumper,
+    .name = "bumper",
+    .word = {"bumper", kKeys},
+    .base_port = 40000,
+    .list = "switches",
+    .columns = kColumns,
+    .rows = rows_of,
+    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Bumpers>(site); },
+    .refuse = Plain<kForm>::refuse,
+    .parts = Plain<kForm>::parts,
+    .encode = Plain<kForm>::encode,
+    .decode = Plain<kForm>::decode,
+    .read = Plain<kForm>::read,
+};
+
+}  // namespace sf::sensors

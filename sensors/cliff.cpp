@@ -1,0 +1,70 @@
+#include "sensors/cliff.h"
+
+#include "sensors/drops.h"
+#include "sensors/elements.h"
+#include "sensors/host_instruments.h"
+#include "sensors/plain_packets.h"
+
+namespace sf::sensors {
+
+namespace {
+
+class Cliffs : public HostInstruments {
+ public:
+  explicit Cliffs(const Site& site);
+
+ private:
+  void measure(std::span<const Sight> sights) const override;
+
+  Drops drops_;
+  std::vector<std::vector<Pose>> points_;  ///< per row, in the sensor's frame
+};
+
+std::vector<SensorRow> rows_of(const world::World& world) {
+  std::vector<SensorRow> rows;
+  for_each_sensor(world, cliff_kind, [&](const Fitted& fitted) {
+    rows.push_back(fitted.row);
+    rows.back().elements = static_cast<std::uint32_t>(read_elements(fitted.settings, kMostCliffPoints).size());
+    rows.back().limit = 1.0;
+  });
+  return rows;
+}
+
+Cliffs::Cliffs(const Site& site) : HostInstruments(site, cliff_kind, rows_of(site.world)), drops_(site.world.drops) {
+  for_each_sensor(site.world, cliff_kind, [this](const Fitted& fitted) {
+    points_.push_back(read_elements(fitted.settings, kMostCliffPoints));
+  });
+}
+
+void Cliffs::measure(std::span<const Sight> sights) const {
+  for (const Sight& sight : sights) {
+    const auto& points = points_[sight.row];
+    for (std::size_t i = 0; i < points.size(); ++i)
+      sight.values[i] = drops_.hold(base::transform(sight.X_WS, {points[i].x, points[i].y})) ? 1.0 : 0.0;
+  }
+}
+
+constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]"};
+constexpr Column kColumns[] = {{"cliff", 1, true}};
+constexpr PlainNumber kNumbers[] = {{1.0, 0.0, 1.0}};
+constexpr PlainForm kForm{kCliff, "cliff", kNumbers};
+
+}  // namespace
+
+constinit const SensorKind cliff_kind{
+    .id = kCliff,
+    .name = "cliff",
+    .word = {"cliff", kKeys},
+    .base_port = 42000,
+    .list = "points",
+    .columns = kColumns,
+    .rows = rows_of,
+    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Cliffs>(site); },
+    .refuse = Plain<kForm>::refuse,
+    .parts = Plain<kForm>::parts,
+    .encode = Plain<kForm>::encode,
+    .decode = Plain<kForm>::decode,
+    .read = Plain<kForm>::read,
+};
+
+}  // namespace sf::sensors

@@ -1,0 +1,151 @@
+#include "sensors/encoder.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sensors/host_instruments.h"
+#include "sensors/odometer.h"
+#include "sensors/plain_packets.h"
+#include "sensors/settings.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr double kSkidScrub = 1.5;     // of a Pioneer 3-AT: docs/sensors.md
+constexpr double kAlwaysRolled = 0.5;  // [m] no way so short is a jump
+
+/// Where a mover is and was, for all that rolls under it.
+struct Track {
+  Pose X_WM;
+  std::int64_t since = 0;  ///< [ns] when it got there
+  bool moved = false;      ///< ever
+};
+
+/// One robot's encoders at work.
+struct Wheels {
+  Encoder settings;
+  Rolled rolled;  ///< [m] since the start
+  Slippage left;
+  Slippage right;
+};
+
+class Encoders : public HostInstruments {
+ public:
+  explicit Encoders(const Site& site);
+
+  void follow(std::span<const base::Report> states, std::int64_t now) override;
+
+ private:
+  void measure(std::span<const Sight> sights) const override;
+  bool drove(const Track& track, const Pose& X_WM, double max_forward, std::int64_t now) const;
+
+  std::vector<Wheels> wheels_;  ///< per row
+  std::vector<Track> tracks_;   ///< per row
+  std::int64_t last_ = 0;       ///< [ns] of `follow`
+};
+
+std::vector<SensorRow> rows_of(const world::World& world) {
+  std::vector<SensorRow> rows;
+  for_each_sensor(world, encoder_kind, [&](const Fitted& fitted) {
+    read_encoder(fitted.settings, world.movers[fitted.row.mover]);
+    rows.push_back(fitted.row);
+  });
+  return rows;
+}
+
+Encoders::Encoders(const Site& site) : HostInstruments(site, encoder_kind, rows_of(site.world)) {
+  for_each_sensor(site.world, encoder_kind, [&](const Fitted& fitted) {
+    const world::Mover& mover = site.world.movers[fitted.row.mover];
+    const Encoder settings = read_encoder(fitted.settings, mover);
+    const base::Draw walk{site.seed, base::Stream::slip, fitted.row.mover, fitted.row.sensor};
+    const double slip = site.noise ? settings.slip : 0.0;
+    wheels_.push_back({settings, {}, {walk, 0, slip}, {walk, 1, slip}});
+    tracks_.push_back({mover.X_WM});
+  });
+}
+
+/// A robot that was told of late may have gone on for as long as it was not; the first word of where it is may be of
+/// anywhere.
+bool Encoders::drove(const Track& track, const Pose& X_WM, double max_forward, std::int64_t now) const {
+  const double seconds = 1e-9 * static_cast<double>(now - (track.moved ? track.since : last_));
+  const double way = std::hypot(X_WM.x - track.X_WM.x, X_WM.y - track.X_WM.y);
+  return way <= kAlwaysRolled + 2.0 * max_forward * std::max(0.0, seconds);
+}
+
+void Encoders::follow(std::span<const base::Report> states, std::int64_t now) {
+  for (std::size_t i = 0; i < wheels_.size(); ++i) {
+    const std::uint32_t mover = rows()[i].mover;
+    const Pose& X_WM = states[mover].X_WM;
+    Track& track = tracks_[i];
+    if (X_WM.x == track.X_WM.x && X_WM.y == track.X_WM.y && X_WM.yaw == track.X_WM.yaw) continue;
+    if (drove(track, X_WM, world().movers[mover].max_forward, now)) {
+      Wheels& wheels = wheels_[i];
+      const Rolled rolled = roll(track.X_WM, X_WM, wheels.settings.track);
+      wheels.rolled.left += rolled.left;
+      wheels.rolled.right += rolled.right;
+      wheels.left.advance(std::abs(rolled.left));
+      wheels.right.advance(std::abs(rolled.right));
+    }
+    track = {X_WM, now, true};
+  }
+  last_ = now;
+}
+
+double counts_of(double rolled, double scale, const Slippage& slippage, double per_count) {
+  return std::floor((rolled * scale + slippage.error()) / per_count + 0.5);
+}
+
+void Encoders::measure(std::span<const Sight> sights) const {
+  for (const Sight& sight : sights) {
+    const Wheels& w = wheels_[sight.row];
+    const Encoder& e = w.settings;
+    sight.values[2] = counts_of(w.rolled.left, e.scale_left, w.left, e.per_count);
+    sight.values[3] = counts_of(w.rolled.right, e.scale_right, w.right, e.per_count);
+    sight.values[0] = sight.values[2] * e.per_count;
+    sight.values[1] = sight.values[3] * e.per_count;
+  }
+}
+
+constexpr std::string_view kKeys[] = {"per_count", "slip", "scale", "track", "scrub"};
+constexpr Column kColumns[] = {{"left_m"}, {"right_m"}, {"left_counts", 1, true}, {"right_counts", 1, true}};
+constexpr PlainNumber kNumbers[] = {{1e-5}, {1e-5}, {1.0}, {1.0}};
+constexpr PlainForm kForm{kEncoder, "encoder", kNumbers};
+
+}  // namespace
+
+Encoder read_encoder(const world::Sensor& sensor, const world::Mover& mover) {
+  Encoder e;
+  e.per_count = length(sensor, "per_count", e.per_count, 1e-7, 1e3);
+  e.slip = number(sensor, "slip", 0.0, 0.0, 1.0);
+  if (const auto scale = tuple(sensor, "scale", 2, "[left right]")) {
+    e.scale_left = (*scale)[0];
+    e.scale_right = (*scale)[1];
+    if (!(std::min(e.scale_left, e.scale_right) >= 0.1 && std::max(e.scale_left, e.scale_right) <= 10.0))
+      refuse(sensor, "scale",
+             fmt::format("'scale' is [{:g} {:g}]; expected [left right], factors from 0.1 to 10", e.scale_left,
+                         e.scale_right));
+  }
+  const double scrub = number(sensor, "scrub", mover.drive == world::Drive::skid ? kSkidScrub : 1.0, 0.1, 10.0);
+  e.track = scrub * length(sensor, "track", mover.track, 1e-3, 1e3);
+  return e;
+}
+
+constinit const SensorKind encoder_kind{
+    .id = kEncoder,
+    .name = "encoder",
+    .word = {"encoder", kKeys},
+    .base_port = 44000,
+    .list = "",
+    .columns = kColumns,
+    .rows = rows_of,
+    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Encoders>(site); },
+    .refuse = Plain<kForm>::refuse,
+    .parts = Plain<kForm>::parts,
+    .encode = Plain<kForm>::encode,
+    .decode = Plain<kForm>::decode,
+    .read = Plain<kForm>::read,
+};
+
+}  // namespace sf::sensors

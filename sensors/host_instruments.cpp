@@ -1,0 +1,66 @@
+#include "sensors/host_instruments.h"
+
+#include <utility>
+
+#include "sensors/settings.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr std::size_t kPiece = 64;  // readings that a worker takes at once
+
+std::uint32_t width_of(const SensorKind& kind) {
+  std::uint32_t width = 0;
+  for (const Column& column : kind.columns) width += column.width;
+  return width;
+}
+
+}  // namespace
+
+HostInstruments::HostInstruments(const Site& site, const SensorKind& kind, std::vector<SensorRow> rows)
+    : world_(site.world),
+      workers_(site.workers),
+      seed_(site.seed),
+      noise_(site.noise),
+      kind_(kind.id),
+      rows_(std::move(rows)) {
+  first_.push_back(0);
+  for (const SensorRow& row : rows_) first_.push_back(first_.back() + std::size_t{row.elements} * width_of(kind));
+  values_.resize(first_.back());
+  sights_.reserve(rows_.size());
+}
+
+bool HostInstruments::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+  sights_.clear();
+  for (const Due& d : due) {
+    const SensorRow& row = rows_[d.row];
+    Pose X_WS = base::compose(poses[row.mover], row.X_MS);
+    X_WS.z = world_.movers[row.mover].X_WM.z + row.X_MS.z;
+    const auto values = std::span(values_).subspan(first_[d.row], first_[d.row + 1] - first_[d.row]);
+    sights_.push_back({d.row, d.sequence, poses[row.mover], X_WS, values});
+  }
+  // A world of such kinds alone needs its empty batch recorded once.
+  return !std::exchange(recorded_, true);
+}
+
+void HostInstruments::collect(std::vector<base::ReadingBlock>& out) {
+  workers_.run(sights_.size(), kPiece, [this](std::size_t first, std::size_t last, unsigned) {
+    measure(std::span<const Sight>(sights_).subspan(first, last - first));
+  });
+  for (const Sight& sight : sights_) {
+    const SensorRow& row = rows_[sight.row];
+    out.push_back(
+        {.mover = row.mover, .sensor = row.sensor, .kind = kind_, .X_WS = sight.X_WS, .values = sight.values});
+  }
+}
+
+void for_each_sensor(const world::World& world, const SensorKind& kind, const std::function<void(Fitted)>& body) {
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    std::uint32_t number_of_kind = 0;
+    for (const world::Sensor& sensor : world.movers[m].sensors)
+      if (sensor.type == kind.word.type) body({sensor, common_row(sensor, m, number_of_kind++)});
+  }
+}
+
+}  // namespace sf::sensors

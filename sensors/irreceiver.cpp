@@ -1,0 +1,127 @@
+#include "sensors/irreceiver.h"
+
+#include <cmath>
+
+#include "sensors/host_instruments.h"
+#include "sensors/plain_packets.h"
+
+namespace sf::sensors {
+
+namespace {
+
+using base::Vec2;
+using world::Emitter;
+using world::Segment;
+
+constexpr double kCell = 1.0;      // [m] of the grid of walls
+constexpr double kOverlap = 0.25;  // of each buoy's beam, with the other's
+
+/// Whether a bearing from the emitter is in a beam of `fov` about `axis` [rad].
+bool within(double bearing, double axis, double fov) { return std::abs(base::wrap_angle(bearing - axis)) <= 0.5 * fov; }
+
+Box reach_of(const Emitter& emitter) {
+  return world::box_around({emitter.X_WE.x, emitter.X_WE.y}, std::max(emitter.range, emitter.halo));
+}
+
+std::vector<Box> reaches_of(const world::World& world) {
+  std::vector<Box> boxes;
+  for (const Emitter& emitter : world.emitters) boxes.push_back(reach_of(emitter));
+  return boxes;
+}
+
+std::vector<Segment> opaque(const world::World& world) {
+  std::vector<Segment> walls;
+  for (const Segment& wall : world.walls)
+    if (wall.seen_by_laser) walls.push_back(wall);
+  return walls;
+}
+
+class IrReceivers : public HostInstruments {
+ public:
+  explicit IrReceivers(const Site& site);
+
+ private:
+  void measure(std::span<const Sight> sights) const override;
+  bool hidden(const Emitter& emitter, Vec2 p, double z) const;
+
+  world::WallGrid walls_;
+  BoxTree reaches_;  ///< of the world's emitters
+};
+
+std::vector<SensorRow> rows_of(const world::World& world) {
+  std::vector<SensorRow> rows;
+  for_each_sensor(world, irreceiver_kind, [&](const Fitted& fitted) {
+    rows.push_back(fitted.row);
+    rows.back().X_MS.z += 0.5 * fitted.settings.height;
+  });
+  return rows;
+}
+
+IrReceivers::IrReceivers(const Site& site)
+    : HostInstruments(site, irreceiver_kind, rows_of(site.world)),
+      walls_(opaque(site.world), kCell),
+      reaches_(reaches_of(site.world)) {}
+
+bool IrReceivers::hidden(const Emitter& emitter, Vec2 p, double z) const {
+  const Vec2 e{emitter.X_WE.x, emitter.X_WE.y};
+  const Box box{{std::min(p.x, e.x), std::min(p.y, e.y)}, {std::max(p.x, e.x), std::max(p.y, e.y)}};
+  return walls_.any(box, [&](const Segment& wall) {
+    return wall.model != emitter.model && wall.z_min <= z && z < wall.z_max &&
+           world::segments_meet(e, p, wall.a, wall.b);
+  });
+}
+
+void IrReceivers::measure(std::span<const Sight> sights) const {
+  for (const Sight& sight : sights) {
+    const Vec2 p{sight.X_WS.x, sight.X_WS.y};
+    std::uint32_t walls = 0, docks = 0;
+    reaches_.any(world::box_around(p, 0.0), [&](std::uint32_t i) {
+      const Emitter& emitter = world().emitters[i];
+      const std::uint32_t light = light_of(emitter, p);
+      if (light != 0 && !hidden(emitter, p, sight.X_WS.z))
+        (emitter.kind == Emitter::Kind::virtual_wall ? walls : docks) |= light;
+      return false;
+    });
+    sight.values[0] = walls;
+    sight.values[1] = docks == 0 ? kNoIrByte : kDockByte + docks;
+  }
+}
+
+constexpr Column kColumns[] = {{"virtual_wall", 1, true}, {"ir_byte", 1, true}};
+constexpr PlainNumber kNumbers[] = {{1.0, 0.0, 1.0}, {1.0, 0.0, 255.0}};
+constexpr PlainForm kForm{kIrReceiver, "irreceiver", kNumbers};
+
+}  // namespace
+
+std::uint32_t light_of(const Emitter& emitter, Vec2 p) {
+  const Vec2 from{p.x - emitter.X_WE.x, p.y - emitter.X_WE.y};
+  const double distance = base::length(from);
+  const bool reached = distance <= emitter.range;
+  const bool near = emitter.halo > 0.0 && distance <= emitter.halo;
+  const double bearing = std::atan2(from.y, from.x) - emitter.X_WE.yaw;
+  if (emitter.kind == Emitter::Kind::virtual_wall)
+    return near || (reached && within(bearing, 0.0, emitter.fov)) ? 1 : 0;
+  const double aside = 0.5 * (1.0 - kOverlap) * emitter.fov;
+  std::uint32_t light = near ? kForceField : 0;
+  if (reached && within(bearing, aside, emitter.fov)) light |= kRedBuoy;
+  if (reached && within(bearing, -aside, emitter.fov)) light |= kGreenBuoy;
+  return light;
+}
+
+constinit const SensorKind irreceiver_kind{
+    .id = kIrReceiver,
+    .name = "irreceiver",
+    .word = {"irreceiver", {}},
+    .base_port = 50000,
+    .list = "",
+    .columns = kColumns,
+    .rows = rows_of,
+    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<IrReceivers>(site); },
+    .refuse = Plain<kForm>::refuse,
+    .parts = Plain<kForm>::parts,
+    .encode = Plain<kForm>::encode,
+    .decode = Plain<kForm>::decode,
+    .read = Plain<kForm>::read,
+};
+
+}  // namespace sf::sensors

@@ -1,0 +1,83 @@
+#include "sensors/plain_packets.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace sf::sensors {
+
+namespace {
+
+using Word = std::int32_t;
+constexpr double kLeastWord = kNoNumber + 1.0;
+constexpr double kMostWord = std::numeric_limits<Word>::max();
+constexpr std::size_t kHeader = 4;  // [bytes]
+constexpr std::size_t kWord = 4;    // [bytes]
+
+Word to_word(double value, const PlainNumber& number) {
+  if (std::isnan(value)) return kNoNumber;
+  return static_cast<Word>(std::clamp(std::round(value / number.unit), kLeastWord, kMostWord));
+}
+
+double from_word(Word word, const PlainNumber& number) {
+  return word == kNoNumber ? std::numeric_limits<double>::quiet_NaN() : word * number.unit;
+}
+
+/// A saturated word says "this or more"; one unit is rounding.
+bool plausible(Word word, const PlainNumber& number) {
+  if (word == kNoNumber) return true;
+  const double value = word * number.unit;
+  const bool low = word > kLeastWord && value < number.least - 0.5001 * number.unit;
+  const bool high = word < kMostWord && value > number.most + 0.5001 * number.unit;
+  return !low && !high;
+}
+
+}  // namespace
+
+std::string refuse_plain(const PlainForm& form, Wire wire) {
+  if (wire == Wire::farm) return "";
+  return fmt::format("the thesis has no layout for {} readings: send the farm's own packets (`--wire farm`)",
+                     form.name);
+}
+
+std::uint8_t encode_plain(const PlainForm& form, const SensorRow& sensor, const base::ReadingBlock& reading,
+                          base::Bytes& out) {
+  const std::span<const double> values = reading.values;
+  const std::size_t width = form.numbers.size();
+  SF_CHECK(values.size() == sensor.elements * width && !values.empty() && values.size() <= kMostPlainWords,
+           fmt::format("{} values of {} rows of {}", values.size(), sensor.elements, form.name));
+  base::ByteWriter writer(out);
+  writer.put(static_cast<std::uint16_t>(sensor.elements));
+  writer.put(std::uint16_t{0});
+  for (std::size_t i = 0; i < values.size(); ++i) writer.put(to_word(values[i], form.numbers[i % width]));
+  return form.id;
+}
+
+Part decode_plain(const PlainForm& form, const SensorRow& sensor, std::span<const std::uint8_t> payload,
+                  std::uint8_t type, Wire wire) {
+  if (type != form.id || wire != Wire::farm) return {.fault = Fault::out_of_range};
+  base::ByteReader reader(payload);
+  const std::size_t width = form.numbers.size();
+  const std::uint32_t count = reader.get<std::uint16_t>();
+  reader.get<std::uint16_t>();  // reserved
+  if (!reader.good() || reader.left() < kWord * width * count) return {.fault = Fault::too_short};
+  if (reader.left() > kWord * width * count) return {.fault = Fault::too_long};
+  const bool whole = sensor.elements == 0 || count == sensor.elements;
+  if (count < 1 || !whole || count * width > kMostPlainWords) return {.fault = Fault::out_of_range};
+  for (std::size_t i = 0; i < count * width; ++i)
+    if (!plausible(reader.get<Word>(), form.numbers[i % width])) return {.fault = Fault::out_of_range};
+  return {.elements = count};
+}
+
+void read_plain(const PlainForm& form, std::span<const std::uint8_t> payload, std::span<double> values) {
+  SF_CHECK(payload.size() == kHeader + kWord * values.size(),
+           fmt::format("{} bytes of {} for {} values", payload.size(), form.name, values.size()));
+  base::ByteReader reader(payload.subspan(kHeader));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = from_word(reader.get<Word>(), form.numbers[i % form.numbers.size()]);
+}
+
+}  // namespace sf::sensors

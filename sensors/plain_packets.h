@@ -1,0 +1,68 @@
+#pragma once
+// Readings as payloads for kinds whose rows are a few plain numbers: one form, little-endian; docs/packets.md gives
+// every byte.
+//
+//   u16 count, u16 0, then for each row i32 for each of the kind's numbers
+//
+// Each number is counted in its own unit, rounded to nearest (half away from zero); words saturate and never wrap. The
+// least word says that there is no number. The thesis has no layout for such kinds.
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "base/bytes.h"
+#include "base/reading.h"
+#include "sensors/kind.h"
+
+namespace sf::sensors {
+
+inline constexpr std::int32_t kNoNumber = std::numeric_limits<std::int32_t>::min();  ///< on the wire: not a number
+inline constexpr std::uint32_t kMostPlainWords = 343;  ///< numbers in one datagram of 1400 bytes, header and all
+
+/// One number of a row on the wire.
+struct PlainNumber {
+  double unit = 1.0;  ///< > 0, of the column's own unit
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();  ///< in the column's own unit: beyond is no such reading
+};
+
+/// How one kind is sent.
+struct PlainForm {
+  std::uint8_t id = 0;                   ///< wire id, and the type of its packets
+  std::string_view name;                 ///< of the kind, for messages
+  std::span<const PlainNumber> numbers;  ///< of one row: as many as its columns have; alive for good
+};
+
+// What SensorKind asks of a kind, for `form`. Rows have at most kMostPlainWords numbers in all: one datagram.
+
+/// The thesis' wire is refused.
+std::string refuse_plain(const PlainForm& form, Wire wire);
+std::uint8_t encode_plain(const PlainForm& form, const SensorRow& sensor, const base::ReadingBlock& reading,
+                          base::Bytes& out);
+/// Any bytes are judged. A row of no elements leaves their number unchecked.
+Part decode_plain(const PlainForm& form, const SensorRow& sensor, std::span<const std::uint8_t> payload,
+                  std::uint8_t type, Wire wire);
+void read_plain(const PlainForm& form, std::span<const std::uint8_t> payload, std::span<double> values);
+
+/// The same as functions of a kind's table: `.encode = Plain<kForm>::encode`.
+template <const PlainForm& kForm>
+struct Plain {
+  static std::string refuse(const SensorRow&, Wire wire) { return refuse_plain(kForm, wire); }
+  static std::uint32_t parts(const SensorRow&, Wire) { return 1; }
+  static std::uint8_t encode(const SensorRow& sensor, const base::ReadingBlock& reading, Wire, std::uint32_t,
+                             base::Bytes& out) {
+    return encode_plain(kForm, sensor, reading, out);
+  }
+  static Part decode(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire) {
+    return decode_plain(kForm, sensor, payload, type, wire);
+  }
+  static void read(const SensorRow&, std::span<const std::uint8_t> payload, std::uint8_t, Wire,
+                   std::span<double> values) {
+    read_plain(kForm, payload, values);
+  }
+};
+
+}  // namespace sf::sensors

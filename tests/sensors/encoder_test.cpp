@@ -1,0 +1,256 @@
+// Wheel encoders: exact along arcs, quantised, slipping as a random walk over distance.
+
+#include "sensors/encoder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sensors/odometer.h"
+#include "tests/sensors/host_trial.h"
+#include "tests/sensors/statistics.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Pose;
+using sensors::read_encoder;
+using sensors::roll;
+using sensors::Rolled;
+using sensors::Slippage;
+
+/// Where a wheel pair that rolls `left` and `right` from `from` ends: the textbook's arc, about its centre.
+Pose driven(const Pose& from, double left, double right, double track) {
+  const long double turn = (static_cast<long double>(right) - left) / track,
+                    arc = (static_cast<long double>(left) + right) / 2;
+  const long double yaw = from.yaw;
+  if (std::abs(turn) < 1e-12L)
+    return {static_cast<double>(from.x + arc * std::cos(yaw)), static_cast<double>(from.y + arc * std::sin(yaw)), 0,
+            from.yaw};
+  const long double radius = arc / turn;
+  return {static_cast<double>(from.x + radius * (std::sin(yaw + turn) - std::sin(yaw))),
+          static_cast<double>(from.y - radius * (std::cos(yaw + turn) - std::cos(yaw))), 0,
+          static_cast<double>(yaw + turn)};
+}
+
+// --- Arcs.
+
+TEST(Odometer, IsTheInverseOfDrivingAnyArc) {
+  Chance chance(1);
+  for (int i = 0; i < 2000; ++i) {
+    const double track = chance.between(0.05, 1.0);
+    const double turn = i % 4 == 0 ? chance.between(-1e-6, 1e-6) : chance.between(-3.1, 3.1);
+    const double arc = chance.between(-2.0, 2.0);
+    const double left = arc - 0.5 * track * turn, right = arc + 0.5 * track * turn;
+    const Pose from{chance.between(-9, 9), chance.between(-9, 9), 0, chance.between(-9, 9)};
+    Pose to = driven(from, left, right, track);
+    if (i % 3 == 0) to.yaw = base::wrap_angle(to.yaw);
+    if (i % 3 == 1) to.yaw += 2 * M_PI;
+    const Rolled rolled = roll(from, to, track);
+    EXPECT_NEAR(rolled.left, left, 1e-9) << turn;
+    EXPECT_NEAR(rolled.right, right, 1e-9) << turn;
+  }
+}
+
+TEST(Odometer, BoundaryCases) {
+  const auto expect = [](const Rolled& r, double left, double right, const char* why) {
+    EXPECT_NEAR(r.left, left, 1e-12) << why;
+    EXPECT_NEAR(r.right, right, 1e-12) << why;
+  };
+  expect(roll({1, 2, 0, 3}, {1, 2, 0, 3}, 0.5), 0, 0, "at rest");
+  expect(roll({0, 0, 0, 0}, {0, 0, 0, 1}, 0.5), -0.25, 0.25, "turning in place");
+  expect(roll({0, 0, 0, 3.1}, {0, 0, 0, -3.1}, 1.0), -M_PI + 3.1, M_PI - 3.1, "through straight behind");
+  expect(roll({0, 0, 0, 0}, {-0.3, 0, 0, 0}, 0.5), -0.3, -0.3, "backwards");
+  expect(roll({0, 0, 0, 0}, {0, 0.3, 0, 0}, 0.5), 0, 0, "pushed to the side");
+  expect(roll({0, 0, 0, 0}, {0, 2, 0, M_PI}, 1.0), M_PI - M_PI / 2, M_PI + M_PI / 2, "half a turn about (0, 1)");
+}
+
+// --- Slippage.
+
+TEST(Odometer, SlippageIsOneWalkHoweverTheWayIsCut) {
+  const base::Draw walk{3, base::Stream::slip, 1, 2};
+  Slippage whole(walk, 0, 0.01), cut(walk, 0, 0.01), other(walk, 1, 0.01);
+  Chance chance(2);
+  double way = 0.0;
+  while (way < 5.0) {
+    const double piece = chance.between(0.0, 0.03);
+    cut.advance(piece);
+    way += piece;
+  }
+  whole.advance(way);
+  other.advance(way);
+  EXPECT_NEAR(whole.error(), cut.error(), 1e-9);
+  EXPECT_NE(whole.error(), 0.0);
+  EXPECT_GT(std::abs(whole.error() - other.error()), 1e-6) << "wheels slip by themselves";
+}
+
+TEST(Odometer, SlippageVariesAsTheWay) {
+  constexpr double kSlip = 0.02;
+  for (const double way : {0.01, 0.25, 1.0, 4.0}) {
+    std::vector<double> draws;
+    for (std::uint32_t robot = 0; robot < 2000; ++robot) {
+      Slippage slippage({7, base::Stream::slip, robot, 0}, 0, kSlip);
+      for (int k = 0; k < 5; ++k) slippage.advance(way / 5);
+      draws.push_back(slippage.error() / (kSlip * std::sqrt(way)));
+    }
+    EXPECT_LT(ks(draws), 1.95) << way;
+  }
+}
+
+TEST(Odometer, ALeapIsOneStepOfAsMuchVariance) {
+  std::vector<double> draws;
+  for (std::uint32_t robot = 0; robot < 2000; ++robot) {
+    Slippage slippage({8, base::Stream::slip, robot, 0}, 0, 0.01);
+    slippage.advance(1e9);
+    draws.push_back(slippage.error() / (0.01 * std::sqrt(1e9)));
+  }
+  EXPECT_LT(ks(draws), 1.95);
+}
+
+TEST(Odometer, NothingSlipsAtRestOrWithoutSlip) {
+  Slippage none({1, base::Stream::slip, 0, 0}, 0, 0.0), still({1, base::Stream::slip, 0, 0}, 0, 0.1);
+  none.advance(3.0);
+  still.advance(0.0);
+  EXPECT_EQ(none.error(), 0.0);
+  EXPECT_EQ(still.error(), 0.0);
+}
+
+// --- The sensor.
+
+world::World one_robot(std::vector<world::Setting> settings = {}, double max_forward = 1.0) {
+  world::World world = carriers(fitted("encoder", std::move(settings)));
+  world.movers[0].track = 0.26;
+  world.movers[0].max_forward = max_forward;
+  return world;
+}
+
+/// Drives robot 0 by what its wheels roll each tick of 0.1 s: the last reading.
+std::vector<double> drive(const world::World& world, const std::vector<Rolled>& wheels,
+                          farm::FarmOptions options = {}) {
+  farm::Farm farm(world, device(), options);
+  farm.hear_all();
+  std::vector<base::Report> states = states_of(world);
+  std::vector<double> last;
+  std::int64_t now = 0;
+  for (const Rolled& r : wheels) {
+    states[0].X_WM = driven(states[0].X_WM, r.left, r.right, world.movers[0].track);
+    states[0].time = now;
+    last = values_of(farm.tick(now, states)[0]);
+    now += 100'000'000;
+  }
+  return last;
+}
+
+TEST(Encoder, CountsWhatBothWheelsRolled) {
+  const std::vector<double> r = drive(one_robot(), std::vector<Rolled>(100, {0.03, 0.05}));
+  ASSERT_EQ(r.size(), 4u);
+  EXPECT_EQ(r[2], 3000.0) << "millimetres";
+  EXPECT_EQ(r[3], 5000.0);
+  EXPECT_DOUBLE_EQ(r[0], 3.0);
+  EXPECT_DOUBLE_EQ(r[1], 5.0);
+}
+
+TEST(Encoder, QuantisesToCounts) {
+  Chance chance(4);
+  const double count = 1e-3 / 12;
+  for (int i = 0; i < 50; ++i) {
+    const Rolled rolled{chance.between(-0.2, 0.2), chance.between(-0.2, 0.2)};
+    const std::vector<double> r = drive(one_robot({setting("per_count", {count})}), {rolled});
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(r[k + 2], std::floor(r[k + 2]));
+      EXPECT_DOUBLE_EQ(r[k], r[k + 2] * count);
+    }
+    EXPECT_NEAR(r[0], rolled.left, 0.5001 * count);
+    EXPECT_NEAR(r[1], rolled.right, 0.5001 * count);
+  }
+}
+
+TEST(Encoder, WhereItScrubsItsTrackSeemsWider) {
+  world::World world = one_robot();
+  world.movers[0].drive = world::Drive::skid;
+  const double turn = 2.0;
+  std::vector<double> r = drive(world, {{-0.13 * turn, 0.13 * turn}});
+  EXPECT_EQ(r[3], std::round(1500 * 0.13 * turn));
+  EXPECT_EQ(r[2], -r[3]);
+  r = drive(one_robot({setting("scrub", {2.0}), setting("track", {0.5})}), {{-0.13 * turn, 0.13 * turn}});
+  EXPECT_EQ(r[3], 1000 * 0.5 * turn);
+  r = drive(one_robot({setting("scrub", {2.0})}), {{0.1, 0.1}});
+  EXPECT_EQ(r[3], 100.0) << "straight on nothing scrubs";
+}
+
+TEST(Encoder, WheelsOfAnotherSizeThanTheyCountFor) {
+  const std::vector<double> r = drive(one_robot({setting("scale", {1.01, 0.99})}), {{0.2, 0.2}});
+  EXPECT_EQ(r[2], 202.0);
+  EXPECT_EQ(r[3], 198.0);
+}
+
+/// Slip in readings, as a distribution: of whole counts, so a fine resolution.
+TEST(Encoder, SlipsByTheFilesStandardDeviationAfterAMetre) {
+  world::World world;
+  for (int i = 0; i < 500; ++i)
+    scenes::add_carrier(world, {0, 1.0 * i, 0, 0},
+                        fitted("encoder", {setting("slip", {0.05}), setting("per_count", {1e-6})}));
+  for (world::Mover& mover : world.movers) mover.max_forward = 1.0;
+  farm::Farm farm(world, device(), {.seed = 11}), quiet(world, device(), {.noise = false});
+  farm.hear_all();
+  quiet.hear_all();
+  std::vector<base::Report> states = states_of(world);
+  for (int tick = 0; tick < 20; ++tick) {
+    for (base::Report& s : states) s.X_WM.x += 0.05;
+    const auto readings = farm.tick(tick * 100'000'000ll, states), still = quiet.tick(tick * 100'000'000ll, states);
+    if (tick < 19) continue;
+    std::vector<double> left, right;
+    for (const auto& r : readings) {
+      left.push_back((r.values[0] - 1.0) / 0.05);
+      right.push_back((r.values[1] - 1.0) / 0.05);
+    }
+    for (const auto& r : still) EXPECT_NEAR(r.values[0], 1.0, 1e-6) << "without noise nothing slips";
+    EXPECT_LT(ks(left), 1.95);
+    EXPECT_LT(ks(right), 1.95);
+    EXPECT_LT(std::abs(correlation(left, right)), 4.0 / std::sqrt(500.0));
+    EXPECT_LT(std::abs(correlation(left, left, 1)), 4.0 / std::sqrt(500.0));
+  }
+}
+
+TEST(Encoder, WhoIsPutElsewhereHasNotRolled) {
+  const world::World world = one_robot();
+  farm::Farm farm(world, device());
+  farm.hear_all();
+  std::vector<base::Report> states = states_of(world);
+  const auto counts = [&](std::int64_t ms, double x) {
+    states[0].X_WM.x = x;
+    return farm.tick(ms * 1'000'000, states)[0].values[2];
+  };
+  EXPECT_EQ(counts(0, 100.0), 0.0) << "the first word of where it is";
+  EXPECT_EQ(counts(100, 100.1), 100.0) << "a step";
+  EXPECT_EQ(counts(200, 0.0), 100.0) << "a jump back";
+  EXPECT_EQ(counts(300, 0.6), 700.0) << "as far as it can go, and half a metre";
+  EXPECT_EQ(counts(10'300, 0.6), 700.0) << "silence";
+  EXPECT_EQ(counts(10'400, 10.6), 10'700.0) << "silent for ten seconds, so it may have driven";
+}
+
+/// Readings that nobody heard do not stop the count.
+TEST(Encoder, CountsWhetherHeardOrNot) {
+  const world::World world = one_robot();
+  farm::Farm farm(world, device());
+  std::vector<base::Report> states = states_of(world);
+  for (int tick = 0; tick < 10; ++tick) {
+    if (tick == 9) farm.hear_all();
+    states[0].X_WM.x += 0.01;
+    const auto readings = farm.tick(tick * 100'000'000ll, states);
+    ASSERT_EQ(readings.size(), tick == 9 ? 1u : 0u);
+    EXPECT_TRUE(tick < 9 || readings[0].values[2] == 100.0);
+  }
+}
+
+TEST(Encoder, SettingsThatMakeNoSense) {
+  expect_refused("encoder", {setting("per_count", {0})}, 8, "'per_count' is 0");
+  expect_refused("encoder", {setting("slip", {-0.1})}, 8, "'slip' is -0.1");
+  expect_refused("encoder", {setting("scale", {1})}, 8, "expects [left right]");
+  expect_refused("encoder", {setting("slip", {0}), setting("scale", {1, 0})}, 9, "factors from 0.1 to 10");
+  expect_refused("encoder", {setting("track", {0})}, 8, "'track' is 0");
+  expect_refused("encoder", {setting("scrub", {0})}, 8, "'scrub' is 0");
+}
+
+}  // namespace
+}  // namespace sf::trial

@@ -1,0 +1,325 @@
+// Satellite positioning: what is in sight, what its geometry makes of errors, and where the fix is lost.
+
+#include "sensors/gps.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "sensors/sky.h"
+#include "tests/sensors/host_trial.h"
+#include "tests/sensors/statistics.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Vec2;
+using sensors::constellation;
+using sensors::dilution;
+using sensors::Satellite;
+using sensors::Sky;
+
+constexpr std::uint64_t kAll = 0xFF;
+
+std::vector<double> read(const world::World& world) { return values_of(Glance(world).readings[0]); }
+
+/// Due east, 45 degrees up.
+constexpr Satellite kEast{{1, 0}, 1.0};
+
+bool sees(const world::World& world, Vec2 p, double z, const Satellite& satellite) {
+  return Sky(world).sees(p, z, satellite);
+}
+
+// --- The constellation.
+
+TEST(Gps, SatellitesStandAboveTheMaskAllRound) {
+  for (const std::uint32_t count : {4u, 8u, 32u, 64u}) {
+    const auto all = constellation(count);
+    Vec2 sum;
+    for (const Satellite& s : all) {
+      EXPECT_NEAR(base::length(s.flat), 1.0, 1e-12);
+      EXPECT_GT(std::atan(s.rise), 15.0 * M_PI / 180);
+      EXPECT_LT(std::atan(s.rise), M_PI / 2);
+      sum = sum + s.flat;
+    }
+    EXPECT_LT(base::length(sum), 2.0) << "evenly";
+  }
+}
+
+/// The inverse of the normal matrix by Gauss and Jordan, in long double.
+std::array<std::array<long double, 4>, 4> covariance(const std::vector<Satellite>& satellites, std::uint64_t seen) {
+  long double m[4][8]{};
+  for (std::size_t i = 0; i < satellites.size(); ++i) {
+    if ((seen >> i & 1) == 0) continue;
+    const long double elevation = std::atan(static_cast<long double>(satellites[i].rise));
+    const long double row[] = {satellites[i].flat.x * std::cos(elevation), satellites[i].flat.y * std::cos(elevation),
+                               std::sin(elevation), 1};
+    for (int r = 0; r < 4; ++r)
+      for (int c = 0; c < 4; ++c) m[r][c] += row[r] * row[c];
+  }
+  for (int r = 0; r < 4; ++r) m[r][4 + r] = 1;
+  for (int p = 0; p < 4; ++p) {
+    int best = p;
+    for (int r = p; r < 4; ++r)
+      if (std::abs(m[r][p]) > std::abs(m[best][p])) best = r;
+    std::swap(m[p], m[best]);
+    const long double pivot = m[p][p];
+    for (int c = 0; c < 8; ++c) m[p][c] /= pivot;
+    for (int r = 0; r < 4; ++r) {
+      const long double factor = m[r][p];
+      for (int c = 0; c < 8 && r != p; ++c) m[r][c] -= factor * m[p][c];
+    }
+  }
+  std::array<std::array<long double, 4>, 4> q{};
+  for (std::size_t r = 0; r < 4; ++r)
+    for (std::size_t c = 0; c < 4; ++c) q[r][c] = m[r][4 + c];
+  return q;
+}
+
+TEST(Gps, DilutionIsTheInverseOfTheGeometry) {
+  Chance chance(1);
+  const auto all = constellation(16);
+  for (int i = 0; i < 300; ++i) {
+    const std::uint64_t seen = chance.below(1u << 16);
+    const auto d = dilution(all, seen);
+    ASSERT_EQ(d.has_value(), std::popcount(seen) >= 4) << seen;
+    if (!d) continue;
+    const auto q = covariance(all, seen);
+    const double scale = static_cast<double>(q[0][0] + q[1][1]);
+    EXPECT_NEAR(d->hdop * d->hdop, scale, 1e-9 * scale);
+    EXPECT_NEAR(d->xx * d->xx, static_cast<double>(q[0][0]), 1e-9 * scale);
+    EXPECT_NEAR(d->xx * d->yx, static_cast<double>(q[0][1]), 1e-9 * scale);
+    EXPECT_NEAR(d->yx * d->yx + d->yy * d->yy, static_cast<double>(q[1][1]), 1e-9 * scale);
+  }
+}
+
+TEST(Gps, FewSatellitesOrAllOnOneConeGiveNoFix) {
+  const auto all = constellation(8);
+  EXPECT_FALSE(dilution(all, 0));
+  EXPECT_FALSE(dilution(all, 0b111)) << "three";
+  EXPECT_TRUE(dilution(all, 0b1111)) << "four";
+  std::vector<Satellite> cone;
+  for (int i = 0; i < 6; ++i) cone.push_back({base::rotate(i, {1, 0}), 0.7});
+  EXPECT_FALSE(dilution(cone, 0b111111)) << "height and clock are one unknown";
+}
+
+// --- What blocks.
+
+TEST(Gps, AWallBlocksWhereTheLineCrossesItsHeights) {
+  world::World world;
+  const auto wall = [&](double x, double z_min, double z_max) {
+    world.walls = {{.a = {x, -1}, .b = {x, 1}, .z_min = z_min, .z_max = z_max, .solid_left = false}};
+  };
+  EXPECT_TRUE(sees(world, {0, 0}, 0, kEast)) << "nothing stands";
+  wall(1, 0, 2);
+  EXPECT_FALSE(sees(world, {0, 0}, 0, kEast));
+  EXPECT_TRUE(sees(world, {2, 0}, 0, kEast)) << "behind";
+  EXPECT_TRUE(sees(world, {0, 2}, 0, kEast)) << "beside";
+  EXPECT_FALSE(sees(world, {0, 1}, 0, kEast)) << "its very end";
+  EXPECT_TRUE(sees(world, {0, 0}, 1.5, kEast)) << "the antenna is high enough";
+  EXPECT_TRUE(sees(world, {0, 0}, 1.0, kEast)) << "just over the top";
+  EXPECT_TRUE(sees(world, {-1.5, 0}, 0, kEast)) << "far enough";
+  wall(1, 1.0, 2);
+  EXPECT_FALSE(sees(world, {0, 0}, 0, kEast)) << "at its foot";
+  wall(1, 1.01, 2);
+  EXPECT_TRUE(sees(world, {0, 0}, 0, kEast)) << "below its foot: it hangs";
+  wall(1, 0, 1);
+  EXPECT_TRUE(sees(world, {0, 0}, 0, kEast)) << "its top is open";
+  world.walls = {{.a = {1, 0}, .b = {2, 0}, .z_min = 0, .z_max = 9, .solid_left = false}};
+  EXPECT_TRUE(sees(world, {0, 0}, 0, kEast)) << "edge on";
+}
+
+TEST(Gps, WhatNeitherLasersSeeNorStopsRobotsIsAir) {
+  world::World world;
+  world.walls = {{.a = {1, -1}, .b = {1, 1}, .z_min = 0, .z_max = 9}};
+  world.walls[0].seen_by_laser = false;
+  EXPECT_FALSE(sees(world, {0, 0}, 0, kEast));
+  world.walls[0].stops_robots = false;
+  EXPECT_TRUE(sees(world, {0, 0}, 0, kEast));
+}
+
+TEST(Gps, ADeckBlocksWhereTheLineReachesItsUnderside) {
+  world::World world;
+  add_solid(world, square({0, 0}, 4), 1.0, 1.1);
+  EXPECT_FALSE(sees(world, {0, 0}, 0, kEast)) << "under its middle";
+  EXPECT_FALSE(sees(world, {0.99, 0}, 0, kEast)) << "the line meets it at x = 1.99";
+  EXPECT_TRUE(sees(world, {1.01, 0}, 0, kEast)) << "it is through before";
+  EXPECT_FALSE(sees(world, {-2.99, 0}, 0, kEast)) << "from outside, in under the edge";
+  EXPECT_FALSE(sees(world, {-3.05, 0}, 0, kEast)) << "its side";
+  EXPECT_TRUE(sees(world, {-3.2, 0}, 0, kEast)) << "over it";
+  EXPECT_TRUE(sees(world, {0, 0}, 1.2, kEast)) << "on top of it";
+}
+
+TEST(Gps, ADeckWithAHoleAndDecksThatOverlap) {
+  world::World world;
+  add_solid(world, square({0, 0}, 4), 1.0, 1.1);
+  // A hole round (0.5, 0), clockwise, of the same model.
+  const auto ring = square({0.5, 0}, 0.6);
+  for (std::size_t i = 4; i > 0; --i)
+    world.walls.push_back({.a = ring[i % 4], .b = ring[i - 1], .z_min = 1.0, .z_max = 1.1});
+  EXPECT_TRUE(sees(world, {-0.55, 0}, 0, kEast)) << "through the hole";
+  EXPECT_FALSE(sees(world, {-0.25, 0}, 0, kEast)) << "in, but against its side";
+  EXPECT_FALSE(sees(world, {0, 0}, 0, kEast));
+  world::World twice;
+  add_solid(twice, square({0, 0}, 4), 1.0, 1.1);
+  for (world::Segment wall : std::vector(twice.walls)) {
+    wall.a.x += 1;
+    wall.b.x += 1;
+    twice.walls.push_back(wall);
+  }
+  EXPECT_FALSE(sees(twice, {0.5, 0}, 0, kEast)) << "where both parts lie";
+}
+
+/// Random boxes, some of them overhead: the line is walked in small steps.
+TEST(Gps, SightAgreesWithWalkingAlongTheLine) {
+  Chance chance(2);
+  const auto satellites = constellation(8);
+  std::size_t blocked = 0, clear = 0, differ = 0;
+  for (int round = 0; round < 20; ++round) {
+    world::World world;
+    struct Solid {
+      Vec2 middle;
+      double half, z_min, z_max;
+    };
+    std::vector<Solid> solids;
+    for (int i = 0; i < 25; ++i) {
+      const double foot = i % 3 == 0 ? chance.between(0.5, 2.0) : 0.0;
+      solids.push_back({chance.in_square(6), chance.between(0.1, 0.8), foot, foot + chance.between(0.1, 2.0)});
+      add_solid(world, square(solids.back().middle, 2 * solids.back().half), foot, solids.back().z_max);
+    }
+    const Sky sky(world);
+    for (int i = 0; i < 40; ++i) {
+      const Vec2 p = chance.in_square(6);
+      const auto inside = [&](Vec2 q, double z) {
+        return std::any_of(solids.begin(), solids.end(), [&](const Solid& s) {
+          return std::max(std::abs(q.x - s.middle.x), std::abs(q.y - s.middle.y)) < s.half && z >= s.z_min &&
+                 z < s.z_max;
+        });
+      };
+      if (inside(p, 0.2)) continue;
+      for (const Satellite& s : satellites) {
+        bool met = false;
+        for (double way = 0; 0.2 + way * s.rise < 4.1 && !met; way += 2e-3)
+          met = inside(p + way * s.flat, 0.2 + way * s.rise);
+        (met ? blocked : clear) += 1;
+        differ += sky.sees(p, 0.2, s) == met;
+      }
+    }
+  }
+  EXPECT_GT(blocked, 1000u);
+  EXPECT_GT(clear, 1000u);
+  EXPECT_LE(differ, (blocked + clear) / 500) << "but for corners cut by less than a step";
+}
+
+// --- Readings.
+
+TEST(Gps, InTheOpenItReadsItsAntennasPlace) {
+  world::Sensor sensor = fitted("gps");
+  sensor.X_MS = {0.5, 0, 0.1, 0};
+  const std::vector<double> r = read(carriers(sensor, {{10, 20, 0, M_PI / 2}}));
+  ASSERT_EQ(r.size(), 4u);
+  EXPECT_NEAR(r[0], 10.0, 1e-12);
+  EXPECT_NEAR(r[1], 20.5, 1e-12);
+  EXPECT_NEAR(r[2], dilution(constellation(8), kAll)->hdop, 1e-12);
+  EXPECT_EQ(r[3], 8.0);
+}
+
+TEST(Gps, UnderABridgeThereIsNoFix) {
+  world::World world = carriers(fitted("gps"), {{0, 0, 0, 0}, {50, 0, 0, 0}});
+  add_solid(world, square({0, 0}, 10), 1.0, 1.2);
+  const Glance run(world);
+  const auto lost = values_of(run.readings[0]), fixed = values_of(run.readings[1]);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_TRUE(std::isnan(lost[k])) << k;
+  EXPECT_LT(lost[3], 4.0);
+  EXPECT_EQ(fixed[3], 8.0);
+  EXPECT_EQ(fixed[0], 50.0);
+}
+
+/// In a street between tall walls only what stands along it is in sight, and errors across it grow.
+TEST(Gps, InAStreetErrorsGrow) {
+  world::World world = carriers(fitted("gps", {setting("satellites", {32})}), {{0, 0, 0, 0}, {0, 500, 0, 0}});
+  add_solid(world, {{-50, 1}, {50, 1}, {50, 2}, {-50, 2}}, 0, 3);
+  add_solid(world, {{-50, -2}, {50, -2}, {50, -1}, {-50, -1}}, 0, 3);
+  const Glance run(world);
+  EXPECT_LT(run.readings[0].values[3], 20.0);
+  EXPECT_GE(run.readings[0].values[3], 4.0);
+  EXPECT_GT(run.readings[0].values[2], 1.5 * run.readings[1].values[2]);
+}
+
+TEST(Gps, ComesOnceASecondUnlessToldOtherwise) {
+  const auto rate = [](std::vector<world::Setting> settings) {
+    const sensors::Roster roster(carriers(fitted("gps", std::move(settings))));
+    return roster.of(sensors::kGps, 0)[0].rate;
+  };
+  EXPECT_EQ(rate({}), 1.0);
+  EXPECT_EQ(rate({setting("rate", {5})}), 5.0);
+  EXPECT_EQ(rate({setting("update_interval", {100})}), 10.0);
+}
+
+/// Errors are normal, with the covariance of the satellites in sight, and each reading's own.
+TEST(Gps, ErrorsAreNoiseTimesTheDilution) {
+  std::vector<base::Pose> poses;
+  for (int i = 0; i < 100; ++i) poses.push_back({0.0, 0.0, 0.0, 0.0});
+  world::World world = carriers(fitted("gps", {setting("noise", {2.0}), setting("rate", {10})}), poses);
+  add_solid(world, {{-50, 1}, {50, 1}, {50, 2}, {-50, 2}}, 0, 2);  // to one side: errors are no circle
+  farm::Farm farm(world, device(), {.seed = 12});
+  farm.hear_all();
+  std::vector<double> n, m;
+  double squares = 0.0, hdop = 0.0;
+  std::uint64_t seen = 0;
+  const auto all = constellation(8);
+  for (std::size_t i = 0; i < 8; ++i) seen |= std::uint64_t{sees(world, {0, 0}, 0, all[i])} << i;
+  ASSERT_LT(std::popcount(seen), 8);
+  const auto d = dilution(all, seen);
+  ASSERT_TRUE(d);
+  for (int tick = 0; tick < 20; ++tick)
+    for (const auto& r : farm.tick(tick * 100'000'000ll, {})) {
+      n.push_back(r.values[0] / (2.0 * d->xx));
+      m.push_back((r.values[1] / 2.0 - d->yx * n.back()) / d->yy);
+      squares += r.values[0] * r.values[0] + r.values[1] * r.values[1];
+      hdop = r.values[2];
+    }
+  ASSERT_EQ(n.size(), 2000u);
+  const double some = 4.0 / std::sqrt(2000.0);
+  EXPECT_LT(ks(n), 1.95);
+  EXPECT_LT(ks(m), 1.95);
+  EXPECT_LT(std::abs(correlation(n, m)), some);
+  for (const std::size_t lag : {1u, 100u}) EXPECT_LT(std::abs(correlation(n, n, lag)), some) << lag;
+  EXPECT_NEAR(std::sqrt(squares / 2000.0), 2.0 * hdop, 0.1 * hdop) << "root of the mean square distance";
+}
+
+TEST(Gps, TheSameForAnyNumberOfThreads) {
+  std::vector<base::Pose> poses;
+  for (int i = 0; i < 300; ++i) poses.push_back({0.1 * i, 0, 0, 0});
+  world::World world = carriers(fitted("gps", {setting("noise", {1})}), poses);
+  add_solid(world, square({15, 0}, 10), 1.0, 1.2);
+  const Glance one(world, {.threads = 1}), two(world, {.threads = 2});
+  EXPECT_EQ(one.farm.hash(), two.farm.hash());
+  EXPECT_NE(one.farm.hash(), Glance(world, {.seed = 2}).farm.hash());
+}
+
+TEST(Gps, SettingsThatMakeNoSense) {
+  expect_refused("gps", {setting("satellites", {3})}, 8, "expected 4 to 64");
+  expect_refused("gps", {setting("satellites", {65})}, 8, "expected 4 to 64");
+  expect_refused("gps", {setting("rate", {1}), setting("noise", {-1})}, 9, "'noise' is -1");
+  expect_refused("gps", {setting("latency", {-1})}, 8, "'latency' is -1");
+}
+
+/// The town that comes with the program has a bridge over Second Street.
+TEST(Gps, UnderSimVillesBridge) {
+  world::World world =
+      world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::vocabulary()});
+  world.movers.clear();
+  world::Sensor sensor = fitted("gps");
+  sensor.X_MS.z = 0.1;
+  scenes::add_carrier(world, {7.2, 3.25, 0, 0}, sensor);   // in the lane under the deck
+  scenes::add_carrier(world, {10.25, 3.0, 0, 0}, sensor);  // on the ring
+  const Glance run(world);
+  EXPECT_TRUE(std::isnan(run.readings[0].values[0])) << run.readings[0].values[3] << " in sight";
+  EXPECT_FALSE(std::isnan(run.readings[1].values[0])) << run.readings[1].values[3] << " in sight";
+  EXPECT_GE(run.readings[1].values[3], 6.0);
+}
+
+}  // namespace
+}  // namespace sf::trial

@@ -1,0 +1,89 @@
+#pragma once
+// Sensors that need no device, made by hand, and what every kind of them must do.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "sensors/roster.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/magnet_scenes.h"
+
+namespace sf::trial {
+
+using scenes::setting;
+using scenes::text;
+
+/// A sensor of kind `type` as line 7 of park.world has it, in metres and degrees; its settings on lines 8, 9, ...
+inline world::Sensor fitted(const std::string& type, std::vector<world::Setting> settings = {}) {
+  world::Sensor sensor;
+  sensor.type = type;
+  sensor.name = type;
+  sensor.radians = M_PI / 180.0;
+  sensor.file = "park.world";
+  sensor.line = 7;
+  sensor.settings = std::move(settings);
+  int line = 8;
+  for (world::Setting& s : sensor.settings) s.file = "park.world", s.line = line++;
+  return sensor;
+}
+
+/// Robots at `poses`, each with `sensor`.
+inline world::World carriers(const world::Sensor& sensor, const std::vector<base::Pose>& poses = {base::Pose{}}) {
+  world::World world;
+  for (const base::Pose& pose : poses) scenes::add_carrier(world, pose, sensor);
+  return world;
+}
+
+/// Everyone's states: at rest where they were loaded.
+inline std::vector<base::Report> states_of(const world::World& world) {
+  std::vector<base::Report> states;
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) states.push_back({.mover = m, .X_WM = world.movers[m].X_WM});
+  return states;
+}
+
+inline std::vector<double> values_of(const base::ReadingBlock& reading) {
+  return {reading.values.begin(), reading.values.end()};
+}
+
+/// Adds a static box-like outline, solid within, from `z_min` to `z_max`; corners counter-clockwise.
+inline void add_solid(world::World& world, const std::vector<base::Vec2>& corners, double z_min, double z_max) {
+  const auto model = static_cast<std::uint32_t>(world.models.size());
+  world.models.push_back({"solid" + std::to_string(model), "model"});
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    world.walls.push_back(
+        {.a = corners[i], .b = corners[(i + 1) % corners.size()], .z_min = z_min, .z_max = z_max, .model = model});
+}
+
+inline std::vector<base::Vec2> square(base::Vec2 middle, double side) {
+  const double h = 0.5 * side;
+  return {{middle.x - h, middle.y - h},
+          {middle.x + h, middle.y - h},
+          {middle.x + h, middle.y + h},
+          {middle.x - h, middle.y + h}};
+}
+
+/// Expects that settings are refused at park.world:`line`, saying `words`.
+inline void expect_refused(const std::string& type, std::vector<world::Setting> settings, int line,
+                           const std::string& words) {
+  try {
+    const sensors::Roster roster(carriers(fitted(type, std::move(settings))));
+    FAIL() << "not refused: " << words;
+  } catch (const base::InputError& error) {
+    const std::string what = error.what();
+    EXPECT_TRUE(what.starts_with("park.world:" + std::to_string(line) + ": ")) << what;
+    EXPECT_NE(what.find(words), std::string::npos) << what;
+  }
+}
+
+/// Correlation of two samples of mean 0 and variance 1.
+inline double correlation(const std::vector<double>& p, const std::vector<double>& q, std::size_t lag = 0) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + lag < p.size(); ++i) sum += p[i] * q[i + lag];
+  return sum / static_cast<double>(p.size() - lag);
+}
+
+}  // namespace sf::trial

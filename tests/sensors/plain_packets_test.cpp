@@ -1,0 +1,153 @@
+// The one payload of simple kinds.
+
+#include "sensors/plain_packets.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/netio/documented.h"
+#include "tests/sensors/chance.h"
+
+namespace sf::sensors {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr PlainNumber kNumbers[] = {{1e-3}, {1.0, 0.0, 5.0}};
+constexpr PlainForm kForm{29, "trial", kNumbers};
+using Trial = Plain<kForm>;
+
+SensorRow row_of(std::uint32_t elements) {
+  SensorRow row;
+  row.elements = elements;
+  return row;
+}
+
+base::Bytes bytes_of(const std::vector<double>& values) {
+  base::ReadingBlock block;
+  block.values = values;
+  base::Bytes out;
+  EXPECT_EQ(Trial::encode(row_of(static_cast<std::uint32_t>(values.size() / 2)), block, Wire::farm, 0, out), 29);
+  return out;
+}
+
+std::vector<double> back(const std::vector<double>& values) {
+  const base::Bytes bytes = bytes_of(values);
+  std::vector<double> read(values.size(), 77.0);
+  Trial::read(row_of(static_cast<std::uint32_t>(values.size() / 2)), bytes, 29, Wire::farm, read);
+  return read;
+}
+
+TEST(PlainPackets, EveryByte) {
+  EXPECT_EQ(bytes_of({1.0, 2.0, -0.001, kNan}), (base::Bytes{2,    0,    0,    0,    0xE8, 3, 0, 0,   2, 0, 0, 0,  //
+                                                             0xFF, 0xFF, 0xFF, 0xFF, 0,    0, 0, 0x80}));
+}
+
+TEST(PlainPackets, RoundsToNearestAndSaturates) {
+  EXPECT_DOUBLE_EQ(back({0.00149, 0})[0], 0.001);
+  EXPECT_DOUBLE_EQ(back({0.0015, 0})[0], 0.002) << "half away from zero";
+  EXPECT_DOUBLE_EQ(back({-0.0015, 0})[0], -0.002);
+  EXPECT_DOUBLE_EQ(back({2'147'483.647, 0})[0], 2'147'483.647) << "the largest word";
+  EXPECT_DOUBLE_EQ(back({1e300, 0})[0], 2'147'483.647);
+  EXPECT_DOUBLE_EQ(back({kInf, 0})[0], 2'147'483.647);
+  EXPECT_DOUBLE_EQ(back({-2'147'483.648, 0})[0], -2'147'483.647) << "the word below says that there is no number";
+  EXPECT_DOUBLE_EQ(back({-kInf, 0})[0], -2'147'483.647);
+  EXPECT_TRUE(std::isnan(back({kNan, 0})[0]));
+}
+
+TEST(PlainPackets, JudgesWhatCannotBe) {
+  const base::Bytes good = bytes_of({1, 2, 3, 4});
+  const auto fault = [&](base::Bytes bytes, std::uint32_t rows, std::uint8_t type = 29, Wire wire = Wire::farm) {
+    return Trial::decode(row_of(rows), bytes, type, wire).fault;
+  };
+  EXPECT_EQ(fault(good, 2), Fault::none);
+  EXPECT_EQ(fault(good, 0), Fault::none) << "of any number of rows";
+  EXPECT_EQ(fault(good, 1), Fault::out_of_range) << "of another sensor";
+  EXPECT_EQ(fault(good, 2, 28), Fault::out_of_range) << "of another kind";
+  EXPECT_EQ(fault(good, 2, 29 + kExtended), Fault::out_of_range) << "there is no second form";
+  EXPECT_EQ(fault(good, 2, 29, Wire::thesis), Fault::out_of_range);
+  EXPECT_EQ(fault({0, 0, 0, 0}, 0), Fault::out_of_range) << "no rows";
+  for (std::size_t size = 0; size < good.size(); ++size)
+    EXPECT_EQ(fault({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)}, 2), Fault::too_short) << size;
+  base::Bytes longer = good;
+  longer.push_back(0);
+  EXPECT_EQ(fault(longer, 2), Fault::too_long);
+  EXPECT_EQ(fault(bytes_of({1, 6}), 1), Fault::out_of_range) << "more than its column has";
+  EXPECT_EQ(fault(bytes_of({1, -1}), 1), Fault::out_of_range) << "less than its column has";
+  EXPECT_EQ(fault(bytes_of({1, kNan}), 1), Fault::none) << "no number is no nonsense";
+  EXPECT_EQ(fault(bytes_of({1e9, 0}), 1), Fault::none) << "saturated says more";
+}
+
+TEST(PlainPackets, AsManyNumbersAsADatagramHolds) {
+  std::vector<double> most(342, 1.0);
+  const base::Bytes bytes = bytes_of(most);
+  EXPECT_EQ(bytes.size(), 4 + 4 * 342u);
+  EXPECT_LE(bytes.size() + 24, 1400u);
+  EXPECT_EQ(Trial::decode(row_of(0), bytes, 29, Wire::farm).fault, Fault::none);
+  base::Bytes more(4 + 4 * 344, 0);
+  more[0] = 172;
+  EXPECT_EQ(Trial::decode(row_of(0), more, 29, Wire::farm).fault, Fault::out_of_range);
+}
+
+TEST(PlainPackets, TheThesisHasNoLayoutForThem) {
+  EXPECT_EQ(Trial::refuse({}, Wire::farm), "");
+  const std::string why = Trial::refuse({}, Wire::thesis);
+  EXPECT_NE(why.find("trial"), std::string::npos);
+  EXPECT_NE(why.find("--wire farm"), std::string::npos);
+  EXPECT_EQ(Trial::parts({}, Wire::farm), 1u);
+}
+
+/// No bytes bring it down; what is taken can be read.
+TEST(PlainPackets, AnyBytesAreJudged) {
+  trial::Chance chance(4);
+  std::size_t taken = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    base::Bytes bytes(chance.below(60));
+    for (std::uint8_t& b : bytes)
+      b = static_cast<std::uint8_t>(i % 3 == 0 && chance.below(9) > 0 ? 0 : chance.below(256));
+    if (bytes.size() > 3 && i % 2 == 0) bytes[0] = static_cast<std::uint8_t>((bytes.size() - 4) / 8), bytes[1] = 0;
+    for (const SensorKind* kind : kinds()) {
+      const Part part = kind->decode(row_of(0), bytes, kind->id, Wire::farm);
+      EXPECT_TRUE(part.fault != Fault::none || part.elements >= 1u);
+    }
+    const Part part = Trial::decode(row_of(0), bytes, 29, Wire::farm);
+    if (part.fault != Fault::none) continue;
+    ++taken;
+    std::vector<double> values(2 * part.elements);
+    Trial::read(row_of(0), bytes, 29, Wire::farm, values);
+    for (std::size_t k = 0; k < part.elements; ++k)
+      EXPECT_TRUE(std::isnan(values[2 * k + 1]) || (values[2 * k + 1] >= 0.0 && values[2 * k + 1] <= 5.0));
+  }
+  EXPECT_GT(taken, 100u);
+}
+
+/// What the documents say of each kind, and what they print.
+TEST(PlainPackets, PayloadsAreTheDocumentedOnes) {
+  const struct {
+    const char* example;
+    std::uint8_t id;
+    std::uint32_t rows;
+    std::vector<double> values;
+  } all[] = {
+      {"bumper", 6, 2, {1, 0}}, {"cliff", 7, 4, {0, 0, 1, 1}},         {"encoder", 8, 1, {1.234, -0.5, 1234, -500}},
+      {"gyro", 9, 1, {-0.25}},  {"gps", 10, 1, {kNan, kNan, kNan, 3}}, {"irreceiver", 11, 1, {1, 252}}};
+  for (const auto& [example, id, rows, values] : all) {
+    const SensorKind* kind = find_kind(id);
+    ASSERT_NE(kind, nullptr) << example;
+    EXPECT_EQ(kind->name, example);
+    base::ReadingBlock block;
+    block.values = values;
+    base::Bytes bytes;
+    EXPECT_EQ(kind->encode(row_of(rows), block, Wire::farm, 0, bytes), id);
+    const base::Bytes packet = test::documented(example);
+    ASSERT_GT(packet.size(), 24u) << example;
+    EXPECT_EQ(packet[5], id);
+    EXPECT_EQ(base::Bytes(packet.begin() + 24, packet.end()), bytes) << example;
+    EXPECT_EQ(kind->decode(row_of(rows), bytes, id, Wire::farm).fault, Fault::none) << example;
+    EXPECT_NE(kind->refuse(row_of(rows), Wire::thesis), "") << example;
+  }
+}
+
+}  // namespace
+}  // namespace sf::sensors
