@@ -1,0 +1,73 @@
+#include "control/avoid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace sf::control {
+
+namespace {
+
+double least(std::span<const double> ranges) {
+  double range = HUGE_VAL;
+  for (const double r : ranges)
+    if (r < range) range = r;
+  return range;
+}
+
+}  // namespace
+
+// Beams on the border of two thirds count for the front.
+Thirds thirds_of(std::span<const double> ranges) {
+  if (ranges.size() < 3) return {least(ranges), least(ranges), least(ranges)};
+  const std::size_t side = (ranges.size() - 1) / 3;
+  return {least(ranges.first(side)), least(ranges.subspan(side, ranges.size() - 2 * side)), least(ranges.last(side))};
+}
+
+base::Twist Avoid::step(const Input& input) {
+  const base::ReadingBlock* reading = newest(input, base::kLaser);
+  if (reading == nullptr || reading->values.empty()) return {};
+  const Thirds nearest = thirds_of(reading->values);
+
+  const bool turning = state_ == State::turn_left || state_ == State::turn_right;
+  if (turning && nearest.front < settings_.clear)
+    return {0.0, 0.0, state_ == State::turn_left ? settings_.turn_speed : -settings_.turn_speed};
+  if (nearest.front < settings_.turn) {
+    state_ = nearest.left > nearest.right ? State::turn_left : State::turn_right;
+    return {0.0, 0.0, state_ == State::turn_left ? settings_.turn_speed : -settings_.turn_speed};
+  }
+  state_ = nearest.front < settings_.slow ? State::slow : State::drive;
+  return {state_ == State::slow ? settings_.slow_speed : settings_.speed, 0.0, 0.0};
+}
+
+namespace {
+
+std::unique_ptr<Controller> make_avoid(const Site& site, Settings& settings) {
+  const world::Mover& mover = site.world.movers[site.mover];
+  if (mover.lasers.empty())
+    throw base::InputError(
+        fmt::format("controller 'avoid': '{}' has no laser; give it one in the world file", mover.name));
+  AvoidSettings avoid;
+  avoid.speed = settings.number("speed", std::min(avoid.speed, mover.max_forward), 0.0, mover.max_forward);
+  avoid.slow_speed = settings.number("slow_speed", std::min(avoid.slow_speed, avoid.speed), 0.0, mover.max_forward);
+  avoid.slow = settings.number("slow", avoid.slow, 0.0, 1e3);
+  avoid.turn = settings.number("turn", avoid.turn, 0.0, 1e3);
+  avoid.clear = settings.number("clear", avoid.turn, avoid.turn, 1e3);
+  avoid.turn_speed = settings.number("turn_speed", std::min(avoid.turn_speed, mover.max_turn), 1e-3, mover.max_turn);
+  return std::make_unique<Avoid>(avoid);
+}
+
+}  // namespace
+
+constinit const ControllerKind avoid_controller{
+    .name = "avoid",
+    .summary = "the thesis' obstacle avoidance: straight on, slower near things, turns away before it meets them",
+    .rate = 10.0,
+    .waits = true,
+    .make = make_avoid,
+};
+
+}  // namespace sf::control

@@ -1,0 +1,29 @@
+#pragma once
+// Towards a point: the twist of a robot that turns first and drives then.
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/pose.h"
+
+namespace sf::control {
+
+struct Pace {
+  double speed = 0.1;  ///< [m/s]
+  double turn = 1.0;   ///< [rad/s] at most
+  double aim = 0.3;    ///< [rad] farther off than this it only turns
+  double gain = 3.0;   ///< [1/s] turn per heading error
+};
+
+/// @return [rad/s]
+inline double turn_to(double heading_error, const Pace& pace) {
+  return std::clamp(pace.gain * heading_error, -pace.turn, pace.turn);
+}
+
+inline base::Twist go_to(const base::Pose& X_WM, base::Vec2 p, const Pace& pace) {
+  const base::Vec2 d{p.x - X_WM.x, p.y - X_WM.y};
+  const double off = base::wrap_angle(std::atan2(d.y, d.x) - X_WM.yaw);
+  return {std::abs(off) <= pace.aim ? pace.speed : 0.0, 0.0, turn_to(off, pace)};
+}
+
+}  // namespace sf::control

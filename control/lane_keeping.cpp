@@ -1,0 +1,75 @@
+#include "control/lane_keeping.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "sensors/laneedge.h"
+
+namespace sf::control {
+
+LaneKeeping::LaneKeeping(const LaneSettings& settings, const PathTask& task)
+    : settings_(settings), task_(task), law_(settings.gains), hold_(settings.hold), error_(Controller::error()) {
+  SF_CHECK(settings.half_width || task.known(), "a lane of unknown width");
+}
+
+base::Twist LaneKeeping::step(const Input& input) {
+  error_ = Controller::error();
+  if (done_ || (done_ = task_.ended(input.state.X_WM))) return {};
+  const base::ReadingBlock* reading = newest(input, sensors::kLaneEdge);
+  const bool speaks = hold_.speaks(reading, input.time);
+  const double now = speaks && reading != nullptr ? error_of(*reading, input.state.X_WM) : Controller::error();
+  error_ = hold_.keep(now, input.time);
+  if (!std::isfinite(error_)) return {};
+  return {settings_.speed, 0.0, std::isfinite(now) ? law_.steer(now, input.time) : law_.keep(error_)};
+}
+
+double LaneKeeping::error_of(const base::ReadingBlock& reading, const base::Pose& X_WM) const {
+  if (reading.values.empty() || !std::isfinite(reading.values[0])) return Controller::error();
+  const base::Vec2 p_WS = base::transform(X_WM, settings_.p_MS);
+  const double half = settings_.half_width ? *settings_.half_width : 0.5 * task_.width_at(p_WS);
+  const double edge = reading.values[0] + settings_.side * settings_.p_MS.y;  // from the robot's axis
+  return settings_.side * (edge - half);
+}
+
+namespace {
+
+const world::Sensor* find_sensor(const world::Mover& mover) {
+  const auto found = std::find_if(mover.sensors.begin(), mover.sensors.end(),
+                                  [](const world::Sensor& sensor) { return sensor.type == "laneedge"; });
+  return found == mover.sensors.end() ? nullptr : &*found;
+}
+
+std::unique_ptr<Controller> make_lane_keeping(const Site& site, Settings& settings) {
+  const world::Mover& mover = site.world.movers[site.mover];
+  const PathTask task(site, settings);
+  LaneSettings lane;
+  lane.gains = read_gains(settings, lane.gains);
+  lane.speed = settings.number("speed", lane.speed, 0.0, mover.max_forward);
+  lane.hold = settings.number("hold", lane.hold, 0.0, 1e6);
+  if (settings.has("half_width")) lane.half_width = settings.number("half_width", 0.0, 1e-3, 1e3);
+  if (!lane.half_width && !task.known())
+    settings.refuse("half_width",
+                    "'lane-keeping' needs the lane's width, and the world has no path; expected a path( "
+                    "... ) in the world file, or the setting 'half_width' [m]");
+  const world::Sensor* sensor = find_sensor(mover);
+  if (sensor != nullptr) {
+    lane.p_MS = {sensor->X_MS.x, sensor->X_MS.y};
+    lane.side = std::sin(sensor->X_MS.yaw) < 0.0 ? -1.0 : 1.0;
+  }
+  const std::string side = settings.choice("side", lane.side > 0.0 ? "left" : "right", {"left", "right"});
+  lane.side = side == "left" ? 1.0 : -1.0;
+  return std::make_unique<LaneKeeping>(lane, task);
+}
+
+}  // namespace
+
+constinit const ControllerKind lane_keeping_controller{
+    .name = "lane-keeping",
+    .summary = "follows a lane by its painted edge, with P or PI steering",
+    .rate = 10.0,
+    .waits = true,
+    .make = make_lane_keeping,
+};
+
+}  // namespace sf::control

@@ -1,0 +1,45 @@
+#include "control/path_task.h"
+
+#include <cmath>
+
+namespace sf::control {
+
+PathTask::PathTask(const Site& site, Settings& settings) {
+  stop_before_ = settings.number("stop_before", stop_before_, 0.0, 1e6);
+  const base::Pose& X_WM = site.world.movers[site.mover].X_WM;
+  double least = HUGE_VAL;
+  for (const world::Path& path : site.world.paths) {
+    const double far = std::abs(world::nearest(path, {X_WM.x, X_WM.y}).offset);
+    if (!(far < least)) continue;
+    least = far;
+    path_ = &path;
+  }
+}
+
+double PathTask::width_at(base::Vec2 p) const { return path_->pieces[world::nearest(*path_, p).piece].width; }
+
+bool PathTask::ended(const base::Pose& X_WM) const {
+  if (path_ == nullptr) return false;
+  return world::nearest(*path_, {X_WM.x, X_WM.y}).s >= world::length_of(*path_) - stop_before_;
+}
+
+bool Hold::speaks(const base::ReadingBlock* reading, std::int64_t time) {
+  if (reading != nullptr && (!any_ || reading->sequence != sequence_)) {
+    any_ = true;
+    sequence_ = reading->sequence;
+    heard_ = time;
+  }
+  return any_ && time - heard_ <= hold_;
+}
+
+double Hold::keep(double now, std::int64_t time) {
+  if (std::isfinite(now)) {
+    last_ = now;
+    said_ = time;
+  } else if (time - said_ > hold_) {
+    last_ = std::numeric_limits<double>::quiet_NaN();
+  }
+  return last_;
+}
+
+}  // namespace sf::control

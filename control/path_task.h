@@ -1,0 +1,52 @@
+#pragma once
+// Following a path of the world: which piece one is on, and when one is through.
+
+#include <cstdint>
+
+#include "base/reading.h"
+#include "control/controllers.h"
+#include "world/paths.h"
+
+namespace sf::control {
+
+/// Settings: `stop_before` [m].
+class PathTask {
+ public:
+  /// The path is the world's nearest to the robot at load; there need not be one: then it never ends.
+  /// @throws base::InputError
+  PathTask(const Site& site, Settings& settings);
+
+  bool known() const { return path_ != nullptr; }
+  /// [m] lane width of the piece nearest to `p`. Rule: known().
+  double width_at(base::Vec2 p) const;
+  /// The robot's origin has come as far along the path as `stop_before` its end.
+  bool ended(const base::Pose& X_WM) const;
+
+ private:
+  const world::Path* path_ = nullptr;
+  double stop_before_ = 0.25;  ///< [m]
+};
+
+/// The last reading of a sensor, and whether there still are new ones: for controllers that run at a rate of their own
+/// and meet readings twice, or late.
+class Hold {
+ public:
+  explicit Hold(double seconds) : hold_(static_cast<std::int64_t>(1e9 * seconds)) {}
+
+  /// @param reading null: none
+  /// @return whether the sensor still speaks: nothing new for longer than `seconds` is silence
+  bool speaks(const base::ReadingBlock* reading, std::int64_t time);
+
+  /// @param now what the reading says; not a number: nothing
+  /// @return `now`, or what it was last within `seconds`, or not a number
+  double keep(double now, std::int64_t time);
+
+ private:
+  std::int64_t hold_;
+  std::int64_t heard_ = 0, said_ = 0;  ///< [ns] of the last new reading, of the last number
+  std::uint32_t sequence_ = 0;
+  double last_ = std::numeric_limits<double>::quiet_NaN();
+  bool any_ = false;
+};
+
+}  // namespace sf::control

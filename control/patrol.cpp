@@ -1,0 +1,84 @@
+#include "control/patrol.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "control/go.h"
+
+namespace sf::control {
+
+Patrol::Patrol(PatrolSettings settings) : settings_(std::move(settings)) {
+  SF_CHECK(!settings_.points.empty(), "a patrol of no points");
+}
+
+// Others' bodies are not told: what may stand in the way is looked for some way beyond.
+double Patrol::radio() const { return settings_.radius + settings_.keep + 1.0; }
+
+base::Twist Patrol::step(const Input& input) {
+  const base::Pose& X_WM = input.state.X_WM;
+  const auto there = [&] {
+    return base::length(settings_.points[target_] - base::Vec2{X_WM.x, X_WM.y}) <= settings_.reach;
+  };
+  if (there()) next(input.time);
+  if (input.time < until_ || there() || obstructed(input)) return {};
+  return go_to(X_WM, settings_.points[target_],
+               {settings_.speed, settings_.turn_speed, settings_.turns_in_place ? 0.3 : M_PI});
+}
+
+void Patrol::next(std::int64_t time) {
+  const std::size_t last = settings_.points.size() - 1;
+  if (last == 0) return;
+  if (target_ == (backwards_ ? 0 : last)) {
+    backwards_ = !backwards_;
+    until_ = time + static_cast<std::int64_t>(1e9 * settings_.pause);
+  }
+  target_ = backwards_ ? target_ - 1 : target_ + 1;
+}
+
+// Ahead is the lane that its own body sweeps, widened by what others may be wide.
+bool Patrol::obstructed(const Input& input) const {
+  return std::any_of(input.others.begin(), input.others.end(), [&](const Neighbour& other) {
+    const base::Pose& X_WM = input.state.X_WM;
+    const base::Vec2 p = base::rotate(-X_WM.yaw, {other.state.X_WM.x - X_WM.x, other.state.X_WM.y - X_WM.y});
+    return p.x > 0.0 && p.x < settings_.radius + settings_.keep && std::abs(p.y) < 2.0 * settings_.radius;
+  });
+}
+
+namespace {
+
+std::vector<base::Vec2> read_points(Settings& settings) {
+  const std::vector<double> numbers = settings.numbers("points", {});
+  const bool finite = std::all_of(numbers.begin(), numbers.end(), [](double v) { return std::isfinite(v); });
+  if (numbers.size() < 2 || numbers.size() % 2 != 0 || !finite)
+    settings.refuse("points",
+                    "'points' of controller 'patrol' expects pairs [x0 y0 x1 y1 ...] in metres, at least one");
+  std::vector<base::Vec2> points;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) points.push_back({numbers[i], numbers[i + 1]});
+  return points;
+}
+
+std::unique_ptr<Controller> make_patrol(const Site& site, Settings& settings) {
+  const world::Mover& mover = site.world.movers[site.mover];
+  PatrolSettings patrol;
+  patrol.points = read_points(settings);
+  patrol.speed = settings.number("speed", std::min(patrol.speed, mover.max_forward), 1e-4, mover.max_forward);
+  patrol.turn_speed = settings.number("turn_speed", std::min(patrol.turn_speed, mover.max_turn), 1e-3, mover.max_turn);
+  patrol.pause = settings.number("pause", patrol.pause, 0.0, 1e6);
+  patrol.keep = settings.number("keep", patrol.keep, 0.0, 1e3);
+  patrol.radius = mover.radius;
+  patrol.turns_in_place = mover.drive != world::Drive::car;
+  return std::make_unique<Patrol>(patrol);
+}
+
+}  // namespace
+
+constinit const ControllerKind patrol_controller{
+    .name = "patrol",
+    .summary = "drives through given points, back and forth; stands while another robot is in the way",
+    .rate = 10.0,
+    .waits = true,
+    .make = make_patrol,
+};
+
+}  // namespace sf::control

@@ -1,0 +1,43 @@
+#pragma once
+// Drives through given points to the last and back to the first, over and over: pedestrians, Kheperas. Stands while
+// another robot (V2V) is within its stopping distance ahead.
+
+#include <vector>
+
+#include "control/controllers.h"
+
+namespace sf::control {
+
+struct PatrolSettings {
+  std::vector<base::Vec2> points;  ///< [m] at least one
+  double speed = 0.1;              ///< [m/s]
+  double turn_speed = 1.0;         ///< [rad/s]
+  double pause = 0.0;              ///< [s] at each end
+  double reach = 0.03;             ///< [m] a point this near is reached
+  double keep = 0.3;               ///< [m] between its own body and others' origins
+  double radius = 0.165;           ///< [m] of its own body
+  bool turns_in_place = true;      ///< false: a car, which drives on while it turns
+};
+
+class Patrol final : public Controller {
+ public:
+  explicit Patrol(PatrolSettings settings);
+
+  base::Twist step(const Input& input) override;
+  double radio() const override;
+
+  std::size_t target() const { return target_; }  ///< index of the point it heads for
+
+ private:
+  bool obstructed(const Input& input) const;
+  void next(std::int64_t time);
+
+  PatrolSettings settings_;
+  std::size_t target_ = 0;
+  bool backwards_ = false;
+  std::int64_t until_ = INT64_MIN;  ///< [ns] it stands
+};
+
+extern const ControllerKind patrol_controller;
+
+}  // namespace sf::control

@@ -1,0 +1,42 @@
+#pragma once
+// u = kp e + ki (integral of e), the integral by the trapezoid rule over the time between steps (thesis, equations 4
+// to 6).
+
+#include <cmath>
+#include <cstdint>
+
+#include "control/settings.h"
+
+namespace sf::control {
+
+struct PiGains {
+  double kp = 0.5;                   ///< [rad/s per unit of the error]
+  double ki = 0.0;                   ///< [rad/s^2 per unit of the error]
+  double integral_limit = HUGE_VAL;  ///< [unit s] the integral stays within +- this; > 0
+};
+
+/// Reads `kp`, `ki`, `integral_limit`. @throws base::InputError
+PiGains read_gains(Settings& settings, const PiGains& defaults);
+
+class PiLaw {
+ public:
+  explicit PiLaw(const PiGains& gains) : gains_(gains) {}
+
+  /// @param time [ns] never runs backwards
+  /// @return [rad/s]
+  double steer(double error, std::int64_t time);
+
+  /// The same for an error that is only remembered: the integral rests, and goes on from the next step that knows.
+  double keep(double error);
+
+  double integral() const { return integral_; }  ///< [unit s]
+
+ private:
+  PiGains gains_;
+  bool running_ = false;
+  std::int64_t last_time_ = 0;
+  double last_error_ = 0.0;
+  double integral_ = 0.0;
+};
+
+}  // namespace sf::control
