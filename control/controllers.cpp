@@ -5,14 +5,24 @@
 #include <vector>
 
 #include "base/error.h"
+#include "control/shell.h"
 
 namespace sf::control {
 
 // Every kind, in the order of help.
+extern const ControllerKind avoid_controller;
+extern const ControllerKind docking_controller;
+extern const ControllerKind explore_controller;
+extern const ControllerKind lane_keeping_controller;
+extern const ControllerKind magnet_keeping_controller;
+extern const ControllerKind patrol_controller;
 extern const ControllerKind wander_controller;
 
 std::span<const ControllerKind* const> controllers() {
-  static constexpr const ControllerKind* kKinds[] = {&wander_controller};
+  static constexpr const ControllerKind* kKinds[] = {
+      &avoid_controller,          &docking_controller, &explore_controller, &lane_keeping_controller,
+      &magnet_keeping_controller, &patrol_controller,  &wander_controller,
+  };
   return kKinds;
 }
 
@@ -30,9 +40,10 @@ Made make_controller(const Site& site, Plan plan) {
     throw base::InputError(
         fmt::format("there is no controller '{}'; expected one of: {}", plan.controller, fmt::join(names, ", ")));
   }
-  Made made{kind->make(site, plan.settings), plan.rate > 0.0 ? plan.rate : kind->rate};
+  const ShellSettings shell = read_shell_settings(plan.settings, kind->waits);
+  std::unique_ptr<Controller> inner = kind->make(site, plan.settings);
   plan.settings.require_all_read();
-  return made;
+  return {std::make_unique<Shell>(std::move(inner), shell), plan.rate > 0.0 ? plan.rate : kind->rate};
 }
 
 }  // namespace sf::control

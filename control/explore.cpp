@@ -1,0 +1,274 @@
+#include "control/explore.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "control/go.h"
+#include "robots/outline.h"
+
+namespace sf::control {
+
+namespace {
+
+using base::Pose;
+using base::Twist;
+using base::Vec2;
+
+constexpr double kStart = 0.02;      // [m] beyond all that is on it the ground is taken as free where it begins
+constexpr double kHere = 0.004;      // [m] a place is reached
+constexpr double kAligned = 0.01;    // [rad] a heading is reached
+constexpr double kTouch = 5e-4;      // [m] it never comes nearer to a surface
+constexpr double kNearRange = 0.85;  // of the range, from which it looks at first
+constexpr double kFarRange = 0.99;
+constexpr double kMostNodes = 2e6;  // of the lattice: 128 MB for ways
+
+/// What is wanted, and how near to surfaces, one stage after another.
+struct Stage {
+  bool roomy;
+  bool all;
+  double range;
+};
+constexpr Stage kStage[Explore::kStages] = {
+    {true, false, kNearRange}, {true, false, kFarRange}, {false, false, kFarRange}, {false, true, kFarRange}};
+
+Vec2 origin(const Pose& X) { return {X.x, X.y}; }
+
+double reach_of(const ExploreSettings& settings) {
+  return std::max(settings.body.radius, base::length(settings.body.p_MS));
+}
+
+}  // namespace
+
+Explore::Explore(const ExploreSettings& settings)
+    : settings_(settings),
+      terrain_(settings.plan, settings.body.radius, reach_of(settings)),
+      search_(terrain_, settings.body),
+      lookout_(terrain_, settings.eye) {}
+
+Twist Explore::step(const Input& input) {
+  const Pose& X_WM = input.state.X_WM;
+  const bool news = learn(input);
+  if (!begun_) {
+    terrain_.stand(origin(X_WM), reach_of(settings_) + kStart);
+    last_yaw_ = X_WM.yaw;
+    last_time_ = input.time;
+    begun_ = true;
+  }
+  if (done()) return {};
+  if (!looked_around_) return look_around(X_WM);
+  if (input.contact) {
+    // Something that no beam met.
+    const double ahead = legs_.empty() || !legs_.back().backwards ? 1.0 : -1.0;
+    terrain_.add_point(base::transform(X_WM, {ahead * settings_.body.radius, 0.0}));
+    way_.clear();
+  }
+  if (way_.empty() || (seen_all() && !arrived_) || (arrived_ && seen_all()) || (news && barred())) plan(X_WM);
+  const Twist twist = done() ? Twist{} : legs_.empty() ? wait(input) : drive(input);
+  last_time_ = input.time;
+  return twist;
+}
+
+bool Explore::learn(const Input& input) {
+  const base::ReadingBlock* reading = newest(input, base::kLaser);
+  if (reading == nullptr || reading->values.size() != settings_.beams.size() || sequence_ == reading->sequence)
+    return false;
+  sequence_ = reading->sequence;
+  X_WS_ = reading->X_WS;
+  return terrain_.add({reading->X_WS, reading->values, settings_.beams, settings_.range_min, settings_.eye.range});
+}
+
+// Once round in place before anything else.
+Twist Explore::look_around(const Pose& X_WM) {
+  turned_ += base::wrap_angle(X_WM.yaw - last_yaw_);
+  last_yaw_ = X_WM.yaw;
+  looked_around_ = turned_ >= 2.0 * M_PI;
+  return {0.0, 0.0, looked_around_ ? 0.0 : settings_.turn};
+}
+
+bool Explore::seen_all() const {
+  return std::none_of(targets_.begin(), targets_.end(),
+                      [&](maps::CellAt cell) { return grid().at(cell) == maps::Cell::unexplored; });
+}
+
+bool Explore::barred() const {
+  const double margin = kStage[stage_].roomy ? settings_.margin : settings_.least_margin;
+  return std::any_of(way_.begin() + 1, way_.end(), [&](const State& state) {
+    return !search_.allowed(state, margin) && !search_.allowed(state, 0.0);
+  });
+}
+
+void Explore::plan(const Pose& X_WM) {
+  arrived_.reset();
+  legs_.clear();
+  int heading = 0;
+  for (int k = 1; k < kHeadings; ++k)
+    if (std::abs(base::wrap_angle(angle_of(k) - X_WM.yaw)) < std::abs(base::wrap_angle(angle_of(heading) - X_WM.yaw)))
+      heading = k;
+  const State from{terrain_.node_at(origin(X_WM)), heading};
+  for (; stage_ < kStages; ++stage_) {
+    const Stage& stage = kStage[stage_];
+    if (lookout_.look(stage.all, stage.range * settings_.eye.range) == 0) continue;
+    way_ = search_.find(from, stage.roomy ? settings_.margin : settings_.least_margin,
+                        [&](const State& state) { return lookout_.worth(search_.sensor_at(state), state.heading); });
+    if (!way_.empty()) return take(way_);
+  }
+  way_.clear();
+}
+
+// A way as turns and straight lines.
+void Explore::take(const std::vector<State>& way) {
+  targets_ = lookout_.targets(search_.sensor_at(way.back()), way.back().heading);
+  const auto is_turn = [&](std::size_t i) { return way[i].heading != way[i - 1].heading; };
+  const auto step = [&](std::size_t i) {
+    return is_turn(i) ? (way[i].heading - way[i - 1].heading + kHeadings) % kHeadings : way[i].node - way[i - 1].node;
+  };
+  std::vector<Leg> legs;
+  for (std::size_t i = 1; i < way.size();) {
+    std::size_t last = i;
+    while (last + 1 < way.size() && is_turn(last + 1) == is_turn(i) && step(last + 1) == step(i)) ++last;
+    Leg leg{!is_turn(i), terrain_.place(way[last].node), false, angle_of(way[last].heading), 1.0};
+    const Vec2 along = terrain_.place(way[last].node) - terrain_.place(way[i - 1].node);
+    leg.backwards = leg.straight && base::dot(along, base::rotate(leg.heading, {1.0, 0.0})) < 0.0;
+    leg.side = step(i) == 1 ? 1.0 : -1.0;
+    legs.push_back(leg);
+    i = last + 1;
+  }
+  // In the end it stands there and looks that way.
+  legs.push_back({true, terrain_.place(way.back().node), !legs.empty() && legs.back().backwards,
+                  angle_of(way.back().heading), 1.0});
+  legs.push_back({false, {}, false, angle_of(way.back().heading), 0.0});
+  legs_.assign(legs.rbegin(), legs.rend());
+}
+
+bool Explore::finished(const Leg& leg, const Pose& X_WM) const {
+  if (!leg.straight) return std::abs(base::wrap_angle(leg.heading - X_WM.yaw)) < kAligned;
+  const Vec2 rest = leg.end - origin(X_WM);
+  const double ahead = base::dot(rest, base::rotate(leg.heading, {leg.backwards ? -1.0 : 1.0, 0.0}));
+  return base::length(rest) < kHere || ahead < 0.5 * kHere;
+}
+
+Twist Explore::drive(const Input& input) {
+  const Pose& X_WM = input.state.X_WM;
+  while (!legs_.empty() && finished(legs_.back(), X_WM)) legs_.pop_back();
+  if (legs_.empty()) return wait(input);
+  const double dt = std::clamp(1e-9 * static_cast<double>(input.time - last_time_), 0.02, 0.5);
+  const Twist twist = follow(legs_.back(), X_WM, dt);
+  if (safe(X_WM, twist, dt)) return twist;
+  way_.clear();
+  return {};
+}
+
+Twist Explore::follow(const Leg& leg, const Pose& X_WM, double dt) const {
+  const Pace pace{settings_.speed, settings_.turn, 0.03, std::min(0.7 / dt, 5.0)};
+  if (!leg.straight) {
+    // The side matters only as long as it is far to turn.
+    double off = base::wrap_angle(leg.heading - X_WM.yaw);
+    if (leg.side * off < 0.0 && std::abs(off) > 0.3) off += leg.side * 2.0 * M_PI;
+    return {0.0, 0.0, turn_to(off, pace)};
+  }
+  const Vec2 rest = leg.end - origin(X_WM);
+  const double far = base::length(rest), sign = leg.backwards ? -1.0 : 1.0;
+  const double bearing = far < 0.02 ? leg.heading : std::atan2(sign * rest.y, sign * rest.x);
+  const double off = base::wrap_angle(bearing - X_WM.yaw);
+  if (std::abs(off) > pace.aim) return {0.0, 0.0, turn_to(off, pace)};
+  const Vec2 front = base::transform(X_WM, {sign * settings_.slow, 0.0});
+  const bool near = terrain_.nearest(front, 1.0) < settings_.body.radius + settings_.slow;
+  const double speed = std::min(near ? settings_.slow_speed : settings_.speed, far / dt);
+  return {sign * speed, 0.0, turn_to(off, pace)};
+}
+
+// Not where the body would touch, by the time of the next two steps, unless it gets away from it.
+bool Explore::safe(const Pose& X_WM, const Twist& twist, double dt) const {
+  if (twist.forward == 0.0) return true;
+  const double now = terrain_.nearest(origin(X_WM), 1.0);
+  const double then = terrain_.nearest(base::transform(X_WM, {2.0 * dt * twist.forward, 0.0}), 1.0);
+  return then >= settings_.body.radius + kTouch || then > now;
+}
+
+// Stands until a scan was taken from here.
+Twist Explore::wait(const Input& input) {
+  if (!arrived_) arrived_ = input.time;
+  const Pose X_WS = base::compose(input.state.X_WM, settings_.eye.X_MS);
+  const bool here = sequence_ && base::length(origin(X_WS) - origin(X_WS_)) < kHere &&
+                    std::abs(base::wrap_angle(X_WS.yaw - X_WS_.yaw)) < kAligned;
+  const bool late = 1e-9 * static_cast<double>(input.time - *arrived_) > settings_.patience;
+  if (!here && !late) return {};
+  for (const maps::CellAt cell : targets_)
+    if (grid().at(cell) == maps::Cell::unexplored) lookout_.in_vain(cell, search_.sensor_at(way_.back()));
+  way_.clear();
+  return {};
+}
+
+maps::GridPlan plan_around(const world::World& world, double cell) {
+  world::Extent extent = world.extent;
+  maps::GridPlan plan{.cell = cell};
+  const auto words = [&](double length) { return std::max(30.0, std::ceil(length / (4.0 * cell) + 2.0)); };
+  const double wide = words(extent.x_max - extent.x_min), high = words(extent.y_max - extent.y_min);
+  if (!(wide * high * 144.0 <= kMostNodes))
+    throw base::InputError(
+        fmt::format("'explore': the world is {:.0f} m x {:.0f} m; expected at most {:.0f} square "
+                    "metres; give the area as map_left, map_top, map_width and map_height",
+                    extent.x_max - extent.x_min, extent.y_max - extent.y_min, kMostNodes / 9.0 * cell * cell));
+  plan.word_columns = static_cast<std::uint32_t>(wide);
+  plan.word_rows = static_cast<std::uint32_t>(high);
+  plan.left = 0.5 * (extent.x_min + extent.x_max) - 2.0 * wide * cell;
+  plan.top = 0.5 * (extent.y_min + extent.y_max) + 2.0 * high * cell;
+  return plan;
+}
+
+namespace {
+
+maps::GridPlan read_plan(const Site& site, Settings& settings) {
+  const double cell = settings.number("cell", 0.03, 0.005, 1.0);
+  const bool given = settings.has("map_width") || settings.has("map_height");
+  if (!given) return plan_around(site.world, cell);
+  maps::GridPlan plan{.cell = cell};
+  plan.left = settings.number("map_left", 0.0, -1e6, 1e6);
+  plan.top = settings.number("map_top", 0.0, -1e6, 1e6);
+  const double wide = std::ceil(settings.number("map_width", 3.6, cell, 1e3) / (4.0 * cell) - 1e-9);
+  const double high = std::ceil(settings.number("map_height", 3.6, cell, 1e3) / (4.0 * cell) - 1e-9);
+  if (!(wide * high * 144.0 <= kMostNodes)) settings.refuse("map_width", "'map_width' times 'map_height' is too large");
+  plan.word_columns = static_cast<std::uint32_t>(wide);
+  plan.word_rows = static_cast<std::uint32_t>(high);
+  return plan;
+}
+
+std::unique_ptr<Controller> make_explore(const Site& site, Settings& settings) {
+  const world::Mover& mover = site.world.movers[site.mover];
+  if (mover.lasers.empty())
+    throw base::InputError(
+        fmt::format("controller 'explore': '{}' has no laser; give it one in the world file", mover.name));
+  if (mover.drive == world::Drive::car)
+    throw base::InputError(
+        fmt::format("controller 'explore': '{}' is a car; expected a drive that turns in place", mover.name));
+  const world::Laser& laser = mover.lasers.front();
+  ExploreSettings explore;
+  explore.plan = read_plan(site, settings);
+  explore.body = {robots::outline_of(mover).radius, {laser.X_MS.x, laser.X_MS.y}};
+  explore.eye = {laser.X_MS, laser.fov, laser.range_max};
+  explore.beams = maps::beam_directions(laser.fov, laser.samples);
+  explore.range_min = laser.range_min;
+  explore.speed = settings.number("speed", std::min(explore.speed, mover.max_forward), 1e-3, mover.max_forward);
+  explore.slow_speed = settings.number("slow_speed", std::min(explore.slow_speed, explore.speed), 1e-3, explore.speed);
+  explore.slow = settings.number("slow", explore.slow, 0.0, 1.0);
+  explore.turn = settings.number("turn_speed", std::min(explore.turn, mover.max_turn), 1e-2, mover.max_turn);
+  explore.margin = settings.number("margin", explore.margin, 0.0, 1.0);
+  explore.least_margin =
+      settings.number("least_margin", std::min(explore.least_margin, explore.margin), 0.0, explore.margin);
+  return std::make_unique<Explore>(explore);
+}
+
+}  // namespace
+
+constinit const ControllerKind explore_controller{
+    .name = "explore",
+    .summary = "maps an area by its laser, drives to what is unexplored and touches nothing",
+    .rate = 10.0,
+    .waits = false,
+    .make = make_explore,
+};
+
+}  // namespace sf::control

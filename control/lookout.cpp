@@ -1,0 +1,130 @@
+#include "control/lookout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::control {
+
+namespace {
+
+using maps::Cell;
+using maps::CellAt;
+
+constexpr std::size_t kRays = 240;
+constexpr double kEdge = 0.02;     // [rad] the field of view is taken smaller by this on both sides
+constexpr int kUnknown = 9;        // nodes of unexplored ground that a line of sight may cross
+constexpr double kOther = 0.04;    // [m] between places that are tried for the same cell
+constexpr std::size_t kTries = 6;  // for one cell
+
+}  // namespace
+
+Lookout::Lookout(const Terrain& terrain, const Eye& eye)
+    : terrain_(terrain), headings_(static_cast<std::size_t>(terrain.nodes())) {
+  for (std::size_t i = 0; i < kRays; ++i) {
+    const double bearing = 2.0 * M_PI * (static_cast<double>(i) + 0.5) / kRays;
+    Ray ray{std::cos(bearing), std::sin(bearing), 0};
+    for (int k = 0; k < kHeadings; ++k) {
+      const double off = base::wrap_angle(bearing + M_PI - angle_of(k) - eye.X_MS.yaw);
+      if (std::abs(off) <= 0.5 * eye.fov - kEdge) ray.headings = static_cast<std::uint16_t>(ray.headings | 1u << k);
+    }
+    rays_.push_back(ray);
+  }
+}
+
+std::int64_t Lookout::key(CellAt cell) const { return cell.row * maps::columns(terrain_.grid().plan) + cell.column; }
+
+bool Lookout::wanted(CellAt cell, bool all) const {
+  const maps::Grid& grid = terrain_.grid();
+  if (grid.at(cell) != Cell::unexplored) return false;
+  if (!all) {
+    bool beside = false;
+    for (std::int64_t k = 0; k < 9; ++k) {
+      const CellAt at{cell.column + k % 3 - 1, cell.row + k / 3 - 1};
+      beside = beside || (maps::contains(grid.plan, at) && grid.at(at) == Cell::free);
+    }
+    if (!beside) return false;
+  }
+  const auto tried = tried_.find(key(cell));
+  return tried == tried_.end() || tried->second.size() < kTries;
+}
+
+// The nodes from the cell's middle outwards, square by square (Amanatides and Woo, "A fast voxel traversal algorithm
+// for ray tracing", 1987), until something known is in the way. Visits node and distance; ends where that says so.
+template <typename Visit>
+void Lookout::cast(CellAt cell, std::size_t ray, Visit visit) const {
+  const double ux = rays_[ray].x, uy = -rays_[ray].y;
+  const Node columns = terrain_.columns(), rows = terrain_.nodes() / columns;
+  Node column = static_cast<Node>(3 * cell.column + 1), row = static_cast<Node>(3 * cell.row + 1);
+  const double dx = 1.0 / std::abs(ux), dy = 1.0 / std::abs(uy);
+  double next_x = 0.5 * dx, next_y = 0.5 * dy;
+  const double most = range_ / terrain_.cell();
+  int unknown = 0;
+  for (double far = 0.0; far <= most;) {
+    const Node node = row * columns + column;
+    if (terrain_.solid(node)) return;
+    if (!terrain_.explored(node) && ++unknown > kUnknown) return;
+    visit(node, far);
+    if (next_x < next_y) {
+      far = next_x;
+      next_x += dx;
+      column += ux > 0.0 ? 1 : -1;
+      if (column < 0 || column >= columns) return;
+    } else {
+      far = next_y;
+      next_y += dy;
+      row += uy > 0.0 ? 1 : -1;
+      if (row < 0 || row >= rows) return;
+    }
+  }
+}
+
+void Lookout::see(CellAt cell) {
+  const auto tried = tried_.find(key(cell));
+  const bool afresh = tried == tried_.end();
+  for (std::size_t ray = 0; ray < kRays; ++ray) {
+    cast(cell, ray, [&](Node node, double) {
+      if (!afresh && std::any_of(tried->second.begin(), tried->second.end(), [&](Node other) {
+            return base::length(terrain_.place(node) - terrain_.place(other)) < kOther;
+          }))
+        return;
+      auto& headings = headings_[static_cast<std::size_t>(node)];
+      headings = static_cast<std::uint16_t>(headings | rays_[ray].headings);
+    });
+  }
+}
+
+std::size_t Lookout::look(bool all, double range) {
+  range_ = range;
+  std::fill(headings_.begin(), headings_.end(), std::uint16_t{0});
+  cells_.clear();
+  const maps::GridPlan& plan = terrain_.grid().plan;
+  for (std::int64_t row = 0; row < maps::rows(plan); ++row) {
+    for (std::int64_t column = 0; column < maps::columns(plan); ++column) {
+      if (!wanted({column, row}, all)) continue;
+      cells_.push_back({column, row});
+      see(cells_.back());
+    }
+  }
+  return cells_.size();
+}
+
+std::vector<CellAt> Lookout::targets(Node sensor, int heading) const {
+  std::vector<CellAt> seen;
+  for (const CellAt cell : cells_) {
+    const base::Vec2 d = terrain_.place(sensor) - maps::middle(terrain_.grid().plan, cell);
+    if (base::length(d) > range_ + terrain_.cell()) continue;
+    bool found = false;
+    for (std::size_t ray = 0; ray < kRays && !found; ++ray) {
+      // Only rays that come near the sensor.
+      const double aside = std::abs(base::cross({rays_[ray].x, rays_[ray].y}, d));
+      if (aside > 2.0 * terrain_.cell() || (rays_[ray].headings >> heading & 1u) == 0) continue;
+      cast(cell, ray, [&](Node node, double) { found = found || node == sensor; });
+    }
+    if (found) seen.push_back(cell);
+  }
+  return seen;
+}
+
+void Lookout::in_vain(CellAt cell, Node sensor) { tried_[key(cell)].push_back(sensor); }
+
+}  // namespace sf::control

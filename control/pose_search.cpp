@@ -1,0 +1,166 @@
+#include "control/pose_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::control {
+
+namespace {
+
+constexpr std::array<std::array<int, 2>, kHeadings> kSteps = {{{1, 0},
+                                                               {2, 1},
+                                                               {1, 1},
+                                                               {1, 2},
+                                                               {0, 1},
+                                                               {-1, 2},
+                                                               {-1, 1},
+                                                               {-2, 1},
+                                                               {-1, 0},
+                                                               {-2, -1},
+                                                               {-1, -1},
+                                                               {-1, -2},
+                                                               {0, -1},
+                                                               {1, -2},
+                                                               {1, -1},
+                                                               {2, -1}}};
+
+// Costs: 10 is a step of one node at full speed.
+constexpr std::uint32_t kTurnCost = 40;  // one heading
+constexpr std::uint32_t kBackwards = 2;  // times as dear
+constexpr std::uint32_t kNear = 2;       // times as dear
+constexpr double kNearBody = 0.03;       // [m] of a surface
+constexpr std::uint32_t kMostCost = 23 * kBackwards * kNear + 1;
+constexpr std::uint32_t kNever = 0xFFFFFFFFu;
+constexpr Node kAround = 3;     // nodes about the start where it may begin too near
+constexpr double kArm = 0.005;  // [m] beyond the sensor that is clear as well
+
+enum : std::uint8_t { kForward, kBack, kLeft, kRight, kStart };
+
+int around(int heading) { return (heading + kHeadings) % kHeadings; }
+
+std::uint32_t length_cost(int heading) {
+  const auto& step = kSteps[static_cast<std::size_t>(heading)];
+  return static_cast<std::uint32_t>(std::lround(10.0 * std::hypot(step[0], step[1])));
+}
+
+}  // namespace
+
+double angle_of(int heading) {
+  const auto& step = kSteps[static_cast<std::size_t>(heading)];
+  return std::atan2(step[1], step[0]);
+}
+
+PoseSearch::PoseSearch(const Terrain& terrain, const Body& body)
+    : terrain_(terrain),
+      body_(body),
+      cost_(static_cast<std::size_t>(terrain.nodes()) * kHeadings),
+      move_(cost_.size()),
+      buckets_(kMostCost + 1) {
+  const auto offset = [&](base::Vec2 p) {
+    return static_cast<Node>(std::lround(p.x / terrain.cell())) -
+           terrain.columns() * static_cast<Node>(std::lround(p.y / terrain.cell()));
+  };
+  const double reach = base::length(body.p_MS);
+  for (int half = 0; half < 2 * kHeadings; ++half) {
+    // Halfway headings are those that a turn passes.
+    const double to = half % 2 == 0 ? 0.0 : 0.5 * base::wrap_angle(angle_of(around(half / 2 + 1)) - angle_of(half / 2));
+    const double yaw = angle_of(half / 2) + to;
+    auto& arm = arm_[static_cast<std::size_t>(half)];
+    for (double far = body.radius - 0.01; reach > body.radius && far <= reach + kArm; far += 0.25 * terrain.cell())
+      arm.push_back(offset(base::rotate(yaw, (far / reach) * body.p_MS)));
+    arm.erase(std::unique(arm.begin(), arm.end()), arm.end());
+    if (half % 2 != 0) continue;
+    const auto k = static_cast<std::size_t>(half / 2);
+    sensor_[k] = offset(base::rotate(yaw, body.p_MS));
+    ahead_[k] = kSteps[k][0] - terrain.columns() * kSteps[k][1];
+  }
+}
+
+bool PoseSearch::arm_clear(Node node, int half_heading) const {
+  const auto& arm = arm_[static_cast<std::size_t>(half_heading)];
+  return std::none_of(arm.begin(), arm.end(), [&](Node by) { return terrain_.solid(node + by); });
+}
+
+bool PoseSearch::allowed(const State& state, double margin) const {
+  return !terrain_.over_unknown(state.node) &&
+         terrain_.clearance(state.node) >= static_cast<float>(body_.radius + margin) &&
+         arm_clear(state.node, 2 * state.heading);
+}
+
+std::uint32_t PoseSearch::cost_at(Node node) const {
+  return terrain_.clearance(node) < static_cast<float>(body_.radius + kNearBody) ? kNear : 1;
+}
+
+// `spare`: the margin that is enough near the start.
+void PoseSearch::relax(const State& from, std::uint32_t so_far, double margin, double spare) {
+  const int h = from.heading;
+  const Node step = ahead_[static_cast<std::size_t>(h)];
+  const std::uint32_t length = length_cost(h) * cost_at(from.node);
+  const auto try_one = [&](const State& to, std::uint32_t cost, std::uint8_t move) {
+    const std::size_t at = static_cast<std::size_t>(to.node) * kHeadings + static_cast<std::size_t>(to.heading);
+    if (so_far + cost >= cost_[at]) return;
+    const Node columns = terrain_.columns();
+    const bool near_start = std::abs(to.node % columns - start_ % columns) <= kAround &&
+                            std::abs(to.node / columns - start_ / columns) <= kAround;
+    if (!allowed(to, near_start ? std::min(margin, spare) : margin)) return;
+    cost_[at] = so_far + cost;
+    move_[at] = move;
+    buckets_[(so_far + cost) % buckets_.size()].push_back(static_cast<std::uint32_t>(at));
+    ++waiting_;
+  };
+  try_one({from.node + step, h}, length, kForward);
+  try_one({from.node - step, h}, kBackwards * length, kBack);
+  if (arm_clear(from.node, 2 * h + 1)) try_one({from.node, around(h + 1)}, kTurnCost, kLeft);
+  if (arm_clear(from.node, 2 * around(h - 1) + 1)) try_one({from.node, around(h - 1)}, kTurnCost, kRight);
+}
+
+std::vector<State> PoseSearch::find(const State& from, double margin, const std::function<bool(const State&)>& goal) {
+  std::fill(cost_.begin(), cost_.end(), kNever);
+  for (auto& bucket : buckets_) bucket.clear();
+  const std::size_t first = static_cast<std::size_t>(from.node) * kHeadings + static_cast<std::size_t>(from.heading);
+  start_ = from.node;
+  cost_[first] = 0;
+  move_[first] = kStart;
+  buckets_[0].push_back(static_cast<std::uint32_t>(first));
+  waiting_ = 1;
+  const double spare = static_cast<double>(terrain_.clearance(from.node)) - body_.radius - 5e-4;
+  for (std::uint32_t so_far = 0; waiting_ > 0; ++so_far) {
+    auto& bucket = buckets_[so_far % buckets_.size()];
+    for (std::size_t i = 0; i < bucket.size(); ++i) {
+      const std::uint32_t at = bucket[i];
+      --waiting_;
+      if (cost_[at] != so_far) continue;
+      const State state{static_cast<Node>(at / kHeadings), static_cast<int>(at % kHeadings)};
+      if (goal(state)) return way_to(state, from);
+      relax(state, so_far, margin, spare);
+    }
+    bucket.clear();
+  }
+  return {};
+}
+
+std::vector<State> PoseSearch::way_to(const State& goal, const State& from) const {
+  std::vector<State> way{goal};
+  for (State state = goal; !(state == from);) {
+    const auto h = static_cast<std::size_t>(state.heading);
+    switch (move_[static_cast<std::size_t>(state.node) * kHeadings + h]) {
+      case kForward:
+        state.node -= ahead_[h];
+        break;
+      case kBack:
+        state.node += ahead_[h];
+        break;
+      case kLeft:
+        state.heading = around(state.heading - 1);
+        break;
+      default:
+        state.heading = around(state.heading + 1);
+        break;
+    }
+    way.push_back(state);
+  }
+  std::reverse(way.begin(), way.end());
+  return way;
+}
+
+}  // namespace sf::control

@@ -1,0 +1,150 @@
+#include "control/terrain.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::control {
+
+namespace {
+
+using base::Vec2;
+
+constexpr int kFiner = 3;         // nodes along a cell of the map
+constexpr int kPointsFiner = 5;   // squares along a node's square; each keeps one point
+constexpr double kJoined = 0.03;  // [m] neighbouring beams that end this near met one surface
+
+}  // namespace
+
+Terrain::Terrain(const maps::GridPlan& plan, double radius, double reach)
+    : grid_(plan),
+      radius_(radius),
+      cell_(plan.cell / kFiner),
+      columns_(static_cast<Node>(kFiner * maps::columns(plan))),
+      rows_(static_cast<Node>(kFiner * maps::rows(plan))) {
+  const auto count = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+  taken_.resize((count * kPointsFiner * kPointsFiner + 7) / 8);
+  clearance_.assign(count, static_cast<float>(radius + kFarFromBody));
+  solid_.resize(count);
+  explored_.resize(count);
+  unknown_.resize(count);
+  stood_.resize(static_cast<std::size_t>(maps::columns(plan) * maps::rows(plan)));
+
+  // Too near to the map's border counts as unknown for ever.
+  const Node rim = static_cast<Node>(std::ceil(std::max(radius, reach) / cell_)) + 2;
+  for (Node row = 0; row < rows_; ++row) {
+    for (Node column = 0; column < columns_; ++column) {
+      const bool inner = column >= rim && row >= rim && column < columns_ - rim && row < rows_ - rim;
+      unknown_[static_cast<std::size_t>(row * columns_ + column)] = inner ? 0 : 1;
+    }
+  }
+  for (std::int64_t row = 0; row < maps::rows(plan); ++row)
+    for (std::int64_t column = 0; column < maps::columns(plan); ++column)
+      around(maps::middle(plan, {column, row}), radius_,
+             [&](std::size_t node, double) { unknown_[node] = static_cast<std::uint16_t>(unknown_[node] + 1); });
+}
+
+bool Terrain::contains(Vec2 p) const { return maps::contains(grid_.plan, maps::cell_at(grid_.plan, p)); }
+
+Node Terrain::node_at(Vec2 p) const {
+  const auto column = static_cast<Node>(std::floor((p.x - grid_.plan.left) / cell_));
+  const auto row = static_cast<Node>(std::floor((grid_.plan.top - p.y) / cell_));
+  return std::clamp(row, 0, rows_ - 1) * columns_ + std::clamp(column, 0, columns_ - 1);
+}
+
+Vec2 Terrain::place(Node node) const {
+  return {grid_.plan.left + (node % columns_ + 0.5) * cell_, grid_.plan.top - (node / columns_ + 0.5) * cell_};
+}
+
+// Every node whose place is nearer to p than the radius, with its distance.
+template <typename Visit>
+void Terrain::around(Vec2 p, double radius, Visit visit) {
+  const double column = (p.x - grid_.plan.left) / cell_ - 0.5, row = (grid_.plan.top - p.y) / cell_ - 0.5;
+  const double reach = radius / cell_;
+  const auto low = [](double v) { return static_cast<Node>(std::max(0.0, std::ceil(v))); };
+  const auto high = [](double v, Node most) { return static_cast<Node>(std::min(most - 1.0, std::floor(v))); };
+  for (Node r = low(row - reach); r <= high(row + reach, rows_); ++r) {
+    for (Node c = low(column - reach); c <= high(column + reach, columns_); ++c) {
+      const double far = cell_ * std::hypot(c - column, r - row);
+      if (far < radius) visit(static_cast<std::size_t>(r * columns_ + c), far);
+    }
+  }
+}
+
+void Terrain::explore(maps::CellAt at) {
+  auto& stood = stood_[static_cast<std::size_t>(at.row * maps::columns(grid_.plan) + at.column)];
+  if (stood != 0) return;
+  stood = 1;
+  around(maps::middle(grid_.plan, at), radius_,
+         [&](std::size_t node, double) { unknown_[node] = static_cast<std::uint16_t>(unknown_[node] - 1); });
+}
+
+void Terrain::stand(Vec2 p, double radius) {
+  for (std::int64_t row = 0; row < maps::rows(grid_.plan); ++row)
+    for (std::int64_t column = 0; column < maps::columns(grid_.plan); ++column)
+      if (base::length(maps::middle(grid_.plan, {column, row}) - p) <= radius) explore({column, row});
+}
+
+bool Terrain::add_point(Vec2 p) {
+  if (!contains(p)) return false;
+  const double fine = cell_ / kPointsFiner;
+  const auto column = static_cast<std::size_t>((p.x - grid_.plan.left) / fine);
+  const auto row = static_cast<std::size_t>((grid_.plan.top - p.y) / fine);
+  const std::size_t bit = row * static_cast<std::size_t>(columns_) * kPointsFiner + column;
+  const auto flag = static_cast<std::uint8_t>(1u << bit % 8);
+  if (bit / 8 >= taken_.size() || (taken_[bit / 8] & flag) != 0) return false;
+  taken_[bit / 8] |= flag;
+  points_.push_back(p);
+  solid_[static_cast<std::size_t>(node_at(p))] = 1;
+  around(p, radius_ + kFarFromBody,
+         [&](std::size_t node, double far) { clearance_[node] = std::min(clearance_[node], static_cast<float>(far)); });
+  return true;
+}
+
+void Terrain::mark_line(Vec2 a, Vec2 b) {
+  const int steps = 1 + static_cast<int>(base::length(b - a) / (0.25 * cell_));
+  for (int i = 0; i <= steps; ++i) {
+    const Vec2 p = a + (static_cast<double>(i) / steps) * (b - a);
+    if (contains(p)) solid_[static_cast<std::size_t>(node_at(p))] = 1;
+  }
+}
+
+bool Terrain::add(const maps::ScanView& scan) {
+  const std::vector<std::uint32_t> before = grid_.words;
+  maps::add_scan(grid_, scan);
+  bool news = false;
+  for (std::size_t word = 0; word < before.size(); ++word) {
+    for (int i = 0; before[word] != grid_.words[word] && i < 16; ++i) {
+      if ((before[word] >> 2 * i & 3u) != SF_CELL_UNEXPLORED || (grid_.words[word] >> 2 * i & 3u) == SF_CELL_UNEXPLORED)
+        continue;
+      const auto wide = static_cast<std::int64_t>(grid_.plan.word_columns), at = static_cast<std::int64_t>(word);
+      const maps::CellAt cell{4 * (at % wide) + i % 4, 4 * (at / wide) + i / 4};
+      explore(cell);
+      for (Node k = 0; k < kFiner * kFiner; ++k)
+        explored_[static_cast<std::size_t>((kFiner * cell.row + k / kFiner) * columns_ + kFiner * cell.column +
+                                           k % kFiner)] = 1;
+      news = true;
+    }
+  }
+
+  Vec2 last{HUGE_VAL, HUGE_VAL};
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double range = scan.ranges[i];
+    if (!(range > scan.range_min && range < scan.range_max)) {
+      last = {HUGE_VAL, HUGE_VAL};
+      continue;
+    }
+    const Vec2 p = base::transform(scan.X_WS, range * scan.beams[i]);
+    if (add_point(p)) news = true;
+    if (base::length(p - last) < kJoined) mark_line(last, p);
+    last = p;
+  }
+  return news;
+}
+
+double Terrain::nearest(Vec2 p, double most) const {
+  double least = most * most;
+  for (const Vec2& q : points_) least = std::min(least, base::dot(q - p, q - p));
+  return std::sqrt(least);
+}
+
+}  // namespace sf::control
