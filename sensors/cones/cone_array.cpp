@@ -1,0 +1,75 @@
+#include "sensors/cones/cone_array.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "sensors/elements.h"
+#include "sensors/settings.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr double kLongest = 1e4;          // [m] of range_max
+constexpr double kShortest = 1e-6;        // [m] of range_max
+constexpr std::uint32_t kUsualRays = 11;  // three lanes of four beams
+
+/// `range [min max]`, or the first two of `sview [min max fov]` as Stage has it.
+void read_range(const world::Sensor& sensor, const ConeDefaults& defaults, ConeArray& array) {
+  const bool staged = find(sensor, "range") == nullptr && find(sensor, "sview") != nullptr;
+  const char* const key = staged ? "sview" : "range";
+  const auto values = staged ? tuple(sensor, key, 3, "[min max fov]") : tuple(sensor, key, 2, "[min max]");
+  array.range_min = values ? sensor.metres * (*values)[0] : defaults.range_min;
+  array.range_max = values ? sensor.metres * (*values)[1] : defaults.range_max;
+  if (array.range_min >= 0.0 && array.range_max > array.range_min && array.range_max >= kShortest &&
+      array.range_max <= kLongest)
+    return;
+  refuse(sensor, key,
+         fmt::format("'{}' is [{:g} {:g}] m; expected [min max] with 0 <= min < max, and max from {:g} to {:g} m", key,
+                     array.range_min, array.range_max, kShortest, kLongest));
+}
+
+double read_fov(const world::Sensor& sensor, double usual) {
+  const bool staged = find(sensor, "fov") == nullptr && find(sensor, "sview") != nullptr;
+  if (!staged) return angle(sensor, "fov", usual, 0.0, 2.0 * M_PI);
+  const double fov = sensor.radians * (*tuple(sensor, "sview", 3, "[min max fov]"))[2];
+  if (fov >= 0.0 && fov <= 2.0 * M_PI) return fov;
+  refuse(sensor, "sview", "the third number of 'sview' is its field of view; expected 0 to a whole turn");
+}
+
+std::uint32_t read_rays(const world::Sensor& sensor, double fov) {
+  const std::uint32_t rays = whole(sensor, "rays", fov > 0.0 ? kUsualRays : 1, 1, kMostConeRays);
+  if (rays % 2 == 1) return rays;
+  refuse(sensor, "rays",
+         fmt::format("'rays' is {}; expected an odd number, so that one ray looks along the axis of the cone", rays));
+}
+
+}  // namespace
+
+ConeArray read_cones(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind,
+                     const ConeDefaults& defaults) {
+  ConeArray array;
+  array.row = common_row(sensor, mover, number_of_kind);
+  array.row.X_MS.z += 0.5 * sensor.height;
+  if (find(sensor, "rate") == nullptr && find(sensor, "update_interval") == nullptr) array.row.rate = defaults.rate;
+  array.X_SC = read_elements(sensor, kMostTransducers);
+  array.row.elements = static_cast<std::uint32_t>(array.X_SC.size());
+  array.fov = read_fov(sensor, defaults.fov);
+  array.rays = read_rays(sensor, array.fov);
+  read_range(sensor, defaults, array);
+  array.row.limit = array.range_max;
+  return array;
+}
+
+std::vector<ConeArray> cone_arrays_of(const world::World& world, std::string_view type, ReadConeArray read) {
+  std::vector<ConeArray> arrays;
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    std::uint32_t number_of_kind = 0;
+    for (const world::Sensor& sensor : world.movers[m].sensors)
+      if (sensor.type == type) arrays.push_back(read(sensor, m, number_of_kind++));
+  }
+  return arrays;
+}
+
+}  // namespace sf::sensors

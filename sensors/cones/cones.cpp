@@ -1,0 +1,122 @@
+#include "sensors/cones/cones.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr std::uint32_t kGroup = 64;
+constexpr std::size_t kMostCones = std::size_t{32'768} * kGroup;
+
+std::size_t padded(std::size_t cones) { return (cones + kGroup - 1) / kGroup * kGroup; }
+
+Fan fan_of(const ConeArray& array, std::size_t transducer) {
+  world::Laser beams;
+  beams.X_MS = base::compose(array.row.X_MS, array.X_SC[transducer]);
+  beams.fov = array.rays > 1 ? array.fov : 0.0;
+  beams.samples = array.rays;
+  beams.range_max = array.range_max;
+  return {beams, array.row.mover, array.row.sensor};
+}
+
+}  // namespace
+
+Cones::Plan Cones::plan(const world::World& world, const std::vector<ConeArray>& arrays) {
+  Plan plan;
+  for (const ConeArray& array : arrays) {
+    plan.first.push_back(static_cast<std::uint32_t>(plan.fans.size()));
+    plan.incidence = plan.incidence || array.least_cosine > 0.0;
+    for (std::size_t i = 0; i < array.X_SC.size(); ++i) {
+      plan.fans.push_back(fan_of(array, i));
+      plan.least_cosines.push_back(static_cast<float>(array.least_cosine));
+    }
+  }
+  if (plan.fans.size() > kMostCones)
+    throw base::InputError(world.file, 0,
+                           "the world has " + std::to_string(plan.fans.size()) + " transducers of one kind; at most " +
+                               std::to_string(kMostCones) + " are supported");
+  return plan;
+}
+
+Cones::Cones(const Site& site, const std::vector<ConeArray>& arrays, const ConeKernel& kernel)
+    : Cones(site, plan(site.world, arrays), kernel) {}
+
+Cones::Cones(const Site& site, const Plan& plan, const ConeKernel& kernel)
+    : Cones(site, plan, plan.incidence ? faces_of(site.world) : Faces{}, kernel) {}
+
+Cones::Cones(const Site& site, const Plan& plan, const Faces& faces, const ConeKernel& kernel)
+    : first_cones_(plan.first),
+      least_cosines_(plan.least_cosines),
+      casts_(site, plan.incidence ? faces.world : site.world, plan.fans),
+      kernel_(site.device, kernel.spirv, kernel.hears_incidence ? 7 : 4),
+      rows_(site.device, gpu::Role::upload, gpu::Texel::u32x4, SF_CONE_TEXELS * padded(plan.fans.size() + 1)),
+      echoes_(site.device, gpu::Role::download, gpu::Texel::u32x4, padded(plan.fans.size() + 1)),
+      groups_(site.device, gpu::Role::upload, gpu::Texel::u32, 4),
+      faces_(site.device, gpu::Role::upload, gpu::Texel::u32x4, faces.rows.size() + 1),
+      headings_(site.device, gpu::Role::upload, gpu::Texel::f32x4, site.world.movers.size() + 1),
+      incidence_(plan.incidence) {
+  SF_CHECK(kernel_.group_size() == kGroup, "groups of cones are counted as of 64");
+  SF_CHECK(kernel.hears_incidence || !incidence_, "this kernel hears all angles");
+  gpu::Buffer* const tables[] = {&rows_,  &casts_.ranges(), &casts_.hits(), &echoes_, &casts_.directions64(),
+                                 &faces_, &headings_};
+  kernel_.bind(std::span(tables).first(kernel.hears_incidence ? 7 : 4));
+  std::memset(groups_.host<std::uint32_t>().data(), 0, groups_.bytes());
+  std::memset(faces_.host<std::uint32_t>().data(), 0, faces_.bytes());
+  std::copy(faces.rows.begin(), faces.rows.end(), faces_.host<ConeFace>().begin());
+  std::memset(headings_.host<float>().data(), 0, headings_.bytes());
+  headings_.host<float>()[0] = 1.0F;
+}
+
+void Cones::place(std::span<const Pose> poses) {
+  casts_.place(poses);
+  if (!incidence_) return;
+  const auto table = headings_.host<float>();
+  for (std::size_t m = 0; m < poses.size(); ++m) {
+    table[4 * (m + 1)] = static_cast<float>(std::cos(poses[m].yaw));
+    table[4 * (m + 1) + 1] = static_cast<float>(std::sin(poses[m].yaw));
+  }
+}
+
+bool Cones::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+  const bool again = casts_.prepare(due, poses);
+  count_ = due.size();
+  const auto rows = rows_.host<ConeRow>();
+  for (std::size_t i = 0; i < count_; ++i) rows[i] = row_of(i, due[i].row);
+  // Padding repeats one cone; its echoes lie behind all others.
+  if (count_ > 0)
+    std::fill_n(rows.begin() + static_cast<std::ptrdiff_t>(count_), padded(count_) - count_, rows[count_ - 1]);
+  const auto counts = groups_.host<std::uint32_t>();
+  counts[0] = static_cast<std::uint32_t>(padded(count_) / kGroup);
+  counts[1] = counts[2] = count_ > 0 ? 1 : 0;
+  return again;
+}
+
+ConeRow Cones::row_of(std::size_t i, std::uint32_t cone) const {
+  const FanResults results = casts_.results(i);
+  ConeRow row{};
+  row.lane = results.lane;
+  row.lanes = results.plan->lanes();
+  row.directions = results.beams;
+  row.least_cosine = least_cosines_[cone];
+  row.heading_cos = static_cast<float>(std::cos(results.X_WS.yaw));
+  row.heading_sin = static_cast<float>(std::sin(results.X_WS.yaw));
+  row.range_max = casts_.fans()[cone].laser.range_max;
+  return row;
+}
+
+void Cones::copies(gpu::Batch& batch) {
+  casts_.copies(batch, false);
+  batch.up(rows_, 0, padded(count_) * sizeof(ConeRow));
+  batch.up(groups_, 0, groups_.bytes());
+  if (incidence_ || fresh_) batch.up(headings_, 0, headings_.bytes());
+  if (fresh_) batch.up(faces_, 0, faces_.bytes());
+  fresh_ = false;
+  batch.down(echoes_, 0, count_ * sizeof(ConeEcho));
+}
+
+}  // namespace sf::sensors

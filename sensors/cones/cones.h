@@ -1,0 +1,68 @@
+#pragma once
+// Cones of beams on the device: cast exactly, and of each cone only the nearest echo comes down.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gpu/batch.h"
+#include "gpu/buffer.h"
+#include "gpu/kernel.h"
+#include "sensors/casts.h"
+#include "sensors/cones/cone_array.h"
+#include "sensors/cones/faces.h"
+
+namespace sf::sensors {
+
+/// What makes readings of what beams met.
+struct ConeKernel {
+  std::span<const std::uint32_t> spirv;
+  bool hears_incidence = false;  ///< takes the tables of directions, faces and headings too
+};
+
+/// Not thread-safe. `site` without its world must outlive it.
+class Cones {
+ public:
+  /// @throws base::DeviceError when the device cannot hold the tables, base::InputError for more cones than one
+  /// dispatch takes.
+  Cones(const Site& site, const std::vector<ConeArray>& arrays, const ConeKernel& kernel);
+
+  /// Number of the first cone of an array; its others follow in order.
+  std::uint32_t first_cone(std::uint32_t array) const { return first_cones_[array]; }
+
+  void place(std::span<const Pose> poses);
+  /// Rows of `due` are cones. @return true when kernels must be recorded again.
+  bool prepare(std::span<const Due> due, std::span<const Pose> poses);
+  void record_measure(gpu::Batch& batch) { casts_.record(batch); }
+  void record_derive(gpu::Batch& batch) const { batch.dispatch(kernel_, groups_, 0); }
+  void copies(gpu::Batch& batch);
+  /// To be called once after the batch ran.
+  void count() { casts_.count(); }
+  Work work() const { return casts_.work(); }
+
+  /// Of the i-th due cone. Lives until the next `prepare`.
+  const ConeEcho& echo(std::size_t i) { return echoes_.host<ConeEcho>()[i]; }
+
+ private:
+  struct Plan {
+    std::vector<Fan> fans;
+    std::vector<float> least_cosines;  ///< per cone
+    std::vector<std::uint32_t> first;  ///< per array
+    bool incidence = false;            ///< some array hears only some angles
+  };
+  static Plan plan(const world::World& world, const std::vector<ConeArray>& arrays);
+  Cones(const Site& site, const Plan& plan, const ConeKernel& kernel);
+  Cones(const Site& site, const Plan& plan, const Faces& faces, const ConeKernel& kernel);
+  ConeRow row_of(std::size_t i, std::uint32_t cone) const;
+
+  std::vector<std::uint32_t> first_cones_;
+  std::vector<float> least_cosines_;
+  Casts casts_;
+  bool fresh_ = true;      ///< tables that never change are not on the device yet
+  std::size_t count_ = 0;  ///< of due cones
+  gpu::Kernel kernel_;
+  gpu::Buffer rows_, echoes_, groups_, faces_, headings_;
+  bool incidence_;
+};
+
+}  // namespace sf::sensors

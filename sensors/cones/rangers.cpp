@@ -1,0 +1,138 @@
+#include "sensors/cones/rangers.h"
+
+#include <limits>
+#include <utility>
+
+#include "base/random.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+
+class Rangers : public Instruments {
+ public:
+  Rangers(const Site& site, std::vector<ConeArray> arrays, const RangerKind& kind);
+
+  void place(std::span<const Pose> poses) override { cones_.place(poses); }
+  bool prepare(std::span<const Due> due, std::span<const Pose> poses) override;
+  void record_measure(gpu::Batch& batch) override { cones_.record_measure(batch); }
+  void record_derive(gpu::Batch& batch) override { cones_.record_derive(batch); }
+  void copies(gpu::Batch& batch) override { cones_.copies(batch); }
+  void collect(std::vector<base::ReadingBlock>& out) override;
+  Work work() const override { return cones_.work(); }
+
+ private:
+  void fire(const Due& due);
+  void tell(std::size_t i);
+
+  base::Workers& workers_;
+  std::uint64_t seed_;
+  bool noise_;
+  std::vector<ConeArray> arrays_;
+  RangerKind kind_;
+  Cones cones_;
+  std::vector<std::uint64_t> last_;  ///< per array: its last reading, or kNever
+  std::vector<double> heights_;      ///< [m] per array, of its origin in the world
+  std::vector<std::size_t> values_first_;
+  std::vector<double> values_;  ///< of all arrays; those of transducers that do not fire stand
+  std::vector<Due> due_;
+  std::vector<Pose> X_WS_;               ///< per due array
+  std::vector<Due> cones_due_;           ///< transducers that fire
+  std::vector<std::size_t> cones_ends_;  ///< per due array: behind the last of its own
+};
+
+Rangers::Rangers(const Site& site, std::vector<ConeArray> arrays, const RangerKind& kind)
+    : workers_(site.workers),
+      seed_(site.seed),
+      noise_(site.noise),
+      arrays_(std::move(arrays)),
+      kind_(kind),
+      cones_(site, arrays_, kind.kernel),
+      last_(arrays_.size(), kNever) {
+  std::size_t values = 0;
+  for (const ConeArray& array : arrays_) {
+    heights_.push_back(site.world.movers[array.row.mover].X_WM.z + array.row.X_MS.z);
+    values_first_.push_back(values);
+    values += kind_.columns * array.X_SC.size();
+  }
+  values_.resize(values);
+}
+
+bool Rangers::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+  due_.assign(due.begin(), due.end());
+  X_WS_.clear();
+  cones_due_.clear();
+  cones_ends_.clear();
+  for (const Due& d : due_) {
+    const SensorRow& row = arrays_[d.row].row;
+    X_WS_.push_back(base::compose(poses[row.mover], row.X_MS));
+    X_WS_.back().z = heights_[d.row];
+    fire(d);
+    cones_ends_.push_back(cones_due_.size());
+  }
+  return cones_.prepare(cones_due_, poses);
+}
+
+void Rangers::fire(const Due& due) {
+  const ConeArray& array = arrays_[due.row];
+  const std::uint64_t last = std::exchange(last_[due.row], due.sequence);
+  for (std::uint32_t i = 0; i < array.X_SC.size(); ++i)
+    if (has_fired(i, array.turns, due.sequence, last))
+      cones_due_.push_back({cones_.first_cone(due.row) + i, due.sequence});
+}
+
+void Rangers::tell(std::size_t i) {
+  const Due& due = due_[i];
+  const ConeArray& array = arrays_[due.row];
+  // Kinds share a stream, and sensors of two kinds share numbers; a draw keeps 24 bits of this name.
+  const std::uint32_t name = (std::uint32_t{kind_.id} << 16) | array.row.sensor;
+  const base::Draw draw{seed_, base::Stream::range_cone, array.row.mover, name, due.sequence};
+  const bool noisy = noise_ && (array.sigma > 0.0 || array.proportional > 0.0);
+  for (std::size_t k = i > 0 ? cones_ends_[i - 1] : 0; k < cones_ends_[i]; ++k) {
+    const std::uint32_t transducer = cones_due_[k].row - cones_.first_cone(due.row);
+    const ConeEcho& echo = cones_.echo(k);
+    const double deviate = noisy ? base::random_normal(draw, transducer)[0] : 0.0;
+    const auto out = std::span(values_).subspan(values_first_[due.row] + kind_.columns * transducer, kind_.columns);
+    kind_.tell(array, echo.range, echo.hit != SF_NO_HIT, deviate, out);
+  }
+}
+
+void Rangers::collect(std::vector<base::ReadingBlock>& out) {
+  workers_.run(due_.size(), 64, [this](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) tell(i);
+  });
+  cones_.count();
+  for (std::size_t i = 0; i < due_.size(); ++i) {
+    const ConeArray& array = arrays_[due_[i].row];
+    base::ReadingBlock block;
+    block.mover = array.row.mover;
+    block.sensor = array.row.sensor;
+    block.kind = kind_.id;
+    block.X_WS = X_WS_[i];
+    block.values =
+        std::span<const double>(values_).subspan(values_first_[due_[i].row], kind_.columns * array.X_SC.size());
+    out.push_back(block);
+  }
+}
+
+}  // namespace
+
+std::vector<SensorRow> ranger_rows(const std::vector<ConeArray>& arrays) {
+  std::vector<SensorRow> rows;
+  for (const ConeArray& array : arrays) rows.push_back(array.row);
+  return rows;
+}
+
+std::unique_ptr<Instruments> make_rangers(const Site& site, std::vector<ConeArray> arrays, const RangerKind& kind) {
+  return std::make_unique<Rangers>(site, std::move(arrays), kind);
+}
+
+bool has_fired(std::uint32_t number, std::uint32_t turns, std::uint64_t sequence, std::uint64_t last) {
+  if (last == kNever || last >= sequence) return true;
+  const std::uint64_t readings_ago = (sequence % turns + turns - number % turns) % turns;
+  return readings_ago < sequence - last;
+}
+
+}  // namespace sf::sensors

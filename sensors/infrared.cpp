@@ -1,0 +1,62 @@
+#include "sensors/infrared.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sensors/cones/rangers.h"
+#include "sensors/plain_packets.h"
+#include "sensors/settings.h"
+#include "shaders/infrared.comp.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr double kDegrees = M_PI / 180.0;
+
+/// Webots' table for the Khepera II: the response falls in a straight line, and its relative noise grows in one.
+void tell_response(const ConeArray& array, double range, bool met, double deviate, std::span<double> out) {
+  const double away = (std::max(range, array.range_min) - array.range_min) / (array.range_max - array.range_min);
+  const double quiet = met ? kMostResponse * (1.0 - away) : 0.0;
+  const double response = std::clamp(quiet * (1.0 + array.proportional * away * deviate), 0.0, kMostResponse);
+  const double said = array.range_max - (array.range_max - array.range_min) * (response / kMostResponse);
+  out[0] = deviate == 0.0 ? std::max(range, array.range_min) : std::clamp(said, array.range_min, array.range_max);
+  out[1] = std::floor(response + 0.5);
+}
+
+std::vector<ConeArray> infrareds_of(const world::World& world) {
+  return cone_arrays_of(world, infrared_kind.word.type, read_infrared);
+}
+
+constexpr RangerKind kRanger{kInfrared, kInfraredColumns, {infrared_comp_spv, false}, tell_response};
+
+constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize", "sview", "fov", "range", "rays"};
+constexpr Column kColumns[] = {{"range_m"}, {"value", 1, true}};
+constexpr PlainNumber kNumbers[] = {{1e-6, 0.0, 1e4}, {1.0, 0.0, kMostResponse}};
+constexpr PlainForm kForm{kInfrared, "infrared", kNumbers};
+
+}  // namespace
+
+ConeArray read_infrared(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind) {
+  ConeArray array = read_cones(sensor, mover, number_of_kind, {30.0 * kDegrees, 0.0, 0.05, 50.0});
+  array.proportional = number(sensor, "noise", 0.0, 0.0, 1e3);
+  return array;
+}
+
+constinit const SensorKind infrared_kind{
+    .id = kInfrared,
+    .name = "infrared",
+    .word = {"infrared", kKeys},
+    .base_port = 38000,
+    .list = "elements",
+    .columns = kColumns,
+    .rows = [](const world::World& world) { return ranger_rows(infrareds_of(world)); },
+    .make = [](const Site& site) { return make_rangers(site, infrareds_of(site.world), kRanger); },
+    .refuse = Plain<kForm>::refuse,
+    .parts = Plain<kForm>::parts,
+    .encode = Plain<kForm>::encode,
+    .decode = Plain<kForm>::decode,
+    .read = Plain<kForm>::read,
+};
+
+}  // namespace sf::sensors

@@ -1,0 +1,26 @@
+#pragma once
+// Sonar: transducers that hear the nearest echo out of a cone (docs/sensors.md).
+//
+// In a world file, inside a robot:
+//   sonar( scount 16  spose[0] [x y yaw] ...  fov 25  range [0.10 4]  rays 11  firing "sequential"  arrays 2
+//          incidence 90  noise [constant proportional] )
+// Lengths and angles are in the file's units.
+//
+// A reading has one column for each transducer: the range [m] of the nearest surface that one of the cone's rays meets;
+// range_max when there is none, range_min when it is nearer.
+
+#include <cstdint>
+
+#include "sensors/cones/cone_array.h"
+#include "sensors/kind.h"
+
+namespace sf::sensors {
+
+inline constexpr std::uint8_t kSonar = 4;  ///< wire id
+
+/// @throws base::InputError with file and line.
+ConeArray read_sonar(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind);
+
+extern const SensorKind sonar_kind;
+
+}  // namespace sf::sensors

@@ -1,0 +1,34 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Sonar: the nearest surface in each cone that throws its echo back, for every transducer that fires, in one dispatch.
+
+#include "sensors/cones/records.h"
+#include "sensors/scene/records.h"
+
+layout(local_size_x = 64) in;
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer cones;       // SF_CONE_TEXELS a cone: ConeRow
+layout(binding = 1, rgba32ui) uniform readonly uimageBuffer ranges;      // two texels a lane: four doubles [m]
+layout(binding = 2, rgba32ui) uniform readonly uimageBuffer hits;        // a texel a lane: rows of faces, or models
+layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer echoes;     // a texel a cone: ConeEcho
+layout(binding = 4, rgba32ui) uniform readonly uimageBuffer directions;  // a texel a beam: cosine, sine of its bearing
+layout(binding = 5, rgba32ui) uniform readonly uimageBuffer faces;       // a texel a surface: ConeFace
+layout(binding = 6, rgba32f) uniform readonly imageBuffer headings;      // a texel a mover, the first stands still: cosine, sine
+
+vec2 turned(vec2 by, vec2 v) {
+  precise float x = by.x * v.x - by.y * v.y;
+  precise float y = by.x * v.y + by.y * v.x;
+  return vec2(x, y);
+}
+
+// Sound that meets a smooth surface flatly is thrown away from the sonar.
+bool audible(int beam, uint hit, vec2 heading, float least_cosine) {
+  const bool any = least_cosine <= 0.0;
+  const uvec4 bearing = imageLoad(directions, beam);
+  const uvec4 face = imageLoad(faces, any || hit == SF_NO_HIT ? 0 : int(hit));
+  const vec2 look = turned(heading, vec2(float(packDouble2x32(bearing.xy)), float(packDouble2x32(bearing.zw))));
+  const vec2 along = turned(imageLoad(headings, int(face.z)).xy, uintBitsToFloat(face.xy));
+  precise float cosine = look.x * along.y - look.y * along.x;
+  return any || abs(cosine) >= least_cosine;
+}
+
+#include "shaders/lib/cone.glsl"

@@ -1,0 +1,266 @@
+// What world files may say of sonar and infrared, and every way to say it wrong; the rings that ship; payloads.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <limits>
+
+#include "base/error.h"
+#include "sensors/infrared.h"
+#include "sensors/roster.h"
+#include "sensors/sonar.h"
+#include "tests/sensors/cone_trial.h"
+
+namespace sf::sensors {
+namespace {
+
+using trial::cone_setting;
+using trial::kDegree;
+
+world::Sensor bare(const std::string& type = "sonar") {
+  world::Sensor sensor = trial::cones(type, {Pose{}});
+  sensor.settings.clear();
+  return sensor;
+}
+
+world::Sensor with(std::vector<world::Setting> settings, const std::string& type = "sonar") {
+  world::Sensor sensor = bare(type);
+  sensor.settings = std::move(settings);
+  return sensor;
+}
+
+TEST(SonarSettings, NothingSaidIsOneTransducerOfAPioneer) {
+  const ConeArray s = read_sonar(bare(), 3, 1);
+  EXPECT_EQ(s.row.mover, 3u);
+  EXPECT_EQ(s.row.sensor, 1u);
+  EXPECT_EQ(s.row.elements, 1u);
+  EXPECT_EQ(s.row.limit, 4.0);
+  EXPECT_EQ(s.row.rate, 25.0);
+  EXPECT_DOUBLE_EQ(s.fov, 25.0 * kDegree);
+  EXPECT_EQ(s.rays, 11u);
+  EXPECT_EQ(s.range_min, 0.10);
+  EXPECT_EQ(s.range_max, 4.0);
+  EXPECT_EQ(s.turns, 1u);
+  EXPECT_EQ(s.least_cosine, 0.0);
+  EXPECT_EQ(s.sigma, 0.0);
+  EXPECT_EQ(s.proportional, 0.0);
+}
+
+TEST(SonarSettings, NothingSaidIsOneElementOfAKhepera) {
+  const ConeArray s = read_infrared(bare("infrared"), 0, 0);
+  EXPECT_EQ(s.row.elements, 1u);
+  EXPECT_EQ(s.row.limit, 0.05);
+  EXPECT_EQ(s.row.rate, 50.0);
+  EXPECT_DOUBLE_EQ(s.fov, 30.0 * kDegree);
+  EXPECT_EQ(s.rays, 11u);
+  EXPECT_EQ(s.range_min, 0.0);
+  EXPECT_EQ(s.range_max, 0.05);
+  EXPECT_EQ(s.turns, 1u);
+  EXPECT_EQ(s.proportional, 0.0);
+}
+
+TEST(SonarSettings, UnitsAreTheFiles) {
+  world::Sensor sensor =
+      with({cone_setting("scount", {2}), cone_setting("spose[0]", {20, -5, 90}),
+            cone_setting("spose3[1]", {1, 2, 3, -180}), cone_setting("fov", {15}), cone_setting("range", {10, 300}),
+            cone_setting("incidence", {60}), cone_setting("noise", {2, 0.01})});
+  sensor.metres = 0.01;
+  sensor.radians = kDegree;
+  const ConeArray s = read_sonar(sensor, 0, 0);
+  EXPECT_DOUBLE_EQ(s.X_SC[0].x, 0.2);
+  EXPECT_DOUBLE_EQ(s.X_SC[0].y, -0.05);
+  EXPECT_DOUBLE_EQ(s.X_SC[0].yaw, M_PI / 2);
+  EXPECT_DOUBLE_EQ(s.X_SC[1].z, 0.03);
+  EXPECT_DOUBLE_EQ(s.fov, 15 * kDegree);
+  EXPECT_DOUBLE_EQ(s.range_min, 0.1);
+  EXPECT_DOUBLE_EQ(s.range_max, 3.0);
+  EXPECT_DOUBLE_EQ(s.least_cosine, 0.5);
+  EXPECT_DOUBLE_EQ(s.sigma, 0.02);
+  EXPECT_EQ(s.proportional, 0.01);
+}
+
+/// Stage's older words for the same things.
+TEST(SonarSettings, StagesViewIsUnderstood) {
+  const ConeArray old = read_sonar(with({cone_setting("sview", {0.2, 5, 0.25})}), 0, 0);
+  EXPECT_EQ(old.range_min, 0.2);
+  EXPECT_EQ(old.range_max, 5.0);
+  EXPECT_EQ(old.fov, 0.25);
+  const ConeArray both = read_sonar(
+      with({cone_setting("sview", {0.2, 5, 0.25}), cone_setting("range", {0.1, 2}), cone_setting("fov", {0.5})}), 0, 0);
+  EXPECT_EQ(both.range_max, 2.0) << "our own words win";
+  EXPECT_EQ(both.fov, 0.5);
+}
+
+TEST(SonarSettings, TurnsAreWhatOneArrayHas) {
+  const auto turns = [](double count, std::vector<world::Setting> more) {
+    world::Sensor sensor = trial::cones("sonar", std::vector<Pose>(static_cast<std::size_t>(count)), std::move(more));
+    return read_sonar(sensor, 0, 0).turns;
+  };
+  EXPECT_EQ(turns(16, {}), 16u);
+  EXPECT_EQ(turns(16, {cone_setting("arrays", {2})}), 8u);
+  EXPECT_EQ(turns(16, {cone_setting("arrays", {16})}), 1u);
+  EXPECT_EQ(turns(16, {cone_setting("firing", {}, "sequential")}), 16u);
+  EXPECT_EQ(turns(16, {cone_setting("firing", {}, "all"), cone_setting("arrays", {2})}), 1u);
+}
+
+TEST(SonarSettings, OneRayLooksAlongTheAxis) {
+  EXPECT_EQ(read_sonar(with({cone_setting("fov", {0})}), 0, 0).rays, 1u);
+  EXPECT_EQ(read_sonar(with({cone_setting("incidence", {M_PI / 2})}), 0, 0).least_cosine, 0.0) << "off";
+}
+
+struct Wrong {
+  const char* key;
+  std::vector<double> numbers;
+  const char* text;
+  std::string says;
+  const char* type = "sonar";
+};
+
+TEST(SonarSettings, WhatIsWrongIsRefusedWithFileAndLine) {
+  const std::vector<Wrong> corpus = {
+      {"scount", {0}, "", "'scount' is 0; expected 1 to 64"},
+      {"scount", {65}, "", "'scount' is 65; expected 1 to 64"},
+      {"scount", {2}, "", "'spose[0]' is missing"},
+      {"spose[1]", {0, 0, 0}, "", "'spose[1]' is beyond 'scount 1'"},
+      {"spose[0]", {0, 0}, "", "'spose[0]' expects [x y yaw]"},
+      {"fov", {-0.1}, "", "'fov' is -0.1"},
+      {"fov", {6.3}, "", "'fov' is 6.3"},
+      {"fov", {}, "wide", "'fov' expects a number"},
+      {"rays", {10}, "", "'rays' is 10; expected an odd number"},
+      {"rays", {0}, "", "'rays' is 0; expected 1 to 1025"},
+      {"rays", {1027}, "", "'rays' is 1027; expected 1 to 1025"},
+      {"rays", {2.5}, "", "whole number"},
+      {"range", {4}, "", "'range' expects [min max]"},
+      {"range", {4, 4}, "", "'range' is [4 4] m; expected [min max] with 0 <= min < max"},
+      {"range", {-0.1, 4}, "", "'range' is [-0.1 4] m"},
+      {"range", {0, 1e-7}, "", "'range' is [0 1e-07] m"},
+      {"range", {0, 2e4}, "", "'range' is [0 20000] m"},
+      {"sview", {0, 5}, "", "'sview' expects [min max fov]"},
+      {"sview", {5, 0, 0.2}, "", "'sview' is [5 0] m"},
+      {"sview", {0, 5, 7}, "", "the third number of 'sview'"},
+      {"firing", {}, "random", "'firing' is \"random\"; expected \"sequential\" or \"all\""},
+      {"arrays", {2}, "", "'arrays' is 2; expected 1 to 1"},
+      {"incidence", {0}, "", "'incidence' is 0"},
+      {"incidence", {1.6}, "", "'incidence' is 1.6"},
+      {"noise", {-0.01}, "", "'noise' is [-0.01 0]; expected [constant proportional]"},
+      {"noise", {0, -1}, "", "'noise' is [0 -1]"},
+      {"noise", {}, "loud", "'noise' expects [constant proportional]"},
+      {"rate", {0}, "", "'rate' is 0"},
+      {"noise", {-1}, "", "'noise' is -1; expected 0 to 1000", "infrared"},
+      {"range", {0.05, 0.01}, "", "'range' is [0.05 0.01] m", "infrared"},
+  };
+  for (const Wrong& wrong : corpus) {
+    const world::Sensor sensor = with({cone_setting(wrong.key, wrong.numbers, wrong.text)}, wrong.type);
+    try {
+      const bool sonar = sensor.type == "sonar";
+      sonar ? read_sonar(sensor, 0, 0) : read_infrared(sensor, 0, 0);
+      ADD_FAILURE() << wrong.key << " was taken; expected: " << wrong.says;
+    } catch (const base::InputError& error) {
+      const std::string said = error.what();
+      EXPECT_NE(said.find(wrong.says), std::string::npos) << said << "\nexpected: " << wrong.says;
+      EXPECT_NE(said.find("made.world:42"), std::string::npos) << said;
+    }
+  }
+}
+
+TEST(SonarSettings, ArraysDivideTheTransducers) {
+  const world::Sensor sensor = trial::cones("sonar", std::vector<Pose>(16), {cone_setting("arrays", {3})});
+  try {
+    read_sonar(sensor, 0, 0);
+    ADD_FAILURE();
+  } catch (const base::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("'arrays 3' does not divide the 16 transducers"), std::string::npos);
+  }
+}
+
+// --- The rings that ship.
+
+world::World shipped(const std::string& body) {
+  const std::string file = testing::TempDir() + "/rangers.world";
+  std::ofstream(file) << "include \"" SF_SOURCE_DIR "/worlds/robots.inc\"\n" << body;
+  return world::load_world(file, {.sensors = vocabulary()});
+}
+
+TEST(SonarSettings, ThePioneersRings) {
+  const world::World world = shipped("pioneer3at( name \"pioneer1\" pioneer_sonar( ) )\n");
+  EXPECT_TRUE(world.warnings.empty());
+  const auto arrays = cone_arrays_of(world, "sonar", read_sonar);
+  ASSERT_EQ(arrays.size(), 1u);
+  const ConeArray& ring = arrays[0];
+  ASSERT_EQ(ring.X_SC.size(), 16u);
+  EXPECT_NEAR(ring.row.X_MS.z, 0.24, 1e-12);
+  EXPECT_EQ(ring.turns, 8u);
+  // The robot is the same from left and right: k in front and 7 - k are each other's mirror images, and so behind.
+  for (std::size_t k = 0; k < 8; ++k)
+    for (const std::size_t first : {0u, 8u}) {
+      const Pose& left = ring.X_SC[first + k];
+      const Pose& right = ring.X_SC[first + 7 - k];
+      EXPECT_EQ(left.x, right.x) << k;
+      EXPECT_EQ(left.y, -right.y) << k;
+      EXPECT_NEAR(std::remainder(left.yaw + right.yaw, 2.0 * M_PI), 0.0, 1e-12) << k;
+    }
+  // All of them look away from the robot.
+  for (const Pose& p : ring.X_SC) EXPECT_GT(p.x * std::cos(p.yaw) + p.y * std::sin(p.yaw), 0.1);
+  for (const world::Segment& side : world.movers[0].body) EXPECT_LT(side.z_max, 0.281) << "no body of its own";
+}
+
+TEST(SonarSettings, TheKheperasEight) {
+  const world::World world = shipped("position( name \"k\" size [0.07 0.07 0.03] khepera_infrared( ) )\n");
+  EXPECT_TRUE(world.warnings.empty());
+  const auto arrays = cone_arrays_of(world, "infrared", read_infrared);
+  ASSERT_EQ(arrays.size(), 1u);
+  ASSERT_EQ(arrays[0].X_SC.size(), 8u);
+  EXPECT_NEAR(arrays[0].row.X_MS.z, 0.02, 1e-12);
+  EXPECT_EQ(arrays[0].proportional, 0.01);
+  for (const Pose& p : arrays[0].X_SC) {
+    EXPECT_LT(std::hypot(p.x, p.y), 0.035) << "within its body";
+    EXPECT_GT(p.x * std::cos(p.yaw) + p.y * std::sin(p.yaw), 0.02);
+  }
+}
+
+// --- Payloads.
+
+/// What was read is what was sent, to the wire's unit.
+void expect_there_and_back(const SensorKind& kind, const std::vector<double>& values, std::uint32_t elements,
+                           double unit) {
+  SensorRow row;
+  row.elements = elements;
+  base::ReadingBlock block;
+  block.values = values;
+  base::Bytes bytes;
+  ASSERT_EQ(kind.encode(row, block, Wire::farm, 0, bytes), kind.id);
+  const Part part = kind.decode(row, bytes, kind.id, Wire::farm);
+  EXPECT_EQ(part.fault, Fault::none);
+  EXPECT_EQ(part.elements, elements);
+  std::vector<double> back(values.size(), -1.0);
+  kind.read(row, bytes, kind.id, Wire::farm, back);
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(back[i], values[i], 0.5000001 * unit) << i;
+  bytes.pop_back();
+  EXPECT_EQ(kind.decode(row, bytes, kind.id, Wire::farm).fault, Fault::too_short);
+  EXPECT_FALSE(kind.refuse(row, Wire::thesis).empty()) << "the thesis has no such message";
+}
+
+TEST(SonarPackets, ThereAndBack) {
+  expect_there_and_back(sonar_kind, {0.1, 1.2344, 4.0, 2.71828}, 4, 1e-3);
+  expect_there_and_back(infrared_kind, {0.05, 0.0, 0.0, 1023.0, 0.012345, 770.0}, 3, 1e-6);
+}
+
+TEST(SonarPackets, NumbersThatCannotBeAreRefused) {
+  SensorRow row;
+  row.elements = 1;
+  base::ReadingBlock block;
+  base::Bytes bytes;
+  const std::vector<double> nearer_than_nothing{-0.5};
+  block.values = nearer_than_nothing;
+  sonar_kind.encode(row, block, Wire::farm, 0, bytes);
+  EXPECT_EQ(sonar_kind.decode(row, bytes, kSonar, Wire::farm).fault, Fault::out_of_range);
+  bytes.clear();
+  const std::vector<double> beyond_ten_bits{0.01, 1030.0};
+  block.values = beyond_ten_bits;
+  infrared_kind.encode(row, block, Wire::farm, 0, bytes);
+  EXPECT_EQ(infrared_kind.decode(row, bytes, kInfrared, Wire::farm).fault, Fault::out_of_range);
+}
+
+}  // namespace
+}  // namespace sf::sensors
