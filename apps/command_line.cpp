@@ -150,6 +150,18 @@ void add_controller(CLI::App& app, Options& o) {
       ->type_name("KEY=VALUE");
 }
 
+void add_controller(CLI::App& app, Options& o) {
+  std::vector<std::string> names;
+  for (const control::ControllerKind* kind : control::controllers()) names.emplace_back(kind->name);
+  app.add_option("--controller", o.controller, "Who drives: " + either(names))
+      ->check(one_of(names))
+      ->type_name("NAME")
+      ->capture_default_str();
+  app.add_option("--set", o.set, "One of the controller's settings (may be repeated)")
+      ->check(key_and_value())
+      ->type_name("KEY=VALUE");
+}
+
 void add_devices(CLI::App& app, Options& o) {
   CLI::App* sub =
       app.add_subcommand("devices", "List the Vulkan devices: chosen, or refused and why (exit 3 when none is usable)");
@@ -280,6 +292,59 @@ void add_serve(CLI::App& app, Options& o) {
   });
 }
 
+void add_farm(CLI::App& app, Options& o) {
+  app.add_option("--server", o.server, "Host of the farm that serves")
+      ->check(not_empty("a host"))
+      ->type_name("HOST")
+      ->capture_default_str();
+  app.add_option("--port", o.port, "UDP port that it listens on")
+      ->check(whole(1, 65535))
+      ->type_name("PORT")
+      ->capture_default_str();
+}
+
+void add_link(CLI::App& app, Options& o) {
+  app.add_option("--delay", o.delay, "Injected delay of every packet, in each direction [s]")
+      ->check(number(0.0, 3600.0))
+      ->type_name("S");
+  app.add_option("--jitter", o.jitter, "More delay, evenly from 0 to this; packets overtake each other [s]")
+      ->check(number(0.0, 3600.0))
+      ->type_name("S");
+  app.add_option("--loss", o.loss, "Part of the packets that never come, in each direction, 0 to 1")
+      ->check(number(0.0, 1.0))
+      ->type_name("P");
+}
+
+void add_robot(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand("robot", "One simulated robot, a process of its own beside a farm that serves");
+  add_world(*sub, o);
+  add_json(*sub, o);
+  add_controller(*sub, o);
+  add_farm(*sub, o);
+  add_link(*sub, o);
+  add_ports(*sub, o);
+  sub->add_option("--name", o.robot, "Name of the robot in the world")->required()->type_name("NAME");
+  sub->add_option("--rate", o.rate, "Decisions, and packets, per second (default: the controller's own)")
+      ->check(number(0.1, 1000.0))
+      ->type_name("HZ");
+  sub->add_flag("--wait-for-start", o.wait_for_start, "Stand until the start signal comes (`sensorfarm start`)");
+  add_seed(*sub, o, "Seed of decisions and of the injected link");
+  auto* duration = sub->add_option("--duration", o.duration, "Stop after this long [s] (0: when done or told to)")
+                       ->check(number(0.0, 1e9))
+                       ->type_name("S");
+  sub->callback([&o, duration] {
+    o.command = Command::robot;
+    if (duration->count() == 0) o.duration = 0.0;
+  });
+}
+
+void add_start(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand("start", "Give robots that wait for it the start signal, through the farm");
+  add_farm(*sub, o);
+  sub->add_option("--robot", o.start_id, "Id of the robot (default: all)")->check(whole(0, 65535))->type_name("ID");
+  sub->callback([&o] { o.command = Command::start; });
+}
+
 void add_plot(CLI::App& app, Options& o) {
   CLI::App* sub =
       app.add_subcommand("plot", "Draw trajectories, an occupancy map and recorded readings from a recorded run");
@@ -365,6 +430,8 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   add_sense(app, o);
   add_run(app, o);
   add_serve(app, o);
+  add_robot(app, o);
+  add_start(app, o);
   add_plot(app, o);
   add_listen(app, o);
   try {

@@ -13,6 +13,8 @@ int field(const Options& options);
 int sense(const Options& options);
 int run(const Options& options);
 int serve(const Options& options);
+int robot(const Options& options);
+int start(const Options& options);
 int plot(const Options& options);
 int listen(const Options& options);
 

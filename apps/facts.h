@@ -10,6 +10,7 @@
 #include "gpu/device.h"
 #include "netio/inbox.h"
 #include "netio/listener.h"
+#include "netio/relay.h"
 #include "sensors/roster.h"
 #include "world/world.h"
 
@@ -33,6 +34,7 @@ struct RunFacts {
   PostCounts post;
   bool received = false;  ///< `inbox` counts
   netio::Counts inbox;
+  netio::RelayCounts relayed;        ///< to robots, of others' states and start signals
   std::string recording;             ///< file; empty: none
   std::uint64_t recorded_bytes = 0;  ///< its size
 };

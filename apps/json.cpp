@@ -141,7 +141,10 @@ std::string json_of(const RunFacts& f) {
     json["packets"] = {{"sent", f.post.packets.sent},       {"bytes", f.post.packets.sent_bytes},
                        {"failed", f.post.packets.failed},   {"dropped", f.post.packets.dropped},
                        {"not_numbers", f.post.not_numbers}, {"first_failure", f.post.packets.first_failure}};
-  if (f.received) json["received"] = reasons(f.inbox);
+  if (f.received) {
+    json["received"] = reasons(f.inbox);
+    json["relayed"] = {{"states", f.relayed.states}, {"starts", f.relayed.starts}};
+  }
   if (!f.recording.empty()) {
     json["recording"] = f.recording;
     json["recording_bytes"] = f.recorded_bytes;

@@ -26,6 +26,10 @@ int dispatch(const sf::apps::Options& options) {
       return sf::apps::run(options);
     case Command::serve:
       return sf::apps::serve(options);
+    case Command::robot:
+      return sf::apps::robot(options);
+    case Command::start:
+      return sf::apps::start(options);
     case Command::plot:
       return sf::apps::plot(options);
     case Command::listen:

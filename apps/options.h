@@ -14,7 +14,7 @@
 
 namespace sf::apps {
 
-enum class Command { devices, check, draw, field, sense, run, serve, plot, listen };
+enum class Command { devices, check, draw, field, sense, run, serve, robot, start, plot, listen };
 
 struct Options {
   Command command = Command::devices;
@@ -53,8 +53,14 @@ struct Options {
 
   std::string bind = "127.0.0.1";
   std::uint32_t port = 9000;
-  double rate = 0.0;     ///< [Hz]; 0: the world's own
-  double silence = 3.0;  ///< [s] after which `listen` ends
+  double rate = 0.0;                 ///< [Hz]; 0: the world's own
+  std::string server = "127.0.0.1";  ///< host of the farm, for `robot` and `start`
+  double delay = 0.0;                ///< [s] injected between them, in each direction
+  double jitter = 0.0;               ///< [s]
+  double loss = 0.0;                 ///< [-] in [0, 1]
+  bool wait_for_start = false;
+  std::uint32_t start_id = 65535;  ///< robot to be started; 65535: all
+  double silence = 3.0;            ///< [s] after which `listen` ends
 };
 
 }  // namespace sf::apps

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <map>
 #include <variant>
 #include <vector>
 
@@ -12,7 +11,9 @@
 #include "apps/lend.h"
 #include "apps/post.h"
 #include "apps/stop.h"
+#include "apps/wire_names.h"
 #include "netio/inbox.h"
+#include "netio/relay.h"
 #include "robots/fleet.h"
 
 namespace sf::apps {
@@ -21,34 +22,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Who on the wire is which mover.
-struct Names {
-  std::map<std::uint32_t, std::uint32_t> robots;
-  std::map<std::uint32_t, std::uint32_t> tags;
-};
-
-Names names_of(const world::World& world) {
-  Names names;
-  for (std::uint32_t i = 0; i < world.movers.size(); ++i)
-    (world.movers[i].is_tag ? names.tags : names.robots)[world.movers[i].id] = i;
-  return names;
-}
-
-std::vector<std::uint32_t> ids_of(const std::map<std::uint32_t, std::uint32_t>& rows) {
-  std::vector<std::uint32_t> ids;
-  for (const auto& [id, row] : rows) ids.push_back(id);
-  return ids;
-}
-
 class Service {
  public:
   Service(const world::World& world, const sensors::Roster& roster, gpu::Device& device, const Options& options)
       : world_(world),
         roster_(roster),
-        names_(names_of(world)),
+        names_(wire_names(world)),
         inbox_({.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
                 .robots = ids_of(names_.robots),
                 .tags = ids_of(names_.tags)}),
+        answers_(inbox_.socket()),
+        relay_(ids_of(names_.robots)),
         post_(world, roster, options),
         farm_(world, device, farm::FarmOptions{.seed = options.seed}),
         fleet_(world),
@@ -79,6 +63,8 @@ class Service {
       if (to) post_.queue(reading, to->address);
     }
     post_.flush();
+    relay_.pass_on(inbox_, now, answers_);
+    answers_.flush();
     ++ticks_;
   }
 
@@ -91,6 +77,7 @@ class Service {
     facts.sent = facts.received = true;
     facts.post = post_.counts();
     facts.inbox = inbox_.counts();
+    facts.relayed = relay_.counts();
     return facts;
   }
 
@@ -106,6 +93,7 @@ class Service {
   void take_in(std::int64_t now) {
     reports_.clear();
     inbox_.receive(now, [&](const netio::Packet& packet) {
+      relay_.take(packet);
       if (const auto* state = std::get_if<netio::V2v>(&packet.body)) {
         reports_.push_back(netio::report(packet.header, *state, names_.robots.at(packet.header.robot)));
       } else if (const auto* tag = std::get_if<netio::Tag>(&packet.body)) {
@@ -121,8 +109,10 @@ class Service {
 
   const world::World& world_;
   const sensors::Roster& roster_;
-  Names names_;
+  WireNames names_;
   netio::Inbox inbox_;
+  netio::Outbox answers_;  ///< from where the robots speak to
+  netio::Relay relay_;
   Post post_;
   farm::Farm farm_;
   robots::Fleet fleet_;

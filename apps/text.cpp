@@ -120,6 +120,8 @@ std::string text_of(const RunFacts& f) {
   if (f.contacts > 0) text += row("contacts", fmt::format("{} robot-ticks", f.contacts));
   if (f.sent) text += packets_text(f.post);
   if (f.received) text += row("packets received", netio::text(f.inbox));
+  if (f.relayed.states + f.relayed.starts > 0)
+    text += row("packets passed on", fmt::format("{} V2V, {} START", f.relayed.states, f.relayed.starts));
   if (!f.recording.empty())
     text += row("recording", fmt::format("{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6));
   text += row("time: move", stage(f.move_s));

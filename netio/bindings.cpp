@@ -11,9 +11,6 @@ namespace {
 
 bool alive(const std::optional<std::int64_t>& last, std::int64_t now) { return last && now - *last < kSilence; }
 
-/// Serial number arithmetic (RFC 1982, section 3.2): the counter may wrap.
-bool newer(std::uint32_t sequence, std::uint32_t than) { return static_cast<std::int32_t>(sequence - than) > 0; }
-
 }  // namespace
 
 Bindings::Bindings(std::span<const std::uint32_t> ids) {

@@ -13,6 +13,9 @@ namespace sf::netio {
 
 inline constexpr std::int64_t kSilence = 2'000'000'000;  ///< [ns] after exactly this long a sender is silent
 
+/// Less than 2^31 ahead: the counter may wrap (serial number arithmetic, RFC 1982, section 3.2).
+inline bool newer(std::uint32_t sequence, std::uint32_t than) { return static_cast<std::int32_t>(sequence - than) > 0; }
+
 /// The rule, for one space of ids (robots, or tags): the first sender of an id binds it until two seconds of silence.
 /// A packet whose sequence is not newer than the last of its line is stale; it neither keeps the binding nor is used,
 /// so a sender that starts its count again is taken after two seconds. Lines (one per packet type) count apart.

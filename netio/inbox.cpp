@@ -12,6 +12,7 @@ namespace sf::netio {
 namespace {
 
 constexpr std::size_t kBatch = 64;
+constexpr std::size_t kSendBuffer = 1u << 20;  ///< [byte] of what is sent through a duplicate of the socket
 constexpr std::size_t kStateLine = 0;
 constexpr std::size_t kSubscribeLine = 1;
 
@@ -30,7 +31,7 @@ Inbox::Inbox(const InboxOptions& options)
     : robots_(options.robots),
       tags_(options.tags),
       kinds_(options.robots.size(), 0),
-      socket_(open_udp(options.bind, {.receive = options.receive_buffer})),
+      socket_(open_udp(options.bind, {.receive = options.receive_buffer, .send = kSendBuffer})),
       batch_(kBatch) {
   require_ids(options.robots, 0, "robot");
   require_ids(options.tags, kMinTag, "tag");
@@ -56,6 +57,9 @@ Reason Inbox::judge(const Packet& packet, const Endpoint& source, std::int64_t n
     case Type::tag:
       if (!tags_.row(packet.header.robot)) return Reason::unknown_tag;
       return tags_.admit(packet.header.robot, kStateLine, packet.header.sequence, source, now);
+    case Type::start:
+      return packet.header.robot == kEveryone || robots_.row(packet.header.robot) ? Reason::accepted
+                                                                                  : Reason::unknown_robot;
   }
   return Reason::wrong_direction;
 }
@@ -73,6 +77,10 @@ Reason Inbox::judge_robot(const Packet& packet, const Endpoint& source, std::int
   if (!was_heard) kinds_[*row] = 0;
   if (request != nullptr) kinds_[*row] = request->kinds;
   return Reason::accepted;
+}
+
+bool Inbox::asks_for_others(std::uint32_t robot, std::int64_t now) const {
+  return heard(robot, now) && (kinds_[*robots_.row(robot)] & kOthers) != 0;
 }
 
 bool Inbox::wants(std::uint32_t robot, std::uint32_t kind, std::int64_t now) const {

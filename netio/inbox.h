@@ -2,7 +2,7 @@
 // Datagrams in, states out. Nothing a stranger sends stops it, and nothing is allocated after construction.
 //
 //   Inbox inbox({.robots = ids});
-//   inbox.receive(now, [&](const Packet& packet) { ... });        // each accepted V2V, TAG and SUBSCRIBE
+//   inbox.receive(now, [&](const Packet& packet) { ... });        // each accepted one
 //   if (inbox.heard(7, now) && inbox.wants(7, kind, now)) ...      // send to *inbox.address(7)
 //
 // One thread. No clock is read: `now` is any clock in ns that does not go back.
@@ -60,14 +60,19 @@ class Inbox {
   /// A V2V or SUBSCRIBE of `robot` was accepted less than two seconds before `now`.
   bool heard(std::uint32_t robot, std::int64_t now) const { return robots_.heard(robot, now); }
 
-  /// heard, and its last SUBSCRIBE since it is heard asked for sensor kind `kind` in [0, 31] (none: it wants all).
+  /// heard, and its last SUBSCRIBE since it is heard asked for sensor kind `kind` in [1, 31] (none: it wants all).
   bool wants(std::uint32_t robot, std::uint32_t kind, std::int64_t now) const;
+
+  /// heard, and its last SUBSCRIBE since it is heard asked for other robots' states.
+  bool asks_for_others(std::uint32_t robot, std::int64_t now) const;
 
   /// Where `robot` sends from. Its readings go to this address, at each sensor's own port.
   std::optional<Endpoint> address(std::uint32_t robot) const { return robots_.source(robot); }
 
   std::uint16_t port() const { return bound_endpoint(socket_).port; }
   const Counts& counts() const { return counts_; }
+  /// The same socket once more: for answers that come from where the robots speak to.
+  Socket socket() const { return duplicate(socket_); }
   /// Sleeps until a datagram waits, a signal comes, or `timeout_ms` >= 0 has passed.
   void wait(int timeout_ms) const;
 

@@ -1,42 +1,26 @@
 #include "netio/listener.h"
 
-#include <sys/epoll.h>
-
-#include <array>
-#include <string>
+#include <utility>
 
 #include "base/error.h"
-#include "netio/posix.h"
-#include "netio/socket.h"
 #include "netio/track.h"
 
 namespace sf::netio {
 
 namespace {
 
-constexpr std::size_t kBatch = 64;
-constexpr std::size_t kSpareFiles = 64;       ///< descriptors that the rest of the process may want
-constexpr std::size_t kMaxPerDrain = 65'536;  ///< so that a flood cannot keep `stop` from being seen
 constexpr int kMaxLastDrains = 100;
 constexpr int kLookMs = 50;  ///< how often `stop` is looked at while nothing comes
 
 struct Stream {
   StreamPlan plan;
-  Socket socket;
   Track track;
   std::uint64_t good = 0;
   std::uint64_t elements = 0;
 };
 
-std::vector<PortUse> uses_of(const std::vector<StreamPlan>& streams) {
-  std::vector<PortUse> uses;
-  for (const StreamPlan& plan : streams) {
-    uses.push_back({plan.robot, 1, plan.rule, "", plan.sensor, plan.kind});
-  }
-  return uses;
-}
+}  // namespace
 
-/// What lies behind the header, when that is a reading's and this stream's own.
 Reason unframe(std::span<const std::uint8_t> bytes, const StreamPlan& plan, Header& header,
                std::span<const std::uint8_t>& payload) {
   Packet packet;
@@ -49,56 +33,32 @@ Reason unframe(std::span<const std::uint8_t> bytes, const StreamPlan& plan, Head
   return header.robot == plan.robot && header.sensor == plan.sensor ? Reason::accepted : Reason::wrong_source;
 }
 
-}  // namespace
-
 struct Listener::Streams {
-  bool headerless = false;
+  explicit Streams(const ListenerOptions& options)
+      : ears(options.address, options.receive_buffer, options.streams),
+        headerless(options.headerless),
+        judge(options.judge) {
+    for (const StreamPlan& plan : options.streams) rows.push_back({plan, {}, 0, 0});
+  }
+
+  Ears ears;
+  bool headerless;
   Judge judge;
-  Socket epoll;
   std::vector<Stream> rows;
-  ReceiveBatch batch{kBatch};
   Counts counts;
   std::uint64_t bytes = 0;
 };
 
-Listener::Listener(const ListenerOptions& options) : streams_(std::make_unique<Streams>()) {
+Listener::Listener(const ListenerOptions& options) {
   SF_CHECK(options.judge != nullptr, "a listener without a judge");
-  require_ports(uses_of(options.streams));
-  allow_open_files(options.streams.size() + kSpareFiles);
-  Streams& s = *streams_;
-  s.headerless = options.headerless;
-  s.judge = options.judge;
-  s.epoll = Socket(epoll_create1(EPOLL_CLOEXEC));
-  if (s.epoll.descriptor() < 0) throw base::InputError("no epoll set: " + error_text(errno) + "; raise `ulimit -n`");
-
-  for (const StreamPlan& plan : options.streams) {
-    const auto own_port = static_cast<std::uint16_t>(port(plan.rule, plan.robot, plan.sensor));
-    s.rows.push_back({plan, open_udp({options.address, own_port}, {.receive = options.receive_buffer}), {}, 0, 0});
-    epoll_event readable{};
-    readable.events = EPOLLIN;
-    readable.data.u64 = s.rows.size() - 1;
-    const int failed = epoll_ctl(s.epoll.descriptor(), EPOLL_CTL_ADD, s.rows.back().socket.descriptor(), &readable);
-    if (failed != 0) throw base::InputError("cannot watch port " + std::to_string(own_port) + ": " + error_text(errno));
-  }
+  streams_ = std::make_unique<Streams>(options);
 }
 
 Listener::~Listener() = default;
 
 std::size_t Listener::drain(int timeout_ms) {
-  Streams& s = *streams_;
-  std::array<epoll_event, 256> events;
-  std::size_t taken = 0;
-  int ready = epoll_wait(s.epoll.descriptor(), events.data(), events.size(), timeout_ms);
-  while (ready > 0 && taken < kMaxPerDrain) {
-    for (int e = 0; e < ready; ++e) {
-      const std::size_t row = events[static_cast<std::size_t>(e)].data.u64;
-      const std::size_t n = s.batch.fill(s.rows[row].socket);
-      for (std::size_t i = 0; i < n; ++i) accept(row, s.batch.bytes(i));
-      taken += n;
-    }
-    ready = epoll_wait(s.epoll.descriptor(), events.data(), events.size(), 0);
-  }
-  return taken;
+  return streams_->ears.drain(timeout_ms,
+                              [this](std::size_t i, std::span<const std::uint8_t> bytes) { accept(i, bytes); });
 }
 
 void Listener::run(const std::atomic<bool>& stop, int silence_ms) {
@@ -148,7 +108,7 @@ Summary Listener::summary() const {
     share.good += stream.good;
     share.elements += stream.elements;
   }
-  if (!s.rows.empty()) sum.receive_buffer = receive_buffer(s.rows.front().socket);
+  sum.receive_buffer = s.ears.granted();
   return sum;
 }
 

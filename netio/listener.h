@@ -2,9 +2,6 @@
 // The other end of a run: takes every sensor's packets on its own port, counts and checks them. What a payload should
 // say is for a judge to tell, who knows the sensors.
 //
-// One socket per port, since Linux has no way for an ordinary user to take a range of ports with one; one epoll set
-// over all, so that a thousand quiet ports cost nothing, and recvmmsg on each that has something.
-//
 //   Listener listener({.streams = streams, .judge = judge});  // ports are bound: start the sender now
 //   listener.run(stop, 500);                                  // or drain(), between other work
 //   Summary summary = listener.summary();
@@ -20,20 +17,12 @@
 #include <string>
 #include <vector>
 
+#include "netio/ears.h"
 #include "netio/endpoint.h"
 #include "netio/packets.h"
-#include "netio/ports.h"
 #include "netio/reason.h"
 
 namespace sf::netio {
-
-/// What to expect on one port.
-struct StreamPlan {
-  std::uint32_t robot = 0;
-  std::uint32_t sensor = 0;
-  PortRule rule;
-  std::string kind = "sensor";  ///< for the error where ports collide
-};
 
 /// What a payload turned out to be.
 struct Verdict {
@@ -45,6 +34,11 @@ struct Verdict {
 
 /// Judges any bytes that came for stream `stream` (a row of the plan) with a reading's header of its robot and sensor.
 using Judge = std::function<Verdict(std::size_t stream, const Header&, std::span<const std::uint8_t> payload)>;
+
+/// What lies behind the header of `bytes`, when that is a reading's and the stream's own. Fills `header` and
+/// `payload` (which lives as long as the bytes) where it is a reading's.
+Reason unframe(std::span<const std::uint8_t> bytes, const StreamPlan& plan, Header& header,
+               std::span<const std::uint8_t>& payload);
 
 struct ListenerOptions {
   std::uint32_t address = kLoopback;

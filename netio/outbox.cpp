@@ -19,10 +19,10 @@ struct Outbox::Storage {
   std::vector<mmsghdr> messages;
 };
 
-Outbox::Outbox(const OutboxOptions& options)
-    : options_(options),
-      socket_(open_udp(options.bind, {.send = options.send_buffer})),
-      storage_(std::make_unique<Storage>()) {
+Outbox::Outbox(const OutboxOptions& options) : Outbox(open_udp(options.bind, {.send = options.send_buffer}), options) {}
+
+Outbox::Outbox(Socket socket, const OutboxOptions& options)
+    : options_(options), socket_(std::move(socket)), storage_(std::make_unique<Storage>()) {
   SF_CHECK(options.capacity >= 1, "an outbox that holds nothing");
   Storage& s = *storage_;
   s.slots.resize(options.capacity * kMaxDatagram);

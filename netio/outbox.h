@@ -37,6 +37,8 @@ class Outbox {
  public:
   /// @throws base::InputError when no socket can be opened or bound.
   explicit Outbox(const OutboxOptions& options = {});
+  /// Through a socket that is open already; `bind` and `send_buffer` of the options say nothing.
+  explicit Outbox(Socket socket, const OutboxOptions& options = {});
   ~Outbox();
   Outbox(Outbox&&) noexcept;
 

@@ -110,6 +110,9 @@ Reason read_body(std::span<const std::uint8_t> payload, Packet& packet) {
     case Type::subscribe:
       packet.body = Subscribe{reader.get<std::uint32_t>()};
       return check_size(payload.size(), kSubscribeBytes);
+    case Type::start:
+      packet.body = Start{};
+      return check_size(payload.size(), 0);
   }
   if (kind_of(packet.header.type) == 0) return Reason::unknown_type;
   packet.body = Reading{payload};
@@ -194,6 +197,8 @@ void encode(const Header& header, const Subscribe& request, base::Bytes& out) {
   base::ByteWriter writer(out);
   writer.put(request.kinds);
 }
+
+void encode(const Header& header, const Start&, base::Bytes& out) { start(header, Type::start, out); }
 
 void frame(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out) {
   SF_CHECK(kind_of(Type{type}) != 0, "type " + std::to_string(type) + " is no reading's");

@@ -22,6 +22,7 @@ inline constexpr std::uint8_t kVersion = 1;
 inline constexpr std::size_t kHeaderBytes = 24;
 inline constexpr std::size_t kMaxDatagram = 1400;    ///< [byte] no packet of ours is longer, so none is fragmented
 inline constexpr std::uint32_t kMaxId = 0xFFFFu;     ///< of a robot, and of a sensor
+inline constexpr std::uint16_t kEveryone = 0xFFFFu;  ///< START: every robot, and not the one with this id
 inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;  ///< V2V: follows nobody, heads for no checkpoint
 inline constexpr std::uint32_t kMinTag = 1;          ///< tags are 1 to kMaxId; the thesis has 1 to 32
 inline constexpr double kMaxPosition = 1e7;          ///< [m] of each coordinate: every UTM coordinate fits
@@ -29,9 +30,9 @@ inline constexpr double kMaxYaw = 1e6;               ///< [rad] a heading that w
 inline constexpr double kMaxSpeed = 1e3;             ///< [m/s], and [rad/s]
 inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 years: differences cannot overflow
 
-/// From 128: states sent to the farm. Below 64: a reading of the sensor kind with that number; 64 more: its second
-/// form.
-enum class Type : std::uint8_t { v2v = 128, tag = 129, subscribe = 130 };
+/// From 128: states and requests sent to the farm, of which it passes V2V and START on. Below 64: a reading of the
+/// sensor kind with that number; 64 more: its second form.
+enum class Type : std::uint8_t { v2v = 128, tag = 129, subscribe = 130, start = 131 };
 
 /// The sensor kind in [1, 63] whose readings, of either form, are sent as `type`; 0 when it is no reading's.
 constexpr std::uint8_t kind_of(Type type) {
@@ -66,8 +67,12 @@ struct Tag {
 
 /// A robot asks for readings without moving anything.
 struct Subscribe {
-  std::uint32_t kinds = 0;  ///< bit k: sensor kind k; 0: all
+  std::uint32_t kinds = 0;  ///< bit k: sensor kind k; bit 0: others' states, see kOthers; 0: all kinds, but not these
 };
+inline constexpr std::uint32_t kOthers = 1;  ///< the bit of SUBSCRIBE that asks for what other robots say
+
+/// The signal to begin, to the robot that the header names or to kEveryone.
+struct Start {};
 
 /// A sensor's reading, or a part of one; its kind reads it.
 struct Reading {
@@ -76,7 +81,7 @@ struct Reading {
 
 struct Packet {
   Header header;
-  std::variant<V2v, Tag, Subscribe, Reading> body;
+  std::variant<V2v, Tag, Subscribe, Start, Reading> body;
 };
 
 /// Reads any bytes. Fills `packet` only when the answer is Reason::accepted.
@@ -86,6 +91,7 @@ Reason decode(std::span<const std::uint8_t> bytes, Packet& packet);
 void encode(const Header& header, const V2v& state, base::Bytes& out);
 void encode(const Header& header, const Tag& state, base::Bytes& out);
 void encode(const Header& header, const Subscribe& request, base::Bytes& out);
+void encode(const Header& header, const Start& signal, base::Bytes& out);
 
 /// A reading of type `type`, one of a sensor kind's two; replaces what `out` holds.
 /// Rule: header and payload together take at most kMaxDatagram.

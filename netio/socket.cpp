@@ -1,5 +1,7 @@
 #include "netio/socket.h"
 
+#include <fcntl.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -54,6 +56,18 @@ Socket open_udp(const Endpoint& endpoint, const SocketBuffers& buffers) {
   ask_buffer(opened.descriptor(), SO_RCVBUFFORCE, SO_RCVBUF, buffers.receive);
   ask_buffer(opened.descriptor(), SO_SNDBUFFORCE, SO_SNDBUF, buffers.send);
   return opened;
+}
+
+Socket duplicate(const Socket& socket) {
+  Socket second(fcntl(socket.descriptor(), F_DUPFD_CLOEXEC, 0));
+  if (second.descriptor() < 0)
+    throw base::InputError("no second descriptor for a socket: " + error_text(errno) + "; raise `ulimit -n`");
+  return second;
+}
+
+void wait_readable(const Socket& one, const Socket& other, int timeout_ms) {
+  pollfd readable[] = {{one.descriptor(), POLLIN, 0}, {other.descriptor(), POLLIN, 0}};
+  poll(readable, 2, timeout_ms);
 }
 
 Endpoint bound_endpoint(const Socket& socket) {

@@ -39,6 +39,13 @@ struct SocketBuffers {
 /// left.
 Socket open_udp(const Endpoint& bind, const SocketBuffers& buffers = {});
 
+/// The same socket under a second descriptor.
+/// @throws base::InputError when there are no descriptors left.
+Socket duplicate(const Socket& socket);
+
+/// Sleeps until there is something to take from either, a signal comes, or `timeout_ms` >= 0 has passed.
+void wait_readable(const Socket& one, const Socket& other, int timeout_ms);
+
 /// What `socket` is bound to: tells the port that was picked for port 0.
 Endpoint bound_endpoint(const Socket& socket);
 

@@ -1,0 +1,32 @@
+#pragma once
+// What a reading's payload says, judged by its sensor's kind: for those who receive.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "netio/listener.h"
+#include "sensors/roster.h"
+
+namespace sf::apps {
+
+/// The sensor behind one port.
+struct Source {
+  const sensors::SensorKind* kind = nullptr;
+  const sensors::SensorRow* row = nullptr;
+};
+
+/// All sensors of a world, kind after kind. They live as long as the roster.
+std::vector<Source> sources_of(const sensors::Roster& roster);
+/// One mover's.
+std::vector<Source> sources_of(const sensors::Roster& roster, std::uint32_t mover);
+
+/// Judges any bytes that came to the sensor's port behind a header of its robot and number.
+netio::Verdict judge_payload(const Source& source, sensors::Wire wire, const netio::Header& header,
+                             std::span<const std::uint8_t> payload);
+
+/// Writes what an accepted payload says into its reading's values.
+void read_payload(const Source& source, sensors::Wire wire, const netio::Header& header,
+                  std::span<const std::uint8_t> payload, std::span<double> values);
+
+}  // namespace sf::apps

@@ -1,0 +1,56 @@
+#include "apps/robot_body.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::apps {
+
+namespace {
+
+base::Pose between(const base::Pose& a, const base::Pose& b, double part) {
+  return {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y), a.z + part * (b.z - a.z),
+          base::wrap_angle(a.yaw + part * base::wrap_angle(b.yaw - a.yaw))};
+}
+
+}  // namespace
+
+RobotBody::RobotBody(const world::World& world, std::uint32_t mover)
+    : fleet_(world), mover_(mover), told_(world.movers.size()), commands_(world.movers.size()) {
+  trail_[0].X_WM = state().X_WM;
+}
+
+void RobotBody::hear(std::uint32_t mover, const base::Pose& X_WM, const base::Twist& velocity, std::int64_t now) {
+  // The fleet's time is what its moves added up to, a little behind: as the newest word it has that time.
+  const base::Report report{mover, fleet_.reports()[mover].time, X_WM, velocity};
+  fleet_.apply({&report, 1});
+  told_[mover] = {velocity, now + robots::kCoast};
+}
+
+void RobotBody::move(const base::Twist& command, std::int64_t now) {
+  const std::int64_t dt = std::min(now - time_, robots::kCoast);
+  time_ = now;
+  if (dt <= 0) return;
+  for (std::size_t m = 0; m < told_.size(); ++m)
+    commands_[m] = now < told_[m].until ? told_[m].velocity : base::Twist{};
+  commands_[mover_] = command;
+  const base::Pose before = state().X_WM;
+  fleet_.move(commands_, dt);
+  const base::Pose after = state().X_WM;
+  distance_ += std::hypot(after.x - before.x, after.y - before.y);
+  trail_[++moves_ % trail_.size()] = {now, after};
+}
+
+base::Pose RobotBody::pose_at(std::int64_t time) const {
+  const std::size_t kept = std::min(moves_ + 1, trail_.size());
+  if (time >= been(0).time) return been(0).X_WM;
+  for (std::size_t back = 1; back < kept; ++back) {
+    const Been& earlier = been(back);
+    const Been& later = been(back - 1);
+    if (earlier.time > time) continue;
+    const auto part = static_cast<double>(time - earlier.time) / static_cast<double>(later.time - earlier.time);
+    return between(earlier.X_WM, later.X_WM, part);
+  }
+  return been(kept - 1).X_WM;
+}
+
+}  // namespace sf::apps

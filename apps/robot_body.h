@@ -1,0 +1,54 @@
+#pragma once
+// A simulated robot by itself: its body among the world's walls and the others that it was told of.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/report.h"
+#include "robots/fleet.h"
+#include "world/world.h"
+
+namespace sf::apps {
+
+/// Times are of the robot's own clock [ns], which does not go back. `world` must outlive it.
+class RobotBody {
+ public:
+  RobotBody(const world::World& world, std::uint32_t mover);
+
+  /// Another robot says where it is; it came now.
+  void hear(std::uint32_t mover, const base::Pose& X_WM, const base::Twist& velocity, std::int64_t now);
+
+  /// Drives from where it was until `now`, half a second at most (a stopped process stood). Others go on as they said,
+  /// for half a second; then they stand.
+  void move(const base::Twist& command, std::int64_t now);
+
+  const base::Report& state() const { return fleet_.reports()[mover_]; }
+  const base::Report& state(std::uint32_t mover) const { return fleet_.reports()[mover]; }
+  bool contact() const { return fleet_.contacts()[mover_] != 0; }
+  double distance() const { return distance_; }  ///< [m] driven
+  /// Where it was at `time`, between the moves it remembers (the last 256); before these, at the first of them.
+  base::Pose pose_at(std::int64_t time) const;
+
+ private:
+  struct Told {
+    base::Twist velocity;
+    std::int64_t until = 0;  ///< [ns]
+  };
+  struct Been {
+    std::int64_t time = 0;  ///< [ns]
+    base::Pose X_WM;
+  };
+  const Been& been(std::size_t back) const { return trail_[(moves_ - back) % trail_.size()]; }
+
+  robots::Fleet fleet_;
+  std::uint32_t mover_;
+  std::vector<Told> told_;             ///< per mover
+  std::vector<base::Twist> commands_;  ///< per mover
+  std::array<Been, 256> trail_;
+  std::size_t moves_ = 0;  ///< the last one is at `moves_` % size
+  std::int64_t time_ = 0;
+  double distance_ = 0.0;
+};
+
+}  // namespace sf::apps

@@ -1,0 +1,58 @@
+#include "apps/robot_facts.h"
+
+#include <fmt/format.h>
+
+namespace sf::apps {
+
+namespace {
+
+std::string row(std::string_view name, const std::string& value) { return fmt::format("  {:<18} {}\n", name, value); }
+
+/// "laser 120, laneedge 30".
+std::string kinds_text(const LinkCounts& link) {
+  std::string text;
+  for (const auto& [kind, count] : link.whole) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kind, count);
+  return text.empty() ? "it has no sensors" : text;
+}
+
+std::string injected_text(const netio::DelayCounts& counts) {
+  return fmt::format("{} passed, {} lost{}", counts.passed, counts.lost,
+                     counts.full > 0 ? fmt::format(", {} too many at once", counts.full) : "");
+}
+
+std::string link_text(const LinkCounts& link) {
+  const netio::ReceiverCounts& in = link.readings;
+  std::string text = row("packets sent", fmt::format("{}", link.sent.sent));
+  if (link.sent.failed + link.sent.dropped > 0)
+    text += row("packets not sent", fmt::format("{} failed ({}), {} dropped", link.sent.failed, link.sent.first_failure,
+                                                link.sent.dropped));
+  text += row("readings", kinds_text(link));
+  text += row("sensor packets", netio::text(in.reasons));
+  text += row("", fmt::format("{} late, {} duplicates, {} lost", in.late, in.duplicates, in.lost));
+  if (in.restarts > 0) text += row("", fmt::format("{} sensors began anew", in.restarts));
+  text += row("V2V and START", netio::text(link.words));
+  if (link.out.lost + link.in.lost > 0) {
+    text += row("injected link, out", injected_text(link.out));
+    text += row("  in", injected_text(link.in));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string text_of(const RobotFacts& f) {
+  std::string text = f.answered ? "" : fmt::format("Nothing came from the farm at {}.\n", f.farm);
+  if (!f.started) text += "The start signal did not come.\n";
+  text += row("robot", fmt::format("{} (id {}), {}{}", f.robot, f.id, f.controller, f.done ? ": done" : ""));
+  text += row("ran", fmt::format("{:.2f} s, {} steps", f.wall_s, f.steps));
+  text += link_text(f.link);
+  text += row("driven", fmt::format("{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
+                                    f.pose.yaw * 180.0 / M_PI));
+  text += row("contacts", fmt::format("{} moves", f.contacts));
+  if (f.error.steps > 0)
+    text += row("control error", fmt::format("mean {:.4f}, mean of its size {:.4f}, of {} steps", f.error.mean,
+                                             f.error.abs_mean, f.error.steps));
+  return text;
+}
+
+}  // namespace sf::apps

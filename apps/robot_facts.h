@@ -1,0 +1,39 @@
+#pragma once
+// How a robot's process went.
+
+#include <cstdint>
+#include <string>
+
+#include "apps/robot_link.h"
+#include "base/pose.h"
+
+namespace sf::apps {
+
+/// Means of what a controller called its error, in the controller's own unit.
+struct ErrorFacts {
+  std::uint64_t steps = 0;  ///< with an error
+  double mean = 0.0;
+  double abs_mean = 0.0;
+};
+
+struct RobotFacts {
+  std::string robot;  ///< name in the world
+  std::uint32_t id = 0;
+  std::string controller;
+  std::string farm;  ///< "127.0.0.1:9000"
+  double wall_s = 0.0;
+  std::uint64_t steps = 0;  ///< of the controller
+  bool started = true;      ///< it did not wait for a start signal, or it came
+  bool done = false;        ///< as the controller says
+  bool answered = false;    ///< anything came from the farm
+  LinkCounts link;
+  std::uint64_t contacts = 0;  ///< moves that something stopped
+  double distance_m = 0.0;     ///< driven
+  base::Pose pose;             ///< at the end
+  ErrorFacts error;
+};
+
+std::string json_of(const RobotFacts& facts);
+std::string text_of(const RobotFacts& facts);
+
+}  // namespace sf::apps

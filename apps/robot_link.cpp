@@ -1,0 +1,185 @@
+#include "apps/robot_link.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "apps/facts.h"
+#include "apps/post.h"
+#include "apps/wire_names.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr std::int64_t kMilli = 1'000'000;            ///< [ns]
+constexpr std::int64_t kRequest = 500 * kMilli;       ///< [ns] between two SUBSCRIBEs: four within the farm's patience
+constexpr std::int64_t kLongestSleep = 100 * kMilli;  ///< [ns] a request to stop is seen soon enough
+constexpr std::uint32_t kRelayed = 1;                 ///< among the streams of a type: passed on by the farm
+
+std::uint32_t stream_number(netio::Type type, std::uint32_t low) {
+  return static_cast<std::uint32_t>(type) << 16 | low;
+}
+
+netio::LinkPlan link_plan(const Options& options) {
+  return {.delay = options.delay, .jitter = options.jitter, .loss = options.loss, .seed = options.seed};
+}
+
+std::vector<std::uint32_t> others_of(const world::World& world, std::uint32_t id) {
+  std::vector<std::uint32_t> ids = ids_of(wire_names(world).robots);
+  ids.erase(std::remove(ids.begin(), ids.end(), id), ids.end());
+  return ids;
+}
+
+/// A farm on this machine is heard on loopback alone.
+std::uint32_t listening_address(std::uint32_t farm) { return farm >> 24 == 127 ? netio::kLoopback : 0; }
+
+}  // namespace
+
+RobotLink::RobotLink(const world::World& world, const sensors::Roster& roster, std::uint32_t mover,
+                     const Options& options, Hear hear)
+    : mover_(mover),
+      id_(world.movers[mover].id),
+      streams_(streams_of(roster, mover)),
+      farm_{netio::resolve(options.server), static_cast<std::uint16_t>(options.port)},
+      radio_({.farm = farm_, .robot = id_, .others = others_of(world, id_)}),
+      ears_(listening_address(farm_.address), std::size_t{1} << 20, plans(options)),
+      receiver_(receiver_options(options)),
+      out_(link_plan(options)),
+      in_(link_plan(options)),
+      hear_(std::move(hear)) {}
+
+std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::Roster& roster, std::uint32_t mover) {
+  std::vector<Stream> streams;
+  for (const Source& source : sources_of(roster, mover))
+    if (source.kind->read != nullptr) streams.push_back({source});
+  return streams;
+}
+
+std::vector<netio::StreamPlan> RobotLink::plans(const Options& options) const {
+  std::vector<netio::StreamPlan> plans;
+  for (const Stream& stream : streams_) {
+    const sensors::SensorKind& kind = *stream.source.kind;
+    plans.push_back({id_, stream.source.row->sensor, port_rule(options, kind), std::string(kind.name)});
+  }
+  return plans;
+}
+
+netio::ReceiverOptions RobotLink::receiver_options(const Options& options) const {
+  netio::ReceiverOptions receiver;
+  const std::vector<netio::StreamPlan> all = plans(options);
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    const Source& source = streams_[i].source;
+    receiver.streams.push_back({all[i], source.row->elements * element_width(*source.kind)});
+  }
+  receiver.headerless = options.wire == sensors::Wire::thesis;
+  const sensors::Wire wire = options.wire;
+  receiver.judge = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
+    return judge_payload(streams_[i].source, wire, header, payload);
+  };
+  receiver.read = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload,
+                               std::span<double> values) {
+    read_payload(streams_[i].source, wire, header, payload, values);
+  };
+  return receiver;
+}
+
+void RobotLink::say(const netio::V2v& state, std::int64_t now) {
+  netio::Header header;
+  header.robot = static_cast<std::uint16_t>(id_);
+  header.time = now;
+  if (now >= next_request_) {
+    netio::Subscribe request{netio::kOthers};
+    for (const Stream& stream : streams_) request.kinds |= 1u << stream.source.kind->id;
+    header.sequence = requests_;
+    netio::encode(header, request, packet_);
+    send(netio::Type::subscribe, requests_++, now);
+    next_request_ = now + kRequest;
+  }
+  header.sequence = states_;
+  netio::encode(header, state, packet_);
+  send(netio::Type::v2v, states_++, now);
+}
+
+void RobotLink::send(netio::Type type, std::uint32_t sequence, std::int64_t now) {
+  out_.send({id_, stream_number(type, 0), sequence}, now, 0, packet_);
+  out_.release(now, [&](std::size_t, std::span<const std::uint8_t> bytes) { radio_.send(bytes); });
+}
+
+void RobotLink::wait(std::int64_t now, std::int64_t until) const {
+  const std::int64_t next = std::min({until, out_.next(), in_.next(), now + kLongestSleep});
+  if (next <= now) return;
+  netio::wait_readable(radio_.socket(), ears_.any(), static_cast<int>((next - now + kMilli - 1) / kMilli));
+}
+
+void RobotLink::run(std::int64_t now) {
+  out_.release(now, [&](std::size_t, std::span<const std::uint8_t> bytes) { radio_.send(bytes); });
+  ears_.drain(0, [&](std::size_t i, std::span<const std::uint8_t> bytes) {
+    in_.send(name_reading(streams_[i], bytes), now, i, bytes);
+  });
+  radio_.receive([&](std::span<const std::uint8_t> bytes) { in_.send(name_word(bytes), now, streams_.size(), bytes); });
+  in_.release(now, [&](std::size_t tag, std::span<const std::uint8_t> bytes) { take(tag, bytes, now); });
+}
+
+/// The first datagram of a reading has the fate that the reading has in a simulation with the same link.
+netio::Message RobotLink::name_reading(Stream& stream, std::span<const std::uint8_t> bytes) const {
+  netio::Packet packet;
+  if (netio::decode(bytes, packet) == netio::Reason::accepted && packet.header.sequence != stream.sequence) {
+    stream.sequence = packet.header.sequence;
+    stream.piece = 0;
+  }
+  const std::uint32_t low = stream.source.row->sensor;
+  return {id_, std::uint32_t{stream.source.kind->id} << 16 | low, stream.piece++ << 32 | stream.sequence};
+}
+
+netio::Message RobotLink::name_word(std::span<const std::uint8_t> bytes) {
+  netio::Packet packet;
+  if (netio::decode(bytes, packet) == netio::Reason::accepted && packet.header.type == netio::Type::v2v)
+    return {id_, stream_number(netio::Type::v2v, kRelayed),
+            std::uint64_t{packet.header.robot} << 32 | packet.header.sequence};
+  return {id_, stream_number(netio::Type::start, kRelayed), words_++};
+}
+
+void RobotLink::take(std::size_t tag, std::span<const std::uint8_t> bytes, std::int64_t now) {
+  if (tag == streams_.size()) return take_word(bytes, now);
+  const netio::Taken taken = receiver_.accept(tag, bytes, now);
+  if (taken == netio::Taken::refused) return;
+  last_answer_ = now;
+  answered_ = true;
+  if (taken != netio::Taken::whole) return;
+  ++streams_[tag].whole;
+  clock_.see(receiver_.newest(tag)->time, now);
+}
+
+void RobotLink::take_word(std::span<const std::uint8_t> bytes, std::int64_t now) {
+  netio::Packet packet;
+  if (radio_.accept(bytes, now, packet) != netio::Reason::accepted) return;
+  last_answer_ = now;
+  answered_ = true;
+  hear_(packet, now);
+}
+
+std::span<RobotLink::Newest> RobotLink::readings() {
+  newest_.clear();
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    const auto whole = receiver_.newest(i);
+    if (!whole) continue;
+    const Source& source = streams_[i].source;
+    Newest& newest = newest_.emplace_back();
+    newest.row = source.row;
+    newest.block.mover = mover_;
+    newest.block.sensor = source.row->sensor;
+    newest.block.kind = source.kind->id;
+    newest.block.sequence = whole->sequence;
+    newest.block.time = clock_.own(whole->time);
+    newest.block.values = whole->values;
+  }
+  return newest_;
+}
+
+LinkCounts RobotLink::counts() const {
+  LinkCounts counts{radio_.sent(), out_.counts(), in_.counts(), receiver_.counts(), radio_.counts(), {}};
+  for (const Stream& stream : streams_) counts.whole[std::string(stream.source.kind->name)] += stream.whole;
+  return counts;
+}
+
+}  // namespace sf::apps

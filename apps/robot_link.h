@@ -1,0 +1,107 @@
+#pragma once
+// A robot's two ways of hearing: its sensors' ports, and the socket it speaks from. What is sent and what comes passes
+// the injected link.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/options.h"
+#include "apps/payloads.h"
+#include "base/reading.h"
+#include "netio/delay_line.h"
+#include "netio/ears.h"
+#include "netio/farm_clock.h"
+#include "netio/radio.h"
+#include "netio/receiver.h"
+#include "sensors/roster.h"
+#include "world/world.h"
+
+namespace sf::apps {
+
+struct LinkCounts {
+  netio::OutboxCounts sent;
+  netio::DelayCounts out;  ///< of the injected link
+  netio::DelayCounts in;
+  netio::ReceiverCounts readings;
+  netio::Counts words;                         ///< what came to the socket it speaks from
+  std::map<std::string, std::uint64_t> whole;  ///< readings, by kind
+};
+
+/// Times are of the robot's own clock [ns], which does not go back. World, roster and options must outlive it. One
+/// thread.
+class RobotLink {
+ public:
+  /// Is given each relayed state and start signal.
+  using Hear = std::function<void(const netio::Packet&, std::int64_t now)>;
+
+  /// @throws base::InputError when a port is taken or the farm's host is unknown.
+  RobotLink(const world::World& world, const sensors::Roster& roster, std::uint32_t mover, const Options& options,
+            Hear hear);
+
+  /// Sends a state, and every half a second what it wants to be sent.
+  void say(const netio::V2v& state, std::int64_t now);
+  /// Sleeps until something comes, is due, or it is `until`, but 100 ms at most.
+  void wait(std::int64_t now, std::int64_t until) const;
+  /// Takes all that waits, and lets go what is due in both directions.
+  void run(std::int64_t now);
+
+  /// The newest of each sensor, with its time in the robot's own clock. `X_WM` and `X_WS` are left to the caller. Lives
+  /// until the next call, or `run`.
+  struct Newest {
+    base::ReadingBlock block;
+    const sensors::SensorRow* row = nullptr;
+  };
+  std::span<Newest> readings();
+
+  /// A state of robot `id` came in the last two seconds.
+  bool heard(std::uint32_t id, std::int64_t now) const { return radio_.heard(id, now); }
+  const netio::FarmClock& clock() const { return clock_; }
+  std::int64_t last_answer() const { return last_answer_; }  ///< [ns] when anything good came; 0: nothing did yet
+  bool answered() const { return answered_; }
+  bool listens() const { return !streams_.empty(); }  ///< to any sensor
+  const netio::Endpoint& farm() const { return farm_; }
+  LinkCounts counts() const;
+
+ private:
+  /// One sensor's packets, as the injected link names them.
+  struct Stream {
+    Source source;
+    std::uint32_t sequence = 0;  ///< of the reading that came last
+    std::uint64_t piece = 0;     ///< datagrams of it that came before
+    std::uint64_t whole = 0;     ///< readings
+  };
+  static std::vector<Stream> streams_of(const sensors::Roster& roster, std::uint32_t mover);
+  std::vector<netio::StreamPlan> plans(const Options& options) const;
+  netio::ReceiverOptions receiver_options(const Options& options) const;
+  void send(netio::Type type, std::uint32_t sequence, std::int64_t now);
+  netio::Message name_reading(Stream& stream, std::span<const std::uint8_t> bytes) const;
+  netio::Message name_word(std::span<const std::uint8_t> bytes);
+  void take(std::size_t tag, std::span<const std::uint8_t> bytes, std::int64_t now);
+  void take_word(std::span<const std::uint8_t> bytes, std::int64_t now);
+
+  std::uint32_t mover_;
+  std::uint32_t id_;
+  std::vector<Stream> streams_;
+  netio::Endpoint farm_;
+  netio::Radio radio_;
+  netio::Ears ears_;
+  netio::Receiver receiver_;
+  netio::DelayLine out_;
+  netio::DelayLine in_;  ///< tags are streams, and one more for words
+  netio::FarmClock clock_;
+  Hear hear_;
+  std::uint32_t states_ = 0;       ///< sent
+  std::uint32_t requests_ = 0;     ///< sent
+  std::int64_t next_request_ = 0;  ///< [ns]
+  std::uint64_t words_ = 0;        ///< that came and are no states
+  std::int64_t last_answer_ = 0;
+  bool answered_ = false;
+  std::vector<Newest> newest_;
+  base::Bytes packet_;
+};
+
+}  // namespace sf::apps

@@ -1,0 +1,22 @@
+#pragma once
+// Who on the wire is which mover of a world.
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "world/world.h"
+
+namespace sf::apps {
+
+/// Rows in `World::movers` by id on the wire.
+struct WireNames {
+  std::map<std::uint32_t, std::uint32_t> robots;
+  std::map<std::uint32_t, std::uint32_t> tags;
+};
+
+WireNames wire_names(const world::World& world);
+
+std::vector<std::uint32_t> ids_of(const std::map<std::uint32_t, std::uint32_t>& rows);
+
+}  // namespace sf::apps

@@ -1,0 +1,47 @@
+#include "netio/delay_line.h"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+namespace sf::netio {
+
+bool DelayLine::later(const Waiting& one, const Waiting& other) {
+  return std::tie(one.arrival, one.order) > std::tie(other.arrival, other.order);
+}
+
+void DelayLine::send(const Message& message, std::int64_t now, std::size_t tag, std::span<const std::uint8_t> bytes) {
+  const auto delay = fate(plan_, message);
+  if (!delay) {
+    ++counts_.lost;
+    return;
+  }
+  if (waiting_.size() == kCapacity) {
+    ++counts_.full;
+    return;
+  }
+  if (free_.empty()) {
+    free_.push_back(memory_.size());
+    memory_.emplace_back();
+  }
+  const std::size_t slot = free_.back();
+  free_.pop_back();
+  memory_[slot].assign(bytes.begin(), bytes.end());
+  waiting_.push_back({now + *delay, order_++, tag, slot});
+  std::push_heap(waiting_.begin(), waiting_.end(), later);
+}
+
+/// Its memory is given to the next one sent, so it lives until then.
+DelayLine::Waiting DelayLine::pop() {
+  std::pop_heap(waiting_.begin(), waiting_.end(), later);
+  const Waiting next = waiting_.back();
+  waiting_.pop_back();
+  free_.push_back(next.slot);
+  return next;
+}
+
+std::int64_t DelayLine::next() const {
+  return waiting_.empty() ? std::numeric_limits<std::int64_t>::max() : waiting_.front().arrival;
+}
+
+}  // namespace sf::netio

@@ -1,0 +1,45 @@
+#include "netio/receiver.h"
+
+#include "base/error.h"
+
+namespace sf::netio {
+
+Receiver::Receiver(const ReceiverOptions& options)
+    : headerless_(options.headerless), judge_(options.judge), read_(options.read) {
+  SF_CHECK(judge_ != nullptr && read_ != nullptr, "a receiver without a judge or a reader");
+  for (const ReceiverStream& stream : options.streams) streams_.push_back({stream.plan, Assembler(stream.numbers), 0});
+}
+
+Taken Receiver::accept(std::size_t i, std::span<const std::uint8_t> bytes, std::int64_t now) {
+  Stream& stream = streams_[i];
+  Header header;
+  std::span<const std::uint8_t> payload = bytes;
+  Verdict verdict;
+  if (!headerless_) verdict.reason = unframe(bytes, stream.plan, header, payload);
+  if (verdict.reason == Reason::accepted) verdict = judge_(i, header, payload);
+  counts_.reasons.add(verdict.reason);
+  if (verdict.reason != Reason::accepted) return Taken::refused;
+
+  if (headerless_) {
+    header.sequence = stream.came++;
+    header.time = now;
+  }
+  const Piece piece{header.sequence, verdict.part, verdict.parts, header.time};
+  const Taken taken =
+      stream.assembler.take(piece, now, [&](std::span<double> values) { read_(i, header, payload, values); });
+  counts_.whole += taken == Taken::whole;
+  counts_.late += taken == Taken::late;
+  counts_.duplicates += taken == Taken::duplicate;
+  return taken;
+}
+
+ReceiverCounts Receiver::counts() const {
+  ReceiverCounts counts = counts_;
+  for (const Stream& stream : streams_) {
+    counts.lost += stream.assembler.lost();
+    counts.restarts += stream.assembler.restarts();
+  }
+  return counts;
+}
+
+}  // namespace sf::netio

@@ -1,0 +1,73 @@
+#pragma once
+// A robot's sensors as they come to it: datagrams in, the newest whole reading of each sensor out. What a payload says
+// is for a judge and a reader to tell, who know the sensors.
+//
+//   Receiver receiver({.streams = streams, .judge = judge, .read = read});
+//   ears.drain(0, [&](std::size_t i, auto bytes) { receiver.accept(i, bytes, now); });
+//   if (const auto scan = receiver.newest(0)) use(scan->values);
+//
+// One thread.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "netio/assembler.h"
+#include "netio/ears.h"
+#include "netio/listener.h"
+#include "netio/reason.h"
+
+namespace sf::netio {
+
+/// Writes what a payload that the judge accepted says into its whole reading's numbers.
+using Read = std::function<void(std::size_t stream, const Header&, std::span<const std::uint8_t> payload,
+                                std::span<double> values)>;
+
+struct ReceiverStream {
+  StreamPlan plan;
+  std::size_t numbers = 1;  ///< of a whole reading
+};
+
+struct ReceiverOptions {
+  std::vector<ReceiverStream> streams;  ///< one per sensor
+  bool headerless = false;  ///< datagrams are payloads, each a whole reading: they count in order of arrival
+  Judge judge;              ///< not empty; judges payloads only, of the stream's own robot and sensor
+  Read read;                ///< not empty
+};
+
+struct ReceiverCounts {
+  Counts reasons;                ///< datagrams
+  std::uint64_t whole = 0;       ///< readings that were the newest when they were whole
+  std::uint64_t late = 0;        ///< datagrams of readings that newer ones had overtaken
+  std::uint64_t duplicates = 0;  ///< datagrams
+  std::uint64_t lost = 0;        ///< datagrams that never came, by gaps; see Assembler
+  std::uint64_t restarts = 0;    ///< of streams
+};
+
+class Receiver {
+ public:
+  explicit Receiver(const ReceiverOptions& options);
+
+  /// Any bytes for stream `i`, which came at `now` [ns] of a clock that does not go back.
+  Taken accept(std::size_t i, std::span<const std::uint8_t> bytes, std::int64_t now);
+
+  /// Lives until the stream's next datagram.
+  std::optional<Whole> newest(std::size_t i) const { return streams_[i].assembler.newest(); }
+  ReceiverCounts counts() const;
+
+ private:
+  struct Stream {
+    StreamPlan plan;
+    Assembler assembler;
+    std::uint32_t came = 0;  ///< good ones without a header
+  };
+  std::vector<Stream> streams_;
+  bool headerless_;
+  Judge judge_;
+  Read read_;
+  ReceiverCounts counts_;
+};
+
+}  // namespace sf::netio
