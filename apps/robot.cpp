@@ -230,8 +230,8 @@ int robot(const Options& options) {
 
   const auto start = Clock::now();
   const auto now = [&] { return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count(); };
-  const auto period = std::llround(1e9 / process.rate());
-  const auto end = options.duration > 0.0 ? std::llround(1e9 * options.duration) : INT64_MAX;
+  const std::int64_t period = std::llround(1e9 / process.rate());
+  const std::int64_t end = options.duration > 0.0 ? std::llround(1e9 * options.duration) : INT64_MAX;
   for (std::int64_t next = 0; !stop_requested() && !process.done(); next = std::max(next + period, now() - period)) {
     process.wait_until(std::min(next, end), now);
     if (stop_requested() || now() >= end) break;

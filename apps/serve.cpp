@@ -43,10 +43,11 @@ class Service {
   std::uint16_t port() const { return inbox_.port(); }
   std::size_t robots() const { return names_.robots.size(); }
 
-  /// Sleeps until `when`, taking in what comes meanwhile.
+  /// Sleeps until `when`, taking in what comes meanwhile. Never less: at a tick that is early, a sensor of the same rate
+  /// would not be due yet.
   void wait_until(Clock::time_point start, Clock::time_point when) {
     for (;;) {
-      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(when - Clock::now()).count();
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(when - Clock::now()).count();
       if (left <= 0 || stop_requested()) return;
       inbox_.wait(static_cast<int>(std::min<long>(left, 100)));
       take_in((Clock::now() - start).count());

@@ -56,4 +56,6 @@ class Wander final : public Controller {
   double drift_ = 0.0;            ///< [rad/s] slow change of heading while it is free
 };
 
+extern const ControllerKind wander_controller;
+
 }  // namespace sf::control
