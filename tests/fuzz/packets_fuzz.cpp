@@ -15,6 +15,9 @@
 
 #include "netio/inbox.h"
 #include "netio/listener.h"
+#include "netio/radio.h"
+#include "netio/receiver.h"
+#include "netio/relay.h"
 #include "sensors/laser_packets.h"
 
 namespace {
@@ -41,6 +44,7 @@ void round_trip(const netio::Packet& packet, std::span<const std::uint8_t> bytes
   if (const auto* state = std::get_if<netio::V2v>(&packet.body)) netio::encode(packet.header, *state, again);
   if (const auto* state = std::get_if<netio::Tag>(&packet.body)) netio::encode(packet.header, *state, again);
   if (const auto* request = std::get_if<netio::Subscribe>(&packet.body)) netio::encode(packet.header, *request, again);
+  if (const auto* signal = std::get_if<netio::Start>(&packet.body)) netio::encode(packet.header, *signal, again);
   require(again.size() == bytes.size());
   for (std::size_t i = 0; i < again.size(); ++i) require(again[i] == bytes[i] || i == 10 || i == 11);  // reserved
 }
@@ -65,6 +69,19 @@ netio::Verdict judge_scan(std::size_t stream, const netio::Header& header, std::
   return {netio::Reason::accepted, part.elements, part.part, part.parts};
 }
 
+const netio::V2v* state_of(const netio::Packet& packet) { return std::get_if<netio::V2v>(&packet.body); }
+
+/// The robot's side of the same two streams: what is newest is whole, and in the range of what may be read.
+void receive(std::size_t stream, std::span<const std::uint8_t> bytes, std::int64_t now) {
+  static const auto read = [](std::size_t, const netio::Header&, std::span<const std::uint8_t> payload,
+                              std::span<double> values) { values[0] = static_cast<double>(payload.size()); };
+  static netio::Receiver receiver(
+      {.streams = {{{.robot = 7}, 1}, {{.robot = 7, .sensor = 1}, 1}}, .judge = judge_scan, .read = read});
+  const netio::Taken taken = receiver.accept(stream, bytes, now);
+  const auto newest = receiver.newest(stream);
+  if (taken == netio::Taken::whole) require(newest && newest->came == now && newest->values[0] > 0.0);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -74,6 +91,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static netio::Listener listener(
       {.streams = {{.robot = 7, .rule = {free_base, 8}}, {.robot = 7, .sensor = 1, .rule = {free_base, 8}}},
        .judge = judge_scan});
+  static netio::Relay relay(std::vector<std::uint32_t>{0, 7, 40'000});
+  static netio::Outbox nowhere({.patience_ms = 0});
+  static netio::Radio radio({.robot = 7, .others = {0, 40'000}});
   static std::int64_t now = 0;
 
   base::ByteReader reader({data, size});
@@ -89,9 +109,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       examine(packet);
       round_trip(packet, bytes);
       const std::uint32_t id = packet.header.robot;
-      if (packet.header.type != netio::Type::tag) require(inbox.heard(id, now) && inbox.address(id) == source);
+      const bool of_robot = packet.header.type == netio::Type::v2v || packet.header.type == netio::Type::subscribe;
+      if (of_robot) require(inbox.heard(id, now) && inbox.address(id) == source);
+      relay.take(packet);
     }
     listener.accept(sender & 1, bytes);
+    receive(sender & 1, bytes, now);
+    if (radio.accept(bytes, now, packet) == netio::Reason::accepted)
+      require(packet.header.robot != 7 || !state_of(packet));
+    if (sender % 8 == 0) relay.pass_on(inbox, now, nowhere);
   }
   return 0;
 }

@@ -8,6 +8,7 @@
 
 #include "netio/inbox.h"
 #include "netio/outbox.h"
+#include "netio/relay.h"
 #include "tests/netio/examples.h"
 
 namespace {
@@ -38,6 +39,8 @@ namespace {
 
 TEST(Allocation, NoneOnTheWayInOrOut) {
   Inbox inbox({.bind = {kLoopback, 0}, .robots = {7}, .tags = {12}});
+  Relay relay(std::vector<std::uint32_t>{7});
+  Outbox answers(inbox.socket());
   Outbox outbox;
   const Endpoint to{kLoopback, inbox.port()};
   const base::Bytes payload(1376, 5);
@@ -52,11 +55,14 @@ TEST(Allocation, NoneOnTheWayInOrOut) {
     frame({.robot = 7}, 1, payload, framed);
     outbox.queue(to, framed);
     outbox.flush();
-    taken += inbox.receive(round, [](const Packet&) {});
+    taken += inbox.receive(round, [&](const Packet& packet) { relay.take(packet); });
+    relay.pass_on(inbox, round, answers);
+    answers.flush();
   }
   EXPECT_EQ(allocations - before, 0u);
   EXPECT_GT(taken, 0u);
-  EXPECT_EQ(outbox.counts().sent, 20u * 6u);
+  EXPECT_GT(relay.counts().starts, 0u);
+  EXPECT_EQ(outbox.counts().sent, 20u * 7u);
 }
 
 }  // namespace

@@ -47,12 +47,20 @@ inline base::Bytes subscribe_example() {
   return out;
 }
 
-/// States that are sent to the farm.
-inline std::vector<base::Bytes> states() { return {v2v_example(), tag_example(), subscribe_example()}; }
+inline base::Bytes start_example() {
+  base::Bytes out;
+  encode({.robot = kEveryone}, Start{}, out);
+  return out;
+}
+
+/// States and requests that are sent to the farm.
+inline std::vector<base::Bytes> states() {
+  return {v2v_example(), tag_example(), subscribe_example(), start_example()};
+}
 
 /// The farm's own packets, in order of type number.
 inline std::vector<base::Bytes> examples() {
-  return {reading_example(), extended_example(), v2v_example(), tag_example(), subscribe_example()};
+  return {reading_example(), extended_example(), v2v_example(), tag_example(), subscribe_example(), start_example()};
 }
 
 /// Overwrites the value at `offset`.

@@ -111,6 +111,31 @@ TEST_F(InboxTest, StrangersCannotChoose) {
   EXPECT_TRUE(inbox.wants(7, kLaser, 0));
 }
 
+TEST_F(InboxTest, OthersStatesMustBeAskedFor) {
+  say(v2v(7, 0), 0);
+  EXPECT_FALSE(inbox.asks_for_others(7, 0));  // by name only: all kinds are not all there is
+  say(subscribe(0, 0), 0);
+  EXPECT_FALSE(inbox.asks_for_others(7, 0));
+  say(subscribe(1, kOthers), 0);
+  EXPECT_TRUE(inbox.asks_for_others(7, 0));
+  EXPECT_FALSE(inbox.wants(7, kLaser, 0));  // nothing else was asked for
+  say(subscribe(2, kOthers | 1u << kLaser), 0);
+  EXPECT_TRUE(inbox.asks_for_others(7, 0) && inbox.wants(7, kLaser, 0));
+  EXPECT_FALSE(inbox.asks_for_others(7, 2 * kSecond));  // fell silent
+  EXPECT_FALSE(inbox.asks_for_others(3, 0));            // never spoke
+  EXPECT_FALSE(inbox.asks_for_others(99, 0));           // is nobody
+}
+
+TEST_F(InboxTest, AnybodyMayStartRobots) {
+  say(v2v(7, 0), 0);
+  EXPECT_EQ(say(start_example(), 0, kBob), Reason::accepted);  // not who is bound
+  EXPECT_EQ(say(start_example(), 0, kBob), Reason::accepted);  // and again
+  EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 3), 0, kBob), Reason::accepted);
+  EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 8), 0, kBob), Reason::unknown_robot);
+  EXPECT_FALSE(inbox.heard(3, 0));  // that says nothing of the robot
+  EXPECT_EQ(inbox.address(7), kAlice);
+}
+
 TEST_F(InboxTest, AMillionRandomAndMutatedDatagrams) {
   std::mt19937 random(20260101);  // NOLINT: the same datagrams every time
   const std::vector<base::Bytes> seeds = examples();

@@ -34,6 +34,7 @@ TEST(Packets, BytesAreTheDocumentedOnes) {
   EXPECT_EQ(v2v_example(), documented("v2v"));
   EXPECT_EQ(tag_example(), documented("tag"));
   EXPECT_EQ(subscribe_example(), documented("subscribe"));
+  EXPECT_EQ(start_example(), documented("start"));
 }
 
 TEST(Packets, HeaderComesBack) {
@@ -84,6 +85,17 @@ TEST(Packets, TagComesBack) {
 }
 
 TEST(Packets, SubscribeComesBack) { EXPECT_EQ(body_of<Subscribe>(subscribe_example()).kinds, 2u); }
+
+TEST(Packets, StartIsItsHeaderAlone) {
+  base::Bytes bytes;
+  encode({.robot = 7, .sequence = 3}, Start{}, bytes);
+  EXPECT_EQ(bytes.size(), kHeaderBytes);
+  Packet packet;
+  ASSERT_EQ(decode(bytes, packet), Reason::accepted);
+  EXPECT_TRUE(std::holds_alternative<Start>(packet.body));
+  EXPECT_EQ(packet.header.type, Type::start);
+  EXPECT_EQ(packet.header.robot, 7);
+}
 
 TEST(Packets, ReservedBytesOfTheHeaderAreIgnored) {
   EXPECT_EQ(reason_of(patched<std::uint16_t>(v2v_example(), 10, 0xFFFF)), Reason::accepted);
@@ -136,7 +148,7 @@ TEST(Packets, TypesBelow128AreReadingsOfTheirKind) {
   for (int type = 0; type < 256; ++type) {
     const bool is_reading = type < 128 && type % 64 != 0;  // kind 0 is nobody's
     EXPECT_EQ(kind_of(Type(type)), is_reading ? type % 64 : 0) << type;
-    const bool is_state = type >= 128 && type <= 130;
+    const bool is_state = type >= 128 && type <= 131;
     if (is_state) continue;
     EXPECT_EQ(reason_of(patched(reading_example(), 5, static_cast<std::uint8_t>(type))),
               is_reading ? Reason::accepted : Reason::unknown_type)

@@ -1,0 +1,185 @@
+#include "netio/assembler.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+
+#include "netio/bindings.h"
+
+namespace sf::netio {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+/// Readings of three parts with two numbers each: 10 * sequence + part, twice.
+struct Parts {
+  Assembler assembler{6};
+  std::int64_t now = 0;
+
+  Taken say(std::uint32_t sequence, std::uint32_t part, std::uint32_t parts = 3, std::int64_t time = 0) {
+    return assembler.take({sequence, part, parts, time}, now, [&](std::span<double> values) {
+      values[2 * part] = values[2 * part + 1] = 10.0 * sequence + part;
+    });
+  }
+  std::vector<double> values() const {
+    const auto whole = assembler.newest();
+    return whole ? std::vector<double>(whole->values.begin(), whole->values.end()) : std::vector<double>{};
+  }
+};
+
+/// Readings of one number in one part.
+struct Plain {
+  Assembler assembler{1};
+  Taken say(std::uint32_t sequence, std::int64_t now = 0) {
+    return assembler.take({sequence, 0, 1, now}, now, [&](std::span<double> values) { values[0] = sequence; });
+  }
+  double value() const { return assembler.newest() ? assembler.newest()->values[0] : NAN; }
+};
+
+TEST(Assembler, NothingIsNewestAtFirst) {
+  EXPECT_FALSE(Assembler(3).newest());
+  EXPECT_EQ(Assembler(3).lost(), 0u);
+}
+
+TEST(Assembler, TheLastPartMakesItWhole) {
+  Parts p;
+  EXPECT_EQ(p.say(4, 2), Taken::part);  // in any order
+  EXPECT_EQ(p.say(4, 0), Taken::part);
+  EXPECT_TRUE(p.values().empty());
+  p.now = 9;
+  EXPECT_EQ(p.say(4, 1), Taken::whole);
+  EXPECT_EQ(p.values(), (std::vector<double>{40, 40, 41, 41, 42, 42}));
+  EXPECT_EQ(p.assembler.newest()->sequence, 4u);
+  EXPECT_EQ(p.assembler.newest()->came, 9);
+  EXPECT_EQ(p.assembler.lost(), 0u);
+}
+
+TEST(Assembler, WhatNoPartSaysIsNotANumber) {
+  Assembler assembler(3);
+  assembler.take({0, 0, 1, 0}, 0, [](std::span<double> values) { values[1] = 5.0; });
+  EXPECT_TRUE(std::isnan(assembler.newest()->values[0]));
+  EXPECT_EQ(assembler.newest()->values[1], 5.0);
+  assembler.take({1, 0, 1, 0}, 0, [](std::span<double>) {});  // memory that was used before
+  EXPECT_TRUE(std::isnan(assembler.newest()->values[1]));
+}
+
+TEST(Assembler, PartsOfTwoReadingsMayInterleave) {
+  Parts p;
+  p.say(1, 0);
+  p.say(2, 0);
+  p.say(1, 1);
+  p.say(2, 2);
+  EXPECT_EQ(p.say(1, 2), Taken::whole);
+  EXPECT_EQ(p.values()[0], 10.0);
+  EXPECT_EQ(p.say(2, 1), Taken::whole);
+  EXPECT_EQ(p.values()[0], 20.0);
+}
+
+TEST(Assembler, ANewerWholeOneGivesUpTheOlder) {
+  Parts p;
+  p.say(1, 0);
+  for (const std::uint32_t part : {0u, 1u, 2u}) p.say(2, part);
+  EXPECT_EQ(p.say(1, 1), Taken::late);
+  EXPECT_EQ(p.say(1, 2), Taken::late);
+  EXPECT_EQ(p.values()[0], 20.0);
+}
+
+TEST(Assembler, RepetitionsAreDuplicates) {
+  Parts p;
+  p.say(1, 0);
+  EXPECT_EQ(p.say(1, 0), Taken::duplicate);  // while parts are missing
+  p.say(1, 1);
+  p.say(1, 2);
+  EXPECT_EQ(p.say(1, 2), Taken::duplicate);  // once it is whole
+}
+
+TEST(Assembler, OnlySoManyReadingsAreAwaited) {
+  Parts p;
+  for (std::uint32_t sequence = 0; sequence <= Assembler::kOpen; ++sequence) p.say(sequence, 0);
+  EXPECT_EQ(p.say(0, 1), Taken::late);  // gave way to the last
+  p.say(1, 1);
+  EXPECT_EQ(p.say(1, 2), Taken::whole);  // the oldest that is left
+}
+
+TEST(Assembler, PartsThatDoNotFitTheirReadingAreLeftOut) {
+  Parts p;
+  p.say(1, 0);
+  EXPECT_EQ(p.say(1, 1, 2), Taken::late);     // of another number of parts
+  EXPECT_EQ(p.say(1, 1, 3, 7), Taken::late);  // measured at another time
+  EXPECT_EQ(p.say(1, 1, 3, 0), Taken::part);
+}
+
+TEST(Assembler, OldReadingsNeverComeBack) {
+  Plain p;
+  EXPECT_EQ(p.say(5), Taken::whole);
+  EXPECT_EQ(p.say(4), Taken::late);
+  EXPECT_EQ(p.value(), 5.0);
+  EXPECT_EQ(p.say(9), Taken::whole);
+  EXPECT_EQ(p.assembler.lost(), 3u);  // 6, 7, 8; what came before the first is none of its business
+}
+
+TEST(Assembler, SequencesWrap) {
+  Plain p;
+  EXPECT_EQ(p.say(0xFFFFFFFEu), Taken::whole);
+  EXPECT_EQ(p.say(1), Taken::whole);
+  EXPECT_EQ(p.say(0xFFFFFFFFu), Taken::late);  // came after all
+  EXPECT_EQ(p.assembler.lost(), 1u);           // 0
+}
+
+TEST(Assembler, ASenderThatBeginsAnewIsBelievedAfterTwoSeconds) {
+  Plain p;
+  p.say(5000, 0);
+  EXPECT_EQ(p.say(0, 2 * kSecond - 1), Taken::late);
+  EXPECT_EQ(p.assembler.restarts(), 0u);
+  EXPECT_EQ(p.say(1, 2 * kSecond), Taken::whole);
+  EXPECT_EQ(p.value(), 1.0);
+  EXPECT_EQ(p.assembler.restarts(), 1u);
+  EXPECT_EQ(p.say(2, 2 * kSecond + 1), Taken::whole);
+}
+
+TEST(Assembler, AfterSilenceNewerOnesAreNoRestart) {
+  Plain p;
+  p.say(5, 0);
+  EXPECT_EQ(p.say(7, 10 * kSecond), Taken::whole);
+  EXPECT_EQ(p.assembler.restarts(), 0u);
+  EXPECT_EQ(p.assembler.lost(), 1u);
+}
+
+// Any order, any repetition, any loss: what is newest is always whole, right, and never older than before.
+TEST(Assembler, AnyArrivalOrderKeepsThePromise) {
+  std::mt19937 random(7);  // NOLINT: the same every time
+  std::uint64_t whole = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pieces;
+    const std::uint32_t first = 0xFFFFFFF0u;  // across the wrap
+    for (std::uint32_t k = 0; k < 40; ++k)
+      for (std::uint32_t part = 0; part < 3; ++part)
+        for (std::uint32_t copies = random() % 4; copies > 0; --copies) pieces.emplace_back(first + k, part);
+    for (std::size_t i = 0; i + 1 < pieces.size(); ++i)
+      std::swap(pieces[i], pieces[i + random() % std::min<std::size_t>(12, pieces.size() - i)]);
+
+    Parts p;
+    std::map<std::uint32_t, std::set<std::uint32_t>> came;
+    std::optional<std::uint32_t> newest;
+    for (const auto& [sequence, part] : pieces) {
+      came[sequence].insert(part);
+      if (p.say(sequence, part) == Taken::whole) {
+        ++whole;
+        ASSERT_TRUE(!newest || newer(sequence, *newest));
+        ASSERT_EQ(came[sequence].size(), 3u) << "whole before its parts came";
+        newest = sequence;
+      }
+      if (!newest) continue;
+      ASSERT_EQ(p.assembler.newest()->sequence, *newest);
+      for (std::uint32_t i = 0; i < 6; ++i) ASSERT_EQ(p.values()[i], 10.0 * *newest + i / 2);
+    }
+  }
+  EXPECT_GT(whole, 1000u);
+}
+
+}  // namespace
+}  // namespace sf::netio

@@ -1,0 +1,114 @@
+#include "netio/receiver.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/netio/examples.h"
+
+namespace sf::netio {
+namespace {
+
+/// A made-up kind's payloads: part, parts, then one byte that is the part's number; 255 is refused.
+Verdict judge(std::size_t, const Header&, std::span<const std::uint8_t> payload) {
+  if (payload.size() < 3) return {Reason::too_short};
+  if (payload.size() > 3) return {Reason::too_long};
+  if (payload[2] == 255 || payload[1] != 2 || payload[0] >= 2) return {Reason::out_of_range};
+  return {Reason::accepted, 1, payload[0], payload[1]};
+}
+
+void read(std::size_t stream, const Header&, std::span<const std::uint8_t> payload, std::span<double> values) {
+  values[payload[0]] = 1000.0 * static_cast<double>(stream) + payload[2];
+}
+
+ReceiverOptions options(bool headerless = false) {
+  return {.streams = {{{.robot = 7, .sensor = 0}, 2}, {{.robot = 7, .sensor = 1}, 2}},
+          .headerless = headerless,
+          .judge = judge,
+          .read = read};
+}
+
+base::Bytes part(std::uint16_t sensor, std::uint32_t sequence, std::uint8_t number, std::uint8_t value) {
+  base::Bytes bytes;
+  const std::uint8_t payload[] = {number, 2, value};
+  frame({.robot = 7, .sensor = sensor, .sequence = sequence, .time = 1000 + std::int64_t{sequence}}, 5, payload, bytes);
+  return bytes;
+}
+
+TEST(Receiver, GivesTheNewestWholeReadingOfEachSensor) {
+  Receiver receiver(options());
+  EXPECT_FALSE(receiver.newest(0));
+  EXPECT_EQ(receiver.accept(0, part(0, 4, 1, 11), 5), Taken::part);
+  EXPECT_EQ(receiver.accept(0, part(0, 4, 0, 10), 6), Taken::whole);
+  EXPECT_EQ(receiver.accept(1, part(1, 9, 0, 20), 7), Taken::part);
+  const auto whole = receiver.newest(0);
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->time, 1004);
+  EXPECT_EQ(whole->came, 6);
+  EXPECT_EQ(whole->values[0], 10.0);
+  EXPECT_EQ(whole->values[1], 11.0);
+  EXPECT_FALSE(receiver.newest(1));
+  EXPECT_EQ(receiver.counts().whole, 1u);
+}
+
+TEST(Receiver, CountsWhatItDoesNotUse) {
+  Receiver receiver(options());
+  EXPECT_EQ(receiver.accept(0, part(1, 4, 0, 1), 0), Taken::refused);  // another sensor's port
+  EXPECT_EQ(receiver.accept(0, v2v_example(), 0), Taken::refused);
+  EXPECT_EQ(receiver.accept(0, part(0, 4, 0, 255), 0), Taken::refused);
+  receiver.accept(0, part(0, 4, 0, 1), 0);
+  EXPECT_EQ(receiver.accept(0, part(0, 4, 0, 1), 0), Taken::duplicate);
+  receiver.accept(0, part(0, 4, 1, 1), 0);
+  EXPECT_EQ(receiver.accept(0, part(0, 3, 1, 1), 0), Taken::late);
+  receiver.accept(0, part(0, 6, 1, 1), 0);
+  const ReceiverCounts counts = receiver.counts();
+  EXPECT_EQ(counts.reasons[Reason::wrong_source], 1u);
+  EXPECT_EQ(counts.reasons[Reason::wrong_direction], 1u);
+  EXPECT_EQ(counts.reasons[Reason::out_of_range], 1u);
+  EXPECT_EQ(counts.reasons[Reason::accepted], 5u);
+  EXPECT_EQ(counts.duplicates, 1u);
+  EXPECT_EQ(counts.late, 1u);
+  EXPECT_EQ(counts.lost, 3u);  // both parts of 5, one of 6
+}
+
+TEST(Receiver, HeaderlessReadingsCountInOrderOfArrival) {
+  ReceiverOptions plain = options(true);
+  plain.judge = [](std::size_t, const Header&, std::span<const std::uint8_t> payload) -> Verdict {
+    return {payload.size() == 1 ? Reason::accepted : Reason::too_short, 1, 0, 1};
+  };
+  plain.read = [](std::size_t, const Header&, std::span<const std::uint8_t> payload, std::span<double> values) {
+    values[0] = payload[0];
+  };
+  Receiver receiver(plain);
+  EXPECT_EQ(receiver.accept(0, base::Bytes{}, 5), Taken::refused);
+  for (const std::uint8_t value : base::Bytes{3, 1, 2})
+    EXPECT_EQ(receiver.accept(0, base::Bytes{value}, 10 + value), Taken::whole);
+  EXPECT_EQ(receiver.newest(0)->values[0], 2.0);
+  EXPECT_EQ(receiver.newest(0)->time, 12);  // they do not tell theirs
+  EXPECT_EQ(receiver.newest(0)->sequence, 2u);
+}
+
+TEST(Receiver, AMillionRandomAndMutatedDatagrams) {
+  std::mt19937 random(20260102);  // NOLINT: the same datagrams every time
+  Receiver receiver(options());
+  base::Bytes bytes;
+  std::uint64_t wholes = 0;
+  for (int i = 0; i < 1'000'000; ++i) {
+    const auto sensor = static_cast<std::uint16_t>(random() % 2);
+    const auto sequence = static_cast<std::uint32_t>(i / 8) + static_cast<std::uint32_t>(random() % 6);
+    bytes = part(sensor, sequence, static_cast<std::uint8_t>(random() % 2), static_cast<std::uint8_t>(random()));
+    for (auto edits = random() % 3; edits > 0; --edits)
+      bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
+    if (random() % 16 == 0) bytes.resize(random() % 64);
+    const auto now = std::int64_t{i} * 1'000'000;
+    wholes += receiver.accept(random() % 2, bytes, now) == Taken::whole;
+  }
+  EXPECT_EQ(receiver.counts().reasons.total(), 1'000'000u);
+  EXPECT_EQ(receiver.counts().whole, wholes);
+  EXPECT_GT(wholes, 1000u);
+  EXPECT_GT(receiver.counts().late, 0u);
+  EXPECT_GT(receiver.counts().duplicates, 0u);
+}
+
+}  // namespace
+}  // namespace sf::netio

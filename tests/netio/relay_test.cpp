@@ -1,0 +1,211 @@
+#include "netio/relay.h"
+
+#include <gtest/gtest.h>
+
+#include "netio/radio.h"
+#include "tests/netio/examples.h"
+
+namespace sf::netio {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+/// A farm with three robots; each test speaks for them.
+struct RelayTest : testing::Test {
+  Inbox inbox{{.bind = {kLoopback, 0}, .robots = {3, 7, 9}}};
+  Relay relay{std::vector<std::uint32_t>{9, 3, 7}};
+  Outbox outbox{inbox.socket()};
+  std::vector<std::unique_ptr<Radio>> radios;
+  std::uint32_t sequence = 0;
+
+  RelayTest() {
+    for (const std::uint32_t id : {3u, 7u, 9u}) {
+      RadioOptions options{.farm = {kLoopback, inbox.port()}, .robot = id};
+      for (const std::uint32_t other : {3u, 7u, 9u})
+        if (other != id) options.others.push_back(other);
+      radios.push_back(std::make_unique<Radio>(options));
+    }
+  }
+  Radio& radio(std::uint32_t id) { return *radios[id == 3 ? 0 : id == 7 ? 1 : 2]; }
+
+  void say(std::uint32_t id, double x) {
+    base::Bytes bytes;
+    encode({.robot = static_cast<std::uint16_t>(id), .sequence = sequence++}, V2v{.X_WR = {x, 0, 0, 0}}, bytes);
+    radio(id).send(bytes);
+    take();
+  }
+  void ask(std::uint32_t id, std::uint32_t kinds) {
+    base::Bytes bytes;
+    encode({.robot = static_cast<std::uint16_t>(id), .sequence = sequence++}, Subscribe{kinds}, bytes);
+    radio(id).send(bytes);
+    take();
+  }
+  void start(std::uint16_t id) {
+    base::Bytes bytes;
+    encode({.robot = id}, Start{}, bytes);
+    radio(3).send(bytes);
+    take();
+  }
+  void take() {
+    std::size_t taken = 0;
+    for (int looks = 0; taken == 0 && looks < 10'000'000; ++looks)
+      taken = inbox.receive(0, [&](const Packet& packet) { relay.take(packet); });
+  }
+  void tick(std::int64_t now = 0) {
+    relay.pass_on(inbox, now, outbox);
+    outbox.flush();
+  }
+  /// What a robot hears: loopback gives at once what was sent.
+  std::vector<Packet> heard(std::uint32_t id, std::int64_t now = 0) {
+    std::vector<Packet> packets;
+    Radio& one = radio(id);
+    one.receive([&](std::span<const std::uint8_t> bytes) {
+      Packet packet;
+      if (one.accept(bytes, now, packet) == Reason::accepted) packets.push_back(packet);
+    });
+    return packets;
+  }
+};
+
+TEST_F(RelayTest, OthersStatesGoToThoseThatAsked) {
+  ask(3, kOthers);
+  say(3, 1.0);
+  say(7, 2.0);
+  tick();
+  const auto packets = heard(3);
+  ASSERT_EQ(packets.size(), 1u);  // not its own
+  EXPECT_EQ(packets[0].header.robot, 7);
+  EXPECT_EQ(std::get<V2v>(packets[0].body).X_WR.x, 2.0);
+  EXPECT_TRUE(heard(7).empty());  // did not ask
+  EXPECT_TRUE(heard(9).empty());  // never spoke
+  EXPECT_EQ(relay.counts().states, 1u);
+}
+
+TEST_F(RelayTest, TheNewestOfEachOncePerTick) {
+  ask(3, kOthers);
+  for (const double x : {1.0, 2.0, 3.0}) say(7, x);
+  say(9, 4.0);
+  tick();
+  auto packets = heard(3);
+  ASSERT_EQ(packets.size(), 2u);
+  EXPECT_EQ(std::get<V2v>(packets[0].body).X_WR.x, 3.0);
+  tick();  // nothing new: nothing sent
+  EXPECT_TRUE(heard(3).empty());
+  say(7, 5.0);
+  tick();
+  EXPECT_EQ(heard(3).size(), 1u);
+}
+
+TEST_F(RelayTest, WhatNobodyAskedForIsForgotten) {
+  say(7, 2.0);
+  tick();
+  ask(3, kOthers);
+  tick();
+  EXPECT_TRUE(heard(3).empty());
+}
+
+TEST_F(RelayTest, SilentRobotsAreSentNothing) {
+  ask(3, kOthers);
+  say(7, 2.0);
+  start(kEveryone);
+  tick(2 * kSecond);
+  EXPECT_EQ(relay.counts().states + relay.counts().starts, 0u);
+}
+
+TEST_F(RelayTest, StartGoesToAllThatAreHeard) {
+  say(3, 0.0);
+  say(7, 0.0);
+  start(kEveryone);
+  start(kEveryone);  // before the tick: one will do
+  tick();
+  for (const std::uint32_t id : {3u, 7u}) {
+    const auto packets = heard(id);
+    ASSERT_EQ(packets.size(), 1u) << id;
+    EXPECT_TRUE(std::holds_alternative<Start>(packets[0].body));
+  }
+  EXPECT_TRUE(heard(9).empty());
+  tick();
+  EXPECT_TRUE(heard(3).empty());  // once
+}
+
+TEST_F(RelayTest, StartMayMeanOneRobot) {
+  say(3, 0.0);
+  say(7, 0.0);
+  start(7);
+  tick();
+  EXPECT_TRUE(heard(3).empty());
+  EXPECT_EQ(heard(7).size(), 1u);
+}
+
+TEST_F(RelayTest, PassesOnTheBytesAsTheyCame) {
+  base::Bytes bytes;
+  const V2v state{.X_WR = {1.5, -2.25, 0.0, 0.5}, .velocity = {0.25, 0.0, -0.125}, .follows = 3, .docking = true};
+  encode({.robot = 7, .sequence = 77, .time = 1'500'000'000}, state, bytes);
+  Packet packet;
+  ask(3, kOthers);
+  ASSERT_EQ(inbox.accept(bytes, {kLoopback, 1}, 0, packet), Reason::accepted);
+  relay.take(packet);
+  tick();
+  base::Bytes came;
+  radio(3).receive([&](std::span<const std::uint8_t> got) { came.assign(got.begin(), got.end()); });
+  EXPECT_EQ(came, bytes);
+}
+
+TEST_F(RelayTest, TagsAndRequestsAreNotPassedOn) {
+  ask(3, kOthers);
+  Packet packet;
+  decode(tag_example(), packet);
+  relay.take(packet);
+  decode(subscribe_example(), packet);
+  relay.take(packet);
+  tick();
+  EXPECT_EQ(relay.counts().states + relay.counts().starts, 0u);
+}
+
+struct RadioTest : testing::Test {
+  Outbox farm{OutboxOptions{.bind = {kLoopback, 0}}};
+  Radio radio{{.farm = farm.endpoint(), .robot = 7, .others = {3, 9}}};
+  Packet packet;
+  Endpoint to() const { return {kLoopback, bound_endpoint(radio.socket()).port}; }
+};
+
+base::Bytes v2v_of(std::uint16_t robot, std::uint32_t sequence) {
+  base::Bytes bytes;
+  encode({.robot = robot, .sequence = sequence}, V2v{}, bytes);
+  return bytes;
+}
+
+TEST_F(RadioTest, OnlyTheFarmsWordCounts) {
+  Outbox stranger;
+  stranger.queue(to(), v2v_of(3, 0));
+  stranger.flush();
+  farm.queue(to(), v2v_of(3, 0));
+  farm.flush();
+  int came = 0;
+  radio.receive([&](std::span<const std::uint8_t> bytes) {
+    ++came;
+    EXPECT_EQ(radio.accept(bytes, 0, packet), Reason::accepted);
+  });
+  EXPECT_EQ(came, 1);
+  EXPECT_EQ(radio.counts()[Reason::wrong_source], 1u);
+}
+
+TEST_F(RadioTest, JudgesWhatComes) {
+  EXPECT_EQ(radio.accept(v2v_of(3, 5), 0, packet), Reason::accepted);
+  EXPECT_EQ(radio.accept(v2v_of(3, 5), 0, packet), Reason::stale);
+  EXPECT_EQ(radio.accept(v2v_of(7, 0), 0, packet), Reason::unknown_robot);  // itself
+  EXPECT_EQ(radio.accept(v2v_of(8, 0), 0, packet), Reason::unknown_robot);
+  EXPECT_EQ(radio.accept(start_example(), 0, packet), Reason::accepted);
+  EXPECT_EQ(radio.accept(patched<std::uint16_t>(start_example(), 6, 7), 0, packet), Reason::accepted);
+  EXPECT_EQ(radio.accept(patched<std::uint16_t>(start_example(), 6, 3), 0, packet), Reason::unknown_robot);
+  EXPECT_EQ(radio.accept(reading_example(), 0, packet), Reason::wrong_direction);
+  EXPECT_EQ(radio.accept(subscribe_example(), 0, packet), Reason::wrong_direction);
+  EXPECT_EQ(radio.accept(base::Bytes(5), 0, packet), Reason::too_short);
+  EXPECT_TRUE(radio.heard(3, 2 * kSecond - 1));
+  EXPECT_FALSE(radio.heard(3, 2 * kSecond));
+  EXPECT_FALSE(radio.heard(9, 0));
+  EXPECT_EQ(radio.counts().total(), 10u);
+}
+
+}  // namespace
+}  // namespace sf::netio
