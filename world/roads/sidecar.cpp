@@ -9,22 +9,10 @@
 #include <filesystem>
 #include <set>
 
-namespace sf::world {
-
-/// toml++ 3.3 takes some of what a file says for granted and, built for release, tells the compiler to do so too. Here
-/// its assumptions are checked, and broken ones are the file's fault.
-struct NoToml {};
-[[noreturn]] inline void distrust() { throw NoToml{}; }
-
-}  // namespace sf::world
-
-#undef NDEBUG
-#define TOML_ASSERT(assumption) ((assumption) ? void() : ::sf::world::distrust())
-#include <toml++/toml.h>
-
 #include "base/error.h"
 #include "world/entities.h"
 #include "world/keys.h"
+#include "world/toml.h"
 
 namespace sf::world {
 
@@ -43,41 +31,40 @@ struct Reader {
   const std::string& file;
   std::vector<Warning>& warnings;
 
-  [[noreturn]] void fail(const toml::node& node, const std::string& message) const {
-    throw base::InputError(file, static_cast<int>(node.source().begin.line), message);
+  [[noreturn]] void fail(const TomlNode& node, const std::string& message) const {
+    throw base::InputError(file, node.line, message);
   }
 
-  void warn_unknown(const toml::table& table, std::span<const std::string_view> known) const {
-    for (const auto& [key, node] : table)
-      if (std::find(known.begin(), known.end(), key.str()) == known.end())
-        warnings.push_back({file, static_cast<int>(key.source().begin.line),
-                            fmt::format("unknown key '{}' is ignored{}", key.str(),
-                                        key.str().size() > 40 ? "" : suggest(key.str(), known))});
+  void warn_unknown(const TomlNode& table, std::span<const std::string_view> known) const {
+    for (const TomlNode& node : table.items)
+      if (std::find(known.begin(), known.end(), node.key) == known.end())
+        warnings.push_back({file, node.line,
+                            fmt::format("unknown key '{}' is ignored{}", node.key,
+                                        node.key.size() > 40 ? "" : suggest(node.key, known))});
   }
 
-  double number(const toml::node& node, std::string_view key, double least, double most) const {
-    const auto value = node.value<double>();
-    if (value && (node.is_floating_point() || node.is_integer()) && *value >= least && *value <= most) return *value;
+  double number(const TomlNode& node, std::string_view key, double least, double most) const {
+    if (node.kind == TomlNode::Kind::number && node.number >= least && node.number <= most) return node.number;
     fail(node, fmt::format("'{}' expects a number from {} to {}", key, least, most));
   }
 
   /// A length above 0. [m]
-  std::optional<double> width(const toml::table& table, std::string_view key) const {
-    const toml::node* node = table.get(key);
+  std::optional<double> width(const TomlNode& table, std::string_view key) const {
+    const TomlNode* node = find(table, key);
     if (node == nullptr) return std::nullopt;
     const double value = number(*node, key, 0.0, kMostWidth);
     if (value >= 1e-6) return value;
     fail(*node, fmt::format("'{}' is {}; expected metres from 1e-6 to {}", key, value, kMostWidth));
   }
 
-  Vec2 pair(const toml::node& node, std::string_view key, Vec2 most, std::string_view expected) const {
-    const toml::array* array = node.as_array();
-    if (array == nullptr || array->size() != 2) fail(node, fmt::format("'{}' expects {}", key, expected));
-    return {number(*array->get(0), key, -most.x, most.x), number(*array->get(1), key, -most.y, most.y)};
+  Vec2 pair(const TomlNode& node, std::string_view key, Vec2 most, std::string_view expected) const {
+    if (node.kind != TomlNode::Kind::list || node.items.size() != 2)
+      fail(node, fmt::format("'{}' expects {}", key, expected));
+    return {number(node.items[0], key, -most.x, most.x), number(node.items[1], key, -most.y, most.y)};
   }
 
-  const toml::table& table(const toml::node& node, std::string_view key) const {
-    if (const toml::table* inner = node.as_table()) return *inner;
+  const TomlNode& table(const TomlNode& node, std::string_view key) const {
+    if (node.kind == TomlNode::Kind::table) return node;
     fail(node, fmt::format("'{}' expects a table", key));
   }
 };
@@ -97,77 +84,53 @@ std::optional<PointId> id_of(std::string_view text, int count) {
   return PointId{parts[0], parts[1], parts[2]};
 }
 
-std::optional<Boundary> boundary(const Reader& reader, const toml::table& table, std::string_view key) {
-  const toml::node* node = table.get(key);
+std::optional<Boundary> boundary(const Reader& reader, const TomlNode& table, std::string_view key) {
+  const TomlNode* node = find(table, key);
   if (node == nullptr) return std::nullopt;
-  const auto word = node->value<std::string>();
-  if (word && *word == "none") return Boundary::none;
-  const auto read = word ? boundary_of(*word) : std::nullopt;
+  if (node->text == "none") return Boundary::none;
+  const auto read = node->kind == TomlNode::Kind::text ? boundary_of(node->text) : std::nullopt;
   if (!read) reader.fail(*node, fmt::format("'{}' expects one of {}, none", key, boundary_words()));
   return read;
 }
 
-void read_lanes(const Reader& reader, const toml::table& lanes, RoadSidecar& into) {
-  for (const auto& [key, node] : lanes) {
-    const auto id = id_of(key.str(), 2);
-    if (!id) reader.fail(node, fmt::format("{} is no lane; expected [lanes.\"1.2\"]", quoted(key.str())));
-    const toml::table& table = reader.table(node, key.str());
+void read_lanes(const Reader& reader, const TomlNode& lanes, RoadSidecar& into) {
+  for (const TomlNode& node : lanes.items) {
+    const auto id = id_of(node.key, 2);
+    if (!id) reader.fail(node, fmt::format("{} is no lane; expected [lanes.\"1.2\"]", sf::world::quoted(node.key)));
+    const TomlNode& table = reader.table(node, node.key);
     reader.warn_unknown(table, kLaneKeys);
     into.lanes[*id] = {reader.width(table, "width_m"), boundary(reader, table, "left"),
-                       boundary(reader, table, "right"), static_cast<int>(key.source().begin.line)};
+                       boundary(reader, table, "right"), node.line};
   }
 }
 
-void read_points(const Reader& reader, const toml::table& points, RoadSidecar& into) {
-  for (const auto& [key, node] : points) {
-    const auto id = id_of(key.str(), 3);
-    if (!id) reader.fail(node, fmt::format("{} is no way-point; expected [points.\"1.2.3\"]", quoted(key.str())));
-    const toml::table& table = reader.table(node, key.str());
+void read_points(const Reader& reader, const TomlNode& points, RoadSidecar& into) {
+  for (const TomlNode& node : points.items) {
+    const auto id = id_of(node.key, 3);
+    if (!id)
+      reader.fail(node, fmt::format("{} is no way-point; expected [points.\"1.2.3\"]", sf::world::quoted(node.key)));
+    const TomlNode& table = reader.table(node, node.key);
     reader.warn_unknown(table, kPointKeys);
-    const toml::node* position = table.get("position");
+    const TomlNode* position = find(table, "position");
     if (position == nullptr) reader.fail(node, "'position' is missing; expected position = [x, y] in metres");
     into.points[*id] = {reader.pair(*position, "position", {kMostPosition, kMostPosition}, "[x, y] in metres"),
-                        static_cast<int>(key.source().begin.line)};
+                        node.line};
   }
 }
 
-void read_frame(const Reader& reader, const toml::table& root, RoadSidecar& into) {
-  if (const toml::node* node = root.get("origin")) {
+void read_frame(const Reader& reader, const TomlNode& root, RoadSidecar& into) {
+  if (const TomlNode* node = find(root, "origin")) {
     const Vec2 origin = reader.pair(*node, "origin", {90.0, 180.0}, "[latitude, longitude] in degrees");
     into.origin = Geodetic{origin.x, origin.y};
   }
-  if (const toml::node* node = root.get("scale")) {
+  if (const TomlNode* node = find(root, "scale")) {
     into.scale = reader.number(*node, "scale", 0.0, 1000.0);
     if (into.scale < 1e-6) reader.fail(*node, "'scale' expects a number from 1e-6 to 1000, e.g. 0.142857142857");
   }
-  if (const toml::node* node = root.get("position"))
+  if (const TomlNode* node = find(root, "position"))
     into.position = reader.pair(*node, "position", {kMostPosition, kMostPosition}, "[x, y] in metres");
-  if (const toml::node* node = root.get("heading_deg"))
+  if (const TomlNode* node = find(root, "heading_deg"))
     into.heading = reader.number(*node, "heading_deg", -1e6, 1e6) * (M_PI / 180.0);
-}
-
-/// The same text in ASCII: comments may be in any language, all else is ours. (toml++ up to 3.3 runs into undefined
-/// behaviour at some characters beyond.)
-std::string in_ascii(const std::string& file, std::string_view text) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) text.remove_prefix(kByteOrderMark.size());
-  std::string plain(text);
-  int line = 1;
-  bool quoted = false;  // some quote stands in the line so far
-  bool comment = false;
-  for (char& c : plain) {
-    if (c == '\n') {
-      ++line;
-      quoted = comment = false;
-    }
-    quoted = quoted || c == '"' || c == '\'';
-    comment = comment || (c == '#' && !quoted);
-    if (static_cast<unsigned char>(c) < 0x80) continue;
-    if (!comment)
-      throw base::InputError(file, line, "a character beyond ASCII; expected such only in comments of their own line");
-    c = '?';
-  }
-  return plain;
 }
 
 }  // namespace
@@ -175,15 +138,7 @@ std::string in_ascii(const std::string& file, std::string_view text) {
 RoadSidecar parse_sidecar(const std::string& file, std::string_view text, std::vector<Warning>& warnings) {
   RoadSidecar sidecar;
   sidecar.file = file;
-  toml::table root;
-  try {
-    root = toml::parse(in_ascii(file, text), file);
-  } catch (const toml::parse_error& error) {
-    throw base::InputError(file, static_cast<int>(error.source().begin.line),
-                           fmt::format("not TOML: {}", error.description()));
-  } catch (const NoToml&) {
-    throw base::InputError(file, 0, "not TOML; expected lines like: scale = 0.5");
-  }
+  const TomlNode root = parse_toml(file, text);
   const Reader reader{file, warnings};
   reader.warn_unknown(root, kKeys);
   read_frame(reader, root, sidecar);
@@ -193,8 +148,8 @@ RoadSidecar parse_sidecar(const std::string& file, std::string_view text, std::v
   sidecar.dash_gap = reader.width(root, "dash_gap_m");
   sidecar.stop_width = reader.width(root, "stop_width_m");
   sidecar.spot_width = reader.width(root, "spot_width_m");
-  if (const toml::node* lanes = root.get("lanes")) read_lanes(reader, reader.table(*lanes, "lanes"), sidecar);
-  if (const toml::node* points = root.get("points")) read_points(reader, reader.table(*points, "points"), sidecar);
+  if (const TomlNode* lanes = find(root, "lanes")) read_lanes(reader, reader.table(*lanes, "lanes"), sidecar);
+  if (const TomlNode* points = find(root, "points")) read_points(reader, reader.table(*points, "points"), sidecar);
   return sidecar;
 }
 

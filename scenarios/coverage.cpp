@@ -1,0 +1,151 @@
+#include "scenarios/coverage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/error.h"
+#include "maps/plain_mapper.h"
+#include "world/wall_grid.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+using base::Pose;
+using base::Vec2;
+using maps::Cell;
+using maps::CellAt;
+
+constexpr int kHeadings = 8;
+constexpr std::uint32_t kBeams = 361;
+
+maps::GridPlan plan_over(const world::Extent& e, double cell) {
+  const auto words = [&](double size) {
+    return static_cast<std::uint32_t>(std::clamp(std::ceil(size / (4.0 * cell)), 1.0, 4096.0));
+  };
+  return {e.x_min, e.y_max, cell, words(e.x_max - e.x_min), words(e.y_max - e.y_min)};
+}
+
+std::vector<world::Segment> walls_where(const world::World& world, bool (*take)(const world::Segment&), double z_min,
+                                        double z_max) {
+  std::vector<world::Segment> walls;
+  for (const world::Segment& wall : world.walls)
+    if (take(wall) && wall.z_min <= z_max && wall.z_max > z_min) walls.push_back(wall);
+  return walls;
+}
+
+/// Cells whose middles the robot's origin can come to: clear of walls by its radius, connected to its start.
+std::vector<CellAt> reachable(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan) {
+  const world::Mover& robot = world.movers[mover];
+  double top = 0.0;
+  for (const world::Segment& side : robot.body) top = std::max(top, side.z_max);
+  const world::WallGrid walls(
+      walls_where(
+          world, [](const world::Segment& w) { return w.stops_robots; }, robot.X_WM.z, robot.X_WM.z + top),
+      0.5);
+  const auto clear = [&](CellAt at) {
+    const Vec2 p = maps::middle(plan, at);
+    return !walls.any(world::box_around(p, robot.radius),
+                      [&](const world::Segment& w) { return world::distance(p, w.a, w.b) < robot.radius; });
+  };
+  maps::Grid seen(plan);
+  std::vector<CellAt> found{maps::cell_at(plan, {robot.X_WM.x, robot.X_WM.y})};
+  if (!maps::contains(plan, found[0])) return {};
+  seen.set(found[0], Cell::free);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const auto& [dc, dr] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      const CellAt next{found[i].column + dc, found[i].row + dr};
+      if (!maps::contains(plan, next) || seen.at(next) != Cell::unexplored || !clear(next)) continue;
+      seen.set(next, Cell::free);
+      found.push_back(next);
+    }
+  return found;
+}
+
+/// Range along a direction, at most `most` [m]: every wall in turn.
+double cast(const std::vector<world::Segment>& walls, Vec2 from, Vec2 along, double most) {
+  double least = most;
+  for (const world::Segment& wall : walls) {
+    const Vec2 side = wall.b - wall.a;
+    const double across = base::cross(along, side);
+    if (across == 0.0) continue;
+    const double t = base::cross(wall.a - from, side) / across;
+    const double u = base::cross(wall.a - from, along) / across;
+    if (t >= 0.0 && t < least && u >= 0.0 && u <= 1.0) least = t;
+  }
+  return least;
+}
+
+}  // namespace
+
+OwnMap::OwnMap(const world::World& world, std::uint32_t mover, double cell)
+    : world_(world), mover_(mover), grid_(plan_over(world.extent, cell)) {
+  SF_CHECK(!world.movers[mover].lasers.empty(), "a map needs a laser: " + world.movers[mover].name);
+}
+
+void OwnMap::add(const base::ReadingBlock& reading) {
+  if (reading.mover != mover_ || reading.kind != base::kLaser || reading.sensor != 0) return;
+  const world::Laser& laser = world_.movers[mover_].lasers[0];
+  maps::add_scan(grid_, {reading.X_WS, reading.values, laser.fov, laser.range_min, laser.range_max});
+}
+
+maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan) {
+  const world::Mover& robot = world.movers[mover];
+  SF_CHECK(!robot.lasers.empty(), "nothing is seen without a laser: " + robot.name);
+  const world::Laser& laser = robot.lasers[0];
+  const double z = robot.X_WM.z + laser.X_MS.z;
+  const auto walls = walls_where(
+      world, [](const world::Segment& w) { return w.seen_by_laser; }, z, z);
+  maps::Grid grid(plan);
+  std::vector<world::Segment> near;
+  std::vector<double> ranges(kBeams);
+  for (const CellAt at : reachable(world, mover, plan)) {
+    if (at.column % 2 != 0 || at.row % 2 != 0) continue;
+    const Vec2 p = maps::middle(plan, at);
+    const double reach = laser.range_max + std::hypot(laser.X_MS.x, laser.X_MS.y);
+    near.clear();
+    for (const world::Segment& wall : walls)
+      if (world::distance(p, wall.a, wall.b) < reach) near.push_back(wall);
+    for (int h = 0; h < kHeadings; ++h) {
+      const Pose X_WS = base::compose({p.x, p.y, 0.0, 2.0 * M_PI * h / kHeadings}, laser.X_MS);
+      const Vec2 eye{X_WS.x, X_WS.y};
+      // A sensor ahead of the body may stand within a wall, where it sees nothing of the room.
+      const double ahead = base::length(eye - p);
+      if (ahead > 0.0 && cast(near, p, 1.0 / ahead * (eye - p), ahead) < ahead) continue;
+      for (std::uint32_t i = 0; i < kBeams; ++i) {
+        const double bearing = laser.fov * (static_cast<double>(i) / (kBeams - 1) - 0.5);
+        ranges[i] = cast(near, eye, base::rotate(X_WS.yaw + bearing, {1.0, 0.0}), laser.range_max);
+      }
+      maps::add_scan(grid, {X_WS, ranges, laser.fov, 0.0, laser.range_max});
+    }
+  }
+  return grid;
+}
+
+double coverage(const maps::Grid& map, const maps::Grid& reference) {
+  SF_CHECK(map.plan == reference.plan, "maps of two plans cannot be compared");
+  std::size_t wanted = 0, known = 0;
+  for (std::int64_t row = 0; row < maps::rows(map.plan); ++row)
+    for (std::int64_t column = 0; column < maps::columns(map.plan); ++column) {
+      if (reference.at({column, row}) != Cell::free) continue;
+      ++wanted;
+      known += map.at({column, row}) != Cell::unexplored;
+    }
+  return wanted == 0 ? 1.0 : static_cast<double>(known) / static_cast<double>(wanted);
+}
+
+double disagreement(const maps::Grid& map, const maps::Grid& reference) {
+  SF_CHECK(map.plan == reference.plan, "maps of two plans cannot be compared");
+  std::size_t both = 0, apart = 0;
+  for (std::int64_t row = 0; row < maps::rows(map.plan); ++row)
+    for (std::int64_t column = 0; column < maps::columns(map.plan); ++column) {
+      const Cell a = map.at({column, row}), b = reference.at({column, row});
+      if (a == Cell::unexplored || b == Cell::unexplored) continue;
+      ++both;
+      apart += a != b;
+    }
+  return both == 0 ? 0.0 : static_cast<double>(apart) / static_cast<double>(both);
+}
+
+}  // namespace sf::scenarios

@@ -1,0 +1,40 @@
+#pragma once
+// How much of what a robot could see it has seen: its own map beside a reference from the true walls.
+
+#include <cstdint>
+
+#include "base/reading.h"
+#include "maps/grid.h"
+#include "world/world.h"
+
+namespace sf::scenarios {
+
+/// The map that one robot makes of its first laser's scans, from its own pose.
+class OwnMap {
+ public:
+  /// @param cell [m]; the map is as large as the world.
+  /// Rule: the mover has a laser.
+  OwnMap(const world::World& world, std::uint32_t mover, double cell = 0.03);
+  /// Adds it when it is a scan of that laser.
+  void add(const base::ReadingBlock& reading);
+  const maps::Grid& grid() const { return grid_; }
+
+ private:
+  const world::World& world_;
+  std::uint32_t mover_;
+  maps::Grid grid_;
+};
+
+/// All that the robot's first laser could see from wherever the robot can go without touching a wall: a map of scans
+/// from the middles of every second cell of `plan` that is connected to its start, taken all around. Movers are not
+/// looked at.
+maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan);
+
+/// Part of the free cells of `reference` that are known in `map` (free, or occupied).
+/// Rule: both have the same plan. 1 where the reference has none.
+double coverage(const maps::Grid& map, const maps::Grid& reference);
+
+/// Cells that are known in both and free in one and occupied in the other, as a part of those known in both.
+double disagreement(const maps::Grid& map, const maps::Grid& reference);
+
+}  // namespace sf::scenarios

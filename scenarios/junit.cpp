@@ -1,0 +1,53 @@
+#include "scenarios/junit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sf::scenarios {
+
+namespace {
+
+std::string case_of(const ScenarioResult& result, const Outcome& outcome) {
+  std::string text = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", escaped(result.name),
+                                 escaped(outcome.what), result.wall);
+  if (outcome.met) return text + "/>\n";
+  return text + fmt::format(">\n      <failure message=\"expected {}, got {}\">{}:{}</failure>\n    </testcase>\n",
+                            escaped(outcome.expected), escaped(outcome.measured), escaped(result.file), outcome.line);
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else if (c == '\'')
+      out += "&apos;";
+    else if (static_cast<unsigned char>(c) >= 0x20 || c == '\t')
+      out += c;
+  }
+  return out;
+}
+
+std::string junit_of(std::span<const ScenarioResult> results) {
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
+  for (const ScenarioResult& result : results) {
+    const auto failed =
+        std::count_if(result.outcomes.begin(), result.outcomes.end(), [](const Outcome& o) { return !o.met; });
+    text += fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" time=\"{:.3f}\">\n",
+                        escaped(result.name), result.outcomes.size(), failed, result.wall);
+    for (const Outcome& outcome : result.outcomes) text += case_of(result, outcome);
+    text += "  </testsuite>\n";
+  }
+  return text + "</testsuites>\n";
+}
+
+}  // namespace sf::scenarios

@@ -1,0 +1,40 @@
+#pragma once
+// Runs a scenario and says what came of it, expectation by expectation.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/sink.h"
+#include "gpu/device.h"
+#include "scenarios/scenario.h"
+
+namespace sf::scenarios {
+
+/// One expectation beside what was measured.
+struct Outcome {
+  std::string what;      ///< "mean_abs_error of roomba0"
+  std::string expected;  ///< "<= 0.05"
+  std::string measured;  ///< "0.0412"
+  bool met = false;
+  int line = 0;  ///< in the scenario's file
+};
+
+struct ScenarioResult {
+  std::string name;
+  std::string file;
+  std::vector<Outcome> outcomes;
+  double simulated = 0.0;  ///< [s]
+  double wall = 0.0;       ///< [s]
+  std::uint64_t ticks = 0;
+  std::uint64_t hash = 0;  ///< of all readings
+  bool passed() const;
+};
+
+/// @param progress called now and then with the part in [0, 1] that is done; may be empty
+/// @throws base::InputError for what the world or a robot lacks.
+ScenarioResult run_scenario(const Scenario& scenario, gpu::Device& device,
+                            const std::function<void(double)>& progress = {});
+
+}  // namespace sf::scenarios

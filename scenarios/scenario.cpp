@@ -1,0 +1,51 @@
+#include "scenarios/scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "sensors/kind.h"
+#include "world/keys.h"
+
+namespace sf::scenarios {
+
+std::uint32_t row_of(const Scenario& scenario, const world::World& world, const std::string& robot, int line) {
+  std::vector<std::string_view> names;
+  for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
+    if (world.movers[i].is_tag) continue;
+    if (world.movers[i].name == robot) return i;
+    names.push_back(world.movers[i].name);
+  }
+  throw base::InputError(scenario.file, line,
+                         fmt::format("{} has no robot '{}'{}; expected one of its robots", scenario.world, robot,
+                                     world::suggest(robot, names)));
+}
+
+world::World world_of(const Scenario& scenario) {
+  world::LoadOptions load;
+  load.sensors = sensors::vocabulary();
+  world::World world = world::load_world(scenario.world, load);
+  if (scenario.robots > 0) world::clone_robots(world, scenario.robots, scenario.seed);
+  if (scenario.tick > 0.0) world.interval = scenario.tick;
+  if (scenario.plant)
+    for (world::Mover& mover : world.movers)
+      mover.command_law =
+          *scenario.plant == Plant::thesis ? world::CommandLaw::player_create : world::CommandLaw::direct;
+  for (const RobotPlan& plan : scenario.plans) {
+    world::Mover& mover = world.movers[row_of(scenario, world, plan.name, plan.line)];
+    if (plan.pose) mover.X_WM = {plan.pose->x, plan.pose->y, mover.X_WM.z, plan.pose->yaw};
+  }
+  world::finish(world);
+  return world;
+}
+
+SimulationOptions simulation_of(const Scenario& scenario, const world::World& world) {
+  SimulationOptions options{.seed = scenario.seed, .start_at = scenario.start_at};
+  options.actors.assign(world.movers.size(), scenario.actor);
+  for (const RobotPlan& plan : scenario.plans)
+    if (plan.actor) options.actors[row_of(scenario, world, plan.name, plan.line)] = *plan.actor;
+  return options;
+}
+
+}  // namespace sf::scenarios

@@ -1,0 +1,84 @@
+#pragma once
+// A scenario: a world, who drives in it, and what must come of it. A TOML file of a few lines; keys in
+// docs/scenarios.md.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/pose.h"
+#include "control/controllers.h"
+#include "netio/link.h"
+#include "scenarios/simulation.h"
+#include "world/world.h"
+
+namespace sf::scenarios {
+
+/// What stands between a command and the wheels. See docs/experiments.md.
+enum class Plant : std::uint8_t {
+  ideal,  ///< robots do what they are told (world::CommandLaw::direct)
+  thesis  ///< Player's driver for the Create stands between (world::CommandLaw::player_create)
+};
+std::string_view name_of(Plant plant);
+std::optional<Plant> plant_of(std::string_view name);
+
+/// What one robot is told apart from all others.
+struct RobotPlan {
+  std::string name;                ///< of its mover
+  std::optional<Actor> actor;      ///< else the scenario's
+  std::optional<base::Pose> pose;  ///< [m], [rad] where it starts; else where the world has it
+  int line = 0;                    ///< in the file
+};
+
+/// One thing that must come of it.
+struct Expectation {
+  enum class Kind : std::uint8_t {
+    no_collision,    ///< nothing stops anyone, ever
+    contacts,        ///< contacts that begin, at most
+    mean_error,      ///< |mean control error|, at most
+    mean_abs_error,  ///< mean |control error|, at most
+    map_coverage,    ///< part of what could be seen that was, at least
+    lights_obeyed,   ///< nobody passes a stop line while it shows red
+    done,            ///< all controllers have done what they were made for
+    checkpoints,     ///< that each robot has passed, at least
+    tick_p99         ///< 99 of 100 ticks take at most so long [ms]: says something of the machine, too
+  };
+  Kind kind = Kind::no_collision;
+  std::string robot;   ///< empty: the worst of all
+  double limit = 0.0;  ///< in the unit of what is measured
+  int line = 0;
+};
+std::string_view name_of(Expectation::Kind kind);  ///< its key
+
+struct Scenario {
+  std::string name;        ///< else the file's, without its ending
+  std::string file;        ///< empty: made by hand
+  std::string world;       ///< file, as it can be opened
+  double duration = 60.0;  ///< [s] simulated, at most: where `done` is expected it ends with it
+  std::uint64_t seed = 1;
+  double tick = 0.0;           ///< [s]; 0: the world's own
+  std::uint32_t robots = 0;    ///< clones of the world's first; 0: the world's own
+  std::optional<Plant> plant;  ///< of every robot; else as the world says
+  double start_at = 0.0;       ///< [s]
+  Actor actor;                 ///< of every robot
+  std::vector<RobotPlan> plans;
+  std::vector<Expectation> expect;
+};
+
+/// The world's path is relative to the file's folder.
+/// @throws base::InputError with file and line; keys that nobody reads are refused.
+Scenario parse_scenario(const std::string& file, std::string_view text);
+Scenario read_scenario(const std::string& file);
+
+/// The world as the scenario has it. @throws base::InputError for robots that the world does not have, or no room.
+world::World world_of(const Scenario& scenario);
+
+/// Who drives, one per mover of `world_of`. @throws base::InputError likewise.
+SimulationOptions simulation_of(const Scenario& scenario, const world::World& world);
+
+/// Row of the robot. @throws base::InputError with the nearest name, at file and line, where there is none.
+std::uint32_t row_of(const Scenario& scenario, const world::World& world, const std::string& robot, int line);
+
+}  // namespace sf::scenarios

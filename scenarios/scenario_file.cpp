@@ -1,0 +1,272 @@
+// A scenario's file, key by key.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <span>
+
+#include "base/error.h"
+#include "scenarios/scenario.h"
+#include "world/entities.h"
+#include "world/keys.h"
+#include "world/toml.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+using world::TomlNode;
+using Kind = TomlNode::Kind;
+using Keys = std::span<const std::string_view>;
+
+constexpr double kLongest = 1e9;          // [s]
+constexpr double kMostWhole = 9.0e15;     // whole numbers of a TOML file that a double holds
+constexpr double kMostPosition = 1e7;     // [m]
+constexpr double kLongestDelay = 3600.0;  // [s]
+
+constexpr std::array<std::string_view, 12> kKeys{"name",  "world",    "duration", "seed", "tick",  "robots",
+                                                 "plant", "start_at", "default",  "link", "robot", "expect"};
+constexpr std::array<std::string_view, 3> kDefaultKeys{"controller", "rate", "settings"};
+constexpr std::array<std::string_view, 6> kRobotKeys{"name", "controller", "rate", "settings", "link", "pose"};
+constexpr std::array<std::string_view, 4> kLinkKeys{"delay", "jitter", "loss", "seed"};
+
+class Reader {
+ public:
+  explicit Reader(const std::string& file) : file_(file) {}
+
+  [[noreturn]] void fail(const TomlNode& node, const std::string& message) const {
+    throw base::InputError(file_, node.line, message);
+  }
+
+  /// Refuses keys beyond `known`.
+  void require_known(const TomlNode& table, Keys known) const {
+    for (const TomlNode& item : table.items)
+      if (std::find(known.begin(), known.end(), item.key) == known.end())
+        fail(item, fmt::format("unknown key '{}'{}; expected one of: {}", item.key,
+                               item.key.size() > 40 ? "" : world::suggest(item.key, known), fmt::join(known, ", ")));
+  }
+
+  double number(const TomlNode& table, std::string_view key, double fallback, double least, double most) const {
+    const TomlNode* node = world::find(table, key);
+    return node == nullptr ? fallback : number(*node, key, least, most);
+  }
+  double number(const TomlNode& node, std::string_view key, double least, double most) const {
+    if (node.kind == Kind::number && node.number >= least && node.number <= most) return node.number;
+    fail(node, fmt::format("'{}' expects a number from {:g} to {:g}", key, least, most));
+  }
+
+  std::uint64_t whole(const TomlNode& table, std::string_view key, std::uint64_t fallback, double most) const {
+    const TomlNode* node = world::find(table, key);
+    if (node == nullptr) return fallback;
+    const bool fine = node->kind == Kind::number && node->number >= 0.0 && node->number <= most &&
+                      node->number == std::floor(node->number);
+    if (!fine) fail(*node, fmt::format("'{}' expects a whole number from 0 to {:.0f}", key, most));
+    return static_cast<std::uint64_t>(node->number);
+  }
+
+  std::string text(const TomlNode& table, std::string_view key, const std::string& fallback) const {
+    const TomlNode* node = world::find(table, key);
+    if (node == nullptr) return fallback;
+    if (node->kind != Kind::text || node->text.empty()) fail(*node, fmt::format("'{}' expects a text in quotes", key));
+    return node->text;
+  }
+
+  const TomlNode* table(const TomlNode& in, std::string_view key) const {
+    const TomlNode* node = world::find(in, key);
+    if (node != nullptr && node->kind != Kind::table) fail(*node, fmt::format("'{}' expects a table", key));
+    return node;
+  }
+
+  const std::string& file() const { return file_; }
+
+ private:
+  const std::string& file_;
+};
+
+control::Value value_of(const Reader& reader, const TomlNode& node) {
+  const auto all = [&](Kind kind) {
+    return std::all_of(node.items.begin(), node.items.end(), [&](const TomlNode& item) { return item.kind == kind; });
+  };
+  if (node.kind == Kind::flag) return node.flag;
+  if (node.kind == Kind::number) return node.number;
+  if (node.kind == Kind::text) return node.text;
+  if (node.kind == Kind::list && all(Kind::number)) {
+    std::vector<double> numbers;
+    for (const TomlNode& item : node.items) numbers.push_back(item.number);
+    return numbers;
+  }
+  if (node.kind == Kind::list && all(Kind::text)) {
+    std::vector<std::string> texts;
+    for (const TomlNode& item : node.items) texts.push_back(item.text);
+    return texts;
+  }
+  reader.fail(node,
+              fmt::format("'{}' expects true, false, a number, a text, or a list of numbers or of texts", node.key));
+}
+
+control::Settings settings_of(const Reader& reader, const TomlNode* table, const std::string& controller) {
+  std::vector<control::Setting> settings;
+  if (table != nullptr)
+    for (const TomlNode& node : table->items)
+      settings.push_back({node.key, value_of(reader, node), fmt::format("{}:{}: ", reader.file(), node.line)});
+  return {fmt::format("controller '{}'", controller), std::move(settings)};
+}
+
+/// The controller, or "none".
+std::string controller_of(const Reader& reader, const TomlNode& table, const std::string& fallback) {
+  const std::string name = reader.text(table, "controller", fallback);
+  if (name == "none" || name.empty()) return "";
+  if (control::find_controller(name) != nullptr) return name;
+  std::vector<std::string_view> names{"none"};
+  for (const control::ControllerKind* kind : control::controllers()) names.push_back(kind->name);
+  reader.fail(*world::find(table, "controller"), fmt::format("there is no controller '{}'{}; expected one of: {}", name,
+                                                             world::suggest(name, names), fmt::join(names, ", ")));
+}
+
+/// Who names no controller has the fallback's; settings are taken whole, not one by one.
+control::Plan plan_of(const Reader& reader, const TomlNode& table, const control::Plan& fallback) {
+  control::Plan plan = fallback;
+  plan.controller = controller_of(reader, table, fallback.controller);
+  plan.rate = reader.number(table, "rate", plan.controller == fallback.controller ? fallback.rate : 0.0, 0.01, 1e4);
+  const TomlNode* settings = reader.table(table, "settings");
+  if (settings != nullptr || plan.controller != fallback.controller)
+    plan.settings = settings_of(reader, settings, plan.controller);
+  return plan;
+}
+
+netio::LinkPlan link_of(const Reader& reader, const TomlNode* table, const netio::LinkPlan& fallback) {
+  if (table == nullptr) return fallback;
+  reader.require_known(*table, kLinkKeys);
+  return {reader.number(*table, "delay", 0.0, 0.0, kLongestDelay),
+          reader.number(*table, "jitter", 0.0, 0.0, kLongestDelay), reader.number(*table, "loss", 0.0, 0.0, 1.0),
+          reader.whole(*table, "seed", fallback.seed, kMostWhole)};
+}
+
+base::Pose pose_of(const Reader& reader, const TomlNode& node) {
+  if (node.kind != Kind::list || node.items.size() != 3)
+    reader.fail(node, "'pose' expects [x, y, yaw] in metres and degrees");
+  const auto at = [&](std::size_t i, double most) { return reader.number(node.items[i], "pose", -most, most); };
+  return {at(0, kMostPosition), at(1, kMostPosition), 0.0, at(2, 1e6) * M_PI / 180.0};
+}
+
+void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario) {
+  const TomlNode* list = world::find(root, "robot");
+  if (list == nullptr) return;
+  if (list->kind != Kind::list) reader.fail(*list, "'robot' expects [[robot]] tables");
+  for (const TomlNode& node : list->items) {
+    if (node.kind != Kind::table) reader.fail(node, "'robot' expects [[robot]] tables");
+    reader.require_known(node, kRobotKeys);
+    RobotPlan plan{.name = reader.text(node, "name", ""), .line = node.line};
+    if (plan.name.empty()) reader.fail(node, "a robot without a name; expected name = \"...\" of a robot of the world");
+    const bool told = std::any_of(node.items.begin(), node.items.end(),
+                                  [](const TomlNode& item) { return item.key != "name" && item.key != "pose"; });
+    if (told)
+      plan.actor = Actor{plan_of(reader, node, scenario.actor.plan),
+                         link_of(reader, reader.table(node, "link"), scenario.actor.link)};
+    if (const TomlNode* pose = world::find(node, "pose")) plan.pose = pose_of(reader, *pose);
+    scenario.plans.push_back(std::move(plan));
+  }
+}
+
+/// What an expectation's key expects.
+struct Rule {
+  Expectation::Kind kind;
+  bool is_flag;
+  double most;
+};
+constexpr std::array<Rule, 9> kRules{{{Expectation::Kind::no_collision, true, 0.0},
+                                      {Expectation::Kind::contacts, false, 1e9},
+                                      {Expectation::Kind::mean_error, false, 1e6},
+                                      {Expectation::Kind::mean_abs_error, false, 1e6},
+                                      {Expectation::Kind::map_coverage, false, 1.0},
+                                      {Expectation::Kind::lights_obeyed, true, 0.0},
+                                      {Expectation::Kind::done, true, 0.0},
+                                      {Expectation::Kind::checkpoints, false, 1e9},
+                                      {Expectation::Kind::tick_p99, false, 1e9}}};
+
+/// `key = value` for the worst of all robots, or `key = { robot = value, ... }`.
+void read_expectation(const Reader& reader, const TomlNode& node, const Rule& rule, Scenario& scenario) {
+  if (rule.is_flag) {
+    if (node.kind != Kind::flag || !node.flag) reader.fail(node, fmt::format("'{}' expects true", node.key));
+    scenario.expect.push_back({rule.kind, "", 0.0, node.line});
+    return;
+  }
+  if (node.kind != Kind::table) {
+    scenario.expect.push_back({rule.kind, "", reader.number(node, node.key, 0.0, rule.most), node.line});
+    return;
+  }
+  if (rule.kind == Expectation::Kind::tick_p99) reader.fail(node, fmt::format("'{}' expects a number", node.key));
+  for (const TomlNode& item : node.items)
+    scenario.expect.push_back({rule.kind, item.key, reader.number(item, node.key, 0.0, rule.most), item.line});
+}
+
+void read_expectations(const Reader& reader, const TomlNode& root, Scenario& scenario) {
+  const TomlNode* table = reader.table(root, "expect");
+  if (table == nullptr) return;
+  std::vector<std::string_view> keys;
+  for (const Rule& rule : kRules) keys.push_back(name_of(rule.kind));
+  reader.require_known(*table, keys);
+  for (const TomlNode& node : table->items)
+    for (const Rule& rule : kRules)
+      if (name_of(rule.kind) == node.key) read_expectation(reader, node, rule, scenario);
+}
+
+void read_plant(const Reader& reader, const TomlNode& root, Scenario& scenario) {
+  const TomlNode* node = world::find(root, "plant");
+  if (node == nullptr) return;
+  scenario.plant = plant_of(node->text);
+  if (!scenario.plant) reader.fail(*node, "'plant' expects \"thesis\" or \"ideal\"");
+}
+
+std::string world_file(const Reader& reader, const TomlNode& root) {
+  const std::string file = reader.text(root, "world", "");
+  if (file.empty()) throw base::InputError(reader.file(), 0, "has no world; expected world = \"FILE\"");
+  return (std::filesystem::path(reader.file()).parent_path() / file).lexically_normal().string();
+}
+
+}  // namespace
+
+std::string_view name_of(Expectation::Kind kind) {
+  constexpr std::array<std::string_view, 9> kNames{"no_collision",   "contacts",     "mean_error",
+                                                   "mean_abs_error", "map_coverage", "lights_obeyed",
+                                                   "done",           "checkpoints",  "tick_p99_ms"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::string_view name_of(Plant plant) { return plant == Plant::ideal ? "ideal" : "thesis"; }
+
+std::optional<Plant> plant_of(std::string_view name) {
+  if (name == "ideal") return Plant::ideal;
+  if (name == "thesis") return Plant::thesis;
+  return std::nullopt;
+}
+
+Scenario parse_scenario(const std::string& file, std::string_view text) {
+  const TomlNode root = world::parse_toml(file, text);
+  const Reader reader(file);
+  reader.require_known(root, kKeys);
+  Scenario scenario{.file = file};
+  scenario.name = reader.text(root, "name", std::filesystem::path(file).stem().string());
+  scenario.world = world_file(reader, root);
+  scenario.duration = reader.number(root, "duration", scenario.duration, 0.0, kLongest);
+  scenario.seed = reader.whole(root, "seed", scenario.seed, kMostWhole);
+  if (world::find(root, "tick") != nullptr) scenario.tick = reader.number(root, "tick", 0.0, 1e-3, 10.0);
+  scenario.robots = static_cast<std::uint32_t>(reader.whole(root, "robots", 0, 65535.0));
+  scenario.start_at = reader.number(root, "start_at", 0.0, 0.0, kLongest);
+  read_plant(reader, root, scenario);
+  scenario.actor.link = link_of(reader, reader.table(root, "link"), {.seed = scenario.seed});
+  if (const TomlNode* table = reader.table(root, "default")) {
+    reader.require_known(*table, kDefaultKeys);
+    scenario.actor.plan = plan_of(reader, *table, scenario.actor.plan);
+  }
+  read_robots(reader, root, scenario);
+  read_expectations(reader, root, scenario);
+  return scenario;
+}
+
+Scenario read_scenario(const std::string& file) { return parse_scenario(file, world::read_text(file)); }
+
+}  // namespace sf::scenarios

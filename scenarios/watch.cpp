@@ -1,0 +1,102 @@
+#include "scenarios/watch.h"
+
+#include <cmath>
+#include <numeric>
+
+#include "world/lights.h"
+#include "world/roads/network.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+/// "3.1.5" as numbers; nothing where it is none.
+std::optional<world::PointId> point_of(const std::string& text) {
+  unsigned a = 0, b = 0, c = 0;
+  int used = 0;
+  if (std::sscanf(text.c_str(), "%u.%u.%u%n", &a, &b, &c, &used) != 3) return std::nullopt;
+  if (static_cast<std::size_t>(used) != text.size() || a > 65535 || b > 65535 || c > 65535) return std::nullopt;
+  return world::PointId{static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), static_cast<std::uint16_t>(c)};
+}
+
+/// [m] from the origin to the body's foremost point.
+double front_of(const world::Mover& mover) {
+  double front = 0.0;
+  for (const world::Segment& side : mover.body) front = std::max({front, side.a.x, side.b.x});
+  return front;
+}
+
+}  // namespace
+
+Watch::Watch(const world::World& world, const Simulation& simulation)
+    : world_(world), simulation_(simulation), before_(world.movers.size()), counts_(world.movers.size()) {
+  add_lines();
+}
+
+void Watch::add_lines() {
+  const world::RoadNetwork* roads = simulation_.roads();
+  if (roads == nullptr) return;
+  for (std::uint32_t light = 0; light < world_.lights.size(); ++light)
+    for (const std::string& name : world_.lights[light].points) {
+      const auto id = point_of(name);
+      const auto at = id ? world::find_point(*roads, *id) : std::nullopt;
+      if (!at || at->kind != world::PointRef::Kind::lane) continue;
+      const base::Vec2 p = world::position_of(*roads, *at);
+      const double yaw = world::yaw_of(*roads, *at).value_or(0.0);
+      lines_.push_back({light, {p.x, p.y, 0.0, yaw}, 0.5 * roads->lanes[at->row].width});
+    }
+}
+
+std::uint64_t Watch::contacts() const {
+  return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0},
+                         [](std::uint64_t sum, const RobotCounts& c) { return sum + c.contacts; });
+}
+
+std::uint64_t Watch::reds() const {
+  return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0},
+                         [](std::uint64_t sum, const RobotCounts& c) { return sum + c.reds; });
+}
+
+void Watch::look(const base::TickRecord& tick) {
+  for (std::uint32_t m = 0; m < counts_.size(); ++m) {
+    RobotCounts& counts = counts_[m];
+    Before& before = before_[m];
+    const base::Pose& X_WM = tick.reports[m].X_WM;
+    const bool contact = tick.contacts[m] != 0;
+    counts.contacts += contact && !before.contact;
+    before.contact = contact;
+    if (before.seen) {
+      counts.travelled += std::hypot(X_WM.x - before.X_WM.x, X_WM.y - before.X_WM.y);
+      look_at_lights(tick, m);
+    }
+    before.X_WM = X_WM;
+    before.seen = true;
+
+    const control::Controller* controller = simulation_.controller(m);
+    if (controller == nullptr || !simulation_.stepped(m)) continue;
+    if (const double error = controller->error(); std::isfinite(error)) counts.errors.push_back(error);
+    const std::uint32_t checkpoint = controller->intent().checkpoint;
+    counts.checkpoints += before.checkpoint != base::kNobody && checkpoint != before.checkpoint;
+    before.checkpoint = checkpoint;
+  }
+}
+
+/// Its front came over a governed line, in the line's direction, while it showed red.
+void Watch::look_at_lights(const base::TickRecord& tick, std::uint32_t mover) {
+  const base::Pose& X_WM = tick.reports[mover].X_WM;
+  const double front = front_of(world_.movers[mover]);
+  for (const Line& line : lines_) {
+    const base::Vec2 middle{line.X_WL.x, line.X_WL.y};
+    const auto ahead = [&](const base::Pose& X) {
+      return base::rotate(-line.X_WL.yaw, base::transform(X, {front, 0.0}) - middle);
+    };
+    const base::Vec2 now = ahead(X_WM);
+    const base::Vec2 then = ahead(before_[mover].X_WM);
+    if (then.x >= kPassed || now.x < kPassed || std::abs(now.y) > line.half_width) continue;
+    if (std::cos(X_WM.yaw - line.X_WL.yaw) < 0.5) continue;
+    const world::Signal shown = world::signal_at(world_.lights[line.light], 1e-9 * static_cast<double>(tick.time));
+    counts_[mover].reds += shown.state == world::LightState::red;
+  }
+}
+
+}  // namespace sf::scenarios

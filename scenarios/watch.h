@@ -1,0 +1,59 @@
+#pragma once
+// What came of a run, counted as it goes: contacts, control errors, checkpoints, lights, maps.
+
+#include <cstdint>
+#include <vector>
+
+#include "base/sink.h"
+#include "scenarios/simulation.h"
+
+namespace sf::scenarios {
+
+/// Of one mover.
+struct RobotCounts {
+  std::uint64_t contacts = 0;     ///< that began
+  std::uint64_t checkpoints = 0;  ///< that it no longer heads for, since the next or none is due
+  std::uint64_t reds = 0;         ///< stop lines passed that showed red
+  std::vector<double> errors;     ///< control error of every step that had one
+  double travelled = 0.0;         ///< [m]
+};
+
+/// Follows one simulation, tick by tick. Simulation and world must outlive it.
+class Watch {
+ public:
+  Watch(const world::World& world, const Simulation& simulation);
+
+  /// After every `Simulation::step`, with what it gave.
+  void look(const base::TickRecord& tick);
+
+  const RobotCounts& of(std::uint32_t mover) const { return counts_[mover]; }
+  std::uint64_t contacts() const;  ///< of all
+  std::uint64_t reds() const;      ///< of all
+
+ private:
+  /// A stop line that a light governs.
+  struct Line {
+    std::uint32_t light = 0;
+    base::Pose X_WL;          ///< its middle, x in driving direction
+    double half_width = 0.0;  ///< [m]
+  };
+  struct Before {
+    bool contact = false;
+    std::uint32_t checkpoint = base::kNobody;
+    base::Pose X_WM;
+    bool seen = false;
+  };
+  void add_lines();
+  void look_at_lights(const base::TickRecord& tick, std::uint32_t mover);
+
+  const world::World& world_;
+  const Simulation& simulation_;
+  std::vector<Line> lines_;
+  std::vector<Before> before_;
+  std::vector<RobotCounts> counts_;
+};
+
+/// A robot has passed a stop line once its front is so far beyond it. [m]
+inline constexpr double kPassed = 0.05;
+
+}  // namespace sf::scenarios
