@@ -9,6 +9,7 @@
 
 #include "apps/wording.h"
 #include "control/controllers.h"
+#include "scenarios/experiment.h"
 
 namespace sf::apps {
 
@@ -136,18 +137,6 @@ void add_robots(CLI::App& app, Options& o) {
       ->check(whole(1, 65535))
       ->type_name("N");
   add_seed(app, o, "Seed of poses, decisions and noise");
-}
-
-void add_controller(CLI::App& app, Options& o) {
-  std::vector<std::string> names;
-  for (const control::ControllerKind* kind : control::controllers()) names.emplace_back(kind->name);
-  app.add_option("--controller", o.controller, "Who drives: " + either(names))
-      ->check(one_of(names))
-      ->type_name("NAME")
-      ->capture_default_str();
-  app.add_option("--set", o.set, "One of the controller's settings (may be repeated)")
-      ->check(key_and_value())
-      ->type_name("KEY=VALUE");
 }
 
 void add_controller(CLI::App& app, Options& o) {
@@ -373,6 +362,44 @@ void add_listen(CLI::App& app, Options& o) {
   sub->callback([&o] { o.command = Command::listen; });
 }
 
+void add_experiment(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand(
+      "experiment", "Run one of the experiments: trials, statistics beside the thesis', figures, in one folder");
+  auto* list = sub->add_flag("--list", o.list, "Name them all");
+  std::vector<std::string> names;
+  for (const scenarios::ExperimentKind* kind : scenarios::experiments()) names.emplace_back(kind->name);
+  auto* name = sub->add_option("experiment", o.experiment, either(names))->check(one_of(names))->type_name("NAME");
+  auto* out =
+      sub->add_option("-o,--out", o.out, "Folder to write into")->check(not_empty("a folder"))->type_name("DIR");
+  name->needs(out)->excludes(list);
+  sub->add_option("--trials", o.trials, "How many, each with a seed of its own")
+      ->check(whole(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  add_seed(*sub, o, "Seed of the first trial");
+  sub->add_option_function<std::string>(
+         "--plant", [&o](const std::string& text) { o.plant = scenarios::plant_of(text); },
+         "What stands between commands and wheels: ideal (nothing) or thesis (Player's driver for the Create)")
+      ->check(one_of({"thesis", "ideal"}))
+      ->type_name("thesis|ideal");
+  sub->add_option("--files", o.experiments, "Folder with the experiments' scenario files (default: ours)")
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
+  add_device(*sub, o);
+  sub->callback([&o, list, name] {
+    o.command = Command::experiment;
+    if (list->count() + name->count() == 0) throw CLI::RequiredError("the name of an experiment, or --list");
+  });
+}
+
+void add_test(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand("test", "Run scenarios and hold them to what they expect (exit 1 when one fails)");
+  sub->add_option("scenario", o.scenarios, "Scenario files (.toml)")->required()->type_name("FILE");
+  sub->add_option("--junit", o.junit, "Write the results as JUnit XML")->check(not_empty("a file"))->type_name("FILE");
+  add_device(*sub, o);
+  sub->callback([&o] { o.command = Command::test; });
+}
+
 std::string names_of(const std::vector<const CLI::App*>& subcommands) {
   std::string names;
   for (const CLI::App* sub : subcommands) names += (names.empty() ? "" : ", ") + sub->get_name();
@@ -434,6 +461,8 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   add_start(app, o);
   add_plot(app, o);
   add_listen(app, o);
+  add_experiment(app, o);
+  add_test(app, o);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -17,5 +17,7 @@ int robot(const Options& options);
 int start(const Options& options);
 int plot(const Options& options);
 int listen(const Options& options);
+int experiment(const Options& options);
+int test_scenarios(const Options& options);
 
 }  // namespace sf::apps

@@ -34,6 +34,10 @@ int dispatch(const sf::apps::Options& options) {
       return sf::apps::plot(options);
     case Command::listen:
       return sf::apps::listen(options);
+    case Command::experiment:
+      return sf::apps::experiment(options);
+    case Command::test:
+      return sf::apps::test_scenarios(options);
   }
   return 1;
 }

@@ -9,12 +9,13 @@
 #include <vector>
 
 #include "base/pose.h"
+#include "scenarios/plant.h"
 #include "sensors/kind.h"
 #include "world/world.h"
 
 namespace sf::apps {
 
-enum class Command { devices, check, draw, field, sense, run, serve, robot, start, plot, listen };
+enum class Command { devices, check, draw, field, sense, run, serve, robot, start, plot, listen, experiment, test };
 
 struct Options {
   Command command = Command::devices;
@@ -36,6 +37,14 @@ struct Options {
   std::uint8_t kind = 0;     ///< of its sensor; 0: the first it has
   std::uint32_t sensor = 0;  ///< among its sensors of that kind
   bool no_return_inf = false;
+
+  std::string experiment;  ///< by name
+  bool list = false;       ///< name them all
+  std::uint32_t trials = 3;
+  std::optional<scenarios::Plant> plant;  ///< else the experiment's own
+  std::string experiments;                ///< folder of their files; empty: found
+  std::vector<std::string> scenarios;     ///< files, for `test`
+  std::string junit;                      ///< file; empty: none
 
   std::uint32_t robots = 0;  ///< clones; 0: the world's own
   double duration = 60.0;    ///< [s]; serve and listen: 0 is until stopped

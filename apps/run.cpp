@@ -15,8 +15,8 @@
 #include "apps/plan.h"
 #include "apps/post.h"
 #include "apps/progress.h"
-#include "apps/record_run.h"
 #include "apps/stop.h"
+#include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
 
 namespace sf::apps {
@@ -36,7 +36,10 @@ class Outputs {
       address_ = netio::resolve(options.send);
       post_.emplace(world, roster, options);
     }
-    if (!options.record.empty()) recorder_.emplace(options.record, run_info(world, roster, options));
+    if (!options.record.empty())
+      recorder_.emplace(
+          options.record,
+          scenarios::run_info(world, roster, {options.seed, options.record_readings, options.no_return_inf}));
   }
 
   void write(base::TickRecord tick) {

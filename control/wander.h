@@ -10,8 +10,6 @@
 
 namespace sf::control {
 
-extern const ControllerKind wander_controller;
-
 /// Distances are from the body's front, made from the mover's facts. [m]
 struct WanderSettings {
   double speed = 0.4;   ///< [m/s] where it is free

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "base/error.h"
@@ -82,12 +83,15 @@ double cast(const std::vector<world::Segment>& walls, Vec2 from, Vec2 along, dou
 OwnMap::OwnMap(const world::World& world, std::uint32_t mover, double cell)
     : world_(world), mover_(mover), grid_(plan_over(world.extent, cell)) {
   SF_CHECK(!world.movers[mover].lasers.empty(), "a map needs a laser: " + world.movers[mover].name);
+  const world::Laser& laser = world.movers[mover].lasers[0];
+  beams_ = maps::beam_directions(laser.fov, laser.samples);
 }
 
 void OwnMap::add(const base::ReadingBlock& reading) {
   if (reading.mover != mover_ || reading.kind != base::kLaser || reading.sensor != 0) return;
   const world::Laser& laser = world_.movers[mover_].lasers[0];
-  maps::add_scan(grid_, {reading.X_WS, reading.values, laser.fov, laser.range_min, laser.range_max});
+  if (reading.values.size() != beams_.size()) return;
+  maps::add_scan(grid_, {reading.X_WS, reading.values, beams_, laser.range_min, laser.range_max});
 }
 
 maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan) {
@@ -100,6 +104,7 @@ maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, co
   maps::Grid grid(plan);
   std::vector<world::Segment> near;
   std::vector<double> ranges(kBeams);
+  const std::vector<Vec2> beams = maps::beam_directions(laser.fov, kBeams);
   for (const CellAt at : reachable(world, mover, plan)) {
     if (at.column % 2 != 0 || at.row % 2 != 0) continue;
     const Vec2 p = maps::middle(plan, at);
@@ -114,10 +119,9 @@ maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, co
       const double ahead = base::length(eye - p);
       if (ahead > 0.0 && cast(near, p, 1.0 / ahead * (eye - p), ahead) < ahead) continue;
       for (std::uint32_t i = 0; i < kBeams; ++i) {
-        const double bearing = laser.fov * (static_cast<double>(i) / (kBeams - 1) - 0.5);
-        ranges[i] = cast(near, eye, base::rotate(X_WS.yaw + bearing, {1.0, 0.0}), laser.range_max);
+        ranges[i] = cast(near, eye, base::rotate(X_WS.yaw, beams[i]), laser.range_max);
       }
-      maps::add_scan(grid, {X_WS, ranges, laser.fov, 0.0, laser.range_max});
+      maps::add_scan(grid, {X_WS, ranges, beams, 0.0, laser.range_max});
     }
   }
   return grid;

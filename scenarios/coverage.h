@@ -2,6 +2,7 @@
 // How much of what a robot could see it has seen: its own map beside a reference from the true walls.
 
 #include <cstdint>
+#include <vector>
 
 #include "base/reading.h"
 #include "maps/grid.h"
@@ -23,6 +24,7 @@ class OwnMap {
   const world::World& world_;
   std::uint32_t mover_;
   maps::Grid grid_;
+  std::vector<base::Vec2> beams_;
 };
 
 /// All that the robot's first laser could see from wherever the robot can go without touching a wall: a map of scans

@@ -13,12 +13,11 @@ namespace sf::scenarios {
 std::uint32_t row_of(const Scenario& scenario, const world::World& world, const std::string& robot, int line) {
   std::vector<std::string_view> names;
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
-    if (world.movers[i].is_tag) continue;
     if (world.movers[i].name == robot) return i;
     names.push_back(world.movers[i].name);
   }
   throw base::InputError(scenario.file, line,
-                         fmt::format("{} has no robot '{}'{}; expected one of its robots", scenario.world, robot,
+                         fmt::format("{} has no mover '{}'{}; expected one of its movers", scenario.world, robot,
                                      world::suggest(robot, names)));
 }
 
@@ -42,9 +41,12 @@ world::World world_of(const Scenario& scenario) {
 
 SimulationOptions simulation_of(const Scenario& scenario, const world::World& world) {
   SimulationOptions options{.seed = scenario.seed, .start_at = scenario.start_at};
-  options.actors.assign(world.movers.size(), scenario.actor);
+  // Tags stand unless they are named.
+  for (const world::Mover& mover : world.movers)
+    options.actors.push_back(mover.is_tag ? Actor{.plan = {.controller = ""}} : scenario.actor);
   for (const RobotPlan& plan : scenario.plans)
     if (plan.actor) options.actors[row_of(scenario, world, plan.name, plan.line)] = *plan.actor;
+  for (Actor& actor : options.actors) actor.link.seed = scenario.seed;
   return options;
 }
 

@@ -11,18 +11,11 @@
 #include "base/pose.h"
 #include "control/controllers.h"
 #include "netio/link.h"
+#include "scenarios/plant.h"
 #include "scenarios/simulation.h"
 #include "world/world.h"
 
 namespace sf::scenarios {
-
-/// What stands between a command and the wheels. See docs/experiments.md.
-enum class Plant : std::uint8_t {
-  ideal,  ///< robots do what they are told (world::CommandLaw::direct)
-  thesis  ///< Player's driver for the Create stands between (world::CommandLaw::player_create)
-};
-std::string_view name_of(Plant plant);
-std::optional<Plant> plant_of(std::string_view name);
 
 /// What one robot is told apart from all others.
 struct RobotPlan {
@@ -75,10 +68,11 @@ Scenario read_scenario(const std::string& file);
 /// The world as the scenario has it. @throws base::InputError for robots that the world does not have, or no room.
 world::World world_of(const Scenario& scenario);
 
-/// Who drives, one per mover of `world_of`. @throws base::InputError likewise.
+/// Who drives, one per mover of `world_of`; links have the scenario's seed. @throws base::InputError likewise.
 SimulationOptions simulation_of(const Scenario& scenario, const world::World& world);
 
-/// Row of the robot. @throws base::InputError with the nearest name, at file and line, where there is none.
+/// Row of the robot, or of the tag. @throws base::InputError with the nearest name, at file and line, where there is
+/// none.
 std::uint32_t row_of(const Scenario& scenario, const world::World& world, const std::string& robot, int line);
 
 }  // namespace sf::scenarios

@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 12> kKeys{"name",  "world",    "duration"
                                                  "plant", "start_at", "default",  "link", "robot", "expect"};
 constexpr std::array<std::string_view, 3> kDefaultKeys{"controller", "rate", "settings"};
 constexpr std::array<std::string_view, 6> kRobotKeys{"name", "controller", "rate", "settings", "link", "pose"};
-constexpr std::array<std::string_view, 4> kLinkKeys{"delay", "jitter", "loss", "seed"};
+constexpr std::array<std::string_view, 3> kLinkKeys{"delay", "jitter", "loss"};
 
 class Reader {
  public:
@@ -141,8 +141,7 @@ netio::LinkPlan link_of(const Reader& reader, const TomlNode* table, const netio
   if (table == nullptr) return fallback;
   reader.require_known(*table, kLinkKeys);
   return {reader.number(*table, "delay", 0.0, 0.0, kLongestDelay),
-          reader.number(*table, "jitter", 0.0, 0.0, kLongestDelay), reader.number(*table, "loss", 0.0, 0.0, 1.0),
-          reader.whole(*table, "seed", fallback.seed, kMostWhole)};
+          reader.number(*table, "jitter", 0.0, 0.0, kLongestDelay), reader.number(*table, "loss", 0.0, 0.0, 1.0)};
 }
 
 base::Pose pose_of(const Reader& reader, const TomlNode& node) {
@@ -257,7 +256,7 @@ Scenario parse_scenario(const std::string& file, std::string_view text) {
   scenario.robots = static_cast<std::uint32_t>(reader.whole(root, "robots", 0, 65535.0));
   scenario.start_at = reader.number(root, "start_at", 0.0, 0.0, kLongest);
   read_plant(reader, root, scenario);
-  scenario.actor.link = link_of(reader, reader.table(root, "link"), {.seed = scenario.seed});
+  scenario.actor.link = link_of(reader, reader.table(root, "link"), {});
   if (const TomlNode* table = reader.table(root, "default")) {
     reader.require_known(*table, kDefaultKeys);
     scenario.actor.plan = plan_of(reader, *table, scenario.actor.plan);

@@ -59,7 +59,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
 Simulation::Driver Simulation::make_driver(std::uint32_t mover, const SimulationOptions& options) {
   Driver driver;
   const Actor& actor = options.actors.empty() ? options.actor : options.actors[mover];
-  if (world_.movers[mover].is_tag || actor.plan.controller.empty()) return driver;
+  if (actor.plan.controller.empty() || (options.actors.empty() && world_.movers[mover].is_tag)) return driver;
   const control::Site site{world_, mover, options.seed, roads()};
   control::Made made = control::make_controller(site, actor.plan);
   driver.controller = std::move(made.controller);

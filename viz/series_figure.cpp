@@ -121,7 +121,8 @@ Ticks ticks_of(const Span& span, double pixels, double smallest) {
   return make_ticks(span.from, span.to, smallest / pixels * (span.to - span.from));
 }
 
-void draw_scales(Canvas& canvas, const Place& at, bool with_time) {
+/// @param x_name of the axis; empty: neither name nor labels
+void draw_scales(Canvas& canvas, const Place& at, const std::string& x_name) {
   const PixelBox& p = at.plot;
   TextStyle style = small_text();
   style.across = Anchor::end;
@@ -137,9 +138,9 @@ void draw_scales(Canvas& canvas, const Place& at, bool with_time) {
   for (const double time : times.at) {
     const double x = crisp(at.pixel(time, at.shown.from).x);
     canvas.line({x, p.y_min + 0.0}, {x, p.y_max + 0.0}, 1.0, kGrid);
-    if (with_time) canvas.text({x, p.y_max + 11.0}, tick_text(time, times.decimals), style);
+    if (!x_name.empty()) canvas.text({x, p.y_max + 11.0}, tick_text(time, times.decimals), style);
   }
-  if (with_time) canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, "time [s]", style);
+  if (!x_name.empty()) canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, x_name, style);
 }
 
 void draw_curve(Canvas& canvas, const Place& at, const Series& series, std::uint32_t color) {
@@ -157,8 +158,8 @@ void draw_curve(Canvas& canvas, const Place& at, const Series& series, std::uint
   canvas.lines(lines, 2.0, color);
 }
 
-void draw_panel(Canvas& canvas, const Panel& panel, const Place& at, bool with_time) {
-  draw_scales(canvas, at, with_time);
+void draw_panel(Canvas& canvas, const Panel& panel, const Place& at, const std::string& x_name) {
+  draw_scales(canvas, at, x_name);
   canvas.clip(at.plot);
   for (std::size_t i = 0; i < panel.series.size(); ++i)
     draw_curve(canvas, at, panel.series[i], row_color(i, panel.series.size()));
@@ -200,7 +201,8 @@ void draw_series(const SeriesPlan& plan, const std::string& png_path) {
   style.size = 19;
   style.color = 0xFF505050u;
   canvas.text({last.plot.x_min + 0.0, 77.0}, plan.subtitle, style);
-  for (std::size_t i = 0; i < places.size(); ++i) draw_panel(canvas, plan.panels[i], places[i], i + 1 == places.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    draw_panel(canvas, plan.panels[i], places[i], i + 1 == places.size() ? plan.x_name : "");
   canvas.save_png(png_path);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers over time: panels one below another, over one axis of seconds.
+// Numbers over time: panels one below another, over one axis of seconds (or of what else was varied).
 
 #include <cstdint>
 #include <span>
@@ -11,7 +11,7 @@ namespace sf::viz {
 /// One quantity, in order of time. Rule: as many times as values.
 struct Series {
   std::string name;
-  std::vector<double> times;   ///< [s] finite
+  std::vector<double> times;   ///< [s], or what the plan's x axis says; finite
   std::vector<double> values;  ///< in the panel's unit; the line is broken where one is not finite
 };
 
@@ -25,7 +25,8 @@ struct SeriesPlan {
   std::string title;
   std::string subtitle;
   std::vector<Panel> panels;  ///< at least one, at most 16
-  int width = 1600;           ///< [px] of the picture, in [600, 8000]
+  std::string x_name = "time [s]";
+  int width = 1600;  ///< [px] of the picture, in [600, 8000]
 };
 
 /// Draws every series in a colour of its own, told by its row. Up to seven are named below their panel; of more, seven

@@ -1,6 +1,6 @@
-#include "apps/record_run.h"
+#include "scenarios/run_info.h"
 
-namespace sf::apps {
+namespace sf::scenarios {
 
 namespace {
 
@@ -23,14 +23,14 @@ void add_kinds(const sensors::Roster& roster, record::RunInfo& info) {
 
 }  // namespace
 
-record::RunInfo run_info(const world::World& world, const sensors::Roster& roster, const Options& options) {
+record::RunInfo run_info(const world::World& world, const sensors::Roster& roster, const RunSettings& settings) {
   record::RunInfo info;
   info.world = world.name.empty() ? world.file : world.name;
   info.world_hash = world.hash;
-  info.seed = options.seed;
+  info.seed = settings.seed;
   info.interval = world.interval;
-  info.record_readings = options.record_readings;
-  info.options = {{"no_return", options.no_return_inf ? "inf" : "max"}};
+  info.record_readings = settings.record_readings;
+  info.options = {{"no_return", settings.no_return_inf ? "inf" : "max"}};
   info.snapshot = world::snapshot(world);
   for (const world::Mover& mover : world.movers) {
     record::MoverInfo row{mover.name, "", mover.id, {}, {}};
@@ -43,4 +43,4 @@ record::RunInfo run_info(const world::World& world, const sensors::Roster& roste
   return info;
 }
 
-}  // namespace sf::apps
+}  // namespace sf::scenarios

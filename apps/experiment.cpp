@@ -1,0 +1,61 @@
+// `experiment`: trials of one of the experiments, in one folder.
+
+#include "scenarios/experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/commands.h"
+#include "apps/progress.h"
+#include "base/error.h"
+
+namespace sf::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folder asked for, or `experiments` here, or above the program.
+std::string folder_of(const Options& options) {
+  if (!options.experiments.empty()) return options.experiments;
+  std::error_code error;
+  std::vector<fs::path> folders{fs::current_path(error)};
+  for (fs::path at = fs::read_symlink("/proc/self/exe", error).parent_path(); at.has_relative_path();
+       at = at.parent_path())
+    folders.push_back(at);
+  for (const fs::path& folder : folders)
+    if (fs::exists(folder / "experiments" / "lane-edge-p.toml", error)) return (folder / "experiments").string();
+  throw base::InputError("the folder 'experiments' is neither here nor above the program; name it with --files");
+}
+
+int list_all() {
+  for (const scenarios::ExperimentKind* kind : scenarios::experiments())
+    std::fputs(fmt::format("{:<14} {}\n", kind->name, kind->summary).c_str(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+int experiment(const Options& options) {
+  if (options.list) return list_all();
+  const scenarios::ExperimentOptions plan{.trials = options.trials,
+                                          .seed = options.seed,
+                                          .plant = options.plant,
+                                          .folder = folder_of(options),
+                                          .out = options.out,
+                                          .threads = options.threads};
+  gpu::Device device(options.device);
+  std::vector<std::string> files;
+  {
+    Progress progress(options.experiment);
+    files = scenarios::run_experiment(*scenarios::find_experiment(options.experiment), plan, device,
+                                      [&](double part, const std::string& note) { progress.show(part, note); });
+  }
+  for (const std::string& file : files) std::fprintf(stderr, "sensorfarm: wrote %s\n", file.c_str());
+  return 0;
+}
+
+}  // namespace sf::apps

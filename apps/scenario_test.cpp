@@ -1,0 +1,56 @@
+// `test`: scenarios held to what they expect, as a table and as JUnit XML.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "apps/commands.h"
+#include "apps/progress.h"
+#include "base/error.h"
+#include "scenarios/junit.h"
+
+namespace sf::apps {
+
+namespace {
+
+std::string text_of(const scenarios::ScenarioResult& result) {
+  std::string text = fmt::format("{} {}: {:.1f} s simulated in {:.2f} s, {}\n", result.passed() ? "pass" : "FAIL",
+                                 result.file, result.simulated, result.wall, result.name);
+  for (const scenarios::Outcome& o : result.outcomes)
+    text +=
+        fmt::format("  {} {:<28} expected {:<14} got {}\n", o.met ? "pass" : "FAIL", o.what, o.expected, o.measured);
+  if (result.outcomes.empty()) text += "  expects nothing; see [expect] in docs/scenarios.md\n";
+  return text;
+}
+
+void write_junit(const std::string& path, const std::vector<scenarios::ScenarioResult>& results) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << scenarios::junit_of(results);
+  file.close();
+  if (!file)
+    throw base::InputError(path, 0, "cannot be written; name a file in a folder that exists and can be written");
+}
+
+}  // namespace
+
+int test_scenarios(const Options& options) {
+  // All files are read before any is run: a slip in the last is known at once.
+  std::vector<scenarios::Scenario> all;
+  for (const std::string& file : options.scenarios) all.push_back(scenarios::read_scenario(file));
+  gpu::Device device(options.device);
+  std::vector<scenarios::ScenarioResult> results;
+  bool passed = true;
+  for (const scenarios::Scenario& scenario : all) {
+    {
+      Progress progress(scenario.name);
+      results.push_back(scenarios::run_scenario(scenario, device, [&](double part) { progress.show(part); }));
+    }
+    std::fputs(text_of(results.back()).c_str(), stdout);
+    passed = passed && results.back().passed();
+  }
+  if (!options.junit.empty()) write_junit(options.junit, results);
+  return passed ? 0 : 1;
+}
+
+}  // namespace sf::apps

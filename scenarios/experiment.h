@@ -1,0 +1,63 @@
+#pragma once
+// Experiments by name: trials with different seeds, statistics beside the thesis', figures, one folder.
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gpu/device.h"
+#include "scenarios/scenario.h"
+#include "scenarios/trial.h"
+
+namespace sf::scenarios {
+
+struct ExperimentOptions {
+  std::uint32_t trials = 3;
+  std::uint64_t seed = 1;      ///< trial k has seed + k
+  std::optional<Plant> plant;  ///< else the experiment's own
+  std::string folder;          ///< with the scenarios' files
+  std::string out;             ///< folder to write into
+  unsigned threads = 0;
+};
+
+/// What an experiment is asked to do, and with what.
+struct Bench {
+  const Scenario& scenario;
+  const ExperimentOptions& options;
+  gpu::Device& device;
+  std::function<void(double, const std::string&)> progress;  ///< part in [0, 1] that is done, and what is next
+};
+
+struct ExperimentKind {
+  std::string_view name;     ///< its scenario is `<folder>/<name>.toml`
+  std::string_view summary;  ///< one line for help
+  Plant plant = Plant::ideal;
+  /// Writes its files into the folder, and gives their names.
+  std::vector<std::string> (*run)(const Bench& bench);
+};
+
+std::span<const ExperimentKind* const> experiments();
+/// Null when there is none of that name.
+const ExperimentKind* find_experiment(std::string_view name);
+
+/// Reads the scenario, runs, writes. @return the files written
+/// @throws base::InputError for a folder that cannot be written, or a scenario that cannot be run.
+std::vector<std::string> run_experiment(const ExperimentKind& kind, const ExperimentOptions& options,
+                                        gpu::Device& device,
+                                        const std::function<void(double, const std::string&)>& progress);
+
+// --- For experiments -------------------------------------------------------------------------------------------------
+
+/// Every trial of the bench, each in `trial-<k>/` of its folder, one after another.
+std::vector<Trial> run_trials(const Bench& bench, const TrialOptions& options);
+/// Path of a file in the experiment's folder.
+std::string in_folder(const Bench& bench, const std::string& name);
+/// @throws base::InputError naming the path when it cannot be written.
+void write_text(const std::string& path, const std::string& text);
+/// "plant `thesis`, seeds 1 to 3, link ...": what was run, for reports.
+std::string setup_of(const Bench& bench, const Disturbance& disturbance);
+
+}  // namespace sf::scenarios

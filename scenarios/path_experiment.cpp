@@ -1,0 +1,126 @@
+// The thesis' path following: one robot, one lane, by its painted edge or by its magnets, P or PI.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "scenarios/experiment.h"
+#include "scenarios/path_report.h"
+#include "scenarios/thesis.h"
+#include "sensors/kind.h"
+#include "viz/field_figure.h"
+#include "viz/path_figure.h"
+#include "viz/series_figure.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+constexpr double kTopToArray = 0.075;  // [m] of the magnetometers above the magnets' tops (thesis, figure 37)
+
+std::string draw_paths(const Bench& bench, const std::vector<Trial>& trials, const world::World& world) {
+  std::vector<viz::Track> tracks;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    viz::Track track = trials[k].tracks.front();
+    track.name = fmt::format("trial {}", k + 1);
+    tracks.push_back(std::move(track));
+  }
+  const std::string file = in_folder(bench, "trajectories.png");
+  viz::draw_along_paths(
+      world, tracks, "Trajectories: " + bench.scenario.name,
+      fmt::format("plant {}, {} trials from seed {}", name_of(bench.scenario.plant.value_or(Plant::ideal)),
+                  trials.size(), bench.options.seed),
+      file);
+  return file;
+}
+
+std::string draw_errors(const Bench& bench, const std::vector<Trial>& trials, std::string_view unit) {
+  viz::SeriesPlan plan{.title = "Control error: " + bench.scenario.name};
+  viz::Panel panel{.y_name = fmt::format("error [{}]", unit)};
+  for (std::size_t k = 0; k < trials.size(); ++k)
+    panel.series.push_back({fmt::format("trial {}", k + 1), trials[k].times, trials[k].counts.front().errors});
+  plan.panels.push_back(std::move(panel));
+  const std::string file = in_folder(bench, "errors.png");
+  viz::draw_series(plan, file);
+  return file;
+}
+
+/// Figure 37: six magnets in a line. Nothing where the world of them is not beside this one.
+std::vector<std::string> draw_field_line(const Bench& bench) {
+  const std::filesystem::path worlds = std::filesystem::path(bench.scenario.world).parent_path().parent_path();
+  const std::string six = (worlds / "six_magnets.world").string();
+  if (!std::filesystem::exists(six)) return {};
+  const world::World world = world::load_world(six, {.sensors = sensors::vocabulary()});
+  const viz::FieldView view = viz::field_view(world, {.height = kTopToArray});
+  const viz::FieldSamples samples = viz::sample_field(world, bench.device, view, {});
+  const std::string file = in_folder(bench, "field.png");
+  viz::draw_field(world, view, samples, file);
+  return {file};
+}
+
+/// Seconds from the first to the last error, of a trial.
+double driven(const Trial& trial) { return trial.times.empty() ? 0.0 : trial.times.back() - trial.times.front(); }
+
+std::string report_of(const Bench& bench, const std::vector<Trial>& trials, const ThesisTable& table) {
+  std::vector<ErrorStatistics> statistics;
+  std::string ends;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    statistics.push_back(trials[k].errors.front());
+    ends += fmt::format("| {} | {:.1f} | {} | {} | {} | {:.4f} |\n", k + 1, driven(trials[k]), statistics.back().count,
+                        trials[k].counts.front().contacts, trials[k].done ? "yes" : "**no**",
+                        trials[k].counts.front().travelled);
+  }
+  return fmt::format(
+      "# {}\n\n{}\n\nTable {} of the thesis, all eight columns:\n\n{}\n"
+      "| trial | time on the path [s] | errors | contacts | end reached | driven [m] |\n|---|---|---|---|---|---|\n{}\n"
+      "Why ours and the thesis' differ, and what either shows: docs/experiments.md. `statistics.csv` has the numbers, "
+      "`trial-<k>/` each run whole (`sensorfarm plot`).\n",
+      bench.scenario.name, setup_of(bench, {}), table.number, table_of(statistics, table), ends);
+}
+
+std::vector<std::string> run_path(const Bench& bench) {
+  const ThesisTable& table = *thesis_table(bench.scenario.name);
+  const std::vector<Trial> trials = run_trials(bench, {});
+  const world::World world = world_of(bench.scenario);
+  std::vector<ErrorStatistics> statistics;
+  for (const Trial& trial : trials) statistics.push_back(trial.errors.front());
+  std::vector<std::string> files{in_folder(bench, "statistics.csv"), in_folder(bench, "report.md")};
+  write_text(files[0], csv_of(statistics));
+  write_text(files[1], report_of(bench, trials, table));
+  files.push_back(draw_paths(bench, trials, world));
+  files.push_back(draw_errors(bench, trials, table.unit));
+  if (table.unit == "Gauss")
+    for (const std::string& file : draw_field_line(bench)) files.push_back(file);
+  return files;
+}
+
+}  // namespace
+
+extern const ExperimentKind lane_edge_p_experiment, lane_edge_pi_experiment, magnet_p_experiment, magnet_pi_experiment;
+
+constinit const ExperimentKind lane_edge_p_experiment{
+    .name = "lane-edge-p",
+    .summary = "path following by the painted edge, P (thesis: table 1, figure 33)",
+    .plant = Plant::thesis,
+    .run = run_path,
+};
+constinit const ExperimentKind lane_edge_pi_experiment{
+    .name = "lane-edge-pi",
+    .summary = "the same, PI (table 2, figure 34)",
+    .plant = Plant::thesis,
+    .run = run_path,
+};
+constinit const ExperimentKind magnet_p_experiment{
+    .name = "magnet-p",
+    .summary = "path following by magnets in the road, P (table 3, figures 37 and 38)",
+    .plant = Plant::thesis,
+    .run = run_path,
+};
+constinit const ExperimentKind magnet_pi_experiment{
+    .name = "magnet-pi",
+    .summary = "the same, PI (table 4, figure 39)",
+    .plant = Plant::thesis,
+    .run = run_path,
+};
+
+}  // namespace sf::scenarios

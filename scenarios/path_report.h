@@ -1,0 +1,24 @@
+#pragma once
+// Trials as tables: statistics.csv, and rows beside the thesis' in report.md.
+
+#include <span>
+#include <string>
+
+#include "scenarios/statistics.h"
+#include "scenarios/thesis.h"
+
+namespace sf::scenarios {
+
+/// `trial,mean,std,min,max,abs_mean,abs_std,abs_min,abs_max`, one line a trial from 1 on. [m] or [Gauss]
+std::string csv_of(std::span<const ErrorStatistics> trials);
+
+/// A Markdown table: every trial of ours, every one of the thesis', and the ratio of both means.
+std::string table_of(std::span<const ErrorStatistics> trials, const ThesisTable& table);
+
+/// The eight columns, in the order of `kColumns`.
+ThesisRow row_of(const ErrorStatistics& statistics);
+
+/// Of each column over trials.
+ThesisRow mean_of(std::span<const ThesisRow> rows);
+
+}  // namespace sf::scenarios

@@ -1,0 +1,21 @@
+#pragma once
+// What a recording says of its run.
+
+#include <cstdint>
+
+#include "record/recorder.h"
+#include "sensors/roster.h"
+#include "world/world.h"
+
+namespace sf::scenarios {
+
+/// What the world does not say of a run.
+struct RunSettings {
+  std::uint64_t seed = 0;
+  bool record_readings = false;
+  bool no_return_inf = false;  ///< beams that met nothing read infinity
+};
+
+record::RunInfo run_info(const world::World& world, const sensors::Roster& roster, const RunSettings& settings);
+
+}  // namespace sf::scenarios

@@ -1,0 +1,196 @@
+// What makes the lane edge loop swing? Delay, loss, rate, gain and the line fit, one at a time, P and PI, both plants.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "scenarios/experiment.h"
+#include "scenarios/path_report.h"
+#include "viz/series_figure.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+/// The thesis' gains, and what a sweep varies. One at a time is not as here.
+struct Setting {
+  double kp = 0.5;       ///< [1/(m s)]
+  double ki = 0.0;       ///< [1/(m s^2)]
+  double delay = 0.0;    ///< [s]
+  double loss = 0.0;     ///< [-]
+  double rate = 10.0;    ///< [Hz] of sensor and controller
+  bool one_ray = false;  ///< the edge's exact distance across the robot, no line fitted
+  Plant plant = Plant::thesis;
+};
+
+/// One point of a sweep, over all seeds.
+struct Point {
+  std::string sweep;
+  double x = 0.0;
+  std::string law;  ///< "P" or "PI"
+  Setting setting;
+  ThesisRow mean{};      ///< of the eight columns over seeds
+  double seconds = 0.0;  ///< on the path
+  bool all_done = true;
+  /// Mean error that a P loop cannot but have: the bend's angle over gain and time. [m]
+  double owed() const {
+    const double gain = setting.plant == Plant::thesis ? 2.0 * setting.kp : setting.kp;
+    return 0.5 * M_PI / (gain * seconds);
+  }
+};
+
+void set_number(world::Sensor& sensor, const std::string& key, double value) {
+  for (world::Setting& setting : sensor.settings)
+    if (setting.key == key) {
+      setting.numbers = {value};
+      return;
+    }
+  sensor.settings.push_back({key, {value}, "", sensor.line, sensor.file});
+}
+
+Scenario scenario_of(const Bench& bench, const Setting& setting, std::uint64_t seed) {
+  Scenario scenario = bench.scenario;
+  scenario.seed = seed;
+  scenario.plant = setting.plant;
+  scenario.tick = std::min(0.1, 1.0 / setting.rate);
+  scenario.actor.link = {.delay = setting.delay, .loss = setting.loss};
+  scenario.actor.plan = {"lane-keeping",
+                         setting.rate,
+                         {"controller 'lane-keeping'",
+                          {{"kp", setting.kp, ""}, {"ki", setting.ki, ""}, {"speed", 0.1, ""}, {"hold", 5.0, ""}}}};
+  return scenario;
+}
+
+void measure(const Bench& bench, Point& point) {
+  std::vector<ThesisRow> rows;
+  for (std::uint32_t k = 0; k < bench.options.trials; ++k) {
+    const Scenario scenario = scenario_of(bench, point.setting, bench.options.seed + k);
+    world::World world = disturbed_world(scenario, {});
+    for (world::Mover& mover : world.movers)
+      for (world::Sensor& sensor : mover.sensors) {
+        if (sensor.type != "laneedge") continue;
+        set_number(sensor, "rate", point.setting.rate);
+        if (point.setting.one_ray) set_number(sensor, "samples", 1.0), set_number(sensor, "fov", 0.0);
+      }
+    world::finish(world);
+    const Trial trial = run_trial(scenario, world, bench.device, {.threads = bench.options.threads});
+    rows.push_back(row_of(trial.errors.front()));
+    point.seconds += trial.simulated / bench.options.trials;
+    point.all_done = point.all_done && trial.done;
+  }
+  point.mean = mean_of(rows);
+}
+
+/// Adds the sweep's points, for P and PI.
+template <class Change>
+void add(std::vector<Point>& points, const std::string& sweep, Plant plant, const std::vector<double>& xs,
+         Change&& change) {
+  for (const double x : xs)
+    for (const bool integral : {false, true}) {
+      Setting setting{.ki = integral ? 0.015 : 0.0, .plant = plant};
+      change(setting, x);
+      points.push_back({fmt::format("{}-{}", sweep, name_of(plant)), x, integral ? "PI" : "P", setting});
+    }
+}
+
+std::vector<Point> all_points() {
+  std::vector<Point> points;
+  for (const Plant plant : {Plant::thesis, Plant::ideal}) {
+    add(points, "delay", plant, {0.0, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0}, [](Setting& s, double x) { s.delay = x; });
+    add(points, "fit", plant, {0.0, 1.0}, [](Setting& s, double x) { s.one_ray = x == 0.0; });
+    add(points, "gain", plant, {0.2, 0.35, 0.5, 0.75, 1.0, 1.5}, [](Setting& s, double x) { s.kp = x; });
+  }
+  add(points, "loss", Plant::thesis, {0.0, 0.2, 0.4, 0.6, 0.8}, [](Setting& s, double x) { s.loss = x; });
+  add(points, "rate", Plant::thesis, {2.0, 5.0, 10.0, 20.0}, [](Setting& s, double x) { s.rate = x; });
+  return points;
+}
+
+const std::map<std::string, std::string> kAxes{{"delay", "delay of readings [s]"},
+                                               {"loss", "part of readings lost [-]"},
+                                               {"rate", "rate of sensor and controller [Hz]"},
+                                               {"gain", "kp [rad/s per m]"}};
+
+std::string stem_of(const std::string& sweep) { return sweep.substr(0, sweep.find('-')); }
+
+std::string csv_of_points(const std::vector<Point>& points) {
+  std::string text = fmt::format("sweep,x,law,{},owed_mean,seconds,end_reached\n", fmt::join(kColumns, ","));
+  for (const Point& p : points)
+    text += fmt::format("{},{:g},{},{:.6g},{:.6g},{:.1f},{}\n", p.sweep, p.x, p.law, fmt::join(p.mean, ","), p.owed(),
+                        p.seconds, p.all_done ? 1 : 0);
+  return text;
+}
+
+std::string draw(const Bench& bench, const std::vector<Point>& points, const std::string& sweep) {
+  constexpr std::array<std::pair<std::size_t, const char*>, 3> kShown{
+      {{0, "mean error [m]"}, {4, "mean |error| [m]"}, {7, "largest |error| [m]"}}};
+  viz::SeriesPlan plan{.title = "Lane edge loop: " + sweep,
+                       .subtitle = fmt::format("means of {} seeds", bench.options.trials),
+                       .x_name = kAxes.at(stem_of(sweep))};
+  for (const auto& [column, name] : kShown) {
+    viz::Panel panel{.y_name = name};
+    for (const char* law : {"P", "PI"}) {
+      viz::Series series{.name = law};
+      for (const Point& p : points)
+        if (p.sweep == sweep && p.law == law) {
+          series.times.push_back(p.x);
+          series.values.push_back(p.mean[column]);
+        }
+      panel.series.push_back(std::move(series));
+    }
+    plan.panels.push_back(std::move(panel));
+  }
+  const std::string file = in_folder(bench, "sweep-" + sweep + ".png");
+  viz::draw_series(plan, file);
+  return file;
+}
+
+std::string report_of(const Bench& bench, const std::vector<Point>& points) {
+  std::string text = "# Sweeps of the lane edge loop\n\n" + setup_of(bench, {}) +
+                     "\n\nOne thing is varied at a time; all else is as in lane-edge-p and -pi, without delay, jitter "
+                     "or loss. `fit` 0 is the exact distance across the robot (one ray), 1 the line through 61 rays. "
+                     "`owed` is the mean error that a P loop cannot but have on this bend: (pi/2) / (kp T), the gain "
+                     "doubled by the plant `thesis`.\n";
+  std::string sweep;
+  for (const Point& p : points) {
+    if (p.sweep != sweep)
+      text += fmt::format(
+          "\n## {}\n\n| x | law | mean [m] | owed [m] | mean abs [m] | max abs [m] | T [s] | end "
+          "reached |\n|---|---|---|---|---|---|---|---|\n",
+          p.sweep);
+    sweep = p.sweep;
+    text += fmt::format("| {:g} | {} | {:.4f} | {:.4f} | {:.4f} | {:.3f} | {:.1f} | {} |\n", p.x, p.law, p.mean[0],
+                        p.owed(), p.mean[4], p.mean[7], p.seconds, p.all_done ? "yes" : "no");
+  }
+  return text;
+}
+
+std::vector<std::string> run_sweeps(const Bench& bench) {
+  std::vector<Point> points = all_points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (bench.progress) bench.progress(static_cast<double>(i) / static_cast<double>(points.size()), points[i].sweep);
+    measure(bench, points[i]);
+  }
+  std::vector<std::string> files{in_folder(bench, "sweeps.csv"), in_folder(bench, "report.md")};
+  write_text(files[0], csv_of_points(points));
+  write_text(files[1], report_of(bench, points));
+  std::string last;
+  for (const Point& p : points) {
+    if (p.sweep != last && kAxes.count(stem_of(p.sweep)) > 0) files.push_back(draw(bench, points, p.sweep));
+    last = p.sweep;
+  }
+  return files;
+}
+
+}  // namespace
+
+extern const ExperimentKind sweeps_experiment;
+
+constinit const ExperimentKind sweeps_experiment{
+    .name = "sweeps",
+    .summary = "the lane edge loop over delay, loss, rate and gain, and with an exact edge in place of the line fit",
+    .plant = Plant::thesis,
+    .run = run_sweeps,
+};
+
+}  // namespace sf::scenarios

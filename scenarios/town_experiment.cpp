@@ -1,0 +1,70 @@
+// Whole testbeds: everyone drives, and what they did is counted.
+
+#include <fmt/format.h>
+
+#include "scenarios/experiment.h"
+#include "viz/trajectory_figure.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+std::string csv_of(const std::vector<Trial>& trials) {
+  std::string text = "trial,robot,driven_m,contacts,checkpoints,reds_passed,mean_abs_error\n";
+  for (std::size_t k = 0; k < trials.size(); ++k)
+    for (std::size_t i = 0; i < trials[k].tracks.size(); ++i) {
+      const RobotCounts& counts = trials[k].counts[i];
+      const bool has = trials[k].errors[i].count > 0;
+      text +=
+          fmt::format("{},{},{:.6g},{},{},{},{}\n", k + 1, trials[k].tracks[i].name, counts.travelled, counts.contacts,
+                      counts.checkpoints, counts.reds, has ? fmt::format("{:.6g}", trials[k].errors[i].abs_mean) : "");
+    }
+  return text;
+}
+
+std::string report_of(const Bench& bench, const std::vector<Trial>& trials) {
+  std::string text = fmt::format("# {}\n\n{}\n", bench.scenario.name, setup_of(bench, {}));
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    const Trial& trial = trials[k];
+    text += fmt::format(
+        "\n## Trial {}: {:.0f} s simulated in {:.1f} s ({:.0f} x real time)\n\n"
+        "| robot | driven [m] | contacts | checkpoints | reds passed |\n|---|---|---|---|---|\n",
+        k + 1, trial.simulated, trial.wall, trial.simulated / std::max(trial.wall, 1e-9));
+    for (std::size_t i = 0; i < trial.tracks.size(); ++i)
+      text += fmt::format("| {} | {:.2f} | {} | {} | {} |\n", trial.tracks[i].name, trial.counts[i].travelled,
+                          trial.counts[i].contacts, trial.counts[i].checkpoints, trial.counts[i].reds);
+  }
+  return text;
+}
+
+std::vector<std::string> run_town(const Bench& bench) {
+  const std::vector<Trial> trials = run_trials(bench, {});
+  std::vector<std::string> files{in_folder(bench, "statistics.csv"), in_folder(bench, "report.md")};
+  write_text(files[0], csv_of(trials));
+  write_text(files[1], report_of(bench, trials));
+  const world::World world = world_of(bench.scenario);
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    files.push_back(in_folder(bench, fmt::format("trajectories-{}.png", k + 1)));
+    viz::draw_trajectories(world, trials[k].tracks, files.back());
+  }
+  return files;
+}
+
+}  // namespace
+
+extern const ExperimentKind simville_experiment, minimagic_experiment;
+
+constinit const ExperimentKind simville_experiment{
+    .name = "simville",
+    .summary = "town traffic: routes, lights, stop signs, a convoy",
+    .plant = Plant::ideal,
+    .run = run_town,
+};
+constinit const ExperimentKind minimagic_experiment{
+    .name = "minimagic",
+    .summary = "Pioneers between buildings and obstacles that move",
+    .plant = Plant::ideal,
+    .run = run_town,
+};
+
+}  // namespace sf::scenarios

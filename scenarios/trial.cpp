@@ -1,0 +1,133 @@
+#include "scenarios/trial.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "base/random.h"
+#include "record/recorder.h"
+#include "scenarios/coverage.h"
+#include "scenarios/run_info.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+/// Draws of `place` keyed so, beside those of cloned fleets.
+constexpr std::uint32_t kStart = 0x57A27u;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void add_noise(world::Mover& mover, const Disturbance& d) {
+  for (world::Sensor& sensor : mover.sensors) {
+    const bool noisy = std::any_of(sensor.settings.begin(), sensor.settings.end(),
+                                   [](const world::Setting& s) { return s.key == "noise"; });
+    if (noisy) continue;
+    if (sensor.type == "laneedge" && d.edge_noise > 0.0)
+      sensor.settings.push_back({"noise", {d.edge_noise / sensor.metres}, "", sensor.line, sensor.file});
+    if (sensor.type == "magnetometer" && d.field_noise > 0.0)
+      sensor.settings.push_back({"noise", {d.field_noise}, "", sensor.line, sensor.file});
+  }
+  for (world::Laser& laser : mover.lasers)
+    if (laser.noise.range_sigma == 0.0) laser.noise.range_sigma = d.scan_noise;
+}
+
+/// The tracks of those who drive.
+class Keeper {
+ public:
+  Keeper(const world::World& world, const Simulation& simulation, bool maps) {
+    for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
+      if (world.movers[row].is_tag && simulation.controller(row) == nullptr) continue;
+      rows_.push_back(row);
+      tracks_.push_back({.name = world.movers[row].name});
+      if (maps && !world.movers[row].lasers.empty()) maps_.try_emplace(row, world, row);
+    }
+  }
+
+  void look(const base::TickRecord& tick, const Simulation& simulation) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      tracks_[i].poses.push_back(tick.reports[rows_[i]].X_WM);
+      tracks_[i].contacts.push_back(tick.contacts[rows_[i]]);
+    }
+    for (auto& [row, map] : maps_)
+      for (const base::ReadingBlock& reading : tick.readings) map.add(reading);
+    const control::Controller* first = rows_.empty() ? nullptr : simulation.controller(rows_[0]);
+    if (first != nullptr && simulation.stepped(rows_[0]) && std::isfinite(first->error()))
+      times_.push_back(1e-9 * static_cast<double>(tick.time));
+  }
+
+  void give(const Watch& watch, Trial& trial) {
+    trial.rows = rows_;
+    trial.tracks = std::move(tracks_);
+    trial.times = std::move(times_);
+    for (viz::Track& track : trial.tracks) track.duration = trial.simulated;
+    for (const std::uint32_t row : rows_) {
+      trial.counts.push_back(watch.of(row));
+      trial.errors.push_back(statistics_of(watch.of(row).errors));
+    }
+    for (const auto& [row, map] : maps_) {
+      trial.mapped.push_back(row);
+      trial.maps.push_back(map.grid());
+    }
+  }
+
+ private:
+  std::vector<std::uint32_t> rows_;
+  std::vector<viz::Track> tracks_;
+  std::vector<double> times_;
+  std::map<std::uint32_t, OwnMap> maps_;
+};
+
+}  // namespace
+
+world::World disturbed_world(const Scenario& scenario, const Disturbance& disturbance) {
+  world::World world = world_of(scenario);
+  for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
+    world::Mover& mover = world.movers[row];
+    if (mover.is_tag) continue;
+    const base::Draw draw{scenario.seed, base::Stream::place, kStart, row, 0};
+    const auto place = base::random_normal(draw, 0);
+    const double turn = base::random_normal(draw, 1)[0];
+    mover.X_WM = base::compose(
+        mover.X_WM, {disturbance.place * place[0], disturbance.place * place[1], 0.0, disturbance.heading * turn});
+    add_noise(mover, disturbance);
+  }
+  world::finish(world);
+  return world;
+}
+
+Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device& device, const TrialOptions& options) {
+  SimulationOptions plan = simulation_of(scenario, world);
+  plan.threads = options.threads;
+  Simulation simulation(world, device, plan);
+  Watch watch(world, simulation);
+  Keeper keeper(world, simulation, options.maps);
+  std::optional<record::Recorder> recorder;
+  if (!options.record.empty())
+    recorder.emplace(options.record,
+                     run_info(world, simulation.farm().roster(), {.seed = scenario.seed, .record_readings = true}));
+
+  Trial trial{.seed = scenario.seed};
+  const auto start = std::chrono::steady_clock::now();
+  const auto ticks = std::llround(scenario.duration / world.interval);
+  std::int64_t tick = 0;
+  for (; tick < ticks && !simulation.all_done(); ++tick) {
+    const base::TickRecord record = simulation.step();
+    watch.look(record);
+    keeper.look(record, simulation);
+    if (recorder) recorder->write(record);
+  }
+  if (recorder) recorder->finish();
+  trial.wall = seconds_since(start);
+  trial.simulated = static_cast<double>(tick) * world.interval;
+  trial.done = simulation.all_done();
+  trial.hash = simulation.farm().hash();
+  keeper.give(watch, trial);
+  return trial;
+}
+
+}  // namespace sf::scenarios

@@ -1,0 +1,65 @@
+#include "scenarios/coverage.h"
+
+#include <gtest/gtest.h>
+
+#include "sensors/kind.h"
+
+namespace sf::scenarios {
+namespace {
+
+using maps::Cell;
+
+world::World mapping_world() {
+  return world::load_world(SF_SOURCE_DIR "/worlds/mapping/mapping.world", {.sensors = sensors::vocabulary()});
+}
+
+maps::GridPlan small() { return {-0.12, 0.12, 0.03, 2, 2}; }
+
+TEST(Coverage, CountsOnlyWhatTheReferenceHasFree) {
+  maps::Grid reference(small()), map(small());
+  EXPECT_EQ(coverage(map, reference), 1.0);
+  for (int i = 0; i < 4; ++i) reference.set({i, 0}, Cell::free);
+  reference.set({4, 0}, Cell::occupied);
+  EXPECT_EQ(coverage(map, reference), 0.0);
+  map.set({0, 0}, Cell::free);
+  map.set({1, 0}, Cell::occupied);
+  map.set({4, 0}, Cell::occupied);
+  map.set({7, 7}, Cell::free);
+  EXPECT_EQ(coverage(map, reference), 0.5);
+  // Known in both: (0,0), (1,0), (4,0); one of them apart.
+  EXPECT_DOUBLE_EQ(disagreement(map, reference), 1.0 / 3.0);
+}
+
+/// 3 m x 3 m less three boxes of 0.25 m^2 and the tree; nothing beyond the walls.
+TEST(Coverage, WhatCouldBeSeenIsTheRoom) {
+  const world::World world = mapping_world();
+  const OwnMap map(world, 0);
+  const maps::Grid seen = what_could_be_seen(world, 0, map.grid().plan);
+  double area = 0.0;
+  for (std::int64_t row = 0; row < maps::rows(seen.plan); ++row)
+    for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
+      if (seen.at({column, row}) != Cell::free) continue;
+      const base::Vec2 p = maps::middle(seen.plan, {column, row});
+      EXPECT_LT(std::max(std::abs(p.x), std::abs(p.y)), 1.53) << p.x << " " << p.y;
+      area += seen.plan.cell * seen.plan.cell;
+    }
+  EXPECT_NEAR(area, 9.0 - 3 * 0.25 - 0.013, 0.25);
+}
+
+/// Behind a wall without a door nothing is seen.
+TEST(Coverage, StopsAtWalls) {
+  world::World world = mapping_world();
+  const base::Vec2 from{-1.5, 0.0}, to{1.5, 0.0};
+  world::Segment wall{.a = from, .b = to, .z_max = 0.5, .solid_left = false};
+  world.walls.push_back(wall);
+  world::finish(world);
+  const OwnMap map(world, 0);
+  const maps::Grid seen = what_could_be_seen(world, 0, map.grid().plan);
+  for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
+    const maps::CellAt north = maps::cell_at(seen.plan, {maps::middle(seen.plan, {column, 0}).x, 0.2});
+    EXPECT_NE(seen.at(north), Cell::free) << column;
+  }
+}
+
+}  // namespace
+}  // namespace sf::scenarios

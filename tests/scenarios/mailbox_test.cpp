@@ -1,0 +1,123 @@
+#include "scenarios/mailbox.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace sf::scenarios {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+/// Reading `sequence` of a sensor, whose only number is its sequence.
+class Sender {
+ public:
+  explicit Sender(std::uint8_t kind = 1, std::uint32_t sensor = 0) : kind_(kind), sensor_(sensor) {}
+  base::ReadingBlock reading(std::uint32_t sequence) {
+    value_ = {static_cast<double>(sequence)};
+    return {.sensor = sensor_, .kind = kind_, .sequence = sequence, .values = value_};
+  }
+
+ private:
+  std::uint8_t kind_;
+  std::uint32_t sensor_;
+  std::array<double, 1> value_{};
+};
+
+double newest(Mailbox& box, std::int64_t now) {
+  const auto open = box.open(now);
+  return open.empty() ? -1.0 : open[0].values[0];
+}
+
+TEST(Mailbox, IsEmptyBeforeAnythingCame) {
+  Mailbox box({}, 0);
+  EXPECT_TRUE(box.open(0).empty());
+  EXPECT_FALSE(box.renewed(1));
+}
+
+/// The farm's memory is gone by the next tick: what is kept are copies.
+TEST(Mailbox, KeepsACopyUntilANewerOneComes) {
+  Mailbox box({}, 0);
+  Sender sender;
+  box.post(sender.reading(0), 0);
+  EXPECT_EQ(newest(box, 0), 0.0);
+  EXPECT_TRUE(box.renewed(1));
+  sender.reading(99);
+  EXPECT_EQ(newest(box, 50 * kMs), 0.0);
+  EXPECT_FALSE(box.renewed(1));
+  box.post(sender.reading(1), 100 * kMs);
+  EXPECT_EQ(newest(box, 100 * kMs), 1.0);
+}
+
+TEST(Mailbox, ADelayOfDIsSeenDLater) {
+  Mailbox box({.delay = 0.25}, 0);
+  Sender sender;
+  for (std::uint32_t k = 0; k < 10; ++k) {
+    const std::int64_t now = k * 100 * kMs;
+    box.post(sender.reading(k), now);
+    // Sent at 100 k ms, seen from 100 k + 250 ms on: at tick k the newest is k - 3.
+    EXPECT_EQ(newest(box, now), k < 3 ? -1.0 : k - 3.0) << k;
+  }
+  EXPECT_EQ(newest(box, 1149 * kMs), 8.0);  // 9 was sent at 900 ms
+  EXPECT_EQ(newest(box, 1150 * kMs), 9.0);
+}
+
+TEST(Mailbox, WhatIsLostNeverComes) {
+  Mailbox box({.loss = 1.0}, 0);
+  Sender sender;
+  for (std::uint32_t k = 0; k < 20; ++k) box.post(sender.reading(k), k * 100 * kMs);
+  EXPECT_TRUE(box.open(1'000'000 * kMs).empty());
+}
+
+/// With much jitter readings overtake each other; what is seen never goes back.
+TEST(Mailbox, NeverGoesBack) {
+  Mailbox box({.jitter = 1.0, .loss = 0.2, .seed = 3}, 7);
+  Sender sender;
+  double last = -1.0;
+  int renewed = 0;
+  for (std::uint32_t k = 0; k < 500; ++k) {
+    const std::int64_t now = k * 100 * kMs;
+    box.post(sender.reading(k), now);
+    const double value = newest(box, now);
+    EXPECT_GE(value, last);
+    EXPECT_EQ(box.renewed(1), value > last);
+    renewed += box.renewed(1);
+    last = value;
+  }
+  // Some were overtaken or lost, most were not.
+  EXPECT_GT(renewed, 150);
+  EXPECT_LT(renewed, 400);
+}
+
+TEST(Mailbox, SensorsAndKindsAreApart) {
+  Mailbox box({}, 0);
+  Sender a(1, 0), b(1, 1), c(3, 0);
+  box.post(a.reading(5), 0);
+  box.post(b.reading(6), 0);
+  box.post(c.reading(7), 0);
+  const auto open = box.open(0);
+  ASSERT_EQ(open.size(), 3u);
+  EXPECT_EQ(open[0].values[0], 5.0);
+  EXPECT_EQ(open[1].values[0], 6.0);
+  EXPECT_EQ(open[2].kind, 3);
+  box.post(c.reading(8), 1);
+  box.open(1);
+  EXPECT_TRUE(box.renewed(3));
+  EXPECT_FALSE(box.renewed(1));
+}
+
+/// The fate of a message is its robot's own.
+TEST(Mailbox, RobotsLoseDifferentReadings) {
+  Mailbox one({.loss = 0.5, .seed = 1}, 1), two({.loss = 0.5, .seed = 1}, 2);
+  Sender sender;
+  int apart = 0;
+  for (std::uint32_t k = 0; k < 100; ++k) {
+    one.post(sender.reading(k), k);
+    two.post(sender.reading(k), k);
+    apart += newest(one, k) != newest(two, k);
+  }
+  EXPECT_GT(apart, 10);
+}
+
+}  // namespace
+}  // namespace sf::scenarios

@@ -1,0 +1,242 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "scenarios/scenario.h"
+
+namespace sf::scenarios {
+namespace {
+
+constexpr const char* kFile = SF_SOURCE_DIR "/experiments/test.toml";
+constexpr const char* kWorld = "world = \"../worlds/testpath/testpath.world\"\n";
+
+Scenario parse(const std::string& text) { return parse_scenario(kFile, kWorld + text); }
+
+/// What the error says from the file's name on; empty when there is none.
+std::string refusal(const std::string& text, bool make = false) {
+  try {
+    const Scenario scenario = parse_scenario(kFile, text);
+    if (make) simulation_of(scenario, world_of(scenario));
+  } catch (const base::InputError& error) {
+    const std::string what = error.what();
+    const auto at = what.find("test.toml");
+    return at == std::string::npos ? what : what.substr(at);
+  }
+  return {};
+}
+
+TEST(ScenarioFile, DefaultsOfAFileThatNamesAWorld) {
+  const Scenario s = parse("");
+  EXPECT_EQ(s.name, "test");
+  EXPECT_TRUE(std::filesystem::exists(s.world)) << s.world;
+  EXPECT_EQ(s.duration, 60.0);
+  EXPECT_EQ(s.seed, 1u);
+  EXPECT_EQ(s.actor.plan.controller, "wander");
+  EXPECT_TRUE(s.actor.link.perfect());
+  EXPECT_FALSE(s.plant);
+  EXPECT_TRUE(s.expect.empty());
+}
+
+TEST(ScenarioFile, EveryKeyArrives) {
+  const Scenario s = parse(R"(
+name = "all keys"
+duration = 12.5
+seed = 77
+tick = 0.05
+robots = 3
+plant = "thesis"
+start_at = 2
+[default]
+controller = "wander"
+rate = 5
+[link]
+delay = 0.1
+jitter = 0.2
+loss = 0.3
+[[robot]]
+name = "roomba0"
+controller = "none"
+pose = [1, 2, 90]
+link = { delay = 1 }
+[expect]
+no_collision = true
+contacts = 4
+mean_error = 0.01
+mean_abs_error = { roomba0 = 0.5 }
+map_coverage = 0.9
+lights_obeyed = true
+done = true
+checkpoints = 2
+tick_p99_ms = 10
+)");
+  EXPECT_EQ(s.name, "all keys");
+  EXPECT_EQ(s.duration, 12.5);
+  EXPECT_EQ(s.seed, 77u);
+  EXPECT_EQ(s.tick, 0.05);
+  EXPECT_EQ(s.robots, 3u);
+  EXPECT_EQ(s.plant, Plant::thesis);
+  EXPECT_EQ(s.start_at, 2.0);
+  EXPECT_EQ(s.actor.plan.rate, 5.0);
+  EXPECT_EQ(s.actor.link.jitter, 0.2);
+  ASSERT_EQ(s.plans.size(), 1u);
+  EXPECT_EQ(s.plans[0].actor->plan.controller, "");
+  EXPECT_EQ(s.plans[0].actor->link.delay, 1.0);
+  EXPECT_EQ(s.plans[0].actor->link.loss, 0.0);
+  EXPECT_NEAR(s.plans[0].pose->yaw, M_PI / 2, 1e-15);
+  ASSERT_EQ(s.expect.size(), 9u);
+  for (const Expectation& e : s.expect)
+    EXPECT_EQ(e.robot, e.kind == Expectation::Kind::mean_abs_error ? "roomba0" : "");
+}
+
+/// Who gives only settings keeps the default's controller; who names another starts without settings.
+TEST(ScenarioFile, RobotsInheritWhatTheyDoNotSay) {
+  const Scenario s = parse(R"(
+[default]
+controller = "lane-keeping"
+rate = 20
+settings = { kp = 0.7 }
+[[robot]]
+name = "roomba0"
+settings = { kp = 0.9 }
+)");
+  ASSERT_EQ(s.plans.size(), 1u);
+  control::Plan plan = s.plans[0].actor->plan;
+  EXPECT_EQ(plan.controller, "lane-keeping");
+  EXPECT_EQ(plan.rate, 20.0);
+  EXPECT_EQ(plan.settings.number("kp", 0.0, 0.0, 10.0), 0.9);
+}
+
+TEST(ScenarioFile, RobotsWithAPoseAloneKeepTheDefault) {
+  const Scenario s = parse("[[robot]]\nname = \"roomba0\"\npose = [1, 0.1, 5]\n");
+  ASSERT_EQ(s.plans.size(), 1u);
+  EXPECT_FALSE(s.plans[0].actor);
+  const world::World world = world_of(s);
+  EXPECT_EQ(world.movers[0].X_WM.x, 1.0);
+  EXPECT_NE(world.hash, world_of(parse("")).hash);
+}
+
+TEST(ScenarioFile, ThePlantIsEveryMoversCommandLaw) {
+  EXPECT_EQ(world_of(parse("")).movers[0].command_law, world::CommandLaw::direct);
+  EXPECT_EQ(world_of(parse("plant = \"thesis\"")).movers[0].command_law, world::CommandLaw::player_create);
+  EXPECT_EQ(world_of(parse("plant = \"ideal\"")).movers[0].command_law, world::CommandLaw::direct);
+}
+
+TEST(ScenarioFile, LinksHaveTheScenariosSeed) {
+  const Scenario s = parse("seed = 9\n[link]\ndelay = 0.5\n");
+  EXPECT_EQ(simulation_of(s, world_of(s)).actors[0].link.seed, 9u);
+}
+
+/// One mistake each, and what is said of it.
+TEST(ScenarioFile, MistakesAreRefusedAtTheirLine) {
+  const std::string w = kWorld;
+  const std::pair<std::string, std::string> kCorpus[] = {
+      {"", "test.toml: has no world; expected world = \"FILE\""},
+      {"world = 3\n", "test.toml:1: 'world' expects a text in quotes"},
+      {"world = \n", "test.toml:1: not TOML"},
+      {w + "duraton = 3\n", "test.toml:2: unknown key 'duraton'; did you mean 'duration'?"},
+      {w + "duration = -1\n", "test.toml:2: 'duration' expects a number from 0"},
+      {w + "duration = nan\n", "test.toml:2: 'duration' expects a number"},
+      {w + "duration = \"long\"\n", "test.toml:2: 'duration' expects a number"},
+      {w + "seed = 1.5\n", "test.toml:2: 'seed' expects a whole number"},
+      {w + "seed = -1\n", "test.toml:2: 'seed' expects a whole number"},
+      {w + "tick = 0\n", "test.toml:2: 'tick' expects a number from 0.001"},
+      {w + "robots = 70000\n", "test.toml:2: 'robots' expects a whole number from 0 to 65535"},
+      {w + "plant = \"real\"\n", "test.toml:2: 'plant' expects \"thesis\" or \"ideal\""},
+      {w + "plant = 1\n", "test.toml:2: 'plant' expects \"thesis\" or \"ideal\""},
+      {w + "link = 3\n", "test.toml:2: 'link' expects a table"},
+      {w + "[link]\nloss = 1.1\n", "test.toml:3: 'loss' expects a number from 0 to 1"},
+      {w + "[link]\nlag = 1\n", "test.toml:3: unknown key 'lag'"},
+      {w + "[default]\ncontroller = \"wandr\"\n",
+       "test.toml:3: there is no controller 'wandr'; did you mean 'wander'?"},
+      {w + "[default]\nrate = 0\n", "test.toml:3: 'rate' expects a number from 0.01"},
+      {w + "[default]\npose = [0, 0, 0]\n", "test.toml:3: unknown key 'pose'"},
+      {w + "[default]\nsettings = 3\n", "test.toml:3: 'settings' expects a table"},
+      {w + "[default.settings]\na = [1, \"b\"]\n", "test.toml:3: 'a' expects true, false, a number"},
+      {w + "[default.settings]\na = 2026-01-01\n", "test.toml:3: 'a' expects true, false, a number"},
+      {w + "robot = 3\n", "test.toml:2: 'robot' expects [[robot]] tables"},
+      {w + "robot = [3]\n", "test.toml:2: 'robot' expects [[robot]] tables"},
+      {w + "[[robot]]\ncontroller = \"none\"\n", "test.toml:2: a robot without a name"},
+      {w + "[[robot]]\nname = \"a\"\npose = [1, 2]\n", "test.toml:4: 'pose' expects [x, y, yaw]"},
+      {w + "[[robot]]\nname = \"a\"\npose = [1, 2, inf]\n", "test.toml:4: 'pose' expects a number"},
+      {w + "[expect]\nno_collisions = true\n",
+       "test.toml:3: unknown key 'no_collisions'; did you mean 'no_collision'?"},
+      {w + "[expect]\nno_collision = false\n", "test.toml:3: 'no_collision' expects true"},
+      {w + "[expect]\nmap_coverage = 90\n", "test.toml:3: 'map_coverage' expects a number from 0 to 1"},
+      {w + "[expect]\nmean_abs_error = { a = \"x\" }\n", "test.toml:3: 'mean_abs_error' expects a number"},
+      {w + "[expect]\ntick_p99_ms = { a = 1 }\n", "test.toml:3: 'tick_p99_ms' expects a number"},
+      {w + "expect = []\n", "test.toml:2: 'expect' expects a table"},
+  };
+  for (const auto& [text, said] : kCorpus) {
+    const std::string what = refusal(text);
+    EXPECT_EQ(what.substr(0, said.size()), said) << text;
+  }
+}
+
+/// Mistakes that only the world or a controller can tell.
+TEST(ScenarioFile, MistakesAgainstTheWorldAreRefusedAtTheirLine) {
+  const std::string w = kWorld;
+  const std::pair<std::string, std::string> kCorpus[] = {
+      {w + "[[robot]]\nname = \"roomba1\"\n", "test.toml:2: "},
+      {w + "[default.settings]\nspeeed = 1\n", "test.toml:3: controller 'wander' has no setting 'speeed'"},
+  };
+  for (const auto& [text, said] : kCorpus) {
+    const Scenario scenario = parse_scenario(kFile, text);
+    std::string what;
+    try {
+      const world::World world = world_of(scenario);
+      SimulationOptions options = simulation_of(scenario, world);
+      control::make_controller({world}, options.actors[0].plan);
+    } catch (const base::InputError& error) {
+      what = error.what();
+      what = what.find("test.toml") == std::string::npos ? what : what.substr(what.find("test.toml"));
+    }
+    EXPECT_EQ(what.substr(0, said.size()), said) << text;
+  }
+}
+
+/// Bytes taken out, doubled and turned: an answer or a refusal, never an end.
+TEST(ScenarioFile, MutantsAreReadOrRefused) {
+  const std::string whole = read_scenario(SF_SOURCE_DIR "/experiments/lane-edge-pi.toml").file.empty() ? "" : R"(
+world = "../worlds/testpath/testpath.world"
+[default]
+controller = "lane-keeping"
+settings = { kp = 0.5, speed = [0.1, 0.2] }
+[[robot]]
+name = "roomba0"
+pose = [1, 2, 90]
+[expect]
+mean_abs_error = { roomba0 = 0.072 }
+)";
+  ASSERT_FALSE(whole.empty());
+  int read = 0;
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    for (const int how : {0, 1, 2}) {
+      std::string text = whole;
+      if (how == 0) text.erase(i, 1);
+      if (how == 1) text.insert(i, 1, whole[i]);
+      if (how == 2) text[i] = static_cast<char>(text[i] ^ 0x05);
+      try {
+        parse_scenario(kFile, text);
+        ++read;
+      } catch (const base::InputError&) {
+      }
+    }
+  EXPECT_GT(read, 100);
+}
+
+TEST(ScenarioFile, OursAreRead) {
+  int found = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SF_SOURCE_DIR "/experiments")) {
+    if (entry.path().extension() != ".toml") continue;
+    const Scenario scenario = read_scenario(entry.path().string());
+    EXPECT_TRUE(std::filesystem::exists(scenario.world)) << scenario.world;
+    const world::World world = world_of(scenario);
+    EXPECT_EQ(simulation_of(scenario, world).actors.size(), world.movers.size());
+    ++found;
+  }
+  EXPECT_GE(found, 7);
+}
+
+}  // namespace
+}  // namespace sf::scenarios

@@ -1,0 +1,95 @@
+#include "scenarios/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/random.h"
+#include "scenarios/path_report.h"
+
+namespace sf::scenarios {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Statistics, OfNothingSayNothing) {
+  const ErrorStatistics s = statistics_of({});
+  EXPECT_EQ(s.count, 0u);
+  EXPECT_TRUE(std::isnan(s.mean));
+  EXPECT_TRUE(std::isnan(s.abs_most));
+}
+
+TEST(Statistics, OfOneHaveNoDeviation) {
+  const double one[] = {-0.5};
+  const ErrorStatistics s = statistics_of(one);
+  EXPECT_EQ(s.mean, -0.5);
+  EXPECT_EQ(s.abs_mean, 0.5);
+  EXPECT_EQ(s.least, -0.5);
+  EXPECT_EQ(s.abs_least, 0.5);
+  EXPECT_TRUE(std::isnan(s.deviation));
+}
+
+TEST(Statistics, ByHand) {
+  const double four[] = {1.0, -3.0, kNan, 2.0, HUGE_VAL, 4.0};
+  const ErrorStatistics s = statistics_of(four);
+  EXPECT_EQ(s.count, 4u);
+  EXPECT_DOUBLE_EQ(s.mean, 1.0);
+  EXPECT_DOUBLE_EQ(s.deviation, std::sqrt((0.0 + 16.0 + 1.0 + 9.0) / 3.0));
+  EXPECT_EQ(s.least, -3.0);
+  EXPECT_EQ(s.most, 4.0);
+  EXPECT_DOUBLE_EQ(s.abs_mean, 2.5);
+  EXPECT_DOUBLE_EQ(s.abs_deviation, std::sqrt((2.25 + 0.25 + 0.25 + 2.25) / 3.0));
+  EXPECT_EQ(s.abs_least, 1.0);
+  EXPECT_EQ(s.abs_most, 4.0);
+}
+
+/// mean^2 + variance is the same for errors and their sizes: the tables of the thesis hold to it, and so must ours.
+TEST(Statistics, SquaresAgree) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    std::vector<double> errors;
+    for (std::uint32_t i = 0; i < 200; ++i)
+      errors.push_back(0.1 + 0.3 * base::random_normal({seed, base::Stream::decision}, i)[0]);
+    const ErrorStatistics s = statistics_of(errors);
+    const double n = 200.0;
+    const double plain = s.mean * s.mean + s.deviation * s.deviation * (n - 1.0) / n;
+    const double size = s.abs_mean * s.abs_mean + s.abs_deviation * s.abs_deviation * (n - 1.0) / n;
+    EXPECT_NEAR(plain, size, 1e-12);
+    EXPECT_LE(std::abs(s.mean), s.abs_mean);
+  }
+}
+
+TEST(Statistics, PercentilesAreRanks) {
+  std::vector<double> values;
+  for (int i = 100; i >= 1; --i) values.push_back(i);
+  EXPECT_EQ(percentile(values, 0.99), 99.0);
+  EXPECT_EQ(percentile(values, 0.0), 1.0);
+  EXPECT_EQ(percentile(values, 1.0), 100.0);
+  EXPECT_EQ(percentile(values, 0.5), 50.0);
+  EXPECT_TRUE(std::isnan(percentile({}, 0.5)));
+}
+
+TEST(Statistics, CsvHasEightColumnsATrial) {
+  const double errors[] = {0.25, -0.75};
+  const ErrorStatistics one = statistics_of(errors);
+  EXPECT_EQ(csv_of(std::vector{one}),
+            "trial,mean,std,min,max,abs_mean,abs_std,abs_min,abs_max\n"
+            "1,-0.25,0.707106781,-0.75,0.25,0.5,0.353553391,0.25,0.75\n");
+}
+
+TEST(Thesis, TablesAreThoseOfTheThesis) {
+  EXPECT_EQ(thesis_table("mapping"), nullptr);
+  for (const char* name : {"lane-edge-p", "lane-edge-pi", "magnet-p", "magnet-pi"}) {
+    const ThesisTable* table = thesis_table(name);
+    ASSERT_NE(table, nullptr) << name;
+    for (const ThesisRow& row : table->trials) {
+      // The largest size is one of the extremes, to what is printed.
+      EXPECT_EQ(row[7], std::max(-row[2], row[3])) << name;
+      EXPECT_LE(row[0], row[4]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sf::scenarios

@@ -1,0 +1,67 @@
+#include "viz/path_figure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "viz/axes.h"
+#include "viz/color.h"
+#include "viz/ground.h"
+#include "viz/walls.h"
+#include "world/paths.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr std::uint32_t kMiddle = 0xFF808080u;
+constexpr double kStep = 0.02;  // [m] along the middle
+
+void draw_middle(Axes& axes, const world::Path& path) {
+  const double length = world::length_of(path);
+  const int steps = std::max(1, static_cast<int>(std::ceil(length / kStep)));
+  std::vector<Line> lines;
+  Vec2 last{};
+  for (int i = 0; i <= steps; ++i) {
+    const base::Pose X_WP = world::along(path, length * i / steps);
+    const Vec2 at = axes.pixel({X_WP.x, X_WP.y});
+    if (i > 0) lines.push_back({last, at});
+    last = at;
+  }
+  draw_dashes(axes.canvas(), lines, 1.4, 9.0, 7.0, kMiddle);
+}
+
+void draw_track(Axes& axes, const Track& track, std::uint32_t color) {
+  std::vector<Vec2> points;
+  for (const base::Pose& pose : track.poses)
+    if (std::isfinite(pose.x) && std::isfinite(pose.y)) points.push_back(axes.pixel({pose.x, pose.y}));
+  if (points.empty()) return;
+  axes.canvas().polyline(points, 2.4, color);
+  axes.canvas().disc(points.front(), 5.0, 0xFFFFFFFFu);
+  axes.canvas().ring(points.front(), 4.2, 1.6, color);
+  axes.canvas().disc(points.back(), 5.0, color);
+}
+
+}  // namespace
+
+void draw_along_paths(const world::World& world, std::span<const Track> tracks, const std::string& title,
+                      const std::string& subtitle, const std::string& png_path) {
+  FigurePlan plan{.title = title, .subtitle = subtitle, .extent = world.extent, .legend = ground_legend(world)};
+  for (const Track& track : tracks)
+    for (const base::Pose& p : track.poses) {
+      world::Extent& e = plan.extent;
+      if (!std::isfinite(p.x) || !std::isfinite(p.y)) continue;
+      e = {std::min(e.x_min, p.x), std::min(e.y_min, p.y), std::max(e.x_max, p.x), std::max(e.y_max, p.y)};
+    }
+  if (!world.paths.empty()) plan.legend.push_back({Sample::dashed, kMiddle, "middle of the lane"});
+  const auto color = [&](std::size_t i) { return tracks[i].color.value_or(row_color(i, tracks.size())); };
+  for (std::size_t i = 0; i < std::min<std::size_t>(tracks.size(), 7); ++i)
+    plan.legend.push_back({Sample::line, color(i), tracks[i].name});
+  Axes axes(std::move(plan));
+  draw_paint(axes, world);
+  draw_magnets(axes, world);
+  draw_walls(axes, world, WallColors::quiet);
+  for (const world::Path& path : world.paths) draw_middle(axes, path);
+  for (std::size_t i = 0; i < tracks.size(); ++i) draw_track(axes, tracks[i], color(i));
+  axes.save(png_path);
+}
+
+}  // namespace sf::viz

@@ -1,0 +1,17 @@
+#pragma once
+// Several runs along one lane: the thesis' figures 33, 34, 38 and 39.
+
+#include <span>
+#include <string>
+
+#include "viz/trajectory_figure.h"
+#include "world/world.h"
+
+namespace sf::viz {
+
+/// Draws paint, magnets and walls, the middle of every lane that the world has as a path (dashed), and each track.
+/// @throws base::InputError naming the path when it cannot be written.
+void draw_along_paths(const world::World& world, std::span<const Track> tracks, const std::string& title,
+                      const std::string& subtitle, const std::string& png_path);
+
+}  // namespace sf::viz
