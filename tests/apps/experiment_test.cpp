@@ -1,0 +1,94 @@
+// `experiment`, `test` and `run --controller` as a user runs them.
+
+#include <gtest/gtest.h>
+
+#include "tests/apps/program.h"
+
+namespace sf {
+namespace {
+
+std::string scenario(const std::string& more) {
+  return "world = \"" + our_world("rooms.world") + "\"\nduration = 1\nrobots = 2\n" + more;
+}
+
+TEST(Experiment, NamesThemAll) {
+  const Outcome outcome = run_program({"experiment", "--list"});
+  EXPECT_EQ(outcome.code, 0);
+  for (const char* name :
+       {"lane-edge-p ", "lane-edge-pi", "magnet-p ", "magnet-pi", "mapping", "simville", "minimagic"})
+    EXPECT_NE(outcome.out.find(name), std::string::npos) << name;
+}
+
+TEST(Experiment, WrongUsageIsExplained) {
+  const Outcome unknown = run_program({"experiment", "lane-edge", "-o", "x"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.err.find("lane-edge-pi"), std::string::npos);
+  const Outcome nowhere = run_program({"experiment", "mapping"});
+  EXPECT_EQ(nowhere.code, 2);
+  EXPECT_NE(nowhere.err.find("--out"), std::string::npos) << nowhere.err;
+  const Outcome nothing = run_program({"experiment"});
+  EXPECT_EQ(nothing.code, 2);
+  EXPECT_EQ(count_lines(nothing.err), 1u) << nothing.err;
+  const Outcome folder = run_program({"experiment", "mapping", "-o", "x", "--files", "/nowhere"});
+  EXPECT_EQ(folder.code, 2);
+  EXPECT_NE(folder.err.find("/nowhere/mapping.toml"), std::string::npos) << folder.err;
+}
+
+TEST(Experiment, WritesItsFolder) {
+  const Folder folder;
+  const Outcome outcome = run_program({"experiment", "lane-edge-p", "--trials", "1", "-o", folder.path("out"),
+                                       "--files", SF_SOURCE_DIR "/experiments"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* name : {"statistics.csv", "report.md", "trajectories.png", "errors.png", "trial-1/run.mcap"})
+    EXPECT_FALSE(read_file(folder.path(std::string("out/") + name)).empty()) << name;
+  EXPECT_EQ(count_lines(read_file(folder.path("out/statistics.csv"))), 2u);
+}
+
+TEST(TestCommand, PassesFailsAndSaysWhy) {
+  const Folder folder;
+  const std::string good = folder.write("good.toml", scenario("[expect]\ncontacts = 1000\n"));
+  const std::string bad = folder.write("bad.toml", scenario("[expect]\ncontacts = 1000\ndone = true\n"));
+  const Outcome pass = run_program({"test", good});
+  EXPECT_EQ(pass.code, 0) << pass.err;
+  EXPECT_NE(pass.out.find("pass"), std::string::npos);
+  EXPECT_EQ(pass.out.find("FAIL"), std::string::npos) << pass.out;
+  const Outcome fail = run_program({"test", good, bad, "--junit", folder.path("out.xml")});
+  EXPECT_EQ(fail.code, 1);
+  EXPECT_NE(fail.out.find("FAIL done"), std::string::npos) << fail.out;
+  const std::string xml = read_file(folder.path("out.xml"));
+  EXPECT_NE(xml.find("<testsuite name=\"bad\" tests=\"2\" failures=\"1\""), std::string::npos) << xml;
+}
+
+TEST(TestCommand, BadFilesAreRefusedBeforeAnythingRuns) {
+  const Folder folder;
+  const std::string good = folder.write("good.toml", scenario(""));
+  const std::string bad = folder.write("bad.toml", scenario("duraton = 3\n"));
+  const Outcome outcome = run_program({"test", good, bad});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  EXPECT_NE(outcome.err.find("bad.toml:4: unknown key 'duraton'; did you mean 'duration'?"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(run_program({"test", folder.path("none.toml")}).code, 2);
+}
+
+TEST(RunController, SettingsReachIt) {
+  const std::string world = our_world("testpath/testpath.world");
+  const Words words{"run", world, "--duration", "1", "--controller", "lane-keeping"};
+  const auto with = [&](const std::string& set) {
+    Words all = words;
+    all.insert(all.end(), {"--set", set});
+    return run_program(all);
+  };
+  EXPECT_EQ(with("kp=0.7").code, 0);
+  const Outcome text = with("kp=much");
+  EXPECT_EQ(text.code, 2);
+  EXPECT_NE(text.err.find("--set kp: 'kp'"), std::string::npos) << text.err;
+  const Outcome unknown = with("kq=1");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.err.find("kq"), std::string::npos) << unknown.err;
+  EXPECT_EQ(with("kp").code, 2);
+  EXPECT_EQ(run_program({"run", world, "--controller", "nobody"}).code, 2);
+}
+
+}  // namespace
+}  // namespace sf
