@@ -11,17 +11,20 @@ namespace sf::control {
 
 // Every kind, in the order of help.
 extern const ControllerKind avoid_controller;
+extern const ControllerKind convoy_controller;
 extern const ControllerKind docking_controller;
 extern const ControllerKind explore_controller;
 extern const ControllerKind lane_keeping_controller;
 extern const ControllerKind magnet_keeping_controller;
 extern const ControllerKind patrol_controller;
+extern const ControllerKind route_controller;
 extern const ControllerKind wander_controller;
 
 std::span<const ControllerKind* const> controllers() {
   static constexpr const ControllerKind* kKinds[] = {
-      &avoid_controller,          &docking_controller, &explore_controller, &lane_keeping_controller,
-      &magnet_keeping_controller, &patrol_controller,  &wander_controller,
+      &avoid_controller,   &convoy_controller,       &docking_controller,
+      &explore_controller, &lane_keeping_controller, &magnet_keeping_controller,
+      &patrol_controller,  &route_controller,        &wander_controller,
   };
   return kKinds;
 }

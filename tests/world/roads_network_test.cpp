@@ -205,14 +205,7 @@ TEST(RoadNetworkFiles, EdgesKeepTheirDistance) {
   }
 }
 
-// From a start chute of the final every checkpoint can be reached, but for three that need a change of lanes on George
-// Blvd (segment 6), which no exit tells of.
-TEST(RoadNetworkFiles, CheckpointsOfTheFinalAreReached) {
-  const std::string file = SF_SOURCE_DIR "/../shared/data/rndf/darpa_sample/uce_rndf_1_final_event.rndf";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared data beside the sources";
-  std::vector<Warning> warnings;
-  const RoadNetwork network = load_roads(file, warnings);
-  const PointId start{38, 1, 1};  // the first start chute
+std::set<int> missed_from(const RoadNetwork& network, PointId start, bool with_changes) {
   std::vector<PointRef> open{*find_point(network, start)};
   std::set<PointId> seen{start};
   while (!open.empty()) {
@@ -222,11 +215,50 @@ TEST(RoadNetworkFiles, CheckpointsOfTheFinalAreReached) {
       EXPECT_GE(step.length, 0.0);
       if (seen.insert(id_of(network, step.to)).second) open.push_back(step.to);
     }
+    for (const Step& step : lane_changes(network, here))
+      if (with_changes && seen.insert(id_of(network, step.to)).second) open.push_back(step.to);
   }
   std::set<int> missed;
   for (const RoadCheckpoint& checkpoint : network.checkpoints)
     if (seen.count(id_of(network, checkpoint.at)) == 0) missed.insert(checkpoint.id);
-  EXPECT_EQ(missed, (std::set<int>{4, 84, 85}));
+  return missed;
+}
+
+// From a start chute of the final every checkpoint can be reached, but for three that need a change of lanes on George
+// Blvd (segment 6), which no exit tells of.
+TEST(RoadNetworkFiles, CheckpointsOfTheFinalAreReached) {
+  const std::string file = SF_SOURCE_DIR "/../shared/data/rndf/darpa_sample/uce_rndf_1_final_event.rndf";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared data beside the sources";
+  std::vector<Warning> warnings;
+  const RoadNetwork network = load_roads(file, warnings);
+  const PointId chute{38, 1, 1};  // the first start chute
+  EXPECT_EQ(missed_from(network, chute, false), (std::set<int>{4, 84, 85}));
+  EXPECT_EQ(missed_from(network, chute, true), std::set<int>{});
+}
+
+// SimVille's only lanes side by side in one direction are 1.1 and 1.2.
+TEST(RoadNetwork, LaneChanges) {
+  std::vector<Warning> warnings;
+  const RoadNetwork network = load_roads(SF_SOURCE_DIR "/worlds/simville/simville.rndf", warnings);
+  for (const auto& [id, at] : network.index) {
+    const auto changes = lane_changes(network, at);
+    const bool two_lanes = id.segment == 1 && (id.lane == 1 || id.lane == 2);
+    if (!two_lanes) EXPECT_TRUE(changes.empty()) << text_of(id);
+    for (const Step& step : changes) {
+      const PointId to = id_of(network, step.to);
+      EXPECT_EQ(to.segment, 1) << text_of(id);
+      EXPECT_EQ(to.lane, 3 - id.lane) << text_of(id);
+      EXPECT_EQ(step.way, Step::Way::change);
+      EXPECT_GE(step.length, 1.2) << text_of(id);  // three widths, or a little less on the outside of a bend
+      EXPECT_LE(step.length, 2.6) << text_of(id);
+    }
+  }
+  // On the straight: 1.5 m on is the third of points that are 0.575 m apart, and the last points have nowhere to go.
+  const auto change = lane_changes(network, *find_point(network, {1, 1, 10}));
+  ASSERT_EQ(change.size(), 1u);
+  EXPECT_EQ(text_of(id_of(network, change[0].to)), "1.2.13");
+  EXPECT_FALSE(lane_changes(network, *find_point(network, {1, 2, 14})).empty());
+  EXPECT_TRUE(lane_changes(network, *find_point(network, {1, 1, 16})).empty());
 }
 
 }  // namespace

@@ -138,16 +138,24 @@ std::string name_of(const RoadNetwork& network, const RoadLane& lane);
 
 /// One way on from a point.
 struct Step {
-  enum class Way : std::uint8_t { lane, exit, zone };
-  Way way = Way::lane;  ///< along the lane, over an exit, or freely across a zone
+  enum class Way : std::uint8_t { lane, exit, zone, change };
+  Way way = Way::lane;  ///< along the lane, over an exit, freely across a zone, or over to the lane beside
   PointRef to;
-  double length = 0.0;  ///< [m] along the lane; of the exit's connection; straight across a zone
+  double length = 0.0;  ///< [m] along the lane; of the connection of an exit or change; straight across a zone
 };
 
 /// Where one can go from `at`: on along the lane, over its exits; from a perimeter point also to every spot of the zone
 /// and to every perimeter point that has exits; within a spot to its end, and from its end to every perimeter point
 /// that has exits.
 std::vector<Step> successors(const RoadNetwork& network, PointRef at);
+
+/// The lanes that one may change to from `at`, of the same segment, side by side with it in the same direction, where
+/// the paint between them is broken or the file says nothing of it. Each step ends at the first point of the other lane
+/// that is at least three lane widths farther on. Nothing from points of zones and spots. Not among `successors`.
+std::vector<Step> lane_changes(const RoadNetwork& network, PointRef at);
+
+/// The way of a change of lanes, from one lane's direction into the other's.
+Curve change_of(const RoadNetwork& network, PointRef from, PointRef to);
 
 /// The way an exit takes: from the lane's direction into that of the entry; straight where a direction is not known.
 Curve connection_of(const RoadNetwork& network, const RoadExit& exit);

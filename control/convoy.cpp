@@ -1,0 +1,79 @@
+#include "control/convoy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "control/route.h"
+
+namespace sf::control {
+
+namespace {
+
+constexpr double kNear = 2.5;  // [m] a newcomer is let in from here on
+
+/// Another follower of the same leader.
+std::optional<std::uint32_t> newcomer(const Company& company, const std::vector<Driver>& drivers) {
+  if (company.leader == base::kNobody || company.merges) return std::nullopt;
+  for (std::uint32_t row = 1; row < drivers.size(); ++row)
+    if (drivers[row].follows == company.leader) return row;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> row_of(const std::vector<Driver>& drivers, std::uint32_t id) {
+  for (std::uint32_t row = 1; row < drivers.size(); ++row)
+    if (drivers[row].id == id) return row;
+  return std::nullopt;
+}
+
+std::optional<std::uint32_t> heading_for(const Corridors& corridors, const Driver& driver) {
+  for (const Place& place : driver.places) {
+    const Way& way = corridors.way(place.way);
+    const bool lane = way.kind == Way::Kind::lane;
+    const std::uint32_t row = lane ? place.way : way.into;
+    if (row == world::kNone) continue;
+    const auto& points = corridors.roads().lanes[row].points;
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+      if (lane ? points[i].s >= place.s || i + 1 == points.size() : points[i].s >= way.enter)
+        return corridors.node_of({world::PointRef::Kind::lane, row, i});
+  }
+  return std::nullopt;
+}
+
+void keep_company(Company& company, const std::vector<Driver>& drivers, const std::vector<Ahead>& ahead) {
+  if (company.leader == base::kNobody || ahead.empty()) return;
+  const Driver& next = drivers[ahead.front().row];
+  if (company.merges) {
+    if (next.id == company.leader && ahead.front().free < kNear) company.merges = false;
+    return;
+  }
+  const auto row = newcomer(company, drivers);
+  if (row && next.id == drivers[*row].id) company.leader = next.id;
+}
+
+double opened_gap(const Company& company, const Corridors& corridors, const std::vector<Driver>& drivers) {
+  const auto row = newcomer(company, drivers);
+  if (!row) return 0.0;
+  const Pose& a = drivers[0].X_WM;
+  const Pose& b = drivers[*row].X_WM;
+  return std::hypot(a.x - b.x, a.y - b.y) < kNear ? 2.0 * corridors.body().radius + 0.3 : 0.0;
+}
+
+namespace {
+
+std::unique_ptr<Controller> make_convoy(const Site& site, Settings& settings) {
+  return make_route_controller(site, settings, true);
+}
+
+}  // namespace
+
+constinit const ControllerKind convoy_controller{
+    .name = "convoy",
+    .summary = "follows another robot over the roads at a gap, lets others in",
+    .rate = 10.0,
+    .waits = true,
+    .make = make_convoy,
+};
+
+}  // namespace sf::control

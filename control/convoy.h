@@ -1,0 +1,40 @@
+#pragma once
+// Who drives together: a convoy is a chain of robots, each following the one ahead of it wherever that one goes. Whom a
+// robot follows it tells all (V2V), and no more is needed:
+//
+//   - A follower plans its way to where its leader is, again whenever that is somewhere else, and keeps its gap.
+//   - Who wants to come into the convoy behind X says so: it follows X as well. The member that followed X falls back
+//     until there is room for it, and once it is there follows the newcomer instead.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "base/report.h"
+#include "control/controllers.h"
+#include "control/route_ahead.h"
+
+namespace sf::control {
+
+/// Whom a robot follows.
+struct Company {
+  std::uint32_t leader = base::kNobody;  ///< id; nobody: it goes its own way
+  bool merges = false;                   ///< it still has to come in behind the leader
+};
+
+/// The row of a robot among the drivers; nothing when it is not in sight.
+std::optional<std::uint32_t> row_of(const std::vector<Driver>& drivers, std::uint32_t id);
+
+/// The point of the graph that a robot will come to next.
+std::optional<std::uint32_t> heading_for(const Corridors& corridors, const Driver& driver);
+
+/// Keeps the company in order after a look around: who merges and is there has merged, who comes in between becomes the
+/// leader.
+void keep_company(Company& company, const std::vector<Driver>& drivers, const std::vector<Ahead>& ahead);
+
+/// The gap that a member opens for a newcomer. [m] beyond its own; 0: nobody wants to come in
+double opened_gap(const Company& company, const Corridors& corridors, const std::vector<Driver>& drivers);
+
+extern const ControllerKind convoy_controller;
+
+}  // namespace sf::control

@@ -1,0 +1,159 @@
+#pragma once
+// The ways of a road network as robots drive them: evenly sampled lines, and where they come so near to each other that
+// two robots cannot pass at once.
+//
+//   Corridors corridors(roads, world, body_of(mover));
+//   for (const Place& place : corridors.places(X_WM)) ... place.way, place.s
+//
+// A way is a lane, the connection of an exit, a change of lanes, or a straight within a zone. Ways meet where their
+// lines are nearer than two robots and a margin: at crossings of exits, where exits enter the same lane, and where
+// lanes cross (a bridge is flat here: robots have no height to cross at). Leaving the same point is no meeting, nor is
+// going on from one way to the next: there one robot follows the other.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/pose.h"
+#include "world/roads/network.h"
+#include "world/world.h"
+
+namespace sf::control {
+
+using base::Pose;
+using base::Vec2;
+
+/// What of a robot's shape matters on a road. [m]
+struct Body {
+  double radius = 0.165;  ///< > 0
+  double front = 0.165;   ///< from its origin
+};
+Body body_of(const world::Mover& mover);
+
+/// Stretches of two ways that two robots cannot be on at once. [m] along either way, of the robots' origins.
+struct Meeting {
+  std::uint32_t way = 0;  ///< the other
+  double from = 0.0, to = 0.0;
+  double other_from = 0.0, other_to = 0.0;
+  bool yields = false;  ///< this way enters the other one in its course: who is on that goes first
+};
+
+/// Meetings of one way that lie too close together to wait between them.
+struct Gate {
+  double hold = 0.0;  ///< [m] a robot's origin waits here; negative: on the way before
+  double end = 0.0;   ///< [m] from here on it is out of the way of the others
+  std::vector<Meeting> meetings;
+};
+
+/// A stop line of a lane.
+struct StopMark {
+  double s = 0.0;                     ///< [m] along the lane
+  std::vector<std::uint32_t> lights;  ///< rows of `World::lights` that govern it; none: a stop sign
+};
+
+struct Way {
+  enum class Kind : std::uint8_t { lane, exit, change, zone };
+  Kind kind = Kind::lane;
+  std::uint32_t from = world::kNone;  ///< the lane's way that it leaves; kNone: none
+  std::uint32_t into = world::kNone;  ///< the lane's way that it enters
+  double leave = 0.0;                 ///< [m] along `from`
+  double enter = 0.0;                 ///< [m] along `into`
+  bool at_end = false;                ///< exits: it leaves where its lane ends
+  bool backwards = false;             ///< robots drive it backwards
+  bool in_zone = false;               ///< it leads into, about, or out of a zone
+  std::uint32_t zone = world::kNone;  ///< row of that zone
+
+  double length = 0.0;             ///< [m] > 0
+  double step = 0.0;               ///< [m] from one point to the next
+  std::vector<Vec2> points;        ///< at least two
+  std::vector<double> yaw;         ///< [rad] of the line at each point, not wrapped
+  std::vector<double> curvature;   ///< [1/m] positive to the left
+  std::vector<Gate> gates;         ///< in order
+  std::vector<StopMark> stops;     ///< lanes: in order
+  std::vector<double> lines;       ///< lanes: where robots on it wait for gates of the lane and of its exits, in order
+  std::vector<std::uint32_t> out;  ///< lanes: ways that leave it
+};
+
+Vec2 point_on(const Way& way, double s);
+double yaw_on(const Way& way, double s);
+double curvature_on(const Way& way, double s);
+
+/// Where a robot may be.
+struct Place {
+  std::uint32_t way = 0;
+  double s = 0.0;       ///< [m] along the way
+  double offset = 0.0;  ///< [m] >= 0 from its line
+};
+
+/// The likeliest ways of one robot, the nearest first; few.
+struct Places {
+  std::array<Place, 8> all;
+  std::uint32_t count = 0;
+  const Place* begin() const { return all.data(); }
+  const Place* end() const { return all.data() + count; }
+};
+
+/// A way on in the graph: nodes are rows of `RoadNetwork::index`.
+struct Edge {
+  std::uint32_t to = 0;
+  std::array<std::uint32_t, 2> ways{world::kNone, world::kNone};  ///< driven one after the other, second may be none
+  double from_s = 0.0, to_s = 0.0;                                ///< [m] along the first; the second is driven whole
+  double cost = 0.0;                                              ///< [m]
+};
+
+/// Immutable after construction; any number of threads. The network and the world must outlive it.
+class Corridors {
+ public:
+  Corridors(const world::RoadNetwork& roads, const world::World& world, const Body& body);
+
+  const world::RoadNetwork& roads() const { return roads_; }
+  const Body& body() const { return body_; }
+  const std::vector<Way>& ways() const { return ways_; }
+  const Way& way(std::uint32_t row) const { return ways_[row]; }
+  /// The way of a lane is the lane's own row.
+  const std::vector<Edge>& edges(std::uint32_t node) const { return edges_[node]; }
+  std::uint32_t node_of(world::PointRef at) const;
+
+  /// Ways within `reach` [m] of the robot that run in its direction (to a quarter turn), nearest first.
+  Places places(const Pose& X_WM, double reach) const;
+  /// Within the perimeter of the zone.
+  bool inside(std::uint32_t zone, Vec2 p) const;
+  /// The origin of a robot that is parked in a spot.
+  Pose parked(std::uint32_t spot) const;
+  /// How near lines come before they meet. [m]
+  double clearance() const { return clearance_; }
+
+ private:
+  void add_lanes(const world::World& world);
+  void add_exits();
+  void add_changes();
+  void add_zones();
+  std::uint32_t add_way(Way way, const world::Curve& line);
+  void add_edge(world::PointRef from, world::PointRef to, std::uint32_t way, double from_s, double to_s, double extra);
+  void fill_grid();
+  void find_meetings();
+  void find_meetings(std::uint32_t way);
+  void make_gates(Way& way, std::vector<Meeting> meetings) const;
+  void make_lines();
+  template <class F>
+  void near(Vec2 p, F&& visit) const;
+
+  const world::RoadNetwork& roads_;
+  Body body_;
+  double clearance_;
+  double step_;
+  std::vector<Way> ways_;
+  std::vector<std::vector<Edge>> edges_;
+
+  // Samples of all ways by square cells of the plane, each as wide as the clearance.
+  struct Sample {
+    std::uint32_t way, index;
+  };
+  Vec2 corner_;
+  double cell_ = 1.0;
+  std::int64_t columns_ = 0, rows_ = 0;
+  std::vector<std::uint32_t> first_;
+  std::vector<Sample> samples_;
+};
+
+}  // namespace sf::control

@@ -1,0 +1,80 @@
+#include "control/passing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::control {
+
+namespace {
+
+/// Nobody on the lane from `low` to `high` [m], nor anybody faster that will be there.
+bool lane_free(const std::vector<Driver>& drivers, std::uint32_t lane, double low, double high) {
+  for (std::size_t i = 1; i < drivers.size(); ++i)
+    for (const Place& place : drivers[i].places)
+      if (place.way == lane && place.s > low - 3.0 * drivers[i].speed && place.s < high) return false;
+  return true;
+}
+
+/// The first change between two lanes at or after `s` [m] along the first; null: none.
+const std::uint32_t* change_after(const Corridors& corridors, std::uint32_t from, std::uint32_t into, double s) {
+  const std::uint32_t* best = nullptr;
+  for (const std::uint32_t& row : corridors.way(from).out) {
+    const Way& way = corridors.way(row);
+    if (way.kind != Way::Kind::change || way.into != into || way.leave < s) continue;
+    if (best == nullptr || way.leave < corridors.way(*best).leave) best = &row;
+  }
+  return best;
+}
+
+void add(RoutePlan& plan, std::uint32_t way, double from, double to) {
+  plan.legs.push_back({way, from, to, end_of(plan.legs.back())});
+}
+
+}  // namespace
+
+std::optional<Passing> plan_passing(const Corridors& corridors, const RoutePlan& plan, double s, double speed,
+                                    const Ahead& slow, const std::vector<Driver>& drivers) {
+  const std::size_t at = leg_at(plan, s);
+  const Leg& leg = plan.legs[at];
+  const Way& lane = corridors.way(leg.way);
+  if (lane.kind != Way::Kind::lane || at + 1 >= plan.legs.size()) return std::nullopt;
+  const double here = leg.from + s - leg.start;
+  const double body = 2.0 * corridors.body().radius;
+  const double other = std::max(slow.speed, 0.0);
+  if (other > 0.8 * speed) return std::nullopt;
+
+  for (const std::uint32_t row : lane.out) {
+    const Way& change = corridors.way(row);
+    if (change.kind != Way::Kind::change || change.leave < here + 0.05 || change.leave > here + 2.0) continue;
+    const std::uint32_t beside = change.into;
+    // Abreast of the other lane the robot gains on the slow one at the difference of their speeds, until it is a gap
+    // ahead of it; changes take as long as they are.
+    const double gain = slow.free + 2.0 * body + 0.3;
+    const double driven = gain * speed / (speed - other);
+    const double back_after = change.enter + std::max(driven - (change.leave - here) - change.length, 0.0);
+    const std::uint32_t* back = change_after(corridors, beside, leg.way, back_after);
+    if (back == nullptr) continue;
+    const Way& home = corridors.way(*back);
+    if (home.enter > leg.to) continue;
+    if (!lane_free(drivers, beside, change.leave - body - 0.3, home.leave + body)) continue;
+    Passing passing{plan, 0.0};
+    RoutePlan& p = passing.plan;
+    const std::vector<Leg> rest(plan.legs.begin() + static_cast<std::ptrdiff_t>(at) + 1, plan.legs.end());
+    p.legs.resize(at + 1);
+    p.legs.back().to = change.leave;
+    add(p, row, 0.0, change.length);
+    add(p, beside, change.enter, home.leave);
+    add(p, *back, 0.0, home.length);
+    passing.until = end_of(p.legs.back());
+    add(p, leg.way, home.enter, leg.to);
+    for (const Leg& r : rest) add(p, r.way, r.from, r.to);
+    // Checkpoints on the lane that is left meanwhile count as passed beside it.
+    const double more = length_of(p) - length_of(plan);
+    for (Goal& goal : p.goals)
+      if (goal.s > leg.start + change.leave - leg.from) goal.s += more;
+    return passing;
+  }
+  return std::nullopt;
+}
+
+}  // namespace sf::control

@@ -1,0 +1,97 @@
+#pragma once
+// Who goes first where ways meet: one rule that every robot computes from what all robots tell of themselves (V2V) and
+// from the lights, so that no two robots that meet both think that it is their turn.
+//
+// A robot that has passed the place where it should have waited, or could not stop before it any more, is in the
+// crossing: all others that meet any way it may take wait. Of those that approach or stand (the first of each lane),
+//   1. who need not stop (no stop line, or a green light) goes before who must; a red light keeps its lane out of this;
+//   2. then who came first: came within kApproach, or stood at its stop line;
+//   3. then the smaller id.
+// Who merges behind a robot goes before the robot that followed it until then. Who has stood for kPatience takes part
+// in a lottery instead, drawn anew every kTurn from (id, time) and so the same for all: a robot that cannot use its
+// turn, since the lane it wants is full, does not keep the others waiting.
+//
+// Two robots that decide at one time see the same poses and so agree on the order; what either has begun the other sees
+// at its next decision. Which exit another takes is not told: all that its lane has are counted.
+
+#include <cstdint>
+#include <vector>
+
+#include "control/controller.h"
+#include "control/corridor.h"
+
+namespace sf::control {
+
+inline constexpr double kApproach = 0.8;                   ///< [m] before where one waits
+inline constexpr std::int64_t kPatience = 10'000'000'000;  ///< [ns]
+inline constexpr std::int64_t kTurn = 3'000'000'000;       ///< [ns]
+inline constexpr double kHardBraking = 0.6;                ///< [m/s^2] that every robot can do
+
+/// What a stop line asks for.
+enum class Rule : std::uint8_t { free, stop, closed };
+Rule rule_of(const StopMark& mark, std::span<const world::Signal> signals);
+
+/// A robot before a place where it may have to wait.
+struct Approach {
+  std::uint32_t lane = world::kNone;  ///< way; kNone: nowhere
+  double line = 0.0;                  ///< [m] along the lane, where its origin waits
+  double ahead = 0.0;                 ///< [m] still to go; negative: beyond it
+  Rule rule = Rule::free;
+  bool first = false;      ///< nobody is between it and the line
+  bool contends = false;   ///< it would go if it were alone
+  std::int64_t since = 0;  ///< [ns] when it began to contend
+};
+
+/// A robot on the roads.
+struct Driver {
+  std::uint32_t id = 0;
+  std::uint32_t follows = base::kNobody;
+  Pose X_WM;
+  Vec2 velocity;       ///< [m/s] world frame
+  double speed = 0.0;  ///< [m/s] >= 0
+  Places places;
+  Approach approach;
+};
+
+class RightOfWay {
+ public:
+  RightOfWay(const Corridors& corridors, std::uint32_t own_id);
+
+  /// Takes in one moment. Robots beyond `kSight` are left out.
+  /// @param follows whom it follows itself
+  /// @param merges it is the one who comes in between
+  void observe(const Input& input, std::uint32_t follows, bool merges);
+
+  /// Everyone in sight; the first is the robot itself. Lives until the next `observe`.
+  const std::vector<Driver>& drivers() const { return drivers_; }
+
+  /// Nobody is in the way within the gate, and nobody goes first.
+  bool may_enter(std::uint32_t way, const Gate& gate) const;
+  /// It can no longer stop `ahead` [m] before it.
+  bool committed(double ahead, double speed) const;
+  /// Nobody drives about in the zone, or is on its way in.
+  bool zone_free(std::uint32_t zone) const;
+
+ private:
+  struct Arrival {
+    std::uint32_t id, lane;
+    double line;
+    std::int64_t since, seen;
+    bool stood, contends;
+  };
+  void add(std::uint32_t id, const base::Report& state, std::uint32_t follows);
+  void find_approach(Driver& driver, std::span<const world::Signal> signals) const;
+  void remember(Driver& driver, std::int64_t time);
+  bool is_in_way(const Driver& other, const Meeting& meeting, const Approach& own) const;
+  bool precedes(const Driver& other, const Approach& own) const;
+
+  const Corridors& corridors_;
+  std::uint32_t own_id_;
+  double margin_;
+  bool merges_ = false;
+  std::int64_t time_ = 0;
+  std::vector<Driver> drivers_;
+  std::vector<Arrival> arrivals_;
+};
+
+}  // namespace sf::control

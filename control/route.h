@@ -1,0 +1,100 @@
+#pragma once
+// Drives on a road network from checkpoint to checkpoint as traffic demands: keeps to its lane, stops at stop lines and
+// red lights, keeps its distance, waits where others go first, never enters a crossing that it cannot leave.
+//
+// All speeds are limits; the lowest counts. In a tick a robot
+//   1. finds its place on its route, passes checkpoints, plans on;
+//   2. takes in who else is on the road (control/right_of_way.h) and who is ahead (control/route_ahead.h);
+//   3. limits its speed by bends, stop lines, gates, robots ahead, the route's end;
+//   4. steers along the line.
+
+#include <memory>
+#include <optional>
+
+#include "control/controllers.h"
+#include "control/convoy.h"
+#include "control/route_ahead.h"
+#include "control/route_goals.h"
+
+namespace sf::control {
+
+struct RouteSettings {
+  double speed = 0.2;    ///< [m/s] > 0 where nothing is in the way
+  double gap = 0.06;     ///< [m] > 0 to the robot ahead when standing, beyond what two robots need
+  double headway = 0.8;  ///< [s] > 0 more of it per speed
+  bool pass = true;      ///< passes slower robots where there is a lane to
+  double radio = 4.0;    ///< [m]
+};
+
+class Route : public Controller {
+ public:
+  Route(std::shared_ptr<const Corridors> corridors, const Site& site, RouteSettings settings,
+        std::optional<RouteGoals> goals, Company company);
+
+  base::Twist step(const Input& input) override;
+  base::Intent intent() const override;
+  double radio() const override { return settings_.radio; }
+  bool done() const override { return done_; }
+  /// Offset to the left of its line. [m]
+  double error() const override { return offset_; }
+
+  const RoutePlan& plan() const { return plan_; }
+  double s() const { return progress_.s(); }            ///< [m] along the plan
+  std::uint64_t reached() const { return next_goal_; }  ///< checkpoints so far
+
+ private:
+  // What the speed may be, so far.
+  struct Limit {
+    double speed;
+    double dt;
+    void stop_in(double distance);  ///< [m] before something that it must not pass
+  };
+  void start(const Input& input);
+  void fill();
+  void trim();
+  void pass_goals(const Input& input);
+  void chase(const Input& input);
+  void consider_passing(const Input& input);
+  void reroute(const Input& input);
+
+  void limit_by_bends(Limit& limit) const;
+  void limit_by_lines(const Input& input, Limit& limit);
+  void limit_by_gates(const Input& input, Limit& limit);
+  void limit_by_zones(Limit& limit, const Input& input);
+  void limit_by_others(Limit& limit) const;
+  bool room_beyond(double end) const;
+  base::Twist drive(const Input& input, double speed);
+
+  std::shared_ptr<const Corridors> corridors_;
+  const Site site_;
+  RouteSettings settings_;
+  std::optional<RouteGoals> goals_;
+  Company company_;
+  RightOfWay right_of_way_;
+  double max_turn_;
+  bool turns_in_place_;
+
+  RoutePlan plan_;
+  bool started_ = false, done_ = false;
+  Progress progress_;
+  std::uint64_t next_goal_ = 0;  ///< the one it heads for
+  std::uint64_t planned_ = 0;    ///< goals that are in the plan or behind
+  std::vector<Ahead> ahead_;
+  std::int64_t last_ = -1;            ///< [ns] time of the last step
+  double offset_ = 0.0;               ///< [m]
+  double stopped_at_ = -HUGE_VAL;     ///< [m] along the route: the stop line that it stopped at
+  std::int64_t standing_since_ = -1;  ///< [ns] at a stop line; -1: it is not
+  std::int64_t blocked_since_ = -1;   ///< [ns] that a full lane keeps it waiting; -1: it does not
+  std::uint32_t blocked_way_ = world::kNone;
+  std::int64_t slow_since_ = -1;  ///< [ns] behind a slower one; -1: not
+  double pass_until_ = -1.0;      ///< [m] along the route: until there it passes
+};
+
+extern const ControllerKind route_controller;
+
+/// A controller from settings: `speed`, `gap`, `headway`, `pass`, `merge_behind`, those of RouteGoals; `leader` for
+/// convoys.
+/// @throws base::InputError
+std::unique_ptr<Controller> make_route_controller(const Site& site, Settings& settings, bool convoy);
+
+}  // namespace sf::control

@@ -1,0 +1,115 @@
+#include "control/route_ahead.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace sf::control {
+
+OnRoute on_route(const Corridors& corridors, const RoutePlan& plan, double s, std::size_t from_leg) {
+  std::size_t i = from_leg;
+  while (i + 1 < plan.legs.size() && s >= end_of(plan.legs[i])) ++i;
+  const Leg& leg = plan.legs[i];
+  const Way& way = corridors.way(leg.way);
+  const double at = std::clamp(leg.from + s - leg.start, leg.from, leg.to);
+  return {i, point_on(way, at), yaw_on(way, at), curvature_on(way, at)};
+}
+
+bool kink_after(const Corridors& corridors, const RoutePlan& plan, std::size_t leg) {
+  if (leg + 1 >= plan.legs.size()) return true;
+  const Way& a = corridors.way(plan.legs[leg].way);
+  const Way& b = corridors.way(plan.legs[leg + 1].way);
+  if (a.kind != Way::Kind::zone && b.kind != Way::Kind::zone) return false;
+  const double turn = yaw_on(b, plan.legs[leg + 1].from) - yaw_on(a, plan.legs[leg].to);
+  return a.backwards != b.backwards || std::abs(base::wrap_angle(turn)) > 0.3;
+}
+
+void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, const std::vector<Driver>& drivers,
+                std::vector<Ahead>& out) {
+  out.clear();
+  if (drivers.size() < 2) return;
+  const double radius = corridors.body().radius;
+  const double step = 0.25 * radius;
+  struct Point {
+    Vec2 p;
+    double yaw, s, within;
+  };
+  std::array<Point, 128> points;
+  std::size_t count = 0;
+  std::size_t leg = leg_at(plan, s);
+  const double end = std::min(s + kLookAhead, length_of(plan));
+  for (double at = s; count < points.size(); at += step) {
+    const OnRoute here = on_route(corridors, plan, std::min(at, end), leg);
+    leg = here.leg;
+    const bool zone = corridors.way(plan.legs[leg].way).kind == Way::Kind::zone;
+    points[count++] = {here.p, here.yaw, std::min(at, end), radius * (zone ? 2.04 : 2.18)};
+    if (at >= end) break;
+  }
+  const Vec2 self{drivers[0].X_WM.x, drivers[0].X_WM.y};
+  for (std::uint32_t row = 1; row < drivers.size(); ++row) {
+    const Vec2 p{drivers[row].X_WM.x, drivers[row].X_WM.y};
+    if (length(p - self) > kLookAhead + 2.2 * radius) continue;
+    double before = HUGE_VAL;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double distance = length(points[i].p - p);
+      const double next = i + 1 < count ? length(points[i + 1].p - p) : distance;
+      if (distance < points[i].within && (next < distance - 1e-9 || before > points[i].within)) {
+        if (i == 0 && next >= distance) break;
+        double free = points[i].s - s;
+        if (i > 0)
+          free -= step * std::clamp((points[i].within - distance) / std::max(before - distance, 1e-9), 0.0, 1.0);
+        const Vec2 along{std::cos(points[i].yaw), std::sin(points[i].yaw)};
+        out.push_back({std::max(free, 0.0), dot(drivers[row].velocity, along), row});
+        break;
+      }
+      before = distance;
+    }
+  }
+  std::sort(out.begin(), out.end(),
+            [](const Ahead& a, const Ahead& b) { return a.free != b.free ? a.free < b.free : a.row < b.row; });
+}
+
+void Progress::update(const Corridors& corridors, const RoutePlan& plan, Vec2 p) {
+  const double reach = 2.5 * corridors.body().radius;
+  for (;;) {
+    const Leg& leg = plan.legs[leg_];
+    const Way& way = corridors.way(leg.way);
+    // The nearest sample about where it was, then the foot of the perpendicular.
+    const double was = leg.from + s_ - leg.start;
+    double best = HUGE_VAL, at = was;
+    const auto consider = [&](double s) {
+      const Vec2 d = point_on(way, s) - p;
+      if (dot(d, d) >= best) return;
+      best = dot(d, d);
+      at = s;
+    };
+    const double low = std::max(was - 0.3 * reach, leg.from), high = std::min(was + reach, leg.to);
+    for (double s = low; s < high; s += way.step) consider(s);
+    consider(high);
+    const double yaw = yaw_on(way, at);
+    const double foot = at + dot(p - point_on(way, at), {std::cos(yaw), std::sin(yaw)});
+    if (foot < leg.to || leg_ + 1 >= plan.legs.size()) {
+      s_ = leg.start + std::clamp(foot, leg.from, leg.to) - leg.from;
+      // At a kink it is enough to be there.
+      const bool there = leg.to - foot < 0.03 * reach && leg_ + 1 < plan.legs.size();
+      if (!there || !kink_after(corridors, plan, leg_)) return;
+    }
+    ++leg_;
+    s_ = plan.legs[leg_].start;
+    if (kink_after(corridors, plan, leg_ - 1)) return;
+  }
+}
+
+base::Twist steer(double speed, double offset, double heading, double curvature, double reach, double max_turn,
+                  double turn_on_spot) {
+  if (std::abs(heading) > turn_on_spot) return {0.0, 0.0, std::clamp(-2.0 * heading, -max_turn, max_turn)};
+  const double sine = std::abs(heading) > 1e-6 ? std::sin(heading) / heading : 1.0;
+  const double along = std::max(1.0 - curvature * offset, 0.3);
+  // Far from the line it comes back at 45 degrees at most.
+  const double off = std::clamp(offset, -1.2 * reach, 1.2 * reach);
+  const double bend = curvature * std::cos(heading) / along - off * sine / (reach * reach) - 1.6 * heading / reach;
+  const double v = std::abs(bend) * speed > max_turn ? max_turn / std::abs(bend) : speed;
+  return {v, 0.0, v * bend};
+}
+
+}  // namespace sf::control

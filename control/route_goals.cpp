@@ -1,0 +1,108 @@
+#include "control/route_goals.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "world/roads/mdf.h"
+
+namespace sf::control {
+
+namespace {
+
+using world::PointRef;
+
+std::string ids_of(const world::RoadNetwork& roads) {
+  std::string ids;
+  for (const world::RoadCheckpoint& checkpoint : roads.checkpoints) {
+    if (ids.size() > 120) return ids + ", ...";
+    ids += (ids.empty() ? "" : ", ") + std::to_string(checkpoint.id);
+  }
+  return ids.empty() ? "it has none" : ids;
+}
+
+/// As given, or beside the world's file.
+std::string find_file(const world::World& world, const std::string& file) {
+  if (std::filesystem::exists(file)) return file;
+  const auto beside = std::filesystem::path(world.file).parent_path() / file;
+  return std::filesystem::exists(beside) ? beside.string() : file;
+}
+
+}  // namespace
+
+RouteGoals::RouteGoals(const Site& site, Settings& settings) : seed_(site.seed), robot_(site.mover) {
+  const world::RoadNetwork& roads = *site.roads;
+  for (const double number : settings.numbers("checkpoints", {})) {
+    const auto* checkpoint = find_checkpoint(roads, static_cast<int>(number));
+    if (checkpoint == nullptr || checkpoint->id != number)
+      settings.refuse("checkpoints",
+                      fmt::format("'checkpoints' names {:g}, which '{}' does not have; expected some of {}", number,
+                                  roads.file, ids_of(roads)));
+    goals_.push_back(*checkpoint);
+  }
+  const std::string mission = settings.text("mission", "");
+  if (!mission.empty()) read_mission(site, mission);
+  read_park(site, settings);
+  loop_ = settings.flag("loop", false);
+  tour_ = settings.flag("tour", false);
+  if (tour_)
+    for (const auto& checkpoint : roads.checkpoints)
+      if (checkpoint.at.kind == PointRef::Kind::lane) lots_.push_back(checkpoint);
+  if (tour_ && !goals_.empty()) settings.refuse("tour", "'tour' draws checkpoints; expected it without a list of them");
+  if (goals_.empty() && lots_.empty())
+    settings.refuse("checkpoints",
+                    fmt::format("there is nowhere to go; expected 'checkpoints' (some of {}), 'mission', "
+                                "'park' or 'tour true'",
+                                ids_of(roads)));
+}
+
+void RouteGoals::read_mission(const Site& site, const std::string& file) {
+  const world::RoadNetwork& roads = *site.roads;
+  const world::Mdf mdf = world::read_mdf(find_file(site.world, file));
+  for (const world::MdfCheckpoint& row : mdf.checkpoints) {
+    const auto* checkpoint = find_checkpoint(roads, row.id);
+    if (checkpoint == nullptr)
+      throw base::InputError(
+          mdf.file, row.line,
+          fmt::format("checkpoint {} is not in '{}'; expected one of {}", row.id, roads.file, ids_of(roads)));
+    goals_.push_back(*checkpoint);
+  }
+  limits_.assign(roads.segments.size(), HUGE_VAL);
+  for (const world::SpeedLimit& limit : mdf.speed_limits)
+    for (std::size_t i = 0; i < roads.segments.size(); ++i)
+      if (roads.segments[i].id == limit.id && limit.most_mph > 0.0)
+        limits_[i] = limit.most_mph * world::kMilePerHour * roads.scale;
+}
+
+void RouteGoals::read_park(const Site& site, Settings& settings) {
+  const std::string name = settings.text("park", "");
+  if (name.empty()) return;
+  const world::RoadNetwork& roads = *site.roads;
+  for (std::uint32_t row = 0; row < roads.spots.size(); ++row) {
+    const world::RoadSpot& spot = roads.spots[row];
+    if (fmt::format("{}.{}", roads.zones[spot.zone].id, spot.number) != name) continue;
+    // Its own checkpoint where it has one.
+    world::RoadCheckpoint goal{-1, {PointRef::Kind::spot, row, 1}, spot.end};
+    for (const auto& checkpoint : roads.checkpoints)
+      if (checkpoint.at.kind == PointRef::Kind::spot && checkpoint.at.row == row) goal.id = checkpoint.id;
+    goals_.push_back(goal);
+    return;
+  }
+  settings.refuse("park", fmt::format("there is no parking spot '{}' in '{}'; expected zone.spot", name, roads.file));
+}
+
+const world::RoadCheckpoint* RouteGoals::at(std::uint64_t k) const {
+  if (tour_) {
+    const base::Draw draw{.seed = seed_, .stream = base::Stream::decision, .a = robot_, .b = 0x746F7572u, .c = k};
+    const double u = base::random_uniform(draw, 0)[0];
+    const auto i = static_cast<std::size_t>(u * static_cast<double>(lots_.size()));
+    return &lots_[std::min(i, lots_.size() - 1)];
+  }
+  if (k >= goals_.size() && !loop_) return nullptr;
+  return &goals_[k % goals_.size()];
+}
+
+}  // namespace sf::control

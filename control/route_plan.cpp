@@ -1,0 +1,190 @@
+#include "control/route_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+#include "base/error.h"
+#include "base/random.h"
+
+namespace sf::control {
+
+namespace {
+
+using world::PointRef;
+
+void append(RoutePlan& plan, std::uint32_t way, double from, double to) {
+  if (!plan.legs.empty()) {
+    Leg& last = plan.legs.back();
+    if (last.way == way && last.to == from) {
+      last.to = to;
+      return;
+    }
+  }
+  plan.legs.push_back({way, from, to, plan.legs.empty() ? 0.0 : end_of(plan.legs.back())});
+}
+
+void append(const Corridors& corridors, RoutePlan& plan, const Edge& edge) {
+  const bool lane = corridors.way(edge.ways[0]).kind == Way::Kind::lane;
+  append(plan, edge.ways[0], edge.from_s, lane ? edge.to_s : corridors.way(edge.ways[0]).length);
+  if (edge.ways[1] != world::kNone) append(plan, edge.ways[1], 0.0, corridors.way(edge.ways[1]).length);
+  plan.node = edge.to;
+}
+
+/// The edges of the shortest way, at least one; empty: none.
+std::vector<Edge> shortest(const Corridors& corridors, std::uint32_t from, std::uint32_t to, std::uint32_t avoid) {
+  const std::size_t count = corridors.roads().index.size();
+  struct Reached {
+    double cost = HUGE_VAL;
+    std::uint32_t before = world::kNone;
+    std::uint32_t edge = 0;
+  };
+  std::vector<Reached> reached(count);
+  using Open = std::pair<double, std::uint32_t>;
+  std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
+  const auto relax = [&](std::uint32_t node, double cost) {
+    const auto& edges = corridors.edges(node);
+    for (std::uint32_t i = 0; i < edges.size(); ++i) {
+      if (edges[i].ways[0] == avoid) continue;
+      Reached& next = reached[edges[i].to];
+      const double reach = cost + edges[i].cost;
+      if (reach >= next.cost) continue;
+      next = {reach, node, i};
+      open.push({reach, edges[i].to});
+    }
+  };
+  relax(from, 0.0);
+  while (!open.empty()) {
+    const auto [cost, node] = open.top();
+    open.pop();
+    if (cost > reached[node].cost) continue;
+    if (node == to) break;
+    relax(node, cost);
+  }
+  std::vector<Edge> edges;
+  if (reached[to].before == world::kNone) return edges;
+  std::uint32_t node = to;
+  do {
+    const Reached& r = reached[node];
+    edges.push_back(corridors.edges(r.before)[r.edge]);
+    node = r.before;
+  } while (node != from);
+  std::reverse(edges.begin(), edges.end());
+  return edges;
+}
+
+}  // namespace
+
+std::size_t leg_at(const RoutePlan& plan, double s) {
+  const auto next =
+      std::upper_bound(plan.legs.begin(), plan.legs.end(), s, [](double at, const Leg& leg) { return at < leg.start; });
+  return next == plan.legs.begin() ? 0 : static_cast<std::size_t>(next - plan.legs.begin()) - 1;
+}
+
+std::optional<Place> place_on_lane(const Corridors& corridors, const Pose& X_WM) {
+  for (const Place& place : corridors.places(X_WM, corridors.clearance()))
+    if (corridors.way(place.way).kind == Way::Kind::lane) return place;
+  return std::nullopt;
+}
+
+std::optional<std::uint32_t> spot_at(const Corridors& corridors, const Pose& X_WM) {
+  for (std::uint32_t spot = 0; spot < corridors.roads().spots.size(); ++spot) {
+    const Pose at = corridors.parked(spot);
+    if (std::hypot(at.x - X_WM.x, at.y - X_WM.y) < 0.5 * corridors.body().radius) return spot;
+  }
+  return std::nullopt;
+}
+
+RoutePlan plan_from_lane(const Corridors& corridors, const Place& place) {
+  const auto& points = corridors.roads().lanes[place.way].points;
+  std::uint32_t next = 0;
+  while (next + 1 < points.size() && points[next].s < place.s) ++next;
+  RoutePlan plan;
+  append(plan, place.way, std::min(place.s, points[next].s), points[next].s);
+  plan.node = corridors.node_of({PointRef::Kind::lane, place.way, next});
+  return plan;
+}
+
+RoutePlan plan_from_spot(const Corridors& corridors, std::uint32_t spot) {
+  // The first leg is where it stands: the end of its way in, of no length.
+  const Edge& in = corridors.edges(corridors.node_of({PointRef::Kind::spot, spot, 0})).front();
+  RoutePlan plan;
+  const double end = corridors.way(in.ways[0]).length;
+  append(plan, in.ways[0], end, end);
+  plan.node = in.to;
+  return plan;
+}
+
+bool extend(const Corridors& corridors, RoutePlan& plan, PointRef to, std::uint32_t avoid) {
+  const std::uint32_t node = corridors.node_of(to);
+  const auto edges = shortest(corridors, plan.node, node, avoid);
+  for (const Edge& edge : edges) append(corridors, plan, edge);
+  return !edges.empty();
+}
+
+bool extend(const Corridors& corridors, RoutePlan& plan, const world::RoadCheckpoint& to, std::uint32_t avoid) {
+  // A spot's checkpoint is reached at its end, wherever in the spot it is.
+  PointRef at = to.at;
+  const bool spot = at.kind == PointRef::Kind::spot;
+  if (spot) at.index = 1;
+  const std::uint32_t node = corridors.node_of(at);
+  const bool here = plan.node == node && plan.goals.empty();
+  if (!here && !extend(corridors, plan, at, avoid)) return false;
+  plan.goals.push_back({to.id, length_of(plan), spot});
+  return true;
+}
+
+void cut_after(const Corridors& corridors, RoutePlan& plan, double s) {
+  plan.legs.resize(leg_at(plan, s) + 1);
+  Leg& leg = plan.legs.back();
+  const Way& way = corridors.way(leg.way);
+  std::erase_if(plan.goals, [&](const Goal& goal) { return goal.s > s; });
+  if (way.kind == Way::Kind::lane) {
+    const auto& points = corridors.roads().lanes[leg.way].points;
+    const double here = leg.from + s - leg.start;
+    std::uint32_t next = 0;
+    while (next + 1 < points.size() && points[next].s < here) ++next;
+    leg.to = std::max(points[next].s, leg.from);
+    plan.node = corridors.node_of({PointRef::Kind::lane, leg.way, next});
+    return;
+  }
+  // Other ways end at a point of a lane, or are kept whole.
+  leg.to = way.length;
+  const auto& lane = corridors.roads().lanes;
+  if (way.into == world::kNone) return;
+  const auto& points = lane[way.into].points;
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    if (points[i].s == way.enter) plan.node = corridors.node_of({PointRef::Kind::lane, way.into, i});
+}
+
+std::vector<Pose> start_poses(const world::RoadNetwork& roads, std::size_t count, std::uint64_t seed, double apart) {
+  std::vector<Pose> open;
+  for (const world::RoadLane& lane : roads.lanes) {
+    const double length = length_of(lane);
+    const double end = 0.5 * apart;
+    if (lane.centre.points.size() < 2 || length < 2.0 * end) continue;
+    for (double s = end; s <= length - end; s += 0.25 * apart) {
+      const Vec2 p = point_at(lane.centre, s);
+      const Vec2 d = point_at(lane.centre, s + 0.05 * apart) - point_at(lane.centre, s - 0.05 * apart);
+      open.push_back({p.x, p.y, 0.0, std::atan2(d.y, d.x)});
+    }
+  }
+  std::vector<Pose> poses;
+  for (std::uint64_t draw = 0; poses.size() < count && !open.empty(); ++draw) {
+    const double u =
+        base::random_uniform({.seed = seed, .stream = base::Stream::place, .b = 0x726F6164u, .c = draw}, 0)[0];
+    const auto at = static_cast<std::size_t>(u * static_cast<double>(open.size()));
+    const Pose pose = open[std::min(at, open.size() - 1)];
+    poses.push_back(pose);
+    std::erase_if(open, [&](const Pose& o) { return std::hypot(o.x - pose.x, o.y - pose.y) < apart; });
+  }
+  if (poses.size() < count)
+    throw base::InputError(
+        roads.file, 0,
+        fmt::format("{} robots {:g} m apart do not fit on its lanes, only {}; use fewer", count, apart, poses.size()));
+  return poses;
+}
+
+}  // namespace sf::control

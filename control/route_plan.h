@@ -1,0 +1,69 @@
+#pragma once
+// The way through a list of checkpoints: shortest in metres over the graph of ways (E. W. Dijkstra, "A note on two
+// problems in connexion with graphs", Numer. Math. 1, 1959), changes of lanes a little dearer than they are long.
+//
+//   Plan plan = plan_from(corridors, start, ...);  extend(corridors, plan, checkpoint);
+//   point_at(corridors, plan, s)
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "control/corridor.h"
+
+namespace sf::control {
+
+/// A stretch of one way.
+struct Leg {
+  std::uint32_t way = 0;
+  double from = 0.0, to = 0.0;  ///< [m] along the way; to >= from
+  double start = 0.0;           ///< [m] along the route where it begins
+};
+inline double end_of(const Leg& leg) { return leg.start + leg.to - leg.from; }
+
+/// A checkpoint on the route.
+struct Goal {
+  int id = 0;
+  double s = 0.0;     ///< [m] along the route
+  bool park = false;  ///< it is the end of a parking spot
+};
+
+/// A route: legs one after another, each beginning where the one before ends. Positions along it are metres from where
+/// it was first planned; legs that are done may have been dropped.
+struct RoutePlan {
+  std::vector<Leg> legs;  ///< at least one
+  std::vector<Goal> goals;
+  std::uint32_t node = 0;  ///< where it ends
+};
+inline double length_of(const RoutePlan& plan) { return end_of(plan.legs.back()); }
+
+/// The leg at `s` [m] along the route; the first or last beyond its ends.
+std::size_t leg_at(const RoutePlan& plan, double s);
+
+/// The lane that a robot stands on, and how far along; nothing when there is none near in its direction.
+std::optional<Place> place_on_lane(const Corridors& corridors, const Pose& X_WM);
+/// Likewise the parking spot.
+std::optional<std::uint32_t> spot_at(const Corridors& corridors, const Pose& X_WM);
+
+/// A route of one leg: from the place to the next point of its lane.
+RoutePlan plan_from_lane(const Corridors& corridors, const Place& place);
+/// A route that begins where a robot is parked.
+RoutePlan plan_from_spot(const Corridors& corridors, std::uint32_t spot);
+
+/// Goes on to a checkpoint (to `at` where it has none), at least one edge far when it is there already.
+/// @param avoid a way that is not to be taken; kNone: none
+/// @return false, and nothing changed, when there is no way
+bool extend(const Corridors& corridors, RoutePlan& plan, const world::RoadCheckpoint& to,
+            std::uint32_t avoid = world::kNone);
+bool extend(const Corridors& corridors, RoutePlan& plan, world::PointRef to, std::uint32_t avoid = world::kNone);
+
+/// Forgets all that comes after the point of the graph that is next after `s`: the plan ends there.
+/// @param whole_way keep the way at `s` to its end (who is on an exit cannot leave it)
+void cut_after(const Corridors& corridors, RoutePlan& plan, double s);
+
+/// Poses for `count` robots on lanes, along their lanes, at least `apart` [m] from each other and from the lanes' ends:
+/// for crowds. Drawn from the seed alone.
+/// @throws base::InputError when so many find no room.
+std::vector<Pose> start_poses(const world::RoadNetwork& roads, std::size_t count, std::uint64_t seed, double apart);
+
+}  // namespace sf::control
