@@ -42,6 +42,8 @@ struct RunFacts {
 std::size_t count_robots(const world::World& world);
 /// All that stand still or are carried.
 std::size_t count_magnets(const world::World& world);
+/// Of the infrared emitters; the others are virtual walls.
+std::size_t count_docks(const world::World& world);
 /// Numbers in one element of a reading.
 std::size_t element_width(const sensors::SensorKind& kind);
 

@@ -90,6 +90,7 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
   Json warnings = Json::array();
   for (const world::Warning& w : world.warnings)
     warnings.push_back({{"file", w.file}, {"line", w.line}, {"message", w.message}});
+  const std::size_t docks = count_docks(world);
   std::size_t segments = world.walls.size();
   for (const world::Mover& mover : world.movers) segments += mover.body.size();
   const world::Extent& e = world.extent;
@@ -105,6 +106,11 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
                 {"field_truncation_T", field.bound_T},
                 {"field_truncation_height_m", field.height_m},
                 {"paint", world.stripes.size()},
+                {"lights", world.lights.size()},
+                {"docks", docks},
+                {"virtual_walls", world.emitters.size() - docks},
+                {"drops", world.drops.size()},
+                {"paths", world.paths.size()},
                 {"road_resolution_m", world.road_resolution},
                 {"extent", {e.x_min, e.y_min, e.x_max, e.y_max}},
                 {"interval_s", world.interval},

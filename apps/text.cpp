@@ -44,6 +44,17 @@ std::string magnets_text(const world::World& world) {
                              facts.bound_T, 1e4 * facts.bound_T, facts.height_m));
 }
 
+std::string street_text(const world::World& world) {
+  const std::size_t docks = count_docks(world), walls = world.emitters.size() - docks;
+  std::string text;
+  if (!world.lights.empty()) text += row("traffic lights", fmt::format("{}", world.lights.size()));
+  if (docks > 0) text += row("docks", fmt::format("{}", docks));
+  if (walls > 0) text += row("virtual walls", fmt::format("{}", walls));
+  if (!world.drops.empty()) text += row("holes", fmt::format("{}, seen by cliff sensors only", world.drops.size()));
+  if (!world.paths.empty()) text += row("paths", fmt::format("{}", world.paths.size()));
+  return text;
+}
+
 }  // namespace
 
 std::string text_of(const gpu::Survey& survey) {
@@ -69,7 +80,7 @@ std::string text_of(const world::World& world, const sensors::Roster& roster) {
   if (world.movers.size() > robots) text += row("tags", fmt::format("{}", world.movers.size() - robots));
   text += roster.groups().empty() ? row("sensors", "none") : sensors_text(roster);
   text += row("wall segments", fmt::format("{}", world.walls.size()));
-  text += paint_text(world) + magnets_text(world);
+  text += paint_text(world) + magnets_text(world) + street_text(world);
   text += row("extent", fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max));
   text += row("tick", fmt::format("{:g} s", world.interval));
   for (const auto& [type, count] : world.kept) text += row("kept as bodies", fmt::format("{} x {}", count, type));

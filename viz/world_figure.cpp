@@ -14,6 +14,7 @@
 #include "viz/color.h"
 #include "viz/ground.h"
 #include "viz/sight.h"
+#include "viz/signals.h"
 #include "viz/walls.h"
 
 namespace sf::viz {
@@ -143,6 +144,8 @@ std::vector<LegendItem> legend_of(const World& world) {
   std::vector<LegendItem> items = wall_legend(world, WallColors::of_models);
   const auto ground = ground_legend(world);
   items.insert(items.end(), ground.begin(), ground.end());
+  const auto signals = signals_legend(world);
+  items.insert(items.end(), signals.begin(), signals.end());
   const auto first = [&](bool tag) {
     return std::find_if(world.movers.begin(), world.movers.end(), [&](const Mover& m) { return m.is_tag == tag; });
   };
@@ -169,6 +172,7 @@ std::string subtitle_of(const World& world) {
   text += count(world.walls.size(), "wall segment");
   if (!world.stripes.empty()) text += ", " + count(world.stripes.size(), "stripe");
   if (!world.magnets.empty()) text += ", " + count(world.magnets.size(), "magnet");
+  if (!world.lights.empty()) text += ", " + count(world.lights.size(), "light");
   return text + fmt::format(", {:.4g} m x {:.4g} m", world.extent.x_max - world.extent.x_min,
                             world.extent.y_max - world.extent.y_min);
 }
@@ -183,9 +187,12 @@ void draw_world(const World& world, const std::string& png_path) {
   plan.legend = legend_of(world);
   Axes axes(std::move(plan));
   draw_paint(axes, world);
+  draw_drops(axes, world);
   draw_magnets(axes, world);
+  draw_emitters(axes, world);
   draw_views(axes, world);
   draw_walls(axes, world, WallColors::of_models);
+  draw_lights(axes, world);
   for (const Mover& mover : world.movers) draw_body(axes, world, mover);
   if (!crowded(world)) draw_carried(axes, world);
   for (const Mover& mover : world.movers)

@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "tests/world/read_world.h"
+#include "world/lights.h"
+#include "world/roads/roads.h"
 
 namespace sf::world {
 namespace {
@@ -55,7 +58,70 @@ TEST(Shipped, SimVilleHasABridgeAndMagnets) {
   for (const Segment& wall : world.walls)
     bridge = bridge || (world.models[wall.model].name == "bridge" && wall.z_min > 0.3);
   EXPECT_TRUE(bridge);
-  EXPECT_GE(world.movers.size(), 5u);
+  EXPECT_EQ(world.movers.size(), 6u);
+  ASSERT_EQ(world.emitters.size(), 2u);
+  EXPECT_EQ(world.emitters[0].kind, Emitter::Kind::dock);
+  EXPECT_EQ(world.emitters[1].kind, Emitter::Kind::virtual_wall);
+}
+
+/// Those whose stop lines the pairs of lights govern must never both be told to go, or to clear the crossing.
+TEST(Shipped, SimVillesLightsNeverLetCrossingArmsGo) {
+  const World world = shipped("simville/simville.world");
+  ASSERT_EQ(world.lights.size(), 7u);
+  const auto may_go = [&](const char* point, double time) {
+    for (const Light& light : world.lights)
+      if (std::find(light.points.begin(), light.points.end(), point) != light.points.end())
+        return signal_at(light, time).state != LightState::red;
+    ADD_FAILURE() << point << " is governed by nobody";
+    return false;
+  };
+  int nobody = 0, somebody = 0;
+  for (double time = 0.0; time < 48.0; time += 0.1) {
+    for (const char* along : {"6.1.3", "7.2.4"})
+      for (const char* across : {"10.2.3", "11.1.3"}) EXPECT_FALSE(may_go(along, time) && may_go(across, time)) << time;
+    for (const char* along : {"3.1.11", "4.2.5"}) EXPECT_FALSE(may_go(along, time) && may_go("12.1.7", time)) << time;
+    const bool any = may_go("6.1.3", time) || may_go("10.2.3", time);
+    ++(any ? somebody : nobody);
+  }
+  EXPECT_NEAR(nobody, 80, 4) << "2 s of red for all, twice in 24 s";
+  EXPECT_NEAR(somebody, 400, 4);
+}
+
+TEST(Shipped, SimVillesLightsStandBesideTheirStopLinesAndLookAtWhoComes) {
+  const World world = shipped("simville/simville.world");
+  std::vector<Warning> warnings;
+  const RoadNetwork roads = load_roads(world.road_files.at(0), warnings);
+  for (const Light& light : world.lights) {
+    ASSERT_EQ(light.points.size(), 1u);
+    for (const StopLine& stop : roads.stops) {
+      if (text_of(id_of(roads, stop.at)) != light.points[0]) continue;
+      const Vec2 p = position_of(roads, stop.at);
+      EXPECT_LT(std::hypot(p.x - light.X_WL.x, p.y - light.X_WL.y), 0.5) << light.name;
+      EXPECT_NEAR(std::abs(base::wrap_angle(*yaw_of(roads, stop.at) - light.X_WL.yaw)), M_PI, 0.01) << light.name;
+    }
+  }
+}
+
+TEST(Shipped, RobotsAreWhatTheirDataSheetsSay) {
+  const World world = read_world(R"(include "robots.inc"
+    create( name "roomba3" ) pioneer3at( name "pioneer4" ) khepera2( name "khepera5" ))");
+  EXPECT_EQ(warnings_of(world), "");
+  const Mover& create = world.movers.at(0);
+  EXPECT_EQ(create.id, 3u);
+  EXPECT_EQ(create.max_forward, 0.5);
+  EXPECT_EQ(create.track, 0.258);
+  EXPECT_EQ(create.command_law, CommandLaw::direct);
+  EXPECT_LT(create.max_acceleration, HUGE_VAL);
+  const Mover& pioneer = world.movers.at(1);
+  EXPECT_EQ(pioneer.id, 4u);
+  EXPECT_EQ(pioneer.drive, Drive::skid);
+  EXPECT_EQ(pioneer.max_forward, 1.2);
+  EXPECT_DOUBLE_EQ(pioneer.max_turn, 300.0 * M_PI / 180.0);
+  EXPECT_EQ(pioneer.body.size(), 8u);
+  const Mover& khepera = world.movers.at(2);
+  EXPECT_EQ(khepera.id, 5u);
+  EXPECT_NEAR(khepera.radius, 0.035, 1e-6);
+  EXPECT_EQ(khepera.track, 0.052);
 }
 
 }  // namespace

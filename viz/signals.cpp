@@ -1,0 +1,105 @@
+#include "viz/signals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "viz/color.h"
+#include "world/lights.h"
+
+namespace sf::viz {
+
+namespace {
+
+using world::Emitter;
+using world::LightState;
+
+constexpr std::uint32_t kHole = 0xFF2B2B33u;
+constexpr std::uint32_t kWallBeam = 0xFF8E24AAu;
+constexpr std::uint32_t kRedBuoy = 0xFFD32F2Fu;
+constexpr std::uint32_t kGreenBuoy = 0xFF2E7D32u;
+constexpr std::uint32_t kField = 0xFF455A64u;
+constexpr std::uint32_t kCase = 0xFF202020u;
+constexpr double kLightRadius = 6.0;  // [px]
+constexpr int kFanSides = 32;
+
+std::uint32_t color_of(LightState state) {
+  switch (state) {
+    case LightState::red:
+    case LightState::flashing_red:
+      return 0xFFE53935u;
+    case LightState::yellow:
+    case LightState::flashing_yellow:
+      return 0xFFFDD835u;
+    case LightState::green:
+      return 0xFF43A047u;
+    case LightState::dark:
+      break;
+  }
+  return 0xFF616161u;
+}
+
+/// Between two bearings in the emitter's frame [rad]; a whole turn is a circle.
+void draw_fan(Axes& axes, const Emitter& emitter, double from, double to, double reach, std::uint32_t color) {
+  std::vector<Vec2> outline;
+  if (to - from < 2.0 * M_PI - 1e-3) outline.push_back(axes.pixel({emitter.X_WE.x, emitter.X_WE.y}));
+  for (int i = 0; i <= kFanSides; ++i) {
+    const double bearing = from + (to - from) * i / kFanSides;
+    outline.push_back(axes.pixel(transform(emitter.X_WE, base::rotate(bearing, {reach, 0.0}))));
+  }
+  axes.canvas().polygon(outline, with_opacity(color, 0.14));
+  outline.push_back(outline.front());
+  axes.canvas().polyline(outline, 1.0, with_opacity(color, 0.55));
+}
+
+void draw_emitter(Axes& axes, const Emitter& emitter) {
+  const double fov = emitter.fov;
+  if (emitter.kind == Emitter::Kind::virtual_wall) {
+    if (emitter.halo > 0.0) draw_fan(axes, emitter, 0.0, 2.0 * M_PI, emitter.halo, kWallBeam);
+    return draw_fan(axes, emitter, -0.5 * fov, 0.5 * fov, emitter.range, kWallBeam);
+  }
+  if (emitter.halo > 0.0) draw_fan(axes, emitter, 0.0, 2.0 * M_PI, emitter.halo, kField);
+  // A quarter of each buoy's beam is the other's, too (sensors/irreceiver.h).
+  draw_fan(axes, emitter, -0.125 * fov, 0.875 * fov, emitter.range, kRedBuoy);
+  draw_fan(axes, emitter, -0.875 * fov, 0.125 * fov, emitter.range, kGreenBuoy);
+}
+
+bool has(const world::World& world, Emitter::Kind kind) {
+  return std::any_of(world.emitters.begin(), world.emitters.end(), [&](const Emitter& e) { return e.kind == kind; });
+}
+
+}  // namespace
+
+void draw_drops(Axes& axes, const world::World& world) {
+  for (const world::Drop& drop : world.drops) {
+    std::vector<Vec2> outline;
+    for (const Vec2 p : drop.outline) outline.push_back(axes.pixel(p));
+    axes.canvas().polygon(outline, with_opacity(kHole, 0.85));
+  }
+}
+
+void draw_emitters(Axes& axes, const world::World& world) {
+  for (const Emitter& emitter : world.emitters) draw_emitter(axes, emitter);
+}
+
+void draw_lights(Axes& axes, const world::World& world) {
+  for (const world::Light& light : world.lights) {
+    const Vec2 at = axes.pixel({light.X_WL.x, light.X_WL.y});
+    axes.canvas().line(at, at + base::rotate(-light.X_WL.yaw, {2.2 * kLightRadius, 0.0}), 2.5, kCase);
+    axes.canvas().disc(at, kLightRadius + 1.5, kCase);
+    axes.canvas().disc(at, kLightRadius, color_of(signal_at(light, 0.0).state));
+  }
+}
+
+std::vector<LegendItem> signals_legend(const world::World& world) {
+  std::vector<LegendItem> items;
+  if (!world.lights.empty()) items.push_back({Sample::dot, color_of(LightState::green), "traffic light, at the start"});
+  if (has(world, Emitter::Kind::virtual_wall))
+    items.push_back({Sample::block, with_opacity(kWallBeam, 0.14), "virtual wall", with_opacity(kWallBeam, 0.55)});
+  if (has(world, Emitter::Kind::dock))
+    items.push_back({Sample::block, with_opacity(kRedBuoy, 0.14), "dock: red and green buoy, force field",
+                     with_opacity(kRedBuoy, 0.55)});
+  if (!world.drops.empty()) items.push_back({Sample::block, with_opacity(kHole, 0.85), "hole in the floor"});
+  return items;
+}
+
+}  // namespace sf::viz

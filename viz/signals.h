@@ -1,0 +1,25 @@
+#pragma once
+// What tells robots something: traffic lights, infrared emitters; and the holes in the floor that cliff sensors tell
+// of.
+
+#include <vector>
+
+#include "viz/axes.h"
+#include "viz/legend.h"
+#include "world/world.h"
+
+namespace sf::viz {
+
+/// Dark areas, beneath everything that stands.
+void draw_drops(Axes& axes, const world::World& world);
+
+/// The beams and halos of virtual walls and docks, faint: without regard to what stands in their way.
+void draw_emitters(Axes& axes, const world::World& world);
+
+/// A disc each, in the colour it shows at time 0, and a short line towards those who see it.
+void draw_lights(Axes& axes, const world::World& world);
+
+/// What of these the world has.
+std::vector<LegendItem> signals_legend(const world::World& world);
+
+}  // namespace sf::viz
