@@ -56,6 +56,42 @@ Seen see(const std::string& path, double margin) {
   return seen;
 }
 
+TEST(WorldFigure, LightsShowWhatTheyShowAtTheStart) {
+  world::World world = room();
+  const auto add = [&](double x, double offset) {
+    world.lights.push_back({.name = "light",
+                            .X_WL = {x, 2.0, 0.0, 0.0},
+                            .phases = {{world::LightState::green, 8.0}, {world::LightState::red, 2.0}},
+                            .offset = offset});
+  };
+  add(1.0, 0.0);
+  add(3.0, 1.0);  // one second before its plan begins
+  draw_world(world, file("lights.png"));
+  const Seen seen = see(file("lights.png"), 0.03);
+  EXPECT_EQ(seen.at(1.0, 2.0), 0xFF43A047u);
+  EXPECT_EQ(seen.at(3.0, 2.0), 0xFFE53935u);
+}
+
+TEST(WorldFigure, HolesAreDarkAndBeamsAreFaint) {
+  world::World world = room();
+  world.drops.push_back({{{1.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {1.0, 2.0}}, 0});
+  world.emitters.push_back({world::Emitter::Kind::virtual_wall, 0, {3.0, 1.0, 0.0, M_PI / 2}, 2.0, 0.4, 0.3});
+  world.emitters.push_back({world::Emitter::Kind::dock, 0, {5.8, 3.0, 0.0, M_PI}, 1.5, 0.7, 0.0});
+  draw_world(world, file("signals.png"));
+  const Seen seen = see(file("signals.png"), 0.03);
+  const auto green_of = [&](double x, double y) { return seen.at(x, y) >> 8 & 0xFF; };
+  EXPECT_LT(green_of(1.52, 1.53), 0x60u) << "the hole";
+  EXPECT_EQ(seen.at(2.53, 2.53), kWhite) << "beside the beam";
+  EXPECT_GT(green_of(3.02, 2.53), 0xC0u) << "in the beam";
+  EXPECT_NE(seen.at(3.02, 2.53), kWhite);
+  EXPECT_NE(seen.at(3.02, 0.83), kWhite) << "in the halo behind it";
+  EXPECT_EQ(seen.at(3.02, 0.53), kWhite) << "and beyond";
+  // The dock looks west: its red buoy's beam is to its left, that is south.
+  const std::uint32_t south = seen.at(4.82, 2.63), north = seen.at(4.82, 3.37);
+  EXPECT_GT(south >> 16 & 0xFF, south >> 8 & 0xFF) << "red";
+  EXPECT_GT(north >> 8 & 0xFF, north >> 16 & 0xFF) << "green";
+}
+
 TEST(WorldFigure, WallsAreWhereTheyShouldBe) {
   draw_world(room(), file("room.png"));
   const Seen seen = see(file("room.png"), 0.03);
