@@ -38,7 +38,7 @@ bool HostInstruments::prepare(std::span<const Due> due, std::span<const Pose> po
     Pose X_WS = base::compose(poses[row.mover], row.X_MS);
     X_WS.z = world_.movers[row.mover].X_WM.z + row.X_MS.z;
     const auto values = std::span(values_).subspan(first_[d.row], first_[d.row + 1] - first_[d.row]);
-    sights_.push_back({d.row, d.sequence, poses[row.mover], X_WS, values});
+    sights_.push_back({d.row, d.sequence, X_WS, values});
   }
   // A world of such kinds alone needs its empty batch recorded once.
   return !std::exchange(recorded_, true);

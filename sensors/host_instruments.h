@@ -14,7 +14,6 @@ namespace sf::sensors {
 struct Sight {
   std::uint32_t row = 0;       ///< in the kind's rows of this world
   std::uint64_t sequence = 0;  ///< names its noise
-  Pose X_WM;                   ///< the mover's pose
   Pose X_WS;                   ///< the sensor's; z: its height in the world as it was at load, the world being 2.5-D
   std::span<double> values;    ///< of all rows and columns, to be filled
 };

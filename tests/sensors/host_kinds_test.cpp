@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <fstream>
+
 #include "sensors/bumper.h"
+#include "sensors/cliff.h"
 #include "sensors/encoder.h"
 #include "sensors/gps.h"
 #include "sensors/gyro.h"
@@ -95,6 +99,42 @@ TEST(HostKinds, LatencyHoldsReadingsBack) {
     ASSERT_EQ(readings.size(), tick < 2 ? 0u : 1u) << tick;
     EXPECT_TRUE(tick < 2 || readings[0].time == (tick - 2) * 100'000'000ll);
   }
+}
+
+/// A world file with a robot of `sensors`, as robots.inc defines them.
+world::World ready_made(const std::string& sensors) {
+  const std::string file = testing::TempDir() + "ready_made.world";
+  std::ofstream(file) << "include \"" SF_SOURCE_DIR "/worlds/robots.inc\"\ncreate( name \"one\" " << sensors << ")\n";
+  return world::load_world(file, {.sensors = sensors::vocabulary()});
+}
+
+TEST(HostKinds, TheReadyMadeOnesAreRead) {
+  const world::World world = ready_made(
+      "create_bumper() create_cliff() create_irreceiver() create_encoder() pioneer_bumpers() pioneer_encoder() "
+      "khepera_encoder() mems_gyro() outdoor_gps()");
+  EXPECT_TRUE(world.warnings.empty());
+  const sensors::Roster roster(world);
+  EXPECT_EQ(roster.count(), 9u);
+  EXPECT_EQ(roster.of(sensors::kBumper, 0)[0].elements, 2u);
+  EXPECT_EQ(roster.of(sensors::kBumper, 0)[1].elements, 10u);
+  EXPECT_EQ(roster.of(sensors::kCliff, 0)[0].elements, 4u);
+  EXPECT_EQ(roster.of(sensors::kEncoder, 0).size(), 3u);
+  EXPECT_EQ(roster.of(sensors::kGps, 0)[0].latency, 0.1);
+  EXPECT_NEAR(roster.of(sensors::kIrReceiver, 0)[0].X_MS.z, 0.09, 1e-12);
+  EXPECT_NEAR(roster.of(sensors::kGps, 0)[0].X_MS.z, 0.12, 1e-12) << "the antenna is on top";
+
+  const auto& fitted = world.movers[0].sensors;
+  const auto create = sensors::read_bumper(fitted[0]), pioneer = sensors::read_bumper(fitted[4]);
+  EXPECT_EQ(create[0] & create[1], 0x80000001u) << "both switches meet straight ahead";
+  EXPECT_EQ(create[0] | create[1], 0xFF0000FFu) << "the front half";
+  std::uint32_t all = 0;
+  for (const std::uint32_t panel : pioneer) {
+    EXPECT_EQ(std::popcount(panel), 2);
+    EXPECT_EQ(all & panel, 0u);
+    all |= panel;
+  }
+  EXPECT_DOUBLE_EQ(sensors::read_encoder(fitted[5], world.movers[0]).track, 1.5 * 0.394);
+  EXPECT_DOUBLE_EQ(sensors::read_encoder(fitted[6], world.movers[0]).per_count, 1e-3 / 12);
 }
 
 }  // namespace
