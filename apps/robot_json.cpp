@@ -26,12 +26,13 @@ Json link_json(const LinkCounts& link) {
   return {{"sent", {{"packets", link.sent.sent}, {"failed", link.sent.failed}, {"dropped", link.sent.dropped}}},
           {"readings", link.whole},
           {"sensor_packets",
-           {{"by_reason", reasons(in.reasons)},
+           {{"packets", in.reasons.total()},
+            {"by_reason", reasons(in.reasons)},
             {"late", in.late},
             {"duplicates", in.duplicates},
             {"lost", in.lost},
             {"restarts", in.restarts}}},
-          {"words", reasons(link.words)},
+          {"relayed", {{"packets", link.words.total()}, {"by_reason", reasons(link.words)}}},
           {"injected", {{"out", injected(link.out)}, {"in", injected(link.in)}}}};
 }
 

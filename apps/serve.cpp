@@ -43,8 +43,8 @@ class Service {
   std::uint16_t port() const { return inbox_.port(); }
   std::size_t robots() const { return names_.robots.size(); }
 
-  /// Sleeps until `when`, taking in what comes meanwhile. Never less: at a tick that is early, a sensor of the same rate
-  /// would not be due yet.
+  /// Sleeps until `when`, taking in what comes meanwhile. Never less: at a tick that is early, a sensor of the same
+  /// rate would not be due yet.
   void wait_until(Clock::time_point start, Clock::time_point when) {
     for (;;) {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(when - Clock::now()).count();
@@ -69,6 +69,24 @@ class Service {
     ++ticks_;
   }
 
+  /// All that waits, at `now` [ns].
+  void take_in(std::int64_t now) {
+    reports_.clear();
+    inbox_.receive(now, [&](const netio::Packet& packet) {
+      relay_.take(packet);
+      if (const auto* state = std::get_if<netio::V2v>(&packet.body)) {
+        reports_.push_back(netio::report(packet.header, *state, names_.robots.at(packet.header.robot)));
+      } else if (const auto* tag = std::get_if<netio::Tag>(&packet.body)) {
+        reports_.push_back(netio::report(packet.header, *tag, names_.tags.at(packet.header.robot)));
+      } else {
+        return;
+      }
+      // Senders' clocks are their own: a state is true when it arrives.
+      reports_.back().time = now;
+    });
+    fleet_.apply(reports_);
+  }
+
   RunFacts facts() const {
     RunFacts facts;
     facts.robots = static_cast<std::uint32_t>(names_.robots.size());
@@ -89,23 +107,6 @@ class Service {
     for (const sensors::Roster::Group& group : roster_.groups())
       if (inbox_.wants(id, group.kind->id, now)) kinds |= 1u << group.kind->id;
     return kinds;
-  }
-
-  void take_in(std::int64_t now) {
-    reports_.clear();
-    inbox_.receive(now, [&](const netio::Packet& packet) {
-      relay_.take(packet);
-      if (const auto* state = std::get_if<netio::V2v>(&packet.body)) {
-        reports_.push_back(netio::report(packet.header, *state, names_.robots.at(packet.header.robot)));
-      } else if (const auto* tag = std::get_if<netio::Tag>(&packet.body)) {
-        reports_.push_back(netio::report(packet.header, *tag, names_.tags.at(packet.header.robot)));
-      } else {
-        return;
-      }
-      // Senders' clocks are their own: a state is true when it arrives.
-      reports_.back().time = now;
-    });
-    fleet_.apply(reports_);
   }
 
   const world::World& world_;
@@ -146,6 +147,7 @@ int serve(const Options& options) {
     service.tick(now.count());
   }
 
+  service.take_in((Clock::now() - start).count());  // what still waits is counted too
   RunFacts facts = service.facts();
   facts.device = device.facts().name;
   facts.software = device.facts().software;

@@ -11,7 +11,8 @@ namespace sf {
 
 namespace {
 
-const Words kSubcommands{"devices", "check", "draw", "sense", "run", "serve", "plot", "listen", "field"};
+const Words kSubcommands{"devices", "check", "draw", "sense",  "run",  "serve",
+                         "robot",   "start", "plot", "listen", "field"};
 
 struct Wrong {
   Words arguments;

@@ -1,0 +1,192 @@
+// `robot` processes beside `serve`, over loopback, in real time: short, and nothing is asked of their speed.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <memory>
+
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+
+namespace {
+
+// The first robot's scans take three datagrams each, the others' one.
+const char* const kRoom = R"(
+model( name "room" size [8 6 1] boundary 1 noblocks 0 color "gray" )
+define bot position( size [0.3 0.3 0.1] )
+define eye laser( samples 91 fov 180 range_max 8 pose [0.1 0 -0.06 0] size [0 0 0.04] )
+bot( name "roomba1" pose [-2 0 0 0] laser( samples 700 fov 180 range_max 8 pose [0.1 0 -0.06 0] size [0 0 0.04] ) )
+bot( name "roomba2" pose [2 1 0 0] eye( ) )
+bot( name "roomba3" pose [2 -1 0 0] eye( ) )
+bot( name "roomba4" pose [0 2 0 0] eye( ) )
+)";
+
+// The thesis' layout does not hold that many rays.
+const char* const kSmallRoom = R"(
+model( name "room" size [8 6 1] boundary 1 noblocks 0 color "gray" )
+position( name "roomba2" pose [2 1 0 0] size [0.3 0.3 0.1]
+  laser( samples 91 fov 180 range_max 8 pose [0.1 0 -0.06 0] size [0 0 0.04] ) )
+)";
+
+struct Service {
+  Folder folder;
+  std::string world;
+  std::string lasers = std::to_string(free_ports(48));
+  Program program;
+  std::string port;
+
+  explicit Service(const std::string& wire = "farm")
+      : world(folder.write("room.world", wire == "farm" ? kRoom : kSmallRoom)),
+        program({"serve", world, "--port", "0", "--json", "--wire", wire, "--laser-port", lasers}) {
+    if (!program.says("; Ctrl-C ends it")) return;
+    const std::string said = program.err();
+    port = std::to_string(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
+  }
+  std::unique_ptr<Program> robot(const std::string& name, const Words& more) const {
+    Words words{"robot", world, "--name", name, "--port", port, "--laser-port", lasers, "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return std::make_unique<Program>(words);
+  }
+  Json end() {
+    program.signal(SIGINT);
+    return Json(program.wait().out);
+  }
+};
+
+Json facts_of(const std::unique_ptr<Program>& robot) {
+  const Outcome outcome = robot->wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return Json(outcome.out);
+}
+
+/// What a robot took in is what its link let pass, and what it sent too.
+void expect_sums(const Json& facts) {
+  EXPECT_EQ(facts.number("/injected/in/passed"),
+            facts.number("/sensor_packets/packets") + facts.number("/relayed/packets"));
+  EXPECT_EQ(facts.number("/injected/out/passed"), facts.number("/sent/packets"));
+}
+
+double number_or_none(const Json& facts, const std::string& pointer) {
+  return facts.has(pointer) ? facts.number(pointer) : 0.0;
+}
+
+struct RobotsTest : testing::Test {
+  /// One that nobody answers needs its three seconds: they pass beside the other tests.
+  static void SetUpTestSuite() {
+    silent_folder = std::make_unique<Folder>();
+    const std::string world = silent_folder->write("room.world", kRoom);
+    silent =
+        std::make_unique<Program>(Words{"robot", world, "--name", "roomba1", "--port", std::to_string(free_ports(1)),
+                                        "--laser-port", std::to_string(free_ports(48)), "--duration", "3.3"});
+    EXPECT_TRUE(silent->says("; Ctrl-C ends it"));
+  }
+  static void TearDownTestSuite() {
+    silent.reset();
+    silent_folder.reset();
+  }
+  static std::unique_ptr<Folder> silent_folder;
+  static std::unique_ptr<Program> silent;
+};
+std::unique_ptr<Folder> RobotsTest::silent_folder;
+std::unique_ptr<Program> RobotsTest::silent;
+
+}  // namespace
+
+TEST_F(RobotsTest, DriveByTheirReadingsBesideEachOther) {
+  Service service;
+  ASSERT_FALSE(service.port.empty()) << service.program.err();
+  const auto one = service.robot("roomba1", {"--duration", "2"});
+  const auto two = service.robot("roomba2", {"--duration", "2", "--wait-for-start"});
+  const auto three = service.robot("roomba3", {"--duration", "2", "--loss", "1"});
+  const auto four =
+      service.robot("roomba4", {"--duration", "2", "--loss", "0.3", "--delay", "0.02", "--jitter", "0.15"});
+  ASSERT_TRUE(two->says("once it is given the start signal"));
+  constexpr int kStarts = 3;
+  for (int i = 0; i < kStarts; ++i) {
+    const Outcome started = run_program({"start", "--port", service.port, "--robot", "2"});
+    EXPECT_EQ(started.code, 0) << started.err;
+  }
+
+  const Json f1 = facts_of(one), f2 = facts_of(two), f3 = facts_of(three), f4 = facts_of(four);
+  for (const Json* facts : {&f1, &f2, &f3, &f4}) expect_sums(*facts);
+  // All three parts of its scans, states of others, and it drives.
+  EXPECT_TRUE(f1.number("/readings/laser") > 0);
+  EXPECT_GE(f1.number("/sensor_packets/by_reason/accepted"), 3 * f1.number("/readings/laser"));
+  EXPECT_GT(f1.number("/relayed/by_reason/accepted"), 0);
+  EXPECT_GT(f1.number("/distance_m"), 0.05);
+  EXPECT_GE(f1.number("/sent/packets"), f1.number("/steps"));
+  // The second waited, then drove.
+  EXPECT_GT(f2.number("/steps"), 0);
+  EXPECT_LT(f2.number("/steps"), f2.number("/sent/packets") - 1);
+  EXPECT_GT(f2.number("/distance_m"), 0.0);
+  // Of the third nobody ever heard.
+  EXPECT_EQ(f3.number("/sent/packets"), 0);
+  EXPECT_GT(f3.number("/injected/out/lost"), 0);
+  EXPECT_EQ(f3.number("/injected/in/passed"), 0);
+  EXPECT_EQ(f3.number("/readings/laser"), 0);
+  // A bad link is worse, and still one.
+  EXPECT_GT(f4.number("/injected/in/lost"), 0);
+  EXPECT_GT(f4.number("/readings/laser"), 0);
+
+  const Json farm = service.end();
+  EXPECT_EQ(farm.number("/received/accepted") + number_or_none(farm, "/received/stale"),
+            f1.number("/sent/packets") + f2.number("/sent/packets") + f4.number("/sent/packets") + 3 * kStarts);
+  EXPECT_GE(farm.number("/relayed/starts"), 1);
+  EXPECT_GE(farm.number("/relayed/states"), f1.number("/relayed/by_reason/accepted"));
+}
+
+TEST_F(RobotsTest, ReadTheThesisLayoutToo) {
+  Service service("thesis");
+  ASSERT_FALSE(service.port.empty()) << service.program.err();
+  const Json facts = facts_of(service.robot("roomba2", {"--duration", "1", "--wire", "thesis"}));
+  expect_sums(facts);
+  EXPECT_GT(facts.number("/readings/laser"), 0);
+  EXPECT_GT(facts.number("/distance_m"), 0.0);
+}
+
+TEST(Robot, WrongWordsAreRefusedWithWhatWasExpected) {
+  const Folder folder;
+  const std::string world = folder.write("room.world", kSmallRoom);
+  struct Case {
+    Words more;
+    std::string said;
+  };
+  const Case cases[] = {
+      {{"--name", "roomba3"}, "has no robot 'roomba3'; did you mean 'roomba2'?"},  // one slip away
+      {{"--name", "bus"}, "has no robot 'bus'"},
+      {{}, "--name"},  // it must be said which
+      {{"--name", "roomba2", "--controller", "wonder"}, "expected wander"},
+      {{"--name", "roomba2", "--set", "speed"}, "expected KEY=VALUE"},
+      {{"--name", "roomba2", "--set", "sped=1"}, "has no setting 'sped'"},
+      {{"--name", "roomba2", "--loss", "1.5"}, "expected a number from 0 to 1"},
+      {{"--name", "roomba2", "--delay", "-1"}, "expected a number from 0 to 3600"},
+      {{"--name", "roomba2", "--port", "0"}, "expected a whole number from 1 to 65535"},
+      {{"--name", "roomba2", "--server", "no.such.host.invalid"}, "no.such.host.invalid"},
+  };
+  for (const Case& each : cases) {
+    Words words{"robot", world, "--duration", "0.1"};
+    words.insert(words.end(), each.more.begin(), each.more.end());
+    const Outcome outcome = run_program(words);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+    EXPECT_NE(outcome.err.find(each.said), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(Robot, AStartForNoRobotOfAPacketIsRefused) {
+  EXPECT_EQ(run_program({"start", "--robot", "65536"}).code, 2);
+  EXPECT_EQ(run_program({"start", "--server", "no.such.host.invalid"}).code, 2);
+}
+
+TEST_F(RobotsTest, ASilentFarmIsSaidOnce) {
+  const Outcome outcome = silent->wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(count_lines(outcome.err), 2u) << outcome.err;
+  EXPECT_NE(outcome.err.find("nothing came from the farm at 127.0.0.1:"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("Nothing came from the farm"), std::string::npos) << outcome.out;
+}
+
+}  // namespace sf
