@@ -13,12 +13,12 @@
 #include "apps/lend.h"
 #include "apps/plan.h"
 #include "apps/post.h"
-#include "apps/robot_body.h"
 #include "apps/robot_facts.h"
 #include "apps/robot_link.h"
 #include "apps/stop.h"
 #include "apps/wire_names.h"
 #include "base/error.h"
+#include "scenarios/robot_body.h"
 #include "world/keys.h"
 #include "world/lights.h"
 #include "world/roads/roads.h"
@@ -197,7 +197,7 @@ class RobotProcess {
   const world::World& world_;
   WireNames names_;
   std::uint32_t mover_;
-  RobotBody body_;
+  scenarios::RobotBody body_;
   RobotLink link_;
   std::optional<world::RoadNetwork> roads_;
   control::Made made_;

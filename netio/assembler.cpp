@@ -33,10 +33,8 @@ Taken Assembler::finish(const Piece& piece, std::int64_t now, Open& open) {
   open.seen[piece.part] = true;
   if (--open.missing > 0) return Taken::part;
   std::swap(open, newest_);
-  came_ = now;
   open.used = false;
-  for (Open& each : open_)
-    if (each.used && !newer(each.piece.sequence, piece.sequence)) each.used = false;
+  came_ = now;
   return Taken::whole;
 }
 

@@ -158,7 +158,7 @@ TEST(Robot, WrongWordsAreRefusedWithWhatWasExpected) {
       {{"--name", "roomba3"}, "has no robot 'roomba3'; did you mean 'roomba2'?"},  // one slip away
       {{"--name", "bus"}, "has no robot 'bus'"},
       {{}, "--name"},  // it must be said which
-      {{"--name", "roomba2", "--controller", "wonder"}, "expected wander"},
+      {{"--name", "roomba2", "--controller", "wonder"}, "got 'wonder'"},
       {{"--name", "roomba2", "--set", "speed"}, "expected KEY=VALUE"},
       {{"--name", "roomba2", "--set", "sped=1"}, "has no setting 'sped'"},
       {{"--name", "roomba2", "--loss", "1.5"}, "expected a number from 0 to 1"},

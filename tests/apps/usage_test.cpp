@@ -52,6 +52,10 @@ TEST(Usage, HelpNamesTheOptions) {
        {"--robots", "--duration", "--seed", "--record", "--record-readings", "--real-time", "--send", "--json",
         "--wire", "--threads", "--stage-obstacles"}},
       {"serve", {"--bind", "--rate", "--port", "--laser-port", "--wire", "--json"}},
+      {"robot",
+       {"--name", "--controller", "--set", "--server", "--port", "--delay", "--jitter", "--loss", "--seed", "--rate",
+        "--duration", "--wait-for-start", "--json", "--wire"}},
+      {"start", {"--robot", "--server", "--port"}},
       {"plot", {"-o,--out"}},
       {"field", {"--height", "-o,--out", "--line", "--extent", "--csv", "--device"}},
       {"listen", {"--robots", "--json", "--wire"}}};
@@ -116,8 +120,13 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
 TEST(Usage, WrongFilesAreRefusedByEveryCommandThatReadsAWorld) {
   const Folder folder;
   const std::string broken = folder.write("broken.world", "model\n(\n  size [1 1\n  color \"red\"\n)\n");
-  for (const Words& command :
-       std::vector<Words>{{"check"}, {"sense"}, {"run"}, {"serve"}, {"listen"}, {"draw", "-o", folder.path("x.png")}}) {
+  for (const Words& command : std::vector<Words>{{"check"},
+                                                 {"sense"},
+                                                 {"run"},
+                                                 {"serve"},
+                                                 {"robot", "--name", "roomba1"},
+                                                 {"listen"},
+                                                 {"draw", "-o", folder.path("x.png")}}) {
     Words words = command;
     words.insert(words.begin() + 1, folder.path("none.world"));
     expect_refused(words, "none.world: no such file");

@@ -133,6 +133,7 @@ TEST_F(RelayTest, StartMayMeanOneRobot) {
   say(7, 0.0);
   start(7);
   tick();
+  EXPECT_EQ(relay.counts().starts, 1u);
   EXPECT_TRUE(heard(3).empty());
   EXPECT_EQ(heard(7).size(), 1u);
 }

@@ -9,11 +9,12 @@
 #include "robots/fleet.h"
 #include "world/world.h"
 
-namespace sf::apps {
+namespace sf::scenarios {
 
-/// Times are of the robot's own clock [ns], which does not go back. `world` must outlive it.
+/// Times are of the robot's own clock [ns], which does not go back.
 class RobotBody {
  public:
+  /// @param mover its row; all begin where they are at load
   RobotBody(const world::World& world, std::uint32_t mover);
 
   /// Another robot says where it is; it came now.
@@ -41,6 +42,7 @@ class RobotBody {
   };
   const Been& been(std::size_t back) const { return trail_[(moves_ - back) % trail_.size()]; }
 
+  world::World world_;  ///< a copy: others move as they say they do, whatever stands between their commands and them
   robots::Fleet fleet_;
   std::uint32_t mover_;
   std::vector<Told> told_;             ///< per mover
@@ -51,4 +53,4 @@ class RobotBody {
   double distance_ = 0.0;
 };
 
-}  // namespace sf::apps
+}  // namespace sf::scenarios

@@ -1,9 +1,9 @@
-#include "apps/robot_body.h"
+#include "scenarios/robot_body.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sf::apps {
+namespace sf::scenarios {
 
 namespace {
 
@@ -12,10 +12,23 @@ base::Pose between(const base::Pose& a, const base::Pose& b, double part) {
           base::wrap_angle(a.yaw + part * base::wrap_angle(b.yaw - a.yaw))};
 }
 
+world::World with_free_others(world::World world, std::uint32_t mover) {
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    if (m == mover) continue;
+    world.movers[m].command_law = world::CommandLaw::direct;
+    world.movers[m].max_acceleration = world.movers[m].max_turn_acceleration = HUGE_VAL;
+  }
+  return world;
+}
+
 }  // namespace
 
 RobotBody::RobotBody(const world::World& world, std::uint32_t mover)
-    : fleet_(world), mover_(mover), told_(world.movers.size()), commands_(world.movers.size()) {
+    : world_(with_free_others(world, mover)),
+      fleet_(world_),
+      mover_(mover),
+      told_(world.movers.size()),
+      commands_(world.movers.size()) {
   trail_[0].X_WM = state().X_WM;
 }
 
@@ -53,4 +66,4 @@ base::Pose RobotBody::pose_at(std::int64_t time) const {
   return been(kept - 1).X_WM;
 }
 
-}  // namespace sf::apps
+}  // namespace sf::scenarios

@@ -1,0 +1,87 @@
+#include "scenarios/robot_body.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/robots/scenes.h"
+
+namespace sf::scenarios {
+namespace {
+
+constexpr std::int64_t kMilli = 1'000'000;
+
+/// A room of 6 m by 4 m with two robots of 0.3 m by 0.3 m.
+world::World room() {
+  world::World world = scenes::boxed_world(6.0, 4.0, {-3.0, -2.0});
+  for (const base::Pose& X_WM : {base::Pose{-2.0, 0.0, 0.0, 0.0}, base::Pose{2.0, 1.0, 0.0, M_PI / 2}})
+    scenes::add_mover(world, X_WM, scenes::rectangle({0.0, 0.0}, 0.3, 0.3));
+  return world;
+}
+
+struct BodyTest : testing::Test {
+  world::World world = room();
+  RobotBody body{world, 0};
+};
+
+TEST_F(BodyTest, DrivesForTheTimeThatPassed) {
+  body.move({0.2, 0.0, 0.0}, 100 * kMilli);
+  body.move({0.2, 0.0, 0.0}, 250 * kMilli);
+  EXPECT_NEAR(body.state().X_WM.x, -2.0 + 0.2 * 0.25, 1e-12);
+  EXPECT_NEAR(body.distance(), 0.05, 1e-12);
+  body.move({0.2, 0.0, 0.0}, 250 * kMilli);  // no time passed
+  EXPECT_NEAR(body.distance(), 0.05, 1e-12);
+}
+
+TEST_F(BodyTest, AProcessThatStoodStillDoesNotJump) {
+  body.move({0.2, 0.0, 0.0}, 60'000 * kMilli);
+  EXPECT_NEAR(body.state().X_WM.x, -2.0 + 0.2 * 0.5, 1e-12);  // half a second
+}
+
+TEST_F(BodyTest, WallsStopIt) {
+  for (int i = 1; i <= 100; ++i) body.move({-0.5, 0.0, 0.0}, i * 100 * kMilli);
+  EXPECT_TRUE(body.contact());
+  EXPECT_GT(body.state().X_WM.x, -3.0);
+  EXPECT_LT(body.distance(), 1.0);
+}
+
+TEST_F(BodyTest, OthersAreWhereTheySayAndGoOnForHalfASecond) {
+  body.move({}, 100 * kMilli);
+  body.hear(1, {0.0, 1.0, 0.0, 0.0}, {0.4, 0.0, 0.0}, 100 * kMilli);
+  EXPECT_EQ(body.state(1).X_WM.x, 0.0);
+  for (int i = 2; i <= 20; ++i) body.move({}, i * 100 * kMilli);
+  EXPECT_NEAR(body.state(1).X_WM.x, 0.4 * 0.4, 0.041);  // moves that end before the half second is over
+  body.hear(1, {1.5, 1.0, 0.0, 0.0}, {}, 2000 * kMilli);
+  EXPECT_EQ(body.state(1).X_WM.x, 1.5);  // the newest word counts
+}
+
+TEST_F(BodyTest, OthersStopIt) {
+  body.hear(1, {-1.5, 0.0, 0.0, 0.0}, {}, 0);
+  for (int i = 1; i <= 20; ++i) body.move({0.5, 0.0, 0.0}, i * 100 * kMilli);
+  EXPECT_TRUE(body.contact());
+  EXPECT_LT(body.state().X_WM.x, -1.5 - 0.29);
+}
+
+TEST_F(BodyTest, RemembersWhereItWas) {
+  for (int i = 1; i <= 10; ++i) body.move({0.2, 0.0, 0.0}, i * 100 * kMilli);
+  EXPECT_NEAR(body.pose_at(350 * kMilli).x, -2.0 + 0.2 * 0.35, 1e-12);  // between two moves
+  EXPECT_NEAR(body.pose_at(400 * kMilli).x, -2.0 + 0.2 * 0.4, 1e-12);   // at one
+  EXPECT_EQ(body.pose_at(-5).x, -2.0);                                  // before the first
+  EXPECT_EQ(body.pose_at(2000 * kMilli).x, body.state().X_WM.x);        // after the last
+}
+
+TEST_F(BodyTest, ForgetsWhatWasLongAgo) {
+  for (int i = 1; i <= 1000; ++i) body.move({0.0, 0.0, 0.5}, i * kMilli);
+  EXPECT_NEAR(body.pose_at(900 * kMilli).yaw, 0.45, 1e-9);
+  EXPECT_NEAR(body.pose_at(0).yaw, 0.5 * 0.745, 1e-9);  // the oldest of 256
+}
+
+TEST_F(BodyTest, HeadingsAreBetweenAcrossHalfATurn) {
+  world.movers[0].X_WM.yaw = M_PI - 0.01;
+  RobotBody turned(world, 0);
+  turned.move({0.0, 0.0, 0.2}, 100 * kMilli);
+  EXPECT_NEAR(std::abs(turned.pose_at(50 * kMilli).yaw), M_PI, 1e-9);
+}
+
+}  // namespace
+}  // namespace sf::scenarios
