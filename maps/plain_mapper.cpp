@@ -45,14 +45,24 @@ void add_scan(Grid& grid, const ScanView& scan) {
   add_ends(grid, trace_ends(grid.plan, scan, ends), ends);
 }
 
-void add_scan(OddsGrid& grid, const ScanView& scan) {
+void add_ends(OddsGrid& grid, const ScanEnds& scan, std::span<const std::uint32_t> ends) {
+  const CellBox part = intersect(scan.box, cells_of(grid.plan));
+  if (is_empty(part)) return;
   Grid covered(grid.plan);
-  add_scan(covered, scan);
-  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
-    const auto state = static_cast<Cell>(covered.words[i / 16] >> 2 * (i % 16) & 3u);
-    const std::int32_t more = state == Cell::occupied ? grid.rule.hit : state == Cell::free ? -grid.rule.miss : 0;
-    grid.cells[i] = static_cast<std::int16_t>(std::clamp(grid.cells[i] + more, -grid.rule.limit, grid.rule.limit));
-  }
+  add_ends(covered, scan, ends);
+  for (std::int64_t row = part.low.row; row < part.high.row; ++row)
+    for (std::int64_t column = part.low.column; column < part.high.column; ++column) {
+      const Cell state = covered.at({column, row});
+      if (state == Cell::unexplored) continue;
+      std::int16_t& odds = grid.cells[16 * covered.word_of({column, row}) + Grid::shift_of({column, row}) / 2];
+      const std::int32_t more = state == Cell::occupied ? grid.rule.hit : -grid.rule.miss;
+      odds = static_cast<std::int16_t>(std::clamp(odds + more, -grid.rule.limit, grid.rule.limit));
+    }
+}
+
+void add_scan(OddsGrid& grid, const ScanView& scan) {
+  std::vector<std::uint32_t> ends(scan.ranges.size());
+  add_ends(grid, trace_ends(grid.plan, scan, ends), ends);
 }
 
 Grid states_of(const OddsGrid& grid) {

@@ -44,6 +44,7 @@ struct OddsGrid {
 
 /// Every cell that the scan covers is weighed once: as occupied, or else as free.
 void add_scan(OddsGrid& grid, const ScanView& scan);
+void add_ends(OddsGrid& grid, const ScanEnds& scan, std::span<const std::uint32_t> ends);
 
 /// Occupied above 0, free below, unexplored at 0.
 Grid states_of(const OddsGrid& grid);

@@ -7,10 +7,19 @@
 #include <vector>
 
 #include "base/pose.h"
-#include "maps/beam_end.h"
 #include "maps/grid.h"
 
 namespace sf::maps {
+
+// Where a beam ends, in one word: how many columns and rows from the sensor's cell, and whether it met something there.
+
+inline std::uint32_t pack_end(std::int64_t columns, std::int64_t rows, bool hit) {
+  return (static_cast<std::uint32_t>(columns) & 0x7FFFu) | (static_cast<std::uint32_t>(rows) & 0x7FFFu) << 15 |
+         (hit ? 1u << 30 : 0u);
+}
+inline std::int32_t columns_of(std::uint32_t end) { return static_cast<std::int32_t>(end << 17) >> 17; }
+inline std::int32_t rows_of(std::uint32_t end) { return static_cast<std::int32_t>(end << 2) >> 17; }
+inline bool hit_of(std::uint32_t end) { return (end >> 30 & 1u) != 0; }
 
 /// One scan as a mapper needs it.
 struct ScanView {
@@ -21,7 +30,7 @@ struct ScanView {
   double range_max = 0.0;             ///< [m] nothing was met from here on. Rule: range_max <= kFarthestRange cells
 };
 
-inline constexpr double kFarthestRange = 16'382.0;  ///< [cells] 491 m where a cell is 3 cm
+inline constexpr double kFarthestRange = 1'022.0;  ///< [cells] 30.6 m where a cell is 3 cm
 
 /// Bearings from -fov/2 to +fov/2, as world::bearing_of has them. @param fov [rad] @param samples at least 1
 std::vector<base::Vec2> beam_directions(double fov, std::uint32_t samples);

@@ -128,9 +128,9 @@ TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
 }
 
 TEST(OccupancyBatch, TheFarthestEndsAreStillRight) {
-  // 16 382 cells: the largest numbers that the kernel multiplies.
-  sensors::MapPlan kind = plan(2.0 * M_PI, 97, 16'382 * 0.01, 0.01);
-  kind.grid.word_columns = kind.grid.word_rows = 120;
+  // 1022 cells: the longest lines, whose cells are told apart by the smallest differences.
+  sensors::MapPlan kind = plan(2.0 * M_PI, 97, 1'022 * 0.01, 0.01);
+  kind.grid.word_columns = kind.grid.word_rows = 300;
   EXPECT_EQ(contest(spread(kind, 4), 8, 2, 50).different, 0u);
 }
 

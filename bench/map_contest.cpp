@@ -1,0 +1,195 @@
+#include "bench/map_contest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <memory>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/parallel.h"
+#include "bench/scans.h"
+#include "farm/farm.h"
+#include "maps/plain_mapper.h"
+#include "sensors/occupancy_batch.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::bench {
+
+namespace {
+
+constexpr double kCell = 0.03;  // [m]
+
+/// What one round tells every map.
+struct Round {
+  std::vector<base::Pose> X_WS;
+  std::vector<std::vector<double>> ranges;
+};
+
+std::vector<Round> rounds_of(const Scans& scans, gpu::Device& device) {
+  farm::Farm farm(scans.world, device);
+  farm.hear_all();
+  std::vector<Round> rounds;
+  for (const std::vector<base::Pose>& poses : scans.rounds) {
+    std::vector<base::Report> reports;
+    for (std::uint32_t m = 0; m < poses.size(); ++m) reports.push_back({m, 0, poses[m], {}});
+    Round round;
+    for (const base::ReadingBlock& r : farm.tick(static_cast<std::int64_t>(rounds.size()) * 1'000'000'000, reports)) {
+      round.X_WS.push_back(r.X_WS);
+      round.ranges.emplace_back(r.values.begin(), r.values.end());
+    }
+    rounds.push_back(std::move(round));
+  }
+  return rounds;
+}
+
+std::vector<sensors::MapPlan> plans_of(const Scans& scans, bool weighs) {
+  const auto words = static_cast<std::uint32_t>(std::ceil((2.0 * scans.laser.range_max + 0.5) / (4.0 * kCell)));
+  const double half = 2.0 * kCell * words;
+  std::vector<sensors::MapPlan> plans;
+  for (const base::Pose& X : scans.rounds[0]) {
+    sensors::MapPlan plan;
+    plan.grid = {X.x - half, X.y + half, kCell, words, words};
+    if (weighs) plan.odds = maps::OddsRule{};
+    plan.fov = scans.laser.fov;
+    plan.samples = scans.laser.samples;
+    plan.range_max = scans.laser.range_max;
+    plans.push_back(plan);
+  }
+  return plans;
+}
+
+class Mapper {
+ public:
+  virtual ~Mapper() = default;
+  virtual std::string name() const = 0;
+  virtual void update(const Round& round) = 0;
+  virtual std::span<const std::uint32_t> words(std::uint32_t map) const = 0;
+};
+
+class FarmMapper : public Mapper {
+ public:
+  FarmMapper(gpu::Device& device, const std::vector<sensors::MapPlan>& plans) : batch_(device, workers_, plans) {
+    for (std::uint32_t i = 0; i < plans.size(); ++i) wanted_.push_back(i);
+  }
+  std::string name() const override { return "farm"; }
+  void update(const Round& round) override {
+    scans_.clear();
+    for (std::uint32_t i = 0; i < wanted_.size(); ++i) scans_.push_back({i, round.X_WS[i], round.ranges[i]});
+    batch_.update(scans_, wanted_);
+  }
+  std::span<const std::uint32_t> words(std::uint32_t map) const override { return batch_.words(map); }
+
+ private:
+  base::Workers workers_;
+  sensors::MapBatch batch_;
+  std::vector<std::uint32_t> wanted_;
+  std::vector<sensors::MapScan> scans_;
+};
+
+/// Pushes each beam's cells, on all cores.
+class PlainMapper : public Mapper {
+ public:
+  PlainMapper(const std::vector<sensors::MapPlan>& plans, bool weighs) : plans_(plans), weighs_(weighs) {
+    for (const sensors::MapPlan& plan : plans) {
+      grids_.emplace_back(plan.grid);
+      odds_.emplace_back(plan.grid, maps::OddsRule{});
+    }
+    beams_ = maps::beam_directions(plans[0].fov, plans[0].samples);
+    ends_.resize(workers_.threads(), std::vector<std::uint32_t>(beams_.size()));
+  }
+  std::string name() const override { return "plain C++ mapper, -O3"; }
+  void update(const Round& round) override {
+    workers_.run(plans_.size(), 4, [&](std::size_t first, std::size_t last, unsigned thread) {
+      for (std::size_t i = first; i < last; ++i) {
+        const maps::ScanView view{round.X_WS[i], round.ranges[i], beams_, plans_[i].range_min, plans_[i].range_max};
+        const maps::ScanEnds scan = maps::trace_ends(plans_[i].grid, view, ends_[thread]);
+        if (weighs_) maps::add_ends(odds_[i], scan, ends_[thread]);
+        if (!weighs_) maps::add_ends(grids_[i], scan, ends_[thread]);
+      }
+    });
+  }
+  std::span<const std::uint32_t> words(std::uint32_t map) const override {
+    if (weighs_) grids_[map] = maps::states_of(odds_[map]);
+    return grids_[map].words;
+  }
+
+ private:
+  base::Workers workers_;
+  const std::vector<sensors::MapPlan>& plans_;
+  bool weighs_;
+  mutable std::vector<maps::Grid> grids_;
+  std::vector<maps::OddsGrid> odds_;
+  std::vector<base::Vec2> beams_;
+  std::vector<std::vector<std::uint32_t>> ends_;  ///< per thread
+};
+
+void judge(const Mapper& mapper, const Mapper& plain, std::size_t robots, MapEntrant& entrant) {
+  for (std::uint32_t i = 0; i < robots; ++i) {
+    const auto words = mapper.words(i);
+    const auto right = plain.words(i);
+    for (std::size_t w = 0; w < right.size(); ++w) entrant.different += words[w] != right[w];
+    entrant.hash = base::hash_bytes(words.data(), words.size_bytes(), entrant.hash);
+  }
+}
+
+}  // namespace
+
+MapOutcome compete_maps(gpu::Device& device, std::uint32_t robots, double range, bool weighs, std::size_t turns) {
+  const Scans scans = make_scans("cave", load_cave(), robots, scenes::laser(361, M_PI, range));
+  const std::vector<Round> rounds = rounds_of(scans, device);
+  const std::vector<sensors::MapPlan> plans = plans_of(scans, weighs);
+  std::vector<std::unique_ptr<Mapper>> mappers;
+  mappers.push_back(std::make_unique<FarmMapper>(device, plans));
+  mappers.push_back(std::make_unique<PlainMapper>(plans, weighs));
+  MapOutcome outcome{robots, scans.rays(), range, weighs, {}};
+  for (const auto& mapper : mappers) {
+    mapper->update(rounds[0]);
+    outcome.entrants.push_back({mapper->name(), {}, {}, 0.0, 0.0, 0, 0});
+  }
+  for (std::size_t turn = 0; turn < turns; ++turn)
+    for (std::size_t k = 0; k < mappers.size(); ++k) {
+      const std::size_t who = (turn + k) % mappers.size();
+      const Cost start = now();
+      mappers[who]->update(rounds[turn % rounds.size()]);
+      outcome.entrants[who].turns.push_back(now() - start);
+    }
+  for (std::size_t k = 0; k < mappers.size(); ++k) {
+    MapEntrant& entrant = outcome.entrants[k];
+    judge(*mappers[k], *mappers.back(), robots, entrant);
+    const Cost times = ratio(outcome.entrants.back().turns, entrant.turns);
+    entrant.ratio = times.wall_s;
+    entrant.cpu_ratio = times.cpu_s;
+    entrant.typical = median(entrant.turns);
+  }
+  return outcome;
+}
+
+void write_maps(const std::vector<MapOutcome>& outcomes, const std::string& folder) {
+  if (outcomes.empty()) return;
+  std::ofstream out(folder + "/maps.csv");
+  out << "robots,beams,range_m,log_odds,method,wall_ms_median,cpu_ms_median,ratio_to_plain,cpu_ratio_to_plain,"
+         "words_different,hash\n";
+  for (const MapOutcome& o : outcomes)
+    for (const MapEntrant& e : o.entrants)
+      out << fmt::format("{},{},{:g},{},\"{}\",{:.3f},{:.3f},{:.3f},{:.3f},{},{:016x}\n", o.robots, o.beams, o.range_m,
+                         o.weighs ? 1 : 0, e.method, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio,
+                         e.cpu_ratio, e.different, e.hash);
+  if (!out.flush()) throw base::InputError(folder + "/maps.csv", 0, "cannot be written; choose another folder");
+}
+
+std::string map_table(const std::vector<MapOutcome>& outcomes) {
+  std::string text;
+  for (const MapOutcome& o : outcomes) {
+    text += fmt::format("\n{} maps of 3 cm cells, {} beams up to {:g} m{}\n", o.robots, o.beams, o.range_m,
+                        o.weighs ? ", log odds" : "");
+    for (const MapEntrant& e : o.entrants)
+      text += fmt::format("  {:26} {:8.2f} ms  {:8.2f} cpu ms  {:5.2f} x  {:5.2f} x cpu  {} words differ\n", e.method,
+                          1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio, e.cpu_ratio, e.different);
+  }
+  return text;
+}
+
+}  // namespace sf::bench

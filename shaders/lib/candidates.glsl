@@ -1,0 +1,46 @@
+// Which pairs of beams of a fan may look at a range of bearings. Bearings only choose which beams are asked: too many cost time, never a cell.
+
+const float PI = 3.14159265;
+
+// Bearing [rad] of a direction, wrong by at most 2e-5 (Abramowitz and Stegun 4.4.49).
+float bearing_of(vec2 d) {
+  const vec2 a = abs(d);
+  const float q = min(a.x, a.y) / max(max(a.x, a.y), 1e-9);
+  const float s = q * q;
+  const float low = q * (0.9998660 + s * (-0.3302995 + s * (0.1801410 + s * (-0.0851330 + s * 0.0208351))));
+  const float quarter = a.y > a.x ? 0.5 * PI - low : low;
+  const float half_turn = d.x < 0.0 ? PI - quarter : quarter;
+  return d.y < 0.0 ? -half_turn : half_turn;
+}
+
+// Up to three runs of pairs, since a field of view may go round.
+struct Candidates {
+  int first;   // of the run that lies there
+  int count;
+  int low;     // as many from the first pair on
+  int high;    // first of those at the other end
+};
+
+int count_of(Candidates c, int pairs) { return c.count + c.low + max(pairs - c.high, 0); }
+
+// The j-th of them.
+int candidate(Candidates c, int j) {
+  return j < c.count ? c.first + j : j < c.count + c.low ? j - c.count : c.high + (j - c.count - c.low);
+}
+
+// Within `wide` of `bearing` (in [-pi, pi], in the sensor's frame), or all. `fan` is half_fov, per_radian, slack, round of a MapRow, in
+// pairs: pair p holds beams 2 p and 2 p + 1, half a pair apart.
+Candidates candidates(float bearing, float wide, bool all, vec4 fan, int pairs) {
+  const float last = float(pairs);
+  const float reach = wide + fan.z;
+  const float low = (bearing - reach + fan.x) * fan.y - 0.5;
+  const float high = (bearing + reach + fan.x) * fan.y;
+  const int first = all ? 0 : int(ceil(clamp(low, 0.0, last)));
+  const int end = all ? pairs : int(floor(clamp(high, -1.0, last - 1.0))) + 1;
+  Candidates c;
+  c.first = first;
+  c.count = max(end - first, 0);
+  c.low = all ? 0 : int(floor(clamp(high - fan.w, -1.0, last - 1.0))) + 1;
+  c.high = all ? pairs : int(ceil(clamp(low + fan.w, 0.0, last)));
+  return c;
+}
