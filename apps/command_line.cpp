@@ -65,6 +65,17 @@ CLI::Validator extent() {
           ""};
 }
 
+CLI::Validator ports() {
+  return {[](std::string& text) {
+            return read_ports(text).empty() ? fmt::format(
+                                                  "expected a port or a range of at most 1024 such as "
+                                                  "52000-52008, got '{}'",
+                                                  text)
+                                            : "";
+          },
+          ""};
+}
+
 void add_json(CLI::App& app, Options& o) { app.add_flag("--json", o.json, "Print facts as JSON on standard output"); }
 
 /// CLI11's own envname would set what all subcommands share after the one that was called has set it.
@@ -94,6 +105,16 @@ void add_no_return(CLI::App& app, Options& o) {
       ->default_str("max");
 }
 
+void add_wire(CLI::App& app, Options& o) {
+  app.add_option_function<std::string>(
+         "--wire",
+         [&o](const std::string& text) { o.wire = text == "thesis" ? sensors::Wire::thesis : sensors::Wire::farm; },
+         "Layout of sensor packets: farm (docs/packets.md) or thesis (plain)")
+      ->check(one_of({"farm", "thesis"}))
+      ->type_name("farm|thesis")
+      ->default_str("farm");
+}
+
 void add_ports(CLI::App& app, Options& o) {
   for (const sensors::SensorKind* kind : sensors::kinds())
     app.add_option(fmt::format("--{}-port", kind->name), o.base_ports[kind->id],
@@ -105,13 +126,7 @@ void add_ports(CLI::App& app, Options& o) {
       ->check(whole(1, 65535))
       ->type_name("N")
       ->capture_default_str();
-  app.add_option_function<std::string>(
-         "--wire",
-         [&o](const std::string& text) { o.wire = text == "thesis" ? sensors::Wire::thesis : sensors::Wire::farm; },
-         "Layout of sensor packets: farm (docs/packets.md) or thesis (plain)")
-      ->check(one_of({"farm", "thesis"}))
-      ->type_name("farm|thesis")
-      ->default_str("farm");
+  add_wire(app, o);
 }
 
 void add_kind(CLI::App& app, Options& o) {
@@ -400,6 +415,42 @@ void add_test(CLI::App& app, Options& o) {
   sub->callback([&o] { o.command = Command::test; });
 }
 
+void add_map(CLI::App& app, Options& o) {
+  CLI::App* sub =
+      app.add_subcommand("map", "Show the occupancy maps that robots send, live in a terminal, and draw them");
+  sub->add_option_function<std::vector<std::string>>(
+         "--listen",
+         [&o](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts)
+             for (const std::uint16_t port : read_ports(text)) o.map_ports.push_back(port);
+         },
+         "Port of a robot's map, or a range of ports A-B; may be given more than once")
+      ->required()
+      ->check(ports())
+      ->type_name("PORT");
+  sub->add_option("--bind", o.bind, "Address to listen on (0.0.0.0: every interface)")
+      ->check(not_empty("an address"))
+      ->type_name("HOST")
+      ->capture_default_str();
+  sub->add_flag("--merge", o.merge, "All maps as one: what any robot saw occupied is occupied");
+  sub->add_option("-o,--out", o.out, "PNG file to write at the end; of several maps that are not merged, one each")
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
+  auto* duration = sub->add_option("--duration", o.duration, "Stop after this long [s] (0: when told to, or silent)")
+                       ->check(number(0.0, 1e9))
+                       ->type_name("S");
+  sub->add_flag("--once", o.once, "Stop when every port has brought a whole map");
+  sub->add_option("--silence", o.silence, "End when nothing came for this long after the first packet [s]")
+      ->check(number(0.1, 1e6))
+      ->type_name("S")
+      ->capture_default_str();
+  add_wire(*sub, o);
+  sub->callback([&o, duration] {
+    o.command = Command::map;
+    if (duration->count() == 0) o.duration = 0.0;
+  });
+}
+
 std::string names_of(const std::vector<const CLI::App*>& subcommands) {
   std::string names;
   for (const CLI::App* sub : subcommands) names += (names.empty() ? "" : ", ") + sub->get_name();
@@ -463,6 +514,7 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   add_listen(app, o);
   add_experiment(app, o);
   add_test(app, o);
+  add_map(app, o);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -19,5 +19,6 @@ int plot(const Options& options);
 int listen(const Options& options);
 int experiment(const Options& options);
 int test_scenarios(const Options& options);
+int map(const Options& options);
 
 }  // namespace sf::apps

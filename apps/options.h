@@ -15,7 +15,22 @@
 
 namespace sf::apps {
 
-enum class Command { devices, check, draw, field, sense, run, serve, robot, start, plot, listen, experiment, test };
+enum class Command {
+  devices,
+  check,
+  draw,
+  field,
+  sense,
+  run,
+  serve,
+  robot,
+  start,
+  plot,
+  listen,
+  map,
+  experiment,
+  test
+};
 
 struct Options {
   Command command = Command::devices;
@@ -69,7 +84,11 @@ struct Options {
   double loss = 0.0;                 ///< [-] in [0, 1]
   bool wait_for_start = false;
   std::uint32_t start_id = 65535;  ///< robot to be started; 65535: all
-  double silence = 3.0;            ///< [s] after which `listen` ends
+  double silence = 3.0;            ///< [s] after which `listen` and `map` end
+
+  std::vector<std::uint16_t> map_ports;  ///< that `map` listens on
+  bool merge = false;                    ///< of all of them one map
+  bool once = false;                     ///< until every port has brought a whole map
 };
 
 }  // namespace sf::apps

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "apps/commands.h"
+#include "apps/plot_maps.h"
 #include "apps/plot_readings.h"
 #include "apps/progress.h"
 #include "base/error.h"
@@ -97,6 +98,9 @@ int plot(const Options& options) {
   viz::draw_trajectories(world, tracks_of(recording, world), trajectories);
   std::fprintf(stderr, "sensorfarm: wrote %s\n", trajectories.c_str());
   for (const std::string& file : draw_readings(recording, folder.string()))
+    std::fprintf(stderr, "sensorfarm: wrote %s\n", file.c_str());
+
+  for (const std::string& file : draw_maps(recording, world, folder.string()))
     std::fprintf(stderr, "sensorfarm: wrote %s\n", file.c_str());
 
   gpu::Device device(options.device);

@@ -68,7 +68,7 @@ std::span<const base::ReadingBlock> NoReturn::apply(std::span<const base::Readin
 
 Post::Post(const world::World& world, const sensors::Roster& roster, const Options& options)
     : world_(world), roster_(roster), options_(options) {
-  payload_.reserve(netio::kMaxDatagram);
+  payload_.reserve(netio::kMaxPlain);
   packet_.reserve(netio::kMaxDatagram);
 }
 

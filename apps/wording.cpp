@@ -68,6 +68,20 @@ std::optional<std::array<double, 4>> read_line(const std::string& text) {
   return v;
 }
 
+std::vector<std::uint16_t> read_ports(const std::string& text) {
+  constexpr std::uint64_t kMostPorts = 1024;
+  const std::size_t dash = text.find('-');
+  const std::string first = text.substr(0, dash);
+  const std::string last = dash == std::string::npos ? first : text.substr(dash + 1);
+  if (!refuse_whole(first, 1, 65535).empty() || !refuse_whole(last, 1, 65535).empty()) return {};
+  const std::uint64_t a = std::stoull(first);
+  const std::uint64_t b = std::stoull(last);
+  if (b < a || b - a >= kMostPorts) return {};
+  std::vector<std::uint16_t> ports;
+  for (std::uint64_t port = a; port <= b; ++port) ports.push_back(static_cast<std::uint16_t>(port));
+  return ports;
+}
+
 std::string suggest_option(const std::string& word, const std::vector<std::string>& names) {
   if (word.compare(0, 2, "--") != 0) return "";
   const std::string bare = word.substr(2);

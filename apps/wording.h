@@ -31,6 +31,9 @@ std::optional<base::Pose> read_pose(const std::string& text);
 /// "X0,Y0,X1,Y1" [m], each within 1e7 and the two points distinct; nothing where it is none.
 std::optional<std::array<double, 4>> read_line(const std::string& text);
 
+/// "52000" or "52000-52016" (both ends included, at most 1024) as ports from 1 on; empty where it is neither.
+std::vector<std::uint16_t> read_ports(const std::string& text);
+
 /// What the unexpected argument `word` may have been meant to be: `; did you mean '--x'?` or nothing.
 /// @param names of the subcommand's options, without dashes.
 std::string suggest_option(const std::string& word, const std::vector<std::string>& names);

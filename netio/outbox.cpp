@@ -25,12 +25,12 @@ Outbox::Outbox(Socket socket, const OutboxOptions& options)
     : options_(options), socket_(std::move(socket)), storage_(std::make_unique<Storage>()) {
   SF_CHECK(options.capacity >= 1, "an outbox that holds nothing");
   Storage& s = *storage_;
-  s.slots.resize(options.capacity * kMaxDatagram);
+  s.slots.resize(options.capacity * kMaxPlain);
   s.destinations.resize(options.capacity);
   s.vectors.resize(options.capacity);
   s.messages.resize(options.capacity);
   for (std::size_t i = 0; i < options.capacity; ++i) {
-    s.vectors[i].iov_base = s.slots.data() + i * kMaxDatagram;
+    s.vectors[i].iov_base = s.slots.data() + i * kMaxPlain;
     s.messages[i].msg_hdr.msg_name = &s.destinations[i];
     s.messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);
     s.messages[i].msg_hdr.msg_iov = &s.vectors[i];
@@ -42,7 +42,7 @@ Outbox::~Outbox() = default;
 Outbox::Outbox(Outbox&&) noexcept = default;
 
 void Outbox::queue(const Endpoint& to, std::span<const std::uint8_t> bytes) {
-  SF_CHECK(bytes.size() <= kMaxDatagram, std::to_string(bytes.size()) + " bytes in one datagram");
+  SF_CHECK(bytes.size() <= kMaxPlain, std::to_string(bytes.size()) + " bytes in one datagram");
   Storage& s = *storage_;
   if (s.waiting == options_.capacity) flush();
   const std::size_t i = s.waiting++;

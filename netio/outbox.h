@@ -42,7 +42,7 @@ class Outbox {
   ~Outbox();
   Outbox(Outbox&&) noexcept;
 
-  /// Keeps a copy of at most kMaxDatagram bytes for the next flush.
+  /// Keeps a copy of at most kMaxPlain bytes for the next flush.
   void queue(const Endpoint& to, std::span<const std::uint8_t> bytes);
 
   /// Sends all that is queued, in order.

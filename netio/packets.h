@@ -21,6 +21,7 @@ inline constexpr std::array<std::uint8_t, 4> kMagic = {'S', 'F', 'P', 'K'};
 inline constexpr std::uint8_t kVersion = 1;
 inline constexpr std::size_t kHeaderBytes = 24;
 inline constexpr std::size_t kMaxDatagram = 1400;    ///< [byte] no packet of ours is longer, so none is fragmented
+inline constexpr std::size_t kMaxPlain = 2046;       ///< [byte] but for the thesis' halves of a map
 inline constexpr std::uint32_t kMaxId = 0xFFFFu;     ///< of a robot, and of a sensor
 inline constexpr std::uint16_t kEveryone = 0xFFFFu;  ///< START: every robot, and not the one with this id
 inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;  ///< V2V: follows nobody, heads for no checkpoint

@@ -1,0 +1,205 @@
+// `map`: whoever is on the network draws the maps that robots make (the thesis' ASCII and graphical displays).
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "apps/commands.h"
+#include "apps/stop.h"
+#include "maps/assembler.h"
+#include "maps/merge.h"
+#include "maps/text.h"
+#include "netio/packets.h"
+#include "netio/socket.h"
+#include "sensors/occupancy.h"
+#include "viz/map_figure.h"
+
+namespace sf::apps {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kLook = std::chrono::milliseconds(10);  ///< how often ports are looked at
+constexpr std::size_t kReceiveBuffer = 1u << 22;       ///< [byte] asked of the kernel: large maps come in bursts
+
+/// One port: a robot's map.
+struct Source {
+  std::uint16_t port = 0;
+  netio::Socket socket;
+  maps::Assembler assembler;
+  std::uint16_t robot = 0;
+  std::uint64_t used = 0;      ///< datagrams
+  std::uint64_t left_out = 0;  ///< late, twice, faulty, or of something else
+};
+
+std::string name_of(const Source& source, sensors::Wire wire) {
+  return wire == sensors::Wire::farm ? "robot " + std::to_string(source.robot) : "port " + std::to_string(source.port);
+}
+
+maps::Taken take(Source& source, sensors::Wire wire, std::span<const std::uint8_t> bytes) {
+  if (wire == sensors::Wire::thesis) return source.assembler.take_plain(bytes);
+  netio::Packet packet;
+  if (netio::decode(bytes, packet) != netio::Reason::accepted) return maps::Taken::faulty;
+  const auto* reading = std::get_if<netio::Reading>(&packet.body);
+  if (reading == nullptr || static_cast<std::uint8_t>(packet.header.type) != sensors::kOccupancy)
+    return maps::Taken::faulty;
+  source.robot = packet.header.robot;
+  return source.assembler.take(packet.header.sequence, reading->payload);
+}
+
+/// The ports' maps as they come in.
+class Display {
+ public:
+  explicit Display(const Options& options) : options_(options), batch_(64), on_terminal_(isatty(STDOUT_FILENO) != 0) {
+    for (const std::uint16_t port : options.map_ports)
+      sources_.push_back(
+          {port, netio::open_udp({netio::resolve(options.bind), port}, {.receive = kReceiveBuffer}), {}, 0, 0, 0});
+  }
+
+  /// Takes what waits. @return true when anything did.
+  bool drain();
+  bool all_whole() const;
+  bool any() const;
+  void redraw();
+  void print() const;
+  void save(const std::string& file) const;
+  void tell() const;
+
+ private:
+  std::vector<maps::Grid> pictures() const;
+
+  const Options& options_;
+  netio::ReceiveBatch batch_;
+  std::vector<Source> sources_;
+  bool on_terminal_;
+  bool changed_ = false;
+};
+
+bool Display::drain() {
+  bool came = false;
+  for (Source& source : sources_)
+    for (std::size_t n = batch_.fill(source.socket); n > 0; n = batch_.fill(source.socket)) {
+      came = true;
+      for (std::size_t i = 0; i < n; ++i) {
+        const maps::Taken taken = take(source, options_.wire, batch_.bytes(i));
+        const bool used = taken == maps::Taken::part || taken == maps::Taken::whole;
+        ++(used ? source.used : source.left_out);
+        changed_ = changed_ || taken == maps::Taken::whole;
+      }
+      if (stop_requested()) return came;
+    }
+  return came;
+}
+
+bool Display::all_whole() const {
+  for (const Source& source : sources_)
+    if (source.assembler.whole_maps() == 0) return false;
+  return true;
+}
+
+bool Display::any() const {
+  for (const Source& source : sources_)
+    if (source.assembler.map() != nullptr) return true;
+  return false;
+}
+
+/// One map per port that has one, or all of them as one where they go together: what strangers send must not end this.
+std::vector<maps::Grid> Display::pictures() const {
+  std::vector<const maps::Grid*> grids;
+  for (const Source& source : sources_)
+    if (source.assembler.map() != nullptr) grids.push_back(source.assembler.map());
+  std::vector<maps::Grid> out;
+  const bool merged = options_.merge && grids.size() > 1 && maps::refuse_merge(grids).empty();
+  if (merged)
+    out.push_back(maps::merge(grids));
+  else
+    for (const maps::Grid* grid : grids) out.push_back(*grid);
+  return out;
+}
+
+void Display::redraw() {
+  if (!on_terminal_ || !changed_) return;
+  changed_ = false;
+  winsize size{};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) size = {24, 80, 0, 0};
+  const std::vector<maps::Grid> all = pictures();
+  const int down = std::max(1, (size.ws_row - 1) / static_cast<int>(all.size()));
+  std::string text = "\x1b[H\x1b[2J";  // home, and nothing left of the last one
+  for (const maps::Grid& grid : all) text += maps::text_within(grid, size.ws_col, down);
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+void Display::print() const {
+  if (on_terminal_) return;
+  for (const maps::Grid& grid : pictures()) std::fputs(maps::text_of(grid).c_str(), stdout);
+}
+
+void Display::save(const std::string& file) const {
+  const std::vector<maps::Grid> all = pictures();
+  viz::MapFigure figure{options_.merge && sources_.size() > 1 ? "Merged occupancy map" : "Occupancy map", "", {}};
+  if (all.size() == 1) {
+    for (const Source& source : sources_)
+      if (source.assembler.map() != nullptr)
+        figure.subtitle += (figure.subtitle.empty() ? "" : ", ") + name_of(source, options_.wire);
+    return viz::draw_map(all[0], figure, file);
+  }
+  // One picture a port: map.png becomes map_52000.png and so on.
+  const std::size_t dot = file.rfind('.') > file.rfind('/') + 1 ? file.rfind('.') : std::string::npos;
+  std::size_t i = 0;
+  for (const Source& source : sources_) {
+    if (source.assembler.map() == nullptr) continue;
+    figure.subtitle = name_of(source, options_.wire);
+    const std::string own = file.substr(0, dot) + "_" + std::to_string(source.port);
+    viz::draw_map(all[i++], figure, dot == std::string::npos ? own : own + file.substr(dot));
+  }
+}
+
+void Display::tell() const {
+  for (const Source& source : sources_)
+    std::fprintf(stderr, "sensorfarm: port %u: %llu whole maps, %llu torn, %llu datagrams used and %llu left out%s\n",
+                 unsigned{source.port}, static_cast<unsigned long long>(source.assembler.whole_maps()),
+                 static_cast<unsigned long long>(source.assembler.torn_maps()),
+                 static_cast<unsigned long long>(source.used), static_cast<unsigned long long>(source.left_out),
+                 source.assembler.map() != nullptr && source.assembler.true_poses() ? ", made from true poses" : "");
+}
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+}  // namespace
+
+int map(const Options& options) {
+  Display display(options);
+  catch_stop_signals();
+  std::fprintf(stderr, "sensorfarm: listening for maps on %zu ports of %s\n", options.map_ports.size(),
+               options.bind.c_str());
+  const auto start = Clock::now();
+  auto last = start;
+  bool begun = false;
+  while (!stop_requested()) {
+    if (display.drain()) {
+      last = Clock::now();
+      begun = true;
+    } else {
+      std::this_thread::sleep_for(kLook);
+    }
+    display.redraw();
+    if (options.once && display.all_whole()) break;
+    if (options.duration > 0.0 && seconds_since(start) >= options.duration) break;
+    if (begun && seconds_since(last) >= options.silence) break;
+  }
+  display.print();
+  display.tell();
+  if (!display.any()) return 1;
+  if (!options.out.empty()) {
+    display.save(options.out);
+    std::fprintf(stderr, "sensorfarm: wrote %s\n", options.out.c_str());
+  }
+  return 0;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,201 @@
+// Maps over a network that loses, repeats and reorders, from senders that start again; and any bytes at all.
+
+#include "maps/assembler.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/sensors/chance.h"
+
+namespace sf::maps {
+namespace {
+
+GridPlan plan() { return {-1.8, 1.8, 0.03, 30, 30}; }
+
+/// A map whose words tell the map and the word.
+Grid numbered(std::uint32_t map, const GridPlan& p = plan()) {
+  Grid grid(p);
+  for (std::uint32_t i = 0; i < grid.words.size(); ++i) grid.words[i] = (map * 2654435761u + i) & 0x55555555u;
+  return grid;
+}
+
+std::vector<base::Bytes> parts_of(const Grid& grid, std::uint32_t flags = 0) {
+  std::vector<base::Bytes> parts(maps::parts_of(grid.plan));
+  for (std::uint32_t p = 0; p < parts.size(); ++p)
+    put_part(
+        grid.plan, p, flags, [&](std::uint32_t i) { return grid.words[i]; }, parts[p]);
+  return parts;
+}
+
+std::vector<base::Bytes> plain_parts(const Grid& grid) {
+  std::vector<base::Bytes> parts(2);
+  const std::uint32_t half = plain_half(words(grid.plan));
+  parts[0] = {static_cast<std::uint8_t>(grid.plan.word_rows), static_cast<std::uint8_t>(grid.plan.word_columns)};
+  for (std::uint32_t i = 0; i < grid.words.size(); ++i) base::ByteWriter(parts[i < half ? 0 : 1]).put(grid.words[i]);
+  return parts;
+}
+
+TEST(MapPackets, EveryByteOfAPart) {
+  Grid grid(GridPlan{1.0, -2.0, 0.5, 2, 1});
+  grid.words = {0x00000001u, 0x8A000000u};
+  const base::Bytes bytes = parts_of(grid, kTruePoses)[0];
+  const base::Bytes expected{0,    0,    0, 0, 0, 0, 0xF0, 0x3F, 0, 0, 0, 0, 0, 0, 0, 0xC0, 0, 0, 0, 0, 0, 0,
+                             0xE0, 0x3F, 0, 0, 1, 0, 2,    0,    1, 0, 1, 0, 2, 0, 1, 0,    0, 0, 0, 0, 0, 0x8A};
+  EXPECT_EQ(bytes, expected);
+}
+
+TEST(MapPackets, PartsFillADatagram) {
+  const auto parts = parts_of(numbered(0));
+  ASSERT_EQ(parts.size(), 3u) << "900 words of 335";
+  EXPECT_EQ(parts[0].size(), 1376u) << "1400 with the header";
+  EXPECT_EQ(parts[2].size(), 36u + 4 * 230);
+  EXPECT_EQ(plain_parts(numbered(0))[0].size(), 1802u) << "two of about 1.8 kB";
+  EXPECT_EQ(plain_parts(numbered(0))[1].size(), 1800u);
+}
+
+TEST(MapPackets, WhatNoMapSaysIsRefused) {
+  const base::Bytes good = parts_of(numbered(3))[2];
+  MapPart part;
+  ASSERT_EQ(read_part(good, part), PartFault::none);
+  for (std::size_t n = 0; n < good.size(); ++n)
+    EXPECT_EQ(read_part(std::span(good).first(n), part), PartFault::too_short) << n;
+  base::Bytes longer = good;
+  longer.push_back(0);
+  EXPECT_EQ(read_part(longer, part), PartFault::too_long);
+  const auto patched = [&](std::size_t at, auto value) {
+    base::Bytes bytes = good;
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+    return read_part(bytes, part);
+  };
+  EXPECT_EQ(patched(0, std::nan("")), PartFault::out_of_range) << "left";
+  EXPECT_EQ(patched(8, 1.1e7), PartFault::out_of_range) << "top";
+  EXPECT_EQ(patched(16, 0.0), PartFault::out_of_range) << "cell";
+  EXPECT_EQ(patched(24, std::uint16_t{3}), PartFault::out_of_range) << "a part that is not there";
+  EXPECT_EQ(patched(26, std::uint16_t{4}), PartFault::out_of_range) << "parts";
+  EXPECT_EQ(patched(28, std::uint16_t{0}), PartFault::out_of_range) << "no columns";
+  EXPECT_EQ(patched(30, std::uint16_t{5000}), PartFault::out_of_range) << "rows";
+  EXPECT_EQ(patched(32, std::uint16_t{2}), PartFault::out_of_range) << "flags that nobody has defined";
+  EXPECT_EQ(patched(36, std::uint32_t{3}), PartFault::out_of_range) << "a state that no cell has";
+}
+
+TEST(Assembler, PartsInAnyOrderMakeTheMap) {
+  Assembler assembler;
+  EXPECT_EQ(assembler.map(), nullptr);
+  const Grid grid = numbered(1);
+  const auto parts = parts_of(grid, kTruePoses);
+  EXPECT_EQ(assembler.take(7, parts[2]), Taken::part);
+  EXPECT_EQ(assembler.take(7, parts[0]), Taken::part);
+  EXPECT_EQ(assembler.take(7, parts[0]), Taken::duplicate);
+  EXPECT_EQ(assembler.take(7, parts[1]), Taken::whole);
+  EXPECT_EQ(assembler.take(7, parts[1]), Taken::duplicate);
+  EXPECT_EQ(assembler.map()->words, grid.words);
+  EXPECT_EQ(assembler.map()->plan, grid.plan);
+  EXPECT_TRUE(assembler.true_poses());
+  EXPECT_EQ(assembler.whole_maps(), 1u);
+  EXPECT_EQ(assembler.torn_maps(), 0u);
+}
+
+TEST(Assembler, WhatWasLostIsAsBefore) {
+  Assembler assembler;
+  for (const base::Bytes& part : parts_of(numbered(1))) assembler.take(1, part);
+  const auto next = parts_of(numbered(2));
+  assembler.take(2, next[0]);
+  assembler.take(2, next[2]);
+  EXPECT_EQ(assembler.take(3, parts_of(numbered(3))[0]), Taken::part) << "a newer map begins";
+  EXPECT_EQ(assembler.torn_maps(), 1u);
+  EXPECT_EQ(assembler.whole_maps(), 1u);
+  EXPECT_EQ(assembler.map()->words[0], numbered(3).words[0]);
+  EXPECT_EQ(assembler.map()->words[400], numbered(1).words[400]) << "its newest part";
+  EXPECT_EQ(assembler.map()->words[899], numbered(2).words[899]);
+}
+
+TEST(Assembler, LatePartsAreLeftOut) {
+  Assembler assembler;
+  const auto old = parts_of(numbered(1));
+  assembler.take(1, old[0]);
+  for (const base::Bytes& part : parts_of(numbered(2))) assembler.take(2, part);
+  EXPECT_EQ(assembler.take(1, old[1]), Taken::late);
+  EXPECT_EQ(assembler.take(1, old[2]), Taken::late) << "another of the same old map is no sign of a restart";
+  EXPECT_EQ(assembler.map()->words, numbered(2).words);
+}
+
+TEST(Assembler, ASenderThatStartsAgainIsBelieved) {
+  Assembler assembler;
+  for (const base::Bytes& part : parts_of(numbered(1))) assembler.take(1000, part);
+  const auto again = [&](std::uint32_t sequence) {
+    Taken last = Taken::faulty;
+    for (const base::Bytes& part : parts_of(numbered(50 + sequence))) last = assembler.take(sequence, part);
+    return last;
+  };
+  EXPECT_EQ(again(0), Taken::late) << "it could be a late one";
+  EXPECT_EQ(again(1), Taken::whole);
+  EXPECT_EQ(again(2), Taken::whole);
+  EXPECT_EQ(assembler.map()->words, numbered(52).words);
+}
+
+TEST(Assembler, CountersWrap) {
+  Assembler assembler;
+  for (const base::Bytes& part : parts_of(numbered(1))) assembler.take(0xFFFFFFFFu, part);
+  Taken last = Taken::faulty;
+  for (const base::Bytes& part : parts_of(numbered(2))) last = assembler.take(0, part);
+  EXPECT_EQ(last, Taken::whole);
+}
+
+TEST(Assembler, AMapThatChangesItsPlanBeginsAnew) {
+  Assembler assembler;
+  for (const base::Bytes& part : parts_of(numbered(1))) assembler.take(1, part);
+  GridPlan other = plan();
+  other.word_rows = 2;
+  EXPECT_EQ(assembler.take(1, parts_of(numbered(2, other))[0]), Taken::contradicts);
+  EXPECT_EQ(assembler.take(2, parts_of(numbered(2, other))[0]), Taken::whole);
+  EXPECT_EQ(assembler.map()->words.size(), 60u);
+}
+
+TEST(Assembler, TheThesisFormInTwoDatagrams) {
+  Assembler assembler;
+  const Grid grid = numbered(4);
+  const auto parts = plain_parts(grid);
+  EXPECT_EQ(assembler.take_plain(parts[1]), Taken::orphan) << "whose half is it?";
+  EXPECT_EQ(assembler.take_plain(parts[0]), Taken::part);
+  EXPECT_EQ(assembler.take_plain(parts[1]), Taken::whole);
+  EXPECT_EQ(assembler.map()->words, grid.words);
+  EXPECT_EQ(assembler.take_plain(parts[1]), Taken::duplicate);
+  GridPlan odd = plan();
+  odd.word_columns = 3;
+  odd.word_rows = 5;
+  for (const base::Bytes& part : plain_parts(numbered(5, odd))) assembler.take_plain(part);
+  EXPECT_EQ(assembler.map()->words, numbered(5, odd).words) << "8 words and 7";
+  GridPlan one = plan();
+  one.word_columns = one.word_rows = 1;
+  EXPECT_EQ(assembler.take_plain(plain_parts(numbered(6, one))[0]), Taken::whole) << "one word is all in the first";
+}
+
+TEST(Assembler, AnyBytesAndAnyNetwork) {
+  // Parts of a few maps, cut, flipped, repeated and shuffled: nothing breaks, and what is shown was sent by somebody.
+  trial::Chance chance(9);
+  Assembler assembler, plain;
+  std::uint64_t used = 0;
+  for (int k = 0; k < 20'000; ++k) {
+    const std::uint32_t map = chance.below(8);
+    const auto parts = chance.below(2) == 0 ? parts_of(numbered(map)) : plain_parts(numbered(map));
+    base::Bytes bytes = parts[chance.below(static_cast<std::uint32_t>(parts.size()))];
+    const std::uint32_t harm = chance.below(4);
+    if (harm == 0) bytes.resize(chance.below(static_cast<std::uint32_t>(bytes.size())));
+    if (harm == 1)
+      for (int flips = 0; flips < 3; ++flips)
+        bytes[chance.below(40)] ^= static_cast<std::uint8_t>(1u << chance.below(8));
+    const Taken taken = assembler.take(chance.below(6), bytes);
+    used += taken == Taken::part || taken == Taken::whole;
+    plain.take_plain(bytes);
+    for (const Assembler* a : {&assembler, &plain}) {
+      if (a->map() == nullptr) continue;
+      ASSERT_TRUE(a == &plain || is_sound(a->map()->plan));
+      ASSERT_LE(a->map()->words.size(), std::size_t{kMostWords});
+    }
+  }
+  EXPECT_GT(used, 500u);
+}
+
+}  // namespace
+}  // namespace sf::maps

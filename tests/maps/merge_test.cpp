@@ -1,0 +1,113 @@
+// Maps as one, and as text.
+
+#include "maps/merge.h"
+
+#include <gtest/gtest.h>
+
+#include "maps/text.h"
+#include "tests/sensors/chance.h"
+
+namespace sf::maps {
+namespace {
+
+Grid filled(const GridPlan& plan, std::uint64_t seed) {
+  trial::Chance chance(seed);
+  Grid grid(plan);
+  for (std::int64_t row = 0; row < rows(plan); ++row)
+    for (std::int64_t column = 0; column < columns(plan); ++column)
+      grid.set({column, row}, static_cast<Cell>(chance.below(3)));
+  return grid;
+}
+
+Cell at_point(const Grid& grid, base::Vec2 p) {
+  const CellAt at = cell_at(grid.plan, p);
+  return contains(grid.plan, at) ? grid.at(at) : Cell::unexplored;
+}
+
+TEST(Merge, OneMapStaysWhatItIs) {
+  const Grid grid = filled({-1.2, 3.4, 0.5, 3, 2}, 1);
+  const Grid* const one[] = {&grid};
+  EXPECT_EQ(merge(one).plan, grid.plan);
+  EXPECT_EQ(merge(one).words, grid.words);
+}
+
+TEST(Merge, EveryCellIsThatOfItsMaps) {
+  // Shifts by any number of whole cells, so that words do not fall on words.
+  trial::Chance chance(2);
+  for (std::uint64_t k = 0; k < 40; ++k) {
+    const auto shifted = [&](std::uint64_t seed) {
+      const double dx = 0.5 * (static_cast<double>(chance.below(60)) - 30.0);
+      const double dy = 0.5 * (static_cast<double>(chance.below(60)) - 30.0);
+      return filled({dx, dy, 0.5, 1 + chance.below(5), 1 + chance.below(5)}, seed);
+    };
+    const Grid a = shifted(3 * k + 10), b = shifted(3 * k + 11), c = shifted(3 * k + 12);
+    const Grid* const all[] = {&a, &b, &c};
+    const Grid careful = merge(all, Precedence::occupied);
+    const Grid newest = merge(all, Precedence::newest);
+    Census seen;
+    for (std::int64_t row = 0; row < rows(careful.plan); ++row)
+      for (std::int64_t column = 0; column < columns(careful.plan); ++column) {
+        const base::Vec2 p = middle(careful.plan, {column, row});
+        bool occupied = false;
+        Cell last = Cell::unexplored;
+        for (const Grid* grid : all) {
+          const Cell cell = at_point(*grid, p);
+          occupied = occupied || cell == Cell::occupied;
+          if (cell != Cell::unexplored) last = cell;
+        }
+        ASSERT_EQ(newest.at({column, row}), last);
+        ASSERT_EQ(careful.at({column, row}), occupied ? Cell::occupied : last);
+        if (last != Cell::unexplored) ++seen.free;
+      }
+    const Census own = count(careful);
+    EXPECT_EQ(own.free + own.occupied, seen.free);
+    for (const Grid* grid : all) {
+      EXPECT_LE(careful.plan.left, grid->plan.left);
+      EXPECT_GE(careful.plan.top, grid->plan.top);
+    }
+  }
+}
+
+TEST(Merge, WhatCannotBeOneIsRefused) {
+  const Grid a(GridPlan{0, 0, 0.03, 2, 2}), coarse(GridPlan{0, 0, 0.05, 2, 2}), far(GridPlan{1e5, 0, 0.03, 2, 2});
+  const Grid* const cells[] = {&a, &coarse};
+  EXPECT_NE(refuse_merge(cells).find("cannot be merged"), std::string::npos);
+  const Grid* const places[] = {&a, &far};
+  EXPECT_NE(refuse_merge(places).find("far apart"), std::string::npos);
+  const Grid* const fine[] = {&a, &a};
+  EXPECT_EQ(refuse_merge(fine), "");
+  // The largest coordinates that a sound plan may have.
+  const Grid one(GridPlan{-1e7, 1e7, 1e-4, 1, 1}), other(GridPlan{1e7, -1e7, 1e-4, 1, 1});
+  const Grid* const ends[] = {&one, &other};
+  EXPECT_NE(refuse_merge(ends), "");
+}
+
+TEST(MapText, AsTheThesisPrintsIt) {
+  Grid grid(GridPlan{0, 0, 1, 1, 1});
+  grid.set({0, 0}, Cell::occupied);
+  grid.set({3, 0}, Cell::free);
+  grid.set({1, 3}, Cell::free);
+  EXPECT_EQ(text_of(grid), "100 \n0000\n0000\n0 00\n");
+  EXPECT_EQ(grid.words[0], 1u | 2u << 6 | 2u << 26) << "figure 42: rows of four, two bits each";
+}
+
+TEST(MapText, ATerminalsSizeIsKept) {
+  const Grid grid = filled({0, 0, 1, 5, 3}, 5);  // 20 x 12
+  EXPECT_EQ(text_within(grid, 20, 12), text_of(grid));
+  const std::string half = text_within(grid, 10, 99);
+  EXPECT_EQ(half.size(), 6u * 11u);
+  for (std::int64_t row = 0; row < 6; ++row)
+    for (std::int64_t column = 0; column < 10; ++column) {
+      bool occupied = false, free = false;
+      for (int k = 0; k < 4; ++k) {
+        const Cell cell = grid.at({2 * column + k % 2, 2 * row + k / 2});
+        occupied = occupied || cell == Cell::occupied;
+        free = free || cell == Cell::free;
+      }
+      EXPECT_EQ(half[static_cast<std::size_t>(11 * row + column)], occupied ? '1' : free ? ' ' : '0');
+    }
+  EXPECT_EQ(text_within(grid, 3, 1).size(), 3u) << "12 rows in one: squares of 12 cells, two across, and a new line";
+}
+
+}  // namespace
+}  // namespace sf::maps

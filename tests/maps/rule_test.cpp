@@ -1,0 +1,183 @@
+// The rule by which scans are entered, against cells worked out by hand and against a second way of telling a line.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "maps/plain_mapper.h"
+#include "maps/text.h"
+#include "tests/sensors/chance.h"
+
+namespace sf::maps {
+namespace {
+
+/// Cells of 1 m, 12 x 12, the first at the origin.
+GridPlan plan() { return {0.0, 12.0, 1.0, 3, 3}; }
+
+/// One beam along +x of the sensor's frame.
+Grid one_beam(const base::Pose& X_WS, double range, double range_max, double range_min = 0.0) {
+  Grid grid(plan());
+  const std::vector<base::Vec2> beams = beam_directions(0.0, 1);
+  const std::vector<double> ranges{range};
+  add_scan(grid, {X_WS, ranges, beams, range_min, range_max});
+  return grid;
+}
+
+TEST(MapRule, ABeamThatMeetsSomething) {
+  const Grid grid = one_beam({2.5, 9.5, 0, 0}, 3.0, 8.0);
+  EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00   1000000");
+  EXPECT_EQ(count(grid).occupied, 1u);
+  EXPECT_EQ(count(grid).free, 3u);
+}
+
+TEST(MapRule, ABeamThatMeetsNothingFreesItsEnd) {
+  for (const double range : {3.0, 100.0, std::numeric_limits<double>::infinity()})
+    EXPECT_EQ(text_of(one_beam({2.5, 9.5, 0, 0}, range, 3.0)).substr(2 * 13, 12), "00    000000") << range;
+}
+
+TEST(MapRule, WhatSaysNothing) {
+  EXPECT_EQ(count(one_beam({2.5, 9.5, 0, 0}, std::nan(""), 3.0)).unexplored, 144u);
+  EXPECT_EQ(count(one_beam({2.5, 9.5, 0, 0}, -0.1, 3.0)).unexplored, 144u);
+  EXPECT_EQ(count(one_beam({2.5, 9.5, 0, 0}, 0.5, 3.0, 0.5)).unexplored, 144u) << "that, or anything nearer";
+  EXPECT_EQ(count(one_beam({2.5, 9.5, 0, 0}, 0.0, 3.0, 0.5)).unexplored, 144u);
+  EXPECT_EQ(count(one_beam({2.5, 9.5, 0, 0}, 0.51, 3.0, 0.5)).occupied, 1u);
+}
+
+TEST(MapRule, ZeroRangeOccupiesTheSensorsCell) {
+  const Grid grid = one_beam({2.5, 9.5, 0, 0}, 0.0, 3.0);
+  EXPECT_EQ(grid.at({2, 2}), Cell::occupied);
+  EXPECT_EQ(count(grid).unexplored, 143u);
+}
+
+TEST(MapRule, HalvesGoAwayFromTheSensor) {
+  // Two cells along, one to the side: the middle step lies on the border.
+  const double yaw = std::atan2(1.0, 2.0);
+  EXPECT_EQ(one_beam({2.5, 5.5, 0, yaw}, std::sqrt(5.0), 9.0).at({3, 5}), Cell::free) << "up, away from row 6";
+  EXPECT_EQ(one_beam({2.5, 5.5, 0, -yaw}, std::sqrt(5.0), 9.0).at({3, 7}), Cell::free) << "down";
+  EXPECT_EQ(one_beam({5.5, 5.5, 0, M_PI - yaw}, std::sqrt(5.0), 9.0).at({4, 5}), Cell::free) << "back, up";
+  EXPECT_EQ(one_beam({5.5, 5.5, 0, yaw + M_PI}, std::sqrt(5.0), 9.0).at({4, 7}), Cell::free) << "back, down";
+}
+
+TEST(MapRule, WithinAScanOccupiedBeatsFree) {
+  // The first beam's end lies on the second's line, and would be wiped out if they were set in turn.
+  Grid grid(plan());
+  const std::vector<base::Vec2> beams{{1, 0}, {1, 0}};
+  const std::vector<double> ranges{3.0, 5.0};
+  add_scan(grid, {{2.5, 9.5, 0, 0}, ranges, beams, 0.0, 8.0});
+  EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00   1 10000");
+}
+
+TEST(MapRule, ALaterScanIsRight) {
+  Grid grid = one_beam({2.5, 9.5, 0, 0}, 3.0, 8.0);
+  const std::vector<base::Vec2> beams{{1, 0}};
+  const std::vector<double> ranges{6.0};
+  add_scan(grid, {{2.5, 9.5, 0, 0}, ranges, beams, 0.0, 8.0});
+  EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00      1000");
+}
+
+TEST(MapRule, BesideTheMap) {
+  const Grid into = one_beam({-2.5, 9.5, 0, 0}, 4.0, 8.0);
+  EXPECT_EQ(text_of(into).substr(2 * 13, 12), " 10000000000") << "it comes from outside";
+  const Grid out = one_beam({9.5, 9.5, 0, 0}, 7.0, 8.0);
+  EXPECT_EQ(text_of(out).substr(2 * 13, 12), "000000000   ") << "its end is outside";
+  EXPECT_EQ(count(one_beam({-5.5, 9.5, 0, 0}, 4.0, 8.0)).unexplored, 144u);
+  for (const double far : {1e9, 1e300, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    EXPECT_EQ(count(one_beam({far, 0, 0, 0}, 4.0, 8.0)).unexplored, 144u) << far;
+    EXPECT_EQ(count(one_beam({0, 0, 0, far == 1e9 ? std::nan("") : 0.0}, 4.0, 8.0)).free, far == 1e9 ? 0u : 4u);
+  }
+}
+
+TEST(MapRule, FarFromTheOriginTheSameCells) {
+  // 2^17 m away, places in 1/64 m: sums are exact, so the map must not change at all.
+  trial::Chance chance(3);
+  const std::vector<base::Vec2> beams = beam_directions(M_PI, 91);
+  for (int k = 0; k < 50; ++k) {
+    const base::Pose X{chance.below(12 * 64) / 64.0, chance.below(12 * 64) / 64.0, 0, chance.between(-4, 4)};
+    std::vector<double> ranges;
+    for (int i = 0; i < 91; ++i) ranges.push_back(chance.below(6 * 64) / 64.0);
+    const double far = 131072.0;
+    Grid here(plan());
+    Grid there(GridPlan{far, 12.0 - far, 1.0, 3, 3});
+    add_scan(here, {X, ranges, beams, 0.0, 5.0});
+    add_scan(there, {{X.x + far, X.y - far, 0, X.yaw}, ranges, beams, 0.0, 5.0});
+    // An end within rounding of a border may fall to either side; none of these does.
+    EXPECT_EQ(here.words, there.words);
+  }
+}
+
+/// The cells of one line as the rule words it, without its arithmetic: nearest cell to the point at step i of n.
+TEST(MapRule, LinesAreAsWorded) {
+  trial::Chance chance(4);
+  for (int k = 0; k < 3000; ++k) {
+    const auto dc = static_cast<std::int32_t>(chance.below(41)) - 20;
+    const auto dr = static_cast<std::int32_t>(chance.below(41)) - 20;
+    GridPlan wide{0, 0, 1, 11, 11};
+    Grid grid(wide);
+    ScanEnds scan;
+    scan.sensor = {21, 21};
+    scan.box = cells_of(wide);
+    const std::uint32_t end[] = {pack_end(dc, dr, false)};
+    add_ends(grid, scan, end);
+    Grid expected(wide);
+    const bool flat = std::abs(dc) >= std::abs(dr);
+    const int n = std::max(std::abs(dc), std::abs(dr));
+    for (int i = 0; i <= n; ++i) {
+      const long double t = n > 0 ? static_cast<long double>(i) / n : 0.0L;
+      const auto aside = static_cast<std::int64_t>(std::round(t * (flat ? dr : dc)));  // halves away from zero
+      const std::int64_t along = i * ((flat ? dc : dr) < 0 ? -1 : 1);
+      expected.set({21 + (flat ? along : aside), 21 + (flat ? aside : along)}, Cell::free);
+    }
+    ASSERT_EQ(grid.words, expected.words) << dc << " " << dr;
+  }
+}
+
+TEST(MapRule, EndsArePackedWithTheirSigns) {
+  for (const int c : {-1023, -1, 0, 1, 1023})
+    for (const int r : {-1023, -7, 0, 7, 1023})
+      for (const bool hit : {false, true}) {
+        const std::uint32_t end = pack_end(c, r, hit);
+        EXPECT_EQ(columns_of(end), c);
+        EXPECT_EQ(rows_of(end), r);
+        EXPECT_EQ(hit_of(end), hit);
+      }
+}
+
+TEST(MapRule, BearingsEndExactlyAtTheFieldOfView) {
+  const auto beams = beam_directions(M_PI, 5);
+  EXPECT_EQ(beams[0].y, -beams[4].y) << "mirrored";
+  EXPECT_EQ(beams[2].x, 1.0) << "the middle one looks ahead";
+  EXPECT_EQ(beam_directions(M_PI, 1)[0].x, 1.0);
+}
+
+TEST(LogOdds, EachScanWeighsOnceAndStaysWithinLimits) {
+  OddsGrid grid(plan(), {85, 40, 200});
+  // Two beams through the same cells: still one miss each.
+  const std::vector<base::Vec2> beams{{1, 0}, {1, 0}};
+  const std::vector<double> ranges{3.0, 3.0};
+  const auto add = [&](double range) {
+    const std::vector<double> both{range, range};
+    add_scan(grid, {{2.5, 9.5, 0, 0}, both, beams, 0.0, 8.0});
+  };
+  const auto at = [&](std::int64_t column) {
+    const Grid shape(plan());
+    return grid.cells[16 * shape.word_of({column, 2}) + Grid::shift_of({column, 2}) / 2];
+  };
+  add(3.0);
+  EXPECT_EQ(at(5), 85);
+  EXPECT_EQ(at(4), -40);
+  EXPECT_EQ(at(6), 0);
+  for (int k = 0; k < 9; ++k) add(3.0);
+  EXPECT_EQ(at(5), 200);
+  EXPECT_EQ(at(4), -200);
+  EXPECT_EQ(states_of(grid).at({5, 2}), Cell::occupied);
+  add(6.0);
+  EXPECT_EQ(states_of(grid).at({5, 2}), Cell::occupied) << "one scan does not change its mind";
+  for (int k = 0; k < 5; ++k) add(6.0);
+  EXPECT_EQ(at(5), -40);
+  EXPECT_EQ(states_of(grid).at({5, 2}), Cell::free);
+  EXPECT_EQ(states_of(grid).at({9, 9}), Cell::unexplored);
+}
+
+}  // namespace
+}  // namespace sf::maps

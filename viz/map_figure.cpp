@@ -1,0 +1,174 @@
+#include "viz/map_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "maps/text.h"
+#include "viz/canvas.h"
+#include "viz/color.h"
+#include "viz/legend.h"
+#include "viz/ticks.h"
+
+namespace sf::viz {
+
+namespace {
+
+constexpr std::array<std::uint32_t, 4> kStates{0xFF474B50u, 0xFF1748D1u, 0xFFFFFFFFu, 0xFFFF00FFu};
+constexpr std::uint32_t kGrid = 0xFFA9AEB5u;
+constexpr std::uint32_t kFrame = 0xFF404040u;
+
+// [px]
+constexpr int kPitch = 5;  // a cell of 4 and a line of 1
+constexpr std::int64_t kMostWithGrid = 1600;
+constexpr double kLongest = 8000.0;
+constexpr double kLeft = 86.0;
+constexpr double kRight = 40.0;
+constexpr double kTop = 92.0;
+constexpr double kLabels = 70.0;  // below the map
+constexpr double kNarrowest = 640.0;
+
+/// Where the map lies in the picture.
+struct Layout {
+  double scale = kPitch;  ///< [px/cell]
+  bool grid = true;
+  Vec2 low;  ///< [px] upper left corner of the map
+  Vec2 high;
+  double width = 0.0;  ///< [px] of the picture
+  double height = 0.0;
+  std::vector<LegendPlace> legend;
+};
+
+Layout lay_out(const maps::GridPlan& plan, std::span<const LegendItem> legend) {
+  Layout l;
+  const std::int64_t longest = std::max(maps::columns(plan), maps::rows(plan));
+  l.grid = longest <= kMostWithGrid;
+  if (!l.grid) l.scale = std::min(static_cast<double>(kPitch), kLongest / static_cast<double>(longest));
+  const double line = l.grid ? 1.0 : 0.0;
+  const double wide = std::ceil(l.scale * static_cast<double>(maps::columns(plan))) + line;
+  const double high = std::ceil(l.scale * static_cast<double>(maps::rows(plan))) + line;
+  l.width = std::max(kNarrowest, kLeft + wide + kRight);
+  l.low = {std::floor(kLeft + 0.5 * (l.width - kLeft - kRight - wide)), kTop};
+  l.high = l.low + Vec2{wide, high};
+  l.legend = place_legend(legend, l.width - 2.0 * kRight);
+  l.height = l.high.y + kLabels + kLegendRow * (l.legend.back().row + 1) + 12.0;
+  return l;
+}
+
+std::vector<LegendItem> legend_of(const maps::Census& census, const MapFigure& figure) {
+  const auto all = static_cast<double>(census.unexplored + census.occupied + census.free);
+  const auto item = [&](std::uint32_t state, const char* name, std::uint64_t cells) {
+    return LegendItem{Sample::block, kStates[state],
+                      fmt::format("{} {:.1f} %", name, 100.0 * static_cast<double>(cells) / all), kFrame};
+  };
+  std::vector<LegendItem> items{item(SF_CELL_FREE, "free", census.free),
+                                item(SF_CELL_OCCUPIED, "occupied", census.occupied),
+                                item(SF_CELL_UNEXPLORED, "unexplored", census.unexplored)};
+  const std::size_t named = std::min<std::size_t>(figure.places.size(), 7);
+  for (std::size_t i = 0; i < named; ++i)
+    items.push_back({Sample::robot, row_color(i + 1, std::max<std::size_t>(named + 1, 2)), figure.places[i].name});
+  return items;
+}
+
+void draw_cells(Canvas& canvas, const maps::Grid& grid, const Layout& l) {
+  std::vector<std::uint32_t> pixels;
+  for (std::int64_t row = 0; row < maps::rows(grid.plan); ++row)
+    for (std::int64_t column = 0; column < maps::columns(grid.plan); ++column)
+      pixels.push_back(kStates[static_cast<std::size_t>(grid.at({column, row}))]);
+  const Vec2 line = l.grid ? Vec2{1.0, 1.0} : Vec2{};
+  canvas.image(l.low + line, l.high,
+               {static_cast<int>(maps::columns(grid.plan)), static_cast<int>(maps::rows(grid.plan)), pixels});
+  if (!l.grid) return;
+  std::vector<Line> lines;
+  for (std::int64_t i = 0; i <= maps::columns(grid.plan); ++i) {
+    const double x = l.low.x + kPitch * static_cast<double>(i) + 0.5;
+    lines.push_back({{x, l.low.y}, {x, l.high.y}});
+  }
+  for (std::int64_t i = 0; i <= maps::rows(grid.plan); ++i) {
+    const double y = l.low.y + kPitch * static_cast<double>(i) + 0.5;
+    lines.push_back({{l.low.x, y}, {l.high.x, y}});
+  }
+  // Squared off at the map's border, whatever ends lines have.
+  canvas.clip(
+      {static_cast<int>(l.low.x), static_cast<int>(l.low.y), static_cast<int>(l.high.x), static_cast<int>(l.high.y)});
+  canvas.lines(lines, 1.0, kGrid);
+  canvas.unclip();
+}
+
+/// [px] of a point of the world.
+Vec2 pixel(const maps::GridPlan& plan, const Layout& l, Vec2 p_W) {
+  const double scale = l.scale / plan.cell;
+  return l.low + Vec2{(p_W.x - plan.left) * scale, (plan.top - p_W.y) * scale};
+}
+
+void draw_axes(Canvas& canvas, const maps::GridPlan& plan, const Layout& l) {
+  TextStyle style = small_text();
+  style.across = Anchor::middle;
+  style.down = Anchor::start;
+  const double right = plan.left + plan.cell * static_cast<double>(maps::columns(plan));
+  const double bottom = plan.top - plan.cell * static_cast<double>(maps::rows(plan));
+  const double metre = l.scale / plan.cell;  // [px]
+  const Ticks xs = make_ticks(plan.left, right, 110.0 / metre);
+  for (const double x : xs.at) {
+    const double px = std::floor(pixel(plan, l, {x, 0.0}).x) + 0.5;
+    canvas.line({px, l.high.y}, {px, l.high.y + 6.0}, 1.0, kFrame);
+    canvas.text({px, l.high.y + 10.0}, tick_text(x, xs.decimals), style);
+  }
+  canvas.text({0.5 * (l.low.x + l.high.x), l.high.y + 36.0}, "x [m]", style);
+  style.across = Anchor::end;
+  style.down = Anchor::middle;
+  const Ticks ys = make_ticks(bottom, plan.top, 70.0 / metre);
+  for (const double y : ys.at) {
+    const double py = std::floor(pixel(plan, l, {0.0, y}).y) + 0.5;
+    canvas.line({l.low.x - 6.0, py}, {l.low.x, py}, 1.0, kFrame);
+    canvas.text({l.low.x - 10.0, py}, tick_text(y, ys.decimals), style);
+  }
+  style.across = Anchor::middle;
+  style.upwards = true;
+  canvas.text({l.low.x - 66.0, 0.5 * (l.low.y + l.high.y)}, "y [m]", style);
+}
+
+void draw_places(Canvas& canvas, const maps::GridPlan& plan, const Layout& l, const MapFigure& figure) {
+  canvas.clip(
+      {static_cast<int>(l.low.x), static_cast<int>(l.low.y), static_cast<int>(l.high.x), static_cast<int>(l.high.y)});
+  const std::size_t named = std::min<std::size_t>(figure.places.size(), 7);
+  for (std::size_t i = 0; i < figure.places.size(); ++i) {
+    const base::Pose& X = figure.places[i].X_WR;
+    const std::uint32_t color = row_color(1 + std::min(i, named - 1), std::max<std::size_t>(named + 1, 2));
+    const Vec2 p = pixel(plan, l, {X.x, X.y});
+    const Vec2 ahead{std::cos(X.yaw), -std::sin(X.yaw)};
+    canvas.disc(p, 9.0, with_opacity(color, 0.55));
+    canvas.ring(p, 9.0, 2.0, color);
+    canvas.line(p, p + 14.0 * ahead, 2.5, color);
+  }
+  canvas.unclip();
+}
+
+}  // namespace
+
+void draw_map(const maps::Grid& grid, const MapFigure& figure, const std::string& png_path) {
+  const maps::Census census = maps::count(grid);
+  const std::vector<LegendItem> legend = legend_of(census, figure);
+  const Layout l = lay_out(grid.plan, legend);
+  Canvas canvas(static_cast<int>(std::ceil(l.width)), static_cast<int>(std::ceil(l.height)), 0xFFFFFFFFu);
+  TextStyle title;
+  title.size = 26;
+  title.bold = true;
+  canvas.text({kRight, 30.0}, figure.title, title);
+  const double all = static_cast<double>(census.unexplored + census.occupied + census.free);
+  const double known = 100.0 * static_cast<double>(census.occupied + census.free) / all;
+  canvas.text({kRight, 64.0},
+              fmt::format("{}{}{} x {} cells of {:g} m, {:.1f} % explored", figure.subtitle,
+                          figure.subtitle.empty() ? "" : ": ", maps::columns(grid.plan), maps::rows(grid.plan),
+                          grid.plan.cell, known),
+              small_text());
+  draw_cells(canvas, grid, l);
+  draw_places(canvas, grid.plan, l, figure);
+  draw_axes(canvas, grid.plan, l);
+  draw_legend(canvas, {kRight, l.high.y + kLabels}, legend, l.legend);
+  canvas.save_png(png_path);
+}
+
+}  // namespace sf::viz
