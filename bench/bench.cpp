@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "bench/cone_contest.h"
 #include "bench/embree_caster.h"
 #include "bench/farm_caster.h"
 #include "bench/field_contest.h"
@@ -34,6 +35,7 @@ struct Session {
   std::map<std::string, Outcome> contests;
   std::vector<FieldOutcome> fields;
   std::vector<LaneOutcome> lanes;
+  std::vector<ConeOutcome> cones;
 };
 
 struct ScanCase {
@@ -134,6 +136,15 @@ void tell_lanes(benchmark::State& state, Session& session, const LaneCase& c) {
     state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
 }
 
+constexpr std::uint32_t kConeCases[] = {100, 1'000};
+constexpr std::size_t kConeTurns = 31;
+
+void tell_cones(benchmark::State& state, Session& session, std::uint32_t robots) {
+  for (auto _ : state) session.cones.push_back(compete_cones(session.device, make_cone_scene(robots), kConeTurns));
+  for (const ConeEntrant& e : session.cones.back().entrants)
+    state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
+}
+
 void tell_facts(benchmark::State& state, Session& session, const std::function<std::vector<Fact>()>& measure) {
   for (auto _ : state)
     for (const Fact& fact : measure()) {
@@ -167,6 +178,9 @@ void register_all(Session& session) {
     once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_field(s, session, c); }));
   for (const LaneCase& c : kLaneCases)
     once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_lanes(s, session, c); }));
+  for (const std::uint32_t robots : kConeCases)
+    once(benchmark::RegisterBenchmark(fmt::format("sonar/cave/{}", robots).c_str(),
+                                      [&session, robots](benchmark::State& s) { tell_cones(s, session, robots); }));
   once(benchmark::RegisterBenchmark("start",
                                     [&session](benchmark::State& s) { tell_facts(s, session, measure_start); }));
   once(benchmark::RegisterBenchmark("small_ticks", [&session](benchmark::State& s) {
@@ -193,7 +207,9 @@ int run(int argc, char** argv) {
   if (!folder.empty()) write_csv(session.book, folder);
   if (!folder.empty()) write_csv(session.fields, folder);
   if (!folder.empty()) write_lanes(session.lanes, folder);
-  fmt::print("{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes));
+  if (!folder.empty()) write_cones(session.cones, folder);
+  fmt::print("{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
+             cone_table(session.cones));
   return 0;
 }
 

@@ -50,7 +50,8 @@ Cones::Cones(const Site& site, const Plan& plan, const ConeKernel& kernel)
     : Cones(site, plan, plan.incidence ? faces_of(site.world) : Faces{}, kernel) {}
 
 Cones::Cones(const Site& site, const Plan& plan, const Faces& faces, const ConeKernel& kernel)
-    : first_cones_(plan.first),
+    : workers_(site.workers),
+      first_cones_(plan.first),
       least_cosines_(plan.least_cosines),
       casts_(site, plan.incidence ? faces.world : site.world, plan.fans),
       kernel_(site.device, kernel.spirv, kernel.hears_incidence ? 7 : 4),
@@ -86,7 +87,9 @@ bool Cones::prepare(std::span<const Due> due, std::span<const Pose> poses) {
   const bool again = casts_.prepare(due, poses);
   count_ = due.size();
   const auto rows = rows_.host<ConeRow>();
-  for (std::size_t i = 0; i < count_; ++i) rows[i] = row_of(i, due[i].row);
+  workers_.run(count_, 512, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) rows[i] = row_of(i, due[i].row);
+  });
   // Padding repeats one cone; its echoes lie behind all others.
   if (count_ > 0)
     std::fill_n(rows.begin() + static_cast<std::ptrdiff_t>(count_), padded(count_) - count_, rows[count_ - 1]);
@@ -96,15 +99,16 @@ bool Cones::prepare(std::span<const Due> due, std::span<const Pose> poses) {
   return again;
 }
 
-ConeRow Cones::row_of(std::size_t i, std::uint32_t cone) const {
+ConeRow Cones::row_of(std::size_t i, std::uint32_t cone) {
   const FanResults results = casts_.results(i);
   ConeRow row{};
   row.lane = results.lane;
   row.lanes = results.plan->lanes();
   row.directions = results.beams;
   row.least_cosine = least_cosines_[cone];
-  row.heading_cos = static_cast<float>(std::cos(results.X_WS.yaw));
-  row.heading_sin = static_cast<float>(std::sin(results.X_WS.yaw));
+  const RayRow& look = casts_.rows().host<RayRow>()[i];
+  row.heading_cos = static_cast<float>(look.heading_cos64);
+  row.heading_sin = static_cast<float>(look.heading_sin64);
   row.range_max = casts_.fans()[cone].laser.range_max;
   return row;
 }

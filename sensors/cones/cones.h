@@ -53,8 +53,9 @@ class Cones {
   static Plan plan(const world::World& world, const std::vector<ConeArray>& arrays);
   Cones(const Site& site, const Plan& plan, const ConeKernel& kernel);
   Cones(const Site& site, const Plan& plan, const Faces& faces, const ConeKernel& kernel);
-  ConeRow row_of(std::size_t i, std::uint32_t cone) const;
+  ConeRow row_of(std::size_t i, std::uint32_t cone);
 
+  base::Workers& workers_;
   std::vector<std::uint32_t> first_cones_;
   std::vector<float> least_cosines_;
   Casts casts_;

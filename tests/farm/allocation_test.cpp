@@ -5,6 +5,7 @@
 
 #include "tests/counted_new.h"
 #include "tests/farm/small_farm.h"
+#include "tests/sensors/cone_scenes.h"
 #include "tests/sensors/host_trial.h"
 #include "tests/sensors/magnet_scenes.h"
 
@@ -78,6 +79,18 @@ TEST(Allocation, NoneWithSensorsOfTheHostEither) {
   for (const Kind kind : {Kind::dock, Kind::virtual_wall})
     world.emitters.push_back({kind, world::kNone, {2, 0, 0, 0}, 2.0, 0.7, 0.5});
   for (const unsigned threads : {1u, 2u}) EXPECT_EQ(allocations_per_lap(world, {.threads = threads}), 0u) << threads;
+}
+
+/// Transducers in turn and at once, with noise, among walls and each other.
+TEST(Allocation, NoneWithSonarAndInfraredEither) {
+  world::World world = small_world(20);
+  for (world::Mover& mover : world.movers) {
+    mover.sensors.push_back(trial::cones("sonar", trial::ring(16, 0.1),
+                                         {trial::cone_setting("arrays", {2}), trial::cone_setting("noise", {0.01}),
+                                          trial::cone_setting("incidence", {1.0})}));
+    mover.sensors.push_back(trial::cones("infrared", trial::ring(8, 0.1), {trial::cone_setting("range", {0, 0.5})}));
+  }
+  for (const unsigned threads : {1u, 2u}) EXPECT_EQ(allocations_per_lap(world, {.threads = threads}), 0u);
 }
 
 }  // namespace

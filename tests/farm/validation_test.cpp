@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "tests/farm/small_farm.h"
+#include "tests/sensors/cone_scenes.h"
 
 namespace sf::farm {
 namespace {
@@ -16,6 +17,9 @@ TEST(Validation, TheLayerIsSilent) {
     if (device.validation_messages().find("not installed") != std::string::npos)
       GTEST_SKIP() << "the validation layer is not installed";
     world::World world = small_world(20, {.range_sigma = 0.01, .angle_sigma = 0.001});
+    for (world::Mover& mover : world.movers)
+      for (const char* kind : {"sonar", "infrared"})
+        mover.sensors.push_back(trial::cones(kind, trial::ring(8, 0.1), {trial::cone_setting("range", {0, 1})}));
     Farm farm(world, device, {.scene = {1024, 8}});  // so small that its tables are replaced
     farm.hear_all();
     for (int k = 0; k < 4; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));

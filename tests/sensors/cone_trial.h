@@ -12,42 +12,10 @@
 #include "tests/sensors/brute_force.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
+#include "tests/sensors/cone_scenes.h"
 #include "world/world.h"
 
 namespace sf::trial {
-
-inline constexpr double kDegree = M_PI / 180.0;
-
-inline world::Setting cone_setting(const std::string& key, std::vector<double> numbers, const std::string& text = "") {
-  return {key, std::move(numbers), text, 42, "made.world"};
-}
-
-/// A sensor of `type` whose transducers stand at `poses` [m, rad], 0.1 m above its mover's foot.
-inline world::Sensor cones(const std::string& type, const std::vector<base::Pose>& poses,
-                           std::vector<world::Setting> more = {}) {
-  world::Sensor sensor;
-  sensor.type = type;
-  sensor.name = type;
-  sensor.X_MS = {0.0, 0.0, 0.1, 0.0};
-  sensor.file = "made.world";
-  sensor.line = 7;
-  sensor.settings = std::move(more);
-  sensor.settings.push_back(cone_setting("scount", {static_cast<double>(poses.size())}));
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    sensor.settings.push_back(
-        cone_setting("spose3[" + std::to_string(i) + "]", {poses[i].x, poses[i].y, poses[i].z, poses[i].yaw}));
-  return sensor;
-}
-
-/// `count` transducers round a robot, `radius` [m] from its middle, looking away from it.
-inline std::vector<base::Pose> ring(std::uint32_t count, double radius) {
-  std::vector<base::Pose> poses;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const double yaw = 2.0 * M_PI * i / count;
-    poses.push_back({radius * std::cos(yaw), radius * std::sin(yaw), 0.0, yaw});
-  }
-  return poses;
-}
 
 /// Adds a robot that carries `sensor`; with a body where `radius` [m] of a 12-sided disc is given.
 inline std::uint32_t add_ranger(world::World& world, const base::Pose& pose, const world::Sensor& sensor,

@@ -1,0 +1,159 @@
+#include "bench/cone_contest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "bench/cone_methods.h"
+#include "bench/scans.h"
+#include "sensors/sonar.h"
+#include "tests/sensors/cone_trial.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::bench {
+
+namespace {
+
+constexpr std::size_t kRounds = 4;
+constexpr std::size_t kJudgedRobots = 25;  // of each round
+constexpr std::size_t kPlain = 1;          // the entrant that ratios refer to
+
+/// The Pioneer's ring as worlds/robots.inc has it, but for its firing.
+world::Sensor pioneers_ring() {
+  const world::World pioneer =
+      world::load_world(SF_SOURCE_DIR "/bench/pioneer.world", {.sensors = sensors::vocabulary()});
+  world::Sensor ring = pioneer.movers.at(0).sensors.at(0);
+  std::erase_if(ring.settings, [](const world::Setting& s) { return s.key == "firing"; });
+  ring.settings.push_back({"firing", {}, "all", 0, ring.file});
+  return ring;
+}
+
+Cost hear_once(ConeMethod& method, std::size_t round, const ConeOutcome& outcome) {
+  method.poison();
+  const Cost start = now();
+  method.hear(round);
+  const Cost cost = now() - start;
+  for (std::size_t i = 0; i < outcome.cones; ++i)
+    SF_CHECK(!std::isnan(method.range(i % outcome.robots, i / outcome.robots)),
+             method.name() + " left cones unanswered");
+  return cost;
+}
+
+std::uint64_t hash_of(const ConeMethod& method, std::size_t robots, std::size_t transducers) {
+  std::vector<double> all;
+  for (std::size_t r = 0; r < robots; ++r)
+    for (std::size_t k = 0; k < transducers; ++k) all.push_back(method.range(r, k));
+  return base::hash_bytes(all.data(), all.size() * sizeof all[0]);
+}
+
+/// A sample of one round against every segment, ray by ray.
+void judge(const ConeScene& scene, const std::vector<sensors::ConeArray>& arrays, const ConeMethod& method,
+           std::size_t round, ConeEntrant& entrant) {
+  const sensors::ConeArray& array = arrays[0];
+  const double z = scene.world.movers[0].X_WM.z + array.row.X_MS.z;
+  const auto all = oracle::surfaces(scene.world, scene.rounds[round], 0, z);
+  for (std::size_t k = 0; k < kJudgedRobots; ++k) {
+    const std::size_t robot = (k * arrays.size() / kJudgedRobots + 17 * round) % arrays.size();
+    for (std::size_t i = 0; i < array.X_SC.size(); ++i) {
+      const base::Pose X_MC = base::compose(array.row.X_MS, array.X_SC[i]);
+      const trial::ConeTruth truth =
+          trial::cone_truth(all, base::compose(scene.rounds[round][robot], X_MC), arrays[robot]);
+      const double said = method.range(robot, i);
+      entrant.worst = std::max({entrant.worst, truth.low - said, said - truth.high});
+    }
+  }
+}
+
+void rate(std::vector<ConeEntrant>& entrants) {
+  for (ConeEntrant& entrant : entrants) {
+    entrant.typical = median(entrant.turns);
+    const Cost times = ratio(entrants[kPlain].turns, entrant.turns);
+    entrant.ratio = times.wall_s;
+    entrant.cpu_ratio = times.cpu_s;
+  }
+}
+
+}  // namespace
+
+ConeScene make_cone_scene(std::uint32_t robots) {
+  ConeScene scene;
+  scene.world = load_cave();
+  scenes::add_robots(scene.world, robots, scenes::laser(), 1);
+  const world::Sensor ring = pioneers_ring();
+  for (world::Mover& mover : scene.world.movers) {
+    mover.body.clear();
+    mover.lasers.clear();
+    mover.sensors.push_back(ring);
+  }
+  for (std::size_t round = 0; round < kRounds; ++round) {
+    const auto k = static_cast<double>(round);
+    std::vector<base::Pose>& poses = scene.rounds.emplace_back();
+    for (const world::Mover& mover : scene.world.movers)
+      poses.push_back(base::compose(mover.X_WM, {0.002 * k, 0.001 * k, 0.0, 0.1 * k}));
+  }
+  return scene;
+}
+
+ConeOutcome compete_cones(gpu::Device& device, const ConeScene& scene, std::size_t turns) {
+  const auto arrays = sensors::cone_arrays_of(scene.world, "sonar", sensors::read_sonar);
+  std::vector<std::unique_ptr<ConeMethod>> methods;
+  methods.push_back(make_farm_cones(scene, device));
+  methods.push_back(make_plain_cones(scene, arrays, "plain C++ grid, -O3", walk_portable));
+  methods.push_back(make_plain_cones(scene, arrays, "plain C++ grid, -O3 -march=native", walk_native));
+  const std::size_t cones = arrays.size() * arrays[0].X_SC.size();
+  ConeOutcome outcome{
+      arrays.size(), cones, cones * arrays[0].rays, kRounds * kJudgedRobots * arrays[0].X_SC.size(), {}};
+  for (const auto& method : methods) {
+    outcome.entrants.push_back({method->name(), {}, {}});
+    for (std::size_t round = kRounds; round-- > 0;) {
+      hear_once(*method, round, outcome);
+      judge(scene, arrays, *method, round, outcome.entrants.back());
+    }
+    outcome.entrants.back().hash = hash_of(*method, arrays.size(), arrays[0].X_SC.size());
+  }
+  for (std::size_t turn = 0; turn < turns; ++turn)
+    for (std::size_t k = 0; k < methods.size(); ++k) {
+      const std::size_t who = (turn + k) % methods.size();
+      outcome.entrants[who].turns.push_back(hear_once(*methods[who], turn % kRounds, outcome));
+    }
+  rate(outcome.entrants);
+  return outcome;
+}
+
+void write_cones(const std::vector<ConeOutcome>& outcomes, const std::string& folder) {
+  if (outcomes.empty()) return;
+  std::string text =
+      "method,robots,cones,rays,turns,wall_ms_median,cpu_ms_median,mrays_per_s,ratio_to_plain,cpu_ratio_to_plain,"
+      "max_error_m,judged,hash\n";
+  for (const ConeOutcome& o : outcomes)
+    for (const ConeEntrant& e : o.entrants)
+      text += fmt::format("\"{}\",{},{},{},{},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.3g},{},{}\n", e.method, o.robots,
+                          o.cones, o.rays, e.turns.size(), 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
+                          1e-6 * static_cast<double>(o.rays) / e.typical.wall_s, e.ratio, e.cpu_ratio, e.worst,
+                          o.judged, base::hash_text(e.hash));
+  const std::string file = folder + "/cones.csv";
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << text;
+  if (!out.flush())
+    throw base::InputError(file, 0, "cannot be written: name a folder that exists with --results=FOLDER");
+}
+
+std::string cone_table(const std::vector<ConeOutcome>& outcomes) {
+  std::string text;
+  for (const ConeOutcome& o : outcomes) {
+    text += fmt::format("\nsonar rings: {} robots, {} cones, {} rays\n", o.robots, o.cones, o.rays);
+    text += fmt::format("{:<36} {:>9} {:>9} {:>9} {:>7} {:>7} {:>10}\n", "method", "wall ms", "cpu ms", "Mrays/s",
+                        "ratio", "cpu", "max err m");
+    for (const ConeEntrant& e : o.entrants)
+      text += fmt::format("{:<36} {:>9.2f} {:>9.2f} {:>9.2f} {:>7.2f} {:>7.2f} {:>10.1e}\n", e.method,
+                          1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
+                          1e-6 * static_cast<double>(o.rays) / e.typical.wall_s, e.ratio, e.cpu_ratio, e.worst);
+  }
+  return text;
+}
+
+}  // namespace sf::bench

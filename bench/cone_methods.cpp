@@ -1,0 +1,104 @@
+#include "bench/cone_methods.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "bench/poison.h"
+#include "farm/farm.h"
+
+namespace sf::bench {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+class FarmCones final : public ConeMethod {
+ public:
+  FarmCones(const ConeScene& scene, gpu::Device& device) : farm_(scene.world, device) {
+    farm_.hear_all();
+    for (const std::vector<base::Pose>& poses : scene.rounds) {
+      std::vector<base::Report>& reports = reports_.emplace_back();
+      for (std::uint32_t m = 0; m < poses.size(); ++m) reports.push_back({m, 0, poses[m], {}});
+    }
+  }
+  std::string name() const override { return "farm"; }
+  void poison() override { bench::poison(readings_); }
+  void hear(std::size_t round) override {
+    readings_ = farm_.tick(time_, reports_[round]);
+    time_ += 40'000'000;
+  }
+  double range(std::size_t robot, std::size_t transducer) const override { return readings_[robot].values[transducer]; }
+
+ private:
+  farm::Farm farm_;
+  std::vector<std::vector<base::Report>> reports_;
+  std::span<const base::ReadingBlock> readings_;
+  std::int64_t time_ = 0;  ///< [ns]
+};
+
+class PlainCones final : public ConeMethod {
+ public:
+  PlainCones(const ConeScene& scene, const std::vector<sensors::ConeArray>& arrays, std::string name, Walk walk)
+      : scene_(scene), arrays_(arrays), name_(std::move(name)), walk_(walk), transducers_(arrays[0].X_SC.size()) {
+    const sensors::ConeArray& array = arrays_[0];
+    grid_ = make_grid(scene.world, scene.world.movers[0].X_WM.z + array.row.X_MS.z, 0.5);
+    world::Laser fan;
+    fan.fov = array.fov;
+    fan.samples = array.rays;
+    for (std::uint32_t i = 0; i < array.rays; ++i) {
+      const double bearing = world::bearing_of(fan, i);
+      beams_.push_back({std::cos(bearing), std::sin(bearing)});
+    }
+    values_.assign(arrays_.size() * transducers_, kNaN);
+    ranges_.resize(workers_.threads(), std::vector<double>(array.rays));
+    hits_.resize(workers_.threads(), std::vector<std::uint32_t>(array.rays));
+  }
+  std::string name() const override { return name_; }
+  void poison() override { std::fill(values_.begin(), values_.end(), kNaN); }
+  void hear(std::size_t round) override {
+    workers_.run(arrays_.size(), kRobotsPerPiece, [&](std::size_t first, std::size_t last, unsigned thread) {
+      for (std::size_t i = first; i < last; ++i) hear_ring(i, scene_.rounds[round][i], thread);
+    });
+  }
+  double range(std::size_t robot, std::size_t transducer) const override {
+    return values_[robot * transducers_ + transducer];
+  }
+
+ private:
+  void hear_ring(std::size_t robot, const base::Pose& X_WM, unsigned thread) {
+    const sensors::ConeArray& array = arrays_[robot];
+    const base::Pose X_WS = base::compose(X_WM, array.row.X_MS);
+    std::vector<double>& ranges = ranges_[thread];
+    for (std::size_t k = 0; k < transducers_; ++k) {
+      walk_(grid_, base::compose(X_WS, array.X_SC[k]), beams_, array.range_max, ranges.data(), hits_[thread].data());
+      values_[robot * transducers_ + k] = std::max(array.range_min, *std::min_element(ranges.begin(), ranges.end()));
+    }
+  }
+
+  const ConeScene& scene_;
+  const std::vector<sensors::ConeArray>& arrays_;
+  std::string name_;
+  Walk walk_;
+  std::size_t transducers_;
+  SegmentGrid grid_;
+  std::vector<base::Vec2> beams_;
+  base::Workers workers_;
+  std::vector<double> values_;
+  std::vector<std::vector<double>> ranges_;  ///< scratch per thread
+  std::vector<std::vector<std::uint32_t>> hits_;
+};
+
+}  // namespace
+
+std::unique_ptr<ConeMethod> make_farm_cones(const ConeScene& scene, gpu::Device& device) {
+  return std::make_unique<FarmCones>(scene, device);
+}
+
+std::unique_ptr<ConeMethod> make_plain_cones(const ConeScene& scene, const std::vector<sensors::ConeArray>& arrays,
+                                             const std::string& name, Walk walk) {
+  return std::make_unique<PlainCones>(scene, arrays, name, walk);
+}
+
+}  // namespace sf::bench

@@ -1,0 +1,30 @@
+#pragma once
+// Who hears in the contest of cones.
+
+#include <memory>
+#include <string>
+
+#include "bench/cone_contest.h"
+#include "bench/grid.h"
+#include "sensors/cones/cone_array.h"
+
+namespace sf::bench {
+
+class ConeMethod {
+ public:
+  virtual ~ConeMethod() = default;
+  virtual std::string name() const = 0;
+  /// Spoils what the last turn gave.
+  virtual void poison() = 0;
+  /// What is measured: from poses to ranges.
+  virtual void hear(std::size_t round) = 0;
+  /// [m] not a number when it was not written.
+  virtual double range(std::size_t robot, std::size_t transducer) const = 0;
+};
+
+/// `scene`, `arrays` and `device` must outlive them. @param arrays one per robot.
+std::unique_ptr<ConeMethod> make_farm_cones(const ConeScene& scene, gpu::Device& device);
+std::unique_ptr<ConeMethod> make_plain_cones(const ConeScene& scene, const std::vector<sensors::ConeArray>& arrays,
+                                             const std::string& name, Walk walk);
+
+}  // namespace sf::bench
