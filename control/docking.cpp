@@ -33,7 +33,11 @@ base::Twist Docking::step(const Input& input) {
   const double far = std::hypot(X_WM.x - settings_.X_WD.x, X_WM.y - settings_.X_WD.y);
   const bool touches = input.contact && ((light & kForceField) != 0 || far < 2.0 * settings_.reach);
   if (done_ || (done_ = touches || far <= settings_.reach)) return {};
-  if ((light & (kRedBuoy | kGreenBuoy)) != 0) return follow_beams(light, X_WM);
+  const std::uint32_t buoys = light & (kRedBuoy | kGreenBuoy);
+  // One buoy alone, and already near: too late to come onto the axis from here.
+  const bool astray = !lined_up_ && buoys != (kRedBuoy | kGreenBuoy) && (light & kForceField) != 0;
+  lined_up_ = buoys == (kRedBuoy | kGreenBuoy) || (lined_up_ && buoys != 0);
+  if (buoys != 0 && !astray) return follow_beams(light, X_WM);
   const base::Vec2 stage = base::transform(settings_.X_WD, {settings_.stage, 0.0});
   return go_to(X_WM, stage, {settings_.speed, settings_.turn});
 }

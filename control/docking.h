@@ -3,7 +3,8 @@
 // beams, slowly within the force field, until the bumper touches or the dock is reached.
 //
 // The receiver sees all round and so tells no direction: headings are the robot's own, against the dock's as the world
-// has it. Out of the beams the robot drives to a place before the dock, on its axis, by its own pose.
+// has it. Out of the beams, or near the dock with one alone, the robot drives to a place before the dock, on its axis,
+// by its own pose.
 
 #include "control/controllers.h"
 
@@ -16,7 +17,7 @@ struct DockingSettings {
   double speed = 0.1;        ///< [m/s]
   double slow_speed = 0.03;  ///< [m/s] within the force field
   double turn = 1.0;         ///< [rad/s] at most
-  double lean = 0.35;        ///< [rad] towards the axis with one buoy in sight
+  double lean = 0.7;         ///< [rad] towards the axis with one buoy in sight
 };
 
 class Docking final : public Controller {
@@ -31,6 +32,7 @@ class Docking final : public Controller {
   base::Twist follow_beams(std::uint32_t light, const base::Pose& X_WM) const;
 
   DockingSettings settings_;
+  bool lined_up_ = false;  ///< both buoys were in sight, and one has been since
   bool done_ = false;
 };
 

@@ -22,7 +22,7 @@ constexpr double kHere = 0.004;      // [m] a place is reached
 constexpr double kAligned = 0.01;    // [rad] a heading is reached
 constexpr double kTouch = 5e-4;      // [m] it never comes nearer to a surface
 constexpr double kNearRange = 0.85;  // of the range, from which it looks at first
-constexpr double kFarRange = 0.99;
+constexpr double kFarRange = 1.0;
 constexpr double kMostNodes = 2e6;  // of the lattice: 128 MB for ways
 
 /// What is wanted, and how near to surfaces, one stage after another.
@@ -65,7 +65,7 @@ Twist Explore::step(const Input& input) {
     terrain_.add_point(base::transform(X_WM, {ahead * settings_.body.radius, 0.0}));
     way_.clear();
   }
-  if (way_.empty() || (seen_all() && !arrived_) || (arrived_ && seen_all()) || (news && barred())) plan(X_WM);
+  if (way_.empty() || seen_all() || (news && barred())) plan(X_WM);
   const Twist twist = done() ? Twist{} : legs_.empty() ? wait(input) : drive(input);
   last_time_ = input.time;
   return twist;
@@ -157,7 +157,7 @@ Twist Explore::drive(const Input& input) {
   const double dt = std::clamp(1e-9 * static_cast<double>(input.time - last_time_), 0.02, 0.5);
   const Twist twist = follow(legs_.back(), X_WM, dt);
   if (safe(X_WM, twist, dt)) return twist;
-  way_.clear();
+  give_up();
   return {};
 }
 
@@ -196,10 +196,15 @@ Twist Explore::wait(const Input& input) {
                     std::abs(base::wrap_angle(X_WS.yaw - X_WS_.yaw)) < kAligned;
   const bool late = 1e-9 * static_cast<double>(input.time - *arrived_) > settings_.patience;
   if (!here && !late) return {};
+  give_up();
+  return {};
+}
+
+// What it wanted to see from the end of this way cannot be seen from there, or the end not be reached.
+void Explore::give_up() {
   for (const maps::CellAt cell : targets_)
     if (grid().at(cell) == maps::Cell::unexplored) lookout_.in_vain(cell, search_.sensor_at(way_.back()));
   way_.clear();
-  return {};
 }
 
 maps::GridPlan plan_around(const world::World& world, double cell) {

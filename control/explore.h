@@ -67,6 +67,7 @@ class Explore final : public Controller {
   void take(const std::vector<State>& way);
   base::Twist drive(const Input& input);
   base::Twist wait(const Input& input);
+  void give_up();
   base::Twist follow(const Leg& leg, const base::Pose& X_WM, double dt) const;
   bool finished(const Leg& leg, const base::Pose& X_WM) const;
   bool safe(const base::Pose& X_WM, const base::Twist& twist, double dt) const;

@@ -1,0 +1,86 @@
+#include "control/avoid.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/control/closed_loop.h"
+#include "tests/control/exploration.h"
+
+namespace sf::control {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Thirds, of_the_field_of_view) {
+  std::vector<double> ranges(361, 0.75);
+  ranges[0] = 0.3;
+  ranges[119] = 0.31;
+  ranges[120] = 0.5;  // -30 degrees exactly: the front's
+  ranges[240] = 0.6;  // +30 degrees exactly
+  ranges[241] = 0.4;
+  const Thirds thirds = thirds_of(ranges);
+  EXPECT_EQ(thirds.right, 0.3);
+  EXPECT_EQ(thirds.front, 0.5);
+  EXPECT_EQ(thirds.left, 0.4);
+  EXPECT_EQ(thirds_of(std::vector{kNaN, 0.2, kNaN}).right, HUGE_VAL) << "what is not a number says nothing";
+  EXPECT_EQ(thirds_of(std::vector{kNaN, 0.2, kNaN}).front, 0.2);
+  EXPECT_EQ(thirds_of(std::vector{0.5}).left, 0.5) << "too few to tell sides";
+}
+
+struct Moment {
+  double right, front, left;
+  Avoid::State state;
+  double forward, turn;
+  const char* why;
+};
+
+TEST(Avoid, goes_through_the_states_of_the_thesis) {
+  using enum Avoid::State;
+  Avoid avoid({});
+  for (const Moment& m :
+       {Moment{0.75, 0.75, 0.75, drive, 0.1, 0, "free"},
+        Moment{0.1, 0.41, 0.1, drive, 0.1, 0, "things at the sides do not matter"},
+        Moment{0.75, 0.39, 0.75, slow, 0.05, 0, "less than 0.4 m"},
+        Moment{0.75, 0.5, 0.75, drive, 0.1, 0, "gone again"}, Moment{0.3, 0.2, 0.4, slow, 0.05, 0, "0.2 m is not less"},
+        Moment{0.3, 0.19, 0.4, turn_left, 0, 0.5, "more room on the left"},
+        Moment{0.6, 0.15, 0.1, turn_left, 0, 0.5, "it has chosen"},
+        Moment{0.6, 0.25, 0.1, slow, 0.05, 0, "out of the front third: straight on, still near"},
+        Moment{0.6, 0.15, 0.1, turn_right, 0, -0.5, "chooses anew"}, Moment{0.1, 0.75, 0.6, drive, 0.1, 0, "clear"}}) {
+    std::vector<double> ranges(9, m.right);
+    std::fill(ranges.begin() + 2, ranges.end(), m.front);
+    std::fill(ranges.begin() + 7, ranges.end(), m.left);
+    const base::ReadingBlock block{.kind = base::kLaser, .values = ranges};
+    const base::Twist twist = avoid.step({.readings = {&block, 1}});
+    EXPECT_EQ(avoid.state(), m.state) << m.why;
+    EXPECT_EQ(twist.forward, m.forward) << m.why;
+    EXPECT_EQ(twist.turn, m.turn) << m.why;
+  }
+}
+
+TEST(Avoid, turns_until_as_far_as_it_was_told) {
+  Avoid avoid({.clear = 0.4});
+  for (const auto& [front, turns] : {std::pair{0.19, true}, {0.39, true}, {0.41, false}, {0.39, false}}) {
+    const std::vector<double> ranges(9, front);
+    const base::ReadingBlock block{.kind = base::kLaser, .values = ranges};
+    EXPECT_EQ(avoid.step({.readings = {&block, 1}}).turn != 0.0, turns) << front;
+  }
+}
+
+TEST(Avoid, stands_until_the_laser_tells) {
+  Avoid avoid({});
+  EXPECT_EQ(avoid.step({}).forward, 0.0);
+}
+
+TEST(Avoid, keeps_moving_in_an_empty_area) {
+  const world::World world = exploration::boxes(3, 0);
+  Avoid avoid({});
+  loop::LaserRun run(world, avoid);
+  for (int i = 0; i < 3000; ++i) run.tick();
+  EXPECT_TRUE(run.finite);
+  EXPECT_GT(run.distance, 5.0) << "of 30 m";
+}
+
+}  // namespace
+}  // namespace sf::control

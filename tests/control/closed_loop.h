@@ -1,0 +1,92 @@
+#pragma once
+// A robot, its controller and sensors worked out by brute force, tick by tick.
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "control/controllers.h"
+#include "robots/fleet.h"
+#include "world/world.h"
+
+namespace sf::loop {
+
+using base::Pose;
+using base::Twist;
+using base::Vec2;
+
+inline constexpr std::int64_t kSecond = 1'000'000'000;
+
+/// The ranges of a laser on walls alone.
+inline std::vector<double> scan(const world::World& world, const world::Laser& laser, const Pose& X_WS) {
+  // Walls out of range are left out once for all beams.
+  std::vector<const world::Segment*> near;
+  for (const auto& wall : world.walls)
+    if (wall.seen_by_laser && wall.z_min <= X_WS.z && X_WS.z < wall.z_max &&
+        world::distance({X_WS.x, X_WS.y}, wall.a, wall.b) <= laser.range_max)
+      near.push_back(&wall);
+  std::vector<double> ranges;
+  for (std::uint32_t i = 0; i < laser.samples; ++i) {
+    const double bearing = X_WS.yaw + world::bearing_of(laser, i);
+    const Vec2 u{std::cos(bearing), std::sin(bearing)}, p{X_WS.x, X_WS.y};
+    double range = laser.range_max;
+    for (const world::Segment* wall : near) {
+      const double area = cross(u, wall->b - wall->a);
+      const double t = cross(wall->a - p, wall->b - wall->a) / area, s = cross(wall->a - p, u) / area;
+      if (area != 0.0 && t >= 0.0 && s >= 0.0 && s <= 1.0) range = std::min(range, t);
+    }
+    ranges.push_back(range);
+  }
+  return ranges;
+}
+
+/// One robot alone: laser 0 at its own rate, a tick of 0.1 s.
+struct LaserRun {
+  LaserRun(const world::World& w, control::Controller& c) : world(w), controller(c), fleet(w) { look(); }
+
+  void tick() {
+    const std::int64_t now = fleet.reports()[0].time;
+    const base::ReadingBlock block{.kind = base::kLaser,
+                                   .sequence = sequence,
+                                   .time = seen_at,
+                                   .X_WM = X_WM,
+                                   .X_WS = compose(X_WM, world.movers[0].lasers[0].X_MS),
+                                   .values = ranges};
+    const Twist twist = controller.step(
+        {.time = now, .state = fleet.reports()[0], .readings = {&block, 1}, .contact = fleet.contacts()[0] != 0});
+    finite = finite && std::isfinite(twist.forward) && std::isfinite(twist.turn);
+    // Readings fall between ticks.
+    constexpr std::int64_t kTick = kSecond / 10;
+    const auto period = static_cast<std::int64_t>(1e9 / world.movers[0].lasers[0].rate);
+    for (std::int64_t left = kTick; left > 0;) {
+      const std::int64_t part = std::min(left, seen_at + period - fleet.reports()[0].time);
+      const Twist command[] = {twist};
+      if (part > 0) fleet.move(command, part);
+      contacts += fleet.contacts()[0];
+      left -= part;
+      if (fleet.reports()[0].time >= seen_at + period) look();
+    }
+    distance += std::abs(fleet.reports()[0].velocity.forward) * 0.1;
+  }
+  void look() {
+    const world::Laser& laser = world.movers[0].lasers[0];
+    X_WM = fleet.reports()[0].X_WM;
+    ranges = scan(world, laser, compose(X_WM, laser.X_MS));
+    seen_at = fleet.reports()[0].time;
+    ++sequence;
+  }
+
+  const world::World& world;
+  control::Controller& controller;
+  robots::Fleet fleet;
+  std::vector<double> ranges;
+  Pose X_WM;
+  std::int64_t seen_at = 0;
+  std::uint32_t sequence = 0;
+  int contacts = 0;
+  double distance = 0.0;  ///< [m]
+  bool finite = true;
+};
+
+}  // namespace sf::loop

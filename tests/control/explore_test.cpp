@@ -1,0 +1,225 @@
+#include "control/explore.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/control/closed_loop.h"
+#include "tests/control/exploration.h"
+
+namespace sf::control {
+namespace {
+
+using base::Pose;
+using base::Vec2;
+
+std::unique_ptr<Explore> make_explore(const world::World& world, std::vector<Setting> given = {}) {
+  Settings settings("controller 'explore'", std::move(given));
+  auto made = explore_controller.make({world}, settings);
+  return std::unique_ptr<Explore>(dynamic_cast<Explore*>(made.release()));
+}
+
+struct Explored {
+  bool done = false, finite = true;
+  int contacts = 0;
+  int must = 0, missed = 0;  // cells
+  int wrong = 0;             // cells in solids that are taken as free
+  double seconds = 0.0;
+};
+
+Explored explore(const world::World& world, const exploration::Looker& looker = {}) {
+  const auto controller = make_explore(world);
+  loop::LaserRun run(world, *controller);
+  for (int i = 0; i < 12'000 && !controller->done(); ++i) run.tick();
+  Explored result{controller->done(), run.finite, run.contacts};
+  result.seconds = 1e-9 * static_cast<double>(run.fleet.reports()[0].time);
+
+  const Pose& X = world.movers[0].X_WM;
+  const maps::Grid& grid = controller->grid();
+  const auto must = exploration::Reference(world, grid.plan, {X.x, X.y}, looker).seen();
+  for (std::size_t i = 0; i < must.size(); ++i) {
+    const auto at = static_cast<std::int64_t>(i);
+    const maps::CellAt cell{at % maps::columns(grid.plan), at / maps::columns(grid.plan)};
+    result.must += must[i];
+    result.missed += must[i] != 0 && grid.at(cell) == maps::Cell::unexplored;
+  }
+  return result;
+}
+
+TEST(Explore, maps_all_of_the_mapping_area_and_touches_nothing) {
+  const world::World world = world::load_world(SF_SOURCE_DIR "/worlds/mapping/mapping.world");
+  const Explored e = explore(world);
+  EXPECT_TRUE(e.done);
+  EXPECT_TRUE(e.finite);
+  EXPECT_EQ(e.contacts, 0);
+  EXPECT_GT(e.must, 8500) << "nine square metres less the obstacles are 9000 cells";
+  EXPECT_EQ(e.missed, 0);
+  EXPECT_LT(e.seconds, 400);
+}
+
+TEST(Explore, maps_areas_of_boxes_at_any_angle_and_touches_nothing) {
+  for (const std::uint64_t seed : {1, 3, 5}) {
+    const world::World world = exploration::boxes(seed, 4 + static_cast<int>(seed));
+    const Explored e = explore(world, {.spare = 0.003});
+    EXPECT_TRUE(e.done) << seed;
+    EXPECT_EQ(e.contacts, 0) << seed;
+    EXPECT_GT(e.must, 7000) << seed;
+    // Slivers between a surface and the line of sight along it are seen by some beams only.
+    EXPECT_LE(e.missed, 4) << seed;
+    EXPECT_LT(e.seconds, 900) << seed;
+  }
+}
+
+// A room behind a passage, seen neither from before it nor by a body a little wider.
+world::World two_rooms(double gap) {
+  world::World world = exploration::boxes(1, 0);
+  scenes::add_outline(world.walls, scenes::rectangle({0.0, -0.75 - gap / 4.0}, 0.3, 1.5 - gap / 2.0));
+  scenes::add_outline(world.walls, scenes::rectangle({0.0, 0.75 + gap / 4.0}, 0.3, 1.5 - gap / 2.0));
+  world.movers[0].X_WM = {-0.8, -0.5, 0.0, 0.4};
+  return world;
+}
+
+TEST(Explore, passes_a_passage_two_centimetres_wider_than_the_body) {
+  const Explored e = explore(two_rooms(0.35), {.spare = 0.003});
+  EXPECT_TRUE(e.done);
+  EXPECT_EQ(e.contacts, 0);
+  EXPECT_GT(e.must, 8000) << "both rooms";
+  EXPECT_LE(e.missed, 4);
+}
+
+TEST(Explore, does_not_try_a_passage_narrower_than_the_body) {
+  const Explored e = explore(two_rooms(0.32), {.spare = 0.003});
+  EXPECT_TRUE(e.done);
+  EXPECT_EQ(e.contacts, 0);
+  EXPECT_LT(e.must, 7000) << "one room, and what is seen of the other";
+  EXPECT_LE(e.missed, 4);
+}
+
+TEST(Explore, stands_when_it_is_done) {
+  world::World world = scenes::boxed_world(0.8, 0.8);
+  scenes::add_create(world, {0.4, 0.4, 0, 0})
+      .lasers.push_back({.X_MS = {0.1, 0, 0.1, 0}, .fov = M_PI, .samples = 181, .range_max = 2.0});
+  const auto controller = make_explore(world);
+  loop::LaserRun run(world, *controller);
+  for (int i = 0; i < 3000 && !controller->done(); ++i) run.tick();
+  ASSERT_TRUE(controller->done());
+  const Pose before = run.fleet.reports()[0].X_WM;
+  for (int i = 0; i < 10; ++i) run.tick();
+  EXPECT_EQ(run.fleet.reports()[0].X_WM.x, before.x);
+  EXPECT_EQ(run.fleet.reports()[0].X_WM.yaw, before.yaw);
+  EXPECT_EQ(run.contacts, 0);
+}
+
+TEST(Explore, the_same_way_again) {
+  const world::World world = exploration::boxes(2, 4);
+  const auto a = make_explore(world), b = make_explore(world);
+  loop::LaserRun first(world, *a), second(world, *b);
+  for (int i = 0; i < 400; ++i) first.tick(), second.tick();
+  EXPECT_EQ(first.fleet.reports()[0].X_WM.x, second.fleet.reports()[0].X_WM.x);
+  EXPECT_EQ(first.fleet.reports()[0].X_WM.yaw, second.fleet.reports()[0].X_WM.yaw);
+  EXPECT_EQ(a->grid().words, b->grid().words);
+}
+
+TEST(Explore, odd_readings_do_no_harm) {
+  const world::World world = exploration::boxes(2, 4);
+  const double nan = std::nan("");
+  for (const double range : {0.0, 0.75, HUGE_VAL, -1.0, nan}) {
+    const auto controller = make_explore(world);
+    const std::vector<double> ranges(361, range), few(7, 0.3);
+    for (std::uint32_t i = 0; i < 120; ++i) {
+      const base::ReadingBlock block{
+          .kind = base::kLaser, .sequence = i, .X_WS = {0.19, 0, 0, 0}, .values = i % 5 == 0 ? few : ranges};
+      const base::Twist twist = controller->step(
+          {.time = i * loop::kSecond / 10, .state = {.X_WM = {0, 0, 0, 0.11 * i}}, .readings = {&block, 1}});
+      ASSERT_TRUE(std::isfinite(twist.forward) && std::isfinite(twist.turn)) << range;
+      ASSERT_LE(std::abs(twist.forward), 0.1);
+    }
+  }
+}
+
+// ---- Its parts.
+
+TEST(Terrain, clearance_is_the_distance_to_points) {
+  Terrain terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
+  for (const Vec2 p : {Vec2{0.3, 0.1}, Vec2{0.5, 0.1}, Vec2{0.3, -0.9}}) EXPECT_TRUE(terrain.add_point(p));
+  EXPECT_FALSE(terrain.add_point({0.3, 0.1})) << "known";
+  EXPECT_FALSE(terrain.add_point({5.0, 0.1})) << "off the map";
+  for (const Vec2 p : {Vec2{0.2, 0.0}, Vec2{0.41, 0.13}, Vec2{0.3, 0.1}, Vec2{1.0, 1.0}}) {
+    const Vec2 at = terrain.place(terrain.node_at(p));
+    EXPECT_LT(length(at - p), 0.0071) << "half a node's diagonal";
+    const double nearest = std::min({length(at - Vec2{0.3, 0.1}), length(at - Vec2{0.5, 0.1}), 0.225});
+    EXPECT_NEAR(terrain.clearance(terrain.node_at(p)), nearest, 1e-6);
+  }
+  EXPECT_TRUE(terrain.solid(terrain.node_at({0.3, 0.1})));
+  EXPECT_FALSE(terrain.solid(terrain.node_at({0.32, 0.1})));
+}
+
+TEST(Terrain, ground_is_known_once_it_is_seen_or_stood_on) {
+  Terrain terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
+  const Node here = terrain.node_at({0, 0});
+  EXPECT_TRUE(terrain.over_unknown(here));
+  terrain.stand({0, 0}, 0.21);
+  EXPECT_FALSE(terrain.over_unknown(here));
+  EXPECT_TRUE(terrain.over_unknown(terrain.node_at({0.1, 0})));
+  EXPECT_FALSE(terrain.explored(here)) << "stood on is not seen";
+
+  const auto beams = maps::beam_directions(M_PI, 361);
+  std::vector<double> ranges(361, 0.75);
+  for (const double x : {0.0, -0.1, -0.2}) terrain.add({{x, 0, 0, 0}, ranges, beams, 0.0, 0.75});
+  EXPECT_FALSE(terrain.over_unknown(terrain.node_at({0.2, 0})));
+  EXPECT_TRUE(terrain.explored(terrain.node_at({0.5, 0.2})));
+  terrain.stand({1.75, 0}, 0.3);
+  EXPECT_TRUE(terrain.over_unknown(terrain.node_at({1.7, 0}))) << "it would leave the map";
+}
+
+// All of the map seen, and a wall of points at y = 0.
+Terrain beside_a_wall() {
+  Terrain terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
+  terrain.stand({0, 0}, 10.0);
+  for (double x = -1.0; x <= 1.0; x += 0.002) terrain.add_point({x, 0.0});
+  return terrain;
+}
+
+TEST(PoseSearch, a_sensor_that_reaches_beyond_the_body_is_not_turned_into_a_wall) {
+  const Terrain terrain = beside_a_wall();
+  const PoseSearch search(terrain, {0.165, {0.19, 0.0}});
+  const Node near = terrain.node_at({0.0, 0.175});
+  EXPECT_TRUE(search.allowed({near, 0}, 0.003)) << "along the wall";
+  EXPECT_TRUE(search.allowed({near, 4}, 0.003)) << "away from it";
+  EXPECT_FALSE(search.allowed({near, 12}, 0.003)) << "into it";
+  EXPECT_FALSE(search.allowed({near, 0}, 0.02)) << "too near for that margin";
+  EXPECT_TRUE(search.allowed({terrain.node_at({0.0, 0.3}), 12}, 0.01)) << "from farther away";
+}
+
+TEST(PoseSearch, finds_the_cheapest_way) {
+  const Terrain terrain = beside_a_wall();
+  PoseSearch search(terrain, {0.165, {0.19, 0.0}});
+  const State from{terrain.node_at({-0.5, 0.5}), 0};
+  const auto ahead = search.find(from, 0.01, [&](const State& s) { return s.node == from.node + 30; });
+  ASSERT_EQ(ahead.size(), 31u);
+  EXPECT_EQ(ahead.front(), from);
+  for (const State& state : ahead) EXPECT_EQ(state.heading, 0);
+  // Turned towards the wall and back out of it costs a way: round by the free side.
+  const State close{terrain.node_at({0.0, 0.175}), 0};
+  const auto turned = search.find(close, 0.003, [&](const State& s) { return s.heading == 8; });
+  ASSERT_FALSE(turned.empty());
+  for (const State& state : turned) EXPECT_NE(state.node == close.node && state.heading > 10, true);
+  EXPECT_TRUE(search.find(from, 0.01, [](const State&) { return false; }).empty()) << "no goal, no way";
+}
+
+TEST(PlanAround, holds_the_world_and_is_never_smaller_than_the_thesis) {
+  world::World world = scenes::empty_world();
+  world.extent = {-1.5, -1.5, 1.5, 1.5};
+  const maps::GridPlan small = plan_around(world);
+  EXPECT_EQ(small.word_columns, 30u);
+  EXPECT_NEAR(small.left, -1.8, 1e-12);
+  EXPECT_NEAR(small.top, 1.8, 1e-12);
+  world.extent = {10.0, -1.5, 18.0, 1.5};
+  const maps::GridPlan wide = plan_around(world);
+  for (const Vec2 p : {Vec2{10, -1.5}, Vec2{18, 1.5}}) EXPECT_TRUE(maps::contains(wide, maps::cell_at(wide, p)));
+  EXPECT_GT(wide.word_columns, 60u);
+}
+
+}  // namespace
+}  // namespace sf::control

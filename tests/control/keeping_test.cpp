@@ -1,0 +1,271 @@
+// Lane keeping and magnet keeping in closed loops: a unicycle on the thesis' path, sensors by formula.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "control/lane_keeping.h"
+#include "control/magnet_keeping.h"
+#include "robots/motion.h"
+#include "sensors/laneedge.h"
+#include "sensors/magnetometer.h"
+#include "tests/robots/scenes.h"
+#include "world/paths.h"
+
+namespace sf::control {
+namespace {
+
+using base::Pose;
+using base::Twist;
+using base::Vec2;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t kTick = 100'000'000;
+
+world::World path_world(double yaw = M_PI / 2) {
+  world::World world = scenes::empty_world();
+  scenes::add_create(world, {0, 0, 0, 0}).sensors.push_back({.type = "laneedge", .X_MS = {0.225, 0, 0, yaw}});
+  world.paths.push_back({"lane",
+                         {{{0, 0, 0, 0}, 2.72, 0.0, 0.50},
+                          {{2.72, 0, 0, 0}, 0.93 * M_PI / 2, 1 / 0.93, 0.60},
+                          {{3.65, 0.93, 0, M_PI / 2}, 1.349, 0.0, 0.45}}});
+  return world;
+}
+
+std::unique_ptr<Controller> make(const world::World& world, const ControllerKind& kind,
+                                 std::vector<Setting> numbers = {}) {
+  Settings settings("controller", std::move(numbers));
+  return kind.make({world}, settings);
+}
+
+Setting set(const char* key, double value) { return {key, value, ""}; }
+
+/// To the left edge, by formula: what a perfect lane edge sensor reads, but for its perpendicular.
+std::vector<double> edge_from(const world::World& world, const Pose& X_WM) {
+  const world::OnPath at = world::nearest(world.paths[0], transform(X_WM, {0.225, 0.0}));
+  return {0.5 * world.paths[0].pieces[at.piece].width - at.offset, 61, 0, 0};
+}
+
+/// Five elements over a line that is strongest above, columns as the magnetometer has them.
+std::vector<double> field_over(const world::World& world, const Pose& X_WM) {
+  std::vector<double> values;
+  for (int i = 0; i < 5; ++i) {
+    const double far = world::nearest(world.paths[0], transform(X_WM, {0.2, -0.15 + 0.075 * i})).offset;
+    const double field = 1.81 * sensors::kGauss / (1.0 + far * far / 0.015);
+    values.insert(values.end(), {field, 0.0, 0.0, field});
+  }
+  return values;
+}
+
+using Plant = Twist (*)(const Twist&);
+Twist ideal(const Twist& twist) { return twist; }
+// Player's driver for the Create: half the radius it was asked for, at most 2 m, in whole millimetres.
+Twist player_create(const Twist& twist) {
+  if (twist.turn == 0.0) return twist;
+  const double radius = std::clamp(std::trunc(std::trunc(1e3 * twist.forward / twist.turn) / 2.0), -2000.0, 2000.0);
+  return {twist.forward, 0.0, 1e3 * twist.forward / radius};
+}
+
+struct Drive {
+  double seconds = 0.0;
+  double mean = 0.0, mean_abs = 0.0, largest = 0.0;  // of the error
+  double farthest = 0.0;                             // [m] from the middle of the lane
+  double end = 0.0;                                  // [m] along the path
+};
+
+Drive drive(const world::World& world, Controller& controller, std::uint8_t kind,
+            const std::function<std::vector<double>(const Pose&)>& sense, Plant plant, Pose X_WM = {}) {
+  Drive result;
+  int steps = 0;
+  for (std::int64_t time = 0; time < 1000 * kTick; time += kTick) {
+    const std::vector<double> values = sense(X_WM);
+    const base::ReadingBlock block{
+        .kind = kind, .sequence = static_cast<std::uint32_t>(time / kTick), .time = time, .values = values};
+    const Twist twist = controller.step({.time = time, .state = {.X_WM = X_WM}, .readings = {&block, 1}});
+    if (controller.done()) break;
+    ++steps;
+    result.mean += controller.error();
+    result.mean_abs += std::abs(controller.error());
+    result.largest = std::max(result.largest, std::abs(controller.error()));
+    X_WM = robots::advance(X_WM, plant(twist), 0.1);
+    result.farthest = std::max(result.farthest, std::abs(world::nearest(world.paths[0], {X_WM.x, X_WM.y}).offset));
+  }
+  result.seconds = 0.1 * steps;
+  result.mean /= steps;
+  result.mean_abs /= steps;
+  result.end = world::nearest(world.paths[0], {X_WM.x, X_WM.y}).s;
+  return result;
+}
+
+Drive drive_lane(std::vector<Setting> settings, Plant plant, Pose X_WM = {}) {
+  const world::World world = path_world();
+  const auto controller = make(world, lane_keeping_controller, std::move(settings));
+  return drive(
+      world, *controller, sensors::kLaneEdge, [&](const Pose& X) { return edge_from(world, X); }, plant, X_WM);
+}
+
+// All turning is kp times the error: over a path that turns by 90 degrees the mean error is known beforehand.
+TEST(LaneKeeping, p_on_a_unicycle_has_the_mean_error_that_the_turn_needs) {
+  for (const double kp : {0.5, 0.8, 1.2}) {
+    const Drive d = drive_lane({set("kp", kp)}, ideal);
+    EXPECT_NEAR(d.mean * kp * d.seconds / (M_PI / 2), 1.0, 0.1) << "kp " << kp;
+    EXPECT_NEAR(d.seconds, 53, 3) << "5.28 m at 0.1 m/s";
+    EXPECT_LT(d.farthest, 0.25) << "in its lane, kp " << kp;
+  }
+}
+
+TEST(LaneKeeping, players_driver_about_halves_the_error) {
+  const Drive p = drive_lane({}, player_create), pi = drive_lane({set("ki", 0.015)}, player_create);
+  EXPECT_NEAR(p.mean, 0.027, 0.005) << "thesis: 0.022 to 0.030";
+  EXPECT_LT(pi.mean, 0.7 * p.mean);
+  EXPECT_GT(pi.mean, 0.0);
+}
+
+TEST(LaneKeeping, the_integral_lessens_the_mean_error) {
+  const Drive p = drive_lane({}, ideal), pi = drive_lane({set("ki", 0.015)}, ideal);
+  EXPECT_LT(std::abs(pi.mean), 0.7 * p.mean);
+  const Drive limited = drive_lane({set("ki", 0.015), set("integral_limit", 1e-6)}, ideal);
+  EXPECT_NEAR(limited.mean, p.mean, 1e-4) << "an integral of nothing is P";
+}
+
+TEST(LaneKeeping, ends_before_the_end) {
+  const double length = 2.72 + 0.93 * M_PI / 2 + 1.349;
+  EXPECT_NEAR(drive_lane({}, ideal).end, length - 0.25, 0.02);
+  EXPECT_NEAR(drive_lane({set("stop_before", 1.0)}, ideal).end, length - 1.0, 0.02);
+}
+
+TEST(LaneKeeping, comes_back_to_the_middle) {
+  const Drive d = drive_lane({set("stop_before", 3.2)}, ideal, {0, -0.15, 0, 0});
+  EXPECT_NEAR(d.largest, 0.15, 1e-9);
+  EXPECT_LT(d.farthest, 0.16);
+}
+
+// ---- One step at a time.
+
+struct Step {
+  double z;
+  double error;
+  double turn;
+  const char* why;
+};
+
+void step_through(Controller& controller, const std::vector<Step>& steps) {
+  std::int64_t time = 0;
+  std::uint32_t sequence = 0;
+  for (const Step& step : steps) {
+    const std::vector<double> values{step.z, 61, 0, 0};
+    const base::ReadingBlock block{.kind = sensors::kLaneEdge, .sequence = sequence++, .values = values};
+    const Twist twist = controller.step({.time = time, .state = {.X_WM = {0.5, 0, 0, 0}}, .readings = {&block, 1}});
+    if (std::isnan(step.error)) {
+      EXPECT_TRUE(std::isnan(controller.error())) << step.why;
+      EXPECT_EQ(twist.forward, 0.0) << step.why;
+    } else {
+      EXPECT_NEAR(controller.error(), step.error, 1e-12) << step.why;
+      EXPECT_EQ(twist.forward, 0.1) << step.why;
+    }
+    EXPECT_NEAR(twist.turn, step.turn, 1e-12) << step.why;
+    time += kTick;
+  }
+}
+
+TEST(LaneKeeping, error_and_trapezoid_by_hand) {
+  const world::World world = path_world();
+  const auto controller = make(world, lane_keeping_controller, {set("kp", 2.0), set("ki", 10.0)});
+  step_through(*controller, {{0.35, 0.1, 0.2, "right of the middle: to the left; no time has passed"},
+                             {0.45, 0.2, 0.4 + 10 * 0.015, "0.1 s of 0.1 to 0.2"},
+                             {0.15, -0.1, -0.2 + 10 * 0.02, "and of 0.2 to -0.1"}});
+}
+
+TEST(LaneKeeping, the_right_edge_mirrors) {
+  const world::World world = path_world(-M_PI / 2);  // a sensor that looks to the right
+  const auto controller = make(world, lane_keeping_controller);
+  step_through(*controller, {{0.35, -0.1, -0.05, "far from the right edge: left of the middle, to the right"}});
+}
+
+TEST(LaneKeeping, takes_a_width_instead_of_the_paths) {
+  const world::World world = path_world();
+  const auto controller = make(world, lane_keeping_controller, {set("half_width", 0.3)});
+  step_through(*controller, {{0.35, 0.05, 0.025, "half of 0.6 m"}});
+}
+
+TEST(LaneKeeping, without_an_edge_it_holds_then_stands_then_goes_on) {
+  const world::World world = path_world();
+  const auto controller = make(world, lane_keeping_controller, {set("kp", 1.0), set("ki", 1.0), set("hold", 0.25)});
+  step_through(*controller, {{0.35, 0.1, 0.1, "an edge"},
+                             {0.35, 0.1, 0.11, "still"},
+                             {kNaN, 0.1, 0.11, "0.1 s without"},
+                             {kNaN, 0.1, 0.11, "0.2 s: the integral rests"},
+                             {kNaN, kNaN, 0.0, "0.3 s: stands"},
+                             {0.35, 0.1, 0.11, "seen again: the gap is not integrated"},
+                             {0.35, 0.1, 0.12, "and on"}});
+}
+
+TEST(LaneKeeping, the_same_reading_again_counts_until_the_sensor_is_silent_for_long) {
+  const world::World world = path_world();
+  const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5), set("ki", 1.0)});
+  const std::vector<double> values{0.35, 61, 0, 0};
+  const base::ReadingBlock block{.kind = sensors::kLaneEdge, .sequence = 9, .values = values};
+  int moving = 0;
+  double last = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    const Twist twist = controller->step({.time = i * kTick, .readings = {&block, 1}});
+    moving += twist.forward > 0.0;
+    if (i == 5) last = twist.turn;
+  }
+  EXPECT_NEAR(last, 0.05 + 0.5 * 0.1, 1e-12) << "the thesis' loop met readings twice, and integrated them";
+  EXPECT_GE(moving, 6);
+  EXPECT_LE(moving, 12) << "silence is no edge";
+}
+
+TEST(LaneKeeping, stands_without_any_reading) {
+  const world::World world = path_world();
+  const auto controller = make(world, lane_keeping_controller);
+  EXPECT_EQ(controller->step({}).forward, 0.0);
+  const std::vector<double> nothing;
+  const base::ReadingBlock empty{.kind = sensors::kLaneEdge, .values = nothing};
+  EXPECT_EQ(controller->step({.readings = {&empty, 1}}).forward, 0.0);
+}
+
+// ---- Magnets.
+
+Drive drive_magnets(std::vector<Setting> settings, Pose X_WM = {}) {
+  const world::World world = path_world();
+  const auto controller = make(world, magnet_keeping_controller, std::move(settings));
+  return drive(
+      world, *controller, sensors::kMagnetometer, [&](const Pose& X) { return field_over(world, X); }, ideal, X_WM);
+}
+
+TEST(MagnetKeeping, p_on_a_unicycle_has_the_mean_error_that_the_turn_needs) {
+  for (const double kp : {0.15, 0.2, 0.4}) {
+    const Drive d = drive_magnets({set("kp", kp)});
+    EXPECT_NEAR(d.mean * kp * d.seconds / (M_PI / 2), 1.0, 0.1) << "kp " << kp;
+    EXPECT_LT(d.farthest, 0.25) << "kp " << kp;
+    EXPECT_GT(d.end, 5.0);
+  }
+  const Drive p = drive_magnets({}), pi = drive_magnets({set("ki", 0.02)});
+  EXPECT_LT(std::abs(pi.mean), 0.7 * p.mean);
+}
+
+TEST(MagnetKeeping, takes_the_outermost_elements_in_gauss) {
+  const world::World world = path_world();
+  const auto controller = make(world, magnet_keeping_controller, {set("kp", 0.5)});
+  const std::vector<double> values{0.2e-4, 9, 9, 9, 7, 9, 9, 9, 0.8e-4, 9, 9, 9};  // [T], three elements
+  const base::ReadingBlock block{.kind = sensors::kMagnetometer, .values = values};
+  EXPECT_NEAR(controller->step({.readings = {&block, 1}}).turn, 0.3, 1e-12);
+  EXPECT_NEAR(controller->error(), 0.6, 1e-12);
+}
+
+TEST(MagnetKeeping, one_element_or_none_is_no_array) {
+  const world::World world = path_world();
+  const std::vector<double> one{1e-4, 0, 0, 0};
+  const base::ReadingBlock block{.kind = sensors::kMagnetometer, .values = one};
+  const auto controller = make(world, magnet_keeping_controller);
+  EXPECT_EQ(controller->step({.readings = {&block, 1}}).forward, 0.0);
+  EXPECT_TRUE(std::isnan(controller->error()));
+  EXPECT_EQ(controller->step({}).forward, 0.0);
+}
+
+}  // namespace
+}  // namespace sf::control

@@ -1,0 +1,85 @@
+#include "control/patrol.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "robots/motion.h"
+#include "tests/robots/scenes.h"
+
+namespace sf::control {
+namespace {
+
+using base::Pose;
+using base::Vec2;
+
+constexpr std::int64_t kTick = 100'000'000;
+
+struct Walk {
+  std::vector<std::size_t> targets;  // one after another
+  Pose X_WM;
+  double standing = 0.0;  // [s]
+};
+
+Walk walk(Patrol& patrol, const Pose& from, int ticks, const std::vector<Neighbour>& others = {},
+          world::Drive how = world::Drive::differential) {
+  world::Mover mover;
+  mover.drive = how;
+  mover.wheelbase = 0.1;
+  Walk walk{.targets = {patrol.target()}, .X_WM = from};
+  for (int i = 0; i < ticks; ++i) {
+    const base::Twist twist = patrol.step({.time = i * kTick, .state = {.X_WM = walk.X_WM}, .others = others});
+    if (twist.forward == 0.0 && twist.turn == 0.0) walk.standing += 0.1;
+    walk.X_WM = robots::advance(walk.X_WM, robots::follow(mover, twist), 0.1);
+    if (patrol.target() != walk.targets.back()) walk.targets.push_back(patrol.target());
+  }
+  return walk;
+}
+
+TEST(Patrol, goes_to_the_last_point_and_back) {
+  Patrol patrol({.points = {{0, 0}, {1, 0}, {1, 1}}});
+  EXPECT_EQ(walk(patrol, {}, 600).targets, (std::vector<std::size_t>{0, 1, 2, 1, 0, 1, 2}));
+}
+
+TEST(Patrol, one_point_is_gone_to_and_kept) {
+  Patrol patrol({.points = {{1, 0}}});
+  const Walk w = walk(patrol, {}, 300);
+  EXPECT_NEAR(w.X_WM.x, 1.0, 0.03 + 1e-9);
+  EXPECT_GT(w.standing, 15.0);
+}
+
+TEST(Patrol, pauses_at_the_ends_alone) {
+  Patrol patrol({.points = {{0, 0}, {0.5, 0}, {1, 0}}, .pause = 3.0});
+  const Walk w = walk(patrol, {}, 600);
+  EXPECT_GE(w.standing, 6.0) << "at both ends, at least once";
+  EXPECT_LE(w.standing, 13.0);
+}
+
+TEST(Patrol, a_car_comes_round) {
+  Patrol patrol({.points = {{0, 0}, {2, 0}}, .reach = 0.1, .turns_in_place = false});
+  EXPECT_GE(walk(patrol, {0, 0, 0, 1.0}, 900, {}, world::Drive::car).targets.size(), 4u);
+}
+
+struct Standing {
+  Vec2 other;
+  bool stands;
+  const char* why;
+};
+
+TEST(Patrol, stands_for_others_in_its_way) {
+  for (const Standing& s : {Standing{{0.4, 0.0}, true, "ahead"}, Standing{{0.47, 0.0}, false, "beyond 0.165 + 0.3 m"},
+                            Standing{{-0.3, 0.0}, false, "behind"}, Standing{{0.3, 0.34}, false, "beside its lane"},
+                            Standing{{0.3, -0.32}, true, "half in its lane"}}) {
+    Patrol patrol({.points = {{0, 0}, {5, 0}}});
+    const std::vector<Neighbour> others{{.id = 2, .state = {.X_WM = {s.other.x, s.other.y, 0, 0}}}};
+    EXPECT_EQ(walk(patrol, {}, 1, others).standing > 0.0, s.stands) << s.why;
+    EXPECT_GE(patrol.radio(), length(s.other));
+  }
+  Patrol patrol({.points = {{0, 0}, {5, 0}}});
+  const Pose turned{1, 1, 0, M_PI / 2};
+  const std::vector<Neighbour> above{{.id = 2, .state = {.X_WM = {1, 1.4, 0, 0}}}};
+  EXPECT_GT(walk(patrol, turned, 1, above).standing, 0.0) << "ahead is where it looks";
+}
+
+}  // namespace
+}  // namespace sf::control

@@ -1,0 +1,169 @@
+#include "control/shell.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "tests/robots/scenes.h"
+
+namespace sf::control {
+namespace {
+
+// Counts its steps, and is done after some.
+class Counting final : public Controller {
+ public:
+  explicit Counting(int steps, int& count) : steps_(steps), count_(count) {}
+  base::Twist step(const Input&) override { return {1.0 + ++count_, 0.0, 0.0}; }
+  base::Intent intent() const override { return {.follows = 7}; }
+  double radio() const override { return 3.0; }
+  bool done() const override { return count_ >= steps_; }
+  double error() const override { return 0.5; }
+
+ private:
+  int steps_;
+  int& count_;
+};
+
+struct Moment {
+  bool contact, started;
+  ShellState state;
+  bool moves;
+  const char* why;
+};
+
+void live(const ShellSettings& settings, std::initializer_list<Moment> moments, int steps = 100) {
+  int count = 0;
+  Shell shell(std::make_unique<Counting>(steps, count), settings);
+  EXPECT_EQ(shell.state(), ShellState::start);
+  std::int64_t time = 0;
+  for (const Moment& m : moments) {
+    const int before = count;
+    const base::Twist twist = shell.step({.time = time += 100, .contact = m.contact, .started = m.started});
+    EXPECT_EQ(shell.state(), m.state) << m.why;
+    EXPECT_EQ(twist.forward != 0.0, m.moves) << m.why;
+    EXPECT_EQ(std::isfinite(shell.error()), count > before) << m.why;
+  }
+}
+
+constexpr auto kStart = ShellState::start, kControl = ShellState::control, kWait = ShellState::wait,
+               kStop = ShellState::stop;
+
+TEST(Shell, starts_at_once_or_on_the_signal) {
+  live({.on_signal = false}, {{false, false, kControl, true, "no signal is needed"}});
+  live({.on_signal = true}, {{false, false, kStart, false, "no signal yet"},
+                             {true, false, kStart, false, "a bumper is no signal"},
+                             {false, true, kControl, true, "the signal"},
+                             {false, false, kControl, true, "given once is enough"}});
+}
+
+TEST(Shell, waits_while_the_bumper_is_pressed) {
+  live({}, {{false, true, kControl, true, "free"},
+            {true, true, kWait, false, "pressed"},
+            {true, true, kWait, false, "still pressed"},
+            {false, true, kControl, true, "released: back to the state before"},
+            {true, true, kWait, false, "and again"}});
+  live({}, {{true, true, kWait, false, "pressed when it starts"}, {false, true, kControl, true, "released"}});
+  live({.wait_on_bumper = false}, {{true, true, kControl, true, "it looks after itself"}});
+}
+
+TEST(Shell, stops_for_good_when_the_controller_is_done) {
+  live({},
+       {{false, true, kControl, true, "first step"},
+        {false, true, kStop, false, "done with the second"},
+        {true, true, kStop, false, "a bumper changes nothing"},
+        {false, true, kStop, false, "nor does its release"}},
+       2);
+}
+
+TEST(Shell, passes_on_what_the_controller_tells) {
+  int count = 0;
+  const Shell shell(std::make_unique<Counting>(1, count), {});
+  EXPECT_EQ(shell.intent().follows, 7u);
+  EXPECT_EQ(shell.radio(), 3.0);
+  EXPECT_FALSE(shell.done());
+}
+
+// ---- By name.
+
+Plan plan_of(std::string name, std::vector<Setting> settings = {}) {
+  return {.controller = name, .rate = 0.0, .settings = Settings("controller '" + name + "'", std::move(settings))};
+}
+
+world::World small_world() {
+  world::World world = scenes::boxed_world(4, 4);
+  scenes::add_create(world, {2, 2, 0, 0}).lasers.push_back({});
+  return world;
+}
+
+const Shell& made_shell(const Made& made) { return dynamic_cast<const Shell&>(*made.controller); }
+
+TEST(MakeController, puts_every_kind_into_a_shell_with_its_own_defaults) {
+  const world::World world = small_world();
+  Made wander = make_controller({world}, plan_of("wander"));
+  Made avoid = make_controller({world}, plan_of("avoid"));
+  const Input pressed{.state = {.X_WM = {2, 2, 0, 0}}, .contact = true};
+  wander.controller->step(pressed);
+  avoid.controller->step(pressed);
+  EXPECT_EQ(made_shell(wander).state(), kControl) << "wander looks after itself";
+  EXPECT_EQ(made_shell(avoid).state(), kWait);
+}
+
+TEST(MakeController, takes_the_settings_of_the_shell) {
+  const world::World world = small_world();
+  Made made =
+      make_controller({world}, plan_of("wander", {{"start", std::string("signal"), ""}, {"wait_on_bumper", true, ""}}));
+  made.controller->step({.started = false});
+  EXPECT_EQ(made_shell(made).state(), kStart);
+  made.controller->step({.contact = true, .started = true});
+  EXPECT_EQ(made_shell(made).state(), kWait);
+}
+
+std::string refusal(const world::World& world, Plan plan) {
+  try {
+    make_controller({world}, std::move(plan));
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+struct Refused {
+  const char* controller;
+  std::vector<Setting> settings;
+  const char* says;
+};
+
+TEST(MakeController, refuses_by_name) {
+  const world::World world = small_world();
+  const std::string at = "s.toml:3: ";
+  const std::vector<Refused> cases = {
+      {"wanter", {}, "expected one of: avoid, docking, explore, lane-keeping, magnet-keeping, patrol"},
+      {"wander", {{"start", std::string("later"), at}}, "s.toml:3: 'start' of controller 'wander' is 'later'"},
+      {"wander", {{"wait_on_bumper", 1.0, at}}, "expects true or false"},
+      {"wander", {{"kp", 1.0, at}}, "has no setting 'kp'; expected one of: start, wait_on_bumper"},
+      {"lane-keeping", {}, "needs the lane's width"},
+      {"lane-keeping", {{"half_width", 0.0, at}}, "'half_width'"},
+      {"lane-keeping", {{"half_width", 0.3, at}, {"kp", -1.0, at}}, "s.toml:3: 'kp'"},
+      {"lane-keeping", {{"half_width", 0.3, at}, {"speed", 9.0, at}}, "'speed'"},
+      {"lane-keeping", {{"half_width", 0.3, at}, {"side", std::string("up"), at}}, "expected one of: left, right"},
+      {"magnet-keeping", {{"integral_limit", 0.0, at}}, "'integral_limit'"},
+      {"avoid", {{"turn", 0.3, at}, {"clear", 0.2, at}}, "'clear' of controller 'avoid' expects a number from 0.3"},
+      {"patrol", {}, "'points' of controller 'patrol' expects pairs"},
+      {"patrol", {{"points", std::vector<double>{1, 2, 3}, at}}, "s.toml:3: 'points'"},
+      {"patrol", {{"points", std::vector<double>{1, NAN}, at}}, "'points'"},
+      {"docking", {}, "the world has none"},
+      {"docking", {{"dock", std::string("home"), at}}, "s.toml:3: the world has no dock 'home'"},
+      {"explore", {{"map_width", 100.0, at}, {"map_height", 100.0, at}}, "too large"},
+      {"explore", {{"margin", 0.01, at}, {"least_margin", 0.02, at}}, "'least_margin'"},
+  };
+  for (const Refused& refused : cases) {
+    const std::string says = refusal(world, plan_of(refused.controller, refused.settings));
+    EXPECT_NE(says.find(refused.says), std::string::npos) << refused.controller << ": " << says;
+  }
+  world::World bare = scenes::boxed_world(4, 4);
+  scenes::add_create(bare, {2, 2, 0, 0});
+  EXPECT_NE(refusal(bare, plan_of("explore")).find("has no laser"), std::string::npos);
+  EXPECT_NE(refusal(bare, plan_of("avoid")).find("has no laser"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sf::control
