@@ -311,21 +311,35 @@ namespace {
 
 enum class Relation { none, meets, yields };
 
-/// How way `a` stands to way `b`, rows of both given.
-Relation relation(const Way& a, std::uint32_t, const Way& b, std::uint32_t row_b) {
+/// How way `a` stands to way `b`, rows of lanes given.
+Relation relation(const Way& a, std::uint32_t row_a, const Way& b, std::uint32_t row_b) {
   if (a.kind == Way::Kind::zone || b.kind == Way::Kind::zone) return Relation::none;
   const bool lane_a = a.kind == Way::Kind::lane, lane_b = b.kind == Way::Kind::lane;
   if (lane_a && lane_b) return Relation::meets;
-  if (lane_b) {
-    if (a.from == row_b) return Relation::none;
-    if (a.into == row_b) return a.enter > 0.0 ? Relation::yields : Relation::none;
-    return a.at_end || a.from == world::kNone ? Relation::meets : Relation::yields;
+  if (lane_a || lane_b) {
+    const Way& other = lane_a ? b : a;
+    const std::uint32_t lane = lane_a ? row_a : row_b;
+    if (other.from == lane) return Relation::none;
+    if (other.into != lane) return Relation::meets;
+    // Lanes do not wait for who comes into them in their course.
+    return lane_b && a.enter > 0.0 ? Relation::yields : Relation::none;
   }
-  if (!lane_a && a.from != world::kNone && a.from == b.from && a.leave == b.leave) return Relation::none;
-  return Relation::meets;
+  // From one lane, or one after the other: they follow each other.
+  const bool side_by_side =
+      a.from != world::kNone && a.from == b.from && (a.leave == b.leave || !a.at_end || !b.at_end);
+  const bool in_turn = (a.into != world::kNone && a.into == b.from) || (b.into != world::kNone && b.into == a.from);
+  return side_by_side || in_turn ? Relation::none : Relation::meets;
 }
 
 }  // namespace
+
+// Lanes of one segment run side by side; others may be one road.
+bool Corridors::joined(std::uint32_t a, std::uint32_t b) const {
+  if (roads_.lanes[a].segment == roads_.lanes[b].segment) return true;
+  return std::any_of(ways_.begin(), ways_.end(), [&](const Way& way) {
+    return (way.from == a && way.into == b) || (way.from == b && way.into == a);
+  });
+}
 
 void Corridors::find_meetings() {
   for (std::uint32_t way = 0; way < ways_.size(); ++way) find_meetings(way);
@@ -358,12 +372,18 @@ void Corridors::find_meetings(std::uint32_t row) {
     const Way& other = ways_[f.way];
     const Relation kind = relation(way, row, other, f.way);
     if (kind == Relation::none) continue;
-    // Lanes do not wait for who comes into them in their course.
-    if (way.kind == Way::Kind::lane && relation(other, f.way, way, row) != Relation::meets) continue;
-    if (way.kind == Way::Kind::lane && other.kind == Way::Kind::lane &&
-        roads_.lanes[row].segment == roads_.lanes[f.way].segment)
-      continue;
-    meetings.push_back({f.way, f.from * way.step, f.to * way.step, f.other_from * other.step, f.other_to * other.step,
+    const bool lane = way.kind == Way::Kind::lane, other_lane = other.kind == Way::Kind::lane;
+    if (lane && other_lane && joined(row, f.way)) continue;
+    // What passes a lane's very end meets the exits there.
+    const double end = 0.7 * body_.radius;
+    const auto at_end = [&](const Way& w, std::uint32_t first, std::uint32_t last) {
+      return last * w.step < end || first * w.step > w.length - end;
+    };
+    if (lane != other_lane && (lane ? at_end(way, f.from, f.to) : at_end(other, f.other_from, f.other_to))) continue;
+    // Between samples the ways may be that near already.
+    const auto low = [](const Way& w, std::uint32_t i) { return i > 0 ? (i - 1) * w.step : 0.0; };
+    const auto high = [](const Way& w, std::uint32_t i) { return std::min((i + 1) * w.step, w.length); };
+    meetings.push_back({f.way, low(way, f.from), high(way, f.to), low(other, f.other_from), high(other, f.other_to),
                         kind == Relation::yields});
   }
   make_gates(way, std::move(meetings));

@@ -133,6 +133,7 @@ class Corridors {
   void fill_grid();
   void find_meetings();
   void find_meetings(std::uint32_t way);
+  bool joined(std::uint32_t a, std::uint32_t b) const;
   void make_gates(Way& way, std::vector<Meeting> meetings) const;
   void make_lines();
   template <class F>

@@ -96,12 +96,12 @@ void RightOfWay::find_approach(Driver& driver, std::span<const world::Signal> si
 void RightOfWay::remember(Driver& driver, std::int64_t time) {
   Approach& approach = driver.approach;
   if (approach.lane == world::kNone || !approach.first || approach.ahead > kApproach) return;
-  const auto known = std::find_if(arrivals_.begin(), arrivals_.end(), [&](const Arrival& arrival) {
+  auto known = std::find_if(arrivals_.begin(), arrivals_.end(), [&](const Arrival& arrival) {
     return arrival.id == driver.id && arrival.lane == approach.lane && arrival.line == approach.line;
   });
   if (known == arrivals_.end())
-    arrivals_.push_back({driver.id, approach.lane, approach.line, time, time, false, false});
-  Arrival& arrival = known == arrivals_.end() ? arrivals_.back() : *known;
+    known = arrivals_.insert(arrivals_.end(), {driver.id, approach.lane, approach.line, time, time, false, false});
+  Arrival& arrival = *known;
   arrival.seen = time;
   const bool stands = driver.speed < kStanding && std::abs(approach.ahead) < 0.5 * corridors_.body().radius;
   arrival.stood = arrival.stood || stands;
@@ -141,6 +141,8 @@ bool RightOfWay::is_in_way(const Driver& other, const Meeting& meeting, const Ap
     }
     // Who is on the lane that this way comes into goes first, in time to pass.
     if (meeting.yields) {
+      // Of two that stand abreast and want to change places, one has to begin.
+      if (other.speed < kStanding && drivers_.front().id < other.id) continue;
       if (place.s > meeting.other_from - 2.0 * corridors_.body().radius - 2.5 * other.speed) return true;
       continue;
     }

@@ -1,0 +1,131 @@
+#pragma once
+// A fleet on SimVille's streets, host only: everyone drives by V2V, contacts are what Fleet says.
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "control/controllers.h"
+#include "control/route.h"
+#include "control/route_plan.h"
+#include "robots/fleet.h"
+#include "tests/robots/scenes.h"
+#include "world/roads/roads.h"
+
+namespace sf::traffic {
+
+using base::Pose;
+using base::Twist;
+using base::Vec2;
+using control::Setting;
+
+inline constexpr std::int64_t kTick = 100'000'000;
+
+inline world::RoadNetwork simville() {
+  std::vector<world::Warning> warnings;
+  return world::load_roads(SF_SOURCE_DIR "/worlds/simville/simville.rndf", warnings);
+}
+
+/// Pose on a lane, `s` metres along it.
+inline Pose on_lane(const world::RoadNetwork& roads, const std::string& name, double s) {
+  for (const world::RoadLane& lane : roads.lanes) {
+    if (name_of(roads, lane) != name) continue;
+    const Vec2 p = point_at(lane.centre, s);
+    const Vec2 d = point_at(lane.centre, s + 0.01) - point_at(lane.centre, s - 0.01);
+    return {p.x, p.y, 0.0, std::atan2(d.y, d.x)};
+  }
+  return {};
+}
+
+/// The lights of SimVille as a test has them: one phase plan for some stop lines.
+inline world::Light light(const std::string& name, std::vector<std::string> points,
+                          std::vector<world::LightPhase> phases, double offset = 0.0) {
+  world::Light light;
+  light.name = name;
+  light.points = std::move(points);
+  light.phases = std::move(phases);
+  light.offset = offset;
+  return light;
+}
+
+class Streets {
+ public:
+  Streets() : roads(simville()), world(scenes::empty_world()) {}
+  explicit Streets(const world::RoadNetwork& network) : roads(network), world(scenes::empty_world()) {}
+
+  /// The two crossings with lights, each 20 s: red ways alternate.
+  void add_lights() {
+    using enum world::LightState;
+    const std::vector<world::LightPhase> plan{{green, 8.0}, {yellow, 2.0}, {red, 10.0}};
+    world.lights = {light("a", {"6.1.3", "7.2.4"}, plan), light("b", {"10.2.3", "11.1.3"}, plan, 10.0),
+                    light("c", {"3.1.11", "4.2.5"}, plan), light("d", {"12.1.7"}, plan, 10.0)};
+  }
+
+  void add(const Pose& X_WM, const std::string& controller, std::vector<Setting> settings) {
+    scenes::add_create(world, X_WM);
+    plans_.push_back({controller, std::move(settings)});
+  }
+
+  void begin(std::uint64_t seed = 1) {
+    fleet = std::make_unique<robots::Fleet>(world);
+    for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
+      control::Settings settings("controller '" + plans_[row].controller + "'", plans_[row].settings);
+      const control::Site site{world, row, seed, &roads};
+      controllers.push_back(control::find_controller(plans_[row].controller)->make(site, settings));
+      settings.require_all_read();
+    }
+    commands_.resize(world.movers.size());
+    intents.resize(world.movers.size());
+  }
+
+  void tick() {
+    const auto reports = fleet->reports();
+    signals.clear();
+    for (const world::Light& light : world.lights) signals.push_back(signal_at(light, 1e-9 * double(time)));
+    std::vector<control::Neighbour> others;
+    for (std::uint32_t row = 0; row < controllers.size(); ++row) {
+      others.clear();
+      for (std::uint32_t o = 0; o < controllers.size(); ++o) {
+        const Vec2 d{reports[o].X_WM.x - reports[row].X_WM.x, reports[o].X_WM.y - reports[row].X_WM.y};
+        if (o != row && length(d) <= controllers[row]->radio())
+          others.push_back({world.movers[o].id, reports[o], intents[o]});
+      }
+      commands_[row] = controllers[row]->step({.time = time,
+                                               .state = reports[row],
+                                               .readings = {},
+                                               .contact = fleet->contacts()[row] != 0,
+                                               .others = others,
+                                               .signals = signals});
+    }
+    for (std::uint32_t row = 0; row < controllers.size(); ++row) intents[row] = controllers[row]->intent();
+    fleet->move(commands_, kTick);
+    for (const auto contact : fleet->contacts()) contacts += contact;
+    time += kTick;
+  }
+
+  const Pose& pose(std::uint32_t row) const { return fleet->reports()[row].X_WM; }
+  control::Route& route(std::uint32_t row) { return static_cast<control::Route&>(*controllers[row]); }
+  double distance(std::uint32_t a, std::uint32_t b) const {
+    return std::hypot(pose(a).x - pose(b).x, pose(a).y - pose(b).y);
+  }
+
+  world::RoadNetwork roads;
+  world::World world;
+  std::unique_ptr<robots::Fleet> fleet;
+  std::vector<std::unique_ptr<control::Controller>> controllers;
+  std::vector<base::Intent> intents;
+  std::vector<world::Signal> signals;
+  std::int64_t time = 0;
+  int contacts = 0;
+
+ private:
+  struct Asked {
+    std::string controller;
+    std::vector<Setting> settings;
+  };
+  std::vector<Asked> plans_;
+  std::vector<Twist> commands_;
+};
+
+}  // namespace sf::traffic
