@@ -28,7 +28,7 @@ void add_noise(world::Mover& mover, const Disturbance& d) {
                                    [](const world::Setting& s) { return s.key == "noise"; });
     if (noisy) continue;
     if (sensor.type == "laneedge" && d.edge_noise > 0.0)
-      sensor.settings.push_back({"noise", {d.edge_noise / sensor.metres}, "", sensor.line, sensor.file});
+      sensor.settings.push_back({"noise", {d.edge_noise / sensor.metres, 0.0, 0.0}, "", sensor.line, sensor.file});
     if (sensor.type == "magnetometer" && d.field_noise > 0.0)
       sensor.settings.push_back({"noise", {d.field_noise}, "", sensor.line, sensor.file});
   }
