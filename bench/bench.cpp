@@ -19,6 +19,7 @@
 #include "bench/field_contest.h"
 #include "bench/grid.h"
 #include "bench/lane_contest.h"
+#include "bench/map_contest.h"
 #include "bench/report.h"
 #include "tests/sensors/scenes.h"
 
@@ -36,6 +37,7 @@ struct Session {
   std::vector<FieldOutcome> fields;
   std::vector<LaneOutcome> lanes;
   std::vector<ConeOutcome> cones;
+  std::vector<MapOutcome> maps;
 };
 
 struct ScanCase {
@@ -145,6 +147,22 @@ void tell_cones(benchmark::State& state, Session& session, std::uint32_t robots)
     state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
 }
 
+struct MapCase {
+  const char* name;
+  std::uint32_t robots;
+  double range;  ///< [m]
+  bool weighs;
+};
+constexpr MapCase kMapCases[] = {{"maps/1000/0.75m", 1'000, 0.75, false},
+                                 {"maps/1000/0.75m/log_odds", 1'000, 0.75, true},
+                                 {"maps/200/8m", 200, 8.0, false}};
+constexpr std::size_t kMapTurns = 25;
+
+void tell_maps(benchmark::State& state, Session& session, const MapCase& c) {
+  for (auto _ : state) session.maps.push_back(compete_maps(session.device, c.robots, c.range, c.weighs, kMapTurns));
+  for (const MapEntrant& e : session.maps.back().entrants) state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
+}
+
 void tell_facts(benchmark::State& state, Session& session, const std::function<std::vector<Fact>()>& measure) {
   for (auto _ : state)
     for (const Fact& fact : measure()) {
@@ -181,6 +199,8 @@ void register_all(Session& session) {
   for (const std::uint32_t robots : kConeCases)
     once(benchmark::RegisterBenchmark(fmt::format("sonar/cave/{}", robots).c_str(),
                                       [&session, robots](benchmark::State& s) { tell_cones(s, session, robots); }));
+  for (const MapCase& c : kMapCases)
+    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_maps(s, session, c); }));
   once(benchmark::RegisterBenchmark("start",
                                     [&session](benchmark::State& s) { tell_facts(s, session, measure_start); }));
   once(benchmark::RegisterBenchmark("small_ticks", [&session](benchmark::State& s) {
@@ -208,8 +228,9 @@ int run(int argc, char** argv) {
   if (!folder.empty()) write_csv(session.fields, folder);
   if (!folder.empty()) write_lanes(session.lanes, folder);
   if (!folder.empty()) write_cones(session.cones, folder);
-  fmt::print("{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
-             cone_table(session.cones));
+  if (!folder.empty()) write_maps(session.maps, folder);
+  fmt::print("{}{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
+             cone_table(session.cones), map_table(session.maps));
   return 0;
 }
 

@@ -66,7 +66,7 @@ class Mapper {
   virtual ~Mapper() = default;
   virtual std::string name() const = 0;
   virtual void update(const Round& round) = 0;
-  virtual std::span<const std::uint32_t> words(std::uint32_t map) const = 0;
+  virtual std::vector<std::uint32_t> words(std::uint32_t map) const = 0;
 };
 
 class FarmMapper : public Mapper {
@@ -80,7 +80,10 @@ class FarmMapper : public Mapper {
     for (std::uint32_t i = 0; i < wanted_.size(); ++i) scans_.push_back({i, round.X_WS[i], round.ranges[i]});
     batch_.update(scans_, wanted_);
   }
-  std::span<const std::uint32_t> words(std::uint32_t map) const override { return batch_.words(map); }
+  std::vector<std::uint32_t> words(std::uint32_t map) const override {
+    const auto words = batch_.words(map);
+    return {words.begin(), words.end()};
+  }
 
  private:
   base::Workers workers_;
@@ -111,16 +114,15 @@ class PlainMapper : public Mapper {
       }
     });
   }
-  std::span<const std::uint32_t> words(std::uint32_t map) const override {
-    if (weighs_) grids_[map] = maps::states_of(odds_[map]);
-    return grids_[map].words;
+  std::vector<std::uint32_t> words(std::uint32_t map) const override {
+    return weighs_ ? maps::states_of(odds_[map]).words : grids_[map].words;
   }
 
  private:
   base::Workers workers_;
   const std::vector<sensors::MapPlan>& plans_;
   bool weighs_;
-  mutable std::vector<maps::Grid> grids_;
+  std::vector<maps::Grid> grids_;
   std::vector<maps::OddsGrid> odds_;
   std::vector<base::Vec2> beams_;
   std::vector<std::vector<std::uint32_t>> ends_;  ///< per thread
@@ -131,7 +133,7 @@ void judge(const Mapper& mapper, const Mapper& plain, std::size_t robots, MapEnt
     const auto words = mapper.words(i);
     const auto right = plain.words(i);
     for (std::size_t w = 0; w < right.size(); ++w) entrant.different += words[w] != right[w];
-    entrant.hash = base::hash_bytes(words.data(), words.size_bytes(), entrant.hash);
+    entrant.hash = base::hash_bytes(words.data(), 4 * words.size(), entrant.hash);
   }
 }
 

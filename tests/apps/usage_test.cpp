@@ -11,8 +11,8 @@ namespace sf {
 
 namespace {
 
-const Words kSubcommands{"devices", "check", "draw", "sense",  "run",  "serve",
-                         "robot",   "start", "plot", "listen", "field"};
+const Words kSubcommands{"devices", "check", "draw", "sense",  "run",   "serve",
+                         "robot",   "start", "plot", "listen", "field", "map"};
 
 struct Wrong {
   Words arguments;
@@ -58,6 +58,7 @@ TEST(Usage, HelpNamesTheOptions) {
       {"start", {"--robot", "--server", "--port"}},
       {"plot", {"-o,--out"}},
       {"field", {"--height", "-o,--out", "--line", "--extent", "--csv", "--device"}},
+      {"map", {"--listen", "--bind", "--merge", "-o,--out", "--duration", "--once", "--silence", "--wire"}},
       {"listen", {"--robots", "--json", "--wire"}}};
   for (const auto& [name, words] : options) {
     const std::string help = run_program({name, "--help"}).out;

@@ -82,10 +82,9 @@ TEST(MapRule, BesideTheMap) {
   const Grid out = one_beam({9.5, 9.5, 0, 0}, 7.0, 8.0);
   EXPECT_EQ(text_of(out).substr(2 * 13, 12), "000000000   ") << "its end is outside";
   EXPECT_EQ(count(one_beam({-5.5, 9.5, 0, 0}, 4.0, 8.0)).unexplored, 144u);
-  for (const double far : {1e9, 1e300, std::numeric_limits<double>::infinity(), std::nan("")}) {
-    EXPECT_EQ(count(one_beam({far, 0, 0, 0}, 4.0, 8.0)).unexplored, 144u) << far;
-    EXPECT_EQ(count(one_beam({0, 0, 0, far == 1e9 ? std::nan("") : 0.0}, 4.0, 8.0)).free, far == 1e9 ? 0u : 4u);
-  }
+  for (const double far : {1e9, 1e300, std::numeric_limits<double>::infinity(), std::nan("")})
+    EXPECT_EQ(count(one_beam({far, 9.5, 0, 0}, 4.0, 8.0)).unexplored, 144u) << far;
+  EXPECT_EQ(count(one_beam({2.5, 9.5, 0, std::nan("")}, 4.0, 8.0)).unexplored, 144u);
 }
 
 TEST(MapRule, FarFromTheOriginTheSameCells) {

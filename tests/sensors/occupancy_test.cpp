@@ -1,1 +1,292 @@
+// Occupancy maps as a kind of sensor: settings, ticks, packets.
 
+#include "sensors/occupancy.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "farm/farm.h"
+#include "maps/packets.h"
+#include "tests/sensors/map_scans.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using sensors::Wire;
+
+gpu::Device& device() {
+  static gpu::Device device;
+  return device;
+}
+
+world::Sensor map_sensor(std::vector<world::Setting> settings = {}) {
+  world::Sensor sensor;
+  sensor.type = "occupancy";
+  sensor.name = "map";
+  sensor.radians = M_PI / 180.0;
+  sensor.settings = std::move(settings);
+  sensor.line = 9;
+  sensor.file = "a.world";
+  return sensor;
+}
+
+world::Setting numbers(const std::string& key, std::vector<double> values) {
+  return {key, std::move(values), "", 12, "a.world"};
+}
+world::Setting text(const std::string& key, const std::string& value) { return {key, {}, value, 13, "a.world"}; }
+
+/// Robots among boxes with the thesis' laser at 13 Hz, each with a map.
+world::World mapped(std::uint32_t robots, const std::vector<world::Setting>& settings = {}) {
+  world::World world = scenes::boxes(20, 12.0, 3);
+  world::Laser laser = scenes::laser(181, M_PI, 0.75);
+  laser.name = "laser";
+  laser.rate = 10.0;
+  scenes::add_robots(world, robots, laser, 5);
+  for (world::Mover& mover : world.movers) mover.sensors.push_back(map_sensor(settings));
+  return world;
+}
+
+sensors::Occupancy only(const world::World& world) { return sensors::occupancies_of(world).at(0); }
+
+void expect_refused(const std::vector<world::Setting>& settings, const std::string& said) {
+  try {
+    sensors::occupancies_of(mapped(1, settings));
+    ADD_FAILURE() << "not refused: " << said;
+  } catch (const base::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).rfind("a.world:", 0), 0u) << error.what();
+  }
+}
+
+TEST(OccupancySettings, Defaults) {
+  const world::World world = mapped(1);
+  const sensors::Occupancy map = only(world);
+  EXPECT_EQ(map.row.rate, 1.0);
+  EXPECT_EQ(map.row.elements, 900u);
+  EXPECT_EQ(map.plan.grid.cell, 0.03);
+  EXPECT_FALSE(map.plan.odds);
+  EXPECT_EQ(map.plan.samples, 181u);
+  EXPECT_EQ(map.plan.range_max, 0.75);
+  const base::Pose& X = world.movers[0].X_WM;
+  EXPECT_NEAR(map.plan.grid.left + 1.8, X.x, 0.0151) << "centred, to the cell";
+  EXPECT_NEAR(map.plan.grid.top - 1.8, X.y, 0.0151);
+  EXPECT_NEAR(std::remainder(map.plan.grid.left, 0.03), 0.0, 1e-9) << "on a lattice that all such maps share";
+}
+
+TEST(OccupancySettings, AsWritten) {
+  const sensors::Occupancy map =
+      only(mapped(1, {numbers("cell", {0.05}), numbers("words", {20, 10}), numbers("offset", {0.25, -1.75}),
+                      numbers("rate", {2}), numbers("log_odds", {70, 30, 500}), text("laser", "laser")}));
+  EXPECT_EQ(map.plan.grid, (maps::GridPlan{-0.25, 1.75, 0.05, 20, 10})) << "the thesis' offset";
+  EXPECT_EQ(map.row.rate, 2.0);
+  EXPECT_EQ(*map.plan.odds, (maps::OddsRule{70, 30, 500}));
+  EXPECT_EQ(*only(mapped(1, {numbers("log_odds", {1})})).plan.odds, maps::OddsRule{});
+  EXPECT_FALSE(only(mapped(1, {numbers("log_odds", {0})})).plan.odds);
+}
+
+TEST(OccupancySettings, WhatMakesNoSense) {
+  expect_refused({numbers("cell", {0.0})}, "'cell' is 0");
+  expect_refused({numbers("cell", {0.0005})}, "more than 1022 cells");
+  expect_refused({numbers("words", {30})}, "[columns rows]");
+  expect_refused({numbers("words", {30, 2.5})}, "whole numbers from 1 to 4096");
+  expect_refused({numbers("words", {0, 30})}, "whole numbers from 1 to 4096");
+  expect_refused({numbers("words", {4096, 257})}, "too large");
+  expect_refused({numbers("offset", {1e8, 0})}, "change 'offset'");
+  expect_refused({text("laser", "lidar")}, "has no laser 'lidar'; it has laser");
+  expect_refused({numbers("log_odds", {2})}, "'log_odds' expects");
+  expect_refused({numbers("log_odds", {1, 2})}, "'log_odds' expects");
+  expect_refused({numbers("log_odds", {1.5, 2, 3})}, "'log_odds' expects");
+  expect_refused({numbers("log_odds", {85, 40, 40000})}, "'log_odds' expects");
+  expect_refused({numbers("log_odds", {85, 40, 0})}, "'log_odds' expects");
+  world::World blind = mapped(1);
+  blind.movers[0].lasers.clear();
+  EXPECT_THROW(sensors::occupancies_of(blind), base::InputError);
+  world::World dense = mapped(1);
+  dense.movers[0].lasers[0].samples = 20'001;
+  EXPECT_THROW(sensors::occupancies_of(dense), base::InputError);
+}
+
+std::vector<base::Report> reports_at(const world::World& world, int tick) {
+  std::vector<base::Report> reports;
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    base::Pose X = world.movers[m].X_WM;
+    X.x += 0.05 * (tick % 8);
+    X.yaw += 0.25 * tick;
+    reports.push_back({m, 0, X, {}});
+  }
+  return reports;
+}
+
+/// Runs `ticks` tenths of seconds; every map that is delivered must be what the delivered scans say.
+std::size_t compare_run(const world::World& world, int ticks) {
+  farm::Farm farm(world, device());
+  farm.hear_all();
+  const auto all = sensors::occupancies_of(world);
+  std::vector<sensors::MapPlan> plans;
+  for (const sensors::Occupancy& map : all) plans.push_back(map.plan);
+  PlainMaps plain(plans);
+  std::size_t compared = 0;
+  for (int k = 0; k < ticks; ++k) {
+    const auto readings = farm.tick(k * 100'000'000ll, reports_at(world, k));
+    for (const base::ReadingBlock& r : readings)
+      for (std::uint32_t i = 0; i < all.size(); ++i)
+        if (r.kind == base::kLaser && all[i].row.mover == r.mover && all[i].laser == r.sensor)
+          plain.update({i, r.X_WS, r.values});
+    for (const base::ReadingBlock& r : readings) {
+      if (r.kind != sensors::kOccupancy) continue;
+      const auto right = plain.words(r.mover);
+      EXPECT_EQ(std::vector<double>(right.begin(), right.end()), std::vector<double>(r.values.begin(), r.values.end()));
+      EXPECT_EQ(r.X_WS.x, all[r.mover].plan.grid.left);
+      EXPECT_EQ(r.X_WS.y, all[r.mover].plan.grid.top);
+      EXPECT_EQ(r.flags, maps::kTruePoses);
+      ++compared;
+    }
+  }
+  return compared;
+}
+
+TEST(OccupancyTick, MapsAreWhatTheScansSay) { EXPECT_EQ(compare_run(mapped(12), 31), 12u * 4) << "at 0, 1, 2 and 3 s"; }
+
+TEST(OccupancyTick, LogOddsLikewise) { EXPECT_EQ(compare_run(mapped(5, {numbers("log_odds", {1})}), 31), 5u * 4); }
+
+TEST(OccupancyTick, TheWordIsSaidWherePosesAreEstimates) {
+  const world::World world = mapped(1);
+  farm::FarmOptions options;
+  options.true_poses = false;
+  farm::Farm farm(world, device(), options);
+  farm.hear_all();
+  std::size_t seen = 0;
+  for (const base::ReadingBlock& r : farm.tick(0, {}))
+    if (r.kind == sensors::kOccupancy) seen += r.flags == 0;
+  EXPECT_EQ(seen, 1u);
+}
+
+TEST(OccupancyTick, AMapThatNobodyHearsStillGrows) {
+  const world::World world = mapped(1);
+  farm::Farm quiet(world, device()), loud(world, device());
+  loud.hear_all();
+  quiet.hear(0, 1u << base::kLaser);
+  for (int k = 0; k < 10; ++k) quiet.tick(k * 100'000'000ll, reports_at(world, k));
+  quiet.hear_all();
+  for (int k = 0; k < 10; ++k) loud.tick(k * 100'000'000ll, reports_at(world, k));
+  const auto map_of = [](std::span<const base::ReadingBlock> readings) {
+    std::vector<double> words;
+    for (const base::ReadingBlock& r : readings)
+      if (r.kind == sensors::kOccupancy) words.assign(r.values.begin(), r.values.end());
+    return words;
+  };
+  const auto heard = map_of(loud.tick(1'000'000'000, reports_at(world, 10)));
+  const auto unheard = map_of(quiet.tick(1'000'000'000, reports_at(world, 10)));
+  EXPECT_FALSE(heard.empty());
+  EXPECT_EQ(heard, unheard);
+}
+
+TEST(OccupancyTick, ThreadsChangeNothing) {
+  const world::World world = mapped(20);
+  std::uint64_t hashes[2] = {};
+  for (const unsigned threads : {1u, 4u}) {
+    farm::FarmOptions options;
+    options.threads = threads;
+    farm::Farm farm(world, device(), options);
+    farm.hear_all();
+    for (int k = 0; k < 11; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
+    hashes[threads == 1 ? 0 : 1] = farm.hash();
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST(OccupancyTick, TheValidationLayerIsSilent) {
+  setenv("SENSORFARM_VALIDATE", "1", 1);
+  {
+    gpu::Device own;
+    if (own.validation_messages().find("not installed") != std::string::npos)
+      GTEST_SKIP() << "the validation layer is not installed";
+    world::World world = mapped(6);
+    world.movers[2].sensors[0].settings.push_back(numbers("log_odds", {1}));
+    farm::Farm farm(world, own);
+    for (int k = 0; k < 12; ++k) {
+      for (std::uint32_t m = 0; m < 6; ++m) farm.hear(m, static_cast<int>(m) < k ? farm::kAllKinds : 0u);
+      farm.tick(k * 100'000'000ll, reports_at(world, k));
+    }
+    EXPECT_EQ(own.validation_messages(), "");
+  }
+  unsetenv("SENSORFARM_VALIDATE");
+}
+
+// As packets.
+
+sensors::SensorRow row_of(std::uint32_t columns, std::uint32_t rows) {
+  sensors::SensorRow row;
+  row.elements = columns * rows;
+  row.across = columns;
+  row.pitch = 0.03;
+  return row;
+}
+
+std::vector<double> any_words(std::uint32_t count, std::uint64_t seed) {
+  Chance chance(seed);
+  std::vector<double> words;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::uint32_t word = 0;
+    for (unsigned k = 0; k < 32; k += 2) word |= chance.below(3) << k;
+    words.push_back(word);
+  }
+  return words;
+}
+
+TEST(OccupancyPackets, GoThereAndBackInBothForms) {
+  const sensors::SensorKind& kind = sensors::occupancy_kind;
+  for (const auto& [columns, rows] : {std::pair{30u, 30u}, {1u, 1u}, {67u, 5u}, {7u, 146u}}) {
+    const sensors::SensorRow row = row_of(columns, rows);
+    const auto words = any_words(row.elements, columns);
+    base::ReadingBlock reading;
+    reading.values = words;
+    reading.flags = maps::kTruePoses;
+    for (const Wire wire : {Wire::farm, Wire::thesis}) {
+      ASSERT_EQ(kind.refuse(row, wire), "");
+      std::vector<double> back(words.size(), -1.0);
+      const std::uint32_t parts = kind.parts(row, wire);
+      for (std::uint32_t p = 0; p < parts; ++p) {
+        base::Bytes bytes;
+        ASSERT_EQ(kind.encode(row, reading, wire, p, bytes), kind.id);
+        ASSERT_LE(bytes.size(), wire == Wire::farm ? 1376u : 2046u);
+        const sensors::Part part = kind.decode(row, bytes, kind.id, wire);
+        ASSERT_EQ(part.fault, sensors::Fault::none);
+        ASSERT_EQ(part.part, p);
+        ASSERT_EQ(part.parts, parts);
+        kind.read(row, bytes, kind.id, wire, back);
+      }
+      ASSERT_EQ(back, words) << columns << " x " << rows;
+    }
+  }
+}
+
+TEST(OccupancyPackets, OthersMapsAreRefused) {
+  const sensors::SensorKind& kind = sensors::occupancy_kind;
+  const auto words = any_words(900, 3);
+  base::ReadingBlock reading;
+  reading.values = words;
+  base::Bytes bytes;
+  kind.encode(row_of(30, 30), reading, Wire::farm, 0, bytes);
+  EXPECT_EQ(kind.decode(row_of(30, 30), bytes, kind.id, Wire::farm).fault, sensors::Fault::none);
+  EXPECT_EQ(kind.decode(row_of(25, 36), bytes, kind.id, Wire::farm).fault, sensors::Fault::out_of_range);
+  EXPECT_EQ(kind.decode(row_of(30, 29), bytes, kind.id, Wire::farm).fault, sensors::Fault::out_of_range);
+  EXPECT_EQ(kind.decode(row_of(30, 30), bytes, 3, Wire::farm).fault, sensors::Fault::out_of_range);
+  EXPECT_EQ(kind.decode(row_of(0, 0), bytes, kind.id, Wire::farm).fault, sensors::Fault::none)
+      << "nothing is known of it";
+  base::Bytes plain;
+  kind.encode(row_of(30, 30), reading, Wire::thesis, 0, plain);
+  EXPECT_EQ(kind.decode(row_of(25, 36), plain, kind.id, Wire::thesis).fault, sensors::Fault::out_of_range);
+}
+
+TEST(OccupancyPackets, TheThesisFormIsForSmallMaps) {
+  const sensors::SensorKind& kind = sensors::occupancy_kind;
+  EXPECT_EQ(kind.refuse(row_of(7, 146), Wire::thesis), "") << "1022 words";
+  EXPECT_NE(kind.refuse(row_of(32, 32), Wire::thesis), "");
+  EXPECT_NE(kind.refuse(row_of(256, 1), Wire::thesis), "");
+  EXPECT_EQ(kind.refuse(row_of(1024, 1024), Wire::farm), "");
+}
+
+}  // namespace
+}  // namespace sf::trial

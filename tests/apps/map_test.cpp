@@ -1,0 +1,118 @@
+// Maps from a run to a terminal and a picture, over loopback; and from a recording.
+
+#include <gtest/gtest.h>
+
+#include "netio/outbox.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+namespace {
+
+const char* const kWorld = R"(
+define bot position
+(
+  size [0.3 0.3 0.1]
+  laser( samples 61 fov 180 range_max 1 rate 10 )
+  occupancy( cell 0.1 words [5 4] )
+)
+define box model( size [0.2 0.2 0.5] )
+bot( name "roomba0" pose [0 0 0 0] )
+bot( name "roomba1" pose [3 0 0 90] )
+box( pose [0.7 0 0 0] )
+box( pose [3 0.7 0 0] )
+)";
+
+Words listen(unsigned port, const Words& more) {
+  Words words{"map", "--listen", std::to_string(port), "--silence", "0.5"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+Words run(const std::string& world, unsigned port, const std::string& wire) {
+  return {"run",
+          world,
+          "--duration",
+          "3",
+          "--send",
+          "127.0.0.1",
+          "--wire",
+          wire,
+          "--occupancy-port",
+          std::to_string(port),
+          "--laser-port",
+          std::to_string(port + 100)};
+}
+
+void expect_map(const std::string& text, std::size_t columns, std::size_t rows) {
+  ASSERT_EQ(text.size(), rows * (columns + 1)) << text;
+  EXPECT_GT(std::count(text.begin(), text.end(), '1'), 0) << text;
+  EXPECT_GT(std::count(text.begin(), text.end(), ' '), 20) << text;
+  EXPECT_GT(std::count(text.begin(), text.end(), '0'), 20) << text;
+}
+
+TEST(Map, ComesFromARunInBothForms) {
+  const Folder folder;
+  const std::string world = folder.write("a.world", kWorld);
+  for (const std::string wire : {"farm", "thesis"}) {
+    const unsigned port = free_ports(120);
+    Program map(listen(port, {"--wire", wire, "-o", folder.path(wire + ".png")}));
+    ASSERT_TRUE(map.says("listening for maps on 1 ports"));
+    EXPECT_EQ(run_program(run(world, port, wire)).code, 0);
+    const Outcome outcome = map.wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    expect_map(outcome.out, 20, 16);
+    EXPECT_NE(outcome.err.find("3 whole maps, 0 torn"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("true poses") != std::string::npos, wire == "farm") << outcome.err;
+    EXPECT_EQ(read_file(folder.path(wire + ".png")).substr(1, 3), "PNG");
+  }
+}
+
+TEST(Map, MergesSeveralAndSurvivesNonsense) {
+  const Folder folder;
+  const std::string world = folder.write("a.world", kWorld);
+  const unsigned port = free_ports(120);
+  Program map({"map", "--listen", std::to_string(port), "--listen", std::to_string(port + 8), "--silence", "0.5",
+               "--merge", "-o", folder.path("both.png")});
+  ASSERT_TRUE(map.says("listening for maps on 2 ports"));
+  netio::Outbox outbox;
+  for (std::size_t n = 0; n < 64; ++n)
+    outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(port)}, base::Bytes(31 * n, std::uint8_t(n)));
+  outbox.flush();
+  EXPECT_EQ(run_program(run(world, port, "farm")).code, 0);
+  const Outcome outcome = map.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  // The second map lies 3 m east of the first: 30 cells, rounded up to whole words of four.
+  expect_map(outcome.out, 52, 16);
+  EXPECT_NE(outcome.err.find("64 left out"), std::string::npos) << outcome.err;
+}
+
+TEST(Map, NothingCame) {
+  const unsigned port = free_ports(1);
+  const Outcome outcome = run_program({"map", "--listen", std::to_string(port), "--duration", "0.1"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.out, "");
+}
+
+TEST(Map, WrongPortsAreRefused) {
+  for (const std::string port : {"0", "65536", "x", "5-4", "1-2000", "7-", "-7"}) {
+    const Outcome outcome = run_program({"map", "--listen", port});
+    EXPECT_EQ(outcome.code, 2) << port;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  }
+  EXPECT_EQ(run_program({"map"}).code, 2);
+}
+
+TEST(Map, IsDrawnFromARecording) {
+  const Folder folder;
+  const std::string world = folder.write("a.world", kWorld);
+  ASSERT_EQ(run_program({"run", world, "--duration", "3", "--record", folder.path("r"), "--record-readings"}).code, 0);
+  const Outcome outcome = run_program({"plot", folder.path("r")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("map.png"), std::string::npos) << outcome.err;
+  EXPECT_EQ(read_file(folder.path("r/map.png")).substr(1, 3), "PNG");
+  ASSERT_EQ(run_program({"run", world, "--duration", "1", "--record", folder.path("q")}).code, 0);
+  EXPECT_EQ(run_program({"plot", folder.path("q")}).err.find("map.png"), std::string::npos) << "no readings, no map";
+}
+
+}  // namespace
+}  // namespace sf

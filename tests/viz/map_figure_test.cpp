@@ -1,0 +1,83 @@
+// Pictures of maps: each cell four pixels of its state's colour, a line between.
+
+#include "viz/map_figure.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "tests/viz/png.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr std::uint32_t kDark = 0xFF474B50u, kBlue = 0xFF1748D1u, kWhite = 0xFFFFFFFFu;
+
+std::string out(const std::string& name) {
+  const auto folder = std::filesystem::temp_directory_path() / "sf_map_figure";
+  std::filesystem::create_directories(folder);
+  return (folder / name).string();
+}
+
+/// All cells in turn unexplored, occupied, free.
+maps::Grid striped(std::uint32_t columns, std::uint32_t rows) {
+  maps::Grid grid(maps::GridPlan{-1.0, 2.0, 0.1, columns, rows});
+  for (std::int64_t row = 0; row < maps::rows(grid.plan); ++row)
+    for (std::int64_t column = 0; column < maps::columns(grid.plan); ++column)
+      grid.set({column, row}, static_cast<maps::Cell>((row + column) % 3));
+  return grid;
+}
+
+TEST(MapFigure, CellsAreFourPixelsWithALineBetween) {
+  const maps::Grid grid = striped(30, 30);
+  draw_map(grid, {"Title", "", {}}, out("cells.png"));
+  const scenes::Picture picture = scenes::read_png(out("cells.png"));
+  // The map's left side: the first column that is one colour, of the grid's lines, for a map's height.
+  const int left = 86, top = 92, pitch = 5;
+  for (int row = 0; row < 120; ++row)
+    for (int column = 0; column < 120; ++column) {
+      const std::uint32_t expected[] = {kDark, kBlue, kWhite};
+      const int x = left + pitch * column + 1, y = top + pitch * row + 1;
+      ASSERT_EQ(picture.count(expected[(row + column) % 3], x, y, x + 4, y + 4), 16) << column << " " << row;
+    }
+  const std::uint32_t line = picture.at(left, top + 300);
+  EXPECT_EQ(picture.count(line, left, top + 2, left + 1, top + 600), 598) << "unbroken";
+  EXPECT_EQ(picture.count(line, left + 300, top + 2, left + 301, top + 600), 598);
+}
+
+TEST(MapFigure, RobotsAreMarkedWhereTheyAre) {
+  maps::Grid grid(maps::GridPlan{-1.0, 2.0, 0.1, 10, 10});
+  draw_map(grid, {"", "", {}}, out("bare.png"));
+  draw_map(grid, {"", "", {{"one", {0.0, 0.0, 0.0, 0.0}}, {"far", {99.0, 0.0, 0.0, 0.0}}}}, out("robot.png"));
+  const scenes::Picture bare = scenes::read_png(out("bare.png"));
+  const scenes::Picture robot = scenes::read_png(out("robot.png"));
+  EXPECT_EQ(robot.width, bare.width);
+  int changed = 0, elsewhere = 0;
+  // The map is centred in a picture of the least width.
+  const int left = 86 + (bare.width - 86 - 40 - 201) / 2, top = 92;
+  for (int y = top; y < top + 201; ++y)
+    for (int x = left; x < left + 201; ++x) {
+      if (bare.at(x, y) == robot.at(x, y)) continue;
+      const bool near = std::abs(x - (left + 50)) <= 17 && std::abs(y - (top + 100)) <= 12;
+      ++(near ? changed : elsewhere);
+    }
+  EXPECT_GT(changed, 150);
+  EXPECT_EQ(elsewhere, 0);
+}
+
+TEST(MapFigure, LargeMapsAreDrawnSmaller) {
+  draw_map(striped(500, 3), {"Large", "", {}}, out("large.png"));
+  const scenes::Picture picture = scenes::read_png(out("large.png"));
+  EXPECT_LE(picture.width, 8200);
+  EXPECT_GT(picture.width, 7000) << "as large as it may be";
+  draw_map(striped(1, 1), {"Small", "with a name", {}}, out("small.png"));
+  EXPECT_EQ(scenes::read_png(out("small.png")).width, 640);
+}
+
+TEST(MapFigure, APathThatCannotBeWritten) {
+  EXPECT_THROW(draw_map(striped(1, 1), {}, "/nowhere/map.png"), base::InputError);
+}
+
+}  // namespace
+}  // namespace sf::viz
