@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "maps/packets.h"
 #include "netio/outbox.h"
+#include "netio/packets.h"
+#include "sensors/occupancy.h"
 #include "tests/apps/program.h"
+#include "tests/netio/documented.h"
 
 namespace sf {
 namespace {
@@ -84,6 +88,26 @@ TEST(Map, MergesSeveralAndSurvivesNonsense) {
   // The second map lies 3 m east of the first: 30 cells, rounded up to whole words of four.
   expect_map(outcome.out, 52, 16);
   EXPECT_NE(outcome.err.find("64 left out"), std::string::npos) << outcome.err;
+}
+
+TEST(Map, PacketsAreAsDocumented) {
+  sensors::SensorRow row;
+  row.elements = row.across = 2;
+  row.pitch = 0.5;
+  const double words[] = {1.0, 0x8A000000};
+  base::ReadingBlock reading;
+  reading.X_WS = {1.0, -2.0, 0.0, 0.0};
+  reading.values = words;
+  reading.flags = maps::kTruePoses;
+  const sensors::SensorKind& kind = sensors::occupancy_kind;
+  base::Bytes payload, packet, first, second;
+  kind.encode(row, reading, sensors::Wire::farm, 0, payload);
+  netio::frame({.robot = 7, .sequence = 30, .time = 3'000'000'000}, kind.id, payload, packet);
+  EXPECT_EQ(packet, test::documented("occupancy"));
+  kind.encode(row, reading, sensors::Wire::thesis, 0, first);
+  kind.encode(row, reading, sensors::Wire::thesis, 1, second);
+  EXPECT_EQ(first, test::documented("thesis_occupancy"));
+  EXPECT_EQ(second, test::documented("thesis_occupancy_rest"));
 }
 
 TEST(Map, NothingCame) {
