@@ -62,6 +62,19 @@ TEST(Allocation, NoneWithMagnetometersEither) {
   }
 }
 
+TEST(Allocation, NoneWithMapsEither) {
+  world::World world = small_world(8);
+  for (world::Mover& mover : world.movers) {
+    world::Sensor map;
+    map.type = "occupancy";
+    map.name = "map";
+    map.settings.push_back(scenes::setting("rate", {5.0}));
+    map.settings.push_back(scenes::setting("log_odds", {mover.id % 2 == 0 ? 0.0 : 1.0}));
+    mover.sensors.push_back(map);
+  }
+  EXPECT_EQ(allocations_per_lap(world, {.threads = 2}), 0u);
+}
+
 /// Sensors that need no device: a roof overhead, a hole in the floor, a dock and a virtual wall.
 TEST(Allocation, NoneWithSensorsOfTheHostEither) {
   world::World world;
