@@ -187,6 +187,10 @@ TEST(Contact, what_a_report_says_of_a_real_bumper_stays) {
   fleet.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {}, .touched = bit(3)}});
   EXPECT_EQ(fleet.predict(kTick)[0].touched, bit(3));
   EXPECT_EQ(fleet.contacts()[0], 1);
+  scenes::add_wall(world, {0.1655, -1}, {0.1655, 1});
+  Fleet beside(world);
+  beside.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {}, .touched = bit(3)}});
+  EXPECT_EQ(beside.predict(kTick)[0].touched, bit(3) | bit(0) | bit(-1)) << "beside what the virtual world adds";
 }
 
 TEST(Contact, robots_that_are_told_press_on_each_other) {

@@ -88,15 +88,15 @@ TEST(Crowd, nothing_ever_crosses_anything) {
   Fleet fleet(world);
   int contacts = 0;
   double travelled = 0.0;
-  for (int tick = 0; tick < 3000; ++tick) {
+  for (int tick = 0; tick < 1500; ++tick) {
     fleet.move(random_commands(world.movers.size(), tick), kTick);
     for (const auto contact : fleet.contacts()) contacts += contact;
     for (const auto& report : fleet.reports()) travelled += 0.1 * std::abs(report.velocity.forward);
-    if (tick % 100 != 0) continue;
+    if (tick % 50 != 0) continue;
     ASSERT_EQ(crossings(world, fleet.reports()), 0) << "tick " << tick;
   }
-  EXPECT_GT(contacts, 1000) << "the crowd should be dense enough to test anything";
-  EXPECT_GT(travelled, 1000.0);
+  EXPECT_GT(contacts, 500) << "the crowd should be dense enough to test anything";
+  EXPECT_GT(travelled, 500.0);
 }
 
 std::uint64_t hash_of_run(const world::World& world, int ticks) {
