@@ -1,7 +1,10 @@
 #pragma once
 // A world's tables as bytes, row by row: what the hash and the snapshot share.
 
+#include <string>
+
 #include "base/bytes.h"
+#include "base/error.h"
 #include "world/world.h"
 
 namespace sf::world {
@@ -41,6 +44,15 @@ Path get_path(base::ByteReader& in);
 Light get_light(base::ByteReader& in);
 Emitter get_emitter(base::ByteReader& in);
 Drop get_drop(base::ByteReader& in);
+
+/// One word of an enumeration. @throws base::InputError beyond its last one.
+template <class Word>
+Word get_word(base::ByteReader& in, Word last, const char* what) {
+  const auto word = in.get<std::uint8_t>();
+  if (word > static_cast<std::uint8_t>(last))
+    throw base::InputError(std::string("broken world snapshot: unknown ") + what);
+  return static_cast<Word>(word);
+}
 
 /// A count of rows of at least `row_size` bytes each. @throws base::InputError when the bytes cannot hold them.
 std::uint32_t get_count(base::ByteReader& in, std::size_t row_size);
