@@ -243,7 +243,9 @@ TEST(RoadNetwork, LaneChanges) {
   for (const auto& [id, at] : network.index) {
     const auto changes = lane_changes(network, at);
     const bool two_lanes = id.segment == 1 && (id.lane == 1 || id.lane == 2);
-    if (!two_lanes) EXPECT_TRUE(changes.empty()) << text_of(id);
+    if (!two_lanes) {
+      EXPECT_TRUE(changes.empty()) << text_of(id);
+    }
     for (const Step& step : changes) {
       const PointId to = id_of(network, step.to);
       EXPECT_EQ(to.segment, 1) << text_of(id);
