@@ -129,9 +129,14 @@ TEST(PlainPackets, PayloadsAreTheDocumentedOnes) {
     std::uint8_t id;
     std::uint32_t rows;
     std::vector<double> values;
-  } all[] = {
-      {"bumper", 6, 2, {1, 0}}, {"cliff", 7, 4, {0, 0, 1, 1}},         {"encoder", 8, 1, {1.234, -0.5, 1234, -500}},
-      {"gyro", 9, 1, {-0.25}},  {"gps", 10, 1, {kNan, kNan, kNan, 3}}, {"irreceiver", 11, 1, {1, 252}}};
+  } all[] = {{"sonar", 4, 3, {0.1, 1.25, 4}},
+             {"infrared", 5, 2, {0.05, 0, 0.0125, 767}},
+             {"bumper", 6, 2, {1, 0}},
+             {"cliff", 7, 4, {0, 0, 1, 1}},
+             {"encoder", 8, 1, {1.234, -0.5, 1234, -500}},
+             {"gyro", 9, 1, {-0.25}},
+             {"gps", 10, 1, {kNan, kNan, kNan, 3}},
+             {"irreceiver", 11, 1, {1, 252}}};
   for (const auto& [example, id, rows, values] : all) {
     const SensorKind* kind = find_kind(id);
     ASSERT_NE(kind, nullptr) << example;

@@ -206,7 +206,7 @@ TEST(SonarSettings, ThePioneersRings) {
 }
 
 TEST(SonarSettings, TheKheperasEight) {
-  const world::World world = shipped("position( name \"k\" size [0.07 0.07 0.03] khepera_infrared( ) )\n");
+  const world::World world = shipped("khepera2( name \"khepera1\" khepera_infrared( ) )\n");
   EXPECT_TRUE(world.warnings.empty());
   const auto arrays = cone_arrays_of(world, "infrared", read_infrared);
   ASSERT_EQ(arrays.size(), 1u);
@@ -217,6 +217,7 @@ TEST(SonarSettings, TheKheperasEight) {
     EXPECT_LT(std::hypot(p.x, p.y), 0.035) << "within its body";
     EXPECT_GT(p.x * std::cos(p.yaw) + p.y * std::sin(p.yaw), 0.02);
   }
+  for (const world::Segment& side : world.movers[0].body) EXPECT_LT(side.z_max, 0.031) << "no body of its own";
 }
 
 // --- Payloads.
