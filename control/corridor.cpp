@@ -13,6 +13,7 @@ namespace {
 
 using world::PointRef;
 
+constexpr double kAlike = 0.7;       // cosine of the angle between a robot and its way, at least
 constexpr double kChangeCost = 1.0;  // [m] more than its length: lanes are changed where it helps only
 
 world::Curve straight(Vec2 a, Vec2 b) { return world::smooth_curve(std::array{a, b}, {}); }
@@ -32,6 +33,7 @@ void sample(Way& way, const world::Curve& line, double step) {
     if (i > 0) yaw = way.yaw[i - 1] + base::wrap_angle(yaw - way.yaw[i - 1]);
     way.yaw[i] = yaw;
   }
+  for (const double yaw : way.yaw) way.tangents.push_back({std::cos(yaw), std::sin(yaw)});
   way.curvature.resize(spans + 1);
   for (std::size_t i = 0; i <= spans; ++i) {
     const std::size_t a = i > 0 ? i - 1 : 0, b = std::min(i + 1, spans);
@@ -226,7 +228,7 @@ void Corridors::fill_grid() {
   corner_ = low;
   // A few million cells at most, however long the roads.
   const double area = std::max((high.x - low.x) * (high.y - low.y), 1e-12);
-  cell_ = std::max(clearance_, std::sqrt(area / 4e6));
+  cell_ = std::max(0.5 * clearance_, std::sqrt(area / 4e6));
   columns_ = static_cast<std::int64_t>((high.x - low.x) / cell_) + 1;
   rows_ = static_cast<std::int64_t>((high.y - low.y) / cell_) + 1;
   const auto cell_of = [&](Vec2 p) {
@@ -240,17 +242,25 @@ void Corridors::fill_grid() {
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   samples_.resize(count);
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for (std::uint32_t w = 0; w < ways_.size(); ++w)
-    for (std::uint32_t i = 0; i < ways_[w].points.size(); ++i) samples_[next[cell_of(ways_[w].points[i])]++] = {w, i};
+  for (std::uint32_t w = 0; w < ways_.size(); ++w) {
+    const Way& way = ways_[w];
+    for (std::uint32_t i = 0; i < way.points.size(); ++i)
+      samples_[next[cell_of(way.points[i])]++] = {way.points[i], (way.backwards ? -1.0 : 1.0) * way.tangents[i], w, i};
+  }
 }
 
 template <class F>
-void Corridors::near(Vec2 p, F&& visit) const {
-  const double x = std::floor((p.x - corner_.x) / cell_), y = std::floor((p.y - corner_.y) / cell_);
-  if (!(x > -2.0 && y > -2.0 && x < static_cast<double>(columns_) + 1 && y < static_cast<double>(rows_) + 1)) return;
-  const auto column = static_cast<std::int64_t>(x), row = static_cast<std::int64_t>(y);
-  for (std::int64_t r = std::max<std::int64_t>(row - 1, 0); r <= std::min(row + 1, rows_ - 1); ++r)
-    for (std::int64_t c = std::max<std::int64_t>(column - 1, 0); c <= std::min(column + 1, columns_ - 1); ++c) {
+void Corridors::near(Vec2 p, double reach, F&& visit) const {
+  const auto cell = [&](double v, double low, std::int64_t most) {
+    const double at = std::floor((v - low) / cell_);
+    return at < 0.0 ? std::int64_t{-1} : at >= static_cast<double>(most) ? most : static_cast<std::int64_t>(at);
+  };
+  const std::int64_t r0 = std::max<std::int64_t>(cell(p.y - reach, corner_.y, rows_), 0);
+  const std::int64_t r1 = std::min(cell(p.y + reach, corner_.y, rows_), rows_ - 1);
+  const std::int64_t c0 = std::max<std::int64_t>(cell(p.x - reach, corner_.x, columns_), 0);
+  const std::int64_t c1 = std::min(cell(p.x + reach, corner_.x, columns_), columns_ - 1);
+  for (std::int64_t r = r0; r <= r1; ++r)
+    for (std::int64_t c = c0; c <= c1; ++c) {
       const auto at = static_cast<std::size_t>(r * columns_ + c);
       for (std::uint32_t i = first_[at]; i < first_[at + 1]; ++i) visit(samples_[i]);
     }
@@ -258,7 +268,7 @@ void Corridors::near(Vec2 p, F&& visit) const {
 
 Places Corridors::places(const Pose& X_WM, double reach) const {
   const Vec2 p{X_WM.x, X_WM.y};
-  reach = std::min(reach, cell_);
+  const Vec2 facing{std::cos(X_WM.yaw), std::sin(X_WM.yaw)};
   // The nearest sample of each way, the nearest ways first.
   struct Nearest {
     std::uint32_t way = 0, index = 0;
@@ -267,13 +277,11 @@ Places Corridors::places(const Pose& X_WM, double reach) const {
   std::array<Nearest, 48> found;
   std::size_t count = 0;
   const double within = reach + 0.5 * step_;
-  near(p, [&](const Sample& sample) {
-    const Way& way = ways_[sample.way];
-    const Vec2 d = way.points[sample.index] - p;
+  near(p, within, [&](const Sample& sample) {
+    const Vec2 d = sample.p - p;
     const double dd = dot(d, d);
     if (dd > within * within) return;
-    const double yaw = way.yaw[sample.index] + (way.backwards ? M_PI : 0.0);
-    if (std::abs(base::wrap_angle(X_WM.yaw - yaw)) > 0.25 * M_PI) return;
+    if (dot(sample.along, facing) < kAlike) return;
     for (std::size_t i = 0; i < count; ++i) {
       if (found[i].way != sample.way) continue;
       if (dd < found[i].distance) found[i] = {sample.way, sample.index, dd};
@@ -285,8 +293,7 @@ Places Corridors::places(const Pose& X_WM, double reach) const {
   Places places;
   for (std::size_t i = 0; i < count; ++i) {
     const Way& way = ways_[found[i].way];
-    const double yaw = way.yaw[found[i].index];
-    const Vec2 along{std::cos(yaw), std::sin(yaw)};
+    const Vec2 along = way.tangents[found[i].index];
     const Vec2 d = p - way.points[found[i].index];
     const double s = static_cast<double>(found[i].index) * way.step + dot(d, along);
     if (s < -1e-6 || s > way.length + 1e-6) continue;  // beyond its ends
@@ -352,10 +359,9 @@ void Corridors::find_meetings(std::uint32_t row) {
   };
   std::vector<Found> found;
   for (std::uint32_t i = 0; i < way.points.size(); ++i) {
-    near(way.points[i], [&](const Sample& sample) {
+    near(way.points[i], clearance_, [&](const Sample& sample) {
       if (sample.way == row) return;
-      const Way& other = ways_[sample.way];
-      const Vec2 d = other.points[sample.index] - way.points[i];
+      const Vec2 d = sample.p - way.points[i];
       if (dot(d, d) >= clearance_ * clearance_) return;
       const auto at = std::find_if(found.begin(), found.end(), [&](const Found& f) { return f.way == sample.way; });
       if (at == found.end()) {

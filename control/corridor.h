@@ -67,6 +67,7 @@ struct Way {
   double step = 0.0;               ///< [m] from one point to the next
   std::vector<Vec2> points;        ///< at least two
   std::vector<double> yaw;         ///< [rad] of the line at each point, not wrapped
+  std::vector<Vec2> tangents;      ///< unit vectors
   std::vector<double> curvature;   ///< [1/m] positive to the left
   std::vector<Gate> gates;         ///< in order
   std::vector<StopMark> stops;     ///< lanes: in order
@@ -114,7 +115,7 @@ class Corridors {
   const std::vector<Edge>& edges(std::uint32_t node) const { return edges_[node]; }
   std::uint32_t node_of(world::PointRef at) const;
 
-  /// Ways within `reach` [m] of the robot that run in its direction (to a quarter turn), nearest first.
+  /// Ways within `reach` [m] of the robot that run in its direction (to 45 degrees), nearest first.
   Places places(const Pose& X_WM, double reach) const;
   /// Within the perimeter of the zone.
   bool inside(std::uint32_t zone, Vec2 p) const;
@@ -137,7 +138,7 @@ class Corridors {
   void make_gates(Way& way, std::vector<Meeting> meetings) const;
   void make_lines();
   template <class F>
-  void near(Vec2 p, F&& visit) const;
+  void near(Vec2 p, double reach, F&& visit) const;
 
   const world::RoadNetwork& roads_;
   Body body_;
@@ -146,8 +147,9 @@ class Corridors {
   std::vector<Way> ways_;
   std::vector<std::vector<Edge>> edges_;
 
-  // Samples of all ways by square cells of the plane, each as wide as the clearance.
+  // Samples of all ways by square cells of the plane, each half as wide as the clearance.
   struct Sample {
+    Vec2 p, along;  ///< where, and which way a robot looks that drives there
     std::uint32_t way, index;
   };
   Vec2 corner_;

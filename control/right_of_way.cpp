@@ -42,16 +42,26 @@ bool RightOfWay::committed(double ahead, double speed) const {
   return ahead + margin_ < speed * speed / (2.0 * kHardBraking);
 }
 
+// Who has not moved is where it was.
+const Places& RightOfWay::places_of(std::uint32_t id, const Pose& X_WM) {
+  auto known = std::find_if(known_.begin(), known_.end(), [&](const Known& k) { return k.id == id; });
+  if (known == known_.end()) known = known_.insert(known_.end(), {id, {HUGE_VAL, 0.0, 0.0, 0.0}, {}, 0});
+  known->seen = time_;
+  if (known->X_WM.x == X_WM.x && known->X_WM.y == X_WM.y && known->X_WM.yaw == X_WM.yaw) return known->places;
+  known->X_WM = X_WM;
+  Places& places = known->places;
+  places = corridors_.places(X_WM, 0.8 * corridors_.body().radius);
+  // Only those that are about as near as the nearest.
+  const double most = places.count > 0 ? places.all[0].offset + 0.25 * corridors_.body().radius : 0.0;
+  while (places.count > 1 && places.all[places.count - 1].offset > most) --places.count;
+  return places;
+}
+
 void RightOfWay::add(std::uint32_t id, const base::Report& state, std::uint32_t follows) {
   Driver driver{.id = id, .follows = follows, .X_WM = state.X_WM, .approach = {}};
   driver.velocity = base::rotate(state.X_WM.yaw, {state.velocity.forward, state.velocity.left});
   driver.speed = length(driver.velocity);
-  driver.places = corridors_.places(state.X_WM, 0.8 * corridors_.body().radius);
-  // Only those that are about as near as the nearest.
-  Places& places = driver.places;
-  while (places.count > 1 &&
-         places.all[places.count - 1].offset > places.all[0].offset + 0.25 * corridors_.body().radius)
-    --places.count;
+  driver.places = places_of(id, state.X_WM);
   drivers_.push_back(driver);
 }
 
@@ -68,6 +78,7 @@ void RightOfWay::observe(const Input& input, std::uint32_t follows, bool merges)
   }
   for (Driver& driver : drivers_) find_approach(driver, input.signals);
   for (Driver& driver : drivers_) remember(driver, input.time);
+  std::erase_if(known_, [&](const Known& known) { return known.seen != time_; });
   std::erase_if(arrivals_, [&](const Arrival& arrival) { return arrival.seen != time_; });
 }
 

@@ -79,6 +79,13 @@ class RightOfWay {
     std::int64_t since, seen;
     bool stood, contends;
   };
+  struct Known {
+    std::uint32_t id;
+    Pose X_WM;
+    Places places;
+    std::int64_t seen;
+  };
+  const Places& places_of(std::uint32_t id, const Pose& X_WM);
   void add(std::uint32_t id, const base::Report& state, std::uint32_t follows);
   void find_approach(Driver& driver, std::span<const world::Signal> signals) const;
   void remember(Driver& driver, std::int64_t time);
@@ -92,6 +99,7 @@ class RightOfWay {
   std::int64_t time_ = 0;
   std::vector<Driver> drivers_;
   std::vector<Arrival> arrivals_;
+  std::vector<Known> known_;  ///< where everyone was seen last
 };
 
 }  // namespace sf::control

@@ -181,8 +181,10 @@ base::Twist Route::drive(const Input& input, double speed) {
   const double yaw = yaw_on(way, at);
   offset_ = cross({std::cos(yaw), std::sin(yaw)}, Vec2{X_WM.x, X_WM.y} - point_on(way, at));
   const double heading = base::wrap_angle(X_WM.yaw + (way.backwards ? M_PI : 0.0) - yaw);
-  const bool aisle = way.kind == Way::Kind::zone;
-  const double on_spot = !turns_in_place_ ? 10.0 : aisle && at < 0.25 * corridors_->body().radius ? 0.02 : 1.0;
+  // Behind a kink it turns on the spot until it looks along its way.
+  const bool kink = progress_.leg() > 0 && kink_after(*corridors_, plan_, progress_.leg() - 1);
+  const bool fresh = kink && at - leg.from < 0.25 * corridors_->body().radius;
+  const double on_spot = !turns_in_place_ ? 10.0 : fresh ? 0.02 : 1.0;
   const double reach = 0.9 * corridors_->body().radius;
   // The bend half a step ahead is what the step will be driven in.
   base::Twist twist = steer(speed, offset_, heading, curvature_on(way, at + 0.05 * speed), reach, max_turn_, on_spot);

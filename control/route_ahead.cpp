@@ -49,20 +49,24 @@ void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, con
   for (std::uint32_t row = 1; row < drivers.size(); ++row) {
     const Vec2 p{drivers[row].X_WM.x, drivers[row].X_WM.y};
     if (length(p - self) > kLookAhead + 2.2 * radius) continue;
-    double before = HUGE_VAL;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double distance = length(points[i].p - p);
-      const double next = i + 1 < count ? length(points[i + 1].p - p) : distance;
-      if (distance < points[i].within && (next < distance - 1e-9 || before > points[i].within)) {
-        if (i == 0 && next >= distance) break;
-        double free = points[i].s - s;
-        if (i > 0)
-          free -= step * std::clamp((points[i].within - distance) / std::max(before - distance, 1e-9), 0.0, 1.0);
-        const Vec2 along{std::cos(points[i].yaw), std::sin(points[i].yaw)};
-        out.push_back({std::max(free, 0.0), dot(drivers[row].velocity, along), row});
-        break;
+    const auto away = [&](std::size_t i) { return length(points[i].p - p); };
+    for (std::size_t i = 0; i < count;) {
+      // Points are no farther apart than a step: the way can come no nearer sooner.
+      const double distance = away(i);
+      if (distance >= points[i].within) {
+        i += std::max<std::size_t>(1, static_cast<std::size_t>((distance - points[i].within) / step));
+        continue;
       }
-      before = distance;
+      if (i == 0 && (count < 2 || away(1) >= distance)) break;
+      double free = points[i].s - s;
+      if (i > 0) {
+        const double before = away(i - 1);
+        const double nearer = std::max(before - distance, 1e-9);
+        free -= (points[i].s - points[i - 1].s) * std::clamp((points[i].within - distance) / nearer, 0.0, 1.0);
+      }
+      const Vec2 along{std::cos(points[i].yaw), std::sin(points[i].yaw)};
+      out.push_back({std::max(free, 0.0), dot(drivers[row].velocity, along), row});
+      break;
     }
   }
   std::sort(out.begin(), out.end(),

@@ -142,7 +142,7 @@ void Route::limit_by_others(Limit& limit) const {
   for (const Ahead& other : ahead_) {
     const bool leads = right_of_way_.drivers()[other.row].id == company_.leader;
     const double free = other.free - settings_.gap - (leads ? opened : 0.0);
-    limit.speed = std::min(limit.speed, std::max(free, 0.0) / settings_.headway);
+    limit.speed = std::min(limit.speed, free > 1e-3 ? free / settings_.headway : 0.0);
   }
 }
 
