@@ -1,0 +1,120 @@
+#include "sensors/occupancy_tables.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "shaders/occupancy.comp.h"
+#include "shaders/occupancy_odds.comp.h"
+#include "shaders/occupancy_strips.comp.h"
+
+namespace sf::sensors {
+
+namespace {
+
+using gpu::Role;
+using gpu::Texel;
+
+constexpr std::size_t kMostOfAll = 1u << 30;  ///< words of all maps; pairs of beams of all their lasers
+
+/// Blocks that a map's words take, and its strips, when a scan speaks of all of it.
+std::size_t word_blocks(const maps::GridPlan& plan) {
+  return std::size_t{units_of(plan.word_columns, SF_MAP_BLOCK)} * plan.word_rows;
+}
+std::size_t strip_blocks(const maps::GridPlan& plan) {
+  const auto blocks = [](std::int64_t along, std::int64_t across) {
+    return std::size_t{units_of(along, SF_MAP_BLOCK)} * units_of(across, SF_STRIP);
+  };
+  return blocks(maps::columns(plan), maps::rows(plan)) + blocks(maps::rows(plan), maps::columns(plan));
+}
+
+}  // namespace
+
+MapBatch::Tables::Tables(gpu::Device& device, base::Workers& w, std::vector<MapPlan> plans)
+    : workers(w), unified(device.unified()), batch(device) {
+  plan(std::move(plans));
+  lay_out();
+  const std::size_t all_words = all.empty() ? 0 : all.back().words + maps::words(all.back().plan.grid);
+  const std::size_t all_lines = all.empty() ? 0 : all.back().lines + pairs_of(all.back().plan);
+  rows = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32x4, SF_MAP_ROW_TEXELS * (all.size() + 1));
+  lines = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::f32x4, all_lines + 1);
+  ends.resize(2 * all_lines);
+  std::fill_n(lines->host<BeamLine>().data(), 2 * (all_lines + 1), BeamLine{});
+  words = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32, all_words + 1);
+  std::fill_n(words->host<std::uint32_t>().data(), all_words + 1, 0u);
+  std::size_t most = 0;
+  for (const MapPlace& map : all) most += strip_blocks(map.plan.grid);
+  const std::size_t lanes = make_course(device, strips, occupancy_strips_comp_spv, 4, most);
+  covered = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32, lanes);
+  make_words(device, plain, occupancy_comp_spv, false);
+  if (std::any_of(all.begin(), all.end(), [](const MapPlace& map) { return map.plan.odds.has_value(); })) {
+    odds = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32x4, SF_ODDS_TEXELS * (all_words + 1));
+    std::fill_n(odds->host<std::uint32_t>().data(), 4 * SF_ODDS_TEXELS * (all_words + 1), 0u);
+    make_words(device, weighed, occupancy_odds_comp_spv, true);
+  }
+  record();
+}
+
+void MapBatch::Tables::plan(std::vector<MapPlan> plans) {
+  for (MapPlan& p : plans) {
+    SF_CHECK(maps::is_sound(p.grid) && p.samples >= 1 && p.samples <= kMostMapBeams,
+             std::to_string(p.samples) + " beams on a map of " + std::to_string(p.grid.cell) + " m cells");
+    auto& fan = fans[{p.fov, p.samples}];
+    if (fan.empty()) fan = maps::beam_directions(p.fov, p.samples);
+    all.push_back({std::move(p), 0, 0, &fan});
+  }
+  shares.reserve(all.size());
+}
+
+void MapBatch::Tables::lay_out() {
+  std::size_t all_words = 0;
+  std::size_t all_lines = 0;
+  for (MapPlace& map : all) {
+    map.words = static_cast<std::uint32_t>(all_words);
+    map.lines = static_cast<std::uint32_t>(all_lines);
+    all_words += maps::words(map.plan.grid);
+    all_lines += pairs_of(map.plan);
+    if (all_words >= kMostOfAll || all_lines >= kMostOfAll)
+      throw base::DeviceError("the maps of all robots have more than " + std::to_string(kMostOfAll) +
+                              " words or beams; use fewer robots or smaller maps");
+  }
+}
+
+/// @return lanes, whole groups of them.
+std::size_t MapBatch::Tables::make_course(gpu::Device& device, MapCourse& course, std::span<const std::uint32_t> spirv,
+                                          std::uint32_t tables, std::size_t most_blocks) {
+  course.kernel = std::make_unique<gpu::Kernel>(device, spirv, tables);
+  // Padded to whole groups, and to whole rows of groups where there are many.
+  const std::size_t group = course.kernel->group_size() / SF_MAP_BLOCK;
+  const std::size_t groups = most_blocks / group + 1;
+  const std::size_t padded = (groups > kMapGroupsAcross ? groups + kMapGroupsAcross : groups) * group;
+  course.blocks = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32, 2 * padded);
+  course.groups = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32, 4);
+  return SF_MAP_BLOCK * padded;
+}
+
+void MapBatch::Tables::make_words(gpu::Device& device, MapWords& part, std::span<const std::uint32_t> spirv,
+                                  bool weighs) {
+  std::size_t most = 0;
+  for (const MapPlace& map : all)
+    if (map.plan.odds.has_value() == weighs) most += word_blocks(map.plan.grid);
+  const std::size_t lanes = make_course(device, part.course, spirv, weighs ? 6 : 5, most);
+  part.struck = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32, lanes);
+}
+
+void MapBatch::Tables::record() {
+  gpu::Buffer* const first[] = {rows.get(), strips.blocks.get(), lines.get(), covered.get()};
+  strips.kernel->bind(first);
+  batch.begin();
+  batch.dispatch(*strips.kernel, *strips.groups, 0);
+  batch.barrier();
+  for (MapWords* part : {&plain, &weighed}) {
+    if (!part->course.kernel) continue;
+    gpu::Buffer* const tables[] = {
+        rows.get(), part->course.blocks.get(), covered.get(), part->struck.get(), words.get(), odds.get()};
+    part->course.kernel->bind(std::span(tables).first(part == &plain ? 5 : 6));
+    batch.dispatch(*part->course.kernel, *part->course.groups, 0);
+  }
+  batch.end();
+}
+
+}  // namespace sf::sensors

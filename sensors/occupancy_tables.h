@@ -1,0 +1,95 @@
+#pragma once
+// What the sources of sensors::MapBatch share: where each map lies, and the device's tables.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "gpu/batch.h"
+#include "gpu/buffer.h"
+#include "gpu/kernel.h"
+#include "maps/scan_ends.h"
+#include "sensors/occupancy_batch.h"
+#include "sensors/occupancy_records.h"
+
+namespace sf::sensors {
+
+inline constexpr std::uint32_t kMapGroupsAcross = 32'768;  ///< along x of a dispatch; devices promise 65 535
+
+/// One map as it lies in the tables.
+struct MapPlace {
+  MapPlan plan;
+  std::uint32_t words = 0;                         ///< its first
+  std::uint32_t lines = 0;                         ///< its first pair of beams
+  const std::vector<base::Vec2>* beams = nullptr;  ///< lasers with the same fan share them
+};
+
+/// One dispatch: blocks of eight lanes.
+struct MapCourse {
+  std::unique_ptr<gpu::Kernel> kernel;
+  std::unique_ptr<gpu::Buffer> blocks;
+  std::unique_ptr<gpu::Buffer> groups;  ///< counts of the dispatch
+  std::size_t count = 0;                ///< blocks this time, padding included
+};
+
+/// MapWords of the maps of one kind: with log odds, or without.
+struct MapWords {
+  MapCourse course;
+  std::unique_ptr<gpu::Buffer> struck;  ///< a word a lane: where beams ended
+};
+
+/// What one scan is about.
+struct MapShare {
+  maps::ScanEnds scan;
+  maps::CellBox cells;          ///< of the map, whole words
+  std::size_t first_block = 0;  ///< of its words
+};
+
+/// Units that hold so many cells, rounded up.
+inline std::uint32_t units_of(std::int64_t cells, std::int64_t unit) {
+  return static_cast<std::uint32_t>((cells + unit - 1) / unit);
+}
+
+inline std::uint32_t pairs_of(const MapPlan& plan) { return (plan.samples + 1) / 2; }
+
+struct MapBatch::Tables {
+  base::Workers& workers;
+  bool unified;
+  std::vector<MapPlace> all;
+  std::map<std::pair<double, std::uint32_t>, std::vector<base::Vec2>> fans;
+  MapCourse strips;
+  MapWords plain;
+  MapWords weighed;
+  std::unique_ptr<gpu::Buffer> rows;
+  std::unique_ptr<gpu::Buffer> lines;
+  std::vector<std::uint32_t> ends;       ///< of all maps: two for each pair of lines
+  std::unique_ptr<gpu::Buffer> covered;  ///< a word a strip
+  std::unique_ptr<gpu::Buffer> words;
+  std::unique_ptr<gpu::Buffer> odds;
+  std::vector<MapShare> shares;  ///< per scan
+  gpu::Batch batch;
+  bool blank = true;  ///< maps are still to be sent
+
+  Tables(gpu::Device& device, base::Workers& w, std::vector<MapPlan> plans);
+  void plan(std::vector<MapPlan> plans);
+  void lay_out();
+  std::size_t make_course(gpu::Device& device, MapCourse& course, std::span<const std::uint32_t> spirv,
+                          std::uint32_t tables, std::size_t most_blocks);
+  void make_words(gpu::Device& device, MapWords& part, std::span<const std::uint32_t> spirv, bool weighs);
+  void record();
+  std::span<std::uint32_t> ends_of(const MapPlace& map) {
+    return std::span(ends).subspan(2 * std::size_t{map.lines}, map.plan.samples);
+  }
+  void trace(std::span<const MapScan> scans);
+  void hand_out(std::span<const MapScan> scans);
+  void add_strips(std::uint32_t row, const maps::CellBox& cells, bool steep, StripTable& table);
+  void add_words(MapWords& part, std::uint32_t row, MapShare& share);
+  void strike(std::span<const MapScan> scans);
+  void close(MapCourse& course);
+  void send(std::span<const std::uint32_t> wanted);
+};
+
+}  // namespace sf::sensors
