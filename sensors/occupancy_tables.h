@@ -35,7 +35,7 @@ struct MapCourse {
   std::size_t count = 0;                ///< blocks this time, padding included
 };
 
-/// MapWords of the maps of one kind: with log odds, or without.
+/// Words of the maps of one kind: with log odds, or without.
 struct MapWords {
   MapCourse course;
   std::unique_ptr<gpu::Buffer> struck;  ///< a word a lane: where beams ended
