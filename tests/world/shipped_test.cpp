@@ -17,7 +17,8 @@ namespace {
 World shipped(const std::string& name) {
   static constexpr std::string_view kAny[] = {"fov",     "samples",      "range_max", "range_min",    "scount",
                                               "spose[]", "ssensitivity", "sum",       "perpendicular"};
-  static constexpr SensorWord kWords[] = {{"laneedge", kAny}, {"magnetometer", kAny}};
+  static constexpr std::string_view kMap[] = {"cell", "words", "offset"};
+  static constexpr SensorWord kWords[] = {{"laneedge", kAny}, {"magnetometer", kAny}, {"occupancy", kMap}};
   LoadOptions options;
   options.sensors = kWords;
   return load_world(SF_SOURCE_DIR "/worlds/" + name, options);
