@@ -199,7 +199,7 @@ TEST(Layering, HeavyLibrariesHaveOneSourceEach) {
 
 TEST(Layering, KernelsReadSharedHeadersOnly) {
   // A header that both compilers read says so with a guard, since GLSL has no `#pragma once`, and includes nothing.
-  static const std::regex kOurs("#\\s*include\\s*\"((sensors|base)/[^\"]+)\"");
+  static const std::regex kOurs("#\\s*include\\s*\"((sensors|maps|base)/[^\"]+)\"");
   for (const Source& source : read_sources()) {
     if (room_of(source.path) != "shaders") continue;
     for (std::sregex_iterator m(source.text.begin(), source.text.end(), kOurs), end; m != end; ++m) {
