@@ -5,6 +5,7 @@
 #include "maps/text.h"
 #include "scenarios/coverage.h"
 #include "scenarios/experiment.h"
+#include "viz/map_figure.h"
 #include "viz/trajectory_figure.h"
 
 namespace sf::scenarios {
@@ -71,6 +72,10 @@ void run_with(const Bench& bench, const std::string& controller, std::vector<Map
   viz::draw_trajectories(world, tracks, files.back());
   files.push_back(in_folder(bench, controller + "-map.txt"));
   write_text(files.back(), maps::text_of(trials.front().maps.front()));
+  files.push_back(in_folder(bench, controller + "-map.png"));
+  const viz::Track& track = trials.front().tracks.front();
+  viz::draw_map(trials.front().maps.front(),
+                {.title = "Map of trial 1: " + controller, .places = {{track.name, track.poses.back()}}}, files.back());
 }
 
 std::vector<std::string> run_mapping(const Bench& bench) {
