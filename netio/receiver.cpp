@@ -7,7 +7,7 @@ namespace sf::netio {
 Receiver::Receiver(const ReceiverOptions& options)
     : headerless_(options.headerless), judge_(options.judge), read_(options.read) {
   SF_CHECK(judge_ != nullptr && read_ != nullptr, "a receiver without a judge or a reader");
-  for (const ReceiverStream& stream : options.streams) streams_.push_back({stream.plan, Assembler(stream.numbers), 0});
+  for (const ReceiverStream& stream : options.streams) streams_.push_back({stream.plan, Assembler(stream.numbers)});
 }
 
 Taken Receiver::accept(std::size_t i, std::span<const std::uint8_t> bytes, std::int64_t now) {
@@ -20,10 +20,7 @@ Taken Receiver::accept(std::size_t i, std::span<const std::uint8_t> bytes, std::
   counts_.reasons.add(verdict.reason);
   if (verdict.reason != Reason::accepted) return Taken::refused;
 
-  if (headerless_) {
-    header.sequence = stream.came++;
-    header.time = now;
-  }
+  if (headerless_) number(stream, verdict.part, now, header);
   const Piece piece{header.sequence, verdict.part, verdict.parts, header.time};
   const Taken taken =
       stream.assembler.take(piece, now, [&](std::span<double> values) { read_(i, header, payload, values); });
@@ -31,6 +28,16 @@ Taken Receiver::accept(std::size_t i, std::span<const std::uint8_t> bytes, std::
   counts_.late += taken == Taken::late;
   counts_.duplicates += taken == Taken::duplicate;
   return taken;
+}
+
+void Receiver::number(Stream& stream, std::uint32_t part, std::int64_t now, Header& header) {
+  if (stream.readings == 0 || part <= stream.part) {
+    ++stream.readings;
+    stream.began = now;
+  }
+  stream.part = part;
+  header.sequence = stream.readings - 1;
+  header.time = stream.began;
 }
 
 ReceiverCounts Receiver::counts() const {

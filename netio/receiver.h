@@ -32,7 +32,7 @@ struct ReceiverStream {
 
 struct ReceiverOptions {
   std::vector<ReceiverStream> streams;  ///< one per sensor
-  bool headerless = false;  ///< datagrams are payloads, each a whole reading: they count in order of arrival
+  bool headerless = false;  ///< datagrams are payloads; a part that is not after the one before begins a new reading
   Judge judge;              ///< not empty; judges payloads only, of the stream's own robot and sensor
   Read read;                ///< not empty
 };
@@ -61,8 +61,14 @@ class Receiver {
   struct Stream {
     StreamPlan plan;
     Assembler assembler;
-    std::uint32_t came = 0;  ///< good ones without a header
+    // Without headers, of the reading that came last:
+    std::uint32_t readings = 0;  ///< begun, it included
+    std::uint32_t part = 0;
+    std::int64_t began = 0;  ///< [ns]
   };
+  /// Makes up what a header would say.
+  static void number(Stream& stream, std::uint32_t part, std::int64_t now, Header& header);
+
   std::vector<Stream> streams_;
   bool headerless_;
   Judge judge_;

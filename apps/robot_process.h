@@ -1,0 +1,81 @@
+#pragma once
+// What goes on in a robot's process: the controller, and all that it is given.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "apps/options.h"
+#include "apps/robot_facts.h"
+#include "apps/robot_link.h"
+#include "apps/stop.h"
+#include "apps/wire_names.h"
+#include "control/controllers.h"
+#include "scenarios/robot_body.h"
+#include "sensors/roster.h"
+#include "world/lights.h"
+#include "world/roads/network.h"
+#include "world/world.h"
+
+namespace sf::apps {
+
+/// By its own option, or by the control shell's setting.
+bool waits_for_start(const Options& options);
+
+/// Times are of the robot's own clock [ns], which begins at 0 and does not go back. World, roster and options must
+/// outlive it. One thread.
+class RobotProcess {
+ public:
+  /// @throws base::InputError for a controller that cannot be had, a port that is taken, a farm's host that is unknown.
+  RobotProcess(const world::World& world, const sensors::Roster& roster, std::uint32_t mover, const Options& options);
+
+  /// Takes in and lets out what comes and is due until `until`, or until a stop is asked for. @param now the clock
+  template <class Now>
+  void wait_until(std::int64_t until, Now&& now) {
+    link_.run(now());
+    for (std::int64_t time = now(); time < until && !stop_requested(); time = now()) {
+      link_.wait(time, until);
+      link_.run(now());
+    }
+  }
+
+  /// Moves as it decided last, decides anew, and says where it is.
+  void turn(std::int64_t now);
+
+  double rate() const { return made_.rate; }  ///< [Hz] of turns
+  bool done() const { return started_ && made_.controller->done(); }
+  const RobotLink& link() const { return link_; }
+  /// All but how long it took.
+  RobotFacts facts(const Options& options) const;
+
+ private:
+  void hear(const netio::Packet& packet, std::int64_t now);
+  void decide(std::int64_t now);
+  void gather_readings();
+  void gather_others(std::int64_t now);
+  void gather_signals(std::int64_t now);
+  void add_error(double error);
+  void complain(std::int64_t now);
+
+  const world::World& world_;
+  WireNames names_;
+  std::uint32_t mover_;
+  scenarios::RobotBody body_;
+  RobotLink link_;
+  std::optional<world::RoadNetwork> roads_;
+  control::Made made_;
+  std::vector<base::Intent> intents_;  ///< per mover, as told
+  base::Twist command_;
+  bool started_;
+  bool complained_ = false;
+  std::uint64_t steps_ = 0;
+  std::uint64_t contacts_ = 0;
+  std::uint64_t errors_ = 0;
+  double error_sum_ = 0.0;
+  double abs_error_sum_ = 0.0;
+  std::vector<base::ReadingBlock> readings_;
+  std::vector<control::Neighbour> others_;
+  std::vector<world::Signal> signals_;
+};
+
+}  // namespace sf::apps
