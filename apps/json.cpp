@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/facts.h"
+#include "apps/robot_facts.h"
 #include "base/hash.h"
 #include "sensors/field/truncation.h"
 
@@ -61,6 +62,25 @@ std::string beam_json(const world::World& world, const base::ReadingBlock& readi
   const std::uint32_t hit = reading.hits[i];
   return fmt::format("{{\"bearing_rad\": {:.12f}, \"range_m\": {}, \"hit\": {}}}", world::bearing_of(laser, i),
                      metres(reading.values[i]), hit == base::kNoHit ? "null" : dump(world.models[hit].name));
+}
+
+Json injected(const netio::DelayCounts& counts) {
+  return {{"passed", counts.passed}, {"lost", counts.lost}, {"full", counts.full}};
+}
+
+Json link_json(const LinkCounts& link) {
+  const netio::ReceiverCounts& in = link.readings;
+  return {{"sent", {{"packets", link.sent.sent}, {"failed", link.sent.failed}, {"dropped", link.sent.dropped}}},
+          {"readings", link.whole},
+          {"sensor_packets",
+           {{"packets", in.reasons.total()},
+            {"by_reason", reasons(in.reasons)},
+            {"late", in.late},
+            {"duplicates", in.duplicates},
+            {"lost", in.lost},
+            {"restarts", in.restarts}}},
+          {"relayed", {{"packets", link.words.total()}, {"by_reason", reasons(link.words)}}},
+          {"injected", {{"out", injected(link.out)}, {"in", injected(link.in)}}}};
 }
 
 }  // namespace
@@ -193,6 +213,19 @@ std::string json_of(const world::World& world, const sensors::Roster& roster, co
                                                ? beam_json(world, reading, static_cast<std::uint32_t>(i))
                                                : dump(element_json(kind, reading.values.subspan(i * width, width))));
   return text + "\n]}\n";
+}
+
+std::string json_of(const RobotFacts& f) {
+  Json json{{"robot", f.robot},      {"id", f.id},         {"controller", f.controller},
+            {"farm", f.farm},        {"wall_s", f.wall_s}, {"steps", f.steps},
+            {"started", f.started},  {"done", f.done},     {"answered", f.answered},
+            {"contacts", f.contacts}};
+  json.update(link_json(f.link));
+  json["distance_m"] = f.distance_m;
+  json["pose"] = pose_json(f.pose);
+  if (f.error.steps > 0)
+    json["error"] = {{"steps", f.error.steps}, {"mean", f.error.mean}, {"abs_mean", f.error.abs_mean}};
+  return print(json);
 }
 
 }  // namespace sf::apps
