@@ -94,11 +94,11 @@ TEST(Receiver, HeaderlessPartsBelongToTheReadingThatTheyFollow) {
     return receiver.accept(0, base::Bytes{part, 2, value}, now);
   };
   EXPECT_EQ(say(0, 10, 5), Taken::part);
-  EXPECT_EQ(say(1, 11, 6), Taken::whole);
+  ASSERT_EQ(say(1, 11, 6), Taken::whole);
   EXPECT_EQ(receiver.newest(0)->time, 5);
   EXPECT_EQ(say(0, 20, 7), Taken::part);  // its second part is lost
   EXPECT_EQ(say(0, 30, 8), Taken::part);
-  EXPECT_EQ(say(1, 31, 9), Taken::whole);
+  ASSERT_EQ(say(1, 31, 9), Taken::whole);
   EXPECT_EQ(receiver.newest(0)->values[0], 30.0);
   EXPECT_EQ(receiver.newest(0)->values[1], 31.0);
 }
