@@ -34,7 +34,7 @@ class Service {
         answers_(inbox_.socket()),
         relay_(ids_of(names_.robots)),
         post_(world, roster, options),
-        farm_(world, device, farm::FarmOptions{.seed = options.seed}),
+        farm_(world, device, farm::FarmOptions{.seed = options.seed, .true_poses = false}),
         fleet_(world),
         no_return_(roster, options.no_return_inf) {
     reports_.reserve(netio::Inbox::kMaxPerReceive);
