@@ -81,20 +81,16 @@ void draw_cells(Canvas& canvas, const maps::Grid& grid, const Layout& l) {
   canvas.image(l.low + line, l.high,
                {static_cast<int>(maps::columns(grid.plan)), static_cast<int>(maps::rows(grid.plan)), pixels});
   if (!l.grid) return;
-  std::vector<Line> lines;
+  // Whole pixels, each of them: lines would be smoothed.
+  const std::vector<std::uint32_t> line_color{kGrid};
   for (std::int64_t i = 0; i <= maps::columns(grid.plan); ++i) {
-    const double x = l.low.x + kPitch * static_cast<double>(i) + 0.5;
-    lines.push_back({{x, l.low.y}, {x, l.high.y}});
+    const double x = l.low.x + kPitch * static_cast<double>(i);
+    canvas.image({x, l.low.y}, {x + 1.0, l.high.y}, {1, 1, line_color});
   }
   for (std::int64_t i = 0; i <= maps::rows(grid.plan); ++i) {
-    const double y = l.low.y + kPitch * static_cast<double>(i) + 0.5;
-    lines.push_back({{l.low.x, y}, {l.high.x, y}});
+    const double y = l.low.y + kPitch * static_cast<double>(i);
+    canvas.image({l.low.x, y}, {l.high.x, y + 1.0}, {1, 1, line_color});
   }
-  // Squared off at the map's border, whatever ends lines have.
-  canvas.clip(
-      {static_cast<int>(l.low.x), static_cast<int>(l.low.y), static_cast<int>(l.high.x), static_cast<int>(l.high.y)});
-  canvas.lines(lines, 1.0, kGrid);
-  canvas.unclip();
 }
 
 /// [px] of a point of the world.
