@@ -109,7 +109,7 @@ void draw_axes(Canvas& canvas, const maps::GridPlan& plan, const Layout& l) {
   const Ticks xs = make_ticks(plan.left, right, 110.0 / metre);
   for (const double x : xs.at) {
     const double px = std::floor(pixel(plan, l, {x, 0.0}).x) + 0.5;
-    canvas.line({px, l.high.y}, {px, l.high.y + 6.0}, 1.0, kFrame);
+    canvas.line({px, l.high.y + 1.0}, {px, l.high.y + 6.0}, 1.0, kFrame);
     canvas.text({px, l.high.y + 10.0}, tick_text(x, xs.decimals), style);
   }
   canvas.text({0.5 * (l.low.x + l.high.x), l.high.y + 36.0}, "x [m]", style);
@@ -118,7 +118,7 @@ void draw_axes(Canvas& canvas, const maps::GridPlan& plan, const Layout& l) {
   const Ticks ys = make_ticks(bottom, plan.top, 70.0 / metre);
   for (const double y : ys.at) {
     const double py = std::floor(pixel(plan, l, {0.0, y}).y) + 0.5;
-    canvas.line({l.low.x - 6.0, py}, {l.low.x, py}, 1.0, kFrame);
+    canvas.line({l.low.x - 6.0, py}, {l.low.x - 1.0, py}, 1.0, kFrame);
     canvas.text({l.low.x - 10.0, py}, tick_text(y, ys.decimals), style);
   }
   style.across = Anchor::middle;
