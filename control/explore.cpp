@@ -18,11 +18,12 @@ using base::Twist;
 using base::Vec2;
 
 constexpr double kStart = 0.02;      // [m] beyond all that is on it the ground is taken as free where it begins
-constexpr double kHere = 0.004;      // [m] a place is reached
+constexpr double kHere = 0.002;      // [m] a place is reached
 constexpr double kAligned = 0.01;    // [rad] a heading is reached
 constexpr double kTouch = 5e-4;      // [m] it never comes nearer to a surface
 constexpr double kNearRange = 0.85;  // of the range, from which it looks at first
 constexpr double kFarRange = 1.0;
+constexpr int kGraze = 2;           // nodes
 constexpr double kMostNodes = 2e6;  // of the lattice: 128 MB for ways
 
 /// What is wanted, and how near to surfaces, one stage after another.
@@ -30,9 +31,13 @@ struct Stage {
   bool roomy;
   bool all;
   double range;
+  int graze;
 };
-constexpr Stage kStage[Explore::kStages] = {
-    {true, false, kNearRange}, {true, false, kFarRange}, {false, false, kFarRange}, {false, true, kFarRange}};
+constexpr Stage kStage[Explore::kStages] = {{true, false, kNearRange, 0},
+                                            {true, false, kFarRange, 0},
+                                            {false, false, kFarRange, 0},
+                                            {false, true, kFarRange, 0},
+                                            {false, false, kFarRange, kGraze}};
 
 Vec2 origin(const Pose& X) { return {X.x, X.y}; }
 
@@ -110,7 +115,8 @@ void Explore::plan(const Pose& X_WM) {
   const State from{terrain_.node_at(origin(X_WM)), heading};
   for (; stage_ < kStages; ++stage_) {
     const Stage& stage = kStage[stage_];
-    if (lookout_.look(stage.all, stage.range * settings_.eye.range) == 0) continue;
+    if (stage.graze > 0 && !settings_.thorough) continue;
+    if (lookout_.look(stage.all, stage.range * settings_.eye.range, stage.graze) == 0) continue;
     way_ = search_.find(from, stage.roomy ? settings_.margin : settings_.least_margin,
                         [&](const State& state) { return lookout_.worth(search_.sensor_at(state), state.heading); });
     if (!way_.empty()) return take(way_);
@@ -184,7 +190,9 @@ Twist Explore::follow(const Leg& leg, const Pose& X_WM, double dt) const {
 bool Explore::safe(const Pose& X_WM, const Twist& twist, double dt) const {
   if (twist.forward == 0.0) return true;
   const double now = terrain_.nearest(origin(X_WM), 1.0);
-  const double then = terrain_.nearest(base::transform(X_WM, {2.0 * dt * twist.forward, 0.0}), 1.0);
+  const double rest = base::length(legs_.back().end - origin(X_WM));
+  const double ahead = std::copysign(std::min(2.0 * dt * std::abs(twist.forward), rest + kHere), twist.forward);
+  const double then = terrain_.nearest(base::transform(X_WM, {ahead, 0.0}), 1.0);
   return then >= settings_.body.radius + kTouch || then > now;
 }
 
@@ -263,6 +271,7 @@ std::unique_ptr<Controller> make_explore(const Site& site, Settings& settings) {
   explore.margin = settings.number("margin", explore.margin, 0.0, 1.0);
   explore.least_margin =
       settings.number("least_margin", std::min(explore.least_margin, explore.margin), 0.0, explore.margin);
+  explore.thorough = settings.flag("thorough", explore.thorough);
   return std::make_unique<Explore>(explore);
 }
 

@@ -32,6 +32,7 @@ struct ExploreSettings {
   double turn = 1.0;              ///< [rad/s] at most
   double margin = 0.01;           ///< [m] between body and surfaces, at first
   double least_margin = 0.003;    ///< [m] when nothing else is left; <= margin
+  bool thorough = false;          ///< at last, looks along surfaces for what may be hidden behind them
   double patience = 2.0;          ///< [s] for a reading after it stands where it wanted to look
 };
 
@@ -48,7 +49,7 @@ class Explore final : public Controller {
 
   const maps::Grid& grid() const { return terrain_.grid(); }
   int stage() const { return stage_; }  ///< in [0, kStages]
-  static constexpr int kStages = 4;
+  static constexpr int kStages = 5;
 
  private:
   /// Part of a way: a turn in place, or a straight line.

