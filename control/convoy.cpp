@@ -19,6 +19,13 @@ std::optional<std::uint32_t> newcomer(const Company& company, const std::vector<
   return std::nullopt;
 }
 
+bool on_one_lane(const Corridors& corridors, const Driver& driver, const Driver& ahead) {
+  for (const Place& own : driver.places)
+    for (const Place& other : ahead.places)
+      if (other.way == own.way && corridors.way(own.way).kind == Way::Kind::lane) return true;
+  return false;
+}
+
 }  // namespace
 
 std::optional<std::uint32_t> row_of(const std::vector<Driver>& drivers, std::uint32_t id) {
@@ -41,11 +48,12 @@ std::optional<std::uint32_t> heading_for(const Corridors& corridors, const Drive
   return std::nullopt;
 }
 
-void keep_company(Company& company, const std::vector<Driver>& drivers, const std::vector<Ahead>& ahead) {
+void keep_company(Company& company, const Corridors& corridors, const std::vector<Driver>& drivers,
+                  const std::vector<Ahead>& ahead) {
   if (company.leader == base::kNobody || ahead.empty()) return;
   const Driver& next = drivers[ahead.front().row];
   if (company.merges) {
-    if (next.id == company.leader && ahead.front().free < kNear) company.merges = false;
+    if (next.id == company.leader && on_one_lane(corridors, drivers.front(), next)) company.merges = false;
     return;
   }
   const auto row = newcomer(company, drivers);

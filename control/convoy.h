@@ -30,7 +30,8 @@ std::optional<std::uint32_t> heading_for(const Corridors& corridors, const Drive
 
 /// Keeps the company in order after a look around: who merges and is there has merged, who comes in between becomes the
 /// leader.
-void keep_company(Company& company, const std::vector<Driver>& drivers, const std::vector<Ahead>& ahead);
+void keep_company(Company& company, const Corridors& corridors, const std::vector<Driver>& drivers,
+                  const std::vector<Ahead>& ahead);
 
 /// The gap that a member opens for a newcomer. [m] beyond its own; 0: nobody wants to come in
 double opened_gap(const Company& company, const Corridors& corridors, const std::vector<Driver>& drivers);

@@ -212,6 +212,9 @@ bool Corridors::inside(std::uint32_t zone, Vec2 p) const {
   bool in = false;
   for (std::size_t i = 0, j = perimeter.size() - 1; i < perimeter.size(); j = i++) {
     const Vec2 a = perimeter[i].p, b = perimeter[j].p;
+    const Vec2 d = b - a;
+    const double t = std::clamp(dot(p - a, d) / std::max(dot(d, d), 1e-18), 0.0, 1.0);
+    if (length(p - a - t * d) < 0.5 * body_.radius) return true;
     if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) in = !in;
   }
   return in;

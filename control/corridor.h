@@ -117,7 +117,7 @@ class Corridors {
 
   /// Ways within `reach` [m] of the robot that run in its direction (to 45 degrees), nearest first.
   Places places(const Pose& X_WM, double reach) const;
-  /// Within the perimeter of the zone.
+  /// Within the perimeter of the zone, or half a radius beyond: spots may be entered from its very rim.
   bool inside(std::uint32_t zone, Vec2 p) const;
   /// The origin of a robot that is parked in a spot.
   Pose parked(std::uint32_t spot) const;

@@ -158,7 +158,7 @@ base::Twist Route::step(const Input& input) {
   right_of_way_.observe(input, company_.leader, company_.merges);
   chase(input);
   look_ahead(*corridors_, plan_, progress_.s(), right_of_way_.drivers(), ahead_);
-  keep_company(company_, right_of_way_.drivers(), ahead_);
+  keep_company(company_, *corridors_, right_of_way_.drivers(), ahead_);
   consider_passing(input);
   reroute(input);
   trim();

@@ -356,20 +356,26 @@ TEST(Parking, stops_with_its_front_at_the_end_of_every_spot) {
   }
 }
 
-// Six robots park in six spots, neighbours standing there already, and leave again for another place.
-TEST(Parking, a_full_car_park_empties_and_fills) {
+// Five leave their spots for the streets while a sixth comes in: one after another, whatever they all want at once.
+TEST(Parking, a_full_car_park_empties_while_another_comes_in) {
   Streets t;
   const control::Corridors corridors(t.roads, t.world, {});
-  for (std::uint32_t spot = 0; spot < 5; ++spot) t.add(corridors.parked(spot), "route", go({8, 9.0 + spot % 2}));
+  for (std::uint32_t spot = 0; spot < 5; ++spot)
+    t.add(corridors.parked(spot), "route", go({8, 9.0 + spot % 2}, {{"loop", true, ""}}));
   t.add(on_lane(t.roads, "10.2", 0.3), "route", {{"park", std::string("13.6"), ""}});
   t.begin();
-  const auto all_done = [&] {
-    return std::all_of(t.controllers.begin(), t.controllers.end(), [](const auto& c) { return c->done(); });
-  };
-  // Who is done stands in the way of the others, so it is enough that all have left and the sixth is in.
-  for (int i = 0; i < 3000 && !all_done(); ++i) t.tick();
+  for (int i = 0; i < 3000; ++i) {
+    t.tick();
+    int about = 0;
+    for (std::uint32_t row = 0; row < 6; ++row) {
+      const Vec2 p{t.pose(row).x, t.pose(row).y};
+      const bool stands = control::spot_at(corridors, t.pose(row)).has_value();
+      about += corridors.inside(0, p) && !stands;
+    }
+    ASSERT_LE(about, 1) << 0.1 * i;
+  }
   EXPECT_TRUE(t.controllers[5]->done());
-  for (std::uint32_t row = 0; row < 5; ++row) EXPECT_FALSE(corridors.inside(0, {t.pose(row).x, t.pose(row).y})) << row;
+  for (std::uint32_t row = 0; row < 5; ++row) EXPECT_GT(t.route(row).reached(), 2u) << row;
   EXPECT_EQ(t.contacts, 0);
 }
 
@@ -402,13 +408,39 @@ TEST(Convoy, a_chain_of_five_keeps_its_gaps) {
          int(t.route(0).reached()));
 }
 
+// Where a robot is along the way that the leader of all has driven: the order of a convoy.
+struct Trail {
+  std::vector<Vec2> points;
+  void add(const Pose& X) { points.push_back({X.x, X.y}); }
+  std::size_t nearest(const Pose& X) const {
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (length(points[i] - Vec2{X.x, X.y}) <= length(points[best] - Vec2{X.x, X.y})) best = i;
+    return best;
+  }
+};
+
+// Robot 4 waits at the stop sign of 12.2 and comes in behind robot 1, which robots 2 and 3 follow in a chain.
 TEST(Convoy, lets_a_robot_in_between) {
   Streets t;
-  t.add(on_lane(t.roads, "1.3", 1.0), "route", go({8, 9, 10, 5, 4}, {{"loop", true, ""}}));
-  t.add(on_lane(t.roads, "1.3", 0.4), "convoy", {{"leader", 1.0, ""}});
-  t.add(on_lane(t.roads, "2.2", 3.0), "convoy", {{"leader", 2.0, ""}});
-  (void)t;
-  SUCCEED();
+  t.add(on_lane(t.roads, "2.2", 2.2), "route", go({4, 8}));
+  t.add(on_lane(t.roads, "2.2", 1.6), "convoy", {{"leader", 1.0, ""}});
+  t.add(on_lane(t.roads, "2.2", 1.0), "convoy", {{"leader", 2.0, ""}});
+  t.add(on_lane(t.roads, "12.2", 3.5), "route", go({4, 8}, {{"merge_behind", 1.0, ""}}));
+  t.begin();
+  Trail trail;
+  for (int i = 0; i < 420; ++i) {
+    t.tick();
+    trail.add(t.pose(0));
+  }
+  EXPECT_EQ(t.contacts, 0);
+  EXPECT_EQ(t.intents[3].follows, 1u);
+  EXPECT_EQ(t.intents[1].follows, 4u);  // it followed 1 until 4 was there
+  EXPECT_EQ(t.intents[2].follows, 2u);
+  EXPECT_GT(trail.nearest(t.pose(3)), trail.nearest(t.pose(1)));
+  EXPECT_GT(trail.nearest(t.pose(1)), trail.nearest(t.pose(2)));
+  for (int k = 0; k < 4; ++k)
+    printf("merge %d: %.2f %.2f follows %d\n", k, t.pose(k).x, t.pose(k).y, int(t.intents[k].follows));
 }
 
 // ---- Passing.
@@ -418,15 +450,46 @@ TEST(Passing, goes_round_a_slower_robot_and_comes_back) {
   t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
   t.add(on_lane(t.roads, "1.1", 1.2), "route", go({5}));
   t.begin();
-  bool beside = false;
-  for (int i = 0; i < 500; ++i) {
+  const control::Corridors corridors(t.roads, t.world, {});
+  bool beside = false, back = false;
+  for (int i = 0; i < 400; ++i) {
     t.tick();
-    const auto place = place_on_lane(control::Corridors(t.roads, t.world, {}), t.pose(1));
-    if (i % 20 == 0) {
-      beside = beside || (place && name_of(t.roads, t.roads.lanes[place->way]) == "1.2" && place->offset < 0.02);
-    }
+    const auto place = place_on_lane(corridors, t.pose(1));
+    if (!place || place->offset > 0.02) continue;
+    const std::string lane = name_of(t.roads, t.roads.lanes[place->way]);
+    beside = beside || lane == "1.2";
+    back = back || (beside && lane == "1.1" && t.pose(1).x > t.pose(0).x + 0.4);
   }
   EXPECT_TRUE(beside);
+  EXPECT_TRUE(back);
+  EXPECT_EQ(t.contacts, 0);
+}
+
+// Robots on the other lane, one beside and one coming up from behind as fast: it stays where it is.
+TEST(Passing, waits_until_the_other_lane_is_free) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
+  t.add(on_lane(t.roads, "1.1", 1.6), "route", go({5}));
+  t.add(on_lane(t.roads, "1.2", 2.4), "route", go({5}, {{"speed", 0.03, ""}, {"pass", false, ""}}));
+  t.begin();
+  double farthest = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    t.tick();
+    farthest = std::max(farthest, std::abs(t.controllers[1]->error()));
+    EXPECT_LT(t.pose(1).x, t.pose(0).x) << "it passed";
+  }
+  EXPECT_LT(farthest, 0.02);
+  EXPECT_EQ(t.contacts, 0);
+}
+
+// Boundary: `pass false` never changes lanes.
+TEST(Passing, does_not_where_it_must_not) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
+  t.add(on_lane(t.roads, "1.1", 1.2), "route", go({5}, {{"pass", false, ""}}));
+  t.begin();
+  for (int i = 0; i < 300; ++i) t.tick();
+  EXPECT_LT(t.pose(1).x, t.pose(0).x);
   EXPECT_EQ(t.contacts, 0);
 }
 
