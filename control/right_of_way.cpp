@@ -154,6 +154,12 @@ bool RightOfWay::is_in_way(const Driver& other, const Meeting& meeting, const Ap
     if (meeting.yields) {
       // Of two that stand abreast and want to change places, one has to begin.
       if (other.speed < kStanding && drivers_.front().id < other.id) continue;
+      // Who drives on ahead is followed.
+      const double body = 2.5 * corridors_.body().radius;
+      if (place.s > meeting.other_from + body && other.speed > kStanding) continue;
+      // Who follows the same leader opens a gap for who merges, and that has to be there.
+      const bool lets_in = merges_ && other.follows == drivers_.front().follows;
+      if (lets_in && place.s < meeting.other_from - body) continue;
       if (place.s > meeting.other_from - 2.0 * corridors_.body().radius - 2.5 * other.speed) return true;
       continue;
     }

@@ -443,6 +443,28 @@ TEST(Convoy, lets_a_robot_in_between) {
     printf("merge %d: %.2f %.2f follows %d\n", k, t.pose(k).x, t.pose(k).y, int(t.intents[k].follows));
 }
 
+// The same from the lane beside: robot 4 drives on 1.2 and comes over to the convoy on 1.1.
+TEST(Convoy, lets_a_robot_in_from_the_lane_beside) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.1", 2.0), "route", go({2, 5}, {{"speed", 0.15, ""}}));
+  t.add(on_lane(t.roads, "1.1", 1.4), "convoy", {{"leader", 1.0, ""}});
+  t.add(on_lane(t.roads, "1.1", 0.8), "convoy", {{"leader", 2.0, ""}});
+  t.add(on_lane(t.roads, "1.2", 2.2), "route", go({2, 5}, {{"merge_behind", 1.0, ""}}));
+  t.begin();
+  Trail trail;
+  for (int i = 0; i < 500; ++i) {
+    t.tick();
+    trail.add(t.pose(0));
+  }
+  for (int k = 0; k < 4; ++k)
+    printf("beside %d: %.2f %.2f follows %d\n", k, t.pose(k).x, t.pose(k).y, int(t.intents[k].follows));
+  EXPECT_EQ(t.contacts, 0);
+  EXPECT_EQ(t.intents[3].follows, 1u);
+  EXPECT_EQ(t.intents[1].follows, 4u);
+  EXPECT_GT(trail.nearest(t.pose(3)), trail.nearest(t.pose(1)));
+  EXPECT_GT(trail.nearest(t.pose(1)), trail.nearest(t.pose(2)));
+}
+
 // ---- Passing.
 
 TEST(Passing, goes_round_a_slower_robot_and_comes_back) {
