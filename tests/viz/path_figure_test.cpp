@@ -1,0 +1,96 @@
+#include "viz/path_figure.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "tests/viz/png.h"
+#include "viz/color.h"
+#include "viz/series_figure.h"
+
+namespace sf::viz {
+namespace {
+
+std::string file(const char* name) { return testing::TempDir() + name; }
+
+/// A straight lane of 4 m along x.
+world::World lane() {
+  world::World world;
+  world.paths.push_back({"lane", {{.X_WP = {}, .length = 4.0, .width = 0.5}}});
+  world.extent = {0.0, -0.5, 4.0, 0.5};
+  return world;
+}
+
+/// A track along the lane, `aside` metres to its left.
+Track track(double aside) {
+  Track t{.name = "t"};
+  for (int i = 0; i <= 40; ++i) t.poses.push_back({0.1 * i, aside, 0.0, 0.0});
+  return t;
+}
+
+scenes::Picture drawn(const std::vector<Track>& tracks) {
+  draw_along_paths(lane(), tracks, "Title", "subtitle", file("path.png"));
+  return scenes::read_png(file("path.png"));
+}
+
+int colored(const scenes::Picture& p, std::uint32_t color) { return p.count(color, 0, 0, p.width, p.height); }
+
+TEST(PathFigure, EveryTrackHasItsColorAndRunsAllAlong) {
+  const scenes::Picture p = drawn({track(0.2), track(-0.2)});
+  for (const std::size_t row : {0u, 1u}) {
+    const std::uint32_t color = row_color(row, 2);
+    for (double part = 0.15; part < 0.9; part += 0.05)
+      EXPECT_GT(
+          p.count(color, static_cast<int>(part * p.width), 0, static_cast<int>((part + 0.05) * p.width), p.height), 30)
+          << row << " " << part;
+  }
+}
+
+/// Left of the lane is up.
+TEST(PathFigure, LeftIsAboveRight) {
+  const scenes::Picture p = drawn({track(0.3), track(-0.3)});
+  const auto highest = [&](std::uint32_t color) {
+    for (int y = 0; y < p.height; ++y)
+      if (p.count(color, p.width / 4, y, p.width / 2, y + 1) > 20) return y;
+    return p.height;
+  };
+  EXPECT_LT(highest(row_color(0, 2)), highest(row_color(1, 2)));
+}
+
+TEST(PathFigure, TheMiddleIsDashed) {
+  const scenes::Picture p = drawn({});
+  const int grey = colored(p, 0xFF808080u);
+  EXPECT_GT(grey, 200);
+  // Dashes of 9 and gaps of 7 pixels: some half of the row.
+  EXPECT_LT(grey, 2 * p.width);
+}
+
+/// A track beyond the world is on the picture all the same.
+TEST(PathFigure, GrowsWithItsTracks) {
+  const scenes::Picture p = drawn({track(3.0)});
+  EXPECT_GT(colored(p, row_color(0, 1)), 1000);
+}
+
+TEST(PathFigure, AFolderThatIsNotThereIsNamed) {
+  EXPECT_THROW(draw_along_paths(lane(), {}, "", "", "/nowhere/x.png"), base::InputError);
+}
+
+/// The axis of a sweep has its own name: the pictures differ there, below the plot, and nowhere else.
+TEST(SeriesFigureAxis, SaysWhatWasVaried) {
+  SeriesPlan plan{.title = "T", .panels = {{"", "y", {{"a", {0.0, 1.0}, {1.0, 2.0}}}}}};
+  draw_series(plan, file("axis_a.png"));
+  plan.x_name = "delay of readings [s]";
+  draw_series(plan, file("axis_b.png"));
+  const scenes::Picture a = scenes::read_png(file("axis_a.png")), b = scenes::read_png(file("axis_b.png"));
+  ASSERT_EQ(a.height, b.height);
+  int apart = 0;
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x) {
+      if (a.at(x, y) == b.at(x, y)) continue;
+      ++apart;
+      EXPECT_GT(y, a.height / 2);
+    }
+  EXPECT_GT(apart, 100);
+}
+
+}  // namespace
+}  // namespace sf::viz
