@@ -7,29 +7,25 @@
 
 #include "base/error.h"
 #include "control/go.h"
+#include "sensors/irreceiver.h"
 
 namespace sf::control {
 
 namespace {
 
-// The receiver's number on the wire, and its byte: 240 and the bits of what is in sight, or 255 (Create Open
-// Interface).
-constexpr std::uint8_t kIrReceiver = 11;
-constexpr std::uint32_t kDockByte = 240;
-constexpr std::uint32_t kNoByte = 255;
-constexpr std::uint32_t kRedBuoy = 8, kGreenBuoy = 4, kForceField = 2;
+using sensors::kDockByte, sensors::kNoIrByte, sensors::kRedBuoy, sensors::kGreenBuoy, sensors::kForceField;
 
-std::uint32_t light_of(const base::ReadingBlock* reading) {
+std::uint32_t light_in(const base::ReadingBlock* reading) {
   if (reading == nullptr || reading->values.size() < 2) return 0;
   const double byte = reading->values[1];
-  return byte > kDockByte && byte < kNoByte ? static_cast<std::uint32_t>(byte) - kDockByte : 0;
+  return byte > kDockByte && byte < kNoIrByte ? static_cast<std::uint32_t>(byte) - kDockByte : 0;
 }
 
 }  // namespace
 
 base::Twist Docking::step(const Input& input) {
   const base::Pose& X_WM = input.state.X_WM;
-  const std::uint32_t light = light_of(newest(input, kIrReceiver));
+  const std::uint32_t light = light_in(newest(input, sensors::kIrReceiver));
   const double far = std::hypot(X_WM.x - settings_.X_WD.x, X_WM.y - settings_.X_WD.y);
   const bool touches = input.contact && ((light & kForceField) != 0 || far < 2.0 * settings_.reach);
   if (done_ || (done_ = touches || far <= settings_.reach)) return {};

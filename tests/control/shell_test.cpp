@@ -136,7 +136,7 @@ TEST(MakeController, refuses_by_name) {
   const world::World world = small_world();
   const std::string at = "s.toml:3: ";
   const std::vector<Refused> cases = {
-      {"wanter", {}, "expected one of: avoid, docking, explore, lane-keeping, magnet-keeping, patrol"},
+      {"wanter", {}, "docking, explore, lane-keeping, magnet-keeping, patrol"},
       {"wander", {{"start", std::string("later"), at}}, "s.toml:3: 'start' of controller 'wander' is 'later'"},
       {"wander", {{"wait_on_bumper", 1.0, at}}, "expects true or false"},
       {"wander", {{"kp", 1.0, at}}, "has no setting 'kp'; expected one of: start, wait_on_bumper"},
