@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "control/explore.h"
+#include "robots/outline.h"
+
+namespace sf::control {
+
+namespace {
+
+constexpr double kMostNodes = 2e6;  // of the lattice: 128 MB for ways
+
+}  // namespace
+
+maps::GridPlan plan_around(const world::World& world, double cell) {
+  world::Extent extent = world.extent;
+  maps::GridPlan plan{.cell = cell};
+  const auto words = [&](double length) { return std::max(30.0, std::ceil(length / (4.0 * cell) + 2.0)); };
+  const double wide = words(extent.x_max - extent.x_min), high = words(extent.y_max - extent.y_min);
+  if (!(wide * high * 144.0 <= kMostNodes))
+    throw base::InputError(
+        fmt::format("'explore': the world is {:.0f} m x {:.0f} m; expected at most {:.0f} square "
+                    "metres; give the area as map_left, map_top, map_width and map_height",
+                    extent.x_max - extent.x_min, extent.y_max - extent.y_min, kMostNodes / 9.0 * cell * cell));
+  plan.word_columns = static_cast<std::uint32_t>(wide);
+  plan.word_rows = static_cast<std::uint32_t>(high);
+  plan.left = 0.5 * (extent.x_min + extent.x_max) - 2.0 * wide * cell;
+  plan.top = 0.5 * (extent.y_min + extent.y_max) + 2.0 * high * cell;
+  return plan;
+}
+
+namespace {
+
+maps::GridPlan read_plan(const Site& site, Settings& settings) {
+  const double cell = settings.number("cell", 0.03, 0.005, 1.0);
+  const bool given = settings.has("map_width") || settings.has("map_height");
+  if (!given) return plan_around(site.world, cell);
+  maps::GridPlan plan{.cell = cell};
+  plan.left = settings.number("map_left", 0.0, -1e6, 1e6);
+  plan.top = settings.number("map_top", 0.0, -1e6, 1e6);
+  const double wide = std::ceil(settings.number("map_width", 3.6, cell, 1e3) / (4.0 * cell) - 1e-9);
+  const double high = std::ceil(settings.number("map_height", 3.6, cell, 1e3) / (4.0 * cell) - 1e-9);
+  if (!(wide * high * 144.0 <= kMostNodes)) settings.refuse("map_width", "'map_width' times 'map_height' is too large");
+  plan.word_columns = static_cast<std::uint32_t>(wide);
+  plan.word_rows = static_cast<std::uint32_t>(high);
+  return plan;
+}
+
+std::unique_ptr<Controller> make_explore(const Site& site, Settings& settings) {
+  const world::Mover& mover = site.world.movers[site.mover];
+  if (mover.lasers.empty())
+    throw base::InputError(
+        fmt::format("controller 'explore': '{}' has no laser; give it one in the world file", mover.name));
+  if (mover.drive == world::Drive::car)
+    throw base::InputError(
+        fmt::format("controller 'explore': '{}' is a car; expected a drive that turns in place", mover.name));
+  const world::Laser& laser = mover.lasers.front();
+  ExploreSettings explore;
+  explore.plan = read_plan(site, settings);
+  explore.body = {robots::outline_of(mover).radius, {laser.X_MS.x, laser.X_MS.y}};
+  explore.eye = {laser.X_MS, laser.fov, laser.range_max};
+  explore.beams = maps::beam_directions(laser.fov, laser.samples);
+  explore.range_min = laser.range_min;
+  explore.speed = settings.number("speed", std::min(explore.speed, mover.max_forward), 1e-3, mover.max_forward);
+  explore.slow_speed = settings.number("slow_speed", std::min(explore.slow_speed, explore.speed), 1e-3, explore.speed);
+  explore.slow = settings.number("slow", explore.slow, 0.0, 1.0);
+  explore.turn = settings.number("turn_speed", std::min(explore.turn, mover.max_turn), 1e-2, mover.max_turn);
+  explore.margin = settings.number("margin", explore.margin, 0.0, 1.0);
+  explore.least_margin =
+      settings.number("least_margin", std::min(explore.least_margin, explore.margin), 0.0, explore.margin);
+  explore.thorough = settings.flag("thorough", explore.thorough);
+  return std::make_unique<Explore>(explore);
+}
+
+}  // namespace
+
+constinit const ControllerKind explore_controller{
+    .name = "explore",
+    .summary = "maps an area by its laser, drives to what is unexplored and touches nothing",
+    .rate = 10.0,
+    .waits = false,
+    .make = make_explore,
+};
+
+}  // namespace sf::control
