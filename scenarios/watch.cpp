@@ -19,10 +19,11 @@ std::optional<world::PointId> point_of(const std::string& text) {
   return world::PointId{static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), static_cast<std::uint16_t>(c)};
 }
 
-/// [m] from the origin to the body's foremost point.
+/// [m] from the origin to the foremost point of what can be stopped: carried sensors reach farther.
 double front_of(const world::Mover& mover) {
   double front = 0.0;
-  for (const world::Segment& side : mover.body) front = std::max({front, side.a.x, side.b.x});
+  for (const world::Segment& side : mover.body)
+    if (side.stops_robots) front = std::max({front, side.a.x, side.b.x});
   return front;
 }
 

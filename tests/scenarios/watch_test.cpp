@@ -1,0 +1,131 @@
+#include "scenarios/watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sensors/kind.h"
+#include "world/lights.h"
+#include "world/roads/network.h"
+
+namespace sf::scenarios {
+namespace {
+
+gpu::Device& device() {
+  static gpu::Device device;
+  return device;
+}
+
+/// SimVille where everyone stands, and a record of it that tests fill by hand.
+class Town {
+ public:
+  Town() : world_(load()), simulation_(world_, device(), nobody()), watch_(world_, simulation_) {
+    for (std::uint32_t m = 0; m < world_.movers.size(); ++m) reports_.push_back({m, 0, world_.movers[m].X_WM, {}});
+    commands_.resize(reports_.size());
+    contacts_.resize(reports_.size());
+  }
+
+  const world::World& world() const { return world_; }
+  const Simulation& simulation() const { return simulation_; }
+  const Watch& watch() const { return watch_; }
+
+  void look(double seconds, const base::Pose& first, bool contact = false) {
+    reports_[0].X_WM = first;
+    contacts_[0] = contact;
+    watch_.look({tick_++, std::llround(1e9 * seconds), reports_, commands_, contacts_, {}});
+  }
+
+  /// Robot 0 goes half a metre up to and half a metre past a line, at one time. @return how many reds it passed
+  std::uint64_t pass(const base::Pose& X_WL, double seconds) {
+    const std::uint64_t before = watch_.reds();
+    for (int i = -10; i <= 10; ++i) look(seconds, base::compose(X_WL, {0.05 * i, 0.0, 0.0, 0.0}));
+    return watch_.reds() - before;
+  }
+
+ private:
+  static world::World load() {
+    return world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::vocabulary()});
+  }
+  static SimulationOptions nobody() {
+    SimulationOptions options;
+    options.actor.plan.controller.clear();
+    return options;
+  }
+
+  world::World world_;
+  Simulation simulation_;
+  Watch watch_;
+  std::uint64_t tick_ = 0;
+  std::vector<base::Report> reports_;
+  std::vector<base::Twist> commands_;
+  std::vector<std::uint8_t> contacts_;
+};
+
+/// A governed way-point, driving direction along x.
+base::Pose line_of(const Town& town, const std::string& name) {
+  unsigned a = 0, b = 0, c = 0;
+  EXPECT_EQ(std::sscanf(name.c_str(), "%u.%u.%u", &a, &b, &c), 3);
+  const world::RoadNetwork& roads = *town.simulation().roads();
+  const auto at = world::find_point(
+      roads, {static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), static_cast<std::uint16_t>(c)});
+  EXPECT_TRUE(at) << name;
+  const base::Vec2 p = world::position_of(roads, *at);
+  return {p.x, p.y, 0.0, *world::yaw_of(roads, *at)};
+}
+
+TEST(Watch, WhoPassesAtRedIsCountedAndNobodyElse) {
+  Town town;
+  ASSERT_NE(town.simulation().roads(), nullptr);
+  ASSERT_FALSE(town.world().lights.empty());
+  int reds = 0, others = 0;
+  for (const world::Light& light : town.world().lights)
+    for (const std::string& name : light.points) {
+      const base::Pose X_WL = line_of(town, name);
+      for (double t = 0.5; t < 30.0; t += 3.0) {
+        const bool red = world::signal_at(light, t).state == world::LightState::red;
+        EXPECT_EQ(town.pass(X_WL, t), red ? 1u : 0u) << name << " " << t;
+        (red ? reds : others) += 1;
+      }
+    }
+  EXPECT_GT(reds, 0);
+  EXPECT_GT(others, 0);
+}
+
+TEST(Watch, OtherLanesAndTheOtherDirectionAreNotMeant) {
+  Town town;
+  const world::Light& light = town.world().lights[0];
+  double red = 0.0;
+  while (world::signal_at(light, red).state != world::LightState::red) red += 0.25;
+  const base::Pose X_WL = line_of(town, light.points.at(0));
+  EXPECT_EQ(town.pass(X_WL, red), 1u);
+  EXPECT_EQ(town.pass(base::compose(X_WL, {0.0, 0.4, 0.0, 0.0}), red), 0u);   // the lane beside
+  EXPECT_EQ(town.pass(base::compose(X_WL, {0.0, 0.0, 0.0, M_PI}), red), 0u);  // back over it
+  // Up to the line, and a little over, is not past it.
+  const std::uint64_t before = town.watch().reds();
+  double front = 0.0;
+  for (const world::Segment& side : town.world().movers[0].body)
+    if (side.stops_robots) front = std::max({front, side.a.x, side.b.x});
+  for (const double x : {-0.5, -front, 0.9 * kPassed - front}) town.look(red, base::compose(X_WL, {x, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(town.watch().reds(), before);
+  town.look(red, base::compose(X_WL, {1.1 * kPassed - front, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(town.watch().reds(), before + 1);
+}
+
+TEST(Watch, ContactsAreCountedWhereTheyBegin) {
+  Town town;
+  const base::Pose X = town.world().movers[0].X_WM;
+  for (const bool contact : {false, true, true, false, true, true, true, false}) town.look(0.0, X, contact);
+  EXPECT_EQ(town.watch().of(0).contacts, 2u);
+  EXPECT_EQ(town.watch().contacts(), 2u);
+}
+
+TEST(Watch, MetresAddUp) {
+  Town town;
+  const base::Pose X = town.world().movers[0].X_WM;
+  for (int i = 0; i <= 10; ++i) town.look(0.1 * i, base::compose(X, {0.1 * i, 0.0, 0.0, 0.0}));
+  EXPECT_NEAR(town.watch().of(0).travelled, 1.0, 1e-12);
+  EXPECT_EQ(town.watch().of(1).travelled, 0.0);
+}
+
+}  // namespace
+}  // namespace sf::scenarios
