@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "base/error.h"
 
@@ -429,6 +430,27 @@ void Corridors::make_lines() {
     way.lines.erase(std::unique(way.lines.begin(), way.lines.end(), [](double a, double b) { return b - a < 1e-9; }),
                     way.lines.end());
   }
+}
+
+std::shared_ptr<const Corridors> shared_corridors(const world::RoadNetwork& roads, const world::World& world,
+                                                  const Body& body) {
+  // Whoever holds corridors keeps their network, so that an address names it while they live.
+  struct Shared {
+    const world::World* world;
+    Body body;
+    std::weak_ptr<const Corridors> corridors;
+  };
+  static std::mutex mutex;
+  static std::vector<Shared> all;
+  const std::lock_guard lock(mutex);
+  std::erase_if(all, [](const Shared& shared) { return shared.corridors.expired(); });
+  for (const Shared& shared : all) {
+    const auto corridors = shared.corridors.lock();
+    if (corridors && &corridors->roads() == &roads && shared.world == &world && shared.body == body) return corridors;
+  }
+  auto corridors = std::make_shared<const Corridors>(roads, world, body);
+  all.push_back({&world, body, corridors});
+  return corridors;
 }
 
 }  // namespace sf::control

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/pose.h"
@@ -27,6 +28,8 @@ using base::Vec2;
 struct Body {
   double radius = 0.165;  ///< > 0
   double front = 0.165;   ///< from its origin
+
+  friend bool operator==(const Body&, const Body&) = default;
 };
 Body body_of(const world::Mover& mover);
 
@@ -158,5 +161,10 @@ class Corridors {
   std::vector<std::uint32_t> first_;
   std::vector<Sample> samples_;
 };
+
+/// The same corridors for all robots of one shape on one network, as long as any of them has them: they are large, and
+/// one table in the processor's cache serves a crowd. Any thread.
+std::shared_ptr<const Corridors> shared_corridors(const world::RoadNetwork& roads, const world::World& world,
+                                                  const Body& body);
 
 }  // namespace sf::control

@@ -90,7 +90,7 @@ void RightOfWay::find_approach(Driver& driver, std::span<const world::Signal> si
     Approach& approach = driver.approach;
     approach = {.lane = place.way, .line = next == lane.lines.end() ? lane.lines.back() : *next};
     approach.ahead = approach.line - place.s;
-    approach.rule = Rule::free;
+    if (approach.ahead > kApproach) return;  // too far to matter
     for (const StopMark& mark : lane.stops)
       if (std::abs(mark.s - corridors_.body().front - approach.line) < corridors_.body().radius)
         approach.rule = rule_of(mark, signals);
@@ -144,7 +144,12 @@ bool RightOfWay::precedes(const Driver& other, const Approach& own) const {
 bool RightOfWay::is_in_way(const Driver& other, const Meeting& meeting, const Approach& own) const {
   const Way& way = corridors_.way(meeting.way);
   const Approach& theirs = other.approach;
+  // Who is to come in behind another lets that one pass first, however far off it is.
+  const bool leads = merges_ && other.id == drivers_.front().follows;
   for (const Place& place : other.places) {
+    if (leads && place.way == (way.kind == Way::Kind::lane ? meeting.way : way.from) &&
+        (way.kind != Way::Kind::lane || place.s < meeting.other_from))
+      return true;
     if (place.way != meeting.way || place.s >= meeting.other_to) continue;
     if (way.kind != Way::Kind::lane) {
       if (way.at_end || place.s > meeting.other_from - margin_) return true;

@@ -7,7 +7,7 @@
 //   1. who need not stop (no stop line, or a green light) goes before who must; a red light keeps its lane out of this;
 //   2. then who came first: came within kApproach, or stood at its stop line;
 //   3. then the smaller id.
-// Who merges behind a robot goes before the robot that followed it until then. Who has stood for kPatience takes part
+// Who merges behind a robot goes before the robot that followed it until then. Who has waited for kPatience takes part
 // in a lottery instead, drawn anew every kTurn from (id, time) and so the same for all: a robot that cannot use its
 // turn, since the lane it wants is full, does not keep the others waiting.
 //
@@ -22,10 +22,10 @@
 
 namespace sf::control {
 
-inline constexpr double kApproach = 0.8;                   ///< [m] before where one waits
-inline constexpr std::int64_t kPatience = 10'000'000'000;  ///< [ns]
-inline constexpr std::int64_t kTurn = 3'000'000'000;       ///< [ns]
-inline constexpr double kHardBraking = 0.6;                ///< [m/s^2] that every robot can do
+inline constexpr double kApproach = 0.5;                  ///< [m] before where one waits
+inline constexpr std::int64_t kPatience = 3'000'000'000;  ///< [ns]
+inline constexpr std::int64_t kTurn = 1'000'000'000;      ///< [ns]
+inline constexpr double kHardBraking = 0.6;               ///< [m/s^2] that every robot can do
 
 /// What a stop line asks for.
 enum class Rule : std::uint8_t { free, stop, closed };

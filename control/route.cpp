@@ -215,7 +215,7 @@ std::unique_ptr<Controller> make_route_controller(const Site& site, Settings& se
   }
   std::optional<RouteGoals> goals;
   if (!convoy) goals.emplace(site, settings);
-  auto corridors = std::make_shared<const Corridors>(*site.roads, site.world, body_of(mover));
+  auto corridors = shared_corridors(*site.roads, site.world, body_of(mover));
   return std::make_unique<Route>(std::move(corridors), site, s, std::move(goals), company);
 }
 

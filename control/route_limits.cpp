@@ -98,6 +98,7 @@ bool Route::room_beyond(double end) const {
   double between = 0.0;
   for (const Ahead& other : ahead_) {
     if (other.free < room) {
+      if (other.speed < 0.02) return false;  // it stands, and may do so for long
       between += 2.2 * corridors_->body().radius + settings_.gap;
       continue;
     }

@@ -332,6 +332,76 @@ TEST(Route, stands_behind_who_stands) {
   EXPECT_EQ(t.contacts, 0);
 }
 
+// ---- Right of way.
+
+// 12.2 has a stop sign, 2.2 has none: who comes along 2.2 goes first, though the other stood there before it came.
+TEST(RightOfWay, who_need_not_stop_goes_first) {
+  Streets t;
+  t.add(on_lane(t.roads, "12.2", 3.4), "route", go({4, 8}));
+  t.add(on_lane(t.roads, "2.2", 2.45), "route", go({4, 8}));
+  t.begin();
+  double first = 0.0, second = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    t.tick();
+    if (second == 0.0 && t.pose(0).x < 6.5) second = 0.1 * i;
+    if (first == 0.0 && t.pose(1).x < 6.5) first = 0.1 * i;
+  }
+  EXPECT_GT(first, 0.0);
+  EXPECT_GT(second, first);
+  EXPECT_EQ(t.contacts, 0);
+}
+
+// Two dark lights face each other across a third: of those that stood, the first that stood goes first.
+TEST(RightOfWay, first_come_first_served) {
+  for (const bool other_first : {false, true}) {
+    Streets t;
+    t.world.lights = {light("a", {"6.1.3", "10.2.3"}, {{world::LightState::dark, 1.0}})};
+    t.add(on_lane(t.roads, "6.1", other_first ? 0.3 : 0.7), "route", go({10}));
+    t.add(on_lane(t.roads, "10.2", other_first ? 0.8 : 0.4), "route", go({10}));
+    t.begin();
+    double a = 0.0, b = 0.0;
+    for (int i = 0; i < 300; ++i) {
+      t.tick();
+      if (a == 0.0 && t.pose(0).x > 4.0) a = 0.1 * i;
+      if (b == 0.0 && t.pose(1).x > 4.0) b = 0.1 * i;
+    }
+    EXPECT_GT(a, 0.0);
+    EXPECT_GT(b, 0.0);
+    EXPECT_EQ(b < a, other_first);
+    EXPECT_EQ(t.contacts, 0);
+  }
+}
+
+// The bridge is flat: of two that come to it at right angles one waits, and nobody waits for ever.
+TEST(RightOfWay, lanes_that_cross_without_a_sign) {
+  for (int k = 0; k < 10; ++k) {
+    Streets t;
+    t.add(on_lane(t.roads, "7.1", 1.0 + 0.1 * k), "route", go({11, 5}));
+    t.add(on_lane(t.roads, "12.1", 0.1), "route", go({13, 7}));
+    t.begin();
+    for (int i = 0; i < 300; ++i) t.tick();
+    EXPECT_EQ(t.contacts, 0) << k;
+    EXPECT_GE(t.route(0).reached(), 1u) << k;
+    EXPECT_GE(t.route(1).reached(), 1u) << k;
+  }
+}
+
+// A lane full of standing robots beyond a crossing: who comes stops before the crossing, not within.
+TEST(RightOfWay, does_not_block_the_box) {
+  Streets t;
+  struct Stands final : control::Controller {
+    Twist step(const control::Input&) override { return {}; }
+  };
+  t.add(on_lane(t.roads, "5.1", 0.2), "route", go({8}));
+  t.add(on_lane(t.roads, "4.1", 1.0), "route", go({8}));
+  t.begin();
+  t.controllers[0] = std::make_unique<Stands>();
+  for (int i = 0; i < 200; ++i) t.tick();
+  const double line = 4.0;  // [m] where 4.1 ends
+  EXPECT_GT(t.pose(1).x - 0.165, line);
+  EXPECT_LT(t.pose(1).x - 0.165, line + 0.05);
+}
+
 // ---- Parking.
 
 TEST(Parking, stops_with_its_front_at_the_end_of_every_spot) {
@@ -404,8 +474,6 @@ TEST(Convoy, a_chain_of_five_keeps_its_gaps) {
   EXPECT_GT(least, 0.4);
   // One may have to stop at a stop sign where the one ahead has just gone.
   EXPECT_LT(farthest, 2.5);
-  printf("convoy: least %.3f farthest %.3f longest %.3f goals %d\n", least, farthest, longest,
-         int(t.route(0).reached()));
 }
 
 // Where a robot is along the way that the leader of all has driven: the order of a convoy.
@@ -439,8 +507,6 @@ TEST(Convoy, lets_a_robot_in_between) {
   EXPECT_EQ(t.intents[2].follows, 2u);
   EXPECT_GT(trail.nearest(t.pose(3)), trail.nearest(t.pose(1)));
   EXPECT_GT(trail.nearest(t.pose(1)), trail.nearest(t.pose(2)));
-  for (int k = 0; k < 4; ++k)
-    printf("merge %d: %.2f %.2f follows %d\n", k, t.pose(k).x, t.pose(k).y, int(t.intents[k].follows));
 }
 
 // The same from the lane beside: robot 4 drives on 1.2 and comes over to the convoy on 1.1.
@@ -456,8 +522,6 @@ TEST(Convoy, lets_a_robot_in_from_the_lane_beside) {
     t.tick();
     trail.add(t.pose(0));
   }
-  for (int k = 0; k < 4; ++k)
-    printf("beside %d: %.2f %.2f follows %d\n", k, t.pose(k).x, t.pose(k).y, int(t.intents[k].follows));
   EXPECT_EQ(t.contacts, 0);
   EXPECT_EQ(t.intents[3].follows, 1u);
   EXPECT_EQ(t.intents[1].follows, 4u);
