@@ -10,7 +10,9 @@
 // lanes cross (a bridge is flat here: robots have no height to cross at). Leaving the same point is no meeting, nor is
 // going on from one way to the next: there one robot follows the other.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -25,13 +27,13 @@ using base::Pose;
 using base::Vec2;
 
 /// What of a robot's shape matters on a road. [m]
-struct Body {
+struct RoadBody {
   double radius = 0.165;  ///< > 0
   double front = 0.165;   ///< from its origin
 
-  friend bool operator==(const Body&, const Body&) = default;
+  friend bool operator==(const RoadBody&, const RoadBody&) = default;
 };
-Body body_of(const world::Mover& mover);
+RoadBody body_of(const world::Mover& mover);
 
 /// Stretches of two ways that two robots cannot be on at once. [m] along either way, of the robots' origins.
 struct Meeting {
@@ -108,10 +110,10 @@ struct Edge {
 /// Immutable after construction; any number of threads. The network and the world must outlive it.
 class Corridors {
  public:
-  Corridors(const world::RoadNetwork& roads, const world::World& world, const Body& body);
+  Corridors(const world::RoadNetwork& roads, const world::World& world, const RoadBody& body);
 
   const world::RoadNetwork& roads() const { return roads_; }
-  const Body& body() const { return body_; }
+  const RoadBody& body() const { return body_; }
   const std::vector<Way>& ways() const { return ways_; }
   const Way& way(std::uint32_t row) const { return ways_[row]; }
   /// The way of a lane is the lane's own row.
@@ -144,7 +146,7 @@ class Corridors {
   void near(Vec2 p, double reach, F&& visit) const;
 
   const world::RoadNetwork& roads_;
-  Body body_;
+  RoadBody body_;
   double clearance_;
   double step_;
   std::vector<Way> ways_;
@@ -162,9 +164,26 @@ class Corridors {
   std::vector<Sample> samples_;
 };
 
+template <class F>
+void Corridors::near(Vec2 p, double reach, F&& visit) const {
+  const auto cell = [&](double v, double low, std::int64_t most) {
+    const double at = std::floor((v - low) / cell_);
+    return at < 0.0 ? std::int64_t{-1} : at >= static_cast<double>(most) ? most : static_cast<std::int64_t>(at);
+  };
+  const std::int64_t r0 = std::max<std::int64_t>(cell(p.y - reach, corner_.y, rows_), 0);
+  const std::int64_t r1 = std::min(cell(p.y + reach, corner_.y, rows_), rows_ - 1);
+  const std::int64_t c0 = std::max<std::int64_t>(cell(p.x - reach, corner_.x, columns_), 0);
+  const std::int64_t c1 = std::min(cell(p.x + reach, corner_.x, columns_), columns_ - 1);
+  for (std::int64_t r = r0; r <= r1; ++r)
+    for (std::int64_t c = c0; c <= c1; ++c) {
+      const auto at = static_cast<std::size_t>(r * columns_ + c);
+      for (std::uint32_t i = first_[at]; i < first_[at + 1]; ++i) visit(samples_[i]);
+    }
+}
+
 /// The same corridors for all robots of one shape on one network, as long as any of them has them: they are large, and
 /// one table in the processor's cache serves a crowd. Any thread.
 std::shared_ptr<const Corridors> shared_corridors(const world::RoadNetwork& roads, const world::World& world,
-                                                  const Body& body);
+                                                  const RoadBody& body);
 
 }  // namespace sf::control

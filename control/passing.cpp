@@ -35,7 +35,7 @@ void add(RoutePlan& plan, std::uint32_t way, double from, double to) {
 std::optional<Passing> plan_passing(const Corridors& corridors, const RoutePlan& plan, double s, double speed,
                                     const Ahead& slow, const std::vector<Driver>& drivers) {
   const std::size_t at = leg_at(plan, s);
-  const Leg& leg = plan.legs[at];
+  const RouteLeg& leg = plan.legs[at];
   const Way& lane = corridors.way(leg.way);
   if (lane.kind != Way::Kind::lane || at + 1 >= plan.legs.size()) return std::nullopt;
   const double here = leg.from + s - leg.start;
@@ -59,7 +59,7 @@ std::optional<Passing> plan_passing(const Corridors& corridors, const RoutePlan&
     if (!lane_free(drivers, beside, change.leave - body - 0.3, home.leave + body)) continue;
     Passing passing{plan, 0.0};
     RoutePlan& p = passing.plan;
-    const std::vector<Leg> rest(plan.legs.begin() + static_cast<std::ptrdiff_t>(at) + 1, plan.legs.end());
+    const std::vector<RouteLeg> rest(plan.legs.begin() + static_cast<std::ptrdiff_t>(at) + 1, plan.legs.end());
     p.legs.resize(at + 1);
     p.legs.back().to = change.leave;
     add(p, row, 0.0, change.length);
@@ -67,7 +67,7 @@ std::optional<Passing> plan_passing(const Corridors& corridors, const RoutePlan&
     add(p, *back, 0.0, home.length);
     passing.until = end_of(p.legs.back());
     add(p, leg.way, home.enter, leg.to);
-    for (const Leg& r : rest) add(p, r.way, r.from, r.to);
+    for (const RouteLeg& r : rest) add(p, r.way, r.from, r.to);
     // Checkpoints on the lane that is left meanwhile count as passed beside it.
     const double more = length_of(p) - length_of(plan);
     for (Goal& goal : p.goals)

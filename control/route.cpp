@@ -175,7 +175,7 @@ base::Twist Route::step(const Input& input) {
 
 base::Twist Route::drive(const Input& input, double speed) {
   const Pose& X_WM = input.state.X_WM;
-  const Leg& leg = plan_.legs[progress_.leg()];
+  const RouteLeg& leg = plan_.legs[progress_.leg()];
   const Way& way = corridors_->way(leg.way);
   const double at = leg.from + progress_.s() - leg.start;
   const double yaw = yaw_on(way, at);

@@ -9,7 +9,7 @@ namespace sf::control {
 OnRoute on_route(const Corridors& corridors, const RoutePlan& plan, double s, std::size_t from_leg) {
   std::size_t i = from_leg;
   while (i + 1 < plan.legs.size() && s >= end_of(plan.legs[i])) ++i;
-  const Leg& leg = plan.legs[i];
+  const RouteLeg& leg = plan.legs[i];
   const Way& way = corridors.way(leg.way);
   const double at = std::clamp(leg.from + s - leg.start, leg.from, leg.to);
   return {i, point_on(way, at), yaw_on(way, at), curvature_on(way, at)};
@@ -76,7 +76,7 @@ void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, con
 void Progress::update(const Corridors& corridors, const RoutePlan& plan, Vec2 p) {
   const double reach = 2.5 * corridors.body().radius;
   for (;;) {
-    const Leg& leg = plan.legs[leg_];
+    const RouteLeg& leg = plan.legs[leg_];
     const Way& way = corridors.way(leg.way);
     // The nearest sample about where it was, then the foot of the perpendicular.
     const double was = leg.from + s_ - leg.start;

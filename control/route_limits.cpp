@@ -41,7 +41,7 @@ void Route::limit_by_lines(const Input& input, Limit& limit) {
   const double margin = 0.12 * corridors_->body().radius;
   const double speed = std::abs(input.state.velocity.forward);
   for (std::size_t i = progress_.leg(); i < plan_.legs.size(); ++i) {
-    const Leg& leg = plan_.legs[i];
+    const RouteLeg& leg = plan_.legs[i];
     if (leg.start > progress_.s() + 1.5) return;
     for (const StopMark& mark : corridors_->way(leg.way).stops) {
       if (mark.s <= leg.from || mark.s > leg.to + 1e-9) continue;
@@ -71,7 +71,7 @@ void Route::limit_by_gates(const Input& input, Limit& limit) {
   const double speed = std::abs(input.state.velocity.forward);
   bool full = false;
   for (std::size_t i = progress_.leg(); i < plan_.legs.size(); ++i) {
-    const Leg& leg = plan_.legs[i];
+    const RouteLeg& leg = plan_.legs[i];
     if (leg.start > progress_.s() + kApproach + 0.5) break;
     for (const Gate& gate : corridors_->way(leg.way).gates) {
       if (gate.end <= leg.from || gate.hold >= leg.to) continue;
@@ -112,7 +112,7 @@ void Route::limit_by_zones(Limit& limit, const Input& input) {
   const double s = progress_.s();
   const double margin = 0.12 * corridors_->body().radius;
   for (std::size_t i = progress_.leg(); i < plan_.legs.size() && plan_.legs[i].start <= s + 1.0; ++i) {
-    const Leg& leg = plan_.legs[i];
+    const RouteLeg& leg = plan_.legs[i];
     const Way& way = corridors_->way(leg.way);
     if (way.backwards && s - leg.start < margin) {
       // Who is parked sets out in a turn of its own.

@@ -17,7 +17,7 @@ using world::PointRef;
 
 void append(RoutePlan& plan, std::uint32_t way, double from, double to) {
   if (!plan.legs.empty()) {
-    Leg& last = plan.legs.back();
+    RouteLeg& last = plan.legs.back();
     if (last.way == way && last.to == from) {
       last.to = to;
       return;
@@ -78,8 +78,8 @@ std::vector<Edge> shortest(const Corridors& corridors, std::uint32_t from, std::
 }  // namespace
 
 std::size_t leg_at(const RoutePlan& plan, double s) {
-  const auto next =
-      std::upper_bound(plan.legs.begin(), plan.legs.end(), s, [](double at, const Leg& leg) { return at < leg.start; });
+  const auto next = std::upper_bound(plan.legs.begin(), plan.legs.end(), s,
+                                     [](double at, const RouteLeg& leg) { return at < leg.start; });
   return next == plan.legs.begin() ? 0 : static_cast<std::size_t>(next - plan.legs.begin()) - 1;
 }
 
@@ -138,7 +138,7 @@ bool extend(const Corridors& corridors, RoutePlan& plan, const world::RoadCheckp
 
 void cut_after(const Corridors& corridors, RoutePlan& plan, double s) {
   plan.legs.resize(leg_at(plan, s) + 1);
-  Leg& leg = plan.legs.back();
+  RouteLeg& leg = plan.legs.back();
   const Way& way = corridors.way(leg.way);
   std::erase_if(plan.goals, [&](const Goal& goal) { return goal.s > s; });
   if (way.kind == Way::Kind::lane) {

@@ -14,12 +14,12 @@
 namespace sf::control {
 
 /// A stretch of one way.
-struct Leg {
+struct RouteLeg {
   std::uint32_t way = 0;
   double from = 0.0, to = 0.0;  ///< [m] along the way; to >= from
   double start = 0.0;           ///< [m] along the route where it begins
 };
-inline double end_of(const Leg& leg) { return leg.start + leg.to - leg.from; }
+inline double end_of(const RouteLeg& leg) { return leg.start + leg.to - leg.from; }
 
 /// A checkpoint on the route.
 struct Goal {
@@ -31,7 +31,7 @@ struct Goal {
 /// A route: legs one after another, each beginning where the one before ends. Positions along it are metres from where
 /// it was first planned; legs that are done may have been dropped.
 struct RoutePlan {
-  std::vector<Leg> legs;  ///< at least one
+  std::vector<RouteLeg> legs;  ///< at least one
   std::vector<Goal> goals;
   std::uint32_t node = 0;  ///< where it ends
 };

@@ -128,4 +128,17 @@ class Streets {
   std::vector<Twist> commands_;
 };
 
+using Numbers = std::vector<double>;
+
+/// Settings of a route through checkpoints.
+inline std::vector<Setting> go(Numbers checkpoints, std::vector<Setting> more = {}) {
+  more.push_back({"checkpoints", std::move(checkpoints), "test: "});
+  return more;
+}
+
+/// Does nothing.
+struct Stands final : control::Controller {
+  Twist step(const control::Input&) override { return {}; }
+};
+
 }  // namespace sf::traffic

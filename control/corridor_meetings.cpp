@@ -1,0 +1,124 @@
+// Where ways meet, and where robots wait for each other.
+
+#include <algorithm>
+#include <cmath>
+
+#include "control/corridor.h"
+
+namespace sf::control {
+
+namespace {
+
+enum class Relation { none, meets, yields };
+
+/// How way `a` stands to way `b`, rows of lanes given.
+Relation relation(const Way& a, std::uint32_t row_a, const Way& b, std::uint32_t row_b) {
+  if (a.kind == Way::Kind::zone || b.kind == Way::Kind::zone) return Relation::none;
+  const bool lane_a = a.kind == Way::Kind::lane, lane_b = b.kind == Way::Kind::lane;
+  if (lane_a && lane_b) return Relation::meets;
+  if (lane_a || lane_b) {
+    const Way& other = lane_a ? b : a;
+    const std::uint32_t lane = lane_a ? row_a : row_b;
+    if (other.from == lane) return Relation::none;
+    if (other.into != lane) return Relation::meets;
+    // Lanes do not wait for who comes into them in their course.
+    return lane_b && a.enter > 0.0 ? Relation::yields : Relation::none;
+  }
+  // From one lane, or one after the other: they follow each other.
+  const bool side_by_side =
+      a.from != world::kNone && a.from == b.from && (a.leave == b.leave || !a.at_end || !b.at_end);
+  const bool in_turn = (a.into != world::kNone && a.into == b.from) || (b.into != world::kNone && b.into == a.from);
+  return side_by_side || in_turn ? Relation::none : Relation::meets;
+}
+
+}  // namespace
+
+// Lanes of one segment run side by side; others may be one road.
+bool Corridors::joined(std::uint32_t a, std::uint32_t b) const {
+  if (roads_.lanes[a].segment == roads_.lanes[b].segment) return true;
+  return std::any_of(ways_.begin(), ways_.end(), [&](const Way& way) {
+    return (way.from == a && way.into == b) || (way.from == b && way.into == a);
+  });
+}
+
+void Corridors::find_meetings() {
+  for (std::uint32_t way = 0; way < ways_.size(); ++way) find_meetings(way);
+}
+
+void Corridors::find_meetings(std::uint32_t row) {
+  Way& way = ways_[row];
+  struct Found {
+    std::uint32_t way, from, to, other_from, other_to;
+  };
+  std::vector<Found> found;
+  for (std::uint32_t i = 0; i < way.points.size(); ++i) {
+    near(way.points[i], clearance_, [&](const Sample& sample) {
+      if (sample.way == row) return;
+      const Vec2 d = sample.p - way.points[i];
+      if (dot(d, d) >= clearance_ * clearance_) return;
+      const auto at = std::find_if(found.begin(), found.end(), [&](const Found& f) { return f.way == sample.way; });
+      if (at == found.end()) {
+        found.push_back({sample.way, i, i, sample.index, sample.index});
+        return;
+      }
+      at->to = i;
+      at->other_from = std::min(at->other_from, sample.index);
+      at->other_to = std::max(at->other_to, sample.index);
+    });
+  }
+  std::vector<Meeting> meetings;
+  for (const Found& f : found) {
+    const Way& other = ways_[f.way];
+    const Relation kind = relation(way, row, other, f.way);
+    if (kind == Relation::none) continue;
+    const bool lane = way.kind == Way::Kind::lane, other_lane = other.kind == Way::Kind::lane;
+    if (lane && other_lane && joined(row, f.way)) continue;
+    // What passes a lane's very end meets the exits there.
+    const double end = 0.7 * body_.radius;
+    const auto at_end = [&](const Way& w, std::uint32_t first, std::uint32_t last) {
+      return last * w.step < end || first * w.step > w.length - end;
+    };
+    if (lane != other_lane && (lane ? at_end(way, f.from, f.to) : at_end(other, f.other_from, f.other_to))) continue;
+    // Between samples the ways may be that near already.
+    const auto low = [](const Way& w, std::uint32_t i) { return i > 0 ? (i - 1) * w.step : 0.0; };
+    const auto high = [](const Way& w, std::uint32_t i) { return std::min((i + 1) * w.step, w.length); };
+    meetings.push_back({f.way, low(way, f.from), high(way, f.to), low(other, f.other_from), high(other, f.other_to),
+                        kind == Relation::yields});
+  }
+  make_gates(way, std::move(meetings));
+}
+
+void Corridors::make_gates(Way& way, std::vector<Meeting> meetings) const {
+  std::sort(meetings.begin(), meetings.end(),
+            [](const Meeting& a, const Meeting& b) { return a.from != b.from ? a.from < b.from : a.way < b.way; });
+  const double margin = 0.12 * body_.radius;
+  const bool whole = way.kind == Way::Kind::exit && way.at_end;
+  for (Meeting& meeting : meetings) {
+    const double body = 2.0 * body_.radius + 3.0 * margin;
+    if (way.gates.empty() || (!whole && meeting.from > way.gates.back().end + body))
+      way.gates.push_back({whole ? -body_.front - margin : meeting.from - margin, meeting.to, {}});
+    Gate& gate = way.gates.back();
+    gate.end = std::max(gate.end, meeting.to);
+    gate.meetings.push_back(meeting);
+  }
+}
+
+void Corridors::make_lines() {
+  for (std::uint32_t row = 0; row < ways_.size(); ++row) {
+    Way& way = ways_[row];
+    if (way.kind == Way::Kind::lane)
+      for (const Gate& gate : way.gates) way.lines.push_back(gate.hold);
+    if (way.from == world::kNone) continue;
+    Way& lane = ways_[way.from];
+    lane.out.push_back(row);
+    for (const Gate& gate : way.gates)
+      if (way.at_end && gate.hold < 0.0) lane.lines.push_back(way.leave + gate.hold);
+  }
+  for (Way& way : ways_) {
+    std::sort(way.lines.begin(), way.lines.end());
+    way.lines.erase(std::unique(way.lines.begin(), way.lines.end(), [](double a, double b) { return b - a < 1e-9; }),
+                    way.lines.end());
+  }
+}
+
+}  // namespace sf::control

@@ -1,0 +1,192 @@
+// Convoys, who comes into them, passing, parking.
+
+#include "tests/control/traffic.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "base/error.h"
+
+namespace sf::traffic {
+namespace {
+
+// ---- Parking.
+
+TEST(Parking, stops_with_its_front_at_the_end_of_every_spot) {
+  for (std::uint32_t spot = 0; spot < 6; ++spot) {
+    Streets t;
+    t.add(on_lane(t.roads, "10.2", 0.3), "route", {{"park", "13." + std::to_string(spot + 1), ""}});
+    t.begin();
+    bool docking = false;
+    for (int i = 0; i < 1200 && !t.controllers[0]->done(); ++i) {
+      t.tick();
+      docking = docking || t.intents[0].docking;
+    }
+    ASSERT_TRUE(t.controllers[0]->done()) << spot;
+    EXPECT_TRUE(docking);
+    const world::RoadSpot& s = t.roads.spots[spot];
+    const Vec2 d = s.end - s.entry;
+    const Pose& X = t.pose(0);
+    const Vec2 front{X.x + 0.165 * std::cos(X.yaw), X.y + 0.165 * std::sin(X.yaw)};
+    EXPECT_LT(length(front - s.end), 0.02) << spot;
+    EXPECT_LT(std::abs(base::wrap_angle(X.yaw - std::atan2(d.y, d.x))), 3.0 * M_PI / 180) << spot;
+    EXPECT_EQ(t.contacts, 0);
+  }
+}
+
+// Five leave their spots for the streets while a sixth comes in: one after another, whatever they all want at once.
+TEST(Parking, a_full_car_park_empties_while_another_comes_in) {
+  Streets t;
+  const control::Corridors corridors(t.roads, t.world, {});
+  for (std::uint32_t spot = 0; spot < 5; ++spot)
+    t.add(corridors.parked(spot), "route", go({8, 9.0 + spot % 2}, {{"loop", true, ""}}));
+  t.add(on_lane(t.roads, "10.2", 0.3), "route", {{"park", std::string("13.6"), ""}});
+  t.begin();
+  for (int i = 0; i < 3000; ++i) {
+    t.tick();
+    int about = 0;
+    for (std::uint32_t row = 0; row < 6; ++row) {
+      const Vec2 p{t.pose(row).x, t.pose(row).y};
+      const bool stands = control::spot_at(corridors, t.pose(row)).has_value();
+      about += corridors.inside(0, p) && !stands;
+    }
+    ASSERT_LE(about, 1) << 0.1 * i;
+  }
+  EXPECT_TRUE(t.controllers[5]->done());
+  for (std::uint32_t row = 0; row < 5; ++row) EXPECT_GT(t.route(row).reached(), 2u) << row;
+  EXPECT_EQ(t.contacts, 0);
+}
+
+// ---- Convoys.
+
+TEST(Convoy, a_chain_of_five_keeps_its_gaps) {
+  Streets t;
+  for (int k = 0; k < 5; ++k) {
+    const Pose X_WM = on_lane(t.roads, "1.1", 4.0 - 0.6 * k);
+    if (k == 0) t.add(X_WM, "route", go({6, 7, 8, 2}, {{"loop", true, ""}}));
+    if (k > 0) t.add(X_WM, "convoy", {{"leader", double(k), ""}});
+  }
+  t.begin();
+  double longest = 0.0, least = 9.0, farthest = 0.0;
+  for (int i = 0; i < 3000; ++i) {
+    t.tick();
+    for (std::uint32_t k = 1; k < 5; ++k) {
+      EXPECT_EQ(t.intents[k].follows, k);
+      least = std::min(least, t.distance(k, k - 1));
+      farthest = std::max(farthest, t.distance(k, k - 1));
+    }
+    longest = std::max(longest, t.distance(0, 4));
+  }
+  EXPECT_EQ(t.contacts, 0);
+  EXPECT_GT(t.route(0).reached(), 6u);
+  EXPECT_GT(least, 0.4);
+  // One may have to stop at a stop sign where the one ahead has just gone.
+  EXPECT_LT(farthest, 2.5);
+}
+
+// Where a robot is along the way that the leader of all has driven: the order of a convoy.
+struct Trail {
+  std::vector<Vec2> points;
+  void add(const Pose& X) { points.push_back({X.x, X.y}); }
+  std::size_t nearest(const Pose& X) const {
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (length(points[i] - Vec2{X.x, X.y}) <= length(points[best] - Vec2{X.x, X.y})) best = i;
+    return best;
+  }
+};
+
+// Robot 4 waits at the stop sign of 12.2 and comes in behind robot 1, which robots 2 and 3 follow in a chain.
+TEST(Convoy, lets_a_robot_in_between) {
+  Streets t;
+  t.add(on_lane(t.roads, "2.2", 2.2), "route", go({4, 8}));
+  t.add(on_lane(t.roads, "2.2", 1.6), "convoy", {{"leader", 1.0, ""}});
+  t.add(on_lane(t.roads, "2.2", 1.0), "convoy", {{"leader", 2.0, ""}});
+  t.add(on_lane(t.roads, "12.2", 3.5), "route", go({4, 8}, {{"merge_behind", 1.0, ""}}));
+  t.begin();
+  Trail trail;
+  for (int i = 0; i < 420; ++i) {
+    t.tick();
+    trail.add(t.pose(0));
+  }
+  EXPECT_EQ(t.contacts, 0);
+  EXPECT_EQ(t.intents[3].follows, 1u);
+  EXPECT_EQ(t.intents[1].follows, 4u);  // it followed 1 until 4 was there
+  EXPECT_EQ(t.intents[2].follows, 2u);
+  EXPECT_GT(trail.nearest(t.pose(3)), trail.nearest(t.pose(1)));
+  EXPECT_GT(trail.nearest(t.pose(1)), trail.nearest(t.pose(2)));
+}
+
+// The same from the lane beside: robot 4 drives on 1.2 and comes over to the convoy on 1.1.
+TEST(Convoy, lets_a_robot_in_from_the_lane_beside) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.1", 2.0), "route", go({2, 5}, {{"speed", 0.15, ""}}));
+  t.add(on_lane(t.roads, "1.1", 1.4), "convoy", {{"leader", 1.0, ""}});
+  t.add(on_lane(t.roads, "1.1", 0.8), "convoy", {{"leader", 2.0, ""}});
+  t.add(on_lane(t.roads, "1.2", 2.2), "route", go({2, 5}, {{"merge_behind", 1.0, ""}}));
+  t.begin();
+  Trail trail;
+  for (int i = 0; i < 500; ++i) {
+    t.tick();
+    trail.add(t.pose(0));
+  }
+  EXPECT_EQ(t.contacts, 0);
+  EXPECT_EQ(t.intents[3].follows, 1u);
+  EXPECT_EQ(t.intents[1].follows, 4u);
+  EXPECT_GT(trail.nearest(t.pose(3)), trail.nearest(t.pose(1)));
+  EXPECT_GT(trail.nearest(t.pose(1)), trail.nearest(t.pose(2)));
+}
+
+// ---- Passing.
+
+TEST(Passing, goes_round_a_slower_robot_and_comes_back) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
+  t.add(on_lane(t.roads, "1.1", 1.2), "route", go({5}));
+  t.begin();
+  const control::Corridors corridors(t.roads, t.world, {});
+  bool beside = false, back = false;
+  for (int i = 0; i < 400; ++i) {
+    t.tick();
+    const auto place = place_on_lane(corridors, t.pose(1));
+    if (!place || place->offset > 0.02) continue;
+    const std::string lane = name_of(t.roads, t.roads.lanes[place->way]);
+    beside = beside || lane == "1.2";
+    back = back || (beside && lane == "1.1" && t.pose(1).x > t.pose(0).x + 0.4);
+  }
+  EXPECT_TRUE(beside);
+  EXPECT_TRUE(back);
+  EXPECT_EQ(t.contacts, 0);
+}
+
+// Robots on the other lane, one beside and one coming up from behind as fast: it stays where it is.
+TEST(Passing, waits_until_the_other_lane_is_free) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
+  t.add(on_lane(t.roads, "1.1", 1.6), "route", go({5}));
+  t.add(on_lane(t.roads, "1.2", 2.4), "route", go({5}, {{"speed", 0.03, ""}, {"pass", false, ""}}));
+  t.begin();
+  double farthest = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    t.tick();
+    farthest = std::max(farthest, std::abs(t.controllers[1]->error()));
+    EXPECT_LT(t.pose(1).x, t.pose(0).x) << "it passed";
+  }
+  EXPECT_LT(farthest, 0.02);
+  EXPECT_EQ(t.contacts, 0);
+}
+
+// Boundary: `pass false` never changes lanes.
+TEST(Passing, does_not_where_it_must_not) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
+  t.add(on_lane(t.roads, "1.1", 1.2), "route", go({5}, {{"pass", false, ""}}));
+  t.begin();
+  for (int i = 0; i < 300; ++i) t.tick();
+  EXPECT_LT(t.pose(1).x, t.pose(0).x);
+  EXPECT_EQ(t.contacts, 0);
+}
+
+}  // namespace
+}  // namespace sf::traffic

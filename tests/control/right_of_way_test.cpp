@@ -1,0 +1,139 @@
+// Who goes first, and crowds that nobody directs.
+
+#include "tests/control/traffic.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "base/error.h"
+
+namespace sf::traffic {
+namespace {
+
+// ---- Right of way.
+
+// 12.2 has a stop sign, 2.2 has none: who comes along 2.2 goes first, though the other stood there before it came.
+TEST(RightOfWay, who_need_not_stop_goes_first) {
+  Streets t;
+  t.add(on_lane(t.roads, "12.2", 3.4), "route", go({4, 8}));
+  t.add(on_lane(t.roads, "2.2", 2.45), "route", go({4, 8}));
+  t.begin();
+  double first = 0.0, second = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    t.tick();
+    if (second == 0.0 && t.pose(0).x < 6.5) second = 0.1 * i;
+    if (first == 0.0 && t.pose(1).x < 6.5) first = 0.1 * i;
+  }
+  EXPECT_GT(first, 0.0);
+  EXPECT_GT(second, first);
+  EXPECT_EQ(t.contacts, 0);
+}
+
+// Two dark lights face each other across a third: of those that stood, the first that stood goes first.
+TEST(RightOfWay, first_come_first_served) {
+  for (const bool other_first : {false, true}) {
+    Streets t;
+    t.world.lights = {light("a", {"6.1.3", "10.2.3"}, {{world::LightState::dark, 1.0}})};
+    t.add(on_lane(t.roads, "6.1", other_first ? 0.3 : 0.7), "route", go({10}));
+    t.add(on_lane(t.roads, "10.2", other_first ? 0.8 : 0.4), "route", go({10}));
+    t.begin();
+    double a = 0.0, b = 0.0;
+    for (int i = 0; i < 300; ++i) {
+      t.tick();
+      if (a == 0.0 && t.pose(0).x > 4.0) a = 0.1 * i;
+      if (b == 0.0 && t.pose(1).x > 4.0) b = 0.1 * i;
+    }
+    EXPECT_GT(a, 0.0);
+    EXPECT_GT(b, 0.0);
+    EXPECT_EQ(b < a, other_first);
+    EXPECT_EQ(t.contacts, 0);
+  }
+}
+
+// The bridge is flat: of two that come to it at right angles one waits, and nobody waits for ever.
+TEST(RightOfWay, lanes_that_cross_without_a_sign) {
+  for (int k = 0; k < 10; ++k) {
+    Streets t;
+    t.add(on_lane(t.roads, "7.1", 1.0 + 0.1 * k), "route", go({11, 5}));
+    t.add(on_lane(t.roads, "12.1", 0.1), "route", go({13, 7}));
+    t.begin();
+    for (int i = 0; i < 300; ++i) t.tick();
+    EXPECT_EQ(t.contacts, 0) << k;
+    EXPECT_GE(t.route(0).reached(), 1u) << k;
+    EXPECT_GE(t.route(1).reached(), 1u) << k;
+  }
+}
+
+// A lane full of standing robots beyond a crossing: who comes stops before the crossing, not within.
+TEST(RightOfWay, does_not_block_the_box) {
+  Streets t;
+  t.add(on_lane(t.roads, "5.1", 0.2), "route", go({8}));
+  t.add(on_lane(t.roads, "4.1", 1.0), "route", go({8}));
+  t.begin();
+  t.controllers[0] = std::make_unique<Stands>();
+  for (int i = 0; i < 200; ++i) t.tick();
+  const double line = 4.0;  // [m] where 4.1 ends
+  EXPECT_GT(t.pose(1).x - 0.165, line);
+  EXPECT_LT(t.pose(1).x - 0.165, line + 0.05);
+}
+
+// ---- Crowds.
+
+struct Crowd {
+  int contacts = 0;
+  std::uint64_t goals = 0, least = 0;
+  double longest_stand = 0.0;  // [s]
+  double x = 0.0;              // of one robot, at the end
+};
+
+Crowd crowd(std::size_t count, double seconds, std::uint64_t seed, bool lights) {
+  Streets t;
+  if (lights) t.add_lights();
+  for (const Pose& pose : control::start_poses(t.roads, count, seed, 0.5)) t.add(pose, "route", {{"tour", true, ""}});
+  t.begin(seed);
+  std::vector<double> stands(count);
+  Crowd c;
+  for (int i = 0; i < seconds * 10; ++i) {
+    t.tick();
+    for (std::size_t k = 0; k < count; ++k) {
+      const Twist& v = t.fleet->reports()[k].velocity;
+      stands[k] = v.forward == 0.0 && v.turn == 0.0 ? stands[k] + 0.1 : 0.0;
+      c.longest_stand = std::max(c.longest_stand, stands[k]);
+    }
+  }
+  c.contacts = t.contacts;
+  c.least = ~0ull;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    c.goals += t.route(k).reached();
+    c.least = std::min(c.least, t.route(k).reached());
+  }
+  c.x = t.pose(3).x;
+  return c;
+}
+
+TEST(Crowd, fifty_touch_nobody_and_all_get_on) {
+  for (const std::uint64_t seed : {1u, 2u}) {
+    const Crowd c = crowd(50, 600, seed, seed == 2);
+    EXPECT_EQ(c.contacts, 0) << seed;
+    EXPECT_GT(c.goals, 100u) << seed;
+    EXPECT_LT(c.longest_stand, 240.0) << seed;
+  }
+}
+
+TEST(Crowd, twenty_all_reach_checkpoints) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Crowd c = crowd(20, 400, seed, seed % 2 == 0);
+    EXPECT_EQ(c.contacts, 0) << seed;
+    EXPECT_GT(c.least, 0u) << seed;
+    EXPECT_LT(c.longest_stand, 90.0) << seed;
+  }
+}
+
+TEST(Crowd, goes_the_same_way_again_and_another_with_another_seed) {
+  EXPECT_EQ(crowd(20, 60, 1, true).x, crowd(20, 60, 1, true).x);
+  EXPECT_NE(crowd(20, 60, 1, true).x, crowd(20, 60, 3, true).x);
+}
+
+}  // namespace
+}  // namespace sf::traffic

@@ -1,0 +1,132 @@
+// Plans over SimVille's streets, and where ways meet.
+
+#include "tests/control/traffic.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "base/error.h"
+
+namespace sf::traffic {
+namespace {
+
+// ---- Plans.
+
+struct Planner {
+  Streets streets;
+  control::Corridors corridors{streets.roads, streets.world, {}};
+  control::RoutePlan from(const std::string& lane, double s) const {
+    return plan_from_lane(corridors, *place_on_lane(corridors, on_lane(streets.roads, lane, s)));
+  }
+};
+
+TEST(RoutePlan, every_leg_begins_where_the_one_before_ends) {
+  const Planner p;
+  for (const auto& checkpoint : p.streets.roads.checkpoints) {
+    control::RoutePlan plan = p.from("7.2", 0.4);
+    ASSERT_TRUE(extend(p.corridors, plan, checkpoint)) << checkpoint.id;
+    for (std::size_t i = 0; i + 1 < plan.legs.size(); ++i) {
+      const auto& a = plan.legs[i];
+      const auto& b = plan.legs[i + 1];
+      const Vec2 end = point_on(p.corridors.way(a.way), a.to), start = point_on(p.corridors.way(b.way), b.from);
+      EXPECT_LT(length(end - start), 1e-6) << checkpoint.id << " leg " << i;
+      EXPECT_EQ(b.start, end_of(a));
+    }
+    const auto& last = plan.legs.back();
+    const Vec2 end = point_on(p.corridors.way(last.way), last.to);
+    // A spot's way ends where the robot's origin stands, its front at the checkpoint.
+    const double off = checkpoint.at.kind == world::PointRef::Kind::spot ? 0.165 : 0.0;
+    EXPECT_NEAR(length(end - checkpoint.p), off, 2e-4) << checkpoint.id;  // chords of 4 cm in bends
+  }
+}
+
+TEST(RoutePlan, takes_the_shortest_way) {
+  const Planner p;
+  control::RoutePlan plan = p.from("4.1", 2.0);
+  ASSERT_TRUE(extend(p.corridors, plan, *find_checkpoint(p.streets.roads, 8)));
+  // Straight over the crossing: the rest of 4.1, 1.2 m, 5.1 to its sixth point.
+  const auto& lane = p.streets.roads.lanes[plan.legs.back().way];
+  EXPECT_EQ(plan.legs.size(), 3u);
+  EXPECT_NEAR(length_of(plan), 0.6 + 1.2 + lane.points[5].s, 0.01);
+}
+
+TEST(RoutePlan, round_again_to_the_same_checkpoint) {
+  const Planner p;
+  control::RoutePlan plan = p.from("4.1", 0.1);
+  const auto& checkpoint = *find_checkpoint(p.streets.roads, 7);
+  ASSERT_TRUE(extend(p.corridors, plan, checkpoint));
+  const double once = length_of(plan);
+  ASSERT_TRUE(extend(p.corridors, plan, checkpoint));
+  EXPECT_GT(length_of(plan), once + 5.0);
+}
+
+TEST(RoutePlan, avoids_what_it_is_told_to) {
+  const Planner p;
+  control::RoutePlan straight = p.from("4.1", 2.0);
+  ASSERT_TRUE(extend(p.corridors, straight, *find_checkpoint(p.streets.roads, 8)));
+  control::RoutePlan round = p.from("4.1", 2.0);
+  ASSERT_TRUE(extend(p.corridors, round, *find_checkpoint(p.streets.roads, 8), straight.legs[1].way));
+  EXPECT_GT(length_of(round), length_of(straight) + 1.0);
+}
+
+// Boundary: a cut in a lane ends at its next point, on an exit at that exit's end.
+TEST(RoutePlan, is_cut_at_the_next_point) {
+  const Planner p;
+  control::RoutePlan plan = p.from("4.1", 0.1);
+  ASSERT_TRUE(extend(p.corridors, plan, *find_checkpoint(p.streets.roads, 9)));
+  const double exit = plan.legs[1].start;
+  for (const double s : {0.0, 0.3, exit - 0.1, exit + 0.1}) {
+    control::RoutePlan cut = plan;
+    cut_after(p.corridors, cut, s);
+    EXPECT_GE(length_of(cut), s);
+    EXPECT_LT(length_of(cut), s + 1.4);
+    ASSERT_TRUE(extend(p.corridors, cut, *find_checkpoint(p.streets.roads, 9)));
+    EXPECT_NEAR(length_of(cut), length_of(plan), 1e-9) << s;
+  }
+}
+
+TEST(StartPoses, stand_apart_on_lanes_and_come_from_the_seed) {
+  const world::RoadNetwork roads = simville();
+  const auto poses = control::start_poses(roads, 50, 1, 0.5);
+  ASSERT_EQ(poses.size(), 50u);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GE(std::hypot(poses[i].x - poses[j].x, poses[i].y - poses[j].y), 0.5);
+  EXPECT_EQ(poses[7].x, control::start_poses(roads, 50, 1, 0.5)[7].x);
+  EXPECT_NE(poses[7].x, control::start_poses(roads, 50, 2, 0.5)[7].x);
+  EXPECT_THROW(control::start_poses(roads, 500, 1, 0.5), base::InputError);
+}
+
+// ---- Meetings of ways: any two points on two ways that do not meet are clear of each other.
+
+TEST(Corridors, ways_that_do_not_meet_are_clear_of_each_other) {
+  const Planner p;
+  const auto& ways = p.corridors.ways();
+  using Kind = control::Way::Kind;
+  int meets = 0;
+  for (std::uint32_t a = 0; a < ways.size(); ++a) {
+    if (ways[a].kind != Kind::exit || !ways[a].at_end) continue;
+    for (std::uint32_t b = 0; b < ways.size(); ++b) {
+      if (b == a || ways[b].kind != Kind::exit || !ways[b].at_end || ways[a].from == ways[b].from) continue;
+      for (std::size_t i = 0; i < ways[a].points.size(); ++i) {
+        for (std::size_t k = 0; k < ways[b].points.size(); ++k) {
+          if (length(ways[a].points[i] - ways[b].points[k]) >= 0.34) continue;
+          const bool known = std::any_of(ways[a].gates.begin(), ways[a].gates.end(), [&](const control::Gate& gate) {
+            return std::any_of(gate.meetings.begin(), gate.meetings.end(), [&](const control::Meeting& m) {
+              const double s = double(i) * ways[a].step, t = double(k) * ways[b].step;
+              return m.way == b && m.from <= s && s <= m.to + 1e-9 && m.other_from <= t && t <= m.other_to + 1e-9;
+            });
+          });
+          // What follows the other way is a following, no meeting.
+          if (ways[a].into == ways[b].from || ways[b].into == ways[a].from) continue;
+          EXPECT_TRUE(known) << a << " " << b;
+          ++meets;
+        }
+      }
+    }
+  }
+  EXPECT_GT(meets, 1000);
+}
+
+}  // namespace
+}  // namespace sf::traffic

@@ -1,0 +1,205 @@
+// Robots on SimVille's streets, alone and one behind another.
+
+#include "tests/control/traffic.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "base/error.h"
+
+namespace sf::traffic {
+namespace {
+
+// ---- One robot alone.
+
+TEST(Route, drives_every_checkpoint_of_simville) {
+  Streets t;
+  Numbers all;
+  for (const auto& checkpoint : t.roads.checkpoints) all.push_back(checkpoint.id);
+  t.add(on_lane(t.roads, "1.1", 0.3), "route", go(all));
+  t.begin();
+  double worst = 0.0;
+  std::set<std::uint32_t> headed;
+  while (!t.controllers[0]->done() && t.time < 3'000'000'000'000) {
+    t.tick();
+    worst = std::max(worst, std::abs(t.controllers[0]->error()));
+    headed.insert(t.intents[0].checkpoint);
+  }
+  EXPECT_TRUE(t.controllers[0]->done()) << "reached " << t.route(0).reached();
+  EXPECT_EQ(t.route(0).reached(), all.size());
+  for (const double id : all) EXPECT_TRUE(headed.count(std::uint32_t(id))) << id;
+  EXPECT_LT(worst, 0.02);  // [m] from its line
+  EXPECT_EQ(t.contacts, 0);
+}
+
+TEST(Route, drives_a_mission_round_and_round) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.1", 0.3), "route",
+        {{"mission", std::string(SF_SOURCE_DIR "/worlds/simville/simville.mdf"), ""}, {"loop", true, ""}});
+  t.begin();
+  while (t.route(0).reached() < 20 && t.time < 2'000'000'000'000) t.tick();
+  EXPECT_GE(t.route(0).reached(), 20u);
+  EXPECT_FALSE(t.controllers[0]->done());
+}
+
+// 6.2.3 is a stop sign; 1.3.17 too. Every time it comes to one it stands, its front within 5 cm of the line.
+TEST(Route, stops_fully_at_every_stop_sign) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.3", 0.3), "route", go({8, 4, 8, 4, 9, 8}));
+  t.begin();
+  int crossed = 0;
+  bool stood = false;
+  Vec2 last{t.pose(0).x + 0.165 * std::cos(t.pose(0).yaw), t.pose(0).y + 0.165 * std::sin(t.pose(0).yaw)};
+  while (!t.controllers[0]->done() && t.time < 1'500'000'000'000) {
+    t.tick();
+    const Pose& X = t.pose(0);
+    const Vec2 front{X.x + 0.165 * std::cos(X.yaw), X.y + 0.165 * std::sin(X.yaw)};
+    for (const world::StopLine& stop : t.roads.stops) {
+      const Vec2 middle = 0.5 * (stop.left + stop.right), across = stop.left - stop.right;
+      const Vec2 along{across.y, -across.x};
+      const double before = dot(last - middle, along) / length(along),
+                   after = dot(front - middle, along) / length(along);
+      if (length(front - middle) > 0.2) continue;
+      if (before > -0.05 && before <= 0.0 && t.fleet->reports()[0].velocity.forward == 0.0) stood = true;
+      if (before <= 0.0 && after > 0.0) {
+        EXPECT_TRUE(stood) << "at " << middle.x << " " << middle.y;
+        stood = false;
+        ++crossed;
+      }
+    }
+    last = front;
+  }
+  EXPECT_TRUE(t.controllers[0]->done());
+  EXPECT_GE(crossed, 5);
+}
+
+// ---- Lights: all states, the front against the line on every tick.
+
+struct LightCase {
+  world::LightState state;
+  bool crosses;  ///< within a minute
+  bool stands;   ///< before
+  const char* why;
+};
+
+TEST(Route, obeys_every_state_of_a_light) {
+  using enum world::LightState;
+  for (const LightCase& c :
+       {LightCase{red, false, true, "red is shut"}, LightCase{green, true, false, "green is open"},
+        LightCase{yellow, false, true, "yellow for ever, and it can stop"},
+        LightCase{flashing_red, true, true, "as a stop sign"},
+        LightCase{flashing_yellow, true, false, "open, with care"}, LightCase{dark, true, true, "as a stop sign"}}) {
+    Streets t;
+    t.world.lights = {light("it", {"6.1.3"}, {{c.state, 1.0}})};
+    t.add(on_lane(t.roads, "6.1", 0.2), "route", go({10}));
+    t.begin();
+    bool crossed = false, stood = false;
+    for (int i = 0; i < 300 && !crossed; ++i) {
+      t.tick();
+      crossed = t.pose(0).x + 0.165 > 2.8;
+      stood = stood || t.fleet->reports()[0].velocity.forward == 0.0;
+    }
+    EXPECT_EQ(crossed, c.crosses) << c.why;
+    EXPECT_EQ(stood, c.stands) << c.why;
+  }
+}
+
+TEST(Route, never_crosses_a_red_light) {
+  using enum world::LightState;
+  int crossings = 0;
+  for (int k = 0; k < 24; ++k) {
+    Streets t;
+    t.world.lights = {light("it", {"6.1.3"}, {{green, 4.0}, {yellow, 1.0}, {red, 5.0}}, 0.41 * k)};
+    t.add(on_lane(t.roads, "6.1", 0.2), "route", go({10}));
+    t.begin();
+    for (int i = 0; i < 250; ++i) {
+      const double before = t.pose(0).x + 0.165;
+      t.tick();
+      if (before > 2.8 || t.pose(0).x + 0.165 <= 2.8) continue;
+      EXPECT_NE(t.signals[0].state, red) << "offset " << 0.41 * k;
+      ++crossings;
+    }
+  }
+  EXPECT_EQ(crossings, 24);
+}
+
+// ---- What it refuses.
+
+std::string refusal(const std::vector<Setting>& settings, const Pose& X_WM) {
+  Streets t;
+  t.add(X_WM, "route", settings);
+  try {
+    t.begin();
+    t.tick();
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Route, refuses_what_cannot_be_driven) {
+  const Pose lane = on_lane(simville(), "1.1", 1.0);
+  EXPECT_NE(refusal(go({99}), lane).find("'checkpoints' names 99"), std::string::npos);
+  EXPECT_NE(refusal(go({1.5}), lane).find("names 1.5"), std::string::npos);
+  EXPECT_NE(refusal({}, lane).find("nowhere to go"), std::string::npos);
+  EXPECT_NE(refusal({{"park", std::string("13.9"), ""}}, lane).find("no parking spot '13.9'"), std::string::npos);
+  EXPECT_NE(refusal({{"mission", std::string("none.mdf"), ""}}, lane).find("none.mdf"), std::string::npos);
+  EXPECT_NE(refusal(go({1}), {5.3, 5.0, 0, 0}).find("no lane"), std::string::npos);
+  EXPECT_NE(refusal(go({1}, {{"speed", 0.0, ""}}), lane).find("'speed'"), std::string::npos);
+  EXPECT_NE(refusal(go({1}, {{"tour", true, ""}}), lane).find("'tour'"), std::string::npos);
+  EXPECT_EQ(refusal(go({1}), lane), "");
+}
+
+// A network of one lane that goes nowhere: the second time round there is no way.
+TEST(Route, says_where_no_way_leads) {
+  Streets t;
+  t.roads.exits.clear();
+  t.add(on_lane(t.roads, "1.1", 1.0), "route", go({4}));
+  t.begin();
+  try {
+    t.tick();
+    FAIL() << "no exception";
+  } catch (const base::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no way to checkpoint 4 (way-point 1.3.6)"), std::string::npos)
+        << error.what();
+  }
+}
+
+// ---- Two and more.
+
+TEST(Route, follows_a_slower_robot_without_touching_it) {
+  for (const double slow : {0.02, 0.1, 0.19}) {
+    Streets t;
+    t.add(on_lane(t.roads, "1.3", 2.0), "route", go({8}, {{"speed", slow, ""}}));
+    t.add(on_lane(t.roads, "1.3", 0.5), "route", go({8}));
+    t.begin();
+    double least = 9.0;
+    for (int i = 0; i < 300; ++i) {
+      t.tick();
+      least = std::min(least, t.distance(0, 1));
+    }
+    EXPECT_EQ(t.contacts, 0) << slow;
+    EXPECT_GT(least, 0.36) << slow;  // two radii and a gap
+    if (slow < 0.19) {
+      EXPECT_NEAR(t.fleet->reports()[1].velocity.forward, slow, 0.01) << slow;
+    }
+  }
+}
+
+// Behind somebody who stands for ever it stands too, near but not touching.
+TEST(Route, stands_behind_who_stands) {
+  Streets t;
+  t.add(on_lane(t.roads, "4.1", 2.0), "route", go({7}, {{"speed", 0.01, ""}}));
+  t.add(on_lane(t.roads, "4.1", 0.5), "route", go({8}));
+  t.begin();
+  t.controllers[0] = std::make_unique<Stands>();
+  for (int i = 0; i < 300; ++i) t.tick();
+  EXPECT_EQ(t.fleet->reports()[1].velocity.forward, 0.0);
+  EXPECT_GT(t.distance(0, 1), 0.37);
+  EXPECT_LT(t.distance(0, 1), 0.5);
+  EXPECT_EQ(t.contacts, 0);
+}
+
+}  // namespace
+}  // namespace sf::traffic
