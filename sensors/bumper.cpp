@@ -57,6 +57,30 @@ void refuse_more(const world::Sensor& sensor, std::uint32_t zones) {
                        more->key, zones, kMostBumperZones));
 }
 
+/// Stage's way: bars [x y z angle] of `blength`, square to `angle`. A bar is the arc of bearings between its ends.
+std::vector<std::uint32_t> read_bars(const world::Sensor& sensor) {
+  const std::uint32_t count = whole(sensor, "bcount", 1, 1, kMostBumperZones);
+  std::vector<std::uint32_t> switches;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::string key = fmt::format("bpose[{}]", i);
+    const auto bar = tuple(sensor, key, 4, "[x y z angle]");
+    if (!bar) refuse(sensor, "bcount", fmt::format("'{}' is missing: 'bcount' is {}", key, count));
+    const std::string own = fmt::format("blength[{}]", i);
+    const double half = 0.5 * length(sensor, find(sensor, own) != nullptr ? own : "blength", 0.1, 0.0, 1e6);
+    const double angle = sensor.radians * (*bar)[3];
+    const base::Vec2 middle{sensor.metres * (*bar)[0], sensor.metres * (*bar)[1]};
+    const base::Vec2 along = base::rotate(angle, {0.0, half});
+    const auto bearing = [&](base::Vec2 p) {
+      const base::Vec2 p_M = base::transform(sensor.X_MS, p);
+      return std::atan2(p_M.y, p_M.x);
+    };
+    double sweep = bearing(middle + along) - bearing(middle - along);
+    if (sweep < 0.0) sweep += kTurn;
+    switches.push_back(sectors_of(bearing(middle - along), std::max(sweep, kSector)));
+  }
+  return switches;
+}
+
 class Bumpers : public HostInstruments {
  public:
   explicit Bumpers(const Site& site);
@@ -96,7 +120,7 @@ void Bumpers::measure(std::span<const Sight> sights) const {
   }
 }
 
-constexpr std::string_view kKeys[] = {"zones", "zone[]"};
+constexpr std::string_view kKeys[] = {"zones", "zone[]", "bcount", "bpose[]", "blength", "blength[]"};
 constexpr Column kColumns[] = {{"pressed", 1, true}};
 constexpr PlainNumber kNumbers[] = {{1.0, 0.0, 1.0}};
 constexpr PlainForm kForm{kBumper, "bumper", kNumbers};
@@ -104,6 +128,7 @@ constexpr PlainForm kForm{kBumper, "bumper", kNumbers};
 }  // namespace
 
 std::vector<std::uint32_t> read_bumper(const world::Sensor& sensor) {
+  if (find(sensor, "bcount") != nullptr) return read_bars(sensor);
   const std::uint32_t zones = whole(sensor, "zones", 1, 1, kMostBumperZones);
   refuse_more(sensor, zones);
   const bool all_round = find(sensor, "zones") == nullptr && find(sensor, "zone[0]") == nullptr;

@@ -4,7 +4,8 @@
 // In a world file, inside a robot:
 //   bumper( zones N  zone[0] [from to] ... zone[N-1] [from to] )
 // Zone i is the arc of bearings from `from` counter-clockwise to `to`, seen from the robot's origin and turned with the
-// sensor's own yaw; zones may overlap. Without zones there is one switch all round.
+// sensor's own yaw; zones may overlap. Without zones there is one switch all round. Stage's bars (`bcount`, `bpose[i]`
+// [x y z angle], `blength`) are understood as the arcs between their ends.
 //
 // A reading has one row for each switch: 1 while it is pressed, else 0. Contacts are told in sectors
 // (base::kTouchSectors); a sector belongs to the zones that hold its middle.

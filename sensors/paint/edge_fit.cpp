@@ -39,7 +39,7 @@ EdgeRow row_of(const LaneEdge& edge, const BeamPlan& plan, const world::LaserNoi
 
 }  // namespace
 
-std::uint32_t edge_noise_name(std::uint32_t sensor) { return (std::uint32_t{kLaneEdge} << 24) | sensor; }
+std::uint32_t edge_noise_name(std::uint32_t sensor) { return (std::uint32_t{kLaneEdge} << 16) | sensor; }
 
 EdgeFit::Plan EdgeFit::plan(const Site& site, const std::vector<LaneEdge>& edges) {
   if (edges.size() > kMostSensors)

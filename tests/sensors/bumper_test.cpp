@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "tests/sensors/host_trial.h"
 
 namespace sf::trial {
@@ -46,6 +47,19 @@ TEST(Bumper, ZonesThatShareAnEdgeShareNoSector) {
 
 TEST(Bumper, WithoutZonesOneSwitchAllRound) {
   EXPECT_EQ(read_bumper(fitted("bumper")), (std::vector<std::uint32_t>{0xFFFFFFFFu}));
+}
+
+/// Stage's Roomba: two bars of 0.33 m across both front corners.
+TEST(Bumper, StagesBarsAreTheArcsBetweenTheirEnds) {
+  std::vector<world::Setting> bars{setting("bcount", {2}), setting("blength", {0.33}),
+                                   setting("bpose[0]", {0.12, 0.12, 0.02, 45}),
+                                   setting("bpose[1]", {0.12, -0.12, 0.02, -45})};
+  EXPECT_EQ(read_bumper(fitted("bumper", bars)), (std::vector<std::uint32_t>{0x000000FFu, 0xFF000000u}));
+  bars.push_back(setting("blength[1]", {0.03}));
+  EXPECT_EQ(read_bumper(fitted("bumper", bars))[1], 1u << 28) << "a short one is as wide as a sector";
+  bars.pop_back();
+  bars.pop_back();
+  EXPECT_THROW(read_bumper(fitted("bumper", bars)), base::InputError) << "the second bar is missing";
 }
 
 /// Each sector by itself, and what the reading says of it, robot by robot.
