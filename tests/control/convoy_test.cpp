@@ -167,13 +167,14 @@ TEST(Passing, waits_until_the_other_lane_is_free) {
   t.add(on_lane(t.roads, "1.1", 1.6), "route", go({5}));
   t.add(on_lane(t.roads, "1.2", 2.4), "route", go({5}, {{"speed", 0.03, ""}, {"pass", false, ""}}));
   t.begin();
-  double farthest = 0.0;
+  const control::Corridors corridors(t.roads, t.world, {});
   for (int i = 0; i < 200; ++i) {
     t.tick();
-    farthest = std::max(farthest, std::abs(t.controllers[1]->error()));
-    EXPECT_LT(t.pose(1).x, t.pose(0).x) << "it passed";
+    const auto place = place_on_lane(corridors, t.pose(1));
+    ASSERT_TRUE(place.has_value());
+    ASSERT_EQ(name_of(t.roads, t.roads.lanes[place->way]), "1.1") << 0.1 * i;
+    ASSERT_LT(place->offset, 0.02) << 0.1 * i;
   }
-  EXPECT_LT(farthest, 0.02);
   EXPECT_EQ(t.contacts, 0);
 }
 

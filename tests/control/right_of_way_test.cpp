@@ -30,13 +30,14 @@ TEST(RightOfWay, who_need_not_stop_goes_first) {
   EXPECT_EQ(t.contacts, 0);
 }
 
-// Two dark lights face each other across a third: of those that stood, the first that stood goes first.
+// Two come to a crossing that a third still drives through: when it is free, the first that stood there goes first.
 TEST(RightOfWay, first_come_first_served) {
   for (const bool other_first : {false, true}) {
     Streets t;
     t.world.lights = {light("a", {"6.1.3", "10.2.3"}, {{world::LightState::dark, 1.0}})};
-    t.add(on_lane(t.roads, "6.1", other_first ? 0.3 : 0.7), "route", go({10}));
-    t.add(on_lane(t.roads, "10.2", other_first ? 0.8 : 0.4), "route", go({10}));
+    t.add(on_lane(t.roads, "6.1", other_first ? 0.05 : 0.17), "route", go({10}));
+    t.add(on_lane(t.roads, "10.2", other_first ? 0.30 : 0.12), "route", go({10}));
+    t.add(on_lane(t.roads, "11.1", 0.4), "route", go({12, 8}, {{"speed", 0.14, ""}}));
     t.begin();
     double a = 0.0, b = 0.0;
     for (int i = 0; i < 300; ++i) {
@@ -63,6 +64,23 @@ TEST(RightOfWay, lanes_that_cross_without_a_sign) {
     EXPECT_GE(t.route(0).reached(), 1u) << k;
     EXPECT_GE(t.route(1).reached(), 1u) << k;
   }
+}
+
+// Every light of the shipped world is found by its stop line, and every stop line that has none is a stop sign.
+TEST(RightOfWay, lights_of_simville_stand_at_their_lines) {
+  const world::World world = world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world");
+  const world::RoadNetwork roads = simville();
+  const control::Corridors corridors(roads, world, {});
+  std::set<std::uint32_t> lights;
+  std::size_t marks = 0;
+  for (const control::Way& way : corridors.ways())
+    for (const control::StopMark& mark : way.stops) {
+      lights.insert(mark.lights.begin(), mark.lights.end());
+      ++marks;
+    }
+  EXPECT_EQ(marks, roads.stops.size());
+  EXPECT_EQ(lights.size(), world.lights.size());
+  EXPECT_EQ(lights.size(), 7u);
 }
 
 // A lane full of standing robots beyond a crossing: who comes stops before the crossing, not within.
