@@ -53,7 +53,25 @@ void Route::start(const Input& input) {
     plan_ = plan_from_lane(*corridors_, *place);
   }
   started_ = true;
+  check_goals();
   fill();
+}
+
+// A list is tried out once, to its end and back to its beginning, so that nobody is stranded on the way.
+void Route::check_goals() const {
+  if (!goals_) return;
+  RoutePlan plan = plan_;
+  for (std::size_t k = 0; k <= goals_->count(); ++k) {
+    const world::RoadCheckpoint* goal = goals_->by_lot() ? nullptr : goals_->at(k);
+    if (goal == nullptr) return;
+    if (!extend(*corridors_, plan, *goal)) refuse(*goal);
+  }
+}
+
+void Route::refuse(const world::RoadCheckpoint& goal) const {
+  throw base::InputError(fmt::format(
+      "robot '{}' finds no way to checkpoint {} (way-point {}) in '{}'; choose others, or add exits",
+      site_.world.movers[site_.mover].name, goal.id, text_of(id_of(*site_.roads, goal.at)), site_.roads->file));
 }
 
 // Two goals ahead are planned, so that there is always some way on from the next one.
@@ -66,10 +84,7 @@ void Route::fill() {
     ++planned_;
     if (extend(*corridors_, plan_, *goal)) continue;
     // By lot another one will do.
-    if (!goals_->by_lot() || ++refused > 100)
-      throw base::InputError(fmt::format(
-          "robot '{}' finds no way to checkpoint {} (way-point {}) in '{}'; choose others, or add exits",
-          site_.world.movers[site_.mover].name, goal->id, text_of(id_of(*site_.roads, goal->at)), site_.roads->file));
+    if (!goals_->by_lot() || ++refused > 100) refuse(*goal);
   }
 }
 
@@ -96,7 +111,7 @@ void Route::pass_goals(const Input& input) {
   }
 }
 
-void Route::chase(const Input&) {
+void Route::chase() {
   if (company_.leader == base::kNobody || (goals_ && company_.merges)) return;
   const auto row = row_of(right_of_way_.drivers(), company_.leader);
   if (!row) return;
@@ -156,7 +171,7 @@ base::Twist Route::step(const Input& input) {
   progress_.update(*corridors_, plan_, {input.state.X_WM.x, input.state.X_WM.y});
   pass_goals(input);
   right_of_way_.observe(input, company_.leader, company_.merges);
-  chase(input);
+  chase();
   look_ahead(*corridors_, plan_, progress_.s(), right_of_way_.drivers(), ahead_);
   keep_company(company_, *corridors_, right_of_way_.drivers(), ahead_);
   consider_passing(input);

@@ -50,10 +50,12 @@ class Route : public Controller {
     void stop_in(double distance);  ///< [m] before something that it must not pass
   };
   void start(const Input& input);
+  void check_goals() const;
+  [[noreturn]] void refuse(const world::RoadCheckpoint& goal) const;
   void fill();
   void trim();
   void pass_goals(const Input& input);
-  void chase(const Input& input);
+  void chase();
   void consider_passing(const Input& input);
   void reroute(const Input& input);
 

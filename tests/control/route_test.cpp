@@ -166,6 +166,18 @@ TEST(Route, says_where_no_way_leads) {
   }
 }
 
+// Nobody sets out who would be stranded later: the third of three cannot be reached.
+TEST(Route, looks_at_the_whole_list_before_it_starts) {
+  Streets t;
+  const auto row = find_checkpoint(t.roads, 12)->at.row;
+  std::erase_if(t.roads.exits, [&](const world::RoadExit& exit) {
+    return exit.to.kind == world::PointRef::Kind::lane && exit.to.row == row;
+  });
+  t.add(on_lane(t.roads, "1.1", 1.0), "route", go({2, 5, 12}));
+  t.begin();
+  EXPECT_THROW(t.tick(), base::InputError);
+}
+
 // ---- Two and more.
 
 TEST(Route, follows_a_slower_robot_without_touching_it) {
