@@ -44,13 +44,13 @@ void Route::start(const Input& input) {
   if (const auto spot = spot_at(*corridors_, X_WM)) {
     plan_ = plan_from_spot(*corridors_, *spot);
   } else {
-    const auto place = place_on_lane(*corridors_, X_WM);
+    const auto place = place_on_road(*corridors_, X_WM);
     if (!place)
       throw base::InputError(
           fmt::format("robot '{}' stands at ({:.2f}, {:.2f}), where no lane of '{}' runs in its "
                       "direction; place it on a lane or in a parking spot",
                       site_.world.movers[site_.mover].name, X_WM.x, X_WM.y, site_.roads->file));
-    plan_ = plan_from_lane(*corridors_, *place);
+    plan_ = plan_from(*corridors_, *place);
   }
   started_ = true;
   check_goals();

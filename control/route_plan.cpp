@@ -75,6 +75,14 @@ std::vector<Edge> shortest(const Corridors& corridors, std::uint32_t from, std::
   return edges;
 }
 
+/// The point of a lane where another way enters it.
+std::uint32_t entry_of(const Corridors& corridors, const Way& way) {
+  const auto& points = corridors.roads().lanes[way.into].points;
+  std::uint32_t i = 0;
+  while (i + 1 < points.size() && points[i].s < way.enter) ++i;
+  return corridors.node_of({PointRef::Kind::lane, way.into, i});
+}
+
 }  // namespace
 
 std::size_t leg_at(const RoutePlan& plan, double s) {
@@ -89,6 +97,13 @@ std::optional<Place> place_on_lane(const Corridors& corridors, const Pose& X_WM)
   return std::nullopt;
 }
 
+std::optional<Place> place_on_road(const Corridors& corridors, const Pose& X_WM) {
+  if (const auto lane = place_on_lane(corridors, X_WM)) return lane;
+  for (const Place& place : corridors.places(X_WM, corridors.clearance()))
+    if (corridors.way(place.way).into != world::kNone) return place;
+  return std::nullopt;
+}
+
 std::optional<std::uint32_t> spot_at(const Corridors& corridors, const Pose& X_WM) {
   for (std::uint32_t spot = 0; spot < corridors.roads().spots.size(); ++spot) {
     const Pose at = corridors.parked(spot);
@@ -97,11 +112,17 @@ std::optional<std::uint32_t> spot_at(const Corridors& corridors, const Pose& X_W
   return std::nullopt;
 }
 
-RoutePlan plan_from_lane(const Corridors& corridors, const Place& place) {
+RoutePlan plan_from(const Corridors& corridors, const Place& place) {
+  RoutePlan plan;
+  const Way& way = corridors.way(place.way);
+  if (way.kind != Way::Kind::lane) {
+    append(plan, place.way, std::clamp(place.s, 0.0, way.length), way.length);
+    plan.node = entry_of(corridors, way);
+    return plan;
+  }
   const auto& points = corridors.roads().lanes[place.way].points;
   std::uint32_t next = 0;
   while (next + 1 < points.size() && points[next].s < place.s) ++next;
-  RoutePlan plan;
   append(plan, place.way, std::min(place.s, points[next].s), points[next].s);
   plan.node = corridors.node_of({PointRef::Kind::lane, place.way, next});
   return plan;
@@ -152,11 +173,7 @@ void cut_after(const Corridors& corridors, RoutePlan& plan, double s) {
   }
   // Other ways end at a point of a lane, or are kept whole.
   leg.to = way.length;
-  const auto& lane = corridors.roads().lanes;
-  if (way.into == world::kNone) return;
-  const auto& points = lane[way.into].points;
-  for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (points[i].s == way.enter) plan.node = corridors.node_of({PointRef::Kind::lane, way.into, i});
+  if (way.into != world::kNone) plan.node = entry_of(corridors, way);
 }
 
 std::vector<Pose> start_poses(const world::RoadNetwork& roads, std::size_t count, std::uint64_t seed, double apart) {

@@ -42,11 +42,13 @@ std::size_t leg_at(const RoutePlan& plan, double s);
 
 /// The lane that a robot stands on, and how far along; nothing when there is none near in its direction.
 std::optional<Place> place_on_lane(const Corridors& corridors, const Pose& X_WM);
+/// Likewise, between lanes the exit that leads to one.
+std::optional<Place> place_on_road(const Corridors& corridors, const Pose& X_WM);
 /// Likewise the parking spot.
 std::optional<std::uint32_t> spot_at(const Corridors& corridors, const Pose& X_WM);
 
-/// A route of one leg: from the place to the next point of its lane.
-RoutePlan plan_from_lane(const Corridors& corridors, const Place& place);
+/// A route of one leg: from the place to the next point of its lane, or the end of its exit.
+RoutePlan plan_from(const Corridors& corridors, const Place& place);
 /// A route that begins where a robot is parked.
 RoutePlan plan_from_spot(const Corridors& corridors, std::uint32_t spot);
 

@@ -17,7 +17,7 @@ struct Planner {
   Streets streets;
   control::Corridors corridors{streets.roads, streets.world, {}};
   control::RoutePlan from(const std::string& lane, double s) const {
-    return plan_from_lane(corridors, *place_on_lane(corridors, on_lane(streets.roads, lane, s)));
+    return plan_from(corridors, *place_on_lane(corridors, on_lane(streets.roads, lane, s)));
   }
 };
 

@@ -178,6 +178,15 @@ TEST(Route, looks_at_the_whole_list_before_it_starts) {
   EXPECT_THROW(t.tick(), base::InputError);
 }
 
+// Boundary: it stands in a crossing, on the way from 2.1 to 3.1.
+TEST(Route, starts_between_lanes) {
+  Streets t;
+  t.add({10.25, 3.3, 0.0, M_PI / 2}, "route", go({6}));
+  t.begin();
+  for (int i = 0; i < 400 && !t.controllers[0]->done(); ++i) t.tick();
+  EXPECT_TRUE(t.controllers[0]->done());
+}
+
 // ---- Two and more.
 
 TEST(Route, follows_a_slower_robot_without_touching_it) {
