@@ -28,7 +28,7 @@ struct Setting {
 struct Point {
   std::string sweep;
   double x = 0.0;
-  std::string law;  ///< "P" or "PI"
+  std::string law;  ///< one of kLaws
   Setting setting;
   ThesisRow mean{};      ///< of the eight columns over seeds
   double seconds = 0.0;  ///< on the path
@@ -82,15 +82,24 @@ void measure(const Bench& bench, Point& point) {
   point.mean = mean_of(rows);
 }
 
-/// Adds the sweep's points, for P and PI.
+/// The laws that are compared: with and without the integral, on the fitted line and on the exact distance.
+struct Law {
+  const char* name;
+  double ki;
+  bool one_ray;
+};
+constexpr Law kLaws[] = {
+    {"P", 0.0, false}, {"PI", 0.015, false}, {"P, exact edge", 0.0, true}, {"PI, exact edge", 0.015, true}};
+
+/// Adds the sweep's points, for every law.
 template <class Change>
 void add(std::vector<Point>& points, const std::string& sweep, Plant plant, const std::vector<double>& xs,
          Change&& change) {
   for (const double x : xs)
-    for (const bool integral : {false, true}) {
-      Setting setting{.ki = integral ? 0.015 : 0.0, .plant = plant};
+    for (const Law& law : kLaws) {
+      Setting setting{.ki = law.ki, .one_ray = law.one_ray, .plant = plant};
       change(setting, x);
-      points.push_back({fmt::format("{}-{}", sweep, name_of(plant)), x, integral ? "PI" : "P", setting});
+      points.push_back({fmt::format("{}-{}", sweep, name_of(plant)), x, law.name, setting});
     }
 }
 
@@ -98,7 +107,6 @@ std::vector<Point> all_points() {
   std::vector<Point> points;
   for (const Plant plant : {Plant::thesis, Plant::ideal}) {
     add(points, "delay", plant, {0.0, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0}, [](Setting& s, double x) { s.delay = x; });
-    add(points, "fit", plant, {0.0, 1.0}, [](Setting& s, double x) { s.one_ray = x == 0.0; });
     add(points, "gain", plant, {0.2, 0.35, 0.5, 0.75, 1.0, 1.5}, [](Setting& s, double x) { s.kp = x; });
   }
   add(points, "loss", Plant::thesis, {0.0, 0.2, 0.4, 0.6, 0.8}, [](Setting& s, double x) { s.loss = x; });
@@ -116,8 +124,8 @@ std::string stem_of(const std::string& sweep) { return sweep.substr(0, sweep.fin
 std::string csv_of_points(const std::vector<Point>& points) {
   std::string text = fmt::format("sweep,x,law,{},owed_mean,seconds,end_reached\n", fmt::join(kColumns, ","));
   for (const Point& p : points)
-    text += fmt::format("{},{:g},{},{:.6g},{:.6g},{:.1f},{}\n", p.sweep, p.x, p.law, fmt::join(p.mean, ","), p.owed(),
-                        p.seconds, p.all_done ? 1 : 0);
+    text += fmt::format("{},{:g},\"{}\",{:.6g},{:.6g},{:.1f},{}\n", p.sweep, p.x, p.law, fmt::join(p.mean, ","),
+                        p.owed(), p.seconds, p.all_done ? 1 : 0);
   return text;
 }
 
@@ -129,10 +137,10 @@ std::string draw(const Bench& bench, const std::vector<Point>& points, const std
                        .x_name = kAxes.at(stem_of(sweep))};
   for (const auto& [column, name] : kShown) {
     viz::Panel panel{.y_name = name};
-    for (const char* law : {"P", "PI"}) {
-      viz::Series series{.name = law};
+    for (const Law& law : kLaws) {
+      viz::Series series{.name = law.name};
       for (const Point& p : points)
-        if (p.sweep == sweep && p.law == law) {
+        if (p.sweep == sweep && p.law == law.name) {
           series.times.push_back(p.x);
           series.values.push_back(p.mean[column]);
         }
@@ -146,11 +154,12 @@ std::string draw(const Bench& bench, const std::vector<Point>& points, const std
 }
 
 std::string report_of(const Bench& bench, const std::vector<Point>& points) {
-  std::string text = "# Sweeps of the lane edge loop\n\n" + setup_of(bench, {}) +
-                     "\n\nOne thing is varied at a time; all else is as in lane-edge-p and -pi, without delay, jitter "
-                     "or loss. `fit` 0 is the exact distance across the robot (one ray), 1 the line through 61 rays. "
-                     "`owed` is the mean error that a P loop cannot but have on this bend: (pi/2) / (kp T), the gain "
-                     "doubled by the plant `thesis`.\n";
+  std::string text =
+      "# Sweeps of the lane edge loop\n\n" + setup_of(bench, {}) +
+      "\n\nOne thing is varied at a time; all else is as in lane-edge-p and -pi, without delay, jitter "
+      "or loss. `exact edge`: the exact distance across the robot (one ray) in place of the line through 61 "
+      "rays. `owed` is the mean error that a P loop cannot but have on this bend: (pi/2) / (kp T), the gain "
+      "doubled by the plant `thesis`.\n";
   std::string sweep;
   for (const Point& p : points) {
     if (p.sweep != sweep)
@@ -176,7 +185,7 @@ std::vector<std::string> run_sweeps(const Bench& bench) {
   write_text(files[1], report_of(bench, points));
   std::string last;
   for (const Point& p : points) {
-    if (p.sweep != last && kAxes.count(stem_of(p.sweep)) > 0) files.push_back(draw(bench, points, p.sweep));
+    if (p.sweep != last) files.push_back(draw(bench, points, p.sweep));
     last = p.sweep;
   }
   return files;
@@ -188,7 +197,8 @@ extern const ExperimentKind sweeps_experiment;
 
 constinit const ExperimentKind sweeps_experiment{
     .name = "sweeps",
-    .summary = "the lane edge loop over delay, loss, rate and gain, and with an exact edge in place of the line fit",
+    .summary =
+        "the lane edge loop over delay, loss, rate and gain, each also with an exact edge in place of the line fit",
     .plant = Plant::thesis,
     .run = run_sweeps,
 };
