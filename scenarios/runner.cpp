@@ -124,8 +124,10 @@ class Run {
         return simulation_.all_done() ? 1.0 : 0.0;
       case Kind::checkpoints:
         return worst(e, true, [&](std::uint32_t r) {
-          return simulation_.controller(r) == nullptr ? std::nan("") : static_cast<double>(watch_.of(r).checkpoints);
+          return watch_.of(r).has_goals ? static_cast<double>(watch_.of(r).checkpoints) : std::nan("");
         });
+      case Kind::all_checkpoints:
+        return static_cast<double>(watch_.checkpoints());
       case Kind::tick_p99:
         return percentile(tick_ms_, 0.99);
     }
@@ -151,6 +153,7 @@ class Run {
         return outcome;
       case Kind::map_coverage:
       case Kind::checkpoints:
+      case Kind::all_checkpoints:
         outcome.expected = fmt::format(">= {:g}", e.limit);
         outcome.met = value >= e.limit;
         return outcome;

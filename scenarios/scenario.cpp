@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "scenarios/crowd.h"
 #include "sensors/kind.h"
 #include "world/keys.h"
 
@@ -25,7 +26,7 @@ world::World world_of(const Scenario& scenario) {
   world::LoadOptions load;
   load.sensors = sensors::vocabulary();
   world::World world = world::load_world(scenario.world, load);
-  if (scenario.robots > 0) world::clone_robots(world, scenario.robots, scenario.seed);
+  if (scenario.crowd.robots > 0) make_crowd(scenario, world);
   if (scenario.tick > 0.0) world.interval = scenario.tick;
   if (scenario.plant)
     for (world::Mover& mover : world.movers)

@@ -28,15 +28,16 @@ struct RobotPlan {
 /// One thing that must come of it.
 struct Expectation {
   enum class Kind : std::uint8_t {
-    no_collision,    ///< nothing stops anyone, ever
-    contacts,        ///< contacts that begin, at most
-    mean_error,      ///< |mean control error|, at most
-    mean_abs_error,  ///< mean |control error|, at most
-    map_coverage,    ///< part of what could be seen that was, at least
-    lights_obeyed,   ///< nobody passes a stop line while it shows red
-    done,            ///< all controllers have done what they were made for
-    checkpoints,     ///< that each robot has passed, at least
-    tick_p99         ///< 99 of 100 ticks take at most so long [ms]: says something of the machine, too
+    no_collision,     ///< nothing stops anyone, ever
+    contacts,         ///< contacts that begin, at most
+    mean_error,       ///< |mean control error|, at most
+    mean_abs_error,   ///< mean |control error|, at most
+    map_coverage,     ///< part of what could be seen that was, at least
+    lights_obeyed,    ///< nobody passes a stop line while it shows red
+    done,             ///< all controllers have done what they were made for
+    checkpoints,      ///< that each robot which heads for some has passed, at least
+    all_checkpoints,  ///< that all robots together have passed, at least
+    tick_p99          ///< 99 of 100 ticks take at most so long [ms]: says something of the machine, too
   };
   Kind kind = Kind::no_collision;
   std::string robot;   ///< empty: the worst of all
@@ -45,6 +46,18 @@ struct Expectation {
 };
 std::string_view name_of(Expectation::Kind kind);  ///< its key
 
+/// Copies of one robot of the world.
+struct Crowd {
+  enum class Place : std::uint8_t {
+    free,  ///< wherever there is room: instead of all robots of the world
+    lanes  ///< on lanes, along them: instead of those that no plan names
+  };
+  std::uint32_t robots = 0;  ///< how many; 0: the world's own robots
+  std::string of;            ///< its name; empty: the first
+  Place place = Place::free;
+  int line = 0;  ///< of `robots` in the file
+};
+
 struct Scenario {
   std::string name;        ///< else the file's, without its ending
   std::string file;        ///< empty: made by hand
@@ -52,7 +65,7 @@ struct Scenario {
   double duration = 60.0;  ///< [s] simulated, at most: where `done` is expected it ends with it
   std::uint64_t seed = 1;
   double tick = 0.0;           ///< [s]; 0: the world's own
-  std::uint32_t robots = 0;    ///< clones of the world's first; 0: the world's own
+  Crowd crowd;                 ///< in place of the world's own robots
   std::optional<Plant> plant;  ///< of every robot; else as the world says
   double start_at = 0.0;       ///< [s]
   Actor actor;                 ///< of every robot

@@ -27,8 +27,8 @@ constexpr double kMostWhole = 9.0e15;     // whole numbers of a TOML file that a
 constexpr double kMostPosition = 1e7;     // [m]
 constexpr double kLongestDelay = 3600.0;  // [s]
 
-constexpr std::array<std::string_view, 12> kKeys{"name",  "world",    "duration", "seed", "tick",  "robots",
-                                                 "plant", "start_at", "default",  "link", "robot", "expect"};
+constexpr std::array<std::string_view, 14> kKeys{"name",  "world", "duration", "seed",    "tick", "robots", "of",
+                                                 "place", "plant", "start_at", "default", "link", "robot",  "expect"};
 constexpr std::array<std::string_view, 3> kDefaultKeys{"controller", "rate", "settings"};
 constexpr std::array<std::string_view, 6> kRobotKeys{"name", "controller", "rate", "settings", "link", "pose"};
 constexpr std::array<std::string_view, 3> kLinkKeys{"delay", "jitter", "loss"};
@@ -151,6 +151,22 @@ base::Pose pose_of(const Reader& reader, const TomlNode& node) {
   return {at(0, kMostPosition), at(1, kMostPosition), 0.0, at(2, 1e6) * M_PI / 180.0};
 }
 
+Crowd crowd_of(const Reader& reader, const TomlNode& root) {
+  Crowd crowd;
+  crowd.robots = static_cast<std::uint32_t>(reader.whole(root, "robots", 0, 65535.0));
+  crowd.of = reader.text(root, "of", "");
+  const std::string place = reader.text(root, "place", "free");
+  if (place != "free" && place != "lanes")
+    reader.fail(*world::find(root, "place"), "'place' expects \"free\" or \"lanes\"");
+  crowd.place = place == "lanes" ? Crowd::Place::lanes : Crowd::Place::free;
+  if (const TomlNode* robots = world::find(root, "robots")) crowd.line = robots->line;
+  for (const std::string_view key : {"of", "place"})
+    if (const TomlNode* node = world::find(root, key); node != nullptr && crowd.robots == 0)
+      reader.fail(*node,
+                  fmt::format("'{}' says something of copies, and there are none; expected robots = N beside it", key));
+  return crowd;
+}
+
 void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario) {
   const TomlNode* list = world::find(root, "robot");
   if (list == nullptr) return;
@@ -176,15 +192,16 @@ struct Rule {
   bool is_flag;
   double most;
 };
-constexpr std::array<Rule, 9> kRules{{{Expectation::Kind::no_collision, true, 0.0},
-                                      {Expectation::Kind::contacts, false, 1e9},
-                                      {Expectation::Kind::mean_error, false, 1e6},
-                                      {Expectation::Kind::mean_abs_error, false, 1e6},
-                                      {Expectation::Kind::map_coverage, false, 1.0},
-                                      {Expectation::Kind::lights_obeyed, true, 0.0},
-                                      {Expectation::Kind::done, true, 0.0},
-                                      {Expectation::Kind::checkpoints, false, 1e9},
-                                      {Expectation::Kind::tick_p99, false, 1e9}}};
+constexpr std::array<Rule, 10> kRules{{{Expectation::Kind::no_collision, true, 0.0},
+                                       {Expectation::Kind::contacts, false, 1e9},
+                                       {Expectation::Kind::mean_error, false, 1e6},
+                                       {Expectation::Kind::mean_abs_error, false, 1e6},
+                                       {Expectation::Kind::map_coverage, false, 1.0},
+                                       {Expectation::Kind::lights_obeyed, true, 0.0},
+                                       {Expectation::Kind::done, true, 0.0},
+                                       {Expectation::Kind::checkpoints, false, 1e9},
+                                       {Expectation::Kind::all_checkpoints, false, 1e9},
+                                       {Expectation::Kind::tick_p99, false, 1e9}}};
 
 /// `key = value` for the worst of all robots, or `key = { robot = value, ... }`.
 void read_expectation(const Reader& reader, const TomlNode& node, const Rule& rule, Scenario& scenario) {
@@ -197,7 +214,8 @@ void read_expectation(const Reader& reader, const TomlNode& node, const Rule& ru
     scenario.expect.push_back({rule.kind, "", reader.number(node, node.key, 0.0, rule.most), node.line});
     return;
   }
-  if (rule.kind == Expectation::Kind::tick_p99) reader.fail(node, fmt::format("'{}' expects a number", node.key));
+  if (rule.kind == Expectation::Kind::tick_p99 || rule.kind == Expectation::Kind::all_checkpoints)
+    reader.fail(node, fmt::format("'{}' expects a number", node.key));
   for (const TomlNode& item : node.items)
     scenario.expect.push_back({rule.kind, item.key, reader.number(item, node.key, 0.0, rule.most), item.line});
 }
@@ -229,9 +247,9 @@ std::string world_file(const Reader& reader, const TomlNode& root) {
 }  // namespace
 
 std::string_view name_of(Expectation::Kind kind) {
-  constexpr std::array<std::string_view, 9> kNames{"no_collision",   "contacts",     "mean_error",
-                                                   "mean_abs_error", "map_coverage", "lights_obeyed",
-                                                   "done",           "checkpoints",  "tick_p99_ms"};
+  constexpr std::array<std::string_view, 10> kNames{"no_collision",    "contacts",      "mean_error", "mean_abs_error",
+                                                    "map_coverage",    "lights_obeyed", "done",       "checkpoints",
+                                                    "all_checkpoints", "tick_p99_ms"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -253,7 +271,7 @@ Scenario parse_scenario(const std::string& file, std::string_view text) {
   scenario.duration = reader.number(root, "duration", scenario.duration, 0.0, kLongest);
   scenario.seed = reader.whole(root, "seed", scenario.seed, kMostWhole);
   if (world::find(root, "tick") != nullptr) scenario.tick = reader.number(root, "tick", 0.0, 1e-3, 10.0);
-  scenario.robots = static_cast<std::uint32_t>(reader.whole(root, "robots", 0, 65535.0));
+  scenario.crowd = crowd_of(reader, root);
   scenario.start_at = reader.number(root, "start_at", 0.0, 0.0, kLongest);
   read_plant(reader, root, scenario);
   scenario.actor.link = link_of(reader, reader.table(root, "link"), {});

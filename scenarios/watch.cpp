@@ -48,15 +48,18 @@ void Watch::add_lines() {
     }
 }
 
-std::uint64_t Watch::contacts() const {
-  return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0},
-                         [](std::uint64_t sum, const RobotCounts& c) { return sum + c.contacts; });
+namespace {
+
+std::uint64_t sum_of(const std::vector<RobotCounts>& counts, std::uint64_t RobotCounts::*what) {
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0},
+                         [&](std::uint64_t sum, const RobotCounts& c) { return sum + c.*what; });
 }
 
-std::uint64_t Watch::reds() const {
-  return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0},
-                         [](std::uint64_t sum, const RobotCounts& c) { return sum + c.reds; });
-}
+}  // namespace
+
+std::uint64_t Watch::contacts() const { return sum_of(counts_, &RobotCounts::contacts); }
+std::uint64_t Watch::reds() const { return sum_of(counts_, &RobotCounts::reds); }
+std::uint64_t Watch::checkpoints() const { return sum_of(counts_, &RobotCounts::checkpoints); }
 
 void Watch::look(const base::TickRecord& tick) {
   for (std::uint32_t m = 0; m < counts_.size(); ++m) {
@@ -73,13 +76,23 @@ void Watch::look(const base::TickRecord& tick) {
     before.X_WM = X_WM;
     before.seen = true;
 
-    const control::Controller* controller = simulation_.controller(m);
-    if (controller == nullptr || !simulation_.stepped(m)) continue;
-    if (const double error = controller->error(); std::isfinite(error)) counts.errors.push_back(error);
-    const std::uint32_t checkpoint = controller->intent().checkpoint;
-    counts.checkpoints += before.checkpoint != base::kNobody && checkpoint != before.checkpoint;
-    before.checkpoint = checkpoint;
+    const double speed = std::abs(tick.reports[m].velocity.forward);
+    counts.stops += before.moving && speed <= kStanding;
+    before.moving = speed >= kDriving || (before.moving && speed > kStanding);
+    look_at_goals(m);
   }
+}
+
+void Watch::look_at_goals(std::uint32_t mover) {
+  const control::Controller* controller = simulation_.controller(mover);
+  if (controller == nullptr || !simulation_.stepped(mover)) return;
+  RobotCounts& counts = counts_[mover];
+  Before& before = before_[mover];
+  if (const double error = controller->error(); std::isfinite(error)) counts.errors.push_back(error);
+  const std::uint32_t checkpoint = controller->intent().checkpoint;
+  counts.has_goals = counts.has_goals || checkpoint != base::kNobody;
+  counts.checkpoints += before.checkpoint != base::kNobody && checkpoint != before.checkpoint;
+  before.checkpoint = checkpoint;
 }
 
 /// Its front came over a governed line, in the line's direction, while it showed red.

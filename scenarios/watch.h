@@ -1,5 +1,5 @@
 #pragma once
-// What came of a run, counted as it goes: contacts, control errors, checkpoints, lights, maps.
+// What came of a run, counted as it goes: contacts, control errors, checkpoints, lights, stops.
 
 #include <cstdint>
 #include <vector>
@@ -14,6 +14,8 @@ struct RobotCounts {
   std::uint64_t contacts = 0;     ///< that began
   std::uint64_t checkpoints = 0;  ///< that it no longer heads for, since the next or none is due
   std::uint64_t reds = 0;         ///< stop lines passed that showed red
+  std::uint64_t stops = 0;        ///< that it came to stand after it had driven
+  bool has_goals = false;         ///< it headed for a checkpoint
   std::vector<double> errors;     ///< control error of every step that had one
   double travelled = 0.0;         ///< [m]
 };
@@ -27,8 +29,9 @@ class Watch {
   void look(const base::TickRecord& tick);
 
   const RobotCounts& of(std::uint32_t mover) const { return counts_[mover]; }
-  std::uint64_t contacts() const;  ///< of all
-  std::uint64_t reds() const;      ///< of all
+  std::uint64_t contacts() const;     ///< of all
+  std::uint64_t reds() const;         ///< of all
+  std::uint64_t checkpoints() const;  ///< of all
 
  private:
   /// A stop line that a light governs.
@@ -39,11 +42,13 @@ class Watch {
   };
   struct Before {
     bool contact = false;
+    bool moving = false;
     std::uint32_t checkpoint = base::kNobody;
     base::Pose X_WM;
     bool seen = false;
   };
   void add_lines();
+  void look_at_goals(std::uint32_t mover);
   void look_at_lights(const base::TickRecord& tick, std::uint32_t mover);
 
   const world::World& world_;
@@ -55,5 +60,8 @@ class Watch {
 
 /// A robot has passed a stop line once its front is so far beyond it. [m]
 inline constexpr double kPassed = 0.05;
+/// A robot drives from the one speed on, and stands below the other. [m/s]
+inline constexpr double kDriving = 0.03;
+inline constexpr double kStanding = 0.002;
 
 }  // namespace sf::scenarios

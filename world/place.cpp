@@ -24,7 +24,8 @@ std::uint32_t renamed(const std::vector<std::uint32_t>& rows, std::uint32_t row)
   return row == kNone ? kNone : rows[row];
 }
 
-// Takes the other robots away: `models` keeps what stands still and the tags; gives new rows of old models and movers.
+// Takes robots away: `models` keeps what stands still, the tags and those in `robots`; gives new rows of old models and
+// movers.
 struct Kept {
   std::vector<Model> models;
   std::vector<std::uint32_t> model_rows;  // kNone: gone
@@ -32,18 +33,20 @@ struct Kept {
   std::set<std::string> names;
 };
 
-Kept keep_others(const World& world, std::uint32_t count) {
+Kept keep(const World& world, std::span<const std::uint32_t> robots, std::size_t copies) {
   Kept kept{.models = {},
             .model_rows = std::vector<std::uint32_t>(world.models.size(), kNone),
             .mover_rows = std::vector<std::uint32_t>(world.movers.size(), kNone),
             .names = {}};
-  std::uint32_t next = count;
+  std::uint32_t next = 0;
+  for (const std::uint32_t row : robots) kept.mover_rows[row] = next++;
+  next += static_cast<std::uint32_t>(copies);
   for (std::size_t row = 0; row < world.movers.size(); ++row) {
     if (world.movers[row].is_tag) kept.mover_rows[row] = next++;
   }
   for (std::size_t row = 0; row < world.models.size(); ++row) {
     const Model& model = world.models[row];
-    if (model.mover != kNone && !world.movers[model.mover].is_tag) continue;
+    if (model.mover != kNone && kept.mover_rows[model.mover] == kNone) continue;
     kept.model_rows[row] = static_cast<std::uint32_t>(kept.models.size());
     kept.models.push_back(model);
     kept.names.insert(model.name);
@@ -60,13 +63,14 @@ void retarget(std::vector<Row>& table, const std::vector<std::uint32_t>& rows) {
   for (Row& row : table) row.model = rows[row.model];
 }
 
-// Copy k of the robot in row `original` of the world's movers, its models appended to `models`.
-Mover copy_of(const World& world, std::uint32_t original, std::uint32_t k, const Pose& X_WM, const Kept& kept,
-              std::vector<Model>& models) {
+// A copy of the robot in row `original` of the world's movers, numbered `id`, for row `mover`; its models are appended
+// to `models`.
+Mover copy_of(const World& world, std::uint32_t original, std::uint32_t id, std::uint32_t mover, const Pose& X_WM,
+              const Kept& kept, std::vector<Model>& models) {
   Mover copy = world.movers[original];
   const Pose X_old = inverse(copy.X_WM);
   const std::string before = world.models[copy.model].name;
-  std::string after = stem(before) + std::to_string(k + 1);
+  std::string after = stem(before) + std::to_string(id);
   while (kept.names.contains(after)) after += "_";
 
   std::vector<std::uint32_t> rows = kept.model_rows;
@@ -77,16 +81,24 @@ Mover copy_of(const World& world, std::uint32_t original, std::uint32_t k, const
     model.name = model.name.starts_with(before) ? after + model.name.substr(before.size()) : after + "." + model.name;
     model.X_WM = compose(X_WM, compose(X_old, model.X_WM));
     model.parent = renamed(rows, model.parent);
-    model.mover = k;
+    model.mover = mover;
     models.push_back(std::move(model));
   }
   copy.name = after;
-  copy.id = k + 1;
+  copy.id = id;
   copy.X_WM = X_WM;
   copy.model = rows[copy.model];
   retarget(copy.body, rows);
   retarget(copy.magnets, rows);
   return copy;
+}
+
+Mover kept_one(const Mover& mover, const Kept& kept) {
+  Mover same = mover;
+  same.model = kept.model_rows[same.model];
+  retarget(same.body, kept.model_rows);
+  retarget(same.magnets, kept.model_rows);
+  return same;
 }
 
 }  // namespace
@@ -97,19 +109,28 @@ void clone_robots(World& world, std::uint32_t count, std::uint64_t seed) {
     throw base::InputError(world.file, 0, "has no robot to copy: add one, such as a position model");
   if (count == 0) throw base::InputError(world.file, 0, "asked for 0 robots: ask for at least 1");
   const std::vector<Pose> poses = free_poses(world, *first, count, seed);
+  copy_robots(world, static_cast<std::uint32_t>(first - world.movers.begin()), poses, {});
+}
 
-  const auto original = static_cast<std::uint32_t>(first - world.movers.begin());
-  const Kept kept = keep_others(world, count);
+void copy_robots(World& world, std::uint32_t original, std::span<const Pose> poses,
+                 std::span<const std::uint32_t> robots) {
+  SF_CHECK(original < world.movers.size(), "a copy of a robot that does not exist");
+  const Kept kept = keep(world, robots, poses.size());
   std::vector<Model> models = kept.models;
   std::vector<Mover> movers;
-  for (std::uint32_t k = 0; k < count; ++k) movers.push_back(copy_of(world, original, k, poses[k], kept, models));
-  for (Mover& tag : world.movers) {
-    if (!tag.is_tag) continue;
-    tag.model = kept.model_rows[tag.model];
-    retarget(tag.body, kept.model_rows);
-    retarget(tag.magnets, kept.model_rows);
-    movers.push_back(std::move(tag));
+  std::set<std::uint32_t> taken;
+  for (const std::uint32_t row : robots) {
+    movers.push_back(kept_one(world.movers[row], kept));
+    taken.insert(world.movers[row].id);
   }
+  std::uint32_t id = 0;
+  for (const Pose& pose : poses) {
+    do ++id;
+    while (taken.contains(id));
+    movers.push_back(copy_of(world, original, id, static_cast<std::uint32_t>(movers.size()), pose, kept, models));
+  }
+  for (const Mover& tag : world.movers)
+    if (tag.is_tag) movers.push_back(kept_one(tag, kept));
   retarget(world.walls, kept.model_rows);
   retarget(world.magnets, kept.model_rows);
   retarget(world.lights, kept.model_rows);

@@ -263,6 +263,12 @@ void translate(World& world, double dx, double dy);
 /// @throws base::InputError when there is no robot, or no room.
 void clone_robots(World& world, std::uint32_t count, std::uint64_t seed);
 
+/// Makes `movers` the robots in rows `robots` (ascending) as they are, then a copy of the robot in row `original` at
+/// each pose [m, rad], then the tags. Copies have the smallest numbers from 1 that no robot of `robots` has, and are
+/// named by them. Nobody looks whether the poses are free.
+void copy_robots(World& world, std::uint32_t original, std::span<const Pose> poses,
+                 std::span<const std::uint32_t> robots);
+
 /// The whole world as bytes, and back: what a recording carries so that it can be drawn and recomputed elsewhere.
 std::vector<std::uint8_t> snapshot(const World& world);
 World from_snapshot(const std::vector<std::uint8_t>& bytes);

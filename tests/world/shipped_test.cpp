@@ -59,7 +59,7 @@ TEST(Shipped, SimVilleHasABridgeAndMagnets) {
   for (const Segment& wall : world.walls)
     bridge = bridge || (world.models[wall.model].name == "bridge" && wall.z_min > 0.3);
   EXPECT_TRUE(bridge);
-  EXPECT_EQ(world.movers.size(), 6u);
+  EXPECT_EQ(world.movers.size(), 8u);
   ASSERT_EQ(world.emitters.size(), 2u);
   EXPECT_EQ(world.emitters[0].kind, Emitter::Kind::dock);
   EXPECT_EQ(world.emitters[1].kind, Emitter::Kind::virtual_wall);

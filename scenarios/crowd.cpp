@@ -1,0 +1,110 @@
+#include "scenarios/crowd.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "control/route_plan.h"
+#include "world/free_space.h"
+#include "world/roads/roads.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+constexpr double kBetween = 0.17;  // [m] between two bodies at the start
+
+/// A robot that stays where it is, or where its plan has it.
+struct Stays {
+  std::uint32_t row = 0;
+  base::Pose X_WM;
+};
+
+std::vector<Stays> who_stays(const Scenario& scenario, const world::World& world) {
+  std::vector<Stays> stays;
+  for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
+    const world::Mover& mover = world.movers[row];
+    for (const RobotPlan& plan : scenario.plans) {
+      if (mover.is_tag || plan.name != mover.name) continue;
+      stays.push_back({row, plan.pose.value_or(mover.X_WM)});
+      break;
+    }
+  }
+  return stays;
+}
+
+std::uint32_t original_of(const Scenario& scenario, const world::World& world) {
+  const Crowd& crowd = scenario.crowd;
+  if (!crowd.of.empty()) {
+    const std::uint32_t row = row_of(scenario, world, crowd.of, crowd.line);
+    if (!world.movers[row].is_tag) return row;
+    throw base::InputError(scenario.file, crowd.line,
+                           fmt::format("'{}' is a tag, not a robot; expected a robot to copy", crowd.of));
+  }
+  const auto first =
+      std::find_if(world.movers.begin(), world.movers.end(), [](const world::Mover& m) { return !m.is_tag; });
+  if (first == world.movers.end())
+    throw base::InputError(scenario.file, crowd.line,
+                           fmt::format("{} has no robot to copy; add one to it", scenario.world));
+  return static_cast<std::uint32_t>(first - world.movers.begin());
+}
+
+bool clear(const base::Pose& X_WM, double radius, const world::World& world, const std::vector<Stays>& stays) {
+  return std::all_of(stays.begin(), stays.end(), [&](const Stays& s) {
+    const double apart = radius + world.movers[s.row].radius + kBetween;
+    return std::hypot(X_WM.x - s.X_WM.x, X_WM.y - s.X_WM.y) >= apart;
+  });
+}
+
+/// More than are needed are drawn where some are too near to those that stay: which those are does not depend on how
+/// many are drawn.
+std::vector<base::Pose> places_on_lanes(const Scenario& scenario, const world::World& world,
+                                        const world::RoadNetwork& roads, const world::Mover& original,
+                                        const std::vector<Stays>& stays) {
+  const std::size_t wanted = scenario.crowd.robots;
+  const double apart = 2.0 * original.radius + kBetween;
+  std::vector<base::Pose> poses;
+  for (std::size_t drawn = wanted; poses.size() < wanted; drawn += wanted - poses.size()) {
+    try {
+      poses = control::start_poses(roads, drawn, scenario.seed, apart);
+    } catch (const base::InputError&) {
+      throw base::InputError(scenario.file, scenario.crowd.line,
+                             fmt::format("{} robots {:.2f} m apart find no room on the lanes of {} beside the {} that "
+                                         "stay where they are; use fewer",
+                                         wanted, apart, roads.file, stays.size()));
+    }
+    std::erase_if(poses, [&](const base::Pose& X) { return !clear(X, original.radius, world, stays); });
+  }
+  poses.resize(wanted);
+  for (base::Pose& pose : poses) pose.z = original.X_WM.z;
+  return poses;
+}
+
+void copy_onto_lanes(const Scenario& scenario, world::World& world, std::uint32_t original) {
+  if (world.road_files.empty())
+    throw base::InputError(scenario.file, scenario.crowd.line,
+                           fmt::format("robots on lanes, and {} has no road network; expected a world with "
+                                       "road( rndf \"FILE\" ), or place = \"free\"",
+                                       scenario.world));
+  std::vector<world::Warning> heard_at_load;
+  const world::RoadNetwork roads = world::load_roads(world.road_files.front(), heard_at_load);
+  const std::vector<Stays> stays = who_stays(scenario, world);
+  const auto poses = places_on_lanes(scenario, world, roads, world.movers[original], stays);
+  std::vector<std::uint32_t> rows;
+  for (const Stays& s : stays) rows.push_back(s.row);
+  world::copy_robots(world, original, poses, rows);
+}
+
+}  // namespace
+
+void make_crowd(const Scenario& scenario, world::World& world) {
+  const std::uint32_t original = original_of(scenario, world);
+  if (scenario.crowd.place == Crowd::Place::lanes) return copy_onto_lanes(scenario, world, original);
+  if (scenario.crowd.of.empty()) return world::clone_robots(world, scenario.crowd.robots, scenario.seed);
+  world::copy_robots(world, original,
+                     world::free_poses(world, world.movers[original], scenario.crowd.robots, scenario.seed), {});
+}
+
+}  // namespace sf::scenarios
