@@ -17,12 +17,14 @@ extern const ExperimentKind magnet_pi_experiment;
 extern const ExperimentKind mapping_experiment;
 extern const ExperimentKind minimagic_experiment;
 extern const ExperimentKind simville_experiment;
+extern const ExperimentKind simville_merge_experiment;
 extern const ExperimentKind sweeps_experiment;
 
 std::span<const ExperimentKind* const> experiments() {
   static constexpr const ExperimentKind* kKinds[] = {
-      &lane_edge_p_experiment, &lane_edge_pi_experiment, &magnet_p_experiment,  &magnet_pi_experiment,
-      &mapping_experiment,     &simville_experiment,     &minimagic_experiment, &sweeps_experiment};
+      &lane_edge_p_experiment,    &lane_edge_pi_experiment, &magnet_p_experiment,
+      &magnet_pi_experiment,      &mapping_experiment,      &simville_experiment,
+      &simville_merge_experiment, &minimagic_experiment,    &sweeps_experiment};
   return kKinds;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "scenarios/experiment.h"
+#include "viz/town_figure.h"
 #include "viz/trajectory_figure.h"
 
 namespace sf::scenarios {
@@ -10,14 +11,14 @@ namespace sf::scenarios {
 namespace {
 
 std::string csv_of(const std::vector<Trial>& trials) {
-  std::string text = "trial,robot,driven_m,contacts,checkpoints,reds_passed,mean_abs_error\n";
+  std::string text = "trial,robot,driven_m,contacts,checkpoints,full_stops,reds_passed,mean_abs_error\n";
   for (std::size_t k = 0; k < trials.size(); ++k)
     for (std::size_t i = 0; i < trials[k].tracks.size(); ++i) {
       const RobotCounts& counts = trials[k].counts[i];
       const bool has = trials[k].errors[i].count > 0;
-      text +=
-          fmt::format("{},{},{:.6g},{},{},{},{}\n", k + 1, trials[k].tracks[i].name, counts.travelled, counts.contacts,
-                      counts.checkpoints, counts.reds, has ? fmt::format("{:.6g}", trials[k].errors[i].abs_mean) : "");
+      text += fmt::format("{},{},{:.6g},{},{},{},{},{}\n", k + 1, trials[k].tracks[i].name, counts.travelled,
+                          counts.contacts, counts.checkpoints, counts.stops, counts.reds,
+                          has ? fmt::format("{:.6g}", trials[k].errors[i].abs_mean) : "");
     }
   return text;
 }
@@ -28,11 +29,12 @@ std::string report_of(const Bench& bench, const std::vector<Trial>& trials) {
     const Trial& trial = trials[k];
     text += fmt::format(
         "\n## Trial {}: {:.0f} s simulated in {:.1f} s ({:.0f} x real time)\n\n"
-        "| robot | driven [m] | contacts | checkpoints | reds passed |\n|---|---|---|---|---|\n",
+        "| robot | driven [m] | contacts | checkpoints | full stops | red lights passed |\n|---|---|---|---|---|---|\n",
         k + 1, trial.simulated, trial.wall, trial.simulated / std::max(trial.wall, 1e-9));
     for (std::size_t i = 0; i < trial.tracks.size(); ++i)
-      text += fmt::format("| {} | {:.2f} | {} | {} | {} |\n", trial.tracks[i].name, trial.counts[i].travelled,
-                          trial.counts[i].contacts, trial.counts[i].checkpoints, trial.counts[i].reds);
+      text += fmt::format("| {} | {:.2f} | {} | {} | {} | {} |\n", trial.tracks[i].name, trial.counts[i].travelled,
+                          trial.counts[i].contacts, trial.counts[i].checkpoints, trial.counts[i].stops,
+                          trial.counts[i].reds);
   }
   return text;
 }
@@ -45,18 +47,27 @@ std::vector<std::string> run_town(const Bench& bench) {
   const world::World world = world_of(bench.scenario);
   for (std::size_t k = 0; k < trials.size(); ++k) {
     files.push_back(in_folder(bench, fmt::format("trajectories-{}.png", k + 1)));
-    viz::draw_trajectories(world, trials[k].tracks, files.back());
+    if (world.road_files.empty())
+      viz::draw_trajectories(world, trials[k].tracks, files.back());
+    else
+      viz::draw_town(world, trials[k].tracks, {trials[k].simulated, trials[k].rows, trials[k].follows}, files.back());
   }
   return files;
 }
 
 }  // namespace
 
-extern const ExperimentKind simville_experiment, minimagic_experiment;
+extern const ExperimentKind simville_experiment, simville_merge_experiment, minimagic_experiment;
 
 constinit const ExperimentKind simville_experiment{
     .name = "simville",
-    .summary = "town traffic: routes, lights, stop signs, a convoy",
+    .summary = "town traffic: fifty robots on routes, lights, stop signs, a convoy",
+    .plant = Plant::ideal,
+    .run = run_town,
+};
+constinit const ExperimentKind simville_merge_experiment{
+    .name = "simville-merge",
+    .summary = "a robot comes into a convoy, another passes a slow one",
     .plant = Plant::ideal,
     .run = run_town,
 };

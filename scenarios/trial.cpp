@@ -60,7 +60,8 @@ class Keeper {
       times_.push_back(1e-9 * static_cast<double>(tick.time));
   }
 
-  void give(const Watch& watch, Trial& trial) {
+  void give(const Watch& watch, const world::World& world, const Simulation& simulation, Trial& trial) {
+    for (const std::uint32_t row : rows_) trial.follows.push_back(followed_by(row, world, simulation));
     trial.rows = rows_;
     trial.tracks = std::move(tracks_);
     trial.times = std::move(times_);
@@ -76,6 +77,15 @@ class Keeper {
   }
 
  private:
+  /// The track of the robot that this one says it follows.
+  std::uint32_t followed_by(std::uint32_t row, const world::World& world, const Simulation& simulation) const {
+    const control::Controller* controller = simulation.controller(row);
+    const std::uint32_t id = controller == nullptr ? base::kNobody : controller->intent().follows;
+    for (std::size_t i = 0; i < rows_.size() && id != base::kNobody; ++i)
+      if (!world.movers[rows_[i]].is_tag && world.movers[rows_[i]].id == id) return static_cast<std::uint32_t>(i);
+    return world::kNone;
+  }
+
   std::vector<std::uint32_t> rows_;
   std::vector<viz::Track> tracks_;
   std::vector<double> times_;
@@ -126,7 +136,7 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
   trial.simulated = static_cast<double>(tick) * world.interval;
   trial.done = simulation.all_done();
   trial.hash = simulation.farm().hash();
-  keeper.give(watch, trial);
+  keeper.give(watch, world, simulation, trial);
   return trial;
 }
 

@@ -29,6 +29,7 @@ struct Trial {
   std::uint64_t seed = 0;
   std::vector<viz::Track> tracks;       ///< per robot, and per tag that is driven
   std::vector<std::uint32_t> rows;      ///< of their movers
+  std::vector<std::uint32_t> follows;   ///< per track, at the end: the track that it follows; world::kNone: nobody
   std::vector<RobotCounts> counts;      ///< one per track
   std::vector<ErrorStatistics> errors;  ///< one per track
   std::vector<double> times;            ///< [s] of the first robot's errors

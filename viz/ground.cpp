@@ -8,7 +8,6 @@ namespace {
 
 using world::Stripe;
 
-constexpr std::uint32_t kAsphalt = 0xFFC3C8CEu;
 constexpr std::uint32_t kNorth = 0xFFC62828u;
 constexpr std::uint32_t kSouth = 0xFF1565C0u;
 constexpr double kShoulder = 7.0;  // [px] of asphalt on either side of a stripe
@@ -37,7 +36,7 @@ void draw_paint(Axes& axes, const world::World& world) {
     for (std::size_t i = 0; i + 1 < stripe.line.size(); ++i)
       asphalt.push_back({axes.pixel(stripe.line[i]), axes.pixel(stripe.line[i + 1])});
   }
-  axes.canvas().lines(asphalt, widest + 2.0 * kShoulder, kAsphalt);
+  axes.canvas().lines(asphalt, widest + 2.0 * kShoulder, kStreet);
 
   std::vector<std::uint32_t> colors;
   for (const Stripe& stripe : world.stripes) colors.push_back(stripe.color);
@@ -51,6 +50,25 @@ void draw_paint(Axes& axes, const world::World& world) {
   }
 }
 
+void draw_streets(Axes& axes, const world::RoadNetwork& roads) {
+  for (const world::RoadZone& zone : roads.zones) {
+    std::vector<Vec2> outline;
+    for (const world::PerimeterPoint& point : zone.perimeter) outline.push_back(axes.pixel(point.p));
+    axes.canvas().polygon(outline, kStreet);
+  }
+  std::vector<Line> bands;
+  double widest = 0.0;
+  const auto add = [&](const std::vector<Vec2>& line) {
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) bands.push_back({axes.pixel(line[i]), axes.pixel(line[i + 1])});
+  };
+  for (const world::RoadLane& lane : roads.lanes) {
+    add(lane.centre.points);
+    widest = std::max(widest, lane.width);
+  }
+  for (const world::RoadExit& exit : roads.exits) add(connection_of(roads, exit).points);
+  if (widest > 0.0) axes.canvas().lines(bands, widest * axes.scale(), kStreet);
+}
+
 void draw_magnets(Axes& axes, const world::World& world) {
   for (const world::Magnet& magnet : world.magnets) {
     const double radius = std::clamp(magnet.radius * axes.scale(), 0.8, 6.0);
@@ -60,7 +78,7 @@ void draw_magnets(Axes& axes, const world::World& world) {
 
 std::vector<LegendItem> ground_legend(const world::World& world) {
   std::vector<LegendItem> items;
-  if (!world.stripes.empty()) items.push_back({Sample::block, kAsphalt, "road, with its paint"});
+  if (!world.stripes.empty()) items.push_back({Sample::block, kStreet, "road, with its paint"});
   const auto has = [&](bool north) {
     return std::any_of(world.magnets.begin(), world.magnets.end(),
                        [&](const world::Magnet& m) { return (m.moment > 0.0) == north; });

@@ -5,12 +5,18 @@
 
 #include "viz/axes.h"
 #include "viz/legend.h"
+#include "world/roads/network.h"
 #include "world/world.h"
 
 namespace sf::viz {
 
+inline constexpr std::uint32_t kStreet = 0xFFC3C8CEu;  ///< asphalt under paint
+
 /// Stripes in their colours on a band of asphalt, so that white ones are seen; at least a pixel wide.
 void draw_paint(Axes& axes, const world::World& world);
+
+/// Lanes, and the ways over crossings, as bands as wide as the lanes; zones with their parking spots.
+void draw_streets(Axes& axes, const world::RoadNetwork& roads);
 
 /// A dot each, red where the north pole is up, blue where the south pole is.
 void draw_magnets(Axes& axes, const world::World& world);

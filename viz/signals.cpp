@@ -81,13 +81,28 @@ void draw_emitters(Axes& axes, const world::World& world) {
   for (const Emitter& emitter : world.emitters) draw_emitter(axes, emitter);
 }
 
-void draw_lights(Axes& axes, const world::World& world) {
+void draw_lights(Axes& axes, const world::World& world, double time) {
   for (const world::Light& light : world.lights) {
     const Vec2 at = axes.pixel({light.X_WL.x, light.X_WL.y});
     axes.canvas().line(at, at + base::rotate(-light.X_WL.yaw, {2.2 * kLightRadius, 0.0}), 2.5, kCase);
     axes.canvas().disc(at, kLightRadius + 1.5, kCase);
-    axes.canvas().disc(at, kLightRadius, color_of(signal_at(light, 0.0).state));
+    axes.canvas().disc(at, kLightRadius, color_of(signal_at(light, time).state));
   }
+}
+
+std::vector<LegendItem> lights_legend(const world::World& world, double time) {
+  std::vector<LegendItem> items;
+  const auto add = [&](LightState state, const char* text) {
+    const std::uint32_t color = color_of(state);
+    if (std::any_of(world.lights.begin(), world.lights.end(),
+                    [&](const world::Light& light) { return color_of(signal_at(light, time).state) == color; }))
+      items.push_back({Sample::dot, color, text});
+  };
+  add(LightState::green, "light, green");
+  add(LightState::yellow, "light, yellow");
+  add(LightState::red, "light, red");
+  add(LightState::dark, "light, dark");
+  return items;
 }
 
 std::vector<LegendItem> signals_legend(const world::World& world) {

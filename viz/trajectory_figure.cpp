@@ -19,9 +19,6 @@ using base::Pose;
 using world::World;
 
 constexpr std::size_t kNamedTracks = 7;
-constexpr std::uint32_t kContact = 0xFFD4351Cu;
-
-bool finite(const Pose& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
 
 std::uint32_t color_of(std::span<const Track> tracks, std::size_t i) {
   return tracks[i].color.value_or(row_color(i, tracks.size()));
@@ -44,71 +41,22 @@ world::Extent extent_of(const World& world, std::span<const Track> tracks) {
   world::Extent e = world.extent;
   for (const Track& track : tracks)
     for (const Pose& p : track.poses) {
-      if (!finite(p)) continue;
+      if (!is_finite(p)) continue;
       e = {std::min(e.x_min, p.x), std::min(e.y_min, p.y), std::max(e.x_max, p.x), std::max(e.y_max, p.y)};
     }
   return e;
 }
 
-/// Steps of less than this are left out of a path: they cannot be seen, and cost as much as long ones. [px]
-constexpr double kSmallestStep = 0.7;
-
-void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t color) {
-  std::vector<Line> path;
-  std::optional<Vec2> last;
-  for (std::size_t i = 0; i < track.poses.size(); ++i) {
-    const Pose& pose = track.poses[i];
-    if (!finite(pose)) {
-      last.reset();
-      continue;
-    }
-    const Vec2 at = axes.pixel({pose.x, pose.y});
-    if (last && length(at - *last) < kSmallestStep && i + 1 < track.poses.size()) continue;
-    path.push_back({last.value_or(at), at});
-    last = at;
-  }
-  axes.canvas().lines(path, line_width, color);
-}
-
 void draw_ends(Axes& axes, const Track& track, double mark, std::uint32_t color) {
-  const auto first = std::find_if(track.poses.begin(), track.poses.end(), finite);
+  const auto first = std::find_if(track.poses.begin(), track.poses.end(), is_finite);
   if (first == track.poses.end()) return;
-  const Pose& last = *std::find_if(track.poses.rbegin(), track.poses.rend(), finite);
+  const Pose& last = *std::find_if(track.poses.rbegin(), track.poses.rend(), is_finite);
   const Vec2 start = axes.pixel({first->x, first->y});
   const Vec2 end = axes.pixel({last.x, last.y});
   axes.canvas().disc(start, mark, 0xFFFFFFFFu);
   axes.canvas().ring(start, mark - 0.8, 1.6, color);
   axes.canvas().disc(end, mark + 1.4, 0xFFFFFFFFu);
   axes.canvas().disc(end, mark, color);
-}
-
-/// One cross where each contact began, but none on top of the track's last one.
-void draw_contacts(Axes& axes, const Track& track, const Weight& weight) {
-  Vec2 last{-1e9, -1e9};
-  for (std::size_t i = 0; i < track.contacts.size(); ++i) {
-    if (!track.contacts[i] || (i > 0 && track.contacts[i - 1]) || !finite(track.poses[i])) continue;
-    const Vec2 at = axes.pixel({track.poses[i].x, track.poses[i].y});
-    if (length(at - last) < weight.cross) continue;
-    draw_cross(axes.canvas(), at, weight.cross, weight.cross_line, kContact);
-    last = at;
-  }
-}
-
-double path_length(const Track& track) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i + 1 < track.poses.size(); ++i) {
-    const Pose& a = track.poses[i];
-    const Pose& b = track.poses[i + 1];
-    if (finite(a) && finite(b)) sum += std::hypot(b.x - a.x, b.y - a.y);
-  }
-  return sum;
-}
-
-std::size_t contact_count(const Track& track) {
-  std::size_t begun = 0;
-  for (std::size_t i = 0; i < track.contacts.size(); ++i)
-    begun += track.contacts[i] && (i == 0 || !track.contacts[i - 1]) ? 1u : 0u;
-  return begun;
 }
 
 std::string subtitle_of(const World& world, std::span<const Track> tracks) {
@@ -164,7 +112,7 @@ void draw_trajectories(const World& world, std::span<const Track> tracks, const 
   for (std::size_t i = 0; i < tracks.size(); ++i)
     draw_path(axes, tracks[i], weight.line, with_opacity(color_of(tracks, i), weight.opacity));
   for (std::size_t i = 0; i < tracks.size(); ++i) draw_ends(axes, tracks[i], weight.mark, color_of(tracks, i));
-  for (const Track& track : tracks) draw_contacts(axes, track, weight);
+  for (const Track& track : tracks) draw_contacts(axes, track, weight.cross, weight.cross_line);
   axes.save(png_path);
 }
 

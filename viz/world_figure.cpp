@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "viz/axes.h"
+#include "viz/bodies.h"
 #include "viz/carried.h"
 #include "viz/color.h"
 #include "viz/ground.h"
@@ -27,7 +28,6 @@ using world::World;
 
 constexpr std::size_t kNamedMovers = 20;
 constexpr std::size_t kOutlinedViews = 300;
-constexpr double kSmallestMark = 4.0;  // [px] radius under which a body is drawn as a dot
 constexpr std::uint32_t kTagColor = 0xFFC2187Bu;
 
 bool crowded(const World& world) { return world.movers.size() > kNamedMovers; }
@@ -69,31 +69,6 @@ void draw_views(Axes& axes, const World& world) {
     if (world.movers.size() <= kOutlinedViews)
       axes.canvas().lines(edges, 0.5, with_opacity(mix(color, 0xFF404040u, 0.3), 0.22));
   }
-}
-
-void draw_heading(Axes& axes, const Mover& mover, double reach, double line_width, std::uint32_t color) {
-  const Vec2 at = axes.pixel({mover.X_WM.x, mover.X_WM.y});
-  axes.canvas().line(at, at + base::rotate(-mover.X_WM.yaw, {reach, 0.0}), line_width, color);
-}
-
-void draw_body(Axes& axes, const World& world, const Mover& mover) {
-  const std::uint32_t color = color_of(world, mover);
-  const std::uint32_t edge = mix(color, 0xFF000000u, 0.45);
-  const double radius = mover.radius * axes.scale();
-  Canvas& canvas = axes.canvas();
-  if (radius < kSmallestMark || mover.body.empty()) {
-    canvas.disc(axes.pixel({mover.X_WM.x, mover.X_WM.y}), std::max(radius, 2.4), color);
-    return draw_heading(axes, mover, std::max(2.2 * radius, 6.0), 1.2, edge);
-  }
-  std::vector<Line> outline;
-  std::vector<Line> closed;
-  for (const world::Segment& s : mover.body) {
-    outline.push_back({axes.pixel(transform(mover.X_WM, s.a)), axes.pixel(transform(mover.X_WM, s.b))});
-    if (s.solid_left) closed.push_back(outline.back());
-  }
-  canvas.area(closed, with_opacity(color, 0.75));
-  canvas.lines(outline, 1.4, edge);
-  draw_heading(axes, mover, radius, std::clamp(radius / 8.0, 1.4, 3.0), edge);
 }
 
 /// A dashed circle around what follows a tag.
@@ -193,7 +168,7 @@ void draw_world(const World& world, const std::string& png_path) {
   draw_views(axes, world);
   draw_walls(axes, world, WallColors::of_models);
   draw_lights(axes, world);
-  for (const Mover& mover : world.movers) draw_body(axes, world, mover);
+  for (const Mover& mover : world.movers) draw_body(axes, mover, color_of(world, mover));
   if (!crowded(world)) draw_carried(axes, world);
   for (const Mover& mover : world.movers)
     if (mover.is_tag) draw_tag(axes, mover);

@@ -1,0 +1,143 @@
+#include "viz/town_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "viz/axes.h"
+#include "viz/bodies.h"
+#include "viz/color.h"
+#include "viz/ground.h"
+#include "viz/signals.h"
+#include "viz/walls.h"
+#include "world/roads/roads.h"
+
+namespace sf::viz {
+namespace {
+
+using world::World;
+
+constexpr std::uint32_t kCar = 0xFF1F6FB4u;
+constexpr std::uint32_t kConvoy = 0xFFD55E00u;
+constexpr std::uint32_t kOther = 0xFFC2187Bu;
+constexpr std::uint32_t kTie = 0xFF202020u;
+
+enum class Group { car, convoy, other };
+
+std::uint32_t color_of(Group group) { return group == Group::car ? kCar : group == Group::convoy ? kConvoy : kOther; }
+
+/// In a convoy is who follows, and who is followed. Others are those of another size than most.
+std::vector<Group> groups_of(const World& world, const TownEnd& end) {
+  std::map<double, int> sizes;
+  for (const std::uint32_t row : end.movers) ++sizes[world.movers[row].radius];
+  const auto most =
+      std::max_element(sizes.begin(), sizes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  std::vector<Group> groups;
+  for (const std::uint32_t row : end.movers)
+    groups.push_back(world.movers[row].radius == most->first ? Group::car : Group::other);
+  for (std::size_t i = 0; i < end.follows.size(); ++i)
+    if (end.follows[i] != world::kNone) groups[i] = groups[end.follows[i]] = Group::convoy;
+  return groups;
+}
+
+std::string subtitle_of(const World& world, std::span<const Track> tracks, const TownEnd& end) {
+  double metres = 0.0;
+  std::size_t contacts = 0;
+  for (const Track& track : tracks) {
+    metres += path_length(track);
+    contacts += contact_count(track);
+  }
+  return fmt::format("{}: {} robots, {:.4g} s, {:.0f} m driven, {} contact{}; robots and lights as they are at the end",
+                     world.name, tracks.size(), end.time, metres, contacts, contacts == 1 ? "" : "s");
+}
+
+FigurePlan plan_of(const World& world, std::span<const Track> tracks, const TownEnd& end,
+                   const std::vector<Group>& groups) {
+  FigurePlan plan;
+  plan.title = "Town traffic";
+  plan.subtitle = subtitle_of(world, tracks, end);
+  plan.extent = world.extent;
+  plan.legend = wall_legend(world, WallColors::of_models);
+  plan.legend.push_back({Sample::block, kStreet, "street, with its paint"});
+  const auto has = [&](Group group) { return std::find(groups.begin(), groups.end(), group) != groups.end(); };
+  const auto add = [&](Group group, const char* body, const char* way) {
+    if (!has(group)) return;
+    plan.legend.push_back({Sample::robot, color_of(group), body});
+    plan.legend.push_back({Sample::line, color_of(group), way});
+  };
+  add(Group::car, "car", "its way");
+  add(Group::convoy, "in a convoy", "its way");
+  if (has(Group::convoy)) plan.legend.push_back({Sample::line, kTie, "follows"});
+  if (has(Group::other)) plan.legend.push_back({Sample::dot, kOther, "pedestrian"});
+  for (const LegendItem& item : lights_legend(world, end.time)) plan.legend.push_back(item);
+  if (std::any_of(tracks.begin(), tracks.end(), [](const Track& t) { return contact_count(t) > 0; }))
+    plan.legend.push_back({Sample::cross, kContact, "contact"});
+  return plan;
+}
+
+/// From the follower's middle to the edge of whom it follows, with an arrow head there.
+void draw_tie(Axes& axes, const base::Pose& from, const base::Pose& to, double radius) {
+  const Vec2 a = axes.pixel({from.x, from.y});
+  const Vec2 d = axes.pixel({to.x, to.y}) - a;
+  const double far = length(d);
+  if (far < 1.0) return;
+  const Vec2 along = (1.0 / far) * d;
+  const Vec2 across{-along.y, along.x};
+  const Vec2 tip = a + (far - radius * axes.scale()) * along;
+  axes.canvas().line(a, tip - 6.0 * along, 3.0, kTie);
+  const Vec2 head[] = {tip, tip - 12.0 * along + 7.0 * across, tip - 12.0 * along - 7.0 * across};
+  axes.canvas().polygon(head, kTie);
+}
+
+void draw_leader(Axes& axes, const base::Pose& X_WM, double radius) {
+  TextStyle style = small_text();
+  style.bold = true;
+  style.halo = 0xFFFFFFFFu;
+  style.across = Anchor::middle;
+  style.down = Anchor::end;
+  axes.canvas().text(axes.pixel({X_WM.x, X_WM.y}) - Vec2{0.0, radius * axes.scale() + 4.0}, "leads", style);
+}
+
+void draw_convoys(Axes& axes, const World& world, std::span<const Track> tracks, const TownEnd& end) {
+  for (std::size_t i = 0; i < end.follows.size(); ++i)
+    if (end.follows[i] != world::kNone)
+      draw_tie(axes, tracks[i].poses.back(), tracks[end.follows[i]].poses.back(), world.movers[end.movers[i]].radius);
+  for (std::size_t i = 0; i < end.follows.size(); ++i) {
+    const bool led = std::find(end.follows.begin(), end.follows.end(), i) != end.follows.end();
+    if (led && end.follows[i] == world::kNone)
+      draw_leader(axes, tracks[i].poses.back(), world.movers[end.movers[i]].radius);
+  }
+}
+
+}  // namespace
+
+void draw_town(const World& world, std::span<const Track> tracks, const TownEnd& end, const std::string& png_path) {
+  SF_CHECK(end.movers.size() == tracks.size() && end.follows.size() == tracks.size(),
+           "tracks, movers and whom they follow: expected as many of each");
+  const std::vector<Group> groups = groups_of(world, end);
+  Axes axes(plan_of(world, tracks, end, groups));
+  std::vector<world::Warning> heard_at_load;
+  for (const std::string& file : world.road_files) draw_streets(axes, world::load_roads(file, heard_at_load));
+  draw_paint(axes, world);
+  draw_walls(axes, world, WallColors::of_models);
+  for (const Group group : {Group::car, Group::other, Group::convoy})
+    for (std::size_t i = 0; i < tracks.size(); ++i)
+      if (groups[i] == group)
+        draw_path(axes, tracks[i], group == Group::car ? 1.0 : 2.0,
+                  with_opacity(color_of(group), group == Group::car ? 0.55 : 0.9));
+  draw_lights(axes, world, end.time);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (tracks[i].poses.empty()) continue;
+    world::Mover mover = world.movers[end.movers[i]];
+    mover.X_WM = tracks[i].poses.back();
+    draw_body(axes, mover, color_of(groups[i]));
+  }
+  draw_convoys(axes, world, tracks, end);
+  for (const Track& track : tracks) draw_contacts(axes, track, 5.0, 1.6);
+  axes.save(png_path);
+}
+
+}  // namespace sf::viz

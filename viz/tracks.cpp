@@ -1,0 +1,61 @@
+#include "viz/tracks.h"
+
+#include <cmath>
+
+namespace sf::viz {
+
+namespace {
+
+/// Steps of less than this are left out of a path: they cannot be seen, and cost as much as long ones. [px]
+constexpr double kSmallestStep = 0.7;
+
+}  // namespace
+
+bool is_finite(const base::Pose& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
+
+void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t color) {
+  std::vector<Line> path;
+  std::optional<Vec2> last;
+  for (std::size_t i = 0; i < track.poses.size(); ++i) {
+    const base::Pose& pose = track.poses[i];
+    if (!is_finite(pose)) {
+      last.reset();
+      continue;
+    }
+    const Vec2 at = axes.pixel({pose.x, pose.y});
+    if (last && length(at - *last) < kSmallestStep && i + 1 < track.poses.size()) continue;
+    path.push_back({last.value_or(at), at});
+    last = at;
+  }
+  axes.canvas().lines(path, line_width, color);
+}
+
+void draw_contacts(Axes& axes, const Track& track, double reach, double line_width) {
+  Vec2 last{-1e9, -1e9};
+  for (std::size_t i = 0; i < track.contacts.size(); ++i) {
+    if (!track.contacts[i] || (i > 0 && track.contacts[i - 1]) || !is_finite(track.poses[i])) continue;
+    const Vec2 at = axes.pixel({track.poses[i].x, track.poses[i].y});
+    if (length(at - last) < reach) continue;
+    draw_cross(axes.canvas(), at, reach, line_width, kContact);
+    last = at;
+  }
+}
+
+double path_length(const Track& track) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < track.poses.size(); ++i) {
+    const base::Pose& a = track.poses[i];
+    const base::Pose& b = track.poses[i + 1];
+    if (is_finite(a) && is_finite(b)) sum += std::hypot(b.x - a.x, b.y - a.y);
+  }
+  return sum;
+}
+
+std::size_t contact_count(const Track& track) {
+  std::size_t begun = 0;
+  for (std::size_t i = 0; i < track.contacts.size(); ++i)
+    begun += track.contacts[i] && (i == 0 || !track.contacts[i - 1]) ? 1u : 0u;
+  return begun;
+}
+
+}  // namespace sf::viz
