@@ -11,6 +11,9 @@ namespace sf::control {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
+/// Bits of `Report::touched` from 90 degrees to the left over the rear to 90 degrees to the right.
+constexpr std::uint32_t kRear = 0x00FFFF00u;
+static_assert(base::kTouchSectors == 32);
 
 }  // namespace
 
@@ -50,6 +53,9 @@ base::Twist Wander::step(const Input& input) {
 }
 
 void Wander::choose(const Input& input, const Clearance& clearance) {
+  // Pressed from behind alone: backing off would go on pressing.
+  const bool from_behind = input.state.touched != 0 && (input.state.touched & ~kRear) == 0;
+  if (input.contact && from_behind) return leave_behind(clearance);
   // Met something: away from it first, then some random angle to the side.
   if (input.contact) {
     if (mode_ == Mode::back) return start_turn(clearance, 0.5 + 2.0 * random());
@@ -75,6 +81,15 @@ void Wander::choose(const Input& input, const Clearance& clearance) {
       return;
     }
   }
+}
+
+/// On ahead where there is some room, else round where it stands.
+void Wander::leave_behind(const Clearance& clearance) {
+  const bool room = surroundings_.sight() <= 0.0 || clearance.ahead > 0.25 * settings_.stop;
+  if (room)
+    mode_ = Mode::cruise;
+  else if (mode_ != Mode::turn)
+    start_turn(clearance, 0.0);
 }
 
 void Wander::start_turn(const Clearance& clearance, double least) {

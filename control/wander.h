@@ -1,6 +1,7 @@
 #pragma once
 // Explores without a map: drives where it is free, slows down near things, turns to the freer side before it meets
-// them, backs off and turns some random angle when it has met one all the same. Works with any laser, several, or none.
+// them, backs off and turns some random angle when it has met one all the same; what presses from behind it leaves
+// there. Works with any laser, several, or none.
 
 #include <cstdint>
 
@@ -34,6 +35,7 @@ class Wander final : public Controller {
   enum class Mode { cruise, turn, back };
   double random();
   void choose(const Input& input, const Clearance& clearance);
+  void leave_behind(const Clearance& clearance);
   void start_turn(const Clearance& clearance, double least);
   void start_back(std::int64_t time);
   base::Twist cruise(const Clearance& clearance, std::int64_t time);

@@ -25,6 +25,9 @@ constexpr std::uint32_t kConvoy = 0xFFD55E00u;
 constexpr std::uint32_t kOther = 0xFFC2187Bu;
 constexpr std::uint32_t kTie = 0xFF202020u;
 
+/// Up to so many ways are as thick as those of convoys.
+constexpr std::size_t kFew = 12;
+
 enum class Group { car, convoy, other };
 
 std::uint32_t color_of(Group group) { return group == Group::car ? kCar : group == Group::convoy ? kConvoy : kOther; }
@@ -123,11 +126,12 @@ void draw_town(const World& world, std::span<const Track> tracks, const TownEnd&
   for (const std::string& file : world.road_files) draw_streets(axes, world::load_roads(file, heard_at_load));
   draw_paint(axes, world);
   draw_walls(axes, world, WallColors::of_models);
+  const bool few = tracks.size() <= kFew;
   for (const Group group : {Group::car, Group::other, Group::convoy})
     for (std::size_t i = 0; i < tracks.size(); ++i)
       if (groups[i] == group)
-        draw_path(axes, tracks[i], group == Group::car ? 1.0 : 2.0,
-                  with_opacity(color_of(group), group == Group::car ? 0.55 : 0.9));
+        draw_path(axes, tracks[i], few || group != Group::car ? 2.0 : 1.0,
+                  with_opacity(color_of(group), few || group != Group::car ? 0.9 : 0.55));
   draw_lights(axes, world, end.time);
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     if (tracks[i].poses.empty()) continue;
