@@ -127,6 +127,29 @@ TEST(Wander, with_a_scanner_covers_ground_and_meets_nothing) {
   }
 }
 
+// What presses from behind alone is left behind: ahead where there is room, else by turning; what presses elsewhere is
+// backed off from.
+TEST(Wander, leaves_what_presses_from_behind) {
+  world::World world = arena();
+  scenes::add_create(world, {2, 2, 0, 0.3}).lasers.push_back(laser(M_PI, 181, 8.0));
+  const auto first_twist = [&](double range, std::uint32_t touched) {
+    Wander wander(world.movers[0], 0, 1);
+    const std::vector<double> ranges(181, range);
+    const ReadingBlock block{.mover = 0, .sensor = 0, .kind = 1, .values = ranges};
+    base::Report state{.X_WM = world.movers[0].X_WM, .touched = touched};
+    return wander.step({0, state, {&block, 1}, true});
+  };
+  EXPECT_GT(first_twist(8.0, 1u << 16).forward, 0.0) << "straight behind";
+  EXPECT_GT(first_twist(8.0, 1u << 8).forward, 0.0) << "first sector of the rear";
+  EXPECT_GT(first_twist(8.0, 1u << 23).forward, 0.0) << "last sector of the rear";
+  EXPECT_EQ(first_twist(0.17, 1u << 16).forward, 0.0) << "no room ahead";
+  EXPECT_NE(first_twist(0.17, 1u << 16).turn, 0.0);
+  EXPECT_LT(first_twist(8.0, 1u << 7).forward, 0.0) << "last sector of the front, left";
+  EXPECT_LT(first_twist(8.0, 1u << 24).forward, 0.0) << "first sector of the front, right";
+  EXPECT_LT(first_twist(8.0, (1u << 16) | 1u).forward, 0.0) << "both";
+  EXPECT_LT(first_twist(8.0, 0u).forward, 0.0) << "nobody says where";
+}
+
 TEST(Wander, with_twelve_single_beams_keeps_moving) {
   world::World world = arena();
   world::Mover& mover = scenes::add_create(world, {2, 2, 0, 0.3});

@@ -45,6 +45,8 @@ duration = 12.5
 seed = 77
 tick = 0.05
 robots = 3
+of = "roomba0"
+place = "lanes"
 plant = "thesis"
 start_at = 2
 [default]
@@ -68,13 +70,16 @@ map_coverage = 0.9
 lights_obeyed = true
 done = true
 checkpoints = 2
+all_checkpoints = 9
 tick_p99_ms = 10
 )");
   EXPECT_EQ(s.name, "all keys");
   EXPECT_EQ(s.duration, 12.5);
   EXPECT_EQ(s.seed, 77u);
   EXPECT_EQ(s.tick, 0.05);
-  EXPECT_EQ(s.robots, 3u);
+  EXPECT_EQ(s.crowd.robots, 3u);
+  EXPECT_EQ(s.crowd.of, "roomba0");
+  EXPECT_EQ(s.crowd.place, Crowd::Place::lanes);
   EXPECT_EQ(s.plant, Plant::thesis);
   EXPECT_EQ(s.start_at, 2.0);
   EXPECT_EQ(s.actor.plan.rate, 5.0);
@@ -84,7 +89,7 @@ tick_p99_ms = 10
   EXPECT_EQ(s.plans[0].actor->link.delay, 1.0);
   EXPECT_EQ(s.plans[0].actor->link.loss, 0.0);
   EXPECT_NEAR(s.plans[0].pose->yaw, M_PI / 2, 1e-15);
-  ASSERT_EQ(s.expect.size(), 9u);
+  ASSERT_EQ(s.expect.size(), 10u);
   for (const Expectation& e : s.expect)
     EXPECT_EQ(e.robot, e.kind == Expectation::Kind::mean_abs_error ? "roomba0" : "");
 }
@@ -165,6 +170,7 @@ TEST(ScenarioFile, MistakesAreRefusedAtTheirLine) {
       {w + "[expect]\nmap_coverage = 90\n", "test.toml:3: 'map_coverage' expects a number from 0 to 1"},
       {w + "[expect]\nmean_abs_error = { a = \"x\" }\n", "test.toml:3: 'mean_abs_error' expects a number"},
       {w + "[expect]\ntick_p99_ms = { a = 1 }\n", "test.toml:3: 'tick_p99_ms' expects a number"},
+      {w + "[expect]\nall_checkpoints = { a = 1 }\n", "test.toml:3: 'all_checkpoints' expects a number"},
       {w + "expect = []\n", "test.toml:2: 'expect' expects a table"},
   };
   for (const auto& [text, said] : kCorpus) {
