@@ -28,9 +28,9 @@ std::string report_of(const Bench& bench, const std::vector<Trial>& trials) {
   for (std::size_t k = 0; k < trials.size(); ++k) {
     const Trial& trial = trials[k];
     text += fmt::format(
-        "\n## Trial {}: {:.0f} s simulated in {:.1f} s ({:.0f} x real time)\n\n"
+        "\n## Trial {}: {:.0f} s simulated in {:.1f} s ({:.0f} x real time); controllers and motion {:.1f} s of it\n\n"
         "| robot | driven [m] | contacts | checkpoints | full stops | red lights passed |\n|---|---|---|---|---|---|\n",
-        k + 1, trial.simulated, trial.wall, trial.simulated / std::max(trial.wall, 1e-9));
+        k + 1, trial.simulated, trial.wall, trial.simulated / std::max(trial.wall, 1e-9), trial.decided);
     for (std::size_t i = 0; i < trial.tracks.size(); ++i)
       text += fmt::format("| {} | {:.2f} | {} | {} | {} | {} |\n", trial.tracks[i].name, trial.counts[i].travelled,
                           trial.counts[i].contacts, trial.counts[i].checkpoints, trial.counts[i].stops,

@@ -133,6 +133,7 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
   }
   if (recorder) recorder->finish();
   trial.wall = seconds_since(start);
+  trial.decided = simulation.move_seconds();
   trial.simulated = static_cast<double>(tick) * world.interval;
   trial.done = simulation.all_done();
   trial.hash = simulation.farm().hash();

@@ -37,6 +37,7 @@ struct Trial {
   std::vector<std::uint32_t> mapped;    ///< their rows
   double simulated = 0.0;               ///< [s]
   double wall = 0.0;                    ///< [s]
+  double decided = 0.0;                 ///< [s] of it, spent on controllers and motion
   bool done = false;                    ///< all controllers were
   std::uint64_t hash = 0;               ///< of all readings
 };

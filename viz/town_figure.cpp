@@ -106,11 +106,11 @@ void draw_leader(Axes& axes, const base::Pose& X_WM, double radius) {
 
 void draw_convoys(Axes& axes, const World& world, std::span<const Track> tracks, const TownEnd& end) {
   for (std::size_t i = 0; i < end.follows.size(); ++i)
-    if (end.follows[i] != world::kNone)
+    if (end.follows[i] != world::kNone && !tracks[i].poses.empty() && !tracks[end.follows[i]].poses.empty())
       draw_tie(axes, tracks[i].poses.back(), tracks[end.follows[i]].poses.back(), world.movers[end.movers[i]].radius);
   for (std::size_t i = 0; i < end.follows.size(); ++i) {
     const bool led = std::find(end.follows.begin(), end.follows.end(), i) != end.follows.end();
-    if (led && end.follows[i] == world::kNone)
+    if (led && end.follows[i] == world::kNone && !tracks[i].poses.empty())
       draw_leader(axes, tracks[i].poses.back(), world.movers[end.movers[i]].radius);
   }
 }

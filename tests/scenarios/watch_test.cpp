@@ -29,8 +29,9 @@ class Town {
   const Simulation& simulation() const { return simulation_; }
   const Watch& watch() const { return watch_; }
 
-  void look(double seconds, const base::Pose& first, bool contact = false) {
+  void look(double seconds, const base::Pose& first, bool contact = false, double speed = 0.0) {
     reports_[0].X_WM = first;
+    reports_[0].velocity.forward = speed;
     contacts_[0] = contact;
     watch_.look({tick_++, std::llround(1e9 * seconds), reports_, commands_, contacts_, {}});
   }
@@ -117,6 +118,22 @@ TEST(Watch, ContactsAreCountedWhereTheyBegin) {
   for (const bool contact : {false, true, true, false, true, true, true, false}) town.look(0.0, X, contact);
   EXPECT_EQ(town.watch().of(0).contacts, 2u);
   EXPECT_EQ(town.watch().contacts(), 2u);
+}
+
+/// A full stop is a stand after a drive: creeping is neither, and standing on is no other one.
+TEST(Watch, FullStopsAreCounted) {
+  Town town;
+  const base::Pose X = town.world().movers[0].X_WM;
+  const auto stops = [&](std::initializer_list<double> speeds) {
+    const std::uint64_t before = town.watch().of(0).stops;
+    for (const double speed : speeds) town.look(0.0, X, false, speed);
+    return town.watch().of(0).stops - before;
+  };
+  EXPECT_EQ(stops({0.0, 0.0}), 0u) << "it never drove";
+  EXPECT_EQ(stops({0.9 * kDriving, 0.0}), 0u) << "it only crept";
+  EXPECT_EQ(stops({kDriving, 0.9 * kDriving, 1.1 * kStanding, 0.0, 0.0}), 1u);
+  EXPECT_EQ(stops({0.2, 0.01, 0.2}), 0u) << "slow, but on";
+  EXPECT_EQ(stops({0.0, -0.2, kStanding, 0.2, 0.0}), 3u) << "backwards, too";
 }
 
 TEST(Watch, MetresAddUp) {
