@@ -26,7 +26,7 @@ struct ReadingBlock {
   Pose X_WS;                       ///< the sensor's pose it was measured at
   std::span<const double> values;  ///< laser: ranges [m], one per sample, in order of bearing from -fov/2 to +fov/2
   std::span<const std::uint32_t>
-      hits;  ///< laser: model row that each beam met, or kNoHit; empty where not known (interpolated)
+      hits;                 ///< laser: model row that each beam met, or kNoHit; empty where not known (interpolated)
   std::uint32_t flags = 0;  ///< what a kind has to say beside its values; which bits, its header tells
 };
 
