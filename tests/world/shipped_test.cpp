@@ -18,7 +18,13 @@ World shipped(const std::string& name) {
   static constexpr std::string_view kAny[] = {"fov",     "samples",      "range_max", "range_min",    "scount",
                                               "spose[]", "ssensitivity", "sum",       "perpendicular"};
   static constexpr std::string_view kMap[] = {"cell", "words", "offset"};
-  static constexpr SensorWord kWords[] = {{"laneedge", kAny}, {"magnetometer", kAny}, {"occupancy", kMap}};
+  static constexpr std::string_view kFelt[] = {"zones", "zone[]", "scount", "spose[]",     "per_count", "track",
+                                               "slip",  "scrub",  "bias",   "scale_error", "range",     "satellites"};
+  static constexpr std::string_view kCones[] = {"scount", "spose[]", "fov", "range", "firing", "arrays"};
+  static constexpr SensorWord kWords[] = {{"laneedge", kAny},    {"magnetometer", kAny}, {"occupancy", kMap},
+                                          {"bumper", kFelt},     {"cliff", kFelt},       {"encoder", kFelt},
+                                          {"irreceiver", kFelt}, {"gyro", kFelt},        {"gps", kFelt},
+                                          {"sonar", kCones},     {"infrared", kCones}};
   LoadOptions options;
   options.sensors = kWords;
   return load_world(SF_SOURCE_DIR "/worlds/" + name, options);
