@@ -17,6 +17,7 @@
 #include "bench/embree_caster.h"
 #include "bench/farm_caster.h"
 #include "bench/field_contest.h"
+#include "bench/fleet.h"
 #include "bench/grid.h"
 #include "bench/lane_contest.h"
 #include "bench/map_contest.h"
@@ -205,6 +206,9 @@ void register_all(Session& session) {
                                     [&session](benchmark::State& s) { tell_facts(s, session, measure_start); }));
   once(benchmark::RegisterBenchmark("small_ticks", [&session](benchmark::State& s) {
     tell_facts(s, session, [&session] { return measure_ticks(session.device); });
+  }));
+  once(benchmark::RegisterBenchmark("fleets", [&session](benchmark::State& s) {
+    tell_facts(s, session, [&session] { return measure_fleets(session.device); });
   }));
   once(benchmark::RegisterBenchmark("lists", [&session](benchmark::State& s) {
     tell_facts(s, session, [&session] { return measure_lists(session.device); });

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "base/error.h"
+#include "robots/outline.h"
 
 namespace sf::control {
 
@@ -48,9 +49,10 @@ double between(const std::vector<double>& values, const Way& way, double s) {
 }  // namespace
 
 RoadBody body_of(const world::Mover& mover) {
+  const robots::Outline outline = robots::outline_of(mover);
   double front = 0.0;
-  for (const world::Segment& s : mover.body) front = std::max({front, s.a.x, s.b.x});
-  return {mover.radius, front};
+  for (const robots::Edge& edge : outline.edges) front = std::max({front, edge.a.x, edge.b.x});
+  return outline.edges.empty() ? RoadBody{} : RoadBody{outline.radius, front};
 }
 
 Vec2 point_on(const Way& way, double s) {

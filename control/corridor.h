@@ -33,6 +33,7 @@ struct RoadBody {
 
   friend bool operator==(const RoadBody&, const RoadBody&) = default;
 };
+/// What of it stops at things: a virtual scanner does not.
 RoadBody body_of(const world::Mover& mover);
 
 /// Stretches of two ways that two robots cannot be on at once. [m] along either way, of the robots' origins.

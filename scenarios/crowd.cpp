@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "control/route_plan.h"
+#include "robots/outline.h"
 #include "world/free_space.h"
 #include "world/roads/roads.h"
 
@@ -53,7 +54,7 @@ std::uint32_t original_of(const Scenario& scenario, const world::World& world) {
 
 bool clear(const base::Pose& X_WM, double radius, const world::World& world, const std::vector<Stays>& stays) {
   return std::all_of(stays.begin(), stays.end(), [&](const Stays& s) {
-    const double apart = radius + world.movers[s.row].radius + kBetween;
+    const double apart = radius + robots::outline_of(world.movers[s.row]).radius + kBetween;
     return std::hypot(X_WM.x - s.X_WM.x, X_WM.y - s.X_WM.y) >= apart;
   });
 }
@@ -64,7 +65,8 @@ std::vector<base::Pose> places_on_lanes(const Scenario& scenario, const world::W
                                         const world::RoadNetwork& roads, const world::Mover& original,
                                         const std::vector<Stays>& stays) {
   const std::size_t wanted = scenario.crowd.robots;
-  const double apart = 2.0 * original.radius + kBetween;
+  const double radius = robots::outline_of(original).radius;
+  const double apart = 2.0 * radius + kBetween;
   std::vector<base::Pose> poses;
   for (std::size_t drawn = wanted; poses.size() < wanted; drawn += wanted - poses.size()) {
     try {
@@ -75,7 +77,7 @@ std::vector<base::Pose> places_on_lanes(const Scenario& scenario, const world::W
                                          "stay where they are; use fewer",
                                          wanted, apart, roads.file, stays.size()));
     }
-    std::erase_if(poses, [&](const base::Pose& X) { return !clear(X, original.radius, world, stays); });
+    std::erase_if(poses, [&](const base::Pose& X) { return !clear(X, radius, world, stays); });
   }
   poses.resize(wanted);
   for (base::Pose& pose : poses) pose.z = original.X_WM.z;
