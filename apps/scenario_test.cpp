@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 #include "apps/commands.h"
@@ -14,30 +15,47 @@ namespace sf::apps {
 
 namespace {
 
+const char* word_of(scenarios::Verdict verdict) {
+  return verdict == scenarios::Verdict::passed ? "pass" : verdict == scenarios::Verdict::failed ? "FAIL" : "none";
+}
+
 std::string text_of(const scenarios::ScenarioResult& result) {
-  std::string text = fmt::format("{} {}: {:.1f} s simulated in {:.2f} s, {}\n", result.passed() ? "pass" : "FAIL",
-                                 result.file, result.simulated, result.wall, result.name);
+  std::string text = fmt::format("{} {}: {:.1f} s simulated in {:.2f} s, {}\n", word_of(result.verdict()), result.file,
+                                 result.simulated, result.wall, result.name);
   for (const scenarios::Outcome& o : result.outcomes)
     text +=
         fmt::format("  {} {:<28} expected {:<14} got {}\n", o.met ? "pass" : "FAIL", o.what, o.expected, o.measured);
-  if (result.outcomes.empty()) text += "  expects nothing; see [expect] in docs/scenarios.md\n";
+  if (result.outcomes.empty()) text += "  nothing expected; see [expect] in docs/scenarios.md\n";
   return text;
+}
+
+[[noreturn]] void refuse_junit(const std::string& path) {
+  throw base::InputError(path, 0, "cannot be written; name a file in a folder that exists and can be written");
+}
+
+/// Known before anything runs; what is there stays as it is.
+void check_junit(const std::string& path) {
+  std::error_code error;
+  const bool there = std::filesystem::exists(path, error);
+  if (!std::ofstream(path, std::ios::binary | std::ios::app)) refuse_junit(path);
+  if (!there) std::filesystem::remove(path, error);
 }
 
 void write_junit(const std::string& path, const std::vector<scenarios::ScenarioResult>& results) {
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   file << scenarios::junit_of(results);
   file.close();
-  if (!file)
-    throw base::InputError(path, 0, "cannot be written; name a file in a folder that exists and can be written");
+  if (!file) refuse_junit(path);
 }
 
 }  // namespace
 
 int test_scenarios(const Options& options) {
-  // All files are read before any is run: a slip in the last is known at once.
+  // All files are read, and what they ask for is tried, before any is run: a slip in the last is known at once.
   std::vector<scenarios::Scenario> all;
   for (const std::string& file : options.scenarios) all.push_back(scenarios::read_scenario(file));
+  for (const scenarios::Scenario& scenario : all) scenarios::check_scenario(scenario);
+  if (!options.junit.empty()) check_junit(options.junit);
   gpu::Device device(options.device);
   std::vector<scenarios::ScenarioResult> results;
   bool passed = true;
@@ -47,7 +65,7 @@ int test_scenarios(const Options& options) {
       results.push_back(scenarios::run_scenario(scenario, device, [&](double part) { progress.show(part); }));
     }
     std::fputs(text_of(results.back()).c_str(), stdout);
-    passed = passed && results.back().passed();
+    passed = passed && results.back().verdict() != scenarios::Verdict::failed;
   }
   if (!options.junit.empty()) write_junit(options.junit, results);
   return passed ? 0 : 1;

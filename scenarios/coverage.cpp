@@ -1,11 +1,14 @@
 #include "scenarios/coverage.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
 
 #include "base/error.h"
+#include "control/explore.h"
 #include "maps/plain_mapper.h"
 #include "world/wall_grid.h"
 
@@ -21,7 +24,13 @@ using maps::CellAt;
 constexpr int kHeadings = 8;
 constexpr std::uint32_t kBeams = 361;
 
-maps::GridPlan plan_over(const world::Extent& e, double cell) {
+/// The explorer's own grid where there can be one: cells of another would be others than those it looks for.
+maps::GridPlan plan_over(const world::World& world, double cell) {
+  try {
+    return control::plan_around(world, cell);
+  } catch (const base::InputError&) {
+  }
+  const world::Extent& e = world.extent;
   const auto words = [&](double size) {
     return static_cast<std::uint32_t>(std::clamp(std::ceil(size / (4.0 * cell)), 1.0, 4096.0));
   };
@@ -78,10 +87,84 @@ double cast(const std::vector<world::Segment>& walls, Vec2 from, Vec2 along, dou
   return least;
 }
 
+/// A place of the robot, where its laser can be when it stands there, and the walls that it may see from it.
+struct Stand {
+  Vec2 p;
+  std::vector<Pose> eyes;
+  std::vector<world::Segment> near;
+};
+
+std::vector<Stand> stands_of(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan) {
+  const world::Mover& robot = world.movers[mover];
+  const world::Laser& laser = robot.lasers[0];
+  const double z = robot.X_WM.z + laser.X_MS.z;
+  const auto walls = walls_where(
+      world, [](const world::Segment& w) { return w.seen_by_laser; }, z, z);
+  const double ahead = std::hypot(laser.X_MS.x, laser.X_MS.y);
+  std::vector<Stand> stands;
+  for (const CellAt at : reachable(world, mover, plan)) {
+    if (at.column % 2 != 0 || at.row % 2 != 0) continue;
+    Stand stand{.p = maps::middle(plan, at)};
+    for (const world::Segment& wall : walls)
+      if (world::distance(stand.p, wall.a, wall.b) < laser.range_max + ahead) stand.near.push_back(wall);
+    for (int h = 0; h < kHeadings; ++h) {
+      const Pose X_WS = base::compose({stand.p.x, stand.p.y, 0.0, 2.0 * M_PI * h / kHeadings}, laser.X_MS);
+      const Vec2 out = Vec2{X_WS.x, X_WS.y} - stand.p;
+      // A sensor ahead of the body may stand within a wall, where it sees nothing of the room.
+      if (ahead == 0.0 || cast(stand.near, stand.p, 1.0 / ahead * out, ahead) >= ahead) stand.eyes.push_back(X_WS);
+    }
+    stands.push_back(std::move(stand));
+  }
+  return stands;
+}
+
+maps::Grid scans_from(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan,
+                      const std::vector<Stand>& stands) {
+  const world::Laser& laser = world.movers[mover].lasers[0];
+  maps::Grid grid(plan);
+  std::vector<double> ranges(kBeams);
+  const std::vector<Vec2> beams = maps::beam_directions(laser.fov, kBeams);
+  for (const Stand& stand : stands)
+    for (const Pose& X_WS : stand.eyes) {
+      for (std::uint32_t i = 0; i < kBeams; ++i)
+        ranges[i] = cast(stand.near, {X_WS.x, X_WS.y}, base::rotate(X_WS.yaw, beams[i]), laser.range_max);
+      maps::add_scan(grid, {X_WS, ranges, beams, 0.0, laser.range_max});
+    }
+  return grid;
+}
+
+/// Nothing stands between the laser and the point, which is within its range and its field of view.
+bool sees(const Stand& stand, const Pose& X_WS, const world::Laser& laser, Vec2 p) {
+  const Vec2 d = base::rotate(-X_WS.yaw, p - Vec2{X_WS.x, X_WS.y});
+  const double far = base::length(d);
+  if (far >= laser.range_max || std::abs(std::atan2(d.y, d.x)) > 0.5 * laser.fov) return false;
+  if (far == 0.0) return true;
+  const Vec2 eye{X_WS.x, X_WS.y};
+  return cast(stand.near, eye, 1.0 / far * (p - eye), far) >= far;
+}
+
+/// Free cells whose middle is in view from nowhere: a line's rounding to cells went past a corner.
+void forget_hidden(const world::World& world, std::uint32_t mover, const std::vector<Stand>& stands, maps::Grid& grid) {
+  const world::Laser& laser = world.movers[mover].lasers[0];
+  const double reach = laser.range_max + std::hypot(laser.X_MS.x, laser.X_MS.y);
+  std::vector<CellAt> open;
+  for (std::int64_t row = 0; row < maps::rows(grid.plan); ++row)
+    for (std::int64_t column = 0; column < maps::columns(grid.plan); ++column)
+      if (grid.at({column, row}) == Cell::free) open.push_back({column, row});
+  for (const Stand& stand : stands)
+    std::erase_if(open, [&](CellAt at) {
+      const Vec2 p = maps::middle(grid.plan, at);
+      if (base::length(p - stand.p) >= reach) return false;
+      return std::any_of(stand.eyes.begin(), stand.eyes.end(),
+                         [&](const Pose& X_WS) { return sees(stand, X_WS, laser, p); });
+    });
+  for (const CellAt at : open) grid.set(at, Cell::unexplored);
+}
+
 }  // namespace
 
 OwnMap::OwnMap(const world::World& world, std::uint32_t mover, double cell)
-    : world_(world), mover_(mover), grid_(plan_over(world.extent, cell)) {
+    : world_(world), mover_(mover), grid_(plan_over(world, cell)) {
   SF_CHECK(!world.movers[mover].lasers.empty(), "a map needs a laser: " + world.movers[mover].name);
   const world::Laser& laser = world.movers[mover].lasers[0];
   beams_ = maps::beam_directions(laser.fov, laser.samples);
@@ -95,48 +178,29 @@ void OwnMap::add(const base::ReadingBlock& reading) {
 }
 
 maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan) {
-  const world::Mover& robot = world.movers[mover];
-  SF_CHECK(!robot.lasers.empty(), "nothing is seen without a laser: " + robot.name);
-  const world::Laser& laser = robot.lasers[0];
-  const double z = robot.X_WM.z + laser.X_MS.z;
-  const auto walls = walls_where(
-      world, [](const world::Segment& w) { return w.seen_by_laser; }, z, z);
-  maps::Grid grid(plan);
-  std::vector<world::Segment> near;
-  std::vector<double> ranges(kBeams);
-  const std::vector<Vec2> beams = maps::beam_directions(laser.fov, kBeams);
-  for (const CellAt at : reachable(world, mover, plan)) {
-    if (at.column % 2 != 0 || at.row % 2 != 0) continue;
-    const Vec2 p = maps::middle(plan, at);
-    const double reach = laser.range_max + std::hypot(laser.X_MS.x, laser.X_MS.y);
-    near.clear();
-    for (const world::Segment& wall : walls)
-      if (world::distance(p, wall.a, wall.b) < reach) near.push_back(wall);
-    for (int h = 0; h < kHeadings; ++h) {
-      const Pose X_WS = base::compose({p.x, p.y, 0.0, 2.0 * M_PI * h / kHeadings}, laser.X_MS);
-      const Vec2 eye{X_WS.x, X_WS.y};
-      // A sensor ahead of the body may stand within a wall, where it sees nothing of the room.
-      const double ahead = base::length(eye - p);
-      if (ahead > 0.0 && cast(near, p, 1.0 / ahead * (eye - p), ahead) < ahead) continue;
-      for (std::uint32_t i = 0; i < kBeams; ++i) {
-        ranges[i] = cast(near, eye, base::rotate(X_WS.yaw, beams[i]), laser.range_max);
-      }
-      maps::add_scan(grid, {X_WS, ranges, beams, 0.0, laser.range_max});
-    }
-  }
+  SF_CHECK(!world.movers[mover].lasers.empty(), "nothing is seen without a laser: " + world.movers[mover].name);
+  const std::vector<Stand> stands = stands_of(world, mover, plan);
+  maps::Grid grid = scans_from(world, mover, plan, stands);
+  forget_hidden(world, mover, stands, grid);
   return grid;
 }
 
-double coverage(const maps::Grid& map, const maps::Grid& reference) {
+Seen seen_of(const maps::Grid& map, const maps::Grid& reference) {
   SF_CHECK(map.plan == reference.plan, "maps of two plans cannot be compared");
-  std::size_t wanted = 0, known = 0;
+  Seen seen;
   for (std::int64_t row = 0; row < maps::rows(map.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(map.plan); ++column) {
       if (reference.at({column, row}) != Cell::free) continue;
-      ++wanted;
-      known += map.at({column, row}) != Cell::unexplored;
+      ++seen.wanted;
+      seen.missed += map.at({column, row}) == Cell::unexplored;
     }
-  return wanted == 0 ? 1.0 : static_cast<double>(known) / static_cast<double>(wanted);
+  return seen;
+}
+
+std::string text_of(const Seen& seen) {
+  // Cut, not rounded: 100.0 % is all of it.
+  return fmt::format("{:.2f} % ({} of {} cells missed)", std::floor(1e4 * seen.coverage()) / 100.0, seen.missed,
+                     seen.wanted);
 }
 
 double disagreement(const maps::Grid& map, const maps::Grid& reference) {

@@ -1,7 +1,9 @@
 #pragma once
 // How much of what a robot could see it has seen: its own map beside a reference from the true walls.
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "base/reading.h"
@@ -13,7 +15,8 @@ namespace sf::scenarios {
 /// The map that one robot makes of its first laser's scans, from its own pose.
 class OwnMap {
  public:
-  /// @param cell [m]; the map is as large as the world.
+  /// @param cell [m]; the map has the plan of the explorer's own (control/explore.h), or is as large as the world where
+  /// that is too large for one.
   /// Rule: the mover has a laser.
   OwnMap(const world::World& world, std::uint32_t mover, double cell = 0.03);
   /// Adds it when it is a scan of that laser.
@@ -28,13 +31,23 @@ class OwnMap {
 };
 
 /// All that the robot's first laser could see from wherever the robot can go without touching a wall: a map of scans
-/// from the middles of every second cell of `plan` that is connected to its start, taken all around. Movers are not
-/// looked at.
+/// from the middles of every second cell of `plan` that is connected to its start, taken all around. Cells whose middle
+/// is in view from none of these are left unexplored. Movers are not looked at.
 maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan);
 
-/// Part of the free cells of `reference` that are known in `map` (free, or occupied).
-/// Rule: both have the same plan. 1 where the reference has none.
-double coverage(const maps::Grid& map, const maps::Grid& reference);
+/// The free cells of a reference, and those of them that a map does not know.
+struct Seen {
+  std::size_t wanted = 0;
+  std::size_t missed = 0;  ///< <= wanted
+  /// [-] 1 where nothing is missed, and only there.
+  double coverage() const {
+    return wanted == 0 ? 1.0 : static_cast<double>(wanted - missed) / static_cast<double>(wanted);
+  }
+};
+/// Known is free, or occupied. Rule: both have the same plan.
+Seen seen_of(const maps::Grid& map, const maps::Grid& reference);
+/// "99.96 % (3 of 9159 cells missed)": never 100 % with one missed.
+std::string text_of(const Seen& seen);
 
 /// Cells that are known in both and free in one and occupied in the other, as a part of those known in both.
 double disagreement(const maps::Grid& map, const maps::Grid& reference);

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include "base/error.h"
+#include "scenarios/runner.h"
 
 namespace sf::scenarios {
 
@@ -44,7 +46,8 @@ std::vector<std::string> run_experiment(const ExperimentKind& kind, const Experi
   std::filesystem::create_directories(options.out, error);
   if (error)
     throw base::InputError(options.out, 0, "cannot be made a folder: " + error.message() + "; name another with -o");
-  return kind.run({scenario, options, device, progress});
+  check_scenario(scenario);
+  return kind.run({kind, scenario, options, device, progress});
 }
 
 std::vector<Trial> run_trials(const Bench& bench, const TrialOptions& options) {
@@ -72,16 +75,33 @@ void write_text(const std::string& path, const std::string& text) {
   if (!file) throw base::InputError(path, 0, "cannot be written; name a folder that can be");
 }
 
+std::string counted(std::uint64_t count, std::string_view one) {
+  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
+}
+
+namespace {
+
+std::string readings_of(const netio::LinkPlan& link) {
+  std::string text = "Readings come at once";
+  if (link.jitter > 0.0)
+    text = fmt::format("Readings come {:g} to {:g} s late", link.delay, link.delay + link.jitter);
+  else if (link.delay > 0.0)
+    text = fmt::format("Readings come {:g} s late", link.delay);
+  return text + (link.loss > 0.0 ? fmt::format(", {:g} % of them never.", 100.0 * link.loss) : ", and none is lost.");
+}
+
+}  // namespace
+
 std::string setup_of(const Bench& bench, const Disturbance& d) {
-  const netio::LinkPlan& link = bench.scenario.actor.link;
-  const std::uint64_t last = bench.options.seed + bench.options.trials - 1;
+  const std::uint64_t first = bench.options.seed, last = first + bench.options.trials - 1;
   return fmt::format(
-      "Plant `{}`, seeds {} to {}, at most {:g} s simulated. Readings come {:g} to {:g} s late, {:g} % of them never. "
+      "Plant `{}`, {}, at most {:g} s simulated. {} "
       "The start is off by {:g} mm along and across and by {:.2g} degrees; noise (where the world has none): {:g} mm "
       "on each ray of a lane edge sensor, {:g} Gauss on each component of a magnetometer, {:g} mm on each beam of a "
       "laser (all standard deviations).",
-      name_of(bench.scenario.plant.value_or(Plant::ideal)), bench.options.seed, last, bench.scenario.duration,
-      link.delay, link.delay + link.jitter, 100.0 * link.loss, 1e3 * d.place, d.heading * 180.0 / M_PI,
+      name_of(bench.scenario.plant.value_or(Plant::ideal)),
+      first == last ? fmt::format("seed {}", first) : fmt::format("seeds {} to {}", first, last),
+      bench.scenario.duration, readings_of(bench.scenario.actor.link), 1e3 * d.place, d.heading * 180.0 / M_PI,
       1e3 * d.edge_noise, d.field_noise, 1e3 * d.scan_noise);
 }
 

@@ -23,8 +23,11 @@ struct ExperimentOptions {
   unsigned threads = 0;
 };
 
+struct ExperimentKind;
+
 /// What an experiment is asked to do, and with what.
 struct Bench {
+  const ExperimentKind& kind;
   const Scenario& scenario;
   const ExperimentOptions& options;
   gpu::Device& device;
@@ -32,9 +35,11 @@ struct Bench {
 };
 
 struct ExperimentKind {
-  std::string_view name;     ///< its scenario is `<folder>/<name>.toml`
-  std::string_view summary;  ///< one line for help
-  Plant plant = Plant::ideal;
+  std::string_view name;       ///< its scenario is `<folder>/<name>.toml`
+  std::string_view summary;    ///< one line for help
+  Plant plant = Plant::ideal;  ///< unless the user or the scenario says otherwise
+  /// A few sentences for its report: why its numbers are not the thesis', or what they show.
+  std::string_view reasons;
   /// Writes its files into the folder, and gives their names.
   std::vector<std::string> (*run)(const Bench& bench);
 };
@@ -57,6 +62,8 @@ std::vector<Trial> run_trials(const Bench& bench, const TrialOptions& options);
 std::string in_folder(const Bench& bench, const std::string& name);
 /// @throws base::InputError naming the path when it cannot be written.
 void write_text(const std::string& path, const std::string& text);
+/// "3 trials", "1 trial".
+std::string counted(std::uint64_t count, std::string_view one);
 /// "plant `thesis`, seeds 1 to 3, link ...": what was run, for reports.
 std::string setup_of(const Bench& bench, const Disturbance& disturbance);
 

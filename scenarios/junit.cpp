@@ -16,6 +16,15 @@ std::string case_of(const ScenarioResult& result, const Outcome& outcome) {
                             escaped(outcome.expected), escaped(outcome.measured), escaped(result.file), outcome.line);
 }
 
+/// A case that is skipped, so that the scenario is seen.
+std::string suite_of_nothing(const ScenarioResult& result) {
+  return fmt::format(
+      "  <testsuite name=\"{0}\" tests=\"1\" failures=\"0\" skipped=\"1\" time=\"{1:.3f}\">\n"
+      "    <testcase classname=\"{0}\" name=\"nothing expected\" time=\"{1:.3f}\">\n"
+      "      <skipped message=\"{2} has no [expect]\"/>\n    </testcase>\n  </testsuite>\n",
+      escaped(result.name), result.wall, escaped(result.file));
+}
+
 }  // namespace
 
 std::string escaped(std::string_view text) {
@@ -40,6 +49,10 @@ std::string escaped(std::string_view text) {
 std::string junit_of(std::span<const ScenarioResult> results) {
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
   for (const ScenarioResult& result : results) {
+    if (result.verdict() == Verdict::nothing_expected) {
+      text += suite_of_nothing(result);
+      continue;
+    }
     const auto failed =
         std::count_if(result.outcomes.begin(), result.outcomes.end(), [](const Outcome& o) { return !o.met; });
     text += fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" time=\"{:.3f}\">\n",

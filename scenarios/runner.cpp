@@ -6,11 +6,13 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/error.h"
 #include "scenarios/coverage.h"
 #include "scenarios/statistics.h"
 #include "scenarios/watch.h"
+#include "world/roads/roads.h"
 
 namespace sf::scenarios {
 
@@ -26,6 +28,50 @@ bool expects(const Scenario& scenario, Kind kind) {
                      [&](const Expectation& e) { return e.kind == kind; });
 }
 
+/// The robots that an expectation is about.
+std::vector<std::uint32_t> rows_of(const Scenario& scenario, const world::World& world, const Expectation& e) {
+  if (!e.robot.empty()) return {row_of(scenario, world, e.robot, e.line)};
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t i = 0; i < world.movers.size(); ++i)
+    if (!world.movers[i].is_tag) rows.push_back(i);
+  return rows;
+}
+
+/// What an expectation needs that the world or its robots do not have.
+void check_expectation(const Scenario& scenario, const world::World& world, const SimulationOptions& options,
+                       const Expectation& e) {
+  const auto refuse = [&](const std::string& message) { throw base::InputError(scenario.file, e.line, message); };
+  const auto rows = rows_of(scenario, world, e);
+  const bool of_driven = e.kind == Kind::checkpoints || e.kind == Kind::mean_error || e.kind == Kind::mean_abs_error;
+  if (of_driven && std::all_of(rows.begin(), rows.end(),
+                               [&](std::uint32_t row) { return options.actors[row].plan.controller.empty(); }))
+    refuse(fmt::format("'{}' of a robot that nobody drives; give it a controller", name_of(e.kind)));
+  if (e.kind == Kind::map_coverage &&
+      std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) { return world.movers[row].lasers.empty(); }))
+    refuse(e.robot.empty() ? "no robot has a laser to make a map with; give one a laser"
+                           : fmt::format("'{}' has no laser to make a map with; give it one", e.robot));
+  if (e.kind == Kind::lights_obeyed && world.lights.empty())
+    refuse(world.file + " has no lights to be obeyed; leave this out");
+}
+
+/// Where the file says who drives this mover.
+int line_of_driver(const Scenario& scenario, const world::Mover& mover) {
+  for (const RobotPlan& plan : scenario.plans)
+    if (plan.actor && plan.name == mover.name) return plan.driver_line;
+  return scenario.default_line;
+}
+
+/// Makes the controller and lets go of it. What it refuses without a place of its own is at the line of who named it.
+void try_controller(const Scenario& scenario, const control::Site& site, const control::Plan& plan) {
+  try {
+    control::make_controller(site, plan);
+  } catch (const base::InputError& error) {
+    const std::string what = error.what();
+    if (what.starts_with(scenario.file + ":")) throw;
+    throw base::InputError(scenario.file, line_of_driver(scenario, site.world.movers[site.mover]), what);
+  }
+}
+
 /// One run with all that is counted of it.
 class Run {
  public:
@@ -34,14 +80,10 @@ class Run {
         world_(world_of(scenario)),
         simulation_(world_, device, simulation_of(scenario, world_)),
         watch_(world_, simulation_) {
-    for (const Expectation& e : scenario.expect) {
-      const auto rows = rows_of(e);
-      if (e.kind == Kind::map_coverage) add_maps(e, rows);
-      if (e.kind == Kind::checkpoints || e.kind == Kind::mean_error || e.kind == Kind::mean_abs_error)
-        require_driven(e, rows);
-      if (e.kind == Kind::lights_obeyed && world_.lights.empty())
-        throw base::InputError(scenario.file, e.line, world_.file + " has no lights to be obeyed; leave this out");
-    }
+    for (const Expectation& e : scenario.expect)
+      if (e.kind == Kind::map_coverage)
+        for (const std::uint32_t row : rows_of(scenario, world_, e))
+          if (!world_.movers[row].lasers.empty()) maps_.try_emplace(row, world_, row);
   }
 
   void go(const std::function<void(double)>& progress, ScenarioResult& result) {
@@ -64,42 +106,34 @@ class Run {
   }
 
  private:
-  /// The robots that an expectation is about.
-  std::vector<std::uint32_t> rows_of(const Expectation& e) const {
-    if (!e.robot.empty()) return {row_of(scenario_, world_, e.robot, e.line)};
-    std::vector<std::uint32_t> rows;
-    for (std::uint32_t i = 0; i < world_.movers.size(); ++i)
-      if (!world_.movers[i].is_tag) rows.push_back(i);
-    return rows;
-  }
-
-  void require_driven(const Expectation& e, const std::vector<std::uint32_t>& rows) const {
-    if (std::any_of(rows.begin(), rows.end(),
-                    [&](std::uint32_t row) { return simulation_.controller(row) != nullptr; }))
-      return;
-    throw base::InputError(scenario_.file, e.line,
-                           fmt::format("'{}' of a robot that nobody drives; give it a controller", name_of(e.kind)));
-  }
-
-  void add_maps(const Expectation& e, const std::vector<std::uint32_t>& rows) {
-    for (const std::uint32_t row : rows) {
-      if (world_.movers[row].lasers.empty() && !e.robot.empty())
-        throw base::InputError(scenario_.file, e.line,
-                               fmt::format("'{}' has no laser to make a map with; give it one", e.robot));
-      if (!world_.movers[row].lasers.empty()) maps_.try_emplace(row, world_, row);
-    }
-  }
-
   /// The worst of some robots by a measure; not a number where none has one.
   template <class Measure>
   double worst(const Expectation& e, bool least, Measure&& measure) const {
     double value = std::nan("");
-    for (const std::uint32_t row : rows_of(e)) {
+    for (const std::uint32_t row : rows_of(scenario_, world_, e)) {
       const double v = measure(row);
       if (std::isnan(v)) continue;
       value = std::isnan(value) ? v : least ? std::min(value, v) : std::max(value, v);
     }
     return value;
+  }
+
+  Seen seen_by(std::uint32_t mover) const {
+    const maps::Grid& grid = maps_.at(mover).grid();
+    return seen_of(grid, what_could_be_seen(world_, mover, grid.plan));
+  }
+
+  /// In words: what a number would not say, or round away.
+  std::string text_of_measured(const Expectation& e, double value) const {
+    if (!std::isnan(value)) {
+      // Cut, not rounded: 1 is all of it.
+      if (e.kind == Kind::map_coverage) return fmt::format("{:g}", std::floor(1e5 * value) / 1e5);
+      return fmt::format("{:.4g}", value);
+    }
+    if (e.kind == Kind::mean_error || e.kind == Kind::mean_abs_error)
+      return e.robot.empty() ? "no robot with a control error" : "no control error";
+    if (e.kind == Kind::checkpoints) return "nobody who heads for checkpoints";
+    return "nothing to measure";
   }
 
   double measure(const Expectation& e) const {
@@ -112,12 +146,8 @@ class Run {
       case Kind::mean_abs_error:
         return worst(e, false, [&](std::uint32_t r) { return statistics_of(watch_.of(r).errors).abs_mean; });
       case Kind::map_coverage:
-        return worst(e, true, [&](std::uint32_t r) {
-          const auto map = maps_.find(r);
-          if (map == maps_.end()) return std::nan("");
-          const maps::Grid& grid = map->second.grid();
-          return coverage(grid, what_could_be_seen(world_, r, grid.plan));
-        });
+        return worst(e, true,
+                     [&](std::uint32_t r) { return maps_.contains(r) ? seen_by(r).coverage() : std::nan(""); });
       case Kind::lights_obeyed:
         return static_cast<double>(watch_.reds());
       case Kind::done:
@@ -138,7 +168,7 @@ class Run {
     // Contacts are counted over all robots where none is named; all else is that of the worst.
     const bool sum = e.robot.empty() && (e.kind == Kind::contacts || e.kind == Kind::no_collision);
     const double value = sum ? static_cast<double>(watch_.contacts()) : measure(e);
-    Outcome outcome{.what = std::string(name_of(e.kind)), .measured = fmt::format("{:.4g}", value), .line = e.line};
+    Outcome outcome{.what = std::string(name_of(e.kind)), .measured = text_of_measured(e, value), .line = e.line};
     if (!e.robot.empty()) outcome.what += " of " + e.robot;
     switch (e.kind) {
       case Kind::no_collision:
@@ -174,12 +204,28 @@ class Run {
 
 }  // namespace
 
-bool ScenarioResult::passed() const {
-  return std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome& o) { return o.met; });
+Verdict ScenarioResult::verdict() const {
+  if (outcomes.empty()) return Verdict::nothing_expected;
+  const bool met = std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome& o) { return o.met; });
+  return met ? Verdict::passed : Verdict::failed;
+}
+
+void check_scenario(const Scenario& scenario) {
+  const world::World world = world_of(scenario);
+  const SimulationOptions options = simulation_of(scenario, world);
+  std::optional<world::RoadNetwork> roads;
+  std::vector<world::Warning> heard_at_load;
+  if (!world.road_files.empty()) roads = world::load_roads(world.road_files.front(), heard_at_load);
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    const control::Plan& plan = options.actors[m].plan;
+    if (!plan.controller.empty()) try_controller(scenario, {world, m, options.seed, roads ? &*roads : nullptr}, plan);
+  }
+  for (const Expectation& e : scenario.expect) check_expectation(scenario, world, options, e);
 }
 
 ScenarioResult run_scenario(const Scenario& scenario, gpu::Device& device,
                             const std::function<void(double)>& progress) {
+  check_scenario(scenario);
   ScenarioResult result{.name = scenario.name, .file = scenario.file};
   Run run(scenario, device);
   run.go(progress, result);

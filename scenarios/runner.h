@@ -21,6 +21,9 @@ struct Outcome {
   int line = 0;  ///< in the scenario's file
 };
 
+/// Nothing expected is neither a failure nor a success.
+enum class Verdict : std::uint8_t { passed, failed, nothing_expected };
+
 struct ScenarioResult {
   std::string name;
   std::string file;
@@ -29,8 +32,13 @@ struct ScenarioResult {
   double wall = 0.0;       ///< [s]
   std::uint64_t ticks = 0;
   std::uint64_t hash = 0;  ///< of all readings
-  bool passed() const;
+  Verdict verdict() const;
 };
+
+/// Everything that a run would refuse, without a device and before any has begun: its world, its robots, their
+/// controllers and settings, what is expected of whom.
+/// @throws base::InputError at the scenario's line, or at that of a file that it names.
+void check_scenario(const Scenario& scenario);
 
 /// @param progress called now and then with the part in [0, 1] that is done; may be empty
 /// @throws base::InputError for what the world or a robot lacks.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/error.h"
 #include "scenarios/crowd.h"
@@ -25,6 +26,10 @@ std::uint32_t row_of(const Scenario& scenario, const world::World& world, const 
 world::World world_of(const Scenario& scenario) {
   world::LoadOptions load;
   load.sensors = sensors::vocabulary();
+  if (!std::filesystem::is_regular_file(scenario.world) && !scenario.file.empty())
+    throw base::InputError(
+        scenario.file, scenario.world_line,
+        fmt::format("there is no world '{}'; expected a file, named from this one's folder", scenario.world));
   world::World world = world::load_world(scenario.world, load);
   if (scenario.crowd.robots > 0) make_crowd(scenario, world);
   if (scenario.tick > 0.0) world.interval = scenario.tick;

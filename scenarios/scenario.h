@@ -23,6 +23,7 @@ struct RobotPlan {
   std::optional<Actor> actor;      ///< else the scenario's
   std::optional<base::Pose> pose;  ///< [m], [rad] where it starts; else where the world has it
   int line = 0;                    ///< in the file
+  int driver_line = 0;             ///< of its controller, or of the robot
 };
 
 /// One thing that must come of it.
@@ -62,6 +63,7 @@ struct Scenario {
   std::string name;        ///< else the file's, without its ending
   std::string file;        ///< empty: made by hand
   std::string world;       ///< file, as it can be opened
+  int world_line = 0;      ///< where the file names it
   double duration = 60.0;  ///< [s] simulated, at most: where `done` is expected it ends with it
   std::uint64_t seed = 1;
   double tick = 0.0;           ///< [s]; 0: the world's own
@@ -69,6 +71,7 @@ struct Scenario {
   std::optional<Plant> plant;  ///< of every robot; else as the world says
   double start_at = 0.0;       ///< [s]
   Actor actor;                 ///< of every robot
+  int default_line = 0;        ///< of its controller; 0: the file names none
   std::vector<RobotPlan> plans;
   std::vector<Expectation> expect;
 };

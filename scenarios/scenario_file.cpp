@@ -182,6 +182,12 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
       plan.actor = Actor{plan_of(reader, node, scenario.actor.plan),
                          link_of(reader, reader.table(node, "link"), scenario.actor.link)};
     if (const TomlNode* pose = world::find(node, "pose")) plan.pose = pose_of(reader, *pose);
+    const TomlNode* driver = world::find(node, "controller");
+    plan.driver_line = driver == nullptr ? node.line : driver->line;
+    for (const RobotPlan& other : scenario.plans)
+      if (other.name == plan.name)
+        reader.fail(node, fmt::format("the robot '{}' is told at line {} already; expected one [[robot]] for each",
+                                      plan.name, other.line));
     scenario.plans.push_back(std::move(plan));
   }
 }
@@ -268,6 +274,7 @@ Scenario parse_scenario(const std::string& file, std::string_view text) {
   Scenario scenario{.file = file};
   scenario.name = reader.text(root, "name", std::filesystem::path(file).stem().string());
   scenario.world = world_file(reader, root);
+  scenario.world_line = world::find(root, "world")->line;
   scenario.duration = reader.number(root, "duration", scenario.duration, 0.0, kLongest);
   scenario.seed = reader.whole(root, "seed", scenario.seed, kMostWhole);
   if (world::find(root, "tick") != nullptr) scenario.tick = reader.number(root, "tick", 0.0, 1e-3, 10.0);
@@ -278,6 +285,8 @@ Scenario parse_scenario(const std::string& file, std::string_view text) {
   if (const TomlNode* table = reader.table(root, "default")) {
     reader.require_known(*table, kDefaultKeys);
     scenario.actor.plan = plan_of(reader, *table, scenario.actor.plan);
+    const TomlNode* driver = world::find(*table, "controller");
+    scenario.default_line = driver == nullptr ? table->line : driver->line;
   }
   read_robots(reader, root, scenario);
   read_expectations(reader, root, scenario);

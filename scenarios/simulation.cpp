@@ -97,6 +97,12 @@ void Simulation::move() {
   move_s_ += seconds_since(start);
 }
 
+void Simulation::put(std::uint32_t mover, const base::Pose& X_WM) {
+  SF_CHECK(mover < drivers_.size(), "mover " + std::to_string(mover));
+  const base::Report report{mover, fleet_.reports()[mover].time, X_WM, {}};
+  fleet_.apply({&report, 1});
+}
+
 void Simulation::sort_by_mover(std::span<const base::ReadingBlock> readings) {
   std::fill(first_.begin(), first_.end(), 0u);
   for (const base::ReadingBlock& r : readings) ++first_[r.mover + 1];

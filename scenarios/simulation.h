@@ -49,6 +49,9 @@ class Simulation {
   /// One tick of `world.interval`; the first looks at time 0, before anything moved. Spans live until the next.
   base::TickRecord step();
 
+  /// Takes the mover by hand and puts it there, at rest. Between two steps.
+  void put(std::uint32_t mover, const base::Pose& X_WM);
+
   const farm::Farm& farm() const { return farm_; }
   double move_seconds() const { return move_s_; }  ///< [s] spent on controllers and motion
 

@@ -11,7 +11,7 @@ namespace sf::scenarios {
 namespace {
 
 std::string csv_of(const std::vector<Trial>& trials) {
-  std::string text = "trial,robot,driven_m,contacts,checkpoints,full_stops,reds_passed,mean_abs_error\n";
+  std::string text = "trial,robot,driven_m,contacts,checkpoints,full_stops,reds_passed,mean_abs_error_m\n";
   for (std::size_t k = 0; k < trials.size(); ++k)
     for (std::size_t i = 0; i < trials[k].tracks.size(); ++i) {
       const RobotCounts& counts = trials[k].counts[i];
@@ -36,7 +36,7 @@ std::string report_of(const Bench& bench, const std::vector<Trial>& trials) {
                           trial.counts[i].contacts, trial.counts[i].checkpoints, trial.counts[i].stops,
                           trial.counts[i].reds);
   }
-  return text;
+  return text + fmt::format("\n## Beside the thesis\n\n{}\n", bench.kind.reasons);
 }
 
 std::vector<std::string> run_town(const Bench& bench) {
@@ -55,6 +55,21 @@ std::vector<std::string> run_town(const Bench& bench) {
   return files;
 }
 
+constexpr std::string_view kTownReasons =
+    "The thesis names SimVille as the testbed and gives no numbers of traffic in it, so nothing here is compared. "
+    "Contacts and red lights passed are what must be zero; metres and checkpoints say how well traffic flows, and "
+    "depend on who gets in whose way first. "
+    "The plant is `ideal` unless told otherwise: these robots steer by controllers of ours, and there are no numbers "
+    "of the thesis' that its driver would explain. "
+    "The mean error of a robot on a route is its distance from the middle of its lane; convoys and pedestrians have "
+    "none.";
+constexpr std::string_view kMagicReasons =
+    "The thesis names MiniMAGIC as the testbed and gives no numbers, so nothing here is compared. "
+    "Contacts are those of three Pioneers that wander without a map, and of what patrols among them and neither sees "
+    "nor waits: an obstacle that walks into a robot counts for both. "
+    "The plant is `ideal` unless told otherwise: Player's driver of the Create is not a Pioneer's. "
+    "Trials differ by where robots start and by what they draw when they turn away.";
+
 }  // namespace
 
 extern const ExperimentKind simville_experiment, simville_merge_experiment, minimagic_experiment;
@@ -63,18 +78,21 @@ constinit const ExperimentKind simville_experiment{
     .name = "simville",
     .summary = "town traffic: fifty robots on routes, lights, stop signs, a convoy",
     .plant = Plant::ideal,
+    .reasons = kTownReasons,
     .run = run_town,
 };
 constinit const ExperimentKind simville_merge_experiment{
     .name = "simville-merge",
     .summary = "a robot comes into a convoy, another passes a slow one",
     .plant = Plant::ideal,
+    .reasons = kTownReasons,
     .run = run_town,
 };
 constinit const ExperimentKind minimagic_experiment{
     .name = "minimagic",
     .summary = "Pioneers between buildings and obstacles that move",
     .plant = Plant::ideal,
+    .reasons = kMagicReasons,
     .run = run_town,
 };
 

@@ -44,6 +44,8 @@ class Keeper {
       if (world.movers[row].is_tag && simulation.controller(row) == nullptr) continue;
       rows_.push_back(row);
       tracks_.push_back({.name = world.movers[row].name});
+      dead_ends_.emplace_back(2.0 * world.movers[row].radius, world.interval);
+      helped_.push_back(0);
       if (maps && !world.movers[row].lasers.empty()) maps_.try_emplace(row, world, row);
     }
   }
@@ -52,6 +54,7 @@ class Keeper {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       tracks_[i].poses.push_back(tick.reports[rows_[i]].X_WM);
       tracks_[i].contacts.push_back(tick.contacts[rows_[i]]);
+      dead_ends_[i].look(tick.reports[rows_[i]], tick.contacts[rows_[i]] != 0);
     }
     for (auto& [row, map] : maps_)
       for (const base::ReadingBlock& reading : tick.readings) map.add(reading);
@@ -60,10 +63,16 @@ class Keeper {
       times_.push_back(1e-9 * static_cast<double>(tick.time));
   }
 
+  void help(std::uint32_t mover) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) helped_[i] += rows_[i] == mover;
+  }
+
   void give(const Watch& watch, const world::World& world, const Simulation& simulation, Trial& trial) {
     for (const std::uint32_t row : rows_) trial.follows.push_back(followed_by(row, world, simulation));
     trial.rows = rows_;
     trial.tracks = std::move(tracks_);
+    trial.dead_ends = std::move(dead_ends_);
+    trial.helped = std::move(helped_);
     trial.times = std::move(times_);
     for (viz::Track& track : trial.tracks) track.duration = trial.simulated;
     for (const std::uint32_t row : rows_) {
@@ -88,6 +97,8 @@ class Keeper {
 
   std::vector<std::uint32_t> rows_;
   std::vector<viz::Track> tracks_;
+  std::vector<DeadEnds> dead_ends_;
+  std::vector<std::uint32_t> helped_;
   std::vector<double> times_;
   std::map<std::uint32_t, OwnMap> maps_;
 };
@@ -116,6 +127,7 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
   Simulation simulation(world, device, plan);
   Watch watch(world, simulation);
   Keeper keeper(world, simulation, options.maps);
+  Supervisor supervisor(world, options.supervisor);
   std::optional<record::Recorder> recorder;
   if (!options.record.empty())
     recorder.emplace(options.record,
@@ -130,6 +142,11 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
     watch.look(record);
     keeper.look(record, simulation);
     if (recorder) recorder->write(record);
+    for (const Supervisor::Help& help : supervisor.look(record)) {
+      simulation.put(help.mover, help.X_WM);
+      watch.put(help.mover, help.X_WM);
+      keeper.help(help.mover);
+    }
   }
   if (recorder) recorder->finish();
   trial.wall = seconds_since(start);

@@ -7,8 +7,10 @@
 
 #include "gpu/device.h"
 #include "maps/grid.h"
+#include "scenarios/dead_ends.h"
 #include "scenarios/scenario.h"
 #include "scenarios/statistics.h"
+#include "scenarios/supervisor.h"
 #include "scenarios/watch.h"
 #include "viz/trajectory_figure.h"
 
@@ -32,6 +34,8 @@ struct Trial {
   std::vector<std::uint32_t> follows;   ///< per track, at the end: the track that it follows; world::kNone: nobody
   std::vector<RobotCounts> counts;      ///< one per track
   std::vector<ErrorStatistics> errors;  ///< one per track
+  std::vector<DeadEnds> dead_ends;      ///< one per track
+  std::vector<std::uint32_t> helped;    ///< one per track: how often the supervisor took it by hand
   std::vector<double> times;            ///< [s] of the first robot's errors
   std::vector<maps::Grid> maps;         ///< of each robot with a laser, where asked for
   std::vector<std::uint32_t> mapped;    ///< their rows
@@ -46,6 +50,7 @@ struct TrialOptions {
   Disturbance disturbance;
   std::string record;  ///< folder; empty: none
   bool maps = false;
+  SupervisorPlan supervisor;  ///< unless told, nobody
   unsigned threads = 0;
 };
 

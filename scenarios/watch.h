@@ -28,6 +28,9 @@ class Watch {
   /// After every `Simulation::step`, with what it gave.
   void look(const base::TickRecord& tick);
 
+  /// Somebody put the mover there: it has not driven that way.
+  void put(std::uint32_t mover, const base::Pose& X_WM) { before_[mover].X_WM = X_WM; }
+
   const RobotCounts& of(std::uint32_t mover) const { return counts_[mover]; }
   std::uint64_t contacts() const;     ///< of all
   std::uint64_t reds() const;         ///< of all

@@ -1,6 +1,9 @@
 #include "viz/ground.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "world/paths.h"
 
 namespace sf::viz {
 
@@ -10,8 +13,9 @@ using world::Stripe;
 
 constexpr std::uint32_t kNorth = 0xFFC62828u;
 constexpr std::uint32_t kSouth = 0xFF1565C0u;
-constexpr double kShoulder = 7.0;  // [px] of asphalt on either side of a stripe
-constexpr double kThinnest = 1.3;  // [px] of a stripe
+constexpr double kShoulder = 7.0;   // [px] of asphalt on either side of a stripe
+constexpr double kThinnest = 1.3;   // [px] of a stripe
+constexpr double kLaneStep = 0.02;  // [m] along a lane
 
 /// Stripes have square ends, lines of a canvas round ones: each piece is a quadrilateral.
 void add_band(Axes& axes, const Stripe& stripe, std::vector<Line>& edges) {
@@ -23,6 +27,24 @@ void add_band(Axes& axes, const Stripe& stripe, std::vector<Line>& edges) {
                             axes.pixel(stripe.line[i + 1] - aside), axes.pixel(stripe.line[i + 1] + aside)};
     for (int k = 0; k < 4; ++k) edges.push_back({corners[k], corners[(k + 1) % 4]});
   }
+}
+
+/// Every lane that the world has as a path, from edge to edge.
+void draw_lanes(Axes& axes, const world::World& world) {
+  std::vector<Line> edges;
+  for (const world::Path& path : world.paths)
+    for (const world::PathPiece& piece : path.pieces) {
+      const int steps = std::max(1, static_cast<int>(std::ceil(piece.length / kLaneStep)));
+      const auto corner = [&](int step, double side) {
+        const base::Pose X_WP = world::along(piece, piece.length * step / steps);
+        return axes.pixel(base::transform(X_WP, {0.0, 0.5 * side * piece.width}));
+      };
+      for (int i = 0; i < steps; ++i) {
+        const Vec2 corners[] = {corner(i, 1.0), corner(i, -1.0), corner(i + 1, -1.0), corner(i + 1, 1.0)};
+        for (int k = 0; k < 4; ++k) edges.push_back({corners[k], corners[(k + 1) % 4]});
+      }
+    }
+  if (!edges.empty()) axes.canvas().area(edges, kStreet);
 }
 
 }  // namespace
@@ -37,6 +59,7 @@ void draw_paint(Axes& axes, const world::World& world) {
       asphalt.push_back({axes.pixel(stripe.line[i]), axes.pixel(stripe.line[i + 1])});
   }
   axes.canvas().lines(asphalt, widest + 2.0 * kShoulder, kStreet);
+  draw_lanes(axes, world);
 
   std::vector<std::uint32_t> colors;
   for (const Stripe& stripe : world.stripes) colors.push_back(stripe.color);

@@ -12,7 +12,8 @@ namespace sf::viz {
 
 inline constexpr std::uint32_t kStreet = 0xFFC3C8CEu;  ///< asphalt under paint
 
-/// Stripes in their colours on a band of asphalt, so that white ones are seen; at least a pixel wide.
+/// Stripes in their colours on a band of asphalt, so that white ones are seen; at least a pixel wide. Lanes that the
+/// world has as paths are asphalt from edge to edge.
 void draw_paint(Axes& axes, const world::World& world);
 
 /// Lanes, and the ways over crossings, as bands as wide as the lanes; zones with their parking spots.

@@ -52,21 +52,30 @@ void widen(std::optional<Span>& span, const std::vector<double>& numbers, Take&&
   }
 }
 
+/// From 0 on, where that leaves at least half of the axis to what is shown.
+Span with_zero(Span span) {
+  if (span.from > 0.0 && span.from <= 0.5 * span.to) span.from = 0.0;
+  return span;
+}
+
 Span time_span(const SeriesPlan& plan) {
   std::optional<Span> span;
   for (const Panel& panel : plan.panels)
     for (const Series& series : panel.series) widen(span, series.times, [](double t) { return std::isfinite(t); });
   if (!span) return {0.0, 1.0};
-  return span->to > span->from ? *span : Span{span->from - 0.5, span->to + 0.5};
+  if (!(span->to > span->from)) return {span->from - 0.5, span->to + 0.5};
+  return plan.from_zero ? with_zero(*span) : *span;
 }
 
 /// With some air above and below, and never empty.
-Span value_span(const Panel& panel) {
+Span value_span(const Panel& panel, bool from_zero) {
   std::optional<Span> span;
   for (const Series& series : panel.series) widen(span, series.values, [](double v) { return std::isfinite(v); });
   if (!span) return {0.0, 1.0};
+  if (from_zero) span = with_zero(*span);
   const double size = span->to - span->from;
   const double pad = size > 0.0 ? 0.06 * size : std::max(0.05 * std::abs(span->from), 1e-12);
+  if (from_zero && span->from == 0.0) return {0.0, span->to + pad};
   return {span->from - pad, span->to + pad};
 }
 
@@ -91,7 +100,7 @@ double plot_height(std::size_t panels) { return panels == 1 ? 620.0 : panels == 
 std::vector<Place> lay_out(const SeriesPlan& plan) {
   const double height = plot_height(plan.panels.size());
   double left = 0.0;
-  for (const Panel& panel : plan.panels) left = std::max(left, widest_label(value_span(panel), height));
+  for (const Panel& panel : plan.panels) left = std::max(left, widest_label(value_span(panel, plan.from_zero), height));
   left += kEdge + kAxisName + 14.0;
 
   std::vector<Place> places;
@@ -99,7 +108,7 @@ std::vector<Place> lay_out(const SeriesPlan& plan) {
   for (const Panel& panel : plan.panels) {
     Place& place = places.emplace_back();
     place.time = time_span(plan);
-    place.shown = value_span(panel);
+    place.shown = value_span(panel, plan.from_zero);
     if (!panel.title.empty()) top += kPanelTitle;
     place.plot = {static_cast<int>(left), static_cast<int>(top), plan.width - static_cast<int>(kEdge),
                   static_cast<int>(top + height)};

@@ -26,7 +26,8 @@ struct SeriesPlan {
   std::string subtitle;
   std::vector<Panel> panels;  ///< at least one, at most 16
   std::string x_name = "time [s]";
-  int width = 1600;  ///< [px] of the picture, in [600, 8000]
+  bool from_zero = false;  ///< axes begin at 0 where that takes no more than half of their length
+  int width = 1600;        ///< [px] of the picture, in [600, 8000]
 };
 
 /// Draws every series in a colour of its own, told by its row. Up to seven are named below their panel; of more, seven

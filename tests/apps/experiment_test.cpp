@@ -71,6 +71,35 @@ TEST(TestCommand, BadFilesAreRefusedBeforeAnythingRuns) {
   EXPECT_EQ(run_program({"test", folder.path("none.toml")}).code, 2);
 }
 
+TEST(TestCommand, ControllersAreTriedBeforeAnythingRuns) {
+  const Folder folder;
+  const std::string good = folder.write("good.toml", scenario("[expect]\ncontacts = 1000\n"));
+  const std::string bad = folder.write("bad.toml", scenario("[default]\ncontroller = \"lane-keeping\"\n"));
+  const Outcome outcome = run_program({"test", good, bad, "--junit", folder.path("out.xml")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  EXPECT_NE(outcome.err.find("bad.toml:5: controller 'lane-keeping'"), std::string::npos) << outcome.err;
+}
+
+TEST(TestCommand, AFolderThatCannotBeWrittenIsKnownBeforeAnythingRuns) {
+  const Folder folder;
+  const std::string good = folder.write("good.toml", scenario("[expect]\ncontacts = 1000\n"));
+  const Outcome outcome = run_program({"test", good, "--junit", folder.path("none/out.xml")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  EXPECT_NE(outcome.err.find("none/out.xml: cannot be written"), std::string::npos) << outcome.err;
+}
+
+TEST(TestCommand, NothingExpectedIsItsOwnState) {
+  const Folder folder;
+  const Outcome outcome =
+      run_program({"test", folder.write("idle.toml", scenario("")), "--junit", folder.path("o.xml")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.find("pass"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("nothing expected"), std::string::npos) << outcome.out;
+  EXPECT_NE(read_file(folder.path("o.xml")).find("skipped=\"1\""), std::string::npos);
+}
+
 TEST(RunController, SettingsReachIt) {
   const std::string world = our_world("testpath/testpath.world");
   const Words words{"run", world, "--duration", "1", "--controller", "lane-keeping"};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "control/explore.h"
 #include "sensors/kind.h"
 
 namespace sf::scenarios {
@@ -17,17 +18,47 @@ maps::GridPlan small() { return {-0.12, 0.12, 0.03, 2, 2}; }
 
 TEST(Coverage, CountsOnlyWhatTheReferenceHasFree) {
   maps::Grid reference(small()), map(small());
-  EXPECT_EQ(coverage(map, reference), 1.0);
+  EXPECT_EQ(seen_of(map, reference).coverage(), 1.0);
   for (int i = 0; i < 4; ++i) reference.set({i, 0}, Cell::free);
   reference.set({4, 0}, Cell::occupied);
-  EXPECT_EQ(coverage(map, reference), 0.0);
+  EXPECT_EQ(seen_of(map, reference).coverage(), 0.0);
   map.set({0, 0}, Cell::free);
   map.set({1, 0}, Cell::occupied);
   map.set({4, 0}, Cell::occupied);
   map.set({7, 7}, Cell::free);
-  EXPECT_EQ(coverage(map, reference), 0.5);
+  EXPECT_EQ(seen_of(map, reference).missed, 2u);
+  EXPECT_EQ(seen_of(map, reference).wanted, 4u);
+  EXPECT_EQ(seen_of(map, reference).coverage(), 0.5);
   // Known in both: (0,0), (1,0), (4,0); one of them apart.
   EXPECT_DOUBLE_EQ(disagreement(map, reference), 1.0 / 3.0);
+}
+
+/// However few are missed.
+TEST(Coverage, IsNeverRoundedUpToAll) {
+  EXPECT_EQ(text_of({9159, 3}), "99.96 % (3 of 9159 cells missed)");
+  EXPECT_EQ(text_of({1000000, 1}), "99.99 % (1 of 1000000 cells missed)");
+  EXPECT_EQ(text_of({9159, 0}), "100.00 % (0 of 9159 cells missed)");
+  EXPECT_EQ(text_of({0, 0}), "100.00 % (0 of 0 cells missed)");
+}
+
+/// Else cells would be asked for that the explorer does not know, a part of a cell aside from its own.
+TEST(Coverage, ItsCellsAreTheExplorers) {
+  const world::World world = mapping_world();
+  EXPECT_EQ(OwnMap(world, 0).grid().plan, control::plan_around(world));
+}
+
+/// A line's rounding may free a cell whose middle lies within a wall; it is not asked for.
+TEST(Coverage, CellsWithinObstaclesAreNotAskedFor) {
+  const world::World world = mapping_world();
+  const OwnMap map(world, 0);
+  const maps::Grid seen = what_could_be_seen(world, 0, map.grid().plan);
+  for (std::int64_t row = 0; row < maps::rows(seen.plan); ++row)
+    for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
+      const base::Vec2 p = maps::middle(seen.plan, {column, row});
+      const bool in_box = std::abs(p.x + 0.65) < 0.249 && std::abs(p.y - 0.75) < 0.249;
+      const bool in_wall = std::max(std::abs(p.x), std::abs(p.y)) > 1.501;
+      if (in_box || in_wall) EXPECT_NE(seen.at({column, row}), Cell::free) << p.x << " " << p.y;
+    }
 }
 
 /// 3 m x 3 m less three boxes of 0.25 m^2 and the tree; nothing beyond the walls.

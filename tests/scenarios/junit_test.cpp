@@ -114,6 +114,17 @@ TEST(Junit, WhatXmlReservesIsEscaped) {
   EXPECT_EQ(xml.values("testcase", "name"), std::vector<std::string>{bad});
 }
 
+TEST(Junit, NothingExpectedIsASkippedCase) {
+  const std::vector<ScenarioResult> results{{.name = "idle", .file = "a&b.toml"}};
+  const std::string text = junit_of(results);
+  const Xml xml(text);
+  ASSERT_TRUE(xml.fine()) << text;
+  EXPECT_EQ(xml.values("testsuite", "skipped"), std::vector<std::string>{"1"});
+  EXPECT_EQ(xml.values("testsuite", "tests"), std::vector<std::string>{"1"});
+  EXPECT_EQ(xml.values("skipped", "message"), std::vector<std::string>{"a&b.toml has no [expect]"});
+  EXPECT_EQ(xml.count("failure"), 0);
+}
+
 /// XML 1.0 forbids them even escaped.
 TEST(Junit, ControlCharactersAreLeftOut) { EXPECT_EQ(escaped(std::string("a\x01\x1b\tb\n", 6)), "a\tb"); }
 

@@ -1,0 +1,37 @@
+#include "scenarios/dead_ends.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::scenarios {
+
+void DeadEnds::look(const base::Report& report, bool contact) {
+  const base::Vec2 p{report.X_WM.x, report.X_WM.y};
+  time_ += interval_;
+  const bool stands = report.velocity.forward == 0.0;
+  const bool waits = contact && stands && report.velocity.turn == 0.0;
+  if (inside_ && base::length(p - where_) > length_) {
+    inside_ = false;
+    reversals_.clear();
+  }
+  if (waits || inside_) stuck_ += interval_;
+  if (waits && !inside_) waited_ += interval_;
+  if (!stands || report.velocity.turn == 0.0) return;
+  const double side = std::copysign(1.0, report.velocity.turn);
+  if (side_ != 0.0 && side != side_) reverse(p);
+  side_ = side;
+}
+
+void DeadEnds::reverse(base::Vec2 p) {
+  if (inside_) return;
+  std::erase_if(reversals_, [&](const Reversal& r) { return base::length(r.p - p) > length_; });
+  if (reversals_.empty()) waited_ = 0.0;
+  reversals_.push_back({p, time_});
+  if (reversals_.size() < kReversals) return;
+  inside_ = true;
+  where_ = p;
+  ++count_;
+  stuck_ += std::max(0.0, time_ - reversals_.front().time - waited_);
+}
+
+}  // namespace sf::scenarios

@@ -1,0 +1,44 @@
+#pragma once
+// Where a robot turns back and forth and does not get away.
+
+#include <cstdint>
+#include <vector>
+
+#include "base/report.h"
+
+namespace sf::scenarios {
+
+/// A dead end: the direction of turns in place reversed `kReversals` times while the robot stayed within a body's
+/// length. It lasts from the first of these reversals until the robot is farther than that from where it was found.
+inline constexpr std::size_t kReversals = 6;
+
+/// Follows one robot, tick by tick.
+class DeadEnds {
+ public:
+  /// @param length [m] of the body @param interval [s] of a tick
+  DeadEnds(double length, double interval) : length_(length), interval_(interval) {}
+
+  void look(const base::Report& report, bool contact);
+
+  std::uint32_t count() const { return count_; }
+  /// [s] in dead ends, or standing in contact.
+  double stuck() const { return stuck_; }
+
+ private:
+  struct Reversal {
+    base::Vec2 p;
+    double time = 0.0;  ///< [s]
+  };
+  void reverse(base::Vec2 p);
+
+  double length_, interval_;
+  double time_ = 0.0, stuck_ = 0.0;  ///< [s]
+  double side_ = 0.0;                ///< of the last turn in place; 0: none yet
+  bool inside_ = false;
+  base::Vec2 where_;
+  std::uint32_t count_ = 0;
+  std::vector<Reversal> reversals_;
+  double waited_ = 0.0;  ///< [s] standing in contact since the first of `reversals_`: not to be counted twice
+};
+
+}  // namespace sf::scenarios

@@ -1,0 +1,85 @@
+#include "scenarios/runner.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+
+namespace sf::scenarios {
+namespace {
+
+constexpr const char* kFile = SF_SOURCE_DIR "/experiments/test.toml";
+constexpr const char* kRooms = "world = \"../worlds/rooms.world\"\n";
+constexpr const char* kPath = "world = \"../worlds/testpath/testpath.world\"\n";
+
+/// What the check says from the file's name on; empty: nothing to complain of.
+std::string refusal(const std::string& text) {
+  try {
+    check_scenario(parse_scenario(kFile, text));
+  } catch (const base::InputError& error) {
+    const std::string what = error.what();
+    const auto at = what.find("test.toml");
+    return at == std::string::npos ? what : what.substr(at);
+  }
+  return {};
+}
+
+/// One each, and what is said of it without anything having run.
+TEST(CheckScenario, WhatARunWouldRefuseIsRefusedAtItsLine) {
+  const std::string rooms = kRooms, path = kPath;
+  const std::string robots = "robots = 2\n";
+  const std::pair<std::string, std::string> kCorpus[] = {
+      {"# a comment\nworld = \"nowhere.world\"\n", "test.toml:2: there is no world '"},
+      {"world = \"..\"\n", "test.toml:1: there is no world '"},
+      // Only the controller knows that it needs a lane edge sensor.
+      {rooms + "[default]\nrate = 5\ncontroller = \"lane-keeping\"\n", "test.toml:4: controller 'lane-keeping'"},
+      {path + "[[robot]]\nname = \"roomba0\"\ncontroller = \"route\"\n", "test.toml:4: controller 'route'"},
+      {path + "[default]\ncontroller = \"lane-keeping\"\nsettings = { kp = \"much\" }\n", "test.toml:4: 'kp'"},
+      {path + "[[robot]]\nname = \"roomba7\"\n", "test.toml:2: "},
+      {path + "[expect]\nlights_obeyed = true\n", "test.toml:3: "},
+      {path + "[default]\ncontroller = \"none\"\n[expect]\nmean_error = 1\n",
+       "test.toml:5: 'mean_error' of a robot that nobody drives"},
+  };
+  for (const auto& [text, said] : kCorpus) EXPECT_EQ(refusal(text).substr(0, said.size()), said) << text;
+}
+
+TEST(CheckScenario, WhatCanRunPasses) {
+  EXPECT_EQ(refusal(std::string(kRooms) + "robots = 2\n"), "");
+  EXPECT_EQ(refusal(std::string(kPath) + "[default]\ncontroller = \"lane-keeping\"\n[expect]\nmean_error = 1\n"), "");
+}
+
+TEST(Verdict, NothingExpectedIsNeitherPassedNorFailed) {
+  ScenarioResult result;
+  EXPECT_EQ(result.verdict(), Verdict::nothing_expected);
+  result.outcomes.push_back({.met = true});
+  EXPECT_EQ(result.verdict(), Verdict::passed);
+  result.outcomes.push_back({.met = false});
+  EXPECT_EQ(result.verdict(), Verdict::failed);
+}
+
+/// A robot that wanders has no control error: that is said, and is no success.
+TEST(RunScenario, SaysWhatCannotBeMeasured) {
+  gpu::Device device;
+  const ScenarioResult result = run_scenario(
+      parse_scenario(kFile, std::string(kRooms) + "robots = 2\nduration = 1\n[expect]\nmean_abs_error = 1\n"), device);
+  ASSERT_EQ(result.outcomes.size(), 1u);
+  EXPECT_FALSE(result.outcomes[0].met);
+  EXPECT_EQ(result.outcomes[0].measured, "no robot with a control error");
+}
+
+/// One missed cell of 9000 is not all of them.
+TEST(RunScenario, MapCoverageIsNotRoundedUp) {
+  gpu::Device device;
+  const ScenarioResult result =
+      run_scenario(parse_scenario(kFile,
+                                  "world = \"../worlds/mapping/mapping.world\"\nduration = 1\n[default]\n"
+                                  "controller = \"none\"\n[expect]\nmap_coverage = 0.9\n"),
+                   device);
+  ASSERT_EQ(result.outcomes.size(), 1u);
+  const double measured = std::stod(result.outcomes[0].measured);
+  EXPECT_GT(measured, 0.0);
+  EXPECT_LT(measured, 0.2) << "one scan";
+  EXPECT_FALSE(result.outcomes[0].met);
+}
+
+}  // namespace
+}  // namespace sf::scenarios

@@ -1,0 +1,105 @@
+#include "scenarios/supervisor.h"
+
+#include <gtest/gtest.h>
+
+#include "scenarios/trial.h"
+
+namespace sf::scenarios {
+namespace {
+
+/// A world of one mover that nothing is asked of but its number and its tick.
+world::World one_mover() {
+  world::World world;
+  world.movers.resize(1);
+  world.interval = 0.1;
+  return world;
+}
+
+/// Drives along x to `far`, and then stands in contact with these sectors.
+struct Ride {
+  world::World world = one_mover();
+  Supervisor supervisor;
+  base::Report report;
+  explicit Ride(const SupervisorPlan& plan, double far = 1.0) : supervisor(world, plan) {
+    report.velocity.forward = 0.1;
+    for (; report.X_WM.x < far; report.X_WM.x += 0.01) look(false);
+    report.velocity = {};
+  }
+  std::vector<Supervisor::Help> look(bool contact) {
+    const std::uint8_t contacts[] = {contact};
+    const auto helps = supervisor.look({.reports = {&report, 1}, .contacts = contacts});
+    return {helps.begin(), helps.end()};
+  }
+  /// Ticks in contact until it is helped; 1000: never.
+  int wait(Supervisor::Help& help) {
+    for (int i = 1; i < 1000; ++i)
+      if (const auto helps = look(true); !helps.empty()) return help = helps[0], i;
+    return 1000;
+  }
+};
+
+TEST(Supervisor, TakesWhoHasStoodForSoLong) {
+  Ride ride({.patience = 5.0});
+  Supervisor::Help help;
+  EXPECT_NEAR(ride.wait(help), 50, 1);
+  EXPECT_EQ(help.mover, 0u);
+}
+
+TEST(Supervisor, NobodyIsThereUnlessToldSo) {
+  Ride ride({});
+  Supervisor::Help help;
+  EXPECT_EQ(ride.wait(help), 1000);
+}
+
+/// Contact while it still moves, or standing free, is no waiting.
+TEST(Supervisor, LeavesAloneWhoDoesNotWait) {
+  Ride ride({.patience = 1.0});
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(ride.look(false).empty());
+  ride.report.velocity.turn = 0.2;
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(ride.look(true).empty());
+  ride.report.velocity = {};
+  for (int i = 0; i < 9; ++i) EXPECT_TRUE(ride.look(true).empty());
+  ride.look(false);
+  for (int i = 0; i < 9; ++i) EXPECT_TRUE(ride.look(true).empty()) << "it waits anew";
+}
+
+TEST(Supervisor, PutsItBackAlongItsWay) {
+  Ride ride({.patience = 1.0, .back = 0.15});
+  Supervisor::Help help;
+  ride.wait(help);
+  EXPECT_NEAR(ride.report.X_WM.x - help.X_WM.x, 0.15, 0.021);
+  EXPECT_EQ(help.X_WM.y, 0.0);
+  // Nowhere farther back than it has been.
+  Ride brief({.patience = 1.0, .back = 0.15}, 0.05);
+  brief.wait(help);
+  EXPECT_EQ(help.X_WM.x, 0.0);
+}
+
+TEST(Supervisor, TurnsItFromWhatItTouched) {
+  for (const bool left : {true, false}) {
+    Ride ride({.patience = 1.0, .turn = 0.5});
+    ride.report.touched = left ? 1u << 2 : 1u << (base::kTouchSectors - 3);
+    Supervisor::Help help;
+    ride.wait(help);
+    EXPECT_NEAR(help.X_WM.yaw, left ? -0.5 : 0.5, 1e-12);
+  }
+}
+
+/// The thesis' avoidance scrapes and waits for ever; with a supervisor it goes on.
+TEST(Supervisor, LetsTheThesisAvoidanceGoOn) {
+  Scenario scenario = read_scenario(SF_SOURCE_DIR "/experiments/mapping.toml");
+  scenario.duration = 120.0;
+  gpu::Device device;
+  const world::World world = world_of(scenario);
+  const Trial alone = run_trial(scenario, world, device, {});
+  const Trial helped = run_trial(scenario, world, device, {.supervisor = {.patience = 5.0}});
+  ASSERT_GT(alone.counts[0].contacts, 0u) << "it did not scrape: this test needs another start";
+  EXPECT_EQ(alone.helped[0], 0u);
+  EXPECT_GT(helped.helped[0], 0u);
+  EXPECT_GT(helped.counts[0].travelled, 1.3 * alone.counts[0].travelled);
+  EXPECT_LT(helped.dead_ends[0].stuck(), alone.dead_ends[0].stuck());
+  EXPECT_LT(helped.counts[0].travelled, 0.1 * 120.0) << "being carried is not driving";
+}
+
+}  // namespace
+}  // namespace sf::scenarios
