@@ -30,12 +30,18 @@ void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t 
   axes.canvas().lines(path, line_width, color);
 }
 
+namespace {
+constexpr double kBordered = 5.0;  // [px]
+}
+
 void draw_contacts(Axes& axes, const Track& track, double reach, double line_width) {
   Vec2 last{-1e9, -1e9};
   for (std::size_t i = 0; i < track.contacts.size(); ++i) {
     if (!track.contacts[i] || (i > 0 && track.contacts[i - 1]) || !is_finite(track.poses[i])) continue;
     const Vec2 at = axes.pixel({track.poses[i].x, track.poses[i].y});
     if (length(at - last) < reach) continue;
+    // On a pale border, large ones are seen on a dot of any colour.
+    if (reach >= kBordered) draw_cross(axes.canvas(), at, reach, line_width + 2.4, 0xFFFFFFFFu);
     draw_cross(axes.canvas(), at, reach, line_width, kContact);
     last = at;
   }

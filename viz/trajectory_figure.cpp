@@ -26,7 +26,7 @@ std::uint32_t color_of(std::span<const Track> tracks, std::size_t i) {
 
 /// How thick lines and marks are: thinner where there are many.
 struct Weight {
-  double line = 2.4, mark = 6.0, cross = 4.5, cross_line = 1.4;
+  double line = 2.4, mark = 6.0, cross = 7.5, cross_line = 2.0;  // a cross is seen on the dot at the end
   double opacity = 1.0;
 };
 Weight weight_for(std::size_t tracks) {

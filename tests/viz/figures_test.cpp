@@ -261,6 +261,23 @@ TEST(TrajectoryFigure, ContactIsMarked) {
   EXPECT_EQ(before.at(3.3, 2.0), after.at(3.3, 2.0)) << "the line beside it";
 }
 
+/// Its arms reach beyond the dot, and have a pale border on it.
+TEST(TrajectoryFigure, ContactAtTheEndIsSeenOnItsDot) {
+  Track track = straight();
+  track.color = 0xFFD4351Cu;  // the cross' own
+  track.contacts.assign(track.poses.size(), 0);
+  track.contacts.back() = 1;
+  draw_trajectories(room(), {&track, 1}, file("at_the_end.png"));
+  track.contacts.back() = 0;
+  draw_trajectories(room(), {&track, 1}, file("free_end.png"));
+  const scenes::Picture with = scenes::read_png(file("at_the_end.png")),
+                        without = scenes::read_png(file("free_end.png"));
+  int apart = 0;
+  for (int y = without.height / 8; y < without.height; ++y)
+    for (int x = 0; x < without.width; ++x) apart += with.at(x, y) != without.at(x, y) ? 1 : 0;
+  EXPECT_GT(apart, 40);
+}
+
 TEST(TrajectoryFigure, PoseThatIsNotFiniteBreaksTheLine) {
   Track track = straight();
   track.color = 0xFFFF00FFu;

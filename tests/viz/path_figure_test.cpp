@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "tests/viz/png.h"
 #include "viz/color.h"
+#include "viz/ground.h"
 #include "viz/series_figure.h"
 
 namespace sf::viz {
@@ -62,6 +63,20 @@ TEST(PathFigure, TheMiddleIsDrawnWhereThereIsAPath) {
   without.paths.clear();
   draw_along_paths(without, {}, "Title", "subtitle", file("no_path.png"));
   EXPECT_GT(colored(drawn({}), 0xFF808080u), 30 + colored(scenes::read_png(file("no_path.png")), 0xFF808080u));
+}
+
+/// Between its painted edges a lane is asphalt, not two bands with ground between.
+TEST(PathFigure, ALaneIsFilledFromEdgeToEdge) {
+  world::World world = lane();
+  for (const double y : {0.25, -0.25}) world.stripes.push_back({{{0.0, y}, {4.0, y}}, 0.02});
+  draw_along_paths(world, {}, "Title", "subtitle", file("lane.png"));
+  const int filled = colored(scenes::read_png(file("lane.png")), kStreet);
+  world.paths.clear();
+  draw_along_paths(world, {}, "Title", "subtitle", file("bands.png"));
+  const scenes::Picture bands = scenes::read_png(file("bands.png"));
+  // The lane is half as high as the plot, and nearly as wide as the picture.
+  EXPECT_GT(filled, 3 * colored(bands, kStreet));
+  EXPECT_GT(filled, bands.width * bands.width / 4 / 4);
 }
 
 /// A track beyond the world is on the picture all the same.

@@ -52,6 +52,24 @@ TEST(SeriesFigure, WhatIsMissingIsAGap) {
   for (double part = 0.3; part < 0.75; part += 0.05) EXPECT_EQ(colored(p, color, part, part + 0.05), 0) << part;
 }
 
+/// Columns before the first x, and rows below the least value, are there only where they do not squash the rest.
+TEST(SeriesFigure, FromZeroWhereThatDoesNotSquash) {
+  const std::uint32_t color = row_color(0, 1);
+  const auto first_column = [&](double from, bool zero) {
+    SeriesPlan plan = one_panel({{"a", {from, 2.0}, {1.0, 2.0}}});
+    plan.from_zero = zero;
+    const scenes::Picture p = drawn(plan, "zero.png");
+    for (int x = 0; x < p.width; ++x)
+      if (p.count(color, x, 0, x + 1, p.height / 2) > 0 ||
+          p.count(color, x, p.height / 2, x + 1, p.height * 7 / 10) > 0)
+        return static_cast<double>(x) / p.width;
+    return 1.0;
+  };
+  EXPECT_GT(first_column(0.9, true), first_column(0.9, false) + 0.3);
+  EXPECT_EQ(first_column(1.9, true), first_column(1.9, false));
+  EXPECT_EQ(first_column(-1.0, true), first_column(-1.0, false));
+}
+
 TEST(SeriesFigure, ALoneValueIsADot) {
   const scenes::Picture p = drawn(one_panel({per_second("a", {kNan, 5, kNan})}), "dot.png");
   EXPECT_GT(colored(p, row_color(0, 1), 0.45, 0.65), 0);
