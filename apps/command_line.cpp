@@ -161,7 +161,8 @@ void add_controller(CLI::App& app, Options& o) {
       ->check(one_of(names))
       ->type_name("NAME")
       ->capture_default_str();
-  app.add_option("--set", o.set, "One of the controller's settings (may be repeated)")
+  app.add_option("--set", o.set,
+                 "One of the controller's settings (may be repeated): kp=0.5, park=13.4, checkpoints=1,2 or \"[1 2]\"")
       ->check(key_and_value())
       ->type_name("KEY=VALUE");
 }
@@ -320,7 +321,9 @@ void add_link(CLI::App& app, Options& o) {
 }
 
 void add_robot(CLI::App& app, Options& o) {
-  CLI::App* sub = app.add_subcommand("robot", "One simulated robot, a process of its own beside a farm that serves");
+  CLI::App* sub = app.add_subcommand(
+      "robot",
+      "One simulated robot, a process of its own beside a farm that serves (exit 1 when nothing came from it)");
   add_world(*sub, o);
   add_json(*sub, o);
   add_controller(*sub, o);
@@ -343,7 +346,8 @@ void add_robot(CLI::App& app, Options& o) {
 }
 
 void add_start(CLI::App& app, Options& o) {
-  CLI::App* sub = app.add_subcommand("start", "Give robots that wait for it the start signal, through the farm");
+  CLI::App* sub =
+      app.add_subcommand("start", "Give robots that wait for it the start signal, through the farm (not acknowledged)");
   add_farm(*sub, o);
   sub->add_option("--robot", o.start_id, "Id of the robot (default: all)")->check(whole(0, 65535))->type_name("ID");
   sub->callback([&o] { o.command = Command::start; });
@@ -361,7 +365,8 @@ void add_plot(CLI::App& app, Options& o) {
 }
 
 void add_listen(CLI::App& app, Options& o) {
-  CLI::App* sub = app.add_subcommand("listen", "Take a run's packets on every robot's ports, count and check them");
+  CLI::App* sub = app.add_subcommand(
+      "listen", "Take a run's packets on every robot's ports, count and check them (exit 1 when none was good)");
   add_world(*sub, o);
   add_json(*sub, o);
   add_robots(*sub, o);
@@ -370,11 +375,18 @@ void add_listen(CLI::App& app, Options& o) {
       ->check(not_empty("an address"))
       ->type_name("ADDR")
       ->capture_default_str();
-  sub->add_option("--silence", o.silence, "End when nothing came for this long after the first packet [s]")
+  sub->add_option("--silence", o.silence,
+                  "End when nothing came for this long [s]; counts from the first packet on, until then it waits")
       ->check(number(0.1, 1e6))
       ->type_name("S")
       ->capture_default_str();
-  sub->callback([&o] { o.command = Command::listen; });
+  auto* duration = sub->add_option("--duration", o.duration, "Stop after this long [s] (0: when told to, or silent)")
+                       ->check(number(0.0, 1e9))
+                       ->type_name("S");
+  sub->callback([&o, duration] {
+    o.command = Command::listen;
+    if (duration->count() == 0) o.duration = 0.0;
+  });
 }
 
 void add_experiment(CLI::App& app, Options& o) {

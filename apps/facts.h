@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/control_facts.h"
 #include "apps/post.h"
 #include "base/reading.h"
 #include "farm/farm.h"
@@ -25,6 +26,7 @@ struct RunFacts {
   double simulated_s = 0.0;
   double wall_s = 0.0;
   std::uint64_t contacts = 0;  ///< robot-ticks in which something stopped a robot
+  ControlFacts control;        ///< no robots: others decide
   double move_s = 0.0;         ///< [s] controllers and motion
   double out_s = 0.0;          ///< [s] packets and recording
   farm::FarmStats farm;

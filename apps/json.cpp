@@ -64,6 +64,15 @@ std::string beam_json(const world::World& world, const base::ReadingBlock& readi
                      metres(reading.values[i]), hit == base::kNoHit ? "null" : dump(world.models[hit].name));
 }
 
+Json error_json(const ErrorFacts& f) { return {{"steps", f.steps}, {"mean", f.mean}, {"abs_mean", f.abs_mean}}; }
+
+Json control_json(const ControlFacts& f) {
+  Json json{{"controller", f.controller}, {"robots", f.robots}, {"done", f.done}};
+  if (f.error.steps > 0) json["error"] = error_json(f.error);
+  if (f.has_goals) json["checkpoints"] = f.checkpoints;
+  return json;
+}
+
 Json injected(const netio::DelayCounts& counts) {
   return {{"passed", counts.passed}, {"lost", counts.lost}, {"full", counts.full}};
 }
@@ -163,6 +172,7 @@ std::string json_of(const RunFacts& f) {
               {"collect", f.farm.collect_s},
               {"out", f.out_s}}}};
   if (f.farm.work.dipoles > 0) json["dipoles"] = f.farm.work.dipoles;
+  if (f.control.robots > 0) json["control"] = control_json(f.control);
   if (f.sent)
     json["packets"] = {{"sent", f.post.packets.sent},       {"bytes", f.post.packets.sent_bytes},
                        {"failed", f.post.packets.failed},   {"dropped", f.post.packets.dropped},
@@ -223,8 +233,7 @@ std::string json_of(const RobotFacts& f) {
   json.update(link_json(f.link));
   json["distance_m"] = f.distance_m;
   json["pose"] = pose_json(f.pose);
-  if (f.error.steps > 0)
-    json["error"] = {{"steps", f.error.steps}, {"mean", f.error.mean}, {"abs_mean", f.error.abs_mean}};
+  if (f.error.steps > 0) json["error"] = error_json(f.error);
   return print(json);
 }
 

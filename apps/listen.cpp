@@ -1,5 +1,6 @@
 // `listen`: the other end of `run --send`.
 
+#include <cmath>
 #include <cstdio>
 
 #include "apps/commands.h"
@@ -8,6 +9,7 @@
 #include "apps/payloads.h"
 #include "apps/post.h"
 #include "apps/stop.h"
+#include "apps/wording.h"
 
 namespace sf::apps {
 
@@ -27,8 +29,9 @@ int listen(const Options& options) {
                             std::string(source.kind->name)});
   netio::Listener listener(plan);
   catch_stop_signals();
-  std::fprintf(stderr, "sensorfarm: listening on %zu ports of %s\n", plan.streams.size(), options.bind.c_str());
-  listener.run(stop_requested(), static_cast<int>(1000.0 * options.silence));
+  std::fprintf(stderr, "sensorfarm: listening on %s of %s\n", counted(plan.streams.size(), "port").c_str(),
+               options.bind.c_str());
+  listener.run(stop_requested(), static_cast<int>(1000.0 * options.silence), std::llround(1000.0 * options.duration));
   const netio::Summary summary = listener.summary();
   std::fputs((options.json ? json_of(summary) : text_of(summary)).c_str(), stdout);
   return summary.good > 0 ? 0 : 1;

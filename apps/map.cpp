@@ -9,6 +9,7 @@
 
 #include "apps/commands.h"
 #include "apps/stop.h"
+#include "apps/wording.h"
 #include "maps/assembler.h"
 #include "maps/merge.h"
 #include "maps/text.h"
@@ -175,8 +176,8 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 int map(const Options& options) {
   Display display(options);
   catch_stop_signals();
-  std::fprintf(stderr, "sensorfarm: listening for maps on %zu ports of %s\n", options.map_ports.size(),
-               options.bind.c_str());
+  std::fprintf(stderr, "sensorfarm: listening for maps on %s of %s\n",
+               counted(options.map_ports.size(), "port").c_str(), options.bind.c_str());
   const auto start = Clock::now();
   auto last = start;
   bool begun = false;

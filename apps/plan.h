@@ -8,8 +8,7 @@
 
 namespace sf::apps {
 
-/// "key=value" as a setting: `true` and `false` are flags, numbers numbers; values between commas are a list of
-/// numbers, or of texts where one is none; all else is a text.
+/// "key=value" as a setting, whose type is what it is read as.
 control::Setting setting_of(const std::string& text);
 
 /// `--controller` with its `--set`s.

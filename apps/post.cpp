@@ -16,6 +16,8 @@ void require_wire(const world::World& world, const sensors::Roster::Group& group
   }
 }
 
+std::string port_option(const sensors::SensorKind& kind) { return "--" + std::string(kind.name) + "-port"; }
+
 std::vector<netio::PortUse> uses_of(const world::World& world, const sensors::Roster& roster, const Options& options) {
   std::vector<netio::PortUse> uses;
   for (const sensors::Roster::Group& group : roster.groups())
@@ -23,7 +25,7 @@ std::vector<netio::PortUse> uses_of(const world::World& world, const sensors::Ro
       const auto rows = roster.of(group.kind->id, m);
       if (rows.empty()) continue;
       uses.push_back({world.movers[m].id, static_cast<std::uint32_t>(rows.size()), port_rule(options, *group.kind),
-                      world.movers[m].name, 0, std::string(group.kind->name)});
+                      world.movers[m].name, 0, std::string(group.kind->name), port_option(*group.kind)});
     }
   return uses;
 }
@@ -38,7 +40,7 @@ void require_sendable(const world::World& world, const sensors::Roster& roster, 
   std::string bases;
   for (const sensors::Roster::Group& group : roster.groups()) {
     require_wire(world, group, options.wire);
-    bases += (bases.empty() ? "--" : ", --") + std::string(group.kind->name) + "-port";
+    bases += (bases.empty() ? "" : ", ") + port_option(*group.kind);
   }
   try {
     netio::require_ports(uses_of(world, roster, options));
@@ -68,24 +70,29 @@ std::span<const base::ReadingBlock> NoReturn::apply(std::span<const base::Readin
 
 Post::Post(const world::World& world, const sensors::Roster& roster, const Options& options)
     : world_(world), roster_(roster), options_(options) {
+  for (const sensors::Roster::Group& group : roster.groups()) sent_[group.kind->id].resize(group.rows.size());
   payload_.reserve(netio::kMaxPlain);
   packet_.reserve(netio::kMaxDatagram);
 }
 
 void Post::queue(const base::ReadingBlock& reading, std::uint32_t address) {
-  const sensors::SensorKind& kind = *roster_.group(reading.kind)->kind;
+  const sensors::Roster::Group& group = *roster_.group(reading.kind);
+  const sensors::SensorKind& kind = *group.kind;
   const sensors::SensorRow& row = roster_.row(reading);
+  std::uint32_t& sent = sent_[reading.kind][static_cast<std::size_t>(&row - group.rows.data())];
   netio::Header header;
   header.robot = static_cast<std::uint16_t>(world_.movers[reading.mover].id);
   header.sensor = static_cast<std::uint16_t>(reading.sensor);
-  header.sequence = reading.sequence;
+  header.sequence = sent;
   header.time = reading.time;
   const auto port = static_cast<std::uint16_t>(netio::port(port_rule(options_, kind), header.robot, reading.sensor));
 
   const std::uint32_t parts = kind.parts(row, options_.wire);
+  bool any = false;
   for (std::uint32_t part = 0; part < parts; ++part) {
     payload_.clear();
     const std::uint8_t type = kind.encode(row, reading, options_.wire, part, payload_);
+    any = any || type != 0;
     if (type == 0) {
       ++not_numbers_;
     } else if (options_.wire == sensors::Wire::thesis) {
@@ -95,6 +102,7 @@ void Post::queue(const base::ReadingBlock& reading, std::uint32_t address) {
       outbox_.queue({address, port}, packet_);
     }
   }
+  sent += any ? 1 : 0;
 }
 
 }  // namespace sf::apps

@@ -42,7 +42,8 @@ struct PostCounts {
   std::uint64_t not_numbers = 0;  ///< packets never made, for a value that is not a number where none may be missing
 };
 
-/// Readings as packets. World, roster and options must outlive it.
+/// Readings as packets, numbered per sensor as they are sent: a reading that was due and never sent leaves no gap.
+/// World, roster and options must outlive it.
 class Post {
  public:
   Post(const world::World& world, const sensors::Roster& roster, const Options& options);
@@ -57,6 +58,7 @@ class Post {
   const sensors::Roster& roster_;
   const Options& options_;
   netio::Outbox outbox_;
+  std::map<std::uint8_t, std::vector<std::uint32_t>> sent_;  ///< by kind, per row of its group: readings
   std::uint64_t not_numbers_ = 0;
   base::Bytes payload_;
   base::Bytes packet_;

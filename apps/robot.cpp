@@ -59,10 +59,11 @@ int robot(const Options& options) {
     process.turn(now());
   }
 
+  process.leave(now());
   RobotFacts facts = process.facts(options);
   facts.wall_s = 1e-9 * static_cast<double>(now());
   std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
-  return 0;
+  return facts.answered || !facts.listens ? 0 : 1;
 }
 
 int start(const Options& options) {
@@ -82,8 +83,10 @@ int start(const Options& options) {
   if (outbox.counts().sent == 0)
     throw base::InputError("the start signal was not sent: " + outbox.counts().first_failure);
   std::fprintf(
-      stderr, "sensorfarm: start signal sent to %s for %s\n", netio::text(farm).c_str(),
-      options.start_id == netio::kEveryone ? "all robots" : ("robot " + std::to_string(options.start_id)).c_str());
+      stderr, "sensorfarm: start signal sent to %s for %s, %d times; nobody acknowledges it\n",
+      netio::text(farm).c_str(),
+      options.start_id == netio::kEveryone ? "all robots" : ("robot " + std::to_string(options.start_id)).c_str(),
+      kTimes);
   return 0;
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "apps/wording.h"
+
 namespace sf::apps {
 
 namespace {
@@ -28,8 +30,8 @@ std::string link_text(const LinkCounts& link) {
                                                 link.sent.dropped));
   text += row("readings", kinds_text(link));
   text += row("sensor packets", netio::text(in.reasons));
-  text += row("", fmt::format("{} late, {} duplicates, {} lost", in.late, in.duplicates, in.lost));
-  if (in.restarts > 0) text += row("", fmt::format("{} sensors began anew", in.restarts));
+  text += row("", fmt::format("{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost));
+  if (in.restarts > 0) text += row("", counted(in.restarts, "sensor") + " began anew");
   text += row("V2V and START", netio::text(link.words));
   if (link.out.lost + link.in.lost > 0) {
     text += row("injected link, out", injected_text(link.out));
@@ -44,14 +46,12 @@ std::string text_of(const RobotFacts& f) {
   std::string text = f.answered ? "" : fmt::format("Nothing came from the farm at {}.\n", f.farm);
   if (!f.started) text += "The start signal did not come.\n";
   text += row("robot", fmt::format("{} (id {}), {}{}", f.robot, f.id, f.controller, f.done ? ": done" : ""));
-  text += row("ran", fmt::format("{:.2f} s, {} steps", f.wall_s, f.steps));
+  text += row("ran", fmt::format("{:.2f} s, {}", f.wall_s, counted(f.steps, "step")));
   text += link_text(f.link);
   text += row("driven", fmt::format("{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
                                     f.pose.yaw * 180.0 / M_PI));
-  text += row("contacts", fmt::format("{} moves", f.contacts));
-  if (f.error.steps > 0)
-    text += row("control error", fmt::format("mean {:.4f}, mean of its size {:.4f}, of {} steps", f.error.mean,
-                                             f.error.abs_mean, f.error.steps));
+  text += row("contacts", counted(f.contacts, "move"));
+  if (f.error.steps > 0) text += row("control error", text_of(f.error));
   return text;
 }
 

@@ -4,17 +4,11 @@
 #include <cstdint>
 #include <string>
 
+#include "apps/control_facts.h"
 #include "apps/robot_link.h"
 #include "base/pose.h"
 
 namespace sf::apps {
-
-/// Means of what a controller called its error, in the controller's own unit.
-struct ErrorFacts {
-  std::uint64_t steps = 0;  ///< with an error
-  double mean = 0.0;
-  double abs_mean = 0.0;
-};
 
 struct RobotFacts {
   std::string robot;  ///< name in the world
@@ -26,6 +20,7 @@ struct RobotFacts {
   bool started = true;      ///< it did not wait for a start signal, or it came
   bool done = false;        ///< as the controller says
   bool answered = false;    ///< anything came from the farm
+  bool listens = true;      ///< it has sensors, so that something should have come
   LinkCounts link;
   std::uint64_t contacts = 0;  ///< moves that something stopped
   double distance_m = 0.0;     ///< driven

@@ -105,6 +105,17 @@ void RobotLink::send(netio::Type type, std::uint32_t sequence, std::int64_t now)
   out_.release(now, [&](std::size_t, std::span<const std::uint8_t> bytes) { radio_.send(bytes); });
 }
 
+void RobotLink::leave(std::int64_t now) {
+  if (states_ == 0) return;
+  netio::Header header;
+  header.robot = static_cast<std::uint16_t>(id_);
+  header.time = now;
+  netio::encode(header, netio::Leave{}, packet_);
+  out_.send({id_, stream_number(netio::Type::leave, 0), 0}, now, 0, packet_);
+  out_.release(std::numeric_limits<std::int64_t>::max(),
+               [&](std::size_t, std::span<const std::uint8_t> bytes) { radio_.send(bytes); });
+}
+
 void RobotLink::wait(std::int64_t now, std::int64_t until) const {
   const std::int64_t next = std::min({until, out_.next(), in_.next(), now + kLongestSleep});
   if (next <= now) return;

@@ -44,6 +44,8 @@ class RobotLink {
 
   /// Sends a state, and every half a second what it wants to be sent.
   void say(const netio::V2v& state, std::int64_t now);
+  /// Says that it said its last, unless it said nothing: at once, and what still waits in the injected link with it.
+  void leave(std::int64_t now);
   /// Sleeps until something comes, is due, or it is `until`, but 100 ms at most.
   void wait(std::int64_t now, std::int64_t until) const;
   /// Takes all that waits, and lets go what is due in both directions.

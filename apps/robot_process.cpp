@@ -11,6 +11,7 @@ namespace sf::apps {
 
 namespace {
 
+constexpr std::string_view kStart = "start=";
 constexpr std::int64_t kAnswerIn = 3'000'000'000;  ///< [ns] without one, the user is told
 
 /// Within what a packet may say, whatever the world file lets a robot do.
@@ -30,7 +31,10 @@ netio::V2v state_of(const base::Report& report, const base::Intent& intent) {
 }  // namespace
 
 bool waits_for_start(const Options& options) {
-  return options.wait_for_start || std::count(options.set.begin(), options.set.end(), "start=signal") > 0;
+  return options.wait_for_start || std::any_of(options.set.begin(), options.set.end(), [](const std::string& text) {
+           return text.compare(0, kStart.size(), kStart) == 0 &&
+                  control::read_text(std::string_view(text).substr(kStart.size())) == "signal";
+         });
 }
 
 RobotProcess::RobotProcess(const world::World& world, const sensors::Roster& roster, std::uint32_t mover,
@@ -69,14 +73,12 @@ RobotFacts RobotProcess::facts(const Options& options) const {
   facts.started = started_;
   facts.done = done();
   facts.answered = link_.answered();
+  facts.listens = link_.listens();
   facts.link = link_.counts();
   facts.contacts = contacts_;
   facts.distance_m = body_.distance();
   facts.pose = body_.state().X_WM;
-  if (errors_ > 0) {
-    const auto count = static_cast<double>(errors_);
-    facts.error = {errors_, error_sum_ / count, abs_error_sum_ / count};
-  }
+  facts.error = error_;
   return facts;
 }
 
@@ -99,14 +101,7 @@ void RobotProcess::decide(std::int64_t now) {
   input.state.time = now;
   command_ = made_.controller->step(input);
   ++steps_;
-  add_error(made_.controller->error());
-}
-
-void RobotProcess::add_error(double error) {
-  if (!std::isfinite(error)) return;
-  ++errors_;
-  error_sum_ += error;
-  abs_error_sum_ += std::abs(error);
+  add(error_, made_.controller->error());
 }
 
 /// Packets do not say where the farm took the robot to be: it goes by where it was itself.

@@ -42,6 +42,9 @@ class RobotProcess {
   /// Moves as it decided last, decides anew, and says where it is.
   void turn(std::int64_t now);
 
+  /// The last word, after which the farm hears another with this id at once.
+  void leave(std::int64_t now) { link_.leave(now); }
+
   double rate() const { return made_.rate; }  ///< [Hz] of turns
   bool done() const { return started_ && made_.controller->done(); }
   const RobotLink& link() const { return link_; }
@@ -54,7 +57,6 @@ class RobotProcess {
   void gather_readings();
   void gather_others(std::int64_t now);
   void gather_signals(std::int64_t now);
-  void add_error(double error);
   void complain(std::int64_t now);
 
   const world::World& world_;
@@ -70,9 +72,7 @@ class RobotProcess {
   bool complained_ = false;
   std::uint64_t steps_ = 0;
   std::uint64_t contacts_ = 0;
-  std::uint64_t errors_ = 0;
-  double error_sum_ = 0.0;
-  double abs_error_sum_ = 0.0;
+  ErrorFacts error_;
   std::vector<base::ReadingBlock> readings_;
   std::vector<control::Neighbour> others_;
   std::vector<world::Signal> signals_;

@@ -99,6 +99,7 @@ int run(const Options& options) {
   if (!options.send.empty()) require_sendable(world, roster, options);
   gpu::Device device(options.device);
   scenarios::Simulation simulation(world, device, simulation_options(options));
+  ControlTally tally(simulation, world.movers.size(), options.controller);
   Outputs outputs(world, roster, options);
   catch_stop_signals();
 
@@ -109,6 +110,7 @@ int run(const Options& options) {
     Progress progress("simulating");
     for (; facts.ticks < ticks && !stop_requested(); ++facts.ticks) {
       const base::TickRecord tick = simulation.step();
+      tally.look();
       outputs.write(tick);
       for (const std::uint8_t contact : tick.contacts) facts.contacts += contact;
       const double simulated = static_cast<double>(facts.ticks + 1) * world.interval;
@@ -122,6 +124,7 @@ int run(const Options& options) {
   facts.device = device.facts().name;
   facts.software = device.facts().software;
   for (const world::Mover& mover : world.movers) facts.robots += !mover.is_tag;
+  facts.control = tally.facts();
   facts.move_s = simulation.move_seconds();
   facts.farm = simulation.farm().stats();
   facts.hash = simulation.farm().hash();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <map>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -72,7 +74,7 @@ class Service {
   /// All that waits, at `now` [ns].
   void take_in(std::int64_t now) {
     reports_.clear();
-    inbox_.receive(now, [&](const netio::Packet& packet) {
+    const auto take = [&](const netio::Packet& packet) {
       relay_.take(packet);
       if (const auto* state = std::get_if<netio::V2v>(&packet.body)) {
         reports_.push_back(netio::report(packet.header, *state, names_.robots.at(packet.header.robot)));
@@ -83,7 +85,8 @@ class Service {
       }
       // Senders' clocks are their own: a state is true when it arrives.
       reports_.back().time = now;
-    });
+    };
+    inbox_.receive(now, take, [&](const netio::Packet& packet, const netio::Endpoint& who) { complain(packet, who); });
     fleet_.apply(reports_);
   }
 
@@ -109,6 +112,22 @@ class Service {
     return kinds;
   }
 
+  /// Of each binding's strangers, once.
+  void complain(const netio::Packet& packet, const netio::Endpoint& who) {
+    const bool tag = std::holds_alternative<netio::Tag>(packet.body);
+    const std::uint32_t id = packet.header.robot;
+    const netio::Endpoint bound = *(tag ? inbox_.tag_address(id) : inbox_.address(id));
+    auto& said = (tag ? said_of_tags_ : said_of_robots_)[id];
+    if (said == bound) return;
+    said = bound;
+    std::fprintf(
+        stderr,
+        "sensorfarm: %s (%s %u) is heard from %s; what %s says as the same is dropped until that one leaves or "
+        "is silent for 2 s\n",
+        world_.movers[(tag ? names_.tags : names_.robots).at(id)].name.c_str(), tag ? "tag" : "id", id,
+        netio::text(bound).c_str(), netio::text(who).c_str());
+  }
+
   const world::World& world_;
   const sensors::Roster& roster_;
   WireNames names_;
@@ -120,6 +139,9 @@ class Service {
   robots::Fleet fleet_;
   NoReturn no_return_;
   std::vector<base::Report> reports_;
+  // By id: the binding whose strangers were spoken of.
+  std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_robots_;
+  std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_tags_;
   std::uint64_t ticks_ = 0;
 };
 

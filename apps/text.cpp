@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "apps/facts.h"
+#include "apps/wording.h"
 #include "base/hash.h"
 #include "sensors/field/truncation.h"
 
@@ -30,7 +31,7 @@ std::string sensors_text(const sensors::Roster& roster) {
 std::string paint_text(const world::World& world) {
   if (world.stripes.empty()) return "";
   const double cell = world.road_resolution;
-  return row("paint", fmt::format("{} stripes, seen {}", world.stripes.size(),
+  return row("paint", fmt::format("{}, seen {}", counted(world.stripes.size(), "stripe"),
                                   cell > 0.0 ? fmt::format("as a raster of {:g} m", cell) : "exactly"));
 }
 
@@ -105,6 +106,16 @@ std::string work_text(const RunFacts& f) {
   return text;
 }
 
+/// What came of the controllers.
+std::string control_text(const ControlFacts& f) {
+  if (f.robots == 0) return "";
+  std::string text =
+      row("controller", fmt::format("{}: {} of {} done", f.controller, f.done, counted(f.robots, "robot")));
+  if (f.error.steps > 0) text += row("control error", text_of(f.error));
+  if (f.has_goals) text += row("checkpoints", fmt::format("{} passed", f.checkpoints));
+  return text;
+}
+
 std::string packets_text(const PostCounts& post) {
   const netio::OutboxCounts& packets = post.packets;
   std::string text =
@@ -128,7 +139,8 @@ std::string text_of(const RunFacts& f) {
   text += row("simulated", fmt::format("{:.1f} s in {:.2f} s: {:.1f} x real time", f.simulated_s, f.wall_s,
                                        f.wall_s > 0.0 ? f.simulated_s / f.wall_s : 0.0));
   text += work_text(f);
-  if (f.contacts > 0) text += row("contacts", fmt::format("{} robot-ticks", f.contacts));
+  if (f.contacts > 0) text += row("contacts", counted(f.contacts, "robot-tick"));
+  text += control_text(f.control);
   if (f.sent) text += packets_text(f.post);
   if (f.received) text += row("packets received", netio::text(f.inbox));
   if (f.relayed.states + f.relayed.starts > 0)
@@ -162,10 +174,12 @@ std::string shares_text(const netio::Summary& summary) {
 }  // namespace
 
 std::string text_of(const netio::Summary& s) {
-  std::string text = row("packets received", fmt::format("{} ({:.1f} MB) on {} ports", s.datagrams,
-                                                         static_cast<double>(s.bytes) * 1e-6, s.ports));
+  std::string text = row(
+      "packets received",
+      fmt::format("{} ({:.1f} MB) on {}", s.datagrams, static_cast<double>(s.bytes) * 1e-6, counted(s.ports, "port")));
   text += row("packets good", fmt::format("{}{}", s.good, shares_text(s)));
-  text += row("packets lost", fmt::format("{} ({} duplicates, {} reordered)", s.lost, s.duplicates, s.reordered));
+  text += row("packets lost",
+              fmt::format("{} ({}, {} reordered)", s.lost, counted(s.duplicates, "duplicate"), s.reordered));
   if (s.counts.dropped() > 0) text += row("by reason", netio::text(s.counts));
   if (s.silent_ports > 0) text += row("silent ports", fmt::format("{}", s.silent_ports));
   return text;

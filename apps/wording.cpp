@@ -40,6 +40,10 @@ std::string either(const std::vector<std::string>& words) {
   return text;
 }
 
+std::string counted(std::uint64_t count, std::string_view word) {
+  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
+}
+
 std::string refuse_choice(const std::string& text, const std::vector<std::string>& words) {
   const bool known = std::count(words.begin(), words.end(), text) > 0;
   return known ? "" : fmt::format("expected {}, got '{}'", either(words), text);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/pose.h"
@@ -24,6 +25,9 @@ std::string refuse_empty(const std::string& text, const std::string& what);
 
 /// "a, b or c". @param words at least one.
 std::string either(const std::vector<std::string>& words);
+
+/// "1 port", "2 ports". @param word takes an s for several
+std::string counted(std::uint64_t count, std::string_view word);
 
 /// "X,Y,YAW_DEG" [m, m, degrees], each within 1e7, as a pose; nothing where it is none.
 std::optional<base::Pose> read_pose(const std::string& text);

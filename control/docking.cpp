@@ -70,6 +70,10 @@ const world::Emitter& find_dock(const Site& site, Settings& settings) {
 
 std::unique_ptr<Controller> make_docking(const Site& site, Settings& settings) {
   const world::Mover& mover = site.world.movers[site.mover];
+  if (std::none_of(mover.sensors.begin(), mover.sensors.end(),
+                   [](const world::Sensor& sensor) { return sensor.type == "irreceiver"; }))
+    throw base::InputError(fmt::format(
+        "controller 'docking': '{}' has no infrared receiver; give it an irreceiver( ) in the world file", mover.name));
   const world::Emitter& dock = find_dock(site, settings);
   DockingSettings docking;
   docking.X_WD = dock.X_WE;

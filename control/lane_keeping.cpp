@@ -1,5 +1,7 @@
 #include "control/lane_keeping.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -42,6 +44,11 @@ const world::Sensor* find_sensor(const world::Mover& mover) {
 
 std::unique_ptr<Controller> make_lane_keeping(const Site& site, Settings& settings) {
   const world::Mover& mover = site.world.movers[site.mover];
+  const world::Sensor* sensor = find_sensor(mover);
+  if (sensor == nullptr)
+    throw base::InputError(
+        fmt::format("controller 'lane-keeping': '{}' has no lane edge sensor; give it a laneedge( ) in the world file",
+                    mover.name));
   const PathTask task(site, settings);
   LaneSettings lane;
   lane.gains = read_gains(settings, lane.gains);
@@ -52,11 +59,8 @@ std::unique_ptr<Controller> make_lane_keeping(const Site& site, Settings& settin
     settings.refuse("half_width",
                     "'lane-keeping' needs the lane's width, and the world has no path; expected a path( "
                     "... ) in the world file, or the setting 'half_width' [m]");
-  const world::Sensor* sensor = find_sensor(mover);
-  if (sensor != nullptr) {
-    lane.p_MS = {sensor->X_MS.x, sensor->X_MS.y};
-    lane.side = std::sin(sensor->X_MS.yaw) < 0.0 ? -1.0 : 1.0;
-  }
+  lane.p_MS = {sensor->X_MS.x, sensor->X_MS.y};
+  lane.side = std::sin(sensor->X_MS.yaw) < 0.0 ? -1.0 : 1.0;
   const std::string side = settings.choice("side", lane.side > 0.0 ? "left" : "right", {"left", "right"});
   lane.side = side == "left" ? 1.0 : -1.0;
   return std::make_unique<LaneKeeping>(lane, task);

@@ -1,7 +1,11 @@
 #include "control/magnet_keeping.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "sensors/magnetometer.h"
 
 namespace sf::control {
@@ -34,7 +38,22 @@ base::Twist MagnetKeeping::step(const Input& input) {
 
 namespace {
 
+/// @throws base::InputError where there are not two elements to compare.
+void require_array(const world::Mover& mover) {
+  const auto found = std::find_if(mover.sensors.begin(), mover.sensors.end(),
+                                  [](const world::Sensor& sensor) { return sensor.type == "magnetometer"; });
+  if (found == mover.sensors.end())
+    throw base::InputError(fmt::format(
+        "controller 'magnet-keeping': '{}' has no magnetometers; give it a magnetometer( ) in the world file",
+        mover.name));
+  if (sensors::read_magnetometer(*found).X_SE.size() < 2)
+    throw base::InputError(
+        fmt::format("controller 'magnet-keeping': '{}' has an array of one magnetometer; give it two or more (scount)",
+                    mover.name));
+}
+
 std::unique_ptr<Controller> make_magnet_keeping(const Site& site, Settings& settings) {
+  require_array(site.world.movers[site.mover]);
   MagnetSettings magnet;
   magnet.gains = read_gains(settings, magnet.gains);
   magnet.speed = settings.number("speed", magnet.speed, 0.0, site.world.movers[site.mover].max_forward);

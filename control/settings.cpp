@@ -3,11 +3,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 
 #include "base/error.h"
 
 namespace sf::control {
+
+namespace {
+
+bool is_raw(const Value& value) { return std::holds_alternative<RawText>(value); }
+
+/// As it would be written.
+std::string text_of(const Value& value) {
+  if (const auto* raw = std::get_if<RawText>(&value)) return fmt::format("'{}'", raw->text);
+  if (const auto* text = std::get_if<std::string>(&value)) return fmt::format("'{}'", *text);
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  if (const auto* numbers = std::get_if<std::vector<double>>(&value))
+    return fmt::format("[{}]", fmt::join(*numbers, ", "));
+  return fmt::format("['{}']", fmt::join(std::get<std::vector<std::string>>(value), "', '"));
+}
+
+/// The value as a T: it is one, or `read(raw)` makes it one.
+template <class T, class Read>
+std::optional<T> value_as(const Value& value, Read&& read) {
+  if (const auto* raw = std::get_if<RawText>(&value)) return read(raw->text);
+  const T* typed = std::get_if<T>(&value);
+  return typed != nullptr ? std::optional<T>(*typed) : std::nullopt;
+}
+
+}  // namespace
 
 Settings::Settings(std::string owner, std::vector<Setting> settings)
     : owner_(std::move(owner)), settings_(std::move(settings)), read_(settings_.size()) {}
@@ -35,25 +60,28 @@ void Settings::refuse(std::string_view key, const std::string& message) const {
 double Settings::number(std::string_view key, double fallback, double least, double most) {
   const Setting* setting = find(key);
   if (setting == nullptr) return fallback;
-  const double* value = std::get_if<double>(&setting->value);
-  if (value == nullptr || !(*value >= least && *value <= most))
-    refuse(key, fmt::format("'{}' of {} expects a number from {:g} to {:g}", key, owner_, least, most));
+  const auto value = value_as<double>(setting->value, read_number);
+  if (!value || !(*value >= least && *value <= most))
+    refuse(key, fmt::format("'{}' of {} expects a number from {:g} to {:g}; got {}", key, owner_, least, most,
+                            text_of(setting->value)));
   return *value;
 }
 
 bool Settings::flag(std::string_view key, bool fallback) {
   const Setting* setting = find(key);
   if (setting == nullptr) return fallback;
-  const bool* value = std::get_if<bool>(&setting->value);
-  if (value == nullptr) refuse(key, fmt::format("'{}' of {} expects true or false", key, owner_));
+  const auto value = value_as<bool>(setting->value, read_flag);
+  if (!value)
+    refuse(key, fmt::format("'{}' of {} expects true or false; got {}", key, owner_, text_of(setting->value)));
   return *value;
 }
 
 std::string Settings::text(std::string_view key, const std::string& fallback) {
   const Setting* setting = find(key);
   if (setting == nullptr) return fallback;
-  const std::string* value = std::get_if<std::string>(&setting->value);
-  if (value == nullptr) refuse(key, fmt::format("'{}' of {} expects a text", key, owner_));
+  const auto value = value_as<std::string>(setting->value, [](const std::string& raw) { return read_text(raw); });
+  if (!value)
+    refuse(key, fmt::format("'{}' of {} expects a text in quotes; got {}", key, owner_, text_of(setting->value)));
   return *value;
 }
 
@@ -67,16 +95,20 @@ std::string Settings::choice(std::string_view key, const std::string& fallback, 
 std::vector<double> Settings::numbers(std::string_view key, const std::vector<double>& fallback) {
   const Setting* setting = find(key);
   if (setting == nullptr) return fallback;
-  const auto* value = std::get_if<std::vector<double>>(&setting->value);
-  if (value == nullptr) refuse(key, fmt::format("'{}' of {} expects a list of numbers", key, owner_));
+  const auto value = value_as<std::vector<double>>(setting->value, read_numbers);
+  if (!value)
+    refuse(key, fmt::format("'{}' of {} expects a list of numbers such as {}; got {}", key, owner_,
+                            is_raw(setting->value) ? "1,2" : "[1, 2]", text_of(setting->value)));
   return *value;
 }
 
 std::vector<std::string> Settings::texts(std::string_view key, const std::vector<std::string>& fallback) {
   const Setting* setting = find(key);
   if (setting == nullptr) return fallback;
-  const auto* value = std::get_if<std::vector<std::string>>(&setting->value);
-  if (value == nullptr) refuse(key, fmt::format("'{}' of {} expects a list of texts", key, owner_));
+  const auto value = value_as<std::vector<std::string>>(setting->value, read_texts);
+  if (!value)
+    refuse(key, fmt::format("'{}' of {} expects a list of texts such as {}; got {}", key, owner_,
+                            is_raw(setting->value) ? "a,b" : "[\"a\", \"b\"]", text_of(setting->value)));
   return *value;
 }
 

@@ -7,9 +7,12 @@
 #include <variant>
 #include <vector>
 
+#include "control/raw_text.h"
+
 namespace sf::control {
 
-using Value = std::variant<bool, double, std::string, std::vector<double>, std::vector<std::string>>;
+/// As a file says it, which knows its types; or raw, and then of whatever type it is read as.
+using Value = std::variant<bool, double, std::string, std::vector<double>, std::vector<std::string>, RawText>;
 
 struct Setting {
   std::string key;

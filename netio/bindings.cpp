@@ -34,6 +34,7 @@ Reason Bindings::admit(std::uint32_t id, std::size_t line, std::uint32_t sequenc
 
   const bool bound = alive(speaker.last, now);
   if (bound && speaker.source != source) return Reason::wrong_source;
+  if (alive(speaker.left, now) && speaker.gone == source) return Reason::stale;
   if (!bound) {
     for (Line& each : speaker.lines) each.last.reset();
   }
@@ -43,6 +44,18 @@ Reason Bindings::admit(std::uint32_t id, std::size_t line, std::uint32_t sequenc
   speaker.source = source;
   speaker.last = now;
   own = {sequence, now};
+  return Reason::accepted;
+}
+
+Reason Bindings::leave(std::uint32_t id, const Endpoint& source, std::int64_t now) {
+  const auto at = row(id);
+  SF_CHECK(at, "id " + std::to_string(id));
+  Speaker& speaker = speakers_[*at];
+  if (!alive(speaker.last, now)) return Reason::stale;
+  if (speaker.source != source) return Reason::wrong_source;
+  speaker.last.reset();
+  speaker.gone = source;
+  speaker.left = now;
   return Reason::accepted;
 }
 

@@ -32,10 +32,14 @@ class Bindings {
   /// accepted, wrong_source or stale; of a known id only. `now` [ns] on any clock that does not go back.
   Reason admit(std::uint32_t id, std::size_t line, std::uint32_t sequence, const Endpoint& source, std::int64_t now);
 
+  /// `source` speaks for `id` no longer: accepted where it did (the id is free at once), wrong_source where another
+  /// does, else stale. What comes from `source` for two seconds then is stale: it was overtaken.
+  Reason leave(std::uint32_t id, const Endpoint& source, std::int64_t now);
+
   /// A packet of `id` was accepted less than two seconds before `now`. False for unknown ids.
   bool heard(std::uint32_t id, std::int64_t now) const;
 
-  /// Who spoke last for `id`, be it silent since; nothing when it was never heard.
+  /// Who spoke last for `id`, be it silent since; nothing when it was never heard, or left.
   std::optional<Endpoint> source(std::uint32_t id) const;
 
  private:
@@ -48,6 +52,8 @@ class Bindings {
     Endpoint source;
     std::optional<std::int64_t> last;
     Line lines[kLines];
+    Endpoint gone;                     ///< who left last
+    std::optional<std::int64_t> left;  ///< [ns] when
   };
   std::vector<Speaker> speakers_;  ///< by id
 };

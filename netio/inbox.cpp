@@ -54,6 +54,8 @@ Reason Inbox::judge(const Packet& packet, const Endpoint& source, std::int64_t n
     case Type::v2v:
     case Type::subscribe:
       return judge_robot(packet, source, now);
+    case Type::leave:
+      return robots_.row(packet.header.robot) ? robots_.leave(packet.header.robot, source, now) : Reason::unknown_robot;
     case Type::tag:
       if (!tags_.row(packet.header.robot)) return Reason::unknown_tag;
       return tags_.admit(packet.header.robot, kStateLine, packet.header.sequence, source, now);

@@ -36,28 +36,36 @@ class Inbox {
   /// @throws base::InputError when the address cannot be bound, or an id does not fit a packet.
   explicit Inbox(const InboxOptions& options);
 
-  /// Takes every datagram that waits and gives `take(const Packet&)` each accepted one, in order of arrival.
+  /// Takes every datagram that waits and gives `take(const Packet&)` each accepted one, in order of arrival, and
+  /// `stranger(const Packet&, const Endpoint& who)` each that was well but came from the wrong source.
   /// Returns how many were taken from the socket.
-  template <class Take>
-  std::size_t receive(std::int64_t now, Take&& take) {
+  template <class Take, class Stranger>
+  std::size_t receive(std::int64_t now, Take&& take, Stranger&& stranger) {
     std::size_t taken = 0;
     Packet packet;
     while (taken < kMaxPerReceive) {
       const std::size_t n = batch_.fill(socket_);
       if (n == 0) break;
       for (std::size_t i = 0; i < n; ++i) {
-        if (accept(batch_.bytes(i), batch_.source(i), now, packet) == Reason::accepted) take(packet);
+        const Reason reason = accept(batch_.bytes(i), batch_.source(i), now, packet);
+        if (reason == Reason::accepted) take(packet);
+        if (reason == Reason::wrong_source) stranger(packet, batch_.source(i));
       }
       taken += n;
     }
     return taken;
   }
 
-  /// One datagram, from wherever: decides, counts, and fills `packet` when accepted (else it holds
-  /// nothing of use). receive() is this for a socket.
+  template <class Take>
+  std::size_t receive(std::int64_t now, Take&& take) {
+    return receive(now, take, [](const Packet&, const Endpoint&) {});
+  }
+
+  /// One datagram, from wherever: decides, counts, and fills `packet` when accepted or from the wrong source (else it
+  /// holds nothing of use). receive() is this for a socket.
   Reason accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now, Packet& packet);
 
-  /// A V2V or SUBSCRIBE of `robot` was accepted less than two seconds before `now`.
+  /// A V2V or SUBSCRIBE of `robot` was accepted less than two seconds before `now`, and no LEAVE since.
   bool heard(std::uint32_t robot, std::int64_t now) const { return robots_.heard(robot, now); }
 
   /// heard, and its last SUBSCRIBE since it is heard asked for sensor kind `kind` in [1, 31] (none: it wants all).
@@ -66,8 +74,12 @@ class Inbox {
   /// heard, and its last SUBSCRIBE since it is heard asked for other robots' states.
   bool asks_for_others(std::uint32_t robot, std::int64_t now) const;
 
-  /// Where `robot` sends from. Its readings go to this address, at each sensor's own port.
+  /// Where `robot` sends from; nothing when it was never heard, or left. Its readings go to this address, at each
+  /// sensor's own port.
   std::optional<Endpoint> address(std::uint32_t robot) const { return robots_.source(robot); }
+
+  /// Where tag `tag` is sent from.
+  std::optional<Endpoint> tag_address(std::uint32_t tag) const { return tags_.source(tag); }
 
   std::uint16_t port() const { return bound_endpoint(socket_).port; }
   const Counts& counts() const { return counts_; }

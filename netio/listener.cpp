@@ -1,5 +1,6 @@
 #include "netio/listener.h"
 
+#include <chrono>
 #include <utility>
 
 #include "base/error.h"
@@ -61,10 +62,13 @@ std::size_t Listener::drain(int timeout_ms) {
                               [this](std::size_t i, std::span<const std::uint8_t> bytes) { accept(i, bytes); });
 }
 
-void Listener::run(const std::atomic<bool>& stop, int silence_ms) {
+void Listener::run(const std::atomic<bool>& stop, int silence_ms, std::int64_t longest_ms) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const auto over = [&] { return longest_ms > 0 && Clock::now() - start >= std::chrono::milliseconds(longest_ms); };
   bool begun = false;
   int silent_ms = 0;
-  while (!stop.load() && !(begun && silent_ms >= silence_ms)) {
+  while (!stop.load() && !(begun && silent_ms >= silence_ms) && !over()) {
     const bool came = drain(kLookMs) > 0;
     begun = begun || came;
     silent_ms = came ? 0 : silent_ms + kLookMs;

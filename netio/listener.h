@@ -81,9 +81,9 @@ class Listener {
   /// taken.
   std::size_t drain(int timeout_ms = 0);
 
-  /// Drains until `stop` is set, or until nothing came for `silence_ms` after the first datagram; then takes what still
-  /// waits.
-  void run(const std::atomic<bool>& stop, int silence_ms);
+  /// Drains until `stop` is set, until nothing came for `silence_ms` after the first datagram, or until `longest_ms`
+  /// have passed (0: however long it takes); then takes what still waits.
+  void run(const std::atomic<bool>& stop, int silence_ms, std::int64_t longest_ms = 0);
 
   /// One datagram for stream `i`, from wherever: decides and counts. drain() is this for sockets.
   Reason accept(std::size_t i, std::span<const std::uint8_t> bytes);

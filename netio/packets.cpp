@@ -113,6 +113,9 @@ Reason read_body(std::span<const std::uint8_t> payload, Packet& packet) {
     case Type::start:
       packet.body = Start{};
       return check_size(payload.size(), 0);
+    case Type::leave:
+      packet.body = Leave{};
+      return check_size(payload.size(), 0);
   }
   if (kind_of(packet.header.type) == 0) return Reason::unknown_type;
   packet.body = Reading{payload};
@@ -199,6 +202,7 @@ void encode(const Header& header, const Subscribe& request, base::Bytes& out) {
 }
 
 void encode(const Header& header, const Start&, base::Bytes& out) { start(header, Type::start, out); }
+void encode(const Header& header, const Leave&, base::Bytes& out) { start(header, Type::leave, out); }
 
 void frame(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out) {
   SF_CHECK(kind_of(Type{type}) != 0, "type " + std::to_string(type) + " is no reading's");

@@ -33,7 +33,7 @@ inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 y
 
 /// From 128: states and requests sent to the farm, of which it passes V2V and START on. Below 64: a reading of the
 /// sensor kind with that number; 64 more: its second form.
-enum class Type : std::uint8_t { v2v = 128, tag = 129, subscribe = 130, start = 131 };
+enum class Type : std::uint8_t { v2v = 128, tag = 129, subscribe = 130, start = 131, leave = 132 };
 
 /// The sensor kind in [1, 63] whose readings, of either form, are sent as `type`; 0 when it is no reading's.
 constexpr std::uint8_t kind_of(Type type) {
@@ -45,7 +45,7 @@ struct Header {
   Type type = Type::v2v;
   std::uint16_t robot = 0;     ///< whose reading or state; in a TAG the tag's id
   std::uint16_t sensor = 0;    ///< 0-based among the robot's sensors of this kind; 0 in states
-  std::uint32_t sequence = 0;  ///< counts up by one per message of this type (and sensor), wraps to 0
+  std::uint32_t sequence = 0;  ///< counts up by one per message sent of this type (and sensor), wraps to 0
   std::int64_t time = 0;       ///< [ns] in [0, kMaxTime]: when it was measured, not when it was sent
 };
 
@@ -75,6 +75,9 @@ inline constexpr std::uint32_t kOthers = 1;  ///< the bit of SUBSCRIBE that asks
 /// The signal to begin, to the robot that the header names or to kEveryone.
 struct Start {};
 
+/// A robot's last word: it will not be heard again, and its id is free.
+struct Leave {};
+
 /// A sensor's reading, or a part of one; its kind reads it.
 struct Reading {
   std::span<const std::uint8_t> payload;  ///< lives as long as the datagram
@@ -82,7 +85,7 @@ struct Reading {
 
 struct Packet {
   Header header;
-  std::variant<V2v, Tag, Subscribe, Start, Reading> body;
+  std::variant<V2v, Tag, Subscribe, Start, Leave, Reading> body;
 };
 
 /// Reads any bytes. Fills `packet` only when the answer is Reason::accepted.
@@ -93,6 +96,7 @@ void encode(const Header& header, const V2v& state, base::Bytes& out);
 void encode(const Header& header, const Tag& state, base::Bytes& out);
 void encode(const Header& header, const Subscribe& request, base::Bytes& out);
 void encode(const Header& header, const Start& signal, base::Bytes& out);
+void encode(const Header& header, const Leave& word, base::Bytes& out);
 
 /// A reading of type `type`, one of a sensor kind's two; replaces what `out` holds.
 /// Rule: header and payload together take at most kMaxDatagram.

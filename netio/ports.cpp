@@ -32,13 +32,21 @@ std::string describe(const PortRule& rule) {
                          "), but ports are 1 to 65535 and ids at most 65535: use a lower base port, or lower ids");
 }
 
+/// Which port to move: the option where it is known.
+std::string base_of(const PortUse& use) { return use.option.empty() ? "the base port of " + use.kind : use.option; }
+
+std::string remedy_of(const PortUse& a, const PortUse& b) {
+  const bool same_kind = a.kind == b.kind, same_base = a.rule.base == b.rule.base;
+  if (a.robot == b.robot && same_kind && same_base) return "give each robot its own id";
+  if (!same_kind && same_base) return "change " + base_of(a) + " or " + base_of(b) + ", so that each kind has its own";
+  if (!same_kind) return "move " + base_of(a) + " and " + base_of(b) + " apart";
+  return "raise the stride to at least " + std::to_string(std::max(a.sensors, b.sensors));
+}
+
 [[noreturn]] void refuse_shared(const PortUse& a, std::uint32_t sensor_a, const PortUse& b, std::uint32_t sensor_b) {
-  const std::string remedy = a.robot == b.robot && a.rule.base == b.rule.base
-                                 ? "give each robot its own id"
-                                 : "raise the stride to at least " + std::to_string(std::max(a.sensors, b.sensors)) +
-                                       ", or move the base ports apart";
   throw base::InputError(describe(a, sensor_a) + " and " + describe(b, sensor_b) + " share port " +
-                         std::to_string(port(a.rule, a.robot, sensor_a)) + " (" + describe(a.rule) + "): " + remedy);
+                         std::to_string(port(a.rule, a.robot, sensor_a)) + " (" + describe(a.rule) +
+                         "): " + remedy_of(a, b));
 }
 
 }  // namespace

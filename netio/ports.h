@@ -28,6 +28,7 @@ struct PortUse {
   std::string name;  ///< for the error: the robot's name in the world file
   std::uint32_t first = 0;
   std::string kind = "sensor";  ///< for the error too
+  std::string option;           ///< for the error: what sets the rule's base; empty: it says "base port"
 };
 
 /// @throws base::InputError, one line, when an id or a port is past 65535, a port is 0, or two sensors share one; it

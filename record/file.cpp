@@ -35,7 +35,10 @@ GrowingFile::GrowingFile(const std::string& path) : path_(path), fresh_(path + "
   std::error_code error;
   const auto directory = std::filesystem::path(path).parent_path();
   if (!directory.empty()) std::filesystem::create_directories(directory, error);
-  if (error) throw base::InputError(directory.string(), 0, "cannot be made a directory: " + error.message());
+  if (error)
+    throw base::InputError(
+        directory.string(), 0,
+        "cannot be made a directory: " + error.message() + "; choose one in a directory that you may write to");
 
   descriptor_ = ::open(fresh_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail("be written");

@@ -55,6 +55,12 @@ class Robot {
     mouth_.flush();
   }
 
+  void leave() {
+    base::Bytes bytes;
+    netio::encode({.robot = id_}, netio::Leave{}, bytes);
+    send(bytes);
+  }
+
   /// Ranges of the newest scan that waits; empty when none does.
   std::vector<double> hear() {
     std::vector<double> ranges;
@@ -143,6 +149,42 @@ void run_to_listener(const std::string& wire) {
 
 TEST(SendAndListen, EveryPacketArrivesAndIsGood) { run_to_listener("farm"); }
 TEST(SendAndListen, EveryPacketArrivesInTheThesisLayout) { run_to_listener("thesis"); }
+
+/// A sensor that is due twice a tick sends every other reading: none of these was lost.
+TEST(SendAndListen, ReadingsBetweenTicksAreNoLoss) {
+  const Folder folder;
+  const std::string world =
+      folder.write("w.world",
+                   "interval_sim 100\nmodel( size [6 4 1] boundary 1 noblocks 0 )\n"
+                   "position( name \"roomba1\" laser( samples 9 rate 20 ) laser( samples 9 rate 7 ) )\n");
+  const std::string base = std::to_string(free_ports(16));
+  Program listener({"listen", world, "--json", "--laser-port", base, "--silence", "100"});
+  ASSERT_TRUE(listener.says("listening on 2 ports")) << listener.err();
+  const Outcome sent =
+      run_program({"run", world, "--duration", "3", "--send", "127.0.0.1", "--json", "--laser-port", base});
+  ASSERT_EQ(sent.code, 0) << sent.err;
+  listener.signal(SIGINT);
+  const Json in(listener.wait().out);
+  EXPECT_GE(in.number("/good"), 30 + 15);
+  EXPECT_EQ(in.number("/good"), Json(sent.out).number("/packets/sent"));
+  EXPECT_EQ(in.number("/lost"), 0);
+}
+
+TEST(SendAndListen, AListenerEndsThoughNothingComes) {
+  const Folder folder;
+  const std::string world = folder.write("w.world", "position( name \"roomba1\" laser( ) )\n");
+  const Outcome outcome =
+      run_program({"listen", world, "--duration", "0.2", "--laser-port", std::to_string(free_ports(16))});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("listening on 1 port of"), std::string::npos) << outcome.err;
+}
+
+TEST(SendAndListen, OneRobotsKindsOnOneBaseAreToldApart) {
+  const Outcome outcome =
+      run_program({"run", our_world("mapping/mapping.world"), "--send", "127.0.0.1", "--laser-port", "52000"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("change --laser-port or --occupancy-port"), std::string::npos) << outcome.err;
+}
 
 TEST(SendAndListen, PortsThatCollideAreRefusedAtLoad) {
   const Folder folder;
@@ -261,6 +303,27 @@ TEST(Serve, StrangersAreCountedAndDropped) {
   EXPECT_EQ(facts.number("/received/unknown robot"), 1);
   EXPECT_EQ(facts.number("/received/too short"), 1);
   EXPECT_EQ(facts.number("/received/not finite"), 1);
+}
+
+TEST(Serve, StrangersAreNamedOncePerBindingAndALeaveEndsIt) {
+  Service service;
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  Robot one(1, service.port, service.hears(1)), again(1, service.port, service.lasers + 1);
+  ASSERT_TRUE(until([&] {
+    one.say({-1.0, 0.5, 0.0, 0.0});
+    return !one.hear().empty();
+  }));
+  for (int i = 0; i < 5; ++i) again.say({2.0, 0.0, 0.0, 0.0});
+  ASSERT_TRUE(service.program.says("says as the same is dropped"));
+  one.leave();
+  // It speaks for the id from here on, though not two seconds have passed.
+  for (int i = 0; i < 5; ++i) again.say({2.0, 0.0, 0.0, 0.0});
+  ASSERT_TRUE(until([&] { return !one.hear().empty(); }));
+  service.program.signal(SIGINT);
+  const Outcome outcome = service.program.wait();
+  EXPECT_EQ(count_lines(outcome.err), 2u) << outcome.err;  // where it serves, and the stranger
+  EXPECT_NE(outcome.err.find("roomba1 (id 1) is heard from 127.0.0.1:"), std::string::npos) << outcome.err;
+  EXPECT_EQ(Json(outcome.out).number("/received/wrong source"), 5);
 }
 
 TEST(Serve, APortThatIsTakenIsNamed) {

@@ -56,9 +56,9 @@ struct Service {
   }
 };
 
-Json facts_of(const std::unique_ptr<Program>& robot) {
+Json facts_of(const std::unique_ptr<Program>& robot, int code = 0) {
   const Outcome outcome = robot->wait();
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.code, code) << outcome.err;
   return Json(outcome.out);
 }
 
@@ -108,9 +108,10 @@ TEST_F(RobotsTest, DriveByTheirReadingsBesideEachOther) {
   for (int i = 0; i < kStarts; ++i) {
     const Outcome started = run_program({"start", "--port", service.port, "--robot", "2"});
     EXPECT_EQ(started.code, 0) << started.err;
+    EXPECT_NE(started.err.find("for robot 2, 3 times; nobody acknowledges it"), std::string::npos) << started.err;
   }
 
-  const Json f1 = facts_of(one), f2 = facts_of(two), f3 = facts_of(three), f4 = facts_of(four);
+  const Json f1 = facts_of(one), f2 = facts_of(two), f3 = facts_of(three, 1), f4 = facts_of(four);
   for (const Json* facts : {&f1, &f2, &f3, &f4}) expect_sums(*facts);
   // All three parts of its scans, states of others, and it drives.
   EXPECT_TRUE(f1.number("/readings/laser") > 0);
@@ -150,6 +151,21 @@ TEST_F(RobotsTest, ReadTheThesisLayoutToo) {
   EXPECT_GT(facts.number("/distance_m"), 0.0);
 }
 
+/// One process after another with one name: each is heard from its first packet on.
+TEST_F(RobotsTest, OneAfterAnotherIsHeardAtOnce) {
+  Service service;
+  ASSERT_FALSE(service.port.empty()) << service.program.err();
+  double sent = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const Json facts = facts_of(service.robot("roomba2", {"--duration", "0.5"}));
+    EXPECT_GT(facts.number("/readings/laser"), 0) << i;
+    sent += facts.number("/sent/packets");
+  }
+  const Json farm = service.end();
+  EXPECT_EQ(farm.number("/received/accepted"), sent);
+  EXPECT_FALSE(farm.has("/received/wrong source"));
+}
+
 TEST(Robot, WrongWordsAreRefusedWithWhatWasExpected) {
   const Folder folder;
   const std::string world = folder.write("room.world", kSmallRoom);
@@ -186,7 +202,7 @@ TEST(Robot, AStartForNoRobotOfAPacketIsRefused) {
 
 TEST_F(RobotsTest, ASilentFarmIsSaidOnce) {
   const Outcome outcome = silent->wait();
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_EQ(count_lines(outcome.err), 2u) << outcome.err;
   EXPECT_NE(outcome.err.find("nothing came from the farm at 127.0.0.1:"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.out.find("Nothing came from the farm"), std::string::npos) << outcome.out;

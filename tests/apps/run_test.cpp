@@ -61,6 +61,68 @@ TEST(Run, TheSummaryHasItsFacts) {
   EXPECT_FALSE(facts.flag("/interrupted"));
 }
 
+TEST(Run, ControllersSayHowTheyFared) {
+  const Words words{"--controller", "lane-keeping", "--duration", "60"};
+  const Json facts = run("testpath/testpath.world", words);
+  EXPECT_EQ(facts.text("/control/controller"), "lane-keeping");
+  EXPECT_EQ(facts.number("/control/robots"), 1);
+  EXPECT_EQ(facts.number("/control/done"), 1);
+  EXPECT_GT(facts.number("/control/error/steps"), 400);  // 10 a second over 5 m at 0.1 m/s
+  EXPECT_GT(facts.number("/control/error/abs_mean"), 0.001);
+  EXPECT_GE(facts.number("/control/error/abs_mean"), facts.number("/control/error/mean"));
+  EXPECT_LT(facts.number("/control/error/abs_mean"), 0.2);
+  EXPECT_FALSE(facts.has("/control/checkpoints"));
+  const Outcome wanders = run_program({"run", our_world("cave.world"), "--robots", "2", "--duration", "0.5"});
+  EXPECT_NE(wanders.out.find("wander: 0 of 2 robots done"), std::string::npos) << wanders.out;
+  EXPECT_EQ(wanders.out.find("control error"), std::string::npos) << "wander has none: " << wanders.out;
+}
+
+TEST(Run, SettingsAreWhatTheirControllerReads) {
+  const auto route = [](const std::string& set) {
+    return run_program(
+        run_words("simville/simville.world", {"--controller", "route", "--duration", "0.2", "--set", set}));
+  };
+  for (const std::string set :
+       {"checkpoints=1", "checkpoints=1,2", "checkpoints=[1 2]", "checkpoints=1 2", "park=13.4", "park=\"13.4\""}) {
+    const Outcome outcome = route(set);
+    EXPECT_EQ(outcome.code, 0) << set << ": " << outcome.err;
+    if (outcome.code == 0) EXPECT_TRUE(Json(outcome.out).has("/control/checkpoints")) << set;
+  }
+  const std::pair<std::string, std::string> refused[] = {
+      {"checkpoints=one",
+       "--set checkpoints: 'checkpoints' of controller 'route' expects a list of numbers such as 1,2; got 'one'"},
+      {"park=13.99", "there is no parking spot '13.99'"},
+      {"loop=yes", "expects true or false; got 'yes'"},
+  };
+  for (const auto& [set, said] : refused) {
+    const Outcome outcome = route(set);
+    EXPECT_EQ(outcome.code, 2) << set;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(Run, AControllerWithoutItsSensorIsRefused) {
+  const std::pair<Words, std::string> cases[] = {
+      {{"magnet-keeping"}, "has no magnetometers; give it a magnetometer( )"},
+      {{"lane-keeping", "--set", "half_width=0.2"}, "has no lane edge sensor; give it a laneedge( )"},
+      {{"docking"}, "has no infrared receiver; give it an irreceiver( )"},
+  };
+  for (const auto& [controller, said] : cases) {
+    Words words = run_words("rooms.world", {"--duration", "1", "--controller"});
+    words.insert(words.end(), controller.begin(), controller.end());
+    const Outcome outcome = run_program(words);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(Run, AFolderThatCannotBeMadeIsRefusedWithARemedy) {
+  const Outcome outcome = run_program(run_words("cave.world", {"--duration", "0.1", "--record", "/proc/x"}));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("that you may write to"), std::string::npos) << outcome.err;
+}
+
 TEST(Run, TheSameSeedGivesTheSameBytesWhateverTheThreads) {
   const Words seven{"--robots", "12", "--duration", "3", "--seed", "7"};
   const std::string first = hash("rooms.world", {"--duration", "3", "--seed", "7"});

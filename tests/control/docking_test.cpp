@@ -38,7 +38,7 @@ struct Docked {
 
 Docked dock(const Pose& X_WD, const Pose& from, bool solid) {
   world::World world = scenes::empty_world();
-  scenes::add_create(world, from);
+  scenes::add_create(world, from).sensors.push_back({.type = "irreceiver"});
   world.emitters.push_back(
       {.kind = world::Emitter::Kind::dock, .X_WE = X_WD, .range = kRange, .fov = kFov, .halo = kHalo});
   if (solid) {  // a face across the axis that the bumper meets

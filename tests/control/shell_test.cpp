@@ -90,7 +90,12 @@ Plan plan_of(std::string name, std::vector<Setting> settings = {}) {
 
 world::World small_world() {
   world::World world = scenes::boxed_world(4, 4);
-  scenes::add_create(world, {2, 2, 0, 0}).lasers.push_back({});
+  world::Mover& robot = scenes::add_create(world, {2, 2, 0, 0});
+  robot.lasers.push_back({});
+  robot.sensors.push_back({.type = "laneedge"});
+  robot.sensors.push_back({.type = "irreceiver"});
+  robot.sensors.push_back({.type = "magnetometer"});
+  robot.sensors.back().settings.push_back({.key = "scount", .numbers = {2}});
   return world;
 }
 
@@ -161,8 +166,19 @@ TEST(MakeController, refuses_by_name) {
   }
   world::World bare = scenes::boxed_world(4, 4);
   scenes::add_create(bare, {2, 2, 0, 0});
-  EXPECT_NE(refusal(bare, plan_of("explore")).find("has no laser"), std::string::npos);
-  EXPECT_NE(refusal(bare, plan_of("avoid")).find("has no laser"), std::string::npos);
+  const auto says = [&](const char* name, std::vector<Setting> settings = {}) {
+    return refusal(bare, plan_of(name, std::move(settings)));
+  };
+  EXPECT_NE(says("explore").find("has no laser"), std::string::npos);
+  EXPECT_NE(says("avoid").find("has no laser"), std::string::npos);
+  EXPECT_NE(says("lane-keeping", {{"half_width", 0.2, at}}).find("has no lane edge sensor"), std::string::npos);
+  EXPECT_NE(says("magnet-keeping").find("has no magnetometers"), std::string::npos);
+  EXPECT_NE(says("docking").find("has no infrared receiver"), std::string::npos);
+  bare.movers[0].sensors.push_back({.type = "magnetometer"});
+  bare.movers[0].sensors[0].settings.push_back({.key = "scount", .numbers = {1}});
+  EXPECT_NE(says("magnet-keeping").find("an array of one magnetometer"), std::string::npos);
+  bare.movers[0].sensors[0].settings[0].numbers = {2};  // the fewest that differ
+  EXPECT_EQ(says("magnet-keeping"), "");
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ void round_trip(const netio::Packet& packet, std::span<const std::uint8_t> bytes
   if (const auto* state = std::get_if<netio::Tag>(&packet.body)) netio::encode(packet.header, *state, again);
   if (const auto* request = std::get_if<netio::Subscribe>(&packet.body)) netio::encode(packet.header, *request, again);
   if (const auto* signal = std::get_if<netio::Start>(&packet.body)) netio::encode(packet.header, *signal, again);
+  if (const auto* word = std::get_if<netio::Leave>(&packet.body)) netio::encode(packet.header, *word, again);
   require(again.size() == bytes.size());
   for (std::size_t i = 0; i < again.size(); ++i) require(again[i] == bytes[i] || i == 10 || i == 11);  // reserved
 }

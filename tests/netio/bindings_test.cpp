@@ -98,6 +98,37 @@ TEST_F(Bound, LinesCountApart) {
   EXPECT_EQ(say(kAlice, 0, 2 * kSecond, 0), Reason::accepted);  // this line was silent, the other kept the binding
 }
 
+TEST_F(Bound, WhoLeavesFreesItsIdAtOnce) {
+  say(kAlice, 10, 0);
+  EXPECT_EQ(bindings.leave(7, kAlice, 1), Reason::accepted);
+  EXPECT_FALSE(bindings.heard(7, 1));
+  EXPECT_FALSE(bindings.source(7));
+  EXPECT_EQ(say(kBob, 0, 1), Reason::accepted);  // in the same nanosecond, counting from 0
+  EXPECT_EQ(bindings.source(7), kBob);
+  EXPECT_EQ(say(kAlice, 11, 2), Reason::wrong_source);
+}
+
+TEST_F(Bound, WhatALeaveOvertookBindsNobody) {
+  say(kAlice, 10, 0);
+  bindings.leave(7, kAlice, kSecond);
+  EXPECT_EQ(say(kAlice, 9, kSecond), Reason::stale);
+  EXPECT_EQ(say(kAlice, 11, 3 * kSecond - 1), Reason::stale);    // sent before, or it came back too soon
+  EXPECT_EQ(say(kAlice, 0, 3 * kSecond - 1, 1), Reason::stale);  // of the other line too
+  EXPECT_FALSE(bindings.heard(7, 3 * kSecond - 1));
+  EXPECT_EQ(say(kAlice, 0, 3 * kSecond), Reason::accepted);  // after two seconds it may be heard again
+}
+
+TEST_F(Bound, OnlyTheBoundOneLeaves) {
+  EXPECT_EQ(bindings.leave(7, kAlice, 0), Reason::stale);  // nobody was there
+  say(kAlice, 0, 0);
+  EXPECT_EQ(bindings.leave(7, kBob, 1), Reason::wrong_source);
+  EXPECT_TRUE(bindings.heard(7, 1));
+  EXPECT_EQ(bindings.leave(7, kAlice, 2), Reason::accepted);
+  EXPECT_EQ(bindings.leave(7, kAlice, 3), Reason::stale);  // said twice
+  say(kBob, 0, 4);
+  EXPECT_EQ(bindings.leave(7, kBob, 4 + 2 * kSecond), Reason::stale);  // silent already
+}
+
 TEST_F(Bound, AClockAtItsEndsDoesNotMatter) {
   EXPECT_EQ(say(kAlice, 0, INT64_MAX - 1), Reason::accepted);
   EXPECT_TRUE(bindings.heard(7, INT64_MAX));

@@ -53,14 +53,21 @@ inline base::Bytes start_example() {
   return out;
 }
 
+inline base::Bytes leave_example() {
+  base::Bytes out;
+  encode({.robot = 7, .time = 30'000'000'000}, Leave{}, out);
+  return out;
+}
+
 /// States and requests that are sent to the farm.
 inline std::vector<base::Bytes> states() {
-  return {v2v_example(), tag_example(), subscribe_example(), start_example()};
+  return {v2v_example(), tag_example(), subscribe_example(), start_example(), leave_example()};
 }
 
 /// The farm's own packets, in order of type number.
 inline std::vector<base::Bytes> examples() {
-  return {reading_example(), extended_example(), v2v_example(), tag_example(), subscribe_example(), start_example()};
+  return {reading_example(),   extended_example(), v2v_example(),  tag_example(),
+          subscribe_example(), start_example(),    leave_example()};
 }
 
 /// Overwrites the value at `offset`.

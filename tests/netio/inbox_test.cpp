@@ -77,6 +77,29 @@ TEST_F(InboxTest, EitherPacketIsHeardForTwoSeconds) {
   EXPECT_EQ(inbox.address(7), kAlice);
 }
 
+TEST_F(InboxTest, ALeaveEndsTheBindingAndTheChoice) {
+  const auto leave = [](std::uint16_t robot) { return patched<std::uint16_t>(leave_example(), 6, robot); };
+  EXPECT_EQ(say(leave(8)), Reason::unknown_robot);
+  EXPECT_EQ(say(leave(7)), Reason::stale);  // it never spoke
+  say(v2v(7, 5));
+  say(subscribe(0, 1u << 2));
+  EXPECT_EQ(say(leave(7), 1, kBob), Reason::wrong_source);
+  EXPECT_TRUE(inbox.heard(7, 1));
+  EXPECT_EQ(say(leave(7), 1), Reason::accepted);
+  EXPECT_FALSE(inbox.heard(7, 1));
+  EXPECT_FALSE(inbox.address(7));
+  EXPECT_EQ(say(v2v(7, 0), 2, kBob), Reason::accepted);
+  EXPECT_TRUE(inbox.wants(7, kLaser, 2));  // all kinds, not what the one before asked for
+  EXPECT_EQ(inbox.address(7), kBob);
+}
+
+TEST_F(InboxTest, StrangersPacketsSayWhoseIdTheyUse) {
+  say(v2v(7, 0));
+  EXPECT_EQ(say(v2v(7, 1), 0, kBob), Reason::wrong_source);
+  EXPECT_EQ(packet.header.robot, 7);
+  EXPECT_EQ(packet.header.sequence, 1u);
+}
+
 TEST_F(InboxTest, TagsMakeNoRobotHeard) {
   Inbox both({.bind = {kLoopback, 0}, .robots = {12}, .tags = {12}});
   EXPECT_EQ(both.accept(tag_example(), kAlice, 0, packet), Reason::accepted);

@@ -112,6 +112,14 @@ TEST(Listener, RunsUntilToldToStop) {
   EXPECT_EQ(listener->summary().silent_ports, 1u);
 }
 
+TEST(Listener, RunsNoLongerThanItMay) {
+  auto streams = plans(1);
+  const auto listener = listen(streams);
+  const std::atomic<bool> stop = false;
+  listener->run(stop, 1'000'000, 1);  // nothing ever comes, and nobody stops it
+  EXPECT_EQ(listener->summary().good, 0u);
+}
+
 TEST(Listener, ReadingsInSeveralPartsAreCountedByPart) {
   auto streams = plans(1);
   const auto listener = listen(streams);

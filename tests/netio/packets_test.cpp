@@ -35,6 +35,7 @@ TEST(Packets, BytesAreTheDocumentedOnes) {
   EXPECT_EQ(tag_example(), documented("tag"));
   EXPECT_EQ(subscribe_example(), documented("subscribe"));
   EXPECT_EQ(start_example(), documented("start"));
+  EXPECT_EQ(leave_example(), documented("leave"));
 }
 
 TEST(Packets, HeaderComesBack) {
@@ -97,6 +98,14 @@ TEST(Packets, StartIsItsHeaderAlone) {
   EXPECT_EQ(packet.header.robot, 7);
 }
 
+TEST(Packets, LeaveIsItsHeaderAlone) {
+  Packet packet;
+  ASSERT_EQ(decode(leave_example(), packet), Reason::accepted);
+  EXPECT_TRUE(std::holds_alternative<Leave>(packet.body));
+  EXPECT_EQ(packet.header.type, Type::leave);
+  EXPECT_EQ(packet.header.robot, 7);
+}
+
 TEST(Packets, ReservedBytesOfTheHeaderAreIgnored) {
   EXPECT_EQ(reason_of(patched<std::uint16_t>(v2v_example(), 10, 0xFFFF)), Reason::accepted);
 }
@@ -148,7 +157,7 @@ TEST(Packets, TypesBelow128AreReadingsOfTheirKind) {
   for (int type = 0; type < 256; ++type) {
     const bool is_reading = type < 128 && type % 64 != 0;  // kind 0 is nobody's
     EXPECT_EQ(kind_of(Type(type)), is_reading ? type % 64 : 0) << type;
-    const bool is_state = type >= 128 && type <= 131;
+    const bool is_state = type >= 128 && type <= 132;
     if (is_state) continue;
     EXPECT_EQ(reason_of(patched(reading_example(), 5, static_cast<std::uint8_t>(type))),
               is_reading ? Reason::accepted : Reason::unknown_type)

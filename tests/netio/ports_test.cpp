@@ -59,7 +59,16 @@ TEST(Ports, TwoKindsAreToldApart) {
   EXPECT_NE(text.find("'roomba' (id 1) laser 0 and robot 'tug' (id 0) magnetometer 8 share port 10008"),
             std::string::npos)
       << text;
-  EXPECT_NE(text.find("move the base ports apart"), std::string::npos) << text;
+  EXPECT_NE(text.find("change the base port of laser or the base port of magnetometer"), std::string::npos) << text;
+  // One robot's two kinds on one base: its id is not to blame.
+  PortUse scan{1, 1, {52000, 8}, "roomba", 0, "laser", "--laser-port"};
+  const PortUse map{1, 1, {52000, 8}, "roomba", 0, "occupancy", "--occupancy-port"};
+  const std::string both = refusal({scan, map});
+  EXPECT_NE(both.find("change --laser-port or --occupancy-port"), std::string::npos) << both;
+  scan.rule.base = 51999;
+  scan.sensors = 2;
+  const std::string near = refusal({scan, map});
+  EXPECT_NE(near.find("move --laser-port and --occupancy-port apart"), std::string::npos) << near;
 }
 
 }  // namespace
