@@ -35,16 +35,17 @@ std::optional<std::uint32_t> row_of(const std::vector<Driver>& drivers, std::uin
 }
 
 std::optional<std::uint32_t> heading_for(const Corridors& corridors, const Driver& driver) {
-  for (const Place& place : driver.places) {
-    const Way& way = corridors.way(place.way);
-    const bool lane = way.kind == Way::Kind::lane;
-    const std::uint32_t row = lane ? place.way : way.into;
-    if (row == world::kNone) continue;
-    const auto& points = corridors.roads().lanes[row].points;
-    for (std::uint32_t i = 0; i < points.size(); ++i)
-      if (lane ? points[i].s >= place.s || i + 1 == points.size() : points[i].s >= way.enter)
-        return corridors.node_of({world::PointRef::Kind::lane, row, i});
-  }
+  // Where ways part from a lane it is on them all: it stays on the lane until it has left it.
+  for (const bool lane : {true, false})
+    for (const Place& place : driver.places) {
+      const Way& way = corridors.way(place.way);
+      const std::uint32_t row = lane ? place.way : way.into;
+      if (lane != (way.kind == Way::Kind::lane) || row == world::kNone) continue;
+      const auto& points = corridors.roads().lanes[row].points;
+      for (std::uint32_t i = 0; i < points.size(); ++i)
+        if (lane ? points[i].s >= place.s || i + 1 == points.size() : points[i].s >= way.enter)
+          return corridors.node_of({world::PointRef::Kind::lane, row, i});
+    }
   return std::nullopt;
 }
 

@@ -73,7 +73,8 @@ void RightOfWay::observe(const Input& input, std::uint32_t follows, bool merges)
   const Pose& here = input.state.X_WM;
   for (const Neighbour& other : input.others) {
     const Pose& there = other.state.X_WM;
-    if (other.id == own_id_ || std::hypot(there.x - here.x, there.y - here.y) > kSight) continue;
+    const bool near = std::hypot(there.x - here.x, there.y - here.y) <= kSight;
+    if (other.id == own_id_ || (!near && other.id != follows)) continue;
     add(other.id, other.state, other.intent.follows);
   }
   for (Driver& driver : drivers_) find_approach(driver, input.signals);

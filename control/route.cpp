@@ -24,6 +24,7 @@ Route::Route(std::shared_ptr<const Corridors> corridors, const Site& site, Route
       settings_(settings),
       goals_(std::move(goals)),
       company_(company),
+      lots_(site),
       right_of_way_(*corridors_, site.world.movers[site.mover].id),
       max_turn_(0.8 * site.world.movers[site.mover].max_turn),
       turns_in_place_(site.world.movers[site.mover].drive != world::Drive::car) {}
@@ -114,15 +115,21 @@ void Route::pass_goals(const Input& input) {
 void Route::chase() {
   if (company_.leader == base::kNobody || (goals_ && company_.merges)) return;
   const auto row = row_of(right_of_way_.drivers(), company_.leader);
-  if (!row) return;
-  const auto node = heading_for(*corridors_, right_of_way_.drivers()[*row]);
-  if (!node || plan_.node == *node) return;
+  const auto node = row ? heading_for(*corridors_, right_of_way_.drivers()[*row]) : std::nullopt;
+  if (!node) return search();
+  if (plan_.node == *node) return;
   goals_.reset();
   plan_.goals.clear();
   RoutePlan plan = plan_;
   cut_after(*corridors_, plan, progress_.s());
   const world::PointRef to = site_.roads->index[*node].second;
   if (plan.node == *node || extend(*corridors_, plan, to)) plan_ = std::move(plan);
+}
+
+// Who hears no leader drives on by lot, so that it stands in nobody's way, until it does.
+void Route::search() {
+  for (int tries = 0; tries < 10 && length_of(plan_) < progress_.s() + kLookAhead + 0.1; ++tries)
+    if (const world::RoadCheckpoint* goal = lots_.at(searched_++)) extend(*corridors_, plan_, goal->at);
 }
 
 // A lane that stays full is gone round.
@@ -219,7 +226,7 @@ std::unique_ptr<Controller> make_route_controller(const Site& site, Settings& se
   s.gap = settings.number("gap", convoy ? 0.2 : s.gap, 0.01, 100.0);
   s.headway = settings.number("headway", s.headway, 0.3, 10.0);
   s.pass = settings.flag("pass", true);
-  s.radio = settings.number("radio", s.radio, 0.5, 1e6);
+  s.radio = settings.number("radio", convoy ? 12.0 : s.radio, 0.5, 1e6);
   Company company;
   if (convoy) {
     if (!settings.has("leader"))

@@ -56,6 +56,7 @@ class Route : public Controller {
   void trim();
   void pass_goals(const Input& input);
   void chase();
+  void search();
   void consider_passing(const Input& input);
   void reroute(const Input& input);
 
@@ -72,6 +73,7 @@ class Route : public Controller {
   RouteSettings settings_;
   std::optional<RouteGoals> goals_;
   Company company_;
+  RouteGoals lots_;  ///< where to go while no leader is heard
   RightOfWay right_of_way_;
   double max_turn_;
   bool turns_in_place_;
@@ -81,6 +83,7 @@ class Route : public Controller {
   Progress progress_;
   std::uint64_t next_goal_ = 0;  ///< the one it heads for
   std::uint64_t planned_ = 0;    ///< goals that are in the plan or behind
+  std::uint64_t searched_ = 0;   ///< lots drawn
   std::vector<Ahead> ahead_;
   std::int64_t last_ = -1;            ///< [ns] time of the last step
   double offset_ = 0.0;               ///< [m]

@@ -33,6 +33,15 @@ std::string find_file(const world::World& world, const std::string& file) {
 
 }  // namespace
 
+RouteGoals::RouteGoals(const Site& site) : tour_(true), seed_(site.seed), robot_(site.mover) {
+  draw_from(*site.roads);
+}
+
+void RouteGoals::draw_from(const world::RoadNetwork& roads) {
+  for (const auto& checkpoint : roads.checkpoints)
+    if (checkpoint.at.kind == PointRef::Kind::lane) lots_.push_back(checkpoint);
+}
+
 RouteGoals::RouteGoals(const Site& site, Settings& settings) : seed_(site.seed), robot_(site.mover) {
   const world::RoadNetwork& roads = *site.roads;
   for (const double number : settings.numbers("checkpoints", {})) {
@@ -48,9 +57,7 @@ RouteGoals::RouteGoals(const Site& site, Settings& settings) : seed_(site.seed),
   read_park(site, settings);
   loop_ = settings.flag("loop", false);
   tour_ = settings.flag("tour", false);
-  if (tour_)
-    for (const auto& checkpoint : roads.checkpoints)
-      if (checkpoint.at.kind == PointRef::Kind::lane) lots_.push_back(checkpoint);
+  if (tour_) draw_from(roads);
   if (tour_ && !goals_.empty()) settings.refuse("tour", "'tour' draws checkpoints; expected it without a list of them");
   if (goals_.empty() && lots_.empty())
     settings.refuse("checkpoints",
@@ -96,6 +103,7 @@ void RouteGoals::read_park(const Site& site, Settings& settings) {
 
 const world::RoadCheckpoint* RouteGoals::at(std::uint64_t k) const {
   if (tour_) {
+    if (lots_.empty()) return nullptr;
     const base::Draw draw{.seed = seed_, .stream = base::Stream::decision, .a = robot_, .b = 0x746F7572u, .c = k};
     const double u = base::random_uniform(draw, 0)[0];
     const auto i = static_cast<std::size_t>(u * static_cast<double>(lots_.size()));

@@ -14,6 +14,8 @@ class RouteGoals {
   /// Reads `checkpoints [1 2]`, `mission "file.mdf"`, `park "zone.spot"`, `tour true` (by lot), `loop true`.
   /// @throws base::InputError where they name what the network does not have, or nothing at all.
   RouteGoals(const Site& site, Settings& settings);
+  /// By lot; none where the network has no checkpoints on lanes.
+  explicit RouteGoals(const Site& site);
 
   /// Goal `k`, 0-based; null: there are no more.
   const world::RoadCheckpoint* at(std::uint64_t k) const;
@@ -24,6 +26,7 @@ class RouteGoals {
   double limit(std::uint32_t segment) const { return segment < limits_.size() ? limits_[segment] : HUGE_VAL; }
 
  private:
+  void draw_from(const world::RoadNetwork& roads);
   void read_mission(const Site& site, const std::string& file);
   void read_park(const Site& site, Settings& settings);
 
