@@ -158,22 +158,28 @@ bool extend(const Corridors& corridors, RoutePlan& plan, const world::RoadCheckp
 }
 
 void cut_after(const Corridors& corridors, RoutePlan& plan, double s) {
-  plan.legs.resize(leg_at(plan, s) + 1);
+  std::erase_if(plan.goals, [&](const Goal& goal) { return goal.s > s; });
+  const auto ends_on_lane = [&](const RouteLeg& leg) {
+    const Way& way = corridors.way(leg.way);
+    return way.kind == Way::Kind::lane || way.into != world::kNone;
+  };
+  const auto at = std::find_if(plan.legs.begin() + static_cast<std::ptrdiff_t>(leg_at(plan, s)), plan.legs.end(),
+                               ends_on_lane);
+  if (at == plan.legs.end()) return;
+  plan.legs.erase(at + 1, plan.legs.end());
   RouteLeg& leg = plan.legs.back();
   const Way& way = corridors.way(leg.way);
-  std::erase_if(plan.goals, [&](const Goal& goal) { return goal.s > s; });
   if (way.kind == Way::Kind::lane) {
     const auto& points = corridors.roads().lanes[leg.way].points;
-    const double here = leg.from + s - leg.start;
+    const double here = leg.from + std::max(s - leg.start, 0.0);
     std::uint32_t next = 0;
     while (next + 1 < points.size() && points[next].s < here) ++next;
     leg.to = std::max(points[next].s, leg.from);
     plan.node = corridors.node_of({PointRef::Kind::lane, leg.way, next});
     return;
   }
-  // Other ways end at a point of a lane, or are kept whole.
   leg.to = way.length;
-  if (way.into != world::kNone) plan.node = entry_of(corridors, way);
+  plan.node = entry_of(corridors, way);
 }
 
 std::vector<Pose> start_poses(const world::RoadNetwork& roads, std::size_t count, std::uint64_t seed, double apart) {
