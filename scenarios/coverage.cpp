@@ -21,7 +21,7 @@ using base::Vec2;
 using maps::Cell;
 using maps::CellAt;
 
-constexpr int kHeadings = 8;
+constexpr int kHeadings = 16;
 constexpr std::uint32_t kBeams = 361;
 
 /// The explorer's own grid where there can be one: cells of another would be others than those it looks for.
@@ -103,7 +103,6 @@ std::vector<Stand> stands_of(const world::World& world, std::uint32_t mover, con
   const double ahead = std::hypot(laser.X_MS.x, laser.X_MS.y);
   std::vector<Stand> stands;
   for (const CellAt at : reachable(world, mover, plan)) {
-    if (at.column % 2 != 0 || at.row % 2 != 0) continue;
     Stand stand{.p = maps::middle(plan, at)};
     for (const world::Segment& wall : walls)
       if (world::distance(stand.p, wall.a, wall.b) < laser.range_max + ahead) stand.near.push_back(wall);

@@ -31,7 +31,7 @@ class OwnMap {
 };
 
 /// All that the robot's first laser could see from wherever the robot can go without touching a wall: a map of scans
-/// from the middles of every second cell of `plan` that is connected to its start, taken all around. Cells whose middle
+/// from the middles of all cells of `plan` that are connected to its start, with sixteen headings. Cells whose middle
 /// is in view from none of these are left unexplored. Movers are not looked at.
 maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan);
 

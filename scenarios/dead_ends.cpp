@@ -15,10 +15,16 @@ void DeadEnds::look(const base::Report& report, bool contact) {
     reversals_.clear();
   }
   if (waits || inside_) stuck_ += interval_;
+  if (waits) stood_ += interval_;
   if (waits && !inside_) waited_ += interval_;
-  if (!stands || report.velocity.turn == 0.0) return;
-  const double side = std::copysign(1.0, report.velocity.turn);
-  if (side_ != 0.0 && side != side_) reverse(p);
+  if (stands) turn(p, report.velocity.turn);
+}
+
+void DeadEnds::turned(const base::Report& report, double angle) { turn({report.X_WM.x, report.X_WM.y}, angle); }
+
+void DeadEnds::turn(base::Vec2 p, double side) {
+  if (side == 0.0) return;
+  if (side * side_ < 0.0) reverse(p);
   side_ = side;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "maps/text.h"
 #include "scenarios/coverage.h"
@@ -15,14 +16,13 @@ namespace sf::scenarios {
 namespace {
 
 constexpr SupervisorPlan kSupervisor{.patience = 5.0};
-constexpr double kThorough = 3600.0;  // [s] at most
 
 /// One way to map the area.
 struct Entrant {
   std::string name;
   control::Plan plan;
   SupervisorPlan supervisor;
-  double duration = 0.0;  ///< [s] at most
+  bool looks_about = false;  ///< it turns to and fro to look: that is no dead end
 };
 
 /// What came of one trial.
@@ -33,20 +33,24 @@ struct Mapped {
   bool done = false;
   std::uint64_t contacts = 0;
   std::uint32_t helped = 0;
-  std::uint32_t dead_ends = 0;
-  double stuck = 0.0;      ///< [s]
-  double travelled = 0.0;  ///< [m]
+  std::optional<std::uint32_t> dead_ends;  ///< none: not counted
+  double stuck = 0.0;                      ///< [s]
+  double travelled = 0.0;                  ///< [m]
   Seen seen;
   double wrong = 0.0;  ///< [-] of the known cells
 };
+
+std::string text_of(const std::optional<std::uint32_t>& count, const char* none) {
+  return count ? std::to_string(*count) : none;
+}
 
 std::string csv_of(const std::vector<Mapped>& rows) {
   std::string text =
       "controller,trial,seconds,done,contacts,helped,dead_ends,stuck_s,driven_m,cells,missed,coverage,disagreement\n";
   for (const Mapped& m : rows)
     text += fmt::format("{},{},{:.1f},{},{},{},{},{:.1f},{:.4g},{},{},{:.6f},{:.5f}\n", m.entrant, m.trial, m.simulated,
-                        m.done ? 1 : 0, m.contacts, m.helped, m.dead_ends, m.stuck, m.travelled, m.seen.wanted,
-                        m.seen.missed, m.seen.coverage(), m.wrong);
+                        m.done ? 1 : 0, m.contacts, m.helped, text_of(m.dead_ends, ""), m.stuck, m.travelled,
+                        m.seen.wanted, m.seen.missed, m.seen.coverage(), m.wrong);
   return text;
 }
 
@@ -58,9 +62,10 @@ std::string report_of(const Bench& bench, const std::vector<Mapped>& rows) {
       "other way round (cells on walls' faces go either way).\n\n"
       "`scrapes` are contacts that began. `by hand`: a supervisor takes a robot that has stood in contact for {:g} s, "
       "puts it back {:g} m along its way and turns it by {:.0f} degrees from what it touched. A `dead end`: the "
-      "direction of turns in place reversed {} times within a body's length; it lasts until the robot is farther away "
-      "than that. `stuck` is time in dead ends or standing in contact. `explore` looks to and fro by plan where it "
-      "turns, which counts there.\n\n"
+      "direction of turns in place (its own or by hand) reversed {} times within a body's length; it lasts until the "
+      "robot is farther away "
+      "than that. `stuck` is time in dead ends or standing in contact. `explore` turns to and fro to look, so dead "
+      "ends are not counted there.\n\n"
       "| controller | trial | time [s] | done | scrapes | by hand | dead ends | stuck [s] | driven [m] | cells missed "
       "| "
       "wrong |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
@@ -68,21 +73,22 @@ std::string report_of(const Bench& bench, const std::vector<Mapped>& rows) {
       kReversals);
   for (const Mapped& m : rows)
     text += fmt::format("| {} | {} | {:.0f} | {} | {} | {} | {} | {:.0f} | {:.1f} | {} | {:.2f} % |\n", m.entrant,
-                        m.trial, m.simulated, m.done ? "yes" : "no", m.contacts, m.helped, m.dead_ends, m.stuck,
-                        m.travelled, text_of(m.seen), 100.0 * m.wrong);
+                        m.trial, m.simulated, m.done ? "yes" : "no", m.contacts, m.helped, text_of(m.dead_ends, "-"),
+                        m.stuck, m.travelled, text_of(m.seen), 100.0 * m.wrong);
   return text + fmt::format("\n## Beside the thesis\n\n{}\n", bench.kind.reasons);
 }
 
 Mapped mapped_of(const Entrant& entrant, std::uint32_t number, const Trial& trial, const maps::Grid& reference) {
   const RobotCounts& counts = trial.counts.front();
+  const DeadEnds& ends = trial.dead_ends.front();
   return {.entrant = entrant.name,
           .trial = number,
           .simulated = trial.simulated,
           .done = trial.done,
           .contacts = counts.contacts,
           .helped = trial.helped.front(),
-          .dead_ends = trial.dead_ends.front().count(),
-          .stuck = trial.dead_ends.front().stuck(),
+          .dead_ends = entrant.looks_about ? std::nullopt : std::optional(ends.count()),
+          .stuck = entrant.looks_about ? ends.stood() : ends.stuck(),
           .travelled = counts.travelled,
           .seen = seen_of(trial.maps.front(), reference),
           .wrong = disagreement(trial.maps.front(), reference)};
@@ -92,7 +98,6 @@ Mapped mapped_of(const Entrant& entrant, std::uint32_t number, const Trial& tria
 void run_with(const Bench& bench, const Entrant& entrant, std::vector<Mapped>& rows, std::vector<std::string>& files) {
   Scenario scenario = bench.scenario;
   scenario.actor.plan = entrant.plan;
-  scenario.duration = entrant.duration;
   ExperimentOptions options = bench.options;
   options.out = in_folder(bench, entrant.name);
   const Bench own{bench.kind, scenario, options, bench.device, bench.progress};
@@ -119,11 +124,9 @@ void run_with(const Bench& bench, const Entrant& entrant, std::vector<Mapped>& r
 
 std::vector<Entrant> entrants_of(const Scenario& scenario) {
   const control::Plan& plan = scenario.actor.plan;
-  const control::Plan thorough{"explore", 0.0, {"controller 'explore'", {{"thorough", true, ""}}}};
-  return {{plan.controller, plan, {}, scenario.duration},
-          {plan.controller + "-supervised", plan, kSupervisor, scenario.duration},
-          {"explore", {"explore", 0.0, {}}, {}, scenario.duration},
-          {"explore-thorough", thorough, {}, kThorough}};
+  return {{plan.controller, plan, {}},
+          {plan.controller + "-supervised", plan, kSupervisor},
+          {"explore", {"explore", 0.0, {}}, {}, true}};
 }
 
 std::vector<std::string> run_mapping(const Bench& bench) {

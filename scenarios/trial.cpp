@@ -63,8 +63,12 @@ class Keeper {
       times_.push_back(1e-9 * static_cast<double>(tick.time));
   }
 
-  void help(std::uint32_t mover) {
-    for (std::size_t i = 0; i < rows_.size(); ++i) helped_[i] += rows_[i] == mover;
+  void help(const base::Report& before, const base::Pose& X_WM) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (rows_[i] != before.mover) continue;
+      ++helped_[i];
+      dead_ends_[i].turned(before, base::wrap_angle(X_WM.yaw - before.X_WM.yaw));
+    }
   }
 
   void give(const Watch& watch, const world::World& world, const Simulation& simulation, Trial& trial) {
@@ -143,9 +147,9 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
     keeper.look(record, simulation);
     if (recorder) recorder->write(record);
     for (const Supervisor::Help& help : supervisor.look(record)) {
-      simulation.put(help.mover, help.X_WM);
+      keeper.help(record.reports[help.mover], help.X_WM);
       watch.put(help.mover, help.X_WM);
-      keeper.help(help.mover);
+      simulation.put(help.mover, help.X_WM);
     }
   }
   if (recorder) recorder->finish();

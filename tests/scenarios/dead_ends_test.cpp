@@ -49,6 +49,18 @@ TEST(DeadEnds, EndsABodysLengthAway) {
   EXPECT_NEAR(ends.stuck(), stuck + kTick, 1e-9);
 }
 
+/// A supervisor who turns it to and fro in the same passage does not help it.
+TEST(DeadEnds, TurnsByHandCount) {
+  DeadEnds ends(kLength, kTick);
+  for (int k = 0; k < 7; ++k) {
+    for (int i = 0; i < 10; ++i) ends.look(at(0.0, 0.0, 0.0), true);
+    ends.turned(at(0.0, 0.0, 0.0), k % 2 == 0 ? 0.7 : -0.7);
+  }
+  EXPECT_EQ(ends.count(), 1u);
+  EXPECT_NEAR(ends.stood(), 7.0, 1e-9);
+  EXPECT_NEAR(ends.stuck(), 7.0, 1e-9);
+}
+
 /// Round and round to one side is not to and fro; nor are bends while it drives.
 TEST(DeadEnds, OnlyReversalsOfTurnsInPlaceCount) {
   DeadEnds ends(kLength, kTick);
