@@ -406,8 +406,9 @@ void add_experiment(CLI::App& app, Options& o) {
   add_seed(*sub, o, "Seed of the first trial");
   sub->add_option_function<std::string>(
          "--plant", [&o](const std::string& text) { o.plant = scenarios::plant_of(text); },
-         "What stands between commands and wheels: ideal (nothing) or thesis (Player's driver for the Create). Default: "
-         "thesis for path following and sweeps, whose tables come out with it alone; ideal for all others")
+         "What stands between commands and wheels: ideal (nothing) or thesis (Player's driver for the Create). "
+         "Default: "
+         "thesis for what it did with its Creates (paths, sweeps, mapping); ideal for towns and Pioneers")
       ->check(one_of({"thesis", "ideal"}))
       ->type_name("thesis|ideal");
   sub->add_option("--files", o.experiments, "Folder with the experiments' scenario files (default: ours)")

@@ -145,9 +145,9 @@ constexpr std::string_view kReasons =
     "Its control logic then waits for the bumper to be released, which in the laboratory a supervisor saw to; alone "
     "it waits for ever, so it is shown without and with one. "
     "It has no goal either: what it maps is what it happens to pass, and it never knows that it is done. "
-    "The plant is `ideal` unless told otherwise: the avoidance drives straight or turns in place, which Player's "
-    "driver of the Create hardly changes, while `explore` keeps to millimetres by small corrections as it drives, "
-    "which that driver turns into bends of at most two metres.";
+    "The plant, Player's driver of the Create unless told otherwise, changes little: the avoidance drives straight or "
+    "turns in place, which that driver leaves nearly as they are, and `explore` touches and misses nothing with "
+    "either.";
 
 }  // namespace
 
@@ -156,7 +156,7 @@ extern const ExperimentKind mapping_experiment;
 constinit const ExperimentKind mapping_experiment{
     .name = "mapping",
     .summary = "mapping an area by laser, with the thesis' obstacle avoidance and with an explorer (figures 44, 45)",
-    .plant = Plant::ideal,
+    .plant = Plant::thesis,
     .reasons = kReasons,
     .run = run_mapping,
 };

@@ -98,7 +98,7 @@ constexpr std::string_view kEdgeReasons =
     "does what it is told has twice the thesis' mean; the thesis drove through Player's driver of the Create, which "
     "halves radii and so doubles the gain, and with it (plant `thesis`) means and deviations agree. "
     "The extremes do not: the thesis' robot was off to the left by twice as much, and once by 0.871 m, which a lane of "
-    "half a metre cannot give, so some of its readings were of something else than the edge. "
+    "half a metre cannot give. "
     "Its lane widths are not printed; ours are 0.50, 0.60 and 0.45 m, and where they change the error jumps by half "
     "the change. "
     "Its delays and noise are not printed either; ours were chosen to match the magnets' tables, not these. "

@@ -59,14 +59,13 @@ constexpr std::string_view kTownReasons =
     "The thesis names SimVille as the testbed and gives no numbers of traffic in it, so nothing here is compared. "
     "Contacts and red lights passed are what must be zero; metres and checkpoints say how well traffic flows, and "
     "depend on who gets in whose way first. "
-    "The plant is `ideal` unless told otherwise: these robots steer by controllers of ours, and there are no numbers "
-    "of the thesis' that its driver would explain. "
+    "The plant is `ideal` unless told otherwise: there are no numbers of the thesis' that its driver would explain. "
     "The mean error of a robot on a route is its distance from the middle of its lane; convoys and pedestrians have "
     "none.";
 constexpr std::string_view kMagicReasons =
     "The thesis names MiniMAGIC as the testbed and gives no numbers, so nothing here is compared. "
-    "Contacts are those of three Pioneers that wander without a map, and of what patrols among them and neither sees "
-    "nor waits: an obstacle that walks into a robot counts for both. "
+    "Contacts are those of three Pioneers that wander without a map, hear nobody and do not see behind them, and of "
+    "obstacles that patrol among them and wait for nobody; where two meet, it counts for both that were stopped. "
     "The plant is `ideal` unless told otherwise: Player's driver of the Create is not a Pioneer's. "
     "Trials differ by where robots start and by what they draw when they turn away.";
 
