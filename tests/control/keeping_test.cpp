@@ -24,9 +24,11 @@ using base::Vec2;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kTick = 100'000'000;
 
-world::Sensor magnetometers(double count) {
+world::Sensor magnetometers(int count) {
   world::Sensor sensor{.type = "magnetometer"};
-  sensor.settings.push_back({.key = "scount", .numbers = {count}});
+  sensor.settings.push_back({.key = "scount", .numbers = {1.0 * count}});
+  for (int i = 0; i < count; ++i)
+    sensor.settings.push_back({.key = "spose[" + std::to_string(i) + "]", .numbers = {0.2, 0.075 * i, 0.0}});
   return sensor;
 }
 
