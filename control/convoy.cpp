@@ -9,7 +9,8 @@ namespace sf::control {
 
 namespace {
 
-constexpr double kNear = 2.5;  // [m] a newcomer is let in from here on
+constexpr double kNear = 2.5;    // [m] a newcomer is let in from here on
+constexpr double kBehind = 1.2;  // [m] who is farther off has fallen behind
 
 /// Another follower of the same leader.
 std::optional<std::uint32_t> newcomer(const Company& company, const std::vector<Driver>& drivers) {
@@ -67,6 +68,13 @@ double opened_gap(const Company& company, const Corridors& corridors, const std:
   const Pose& a = drivers[0].X_WM;
   const Pose& b = drivers[*row].X_WM;
   return std::hypot(a.x - b.x, a.y - b.y) < kNear ? 2.0 * corridors.body().radius + 0.3 : 0.0;
+}
+
+bool left_behind(const std::vector<Driver>& drivers) {
+  const Pose& here = drivers.front().X_WM;
+  return std::any_of(drivers.begin() + 1, drivers.end(), [&](const Driver& other) {
+    return other.follows == drivers.front().id && std::hypot(other.X_WM.x - here.x, other.X_WM.y - here.y) > kBehind;
+  });
 }
 
 namespace {

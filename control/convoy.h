@@ -36,6 +36,9 @@ void keep_company(Company& company, const Corridors& corridors, const std::vecto
 /// The gap that a member opens for a newcomer. [m] beyond its own; 0: nobody wants to come in
 double opened_gap(const Company& company, const Corridors& corridors, const std::vector<Driver>& drivers);
 
+/// Somebody follows this robot and has fallen behind: it is to be waited for.
+bool left_behind(const std::vector<Driver>& drivers);
+
 extern const ControllerKind convoy_controller;
 
 }  // namespace sf::control

@@ -32,6 +32,36 @@ void add(RoutePlan& plan, std::uint32_t way, double from, double to) {
 
 }  // namespace
 
+bool changes_lanes(const Corridors& corridors, std::uint32_t row) {
+  const Way& way = corridors.way(row);
+  if (way.kind == Way::Kind::change) return true;
+  if (way.kind != Way::Kind::exit || way.at_end || way.from == world::kNone || way.into == world::kNone) return false;
+  return corridors.roads().lanes[way.from].segment == corridors.roads().lanes[way.into].segment;
+}
+
+std::optional<RoutePlan> plan_back(const Corridors& corridors, const RoutePlan& plan, double s, const Pose& X_WM) {
+  const std::size_t at = leg_at(plan, s);
+  const Way& change = corridors.way(plan.legs[at].way);
+  // Nearer to the lane that it leaves than to the other, or as near.
+  const Place *left = nullptr, *entered = nullptr;
+  const Places places = corridors.places(X_WM, 2.5 * corridors.body().radius);
+  for (const Place& place : places) {
+    if (place.way == change.from) left = &place;
+    if (place.way == change.into) entered = &place;
+  }
+  if (left == nullptr || (entered != nullptr && entered->offset < left->offset)) return std::nullopt;
+  const auto& points = corridors.roads().lanes[left->way].points;
+  const auto next = std::find_if(points.begin(), points.end(), [&](const auto& p) { return p.s >= left->s; });
+  if (next == points.end()) return std::nullopt;
+  RoutePlan back = plan;
+  back.legs.resize(at);
+  back.legs.push_back({left->way, left->s, next->s, s});
+  back.node =
+      corridors.node_of({world::PointRef::Kind::lane, left->way, static_cast<std::uint32_t>(next - points.begin())});
+  std::erase_if(back.goals, [&](const Goal& goal) { return goal.s > s; });
+  return back;
+}
+
 std::optional<Passing> plan_passing(const Corridors& corridors, const RoutePlan& plan, double s, double speed,
                                     const Ahead& slow, const std::vector<Driver>& drivers) {
   const std::size_t at = leg_at(plan, s);

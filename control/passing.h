@@ -17,4 +17,12 @@ struct Passing {
 std::optional<Passing> plan_passing(const Corridors& corridors, const RoutePlan& plan, double s, double speed,
                                     const Ahead& slow, const std::vector<Driver>& drivers);
 
+/// The way leads from a lane to another one of the same segment in its course.
+bool changes_lanes(const Corridors& corridors, std::uint32_t way);
+
+/// Gives up a change of lanes: a route from where the robot is back into the lane that it was to leave, to that lane's
+/// next point, without what was to come and without the goals after `s`. `plan` is on a way that changes lanes at `s`.
+/// Nothing where the lane to be entered is nearer already.
+std::optional<RoutePlan> plan_back(const Corridors& corridors, const RoutePlan& plan, double s, const Pose& X_WM);
+
 }  // namespace sf::control

@@ -74,7 +74,8 @@ void RightOfWay::observe(const Input& input, std::uint32_t follows, bool merges)
   for (const Neighbour& other : input.others) {
     const Pose& there = other.state.X_WM;
     const bool near = std::hypot(there.x - here.x, there.y - here.y) <= kSight;
-    if (other.id == own_id_ || (!near && other.id != follows)) continue;
+    const bool company = other.id == follows || other.intent.follows == own_id_;
+    if (other.id == own_id_ || (!near && !company)) continue;
     add(other.id, other.state, other.intent.follows);
   }
   for (Driver& driver : drivers_) find_approach(driver, input.signals);

@@ -57,7 +57,8 @@ class RightOfWay {
  public:
   RightOfWay(const Corridors& corridors, std::uint32_t own_id);
 
-  /// Takes in one moment. Robots beyond `kSight` are left out, but not the one it follows.
+  /// Takes in one moment. Robots beyond `kSight` are left out, but not whom it follows and who
+  /// follows it.
   /// @param follows whom it follows itself
   /// @param merges it is the one who comes in between
   void observe(const Input& input, std::uint32_t follows, bool merges);

@@ -141,12 +141,31 @@ void Route::reroute(const Input& input) {
   if (corridors_->way(plan_.legs[progress_.leg()].way).kind != Way::Kind::lane) return;
   RoutePlan plan = plan_;
   cut_after(*corridors_, plan, progress_.s());
+  if (plan_goals(plan, avoid)) plan_ = std::move(plan);
+}
+
+// On from the end of `plan` to what is still to come.
+bool Route::plan_goals(RoutePlan& plan, std::uint32_t avoid) const {
   for (const Goal& goal : plan_.goals) {
     if (goal.s <= progress_.s()) continue;
     const auto* checkpoint = goal.id >= 0 ? find_checkpoint(*site_.roads, goal.id) : nullptr;
-    if (checkpoint == nullptr || !extend(*corridors_, plan, *checkpoint, avoid)) return;
+    if (checkpoint == nullptr || !extend(*corridors_, plan, *checkpoint, avoid)) return false;
   }
-  plan_ = std::move(plan);
+  return true;
+}
+
+// Two that change lanes against each other would wait for ever: who has stood for long goes back into its lane.
+void Route::give_up_change(const Input& input) {
+  if (std::abs(input.state.velocity.forward) > 0.005 || still_since_ < 0) still_since_ = input.time;
+  const std::int64_t patience = (8 + 2 * (site_.mover % 5)) * kSecond;
+  if (input.time - still_since_ < patience || company_.merges) return;
+  const std::uint32_t row = plan_.legs[progress_.leg()].way;
+  if (!changes_lanes(*corridors_, row)) return;
+  auto plan = plan_back(*corridors_, plan_, progress_.s(), input.state.X_WM);
+  if (!plan || !plan_goals(*plan, row)) return;
+  plan_ = std::move(*plan);
+  pass_until_ = -1.0;
+  still_since_ = input.time;
 }
 
 void Route::consider_passing(const Input& input) {
@@ -183,6 +202,7 @@ base::Twist Route::step(const Input& input) {
   keep_company(company_, *corridors_, right_of_way_.drivers(), ahead_);
   consider_passing(input);
   reroute(input);
+  give_up_change(input);
   trim();
   if (done_) return {};
 

@@ -59,6 +59,8 @@ class Route : public Controller {
   void search();
   void consider_passing(const Input& input);
   void reroute(const Input& input);
+  void give_up_change(const Input& input);
+  bool plan_goals(RoutePlan& plan, std::uint32_t avoid) const;
 
   void limit_by_bends(Limit& limit) const;
   void limit_by_lines(const Input& input, Limit& limit);
@@ -91,8 +93,9 @@ class Route : public Controller {
   std::int64_t standing_since_ = -1;  ///< [ns] at a stop line; -1: it is not
   std::int64_t blocked_since_ = -1;   ///< [ns] that a full lane keeps it waiting; -1: it does not
   std::uint32_t blocked_way_ = world::kNone;
-  std::int64_t slow_since_ = -1;  ///< [ns] behind a slower one; -1: not
-  double pass_until_ = -1.0;      ///< [m] along the route: until there it passes
+  std::int64_t still_since_ = -1;  ///< [ns] it has stood; -1: it has not begun
+  std::int64_t slow_since_ = -1;   ///< [ns] behind a slower one; -1: not
+  double pass_until_ = -1.0;       ///< [m] along the route: until there it passes
 };
 
 extern const ControllerKind route_controller;

@@ -33,9 +33,7 @@ std::string find_file(const world::World& world, const std::string& file) {
 
 }  // namespace
 
-RouteGoals::RouteGoals(const Site& site) : tour_(true), seed_(site.seed), robot_(site.mover) {
-  draw_from(*site.roads);
-}
+RouteGoals::RouteGoals(const Site& site) : tour_(true), seed_(site.seed), robot_(site.mover) { draw_from(*site.roads); }
 
 void RouteGoals::draw_from(const world::RoadNetwork& roads) {
   for (const auto& checkpoint : roads.checkpoints)

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kBraking = 0.3;             // [m/s^2] comfortable
 constexpr double kSideways = 0.1;            // [m/s^2] in bends
+constexpr double kWaiting = 0.5;             // of its speed, for a follower that is left behind
 constexpr std::int64_t kStop = 300'000'000;  // [ns] a full stop lasts
 
 }  // namespace
@@ -139,6 +140,7 @@ void Route::limit_by_zones(Limit& limit, const Input& input) {
 
 // Never nearer than the gap, and farther the faster.
 void Route::limit_by_others(Limit& limit) const {
+  if (left_behind(right_of_way_.drivers())) limit.speed = std::min(limit.speed, kWaiting * settings_.speed);
   const double opened = opened_gap(company_, *corridors_, right_of_way_.drivers());
   for (const Ahead& other : ahead_) {
     const bool leads = right_of_way_.drivers()[other.row].id == company_.leader;

@@ -163,8 +163,8 @@ void cut_after(const Corridors& corridors, RoutePlan& plan, double s) {
     const Way& way = corridors.way(leg.way);
     return way.kind == Way::Kind::lane || way.into != world::kNone;
   };
-  const auto at = std::find_if(plan.legs.begin() + static_cast<std::ptrdiff_t>(leg_at(plan, s)), plan.legs.end(),
-                               ends_on_lane);
+  const auto at =
+      std::find_if(plan.legs.begin() + static_cast<std::ptrdiff_t>(leg_at(plan, s)), plan.legs.end(), ends_on_lane);
   if (at == plan.legs.end()) return;
   plan.legs.erase(at + 1, plan.legs.end());
   RouteLeg& leg = plan.legs.back();

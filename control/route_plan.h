@@ -59,8 +59,8 @@ bool extend(const Corridors& corridors, RoutePlan& plan, const world::RoadCheckp
             std::uint32_t avoid = world::kNone);
 bool extend(const Corridors& corridors, RoutePlan& plan, world::PointRef to, std::uint32_t avoid = world::kNone);
 
-/// Forgets all that comes after the point of a lane that is next after `s`, and the goals after `s`: the plan ends there.
-/// What leads through a zone is kept as far as the next lane, or whole where it ends in the zone.
+/// Forgets all that comes after the point of a lane that is next after `s`, and the goals after `s`: the plan ends
+/// there. What leads through a zone is kept as far as the next lane, or whole where it ends in the zone.
 void cut_after(const Corridors& corridors, RoutePlan& plan, double s);
 
 /// Poses for `count` robots on lanes, along their lanes, at least `apart` [m] from each other and from the lanes' ends:

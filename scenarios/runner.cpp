@@ -152,6 +152,8 @@ class Run {
         return static_cast<double>(watch_.reds());
       case Kind::done:
         return simulation_.all_done() ? 1.0 : 0.0;
+      case Kind::distance:
+        return worst(e, true, [&](std::uint32_t r) { return watch_.of(r).travelled; });
       case Kind::checkpoints:
         return worst(e, true, [&](std::uint32_t r) {
           return watch_.of(r).has_goals ? static_cast<double>(watch_.of(r).checkpoints) : std::nan("");
@@ -182,6 +184,7 @@ class Run {
         outcome.met = value == 1.0;
         return outcome;
       case Kind::map_coverage:
+      case Kind::distance:
       case Kind::checkpoints:
       case Kind::all_checkpoints:
         outcome.expected = fmt::format(">= {:g}", e.limit);

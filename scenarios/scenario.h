@@ -36,6 +36,7 @@ struct Expectation {
     map_coverage,     ///< part of what could be seen that was, at least
     lights_obeyed,    ///< nobody passes a stop line while it shows red
     done,             ///< all controllers have done what they were made for
+    distance,         ///< driven by each robot, at least [m]
     checkpoints,      ///< that each robot which heads for some has passed, at least
     all_checkpoints,  ///< that all robots together have passed, at least
     tick_p99          ///< 99 of 100 ticks take at most so long [ms]: says something of the machine, too

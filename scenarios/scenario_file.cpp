@@ -198,13 +198,14 @@ struct Rule {
   bool is_flag;
   double most;
 };
-constexpr std::array<Rule, 10> kRules{{{Expectation::Kind::no_collision, true, 0.0},
+constexpr std::array<Rule, 11> kRules{{{Expectation::Kind::no_collision, true, 0.0},
                                        {Expectation::Kind::contacts, false, 1e9},
                                        {Expectation::Kind::mean_error, false, 1e6},
                                        {Expectation::Kind::mean_abs_error, false, 1e6},
                                        {Expectation::Kind::map_coverage, false, 1.0},
                                        {Expectation::Kind::lights_obeyed, true, 0.0},
                                        {Expectation::Kind::done, true, 0.0},
+                                       {Expectation::Kind::distance, false, 1e9},
                                        {Expectation::Kind::checkpoints, false, 1e9},
                                        {Expectation::Kind::all_checkpoints, false, 1e9},
                                        {Expectation::Kind::tick_p99, false, 1e9}}};
@@ -253,9 +254,9 @@ std::string world_file(const Reader& reader, const TomlNode& root) {
 }  // namespace
 
 std::string_view name_of(Expectation::Kind kind) {
-  constexpr std::array<std::string_view, 10> kNames{"no_collision",    "contacts",      "mean_error", "mean_abs_error",
-                                                    "map_coverage",    "lights_obeyed", "done",       "checkpoints",
-                                                    "all_checkpoints", "tick_p99_ms"};
+  constexpr std::array<std::string_view, 11> kNames{"no_collision", "contacts",        "mean_error", "mean_abs_error",
+                                                    "map_coverage", "lights_obeyed",   "done",       "distance",
+                                                    "checkpoints",  "all_checkpoints", "tick_p99_ms"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
