@@ -70,6 +70,29 @@ Town town(std::uint64_t seed, double seconds) {
   return town;
 }
 
+// Cut anywhere on its way through the car park, a route goes on from where it was cut.
+TEST(Town, a_route_cut_in_the_car_park_stays_in_one_piece) {
+  Streets t;
+  const control::Corridors corridors(t.roads, t.world, {});
+  const auto start = place_on_lane(corridors, on_lane(t.roads, "11.2", 0.1));
+  ASSERT_TRUE(start.has_value());
+  control::RoutePlan whole = plan_from(corridors, *start);
+  ASSERT_TRUE(extend(corridors, whole, *find_checkpoint(t.roads, 8)));
+  int in_zone = 0;
+  for (double s = 0.0; s < length_of(whole); s += 0.05) {
+    control::RoutePlan plan = whole;
+    in_zone += corridors.way(plan.legs[leg_at(plan, s)].way).in_zone;
+    cut_after(corridors, plan, s);
+    ASSERT_TRUE(extend(corridors, plan, *find_checkpoint(t.roads, 9))) << s;
+    for (std::size_t i = 1; i < plan.legs.size(); ++i) {
+      const auto &a = plan.legs[i - 1], &b = plan.legs[i];
+      const Vec2 gap = point_on(corridors.way(a.way), a.to) - point_on(corridors.way(b.way), b.from);
+      ASSERT_LT(length(gap), 0.05) << s << " leg " << i;
+    }
+  }
+  EXPECT_GT(in_zone, 3);
+}
+
 TEST(Town, nobody_stands_for_good_and_the_convoy_drives_on) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Town t = town(seed, 500.0);
