@@ -69,6 +69,7 @@ mean_abs_error = { roomba0 = 0.5 }
 map_coverage = 0.9
 lights_obeyed = true
 done = true
+distance = 3.5
 checkpoints = 2
 all_checkpoints = 9
 tick_p99_ms = 10
@@ -89,7 +90,7 @@ tick_p99_ms = 10
   EXPECT_EQ(s.plans[0].actor->link.delay, 1.0);
   EXPECT_EQ(s.plans[0].actor->link.loss, 0.0);
   EXPECT_NEAR(s.plans[0].pose->yaw, M_PI / 2, 1e-15);
-  ASSERT_EQ(s.expect.size(), 10u);
+  ASSERT_EQ(s.expect.size(), 11u);
   for (const Expectation& e : s.expect)
     EXPECT_EQ(e.robot, e.kind == Expectation::Kind::mean_abs_error ? "roomba0" : "");
 }
