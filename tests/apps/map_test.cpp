@@ -60,7 +60,7 @@ TEST(Map, ComesFromARunInBothForms) {
   for (const std::string wire : {"farm", "thesis"}) {
     const unsigned port = free_ports(120);
     Program map(listen(port, {"--wire", wire, "-o", folder.path(wire + ".png")}));
-    ASSERT_TRUE(map.says("listening for maps on 1 ports"));
+    ASSERT_TRUE(map.says("listening for maps on 1 port"));
     EXPECT_EQ(run_program(run(world, port, wire)).code, 0);
     const Outcome outcome = map.wait();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
