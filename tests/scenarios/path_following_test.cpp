@@ -110,7 +110,7 @@ TEST(PathFollowing, StartsAreNormalAboutTheWorlds) {
   constexpr int kTrials = 200;
   for (int k = 0; k < kTrials; ++k) {
     scenario.seed = static_cast<std::uint64_t>(k);
-    const base::Pose& X = disturbed_world(scenario, d).movers[0].X_WM;
+    const base::Pose X = disturbed_world(scenario, d).movers[0].X_WM;
     sum += X.x - at.x;
     squares += (X.x - at.x) * (X.x - at.x) + (X.y - at.y) * (X.y - at.y);
     turns += (X.yaw - at.yaw) * (X.yaw - at.yaw);
