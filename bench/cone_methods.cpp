@@ -5,8 +5,7 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "bench/poison.h"
-#include "farm/farm.h"
+#include "bench/farm_rounds.h"
 
 namespace sf::bench {
 
@@ -16,26 +15,16 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 class FarmCones final : public ConeMethod {
  public:
-  FarmCones(const ConeScene& scene, gpu::Device& device) : farm_(scene.world, device) {
-    farm_.hear_all();
-    for (const std::vector<base::Pose>& poses : scene.rounds) {
-      std::vector<base::Report>& reports = reports_.emplace_back();
-      for (std::uint32_t m = 0; m < poses.size(); ++m) reports.push_back({m, 0, poses[m], {}});
-    }
-  }
+  FarmCones(const ConeScene& scene, gpu::Device& device) : farm_(scene.world, device, scene.rounds, 40'000'000) {}
   std::string name() const override { return "farm"; }
-  void poison() override { bench::poison(readings_); }
-  void hear(std::size_t round) override {
-    readings_ = farm_.tick(time_, reports_[round]);
-    time_ += 40'000'000;
+  void poison() override { farm_.poison(); }
+  void hear(std::size_t round) override { farm_.tick(round); }
+  double range(std::size_t robot, std::size_t transducer) const override {
+    return farm_.readings()[robot].values[transducer];
   }
-  double range(std::size_t robot, std::size_t transducer) const override { return readings_[robot].values[transducer]; }
 
  private:
-  farm::Farm farm_;
-  std::vector<std::vector<base::Report>> reports_;
-  std::span<const base::ReadingBlock> readings_;
-  std::int64_t time_ = 0;  ///< [ns]
+  FarmRounds farm_;
 };
 
 class PlainCones final : public ConeMethod {

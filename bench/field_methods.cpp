@@ -4,8 +4,7 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "bench/poison.h"
-#include "farm/farm.h"
+#include "bench/farm_rounds.h"
 #include "sensors/magnetometer.h"
 
 namespace sf::bench {
@@ -16,30 +15,18 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 class FarmMethod final : public FieldMethod {
  public:
-  FarmMethod(const FieldScene& scene, gpu::Device& device) : farm_(scene.world, device) {
-    farm_.hear_all();
-    for (const std::vector<base::Pose>& poses : scene.rounds) {
-      std::vector<base::Report>& reports = reports_.emplace_back();
-      for (std::uint32_t m = 0; m < poses.size(); ++m) reports.push_back({m, 0, poses[m], {}});
-    }
-  }
+  FarmMethod(const FieldScene& scene, gpu::Device& device) : farm_(scene.world, device, scene.rounds, 100'000'000) {}
   std::string name() const override { return "farm"; }
-  void poison() override { bench::poison(readings_); }
-  void sum(std::size_t turn) override {
-    readings_ = farm_.tick(time_, reports_[turn]);
-    time_ += 100'000'000;
-  }
+  void poison() override { farm_.poison(); }
+  void sum(std::size_t turn) override { farm_.tick(turn); }
   FieldVector value(std::size_t robot, std::size_t e) const override {
-    const double* const at = readings_[robot].values.data() + sensors::kMagnetometerColumns * e;
+    const double* const at = farm_.readings()[robot].values.data() + sensors::kMagnetometerColumns * e;
     return {at[1], at[2], at[3]};
   }
-  double pairs() const override { return static_cast<double>(farm_.stats().work.dipoles); }
+  double pairs() const override { return static_cast<double>(farm_.farm().stats().work.dipoles); }
 
  private:
-  farm::Farm farm_;
-  std::vector<std::vector<base::Report>> reports_;
-  std::span<const base::ReadingBlock> readings_;
-  std::int64_t time_ = 0;  ///< [ns]
+  FarmRounds farm_;
 };
 
 class PlainMethod final : public FieldMethod {

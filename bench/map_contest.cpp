@@ -10,8 +10,8 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "bench/farm_rounds.h"
 #include "bench/scans.h"
-#include "farm/farm.h"
 #include "maps/plain_mapper.h"
 #include "sensors/occupancy_batch.h"
 #include "tests/sensors/scenes.h"
@@ -29,14 +29,12 @@ struct Round {
 };
 
 std::vector<Round> rounds_of(const Scans& scans, gpu::Device& device) {
-  farm::Farm farm(scans.world, device);
-  farm.hear_all();
+  FarmRounds farm(scans.world, device, scans.rounds, 1'000'000'000);
   std::vector<Round> rounds;
-  for (const std::vector<base::Pose>& poses : scans.rounds) {
-    std::vector<base::Report> reports;
-    for (std::uint32_t m = 0; m < poses.size(); ++m) reports.push_back({m, 0, poses[m], {}});
+  for (std::size_t i = 0; i < scans.rounds.size(); ++i) {
+    farm.tick(i);
     Round round;
-    for (const base::ReadingBlock& r : farm.tick(static_cast<std::int64_t>(rounds.size()) * 1'000'000'000, reports)) {
+    for (const base::ReadingBlock& r : farm.readings()) {
       round.X_WS.push_back(r.X_WS);
       round.ranges.emplace_back(r.values.begin(), r.values.end());
     }

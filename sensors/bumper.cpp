@@ -146,20 +146,13 @@ std::vector<std::uint32_t> read_bumper(const world::Sensor& sensor) {
   return switches;
 }
 
-constinit const SensorKind bumper_kind{
-    .id = kBumper,
-    .name = "bumper",
+constinit const SensorKind bumper_kind = plain<kForm>({
     .word = {"bumper", kKeys},
     .base_port = 40000,
     .list = "switches",
     .columns = kColumns,
     .rows = rows_of,
-    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Bumpers>(site); },
-    .refuse = Plain<kForm>::refuse,
-    .parts = Plain<kForm>::parts,
-    .encode = Plain<kForm>::encode,
-    .decode = Plain<kForm>::decode,
-    .read = Plain<kForm>::read,
-};
+    .make = make_instruments<Bumpers>,
+});
 
 }  // namespace sf::sensors

@@ -51,20 +51,13 @@ constexpr PlainForm kForm{kCliff, "cliff", kNumbers};
 
 }  // namespace
 
-constinit const SensorKind cliff_kind{
-    .id = kCliff,
-    .name = "cliff",
+constinit const SensorKind cliff_kind = plain<kForm>({
     .word = {"cliff", kKeys},
     .base_port = 42000,
     .list = "points",
     .columns = kColumns,
     .rows = rows_of,
-    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Cliffs>(site); },
-    .refuse = Plain<kForm>::refuse,
-    .parts = Plain<kForm>::parts,
-    .encode = Plain<kForm>::encode,
-    .decode = Plain<kForm>::decode,
-    .read = Plain<kForm>::read,
-};
+    .make = make_instruments<Cliffs>,
+});
 
 }  // namespace sf::sensors

@@ -132,20 +132,13 @@ Encoder read_encoder(const world::Sensor& sensor, const world::Mover& mover) {
   return e;
 }
 
-constinit const SensorKind encoder_kind{
-    .id = kEncoder,
-    .name = "encoder",
+constinit const SensorKind encoder_kind = plain<kForm>({
     .word = {"encoder", kKeys},
     .base_port = 44000,
     .list = "",
     .columns = kColumns,
     .rows = rows_of,
-    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Encoders>(site); },
-    .refuse = Plain<kForm>::refuse,
-    .parts = Plain<kForm>::parts,
-    .encode = Plain<kForm>::encode,
-    .decode = Plain<kForm>::decode,
-    .read = Plain<kForm>::read,
-};
+    .make = make_instruments<Encoders>,
+});
 
 }  // namespace sf::sensors

@@ -95,20 +95,13 @@ Gps read_gps(const world::Sensor& sensor) {
   return gps;
 }
 
-constinit const SensorKind gps_kind{
-    .id = kGps,
-    .name = "gps",
+constinit const SensorKind gps_kind = plain<kForm>({
     .word = {"gps", kKeys},
     .base_port = 48000,
     .list = "",
     .columns = kColumns,
     .rows = rows_of,
-    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<GpsReceivers>(site); },
-    .refuse = Plain<kForm>::refuse,
-    .parts = Plain<kForm>::parts,
-    .encode = Plain<kForm>::encode,
-    .decode = Plain<kForm>::decode,
-    .read = Plain<kForm>::read,
-};
+    .make = make_instruments<GpsReceivers>,
+});
 
 }  // namespace sf::sensors

@@ -91,20 +91,13 @@ Gyro read_gyro(const world::Sensor& sensor) {
   return g;
 }
 
-constinit const SensorKind gyro_kind{
-    .id = kGyro,
-    .name = "gyro",
+constinit const SensorKind gyro_kind = plain<kForm>({
     .word = {"gyro", kKeys},
     .base_port = 46000,
     .list = "",
     .columns = kColumns,
     .rows = rows_of,
-    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Gyros>(site); },
-    .refuse = Plain<kForm>::refuse,
-    .parts = Plain<kForm>::parts,
-    .encode = Plain<kForm>::encode,
-    .decode = Plain<kForm>::decode,
-    .read = Plain<kForm>::read,
-};
+    .make = make_instruments<Gyros>,
+});
 
 }  // namespace sf::sensors

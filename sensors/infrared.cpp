@@ -43,20 +43,13 @@ ConeArray read_infrared(const world::Sensor& sensor, std::uint32_t mover, std::u
   return array;
 }
 
-constinit const SensorKind infrared_kind{
-    .id = kInfrared,
-    .name = "infrared",
+constinit const SensorKind infrared_kind = plain<kForm>({
     .word = {"infrared", kKeys},
     .base_port = 38000,
     .list = "elements",
     .columns = kColumns,
     .rows = [](const world::World& world) { return ranger_rows(infrareds_of(world)); },
     .make = [](const Site& site) { return make_rangers(site, infrareds_of(site.world), kRanger); },
-    .refuse = Plain<kForm>::refuse,
-    .parts = Plain<kForm>::parts,
-    .encode = Plain<kForm>::encode,
-    .decode = Plain<kForm>::decode,
-    .read = Plain<kForm>::read,
-};
+});
 
 }  // namespace sf::sensors

@@ -108,20 +108,13 @@ std::uint32_t light_of(const Emitter& emitter, Vec2 p) {
   return light;
 }
 
-constinit const SensorKind irreceiver_kind{
-    .id = kIrReceiver,
-    .name = "irreceiver",
+constinit const SensorKind irreceiver_kind = plain<kForm>({
     .word = {"irreceiver", {}},
     .base_port = 50000,
     .list = "",
     .columns = kColumns,
     .rows = rows_of,
-    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<IrReceivers>(site); },
-    .refuse = Plain<kForm>::refuse,
-    .parts = Plain<kForm>::parts,
-    .encode = Plain<kForm>::encode,
-    .decode = Plain<kForm>::decode,
-    .read = Plain<kForm>::read,
-};
+    .make = make_instruments<IrReceivers>,
+});
 
 }  // namespace sf::sensors

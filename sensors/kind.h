@@ -146,6 +146,12 @@ struct SensorKind {
                std::span<double> values) = nullptr;
 };
 
+/// What a kind's `make` is where its instruments need the site alone.
+template <class Made>
+std::unique_ptr<Instruments> make_instruments(const Site& site) {
+  return std::make_unique<Made>(site);
+}
+
 /// Every kind there is, by id: generated from sensors/CMakeLists.txt.
 std::span<const SensorKind* const> kinds();
 /// @return null when no kind has that id.

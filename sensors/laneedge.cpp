@@ -139,7 +139,7 @@ constinit const SensorKind laneedge_kind{
     .list = "",
     .columns = kColumns,
     .rows = rows_of,
-    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<LaneEdges>(site); },
+    .make = make_instruments<LaneEdges>,
     .refuse = refuse_lane_edge,
     .parts = lane_edge_parts,
     .encode = encode_lane_edge,

@@ -151,7 +151,7 @@ constinit const SensorKind laser_kind{
     .list = "beams",
     .columns = kColumns,
     .rows = rows_of,
-    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Lasers>(site); },
+    .make = make_instruments<Lasers>,
     .refuse = refuse_laser,
     .parts = laser_parts,
     .encode = encode_laser,

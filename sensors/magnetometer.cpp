@@ -170,7 +170,7 @@ constinit const SensorKind magnetometer_kind{
     .list = "sensors",
     .columns = kColumns,
     .rows = rows_of,
-    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Magnetometers>(site); },
+    .make = make_instruments<Magnetometers>,
     .refuse = refuse_magnetometer,
     .parts = magnetometer_parts,
     .encode = encode_magnetometer,

@@ -106,7 +106,7 @@ constinit const SensorKind occupancy_kind{
     .columns = kColumns,
     .derived = true,
     .rows = rows_of,
-    .make = [](const Site& site) -> std::unique_ptr<Instruments> { return std::make_unique<Occupancies>(site); },
+    .make = make_instruments<Occupancies>,
     .refuse = refuse_occupancy,
     .parts = occupancy_parts,
     .encode = encode_occupancy,

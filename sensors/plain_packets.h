@@ -47,22 +47,22 @@ Part decode_plain(const PlainForm& form, const SensorRow& sensor, std::span<cons
                   std::uint8_t type, Wire wire);
 void read_plain(const PlainForm& form, std::span<const std::uint8_t> payload, std::span<double> values);
 
-/// The same as functions of a kind's table: `.encode = Plain<kForm>::encode`.
+/// `kind`, sent in the form kForm, whose id and name it has.
 template <const PlainForm& kForm>
-struct Plain {
-  static std::string refuse(const SensorRow&, Wire wire) { return refuse_plain(kForm, wire); }
-  static std::uint32_t parts(const SensorRow&, Wire) { return 1; }
-  static std::uint8_t encode(const SensorRow& sensor, const base::ReadingBlock& reading, Wire, std::uint32_t,
-                             base::Bytes& out) {
+consteval SensorKind plain(SensorKind kind) {
+  kind.id = kForm.id;
+  kind.name = kForm.name;
+  kind.refuse = [](const SensorRow&, Wire wire) { return refuse_plain(kForm, wire); };
+  kind.parts = [](const SensorRow&, Wire) -> std::uint32_t { return 1; };
+  kind.encode = [](const SensorRow& sensor, const base::ReadingBlock& reading, Wire, std::uint32_t, base::Bytes& out) {
     return encode_plain(kForm, sensor, reading, out);
-  }
-  static Part decode(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire) {
+  };
+  kind.decode = [](const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire) {
     return decode_plain(kForm, sensor, payload, type, wire);
-  }
-  static void read(const SensorRow&, std::span<const std::uint8_t> payload, std::uint8_t, Wire,
-                   std::span<double> values) {
-    read_plain(kForm, payload, values);
-  }
-};
+  };
+  kind.read = [](const SensorRow&, std::span<const std::uint8_t> payload, std::uint8_t, Wire,
+                 std::span<double> values) { read_plain(kForm, payload, values); };
+  return kind;
+}
 
 }  // namespace sf::sensors

@@ -72,20 +72,13 @@ ConeArray read_sonar(const world::Sensor& sensor, std::uint32_t mover, std::uint
   return array;
 }
 
-constinit const SensorKind sonar_kind{
-    .id = kSonar,
-    .name = "sonar",
+constinit const SensorKind sonar_kind = plain<kForm>({
     .word = {"sonar", kKeys},
     .base_port = 36000,
     .list = "transducers",
     .columns = kColumns,
     .rows = [](const world::World& world) { return ranger_rows(sonars_of(world)); },
     .make = [](const Site& site) { return make_rangers(site, sonars_of(site.world), kRanger); },
-    .refuse = Plain<kForm>::refuse,
-    .parts = Plain<kForm>::parts,
-    .encode = Plain<kForm>::encode,
-    .decode = Plain<kForm>::decode,
-    .read = Plain<kForm>::read,
-};
+});
 
 }  // namespace sf::sensors

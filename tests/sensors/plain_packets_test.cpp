@@ -16,7 +16,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr PlainNumber kNumbers[] = {{1e-3}, {1.0, 0.0, 5.0}};
 constexpr PlainForm kForm{29, "trial", kNumbers};
-using Trial = Plain<kForm>;
+constexpr SensorKind kTrial = plain<kForm>({});
 
 SensorRow row_of(std::uint32_t elements) {
   SensorRow row;
@@ -28,14 +28,14 @@ base::Bytes bytes_of(const std::vector<double>& values) {
   base::ReadingBlock block;
   block.values = values;
   base::Bytes out;
-  EXPECT_EQ(Trial::encode(row_of(static_cast<std::uint32_t>(values.size() / 2)), block, Wire::farm, 0, out), 29);
+  EXPECT_EQ(kTrial.encode(row_of(static_cast<std::uint32_t>(values.size() / 2)), block, Wire::farm, 0, out), 29);
   return out;
 }
 
 std::vector<double> back(const std::vector<double>& values) {
   const base::Bytes bytes = bytes_of(values);
   std::vector<double> read(values.size(), 77.0);
-  Trial::read(row_of(static_cast<std::uint32_t>(values.size() / 2)), bytes, 29, Wire::farm, read);
+  kTrial.read(row_of(static_cast<std::uint32_t>(values.size() / 2)), bytes, 29, Wire::farm, read);
   return read;
 }
 
@@ -59,7 +59,7 @@ TEST(PlainPackets, RoundsToNearestAndSaturates) {
 TEST(PlainPackets, JudgesWhatCannotBe) {
   const base::Bytes good = bytes_of({1, 2, 3, 4});
   const auto fault = [&](base::Bytes bytes, std::uint32_t rows, std::uint8_t type = 29, Wire wire = Wire::farm) {
-    return Trial::decode(row_of(rows), bytes, type, wire).fault;
+    return kTrial.decode(row_of(rows), bytes, type, wire).fault;
   };
   EXPECT_EQ(fault(good, 2), Fault::none);
   EXPECT_EQ(fault(good, 0), Fault::none) << "of any number of rows";
@@ -84,18 +84,18 @@ TEST(PlainPackets, AsManyNumbersAsADatagramHolds) {
   const base::Bytes bytes = bytes_of(most);
   EXPECT_EQ(bytes.size(), 4 + 4 * 342u);
   EXPECT_LE(bytes.size() + 24, 1400u);
-  EXPECT_EQ(Trial::decode(row_of(0), bytes, 29, Wire::farm).fault, Fault::none);
+  EXPECT_EQ(kTrial.decode(row_of(0), bytes, 29, Wire::farm).fault, Fault::none);
   base::Bytes more(4 + 4 * 344, 0);
   more[0] = 172;
-  EXPECT_EQ(Trial::decode(row_of(0), more, 29, Wire::farm).fault, Fault::out_of_range);
+  EXPECT_EQ(kTrial.decode(row_of(0), more, 29, Wire::farm).fault, Fault::out_of_range);
 }
 
 TEST(PlainPackets, TheThesisHasNoLayoutForThem) {
-  EXPECT_EQ(Trial::refuse({}, Wire::farm), "");
-  const std::string why = Trial::refuse({}, Wire::thesis);
+  EXPECT_EQ(kTrial.refuse({}, Wire::farm), "");
+  const std::string why = kTrial.refuse({}, Wire::thesis);
   EXPECT_NE(why.find("trial"), std::string::npos);
   EXPECT_NE(why.find("--wire farm"), std::string::npos);
-  EXPECT_EQ(Trial::parts({}, Wire::farm), 1u);
+  EXPECT_EQ(kTrial.parts({}, Wire::farm), 1u);
 }
 
 /// No bytes bring it down; what is taken can be read.
@@ -111,11 +111,11 @@ TEST(PlainPackets, AnyBytesAreJudged) {
       const Part part = kind->decode(row_of(0), bytes, kind->id, Wire::farm);
       EXPECT_TRUE(part.fault != Fault::none || part.elements >= 1u);
     }
-    const Part part = Trial::decode(row_of(0), bytes, 29, Wire::farm);
+    const Part part = kTrial.decode(row_of(0), bytes, 29, Wire::farm);
     if (part.fault != Fault::none) continue;
     ++taken;
     std::vector<double> values(2 * part.elements);
-    Trial::read(row_of(0), bytes, 29, Wire::farm, values);
+    kTrial.read(row_of(0), bytes, 29, Wire::farm, values);
     for (std::size_t k = 0; k < part.elements; ++k)
       EXPECT_TRUE(std::isnan(values[2 * k + 1]) || (values[2 * k + 1] >= 0.0 && values[2 * k + 1] <= 5.0));
   }
