@@ -47,8 +47,7 @@ RobotProcess::RobotProcess(const world::World& world, const sensors::Roster& ros
             [this](const netio::Packet& packet, std::int64_t now) { hear(packet, now); }),
       intents_(world.movers.size()),
       started_(!waits_for_start(options)) {
-  std::vector<world::Warning> warnings;
-  if (!world.road_files.empty()) roads_ = world::load_roads(world.road_files.front(), warnings);
+  roads_ = world::roads_of(world);
   control::Plan plan = plan_of(options);
   plan.rate = options.rate;
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, std::move(plan));

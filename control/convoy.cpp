@@ -42,10 +42,8 @@ std::optional<std::uint32_t> heading_for(const Corridors& corridors, const Drive
       const Way& way = corridors.way(place.way);
       const std::uint32_t row = lane ? place.way : way.into;
       if (lane != (way.kind == Way::Kind::lane) || row == world::kNone) continue;
-      const auto& points = corridors.roads().lanes[row].points;
-      for (std::uint32_t i = 0; i < points.size(); ++i)
-        if (lane ? points[i].s >= place.s || i + 1 == points.size() : points[i].s >= way.enter)
-          return corridors.node_of({world::PointRef::Kind::lane, row, i});
+      const std::uint32_t next = point_from(corridors.roads().lanes[row], lane ? place.s : way.enter);
+      return corridors.node_of({world::PointRef::Kind::lane, row, next});
     }
   return std::nullopt;
 }

@@ -1,7 +1,5 @@
 #include "control/corridor.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -40,7 +38,8 @@ void sample(Way& way, const world::Curve& line, double step) {
   }
 }
 
-double between(const std::vector<double>& values, const Way& way, double s) {
+template <class T>
+T between(const std::vector<T>& values, const Way& way, double s) {
   const double at = std::clamp(s / way.step, 0.0, static_cast<double>(values.size() - 1));
   const auto i = std::min(static_cast<std::size_t>(at), values.size() - 2);
   return values[i] + (at - static_cast<double>(i)) * (values[i + 1] - values[i]);
@@ -55,11 +54,7 @@ RoadBody body_of(const world::Mover& mover) {
   return outline.edges.empty() ? RoadBody{} : RoadBody{outline.radius, front};
 }
 
-Vec2 point_on(const Way& way, double s) {
-  const double at = std::clamp(s / way.step, 0.0, static_cast<double>(way.points.size() - 1));
-  const auto i = std::min(static_cast<std::size_t>(at), way.points.size() - 2);
-  return way.points[i] + (at - static_cast<double>(i)) * (way.points[i + 1] - way.points[i]);
-}
+Vec2 point_on(const Way& way, double s) { return between(way.points, way, s); }
 double yaw_on(const Way& way, double s) { return between(way.yaw, way, s); }
 double curvature_on(const Way& way, double s) { return between(way.curvature, way, s); }
 

@@ -1,7 +1,6 @@
 // Where ways meet, and where robots wait for each other.
 
 #include <algorithm>
-#include <cmath>
 
 #include "control/corridor.h"
 

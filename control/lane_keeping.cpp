@@ -11,25 +11,14 @@
 namespace sf::control {
 
 LaneKeeping::LaneKeeping(const LaneSettings& settings, const PathTask& task)
-    : settings_(settings), task_(task), law_(settings.gains), hold_(settings.hold), error_(Controller::error()) {
+    : PathFollower(sensors::kLaneEdge, settings.gains, settings.speed, settings.hold, task), settings_(settings) {
   SF_CHECK(settings.half_width || task.known(), "a lane of unknown width");
-}
-
-base::Twist LaneKeeping::step(const Input& input) {
-  error_ = Controller::error();
-  if (done_ || (done_ = task_.ended(input.state.X_WM))) return {};
-  const base::ReadingBlock* reading = newest(input, sensors::kLaneEdge);
-  const bool speaks = hold_.speaks(reading, input.time);
-  const double now = speaks && reading != nullptr ? error_of(*reading, input.state.X_WM) : Controller::error();
-  error_ = hold_.keep(now, input.time);
-  if (!std::isfinite(error_)) return {};
-  return {settings_.speed, 0.0, std::isfinite(now) ? law_.steer(now, input.time) : law_.keep(error_)};
 }
 
 double LaneKeeping::error_of(const base::ReadingBlock& reading, const base::Pose& X_WM) const {
   if (reading.values.empty() || !std::isfinite(reading.values[0])) return Controller::error();
   const base::Vec2 p_WS = base::transform(X_WM, settings_.p_MS);
-  const double half = settings_.half_width ? *settings_.half_width : 0.5 * task_.width_at(p_WS);
+  const double half = settings_.half_width ? *settings_.half_width : 0.5 * task().width_at(p_WS);
   const double edge = reading.values[0] + settings_.side * settings_.p_MS.y;  // from the robot's axis
   return settings_.side * (edge - half);
 }

@@ -49,7 +49,7 @@ bool Lookout::wanted(CellAt cell, bool all) const {
 }
 
 // The nodes from the cell's middle outwards, square by square (Amanatides and Woo, "A fast voxel traversal algorithm
-// for ray tracing", 1987), until something known is in the way. Visits node and distance; ends where that says so.
+// for ray tracing", 1987), until something known is in the way. Visits each.
 template <typename Visit>
 void Lookout::cast(CellAt cell, std::size_t ray, Visit visit) const {
   const double ux = rays_[ray].x, uy = -rays_[ray].y;
@@ -63,7 +63,7 @@ void Lookout::cast(CellAt cell, std::size_t ray, Visit visit) const {
     const Node node = row * columns + column;
     if (terrain_.solid(node) && ++surfaces > graze_) return;
     if (!terrain_.explored(node) && ++unknown > kUnknown) return;
-    visit(node, far);
+    visit(node);
     if (next_x < next_y) {
       far = next_x;
       next_x += dx;
@@ -82,7 +82,7 @@ void Lookout::see(CellAt cell) {
   const auto tried = tried_.find(key(cell));
   const bool afresh = tried == tried_.end();
   for (std::size_t ray = 0; ray < kRays; ++ray) {
-    cast(cell, ray, [&](Node node, double) {
+    cast(cell, ray, [&](Node node) {
       if (!afresh && std::any_of(tried->second.begin(), tried->second.end(), [&](Node other) {
             return base::length(terrain_.place(node) - terrain_.place(other)) < kOther;
           }))
@@ -119,7 +119,7 @@ std::vector<CellAt> Lookout::targets(Node sensor, int heading) const {
       // Only rays that come near the sensor.
       const double aside = std::abs(base::cross({rays_[ray].x, rays_[ray].y}, d));
       if (aside > 2.0 * terrain_.cell() || (rays_[ray].headings >> heading & 1u) == 0) continue;
-      cast(cell, ray, [&](Node node, double) { found = found || node == sensor; });
+      cast(cell, ray, [&](Node node) { found = found || node == sensor; });
     }
     if (found) seen.push_back(cell);
   }

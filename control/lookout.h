@@ -2,7 +2,6 @@
 // From where a laser would see what is still unexplored: for every node of the lattice, the headings that have a wanted
 // cell in their field of view, in range, with nothing known in between.
 
-#include <array>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>

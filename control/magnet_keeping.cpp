@@ -3,37 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/error.h"
 #include "sensors/magnetometer.h"
 
 namespace sf::control {
 
-namespace {
+MagnetKeeping::MagnetKeeping(const MagnetSettings& settings, const PathTask& task)
+    : PathFollower(sensors::kMagnetometer, settings.gains, settings.speed, settings.hold, task) {}
 
-// [Gauss]; not a number where there are not two elements.
-double difference(const base::ReadingBlock& reading) {
+double MagnetKeeping::error_of(const base::ReadingBlock& reading, const base::Pose&) const {
   constexpr std::size_t kColumns = sensors::kMagnetometerColumns;
-  if (reading.values.size() < 2 * kColumns) return std::numeric_limits<double>::quiet_NaN();
+  if (reading.values.size() < 2 * kColumns) return Controller::error();
   const std::size_t last = reading.values.size() / kColumns - 1;
   return (reading.values[last * kColumns] - reading.values[0]) / sensors::kGauss;
-}
-
-}  // namespace
-
-MagnetKeeping::MagnetKeeping(const MagnetSettings& settings, const PathTask& task)
-    : settings_(settings), task_(task), law_(settings.gains), hold_(settings.hold), error_(Controller::error()) {}
-
-base::Twist MagnetKeeping::step(const Input& input) {
-  error_ = Controller::error();
-  if (done_ || (done_ = task_.ended(input.state.X_WM))) return {};
-  const base::ReadingBlock* reading = newest(input, sensors::kMagnetometer);
-  const bool speaks = hold_.speaks(reading, input.time);
-  const double now = speaks && reading != nullptr ? difference(*reading) : Controller::error();
-  error_ = hold_.keep(now, input.time);
-  if (!std::isfinite(error_)) return {};
-  return {settings_.speed, 0.0, std::isfinite(now) ? law_.steer(now, input.time) : law_.keep(error_)};
 }
 
 namespace {

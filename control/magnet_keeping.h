@@ -1,13 +1,11 @@
 #pragma once
 // Follows a line of magnets by an array of magnetometers across the robot (thesis, 4.3.3): e = z of the last element -
 // z of the first, in Gauss, u = kp e + ki (integral of e), at constant speed. Element 0 is the rightmost, so a line to
-// the left of the robot's middle makes e positive, and it turns left. An array that stops telling is held for `hold`
-// seconds, then the robot stands.
+// the left of the robot's middle makes e positive, and it turns left.
 //
 // The thesis prints gains (0.01, 0.006) without a unit; here they are in rad/s per Gauss.
 
 #include "control/path_task.h"
-#include "control/pi_law.h"
 
 namespace sf::control {
 
@@ -17,21 +15,13 @@ struct MagnetSettings {
   double hold = 1.0;         ///< [s]
 };
 
-class MagnetKeeping final : public Controller {
+/// Its error is in Gauss, not a number where there are not two elements.
+class MagnetKeeping final : public PathFollower {
  public:
   MagnetKeeping(const MagnetSettings& settings, const PathTask& task);
 
-  base::Twist step(const Input& input) override;
-  bool done() const override { return done_; }
-  double error() const override { return error_; }  ///< [Gauss]
-
  private:
-  MagnetSettings settings_;
-  PathTask task_;
-  PiLaw law_;
-  Hold hold_;
-  double error_;
-  bool done_ = false;
+  double error_of(const base::ReadingBlock& reading, const base::Pose& X_WM) const override;
 };
 
 extern const ControllerKind magnet_keeping_controller;

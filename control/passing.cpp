@@ -1,7 +1,6 @@
 #include "control/passing.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace sf::control {
 

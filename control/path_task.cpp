@@ -42,4 +42,18 @@ double Hold::keep(double now, std::int64_t time) {
   return last_;
 }
 
+PathFollower::PathFollower(std::uint8_t kind, const PiGains& gains, double speed, double hold, const PathTask& task)
+    : kind_(kind), speed_(speed), task_(task), law_(gains), hold_(hold) {}
+
+base::Twist PathFollower::step(const Input& input) {
+  error_ = Controller::error();
+  if (done_ || (done_ = task_.ended(input.state.X_WM))) return {};
+  const base::ReadingBlock* reading = newest(input, kind_);
+  const bool speaks = hold_.speaks(reading, input.time);
+  const double now = speaks && reading != nullptr ? error_of(*reading, input.state.X_WM) : Controller::error();
+  error_ = hold_.keep(now, input.time);
+  if (!std::isfinite(error_)) return {};
+  return {speed_, 0.0, std::isfinite(now) ? law_.steer(now, input.time) : law_.keep(error_)};
+}
+
 }  // namespace sf::control

@@ -1,10 +1,11 @@
 #pragma once
-// Following a path of the world: which piece one is on, and when one is through.
+// Following a path of the world: which piece one is on, when one is through, and the loop that all who follow share.
 
 #include <cstdint>
 
 #include "base/reading.h"
 #include "control/controllers.h"
+#include "control/pi_law.h"
 #include "world/paths.h"
 
 namespace sf::control {
@@ -47,6 +48,33 @@ class Hold {
   std::uint32_t sequence_ = 0;
   double last_ = std::numeric_limits<double>::quiet_NaN();
   bool any_ = false;
+};
+
+/// Follows a path at constant speed by what one sensor says of the error, with P or PI steering: readings are taken at
+/// its own rate, new or not. Without an error it goes on with the last for `hold` seconds, then stands until there is
+/// one again; the integral rests meanwhile. (The thesis says nothing of it.)
+class PathFollower : public Controller {
+ public:
+  base::Twist step(const Input& input) final;
+  bool done() const final { return done_; }
+  double error() const final { return error_; }
+
+ protected:
+  /// @param kind of the sensor @param speed [m/s] @param hold [s]
+  PathFollower(std::uint8_t kind, const PiGains& gains, double speed, double hold, const PathTask& task);
+  const PathTask& task() const { return task_; }
+
+ private:
+  /// Not a number: the reading says nothing.
+  virtual double error_of(const base::ReadingBlock& reading, const base::Pose& X_WM) const = 0;
+
+  std::uint8_t kind_;
+  double speed_;
+  PathTask task_;
+  PiLaw law_;
+  Hold hold_;
+  double error_ = Controller::error();
+  bool done_ = false;
 };
 
 }  // namespace sf::control

@@ -8,7 +8,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <vector>
 
 #include "control/terrain.h"
@@ -48,11 +47,6 @@ class PoseSearch {
   std::vector<State> find(const State& from, double margin, const std::function<bool(const State&)>& goal);
 
  private:
-  struct Move {
-    Node by;
-    int turn;  ///< headings
-    std::uint32_t cost;
-  };
   std::uint32_t cost_at(Node node) const;
   bool arm_clear(Node node, int half_heading) const;
   void relax(const State& from, std::uint32_t so_far, double margin, double spare);

@@ -1,21 +1,11 @@
 #include "control/route.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
-#include "control/passing.h"
 
 namespace sf::control {
-
-namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::size_t kOldLegs = 24;  // that are done are kept
-
-}  // namespace
 
 Route::Route(std::shared_ptr<const Corridors> corridors, const Site& site, RouteSettings settings,
              std::optional<RouteGoals> goals, Company company)
@@ -37,156 +27,6 @@ base::Intent Route::intent() const {
   intent.docking = started_ && !done_ && corridors_->way(plan_.legs[progress_.leg()].way).in_zone;
   return intent;
 }
-
-// ---- Planning.
-
-void Route::start(const Input& input) {
-  const Pose& X_WM = input.state.X_WM;
-  if (const auto spot = spot_at(*corridors_, X_WM)) {
-    plan_ = plan_from_spot(*corridors_, *spot);
-  } else {
-    const auto place = place_on_road(*corridors_, X_WM);
-    if (!place)
-      throw base::InputError(
-          fmt::format("robot '{}' stands at ({:.2f}, {:.2f}), where no lane of '{}' runs in its "
-                      "direction; place it on a lane or in a parking spot",
-                      site_.world.movers[site_.mover].name, X_WM.x, X_WM.y, site_.roads->file));
-    plan_ = plan_from(*corridors_, *place);
-  }
-  started_ = true;
-  check_goals();
-  fill();
-}
-
-// A list is tried out once, to its end and back to its beginning, so that nobody is stranded on the way.
-void Route::check_goals() const {
-  if (!goals_) return;
-  RoutePlan plan = plan_;
-  for (std::size_t k = 0; k <= goals_->count(); ++k) {
-    const world::RoadCheckpoint* goal = goals_->by_lot() ? nullptr : goals_->at(k);
-    if (goal == nullptr) return;
-    if (!extend(*corridors_, plan, *goal)) refuse(*goal);
-  }
-}
-
-void Route::refuse(const world::RoadCheckpoint& goal) const {
-  throw base::InputError(fmt::format(
-      "robot '{}' finds no way to checkpoint {} (way-point {}) in '{}'; choose others, or add exits",
-      site_.world.movers[site_.mover].name, goal.id, text_of(id_of(*site_.roads, goal.at)), site_.roads->file));
-}
-
-// Two goals ahead are planned, so that there is always some way on from the next one.
-void Route::fill() {
-  if (!goals_) return;
-  int refused = 0;
-  while (plan_.goals.size() < 2) {
-    const world::RoadCheckpoint* goal = goals_->at(planned_);
-    if (goal == nullptr) return;
-    ++planned_;
-    if (extend(*corridors_, plan_, *goal)) continue;
-    // By lot another one will do.
-    if (!goals_->by_lot() || ++refused > 100) refuse(*goal);
-  }
-}
-
-void Route::trim() {
-  if (progress_.leg() < 2 * kOldLegs) return;
-  const std::size_t gone = progress_.leg() - kOldLegs;
-  plan_.legs.erase(plan_.legs.begin(), plan_.legs.begin() + static_cast<std::ptrdiff_t>(gone));
-  progress_.set(progress_.s(), progress_.leg() - gone);
-}
-
-void Route::pass_goals(const Input& input) {
-  if (!goals_) return;
-  const double near = 0.06 * corridors_->body().radius;
-  while (!plan_.goals.empty()) {
-    const Goal& goal = plan_.goals.front();
-    const bool last = plan_.goals.size() == 1 && goals_->at(planned_) == nullptr;
-    const bool stands = std::abs(input.state.velocity.forward) < 0.01;
-    const bool there = progress_.s() >= goal.s - (goal.park || last ? near : 0.0);
-    if (!there || ((goal.park || last) && !stands)) return;
-    plan_.goals.erase(plan_.goals.begin());
-    ++next_goal_;
-    if (last) done_ = true;
-    fill();
-  }
-}
-
-void Route::chase() {
-  if (company_.leader == base::kNobody || (goals_ && company_.merges)) return;
-  const auto row = row_of(right_of_way_.drivers(), company_.leader);
-  const auto node = row ? heading_for(*corridors_, right_of_way_.drivers()[*row]) : std::nullopt;
-  if (!node) return search();
-  if (plan_.node == *node) return;
-  goals_.reset();
-  plan_.goals.clear();
-  RoutePlan plan = plan_;
-  cut_after(*corridors_, plan, progress_.s());
-  const world::PointRef to = site_.roads->index[*node].second;
-  if (plan.node == *node || extend(*corridors_, plan, to)) plan_ = std::move(plan);
-}
-
-// Who hears no leader drives on by lot, so that it stands in nobody's way, until it does.
-void Route::search() {
-  for (int tries = 0; tries < 10 && length_of(plan_) < progress_.s() + kLookAhead + 0.1; ++tries)
-    if (const world::RoadCheckpoint* goal = lots_.at(searched_++)) extend(*corridors_, plan_, goal->at);
-}
-
-// A lane that stays full is gone round.
-void Route::reroute(const Input& input) {
-  const std::uint32_t avoid = blocked_way_;
-  const std::int64_t patience = (20 + 2 * (site_.mover % 5)) * kSecond;
-  if (blocked_since_ < 0 || input.time - blocked_since_ < patience || !goals_) return;
-  blocked_since_ = input.time;
-  if (corridors_->way(plan_.legs[progress_.leg()].way).kind != Way::Kind::lane) return;
-  RoutePlan plan = plan_;
-  cut_after(*corridors_, plan, progress_.s());
-  if (plan_goals(plan, avoid)) plan_ = std::move(plan);
-}
-
-// On from the end of `plan` to what is still to come.
-bool Route::plan_goals(RoutePlan& plan, std::uint32_t avoid) const {
-  for (const Goal& goal : plan_.goals) {
-    if (goal.s <= progress_.s()) continue;
-    const auto* checkpoint = goal.id >= 0 ? find_checkpoint(*site_.roads, goal.id) : nullptr;
-    if (checkpoint == nullptr || !extend(*corridors_, plan, *checkpoint, avoid)) return false;
-  }
-  return true;
-}
-
-// Two that change lanes against each other would wait for ever: who has stood for long goes back into its lane.
-void Route::give_up_change(const Input& input) {
-  if (std::abs(input.state.velocity.forward) > 0.005 || still_since_ < 0) still_since_ = input.time;
-  const std::int64_t patience = (8 + 2 * (site_.mover % 5)) * kSecond;
-  if (input.time - still_since_ < patience || company_.merges) return;
-  const std::uint32_t row = plan_.legs[progress_.leg()].way;
-  if (!changes_lanes(*corridors_, row)) return;
-  auto plan = plan_back(*corridors_, plan_, progress_.s(), input.state.X_WM);
-  if (!plan || !plan_goals(*plan, row)) return;
-  plan_ = std::move(*plan);
-  pass_until_ = -1.0;
-  still_since_ = input.time;
-}
-
-void Route::consider_passing(const Input& input) {
-  if (!settings_.pass || company_.leader != base::kNobody || progress_.s() < pass_until_) return;
-  const bool behind = !ahead_.empty() && ahead_.front().free < 0.5 && ahead_.front().speed > 0.02 &&
-                      ahead_.front().speed < 0.8 * settings_.speed;
-  if (!behind) {
-    slow_since_ = -1;
-    return;
-  }
-  if (slow_since_ < 0) slow_since_ = input.time;
-  if (input.time - slow_since_ < kSecond) return;
-  auto passing =
-      plan_passing(*corridors_, plan_, progress_.s(), settings_.speed, ahead_.front(), right_of_way_.drivers());
-  if (!passing) return;
-  plan_ = std::move(passing->plan);
-  pass_until_ = passing->until;
-  slow_since_ = -1;
-}
-
-// ---- A tick.
 
 base::Twist Route::step(const Input& input) {
   if (!input.started) return {};
@@ -233,8 +73,6 @@ base::Twist Route::drive(const Input& input, double speed) {
   if (way.backwards) twist.forward = -twist.forward;
   return twist;
 }
-
-// ---- From settings.
 
 std::unique_ptr<Controller> make_route_controller(const Site& site, Settings& settings, bool convoy) {
   const world::Mover& mover = site.world.movers[site.mover];

@@ -1,7 +1,6 @@
 #pragma once
 // Who is ahead on a route, and how far one may go because of them.
 
-#include <span>
 #include <vector>
 
 #include "control/right_of_way.h"

@@ -1,7 +1,6 @@
 #pragma once
 // Where a robot is to go: a list of checkpoints, once or round and round, or checkpoints drawn by lot for ever.
 
-#include <optional>
 #include <vector>
 
 #include "control/controllers.h"

@@ -77,13 +77,16 @@ std::vector<Edge> shortest(const Corridors& corridors, std::uint32_t from, std::
 
 /// The point of a lane where another way enters it.
 std::uint32_t entry_of(const Corridors& corridors, const Way& way) {
-  const auto& points = corridors.roads().lanes[way.into].points;
-  std::uint32_t i = 0;
-  while (i + 1 < points.size() && points[i].s < way.enter) ++i;
-  return corridors.node_of({PointRef::Kind::lane, way.into, i});
+  return corridors.node_of({PointRef::Kind::lane, way.into, point_from(corridors.roads().lanes[way.into], way.enter)});
 }
 
 }  // namespace
+
+std::uint32_t point_from(const world::RoadLane& lane, double s) {
+  std::uint32_t i = 0;
+  while (i + 1 < lane.points.size() && lane.points[i].s < s) ++i;
+  return i;
+}
 
 std::size_t leg_at(const RoutePlan& plan, double s) {
   const auto next = std::upper_bound(plan.legs.begin(), plan.legs.end(), s,
@@ -120,10 +123,9 @@ RoutePlan plan_from(const Corridors& corridors, const Place& place) {
     plan.node = entry_of(corridors, way);
     return plan;
   }
-  const auto& points = corridors.roads().lanes[place.way].points;
-  std::uint32_t next = 0;
-  while (next + 1 < points.size() && points[next].s < place.s) ++next;
-  append(plan, place.way, std::min(place.s, points[next].s), points[next].s);
+  const world::RoadLane& lane = corridors.roads().lanes[place.way];
+  const std::uint32_t next = point_from(lane, place.s);
+  append(plan, place.way, std::min(place.s, lane.points[next].s), lane.points[next].s);
   plan.node = corridors.node_of({PointRef::Kind::lane, place.way, next});
   return plan;
 }
@@ -170,11 +172,9 @@ void cut_after(const Corridors& corridors, RoutePlan& plan, double s) {
   RouteLeg& leg = plan.legs.back();
   const Way& way = corridors.way(leg.way);
   if (way.kind == Way::Kind::lane) {
-    const auto& points = corridors.roads().lanes[leg.way].points;
-    const double here = leg.from + std::max(s - leg.start, 0.0);
-    std::uint32_t next = 0;
-    while (next + 1 < points.size() && points[next].s < here) ++next;
-    leg.to = std::max(points[next].s, leg.from);
+    const world::RoadLane& lane = corridors.roads().lanes[leg.way];
+    const std::uint32_t next = point_from(lane, leg.from + std::max(s - leg.start, 0.0));
+    leg.to = std::max(lane.points[next].s, leg.from);
     plan.node = corridors.node_of({PointRef::Kind::lane, leg.way, next});
     return;
   }

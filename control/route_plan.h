@@ -2,8 +2,8 @@
 // The way through a list of checkpoints: shortest in metres over the graph of ways (E. W. Dijkstra, "A note on two
 // problems in connexion with graphs", Numer. Math. 1, 1959), changes of lanes a little dearer than they are long.
 //
-//   Plan plan = plan_from(corridors, start, ...);  extend(corridors, plan, checkpoint);
-//   point_at(corridors, plan, s)
+//   RoutePlan plan = plan_from(corridors, *place_on_road(corridors, X_WM));
+//   if (extend(corridors, plan, checkpoint)) drive(plan.legs[leg_at(plan, s)]);
 
 #include <cstdint>
 #include <optional>
@@ -36,6 +36,9 @@ struct RoutePlan {
   std::uint32_t node = 0;  ///< where it ends
 };
 inline double length_of(const RoutePlan& plan) { return end_of(plan.legs.back()); }
+
+/// The first point of a lane at `s` [m] or after it, else its last.
+std::uint32_t point_from(const world::RoadLane& lane, double s);
 
 /// The leg at `s` [m] along the route; the first or last beyond its ends.
 std::size_t leg_at(const RoutePlan& plan, double s);

@@ -7,7 +7,6 @@
 // surface (0.1 mm for a flat one seen from near).
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "maps/grid.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <vector>
 
 #include "base/error.h"
@@ -174,6 +173,12 @@ void OwnMap::add(const base::ReadingBlock& reading) {
   const world::Laser& laser = world_.movers[mover_].lasers[0];
   if (reading.values.size() != beams_.size()) return;
   maps::add_scan(grid_, {reading.X_WS, reading.values, beams_, laser.range_min, laser.range_max});
+}
+
+void enter(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t, OwnMap>& maps) {
+  if (maps.empty()) return;
+  for (const base::ReadingBlock& reading : readings)
+    if (const auto at = maps.find(reading.mover); at != maps.end()) at->second.add(reading);
 }
 
 maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan) {

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,9 @@ class OwnMap {
   maps::Grid grid_;
   std::vector<base::Vec2> beams_;
 };
+
+/// Adds each scan to the map of its own mover, where there is one. @param maps by row of their movers
+void enter(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t, OwnMap>& maps);
 
 /// All that the robot's first laser could see from wherever the robot can go without touching a wall: a map of scans
 /// from the middles of all cells of `plan` that are connected to its start, with sixteen headings. Cells whose middle

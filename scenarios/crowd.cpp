@@ -90,8 +90,7 @@ void copy_onto_lanes(const Scenario& scenario, world::World& world, std::uint32_
                            fmt::format("robots on lanes, and {} has no road network; expected a world with "
                                        "road( rndf \"FILE\" ), or place = \"free\"",
                                        scenario.world));
-  std::vector<world::Warning> heard_at_load;
-  const world::RoadNetwork roads = world::load_roads(world.road_files.front(), heard_at_load);
+  const world::RoadNetwork roads = *world::roads_of(world);
   const std::vector<Stays> stays = who_stays(scenario, world);
   const auto poses = places_on_lanes(scenario, world, roads, world.movers[original], stays);
   std::vector<std::uint32_t> rows;

@@ -1,7 +1,6 @@
 #include "scenarios/dead_ends.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace sf::scenarios {
 

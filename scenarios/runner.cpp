@@ -61,10 +61,10 @@ int line_of_driver(const Scenario& scenario, const world::Mover& mover) {
   return scenario.default_line;
 }
 
-/// Makes the controller and lets go of it. What it refuses without a place of its own is at the line of who named it.
-void try_controller(const Scenario& scenario, const control::Site& site, const control::Plan& plan) {
+/// What a controller refuses without a place of its own is at the line of who named it.
+control::Made try_controller(const Scenario& scenario, const control::Site& site, const control::Plan& plan) {
   try {
-    control::make_controller(site, plan);
+    return control::make_controller(site, plan);
   } catch (const base::InputError& error) {
     const std::string what = error.what();
     if (what.starts_with(scenario.file + ":")) throw;
@@ -95,8 +95,7 @@ class Run {
       const base::TickRecord tick = simulation_.step();
       tick_ms_.push_back(1e3 * seconds_since(begin));
       watch_.look(tick);
-      for (auto& [row, map] : maps_)
-        for (const base::ReadingBlock& reading : tick.readings) map.add(reading);
+      enter(tick.readings, maps_);
       if (progress && result.ticks % 16 == 0) progress(static_cast<double>(result.ticks) / static_cast<double>(ticks));
     }
     result.wall = seconds_since(start);
@@ -216,12 +215,12 @@ Verdict ScenarioResult::verdict() const {
 void check_scenario(const Scenario& scenario) {
   const world::World world = world_of(scenario);
   const SimulationOptions options = simulation_of(scenario, world);
-  std::optional<world::RoadNetwork> roads;
-  std::vector<world::Warning> heard_at_load;
-  if (!world.road_files.empty()) roads = world::load_roads(world.road_files.front(), heard_at_load);
+  const std::optional<world::RoadNetwork> roads = world::roads_of(world);
+  std::vector<control::Made> made;  // kept to the end: robots of one shape share their corridors
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
     const control::Plan& plan = options.actors[m].plan;
-    if (!plan.controller.empty()) try_controller(scenario, {world, m, options.seed, roads ? &*roads : nullptr}, plan);
+    if (!plan.controller.empty())
+      made.push_back(try_controller(scenario, {world, m, options.seed, roads ? &*roads : nullptr}, plan));
   }
   for (const Expectation& e : scenario.expect) check_expectation(scenario, world, options, e);
 }

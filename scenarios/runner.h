@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "base/sink.h"
 #include "gpu/device.h"
 #include "scenarios/scenario.h"
 

@@ -23,17 +23,11 @@ farm::FarmOptions farm_options(const SimulationOptions& options) {
   return farm;
 }
 
-std::optional<world::RoadNetwork> roads_of(const world::World& world) {
-  if (world.road_files.empty()) return std::nullopt;
-  std::vector<world::Warning> heard_at_load;
-  return world::load_roads(world.road_files.front(), heard_at_load);
-}
-
 }  // namespace
 
 Simulation::Simulation(const world::World& world, gpu::Device& device, SimulationOptions options)
     : world_(world),
-      roads_(roads_of(world)),
+      roads_(world::roads_of(world)),
       farm_(world, device, farm_options(options)),
       fleet_(world),
       workers_(options.threads),
@@ -67,8 +61,7 @@ Simulation::Driver Simulation::make_driver(std::uint32_t mover, const Simulation
   // Who wanders goes by its eyes unless told a rate: one decision for each scan.
   driver.by_lasers =
       actor.plan.controller == "wander" && actor.plan.rate == 0.0 && !world_.movers[mover].lasers.empty();
-  driver.direct = driver.by_lasers && actor.link.perfect();
-  if (!driver.direct) driver.mailbox.emplace(actor.link, world_.movers[mover].id);
+  if (!(driver.by_lasers && actor.link.perfect())) driver.mailbox.emplace(actor.link, world_.movers[mover].id);
   return driver;
 }
 

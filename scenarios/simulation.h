@@ -68,10 +68,9 @@ class Simulation {
     std::unique_ptr<control::Controller> controller;  ///< none: stands
     double rate = 10.0;                               ///< [Hz]
     bool by_lasers = false;                           ///< steps when a scan comes or its bumper speaks, not by rate
-    bool direct = false;                              ///< readings are looked at as they come, none is kept
     bool stepped = false;
-    std::uint64_t begun = 0;  ///< steps so far, by rate
-    std::optional<Mailbox> mailbox;
+    std::uint64_t begun = 0;         ///< steps so far, by rate
+    std::optional<Mailbox> mailbox;  ///< none: readings are looked at as they come
   };
   Driver make_driver(std::uint32_t mover, const SimulationOptions& options);
   void move();

@@ -56,8 +56,7 @@ class Keeper {
       tracks_[i].contacts.push_back(tick.contacts[rows_[i]]);
       dead_ends_[i].look(tick.reports[rows_[i]], tick.contacts[rows_[i]] != 0);
     }
-    for (auto& [row, map] : maps_)
-      for (const base::ReadingBlock& reading : tick.readings) map.add(reading);
+    enter(tick.readings, maps_);
     const control::Controller* first = rows_.empty() ? nullptr : simulation.controller(rows_[0]);
     if (first != nullptr && simulation.stepped(rows_[0]) && std::isfinite(first->error()))
       times_.push_back(1e-9 * static_cast<double>(tick.time));
@@ -137,7 +136,7 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
     recorder.emplace(options.record,
                      run_info(world, simulation.farm().roster(), {.seed = scenario.seed, .record_readings = true}));
 
-  Trial trial{.seed = scenario.seed};
+  Trial trial;
   const auto start = std::chrono::steady_clock::now();
   const auto ticks = std::llround(scenario.duration / world.interval);
   std::int64_t tick = 0;

@@ -28,7 +28,6 @@ struct Disturbance {
 
 /// What is kept of a run.
 struct Trial {
-  std::uint64_t seed = 0;
   std::vector<viz::Track> tracks;       ///< per robot, and per tag that is driven
   std::vector<std::uint32_t> rows;      ///< of their movers
   std::vector<std::uint32_t> follows;   ///< per track, at the end: the track that it follows; world::kNone: nobody

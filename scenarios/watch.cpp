@@ -1,5 +1,6 @@
 #include "scenarios/watch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -9,15 +10,6 @@
 namespace sf::scenarios {
 
 namespace {
-
-/// "3.1.5" as numbers; nothing where it is none.
-std::optional<world::PointId> point_of(const std::string& text) {
-  unsigned a = 0, b = 0, c = 0;
-  int used = 0;
-  if (std::sscanf(text.c_str(), "%u.%u.%u%n", &a, &b, &c, &used) != 3) return std::nullopt;
-  if (static_cast<std::size_t>(used) != text.size() || a > 65535 || b > 65535 || c > 65535) return std::nullopt;
-  return world::PointId{static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), static_cast<std::uint16_t>(c)};
-}
 
 /// [m] from the origin to the foremost point of what can be stopped: carried sensors reach farther.
 double front_of(const world::Mover& mover) {
@@ -31,6 +23,7 @@ double front_of(const world::Mover& mover) {
 
 Watch::Watch(const world::World& world, const Simulation& simulation)
     : world_(world), simulation_(simulation), before_(world.movers.size()), counts_(world.movers.size()) {
+  for (const world::Mover& mover : world.movers) fronts_.push_back(front_of(mover));
   add_lines();
 }
 
@@ -39,7 +32,7 @@ void Watch::add_lines() {
   if (roads == nullptr) return;
   for (std::uint32_t light = 0; light < world_.lights.size(); ++light)
     for (const std::string& name : world_.lights[light].points) {
-      const auto id = point_of(name);
+      const auto id = world::read_point_id(name);
       const auto at = id ? world::find_point(*roads, *id) : std::nullopt;
       if (!at || at->kind != world::PointRef::Kind::lane) continue;
       const base::Vec2 p = world::position_of(*roads, *at);
@@ -98,7 +91,7 @@ void Watch::look_at_goals(std::uint32_t mover) {
 /// Its front came over a governed line, in the line's direction, while it showed red.
 void Watch::look_at_lights(const base::TickRecord& tick, std::uint32_t mover) {
   const base::Pose& X_WM = tick.reports[mover].X_WM;
-  const double front = front_of(world_.movers[mover]);
+  const double front = fronts_[mover];
   for (const Line& line : lines_) {
     const base::Vec2 middle{line.X_WL.x, line.X_WL.y};
     const auto ahead = [&](const base::Pose& X) {

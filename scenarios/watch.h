@@ -57,6 +57,7 @@ class Watch {
   const world::World& world_;
   const Simulation& simulation_;
   std::vector<Line> lines_;
+  std::vector<double> fronts_;  ///< [m] per mover, from the origin to the foremost point of what can be stopped
   std::vector<Before> before_;
   std::vector<RobotCounts> counts_;
 };

@@ -36,13 +36,14 @@ const std::map<std::string, Rooms> kMayInclude{
 };
 const Rooms kMayIncludeAnything{"apps", "bench", "tests"};
 
-// Libraries that cost seconds per file that includes them: never in a header, in one source each, some in one room
-// only.
+// Libraries that cost seconds per file that includes them: never in a header, in one source each unless said here, some
+// in one room only.
 struct Heavy {
   std::string prefix;
   std::string room;  ///< empty: any
+  std::size_t sources = 1;
 };
-const std::vector<Heavy> kHeavy{{"CLI/", "apps"},    {"nlohmann/", ""},  {"vtk", "viz"},    {"opencv2/", "viz"},
+const std::vector<Heavy> kHeavy{{"CLI/", "apps", 5}, {"nlohmann/", ""},  {"vtk", "viz"},    {"opencv2/", "viz"},
                                 {"asio", "netio"},   {"spng.h", ""},     {"yaml-cpp/", ""}, {"toml++/", ""},
                                 {"spdlog/", "base"}, {"embree", "bench"}};
 
@@ -189,11 +190,11 @@ TEST(Layering, ThePlanHasNoCircles) {
   }
 }
 
-TEST(Layering, HeavyLibrariesHaveOneSourceEach) {
+TEST(Layering, HeavyLibrariesAreInFewSources) {
   const std::vector<Source> sources = read_sources();
   for (const Heavy& heavy : kHeavy) {
     const auto users = users_of(heavy, sources);
-    EXPECT_LE(users.size(), 1u) << heavy.prefix << " in " << testing::PrintToString(users);
+    EXPECT_LE(users.size(), heavy.sources) << heavy.prefix << " in " << testing::PrintToString(users);
   }
 }
 
@@ -261,7 +262,7 @@ TEST(LayeringJudge, CountsUsersOfHeavyLibraries) {
   const std::vector<Source> sources{{"apps/a.cpp", "#include <CLI/CLI.hpp>"},
                                     {"apps/b.cpp", "#include <CLI/App.hpp>"},
                                     {"tests/c.cpp", "#include <CLI/CLI.hpp>"}};
-  EXPECT_EQ(users_of({"CLI/", "apps"}, sources).size(), 2u);
+  EXPECT_EQ(users_of({"CLI/", "apps", 5}, sources).size(), 2u);
 }
 
 }  // namespace sf

@@ -35,6 +35,20 @@ std::string_view take_field(std::string_view& text) {
 
 std::string text_of(PointId id) { return fmt::format("{}.{}.{}", id.segment, id.lane, id.point); }
 
+std::optional<PointId> read_point_id(std::string_view text, int parts) {
+  std::uint16_t numbers[3] = {0, 0, 0};
+  const char* at = text.data();
+  const char* const last = text.data() + text.size();
+  for (int i = 0; i < parts; ++i) {
+    if (i > 0 && (at == last || *at++ != '.')) return std::nullopt;
+    const auto [end, error] = std::from_chars(at, last, numbers[i]);
+    if (error != std::errc()) return std::nullopt;
+    at = end;
+  }
+  if (at != last) return std::nullopt;
+  return PointId{numbers[0], numbers[1], numbers[2]};
+}
+
 bool is_number(std::string_view keyword) { return !keyword.empty() && keyword[0] >= '0' && keyword[0] <= '9'; }
 
 std::string quoted(std::string_view text) {

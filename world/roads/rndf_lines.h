@@ -6,6 +6,7 @@
 // lines, a byte order mark is skipped.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,8 @@ struct PointId {
   friend auto operator<=>(PointId, PointId) = default;
 };
 std::string text_of(PointId id);
+/// "3.1.5", or "3.1" where two parts are expected; nothing where it is none.
+std::optional<PointId> read_point_id(std::string_view text, int parts = 3);
 
 /// One line that says something. All views live until the next call of `Statements::next`.
 struct Statement {

@@ -9,4 +9,10 @@ RoadNetwork load_roads(const std::string& rndf_file, std::vector<Warning>& warni
   return build_network(rndf, sidecar, warnings);
 }
 
+std::optional<RoadNetwork> roads_of(const World& world) {
+  if (world.road_files.empty()) return std::nullopt;
+  std::vector<Warning> heard_at_load;
+  return load_roads(world.road_files.front(), heard_at_load);
+}
+
 }  // namespace sf::world

@@ -69,21 +69,6 @@ struct Reader {
   }
 };
 
-/// `M.L` or `M.L.P`.
-std::optional<PointId> id_of(std::string_view text, int count) {
-  std::uint16_t parts[3] = {0, 0, 0};
-  const char* at = text.data();
-  const char* const last = text.data() + text.size();
-  for (int i = 0; i < count; ++i) {
-    if (i > 0 && (at == last || *at++ != '.')) return std::nullopt;
-    const auto [end, error] = std::from_chars(at, last, parts[i]);
-    if (error != std::errc()) return std::nullopt;
-    at = end;
-  }
-  if (at != last) return std::nullopt;
-  return PointId{parts[0], parts[1], parts[2]};
-}
-
 std::optional<Boundary> boundary(const Reader& reader, const TomlNode& table, std::string_view key) {
   const TomlNode* node = find(table, key);
   if (node == nullptr) return std::nullopt;
@@ -95,7 +80,7 @@ std::optional<Boundary> boundary(const Reader& reader, const TomlNode& table, st
 
 void read_lanes(const Reader& reader, const TomlNode& lanes, RoadSidecar& into) {
   for (const TomlNode& node : lanes.items) {
-    const auto id = id_of(node.key, 2);
+    const auto id = read_point_id(node.key, 2);
     if (!id) reader.fail(node, fmt::format("{} is no lane; expected [lanes.\"1.2\"]", sf::world::quoted(node.key)));
     const TomlNode& table = reader.table(node, node.key);
     reader.warn_unknown(table, kLaneKeys);
@@ -106,7 +91,7 @@ void read_lanes(const Reader& reader, const TomlNode& lanes, RoadSidecar& into) 
 
 void read_points(const Reader& reader, const TomlNode& points, RoadSidecar& into) {
   for (const TomlNode& node : points.items) {
-    const auto id = id_of(node.key, 3);
+    const auto id = read_point_id(node.key);
     if (!id)
       reader.fail(node, fmt::format("{} is no way-point; expected [points.\"1.2.3\"]", sf::world::quoted(node.key)));
     const TomlNode& table = reader.table(node, node.key);

@@ -1,0 +1,157 @@
+#include "apps/arguments.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/wording.h"
+#include "control/controllers.h"
+
+namespace sf::apps {
+
+Refuse whole(std::uint64_t first, std::uint64_t last) {
+  return [first, last](const std::string& text) { return refuse_whole(text, first, last); };
+}
+
+Refuse number(double first, double last) {
+  return [first, last](const std::string& text) { return refuse_number(text, first, last); };
+}
+
+Refuse one_of(std::vector<std::string> words) {
+  return [words = std::move(words)](const std::string& text) { return refuse_choice(text, words); };
+}
+
+Refuse not_empty(std::string what) {
+  return [what = std::move(what)](const std::string& text) { return refuse_empty(text, what); };
+}
+
+namespace {
+
+/// @param fine whether it is what was expected
+Refuse expected(const char* what, bool (*fine)(const std::string&)) {
+  return [what, fine](const std::string& text) {
+    return fine(text) ? std::string() : fmt::format("expected {}, got '{}'", what, text);
+  };
+}
+
+}  // namespace
+
+Refuse key_and_value() {
+  return expected("KEY=VALUE such as kp=0.5", [](const std::string& text) {
+    const std::size_t at = text.find('=');
+    return at != std::string::npos && at > 0;
+  });
+}
+
+Refuse pose() {
+  return expected("X,Y,YAW_DEG such as 1.5,-2,90", [](const std::string& text) { return read_pose(text).has_value(); });
+}
+
+Refuse line() {
+  return expected("X0,Y0,X1,Y1 of two points such as -1,0,2,0.5",
+                  [](const std::string& text) { return read_line(text).has_value(); });
+}
+
+Refuse extent() {
+  return expected("XMIN,YMIN,XMAX,YMAX such as -1,-1,2,1", [](const std::string& text) {
+    const auto e = read_line(text);
+    return e && (*e)[0] < (*e)[2] && (*e)[1] < (*e)[3];
+  });
+}
+
+Refuse ports() {
+  return expected("a port or a range of at most 1024 such as 52000-52008",
+                  [](const std::string& text) { return !read_ports(text).empty(); });
+}
+
+void add_json(CLI::App& app, Options& o) { app.add_flag("--json", o.json, "Print facts as JSON on standard output"); }
+
+void add_device(CLI::App& app, Options& o) {
+  app.add_option("--device", o.device,
+                 "Vulkan device: its row in `devices`, or part of its name (else $SENSORFARM_DEVICE, else the best)")
+      ->type_name("NAME");
+}
+
+void add_world(CLI::App& app, Options& o) {
+  app.add_option("world", o.world,
+                 "World file: Stage .world (3.x or 4.x), or ROS map .yaml; check and draw also take .rndf, check .mdf")
+      ->required()
+      ->type_name("FILE");
+  app.add_flag("--stage-obstacles", o.load.stage_obstacles,
+               "As in Stage, floor plans with obstacle_return 0 stop nobody");
+  app.add_flag("--stage-noise", o.load.stage_noise, "As in Stage, the first number of `noise` is a variance");
+  app.add_flag("--unknown-is-wall", o.load.unknown_is_wall, "Unknown cells of a ROS map are walls");
+}
+
+void add_no_return(CLI::App& app, Options& o) {
+  app.add_option_function<std::string>(
+         "--no-return", [&o](const std::string& text) { o.no_return_inf = text == "inf"; },
+         "What a beam reads that meets nothing: max (range_max) or inf (null in JSON)")
+      ->check(one_of({"max", "inf"}))
+      ->type_name("max|inf")
+      ->default_str("max");
+}
+
+void add_wire(CLI::App& app, Options& o) {
+  app.add_option_function<std::string>(
+         "--wire",
+         [&o](const std::string& text) { o.wire = text == "thesis" ? sensors::Wire::thesis : sensors::Wire::farm; },
+         "Layout of sensor packets: farm (docs/packets.md) or thesis (plain)")
+      ->check(one_of({"farm", "thesis"}))
+      ->type_name("farm|thesis")
+      ->default_str("farm");
+}
+
+void add_ports(CLI::App& app, Options& o) {
+  for (const sensors::SensorKind* kind : sensors::kinds())
+    app.add_option(fmt::format("--{}-port", kind->name), o.base_ports[kind->id],
+                   fmt::format("Base of {} ports: port = base + robot id * ports per robot + sensor", kind->name))
+        ->check(whole(1, 65535))
+        ->type_name("PORT")
+        ->capture_default_str();
+  app.add_option("--ports-per-robot", o.ports_per_robot, "Ports per robot")
+      ->check(whole(1, 65535))
+      ->type_name("N")
+      ->capture_default_str();
+  add_wire(app, o);
+}
+
+void add_kind(CLI::App& app, Options& o) {
+  std::vector<std::string> names;
+  for (const sensors::SensorKind* kind : sensors::kinds()) names.emplace_back(kind->name);
+  app.add_option_function<std::string>(
+         "--kind",
+         [&o](const std::string& text) {
+           for (const sensors::SensorKind* kind : sensors::kinds())
+             if (kind->name == text) o.kind = kind->id;
+         },
+         "Kind of its sensor: " + either(names) + " (default: the first that it has)")
+      ->check(one_of(names))
+      ->type_name("KIND");
+}
+
+void add_seed(CLI::App& app, Options& o, const std::string& what) {
+  app.add_option("--seed", o.seed, what)->check(whole(0, UINT64_MAX))->type_name("K")->capture_default_str();
+}
+
+void add_robots(CLI::App& app, Options& o) {
+  app.add_option("--robots", o.robots, "Clone the world's first robot to this many free poses")
+      ->check(whole(1, 65535))
+      ->type_name("N");
+  add_seed(app, o, "Seed of poses, decisions and noise");
+}
+
+void add_controller(CLI::App& app, Options& o) {
+  std::vector<std::string> names;
+  for (const control::ControllerKind* kind : control::controllers()) names.emplace_back(kind->name);
+  app.add_option("--controller", o.controller, "Who drives: " + either(names))
+      ->check(one_of(names))
+      ->type_name("NAME")
+      ->capture_default_str();
+  app.add_option("--set", o.set,
+                 "One of the controller's settings (may be repeated): kp=0.5, park=13.4, checkpoints=1,2 or \"[1 2]\"")
+      ->check(key_and_value())
+      ->type_name("KEY=VALUE");
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,43 @@
+#pragma once
+// What arguments of the command line may be, for `->check(...)`, and the groups of options that subcommands share.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/options.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace sf::apps {
+
+/// What is wrong with an argument, or "" (apps/wording.h).
+using Refuse = std::function<std::string(const std::string&)>;
+
+Refuse whole(std::uint64_t first, std::uint64_t last);
+Refuse number(double first, double last);
+Refuse one_of(std::vector<std::string> words);
+/// @param what was expected, with its article
+Refuse not_empty(std::string what);
+Refuse key_and_value();
+Refuse pose();
+Refuse line();
+Refuse extent();
+Refuse ports();
+
+void add_json(CLI::App& app, Options& o);
+/// CLI11's own envname would set what all subcommands share after the one that was called has set it.
+void add_device(CLI::App& app, Options& o);
+void add_world(CLI::App& app, Options& o);
+void add_no_return(CLI::App& app, Options& o);
+void add_wire(CLI::App& app, Options& o);
+void add_ports(CLI::App& app, Options& o);
+void add_kind(CLI::App& app, Options& o);
+void add_seed(CLI::App& app, Options& o, const std::string& what);
+void add_robots(CLI::App& app, Options& o);
+void add_controller(CLI::App& app, Options& o);
+
+}  // namespace sf::apps

@@ -1,0 +1,61 @@
+// Subcommands that prove: experiments and scenarios.
+
+#include <CLI/CLI.hpp>
+
+#include "apps/arguments.h"
+#include "apps/subcommands.h"
+#include "apps/wording.h"
+#include "scenarios/experiment.h"
+
+namespace sf::apps {
+
+namespace {
+
+void add_experiment(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand(
+      "experiment", "Run one of the experiments: trials, statistics beside the thesis', figures, in one folder");
+  auto* list = sub->add_flag("--list", o.list, "Name them all");
+  std::vector<std::string> names;
+  for (const scenarios::ExperimentKind* kind : scenarios::experiments()) names.emplace_back(kind->name);
+  auto* name = sub->add_option("experiment", o.experiment, either(names))->check(one_of(names))->type_name("NAME");
+  auto* out =
+      sub->add_option("-o,--out", o.out, "Folder to write into")->check(not_empty("a folder"))->type_name("DIR");
+  name->needs(out)->excludes(list);
+  sub->add_option("--trials", o.trials, "How many, each with a seed of its own")
+      ->check(whole(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  add_seed(*sub, o, "Seed of the first trial");
+  sub->add_option_function<std::string>(
+         "--plant", [&o](const std::string& text) { o.plant = scenarios::plant_of(text); },
+         "What stands between commands and wheels: ideal (nothing) or thesis (Player's driver for the Create). "
+         "Default: "
+         "thesis for what it did with its Creates (paths, sweeps, mapping); ideal for towns and Pioneers")
+      ->check(one_of({"thesis", "ideal"}))
+      ->type_name("thesis|ideal");
+  sub->add_option("--files", o.experiments, "Folder with the experiments' scenario files (default: ours)")
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
+  add_device(*sub, o);
+  sub->callback([&o, list, name] {
+    o.command = Command::experiment;
+    if (list->count() + name->count() == 0) throw CLI::RequiredError("the name of an experiment, or --list");
+  });
+}
+
+void add_test(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand("test", "Run scenarios and hold them to what they expect (exit 1 when one fails)");
+  sub->add_option("scenario", o.scenarios, "Scenario files (.toml)")->required()->type_name("FILE");
+  sub->add_option("--junit", o.junit, "Write the results as JUnit XML")->check(not_empty("a file"))->type_name("FILE");
+  add_device(*sub, o);
+  sub->callback([&o] { o.command = Command::test; });
+}
+
+}  // namespace
+
+void add_proving(CLI::App& app, Options& o) {
+  add_experiment(app, o);
+  add_test(app, o);
+}
+
+}  // namespace sf::apps
