@@ -3,18 +3,20 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <thread>
 
 #include "apps/commands.h"
 #include "apps/stop.h"
 #include "apps/wording.h"
+#include "base/error.h"
 #include "maps/assembler.h"
 #include "maps/merge.h"
 #include "maps/text.h"
+#include "netio/ears.h"
+#include "netio/endpoint.h"
 #include "netio/packets.h"
-#include "netio/socket.h"
 #include "sensors/occupancy.h"
 #include "viz/map_figure.h"
 
@@ -24,13 +26,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kLook = std::chrono::milliseconds(10);  ///< how often ports are looked at
-constexpr std::size_t kReceiveBuffer = 1u << 22;       ///< [byte] asked of the kernel: large maps come in bursts
+constexpr int kPatience = 10;                     ///< [ms] to wait for something to come
+constexpr std::size_t kReceiveBuffer = 1u << 22;  ///< [byte] asked of the kernel: large maps come in bursts
 
 /// One port: a robot's map.
 struct Source {
   std::uint16_t port = 0;
-  netio::Socket socket;
   maps::Assembler assembler;
   std::uint16_t robot = 0;
   std::uint64_t used = 0;      ///< datagrams
@@ -52,16 +53,29 @@ maps::Taken take(Source& source, sensors::Wire wire, std::span<const std::uint8_
   return source.assembler.take(packet.header.sequence, reading->payload);
 }
 
+/// One per port, in their order. @throws base::InputError for one that is given twice.
+std::vector<netio::StreamPlan> plans_of(const std::vector<std::uint16_t>& ports) {
+  std::vector<std::uint16_t> sorted = ports;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twice != sorted.end())
+    throw base::InputError("--listen: port " + std::to_string(*twice) + " is given twice; give each port once");
+  std::vector<netio::StreamPlan> plans;
+  for (const std::uint16_t port : ports) plans.push_back({0, 0, netio::PortRule{port, 1}, "map"});
+  return plans;
+}
+
 /// The ports' maps as they come in.
 class Display {
  public:
-  explicit Display(const Options& options) : options_(options), batch_(64), on_terminal_(isatty(STDOUT_FILENO) != 0) {
-    for (const std::uint16_t port : options.map_ports)
-      sources_.push_back(
-          {port, netio::open_udp({netio::resolve(options.bind), port}, {.receive = kReceiveBuffer}), {}, 0, 0, 0});
+  explicit Display(const Options& options)
+      : options_(options),
+        ears_(netio::resolve(options.bind), kReceiveBuffer, plans_of(options.map_ports)),
+        on_terminal_(isatty(STDOUT_FILENO) != 0) {
+    for (const std::uint16_t port : options.map_ports) sources_.push_back({port, {}, 0, 0, 0});
   }
 
-  /// Takes what waits. @return true when anything did.
+  /// Takes what waits, or comes within a moment. @return true when anything did.
   bool drain();
   bool all_whole() const;
   bool any() const;
@@ -74,26 +88,21 @@ class Display {
   std::vector<maps::Grid> pictures() const;
 
   const Options& options_;
-  netio::ReceiveBatch batch_;
+  netio::Ears ears_;
   std::vector<Source> sources_;
   bool on_terminal_;
   bool changed_ = false;
 };
 
 bool Display::drain() {
-  bool came = false;
-  for (Source& source : sources_)
-    for (std::size_t n = batch_.fill(source.socket); n > 0; n = batch_.fill(source.socket)) {
-      came = true;
-      for (std::size_t i = 0; i < n; ++i) {
-        const maps::Taken taken = take(source, options_.wire, batch_.bytes(i));
-        const bool used = taken == maps::Taken::part || taken == maps::Taken::whole;
-        ++(used ? source.used : source.left_out);
-        changed_ = changed_ || taken == maps::Taken::whole;
-      }
-      if (stop_requested()) return came;
-    }
-  return came;
+  const auto hear = [&](std::size_t i, std::span<const std::uint8_t> bytes) {
+    Source& source = sources_[i];
+    const maps::Taken taken = take(source, options_.wire, bytes);
+    const bool used = taken == maps::Taken::part || taken == maps::Taken::whole;
+    ++(used ? source.used : source.left_out);
+    changed_ = changed_ || taken == maps::Taken::whole;
+  };
+  return ears_.drain(kPatience, hear) > 0;
 }
 
 bool Display::all_whole() const {
@@ -185,8 +194,6 @@ int map(const Options& options) {
     if (display.drain()) {
       last = Clock::now();
       begun = true;
-    } else {
-      std::this_thread::sleep_for(kLook);
     }
     display.redraw();
     if (options.once && display.all_whole()) break;

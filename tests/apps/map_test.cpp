@@ -1,6 +1,7 @@
 // Maps from a run to a terminal and a picture, over loopback; and from a recording.
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "maps/packets.h"
 #include "netio/outbox.h"
@@ -124,6 +125,47 @@ TEST(Map, WrongPortsAreRefused) {
     EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
   }
   EXPECT_EQ(run_program({"map"}).code, 2);
+}
+
+TEST(Map, APortThatIsGivenTwiceIsRefused) {
+  const unsigned port = free_ports(4);
+  const std::string range = std::to_string(port) + "-" + std::to_string(port + 3);
+  const std::string last = std::to_string(port + 3);
+  const Outcome outcome = run_program({"map", "--listen", last, "--listen", range});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+  EXPECT_NE(outcome.err.find("--listen: port " + last + " is given twice"), std::string::npos) << outcome.err;
+}
+
+/// Ports in the order in which they were given, each with what came to it.
+TEST(Map, PortsMayBeGivenInAnyOrder) {
+  const unsigned port = free_ports(2);
+  Program map({"map", "--listen", std::to_string(port + 1), "--listen", std::to_string(port), "--silence", "0.3"});
+  ASSERT_TRUE(map.says("listening for maps on 2 ports"));
+  netio::Outbox outbox;
+  for (const unsigned to : {port, port, port + 1})
+    outbox.queue({netio::kLoopback, static_cast<std::uint16_t>(to)}, base::Bytes(3));
+  outbox.flush();
+  const std::string err = map.wait().err;
+  for (const auto& [to, count] : {std::pair{port, "2"}, {port + 1, "1"}})
+    EXPECT_NE(
+        err.find("port " + std::to_string(to) + ": 0 whole maps, 0 torn, 0 datagrams used and " + count + " left"),
+        std::string::npos)
+        << err;
+}
+
+TEST(Map, TakesMorePortsThanFilesAreAllowedAtFirst) {
+  const unsigned port = free_ports(200);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit few = before;
+  few.rlim_cur = 100;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  const std::string range = std::to_string(port) + "-" + std::to_string(port + 199);
+  const Outcome outcome = run_program({"map", "--listen", range, "--duration", "0.1"});
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_EQ(outcome.code, 1) << outcome.err;  // nothing came
+  EXPECT_NE(outcome.err.find("on 200 ports"), std::string::npos) << outcome.err;
 }
 
 TEST(Map, IsDrawnFromARecording) {
