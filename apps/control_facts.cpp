@@ -22,7 +22,7 @@ std::string text_of(const ErrorFacts& facts) {
 }
 
 ControlTally::ControlTally(const scenarios::Simulation& simulation, std::size_t movers, std::string controller)
-    : simulation_(simulation), goals_(movers, base::kNobody) {
+    : simulation_(simulation), goals_(movers) {
   facts_.controller = std::move(controller);
   for (std::uint32_t m = 0; m < movers; ++m) facts_.robots += simulation.controller(m) != nullptr;
 }
@@ -32,10 +32,7 @@ void ControlTally::look() {
     const control::Controller* controller = simulation_.controller(m);
     if (controller == nullptr || !simulation_.stepped(m)) continue;
     add(facts_.error, controller->error());
-    const std::uint32_t goal = controller->intent().checkpoint;
-    facts_.has_goals = facts_.has_goals || goal != base::kNobody;
-    facts_.checkpoints += goals_[m] != base::kNobody && goal != goals_[m];
-    goals_[m] = goal;
+    goals_[m].look(controller->intent().checkpoint);
   }
 }
 
@@ -44,6 +41,8 @@ ControlFacts ControlTally::facts() const {
   for (std::uint32_t m = 0; m < goals_.size(); ++m) {
     const control::Controller* controller = simulation_.controller(m);
     facts.done += controller != nullptr && controller->done();
+    facts.has_goals = facts.has_goals || goals_[m].any;
+    facts.checkpoints += goals_[m].passed;
   }
   return facts;
 }

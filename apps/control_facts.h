@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenarios/simulation.h"
+#include "scenarios/watch.h"
 
 namespace sf::apps {
 
@@ -43,7 +44,7 @@ class ControlTally {
  private:
   const scenarios::Simulation& simulation_;
   ControlFacts facts_;
-  std::vector<std::uint32_t> goals_;  ///< per mover: the checkpoint that it heads for
+  std::vector<scenarios::Goals> goals_;  ///< per mover
 };
 
 }  // namespace sf::apps

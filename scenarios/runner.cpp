@@ -155,7 +155,7 @@ class Run {
         return worst(e, true, [&](std::uint32_t r) { return watch_.of(r).travelled; });
       case Kind::checkpoints:
         return worst(e, true, [&](std::uint32_t r) {
-          return watch_.of(r).has_goals ? static_cast<double>(watch_.of(r).checkpoints) : std::nan("");
+          return watch_.of(r).goals.any ? static_cast<double>(watch_.of(r).goals.passed) : std::nan("");
         });
       case Kind::all_checkpoints:
         return static_cast<double>(watch_.checkpoints());

@@ -17,7 +17,7 @@ std::string csv_of(const std::vector<Trial>& trials) {
       const RobotCounts& counts = trials[k].counts[i];
       const bool has = trials[k].errors[i].count > 0;
       text += fmt::format("{},{},{:.6g},{},{},{},{},{}\n", k + 1, trials[k].tracks[i].name, counts.travelled,
-                          counts.contacts, counts.checkpoints, counts.stops, counts.reds,
+                          counts.contacts, counts.goals.passed, counts.stops, counts.reds,
                           has ? fmt::format("{:.6g}", trials[k].errors[i].abs_mean) : "");
     }
   return text;
@@ -33,7 +33,7 @@ std::string report_of(const Bench& bench, const std::vector<Trial>& trials) {
         k + 1, trial.simulated, trial.wall, trial.simulated / std::max(trial.wall, 1e-9), trial.decided);
     for (std::size_t i = 0; i < trial.tracks.size(); ++i)
       text += fmt::format("| {} | {:.2f} | {} | {} | {} | {} |\n", trial.tracks[i].name, trial.counts[i].travelled,
-                          trial.counts[i].contacts, trial.counts[i].checkpoints, trial.counts[i].stops,
+                          trial.counts[i].contacts, trial.counts[i].goals.passed, trial.counts[i].stops,
                           trial.counts[i].reds);
   }
   return text + fmt::format("\n## Beside the thesis\n\n{}\n", bench.kind.reasons);

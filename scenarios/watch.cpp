@@ -21,6 +21,12 @@ double front_of(const world::Mover& mover) {
 
 }  // namespace
 
+void Goals::look(std::uint32_t next) {
+  any = any || next != base::kNobody;
+  passed += now != base::kNobody && next != now;
+  now = next;
+}
+
 Watch::Watch(const world::World& world, const Simulation& simulation)
     : world_(world), simulation_(simulation), before_(world.movers.size()), counts_(world.movers.size()) {
   for (const world::Mover& mover : world.movers) fronts_.push_back(front_of(mover));
@@ -43,16 +49,23 @@ void Watch::add_lines() {
 
 namespace {
 
-std::uint64_t sum_of(const std::vector<RobotCounts>& counts, std::uint64_t RobotCounts::*what) {
+template <class Count>
+std::uint64_t sum_of(const std::vector<RobotCounts>& counts, Count&& count) {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0},
-                         [&](std::uint64_t sum, const RobotCounts& c) { return sum + c.*what; });
+                         [&](std::uint64_t sum, const RobotCounts& c) { return sum + count(c); });
 }
 
 }  // namespace
 
-std::uint64_t Watch::contacts() const { return sum_of(counts_, &RobotCounts::contacts); }
-std::uint64_t Watch::reds() const { return sum_of(counts_, &RobotCounts::reds); }
-std::uint64_t Watch::checkpoints() const { return sum_of(counts_, &RobotCounts::checkpoints); }
+std::uint64_t Watch::contacts() const {
+  return sum_of(counts_, [](const RobotCounts& c) { return c.contacts; });
+}
+std::uint64_t Watch::reds() const {
+  return sum_of(counts_, [](const RobotCounts& c) { return c.reds; });
+}
+std::uint64_t Watch::checkpoints() const {
+  return sum_of(counts_, [](const RobotCounts& c) { return c.goals.passed; });
+}
 
 void Watch::look(const base::TickRecord& tick) {
   for (std::uint32_t m = 0; m < counts_.size(); ++m) {
@@ -80,12 +93,8 @@ void Watch::look_at_goals(std::uint32_t mover) {
   const control::Controller* controller = simulation_.controller(mover);
   if (controller == nullptr || !simulation_.stepped(mover)) return;
   RobotCounts& counts = counts_[mover];
-  Before& before = before_[mover];
   if (const double error = controller->error(); std::isfinite(error)) counts.errors.push_back(error);
-  const std::uint32_t checkpoint = controller->intent().checkpoint;
-  counts.has_goals = counts.has_goals || checkpoint != base::kNobody;
-  counts.checkpoints += before.checkpoint != base::kNobody && checkpoint != before.checkpoint;
-  before.checkpoint = checkpoint;
+  counts.goals.look(controller->intent().checkpoint);
 }
 
 /// Its front came over a governed line, in the line's direction, while it showed red.

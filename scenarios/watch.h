@@ -9,15 +9,24 @@
 
 namespace sf::scenarios {
 
+/// Checkpoints that one mover heads for.
+struct Goals {
+  std::uint32_t now = base::kNobody;  ///< base::kNobody: none
+  bool any = false;                   ///< there was one
+  std::uint64_t passed = 0;           ///< that it no longer heads for, since the next or none is due
+
+  /// @param next the one that it heads for from now on; base::kNobody: none
+  void look(std::uint32_t next);
+};
+
 /// Of one mover.
 struct RobotCounts {
-  std::uint64_t contacts = 0;     ///< that began
-  std::uint64_t checkpoints = 0;  ///< that it no longer heads for, since the next or none is due
-  std::uint64_t reds = 0;         ///< stop lines passed that showed red
-  std::uint64_t stops = 0;        ///< that it came to stand after it had driven
-  bool has_goals = false;         ///< it headed for a checkpoint
-  std::vector<double> errors;     ///< control error of every step that had one
-  double travelled = 0.0;         ///< [m]
+  std::uint64_t contacts = 0;  ///< that began
+  Goals goals;
+  std::uint64_t reds = 0;      ///< stop lines passed that showed red
+  std::uint64_t stops = 0;     ///< that it came to stand after it had driven
+  std::vector<double> errors;  ///< control error of every step that had one
+  double travelled = 0.0;      ///< [m]
 };
 
 /// Follows one simulation, tick by tick. Simulation and world must outlive it.
@@ -46,7 +55,6 @@ class Watch {
   struct Before {
     bool contact = false;
     bool moving = false;
-    std::uint32_t checkpoint = base::kNobody;
     base::Pose X_WM;
     bool seen = false;
   };

@@ -143,7 +143,7 @@ TEST(Crowd, TenInTrafficTouchNobodyAndMindLights) {
     for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
       metres += watch.of(row).travelled;
       stops += watch.of(row).stops;
-      EXPECT_TRUE(watch.of(row).has_goals) << world.movers[row].name;
+      EXPECT_TRUE(watch.of(row).goals.any) << world.movers[row].name;
     }
     EXPECT_GT(metres, 25.0) << seed;
     EXPECT_GT(stops, 5u) << seed;

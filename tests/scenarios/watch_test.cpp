@@ -112,6 +112,26 @@ TEST(Watch, OtherLanesAndTheOtherDirectionAreNotMeant) {
   EXPECT_EQ(town.watch().reds(), before + 1);
 }
 
+TEST(Goals, OnesThatAreNoLongerHeadedForArePassed) {
+  Goals goals;
+  goals.look(base::kNobody);
+  EXPECT_FALSE(goals.any);
+  goals.look(3);  // the first is not passed yet
+  EXPECT_TRUE(goals.any);
+  EXPECT_EQ(goals.passed, 0u);
+  goals.look(3);
+  EXPECT_EQ(goals.passed, 0u);
+  goals.look(5);
+  EXPECT_EQ(goals.passed, 1u);
+  goals.look(base::kNobody);  // the last
+  goals.look(base::kNobody);
+  EXPECT_EQ(goals.passed, 2u);
+  goals.look(0);  // an id like any other
+  goals.look(7);
+  EXPECT_EQ(goals.passed, 3u);
+  EXPECT_EQ(goals.now, 7u);
+}
+
 TEST(Watch, ContactsAreCountedWhereTheyBegin) {
   Town town;
   const base::Pose X = town.world().movers[0].X_WM;
