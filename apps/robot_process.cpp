@@ -45,9 +45,9 @@ RobotProcess::RobotProcess(const world::World& world, const sensors::Roster& ros
       body_(world, mover),
       link_(world, roster, mover, options,
             [this](const netio::Packet& packet, std::int64_t now) { hear(packet, now); }),
+      roads_(world::roads_of(world)),
       intents_(world.movers.size()),
       started_(!waits_for_start(options)) {
-  roads_ = world::roads_of(world);
   control::Plan plan = plan_of(options);
   plan.rate = options.rate;
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, std::move(plan));
