@@ -102,6 +102,29 @@ void add_wire(CLI::App& app, Options& o) {
       ->default_str("farm");
 }
 
+void add_bind(CLI::App& app, Options& o) {
+  app.add_option("--bind", o.bind, "Address to listen on (0.0.0.0: every interface)")
+      ->check(not_empty("an address"))
+      ->type_name("ADDR")
+      ->capture_default_str();
+}
+
+void add_silence(CLI::App& app, Options& o) {
+  app.add_option("--silence", o.silence,
+                 "End when nothing came for this long [s]; counts from the first packet on, until then it waits")
+      ->check(number(0.1, 1e6))
+      ->type_name("S")
+      ->capture_default_str();
+}
+
+void add_until(CLI::App& sub, Options& o, Command command, const std::string& help) {
+  const auto* duration = sub.add_option("--duration", o.duration, help)->check(number(0.0, 1e9))->type_name("S");
+  sub.callback([&o, duration, command] {
+    o.command = command;
+    if (duration->count() == 0) o.duration = 0.0;
+  });
+}
+
 void add_ports(CLI::App& app, Options& o) {
   for (const sensors::SensorKind* kind : sensors::kinds())
     app.add_option(fmt::format("--{}-port", kind->name), o.base_ports[kind->id],

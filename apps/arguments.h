@@ -34,6 +34,10 @@ void add_device(CLI::App& app, Options& o);
 void add_world(CLI::App& app, Options& o);
 void add_no_return(CLI::App& app, Options& o);
 void add_wire(CLI::App& app, Options& o);
+void add_bind(CLI::App& app, Options& o);
+void add_silence(CLI::App& app, Options& o);
+/// `--duration`, without which it goes on; and calls it `command`.
+void add_until(CLI::App& sub, Options& o, Command command, const std::string& help);
 void add_ports(CLI::App& app, Options& o);
 void add_kind(CLI::App& app, Options& o);
 void add_seed(CLI::App& app, Options& o, const std::string& what);

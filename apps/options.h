@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/pose.h"
+#include "netio/packets.h"
 #include "scenarios/plant.h"
 #include "sensors/kind.h"
 #include "world/world.h"
@@ -62,7 +63,7 @@ struct Options {
   std::string junit;                      ///< file; empty: none
 
   std::uint32_t robots = 0;  ///< clones; 0: the world's own
-  double duration = 60.0;    ///< [s]; serve and listen: 0 is until stopped
+  double duration = 60.0;    ///< [s]; but for `run`, 0 is until stopped
   std::uint64_t seed = 1;
   unsigned threads = 0;
   std::string record;  ///< folder; empty: no recording
@@ -83,8 +84,8 @@ struct Options {
   double jitter = 0.0;               ///< [s]
   double loss = 0.0;                 ///< [-] in [0, 1]
   bool wait_for_start = false;
-  std::uint32_t start_id = 65535;  ///< robot to be started; 65535: all
-  double silence = 3.0;            ///< [s] after which `listen` and `map` end
+  std::uint32_t start_id = netio::kEveryone;  ///< robot to be started
+  double silence = 3.0;                       ///< [s] after which `listen` and `map` end
 
   std::vector<std::uint16_t> map_ports;  ///< that `map` listens on
   bool merge = false;                    ///< of all of them one map

@@ -48,10 +48,7 @@ void add_serve(CLI::App& app, Options& o) {
   add_device(*sub, o);
   add_no_return(*sub, o);
   add_ports(*sub, o);
-  sub->add_option("--bind", o.bind, "Address to listen on (0.0.0.0: every interface)")
-      ->check(not_empty("an address"))
-      ->type_name("ADDR")
-      ->capture_default_str();
+  add_bind(*sub, o);
   sub->add_option("--port", o.port, "UDP port to listen on (0: any free one)")
       ->check(whole(0, 65535))
       ->type_name("PORT")
@@ -60,13 +57,7 @@ void add_serve(CLI::App& app, Options& o) {
       ->check(number(0.1, 10000.0))
       ->type_name("HZ");
   add_seed(*sub, o, "Seed of noise");
-  auto* duration = sub->add_option("--duration", o.duration, "Stop after this long [s] (0: when told to)")
-                       ->check(number(0.0, 1e9))
-                       ->type_name("S");
-  sub->callback([&o, duration] {
-    o.command = Command::serve;
-    if (duration->count() == 0) o.duration = 0.0;
-  });
+  add_until(*sub, o, Command::serve, "Stop after this long [s] (0: when told to)");
 }
 
 void add_farm(CLI::App& app, Options& o) {
@@ -108,13 +99,7 @@ void add_robot(CLI::App& app, Options& o) {
       ->type_name("HZ");
   sub->add_flag("--wait-for-start", o.wait_for_start, "Stand until the start signal comes (`sensorfarm start`)");
   add_seed(*sub, o, "Seed of decisions and of the injected link");
-  auto* duration = sub->add_option("--duration", o.duration, "Stop after this long [s] (0: when done or told to)")
-                       ->check(number(0.0, 1e9))
-                       ->type_name("S");
-  sub->callback([&o, duration] {
-    o.command = Command::robot;
-    if (duration->count() == 0) o.duration = 0.0;
-  });
+  add_until(*sub, o, Command::robot, "Stop after this long [s] (0: when done or told to)");
 }
 
 void add_start(CLI::App& app, Options& o) {
@@ -132,22 +117,9 @@ void add_listen(CLI::App& app, Options& o) {
   add_json(*sub, o);
   add_robots(*sub, o);
   add_ports(*sub, o);
-  sub->add_option("--bind", o.bind, "Address to listen on")
-      ->check(not_empty("an address"))
-      ->type_name("ADDR")
-      ->capture_default_str();
-  sub->add_option("--silence", o.silence,
-                  "End when nothing came for this long [s]; counts from the first packet on, until then it waits")
-      ->check(number(0.1, 1e6))
-      ->type_name("S")
-      ->capture_default_str();
-  auto* duration = sub->add_option("--duration", o.duration, "Stop after this long [s] (0: when told to, or silent)")
-                       ->check(number(0.0, 1e9))
-                       ->type_name("S");
-  sub->callback([&o, duration] {
-    o.command = Command::listen;
-    if (duration->count() == 0) o.duration = 0.0;
-  });
+  add_bind(*sub, o);
+  add_silence(*sub, o);
+  add_until(*sub, o, Command::listen, "Stop after this long [s] (0: when told to, or silent)");
 }
 
 void add_map(CLI::App& app, Options& o) {
@@ -163,27 +135,15 @@ void add_map(CLI::App& app, Options& o) {
       ->required()
       ->check(ports())
       ->type_name("PORT");
-  sub->add_option("--bind", o.bind, "Address to listen on (0.0.0.0: every interface)")
-      ->check(not_empty("an address"))
-      ->type_name("HOST")
-      ->capture_default_str();
+  add_bind(*sub, o);
   sub->add_flag("--merge", o.merge, "All maps as one: what any robot saw occupied is occupied");
   sub->add_option("-o,--out", o.out, "PNG file to write at the end; of several maps that are not merged, one each")
       ->check(not_empty("a file"))
       ->type_name("FILE");
-  auto* duration = sub->add_option("--duration", o.duration, "Stop after this long [s] (0: when told to, or silent)")
-                       ->check(number(0.0, 1e9))
-                       ->type_name("S");
+  add_until(*sub, o, Command::map, "Stop after this long [s] (0: when told to, or silent)");
   sub->add_flag("--once", o.once, "Stop when every port has brought a whole map");
-  sub->add_option("--silence", o.silence, "End when nothing came for this long after the first packet [s]")
-      ->check(number(0.1, 1e6))
-      ->type_name("S")
-      ->capture_default_str();
+  add_silence(*sub, o);
   add_wire(*sub, o);
-  sub->callback([&o, duration] {
-    o.command = Command::map;
-    if (duration->count() == 0) o.duration = 0.0;
-  });
 }
 
 }  // namespace
