@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "apps/wording.h"
 #include "record/readings.h"
 #include "viz/series_figure.h"
 
@@ -50,10 +51,6 @@ viz::Series series_of(const std::string& name, const Channel& channel, Value&& v
     series.values.push_back(value(*reading));
   }
   return series;
-}
-
-std::string counted(std::size_t count, const std::string& what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
 viz::SeriesPlan lane_edges(const record::Recording& recording, const std::vector<Channel>& channels) {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "apps/wording.h"
 #include "base/error.h"
 #include "viz/road_figure.h"
 #include "world/roads/roads.h"
@@ -48,8 +49,6 @@ int check_mission(const Options& options) {
   std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
   return 0;
 }
-
-std::string row(const char* name, const std::string& value) { return fmt::format("  {:<18} {}\n", name, value); }
 
 std::string text_of(const std::vector<world::Warning>& warnings) {
   std::string text;

@@ -8,8 +8,6 @@ namespace sf::apps {
 
 namespace {
 
-std::string row(std::string_view name, const std::string& value) { return fmt::format("  {:<18} {}\n", name, value); }
-
 /// "laser 120, laneedge 30".
 std::string kinds_text(const LinkCounts& link) {
   std::string text;

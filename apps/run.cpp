@@ -123,7 +123,7 @@ int run(const Options& options) {
   facts.interrupted = facts.ticks < ticks;
   facts.device = device.facts().name;
   facts.software = device.facts().software;
-  for (const world::Mover& mover : world.movers) facts.robots += !mover.is_tag;
+  facts.robots = static_cast<std::uint32_t>(count_robots(world));
   facts.control = tally.facts();
   facts.move_s = simulation.move_seconds();
   facts.farm = simulation.farm().stats();

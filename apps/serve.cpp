@@ -14,6 +14,7 @@
 #include "apps/post.h"
 #include "apps/stop.h"
 #include "apps/wire_names.h"
+#include "apps/wording.h"
 #include "netio/inbox.h"
 #include "netio/relay.h"
 #include "robots/fleet.h"
@@ -155,9 +156,9 @@ int serve(const Options& options) {
   Service service(world, roster, device, options);
   catch_stop_signals();
   const double interval = options.rate > 0.0 ? 1.0 / options.rate : world.interval;
-  std::fprintf(stderr, "sensorfarm: serving %zu robot%s of %s on %s:%u, %g ticks/s, on %s; Ctrl-C ends it\n",
-               service.robots(), service.robots() == 1 ? "" : "s", world.file.c_str(), options.bind.c_str(),
-               service.port(), 1.0 / interval, device.facts().name.c_str());
+  std::fprintf(stderr, "sensorfarm: serving %s of %s on %s:%u, %g ticks/s, on %s; Ctrl-C ends it\n",
+               counted(service.robots(), "robot").c_str(), world.file.c_str(), options.bind.c_str(), service.port(),
+               1.0 / interval, device.facts().name.c_str());
 
   const auto start = Clock::now();
   const auto step = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(interval));

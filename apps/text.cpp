@@ -9,8 +9,6 @@ namespace sf::apps {
 
 namespace {
 
-std::string row(std::string_view name, const std::string& value) { return fmt::format("  {:<18} {}\n", name, value); }
-
 std::string rate(double per_second) {
   return per_second >= 1e6 ? fmt::format("{:.1f} million/s", per_second * 1e-6) : fmt::format("{:.0f}/s", per_second);
 }

@@ -44,6 +44,8 @@ std::string counted(std::uint64_t count, std::string_view word) {
   return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
 }
 
+std::string row(std::string_view name, std::string_view value) { return fmt::format("  {:<18} {}\n", name, value); }
+
 std::string refuse_choice(const std::string& text, const std::vector<std::string>& words) {
   const bool known = std::count(words.begin(), words.end(), text) > 0;
   return known ? "" : fmt::format("expected {}, got '{}'", either(words), text);

@@ -29,6 +29,9 @@ std::string either(const std::vector<std::string>& words);
 /// "1 port", "2 ports". @param word takes an s for several
 std::string counted(std::uint64_t count, std::string_view word);
 
+/// One line of a table of facts. @param name empty: more of the line before
+std::string row(std::string_view name, std::string_view value);
+
 /// "X,Y,YAW_DEG" [m, m, degrees], each within 1e7, as a pose; nothing where it is none.
 std::optional<base::Pose> read_pose(const std::string& text);
 
