@@ -228,11 +228,13 @@ int run(int argc, char** argv) {
   register_all(session);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
-  if (!folder.empty()) write_csv(session.book, folder);
-  if (!folder.empty()) write_csv(session.fields, folder);
-  if (!folder.empty()) write_lanes(session.lanes, folder);
-  if (!folder.empty()) write_cones(session.cones, folder);
-  if (!folder.empty()) write_maps(session.maps, folder);
+  if (!folder.empty()) {
+    write_csv(session.book, folder);
+    write_csv(session.fields, folder);
+    write_lanes(session.lanes, folder);
+    write_cones(session.cones, folder);
+    write_maps(session.maps, folder);
+  }
   fmt::print("{}{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
              cone_table(session.cones), map_table(session.maps));
   return 0;

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "base/error.h"
 #include "base/hash.h"
 #include "bench/cone_methods.h"
+#include "bench/report.h"
 #include "bench/scans.h"
 #include "sensors/sonar.h"
 #include "tests/sensors/cone_trial.h"
@@ -135,11 +135,7 @@ void write_cones(const std::vector<ConeOutcome>& outcomes, const std::string& fo
                           o.cones, o.rays, e.turns.size(), 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
                           1e-6 * static_cast<double>(o.rays) / e.typical.wall_s, e.ratio, e.cpu_ratio, e.worst,
                           o.judged, base::hash_text(e.hash));
-  const std::string file = folder + "/cones.csv";
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text;
-  if (!out.flush())
-    throw base::InputError(file, 0, "cannot be written: name a folder that exists with --results=FOLDER");
+  write(folder + "/cones.csv", text);
 }
 
 std::string cone_table(const std::vector<ConeOutcome>& outcomes) {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "base/error.h"
 #include "bench/field_methods.h"
+#include "bench/report.h"
 #include "sensors/magnetometer.h"
 #include "tests/sensors/magnet_scenes.h"
 
@@ -123,11 +123,7 @@ void write_csv(const std::vector<FieldOutcome>& outcomes, const std::string& fol
                           o.scene, e.method, o.arrays, o.arrays * kArrayElements, o.magnets, o.cutoff_m, o.pairs,
                           e.turns.size(), 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
                           1e-9 * o.pairs / e.typical.wall_s, e.ratio, e.cpu_ratio, e.max_error, e.judged);
-  const std::string file = folder + "/field.csv";
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out << text;
-  if (!out.flush())
-    throw base::InputError(file, 0, "cannot be written: name a folder that exists with --results=FOLDER");
+  write(folder + "/field.csv", text);
 }
 
 std::string table(const std::vector<FieldOutcome>& outcomes) {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "base/error.h"
 #include "base/hash.h"
 #include "bench/lane_methods.h"
+#include "bench/report.h"
 #include "tests/sensors/brute_force.h"
 #include "tests/sensors/laneedge_mirror.h"
 
@@ -106,16 +106,16 @@ LaneOutcome compete_lanes(gpu::Device& device, const LaneScene& scene, std::size
 
 void write_lanes(const std::vector<LaneOutcome>& outcomes, const std::string& folder) {
   if (outcomes.empty()) return;
-  std::ofstream out(folder + "/lanes.csv");
-  out << "paint,method,sensors,rays,seen,wall_ms_median,cpu_ms_median,ratio_to_plain,cpu_ratio_to_plain,"
-         "max_difference_m,readings_alone,hash\n";
+  std::string text =
+      "paint,method,sensors,rays,seen,wall_ms_median,cpu_ms_median,ratio_to_plain,cpu_ratio_to_plain,"
+      "max_difference_m,readings_alone,hash\n";
   for (const LaneOutcome& o : outcomes)
     for (const LaneEntrant& e : o.entrants)
-      out << fmt::format("\"{}\",\"{}\",{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{},{:016x}\n",
-                         o.resolution > 0.0 ? fmt::format("raster of {:g} m", o.resolution) : "exact", e.method,
-                         o.sensors, o.rays, o.seen, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio, e.cpu_ratio,
-                         e.worst, e.alone, e.hash);
-  if (!out.flush()) throw base::InputError(folder + "/lanes.csv", 0, "cannot be written; choose another folder");
+      text += fmt::format("\"{}\",\"{}\",{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{},{}\n",
+                          o.resolution > 0.0 ? fmt::format("raster of {:g} m", o.resolution) : "exact", e.method,
+                          o.sensors, o.rays, o.seen, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio,
+                          e.cpu_ratio, e.worst, e.alone, base::hash_text(e.hash));
+  write(folder + "/lanes.csv", text);
 }
 
 std::string lane_table(const std::vector<LaneOutcome>& outcomes) {

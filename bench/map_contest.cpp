@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <memory>
 
-#include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "bench/farm_rounds.h"
+#include "bench/report.h"
 #include "bench/scans.h"
 #include "maps/plain_mapper.h"
 #include "sensors/occupancy_batch.h"
@@ -169,15 +168,15 @@ MapOutcome compete_maps(gpu::Device& device, std::uint32_t robots, double range,
 
 void write_maps(const std::vector<MapOutcome>& outcomes, const std::string& folder) {
   if (outcomes.empty()) return;
-  std::ofstream out(folder + "/maps.csv");
-  out << "robots,beams,range_m,log_odds,method,wall_ms_median,cpu_ms_median,ratio_to_plain,cpu_ratio_to_plain,"
-         "words_different,hash\n";
+  std::string text =
+      "robots,beams,range_m,log_odds,method,wall_ms_median,cpu_ms_median,ratio_to_plain,cpu_ratio_to_plain,"
+      "words_different,hash\n";
   for (const MapOutcome& o : outcomes)
     for (const MapEntrant& e : o.entrants)
-      out << fmt::format("{},{},{:g},{},\"{}\",{:.3f},{:.3f},{:.3f},{:.3f},{},{:016x}\n", o.robots, o.beams, o.range_m,
-                         o.weighs ? 1 : 0, e.method, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio,
-                         e.cpu_ratio, e.different, e.hash);
-  if (!out.flush()) throw base::InputError(folder + "/maps.csv", 0, "cannot be written; choose another folder");
+      text += fmt::format("{},{},{:g},{},\"{}\",{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", o.robots, o.beams, o.range_m,
+                          o.weighs ? 1 : 0, e.method, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio,
+                          e.cpu_ratio, e.different, base::hash_text(e.hash));
+  write(folder + "/maps.csv", text);
 }
 
 std::string map_table(const std::vector<MapOutcome>& outcomes) {

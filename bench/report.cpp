@@ -9,14 +9,14 @@
 
 namespace sf::bench {
 
-namespace {
-
 void write(const std::string& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out << text;
   if (!out.flush())
     throw base::InputError(file, 0, "cannot be written: name a folder that exists with --results=FOLDER");
 }
+
+namespace {
 
 /// A field that may hold a comma.
 std::string quoted(const std::string& text) { return "\"" + text + "\""; }
