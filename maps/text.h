@@ -20,6 +20,7 @@ struct Census {
   std::uint64_t unexplored = 0;
   std::uint64_t occupied = 0;
   std::uint64_t free = 0;
+  std::uint64_t all() const { return unexplored + occupied + free; }
 };
 Census count(const Grid& grid);
 

@@ -19,6 +19,7 @@ namespace {
 constexpr std::array<std::uint32_t, 4> kStates{0xFF474B50u, 0xFF1748D1u, 0xFFFFFFFFu, 0xFFFF00FFu};
 constexpr std::uint32_t kGrid = 0xFFA9AEB5u;
 constexpr std::uint32_t kFrame = 0xFF404040u;
+constexpr std::size_t kNamedPlaces = 7;
 
 // [px]
 constexpr int kPitch = 5;  // a cell of 4 and a line of 1
@@ -58,7 +59,7 @@ Layout lay_out(const maps::GridPlan& plan, std::span<const LegendItem> legend) {
 }
 
 std::vector<LegendItem> legend_of(const maps::Census& census, const MapFigure& figure) {
-  const auto all = static_cast<double>(census.unexplored + census.occupied + census.free);
+  const auto all = static_cast<double>(census.all());
   const auto item = [&](std::uint32_t state, const char* name, std::uint64_t cells) {
     return LegendItem{Sample::block, kStates[state],
                       fmt::format("{} {:.1f} %", name, 100.0 * static_cast<double>(cells) / all), kFrame};
@@ -66,9 +67,9 @@ std::vector<LegendItem> legend_of(const maps::Census& census, const MapFigure& f
   std::vector<LegendItem> items{item(SF_CELL_FREE, "free", census.free),
                                 item(SF_CELL_OCCUPIED, "occupied", census.occupied),
                                 item(SF_CELL_UNEXPLORED, "unexplored", census.unexplored)};
-  const std::size_t named = std::min<std::size_t>(figure.places.size(), 7);
+  const std::size_t named = std::min(figure.places.size(), kNamedPlaces);
   for (std::size_t i = 0; i < named; ++i)
-    items.push_back({Sample::robot, row_color(i + 1, std::max<std::size_t>(named + 1, 2)), figure.places[i].name});
+    items.push_back({Sample::robot, row_color(i + 1, named + 1), figure.places[i].name});
   return items;
 }
 
@@ -129,10 +130,10 @@ void draw_axes(Canvas& canvas, const maps::GridPlan& plan, const Layout& l) {
 void draw_places(Canvas& canvas, const maps::GridPlan& plan, const Layout& l, const MapFigure& figure) {
   canvas.clip(
       {static_cast<int>(l.low.x), static_cast<int>(l.low.y), static_cast<int>(l.high.x), static_cast<int>(l.high.y)});
-  const std::size_t named = std::min<std::size_t>(figure.places.size(), 7);
+  const std::size_t named = std::min(figure.places.size(), kNamedPlaces);
   for (std::size_t i = 0; i < figure.places.size(); ++i) {
     const base::Pose& X = figure.places[i].X_WR;
-    const std::uint32_t color = row_color(1 + std::min(i, named - 1), std::max<std::size_t>(named + 1, 2));
+    const std::uint32_t color = row_color(1 + std::min(i, named - 1), named + 1);
     const Vec2 p = pixel(plan, l, {X.x, X.y});
     const Vec2 ahead{std::cos(X.yaw), -std::sin(X.yaw)};
     canvas.disc(p, 9.0, with_opacity(color, 0.55));
@@ -153,7 +154,7 @@ void draw_map(const maps::Grid& grid, const MapFigure& figure, const std::string
   title.size = 26;
   title.bold = true;
   canvas.text({kRight, 30.0}, figure.title, title);
-  const double all = static_cast<double>(census.unexplored + census.occupied + census.free);
+  const double all = static_cast<double>(census.all());
   const double known = 100.0 * static_cast<double>(census.occupied + census.free) / all;
   canvas.text({kRight, 64.0},
               fmt::format("{}{}{} x {} cells of {:g} m, {:.1f} % explored", figure.subtitle,

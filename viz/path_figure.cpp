@@ -32,7 +32,7 @@ void draw_middle(Axes& axes, const world::Path& path) {
 void draw_track(Axes& axes, const Track& track, std::uint32_t color) {
   std::vector<Vec2> points;
   for (const base::Pose& pose : track.poses)
-    if (std::isfinite(pose.x) && std::isfinite(pose.y)) points.push_back(axes.pixel({pose.x, pose.y}));
+    if (is_finite(pose)) points.push_back(axes.pixel({pose.x, pose.y}));
   if (points.empty()) return;
   axes.canvas().polyline(points, 2.4, color);
   axes.canvas().disc(points.front(), 5.0, 0xFFFFFFFFu);
@@ -44,13 +44,8 @@ void draw_track(Axes& axes, const Track& track, std::uint32_t color) {
 
 void draw_along_paths(const world::World& world, std::span<const Track> tracks, const std::string& title,
                       const std::string& subtitle, const std::string& png_path) {
-  FigurePlan plan{.title = title, .subtitle = subtitle, .extent = world.extent, .legend = ground_legend(world)};
-  for (const Track& track : tracks)
-    for (const base::Pose& p : track.poses) {
-      world::Extent& e = plan.extent;
-      if (!std::isfinite(p.x) || !std::isfinite(p.y)) continue;
-      e = {std::min(e.x_min, p.x), std::min(e.y_min, p.y), std::max(e.x_max, p.x), std::max(e.y_max, p.y)};
-    }
+  FigurePlan plan{
+      .title = title, .subtitle = subtitle, .extent = extent_of(world, tracks), .legend = ground_legend(world)};
   if (!world.paths.empty()) plan.legend.push_back({Sample::dashed, kMiddle, "middle of the lane"});
   const auto color = [&](std::size_t i) { return tracks[i].color.value_or(row_color(i, tracks.size())); };
   for (std::size_t i = 0; i < std::min<std::size_t>(tracks.size(), 7); ++i)

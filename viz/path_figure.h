@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "viz/trajectory_figure.h"
+#include "viz/tracks.h"
 #include "world/world.h"
 
 namespace sf::viz {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "viz/color.h"
+#include "viz/fan.h"
 #include "world/lights.h"
 
 namespace sf::viz {
@@ -14,13 +15,12 @@ using world::Emitter;
 using world::LightState;
 
 constexpr std::uint32_t kHole = 0xFF2B2B33u;
-constexpr std::uint32_t kWallBeam = 0xFF8E24AAu;
-constexpr std::uint32_t kRedBuoy = 0xFFD32F2Fu;
-constexpr std::uint32_t kGreenBuoy = 0xFF2E7D32u;
-constexpr std::uint32_t kField = 0xFF455A64u;
+constexpr FanLook kWallBeam{0xFF8E24AAu, 0.14, 0.55};
+constexpr FanLook kRedBuoy{0xFFD32F2Fu, 0.14, 0.55};
+constexpr FanLook kGreenBuoy{0xFF2E7D32u, 0.14, 0.55};
+constexpr FanLook kField{0xFF455A64u, 0.14, 0.55};
 constexpr std::uint32_t kCase = 0xFF202020u;
 constexpr double kLightRadius = 6.0;  // [px]
-constexpr int kFanSides = 32;
 
 std::uint32_t color_of(LightState state) {
   switch (state) {
@@ -38,29 +38,16 @@ std::uint32_t color_of(LightState state) {
   return 0xFF616161u;
 }
 
-/// Between two bearings in the emitter's frame [rad]; a whole turn is a circle.
-void draw_fan(Axes& axes, const Emitter& emitter, double from, double to, double reach, std::uint32_t color) {
-  std::vector<Vec2> outline;
-  if (to - from < 2.0 * M_PI - 1e-3) outline.push_back(axes.pixel({emitter.X_WE.x, emitter.X_WE.y}));
-  for (int i = 0; i <= kFanSides; ++i) {
-    const double bearing = from + (to - from) * i / kFanSides;
-    outline.push_back(axes.pixel(transform(emitter.X_WE, base::rotate(bearing, {reach, 0.0}))));
-  }
-  axes.canvas().polygon(outline, with_opacity(color, 0.14));
-  outline.push_back(outline.front());
-  axes.canvas().polyline(outline, 1.0, with_opacity(color, 0.55));
-}
-
 void draw_emitter(Axes& axes, const Emitter& emitter) {
   const double fov = emitter.fov;
   if (emitter.kind == Emitter::Kind::virtual_wall) {
-    if (emitter.halo > 0.0) draw_fan(axes, emitter, 0.0, 2.0 * M_PI, emitter.halo, kWallBeam);
-    return draw_fan(axes, emitter, -0.5 * fov, 0.5 * fov, emitter.range, kWallBeam);
+    if (emitter.halo > 0.0) draw_fan(axes, emitter.X_WE, 0.0, 2.0 * M_PI, emitter.halo, kWallBeam);
+    return draw_fan(axes, emitter.X_WE, -0.5 * fov, 0.5 * fov, emitter.range, kWallBeam);
   }
-  if (emitter.halo > 0.0) draw_fan(axes, emitter, 0.0, 2.0 * M_PI, emitter.halo, kField);
+  if (emitter.halo > 0.0) draw_fan(axes, emitter.X_WE, 0.0, 2.0 * M_PI, emitter.halo, kField);
   // A quarter of each buoy's beam is the other's, too (sensors/irreceiver.h).
-  draw_fan(axes, emitter, -0.125 * fov, 0.875 * fov, emitter.range, kRedBuoy);
-  draw_fan(axes, emitter, -0.875 * fov, 0.125 * fov, emitter.range, kGreenBuoy);
+  draw_fan(axes, emitter.X_WE, -0.125 * fov, 0.875 * fov, emitter.range, kRedBuoy);
+  draw_fan(axes, emitter.X_WE, -0.875 * fov, 0.125 * fov, emitter.range, kGreenBuoy);
 }
 
 bool has(const world::World& world, Emitter::Kind kind) {
@@ -109,10 +96,11 @@ std::vector<LegendItem> signals_legend(const world::World& world) {
   std::vector<LegendItem> items;
   if (!world.lights.empty()) items.push_back({Sample::dot, color_of(LightState::green), "traffic light, at the start"});
   if (has(world, Emitter::Kind::virtual_wall))
-    items.push_back({Sample::block, with_opacity(kWallBeam, 0.14), "virtual wall", with_opacity(kWallBeam, 0.55)});
+    items.push_back({Sample::block, with_opacity(kWallBeam.color, kWallBeam.inside), "virtual wall",
+                     with_opacity(kWallBeam.color, kWallBeam.border)});
   if (has(world, Emitter::Kind::dock))
-    items.push_back({Sample::block, with_opacity(kRedBuoy, 0.14), "dock: red and green buoy, force field",
-                     with_opacity(kRedBuoy, 0.55)});
+    items.push_back({Sample::block, with_opacity(kRedBuoy.color, kRedBuoy.inside),
+                     "dock: red and green buoy, force field", with_opacity(kRedBuoy.color, kRedBuoy.border)});
   if (!world.drops.empty()) items.push_back({Sample::block, with_opacity(kHole, 0.85), "hole in the floor"});
   return items;
 }

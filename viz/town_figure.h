@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "viz/trajectory_figure.h"
+#include "viz/tracks.h"
 #include "world/world.h"
 
 namespace sf::viz {

@@ -1,5 +1,6 @@
 #include "viz/tracks.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sf::viz {
@@ -8,10 +9,22 @@ namespace {
 
 /// Steps of less than this are left out of a path: they cannot be seen, and cost as much as long ones. [px]
 constexpr double kSmallestStep = 0.7;
+/// From this reach on, a cross has a border. [px]
+constexpr double kBordered = 5.0;
 
 }  // namespace
 
 bool is_finite(const base::Pose& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
+
+world::Extent extent_of(const world::World& world, std::span<const Track> tracks) {
+  world::Extent e = world.extent;
+  for (const Track& track : tracks)
+    for (const base::Pose& p : track.poses) {
+      if (!is_finite(p)) continue;
+      e = {std::min(e.x_min, p.x), std::min(e.y_min, p.y), std::max(e.x_max, p.x), std::max(e.y_max, p.y)};
+    }
+  return e;
+}
 
 void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t color) {
   std::vector<Line> path;
@@ -28,10 +41,6 @@ void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t 
     last = at;
   }
   axes.canvas().lines(path, line_width, color);
-}
-
-namespace {
-constexpr double kBordered = 5.0;  // [px]
 }
 
 void draw_contacts(Axes& axes, const Track& track, double reach, double line_width) {

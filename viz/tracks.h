@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/pose.h"
 #include "viz/axes.h"
+#include "world/world.h"
 
 namespace sf::viz {
 
@@ -28,6 +30,9 @@ bool is_finite(const base::Pose& X_WM);
 double path_length(const Track& track);
 /// Contacts that began.
 std::size_t contact_count(const Track& track);
+
+/// Of the world and of all tracks. [m]
+world::Extent extent_of(const world::World& world, std::span<const Track> tracks);
 
 void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t color);
 /// One cross where each contact began, but none on top of the track's last one.

@@ -36,17 +36,6 @@ Weight weight_for(std::size_t tracks) {
   return {1.0, 2.6, 1.5, 0.7, 0.8};
 }
 
-/// The extent of the world and of all tracks.
-world::Extent extent_of(const World& world, std::span<const Track> tracks) {
-  world::Extent e = world.extent;
-  for (const Track& track : tracks)
-    for (const Pose& p : track.poses) {
-      if (!is_finite(p)) continue;
-      e = {std::min(e.x_min, p.x), std::min(e.y_min, p.y), std::max(e.x_max, p.x), std::max(e.y_max, p.y)};
-    }
-  return e;
-}
-
 void draw_ends(Axes& axes, const Track& track, double mark, std::uint32_t color) {
   const auto first = std::find_if(track.poses.begin(), track.poses.end(), is_finite);
   if (first == track.poses.end()) return;

@@ -1,0 +1,22 @@
+#include "viz/fan.h"
+
+#include <cmath>
+#include <vector>
+
+#include "viz/color.h"
+
+namespace sf::viz {
+
+void draw_fan(Axes& axes, const base::Pose& X_WF, double from, double to, double reach, const FanLook& look) {
+  std::vector<Vec2> outline;
+  if (to - from < 2.0 * M_PI - 1e-3) outline.push_back(axes.pixel({X_WF.x, X_WF.y}));
+  for (int i = 0; i <= look.sides; ++i) {
+    const double bearing = from + (to - from) * i / look.sides;
+    outline.push_back(axes.pixel(transform(X_WF, base::rotate(bearing, {reach, 0.0}))));
+  }
+  axes.canvas().polygon(outline, with_opacity(look.color, look.inside));
+  outline.push_back(outline.front());
+  axes.canvas().polyline(outline, 1.0, with_opacity(look.color, look.border));
+}
+
+}  // namespace sf::viz

@@ -1,0 +1,22 @@
+#pragma once
+// What lies within two bearings and a reach: sensors' views, emitters' beams.
+
+#include <cstdint>
+
+#include "base/pose.h"
+#include "viz/axes.h"
+
+namespace sf::viz {
+
+struct FanLook {
+  std::uint32_t color = 0;  ///< 0xAARRGGBB
+  double inside = 0.0;      ///< opacity, 0 to 1
+  double border = 0.0;      ///< opacity, 0 to 1
+  int sides = 32;           ///< of the arc
+};
+
+/// @param from, to [rad] bearings in the frame F; a whole turn is a circle
+/// @param reach [m]
+void draw_fan(Axes& axes, const base::Pose& X_WF, double from, double to, double reach, const FanLook& look);
+
+}  // namespace sf::viz
