@@ -20,10 +20,11 @@ struct LastMap {
 };
 
 const record::ReadingSample* last_of(const record::Recording& recording, const sensors::SensorRow& row) {
-  const record::ReadingSample* last = nullptr;
-  for (const record::ReadingSample& r : recording.readings)
-    if (r.kind == sensors::kOccupancy && r.mover == row.mover && r.sensor == row.sensor) last = &r;
-  return last != nullptr && last->values.size() == row.elements ? last : nullptr;
+  const auto& all = recording.readings;
+  const auto last = std::find_if(all.rbegin(), all.rend(), [&](const record::ReadingSample& r) {
+    return r.kind == sensors::kOccupancy && r.mover == row.mover && r.sensor == row.sensor;
+  });
+  return last != all.rend() && last->values.size() == row.elements ? &*last : nullptr;
 }
 
 std::vector<LastMap> last_maps(const record::Recording& recording, const world::World& world) {

@@ -102,7 +102,11 @@ void RobotLink::say(const netio::V2v& state, std::int64_t now) {
 
 void RobotLink::send(netio::Type type, std::uint32_t sequence, std::int64_t now) {
   out_.send({id_, stream_number(type, 0), sequence}, now, 0, packet_);
-  out_.release(now, [&](std::size_t, std::span<const std::uint8_t> bytes) { radio_.send(bytes); });
+  let_go(now);
+}
+
+void RobotLink::let_go(std::int64_t until) {
+  out_.release(until, [&](std::size_t, std::span<const std::uint8_t> bytes) { radio_.send(bytes); });
 }
 
 void RobotLink::leave(std::int64_t now) {
@@ -112,8 +116,7 @@ void RobotLink::leave(std::int64_t now) {
   header.time = now;
   netio::encode(header, netio::Leave{}, packet_);
   out_.send({id_, stream_number(netio::Type::leave, 0), 0}, now, 0, packet_);
-  out_.release(std::numeric_limits<std::int64_t>::max(),
-               [&](std::size_t, std::span<const std::uint8_t> bytes) { radio_.send(bytes); });
+  let_go(std::numeric_limits<std::int64_t>::max());
 }
 
 void RobotLink::wait(std::int64_t now, std::int64_t until) const {
@@ -123,7 +126,7 @@ void RobotLink::wait(std::int64_t now, std::int64_t until) const {
 }
 
 void RobotLink::run(std::int64_t now) {
-  out_.release(now, [&](std::size_t, std::span<const std::uint8_t> bytes) { radio_.send(bytes); });
+  let_go(now);
   ears_.drain(0, [&](std::size_t i, std::span<const std::uint8_t> bytes) {
     in_.send(name_reading(streams_[i], bytes), now, i, bytes);
   });
@@ -155,7 +158,6 @@ void RobotLink::take(std::size_t tag, std::span<const std::uint8_t> bytes, std::
   const netio::Taken taken = receiver_.accept(tag, bytes, now);
   if (taken == netio::Taken::refused) return;
   last_answer_ = now;
-  answered_ = true;
   if (taken != netio::Taken::whole) return;
   ++streams_[tag].whole;
   clock_.see(receiver_.newest(tag)->time, now);
@@ -165,7 +167,6 @@ void RobotLink::take_word(std::span<const std::uint8_t> bytes, std::int64_t now)
   netio::Packet packet;
   if (radio_.accept(bytes, now, packet) != netio::Reason::accepted) return;
   last_answer_ = now;
-  answered_ = true;
   hear_(packet, now);
 }
 

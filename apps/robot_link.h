@@ -62,8 +62,8 @@ class RobotLink {
   /// A state of robot `id` came in the last two seconds.
   bool heard(std::uint32_t id, std::int64_t now) const { return radio_.heard(id, now); }
   const netio::FarmClock& clock() const { return clock_; }
-  std::int64_t last_answer() const { return last_answer_; }  ///< [ns] when anything good came; 0: nothing did yet
-  bool answered() const { return answered_; }
+  /// [ns] when anything good came last; nothing where nothing did yet.
+  std::optional<std::int64_t> last_answer() const { return last_answer_; }
   bool listens() const { return !streams_.empty(); }  ///< to any sensor
   const netio::Endpoint& farm() const { return farm_; }
   LinkCounts counts() const;
@@ -80,6 +80,8 @@ class RobotLink {
   std::vector<netio::StreamPlan> plans(const Options& options) const;
   netio::ReceiverOptions receiver_options(const Options& options) const;
   void send(netio::Type type, std::uint32_t sequence, std::int64_t now);
+  /// Sends what is due by then.
+  void let_go(std::int64_t until);
   netio::Message name_reading(Stream& stream, std::span<const std::uint8_t> bytes) const;
   netio::Message name_word(std::span<const std::uint8_t> bytes);
   void take(std::size_t tag, std::span<const std::uint8_t> bytes, std::int64_t now);
@@ -100,8 +102,7 @@ class RobotLink {
   std::uint32_t requests_ = 0;     ///< sent
   std::int64_t next_request_ = 0;  ///< [ns]
   std::uint64_t words_ = 0;        ///< that came and are no states
-  std::int64_t last_answer_ = 0;
-  bool answered_ = false;
+  std::optional<std::int64_t> last_answer_;
   std::vector<Newest> newest_;
   base::Bytes packet_;
 };

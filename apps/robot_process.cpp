@@ -71,7 +71,7 @@ RobotFacts RobotProcess::facts(const Options& options) const {
   facts.steps = steps_;
   facts.started = started_;
   facts.done = done();
-  facts.answered = link_.answered();
+  facts.answered = link_.last_answer().has_value();
   facts.listens = link_.listens();
   facts.link = link_.counts();
   facts.contacts = contacts_;
@@ -134,7 +134,7 @@ void RobotProcess::gather_signals(std::int64_t now) {
 }
 
 void RobotProcess::complain(std::int64_t now) {
-  if (complained_ || !link_.listens() || now - link_.last_answer() < kAnswerIn) return;
+  if (complained_ || !link_.listens() || now - link_.last_answer().value_or(0) < kAnswerIn) return;
   complained_ = true;
   std::fprintf(stderr,
                "sensorfarm: nothing came from the farm at %s for 3 s; is `sensorfarm serve` running there with this "

@@ -24,7 +24,6 @@ Taken Receiver::accept(std::size_t i, std::span<const std::uint8_t> bytes, std::
   const Piece piece{header.sequence, verdict.part, verdict.parts, header.time};
   const Taken taken =
       stream.assembler.take(piece, now, [&](std::span<double> values) { read_(i, header, payload, values); });
-  counts_.whole += taken == Taken::whole;
   counts_.late += taken == Taken::late;
   counts_.duplicates += taken == Taken::duplicate;
   return taken;

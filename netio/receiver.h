@@ -39,7 +39,6 @@ struct ReceiverOptions {
 
 struct ReceiverCounts {
   Counts reasons;                ///< datagrams
-  std::uint64_t whole = 0;       ///< readings that were the newest when they were whole
   std::uint64_t late = 0;        ///< datagrams of readings that newer ones had overtaken
   std::uint64_t duplicates = 0;  ///< datagrams
   std::uint64_t lost = 0;        ///< datagrams that never came, by gaps; see Assembler

@@ -48,7 +48,6 @@ TEST(Receiver, GivesTheNewestWholeReadingOfEachSensor) {
   EXPECT_EQ(whole->values[0], 10.0);
   EXPECT_EQ(whole->values[1], 11.0);
   EXPECT_FALSE(receiver.newest(1));
-  EXPECT_EQ(receiver.counts().whole, 1u);
 }
 
 TEST(Receiver, CountsWhatItDoesNotUse) {
@@ -119,7 +118,6 @@ TEST(Receiver, AMillionRandomAndMutatedDatagrams) {
     wholes += receiver.accept(random() % 2, bytes, now) == Taken::whole;
   }
   EXPECT_EQ(receiver.counts().reasons.total(), 1'000'000u);
-  EXPECT_EQ(receiver.counts().whole, wholes);
   EXPECT_GT(wholes, 1000u);
   EXPECT_GT(receiver.counts().late, 0u);
   EXPECT_GT(receiver.counts().duplicates, 0u);
