@@ -71,6 +71,7 @@ struct Options {
   bool real_time = false;
   std::string controller = "wander";  ///< who drives
   std::vector<std::string> set;       ///< its settings, "key=value" each
+  std::vector<std::string> drive;     ///< whom, by name; empty: every robot
   std::string send;                   ///< host; empty: nobody
   sensors::Wire wire = sensors::Wire::farm;
   std::map<std::uint8_t, std::uint32_t> base_ports;  ///< by sensor kind; every kind is in it

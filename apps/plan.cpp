@@ -2,6 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+
+#include "base/error.h"
+#include "world/keys.h"
+
 namespace sf::apps {
 
 control::Setting setting_of(const std::string& text) {
@@ -15,6 +21,22 @@ control::Plan plan_of(const Options& options) {
   for (const std::string& text : options.set) settings.push_back(setting_of(text));
   return {options.controller, 0.0,
           control::Settings(fmt::format("controller '{}'", options.controller), std::move(settings))};
+}
+
+std::vector<scenarios::Actor> actors_of(const world::World& world, const Options& options) {
+  if (options.drive.empty()) return {};
+  std::vector<std::string_view> names;
+  for (const world::Mover& mover : world.movers) names.emplace_back(mover.name);
+  std::vector<scenarios::Actor> actors(world.movers.size(), {.plan = {.controller = ""}});
+  for (const std::string& name : options.drive) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+      throw base::InputError(
+          world.file, 0,
+          fmt::format("has no robot '{}'{}; --drive expects one of its robots", name, world::suggest(name, names)));
+    actors[static_cast<std::size_t>(found - names.begin())].plan = plan_of(options);
+  }
+  return actors;
 }
 
 }  // namespace sf::apps

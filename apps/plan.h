@@ -2,9 +2,12 @@
 // Who drives, as the command line says it.
 
 #include <string>
+#include <vector>
 
 #include "apps/options.h"
 #include "control/controllers.h"
+#include "scenarios/simulation.h"
+#include "world/world.h"
 
 namespace sf::apps {
 
@@ -13,5 +16,9 @@ control::Setting setting_of(const std::string& text);
 
 /// `--controller` with its `--set`s.
 control::Plan plan_of(const Options& options);
+
+/// The plan for whom `--drive` names, all others stand; empty where it names nobody: every robot is driven.
+/// @throws base::InputError for a name that the world lacks.
+std::vector<scenarios::Actor> actors_of(const world::World& world, const Options& options);
 
 }  // namespace sf::apps

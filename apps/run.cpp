@@ -16,6 +16,7 @@
 #include "apps/post.h"
 #include "apps/progress.h"
 #include "apps/stop.h"
+#include "base/error.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
 
@@ -81,14 +82,31 @@ void keep_pace(Clock::time_point start, double simulated) {
     std::this_thread::sleep_until(std::min(due, Clock::now() + std::chrono::milliseconds(100)));
 }
 
-}  // namespace
+/// `refusal` of a controller names one of several robots that are driven.
+bool names_one_of_several(const std::string& refusal, const world::World& world, const Options& options) {
+  const std::size_t driven = options.drive.empty() ? count_robots(world) : options.drive.size();
+  return driven > 1 && std::any_of(world.movers.begin(), world.movers.end(), [&](const world::Mover& mover) {
+           return refusal.find("'" + mover.name + "'") != std::string::npos;
+         });
+}
 
-namespace {
-
-scenarios::SimulationOptions simulation_options(const Options& options) {
+scenarios::SimulationOptions simulation_options(const world::World& world, const Options& options) {
   scenarios::SimulationOptions simulation{.seed = options.seed, .threads = options.threads};
   simulation.actor.plan = plan_of(options);
+  simulation.actors = actors_of(world, options);
   return simulation;
+}
+
+/// `act()`; where a controller refuses one of several robots, with a remedy. Some do when they are made, some when they
+/// start.
+template <class Act>
+auto advised(const world::World& world, const Options& options, Act&& act) {
+  try {
+    return act();
+  } catch (const base::InputError& error) {
+    if (!names_one_of_several(error.what(), world, options)) throw;
+    throw base::InputError(error.what() + std::string("; or name the robots that are driven (--drive NAME)"));
+  }
 }
 
 }  // namespace
@@ -98,7 +116,8 @@ int run(const Options& options) {
   const sensors::Roster roster(world);
   if (!options.send.empty()) require_sendable(world, roster, options);
   gpu::Device device(options.device);
-  scenarios::Simulation simulation(world, device, simulation_options(options));
+  scenarios::Simulation simulation =
+      advised(world, options, [&] { return scenarios::Simulation(world, device, simulation_options(world, options)); });
   ControlTally tally(simulation, world.movers.size(), options.controller);
   Outputs outputs(world, roster, options);
   catch_stop_signals();
@@ -109,7 +128,7 @@ int run(const Options& options) {
   {
     Progress progress("simulating");
     for (; facts.ticks < ticks && !stop_requested(); ++facts.ticks) {
-      const base::TickRecord tick = simulation.step();
+      const base::TickRecord tick = advised(world, options, [&] { return simulation.step(); });
       tally.look();
       outputs.write(tick);
       for (const std::uint8_t contact : tick.contacts) facts.contacts += contact;

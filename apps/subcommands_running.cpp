@@ -18,6 +18,10 @@ void add_run(CLI::App& app, Options& o) {
   add_device(*sub, o);
   add_robots(*sub, o);
   add_controller(*sub, o);
+  sub->add_option("--drive", o.drive, "Drive this robot, and none that is not named so (may be repeated)")
+      ->check(not_empty("the name of a robot"))
+      ->allow_extra_args(false)
+      ->type_name("NAME");
   add_no_return(*sub, o);
   add_ports(*sub, o);
   sub->add_option("--duration", o.duration, "Simulated time [s]")

@@ -120,6 +120,64 @@ TEST(Run, AControllerWithoutItsSensorIsRefused) {
   }
 }
 
+/// In SimVille, two pedestrians stand on no lane.
+TEST(Run, OnlyWhoIsNamedIsDriven) {
+  Words words =
+      run_words("simville/simville.world", {"--duration", "2", "--controller", "route", "--set", "tour=true"});
+  const std::string hint = "; or name the robots that are driven (--drive NAME)";
+  const Outcome all = run_program(words);
+  EXPECT_EQ(all.code, 2);
+  EXPECT_EQ(count_lines(all.err), 1u) << all.err;
+  EXPECT_NE(all.err.find("robot 'khepera6' stands at"), std::string::npos) << all.err;
+  EXPECT_NE(all.err.find(hint), std::string::npos) << all.err;
+
+  Words alone = words;
+  alone.insert(alone.end(), {"--drive", "khepera6"});
+  const Outcome off_the_lane = run_program(alone);
+  EXPECT_EQ(off_the_lane.code, 2);
+  EXPECT_EQ(off_the_lane.err.find(hint), std::string::npos) << "it is the one that is named: " << off_the_lane.err;
+
+  words.insert(words.end(), {"--drive", "roomba0", "--drive", "roomba3"});
+  const Outcome two = run_program(words);
+  ASSERT_EQ(two.code, 0) << two.err;
+  EXPECT_EQ(Json(two.out).number("/control/robots"), 2);
+  EXPECT_EQ(Json(two.out).number("/robots"), 8);
+}
+
+TEST(Run, WhoIsDrivenIsDrivenAsBefore) {
+  const auto some = [](const Words& drive) {
+    Words more{"--duration", "3"};
+    more.insert(more.end(), drive.begin(), drive.end());
+    return hash("rooms.world", more);
+  };
+  const std::string all = some({});
+  EXPECT_EQ(some({"--drive", "roomba2", "--drive", "roomba1"}), all);
+  const std::string one = some({"--drive", "roomba1"});
+  EXPECT_NE(one, all);
+  EXPECT_NE(some({"--drive", "roomba2"}), one);
+  EXPECT_EQ(some({"--drive", "roomba1", "--drive", "roomba1"}), one) << "twice is once";
+}
+
+TEST(Run, ClonesMayBeNamedAndNobodyElse) {
+  const Json facts = run("rooms.world", {"--robots", "5", "--duration", "0.1", "--drive", "roomba5"});
+  EXPECT_EQ(facts.number("/control/robots"), 1);
+  const std::pair<std::string, std::string> refused[] = {
+      {"rooomba1", "has no robot 'rooomba1'; did you mean 'roomba1'?"},
+      {"Roomba1", "has no robot 'Roomba1'; did you mean 'roomba1'?"},
+      {"bob", "has no robot 'bob'; --drive expects one of its robots"},
+      {"roomba1,roomba2", "has no robot 'roomba1,roomba2'; --drive"},
+      {"", "expected the name of a robot, got ''"},
+  };
+  for (const auto& [name, said] : refused) {
+    const Outcome outcome = run_program(run_words("rooms.world", {"--duration", "0.1", "--drive", name}));
+    EXPECT_EQ(outcome.code, 2) << name;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+  }
+  // The world may come after it.
+  EXPECT_EQ(run_program({"run", "--drive", "roomba1", our_world("rooms.world"), "--duration", "0.1"}).code, 0);
+}
+
 TEST(Run, AFolderThatCannotBeMadeIsRefusedWithARemedy) {
   const Outcome outcome = run_program(run_words("cave.world", {"--duration", "0.1", "--record", "/proc/x"}));
   EXPECT_EQ(outcome.code, 2);

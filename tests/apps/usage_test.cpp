@@ -50,7 +50,7 @@ TEST(Usage, HelpNamesTheOptions) {
       {"sense", {"--pose", "--robot", "--kind", "--sensor", "--json", "--no-return", "--device"}},
       {"run",
        {"--robots", "--duration", "--seed", "--record", "--record-readings", "--real-time", "--send", "--json",
-        "--wire", "--threads", "--stage-obstacles"}},
+        "--wire", "--threads", "--stage-obstacles", "--drive"}},
       {"serve", {"--bind", "--rate", "--port", "--laser-port", "--wire", "--json"}},
       {"robot",
        {"--name", "--controller", "--set", "--server", "--port", "--delay", "--jitter", "--loss", "--seed", "--rate",
