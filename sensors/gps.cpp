@@ -37,8 +37,7 @@ std::vector<SensorRow> rows_of(const world::World& world) {
   for_each_sensor(world, gps_kind, [&](const Fitted& fitted) {
     read_gps(fitted.settings);
     SensorRow row = fitted.row;
-    if (find(fitted.settings, "rate") == nullptr && find(fitted.settings, "update_interval") == nullptr)
-      row.rate = kRate;
+    row.rate = rate_of(fitted.settings, kRate);
     row.X_MS.z += fitted.settings.height;
     rows.push_back(row);
   });

@@ -56,11 +56,9 @@ void HostInstruments::collect(std::vector<base::ReadingBlock>& out) {
 }
 
 void for_each_sensor(const world::World& world, const SensorKind& kind, const std::function<void(Fitted)>& body) {
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    std::uint32_t number_of_kind = 0;
-    for (const world::Sensor& sensor : world.movers[m].sensors)
-      if (sensor.type == kind.word.type) body({sensor, common_row(sensor, m, number_of_kind++)});
-  }
+  for_each_of(world, kind.word.type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
+    body({sensor, common_row(sensor, mover, number)});
+  });
 }
 
 }  // namespace sf::sensors

@@ -58,11 +58,9 @@ LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uin
 
 std::vector<LaneEdge> lane_edges_of(const world::World& world) {
   std::vector<LaneEdge> edges;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    std::uint32_t number_of_kind = 0;
-    for (const world::Sensor& sensor : world.movers[m].sensors)
-      if (sensor.type == "laneedge") edges.push_back(lane_edge_of(sensor, m, number_of_kind++));
-  }
+  for_each_of(world, "laneedge", [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
+    edges.push_back(lane_edge_of(sensor, mover, number));
+  });
   return edges;
 }
 

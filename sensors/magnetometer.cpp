@@ -25,20 +25,17 @@ struct Array {
 std::vector<Array> arrays_of(const world::World& world) {
   std::vector<Array> arrays;
   std::size_t values = 0;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    std::uint32_t number_of_kind = 0;
-    for (const world::Sensor& sensor : world.movers[m].sensors) {
-      if (sensor.type != magnetometer_kind.word.type) continue;
-      Array array{read_magnetometer(sensor), common_row(sensor, m, number_of_kind++), 0.0, values};
-      array.row.X_MS.z += sensor.height / 2.0;
-      array.row.elements = static_cast<std::uint32_t>(array.settings.X_SE.size());
-      array.row.limit = std::max(std::abs(array.settings.least), std::abs(array.settings.most));
-      array.height = world.movers[m].X_WM.z + array.row.X_MS.z;
-      for (const Pose& X_SE : array.settings.X_SE) array.facing.push_back(base::rotate(X_SE.yaw, {1.0, 0.0}));
-      values += kMagnetometerColumns * array.settings.X_SE.size();
-      arrays.push_back(std::move(array));
-    }
-  }
+  const auto type = magnetometer_kind.word.type;
+  for_each_of(world, type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
+    Array array{read_magnetometer(sensor), common_row(sensor, mover, number), 0.0, values};
+    array.row.X_MS.z += sensor.height / 2.0;
+    array.row.elements = static_cast<std::uint32_t>(array.settings.X_SE.size());
+    array.row.limit = std::max(std::abs(array.settings.least), std::abs(array.settings.most));
+    array.height = world.movers[mover].X_WM.z + array.row.X_MS.z;
+    for (const Pose& X_SE : array.settings.X_SE) array.facing.push_back(base::rotate(X_SE.yaw, {1.0, 0.0}));
+    values += kMagnetometerColumns * array.settings.X_SE.size();
+    arrays.push_back(std::move(array));
+  });
   return arrays;
 }
 

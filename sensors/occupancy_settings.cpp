@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kDefaultCell = 0.03;  // [m] the thesis'
 constexpr std::uint32_t kDefaultWords = 30;
-constexpr double kFarthest = 1e7;  // [m]
+constexpr double kDefaultRate = 1.0;  // [Hz]
+constexpr double kFarthest = 1e7;     // [m]
 constexpr double kMostOdds = 32767.0;
 
 std::uint32_t words_along(const world::Sensor& sensor, double count) {
@@ -99,7 +100,7 @@ void fill_from(const world::Sensor& sensor, const world::Laser& laser, MapPlan& 
 Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, std::uint32_t m, std::uint32_t number) {
   Occupancy map;
   map.row = common_row(sensor, m, number);
-  if (find(sensor, "rate") == nullptr && find(sensor, "update_interval") == nullptr) map.row.rate = 1.0;
+  map.row.rate = rate_of(sensor, kDefaultRate);
   map.plan.grid = grid_of(sensor, mover.X_WM);
   map.plan.odds = odds_of(sensor);
   map.laser = laser_of(sensor, mover);
@@ -115,12 +116,9 @@ Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, s
 
 std::vector<Occupancy> occupancies_of(const world::World& world) {
   std::vector<Occupancy> all;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    std::uint32_t number_of_kind = 0;
-    for (const world::Sensor& sensor : world.movers[m].sensors)
-      if (sensor.type == occupancy_kind.word.type)
-        all.push_back(occupancy_of(sensor, world.movers[m], m, number_of_kind++));
-  }
+  for_each_of(world, occupancy_kind.word.type, [&](const world::Sensor& sensor, std::uint32_t m, std::uint32_t number) {
+    all.push_back(occupancy_of(sensor, world.movers[m], m, number));
+  });
   return all;
 }
 

@@ -32,14 +32,6 @@ double scaled(const world::Sensor& sensor, std::string_view key, double fallback
          fmt::format("'{}' is {:g}; expected {:g} to {:g}{}", key, value / unit, least / unit, most / unit, name));
 }
 
-double rate_of(const world::Sensor& sensor, double fallback) {
-  const world::Setting* rate = find(sensor, "rate");
-  const world::Setting* interval = find(sensor, "update_interval");
-  if (rate != nullptr) return number(sensor, "rate", fallback, kSlowest, kFastest);
-  if (interval != nullptr) return 1000.0 / number(sensor, "update_interval", 100.0, 1e3 / kFastest, 1e3 / kSlowest);
-  return fallback;
-}
-
 }  // namespace
 
 void refuse(const world::Sensor& sensor, std::string_view key, const std::string& message) {
@@ -91,6 +83,14 @@ std::optional<std::vector<double>> tuple(const world::Sensor& sensor, std::strin
   return numbers(sensor, *setting, least, meaning);
 }
 
+double rate_of(const world::Sensor& sensor, double fallback) {
+  const world::Setting* rate = find(sensor, "rate");
+  const world::Setting* interval = find(sensor, "update_interval");
+  if (rate != nullptr) return number(sensor, "rate", fallback, kSlowest, kFastest);
+  if (interval != nullptr) return 1000.0 / number(sensor, "update_interval", 100.0, 1e3 / kFastest, 1e3 / kSlowest);
+  return fallback;
+}
+
 SensorRow common_row(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind) {
   SensorRow row;
   row.mover = mover;
@@ -101,6 +101,15 @@ SensorRow common_row(const world::Sensor& sensor, std::uint32_t mover, std::uint
   row.phase = number(sensor, "phase", 0.0, 0.0, kMostSeconds);
   row.latency = number(sensor, "latency", 0.0, 0.0, kMostSeconds);
   return row;
+}
+
+void for_each_of(const world::World& world, std::string_view type,
+                 const std::function<void(const world::Sensor&, std::uint32_t, std::uint32_t)>& body) {
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+    std::uint32_t number_of_kind = 0;
+    for (const world::Sensor& sensor : world.movers[m].sensors)
+      if (sensor.type == type) body(sensor, m, number_of_kind++);
+  }
 }
 
 }  // namespace sf::sensors

@@ -1,6 +1,7 @@
 #pragma once
 // A sensor's settings in a world file, read by its kind: in metres, radians and seconds, or refused with file and line.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,7 +34,15 @@ std::size_t choice(const world::Sensor& sensor, std::string_view key, std::size_
 std::optional<std::vector<double>> tuple(const world::Sensor& sensor, std::string_view key, std::size_t least,
                                          const std::string& meaning);
 
+/// [Hz] of `rate` or `update_interval`.
+double rate_of(const world::Sensor& sensor, double fallback);
+
 /// Name, rate (or update_interval), phase and latency, as every sensor has them; one element.
 SensorRow common_row(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind);
+
+/// Calls `body` for every sensor called `type`, by mover and in file order. @param number 0-based among the mover's
+void for_each_of(
+    const world::World& world, std::string_view type,
+    const std::function<void(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number)>& body);
 
 }  // namespace sf::sensors

@@ -52,7 +52,7 @@ ConeArray read_cones(const world::Sensor& sensor, std::uint32_t mover, std::uint
   ConeArray array;
   array.row = common_row(sensor, mover, number_of_kind);
   array.row.X_MS.z += 0.5 * sensor.height;
-  if (find(sensor, "rate") == nullptr && find(sensor, "update_interval") == nullptr) array.row.rate = defaults.rate;
+  array.row.rate = rate_of(sensor, defaults.rate);
   array.X_SC = read_elements(sensor, kMostTransducers);
   array.row.elements = static_cast<std::uint32_t>(array.X_SC.size());
   array.fov = read_fov(sensor, defaults.fov);
@@ -64,11 +64,9 @@ ConeArray read_cones(const world::Sensor& sensor, std::uint32_t mover, std::uint
 
 std::vector<ConeArray> cone_arrays_of(const world::World& world, std::string_view type, ReadConeArray read) {
   std::vector<ConeArray> arrays;
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    std::uint32_t number_of_kind = 0;
-    for (const world::Sensor& sensor : world.movers[m].sensors)
-      if (sensor.type == type) arrays.push_back(read(sensor, m, number_of_kind++));
-  }
+  for_each_of(world, type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
+    arrays.push_back(read(sensor, mover, number));
+  });
   return arrays;
 }
 
