@@ -30,13 +30,6 @@ Vec2 unit(Vec2 v) {
   return size > 0.0 ? 1.0 / size * v : Vec2{};
 }
 
-/// From the segment's nearest point to `p`.
-Vec2 from_segment(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 along = b - a;
-  const double t = std::clamp(dot(p - a, along) / dot(along, along), 0.0, 1.0);
-  return p - a - t * along;
-}
-
 }  // namespace
 
 void Fleet::move_one(std::uint32_t row, const Twist& velocity, double dt) {
@@ -168,7 +161,7 @@ Fleet::Touch Fleet::touch_of(std::uint32_t row, std::span<const base::Report> re
   Touch touch;
   walls_.any(world::box_around(p, reach), [&](const Segment& wall) {
     const std::uint32_t sectors = sectors_touched(outline, X_WM, wall);
-    if (sectors != 0) touch = {touch.sectors | sectors, touch.away + unit(from_segment(p, wall.a, wall.b))};
+    if (sectors != 0) touch = {touch.sectors | sectors, touch.away + unit(world::from_segment(p, wall.a, wall.b))};
     return false;
   });
   neighbours_.any(p, reach + widest_ + reach_.others, [&](std::uint32_t other) {

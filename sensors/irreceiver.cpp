@@ -64,8 +64,7 @@ IrReceivers::IrReceivers(const Site& site)
 
 bool IrReceivers::hidden(const Emitter& emitter, Vec2 p, double z) const {
   const Vec2 e{emitter.X_WE.x, emitter.X_WE.y};
-  const Box box{{std::min(p.x, e.x), std::min(p.y, e.y)}, {std::max(p.x, e.x), std::max(p.y, e.y)}};
-  return walls_.any(box, [&](const Segment& wall) {
+  return walls_.any(world::box_of(p, e), [&](const Segment& wall) {
     return wall.model != emitter.model && wall.z_min <= z && z < wall.z_max &&
            world::segments_meet(e, p, wall.a, wall.b);
   });

@@ -38,22 +38,6 @@ double cell_of(std::span<const Segment> walls) {
   return walls.empty() ? 1.0 : std::max(0.5, 0.4 * (top_of(walls) - bottom));
 }
 
-Box box_of(Vec2 p, Vec2 q) {
-  return {{std::min(p.x, q.x), std::min(p.y, q.y)}, {std::max(p.x, q.x), std::max(p.y, q.y)}};
-}
-
-/// How often outlines, counter-clockwise around what is solid, go round `p`.
-int windings(std::span<const Segment> edges, Vec2 p) {
-  int sum = 0;
-  for (const Segment& e : edges) {
-    const bool up = e.a.y <= p.y && e.b.y > p.y, down = e.b.y <= p.y && e.a.y > p.y;
-    const double side = cross(e.b - e.a, p - e.a);
-    if (up && side > 0.0) ++sum;
-    if (down && side < 0.0) --sum;
-  }
-  return sum;
-}
-
 }  // namespace
 
 std::vector<Satellite> constellation(std::uint32_t count) {
@@ -107,7 +91,7 @@ void Sky::add_solids(std::span<const Segment> walls) {
     if (wall.solid_left) outlines[{wall.model, wall.z_min, wall.z_max}].push_back(wall);
   std::vector<Box> boxes;
   for (const auto& [key, edges] : outlines) {
-    Box box = box_of(edges[0].a, edges[0].b);
+    Box box = world::box_of(edges[0].a, edges[0].b);
     for (const Segment& e : edges) {
       box.min = {std::min(box.min.x, e.a.x), std::min(box.min.y, e.a.y)};
       box.max = {std::max(box.max.x, e.a.x), std::max(box.max.y, e.a.y)};
@@ -134,19 +118,21 @@ bool Sky::crosses(Vec2 p, double z, const Satellite& satellite, const Segment& w
 bool Sky::under(Vec2 p, double z, const Satellite& satellite, const Solid& solid) const {
   if (solid.z_min <= z) return false;
   const Vec2 q = p + (solid.z_min - z) / satellite.rise * satellite.flat;
-  return windings(std::span(solid_edges_).subspan(solid.first, solid.last - solid.first), q) > 0;
+  return world::windings(std::span(solid_edges_).subspan(solid.first, solid.last - solid.first), q) > 0;
 }
 
 bool Sky::sees(Vec2 p, double z, const Satellite& satellite) const {
   const double way = (z_top_ - z) / satellite.rise;
   if (!(way > 0.0)) return true;
   const Vec2 end = p + way * satellite.flat;
-  const bool roofed = boxes_.any(box_of(p, end), [&](std::uint32_t i) { return under(p, z, satellite, solids_[i]); });
+  const bool roofed =
+      boxes_.any(world::box_of(p, end), [&](std::uint32_t i) { return under(p, z, satellite, solids_[i]); });
   if (roofed) return false;
   const int pieces = static_cast<int>(std::min(std::ceil(way / cell_), kMostPieces));
   for (int i = 0; i < pieces; ++i) {
     const Vec2 from = p + way * i / pieces * satellite.flat, to = p + way * (i + 1) / pieces * satellite.flat;
-    if (walls_.any(box_of(from, to), [&](const Segment& wall) { return crosses(p, z, satellite, wall); })) return false;
+    if (walls_.any(world::box_of(from, to), [&](const Segment& wall) { return crosses(p, z, satellite, wall); }))
+      return false;
   }
   return true;
 }

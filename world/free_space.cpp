@@ -37,20 +37,10 @@ bool clear_of_walls(const WallGrid& walls, Vec2 p, double radius) {
 }
 
 bool wall_between(const WallGrid& walls, Vec2 p, Vec2 q) {
-  const Box box{{std::min(p.x, q.x), std::min(p.y, q.y)}, {std::max(p.x, q.x), std::max(p.y, q.y)}};
-  return walls.any(box, [&](const Segment& w) { return segments_meet(p, q, w.a, w.b); });
+  return walls.any(box_of(p, q), [&](const Segment& w) { return segments_meet(p, q, w.a, w.b); });
 }
 
-bool in_solid(const WallGrid& walls, Vec2 p) {
-  int winding = 0;
-  for (const Segment& w : walls.walls()) {
-    if (!w.solid_left) continue;
-    const double side = base::cross(w.b - w.a, p - w.a);
-    if (w.a.y <= p.y && w.b.y > p.y && side > 0.0) ++winding;
-    if (w.a.y > p.y && w.b.y <= p.y && side < 0.0) --winding;
-  }
-  return winding != 0;
-}
+bool in_solid(const WallGrid& walls, Vec2 p) { return windings(walls.walls(), p) != 0; }
 
 // ---- The coarse grid and the region a robot can reach in it.
 

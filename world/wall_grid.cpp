@@ -20,13 +20,7 @@ bool within(double p, double a, double b) { return std::min(a, b) <= p && p <= s
 
 }  // namespace
 
-double distance(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 u = b - a;
-  const double uu = dot(u, u);
-  const double t = uu > 0.0 ? std::clamp(dot(p - a, u) / uu, 0.0, 1.0) : 0.0;
-  const Vec2 d = p - a - t * u;
-  return std::sqrt(dot(d, d));
-}
+double distance(Vec2 p, Vec2 a, Vec2 b) { return length(from_segment(p, a, b)); }
 
 bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
   const double sc = side(a, b, c);
@@ -40,6 +34,18 @@ bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
   // All four on one line: the segments meet where their ranges do.
   const auto on = [](Vec2 p, Vec2 q, Vec2 r) { return within(p.x, q.x, r.x) && within(p.y, q.y, r.y); };
   return on(a, c, d) || on(b, c, d) || on(c, a, b);
+}
+
+int windings(std::span<const Segment> edges, Vec2 p) {
+  int sum = 0;
+  for (const Segment& e : edges) {
+    if (!e.solid_left) continue;
+    const bool up = e.a.y <= p.y && e.b.y > p.y, down = e.b.y <= p.y && e.a.y > p.y;
+    const double turn = side(e.a, e.b, p);
+    if (up && turn > 0.0) ++sum;
+    if (down && turn < 0.0) --sum;
+  }
+  return sum;
 }
 
 WallGrid::WallGrid(std::vector<Segment> walls, double cell) : walls_(std::move(walls)) {

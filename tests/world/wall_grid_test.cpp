@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "base/random.h"
 
@@ -25,6 +27,52 @@ TEST(Distance, ends_and_middle) {
   EXPECT_EQ(distance({0, 1}, {-1, 0}, {1, 0}), 1.0);
   EXPECT_EQ(distance({4, 4}, {-1, 0}, {1, 0}), 5.0);
   EXPECT_EQ(distance({3, 4}, {0, 0}, {0, 0}), 5.0) << "a point";
+}
+
+TEST(FromSegment, ends_and_middle) {
+  const auto from = [](Vec2 p, Vec2 a, Vec2 b) {
+    const Vec2 d = from_segment(p, a, b);
+    return std::pair(d.x, d.y);
+  };
+  EXPECT_EQ(from({0, 2}, {-1, 0}, {1, 0}), std::pair(0.0, 2.0)) << "square to it";
+  EXPECT_EQ(from({4, 4}, {-1, 0}, {1, 0}), std::pair(3.0, 4.0)) << "from an end";
+  EXPECT_EQ(from({3, 4}, {0, 0}, {0, 0}), std::pair(3.0, 4.0)) << "from a point";
+}
+
+TEST(BoxOf, corners_in_any_order) {
+  const Box box = box_of({3, -2}, {-1, 5});
+  EXPECT_EQ(std::pair(box.min.x, box.min.y), std::pair(-1.0, -2.0));
+  EXPECT_EQ(std::pair(box.max.x, box.max.y), std::pair(3.0, 5.0));
+}
+
+std::vector<Segment> square(double half, bool counter_clockwise, bool solid_left = true) {
+  const Vec2 corners[] = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
+  std::vector<Segment> edges;
+  for (std::size_t i = 0; i < 4; ++i) {
+    Segment edge{.a = corners[i], .b = corners[(i + 1) % 4]};
+    if (!counter_clockwise) std::swap(edge.a, edge.b);
+    edge.solid_left = solid_left;
+    edges.push_back(edge);
+  }
+  return edges;
+}
+
+TEST(Windings, case_by_case) {
+  const std::vector<Segment> outer = square(2.0, true);
+  EXPECT_EQ(windings(outer, {0, 0}), 1) << "within";
+  EXPECT_EQ(windings(outer, {3, 0}), 0) << "to its right";
+  EXPECT_EQ(windings(outer, {-3, 0}), 0) << "to its left, both sides ahead";
+  EXPECT_EQ(windings(outer, {0, 3}), 0) << "above";
+  EXPECT_EQ(windings(square(2.0, false), {0, 0}), -1) << "the other way round";
+  EXPECT_EQ(windings(square(2.0, true, false), {0, 0}), 0) << "a line, nothing solid";
+
+  std::vector<Segment> frame = outer;
+  for (const Segment& edge : square(1.0, false)) frame.push_back(edge);
+  EXPECT_EQ(windings(frame, {0, 0}), 0) << "in its hole";
+  EXPECT_EQ(windings(frame, {1.5, 0}), 1) << "in the frame";
+  std::vector<Segment> twice = outer;
+  for (const Segment& edge : square(1.0, true)) twice.push_back(edge);
+  EXPECT_EQ(windings(twice, {0, 0}), 2) << "where two overlap";
 }
 
 std::vector<Segment> random_walls(std::uint32_t count, Vec2 around, double spread, double longest) {
