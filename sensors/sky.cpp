@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "base/error.h"
 
@@ -79,8 +80,9 @@ std::optional<Dilution> dilution(std::span<const Satellite> satellites, std::uin
   return Dilution{std::sqrt(a), b / std::sqrt(a), std::sqrt(std::max(0.0, d - b * b / a)), std::sqrt(a + d)};
 }
 
-Sky::Sky(const world::World& world)
-    : cell_(cell_of(blocking(world))), z_top_(top_of(blocking(world))), walls_(blocking(world), cell_) {
+Sky::Sky(const world::World& world) : Sky(blocking(world)) {}
+
+Sky::Sky(std::vector<Segment> walls) : cell_(cell_of(walls)), z_top_(top_of(walls)), walls_(std::move(walls), cell_) {
   add_solids(walls_.walls());
 }
 

@@ -50,6 +50,8 @@ class Sky {
   bool sees(base::Vec2 p, double z, const Satellite& satellite) const;
 
  private:
+  explicit Sky(std::vector<world::Segment> walls);
+
   struct Solid {
     std::uint32_t first = 0, last = 0;  ///< edges of its outline, in solid_edges_
     double z_min = 0.0;
