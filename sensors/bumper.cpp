@@ -46,17 +46,6 @@ std::uint32_t read_zone(const world::Sensor& sensor, const world::Setting& setti
                      setting.key, degrees[0], degrees[1], base::kTouchSectors));
 }
 
-/// Zones that are written but not counted.
-void refuse_more(const world::Sensor& sensor, std::uint32_t zones) {
-  const auto more = std::find_if(sensor.settings.begin(), sensor.settings.end(), [&](const world::Setting& setting) {
-    return setting.key.starts_with("zone[") && std::strtoull(setting.key.c_str() + 5, nullptr, 10) >= zones;
-  });
-  if (more != sensor.settings.end())
-    refuse(sensor, more->key,
-           fmt::format("'{}' is beyond 'zones {}', which counts from 0; raise 'zones' (at most {}) or leave it out",
-                       more->key, zones, kMostBumperZones));
-}
-
 /// Stage's way: bars [x y z angle] of `blength`, square to `angle`. A bar is the arc of bearings between its ends.
 std::vector<std::uint32_t> read_bars(const world::Sensor& sensor) {
   const std::uint32_t count = whole(sensor, "bcount", 1, 1, kMostBumperZones);
@@ -130,7 +119,7 @@ constexpr PlainForm kForm{kBumper, "bumper", kNumbers};
 std::vector<std::uint32_t> read_bumper(const world::Sensor& sensor) {
   if (find(sensor, "bcount") != nullptr) return read_bars(sensor);
   const std::uint32_t zones = whole(sensor, "zones", 1, 1, kMostBumperZones);
-  refuse_more(sensor, zones);
+  refuse_beyond(sensor, "zone[", "zones", zones, kMostBumperZones);
   const bool all_round = find(sensor, "zones") == nullptr && find(sensor, "zone[0]") == nullptr;
   if (all_round) return {0xFFFFFFFFu};
   std::vector<std::uint32_t> switches;

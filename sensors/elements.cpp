@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "sensors/settings.h"
 
@@ -36,23 +35,11 @@ Pose element(const world::Sensor& sensor, std::uint32_t i, std::uint32_t count) 
                      i, count, count - 1));
 }
 
-/// Elements that are written but not counted.
-void refuse_more(const world::Sensor& sensor, std::uint32_t count, std::uint32_t most) {
-  for (const world::Setting& setting : sensor.settings) {
-    if (!setting.key.starts_with("spose") || setting.key.find('[') == std::string::npos) continue;
-    const auto index = std::strtoull(setting.key.c_str() + setting.key.find('[') + 1, nullptr, 10);
-    if (index >= count)
-      refuse(sensor, setting.key,
-             fmt::format("'{}' is beyond 'scount {}', which counts from 0; raise 'scount' (at most {}) or leave it out",
-                         setting.key, count, most));
-  }
-}
-
 }  // namespace
 
 std::vector<Pose> read_elements(const world::Sensor& sensor, std::uint32_t most) {
   const std::uint32_t count = whole(sensor, "scount", 1, 1, most);
-  refuse_more(sensor, count, most);
+  refuse_beyond(sensor, "spose", "scount", count, most);
   const bool plain =
       find(sensor, "scount") == nullptr && find(sensor, "spose[0]") == nullptr && find(sensor, "spose3[0]") == nullptr;
   if (plain) return {Pose{}};

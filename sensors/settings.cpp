@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "base/error.h"
 
@@ -81,6 +82,18 @@ std::optional<std::vector<double>> tuple(const world::Sensor& sensor, std::strin
   const world::Setting* setting = find(sensor, key);
   if (setting == nullptr) return std::nullopt;
   return numbers(sensor, *setting, least, meaning);
+}
+
+void refuse_beyond(const world::Sensor& sensor, std::string_view prefix, std::string_view counter, std::uint32_t count,
+                   std::uint32_t most) {
+  for (const world::Setting& setting : sensor.settings) {
+    const std::size_t bracket = setting.key.find('[');
+    if (!setting.key.starts_with(prefix) || bracket == std::string::npos) continue;
+    if (std::strtoull(setting.key.c_str() + bracket + 1, nullptr, 10) < count) continue;
+    refuse(sensor, setting.key,
+           fmt::format("'{}' is beyond '{} {}', which counts from 0; raise '{}' (at most {}) or leave it out",
+                       setting.key, counter, count, counter, most));
+  }
 }
 
 double rate_of(const world::Sensor& sensor, double fallback) {

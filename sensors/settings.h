@@ -37,6 +37,12 @@ std::optional<std::vector<double>> tuple(const world::Sensor& sensor, std::strin
 /// [Hz] of `rate` or `update_interval`.
 double rate_of(const world::Sensor& sensor, double fallback);
 
+/// Refuses numbered settings that are written but not counted: `zone[4]` where `zones` is 4.
+/// @param prefix what their keys begin with  @param counter the key that counts them from 0, at most `most`
+/// @throws base::InputError at the first of them in the file.
+void refuse_beyond(const world::Sensor& sensor, std::string_view prefix, std::string_view counter, std::uint32_t count,
+                   std::uint32_t most);
+
 /// Name, rate (or update_interval), phase and latency, as every sensor has them; one element.
 SensorRow common_row(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind);
 
