@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "world/lights.h"
+#include "world/roads/rndf_lines.h"
 
 namespace sf::world {
 
@@ -15,7 +16,6 @@ namespace {
 
 constexpr std::uint32_t kMostPhases = 100;
 constexpr double kMostSeconds = 1e6;
-constexpr int kMostRoadId = 32768;
 
 constexpr std::array kStates{LightState::dark,  LightState::red,          LightState::yellow,
                              LightState::green, LightState::flashing_red, LightState::flashing_yellow};
@@ -54,19 +54,10 @@ std::vector<LightPhase> read_phases(Source& source, const Entity& entity) {
   return phases;
 }
 
-/// "3.1.11": three whole numbers, the first and the last from 1.
+/// "3.1.11": three numbers of a road network, the first and the last from 1.
 bool is_way_point(std::string_view name) {
-  for (int part = 0; part < 3; ++part) {
-    int value = 0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), value);
-    const int least = part == 1 ? 0 : 1;
-    if (error != std::errc() || value < least || value > kMostRoadId) return false;
-    name.remove_prefix(static_cast<std::size_t>(end - name.data()));
-    if (part == 2) return name.empty();
-    if (!name.starts_with('.')) return false;
-    name.remove_prefix(1);
-  }
-  return false;
+  const auto id = read_point_id(name);
+  return id && id->segment >= 1 && id->point >= 1 && std::max({id->segment, id->lane, id->point}) <= kMostRoadNumber;
 }
 
 std::vector<std::string> read_stop_lines(const Source& source, const Entity& entity) {
