@@ -61,10 +61,9 @@ void add_emitter(Building& b, const Entity& entity, const Model& model, const Si
   emitter.model = static_cast<std::uint32_t>(b.world.models.size());
   emitter.X_WE = X_B;
   emitter.X_WE.z += 0.5 * size.z;
-  emitter.range = length(source, entity, "ir_range", dock ? kDockRange : kWallRange);
+  emitter.range = above_zero(source, entity, "ir_range", dock ? kDockRange : kWallRange);
   emitter.fov = angle(source, entity, "ir_fov", dock ? kDockFov : kWallFov);
   emitter.halo = length(source, entity, "ir_halo", dock ? kDockHalo : kWallHalo);
-  if (!(emitter.range > 0.0)) fail(source, find(entity, "ir_range")->at, "'ir_range' expects a length above zero");
   if (!(emitter.fov > 0.0 && emitter.fov <= 2.0 * M_PI * (1.0 + 1e-12)))
     fail(source, find(entity, "ir_fov")->at, "'ir_fov' expects an angle above zero, to a whole turn");
   emitter.fov = std::min(emitter.fov, 2.0 * M_PI);

@@ -44,12 +44,6 @@ void read_accelerations(const Source& source, const Entity& entity, Mover& mover
   }
 }
 
-double above_zero(const Source& source, const Entity& entity, std::string_view key, double fallback) {
-  const double value = length(source, entity, key, fallback);
-  if (!(value > 0.0)) fail(source, find(entity, key)->at, fmt::format("'{}' expects a length above zero", key));
-  return value;
-}
-
 Drive drive_of(const Source& source, const Entity& entity) {
   const std::string drive = text(source, entity, "drive", "diff");
   if (drive == "diff") return Drive::differential;

@@ -77,8 +77,7 @@ Paint read_paint(const Source& source, const Entity& entity, const char* side) {
   const std::string word = text(source, entity, side, "none");
   paint.none = word == "none";
   if (paint.none) return paint;
-  paint.width = length(source, entity, "paint_width", 0.02);
-  if (!(paint.width > 0.0)) fail(source, find(entity, "paint_width")->at, "'paint_width' expects a length above zero");
+  paint.width = above_zero(source, entity, "paint_width", 0.02);
   if (word == "double_yellow" || word == "solid_yellow") {
     paint.color = kYellow;
     paint.twice = word == "double_yellow";

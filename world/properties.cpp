@@ -48,6 +48,12 @@ double length(const Source& source, const Entity& entity, std::string_view key, 
   return property == nullptr ? fallback : metres(source, property->at, single(source, *property, false).number);
 }
 
+double above_zero(const Source& source, const Entity& entity, std::string_view key, double fallback) {
+  const double value = length(source, entity, key, fallback);
+  if (!(value > 0.0)) fail(source, find(entity, key)->at, fmt::format("'{}' expects a length above zero", key));
+  return value;
+}
+
 double angle(const Source& source, const Entity& entity, std::string_view key, double fallback) {
   const Property* property = find(entity, key);
   return property == nullptr ? fallback : source.radians * single(source, *property, false).number;

@@ -32,6 +32,8 @@ void warn(Source& source, Place at, const std::string& message);
 
 double number(const Source& source, const Entity& entity, std::string_view key, double fallback);
 double length(const Source& source, const Entity& entity, std::string_view key, double fallback);
+/// A length that is more than zero.
+double above_zero(const Source& source, const Entity& entity, std::string_view key, double fallback);
 double angle(const Source& source, const Entity& entity, std::string_view key, double fallback);
 bool flag(const Source& source, const Entity& entity, std::string_view key, bool fallback);
 std::string text(const Source& source, const Entity& entity, std::string_view key, const std::string& fallback);

@@ -119,6 +119,8 @@ TEST(Path, WhatIsWrongIsSaid) {
   EXPECT_EQ(error_of("path( pieces 1 straight[0] [1 1] arc[0] [1 90 1] )"),
             "test.world:1: expected either straight[0] or arc[0]: 'pieces' is 1");
   EXPECT_EQ(error_of("path( pieces 1\nstraight[0] [0 1] )"), "test.world:2: expected a length and a width above zero");
+  EXPECT_EQ(error_of("path( pieces 1 straight[0] [1 1] left \"solid_white\"\npaint_width 0 )"),
+            "test.world:2: 'paint_width' expects a length above zero");
   EXPECT_EQ(error_of("path( pieces 1\narc[0] [0.2 90 0.5] )"),
             "test.world:2: 'arc[0]' is wider than its bend: expected a width below twice the radius");
   EXPECT_EQ(error_of("path( pieces 1 straight[0] [1 1]\nleft \"dashed\" )"),
