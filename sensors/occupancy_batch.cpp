@@ -109,7 +109,6 @@ void MapBatch::Tables::hand_out(std::span<const MapScan> scans) {
     add_strips(i, share.cells, true, table[i].steep);
     add_words(map.plan.odds ? weighed : plain, i, share);
   }
-  table[all.size()] = MapRow{};
   for (MapCourse* course : {&strips, &plain.course, &weighed.course})
     if (course->kernel) close(*course);
 }
@@ -159,9 +158,24 @@ void MapBatch::Tables::close(MapCourse& course) {
   counts[2] = across > 0 ? 1 : 0;
 }
 
-void MapBatch::Tables::send(std::span<const std::uint32_t> wanted) {
-  batch.up(*rows, 0, rows->bytes());
-  batch.up(*lines, 0, lines->bytes());
+/// All of rows and lines once, nobody's row among them; then what these scans have written.
+void MapBatch::Tables::send_scans(std::span<const MapScan> scans) {
+  if (blank) {
+    batch.up(*rows, 0, rows->bytes());
+    batch.up(*lines, 0, lines->bytes());
+  } else if (!scans.empty()) {
+    constexpr std::size_t kPair = 2 * sizeof(BeamLine);
+    const auto [low, high] = std::minmax_element(scans.begin(), scans.end(),
+                                                 [](const MapScan& a, const MapScan& b) { return a.map < b.map; });
+    const std::size_t first = all[low->map].lines;
+    const std::size_t end = all[high->map].lines + pairs_of(all[high->map].plan);
+    batch.up(*rows, 0, scans.size() * sizeof(MapRow));
+    batch.up(*lines, kPair * first, kPair * (end - first));
+  }
+}
+
+void MapBatch::Tables::send(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted) {
+  send_scans(scans);
   for (const MapCourse* course : {&strips, &plain.course, &weighed.course}) {
     if (!course->kernel) continue;
     batch.up(*course->blocks, 0, course->count * sizeof(MapBlock));
@@ -190,7 +204,7 @@ void MapBatch::update(std::span<const MapScan> scans, std::span<const std::uint3
   t.trace(scans);
   t.hand_out(scans);
   t.strike(scans);
-  t.send(wanted);
+  t.send(scans, wanted);
   t.batch.run();
 }
 

@@ -37,6 +37,7 @@ MapBatch::Tables::Tables(gpu::Device& device, base::Workers& w, std::vector<MapP
   const std::size_t all_lines = all.empty() ? 0 : all.back().lines + pairs_of(all.back().plan);
   rows = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32x4, SF_MAP_ROW_TEXELS * (all.size() + 1));
   lines = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::f32x4, all_lines + 1);
+  rows->host<MapRow>()[all.size()] = MapRow{};  // nobody's
   ends.resize(2 * all_lines);
   std::fill_n(lines->host<BeamLine>().data(), 2 * (all_lines + 1), BeamLine{});
   words = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32, all_words + 1);

@@ -89,7 +89,8 @@ struct MapBatch::Tables {
   void add_words(MapWords& part, std::uint32_t row, MapShare& share);
   void strike(std::span<const MapScan> scans);
   void close(MapCourse& course);
-  void send(std::span<const std::uint32_t> wanted);
+  void send_scans(std::span<const MapScan> scans);
+  void send(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted);
 };
 
 }  // namespace sf::sensors

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/sensors/map_scans.h"
 
 namespace sf::trial {
@@ -32,8 +34,10 @@ struct Tally {
   std::size_t different = 0;  ///< words
 };
 
-/// `rounds` scans into every map; all maps compared after each `every`-th.
-Tally contest(const std::vector<sensors::MapPlan>& plans, std::size_t rounds, std::size_t every, std::uint64_t seed) {
+/// `rounds` scans into every map, or each time into `some` of them, forwards and backwards; all maps compared after
+/// each `every`-th.
+Tally contest(const std::vector<sensors::MapPlan>& plans, std::size_t rounds, std::size_t every, std::uint64_t seed,
+              bool some = false) {
   base::Workers workers;
   sensors::MapBatch batch(device(), workers, plans);
   PlainMaps plain(plans);
@@ -46,6 +50,10 @@ Tally contest(const std::vector<sensors::MapPlan>& plans, std::size_t rounds, st
     std::vector<sensors::MapScan> scans;
     for (const sensors::MapPlan& p : plans) ranges.push_back(odd_ranges(chance, p));
     for (std::uint32_t i = 0; i < plans.size(); ++i) scans.push_back({i, odd_pose(chance, plans[i]), ranges[i]});
+    if (some) {
+      std::erase_if(scans, [&](const sensors::MapScan&) { return chance.below(4) != 0; });
+      if (round % 2 == 0) std::reverse(scans.begin(), scans.end());
+    }
     batch.update(scans, wanted);
     for (const sensors::MapScan& scan : scans) plain.update(scan);
     tally.scans += scans.size();
@@ -145,6 +153,16 @@ TEST(OccupancyBatch, MapsOfDifferentShapes) {
     plans.push_back(p);
   }
   EXPECT_EQ(contest(plans, 10, 1, 61).different, 0u);
+}
+
+TEST(OccupancyBatch, AFewMapsAtATimeInAnyOrder) {
+  std::vector<sensors::MapPlan> plans = spread(plan(M_PI, 61, 1.5), 12);
+  for (std::size_t i = 0; i < plans.size(); ++i) plans[i].samples = 30 + 7 * static_cast<std::uint32_t>(i);
+  const Tally tally = contest(plans, 40, 1, 70, true);
+  EXPECT_EQ(tally.different, 0u);
+  EXPECT_GT(tally.scans, 60u);
+  EXPECT_LT(tally.scans, 200u) << "most stay as they are";
+  EXPECT_GT(tally.occupied, 1'000u);
 }
 
 TEST(OccupancyBatch, ScansThatSayNothingChangeNothing) {
