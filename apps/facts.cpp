@@ -22,10 +22,4 @@ std::size_t count_magnets(const world::World& world) {
   return magnets;
 }
 
-std::size_t element_width(const sensors::SensorKind& kind) {
-  std::size_t width = 0;
-  for (const sensors::Column& column : kind.columns) width += column.width;
-  return width;
-}
-
 }  // namespace sf::apps

@@ -46,8 +46,6 @@ std::size_t count_robots(const world::World& world);
 std::size_t count_magnets(const world::World& world);
 /// Of the infrared emitters; the others are virtual walls.
 std::size_t count_docks(const world::World& world);
-/// Numbers in one element of a reading.
-std::size_t element_width(const sensors::SensorKind& kind);
 
 std::string json_of(const gpu::Survey& survey);
 std::string json_of(const world::World& world, const sensors::Roster& roster);

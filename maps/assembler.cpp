@@ -1,7 +1,5 @@
 #include "maps/assembler.h"
 
-#include <algorithm>
-
 namespace sf::maps {
 
 namespace {

@@ -7,7 +7,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "base/bytes.h"
 #include "maps/grid.h"
@@ -19,7 +18,8 @@ inline constexpr std::uint32_t kMostPlainWords = 1022;  ///< of a map in the the
 inline constexpr std::uint32_t kMostPlainSide = 255;    ///< word rows and columns of such a map
 inline constexpr std::uint32_t kTruePoses = 1;          ///< flag: made from where the robot was, not from an estimate
 
-inline std::uint32_t parts_of(const GridPlan& plan) { return (words(plan) + kPartWords - 1) / kPartWords; }
+inline std::uint32_t parts_of(std::uint32_t words) { return (words + kPartWords - 1) / kPartWords; }
+inline std::uint32_t parts_of(const GridPlan& plan) { return parts_of(words(plan)); }
 
 /// Words of the first datagram in the thesis' form.
 inline std::uint32_t plain_half(std::uint32_t words) { return (words + 1) / 2; }

@@ -10,23 +10,12 @@ namespace {
 
 constexpr std::size_t kPiece = 64;  // readings that a worker takes at once
 
-std::uint32_t width_of(const SensorKind& kind) {
-  std::uint32_t width = 0;
-  for (const Column& column : kind.columns) width += column.width;
-  return width;
-}
-
 }  // namespace
 
 HostInstruments::HostInstruments(const Site& site, const SensorKind& kind, std::vector<SensorRow> rows)
-    : world_(site.world),
-      workers_(site.workers),
-      seed_(site.seed),
-      noise_(site.noise),
-      kind_(kind.id),
-      rows_(std::move(rows)) {
+    : world_(site.world), workers_(site.workers), seed_(site.seed), kind_(kind.id), rows_(std::move(rows)) {
   first_.push_back(0);
-  for (const SensorRow& row : rows_) first_.push_back(first_.back() + std::size_t{row.elements} * width_of(kind));
+  for (const SensorRow& row : rows_) first_.push_back(first_.back() + std::size_t{row.elements} * element_width(kind));
   values_.resize(first_.back());
   sights_.reserve(rows_.size());
 }

@@ -37,13 +37,11 @@ class HostInstruments : public Instruments {
   std::span<const SensorRow> rows() const { return rows_; }
   const world::World& world() const { return world_; }
   std::uint64_t seed() const { return seed_; }
-  bool noise() const { return noise_; }
 
  private:
   const world::World& world_;
   base::Workers& workers_;
   std::uint64_t seed_;
-  bool noise_;
   std::uint8_t kind_;
   std::vector<SensorRow> rows_;
   std::vector<std::size_t> first_;  ///< per row and one more: where its values begin

@@ -1,9 +1,13 @@
 #include "sensors/irreceiver.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "sensors/box_tree.h"
 #include "sensors/host_instruments.h"
 #include "sensors/plain_packets.h"
+#include "world/wall_grid.h"
 
 namespace sf::sensors {
 

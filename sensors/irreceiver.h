@@ -9,11 +9,8 @@
 // body, and not by movers.
 
 #include <cstdint>
-#include <vector>
 
-#include "sensors/box_tree.h"
 #include "sensors/kind.h"
-#include "world/wall_grid.h"
 
 namespace sf::sensors {
 

@@ -146,6 +146,13 @@ struct SensorKind {
                std::span<double> values) = nullptr;
 };
 
+/// Numbers in one element of a reading.
+inline std::size_t element_width(const SensorKind& kind) {
+  std::size_t width = 0;
+  for (const Column& column : kind.columns) width += column.width;
+  return width;
+}
+
 /// What a kind's `make` is where its instruments need the site alone.
 template <class Made>
 std::unique_ptr<Instruments> make_instruments(const Site& site) {

@@ -65,7 +65,7 @@ std::string refuse_occupancy(const SensorRow& sensor, Wire wire) {
 
 std::uint32_t occupancy_parts(const SensorRow& sensor, Wire wire) {
   if (wire == Wire::thesis) return sensor.elements == 1 ? 1 : 2;
-  return (sensor.elements + maps::kPartWords - 1) / maps::kPartWords;
+  return maps::parts_of(sensor.elements);
 }
 
 std::uint8_t encode_occupancy(const SensorRow& sensor, const base::ReadingBlock& reading, Wire wire, std::uint32_t part,
