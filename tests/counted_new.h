@@ -10,6 +10,20 @@ namespace sf::counted {
 inline thread_local bool counting = false;
 inline thread_local std::uint64_t allocations = 0;
 
+/// What the calling thread allocates in the first of `most` laps in which it allocates nothing, else in the last. Which
+/// thread meets what, and so whose scratch has to grow, is the scheduler's choice; who has met everything is done.
+template <class Lap>
+std::uint64_t when_warm(int most, Lap lap) {
+  for (int k = 0; k < most; ++k) {
+    allocations = 0;
+    counting = true;
+    lap();
+    counting = false;
+    if (allocations == 0) break;
+  }
+  return allocations;
+}
+
 }  // namespace sf::counted
 
 // All of them, since sanitizers compare which one allocated with which one frees; out of line for the same reason.

@@ -15,19 +15,16 @@ namespace {
 using counted::allocations;
 using counted::counting;
 
+/// A lap: the same cells, the same neighbours.
 std::uint64_t allocations_per_lap(const world::World& world, const FarmOptions& options) {
   Farm farm(world, device(), options);
   farm.hear_all();
   std::vector<std::vector<base::Report>> reports;
   for (int k = 0; k < 8; ++k) reports.push_back(reports_at(world, k));
-  // Two laps to warm up, one that counts: the same cells, the same neighbours.
-  for (int k = 0; k < 24; ++k) {
-    if (k == 16) allocations = 0;
-    counting = k >= 16;
-    farm.tick(k * 100'000'000ll, reports[static_cast<std::size_t>(k % 8)]);
-    counting = false;
-  }
-  return allocations;
+  std::int64_t now = 0;
+  return counted::when_warm(options.threads == 1 ? 3 : 60, [&] {
+    for (const auto& report : reports) farm.tick(now, report), now += 100'000'000;
+  });
 }
 
 TEST(Allocation, TheCountCounts) {

@@ -10,9 +10,6 @@
 namespace sf::trial {
 namespace {
 
-using counted::allocations;
-using counted::counting;
-
 std::uint64_t allocations_per_lap(const world::World& world) {
   EdgeRig rig(world);
   std::vector<base::Pose> poses;
@@ -23,14 +20,10 @@ std::uint64_t allocations_per_lap(const world::World& world) {
     all.push_back({row, row});
     if (row % 2 == 0) some.push_back({row, row});
   }
-  // Two laps to warm up, one that counts: everyone, then half of them.
-  for (int k = 0; k < 24; ++k) {
-    if (k == 16) allocations = 0;
-    counting = k >= 16;
-    rig.tick(k % 2 == 0 ? all : some, poses);
-    counting = false;
-  }
-  return allocations;
+  return counted::when_warm(60, [&] {
+    rig.tick(all, poses);
+    rig.tick(some, poses);
+  });
 }
 
 /// Exact and in pixels, with noise, dashes that are told apart, and a robot in the way.
