@@ -114,7 +114,7 @@ void run_with(const Bench& bench, const Entrant& entrant, std::vector<Mapped>& r
     tracks.back().name = fmt::format("trial {}", k + 1);
   }
   files.push_back(in_folder(bench, entrant.name + "-trajectories.png"));
-  viz::draw_trajectories(world, tracks, files.back());
+  viz::draw_trajectories(world, tracks, files.back(), "trial");
   files.push_back(in_folder(bench, entrant.name + "-map.txt"));
   write_text(files.back(), maps::text_of(trials.front().maps.front()));
   files.push_back(in_folder(bench, entrant.name + "-map.png"));

@@ -48,7 +48,7 @@ void draw_ends(Axes& axes, const Track& track, double mark, std::uint32_t color)
   axes.canvas().disc(end, mark, color);
 }
 
-std::string subtitle_of(const World& world, std::span<const Track> tracks) {
+std::string subtitle_of(const World& world, std::span<const Track> tracks, std::string_view what) {
   double metres = 0.0;
   double seconds = 0.0;
   std::size_t contacts = 0;
@@ -57,16 +57,16 @@ std::string subtitle_of(const World& world, std::span<const Track> tracks) {
     seconds = std::max(seconds, track.duration);
     contacts += contact_count(track);
   }
-  std::string text = fmt::format("{} robot{}", tracks.size(), tracks.size() == 1 ? "" : "s");
+  std::string text = fmt::format("{} {}{}", tracks.size(), what, tracks.size() == 1 ? "" : "s");
   if (seconds > 0.0) text += fmt::format(", {:.4g} s", seconds);
   text += fmt::format(", {:.0f} m driven, {} contact{}", metres, contacts, contacts == 1 ? "" : "s");
   return world.name.empty() ? text : world.name + ": " + text;
 }
 
-FigurePlan plan_of(const World& world, std::span<const Track> tracks) {
+FigurePlan plan_of(const World& world, std::span<const Track> tracks, std::string_view what) {
   FigurePlan plan;
   plan.title = "Trajectories";
-  plan.subtitle = subtitle_of(world, tracks);
+  plan.subtitle = subtitle_of(world, tracks, what);
   plan.extent = extent_of(world, tracks);
   plan.legend = wall_legend(world, WallColors::quiet);
   for (const LegendItem& item : ground_legend(world)) plan.legend.push_back(item);
@@ -88,13 +88,14 @@ FigurePlan plan_of(const World& world, std::span<const Track> tracks) {
 
 }  // namespace
 
-void draw_trajectories(const World& world, std::span<const Track> tracks, const std::string& png_path) {
+void draw_trajectories(const World& world, std::span<const Track> tracks, const std::string& png_path,
+                       std::string_view what) {
   for (const Track& track : tracks)
     SF_CHECK(track.contacts.empty() || track.contacts.size() == track.poses.size(),
              "track " + track.name + " has " + std::to_string(track.contacts.size()) + " contacts for " +
                  std::to_string(track.poses.size()) + " poses");
   const Weight weight = weight_for(tracks.size());
-  Axes axes(plan_of(world, tracks));
+  Axes axes(plan_of(world, tracks, what));
   draw_paint(axes, world);
   draw_magnets(axes, world);
   draw_walls(axes, world, WallColors::quiet);

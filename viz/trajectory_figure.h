@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "viz/tracks.h"
 #include "world/world.h"
@@ -11,7 +12,9 @@ namespace sf::viz {
 
 /// Draws the walls, each track in its own colour with its start, its end and the places where it was stopped (once per
 /// contact), later tracks over earlier ones. Up to seven tracks are named in the legend, more are told by a colour bar.
+/// @param what one track is, for the subtitle: robots of one run, or trials of one robot
 /// @throws base::InputError naming the path when it cannot be written.
-void draw_trajectories(const world::World& world, std::span<const Track> tracks, const std::string& png_path);
+void draw_trajectories(const world::World& world, std::span<const Track> tracks, const std::string& png_path,
+                       std::string_view what = "robot");
 
 }  // namespace sf::viz

@@ -1,6 +1,8 @@
 #include "viz/walls.h"
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -13,9 +15,20 @@ constexpr std::uint32_t kSlate = 0xFF64707Du;
 constexpr std::uint32_t kQuiet = 0xFFB4BAC2u;
 constexpr std::uint32_t kUnseen = 0xFF9A9A9Au;
 
-enum class Kind { solid, passable, unseen };
+enum class Kind { solid, passable, unseen, overhead };
 
-Kind kind_of(const world::Segment& s) {
+/// [m] what begins above it is over the heads of all movers and what they carry; infinite where there are none.
+double headroom(const world::World& world) {
+  double top = world.movers.empty() ? std::numeric_limits<double>::infinity() : 0.0;
+  for (const world::Mover& mover : world.movers) {
+    for (const world::Segment& s : mover.body) top = std::max(top, mover.X_WM.z + s.z_max);
+    for (const world::Laser& laser : mover.lasers) top = std::max(top, mover.X_WM.z + laser.X_MS.z);
+  }
+  return top;
+}
+
+Kind kind_of(const world::Segment& s, double headroom) {
+  if (s.z_min >= headroom) return Kind::overhead;
   if (!s.seen_by_laser) return Kind::unseen;
   return s.stops_robots ? Kind::solid : Kind::passable;
 }
@@ -33,6 +46,7 @@ Paint paint_of(const world::World& world, std::uint32_t model, Kind kind, WallCo
     base = world.models[model].color;
   if (kind == Kind::unseen) return {0x00000000u, kUnseen};
   const std::uint32_t edge = mix(base, 0xFF000000u, colors == WallColors::quiet ? 0.25 : 0.4);
+  if (kind == Kind::overhead) return {with_opacity(base, 0.15), with_opacity(edge, 0.7)};
   return {with_opacity(base, kind == Kind::solid ? 0.75 : 0.3), edge};
 }
 
@@ -45,7 +59,7 @@ struct Group {
 void draw_group(Canvas& canvas, const Group& group, Kind kind, const Paint& paint) {
   if (!group.closed.empty() && paint.fill >> 24) canvas.area(group.closed, paint.fill);
   if (kind == Kind::solid) canvas.lines(group.all, 1.4, paint.edge);
-  if (kind == Kind::passable) draw_dashes(canvas, group.all, 1.4, 8.0, 4.0, paint.edge);
+  if (kind == Kind::passable || kind == Kind::overhead) draw_dashes(canvas, group.all, 1.4, 8.0, 4.0, paint.edge);
   if (kind == Kind::unseen) draw_dashes(canvas, group.all, 1.4, 1.5, 4.0, paint.edge);
 }
 
@@ -54,8 +68,9 @@ void draw_group(Canvas& canvas, const Group& group, Kind kind, const Paint& pain
 void draw_walls(Axes& axes, const world::World& world, WallColors colors) {
   // What a laser does not see lies beneath what it sees.
   std::map<std::tuple<bool, std::uint32_t, Kind>, Group> groups;
+  const double room = headroom(world);
   for (const world::Segment& s : world.walls) {
-    const Kind kind = kind_of(s);
+    const Kind kind = kind_of(s, room);
     Group& group = groups[{kind != Kind::unseen, s.model, kind}];
     const Line line{axes.pixel(s.a), axes.pixel(s.b)};
     group.all.push_back(line);
@@ -68,9 +83,10 @@ void draw_walls(Axes& axes, const world::World& world, WallColors colors) {
 }
 
 std::vector<LegendItem> wall_legend(const world::World& world, WallColors colors) {
-  std::array<const world::Segment*, 3> seen{};
+  std::array<const world::Segment*, 4> seen{};
+  const double room = headroom(world);
   for (const world::Segment& s : world.walls) {
-    auto& first = seen[static_cast<std::size_t>(kind_of(s))];
+    auto& first = seen[static_cast<std::size_t>(kind_of(s, room))];
     if (first == nullptr) first = &s;
   }
   std::vector<LegendItem> items;
@@ -80,6 +96,7 @@ std::vector<LegendItem> wall_legend(const world::World& world, WallColors colors
   if (seen[0]) items.push_back({Sample::block, paint(Kind::solid).fill, "wall", paint(Kind::solid).edge});
   if (seen[1]) items.push_back({Sample::dashed, paint(Kind::passable).edge, "seen, stops no robot"});
   if (seen[2]) items.push_back({Sample::dotted, paint(Kind::unseen).edge, "not seen by lasers"});
+  if (seen[3]) items.push_back({Sample::dashed, paint(Kind::overhead).edge, "overhead"});
   return items;
 }
 

@@ -14,7 +14,7 @@ enum class WallColors {
 };
 
 /// Solids filled, outlines drawn: full where they stop robots, dashed where they do not, dotted grey where a laser does
-/// not see them.
+/// not see them; faint and dashed what is above every mover's head (bridges, crowns of trees).
 void draw_walls(Axes& axes, const world::World& world, WallColors colors);
 
 /// One item per kind of wall that the world has.
