@@ -2,8 +2,10 @@
 // A laser's beams: which are cast, where they point, and how they are packed into lanes.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "base/random.h"
 #include "sensors/scene/records.h"
 #include "world/world.h"
 
@@ -24,6 +26,10 @@ struct BeamPlan {
 };
 
 BeamPlan plan_beams(const world::Laser& laser, bool with_noise);
+
+/// Angular noise: how far each cast beam is turned. @param draw of `base::Stream::angle_noise` @param turns [rad] one
+/// per cast beam
+void draw_turns(const world::Laser& laser, const BeamPlan& plan, const base::Draw& draw, std::span<double> turns);
 
 /// Rows of the device's beam tables for one laser, from its first lane on.
 struct BeamTables {

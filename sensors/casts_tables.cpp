@@ -4,7 +4,6 @@
 #include <map>
 #include <tuple>
 
-#include "base/random.h"
 #include "shaders/laser.comp.h"
 
 namespace sf::sensors {
@@ -99,11 +98,7 @@ void Casts::Tables::turn_beams(const Due& d, unsigned thread) {
   const FanRow& row = fan_rows[d.row];
   std::vector<double>& turns = turned[thread];
   turns.resize(row.plan.samples.size());
-  const base::Draw draw{seed, base::Stream::angle_noise, fan.mover, fan.sensor, d.sequence};
-  for (std::size_t k = 0; k < turns.size(); ++k) {
-    const double normal = base::random_normal(draw, row.plan.samples[k])[0];
-    turns[k] = fan.laser.noise.angle_sigma * std::clamp(normal, -kMostSigmas, kMostSigmas);
-  }
+  draw_turns(fan.laser, row.plan, {seed, base::Stream::angle_noise, fan.mover, fan.sensor, d.sequence}, turns);
   write_beams(fan.laser, row.plan, turns, beam_tables(row.beams));
 }
 

@@ -1,11 +1,8 @@
 #include "sensors/laser.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "base/random.h"
 #include "sensors/casts.h"
 #include "sensors/laser_packets.h"
+#include "sensors/laser_shape.h"
 
 namespace sf::sensors {
 
@@ -16,10 +13,6 @@ struct Shaping {
   bool needed = false;     ///< results are reworked on the host
   std::size_t values = 0;  ///< first of its samples
 };
-
-bool has_range_noise(const world::LaserNoise& noise) {
-  return noise.range_sigma > 0.0 || noise.range_proportional > 0.0;
-}
 
 std::vector<Fan> fans_of(const world::World& world) {
   std::vector<Fan> fans;
@@ -60,7 +53,7 @@ Lasers::Lasers(const Site& site)
   std::size_t samples = 0;
   for (std::uint32_t i = 0; i < casts_.fans().size(); ++i) {
     const world::Laser& laser = casts_.fans()[i].laser;
-    const bool needed = laser.resolution > 1 || !casts_.plan(i).packed || (noise_ && has_range_noise(laser.noise));
+    const bool needed = laser.resolution > 1 || !casts_.plan(i).packed || (noise_ && laser.noise.has_range());
     shaping_.push_back({needed, samples});
     if (needed) samples += laser.samples;
   }
@@ -78,29 +71,8 @@ void Lasers::shape(std::size_t i) {
   const std::uint32_t* const cast_hits = casts_.hits().host<std::uint32_t>().data() + first;
   double* const out = values_.data() + shaping_[due.row].values;
   std::uint32_t* const out_hits = met_.data() + shaping_[due.row].values;
-  const base::Draw draw{seed_, base::Stream::range_noise, fan.mover, fan.sensor, due.sequence};
-  const world::LaserNoise& noise = fan.laser.noise;
-
-  std::uint32_t before = 0;
-  for (std::size_t k = 0; k < plan.samples.size(); ++k) {
-    const std::uint32_t sample = plan.samples[k];
-    double range = cast[plan.place(k)];
-    const std::uint32_t hit = cast_hits[plan.place(k)];
-    if (noise_ && has_range_noise(noise) && hit != SF_NO_HIT) {
-      const double sigma = std::hypot(noise.range_sigma, noise.range_proportional * range);
-      range =
-          std::clamp(range + sigma * base::random_normal(draw, sample)[0], fan.laser.range_min, fan.laser.range_max);
-    }
-    out[sample] = range;
-    out_hits[sample] = hit;
-    // What `resolution` left out lies on a straight line between its neighbours.
-    for (std::uint32_t j = before + 1; j < sample; ++j) {
-      const double part = static_cast<double>(j - before) / (sample - before);
-      out[j] = out[before] + part * (range - out[before]);
-      out_hits[j] = out_hits[before] == hit ? hit : base::kNoHit;
-    }
-    before = sample;
-  }
+  shape_scan(fan.laser, plan, {seed_, base::Stream::range_noise, fan.mover, fan.sensor, due.sequence}, noise_,
+             {cast, cast_hits}, {out, fan.laser.samples}, {out_hits, fan.laser.samples});
 }
 
 void Lasers::collect(std::vector<base::ReadingBlock>& out) {

@@ -102,6 +102,8 @@ struct LaserNoise {
   double range_sigma = 0.0;         ///< [m] constant part of the range's standard deviation
   double range_proportional = 0.0;  ///< [-] part of the standard deviation per metre of range
   double angle_sigma = 0.0;  ///< [rad] standard deviation of each beam's bearing; turns the beam before it is cast
+
+  bool has_range() const { return range_sigma > 0.0 || range_proportional > 0.0; }
 };
 
 /// A scanning range finder. Bearings run from -fov/2 to +fov/2, both ends cast exactly; one sample looks at bearing 0.

@@ -1,0 +1,102 @@
+#include "sensors/laser_reference.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sensors/laser_shape.h"
+
+namespace sf::sensors {
+
+namespace {
+
+using base::Vec2;
+
+struct Answer {
+  double range;  ///< [m]
+  std::uint32_t id = SF_NO_HIT;
+  std::uint32_t model = SF_NO_HIT;
+};
+
+/// shaders/lib/decide.glsl, in its order of operations.
+template <class Surface>
+void decide(const Surface& surface, Vec2 origin, Vec2 d, Answer& best) {
+  const ExactSegment& s = surface.at;
+  const double wax = s.ax - origin.x, way = s.ay - origin.y;
+  const double wbx = s.bx - origin.x, wby = s.by - origin.y;
+  const double side_a = d.x * way - d.y * wax;
+  const double side_b = d.x * wby - d.y * wbx;
+  const bool crosses = (side_a >= 0.0 && side_b <= 0.0) || (side_a <= 0.0 && side_b >= 0.0);
+  if (!crosses) return;
+  const double ex = s.bx - s.ax, ey = s.by - s.ay;
+  const double above = ex * way - ey * wax;
+  const double below = ex * d.y - ey * d.x;
+  if (below == 0.0) return;
+  const double t = above / below;
+  if (!(t > SF_TOUCH || (below > 0.0 && t >= -SF_TOUCH))) return;
+  const double range = std::max(t, 0.0);
+  if (range < best.range || (range == best.range && surface.id < best.id)) best = {range, surface.id, surface.model};
+}
+
+}  // namespace
+
+LaserReference::LaserReference(const world::World& world, std::uint64_t seed, bool noise)
+    : world_(world), seed_(seed), noise_(noise) {
+  for (const world::Mover& mover : world.movers) poses_.push_back(mover.X_WM);
+}
+
+void LaserReference::place(std::span<const Pose> poses) { poses_.assign(poses.begin(), poses.end()); }
+
+std::vector<LaserReference::Surface> LaserReference::in_sight(std::uint32_t self, const Pose& X_WS,
+                                                              double range) const {
+  std::vector<Surface> surfaces;
+  const double reach = 1.001 * range + 1e-3;
+  const auto add = [&](Vec2 a, Vec2 b, std::uint32_t id, std::uint32_t model) {
+    const bool aside = std::max(a.x, b.x) < X_WS.x - reach || std::min(a.x, b.x) > X_WS.x + reach ||
+                       std::max(a.y, b.y) < X_WS.y - reach || std::min(a.y, b.y) > X_WS.y + reach;
+    if (!aside) surfaces.push_back({{a.x, a.y, b.x, b.y}, id, model});
+  };
+  std::uint32_t id = 0;
+  for (const world::Segment& s : world_.walls) {
+    if (s.seen_by_laser && s.z_min <= X_WS.z && X_WS.z < s.z_max) add(s.a, s.b, id, s.model);
+    ++id;
+  }
+  for (std::uint32_t m = 0; m < world_.movers.size(); ++m) {
+    const double height = X_WS.z - world_.movers[m].X_WM.z;  // as loaded: the world is 2.5-D
+    for (const world::Segment& s : world_.movers[m].body) {
+      if (!s.seen_by_laser) continue;
+      if (m != self && s.z_min <= height && height < s.z_max)
+        add(base::transform(poses_[m], s.a), base::transform(poses_[m], s.b), id, s.model);
+      ++id;
+    }
+  }
+  return surfaces;
+}
+
+LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t laser, std::uint64_t sequence) const {
+  const world::Laser& l = world_.movers[mover].lasers[laser];
+  const BeamPlan plan = plan_beams(l, noise_);
+  Scan scan{base::compose(poses_[mover], l.X_MS), std::vector<double>(l.samples),
+            std::vector<std::uint32_t>(l.samples)};
+  scan.X_WS.z = world_.movers[mover].X_WM.z + l.X_MS.z;
+  std::vector<double> turns(noise_ && l.noise.angle_sigma > 0.0 ? plan.samples.size() : 0);
+  draw_turns(l, plan, {seed_, base::Stream::angle_noise, mover, laser, sequence}, turns);
+
+  const std::vector<Surface> surfaces = in_sight(mover, scan.X_WS, l.range_max);
+  const Vec2 heading{std::cos(scan.X_WS.yaw), std::sin(scan.X_WS.yaw)};
+  std::vector<double> ranges(SF_BEAMS_PER_LANE * std::size_t{plan.lanes()});
+  std::vector<std::uint32_t> hits(ranges.size());
+  for (std::size_t k = 0; k < plan.samples.size(); ++k) {
+    const double bearing = world::bearing_of(l, plan.samples[k]) + (turns.empty() ? 0.0 : turns[k]);
+    const Vec2 beam{std::cos(bearing), std::sin(bearing)};
+    const Vec2 d{heading.x * beam.x - heading.y * beam.y, heading.y * beam.x + heading.x * beam.y};
+    Answer answer{l.range_max};
+    for (const Surface& surface : surfaces) decide(surface, {scan.X_WS.x, scan.X_WS.y}, d, answer);
+    ranges[plan.place(k)] = std::max(answer.range, l.range_min);
+    hits[plan.place(k)] = answer.model;
+  }
+  shape_scan(l, plan, {seed_, base::Stream::range_noise, mover, laser, sequence}, noise_, {ranges.data(), hits.data()},
+             scan.ranges, scan.hits);
+  return scan;
+}
+
+}  // namespace sf::sensors

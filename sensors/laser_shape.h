@@ -1,0 +1,33 @@
+#pragma once
+// From what a laser's beams measured to its reading: noise, and the samples that `resolution` left out.
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "base/random.h"
+#include "base/reading.h"
+#include "sensors/beams.h"
+#include "world/world.h"
+
+namespace sf::sensors {
+
+/// What the cast beams of one scan measured, beam k at `plan.place(k)`.
+struct CastScan {
+  const double* ranges;       ///< [m]
+  const std::uint32_t* hits;  ///< model row of what was met, or base::kNoHit
+};
+
+/// Range noise is added to echoes alone, and kept within [range_min, range_max]. A sample that was not cast lies on a
+/// straight line between its neighbours, and names a model where both met the same.
+/// @param draw of `base::Stream::range_noise` @param noise false: none, whatever the laser has
+/// @param ranges, hits one per sample
+void shape_scan(const world::Laser& laser, const BeamPlan& plan, const base::Draw& draw, bool noise,
+                const CastScan& cast, std::span<double> ranges, std::span<std::uint32_t> hits);
+
+/// A range as users who want infinity for "nothing met" are told it. @param range [m] of a beam that met `hit`
+inline double or_infinite(double range, std::uint32_t hit, double range_max) {
+  return hit == base::kNoHit && range >= range_max ? std::numeric_limits<double>::infinity() : range;
+}
+
+}  // namespace sf::sensors

@@ -1,0 +1,126 @@
+// The device and the plain C++ caster give the same bits.
+
+#include "sensors/laser_reference.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/sensors/chance.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::trial {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr std::uint32_t kRobots = 20;
+#else
+constexpr std::uint32_t kRobots = 200;
+#endif
+
+struct Disagreement {
+  std::size_t beams = 0;
+  std::size_t ranges = 0;  ///< whose bits differ
+  std::size_t hits = 0;
+  double largest = 0.0;  ///< [m]
+  std::string example;
+};
+
+/// Three ticks of a farm, everyone moved a little from tick to tick, every beam of every laser beside the reference.
+Disagreement disagreement(const world::World& world, std::uint64_t seed, bool noise = true) {
+  farm::Farm farm(world, device(), {.seed = seed, .noise = noise});
+  farm.hear_all();
+  sensors::LaserReference reference(world, seed, noise);
+  Disagreement found;
+  std::vector<base::Pose> poses;
+  for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
+  for (int tick = 0; tick < 3; ++tick) {
+    std::vector<base::Report> reports;
+    for (std::uint32_t m = 0; m < poses.size(); ++m) {
+      poses[m].x += 0.003 * tick;
+      poses[m].yaw += 0.7 * tick;
+      reports.push_back({m, 0, poses[m], {}});
+    }
+    reference.place(poses);
+    for (const base::ReadingBlock& r : farm.tick(tick * 1'000'000'000ll, reports)) {
+      const sensors::LaserReference::Scan scan = reference.scan(r.mover, r.sensor, r.sequence);
+      for (std::size_t i = 0; i < r.values.size(); ++i, ++found.beams) {
+        found.hits += r.hits[i] != scan.hits[i];
+        if (r.values[i] == scan.ranges[i]) continue;
+        ++found.ranges;
+        found.largest = std::max(found.largest, std::abs(r.values[i] - scan.ranges[i]));
+        if (found.example.empty())
+          found.example = (testing::Message()
+                           << "mover " << r.mover << " beam " << i << ": " << r.values[i] << " and " << scan.ranges[i])
+                              .GetString();
+      }
+    }
+  }
+  return found;
+}
+
+void expect_same_bits(const std::string& name, const Disagreement& d) {
+  std::printf("[ measured ] %s: %zu beams, %zu ranges and %zu hits not the same, by %.2g m at most\n", name.c_str(),
+              d.beams, d.ranges, d.hits, d.largest);
+  EXPECT_EQ(d.ranges, 0u) << name << ": " << d.example;
+  EXPECT_EQ(d.hits, 0u) << name;
+}
+
+world::World crowd(const world::Laser& laser, std::uint64_t seed) {
+  world::World world = scenes::boxes(60, 16.0, seed);
+  scenes::add_robots(world, kRobots, laser, seed);
+  return world;
+}
+
+TEST(LaserReference, AmongBoxesAndRobots) { expect_same_bits("boxes", disagreement(crowd(scenes::laser(), 1), 1)); }
+
+TEST(LaserReference, InACave) {
+  world::World world = scenes::cave(100, 16.0, 3);
+  scenes::add_robots(world, kRobots / 4, scenes::laser(), 3);
+  expect_same_bits("cave", disagreement(world, 1));
+}
+
+TEST(LaserReference, WithNoise) {
+  world::Laser laser = scenes::laser(181, 2.0 * M_PI, 6.0);
+  laser.noise = {.range_sigma = 0.01, .range_proportional = 0.02, .angle_sigma = 0.005};
+  expect_same_bits("noise", disagreement(crowd(laser, 2), 7));
+  expect_same_bits("noise left out", disagreement(crowd(laser, 2), 7, false));
+}
+
+TEST(LaserReference, WithBeamsLeftOut) {
+  world::Laser laser = scenes::laser(361, M_PI, 8.0);
+  laser.resolution = 7;
+  laser.range_min = 0.4;
+  expect_same_bits("resolution 7", disagreement(crowd(laser, 4), 1));
+}
+
+TEST(LaserReference, WideApart) {
+  // Lanes of one beam: four neighbours would not fit a sector.
+  expect_same_bits("12 beams", disagreement(crowd(scenes::laser(12, 2.0 * M_PI, 5.0), 5), 1));
+  expect_same_bits("1 beam", disagreement(crowd(scenes::laser(1, 0.0, 5.0), 6), 1));
+}
+
+TEST(LaserReference, FarFromTheOrigin) {
+  world::World world = crowd(scenes::laser(), 8);
+  const base::Vec2 away{1e7, -1e5};
+  for (world::Segment& s : world.walls) s.a = s.a + away, s.b = s.b + away;
+  for (world::Mover& m : world.movers) m.X_WM.x += away.x, m.X_WM.y += away.y;
+  world::finish(world);
+  expect_same_bits("far away", disagreement(world, 1));
+}
+
+/// A test that cannot fail proves nothing: another seed is another noise.
+TEST(LaserReference, SeesAnotherSeed) {
+  world::Laser laser = scenes::laser(61);
+  laser.noise.range_sigma = 0.01;
+  const world::World world = crowd(laser, 2);
+  farm::Farm farm(world, device(), {.seed = 2});
+  farm.hear_all();
+  const base::ReadingBlock r = farm.tick(0, {})[0];
+  EXPECT_NE(sensors::LaserReference(world, 3).scan(r.mover, 0, 0).ranges,
+            std::vector<double>(r.values.begin(), r.values.end()));
+  EXPECT_EQ(sensors::LaserReference(world, 2).scan(r.mover, 0, 0).ranges,
+            std::vector<double>(r.values.begin(), r.values.end()));
+}
+
+}  // namespace
+}  // namespace sf::trial
