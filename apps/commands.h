@@ -20,5 +20,6 @@ int listen(const Options& options);
 int experiment(const Options& options);
 int test_scenarios(const Options& options);
 int map(const Options& options);
+int verify(const Options& options);
 
 }  // namespace sf::apps

@@ -1,8 +1,17 @@
 #include "apps/facts.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace sf::apps {
+
+void tell_damage(const record::Recording& recording) {
+  for (const std::string& damage : recording.damage)
+    std::fprintf(stderr, "sensorfarm: %s: %s\n", recording.file.c_str(), damage.c_str());
+  if (recording.truncated)
+    std::fprintf(stderr, "sensorfarm: %s was not finished; its %llu whole ticks are taken\n", recording.file.c_str(),
+                 static_cast<unsigned long long>(recording.ticks));
+}
 
 std::size_t count_robots(const world::World& world) {
   std::size_t robots = 0;

@@ -12,6 +12,7 @@
 #include "netio/inbox.h"
 #include "netio/listener.h"
 #include "netio/relay.h"
+#include "scenarios/verification.h"
 #include "sensors/roster.h"
 #include "world/world.h"
 
@@ -41,6 +42,9 @@ struct RunFacts {
   std::uint64_t recorded_bytes = 0;  ///< its size
 };
 
+/// Says on standard error what a recording lacks.
+void tell_damage(const record::Recording& recording);
+
 std::size_t count_robots(const world::World& world);
 /// All that stand still or are carried.
 std::size_t count_magnets(const world::World& world);
@@ -60,6 +64,9 @@ std::string text_of(const RunFacts& facts);
 std::string text_of(const netio::Summary& summary);
 /// Comma-separated: a heading, then one line per element; what is missing is left out between its commas.
 std::string text_of(const world::World& world, const base::ReadingBlock& reading);
+/// @param recorded the run kept its readings
+std::string text_of(const scenarios::Verification& verification, bool recorded);
+std::string json_of(const scenarios::Verification& verification);
 /// Where robot and sensor stood, in one line for people.
 std::string place_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading);
 

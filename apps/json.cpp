@@ -237,4 +237,19 @@ std::string json_of(const RobotFacts& f) {
   return print(json);
 }
 
+std::string json_of(const scenarios::Verification& verification) {
+  const auto compared = [](const scenarios::Compared& c) {
+    return Json{{"kind", c.kind},           {"readings", c.readings}, {"numbers", c.values},
+                {"different", c.different}, {"largest", c.largest},   {"first", c.first}};
+  };
+  Json json{{"ticks", verification.ticks},
+            {"sound", verification.sound()},
+            {"missing", verification.missing},
+            {"skipped", verification.skipped},
+            {"reference", compared(verification.reference)}};
+  json["again"] = Json::array();
+  for (const scenarios::Compared& c : verification.again) json["again"].push_back(compared(c));
+  return print(json);
+}
+
 }  // namespace sf::apps

@@ -38,6 +38,8 @@ int dispatch(const sf::apps::Options& options) {
       return sf::apps::experiment(options);
     case Command::test:
       return sf::apps::test_scenarios(options);
+    case Command::verify:
+      return sf::apps::verify(options);
     case Command::map:
       return sf::apps::map(options);
   }

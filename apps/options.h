@@ -30,7 +30,8 @@ enum class Command {
   listen,
   map,
   experiment,
-  test
+  test,
+  verify
 };
 
 struct Options {
@@ -62,6 +63,7 @@ struct Options {
   std::vector<std::string> scenarios;     ///< files, for `test`
   std::string junit;                      ///< file; empty: none
 
+  std::uint64_t sample = 0;  ///< scans that `verify` casts again in plain C++; 0: all
   std::uint32_t robots = 0;  ///< clones; 0: the world's own
   double duration = 60.0;    ///< [s]; but for `run`, 0 is until stopped
   std::uint64_t seed = 1;

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "apps/commands.h"
+#include "apps/facts.h"
 #include "apps/plot_maps.h"
 #include "apps/plot_readings.h"
 #include "apps/progress.h"
@@ -80,11 +81,7 @@ void map_scans(const record::Recording& recording, const world::World& world, gp
 
 int plot(const Options& options) {
   const record::Recording recording = record::open_recording(options.world);
-  for (const std::string& damage : recording.damage)
-    std::fprintf(stderr, "sensorfarm: %s: %s\n", recording.file.c_str(), damage.c_str());
-  if (recording.truncated)
-    std::fprintf(stderr, "sensorfarm: %s was not finished; its %llu whole ticks are drawn\n", recording.file.c_str(),
-                 static_cast<unsigned long long>(recording.ticks));
+  tell_damage(recording);
   const world::World world = world::from_snapshot(recording.info.snapshot);
   const std::filesystem::path folder =
       options.out.empty() ? std::filesystem::path(recording.file).parent_path() : std::filesystem::path(options.out);

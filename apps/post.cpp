@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "netio/packets.h"
+#include "sensors/laser_shape.h"
 
 namespace sf::apps {
 
@@ -59,9 +60,7 @@ std::span<const base::ReadingBlock> NoReturn::apply(std::span<const base::Readin
   for (base::ReadingBlock& r : blocks_) {
     if (r.hits.empty()) continue;  // no beams
     const double range_max = roster_.row(r).limit;
-    for (std::size_t i = 0; i < r.values.size(); ++i)
-      at[i] =
-          r.hits[i] == base::kNoHit && r.values[i] >= range_max ? std::numeric_limits<double>::infinity() : r.values[i];
+    for (std::size_t i = 0; i < r.values.size(); ++i) at[i] = sensors::or_infinite(r.values[i], r.hits[i], range_max);
     r.values = {at, r.values.size()};
     at += r.values.size();
   }

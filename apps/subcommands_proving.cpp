@@ -51,11 +51,28 @@ void add_test(CLI::App& app, Options& o) {
   sub->callback([&o] { o.command = Command::test; });
 }
 
+void add_verify(CLI::App& app, Options& o) {
+  CLI::App* sub =
+      app.add_subcommand("verify",
+                         "Compute a recorded run again, on this device and in plain C++, and compare bit by "
+                         "bit (exit 1 when something differs)");
+  sub->add_option("recording", o.world, "Folder of the recording")->required()->type_name("DIR");
+  sub->add_option("--sample", o.sample, "Scans that plain C++ casts again, spread over the run (0: all)")
+      ->check(whole(0, UINT64_MAX))
+      ->type_name("N")
+      ->capture_default_str();
+  sub->add_option("--threads", o.threads, "Threads of the host's part (0: all)")->check(whole(0, 256))->type_name("N");
+  add_json(*sub, o);
+  add_device(*sub, o);
+  sub->callback([&o] { o.command = Command::verify; });
+}
+
 }  // namespace
 
 void add_proving(CLI::App& app, Options& o) {
   add_experiment(app, o);
   add_test(app, o);
+  add_verify(app, o);
 }
 
 }  // namespace sf::apps

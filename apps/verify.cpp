@@ -1,0 +1,59 @@
+// `verify`: a recorded run computed again, on this device and in plain C++, beside what was recorded.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "apps/commands.h"
+#include "apps/facts.h"
+#include "apps/progress.h"
+#include "apps/stop.h"
+#include "apps/wording.h"
+#include "scenarios/verification.h"
+
+namespace sf::apps {
+
+namespace {
+
+std::string line_of(const scenarios::Compared& c, const std::string& by) {
+  std::string text = row(c.kind, fmt::format("{}, {}, {}", counted(c.readings, "reading"), by,
+                                             c.different == 0 ? "the same to the bit"
+                                                              : fmt::format("{} of {} numbers DIFFER, by up to {:.3g}",
+                                                                            c.different, c.values, c.largest)));
+  if (c.different > 0) text += row("", "first: " + c.first);
+  return text;
+}
+
+}  // namespace
+
+std::string text_of(const scenarios::Verification& v, bool readings_recorded) {
+  std::string text = row("ticks", std::to_string(v.ticks));
+  for (const scenarios::Compared& c : v.again) text += line_of(c, "this device beside the recording");
+  text += line_of(v.reference, readings_recorded ? "plain C++ beside the recording" : "plain C++ beside this device");
+  if (!readings_recorded)
+    text += row("note", "the run kept no readings (run --record-readings): what its poses give here was checked");
+  for (const std::string& skipped : v.skipped) text += row("skipped", skipped);
+  if (v.missing > 0) text += row("missing", counted(v.missing, "recorded reading") + " that no sensor was due to make");
+  return text + row("verdict", v.sound() ? "sound" : "NOT SOUND");
+}
+
+int verify(const Options& options) {
+  const record::Recording recording = record::open_recording(options.world);
+  tell_damage(recording);
+  gpu::Device device(options.device);
+  catch_stop_signals();
+  scenarios::Verification verification;
+  {
+    Progress progress("verifying");
+    verification = scenarios::verify(
+        recording, device, {.sample = options.sample, .threads = options.threads, .progress = [&](double part) {
+                              progress.show(part);
+                              return !stop_requested();
+                            }});
+  }
+  const bool recorded = !recording.scans.empty() || !recording.readings.empty();
+  std::fputs((options.json ? json_of(verification) : text_of(verification, recorded)).c_str(), stdout);
+  return verification.sound() ? 0 : 1;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,234 @@
+#include "scenarios/verification.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include "base/parallel.h"
+#include "farm/farm.h"
+#include "sensors/bumper.h"
+#include "sensors/laser_reference.h"
+#include "sensors/laser_shape.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+/// kind, mover, sensor, sequence: a reading's name.
+using Name = std::tuple<std::uint8_t, std::uint32_t, std::uint32_t, std::uint32_t>;
+
+/// Scans that are cast again at once, on all cores.
+constexpr std::size_t kBatch = 256;
+
+template <class Real>
+void compare(Real ours, Real theirs, Compared& into) {
+  ++into.values;
+  if (std::memcmp(&ours, &theirs, sizeof ours) == 0 || (std::isnan(ours) && std::isnan(theirs))) return;
+  ++into.different;
+  const double apart = std::abs(static_cast<double>(ours) - static_cast<double>(theirs));
+  into.largest = std::max(into.largest, std::isnan(apart) ? std::numeric_limits<double>::infinity() : apart);
+}
+
+void name_first(std::uint64_t before, const std::string& where, Compared& into) {
+  if (before == 0 && into.different > 0) into.first = where;
+}
+
+/// A scan that plain C++ is to cast again.
+struct Asked {
+  std::uint32_t mover, sensor, sequence;
+  std::size_t tick;           ///< at which it was measured
+  std::vector<float> ranges;  ///< [m] as recorded, or as this device says
+};
+
+class Verifier {
+ public:
+  Verifier(const record::Recording& recording, gpu::Device& device, const VerifyOptions& options)
+      : recording_(recording),
+        options_(options),
+        world_(world::from_snapshot(recording.info.snapshot)),
+        farm_(world_, device, {.seed = recording.info.seed, .threads = options.threads}),
+        reference_(world_, recording.info.seed),
+        workers_(options.threads) {
+    for (const auto& [key, value] : recording.info.options)
+      infinite_ = infinite_ || (key == "no_return" && value == "inf");
+    for (std::size_t i = 0; i < recording.scans.size(); ++i) {
+      const record::ScanSample& s = recording.scans[i];
+      scans_[{base::kLaser, s.mover, s.sensor, s.sequence}] = i;
+    }
+    for (std::size_t i = 0; i < recording.readings.size(); ++i) {
+      const record::ReadingSample& r = recording.readings[i];
+      readings_[{r.kind, r.mover, r.sensor, r.sequence}] = i;
+    }
+    farm_.hear_all();
+  }
+
+  Verification run() {
+    result_.reference.kind = "laser";
+    count_scans();
+    const std::size_t ticks = recording_.states.empty() ? 0 : recording_.states[0].size();
+    for (std::size_t t = 0; t < ticks; ++t) {
+      for (const base::ReadingBlock& reading : farm_.tick(recording_.states[0][t].time, reports_at(t))) look(reading);
+      if (asked_.size() >= kBatch || t + 1 == ticks) cast_again();
+      ++result_.ticks;
+      if (options_.progress && !options_.progress(static_cast<double>(t + 1) / static_cast<double>(ticks))) break;
+    }
+    cast_again();
+    result_.missing = result_.ticks == ticks ? scans_.size() + readings_.size() : 0;
+    for (auto& [kind, compared] : again_) result_.again.push_back(std::move(compared));
+    if (unfelt_ > 0)
+      result_.skipped.push_back(
+          fmt::format("{} readings of bumpers: where a robot was touched is not recorded", unfelt_));
+    return std::move(result_);
+  }
+
+ private:
+  std::span<const base::Report> reports_at(std::size_t tick) {
+    reports_.clear();
+    for (std::uint32_t m = 0; m < recording_.states.size(); ++m) {
+      const record::StateSample& s = recording_.states[m][tick];
+      reports_.push_back({m, s.time, s.X_WM, s.velocity});
+    }
+    return reports_;
+  }
+
+  /// How many scans there are, so that a sample is spread over all.
+  void count_scans() {
+    std::size_t all = recording_.scans.size();
+    if (all == 0 && !recording_.states.empty())
+      for (const world::Mover& mover : world_.movers)
+        for (const world::Laser& laser : mover.lasers)
+          all += static_cast<std::size_t>(1.0 + laser.rate * 1e-9 * static_cast<double>(recording_.end_time));
+    stride_ = options_.sample == 0 ? 1 : std::max<std::size_t>(1, all / options_.sample);
+  }
+
+  std::size_t tick_at(std::int64_t time) const {
+    const auto& states = recording_.states[0];
+    const auto at = std::lower_bound(states.begin(), states.end(), time,
+                                     [](const record::StateSample& s, std::int64_t t) { return s.time < t; });
+    return std::min(static_cast<std::size_t>(at - states.begin()), states.size() - 1);
+  }
+
+  std::string place_of(const base::ReadingBlock& r) const {
+    return fmt::format("{}, sensor {}, {:g} s", world_.movers[r.mover].name, r.sensor,
+                       1e-9 * static_cast<double>(r.time));
+  }
+
+  void look(const base::ReadingBlock& reading) {
+    if (reading.kind == base::kLaser) return look_at_scan(reading);
+    const auto at = readings_.find({reading.kind, reading.mover, reading.sensor, reading.sequence});
+    if (at == readings_.end()) return;
+    const std::vector<double>& theirs = recording_.readings[at->second].values;
+    readings_.erase(at);
+    if (reading.kind == sensors::kBumper) {
+      ++unfelt_;
+      return;
+    }
+    Compared& into = compared(reading.kind);
+    ++into.readings;
+    const std::uint64_t before = into.different;
+    if (theirs.size() != reading.values.size())
+      ++into.different, into.largest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < std::min(theirs.size(), reading.values.size()); ++i)
+      compare(reading.values[i], theirs[i], into);
+    name_first(before, place_of(reading), into);
+  }
+
+  void look_at_scan(const base::ReadingBlock& reading) {
+    std::vector<float> ours;
+    const double range_max = world_.movers[reading.mover].lasers[reading.sensor].range_max;
+    for (std::size_t i = 0; i < reading.values.size(); ++i) {
+      const double range = reading.values[i];
+      ours.push_back(static_cast<float>(infinite_ ? sensors::or_infinite(range, reading.hits[i], range_max) : range));
+    }
+    const auto at = scans_.find({base::kLaser, reading.mover, reading.sensor, reading.sequence});
+    if (at != scans_.end()) {
+      const std::vector<float>& theirs = recording_.scans[at->second].scan.ranges;
+      scans_.erase(at);
+      Compared& into = compared(base::kLaser);
+      ++into.readings;
+      const std::uint64_t before = into.different;
+      if (theirs.size() != ours.size()) ++into.different, into.largest = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < std::min(theirs.size(), ours.size()); ++i) compare(ours[i], theirs[i], into);
+      name_first(before, place_of(reading), into);
+      ours = theirs;
+    } else if (!recording_.scans.empty()) {
+      return;
+    }
+    if (seen_++ % stride_ == 0)
+      asked_.push_back({reading.mover, reading.sensor, reading.sequence, tick_at(reading.time), std::move(ours)});
+  }
+
+  /// Casts what was asked for in plain C++, tick by tick, since all see the movers of their tick.
+  void cast_again() {
+    std::stable_sort(asked_.begin(), asked_.end(), [](const Asked& a, const Asked& b) { return a.tick < b.tick; });
+    std::vector<sensors::LaserReference::Scan> scans(asked_.size());
+    for (std::size_t first = 0; first < asked_.size();) {
+      std::size_t last = first;
+      while (last < asked_.size() && asked_[last].tick == asked_[first].tick) ++last;
+      std::vector<base::Pose> poses;
+      for (const auto& states : recording_.states) poses.push_back(states[asked_[first].tick].X_WM);
+      reference_.place(poses);
+      workers_.run(last - first, 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = first + begin; i < first + end; ++i)
+          scans[i] = reference_.scan(asked_[i].mover, asked_[i].sensor, asked_[i].sequence);
+      });
+      first = last;
+    }
+    for (std::size_t i = 0; i < asked_.size(); ++i) judge(asked_[i], scans[i]);
+    asked_.clear();
+  }
+
+  void judge(const Asked& asked, const sensors::LaserReference::Scan& scan) {
+    Compared& into = result_.reference;
+    ++into.readings;
+    const std::uint64_t before = into.different;
+    const double range_max = world_.movers[asked.mover].lasers[asked.sensor].range_max;
+    for (std::size_t i = 0; i < std::min(asked.ranges.size(), scan.ranges.size()); ++i) {
+      const double range = infinite_ ? sensors::or_infinite(scan.ranges[i], scan.hits[i], range_max) : scan.ranges[i];
+      compare(static_cast<float>(range), asked.ranges[i], into);
+    }
+    name_first(before,
+               fmt::format("{}, laser {}, reading {}", world_.movers[asked.mover].name, asked.sensor, asked.sequence),
+               into);
+  }
+
+  Compared& compared(std::uint8_t kind) {
+    Compared& into = again_[kind];
+    if (into.kind.empty()) into.kind = sensors::find_kind(kind)->name;
+    return into;
+  }
+
+  const record::Recording& recording_;
+  const VerifyOptions& options_;
+  const world::World world_;
+  farm::Farm farm_;
+  sensors::LaserReference reference_;
+  base::Workers workers_;
+  bool infinite_ = false;
+  std::map<Name, std::size_t> scans_, readings_;  ///< recorded, not met yet
+  std::vector<base::Report> reports_;
+  std::map<std::uint8_t, Compared> again_;
+  std::vector<Asked> asked_;
+  std::size_t stride_ = 1, seen_ = 0;
+  std::uint64_t unfelt_ = 0;
+  Verification result_;
+};
+
+}  // namespace
+
+bool Verification::sound() const {
+  std::uint64_t readings = reference.readings, different = reference.different;
+  for (const Compared& c : again) readings += c.readings, different += c.different;
+  return readings > 0 && different == 0 && missing == 0;
+}
+
+Verification verify(const record::Recording& recording, gpu::Device& device, const VerifyOptions& options) {
+  return Verifier(recording, device, options).run();
+}
+
+}  // namespace sf::scenarios

@@ -1,0 +1,118 @@
+// A recorded run computed again: what is sound passes, what was touched is found.
+
+#include "scenarios/verification.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "record/recorder.h"
+#include "scenarios/run_info.h"
+#include "scenarios/simulation.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::scenarios {
+namespace {
+
+gpu::Device& device() {
+  static gpu::Device device;
+  return device;
+}
+
+world::World small_world() {
+  world::World world = scenes::boxes(20, 8.0, 3);
+  world::Laser laser = scenes::laser(61, M_PI, 4.0);
+  laser.noise = {.range_sigma = 0.01, .range_proportional = 0.0, .angle_sigma = 0.002};
+  laser.latency = 0.15;
+  scenes::add_robots(world, 6, laser, 5);
+  world::finish(world);
+  return world;
+}
+
+/// Two seconds of wandering.
+record::Recording recorded(bool readings) {
+  const auto folder = std::filesystem::temp_directory_path() / ("sf_verification_" + std::to_string(::getpid()));
+  const world::World world = small_world();
+  {
+    Simulation simulation(world, device(), {.seed = 9});
+    record::Recorder recorder(folder.string(), run_info(world, simulation.farm().roster(), {9, readings}));
+    for (int tick = 0; tick < 20; ++tick) recorder.write(simulation.step());
+    recorder.finish();
+  }
+  record::Recording recording = record::open_recording(folder.string());
+  std::filesystem::remove_all(folder);
+  return recording;
+}
+
+TEST(Verification, ASoundRun) {
+  const Verification v = verify(recorded(true), device(), {});
+  EXPECT_TRUE(v.sound()) << v.reference.first;
+  ASSERT_EQ(v.again.size(), 1u);
+  EXPECT_EQ(v.again[0].readings, recorded(true).scans.size());
+  EXPECT_EQ(v.again[0].values, 61 * v.again[0].readings);
+  EXPECT_EQ(v.reference.readings, v.again[0].readings) << "all of them by default";
+  EXPECT_EQ(v.ticks, 20u);
+}
+
+TEST(Verification, WithoutReadingsPlainCppIsBesideTheDevice) {
+  const Verification v = verify(recorded(false), device(), {});
+  EXPECT_TRUE(v.sound());
+  EXPECT_TRUE(v.again.empty()) << "there is nothing to compare with";
+  EXPECT_GT(v.reference.readings, 100u);
+}
+
+TEST(Verification, ASampleIsSpreadOverTheRun) {
+  const record::Recording run = recorded(true);
+  const Verification v = verify(run, device(), {.sample = 10});
+  EXPECT_TRUE(v.sound());
+  EXPECT_GE(v.reference.readings, 10u);
+  EXPECT_LE(v.reference.readings, 12u);
+  EXPECT_EQ(v.again[0].readings, run.scans.size()) << "the device looks at all";
+}
+
+TEST(Verification, OneBitOfOneBeam) {
+  record::Recording run = recorded(true);
+  float& range = run.scans[7].scan.ranges[30];
+  range = std::nextafter(range, 0.0F);
+  const Verification v = verify(run, device(), {});
+  EXPECT_FALSE(v.sound());
+  EXPECT_EQ(v.again[0].different, 1u);
+  EXPECT_EQ(v.reference.different, 1u) << "by itself, not by the device's word";
+  EXPECT_LT(v.again[0].largest, 1e-6);
+  EXPECT_NE(v.again[0].first.find("sensor 0"), std::string::npos) << v.again[0].first;
+}
+
+TEST(Verification, AnotherSeed) {
+  record::Recording run = recorded(true);
+  run.info.seed = 10;
+  EXPECT_FALSE(verify(run, device(), {}).sound());
+}
+
+TEST(Verification, AMovedPose) {
+  record::Recording run = recorded(true);
+  run.states[2][5].X_WM.x += 1e-6;
+  const Verification v = verify(run, device(), {});
+  EXPECT_FALSE(v.sound());
+  EXPECT_LT(v.again[0].different, v.again[0].values / 10) << "those who see it, and itself, at one tick";
+}
+
+TEST(Verification, AReadingThatNobodyWasDueToMake) {
+  record::Recording run = recorded(true);
+  run.scans.push_back(run.scans.back());
+  run.scans.back().sequence = 1000;
+  const Verification v = verify(run, device(), {});
+  EXPECT_EQ(v.missing, 1u);
+  EXPECT_FALSE(v.sound());
+}
+
+TEST(Verification, StoppedIsNotUnsound) {
+  const Verification v = verify(recorded(true), device(), {.progress = [](double) { return false; }});
+  EXPECT_EQ(v.ticks, 1u);
+  EXPECT_EQ(v.missing, 0u) << "what was not looked at is not missing";
+}
+
+}  // namespace
+}  // namespace sf::scenarios
