@@ -21,5 +21,6 @@ int experiment(const Options& options);
 int test_scenarios(const Options& options);
 int map(const Options& options);
 int verify(const Options& options);
+int explain(const Options& options);
 
 }  // namespace sf::apps

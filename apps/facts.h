@@ -12,6 +12,7 @@
 #include "netio/inbox.h"
 #include "netio/listener.h"
 #include "netio/relay.h"
+#include "scenarios/explanation.h"
 #include "scenarios/verification.h"
 #include "sensors/roster.h"
 #include "world/world.h"
@@ -67,6 +68,8 @@ std::string text_of(const world::World& world, const base::ReadingBlock& reading
 /// @param recorded the run kept its readings
 std::string text_of(const scenarios::Verification& verification, bool recorded);
 std::string json_of(const scenarios::Verification& verification);
+std::string text_of(const scenarios::Explanation& explanation);
+std::string json_of(const scenarios::Explanation& explanation);
 /// Where robot and sensor stood, in one line for people.
 std::string place_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading);
 

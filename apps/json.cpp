@@ -252,4 +252,31 @@ std::string json_of(const scenarios::Verification& verification) {
   return print(json);
 }
 
+std::string json_of(const scenarios::Explanation& e) {
+  Json json{
+      {"ticks", e.ticks},       {"build_s", e.build},     {"first_tick_s", e.first},      {"silent_tick_s", e.silent},
+      {"tick_s", e.all},        {"walls", e.walls},       {"resident_bytes", e.resident}, {"absent", e.absent},
+      {"kinds", Json::array()}, {"slices", Json::array()}};
+  for (const scenarios::Slice& s : e.slices)
+    json["slices"].push_back({{"z_m", s.z}, {"sensors", s.sensors}, {"walls", s.walls}});
+  for (const scenarios::ExplainedKind& k : e.kinds) {
+    Json tables = Json::array();
+    for (const gpu::Held& h : k.tables) tables.push_back({{"name", h.name}, {"bytes", h.bytes}});
+    json["kinds"].push_back({{"kind", k.kind},
+                             {"sensors", k.sensors},
+                             {"robots", k.robots},
+                             {"rate_hz", {k.least_rate, k.most_rate}},
+                             {"tick_s", k.tick},
+                             {"readings_per_tick", k.readings},
+                             {"rays", k.work.rays},
+                             {"doubts", k.work.doubts},
+                             {"cells_built", k.work.cells_built},
+                             {"dipoles", k.work.dipoles},
+                             {"kernels", k.kernels},
+                             {"bytes", k.bytes},
+                             {"tables", tables}});
+  }
+  return print(json);
+}
+
 }  // namespace sf::apps

@@ -40,6 +40,8 @@ int dispatch(const sf::apps::Options& options) {
       return sf::apps::test_scenarios(options);
     case Command::verify:
       return sf::apps::verify(options);
+    case Command::explain:
+      return sf::apps::explain(options);
     case Command::map:
       return sf::apps::map(options);
   }

@@ -31,7 +31,8 @@ enum class Command {
   map,
   experiment,
   test,
-  verify
+  verify,
+  explain
 };
 
 struct Options {

@@ -92,6 +92,17 @@ void add_plot(CLI::App& app, Options& o) {
   sub->callback([&o] { o.command = Command::plot; });
 }
 
+void add_explain(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand(
+      "explain", "Say what a world makes the farm build and do, and what each kind of sensor costs on this machine");
+  add_world(*sub, o);
+  add_json(*sub, o);
+  add_device(*sub, o);
+  add_robots(*sub, o);
+  sub->add_option("--threads", o.threads, "Threads of the host's part (0: all)")->check(whole(0, 256))->type_name("N");
+  sub->callback([&o] { o.command = Command::explain; });
+}
+
 }  // namespace
 
 void add_looking(CLI::App& app, Options& o) {
@@ -101,6 +112,7 @@ void add_looking(CLI::App& app, Options& o) {
   add_field(app, o);
   add_sense(app, o);
   add_plot(app, o);
+  add_explain(app, o);
 }
 
 }  // namespace sf::apps

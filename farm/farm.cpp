@@ -45,6 +45,7 @@ struct Station {
 
 struct Farm::State {
   const world::World& world;
+  gpu::Device& device;
   base::Workers workers;
   sensors::Roster roster;
   std::vector<Station> stations;
@@ -58,14 +59,21 @@ struct Farm::State {
   FarmStats stats;
   std::uint64_t hash = 0;
 
-  State(const world::World& w, gpu::Device& device, const FarmOptions& options)
-      : world(w), workers(options.threads), roster(w), batch(device), delivery(roster), heard(w.movers.size(), 0) {
+  State(const world::World& w, gpu::Device& d, const FarmOptions& options)
+      : world(w),
+        device(d),
+        workers(options.threads),
+        roster(w),
+        batch(device),
+        delivery(roster),
+        heard(w.movers.size(), 0) {
     for (const world::Mover& mover : w.movers) {
       states.push_back({.mover = static_cast<std::uint32_t>(poses.size()), .X_WM = mover.X_WM});
       poses.push_back(mover.X_WM);
     }
     const sensors::Site site{w, device, workers, options.seed, options.noise, options.true_poses, options.scene};
     for (const auto& group : roster.groups()) {
+      device.owned_by(group.kind->name);
       stations.push_back({&group, group.kind->make(site), std::vector<std::uint64_t>(group.rows.size(), 0), {}});
       stations.back().due.reserve(group.rows.size());
     }
@@ -101,7 +109,10 @@ bool Farm::State::find_due(std::int64_t now) {
 
 void Farm::State::prepare() {
   bool again = false;
-  for (Station& station : stations) again |= station.instruments->prepare(station.due, poses);
+  for (Station& station : stations) {
+    device.owned_by(station.group->kind->name);  // tables may grow
+    again |= station.instruments->prepare(station.due, poses);
+  }
   if (!again) return;
   batch.begin();
   for (Station& station : stations) station.instruments->record_measure(batch);

@@ -72,7 +72,8 @@ void make_storage(Buffer::Vk& vk, const Device& device, VkDeviceSize size) {
 
 std::size_t texel_size(Texel texel) { return texel == Texel::u32 || texel == Texel::f32 ? 4 : 16; }
 
-Buffer::Buffer(Device& device, Role role, Texel texel, std::size_t texels) : vk_(std::make_unique<Vk>()) {
+Buffer::Buffer(Device& device, std::string_view name, Role role, Texel texel, std::size_t texels)
+    : vk_(std::make_unique<Vk>()) {
   vk_->device = &device.vk();
   vk_->role = role;
   vk_->texel = texel;
@@ -89,10 +90,12 @@ Buffer::Buffer(Device& device, Role role, Texel texel, std::size_t texels) : vk_
   view.format = format_of(texel);
   view.range = VK_WHOLE_SIZE;
   must(vkCreateBufferView(vk_->device->device, &view, nullptr, &vk_->view), "vkCreateBufferView");
+  vk_->device->hold(vk_.get(), name, bytes(), false);
 }
 
 Buffer::~Buffer() {
   if (!vk_) return;
+  vk_->device->let_go(vk_.get());
   vkDestroyBufferView(vk_->device->device, vk_->view, nullptr);
   release(*vk_->device, vk_->table);
   release(*vk_->device, vk_->staging);

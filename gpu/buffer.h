@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "gpu/device.h"
 
@@ -25,9 +26,10 @@ std::size_t texel_size(Texel texel);  ///< [bytes] 4 or 16
 /// A table of texels with a host view. On a unified device the host view is the table itself; elsewhere a Batch copies.
 class Buffer {
  public:
+  /// @param name what is in it, for Device::held
   /// @param texels capacity, at least 1.
   /// @throws base::DeviceError when the device cannot hold so many, saying its limit.
-  Buffer(Device& device, Role role, Texel texel, std::size_t texels);
+  Buffer(Device& device, std::string_view name, Role role, Texel texel, std::size_t texels);
   ~Buffer();
   Buffer(Buffer&&) noexcept;
   Buffer& operator=(Buffer&&) noexcept;

@@ -47,6 +47,15 @@ int Device::Vk::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted)
   return -1;
 }
 
+void Device::Vk::hold(const void* what, std::string_view name, std::size_t bytes, bool is_kernel) {
+  const std::uint64_t next = held.empty() ? 0 : held.rbegin()->first + 1;
+  held[next] = {what, {owner, std::string(name), bytes, is_kernel}};
+}
+
+void Device::Vk::let_go(const void* what) {
+  std::erase_if(held, [&](const auto& entry) { return entry.second.first == what; });
+}
+
 Survey survey_devices(const std::string& wanted) {
   const Instance instance;
   Considered considered = consider(instance);
@@ -80,6 +89,14 @@ bool Device::unified() const {
   return vk_->memory_type(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
                                    VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT) >= 0;
 }
+
+std::vector<Held> Device::held() const {
+  std::vector<Held> all;
+  for (const auto& [when, entry] : vk_->held) all.push_back(entry.second);
+  return all;
+}
+
+void Device::owned_by(std::string_view owner) { vk_->owner = owner; }
 
 std::string Device::validation_messages() const {
   const std::scoped_lock guard(vk_->instance->lock);

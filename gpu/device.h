@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace sf::gpu {
@@ -29,6 +30,14 @@ struct Survey {
 };
 Survey survey_devices(const std::string& wanted);
 
+/// A table or a kernel on a device.
+struct Held {
+  std::string owner;  ///< as `Device::owned_by` had it when it was made
+  std::string name;
+  std::size_t bytes = 0;  ///< of the table, or of the kernel's SPIR-V
+  bool is_kernel = false;
+};
+
 /// One open device with one compute queue. Used by one thread at a time; must outlive all that is made on it.
 class Device {
  public:
@@ -41,6 +50,10 @@ class Device {
   const DeviceFacts& facts() const;
   /// Host and device share memory: uploads and downloads copy nothing.
   bool unified() const;
+  /// All tables and kernels that live on it, in the order in which they were made.
+  std::vector<Held> held() const;
+  /// Whose what is made from here on is: a kind of sensor.
+  void owned_by(std::string_view owner);
   /// Messages of the validation layer so far; it is on when the environment has SENSORFARM_VALIDATE=1. "" when silent.
   std::string validation_messages() const;
 

@@ -72,7 +72,7 @@ std::uint32_t group_size_of(std::span<const std::uint32_t> spirv) {
   return 0;
 }
 
-Kernel::Kernel(Device& device, std::span<const std::uint32_t> spirv, std::uint32_t tables)
+Kernel::Kernel(Device& device, std::string_view name, std::span<const std::uint32_t> spirv, std::uint32_t tables)
     : vk_(std::make_unique<Vk>()) {
   vk_->device = &device.vk();
   vk_->group_size = group_size_of(spirv);
@@ -80,9 +80,11 @@ Kernel::Kernel(Device& device, std::span<const std::uint32_t> spirv, std::uint32
   make_layout(*vk_, tables);
   make_set(*vk_, tables);
   make_pipeline(*vk_, spirv);
+  vk_->device->hold(vk_.get(), name, spirv.size_bytes(), true);
 }
 
 Kernel::~Kernel() {
+  vk_->device->let_go(vk_.get());
   const VkDevice device = vk_->device->device;
   vkDestroyPipeline(device, vk_->pipeline, nullptr);
   vkDestroyPipelineLayout(device, vk_->layout, nullptr);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "gpu/buffer.h"
 #include "gpu/device.h"
@@ -13,8 +14,9 @@ namespace sf::gpu {
 /// Binding i of descriptor set 0 is the i-th table given to `bind`: an `imageBuffer` of the table's texel.
 class Kernel {
  public:
+  /// @param name what it computes, for Device::held
   /// @param spirv words of a module with one entry point `main`; its group size is read from the module.
-  Kernel(Device& device, std::span<const std::uint32_t> spirv, std::uint32_t tables);
+  Kernel(Device& device, std::string_view name, std::span<const std::uint32_t> spirv, std::uint32_t tables);
   ~Kernel();
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;

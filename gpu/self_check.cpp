@@ -47,10 +47,10 @@ std::array<Operands, 64> operands() {
 std::string self_check(Device& device) {
   const auto rows = operands();
   const std::size_t groups = rows.size() / 64;
-  Kernel kernel(device, self_check_comp_spv, 2);
-  Buffer in(device, Role::upload, Texel::u32x4, rows.size());
-  Buffer out(device, Role::download, Texel::u32x4, rows.size() * kOperations.size() / 2);
-  Buffer counts(device, Role::upload, Texel::u32, 4);
+  Kernel kernel(device, "self-check", self_check_comp_spv, 2);
+  Buffer in(device, "operands", Role::upload, Texel::u32x4, rows.size());
+  Buffer out(device, "results", Role::download, Texel::u32x4, rows.size() * kOperations.size() / 2);
+  Buffer counts(device, "group counts", Role::upload, Texel::u32, 4);
   std::memcpy(in.host<std::uint32_t>().data(), rows.data(), sizeof rows);
   counts.host<std::uint32_t>()[0] = static_cast<std::uint32_t>(groups);
   counts.host<std::uint32_t>()[1] = counts.host<std::uint32_t>()[2] = 1;

@@ -3,8 +3,12 @@
 
 #include <vulkan/vulkan.h>
 
+#include <cstdint>
+#include <map>
 #include <mutex>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "gpu/device.h"
 
@@ -33,7 +37,11 @@ struct Device::Vk {
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
   DeviceFacts facts;
+  std::string owner;
+  std::map<std::uint64_t, std::pair<const void*, Held>> held;  ///< by when it was made
 
+  void hold(const void* what, std::string_view name, std::size_t bytes, bool is_kernel);
+  void let_go(const void* what);
   /// Row of a memory type with all of `wanted` among `allowed`, or -1.
   int memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
 };

@@ -26,7 +26,7 @@ Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<F
       fans(std::move(f)) {
   plan(world);
   turned.resize(workers.threads());
-  kernel = std::make_unique<gpu::Kernel>(site.device, laser_comp_spv, 14);
+  kernel = std::make_unique<gpu::Kernel>(site.device, "laser", laser_comp_spv, 14);
   std::uint32_t beam_lanes = 0;
   std::map<BeamKey, std::uint32_t> shared;
   for (std::size_t i = 0; i < fans.size(); ++i) {
@@ -71,15 +71,19 @@ void Casts::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) {
   // Lanes are padded to whole groups, and groups to whole rows of groups where there are many.
   const std::size_t most_groups = out_lanes / group + 1;
   const std::size_t padded = (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * group;
-  rows = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32x4, SF_ROW_TEXELS * count);
-  lanes = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32, 2 * padded);
-  groups = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32, 4);
-  directions = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::f32x4, 2 * std::size_t{beam_lanes} + 2);
-  middles = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::f32, std::size_t{beam_lanes} + 1);
-  directions64 = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32x4, 4 * std::size_t{beam_lanes} + 4);
-  ranges = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32x4, 2 * std::size_t{out_lanes} + 2);
-  hits = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32x4, std::size_t{out_lanes} + 1);
-  doubts = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32, std::size_t{out_lanes} + 1);
+  rows = std::make_unique<gpu::Buffer>(device, "due sensors", Role::upload, Texel::u32x4, SF_ROW_TEXELS * count);
+  lanes = std::make_unique<gpu::Buffer>(device, "whose beams", Role::upload, Texel::u32, 2 * padded);
+  groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
+  directions = std::make_unique<gpu::Buffer>(device, "beams in 32 bits", Role::upload, Texel::f32x4,
+                                             2 * std::size_t{beam_lanes} + 2);
+  middles =
+      std::make_unique<gpu::Buffer>(device, "middles of lanes", Role::upload, Texel::f32, std::size_t{beam_lanes} + 1);
+  directions64 = std::make_unique<gpu::Buffer>(device, "beams in 64 bits", Role::upload, Texel::u32x4,
+                                               4 * std::size_t{beam_lanes} + 4);
+  ranges =
+      std::make_unique<gpu::Buffer>(device, "ranges", Role::download, Texel::u32x4, 2 * std::size_t{out_lanes} + 2);
+  hits = std::make_unique<gpu::Buffer>(device, "hits", Role::download, Texel::u32x4, std::size_t{out_lanes} + 1);
+  doubts = std::make_unique<gpu::Buffer>(device, "doubts", Role::download, Texel::u32, std::size_t{out_lanes} + 1);
 }
 
 void Casts::Tables::write_all_beams() {

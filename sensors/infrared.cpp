@@ -28,7 +28,7 @@ std::vector<ConeArray> infrareds_of(const world::World& world) {
   return cone_arrays_of(world, infrared_kind.word.type, read_infrared);
 }
 
-constexpr RangerKind kRanger{kInfrared, kInfraredColumns, {infrared_comp_spv, false}, tell_response};
+constexpr RangerKind kRanger{kInfrared, kInfraredColumns, {"infrared", infrared_comp_spv, false}, tell_response};
 
 constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize", "sview", "fov", "range", "rays"};
 constexpr Column kColumns[] = {{"range_m"}, {"value", 1, true}};

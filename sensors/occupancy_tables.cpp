@@ -35,22 +35,24 @@ MapBatch::Tables::Tables(gpu::Device& device, base::Workers& w, std::vector<MapP
   lay_out();
   const std::size_t all_words = all.empty() ? 0 : all.back().words + maps::words(all.back().plan.grid);
   const std::size_t all_lines = all.empty() ? 0 : all.back().lines + pairs_of(all.back().plan);
-  rows = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32x4, SF_MAP_ROW_TEXELS * (all.size() + 1));
-  lines = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::f32x4, all_lines + 1);
+  rows = std::make_unique<gpu::Buffer>(device, "due maps", Role::upload, Texel::u32x4,
+                                       SF_MAP_ROW_TEXELS * (all.size() + 1));
+  lines = std::make_unique<gpu::Buffer>(device, "lines of beams", Role::upload, Texel::f32x4, all_lines + 1);
   rows->host<MapRow>()[all.size()] = MapRow{};  // nobody's
   ends.resize(2 * all_lines);
   std::fill_n(lines->host<BeamLine>().data(), 2 * (all_lines + 1), BeamLine{});
-  words = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32, all_words + 1);
+  words = std::make_unique<gpu::Buffer>(device, "maps", Role::download, Texel::u32, all_words + 1);
   std::fill_n(words->host<std::uint32_t>().data(), all_words + 1, 0u);
   std::size_t most = 0;
   for (const MapPlace& map : all) most += strip_blocks(map.plan.grid);
-  const std::size_t lanes = make_course(device, strips, occupancy_strips_comp_spv, 4, most);
-  covered = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32, lanes);
-  make_words(device, plain, occupancy_comp_spv, false);
+  const std::size_t lanes = make_course(device, "strips of a map", strips, occupancy_strips_comp_spv, 4, most);
+  covered = std::make_unique<gpu::Buffer>(device, "covered cells", Role::download, Texel::u32, lanes);
+  make_words(device, "map", plain, occupancy_comp_spv, false);
   if (std::any_of(all.begin(), all.end(), [](const MapPlace& map) { return map.plan.odds.has_value(); })) {
-    odds = std::make_unique<gpu::Buffer>(device, Role::download, Texel::u32x4, SF_ODDS_TEXELS * (all_words + 1));
+    odds = std::make_unique<gpu::Buffer>(device, "log odds", Role::download, Texel::u32x4,
+                                         SF_ODDS_TEXELS * (all_words + 1));
     std::fill_n(odds->host<std::uint32_t>().data(), 4 * SF_ODDS_TEXELS * (all_words + 1), 0u);
-    make_words(device, weighed, occupancy_odds_comp_spv, true);
+    make_words(device, "map with log odds", weighed, occupancy_odds_comp_spv, true);
   }
   record();
 }
@@ -81,25 +83,26 @@ void MapBatch::Tables::lay_out() {
 }
 
 /// @return lanes, whole groups of them.
-std::size_t MapBatch::Tables::make_course(gpu::Device& device, MapCourse& course, std::span<const std::uint32_t> spirv,
-                                          std::uint32_t tables, std::size_t most_blocks) {
-  course.kernel = std::make_unique<gpu::Kernel>(device, spirv, tables);
+std::size_t MapBatch::Tables::make_course(gpu::Device& device, const char* name, MapCourse& course,
+                                          std::span<const std::uint32_t> spirv, std::uint32_t tables,
+                                          std::size_t most_blocks) {
+  course.kernel = std::make_unique<gpu::Kernel>(device, name, spirv, tables);
   // Padded to whole groups, and to whole rows of groups where there are many.
   const std::size_t group = course.kernel->group_size() / SF_MAP_BLOCK;
   const std::size_t groups = most_blocks / group + 1;
   const std::size_t padded = (groups > kMapGroupsAcross ? groups + kMapGroupsAcross : groups) * group;
-  course.blocks = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32, 2 * padded);
-  course.groups = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32, 4);
+  course.blocks = std::make_unique<gpu::Buffer>(device, "blocks of work", Role::upload, Texel::u32, 2 * padded);
+  course.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
   return SF_MAP_BLOCK * padded;
 }
 
-void MapBatch::Tables::make_words(gpu::Device& device, MapWords& part, std::span<const std::uint32_t> spirv,
-                                  bool weighs) {
+void MapBatch::Tables::make_words(gpu::Device& device, const char* name, MapWords& part,
+                                  std::span<const std::uint32_t> spirv, bool weighs) {
   std::size_t most = 0;
   for (const MapPlace& map : all)
     if (map.plan.odds.has_value() == weighs) most += word_blocks(map.plan.grid);
-  const std::size_t lanes = make_course(device, part.course, spirv, weighs ? 6 : 5, most);
-  part.struck = std::make_unique<gpu::Buffer>(device, Role::upload, Texel::u32, lanes);
+  const std::size_t lanes = make_course(device, name, part.course, spirv, weighs ? 6 : 5, most);
+  part.struck = std::make_unique<gpu::Buffer>(device, "struck cells", Role::upload, Texel::u32, lanes);
 }
 
 void MapBatch::Tables::record() {

@@ -76,9 +76,10 @@ struct MapBatch::Tables {
   Tables(gpu::Device& device, base::Workers& w, std::vector<MapPlan> plans);
   void plan(std::vector<MapPlan> plans);
   void lay_out();
-  std::size_t make_course(gpu::Device& device, MapCourse& course, std::span<const std::uint32_t> spirv,
-                          std::uint32_t tables, std::size_t most_blocks);
-  void make_words(gpu::Device& device, MapWords& part, std::span<const std::uint32_t> spirv, bool weighs);
+  std::size_t make_course(gpu::Device& device, const char* name, MapCourse& course,
+                          std::span<const std::uint32_t> spirv, std::uint32_t tables, std::size_t most_blocks);
+  void make_words(gpu::Device& device, const char* name, MapWords& part, std::span<const std::uint32_t> spirv,
+                  bool weighs);
   void record();
   std::span<std::uint32_t> ends_of(const MapPlace& map) {
     return std::span(ends).subspan(2 * std::size_t{map.lines}, map.plan.samples);

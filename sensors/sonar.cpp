@@ -53,7 +53,7 @@ std::vector<ConeArray> sonars_of(const world::World& world) {
   return cone_arrays_of(world, sonar_kind.word.type, read_sonar);
 }
 
-constexpr RangerKind kRanger{kSonar, 1, {sonar_comp_spv, true}, tell_range};
+constexpr RangerKind kRanger{kSonar, 1, {"sonar", sonar_comp_spv, true}, tell_range};
 
 constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize",  "sview",    "fov",
                                       "range",  "rays",    "firing",   "arrays", "incidence"};

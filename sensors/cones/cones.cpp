@@ -54,12 +54,12 @@ Cones::Cones(const Site& site, const Plan& plan, const Faces& faces, const ConeK
       first_cones_(plan.first),
       least_cosines_(plan.least_cosines),
       casts_(site, plan.incidence ? faces.world : site.world, plan.fans),
-      kernel_(site.device, kernel.spirv, kernel.hears_incidence ? 7 : 4),
-      rows_(site.device, gpu::Role::upload, gpu::Texel::u32x4, SF_CONE_TEXELS * padded(plan.fans.size() + 1)),
-      echoes_(site.device, gpu::Role::download, gpu::Texel::u32x4, padded(plan.fans.size() + 1)),
-      groups_(site.device, gpu::Role::upload, gpu::Texel::u32, 4),
-      faces_(site.device, gpu::Role::upload, gpu::Texel::u32x4, faces.rows.size() + 1),
-      headings_(site.device, gpu::Role::upload, gpu::Texel::f32x4, site.world.movers.size() + 1),
+      kernel_(site.device, kernel.name, kernel.spirv, kernel.hears_incidence ? 7 : 4),
+      rows_(site.device, "cones", gpu::Role::upload, gpu::Texel::u32x4, SF_CONE_TEXELS * padded(plan.fans.size() + 1)),
+      echoes_(site.device, "echoes", gpu::Role::download, gpu::Texel::u32x4, padded(plan.fans.size() + 1)),
+      groups_(site.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
+      faces_(site.device, "faces", gpu::Role::upload, gpu::Texel::u32x4, faces.rows.size() + 1),
+      headings_(site.device, "headings", gpu::Role::upload, gpu::Texel::f32x4, site.world.movers.size() + 1),
       incidence_(plan.incidence) {
   SF_CHECK(kernel_.group_size() == kGroup, "groups of cones are counted as of 64");
   SF_CHECK(kernel.hears_incidence || !incidence_, "this kernel hears all angles");

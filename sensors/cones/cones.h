@@ -16,6 +16,7 @@ namespace sf::sensors {
 
 /// What makes readings of what beams met.
 struct ConeKernel {
+  std::string_view name;
   std::span<const std::uint32_t> spirv;
   bool hears_incidence = false;  ///< takes the tables of directions, faces and headings too
 };

@@ -25,11 +25,12 @@ constexpr std::uint32_t kTurnsApart = kMostItemMagnets / 1024;
 std::uint32_t ceiling(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
 
 /// Makes `table` hold `texels`, or twice as many as it did. @return true when it is a new one, with nothing in it.
-bool hold(std::unique_ptr<gpu::Buffer>& table, gpu::Device& device, Role role, Texel texel, std::size_t texels) {
+bool hold(std::unique_ptr<gpu::Buffer>& table, gpu::Device& device, const char* name, Role role, Texel texel,
+          std::size_t texels) {
   if (table != nullptr && table->texels() >= texels) return false;
   const std::size_t had = table != nullptr ? table->texels() : 0;
   table.reset();
-  table = std::make_unique<gpu::Buffer>(device, role, texel, std::max(texels, 2 * had));
+  table = std::make_unique<gpu::Buffer>(device, name, role, texel, std::max(texels, 2 * had));
   return true;
 }
 
@@ -71,10 +72,10 @@ void MagneticField::Tables::gather(std::span<const Place> at, std::span<const st
   }
   stride = std::max(1u, standing_grid.most_spans(farthest) + moving_grid.most_spans(farthest) +
                             (standing + moving) / kMostItemMagnets);
-  bound &=
-      !hold(places, device, Role::upload, Texel::u32x4, 2 * SF_FIELD_PLACES * std::max<std::size_t>(1, ends.size()));
+  bound &= !hold(places, device, "places", Role::upload, Texel::u32x4,
+                 2 * SF_FIELD_PLACES * std::max<std::size_t>(1, ends.size()));
   // A lane that has summed its last span still reads the one behind it.
-  bound &= !hold(spans, device, Role::upload, Texel::u32, 2 * (ends.size() * stride + 1));
+  bound &= !hold(spans, device, "spans of magnets", Role::upload, Texel::u32, 2 * (ends.size() * stride + 1));
 }
 
 void MagneticField::Tables::write_places(std::size_t group, std::span<const Place> at) {
@@ -142,8 +143,9 @@ void MagneticField::Tables::deal_items() {
   const std::uint32_t across = std::min(needed, kGroupsAcross);
   const std::uint32_t down = across > 0 ? ceiling(needed, across) : 0;
   const std::size_t lanes = std::size_t{across} * down * size;
-  bound &= !hold(items, device, Role::upload, Texel::u32x4, std::max<std::size_t>(1, lanes));
-  bound &= !hold(results, device, Role::download, Texel::u32x4, 2 * SF_FIELD_PLACES * (std::size_t{count} + 1));
+  bound &= !hold(items, device, "items of work", Role::upload, Texel::u32x4, std::max<std::size_t>(1, lanes));
+  bound &=
+      !hold(results, device, "fields", Role::download, Texel::u32x4, 2 * SF_FIELD_PLACES * (std::size_t{count} + 1));
 
   const auto table = items->host<FieldItem>();
   // Lanes without work sum nothing, into a place of their own.

@@ -76,18 +76,19 @@ EdgeFit::EdgeFit(const Site& site, const std::vector<LaneEdge>& edges, const std
       seed_(site.seed),
       edges_(edges),
       plan_(plan(site, edges)),
-      kernel_(site.device, laneedge_comp_spv, 6),
-      maker_(site.device, laneedge_points_comp_spv, 7),
-      rows_(site.device, gpu::Role::upload, gpu::Texel::u32x4, SF_EDGE_TEXELS * padded(edges.size())),
-      directions_(site.device, gpu::Role::upload, gpu::Texel::u32x4,
+      kernel_(site.device, "line through points", laneedge_comp_spv, 6),
+      maker_(site.device, "points of paint", laneedge_points_comp_spv, 7),
+      rows_(site.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4, SF_EDGE_TEXELS * padded(edges.size())),
+      directions_(site.device, "bearings", gpu::Role::upload, gpu::Texel::u32x4,
                   SF_BEAMS_PER_LANE * std::size_t{plan_.direction_lanes}),
-      normals_(site.device, gpu::Role::upload, gpu::Texel::f32x4, plan_.noise_lanes),
-      grains_(site.device, gpu::Role::upload, gpu::Texel::u32x4, grains.size()),
-      readings_(site.device, gpu::Role::download, gpu::Texel::u32x4, 2 * edges.size()),
-      groups_(site.device, gpu::Role::upload, gpu::Texel::u32, 4),
-      points_(site.device, gpu::Role::download, gpu::Texel::u32x4, SF_BEAMS_PER_LANE * (std::size_t{plan_.lanes} + 1)),
-      order_(site.device, gpu::Role::upload, gpu::Texel::u32, padded(edges.size())),
-      mixtures_(site.device, gpu::Role::download, gpu::Texel::u32, edges.size()) {
+      normals_(site.device, "normal deviates", gpu::Role::upload, gpu::Texel::f32x4, plan_.noise_lanes),
+      grains_(site.device, "sizes of pixels", gpu::Role::upload, gpu::Texel::u32x4, grains.size()),
+      readings_(site.device, "readings", gpu::Role::download, gpu::Texel::u32x4, 2 * edges.size()),
+      groups_(site.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
+      points_(site.device, "points", gpu::Role::download, gpu::Texel::u32x4,
+              SF_BEAMS_PER_LANE * (std::size_t{plan_.lanes} + 1)),
+      order_(site.device, "order of work", gpu::Role::upload, gpu::Texel::u32, padded(edges.size())),
+      mixtures_(site.device, "mixtures", gpu::Role::download, gpu::Texel::u32, edges.size()) {
   SF_CHECK(kernel_.group_size() == kGroup, "groups of the fit are counted as of 64");
   gpu::Buffer* const fitting[] = {&rows_, &points_, &grains_, &readings_, &order_, &mixtures_};
   kernel_.bind(fitting);

@@ -42,11 +42,11 @@ Road::Road(const Site& site, const PaintRaster& raster, Casts& casts, std::uint3
       block_rows_(raster.rows()),
       tag_(tag),
       with_casts_(with_casts),
-      kernel_(site.device, paint_raster_comp_spv, 11),
-      place_(site.device, gpu::Role::upload, gpu::Texel::u32x4, SF_ROAD_TEXELS * casts.fans().size()),
-      groups_(site.device, gpu::Role::upload, gpu::Texel::u32, 4),
-      directory_(site.device, gpu::Role::upload, gpu::Texel::u32, raster.directory().size()),
-      blocks_(site.device, gpu::Role::upload, gpu::Texel::u32, raster.blocks().size() + 4) {
+      kernel_(site.device, "paint raster", paint_raster_comp_spv, 11),
+      place_(site.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4, SF_ROAD_TEXELS * casts.fans().size()),
+      groups_(site.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
+      directory_(site.device, "blocks of the raster", gpu::Role::upload, gpu::Texel::u32, raster.directory().size()),
+      blocks_(site.device, "raster of the paint", gpu::Role::upload, gpu::Texel::u32, raster.blocks().size() + 4) {
   refuse_long_rays(site, casts, cell_);
   SF_CHECK(kernel_.group_size() == casts.group_size(), "the raster's rays are the cast's lanes, beam by beam");
   std::memcpy(directory_.host<std::uint32_t>().data(), raster.directory().data(), 4 * raster.directory().size());

@@ -53,8 +53,9 @@ Scene::Scene(const world::World& world, gpu::Device& device, base::Workers& work
 
   // Exact segments: walls now, movers each tick.
   const std::size_t count = walls_.size() + bodies_->segments().size();
-  segments_ = std::make_unique<gpu::Buffer>(device, gpu::Role::upload, gpu::Texel::u32x4, 2 * count + 2);
-  models_ = std::make_unique<gpu::Buffer>(device, gpu::Role::upload, gpu::Texel::u32, count + 1);
+  segments_ = std::make_unique<gpu::Buffer>(device, "walls and movers in 64 bits", gpu::Role::upload, gpu::Texel::u32x4,
+                                            2 * count + 2);
+  models_ = std::make_unique<gpu::Buffer>(device, "whose walls", gpu::Role::upload, gpu::Texel::u32, count + 1);
   if (count >= SF_ROW_MASK)
     throw base::InputError("the world has " + std::to_string(count) + " segments; at most " +
                            std::to_string(SF_ROW_MASK - 1) + " are supported");

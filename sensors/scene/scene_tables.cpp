@@ -14,19 +14,20 @@ ListTables Scene::tables() {
 }
 
 void Scene::grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t views, std::uint32_t mover_chunks) {
-  const auto replace = [&](std::unique_ptr<gpu::Buffer>& table, gpu::Texel texel, std::size_t texels) {
-    auto larger = std::make_unique<gpu::Buffer>(device_, gpu::Role::upload, texel, texels);
+  const auto replace = [&](std::unique_ptr<gpu::Buffer>& table, const char* name, gpu::Texel texel,
+                           std::size_t texels) {
+    auto larger = std::make_unique<gpu::Buffer>(device_, name, gpu::Role::upload, texel, texels);
     if (table) std::memcpy(larger->host<std::uint8_t>().data(), table->host<std::uint8_t>().data(), table->bytes());
     table = std::move(larger);
   };
   const std::size_t chunks = std::size_t{pool_chunks} + mover_chunks;
   if (chunks != std::size_t{options_.pool_chunks} + mover_chunks_ || !entries_) {
-    replace(entries_, gpu::Texel::f32x4, SF_CHUNK * chunks);
-    replace(ids_, gpu::Texel::u32, SF_CHUNK * chunks);
-    replace(nearest_, gpu::Texel::f32, chunks);
+    replace(entries_, "sector lists", gpu::Texel::f32x4, SF_CHUNK * chunks);
+    replace(ids_, "names in sector lists", gpu::Texel::u32, SF_CHUNK * chunks);
+    replace(nearest_, "distances of chunks", gpu::Texel::f32, chunks);
   }
   if (pool_cells != options_.pool_cells || views != view_capacity_)
-    replace(headers_, gpu::Texel::u32x4, std::size_t{SF_SECTORS} * (pool_cells + views + 1));
+    replace(headers_, "heads of sector lists", gpu::Texel::u32x4, std::size_t{SF_SECTORS} * (pool_cells + views + 1));
   const auto nobody = headers_->host<ListHeader>().subspan(std::size_t{SF_SECTORS} * (pool_cells + views), SF_SECTORS);
   std::fill(nobody.begin(), nobody.end(), ListHeader{0, 0, std::numeric_limits<float>::infinity(), 0});
   pool_.grow(pool_cells, pool_chunks);

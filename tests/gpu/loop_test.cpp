@@ -23,10 +23,10 @@ struct Counted {
 
 Counted count_to(std::uint32_t n) {
   Device device;
-  Kernel kernel(device, loop_comp_spv, 2);
-  Buffer counts(device, Role::upload, Texel::u32, 64);
-  Buffer sums(device, Role::download, Texel::u32x4, 64);
-  Buffer groups(device, Role::upload, Texel::u32, 4);
+  Kernel kernel(device, "loop", loop_comp_spv, 2);
+  Buffer counts(device, "counts", Role::upload, Texel::u32, 64);
+  Buffer sums(device, "sums", Role::download, Texel::u32x4, 64);
+  Buffer groups(device, "groups", Role::upload, Texel::u32, 4);
   for (std::uint32_t& count : counts.host<std::uint32_t>()) count = n;
   for (std::uint32_t& sum : sums.host<std::uint32_t>()) sum = 0xDEADBEEFu;
   for (std::uint32_t& group : groups.host<std::uint32_t>()) group = 1;

@@ -16,7 +16,7 @@ namespace {
 
 TEST(Buffer, HasTheTexelsAskedForAndAHostView) {
   Device device;
-  Buffer table(device, Role::upload, Texel::u32x4, 5);
+  Buffer table(device, "table", Role::upload, Texel::u32x4, 5);
   EXPECT_EQ(table.texels(), 5u);
   EXPECT_EQ(table.bytes(), 80u);
   EXPECT_EQ(table.host<double>().size(), 10u);
@@ -25,11 +25,29 @@ TEST(Buffer, HasTheTexelsAskedForAndAHostView) {
   EXPECT_EQ(other.host<double>()[9], 1.5);
 }
 
+TEST(Device, NamesWhatItHolds) {
+  Device device;
+  EXPECT_TRUE(device.held().empty()) << "the self-check leaves nothing behind";
+  Buffer first(device, "first", Role::upload, Texel::u32, 3);
+  device.owned_by("laser");
+  {
+    const Buffer second(device, "second", Role::download, Texel::f32x4, 2);
+    const Buffer moved(std::move(first));
+    ASSERT_EQ(device.held().size(), 2u);
+    EXPECT_EQ(device.held()[0].name, "first");
+    EXPECT_EQ(device.held()[0].owner, "");
+    EXPECT_EQ(device.held()[1].owner, "laser");
+    EXPECT_EQ(device.held()[1].bytes, 32u);
+    EXPECT_FALSE(device.held()[1].is_kernel);
+  }
+  EXPECT_TRUE(device.held().empty());
+}
+
 /// More than the device's limit is refused with the limit and what to do, not with a crash.
 TEST(Buffer, MoreThanTheDeviceHoldsIsRefused) {
   Device device;
   try {
-    Buffer table(device, Role::upload, Texel::f32, std::size_t{1} << 40);
+    Buffer table(device, "table", Role::upload, Texel::f32, std::size_t{1} << 40);
     FAIL();
   } catch (const base::DeviceError& error) {
     EXPECT_NE(std::string(error.what()).find("elements in one table"), std::string::npos) << error.what();

@@ -41,8 +41,8 @@ class FitRig {
       lanes.push_back(next);
       next += sensors::plan_beams(edges_[i].fan, true).lanes();
     }
-    gpu::Buffer ranges(device(), gpu::Role::upload, gpu::Texel::u32x4, 2 * std::size_t{next});
-    gpu::Buffer hits(device(), gpu::Role::upload, gpu::Texel::u32x4, next);
+    gpu::Buffer ranges(device(), "ranges", gpu::Role::upload, gpu::Texel::u32x4, 2 * std::size_t{next});
+    gpu::Buffer hits(device(), "hits", gpu::Role::upload, gpu::Texel::u32x4, next);
     for (std::size_t i = 0; i < edges_.size(); ++i) {
       const sensors::BeamPlan plan = sensors::plan_beams(edges_[i].fan, true);
       for (std::size_t k = 0; k < shots[i].ranges.size(); ++k) {
@@ -51,7 +51,7 @@ class FitRig {
       }
     }
     const std::size_t groups = (next + 63) / 64;
-    gpu::Buffer owners(device(), gpu::Role::upload, gpu::Texel::u32, 2 * 64 * groups);
+    gpu::Buffer owners(device(), "owners", gpu::Role::upload, gpu::Texel::u32, 2 * 64 * groups);
     std::size_t at = 0;
     const auto owner = owners.host<sensors::Lane>();
     for (std::uint32_t i = 0; i < edges_.size(); ++i)
@@ -59,7 +59,7 @@ class FitRig {
     for (; at < owner.size(); ++at) owner[at] = owner[next - 1];
     fit_.prepare(due, lanes);
     fit_.bind(owners, ranges, hits);
-    gpu::Buffer counts(device(), gpu::Role::upload, gpu::Texel::u32, 4);
+    gpu::Buffer counts(device(), "counts", gpu::Role::upload, gpu::Texel::u32, 4);
     counts.host<std::uint32_t>()[0] = static_cast<std::uint32_t>(groups);
     counts.host<std::uint32_t>()[1] = counts.host<std::uint32_t>()[2] = 1;
     gpu::Batch batch(device());

@@ -1,0 +1,86 @@
+// `explain`: what a world makes the farm build and do, and what each part costs here.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "apps/commands.h"
+#include "apps/facts.h"
+#include "apps/lend.h"
+#include "apps/wording.h"
+#include "scenarios/explanation.h"
+
+namespace sf::apps {
+
+namespace {
+
+std::string bytes_text(std::size_t bytes) {
+  if (bytes >= 1u << 20) return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20));
+  return bytes >= 1u << 10 ? fmt::format("{:.1f} KiB", static_cast<double>(bytes) / (1 << 10))
+                           : fmt::format("{} B", bytes);
+}
+
+std::string list_of(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string rates_of(const scenarios::ExplainedKind& k) {
+  return k.least_rate == k.most_rate ? fmt::format("{:g} Hz", k.most_rate)
+                                     : fmt::format("{:g} to {:g} Hz", k.least_rate, k.most_rate);
+}
+
+std::string work_of(const scenarios::ExplainedKind& k, double ticks) {
+  const auto each = [&](std::uint64_t count) { return static_cast<double>(count) / ticks; };
+  std::string text = fmt::format("{:.4g} readings", k.readings);
+  if (k.work.rays > 0)
+    text += fmt::format(", {:.4g} rays, {:.3g} lists built anew", each(k.work.rays), each(k.work.cells_built));
+  if (k.work.doubts > 0)
+    text += fmt::format(", {:.2g} % of beams decided in 64 bits against all",
+                        400.0 * static_cast<double>(k.work.doubts) / static_cast<double>(k.work.rays));
+  if (k.work.dipoles > 0) text += fmt::format(", {:.4g} magnets summed", each(k.work.dipoles));
+  return text;
+}
+
+std::string text_of(const scenarios::ExplainedKind& k, const scenarios::Explanation& e) {
+  std::string text =
+      fmt::format("{}: {} on {}, {}\n", k.kind, counted(k.sensors, "sensor"), counted(k.robots, "robot"), rates_of(k));
+  text += row("a tick", fmt::format("{:.3f} ms heard {}, {:.3f} ms more than nobody heard", 1e3 * k.tick,
+                                    k.derived ? "with the lasers" : "alone", 1e3 * (k.tick - e.silent)));
+  text += row("", work_of(k, static_cast<double>(e.ticks)));
+  text += row("kernels", k.kernels.empty() ? "none: it is read on the host" : list_of(k.kernels));
+  if (k.tables.empty()) return text;
+  std::string tables;
+  for (const gpu::Held& h : k.tables)
+    tables += fmt::format("{}{} {}", tables.empty() ? "" : ", ", h.name, bytes_text(h.bytes));
+  return text + row("tables", fmt::format("{}: {}", bytes_text(k.bytes), tables));
+}
+
+}  // namespace
+
+std::string text_of(const scenarios::Explanation& e) {
+  std::string text;
+  for (const scenarios::ExplainedKind& kind : e.kinds) text += text_of(kind, e);
+  text += "together\n";
+  text +=
+      row("a tick", fmt::format("{:.3f} ms with all heard, {:.4f} ms with nobody heard", 1e3 * e.all, 1e3 * e.silent));
+  text += row("to start", fmt::format("{:.0f} ms to build, {:.0f} ms the first tick", 1e3 * e.build, 1e3 * e.first));
+  if (e.resident > 0)
+    text += row("memory", bytes_text(e.resident) + " resident, the driver and this measurement included");
+  for (const scenarios::Slice& s : e.slices)
+    text += row("slice", fmt::format("z = {:g} m: {} of {} wall segments can be met by {}", s.z, s.walls, e.walls,
+                                     counted(s.sensors, "laser")));
+  if (!e.absent.empty()) text += row("not built", list_of(e.absent) + ": the world has none");
+  return text;
+}
+
+int explain(const Options& options) {
+  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed);
+  gpu::Device device(options.device);
+  const scenarios::Explanation explanation = scenarios::explain(world, device, options.seed, options.threads);
+  std::fputs((options.json ? json_of(explanation) : text_of(explanation)).c_str(), stdout);
+  return 0;
+}
+
+}  // namespace sf::apps

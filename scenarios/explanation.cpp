@@ -1,0 +1,168 @@
+#include "scenarios/explanation.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "farm/farm.h"
+#include "scenarios/simulation.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kDriven = 2.0;  ///< [s] simulated
+constexpr int kLaps = 4;         ///< measured, after one to warm up
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Everyone's states, tick by tick.
+using Ways = std::vector<std::vector<base::Report>>;
+
+Ways drive(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads) {
+  Simulation simulation(world, device, {.seed = seed, .threads = threads});
+  Ways ways;
+  const auto ticks = std::clamp<std::int64_t>(std::llround(kDriven / world.interval), 1, 1000);
+  for (std::int64_t tick = 0; tick < ticks; ++tick) {
+    const base::TickRecord record = simulation.step();
+    ways.emplace_back(record.reports.begin(), record.reports.end());
+  }
+  return ways;
+}
+
+/// A farm that goes along ways again and again, further in time each time.
+class Drive {
+ public:
+  Drive(const world::World& world, gpu::Device& device, const Ways& ways, const farm::FarmOptions& options)
+      : farm_(world, device, options), ways_(ways), interval_(std::llround(world.interval * 1e9)) {}
+
+  void hear(std::uint32_t kinds) {
+    for (std::uint32_t m = 0; m < ways_[0].size(); ++m) farm_.hear(m, kinds);
+  }
+  void tick(std::size_t at) {
+    farm_.tick(now_, ways_[at]);
+    now_ += interval_;
+  }
+  /// [s] a tick, mean over the laps after the first.
+  double laps() {
+    for (std::size_t at = 0; at < ways_.size(); ++at) tick(at);
+    before_ = farm_.stats();
+    const auto start = Clock::now();
+    for (int lap = 0; lap < kLaps; ++lap)
+      for (std::size_t at = 0; at < ways_.size(); ++at) tick(at);
+    return seconds_since(start) / static_cast<double>(ticks());
+  }
+  std::uint64_t ticks() const { return kLaps * ways_.size(); }
+  double readings() const {
+    return static_cast<double>(farm_.stats().readings - before_.readings) / static_cast<double>(ticks());
+  }
+  sensors::Work work() const {
+    const sensors::Work& a = before_.work;
+    const sensors::Work b = farm_.stats().work;
+    return {b.rays - a.rays, b.doubts - a.doubts, b.cells_built - a.cells_built, b.dipoles - a.dipoles};
+  }
+  const sensors::Roster& roster() const { return farm_.roster(); }
+
+ private:
+  farm::Farm farm_;
+  const Ways& ways_;
+  std::int64_t interval_;
+  std::int64_t now_ = 0;
+  farm::FarmStats before_;
+};
+
+ExplainedKind facts_of(const sensors::Roster::Group& group) {
+  ExplainedKind kind;
+  kind.kind = group.kind->name;
+  kind.sensors = static_cast<std::uint32_t>(group.rows.size());
+  kind.least_rate = HUGE_VAL;
+  std::set<std::uint32_t> carriers;
+  for (const sensors::SensorRow& row : group.rows) {
+    carriers.insert(row.mover);
+    kind.least_rate = std::min(kind.least_rate, row.rate);
+    kind.most_rate = std::max(kind.most_rate, row.rate);
+  }
+  kind.robots = static_cast<std::uint32_t>(carriers.size());
+  return kind;
+}
+
+void add_held(const std::vector<gpu::Held>& held, ExplainedKind& kind) {
+  for (const gpu::Held& h : held) {
+    if (h.owner != kind.kind) continue;
+    if (h.is_kernel) {
+      kind.kernels.push_back(h.name);
+      continue;
+    }
+    kind.tables.push_back(h);
+    kind.bytes += h.bytes;
+  }
+  std::stable_sort(kind.tables.begin(), kind.tables.end(),
+                   [](const gpu::Held& a, const gpu::Held& b) { return a.bytes > b.bytes; });
+}
+
+std::vector<Slice> slices_of(const world::World& world) {
+  std::map<double, std::uint32_t> heights;
+  for (const world::Mover& mover : world.movers)
+    for (const world::Laser& laser : mover.lasers) ++heights[mover.X_WM.z + laser.X_MS.z];
+  std::vector<Slice> slices;
+  for (const auto& [z, sensors] : heights) {
+    const auto seen = std::count_if(world.walls.begin(), world.walls.end(), [z = z](const world::Segment& s) {
+      return s.seen_by_laser && s.z_min <= z && z < s.z_max;
+    });
+    slices.push_back({z, sensors, static_cast<std::size_t>(seen)});
+  }
+  return slices;
+}
+
+std::size_t resident_bytes() {
+  std::size_t size = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> size >> resident;
+  return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads) {
+  Explanation e;
+  const Ways ways = drive(world, device, seed, threads);
+  const auto start = Clock::now();
+  Drive farm(world, device, ways, {.seed = seed, .threads = threads});
+  e.build = seconds_since(start);
+  farm.hear(farm::kAllKinds);
+  const auto first = Clock::now();
+  farm.tick(0);
+  e.first = seconds_since(first);
+
+  farm.hear(0);
+  e.silent = farm.laps();
+  std::set<std::string_view> present;
+  for (const sensors::Roster::Group& group : farm.roster().groups()) {
+    present.insert(group.kind->name);
+    ExplainedKind kind = facts_of(group);
+    kind.derived = group.kind->derived;
+    farm.hear(1u << group.kind->id | (kind.derived ? 1u << base::kLaser : 0u));
+    kind.tick = farm.laps();
+    kind.readings = farm.readings();
+    kind.work = farm.work();
+    e.kinds.push_back(std::move(kind));
+  }
+  farm.hear(farm::kAllKinds);
+  e.all = farm.laps();
+  e.ticks = farm.ticks();
+  for (ExplainedKind& kind : e.kinds) add_held(device.held(), kind);
+  for (const sensors::SensorKind* kind : sensors::kinds())
+    if (!present.contains(kind->name)) e.absent.emplace_back(kind->name);
+  e.slices = slices_of(world);
+  e.walls = world.walls.size();
+  e.resident = resident_bytes();
+  return e;
+}
+
+}  // namespace sf::scenarios

@@ -1,0 +1,64 @@
+// What a world makes the farm build and do.
+
+#include "scenarios/explanation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/sensors/scenes.h"
+
+namespace sf::scenarios {
+namespace {
+
+gpu::Device& device() {
+  static gpu::Device device;
+  return device;
+}
+
+world::World lasers(std::uint32_t robots) {
+  world::World world = scenes::boxes(20, 8.0, 3);
+  scenes::add_robots(world, robots, scenes::laser(61, M_PI, 4.0), 5);
+  world.walls.push_back(world.walls.front());
+  world.walls.back().z_min = 5.0;
+  world.walls.back().z_max = 6.0;
+  world::finish(world);
+  return world;
+}
+
+TEST(Explanation, CountsWhatThereIs) {
+  const world::World world = lasers(6);
+  const Explanation e = explain(world, device(), 1, 1);
+  ASSERT_EQ(e.kinds.size(), 1u);
+  const ExplainedKind& k = e.kinds[0];
+  EXPECT_EQ(k.kind, "laser");
+  EXPECT_EQ(k.sensors, 6u);
+  EXPECT_EQ(k.robots, 6u);
+  EXPECT_EQ(k.most_rate, 10.0);
+  EXPECT_DOUBLE_EQ(k.readings, 6.0) << "10 Hz in ticks of 0.1 s";
+  EXPECT_EQ(k.work.rays, 6 * 61 * e.ticks);
+  EXPECT_EQ(k.kernels, std::vector<std::string>{"laser"});
+  std::size_t sum = 0;
+  for (const gpu::Held& h : k.tables) sum += h.bytes;
+  EXPECT_EQ(k.bytes, sum);
+  EXPECT_TRUE(std::any_of(k.tables.begin(), k.tables.end(), [](const auto& h) { return h.name == "sector lists"; }));
+  EXPECT_GT(e.resident, 1u << 20);
+}
+
+TEST(Explanation, WallsThatNoLaserMeetsAreNotCounted) {
+  const world::World world = lasers(2);
+  const Explanation e = explain(world, device(), 1, 1);
+  ASSERT_EQ(e.slices.size(), 1u);
+  EXPECT_EQ(e.slices[0].walls, world.walls.size() - 1);
+  EXPECT_EQ(e.slices[0].sensors, 2u);
+}
+
+TEST(Explanation, AKindThatTheWorldLacksIsNotBuilt) {
+  const Explanation e = explain(lasers(2), device(), 1, 1);
+  EXPECT_EQ(e.absent.size(), sensors::kinds().size() - 1);
+  EXPECT_EQ(std::count(e.absent.begin(), e.absent.end(), "magnetometer"), 1);
+  for (const gpu::Held& h : device().held()) EXPECT_EQ(h.owner, "") << "nothing is left behind";
+}
+
+}  // namespace
+}  // namespace sf::scenarios
