@@ -139,6 +139,16 @@ void add_ports(CLI::App& app, Options& o) {
   add_wire(app, o);
 }
 
+void add_threads(CLI::App& app, Options& o) {
+  app.add_option("--threads", o.threads, "Threads of the host's part (0: all); never changes a reading")
+      ->check(whole(0, 256))
+      ->type_name("N");
+}
+
+void add_recording(CLI::App& app, Options& o) {
+  app.add_option("recording", o.world, "Folder of the recording")->required()->type_name("DIR");
+}
+
 void add_kind(CLI::App& app, Options& o) {
   std::vector<std::string> names;
   for (const sensors::SensorKind* kind : sensors::kinds()) names.emplace_back(kind->name);

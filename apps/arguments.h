@@ -39,6 +39,9 @@ void add_silence(CLI::App& app, Options& o);
 /// `--duration`, without which it goes on; and calls it `command`.
 void add_until(CLI::App& sub, Options& o, Command command, const std::string& help);
 void add_ports(CLI::App& app, Options& o);
+void add_threads(CLI::App& app, Options& o);
+/// What a run was recorded into.
+void add_recording(CLI::App& app, Options& o);
 void add_kind(CLI::App& app, Options& o);
 void add_seed(CLI::App& app, Options& o, const std::string& what);
 void add_robots(CLI::App& app, Options& o);

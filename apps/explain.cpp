@@ -20,12 +20,6 @@ std::string bytes_text(std::size_t bytes) {
                            : fmt::format("{} B", bytes);
 }
 
-std::string list_of(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 std::string rates_of(const scenarios::ExplainedKind& k) {
   return k.least_rate == k.most_rate ? fmt::format("{:g} Hz", k.most_rate)
                                      : fmt::format("{:g} to {:g} Hz", k.least_rate, k.most_rate);
@@ -49,7 +43,8 @@ std::string text_of(const scenarios::ExplainedKind& k, const scenarios::Explanat
   text += row("a tick", fmt::format("{:.3f} ms heard {}, {:.3f} ms more than nobody heard", 1e3 * k.tick,
                                     k.derived ? "with the lasers" : "alone", 1e3 * (k.tick - e.silent)));
   text += row("", work_of(k, static_cast<double>(e.ticks)));
-  text += row("kernels", k.kernels.empty() ? "none: it is read on the host" : list_of(k.kernels));
+  text += row("kernels",
+              k.kernels.empty() ? "none: it is read on the host" : fmt::format("{}", fmt::join(k.kernels, ", ")));
   if (k.tables.empty()) return text;
   std::string tables;
   for (const gpu::Held& h : k.tables)
@@ -71,7 +66,7 @@ std::string text_of(const scenarios::Explanation& e) {
   for (const scenarios::Slice& s : e.slices)
     text += row("slice", fmt::format("z = {:g} m: {} of {} wall segments can be met by {}", s.z, s.walls, e.walls,
                                      counted(s.sensors, "laser")));
-  if (!e.absent.empty()) text += row("not built", list_of(e.absent) + ": the world has none");
+  if (!e.absent.empty()) text += row("not built", fmt::format("{}: the world has none", fmt::join(e.absent, ", ")));
   return text;
 }
 

@@ -244,6 +244,7 @@ std::string json_of(const scenarios::Verification& verification) {
   };
   Json json{{"ticks", verification.ticks},
             {"sound", verification.sound()},
+            {"interrupted", verification.interrupted},
             {"missing", verification.missing},
             {"skipped", verification.skipped},
             {"reference", compared(verification.reference)}};

@@ -10,6 +10,7 @@
 #include "apps/commands.h"
 #include "apps/stop.h"
 #include "apps/wording.h"
+#include "base/elapsed.h"
 #include "base/error.h"
 #include "maps/assembler.h"
 #include "maps/merge.h"
@@ -178,8 +179,6 @@ void Display::tell() const {
                  source.assembler.map() != nullptr && source.assembler.true_poses() ? ", made from true poses" : "");
 }
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 }  // namespace
 
 int map(const Options& options) {
@@ -197,8 +196,8 @@ int map(const Options& options) {
     }
     display.redraw();
     if (options.once && display.all_whole()) break;
-    if (options.duration > 0.0 && seconds_since(start) >= options.duration) break;
-    if (begun && seconds_since(last) >= options.silence) break;
+    if (options.duration > 0.0 && base::seconds_since(start) >= options.duration) break;
+    if (begun && base::seconds_since(last) >= options.silence) break;
   }
   display.print();
   display.tell();

@@ -16,6 +16,7 @@
 #include "apps/post.h"
 #include "apps/progress.h"
 #include "apps/stop.h"
+#include "base/elapsed.h"
 #include "base/error.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
@@ -25,8 +26,6 @@ namespace sf::apps {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Where readings go: a recording, the network, both or neither.
 class Outputs {
@@ -51,7 +50,7 @@ class Outputs {
       post_->flush();
     }
     if (recorder_) recorder_->write(tick);
-    seconds_ += seconds_since(start);
+    seconds_ += base::seconds_since(start);
   }
 
   void finish(RunFacts& facts) {
@@ -137,7 +136,7 @@ int run(const Options& options) {
       if (options.real_time) keep_pace(start, simulated);
     }
   }
-  facts.wall_s = seconds_since(start);
+  facts.wall_s = base::seconds_since(start);
   facts.simulated_s = static_cast<double>(facts.ticks) * world.interval;
   facts.interrupted = facts.ticks < ticks;
   facts.device = device.facts().name;

@@ -84,7 +84,7 @@ void add_sense(CLI::App& app, Options& o) {
 void add_plot(CLI::App& app, Options& o) {
   CLI::App* sub =
       app.add_subcommand("plot", "Draw trajectories, an occupancy map and recorded readings from a recorded run");
-  sub->add_option("recording", o.world, "Folder of the recording")->required()->type_name("DIR");
+  add_recording(*sub, o);
   sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
@@ -99,7 +99,7 @@ void add_explain(CLI::App& app, Options& o) {
   add_json(*sub, o);
   add_device(*sub, o);
   add_robots(*sub, o);
-  sub->add_option("--threads", o.threads, "Threads of the host's part (0: all)")->check(whole(0, 256))->type_name("N");
+  add_threads(*sub, o);
   sub->callback([&o] { o.command = Command::explain; });
 }
 

@@ -56,12 +56,12 @@ void add_verify(CLI::App& app, Options& o) {
       app.add_subcommand("verify",
                          "Compute a recorded run again, on this device and in plain C++, and compare bit by "
                          "bit (exit 1 when something differs)");
-  sub->add_option("recording", o.world, "Folder of the recording")->required()->type_name("DIR");
+  add_recording(*sub, o);
   sub->add_option("--sample", o.sample, "Scans that plain C++ casts again, spread over the run (0: all)")
       ->check(whole(0, UINT64_MAX))
       ->type_name("N")
       ->capture_default_str();
-  sub->add_option("--threads", o.threads, "Threads of the host's part (0: all)")->check(whole(0, 256))->type_name("N");
+  add_threads(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
   sub->callback([&o] { o.command = Command::verify; });

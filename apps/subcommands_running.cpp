@@ -28,9 +28,7 @@ void add_run(CLI::App& app, Options& o) {
       ->check(number(0.0, 1e9))
       ->type_name("S")
       ->capture_default_str();
-  sub->add_option("--threads", o.threads, "Threads of the host's part (0: all); never changes a reading")
-      ->check(whole(0, 256))
-      ->type_name("N");
+  add_threads(*sub, o);
   auto* record = sub->add_option("--record", o.record, "Folder to record the run into (run.mcap)")
                      ->check(not_empty("a folder"))
                      ->type_name("DIR");

@@ -34,7 +34,9 @@ std::string text_of(const scenarios::Verification& v, bool readings_recorded) {
     text += row("note", "the run kept no readings (run --record-readings): what its poses give here was checked");
   for (const std::string& skipped : v.skipped) text += row("skipped", skipped);
   if (v.missing > 0) text += row("missing", counted(v.missing, "recorded reading") + " that no sensor was due to make");
-  return text + row("verdict", v.sound() ? "sound" : "NOT SOUND");
+  return text + row("verdict", !v.sound()      ? "NOT SOUND"
+                               : v.interrupted ? "sound as far as it went: interrupted"
+                                               : "sound");
 }
 
 int verify(const Options& options) {

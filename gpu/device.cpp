@@ -48,12 +48,11 @@ int Device::Vk::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted)
 }
 
 void Device::Vk::hold(const void* what, std::string_view name, std::size_t bytes, bool is_kernel) {
-  const std::uint64_t next = held.empty() ? 0 : held.rbegin()->first + 1;
-  held[next] = {what, {owner, std::string(name), bytes, is_kernel}};
+  held.emplace_back(what, Held{owner, std::string(name), bytes, is_kernel});
 }
 
 void Device::Vk::let_go(const void* what) {
-  std::erase_if(held, [&](const auto& entry) { return entry.second.first == what; });
+  std::erase_if(held, [&](const auto& entry) { return entry.first == what; });
 }
 
 Survey survey_devices(const std::string& wanted) {
@@ -92,7 +91,7 @@ bool Device::unified() const {
 
 std::vector<Held> Device::held() const {
   std::vector<Held> all;
-  for (const auto& [when, entry] : vk_->held) all.push_back(entry.second);
+  for (const auto& [what, held] : vk_->held) all.push_back(held);
   return all;
 }
 

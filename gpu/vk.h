@@ -3,12 +3,11 @@
 
 #include <vulkan/vulkan.h>
 
-#include <cstdint>
-#include <map>
 #include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "gpu/device.h"
 
@@ -38,7 +37,7 @@ struct Device::Vk {
   VkPhysicalDeviceMemoryProperties memory{};
   DeviceFacts facts;
   std::string owner;
-  std::map<std::uint64_t, std::pair<const void*, Held>> held;  ///< by when it was made
+  std::vector<std::pair<const void*, Held>> held;  ///< in the order in which they were made
 
   void hold(const void* what, std::string_view name, std::size_t bytes, bool is_kernel);
   void let_go(const void* what);

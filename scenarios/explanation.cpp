@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "base/elapsed.h"
 #include "farm/farm.h"
 #include "scenarios/simulation.h"
 
@@ -20,8 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kDriven = 2.0;  ///< [s] simulated
 constexpr int kLaps = 4;         ///< measured, after one to warm up
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Everyone's states, tick by tick.
 using Ways = std::vector<std::vector<base::Report>>;
@@ -57,7 +56,7 @@ class Drive {
     const auto start = Clock::now();
     for (int lap = 0; lap < kLaps; ++lap)
       for (std::size_t at = 0; at < ways_.size(); ++at) tick(at);
-    return seconds_since(start) / static_cast<double>(ticks());
+    return base::seconds_since(start) / static_cast<double>(ticks());
   }
   std::uint64_t ticks() const { return kLaps * ways_.size(); }
   double readings() const {
@@ -134,11 +133,11 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   const Ways ways = drive(world, device, seed, threads);
   const auto start = Clock::now();
   Drive farm(world, device, ways, {.seed = seed, .threads = threads});
-  e.build = seconds_since(start);
+  e.build = base::seconds_since(start);
   farm.hear(farm::kAllKinds);
   const auto first = Clock::now();
   farm.tick(0);
-  e.first = seconds_since(first);
+  e.first = base::seconds_since(first);
 
   farm.hear(0);
   e.silent = farm.laps();

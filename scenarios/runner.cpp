@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "base/elapsed.h"
 #include "base/error.h"
 #include "scenarios/coverage.h"
 #include "scenarios/statistics.h"
@@ -20,8 +21,6 @@ namespace {
 
 using Kind = Expectation::Kind;
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 bool expects(const Scenario& scenario, Kind kind) {
   return std::any_of(scenario.expect.begin(), scenario.expect.end(),
@@ -93,12 +92,12 @@ class Run {
     for (; result.ticks < ticks && !(until_done && simulation_.all_done()); ++result.ticks) {
       const auto begin = Clock::now();
       const base::TickRecord tick = simulation_.step();
-      tick_ms_.push_back(1e3 * seconds_since(begin));
+      tick_ms_.push_back(1e3 * base::seconds_since(begin));
       watch_.look(tick);
       enter(tick.readings, maps_);
       if (progress && result.ticks % 16 == 0) progress(static_cast<double>(result.ticks) / static_cast<double>(ticks));
     }
-    result.wall = seconds_since(start);
+    result.wall = base::seconds_since(start);
     result.simulated = static_cast<double>(result.ticks) * world_.interval;
     result.hash = simulation_.farm().hash();
     for (const Expectation& e : scenario_.expect) result.outcomes.push_back(judge(e));

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/elapsed.h"
 #include "base/error.h"
 #include "farm/schedule.h"
 #include "world/roads/roads.h"
@@ -11,10 +12,6 @@
 namespace sf::scenarios {
 
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 farm::FarmOptions farm_options(const SimulationOptions& options) {
   farm::FarmOptions farm;
@@ -79,7 +76,7 @@ base::TickRecord Simulation::step() {
   const auto start = std::chrono::steady_clock::now();
   sort_by_mover(readings);
   decide(time);
-  move_s_ += seconds_since(start);
+  move_s_ += base::seconds_since(start);
   return {tick_++, time, fleet_.reports(), obeyed_, fleet_.contacts(), readings};
 }
 
@@ -87,7 +84,7 @@ void Simulation::move() {
   const auto start = std::chrono::steady_clock::now();
   fleet_.move(commands_, interval_);
   obeyed_ = commands_;
-  move_s_ += seconds_since(start);
+  move_s_ += base::seconds_since(start);
 }
 
 void Simulation::put(std::uint32_t mover, const base::Pose& X_WM) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "base/elapsed.h"
 #include "base/random.h"
 #include "record/recorder.h"
 #include "scenarios/coverage.h"
@@ -17,10 +18,6 @@ namespace {
 
 /// Draws of `place` keyed so, beside those of cloned fleets.
 constexpr std::uint32_t kStart = 0x57A27u;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 void add_noise(world::Mover& mover, const Disturbance& d) {
   for (world::Sensor& sensor : mover.sensors) {
@@ -152,7 +149,7 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
     }
   }
   if (recorder) recorder->finish();
-  trial.wall = seconds_since(start);
+  trial.wall = base::seconds_since(start);
   trial.decided = simulation.move_seconds();
   trial.simulated = static_cast<double>(tick) * world.interval;
   trial.done = simulation.all_done();

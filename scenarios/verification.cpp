@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <span>
 #include <tuple>
 
 #include "base/parallel.h"
@@ -34,7 +35,16 @@ void compare(Real ours, Real theirs, Compared& into) {
   into.largest = std::max(into.largest, std::isnan(apart) ? std::numeric_limits<double>::infinity() : apart);
 }
 
-void name_first(std::uint64_t before, const std::string& where, Compared& into) {
+/// One reading. @param where it is, for people
+template <class Real>
+void compare(std::span<const Real> ours, std::span<const Real> theirs, const std::string& where, Compared& into) {
+  ++into.readings;
+  const std::uint64_t before = into.different;
+  if (ours.size() != theirs.size()) {
+    ++into.different;
+    into.largest = std::numeric_limits<double>::infinity();
+  }
+  for (std::size_t i = 0; i < std::min(ours.size(), theirs.size()); ++i) compare(ours[i], theirs[i], into);
   if (before == 0 && into.different > 0) into.first = where;
 }
 
@@ -78,7 +88,8 @@ class Verifier {
       if (options_.progress && !options_.progress(static_cast<double>(t + 1) / static_cast<double>(ticks))) break;
     }
     cast_again();
-    result_.missing = result_.ticks == ticks ? scans_.size() + readings_.size() : 0;
+    result_.interrupted = result_.ticks < ticks;
+    result_.missing = !result_.interrupted ? scans_.size() + readings_.size() : 0;
     for (auto& [kind, compared] : again_) result_.again.push_back(std::move(compared));
     if (unfelt_ > 0)
       result_.skipped.push_back(
@@ -128,33 +139,26 @@ class Verifier {
       ++unfelt_;
       return;
     }
-    Compared& into = compared(reading.kind);
-    ++into.readings;
-    const std::uint64_t before = into.different;
-    if (theirs.size() != reading.values.size())
-      ++into.different, into.largest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < std::min(theirs.size(), reading.values.size()); ++i)
-      compare(reading.values[i], theirs[i], into);
-    name_first(before, place_of(reading), into);
+    compare(reading.values, std::span<const double>(theirs), place_of(reading), compared(reading.kind));
+  }
+
+  /// As scans are recorded.
+  std::vector<float> told(std::uint32_t mover, std::uint32_t sensor, std::span<const double> ranges,
+                          std::span<const std::uint32_t> hits) const {
+    const double range_max = world_.movers[mover].lasers[sensor].range_max;
+    std::vector<float> all;
+    for (std::size_t i = 0; i < ranges.size(); ++i)
+      all.push_back(static_cast<float>(infinite_ ? sensors::or_infinite(ranges[i], hits[i], range_max) : ranges[i]));
+    return all;
   }
 
   void look_at_scan(const base::ReadingBlock& reading) {
-    std::vector<float> ours;
-    const double range_max = world_.movers[reading.mover].lasers[reading.sensor].range_max;
-    for (std::size_t i = 0; i < reading.values.size(); ++i) {
-      const double range = reading.values[i];
-      ours.push_back(static_cast<float>(infinite_ ? sensors::or_infinite(range, reading.hits[i], range_max) : range));
-    }
+    std::vector<float> ours = told(reading.mover, reading.sensor, reading.values, reading.hits);
     const auto at = scans_.find({base::kLaser, reading.mover, reading.sensor, reading.sequence});
     if (at != scans_.end()) {
       const std::vector<float>& theirs = recording_.scans[at->second].scan.ranges;
       scans_.erase(at);
-      Compared& into = compared(base::kLaser);
-      ++into.readings;
-      const std::uint64_t before = into.different;
-      if (theirs.size() != ours.size()) ++into.different, into.largest = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < std::min(theirs.size(), ours.size()); ++i) compare(ours[i], theirs[i], into);
-      name_first(before, place_of(reading), into);
+      compare<float>(ours, theirs, place_of(reading), compared(base::kLaser));
       ours = theirs;
     } else if (!recording_.scans.empty()) {
       return;
@@ -184,17 +188,10 @@ class Verifier {
   }
 
   void judge(const Asked& asked, const sensors::LaserReference::Scan& scan) {
-    Compared& into = result_.reference;
-    ++into.readings;
-    const std::uint64_t before = into.different;
-    const double range_max = world_.movers[asked.mover].lasers[asked.sensor].range_max;
-    for (std::size_t i = 0; i < std::min(asked.ranges.size(), scan.ranges.size()); ++i) {
-      const double range = infinite_ ? sensors::or_infinite(scan.ranges[i], scan.hits[i], range_max) : scan.ranges[i];
-      compare(static_cast<float>(range), asked.ranges[i], into);
-    }
-    name_first(before,
-               fmt::format("{}, laser {}, reading {}", world_.movers[asked.mover].name, asked.sensor, asked.sequence),
-               into);
+    compare<float>(
+        told(asked.mover, asked.sensor, scan.ranges, scan.hits), asked.ranges,
+        fmt::format("{}, laser {}, reading {}", world_.movers[asked.mover].name, asked.sensor, asked.sequence),
+        result_.reference);
   }
 
   Compared& compared(std::uint8_t kind) {

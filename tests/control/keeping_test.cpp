@@ -24,19 +24,11 @@ using base::Vec2;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kTick = 100'000'000;
 
-world::Sensor magnetometers(int count) {
-  world::Sensor sensor{.type = "magnetometer"};
-  sensor.settings.push_back({.key = "scount", .numbers = {1.0 * count}});
-  for (int i = 0; i < count; ++i)
-    sensor.settings.push_back({.key = "spose[" + std::to_string(i) + "]", .numbers = {0.2, 0.075 * i, 0.0}});
-  return sensor;
-}
-
 world::World path_world(double yaw = M_PI / 2) {
   world::World world = scenes::empty_world();
   world::Mover& robot = scenes::add_create(world, {0, 0, 0, 0});
   robot.sensors.push_back({.type = "laneedge", .X_MS = {0.225, 0, 0, yaw}});
-  robot.sensors.push_back(magnetometers(5));
+  robot.sensors.push_back(scenes::magnetometers(5));
   world.paths.push_back({"lane",
                          {{{0, 0, 0, 0}, 2.72, 0.0, 0.50},
                           {{2.72, 0, 0, 0}, 0.93 * M_PI / 2, 1 / 0.93, 0.60},

@@ -88,21 +88,13 @@ Plan plan_of(std::string name, std::vector<Setting> settings = {}) {
   return {.controller = name, .rate = 0.0, .settings = Settings("controller '" + name + "'", std::move(settings))};
 }
 
-world::Sensor magnetometers(int count) {
-  world::Sensor sensor{.type = "magnetometer"};
-  sensor.settings.push_back({.key = "scount", .numbers = {1.0 * count}});
-  for (int i = 0; i < count; ++i)
-    sensor.settings.push_back({.key = "spose[" + std::to_string(i) + "]", .numbers = {0.2, 0.075 * i, 0.0}});
-  return sensor;
-}
-
 world::World small_world() {
   world::World world = scenes::boxed_world(4, 4);
   world::Mover& robot = scenes::add_create(world, {2, 2, 0, 0});
   robot.lasers.push_back({});
   robot.sensors.push_back({.type = "laneedge"});
   robot.sensors.push_back({.type = "irreceiver"});
-  robot.sensors.push_back(magnetometers(2));
+  robot.sensors.push_back(scenes::magnetometers(2));
   return world;
 }
 
@@ -181,9 +173,9 @@ TEST(MakeController, refuses_by_name) {
   EXPECT_NE(says("lane-keeping", {{"half_width", 0.2, at}}).find("has no lane edge sensor"), std::string::npos);
   EXPECT_NE(says("magnet-keeping").find("has no magnetometers"), std::string::npos);
   EXPECT_NE(says("docking").find("has no infrared receiver"), std::string::npos);
-  bare.movers[0].sensors.push_back(magnetometers(1));
+  bare.movers[0].sensors.push_back(scenes::magnetometers(1));
   EXPECT_NE(says("magnet-keeping").find("an array of one magnetometer"), std::string::npos);
-  bare.movers[0].sensors[0] = magnetometers(2);  // the fewest that differ
+  bare.movers[0].sensors[0] = scenes::magnetometers(2);  // the fewest that differ
   EXPECT_EQ(says("magnet-keeping"), "");
 }
 

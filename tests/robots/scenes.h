@@ -140,4 +140,13 @@ inline std::vector<std::vector<bool>> cave(int columns, int rows, std::uint64_t 
   return solid;
 }
 
+/// An array across the front of a robot, element 0 in its middle.
+inline world::Sensor magnetometers(int count) {
+  world::Sensor sensor{.type = "magnetometer"};
+  sensor.settings.push_back({.key = "scount", .numbers = {1.0 * count}});
+  for (int i = 0; i < count; ++i)
+    sensor.settings.push_back({.key = "spose[" + std::to_string(i) + "]", .numbers = {0.2, 0.075 * i, 0.0}});
+  return sensor;
+}
+
 }  // namespace sf::scenes

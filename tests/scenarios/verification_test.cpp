@@ -55,6 +55,7 @@ TEST(Verification, ASoundRun) {
   EXPECT_EQ(v.again[0].values, 61 * v.again[0].readings);
   EXPECT_EQ(v.reference.readings, v.again[0].readings) << "all of them by default";
   EXPECT_EQ(v.ticks, 20u);
+  EXPECT_FALSE(v.interrupted);
 }
 
 TEST(Verification, WithoutReadingsPlainCppIsBesideTheDevice) {
@@ -111,6 +112,7 @@ TEST(Verification, AReadingThatNobodyWasDueToMake) {
 TEST(Verification, StoppedIsNotUnsound) {
   const Verification v = verify(recorded(true), device(), {.progress = [](double) { return false; }});
   EXPECT_EQ(v.ticks, 1u);
+  EXPECT_TRUE(v.interrupted);
   EXPECT_EQ(v.missing, 0u) << "what was not looked at is not missing";
 }
 

@@ -1,0 +1,13 @@
+#pragma once
+// Time on the clock: for what people are told, never for results.
+
+#include <chrono>
+
+namespace sf::base {
+
+/// [s]
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace sf::base
