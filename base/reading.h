@@ -15,6 +15,14 @@ inline constexpr std::uint32_t kNoHit = 0xFFFFFFFFu;
 /// recordings keep it as ROS knows it.
 inline constexpr std::uint8_t kLaser = 1;
 
+/// Why an element's value may be wrong by more than its reading's bound.
+enum class Unsure : std::uint8_t {
+  no = 0,        ///< it is not
+  not_cast = 1,  ///< no beam was cast for it: it lies between those that were
+  grazing = 2,   ///< its beam meets a surface at too small an angle
+  bent = 3       ///< made of points that lie on no straight line
+};
+
 /// One reading of one sensor. The spans live until the next tick of the farm that returned them.
 struct ReadingBlock {
   std::uint32_t mover = 0;         ///< row in `world::World::movers`
@@ -28,6 +36,10 @@ struct ReadingBlock {
   std::span<const std::uint32_t>
       hits;                 ///< laser: model row that each beam met, or kNoHit; empty where not known (interpolated)
   std::uint32_t flags = 0;  ///< what a kind has to say beside its values; which bits, its header tells
+  std::uint8_t mode = 0;    ///< accuracy it was measured with: row of the kind's modes
+  double bound = 0.0;  ///< [unit of the first column] largest error of that column without noise, where `unsure` says
+                       ///< nothing (sensors/accuracy.h); infinite: none is stated
+  std::span<const Unsure> unsure;  ///< one per element; empty: the bound holds for all
 };
 
 }  // namespace sf::base

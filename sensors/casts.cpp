@@ -37,6 +37,7 @@ bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses) {
       ray_rows[i].beams = row.beams;
       ray_rows[i].out = row.out;
       ray_rows[i].range_min = t.fans[due[i].row].laser.range_min;
+      ray_rows[i].least_sine = static_cast<float>(kLeastSine);
     }
   });
   t.write_lanes();
@@ -50,21 +51,28 @@ bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses) {
   return again;
 }
 
-void Casts::record(gpu::Batch& batch) { batch.dispatch(*t_->kernel, *t_->groups, 0); }
+void Casts::record(gpu::Batch& batch) {
+  batch.dispatch(*t_->exact.kernel, *t_->exact.groups, 0);
+  if (t_->single) batch.dispatch(*t_->single->kernel, *t_->single->groups, 0);
+}
 
 void Casts::copies(gpu::Batch& batch, bool results) {
   Tables& t = *t_;
   t.scene.upload(batch);
   batch.up(*t.rows, 0, t.due.size() * sizeof(RayRow));
-  batch.up(*t.lanes, 0, t.lanes->bytes());
-  batch.up(*t.groups, 0, t.groups->bytes());
+  const auto send = [&](const CastPass& pass) {
+    batch.up(*pass.lanes, 0, pass.lanes->bytes());
+    batch.up(*pass.groups, 0, pass.groups->bytes());
+  };
+  send(t.exact);
+  if (t.single) send(*t.single);
   if (t.beams_changed || t.any_turns) {
     batch.up(*t.directions, 0, t.directions->bytes());
     batch.up(*t.middles, 0, t.middles->bytes());
     batch.up(*t.directions64, 0, t.directions64->bytes());
     t.beams_changed = false;
   }
-  batch.down(*t.doubts, 0, t.doubts->bytes());
+  batch.down(*t.verdicts, 0, t.verdicts->bytes());
   if (!results) return;
   batch.down(*t.ranges, 0, t.ranges->bytes());
   batch.down(*t.hits, 0, t.hits->bytes());
@@ -76,10 +84,11 @@ FanResults Casts::results(std::size_t i) const {
 }
 
 void Casts::count() {
-  const auto doubts = t_->doubts->host<std::uint32_t>();
+  const auto verdicts = t_->verdicts->host<std::uint32_t>();
   for (const Due& due : t_->due) {
     const FanRow& row = t_->fan_rows[due.row];
-    for (std::uint32_t lane = 0; lane < row.plan.lanes(); ++lane) t_->doubts_seen += doubts[row.out + lane];
+    for (std::uint32_t lane = 0; lane < row.plan.lanes(); ++lane)
+      t_->doubts_seen += verdicts[row.out + lane] & SF_DOUBT;
   }
 }
 
@@ -87,8 +96,9 @@ gpu::Buffer& Casts::ranges() { return *t_->ranges; }
 gpu::Buffer& Casts::hits() { return *t_->hits; }
 gpu::Buffer& Casts::directions64() { return *t_->directions64; }
 gpu::Buffer& Casts::rows() { return *t_->rows; }
-gpu::Buffer& Casts::lanes() { return *t_->lanes; }
-gpu::Buffer& Casts::groups() { return *t_->groups; }
-std::uint32_t Casts::group_size() const { return t_->kernel->group_size(); }
+gpu::Buffer& Casts::verdicts() { return *t_->verdicts; }
+gpu::Buffer& Casts::lanes() { return *t_->exact.lanes; }
+gpu::Buffer& Casts::groups() { return *t_->exact.groups; }
+std::uint32_t Casts::group_size() const { return t_->exact.kernel->group_size(); }
 
 }  // namespace sf::sensors

@@ -18,11 +18,26 @@
 
 namespace sf::sensors {
 
+/// Sine of the angle below which a beam grazes what it meets: rounding then moves its range by more than `exact_bound`.
+inline constexpr double kLeastSine = 1e-3;
+
+/// [m] largest error of a range in 64 bits, of a beam that does not graze, against real arithmetic on the world's own
+/// doubles and the sensor's pose: with u = 2^-53, of numerator and denominator of t = (e x w) / (e x d) at most 4 u |e|
+/// |w| and 9 u |e|, |w| <= range + longest, and of outlines that were moved 4 u farthest; and what counts as touching.
+/// @param longest [m] surface  @param farthest [m] coordinate of anything in range
+inline constexpr double exact_bound(double range_max, double longest, double farthest) {
+  return SF_TOUCH + 0x1p-53 * (16.0 * (range_max + longest) + 4.0 * farthest) / kLeastSine;
+}
+
+/// [m] what 32 bits may add to the error of a range.
+inline double single_bound(double range_max) { return range_max * (0.51 * SF_SINGLE_SHARE + 0x1p-22); }
+
 /// One fan: the beams of one sensor.
 struct Fan {
   world::Laser laser;        ///< its settings; range noise is not applied here, angular noise is
   std::uint32_t mover = 0;   ///< that carries it
   std::uint32_t sensor = 0;  ///< names its noise
+  bool single = false;       ///< measured in 32 bits where these are close enough: within `single_bound`
 };
 
 /// Where one due fan's results lie in the tables of results.
@@ -59,10 +74,11 @@ class Casts {
   // Tables of results, on the device and (when copied) on the host; and the beams' directions in their sensor's frame.
   gpu::Buffer& ranges();        ///< SF_BEAMS_PER_LANE doubles [m] a lane
   gpu::Buffer& hits();          ///< SF_BEAMS_PER_LANE words a lane: `Segment::model` of what was met, or SF_NO_HIT
+  gpu::Buffer& verdicts();      ///< a word a lane: SF_DOUBT, SF_GRAZES
   gpu::Buffer& directions64();  ///< SF_BEAMS_PER_LANE pairs of doubles a lane: cosine and sine of the bearing
   gpu::Buffer& rows();          ///< RayRow of each due fan, in order of `due`
-  gpu::Buffer& lanes();         ///< Lane: which due fan and which of its lanes each invocation casts
-  gpu::Buffer& groups();        ///< group counts of the dispatch over `lanes`
+  gpu::Buffer& lanes();   ///< Lane: which due fan and which of its lanes each invocation casts, but for `single` fans
+  gpu::Buffer& groups();  ///< group counts of the dispatch over `lanes`
   std::uint32_t group_size() const;
 
  private:

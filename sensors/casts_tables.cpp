@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "shaders/laser.comp.h"
+#include "shaders/laser_single.comp.h"
 
 namespace sf::sensors {
 
@@ -26,7 +27,6 @@ Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<F
       fans(std::move(f)) {
   plan(world);
   turned.resize(workers.threads());
-  kernel = std::make_unique<gpu::Kernel>(site.device, "laser", laser_comp_spv, 14);
   std::uint32_t beam_lanes = 0;
   std::map<BeamKey, std::uint32_t> shared;
   for (std::size_t i = 0; i < fans.size(); ++i) {
@@ -66,14 +66,11 @@ void Casts::Tables::plan(const world::World& world) {
 void Casts::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) {
   using gpu::Role;
   using gpu::Texel;
-  const std::size_t group = kernel->group_size();
   const std::size_t count = std::max<std::size_t>(1, fans.size());
-  // Lanes are padded to whole groups, and groups to whole rows of groups where there are many.
-  const std::size_t most_groups = out_lanes / group + 1;
-  const std::size_t padded = (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * group;
+  make_pass(device, exact, false);
+  const auto asks = [](const Fan& fan) { return fan.single; };
+  if (std::any_of(fans.begin(), fans.end(), asks)) make_pass(device, single.emplace(), true);
   rows = std::make_unique<gpu::Buffer>(device, "due sensors", Role::upload, Texel::u32x4, SF_ROW_TEXELS * count);
-  lanes = std::make_unique<gpu::Buffer>(device, "whose beams", Role::upload, Texel::u32, 2 * padded);
-  groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
   directions = std::make_unique<gpu::Buffer>(device, "beams in 32 bits", Role::upload, Texel::f32x4,
                                              2 * std::size_t{beam_lanes} + 2);
   middles =
@@ -83,7 +80,21 @@ void Casts::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) {
   ranges =
       std::make_unique<gpu::Buffer>(device, "ranges", Role::download, Texel::u32x4, 2 * std::size_t{out_lanes} + 2);
   hits = std::make_unique<gpu::Buffer>(device, "hits", Role::download, Texel::u32x4, std::size_t{out_lanes} + 1);
-  doubts = std::make_unique<gpu::Buffer>(device, "doubts", Role::download, Texel::u32, std::size_t{out_lanes} + 1);
+  verdicts = std::make_unique<gpu::Buffer>(device, "verdicts", Role::download, Texel::u32, std::size_t{out_lanes} + 1);
+}
+
+void Casts::Tables::make_pass(gpu::Device& device, CastPass& pass, bool is_single) {
+  using gpu::Role;
+  using gpu::Texel;
+  const auto code = is_single ? std::span<const std::uint32_t>(laser_single_comp_spv)
+                              : std::span<const std::uint32_t>(laser_comp_spv);
+  pass.kernel = std::make_unique<gpu::Kernel>(device, is_single ? "laser in 32 bits" : "laser", code, 14);
+  // Lanes are padded to whole groups, and groups to whole rows of groups where there are many.
+  const std::size_t group = pass.kernel->group_size();
+  const std::size_t most_groups = out_lanes / group + 1;
+  const std::size_t padded = (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * group;
+  pass.lanes = std::make_unique<gpu::Buffer>(device, "whose beams", Role::upload, Texel::u32, 2 * padded);
+  pass.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
 }
 
 void Casts::Tables::write_all_beams() {
@@ -113,14 +124,20 @@ void Casts::Tables::write_lanes() {
                                [](const Due& d, std::uint32_t row) { return d.row == row; });
   if (same) return;
   lanes_written.clear();
-  const auto table = lanes->host<Lane>();
+  for (const Due& d : due) lanes_written.push_back(d.row);
+  write_lanes(exact, false);
+  if (single) write_lanes(*single, true);
+}
+
+void Casts::Tables::write_lanes(CastPass& pass, bool is_single) {
+  const auto table = pass.lanes->host<Lane>();
   std::size_t at = 0;
   for (std::uint32_t i = 0; i < due.size(); ++i) {
+    if (fans[due[i].row].single != is_single) continue;
     for (std::uint32_t lane = 0; lane < fan_rows[due[i].row].plan.lanes(); ++lane) table[at++] = {i, lane};
-    lanes_written.push_back(due[i].row);
   }
   const auto due_lanes = static_cast<std::uint32_t>(at);
-  const std::uint32_t group = kernel->group_size();
+  const std::uint32_t group = pass.kernel->group_size();
   const std::uint32_t needed = (due_lanes + group - 1) / group;
   const std::uint32_t across = std::min(needed, kGroupsAcross);
   const std::uint32_t down = across > 0 ? (needed + across - 1) / across : 0;
@@ -128,18 +145,23 @@ void Casts::Tables::write_lanes() {
   const Lane last = at > 0 ? table[at - 1] : Lane{0, 0};
   std::fill(table.begin() + static_cast<std::ptrdiff_t>(at), table.begin() + std::ptrdiff_t{across} * down * group,
             last);
-  const auto counts = groups->host<std::uint32_t>();
+  const auto counts = pass.groups->host<std::uint32_t>();
   counts[0] = across;
   counts[1] = down;
   counts[2] = across > 0 ? 1 : 0;
 }
 
-void Casts::Tables::bind() {
-  gpu::Buffer* const tables[] = {rows.get(),         lanes.get(),       directions.get(), middles.get(),
+void Casts::Tables::bind(CastPass& pass) {
+  gpu::Buffer* const tables[] = {rows.get(),         pass.lanes.get(),  directions.get(), middles.get(),
                                  directions64.get(), &scene.headers(),  &scene.entries(), &scene.ids(),
                                  &scene.nearest(),   &scene.segments(), &scene.models(),  ranges.get(),
-                                 hits.get(),         doubts.get()};
-  kernel->bind(tables);
+                                 hits.get(),         verdicts.get()};
+  pass.kernel->bind(tables);
+}
+
+void Casts::Tables::bind() {
+  bind(exact);
+  if (single) bind(*single);
   bound = true;
 }
 

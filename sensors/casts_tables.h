@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gpu/buffer.h"
@@ -21,6 +22,12 @@ struct FanRow {
   bool turns = false;       ///< has angular noise: beams are its own and change
 };
 
+/// One kernel over the lanes of its due fans.
+struct CastPass {
+  std::unique_ptr<gpu::Kernel> kernel;
+  std::unique_ptr<gpu::Buffer> lanes, groups;
+};
+
 struct Casts::Tables {
   base::Workers& workers;
   std::uint64_t seed;
@@ -28,10 +35,11 @@ struct Casts::Tables {
   Scene scene;
   std::vector<Fan> fans;
   std::vector<FanRow> fan_rows;
-  std::unique_ptr<gpu::Kernel> kernel;
-  std::unique_ptr<gpu::Buffer> rows, lanes, groups, directions, middles, directions64, ranges, hits, doubts;
+  CastPass exact;
+  std::optional<CastPass> single;  ///< where a fan asks for it
+  std::unique_ptr<gpu::Buffer> rows, directions, middles, directions64, ranges, hits, verdicts;
   std::vector<Due> due;
-  std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, that `lanes` holds
+  std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, that the passes' lanes hold
   std::vector<Viewpoint> views;
   std::vector<std::vector<double>> turned;  ///< scratch per thread
   std::uint32_t out_lanes = 0;
@@ -45,7 +53,10 @@ struct Casts::Tables {
   void plan(const world::World& world);
   void make_tables(gpu::Device& device, std::uint32_t beam_lanes);
   void write_all_beams();
+  void make_pass(gpu::Device& device, CastPass& pass, bool is_single);
   void write_lanes();
+  void write_lanes(CastPass& pass, bool is_single);
+  void bind(CastPass& pass);
   void turn_beams(const Due& d, unsigned thread);
   void bind();
   BeamTables beam_tables(std::uint32_t lane) const {

@@ -25,6 +25,18 @@ namespace sf::sensors {
 
 using base::Pose;
 
+/// One way a kind can measure.
+struct Mode {
+  std::string_view word;  ///< in world files, after `accuracy`, and on the command line
+  std::string_view what;  ///< it does, in a few words
+};
+
+/// How wrong a sensor may be, stated before it measures.
+struct Bound {
+  double error = 0.0;     ///< [unit of the first column] see base::ReadingBlock::bound
+  std::string condition;  ///< where it holds; empty: everywhere
+};
+
 /// One sensor of a world, as every room but its own kind sees it.
 struct SensorRow {
   std::uint32_t mover = 0;     ///< row in `World::movers`
@@ -38,6 +50,7 @@ struct SensorRow {
   double limit = 0.0;          ///< largest value an element gives, in the unit of its first column
   std::uint32_t across = 0;    ///< elements that lie in rows make a picture: so many in a row; 0: they do not
   double pitch = 0.0;          ///< [m] of such a picture: side of its smallest square
+  std::uint8_t mode = 0;       ///< row of its kind's modes
 };
 
 /// One sensor that is due.
@@ -123,6 +136,11 @@ struct SensorKind {
   std::string_view list;        ///< JSON name of the list of elements; empty: a reading is one row
   std::span<const Column> columns;
   bool derived = false;  ///< made of other kinds' readings: its `observe` is called, and it is collected after them
+
+  std::span<const Mode> modes;  ///< the first is `exact`; empty: it has no other
+  /// What the readings of one of its sensors may be wrong by. Null: by the rounding of 64 bits, or of what their header
+  /// says.
+  Bound (*bound)(const world::World& world, const SensorRow& sensor) = nullptr;
 
   /// Every sensor of this kind, by mover and in file order.
   /// @throws base::InputError with file and line for settings that it cannot have.

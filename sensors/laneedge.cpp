@@ -1,6 +1,7 @@
 #include "sensors/laneedge.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "sensors/casts.h"
@@ -26,6 +27,11 @@ bool anything_else(const world::World& world) {
                                     [](const world::Mover& mover) { return !mover.body.empty(); });
   return !world.walls.empty() || (bodies > 0 && world.movers.size() > 1);
 }
+
+constexpr base::Unsure kBent[] = {base::Unsure::bent};
+
+/// Whether a reading's columns are those of three points or more on one straight line.
+bool is_straight(std::span<const double> reading) { return reading[1] > 2.5 && reading[2] <= kStraightResidual; }
 
 /// Rays against the excerpt, exactly; where the road is a raster, into that as well; then lines through what they met.
 class LaneEdges : public Instruments {
@@ -117,6 +123,9 @@ void LaneEdges::collect(std::vector<base::ReadingBlock>& out) {
     block.kind = kLaneEdge;
     block.X_WS = casts_.results(i).X_WS;
     block.values = fit_.reading(i);
+    block.mode = edge.row.mode;
+    block.bound = exact_ ? kStraightError : HUGE_VAL;
+    if (exact_ && edge.row.mode > 0 && !is_straight(block.values)) block.unsure = kBent;
     out.push_back(block);
   }
 }
@@ -138,6 +147,8 @@ constinit const SensorKind laneedge_kind{
     .base_port = 20000,
     .list = "",
     .columns = kColumns,
+    .modes = kLaneEdgeModes,
+    .bound = bound_of_lane_edge,
     .rows = rows_of,
     .make = make_instruments<LaneEdges>,
     .refuse = refuse_lane_edge,

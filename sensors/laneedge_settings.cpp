@@ -1,7 +1,10 @@
 #include "sensors/laneedge_settings.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "sensors/accuracy.h"
 #include "sensors/settings.h"
 
 namespace sf::sensors {
@@ -28,6 +31,15 @@ double nearest_axis(double yaw) {
   const base::Vec2 d = base::rotate(yaw, {1.0, 0.0});
   if (std::fabs(d.y) >= std::fabs(d.x) * (1.0 - 1e-9)) return d.y >= 0.0 ? 0.5 * M_PI : -0.5 * M_PI;
   return d.x >= 0.0 ? 0.0 : M_PI;
+}
+
+/// Of so many rays one is cast, in each mode.
+constexpr std::uint32_t kEveryRay[] = {1, 2, 4};
+static_assert(std::size(kEveryRay) == std::size(kLaneEdgeModes));
+
+/// The same fan with fewer rays, three at least: with less there is no telling a line.
+void thin_out(LaneEdge& edge, std::uint32_t every) {
+  if (edge.fan.samples > 3) edge.fan.samples = std::max(3u, (edge.fan.samples - 1 + every - 1) / every + 1);
 }
 
 }  // namespace
@@ -59,9 +71,20 @@ LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uin
 std::vector<LaneEdge> lane_edges_of(const world::World& world) {
   std::vector<LaneEdge> edges;
   for_each_of(world, "laneedge", [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
-    edges.push_back(lane_edge_of(sensor, mover, number));
+    LaneEdge edge = lane_edge_of(sensor, mover, number);
+    edge.row.mode = mode_of(kLaneEdgeModes, accuracy_of(sensor), world);
+    thin_out(edge, kEveryRay[edge.row.mode]);
+    edges.push_back(std::move(edge));
   });
   return edges;
+}
+
+Bound bound_of_lane_edge(const world::World& world, const SensorRow& sensor) {
+  if (world.road_resolution > 0.0 && !world.stripes.empty())
+    return {HUGE_VAL, "paint in pixels: each reading says its own sigma"};
+  Bound bound{kStraightError, "straight edges; along curves each reading says its own sigma"};
+  if (sensor.mode > 0) bound.condition = "one straight edge in sight; readings that are no straight line's are flagged";
+  return bound;
 }
 
 }  // namespace sf::sensors

@@ -22,6 +22,17 @@ inline constexpr std::string_view kLaneEdgeKeys[] = {"fov", "samples", "range_ma
                                                      // of the thesis' lasers, for drawing
                                                      "laser_color"};
 
+inline constexpr Mode kLaneEdgeModes[] = {
+    {"exact", "a line through the points of all rays"},
+    {"skip2", "every 2nd ray"},
+    {"skip4", "every 4th ray"},
+};
+/// [m] error of the distance to one straight edge, in exact paint.
+inline constexpr double kStraightError = 1e-8;
+/// [m] points of one straight line leave no more.
+inline constexpr double kStraightResidual = 1e-9;
+Bound bound_of_lane_edge(const world::World& world, const SensorRow& sensor);
+
 /// A share of range_max: ranges from here on are "near the maximum" and no points.
 inline constexpr double kNearMaximum = 0.99;
 /// Most that an edge's distance may exceed range_max by extrapolation.

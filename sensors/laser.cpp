@@ -1,6 +1,10 @@
 #include "sensors/laser.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "sensors/casts.h"
+#include "sensors/laser_modes.h"
 #include "sensors/laser_packets.h"
 #include "sensors/laser_shape.h"
 
@@ -8,22 +12,33 @@ namespace sf::sensors {
 
 namespace {
 
-/// Where the host's own results of one laser lie.
-struct Shaping {
-  bool needed = false;     ///< results are reworked on the host
-  std::size_t values = 0;  ///< first of its samples
+/// One laser at work.
+struct Row {
+  CastLaser cast;
+  bool reworked = false;    ///< results are shaped on the host
+  std::size_t samples = 0;  ///< first of its own among all
 };
 
-std::vector<Fan> fans_of(const world::World& world) {
+std::vector<CastLaser> lasers_of(const world::World& world) {
+  std::vector<CastLaser> lasers;
+  for (const world::Mover& mover : world.movers)
+    for (const world::Laser& laser : mover.lasers) lasers.push_back(cast_laser(world, laser));
+  return lasers;
+}
+
+std::vector<Fan> fans_of(const world::World& world, std::span<const CastLaser> lasers) {
   std::vector<Fan> fans;
   for (std::uint32_t m = 0; m < world.movers.size(); ++m)
-    for (std::uint32_t i = 0; i < world.movers[m].lasers.size(); ++i) fans.push_back({world.movers[m].lasers[i], m, i});
+    for (std::uint32_t i = 0; i < world.movers[m].lasers.size(); ++i) {
+      const CastLaser& cast = lasers[fans.size()];
+      fans.push_back({cast.laser, m, i, cast.single});
+    }
   return fans;
 }
 
 class Lasers : public Instruments {
  public:
-  explicit Lasers(const Site& site);
+  explicit Lasers(const Site& site) : Lasers(site, lasers_of(site.world)) {}
 
   void place(std::span<const Pose> poses) override { casts_.place(poses); }
   bool prepare(std::span<const Due> due, std::span<const Pose> poses) override {
@@ -36,77 +51,119 @@ class Lasers : public Instruments {
   Work work() const override { return casts_.work(); }
 
  private:
+  Lasers(const Site& site, const std::vector<CastLaser>& lasers);
+
   void shape(std::size_t i);
+  bool doubt(std::size_t i);
+  base::ReadingBlock block_of(std::size_t i);
 
   base::Workers& workers_;
   std::uint64_t seed_;
   bool noise_;
+  double longest_;  ///< [m] surface that there is
   Casts casts_;
-  std::vector<Shaping> shaping_;  ///< per laser
+  std::vector<Row> rows_;  ///< per laser
   std::vector<Due> due_;
-  std::vector<double> values_;  ///< [m] results reworked on the host
-  std::vector<std::uint32_t> met_;
+  std::vector<double> values_;         ///< [m] of all lasers' samples, when any is reworked
+  std::vector<std::uint32_t> met_;     ///< likewise
+  std::vector<base::Unsure> unsure_;   ///< of all lasers' samples
+  std::vector<std::uint8_t> doubted_;  ///< per due laser: some of its samples are unsure
 };
 
-Lasers::Lasers(const Site& site)
-    : workers_(site.workers), seed_(site.seed), noise_(site.noise), casts_(site, site.world, fans_of(site.world)) {
+Lasers::Lasers(const Site& site, const std::vector<CastLaser>& lasers)
+    : workers_(site.workers),
+      seed_(site.seed),
+      noise_(site.noise),
+      longest_(reaches_of(site.world).longest),
+      casts_(site, site.world, fans_of(site.world, lasers)) {
   std::size_t samples = 0;
-  for (std::uint32_t i = 0; i < casts_.fans().size(); ++i) {
-    const world::Laser& laser = casts_.fans()[i].laser;
-    const bool needed = laser.resolution > 1 || !casts_.plan(i).packed || (noise_ && laser.noise.has_range());
-    shaping_.push_back({needed, samples});
-    if (needed) samples += laser.samples;
+  bool any = false;
+  for (std::uint32_t i = 0; i < lasers.size(); ++i) {
+    const world::Laser& laser = lasers[i].laser;
+    const bool reworked = laser.resolution > 1 || !casts_.plan(i).packed || (noise_ && laser.noise.has_range());
+    rows_.push_back({lasers[i], reworked, samples});
+    samples += laser.samples;
+    any = any || reworked;
   }
-  values_.resize(samples);
-  met_.resize(samples);
+  values_.resize(any ? samples : 0);
+  met_.resize(any ? samples : 0);
+  unsure_.resize(samples);
 }
 
 void Lasers::shape(std::size_t i) {
   const Due& due = due_[i];
+  const Row& row = rows_[due.row];
   const Fan& fan = casts_.fans()[due.row];
   const FanResults results = casts_.results(i);
   const BeamPlan& plan = *results.plan;
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
   const double* const cast = casts_.ranges().host<double>().data() + first;
   const std::uint32_t* const cast_hits = casts_.hits().host<std::uint32_t>().data() + first;
-  double* const out = values_.data() + shaping_[due.row].values;
-  std::uint32_t* const out_hits = met_.data() + shaping_[due.row].values;
-  shape_scan(fan.laser, plan, {seed_, base::Stream::range_noise, fan.mover, fan.sensor, due.sequence}, noise_,
+  double* const out = values_.data() + row.samples;
+  std::uint32_t* const out_hits = met_.data() + row.samples;
+  shape_scan(row.cast, plan, {seed_, base::Stream::range_noise, fan.mover, fan.sensor, due.sequence}, noise_,
              {cast, cast_hits}, {out, fan.laser.samples}, {out_hits, fan.laser.samples});
 }
 
+/// Marks samples that were not cast, and those that graze. @return whether there are any
+bool Lasers::doubt(std::size_t i) {
+  const Row& row = rows_[due_[i].row];
+  const FanResults results = casts_.results(i);
+  const BeamPlan& plan = *results.plan;
+  const auto verdicts = casts_.verdicts().host<std::uint32_t>().subspan(results.lane, plan.lanes());
+  const bool grazing = std::any_of(verdicts.begin(), verdicts.end(), [](std::uint32_t v) { return v >= SF_GRAZES; });
+  if (!grazing && row.cast.laser.resolution == 1) return false;
+  const auto samples = std::span(unsure_).subspan(row.samples, row.cast.laser.samples);
+  std::fill(samples.begin(), samples.end(), base::Unsure::not_cast);
+  for (std::size_t k = 0; k < plan.samples.size(); ++k) {
+    const std::size_t place = plan.place(k);
+    const bool grazes = (verdicts[place / SF_BEAMS_PER_LANE] >> (place % SF_BEAMS_PER_LANE) & SF_GRAZES) != 0;
+    samples[plan.samples[k]] = grazes ? base::Unsure::grazing : base::Unsure::no;
+  }
+  return true;
+}
+
+base::ReadingBlock Lasers::block_of(std::size_t i) {
+  const Row& row = rows_[due_[i].row];
+  const Fan& fan = casts_.fans()[due_[i].row];
+  const FanResults results = casts_.results(i);
+  const std::size_t samples = fan.laser.samples;
+  const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
+  base::ReadingBlock block;
+  block.mover = fan.mover;
+  block.sensor = fan.sensor;
+  block.kind = base::kLaser;
+  block.X_WS = results.X_WS;
+  block.values = row.reworked ? std::span<const double>(values_).subspan(row.samples, samples)
+                              : casts_.ranges().host<double>().subspan(first, samples);
+  block.hits = row.reworked ? std::span<const std::uint32_t>(met_).subspan(row.samples, samples)
+                            : casts_.hits().host<std::uint32_t>().subspan(first, samples);
+  block.mode = row.cast.mode;
+  const double away = std::max(std::abs(results.X_WS.x), std::abs(results.X_WS.y));
+  block.bound = laser_bound(row.cast, longest_, away + fan.laser.range_max);
+  if (doubted_[i] != 0) block.unsure = std::span<const base::Unsure>(unsure_).subspan(row.samples, samples);
+  return block;
+}
+
 void Lasers::collect(std::vector<base::ReadingBlock>& out) {
+  doubted_.resize(due_.size());
   workers_.run(due_.size(), 8, [this](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i)
-      if (shaping_[due_[i].row].needed) shape(i);
+    for (std::size_t i = first; i < last; ++i) {
+      if (rows_[due_[i].row].reworked) shape(i);
+      doubted_[i] = doubt(i) ? 1 : 0;
+    }
   });
   casts_.count();
-  const std::span<const double> ranges = casts_.ranges().host<double>();
-  const std::span<const std::uint32_t> hits = casts_.hits().host<std::uint32_t>();
-  for (std::size_t i = 0; i < due_.size(); ++i) {
-    const Fan& fan = casts_.fans()[due_[i].row];
-    const FanResults results = casts_.results(i);
-    const Shaping& shaping = shaping_[due_[i].row];
-    const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
-    base::ReadingBlock block;
-    block.mover = fan.mover;
-    block.sensor = fan.sensor;
-    block.kind = base::kLaser;
-    block.X_WS = results.X_WS;
-    block.values = shaping.needed ? std::span<const double>(values_).subspan(shaping.values, fan.laser.samples)
-                                  : ranges.subspan(first, fan.laser.samples);
-    block.hits = shaping.needed ? std::span<const std::uint32_t>(met_).subspan(shaping.values, fan.laser.samples)
-                                : hits.subspan(first, fan.laser.samples);
-    out.push_back(block);
-  }
+  for (std::size_t i = 0; i < due_.size(); ++i) out.push_back(block_of(i));
 }
 
 std::vector<SensorRow> rows_of(const world::World& world) {
   std::vector<SensorRow> rows;
-  for (const Fan& fan : fans_of(world)) {
+  const std::vector<CastLaser> lasers = lasers_of(world);
+  for (const Fan& fan : fans_of(world, lasers)) {
     const world::Laser& laser = fan.laser;
     rows.push_back({fan.mover, fan.sensor, laser.name, laser.X_MS, laser.rate, laser.phase, laser.latency,
-                    laser.samples, laser.range_max});
+                    laser.samples, laser.range_max, 0, 0.0, lasers[rows.size()].mode});
   }
   return rows;
 }
@@ -122,6 +179,8 @@ constinit const SensorKind laser_kind{
     .base_port = 10000,
     .list = "beams",
     .columns = kColumns,
+    .modes = kLaserModes,
+    .bound = bound_of_laser,
     .rows = rows_of,
     .make = make_instruments<Lasers>,
     .refuse = refuse_laser,

@@ -73,7 +73,8 @@ std::vector<LaserReference::Surface> LaserReference::in_sight(std::uint32_t self
 }
 
 LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t laser, std::uint64_t sequence) const {
-  const world::Laser& l = world_.movers[mover].lasers[laser];
+  const CastLaser cast = cast_laser(world_, world_.movers[mover].lasers[laser]);
+  const world::Laser& l = cast.laser;
   const BeamPlan plan = plan_beams(l, noise_);
   Scan scan{base::compose(poses_[mover], l.X_MS), std::vector<double>(l.samples),
             std::vector<std::uint32_t>(l.samples)};
@@ -94,8 +95,8 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t las
     ranges[plan.place(k)] = std::max(answer.range, l.range_min);
     hits[plan.place(k)] = answer.model;
   }
-  shape_scan(l, plan, {seed_, base::Stream::range_noise, mover, laser, sequence}, noise_, {ranges.data(), hits.data()},
-             scan.ranges, scan.hits);
+  shape_scan(cast, plan, {seed_, base::Stream::range_noise, mover, laser, sequence}, noise_,
+             {ranges.data(), hits.data()}, scan.ranges, scan.hits);
   return scan;
 }
 

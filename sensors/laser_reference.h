@@ -2,7 +2,8 @@
 // The laser range finder by the plainest means: every beam against every segment, one after another, on the host.
 //
 // Its arithmetic is that of shaders/lib/decide.glsl, operation by operation, so its scans are the device's to the bit,
-// noise and `resolution` included: what devices are held to, and what recordings are checked against. It shares with
+// noise and `resolution` included: what devices are held to, and what recordings are checked against. A laser in mode
+// `single` is cast as an exact one. It shares with
 // the farm how beams are laid out and noise is drawn (sensors/beams.h, sensors/laser_shape.h), nothing of how surfaces
 // are found. Some microseconds a beam in a world of a thousand walls.
 

@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "base/reading.h"
 #include "sensors/beams.h"
+#include "sensors/laser_modes.h"
 #include "world/world.h"
 
 namespace sf::sensors {
@@ -18,12 +19,14 @@ struct CastScan {
   const std::uint32_t* hits;  ///< model row of what was met, or base::kNoHit
 };
 
-/// Range noise is added to echoes alone, and kept within [range_min, range_max]. A sample that was not cast lies on a
-/// straight line between its neighbours, and names a model where both met the same.
+/// Range noise is added to echoes alone, and kept within [range_min, range_max]. A sample that was not cast names a
+/// model where both of its neighbours met the same. Its range lies on a straight line between theirs, as Stage has it;
+/// or, with `chords`, on the straight line between the points that these met, which is right on a flat wall, and is the
+/// nearer neighbour's where they met different models.
 /// @param draw of `base::Stream::range_noise` @param noise false: none, whatever the laser has
 /// @param ranges, hits one per sample
-void shape_scan(const world::Laser& laser, const BeamPlan& plan, const base::Draw& draw, bool noise,
-                const CastScan& cast, std::span<double> ranges, std::span<std::uint32_t> hits);
+void shape_scan(const CastLaser& shape, const BeamPlan& plan, const base::Draw& draw, bool noise, const CastScan& cast,
+                std::span<double> ranges, std::span<std::uint32_t> hits);
 
 /// A range as users who want infinity for "nothing met" are told it. @param range [m] of a beam that met `hit`
 inline double or_infinite(double range, std::uint32_t hit, double range_max) {

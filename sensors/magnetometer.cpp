@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "base/random.h"
+#include "sensors/accuracy.h"
 #include "sensors/field/magnetic_field.h"
+#include "sensors/magnetometer_modes.h"
 #include "sensors/magnetometer_packets.h"
 #include "sensors/settings.h"
 
@@ -17,6 +21,7 @@ namespace {
 struct Array {
   Magnetometer settings;
   SensorRow row;
+  double bound = 0.0;              ///< [T]
   double height = 0.0;             ///< [m] of its origin in the world, fixed at load: the world is 2.5-D
   std::size_t values = 0;          ///< first of its results
   std::vector<base::Vec2> facing;  ///< of each element: its x axis in the sensor's frame
@@ -27,7 +32,8 @@ std::vector<Array> arrays_of(const world::World& world) {
   std::size_t values = 0;
   const auto type = magnetometer_kind.word.type;
   for_each_of(world, type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
-    Array array{read_magnetometer(sensor), common_row(sensor, mover, number), 0.0, values};
+    Array array{read_magnetometer(sensor), common_row(sensor, mover, number), 0.0, 0.0, values};
+    array.row.mode = mode_of(kMagnetometerModes, accuracy_of(sensor), world);
     array.row.X_MS.z += sensor.height / 2.0;
     array.row.elements = static_cast<std::uint32_t>(array.settings.X_SE.size());
     array.row.limit = std::max(std::abs(array.settings.least), std::abs(array.settings.most));
@@ -46,64 +52,102 @@ bool any_magnitudes(const std::vector<Array>& arrays) {
   return std::any_of(arrays.begin(), arrays.end(), [](const Array& a) { return a.settings.magnitudes; });
 }
 
+/// The places of all arrays that measure in one mode.
+struct Wave {
+  MagneticField field;
+  std::vector<Place> places;
+  std::vector<std::uint32_t> ends;  ///< per group
+};
+
 class Magnetometers : public Instruments {
  public:
   explicit Magnetometers(const Site& site);
 
-  void place(std::span<const Pose> poses) override { field_.place(poses); }
+  void place(std::span<const Pose> poses) override {
+    for (auto& [mode, wave] : waves_) wave.field.place(poses);
+  }
   bool prepare(std::span<const Due> due, std::span<const Pose> poses) override;
-  void record_measure(gpu::Batch& batch) override { field_.record(batch); }
-  void copies(gpu::Batch& batch) override { field_.copies(batch); }
+  void record_measure(gpu::Batch& batch) override {
+    for (auto& [mode, wave] : waves_) wave.field.record(batch);
+  }
+  void copies(gpu::Batch& batch) override {
+    for (auto& [mode, wave] : waves_) wave.field.copies(batch);
+  }
   void collect(std::vector<base::ReadingBlock>& out) override;
-  Work work() const override { return {.dipoles = field_.dipoles()}; }
+  Work work() const override;
 
  private:
+  void bound_errors(const world::World& world);
+  void add_places(const Array& array, const Pose& X_WS);
   void read(std::size_t i);
 
   base::Workers& workers_;
   std::uint64_t seed_;
   bool noise_;
   std::vector<Array> arrays_;
-  MagneticField field_;
+  std::map<std::uint8_t, Wave> waves_;  ///< by mode
   std::vector<Due> due_;
   std::vector<Pose> X_WS_;             ///< per due array
-  std::vector<std::uint32_t> groups_;  ///< per due array: its first group
-  std::vector<Place> places_;
-  std::vector<std::uint32_t> ends_;  ///< per group
-  std::vector<double> values_;       ///< [T] of all arrays
+  std::vector<std::uint32_t> groups_;  ///< per due array: its first group in its wave
+  std::vector<double> values_;         ///< [T] of all arrays
 };
 
 Magnetometers::Magnetometers(const Site& site)
-    : workers_(site.workers),
-      seed_(site.seed),
-      noise_(site.noise),
-      arrays_(arrays_of(site.world)),
-      field_(site.world, site.device, site.workers, any_magnitudes(arrays_)) {
+    : workers_(site.workers), seed_(site.seed), noise_(site.noise), arrays_(arrays_of(site.world)) {
+  const bool magnitudes = any_magnitudes(arrays_);
+  for (const Array& array : arrays_)
+    if (!waves_.contains(array.row.mode))
+      waves_.emplace(
+          array.row.mode,
+          Wave{{site.world, site.device, site.workers, magnitudes, cutoff_of(site.world, array.row.mode)}, {}, {}});
+  bound_errors(site.world);
   if (!arrays_.empty()) values_.resize(arrays_.back().values + kMagnetometerColumns * arrays_.back().row.elements);
+}
+
+void Magnetometers::bound_errors(const world::World& world) {
+  std::map<std::pair<std::uint8_t, double>, double> known;
+  for (Array& array : arrays_)
+    for (const Pose& X_SE : array.settings.X_SE) {
+      const double height = array.height + X_SE.z;
+      const auto [at, is_new] = known.try_emplace({array.row.mode, height}, 0.0);
+      if (is_new) at->second = field_bound(world, array.row.mode, height);
+      array.bound = std::max(array.bound, at->second);
+    }
+}
+
+Work Magnetometers::work() const {
+  Work work;
+  for (const auto& [mode, wave] : waves_) work.dipoles += wave.field.dipoles();
+  return work;
+}
+
+void Magnetometers::add_places(const Array& array, const Pose& X_WS) {
+  Wave& wave = waves_.at(array.row.mode);
+  const base::Vec2 x_S = base::rotate(X_WS.yaw, {1.0, 0.0});
+  groups_.push_back(static_cast<std::uint32_t>(wave.ends.size()));
+  const auto& X_SE = array.settings.X_SE;
+  for (std::size_t i = 0; i < X_SE.size(); ++i) {
+    const base::Vec2 p{x_S.x * X_SE[i].x - x_S.y * X_SE[i].y, x_S.y * X_SE[i].x + x_S.x * X_SE[i].y};
+    wave.places.push_back({X_WS.x + p.x, X_WS.y + p.y, X_WS.z + X_SE[i].z});
+    const bool full = (i + 1) % SF_FIELD_PLACES == 0 || i + 1 == X_SE.size();
+    if (full) wave.ends.push_back(static_cast<std::uint32_t>(wave.places.size()));
+  }
 }
 
 bool Magnetometers::prepare(std::span<const Due> due, std::span<const Pose> poses) {
   due_.assign(due.begin(), due.end());
   X_WS_.clear();
   groups_.clear();
-  places_.clear();
-  ends_.clear();
+  for (auto& [mode, wave] : waves_) wave.places.clear(), wave.ends.clear();
   for (const Due& d : due_) {
     const Array& array = arrays_[d.row];
-    Pose X_WS = base::compose(poses[array.row.mover], array.row.X_MS);
-    X_WS.z = array.height;
-    X_WS_.push_back(X_WS);
-    const base::Vec2 x_S = base::rotate(X_WS.yaw, {1.0, 0.0});
-    groups_.push_back(static_cast<std::uint32_t>(ends_.size()));
-    const auto& X_SE = array.settings.X_SE;
-    for (std::size_t i = 0; i < X_SE.size(); ++i) {
-      const base::Vec2 p{x_S.x * X_SE[i].x - x_S.y * X_SE[i].y, x_S.y * X_SE[i].x + x_S.x * X_SE[i].y};
-      places_.push_back({X_WS.x + p.x, X_WS.y + p.y, X_WS.z + X_SE[i].z});
-      const bool full = (i + 1) % SF_FIELD_PLACES == 0 || i + 1 == X_SE.size();
-      if (full) ends_.push_back(static_cast<std::uint32_t>(places_.size()));
-    }
+    X_WS_.push_back(base::compose(poses[array.row.mover], array.row.X_MS));
+    X_WS_.back().z = array.height;
+    add_places(array, X_WS_.back());
   }
-  return field_.prepare(places_, ends_);
+  bool again = false;
+  for (auto& [mode, wave] : waves_) again |= wave.field.prepare(wave.places, wave.ends);
+  return again;
 }
 
 void Magnetometers::read(std::size_t i) {
@@ -111,9 +155,10 @@ void Magnetometers::read(std::size_t i) {
   const Array& array = arrays_[due.row];
   const Magnetometer& m = array.settings;
   const base::Draw draw{seed_, base::Stream::field_noise, array.row.mover, array.row.sensor, due.sequence};
+  const MagneticField& field = waves_.at(array.row.mode).field;
   const base::Vec2 facing = base::rotate(X_WS_[i].yaw, {1.0, 0.0});
   for (std::uint32_t e = 0; e < m.X_SE.size(); ++e) {
-    const FieldSum sum = field_.at(groups_[i] + e / SF_FIELD_PLACES, e % SF_FIELD_PLACES);
+    const FieldSum sum = field.at(groups_[i] + e / SF_FIELD_PLACES, e % SF_FIELD_PLACES);
     const base::Vec2 b_S = along(facing, {sum.x, sum.y});
     const base::Vec2 b_E = along(array.facing[e], b_S);
     std::array<double, 3> b{b_E.x, b_E.y, sum.z};
@@ -124,9 +169,9 @@ void Magnetometers::read(std::size_t i) {
       b = {b[0] + m.sigma * xy[0], b[1] + m.sigma * xy[1], b[2] + m.sigma * zf[0]};
       extra = m.sigma * zf[1];
     }
-    const double field = m.magnitudes ? sum.magnitudes + extra : std::hypot(b[0], b[1], b[2]);
+    const double total = m.magnitudes ? sum.magnitudes + extra : std::hypot(b[0], b[1], b[2]);
     double* const out = values_.data() + array.values + kMagnetometerColumns * e;
-    out[0] = std::clamp(field, m.least, m.most);
+    out[0] = std::clamp(total, m.least, m.most);
     for (std::size_t k = 0; k < 3; ++k) out[k + 1] = std::clamp(b[k], m.least, m.most);
   }
 }
@@ -144,6 +189,8 @@ void Magnetometers::collect(std::vector<base::ReadingBlock>& out) {
     block.X_WS = X_WS_[i];
     block.values =
         std::span<const double>(values_).subspan(array.values, kMagnetometerColumns * array.settings.X_SE.size());
+    block.mode = array.row.mode;
+    block.bound = array.bound;
     out.push_back(block);
   }
 }
@@ -166,6 +213,8 @@ constinit const SensorKind magnetometer_kind{
     .base_port = 30000,
     .list = "sensors",
     .columns = kColumns,
+    .modes = kMagnetometerModes,
+    .bound = bound_of_magnetometer,
     .rows = rows_of,
     .make = make_instruments<Magnetometers>,
     .refuse = refuse_magnetometer,

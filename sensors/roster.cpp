@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "sensors/accuracy.h"
 
 namespace sf::sensors {
 
@@ -17,6 +18,9 @@ Roster::Roster(const world::World& world) {
     }
     groups_.push_back(std::move(group));
   }
+  std::vector<const SensorKind*> present;
+  for (const Group& group : groups_) present.push_back(group.kind);
+  check_accuracy(world, present);
 }
 
 const Roster::Group* Roster::group(std::uint8_t kind) const {

@@ -60,6 +60,7 @@ World build_world(const std::string& file, const std::string& content, const Loa
   b.world.interval = interval_of(b.source, document.root);
   b.world.road_resolution = reach(b.source, document.root, "road_resolution");
   b.world.magnet_cutoff = reach(b.source, document.root, "magnet_cutoff");
+  b.world.accuracy = accuracy(b.source, options, document.root, {options.accuracy, "", 0});
   Parent nowhere;
   add_children(b, document.root, Kind::unknown, nowhere);
   number_movers(b);

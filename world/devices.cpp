@@ -28,6 +28,7 @@ void add_sensor(Building& b, const Entity& entity, const Model& model, const Sen
   for (const Property& property : entity.properties) {
     // What every model may say is understood already, and changes nothing that is measured.
     if (!is_known_key(Where::sensing, property.key, word.keys)) continue;
+    if (property.key == "accuracy" && !b.options.accuracy.empty()) continue;
     Setting setting{property.key, {}, "", property.at.line, files[property.at.file]};
     for (const Value& value : property.values) {
       if (!value.is_text) setting.numbers.push_back(value.number);

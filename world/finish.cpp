@@ -63,6 +63,7 @@ std::uint64_t hash_of(const World& world) {
   out.put(static_cast<std::uint64_t>(world.stripes.size()));
   for (const Stripe& stripe : world.stripes) put(out, stripe, Rows::physics);
   out.put(world.magnet_cutoff);
+  put(out, world.accuracy, Rows::physics);
   out.put(static_cast<std::uint64_t>(world.magnets.size()));
   for (const Magnet& magnet : world.magnets) put(out, magnet);
   out.put(static_cast<std::uint64_t>(world.movers.size()));

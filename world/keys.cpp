@@ -11,7 +11,7 @@ using Words = std::span<const std::string_view>;
 
 // clang-format off
 constexpr auto kWorld = std::to_array<std::string_view>({"name", "interval_sim", "unit_length", "unit_angle",
-  "road_resolution", "magnet_cutoff",
+  "road_resolution", "magnet_cutoff", "accuracy",
   // known, not modelled
   "quit_time", "resolution", "show_clock", "show_clock_interval", "threads", "speedup", "paused", "confirm_on_quit",
   "interval_real", "gui_disable", "gui_interval", "ppm"});
@@ -30,7 +30,7 @@ constexpr auto kPosition = std::to_array<std::string_view>({"drive", "wheelbase"
   // known, not modelled
   "velocity", "localization", "localization_origin", "odom_error", "odom"});
 
-constexpr auto kSensing = std::to_array<std::string_view>({"noise", "resolution", "rate", "phase", "latency", "update_interval"});
+constexpr auto kSensing = std::to_array<std::string_view>({"noise", "resolution", "rate", "phase", "latency", "update_interval", "accuracy"});
 
 constexpr auto kLaser = std::to_array<std::string_view>({"fov", "samples", "range_min", "range_max", "laser_color",
   // known, not modelled: Stage's older name of `resolution` is read as such

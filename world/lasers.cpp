@@ -61,6 +61,7 @@ void read_common(const Source& source, const LoadOptions& options, const Entity&
   laser.phase = seconds(source, entity, "phase", laser.phase);
   laser.latency = seconds(source, entity, "latency", laser.latency);
   laser.noise = noise_of(source, options, entity, laser.noise);
+  laser.accuracy = accuracy(source, options, entity, laser.accuracy);
 }
 
 Place place_of(const Entity& entity, std::string_view key) {

@@ -10,7 +10,7 @@ using base::ByteWriter;
 namespace {
 
 constexpr std::size_t kSegmentBytes = 6 * 8 + 4 + 1;
-constexpr std::size_t kLaserBytes = 100;
+constexpr std::size_t kLaserBytes = 112;
 constexpr std::size_t kSensorBytes = 64;   // at least
 constexpr std::size_t kSettingBytes = 12;  // at least
 
@@ -24,6 +24,7 @@ void put_laser(ByteWriter& out, const Laser& laser, Rows rows) {
   out.put(laser.samples);
   out.put(laser.resolution);
   if (rows == Rows::all) out.put(laser.color);
+  put(out, laser.accuracy, rows);
 }
 
 Laser get_laser(ByteReader& in) {
@@ -37,6 +38,7 @@ Laser get_laser(ByteReader& in) {
   laser.samples = in.get<std::uint32_t>();
   laser.resolution = in.get<std::uint32_t>();
   laser.color = in.get<std::uint32_t>();
+  laser.accuracy = get_accuracy(in);
   return laser;
 }
 

@@ -69,6 +69,12 @@ std::string text(const Source& source, const Entity& entity, std::string_view ke
   return property == nullptr ? fallback : single(source, *property, true).text;
 }
 
+Accuracy accuracy(const Source& source, const LoadOptions& options, const Entity& entity, const Accuracy& fallback) {
+  const Property* property = find(entity, "accuracy");
+  if (property == nullptr || !options.accuracy.empty()) return fallback;
+  return {single(source, *property, true).text, source.document.files[property->at.file], property->at.line};
+}
+
 std::uint32_t whole(const Source& source, const Entity& entity, std::string_view key, std::uint32_t fallback,
                     std::uint32_t least, std::uint32_t most) {
   const Property* property = find(entity, key);

@@ -38,6 +38,9 @@ double angle(const Source& source, const Entity& entity, std::string_view key, d
 bool flag(const Source& source, const Entity& entity, std::string_view key, bool fallback);
 std::string text(const Source& source, const Entity& entity, std::string_view key, const std::string& fallback);
 
+/// `accuracy "word"`; where it is absent, the fallback. An order that holds for all sensors comes before it.
+Accuracy accuracy(const Source& source, const LoadOptions& options, const Entity& entity, const Accuracy& fallback);
+
 /// A whole number in [least, most].
 std::uint32_t whole(const Source& source, const Entity& entity, std::string_view key, std::uint32_t fallback,
                     std::uint32_t least, std::uint32_t most);

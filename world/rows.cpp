@@ -24,6 +24,21 @@ Vec2 get_vec(ByteReader& in) {
 
 }  // namespace
 
+void put(ByteWriter& out, const Accuracy& accuracy, Rows rows) {
+  if (rows == Rows::all || !accuracy.word.empty()) out.put_string(accuracy.word);
+  if (rows == Rows::physics) return;
+  out.put(static_cast<std::int32_t>(accuracy.line));
+  out.put_string(accuracy.file);
+}
+
+Accuracy get_accuracy(ByteReader& in) {
+  Accuracy accuracy;
+  accuracy.word = in.get_string();
+  accuracy.line = in.get<std::int32_t>();
+  accuracy.file = in.get_string();
+  return accuracy;
+}
+
 void put(ByteWriter& out, const Pose& pose) {
   out.put(pose.x);
   out.put(pose.y);

@@ -26,12 +26,15 @@ void put(base::ByteWriter& out, const Stripe& stripe, Rows rows);
 void put(base::ByteWriter& out, const Magnet& magnet);
 void put(base::ByteWriter& out, const Model& model, Rows rows);
 void put(base::ByteWriter& out, const Mover& mover, Rows rows);
+/// Of physics nothing where no word is said: what nobody asked for leaves hashes as they were.
+void put(base::ByteWriter& out, const Accuracy& accuracy, Rows rows);
 void put(base::ByteWriter& out, const Path& path);
 void put(base::ByteWriter& out, const Light& light);
 void put(base::ByteWriter& out, const Emitter& emitter);
 void put(base::ByteWriter& out, const Drop& drop);
 
 Pose get_pose(base::ByteReader& in);
+Accuracy get_accuracy(base::ByteReader& in);
 Segment get_segment(base::ByteReader& in);
 Magnet get_magnet(base::ByteReader& in);
 Model get_model(base::ByteReader& in);

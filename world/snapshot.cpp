@@ -11,7 +11,7 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
-constexpr std::uint16_t kVersion = 3;
+constexpr std::uint16_t kVersion = 4;
 
 template <class Row>
 void put_rows(base::ByteWriter& out, const std::vector<Row>& rows) {
@@ -89,6 +89,7 @@ std::vector<std::uint8_t> snapshot(const World& world) {
   out.put_string(world.file);
   out.put(world.road_resolution);
   out.put(world.magnet_cutoff);
+  put(out, world.accuracy, Rows::all);
   out.put(world.interval);
   out.put(static_cast<std::uint32_t>(world.models.size()));
   for (const Model& model : world.models) put(out, model, Rows::all);
@@ -130,6 +131,7 @@ World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   world.file = in.get_string();
   world.road_resolution = in.get<double>();
   world.magnet_cutoff = in.get<double>();
+  world.accuracy = get_accuracy(in);
   world.interval = in.get<double>();
   get_rows(in, world.models, 68, get_model);
   get_rows(in, world.walls, 53, get_segment);

@@ -106,6 +106,13 @@ struct LaserNoise {
   bool has_range() const { return range_sigma > 0.0 || range_proportional > 0.0; }
 };
 
+/// How accurate a sensor, or all of them, are asked to be: a word that the sensor's kind knows (sensors/accuracy.h).
+struct Accuracy {
+  std::string word;  ///< empty: nobody asked; a sensor then is as accurate as its world says, a world exact
+  std::string file;
+  int line = 0;  ///< 1-based, in `file`
+};
+
 /// A scanning range finder. Bearings run from -fov/2 to +fov/2, both ends cast exactly; one sample looks at bearing 0.
 struct Laser {
   std::string name;              ///< unique among the mover's sensors
@@ -119,6 +126,7 @@ struct Laser {
   double phase = 0.0;            ///< [s] time of the first reading
   double latency = 0.0;          ///< [s] from measurement to delivery
   LaserNoise noise;
+  Accuracy accuracy;
   std::uint32_t color = 0xFF0000FFu;  ///< 0xAARRGGBB, of the drawn field of view
 };
 
@@ -232,6 +240,7 @@ struct World {
   double road_resolution = 0.0;  ///< [m] of the raster that stripes are seen in; 0: they are seen exactly
   std::vector<Magnet> magnets;   ///< that stand still
   double magnet_cutoff = 0.0;    ///< [m] magnets farther away along the ground are left out; 0: none is
+  Accuracy accuracy;             ///< of sensors that say nothing of it and know the word
   std::vector<Mover> movers;
   std::vector<Path> paths;
   std::vector<Light> lights;
@@ -250,6 +259,7 @@ struct LoadOptions {
   bool stage_obstacles = false;         ///< keep Stage's rule that `obstacle_return 0` floor plans do not stop robots
   bool stage_noise = false;             ///< read `noise`'s first number as Stage does, as a variance
   bool unknown_is_wall = false;         ///< ROS maps: unknown cells are walls
+  std::string accuracy;                 ///< of all sensors, whatever the file says; empty: as it says
   std::span<const SensorWord> sensors;  ///< kinds that are modelled; others are kept as bodies that do nothing
 };
 

@@ -59,7 +59,7 @@ struct MagneticField::Tables {
   std::uint32_t stride = 1;                   ///< spans a group has room for
   std::uint64_t dipoles_summed = 0;
 
-  Tables(const world::World& w, gpu::Device& d, base::Workers& k, bool magnitudes);
+  Tables(const world::World& w, gpu::Device& d, base::Workers& k, bool magnitudes, double c);
   void write_standing();
   void write_moving();
   void gather(std::span<const Place> at, std::span<const std::uint32_t> ends);

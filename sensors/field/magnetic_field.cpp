@@ -33,17 +33,19 @@ DipoleRow dipole_row(const world::Magnet& magnet, Vec2 p, double z) {
           static_cast<float>(1.0 / std::max(magnet.radius, kLeastRadius))};
 }
 
-MagneticField::MagneticField(const world::World& world, gpu::Device& device, base::Workers& workers, bool magnitudes)
-    : t_(std::make_unique<Tables>(world, device, workers, magnitudes)) {
+MagneticField::MagneticField(const world::World& world, gpu::Device& device, base::Workers& workers, bool magnitudes,
+                             double cutoff)
+    : t_(std::make_unique<Tables>(world, device, workers, magnitudes, cutoff)) {
   std::vector<Pose> poses;
   for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
   place(poses);
 }
 
+MagneticField::MagneticField(MagneticField&&) noexcept = default;
 MagneticField::~MagneticField() = default;
 
-MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::Workers& k, bool magnitudes)
-    : world(w), device(d), workers(k), cutoff(w.magnet_cutoff) {
+MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::Workers& k, bool magnitudes, double c)
+    : world(w), device(d), workers(k), cutoff(c) {
   using gpu::Role;
   using gpu::Texel;
   standing = count_of(world.magnets);

@@ -37,8 +37,10 @@ class MagneticField {
  public:
   /// Magnets stand where the world has them at load.
   /// @param magnitudes also add up the magnets' own magnitudes.
+  /// @param cutoff [m] instead of the world's; 0: none
   /// @throws base::DeviceError when the device cannot hold them.
-  MagneticField(const world::World& world, gpu::Device& device, base::Workers& workers, bool magnitudes);
+  MagneticField(const world::World& world, gpu::Device& device, base::Workers& workers, bool magnitudes, double cutoff);
+  MagneticField(MagneticField&&) noexcept;
   ~MagneticField();
 
   /// Moves what movers carry: one pose a mover, whose z is not looked at (the world is 2.5-D).

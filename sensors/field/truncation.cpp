@@ -7,6 +7,8 @@
 
 #include "sensors/field/magnet_tree.h"
 #include "sensors/magnetometer.h"
+#include "sensors/magnetometer_modes.h"
+#include "sensors/settings.h"
 
 namespace sf::sensors {
 
@@ -54,12 +56,11 @@ double largest(const MagnetTree& tree, double cutoff) {
 /// Heights of all elements, each once.
 std::vector<double> heights_of(const world::World& world) {
   std::vector<double> heights;
-  for (const world::Mover& mover : world.movers)
-    for (const world::Sensor& sensor : mover.sensors) {
-      if (sensor.type != magnetometer_kind.word.type) continue;
-      const double origin = mover.X_WM.z + sensor.X_MS.z + sensor.height / 2.0;
-      for (const Pose& X_SE : read_magnetometer(sensor).X_SE) heights.push_back(origin + X_SE.z);
-    }
+  for_each_of(world, magnetometer_kind.word.type,
+              [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t /*number*/) {
+                const auto own = element_heights(world.movers[mover], sensor);
+                heights.insert(heights.end(), own.begin(), own.end());
+              });
   std::sort(heights.begin(), heights.end());
   heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
   return heights;
@@ -83,8 +84,12 @@ world::World flattened(const world::World& world) {
 }  // namespace
 
 double truncation_bound(const world::World& world, double height) {
-  if (world.magnet_cutoff == 0.0) return 0.0;
-  const double cutoff = world.magnet_cutoff / kRounding;
+  return truncation_bound(world, height, world.magnet_cutoff);
+}
+
+double truncation_bound(const world::World& world, double height, double nominal) {
+  if (nominal == 0.0) return 0.0;
+  const double cutoff = nominal / kRounding;
   const MagnetTree standing(world.magnets, height);
   double bound = largest(standing, cutoff);
   for (const world::Mover& mover : world.movers) {

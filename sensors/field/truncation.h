@@ -14,6 +14,8 @@ namespace sf::sensors {
 /// h above it, which falls with rho and with |h|. So a tree of magnets bounds the sum for all places of a square at
 /// once, and squares are halved where that sum is largest, down to a quarter of R. Movers' magnets count in full at R.
 double truncation_bound(const world::World& world, double height);
+/// With another cut-off [m]; 0: none.
+double truncation_bound(const world::World& world, double height, double cutoff);
 
 /// What `check` says of a world's magnets.
 struct FieldFacts {

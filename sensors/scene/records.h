@@ -18,6 +18,14 @@
 #define SF_ROW_MASK 0xFFFFFFu
 #define SF_NO_CLEARANCE 127
 
+// What a lane says of itself: 32 bits could not prove the first of all its beams; and, shifted by each beam's place in
+// the lane, that it meets what it met at too small an angle.
+#define SF_DOUBT 1u
+#define SF_GRAZES 2u
+
+// A range measured in 32 bits is taken when its bounds are closer together than this share of the sensor's reach.
+#define SF_SINGLE_SHARE 2.44140625e-4 /* 2^-12 */
+
 // What a 32-bit search may be wrong by, as a share of the largest coordinate (sectors.h derives it).
 #define SF_BAND 9.5367431640625e-7 /* 2^-20 */
 
@@ -37,10 +45,10 @@ struct RayRow {
   float offset_y;
   float mover_offset_x;  ///< [m] sensor relative to what the movers' lists are relative to
   float mover_offset_y;
-  float heading_sectors;  ///< [sectors] yaw in [0, SF_SECTORS)
-  float band;             ///< [m] SF_BAND times the largest coordinate in its lists
-  float reach;            ///< [m] range_max and a little: nothing farther matters
-  std::uint32_t spare;
+  float heading_sectors;      ///< [sectors] yaw in [0, SF_SECTORS)
+  float band;                 ///< [m] SF_BAND times the largest coordinate in its lists
+  float reach;                ///< [m] range_max and a little: nothing farther matters
+  float least_sine;           ///< a beam that meets a surface at a smaller angle is said to graze it
   std::uint32_t wall_lists;   ///< first of SF_SECTORS list headers
   std::uint32_t mover_lists;  ///< first of SF_SECTORS list headers
   std::uint32_t beams;        ///< first lane in the beam tables

@@ -8,7 +8,13 @@ struct Beam64 {
 struct Decision {
   double range;  // [m]
   uint id;       // exact segment, or SF_NO_HIT
+  vec3 slant;    // cross product of the segment and the beam; the segment [m]
 };
+
+// True where the sine of the angle between beam and surface is below `least`.
+bool grazes(Decision d, float least) {
+  return d.id != SF_NO_HIT && d.slant.x * d.slant.x < least * least * dot(d.slant.yz, d.slant.yz);
+}
 
 // Both ends use the same doubles for every segment that shares them, so no beam slips between two neighbours.
 void decide(uint word, Beam64 beam, inout Decision best) {
@@ -39,5 +45,6 @@ void decide(uint word, Beam64 beam, inout Decision best) {
   if (id != SF_NO_HIT && below != 0.0LF && crosses && ahead && first) {
     best.range = t;
     best.id = id;
+    best.slant = vec3(below, ex, ey);
   }
 }

@@ -64,13 +64,18 @@ void search_lists(uvec4 walls, uvec4 movers, vec4 o, Beams d, float band, inout 
 // [m] how near other surfaces come to the segment that a list's word names, at least: a power of two, made of its exponent.
 float clearance_of(uint word) { return uintBitsToFloat((SF_NO_CLEARANCE - (word >> SF_ROW_BITS)) << 23); }
 
-// True when the winner of a beam needs no further look. `word` is what its list calls it.
-bool proven(int entry, uint word, vec2 o, vec2 d, float band, float clearance, float below) {
+struct Proof {
+  bool holds;  // the winner of a beam needs no further look
+  float tau;   // [m] from the lower to the upper bound of its range
+};
+
+// `word` is what the winner's list calls it.
+Proof prove(int entry, uint word, vec2 o, vec2 d, float band, float clearance, float below) {
   const vec4 s = imageLoad(entries, max(entry, 0));
   const vec2 w = s.xy - o;
   const float error = 2.0 * band * (abs(s.z) + abs(s.w));
   const float tau = error / below;
   const float c = d.x * w.y - d.y * w.x;
   const float margin = band + 4.0 * tau;
-  return entry < 0 || (c >= margin && c <= below - margin && tau < min(clearance_of(word), clearance));
+  return Proof(entry < 0 || (c >= margin && c <= below - margin && tau < min(clearance_of(word), clearance)), tau);
 }

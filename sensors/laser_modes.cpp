@@ -1,0 +1,55 @@
+#include "sensors/laser_modes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "sensors/accuracy.h"
+#include "sensors/casts.h"
+
+namespace sf::sensors {
+
+namespace {
+
+/// What each of kLaserModes makes of a laser.
+struct Making {
+  std::uint32_t skip = 1;  ///< of so many beams one is cast
+  bool single = false;
+};
+constexpr Making kMakings[] = {{1}, {1, true}, {2}, {4}, {8}};
+static_assert(std::size(kMakings) == std::size(kLaserModes));
+
+}  // namespace
+
+CastLaser cast_laser(const world::World& world, const world::Laser& laser) {
+  const std::uint8_t row = mode_of(kLaserModes, laser.accuracy, world);
+  const Making& making = kMakings[row];
+  CastLaser cast{laser, making.single, row, making.skip > 1};
+  cast.laser.resolution = std::min(laser.resolution * making.skip, std::max(1u, laser.samples - 1));
+  return cast;
+}
+
+Reaches reaches_of(const world::World& world) {
+  Reaches reaches;
+  const auto add = [&](const world::Segment& s) { reaches.longest = std::max(reaches.longest, length(s.b - s.a)); };
+  for (const world::Segment& wall : world.walls) add(wall);
+  for (const world::Mover& mover : world.movers) std::for_each(mover.body.begin(), mover.body.end(), add);
+  const world::Extent& e = world.extent;
+  reaches.farthest = std::max({std::abs(e.x_min), std::abs(e.x_max), std::abs(e.y_min), std::abs(e.y_max)});
+  return reaches;
+}
+
+double laser_bound(const CastLaser& cast, double longest, double farthest) {
+  return exact_bound(cast.laser.range_max, longest, farthest) +
+         (cast.single ? single_bound(cast.laser.range_max) : 0.0);
+}
+
+Bound bound_of_laser(const world::World& world, const SensorRow& sensor) {
+  const CastLaser cast = cast_laser(world, world.movers[sensor.mover].lasers[sensor.sensor]);
+  const Reaches reaches = reaches_of(world);
+  Bound bound{laser_bound(cast, reaches.longest, reaches.farthest + cast.laser.range_max), "beams that graze nothing"};
+  if (cast.laser.resolution > 1) bound.condition = "beams that are cast and graze nothing; the others are flagged";
+  return bound;
+}
+
+}  // namespace sf::sensors

@@ -1,0 +1,27 @@
+#pragma once
+// The magnetometer's modes: how far each looks for magnets, and what that may leave out.
+
+#include "sensors/kind.h"
+
+namespace sf::sensors {
+
+inline constexpr Mode kMagnetometerModes[] = {
+    {"exact", "all magnets, or those within the world's magnet_cutoff"},
+    {"near10", "magnets within 10 m along the ground"},
+    {"near3", "within 3 m"},
+    {"near1", "within 1 m"},
+};
+
+/// [m] a mode's cut-off, or the world's where that is nearer; 0: none.
+double cutoff_of(const world::World& world, std::uint8_t mode);
+
+/// [T] largest error of a field, and of a magnitude, in a mode at `height` [m], wherever movers are: what the cut-off
+/// leaves out, and rounding (1e-12 of the sum of the magnets' own magnitudes, each at its least distance).
+double field_bound(const world::World& world, std::uint8_t mode, double height);
+
+/// [m] heights of its elements in the world, each once, ascending.
+std::vector<double> element_heights(const world::Mover& mover, const world::Sensor& sensor);
+
+Bound bound_of_magnetometer(const world::World& world, const SensorRow& sensor);
+
+}  // namespace sf::sensors
