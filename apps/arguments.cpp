@@ -6,6 +6,7 @@
 
 #include "apps/wording.h"
 #include "control/controllers.h"
+#include "sensors/accuracy.h"
 
 namespace sf::apps {
 
@@ -64,6 +65,16 @@ Refuse ports() {
                   [](const std::string& text) { return !read_ports(text).empty(); });
 }
 
+Refuse quantity() {
+  return expected("a length or a field with its unit such as 5mm, 0.01m, 2uT or 1mG",
+                  [](const std::string& text) { return read_quantity(text).has_value(); });
+}
+
+Refuse rate() {
+  return expected("a rate above zero such as 10Hz",
+                  [](const std::string& text) { return read_rate(text).has_value(); });
+}
+
 void add_json(CLI::App& app, Options& o) { app.add_flag("--json", o.json, "Print facts as JSON on standard output"); }
 
 void add_device(CLI::App& app, Options& o) {
@@ -81,6 +92,55 @@ void add_world(CLI::App& app, Options& o) {
                "As in Stage, floor plans with obstacle_return 0 stop nobody");
   app.add_flag("--stage-noise", o.load.stage_noise, "As in Stage, the first number of `noise` is a variance");
   app.add_flag("--unknown-is-wall", o.load.unknown_is_wall, "Unknown cells of a ROS map are walls");
+}
+
+void add_accuracy(CLI::App& app, Options& o) {
+  std::vector<std::string> words;
+  for (const std::string_view word : sensors::accuracy_words()) words.emplace_back(word);
+  app.add_option("--accuracy", o.load.accuracy,
+                 "Accuracy of all sensors, whatever the world says: " + either(words) +
+                     "; several for several kinds, as in \"laser:skip2 near3\" (docs/accuracy.md)")
+      ->check(not_empty("a word"))
+      ->type_name("WORDS");
+}
+
+void add_wish(CLI::App& app, Options& o) {
+  app.add_option_function<std::vector<std::string>>(
+         "--max-error",
+         [&o](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts) {
+             const Quantity q = *read_quantity(text);
+             (q.is_tesla ? o.wish.tesla : o.wish.metres) = q.value;
+           }
+         },
+         "Largest error wanted, with its unit: 5mm for what measures lengths, 2uT for fields (may be given for both)")
+      ->check(quantity())
+      ->allow_extra_args(false)
+      ->type_name("ERROR");
+  app.add_option_function<std::string>(
+         "--by",
+         [&o](const std::string& text) {
+           o.wish.by = text == "median" ? scenarios::Judged::median
+                       : text == "p99"  ? scenarios::Judged::p99
+                                        : scenarios::Judged::max;
+         },
+         "Which error is meant: the largest, that of 99 % of all readings, or the median")
+      ->check(one_of({"max", "p99", "median"}))
+      ->type_name("max|p99|median")
+      ->default_str("max");
+  app.add_option_function<std::string>(
+         "--min-rate", [&o](const std::string& text) { o.wish.least_rate = *read_rate(text); },
+         "Ticks per second wanted: the most accurate modes that allow it")
+      ->check(rate())
+      ->type_name("HZ");
+}
+
+void add_automatic(CLI::App& app, Options& o) {
+  add_wish(app, o);
+  auto* automatic = app.add_flag(
+      "--auto", o.automatic, "Measure the modes here first, and take those that --max-error or --min-rate comes to");
+  for (const char* wish : {"--max-error", "--min-rate", "--by"}) app.get_option(wish)->needs(automatic);
+  app.get_option("--accuracy")->excludes(automatic);
 }
 
 void add_no_return(CLI::App& app, Options& o) {

@@ -27,11 +27,18 @@ Refuse pose();
 Refuse line();
 Refuse extent();
 Refuse ports();
+Refuse quantity();
+Refuse rate();
 
 void add_json(CLI::App& app, Options& o);
 /// CLI11's own envname would set what all subcommands share after the one that was called has set it.
 void add_device(CLI::App& app, Options& o);
 void add_world(CLI::App& app, Options& o);
+void add_accuracy(CLI::App& app, Options& o);
+/// What errors are allowed, or which rate is wanted.
+void add_wish(CLI::App& app, Options& o);
+/// `--auto`, with a wish.
+void add_automatic(CLI::App& app, Options& o);
 void add_no_return(CLI::App& app, Options& o);
 void add_wire(CLI::App& app, Options& o);
 void add_bind(CLI::App& app, Options& o);

@@ -13,6 +13,7 @@
 #include "netio/listener.h"
 #include "netio/relay.h"
 #include "scenarios/explanation.h"
+#include "scenarios/tradeoff.h"
 #include "scenarios/verification.h"
 #include "sensors/roster.h"
 #include "world/world.h"
@@ -70,6 +71,8 @@ std::string text_of(const scenarios::Verification& verification, bool recorded);
 std::string json_of(const scenarios::Verification& verification);
 std::string text_of(const scenarios::Explanation& explanation);
 std::string json_of(const scenarios::Explanation& explanation);
+std::string text_of(const std::vector<scenarios::Grade>& grades);
+std::string json_of(const std::vector<scenarios::Grade>& grades, const scenarios::Wish& wish);
 /// Where robot and sensor stood, in one line for people.
 std::string place_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading);
 

@@ -6,6 +6,7 @@
 #include "apps/facts.h"
 #include "apps/robot_facts.h"
 #include "base/hash.h"
+#include "sensors/accuracy.h"
 #include "sensors/field/truncation.h"
 
 namespace sf::apps {
@@ -39,6 +40,9 @@ std::uint64_t count_rays(const netio::Summary& summary) {
   return lasers == summary.of.end() ? 0 : lasers->second.elements;
 }
 
+/// What is infinite has no number in JSON.
+Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
 Json number_json(double value, bool whole) {
   if (whole && std::isfinite(value)) return static_cast<std::int64_t>(value);
   return value;  // printed as null where it is not finite
@@ -56,12 +60,19 @@ Json element_json(const sensors::SensorKind& kind, std::span<const double> value
   return json;
 }
 
+std::string_view word_of(base::Unsure unsure) {
+  constexpr std::string_view kWords[] = {"no", "not cast", "grazing"};
+  return kWords[static_cast<std::size_t>(unsure)];
+}
+
 /// Beams have as many decimals as a ruler will ever need: nlohmann/json prints no fixed number.
 std::string beam_json(const world::World& world, const base::ReadingBlock& reading, std::uint32_t i) {
   const world::Laser& laser = world.movers[reading.mover].lasers[reading.sensor];
   const std::uint32_t hit = reading.hits[i];
-  return fmt::format("{{\"bearing_rad\": {:.12f}, \"range_m\": {}, \"hit\": {}}}", world::bearing_of(laser, i),
-                     metres(reading.values[i]), hit == base::kNoHit ? "null" : dump(world.models[hit].name));
+  const base::Unsure unsure = reading.unsure.empty() ? base::Unsure::no : reading.unsure[i];
+  return fmt::format("{{\"bearing_rad\": {:.12f}, \"range_m\": {}, \"hit\": {}{}}}", world::bearing_of(laser, i),
+                     metres(reading.values[i]), hit == base::kNoHit ? "null" : dump(world.models[hit].name),
+                     unsure == base::Unsure::no ? "" : fmt::format(", \"unsure\": \"{}\"", word_of(unsure)));
 }
 
 Json error_json(const ErrorFacts& f) { return {{"steps", f.steps}, {"mean", f.mean}, {"abs_mean", f.abs_mean}}; }
@@ -123,6 +134,14 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
   std::size_t segments = world.walls.size();
   for (const world::Mover& mover : world.movers) segments += mover.body.size();
   const world::Extent& e = world.extent;
+  Json accuracy = Json::array();
+  for (const sensors::Statement& s : sensors::statements_of(world, roster))
+    accuracy.push_back({{"kind", s.kind->name},
+                        {"sensors", s.sensors},
+                        {"mode", sensors::word_of(*s.kind, s.mode)},
+                        {"bound", finite_json(s.bound.error)},
+                        {"unit", sensors::unit_of(*s.kind)},
+                        {"condition", s.bound.condition}});
   return print({{"world", world.name},
                 {"models", world.models.size()},
                 {"robots", count_robots(world)},
@@ -143,6 +162,7 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
                 {"road_resolution_m", world.road_resolution},
                 {"extent", {e.x_min, e.y_min, e.x_max, e.y_max}},
                 {"interval_s", world.interval},
+                {"accuracy", accuracy},
                 {"kept", world.kept},
                 {"hash", base::hash_text(world.hash)},
                 {"warnings", warnings}});
@@ -209,6 +229,10 @@ std::string json_of(const world::World& world, const sensors::Roster& roster, co
   Json head{{"robot", world.movers[reading.mover].name}, {"sensor", reading.sensor},
             {"sensor_name", roster.row(reading).name},   {"kind", kind.name},
             {"pose", pose_json(reading.X_WM)},           {"sensor_pose", pose_json(reading.X_WS)}};
+  if (kind.bound != nullptr) {
+    head["accuracy"] = sensors::word_of(kind, reading.mode);
+    head["bound"] = finite_json(reading.bound);
+  }
   if (kind.list.empty()) {
     head.update(element_json(kind, reading.values));
     return dump(head) + "\n";
@@ -277,6 +301,24 @@ std::string json_of(const scenarios::Explanation& e) {
                              {"bytes", k.bytes},
                              {"tables", tables}});
   }
+  return print(json);
+}
+
+std::string json_of(const std::vector<scenarios::Grade>& grades, const scenarios::Wish& wish) {
+  Json json{{"modes", Json::array()}, {"advice", scenarios::words_of(grades, scenarios::advise(grades, wish))}};
+  for (const scenarios::Grade& g : grades)
+    json["modes"].push_back({{"sensor", g.sensor},
+                             {"mode", g.mode},
+                             {"unit", g.unit},
+                             {"rate_per_s", g.rate},
+                             {"tick_s", g.tick},
+                             {"median_error", finite_json(g.median)},
+                             {"p99_error", finite_json(g.p99)},
+                             {"max_error", finite_json(g.max)},
+                             {"bound", finite_json(g.bound)},
+                             {"max_unflagged_error", finite_json(g.max_unflagged)},
+                             {"flagged", g.flagged},
+                             {"pareto", g.front}});
   return print(json);
 }
 

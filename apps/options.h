@@ -11,6 +11,7 @@
 #include "base/pose.h"
 #include "netio/packets.h"
 #include "scenarios/plant.h"
+#include "scenarios/tradeoff.h"
 #include "sensors/kind.h"
 #include "world/world.h"
 
@@ -32,7 +33,8 @@ enum class Command {
   experiment,
   test,
   verify,
-  explain
+  explain,
+  tradeoff
 };
 
 struct Options {
@@ -63,6 +65,9 @@ struct Options {
   std::string experiments;                ///< folder of their files; empty: found
   std::vector<std::string> scenarios;     ///< files, for `test`
   std::string junit;                      ///< file; empty: none
+
+  scenarios::Wish wish;    ///< for `tradeoff`'s advice, and for `automatic`
+  bool automatic = false;  ///< measure first, and take the modes that the wish comes to
 
   std::uint64_t sample = 0;  ///< scans that `verify` casts again in plain C++; 0: all
   std::uint32_t robots = 0;  ///< clones; 0: the world's own

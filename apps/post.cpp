@@ -84,6 +84,7 @@ void Post::queue(const base::ReadingBlock& reading, std::uint32_t address) {
   header.sensor = static_cast<std::uint16_t>(reading.sensor);
   header.sequence = sent;
   header.time = reading.time;
+  header.accuracy = netio::accuracy_word({reading.mode, !reading.unsure.empty(), reading.bound});
   const auto port = static_cast<std::uint16_t>(netio::port(port_rule(options_, kind), header.robot, reading.sensor));
 
   const std::uint32_t parts = kind.parts(row, options_.wire);

@@ -16,6 +16,7 @@
 #include "apps/post.h"
 #include "apps/progress.h"
 #include "apps/stop.h"
+#include "apps/tradeoff.h"
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "scenarios/run_info.h"
@@ -111,10 +112,11 @@ auto advised(const world::World& world, const Options& options, Act&& act) {
 }  // namespace
 
 int run(const Options& options) {
-  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed);
-  const sensors::Roster roster(world);
-  if (!options.send.empty()) require_sendable(world, roster, options);
+  world::World world = load_with_robots(options.world, options.load, options.robots, options.seed);
+  if (!options.send.empty()) require_sendable(world, sensors::Roster(world), options);
   gpu::Device device(options.device);
+  choose_accuracy(world, device, options);
+  const sensors::Roster roster(world);
   scenarios::Simulation simulation =
       advised(world, options, [&] { return scenarios::Simulation(world, device, simulation_options(world, options)); });
   ControlTally tally(simulation, world.movers.size(), options.controller);

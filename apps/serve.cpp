@@ -13,6 +13,7 @@
 #include "apps/lend.h"
 #include "apps/post.h"
 #include "apps/stop.h"
+#include "apps/tradeoff.h"
 #include "apps/wire_names.h"
 #include "apps/wording.h"
 #include "netio/inbox.h"
@@ -149,10 +150,11 @@ class Service {
 }  // namespace
 
 int serve(const Options& options) {
-  const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
-  const sensors::Roster roster(world);
-  require_sendable(world, roster, options);
+  world::World world = load_with_robots(options.world, options.load, 0, options.seed);
+  require_sendable(world, sensors::Roster(world), options);
   gpu::Device device(options.device);
+  choose_accuracy(world, device, options);
+  const sensors::Roster roster(world);
   Service service(world, roster, device, options);
   catch_stop_signals();
   const double interval = options.rate > 0.0 ? 1.0 / options.rate : world.interval;

@@ -21,6 +21,7 @@ void add_devices(CLI::App& app, Options& o) {
 void add_check(CLI::App& app, Options& o) {
   CLI::App* sub = app.add_subcommand("check", "Say what was understood of a world, and every warning with its line");
   add_world(*sub, o);
+  add_accuracy(*sub, o);
   sub->add_option("--rndf", o.rndf, "Road network that a mission (.mdf) is checked against")
       ->check(not_empty("a file"))
       ->type_name("FILE");
@@ -63,6 +64,7 @@ void add_field(CLI::App& app, Options& o) {
 void add_sense(CLI::App& app, Options& o) {
   CLI::App* sub = app.add_subcommand("sense", "One reading of one sensor, noise off: check your world with a ruler");
   add_world(*sub, o);
+  add_accuracy(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
   add_no_return(*sub, o);
@@ -96,6 +98,7 @@ void add_explain(CLI::App& app, Options& o) {
   CLI::App* sub = app.add_subcommand(
       "explain", "Say what a world makes the farm build and do, and what each kind of sensor costs on this machine");
   add_world(*sub, o);
+  add_accuracy(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
   add_robots(*sub, o);

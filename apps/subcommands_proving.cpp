@@ -67,12 +67,29 @@ void add_verify(CLI::App& app, Options& o) {
   sub->callback([&o] { o.command = Command::verify; });
 }
 
+void add_tradeoff(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand(
+      "tradeoff", "Measure every accuracy mode of a world's sensors on this machine: speed against error");
+  add_world(*sub, o);
+  sub->add_option("-o,--out", o.out, "Folder for tradeoff.csv and tradeoff.png")
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
+  add_wish(*sub, o);
+  sub->add_flag("--auto", o.automatic, "Print only the words that --accuracy takes, for scripts");
+  add_json(*sub, o);
+  add_device(*sub, o);
+  add_robots(*sub, o);
+  add_threads(*sub, o);
+  sub->callback([&o] { o.command = Command::tradeoff; });
+}
+
 }  // namespace
 
 void add_proving(CLI::App& app, Options& o) {
   add_experiment(app, o);
   add_test(app, o);
   add_verify(app, o);
+  add_tradeoff(app, o);
 }
 
 }  // namespace sf::apps

@@ -14,6 +14,8 @@ void add_run(CLI::App& app, Options& o) {
   CLI::App* sub =
       app.add_subcommand("run", "Simulate a fleet in the loop, with every robot's sensors, as fast as it goes");
   add_world(*sub, o);
+  add_accuracy(*sub, o);
+  add_automatic(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
   add_robots(*sub, o);
@@ -46,6 +48,8 @@ void add_serve(CLI::App& app, Options& o) {
   CLI::App* sub =
       app.add_subcommand("serve", "Virtual sensors for robots that live elsewhere: V2V packets in, sensor packets out");
   add_world(*sub, o);
+  add_accuracy(*sub, o);
+  add_automatic(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
   add_no_return(*sub, o);

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "apps/facts.h"
 #include "apps/wording.h"
 #include "base/hash.h"
+#include "sensors/accuracy.h"
 #include "sensors/field/truncation.h"
 
 namespace sf::apps {
@@ -23,6 +26,21 @@ std::string sensors_text(const sensors::Roster& roster) {
     const std::string list = group.kind->list.empty() ? "" : fmt::format(" ({} {} in all)", elements, group.kind->list);
     text += row(group.kind->name, fmt::format("{}{}", group.rows.size(), list));
   }
+  return text;
+}
+
+/// "0.51 mm" of metres, "2 uT" of tesla.
+std::string bound_text(const sensors::Statement& s) {
+  const std::string error =
+      std::isinf(s.bound.error) ? "no bound" : "within " + quantity_text(s.bound.error, sensors::unit_of(*s.kind));
+  return s.bound.condition.empty() ? error : fmt::format("{}: {}", error, s.bound.condition);
+}
+
+std::string accuracy_text(const world::World& world, const sensors::Roster& roster) {
+  std::string text;
+  for (const sensors::Statement& s : sensors::statements_of(world, roster))
+    text += row(text.empty() ? "accuracy" : "", fmt::format("{} {}, {}", counted(s.sensors, s.kind->name),
+                                                            sensors::word_of(*s.kind, s.mode), bound_text(s)));
   return text;
 }
 
@@ -77,7 +95,7 @@ std::string text_of(const world::World& world, const sensors::Roster& roster) {
   text += row("models", fmt::format("{}", world.models.size()));
   text += row("robots", fmt::format("{}", robots));
   if (world.movers.size() > robots) text += row("tags", fmt::format("{}", world.movers.size() - robots));
-  text += roster.groups().empty() ? row("sensors", "none") : sensors_text(roster);
+  text += roster.groups().empty() ? row("sensors", "none") : sensors_text(roster) + accuracy_text(world, roster);
   text += row("wall segments", fmt::format("{}", world.walls.size()));
   text += paint_text(world) + magnets_text(world) + street_text(world);
   text += row("extent", fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max));

@@ -16,10 +16,11 @@ namespace sf::apps {
 namespace {
 
 std::string line_of(const scenarios::Compared& c, const std::string& by) {
-  std::string text = row(c.kind, fmt::format("{}, {}, {}", counted(c.readings, "reading"), by,
-                                             c.different == 0 ? "the same to the bit"
-                                                              : fmt::format("{} of {} numbers DIFFER, by up to {:.3g}",
-                                                                            c.different, c.values, c.largest)));
+  const std::string verdict =
+      c.different > 0   ? fmt::format("{} of {} numbers DIFFER, by up to {:.3g}", c.different, c.values, c.largest)
+      : c.largest > 0.0 ? fmt::format("within what their modes may be off by: up to {:.3g}", c.largest)
+                        : "the same to the bit";
+  std::string text = row(c.kind, fmt::format("{}, {}, {}", counted(c.readings, "reading"), by, verdict));
   if (c.different > 0) text += row("", "first: " + c.first);
   return text;
 }

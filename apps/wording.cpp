@@ -55,6 +55,54 @@ std::string refuse_empty(const std::string& text, const std::string& what) {
   return text.empty() ? fmt::format("expected {}, got ''", what) : "";
 }
 
+namespace {
+
+/// A unit and how much of m or T it is.
+struct Unit {
+  std::string_view name;
+  double value;
+  bool is_tesla;
+};
+constexpr Unit kUnits[] = {{"m", 1.0, false},        {"cm", 1e-2, false},     {"mm", 1e-3, false}, {"um", 1e-6, false},
+                           {"\u00b5m", 1e-6, false}, {"nm", 1e-9, false},     {"T", 1.0, true},    {"mT", 1e-3, true},
+                           {"uT", 1e-6, true},       {"\u00b5T", 1e-6, true}, {"nT", 1e-9, true},  {"G", 1e-4, true},
+                           {"mG", 1e-7, true}};
+
+/// The number that `text` begins with, above 0 and finite, and what follows it.
+std::optional<std::pair<double, std::string_view>> read_number(const std::string& text) {
+  char* stop = nullptr;
+  const double value = std::strtod(text.c_str(), &stop);
+  if (stop == text.c_str() || !(value > 0.0) || !std::isfinite(value)) return std::nullopt;
+  return std::pair{value, std::string_view(stop)};
+}
+
+}  // namespace
+
+std::optional<Quantity> read_quantity(const std::string& text) {
+  const auto number = read_number(text);
+  if (!number) return std::nullopt;
+  for (const Unit& unit : kUnits)
+    if (unit.name == number->second) return Quantity{number->first * unit.value, unit.is_tesla};
+  return std::nullopt;
+}
+
+std::string quantity_text(double value, std::string_view unit) {
+  if (std::isinf(value)) return "-";
+  if (value == 0.0) return "0";
+  if (value < 1e-12) return fmt::format("< 1 p{}", unit);
+  constexpr std::string_view kPrefixes[] = {"p", "n", "u", "m", ""};
+  double scaled = value * 1e12;
+  std::size_t at = 0;
+  while (scaled >= 999.5 && at + 1 < std::size(kPrefixes)) scaled *= 1e-3, ++at;
+  return fmt::format("{:.3g} {}{}", scaled, kPrefixes[at], unit);
+}
+
+std::optional<double> read_rate(const std::string& text) {
+  const auto number = read_number(text);
+  if (!number || (!number->second.empty() && number->second != "Hz")) return std::nullopt;
+  return number->first;
+}
+
 std::optional<base::Pose> read_pose(const std::string& text) {
   double v[3];
   int used = 0;

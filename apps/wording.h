@@ -41,6 +41,19 @@ std::optional<std::array<double, 4>> read_line(const std::string& text);
 /// "52000" or "52000-52016" (both ends included, at most 1024) as ports from 1 on; empty where it is neither.
 std::vector<std::uint16_t> read_ports(const std::string& text);
 
+/// A length or a flux density with its unit, such as "5mm" or "2uT", above 0.
+struct Quantity {
+  double value = 0.0;  ///< [m] or [T]
+  bool is_tesla = false;
+};
+std::optional<Quantity> read_quantity(const std::string& text);
+/// "5 mm", "2.5 uT", "0", "< 1 pm", "-" for infinity; three digits. @param unit "m", "T" or another, which is put
+/// behind the number
+std::string quantity_text(double value, std::string_view unit);
+
+/// "10" or "10Hz", above 0.
+std::optional<double> read_rate(const std::string& text);
+
 /// What the unexpected argument `word` may have been meant to be: `; did you mean '--x'?` or nothing.
 /// @param names of the subcommand's options, without dashes.
 std::string suggest_option(const std::string& word, const std::vector<std::string>& names);

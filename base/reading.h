@@ -19,8 +19,7 @@ inline constexpr std::uint8_t kLaser = 1;
 enum class Unsure : std::uint8_t {
   no = 0,        ///< it is not
   not_cast = 1,  ///< no beam was cast for it: it lies between those that were
-  grazing = 2,   ///< its beam meets a surface at too small an angle
-  bent = 3       ///< made of points that lie on no straight line
+  grazing = 2    ///< its beam meets a surface at too small an angle
 };
 
 /// One reading of one sensor. The spans live until the next tick of the farm that returned them.

@@ -1,5 +1,6 @@
 #include "netio/packets.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -130,7 +131,7 @@ Reason read_header(base::ByteReader& reader, Header& header) {
   header.type = static_cast<Type>(reader.get<std::uint8_t>());
   header.robot = reader.get<std::uint16_t>();
   header.sensor = reader.get<std::uint16_t>();
-  reader.get<std::uint16_t>();  // reserved: ignored, so that a later version may use it compatibly
+  header.accuracy = reader.get<std::uint16_t>();
   header.sequence = reader.get<std::uint32_t>();
   header.time = reader.get<std::int64_t>();
   return Reason::accepted;
@@ -159,6 +160,22 @@ Reason decode(std::span<const std::uint8_t> bytes, Packet& packet) {
   return Reason::accepted;
 }
 
+std::uint16_t accuracy_word(const Accuracy& accuracy) {
+  SF_CHECK(accuracy.mode < 16, "mode " + std::to_string(accuracy.mode) + " in a packet");
+  const unsigned low = accuracy.mode | (accuracy.unsure ? 0x10u : 0u);
+  if (!(accuracy.bound > 0.0) || std::isinf(accuracy.bound)) return static_cast<std::uint16_t>(low);
+  // A little more, so that rounding of the logarithm never states less.
+  const double code = std::ceil(16.0 * std::log2(accuracy.bound) + 1e-9) + 1024.0;
+  const auto k = static_cast<unsigned>(std::clamp(code, 1.0, 2047.0));
+  return static_cast<std::uint16_t>(k << 5 | low);
+}
+
+Accuracy read_accuracy(std::uint16_t word) {
+  const int k = word >> 5;
+  const double bound = k > 0 ? std::exp2((k - 1024) / 16.0) : HUGE_VAL;
+  return {static_cast<std::uint8_t>(word & 0xFu), (word & 0x10u) != 0, bound};
+}
+
 void put_header(const Header& header, base::ByteWriter& writer) {
   SF_CHECK(header.time >= 0 && header.time <= kMaxTime, "timestamp " + std::to_string(header.time) + " ns in a packet");
   writer.put_bytes(kMagic.data(), kMagic.size());
@@ -166,7 +183,7 @@ void put_header(const Header& header, base::ByteWriter& writer) {
   writer.put(static_cast<std::uint8_t>(header.type));
   writer.put(header.robot);
   writer.put(header.sensor);
-  writer.put(std::uint16_t{0});
+  writer.put(header.accuracy);
   writer.put(header.sequence);
   writer.put(header.time);
 }

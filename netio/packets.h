@@ -47,7 +47,19 @@ struct Header {
   std::uint16_t sensor = 0;    ///< 0-based among the robot's sensors of this kind; 0 in states
   std::uint32_t sequence = 0;  ///< counts up by one per message sent of this type (and sensor), wraps to 0
   std::int64_t time = 0;       ///< [ns] in [0, kMaxTime]: when it was measured, not when it was sent
+  std::uint16_t accuracy = 0;  ///< of readings: an accuracy word, below; 0: not said
 };
+
+/// How a reading was measured, in 16 bits: mode in bits 0 to 3, `unsure` in bit 4, and above these k in [1, 2047]: a
+/// bound of 2^((k - 1024) / 16), rounded up by at most 4.5 %; k = 0: none is stated.
+struct Accuracy {
+  std::uint8_t mode = 0;  ///< row of the kind's modes, in [0, 15]
+  bool unsure = false;  ///< for some element the bound does not hold: by the mode's own rule, or since its beam grazes
+  double bound = 0.0;   ///< [unit of the first column]; infinite: none is stated
+};
+/// Bounds of 0 and infinite ones are not stated; others saturate at 2^-63 and 2^63.
+std::uint16_t accuracy_word(const Accuracy& accuracy);
+Accuracy read_accuracy(std::uint16_t word);
 
 /// A robot says where it is.
 struct V2v {

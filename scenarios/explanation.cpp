@@ -11,7 +11,7 @@
 
 #include "base/elapsed.h"
 #include "farm/farm.h"
-#include "scenarios/simulation.h"
+#include "scenarios/ways.h"
 
 namespace sf::scenarios {
 
@@ -21,20 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kDriven = 2.0;  ///< [s] simulated
 constexpr int kLaps = 4;         ///< measured, after one to warm up
-
-/// Everyone's states, tick by tick.
-using Ways = std::vector<std::vector<base::Report>>;
-
-Ways drive(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads) {
-  Simulation simulation(world, device, {.seed = seed, .threads = threads});
-  Ways ways;
-  const auto ticks = std::clamp<std::int64_t>(std::llround(kDriven / world.interval), 1, 1000);
-  for (std::int64_t tick = 0; tick < ticks; ++tick) {
-    const base::TickRecord record = simulation.step();
-    ways.emplace_back(record.reports.begin(), record.reports.end());
-  }
-  return ways;
-}
 
 /// A farm that goes along ways again and again, further in time each time.
 class Drive {
@@ -130,7 +116,7 @@ std::size_t resident_bytes() {
 
 Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads) {
   Explanation e;
-  const Ways ways = drive(world, device, seed, threads);
+  const Ways ways = drive_ways(world, device, kDriven, seed, threads);
   const auto start = Clock::now();
   Drive farm(world, device, ways, {.seed = seed, .threads = threads});
   e.build = base::seconds_since(start);

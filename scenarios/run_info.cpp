@@ -1,5 +1,6 @@
 #include "scenarios/run_info.h"
 
+#include "sensors/accuracy.h"
 namespace sf::scenarios {
 
 namespace {
@@ -28,6 +29,7 @@ record::RunInfo run_info(const world::World& world, const sensors::Roster& roste
   info.world = world.name.empty() ? world.file : world.name;
   info.world_hash = world.hash;
   info.seed = settings.seed;
+  info.mode = sensors::modes_of(roster);
   info.interval = world.interval;
   info.record_readings = settings.record_readings;
   info.options = {{"no_return", settings.no_return_inf ? "inf" : "max"}};

@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "farm/farm.h"
 #include "sensors/bumper.h"
+#include "sensors/laser_modes.h"
 #include "sensors/laser_reference.h"
 #include "sensors/laser_shape.h"
 
@@ -26,25 +27,27 @@ using Name = std::tuple<std::uint8_t, std::uint32_t, std::uint32_t, std::uint32_
 /// Scans that are cast again at once, on all cores.
 constexpr std::size_t kBatch = 256;
 
+/// @param allowed difference of the two: 0 to the bit
 template <class Real>
-void compare(Real ours, Real theirs, Compared& into) {
+void compare(Real ours, Real theirs, double allowed, Compared& into) {
   ++into.values;
   if (std::memcmp(&ours, &theirs, sizeof ours) == 0 || (std::isnan(ours) && std::isnan(theirs))) return;
-  ++into.different;
   const double apart = std::abs(static_cast<double>(ours) - static_cast<double>(theirs));
   into.largest = std::max(into.largest, std::isnan(apart) ? std::numeric_limits<double>::infinity() : apart);
+  if (!(apart <= allowed)) ++into.different;
 }
 
 /// One reading. @param where it is, for people
 template <class Real>
-void compare(std::span<const Real> ours, std::span<const Real> theirs, const std::string& where, Compared& into) {
+void compare(std::span<const Real> ours, std::span<const Real> theirs, const std::string& where, Compared& into,
+             double allowed = 0.0) {
   ++into.readings;
   const std::uint64_t before = into.different;
   if (ours.size() != theirs.size()) {
     ++into.different;
     into.largest = std::numeric_limits<double>::infinity();
   }
-  for (std::size_t i = 0; i < std::min(ours.size(), theirs.size()); ++i) compare(ours[i], theirs[i], into);
+  for (std::size_t i = 0; i < std::min(ours.size(), theirs.size()); ++i) compare(ours[i], theirs[i], allowed, into);
   if (before == 0 && into.different > 0) into.first = where;
 }
 
@@ -53,6 +56,7 @@ struct Asked {
   std::uint32_t mover, sensor, sequence;
   std::size_t tick;           ///< at which it was measured
   std::vector<float> ranges;  ///< [m] as recorded, or as this device says
+  double allowed;             ///< [m] what its mode may be off by; 0: to the bit
 };
 
 class Verifier {
@@ -142,6 +146,15 @@ class Verifier {
     compare(reading.values, std::span<const double>(theirs), place_of(reading), compared(reading.kind));
   }
 
+  /// What 32 bits may make of a scan, and a recording's own. Other modes are cast again as they are.
+  double allowed_of(const base::ReadingBlock& reading) const {
+    const auto& laser = world_.movers[reading.mover].lasers[reading.sensor];
+    const bool single = sensors::cast_laser(world_, laser).single;
+    // Noise in proportion to the range moves with it.
+    const double stretch = 1.0 + 8.0 * laser.noise.range_proportional;
+    return single ? stretch * reading.bound + laser.range_max * 0x1p-24 : 0.0;
+  }
+
   /// As scans are recorded.
   std::vector<float> told(std::uint32_t mover, std::uint32_t sensor, std::span<const double> ranges,
                           std::span<const std::uint32_t> hits) const {
@@ -164,7 +177,8 @@ class Verifier {
       return;
     }
     if (seen_++ % stride_ == 0)
-      asked_.push_back({reading.mover, reading.sensor, reading.sequence, tick_at(reading.time), std::move(ours)});
+      asked_.push_back({reading.mover, reading.sensor, reading.sequence, tick_at(reading.time), std::move(ours),
+                        allowed_of(reading)});
   }
 
   /// Casts what was asked for in plain C++, tick by tick, since all see the movers of their tick.
@@ -188,10 +202,11 @@ class Verifier {
   }
 
   void judge(const Asked& asked, const sensors::LaserReference::Scan& scan) {
+    const std::vector<float> ours = told(asked.mover, asked.sensor, scan.ranges, scan.hits);
     compare<float>(
-        told(asked.mover, asked.sensor, scan.ranges, scan.hits), asked.ranges,
+        ours, asked.ranges,
         fmt::format("{}, laser {}, reading {}", world_.movers[asked.mover].name, asked.sensor, asked.sequence),
-        result_.reference);
+        result_.reference, asked.allowed);
   }
 
   Compared& compared(std::uint8_t kind) {

@@ -12,14 +12,15 @@
 
 namespace sf::scenarios {
 
-/// Readings of one kind, compared bit by bit.
+/// Readings of one kind, compared bit by bit; scans measured in 32 bits within their bound beside plain C++.
 struct Compared {
   std::string kind;
   std::uint64_t readings = 0;
-  std::uint64_t values = 0;     ///< numbers in them
-  std::uint64_t different = 0;  ///< of these, not the same bits; what is not a number is the same as any other such
-  double largest = 0.0;         ///< largest difference, in the kind's own unit; infinite where one side is no number
-  std::string first;            ///< where the first difference is
+  std::uint64_t values = 0;  ///< numbers in them
+  std::uint64_t different =
+      0;  ///< of these, not the same bits, or beyond the bound; what is not a number is the same as any other such
+  double largest = 0.0;  ///< largest difference, in the kind's own unit; infinite where one side is no number
+  std::string first;     ///< where the first difference is
 };
 
 struct Verification {

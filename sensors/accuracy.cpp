@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <set>
 #include <sstream>
+#include <tuple>
 
 #include "base/error.h"
 #include "sensors/settings.h"
@@ -15,8 +18,12 @@ namespace {
 
 constexpr std::string_view kExact = "exact";
 
-const Mode* find_mode(std::span<const Mode> modes, std::string_view word) {
-  const auto found = std::find_if(modes.begin(), modes.end(), [&](const Mode& mode) { return mode.word == word; });
+/// What `word`, with or without its kind before a colon, is to a kind; null: nothing.
+const Mode* find_mode(std::string_view kind, std::span<const Mode> modes, std::string_view word) {
+  const std::size_t colon = word.find(':');
+  if (colon != std::string_view::npos && word.substr(0, colon) != kind) return nullptr;
+  const std::string_view own = colon == std::string_view::npos ? word : word.substr(colon + 1);
+  const auto found = std::find_if(modes.begin(), modes.end(), [&](const Mode& mode) { return mode.word == own; });
   return found == modes.end() ? nullptr : &*found;
 }
 
@@ -38,10 +45,11 @@ std::string listed(const std::vector<std::string_view>& words) {
 
 }  // namespace
 
-std::uint8_t mode_of(std::span<const Mode> modes, const world::Accuracy& own, const world::World& world) {
+std::uint8_t mode_of(std::string_view kind, std::span<const Mode> modes, const world::Accuracy& own,
+                     const world::World& world) {
   const world::Accuracy& asked = own.word.empty() ? world.accuracy : own;
   for (const std::string& word : words_in(asked.word))
-    if (const Mode* const mode = find_mode(modes, word)) return static_cast<std::uint8_t>(mode - modes.data());
+    if (const Mode* const mode = find_mode(kind, modes, word)) return static_cast<std::uint8_t>(mode - modes.data());
   if (own.word.empty() || own.word == kExact) return 0;
   std::vector<std::string_view> words;
   for (const Mode& known : modes) words.push_back(known.word);
@@ -60,7 +68,7 @@ namespace {
 
 void check_word(const world::World& world, std::span<const SensorKind* const> present, const std::string& word) {
   if (word == kExact) return;
-  const auto knows = [&](const SensorKind* kind) { return find_mode(kind->modes, word) != nullptr; };
+  const auto knows = [&](const SensorKind* kind) { return find_mode(kind->name, kind->modes, word) != nullptr; };
   if (std::any_of(present.begin(), present.end(), knows)) return;
   const auto all = kinds();
   if (std::none_of(all.begin(), all.end(), knows))
@@ -79,12 +87,75 @@ void check_accuracy(const world::World& world, std::span<const SensorKind* const
   for (const std::string& word : words_in(world.accuracy.word)) check_word(world, present, word);
 }
 
+void set_accuracy(world::World& world, const std::string& words) {
+  world.accuracy = {words, "", 0};
+  for (world::Mover& mover : world.movers) {
+    for (world::Laser& laser : mover.lasers) laser.accuracy = {};
+    for (world::Sensor& sensor : mover.sensors)
+      std::erase_if(sensor.settings, [](const world::Setting& setting) { return setting.key == "accuracy"; });
+  }
+  world::finish(world);
+}
+
 std::vector<std::string_view> accuracy_words() {
   std::vector<std::string_view> words{kExact};
   for (const SensorKind* kind : kinds())
     for (const Mode& mode : kind->modes)
       if (std::find(words.begin(), words.end(), mode.word) == words.end()) words.push_back(mode.word);
   return words;
+}
+
+namespace {
+
+/// Sensors that are set up alike state the same.
+using Alike = std::tuple<std::uint8_t, double, double, std::uint32_t>;
+
+/// @param known bounds of those that were looked at
+const Bound& bound_of(const world::World& world, const SensorKind& kind, const SensorRow& row,
+                      std::map<Alike, Bound>& known) {
+  const auto [at, is_new] =
+      known.try_emplace(Alike{row.mode, row.limit, world.movers[row.mover].X_WM.z + row.X_MS.z, row.elements}, Bound{});
+  if (is_new) at->second = kind.bound(world, row);
+  return at->second;
+}
+
+}  // namespace
+
+std::vector<Statement> statements_of(const world::World& world, const Roster& roster) {
+  std::vector<Statement> statements;
+  for (const Roster::Group& group : roster.groups()) {
+    if (group.kind->bound == nullptr) continue;
+    const std::size_t first = statements.size();
+    std::map<Alike, Bound> known;
+    for (const SensorRow& row : group.rows) {
+      const Bound& bound = bound_of(world, *group.kind, row, known);
+      const auto same =
+          std::find_if(statements.begin() + static_cast<std::ptrdiff_t>(first), statements.end(),
+                       [&](const Statement& s) { return s.mode == row.mode && s.bound.error == bound.error; });
+      if (same != statements.end())
+        ++same->sensors;
+      else
+        statements.push_back({group.kind, row.mode, 1, bound});
+    }
+  }
+  return statements;
+}
+
+std::string modes_of(const Roster& roster) {
+  std::string text;
+  for (const Roster::Group& group : roster.groups()) {
+    std::set<std::uint8_t> modes;
+    for (const SensorRow& row : group.rows)
+      if (row.mode > 0) modes.insert(row.mode);
+    for (const std::uint8_t mode : modes)
+      text += fmt::format("{}{}:{}", text.empty() ? "" : " ", group.kind->name, word_of(*group.kind, mode));
+  }
+  return text.empty() ? std::string(kExact) : text;
+}
+
+std::string_view unit_of(const SensorKind& kind) {
+  const std::string_view column = kind.columns.front().name;
+  return column.ends_with("_m") ? "m" : column.ends_with("_T") ? "T" : "";
 }
 
 std::string_view word_of(const SensorKind& kind, std::uint8_t mode) {

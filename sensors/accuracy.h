@@ -3,19 +3,21 @@
 //
 // A world file says `accuracy "word"` for all sensors, or inside one of them; the command line's word comes before
 // both. Several words, with spaces between, are for several kinds: a sensor takes the first that its kind knows, and is
-// exact when there is none.
+// exact when there is none. `laser:skip2` is for that kind alone.
 
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "sensors/kind.h"
+#include "sensors/roster.h"
 
 namespace sf::sensors {
 
-/// Row of `modes` that a sensor measures in.
+/// Row of `modes`, those of the kind called `kind`, that a sensor measures in.
 /// @param own what its place in the world file says  @throws base::InputError, there, for a word that is not among them
-std::uint8_t mode_of(std::span<const Mode> modes, const world::Accuracy& own, const world::World& world);
+std::uint8_t mode_of(std::string_view kind, std::span<const Mode> modes, const world::Accuracy& own,
+                     const world::World& world);
 
 /// `accuracy "word"` among a sensor's settings.
 world::Accuracy accuracy_of(const world::Sensor& sensor);
@@ -23,8 +25,26 @@ world::Accuracy accuracy_of(const world::Sensor& sensor);
 /// @throws base::InputError when no kind knows the world's word, or none that the world has sensors of.
 void check_accuracy(const world::World& world, std::span<const SensorKind* const> present);
 
+/// Makes `words` the world's, and takes back what its sensors say of their own.
+void set_accuracy(world::World& world, const std::string& words);
+
 /// Every word that some kind knows, `exact` first, in order of the kinds.
 std::vector<std::string_view> accuracy_words();
+
+/// What a world's sensors state before they measure: one row a kind, mode and bound.
+struct Statement {
+  const SensorKind* kind = nullptr;
+  std::uint8_t mode = 0;
+  std::uint32_t sensors = 0;  ///< of which this is true
+  Bound bound;
+};
+std::vector<Statement> statements_of(const world::World& world, const Roster& roster);
+
+/// "laser:single magnetometer:near3": the modes that are not exact, each once; "exact" where there are none.
+std::string modes_of(const Roster& roster);
+
+/// "m" or "T" of a kind's first column, as its name says; else "".
+std::string_view unit_of(const SensorKind& kind);
 
 /// The word of a mode: `exact` for kinds without modes.
 std::string_view word_of(const SensorKind& kind, std::uint8_t mode);

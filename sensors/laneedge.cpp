@@ -28,11 +28,6 @@ bool anything_else(const world::World& world) {
   return !world.walls.empty() || (bodies > 0 && world.movers.size() > 1);
 }
 
-constexpr base::Unsure kBent[] = {base::Unsure::bent};
-
-/// Whether a reading's columns are those of three points or more on one straight line.
-bool is_straight(std::span<const double> reading) { return reading[1] > 2.5 && reading[2] <= kStraightResidual; }
-
 /// Rays against the excerpt, exactly; where the road is a raster, into that as well; then lines through what they met.
 class LaneEdges : public Instruments {
  public:
@@ -124,8 +119,7 @@ void LaneEdges::collect(std::vector<base::ReadingBlock>& out) {
     block.X_WS = casts_.results(i).X_WS;
     block.values = fit_.reading(i);
     block.mode = edge.row.mode;
-    block.bound = exact_ ? kStraightError : HUGE_VAL;
-    if (exact_ && edge.row.mode > 0 && !is_straight(block.values)) block.unsure = kBent;
+    block.bound = exact_ && edge.row.mode == 0 ? kStraightError : HUGE_VAL;
     out.push_back(block);
   }
 }

@@ -72,7 +72,7 @@ std::vector<LaneEdge> lane_edges_of(const world::World& world) {
   std::vector<LaneEdge> edges;
   for_each_of(world, "laneedge", [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
     LaneEdge edge = lane_edge_of(sensor, mover, number);
-    edge.row.mode = mode_of(kLaneEdgeModes, accuracy_of(sensor), world);
+    edge.row.mode = mode_of("laneedge", kLaneEdgeModes, accuracy_of(sensor), world);
     thin_out(edge, kEveryRay[edge.row.mode]);
     edges.push_back(std::move(edge));
   });
@@ -82,9 +82,8 @@ std::vector<LaneEdge> lane_edges_of(const world::World& world) {
 Bound bound_of_lane_edge(const world::World& world, const SensorRow& sensor) {
   if (world.road_resolution > 0.0 && !world.stripes.empty())
     return {HUGE_VAL, "paint in pixels: each reading says its own sigma"};
-  Bound bound{kStraightError, "straight edges; along curves each reading says its own sigma"};
-  if (sensor.mode > 0) bound.condition = "one straight edge in sight; readings that are no straight line's are flagged";
-  return bound;
+  if (sensor.mode > 0) return {HUGE_VAL, "rays left out may have met another edge: each reading says its own sigma"};
+  return {kStraightError, "straight edges; along curves each reading says its own sigma"};
 }
 
 }  // namespace sf::sensors

@@ -29,8 +29,6 @@ inline constexpr Mode kLaneEdgeModes[] = {
 };
 /// [m] error of the distance to one straight edge, in exact paint.
 inline constexpr double kStraightError = 1e-8;
-/// [m] points of one straight line leave no more.
-inline constexpr double kStraightResidual = 1e-9;
 Bound bound_of_lane_edge(const world::World& world, const SensorRow& sensor);
 
 /// A share of range_max: ranges from here on are "near the maximum" and no points.

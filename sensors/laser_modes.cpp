@@ -22,7 +22,7 @@ static_assert(std::size(kMakings) == std::size(kLaserModes));
 }  // namespace
 
 CastLaser cast_laser(const world::World& world, const world::Laser& laser) {
-  const std::uint8_t row = mode_of(kLaserModes, laser.accuracy, world);
+  const std::uint8_t row = mode_of("laser", kLaserModes, laser.accuracy, world);
   const Making& making = kMakings[row];
   CastLaser cast{laser, making.single, row, making.skip > 1};
   cast.laser.resolution = std::min(laser.resolution * making.skip, std::max(1u, laser.samples - 1));

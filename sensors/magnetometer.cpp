@@ -33,7 +33,7 @@ std::vector<Array> arrays_of(const world::World& world) {
   const auto type = magnetometer_kind.word.type;
   for_each_of(world, type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
     Array array{read_magnetometer(sensor), common_row(sensor, mover, number), 0.0, 0.0, values};
-    array.row.mode = mode_of(kMagnetometerModes, accuracy_of(sensor), world);
+    array.row.mode = mode_of("magnetometer", kMagnetometerModes, accuracy_of(sensor), world);
     array.row.X_MS.z += sensor.height / 2.0;
     array.row.elements = static_cast<std::uint32_t>(array.settings.X_SE.size());
     array.row.limit = std::max(std::abs(array.settings.least), std::abs(array.settings.most));

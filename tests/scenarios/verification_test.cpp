@@ -12,6 +12,7 @@
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
+#include "sensors/accuracy.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::scenarios {
@@ -33,9 +34,10 @@ world::World small_world() {
 }
 
 /// Two seconds of wandering.
-record::Recording recorded(bool readings) {
+record::Recording recorded(bool readings, const std::string& mode = "exact") {
   const auto folder = std::filesystem::temp_directory_path() / ("sf_verification_" + std::to_string(::getpid()));
-  const world::World world = small_world();
+  world::World world = small_world();
+  sensors::set_accuracy(world, mode);
   {
     Simulation simulation(world, device(), {.seed = 9});
     record::Recorder recorder(folder.string(), run_info(world, simulation.farm().roster(), {9, readings}));
@@ -56,6 +58,28 @@ TEST(Verification, ASoundRun) {
   EXPECT_EQ(v.reference.readings, v.again[0].readings) << "all of them by default";
   EXPECT_EQ(v.ticks, 20u);
   EXPECT_FALSE(v.interrupted);
+}
+
+/// Skipped beams are computed again to the bit, 32 bits on the device to the bit and beside plain C++ within the bound.
+TEST(Verification, InOtherModes) {
+  const record::Recording skipped = recorded(true, "skip4");
+  EXPECT_EQ(skipped.info.mode, "laser:skip4");
+  const Verification all = verify(skipped, device(), {});
+  EXPECT_TRUE(all.sound()) << all.reference.first;
+  EXPECT_EQ(all.reference.largest, 0.0);
+
+  const Verification single = verify(recorded(true, "single"), device(), {});
+  EXPECT_TRUE(single.sound()) << single.reference.first;
+  EXPECT_EQ(single.again[0].largest, 0.0) << "one device, one answer";
+  EXPECT_GT(single.reference.largest, 0.0) << "or it was not measured in 32 bits";
+  EXPECT_LT(single.reference.largest, 1e-3);
+}
+
+TEST(Verification, A32BitRangeBeyondItsBoundIsFound) {
+  record::Recording run = recorded(true, "single");
+  for (record::ScanSample& sample : run.scans) sample.scan.ranges[7] += 2e-3f;
+  EXPECT_FALSE(verify(run, device(), {}).sound());
+  EXPECT_GT(verify(run, device(), {}).reference.different, 0u);
 }
 
 TEST(Verification, WithoutReadingsPlainCppIsBesideTheDevice) {

@@ -73,6 +73,13 @@ world::World crowd(const world::Laser& laser, std::uint64_t seed) {
 
 TEST(LaserReference, AmongBoxesAndRobots) { expect_same_bits("boxes", disagreement(crowd(scenes::laser(), 1), 1)); }
 
+TEST(LaserReference, InModesThatSkip) {
+  world::World world = crowd(scenes::laser(), 2);
+  for (std::size_t m = 0; m < world.movers.size(); ++m)
+    world.movers[m].lasers[0].accuracy.word = m % 2 == 0 ? "skip2" : "skip8";
+  expect_same_bits("skip2 and skip8", disagreement(world, 1));
+}
+
 TEST(LaserReference, InACave) {
   world::World world = scenes::cave(100, 16.0, 3);
   scenes::add_robots(world, kRobots / 4, scenes::laser(), 3);

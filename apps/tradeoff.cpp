@@ -1,0 +1,136 @@
+// `tradeoff`: what each accuracy mode of a world's sensors gives and costs on this machine; and `--auto`, which goes by
+// it.
+
+#include "apps/tradeoff.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/commands.h"
+#include "apps/facts.h"
+#include "apps/lend.h"
+#include "apps/progress.h"
+#include "apps/stop.h"
+#include "apps/wording.h"
+#include "base/error.h"
+#include "scenarios/experiment.h"
+#include "sensors/accuracy.h"
+#include "viz/tradeoff_figure.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr double kUsualMetres = 0.01;
+constexpr double kUsualTesla = 1e-6;
+
+/// Where nothing was wished for, a centimetre and a microtesla.
+scenarios::Wish wish_of(const Options& options) {
+  scenarios::Wish wish = options.wish;
+  if (wish.least_rate > 0.0 || std::isfinite(wish.metres) || std::isfinite(wish.tesla)) return wish;
+  wish.metres = kUsualMetres;
+  wish.tesla = kUsualTesla;
+  return wish;
+}
+
+/// What is counted by the second.
+std::string_view counted_as(const std::string& sensor) {
+  return sensor == "laser" ? "rays" : sensor == "laneedge" ? "edges" : sensor == "magnetometer" ? "fields" : "readings";
+}
+
+std::string wish_text(const scenarios::Wish& wish) {
+  if (wish.least_rate > 0.0) return fmt::format("at {:g} Hz or more", wish.least_rate);
+  constexpr std::string_view kBy[] = {"a median error", "99 % of errors", "every error"};
+  std::string text;
+  if (std::isfinite(wish.metres)) text += quantity_text(wish.metres, "m");
+  if (std::isfinite(wish.tesla)) text += (text.empty() ? "" : " and ") + quantity_text(wish.tesla, "T");
+  return fmt::format("with {} within {}", kBy[static_cast<int>(wish.by)], text);
+}
+
+std::string advice_text(const std::vector<scenarios::Grade>& grades, const scenarios::Wish& wish) {
+  return fmt::format("fastest {}: --accuracy \"{}\"\n", wish_text(wish),
+                     scenarios::words_of(grades, scenarios::advise(grades, wish)));
+}
+
+void draw(const std::string& world, const std::string& device, const std::vector<scenarios::Grade>& grades,
+          const std::string& file) {
+  std::vector<viz::TradeoffPanel> panels;
+  for (const scenarios::Grade& g : grades) {
+    if (panels.empty() || panels.back().title != g.sensor)
+      panels.push_back({g.sensor,
+                        fmt::format("{} per second", counted_as(g.sensor)),
+                        fmt::format("error [{}]: median, 99 %, largest", g.unit),
+                        {}});
+    panels.back().points.push_back({g.mode, g.rate, g.median, g.p99, g.max, g.front});
+  }
+  viz::draw_tradeoff("Speed against error: " + world,
+                     "whole ticks on " + device + "; blue: no other mode is as fast with 99 % of errors as small",
+                     panels, file);
+}
+
+void write(const Options& options, const world::World& world, const gpu::Device& device,
+           const std::vector<scenarios::Grade>& grades) {
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (error)
+    throw base::InputError(options.out, 0, "cannot be made a folder: " + error.message() + "; name another with -o");
+  const std::filesystem::path folder(options.out);
+  scenarios::write_text((folder / "tradeoff.csv").string(), scenarios::csv_of(grades));
+  draw(world.name, device.facts().name, grades, (folder / "tradeoff.png").string());
+}
+
+std::vector<scenarios::Grade> measure(const world::World& world, gpu::Device& device, const Options& options) {
+  Progress progress("measuring");
+  return scenarios::tradeoff(world, device, {options.seed, options.threads, [&](double part) {
+                                               progress.show(part);
+                                               return !stop_requested();
+                                             }});
+}
+
+}  // namespace
+
+std::string text_of(const std::vector<scenarios::Grade>& grades) {
+  std::string text = fmt::format("{:<13} {:<8} {:>12} {:>10} {:>10} {:>10} {:>10} {:>12} {:>10}\n", "sensor", "mode",
+                                 "per second", "median", "99 %", "largest", "flagged", "largest else", "bound");
+  for (const scenarios::Grade& g : grades)
+    text += fmt::format("{:<13} {:<8} {:>12} {:>10} {:>10} {:>10} {:>8.2f} % {:>12} {:>10} {}\n", g.sensor, g.mode,
+                        fmt::format("{:.4g}", g.rate), quantity_text(g.median, g.unit), quantity_text(g.p99, g.unit),
+                        quantity_text(g.max, g.unit), 100.0 * g.flagged, quantity_text(g.max_unflagged, g.unit),
+                        quantity_text(g.bound, g.unit), g.front ? "*" : "");
+  return text + "* no other mode of the kind is as fast with 99 % of errors as small\n";
+}
+
+void choose_accuracy(world::World& world, gpu::Device& device, const Options& options) {
+  if (!options.automatic) return;
+  catch_stop_signals();
+  const scenarios::Wish wish = wish_of(options);
+  const auto grades = measure(world, device, options);
+  const std::string words = scenarios::words_of(grades, scenarios::advise(grades, wish));
+  std::fprintf(stderr, "sensorfarm: measured; %s: --accuracy \"%s\"\n", wish_text(wish).c_str(), words.c_str());
+  sensors::set_accuracy(world, words);
+}
+
+int tradeoff(const Options& options) {
+  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed);
+  gpu::Device device(options.device);
+  catch_stop_signals();
+  const scenarios::Wish wish = wish_of(options);
+  const auto grades = measure(world, device, options);
+  if (stop_requested()) throw base::InputError("interrupted: nothing was written");
+  if (grades.empty())
+    throw base::InputError(world.file, 0,
+                           "has no sensor that can be measured in more than one way; give a robot a laser( ), a "
+                           "laneedge( ) or a magnetometer( )");
+  if (!options.out.empty()) write(options, world, device, grades);
+  const std::string words = scenarios::words_of(grades, scenarios::advise(grades, wish));
+  const std::string text = options.json        ? json_of(grades, wish)
+                           : options.automatic ? words + "\n"
+                                               : text_of(grades) + advice_text(grades, wish);
+  std::fputs(text.c_str(), stdout);
+  return 0;
+}
+
+}  // namespace sf::apps

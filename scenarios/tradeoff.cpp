@@ -1,0 +1,214 @@
+#include "scenarios/tradeoff.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "base/elapsed.h"
+#include "farm/farm.h"
+#include "scenarios/ways.h"
+#include "sensors/accuracy.h"
+#include "sensors/laser_reference.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+constexpr double kDriven = 2.0;                 // [s] simulated
+constexpr std::size_t kMostValues = 4'000'000;  // elements of one mode whose errors are looked at
+constexpr int kRounds = 5;                      // laps that are timed: modes take turns
+constexpr std::size_t kReferenceScans = 64;
+
+/// What one mode read along the ways, first columns only.
+struct Read {
+  std::vector<double> values;
+  std::vector<base::Unsure> unsure;
+  double bound = 0.0;
+};
+
+/// A farm of its own, in which one kind is heard, and measures in one mode.
+class Entrant {
+ public:
+  Entrant(const world::World& world, gpu::Device& device, const sensors::SensorKind& kind, std::uint8_t mode,
+          const Ways& ways, const TradeoffOptions& options)
+      : kind_(kind), mode_(mode), world_(world), ways_(ways) {
+    sensors::set_accuracy(world_, std::string(sensors::word_of(kind, mode)));
+    farm_ = std::make_unique<farm::Farm>(
+        world_, device, farm::FarmOptions{.seed = options.seed, .noise = false, .threads = options.threads});
+    for (std::uint32_t m = 0; m < world_.movers.size(); ++m) farm_->hear(m, 1u << kind.id);
+  }
+
+  /// The first lap: what it reads, and warm afterwards.
+  Read read() {
+    Read read;
+    lap([&](const base::ReadingBlock& block) { take(block, read); });
+    return read;
+  }
+  /// A lap on the clock.
+  void time() {
+    std::size_t elements = 0;
+    const auto start = std::chrono::steady_clock::now();
+    lap([&](const base::ReadingBlock& block) { elements += block.values.size() / width(); });
+    laps_.push_back(base::seconds_since(start));
+    elements_ = elements;
+  }
+  double tick() const { return median_lap() / static_cast<double>(ways_.size()); }
+  double rate() const { return static_cast<double>(elements_) / median_lap(); }
+  std::uint8_t mode() const { return mode_; }
+  const world::World& world() const { return world_; }
+
+ private:
+  std::size_t width() const { return sensors::element_width(kind_); }
+
+  template <class Look>
+  void lap(Look look) {
+    const std::int64_t interval = std::llround(world_.interval * 1e9);
+    for (const auto& reports : ways_) {
+      for (const base::ReadingBlock& block : farm_->tick(now_, reports)) look(block);
+      now_ += interval;
+    }
+  }
+
+  void take(const base::ReadingBlock& block, Read& read) {
+    if (read.values.size() > kMostValues) return;
+    read.bound = std::max(read.bound, block.bound);
+    for (std::size_t i = 0; i < block.values.size(); i += width()) {
+      read.values.push_back(block.values[i]);
+      read.unsure.push_back(block.unsure.empty() ? base::Unsure::no : block.unsure[i / width()]);
+    }
+  }
+
+  double median_lap() const {
+    std::vector<double> sorted = laps_;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[sorted.size() / 2];
+  }
+
+  const sensors::SensorKind& kind_;
+  std::uint8_t mode_;
+  world::World world_;
+  const Ways& ways_;
+  std::unique_ptr<farm::Farm> farm_;
+  std::int64_t now_ = 0;
+  std::vector<double> laps_;  ///< [s]
+  std::size_t elements_ = 0;  ///< of one lap
+};
+
+double apart(double ours, double theirs) {
+  if (std::isnan(ours) && std::isnan(theirs)) return 0.0;
+  const double error = std::abs(ours - theirs);
+  return std::isnan(error) ? HUGE_VAL : error;
+}
+
+/// [m] of a sample of scans in 64 bits against plain C++, which knows nothing of the device.
+std::vector<double> laser_errors(const Entrant& exact, const Ways& ways, const Read& read,
+                                 const sensors::Roster& roster) {
+  std::vector<double> errors;
+  sensors::LaserReference reference(exact.world(), 0, false);
+  const auto& rows = roster.group(base::kLaser)->rows;
+  // Scans of the first tick: every laser has its first reading there unless its phase is later.
+  std::vector<base::Pose> poses;
+  for (const base::Report& report : ways.front()) poses.push_back(report.X_WM);
+  reference.place(poses);
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < std::min(rows.size(), kReferenceScans); ++i) {
+    if (rows[i].phase > 0.0 || rows[i].latency > 0.0) return {};
+    const auto scan = reference.scan(rows[i].mover, rows[i].sensor, 0);
+    for (const double range : scan.ranges) errors.push_back(apart(read.values[at++], range));
+  }
+  return errors;
+}
+
+/// The k-th smallest part of all.
+double part_of(std::vector<double>& errors, double part) {
+  if (errors.empty()) return 0.0;
+  const auto at = errors.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(errors.size() - 1));
+  std::nth_element(errors.begin(), at, errors.end());
+  return *at;
+}
+
+void grade_errors(std::vector<double> errors, Grade& grade) {
+  grade.median = part_of(errors, 0.5);
+  grade.p99 = part_of(errors, 0.99);
+  grade.max = part_of(errors, 1.0);
+}
+
+void compare(const Read& read, const Read& exact, Grade& grade) {
+  std::vector<double> errors;
+  std::size_t flagged = 0;
+  for (std::size_t i = 0; i < std::min(read.values.size(), exact.values.size()); ++i) {
+    errors.push_back(apart(read.values[i], exact.values[i]));
+    if (read.unsure[i] == base::Unsure::no)
+      grade.max_unflagged = std::max(grade.max_unflagged, errors.back());
+    else
+      ++flagged;
+  }
+  grade.flagged = errors.empty() ? 0.0 : static_cast<double>(flagged) / static_cast<double>(errors.size());
+  grade_errors(std::move(errors), grade);
+}
+
+void find_front(std::vector<Grade>& grades, std::size_t first) {
+  for (std::size_t i = first; i < grades.size(); ++i) {
+    const auto better = [&](const Grade& other) {
+      return other.rate >= grades[i].rate && other.p99 <= grades[i].p99 &&
+             (other.rate > grades[i].rate || other.p99 < grades[i].p99);
+    };
+    grades[i].front = std::none_of(grades.begin() + static_cast<std::ptrdiff_t>(first), grades.end(), better);
+  }
+}
+
+}  // namespace
+
+std::vector<Grade> tradeoff(const world::World& world, gpu::Device& device, const TradeoffOptions& options) {
+  const sensors::Roster roster(world);
+  const Ways ways = drive_ways(world, device, kDriven, options.seed, options.threads);
+  double all = 0.0, done = 0.0;
+  for (const auto& group : roster.groups()) all += static_cast<double>(group.kind->modes.size() * (1 + kRounds));
+  const auto go_on = [&] { return !options.progress || options.progress(++done / all); };
+
+  std::vector<Grade> grades;
+  for (const auto& group : roster.groups()) {
+    const sensors::SensorKind& kind = *group.kind;
+    if (kind.modes.empty()) continue;
+    std::vector<std::unique_ptr<Entrant>> entrants;
+    const std::size_t first = grades.size();
+    Read exact;
+    for (std::uint8_t mode = 0; mode < kind.modes.size(); ++mode) {
+      entrants.push_back(std::make_unique<Entrant>(world, device, kind, mode, ways, options));
+      const Read read = entrants.back()->read();
+      Grade grade{.sensor = std::string(kind.name),
+                  .mode = std::string(kind.modes[mode].word),
+                  .unit = std::string(sensors::unit_of(kind))};
+      if (mode == 0) exact = read;
+      compare(read, exact, grade);
+      grade.bound = read.bound;
+      if (mode == 0 && kind.id == base::kLaser) grade_errors(laser_errors(*entrants[0], ways, read, roster), grade);
+      grades.push_back(grade);
+      if (!go_on()) return {};
+    }
+    for (int round = 0; round < kRounds; ++round)
+      for (auto& entrant : entrants) {
+        entrant->time();
+        if (!go_on()) return {};
+      }
+    for (std::size_t i = 0; i < entrants.size(); ++i) {
+      grades[first + i].rate = entrants[i]->rate();
+      grades[first + i].tick = entrants[i]->tick();
+    }
+    find_front(grades, first);
+  }
+  return grades;
+}
+
+std::string csv_of(const std::vector<Grade>& grades) {
+  std::string text = "sensor,mode,rate_per_s,median_error,p99_error,max_error,bound,max_unflagged_error,flagged\n";
+  for (const Grade& g : grades)
+    text += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", g.sensor, g.mode, g.rate, g.median,
+                        g.p99, g.max, g.bound, g.max_unflagged, g.flagged);
+  return text;
+}
+
+}  // namespace sf::scenarios

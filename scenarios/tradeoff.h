@@ -1,0 +1,61 @@
+#pragma once
+// Speed against accuracy, of one world on one device: every mode of every kind of sensor it has, measured.
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "gpu/device.h"
+#include "world/world.h"
+
+namespace sf::scenarios {
+
+/// One mode of one kind. Errors are those of a reading's first column against the same reading in mode `exact`, without
+/// noise; of `exact` itself against plain C++ for lasers (a sample of scans), else 0.
+struct Grade {
+  std::string sensor;  ///< the kind
+  std::string mode;
+  std::string unit;   ///< of errors and bounds: m or T; empty: none
+  double rate = 0.0;  ///< [1/s] elements (rays, fields, edges) of whole ticks in which only this kind is heard
+  double tick = 0.0;  ///< [s] of such a tick, median
+  double median = 0.0, p99 = 0.0;
+  double max = 0.0;            ///< infinite: one of the two saw nothing
+  double max_unflagged = 0.0;  ///< of elements that the bound holds for
+  double flagged = 0.0;        ///< [-] part of the elements that it does not hold for
+  double bound = 0.0;          ///< largest that was stated; infinite: none was
+  bool front = false;          ///< no other mode of the kind is as fast and errs less, by `p99`
+};
+
+struct TradeoffOptions {
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  std::function<bool(double part)> progress;  ///< false: stop
+};
+
+/// @return modes of each kind that has some, `exact` first, in order of kinds; fewer when it was stopped
+std::vector<Grade> tradeoff(const world::World& world, gpu::Device& device, const TradeoffOptions& options);
+
+/// Columns sensor, mode, rate_per_s, median_error, p99_error, max_error, bound, max_unflagged_error, flagged; metres or
+/// tesla.
+std::string csv_of(const std::vector<Grade>& grades);
+
+enum class Judged { median, p99, max };
+
+/// What a user asks of all sensors.
+struct Wish {
+  double metres = std::numeric_limits<double>::infinity();  ///< largest error of kinds that measure metres
+  double tesla = std::numeric_limits<double>::infinity();   ///< likewise
+  Judged by = Judged::max;
+  double least_rate = 0.0;  ///< [Hz] of whole ticks; 0: not asked
+};
+
+/// Rows of `grades`, one a kind: the fastest within the errors; or, where a rate is asked, the most accurate that allow
+/// it together, and the fastest where none do.
+std::vector<std::size_t> advise(const std::vector<Grade>& grades, const Wish& wish);
+
+/// The words of these modes, as `accuracy` and `--accuracy` take them.
+std::string words_of(const std::vector<Grade>& grades, const std::vector<std::size_t>& rows);
+
+}  // namespace sf::scenarios

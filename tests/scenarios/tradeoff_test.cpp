@@ -1,0 +1,86 @@
+// Every mode measured, and what is advised.
+
+#include "scenarios/tradeoff.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "tests/sensors/scenes.h"
+
+namespace sf::scenarios {
+namespace {
+
+gpu::Device& device() {
+  static gpu::Device device;
+  return device;
+}
+
+world::World small_world() {
+  world::World world = scenes::boxes(20, 8.0, 3);
+  scenes::add_robots(world, 4, scenes::laser(61, M_PI, 4.0), 5);
+  world.magnets.push_back({{0.5, 0.5}, -0.04, 1.0, 0.01, 0});
+  for (world::Mover& mover : world.movers) mover.sensors.push_back({"magnetometer", "m", {}, 0.1, 1.0, 1.0, {}, 0, ""});
+  world::finish(world);
+  return world;
+}
+
+TEST(Tradeoff, MeasuresEveryModeOfEveryKind) {
+  const auto grades = tradeoff(small_world(), device(), {});
+  std::map<std::string, int> modes;
+  for (const Grade& g : grades) {
+    ++modes[g.sensor];
+    EXPECT_GT(g.rate, 0.0) << g.mode;
+    EXPECT_LE(g.median, g.p99);
+    EXPECT_LE(g.p99, g.max);
+    EXPECT_LE(g.max_unflagged, g.bound) << g.sensor << " " << g.mode;
+    EXPECT_TRUE(g.mode != "exact" || g.max == 0.0) << "lasers to the bit as plain C++ has them";
+  }
+  EXPECT_EQ(modes, (std::map<std::string, int>{{"laser", 5}, {"magnetometer", 4}}));
+  EXPECT_EQ(grades[0].unit, "m");
+  EXPECT_EQ(grades.back().unit, "T");
+  EXPECT_NEAR(grades[2].flagged, 30.0 / 61.0, 0.01) << "every other beam of 61";
+  EXPECT_GT(grades[1].max, 0.0) << "32 bits show";
+}
+
+TEST(Tradeoff, CanBeStopped) {
+  EXPECT_TRUE(tradeoff(small_world(), device(), {.progress = [](double) { return false; }}).empty());
+}
+
+TEST(Tradeoff, IsAFileOfColumns) {
+  const std::string csv = csv_of({{.sensor = "laser", .mode = "exact", .unit = "m", .rate = 1e6, .bound = 1e-9}});
+  EXPECT_EQ(csv,
+            "sensor,mode,rate_per_s,median_error,p99_error,max_error,bound,max_unflagged_error,flagged\n"
+            "laser,exact,1e+06,0,0,0,1e-09,0,0\n");
+}
+
+std::vector<Grade> made_up() {
+  return {{.sensor = "laser", .mode = "exact", .unit = "m", .rate = 10, .tick = 0.10},
+          {.sensor = "laser", .mode = "single", .unit = "m", .rate = 20, .tick = 0.05, .p99 = 1e-4, .max = 1e-3},
+          {.sensor = "laser", .mode = "skip2", .unit = "m", .rate = 40, .tick = 0.02, .p99 = 1e-3, .max = 1.0},
+          {.sensor = "magnetometer", .mode = "exact", .unit = "T", .rate = 10, .tick = 0.10},
+          {.sensor = "magnetometer", .mode = "near3", .unit = "T", .rate = 50, .tick = 0.02, .p99 = 1e-8, .max = 2e-7}};
+}
+
+std::string advised(const Wish& wish) { return words_of(made_up(), advise(made_up(), wish)); }
+
+TEST(Advice, IsTheFastestWithinTheErrors) {
+  EXPECT_EQ(advised({.metres = 5e-3, .tesla = 1e-9}), "laser:single");
+  EXPECT_EQ(advised({.metres = 5e-3, .tesla = 1e-6}), "laser:single magnetometer:near3");
+  EXPECT_EQ(advised({.metres = 5e-3, .tesla = 1e-6, .by = Judged::p99}), "laser:skip2 magnetometer:near3");
+  EXPECT_EQ(advised({.metres = 1e-9, .tesla = 1e-12}), "exact") << "which is always there";
+  EXPECT_EQ(advised({.metres = 1e-3, .tesla = 1e-12}), "laser:single") << "the error itself is allowed";
+}
+
+/// Ticks are what their kinds take together.
+TEST(Advice, IsTheMostAccurateThatIsFastEnough) {
+  EXPECT_EQ(advised({.least_rate = 4.0}), "exact") << "0.2 s";
+  EXPECT_EQ(advised({.least_rate = 6.0}), "laser:single") << "0.15 s: one step, of the faster ones the first";
+  EXPECT_EQ(advised({.least_rate = 8.0}), "magnetometer:near3") << "0.12 s";
+  EXPECT_EQ(advised({.least_rate = 14.0}), "laser:single magnetometer:near3") << "0.07 s";
+  EXPECT_EQ(advised({.least_rate = 1000.0}), "laser:skip2 magnetometer:near3") << "never: the fastest there is";
+}
+
+}  // namespace
+}  // namespace sf::scenarios

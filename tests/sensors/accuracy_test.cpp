@@ -1,0 +1,296 @@
+// The dial: who measures in which mode, what modes leave out, and what they say of it.
+
+#include "sensors/accuracy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.h"
+#include "sensors/laser_modes.h"
+#include "sensors/magnetometer_modes.h"
+#include "tests/sensors/chance.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/laneedge_trial.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Unsure;
+
+/// A robot with a laser, a magnetometer and a bumper, each with what is put in.
+world::World load(const std::string& of_all, const std::string& laser = "", const std::string& magnetometer = "",
+                  const std::string& order = "", const std::string& bumper = "") {
+  const auto file = std::filesystem::temp_directory_path() / "sf_accuracy.world";
+  std::ofstream(file) << of_all << "\nposition( size [0.3 0.3 0.3]\nlaser( samples 11 " << laser << " )\nmagnetometer( "
+                      << magnetometer << " )\nbumper( " << bumper
+                      << " ) )\nmodel( pose [0.5 0 0 0] size [0.02 0.02 0.02] magnetic_moment 1 )\n";
+  return world::load_world(file.string(), {.accuracy = order, .sensors = sensors::vocabulary()});
+}
+
+std::string modes(const world::World& world) { return sensors::modes_of(sensors::Roster(world)); }
+
+std::string refusal(const world::World& world) {
+  try {
+    sensors::Roster roster(world);
+  } catch (const base::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Accuracy, IsExactUnlessSomebodySaysSo) { EXPECT_EQ(modes(load("")), "exact"); }
+
+TEST(Accuracy, TheWorldsWordIsForWhoKnowsIt) {
+  EXPECT_EQ(modes(load("accuracy \"skip2\"")), "laser:skip2");
+  EXPECT_EQ(modes(load("accuracy \"near3\"")), "magnetometer:near3");
+  EXPECT_EQ(modes(load("accuracy \"near3 single\"")), "laser:single magnetometer:near3");
+  EXPECT_EQ(modes(load("accuracy \"laser:skip4\"")), "laser:skip4");
+}
+
+TEST(Accuracy, ASensorsOwnWordComesFirst) {
+  EXPECT_EQ(modes(load("accuracy \"skip2\"", "accuracy \"single\"")), "laser:single");
+  EXPECT_EQ(modes(load("accuracy \"skip2\"", "accuracy \"exact\"")), "exact");
+  EXPECT_EQ(modes(load("", "", "accuracy \"near1\"")), "magnetometer:near1");
+}
+
+TEST(Accuracy, AnOrderComesBeforeBoth) {
+  EXPECT_EQ(modes(load("accuracy \"skip2\"", "accuracy \"single\"", "accuracy \"near1\"", "skip8")), "laser:skip8");
+  EXPECT_EQ(modes(load("accuracy \"skip2\"", "", "", "exact")), "exact");
+}
+
+TEST(Accuracy, WhatNobodyKnowsIsRefusedWhereItStands) {
+  EXPECT_NE(refusal(load("\naccuracy \"skip3\""))
+                .find("sf_accuracy.world:2: there is no accuracy \"skip3\"; expected "
+                      "one of \"exact\", \"single\""),
+            std::string::npos)
+      << refusal(load("\naccuracy \"skip3\""));
+  EXPECT_NE(refusal(load("", "accuracy \"near3\""))
+                .find(":3: 'accuracy' is \"near3\"; this sensor knows \"exact\", "
+                      "\"single\""),
+            std::string::npos);
+  EXPECT_NE(refusal(load("", "", "", "nonsense")).find("there is no accuracy \"nonsense\""), std::string::npos);
+  EXPECT_THROW(load("accuracy 3"), base::InputError) << "a word, not a number";
+  EXPECT_NE(refusal(load("", "", "accuracy 3")).find("expects a word"), std::string::npos);
+}
+
+TEST(Accuracy, AWordForSensorsThatAreNotThereIsRefused) {
+  world::World world = scenes::boxes(5, 8.0, 1);
+  scenes::add_robots(world, 1, scenes::laser(11), 1);
+  sensors::set_accuracy(world, "near3");
+  EXPECT_NE(refusal(world).find("is for magnetometer, and the world has no such sensor"), std::string::npos);
+  sensors::set_accuracy(world, "magnetometer:near3 single");
+  EXPECT_NE(refusal(world), "") << "one of several too";
+}
+
+TEST(Accuracy, ChangesTheWorldsHashAndSurvivesASnapshot) {
+  const world::World exact = load("");
+  const world::World coarse = load("accuracy \"skip2\"", "", "accuracy \"near1\"");
+  EXPECT_NE(exact.hash, coarse.hash);
+  const world::World again = world::from_snapshot(world::snapshot(coarse));
+  EXPECT_EQ(modes(again), "laser:skip2 magnetometer:near1");
+  EXPECT_EQ(load("", "accuracy \"single\"").hash, load("", "accuracy \"single\"").hash);
+  EXPECT_NE(load("", "accuracy \"single\"").hash, exact.hash);
+}
+
+// --- Lasers.
+
+/// What all lasers of a world read in a mode, robots where they were loaded.
+struct Read {
+  std::vector<double> values;
+  std::vector<std::uint32_t> hits;
+  std::vector<Unsure> unsure;
+  double bound = 0.0;
+  std::uint8_t mode = 0;
+};
+
+Read read_in(world::World world, const std::string& mode) {
+  sensors::set_accuracy(world, mode);
+  const Glance glance(world, {.noise = false});
+  Read read;
+  for (const base::ReadingBlock& r : glance.readings) {
+    read.values.insert(read.values.end(), r.values.begin(), r.values.end());
+    read.hits.insert(read.hits.end(), r.hits.begin(), r.hits.end());
+    for (std::size_t i = 0; i < r.values.size(); ++i)
+      read.unsure.push_back(r.unsure.empty() ? Unsure::no : r.unsure[i]);
+    read.bound = std::max(read.bound, r.bound);
+    read.mode = r.mode;
+  }
+  return read;
+}
+
+world::World crowd(std::uint32_t samples, double fov = M_PI) {
+  world::World world = scenes::boxes(60, 16.0, 1);
+  scenes::add_robots(world, 20, scenes::laser(samples, fov, 8.0), 1);
+  world::finish(world);
+  return world;
+}
+
+/// Every n-th sample from the first, and the last one.
+TEST(Accuracy, SkippingCastsTheSameBeamsToTheBit) {
+  for (const std::uint32_t samples : {361u, 360u, 3u, 2u, 1u})
+    for (const auto& [mode, skip] : {std::pair{"skip2", 2u}, std::pair{"skip4", 4u}, std::pair{"skip8", 8u}}) {
+      const Read exact = read_in(crowd(samples), "exact"), some = read_in(crowd(samples), mode);
+      const std::uint32_t every = std::min(skip, std::max(1u, samples - 1));
+      for (std::size_t i = 0; i < exact.values.size(); ++i) {
+        const auto sample = static_cast<std::uint32_t>(i % samples);
+        const bool cast = sample % every == 0 || sample == samples - 1;
+        ASSERT_EQ(some.unsure[i] == Unsure::not_cast, !cast) << mode << ", sample " << sample << " of " << samples;
+        if (!cast) continue;
+        ASSERT_EQ(some.values[i], exact.values[i]);
+        ASSERT_EQ(some.hits[i], exact.hits[i]);
+      }
+      EXPECT_EQ(some.bound, exact.bound) << "that of the beams that are cast";
+    }
+}
+
+/// A square room and nothing else: between two beams that meet the same wall the others are on the chord.
+TEST(Accuracy, SkippingIsRightOnFlatWalls) {
+  world::World world;
+  scenes::add_room(world, {0.0, 0.0}, 4.0);
+  scenes::add_robot(world, {0.3, -0.7, 0.0, 0.4}, scenes::laser(361, 2.0 * M_PI, 8.0));
+  world::finish(world);
+  const Read exact = read_in(world, "exact"), some = read_in(world, "skip4");
+  std::size_t near_corners = 0;
+  for (std::size_t i = 0; i < exact.values.size(); ++i) {
+    const double error = std::abs(some.values[i] - exact.values[i]);
+    near_corners += error > 1e-12 ? 1 : 0;
+    EXPECT_LT(error, 0.12) << "a chord of 4 degrees at 3.3 m is 0.23 m long, and cuts a corner by half of that";
+  }
+  EXPECT_LE(near_corners, 4u * 3u) << "four corners, three beams between two that are cast";
+}
+
+TEST(Accuracy, BetweenTwoThingsTheNearerBeamIsTaken) {
+  world::World world;
+  scenes::add_room(world, {0.0, 0.0}, 8.0);
+  scenes::add_outline(world, {{1.0, 0.02}, {1.2, 0.02}, {1.2, 1.0}, {1.0, 1.0}}, "box");
+  scenes::add_robot(world, {0.0, 0.0, 0.0, 0.0}, scenes::laser(5, 0.08, 9.0));  // bearings -0.04, -0.02, 0, 0.02, 0.04
+  world::finish(world);
+  const Read some = read_in(world, "skip4");
+  EXPECT_EQ(some.values[1], some.values[0]);
+  EXPECT_EQ(some.values[2], some.values[4]) << "half way: the later one";
+  EXPECT_EQ(some.values[3], some.values[4]);
+  EXPECT_EQ(some.hits[2], base::kNoHit) << "what lies between is not known";
+}
+
+TEST(Accuracy, In32BitsHitsAreTheSameAndRangesWithinTheBound) {
+  const Read exact = read_in(crowd(361), "exact"), single = read_in(crowd(361), "single");
+  EXPECT_EQ(single.hits, exact.hits);
+  EXPECT_NE(single.values, exact.values) << "or nothing was measured in 32 bits";
+  EXPECT_EQ(single.mode, 1);
+  EXPECT_GT(single.bound, exact.bound);
+  EXPECT_LT(single.bound, 1.1e-3) << "a millimetre at 8 m";
+  for (std::size_t i = 0; i < exact.values.size(); ++i)
+    ASSERT_LE(std::abs(single.values[i] - exact.values[i]), single.bound) << i;
+}
+
+TEST(Accuracy, ModesOfOneWorldDoNotDisturbEachOther) {
+  world::World mixed = crowd(61);
+  for (std::size_t m = 0; m < mixed.movers.size(); ++m)
+    mixed.movers[m].lasers[0].accuracy.word = m % 3 == 0 ? "single" : m % 3 == 1 ? "skip2" : "exact";
+  const Glance glance(mixed, {.noise = false});
+  for (const char* mode : {"exact", "single", "skip2"}) {
+    world::World world = crowd(61);
+    sensors::set_accuracy(world, mode);
+    const Glance alone(world, {.noise = false});
+    for (std::size_t m = 0; m < mixed.movers.size(); ++m) {
+      if (mixed.movers[m].lasers[0].accuracy.word != mode) continue;
+      EXPECT_TRUE(std::ranges::equal(glance.readings[m].values, alone.readings[m].values)) << mode << ", mover " << m;
+    }
+  }
+}
+
+/// A wall seen at less than a milliradian: rounding is magnified a thousandfold, and the reading says so.
+TEST(Accuracy, GrazingBeamsAreFlagged) {
+  world::World world;
+  scenes::add_outline(world, {{0.0, -1.0}, {10.0, -1.0}, {10.0, -1e-4}, {0.0, -1e-4}}, "floor");
+  const world::Laser laser = eye(3, 4e-4, 8.0);  // bearings -2e-4, 0, 2e-4
+  add_eye(world, {0.0, 0.0, 0.0, -0.0}, laser);
+  add_eye(world, {0.0, 0.0, 0.0, -0.1}, laser);
+  world::finish(world);
+  const Glance glance(world);
+  ASSERT_EQ(glance.readings[0].unsure.size(), 3u);
+  EXPECT_EQ(glance.readings[0].unsure[0], Unsure::grazing) << "2e-4 rad";
+  EXPECT_EQ(glance.readings[0].unsure[1], Unsure::no) << "parallel: it meets nothing";
+  EXPECT_EQ(glance.readings[0].unsure[2], Unsure::no);
+  EXPECT_TRUE(glance.readings[1].unsure.empty()) << "at 0.1 rad";
+}
+
+TEST(Accuracy, BoundsAreStatedBeforehandAndGrowWithTheWorld) {
+  const auto stated = [](const world::World& world) {
+    return sensors::statements_of(world, sensors::Roster(world)).at(0).bound.error;
+  };
+  world::World near = crowd(61), far = crowd(61);
+  world::translate(far, 1e7, 1e7);
+  world::finish(far);
+  EXPECT_LT(stated(near), 2e-9);
+  EXPECT_GT(stated(far), 1e-6);
+  EXPECT_LT(stated(far), 1e-5) << "10 000 km away";
+  EXPECT_LE(read_in(near, "exact").bound, stated(near)) << "no reading states more than its world";
+  EXPECT_LE(read_in(far, "exact").bound, stated(far));
+}
+
+// --- Magnets.
+
+TEST(Accuracy, NearMagnetsAloneStayWithinTheBound) {
+  Chance chance(3);
+  world::World world;
+  for (int i = 0; i < 400; ++i)
+    world.magnets.push_back({chance.in_square(15.0), -0.04, chance.between(-1.0, 1.0), 0.01, 0});
+  world.models.push_back({.name = "magnets"});
+  for (int i = 0; i < 200; ++i) {
+    const base::Vec2 p = chance.in_square(15.0);
+    const std::uint32_t m = scenes::add_robot(world, {p.x, p.y, 0.0, chance.between(-3.0, 3.0)}, scenes::laser(3));
+    world.movers[m].lasers.clear();
+    world.movers[m].sensors.push_back({"magnetometer", "m", {0.1, 0.0, 0.0, 0.0}, 0.1, 1.0, 1.0, {}, 0, ""});
+  }
+  world::finish(world);
+  const Read exact = read_in(world, "exact");
+  EXPECT_LT(exact.bound, 1e-12);
+  double last = 0.0;
+  for (const char* mode : {"near10", "near3", "near1"}) {
+    const Read near = read_in(world, mode);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < near.values.size(); ++i)
+      worst = std::max(worst, std::abs(near.values[i] - exact.values[i]));
+    std::printf("[ measured ] %s: worst %.3g T of at most %.3g T\n", mode, worst, near.bound);
+    EXPECT_LE(worst, near.bound) << mode;
+    EXPECT_GT(worst, last) << "nearer leaves out more";
+    last = worst;
+  }
+}
+
+TEST(Accuracy, AWorldsOwnCutOffStaysTheNearest) {
+  world::World world;
+  world.magnet_cutoff = 2.0;
+  EXPECT_EQ(sensors::cutoff_of(world, 0), 2.0);
+  EXPECT_EQ(sensors::cutoff_of(world, 1), 2.0);
+  EXPECT_EQ(sensors::cutoff_of(world, 3), 1.0);
+  world.magnet_cutoff = 0.0;
+  EXPECT_EQ(sensors::cutoff_of(world, 0), 0.0);
+  EXPECT_EQ(sensors::cutoff_of(world, 1), 10.0);
+}
+
+// --- Lane edges.
+
+TEST(Accuracy, FewerRaysFindAStraightEdgeAsWell) {
+  world::World world;
+  world.stripes.push_back({{{-10.0, 0.4}, {10.0, 0.4}}, 0.1, 0xFFFFFFFFu});
+  add_edge_eye(world, {0.0, 0.0, 0.0, 0.5 * M_PI + 0.1});
+  world::finish(world);
+  const Read exact = read_in(world, "exact");
+  EXPECT_EQ(exact.bound, 1e-8);
+  for (const char* mode : {"skip2", "skip4"}) {
+    const Read some = read_in(world, mode);
+    EXPECT_NEAR(some.values[0], exact.values[0], 1e-9) << mode;
+    EXPECT_LT(some.values[1], exact.values[1]) << "fewer points";
+    EXPECT_TRUE(std::isinf(some.bound)) << "rays left out may have met something else";
+  }
+}
+
+}  // namespace
+}  // namespace sf::trial

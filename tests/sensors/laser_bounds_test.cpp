@@ -1,0 +1,246 @@
+// No range is off by more than its reading states: a million random beams in each of ten worlds, in 64 and in 32 bits,
+// against `long double`.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/parallel.h"
+#include "sensors/accuracy.h"
+#include "tests/sensors/brute_force.h"
+#include "tests/sensors/chance.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Vec2;
+using Wide = long double;
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr int kTicks = 1;
+#else
+constexpr int kTicks = 28;
+#endif
+constexpr std::uint32_t kRobots = 100;  // of 361 beams
+
+/// A world and where in it robots are put.
+struct Scene {
+  std::string name;
+  world::World world;
+  Vec2 middle;
+  double half = 1.0;  ///< [m] of the square that they are drawn from
+};
+
+struct Seen {
+  std::size_t beams = 0, flagged = 0, beyond = 0;
+  double worst = 0.0;        ///< [m] of beams that are not flagged
+  double worst_share = 0.0;  ///< of the bound
+  double flagged_worst = 0.0;
+  double bound = 0.0;
+  std::string example;
+};
+
+/// Segments by their ends, relative to the sensor: what needs no division is not divided.
+Wide cast(std::span<const world::Segment> surfaces, Vec2 o, Wide direction, Wide range_max) {
+  const Wide dx = std::cos(direction), dy = std::sin(direction);
+  Wide best = range_max;
+  for (const world::Segment& s : surfaces) {
+    const Wide ax = static_cast<Wide>(s.a.x) - o.x, ay = static_cast<Wide>(s.a.y) - o.y;
+    const Wide bx = static_cast<Wide>(s.b.x) - o.x, by = static_cast<Wide>(s.b.y) - o.y;
+    const Wide side_a = dx * ay - dy * ax, side_b = dx * by - dy * bx;
+    if ((side_a > 0 && side_b > 0) || (side_a < 0 && side_b < 0)) continue;
+    const Wide ex = bx - ax, ey = by - ay;
+    const Wide below = ex * dy - ey * dx;
+    if (below == 0) continue;
+    const Wide t = (ex * ay - ey * ax) / below;
+    if (t >= 0 && t < best) best = t;
+  }
+  return best;
+}
+
+void look(const Scene& scene, std::span<const base::Pose> poses, const base::ReadingBlock& reading, Seen& seen) {
+  const world::Laser& laser = scene.world.movers[reading.mover].lasers[0];
+  const auto all = oracle::surfaces(scene.world, poses, reading.mover, reading.X_WS.z);
+  const auto near = oracle::within(all, {reading.X_WS.x, reading.X_WS.y}, laser.range_max);
+  seen.bound = std::max(seen.bound, reading.bound);
+  for (std::uint32_t i = 0; i < laser.samples; ++i) {
+    const Wide direction = static_cast<Wide>(reading.X_WS.yaw) + world::bearing_of(laser, i);
+    const Wide truth = cast(near, {reading.X_WS.x, reading.X_WS.y}, direction, laser.range_max);
+    const double error = std::abs(static_cast<double>(reading.values[i] - truth));
+    ++seen.beams;
+    if (!reading.unsure.empty() && reading.unsure[i] != base::Unsure::no) {
+      ++seen.flagged;
+      seen.flagged_worst = std::max(seen.flagged_worst, error);
+      continue;
+    }
+    seen.worst = std::max(seen.worst, error);
+    seen.worst_share = std::max(seen.worst_share, error / reading.bound);
+    if (error <= reading.bound) continue;
+    if (seen.beyond++ == 0)
+      seen.example = fmt::format("mover {} beam {}: {} instead of {}, bound {}", reading.mover, i, reading.values[i],
+                                 static_cast<double>(truth), reading.bound);
+  }
+}
+
+void add(const Seen& part, Seen& sum) {
+  sum.beams += part.beams;
+  sum.flagged += part.flagged;
+  sum.beyond += part.beyond;
+  sum.worst = std::max(sum.worst, part.worst);
+  sum.worst_share = std::max(sum.worst_share, part.worst_share);
+  sum.flagged_worst = std::max(sum.flagged_worst, part.flagged_worst);
+  sum.bound = std::max(sum.bound, part.bound);
+  if (sum.example.empty()) sum.example = part.example;
+}
+
+Seen measure(Scene& scene, const std::string& mode) {
+  sensors::set_accuracy(scene.world, mode);
+  farm::Farm farm(scene.world, device());
+  farm.hear_all();
+  base::Workers workers(0);
+  Chance chance(11);
+  Seen sum;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    std::vector<base::Pose> poses;
+    std::vector<base::Report> reports;
+    for (std::uint32_t m = 0; m < scene.world.movers.size(); ++m) {
+      const Vec2 p = scene.middle + chance.in_square(scene.half);
+      poses.push_back({p.x, p.y, 0.0, chance.between(-M_PI, M_PI)});
+      reports.push_back({m, 0, poses.back(), {}});
+    }
+    const auto readings = farm.tick(tick * 1'000'000'000ll, reports);
+    std::vector<Seen> parts(readings.size());
+    workers.run(readings.size(), 1, [&](std::size_t first, std::size_t last, unsigned) {
+      for (std::size_t i = first; i < last; ++i) look(scene, poses, readings[i], parts[i]);
+    });
+    for (const Seen& part : parts) add(part, sum);
+  }
+  return sum;
+}
+
+Scene with_robots(std::string name, world::World world, double half, double range, Vec2 middle = {}) {
+  for (std::uint32_t i = 0; i < kRobots; ++i)
+    scenes::add_robot(world, {middle.x, middle.y, 0.0, 0.0}, scenes::laser(361, M_PI, range));
+  world::finish(world);
+  return {std::move(name), std::move(world), middle, half};
+}
+
+/// Without bodies: what is there is walls alone.
+Scene with_eyes(std::string name, world::World world, double half, double range, Vec2 middle = {}) {
+  for (std::uint32_t i = 0; i < kRobots; ++i)
+    add_eye(world, {middle.x, middle.y, 0.0, 0.0}, eye(361, 2.0 * M_PI, range));
+  world::finish(world);
+  return {std::move(name), std::move(world), middle, half};
+}
+
+world::World moved(world::World world, double by) {
+  world::translate(world, by, -by);
+  return world;
+}
+
+/// Walls of 1000 km, two metres apart.
+world::World corridor() {
+  world::World world;
+  scenes::add_outline(world, {{-5e5, -1.5}, {5e5, -1.5}, {5e5, -1.0}, {-5e5, -1.0}}, "south");
+  scenes::add_outline(world, {{-5e5, 1.0}, {5e5, 1.0}, {5e5, 1.5}, {-5e5, 1.5}}, "north");
+  return world;
+}
+
+/// Triangles `length` long and a thousandth of that wide, at any angle.
+world::World slivers(double length, double half) {
+  world::World world;
+  Chance chance(5);
+  for (int i = 0; i < 200; ++i) {
+    const Vec2 p = chance.in_square(half);
+    const Vec2 along = base::rotate(chance.between(-M_PI, M_PI), {length, 0.0});
+    scenes::add_outline(world, {p, p + along, p + 0.5 * along + 1e-3 * base::rotate(0.5 * M_PI, along)}, "sliver");
+  }
+  return world;
+}
+
+/// Squares of a centimetre.
+world::World forest(double half) {
+  world::World world;
+  Chance chance(6);
+  for (int i = 0; i < 150; ++i) {
+    const Vec2 p = chance.in_square(half);
+    const double turn = chance.between(0.0, M_PI);
+    std::vector<Vec2> corners;
+    for (int k = 0; k < 4; ++k) corners.push_back(p + base::rotate(turn + 0.5 * M_PI * k, {0.005, 0.0}));
+    scenes::add_outline(world, corners, "stem");
+  }
+  return world;
+}
+
+/// Thin walls across each other, which belong to no solid.
+world::World crossing(double half) {
+  world::World world = slivers(1.0, half);
+  for (world::Segment& wall : world.walls) wall.solid_left = false;
+  return world;
+}
+
+/// Everything a ten thousandth as large.
+world::World shrunk(world::World world, double by) {
+  for (world::Segment& wall : world.walls) wall.a = by * wall.a, wall.b = by * wall.b;
+  return world;
+}
+
+void expect_within_bounds(const char* mode, const std::function<Scene()>& make) {
+  Scene scene = make();
+  const Seen s = measure(scene, mode);
+  std::printf(
+      "[ measured ] %s, %s: %zu beams, worst %.2g m, %.3g of the bound (up to %.2g m); %zu flagged, worst %.2g m\n",
+      scene.name.c_str(), mode, s.beams, s.worst, s.worst_share, s.bound, s.flagged, s.flagged_worst);
+  EXPECT_EQ(s.beyond, 0u) << scene.name << ", " << mode << ": " << s.example;
+  EXPECT_LT(static_cast<double>(s.flagged), 0.01 * static_cast<double>(s.beams)) << scene.name;
+  EXPECT_GE(s.beams, kTicks > 1 ? 1'000'000u : 30'000u);
+}
+
+class LaserBounds : public testing::TestWithParam<const char*> {};
+
+TEST_P(LaserBounds, AmongBoxes) {
+  expect_within_bounds(GetParam(), [] { return with_robots("boxes", scenes::boxes(60, 16.0, 1), 8.0, 2.0); });
+}
+TEST_P(LaserBounds, InACave) {
+  expect_within_bounds(GetParam(), [] { return with_robots("cave", scenes::cave(100, 16.0, 3), 8.0, 1.0); });
+}
+TEST_P(LaserBounds, BetweenWallsOf1000Km) {
+  expect_within_bounds(GetParam(), [] { return with_robots("corridor of 1000 km", corridor(), 1.4, 8.0); });
+}
+TEST_P(LaserBounds, A100KmAway) {
+  expect_within_bounds(GetParam(), [] {
+    return with_robots("100 km away", moved(scenes::boxes(40, 10.0, 2), 1e5), 5.0, 2.0, {1e5, -1e5});
+  });
+}
+TEST_P(LaserBounds, A10000KmAway) {
+  expect_within_bounds(GetParam(), [] {
+    return with_robots("10 000 km away", moved(scenes::boxes(40, 10.0, 2), 1e7), 5.0, 2.0, {1e7, -1e7});
+  });
+}
+TEST_P(LaserBounds, InAMillimetre) {
+  expect_within_bounds(GetParam(),
+                       [] { return with_eyes("a millimetre", shrunk(scenes::boxes(40, 10.0, 4), 1e-4), 5e-4, 2e-4); });
+}
+TEST_P(LaserBounds, AmongSlivers) {
+  expect_within_bounds(GetParam(), [] { return with_robots("slivers", slivers(1.0, 8.0), 8.0, 2.0); });
+}
+TEST_P(LaserBounds, InAForestOfCentimetres) {
+  expect_within_bounds(GetParam(), [] { return with_eyes("forest", forest(3.0), 3.0, 2.0); });
+}
+TEST_P(LaserBounds, AmongThinWallsThatCross) {
+  expect_within_bounds(GetParam(), [] { return with_robots("crossing walls", crossing(6.0), 6.0, 2.0); });
+}
+TEST_P(LaserBounds, AmongRobotsAlone) {
+  expect_within_bounds(GetParam(), [] { return with_robots("robots alone", {}, 3.0, 2.0); });
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, LaserBounds, testing::Values("exact", "single"),
+                         [](const auto& mode) { return std::string(mode.param); });
+
+}  // namespace
+}  // namespace sf::trial

@@ -1,0 +1,168 @@
+#include "viz/tradeoff_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "viz/canvas.h"
+#include "viz/color.h"
+#include "viz/labels.h"
+#include "viz/legend.h"
+#include "viz/ticks.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr std::uint32_t kFrame = 0xFF404040u;
+constexpr std::uint32_t kGrid = 0x28808080u;
+constexpr std::uint32_t kFront = 0xFF0072B2u;
+constexpr std::uint32_t kBeaten = 0xFF909090u;
+
+// [px]
+constexpr int kWidth = 1400;
+constexpr int kLeft = 150;
+constexpr int kRight = 40;
+constexpr int kHeader = 100;
+constexpr int kPlot = 400;
+constexpr int kBetween = 150;      ///< title of a panel, and the labels below its plot
+constexpr double kNothing = 90.0;  ///< column of errors that are 0
+
+/// Errors below this are as good as none: rounding.
+constexpr double kLeast = 1e-12;
+
+/// Whole powers of ten that hold what is shown.
+struct Decades {
+  int from = 0, to = 1;
+};
+
+Decades decades_of(const std::vector<TradeoffPoint>& points) {
+  double least = HUGE_VAL, most = 0.0;
+  for (const TradeoffPoint& point : points)
+    for (const double v : {point.low, point.middle, point.high}) {
+      if (!(v >= kLeast) || std::isinf(v)) continue;
+      least = std::min(least, v);
+      most = std::max(most, v);
+    }
+  if (!(most > 0.0)) return {-9, -8};
+  const int from = static_cast<int>(std::floor(std::log10(least) - 0.05));
+  return {from, std::max(from + 1, static_cast<int>(std::ceil(std::log10(most) + 0.05)))};
+}
+
+struct Place {
+  PixelBox plot;
+  Decades error;
+  double fastest = 1.0;  ///< [1/s] upper end; the lower one is 0
+
+  double x(double error_value) const {
+    if (!(error_value >= kLeast)) return plot.x_min + 0.5 * kNothing;
+    if (std::isinf(error_value)) return plot.x_max;
+    const double part = (std::log10(error_value) - error.from) / (error.to - error.from);
+    return plot.x_min + kNothing + part * (plot.x_max - plot.x_min - kNothing);
+  }
+  double y(double value) const { return plot.y_max - value / fastest * (plot.y_max - plot.y_min); }
+};
+
+std::string power(int exponent) { return exponent == 0 ? "1" : fmt::format("1e{}", exponent); }
+
+void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
+  const PixelBox& p = at.plot;
+  TextStyle style = small_text();
+  style.across = Anchor::end;
+  const Ticks rates = make_ticks(0.0, at.fastest, at.fastest * 60.0 / kPlot);
+  for (const double rate : rates.at) {
+    const double y = std::floor(at.y(rate)) + 0.5;
+    canvas.line({p.x_min + 0.0, y}, {p.x_max + 0.0, y}, 1.0, kGrid);
+    canvas.text({p.x_min - 11.0, y}, fmt::format("{:g}", rate), style);
+  }
+  style.across = Anchor::middle;
+  style.down = Anchor::start;
+  const int step = std::max(1, (at.error.to - at.error.from + 11) / 12);
+  for (int decade = at.error.from; decade <= at.error.to; decade += step) {
+    const double x = std::floor(at.x(std::pow(10.0, decade))) + 0.5;
+    canvas.line({x, p.y_min + 0.0}, {x, p.y_max + 0.0}, 1.0, kGrid);
+    canvas.text({x, p.y_max + 11.0}, power(decade), style);
+  }
+  canvas.text({at.x(0.0), p.y_max + 11.0}, "none", style);
+  canvas.line({p.x_min + kNothing, p.y_min + 0.0}, {p.x_min + kNothing, p.y_max + 0.0}, 1.0, 0x60808080u);
+  canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, panel.error_name, style);
+  style.upwards = true;
+  style.down = Anchor::middle;
+  canvas.text({46.0, 0.5 * (p.y_min + p.y_max)}, panel.rate_name, style);
+}
+
+/// The best from fast to exact, joined.
+void draw_front(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
+  std::vector<TradeoffPoint> front;
+  for (const TradeoffPoint& point : panel.points)
+    if (point.front) front.push_back(point);
+  std::sort(front.begin(), front.end(), [](const auto& a, const auto& b) { return a.rate < b.rate; });
+  std::vector<Vec2> line;
+  for (const TradeoffPoint& point : front) line.push_back({at.x(point.middle), at.y(point.rate)});
+  if (line.size() > 1) canvas.polyline(line, 2.0, with_opacity(kFront, 0.4));
+}
+
+void draw_points(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
+  Labels labels(at.plot);
+  for (const TradeoffPoint& point : panel.points) {
+    const std::uint32_t color = point.front ? kFront : kBeaten;
+    const Vec2 mark{at.x(point.middle), at.y(point.rate)};
+    const Line whisker{{at.x(point.low), mark.y}, {at.x(point.high), mark.y}};
+    canvas.line(whisker.a, whisker.b, 1.5, with_opacity(color, 0.6));
+    for (const Vec2 end : {whisker.a, whisker.b}) canvas.line({end.x, end.y - 5.0}, {end.x, end.y + 5.0}, 1.5, color);
+    canvas.disc(mark, 6.0, color);
+    labels.forbid({{mark.x - 7.0, mark.y - 7.0}, {mark.x + 7.0, mark.y + 7.0}});
+  }
+  for (const TradeoffPoint& point : panel.points) {
+    TextStyle style = small_text();
+    style.bold = point.front;
+    style.color = point.front ? 0xFF202020u : 0xFF707070u;
+    style.halo = 0xFFFFFFFFu;
+    const Vec2 mark[] = {{at.x(point.middle), at.y(point.rate)}};
+    labels.place(canvas, mark, point.name, style, {.nearest = 10.0});
+  }
+}
+
+void draw_panel(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
+  draw_scales(canvas, panel, at);
+  const PixelBox& p = at.plot;
+  canvas.clip(p);
+  draw_front(canvas, panel, at);
+  draw_points(canvas, panel, at);
+  canvas.unclip();
+  const double x0 = p.x_min - 0.5, y0 = p.y_min - 0.5, x1 = p.x_max + 0.5, y1 = p.y_max + 0.5;
+  const Vec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
+  canvas.polyline(corners, 1.0, kFrame);
+  TextStyle style = small_text();
+  style.bold = true;
+  canvas.text({x0, y0 - 20.0}, panel.title, style);
+}
+
+}  // namespace
+
+void draw_tradeoff(const std::string& title, const std::string& subtitle, std::span<const TradeoffPanel> panels,
+                   const std::string& png_path) {
+  const int height = kHeader + static_cast<int>(panels.size()) * (kPlot + kBetween);
+  Canvas canvas(kWidth, height, 0xFFFFFFFFu);
+  TextStyle style;
+  style.size = 28;
+  style.bold = true;
+  canvas.text({kLeft + 0.0, 42.0}, title, style);
+  style = small_text();
+  style.size = 19;
+  style.color = 0xFF505050u;
+  canvas.text({kLeft + 0.0, 77.0}, subtitle, style);
+  int top = kHeader + 50;
+  for (const TradeoffPanel& panel : panels) {
+    Place at{{kLeft, top, kWidth - kRight, top + kPlot}, {}};
+    at.error = decades_of(panel.points);
+    double fastest = 0.0;
+    for (const TradeoffPoint& point : panel.points) fastest = std::max(fastest, point.rate);
+    if (fastest > 0.0) at.fastest = 1.15 * fastest;
+    draw_panel(canvas, panel, at);
+    top += kPlot + kBetween;
+  }
+  canvas.save_png(png_path);
+}
+
+}  // namespace sf::viz
