@@ -21,12 +21,13 @@ extern const ExperimentKind minimagic_experiment;
 extern const ExperimentKind simville_experiment;
 extern const ExperimentKind simville_merge_experiment;
 extern const ExperimentKind sweeps_experiment;
+extern const ExperimentKind accuracy_experiment;
 
 std::span<const ExperimentKind* const> experiments() {
   static constexpr const ExperimentKind* kKinds[] = {
-      &lane_edge_p_experiment,    &lane_edge_pi_experiment, &magnet_p_experiment,
-      &magnet_pi_experiment,      &mapping_experiment,      &simville_experiment,
-      &simville_merge_experiment, &minimagic_experiment,    &sweeps_experiment};
+      &lane_edge_p_experiment, &lane_edge_pi_experiment, &magnet_p_experiment,       &magnet_pi_experiment,
+      &mapping_experiment,     &simville_experiment,     &simville_merge_experiment, &minimagic_experiment,
+      &sweeps_experiment,      &accuracy_experiment};
   return kKinds;
 }
 
@@ -39,8 +40,9 @@ const ExperimentKind* find_experiment(std::string_view name) {
 std::vector<std::string> run_experiment(const ExperimentKind& kind, const ExperimentOptions& options,
                                         gpu::Device& device,
                                         const std::function<void(double, const std::string&)>& progress) {
-  Scenario scenario =
-      read_scenario((std::filesystem::path(options.folder) / (std::string(kind.name) + ".toml")).string());
+  Scenario scenario = read_scenario((std::filesystem::path(options.folder) /
+                                     (std::string(kind.scenario.empty() ? kind.name : kind.scenario) + ".toml"))
+                                        .string());
   scenario.plant = options.plant ? *options.plant : scenario.plant ? *scenario.plant : kind.plant;
   std::error_code error;
   std::filesystem::create_directories(options.out, error);

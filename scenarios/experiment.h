@@ -35,7 +35,8 @@ struct Bench {
 };
 
 struct ExperimentKind {
-  std::string_view name;       ///< its scenario is `<folder>/<name>.toml`
+  std::string_view name;
+  std::string_view scenario;   ///< stem of its file in the folder; empty: its name
   std::string_view summary;    ///< one line for help
   Plant plant = Plant::ideal;  ///< unless the user or the scenario says otherwise
   /// A few sentences for its report: why its numbers are not the thesis', or what they show.

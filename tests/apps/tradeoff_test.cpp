@@ -50,8 +50,8 @@ TEST(AccuracyOption, ChangesWhatIsReadAndSaysSo) {
   skip.insert(skip.end(), {"--accuracy", "skip2"});
   const Outcome exact = run_program(sense), some = run_program(skip);
   EXPECT_EQ(some.code, 0) << some.err;
-  expect_says(exact, "\"accuracy\": \"exact\"");
-  expect_says(some, "\"accuracy\": \"skip2\"");
+  expect_says(exact, "\"accuracy\":\"exact\"");
+  expect_says(some, "\"accuracy\":\"skip2\"");
   expect_says(some, "\"unsure\": \"not cast\"");
   EXPECT_EQ(exact.out.find("\"unsure\""), std::string::npos);
   expect_says(run_program({"check", our_world("rooms.world"), "--accuracy", "single"}), "laser single, within 998 um");

@@ -1,0 +1,181 @@
+// How accurate must sensors be? What controllers make of every mode: lane keeping, magnet keeping and mapping.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.h"
+#include "scenarios/coverage.h"
+#include "scenarios/experiment.h"
+#include "scenarios/path_report.h"
+#include "sensors/accuracy.h"
+#include "viz/series_figure.h"
+
+namespace sf::scenarios {
+
+namespace {
+
+/// What came of one mode, means over trials.
+struct Outcome {
+  std::string test;
+  std::string sensor;  ///< kind
+  std::string mode;
+  double abs_error = 0.0;  ///< [m] or [T] of the controller; 0 where it has none
+  double max_error = 0.0;
+  double missed = 0.0;  ///< [-] part of the cells that could be seen
+  double wrong = 0.0;   ///< [-] part of the known cells
+  double contacts = 0.0;
+  double seconds = 0.0;  ///< simulated
+  bool all_done = true;
+};
+
+/// One of the tests, and the kind of sensor it lives by.
+struct Test {
+  std::string name;  ///< its scenario is `<folder>/<name>.toml`
+  std::string sensor;
+  bool maps = false;
+};
+
+const std::vector<Test>& tests() {
+  static const std::vector<Test> kTests{
+      {"lane-edge-p", "laneedge"}, {"magnet-p", "magnetometer"}, {"explore", "laser", true}};
+  return kTests;
+}
+
+const sensors::SensorKind& kind_called(std::string_view name) {
+  const auto kinds = sensors::kinds();
+  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const auto* kind) { return kind->name == name; });
+  SF_CHECK(found != kinds.end(), "no kind " + std::string(name));
+  return **found;
+}
+
+void add_map(const world::World& world, const Trial& trial, double share, Outcome& outcome) {
+  const maps::Grid& map = trial.maps.front();
+  const maps::Grid reference = what_could_be_seen(world, trial.mapped.front(), map.plan);
+  outcome.missed += share * (1.0 - seen_of(map, reference).coverage());
+  outcome.wrong += share * disagreement(map, reference);
+}
+
+Outcome measure(const Bench& bench, const Test& test, const Scenario& scenario, std::string_view mode) {
+  Outcome outcome{.test = test.name, .sensor = test.sensor, .mode = std::string(mode)};
+  const double share = 1.0 / bench.options.trials;
+  for (std::uint32_t k = 0; k < bench.options.trials; ++k) {
+    Scenario own = scenario;
+    own.seed = bench.options.seed + k;
+    world::World world = disturbed_world(own, {});
+    sensors::set_accuracy(world, fmt::format("{}:{}", test.sensor, mode));
+    const Trial trial = run_trial(own, world, bench.device, {.maps = test.maps, .threads = bench.options.threads});
+    if (test.maps) add_map(world_of(own), trial, share, outcome);
+    const ThesisRow row = row_of(trial.errors.front());
+    outcome.abs_error += share * row[4];
+    outcome.max_error = std::max(outcome.max_error, row[7]);
+    outcome.contacts += share * static_cast<double>(trial.counts.front().contacts);
+    outcome.seconds += share * trial.simulated;
+    outcome.all_done = outcome.all_done && trial.done;
+  }
+  return outcome;
+}
+
+std::string csv_of(const std::vector<Outcome>& outcomes) {
+  std::string text = "test,sensor,mode,abs_mean,abs_max,cells_missed,cells_wrong,contacts,seconds,done\n";
+  for (const Outcome& o : outcomes)
+    text += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.1f},{}\n", o.test, o.sensor, o.mode,
+                        o.abs_error, o.max_error, o.missed, o.wrong, o.contacts, o.seconds, o.all_done ? 1 : 0);
+  return text;
+}
+
+std::string report_of(const Bench& bench, const std::vector<Outcome>& outcomes) {
+  std::string text = "# How accurate must sensors be?\n\n" + setup_of(bench, {}) +
+                     "\n\nEach test is run in every mode of the sensor that it lives by; all else is as in its own "
+                     "experiment.\n";
+  std::string last;
+  for (const Outcome& o : outcomes) {
+    const bool maps = o.test == "explore";
+    if (o.test != last)
+      text +=
+          maps
+              ? "\n## Mapping, `explore`, by laser\n\n| mode | cells missed | cells wrong | contacts | time [s] | done "
+                "|\n|---|---|---|---|---|---|\n"
+              : fmt::format(
+                    "\n## {}, by {}\n\n| mode | mean abs error | largest | contacts | time [s] | done "
+                    "|\n|---|---|---|---|---|---|\n",
+                    o.test, o.sensor);
+    last = o.test;
+    const std::string end =
+        fmt::format("{:.2g} | {:.1f} | {} |\n", o.contacts, o.seconds, o.all_done ? "yes" : "**no**");
+    text += maps ? fmt::format("| {} | {:.3f} % | {:.3f} % | {}", o.mode, 100.0 * o.missed, 100.0 * o.wrong, end)
+                 : fmt::format("| {} | {:.4f} | {:.4f} | {}", o.mode, o.abs_error, o.max_error, end);
+  }
+  return text + fmt::format("\n## What it shows\n\n{}\n", bench.kind.reasons);
+}
+
+/// A panel of one test: modes along the axis, in their order.
+viz::Panel panel_of(const std::vector<Outcome>& outcomes, const std::string& test, const std::string& y_name,
+                    double Outcome::*value, double scale) {
+  viz::Panel panel{.y_name = y_name};
+  viz::Series series;
+  for (const Outcome& o : outcomes) {
+    if (o.test != test) continue;
+    series.times.push_back(static_cast<double>(series.times.size()));
+    series.values.push_back(scale * (o.*value));
+    panel.title += fmt::format("{}{} {}", panel.title.empty() ? test + ": " : ", ", series.times.size() - 1, o.mode);
+  }
+  series.name = test;
+  panel.series.push_back(std::move(series));
+  return panel;
+}
+
+std::string draw(const Bench& bench, const std::vector<Outcome>& outcomes) {
+  viz::SeriesPlan plan{
+      .title = "What controllers make of accuracy modes",
+      .subtitle = fmt::format("means of {} from seed {}", counted(bench.options.trials, "trial"), bench.options.seed),
+      .x_name = "mode, as numbered above each panel",
+      .from_zero = true};
+  plan.panels = {panel_of(outcomes, "lane-edge-p", "mean |error| [m]", &Outcome::abs_error, 1.0),
+                 panel_of(outcomes, "magnet-p", "mean |error| [Gauss]", &Outcome::abs_error, 1.0),
+                 panel_of(outcomes, "explore", "cells wrong [%]", &Outcome::wrong, 100.0),
+                 panel_of(outcomes, "explore", "time to map [s]", &Outcome::seconds, 1.0)};
+  const std::string file = in_folder(bench, "accuracy.png");
+  viz::draw_series(plan, file);
+  return file;
+}
+
+std::vector<std::string> run_accuracy(const Bench& bench) {
+  std::vector<Outcome> outcomes;
+  double done = 0.0;
+  for (const Test& test : tests()) {
+    Scenario scenario =
+        test.maps ? bench.scenario
+                  : read_scenario((std::filesystem::path(bench.options.folder) / (test.name + ".toml")).string());
+    scenario.plant = bench.scenario.plant;
+    const auto modes = kind_called(test.sensor).modes;
+    for (const sensors::Mode& mode : modes) {
+      if (bench.progress) bench.progress(done, fmt::format("{}, {}", test.name, mode.word));
+      outcomes.push_back(measure(bench, test, scenario, mode.word));
+      done += 1.0 / static_cast<double>(tests().size() * modes.size());
+    }
+  }
+  std::vector<std::string> files{in_folder(bench, "accuracy.csv"), in_folder(bench, "report.md")};
+  write_text(files[0], csv_of(outcomes));
+  write_text(files[1], report_of(bench, outcomes));
+  files.push_back(draw(bench, outcomes));
+  return files;
+}
+
+constexpr std::string_view kReasons = "Every mode has the same seeds, so what differs between its rows is the mode.";
+
+}  // namespace
+
+extern const ExperimentKind accuracy_experiment;
+
+constinit const ExperimentKind accuracy_experiment{
+    .name = "accuracy",
+    .scenario = "explore",
+    .summary = "lane keeping, magnet keeping and mapping in every accuracy mode of their sensors",
+    .plant = Plant::thesis,
+    .reasons = kReasons,
+    .run = run_accuracy,
+};
+
+}  // namespace sf::scenarios
