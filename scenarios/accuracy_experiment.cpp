@@ -88,7 +88,7 @@ std::string csv_of(const std::vector<Outcome>& outcomes) {
 std::string report_of(const Bench& bench, const std::vector<Outcome>& outcomes) {
   std::string text = "# How accurate must sensors be?\n\n" + setup_of(bench, {}) +
                      "\n\nEach test is run in every mode of the sensor that it lives by; all else is as in its own "
-                     "experiment.\n";
+                     "experiment, its link too.\n";
   std::string last;
   for (const Outcome& o : outcomes) {
     const bool maps = o.test == "explore";
@@ -113,7 +113,7 @@ std::string report_of(const Bench& bench, const std::vector<Outcome>& outcomes) 
 /// A panel of one test: modes along the axis, in their order.
 viz::Panel panel_of(const std::vector<Outcome>& outcomes, const std::string& test, const std::string& y_name,
                     double Outcome::*value, double scale) {
-  viz::Panel panel{.y_name = y_name};
+  viz::Panel panel{.y_name = y_name, .from_zero = true};
   viz::Series series;
   for (const Outcome& o : outcomes) {
     if (o.test != test) continue;
@@ -163,7 +163,15 @@ std::vector<std::string> run_accuracy(const Bench& bench) {
   return files;
 }
 
-constexpr std::string_view kReasons = "Every mode has the same seeds, so what differs between its rows is the mode.";
+constexpr std::string_view kReasons =
+    "Every mode has the same seeds, so what differs between its rows is the mode. "
+    "On the thesis' path a quarter of the rays keeps the lane as well as all of them: 2 mm of noise on each ray, the "
+    "bend and the delay of a second are far larger than what fewer points change. "
+    "Magnets beyond 3 m are not missed; without those beyond 1 m, the mean error grows by 3 %. "
+    "For a map of 3 cm a cell, ranges in 32 bits change no cell, and one beam of eight (every 4 degrees) is enough: "
+    "the robot passes everything closely, and what lies between two beams is seen from elsewhere. "
+    "Cells that are wrong are those on walls' faces, where the noise of 3 mm decides, not the mode. "
+    "It is not so where things are thin and passed once: docs/accuracy.md says what each mode may miss.";
 
 }  // namespace
 

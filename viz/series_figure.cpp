@@ -72,10 +72,11 @@ Span value_span(const Panel& panel, bool from_zero) {
   std::optional<Span> span;
   for (const Series& series : panel.series) widen(span, series.values, [](double v) { return std::isfinite(v); });
   if (!span) return {0.0, 1.0};
+  if (panel.from_zero) span->from = std::min(span->from, 0.0);
   if (from_zero) span = with_zero(*span);
   const double size = span->to - span->from;
   const double pad = size > 0.0 ? 0.06 * size : std::max(0.05 * std::abs(span->from), 1e-12);
-  if (from_zero && span->from == 0.0) return {0.0, span->to + pad};
+  if ((from_zero || panel.from_zero) && span->from == 0.0) return {0.0, span->to + pad};
   return {span->from - pad, span->to + pad};
 }
 

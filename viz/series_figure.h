@@ -19,6 +19,7 @@ struct Panel {
   std::string title;   ///< above its plot; may be empty
   std::string y_name;  ///< of its axis, with the unit: `distance [m]`
   std::vector<Series> series;
+  bool from_zero = false;  ///< its axis begins at 0 whatever is shown: what differs little then looks so
 };
 
 struct SeriesPlan {
