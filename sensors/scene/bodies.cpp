@@ -11,8 +11,7 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr int kMostCells = 128;    ///< along an axis
-constexpr double kLookout = 0.05;  ///< [m] clearances are not measured beyond
+constexpr int kMostCells = 128;  ///< along an axis
 
 }  // namespace
 

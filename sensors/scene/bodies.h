@@ -14,6 +14,8 @@ namespace sf::sensors {
 
 using base::Pose;
 
+inline constexpr double kLookout = 0.05;  ///< [m] how near a mover comes to others is not measured beyond
+
 /// All movers' outlines in the world frame. Exact segments of movers follow those of the walls: id = walls + row.
 class Bodies {
  public:
