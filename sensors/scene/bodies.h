@@ -59,6 +59,7 @@ class Bodies {
     std::vector<Near> near;
     std::vector<Near> sorted;
     std::vector<std::uint32_t> counts;
+    Sight::Nearby walls;
   };
   /// Collects what `view` may meet of other movers, and for each sector how near to walls any of it is,
   /// at least [m].
