@@ -111,10 +111,13 @@ void Farm::State::prepare() {
     again |= station.prepare(poses);
   }
   if (!again) return;
+  // A kernel is compiled when it first runs, if only for nothing: those that nobody has needed yet stay out.
   batch.begin();
-  for (Station& station : stations) station.instruments->record_measure(batch);
+  for (Station& station : stations)
+    if (station.in_use) station.instruments->record_measure(batch);
   batch.barrier();
-  for (Station& station : stations) station.instruments->record_derive(batch);
+  for (Station& station : stations)
+    if (station.in_use) station.instruments->record_derive(batch);
   batch.end();
 }
 

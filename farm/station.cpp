@@ -34,6 +34,7 @@ bool Station::prepare(std::span<const base::Pose> poses) {
   const bool nothing = looking.empty();
   if (nothing && at_rest) return false;
   at_rest = nothing;
+  in_use = true;
   told = false;
   return instruments->prepare(looking, poses);
 }

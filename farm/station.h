@@ -19,8 +19,9 @@ struct Station {
   std::vector<std::uint64_t> begun;  ///< per row: readings begun
   std::vector<sensors::Due> due;
   std::vector<sensors::Due> looking;  ///< of those due: whose reading cannot be given again
-  bool at_rest = false;               ///< the instruments know that nothing is due
-  bool told = false;                  ///< so do the tables on the device
+  bool in_use = false;                ///< someone has looked: its kernels belong to the batch
+  bool at_rest = true;                ///< the instruments know that nothing is due
+  bool told = true;                   ///< so do the tables on the device, as far as kernels are in use
 
   /// @param site of all kinds. @param group of the farm's roster.
   Station(const sensors::Site& site, const sensors::Roster::Group& group);
