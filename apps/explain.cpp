@@ -28,6 +28,7 @@ std::string rates_of(const scenarios::ExplainedKind& k) {
 std::string work_of(const scenarios::ExplainedKind& k, double ticks) {
   const auto each = [&](std::uint64_t count) { return static_cast<double>(count) / ticks; };
   std::string text = fmt::format("{:.4g} readings", k.readings);
+  if (k.again > 0.0) text += fmt::format(", {:.4g} of them given again since nothing moved", k.again);
   if (k.work.rays > 0)
     text += fmt::format(", {:.4g} rays, {:.3g} lists built anew", each(k.work.rays), each(k.work.cells_built));
   if (k.work.doubts > 0)

@@ -119,6 +119,8 @@ std::string work_text(const RunFacts& f) {
   const sensors::Work& work = f.farm.work;
   std::string text = work.rays > 0 || work.dipoles == 0 ? rows("rays", work.rays) : "";
   if (work.dipoles > 0) text += rows("dipoles", work.dipoles);
+  if (f.farm.again > 0)
+    text += row("given again", fmt::format("{} of {} readings: nothing had moved", f.farm.again, f.farm.readings));
   return text;
 }
 

@@ -21,6 +21,7 @@
 #include "bench/grid.h"
 #include "bench/lane_contest.h"
 #include "bench/map_contest.h"
+#include "bench/price.h"
 #include "bench/report.h"
 #include "tests/sensors/scenes.h"
 
@@ -164,11 +165,11 @@ void tell_maps(benchmark::State& state, Session& session, const MapCase& c) {
   for (const MapEntrant& e : session.maps.back().entrants) state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
 }
 
-void tell_facts(benchmark::State& state, Session& session, const std::function<std::vector<Fact>()>& measure) {
+void tell_facts(benchmark::State& state, std::vector<Fact>& facts, const std::function<std::vector<Fact>()>& measure) {
   for (auto _ : state)
     for (const Fact& fact : measure()) {
       state.counters[fact.what] = fact.value;
-      session.book.facts.push_back(fact);
+      facts.push_back(fact);
     }
 }
 
@@ -179,6 +180,11 @@ const char* method_key(std::size_t which) {
 
 void register_all(Session& session) {
   const auto once = [](benchmark::internal::Benchmark* b) { b->Unit(benchmark::kMillisecond)->Iterations(1); };
+  std::vector<Fact>& facts = session.book.facts;
+  std::vector<Fact>& prices = session.book.prices;
+  // First: a process that is started counts as resident at least what this one was.
+  once(benchmark::RegisterBenchmark("price/program",
+                                    [&prices](benchmark::State& s) { tell_facts(s, prices, measure_program); }));
   for (const ScanCase& c : kScanCases)
     for (std::size_t which = 0; which < kMethods; ++which)
       benchmark::RegisterBenchmark(fmt::format("scan/cave/{}/{}m/{}", c.robots, c.range, method_key(which)).c_str(),
@@ -202,16 +208,18 @@ void register_all(Session& session) {
                                       [&session, robots](benchmark::State& s) { tell_cones(s, session, robots); }));
   for (const MapCase& c : kMapCases)
     once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_maps(s, session, c); }));
-  once(benchmark::RegisterBenchmark("start",
-                                    [&session](benchmark::State& s) { tell_facts(s, session, measure_start); }));
-  once(benchmark::RegisterBenchmark("small_ticks", [&session](benchmark::State& s) {
-    tell_facts(s, session, [&session] { return measure_ticks(session.device); });
+  once(benchmark::RegisterBenchmark("start", [&facts](benchmark::State& s) { tell_facts(s, facts, measure_start); }));
+  once(benchmark::RegisterBenchmark("price/features", [&](benchmark::State& s) {
+    tell_facts(s, prices, [&session] { return measure_features(session.device); });
   }));
-  once(benchmark::RegisterBenchmark("fleets", [&session](benchmark::State& s) {
-    tell_facts(s, session, [&session] { return measure_fleets(session.device); });
+  once(benchmark::RegisterBenchmark("small_ticks", [&](benchmark::State& s) {
+    tell_facts(s, facts, [&session] { return measure_ticks(session.device); });
   }));
-  once(benchmark::RegisterBenchmark("lists", [&session](benchmark::State& s) {
-    tell_facts(s, session, [&session] { return measure_lists(session.device); });
+  once(benchmark::RegisterBenchmark("fleets", [&](benchmark::State& s) {
+    tell_facts(s, facts, [&session] { return measure_fleets(session.device); });
+  }));
+  once(benchmark::RegisterBenchmark("lists", [&](benchmark::State& s) {
+    tell_facts(s, facts, [&session] { return measure_lists(session.device); });
   }));
 }
 

@@ -30,7 +30,7 @@ farm::FarmStats operator-(const farm::FarmStats& p, const farm::FarmStats& q) {
 
 Drive::Drive(const world::World& world, gpu::Device& device)
     : world_(world),
-      farm_(world, device),
+      farm_(world, device, {.give_again = false}),
       fleet_(world),
       commands_(world.movers.size()),
       interval_(std::llround(1e9 / world.movers[0].lasers[0].rate)) {

@@ -16,7 +16,7 @@ class FarmRounds {
   /// Every sensor is heard. @param rounds poses, one per mover @param interval [ns] of simulated time between ticks
   FarmRounds(const world::World& world, gpu::Device& device, const std::vector<std::vector<base::Pose>>& rounds,
              std::int64_t interval)
-      : farm_(world, device), interval_(interval) {
+      : farm_(world, device, {.give_again = false}), interval_(interval) {
     farm_.hear_all();
     for (const std::vector<base::Pose>& poses : rounds) {
       std::vector<base::Report>& reports = reports_.emplace_back();

@@ -80,6 +80,7 @@ void write_csv(const Book& book, const std::string& folder) {
   if (!book.contests.empty()) write(folder + "/scans.csv", scans_csv(book.contests));
   if (!book.drives.empty()) write(folder + "/ticks.csv", ticks_csv(book.drives));
   if (!book.facts.empty()) write(folder + "/facts.csv", facts_csv(book.facts));
+  if (!book.prices.empty()) write(folder + "/prices.csv", facts_csv(book.prices));
 }
 
 std::string tables(const Book& book) {
@@ -109,6 +110,8 @@ std::string tables(const Book& book) {
   }
   if (!book.facts.empty()) text += "\nsingle figures\n";
   for (const Fact& f : book.facts) text += fmt::format("{:<60} {:>10.4g} {}\n", f.what, f.value, f.unit);
+  if (!book.prices.empty()) text += "\nwhat a world pays for\n";
+  for (const Fact& f : book.prices) text += fmt::format("{:<88} {:>10.4g} {}\n", f.what, f.value, f.unit);
   return text;
 }
 

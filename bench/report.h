@@ -15,12 +15,14 @@ struct Book {
   std::vector<Outcome> contests;
   std::vector<DriveResult> drives;
   std::vector<Fact> facts;
+  std::vector<Fact> prices;
 };
 
 /// Writes `text` to `file`, in place of what it held. @throws base::InputError when it cannot be written.
 void write(const std::string& file, const std::string& text);
 
-/// Writes scans.csv, ticks.csv and facts.csv into `folder`; a part of which nothing was measured keeps its old file.
+/// Writes scans.csv, ticks.csv, facts.csv and prices.csv into `folder`; a part of which nothing was measured keeps its
+/// old file.
 /// @throws base::InputError when a file cannot be written.
 void write_csv(const Book& book, const std::string& folder);
 

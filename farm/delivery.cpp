@@ -24,9 +24,7 @@ std::int64_t Delivery::latency_of(const base::ReadingBlock& block) const {
 void Delivery::hold(const base::ReadingBlock& block, std::int64_t due) {
   auto place = std::find_if(waiting_.begin(), waiting_.end(), [](const Waiting& w) { return !w.used; });
   if (place == waiting_.end()) place = waiting_.insert(waiting_.end(), Waiting{});
-  place->values.assign(block.values.begin(), block.values.end());
-  place->hits.assign(block.hits.begin(), block.hits.end());
-  place->block = block;
+  place->reading.take(block);
   place->due = due;
   place->used = true;
 }
@@ -42,14 +40,12 @@ std::span<const base::ReadingBlock> Delivery::deliver(std::int64_t now, std::spa
   for (Waiting& w : waiting_)
     if (w.used && w.due <= now) ready_.push_back(&w);
   std::sort(ready_.begin(), ready_.end(), [](const Waiting* p, const Waiting* q) {
-    return std::tie(p->due, p->block.mover, p->block.kind, p->block.sensor, p->block.sequence) <
-           std::tie(q->due, q->block.mover, q->block.kind, q->block.sensor, q->block.sequence);
+    const base::ReadingBlock& a = p->reading.block();
+    const base::ReadingBlock& b = q->reading.block();
+    return std::tie(p->due, a.mover, a.kind, a.sensor, a.sequence) <
+           std::tie(q->due, b.mover, b.kind, b.sensor, b.sequence);
   });
-  for (Waiting* w : ready_) {
-    w->block.values = w->values;
-    w->block.hits = w->hits;
-    delivered_.push_back(w->block);
-  }
+  for (const Waiting* w : ready_) delivered_.push_back(w->reading.block());
   lent_.swap(ready_);
   for (const base::ReadingBlock& block : measured)
     if (latency_of(block) == 0) delivered_.push_back(block);

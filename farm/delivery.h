@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/reading.h"
+#include "farm/stored_reading.h"
 #include "sensors/roster.h"
 
 namespace sf::farm {
@@ -22,10 +23,8 @@ class Delivery {
 
  private:
   struct Waiting {
-    base::ReadingBlock block;
+    StoredReading reading;
     std::int64_t due = 0;
-    std::vector<double> values;
-    std::vector<std::uint32_t> hits;
     bool used = false;
   };
   std::int64_t latency_of(const base::ReadingBlock& block) const;

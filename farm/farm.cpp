@@ -11,7 +11,8 @@
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "farm/delivery.h"
-#include "farm/schedule.h"
+#include "farm/moves.h"
+#include "farm/station.h"
 #include "gpu/batch.h"
 
 namespace sf::farm {
@@ -35,22 +36,16 @@ class Stopwatch {
 
 }  // namespace
 
-/// One kind at work: its instruments, and which of them are due.
-struct Station {
-  const sensors::Roster::Group* group = nullptr;
-  std::unique_ptr<sensors::Instruments> instruments;
-  std::vector<std::uint64_t> begun;  ///< per row: readings begun
-  std::vector<sensors::Due> due;
-};
-
 struct Farm::State {
   const world::World& world;
   gpu::Device& device;
   base::Workers workers;
   sensors::Roster roster;
+  bool give_again;
   std::vector<Station> stations;
   gpu::Batch batch;
   Delivery delivery;
+  Moves moves;                       ///< of this tick
   std::vector<base::Pose> poses;     ///< per mover
   std::vector<base::Report> states;  ///< per mover
   std::vector<std::uint32_t> heard;  ///< per mover: bits of kinds
@@ -64,8 +59,10 @@ struct Farm::State {
         device(d),
         workers(options.threads),
         roster(w),
+        give_again(options.give_again),
         batch(device),
         delivery(roster),
+        moves(w),
         heard(w.movers.size(), 0) {
     for (const world::Mover& mover : w.movers) {
       states.push_back({.mover = static_cast<std::uint32_t>(poses.size()), .X_WM = mover.X_WM});
@@ -74,82 +71,88 @@ struct Farm::State {
     const sensors::Site site{w, device, workers, options.seed, options.noise, options.true_poses, options.scene};
     for (const auto& group : roster.groups()) {
       device.owned_by(group.kind->name);
-      stations.push_back({&group, group.kind->make(site), std::vector<std::uint64_t>(group.rows.size(), 0), {}});
-      stations.back().due.reserve(group.rows.size());
+      stations.emplace_back(site, group);
     }
     blocks.reserve(roster.count());
     hashes.reserve(roster.count());
   }
 
+  void move(std::span<const base::Report> reports);
   bool find_due(std::int64_t now);
-  void collect(Station& station, std::int64_t now);
   void prepare();
-  void measure(std::int64_t now);
+  void run();
+  void collect(Station& station, std::int64_t now, bool again);
+  /// @param again whether readings may be given again.
+  void measure(std::int64_t now, bool again);
   void add_to_hash(std::span<const base::ReadingBlock> readings);
 };
 
 bool Farm::State::find_due(std::int64_t now) {
-  bool any = false;
-  for (Station& station : stations) {
-    station.due.clear();
-    const std::uint32_t kind = 1u << station.group->kind->id;
-    for (std::uint32_t i = 0; i < station.begun.size(); ++i) {
-      const sensors::SensorRow& row = station.group->rows[i];
-      const std::uint64_t should = readings_begun(now, row.rate, row.phase);
-      if (should <= station.begun[i]) continue;
-      station.begun[i] = should;
-      // A sensor's readings are numbered by when they are due: one that nobody heard leaves a gap, and its noise to
-      // itself.
-      if ((heard[row.mover] & kind) != 0) station.due.push_back({i, should - 1});
-    }
-    any = any || !station.due.empty();
+  for (Station& station : stations) station.find_due(now, heard);
+  return std::any_of(stations.begin(), stations.end(), [](const Station& s) { return !s.due.empty(); });
+}
+
+void Farm::State::move(std::span<const base::Report> reports) {
+  moves.begin();
+  for (const base::Report& report : reports) {
+    const base::Pose& X = report.X_WM;
+    SF_CHECK(std::isfinite(X.x + X.y + X.yaw), "the pose of mover " + std::to_string(report.mover) + " is not finite");
+    moves.add(report.mover, poses.at(report.mover), X);
+    poses[report.mover] = X;
+    states[report.mover] = report;
   }
-  return any;
+  for (Station& station : stations) station.steady.disturb(moves, poses);
 }
 
 void Farm::State::prepare() {
   bool again = false;
   for (Station& station : stations) {
     device.owned_by(station.group->kind->name);  // tables may grow
-    again |= station.instruments->prepare(station.due, poses);
+    again |= station.prepare(poses);
   }
   if (!again) return;
+  // A kernel is compiled when it first runs, if only for nothing: those that nobody has needed yet stay out.
   batch.begin();
-  for (Station& station : stations) station.instruments->record_measure(batch);
+  for (Station& station : stations)
+    if (station.in_use) station.instruments->record_measure(batch);
   batch.barrier();
-  for (Station& station : stations) station.instruments->record_derive(batch);
+  for (Station& station : stations)
+    if (station.in_use) station.instruments->record_derive(batch);
   batch.end();
 }
 
-void Farm::State::measure(std::int64_t now) {
+void Farm::State::run() {
+  if (std::none_of(stations.begin(), stations.end(), [](const Station& s) { return s.needs_device(); })) return;
+  for (Station& station : stations) station.copies(batch);
+  batch.run();
+  ++stats.batches;
+}
+
+void Farm::State::measure(std::int64_t now, bool again) {
   Stopwatch watch;
-  for (Station& station : stations)
-    if (!station.due.empty()) station.instruments->place(poses);
+  for (Station& station : stations) {
+    station.split(again);
+    if (!station.looking.empty()) station.instruments->place(poses);
+  }
   watch.lap(stats.place_s);
   prepare();
-  for (Station& station : stations) station.instruments->copies(batch);
   watch.lap(stats.lists_s);
-  batch.run();
+  run();
   watch.lap(stats.device_s);
   for (Station& station : stations)
-    if (!station.group->kind->derived) collect(station, now);
+    if (!station.derived()) collect(station, now, again);
   const std::size_t measured = blocks.size();
   for (Station& station : stations) {
-    if (!station.group->kind->derived) continue;
+    if (!station.derived()) continue;
     station.instruments->observe(std::span(blocks).first(measured));
-    collect(station, now);
+    collect(station, now, again);
   }
   watch.lap(stats.collect_s);
 }
 
-void Farm::State::collect(Station& station, std::int64_t now) {
-  const std::size_t first = blocks.size();
-  station.instruments->collect(blocks);
-  for (std::size_t i = first; i < blocks.size(); ++i) {
-    blocks[i].time = now;
-    blocks[i].sequence = static_cast<std::uint32_t>(station.due[i - first].sequence);
-    blocks[i].X_WM = poses[blocks[i].mover];
-  }
+void Farm::State::collect(Station& station, std::int64_t now, bool again) {
+  stats.again += station.collect(now, poses, blocks);
+  if (again) station.note(blocks);
 }
 
 void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
@@ -178,15 +181,10 @@ const sensors::Roster& Farm::roster() const { return s_->roster; }
 
 std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const base::Report> reports) {
   State& s = *s_;
-  for (const base::Report& report : reports) {
-    const base::Pose& X = report.X_WM;
-    SF_CHECK(std::isfinite(X.x + X.y + X.yaw), "the pose of mover " + std::to_string(report.mover) + " is not finite");
-    s.poses.at(report.mover) = X;
-    s.states[report.mover] = report;
-  }
+  s.move(reports);
   for (Station& station : s.stations) station.instruments->follow(s.states, now);
   s.blocks.clear();
-  if (s.find_due(now)) s.measure(now);
+  if (s.find_due(now)) s.measure(now, s.give_again);
   Stopwatch watch;
   const auto delivered = s.delivery.deliver(now, s.blocks);
   s.add_to_hash(delivered);
@@ -208,7 +206,7 @@ base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t kind, std::uint
     if (row != rows.end()) station.due.push_back({static_cast<std::uint32_t>(row - rows.begin()), 0});
   }
   const base::Pose stands = std::exchange(s.poses[mover], X_WM);
-  s.measure(0);
+  s.measure(0, false);
   s.poses[mover] = stands;
   SF_CHECK(s.blocks.size() == 1, "mover " + std::to_string(mover) + " has no sensor " + std::to_string(sensor) +
                                      " of kind " + std::to_string(kind));

@@ -25,6 +25,8 @@ namespace sf::farm {
 struct FarmOptions {
   std::uint64_t seed = 0;  ///< of all noise
   bool noise = true;       ///< false: none, whatever the world says
+  bool give_again =
+      true;  ///< a reading for which nothing has changed; false: everyone who is due looks. The same bytes
   bool true_poses = true;  ///< reports say where movers are; false: where they believe to be
   unsigned threads = 0;    ///< for the host's part; 0: as many as the machine has. Never changes a reading
   sensors::SceneOptions scene;
@@ -34,11 +36,13 @@ struct FarmOptions {
 struct FarmStats {
   std::uint64_t ticks = 0;
   std::uint64_t readings = 0;
-  sensors::Work work;      ///< of all kinds together
-  double place_s = 0.0;    ///< [s] host: movers' outlines
-  double lists_s = 0.0;    ///< [s] host: what each sensor may meet
-  double device_s = 0.0;   ///< [s] submit to done
-  double collect_s = 0.0;  ///< [s] host: noise, interpolation, delivery
+  std::uint64_t again = 0;    ///< readings given again: nothing they depend on had moved
+  std::uint64_t batches = 0;  ///< submitted to the device
+  sensors::Work work;         ///< of all kinds together
+  double place_s = 0.0;       ///< [s] host: movers' outlines
+  double lists_s = 0.0;       ///< [s] host: what each sensor may meet
+  double device_s = 0.0;      ///< [s] submit to done
+  double collect_s = 0.0;     ///< [s] host: noise, interpolation, delivery
 };
 
 inline constexpr std::uint32_t kAllKinds = 0xFFFFFFFFu;

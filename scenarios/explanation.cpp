@@ -45,9 +45,8 @@ class Drive {
     return base::seconds_since(start) / static_cast<double>(ticks());
   }
   std::uint64_t ticks() const { return kLaps * ways_.size(); }
-  double readings() const {
-    return static_cast<double>(farm_.stats().readings - before_.readings) / static_cast<double>(ticks());
-  }
+  double readings() const { return a_tick(farm_.stats().readings - before_.readings); }
+  double again() const { return a_tick(farm_.stats().again - before_.again); }
   sensors::Work work() const {
     const sensors::Work& a = before_.work;
     const sensors::Work b = farm_.stats().work;
@@ -56,6 +55,8 @@ class Drive {
   const sensors::Roster& roster() const { return farm_.roster(); }
 
  private:
+  double a_tick(std::uint64_t count) const { return static_cast<double>(count) / static_cast<double>(ticks()); }
+
   farm::Farm farm_;
   const Ways& ways_;
   std::int64_t interval_;
@@ -135,6 +136,7 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
     farm.hear(1u << group.kind->id | (kind.derived ? 1u << base::kLaser : 0u));
     kind.tick = farm.laps();
     kind.readings = farm.readings();
+    kind.again = farm.again();
     kind.work = farm.work();
     e.kinds.push_back(std::move(kind));
   }

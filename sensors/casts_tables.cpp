@@ -14,6 +14,13 @@ namespace {
 /// Groups along x of a dispatch; more rows of groups follow along y. Devices promise 65 535.
 constexpr std::uint32_t kGroupsAcross = 32'768;
 
+/// Fans are in order of their movers.
+std::uint32_t carriers_of(const std::vector<Fan>& fans) {
+  std::uint32_t carriers = 0;
+  for (std::size_t i = 0; i < fans.size(); ++i) carriers += i == 0 || fans[i].mover != fans[i - 1].mover;
+  return carriers;
+}
+
 /// Fans with the same beams share their tables.
 using BeamKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 
@@ -23,7 +30,7 @@ Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<F
     : workers(site.workers),
       seed(site.seed),
       noise(site.noise),
-      scene(world, site.device, site.workers, site.scene),
+      scene(world, site.device, site.workers, site.scene, carriers_of(f)),
       fans(std::move(f)) {
   plan(world);
   turned.resize(workers.threads());

@@ -26,6 +26,7 @@ class HostInstruments : public Instruments {
   void copies(gpu::Batch&) override {}
   void collect(std::vector<base::ReadingBlock>& out) override;
   Work work() const override { return {}; }
+  bool on_device() const override { return false; }
 
  protected:
   /// @param rows the kind's, as its `rows` gives them

@@ -51,6 +51,11 @@ struct SensorRow {
   std::uint32_t across = 0;    ///< elements that lie in rows make a picture: so many in a row; 0: they do not
   double pitch = 0.0;          ///< [m] of such a picture: side of its smallest square
   std::uint8_t mode = 0;       ///< row of its kind's modes
+
+  // What a reading depends on beside its number, so that the farm may give one again.
+  double reach = 0.0;  ///< [m] > 0: on its mover's pose, to the bit, and on the poses of those within it. 0: on more
+  bool of_magnets = false;  ///< on those that carry magnets, wherever they are, instead
+  bool noisy = false;       ///< on noise, too, unless that is off
 };
 
 /// One sensor that is due.
@@ -102,6 +107,8 @@ class Instruments {
   /// Spans live until the next `prepare`.
   virtual void collect(std::vector<base::ReadingBlock>& out) = 0;
   virtual Work work() const = 0;
+  /// Whether the farm's batch is needed for what is due.
+  virtual bool on_device() const { return true; }
 };
 
 /// One column of a reading. A reading's values lie row by row (element by element), its columns one after another.

@@ -37,6 +37,9 @@ std::vector<Array> arrays_of(const world::World& world) {
     array.row.X_MS.z += sensor.height / 2.0;
     array.row.elements = static_cast<std::uint32_t>(array.settings.X_SE.size());
     array.row.limit = std::max(std::abs(array.settings.least), std::abs(array.settings.most));
+    array.row.reach = HUGE_VAL;  // in which order magnets that move are summed depends on where all of them are
+    array.row.of_magnets = true;
+    array.row.noisy = array.settings.sigma > 0.0;
     array.height = world.movers[mover].X_WM.z + array.row.X_MS.z;
     for (const Pose& X_SE : array.settings.X_SE) array.facing.push_back(base::rotate(X_SE.yaw, {1.0, 0.0}));
     values += kMagnetometerColumns * array.settings.X_SE.size();

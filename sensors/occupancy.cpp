@@ -23,6 +23,7 @@ class Occupancies : public Instruments {
   void observe(std::span<const base::ReadingBlock> readings) override;
   void collect(std::vector<base::ReadingBlock>& out) override;
   Work work() const override { return {}; }
+  bool on_device() const override { return false; }  // it runs a batch of its own
 
  private:
   std::vector<Occupancy> maps_;

@@ -1,12 +1,5 @@
 #include "viz/canvas.h"
 
-#include <vtkFreeTypeTools.h>
-#include <vtkImageData.h>
-#include <vtkNew.h>
-#include <vtkPNGWriter.h>
-#include <vtkTextProperty.h>
-#include <vtkUnsignedCharArray.h>
-
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -16,12 +9,12 @@
 #include <vector>
 
 #include "base/error.h"
+#include "viz/pen.h"
 
 namespace sf::viz {
 namespace {
 
 constexpr int kLargestSide = 16384;
-constexpr int kDotsPerInch = 72;  // so that a point of VTK's font size is a pixel
 
 using Channels = std::array<std::uint8_t, 3>;
 
@@ -48,22 +41,12 @@ const std::string& font_file(bool bold) {
   return bold ? heavy : regular;
 }
 
-/// The alpha of `text`, tightly boxed.
-void render_text(const std::string& text, const TextStyle& style, vtkImageData* into) {
-  vtkNew<vtkTextProperty> property;
-  property->SetFontFamilyToArial();
-  if (const std::string& file = font_file(style.bold); !file.empty()) {
-    property->SetFontFamily(VTK_FONT_FILE);
-    property->SetFontFile(file.c_str());
-  }
-  property->SetFontSize(style.size);
-  property->SetBold(style.bold);
-  property->SetOrientation(style.upwards ? 90.0 : 0.0);
-  property->SetColor(1.0, 1.0, 1.0);
-  vtkFreeTypeTools* fonts = vtkFreeTypeTools::GetInstance();
-  fonts->ScaleToPowerTwoOff();
-  int size[2] = {0, 0};
-  SF_CHECK(fonts->RenderString(property, text, kDotsPerInch, into, size), "cannot render '" + text + "'");
+/// The letters of `text`, tightly boxed.
+Stencil stencil_of(const std::string& text, const TextStyle& style) {
+  Stencil stencil;
+  SF_CHECK(pen().print({text, style.size, style.bold, style.upwards, font_file(style.bold)}, stencil),
+           "cannot render '" + text + "'");
+  return stencil;
 }
 
 double anchored(double at, double size, Anchor anchor) {
@@ -84,15 +67,16 @@ std::string why(int error) { return error != 0 ? std::strerror(error) : "unknown
 }  // namespace
 
 struct Canvas::Surface {
-  Surface(int w, int h) : width(w), height(h), strokes(w, h), areas(w, h), clip{0, 0, w, h} {
-    pixels->SetDimensions(w, h, 1);
-    pixels->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-    data = static_cast<std::uint8_t*>(pixels->GetScalarPointer());
-  }
-  /// VTK's first row is the lowest one.
-  std::uint8_t* at(int x, int y) const {
-    const auto row = static_cast<std::size_t>(height - 1 - y);
-    return data + 3 * (row * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+  Surface(int w, int h)
+      : width(w),
+        height(h),
+        pixels(3 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)),
+        strokes(w, h),
+        areas(w, h),
+        clip{0, 0, w, h} {}
+  std::uint8_t* at(int x, int y) {
+    return pixels.data() +
+           3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
   }
   void paint(CoverageRows& rows, bool edges, std::uint32_t color) {
     const Channels rgb = channels(color);
@@ -106,28 +90,20 @@ struct Canvas::Surface {
       }
     });
   }
-  void stamp(vtkImageData* text, int left, int top, std::uint32_t color, float gain) {
-    int extent[6];
-    text->GetExtent(extent);
-    const int parts = text->GetNumberOfScalarComponents();
+  void stamp(const Stencil& text, int left, int top, std::uint32_t color, float gain) {
     const Channels rgb = channels(color);
-    for (int j = extent[2]; j <= extent[3]; ++j) {
-      const int y = top + extent[3] - j;
-      if (y < clip.y_min || y >= clip.y_max) continue;
-      for (int i = extent[0]; i <= extent[1]; ++i) {
-        const int x = left + i - extent[0];
-        if (x < clip.x_min || x >= clip.x_max) continue;
-        const auto* texel = static_cast<const std::uint8_t*>(text->GetScalarPointer(i, j, 0));
-        const float alpha = static_cast<float>(texel[parts - 1]) / 255.0f;
-        if (alpha > 0.0f) blend(at(x, y), rgb, std::min(1.0f, alpha * gain) * opacity(color));
+    const std::uint8_t* covered = text.covered.data();
+    for (int y = top; y < top + text.height; ++y)
+      for (int x = left; x < left + text.width; ++x) {
+        const float alpha = static_cast<float>(*covered++) / 255.0f;
+        const bool inside = y >= clip.y_min && y < clip.y_max && x >= clip.x_min && x < clip.x_max;
+        if (inside && alpha > 0.0f) blend(at(x, y), rgb, std::min(1.0f, alpha * gain) * opacity(color));
       }
-    }
   }
 
   int width;
   int height;
-  vtkNew<vtkImageData> pixels;
-  std::uint8_t* data = nullptr;
+  std::vector<std::uint8_t> pixels;  ///< red, green, blue; row by row, the top row first
   CoverageRows strokes;
   CoverageRows areas;
   PixelBox clip;
@@ -135,10 +111,8 @@ struct Canvas::Surface {
 
 Vec2 text_size(const std::string& text, const TextStyle& style) {
   if (text.empty()) return {};
-  vtkNew<vtkImageData> image;
-  render_text(text, style, image);
-  const int* size = image->GetDimensions();
-  return {static_cast<double>(size[0]), static_cast<double>(size[1])};
+  const Stencil stencil = stencil_of(text, style);
+  return {static_cast<double>(stencil.width), static_cast<double>(stencil.height)};
 }
 
 Canvas::Canvas(int width, int height, std::uint32_t background) {
@@ -146,8 +120,8 @@ Canvas::Canvas(int width, int height, std::uint32_t background) {
            "a canvas of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
   surface_ = std::make_unique<Surface>(width, height);
   const Channels rgb = channels(background);
-  std::uint8_t* pixel = surface_->data;
-  for (int i = 0; i < width * height; ++i, pixel += 3) std::copy(rgb.begin(), rgb.end(), pixel);
+  for (auto pixel = surface_->pixels.begin(); pixel != surface_->pixels.end(); pixel += 3)
+    std::copy(rgb.begin(), rgb.end(), pixel);
 }
 Canvas::~Canvas() = default;
 Canvas::Canvas(Canvas&&) noexcept = default;
@@ -200,17 +174,15 @@ void Canvas::ring(Vec2 center, double radius, double line_width, std::uint32_t c
 
 void Canvas::text(Vec2 at, const std::string& text, const TextStyle& style) {
   if (text.empty()) return;
-  vtkNew<vtkImageData> image;
-  render_text(text, style, image);
-  const int* size = image->GetDimensions();
-  const int left = static_cast<int>(std::lround(anchored(at.x, size[0], style.across)));
-  const int top = static_cast<int>(std::lround(anchored(at.y, size[1], style.down)));
+  const Stencil letters = stencil_of(text, style);
+  const int left = static_cast<int>(std::lround(anchored(at.x, letters.width, style.across)));
+  const int top = static_cast<int>(std::lround(anchored(at.y, letters.height, style.down)));
   if (style.halo >> 24) {
     for (int dy = -2; dy <= 2; ++dy)
       for (int dx = -2; dx <= 2; ++dx)
-        if (dx * dx + dy * dy <= 5) surface_->stamp(image, left + dx, top + dy, style.halo, 0.5f);
+        if (dx * dx + dy * dy <= 5) surface_->stamp(letters, left + dx, top + dy, style.halo, 0.5f);
   }
-  surface_->stamp(image, left, top, style.color, 1.0f);
+  surface_->stamp(letters, left, top, style.color, 1.0f);
 }
 
 void Canvas::image(Vec2 from, Vec2 to, const Cells& cells) {
@@ -241,18 +213,12 @@ std::uint32_t Canvas::pixel(int x, int y) const {
 }
 
 void Canvas::save_png(const std::string& path) const {
-  // VTK's writer prints its own errors, so it writes to memory and the file is ours.
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetInputData(surface_->pixels);
-  writer->WriteToMemoryOn();
-  writer->SetCompressionLevel(6);
-  writer->Write();
-  vtkUnsignedCharArray* png = writer->GetResult();
-  SF_CHECK(png != nullptr && png->GetNumberOfValues() > 0, "VTK made no PNG");
+  std::vector<std::uint8_t> png;
+  SF_CHECK(pen().encode_png(surface_->pixels.data(), width(), height(), png), "VTK made no PNG");
 
   errno = 0;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  if (file) file.write(reinterpret_cast<const char*>(png->GetPointer(0)), png->GetNumberOfValues());
+  if (file) file.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
   if (file) file.close();
   if (!file)
     throw base::InputError(path, 0,

@@ -1,5 +1,5 @@
 #pragma once
-// A picture in memory: VTK holds the pixels, renders the text and writes the PNG; lines and areas are our own coverage.
+// A picture in memory: VTK renders the text and writes the PNG; lines and areas are our own coverage.
 // Nothing here opens a window or asks for OpenGL, so it works on a machine without a display.
 //
 // Coordinates are pixels, x right, y down, (0, 0) the upper left corner of the picture. Colours are 0xAARRGGBB; alpha

@@ -1,5 +1,6 @@
 #include "sensors/cones/rangers.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -121,7 +122,14 @@ void Rangers::collect(std::vector<base::ReadingBlock>& out) {
 
 std::vector<SensorRow> ranger_rows(const std::vector<ConeArray>& arrays) {
   std::vector<SensorRow> rows;
-  for (const ConeArray& array : arrays) rows.push_back(array.row);
+  for (const ConeArray& array : arrays) {
+    rows.push_back(array.row);
+    rows.back().noisy = array.sigma > 0.0 || array.proportional > 0.0;
+    // Where transducers take turns, a reading holds what was heard before.
+    if (array.turns > 1) continue;
+    for (const Pose& X_SC : array.X_SC)
+      rows.back().reach = std::max(rows.back().reach, array.range_max + base::length({X_SC.x, X_SC.y}));
+  }
   return rows;
 }
 

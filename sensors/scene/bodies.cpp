@@ -11,8 +11,7 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr int kMostCells = 128;    ///< along an axis
-constexpr double kLookout = 0.05;  ///< [m] clearances are not measured beyond
+constexpr int kMostCells = 128;  ///< along an axis
 
 }  // namespace
 
@@ -207,7 +206,8 @@ void Bodies::collect(const View& view, Scratch& scratch, SectorLists& lists, flo
     const double bearing = std::atan2(p.y, p.x);
     const double wide = around ? M_PI : std::asin(radius / distance) + 1e-6;
     if (screen.covers(bearing - wide, bearing + wide)) continue;
-    if (view.depth && !around && view.depth->hides(view.origin, view.radius, view.origin + p, bodies_[n.body].radius))
+    if (view.depth && !around &&
+        view.depth->hides(view.origin, view.radius, view.origin + p, bodies_[n.body].radius, scratch.walls))
       continue;
 
     const std::size_t before = lists.items.size();

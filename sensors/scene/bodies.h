@@ -14,6 +14,8 @@ namespace sf::sensors {
 
 using base::Pose;
 
+inline constexpr double kLookout = 0.05;  ///< [m] how near a mover comes to others is not measured beyond
+
 /// All movers' outlines in the world frame. Exact segments of movers follow those of the walls: id = walls + row.
 class Bodies {
  public:
@@ -57,6 +59,7 @@ class Bodies {
     std::vector<Near> near;
     std::vector<Near> sorted;
     std::vector<std::uint32_t> counts;
+    Sight::Nearby walls;
   };
   /// Collects what `view` may meet of other movers, and for each sector how near to walls any of it is,
   /// at least [m].

@@ -5,7 +5,8 @@
 
 namespace sf::sensors {
 
-/// How much room the lists have before the oldest make way. When one tick alone needs more, the room doubles.
+/// How much room the lists may have before the oldest make way; a few robots get less. When one tick alone needs more,
+/// the room doubles.
 struct SceneOptions {
   std::uint32_t pool_chunks = 1u << 20;  ///< 84 bytes each; memory is touched only as far as used
   std::uint32_t pool_cells = 1u << 14;

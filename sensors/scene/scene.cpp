@@ -40,14 +40,16 @@ void refuse_if_too_long(std::uint32_t chunks, std::uint32_t most, const char* wh
                          " lie within range of one sensor in one direction; lower range_max or simplify the world");
 }
 
-Scene::Scene(const world::World& world, gpu::Device& device, base::Workers& workers, const SceneOptions& options)
+Scene::Scene(const world::World& world, gpu::Device& device, base::Workers& workers, const SceneOptions& options,
+             std::uint32_t carriers)
     : workers_(workers),
       device_(device),
-      options_(options),
+      most_(options),
+      options_{.pool_chunks = 0, .pool_cells = 0},
       walls_(world.walls),
       breaks_(height_breaks(walls_)),
       all_walls_(std::make_unique<Sight>(Sight::of_all_heights(walls_, 2.0))),
-      pool_(options.pool_cells, options.pool_chunks) {
+      pool_(0, 0) {
   bodies_ = std::make_unique<Bodies>(world, all_walls_.get());
   for (unsigned i = 0; i < workers.threads(); ++i) scratch_.push_back(std::make_unique<Scratch>());
 
@@ -71,7 +73,7 @@ Scene::Scene(const world::World& world, gpu::Device& device, base::Workers& work
     words_.push_back(list_word(i, clearances[i]));
   }
 
-  grow(options.pool_cells, options.pool_chunks, 64, 4096);
+  make_room(carriers);
 }
 
 Scene::~Scene() = default;
@@ -98,7 +100,7 @@ std::uint32_t Scene::add_family(const Family& family) {
   tables->sight = sight.get();
   // Only movers are looked up in it.
   auto& depth = depths_[interval];
-  if (!depth && bodies_->count() > 1) depth = std::make_unique<Depth>(*sight, workers_);
+  if (!depth && bodies_->count() > 1) depth = std::make_unique<Depth>(*sight);
   tables->depth = depth.get();
   tables->height = bodies_->watch_height(family.z);
   families_.push_back(std::move(tables));

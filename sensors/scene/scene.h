@@ -37,7 +37,9 @@ struct Viewpoint {
 /// Not thread-safe. `world` need not outlive it.
 class Scene {
  public:
-  Scene(const world::World& world, gpu::Device& device, base::Workers& workers, const SceneOptions& options);
+  /// @param carriers movers with sensors that look: the lists get room accordingly
+  Scene(const world::World& world, gpu::Device& device, base::Workers& workers, const SceneOptions& options,
+        std::uint32_t carriers);
   ~Scene();
 
   /// Registers a family; to be called for all before the first tick. Equal height and range give the same number.
@@ -90,12 +92,14 @@ class Scene {
   bool fill_movers(std::span<const Viewpoint> views, std::span<RayRow> rows);
   bool fill_some_movers(std::span<const Viewpoint> views);
   void name_movers(std::span<const Viewpoint> views, std::span<RayRow> rows) const;
+  void make_room(std::uint32_t carriers);
   void grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t views, std::uint32_t mover_chunks);
   ListTables tables();
 
   base::Workers& workers_;
   gpu::Device& device_;
-  SceneOptions options_;
+  const SceneOptions most_;
+  SceneOptions options_;  ///< room now
   std::vector<world::Segment> walls_;
   std::vector<double> breaks_;                            ///< [m] heights at which the set of visible walls changes
   std::map<std::size_t, std::unique_ptr<Sight>> sights_;  ///< by the interval between breaks

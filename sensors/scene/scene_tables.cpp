@@ -8,9 +8,26 @@
 
 namespace sf::sensors {
 
+namespace {
+
+/// Robots drive on: of the cells that each of them left lately, so many are kept, and of few robots more.
+constexpr SceneOptions kEach{.pool_chunks = 1u << 12, .pool_cells = 1u << 6};
+constexpr SceneOptions kLeast{.pool_chunks = 1u << 16, .pool_cells = 1u << 10};
+
+}  // namespace
+
 ListTables Scene::tables() {
   return {entries_->host<ListEntry>().data(), ids_->host<std::uint32_t>().data(), nearest_->host<float>().data(),
           words_.data()};
+}
+
+void Scene::make_room(std::uint32_t carriers) {
+  const auto room = [carriers](std::uint32_t each, std::uint32_t least, std::uint32_t most) {
+    return static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(std::uint64_t{each} * carriers, std::min(least, most), most));
+  };
+  grow(room(kEach.pool_cells, kLeast.pool_cells, most_.pool_cells),
+       room(kEach.pool_chunks, kLeast.pool_chunks, most_.pool_chunks), 64, 4096);
 }
 
 void Scene::grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t views, std::uint32_t mover_chunks) {

@@ -104,7 +104,10 @@ void Sight::index_bands() {
 void Sight::near(Vec2 p, double radius, Nearby& nearby) const {
   nearby.found.clear();
   if (segments_.empty()) return;
-  if (nearby.stamps.size() < segments_.size()) nearby.stamps.resize(segments_.size(), 0);
+  if (nearby.stamps.size() < segments_.size()) {
+    nearby.stamps.resize(segments_.size(), 0);
+    nearby.found.reserve(segments_.size());
+  }
   if (++nearby.stamp == 0) {
     std::fill(nearby.stamps.begin(), nearby.stamps.end(), 0);
     nearby.stamp = 1;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/sensors/scenes.h"
 
@@ -36,13 +37,27 @@ TEST(Explanation, CountsWhatThereIs) {
   EXPECT_EQ(k.robots, 6u);
   EXPECT_EQ(k.most_rate, 10.0);
   EXPECT_DOUBLE_EQ(k.readings, 6.0) << "10 Hz in ticks of 0.1 s";
-  EXPECT_EQ(k.work.rays, 6 * 61 * e.ticks);
+  EXPECT_EQ(k.work.rays, std::llround((6.0 - k.again) * 61.0 * static_cast<double>(e.ticks)));
+  EXPECT_LT(k.again, 1.0) << "they drive";
   EXPECT_EQ(k.kernels, std::vector<std::string>{"laser"});
   std::size_t sum = 0;
   for (const gpu::Held& h : k.tables) sum += h.bytes;
   EXPECT_EQ(k.bytes, sum);
   EXPECT_TRUE(std::any_of(k.tables.begin(), k.tables.end(), [](const auto& h) { return h.name == "sector lists"; }));
   EXPECT_GT(e.resident, 1u << 20);
+}
+
+/// A tag that nobody carries about: its laser has the room to itself.
+TEST(Explanation, WhatIsGivenAgainIsCounted) {
+  world::World world;
+  scenes::add_room(world, {}, 20.0);
+  scenes::add_robot(world, {}, scenes::laser(61, M_PI, 4.0));
+  world.movers[0].is_tag = true;
+  const Explanation e = explain(world, device(), 1, 1);
+  ASSERT_EQ(e.kinds.size(), 1u);
+  EXPECT_EQ(e.kinds[0].readings, 1.0);
+  EXPECT_EQ(e.kinds[0].again, 1.0);
+  EXPECT_EQ(e.kinds[0].work.rays, 0u);
 }
 
 TEST(Explanation, WallsThatNoLaserMeetsAreNotCounted) {

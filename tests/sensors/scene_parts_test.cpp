@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "sensors/scene/clearance.h"
 #include "sensors/scene/depth.h"
 #include "sensors/scene/screen.h"
@@ -147,8 +148,8 @@ TEST(Sight, DistanceToASegment) {
 TEST(Depth, HidesOnlyWhatIsHidden) {
   const world::World world = scenes::cave(300, 16.0, 3);
   const Sight sight(world, 0.1, 8.0);
-  base::Workers workers(2);
-  const Depth depth(sight, workers, 20'000);
+  const Depth depth(sight, 20'000);
+  Sight::Nearby scratch;
   trial::Chance chance(4);
   int hidden = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -157,7 +158,7 @@ TEST(Depth, HidesOnlyWhatIsHidden) {
     const double radius = chance.between(0.05, 0.3);
     const double origin_radius = i % 2 ? chance.between(0.0, 0.2) : 0.0;
     if (length(p - origin) < radius + origin_radius + 0.01) continue;
-    if (!depth.hides(origin, origin_radius, p, radius)) continue;
+    if (!depth.hides(origin, origin_radius, p, radius, scratch)) continue;
     ++hidden;
     for (int k = 0; k < 6; ++k) {
       const Vec2 from = origin + base::rotate(chance.between(0.0, 7.0), {origin_radius, 0.0});
@@ -169,6 +170,32 @@ TEST(Depth, HidesOnlyWhatIsHidden) {
     }
   }
   EXPECT_GT(hidden, 100);
+}
+
+/// Points are measured when they are asked for: in whatever order, by however many threads.
+TEST(Depth, WhoeverAsksFirst) {
+  const world::World world = scenes::cave(300, 16.0, 3);
+  const Sight sight(world, 0.1, 8.0);
+  constexpr std::size_t kAsked = 2000;
+  const auto answers = [&](unsigned threads, bool backwards) {
+    const Depth depth(sight, 20'000);
+    base::Workers workers(threads);
+    std::vector<Sight::Nearby> scratch(threads);
+    std::vector<char> hidden(kAsked);
+    workers.run(kAsked, 8, [&](std::size_t first, std::size_t last, unsigned thread) {
+      for (std::size_t k = first; k < last; ++k) {
+        const std::size_t i = backwards ? kAsked - 1 - k : k;
+        trial::Chance chance(i);
+        const Vec2 origin = chance.in_square(7.5);
+        hidden[i] = depth.hides(origin, 0.0, chance.in_square(7.5), 0.2, scratch[thread]);
+      }
+    });
+    return hidden;
+  };
+  const std::vector<char> once = answers(1, false);
+  EXPECT_GT(std::count(once.begin(), once.end(), 1), 100);
+  EXPECT_EQ(answers(1, true), once);
+  EXPECT_EQ(answers(4, true), once);
 }
 
 }  // namespace

@@ -1,0 +1,57 @@
+#include "farm/moves.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+namespace sf::farm {
+
+namespace {
+
+/// To the bit: the sign of a zero may show in a reading.
+bool same(const base::Pose& p, const base::Pose& q) {
+  using Bits = std::array<std::uint64_t, 4>;
+  static_assert(sizeof(base::Pose) == sizeof(Bits));
+  return std::bit_cast<Bits>(p) == std::bit_cast<Bits>(q);
+}
+
+}  // namespace
+
+Moves::Moves(const world::World& world) : world_(world), flags_(world.movers.size(), false) {
+  moved_.reserve(world.movers.size());
+  places_.reserve(2 * world.movers.size());
+  for (const world::Mover& mover : world.movers) largest_ = std::max(largest_, mover.radius);
+}
+
+void Moves::begin() {
+  for (const std::uint32_t mover : moved_) flags_[mover] = false;
+  moved_.clear();
+  places_.clear();
+  magnets_ = false;
+  sorted_ = true;
+}
+
+void Moves::add(std::uint32_t mover, const base::Pose& from, const base::Pose& to) {
+  if (same(from, to)) return;
+  const world::Mover& who = world_.movers[mover];
+  moved_.push_back(mover);
+  flags_[mover] = true;
+  magnets_ = magnets_ || !who.magnets.empty();
+  if (who.body.empty()) return;
+  places_.push_back({from.x, from.y, who.radius});
+  places_.push_back({to.x, to.y, who.radius});
+  sorted_ = false;
+}
+
+bool Moves::within(base::Vec2 p, double reach) {
+  if (!sorted_) std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) { return a.x < b.x; });
+  sorted_ = true;
+  const double most = reach + largest_;
+  auto at = std::lower_bound(places_.begin(), places_.end(), p.x - most,
+                             [](const Place& place, double x) { return place.x < x; });
+  for (; at != places_.end() && at->x <= p.x + most; ++at)
+    if (base::length(base::Vec2{at->x, at->y} - p) <= reach + at->radius) return true;
+  return false;
+}
+
+}  // namespace sf::farm

@@ -1,0 +1,81 @@
+#include "farm/station.h"
+
+#include "farm/schedule.h"
+
+namespace sf::farm {
+
+Station::Station(const sensors::Site& site, const sensors::Roster::Group& g)
+    : group(&g), instruments(g.kind->make(site)), steady(g.rows, site.noise), begun(g.rows.size(), 0) {
+  due.reserve(g.rows.size());
+  looking.reserve(g.rows.size());
+}
+
+void Station::find_due(std::int64_t now, std::span<const std::uint32_t> heard) {
+  due.clear();
+  const std::uint32_t kind = 1u << group->kind->id;
+  for (std::uint32_t i = 0; i < begun.size(); ++i) {
+    const sensors::SensorRow& row = group->rows[i];
+    const std::uint64_t should = readings_begun(now, row.rate, row.phase);
+    if (should <= begun[i]) continue;
+    begun[i] = should;
+    // A sensor's readings are numbered by when they are due: one that nobody heard leaves a gap, and its noise to
+    // itself.
+    if ((heard[row.mover] & kind) != 0) due.push_back({i, should - 1});
+  }
+}
+
+void Station::split(bool again) {
+  looking.clear();
+  for (const sensors::Due& d : due)
+    if (!again || !steady.keeps(d.row)) looking.push_back(d);
+}
+
+bool Station::prepare(std::span<const base::Pose> poses) {
+  const bool nothing = looking.empty();
+  if (nothing && at_rest) return false;
+  at_rest = nothing;
+  in_use = true;
+  told = false;
+  return instruments->prepare(looking, poses);
+}
+
+void Station::copies(gpu::Batch& batch) {
+  if (told) return;
+  instruments->copies(batch);
+  told = at_rest;
+}
+
+std::size_t Station::collect(std::int64_t now, std::span<const base::Pose> poses,
+                             std::vector<base::ReadingBlock>& blocks) {
+  const std::size_t first = blocks.size();
+  instruments->collect(blocks);
+  // Readings that are given again take their places among those just taken, from the last one on.
+  const std::size_t again = due.size() - looking.size();
+  blocks.resize(first + due.size());
+  std::size_t fresh = looking.size();
+  for (std::size_t i = due.size(); again > 0 && i-- > 0;) {
+    const bool looked = fresh > 0 && looking[fresh - 1].row == due[i].row;
+    blocks[first + i] = looked ? blocks[first + --fresh] : steady.reading(due[i].row);
+  }
+  for (std::size_t i = 0; i < due.size(); ++i) {
+    base::ReadingBlock& block = blocks[first + i];
+    block.time = now;
+    block.sequence = static_cast<std::uint32_t>(due[i].sequence);
+    block.X_WM = poses[block.mover];
+  }
+  return again;
+}
+
+void Station::note(std::span<const base::ReadingBlock> blocks) {
+  std::size_t i = blocks.size() - due.size();
+  std::size_t next = 0;
+  for (const sensors::Due& d : due) {
+    if (next < looking.size() && looking[next].row == d.row) {
+      steady.taken(d.row, blocks[i]);
+      ++next;
+    }
+    ++i;
+  }
+}
+
+}  // namespace sf::farm

@@ -1,0 +1,36 @@
+// What the program loads: drawing libraries only where something is drawn.
+
+#include <gtest/gtest.h>
+
+#include "tests/apps/program.h"
+
+namespace sf {
+namespace {
+
+/// What the dynamic linker says of every library it loads, at the start and later.
+std::string loaded_by(const Words& arguments) {
+  const Outcome outcome = run_program(arguments, {{"LD_DEBUG", "files"}});
+  EXPECT_EQ(outcome.code, 0) << outcome.err.substr(0, 2000);
+  EXPECT_NE(outcome.err.find("libvulkan.so"), std::string::npos) << "the linker says nothing";
+  return outcome.err;
+}
+
+TEST(Loading, WhoDrawsNothingLoadsNothingToDrawWith) {
+  const std::string world = our_world("rooms.world");
+  for (const Words& arguments : {Words{"--version"}, Words{"check", world}, Words{"run", world, "--duration", "0.3"},
+                                 Words{"sense", world}, Words{"explain", world}}) {
+    const std::string said = loaded_by(arguments);
+    for (const char* library : {"libvtk", "libfreetype", "libpng", "sensorfarm_pen"})
+      EXPECT_EQ(said.find(library), std::string::npos) << arguments[0] << " loads " << library;
+  }
+}
+
+TEST(Loading, WhoDrawsDoes) {
+  const Folder folder;
+  const std::string said = loaded_by({"draw", our_world("rooms.world"), "-o", folder.path("rooms.png")});
+  EXPECT_NE(said.find("sensorfarm_pen.so"), std::string::npos);
+  EXPECT_NE(said.find("libvtkIOImage"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace sf
