@@ -1,6 +1,7 @@
 // Lists of walls: which cell each sensor stands in, and the cells that have no lists yet.
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <tuple>
@@ -65,9 +66,10 @@ void Scene::build_missing() {
   const ListTables out = tables();
   ListHeader* const headers = headers_->host<ListHeader>().data();
   std::uint32_t longest = 0;
+  std::atomic<bool> full = false;  // the rest waits for more room
   workers_.run(missing_.size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
     Scratch& scratch = *scratch_[thread];
-    for (std::size_t i = first; i < last; ++i) {
+    for (std::size_t i = first; i < last && !full; ++i) {
       const CellKey& key = missing_[i];
       const FamilyTables& family = *families_[static_cast<std::size_t>(key.family / 2)];
       collect(*family.sight, family.shape, centre_of(family, key), key.family % 2 == 1, scratch.nearby, scratch.lists);
@@ -78,7 +80,8 @@ void Scene::build_missing() {
         slot = longest > kMostWallChunks ? CellPool::kNone : pool_.insert(key, scratch.lists.all_chunks());
         if (slot != CellPool::kNone) fresh_slots_.push_back(slot);
       }
-      if (slot == CellPool::kNone) continue;
+      full = slot == CellPool::kNone;
+      if (full) continue;
       uniform_[slot] = is_uniform(family, centre_of(family, key), scratch.nearby) ? 1 : 0;
       write_lists(scratch.lists, pool_.first_chunk(slot), out, headers + std::size_t{SF_SECTORS} * slot);
     }
