@@ -22,5 +22,6 @@ int test_scenarios(const Options& options);
 int map(const Options& options);
 int verify(const Options& options);
 int explain(const Options& options);
+int selftest(const Options& options);
 
 }  // namespace sf::apps

@@ -42,6 +42,8 @@ int dispatch(const sf::apps::Options& options) {
       return sf::apps::verify(options);
     case Command::explain:
       return sf::apps::explain(options);
+    case Command::selftest:
+      return sf::apps::selftest(options);
     case Command::map:
       return sf::apps::map(options);
   }

@@ -32,7 +32,8 @@ enum class Command {
   experiment,
   test,
   verify,
-  explain
+  explain,
+  selftest
 };
 
 struct Options {
@@ -63,6 +64,8 @@ struct Options {
   std::string experiments;                ///< folder of their files; empty: found
   std::vector<std::string> scenarios;     ///< files, for `test`
   std::string junit;                      ///< file; empty: none
+
+  std::vector<std::string> cases;  ///< of `selftest`, or groups of them; empty: all
 
   std::uint64_t sample = 0;  ///< scans that `verify` casts again in plain C++; 0: all
   std::uint32_t robots = 0;  ///< clones; 0: the world's own
