@@ -23,5 +23,6 @@ int map(const Options& options);
 int verify(const Options& options);
 int explain(const Options& options);
 int tradeoff(const Options& options);
+int selftest(const Options& options);
 
 }  // namespace sf::apps

@@ -7,6 +7,7 @@
 #include "apps/control_facts.h"
 #include "apps/post.h"
 #include "base/reading.h"
+#include "extremes/case.h"
 #include "farm/farm.h"
 #include "gpu/device.h"
 #include "netio/inbox.h"
@@ -44,6 +45,17 @@ struct RunFacts {
   std::uint64_t recorded_bytes = 0;  ///< its size
 };
 
+/// What came of `selftest`.
+struct SelfTest {
+  gpu::DeviceFacts device;
+  std::vector<std::pair<const extremes::Case*, extremes::Outcome>> cases;  ///< that were run
+  std::size_t asked = 0;                                                   ///< to be run; more, where interrupted
+  double seconds = 0.0;                                                    ///< [s] of all of them
+
+  std::size_t passed() const;
+  bool sound() const { return !cases.empty() && passed() == cases.size(); }
+};
+
 /// Says on standard error what a recording lacks.
 void tell_damage(const record::Recording& recording);
 
@@ -73,6 +85,8 @@ std::string text_of(const scenarios::Explanation& explanation);
 std::string json_of(const scenarios::Explanation& explanation);
 std::string text_of(const std::vector<scenarios::Grade>& grades);
 std::string json_of(const std::vector<scenarios::Grade>& grades, const scenarios::Wish& wish);
+std::string text_of(const SelfTest& test);
+std::string json_of(const SelfTest& test);
 /// Where robot and sensor stood, in one line for people.
 std::string place_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading);
 

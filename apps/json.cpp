@@ -279,6 +279,27 @@ std::string json_of(const scenarios::Verification& verification) {
   return print(json);
 }
 
+std::string json_of(const SelfTest& test) {
+  Json json{{"device", test.device.name}, {"software", test.device.software},
+            {"asked", test.asked},        {"run", test.cases.size()},
+            {"passed", test.passed()},    {"sound", test.sound()},
+            {"seconds", test.seconds},    {"cases", Json::array()}};
+  for (const auto& [c, o] : test.cases)
+    json["cases"].push_back({{"group", c->group},
+                             {"case", c->name},
+                             {"why", c->why},
+                             {"ok", o.passed()},
+                             {"checks", o.checks},
+                             {"failed", o.failed},
+                             {"error", o.error},
+                             {"allowed", o.allowed},
+                             {"unit", c->unit},
+                             {"failure", o.failure},
+                             {"notes", o.notes},
+                             {"seconds", o.seconds}});
+  return print(json);
+}
+
 std::string json_of(const scenarios::Explanation& e) {
   Json json{
       {"ticks", e.ticks},       {"build_s", e.build},     {"first_tick_s", e.first},      {"silent_tick_s", e.silent},

@@ -44,6 +44,8 @@ int dispatch(const sf::apps::Options& options) {
       return sf::apps::explain(options);
     case Command::tradeoff:
       return sf::apps::tradeoff(options);
+    case Command::selftest:
+      return sf::apps::selftest(options);
     case Command::map:
       return sf::apps::map(options);
   }

@@ -34,7 +34,8 @@ enum class Command {
   test,
   verify,
   explain,
-  tradeoff
+  tradeoff,
+  selftest
 };
 
 struct Options {
@@ -68,6 +69,8 @@ struct Options {
 
   scenarios::Wish wish;    ///< for `tradeoff`'s advice, and for `automatic`
   bool automatic = false;  ///< measure first, and take the modes that the wish comes to
+
+  std::vector<std::string> cases;  ///< of `selftest`, or groups of them; empty: all
 
   std::uint64_t sample = 0;  ///< scans that `verify` casts again in plain C++; 0: all
   std::uint32_t robots = 0;  ///< clones; 0: the world's own

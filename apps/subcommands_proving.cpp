@@ -1,10 +1,12 @@
-// Subcommands that prove: experiments and scenarios.
+// Subcommands that prove: experiments, scenarios, and the farm itself.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "apps/arguments.h"
 #include "apps/subcommands.h"
 #include "apps/wording.h"
+#include "extremes/suite.h"
 #include "scenarios/experiment.h"
 
 namespace sf::apps {
@@ -83,6 +85,31 @@ void add_tradeoff(CLI::App& app, Options& o) {
   sub->callback([&o] { o.command = Command::tradeoff; });
 }
 
+bool is_case_or_group(const std::string& name) {
+  const auto all = extremes::cases();
+  return std::any_of(all.begin(), all.end(),
+                     [&](const extremes::Case& c) { return c.name == name || c.group == name; });
+}
+
+void add_selftest(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand(
+      "selftest",
+      "Try the farm at the ends of its range on this machine: worlds, beams, magnets, times, numbers (exit 1 when an "
+      "answer is wrong)");
+  auto* list = sub->add_flag("--list", o.list, "Name all cases, each with its answer");
+  sub->add_option("case", o.cases, "Cases or groups of them (default: all)")
+      ->check([](const std::string& name) {
+        return is_case_or_group(name)
+                   ? std::string()
+                   : "'" + name + "' is neither a case nor a group; `sensorfarm selftest --list` names them";
+      })
+      ->type_name("NAME")
+      ->excludes(list);
+  add_json(*sub, o);
+  add_device(*sub, o);
+  sub->callback([&o] { o.command = Command::selftest; });
+}
+
 }  // namespace
 
 void add_proving(CLI::App& app, Options& o) {
@@ -90,6 +117,7 @@ void add_proving(CLI::App& app, Options& o) {
   add_test(app, o);
   add_verify(app, o);
   add_tradeoff(app, o);
+  add_selftest(app, o);
 }
 
 }  // namespace sf::apps

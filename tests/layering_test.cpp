@@ -31,8 +31,10 @@ const std::map<std::string, Rooms> kMayInclude{
     {"farm", {"sensors", "maps", "robots", "world", "gpu", "base"}},
     {"record", {"base"}},
     {"netio", {"base"}},
+    {"extremes", {"netio", "record", "farm", "sensors", "maps", "robots", "world", "gpu", "base"}},
     {"viz", {"farm", "record", "sensors", "maps", "robots", "world", "gpu", "base"}},
-    {"scenarios", {"viz", "netio", "record", "farm", "control", "sensors", "maps", "robots", "world", "gpu", "base"}},
+    {"scenarios",
+     {"extremes", "viz", "netio", "record", "farm", "control", "sensors", "maps", "robots", "world", "gpu", "base"}},
 };
 const Rooms kMayIncludeAnything{"apps", "bench", "tests"};
 

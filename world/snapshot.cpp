@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "base/bytes.h"
 #include "base/error.h"
@@ -44,6 +45,47 @@ void check_links(const World& world) {
   good &= std::all_of(world.emitters.begin(), world.emitters.end(), known);
   good &= std::all_of(world.drops.begin(), world.drops.end(), known);
   if (!good) refuse("a row names a row that is not there");
+}
+
+bool finite(std::initializer_list<double> numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
+}
+bool finite(const Pose& X) { return finite({X.x, X.y, X.z, X.yaw}); }
+bool finite(const Segment& s) { return finite({s.a.x, s.a.y, s.b.x, s.b.y, s.z_min, s.z_max}); }
+bool finite(const Magnet& m) { return finite({m.p.x, m.p.y, m.z, m.moment, m.radius}); }
+bool finite(const Laser& l) {
+  return finite(l.X_MS) && finite({l.fov, l.range_min, l.range_max, l.rate, l.phase, l.latency, l.noise.range_sigma,
+                                   l.noise.range_proportional, l.noise.angle_sigma});
+}
+bool finite(const Sensor& s) {
+  return finite(s.X_MS) && finite({s.height, s.metres, s.radians}) &&
+         std::all_of(s.settings.begin(), s.settings.end(), [](const Setting& setting) {
+           return std::all_of(setting.numbers.begin(), setting.numbers.end(),
+                              [](double n) { return std::isfinite(n); });
+         });
+}
+bool finite(const Stripe& stripe) {
+  return finite({stripe.width}) && std::all_of(stripe.line.begin(), stripe.line.end(), [](Vec2 p) {
+           return finite({p.x, p.y});
+         });
+}
+bool finite(const Mover& mover);
+
+template <class Row>
+bool all_finite(const std::vector<Row>& rows) {
+  return std::all_of(rows.begin(), rows.end(), [](const Row& row) { return finite(row); });
+}
+
+bool finite(const Mover& m) {
+  return finite(m.X_WM) && finite({m.radius}) && all_finite(m.body) && all_finite(m.lasers) && all_finite(m.sensors) &&
+         all_finite(m.magnets);
+}
+
+// What is measured must be numbers: world files are read so, and a recording's world may come from anywhere.
+void check_numbers(const World& world) {
+  const bool good = all_finite(world.walls) && all_finite(world.stripes) && all_finite(world.magnets) &&
+                    all_finite(world.movers) && finite({world.road_resolution, world.magnet_cutoff, world.interval});
+  if (!good) refuse("a number in it is infinite, or none");
 }
 
 // What world.h promises of every row, and what reads a world does not look at again.
@@ -148,6 +190,7 @@ World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   if (!in.good() || in.left() != 0) refuse("cut short, or longer than it says");
   check_links(world);
   check_rows(world);
+  check_numbers(world);
   finish(world);
   if (world.hash != hash) refuse("its content does not have the hash it was saved with");
   return world;

@@ -30,25 +30,42 @@ bool fair_neighbour(const world::Segment& s, const world::Segment& t) {
   return false;
 }
 
+/// [m] where the search for neighbours begins: `cap` or a wall's usual length; where walls are dense, what holds a few.
+double first_radius(const std::vector<world::Segment>& walls, double cap) {
+  if (walls.empty()) return cap;
+  double total = 0.0;
+  Vec2 low = walls[0].a, high = walls[0].a;
+  for (const world::Segment& s : walls) {
+    total += length(s.b - s.a);
+    low = {std::min({low.x, s.a.x, s.b.x}), std::min({low.y, s.a.y, s.b.y})};
+    high = {std::max({high.x, s.a.x, s.b.x}), std::max({high.y, s.a.y, s.b.y})};
+  }
+  const auto count = static_cast<double>(walls.size());
+  const double dense = std::sqrt(4.0 * (high.x - low.x) * (high.y - low.y) / count);
+  return std::max(total / count, std::min(cap, dense));
+}
+
 }  // namespace
 
 std::vector<float> wall_clearances(const std::vector<world::Segment>& walls, double cap) {
-  double total = 0.0;
-  for (const world::Segment& s : walls) total += length(s.b - s.a);
-  const double typical = walls.empty() ? 1.0 : total / static_cast<double>(walls.size());
-  const Sight all = Sight::of_all_heights(walls, 4.0 * std::max(typical, cap));
+  const double first = first_radius(walls, cap);
+  const Sight all = Sight::of_all_heights(walls, 4.0 * first);
   std::vector<float> clearances(walls.size(), 0.0f);
   Sight::Nearby nearby;
   for (const SightSegment& sight : all.segments()) {
     const world::Segment& s = walls[sight.row];
     const Vec2 middle = 0.5 * (s.a + s.b);
+    // Where walls are dense the nearest is found among few: what lies within the radius has all been seen.
     double least = cap;
-    all.near(middle, 0.5 * length(s.b - s.a) + cap, nearby);
-    for (const std::uint32_t i : nearby.found) {
-      const std::uint32_t row = all.segments()[i].row;
-      if (row == sight.row || fair_neighbour(s, walls[row])) continue;
-      least = std::min(least, separation(s, walls[row]));
-      if (least == 0.0) break;
+    for (double radius = std::min(first, cap);; radius = std::min(4.0 * radius, cap)) {
+      all.near(middle, 0.5 * length(s.b - s.a) + radius, nearby);
+      for (const std::uint32_t i : nearby.found) {
+        const std::uint32_t row = all.segments()[i].row;
+        if (row == sight.row || fair_neighbour(s, walls[row])) continue;
+        least = std::min(least, separation(s, walls[row]));
+        if (least == 0.0) break;
+      }
+      if (least <= radius) break;
     }
     clearances[sight.row] = static_cast<float>(0.99 * least);
   }

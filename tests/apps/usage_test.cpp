@@ -12,7 +12,7 @@ namespace sf {
 namespace {
 
 const Words kSubcommands{"devices", "check", "draw", "sense",  "run",   "serve",
-                         "robot",   "start", "plot", "listen", "field", "map"};
+                         "robot",   "start", "plot", "listen", "field", "map", "selftest"};
 
 struct Wrong {
   Words arguments;

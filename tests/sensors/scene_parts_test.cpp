@@ -87,6 +87,55 @@ TEST(Clearance, ByHand) {
   EXPECT_LT(of_base(wall({1, 1e-12}, {1, 1})), 1e-11f) << "an end that is almost shared";
 }
 
+/// What every pair measured would say, to the bit.
+void expect_measured(const std::vector<world::Segment>& walls, double cap, std::size_t stride) {
+  const auto clearances = wall_clearances(walls, cap);
+  for (std::size_t i = 0; i < walls.size(); i += stride) {
+    double least = cap;
+    for (std::size_t j = 0; j < walls.size(); ++j) {
+      if (i == j) continue;
+      const world::Segment &s = walls[i], &t = walls[j];
+      least = std::min({least, world::distance(s.a, t.a, t.b), world::distance(s.b, t.a, t.b),
+                        world::distance(t.a, s.a, s.b), world::distance(t.b, s.a, s.b)});
+    }
+    EXPECT_EQ(clearances[i], static_cast<float>(0.99 * least)) << "wall " << i << " of " << walls.size();
+  }
+}
+
+/// `side` x `side` short walls, none of which touch.
+std::vector<world::Segment> lattice(int side, double pitch) {
+  std::vector<world::Segment> walls;
+  trial::Chance chance(4);
+  for (int i = 0; i < side * side; ++i) {
+    const Vec2 p{pitch * (i % side), pitch * (i / side)};
+    walls.push_back(wall(p, p + Vec2{0.5 * pitch, chance.between(-0.3, 0.3) * pitch}));
+  }
+  return walls;
+}
+
+TEST(Clearance, DenseWallsAreMeasuredAsSparseOnes) {
+  for (const double pitch : {1e-4, 2e-3, 0.06, 1.0}) {
+    std::vector<world::Segment> walls = lattice(30, pitch);
+    walls.push_back(wall({-100.0, -2.0 * pitch}, {100.0, -2.5 * pitch}));
+    for (const double cap : {0.05, 1e-3}) expect_measured(walls, cap, 7);
+  }
+}
+
+/// The search begins near by where most walls are dense: what is far from all must look on.
+TEST(Clearance, LonelyWallsBesideDenseOnes) {
+  std::vector<world::Segment> walls = lattice(100, 0.002);
+  const std::size_t first = walls.size();
+  for (const Vec2 p : {Vec2{0.6, 0.6}, Vec2{0.9, 0.6}, Vec2{1.0, 1.0}, Vec2{0.3, 0.1}})
+    walls.push_back(wall(p, p + Vec2{0.01, 0.02}));
+  std::rotate(walls.begin(), walls.begin() + static_cast<std::ptrdiff_t>(first), walls.end());
+  for (const double cap : {0.5, 0.05}) {
+    for (int lonely = 0; lonely < 4; ++lonely) {
+      expect_measured(walls, cap, walls.size());
+      std::rotate(walls.begin(), walls.begin() + 1, walls.end());
+    }
+  }
+}
+
 /// The definition, checked against distances of many points.
 TEST(Clearance, NothingComesNearer) {
   const world::World world = scenes::boxes(30, 6.0, 3);

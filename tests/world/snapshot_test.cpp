@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -71,6 +72,27 @@ TEST(Snapshot, ARoundTripKeepsEverything) {
   EXPECT_EQ(again.movers.at(0).track, 0.258);
   EXPECT_EQ(again.movers.at(1).max_acceleration, HUGE_VAL);
   EXPECT_EQ(again.movers.at(1).lasers.at(0).color, world.movers.at(1).lasers.at(0).color);
+}
+
+/// Whatever is measured is a number, wherever a recording comes from; what may be without bound stays so.
+TEST(Snapshot, NumbersThatAreNoneAreRefused) {
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    World world = rooms();
+    world.movers[0].lasers.resize(1);
+    world.movers[0].body.push_back(world.walls[0]);
+    finish(world);
+    EXPECT_NO_THROW(from_snapshot(snapshot(world)));
+    for (double* const number : {&world.walls[0].a.x, &world.walls[1].z_max, &world.movers[0].X_WM.yaw,
+                                 &world.movers[0].body[0].b.y, &world.movers[0].lasers[0].range_max, &world.interval}) {
+      const double good = std::exchange(*number, bad);
+      finish(world);
+      EXPECT_THROW(from_snapshot(snapshot(world)), base::InputError);
+      *number = good;
+    }
+    world.movers[0].max_acceleration = HUGE_VAL;
+    finish(world);
+    EXPECT_NO_THROW(from_snapshot(snapshot(world)));
+  }
 }
 
 World street() {

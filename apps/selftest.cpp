@@ -1,0 +1,92 @@
+// `selftest`: the farm at the ends of its range, on this machine.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "apps/commands.h"
+#include "apps/facts.h"
+#include "apps/progress.h"
+#include "apps/stop.h"
+#include "apps/wording.h"
+#include "extremes/suite.h"
+
+namespace sf::apps {
+
+namespace {
+
+using extremes::Case;
+using extremes::Outcome;
+
+std::vector<const Case*> chosen(const std::vector<std::string>& names) {
+  std::vector<const Case*> some;
+  for (const Case& c : extremes::cases()) {
+    const bool asked =
+        std::any_of(names.begin(), names.end(), [&](const auto& n) { return n == c.name || n == c.group; });
+    if (names.empty() || asked) some.push_back(&c);
+  }
+  return some;
+}
+
+int list_all() {
+  for (const Case& c : extremes::cases())
+    std::fputs(fmt::format("{:<9} {:<27} {}\n", c.group, c.name, c.why).c_str(), stdout);
+  return 0;
+}
+
+std::string error_of(const Case& c, const Outcome& o) {
+  if (c.unit.empty()) return "right or wrong";
+  if (o.allowed == 0.0 && o.error == 0.0) return "0: the same to the bit";
+  return fmt::format("{:.2g} of {:.2g} {}", o.error, o.allowed, c.unit);
+}
+
+std::string line_of(const Case& c, const Outcome& o) {
+  std::string text = fmt::format("{:<9} {:<27} {:>8}  {:<30} {}\n", c.group, c.name, o.checks, error_of(c, o),
+                                 o.passed() ? "ok" : "FAILED");
+  if (!o.passed()) text += fmt::format("{:10}{} of {} checks failed; first: {}\n", "", o.failed, o.checks, o.failure);
+  for (const std::string& note : o.notes) text += fmt::format("{:10}{}\n", "", note);
+  return text;
+}
+
+}  // namespace
+
+std::size_t SelfTest::passed() const {
+  return static_cast<std::size_t>(
+      std::count_if(cases.begin(), cases.end(), [](const auto& c) { return c.second.passed(); }));
+}
+
+std::string text_of(const SelfTest& test) {
+  std::string text =
+      fmt::format("{:<9} {:<27} {:>8}  {:<30}\n", "group", "case", "checks", "closest call: error of allowed");
+  std::uint64_t checks = 0;
+  for (const auto& [c, o] : test.cases) {
+    text += line_of(*c, o);
+    checks += o.checks;
+  }
+  const std::string rest =
+      test.cases.size() < test.asked ? fmt::format("; interrupted, {} not run", test.asked - test.cases.size()) : "";
+  return text + fmt::format("{} of {} passed on {}: {} checks in {:.1f} s{}\n", test.passed(),
+                            counted(test.cases.size(), "case"), test.device.name, checks, test.seconds, rest);
+}
+
+int selftest(const Options& options) {
+  if (options.list) return list_all();
+  gpu::Device device(options.device);
+  extremes::Lab lab(device);
+  const std::vector<const Case*> some = chosen(options.cases);
+  SelfTest test{.device = device.facts(), .asked = some.size()};
+  catch_stop_signals();
+  {
+    Progress progress("selftest");
+    for (std::size_t i = 0; i < some.size() && !stop_requested(); ++i) {
+      progress.show(static_cast<double>(i) / static_cast<double>(some.size()), std::string(some[i]->name));
+      test.cases.emplace_back(some[i], extremes::run(*some[i], lab));
+      test.seconds += test.cases.back().second.seconds;
+    }
+  }
+  std::fputs((options.json ? json_of(test) : text_of(test)).c_str(), stdout);
+  return test.sound() ? 0 : 1;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,80 @@
+#include "extremes/exact.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sf::extremes {
+
+namespace {
+
+/// A wall's ends that another wall shares, on the other side of the beam, close the gap between them.
+bool is_closed(std::span<const world::Segment> surfaces, const Beam& beam, base::Vec2 end, Real other_side) {
+  return std::any_of(surfaces.begin(), surfaces.end(), [&](const world::Segment& s) {
+    for (const auto& [near, far] : {std::pair{s.a, s.b}, std::pair{s.b, s.a}}) {
+      if (near.x != end.x || near.y != end.y) continue;
+      const Real side = beam.x * (Real{far.y} - beam.origin.y) - beam.y * (Real{far.x} - beam.origin.x);
+      if (side * other_side < 0) return true;
+    }
+    return false;
+  });
+}
+
+}  // namespace
+
+Beam beam_of(const base::Pose& X_WS, const world::Laser& laser, std::uint32_t sample) {
+  const Real part = laser.samples < 2 ? 0.5L : static_cast<Real>(sample) / static_cast<Real>(laser.samples - 1);
+  const Real bearing = static_cast<Real>(laser.fov) * (part - 0.5L);
+  const Real yaw = X_WS.yaw, c = std::cos(yaw), s = std::sin(yaw), d = std::cos(bearing), e = std::sin(bearing);
+  return {{X_WS.x, X_WS.y}, c * d - s * e, s * d + c * e};
+}
+
+Meeting first_met(std::span<const world::Segment> surfaces, const Beam& beam, double range_max) {
+  Meeting best{.range = range_max};
+  const auto side_of = [&](base::Vec2 p) {
+    return beam.x * (Real{p.y} - beam.origin.y) - beam.y * (Real{p.x} - beam.origin.x);
+  };
+  std::vector<std::pair<Real, const world::Segment*>> doubtful;
+  for (const world::Segment& s : surfaces) {
+    const Real side_a = side_of(s.a), side_b = side_of(s.b);
+    const Real ex = Real{s.b.x} - s.a.x, ey = Real{s.b.y} - s.a.y;
+    const Real wx = Real{s.a.x} - beam.origin.x, wy = Real{s.a.y} - beam.origin.y;
+    const Real below = ex * beam.y - ey * beam.x;
+    if (below == 0) continue;
+    const Real t = (ex * wy - ey * wx) / below;
+    const Real slack = 4e-15L * (std::hypot(wx, wy) + std::hypot(ex, ey));
+    if (t >= 0 && std::min(std::fabs(side_a), std::fabs(side_b)) <= slack) doubtful.push_back({t, &s});
+    const bool crosses = (side_a >= 0 && side_b <= 0) || (side_a <= 0 && side_b >= 0);
+    if (!crosses || t < 0 || t >= best.range) continue;
+    best = {t, s.model, std::fabs(below) / std::hypot(ex, ey), std::hypot(wx, wy)};
+  }
+  for (const auto& [t, s] : doubtful) {
+    if (t > best.range * (1 + 1e-12L)) continue;
+    const Real side_a = side_of(s->a), side_b = side_of(s->b);
+    const bool a_is_near = std::fabs(side_a) < std::fabs(side_b);
+    if (!is_closed(surfaces, beam, a_is_near ? s->a : s->b, a_is_near ? side_b : side_a)) best.by_a_hair = true;
+  }
+  return best;
+}
+
+double rounding(const Meeting& m) { return static_cast<double>(2e-15L * (m.arm + m.range) / m.sine); }
+
+void check_scan(const world::World& world, const base::ReadingBlock& reading, Checks& checks, std::string_view what,
+                std::uint32_t stride) {
+  const world::Laser& laser = world.movers[reading.mover].lasers[reading.sensor];
+  checks.equal(reading.values.size(), laser.samples, fmt::format("{}: samples", what));
+  std::uint64_t hairs = 0;
+  for (std::uint32_t i = 0; i < reading.values.size(); i += stride) {
+    const Meeting met = first_met(world.walls, beam_of(reading.X_WS, laser, i), laser.range_max);
+    if (met.by_a_hair) {
+      ++hairs;
+    } else if (met.model == base::kNoHit) {
+      checks.same(reading.values[i], laser.range_max, what, i);
+    } else {
+      checks.near(reading.values[i], met.range, rounding(met), what, i);
+    }
+  }
+  if (hairs > 0) checks.note(fmt::format("{}: {} beams pass an end within rounding and were not judged", what, hairs));
+}
+
+}  // namespace sf::extremes

@@ -1,0 +1,81 @@
+// Numbers of samples, fields of view and headings.
+
+#include <fmt/format.h>
+
+#include "extremes/exact.h"
+#include "extremes/suite.h"
+
+namespace sf::extremes {
+
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+world::World room_with_blocks() {
+  world::World world;
+  add_room(world, {-5.0, -4.0}, 9.0);
+  add_block(world, {1.0, 1.0}, {1.5, 3.0});
+  add_outline(world, {{-2.0, -1.0}, {-1.0, -2.5}, {-1.5, -0.5}});
+  return world;
+}
+
+void look(Lab& lab, Checks& checks, std::span<const std::uint32_t> samples, std::uint32_t stride) {
+  world::World world = room_with_blocks();
+  for (const std::uint32_t count : samples)
+    for (const double fov : {0.0, 1e-6, 1.0, 90.0, 180.0, 270.0, 360.0})
+      add_eye(world, {0.21, -0.13, 0.0, 0.5}, laser(count, fov * kDegree, 20.0));
+  const Look look = lab.look(world);
+  for (const base::ReadingBlock& r : look.readings) {
+    const world::Laser& laser = look.world->movers[r.mover].lasers[0];
+    const auto what = fmt::format("{} samples in {:g} degrees", laser.samples, laser.fov / kDegree);
+    check_scan(*look.world, r, checks, what, stride);
+    if (laser.fov == 0.0)
+      for (const double range : r.values) checks.same(range, r.values[0], what + ": all beams are one");
+  }
+}
+
+void few_and_many(Lab& lab, Checks& checks) {
+  constexpr std::uint32_t kCounts[] = {1, 2, 3, 4, 5, 7, 8, 9, 31, 64, 361, 1001};
+  look(lab, checks, kCounts, 1);
+}
+
+void a_hundred_thousand(Lab& lab, Checks& checks) {
+  constexpr std::uint32_t kCounts[] = {100'000};
+  look(lab, checks, kCounts, 7);
+}
+
+/// A whole turn: its first and last beams look backwards, both along one line.
+void whole_turn(Lab& lab, Checks& checks) {
+  world::World world = room_with_blocks();
+  for (const std::uint32_t count : {2u, 3u, 361u, 100'000u})
+    add_eye(world, {0.21, -0.13, 0.0, 0.0}, laser(count, 2.0 * M_PI, 20.0));
+  const Look look = lab.look(world);
+  for (const base::ReadingBlock& r : look.readings)
+    checks.near(r.values.front(), static_cast<Real>(r.values.back()), 2e-15 * (5.21 + 5.0), "first and last", r.mover);
+}
+
+/// The same beam at the same heading, given as one of many turns: the cosine of the double that was given counts.
+void headings(Lab& lab, Checks& checks) {
+  world::World world = room_with_blocks();
+  for (const double yaw : {0.0, -0.0, 0.5 * M_PI, M_PI, -M_PI, 100.0, -1234.5, 1e6, -1e6, 999'999.9, 1e-300, 5e-324})
+    add_eye(world, {0.21, -0.13, 0.0, yaw}, laser(61, 2.0, 20.0));
+  const Look look = lab.look(world);
+  for (const base::ReadingBlock& r : look.readings)
+    check_scan(*look.world, r, checks, fmt::format("heading {:g}", r.X_WS.yaw));
+}
+
+constexpr Case kCases[] = {
+    {"fans", "samples-and-widths", "m", "1 to 1 001 samples in 0, 1e-6 to 360 degrees: every beam within rounding",
+     few_and_many},
+    {"fans", "a-hundred-thousand-samples", "m",
+     "100 000 samples in 0, 1e-6 to 360 degrees: every 7th beam within rounding", a_hundred_thousand},
+    {"fans", "whole-turn", "m", "360 degrees: the first and the last beam are one line, within rounding", whole_turn},
+    {"fans", "headings", "m", "headings to 1e6 rad, 0 of both signs and denormal: of the double given, within rounding",
+     headings},
+};
+
+}  // namespace
+
+std::span<const Case> fans() { return kCases; }
+
+}  // namespace sf::extremes

@@ -1,0 +1,107 @@
+#include "extremes/lab.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::extremes {
+
+Look Lab::look(world::World world, farm::FarmOptions options) const {
+  // Room for little: it grows where a case needs more, and never changes a reading.
+  options.scene = {.pool_chunks = 1u << 12, .pool_cells = 1u << 7};
+  Look look;
+  look.world = std::make_unique<world::World>(std::move(world));
+  look.farm = std::make_unique<farm::Farm>(*look.world, device_, options);
+  look.farm->hear_all();
+  look.readings = look.farm->tick(0, {});
+  return look;
+}
+
+namespace {
+
+std::uint32_t add_model(world::World& world, const std::string& type) {
+  const auto row = static_cast<std::uint32_t>(world.models.size());
+  world.models.push_back({type + std::to_string(row), type});
+  return row;
+}
+
+world::Segment segment(Vec2 a, Vec2 b, std::uint32_t model) {
+  world::Segment s;
+  s.a = a;
+  s.b = b;
+  s.z_max = 1.0;
+  s.model = model;
+  return s;
+}
+
+}  // namespace
+
+void add_wall(world::World& world, Vec2 a, Vec2 b) {
+  world.walls.push_back(segment(a, b, add_model(world, "model")));
+  world.walls.back().solid_left = false;
+}
+
+void add_outline(world::World& world, const std::vector<Vec2>& corners) {
+  const std::uint32_t model = add_model(world, "model");
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    world.walls.push_back(segment(corners[i], corners[(i + 1) % corners.size()], model));
+}
+
+void add_room(world::World& world, Vec2 low, double width) {
+  const Vec2 high = low + Vec2{width, width};
+  const Vec2 thick{0.25 * width, 0.25 * width};
+  add_block(world, low - thick, high + thick);
+  add_outline(world, {low, {low.x, high.y}, high, {high.x, low.y}});
+}
+
+void add_block(world::World& world, Vec2 low, Vec2 high) {
+  add_outline(world, {low, {high.x, low.y}, high, {low.x, high.y}});
+}
+
+world::Laser laser(std::uint32_t samples, double fov, double range_max) {
+  world::Laser laser;
+  laser.name = "eye";
+  laser.X_MS.z = 0.1;
+  laser.samples = samples;
+  laser.fov = fov;
+  laser.range_max = range_max;
+  return laser;
+}
+
+std::uint32_t add_mover(world::World& world, const Pose& X_WM) {
+  world::Mover mover;
+  const auto row = static_cast<std::uint32_t>(world.movers.size());
+  mover.name = "robot" + std::to_string(row);
+  mover.id = row;
+  mover.model = add_model(world, "position");
+  mover.X_WM = X_WM;
+  world.models.back().mover = row;
+  world.movers.push_back(std::move(mover));
+  return row;
+}
+
+std::uint32_t add_eye(world::World& world, const Pose& X_WM, const world::Laser& laser) {
+  const std::uint32_t row = add_mover(world, X_WM);
+  world.movers[row].lasers.push_back(laser);
+  return row;
+}
+
+void add_body(world::World& world, std::uint32_t mover, double half) {
+  world::Mover& m = world.movers[mover];
+  const Vec2 corners[] = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
+  for (std::size_t i = 0; i < 4; ++i) m.body.push_back(segment(corners[i], corners[(i + 1) % 4], m.model));
+  m.radius = std::hypot(half, half);
+}
+
+world::Sensor sensor(const std::string& type, const Settings& settings, double height) {
+  world::Sensor sensor;
+  sensor.type = type;
+  sensor.name = type;
+  sensor.X_MS.z = height;
+  sensor.radians = M_PI / 180.0;
+  sensor.file = "extremes";
+  sensor.line = 1;
+  for (const auto& [key, numbers] : settings) sensor.settings.push_back({key, numbers, "", 1, sensor.file});
+  return sensor;
+}
+
+}  // namespace sf::extremes

@@ -1,0 +1,59 @@
+#pragma once
+// Where cases are tried: a device, worlds made by hand, and farms that look at them once.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "farm/farm.h"
+#include "gpu/device.h"
+#include "world/world.h"
+
+namespace sf::extremes {
+
+using base::Pose;
+using base::Vec2;
+
+/// A farm on a world of its own, everyone heard.
+struct Look {
+  std::unique_ptr<world::World> world;
+  std::unique_ptr<farm::Farm> farm;
+  std::span<const base::ReadingBlock> readings;  ///< of the tick at time 0; until the next one
+};
+
+/// One thread. The device must outlive it.
+class Lab {
+ public:
+  explicit Lab(gpu::Device& device) : device_(device) {}
+
+  gpu::Device& device() const { return device_; }
+  /// A farm of small pools, ticked once at time 0.
+  Look look(world::World world, farm::FarmOptions options = {}) const;
+
+ private:
+  gpu::Device& device_;
+};
+
+/// A thin wall, seen from both sides, 1 m high.
+void add_wall(world::World& world, Vec2 a, Vec2 b);
+/// A closed outline, solid on the left of its edges: counter-clockwise a block, clockwise a room.
+void add_outline(world::World& world, const std::vector<Vec2>& corners);
+/// The inside of a square of `width` [m], low corner at `low`: a hole in a block half as wide again.
+void add_room(world::World& world, Vec2 low, double width);
+/// A solid block from `low` to `high`.
+void add_block(world::World& world, Vec2 low, Vec2 high);
+
+/// A laser at its mover's origin, 0.1 m high. Every heading is in its pose.
+world::Laser laser(std::uint32_t samples, double fov, double range_max);
+/// A mover without a body. @return its row
+std::uint32_t add_eye(world::World& world, const Pose& X_WM, const world::Laser& laser);
+std::uint32_t add_mover(world::World& world, const Pose& X_WM);
+/// Gives a mover a square body of `half` [m].
+void add_body(world::World& world, std::uint32_t mover, double half);
+
+using Settings = std::vector<std::pair<std::string, std::vector<double>>>;  ///< in metres and degrees
+world::Sensor sensor(const std::string& type, const Settings& settings, double height = 0.0);
+
+}  // namespace sf::extremes

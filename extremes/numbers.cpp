@@ -1,0 +1,111 @@
+// Not-a-number, infinity, denormals and limits in packets, poses and commands.
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "extremes/suite.h"
+#include "netio/packets.h"
+#include "robots/fleet.h"
+
+namespace sf::extremes {
+
+namespace {
+
+using netio::Reason;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
+constexpr double kHuge = std::numeric_limits<double>::max();
+
+base::Bytes with(base::Bytes bytes, std::size_t at, double value) {
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+  return bytes;
+}
+
+/// One number of a packet, `most` its limit to both sides.
+void try_field(Checks& checks, const base::Bytes& good, std::size_t at, double most, const std::string& what) {
+  netio::Packet packet;
+  const auto expect = [&](double value, Reason reason) {
+    const Reason came = netio::decode(with(good, at, value), packet);
+    checks.holds(came == reason, fmt::format("{} = {:g}: {}, expected {}", what, value, name(came), name(reason)));
+  };
+  for (const double value : {kNan, -kNan, std::numeric_limits<double>::signaling_NaN(), kInfinity, -kInfinity})
+    expect(value, Reason::not_finite);
+  for (const double value : {0.0, -0.0, kDenormal, -kDenormal, std::numeric_limits<double>::min(), most, -most})
+    expect(value, Reason::accepted);
+  const double beyond = std::nextafter(most, kInfinity);
+  for (const double value : {beyond, -beyond, kHuge, -kHuge}) expect(value, Reason::out_of_range);
+}
+
+void packets(Lab&, Checks& checks) {
+  using namespace netio;
+  base::Bytes v2v, tag;
+  encode({.robot = 7}, V2v{}, v2v);
+  encode({.robot = 7}, Tag{}, tag);
+  constexpr double kV2v[] = {kMaxPosition, kMaxPosition, kMaxPosition, kMaxYaw, kMaxSpeed, kMaxSpeed, kMaxSpeed};
+  for (std::size_t i = 0; i < std::size(kV2v); ++i)
+    try_field(checks, v2v, kHeaderBytes + 8 * i, kV2v[i], fmt::format("number {} of V2V", i));
+  for (const std::size_t i : {0, 1, 2}) {
+    try_field(checks, tag, kHeaderBytes + 8 * i, kMaxPosition, fmt::format("position {} of TAG", i));
+    try_field(checks, tag, kHeaderBytes + 8 * (7 + i), kMaxSpeed, fmt::format("velocity {} of TAG", i));
+    try_field(checks, tag, kHeaderBytes + 8 * (10 + i), kMaxSpeed, fmt::format("turning {} of TAG", i));
+  }
+  Packet packet;
+  for (const double value : {kNan, kInfinity})
+    checks.holds(decode(with(tag, kHeaderBytes + 48, value), packet) == Reason::not_finite, "orientation of TAG");
+  for (const double value : {0.0, kDenormal, 2.0, kHuge})
+    checks.holds(decode(with(tag, kHeaderBytes + 48, value), packet) == Reason::out_of_range, "no unit quaternion");
+}
+
+/// From the bytes of a packet to readings: the least and the largest numbers that a pose may have.
+void poses(Lab& lab, Checks& checks) {
+  for (const double x : {kDenormal, -kDenormal, 1e-310, std::numeric_limits<double>::min(), 1e7, -1e7})
+    for (const double yaw : {0.0, kDenormal, -1e-310}) {
+      world::World world;
+      add_wall(world, {x + 2.0, -1.0}, {x + 2.0, 1.0});
+      add_eye(world, {}, laser(1, 0.0, 8.0));
+      Look look = lab.look(world);
+      base::Bytes bytes;
+      netio::Packet packet;
+      netio::encode({.robot = 0}, netio::V2v{.X_WR = {x, kDenormal, 0.0, yaw}}, bytes);
+      checks.holds(netio::decode(bytes, packet) == Reason::accepted, "taken");
+      const base::Report report = netio::report(packet.header, std::get<netio::V2v>(packet.body), 0);
+      const auto readings = look.farm->tick(1'000'000'000, {&report, 1});
+      checks.same(readings[0].values[0], 2.0, fmt::format("x {:g}, yaw {:g}", x, yaw));
+    }
+}
+
+/// Commands are whatever a controller says.
+void commands(Lab&, Checks& checks) {
+  world::World world;
+  add_mover(world, {1.0, 2.0, 0.0, 0.5});
+  for (const double bad : {kNan, kInfinity, -kInfinity, kHuge, kDenormal}) {
+    robots::Fleet fleet(world);
+    const base::Twist command{bad, bad, bad};
+    fleet.move({&command, 1}, 100'000'000);
+    const base::Pose& X = fleet.reports()[0].X_WM;
+    checks.holds(std::isfinite(X.x) && std::isfinite(X.y) && std::isfinite(X.yaw),
+                 fmt::format("a command of {:g}", bad));
+    const bool stands = !(bad == kHuge || bad == kDenormal);
+    if (stands) checks.holds(X.x == 1.0 && X.y == 2.0 && X.yaw == 0.5, fmt::format("{:g} is no command", bad));
+    checks.holds(std::hypot(X.x - 1.0, X.y - 2.0) <= 0.1 * world.movers[0].max_forward * (1.0 + 1e-12),
+                 "no faster than it can");
+  }
+}
+
+constexpr Case kCases[] = {
+    {"numbers", "in-packets", "",
+     "each number of V2V and TAG: NaN and infinity dropped as such, limits kept to the last bit", packets},
+    {"numbers", "in-poses", "m", "denormal and largest poses from bytes to readings: sums are exact, so no bit is off",
+     poses},
+    {"numbers", "in-commands", "", "NaN and infinity are no command; the largest number is no faster than the robot",
+     commands},
+};
+
+}  // namespace
+
+std::span<const Case> numbers() { return kCases; }
+
+}  // namespace sf::extremes

@@ -1,0 +1,102 @@
+// Worlds from 1 mm to 1 000 km, here and far away; ranges from 1 um to 100 km.
+
+#include <fmt/format.h>
+
+#include "extremes/exact.h"
+#include "extremes/suite.h"
+
+namespace sf::extremes {
+
+namespace {
+
+constexpr double kFar[] = {0.0, 1e5, 1e7};           ///< [m] of the origin, along both axes
+constexpr double kWidths[] = {1e-3, 1.0, 1e3, 1e6};  ///< [m]
+constexpr double kTurn = 2.0 * M_PI;
+
+/// A square room, and an eye somewhere in it that sees all of its walls.
+void look_round(Lab& lab, Checks& checks, double far, double width, std::uint32_t samples) {
+  world::World world;
+  add_room(world, {far - 0.4 * width, far - 0.3 * width}, width);
+  add_eye(world, {far + 0.137 * width, far - 0.0211 * width, 0.0, 0.3}, laser(samples, kTurn, 2.0 * width));
+  const Look look = lab.look(world);
+  check_scan(*look.world, look.readings[0], checks, fmt::format("{:g} m wide, {:g} m away", width, far));
+}
+
+void widths(Lab& lab, Checks& checks) {
+  for (const double width : kWidths) look_round(lab, checks, 0.0, width, 361);
+}
+
+void distances(Lab& lab, Checks& checks) {
+  for (const double far : kFar)
+    for (const double width : kWidths) look_round(lab, checks, far, width, 61);
+}
+
+/// Corners, eyes and shifts on a lattice of 2^-20 m: every sum is exact, so no bit may change.
+void moved(Lab& lab, Checks& checks) {
+  std::vector<std::vector<double>> scans;
+  for (const double far : kFar) {
+    world::World world;
+    add_room(world, {far - 3.0, far - 2.5}, 6.0);
+    add_block(world, {far + 0.5 + 0x1p-20, far + 0.25}, {far + 1.5, far + 1.0 - 0x1p-19});
+    add_eye(world, {far - 1.25, far - 0.5 + 0x1p-20, 0.0, 1.0}, laser(361, kTurn, 8.0));
+    const Look look = lab.look(world);
+    scans.emplace_back(look.readings[0].values.begin(), look.readings[0].values.end());
+  }
+  for (std::size_t f = 1; f < scans.size(); ++f)
+    for (std::size_t i = 0; i < scans[0].size(); ++i)
+      checks.same(scans[f][i], scans[0][i], fmt::format("{:g} m away", kFar[f]), i);
+}
+
+/// A wall `distance` in front of an eye that sees `range`.
+double straight(Lab& lab, double range, double distance, double across) {
+  world::World world;
+  add_wall(world, {distance, -across}, {distance, across});
+  add_eye(world, {}, laser(1, 0.0, range));
+  return lab.look(world).readings[0].values[0];
+}
+
+void ranges(Lab& lab, Checks& checks) {
+  for (const double range : {1e-6, 1e-3, 1.0, 1e3, 1e5}) {
+    const auto what = fmt::format("range {:g} m", range);
+    checks.same(straight(lab, range, 0.5 * range, range), 0.5 * range, what + ", a wall half way");
+    checks.same(straight(lab, range, 0.999 * range, range), 0.999 * range, what + ", a wall just within");
+    checks.same(straight(lab, range, range, range), range, what + ", a wall at its end");
+    checks.same(straight(lab, range, 1.001 * range, range), range, what + ", a wall just beyond");
+    checks.same(straight(lab, range, 0.7 * range, 1e6), 0.7 * range, what + ", a wall of 2 000 km");
+  }
+}
+
+/// From the middle of a world of 1 000 km, at most 100 km are seen: towers 10 m wide, 99.9 km away.
+void far_and_small(Lab& lab, Checks& checks) {
+  world::World world;
+  add_room(world, {-5e5, -5e5}, 1e6);
+  constexpr double kAway = 99'900.0;
+  for (int i = 0; i < 16; ++i) {
+    const Vec2 p = base::rotate(i * kTurn / 16, {kAway, 0.0});
+    add_block(world, p - Vec2{5.0, 5.0}, p + Vec2{5.0, 5.0});
+    add_eye(world, {0.0, 0.0, 0.0, i * kTurn / 16}, laser(5, 1e-5, 1e5));
+  }
+  const Look look = lab.look(world);
+  for (const base::ReadingBlock& reading : look.readings) {
+    checks.holds(reading.values[2] < 1e5, "the tower is seen", reading.mover);
+    check_scan(*look.world, reading, checks, "towers");
+  }
+}
+
+constexpr Case kCases[] = {
+    {"places", "world-widths", "m", "rooms 1 mm to 1 000 km wide: exact walls, within rounding of 64 bits", widths},
+    {"places", "far-origins", "m", "rooms of all widths 0, 1e5 and 1e7 m away: the walls as doubles have them",
+     distances},
+    {"places", "moved-worlds", "m", "a world on a lattice moved by 1e5 and 1e7 m: sums are exact, so no bit changes",
+     moved},
+    {"places", "ranges", "m", "1 um to 100 km, straight at a wall: products with 0 and 1 are exact, so no bit is off",
+     ranges},
+    {"places", "far-and-small", "m", "towers of 10 m at 99.9 km in 1 000 km: within rounding of 64 bits",
+     far_and_small},
+};
+
+}  // namespace
+
+std::span<const Case> places() { return kCases; }
+
+}  // namespace sf::extremes

@@ -1,0 +1,43 @@
+#include "extremes/suite.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+
+namespace sf::extremes {
+
+std::span<const Case> cases() {
+  static const std::vector<Case> all = [] {
+    std::vector<Case> cases;
+    for (const auto group :
+         {places, beams, segments, fans, fleets, magnets, edges, times, numbers, files, wires, devices}) {
+      const std::span<const Case> more = group();
+      cases.insert(cases.end(), more.begin(), more.end());
+    }
+    return cases;
+  }();
+  return all;
+}
+
+const Case* find_case(std::string_view name) {
+  const auto all = cases();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Case& c) { return c.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+Outcome run(const Case& c, Lab& lab) {
+  Checks checks;
+  const auto begun = std::chrono::steady_clock::now();
+  std::string thrown;
+  try {
+    c.run(lab, checks);
+  } catch (const std::exception& error) {
+    thrown = error.what();
+  }
+  if (!thrown.empty()) checks.holds(false, "it ended with: " + thrown);
+  Outcome outcome = checks.outcome();
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  return outcome;
+}
+
+}  // namespace sf::extremes

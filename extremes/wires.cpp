@@ -1,0 +1,158 @@
+// Words of the wire at and past their ends.
+
+#include <fmt/format.h>
+
+#include "extremes/suite.h"
+#include "sensors/gyro.h"
+#include "sensors/laneedge_settings.h"
+#include "sensors/laser.h"
+#include "sensors/magnetometer.h"
+
+namespace sf::extremes {
+
+namespace {
+
+using sensors::SensorKind;
+using sensors::SensorRow;
+using sensors::Wire;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kHuge = std::numeric_limits<double>::max();
+
+/// What a receiver is told of `values`; empty where nothing is sent.
+std::vector<double> told(const SensorKind& kind, const SensorRow& row, const std::vector<double>& values,
+                         Checks& checks) {
+  base::ReadingBlock reading;
+  reading.values = values;
+  base::Bytes payload;
+  const std::uint8_t type = kind.encode(row, reading, Wire::farm, 0, payload);
+  if (type == 0) return {};
+  const sensors::Part part = kind.decode(row, payload, type, Wire::farm);
+  checks.holds(part.fault == sensors::Fault::none, fmt::format("{}: what was sent is taken", kind.name));
+  std::vector<double> got(values.size());
+  if (part.fault == sensors::Fault::none) kind.read(row, payload, type, Wire::farm, got);
+  return got;
+}
+
+struct Sent {
+  double value, told;
+};
+
+/// Of one number beside others.
+void expect(Checks& checks, const SensorKind& kind, const SensorRow& row, std::span<const Sent> sent, std::size_t at,
+            std::size_t width) {
+  for (const Sent& s : sent) {
+    std::vector<double> values(width, 0.0);
+    values[at] = s.value;
+    const auto got = told(kind, row, values, checks);
+    const auto what = fmt::format("{} number {}: {:.17g}", kind.name, at, s.value);
+    if (got.size() == width)
+      checks.same(got[at], s.told, what);
+    else
+      checks.holds(std::isnan(s.value), what + " was not sent");
+  }
+}
+
+SensorRow row_of(std::uint32_t elements, double limit) {
+  SensorRow row;
+  row.elements = elements;
+  row.limit = limit;
+  return row;
+}
+
+constexpr Sent kPlainLaser[] = {{-1.0, 0.0},        {-kInfinity, 0.0}, {-0.0, 0.0},         {5e-324, 0.0},
+                                {0.000499999, 0.0}, {0.0005, 0.001},   {65.534, 65.534},    {65.5344, 65.534},
+                                {65.535, 65.535},   {65.536, 65.535},  {66.0, 65.535},      {131.072, 65.535},
+                                {1e9, 65.535},      {kHuge, 65.535},   {kInfinity, 65.535}, {kNan, kNan}};
+constexpr Sent kExtendedLaser[] = {{-1.0, 0.0},
+                                   {0.00004, 0.0},
+                                   {0.00005, 0.0001},
+                                   {1e5, 1e5},
+                                   {429'496.7294, 429'496.7294},
+                                   {429'496.7295, 429'496.7294},
+                                   {429'496.7296, 429'496.7294},
+                                   {1e6, 429'496.7294},
+                                   {kHuge, 429'496.7294},
+                                   {kInfinity, kInfinity},
+                                   {-kInfinity, 0.0},
+                                   {kNan, kNan}};
+constexpr Sent kField[] = {{21.47483647, 21.47483647},
+                           {21.47483648, 21.47483647},
+                           {-21.47483648, -21.47483648},
+                           {-21.4748365, -21.47483648},
+                           {1e3, 21.47483647},
+                           {42.94967296, 21.47483647},
+                           {kHuge, 21.47483647},
+                           {-kHuge, -21.47483648},
+                           {kInfinity, 21.47483647},
+                           {-kInfinity, -21.47483648},
+                           {4.9e-9, 0.0},
+                           {5e-324, 0.0},
+                           {kNan, kNan}};
+constexpr Sent kDistance[] = {{65.534, 65.534},    {65.535, 65.534}, {65.536, 65.534},  {1e9, 65.534},
+                              {kInfinity, 65.534}, {-1.0, 0.0},      {-kInfinity, 0.0}, {kNan, kNan}};
+constexpr Sent kPoints[] = {
+    {65'534.0, 65'534.0}, {65'535.0, 65'535.0}, {65'536.0, 65'535.0}, {131'072.0, 65'535.0}, {-1.0, 0.0}};
+constexpr Sent kSigma[] = {{4294.967294, 4294.967294}, {4294.967295, kNan}, {4294.967296, kNan}, {8589.934592, kNan},
+                           {kInfinity, kNan},          {kNan, kNan},        {-1.0, 0.0}};
+constexpr Sent kTurn[] = {{2147.483647, 2147.483647},   {2147.483648, 2147.483647},
+                          {-2147.483647, -2147.483647}, {-2147.483648, -2147.483647},
+                          {-2147.483649, -2147.483647}, {4294.967296, 2147.483647},
+                          {kInfinity, 2147.483647},     {-kInfinity, -2147.483647},
+                          {kHuge, 2147.483647},         {kNan, kNan}};
+
+void lasers(Lab&, Checks& checks) {
+  expect(checks, sensors::laser_kind, row_of(1, 65.535), kPlainLaser, 0, 1);
+  expect(checks, sensors::laser_kind, row_of(1, 1e6), kExtendedLaser, 0, 1);
+  for (std::uint32_t word = 0; word <= 0xFFFF; ++word)
+    checks.same(told(sensors::laser_kind, row_of(1, 65.535), {word / 1e3}, checks)[0], word / 1e3, "every word of u16",
+                word);
+}
+
+void lane_edges(Lab&, Checks& checks) {
+  expect(checks, sensors::laneedge_kind, row_of(1, 0.0), kDistance, 0, 4);
+  expect(checks, sensors::laneedge_kind, row_of(1, 0.0), kPoints, 1, 4);
+  for (const std::size_t at : {2, 3}) expect(checks, sensors::laneedge_kind, row_of(1, 0.0), kSigma, at, 4);
+}
+
+void fields(Lab&, Checks& checks) {
+  for (const std::size_t at : {0, 1, 2, 3}) expect(checks, sensors::magnetometer_kind, row_of(1, 0.0), kField, at, 4);
+}
+
+/// Every kind's numbers, whatever they count: told in order, the sign kept, from -1e300 to 1e300.
+void all_kinds(Lab&, Checks& checks) {
+  expect(checks, sensors::gyro_kind, row_of(1, 0.0), kTurn, 0, 1);
+  for (const SensorKind* kind : sensors::kinds()) {
+    if (kind->id == sensors::kLaneEdge || kind->name == "occupancy") continue;
+    double before = -kInfinity;
+    for (const double value : {-kInfinity, -1e300, -1e18, -4294967296.0, -2147483648.0, -1.0, 0.0, 1.0, 65'536.0,
+                               2147483647.0, 2147483648.0, 4294967296.0, 1e18, 1e300, kInfinity}) {
+      base::ReadingBlock reading;
+      const std::vector<double> values(sensors::element_width(*kind), value);
+      reading.values = values;
+      base::Bytes payload;
+      const std::uint8_t type = kind->encode(row_of(1, 0.0), reading, Wire::farm, 0, payload);
+      std::vector<double> got(values.size());
+      kind->read(row_of(1, 0.0), payload, type, Wire::farm, got);
+      checks.holds(got[0] >= before && (value <= 0.0 ? got[0] <= 0.0 : got[0] >= 0.0),
+                   fmt::format("{}: {:g} is told as {:g}", kind->name, value, got[0]));
+      before = got[0];
+    }
+  }
+}
+
+constexpr Case kCases[] = {
+    {"wires", "laser-words", "m",
+     "u16 millimetres and u32 tenths at and past their ends: saturated, no return flagged, NaN not sent", lasers},
+    {"wires", "lane-edge-words", "m", "u16 and u32 of lane edges: saturated below the flag, none flagged", lane_edges},
+    {"wires", "field-words", "T", "i32 of 1e-8 T at and past both ends: saturated, NaN not sent", fields},
+    {"wires", "all-kinds", "", "numbers of every kind from -infinity to infinity: told in order, no sign turned",
+     all_kinds},
+};
+
+}  // namespace
+
+std::span<const Case> wires() { return kCases; }
+
+}  // namespace sf::extremes

@@ -1,0 +1,48 @@
+// `selftest` as a new user runs it.
+
+#include <gtest/gtest.h>
+
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+namespace {
+
+TEST(SelfTest, ListNamesEveryCaseWithItsAnswer) {
+  const Outcome all = run_program({"selftest", "--list"}, no_device());
+  EXPECT_EQ(all.code, 0) << all.err;
+  EXPECT_GT(count_lines(all.out), 40u);
+  EXPECT_NE(all.out.find("beams     grazing "), std::string::npos) << all.out;
+}
+
+TEST(SelfTest, SomeCasesAndAGroup) {
+  const Outcome outcome = run_program({"selftest", "grazing", "wires"});
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_EQ(outcome.err, "") << "progress is for terminals";
+  EXPECT_NE(outcome.out.find("laser-words"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("5 of 5 cases passed on "), std::string::npos) << outcome.out;
+}
+
+TEST(SelfTest, AsJson) {
+  const Outcome outcome = run_program({"selftest", "ranges", "--json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json json(outcome.out);
+  EXPECT_TRUE(json.flag("/sound"));
+  ASSERT_EQ(json.size("/cases"), 1u);
+  EXPECT_EQ(json.text("/cases/0/group"), "places");
+  EXPECT_EQ(json.number("/cases/0/failed"), 0.0);
+  EXPECT_GT(json.number("/cases/0/checks"), 20.0);
+}
+
+TEST(SelfTest, WrongUsage) {
+  const Outcome unknown = run_program({"selftest", "grasing"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.err.find("'grasing' is neither a case nor a group"), std::string::npos) << unknown.err;
+  EXPECT_EQ(count_lines(unknown.err), 1u) << unknown.err;
+  EXPECT_EQ(run_program({"selftest", "--list", "grazing"}).code, 2);
+  EXPECT_EQ(run_program({"selftest", "grazing"}, no_device()).code, 3);
+  EXPECT_EQ(run_program({"selftest", "grazing", "--device", "no such device"}).code, 3);
+}
+
+}  // namespace
+}  // namespace sf

@@ -1,0 +1,107 @@
+// Every case that `sensorfarm selftest` runs, and that the suite can fail.
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <set>
+
+#include "base/error.h"
+#include "extremes/suite.h"
+
+namespace sf::extremes {
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+namespace {
+
+Lab& lab() {
+  static gpu::Device device;
+  static Lab lab(device);
+  return lab;
+}
+
+std::string test_name(const testing::TestParamInfo<Case>& info) {
+  std::string name(info.param.name);
+  std::erase_if(name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; });
+  return name;
+}
+
+class Extremes : public testing::TestWithParam<Case> {};
+
+TEST_P(Extremes, Holds) {
+  const Outcome o = run(GetParam(), lab());
+  std::printf("[ measured ] %s: %llu checks, closest call %.3g of %.3g allowed, %.2f s\n",
+              std::string(GetParam().name).c_str(), static_cast<unsigned long long>(o.checks), o.error, o.allowed,
+              o.seconds);
+  for (const std::string& note : o.notes) std::printf("[ measured ]   %s\n", note.c_str());
+  EXPECT_TRUE(o.passed()) << o.failed << " of " << o.checks << " checks: " << o.failure;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Extremes, testing::ValuesIn(cases().begin(), cases().end()), test_name);
+
+TEST(Suite, NamesAreUniqueAndReasonsAreGiven) {
+  std::set<std::string_view> names;
+  for (const Case& c : cases()) {
+    EXPECT_TRUE(names.insert(c.name).second) << c.name;
+    EXPECT_FALSE(c.why.empty()) << c.name;
+    EXPECT_EQ(find_case(c.name), &c);
+  }
+  EXPECT_GT(names.size(), 40u);
+  EXPECT_EQ(find_case("no-such-case"), nullptr);
+}
+
+Outcome outcome_of(void (*body)(Lab&, Checks&)) { return run({"made", "made", "m", "made", body}, lab()); }
+
+/// A case whose answer is wrong is told, with the check that failed and by how much.
+TEST(Suite, AWrongAnswerFails) {
+  const Outcome o = outcome_of([](Lab& l, Checks& checks) {
+    world::World world;
+    add_wall(world, {2.0, -1.0}, {2.0, 1.0});
+    add_eye(world, {}, laser(1, 0.0, 8.0));
+    const Look look = l.look(world);
+    checks.near(look.readings[0].values[0], 2.0, 1e-9, "right");
+    checks.near(look.readings[0].values[0], 2.5, 1e-9, "wrong", 7);
+  });
+  EXPECT_FALSE(o.passed());
+  EXPECT_EQ(o.checks, 2u);
+  EXPECT_EQ(o.failed, 1u);
+  EXPECT_EQ(o.error, 0.5);
+  EXPECT_NE(o.failure.find("wrong [7]: 2, expected 2.5 within 1e-09"), std::string::npos) << o.failure;
+}
+
+TEST(Suite, EveryKindOfCheckCanFail) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.near(kNan, 0, 1e300, "not a number"); }).passed());
+  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.near(1, kNan, 1e300, "not a number"); }).passed());
+  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.same(0.0, -0.0, "another bit"); }).passed());
+  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.equal(-1, 0xFFFFFFFFu, "signs"); }).passed());
+  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.holds(false, "false"); }).passed());
+  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.refused([] {}, "", "taken"); }).passed());
+  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.refused([] { throw base::InputError("y"); }, "x", "y"); }).passed());
+  EXPECT_FALSE(outcome_of([](Lab&, Checks&) { throw base::InputError("thrown"); }).passed());
+  EXPECT_FALSE(outcome_of([](Lab&, Checks&) {}).passed()) << "a case without checks";
+  EXPECT_TRUE(outcome_of([](Lab&, Checks& c) { c.same(kNan, -kNan, "neither is a number"); }).passed());
+}
+
+TEST(Suite, TheNearestToItsToleranceIsTold) {
+  const Outcome o = outcome_of([](Lab&, Checks& c) {
+    c.near(1.0 + 1e-3, 1, 1e-2, "a tenth");
+    c.near(1.0 + 1e-6, 1, 2e-6, "a half");
+    c.same(1.0, 1.0, "nothing");
+  });
+  EXPECT_TRUE(o.passed());
+  EXPECT_NEAR(o.error, 1e-6, 1e-12);
+  EXPECT_EQ(o.allowed, 2e-6);
+}
+
+/// A pose that is not finite is the caller's broken promise: packets and files are judged before.
+TEST(SuiteDeathTest, APoseThatIsNoNumberStopsTheFarm) {
+  world::World world;
+  add_eye(world, {}, laser(1, 0.0, 8.0));
+  const Look look = lab().look(world);
+  const base::Report report{.mover = 0, .X_WM = {std::numeric_limits<double>::quiet_NaN(), 0, 0, 0}};
+  EXPECT_DEATH(look.farm->tick(1, {&report, 1}), "the pose of mover 0 is not finite");
+}
+
+}  // namespace
+}  // namespace sf::extremes
