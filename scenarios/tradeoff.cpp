@@ -37,7 +37,8 @@ class Entrant {
       : kind_(kind), mode_(mode), world_(world), ways_(ways) {
     sensors::set_accuracy(world_, std::string(sensors::word_of(kind, mode)));
     farm_ = std::make_unique<farm::Farm>(
-        world_, device, farm::FarmOptions{.seed = options.seed, .noise = false, .threads = options.threads});
+        world_, device,
+        farm::FarmOptions{.seed = options.seed, .noise = false, .give_again = false, .threads = options.threads});
     for (std::uint32_t m = 0; m < world_.movers.size(); ++m) farm_->hear(m, 1u << kind.id);
   }
 
