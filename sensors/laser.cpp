@@ -17,6 +17,7 @@ struct Row {
   CastLaser cast;
   bool reworked = false;    ///< results are shaped on the host
   std::size_t samples = 0;  ///< first of its own among all
+  bool grazing = false;     ///< some beam of its last scan does
 };
 
 std::vector<CastLaser> lasers_of(const world::World& world) {
@@ -54,7 +55,7 @@ class Lasers : public Instruments {
   Lasers(const Site& site, const std::vector<CastLaser>& lasers);
 
   void shape(std::size_t i);
-  bool doubt(std::size_t i);
+  void mark(std::size_t i);
   base::ReadingBlock block_of(std::size_t i);
 
   base::Workers& workers_;
@@ -64,10 +65,9 @@ class Lasers : public Instruments {
   Casts casts_;
   std::vector<Row> rows_;  ///< per laser
   std::vector<Due> due_;
-  std::vector<double> values_;         ///< [m] of all lasers' samples, when any is reworked
-  std::vector<std::uint32_t> met_;     ///< likewise
-  std::vector<base::Unsure> unsure_;   ///< of all lasers' samples
-  std::vector<std::uint8_t> doubted_;  ///< per due laser: some of its samples are unsure
+  std::vector<double> values_;        ///< [m] of all lasers' samples, when any is reworked
+  std::vector<std::uint32_t> met_;    ///< likewise
+  std::vector<base::Unsure> unsure_;  ///< of all lasers' samples
 };
 
 Lasers::Lasers(const Site& site, const std::vector<CastLaser>& lasers)
@@ -87,7 +87,9 @@ Lasers::Lasers(const Site& site, const std::vector<CastLaser>& lasers)
   }
   values_.resize(any ? samples : 0);
   met_.resize(any ? samples : 0);
-  unsure_.resize(samples);
+  unsure_.assign(samples, base::Unsure::not_cast);
+  for (std::uint32_t i = 0; i < lasers.size(); ++i)
+    for (const std::uint32_t sample : casts_.plan(i).samples) unsure_[rows_[i].samples + sample] = base::Unsure::no;
 }
 
 void Lasers::shape(std::size_t i) {
@@ -105,22 +107,20 @@ void Lasers::shape(std::size_t i) {
              {cast, cast_hits}, {out, fan.laser.samples}, {out_hits, fan.laser.samples});
 }
 
-/// Marks samples that were not cast, and those that graze. @return whether there are any
-bool Lasers::doubt(std::size_t i) {
-  const Row& row = rows_[due_[i].row];
+/// Samples that were not cast are marked since the beginning; those that graze come and go.
+void Lasers::mark(std::size_t i) {
+  Row& row = rows_[due_[i].row];
   const FanResults results = casts_.results(i);
   const BeamPlan& plan = *results.plan;
   const auto verdicts = casts_.verdicts().host<std::uint32_t>().subspan(results.lane, plan.lanes());
   const bool grazing = std::any_of(verdicts.begin(), verdicts.end(), [](std::uint32_t v) { return v >= SF_GRAZES; });
-  if (!grazing && row.cast.laser.resolution == 1) return false;
-  const auto samples = std::span(unsure_).subspan(row.samples, row.cast.laser.samples);
-  std::fill(samples.begin(), samples.end(), base::Unsure::not_cast);
+  if (!grazing && !row.grazing) return;
+  row.grazing = grazing;
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {
     const std::size_t place = plan.place(k);
     const bool grazes = (verdicts[place / SF_BEAMS_PER_LANE] >> (place % SF_BEAMS_PER_LANE) & SF_GRAZES) != 0;
-    samples[plan.samples[k]] = grazes ? base::Unsure::grazing : base::Unsure::no;
+    unsure_[row.samples + plan.samples[k]] = grazes ? base::Unsure::grazing : base::Unsure::no;
   }
-  return true;
 }
 
 base::ReadingBlock Lasers::block_of(std::size_t i) {
@@ -141,16 +141,16 @@ base::ReadingBlock Lasers::block_of(std::size_t i) {
   block.mode = row.cast.mode;
   const double away = std::max(std::abs(results.X_WS.x), std::abs(results.X_WS.y));
   block.bound = laser_bound(row.cast, longest_, away + fan.laser.range_max);
-  if (doubted_[i] != 0) block.unsure = std::span<const base::Unsure>(unsure_).subspan(row.samples, samples);
+  if (row.grazing || row.cast.laser.resolution > 1)
+    block.unsure = std::span<const base::Unsure>(unsure_).subspan(row.samples, samples);
   return block;
 }
 
 void Lasers::collect(std::vector<base::ReadingBlock>& out) {
-  doubted_.resize(due_.size());
   workers_.run(due_.size(), 8, [this](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       if (rows_[due_[i].row].reworked) shape(i);
-      doubted_[i] = doubt(i) ? 1 : 0;
+      mark(i);
     }
   });
   casts_.count();

@@ -24,8 +24,11 @@ static_assert(std::size(kMakings) == std::size(kLaserModes));
 CastLaser cast_laser(const world::World& world, const world::Laser& laser) {
   const std::uint8_t row = mode_of("laser", kLaserModes, laser.accuracy, world);
   const Making& making = kMakings[row];
-  CastLaser cast{laser, making.single, row, making.skip > 1};
+  CastLaser cast{laser, making.single, row, {}};
   cast.laser.resolution = std::min(laser.resolution * making.skip, std::max(1u, laser.samples - 1));
+  const double step = laser.samples > 1 ? laser.fov / (laser.samples - 1) : 0.0;
+  for (std::uint32_t k = 0; making.skip > 1 && k <= cast.laser.resolution; ++k)
+    cast.sines.push_back(std::sin(k * step));
   return cast;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 // The laser's modes: what each casts, and what it may be wrong by.
 
+#include <vector>
+
 #include "sensors/kind.h"
 
 namespace sf::sensors {
@@ -15,11 +17,11 @@ inline constexpr Mode kLaserModes[] = {
 
 /// A laser as it is cast.
 struct CastLaser {
-  world::Laser laser;     ///< its `resolution` is that of its mode as well
-  bool single = false;    ///< Fan::single
-  std::uint8_t mode = 0;  ///< row of `laser_modes`
-  bool chords =
-      false;  ///< samples between two beams lie on the straight line between what these met, not between ranges
+  world::Laser laser;         ///< its `resolution` is that of its mode as well
+  bool single = false;        ///< Fan::single
+  std::uint8_t mode = 0;      ///< row of `laser_modes`
+  std::vector<double> sines;  ///< of 0, 1, ... `resolution` steps between samples, where those between two beams lie on
+                              ///< the straight line between what these met; empty: on that between their ranges
 };
 CastLaser cast_laser(const world::World& world, const world::Laser& laser);
 

@@ -14,20 +14,26 @@ struct Cast {
   std::uint32_t hit;
 };
 
-/// [m] of sample `j` between two beams that met the same, by the straight line between their ends.
-double on_chord(const world::Laser& laser, const Cast& a, const Cast& b, std::uint32_t j) {
-  const double step = laser.fov / (laser.samples - 1);
-  const double whole = std::sin((b.sample - a.sample) * step);
-  const double from_a = std::sin((j - a.sample) * step), to_b = std::sin((b.sample - j) * step);
-  const double across = a.range * from_a + b.range * to_b;
-  return whole > 0.0 && across > 0.0 ? a.range * b.range * whole / across : std::min(a.range, b.range);
+/// Fills in the samples between two beams.
+void fill_chords(const CastLaser& shape, const Cast& a, const Cast& b, std::span<double> ranges) {
+  const world::Laser& laser = shape.laser;
+  const std::vector<double>& sines = shape.sines;
+  const std::uint32_t gap = b.sample - a.sample;
+  const bool same = a.hit == b.hit;
+  const double above = a.range * b.range * sines[gap];
+  for (std::uint32_t j = 1; j < gap; ++j) {
+    const double across = a.range * sines[j] + b.range * sines[gap - j];
+    const double chord = above > 0.0 && across > 0.0 ? above / across : std::min(a.range, b.range);
+    const double nearer = 2 * j < gap ? a.range : b.range;
+    ranges[a.sample + j] = same ? std::clamp(chord, laser.range_min, laser.range_max) : nearer;
+  }
 }
 
-double between(const CastLaser& shape, const Cast& a, const Cast& b, std::uint32_t j) {
-  const double part = static_cast<double>(j - a.sample) / (b.sample - a.sample);
-  if (!shape.chords || (a.hit == b.hit && a.hit == base::kNoHit)) return a.range + part * (b.range - a.range);
-  if (a.hit != b.hit) return part < 0.5 ? a.range : b.range;
-  return std::clamp(on_chord(shape.laser, a, b, j), shape.laser.range_min, shape.laser.range_max);
+void fill_lines(const Cast& a, const Cast& b, std::span<double> ranges) {
+  for (std::uint32_t j = a.sample + 1; j < b.sample; ++j) {
+    const double part = static_cast<double>(j - a.sample) / (b.sample - a.sample);
+    ranges[j] = a.range + part * (b.range - a.range);
+  }
 }
 
 }  // namespace
@@ -46,9 +52,13 @@ void shape_scan(const CastLaser& shape, const BeamPlan& plan, const base::Draw& 
     }
     ranges[now.sample] = now.range;
     hits[now.sample] = now.hit;
-    for (std::uint32_t j = before.sample + 1; j < now.sample; ++j) {
-      ranges[j] = between(shape, before, now, j);
-      hits[j] = before.hit == now.hit ? now.hit : base::kNoHit;
+    if (now.sample > before.sample + 1) {
+      if (!shape.sines.empty() && (before.hit != base::kNoHit || now.hit != base::kNoHit))
+        fill_chords(shape, before, now, ranges);
+      else
+        fill_lines(before, now, ranges);
+      const std::uint32_t between = before.hit == now.hit ? now.hit : base::kNoHit;
+      std::fill(hits.begin() + before.sample + 1, hits.begin() + now.sample, between);
     }
     before = now;
   }

@@ -21,8 +21,8 @@ struct CastScan {
 
 /// Range noise is added to echoes alone, and kept within [range_min, range_max]. A sample that was not cast names a
 /// model where both of its neighbours met the same. Its range lies on a straight line between theirs, as Stage has it;
-/// or, with `chords`, on the straight line between the points that these met, which is right on a flat wall, and is the
-/// nearer neighbour's where they met different models.
+/// or, where it has sines, on the straight line between the points that these met, which is right on a flat wall, and
+/// is the nearer neighbour's where they met different models.
 /// @param draw of `base::Stream::range_noise` @param noise false: none, whatever the laser has
 /// @param ranges, hits one per sample
 void shape_scan(const CastLaser& shape, const BeamPlan& plan, const base::Draw& draw, bool noise, const CastScan& cast,

@@ -11,8 +11,8 @@ namespace sf {
 
 namespace {
 
-const Words kSubcommands{"devices", "check", "draw", "sense",  "run",   "serve",
-                         "robot",   "start", "plot", "listen", "field", "map", "selftest"};
+const Words kSubcommands{"devices", "check", "draw",   "sense", "run", "serve",   "robot",
+                         "start",   "plot",  "listen", "field", "map", "selftest"};
 
 struct Wrong {
   Words arguments;
