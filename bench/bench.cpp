@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "bench/cone_contest.h"
+#include "bench/dial.h"
 #include "bench/embree_caster.h"
 #include "bench/farm_caster.h"
 #include "bench/field_contest.h"
@@ -40,6 +41,7 @@ struct Session {
   std::vector<LaneOutcome> lanes;
   std::vector<ConeOutcome> cones;
   std::vector<MapOutcome> maps;
+  std::vector<DialOutcome> dials;
 };
 
 struct ScanCase {
@@ -165,6 +167,15 @@ void tell_maps(benchmark::State& state, Session& session, const MapCase& c) {
   for (const MapEntrant& e : session.maps.back().entrants) state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
 }
 
+constexpr double kDialRanges[] = {8.0, 0.75};
+constexpr std::uint32_t kDialRobots = 1'000;
+constexpr std::size_t kDialTurns = 21;
+
+void tell_dial(benchmark::State& state, Session& session, double range) {
+  for (auto _ : state) session.dials.push_back(compete_dial(session.device, kDialRobots, range, kDialTurns));
+  for (const DialEntry& e : session.dials.back().entries) state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
+}
+
 void tell_facts(benchmark::State& state, std::vector<Fact>& facts, const std::function<std::vector<Fact>()>& measure) {
   for (auto _ : state)
     for (const Fact& fact : measure()) {
@@ -206,6 +217,9 @@ void register_all(Session& session) {
   for (const std::uint32_t robots : kConeCases)
     once(benchmark::RegisterBenchmark(fmt::format("sonar/cave/{}", robots).c_str(),
                                       [&session, robots](benchmark::State& s) { tell_cones(s, session, robots); }));
+  for (const double range : kDialRanges)
+    once(benchmark::RegisterBenchmark(fmt::format("dial/cave/{}/{}m", kDialRobots, range).c_str(),
+                                      [&session, range](benchmark::State& s) { tell_dial(s, session, range); }));
   for (const MapCase& c : kMapCases)
     once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_maps(s, session, c); }));
   once(benchmark::RegisterBenchmark("start", [&facts](benchmark::State& s) { tell_facts(s, facts, measure_start); }));
@@ -242,9 +256,10 @@ int run(int argc, char** argv) {
     write_lanes(session.lanes, folder);
     write_cones(session.cones, folder);
     write_maps(session.maps, folder);
+    write_dial(session.dials, folder);
   }
-  fmt::print("{}{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
-             cone_table(session.cones), map_table(session.maps));
+  fmt::print("{}{}{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
+             cone_table(session.cones), map_table(session.maps), dial_table(session.dials));
   return 0;
 }
 

@@ -7,6 +7,6 @@
 namespace sf::bench {
 
 /// `scans` and `device` must outlive it.
-std::unique_ptr<Caster> make_farm_caster(const Scans& scans, gpu::Device& device);
+std::unique_ptr<Caster> make_farm_caster(const Scans& scans, gpu::Device& device, const std::string& name = "farm");
 
 }  // namespace sf::bench

@@ -1,0 +1,84 @@
+#include "bench/dial.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <fstream>
+
+#include "bench/approximations.h"
+#include "bench/farm_caster.h"
+#include "sensors/accuracy.h"
+#include "sensors/laser_modes.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::bench {
+
+namespace {
+
+constexpr double kCells[] = {0.03, 0.1};  // [m] of distance fields
+
+DialEntry entry_of(const Entrant& entrant, const Caster& caster, const Caster& exact, const Scans& scans) {
+  DialEntry entry{
+      .method = entrant.method, .typical = entrant.typical, .ratio = entrant.ratio, .cpu_ratio = entrant.cpu_ratio};
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < scans.robots(); ++i)
+    for (std::size_t k = 0; k < scans.beams.size(); ++k)
+      errors.push_back(std::abs(caster.range(i, k) - exact.range(i, k)));
+  std::sort(errors.begin(), errors.end());
+  entry.median = errors[errors.size() / 2];
+  entry.p99 = errors[errors.size() * 99 / 100];
+  entry.max = errors.back();
+  return entry;
+}
+
+}  // namespace
+
+DialOutcome compete_dial(gpu::Device& device, std::uint32_t robots, double range, std::size_t turns) {
+  std::deque<Scans> scans;
+  std::vector<std::unique_ptr<Caster>> casters;
+  for (const sensors::Mode& mode : sensors::kLaserModes) {
+    scans.push_back(make_scans("cave", load_cave(), robots, scenes::laser(361, M_PI, range)));
+    sensors::set_accuracy(scans.back().world, std::string(mode.word));
+    casters.push_back(make_farm_caster(scans.back(), device, std::string(mode.word)));
+  }
+  for (const double cell : kCells) casters.push_back(make_march_caster(scans.front(), cell));
+  const std::size_t last = (turns - 1) % scans.front().rounds.size();
+  const auto before = make_farm_caster(scans.front(), device, "before");
+  before->cast((last + scans.front().rounds.size() - 1) % scans.front().rounds.size());
+  casters.push_back(make_predicting_caster(scans.front(), *before,
+                                           (last + scans.front().rounds.size() - 1) % scans.front().rounds.size()));
+
+  const Outcome outcome = compete(scans.front(), casters, "exact", turns);
+  DialOutcome dial{robots, range, {}};
+  for (std::size_t i = 0; i < casters.size(); ++i)
+    dial.entries.push_back(entry_of(outcome.entrants[i], *casters[i], *casters.front(), scans.front()));
+  return dial;
+}
+
+std::string dial_table(const std::vector<DialOutcome>& outcomes) {
+  std::string text;
+  for (const DialOutcome& o : outcomes) {
+    text += fmt::format(
+        "\n{} robots, {:g} m\n\n| | cpu ms | clock ms | exact / it, by cpu and clock | median error | 99 % | "
+        "largest |\n|---|---|---|---|---|---|---|\n",
+        o.robots, o.range_m);
+    for (const DialEntry& e : o.entries)
+      text += fmt::format("| {} | {:.1f} | {:.1f} | {:.2f}, {:.2f} | {:.2g} m | {:.2g} m | {:.2g} m |\n", e.method,
+                          1e3 * e.typical.cpu_s, 1e3 * e.typical.wall_s, e.cpu_ratio, e.ratio, e.median, e.p99, e.max);
+  }
+  return text;
+}
+
+void write_dial(const std::vector<DialOutcome>& outcomes, const std::string& folder) {
+  if (outcomes.empty()) return;
+  std::ofstream file(folder + "/dial.csv");
+  file << "robots,range_m,method,cpu_ms,wall_ms,cpu_ratio,ratio,median_error_m,p99_error_m,max_error_m\n";
+  for (const DialOutcome& o : outcomes)
+    for (const DialEntry& e : o.entries)
+      file << fmt::format("{},{:g},\"{}\",{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{:.3g},{:.3g}\n", o.robots, o.range_m,
+                          e.method, 1e3 * e.typical.cpu_s, 1e3 * e.typical.wall_s, e.cpu_ratio, e.ratio, e.median,
+                          e.p99, e.max);
+}
+
+}  // namespace sf::bench
