@@ -7,6 +7,7 @@
 #include "apps/commands.h"
 #include "apps/facts.h"
 #include "apps/lend.h"
+#include "apps/progress.h"
 #include "apps/wording.h"
 #include "scenarios/explanation.h"
 
@@ -34,6 +35,10 @@ std::string work_of(const scenarios::ExplainedKind& k, double ticks) {
   if (k.work.doubts > 0)
     text += fmt::format(", {:.2g} % of beams decided in 64 bits against all",
                         400.0 * static_cast<double>(k.work.doubts) / static_cast<double>(k.work.rays));
+  if (k.work.movers_near > 0)
+    text +=
+        fmt::format(", {:.4g} movers near, {:.0f} % of them hidden or out of view", each(k.work.movers_near),
+                    100.0 - 100.0 * static_cast<double>(k.work.movers_met) / static_cast<double>(k.work.movers_near));
   if (k.work.dipoles > 0) text += fmt::format(", {:.4g} magnets summed", each(k.work.dipoles));
   return text;
 }
@@ -44,6 +49,8 @@ std::string text_of(const scenarios::ExplainedKind& k, const scenarios::Explanat
   text += row("a tick", fmt::format("{:.3f} ms heard {}, {:.3f} ms more than nobody heard", 1e3 * k.tick,
                                     k.derived ? "with the lasers" : "alone", 1e3 * (k.tick - e.silent)));
   text += row("", work_of(k, static_cast<double>(e.ticks)));
+  for (const sensors::Statement& s : e.statements)
+    if (s.kind->name == k.kind) text += row("accuracy", apps::text_of(s));
   text += row("kernels",
               k.kernels.empty() ? "none: it is read on the host" : fmt::format("{}", fmt::join(k.kernels, ", ")));
   if (k.tables.empty()) return text;
@@ -74,7 +81,12 @@ std::string text_of(const scenarios::Explanation& e) {
 int explain(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed);
   gpu::Device device(options.device);
-  const scenarios::Explanation explanation = scenarios::explain(world, device, options.seed, options.threads);
+  scenarios::Explanation explanation;
+  {
+    Progress progress("measuring");
+    explanation =
+        scenarios::explain(world, device, options.seed, options.threads, [&](double part) { progress.show(part); });
+  }
   std::fputs((options.json ? json_of(explanation) : text_of(explanation)).c_str(), stdout);
   return 0;
 }

@@ -75,6 +75,8 @@ std::string json_of(const world::World& world, const sensors::Roster& roster, co
 std::string text_of(const gpu::Survey& survey);
 std::string text_of(const world::World& world, const sensors::Roster& roster);
 std::string text_of(const RunFacts& facts);
+/// "5 lasers exact, within 1.03 nm: beams that graze nothing".
+std::string text_of(const sensors::Statement& statement);
 std::string text_of(const netio::Summary& summary);
 /// Comma-separated: a heading, then one line per element; what is missing is left out between its commas.
 std::string text_of(const world::World& world, const base::ReadingBlock& reading);

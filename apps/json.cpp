@@ -43,6 +43,18 @@ std::uint64_t count_rays(const netio::Summary& summary) {
 /// What is infinite has no number in JSON.
 Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json statements_json(const std::vector<sensors::Statement>& statements) {
+  Json json = Json::array();
+  for (const sensors::Statement& s : statements)
+    json.push_back({{"kind", s.kind->name},
+                    {"sensors", s.sensors},
+                    {"mode", sensors::word_of(*s.kind, s.mode)},
+                    {"bound", finite_json(s.bound.error)},
+                    {"unit", sensors::unit_of(*s.kind)},
+                    {"condition", s.bound.condition}});
+  return json;
+}
+
 Json number_json(double value, bool whole) {
   if (whole && std::isfinite(value)) return static_cast<std::int64_t>(value);
   return value;  // printed as null where it is not finite
@@ -134,14 +146,6 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
   std::size_t segments = world.walls.size();
   for (const world::Mover& mover : world.movers) segments += mover.body.size();
   const world::Extent& e = world.extent;
-  Json accuracy = Json::array();
-  for (const sensors::Statement& s : sensors::statements_of(world, roster))
-    accuracy.push_back({{"kind", s.kind->name},
-                        {"sensors", s.sensors},
-                        {"mode", sensors::word_of(*s.kind, s.mode)},
-                        {"bound", finite_json(s.bound.error)},
-                        {"unit", sensors::unit_of(*s.kind)},
-                        {"condition", s.bound.condition}});
   return print({{"world", world.name},
                 {"models", world.models.size()},
                 {"robots", count_robots(world)},
@@ -162,7 +166,7 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
                 {"road_resolution_m", world.road_resolution},
                 {"extent", {e.x_min, e.y_min, e.x_max, e.y_max}},
                 {"interval_s", world.interval},
-                {"accuracy", accuracy},
+                {"accuracy", statements_json(sensors::statements_of(world, roster))},
                 {"kept", world.kept},
                 {"hash", base::hash_text(world.hash)},
                 {"warnings", warnings}});
@@ -301,10 +305,17 @@ std::string json_of(const SelfTest& test) {
 }
 
 std::string json_of(const scenarios::Explanation& e) {
-  Json json{
-      {"ticks", e.ticks},       {"build_s", e.build},     {"first_tick_s", e.first},      {"silent_tick_s", e.silent},
-      {"tick_s", e.all},        {"walls", e.walls},       {"resident_bytes", e.resident}, {"absent", e.absent},
-      {"kinds", Json::array()}, {"slices", Json::array()}};
+  Json json{{"ticks", e.ticks},
+            {"build_s", e.build},
+            {"first_tick_s", e.first},
+            {"silent_tick_s", e.silent},
+            {"tick_s", e.all},
+            {"walls", e.walls},
+            {"resident_bytes", e.resident},
+            {"absent", e.absent},
+            {"kinds", Json::array()},
+            {"slices", Json::array()},
+            {"accuracy", statements_json(e.statements)}};
   for (const scenarios::Slice& s : e.slices)
     json["slices"].push_back({{"z_m", s.z}, {"sensors", s.sensors}, {"walls", s.walls}});
   for (const scenarios::ExplainedKind& k : e.kinds) {
@@ -321,6 +332,8 @@ std::string json_of(const scenarios::Explanation& e) {
                              {"doubts", k.work.doubts},
                              {"cells_built", k.work.cells_built},
                              {"dipoles", k.work.dipoles},
+                             {"movers_near", k.work.movers_near},
+                             {"movers_met", k.work.movers_met},
                              {"kernels", k.kernels},
                              {"bytes", k.bytes},
                              {"tables", tables}});

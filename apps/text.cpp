@@ -29,18 +29,10 @@ std::string sensors_text(const sensors::Roster& roster) {
   return text;
 }
 
-/// "0.51 mm" of metres, "2 uT" of tesla.
-std::string bound_text(const sensors::Statement& s) {
-  const std::string error =
-      std::isinf(s.bound.error) ? "no bound" : "within " + quantity_text(s.bound.error, sensors::unit_of(*s.kind));
-  return s.bound.condition.empty() ? error : fmt::format("{}: {}", error, s.bound.condition);
-}
-
 std::string accuracy_text(const world::World& world, const sensors::Roster& roster) {
   std::string text;
   for (const sensors::Statement& s : sensors::statements_of(world, roster))
-    text += row(text.empty() ? "accuracy" : "", fmt::format("{} {}, {}", counted(s.sensors, s.kind->name),
-                                                            sensors::word_of(*s.kind, s.mode), bound_text(s)));
+    text += row(text.empty() ? "accuracy" : "", text_of(s));
   return text;
 }
 
@@ -73,6 +65,13 @@ std::string street_text(const world::World& world) {
 }
 
 }  // namespace
+
+std::string text_of(const sensors::Statement& s) {
+  const std::string error =
+      std::isinf(s.bound.error) ? "no bound" : "within " + quantity_text(s.bound.error, sensors::unit_of(*s.kind));
+  return fmt::format("{} {}, {}{}{}", counted(s.sensors, s.kind->name), sensors::word_of(*s.kind, s.mode), error,
+                     s.bound.condition.empty() ? "" : ": ", s.bound.condition);
+}
 
 std::string text_of(const gpu::Survey& survey) {
   std::string text;

@@ -14,11 +14,8 @@ constexpr std::size_t kJudgedRobots = 12;
 farm::FarmStats operator-(const farm::FarmStats& p, const farm::FarmStats& q) {
   farm::FarmStats d;
   d.ticks = p.ticks - q.ticks;
-  d.work.rays = p.work.rays - q.work.rays;
   d.readings = p.readings - q.readings;
-  d.work.doubts = p.work.doubts - q.work.doubts;
-  d.work.cells_built = p.work.cells_built - q.work.cells_built;
-  d.work.dipoles = p.work.dipoles - q.work.dipoles;
+  d.work = p.work - q.work;
   d.place_s = p.place_s - q.place_s;
   d.lists_s = p.lists_s - q.lists_s;
   d.device_s = p.device_s - q.device_s;

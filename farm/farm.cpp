@@ -217,13 +217,7 @@ std::uint64_t Farm::hash() const { return s_->hash; }
 
 FarmStats Farm::stats() const {
   FarmStats stats = s_->stats;
-  for (const Station& station : s_->stations) {
-    const sensors::Work work = station.instruments->work();
-    stats.work.rays += work.rays;
-    stats.work.doubts += work.doubts;
-    stats.work.cells_built += work.cells_built;
-    stats.work.dipoles += work.dipoles;
-  }
+  for (const Station& station : s_->stations) stats.work += station.instruments->work();
   return stats;
 }
 

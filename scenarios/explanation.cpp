@@ -47,11 +47,7 @@ class Drive {
   std::uint64_t ticks() const { return kLaps * ways_.size(); }
   double readings() const { return a_tick(farm_.stats().readings - before_.readings); }
   double again() const { return a_tick(farm_.stats().again - before_.again); }
-  sensors::Work work() const {
-    const sensors::Work& a = before_.work;
-    const sensors::Work b = farm_.stats().work;
-    return {b.rays - a.rays, b.doubts - a.doubts, b.cells_built - a.cells_built, b.dipoles - a.dipoles};
-  }
+  sensors::Work work() const { return farm_.stats().work - before_.work; }
   const sensors::Roster& roster() const { return farm_.roster(); }
 
  private:
@@ -115,8 +111,13 @@ std::size_t resident_bytes() {
 
 }  // namespace
 
-Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads) {
+Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads,
+                    const std::function<void(double)>& progress) {
   Explanation e;
+  double done = 0.0;
+  const auto step = [&](std::size_t kinds) {
+    if (progress) progress(++done / static_cast<double>(kinds + 3));
+  };
   const Ways ways = drive_ways(world, device, kDriven, seed, threads);
   const auto start = Clock::now();
   Drive farm(world, device, ways, {.seed = seed, .threads = threads});
@@ -127,7 +128,10 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   e.first = base::seconds_since(first);
 
   farm.hear(0);
+  const std::size_t kinds = farm.roster().groups().size();
+  step(kinds);
   e.silent = farm.laps();
+  step(kinds);
   std::set<std::string_view> present;
   for (const sensors::Roster::Group& group : farm.roster().groups()) {
     present.insert(group.kind->name);
@@ -139,6 +143,7 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
     kind.again = farm.again();
     kind.work = farm.work();
     e.kinds.push_back(std::move(kind));
+    step(kinds);
   }
   farm.hear(farm::kAllKinds);
   e.all = farm.laps();
@@ -147,6 +152,7 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   for (const sensors::SensorKind* kind : sensors::kinds())
     if (!present.contains(kind->name)) e.absent.emplace_back(kind->name);
   e.slices = slices_of(world);
+  e.statements = sensors::statements_of(world, farm.roster());
   e.walls = world.walls.size();
   e.resident = resident_bytes();
   return e;

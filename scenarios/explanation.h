@@ -2,11 +2,12 @@
 // What a world makes the farm build and do, and what each part of it costs: kinds of sensors are heard one by one.
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "gpu/device.h"
-#include "sensors/kind.h"
+#include "sensors/accuracy.h"
 #include "world/world.h"
 
 namespace sf::scenarios {
@@ -36,19 +37,22 @@ struct Slice {
 
 struct Explanation {
   std::vector<ExplainedKind> kinds;
-  std::vector<std::string> absent;  ///< kinds that are not built
-  std::vector<Slice> slices;        ///< of lasers, by height
-  std::size_t walls = 0;            ///< of the world
-  std::uint64_t ticks = 0;          ///< measured, for each row
-  double build = 0.0;               ///< [s] tables and kernels
-  double first = 0.0;               ///< [s] the first tick with all heard
-  double silent = 0.0;              ///< [s] a tick with nobody heard, mean
-  double all = 0.0;                 ///< [s] a tick with all heard, mean
-  std::size_t resident = 0;         ///< [bytes] of this process, driver included; 0: not known
+  std::vector<std::string> absent;             ///< kinds that are not built
+  std::vector<Slice> slices;                   ///< of lasers, by height
+  std::size_t walls = 0;                       ///< of the world
+  std::vector<sensors::Statement> statements;  ///< modes and bounds, kind by kind
+  std::uint64_t ticks = 0;                     ///< measured, for each row
+  double build = 0.0;                          ///< [s] tables and kernels
+  double first = 0.0;                          ///< [s] the first tick with all heard
+  double silent = 0.0;                         ///< [s] a tick with nobody heard, mean
+  double all = 0.0;                            ///< [s] a tick with all heard, mean
+  std::size_t resident = 0;                    ///< [bytes] of this process, driver included; 0: not known
 };
 
 /// Drives the robots about for two seconds (`wander`), then ticks a farm along their ways: once with nobody heard, once
 /// for each kind alone, once with all. @throws base::InputError as farm::Farm does
-Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads);
+/// @param progress called now and then with the part in (0, 1] that is done; may be empty
+Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads,
+                    const std::function<void(double)>& progress = {});
 
 }  // namespace sf::scenarios

@@ -11,7 +11,10 @@ Casts::~Casts() = default;
 
 const std::vector<Fan>& Casts::fans() const { return t_->fans; }
 const BeamPlan& Casts::plan(std::uint32_t fan) const { return t_->fan_rows[fan].plan; }
-Work Casts::work() const { return {t_->rays, t_->doubts_seen, t_->scene.counts().cells_built, 0}; }
+Work Casts::work() const {
+  const Scene::Counts scene = t_->scene.counts();
+  return {t_->rays, t_->doubts_seen, scene.cells_built, 0, scene.movers_near, scene.movers_met};
+}
 
 void Casts::place(std::span<const Pose> poses) { t_->scene.place(poses); }
 

@@ -81,7 +81,23 @@ struct Work {
   std::uint64_t doubts = 0;       ///< lanes of four beams that 32 bits could not prove
   std::uint64_t cells_built = 0;  ///< sector lists made
   std::uint64_t dipoles = 0;      ///< magnet and element pairs summed
+  std::uint64_t movers_near = 0;  ///< pairs of a robot that looks and a mover within its range
+  std::uint64_t movers_met = 0;   ///< of these, not hidden by nearer movers or walls, nor outside of its view
+
+  Work& operator+=(const Work& more);
+  Work operator-(const Work& before) const;
 };
+
+inline Work& Work::operator+=(const Work& more) {
+  rays += more.rays, doubts += more.doubts, cells_built += more.cells_built, dipoles += more.dipoles;
+  movers_near += more.movers_near, movers_met += more.movers_met;
+  return *this;
+}
+
+inline Work Work::operator-(const Work& before) const {
+  return {rays - before.rays,       doubts - before.doubts,           cells_built - before.cells_built,
+          dipoles - before.dipoles, movers_near - before.movers_near, movers_met - before.movers_met};
+}
 
 /// All sensors of one kind, a batch at a time. One thread.
 class Instruments {

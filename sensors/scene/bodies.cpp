@@ -179,6 +179,7 @@ void Bodies::collect(const View& view, Scratch& scratch, SectorLists& lists, flo
   lists.clear();
   std::fill(clearances, clearances + SF_SECTORS, std::numeric_limits<float>::infinity());
   find_near(view, scratch);
+  scratch.movers_near += scratch.sorted.size();
   Screen screen;
   if (view.fov < 2.0 * M_PI)
     screen.cover(view.yaw + 0.5 * view.fov + 1e-6, view.yaw - 0.5 * view.fov - 1e-6 + 2.0 * M_PI);
@@ -210,6 +211,7 @@ void Bodies::collect(const View& view, Scratch& scratch, SectorLists& lists, flo
         view.depth->hides(view.origin, view.radius, view.origin + p, bodies_[n.body].radius, scratch.walls))
       continue;
 
+    ++scratch.movers_met;
     const std::size_t before = lists.items.size();
     add_body(view, n.body, bearing, wide, lists);
     for (std::size_t at = before; at < lists.items.size(); ++at) {

@@ -60,6 +60,8 @@ class Bodies {
     std::vector<Near> sorted;
     std::vector<std::uint32_t> counts;
     Sight::Nearby walls;
+    std::uint64_t movers_near = 0;  ///< ever
+    std::uint64_t movers_met = 0;   ///< of these
   };
   /// Collects what `view` may meet of other movers, and for each sector how near to walls any of it is,
   /// at least [m].

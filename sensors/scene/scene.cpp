@@ -135,6 +135,13 @@ bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {
   return replaced_;
 }
 
-Scene::Counts Scene::counts() const { return {pool_.built(), pool_.cells()}; }
+Scene::Counts Scene::counts() const {
+  Counts counts{pool_.built(), pool_.cells()};
+  for (const auto& scratch : scratch_) {
+    counts.movers_near += scratch->bodies.movers_near;
+    counts.movers_met += scratch->bodies.movers_met;
+  }
+  return counts;
+}
 
 }  // namespace sf::sensors

@@ -65,6 +65,8 @@ class Scene {
   struct Counts {
     std::uint64_t cells_built = 0;  ///< ever
     std::uint32_t cells_held = 0;   ///< now
+    std::uint64_t movers_near = 0;  ///< ever: pairs of a view's robot and a mover within its range
+    std::uint64_t movers_met = 0;   ///< of these, not hidden, nor outside of its view
   };
   Counts counts() const;
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "farm/farm.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::scenarios {
@@ -58,6 +59,27 @@ TEST(Explanation, WhatIsGivenAgainIsCounted) {
   EXPECT_EQ(e.kinds[0].readings, 1.0);
   EXPECT_EQ(e.kinds[0].again, 1.0);
   EXPECT_EQ(e.kinds[0].work.rays, 0u);
+}
+
+/// Six in a row look along it: each sees its neighbours, who hide the others.
+TEST(Explanation, HiddenMoversAreCounted) {
+  world::World world;
+  for (int i = 0; i < 6; ++i) scenes::add_robot(world, {0.5 * i, 0.0, 0.0, 0.0}, scenes::laser(61, 2.0 * M_PI, 4.0));
+  world::finish(world);
+  farm::Farm farm(world, device());
+  farm.hear_all();
+  farm.tick(0, {});
+  EXPECT_EQ(farm.stats().work.movers_near, 6u * 5u);
+  EXPECT_EQ(farm.stats().work.movers_met, 2u * 5u) << "both neighbours, one at the ends";
+}
+
+TEST(Explanation, StatesModesAndBounds) {
+  world::World world = lasers(2);
+  sensors::set_accuracy(world, "skip2");
+  const Explanation e = explain(world, device(), 1, 1);
+  ASSERT_EQ(e.statements.size(), 1u);
+  EXPECT_EQ(e.statements[0].mode, 2);
+  EXPECT_LT(e.statements[0].bound.error, 2e-9);
 }
 
 TEST(Explanation, WallsThatNoLaserMeetsAreNotCounted) {
