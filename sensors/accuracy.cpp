@@ -81,10 +81,19 @@ void check_word(const world::World& world, std::span<const SensorKind* const> pr
          fmt::format("accuracy \"{}\" is for {}, and the world has no such sensor; leave it out", word, who));
 }
 
+/// Kinds with modes judge what their own sensors say; for the others only one word is right.
+void check_sensor(const world::World& world, const world::Sensor& sensor) {
+  const auto all = kinds();
+  const auto kind = std::find_if(all.begin(), all.end(), [&](const auto* k) { return k->word.type == sensor.type; });
+  if (kind != all.end() && (*kind)->modes.empty()) mode_of((*kind)->name, {}, accuracy_of(sensor), world);
+}
+
 }  // namespace
 
 void check_accuracy(const world::World& world, std::span<const SensorKind* const> present) {
   for (const std::string& word : words_in(world.accuracy.word)) check_word(world, present, word);
+  for (const world::Mover& mover : world.movers)
+    for (const world::Sensor& sensor : mover.sensors) check_sensor(world, sensor);
 }
 
 void set_accuracy(world::World& world, const std::string& words) {

@@ -22,7 +22,8 @@ std::uint8_t mode_of(std::string_view kind, std::span<const Mode> modes, const w
 /// `accuracy "word"` among a sensor's settings.
 world::Accuracy accuracy_of(const world::Sensor& sensor);
 
-/// @throws base::InputError when no kind knows the world's word, or none that the world has sensors of.
+/// @throws base::InputError when no kind knows the world's word, or none that the world has sensors of; and where a
+/// sensor of a kind without modes asks for one.
 void check_accuracy(const world::World& world, std::span<const SensorKind* const> present);
 
 /// Makes `words` the world's, and takes back what its sensors say of their own.

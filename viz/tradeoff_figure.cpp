@@ -25,8 +25,8 @@ constexpr int kLeft = 150;
 constexpr int kRight = 40;
 constexpr int kHeader = 100;
 constexpr int kPlot = 400;
-constexpr int kBetween = 150;      ///< title of a panel, and the labels below its plot
-constexpr double kNothing = 90.0;  ///< column of errors that are 0
+constexpr int kBetween = 150;       ///< title of a panel, and the labels below its plot
+constexpr double kNothing = 120.0;  ///< column of errors that are 0
 
 /// Errors below this are as good as none: rounding.
 constexpr double kLeast = 1e-12;
@@ -65,6 +65,13 @@ struct Place {
 
 std::string power(int exponent) { return exponent == 0 ? "1" : fmt::format("1e{}", exponent); }
 
+/// "40 M", "5 k", "0".
+std::string rate_text(double rate) {
+  if (rate >= 1e6) return fmt::format("{:g} M", rate * 1e-6);
+  if (rate >= 1e3) return fmt::format("{:g} k", rate * 1e-3);
+  return fmt::format("{:g}", std::abs(rate));  // no -0
+}
+
 void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
   const PixelBox& p = at.plot;
   TextStyle style = small_text();
@@ -73,7 +80,7 @@ void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
   for (const double rate : rates.at) {
     const double y = std::floor(at.y(rate)) + 0.5;
     canvas.line({p.x_min + 0.0, y}, {p.x_max + 0.0, y}, 1.0, kGrid);
-    canvas.text({p.x_min - 11.0, y}, fmt::format("{:g}", rate), style);
+    canvas.text({p.x_min - 11.0, y}, rate_text(rate), style);
   }
   style.across = Anchor::middle;
   style.down = Anchor::start;

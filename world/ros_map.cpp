@@ -159,6 +159,7 @@ void add_walls(World& world, const Map& map, const Traced& traced) {
 World load_ros_map(const std::string& file, const LoadOptions& options) {
   World world;
   world.file = file;
+  world.accuracy.word = options.accuracy;
   world.name = std::filesystem::path(file).stem().string();
   const Yaml yaml{file, parse_yaml(file)};
   const Map map = read_map(yaml, world.warnings);

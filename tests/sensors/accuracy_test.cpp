@@ -78,6 +78,12 @@ TEST(Accuracy, WhatNobodyKnowsIsRefusedWhereItStands) {
   EXPECT_NE(refusal(load("", "", "accuracy 3")).find("expects a word"), std::string::npos);
 }
 
+TEST(Accuracy, KindsWithoutModesAreExact) {
+  EXPECT_EQ(modes(load("", "", "", "", "accuracy \"exact\"")), "exact");
+  const std::string text = refusal(load("", "", "", "", "accuracy \"skip2\""));
+  EXPECT_NE(text.find(":5: 'accuracy' is \"skip2\"; this sensor knows \"exact\""), std::string::npos) << text;
+}
+
 TEST(Accuracy, AWordForSensorsThatAreNotThereIsRefused) {
   world::World world = scenes::boxes(5, 8.0, 1);
   scenes::add_robots(world, 1, scenes::laser(11), 1);

@@ -60,6 +60,13 @@ TEST_F(RosMap, TheOriginIsTheLowerLeftCornerAndTheFirstRowIsTheTop) {
   EXPECT_TRUE(world.models.at(0).is_bitmap);
 }
 
+TEST_F(RosMap, TakesTheOrderedAccuracy) {
+  LoadOptions options;
+  options.accuracy = "skip2";
+  EXPECT_EQ(load(kGood, options).accuracy.word, "skip2");
+  EXPECT_EQ(load(kGood).accuracy.word, "");
+}
+
 TEST_F(RosMap, UnknownIsAWallOnlyWhenAskedFor) {
   LoadOptions options;
   options.unknown_is_wall = true;

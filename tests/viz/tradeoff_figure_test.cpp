@@ -1,0 +1,60 @@
+#include "viz/tradeoff_figure.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/pose.h"
+#include "tests/viz/png.h"
+
+namespace sf::viz {
+namespace {
+
+constexpr std::uint32_t kFront = 0xFF0072B2u, kBeaten = 0xFF909090u;
+
+std::string file(const char* name) { return testing::TempDir() + name; }
+
+TradeoffPoint point(const char* name, double rate, double error, bool front) {
+  return {name, rate, error / 10.0, error, 10.0 * error, front};
+}
+
+scenes::Picture drawn(const std::vector<TradeoffPoint>& points) {
+  const TradeoffPanel panel{"laser", "rays per second", "error [m]", points};
+  draw_tradeoff("Title", "subtitle", {&panel, 1}, file("tradeoff.png"));
+  return scenes::read_png(file("tradeoff.png"));
+}
+
+/// Middle of all pixels of one colour.
+base::Vec2 middle_of(const scenes::Picture& p, std::uint32_t color) {
+  double x = 0.0, y = 0.0, count = 0.0;
+  for (int column = 0; column < p.width; ++column)
+    for (int row = 0; row < p.height; ++row)
+      if (p.count(color, column, row, column + 1, row + 1) > 0) x += column, y += row, ++count;
+  return {x / count, y / count};
+}
+
+TEST(TradeoffFigure, FasterIsHigherAndWorseIsFartherRight) {
+  const scenes::Picture p = drawn({point("slow", 1e6, 1e-6, false), point("fast", 3e6, 1e-3, true)});
+  const base::Vec2 slow = middle_of(p, kBeaten), fast = middle_of(p, kFront);
+  EXPECT_GT(fast.x, slow.x + 200.0) << "three decades";
+  EXPECT_LT(fast.y, slow.y - 150.0) << "three times as fast";
+}
+
+TEST(TradeoffFigure, NoErrorHasAPlaceOfItsOwn) {
+  const scenes::Picture p = drawn({{"exact", 1e6, 0.0, 0.0, 0.0, true}, point("other", 2e6, 1e-3, false)});
+  EXPECT_LT(middle_of(p, kFront).x, 300.0);
+  EXPECT_GT(middle_of(p, kBeaten).x, 300.0);
+}
+
+TEST(TradeoffFigure, InfiniteErrorsStayOnThePicture) {
+  const scenes::Picture p = drawn({{"blind", 1e6, 0.0, 1e-3, HUGE_VAL, true}});
+  EXPECT_GT(p.count(kFront, 0, 0, p.width, p.height), 50);
+}
+
+TEST(TradeoffFigure, NamesWhatCannotBeWritten) {
+  EXPECT_THROW(draw_tradeoff("t", "s", {}, "/nowhere/t.png"), base::InputError);
+}
+
+}  // namespace
+}  // namespace sf::viz
