@@ -239,6 +239,7 @@ std::string json_of(const world::World& world, const sensors::Roster& roster, co
     head["accuracy"] = sensors::word_of(kind, reading.mode);
     head["bound"] = finite_json(reading.bound);
   }
+  if (kind.list.empty() && !reading.unsure.empty()) head["unsure"] = word_of(reading.unsure.front());
   if (kind.list.empty()) {
     head.update(element_json(kind, reading.values));
     return dump(head) + "\n";

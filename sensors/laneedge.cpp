@@ -28,6 +28,9 @@ bool anything_else(const world::World& world) {
   return !world.walls.empty() || (bodies > 0 && world.movers.size() > 1);
 }
 
+/// What a reading of fewer rays says of itself.
+constexpr base::Unsure kThinned[] = {base::Unsure::not_cast};
+
 /// Rays against the excerpt, exactly; where the road is a raster, into that as well; then lines through what they met.
 class LaneEdges : public Instruments {
  public:
@@ -119,7 +122,8 @@ void LaneEdges::collect(std::vector<base::ReadingBlock>& out) {
     block.X_WS = casts_.results(i).X_WS;
     block.values = fit_.reading(i);
     block.mode = edge.row.mode;
-    block.bound = exact_ && edge.row.mode == 0 ? kStraightError : HUGE_VAL;
+    block.bound = exact_ ? kStraightError : HUGE_VAL;
+    if (edge.row.mode > 0) block.unsure = kThinned;
     out.push_back(block);
   }
 }

@@ -84,8 +84,8 @@ std::vector<LaneEdge> lane_edges_of(const world::World& world) {
 Bound bound_of_lane_edge(const world::World& world, const SensorRow& sensor) {
   if (world.road_resolution > 0.0 && !world.stripes.empty())
     return {HUGE_VAL, "paint in pixels: each reading says its own sigma"};
-  if (sensor.mode > 0) return {HUGE_VAL, "rays left out may have met another edge: each reading says its own sigma"};
-  return {kStraightError, "straight edges; along curves each reading says its own sigma"};
+  if (sensor.mode == 0) return {kStraightError, "straight edges; along curves each reading says its own sigma"};
+  return {kStraightError, "one straight edge in sight; all readings are flagged: rays left out may have met another"};
 }
 
 }  // namespace sf::sensors
