@@ -10,7 +10,7 @@ std::span<const Case> cases() {
   static const std::vector<Case> all = [] {
     std::vector<Case> cases;
     for (const auto group :
-         {places, beams, segments, fans, fleets, magnets, edges, times, numbers, files, wires, devices}) {
+         {places, beams, segments, fans, fleets, magnets, edges, times, numbers, files, wires, modes, devices}) {
       const std::span<const Case> more = group();
       cases.insert(cases.end(), more.begin(), more.end());
     }

@@ -33,6 +33,7 @@ std::span<const Case> times();     ///< ticks of 1 us and 10 s, tick 1e9, a year
 std::span<const Case> numbers();   ///< not-a-number, infinity, denormals in packets, poses and commands
 std::span<const Case> files();     ///< likewise in files
 std::span<const Case> wires();     ///< words at and past their ends
+std::span<const Case> modes();     ///< accuracy modes: within what they state, flagged where not
 std::span<const Case> devices();   ///< this device beside plain C++, and 32 bits beside the farm
 
 }  // namespace sf::extremes
