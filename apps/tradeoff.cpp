@@ -100,7 +100,9 @@ std::string text_of(const std::vector<scenarios::Grade>& grades) {
                         fmt::format("{:.4g}", g.rate), quantity_text(g.median, g.unit), quantity_text(g.p99, g.unit),
                         quantity_text(g.max, g.unit), 100.0 * g.flagged, quantity_text(g.max_unflagged, g.unit),
                         quantity_text(g.bound, g.unit), g.front ? "*" : "");
-  return text + "* no other mode of the kind is as fast with 99 % of errors as small\n";
+  text += "* no other mode of the kind is as fast with 99 % of errors as small\n\n";
+  for (const scenarios::Grade& g : grades) text += fmt::format("{:<13} {:<8} {}\n", g.sensor, g.mode, g.what);
+  return text + "\n";
 }
 
 void choose_accuracy(world::World& world, gpu::Device& device, const Options& options) {

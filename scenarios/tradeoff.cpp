@@ -182,6 +182,7 @@ std::vector<Grade> tradeoff(const world::World& world, gpu::Device& device, cons
       const Read read = entrants.back()->read();
       Grade grade{.sensor = std::string(kind.name),
                   .mode = std::string(kind.modes[mode].word),
+                  .what = std::string(kind.modes[mode].what),
                   .unit = std::string(sensors::unit_of(kind))};
       if (mode == 0) exact = read;
       compare(read, exact, grade);

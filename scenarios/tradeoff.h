@@ -17,6 +17,7 @@ namespace sf::scenarios {
 struct Grade {
   std::string sensor;  ///< the kind
   std::string mode;
+  std::string what;   ///< the mode does
   std::string unit;   ///< of errors and bounds: m or T; empty: none
   double rate = 0.0;  ///< [1/s] elements (rays, fields, edges) of whole ticks in which only this kind is heard
   double tick = 0.0;  ///< [s] of such a tick, median
