@@ -10,9 +10,9 @@
 #include "apps/plot_maps.h"
 #include "apps/plot_readings.h"
 #include "apps/progress.h"
-#include "base/error.h"
 #include "farm/farm.h"
 #include "record/recording.h"
+#include "scenarios/experiment.h"
 #include "viz/occupancy.h"
 #include "viz/trajectory_figure.h"
 
@@ -85,11 +85,7 @@ int plot(const Options& options) {
   const world::World world = world::from_snapshot(recording.info.snapshot);
   const std::filesystem::path folder =
       options.out.empty() ? std::filesystem::path(recording.file).parent_path() : std::filesystem::path(options.out);
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw base::InputError(folder.string(), 0,
-                           "cannot be made a folder: " + error.message() + "; name another with -o");
+  scenarios::make_folder(folder.string());
 
   const std::string trajectories = (folder / "trajectories.png").string();
   viz::draw_trajectories(world, tracks_of(recording, world), trajectories);

@@ -51,7 +51,7 @@ std::string wish_text(const scenarios::Wish& wish) {
 }
 
 std::string advice_text(const std::vector<scenarios::Grade>& grades, const scenarios::Wish& wish) {
-  return fmt::format("fastest {}: --accuracy \"{}\"\n", wish_text(wish),
+  return fmt::format("{} {}: --accuracy \"{}\"\n", wish.least_rate > 0.0 ? "most accurate" : "fastest", wish_text(wish),
                      scenarios::words_of(grades, scenarios::advise(grades, wish)));
 }
 
@@ -73,10 +73,7 @@ void draw(const std::string& world, const std::string& device, const std::vector
 
 void write(const Options& options, const world::World& world, const gpu::Device& device,
            const std::vector<scenarios::Grade>& grades) {
-  std::error_code error;
-  std::filesystem::create_directories(options.out, error);
-  if (error)
-    throw base::InputError(options.out, 0, "cannot be made a folder: " + error.message() + "; name another with -o");
+  scenarios::make_folder(options.out);
   const std::filesystem::path folder(options.out);
   scenarios::write_text((folder / "tradeoff.csv").string(), scenarios::csv_of(grades));
   draw(world.name, device.facts().name, grades, (folder / "tradeoff.png").string());
@@ -110,6 +107,7 @@ void choose_accuracy(world::World& world, gpu::Device& device, const Options& op
   catch_stop_signals();
   const scenarios::Wish wish = wish_of(options);
   const auto grades = measure(world, device, options);
+  if (stop_requested()) return;
   const std::string words = scenarios::words_of(grades, scenarios::advise(grades, wish));
   std::fprintf(stderr, "sensorfarm: measured; %s: --accuracy \"%s\"\n", wish_text(wish).c_str(), words.c_str());
   sensors::set_accuracy(world, words);

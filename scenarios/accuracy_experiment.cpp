@@ -50,14 +50,15 @@ const sensors::SensorKind& kind_called(std::string_view name) {
   return **found;
 }
 
-void add_map(const world::World& world, const Trial& trial, double share, Outcome& outcome) {
+void add_map(Reference& reference, const Trial& trial, double share, Outcome& outcome) {
   const maps::Grid& map = trial.maps.front();
-  const maps::Grid reference = what_could_be_seen(world, trial.mapped.front(), map.plan);
-  outcome.missed += share * (1.0 - seen_of(map, reference).coverage());
-  outcome.wrong += share * disagreement(map, reference);
+  const maps::Grid& seeable = reference.of(trial.mapped.front(), map.plan);
+  outcome.missed += share * (1.0 - seen_of(map, seeable).coverage());
+  outcome.wrong += share * disagreement(map, seeable);
 }
 
-Outcome measure(const Bench& bench, const Test& test, const Scenario& scenario, std::string_view mode) {
+Outcome measure(const Bench& bench, const Test& test, const Scenario& scenario, std::string_view mode,
+                Reference& reference) {
   Outcome outcome{.test = test.name, .sensor = test.sensor, .mode = std::string(mode)};
   const double share = 1.0 / bench.options.trials;
   for (std::uint32_t k = 0; k < bench.options.trials; ++k) {
@@ -66,7 +67,7 @@ Outcome measure(const Bench& bench, const Test& test, const Scenario& scenario, 
     world::World world = disturbed_world(own, {});
     sensors::set_accuracy(world, fmt::format("{}:{}", test.sensor, mode));
     const Trial trial = run_trial(own, world, bench.device, {.maps = test.maps, .threads = bench.options.threads});
-    if (test.maps) add_map(world_of(own), trial, share, outcome);
+    if (test.maps) add_map(reference, trial, share, outcome);
     const ThesisRow row = row_of(trial.errors.front());
     outcome.abs_error += share * row[4];
     outcome.max_error = std::max(outcome.max_error, row[7]);
@@ -149,10 +150,12 @@ std::vector<std::string> run_accuracy(const Bench& bench) {
         test.maps ? bench.scenario
                   : read_scenario((std::filesystem::path(bench.options.folder) / (test.name + ".toml")).string());
     scenario.plant = bench.scenario.plant;
+    const world::World world = world_of(scenario);
+    Reference reference(world);
     const auto modes = kind_called(test.sensor).modes;
     for (const sensors::Mode& mode : modes) {
       if (bench.progress) bench.progress(done, fmt::format("{}, {}", test.name, mode.word));
-      outcomes.push_back(measure(bench, test, scenario, mode.word));
+      outcomes.push_back(measure(bench, test, scenario, mode.word, reference));
       done += 1.0 / static_cast<double>(tests().size() * modes.size());
     }
   }

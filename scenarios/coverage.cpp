@@ -189,6 +189,12 @@ maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, co
   return grid;
 }
 
+const maps::Grid& Reference::of(std::uint32_t mover, const maps::GridPlan& plan) {
+  if (!grid_ || mover_ != mover || !(grid_->plan == plan)) grid_ = what_could_be_seen(world_, mover, plan);
+  mover_ = mover;
+  return *grid_;
+}
+
 Seen seen_of(const maps::Grid& map, const maps::Grid& reference) {
   SF_CHECK(map.plan == reference.plan, "maps of two plans cannot be compared");
   Seen seen;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,6 +40,20 @@ void enter(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t,
 /// from the middles of all cells of `plan` that are connected to its start, with sixteen headings. Cells whose middle
 /// is in view from none of these are left unexplored. Movers are not looked at.
 maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan);
+
+/// `what_could_be_seen` in one world, which must outlive it: kept while mover and plan stay the same, since it takes
+/// its time.
+class Reference {
+ public:
+  explicit Reference(const world::World& world) : world_(world) {}
+  /// Lives until the next call.
+  const maps::Grid& of(std::uint32_t mover, const maps::GridPlan& plan);
+
+ private:
+  const world::World& world_;
+  std::uint32_t mover_ = 0;
+  std::optional<maps::Grid> grid_;
+};
 
 /// The free cells of a reference, and those of them that a map does not know.
 struct Seen {

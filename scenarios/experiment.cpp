@@ -44,10 +44,7 @@ std::vector<std::string> run_experiment(const ExperimentKind& kind, const Experi
                                      (std::string(kind.scenario.empty() ? kind.name : kind.scenario) + ".toml"))
                                         .string());
   scenario.plant = options.plant ? *options.plant : scenario.plant ? *scenario.plant : kind.plant;
-  std::error_code error;
-  std::filesystem::create_directories(options.out, error);
-  if (error)
-    throw base::InputError(options.out, 0, "cannot be made a folder: " + error.message() + "; name another with -o");
+  make_folder(options.out);
   check_scenario(scenario);
   return kind.run({kind, scenario, options, device, progress});
 }
@@ -68,6 +65,12 @@ std::vector<Trial> run_trials(const Bench& bench, const TrialOptions& options) {
 
 std::string in_folder(const Bench& bench, const std::string& name) {
   return (std::filesystem::path(bench.options.out) / name).string();
+}
+
+void make_folder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw base::InputError(path, 0, "cannot be made a folder: " + error.message() + "; name another with -o");
 }
 
 void write_text(const std::string& path, const std::string& text) {

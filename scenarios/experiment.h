@@ -61,6 +61,9 @@ std::vector<std::string> run_experiment(const ExperimentKind& kind, const Experi
 std::vector<Trial> run_trials(const Bench& bench, const TrialOptions& options);
 /// Path of a file in the experiment's folder.
 std::string in_folder(const Bench& bench, const std::string& name);
+/// Makes a folder that the user named with -o, and those above it, where it is not there.
+/// @throws base::InputError naming it when it cannot be made.
+void make_folder(const std::string& path);
 /// @throws base::InputError naming the path when it cannot be written.
 void write_text(const std::string& path, const std::string& text);
 /// "3 trials", "1 trial".

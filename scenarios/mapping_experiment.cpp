@@ -104,12 +104,11 @@ void run_with(const Bench& bench, const Entrant& entrant, std::vector<Mapped>& r
   const std::vector<Trial> trials = run_trials(own, {.maps = true, .supervisor = entrant.supervisor});
   const world::World world = world_of(scenario);
   std::vector<viz::Track> tracks;
-  std::optional<maps::Grid> reference;
+  Reference reference(world);
   for (std::size_t k = 0; k < trials.size(); ++k) {
     const Trial& trial = trials[k];
-    const maps::GridPlan& plan = trial.maps.front().plan;
-    if (!reference || !(reference->plan == plan)) reference = what_could_be_seen(world, trial.mapped.front(), plan);
-    rows.push_back(mapped_of(entrant, static_cast<std::uint32_t>(k + 1), trial, *reference));
+    const maps::Grid& seeable = reference.of(trial.mapped.front(), trial.maps.front().plan);
+    rows.push_back(mapped_of(entrant, static_cast<std::uint32_t>(k + 1), trial, seeable));
     tracks.push_back(trial.tracks.front());
     tracks.back().name = fmt::format("trial {}", k + 1);
   }
