@@ -13,10 +13,11 @@ find_package(MPI QUIET COMPONENTS C)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOImage RenderingFreeType)
 
 # Flags every target of ours is built with. Contraction is off so that host and device round alike; g++ 12 warns of
-# overlapping strings (-Wrestrict) and, once headers are precompiled, of their bounds (-Warray-bounds) where nothing is wrong.
+# overlapping strings (-Wrestrict) and, once headers are precompiled, of their bounds where nothing is wrong.
 add_library(house INTERFACE)
 target_include_directories(house INTERFACE ${CMAKE_SOURCE_DIR})
-target_compile_options(house INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Wno-restrict -Wno-array-bounds -ffp-contract=off
+target_compile_options(house INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
+                       -Wno-stringop-overread -ffp-contract=off
                        $<$<BOOL:${SENSORFARM_WERROR}>:-Werror>)
 if(SENSORFARM_SANITIZE)
   target_compile_options(house INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
@@ -30,26 +31,41 @@ option(SENSORFARM_PCH "Precompile the headers that most sources include" ON)
 set(SENSORFARM_COMMON_HEADERS <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <random>
                               <set> <span> <string> <string_view> <variant> <vector> <fmt/format.h>)
 
-# add_precompiled(NAME headers...): a target whose headers others reuse by precompiled(TARGET NAME).
+# add_precompiled(NAME [links...] HEADERS headers...): a target whose headers others reuse by precompiled(TARGET NAME).
 function(add_precompiled name)
+  cmake_parse_arguments(PCH "" "" "HEADERS" ${ARGN})
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/${name}.cpp CONTENT "")
   add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/generated/${name}.cpp)
-  target_link_libraries(${name} PRIVATE house fmt::fmt)
-  target_precompile_headers(${name} PRIVATE ${ARGN})
+  target_link_libraries(${name} PRIVATE house fmt::fmt ${PCH_UNPARSED_ARGUMENTS})
+  target_precompile_headers(${name} PRIVATE ${PCH_HEADERS})
 endfunction()
 function(precompiled target name)
   if(SENSORFARM_PCH)
     target_precompile_headers(${target} REUSE_FROM ${name})
   endif()
 endfunction()
+
+# With SENSORFARM_CHECKED every module is built a second time, as NAME_checked, under AddressSanitizer and UBSan, and the test
+# programs' objects are linked with that too (tests/CMakeLists.txt): instrumented tests would cost three times as much.
+option(SENSORFARM_CHECKED "Build every module a second time, with sanitizers, and its tests with it" OFF)
+if(SENSORFARM_CHECKED)
+  add_library(checked INTERFACE)
+  target_compile_options(checked INTERFACE -O1 -g1 -UNDEBUG -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined
+                                           -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  target_link_options(checked INTERFACE -fsanitize=address,undefined)
+endif()
 if(SENSORFARM_PCH)
-  add_precompiled(common_headers ${SENSORFARM_COMMON_HEADERS})
+  add_precompiled(common_headers HEADERS ${SENSORFARM_COMMON_HEADERS})
+  if(SENSORFARM_CHECKED)
+    add_precompiled(common_headers_checked checked HEADERS ${SENSORFARM_COMMON_HEADERS})
+  endif()
 endif()
 
-# add_room(NAME [PUBLIC targets...] [PRIVATE targets...] [MODULES names...])
-# MODULES: sources NAME/<name>.cpp that are loaded when they are first needed, as sensorfarm_<name>.so beside the program.
+# add_room(NAME [PUBLIC targets...] [PRIVATE targets...] [SOURCES sources...] [MODULES names...])
+# SOURCES: written at configure time, beside those of the folder. MODULES: sources NAME/<name>.cpp that are loaded when they
+# are first needed, as sensorfarm_<name>.so beside the program.
 function(add_room name)
-  cmake_parse_arguments(ROOM "" "" "PUBLIC;PRIVATE;MODULES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "PUBLIC;PRIVATE;SOURCES;MODULES" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${name}/*.cpp)
   foreach(module ${ROOM_MODULES})
     list(REMOVE_ITEM sources ${CMAKE_SOURCE_DIR}/${name}/${module}.cpp)
@@ -57,15 +73,41 @@ function(add_room name)
     set_target_properties(sensorfarm_${module} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
     target_link_libraries(sensorfarm_${module} PRIVATE house)
   endforeach()
-  if(sources)
-    add_library(${name} STATIC ${sources})
-    target_link_libraries(${name} PUBLIC house Threads::Threads ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
-    precompiled(${name} common_headers)
-  else()
-    add_library(${name} INTERFACE)
-    target_link_libraries(${name} INTERFACE house ${ROOM_PUBLIC})
-  endif()
+  add_library(${name} STATIC ${sources} ${ROOM_SOURCES})
+  target_link_libraries(${name} PUBLIC house Threads::Threads ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
+  precompiled(${name} common_headers)
   foreach(module ${ROOM_MODULES})
     add_dependencies(${name} sensorfarm_${module})
   endforeach()
+  if(SENSORFARM_CHECKED)
+    add_library(${name}_checked OBJECT ${sources} ${ROOM_SOURCES})
+    target_link_libraries(${name}_checked PRIVATE house Threads::Threads ${ROOM_PUBLIC} ${ROOM_PRIVATE} checked)
+    precompiled(${name}_checked common_headers_checked)
+    set_property(GLOBAL PROPERTY SENSORFARM_BELOW_${name} ${ROOM_PUBLIC} ${ROOM_PRIVATE})
+  endif()
+endfunction()
+
+# add_checked_program(NAME OBJECTS targets... ROOMS rooms... [LIBRARIES targets...]): NAME of the objects of targets and of
+# all instrumented modules below `rooms`. The linker keeps the first copy of an inline function: the instrumented one.
+function(add_checked_program name)
+  cmake_parse_arguments(PROGRAM "" "" "OBJECTS;ROOMS;LIBRARIES" ${ARGN})
+  set(rooms "")
+  set(libraries ${PROGRAM_LIBRARIES})
+  set(open ${PROGRAM_ROOMS})
+  while(open)
+    list(POP_FRONT open next)
+    if(NOT TARGET ${next}_checked)
+      list(APPEND libraries ${next})
+    elseif(NOT next IN_LIST rooms)
+      list(APPEND rooms ${next})
+      get_property(below GLOBAL PROPERTY SENSORFARM_BELOW_${next})
+      list(APPEND open ${below})
+    endif()
+  endwhile()
+  set(objects ${PROGRAM_OBJECTS})
+  list(TRANSFORM rooms REPLACE "(.+)" "$<TARGET_OBJECTS:\\1_checked>")
+  list(TRANSFORM objects REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>")
+  list(REMOVE_DUPLICATES libraries)
+  add_executable(${name} ${CMAKE_SOURCE_DIR}/tests/keep_loaded.cpp ${rooms} ${objects})
+  target_link_libraries(${name} PRIVATE checked Threads::Threads ${libraries})
 endfunction()

@@ -25,6 +25,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// The program under test: the one of this build, or another with the same sources (one with sanitizers).
+const char* program_path() {
+  const char* other = std::getenv("SENSORFARM_PROGRAM");
+  return other != nullptr ? other : SF_PROGRAM;
+}
+
 void nap() { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }
 
 std::vector<std::string> environment_of(const Environment& added) {
@@ -67,7 +73,7 @@ std::string Folder::write(const std::string& name, const std::string& text) cons
 
 Program::Program(const Words& arguments, const Environment& environment, const std::string& out)
     : out_(out.empty() ? folder_.path("out") : out) {
-  Words words{SF_PROGRAM};
+  Words words{program_path()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<std::string> variables = environment_of(environment);
   posix_spawn_file_actions_t files;
@@ -76,9 +82,9 @@ Program::Program(const Words& arguments, const Environment& environment, const s
   posix_spawn_file_actions_addopen(&files, 1, out_.c_str(), O_WRONLY | O_CREAT, 0600);
   posix_spawn_file_actions_addopen(&files, 2, folder_.path("err").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
   const int failed =
-      posix_spawn(&pid_, SF_PROGRAM, &files, nullptr, pointers(words).data(), pointers(variables).data());
+      posix_spawn(&pid_, program_path(), &files, nullptr, pointers(words).data(), pointers(variables).data());
   posix_spawn_file_actions_destroy(&files);
-  if (failed != 0) ADD_FAILURE() << "cannot start " << SF_PROGRAM;
+  if (failed != 0) ADD_FAILURE() << "cannot start " << program_path();
   ended_ = failed != 0;
 }
 
