@@ -11,7 +11,8 @@
 namespace sf::control {
 
 LaneKeeping::LaneKeeping(const LaneSettings& settings, const PathTask& task)
-    : PathFollower(sensors::kLaneEdge, settings.gains, settings.speed, settings.hold, task), settings_(settings) {
+    : PathFollower(sensors::kLaneEdge, "lane edge sensor", settings.gains, settings.speed, settings.hold, task),
+      settings_(settings) {
   SF_CHECK(settings.half_width || task.known(), "a lane of unknown width");
 }
 
@@ -25,10 +26,21 @@ double LaneKeeping::error_of(const base::ReadingBlock& reading, const base::Pose
 
 namespace {
 
+constexpr double kLeastAhead = 0.1;  // [m] as if a sensor were so far ahead that is nearer, or behind
+constexpr double kMostAhead = 2.0;   // [rad/s] of gain times distance ahead: slower than steps at 10 Hz
+
 const world::Sensor* find_sensor(const world::Mover& mover) {
   const auto found = std::find_if(mover.sensors.begin(), mover.sensors.end(),
                                   [](const world::Sensor& sensor) { return sensor.type == "laneedge"; });
   return found == mover.sensors.end() ? nullptr : &*found;
+}
+
+// A unicycle at speed v whose error is measured l ahead of it obeys e'' + kp l e' + kp v e = 0: damped by 1 / sqrt(2)
+// where kp = 2 v / l^2. Player's driver for the Create turns twice as much as it is told.
+double damped_gain(const world::Mover& mover, const LaneSettings& lane) {
+  const double ahead = std::max(lane.p_MS.x, kLeastAhead);
+  const double gain = std::min(2.0 * lane.speed / (ahead * ahead), kMostAhead / ahead);
+  return mover.command_law == world::CommandLaw::player_create ? 0.5 * gain : gain;
 }
 
 std::unique_ptr<Controller> make_lane_keeping(const Site& site, Settings& settings) {
@@ -40,15 +52,15 @@ std::unique_ptr<Controller> make_lane_keeping(const Site& site, Settings& settin
                     mover.name));
   const PathTask task(site, settings);
   LaneSettings lane;
-  lane.gains = read_gains(settings, lane.gains);
-  lane.speed = settings.number("speed", lane.speed, 0.0, mover.max_forward);
+  lane.speed = settings.number("speed", std::min(lane.speed, mover.max_forward), 0.0, mover.max_forward);
+  lane.p_MS = {sensor->X_MS.x, sensor->X_MS.y};
+  lane.gains = read_gains(settings, {.kp = damped_gain(mover, lane)});
   lane.hold = settings.number("hold", lane.hold, 0.0, 1e6);
   if (settings.has("half_width")) lane.half_width = settings.number("half_width", 0.0, 1e-3, 1e3);
   if (!lane.half_width && !task.known())
     settings.refuse("half_width",
                     "'lane-keeping' needs the lane's width, and the world has no path; expected a path( "
                     "... ) in the world file, or the setting 'half_width' [m]");
-  lane.p_MS = {sensor->X_MS.x, sensor->X_MS.y};
   lane.side = std::sin(sensor->X_MS.yaw) < 0.0 ? -1.0 : 1.0;
   const std::string side = settings.choice("side", lane.side > 0.0 ? "left" : "right", {"left", "right"});
   lane.side = side == "left" ? 1.0 : -1.0;

@@ -9,7 +9,7 @@
 namespace sf::control {
 
 struct LaneSettings {
-  PiGains gains{.kp = 0.5};          ///< per metre
+  PiGains gains{.kp = 0.5};          ///< per metre; of the controller by name: as its sensor's place asks for
   double speed = 0.1;                ///< [m/s]
   std::optional<double> half_width;  ///< [m] of the lane; none: of the path's piece under the sensor
   double side = 1.0;                 ///< +1: the sensor looks at the lane's left edge; -1: right

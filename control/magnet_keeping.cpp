@@ -10,7 +10,7 @@
 namespace sf::control {
 
 MagnetKeeping::MagnetKeeping(const MagnetSettings& settings, const PathTask& task)
-    : PathFollower(sensors::kMagnetometer, settings.gains, settings.speed, settings.hold, task) {}
+    : PathFollower(sensors::kMagnetometer, "magnetometers", settings.gains, settings.speed, settings.hold, task) {}
 
 double MagnetKeeping::error_of(const base::ReadingBlock& reading, const base::Pose&) const {
   constexpr std::size_t kColumns = sensors::kMagnetometerColumns;

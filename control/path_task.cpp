@@ -1,5 +1,7 @@
 #include "control/path_task.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace sf::control {
@@ -42,15 +44,22 @@ double Hold::keep(double now, std::int64_t time) {
   return last_;
 }
 
-PathFollower::PathFollower(std::uint8_t kind, const PiGains& gains, double speed, double hold, const PathTask& task)
-    : kind_(kind), speed_(speed), task_(task), law_(gains), hold_(hold) {}
+PathFollower::PathFollower(std::uint8_t kind, std::string_view sensor, const PiGains& gains, double speed, double hold,
+                           const PathTask& task)
+    : kind_(kind), sensor_(sensor), speed_(speed), task_(task), law_(gains), hold_(hold) {}
+
+std::string PathFollower::reason() const {
+  if (done_ || std::isfinite(error_)) return {};
+  return speaks_ ? fmt::format("its {} sees nothing to follow", sensor_)
+                 : fmt::format("no new reading comes from its {}", sensor_);
+}
 
 base::Twist PathFollower::step(const Input& input) {
   error_ = Controller::error();
   if (done_ || (done_ = task_.ended(input.state.X_WM))) return {};
   const base::ReadingBlock* reading = newest(input, kind_);
-  const bool speaks = hold_.speaks(reading, input.time);
-  const double now = speaks && reading != nullptr ? error_of(*reading, input.state.X_WM) : Controller::error();
+  speaks_ = hold_.speaks(reading, input.time);
+  const double now = speaks_ && reading != nullptr ? error_of(*reading, input.state.X_WM) : Controller::error();
   error_ = hold_.keep(now, input.time);
   if (!std::isfinite(error_)) return {};
   return {speed_, 0.0, std::isfinite(now) ? law_.steer(now, input.time) : law_.keep(error_)};

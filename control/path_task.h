@@ -2,10 +2,12 @@
 // Following a path of the world: which piece one is on, when one is through, and the loop that all who follow share.
 
 #include <cstdint>
+#include <string_view>
 
 #include "base/reading.h"
 #include "control/controllers.h"
 #include "control/pi_law.h"
+#include "control/reason.h"
 #include "world/paths.h"
 
 namespace sf::control {
@@ -53,15 +55,17 @@ class Hold {
 /// Follows a path at constant speed by what one sensor says of the error, with P or PI steering: readings are taken at
 /// its own rate, new or not. Without an error it goes on with the last for `hold` seconds, then stands until there is
 /// one again; the integral rests meanwhile. (The thesis says nothing of it.)
-class PathFollower : public Controller {
+class PathFollower : public Controller, public StatesReason {
  public:
   base::Twist step(const Input& input) final;
   bool done() const final { return done_; }
   double error() const final { return error_; }
+  std::string reason() const final;
 
  protected:
-  /// @param kind of the sensor @param speed [m/s] @param hold [s]
-  PathFollower(std::uint8_t kind, const PiGains& gains, double speed, double hold, const PathTask& task);
+  /// @param kind of the sensor @param sensor its name, for people @param speed [m/s] @param hold [s]
+  PathFollower(std::uint8_t kind, std::string_view sensor, const PiGains& gains, double speed, double hold,
+               const PathTask& task);
   const PathTask& task() const { return task_; }
 
  private:
@@ -69,11 +73,13 @@ class PathFollower : public Controller {
   virtual double error_of(const base::ReadingBlock& reading, const base::Pose& X_WM) const = 0;
 
   std::uint8_t kind_;
+  std::string_view sensor_;
   double speed_;
   PathTask task_;
   PiLaw law_;
   Hold hold_;
   double error_ = Controller::error();
+  bool speaks_ = false;  ///< the sensor, at the last step
   bool done_ = false;
 };
 

@@ -21,7 +21,11 @@ base::Twist Patrol::step(const Input& input) {
     return base::length(settings_.points[target_] - base::Vec2{X_WM.x, X_WM.y}) <= settings_.reach;
   };
   if (there()) next(input.time);
-  if (input.time < until_ || there() || obstructed(input)) return {};
+  reason_ = input.time < until_ ? "it pauses at an end of its way"
+            : there()           ? "it is where its one point is"
+            : obstructed(input) ? "another robot stands in its way"
+                                : "";
+  if (*reason_ != '\0') return {};
   return go_to(X_WM, settings_.points[target_],
                {settings_.speed, settings_.turn_speed, settings_.turns_in_place ? 0.3 : M_PI});
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "control/controllers.h"
+#include "control/reason.h"
 
 namespace sf::control {
 
@@ -19,12 +20,13 @@ struct PatrolSettings {
   bool turns_in_place = true;      ///< false: a car, which drives on while it turns
 };
 
-class Patrol final : public Controller {
+class Patrol final : public Controller, public StatesReason {
  public:
   explicit Patrol(PatrolSettings settings);
 
   base::Twist step(const Input& input) override;
   double radio() const override;
+  std::string reason() const override { return reason_; }
 
   std::size_t target() const { return target_; }  ///< index of the point it heads for
 
@@ -36,6 +38,7 @@ class Patrol final : public Controller {
   std::size_t target_ = 0;
   bool backwards_ = false;
   std::int64_t until_ = INT64_MIN;  ///< [ns] it stands
+  const char* reason_ = "";
 };
 
 extern const ControllerKind patrol_controller;

@@ -1,11 +1,19 @@
 #include "control/route.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 
 namespace sf::control {
+
+namespace {
+
+constexpr double kStands = 0.005;  // [m/s] a limit below this keeps it where it is
+
+}  // namespace
 
 Route::Route(std::shared_ptr<const Corridors> corridors, const Site& site, RouteSettings settings,
              std::optional<RouteGoals> goals, Company company)
@@ -52,7 +60,18 @@ base::Twist Route::step(const Input& input) {
   limit_by_gates(input, limit);
   limit_by_zones(limit, input);
   limit_by_others(limit);
+  const bool stands = limit.speed < kStands;
+  why_ = stands ? limit.why : "";
+  who_ = stands ? limit.who : base::kNobody;
   return drive(input, limit.speed);
+}
+
+std::string Route::reason() const {
+  if (done_) return "";
+  if (who_ == base::kNobody) return started_ ? why_ : "the start signal was not given";
+  for (const world::Mover& mover : site_.world.movers)
+    if (!mover.is_tag && mover.id == who_) return fmt::format("'{}' {}", mover.name, why_);
+  return fmt::format("robot {} {}", who_, why_);
 }
 
 base::Twist Route::drive(const Input& input, double speed) {

@@ -13,6 +13,7 @@
 
 #include "control/controllers.h"
 #include "control/convoy.h"
+#include "control/reason.h"
 #include "control/route_ahead.h"
 #include "control/route_goals.h"
 
@@ -26,7 +27,7 @@ struct RouteSettings {
   double radio = 4.0;    ///< [m]
 };
 
-class Route : public Controller {
+class Route : public Controller, public StatesReason {
  public:
   Route(std::shared_ptr<const Corridors> corridors, const Site& site, RouteSettings settings,
         std::optional<RouteGoals> goals, Company company);
@@ -37,17 +38,20 @@ class Route : public Controller {
   bool done() const override { return done_; }
   /// Offset to the left of its line. [m]
   double error() const override { return offset_; }
+  std::string reason() const override;
 
   const RoutePlan& plan() const { return plan_; }
   double s() const { return progress_.s(); }            ///< [m] along the plan
   std::uint64_t reached() const { return next_goal_; }  ///< checkpoints so far
 
  private:
-  // What the speed may be, so far.
+  // What the speed may be, so far, and what sets it.
   struct Limit {
     double speed;
     double dt;
-    void stop_in(double distance);  ///< [m] before something that it must not pass
+    const char* why = "";
+    std::uint32_t who = base::kNobody;               ///< id of the robot that does
+    void stop_in(double distance, const char* why);  ///< [m] before something that it must not pass
   };
   void start(const Input& input);
   void check_goals() const;
@@ -87,8 +91,10 @@ class Route : public Controller {
   std::uint64_t planned_ = 0;    ///< goals that are in the plan or behind
   std::uint64_t searched_ = 0;   ///< lots drawn
   std::vector<Ahead> ahead_;
-  std::int64_t last_ = -1;            ///< [ns] time of the last step
-  double offset_ = 0.0;               ///< [m]
+  std::int64_t last_ = -1;  ///< [ns] time of the last step
+  double offset_ = 0.0;     ///< [m]
+  const char* why_ = "";    ///< it stands, by the last step's limits
+  std::uint32_t who_ = base::kNobody;
   double stopped_at_ = -HUGE_VAL;     ///< [m] along the route: the stop line that it stopped at
   std::int64_t standing_since_ = -1;  ///< [ns] at a stop line; -1: it is not
   std::int64_t blocked_since_ = -1;   ///< [ns] that a full lane keeps it waiting; -1: it does not

@@ -12,13 +12,17 @@ namespace {
 constexpr double kBraking = 0.3;             // [m/s^2] comfortable
 constexpr double kSideways = 0.1;            // [m/s^2] in bends
 constexpr double kWaiting = 0.5;             // of its speed, for a follower that is left behind
+constexpr double kStanding = 0.02;           // [m/s] slower than this a robot stands
 constexpr std::int64_t kStop = 300'000'000;  // [ns] a full stop lasts
 
 }  // namespace
 
-void Route::Limit::stop_in(double distance) {
+void Route::Limit::stop_in(double distance, const char* reason) {
   const double v = distance <= 0.001 ? 0.0 : std::min(std::sqrt(2.0 * kBraking * distance), distance / dt);
-  speed = std::min(speed, v);
+  if (v >= speed) return;
+  speed = v;
+  why = reason;
+  who = base::kNobody;
 }
 
 void Route::limit_by_bends(Limit& limit) const {
@@ -51,9 +55,10 @@ void Route::limit_by_lines(const Input& input, Limit& limit) {
       if (ahead < -margin) continue;  // it is over the line
       const Rule rule = rule_of(mark, input.signals);
       const bool yellow = rule == Rule::closed && input.signals[mark.lights.front()].state == world::LightState::yellow;
-      if (rule == Rule::closed && (!yellow || !right_of_way_.committed(ahead, speed))) return limit.stop_in(ahead);
+      if (rule == Rule::closed && (!yellow || !right_of_way_.committed(ahead, speed)))
+        return limit.stop_in(ahead, yellow ? "its light is yellow" : "its light is red");
       if (rule != Rule::stop || stopped_at_ == line) continue;
-      limit.stop_in(ahead);
+      limit.stop_in(ahead, "it stops at a stop line");
       if (speed > 0.005 || ahead > 0.3 * corridors_->body().radius) {
         standing_since_ = -1;
         return;
@@ -81,7 +86,8 @@ void Route::limit_by_gates(const Input& input, Limit& limit) {
       if (ahead > kApproach || end <= progress_.s() || right_of_way_.committed(ahead, speed)) continue;
       const bool room = room_beyond(end);
       if (room && right_of_way_.may_enter(leg.way, gate)) continue;
-      limit.stop_in(std::max(ahead, 0.0));
+      limit.stop_in(std::max(ahead, 0.0),
+                    room ? "others go first where their ways meet" : "the lane that it wants is full");
       if (!room && speed < 0.01 && ahead < 0.3) {
         full = true;
         if (blocked_way_ != leg.way) blocked_since_ = -1;
@@ -120,21 +126,22 @@ void Route::limit_by_zones(Limit& limit, const Input& input) {
       const std::uint32_t spots = site_.roads->zones[way.zone].spots;
       const auto turn = static_cast<std::uint64_t>(input.time / 2'000'000'000) % spots;
       const auto own = spot_at(*corridors_, input.state.X_WM).value_or(0) - site_.roads->zones[way.zone].first_spot;
-      if (turn != own || !right_of_way_.zone_free(way.zone)) limit.stop_in(std::max(leg.start - s, 0.0));
+      if (turn != own || !right_of_way_.zone_free(way.zone))
+        limit.stop_in(std::max(leg.start - s, 0.0), "it waits for its turn to leave its parking spot");
     }
     if (way.in_zone && way.from != world::kNone) {
       const double ahead = leg.start - corridors_->body().front - margin - s;
       if (!right_of_way_.committed(ahead, std::abs(input.state.velocity.forward)) && !right_of_way_.zone_free(way.zone))
-        limit.stop_in(std::max(ahead, 0.0));
+        limit.stop_in(std::max(ahead, 0.0), "another robot drives about in the zone");
     }
     if (kink_after(*corridors_, plan_, i)) {
-      limit.stop_in(std::max(end_of(leg) - s, 0.0));
+      limit.stop_in(std::max(end_of(leg) - s, 0.0), "its way ends");
       break;
     }
   }
   for (const Goal& goal : plan_.goals) {
     const bool last = goals_ && &goal == &plan_.goals.back() && goals_->at(planned_) == nullptr;
-    if (goal.park || last) return limit.stop_in(std::max(goal.s - s, 0.0));
+    if (goal.park || last) return limit.stop_in(std::max(goal.s - s, 0.0), "it is at its goal");
   }
 }
 
@@ -145,7 +152,11 @@ void Route::limit_by_others(Limit& limit) const {
   for (const Ahead& other : ahead_) {
     const bool leads = right_of_way_.drivers()[other.row].id == company_.leader;
     const double free = other.free - settings_.gap - (leads ? opened : 0.0);
-    limit.speed = std::min(limit.speed, free > 1e-3 ? free / settings_.headway : 0.0);
+    const double most = free > 1e-3 ? free / settings_.headway : 0.0;
+    if (most >= limit.speed) continue;
+    limit.speed = most;
+    limit.why = std::abs(other.speed) < kStanding ? "stands in its way" : "is in its way";
+    limit.who = right_of_way_.drivers()[other.row].id;
   }
 }
 

@@ -30,6 +30,17 @@ base::Twist Shell::step(const Input& input) {
 
 double Shell::error() const { return stepped_ ? inner_->error() : Controller::error(); }
 
+std::string Shell::reason() const {
+  if (state_ == ShellState::start) return "the start signal was not given";
+  if (state_ == ShellState::wait) return "its bumper is pressed, or something refused its last motion";
+  return state_ == ShellState::control ? reason_of(*inner_) : "";
+}
+
+std::string reason_of(const Controller& controller) {
+  const auto* states = dynamic_cast<const StatesReason*>(&controller);
+  return states == nullptr ? std::string() : states->reason();
+}
+
 void Shell::change(const Input& input) {
   if (state_ == ShellState::start && (!settings_.on_signal || input.started)) state_ = ShellState::control;
   const bool pressed = settings_.wait_on_bumper && input.contact;

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "control/controllers.h"
+#include "control/reason.h"
 
 namespace sf::control {
 
@@ -23,7 +24,7 @@ struct ShellSettings {
 /// @throws base::InputError for a word that is no way to start.
 ShellSettings read_shell_settings(Settings& settings, bool waits);
 
-class Shell final : public Controller {
+class Shell final : public Controller, public StatesReason {
  public:
   /// @param inner not null
   Shell(std::unique_ptr<Controller> inner, const ShellSettings& settings);
@@ -36,6 +37,7 @@ class Shell final : public Controller {
   bool done() const override { return state_ == ShellState::stop; }
   /// Not a number after steps in which the controller was not called.
   double error() const override;
+  std::string reason() const override;
 
   ShellState state() const { return state_; }
   const Controller& inner() const { return *inner_; }

@@ -8,6 +8,7 @@
 
 #include "control/lane_keeping.h"
 #include "control/magnet_keeping.h"
+#include "control/reason.h"
 #include "robots/motion.h"
 #include "sensors/laneedge.h"
 #include "sensors/magnetometer.h"
@@ -119,16 +120,17 @@ TEST(LaneKeeping, p_on_a_unicycle_has_the_mean_error_that_the_turn_needs) {
 }
 
 TEST(LaneKeeping, players_driver_about_halves_the_error) {
-  const Drive p = drive_lane({}, player_create), pi = drive_lane({set("ki", 0.015)}, player_create);
+  const Drive p = drive_lane({set("kp", 0.5)}, player_create);
+  const Drive pi = drive_lane({set("kp", 0.5), set("ki", 0.015)}, player_create);
   EXPECT_NEAR(p.mean, 0.027, 0.005) << "thesis: 0.022 to 0.030";
   EXPECT_LT(pi.mean, 0.7 * p.mean);
   EXPECT_GT(pi.mean, 0.0);
 }
 
 TEST(LaneKeeping, the_integral_lessens_the_mean_error) {
-  const Drive p = drive_lane({}, ideal), pi = drive_lane({set("ki", 0.015)}, ideal);
+  const Drive p = drive_lane({set("kp", 0.5)}, ideal), pi = drive_lane({set("kp", 0.5), set("ki", 0.015)}, ideal);
   EXPECT_LT(std::abs(pi.mean), 0.7 * p.mean);
-  const Drive limited = drive_lane({set("ki", 0.015), set("integral_limit", 1e-6)}, ideal);
+  const Drive limited = drive_lane({set("kp", 0.5), set("ki", 0.015), set("integral_limit", 1e-6)}, ideal);
   EXPECT_NEAR(limited.mean, p.mean, 1e-4) << "an integral of nothing is P";
 }
 
@@ -182,13 +184,78 @@ TEST(LaneKeeping, error_and_trapezoid_by_hand) {
 
 TEST(LaneKeeping, the_right_edge_mirrors) {
   const world::World world = path_world(-M_PI / 2);  // a sensor that looks to the right
-  const auto controller = make(world, lane_keeping_controller);
+  const auto controller = make(world, lane_keeping_controller, {set("kp", 0.5)});
   step_through(*controller, {{0.35, -0.1, -0.05, "far from the right edge: left of the middle, to the right"}});
+}
+
+// A sensor beside the robot's axis measures from where it is: what counts is the axis' own distance from the edge.
+TEST(LaneKeeping, a_sensor_beside_the_axis_counts_from_the_axis) {
+  struct Mounted {
+    double yaw, y, z, error;
+    const char* why;
+  };
+  for (const Mounted& m : {Mounted{M_PI / 2, 0.1, 0.25, 0.1, "left edge, sensor to the left: 0.35 from the axis"},
+                           Mounted{M_PI / 2, -0.1, 0.35, 0.0, "left edge, sensor to the right: 0.25"},
+                           Mounted{-M_PI / 2, -0.1, 0.25, -0.1, "right edge, sensor to the right: 0.35"},
+                           Mounted{-M_PI / 2, 0.1, 0.35, 0.0, "right edge, sensor to the left: 0.25"}}) {
+    world::World world = path_world(m.yaw);
+    world.movers[0].sensors[0].X_MS.y = m.y;
+    const auto controller = make(world, lane_keeping_controller, {set("kp", 0.5)});
+    step_through(*controller, {{m.z, m.error, 0.5 * m.error, m.why}});
+  }
+}
+
+// By its own gain it stays within its lane, the whole body but for a finger's width where the lane narrows to 0.45 m.
+TEST(LaneKeeping, its_own_gain_keeps_the_lane) {
+  for (const auto plant : {&ideal, &player_create})
+    for (const double speed : {0.1, 0.2, 0.4}) {
+      world::World world = path_world();
+      if (plant == &player_create) world.movers[0].command_law = world::CommandLaw::player_create;
+      const auto controller = make(world, lane_keeping_controller, {set("speed", speed)});
+      const Drive d = drive(
+          world, *controller, sensors::kLaneEdge, [&](const Pose& X) { return edge_from(world, X); }, *plant);
+      EXPECT_TRUE(controller->done()) << speed;
+      EXPECT_LT(d.farthest, plant == &ideal ? 0.07 : 0.1) << speed;
+    }
+}
+
+TEST(LaneKeeping, its_own_gain_follows_from_speed_and_sensor) {
+  const auto gain = [](double speed, double ahead, world::CommandLaw law = world::CommandLaw::direct) {
+    world::World world = path_world();
+    world.movers[0].sensors[0].X_MS.x = ahead;
+    world.movers[0].command_law = law;
+    const auto controller = make(world, lane_keeping_controller, {set("speed", speed), set("half_width", 0.25)});
+    const std::vector<double> values{0.35};
+    const base::ReadingBlock block{.kind = sensors::kLaneEdge, .values = values};
+    return controller->step({.readings = {&block, 1}}).turn / 0.1;
+  };
+  EXPECT_NEAR(gain(0.1, 0.2), 5.0, 1e-9) << "2 v / l^2";
+  EXPECT_NEAR(gain(0.05, 0.2), 2.5, 1e-9);
+  EXPECT_NEAR(gain(0.1, 0.2, world::CommandLaw::player_create), 2.5, 1e-9) << "its driver doubles it";
+  EXPECT_NEAR(gain(0.4, 0.2), 10.0, 1e-9) << "2 rad/s / l, for steps at 10 Hz";
+  EXPECT_NEAR(gain(0.1, -0.1), 20.0, 1e-9) << "as if 0.1 m ahead";
+}
+
+TEST(LaneKeeping, says_why_it_stands) {
+  const world::World world = path_world();
+  const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5)});
+  controller->step({});
+  EXPECT_EQ(reason_of(*controller), "no new reading comes from its lane edge sensor");
+  const std::vector<double> none{kNaN};
+  const base::ReadingBlock blind{.kind = sensors::kLaneEdge, .values = none};
+  controller->step({.readings = {&blind, 1}});
+  EXPECT_EQ(reason_of(*controller), "its lane edge sensor sees nothing to follow");
+  const std::vector<double> edge{0.3};
+  const base::ReadingBlock seen{.kind = sensors::kLaneEdge, .sequence = 1, .values = edge};
+  controller->step({.time = kTick, .readings = {&seen, 1}});
+  EXPECT_EQ(reason_of(*controller), "") << "it drives";
+  controller->step({.time = 10 * kTick, .readings = {&seen, 1}});
+  EXPECT_EQ(reason_of(*controller), "no new reading comes from its lane edge sensor") << "the same for too long";
 }
 
 TEST(LaneKeeping, takes_a_width_instead_of_the_paths) {
   const world::World world = path_world();
-  const auto controller = make(world, lane_keeping_controller, {set("half_width", 0.3)});
+  const auto controller = make(world, lane_keeping_controller, {set("half_width", 0.3), set("kp", 0.5)});
   step_through(*controller, {{0.35, 0.05, 0.025, "half of 0.6 m"}});
 }
 
@@ -206,7 +273,7 @@ TEST(LaneKeeping, without_an_edge_it_holds_then_stands_then_goes_on) {
 
 TEST(LaneKeeping, the_same_reading_again_counts_until_the_sensor_is_silent_for_long) {
   const world::World world = path_world();
-  const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5), set("ki", 1.0)});
+  const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5), set("kp", 0.5), set("ki", 1.0)});
   const std::vector<double> values{0.35, 61, 0, 0};
   const base::ReadingBlock block{.kind = sensors::kLaneEdge, .sequence = 9, .values = values};
   int moving = 0;

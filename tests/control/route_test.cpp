@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "base/error.h"
@@ -41,6 +42,31 @@ TEST(Route, drives_a_mission_round_and_round) {
   while (t.route(0).reached() < 20 && t.time < 2'000'000'000'000) t.tick();
   EXPECT_GE(t.route(0).reached(), 20u);
   EXPECT_FALSE(t.controllers[0]->done());
+}
+
+// 5 mph are 0.319 m/s at 1/7 of the size, 8 mph 0.511 m/s, more than it is asked to drive.
+TEST(Route, keeps_the_missions_speed_limits_and_slows_down_in_bends) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.1", 0.3), "route",
+        {{"mission", std::string(SF_SOURCE_DIR "/worlds/simville/simville.mdf"), ""}, {"speed", 0.45, ""}});
+  t.begin();
+  std::map<int, double> fastest;  // by segment
+  double sideways = 0.0;          // [m/s^2]
+  while (!t.controllers[0]->done() && t.time < 600'000'000'000) {
+    t.tick();
+    const control::RoutePlan& plan = t.route(0).plan();
+    const control::RouteLeg& leg = plan.legs[leg_at(plan, t.route(0).s())];
+    const Twist& v = t.fleet->reports()[0].velocity;
+    if (v.forward > 0.2) sideways = std::max(sideways, std::abs(v.forward * v.turn));
+    if (leg.way >= t.roads.lanes.size() || t.route(0).s() - leg.start < 0.1) continue;
+    double& most = fastest[t.roads.segments[t.roads.lanes[leg.way].segment].id];
+    most = std::max(most, v.forward);
+  }
+  EXPECT_TRUE(t.controllers[0]->done());
+  EXPECT_NEAR(fastest[1], 0.45, 1e-9) << "its own";
+  EXPECT_NEAR(fastest[3], 5.0 * 0.44704 / 7.0, 1e-6) << "the mission's";
+  EXPECT_LT(sideways, 0.15) << "0.1 m/s^2 where the bend is even";
+  EXPECT_GT(sideways, 0.08);
 }
 
 // 6.2.3 is a stop sign; 1.3.17 too. Every time it comes to one it stands, its front within 5 cm of the line.
@@ -102,6 +128,10 @@ TEST(Route, obeys_every_state_of_a_light) {
     }
     EXPECT_EQ(crossed, c.crosses) << c.why;
     EXPECT_EQ(stood, c.stands) << c.why;
+    EXPECT_EQ(t.route(0).reason(), c.crosses           ? ""
+                                   : c.state == yellow ? "its light is yellow"
+                                                       : "its light is red")
+        << c.why;
   }
 }
 
@@ -220,6 +250,21 @@ TEST(Route, stands_behind_who_stands) {
   EXPECT_GT(t.distance(0, 1), 0.37);
   EXPECT_LT(t.distance(0, 1), 0.5);
   EXPECT_EQ(t.contacts, 0);
+  EXPECT_EQ(t.route(1).reason(), "'robot1' stands in its way");
+}
+
+TEST(Route, says_why_it_stands_at_a_stop_sign) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.3", 0.3), "route", go({8}));
+  t.begin();
+  EXPECT_EQ(t.route(0).reason(), "the start signal was not given") << "before its first step";
+  std::set<std::string> reasons;
+  while (!t.controllers[0]->done() && t.time < 1'000'000'000'000) {
+    t.tick();
+    if (t.fleet->reports()[0].velocity.forward == 0.0) reasons.insert(t.route(0).reason());
+  }
+  EXPECT_TRUE(reasons.contains("it stops at a stop line"));
+  EXPECT_EQ(t.route(0).reason(), "") << "done";
 }
 
 }  // namespace

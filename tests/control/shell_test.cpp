@@ -74,6 +74,25 @@ TEST(Shell, stops_for_good_when_the_controller_is_done) {
        2);
 }
 
+// A controller that can say why it stands.
+class Stating final : public Controller, public StatesReason {
+ public:
+  base::Twist step(const Input&) override { return {}; }
+  std::string reason() const override { return "it has one"; }
+};
+
+TEST(Shell, says_why_it_stands) {
+  Shell shell(std::make_unique<Stating>(), {.on_signal = true});
+  shell.step({.started = false});
+  EXPECT_EQ(reason_of(shell), "the start signal was not given");
+  shell.step({});
+  EXPECT_EQ(reason_of(shell), "it has one");
+  shell.step({.contact = true});
+  EXPECT_EQ(reason_of(shell), "its bumper is pressed, or something refused its last motion");
+  int count = 0;
+  EXPECT_EQ(reason_of(Counting(1, count)), "") << "not every controller can";
+}
+
 TEST(Shell, passes_on_what_the_controller_tells) {
   int count = 0;
   const Shell shell(std::make_unique<Counting>(1, count), {});

@@ -6,7 +6,10 @@
 #include <numeric>
 
 #include "scenarios/path_report.h"
+#include "scenarios/simulation.h"
 #include "scenarios/trial.h"
+#include "sensors/kind.h"
+#include "world/paths.h"
 
 namespace sf::scenarios {
 namespace {
@@ -93,6 +96,28 @@ TEST(PathFollowing, TheThesisPlantDoublesTheGain) {
   const double ideal = run(experiment("lane-edge-p", Plant::ideal), 1, none).errors[0].mean;
   const double thesis = run(experiment("lane-edge-p", Plant::thesis), 1, none).errors[0].mean;
   EXPECT_NEAR(thesis / ideal, 0.5, 0.08);
+}
+
+/// With the shipped robot, its own sensor and no settings at all, its body stays within the lane, bend and narrow end.
+TEST(PathFollowing, ByItsOwnDefaultsTheShippedRobotKeepsTheLane) {
+  const world::World world =
+      world::load_world(SF_SOURCE_DIR "/worlds/testpath/testpath.world", {.sensors = sensors::vocabulary()});
+  for (const char* controller : {"lane-keeping", "magnet-keeping"}) {
+    SimulationOptions options;
+    options.actor.plan.controller = controller;
+    Simulation simulation(world, device(), std::move(options));
+    double least = HUGE_VAL;  // [m] from the body to the lane's edge
+    int ticks = 0;
+    for (; ticks < 800 && !simulation.all_done(); ++ticks) {
+      const base::Pose X_WM = simulation.step().reports[0].X_WM;
+      const world::OnPath at = world::nearest(world.paths[0], {X_WM.x, X_WM.y});
+      least =
+          std::min(least, 0.5 * world.paths[0].pieces[at.piece].width - std::abs(at.offset) - world.movers[0].radius);
+    }
+    EXPECT_TRUE(simulation.all_done()) << controller;
+    EXPECT_GT(least, -0.02) << controller << ": its body but for a finger's width";
+    EXPECT_NEAR(0.1 * ticks, 51.0, 5.0) << controller << ": 5.08 m at 0.1 m/s";
+  }
 }
 
 TEST(PathFollowing, ATrialIsAFunctionOfItsSeed) {
