@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "control/go.h"
+#include "robots/outline.h"
 #include "sensors/irreceiver.h"
 
 namespace sf::control {
@@ -14,6 +15,9 @@ namespace sf::control {
 namespace {
 
 using sensors::kDockByte, sensors::kNoIrByte, sensors::kRedBuoy, sensors::kGreenBuoy, sensors::kForceField;
+
+constexpr double kFaces = 0.6;                  // [rad] a touch with the dock farther off than this is none of its face
+constexpr std::int64_t kBlind = 2'000'000'000;  // [ns] it goes on by the beams that it saw last
 
 std::uint32_t light_in(const base::ReadingBlock* reading) {
   if (reading == nullptr || reading->values.size() < 2) return 0;
@@ -26,25 +30,66 @@ std::uint32_t light_in(const base::ReadingBlock* reading) {
 base::Twist Docking::step(const Input& input) {
   const base::Pose& X_WM = input.state.X_WM;
   const std::uint32_t light = light_in(newest(input, sensors::kIrReceiver));
-  const double far = std::hypot(X_WM.x - settings_.X_WD.x, X_WM.y - settings_.X_WD.y);
-  const bool touches = input.contact && ((light & kForceField) != 0 || far < 2.0 * settings_.reach);
-  if (done_ || (done_ = touches || far <= settings_.reach)) return {};
+  contact_ = input.contact;
+  done_ = done_ || docked(X_WM);
+  if (done_) return {};
+
   const std::uint32_t buoys = light & (kRedBuoy | kGreenBuoy);
-  // One buoy alone, and already near: too late to come onto the axis from here.
-  const bool astray = !lined_up_ && buoys != (kRedBuoy | kGreenBuoy) && (light & kForceField) != 0;
-  lined_up_ = buoys == (kRedBuoy | kGreenBuoy) || (lined_up_ && buoys != 0);
-  if (buoys != 0 && !astray) return follow_beams(light, X_WM);
-  const base::Vec2 stage = base::transform(settings_.X_WD, {settings_.stage, 0.0});
-  return go_to(X_WM, stage, {settings_.speed, settings_.turn});
+  if (buoys != 0) {
+    light_ = light;
+    seen_ = input.time;
+  }
+  const bool both = buoys == (kRedBuoy | kGreenBuoy);
+  // Something else than the dock's face, or the dock's corner: out again, and on a new approach.
+  if (contact_) retreats_ = true;
+  if (both && (light & kForceField) == 0) retreats_ = false;
+  follows_ = !retreats_ && (both || (follows_ && input.time - seen_ <= kBlind));
+  return follows_ ? follow_beams(X_WM) : approach(X_WM);
 }
 
-// Seen from the dock the red buoy's beam is on the left, so for a robot that faces the dock on its right.
-base::Twist Docking::follow_beams(std::uint32_t light, const base::Pose& X_WM) const {
-  const bool red = (light & kRedBuoy) != 0, green = (light & kGreenBuoy) != 0;
+base::Vec2 Docking::from_dock(const base::Pose& X_WM) const {
+  return base::rotate(-settings_.X_WD.yaw, {X_WM.x - settings_.X_WD.x, X_WM.y - settings_.X_WD.y});
+}
+
+bool Docking::docked(const base::Pose& X_WM) const {
+  const base::Vec2 p = from_dock(X_WM);
+  if (base::length(p) <= settings_.reach) return true;
+  const double off = base::wrap_angle(settings_.X_WD.yaw + M_PI - X_WM.yaw);
+  return contact_ && p.x > 0.0 && p.x < 2.0 * settings_.reach && std::abs(p.y) < 0.4 * settings_.reach &&
+         std::abs(off) < kFaces;
+}
+
+// To a place on the axis, round the dock where it is in between.
+base::Twist Docking::approach(const base::Pose& X_WM) {
+  const base::Vec2 p = from_dock(X_WM);
+  const double wide = 1.6 * settings_.reach;
+  base::Vec2 goal{settings_.stage, 0.0};
+  if (p.x < settings_.reach)
+    goal = {std::abs(p.y) < 0.95 * wide ? p.x : 2.0 * settings_.reach, std::copysign(wide, p.y)};
+  if (std::abs(p.x - goal.x) + std::abs(p.y - goal.y) < 0.02) retreats_ = false;
+  return go_to(X_WM, base::transform(settings_.X_WD, goal), {settings_.speed, settings_.turn});
+}
+
+// Seen from the dock the red buoy's beam is on the left, so for a robot that faces the dock on its right. The receiver
+// is not at the robot's middle: a turn in place carries it from one beam into the other. So the robot drives while it
+// turns, and one turn in place, once begun, goes on the same way round.
+base::Twist Docking::follow_beams(const base::Pose& X_WM) {
+  const bool red = (light_ & kRedBuoy) != 0, green = (light_ & kGreenBuoy) != 0;
   const double lean = red && green ? 0.0 : red ? settings_.lean : -settings_.lean;
-  const double off = base::wrap_angle(settings_.X_WD.yaw + M_PI + lean - X_WM.yaw);
-  const Pace pace{(light & kForceField) != 0 ? settings_.slow_speed : settings_.speed, settings_.turn};
-  return {std::abs(off) <= pace.aim ? pace.speed : 0.0, 0.0, turn_to(off, pace)};
+  double off = base::wrap_angle(settings_.X_WD.yaw + M_PI + lean - X_WM.yaw);
+  if (std::abs(off) < 0.5 * M_PI) {
+    side_ = 0.0;
+  } else if (side_ == 0.0) {
+    side_ = std::copysign(1.0, off);
+  } else if (side_ * off < 0.0) {
+    off += 2.0 * M_PI * side_;
+  }
+  const double speed = (light_ & kForceField) != 0 ? settings_.slow_speed : settings_.speed;
+  return {speed * std::max(std::cos(off), 0.0), 0.0, turn_to(off, {speed, settings_.turn})};
+}
+
+std::string Docking::reason() const {
+  return contact_ && !done_ ? "it touches something that is not the dock's face" : "";
 }
 
 namespace {
@@ -78,7 +123,7 @@ std::unique_ptr<Controller> make_docking(const Site& site, Settings& settings) {
   DockingSettings docking;
   docking.X_WD = dock.X_WE;
   docking.stage = settings.number("stage", 0.7 * dock.range, 0.0, 1e3);
-  docking.reach = settings.number("reach", mover.radius + 0.03, 0.0, 1e3);
+  docking.reach = settings.number("reach", robots::outline_of(mover).radius + 0.03, 0.0, 1e3);
   docking.speed = settings.number("speed", std::min(docking.speed, mover.max_forward), 1e-4, mover.max_forward);
   docking.slow_speed =
       settings.number("slow_speed", std::min(docking.slow_speed, docking.speed), 1e-4, mover.max_forward);

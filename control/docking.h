@@ -3,10 +3,11 @@
 // beams, slowly within the force field, until the bumper touches or the dock is reached.
 //
 // The receiver sees all round and so tells no direction: headings are the robot's own, against the dock's as the world
-// has it. Out of the beams, or near the dock with one alone, the robot drives to a place before the dock, on its axis,
-// by its own pose.
+// has it. Until it sees both buoys, and after it has touched anything but the dock's face, the robot drives to a place
+// before the dock, on its axis, by its own pose.
 
 #include "control/controllers.h"
+#include "control/reason.h"
 
 namespace sf::control {
 
@@ -20,19 +21,28 @@ struct DockingSettings {
   double lean = 0.7;         ///< [rad] towards the axis with one buoy in sight
 };
 
-class Docking final : public Controller {
+class Docking final : public Controller, public StatesReason {
  public:
   explicit Docking(const DockingSettings& settings) : settings_(settings) {}
 
   base::Twist step(const Input& input) override;
   base::Intent intent() const override { return {.docking = true}; }
   bool done() const override { return done_; }
+  std::string reason() const override;
 
  private:
-  base::Twist follow_beams(std::uint32_t light, const base::Pose& X_WM) const;
+  base::Vec2 from_dock(const base::Pose& X_WM) const;
+  bool docked(const base::Pose& X_WM) const;
+  base::Twist approach(const base::Pose& X_WM);
+  base::Twist follow_beams(const base::Pose& X_WM);
 
   DockingSettings settings_;
-  bool lined_up_ = false;  ///< both buoys were in sight, and one has been since
+  bool follows_ = false;     ///< both buoys were in sight, and one has been since
+  bool retreats_ = false;    ///< from a touch, until it sees both buoys from beyond the force field
+  bool contact_ = false;     ///< at the last step
+  std::uint32_t light_ = 0;  ///< the last with a buoy in it
+  std::int64_t seen_ = 0;    ///< [ns] when that was
+  double side_ = 0.0;        ///< of the turn in place that it is in: +1 left, -1 right; 0: it is in none
   bool done_ = false;
 };
 

@@ -17,8 +17,8 @@ using base::Vec2;
 constexpr std::int64_t kTick = 100'000'000;
 constexpr double kRange = 1.8, kFov = 0.7, kHalo = 0.6;
 
-// The dock's light by formula: the red buoy's beam on the left, the green one's on the right, a quarter of each in
-// common.
+// The dock's light by formula, at a receiver in the robot's middle: the red buoy's beam on the left, the green one's on
+// the right, a quarter of each in common. (tests/scenarios/docking_test.cpp has the shipped receiver and dock.)
 double byte_at(const Pose& X_WD, Vec2 p) {
   const Vec2 from = base::rotate(-X_WD.yaw, p - Vec2{X_WD.x, X_WD.y});
   const double bearing = std::atan2(from.y, from.x), far = base::length(from);
@@ -91,8 +91,10 @@ struct Seen {
 TEST(Docking, follows_the_line_between_the_buoys) {
   const Pose X_WD{};  // beams along x; the robot faces it
   for (const Seen& s : {Seen{252, 0, 0.1, "both"}, Seen{254, 0, 0.03, "both, in the force field: slowly"},
-                        Seen{248, 1, 0, "red alone: to the left"}, Seen{244, -1, 0, "green alone: to the right"},
-                        Seen{250, 1, 0, "red, in the field"}, Seen{246, -1, 0, "green, in the field"}}) {
+                        Seen{248, 1, 0.1 * std::cos(0.7), "red alone: to the left, driving"},
+                        Seen{244, -1, 0.1 * std::cos(0.7), "green alone: to the right"},
+                        Seen{250, 1, 0.03 * std::cos(0.7), "red, in the field"},
+                        Seen{246, -1, 0.03 * std::cos(0.7), "green, in the field"}}) {
     Docking docking({.X_WD = X_WD});
     const std::vector<double> both{0.0, 252.0};
     const base::ReadingBlock before{.kind = 11, .values = both};
@@ -116,21 +118,92 @@ TEST(Docking, without_light_it_goes_to_a_place_before_the_dock) {
   }
 }
 
-TEST(Docking, near_with_one_buoy_alone_it_begins_again) {
-  Docking docking({.X_WD = {}, .stage = 1.0});
-  const std::vector<double> values{0.0, 250.0};
-  const base::ReadingBlock block{.kind = 11, .values = values};
-  const base::Twist twist = docking.step({.state = {.X_WM = {0.4, 0.2, 0, 0}}, .readings = {&block, 1}});
-  EXPECT_LT(twist.turn, 0.0) << "to (1, 0), away from the dock";
-  EXPECT_NEAR(twist.turn, 3.0 * std::atan2(-0.2, 0.6), 1e-9);
+TEST(Docking, with_one_buoy_alone_it_goes_to_that_place_until_it_has_seen_both) {
+  for (const double byte : {248.0, 250.0}) {
+    Docking docking({.X_WD = {}, .stage = 1.0});
+    const std::vector<double> values{0.0, byte};
+    const base::ReadingBlock block{.kind = 11, .values = values};
+    const base::Twist twist = docking.step({.state = {.X_WM = {0.4, 0.2, 0, 0}}, .readings = {&block, 1}});
+    EXPECT_LT(twist.turn, 0.0) << "to (1, 0), away from the dock";
+    EXPECT_NEAR(twist.turn, 3.0 * std::atan2(-0.2, 0.6), 1e-9);
+  }
 }
 
-TEST(Docking, a_touch_elsewhere_is_no_dock) {
+// A turn in place carries the receiver from beam to beam, and where the robot looks away from the dock the shorter way
+// round is another for each: it goes on the way that it began.
+TEST(Docking, a_turn_in_place_goes_on_the_same_way_round) {
   Docking docking({.X_WD = {}});
-  docking.step({.state = {.X_WM = {1.5, 0, 0, M_PI}}, .contact = true});
-  EXPECT_FALSE(docking.done());
-  docking.step({.state = {.X_WM = {0.25, 0, 0, M_PI}}, .contact = true});
-  EXPECT_TRUE(docking.done());
+  const auto step = [&](double yaw, double byte) {
+    const std::vector<double> values{0.0, byte};
+    const base::ReadingBlock block{.kind = 11, .values = values};
+    return docking.step({.state = {.X_WM = {1.0, 0.0, 0, yaw}}, .readings = {&block, 1}});
+  };
+  EXPECT_GT(step(0.1, 252.0).turn, 0.5) << "to the dock's heading, pi, by the left";
+  const base::Twist red = step(0.2, 248.0);
+  EXPECT_GT(red.turn, 0.5) << "to pi + 0.7, which is nearer by the right";
+  EXPECT_EQ(red.forward, 0.0) << "not away from the dock";
+  EXPECT_GT(step(0.3, 244.0).turn, 0.5);
+}
+
+TEST(Docking, blind_for_a_moment_it_goes_on_then_back_to_its_place) {
+  Docking docking({.X_WD = {}, .stage = 1.0});
+  const auto step = [&](double seconds, double byte) {
+    const std::vector<double> values{0.0, byte};
+    const base::ReadingBlock block{.kind = 11, .values = values};
+    return docking.step({.time = static_cast<std::int64_t>(1e9 * seconds),
+                         .state = {.X_WM = {0.8, 0.0, 0, M_PI}},
+                         .readings = {&block, 1}});
+  };
+  step(0.0, 252.0);
+  EXPECT_NEAR(step(2.0, 255.0).forward, 0.1, 1e-12) << "two seconds";
+  EXPECT_EQ(step(2.1, 255.0).forward, 0.0) << "longer: it turns to the place behind it";
+}
+
+TEST(Docking, a_touch_of_anything_else_is_no_dock) {
+  struct Touch {
+    Pose X;
+    bool docked;
+    const char* why;
+  };
+  for (const Touch& t :
+       {Touch{{1.5, 0, 0, M_PI}, false, "far from it"}, Touch{{0.25, 0, 0, M_PI}, true, "its face"},
+        Touch{{0.25, 0.07, 0, M_PI - 0.5}, true, "a little aside, askew"},
+        Touch{{0.25, 0.1, 0, M_PI}, false, "beside it"}, Touch{{0.25, 0, 0, M_PI - 0.7}, false, "not facing it"},
+        Touch{{-0.25, 0, 0, M_PI}, false, "its back"}}) {
+    Docking docking({.X_WD = {}});
+    docking.step({.state = {.X_WM = t.X}, .contact = true});
+    EXPECT_EQ(docking.done(), t.docked) << t.why;
+    EXPECT_EQ(docking.reason().empty(), t.docked) << t.why;
+  }
+}
+
+TEST(Docking, after_such_a_touch_it_drives_out_of_the_force_field_first) {
+  Docking docking({.X_WD = {}, .stage = 1.0});
+  const auto step = [&](const Pose& X, double byte, bool contact) {
+    const std::vector<double> values{0.0, byte};
+    const base::ReadingBlock block{.kind = 11, .values = values};
+    return docking.step({.state = {.X_WM = X}, .readings = {&block, 1}, .contact = contact});
+  };
+  step({0.3, 0.0, 0, M_PI - 1.0}, 254, true);
+  EXPECT_EQ(step({0.5, 0.0, 0, 0.0}, 254, false).forward, 0.1) << "away, though it sees both buoys";
+  EXPECT_EQ(step({0.8, 0.0, 0, 0.0}, 252, false).forward, 0.0) << "beyond the field: it turns to the dock";
+}
+
+TEST(Docking, from_behind_it_goes_round_the_dock) {
+  for (const double side : {1.0, -1.0}) {
+    Docking docking({.X_WD = {}, .stage = 1.0});
+    const auto heading = [&](double x, double y) {
+      // Facing where it wants to go it does not turn.
+      for (double yaw = -M_PI; yaw < M_PI; yaw += 0.01) {
+        const base::Twist twist = docking.step({.state = {.X_WM = {x, y, 0, yaw}}});
+        if (twist.forward > 0.0 && std::abs(twist.turn) < 0.016) return yaw;
+      }
+      return 9.0;
+    };
+    EXPECT_NEAR(heading(-0.5, 0.05 * side), side * M_PI / 2, 0.02) << "aside";
+    EXPECT_NEAR(heading(-0.5, 0.31 * side), side * 0.01, 0.02) << "past it";
+    EXPECT_NEAR(heading(0.3, 0.3 * side), -side * 0.4, 0.02) << "to its place";
+  }
 }
 
 }  // namespace

@@ -1,0 +1,94 @@
+// Docking in SimVille as shipped: its dock, its Create with the receiver where a Create has it, from all over the car
+// park.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "control/reason.h"
+#include "scenarios/simulation.h"
+#include "sensors/kind.h"
+#include "world/wall_grid.h"
+
+namespace sf::scenarios {
+namespace {
+
+gpu::Device& device() {
+  static gpu::Device device;
+  return device;
+}
+
+/// SimVille with roomba5 alone, which carries nothing but its receiver.
+world::World car_park() {
+  world::World world =
+      world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::vocabulary()});
+  const auto robot = std::find_if(world.movers.begin(), world.movers.end(),
+                                  [](const world::Mover& mover) { return mover.name == "roomba5"; });
+  const base::Pose at[] = {robot->X_WM};
+  world::copy_robots(world, static_cast<std::uint32_t>(robot - world.movers.begin()), at, {});
+  world::Mover& mover = world.movers.front();
+  mover.lasers.clear();
+  std::erase_if(mover.sensors, [](const world::Sensor& sensor) { return sensor.type != "irreceiver"; });
+  world.road_files.clear();
+  world.magnets.clear();
+  world::finish(world);
+  return world;
+}
+
+bool is_free(const world::World& world, base::Vec2 p) {
+  return std::all_of(world.walls.begin(), world.walls.end(), [&](const world::Segment& wall) {
+    return wall.z_min > 0.1 || world::distance(p, wall.a, wall.b) > world.movers.front().radius + 0.01;
+  });
+}
+
+struct Docked {
+  double seconds = HUGE_VAL;
+  base::Vec2 p;      ///< [m] in the dock's frame
+  double off = 0.0;  ///< [rad] from facing it
+  std::string reason;
+};
+
+Docked dock(world::World world, const base::Pose& from) {
+  world.movers.front().X_WM = from;
+  SimulationOptions options;
+  options.actor.plan = {.controller = "docking"};
+  Simulation simulation(world, device(), std::move(options));
+  Docked docked;
+  for (int tick = 0; tick < 2000; ++tick) {
+    const base::TickRecord record = simulation.step();
+    if (!simulation.all_done()) continue;
+    const base::Pose& X_WD = world.emitters.front().X_WE;
+    const base::Pose& X_WM = record.reports[0].X_WM;
+    docked.seconds = 0.1 * tick;
+    docked.p = base::rotate(-X_WD.yaw, {X_WM.x - X_WD.x, X_WM.y - X_WD.y});
+    docked.off = base::wrap_angle(X_WM.yaw - X_WD.yaw - M_PI);
+    return docked;
+  }
+  docked.reason = control::reason_of(*simulation.controller(0));
+  return docked;
+}
+
+TEST(DockingInSimVille, FromAllOverTheCarPark) {
+  const world::World world = car_park();
+  ASSERT_EQ(world.emitters.front().kind, world::Emitter::Kind::dock);
+  int starts = 0;
+  double longest = 0.0;
+  for (const double x : {1.6, 2.0, 2.65, 3.0, 3.5, 4.3, 5.5})
+    for (const double y : {1.5, 1.8, 2.05, 2.35})
+      for (const double yaw : {0.0, 1.7, M_PI, -1.4}) {
+        if (!is_free(world, {x, y})) continue;
+        const Docked docked = dock(world, {x, y, 0.0, yaw});
+        ++starts;
+        longest = std::max(longest, std::isfinite(docked.seconds) ? docked.seconds : 0.0);
+        EXPECT_LT(docked.seconds, 150.0) << x << ", " << y << ", " << yaw << " " << docked.reason;
+        if (!std::isfinite(docked.seconds)) continue;
+        EXPECT_LT(std::abs(docked.p.y), 0.07) << x << ", " << y << ", " << yaw;
+        EXPECT_LT(std::abs(docked.off), 0.5) << x << ", " << y << ", " << yaw;
+        EXPECT_NEAR(docked.p.x, 0.215, 0.005) << "its front at the dock's face: " << x << ", " << y << ", " << yaw;
+      }
+  EXPECT_GE(starts, 80);
+  RecordProperty("longest_s", static_cast<int>(longest));
+}
+
+}  // namespace
+}  // namespace sf::scenarios
