@@ -44,12 +44,10 @@ std::uint32_t original_of(const Scenario& scenario, const world::World& world) {
     throw base::InputError(scenario.file, crowd.line,
                            fmt::format("'{}' is a tag, not a robot; expected a robot to copy", crowd.of));
   }
-  const auto first =
-      std::find_if(world.movers.begin(), world.movers.end(), [](const world::Mover& m) { return !m.is_tag; });
-  if (first == world.movers.end())
+  if (std::all_of(world.movers.begin(), world.movers.end(), [](const world::Mover& m) { return m.is_tag; }))
     throw base::InputError(scenario.file, crowd.line,
                            fmt::format("{} has no robot to copy; add one to it", scenario.world));
-  return static_cast<std::uint32_t>(first - world.movers.begin());
+  return world::robot_to_copy(world);
 }
 
 bool clear(const base::Pose& X_WM, double radius, const world::World& world, const std::vector<Stays>& stays) {
@@ -103,9 +101,7 @@ void copy_onto_lanes(const Scenario& scenario, world::World& world, std::uint32_
 void make_crowd(const Scenario& scenario, world::World& world) {
   const std::uint32_t original = original_of(scenario, world);
   if (scenario.crowd.place == Crowd::Place::lanes) return copy_onto_lanes(scenario, world, original);
-  if (scenario.crowd.of.empty()) return world::clone_robots(world, scenario.crowd.robots, scenario.seed);
-  world::copy_robots(world, original,
-                     world::free_poses(world, world.movers[original], scenario.crowd.robots, scenario.seed), {});
+  world::clone_robots(world, scenario.crowd.robots, scenario.seed, world.movers[original].name);
 }
 
 }  // namespace sf::scenarios

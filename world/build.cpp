@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "world/building.h"
+#include "world/free_space.h"
 #include "world/keys.h"
 #include "world/light_plan.h"
 #include "world/movers.h"
@@ -45,6 +46,17 @@ double reach(const Source& source, const Entity& root, std::string_view key) {
   return value;
 }
 
+void warn_of_misplaced(Building& b) {
+  for (std::size_t row = 0; row < b.world.movers.size(); ++row) {
+    const Mover& robot = b.world.movers[row];
+    const std::string where = robot.is_tag ? "" : misplaced(b.world, robot, robot.X_WM);
+    if (where.empty()) continue;
+    warn(b.source, b.places[row],
+         fmt::format("'{}' starts at ({:g}, {:g}), {}; expected a 'pose' in free space", robot.name, robot.X_WM.x,
+                     robot.X_WM.y, where));
+  }
+}
+
 }  // namespace
 
 World build_world(const std::string& file, const std::string& content, const LoadOptions& options) {
@@ -66,8 +78,9 @@ World build_world(const std::string& file, const std::string& content, const Loa
   number_movers(b);
   check_stop_lines(b);
 
-  b.world.warnings = std::move(b.source.warnings);
   finish(b.world);
+  warn_of_misplaced(b);
+  b.world.warnings = std::move(b.source.warnings);
   return std::move(b.world);
 }
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "base/error.h"
 #include "base/random.h"
+#include "world/ros_map.h"
 #include "world/wall_grid.h"
 
 namespace sf::world {
@@ -18,16 +20,29 @@ constexpr std::uint32_t kAttempts = 4000;  // draws per copy; a random packing i
 
 double clear_radius(const Mover& robot) { return robot.radius + kPlaceMargin; }
 
-std::vector<Segment> walls_at_height(const World& world, const Mover& robot) {
-  double z_min = HUGE_VAL, z_max = -HUGE_VAL;
-  for (const Segment& s : robot.body) {
-    z_min = std::min(z_min, s.z_min + robot.X_WM.z);
-    z_max = std::max(z_max, s.z_max + robot.X_WM.z);
-  }
+struct Heights {
+  double min = HUGE_VAL, max = -HUGE_VAL;  // [m]
+  bool meet(const Segment& wall) const { return wall.z_min < max && min < wall.z_max; }
+};
+
+Heights heights_of(const Mover& robot, double z) {
+  Heights heights;
+  for (const Segment& s : robot.body)
+    heights = {std::min(heights.min, s.z_min + z), std::max(heights.max, s.z_max + z)};
+  return heights;
+}
+
+// Where a map's knowledge ends is a wall to those that are placed, with no sides to it.
+std::vector<Segment> walls_at_height(const World& world, const Mover& robot, std::span<const Segment> known) {
+  const Heights heights = heights_of(robot, robot.X_WM.z);
   std::vector<Segment> walls;
   for (const Segment& wall : world.walls) {
     const bool matters = wall.stops_robots || wall.seen_by_laser;
-    if (matters && wall.z_min < z_max && z_min < wall.z_max) walls.push_back(wall);
+    if (matters && heights.meet(wall)) walls.push_back(wall);
+  }
+  for (const Segment& edge : known) {
+    walls.push_back(edge);
+    walls.back().solid_left = false;
   }
   return walls;
 }
@@ -41,6 +56,8 @@ bool wall_between(const WallGrid& walls, Vec2 p, Vec2 q) {
 }
 
 bool in_solid(const WallGrid& walls, Vec2 p) { return windings(walls.walls(), p) != 0; }
+
+bool is_known(std::span<const Segment> known, Vec2 p) { return known.empty() || windings(known, p) != 0; }
 
 // ---- The coarse grid and the region a robot can reach in it.
 
@@ -124,27 +141,56 @@ std::uint32_t cell_near(const Region& region, const WallGrid& walls, double radi
   return nearest;
 }
 
-void take_largest(Region& region, std::vector<Cell>& state, const WallGrid& walls, double radius) {
-  std::vector<std::uint32_t> largest;
+Box box_around_all(std::span<const Segment> edges) {
+  Box box{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
+  for (const Segment& edge : edges) {
+    const Box own = box_of(edge.a, edge.b);
+    box.min = {std::min(box.min.x, own.min.x), std::min(box.min.y, own.min.y)};
+    box.max = {std::max(box.max.x, own.max.x), std::max(box.max.y, own.max.y)};
+  }
+  return box;
+}
+
+// Not walled in: it comes to the edge of what is looked at, or of all that a map knows.
+bool is_open(const Region& region, const Box& known, double radius) {
+  const double reach = radius + 1.5 * region.cell;
+  return std::any_of(region.cells.begin(), region.cells.end(), [&](std::uint32_t at) {
+    const std::uint32_t x = at % region.columns, y = at / region.columns;
+    const Vec2 p = region.centre(at);
+    return x == 0 || y == 0 || x + 1 == region.columns || y + 1 == region.rows ||
+           (known.min.x <= known.max.x &&
+            std::min({p.x - known.min.x, p.y - known.min.y, known.max.x - p.x, known.max.y - p.y}) < reach);
+  });
+}
+
+// The largest that is walled in, unless one that is not is a hundred times as large.
+void take_largest(std::span<const Segment> known, Region& region, std::vector<Cell>& state, const WallGrid& walls,
+                  double radius) {
+  const Box all_known = box_around_all(known);
+  std::vector<std::uint32_t> inside, outside;
   for (std::uint32_t at = 0; at < state.size(); ++at) {
     if (state[at] != Cell::unknown) continue;
     region.cells.clear();
     flood(region, state, walls, radius, at);
-    if (region.cells.size() > largest.size() && !in_solid(walls, region.centre(at))) largest.swap(region.cells);
+    std::vector<std::uint32_t>& largest = is_open(region, all_known, radius) ? outside : inside;
+    if (region.cells.size() <= largest.size()) continue;
+    const Vec2 p = region.centre(at);
+    if (!in_solid(walls, p) && is_known(known, p)) largest.swap(region.cells);
   }
-  region.cells.swap(largest);
+  region.cells.swap(100 * inside.size() > outside.size() ? inside : outside);
 }
 
-Region reachable(const WallGrid& walls, const Mover& robot) {
+Region reachable(std::span<const Segment> known, const WallGrid& walls, const Mover& robot) {
   Region region = grid_over(walls, robot);
   const double radius = clear_radius(robot);
   const Vec2 p{robot.X_WM.x, robot.X_WM.y};
   std::vector<Cell> state(static_cast<std::size_t>(region.columns) * region.rows, Cell::unknown);
-  const std::uint32_t first = in_solid(walls, p) ? kNone : cell_near(region, walls, radius, p);
+  const bool free = !in_solid(walls, p) && is_known(known, p);
+  const std::uint32_t first = free ? cell_near(region, walls, radius, p) : kNone;
   if (first != kNone) {
     flood(region, state, walls, radius, first);
   } else {
-    take_largest(region, state, walls, radius);
+    take_largest(known, region, state, walls, radius);
   }
   return region;
 }
@@ -191,12 +237,54 @@ bool clear_of_tags(const World& world, Vec2 p, double radius) {
   });
 }
 
+// The floor plan or map: a picture that lies under half of the walls' extent or more. Null: there is none.
+const Model* plan_of(const World& world) {
+  const Box box = box_around_all(world.walls);
+  const Vec2 size = box.max - box.min;
+  for (const Model& model : world.models)
+    if (model.is_bitmap && model.mover == kNone && 2.0 * model.size.x * model.size.y >= size.x * size.y) return &model;
+  return nullptr;
+}
+
+// The wall that the robot's outline, a little smaller so that touching is none, would cross there.
+const Segment* wall_in(const World& world, const Mover& robot, const Pose& X_WM) {
+  const Heights heights = heights_of(robot, X_WM.z);
+  const Vec2 p{X_WM.x, X_WM.y};
+  for (const Segment& wall : world.walls) {
+    if (!wall.stops_robots || !heights.meet(wall) || distance(p, wall.a, wall.b) > robot.radius) continue;
+    for (const Segment& side : robot.body) {
+      if (!side.stops_robots) continue;
+      if (segments_meet(transform(X_WM, 0.98 * side.a), transform(X_WM, 0.98 * side.b), wall.a, wall.b)) return &wall;
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace
+
+std::string misplaced(const World& world, const Mover& robot, const Pose& X_WM) {
+  const Vec2 p{X_WM.x, X_WM.y};
+  const Model* plan = plan_of(world);
+  if (plan != nullptr) {
+    const Vec2 at = base::rotate(-plan->X_WM.yaw, p - Vec2{plan->X_WM.x, plan->X_WM.y});
+    if (2.0 * std::abs(at.x) > plan->size.x || 2.0 * std::abs(at.y) > plan->size.y)
+      return "outside of '" + plan->name + "'";
+  }
+  const Heights heights = heights_of(robot, X_WM.z);
+  int around = 0;
+  for (const Segment& wall : world.walls)
+    if (wall.stops_robots && heights.meet(wall)) around += windings({&wall, 1}, p);
+  if (around != 0) return "within a wall";
+  const Segment* wall = wall_in(world, robot, X_WM);
+  if (wall != nullptr) return "partly in a wall of '" + world.models[wall->model].name + "'";
+  return is_known(known_free(world), p) ? "" : "where the map knows nothing";
+}
 
 std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32_t count, std::uint64_t seed) {
   const double radius = clear_radius(robot);
-  const WallGrid walls(walls_at_height(world, robot), 2.0 * radius);
-  const Region region = reachable(walls, robot);
+  const std::vector<Segment> known = known_free(world);
+  const WallGrid walls(walls_at_height(world, robot, known), 2.0 * radius);
+  const Region region = reachable(known, walls, robot);
   Crowd crowd(std::min<std::size_t>(count, region.cells.size()), 2.0 * robot.radius + kPlaceMargin);
   std::vector<Pose> poses;
   const auto draw = [&](std::uint32_t k) {

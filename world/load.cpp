@@ -13,7 +13,7 @@ World load_world(const std::string& file, const LoadOptions& options) {
   std::string ending = std::filesystem::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending == ".yaml" || ending == ".yml") return load_ros_map(file, options);
+  if (is_ros_map(file)) return load_ros_map(file, options);
   if (ending == ".rndf" || ending == ".rdf" || ending == ".mdf")
     throw base::InputError(file, 0, "is no world, but can be part of one: a world file with road( rndf \"FILE\" )");
   return build_world(file, read_text(file), options);

@@ -1,9 +1,13 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
 #include "world/free_space.h"
+#include "world/keys.h"
 #include "world/world.h"
 
 namespace sf::world {
@@ -103,13 +107,31 @@ Mover kept_one(const Mover& mover, const Kept& kept) {
 
 }  // namespace
 
-void clone_robots(World& world, std::uint32_t count, std::uint64_t seed) {
-  const auto first = std::find_if(world.movers.begin(), world.movers.end(), [](const Mover& m) { return !m.is_tag; });
-  if (first == world.movers.end())
-    throw base::InputError(world.file, 0, "has no robot to copy: add one, such as a position model");
+std::uint32_t robot_to_copy(const World& world, const std::string& name) {
+  std::vector<std::string_view> names;
+  std::uint32_t found = kNone;
+  bool senses = false;
+  for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
+    const Mover& mover = world.movers[row];
+    if (mover.is_tag) continue;
+    if (!name.empty() && mover.name == name) return row;
+    names.emplace_back(mover.name);
+    const bool has = !mover.lasers.empty() || !mover.sensors.empty();
+    if (found != kNone && (senses || !has)) continue;
+    found = row;
+    senses = has;
+  }
+  if (found == kNone) throw base::InputError(world.file, 0, "has no robot to copy: add one, such as a position model");
+  if (name.empty()) return found;
+  throw base::InputError(world.file, 0, fmt::format("has no robot '{}' to copy{}", name, suggest(name, names)));
+}
+
+void clone_robots(World& world, std::uint32_t count, std::uint64_t seed) { clone_robots(world, count, seed, ""); }
+
+void clone_robots(World& world, std::uint32_t count, std::uint64_t seed, const std::string& of) {
+  const std::uint32_t original = robot_to_copy(world, of);
   if (count == 0) throw base::InputError(world.file, 0, "asked for 0 robots: ask for at least 1");
-  const std::vector<Pose> poses = free_poses(world, *first, count, seed);
-  copy_robots(world, static_cast<std::uint32_t>(first - world.movers.begin()), poses, {});
+  copy_robots(world, original, free_poses(world, world.movers[original], count, seed), {});
 }
 
 void copy_robots(World& world, std::uint32_t original, std::span<const Pose> poses,

@@ -27,10 +27,11 @@ RoadNetwork read_network(Building& b, const Entity& entity) {
 
 /// Lanes named like "1.1 3.2", or "all".
 std::vector<const RoadLane*> named_lanes(const Building& b, const Entity& entity, const RoadNetwork& roads) {
-  const std::string names = " " + text(b.source, entity, "magnet_lanes", "all") + " ";
+  const std::string names = fmt::format(" {} ", text(b.source, entity, "magnet_lanes", "all"));
   std::vector<const RoadLane*> lanes;
   for (const RoadLane& lane : roads.lanes)
-    if (names == " all " || names.find(" " + name_of(roads, lane) + " ") != std::string::npos) lanes.push_back(&lane);
+    if (names == " all " || names.find(fmt::format(" {} ", name_of(roads, lane))) != std::string::npos)
+      lanes.push_back(&lane);
   const auto words = static_cast<std::size_t>(std::count(names.begin(), names.end(), ' ')) - 1;
   if (names != " all " && lanes.size() != words)
     fail(b.source, find(entity, "magnet_lanes")->at,

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -119,7 +121,11 @@ Map read_map(const Yaml& yaml, std::vector<Warning>& warnings) {
 
 // map_server's trinary rule: occ = (255 - p) / 255 (p / 255 when negated); above `occupied` a wall, below `free` free,
 // between them unknown. Transparent pixels are unknown.
-Grid grid_of(const Map& map, const Picture& picture, bool unknown_is_wall) {
+enum class Ground : std::uint8_t { wall, unknown, free };
+
+/// @param counts whether ground of that kind is solid in the grid
+template <class Counts>
+Grid grid_of(const Map& map, const Picture& picture, Counts&& counts) {
   Grid grid{picture.width, picture.height, std::vector<std::uint8_t>(picture.value.size())};
   for (std::uint32_t row = 0; row < picture.height; ++row) {
     const std::size_t from = std::size_t{row} * picture.width;
@@ -130,31 +136,47 @@ Grid grid_of(const Map& map, const Picture& picture, bool unknown_is_wall) {
       const bool opaque = picture.opaque.empty() || picture.opaque[from + i] != 0;
       const bool wall = opaque && occ > map.occupied;
       const bool unknown = !wall && (!opaque || occ >= map.free);
-      grid.solid[to + i] = wall || (unknown && unknown_is_wall) ? 1 : 0;
+      grid.solid[to + i] = counts(wall ? Ground::wall : unknown ? Ground::unknown : Ground::free) ? 1 : 0;
     }
   }
   return grid;
 }
 
-void add_walls(World& world, const Map& map, const Traced& traced) {
-  const Size size{map.resolution * traced.grid.width, map.resolution * traced.grid.height, kMapWallHeight};
-  const Pose X_WM = compose(map.X_WL, {size.x / 2.0, size.y / 2.0, 0.0, 0.0});
+Pose middle_of(const Map& map, const Grid& grid) {
+  return compose(map.X_WL, {map.resolution * grid.width / 2.0, map.resolution * grid.height / 2.0, 0.0, 0.0});
+}
+
+std::vector<Segment> outlines_of(const Map& map, Grid grid) {
+  const Size size{map.resolution * grid.width, map.resolution * grid.height, kMapWallHeight};
+  const Pose X_WM = middle_of(map, grid);
+  std::vector<Segment> outlines = bitmap_segments(*trace(std::move(grid), map.image), size);
+  for (Segment& edge : outlines) {
+    edge.a = transform(X_WM, edge.a);
+    edge.b = transform(X_WM, edge.b);
+  }
+  return outlines;
+}
+
+void add_walls(World& world, const Map& map, Grid grid) {
   Model model;
   model.name = "map";
   model.type = "map";
-  model.X_WM = X_WM;
-  model.size = {size.x, size.y};
+  model.X_WM = middle_of(map, grid);
+  model.size = {map.resolution * grid.width, map.resolution * grid.height};
   model.color = 0xFF4D4D4Du;
   model.is_bitmap = true;
   world.models.push_back(model);
-  world.walls = bitmap_segments(traced, size);
-  for (Segment& wall : world.walls) {
-    wall.a = transform(X_WM, wall.a);
-    wall.b = transform(X_WM, wall.b);
-  }
+  world.walls = outlines_of(map, std::move(grid));
 }
 
 }  // namespace
+
+bool is_ros_map(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".yaml" || ending == ".yml";
+}
 
 World load_ros_map(const std::string& file, const LoadOptions& options) {
   World world;
@@ -164,9 +186,19 @@ World load_ros_map(const std::string& file, const LoadOptions& options) {
   const Yaml yaml{file, parse_yaml(file)};
   const Map map = read_map(yaml, world.warnings);
   const Picture picture = read_picture(map.image, Channel::mean);
-  add_walls(world, map, *trace(grid_of(map, picture, options.unknown_is_wall), map.image));
+  add_walls(world, map, grid_of(map, picture, [&](Ground ground) {
+              return ground == Ground::wall || (ground == Ground::unknown && options.unknown_is_wall);
+            }));
   finish(world);
   return world;
+}
+
+std::vector<Segment> known_free(const World& world) {
+  if (!is_ros_map(world.file)) return {};
+  std::vector<Warning> said;
+  const Map map = read_map({world.file, parse_yaml(world.file)}, said);
+  const Picture picture = read_picture(map.image, Channel::mean);
+  return outlines_of(map, grid_of(map, picture, [](Ground ground) { return ground == Ground::free; }));
 }
 
 }  // namespace sf::world

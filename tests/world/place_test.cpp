@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "tests/robots/scenes.h"
+#include "world/free_space.h"
 #include "world/wall_grid.h"
 #include "world/world.h"
 
@@ -108,6 +109,55 @@ TEST(CloneRobots, bridges_do_not_matter_to_low_robots) {
   for (double x = 0.1; x < 1.0; x += 0.1) scenes::add_wall(world, {x, 0}, {x, 1}, 1.0, 2.0);
   scenes::add_create(world, {0.5, 0.5, 0, 0});
   EXPECT_NO_THROW(clone_robots(world, 1, 1));
+}
+
+// A dummy without sensors before two that have some, and a tag before all.
+World with_a_dummy() {
+  World world = scenes::boxed_world(8, 8);
+  scenes::add_create(world, {1, 1, 0, 0}).is_tag = true;
+  scenes::add_create(world, {2, 2, 0, 0}).name = "dummy";
+  scenes::add_create(world, {4, 4, 0, 0}).sensors.push_back(scenes::magnetometers(5));
+  scenes::add_create(world, {6, 6, 0, 0}).lasers.resize(1);
+  return world;
+}
+
+TEST(CloneRobots, the_first_with_sensors_is_copied_or_who_is_named) {
+  EXPECT_EQ(robot_to_copy(with_a_dummy()), 2u);
+  EXPECT_EQ(robot_to_copy(with_a_dummy(), "dummy"), 1u);
+  EXPECT_EQ(robot_to_copy(with_a_dummy(), "robot4"), 3u);
+  World world = with_a_dummy();
+  world.movers[2].sensors.clear();
+  EXPECT_EQ(robot_to_copy(world), 3u) << "a laser is a sensor";
+  world.movers[3].lasers.clear();
+  EXPECT_EQ(robot_to_copy(world), 1u) << "none has any: the first";
+  World copies = with_a_dummy();
+  clone_robots(copies, 5, 1);
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(copies.movers[k].sensors.size(), 1u);
+  clone_robots(copies = with_a_dummy(), 5, 1, "dummy");
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_TRUE(copies.movers[k].sensors.empty());
+}
+
+TEST(CloneRobots, a_name_that_is_no_robots_is_refused) {
+  for (const auto& [name, said] : {std::pair{"robot44", "has no robot 'robot44' to copy; did you mean 'robot4'?"},
+                                   std::pair{"robot1", "has no robot 'robot1' to copy"}}) {
+    try {
+      robot_to_copy(with_a_dummy(), name);
+      FAIL() << name;
+    } catch (const base::InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(CloneRobots, from_within_a_solid_they_go_inside_though_there_is_more_outside) {
+  World world = scenes::boxed_world(4, 4);  // the floor around it is 24 m wide
+  scenes::add_outline(world.walls, scenes::rectangle({2, 2}, 0.6, 0.6));
+  scenes::add_create(world, {2, 2, 0, 0});
+  clone_robots(world, 20, 1);
+  for (const Mover& mover : world.movers) {
+    const Vec2 p = at(mover);
+    EXPECT_TRUE(p.x > 0 && p.x < 4 && p.y > 0 && p.y < 4) << p.x << ", " << p.y;
+  }
 }
 
 TEST(CloneRobots, no_room_is_said_with_numbers) {

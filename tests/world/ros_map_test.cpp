@@ -8,6 +8,9 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "tests/robots/scenes.h"
+#include "world/free_space.h"
+#include "world/wall_grid.h"
 
 namespace sf::world {
 namespace {
@@ -71,6 +74,75 @@ TEST_F(RosMap, UnknownIsAWallOnlyWhenAskedFor) {
   LoadOptions options;
   options.unknown_is_wall = true;
   EXPECT_NEAR(area(load(kGood, options)), 0.5, 1e-12);
+}
+
+/// Grey 205 is (255 - 205) / 255 = 0.19608 occupied: just not below 0.196, map_server's threshold; 206 is.
+TEST_F(RosMap, Grey205IsUnknownAnd206IsFree) {
+  const std::string yaml = "image: m.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n";
+  const auto known = [&](const std::string& greys, const std::string& more = "") {
+    write("m.pgm", "P2 2 1 255\n" + greys + "\n");
+    double sum = 0.0;
+    for (const Segment& edge : known_free(load(yaml + more))) sum += cross(edge.a, edge.b) / 2;
+    return sum;
+  };
+  EXPECT_NEAR(known("205 206"), 0.25, 1e-12);
+  EXPECT_NEAR(known("254 206"), 0.5, 1e-12);
+  EXPECT_NEAR(known("205 0"), 0.0, 1e-12) << "neither unknown nor a wall is known to be free";
+  EXPECT_NEAR(known("205 254", "free_thresh: 0.25\n"), 0.5, 1e-12) << "as the file says";
+}
+
+/// The form of Nav2's sandbox: an arena of 5 m with a pillar where the map's origin is, in a field of 20 m that nobody
+/// has seen.
+void write_sandbox(const std::filesystem::path& folder) {
+  std::string pixels(400 * 400, static_cast<char>(205));
+  for (int row = 0; row < 400; ++row)
+    for (int column = 0; column < 400; ++column) {
+      const int x = column - 200, y = row - 200;  // of 5 cm
+      if (std::max(std::abs(x), std::abs(y)) > 50) continue;
+      const bool wall = std::max(std::abs(x), std::abs(y)) >= 49 || x * x + y * y < 16;
+      pixels[static_cast<std::size_t>(row * 400 + column)] = static_cast<char>(wall ? 0 : 254);
+    }
+  std::ofstream(folder / "m.pgm", std::ios::binary) << "P5 400 400 255\n" << pixels;
+}
+constexpr const char* kSandbox =
+    "image: m.pgm\nresolution: 0.05\norigin: [-10, -10, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: ";
+
+TEST_F(RosMap, CopiesStartInsideTheArenaAmidTheUnknown) {
+  write_sandbox(folder_);
+  for (const char* threshold : {"0.196", "0.25"})  // with the latter the field counts as free
+    for (const Pose& start : {Pose{}, Pose{-7.0, 3.0, 0.0, 0.0}, Pose{1.0, 1.0, 0.0, 0.0}}) {
+      if (threshold[3] == '5' && start.x < -5.0) continue;  // it stands in what the file calls free
+      World world = load(std::string(kSandbox) + threshold + "\n");
+      scenes::add_create(world, start);
+      finish(world);
+      clone_robots(world, 8, 1);
+      ASSERT_EQ(world.movers.size(), 8u);
+      for (const Mover& mover : world.movers) {
+        EXPECT_LT(std::max(std::abs(mover.X_WM.x), std::abs(mover.X_WM.y)), 2.5) << start.x;
+        EXPECT_EQ(misplaced(world, mover, mover.X_WM), "");
+      }
+    }
+}
+
+TEST_F(RosMap, PosesThatNobodyCanHaveAreNamed) {
+  write_sandbox(folder_);
+  World world = load(std::string(kSandbox) + "0.196\n");
+  scenes::add_create(world, {});
+  finish(world);
+  const auto where = [&](double x, double y) { return misplaced(world, world.movers[0], {x, y, 0.0, 0.3}); };
+  EXPECT_EQ(where(1, 1), "");
+  EXPECT_EQ(where(0, 0), "within a wall");
+  EXPECT_EQ(where(2.35, 1), "partly in a wall of 'map'");
+  EXPECT_EQ(where(-6, 1), "where the map knows nothing");
+  EXPECT_EQ(where(-10.1, 1), "outside of 'map'");
+}
+
+TEST_F(RosMap, WhatIsKnownTurnsWithTheMap) {
+  std::string yaml = kGood;
+  yaml.replace(yaml.find("20, 0]"), 6, "20, 1.5707963267948966]");
+  const std::vector<Segment> known = known_free(load(yaml));
+  EXPECT_NE(windings(known, {9.25, 21.25}), 0) << "the pixel beside the unknown one";
+  EXPECT_EQ(windings(known, {9.25, 20.75}), 0) << "the unknown one";
 }
 
 TEST_F(RosMap, NegatedMapsAreBrightWhereTheyAreOccupied) {

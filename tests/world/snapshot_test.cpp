@@ -131,6 +131,44 @@ TEST(Snapshot, RowsThatBreakTheirRulesAreRefused) {
   EXPECT_TRUE(refused([](World& w) { w.lights[0].phases[0].state = static_cast<LightState>(6); }));
 }
 
+/// Each link of each table, one row past the end of what it names, and far past; kNone where that is no row.
+TEST(Snapshot, LinksPastTheEndAreRefused) {
+  World world = street();
+  world.magnets.push_back({{1.0, 2.0}, -0.04, 0.5, 0.01, 1});
+  world.movers[0].magnets.push_back({{0.1, 0.0}, 0.2, -1.0, 0.02, 0});
+  world.movers[0].body.push_back(world.walls[0]);
+  const auto models = static_cast<std::uint32_t>(world.models.size());
+  const auto movers = static_cast<std::uint32_t>(world.movers.size());
+  const auto refused = [&](std::uint32_t& link, std::uint32_t row) {
+    const std::uint32_t good = std::exchange(link, row);
+    finish(world);
+    std::string what;
+    try {
+      from_snapshot(snapshot(world));
+    } catch (const base::InputError& error) {
+      what = error.what();
+    }
+    link = good;
+    return what.find("names a row that is not there") != std::string::npos;
+  };
+  struct Link {
+    std::uint32_t* row;
+    std::uint32_t count;
+    bool optional;
+  };
+  Mover& mover = world.movers[0];
+  for (const Link& link : {Link{&world.walls[0].model, models, false}, Link{&world.magnets[0].model, models, false},
+                           Link{&world.models[0].parent, models, true}, Link{&world.models[0].mover, movers, true},
+                           Link{&mover.model, models, false}, Link{&mover.body.back().model, models, false},
+                           Link{&mover.magnets[0].model, models, false}, Link{&world.lights[0].model, models, false},
+                           Link{&world.emitters[0].model, models, false}, Link{&world.drops[0].model, models, false}}) {
+    EXPECT_FALSE(refused(*link.row, link.count - 1)) << "the last row";
+    EXPECT_TRUE(refused(*link.row, link.count)) << "one past the end";
+    EXPECT_TRUE(refused(*link.row, link.count + 1));
+    EXPECT_EQ(refused(*link.row, kNone), !link.optional);
+  }
+}
+
 TEST(Snapshot, EveryCutIsRefused) {
   const auto bytes = snapshot(street());
   for (std::size_t size = 0; size < bytes.size(); size += 7) {

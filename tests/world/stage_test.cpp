@@ -152,6 +152,9 @@ TEST(Stage, ReturnsHideFromLasers) {
   EXPECT_FALSE(read_world("model( ranger_return -1 )").walls[0].seen_by_laser);
   EXPECT_TRUE(read_world("model( laser_return 2 )").walls[0].seen_by_laser);
   EXPECT_TRUE(read_world("model( ranger_return 0.5 )").walls[0].seen_by_laser);
+  EXPECT_TRUE(read_world("model( ranger_return 0 )").walls[0].seen_by_laser) << "dark, but there: only below 0 is none";
+  EXPECT_FALSE(read_world("model( laser_return 0 )").walls[0].seen_by_laser);
+  EXPECT_FALSE(read_world("model( laser_return 0 ranger_return 1 )").walls[0].seen_by_laser) << "either hides it";
 }
 
 TEST(Stage, ABitmapIsDarkSolidAndUpright) {
@@ -362,6 +365,37 @@ TEST(Stage, AnEmptyWorldIsAWorld) {
   EXPECT_TRUE(world.models.empty());
   EXPECT_EQ(world.extent.x_max, 0.0);
   EXPECT_EQ(world.name, "test");
+}
+
+/// A room of 4 m with walls 0.2 m thick, as a floor plan would be; robots are discs of 0.2 m or points without a body.
+TEST(Stage, ARobotThatCannotStandWhereItStartsIsAWarning) {
+  const std::string room =
+      "define wall model( size [4.4 0.2 1] )\n"
+      "wall( name \"south\" pose [0 -2.1 0 0] ) wall( name \"north\" pose [0 2.1 0 0] )\n";
+  const auto said = [&](const std::string& pose) {
+    return warnings_of(read_world(room + "position( name \"bob\" size [0.4 0.4 0.2] pose " + pose + " )"));
+  };
+  EXPECT_EQ(said("[0 0 0 0]"), "");
+  EXPECT_EQ(said("[0 -1.8 0 0]"), "") << "touching is fine";
+  EXPECT_EQ(said("[0 -1.75 0 0]"), "");
+  EXPECT_EQ(said("[0 -1.7 1 0]"), "") << "above the wall";
+  EXPECT_EQ(said("[0 -2.1 0 0]"), "3: 'bob' starts at (0, -2.1), within a wall; expected a 'pose' in free space\n");
+  EXPECT_EQ(said("[1 -1.85 0 0]"),
+            "3: 'bob' starts at (1, -1.85), partly in a wall of 'south'; expected a 'pose' in free space\n");
+  EXPECT_EQ(said("[9 9 0 0]"), "") << "there is no plan to be outside of";
+  EXPECT_EQ(warnings_of(read_world("model( size [1 1 1] obstacle_return 0 ) position( )")), "") << "it stops nobody";
+  EXPECT_EQ(warnings_of(read_world("model( size [1 1 1] ) position( name \"tag1\" )")), "") << "tags may be anywhere";
+}
+
+TEST(Stage, ARobotOutsideOfTheFloorPlanIsAWarning) {
+  const std::string plan = "model( name \"plan\" bitmap \"bitmaps/cave.png\" size [16 16 0.5] )\n";
+  EXPECT_NE(warnings_of(read_world(plan + "position( name \"bob\" pose [9 0 0 0] )"))
+                .find("2: 'bob' starts at (9, 0), outside of 'plan'; expected"),
+            std::string::npos);
+  const World beside = read_world(
+      "model( bitmap \"bitmaps/cave.png\" size [1 1 0.5] )\nmodel( pose [5 5 0 0] )\n"
+      "position( name \"bob\" pose [3 3 0 0] )");
+  EXPECT_EQ(warnings_of(beside), "") << "a picture that small is no floor plan";
 }
 
 }  // namespace
