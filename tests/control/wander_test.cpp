@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "robots/fleet.h"
@@ -256,6 +257,117 @@ TEST(Wander, backs_off_from_what_it_met_then_turns) {
   const Twist later = wander.step({20 * kTick, {}, {}, false});
   EXPECT_EQ(later.forward, 0.0);
   EXPECT_NE(later.turn, 0.0);
+}
+
+// ---- One decision at a time: a Create whose laser of 181 beams over 180 degrees looks 8 m far from its middle.
+
+TEST(Wander, its_distances_follow_from_the_body_its_speed_and_its_sight) {
+  world::World world = scenes::empty_world();
+  world::Mover& mover = scenes::add_create(world, {});
+  struct Sized {
+    double max_forward, radius, sight, stop, resume, slow;
+    const char* why;
+  };
+  for (const Sized& s : {Sized{0.5, 0.165, 8.0, 0.2, 0.4, 1.0, "what it can stop in: 0.4 s of its speed"},
+                         Sized{0.3, 0.4, 8.0, 0.2, 0.4, 1.0, "half its radius"},
+                         Sized{0.5, 0.165, 0.6, 0.18, 0.36, 0.57, "0.3, 0.6 and 0.95 of a short sight"}}) {
+    mover.max_forward = s.max_forward;
+    mover.radius = s.radius;
+    const WanderSettings settings = wander_settings(mover, s.sight);
+    EXPECT_NEAR(settings.stop, s.stop, 1e-12) << s.why;
+    EXPECT_NEAR(settings.resume, s.resume, 1e-12) << s.why;
+    EXPECT_NEAR(settings.slow, s.slow, 1e-12) << s.why;
+    EXPECT_NEAR(settings.speed, 0.8 * s.max_forward, 1e-12) << s.why;
+  }
+  mover.max_turn = 1.0;
+  EXPECT_NEAR(wander_settings(mover, 8.0).turn, 0.8, 1e-12);
+  mover.max_turn = 4.0;
+  EXPECT_EQ(wander_settings(mover, 8.0).turn, 1.5) << "at most";
+}
+
+struct Eyes {
+  Eyes() {
+    scenes::add_create(world, {}).lasers.push_back(laser(M_PI, 181, 8.0));
+    wander.emplace(world.movers[0], 0, 1);
+  }
+  /// @param front [m] of the 3 middle beams; from them to the body's front are 0.165 m
+  Twist look(double seconds, double front, double right = 8.0, double left = 8.0, double yaw = 0.0,
+             bool contact = false) {
+    std::vector<double> ranges(181, right);
+    std::fill(ranges.begin() + 89, ranges.end(), front);
+    std::fill(ranges.begin() + 92, ranges.end(), left);
+    const ReadingBlock block{.kind = 1, .values = ranges};
+    return wander->step({static_cast<std::int64_t>(1e9 * seconds), {.X_WM = {0, 0, 0, yaw}}, {&block, 1}, contact});
+  }
+  world::World world = scenes::empty_world();
+  std::optional<Wander> wander;
+};
+
+TEST(Wander, slows_down_in_proportion_and_turns_where_it_is_blocked) {
+  // 0.4 m/s from 1 m on, a quarter of it at 0.2 m; nearer than that it turns.
+  for (const auto& [ahead, speed] : {std::pair{5.0, 0.4}, {1.01, 0.4}, {0.6, 0.4 * 0.625}, {0.201, 0.1}})
+    EXPECT_NEAR(Eyes().look(0.0, ahead + 0.165).forward, speed, 1e-3) << ahead;
+  const Twist blocked = Eyes().look(0.0, 0.199 + 0.165);
+  EXPECT_EQ(blocked.forward, 0.0);
+  EXPECT_NEAR(std::abs(blocked.turn), 0.8 * M_PI / 2, 1e-12);
+}
+
+// In the open three tenths of its turn by how much freer a side is, near something all of it; and a drift of a quarter.
+TEST(Wander, steers_towards_the_freer_side) {
+  const double most = 0.8 * M_PI / 2, drift = 0.25 * most;
+  EXPECT_NEAR(Eyes().look(0.0, 8.0, 4.0, 8.0).turn, 0.3 * most * 2.0 / 3.0, 1.1 * drift) << "left";
+  EXPECT_NEAR(Eyes().look(0.0, 8.0, 8.0, 4.0).turn, -0.3 * most * 2.0 / 3.0, 1.1 * drift) << "right";
+  EXPECT_GT(Eyes().look(0.0, 0.365, 2.0, 8.0).turn, most - 2.0 * drift) << "near, and much freer: as far as it may";
+  EXPECT_LE(Eyes().look(0.0, 0.365, 2.0, 8.0).turn, most);
+  const double left = Eyes().look(0.0, 8.0, 2.0, 8.0).turn, right = Eyes().look(0.0, 8.0, 8.0, 2.0).turn;
+  EXPECT_NEAR(left - right, 2.0 * 0.3 * most, 0.05) << "the drift of one seed is one";
+}
+
+TEST(Wander, blocked_it_turns_to_the_freer_side_until_it_may_resume) {
+  for (const double side : {1.0, -1.0}) {
+    Eyes eyes;
+    const double right = side > 0.0 ? 1.0 : 3.0, left = 4.0 - right;
+    EXPECT_GT(side * eyes.look(0.0, 0.3, right, left).turn, 0.0);
+    EXPECT_GT(side * eyes.look(0.1, 0.3, left, right, 0.1).turn, 0.0) << "it has chosen";
+    EXPECT_EQ(eyes.look(0.2, 0.39 + 0.165, 3.0, 3.0, 0.2).forward, 0.0) << "more than 0.2 m, less than 0.4 m";
+    EXPECT_GT(eyes.look(0.3, 0.41 + 0.165, 3.0, 3.0, 0.3).forward, 0.0);
+  }
+}
+
+TEST(Wander, after_a_whole_round_less_room_will_do_and_after_two_it_backs_off) {
+  Eyes eyes;
+  eyes.look(0.0, 0.3);
+  double turned = 0.0, seconds = 0.0;
+  const auto turn_on = [&](double front) { return eyes.look(seconds += 0.1, front, 8.0, 8.0, turned += 0.5); };
+  while (turned < 6.0) EXPECT_EQ(turn_on(0.3 + 0.165).forward, 0.0) << turned << ": 0.3 m are not enough yet";
+  EXPECT_EQ(turn_on(0.19 + 0.165).forward, 0.0) << "6.5 rad: less than 0.2 m";
+  EXPECT_GT(turn_on(0.21 + 0.165).forward, 0.0) << "but 0.21 m are";
+  Eyes stuck;
+  stuck.look(0.0, 0.3);
+  turned = 0.0;
+  while (turned < 12.5) EXPECT_GE(stuck.look(seconds += 0.1, 0.3, 8.0, 8.0, turned += 0.5).forward, 0.0) << turned;
+  EXPECT_LT(stuck.look(seconds += 0.1, 0.3, 8.0, 8.0, turned += 0.5).forward, 0.0) << "two rounds: backwards";
+}
+
+// Half its speed for 0.3 to 0.8 s, then a turn of 0.5 to 2.5 rad, though it is free ahead.
+TEST(Wander, backs_off_for_a_moment_and_turns_by_some_angle) {
+  std::set<double> backs, turns;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Eyes eyes;
+    eyes.wander.emplace(eyes.world.movers[0], 0, seed);
+    double seconds = 0.0, yaw = 0.0;
+    EXPECT_NEAR(eyes.look(seconds, 8.0, 8.0, 8.0, 0.0, true).forward, -0.2, 1e-12);
+    while (eyes.look(seconds += 0.01, 8.0).forward < 0.0) ASSERT_LT(seconds, 0.81);
+    backs.insert(seconds);
+    while (eyes.look(seconds, 8.0, 8.0, 8.0, yaw += 0.01).forward == 0.0) ASSERT_LT(yaw, 2.6);
+    turns.insert(yaw);
+  }
+  EXPECT_GE(*backs.begin(), 0.3);
+  EXPECT_LT(*backs.begin(), 0.4);
+  EXPECT_GT(*backs.rbegin(), 0.7);
+  EXPECT_GE(*turns.begin(), 0.49);
+  EXPECT_LT(*turns.begin(), 0.8);
+  EXPECT_GT(*turns.rbegin(), 2.2);
 }
 
 // ---- What is ahead.

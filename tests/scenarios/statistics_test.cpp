@@ -68,6 +68,10 @@ TEST(Statistics, PercentilesAreRanks) {
   EXPECT_EQ(percentile(values, 1.0), 100.0);
   EXPECT_EQ(percentile(values, 0.5), 50.0);
   EXPECT_TRUE(std::isnan(percentile({}, 0.5)));
+  // Between ranks the next higher one: the least value that so many are not above.
+  const double five[] = {30.0, 10.0, 50.0, 20.0, 40.0};
+  for (const auto& [part, value] : {std::pair{0.2, 10.0}, {0.21, 20.0}, {0.5, 30.0}, {0.81, 50.0}, {0.99, 50.0}})
+    EXPECT_EQ(percentile(five, part), value) << part;
 }
 
 TEST(Statistics, CsvHasEightColumnsATrial) {
