@@ -228,9 +228,13 @@ void add_seed(CLI::App& app, Options& o, const std::string& what) {
 }
 
 void add_robots(CLI::App& app, Options& o) {
-  app.add_option("--robots", o.robots, "Clone the world's first robot to this many free poses")
-      ->check(whole(1, 65535))
-      ->type_name("N");
+  auto* robots = app.add_option("--robots", o.robots, "Clone one robot of the world to this many free poses")
+                     ->check(whole(1, 65535))
+                     ->type_name("N");
+  app.add_option("--of", o.of, "The robot that is cloned (default: the first with sensors)")
+      ->check(not_empty("the name of a robot"))
+      ->needs(robots)
+      ->type_name("NAME");
   add_seed(app, o, "Seed of poses, decisions and noise");
 }
 

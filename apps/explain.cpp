@@ -79,7 +79,7 @@ std::string text_of(const scenarios::Explanation& e) {
 }
 
 int explain(const Options& options) {
-  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed);
+  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   gpu::Device device(options.device);
   scenarios::Explanation explanation;
   {

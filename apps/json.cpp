@@ -93,6 +93,10 @@ Json control_json(const ControlFacts& f) {
   Json json{{"controller", f.controller}, {"robots", f.robots}, {"done", f.done}};
   if (f.error.steps > 0) json["error"] = error_json(f.error);
   if (f.has_goals) json["checkpoints"] = f.checkpoints;
+  json["standing"] = Json::array();
+  for (const Standing& s : f.standing)
+    json["standing"].push_back(
+        {{"reason", s.reason}, {"robots", s.robots}, {"names", s.names}, {"longest_s", s.seconds}});
   return json;
 }
 
@@ -277,6 +281,8 @@ std::string json_of(const scenarios::Verification& verification) {
             {"sound", verification.sound()},
             {"interrupted", verification.interrupted},
             {"missing", verification.missing},
+            {"damage", verification.damage},
+            {"scans", verification.scans},
             {"skipped", verification.skipped},
             {"reference", compared(verification.reference)}};
   json["again"] = Json::array();

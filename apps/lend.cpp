@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "world/free_space.h"
+
 namespace sf::apps {
 
 namespace {
@@ -48,7 +50,7 @@ bool lend_robot(world::World& world) {
 }
 
 world::World load_with_robots(const std::string& file, const world::LoadOptions& options, std::uint32_t count,
-                              std::uint64_t seed) {
+                              std::uint64_t seed, const std::string& of) {
   world::World world = world::load_world(file, options);
   const bool lent = lend_robot(world);
   if (lent)
@@ -56,7 +58,7 @@ world::World load_with_robots(const std::string& file, const world::LoadOptions&
                  "sensorfarm: %s has no robot; it is lent 'roomba1' (id 1), a Create with a laser of 361 rays, 180 "
                  "degrees, 8 m\n",
                  file.c_str());
-  if (count > 0 || lent) world::clone_robots(world, std::max(1u, count), seed);
+  if (count > 0 || lent) world::clone_robots(world, std::max(1u, count), seed, of);
   return world;
 }
 

@@ -11,6 +11,6 @@ bool lend_robot(world::World& world);
 
 /// Loads the world, lends it a robot where it has none, and clones robots when `count` > 0.
 world::World load_with_robots(const std::string& file, const world::LoadOptions& options, std::uint32_t count,
-                              std::uint64_t seed);
+                              std::uint64_t seed, const std::string& of = "");
 
 }  // namespace sf::apps

@@ -14,7 +14,7 @@
 namespace sf::apps {
 
 int listen(const Options& options) {
-  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed);
+  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   const sensors::Roster roster(world);
   require_sendable(world, roster, options);
   const std::vector<Source> sources = sources_of(roster);

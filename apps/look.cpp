@@ -11,6 +11,7 @@
 #include "apps/wording.h"
 #include "base/error.h"
 #include "viz/world_figure.h"
+#include "world/free_space.h"
 
 namespace sf::apps {
 
@@ -94,6 +95,13 @@ void mark_no_return(const sensors::SensorRow& row, const base::ReadingBlock& rea
     if (reading.hits[i] == base::kNoHit && values[i] >= row.limit) values[i] = std::numeric_limits<double>::infinity();
 }
 
+void warn_of_pose(const world::World& world, const world::Mover& robot, const base::Pose& X_WM) {
+  const std::string where = world::misplaced(world, robot, X_WM);
+  if (!where.empty())
+    std::fprintf(stderr, "sensorfarm: warning: at (%g, %g) '%s' is %s\n", X_WM.x, X_WM.y, robot.name.c_str(),
+                 where.c_str());
+}
+
 }  // namespace
 
 int devices(const Options& options) {
@@ -128,6 +136,7 @@ int sense(const Options& options) {
   const Chosen chosen = require_sensor(world, roster, options, mover);
   base::Pose X_WM = world.movers[mover].X_WM;
   if (options.pose) X_WM = {options.pose->x, options.pose->y, X_WM.z, options.pose->yaw};
+  if (options.pose) warn_of_pose(world, world.movers[mover], X_WM);
 
   gpu::Device device(options.device);
   farm::FarmOptions quiet;

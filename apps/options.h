@@ -72,9 +72,10 @@ struct Options {
 
   std::vector<std::string> cases;  ///< of `selftest`, or groups of them; empty: all
 
-  std::uint64_t sample = 0;  ///< scans that `verify` casts again in plain C++; 0: all
-  std::uint32_t robots = 0;  ///< clones; 0: the world's own
-  double duration = 60.0;    ///< [s]; but for `run`, 0 is until stopped
+  std::uint64_t sample = 500;  ///< scans that `verify` casts again in plain C++; 0: all
+  std::uint32_t robots = 0;    ///< clones; 0: the world's own
+  std::string of;              ///< robot that they are clones of; empty: the first with sensors
+  double duration = 60.0;      ///< [s]; but for `run`, 0 is until stopped
   std::uint64_t seed = 1;
   unsigned threads = 0;
   std::string record;  ///< folder; empty: no recording

@@ -112,7 +112,7 @@ auto advised(const world::World& world, const Options& options, Act&& act) {
 }  // namespace
 
 int run(const Options& options) {
-  world::World world = load_with_robots(options.world, options.load, options.robots, options.seed);
+  world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   if (!options.send.empty()) require_sendable(world, sensors::Roster(world), options);
   gpu::Device device(options.device);
   choose_accuracy(world, device, options);
@@ -130,7 +130,7 @@ int run(const Options& options) {
     Progress progress("simulating");
     for (; facts.ticks < ticks && !stop_requested(); ++facts.ticks) {
       const base::TickRecord tick = advised(world, options, [&] { return simulation.step(); });
-      tally.look();
+      tally.look(tick);
       outputs.write(tick);
       for (const std::uint8_t contact : tick.contacts) facts.contacts += contact;
       const double simulated = static_cast<double>(facts.ticks + 1) * world.interval;
@@ -144,7 +144,7 @@ int run(const Options& options) {
   facts.device = device.facts().name;
   facts.software = device.facts().software;
   facts.robots = static_cast<std::uint32_t>(count_robots(world));
-  facts.control = tally.facts();
+  facts.control = tally.facts(world);
   facts.move_s = simulation.move_seconds();
   facts.farm = simulation.farm().stats();
   facts.hash = simulation.farm().hash();

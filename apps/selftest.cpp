@@ -26,6 +26,7 @@ std::vector<const Case*> chosen(const std::vector<std::string>& names) {
         std::any_of(names.begin(), names.end(), [&](const auto& n) { return n == c.name || n == c.group; });
     if (names.empty() || asked) some.push_back(&c);
   }
+  if (std::count(names.begin(), names.end(), extremes::failure().name) > 0) some.push_back(&extremes::failure());
   return some;
 }
 

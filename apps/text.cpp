@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/facts.h"
@@ -130,6 +131,11 @@ std::string control_text(const ControlFacts& f) {
       row("controller", fmt::format("{}: {} of {} done", f.controller, f.done, counted(f.robots, "robot")));
   if (f.error.steps > 0) text += row("control error", text_of(f.error));
   if (f.has_goals) text += row("checkpoints", fmt::format("{} passed", f.checkpoints));
+  constexpr std::size_t kLines = 5;
+  for (std::size_t i = 0; i < std::min(f.standing.size(), kLines); ++i)
+    text += row(i == 0 ? "stand at the end" : "", text_of(f.standing[i]));
+  if (f.standing.size() > kLines)
+    text += row("", fmt::format("and robots for {} other reasons (--json has all)", f.standing.size() - kLines));
   return text;
 }
 

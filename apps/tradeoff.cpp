@@ -114,7 +114,7 @@ void choose_accuracy(world::World& world, gpu::Device& device, const Options& op
 }
 
 int tradeoff(const Options& options) {
-  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed);
+  const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   gpu::Device device(options.device);
   catch_stop_signals();
   const scenarios::Wish wish = wish_of(options);

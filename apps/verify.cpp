@@ -31,10 +31,14 @@ std::string text_of(const scenarios::Verification& v, bool readings_recorded) {
   std::string text = row("ticks", std::to_string(v.ticks));
   for (const scenarios::Compared& c : v.again) text += line_of(c, "this device beside the recording");
   text += line_of(v.reference, readings_recorded ? "plain C++ beside the recording" : "plain C++ beside this device");
+  if (v.reference.readings < v.scans)
+    text += row("", fmt::format("a sample: {} of {} scans, spread evenly over the run (--all: every one)",
+                                v.reference.readings, v.scans));
   if (!readings_recorded)
     text += row("note", "the run kept no readings (run --record-readings): what its poses give here was checked");
   for (const std::string& skipped : v.skipped) text += row("skipped", skipped);
   if (v.missing > 0) text += row("missing", counted(v.missing, "recorded reading") + " that no sensor was due to make");
+  for (const std::string& damage : v.damage) text += row("damage", damage);
   return text + row("verdict", !v.sound()      ? "NOT SOUND"
                                : v.interrupted ? "sound as far as it went: interrupted"
                                                : "sound");

@@ -19,6 +19,12 @@ std::span<const Case> cases() {
   return all;
 }
 
+const Case& failure() {
+  static constexpr Case kFailure{"", "failure", "", "fails on purpose",
+                                 [](Lab&, Checks& checks) { checks.holds(false, "asked to fail"); }};
+  return kFailure;
+}
+
 const Case* find_case(std::string_view name) {
   const auto all = cases();
   const auto found = std::find_if(all.begin(), all.end(), [&](const Case& c) { return c.name == name; });

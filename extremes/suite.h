@@ -15,6 +15,8 @@ namespace sf::extremes {
 
 /// All there are, group by group.
 std::span<const Case> cases();
+/// In none of them: fails on purpose, so that anyone can see how a wrong answer is told, and that it ends with exit 1.
+const Case& failure();
 /// @return null when none is called that.
 const Case* find_case(std::string_view name);
 

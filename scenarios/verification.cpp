@@ -83,6 +83,7 @@ class Verifier {
 
   Verification run() {
     result_.reference.kind = "laser";
+    result_.damage = recording_.damage;
     count_scans();
     const std::size_t ticks = recording_.states.empty() ? 0 : recording_.states[0].size();
     for (std::size_t t = 0; t < ticks; ++t) {
@@ -93,6 +94,7 @@ class Verifier {
     }
     cast_again();
     result_.interrupted = result_.ticks < ticks;
+    result_.scans = seen_;
     result_.missing = !result_.interrupted ? scans_.size() + readings_.size() : 0;
     for (auto& [kind, compared] : again_) result_.again.push_back(std::move(compared));
     if (unfelt_ > 0)
@@ -236,7 +238,7 @@ class Verifier {
 bool Verification::sound() const {
   std::uint64_t readings = reference.readings, different = reference.different;
   for (const Compared& c : again) readings += c.readings, different += c.different;
-  return readings > 0 && different == 0 && missing == 0;
+  return readings > 0 && different == 0 && missing == 0 && damage.empty();
 }
 
 Verification verify(const record::Recording& recording, gpu::Device& device, const VerifyOptions& options) {

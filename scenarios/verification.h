@@ -28,10 +28,12 @@ struct Verification {
   std::vector<Compared> again;       ///< by kind: this device beside the recording
   Compared reference;                ///< lasers: plain C++ beside the recording, or beside this device where no
                                      ///< readings were recorded
+  std::uint64_t scans = 0;           ///< of which `reference` is a sample
   std::uint64_t missing = 0;         ///< recorded readings that this device was not due to make
   std::vector<std::string> skipped;  ///< kinds that cannot be computed again, and why
+  std::vector<std::string> damage;   ///< of the recording, as its reader says
   bool interrupted = false;          ///< not all ticks were looked at
-  bool sound() const;                ///< something was compared, and nothing differs
+  bool sound() const;                ///< something was compared, nothing differs and nothing is damaged
 };
 
 struct VerifyOptions {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/apps/json.h"
 #include "tests/apps/program.h"
 
 namespace sf {
@@ -15,11 +16,33 @@ TEST(Explain, SaysWhatIsBuiltAndWhatIsNot) {
     EXPECT_NE(outcome.out.find(text), std::string::npos) << text << "\n" << outcome.out;
 }
 
+/// Lasers of 181 beams: what is built for them and what they cost, in whole numbers where these are known.
 TEST(Explain, AsJson) {
   const Outcome outcome = run_program({"explain", our_world("rooms.world"), "--robots", "3", "--json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("\"absent\""), std::string::npos);
-  EXPECT_NE(outcome.out.find("\"sensors\": 3"), std::string::npos) << outcome.out;
+  const Json json(outcome.out);
+  ASSERT_EQ(json.size("/kinds"), 1u);
+  EXPECT_EQ(json.text("/kinds/0/kind"), "laser");
+  EXPECT_EQ(json.number("/kinds/0/sensors"), 3);
+  EXPECT_EQ(json.number("/kinds/0/robots"), 3);
+  EXPECT_EQ(json.number("/kinds/0/rate_hz/0"), 10);
+  EXPECT_EQ(json.number("/kinds/0/readings_per_tick"), 3);
+  EXPECT_EQ(json.number("/kinds/0/rays"), 3 * 181 * json.number("/ticks"));
+  EXPECT_GT(json.number("/kinds/0/bytes"), 0);
+  EXPECT_GT(json.size("/kinds/0/kernels"), 0u);
+  double held = 0.0;
+  for (std::size_t i = 0; i < json.size("/kinds/0/tables"); ++i)
+    held += json.number("/kinds/0/tables/" + std::to_string(i) + "/bytes");
+  EXPECT_EQ(held, json.number("/kinds/0/bytes")) << "what its tables hold together";
+  EXPECT_EQ(json.size("/slices"), 1u) << "all at one height";
+  EXPECT_EQ(json.number("/slices/0/sensors"), 3);
+  EXPECT_GT(json.number("/slices/0/walls"), 0.0);
+  EXPECT_LT(json.number("/slices/0/walls"), json.number("/walls")) << "a step of 4 cm is below the beams";
+  EXPECT_EQ(json.text("/accuracy/0/mode"), "exact");
+  EXPECT_GT(json.number("/tick_s"), 0.0);
+  EXPECT_GT(json.number("/resident_bytes"), json.number("/kinds/0/bytes"));
+  EXPECT_GT(json.size("/absent"), 0u);
+  EXPECT_NE(outcome.out.find("magnet"), std::string::npos) << "no magnets, so nothing is built for them";
 }
 
 TEST(Explain, WrongUsage) {

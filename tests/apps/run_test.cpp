@@ -77,6 +77,69 @@ TEST(Run, ControllersSayHowTheyFared) {
   EXPECT_EQ(wanders.out.find("control error"), std::string::npos) << "wander has none: " << wanders.out;
 }
 
+/// In SimVille roomba1 stands in roomba0's lane when that one alone is driven.
+TEST(Run, SaysWhoStandsAndWhy) {
+  Words words{"run",          our_world("simville/simville.world"),
+              "--controller", "route",
+              "--set",        "mission=simville.mdf",
+              "--drive",      "roomba0",
+              "--duration",   "12"};
+  const Outcome text = run_program(words);
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_NE(text.out.find("stand at the end   roomba0 for "), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find(" s: 'roomba1' stands in its way\n"), std::string::npos) << text.out;
+  words.push_back("--json");
+  const Json facts(run_program(words).out);
+  ASSERT_EQ(facts.size("/control/standing"), 1u);
+  EXPECT_EQ(facts.text("/control/standing/0/reason"), "'roomba1' stands in its way");
+  EXPECT_EQ(facts.text("/control/standing/0/names/0"), "roomba0");
+  EXPECT_EQ(facts.number("/control/standing/0/robots"), 1);
+  EXPECT_GT(facts.number("/control/standing/0/longest_s"), 3.0);
+  const Json drives = run("cave.world", {"--robots", "3", "--duration", "5"});
+  EXPECT_EQ(drives.size("/control/standing"), 0u) << "who drives does not stand";
+}
+
+/// Five robots with one reason are one line, three of them by name.
+TEST(Run, WhoStandsForOneReasonIsOneLine) {
+  const Folder folder;
+  const std::string world = folder.write("w.world", "position( name \"roomba1\" laneedge( ) )\n");
+  const Outcome outcome = run_program(
+      {"run", world, "--robots", "5", "--duration", "5", "--controller", "lane-keeping", "--set", "half_width=0.2"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("stand at the end   roomba1, roomba2, roomba3 and 2 more for up to 5 s: its lane edge "
+                             "sensor sees nothing to follow\n"),
+            std::string::npos)
+      << outcome.out;
+}
+
+TEST(Run, CopiesAreOfTheFirstWithSensorsOrWhoIsNamed) {
+  const Folder folder;
+  const std::string world = folder.write(
+      "w.world",
+      "position( name \"dummy\" pose [-2 0 0 0] )\nposition( name \"roomba7\" pose [2 0 0 0] laser( samples 5 ) )\n");
+  const auto rays = [&](const Words& more) {
+    Words words{"run", world, "--json", "--duration", "1", "--robots", "4"};
+    words.insert(words.end(), more.begin(), more.end());
+    return Json(run_program(words).out).number("/rays");
+  };
+  EXPECT_EQ(rays({}), 4 * 5 * 10);
+  EXPECT_EQ(rays({"--of", "roomba7"}), 4 * 5 * 10);
+  EXPECT_EQ(rays({"--of", "dummy"}), 0);
+  const std::pair<Words, std::string> refused[] = {
+      {{"--robots", "4", "--of", "roomba8"}, "has no robot 'roomba8' to copy; did you mean 'roomba7'?"},
+      {{"--of", "roomba7"}, "--of requires --robots"},
+      {{"--robots", "4", "--of", ""}, "expected the name of a robot, got ''"},
+  };
+  for (const auto& [more, said] : refused) {
+    Words words{"run", world, "--duration", "0.1"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run_program(words);
+    EXPECT_EQ(outcome.code, 2) << outcome.out;
+    EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
+    EXPECT_NE(outcome.err.find(said), std::string::npos) << outcome.err;
+  }
+}
+
 TEST(Run, SettingsAreWhatTheirControllerReads) {
   const Folder folder;
   const std::string world = folder.write(

@@ -23,6 +23,18 @@ TEST(SelfTest, SomeCasesAndAGroup) {
   EXPECT_NE(outcome.out.find("5 of 5 cases passed on "), std::string::npos) << outcome.out;
 }
 
+TEST(SelfTest, AFailureIsToldAndEndsWithOne) {
+  const Outcome outcome = run_program({"selftest", "ranges", "failure"});
+  EXPECT_EQ(outcome.code, 1) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("FAILED"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("1 of 1 checks failed; first: asked to fail"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("1 of 2 cases passed on "), std::string::npos) << outcome.out;
+  const Outcome json = run_program({"selftest", "failure", "--json"});
+  EXPECT_EQ(json.code, 1);
+  EXPECT_FALSE(Json(json.out).flag("/sound"));
+  EXPECT_EQ(run_program({"selftest", "--list"}, no_device()).out.find("failure "), std::string::npos);
+}
+
 TEST(SelfTest, AsJson) {
   const Outcome outcome = run_program({"selftest", "ranges", "--json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;

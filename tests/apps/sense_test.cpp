@@ -55,6 +55,18 @@ TEST(Sense, SaysWhoLooksFromWhere) {
   ASSERT_EQ(scan.size("/beams"), 181u);
 }
 
+TEST(Sense, APoseThatNoRobotCanHaveIsAWarning) {
+  const Folder folder;
+  const std::string world = wall_world(folder, 0.0);
+  const Outcome within = run_program({"sense", world, "--pose", "0.5,0,0"});
+  EXPECT_EQ(within.code, 0) << within.err;
+  EXPECT_NE(within.err.find("sensorfarm: warning: at (0.5, 0) 'scout' is within a wall\n"), std::string::npos)
+      << within.err;
+  EXPECT_NE(run_program({"sense", world, "--pose", "-0.1,0,0"}).err.find("is partly in a wall of 'long wall'"),
+            std::string::npos);
+  EXPECT_EQ(run_program({"sense", world, "--pose", "-1,0,0"}).err.find("warning"), std::string::npos);
+}
+
 TEST(Sense, ARobotOneMetreFromAWallReadsOneMetre) {
   const Folder folder;
   const Json scan = sense({wall_world(folder, 0.0)});
