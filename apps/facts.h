@@ -40,6 +40,7 @@ struct RunFacts {
   PostCounts post;
   bool received = false;  ///< `inbox` counts
   netio::Counts inbox;
+  std::uint64_t kernel_drops = 0;    ///< datagrams that came while the inbox' buffer was full
   netio::RelayCounts relayed;        ///< to robots, of others' states and start signals
   std::string recording;             ///< file; empty: none
   std::uint64_t recorded_bytes = 0;  ///< its size

@@ -113,9 +113,11 @@ Json link_json(const LinkCounts& link) {
             {"by_reason", reasons(in.reasons)},
             {"late", in.late},
             {"duplicates", in.duplicates},
+            {"leaps", in.leaps},
             {"lost", in.lost},
             {"restarts", in.restarts}}},
           {"relayed", {{"packets", link.words.total()}, {"by_reason", reasons(link.words)}}},
+          {"kernel_drops", link.kernel_drops},
           {"injected", {{"out", injected(link.out)}, {"in", injected(link.in)}}}};
 }
 
@@ -209,6 +211,7 @@ std::string json_of(const RunFacts& f) {
                        {"not_numbers", f.post.not_numbers}, {"first_failure", f.post.packets.first_failure}};
   if (f.received) {
     json["received"] = reasons(f.inbox);
+    json["kernel_drops"] = f.kernel_drops;
     json["relayed"] = {{"states", f.relayed.states}, {"starts", f.relayed.starts}};
   }
   if (!f.recording.empty()) {
@@ -231,6 +234,7 @@ std::string json_of(const netio::Summary& s) {
                 {"reordered", s.reordered},
                 {"ports", s.ports},
                 {"silent_ports", s.silent_ports},
+                {"kernel_drops", s.kernel_drops},
                 {"by_reason", reasons(s.counts)}});
 }
 

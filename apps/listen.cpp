@@ -7,7 +7,8 @@
 #include "apps/facts.h"
 #include "apps/lend.h"
 #include "apps/payloads.h"
-#include "apps/post.h"
+#include "apps/reach.h"
+#include "apps/send_plan.h"
 #include "apps/stop.h"
 #include "apps/wording.h"
 
@@ -16,18 +17,20 @@ namespace sf::apps {
 int listen(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   const sensors::Roster roster(world);
-  require_sendable(world, roster, options);
-  const std::vector<Source> sources = sources_of(roster);
+  const SendPlan sent = send_plan(world, roster, options);
+  const std::vector<Source> sources = sources_of(roster, sent);
   netio::ListenerOptions plan;
   plan.address = netio::resolve(options.bind);
+  if (!options.from.empty()) plan.farm = netio::resolve(options.from);
   plan.headerless = options.wire == sensors::Wire::thesis;
   plan.judge = [&](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
     return judge_payload(sources[i], options.wire, header, payload);
   };
   for (const Source& source : sources)
-    plan.streams.push_back({world.movers[source.row->mover].id, source.row->sensor, port_rule(options, *source.kind),
+    plan.streams.push_back({world.movers[source.row->mover].id, source.row->sensor, sent.ports(*source.kind),
                             std::string(source.kind->name)});
   netio::Listener listener(plan);
+  warn_of_reach(plan.address, "send readings");
   catch_stop_signals();
   std::fprintf(stderr, "sensorfarm: listening on %s of %s\n", counted(plan.streams.size(), "port").c_str(),
                options.bind.c_str());

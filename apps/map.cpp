@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "apps/commands.h"
+#include "apps/reach.h"
 #include "apps/stop.h"
 #include "apps/wording.h"
 #include "base/elapsed.h"
@@ -17,6 +18,7 @@
 #include "maps/text.h"
 #include "netio/ears.h"
 #include "netio/endpoint.h"
+#include "netio/one_farm.h"
 #include "netio/packets.h"
 #include "sensors/occupancy.h"
 #include "viz/map_figure.h"
@@ -33,6 +35,7 @@ constexpr std::size_t kReceiveBuffer = 1u << 22;  ///< [byte] asked of the kerne
 /// One port: a robot's map.
 struct Source {
   std::uint16_t port = 0;
+  netio::OneFarm farm;
   maps::Assembler assembler;
   std::uint16_t robot = 0;
   std::uint64_t used = 0;      ///< datagrams
@@ -43,13 +46,23 @@ std::string name_of(const Source& source, sensors::Wire wire) {
   return wire == sensors::Wire::farm ? "robot " + std::to_string(source.robot) : "port " + std::to_string(source.port);
 }
 
-maps::Taken take(Source& source, sensors::Wire wire, std::span<const std::uint8_t> bytes) {
-  if (wire == sensors::Wire::thesis) return source.assembler.take_plain(bytes);
+/// The datagram `bytes` that came from `from` at `now` [ns].
+maps::Taken take(Source& source, sensors::Wire wire, std::span<const std::uint8_t> bytes, const netio::Endpoint& from,
+                 std::int64_t now) {
+  if (!source.farm.may(from)) return maps::Taken::faulty;
+  if (wire == sensors::Wire::thesis) {
+    maps::PlainPart part;
+    const bool sound = maps::read_plain(bytes, part) == maps::PartFault::none;
+    return sound && source.farm.admit(from, 0, now) ? source.assembler.take_plain(bytes) : maps::Taken::faulty;
+  }
   netio::Packet packet;
   if (netio::decode(bytes, packet) != netio::Reason::accepted) return maps::Taken::faulty;
   const auto* reading = std::get_if<netio::Reading>(&packet.body);
   if (reading == nullptr || static_cast<std::uint8_t>(packet.header.type) != sensors::kOccupancy)
     return maps::Taken::faulty;
+  maps::MapPart part;
+  if (maps::read_part(reading->payload, part) != maps::PartFault::none) return maps::Taken::faulty;
+  if (!source.farm.admit(from, packet.header.session, now)) return maps::Taken::faulty;
   source.robot = packet.header.robot;
   return source.assembler.take(packet.header.sequence, reading->payload);
 }
@@ -73,7 +86,8 @@ class Display {
       : options_(options),
         ears_(netio::resolve(options.bind), kReceiveBuffer, plans_of(options.map_ports)),
         on_terminal_(isatty(STDOUT_FILENO) != 0) {
-    for (const std::uint16_t port : options.map_ports) sources_.push_back({port, {}, 0, 0, 0});
+    const std::uint32_t host = options.from.empty() ? 0 : netio::resolve(options.from);
+    for (const std::uint16_t port : options.map_ports) sources_.push_back({port, netio::OneFarm(host), {}, 0, 0, 0});
   }
 
   /// Takes what waits, or comes within a moment. @return true when anything did.
@@ -96,9 +110,10 @@ class Display {
 };
 
 bool Display::drain() {
-  const auto hear = [&](std::size_t i, std::span<const std::uint8_t> bytes) {
+  const std::int64_t now = (Clock::now() - Clock::time_point{}).count();
+  const auto hear = [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& from) {
     Source& source = sources_[i];
-    const maps::Taken taken = take(source, options_.wire, bytes);
+    const maps::Taken taken = take(source, options_.wire, bytes, from, now);
     const bool used = taken == maps::Taken::part || taken == maps::Taken::whole;
     ++(used ? source.used : source.left_out);
     changed_ = changed_ || taken == maps::Taken::whole;
@@ -183,6 +198,7 @@ void Display::tell() const {
 
 int map(const Options& options) {
   Display display(options);
+  warn_of_reach(netio::resolve(options.bind), "send maps");
   catch_stop_signals();
   std::fprintf(stderr, "sensorfarm: listening for maps on %s of %s\n",
                counted(options.map_ports.size(), "port").c_str(), options.bind.c_str());

@@ -85,9 +85,10 @@ struct Options {
   std::vector<std::string> set;       ///< its settings, "key=value" each
   std::vector<std::string> drive;     ///< whom, by name; empty: every robot
   std::string send;                   ///< host; empty: nobody
+  std::string from;                   ///< host that `listen` and `map` take packets from; empty: the first that sends
   sensors::Wire wire = sensors::Wire::farm;
   std::map<std::uint8_t, std::uint32_t> base_ports;  ///< by sensor kind; every kind is in it
-  std::uint32_t ports_per_robot = 8;
+  std::uint32_t ports_per_robot = 0;                 ///< 0: 8, or the least that fits
 
   std::string bind = "127.0.0.1";
   std::uint32_t port = 9000;

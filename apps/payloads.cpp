@@ -25,17 +25,19 @@ std::uint8_t type_of(const Source& source, sensors::Wire wire, const netio::Head
 
 }  // namespace
 
-std::vector<Source> sources_of(const sensors::Roster& roster) {
+std::vector<Source> sources_of(const sensors::Roster& roster, const SendPlan& plan) {
   std::vector<Source> sources;
   for (const sensors::Roster::Group& group : roster.groups())
-    for (const sensors::SensorRow& row : group.rows) sources.push_back({group.kind, &row});
+    for (const sensors::SensorRow& row : group.rows)
+      if (plan.sends(*group.kind, row)) sources.push_back({group.kind, &row});
   return sources;
 }
 
-std::vector<Source> sources_of(const sensors::Roster& roster, std::uint32_t mover) {
+std::vector<Source> sources_of(const sensors::Roster& roster, const SendPlan& plan, std::uint32_t mover) {
   std::vector<Source> sources;
   for (const sensors::Roster::Group& group : roster.groups())
-    for (const sensors::SensorRow& row : roster.of(group.kind->id, mover)) sources.push_back({group.kind, &row});
+    for (const sensors::SensorRow& row : roster.of(group.kind->id, mover))
+      if (plan.sends(*group.kind, row)) sources.push_back({group.kind, &row});
   return sources;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "apps/send_plan.h"
 #include "netio/listener.h"
 #include "sensors/roster.h"
 
@@ -16,10 +17,10 @@ struct Source {
   const sensors::SensorRow* row = nullptr;
 };
 
-/// All sensors of a world, kind after kind. They live as long as the roster.
-std::vector<Source> sources_of(const sensors::Roster& roster);
+/// All sensors of a world that are sent, kind after kind. They live as long as the roster.
+std::vector<Source> sources_of(const sensors::Roster& roster, const SendPlan& plan);
 /// One mover's.
-std::vector<Source> sources_of(const sensors::Roster& roster, std::uint32_t mover);
+std::vector<Source> sources_of(const sensors::Roster& roster, const SendPlan& plan, std::uint32_t mover);
 
 /// Judges any bytes that came to the sensor's port behind a header of its robot and number.
 netio::Verdict judge_payload(const Source& source, sensors::Wire wire, const netio::Header& header,

@@ -1,26 +1,18 @@
 #pragma once
-// Readings to robots: which port each sensor has, and what leaves in which form.
+// Readings to robots: what leaves, in which form.
 
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "apps/options.h"
+#include "apps/send_plan.h"
 #include "base/reading.h"
 #include "netio/outbox.h"
-#include "netio/ports.h"
 #include "sensors/roster.h"
 #include "world/world.h"
 
 namespace sf::apps {
-
-/// Ports of a kind's sensors.
-netio::PortRule port_rule(const Options& options, const sensors::SensorKind& kind);
-
-/// @throws base::InputError when two sensors would share a port, one is past 65535, or the chosen wire cannot carry a
-/// sensor's readings.
-void require_sendable(const world::World& world, const sensors::Roster& roster, const Options& options);
 
 /// Beams that met nothing read infinity from here on, where the user asked for it.
 class NoReturn {
@@ -43,20 +35,20 @@ struct PostCounts {
 };
 
 /// Readings as packets, numbered per sensor as they are sent: a reading that was due and never sent leaves no gap.
-/// World, roster and options must outlive it.
+/// World and roster must outlive it.
 class Post {
  public:
-  Post(const world::World& world, const sensors::Roster& roster, const Options& options);
+  Post(const world::World& world, const sensors::Roster& roster, SendPlan plan, netio::Outbox outbox);
 
-  /// Queues one reading's packets to `address`, at its sensor's port.
-  void queue(const base::ReadingBlock& reading, std::uint32_t address);
+  /// Queues one reading's packets to `address`, at its sensor's port; none where the plan has none of its sensor's.
+  void queue(const base::ReadingBlock& reading, std::uint32_t address, const netio::Stamp& stamp);
   void flush() { outbox_.flush(); }
   PostCounts counts() const { return {outbox_.counts(), not_numbers_}; }
 
  private:
   const world::World& world_;
   const sensors::Roster& roster_;
-  const Options& options_;
+  SendPlan plan_;
   netio::Outbox outbox_;
   std::map<std::uint8_t, std::vector<std::uint32_t>> sent_;  ///< by kind, per row of its group: readings
   std::uint64_t not_numbers_ = 0;

@@ -9,9 +9,9 @@
 
 #include "apps/commands.h"
 #include "apps/lend.h"
-#include "apps/post.h"
 #include "apps/robot_facts.h"
 #include "apps/robot_process.h"
+#include "apps/send_plan.h"
 #include "apps/stop.h"
 #include "base/error.h"
 #include "world/keys.h"
@@ -41,8 +41,7 @@ int robot(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
   const sensors::Roster roster(world);
   const std::uint32_t mover = find_robot(world, options.robot);
-  require_sendable(world, roster, options);
-  RobotProcess process(world, roster, mover, options);
+  RobotProcess process(world, roster, mover, send_plan(world, roster, options), options);
   catch_stop_signals();
   std::fprintf(stderr, "sensorfarm: %s (id %u) drives by '%s' at %g Hz beside the farm at %s%s; Ctrl-C ends it\n",
                world.movers[mover].name.c_str(), world.movers[mover].id, options.controller.c_str(), process.rate(),

@@ -29,6 +29,8 @@ std::string link_text(const LinkCounts& link) {
   text += row("readings", kinds_text(link));
   text += row("sensor packets", netio::text(in.reasons));
   text += row("", fmt::format("{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost));
+  if (in.leaps > 0) text += row("", counted(in.leaps, "packet") + " too far ahead to be believed");
+  if (link.kernel_drops > 0) text += row("", counted(link.kernel_drops, "packet") + " dropped by the kernel");
   if (in.restarts > 0) text += row("", counted(in.restarts, "sensor") + " began anew");
   text += row("V2V and START", netio::text(link.words));
   if (link.out.lost + link.in.lost > 0) {

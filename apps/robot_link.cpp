@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "apps/facts.h"
-#include "apps/post.h"
 #include "apps/wire_names.h"
 
 namespace sf::apps {
@@ -31,48 +30,51 @@ std::vector<std::uint32_t> others_of(const world::World& world, std::uint32_t id
 }
 
 /// A farm on this machine is heard on loopback alone.
-std::uint32_t listening_address(std::uint32_t farm) { return farm >> 24 == 127 ? netio::kLoopback : 0; }
+std::uint32_t listening_address(std::uint32_t farm) { return netio::is_loopback(farm) ? netio::kLoopback : 0; }
 
 }  // namespace
 
 RobotLink::RobotLink(const world::World& world, const sensors::Roster& roster, std::uint32_t mover,
-                     const Options& options, Hear hear)
+                     const SendPlan& plan, const Options& options, Hear hear)
     : mover_(mover),
       id_(world.movers[mover].id),
-      streams_(streams_of(roster, mover)),
+      streams_(streams_of(roster, plan, mover)),
       farm_{netio::resolve(options.server), static_cast<std::uint16_t>(options.port)},
       radio_({.farm = farm_, .robot = id_, .others = others_of(world, id_)}),
-      ears_(listening_address(farm_.address), std::size_t{1} << 20, plans(options)),
-      receiver_(receiver_options(options)),
+      ears_(listening_address(farm_.address), std::size_t{1} << 20, plans(plan)),
+      receiver_(receiver_options(plan)),
       out_(link_plan(options)),
       in_(link_plan(options)),
-      hear_(std::move(hear)) {}
+      hear_(std::move(hear)) {
+  receiver_.bind(radio_.farm_stamp());
+}
 
-std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::Roster& roster, std::uint32_t mover) {
+std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::Roster& roster, const SendPlan& plan,
+                                                     std::uint32_t mover) {
   std::vector<Stream> streams;
-  for (const Source& source : sources_of(roster, mover))
+  for (const Source& source : sources_of(roster, plan, mover))
     if (source.kind->read != nullptr) streams.push_back({source});
   return streams;
 }
 
-std::vector<netio::StreamPlan> RobotLink::plans(const Options& options) const {
+std::vector<netio::StreamPlan> RobotLink::plans(const SendPlan& plan) const {
   std::vector<netio::StreamPlan> plans;
   for (const Stream& stream : streams_) {
     const sensors::SensorKind& kind = *stream.source.kind;
-    plans.push_back({id_, stream.source.row->sensor, port_rule(options, kind), std::string(kind.name)});
+    plans.push_back({id_, stream.source.row->sensor, plan.ports(kind), std::string(kind.name)});
   }
   return plans;
 }
 
-netio::ReceiverOptions RobotLink::receiver_options(const Options& options) const {
+netio::ReceiverOptions RobotLink::receiver_options(const SendPlan& plan) const {
   netio::ReceiverOptions receiver;
-  const std::vector<netio::StreamPlan> all = plans(options);
+  const std::vector<netio::StreamPlan> all = plans(plan);
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     const Source& source = streams_[i].source;
     receiver.streams.push_back({all[i], source.row->elements * element_width(*source.kind)});
   }
-  receiver.headerless = options.wire == sensors::Wire::thesis;
-  const sensors::Wire wire = options.wire;
+  receiver.headerless = plan.wire == sensors::Wire::thesis;
+  const sensors::Wire wire = plan.wire;
   receiver.judge = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
     return judge_payload(streams_[i].source, wire, header, payload);
   };
@@ -127,7 +129,8 @@ void RobotLink::wait(std::int64_t now, std::int64_t until) const {
 
 void RobotLink::run(std::int64_t now) {
   let_go(now);
-  ears_.drain(0, [&](std::size_t i, std::span<const std::uint8_t> bytes) {
+  ears_.drain(0, [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& source) {
+    if (source != farm_) return receiver_.refuse_source();
     in_.send(name_reading(streams_[i], bytes), now, i, bytes);
   });
   radio_.receive([&](std::span<const std::uint8_t> bytes) { in_.send(name_word(bytes), now, streams_.size(), bytes); });
@@ -165,9 +168,19 @@ void RobotLink::take(std::size_t tag, std::span<const std::uint8_t> bytes, std::
 
 void RobotLink::take_word(std::span<const std::uint8_t> bytes, std::int64_t now) {
   netio::Packet packet;
+  const netio::Stamp before = radio_.farm_stamp();
   if (radio_.accept(bytes, now, packet) != netio::Reason::accepted) return;
+  if (std::holds_alternative<netio::Challenge>(packet.body)) return answer_challenge(before);
   last_answer_ = now;
   hear_(packet, now);
+}
+
+/// The requests before it were dropped. A new session is a new farm, with a clock and sequences of its own.
+void RobotLink::answer_challenge(const netio::Stamp& before) {
+  next_request_ = 0;
+  if (radio_.farm_stamp().session == before.session) return;
+  receiver_.bind(radio_.farm_stamp());
+  clock_ = {};
 }
 
 std::span<RobotLink::Newest> RobotLink::readings() {
@@ -189,7 +202,8 @@ std::span<RobotLink::Newest> RobotLink::readings() {
 }
 
 LinkCounts RobotLink::counts() const {
-  LinkCounts counts{radio_.sent(), out_.counts(), in_.counts(), receiver_.counts(), radio_.counts(), {}};
+  LinkCounts counts{radio_.sent(), out_.counts(), in_.counts(), receiver_.counts(), radio_.counts(), 0, {}};
+  counts.kernel_drops = ears_.kernel_drops() + netio::kernel_drops(radio_.socket());
   for (const Stream& stream : streams_) counts.whole[std::string(stream.source.kind->name)] += stream.whole;
   return counts;
 }

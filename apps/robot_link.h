@@ -1,6 +1,6 @@
 #pragma once
 // A robot's two ways of hearing: its sensors' ports, and the socket it speaks from. What is sent and what comes passes
-// the injected link.
+// the injected link. Only the farm that it speaks to is heard.
 
 #include <cstdint>
 #include <functional>
@@ -11,6 +11,7 @@
 
 #include "apps/options.h"
 #include "apps/payloads.h"
+#include "apps/send_plan.h"
 #include "base/reading.h"
 #include "netio/delay_line.h"
 #include "netio/ears.h"
@@ -28,6 +29,7 @@ struct LinkCounts {
   netio::DelayCounts in;
   netio::ReceiverCounts readings;
   netio::Counts words;                         ///< what came to the socket it speaks from
+  std::uint64_t kernel_drops = 0;              ///< datagrams that came while a socket's buffer was full
   std::map<std::string, std::uint64_t> whole;  ///< readings, by kind
 };
 
@@ -39,8 +41,8 @@ class RobotLink {
   using Hear = std::function<void(const netio::Packet&, std::int64_t now)>;
 
   /// @throws base::InputError when a port is taken or the farm's host is unknown.
-  RobotLink(const world::World& world, const sensors::Roster& roster, std::uint32_t mover, const Options& options,
-            Hear hear);
+  RobotLink(const world::World& world, const sensors::Roster& roster, std::uint32_t mover, const SendPlan& plan,
+            const Options& options, Hear hear);
 
   /// Sends a state, and every half a second what it wants to be sent.
   void say(const netio::V2v& state, std::int64_t now);
@@ -76,15 +78,16 @@ class RobotLink {
     std::uint64_t piece = 0;     ///< datagrams of it that came before
     std::uint64_t whole = 0;     ///< readings
   };
-  static std::vector<Stream> streams_of(const sensors::Roster& roster, std::uint32_t mover);
-  std::vector<netio::StreamPlan> plans(const Options& options) const;
-  netio::ReceiverOptions receiver_options(const Options& options) const;
+  static std::vector<Stream> streams_of(const sensors::Roster& roster, const SendPlan& plan, std::uint32_t mover);
+  std::vector<netio::StreamPlan> plans(const SendPlan& plan) const;
+  netio::ReceiverOptions receiver_options(const SendPlan& plan) const;
   void send(netio::Type type, std::uint32_t sequence, std::int64_t now);
   /// Sends what is due by then.
   void let_go(std::int64_t until);
   netio::Message name_reading(Stream& stream, std::span<const std::uint8_t> bytes) const;
   netio::Message name_word(std::span<const std::uint8_t> bytes);
   void take(std::size_t tag, std::span<const std::uint8_t> bytes, std::int64_t now);
+  void answer_challenge(const netio::Stamp& before);
   void take_word(std::span<const std::uint8_t> bytes, std::int64_t now);
 
   std::uint32_t mover_;

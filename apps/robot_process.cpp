@@ -38,12 +38,12 @@ bool waits_for_start(const Options& options) {
 }
 
 RobotProcess::RobotProcess(const world::World& world, const sensors::Roster& roster, std::uint32_t mover,
-                           const Options& options)
+                           const SendPlan& sent, const Options& options)
     : world_(world),
       names_(wire_names(world)),
       mover_(mover),
       body_(world, mover),
-      link_(world, roster, mover, options,
+      link_(world, roster, mover, sent, options,
             [this](const netio::Packet& packet, std::int64_t now) { hear(packet, now); }),
       roads_(world::roads_of(world)),
       intents_(world.movers.size()),

@@ -27,7 +27,8 @@ bool waits_for_start(const Options& options);
 class RobotProcess {
  public:
   /// @throws base::InputError for a controller that cannot be had, a port that is taken, a farm's host that is unknown.
-  RobotProcess(const world::World& world, const sensors::Roster& roster, std::uint32_t mover, const Options& options);
+  RobotProcess(const world::World& world, const sensors::Roster& roster, std::uint32_t mover, const SendPlan& plan,
+               const Options& options);
 
   /// Takes in and lets out what comes and is due until `until`, or until a stop is asked for. @param now the clock
   template <class Now>

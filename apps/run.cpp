@@ -19,6 +19,7 @@
 #include "apps/tradeoff.h"
 #include "base/elapsed.h"
 #include "base/error.h"
+#include "netio/token.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
 
@@ -31,11 +32,12 @@ using Clock = std::chrono::steady_clock;
 /// Where readings go: a recording, the network, both or neither.
 class Outputs {
  public:
-  Outputs(const world::World& world, const sensors::Roster& roster, const Options& options)
+  Outputs(const world::World& world, const sensors::Roster& roster, const std::optional<SendPlan>& plan,
+          const Options& options)
       : no_return_(roster, options.no_return_inf) {
-    if (!options.send.empty()) {
+    if (plan) {
       address_ = netio::resolve(options.send);
-      post_.emplace(world, roster, options);
+      post_.emplace(world, roster, *plan, netio::Outbox());
     }
     if (!options.record.empty())
       recorder_.emplace(
@@ -47,7 +49,7 @@ class Outputs {
     const auto start = Clock::now();
     tick.readings = no_return_.apply(tick.readings);
     if (post_) {
-      for (const base::ReadingBlock& reading : tick.readings) post_->queue(reading, address_);
+      for (const base::ReadingBlock& reading : tick.readings) post_->queue(reading, address_, stamp_);
       post_->flush();
     }
     if (recorder_) recorder_->write(tick);
@@ -69,6 +71,7 @@ class Outputs {
  private:
   NoReturn no_return_;
   std::uint32_t address_ = 0;
+  netio::Stamp stamp_{netio::random_session(), 0};
   std::optional<Post> post_;
   std::optional<record::Recorder> recorder_;
   double seconds_ = 0.0;
@@ -113,14 +116,15 @@ auto advised(const world::World& world, const Options& options, Act&& act) {
 
 int run(const Options& options) {
   world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
-  if (!options.send.empty()) require_sendable(world, sensors::Roster(world), options);
+  std::optional<SendPlan> plan;
+  if (!options.send.empty()) plan = send_plan(world, sensors::Roster(world), options);
   gpu::Device device(options.device);
   choose_accuracy(world, device, options);
   const sensors::Roster roster(world);
   scenarios::Simulation simulation =
       advised(world, options, [&] { return scenarios::Simulation(world, device, simulation_options(world, options)); });
   ControlTally tally(simulation, world.movers.size(), options.controller);
-  Outputs outputs(world, roster, options);
+  Outputs outputs(world, roster, plan, options);
   catch_stop_signals();
 
   const auto ticks = static_cast<std::uint64_t>(std::llround(options.duration / world.interval));

@@ -12,10 +12,12 @@
 #include "apps/facts.h"
 #include "apps/lend.h"
 #include "apps/post.h"
+#include "apps/reach.h"
 #include "apps/stop.h"
 #include "apps/tradeoff.h"
 #include "apps/wire_names.h"
 #include "apps/wording.h"
+#include "base/error.h"
 #include "netio/inbox.h"
 #include "netio/relay.h"
 #include "robots/fleet.h"
@@ -26,18 +28,29 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+netio::Inbox open_inbox(const WireNames& names, const Options& options) {
+  const netio::Endpoint bind{netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)};
+  try {
+    return netio::Inbox({.bind = bind, .robots = ids_of(names.robots), .tags = ids_of(names.tags)});
+  } catch (const netio::PortTaken&) {
+    throw base::InputError(netio::text(bind) +
+                           " is taken, by another `sensorfarm serve` perhaps: end that one, or serve on another port "
+                           "(--port N, or --port 0 for any free one) and tell the robots (robot --port N)");
+  }
+}
+
 class Service {
  public:
-  Service(const world::World& world, const sensors::Roster& roster, gpu::Device& device, const Options& options)
+  Service(const world::World& world, const sensors::Roster& roster, gpu::Device& device, const SendPlan& plan,
+          const Options& options)
       : world_(world),
         roster_(roster),
         names_(wire_names(world)),
-        inbox_({.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
-                .robots = ids_of(names_.robots),
-                .tags = ids_of(names_.tags)}),
+        inbox_(open_inbox(names_, options)),
         answers_(inbox_.socket()),
         relay_(ids_of(names_.robots)),
-        post_(world, roster, options),
+        plan_(plan),
+        post_(world, roster, plan, netio::Outbox(inbox_.socket())),
         farm_(world, device, farm::FarmOptions{.seed = options.seed, .true_poses = false}),
         fleet_(world),
         no_return_(roster, options.no_return_inf) {
@@ -64,8 +77,9 @@ class Service {
     const auto readings = no_return_.apply(farm_.tick(now, fleet_.predict(now)));
     for (const base::ReadingBlock& reading : readings) {
       // A reading that was on its way when its robot fell silent has nobody to go to.
-      const auto to = inbox_.address(world_.movers[reading.mover].id);
-      if (to) post_.queue(reading, to->address);
+      const std::uint32_t id = world_.movers[reading.mover].id;
+      const auto to = inbox_.address(id);
+      if (to) post_.queue(reading, to->address, inbox_.stamp_for(id));
     }
     post_.flush();
     relay_.pass_on(inbox_, now, answers_);
@@ -88,7 +102,12 @@ class Service {
       // Senders' clocks are their own: a state is true when it arrives.
       reports_.back().time = now;
     };
-    inbox_.receive(now, take, [&](const netio::Packet& packet, const netio::Endpoint& who) { complain(packet, who); });
+    const auto strange = [&](netio::Reason reason, const netio::Packet& packet, const netio::Endpoint& who) {
+      if (reason == netio::Reason::wrong_source) return complain(packet, who);
+      if (inbox_.challenge(packet, who, now, challenge_)) answers_.queue(who, challenge_);
+    };
+    inbox_.receive(now, take, strange);
+    answers_.flush();
     fleet_.apply(reports_);
   }
 
@@ -101,6 +120,7 @@ class Service {
     facts.sent = facts.received = true;
     facts.post = post_.counts();
     facts.inbox = inbox_.counts();
+    facts.kernel_drops = inbox_.kernel_drops();
     facts.relayed = relay_.counts();
     return facts;
   }
@@ -110,7 +130,7 @@ class Service {
   std::uint32_t wanted(std::uint32_t id, std::int64_t now) const {
     std::uint32_t kinds = 0;
     for (const sensors::Roster::Group& group : roster_.groups())
-      if (inbox_.wants(id, group.kind->id, now)) kinds |= 1u << group.kind->id;
+      if (inbox_.wants(id, group.kind->id, now) && plan_.sends_any(group)) kinds |= 1u << group.kind->id;
     return kinds;
   }
 
@@ -136,11 +156,13 @@ class Service {
   netio::Inbox inbox_;
   netio::Outbox answers_;  ///< from where the robots speak to
   netio::Relay relay_;
+  const SendPlan& plan_;
   Post post_;
   farm::Farm farm_;
   robots::Fleet fleet_;
   NoReturn no_return_;
   std::vector<base::Report> reports_;
+  base::Bytes challenge_;
   // By id: the binding whose strangers were spoken of.
   std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_robots_;
   std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_tags_;
@@ -151,11 +173,12 @@ class Service {
 
 int serve(const Options& options) {
   world::World world = load_with_robots(options.world, options.load, 0, options.seed);
-  require_sendable(world, sensors::Roster(world), options);
+  const SendPlan plan = send_plan(world, sensors::Roster(world), options);
   gpu::Device device(options.device);
   choose_accuracy(world, device, options);
   const sensors::Roster roster(world);
-  Service service(world, roster, device, options);
+  Service service(world, roster, device, plan, options);
+  warn_of_reach(netio::resolve(options.bind), "say where robots are, and be sent readings");
   catch_stop_signals();
   const double interval = options.rate > 0.0 ? 1.0 / options.rate : world.interval;
   std::fprintf(stderr, "sensorfarm: serving %s of %s on %s:%u, %g ticks/s, on %s; Ctrl-C ends it\n",

@@ -139,6 +139,11 @@ std::string control_text(const ControlFacts& f) {
   return text;
 }
 
+/// Of datagrams that no program ever saw.
+std::string drops_text(std::uint64_t drops) {
+  return row("dropped by the kernel", fmt::format("{}: they came faster than they were taken", drops));
+}
+
 std::string packets_text(const PostCounts& post) {
   const netio::OutboxCounts& packets = post.packets;
   std::string text =
@@ -166,6 +171,7 @@ std::string text_of(const RunFacts& f) {
   text += control_text(f.control);
   if (f.sent) text += packets_text(f.post);
   if (f.received) text += row("packets received", netio::text(f.inbox));
+  if (f.kernel_drops > 0) text += drops_text(f.kernel_drops);
   if (f.relayed.states + f.relayed.starts > 0)
     text += row("packets passed on", fmt::format("{} V2V, {} START", f.relayed.states, f.relayed.starts));
   if (!f.recording.empty())
@@ -204,6 +210,7 @@ std::string text_of(const netio::Summary& s) {
   text += row("packets lost",
               fmt::format("{} ({}, {} reordered)", s.lost, counted(s.duplicates, "duplicate"), s.reordered));
   if (s.counts.dropped() > 0) text += row("by reason", netio::text(s.counts));
+  if (s.kernel_drops > 0) text += drops_text(s.kernel_drops);
   if (s.silent_ports > 0) text += row("silent ports", fmt::format("{}", s.silent_ports));
   return text;
 }

@@ -1,7 +1,7 @@
 #pragma once
 // Maps as payloads, little-endian; docs/packets.md gives every byte.
 //
-//   farm:   f64 left, top, cell; u16 part, parts, word columns, word rows, flags, count; u32 words, at most 335 a part
+//   farm:   f64 left, top, cell; u16 part, parts, word columns, word rows, flags, count; u32 words, at most 305 a part
 //   thesis: two datagrams: u8 word rows, u8 word columns and the first half of the words (half a word more where they
 //           are odd), then the others. Nothing but their lengths tells them apart.
 
@@ -13,7 +13,7 @@
 
 namespace sf::maps {
 
-inline constexpr std::uint32_t kPartWords = 335;        ///< of every part but the last
+inline constexpr std::uint32_t kPartWords = 305;        ///< of every part but the last
 inline constexpr std::uint32_t kMostPlainWords = 1022;  ///< of a map in the thesis' form: datagrams below 2048 bytes
 inline constexpr std::uint32_t kMostPlainSide = 255;    ///< word rows and columns of such a map
 inline constexpr std::uint32_t kTruePoses = 1;          ///< flag: made from where the robot was, not from an estimate

@@ -12,6 +12,7 @@ Taken Assembler::place(const Piece& piece, std::int64_t now, Open*& open) {
   SF_CHECK(piece.part < piece.parts, std::to_string(piece.part) + " of " + std::to_string(piece.parts) + " parts");
   const bool silent = !last_ || now - *last_ >= kSilence;
   if (silent && base_ && !newer(piece.sequence, highest_)) restart();
+  if (!silent && leaps(piece, now)) return Taken::leap;
   count(piece);
 
   if (newest_.used && !newer(piece.sequence, newest_.piece.sequence)) {
@@ -26,6 +27,12 @@ Taken Assembler::place(const Piece& piece, std::int64_t now, Open*& open) {
   if (found->seen[piece.part]) return Taken::duplicate;
   open = found;
   return Taken::part;
+}
+
+bool Assembler::leaps(const Piece& piece, std::int64_t now) const {
+  if (!newest_.used || !newer(piece.sequence, newest_.piece.sequence)) return false;
+  const bool far = piece.sequence - newest_.piece.sequence > kMostAhead;
+  return far || piece.time - newest_.piece.time > now - came_ + kLeap || piece.time < newest_.piece.time;
 }
 
 Taken Assembler::finish(const Piece& piece, std::int64_t now, Open& open) {

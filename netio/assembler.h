@@ -35,15 +35,19 @@ enum class Taken : std::uint8_t {
   whole,      ///< the last one: this reading is the newest now
   late,       ///< its reading is not newer than the newest whole one, or was given up for newer ones
   duplicate,  ///< it was there
+  leap,       ///< its sequence or its time is too far ahead of the newest to be believed
   refused,    ///< (of Receiver) no piece of such a reading: counted by its Reason
 };
 
-/// Readings are numbered 0, 1, 2, ... by their sender and may wrap. A sender that starts its count again is believed
-/// once nothing newer came for two seconds (kSilence). One thread; nothing is allocated after each of kOpen readings
-/// was begun once.
+/// Readings are numbered 0, 1, 2, ... by their sender and may wrap. One that is more than kMostAhead readings ahead of
+/// the newest, or kLeap ahead of the time that it should have, is left out. Once nothing was wanted for two seconds
+/// (kSilence) whatever comes is believed: a sender may have started its count again. One thread; nothing is allocated
+/// after each of kOpen readings was begun once.
 class Assembler {
  public:
   static constexpr std::size_t kOpen = 8;  ///< readings that parts are awaited of at once; the oldest gives way
+  static constexpr std::uint32_t kMostAhead = 256;       ///< readings that may be lost in a row
+  static constexpr std::int64_t kLeap = 10'000'000'000;  ///< [ns]
 
   /// @param numbers in a whole reading
   explicit Assembler(std::size_t numbers) : numbers_(numbers) {}
@@ -63,6 +67,8 @@ class Assembler {
   /// Of pieces, numbered through all readings from the first that came on (after a restart, again).
   std::uint64_t lost() const { return lost_before_ + netio::lost(track_); }
   std::uint64_t restarts() const { return restarts_; }
+  /// Forgets the newest reading: the sender is another.
+  void restart();
 
  private:
   struct Open {
@@ -74,8 +80,8 @@ class Assembler {
   };
   Taken place(const Piece& piece, std::int64_t now, Open*& open);
   Taken finish(const Piece& piece, std::int64_t now, Open& open);
+  bool leaps(const Piece& piece, std::int64_t now) const;
   void count(const Piece& piece);
-  void restart();
   Open* find(std::uint32_t sequence);
   Open* begin(const Piece& piece);
 

@@ -49,6 +49,12 @@ void Ears::wait(int timeout_ms) {
   for (int e = 0; e < ready; ++e) ready_.push_back(events[static_cast<std::size_t>(e)].data.u64);
 }
 
+std::uint64_t Ears::kernel_drops() const {
+  std::uint64_t drops = 0;
+  for (const Socket& socket : sockets_) drops += netio::kernel_drops(socket);
+  return drops;
+}
+
 std::size_t Ears::granted() const { return sockets_.empty() ? 0 : receive_buffer(sockets_.front()); }
 
 }  // namespace sf::netio

@@ -31,14 +31,15 @@ class Ears {
   Ears(std::uint32_t address, std::size_t receive_buffer, std::span<const StreamPlan> streams);
 
   /// Waits at most `timeout_ms` (0: not at all) for something to come, then gives `take(std::size_t stream,
-  /// std::span<const std::uint8_t> bytes)` all that waits, as far as it is not a flood. Returns datagrams taken.
+  /// std::span<const std::uint8_t> bytes, const Endpoint& source)` all that waits, as far as it is not a flood. Returns
+  /// datagrams taken.
   template <class Take>
   std::size_t drain(int timeout_ms, Take&& take) {
     std::size_t taken = 0;
     for (wait(timeout_ms); !ready_.empty() && taken < kMaxPerDrain; wait(0)) {
       for (const std::size_t stream : ready_) {
         const std::size_t n = batch_.fill(sockets_[stream]);
-        for (std::size_t i = 0; i < n; ++i) take(stream, batch_.bytes(i));
+        for (std::size_t i = 0; i < n; ++i) take(stream, batch_.bytes(i), batch_.source(i));
         taken += n;
       }
     }
@@ -47,7 +48,8 @@ class Ears {
 
   /// Readable while anything waits on any port: for wait_readable.
   const Socket& any() const { return epoll_; }
-  std::size_t granted() const;  ///< [byte] receive buffer of the first port; 0 without ports
+  std::size_t granted() const;         ///< [byte] receive buffer of the first port; 0 without ports
+  std::uint64_t kernel_drops() const;  ///< datagrams that came while a port's buffer was full
 
  private:
   static constexpr std::size_t kMaxPerDrain = 65'536;  ///< so that a flood cannot keep others from being served

@@ -1,6 +1,8 @@
 #include "netio/endpoint.h"
 
 #include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -24,13 +26,26 @@ std::uint32_t resolve(const std::string& host) {
   return address;
 }
 
-std::string text(const Endpoint& endpoint) {
-  std::string line;
-  for (int shift = 24; shift >= 0; shift -= 8) {
-    line += std::to_string(endpoint.address >> shift & 0xFFu);
-    line += shift > 0 ? '.' : ':';
+std::vector<std::uint32_t> own_addresses() {
+  std::vector<std::uint32_t> addresses;
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0) return addresses;
+  for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
+    if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET || (each->ifa_flags & IFF_UP) == 0) continue;
+    const std::uint32_t address = ntohl(reinterpret_cast<const sockaddr_in*>(each->ifa_addr)->sin_addr.s_addr);
+    if (!is_loopback(address)) addresses.push_back(address);
   }
-  return line + std::to_string(endpoint.port);
+  freeifaddrs(all);
+  return addresses;
 }
+
+std::string text_of(std::uint32_t address) {
+  std::string line;
+  for (int shift = 24; shift >= 0; shift -= 8)
+    line += std::to_string(address >> shift & 0xFFu) + (shift > 0 ? "." : "");
+  return line;
+}
+
+std::string text(const Endpoint& endpoint) { return text_of(endpoint.address) + ":" + std::to_string(endpoint.port); }
 
 }  // namespace sf::netio

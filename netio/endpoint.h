@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace sf::netio {
 
@@ -20,6 +21,13 @@ struct Endpoint {
 /// @throws base::InputError naming `host` when there is none.
 std::uint32_t resolve(const std::string& host);
 
+/// 127.0.0.0/8: nobody else reaches it.
+inline bool is_loopback(std::uint32_t address) { return address >> 24 == 127; }
+/// Of this machine's interfaces that are up, loopback aside.
+std::vector<std::uint32_t> own_addresses();
+
+/// "127.0.0.1".
+std::string text_of(std::uint32_t address);
 /// "127.0.0.1:10008".
 std::string text(const Endpoint& endpoint);
 

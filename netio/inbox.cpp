@@ -12,7 +12,8 @@ namespace sf::netio {
 namespace {
 
 constexpr std::size_t kBatch = 64;
-constexpr std::size_t kSendBuffer = 1u << 20;  ///< [byte] of what is sent through a duplicate of the socket
+constexpr std::size_t kSendBuffer = 1u << 20;         ///< [byte] of what is sent through a duplicate of the socket
+constexpr std::int64_t kChallengeSpan = 100'000'000;  ///< [ns]
 constexpr std::size_t kStateLine = 0;
 constexpr std::size_t kSubscribeLine = 1;
 
@@ -31,6 +32,8 @@ Inbox::Inbox(const InboxOptions& options)
     : robots_(options.robots),
       tags_(options.tags),
       kinds_(options.robots.size(), 0),
+      sessions_(options.robots.size(), 0),
+      session_(options.session),
       socket_(open_udp(options.bind, {.receive = options.receive_buffer, .send = kSendBuffer})),
       batch_(kBatch) {
   require_ids(options.robots, 0, "robot");
@@ -55,13 +58,17 @@ Reason Inbox::judge(const Packet& packet, const Endpoint& source, std::int64_t n
     case Type::subscribe:
       return judge_robot(packet, source, now);
     case Type::leave:
-      return robots_.row(packet.header.robot) ? robots_.leave(packet.header.robot, source, now) : Reason::unknown_robot;
+      if (!robots_.row(packet.header.robot)) return Reason::unknown_robot;
+      if (packet.header.token != tokens_.of(source)) return Reason::unproven;
+      return robots_.leave(packet.header.robot, source, now);
     case Type::tag:
       if (!tags_.row(packet.header.robot)) return Reason::unknown_tag;
       return tags_.admit(packet.header.robot, kStateLine, packet.header.sequence, source, now);
     case Type::start:
       return packet.header.robot == kEveryone || robots_.row(packet.header.robot) ? Reason::accepted
                                                                                   : Reason::unknown_robot;
+    case Type::challenge:
+      break;
   }
   return Reason::wrong_direction;
 }
@@ -70,6 +77,7 @@ Reason Inbox::judge_robot(const Packet& packet, const Endpoint& source, std::int
   const std::uint32_t id = packet.header.robot;
   const auto row = robots_.row(id);
   if (!row) return Reason::unknown_robot;
+  if (packet.header.token != tokens_.of(source)) return Reason::unproven;
 
   const bool was_heard = robots_.heard(id, now);
   const auto* request = std::get_if<Subscribe>(&packet.body);
@@ -78,7 +86,29 @@ Reason Inbox::judge_robot(const Packet& packet, const Endpoint& source, std::int
   if (reason != Reason::accepted) return reason;
   if (!was_heard) kinds_[*row] = 0;
   if (request != nullptr) kinds_[*row] = request->kinds;
+  sessions_[*row] = packet.header.session;
   return Reason::accepted;
+}
+
+bool Inbox::challenge(const Packet& packet, const Endpoint& who, std::int64_t now, base::Bytes& out) {
+  if (packet.header.type == Type::leave) return false;
+  if (now - challenging_since_ >= kChallengeSpan) {
+    challenging_since_ = now;
+    challenges_ = 0;
+  }
+  if (challenges_ == kMostChallenges) return false;
+  ++challenges_;
+  Header header;
+  header.robot = packet.header.robot;
+  header.session = session_;
+  header.token = packet.header.session;
+  encode(header, Challenge{tokens_.of(who)}, out);
+  return true;
+}
+
+Stamp Inbox::stamp_for(std::uint32_t robot) const {
+  const auto row = robots_.row(robot);
+  return {session_, row ? sessions_[*row] : 0};
 }
 
 bool Inbox::asks_for_others(std::uint32_t robot, std::int64_t now) const {

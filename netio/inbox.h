@@ -5,6 +5,9 @@
 //   inbox.receive(now, [&](const Packet& packet) { ... });        // each accepted one
 //   if (inbox.heard(7, now) && inbox.wants(7, kind, now)) ...      // send to *inbox.address(7)
 //
+// A robot is heard from an address that sends back what it was sent there (netio/token.h): until then it is answered by
+// a CHALLENGE, which is no larger than what it sent.
+//
 // One thread. No clock is read: `now` is any clock in ns that does not go back.
 
 #include <cstdint>
@@ -18,26 +21,30 @@
 #include "netio/ports.h"
 #include "netio/reason.h"
 #include "netio/socket.h"
+#include "netio/token.h"
 
 namespace sf::netio {
 
 struct InboxOptions {
-  Endpoint bind = {kLoopback, kInboxPort};  ///< address 0 (0.0.0.0): every interface of the machine
-  std::size_t receive_buffer = 4u << 20;    ///< [byte] asked of the kernel
-  std::vector<std::uint32_t> robots;        ///< ids that the world has, each in [0, kMaxId], no two equal
-  std::vector<std::uint32_t> tags;          ///< each in [kMinTag, kMaxId]
+  Endpoint bind = {kLoopback, kInboxPort};   ///< address 0 (0.0.0.0): every interface of the machine
+  std::size_t receive_buffer = 4u << 20;     ///< [byte] asked of the kernel
+  std::vector<std::uint32_t> robots;         ///< ids that the world has, each in [0, kMaxId], no two equal
+  std::vector<std::uint32_t> tags;           ///< each in [kMinTag, kMaxId]
+  std::uint32_t session = random_session();  ///< the farm's
 };
 
 class Inbox {
  public:
   /// Datagrams taken by one receive at most: a flood may not hold the tick.
   static constexpr std::size_t kMaxPerReceive = 65'536;
+  /// CHALLENGEs in a tenth of a second at most: the rest are not answered.
+  static constexpr std::size_t kMostChallenges = 1000;
 
   /// @throws base::InputError when the address cannot be bound, or an id does not fit a packet.
   explicit Inbox(const InboxOptions& options);
 
   /// Takes every datagram that waits and gives `take(const Packet&)` each accepted one, in order of arrival, and
-  /// `stranger(const Packet&, const Endpoint& who)` each that was well but came from the wrong source.
+  /// `stranger(Reason, const Packet&, const Endpoint& who)` each that was well but unproven or from the wrong source.
   /// Returns how many were taken from the socket.
   template <class Take, class Stranger>
   std::size_t receive(std::int64_t now, Take&& take, Stranger&& stranger) {
@@ -49,7 +56,7 @@ class Inbox {
       for (std::size_t i = 0; i < n; ++i) {
         const Reason reason = accept(batch_.bytes(i), batch_.source(i), now, packet);
         if (reason == Reason::accepted) take(packet);
-        if (reason == Reason::wrong_source) stranger(packet, batch_.source(i));
+        if (reason == Reason::unproven || reason == Reason::wrong_source) stranger(reason, packet, batch_.source(i));
       }
       taken += n;
     }
@@ -58,12 +65,16 @@ class Inbox {
 
   template <class Take>
   std::size_t receive(std::int64_t now, Take&& take) {
-    return receive(now, take, [](const Packet&, const Endpoint&) {});
+    return receive(now, take, [](Reason, const Packet&, const Endpoint&) {});
   }
 
-  /// One datagram, from wherever: decides, counts, and fills `packet` when accepted or from the wrong source (else it
-  /// holds nothing of use). receive() is this for a socket.
+  /// One datagram, from wherever: decides, counts, and fills `packet` when accepted, unproven or from the wrong source
+  /// (else it holds nothing of use). receive() is this for a socket.
   Reason accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now, Packet& packet);
+
+  /// The answer to an unproven V2V or SUBSCRIBE that came from `who`. @return false where none is due, or too many
+  /// were.
+  bool challenge(const Packet& packet, const Endpoint& who, std::int64_t now, base::Bytes& out);
 
   /// A V2V or SUBSCRIBE of `robot` was accepted less than two seconds before `now`, and no LEAVE since.
   bool heard(std::uint32_t robot, std::int64_t now) const { return robots_.heard(robot, now); }
@@ -78,11 +89,17 @@ class Inbox {
   /// sensor's own port.
   std::optional<Endpoint> address(std::uint32_t robot) const { return robots_.source(robot); }
 
+  /// The token that packets from `who` must carry.
+  std::uint32_t token(const Endpoint& who) const { return tokens_.of(who); }
+  /// For packets to `robot`: the farm's session, and the one that the robot gave last.
+  Stamp stamp_for(std::uint32_t robot) const;
+
   /// Where tag `tag` is sent from.
   std::optional<Endpoint> tag_address(std::uint32_t tag) const { return tags_.source(tag); }
 
   std::uint16_t port() const { return bound_endpoint(socket_).port; }
   const Counts& counts() const { return counts_; }
+  std::uint64_t kernel_drops() const { return netio::kernel_drops(socket_); }
   /// The same socket once more: for answers that come from where the robots speak to.
   Socket socket() const { return duplicate(socket_); }
   /// Sleeps until a datagram waits, a signal comes, or `timeout_ms` >= 0 has passed.
@@ -94,7 +111,12 @@ class Inbox {
 
   Bindings robots_;
   Bindings tags_;
-  std::vector<std::uint32_t> kinds_;  ///< per robot row: mask of its last SUBSCRIBE, 0 for all
+  std::vector<std::uint32_t> kinds_;     ///< per robot row: mask of its last SUBSCRIBE, 0 for all
+  std::vector<std::uint32_t> sessions_;  ///< per robot row: of its last packet
+  std::uint32_t session_;
+  Tokens tokens_;
+  std::int64_t challenging_since_ = 0;  ///< [ns]
+  std::size_t challenges_ = 0;          ///< since then
   Counts counts_;
   Socket socket_;
   ReceiveBatch batch_;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "netio/one_farm.h"
 #include "netio/track.h"
 
 namespace sf::netio {
@@ -13,12 +14,42 @@ namespace {
 constexpr int kMaxLastDrains = 100;
 constexpr int kLookMs = 50;  ///< how often `stop` is looked at while nothing comes
 
+/// Sums over tracks.
+struct Gaps {
+  std::uint64_t lost = 0;
+  std::uint64_t duplicates = 0;
+  std::uint64_t reordered = 0;
+};
+
+void add(Gaps& gaps, const Track& track) {
+  gaps.lost += lost(track);
+  gaps.duplicates += track.duplicates;
+  gaps.reordered += track.reordered;
+}
+
 struct Stream {
   StreamPlan plan;
   Track track;
+  std::uint64_t farm = 0;                ///< which one the track is of
+  std::uint32_t highest = 0;             ///< sequence
+  std::optional<std::uint32_t> awaited;  ///< the sequence that would make a leap believed
   std::uint64_t good = 0;
   std::uint64_t elements = 0;
 };
+
+std::int64_t steady_now() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+/// Whether `sequence` is too far ahead of what came before it, and not the second in a row that is.
+bool leaps(Stream& stream, std::uint32_t sequence) {
+  const bool far = stream.track.next > 0 && newer(sequence, stream.highest) &&
+                   sequence - stream.highest > Listener::kMostAhead && stream.awaited != sequence;
+  stream.awaited = far ? std::optional(sequence + 1) : std::nullopt;
+  if (!far && (stream.track.next == 0 || newer(sequence, stream.highest))) stream.highest = sequence;
+  return far;
+}
 
 }  // namespace
 
@@ -38,14 +69,20 @@ struct Listener::Streams {
   explicit Streams(const ListenerOptions& options)
       : ears(options.address, options.receive_buffer, options.streams),
         headerless(options.headerless),
+        farm(options.farm),
         judge(options.judge) {
-    for (const StreamPlan& plan : options.streams) rows.push_back({plan, {}, 0, 0});
+    for (const StreamPlan& plan : options.streams) rows.push_back({.plan = plan});
   }
 
   Ears ears;
   bool headerless;
+  /// Whether a good packet is of the one farm, and near those before it.
+  Reason follow(Stream& stream, const Header& header, const Endpoint& source, std::int64_t now);
+
+  OneFarm farm;
   Judge judge;
   std::vector<Stream> rows;
+  Gaps before;  ///< of farms that were listened to before
   Counts counts;
   std::uint64_t bytes = 0;
 };
@@ -58,8 +95,10 @@ Listener::Listener(const ListenerOptions& options) {
 Listener::~Listener() = default;
 
 std::size_t Listener::drain(int timeout_ms) {
-  return streams_->ears.drain(timeout_ms,
-                              [this](std::size_t i, std::span<const std::uint8_t> bytes) { accept(i, bytes); });
+  const auto take = [this](std::size_t i, std::span<const std::uint8_t> bytes, const Endpoint& source) {
+    accept(i, bytes, source, steady_now());
+  };
+  return streams_->ears.drain(timeout_ms, take);
 }
 
 void Listener::run(const std::atomic<bool>& stop, int silence_ms, std::int64_t longest_ms) {
@@ -77,14 +116,17 @@ void Listener::run(const std::atomic<bool>& stop, int silence_ms, std::int64_t l
   }
 }
 
-Reason Listener::accept(std::size_t i, std::span<const std::uint8_t> bytes) {
+Reason Listener::accept(std::size_t i, std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now) {
   Streams& s = *streams_;
   Stream& stream = s.rows[i];
   Header header;
   std::span<const std::uint8_t> payload = bytes;
   Verdict verdict;
-  if (!s.headerless) verdict.reason = unframe(bytes, stream.plan, header, payload);
+  if (!s.farm.may(source)) verdict.reason = Reason::wrong_source;
+  if (verdict.reason == Reason::accepted && !s.headerless)
+    verdict.reason = unframe(bytes, stream.plan, header, payload);
   if (verdict.reason == Reason::accepted) verdict = s.judge(i, header, payload);
+  if (verdict.reason == Reason::accepted) verdict.reason = s.follow(stream, header, source, now);
   s.counts.add(verdict.reason);
   s.bytes += bytes.size();
   if (verdict.reason != Reason::accepted) return verdict.reason;
@@ -95,6 +137,18 @@ Reason Listener::accept(std::size_t i, std::span<const std::uint8_t> bytes) {
   return Reason::accepted;
 }
 
+Reason Listener::Streams::follow(Stream& stream, const Header& header, const Endpoint& source, std::int64_t now) {
+  if (!farm.admit(source, header.session, now)) return Reason::wrong_source;
+  if (headerless) return Reason::accepted;
+  if (stream.farm != farm.changes()) {
+    stream.farm = farm.changes();
+    add(before, stream.track);
+    stream.track = {};
+    stream.awaited.reset();
+  }
+  return leaps(stream, header.sequence) ? Reason::out_of_range : Reason::accepted;
+}
+
 Summary Listener::summary() const {
   const Streams& s = *streams_;
   Summary sum;
@@ -103,16 +157,19 @@ Summary Listener::summary() const {
   sum.good = s.counts[Reason::accepted];
   sum.counts = s.counts;
   sum.ports = s.rows.size();
+  Gaps gaps = s.before;
   for (const Stream& stream : s.rows) {
-    sum.lost += lost(stream.track);
-    sum.duplicates += stream.track.duplicates;
-    sum.reordered += stream.track.reordered;
+    add(gaps, stream.track);
     sum.silent_ports += stream.good == 0 ? 1 : 0;
     Summary::Share& share = sum.of[stream.plan.kind];
     share.good += stream.good;
     share.elements += stream.elements;
   }
+  sum.lost = gaps.lost;
+  sum.duplicates = gaps.duplicates;
+  sum.reordered = gaps.reordered;
   sum.receive_buffer = s.ears.granted();
+  sum.kernel_drops = s.ears.kernel_drops();
   return sum;
 }
 

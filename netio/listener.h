@@ -6,7 +6,7 @@
 //   listener.run(stop, 500);                                  // or drain(), between other work
 //   Summary summary = listener.summary();
 //
-// One thread; only `stop` may be set by another.
+// One farm is listened to at a time (netio/one_farm.h). One thread; only `stop` may be set by another.
 
 #include <atomic>
 #include <cstdint>
@@ -44,6 +44,7 @@ struct ListenerOptions {
   std::uint32_t address = kLoopback;
   std::size_t receive_buffer = 1u << 20;  ///< [byte] per port, asked of the kernel
   bool headerless = false;                ///< datagrams are payloads; without a sequence, loss and order cannot be seen
+  std::uint32_t farm = 0;                 ///< the only address that packets are taken from; 0: any
   std::vector<StreamPlan> streams;        ///< one per sensor
   Judge judge;                            ///< not empty
 };
@@ -59,6 +60,7 @@ struct Summary {
   std::uint64_t ports = 0;
   std::uint64_t silent_ports = 0;  ///< nothing good came
   std::size_t receive_buffer = 0;  ///< [byte] granted to the first port
+  std::uint64_t kernel_drops = 0;  ///< datagrams that came while a port's buffer was full
 
   /// Of the streams of one kind: what came of them.
   struct Share {
@@ -85,8 +87,12 @@ class Listener {
   /// have passed (0: however long it takes); then takes what still waits.
   void run(const std::atomic<bool>& stop, int silence_ms, std::int64_t longest_ms = 0);
 
-  /// One datagram for stream `i`, from wherever: decides and counts. drain() is this for sockets.
-  Reason accept(std::size_t i, std::span<const std::uint8_t> bytes);
+  /// A sequence that is farther ahead than this is believed when the next one follows on it (RFC 3550, appendix A.1).
+  static constexpr std::uint32_t kMostAhead = 65'536;
+
+  /// One datagram for stream `i` that came from `source` at `now` [ns]: decides and counts. drain() is this for
+  /// sockets.
+  Reason accept(std::size_t i, std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now);
 
   Summary summary() const;
 

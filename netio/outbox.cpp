@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "netio/packets.h"
 #include "netio/posix.h"
 
 namespace sf::netio {
@@ -50,6 +49,11 @@ void Outbox::queue(const Endpoint& to, std::span<const std::uint8_t> bytes) {
   s.vectors[i].iov_len = bytes.size();
   if (!bytes.empty()) std::memcpy(s.vectors[i].iov_base, bytes.data(), bytes.size());
   ++counts_.queued;
+}
+
+void Outbox::queue(const Endpoint& to, std::span<const std::uint8_t> bytes, const Stamp& stamp) {
+  queue(to, bytes);
+  netio::stamp({static_cast<std::uint8_t*>(storage_->vectors[storage_->waiting - 1].iov_base), bytes.size()}, stamp);
 }
 
 void Outbox::flush() {

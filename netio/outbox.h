@@ -13,6 +13,7 @@
 #include <string>
 
 #include "netio/endpoint.h"
+#include "netio/packets.h"
 #include "netio/socket.h"
 
 namespace sf::netio {
@@ -44,6 +45,8 @@ class Outbox {
 
   /// Keeps a copy of at most kMaxPlain bytes for the next flush.
   void queue(const Endpoint& to, std::span<const std::uint8_t> bytes);
+  /// The same with another stamp: `bytes` are an encoded packet.
+  void queue(const Endpoint& to, std::span<const std::uint8_t> bytes, const Stamp& stamp);
 
   /// Sends all that is queued, in order.
   void flush();

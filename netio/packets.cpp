@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
 
 #include "base/error.h"
@@ -13,6 +14,10 @@ namespace {
 constexpr std::size_t kV2vBytes = 68;
 constexpr std::size_t kTagBytes = 104;
 constexpr std::size_t kSubscribeBytes = 4;
+constexpr std::size_t kChallengeBytes = 4;
+constexpr std::size_t kStampAt = 24;     ///< [byte] of session and token
+constexpr std::size_t kReservedAt = 32;  ///< [byte] of age and covariance
+constexpr std::size_t kTrailerAt = 60;   ///< [byte] of the trailer's length
 constexpr std::uint32_t kDockingBit = 1;
 
 Reason judge(std::span<const double> values, double limit) {
@@ -117,13 +122,17 @@ Reason read_body(std::span<const std::uint8_t> payload, Packet& packet) {
     case Type::leave:
       packet.body = Leave{};
       return check_size(payload.size(), 0);
+    case Type::challenge:
+      packet.body = Challenge{reader.get<std::uint32_t>()};
+      return check_size(payload.size(), kChallengeBytes);
   }
   if (kind_of(packet.header.type) == 0) return Reason::unknown_type;
   packet.body = Reading{payload};
-  return payload.size() <= kMaxDatagram - kHeaderBytes ? Reason::accepted : Reason::too_long;
+  return payload.size() <= kMaxPayload ? Reason::accepted : Reason::too_long;
 }
 
-Reason read_header(base::ByteReader& reader, Header& header) {
+/// @param trailer [byte] behind the payload
+Reason read_header(base::ByteReader& reader, Header& header, std::size_t& trailer) {
   for (const std::uint8_t letter : kMagic) {
     if (reader.get<std::uint8_t>() != letter) return Reason::bad_magic;
   }
@@ -134,6 +143,10 @@ Reason read_header(base::ByteReader& reader, Header& header) {
   header.accuracy = reader.get<std::uint16_t>();
   header.sequence = reader.get<std::uint32_t>();
   header.time = reader.get<std::int64_t>();
+  header.session = reader.get<std::uint32_t>();
+  header.token = reader.get<std::uint32_t>();
+  reader.get_bytes(kTrailerAt - kReservedAt);
+  trailer = reader.get<std::uint16_t>();
   return Reason::accepted;
 }
 
@@ -150,12 +163,14 @@ Reason decode(std::span<const std::uint8_t> bytes, Packet& packet) {
   if (bytes.size() < kHeaderBytes) return Reason::too_short;
   base::ByteReader reader(bytes);
   Packet read;
-  Reason reason = read_header(reader, read.header);
+  std::size_t trailer = 0;
+  Reason reason = read_header(reader, read.header, trailer);
   if (reason != Reason::accepted) return reason;
+  if (bytes.size() < kHeaderBytes + trailer) return Reason::too_short;
 
-  reason = read_body(bytes.subspan(kHeaderBytes), read);
+  reason = read_body(bytes.subspan(kHeaderBytes, bytes.size() - kHeaderBytes - trailer), read);
   if (reason != Reason::accepted) return reason;
-  if (read.header.time < 0 || read.header.time > kMaxTime) return Reason::out_of_range;
+  if (read.header.time < 0 || read.header.time > kMaxTime || trailer > kMaxTrailer) return Reason::out_of_range;
   packet = read;
   return Reason::accepted;
 }
@@ -186,6 +201,16 @@ void put_header(const Header& header, base::ByteWriter& writer) {
   writer.put(header.accuracy);
   writer.put(header.sequence);
   writer.put(header.time);
+  writer.put(header.session);
+  writer.put(header.token);
+  constexpr std::array<std::uint8_t, kHeaderBytes - kReservedAt> kReserved{};
+  writer.put_bytes(kReserved.data(), kReserved.size());
+}
+
+void stamp(std::span<std::uint8_t> packet, const Stamp& stamp) {
+  SF_CHECK(packet.size() >= kHeaderBytes, std::to_string(packet.size()) + " bytes without a header");
+  const std::uint32_t words[] = {stamp.session, stamp.token};
+  std::memcpy(packet.data() + kStampAt, words, sizeof words);
 }
 
 void encode(const Header& header, const V2v& state, base::Bytes& out) {
@@ -221,9 +246,15 @@ void encode(const Header& header, const Subscribe& request, base::Bytes& out) {
 void encode(const Header& header, const Start&, base::Bytes& out) { start(header, Type::start, out); }
 void encode(const Header& header, const Leave&, base::Bytes& out) { start(header, Type::leave, out); }
 
+void encode(const Header& header, const Challenge& challenge, base::Bytes& out) {
+  start(header, Type::challenge, out);
+  base::ByteWriter writer(out);
+  writer.put(challenge.token);
+}
+
 void frame(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out) {
   SF_CHECK(kind_of(Type{type}) != 0, "type " + std::to_string(type) + " is no reading's");
-  SF_CHECK(kHeaderBytes + payload.size() <= kMaxDatagram, std::to_string(payload.size()) + " bytes of payload");
+  SF_CHECK(payload.size() <= kMaxPayload, std::to_string(payload.size()) + " bytes of payload");
   start(header, Type{type}, out);
   out.insert(out.end(), payload.begin(), payload.end());
 }

@@ -18,22 +18,24 @@
 namespace sf::netio {
 
 inline constexpr std::array<std::uint8_t, 4> kMagic = {'S', 'F', 'P', 'K'};
-inline constexpr std::uint8_t kVersion = 1;
-inline constexpr std::size_t kHeaderBytes = 24;
-inline constexpr std::size_t kMaxDatagram = 1400;    ///< [byte] no packet of ours is longer, so none is fragmented
-inline constexpr std::size_t kMaxPlain = 2046;       ///< [byte] but for the thesis' halves of a map
-inline constexpr std::uint32_t kMaxId = 0xFFFFu;     ///< of a robot, and of a sensor
-inline constexpr std::uint16_t kEveryone = 0xFFFFu;  ///< START: every robot, and not the one with this id
-inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;  ///< V2V: follows nobody, heads for no checkpoint
-inline constexpr std::uint32_t kMinTag = 1;          ///< tags are 1 to kMaxId; the thesis has 1 to 32
-inline constexpr double kMaxPosition = 1e7;          ///< [m] of each coordinate: every UTM coordinate fits
-inline constexpr double kMaxYaw = 1e6;               ///< [rad] a heading that was never wrapped
-inline constexpr double kMaxSpeed = 1e3;             ///< [m/s], and [rad/s]
+inline constexpr std::uint8_t kVersion = 2;
+inline constexpr std::size_t kHeaderBytes = 64;
+inline constexpr std::size_t kMaxDatagram = 1400;  ///< [byte] no packet of ours is longer, so none is fragmented
+inline constexpr std::size_t kMaxTrailer = 80;     ///< [byte] kept free for a signature behind the payload
+inline constexpr std::size_t kMaxPayload = kMaxDatagram - kHeaderBytes - kMaxTrailer;  ///< [byte]
+inline constexpr std::size_t kMaxPlain = 2046;                   ///< [byte] but for the thesis' halves of a map
+inline constexpr std::uint32_t kMaxId = 0xFFFFu;                 ///< of a robot, and of a sensor
+inline constexpr std::uint16_t kEveryone = 0xFFFFu;              ///< START: every robot, and not the one with this id
+inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;              ///< V2V: follows nobody, heads for no checkpoint
+inline constexpr std::uint32_t kMinTag = 1;                      ///< tags are 1 to kMaxId; the thesis has 1 to 32
+inline constexpr double kMaxPosition = 1e7;                      ///< [m] of each coordinate: every UTM coordinate fits
+inline constexpr double kMaxYaw = 1e6;                           ///< [rad] a heading that was never wrapped
+inline constexpr double kMaxSpeed = 1e3;                         ///< [m/s], and [rad/s]
 inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 years: differences cannot overflow
 
 /// From 128: states and requests sent to the farm, of which it passes V2V and START on. Below 64: a reading of the
 /// sensor kind with that number; 64 more: its second form.
-enum class Type : std::uint8_t { v2v = 128, tag = 129, subscribe = 130, start = 131, leave = 132 };
+enum class Type : std::uint8_t { v2v = 128, tag = 129, subscribe = 130, start = 131, leave = 132, challenge = 133 };
 
 /// The sensor kind in [1, 63] whose readings, of either form, are sent as `type`; 0 when it is no reading's.
 constexpr std::uint8_t kind_of(Type type) {
@@ -48,6 +50,8 @@ struct Header {
   std::uint32_t sequence = 0;  ///< counts up by one per message sent of this type (and sensor), wraps to 0
   std::int64_t time = 0;       ///< [ns] in [0, kMaxTime]: when it was measured, not when it was sent
   std::uint16_t accuracy = 0;  ///< of readings: an accuracy word, below; 0: not said
+  std::uint32_t session = 0;   ///< of its sender: a random number that it draws when it starts; 0: not said
+  std::uint32_t token = 0;     ///< to the farm: what its CHALLENGE gave; from the farm: the receiver's session
 };
 
 /// How a reading was measured, in 16 bits: mode in bits 0 to 3, `unsure` in bit 4, and above these k in [1, 2047]: a
@@ -90,6 +94,11 @@ struct Start {};
 /// A robot's last word: it will not be heard again, and its id is free.
 struct Leave {};
 
+/// The farm's answer to an address that has not proven itself: packets from there count once they carry the token.
+struct Challenge {
+  std::uint32_t token = 0;
+};
+
 /// A sensor's reading, or a part of one; its kind reads it.
 struct Reading {
   std::span<const std::uint8_t> payload;  ///< lives as long as the datagram
@@ -97,7 +106,7 @@ struct Reading {
 
 struct Packet {
   Header header;
-  std::variant<V2v, Tag, Subscribe, Start, Leave, Reading> body;
+  std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, Reading> body;
 };
 
 /// Reads any bytes. Fills `packet` only when the answer is Reason::accepted.
@@ -109,13 +118,22 @@ void encode(const Header& header, const Tag& state, base::Bytes& out);
 void encode(const Header& header, const Subscribe& request, base::Bytes& out);
 void encode(const Header& header, const Start& signal, base::Bytes& out);
 void encode(const Header& header, const Leave& word, base::Bytes& out);
+void encode(const Header& header, const Challenge& challenge, base::Bytes& out);
 
 /// A reading of type `type`, one of a sensor kind's two; replaces what `out` holds.
-/// Rule: header and payload together take at most kMaxDatagram.
+/// Rule: the payload takes at most kMaxPayload.
 void frame(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out);
 
-/// Appends the 24 bytes that every packet begins with.
+/// Appends the 64 bytes that every packet begins with. Age, covariance and trailer are reserved: 0.
 void put_header(const Header& header, base::ByteWriter& writer);
+
+/// The two fields of a header that differ by receiver.
+struct Stamp {
+  std::uint32_t session = 0;
+  std::uint32_t token = 0;
+};
+/// Writes both into an encoded packet.
+void stamp(std::span<std::uint8_t> packet, const Stamp& stamp);
 
 /// The state of world mover `mover`, as the farm takes it in. A tag's tilt is left out; its velocity is turned into its
 /// frame.

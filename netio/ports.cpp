@@ -49,7 +49,28 @@ std::string remedy_of(const PortUse& a, const PortUse& b) {
                          "): " + remedy_of(a, b));
 }
 
+/// Whether the uses' ports are apart with another stride; `ports` is memory.
+bool fits(std::span<const PortUse> uses, std::uint32_t stride, std::vector<std::uint64_t>& ports) {
+  ports.clear();
+  for (const PortUse& use : uses) {
+    const PortRule rule{use.rule.base, stride};
+    for (std::uint32_t i = 0; i < use.sensors; ++i) ports.push_back(port(rule, use.robot, use.first + i));
+  }
+  std::sort(ports.begin(), ports.end());
+  return std::adjacent_find(ports.begin(), ports.end()) == ports.end() && (ports.empty() || ports.back() <= kLastPort);
+}
+
 }  // namespace
+
+std::uint32_t least_stride(std::span<const PortUse> uses, std::uint32_t usual) {
+  std::vector<std::uint64_t> ports;
+  if (fits(uses, usual, ports)) return usual;
+  std::uint64_t last_id = 0;
+  for (const PortUse& use : uses) last_id = std::max<std::uint64_t>(last_id, use.robot);
+  for (std::uint32_t stride = 1; stride * last_id <= kLastPort && stride <= kLastPort; ++stride)
+    if (fits(uses, stride, ports)) return stride;
+  return usual;
+}
 
 void require_ports(std::span<const PortUse> uses) {
   std::vector<Taken> taken;

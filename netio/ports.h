@@ -35,4 +35,8 @@ struct PortUse {
 /// names both, and says which base or stride would do.
 void require_ports(std::span<const PortUse> uses);
 
+/// `usual` where it keeps all ports apart and within 65535, else the least stride that does; `usual` where none does.
+/// The uses' own strides are not looked at.
+std::uint32_t least_stride(std::span<const PortUse> uses, std::uint32_t usual);
+
 }  // namespace sf::netio

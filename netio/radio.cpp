@@ -20,7 +20,7 @@ Radio::Radio(const RadioOptions& options)
       batch_(kBatch) {}
 
 void Radio::send(std::span<const std::uint8_t> bytes) {
-  outbox_.queue(options_.farm, bytes);
+  outbox_.queue(options_.farm, bytes, {options_.session, token_});
   outbox_.flush();
 }
 
@@ -33,6 +33,13 @@ Reason Radio::accept(std::span<const std::uint8_t> bytes, std::int64_t now, Pack
 
 Reason Radio::judge(const Packet& packet, std::int64_t now) {
   const std::uint16_t id = packet.header.robot;
+  if (packet.header.token != options_.session) return Reason::wrong_source;
+  if (const auto* challenge = std::get_if<Challenge>(&packet.body)) {
+    token_ = challenge->token;
+    farm_session_ = packet.header.session;
+    return Reason::accepted;
+  }
+  if (packet.header.session != farm_session_) return Reason::wrong_source;
   const bool start = std::holds_alternative<Start>(packet.body);
   if (!start && !std::holds_alternative<V2v>(packet.body)) return Reason::wrong_direction;
   if (start && id != kEveryone && id != options_.robot) return Reason::unknown_robot;

@@ -2,7 +2,7 @@
 // A robot's own end of V2V: one socket that it speaks to the farm from, and hears others on.
 //
 //   Radio radio({.farm = farm, .robot = 7, .others = ids});
-//   radio.send(bytes);                                             // what encode() made
+//   radio.send(bytes);                                             // what encode() made, stamped
 //   radio.receive([&](std::span<const std::uint8_t> bytes) { ... radio.accept(bytes, now, packet); });
 //
 // One thread. No clock is read.
@@ -17,6 +17,7 @@
 #include "netio/packets.h"
 #include "netio/reason.h"
 #include "netio/socket.h"
+#include "netio/token.h"
 
 namespace sf::netio {
 
@@ -24,6 +25,7 @@ struct RadioOptions {
   Endpoint farm;                      ///< that it speaks to, and whose word alone counts
   std::uint32_t robot = 0;            ///< its own id
   std::vector<std::uint32_t> others;  ///< ids of the other robots that the world has
+  std::uint32_t session = random_session();
   std::size_t receive_buffer = 1u << 20;
 };
 
@@ -32,7 +34,7 @@ class Radio {
   /// @throws base::InputError when no socket can be opened.
   explicit Radio(const RadioOptions& options);
 
-  /// To the farm, at once.
+  /// To the farm, at once, with the newest token.
   void send(std::span<const std::uint8_t> bytes);
 
   /// Gives `take(std::span<const std::uint8_t> bytes)` all that waits and comes from the farm, as far as it is no
@@ -51,12 +53,16 @@ class Radio {
     }
   }
 
-  /// Any bytes that come from the farm at `now` [ns]: V2V of others and START for this robot are accepted and fill
-  /// `packet`. What is meant for others is Reason::unknown_robot; old states are stale.
+  /// Any bytes that come from the farm at `now` [ns]: V2V of others, START and CHALLENGE for this robot are accepted
+  /// and fill `packet`. What does not carry this robot's session is of the wrong source, as is another session of the
+  /// farm than the one that challenged last. What is meant for others is Reason::unknown_robot; old states are stale.
   Reason accept(std::span<const std::uint8_t> bytes, std::int64_t now, Packet& packet);
 
   /// A state of `robot` was accepted less than two seconds before `now`.
   bool heard(std::uint32_t robot, std::int64_t now) const { return others_.heard(robot, now); }
+
+  /// The stamp of all packets from the farm. Its session is 0 before the first CHALLENGE.
+  Stamp farm_stamp() const { return {farm_session_, options_.session}; }
 
   const Counts& counts() const { return counts_; }
   const OutboxCounts& sent() const { return outbox_.counts(); }
@@ -69,6 +75,8 @@ class Radio {
   Socket socket_;
   Outbox outbox_;
   Bindings others_;
+  std::uint32_t farm_session_ = 0;
+  std::uint32_t token_ = 0;
   Counts counts_;
   ReceiveBatch batch_;
 };

@@ -7,8 +7,8 @@ namespace sf::netio {
 namespace {
 
 constexpr std::array<std::string_view, kReasons> kNames = {
-    "accepted",     "too short",       "bad magic",     "unknown version", "unknown type", "too long", "not finite",
-    "out of range", "wrong direction", "unknown robot", "unknown tag",     "wrong source", "stale"};
+    "accepted",     "too short",       "bad magic",     "unknown version", "unknown type", "too long",     "not finite",
+    "out of range", "wrong direction", "unknown robot", "unknown tag",     "unproven",     "wrong source", "stale"};
 
 }  // namespace
 

@@ -14,7 +14,7 @@ enum class Reason : std::uint8_t {
   accepted,         ///< not dropped
   too_short,        ///< fewer bytes than its header or its type asks for
   bad_magic,        ///< does not begin with "SFPK"
-  unknown_version,  ///< not version 1
+  unknown_version,  ///< not version 2
   unknown_type,     ///< a type number that this version does not have
   too_long,         ///< more bytes than its type has
   not_finite,       ///< a NaN or an infinity among its numbers
@@ -22,10 +22,12 @@ enum class Reason : std::uint8_t {
   wrong_direction,  ///< a reading sent to the farm, or a state to a listener
   unknown_robot,    ///< a robot id that the world does not have
   unknown_tag,      ///< a tag id that the world does not have
-  wrong_source,     ///< the id is bound to another sender, or it came to another sensor's port
-  stale,            ///< its sequence is not newer than one already taken
+  unproven,         ///< it does not carry its address' token: a CHALLENGE was due
+  wrong_source,  ///< the id is bound to another sender, it came to another sensor's port, or not from the farm that is
+                 ///< listened to
+  stale,         ///< its sequence is not newer than one already taken
 };
-inline constexpr std::size_t kReasons = 13;
+inline constexpr std::size_t kReasons = 14;
 
 /// "too short", "bad magic", ...: words for a table or a summary.
 std::string_view name(Reason reason);

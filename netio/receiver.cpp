@@ -10,12 +10,21 @@ Receiver::Receiver(const ReceiverOptions& options)
   for (const ReceiverStream& stream : options.streams) streams_.push_back({stream.plan, Assembler(stream.numbers)});
 }
 
+void Receiver::bind(const Stamp& farm) {
+  if (farm_ && farm_->session != farm.session) {
+    for (Stream& stream : streams_) stream.assembler.restart();
+  }
+  farm_ = farm;
+}
+
 Taken Receiver::accept(std::size_t i, std::span<const std::uint8_t> bytes, std::int64_t now) {
   Stream& stream = streams_[i];
   Header header;
   std::span<const std::uint8_t> payload = bytes;
   Verdict verdict;
   if (!headerless_) verdict.reason = unframe(bytes, stream.plan, header, payload);
+  const bool strange = farm_ && !headerless_ && (header.session != farm_->session || header.token != farm_->token);
+  if (verdict.reason == Reason::accepted && strange) verdict.reason = Reason::wrong_source;
   if (verdict.reason == Reason::accepted) verdict = judge_(i, header, payload);
   counts_.reasons.add(verdict.reason);
   if (verdict.reason != Reason::accepted) return Taken::refused;
@@ -26,6 +35,7 @@ Taken Receiver::accept(std::size_t i, std::span<const std::uint8_t> bytes, std::
       stream.assembler.take(piece, now, [&](std::span<double> values) { read_(i, header, payload, values); });
   counts_.late += taken == Taken::late;
   counts_.duplicates += taken == Taken::duplicate;
+  counts_.leaps += taken == Taken::leap;
   return taken;
 }
 

@@ -41,6 +41,7 @@ struct ReceiverCounts {
   Counts reasons;                ///< datagrams
   std::uint64_t late = 0;        ///< datagrams of readings that newer ones had overtaken
   std::uint64_t duplicates = 0;  ///< datagrams
+  std::uint64_t leaps = 0;       ///< datagrams too far ahead to be believed
   std::uint64_t lost = 0;        ///< datagrams that never came, by gaps; see Assembler
   std::uint64_t restarts = 0;    ///< of streams
 };
@@ -48,6 +49,12 @@ struct ReceiverCounts {
 class Receiver {
  public:
   explicit Receiver(const ReceiverOptions& options);
+
+  /// Takes what carries this stamp, and from now on nothing else; where the session is another than before, all
+  /// streams begin anew. Without headers there is no stamp.
+  void bind(const Stamp& farm);
+  /// A datagram that does not come from the farm's address is counted, and not looked at.
+  void refuse_source() { counts_.reasons.add(Reason::wrong_source); }
 
   /// Any bytes for stream `i`, which came at `now` [ns] of a clock that does not go back.
   Taken accept(std::size_t i, std::span<const std::uint8_t> bytes, std::int64_t now);
@@ -70,6 +77,7 @@ class Receiver {
 
   std::vector<Stream> streams_;
   bool headerless_;
+  std::optional<Stamp> farm_;
   Judge judge_;
   Read read_;
   ReceiverCounts counts_;

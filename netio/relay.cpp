@@ -44,19 +44,20 @@ void Relay::pass_on(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
   for (const Robot& robot : robots_) {
     if (!inbox.heard(robot.id, now)) continue;
     const Endpoint where = *inbox.address(robot.id);
+    const Stamp stamp = inbox.stamp_for(robot.id);
     if (robot.started) {
-      outbox.queue(where, robot.start);
+      outbox.queue(where, robot.start, stamp);
       ++counts_.starts;
     }
-    if (inbox.asks_for_others(robot.id, now)) send_others(robot, where, outbox);
+    if (inbox.asks_for_others(robot.id, now)) send_others(robot, where, stamp, outbox);
   }
   for (Robot& robot : robots_) robot.spoke = robot.started = false;
 }
 
-void Relay::send_others(const Robot& to, const Endpoint& where, Outbox& outbox) {
+void Relay::send_others(const Robot& to, const Endpoint& where, const Stamp& stamp, Outbox& outbox) {
   for (const std::size_t row : spoke_) {
     if (robots_[row].id == to.id) continue;
-    outbox.queue(where, robots_[row].state);
+    outbox.queue(where, robots_[row].state, stamp);
     ++counts_.states;
   }
 }

@@ -44,7 +44,7 @@ class Relay {
     base::Bytes start;
   };
   Robot* find(std::uint32_t id);
-  void send_others(const Robot& to, const Endpoint& where, Outbox& outbox);
+  void send_others(const Robot& to, const Endpoint& where, const Stamp& stamp, Outbox& outbox);
 
   std::vector<Robot> robots_;       ///< by id
   std::vector<std::size_t> spoke_;  ///< rows, of one pass

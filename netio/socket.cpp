@@ -1,14 +1,15 @@
 #include "netio/socket.h"
 
 #include <fcntl.h>
+#include <linux/sock_diag.h>
 #include <poll.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "netio/posix.h"
 
 namespace sf::netio {
@@ -51,7 +52,9 @@ Socket open_udp(const Endpoint& endpoint, const SocketBuffers& buffers) {
   const sockaddr_in address = to_posix(endpoint);
   if (bind(opened.descriptor(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     const int error = errno;
-    throw base::InputError("cannot bind UDP " + text(endpoint) + ": " + error_text(error) + "; " + remedy(error));
+    const std::string what = "cannot bind UDP " + text(endpoint) + ": " + error_text(error) + "; " + remedy(error);
+    if (error == EADDRINUSE) throw PortTaken(what);
+    throw base::InputError(what);
   }
   ask_buffer(opened.descriptor(), SO_RCVBUFFORCE, SO_RCVBUF, buffers.receive);
   ask_buffer(opened.descriptor(), SO_SNDBUFFORCE, SO_SNDBUF, buffers.send);
@@ -84,6 +87,13 @@ std::size_t receive_buffer(const Socket& socket) {
   const int failed = getsockopt(socket.descriptor(), SOL_SOCKET, SO_RCVBUF, &bytes, &size);
   SF_CHECK(failed == 0, "getsockopt: " + error_text(errno));
   return static_cast<std::size_t>(bytes);
+}
+
+std::uint64_t kernel_drops(const Socket& socket) {
+  std::array<std::uint32_t, SK_MEMINFO_VARS> memory{};
+  socklen_t size = sizeof memory;
+  if (getsockopt(socket.descriptor(), SOL_SOCKET, SO_MEMINFO, memory.data(), &size) != 0) return 0;
+  return memory[SK_MEMINFO_DROPS];
 }
 
 void allow_open_files(std::size_t count) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "base/error.h"
 #include "netio/endpoint.h"
 
 namespace sf::netio {
@@ -34,9 +35,14 @@ struct SocketBuffers {
   std::size_t send = 0;
 };
 
+/// Another socket is bound there.
+class PortTaken : public base::InputError {
+ public:
+  using base::InputError::InputError;
+};
+
 /// A bound, non-blocking UDP socket. The kernel may grant smaller buffers (net.core.rmem_max): see receive_buffer.
-/// @throws base::InputError when the address is not this machine's, the port is taken, or there are no descriptors
-/// left.
+/// @throws PortTaken, or base::InputError when the address is not this machine's or there are no descriptors left.
 Socket open_udp(const Endpoint& bind, const SocketBuffers& buffers = {});
 
 /// The same socket under a second descriptor.
@@ -51,6 +57,10 @@ Endpoint bound_endpoint(const Socket& socket);
 
 /// [byte] that the kernel granted; it counts about 2.3 kB for a laser datagram of 748 B.
 std::size_t receive_buffer(const Socket& socket);
+
+/// Datagrams that the kernel threw away since the socket is open, mostly because its buffer was full; 0 where it does
+/// not tell.
+std::uint64_t kernel_drops(const Socket& socket);
 
 /// Raises this process' soft limit of open files to at least `count` (never lowers it).
 /// @throws base::InputError when the hard limit is lower.

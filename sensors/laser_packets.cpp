@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kPlainPerMetre = 1e3;
 constexpr double kExtendedPerMetre = 1e4;
-constexpr double kRangeSlack = 1e-3;            ///< [m] one count of the coarser wire
-constexpr std::size_t kMaxPayload = 1400 - 24;  ///< [byte] of an unfragmented datagram, behind the header
+constexpr double kRangeSlack = 1e-3;                 ///< [m] one count of the coarser wire
+constexpr std::size_t kMaxPayload = 1400 - 64 - 80;  ///< [byte] between the header and the room for a signature
 constexpr std::size_t kPartHeaderBytes = 16;
 static_assert(kPartHeaderBytes + 4 * kPartRays <= kMaxPayload);
 

@@ -17,7 +17,7 @@ namespace sf::sensors {
 
 inline constexpr std::uint32_t kPlainRays = 361;           ///< most rays of the plain and of the thesis' form
 inline constexpr double kPlainRange = 65.535;              ///< [m] largest range of these two
-inline constexpr std::uint32_t kPartRays = 340;            ///< rays of every extended part but the last
+inline constexpr std::uint32_t kPartRays = 310;            ///< rays of every extended part but the last
 inline constexpr std::uint32_t kExtendedRays = 1'000'000;  ///< most rays of a scan
 inline constexpr std::uint32_t kNoReturn = 0xFFFFFFFFu;    ///< extended word of an infinite range
 

@@ -20,7 +20,8 @@
 namespace sf::sensors {
 
 inline constexpr std::int32_t kNoNumber = std::numeric_limits<std::int32_t>::min();  ///< on the wire: not a number
-inline constexpr std::uint32_t kMostPlainWords = 343;  ///< numbers in one datagram of 1400 bytes, header and all
+inline constexpr std::uint32_t kMostPlainWords =
+    313;  ///< numbers in one datagram of 1400 bytes, header and signature and all
 
 /// One number of a row on the wire.
 struct PlainNumber {

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <thread>
 
-#include "netio/outbox.h"
 #include "netio/packets.h"
+#include "netio/radio.h"
 #include "netio/socket.h"
 #include "record/recording.h"
 #include "sensors/kind.h"
@@ -193,7 +193,8 @@ TEST_F(Kinds, EveryPacketArrivesOnEitherWire) {
 }
 
 TEST_F(Kinds, KindsThatShareAPortAreToldApart) {
-  const Outcome outcome = run("serve", world, {"--port", "0", "--magnetometer-port", "10008"});
+  const Outcome outcome =
+      run("serve", world, {"--port", "0", "--magnetometer-port", "10008", "--ports-per-robot", "8"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(count_lines(outcome.err), 1u) << outcome.err;
   for (const std::string said : {"laser 0", "magnetometer 0", "share port 10008", "--magnetometer-port"})
@@ -213,21 +214,22 @@ TEST_F(Kinds, ARobotGetsTheKindsItAsksFor) {
   const std::uint16_t id = 1;  // the first robot of the file
   const netio::Socket lasers = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + 8)});
   const netio::Socket arrays = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + 48)});
-  netio::Outbox mouth;
+  netio::Radio radio({.farm = {netio::kLoopback, service}, .robot = id, .others = {}});
   netio::ReceiveBatch batch(16);
   std::size_t heard = 0;
   for (std::uint32_t sequence = 0; sequence < 3000 && heard < 3; ++sequence) {
     base::Bytes request;
     netio::encode({.robot = id, .sequence = sequence}, netio::Subscribe{1u << kMagnetometer}, request);
-    mouth.queue({netio::kLoopback, service}, request);
-    mouth.flush();
+    radio.send(request);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    netio::Packet said_back;
+    radio.receive([&](std::span<const std::uint8_t> bytes) { radio.accept(bytes, 0, said_back); });
     const std::size_t count = batch.fill(arrays);
     for (std::size_t i = 0; i < count; ++i) {
       netio::Packet packet;
       ASSERT_EQ(netio::decode(batch.bytes(i), packet), netio::Reason::accepted);
       EXPECT_EQ(netio::kind_of(packet.header.type), kMagnetometer);
-      EXPECT_EQ(batch.bytes(i).size(), 24u + 4u + 2u * 16u);
+      EXPECT_EQ(batch.bytes(i).size(), 64u + 4u + 2u * 16u);
     }
     heard += count;
   }

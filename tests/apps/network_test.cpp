@@ -2,124 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
-#include <functional>
-#include <map>
-#include <thread>
 
 #include "netio/outbox.h"
 #include "netio/packets.h"
-#include "netio/socket.h"
-#include "sensors/laser_packets.h"
-#include "tests/apps/json.h"
-#include "tests/apps/program.h"
+#include "tests/apps/elsewhere.h"
 
 namespace sf {
 
 namespace {
-
-// Two robots in a room; what they read is worked out by `sense`.
-const char* const kRoom = R"(
-model( name "room" size [6 4 1] boundary 1 noblocks 0 color "gray" )
-define bot position( size [0.3 0.3 0.1] laser( samples 91 fov 180 range_max 8 pose [0.1 0 -0.06 0] size [0 0 0.04] ) )
-bot( name "roomba1" pose [-2 0 0 0] )
-bot( name "roomba2" pose [2 1 0 0] )
-)";
-
-/// A robot elsewhere: one socket that it speaks from, one that it hears its sensor on.
-class Robot {
- public:
-  Robot(std::uint16_t id, unsigned service, unsigned hears)
-      : id_(id),
-        service_{netio::kLoopback, static_cast<std::uint16_t>(service)},
-        ears_(netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(hears)})),
-        batch_(16) {}
-
-  base::Bytes state(const base::Pose& X_WR) {
-    netio::Header header;
-    header.robot = id_;
-    header.sequence = sequence_++;
-    netio::V2v state;
-    state.X_WR = X_WR;
-    base::Bytes bytes;
-    netio::encode(header, state, bytes);
-    return bytes;
-  }
-  void say(const base::Pose& X_WR) { send(state(X_WR)); }
-  void send(const base::Bytes& bytes) {
-    mouth_.queue(service_, bytes);
-    mouth_.flush();
-  }
-
-  void leave() {
-    base::Bytes bytes;
-    netio::encode({.robot = id_}, netio::Leave{}, bytes);
-    send(bytes);
-  }
-
-  /// Ranges of the newest scan that waits; empty when none does.
-  std::vector<double> hear() {
-    std::vector<double> ranges;
-    while (const std::size_t count = batch_.fill(ears_)) {
-      for (std::size_t i = 0; i < count; ++i) {
-        netio::Packet packet;
-        EXPECT_EQ(netio::decode(batch_.bytes(i), packet), netio::Reason::accepted);
-        EXPECT_EQ(packet.header.robot, id_);
-        EXPECT_EQ(packet.header.sensor, 0u);
-        sensors::LaserPart scan;
-        EXPECT_EQ(sensors::read_laser(std::get<netio::Reading>(packet.body).payload, false, scan),
-                  sensors::Fault::none);
-        ranges.clear();
-        for (std::uint32_t k = 0; k < scan.count; ++k) ranges.push_back(sensors::range_of(scan, k));
-      }
-    }
-    return ranges;
-  }
-
- private:
-  std::uint16_t id_;
-  netio::Endpoint service_;
-  netio::Socket ears_;
-  netio::Outbox mouth_;
-  netio::ReceiveBatch batch_;
-  std::uint32_t sequence_ = 0;
-};
-
-/// Polls for up to a minute.
-bool until(const std::function<bool()>& done) {
-  for (int i = 0; i < 3000; ++i) {
-    if (done()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  return false;
-}
-
-struct Service {
-  Folder folder;
-  std::string world = folder.write("room.world", kRoom);
-  unsigned lasers = free_ports(24);
-  Program program{{"serve", world, "--port", "0", "--rate", "50", "--json", "--laser-port", std::to_string(lasers)}};
-  unsigned port = 0;
-
-  Service() {
-    if (!program.says("; Ctrl-C ends it")) return;
-    const std::string said = program.err();
-    port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
-  }
-  unsigned hears(unsigned robot) const { return lasers + 8 * robot; }
-};
-
-std::vector<double> sensed(const std::string& world, const std::string& robot, const std::string& pose) {
-  const Json scan(run_program({"sense", world, "--robot", robot, "--pose", pose, "--json"}).out);
-  std::vector<double> ranges;
-  for (std::size_t i = 0; i < scan.size("/beams"); ++i)
-    ranges.push_back(scan.number("/beams/" + std::to_string(i) + "/range_m"));
-  return ranges;
-}
 
 void run_to_listener(const std::string& wire) {
   const std::string base = std::to_string(free_ports(40));
@@ -141,6 +33,7 @@ void run_to_listener(const std::string& wire) {
   EXPECT_EQ(out.number("/packets/failed"), 0);
   EXPECT_EQ(in.number("/packets"), 4 * 30);
   EXPECT_EQ(in.number("/good"), 4 * 30);
+  EXPECT_EQ(out.number("/readings"), 4 * 30);
   EXPECT_EQ(in.number("/rays"), out.number("/rays"));
   EXPECT_EQ(in.number("/lost"), 0);
 }
@@ -168,6 +61,40 @@ TEST(SendAndListen, ReadingsBetweenTicksAreNoLoss) {
   EXPECT_GE(in.number("/good"), 30 + 15);
   EXPECT_EQ(in.number("/good"), Json(sent.out).number("/packets/sent"));
   EXPECT_EQ(in.number("/lost"), 0);
+}
+
+/// Each counted under its own name: 2 came twice, 3 late, 4 to 6 never; then another farm.
+TEST(SendAndListen, WhatTheNetworkDidIsTold) {
+  const Folder folder;
+  const std::string world = folder.write("w.world", "position( name \"roomba1\" laser( samples 2 range_max 8 ) )\n");
+  const unsigned base = free_ports(16);
+  Program listener({"listen", world, "--json", "--laser-port", std::to_string(base), "--silence", "100"});
+  ASSERT_TRUE(listener.says("listening on 1 port")) << listener.err();
+  netio::Outbox farm, other;
+  const std::uint8_t scan[] = {2, 0, 0xe8, 3, 0xe8, 3};
+  base::Bytes packet;
+  const auto send = [&](netio::Outbox& from, std::uint32_t session, std::uint32_t sequence) {
+    netio::frame({.robot = 1, .sequence = sequence, .session = session}, 1, scan, packet);
+    from.queue({netio::kLoopback, static_cast<std::uint16_t>(base + 8)}, packet);
+    from.flush();
+  };
+  for (const std::uint32_t sequence : {0u, 1u, 2u, 2u, 7u, 3u}) send(farm, 5, sequence);
+  send(other, 6, 100);
+  send(farm, 6, 100);
+  send(farm, 5, 1'000'000);  // nobody believes this alone
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  listener.signal(SIGINT);
+  const Outcome outcome = listener.wait();
+  const Json in(outcome.out);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(in.number("/packets"), 9);
+  EXPECT_EQ(in.number("/good"), 6);
+  EXPECT_EQ(in.number("/lost"), 3);
+  EXPECT_EQ(in.number("/duplicates"), 1);
+  EXPECT_EQ(in.number("/reordered"), 1);
+  EXPECT_EQ(in.number("/kernel_drops"), 0);
+  EXPECT_EQ(in.number("/by_reason/wrong source"), 2);
+  EXPECT_EQ(in.number("/by_reason/out of range"), 1);
 }
 
 TEST(SendAndListen, AListenerEndsThoughNothingComes) {
@@ -204,7 +131,7 @@ TEST(SendAndListen, PortsThatCollideAreRefusedAtLoad) {
 }
 
 TEST(SendAndListen, PortsPastTheLastAreRefusedAtLoad) {
-  const Outcome outcome = run_program({"serve", our_world("rooms.world"), "--port", "0", "--laser-port", "65530"});
+  const Outcome outcome = run_program({"serve", our_world("rooms.world"), "--port", "0", "--laser-port", "65535"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("65535"), std::string::npos) << outcome.err;
 }
@@ -280,9 +207,12 @@ TEST(Serve, StrangersAreCountedAndDropped) {
     one.say({-1.0, 0.5, 0.0, 0.0});
     return !one.hear().empty();
   }));
+  ASSERT_TRUE(prove(impostor));
   impostor.say({2.0, 0.0, 0.0, 0.0});
   nobody.say({0.0, 0.0, 0.0, 0.0});
-  nobody.send({1, 2, 3});
+  netio::Outbox mouth;
+  mouth.queue({netio::kLoopback, static_cast<std::uint16_t>(service.port)}, base::Bytes{1, 2, 3});
+  mouth.flush();
   base::Bytes no_number = one.state({});
   const double nan = std::nan("");
   std::memcpy(no_number.data() + netio::kHeaderBytes, &nan, sizeof nan);
@@ -313,17 +243,81 @@ TEST(Serve, StrangersAreNamedOncePerBindingAndALeaveEndsIt) {
     one.say({-1.0, 0.5, 0.0, 0.0});
     return !one.hear().empty();
   }));
+  ASSERT_TRUE(prove(again));
   for (int i = 0; i < 5; ++i) again.say({2.0, 0.0, 0.0, 0.0});
   ASSERT_TRUE(service.program.says("says as the same is dropped"));
   one.leave();
   // It speaks for the id from here on, though not two seconds have passed.
   for (int i = 0; i < 5; ++i) again.say({2.0, 0.0, 0.0, 0.0});
-  ASSERT_TRUE(until([&] { return !one.hear().empty(); }));
+  ASSERT_TRUE(until([&] { return one.overhears(again); }));
   service.program.signal(SIGINT);
   const Outcome outcome = service.program.wait();
   EXPECT_EQ(count_lines(outcome.err), 2u) << outcome.err;  // where it serves, and the stranger
   EXPECT_NE(outcome.err.find("roomba1 (id 1) is heard from 127.0.0.1:"), std::string::npos) << outcome.err;
   EXPECT_EQ(Json(outcome.out).number("/received/wrong source"), 5);
+}
+
+TEST(Serve, AddressesBeyondThisMachineAreWarnedOf) {
+  const Folder folder;
+  const std::string world = folder.write("room.world", kRoom);
+  const std::string base = std::to_string(free_ports(24));
+  const Words listen{"listen", world, "--duration", "0.1", "--laser-port", base};
+  Words wide = listen;
+  wide.insert(wide.end(), {"--bind", "0.0.0.0"});
+  const Outcome warned = run_program(wide);
+  EXPECT_NE(warned.err.find("warning: --bind 0.0.0.0 opens it to "), std::string::npos) << warned.err;
+  EXPECT_NE(warned.err.find("--bind 127.0.0.1 keeps it to this machine"), std::string::npos) << warned.err;
+  EXPECT_EQ(run_program(listen).err.find("warning"), std::string::npos);
+  const Outcome served = run_program({"serve", world, "--port", "0", "--duration", "0.1", "--bind", "0.0.0.0"});
+  EXPECT_NE(served.err.find("anyone there can say where robots are"), std::string::npos) << served.err;
+}
+
+/// The default stride is 8 where that fits, and says so where it is another.
+TEST(SendAndListen, ThePortsOfARobotAreAsManyAsFit) {
+  const Folder folder;
+  std::string robots;
+  for (const std::string name : {"roomba1", "roomba2"}) {
+    robots += "position( name \"" + name + "\" pose [" + (name == "roomba1" ? "0" : "2") + " 0 0 0]";
+    for (int i = 0; i < 17; ++i) robots += " laser( samples 2 )";
+    robots += " )\n";
+  }
+  const std::string world = folder.write("w.world", robots);
+  const unsigned base = free_ports(60);
+  Program listener({"listen", world, "--json", "--laser-port", std::to_string(base), "--silence", "100"});
+  ASSERT_TRUE(listener.says("listening on 34 ports")) << listener.err();
+  EXPECT_NE(listener.err().find("17 ports per robot"), std::string::npos) << listener.err();
+  const Outcome sent = run_program(
+      {"run", world, "--duration", "0.3", "--send", "127.0.0.1", "--laser-port", std::to_string(base), "--json"});
+  EXPECT_EQ(sent.code, 0) << sent.err;
+  listener.signal(SIGINT);
+  const Json in(listener.wait().out);
+  EXPECT_EQ(in.number("/good"), 34 * 3);
+  EXPECT_EQ(in.number("/silent_ports"), 0);
+  const Outcome asked = run_program({"serve", world, "--port", "0", "--ports-per-robot", "8"});
+  EXPECT_EQ(asked.code, 2) << "the user's word is the user's";
+  EXPECT_NE(asked.err.find("raise the stride to at least 17"), std::string::npos) << asked.err;
+}
+
+TEST(SendAndListen, TheThesisLeavesOutWhatItHasNoLayoutFor) {
+  const Folder folder;
+  const std::string world =
+      folder.write("w.world",
+                   "position( name \"roomba1\" laser( samples 2 ) infrared( scount 1 spose[0] [0 0 0] ) )\n"
+                   "position( name \"roomba2\" pose [2 0 0 0] laser( samples 2 ) laser( samples 400 ) )\n");
+  const std::string base = std::to_string(free_ports(40));
+  Program listener({"listen", world, "--json", "--laser-port", base, "--silence", "100", "--wire", "thesis"});
+  ASSERT_TRUE(listener.says("listening on 2 ports")) << listener.err();
+  const Outcome sent = run_program(
+      {"run", world, "--duration", "0.3", "--send", "127.0.0.1", "--laser-port", base, "--wire", "thesis", "--json"});
+  EXPECT_EQ(sent.code, 0) << sent.err;
+  EXPECT_NE(sent.err.find("left out: roomba1.infrared"), std::string::npos) << sent.err;
+  EXPECT_NE(sent.err.find("left out: roomba2.laser:1: 400 samples"), std::string::npos) << sent.err;
+  EXPECT_EQ(count_lines(sent.err), 2u) << sent.err;
+  listener.signal(SIGINT);
+  const Json in(listener.wait().out);
+  EXPECT_EQ(in.number("/good"), 2 * 3);
+  EXPECT_EQ(in.number("/packets"), 2 * 3);
+  EXPECT_EQ(Json(sent.out).number("/packets/sent"), 2 * 3);
 }
 
 TEST(Serve, APortThatIsTakenIsNamed) {
@@ -332,6 +326,7 @@ TEST(Serve, APortThatIsTakenIsNamed) {
   const Outcome outcome = run_program({"serve", our_world("rooms.world"), "--port", std::to_string(port)});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find(std::to_string(port)), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("--port 0"), std::string::npos) << "says the way out: " << outcome.err;
 }
 
 }  // namespace sf

@@ -47,9 +47,9 @@ TEST(MapPackets, EveryByteOfAPart) {
 
 TEST(MapPackets, PartsFillADatagram) {
   const auto parts = parts_of(numbered(0));
-  ASSERT_EQ(parts.size(), 3u) << "900 words of 335";
-  EXPECT_EQ(parts[0].size(), 1376u) << "1400 with the header";
-  EXPECT_EQ(parts[2].size(), 36u + 4 * 230);
+  ASSERT_EQ(parts.size(), 3u) << "900 words of 305";
+  EXPECT_EQ(parts[0].size(), 1256u) << "1400 with the header and a signature";
+  EXPECT_EQ(parts[2].size(), 36u + 4 * 290);
   EXPECT_EQ(plain_parts(numbered(0))[0].size(), 1802u) << "two of about 1.8 kB";
   EXPECT_EQ(plain_parts(numbered(0))[1].size(), 1800u);
 }
@@ -140,6 +140,19 @@ TEST(Assembler, CountersWrap) {
   Taken last = Taken::faulty;
   for (const base::Bytes& part : parts_of(numbered(2))) last = assembler.take(0, part);
   EXPECT_EQ(last, Taken::whole);
+}
+
+/// Of two that are half way round apart neither is newer.
+TEST(Assembler, HalfWayRoundIsNotNewer) {
+  const auto after = [](std::uint32_t first, std::uint32_t next) {
+    Assembler assembler;
+    for (const base::Bytes& part : parts_of(numbered(1))) assembler.take(first, part);
+    return assembler.take(next, parts_of(numbered(2))[0]);
+  };
+  EXPECT_EQ(after(5, 5 + 0x7FFFFFFFu), Taken::part);  // the farthest that is ahead
+  EXPECT_EQ(after(5, 5 + 0x80000000u), Taken::late);
+  EXPECT_EQ(after(5 + 0x80000000u, 5), Taken::late);
+  EXPECT_EQ(after(5, 4), Taken::late);
 }
 
 TEST(Assembler, AMapThatChangesItsPlanBeginsAnew) {

@@ -43,12 +43,19 @@ TEST(Allocation, NoneOnTheWayInOrOut) {
   Outbox answers(inbox.socket());
   Outbox outbox;
   const Endpoint to{kLoopback, inbox.port()};
-  const base::Bytes payload(1376, 5);
+  const base::Bytes payload(kMaxPayload, 5);
   base::Bytes framed;
   framed.reserve(kMaxDatagram);
   std::vector<base::Bytes> packets = examples();
+  const std::uint32_t token = inbox.token({kLoopback, outbox.endpoint().port});
+  for (base::Bytes& packet : packets) stamp(packet, {1, token});
+  packets.pop_back();                        // the farm's own
   const base::Bytes leave = packets.back();  // after it nobody is sent anything
   packets.pop_back();
+  base::Bytes answer;
+  answer.reserve(kMaxDatagram);
+  Packet unproven;
+  decode(v2v_example(), unproven);
 
   const std::uint64_t before = allocations;
   std::size_t taken = 0;
@@ -59,6 +66,7 @@ TEST(Allocation, NoneOnTheWayInOrOut) {
     outbox.flush();
     taken += inbox.receive(round, [&](const Packet& packet) { relay.take(packet); });
     relay.pass_on(inbox, round, answers);
+    inbox.challenge(unproven, to, round, answer);
     answers.flush();
   }
   outbox.queue(to, leave);

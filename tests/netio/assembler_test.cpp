@@ -149,6 +149,45 @@ TEST(Assembler, AfterSilenceNewerOnesAreNoRestart) {
   EXPECT_EQ(p.assembler.lost(), 1u);
 }
 
+/// One datagram that somebody made up must not turn those that follow into late ones.
+TEST(Assembler, LeapsAreLeftOut) {
+  constexpr std::int64_t kTick = kSecond / 10;
+  Plain p;
+  std::uint64_t whole = 0;
+  for (std::uint32_t i = 0; i < 72; ++i) {
+    whole += p.say(1000 + i, i * kTick) == Taken::whole;
+    EXPECT_EQ(p.say(100'000 + i, i * kTick + 1), Taken::leap);
+    EXPECT_EQ(p.say(0x80000000u, i * kTick + 2), Taken::leap);
+  }
+  EXPECT_EQ(whole, 72u);
+  EXPECT_EQ(p.assembler.lost(), 0u);
+}
+
+TEST(Assembler, ALeapBeginsBehindTheLimits) {
+  const auto after = [](std::uint32_t ahead, std::int64_t time, std::int64_t now) {
+    Assembler assembler(1);
+    assembler.take({5, 0, 1, kSecond}, 0, [](std::span<double>) {});
+    return assembler.take({5 + ahead, 0, 1, kSecond + time}, now, [](std::span<double>) {});
+  };
+  EXPECT_EQ(after(Assembler::kMostAhead, 0, 0), Taken::whole);
+  EXPECT_EQ(after(Assembler::kMostAhead + 1, 0, 0), Taken::leap);
+  EXPECT_EQ(after(1, Assembler::kLeap, 0), Taken::whole);
+  EXPECT_EQ(after(1, Assembler::kLeap + 1, 0), Taken::leap);
+  EXPECT_EQ(after(1, Assembler::kLeap + 1, 1), Taken::whole);  // so much later did it come
+  EXPECT_EQ(after(1, -1, 0), Taken::leap);                     // newer, and measured before
+  EXPECT_EQ(after(Assembler::kMostAhead + 1, 0, 2 * kSecond - 1), Taken::leap);
+  EXPECT_EQ(after(Assembler::kMostAhead + 1, 0, 2 * kSecond), Taken::whole);  // after silence all is believed
+}
+
+TEST(Assembler, AnotherSenderBeginsAtOnce) {
+  Plain p;
+  p.say(5000, 0);
+  p.assembler.restart();
+  EXPECT_FALSE(p.assembler.newest());
+  EXPECT_EQ(p.say(0, 1), Taken::whole);
+  EXPECT_EQ(p.assembler.restarts(), 1u);
+}
+
 // Any order, any repetition, any loss: what is newest is always whole, right, and never older than before.
 TEST(Assembler, AnyArrivalOrderKeepsThePromise) {
   std::mt19937 random(7);  // NOLINT: the same every time

@@ -13,13 +13,14 @@ namespace sf::netio {
 inline base::Bytes reading_example() {
   const std::uint8_t payload[] = {0x03, 0x00, 0xe8, 0x03, 0xfa, 0x00, 0x40, 0x1f};
   base::Bytes out;
-  frame({.robot = 7, .sequence = 258, .time = 1'500'000'000}, 1, payload, out);
+  frame({.robot = 7, .sequence = 258, .time = 1'500'000'000, .session = 0x11223344, .token = 0x55667788}, 1, payload,
+        out);
   return out;
 }
 
 /// The same kind's second form.
 inline base::Bytes extended_example() {
-  const std::uint8_t payload[] = {0x56, 0x01, 0x00, 0x00, 0x54, 0x01, 0x00, 0x00, 0x01, 0x00, 0x02, 0x00,
+  const std::uint8_t payload[] = {0x38, 0x01, 0x00, 0x00, 0x36, 0x01, 0x00, 0x00, 0x01, 0x00, 0x02, 0x00,
                                   0x02, 0x00, 0x00, 0x00, 0xe7, 0x7f, 0x0c, 0x00, 0xff, 0xff, 0xff, 0xff};
   base::Bytes out;
   frame({.robot = 7, .sensor = 1, .sequence = 4, .time = 2'000'000'000}, 65, payload, out);
@@ -43,7 +44,7 @@ inline base::Bytes tag_example() {
 
 inline base::Bytes subscribe_example() {
   base::Bytes out;
-  encode({.robot = 7}, Subscribe{1u << 1}, out);
+  encode({.robot = 7, .session = 0x55667788, .token = 0x0BADF00D}, Subscribe{1u << 1}, out);
   return out;
 }
 
@@ -59,6 +60,12 @@ inline base::Bytes leave_example() {
   return out;
 }
 
+inline base::Bytes challenge_example() {
+  base::Bytes out;
+  encode({.robot = 7, .session = 0x11223344, .token = 0x55667788}, Challenge{0x0BADF00D}, out);
+  return out;
+}
+
 /// States and requests that are sent to the farm.
 inline std::vector<base::Bytes> states() {
   return {v2v_example(), tag_example(), subscribe_example(), start_example(), leave_example()};
@@ -66,8 +73,8 @@ inline std::vector<base::Bytes> states() {
 
 /// The farm's own packets, in order of type number.
 inline std::vector<base::Bytes> examples() {
-  return {reading_example(),   extended_example(), v2v_example(),  tag_example(),
-          subscribe_example(), start_example(),    leave_example()};
+  return {reading_example(),   extended_example(), v2v_example(),   tag_example(),
+          subscribe_example(), start_example(),    leave_example(), challenge_example()};
 }
 
 /// Overwrites the value at `offset`.

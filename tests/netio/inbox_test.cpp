@@ -16,6 +16,7 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr Endpoint kAlice{kLoopback, 5001};
 constexpr Endpoint kBob{kLoopback, 5002};
 constexpr std::uint32_t kLaser = 1;
+constexpr std::uint32_t kSession = 77;  ///< of all robots here
 
 InboxOptions options() { return {.bind = {kLoopback, 0}, .robots = {7, 3}, .tags = {12}}; }
 
@@ -34,7 +35,9 @@ base::Bytes subscribe(std::uint32_t sequence, std::uint32_t kinds) {
 struct InboxTest : testing::Test {
   Inbox inbox{options()};
   Packet packet;
-  Reason say(const base::Bytes& bytes, std::int64_t now = 0, const Endpoint& who = kAlice) {
+  /// Says it with the token of where it comes from.
+  Reason say(base::Bytes bytes, std::int64_t now = 0, const Endpoint& who = kAlice) {
+    if (bytes.size() >= kHeaderBytes) stamp(bytes, {kSession, inbox.token(who)});
     return inbox.accept(bytes, who, now, packet);
   }
 };
@@ -44,14 +47,15 @@ TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
   long_packet.push_back(0);
   EXPECT_EQ(say({}), Reason::too_short);
   EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 0, 'X')), Reason::bad_magic);
-  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 4, 2)), Reason::unknown_version);
+  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 4, 1)), Reason::unknown_version);
   EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 5, 0)), Reason::unknown_type);
   EXPECT_EQ(say(long_packet), Reason::too_long);
-  EXPECT_EQ(say(patched(v2v_example(), 24, std::numeric_limits<double>::quiet_NaN())), Reason::not_finite);
-  EXPECT_EQ(say(patched(v2v_example(), 24, 2e7)), Reason::out_of_range);
+  EXPECT_EQ(say(patched(v2v_example(), 64, std::numeric_limits<double>::quiet_NaN())), Reason::not_finite);
+  EXPECT_EQ(say(patched(v2v_example(), 64, 2e7)), Reason::out_of_range);
   EXPECT_EQ(say(reading_example()), Reason::wrong_direction);
   EXPECT_EQ(say(v2v(8, 0)), Reason::unknown_robot);
   EXPECT_EQ(say(patched<std::uint16_t>(tag_example(), 6, 7)), Reason::unknown_tag);  // a robot's id is no tag's
+  EXPECT_EQ(inbox.accept(v2v_example(), kAlice, 0, packet), Reason::unproven);
   EXPECT_EQ(say(v2v_example()), Reason::accepted);
   EXPECT_EQ(say(v2v(7, 10), 0, kBob), Reason::wrong_source);
   EXPECT_EQ(say(v2v_example()), Reason::stale);
@@ -60,7 +64,7 @@ TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
 }
 
 TEST_F(InboxTest, DroppedPacketsAreNotHeard) {
-  say(patched(v2v_example(), 24, 2e7));
+  say(patched(v2v_example(), 64, 2e7));
   say(reading_example());
   EXPECT_FALSE(inbox.heard(7, 0));
   EXPECT_FALSE(inbox.address(7));
@@ -100,11 +104,65 @@ TEST_F(InboxTest, StrangersPacketsSayWhoseIdTheyUse) {
   EXPECT_EQ(packet.header.sequence, 1u);
 }
 
+TEST_F(InboxTest, AnAddressIsHeardOnceItSendsItsTokenBack) {
+  base::Bytes answer;
+  base::Bytes request = subscribe(0, 1u << kLaser);
+  stamp(request, {kSession, 0});
+  EXPECT_EQ(inbox.accept(request, kAlice, 0, packet), Reason::unproven);
+  EXPECT_FALSE(inbox.heard(7, 0) || inbox.address(7));  // nothing is sent there
+  ASSERT_TRUE(inbox.challenge(packet, kAlice, 0, answer));
+  EXPECT_LE(answer.size(), request.size());  // no more than what was sent in its name
+  Packet challenge;
+  ASSERT_EQ(decode(answer, challenge), Reason::accepted);
+  EXPECT_EQ(challenge.header.robot, 7);
+  EXPECT_EQ(challenge.header.token, kSession);  // so that the robot knows that it is meant
+  const std::uint32_t token = std::get<Challenge>(challenge.body).token;
+  stamp(request, {kSession, token});
+  EXPECT_EQ(inbox.accept(request, kBob, 0, packet), Reason::unproven);  // it is nobody else's
+  EXPECT_EQ(inbox.accept(request, {kLoopback + 1, kAlice.port}, 0, packet), Reason::unproven);
+  EXPECT_EQ(inbox.accept(request, kAlice, 0, packet), Reason::accepted);
+  EXPECT_EQ(inbox.stamp_for(7).token, kSession);
+  EXPECT_EQ(inbox.stamp_for(7).session, challenge.header.session);
+  EXPECT_EQ(Inbox(options()).accept(request, kAlice, 0, packet), Reason::unproven);  // a farm that was started again
+}
+
+/// In the name of a victim nobody is bound, nobody is kept from its id, and nobody leaves.
+TEST_F(InboxTest, ForgedAddressesDoNothing) {
+  base::Bytes forged = v2v(7, 5);
+  EXPECT_EQ(inbox.accept(forged, kBob, 0, packet), Reason::unproven);
+  EXPECT_EQ(say(v2v(7, 0)), Reason::accepted);
+  EXPECT_EQ(inbox.accept(forged, kAlice, 1, packet), Reason::unproven);  // where Alice is: no token, no state
+  base::Bytes leave = leave_example();
+  stamp(leave, {kSession, inbox.token(kBob)});
+  EXPECT_EQ(inbox.accept(leave, kAlice, 1, packet), Reason::unproven);
+  base::Bytes none;
+  EXPECT_FALSE(inbox.challenge(packet, kAlice, 1, none));  // a LEAVE asks for nothing
+  EXPECT_TRUE(inbox.heard(7, 1));
+  // After its LEAVE, and after two seconds, whoever takes over proves itself too.
+  say(leave_example(), 2);
+  EXPECT_EQ(inbox.accept(v2v(7, 9), kBob, 3, packet), Reason::unproven);
+  EXPECT_EQ(inbox.accept(v2v(7, 9), kBob, 5 * kSecond, packet), Reason::unproven);
+  EXPECT_FALSE(inbox.address(7));
+  EXPECT_EQ(say(v2v(7, 9), 5 * kSecond, kBob), Reason::accepted);
+}
+
+TEST_F(InboxTest, OnlySoManyChallengesInATenthOfASecond) {
+  base::Bytes out;
+  inbox.accept(v2v(7, 0), kBob, 0, packet);
+  std::size_t answered = 0;
+  for (int i = 0; i < 3000; ++i) answered += inbox.challenge(packet, kBob, kSecond, out);
+  EXPECT_EQ(answered, Inbox::kMostChallenges);
+  EXPECT_FALSE(inbox.challenge(packet, kBob, kSecond + kSecond / 10 - 1, out));
+  EXPECT_TRUE(inbox.challenge(packet, kBob, kSecond + kSecond / 10, out));
+}
+
 TEST_F(InboxTest, TagsMakeNoRobotHeard) {
   Inbox both({.bind = {kLoopback, 0}, .robots = {12}, .tags = {12}});
   EXPECT_EQ(both.accept(tag_example(), kAlice, 0, packet), Reason::accepted);
   EXPECT_FALSE(both.heard(12, 0));
-  EXPECT_EQ(both.accept(v2v(12, 0), kBob, 0, packet), Reason::accepted);  // tags bind apart from robots
+  base::Bytes state = v2v(12, 0);
+  stamp(state, {0, both.token(kBob)});
+  EXPECT_EQ(both.accept(state, kBob, 0, packet), Reason::accepted);  // tags bind apart from robots
 }
 
 TEST_F(InboxTest, ARobotWantsAllKindsUntilItChooses) {
@@ -175,6 +233,7 @@ TEST_F(InboxTest, AMillionRandomAndMutatedDatagrams) {
       if (random() % 8 == 0) bytes.resize(random() % 200);
     }
     const Endpoint source{kLoopback, static_cast<std::uint16_t>(random() % 3)};
+    if (random() % 8 != 0 && bytes.size() >= kHeaderBytes) stamp(bytes, {kSession, inbox.token(source)});
     const std::int64_t now = std::int64_t{i} * (kSecond / 100);
     if (inbox.accept(bytes, source, now, packet) != Reason::accepted) continue;
     ++accepted;
@@ -206,7 +265,8 @@ struct LoopbackTest : testing::Test {
 };
 
 TEST_F(LoopbackTest, StatesArriveWithTheirSender) {
-  outbox.queue(to, v2v_example());
+  const Endpoint from{kLoopback, outbox.endpoint().port};
+  outbox.queue(to, v2v_example(), {0, inbox.token(from)});
   outbox.queue(to, tag_example());
   outbox.queue(to, base::Bytes{});
   outbox.flush();

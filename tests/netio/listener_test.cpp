@@ -1,20 +1,26 @@
 #include "netio/listener.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <memory>
 #include <thread>
 
 #include "base/error.h"
 #include "netio/endpoint.h"
 #include "netio/outbox.h"
+#include "netio/posix.h"
 #include "tests/netio/examples.h"
 
 namespace sf::netio {
 namespace {
 
 constexpr int kPatience = 5000;  ///< [ms] longest wait for what loopback has already been given
+
+constexpr Endpoint kFarm{kLoopback, 9000};
 
 /// One sensor on each of `robots`, at two ports a robot.
 std::vector<StreamPlan> plans(std::uint32_t robots) {
@@ -81,10 +87,10 @@ TEST(Listener, AThousandPacketsArrive) {
   }
   const Summary sum = listener->summary();
   EXPECT_EQ(outbox.counts().sent, 1000u);
-  EXPECT_EQ(outbox.counts().sent_bytes, 748'000u);
+  EXPECT_EQ(outbox.counts().sent_bytes, 788'000u);
   EXPECT_EQ(sum.datagrams, 1000u);
   EXPECT_EQ(sum.good, 1000u);
-  EXPECT_EQ(sum.bytes, 748'000u);
+  EXPECT_EQ(sum.bytes, 788'000u);
   EXPECT_EQ(sum.of.at("sensor").elements, 200'000u);
   EXPECT_EQ(sum.lost + sum.duplicates + sum.reordered + sum.silent_ports, 0u);
   EXPECT_EQ(sum.ports, 100u);
@@ -152,10 +158,10 @@ TEST(Listener, KindsAreCountedApart) {
   streams[0].kind = streams[2].kind = "laser";
   streams[1].kind = "magnetometer";
   const auto listener = listen(streams);
-  EXPECT_EQ(listener->accept(0, reading(0, 0, 0, {10, 0, 1})), Reason::accepted);
-  EXPECT_EQ(listener->accept(1, reading(1, 0, 0, {4, 0, 1})), Reason::accepted);
-  EXPECT_EQ(listener->accept(2, reading(2, 0, 0, {20, 0, 1})), Reason::accepted);
-  EXPECT_EQ(listener->accept(2, reading(2, 0, 1, {255, 0, 1})), Reason::out_of_range);
+  EXPECT_EQ(listener->accept(0, reading(0, 0, 0, {10, 0, 1}), kFarm, 0), Reason::accepted);
+  EXPECT_EQ(listener->accept(1, reading(1, 0, 0, {4, 0, 1}), kFarm, 0), Reason::accepted);
+  EXPECT_EQ(listener->accept(2, reading(2, 0, 0, {20, 0, 1}), kFarm, 0), Reason::accepted);
+  EXPECT_EQ(listener->accept(2, reading(2, 0, 1, {255, 0, 1}), kFarm, 0), Reason::out_of_range);
   const Summary sum = listener->summary();
   ASSERT_EQ(sum.of.size(), 2u);
   EXPECT_EQ(sum.of.at("laser").good, 2u);
@@ -173,7 +179,7 @@ TEST(Listener, TheJudgeIsToldTheStreamAndTheHeader) {
     told = header;
     return Verdict{Reason::out_of_range};
   });
-  EXPECT_EQ(listener->accept(1, reading(1, 0, 6, {1})), Reason::out_of_range);
+  EXPECT_EQ(listener->accept(1, reading(1, 0, 6, {1}), kFarm, 0), Reason::out_of_range);
   EXPECT_EQ(asked, 1u);
   EXPECT_EQ(kind_of(told.type), 5);
   EXPECT_EQ(told.robot, 1u);
@@ -184,7 +190,7 @@ struct OnePort : testing::Test {
   std::vector<StreamPlan> streams = plans(2);
   std::unique_ptr<Listener> listener = listen(streams);
   Reason say(std::uint32_t robot, std::uint32_t sensor, std::uint32_t sequence, const base::Bytes& payload) {
-    return listener->accept(1, reading(robot, sensor, sequence, payload));
+    return listener->accept(1, reading(robot, sensor, sequence, payload), kFarm, 0);
   }
 };
 
@@ -194,8 +200,8 @@ TEST_F(OnePort, ChecksWhatItCarries) {
   EXPECT_EQ(say(1, 0, 2, {}), Reason::too_short);              // likewise
   EXPECT_EQ(say(0, 0, 4, {3, 0, 1}), Reason::wrong_source);    // another robot's
   EXPECT_EQ(say(1, 1, 5, {3, 0, 1}), Reason::wrong_source);    // another sensor's
-  EXPECT_EQ(listener->accept(1, v2v_example()), Reason::wrong_direction);
-  EXPECT_EQ(listener->accept(1, base::Bytes{1, 2}), Reason::too_short);
+  EXPECT_EQ(listener->accept(1, v2v_example(), kFarm, 0), Reason::wrong_direction);
+  EXPECT_EQ(listener->accept(1, base::Bytes{1, 2}, kFarm, 0), Reason::too_short);
   const Summary sum = listener->summary();
   EXPECT_EQ(sum.datagrams, 7u);
   EXPECT_EQ(sum.good, 1u);
@@ -210,6 +216,64 @@ TEST_F(OnePort, SeesLossDuplicatesAndReordering) {
   EXPECT_EQ(sum.duplicates, 1u);
   EXPECT_EQ(sum.reordered, 1u);
   EXPECT_EQ(sum.lost, 2u);
+}
+
+/// Two farms on one host, or one and who pretends to be it.
+TEST_F(OnePort, ListensToOneFarmAtATime) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const auto from = [&](std::uint32_t session, const Endpoint& who, std::uint32_t sequence, std::int64_t now) {
+    base::Bytes bytes = reading(1, 0, sequence, {3, 0, 1});
+    stamp(bytes, {session, 0});
+    return listener->accept(1, bytes, who, now);
+  };
+  constexpr Endpoint kElsewhere{kLoopback, 9001};
+  EXPECT_EQ(from(1, kFarm, 0, 0), Reason::accepted);
+  EXPECT_EQ(from(2, kElsewhere, 0, 1), Reason::wrong_source);
+  EXPECT_EQ(from(2, kFarm, 9, 1), Reason::wrong_source);       // another session from where the farm is
+  EXPECT_EQ(from(1, kElsewhere, 9, 1), Reason::wrong_source);  // its session from elsewhere
+  EXPECT_EQ(from(1, kFarm, 2, 1), Reason::accepted);
+  EXPECT_EQ(from(2, kElsewhere, 5, 2 * kSecond), Reason::wrong_source);  // one nanosecond early
+  EXPECT_EQ(from(2, kElsewhere, 1, 1 + 2 * kSecond), Reason::accepted);
+  EXPECT_EQ(from(1, kFarm, 3, 1 + 2 * kSecond), Reason::wrong_source);
+  const Summary sum = listener->summary();
+  EXPECT_EQ(sum.good, 3u);
+  EXPECT_EQ(sum.lost, 2u);  // 1 of the first, 0 of the second
+}
+
+TEST_F(OnePort, AFaultyPacketBindsNobody) {
+  EXPECT_EQ(listener->accept(1, reading(1, 0, 0, {255, 0, 1}), {kLoopback, 9001}, 0), Reason::out_of_range);
+  EXPECT_EQ(say(1, 0, 0, {3, 0, 1}), Reason::accepted);
+}
+
+TEST(Listener, MayTakePacketsOfOneHostAlone) {
+  auto streams = plans(1);
+  streams[0].rule.base = port_of(streams[0]).port;
+  std::unique_ptr<Listener> listener;
+  for (std::uint32_t base = 12'000; listener == nullptr && base < 32'000; base += 200) {
+    streams[0].rule.base = base;
+    try {
+      listener =
+          std::make_unique<Listener>(ListenerOptions{.farm = resolve("192.0.2.1"), .streams = streams, .judge = judge});
+    } catch (const base::InputError&) {
+      continue;  // taken
+    }
+  }
+  const base::Bytes bytes = reading(0, 0, 0, {3, 0, 1});
+  EXPECT_EQ(listener->accept(0, bytes, kFarm, 0), Reason::wrong_source);
+  EXPECT_EQ(listener->accept(0, bytes, {resolve("192.0.2.1"), 1}, 0), Reason::accepted);
+}
+
+/// RFC 3550, appendix A.1: the second in a row makes a leap believed.
+TEST_F(OnePort, LeapsAreNotBelievedAlone) {
+  const auto at = [&](std::uint32_t sequence) { return say(1, 0, sequence, {3, 0, 1}); };
+  EXPECT_EQ(at(0), Reason::accepted);
+  EXPECT_EQ(at(Listener::kMostAhead), Reason::accepted);
+  EXPECT_EQ(at(2 * Listener::kMostAhead + 1), Reason::out_of_range);
+  EXPECT_EQ(at(2 * Listener::kMostAhead + 1), Reason::out_of_range);  // the network says things twice
+  EXPECT_EQ(at(Listener::kMostAhead + 1), Reason::accepted);          // nothing has happened
+  EXPECT_EQ(listener->summary().lost, Listener::kMostAhead - 1u);
+  EXPECT_EQ(at(1'000'000), Reason::out_of_range);
+  EXPECT_EQ(at(1'000'001), Reason::accepted);
 }
 
 TEST(Listener, CollidingPortsAreRefused) {
@@ -237,6 +301,45 @@ TEST(Outbox, RefusedDatagramsAreCountedWithTheFirstReason) {
   EXPECT_EQ(outbox.counts().first_failure.rfind("127.0.0.1:0: ", 0), 0u) << outbox.counts().first_failure;
 }
 
+/// A socket that takes no more: a stream whose other end reads nothing.
+TEST(Outbox, WhatAFullSocketDoesNotTakeIsDroppedAndCounted) {
+  const Socket door(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in where = to_posix({kLoopback, 0});
+  ASSERT_EQ(bind(door.descriptor(), reinterpret_cast<sockaddr*>(&where), sizeof where), 0);
+  ASSERT_EQ(::listen(door.descriptor(), 1), 0);
+  where = to_posix(bound_endpoint(door));
+  Socket full(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const int small = 4096;
+  setsockopt(full.descriptor(), SOL_SOCKET, SO_SNDBUF, &small, sizeof small);
+  ASSERT_EQ(connect(full.descriptor(), reinterpret_cast<sockaddr*>(&where), sizeof where), 0);
+
+  Outbox outbox(std::move(full), {.capacity = 20'000, .patience_ms = 0});
+  for (int i = 0; i < 20'000; ++i) outbox.queue({kLoopback, 9}, base::Bytes(kMaxPlain));
+  outbox.flush();
+  const std::uint64_t sent = outbox.counts().sent;
+  EXPECT_GT(sent, 0u);
+  EXPECT_LT(sent, 20'000u);
+  EXPECT_EQ(outbox.counts().dropped, 20'000u - sent);
+  outbox.flush();  // what was dropped does not wait
+  EXPECT_EQ(outbox.counts().sent, sent);
+  EXPECT_EQ(outbox.counts().dropped, 20'000u - sent);
+  EXPECT_EQ(outbox.counts().failed, 0u);
+}
+
+TEST(Socket, TellsWhatTheKernelDropped) {
+  const Socket ears = open_udp({kLoopback, 0}, {.receive = 1});  // the least that the kernel grants
+  const Endpoint to{kLoopback, bound_endpoint(ears).port};
+  EXPECT_EQ(kernel_drops(ears), 0u);
+  Outbox outbox;
+  for (int i = 0; i < 100; ++i) outbox.queue(to, base::Bytes(1000));
+  outbox.flush();
+  ReceiveBatch batch(64);
+  std::size_t taken = 0;
+  for (std::size_t n = 1; n > 0; taken += n) n = batch.fill(ears);
+  EXPECT_LT(taken, 100u);
+  EXPECT_EQ(kernel_drops(ears), 100u - taken);
+}
+
 TEST(Outbox, AFullOneFlushesItself) {
   Outbox outbox({.capacity = 4});
   for (int i = 0; i < 10; ++i) outbox.queue({kLoopback, 9}, base::Bytes{1, 2, 3});
@@ -258,6 +361,38 @@ TEST(Endpoint, ResolvesAndPrints) {
   EXPECT_EQ(resolve("127.0.0.1"), kLoopback);
   EXPECT_EQ(text(Endpoint{0xC0000201u, 10008}), "192.0.2.1:10008");
   EXPECT_THROW(resolve("no host has a space"), base::InputError);
+}
+
+TEST(Endpoint, LoopbackIsItsWholeNetwork) {
+  for (const std::uint32_t address : {0x7F000000u, kLoopback, 0x7FFFFFFFu}) EXPECT_TRUE(is_loopback(address));
+  for (const std::uint32_t address : {0u, 0x7EFFFFFFu, 0x80000000u}) EXPECT_FALSE(is_loopback(address));
+  for (const std::uint32_t address : own_addresses()) EXPECT_FALSE(is_loopback(address)) << text_of(address);
+}
+
+/// In a process of its own: the limit is the whole process'.
+TEST(Socket, OpenFilesAreAllowedButNeverFewer) {
+  const auto try_limits = [] {
+    rlimit before{}, after{};
+    getrlimit(RLIMIT_NOFILE, &before);
+    allow_open_files(1);
+    getrlimit(RLIMIT_NOFILE, &after);
+    bool fine = after.rlim_cur == before.rlim_cur;
+    before.rlim_cur = std::min<rlim_t>(64, before.rlim_max);
+    setrlimit(RLIMIT_NOFILE, &before);
+    allow_open_files(65);
+    getrlimit(RLIMIT_NOFILE, &after);
+    fine = fine && after.rlim_cur == 65 && after.rlim_max == before.rlim_max;
+    before.rlim_max = after.rlim_cur;
+    setrlimit(RLIMIT_NOFILE, &before);  // hard, too
+    try {
+      allow_open_files(66);
+      fine = false;
+    } catch (const base::InputError& error) {
+      fine = fine && std::string(error.what()).find("66 open files are needed") != std::string::npos;
+    }
+    std::exit(fine ? 0 : 1);
+  };
+  EXPECT_EXIT(try_limits(), testing::ExitedWithCode(0), "");
 }
 
 TEST(Endpoint, ResolvesNames) {

@@ -51,6 +51,24 @@ TEST(Ports, TwoSensorsOnOnePortAreRefused) {
   EXPECT_NE(refusal({use(4, 1), use(4, 1)}).find("its own id"), std::string::npos);
 }
 
+TEST(Ports, TheLeastStrideThatFits) {
+  EXPECT_EQ(least_stride({}, 8), 8u);
+  const std::vector<PortUse> few{use(1, 8), use(2, 3)};
+  EXPECT_EQ(least_stride(few, 8), 8u);
+  const std::vector<PortUse> many{use(1, 17), use(2, 17)};  // more than the usual
+  EXPECT_EQ(least_stride(many, 8), 17u);
+  const std::vector<PortUse> last{use(1, 17), use(2, 1), use(4, 1)};  // from 27 on nobody is met before robot 4
+  EXPECT_EQ(least_stride(last, 8), 17u);
+  const std::vector<PortUse> large{use(0, 1), use(8000, 2)};  // 8 times that is past the last port
+  EXPECT_EQ(least_stride(large, 8), 1u);
+  const PortUse other{1, 1, {10010, 8}, "tug", 0, "sonar"};
+  const std::vector<PortUse> kinds{use(1, 3), use(2, 3),
+                                   other};                // sonar at 10010 + stride, lasers at 10000 + stride ...
+  EXPECT_EQ(least_stride(kinds, 8), 3u);                  // 8: robot 2's third laser is where the sonar is
+  const std::vector<PortUse> none{use(4, 1), use(4, 1)};  // no stride helps
+  EXPECT_EQ(least_stride(none, 8), 8u);
+}
+
 TEST(Ports, TwoKindsAreToldApart) {
   const PortUse lasers{1, 1, {10000, 8}, "roomba", 0, "laser"};
   const PortUse others{0, 9, {10000, 8}, "tug", 0, "magnetometer"};

@@ -80,8 +80,9 @@ TEST(Receiver, HeaderlessReadingsCountInOrderOfArrival) {
   };
   Receiver receiver(plain);
   EXPECT_EQ(receiver.accept(0, base::Bytes{}, 5), Taken::refused);
+  std::int64_t now = 9;
   for (const std::uint8_t value : base::Bytes{3, 1, 2})
-    EXPECT_EQ(receiver.accept(0, base::Bytes{value}, 10 + value), Taken::whole);
+    EXPECT_EQ(receiver.accept(0, base::Bytes{value}, ++now), Taken::whole);
   EXPECT_EQ(receiver.newest(0)->values[0], 2.0);
   EXPECT_EQ(receiver.newest(0)->time, 12);  // they do not tell theirs
   EXPECT_EQ(receiver.newest(0)->sequence, 2u);
@@ -121,6 +122,40 @@ TEST(Receiver, AMillionRandomAndMutatedDatagrams) {
   EXPECT_GT(wholes, 1000u);
   EXPECT_GT(receiver.counts().late, 0u);
   EXPECT_GT(receiver.counts().duplicates, 0u);
+}
+
+/// A bound one takes what carries its farm's session and its own.
+TEST(Receiver, TakesPacketsOfItsFarmAlone) {
+  const auto from = [](const Stamp& farm, std::uint32_t sequence, std::uint8_t number) {
+    base::Bytes bytes = part(0, sequence, number, 1);
+    stamp(bytes, farm);
+    return bytes;
+  };
+  constexpr Stamp kFarm{0xFA23, 7}, kForged{0xFA23, 8}, kOther{0xFA24, 7};
+  Receiver receiver(options());
+  receiver.bind(kFarm);
+  EXPECT_EQ(receiver.accept(0, from(kFarm, 100, 0), 0), Taken::part);
+  EXPECT_EQ(receiver.accept(0, from(kForged, 100, 1), 0), Taken::refused);
+  EXPECT_EQ(receiver.accept(0, from(kOther, 100, 1), 0), Taken::refused);
+  EXPECT_EQ(receiver.accept(0, from(kFarm, 100, 1), 0), Taken::whole);
+  receiver.refuse_source();
+  EXPECT_EQ(receiver.counts().reasons[Reason::wrong_source], 3u);
+  receiver.bind(kFarm);  // challenged once more: nothing is another
+  EXPECT_TRUE(receiver.newest(0));
+  // Its farm was started again, and counts from 0.
+  receiver.bind(kOther);
+  EXPECT_FALSE(receiver.newest(0));
+  EXPECT_EQ(receiver.accept(0, from(kOther, 0, 0), 1), Taken::part);
+  EXPECT_EQ(receiver.accept(0, from(kOther, 0, 1), 1), Taken::whole);
+  EXPECT_EQ(receiver.accept(0, from(kFarm, 101, 0), 1), Taken::refused);
+}
+
+TEST(Receiver, CountsLeaps) {
+  Receiver receiver(options());
+  for (const std::uint8_t number : {std::uint8_t{0}, std::uint8_t{1}}) receiver.accept(0, part(0, 5, number, 1), 0);
+  EXPECT_EQ(receiver.accept(0, part(0, 50'000, 0, 1), 0), Taken::leap);
+  EXPECT_EQ(receiver.counts().leaps, 1u);
+  EXPECT_EQ(receiver.counts().late, 0u);
 }
 
 }  // namespace

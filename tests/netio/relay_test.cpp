@@ -25,9 +25,18 @@ struct RelayTest : testing::Test {
         if (other != id) options.others.push_back(other);
       radios.push_back(std::make_unique<Radio>(options));
     }
+    for (const std::uint32_t id : {3u, 7u, 9u}) prove(id);
   }
   Radio& radio(std::uint32_t id) { return *radios[id == 3 ? 0 : id == 7 ? 1 : 2]; }
 
+  /// Challenge and answer.
+  void prove(std::uint32_t id) {
+    base::Bytes answer;
+    Packet packet;
+    packet.header.session = radio(id).farm_stamp().token;
+    ASSERT_TRUE(inbox.challenge(packet, {kLoopback, bound_endpoint(radio(id).socket()).port}, 0, answer));
+    ASSERT_EQ(radio(id).accept(answer, 0, packet), Reason::accepted);
+  }
   void say(std::uint32_t id, double x) {
     base::Bytes bytes;
     encode({.robot = static_cast<std::uint16_t>(id), .sequence = sequence++}, V2v{.X_WR = {x, 0, 0, 0}}, bytes);
@@ -141,10 +150,12 @@ TEST_F(RelayTest, StartMayMeanOneRobot) {
 TEST_F(RelayTest, PassesOnTheBytesAsTheyCame) {
   base::Bytes bytes;
   const V2v state{.X_WR = {1.5, -2.25, 0.0, 0.5}, .velocity = {0.25, 0.0, -0.125}, .follows = 3, .docking = true};
-  encode({.robot = 7, .sequence = 77, .time = 1'500'000'000}, state, bytes);
+  encode({.robot = 7, .sequence = 77, .time = 1'500'000'000, .session = 5, .token = inbox.token({kLoopback, 1})}, state,
+         bytes);
   Packet packet;
   ask(3, kOthers);
   ASSERT_EQ(inbox.accept(bytes, {kLoopback, 1}, 0, packet), Reason::accepted);
+  stamp(bytes, radio(3).farm_stamp());  // but for who speaks to whom
   relay.take(packet);
   tick();
   base::Bytes came;
@@ -163,16 +174,29 @@ TEST_F(RelayTest, TagsAndRequestsAreNotPassedOn) {
   EXPECT_EQ(relay.counts().states + relay.counts().starts, 0u);
 }
 
+constexpr std::uint32_t kFarm = 0xFA23;  ///< session
+constexpr std::uint32_t kOwn = 0x0707;   ///< session
+
 struct RadioTest : testing::Test {
   Outbox farm{OutboxOptions{.bind = {kLoopback, 0}}};
-  Radio radio{{.farm = farm.endpoint(), .robot = 7, .others = {3, 9}}};
+  Radio radio{{.farm = farm.endpoint(), .robot = 7, .others = {3, 9}, .session = kOwn}};
   Packet packet;
+  RadioTest() {
+    base::Bytes bytes;
+    encode({.session = kFarm, .token = kOwn}, Challenge{3}, bytes);
+    radio.accept(bytes, 0, packet);
+  }
   Endpoint to() const { return {kLoopback, bound_endpoint(radio.socket()).port}; }
 };
 
 base::Bytes v2v_of(std::uint16_t robot, std::uint32_t sequence) {
   base::Bytes bytes;
-  encode({.robot = robot, .sequence = sequence}, V2v{}, bytes);
+  encode({.robot = robot, .sequence = sequence, .session = kFarm, .token = kOwn}, V2v{}, bytes);
+  return bytes;
+}
+
+base::Bytes stamped(base::Bytes bytes, const Stamp& stamp = {kFarm, kOwn}) {
+  netio::stamp(bytes, stamp);
   return bytes;
 }
 
@@ -196,16 +220,53 @@ TEST_F(RadioTest, JudgesWhatComes) {
   EXPECT_EQ(radio.accept(v2v_of(3, 5), 0, packet), Reason::stale);
   EXPECT_EQ(radio.accept(v2v_of(7, 0), 0, packet), Reason::unknown_robot);  // itself
   EXPECT_EQ(radio.accept(v2v_of(8, 0), 0, packet), Reason::unknown_robot);
-  EXPECT_EQ(radio.accept(start_example(), 0, packet), Reason::accepted);
-  EXPECT_EQ(radio.accept(patched<std::uint16_t>(start_example(), 6, 7), 0, packet), Reason::accepted);
-  EXPECT_EQ(radio.accept(patched<std::uint16_t>(start_example(), 6, 3), 0, packet), Reason::unknown_robot);
-  EXPECT_EQ(radio.accept(reading_example(), 0, packet), Reason::wrong_direction);
-  EXPECT_EQ(radio.accept(subscribe_example(), 0, packet), Reason::wrong_direction);
+  EXPECT_EQ(radio.accept(stamped(start_example()), 0, packet), Reason::accepted);
+  EXPECT_EQ(radio.accept(stamped(patched<std::uint16_t>(start_example(), 6, 7)), 0, packet), Reason::accepted);
+  EXPECT_EQ(radio.accept(stamped(patched<std::uint16_t>(start_example(), 6, 3)), 0, packet), Reason::unknown_robot);
+  EXPECT_EQ(radio.accept(stamped(reading_example()), 0, packet), Reason::wrong_direction);
+  EXPECT_EQ(radio.accept(stamped(subscribe_example()), 0, packet), Reason::wrong_direction);
   EXPECT_EQ(radio.accept(base::Bytes(5), 0, packet), Reason::too_short);
   EXPECT_TRUE(radio.heard(3, 2 * kSecond - 1));
   EXPECT_FALSE(radio.heard(3, 2 * kSecond));
   EXPECT_FALSE(radio.heard(9, 0));
-  EXPECT_EQ(radio.counts().total(), 10u);
+  EXPECT_EQ(radio.counts().total(), 11u);
+}
+
+/// A forger of the farm's address has to guess the session.
+TEST_F(RadioTest, OnlyWhatCarriesItsSessionIsMeantForIt) {
+  const auto challenge = [](std::uint32_t token, const Stamp& stamp) {
+    base::Bytes bytes;
+    encode({.session = stamp.session, .token = stamp.token}, Challenge{token}, bytes);
+    return bytes;
+  };
+  EXPECT_EQ(radio.accept(stamped(v2v_of(3, 0), {kFarm, kOwn + 1}), 0, packet), Reason::wrong_source);
+  EXPECT_EQ(radio.accept(stamped(v2v_of(3, 0), {kFarm + 1, kOwn}), 0, packet), Reason::wrong_source);
+  EXPECT_EQ(radio.accept(stamped(start_example(), {}), 0, packet), Reason::wrong_source);
+  EXPECT_EQ(radio.accept(challenge(9, {kFarm + 1, 0}), 0, packet), Reason::wrong_source);
+  EXPECT_EQ(radio.farm_stamp().session, kFarm);
+  // The farm was started again: it says so with another session, and what the one before sent is old.
+  EXPECT_EQ(radio.accept(challenge(9, {kFarm + 1, kOwn}), 0, packet), Reason::accepted);
+  EXPECT_EQ(radio.farm_stamp().session, kFarm + 1);
+  EXPECT_EQ(radio.accept(v2v_of(3, 0), 0, packet), Reason::wrong_source);
+  EXPECT_EQ(radio.accept(stamped(v2v_of(3, 0), {kFarm + 1, kOwn}), 0, packet), Reason::accepted);
+}
+
+TEST_F(RadioTest, SendsWithTheNewestToken) {
+  const Socket ears = open_udp({kLoopback, 0});
+  Radio speaker({.farm = {kLoopback, bound_endpoint(ears).port}, .robot = 7, .others = {}, .session = kOwn});
+  ReceiveBatch batch(1);
+  for (const std::uint32_t token : {0u, 9u, 10u}) {
+    base::Bytes bytes;
+    encode({.session = kFarm, .token = kOwn}, Challenge{token}, bytes);
+    if (token != 0) {
+      ASSERT_EQ(speaker.accept(bytes, 0, packet), Reason::accepted);
+    }
+    speaker.send(v2v_example());
+    while (batch.fill(ears) == 0) wait_readable(ears, ears, 1000);
+    ASSERT_EQ(decode(batch.bytes(0), packet), Reason::accepted);
+    EXPECT_EQ(packet.header.session, kOwn);
+    EXPECT_EQ(packet.header.token, token);
+  }
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::uint8_t kPlain = 1;
 constexpr std::uint8_t kSecond = 65;
-constexpr std::size_t kHeader = 24;  ///< [byte] before every payload on the wire
+constexpr std::size_t kHeader = 64;     ///< [byte] before every payload on the wire
+constexpr std::size_t kSignature = 80;  ///< [byte] of room behind it
 
 SensorRow laser(std::uint32_t samples, double range_max) {
   SensorRow row;
@@ -53,9 +54,9 @@ double through_wire(double metres, double range_max) {
 }
 
 TEST(LaserPackets, PayloadsAreTheDocumentedOnes) {
-  std::vector<double> parts(342, 1.0);
-  parts[340] = 81.9175;
-  parts[341] = kInf;
+  std::vector<double> parts(312, 1.0);
+  parts[310] = 81.9175;
+  parts[311] = kInf;
   EXPECT_EQ(encoded({1.0, 0.25, 8.0}, 8.0), payload_of(documented("laser")));
   EXPECT_EQ(encoded(parts, 100.0, 1), payload_of(documented("laser_extended")));
   EXPECT_EQ(encoded({1.0, 0.25, 8.0}, 8.0, 0, Wire::thesis), documented("thesis"));
@@ -107,11 +108,11 @@ TEST(LaserPackets, NanIsNeverSent) {
 }
 
 TEST(LaserPackets, ANanStopsItsOwnPartOnly) {
-  std::vector<double> ranges(341, 1.0);
-  ranges[340] = kNan;
+  std::vector<double> ranges(311, 1.0);
+  ranges[310] = kNan;
   base::Bytes out;
-  EXPECT_EQ(encode_laser(laser(341, 80.0), scan_of(ranges), Wire::farm, 0, out), kSecond);
-  EXPECT_EQ(encode_laser(laser(341, 80.0), scan_of(ranges), Wire::farm, 1, out), 0);
+  EXPECT_EQ(encode_laser(laser(311, 80.0), scan_of(ranges), Wire::farm, 0, out), kSecond);
+  EXPECT_EQ(encode_laser(laser(311, 80.0), scan_of(ranges), Wire::farm, 1, out), 0);
 }
 
 TEST(LaserPackets, PayloadsAreAppended) {
@@ -132,13 +133,13 @@ TEST(LaserPackets, TheFormFollowsFromTheSensor) {
   EXPECT_EQ(type(1, kInf), kSecond);
   EXPECT_EQ(laser_parts(laser(361, 8.0), Wire::farm), 1u);
   EXPECT_EQ(laser_parts(laser(362, 8.0), Wire::farm), 2u);
-  EXPECT_EQ(laser_parts(laser(340, 80.0), Wire::farm), 1u);  // exactly one full part
-  EXPECT_EQ(laser_parts(laser(341, 80.0), Wire::farm), 2u);
-  EXPECT_EQ(laser_parts(laser(kExtendedRays, 80.0), Wire::farm), 2942u);
+  EXPECT_EQ(laser_parts(laser(310, 80.0), Wire::farm), 1u);  // exactly one full part
+  EXPECT_EQ(laser_parts(laser(311, 80.0), Wire::farm), 2u);
+  EXPECT_EQ(laser_parts(laser(kExtendedRays, 80.0), Wire::farm), 3226u);
 }
 
 TEST(LaserPackets, ScansOfAnySizeComeBackWhole) {
-  for (const std::uint32_t samples : {1u, 2u, 339u, 340u, 341u, 361u, 362u, 680u, 681u, 10'000u, kExtendedRays}) {
+  for (const std::uint32_t samples : {1u, 2u, 309u, 310u, 311u, 361u, 362u, 620u, 621u, 10'000u, kExtendedRays}) {
     for (const double range_max : {8.0, 100.0}) {
       const SensorRow row = laser(samples, range_max);
       std::vector<double> sent(samples);
@@ -148,7 +149,7 @@ TEST(LaserPackets, ScansOfAnySizeComeBackWhole) {
       for (std::uint32_t part = 0; part < parts; ++part) {
         base::Bytes bytes;
         const std::uint8_t type = encode_laser(row, scan_of(sent), Wire::farm, part, bytes);
-        ASSERT_LE(kHeader + bytes.size(), 1400u);
+        ASSERT_LE(kHeader + bytes.size() + kSignature, 1400u);
         LaserPart scan;
         ASSERT_EQ(read_laser(bytes, type == kSecond, scan), Fault::none) << samples << " part " << part;
         ASSERT_EQ(scan.total, samples);
@@ -168,9 +169,9 @@ TEST(LaserPackets, ScansOfAnySizeComeBackWhole) {
 }
 
 TEST(LaserPackets, LargestPayloadsAreTheDocumentedOnes) {
-  EXPECT_EQ(kHeader + encoded(std::vector<double>(361, 1.0), 8.0).size(), 748u);
+  EXPECT_EQ(kHeader + encoded(std::vector<double>(361, 1.0), 8.0).size(), 788u);
   EXPECT_EQ(encoded(std::vector<double>(361, 1.0), 8.0, 0, Wire::thesis).size(), 724u);
-  EXPECT_EQ(kHeader + encoded(std::vector<double>(340, 1.0), 80.0).size(), 1400u);
+  EXPECT_EQ(kHeader + encoded(std::vector<double>(310, 1.0), 80.0).size() + kSignature, 1400u);
 }
 
 TEST(LaserPackets, CountsThatDoNotFitAreRefused) {
@@ -197,14 +198,14 @@ TEST(LaserPackets, CountsThatDoNotFitAreRefused) {
   EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 0)), Fault::out_of_range);                  // no rays
   EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, kExtendedRays + 1)), Fault::out_of_range);  // too many
   EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 0xFFFFFFFF)), Fault::out_of_range);         // their sum would wrap
-  EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 343)), Fault::out_of_range);                // one ray missing
-  EXPECT_EQ(extended(patched<std::uint32_t>(part, 4, 341)), Fault::out_of_range);                // begins elsewhere
+  EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 313)), Fault::out_of_range);                // one ray missing
+  EXPECT_EQ(extended(patched<std::uint32_t>(part, 4, 311)), Fault::out_of_range);                // begins elsewhere
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 8, 2)), Fault::out_of_range);                  // part 2 of 2
   base::Bytes behind =
-      patched<std::uint32_t>(patched<std::uint16_t>(patched<std::uint16_t>(part, 8, 2), 12, 340), 4, 680);
-  behind.resize(16 + 4 * 340);
+      patched<std::uint32_t>(patched<std::uint16_t>(patched<std::uint16_t>(part, 8, 2), 12, 310), 4, 620);
+  behind.resize(16 + 4 * 310);
   EXPECT_EQ(extended(behind), Fault::out_of_range);  // the same with all else in order: what is left would wrap
-  EXPECT_EQ(extended(patched<std::uint16_t>(part, 10, 3)), Fault::out_of_range);  // 3 parts for 342 rays
+  EXPECT_EQ(extended(patched<std::uint16_t>(part, 10, 3)), Fault::out_of_range);  // 3 parts for 312 rays
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 12, 1)), Fault::too_long);
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 12, 3)), Fault::too_short);
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 14, 9)), Fault::none);  // reserved: ignored
@@ -261,7 +262,7 @@ TEST(LaserPackets, OurOwnBadScansAbort) {
 
 TEST(LaserPackets, AnyBytesAreJudged) {
   std::mt19937 random(20260102);  // NOLINT: the same payloads every time
-  const SensorRow rows[] = {laser(3, 8.0), laser(342, 100.0), laser(0, 0.0)};
+  const SensorRow rows[] = {laser(3, 8.0), laser(312, 100.0), laser(0, 0.0)};
   const base::Bytes seeds[] = {payload_of(documented("laser")), payload_of(documented("laser_extended"))};
   std::uint64_t good = 0;
   for (int i = 0; i < 200'000; ++i) {

@@ -60,7 +60,7 @@ TEST(ReadingBack, PlainScansToTheMillimetre) {
 
 TEST(ReadingBack, ExtendedScansPartByPart) {
   trial::Chance chance(2);
-  for (const std::uint32_t samples : {1u, 340u, 341u, 680u, 1000u}) {
+  for (const std::uint32_t samples : {1u, 310u, 311u, 620u, 1000u}) {
     std::vector<double> ranges;
     for (std::uint32_t i = 0; i < samples; ++i) ranges.push_back(chance.between(0.0, 200.0));
     const std::vector<double> read = back(base::kLaser, row_of(samples, 200.0), ranges, Wire::farm);
@@ -78,7 +78,7 @@ TEST(ReadingBack, APartLeavesTheOthersAsTheyAre) {
   const std::uint8_t type = kind.encode(row, block, Wire::farm, 1, bytes);
   std::vector<double> read(700, kNan);
   kind.read(row, bytes, type, Wire::farm, read);
-  for (std::size_t i = 0; i < 700; ++i) EXPECT_EQ(std::isnan(read[i]), i < 340 || i >= 680) << i;
+  for (std::size_t i = 0; i < 700; ++i) EXPECT_EQ(std::isnan(read[i]), i < 310 || i >= 620) << i;
 }
 
 TEST(ReadingBack, NoReturn) {

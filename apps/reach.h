@@ -1,0 +1,12 @@
+#pragma once
+// Who can send to a socket that is bound beyond this machine.
+
+#include <cstdint>
+#include <string>
+
+namespace sf::apps {
+
+/// On standard error, where `address` is not loopback. @param can the risk: "say where robots are"
+void warn_of_reach(std::uint32_t address, const std::string& can);
+
+}  // namespace sf::apps

@@ -1,0 +1,151 @@
+#pragma once
+// Robots that live elsewhere, and a service for them: two robots in a room, over loopback.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <thread>
+
+#include "netio/packets.h"
+#include "netio/radio.h"
+#include "netio/socket.h"
+#include "sensors/laser_packets.h"
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+
+// Two robots in a room; what they read is worked out by `sense`.
+inline const char* const kRoom = R"(
+model( name "room" size [6 4 1] boundary 1 noblocks 0 color "gray" )
+define bot position( size [0.3 0.3 0.1] laser( samples 91 fov 180 range_max 8 pose [0.1 0 -0.06 0] size [0 0 0.04] ) )
+bot( name "roomba1" pose [-2 0 0 0] )
+bot( name "roomba2" pose [2 1 0 0] )
+)";
+
+/// A robot elsewhere: one socket that it speaks from, one that it hears its sensor on.
+class Robot {
+ public:
+  Robot(std::uint16_t id, unsigned service, unsigned hears)
+      : id_(id),
+        radio_({.farm = {netio::kLoopback, static_cast<std::uint16_t>(service)}, .robot = id, .others = {}}),
+        ears_(netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(hears)})),
+        batch_(16) {}
+
+  base::Bytes state(const base::Pose& X_WR) {
+    netio::Header header;
+    header.robot = id_;
+    header.sequence = sequence_++;
+    netio::V2v state;
+    state.X_WR = X_WR;
+    base::Bytes bytes;
+    netio::encode(header, state, bytes);
+    return bytes;
+  }
+  void say(const base::Pose& X_WR) { send(state(X_WR)); }
+  void send(const base::Bytes& bytes) {
+    challenged();
+    radio_.send(bytes);
+  }
+  /// Has the farm asked whether it is where it says? From then on what it sends is proven.
+  bool challenged() {
+    radio_.receive([&](std::span<const std::uint8_t> bytes) {
+      netio::Packet packet;
+      radio_.accept(bytes, 0, packet);
+    });
+    return radio_.farm_stamp().session != 0;
+  }
+
+  void leave() {
+    base::Bytes bytes;
+    netio::encode({.robot = id_}, netio::Leave{}, bytes);
+    send(bytes);
+  }
+
+  /// A reading for `other` waits where this one hears.
+  bool overhears(const Robot& other) {
+    bool found = false;
+    while (const std::size_t count = batch_.fill(ears_)) {
+      for (std::size_t i = 0; i < count; ++i) {
+        netio::Packet packet;
+        EXPECT_EQ(netio::decode(batch_.bytes(i), packet), netio::Reason::accepted);
+        found = found || packet.header.token == other.radio_.farm_stamp().token;
+      }
+    }
+    return found;
+  }
+
+  /// Ranges of the newest scan that waits; empty when none does.
+  std::vector<double> hear() {
+    std::vector<double> ranges;
+    while (const std::size_t count = batch_.fill(ears_)) {
+      for (std::size_t i = 0; i < count; ++i) {
+        netio::Packet packet;
+        EXPECT_EQ(netio::decode(batch_.bytes(i), packet), netio::Reason::accepted);
+        EXPECT_EQ(packet.header.robot, id_);
+        EXPECT_EQ(packet.header.sensor, 0u);
+        EXPECT_EQ(packet.header.session, radio_.farm_stamp().session);
+        EXPECT_EQ(packet.header.token, radio_.farm_stamp().token);
+        sensors::LaserPart scan;
+        EXPECT_EQ(sensors::read_laser(std::get<netio::Reading>(packet.body).payload, false, scan),
+                  sensors::Fault::none);
+        ranges.clear();
+        for (std::uint32_t k = 0; k < scan.count; ++k) ranges.push_back(sensors::range_of(scan, k));
+      }
+    }
+    return ranges;
+  }
+
+ private:
+  std::uint16_t id_;
+  netio::Radio radio_;
+  netio::Socket ears_;
+  netio::ReceiveBatch batch_;
+  std::uint32_t sequence_ = 0;
+};
+
+/// Polls for up to a minute.
+inline bool until(const std::function<bool()>& done) {
+  for (int i = 0; i < 3000; ++i) {
+    if (done()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return false;
+}
+
+/// Speaks until it is challenged.
+inline bool prove(Robot& robot) {
+  return until([&] {
+    if (robot.challenged()) return true;
+    robot.say({});
+    return false;
+  });
+}
+
+struct Service {
+  Folder folder;
+  std::string world = folder.write("room.world", kRoom);
+  unsigned lasers = free_ports(24);
+  Program program{{"serve", world, "--port", "0", "--rate", "50", "--json", "--laser-port", std::to_string(lasers)}};
+  unsigned port = 0;
+
+  Service() {
+    if (!program.says("; Ctrl-C ends it")) return;
+    const std::string said = program.err();
+    port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
+  }
+  unsigned hears(unsigned robot) const { return lasers + 8 * robot; }
+};
+
+inline std::vector<double> sensed(const std::string& world, const std::string& robot, const std::string& pose) {
+  const Json scan(run_program({"sense", world, "--robot", robot, "--pose", pose, "--json"}).out);
+  std::vector<double> ranges;
+  for (std::size_t i = 0; i < scan.size("/beams"); ++i)
+    ranges.push_back(scan.number("/beams/" + std::to_string(i) + "/range_m"));
+  return ranges;
+}
+
+}  // namespace sf
