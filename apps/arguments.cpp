@@ -169,6 +169,12 @@ void add_bind(CLI::App& app, Options& o) {
       ->capture_default_str();
 }
 
+void add_from(CLI::App& app, Options& o) {
+  app.add_option("--from", o.from, "Take packets from this host alone (default: from the first farm that sends)")
+      ->check(not_empty("a host"))
+      ->type_name("HOST");
+}
+
 void add_silence(CLI::App& app, Options& o) {
   app.add_option("--silence", o.silence,
                  "End when nothing came for this long [s]; counts from the first packet on, until then it waits")
@@ -186,16 +192,18 @@ void add_until(CLI::App& sub, Options& o, Command command, const std::string& he
 }
 
 void add_ports(CLI::App& app, Options& o) {
+  constexpr const char* kPorts = "Ports of sensor packets: first + robot id * ports per robot + sensor";
   for (const sensors::SensorKind* kind : sensors::kinds())
     app.add_option(fmt::format("--{}-port", kind->name), o.base_ports[kind->id],
-                   fmt::format("Base of {} ports: port = base + robot id * ports per robot + sensor", kind->name))
+                   fmt::format("First of the {} ports", kind->name))
         ->check(whole(1, 65535))
         ->type_name("PORT")
-        ->capture_default_str();
-  app.add_option("--ports-per-robot", o.ports_per_robot, "Ports per robot")
+        ->capture_default_str()
+        ->group(kPorts);
+  app.add_option("--ports-per-robot", o.ports_per_robot, "Ports per robot (default: 8, or the least that fits)")
       ->check(whole(1, 65535))
       ->type_name("N")
-      ->capture_default_str();
+      ->group(kPorts);
   add_wire(app, o);
 }
 

@@ -42,6 +42,8 @@ void add_automatic(CLI::App& app, Options& o);
 void add_no_return(CLI::App& app, Options& o);
 void add_wire(CLI::App& app, Options& o);
 void add_bind(CLI::App& app, Options& o);
+/// `--from`: the host that packets are taken from.
+void add_from(CLI::App& app, Options& o);
 void add_silence(CLI::App& app, Options& o);
 /// `--duration`, without which it goes on; and calls it `command`.
 void add_until(CLI::App& sub, Options& o, Command command, const std::string& help);

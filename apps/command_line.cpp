@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "apps/arguments.h"
+#include "apps/examples.h"
 #include "apps/subcommands.h"
 #include "apps/wording.h"
 
@@ -34,6 +36,18 @@ std::string explain_extras(const CLI::App& app, const CLI::App& sub, int argc, c
       std::find_if(argv + 1, argv + argc, [&](const char* a) { return std::count(rest.begin(), rest.end(), a) > 0; });
   const std::string word = found == argv + argc ? "" : *found;
   return fmt::format("'{}' was not expected{}", word, suggest_option(word, options_of(sub)));
+}
+
+/// `help` and `help COMMAND`. @param asked is given the command's name
+const CLI::App* add_help(CLI::App& app, std::string& asked) {
+  CLI::App* sub = app.add_subcommand("help", "Say how a command is called, as its --help does");
+  std::vector<std::string> names;
+  for (const CLI::App* each : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(each->get_name());
+  sub->add_option("command", asked, "One of the commands (default: all of them)")
+      ->check(one_of(names))
+      ->type_name("COMMAND");
+  return sub;
 }
 
 /// What was wrong with the arguments, in one line that ends with where help is.
@@ -67,8 +81,18 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   add_looking(app, o);
   add_running(app, o);
   add_proving(app, o);
+  std::string asked;
+  const CLI::App* help = add_help(app, asked);
+  for (CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
+    sub->footer(examples_of(sub->get_name()));
   try {
     app.parse(argc, argv);
+    if (help->parsed()) {
+      app.clear();  // else its help would be that of `help`
+      const std::string text = asked.empty() ? app.help() : app.get_subcommand(asked)->help("sensorfarm");
+      std::fputs(text.c_str(), stdout);
+      parsed.exit_code = 0;
+    }
   } catch (const CLI::ParseError& error) {
     // CLI11 has a code for each mistake; ours is 2 for all of them.
     const bool fine = error.get_exit_code() == 0;

@@ -78,15 +78,19 @@ void add_farm(CLI::App& app, Options& o) {
 }
 
 void add_link(CLI::App& app, Options& o) {
+  constexpr const char* kGroup = "Link, made worse than it is";
   app.add_option("--delay", o.delay, "Injected delay of every packet, in each direction [s]")
       ->check(number(0.0, 3600.0))
-      ->type_name("S");
+      ->type_name("S")
+      ->group(kGroup);
   app.add_option("--jitter", o.jitter, "More delay, evenly from 0 to this; packets overtake each other [s]")
       ->check(number(0.0, 3600.0))
-      ->type_name("S");
+      ->type_name("S")
+      ->group(kGroup);
   app.add_option("--loss", o.loss, "Part of the packets that never come, in each direction, 0 to 1")
       ->check(number(0.0, 1.0))
-      ->type_name("P");
+      ->type_name("P")
+      ->group(kGroup);
 }
 
 void add_robot(CLI::App& app, Options& o) {
@@ -124,6 +128,7 @@ void add_listen(CLI::App& app, Options& o) {
   add_robots(*sub, o);
   add_ports(*sub, o);
   add_bind(*sub, o);
+  add_from(*sub, o);
   add_silence(*sub, o);
   add_until(*sub, o, Command::listen, "Stop after this long [s] (0: when told to, or silent)");
 }
@@ -142,6 +147,7 @@ void add_map(CLI::App& app, Options& o) {
       ->check(ports())
       ->type_name("PORT");
   add_bind(*sub, o);
+  add_from(*sub, o);
   sub->add_flag("--merge", o.merge, "All maps as one: what any robot saw occupied is occupied");
   sub->add_option("-o,--out", o.out, "PNG file to write at the end; of several maps that are not merged, one each")
       ->check(not_empty("a file"))
@@ -157,8 +163,6 @@ void add_map(CLI::App& app, Options& o) {
 void add_running(CLI::App& app, Options& o) {
   add_run(app, o);
   add_serve(app, o);
-  add_farm(app, o);
-  add_link(app, o);
   add_robot(app, o);
   add_start(app, o);
   add_listen(app, o);

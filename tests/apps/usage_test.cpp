@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <sstream>
 
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
@@ -11,8 +12,9 @@ namespace sf {
 
 namespace {
 
-const Words kSubcommands{"devices", "check", "draw",   "sense", "run", "serve",   "robot",
-                         "start",   "plot",  "listen", "field", "map", "selftest"};
+const Words kSubcommands{"devices",    "check", "draw",   "sense",    "run", "serve",    "robot",
+                         "start",      "plot",  "listen", "field",    "map", "selftest", "explain",
+                         "experiment", "test",  "verify", "tradeoff", "help"};
 
 struct Wrong {
   Words arguments;
@@ -38,8 +40,36 @@ TEST(Usage, EverySubcommandHasHelp) {
     const Outcome one = run_program({name, "--help"});
     EXPECT_EQ(one.code, 0) << name;
     EXPECT_NE(one.out.find("--help"), std::string::npos) << name;
+    EXPECT_NE(one.out.find("\nExamples:\n  sensorfarm " + name), std::string::npos) << name;
     EXPECT_EQ(one.err, "") << name;
+    EXPECT_EQ(run_program({"help", name}).out, one.out) << name;
   }
+  EXPECT_EQ(run_program({"help"}).out, all.out);
+  for (const std::string word : {"--server", "--port", "--loss", "--delay", "--jitter"})
+    EXPECT_EQ(all.out.find(word), std::string::npos) << word << " belongs to subcommands";
+}
+
+TEST(Usage, ExamplesNameFilesThatAreThere) {
+  const std::filesystem::path source = SF_SOURCE_DIR;
+  std::size_t found = 0;
+  for (const std::string& name : kSubcommands) {
+    std::istringstream words(run_program({name, "--help"}).out);
+    for (std::string word; words >> word;) {
+      if (word.rfind("worlds/", 0) != 0 && word.rfind("experiments/", 0) != 0) continue;
+      EXPECT_TRUE(std::filesystem::exists(source / word)) << name << ": " << word;
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 10u);
+}
+
+TEST(Usage, PortsAreAGroupAtTheEndOfTheHelp) {
+  const std::string help = run_program({"run", "--help"}).out;
+  const std::size_t group = help.find("\nPorts of sensor packets");
+  ASSERT_NE(group, std::string::npos) << help;
+  EXPECT_LT(help.find("--duration"), group);
+  EXPECT_GT(help.find("--laser-port"), group);
+  EXPECT_GT(help.find("--ports-per-robot"), group);
 }
 
 TEST(Usage, HelpNamesTheOptions) {
@@ -78,6 +108,8 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
   for (const auto& [arguments, said] : std::vector<Wrong>{
            {{}, "expected a subcommand: devices, check"},  // nothing at all
            {{"frob"}, "'frob' is no subcommand"},          // unknown subcommand
+           {{"help", "frob"}, "expected devices, check"},  // the same, asked about
+           {{"--loss", "1", "run", world}, "'--loss'"},    // the link is a robot's
            {{"run"}, "world is required"},                 // no world
            {{"draw", world}, "--out is required"},         // no picture
            {{"plot"}, "recording is required"},            // no recording
