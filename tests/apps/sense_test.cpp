@@ -76,6 +76,17 @@ TEST(Sense, ARobotOneMetreFromAWallReadsOneMetre) {
   EXPECT_EQ(scan.text(beam(0, "hit")), "long wall");
 }
 
+TEST(Sense, NamesWithCommasStandInQuotesInCsv) {
+  const Folder folder;
+  const std::string text = read_file(wall_world(folder, 0.0));
+  const std::string world =
+      folder.write("commas.world", std::regex_replace(text, std::regex("long wall"), "wall, long"));
+  const std::string csv = run_program({"sense", world}).out;
+  EXPECT_NE(csv.find("\n0.000000000000,1.000000000,\"wall, long\"\n"), std::string::npos) << csv;
+  const std::string plain = run_program({"sense", wall_world(folder, 0.0)}).out;
+  EXPECT_NE(plain.find(",1.000000000,long wall\n"), std::string::npos) << plain;
+}
+
 TEST(Sense, EveryBeamOfAFanFollowsTheCosine) {
   const Folder folder;
   const Json scan = sense({wall_world(folder, 0.0), "--sensor", "1", "--no-return", "inf"});

@@ -4,7 +4,8 @@
 //   cmake -S . -B build/fuzz -G Ninja -DSENSORFARM_FUZZ=ON -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang
 //   ninja -C build/fuzz packets_fuzz && build/fuzz/packets_fuzz -max_total_time=60
 //
-// An input is a row of datagrams: one byte of sender and elapsed time, two of length, then the bytes.
+// An input is a row of datagrams: one byte of sender and elapsed time, two of length, then the bytes. A token of 0
+// stands for the sender's own, which no input could guess.
 
 #include <unistd.h>
 
@@ -46,8 +47,22 @@ void round_trip(const netio::Packet& packet, std::span<const std::uint8_t> bytes
   if (const auto* request = std::get_if<netio::Subscribe>(&packet.body)) netio::encode(packet.header, *request, again);
   if (const auto* signal = std::get_if<netio::Start>(&packet.body)) netio::encode(packet.header, *signal, again);
   if (const auto* word = std::get_if<netio::Leave>(&packet.body)) netio::encode(packet.header, *word, again);
-  require(again.size() == bytes.size());
-  for (std::size_t i = 0; i < again.size(); ++i) require(again[i] == bytes[i] || i == 10 || i == 11);  // reserved
+  const std::size_t trailer = bytes[60] | std::size_t{bytes[61]} << 8;
+  require(trailer <= netio::kMaxTrailer && again.size() + trailer == bytes.size());
+  const auto reserved = [](std::size_t i) { return i == 10 || i == 11 || (i >= 32 && i < netio::kHeaderBytes); };
+  for (std::size_t i = 0; i < again.size(); ++i) require(again[i] == bytes[i] || reserved(i));
+}
+
+/// An unproven address is sent no more than came in its name.
+void challenge(netio::Inbox& inbox, const netio::Packet& packet, const netio::Endpoint& source, std::size_t size,
+               std::int64_t now) {
+  base::Bytes answer;
+  require(packet.header.token != inbox.token(source));
+  if (!inbox.challenge(packet, source, now, answer)) return;
+  require(answer.size() <= size);
+  netio::Packet asked;
+  require(netio::decode(answer, asked) == netio::Reason::accepted);
+  require(std::get<netio::Challenge>(asked.body).token == inbox.token(source));
 }
 
 /// A laser of 3 beams up to 8 m, and one of whatever: the two streams of the listener below.
@@ -94,19 +109,24 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
        .judge = judge_scan});
   static netio::Relay relay(std::vector<std::uint32_t>{0, 7, 40'000});
   static netio::Outbox nowhere({.patience_ms = 0});
-  static netio::Radio radio({.robot = 7, .others = {0, 40'000}});
+  static netio::Radio radio({.robot = 7, .others = {0, 40'000}, .session = 7});
   static std::int64_t now = 0;
 
   base::ByteReader reader({data, size});
   while (reader.left() > 3) {
     const auto sender = reader.get<std::uint8_t>();
     const auto length = reader.get<std::uint16_t>();
-    const auto bytes = reader.get_bytes(std::min<std::size_t>(length, reader.left()));
+    const auto given = reader.get_bytes(std::min<std::size_t>(length, reader.left()));
     now += std::int64_t{sender >> 2} * 100'000'000;
 
     netio::Packet packet;
     const netio::Endpoint source{netio::kLoopback, static_cast<std::uint16_t>(sender & 3)};
-    if (inbox.accept(bytes, source, now, packet) == netio::Reason::accepted) {
+    base::Bytes bytes(given.begin(), given.end());
+    if (netio::decode(bytes, packet) == netio::Reason::accepted && packet.header.token == 0)
+      netio::stamp(bytes, {packet.header.session, inbox.token(source)});
+    const netio::Reason reason = inbox.accept(bytes, source, now, packet);
+    if (reason == netio::Reason::unproven) challenge(inbox, packet, source, bytes.size(), now);
+    if (reason == netio::Reason::accepted) {
       examine(packet);
       round_trip(packet, bytes);
       const std::uint32_t id = packet.header.robot;
@@ -114,9 +134,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (of_robot) require(inbox.heard(id, now) && inbox.address(id) == source);
       relay.take(packet);
     }
-    listener.accept(sender & 1, bytes);
-    receive(sender & 1, bytes, now);
-    if (radio.accept(bytes, now, packet) == netio::Reason::accepted)
+    listener.accept(sender & 1, given, source, now);
+    receive(sender & 1, given, now);
+    if (radio.accept(given, now, packet) == netio::Reason::accepted)
       require(packet.header.robot != 7 || !state_of(packet));
     if (sender % 8 == 0) relay.pass_on(inbox, now, nowhere);
   }

@@ -267,6 +267,21 @@ TEST(Recording, a_reading_that_its_kind_does_not_explain_is_left_out_and_told) {
   EXPECT_EQ(recording.damage.size(), 2u);  // what is not ours at all is no damage
 }
 
+TEST(Recording, damage_is_told_a_hundred_times_and_no_more) {
+  McapWriter writer("ros2", "sensorfarm");
+  const Bytes world = {1};
+  writer.add_attachment({.name = "world.bin", .data = world});
+  add_run_info(writer, {.movers = {{.name = "only"}}});
+  Bytes message;
+  encode_fleet(SampleTick(0, 2).record, message);  // of two movers
+  const auto schema = writer.add_schema(kFleet, "ros2msg", schema_text(kFleet));
+  const auto channel = writer.add_channel(schema, "/fleet", "cdr");
+  for (int i = 0; i < 150; ++i) writer.add_message({.channel = channel, .data = message});
+  const Recording recording = read_recording(finished(writer), "run.mcap");
+  EXPECT_EQ(recording.damage.size(), 100u);
+  EXPECT_NE(recording.damage.back().find("/fleet at 0 ns: not understood"), std::string::npos);
+}
+
 TEST(Recording, a_place_without_a_recording_is_refused_with_advice) {
   const auto refusal_of = [](const std::string& directory) -> std::string {
     try {

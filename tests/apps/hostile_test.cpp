@@ -1,0 +1,130 @@
+// `serve` among strangers whose datagrams are well made and ill meant, over loopback, bounded in number. One robot goes
+// on being served, and nobody who proved no address is sent more than was sent in its name.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <limits>
+#include <random>
+
+#include "netio/outbox.h"
+#include "tests/apps/elsewhere.h"
+
+namespace sf {
+
+namespace {
+
+constexpr std::size_t kStrangers = 20;  ///< sockets
+constexpr int kRounds = 10;
+constexpr int kEach = 20;  ///< datagrams of each stranger in a round
+
+/// A socket that says anything and counts what it is told.
+struct Stranger {
+  netio::Outbox mouth;
+  netio::Socket ears;
+  netio::ReceiveBatch batch{64};
+  std::uint64_t sent = 0;  ///< [byte]
+  std::uint64_t told = 0;  ///< [byte]
+
+  Stranger() : Stranger(netio::open_udp({netio::kLoopback, 0})) {}
+  explicit Stranger(netio::Socket socket) : mouth(netio::duplicate(socket)), ears(std::move(socket)) {}
+  void say(const netio::Endpoint& to, const base::Bytes& bytes) {
+    mouth.queue(to, bytes);
+    sent += bytes.size();
+  }
+  void hear() {
+    while (const std::size_t count = batch.fill(ears))
+      for (std::size_t i = 0; i < count; ++i) told += batch.bytes(i).size();
+  }
+};
+
+/// One of everything that anybody may send, for a robot that is there.
+base::Bytes anything(std::mt19937& generator) {
+  const auto random = [&] { return static_cast<std::uint32_t>(generator()); };
+  netio::Header header;
+  header.robot = static_cast<std::uint16_t>(1 + random() % 2);
+  header.sequence = random();
+  header.time = random() % 2 == 0 ? netio::kMaxTime : 0;
+  header.session = random();
+  header.token = random() % 2 == 0 ? 0 : random();
+  netio::V2v state;
+  state.X_WR = {random() % 2 == 0 ? 1e7 : -1e7, 0.0, 1e7, 1e6};
+  state.velocity = {1e3, -1e3, 1e3};
+  base::Bytes bytes;
+  switch (random() % 7) {
+    case 0:
+      netio::encode(header, netio::Subscribe{random()}, bytes);
+      break;
+    case 1:
+      netio::encode(header, netio::Leave{}, bytes);
+      break;
+    case 2:
+      header.robot = netio::kEveryone;
+      netio::encode(header, netio::Start{}, bytes);
+      break;
+    case 3:
+      netio::encode(header, netio::Challenge{header.token}, bytes);
+      break;
+    case 4:
+      header.robot = 12;  // a tag that the world does not have
+      netio::encode(header, netio::Tag{}, bytes);
+      break;
+    case 5:
+      netio::frame(header, 1, base::Bytes(netio::kMaxPayload, 1), bytes);
+      break;
+    default:
+      netio::encode(header, state, bytes);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+TEST(Hostile, OneRobotIsServedAndNobodyElseIsFlooded) {
+  Service service;
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  const netio::Endpoint farm{netio::kLoopback, static_cast<std::uint16_t>(service.port)};
+  const std::vector<double> expected = sensed(service.world, "roomba1", "-1,0.5,180");  // the other is behind it
+  Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
+  std::vector<Stranger> strangers(kStrangers);
+  std::mt19937 random(11);  // NOLINT: the same every time
+
+  const auto served = [&] {
+    return until([&] {
+      one.say({-1.0, 0.5, 0.0, M_PI});
+      const std::vector<double> ranges = one.hear();
+      bool same = ranges.size() == expected.size();
+      for (std::size_t i = 0; same && i < ranges.size(); ++i) same = std::fabs(ranges[i] - expected[i]) <= 0.000501;
+      return same;
+    });
+  };
+  ASSERT_TRUE(served());
+  for (int round = 0; round < kRounds; ++round) {
+    for (Stranger& stranger : strangers) {
+      for (int i = 0; i < kEach; ++i) stranger.say(farm, anything(random));
+      stranger.mouth.flush();
+    }
+    // A robot that is one: as far away and as fast as a packet can say, and back.
+    two.say({round % 2 == 0 ? 1e7 : -1e7, 1e7, 0.0, -1e6});
+    ASSERT_TRUE(served()) << round;
+    for (Stranger& stranger : strangers) stranger.hear();
+  }
+  ASSERT_TRUE(service.program.running());
+  service.program.signal(SIGINT);
+  const Outcome outcome = service.program.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_LT(count_lines(outcome.err), 10u) << outcome.err;
+
+  for (Stranger& stranger : strangers) {
+    stranger.hear();
+    EXPECT_GT(stranger.told, 0u) << "it is asked where it is";
+    EXPECT_LE(stranger.told, stranger.sent);
+  }
+  const Json facts(outcome.out);
+  EXPECT_GT(facts.number("/received/unproven"), kRounds * static_cast<double>(kStrangers));
+  EXPECT_GT(facts.number("/received/wrong direction"), 0);
+  EXPECT_GT(facts.number("/received/unknown tag"), 0);
+  EXPECT_FALSE(facts.has("/received/wrong source"));  // nobody got so far
+}
+
+}  // namespace sf

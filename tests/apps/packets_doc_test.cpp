@@ -1,0 +1,84 @@
+// The Python of docs/packets.md, as it is printed there: it decodes the examples beside it, and is served.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <regex>
+
+#include "tests/apps/elsewhere.h"
+#include "tests/netio/documented.h"
+
+namespace sf {
+
+namespace {
+
+/// All code of the page, one block after another.
+std::string python_of_the_page() {
+  const std::string page = read_file(SF_SOURCE_DIR "/docs/packets.md");
+  std::string code;
+  const std::string open = "```python\n";
+  for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at)) {
+    at += open.size();
+    code += page.substr(at, page.find("```", at) - at) + "\n";
+  }
+  return code;
+}
+
+bool have_python() { return std::system("python3 -c 'import socket, struct, select' >/dev/null 2>&1") == 0; }
+
+/// The output of `script`.
+std::string printed(const Folder& folder, const std::string& script) {
+  const std::string file = folder.write("page.py", script);
+  const std::string out = folder.path("out");
+  EXPECT_EQ(std::system(("timeout 60 python3 " + file + " >" + out + " 2>&1").c_str()), 0) << read_file(out);
+  return read_file(out);
+}
+
+std::string hex(const base::Bytes& bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) text += "0123456789abcdef"[byte >> 4], text += "0123456789abcdef"[byte & 15];
+  return text;
+}
+
+}  // namespace
+
+TEST(PacketsPage, ItsDecoderReadsItsExamples) {
+  if (!have_python()) GTEST_SKIP() << "this machine has no python3";
+  const Folder folder;
+  std::string script = python_of_the_page();
+  script = script.substr(0, script.find("import os, select"));
+  for (const std::string name : {"laser", "laser_extended", "lane_edge", "magnetometer", "infrared", "gps", "occupancy",
+                                 "challenge", "subscribe"})
+    script += "print('" + name + "', decode(bytes.fromhex('" + hex(test::documented(name)) + "')))\n";
+  const std::string out = printed(folder, script);
+  for (const std::string said :
+       {"laser {'type': 1, 'robot': 7, 'sensor': 0, 'sequence': 258, 'time_s': 1.5, 'from': 287454020, 'to': "
+        "1432778632, 'ranges': [1.0, 0.25, 8.0]}",
+        "'total': 312, 'first': 310, 'part': 1, 'parts': 2, 'ranges': [81.9175, inf]", "'distance_m': 0.25", ", 767)]",
+        "'rows': [(None, None, None, 3)]", "'words': (1, 2315255808)", "'to': 1432778632, 'token': 195948557"})
+    EXPECT_NE(out.find(said), std::string::npos) << said << " is not in\n" << out;
+}
+
+TEST(PacketsPage, ItsRobotProvesItsAddressAndIsServed) {
+  if (!have_python()) GTEST_SKIP() << "this machine has no python3";
+  Service service;
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  std::string script = python_of_the_page();
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    ASSERT_NE(script.find(from), std::string::npos) << from;
+    script.replace(script.find(from), from.size(), to);
+  };
+  replace("9000", std::to_string(service.port));
+  replace("10000 + 7 * 8 + 0", std::to_string(service.hears(1)));
+  replace("128, 7, 0", "128, 1, 0");
+  const std::string out = printed(service.folder, script);
+  EXPECT_EQ(out.front(), '[') << out;
+  EXPECT_GT(count_lines(out), 5u) << out;
+  service.program.signal(SIGINT);
+  const Json facts(service.program.wait().out);
+  EXPECT_GE(facts.number("/received/unproven"), 1);
+  EXPECT_GT(facts.number("/received/accepted"), 20);
+}
+
+}  // namespace sf
