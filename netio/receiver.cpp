@@ -11,7 +11,7 @@ Receiver::Receiver(const ReceiverOptions& options)
 }
 
 void Receiver::bind(const Stamp& farm) {
-  if (farm_ && farm_->session != farm.session) {
+  if (farm_ && farm_->session != 0 && farm_->session != farm.session) {
     for (Stream& stream : streams_) stream.assembler.restart();
   }
   farm_ = farm;

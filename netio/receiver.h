@@ -50,7 +50,7 @@ class Receiver {
  public:
   explicit Receiver(const ReceiverOptions& options);
 
-  /// Takes what carries this stamp, and from now on nothing else; where the session is another than before, all
+  /// Takes what carries this stamp, and from now on nothing else; where the session is another than one before, all
   /// streams begin anew. Without headers there is no stamp.
   void bind(const Stamp& farm);
   /// A datagram that does not come from the farm's address is counted, and not looked at.

@@ -133,7 +133,9 @@ TEST(Receiver, TakesPacketsOfItsFarmAlone) {
   };
   constexpr Stamp kFarm{0xFA23, 7}, kForged{0xFA23, 8}, kOther{0xFA24, 7};
   Receiver receiver(options());
+  receiver.bind({0, 7});  // before any challenge
   receiver.bind(kFarm);
+  EXPECT_EQ(receiver.counts().restarts, 0u);
   EXPECT_EQ(receiver.accept(0, from(kFarm, 100, 0), 0), Taken::part);
   EXPECT_EQ(receiver.accept(0, from(kForged, 100, 1), 0), Taken::refused);
   EXPECT_EQ(receiver.accept(0, from(kOther, 100, 1), 0), Taken::refused);
@@ -148,6 +150,7 @@ TEST(Receiver, TakesPacketsOfItsFarmAlone) {
   EXPECT_EQ(receiver.accept(0, from(kOther, 0, 0), 1), Taken::part);
   EXPECT_EQ(receiver.accept(0, from(kOther, 0, 1), 1), Taken::whole);
   EXPECT_EQ(receiver.accept(0, from(kFarm, 101, 0), 1), Taken::refused);
+  EXPECT_EQ(receiver.counts().restarts, 2u);  // of two streams
 }
 
 TEST(Receiver, CountsLeaps) {
