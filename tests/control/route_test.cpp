@@ -69,6 +69,23 @@ TEST(Route, keeps_the_missions_speed_limits_and_slows_down_in_bends) {
   EXPECT_GT(sideways, 0.08);
 }
 
+TEST(Route, parks_at_half_its_speed) {
+  Streets t;
+  t.add(on_lane(t.roads, "1.1", 0.3), "route", {{"park", std::string("13.4"), ""}});
+  t.begin();
+  double fastest = 0.0, near = 0.0;  // [m/s], at all and within 0.6 m of where it parks
+  while (!t.controllers[0]->done() && t.time < 600'000'000'000) {
+    t.tick();
+    const double speed = std::abs(t.fleet->reports()[0].velocity.forward);
+    fastest = std::max(fastest, speed);
+    for (const world::RoadSpot& spot : t.roads.spots)
+      if (spot.number == 4 && length(Vec2{t.pose(0).x, t.pose(0).y} - spot.end) < 0.6) near = std::max(near, speed);
+  }
+  EXPECT_TRUE(t.controllers[0]->done());
+  EXPECT_NEAR(fastest, 0.2, 1e-9);
+  EXPECT_NEAR(near, 0.1, 0.01);
+}
+
 // 6.2.3 is a stop sign; 1.3.17 too. Every time it comes to one it stands, its front within 5 cm of the line.
 TEST(Route, stops_fully_at_every_stop_sign) {
   Streets t;

@@ -392,6 +392,18 @@ TEST(Surroundings, ahead_is_measured_from_the_front_in_the_lane) {
   }
 }
 
+// Its lane is 15 % and a centimetre wider than half its width, 0.2 m, to both sides.
+TEST(Surroundings, the_lane_is_a_little_wider_than_the_body) {
+  for (const auto& [aside, ahead] : {std::pair{0.0, 1.0}, {0.235, 1.0}, {-0.235, 1.0}, {0.245, 1.9}, {-0.245, 1.9}}) {
+    world::World world = scenes::empty_world();
+    world::Mover mover = scenes::add_square(world, {});
+    mover.lasers.push_back(laser(0, 1, 2.0, {0.1, aside, 0, 0}));
+    const std::vector<double> ranges{1.1};
+    const std::vector<ReadingBlock> blocks{{.kind = 1, .values = ranges}};
+    EXPECT_NEAR(Surroundings(mover).look(blocks).ahead, ahead, 1e-6) << aside;
+  }
+}
+
 TEST(Surroundings, things_beside_the_lane_are_not_ahead) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
