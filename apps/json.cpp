@@ -131,6 +131,7 @@ std::string json_of(const gpu::Survey& survey) {
                     {"api", d.api},
                     {"kind", d.kind},
                     {"software", d.software},
+                    {"self_check", d.self_check},
                     {"chosen", d.chosen},
                     {"reason", d.reason}});
   Json json{{"devices", rows}};

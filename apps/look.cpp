@@ -108,7 +108,7 @@ int devices(const Options& options) {
   const gpu::Survey survey = gpu::survey_devices(options.device);
   const bool any = std::any_of(survey.devices.begin(), survey.devices.end(), [](const auto& d) { return d.chosen; });
   print(options.json ? json_of(survey) : text_of(survey));
-  // Opening it runs the self-check, and says in one line why there is none.
+  // Says in one line why there is none.
   const gpu::Device device(options.device);
   return any ? 0 : 3;
 }

@@ -11,8 +11,9 @@ namespace sf::apps {
 namespace {
 
 void add_devices(CLI::App& app, Options& o) {
-  CLI::App* sub =
-      app.add_subcommand("devices", "List the Vulkan devices: chosen, or refused and why (exit 3 when none is usable)");
+  CLI::App* sub = app.add_subcommand("devices",
+                                     "List the Vulkan devices: their self-check, which is chosen, and why others are "
+                                     "not (exit 3 when none is usable)");
   add_json(*sub, o);
   add_device(*sub, o);
   sub->callback([&o] { o.command = Command::devices; });

@@ -81,6 +81,7 @@ std::string text_of(const gpu::Survey& survey) {
     text += fmt::format("{} {}  {}\n", d.chosen ? "*" : " ", i, d.name);
     text += fmt::format("     {}, Vulkan {}, {}{}\n", d.kind, d.api, d.driver,
                         d.software ? " (software: computed on the CPU)" : "");
+    text += fmt::format("     self-check {}\n", d.self_check);
     text += d.chosen ? "     chosen\n" : fmt::format("     refused: {}\n", d.reason);
   }
   return text;

@@ -101,11 +101,13 @@ void Batch::end() {
 
 void Batch::up(const Buffer& table, std::size_t offset, std::size_t size) {
   const Buffer::Vk& b = table.vk();
+  SF_CHECK(offset + size <= table.bytes(), "a copy past the end of a table");
   if (b.staging.buffer && size > 0) vk_->ups.push_back({b.staging.buffer, b.table.buffer, {offset, offset, size}});
 }
 
 void Batch::down(const Buffer& table, std::size_t offset, std::size_t size) {
   const Buffer::Vk& b = table.vk();
+  SF_CHECK(offset + size <= table.bytes(), "a copy past the end of a table");
   if (b.staging.buffer && size > 0) vk_->downs.push_back({b.table.buffer, b.staging.buffer, {offset, offset, size}});
 }
 

@@ -15,21 +15,6 @@ std::string version_text(std::uint32_t version) {
          std::to_string(VK_API_VERSION_PATCH(version));
 }
 
-const char* kind_text(VkPhysicalDeviceType type) {
-  switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-      return "discrete GPU";
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-      return "integrated GPU";
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-      return "virtual GPU";
-    case VK_PHYSICAL_DEVICE_TYPE_CPU:
-      return "CPU";
-    default:
-      return "other";
-  }
-}
-
 int rank(const DeviceFacts& facts) {
   if (facts.kind == "discrete GPU") return 4;
   if (facts.kind == "integrated GPU") return 3;
@@ -37,20 +22,17 @@ int rank(const DeviceFacts& facts) {
   return facts.kind == "CPU" ? 1 : 0;
 }
 
-std::string lacks(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& properties) {
-  if (properties.apiVersion < VK_API_VERSION_1_2) return "needs Vulkan 1.2, has " + version_text(properties.apiVersion);
+Abilities abilities_of(VkPhysicalDevice physical, std::uint32_t api) {
   VkPhysicalDeviceFeatures features;
   vkGetPhysicalDeviceFeatures(physical, &features);
-  if (!features.shaderFloat64) return "has no 64-bit floating point in shaders (shaderFloat64)";
-  if (compute_family(physical) < 0) return "has no compute queue";
+  Abilities abilities{api, features.shaderFloat64 == VK_TRUE, compute_family(physical) >= 0, {}};
   for (const VkFormat format :
        {VK_FORMAT_R32_UINT, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_UINT}) {
     VkFormatProperties support;
     vkGetPhysicalDeviceFormatProperties(physical, format, &support);
-    if (!(support.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT))
-      return "has no storage texel buffers of VkFormat " + std::to_string(format);
+    if (!(support.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT)) abilities.missing.push_back(format);
   }
-  return "";
+  return abilities;
 }
 
 DeviceFacts facts_of(VkPhysicalDevice physical) {
@@ -66,7 +48,7 @@ DeviceFacts facts_of(VkPhysicalDevice physical) {
   facts.api = version_text(all.properties.apiVersion);
   facts.kind = kind_text(all.properties.deviceType);
   facts.software = all.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-  facts.reason = lacks(physical, all.properties);
+  facts.reason = lacks(abilities_of(physical, all.properties.apiVersion));
   return facts;
 }
 
@@ -85,19 +67,46 @@ bool is_wanted(const DeviceFacts& facts, std::size_t row, const std::string& wan
 
 }  // namespace
 
-int compute_family(VkPhysicalDevice physical) {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+const char* kind_text(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return "discrete GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return "integrated GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return "virtual GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return "CPU";
+    default:
+      return "other";
+  }
+}
+
+std::string lacks(const Abilities& abilities) {
+  if (abilities.api < VK_API_VERSION_1_2) return "needs Vulkan 1.2, has " + version_text(abilities.api);
+  if (!abilities.doubles) return "has no 64-bit floating point in shaders (shaderFloat64)";
+  if (!abilities.compute) return "has no compute queue";
+  if (abilities.missing.empty()) return "";
+  return "has no storage texel buffers of VkFormat " + std::to_string(abilities.missing.front());
+}
+
+int compute_family(std::span<const VkQueueFamilyProperties> families) {
   int best = -1;
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < families.size(); ++i) {
     if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT)) continue;
     const bool plain = !(families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT);
     if (best < 0 || plain) best = static_cast<int>(i);
     if (plain) break;
   }
   return best;
+}
+
+int compute_family(VkPhysicalDevice physical) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+  return compute_family(families);
 }
 
 Considered consider(const Instance& instance) {
@@ -129,6 +138,20 @@ int choose(Considered& considered, const std::string& wanted) {
     if (!facts.chosen && facts.reason.empty()) facts.reason = "usable, but another ranks higher; name it with --device";
   }
   return best;
+}
+
+int choose(Considered& considered, const std::string& wanted, const Start& start) {
+  Considered working = considered;
+  for (;;) {
+    considered = working;
+    const int best = choose(considered, wanted);
+    if (best < 0) return best;
+    const auto row = static_cast<std::size_t>(best);
+    const std::string fault = start(considered, row);
+    if (fault.empty()) return best;
+    working.facts[row].reason = fault;
+    working.facts[row].self_check = considered.facts[row].self_check;
+  }
 }
 
 }  // namespace sf::gpu

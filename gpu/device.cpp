@@ -1,5 +1,7 @@
 #include "gpu/device.h"
 
+#include <utility>
+
 #include "base/error.h"
 #include "gpu/self_check.h"
 #include "gpu/vk.h"
@@ -17,7 +19,8 @@ std::string why_none(const Instance& instance, const Considered& considered) {
   return line + " name another with --device or SENSORFARM_DEVICE, or install a driver";
 }
 
-void open(Device::Vk& vk) {
+/// The device behind `vk.physical`; returns "" or why it does not open.
+std::string open(Device::Vk& vk) {
   vkGetPhysicalDeviceProperties(vk.physical, &vk.properties);
   vkGetPhysicalDeviceMemoryProperties(vk.physical, &vk.memory);
   vk.family = static_cast<std::uint32_t>(compute_family(vk.physical));
@@ -33,10 +36,35 @@ void open(Device::Vk& vk) {
   create.queueCreateInfoCount = 1;
   create.pQueueCreateInfos = &queue;
   create.pEnabledFeatures = &features;
-  if (const VkResult result = vkCreateDevice(vk.physical, &create, nullptr, &vk.device); result != VK_SUCCESS)
-    throw base::DeviceError("the Vulkan device " + vk.facts.name + " could not be opened (vkCreateDevice gave " +
-                            std::to_string(result) + ")");
+  if (const VkResult result = vkCreateDevice(vk.physical, &create, nullptr, &vk.device); result != VK_SUCCESS) {
+    vk.device = VK_NULL_HANDLE;
+    return "could not be opened (vkCreateDevice gave " + std::to_string(result) + ")";
+  }
   vkGetDeviceQueue(vk.device, vk.family, 0, &vk.queue);
+  vk.unified = !is_set("SENSORFARM_STAGING") &&
+               vk.memory_type(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                       VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT) >= 0;
+  return "";
+}
+
+void close(Device::Vk& vk) {
+  if (!vk.device) return;
+  vkDeviceWaitIdle(vk.device);
+  vkDestroyDevice(vk.device, nullptr);
+  vk.device = VK_NULL_HANDLE;
+}
+
+/// Opens row `row` in `device` and keeps it open if it computes as the host does. Returns "" or its fault.
+std::string start(Device& device, Considered& considered, std::size_t row) {
+  Device::Vk& vk = device.vk();
+  DeviceFacts& facts = considered.facts[row];
+  vk.physical = considered.handles[row];
+  vk.facts = facts;
+  if (const std::string fault = open(vk); !fault.empty()) return fault;
+  const std::string fault = self_check(device);
+  facts.self_check = fault.empty() ? "passed" : "failed";
+  if (!fault.empty()) close(vk);
+  return fault;
 }
 
 }  // namespace
@@ -56,38 +84,32 @@ void Device::Vk::let_go(const void* what) {
 }
 
 Survey survey_devices(const std::string& wanted) {
-  const Instance instance;
-  Considered considered = consider(instance);
-  choose(considered, wanted);
-  return {considered.facts, instance.problem};
-}
-
-Device::Device(const std::string& wanted) : vk_(std::make_unique<Vk>()) {
-  vk_->instance = std::make_unique<Instance>();
-  Considered considered = consider(*vk_->instance);
-  const int row = choose(considered, wanted);
-  if (row < 0) throw base::DeviceError(why_none(*vk_->instance, considered));
-  vk_->physical = considered.handles[static_cast<std::size_t>(row)];
-  vk_->facts = considered.facts[static_cast<std::size_t>(row)];
-  open(*vk_);
-  if (const std::string fault = self_check(*this); !fault.empty()) {
-    vkDestroyDevice(vk_->device, nullptr);
-    throw base::DeviceError("the Vulkan device " + vk_->facts.name + " was refused: " + fault);
+  Device probe(std::make_unique<Device::Vk>());
+  Considered considered = consider(*probe.vk().instance);
+  for (std::size_t row = 0; row < considered.facts.size(); ++row) {
+    if (!considered.facts[row].reason.empty()) continue;
+    considered.facts[row].reason = start(probe, considered, row);
+    close(probe.vk());
   }
+  choose(considered, wanted);
+  return {considered.facts, probe.vk().instance->problem};
 }
 
-Device::~Device() {
-  if (!vk_->device) return;
-  vkDeviceWaitIdle(vk_->device);
-  vkDestroyDevice(vk_->device, nullptr);
+Device::Device(std::unique_ptr<Vk> vk) : vk_(std::move(vk)) { vk_->instance = std::make_unique<Instance>(); }
+
+Device::Device(const std::string& wanted) : Device(std::make_unique<Vk>()) {
+  Considered considered = consider(*vk_->instance);
+  const int row =
+      choose(considered, wanted, [&](Considered& tried, std::size_t at) { return start(*this, tried, at); });
+  if (row < 0) throw base::DeviceError(why_none(*vk_->instance, considered));
+  vk_->facts = considered.facts[static_cast<std::size_t>(row)];
 }
+
+Device::~Device() { close(*vk_); }
 
 const DeviceFacts& Device::facts() const { return vk_->facts; }
 
-bool Device::unified() const {
-  return vk_->memory_type(~0u, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                   VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT) >= 0;
-}
+bool Device::unified() const { return vk_->unified; }
 
 std::vector<Held> Device::held() const {
   std::vector<Held> all;

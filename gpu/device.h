@@ -17,10 +17,11 @@ struct DeviceFacts {
   std::string kind;       ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU" or "other"
   bool software = false;  ///< computed on the CPU
   bool chosen = false;
-  std::string reason;  ///< why it was refused or not chosen; empty for the chosen one
+  std::string reason;                  ///< why it was refused or not chosen; empty for the chosen one
+  std::string self_check = "not run";  ///< "passed", "failed" (`reason` says in what) or "not run"
 };
 
-/// Opens Vulkan and considers every device.
+/// Opens Vulkan, considers every device, and runs the self-check on each that lacks nothing.
 /// `wanted` is empty (best usable device), a row number of the list, or a part of a device's name.
 /// Throws nothing for "no device": the list then has no chosen row. `problem` says what is wrong with Vulkan itself, if
 /// anything.
@@ -41,6 +42,7 @@ struct Held {
 /// One open device with one compute queue. Used by one thread at a time; must outlive all that is made on it.
 class Device {
  public:
+  /// The first device, best first, that is wanted, opens and passes the self-check.
   /// @throws base::DeviceError: one line that lists every device considered and why it was refused.
   explicit Device(const std::string& wanted = "");
   ~Device();
@@ -48,7 +50,8 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const DeviceFacts& facts() const;
-  /// Host and device share memory: uploads and downloads copy nothing.
+  /// Host and device share memory: uploads and downloads copy nothing. Never so where the environment had
+  /// SENSORFARM_STAGING=1 when it was opened, by which tests copy on any device.
   bool unified() const;
   /// All tables and kernels that live on it, in the order in which they were made.
   std::vector<Held> held() const;
@@ -58,6 +61,7 @@ class Device {
   std::string validation_messages() const;
 
   struct Vk;  ///< the Vulkan handles, for this room only
+  explicit Device(std::unique_ptr<Vk> vk);
   Vk& vk() const { return *vk_; }
 
  private:

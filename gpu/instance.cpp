@@ -31,12 +31,12 @@ bool has_layer(const char* wanted) {
   return false;
 }
 
-bool wants_validation() {
-  const char* flag = std::getenv("SENSORFARM_VALIDATE");
-  return flag && *flag && std::strcmp(flag, "0") != 0;
-}
-
 }  // namespace
+
+bool is_set(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value && *value && std::strcmp(value, "0") != 0;
+}
 
 void must(VkResult result, const char* call) {
   if (result == VK_SUCCESS) return;
@@ -44,9 +44,9 @@ void must(VkResult result, const char* call) {
 }
 
 Instance::Instance() {
-  const bool validate = wants_validation() && has_layer(kValidationLayer);
-  if (wants_validation() && !validate)
-    messages = "SENSORFARM_VALIDATE is set, but the validation layer is not installed\n";
+  const bool wanted = is_set("SENSORFARM_VALIDATE");
+  const bool validate = wanted && has_layer(kValidationLayer);
+  if (wanted && !validate) messages = "SENSORFARM_VALIDATE is set, but the validation layer is not installed\n";
 
   VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
   application.pApplicationName = "sensorfarm";

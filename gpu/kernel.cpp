@@ -65,7 +65,7 @@ std::uint32_t group_size_of(std::span<const std::uint32_t> spirv) {
   constexpr std::uint32_t kLocalSize = 17;
   for (std::size_t at = 5; at < spirv.size();) {
     const std::uint32_t words = spirv[at] >> 16;
-    if (words == 0) return 0;
+    if (words == 0 || words > spirv.size() - at) return 0;
     if ((spirv[at] & 0xFFFFu) == kExecutionMode && words >= 6 && spirv[at + 2] == kLocalSize) return spirv[at + 3];
     at += words;
   }

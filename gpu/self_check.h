@@ -1,14 +1,19 @@
 #pragma once
-// Vulkan promises little about 64-bit arithmetic, and the farm's last word on every range is 64-bit.
+// Does a device compute as the host does? Asked of every device before it is used.
 
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "gpu/device.h"
 
 namespace sf::gpu {
 
-/// Computes sums, products, quotients and roundings on the device and on the host.
-/// @return "" when they agree to the bit, else one line that says which operation differed.
+/// Runs the operations of gpu/arithmetic.h, in the form in which kernels use them, on the device and on the host.
+/// @return "" when they agree, else one line with the first difference: operation, operands, found and expected.
 std::string self_check(Device& device);
+
+/// The same with another kernel in place of shaders/self_check.comp.
+std::string self_check(Device& device, std::span<const std::uint32_t> spirv);
 
 }  // namespace sf::gpu

@@ -3,7 +3,9 @@
 
 #include <vulkan/vulkan.h>
 
+#include <functional>
 #include <mutex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +14,9 @@
 #include "gpu/device.h"
 
 namespace sf::gpu {
+
+/// An environment variable that is neither empty nor 0.
+bool is_set(const char* variable);
 
 /// Aborts with the call's name: a Vulkan call that fails after start-up is our bug or a lost device.
 void must(VkResult result, const char* call);
@@ -35,6 +40,7 @@ struct Device::Vk {
   std::uint32_t family = 0;
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
+  bool unified = false;
   DeviceFacts facts;
   std::string owner;
   std::vector<std::pair<const void*, Held>> held;  ///< in the order in which they were made
@@ -53,10 +59,29 @@ struct Considered {
 };
 Considered consider(const Instance& instance);
 
+/// As in `DeviceFacts::kind`.
+const char* kind_text(VkPhysicalDeviceType type);
+
 /// Marks the chosen row, gives the others a reason, and returns the chosen row or -1.
 int choose(Considered& considered, const std::string& wanted);
 
-/// Compute queue family with the fewest other talents, or -1.
+/// As above, but a row for which `start` gives a fault has that for its reason, and the next best is chosen.
+using Start = std::function<std::string(Considered&, std::size_t row)>;
+int choose(Considered& considered, const std::string& wanted, const Start& start);
+
+/// What a device must have.
+struct Abilities {
+  std::uint32_t api = 0;  ///< as VK_MAKE_API_VERSION
+  bool doubles = false;
+  bool compute = false;
+  std::vector<VkFormat> missing;  ///< formats without storage texel buffers
+};
+
+/// The first of its lacks, or "".
+std::string lacks(const Abilities& abilities);
+
+/// Compute queue family, one without graphics if there is one, or -1.
+int compute_family(std::span<const VkQueueFamilyProperties> families);
 int compute_family(VkPhysicalDevice physical);
 
 }  // namespace sf::gpu

@@ -1,9 +1,14 @@
 #version 450
-// 64-bit operations whose results the host knows to the bit (gpu/self_check.cpp).
+// The arithmetic that decides readings, each operation in the form in which kernels have it: what the host computes for the same operands
+// is in gpu/arithmetic.cpp, in this order.
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer operands;  // a, b as two words each
-layout(binding = 1, rgba32ui) uniform writeonly uimageBuffer results;  // three texels a row: six results
+layout(binding = 1, rgba32ui) uniform writeonly uimageBuffer results;  // nine texels a row: eighteen results
+
+void store(int row, int texel, uvec2 first, uvec2 second) { imageStore(results, 9 * row + texel, uvec4(first, second)); }
+
+uvec2 word_of(float x) { return uvec2(floatBitsToUint(x), 0u); }
 
 void main() {
   const int row = int(gl_GlobalInvocationID.x);
@@ -11,16 +16,57 @@ void main() {
   const double a = packDouble2x32(words.xy);
   const double b = packDouble2x32(words.zw);
 
+  // Differences, products and quotients: rays (lib/decide.glsl), points (lib/edge_point.glsl), fits (line_fit.h), dipoles.
   precise double sum = a + b;
   precise double difference = a - b;
   precise double product = a * b;
   precise double quotient = a / b;
-  precise double scaled = a * 0.9LF;
-  precise double other = b * scaled;
-  precise double unfused = product - other;
-  precise double rounded = double(float(a));
+  const double guarded = b != 0.0LF ? quotient : 0.0LF;
+  precise double scaled = 0.9LF * a;
+  precise double cross = a * b - b * scaled;
+  precise double disturbed = a + b * scaled;
+  precise double squares = a * a + b * b;
+  precise double norm = sqrt(a * a + b * b);
+  store(row, 0, unpackDouble2x32(sum), unpackDouble2x32(difference));
+  store(row, 1, unpackDouble2x32(product), unpackDouble2x32(guarded));
+  store(row, 2, unpackDouble2x32(cross), unpackDouble2x32(disturbed));
+  store(row, 3, unpackDouble2x32(squares), unpackDouble2x32(norm));
 
-  imageStore(results, 3 * row, uvec4(unpackDouble2x32(sum), unpackDouble2x32(difference)));
-  imageStore(results, 3 * row + 1, uvec4(unpackDouble2x32(product), unpackDouble2x32(quotient)));
-  imageStore(results, 3 * row + 2, uvec4(unpackDouble2x32(unfused), unpackDouble2x32(rounded)));
+  // Sums over a loop.
+  precise double total = 0.0LF;
+  precise double x = a;
+  int turn = 0;
+  while (turn < 8) {
+    precise double term = x * b;
+    total = total + term;
+    x = 0.9LF * x;
+    ++turn;
+  }
+  const double clamped = min(max(a, b), 3.0LF);
+  store(row, 4, unpackDouble2x32(total), unpackDouble2x32(clamped));
+
+  // Decisions, and a reading that is no number.
+  const uint compared = (a < b ? 1u : 0u) | (a <= b ? 2u : 0u) | (a == b ? 4u : 0u) | (a > b ? 8u : 0u) | (a >= b ? 16u : 0u) |
+                        (a != b ? 32u : 0u);
+  const double nan = packDouble2x32(uvec2(0u, 0x7ff80000u));
+  store(row, 5, uvec2(compared, 0u), unpackDouble2x32(a > b ? a : nan));
+
+  // Between 64 bits and 32. No kernel widens what it has just narrowed, which compilers may leave out.
+  const float narrow = float(a);
+  const float other = float(b);
+  precise float turned = narrow * other - other * (0.9 * narrow);
+  store(row, 6, unpackDouble2x32(double(uintBitsToFloat(words.y))), unpackDouble2x32(double(int(words.x))));
+  store(row, 7, word_of(narrow), word_of(turned));
+
+  // A 32-bit root or quotient is only where a search or one step of Newton's method in 64 bits begins (lib/dipoles.glsl).
+  precise double square = 1.0LF + a * a;
+  precise float root = sqrt(max(float(square), 1e-37));
+  precise float rough32 = 1.0 / root;
+  precise double rough = double(rough32);
+  precise double one = square * rough * rough;
+  precise double inverse = rough * (1.5LF - 0.5LF * one);
+  precise float half_over = 0.5 / root;
+  precise double s = double(root);
+  precise double refined = s + (square - s * s) * double(half_over);
+  store(row, 8, unpackDouble2x32(inverse), unpackDouble2x32(refined));
 }

@@ -223,8 +223,11 @@ TEST(Devices, TheChosenOneIsNamed) {
     const bool is_chosen = facts.flag(row + "/chosen");
     chosen += is_chosen;
     EXPECT_EQ(facts.text(row + "/reason").empty(), is_chosen) << "who is refused is told why";
+    if (!is_chosen) continue;
+    EXPECT_EQ(facts.text(row + "/self_check"), "passed");
   }
   EXPECT_EQ(chosen, 1u);
+  EXPECT_NE(run_program({"devices"}).out.find("self-check passed"), std::string::npos);
 }
 
 TEST(Devices, NoSuchDeviceEndsWithThree) {

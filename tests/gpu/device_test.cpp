@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "base/error.h"
 
 namespace sf::gpu {
@@ -12,6 +14,8 @@ TEST(Device, OpensTheBestDeviceAndSaysWhatItIs) {
   EXPECT_FALSE(device.facts().name.empty());
   EXPECT_TRUE(device.facts().chosen);
   EXPECT_EQ(device.facts().software, device.facts().kind == "CPU");
+  EXPECT_NE(device.facts().driver, "");
+  EXPECT_EQ(device.facts().api.find("1."), 0u) << device.facts().api;
 }
 
 TEST(Device, SurveyChoosesExactlyOneAndGivesTheOthersAReason) {
@@ -29,9 +33,29 @@ TEST(Device, AnUnknownNameIsRefusedWithEveryDeviceAndItsReason) {
     Device device("no such device");
     FAIL() << "opened " << device.facts().name;
   } catch (const base::DeviceError& error) {
-    EXPECT_NE(std::string(error.what()).find("is not the wanted one ('no such device')"), std::string::npos)
-        << error.what();
+    const std::string text = error.what();
+    const std::size_t devices = survey_devices("").devices.size();
+    EXPECT_EQ(text.find("no usable Vulkan device among " + std::to_string(devices) + ": "), 0u) << text;
+    EXPECT_NE(text.find("is not the wanted one ('no such device');"), std::string::npos) << text;
+    EXPECT_NE(text.find("name another with --device"), std::string::npos) << text;
   }
+}
+
+TEST(Device, WithoutADriverItSaysWhatToInstall) {
+  const char* set = std::getenv("VK_DRIVER_FILES");
+  const std::string before = set ? set : "";
+  setenv("VK_DRIVER_FILES", "/no/such/driver.json", 1);
+  const Survey survey = survey_devices("");
+  EXPECT_TRUE(survey.devices.empty());
+  EXPECT_EQ(survey.problem.find("Vulkan has no usable driver"), 0u) << survey.problem;
+  try {
+    Device device;
+    ADD_FAILURE() << "opened " << device.facts().name;
+  } catch (const base::DeviceError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "no Vulkan device: " + survey.problem + "; install a driver (Debian: mesa-vulkan-drivers)");
+  }
+  before.empty() ? unsetenv("VK_DRIVER_FILES") : setenv("VK_DRIVER_FILES", before.c_str(), 1);
 }
 
 TEST(Device, ARowNumberNamesADevice) { EXPECT_EQ(Device("0").facts().name, survey_devices("0").devices[0].name); }

@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <utility>
 
 #include "base/error.h"
+#include "gpu/batch.h"
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
 #include "gpu/self_check.h"
 #include "gpu/vk.h"
 #include "shaders/loop.comp.h"
+#include "shaders/wrong.comp.h"
 
 namespace sf::gpu {
 namespace {
@@ -23,6 +26,20 @@ TEST(Buffer, HasTheTexelsAskedForAndAHostView) {
   table.host<double>()[9] = 1.5;
   Buffer other(std::move(table));
   EXPECT_EQ(other.host<double>()[9], 1.5);
+}
+
+TEST(Buffer, AssignmentSwaps) {
+  Device device;
+  Buffer table(device, "table", Role::upload, Texel::u32, 2);
+  {
+    Buffer other(device, "other", Role::upload, Texel::f32x4, 3);
+    other.host<double>()[5] = 2.5;
+    table = std::move(other);
+  }
+  EXPECT_EQ(table.texels(), 3u);
+  EXPECT_EQ(table.host<double>()[5], 2.5);
+  ASSERT_EQ(device.held().size(), 1u);
+  EXPECT_EQ(device.held()[0].name, "other");
 }
 
 TEST(Device, NamesWhatItHolds) {
@@ -55,15 +72,113 @@ TEST(Buffer, MoreThanTheDeviceHoldsIsRefused) {
   }
 }
 
+/// No memory of any wanted type: the same refusal as a full device's.
+TEST(Buffer, NoRoomIsRefusedWithTheSize) {
+  Device device;
+  const std::uint32_t types = std::exchange(device.vk().memory.memoryTypeCount, 0);
+  try {
+    Buffer table(device, "table", Role::upload, Texel::u32x4, 1 << 20);
+    ADD_FAILURE();
+  } catch (const base::DeviceError& error) {
+    EXPECT_NE(std::string(error.what()).find("has no room for 16 MiB; use fewer robots or beams"), std::string::npos)
+        << error.what();
+  }
+  device.vk().memory.memoryTypeCount = types;
+  EXPECT_TRUE(device.held().empty());
+}
+
+TEST(Batch, ACopyPastTheEndIsOurMistake) {
+  Device device;
+  Batch batch(device);
+  Buffer table(device, "table", Role::upload, Texel::u32, 4);
+  batch.up(table, 12, 4);
+  batch.down(table, 16, 0);
+  EXPECT_DEATH(batch.up(table, 12, 8), "a copy past the end of a table");
+  EXPECT_DEATH(batch.down(table, 16, 4), "a copy past the end of a table");
+}
+
+TEST(Vulkan, ACallThatFailsEndsTheProgramByName) {
+  must(VK_SUCCESS, "vkQueueSubmit");
+  EXPECT_DEATH(must(VK_ERROR_DEVICE_LOST, "vkQueueSubmit"), "vkQueueSubmit gave VkResult -4");
+}
+
 TEST(Kernel, GroupSizeIsReadFromTheModule) {
   EXPECT_EQ(group_size_of(loop_comp_spv), 64u);
   EXPECT_EQ(group_size_of(std::span<const std::uint32_t>(loop_comp_spv).first(5)), 0u) << "a header alone";
   EXPECT_EQ(group_size_of({}), 0u);
 }
 
-TEST(SelfCheck, TheChosenDeviceKnowsItsDoubles) {
+TEST(Kernel, OnlyLocalSizeIsTheGroupSize) {
+  const auto size_of = [](std::vector<std::uint32_t> instructions) {
+    instructions.insert(instructions.begin(), 5, 0x07230203u);
+    return group_size_of(instructions);
+  };
+  constexpr std::uint32_t kMode = 6u << 16 | 16u;
+  EXPECT_EQ(size_of({2u << 16 | 17u, 1u, kMode, 4u, 17u, 32u, 1u, 1u}), 32u) << "behind another instruction";
+  EXPECT_EQ(size_of({kMode, 4u, 38u, 32u, 1u, 1u, kMode, 4u, 17u, 16u, 1u, 1u}), 16u) << "behind another mode";
+  EXPECT_EQ(size_of({6u << 16 | 15u, 4u, 17u, 32u, 1u, 1u}), 0u) << "no execution mode";
+  EXPECT_EQ(size_of({3u << 16 | 16u, 4u, 17u}), 0u) << "too short";
+  EXPECT_EQ(size_of({kMode, 4u, 17u}), 0u) << "cut off";
+  EXPECT_EQ(size_of({0u, kMode, 4u, 17u, 32u, 1u, 1u}), 0u) << "an instruction of no words";
+}
+
+TEST(Buffer, TexelsHaveTheirSizes) {
+  EXPECT_EQ(texel_size(Texel::u32), 4u);
+  EXPECT_EQ(texel_size(Texel::f32), 4u);
+  EXPECT_EQ(texel_size(Texel::u32x4), 16u);
+  EXPECT_EQ(texel_size(Texel::f32x4), 16u);
+}
+
+TEST(SelfCheck, TheChosenDeviceComputesAsTheHostDoes) {
   Device device;
   EXPECT_EQ(self_check(device), "");
+  EXPECT_EQ(device.facts().self_check, "passed");
+}
+
+TEST(SelfCheck, AKernelThatComputesOtherwiseIsFound) {
+  Device device;
+  const std::string fault = self_check(device, wrong_comp_spv);
+  EXPECT_EQ(fault.find("differs from IEEE 754 in "), 0u) << fault;
+}
+
+TEST(SelfCheck, TheSurveyHasItOfEveryDeviceThatLacksNothing) {
+  for (const DeviceFacts& facts : survey_devices("").devices) {
+    EXPECT_NE(facts.self_check, "") << facts.name;
+    EXPECT_EQ(facts.self_check == "passed", facts.chosen || facts.reason.find("usable") == 0) << facts.name;
+  }
+}
+
+/// The first type that has all that is wanted, among those that are allowed.
+TEST(Device, MemoryTypesAreFoundByWhatTheyHave) {
+  Device device;
+  Device::Vk& vk = device.vk();
+  const VkPhysicalDeviceMemoryProperties own = vk.memory;
+  constexpr VkMemoryPropertyFlags kLocal = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+  constexpr VkMemoryPropertyFlags kSeen = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
+  vk.memory.memoryTypeCount = 3;
+  vk.memory.memoryTypes[0].propertyFlags = kLocal;
+  vk.memory.memoryTypes[1].propertyFlags = kSeen;
+  vk.memory.memoryTypes[2].propertyFlags = kLocal | kSeen;
+  EXPECT_EQ(vk.memory_type(~0u, kLocal), 0);
+  EXPECT_EQ(vk.memory_type(~0u, kSeen), 1);
+  EXPECT_EQ(vk.memory_type(~0u, kLocal | kSeen), 2);
+  EXPECT_EQ(vk.memory_type(0b101u, kSeen), 2) << "the second is not allowed";
+  EXPECT_EQ(vk.memory_type(0b011u, kLocal | kSeen), -1);
+  EXPECT_EQ(vk.memory_type(0b110u, 0), 1);
+  vk.memory.memoryTypeCount = 2;
+  EXPECT_EQ(vk.memory_type(~0u, kLocal | kSeen), -1) << "past the last type";
+  vk.memory = own;
+}
+
+TEST(Environment, EmptyAndZeroAreNotSet) {
+  unsetenv("SENSORFARM_TEST");
+  EXPECT_FALSE(is_set("SENSORFARM_TEST"));
+  for (const auto& [value, set] :
+       std::vector<std::pair<const char*, bool>>{{"", false}, {"0", false}, {"1", true}, {"00", true}}) {
+    setenv("SENSORFARM_TEST", value, 1);
+    EXPECT_EQ(is_set("SENSORFARM_TEST"), set) << value;
+  }
+  unsetenv("SENSORFARM_TEST");
 }
 
 /// The layer speaks when something is wrong: so its silence elsewhere means something.
