@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "apps/commands.h"
+#include "apps/facts.h"
 #include "apps/progress.h"
 #include "base/error.h"
 
@@ -46,7 +47,8 @@ int experiment(const Options& options) {
                                           .plant = options.plant,
                                           .folder = folder_of(options),
                                           .out = options.out,
-                                          .threads = options.threads};
+                                          .threads = options.threads,
+                                          .warn = tell_warnings};
   gpu::Device device(options.device);
   std::vector<std::string> files;
   {

@@ -87,7 +87,8 @@ int explain(const Options& options) {
     explanation =
         scenarios::explain(world, device, options.seed, options.threads, [&](double part) { progress.show(part); });
   }
-  std::fputs((options.json ? json_of(explanation) : text_of(explanation)).c_str(), stdout);
+  std::fputs((options.json ? with_warnings(json_of(explanation), world.warnings) : text_of(explanation)).c_str(),
+             stdout);
   return 0;
 }
 

@@ -5,6 +5,17 @@
 
 namespace sf::apps {
 
+void tell_warnings(const std::string& file, const std::vector<world::Warning>& warnings) {
+  constexpr std::size_t kFirst = 3;
+  const std::size_t count = warnings.size();
+  if (count == 0) return;
+  std::fprintf(stderr, "sensorfarm: %zu %s%s\n", count, count == 1 ? "warning" : "warnings",
+               count > kFirst ? (", the first 3 here, all with `sensorfarm check " + file + "`:").c_str() : ":");
+  for (std::size_t i = 0; i < std::min(count, kFirst); ++i)
+    std::fprintf(stderr, "%s:%d: warning: %s\n", warnings[i].file.c_str(), warnings[i].line,
+                 warnings[i].message.c_str());
+}
+
 void tell_damage(const record::Recording& recording) {
   for (const std::string& damage : recording.damage)
     std::fprintf(stderr, "sensorfarm: %s: %s\n", recording.file.c_str(), damage.c_str());

@@ -57,6 +57,12 @@ struct SelfTest {
   bool sound() const { return !cases.empty() && passed() == cases.size(); }
 };
 
+/// Says on standard error how many warnings there are, and the first three of them. @param file that `check` lists all
+/// of
+void tell_warnings(const std::string& file, const std::vector<world::Warning>& warnings);
+/// The JSON object with the list of all of them at its end.
+std::string with_warnings(std::string json, const std::vector<world::Warning>& warnings);
+
 /// Says on standard error what a recording lacks.
 void tell_damage(const record::Recording& recording);
 

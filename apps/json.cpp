@@ -40,6 +40,12 @@ std::uint64_t count_rays(const netio::Summary& summary) {
   return lasers == summary.of.end() ? 0 : lasers->second.elements;
 }
 
+Json warnings_json(const std::vector<world::Warning>& warnings) {
+  Json json = Json::array();
+  for (const world::Warning& w : warnings) json.push_back({{"file", w.file}, {"line", w.line}, {"message", w.message}});
+  return json;
+}
+
 /// What is infinite has no number in JSON.
 Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -146,9 +152,6 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
     sensors[std::string(kind->name)] = group == nullptr ? 0 : group->rows.size();
   }
   const sensors::FieldFacts field = sensors::field_facts(world);
-  Json warnings = Json::array();
-  for (const world::Warning& w : world.warnings)
-    warnings.push_back({{"file", w.file}, {"line", w.line}, {"message", w.message}});
   const std::size_t docks = count_docks(world);
   std::size_t segments = world.walls.size();
   for (const world::Mover& mover : world.movers) segments += mover.body.size();
@@ -176,7 +179,12 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
                 {"accuracy", statements_json(sensors::statements_of(world, roster))},
                 {"kept", world.kept},
                 {"hash", base::hash_text(world.hash)},
-                {"warnings", warnings}});
+                {"warnings", warnings_json(world.warnings)}});
+}
+
+std::string with_warnings(std::string json, const std::vector<world::Warning>& warnings) {
+  const std::size_t end = json.find_last_not_of(" \n", json.rfind('}') - 1) + 1;
+  return json.insert(end, ",\n  \"warnings\": " + dump(warnings_json(warnings)));
 }
 
 std::string json_of(const RunFacts& f) {

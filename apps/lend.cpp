@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "apps/facts.h"
 #include "world/free_space.h"
 
 namespace sf::apps {
@@ -59,6 +60,7 @@ world::World load_with_robots(const std::string& file, const world::LoadOptions&
                  "degrees, 8 m\n",
                  file.c_str());
   if (count > 0 || lent) world::clone_robots(world, std::max(1u, count), seed, of);
+  tell_warnings(file, world.warnings);
   return world;
 }
 

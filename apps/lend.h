@@ -9,7 +9,7 @@ namespace sf::apps {
 /// m, at the origin, and says so in a warning. @return true when it did.
 bool lend_robot(world::World& world);
 
-/// Loads the world, lends it a robot where it has none, and clones robots when `count` > 0.
+/// Loads the world, lends it a robot where it has none, clones robots when `count` > 0, and tells of its warnings.
 world::World load_with_robots(const std::string& file, const world::LoadOptions& options, std::uint32_t count,
                               std::uint64_t seed, const std::string& of = "");
 

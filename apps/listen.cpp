@@ -36,7 +36,7 @@ int listen(const Options& options) {
                options.bind.c_str());
   listener.run(stop_requested(), static_cast<int>(1000.0 * options.silence), std::llround(1000.0 * options.duration));
   const netio::Summary summary = listener.summary();
-  std::fputs((options.json ? json_of(summary) : text_of(summary)).c_str(), stdout);
+  std::fputs((options.json ? with_warnings(json_of(summary), world.warnings) : text_of(summary)).c_str(), stdout);
   return summary.good > 0 ? 0 : 1;
 }
 

@@ -124,6 +124,7 @@ int check(const Options& options) {
 int draw(const Options& options) {
   if (const auto code = draw_roads(options)) return *code;
   const world::World world = world::load_world(options.world, options.load);
+  tell_warnings(options.world, world.warnings);
   viz::draw_world(world, options.out);
   std::fprintf(stderr, "sensorfarm: wrote %s\n", options.out.c_str());
   return 0;
@@ -147,7 +148,7 @@ int sense(const Options& options) {
   if (options.no_return_inf) mark_no_return(roster.row(reading), reading, values);
   reading.values = values;
   if (!options.json) std::fprintf(stderr, "sensorfarm: %s\n", place_of(world, roster, reading).c_str());
-  print(options.json ? json_of(world, roster, reading) : text_of(world, reading));
+  print(options.json ? with_warnings(json_of(world, roster, reading), world.warnings) : text_of(world, reading));
   return 0;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/commands.h"
+#include "apps/facts.h"
 #include "apps/lend.h"
 #include "apps/robot_facts.h"
 #include "apps/robot_process.h"
@@ -61,7 +62,7 @@ int robot(const Options& options) {
   process.leave(now());
   RobotFacts facts = process.facts(options);
   facts.wall_s = 1e-9 * static_cast<double>(now());
-  std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
+  std::fputs((options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts)).c_str(), stdout);
   return facts.answered || !facts.listens ? 0 : 1;
 }
 

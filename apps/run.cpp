@@ -123,6 +123,7 @@ int run(const Options& options) {
   const sensors::Roster roster(world);
   scenarios::Simulation simulation =
       advised(world, options, [&] { return scenarios::Simulation(world, device, simulation_options(world, options)); });
+  if (!simulation.warnings().empty()) tell_warnings(simulation.warnings().front().file, simulation.warnings());
   ControlTally tally(simulation, world.movers.size(), options.controller);
   Outputs outputs(world, roster, plan, options);
   catch_stop_signals();
@@ -153,7 +154,9 @@ int run(const Options& options) {
   facts.farm = simulation.farm().stats();
   facts.hash = simulation.farm().hash();
   outputs.finish(facts);
-  std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
+  std::vector<world::Warning> warnings = world.warnings;
+  warnings.insert(warnings.end(), simulation.warnings().begin(), simulation.warnings().end());
+  std::fputs((options.json ? with_warnings(json_of(facts), warnings) : text_of(facts)).c_str(), stdout);
   return 0;
 }
 

@@ -200,7 +200,7 @@ int serve(const Options& options) {
   facts.device = device.facts().name;
   facts.software = device.facts().software;
   facts.wall_s = facts.simulated_s = std::chrono::duration<double>(Clock::now() - start).count();
-  std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
+  std::fputs((options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts)).c_str(), stdout);
   return 0;
 }
 

@@ -126,7 +126,7 @@ int tradeoff(const Options& options) {
                            "laneedge( ) or a magnetometer( )");
   if (!options.out.empty()) write(options, world, device, grades);
   const std::string words = scenarios::words_of(grades, scenarios::advise(grades, wish));
-  const std::string text = options.json        ? json_of(grades, wish)
+  const std::string text = options.json        ? with_warnings(json_of(grades, wish), world.warnings)
                            : options.automatic ? words + "\n"
                                                : text_of(grades) + advice_text(grades, wish);
   std::fputs(text.c_str(), stdout);

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "control/controller.h"
 #include "control/settings.h"
@@ -16,9 +17,10 @@ namespace sf::control {
 /// What a controller may know before it starts. All of it outlives it.
 struct Site {
   const world::World& world;
-  std::uint32_t mover = 0;                    ///< row of the robot
-  std::uint64_t seed = 0;                     ///< of its own choices
-  const world::RoadNetwork* roads = nullptr;  ///< null: the world has none
+  std::uint32_t mover = 0;                          ///< row of the robot
+  std::uint64_t seed = 0;                           ///< of its own choices
+  const world::RoadNetwork* roads = nullptr;        ///< null: the world has none
+  std::vector<world::Warning>* warnings = nullptr;  ///< gets what there is to warn of in files that it reads
 };
 
 /// One kind of controller. Defined as `constinit const ControllerKind x_controller` beside its class, listed in

@@ -45,7 +45,8 @@ std::vector<std::string> run_experiment(const ExperimentKind& kind, const Experi
                                         .string());
   scenario.plant = options.plant ? *options.plant : scenario.plant ? *scenario.plant : kind.plant;
   make_folder(options.out);
-  check_scenario(scenario);
+  const std::vector<world::Warning> warnings = check_scenario(scenario);
+  if (options.warn) options.warn(scenario.world, warnings);
   return kind.run({kind, scenario, options, device, progress});
 }
 

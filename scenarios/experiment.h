@@ -21,6 +21,7 @@ struct ExperimentOptions {
   std::string folder;          ///< with the scenarios' files
   std::string out;             ///< folder to write into
   unsigned threads = 0;
+  std::function<void(const std::string& world, const std::vector<world::Warning>&)> warn;  ///< what its world warns of
 };
 
 struct ExperimentKind;

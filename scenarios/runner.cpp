@@ -211,8 +211,8 @@ Verdict ScenarioResult::verdict() const {
   return met ? Verdict::passed : Verdict::failed;
 }
 
-void check_scenario(const Scenario& scenario) {
-  const world::World world = world_of(scenario);
+std::vector<world::Warning> check_scenario(const Scenario& scenario) {
+  world::World world = world_of(scenario);
   const SimulationOptions options = simulation_of(scenario, world);
   const std::optional<world::RoadNetwork> roads = world::roads_of(world);
   std::vector<control::Made> made;  // kept to the end: robots of one shape share their corridors
@@ -222,6 +222,7 @@ void check_scenario(const Scenario& scenario) {
       made.push_back(try_controller(scenario, {world, m, options.seed, roads ? &*roads : nullptr}, plan));
   }
   for (const Expectation& e : scenario.expect) check_expectation(scenario, world, options, e);
+  return std::move(world.warnings);
 }
 
 ScenarioResult run_scenario(const Scenario& scenario, gpu::Device& device,

@@ -35,9 +35,9 @@ struct ScenarioResult {
 };
 
 /// Everything that a run would refuse, without a device and before any has begun: its world, its robots, their
-/// controllers and settings, what is expected of whom.
+/// controllers and settings, what is expected of whom. @return what there is to warn of
 /// @throws base::InputError at the scenario's line, or at that of a file that it names.
-void check_scenario(const Scenario& scenario);
+std::vector<world::Warning> check_scenario(const Scenario& scenario);
 
 /// @param progress called now and then with the part in [0, 1] that is done; may be empty
 /// @throws base::InputError for what the world or a robot lacks.

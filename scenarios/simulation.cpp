@@ -51,8 +51,10 @@ Simulation::Driver Simulation::make_driver(std::uint32_t mover, const Simulation
   Driver driver;
   const Actor& actor = options.actors.empty() ? options.actor : options.actors[mover];
   if (actor.plan.controller.empty() || (options.actors.empty() && world_.movers[mover].is_tag)) return driver;
-  const control::Site site{world_, mover, options.seed, roads()};
+  std::vector<world::Warning> warnings;
+  const control::Site site{world_, mover, options.seed, roads(), &warnings};
   control::Made made = control::make_controller(site, actor.plan);
+  if (warnings_.empty()) warnings_ = std::move(warnings);  // robots with the same orders read the same files
   driver.controller = std::move(made.controller);
   driver.rate = made.rate;
   // Who wanders goes by its eyes unless told a rate: one decision for each scan.

@@ -62,6 +62,8 @@ class Simulation {
   /// All controllers are done; false where there are none.
   bool all_done() const;
   const world::RoadNetwork* roads() const { return roads_ ? &*roads_ : nullptr; }
+  /// What there is to warn of in the first files that a controller has read (a mission).
+  const std::vector<world::Warning>& warnings() const { return warnings_; }
 
  private:
   struct Driver {
@@ -95,6 +97,7 @@ class Simulation {
   std::vector<base::Intent> next_intents_;               ///< as they will from the next tick on
   std::vector<std::vector<control::Neighbour>> others_;  ///< per thread
   std::vector<world::Signal> signals_;
+  std::vector<world::Warning> warnings_;
   double radio_ = 0.0;  ///< [m] farthest that anyone wants to hear
   std::int64_t start_at_;
   std::int64_t interval_;  ///< [ns]
