@@ -92,6 +92,8 @@ void add_world(CLI::App& app, Options& o) {
                "As in Stage, floor plans with obstacle_return 0 stop nobody");
   app.add_flag("--stage-noise", o.load.stage_noise, "As in Stage, the first number of `noise` is a variance");
   app.add_flag("--unknown-is-wall", o.load.unknown_is_wall, "Unknown cells of a ROS map are walls");
+  app.add_flag("--strict", o.load.strict_roads,
+               "Refuse road networks and missions at the first slip, even where its meaning is clear");
 }
 
 void add_accuracy(CLI::App& app, Options& o) {

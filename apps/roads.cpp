@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "apps/facts.h"
 #include "apps/wording.h"
 #include "base/error.h"
 #include "viz/road_figure.h"
@@ -31,17 +32,17 @@ void append(std::vector<world::Warning>& all, const std::vector<world::Warning>&
 
 int check_network(const Options& options) {
   std::vector<world::Warning> warnings;
-  const world::RoadNetwork network = world::load_roads(options.world, warnings);
+  const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict_roads);
   const RoadFacts facts{network, world::paint_of(network).size(), warnings};
   std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
   return 0;
 }
 
 int check_mission(const Options& options) {
-  const world::Mdf mission = world::read_mdf(options.world);
+  const world::Mdf mission = world::read_mdf(options.world, options.load.strict_roads);
   std::vector<world::Warning> warnings = mission.warnings;
   if (!options.rndf.empty()) {
-    const world::Rndf rndf = world::read_rndf(options.rndf);
+    const world::Rndf rndf = world::read_rndf(options.rndf, options.load.strict_roads);
     append(warnings, rndf.warnings);
     append(warnings, world::check_against(mission, rndf));
   }
@@ -104,7 +105,9 @@ std::optional<int> draw_roads(const Options& options) {
     throw base::InputError(options.world, 0, "a mission has no picture; draw the .rndf file that it was made for");
   if (!is_network(options.world)) return std::nullopt;
   std::vector<world::Warning> warnings;
-  viz::draw_roads(world::load_roads(options.world, warnings), options.out);
+  const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict_roads);
+  tell_warnings(options.world, warnings);
+  viz::draw_roads(network, options.out);
   std::fprintf(stderr, "sensorfarm: wrote %s\n", options.out.c_str());
   return 0;
 }

@@ -164,6 +164,7 @@ struct Mover {
   double wheelbase = 1.0;                   ///< [m] between the axles of a car
   double track = 0.3;                       ///< [m] > 0, between left and right wheels, as encoders see it
   CommandLaw command_law = CommandLaw::direct;
+  std::string controller;  ///< that drives it where nobody says otherwise; empty: the file names none of ours
   std::vector<Laser> lasers;
   std::vector<Sensor> sensors;  ///< of all other kinds, in file order
   std::vector<Magnet> magnets;  ///< that it carries
@@ -259,6 +260,7 @@ struct LoadOptions {
   bool stage_obstacles = false;         ///< keep Stage's rule that `obstacle_return 0` floor plans do not stop robots
   bool stage_noise = false;             ///< read `noise`'s first number as Stage does, as a variance
   bool unknown_is_wall = false;         ///< ROS maps: unknown cells are walls
+  bool strict_roads = false;            ///< refuse road networks that do not keep to the letter of their format
   std::string accuracy;                 ///< of all sensors, whatever the file says; empty: as it says
   std::span<const SensorWord> sensors;  ///< kinds that are modelled; others are kept as bodies that do nothing
 };

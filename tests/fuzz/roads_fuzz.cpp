@@ -1,6 +1,6 @@
 // libFuzzer target: any bytes as a road network, a mission or a sidecar. What is accepted becomes lanes and paint.
 //
-// The first byte chooses the reader; the rest is the file.
+// The first byte chooses the reader, from 0x80 on a strict one; the rest is the file.
 
 #include <cmath>
 #include <cstdint>
@@ -19,8 +19,8 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-void check_network(std::string_view text) {
-  const world::Rndf rndf = world::parse_rndf("fuzz.rndf", text);
+void check_network(std::string_view text, bool strict) {
+  const world::Rndf rndf = world::parse_rndf("fuzz.rndf", text, strict);
   std::vector<world::Warning> warnings;
   const world::RoadNetwork roads = world::build_network(rndf, {}, warnings);
   require(roads.counts.lanes == roads.lanes.size() && roads.counts.exits == roads.exits.size());
@@ -38,8 +38,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data + 1), size - 1);
   try {
     std::vector<world::Warning> warnings;
-    if (data[0] % 3 == 0) check_network(text);
-    if (data[0] % 3 == 1) world::parse_mdf("fuzz.mdf", text);
+    const bool strict = data[0] >= 0x80;
+    if (data[0] % 3 == 0) check_network(text, strict);
+    if (data[0] % 3 == 1) world::parse_mdf("fuzz.mdf", text, strict);
     if (data[0] % 3 == 2) world::parse_sidecar("fuzz.toml", text, warnings);
   } catch (const base::InputError& error) {
     require(std::string_view(error.what()).substr(0, 4) == "fuzz");

@@ -31,9 +31,9 @@ end_file
 
 std::string mdf_with(const std::string& from, const std::string& to) { return with(kSmallMdf, from, to); }
 
-std::string mdf_refusal(const std::string& text) {
+std::string mdf_refusal(const std::string& text, bool strict = true) {
   try {
-    parse_mdf("go.mdf", text);
+    parse_mdf("go.mdf", text, strict);
   } catch (const base::InputError& error) {
     return error.what();
   }

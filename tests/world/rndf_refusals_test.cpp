@@ -1,4 +1,4 @@
-// What is wrong is refused with the line it stands in and what was expected.
+// What is wrong is refused with the line it stands in and what was expected: strictly, each slip is.
 
 #include <gtest/gtest.h>
 

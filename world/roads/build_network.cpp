@@ -17,6 +17,7 @@ constexpr double kLaneWidthFt = 12.0;           // where nobody says; the lane o
 constexpr double kSpotWidthFt = 9.0;            // where nobody says; a usual US parking stall
 constexpr double kFar = 20e3;                   // [m] from the origin; flattening costs 3 cm there
 constexpr std::size_t kMostSamples = 1u << 20;  // points of all centre lines
+constexpr std::size_t kMostExitSamples = 4 * kMostSamples;
 
 struct Builder {
   const Rndf& rndf;
@@ -179,7 +180,17 @@ void join(Builder& b) {
   const auto key = [](const RoadExit& exit) { return std::tuple(exit.from.kind, exit.from.row, exit.from.index); };
   std::stable_sort(network.exits.begin(), network.exits.end(),
                    [&](const RoadExit& x, const RoadExit& y) { return key(x) < key(y); });
-  for (RoadExit& exit : network.exits) exit.length = connection_of(network, exit).s.back();
+  std::size_t samples = 0;
+  for (RoadExit& exit : network.exits) {
+    const Curve way = connection_of(network, exit);
+    exit.length = way.s.back();
+    samples += way.points.size();
+    if (samples > kMostExitSamples)
+      throw base::InputError(b.rndf.file, 0,
+                             fmt::format("more than {} points make its exits smooth; check the coordinates or split "
+                                         "the network",
+                                         kMostExitSamples));
+  }
   std::sort(network.checkpoints.begin(), network.checkpoints.end(),
             [](const RoadCheckpoint& x, const RoadCheckpoint& y) { return x.id < y.id; });
 }

@@ -27,18 +27,21 @@ constexpr std::array<std::string_view, 12> kKeywords{"MDF_name",         "RNDF",
 
 class MdfReader {
  public:
-  MdfReader(const std::string& file, std::string_view text) : statements_(file, text) { mdf_.file = file; }
+  MdfReader(const std::string& file, std::string_view text, bool strict)
+      : problems_(file, strict, mdf_.warnings), statements_(file, text, problems_) {
+    mdf_.file = file;
+  }
 
   Mdf read() {
-    while (!ended_ && statements_.next()) statement();
+    while (!ended_ && next()) problems_.attempt(now().line, [&] { statement(); });
     end_block("at the end of the file");
-    if (seen_.count("MDF_name") == 0)
-      throw base::InputError(mdf_.file, 0, "'MDF_name' is missing; expected a mission data file");
+    check_name();
     if (!ended_) warn(statements_.line(), "'end_file' is missing at the end of the file");
-    if (ended_ && statements_.next())
+    if (ended_ && next())
       warn(now().line, fmt::format("{} comes after 'end_file'; it and what follows is ignored", quoted(now().keyword)));
     check_count("num_checkpoints", mdf_.checkpoints.size());
     check_count("num_speed_limits", mdf_.speed_limits.size());
+    problems_.settle();
     return std::move(mdf_);
   }
 
@@ -46,14 +49,26 @@ class MdfReader {
   const Statement& now() const { return statements_.now(); }
   void warn(int line, std::string message) { mdf_.warnings.push_back({mdf_.file, line, std::move(message)}); }
 
+  bool next() {
+    bool more = false;
+    problems_.attempt(statements_.line(), [&] { more = statements_.next(); });
+    return more;
+  }
+
+  void check_name() {
+    if (seen_.count("MDF_name") > 0) return;
+    const std::string what = "'MDF_name' is missing", remedy = "expected a mission data file";
+    if (mdf_.checkpoints.empty()) throw WrongFile(mdf_.file, 0, what + "; " + remedy);
+    problems_.tolerate(0, what, remedy, "it has no name");
+  }
+
   void statement() {
     const std::string_view word = now().keyword;
     if (is_number(word)) return row();
     if (std::find(kKeywords.begin(), kKeywords.end(), word) == kKeywords.end()) return unknown();
-    const std::string once(word == "RNDF_name" ? "RNDF" : word);
-    if (!seen_.insert(once).second) statements_.fail(fmt::format("'{}' is given twice; expected it once", word));
+    if (repeats(word)) return;
     if (word == "MDF_name") mdf_.name = now().rest;
-    if (once == "RNDF") mdf_.rndf_name = now().rest;
+    if (word == "RNDF" || word == "RNDF_name") mdf_.rndf_name = now().rest;
     if (word == "format_version") mdf_.format_version = now().rest;
     if (word == "creation_date") mdf_.creation_date = now().rest;
     if (word.starts_with("num_")) return promise();
@@ -62,15 +77,30 @@ class MdfReader {
     if (word.starts_with("end_")) return end();
   }
 
+  /// True for what was said before, in the same words or as a count, which is not relied on.
+  bool repeats(std::string_view word) {
+    const auto [before, fresh] = seen_.emplace(word == "RNDF_name" ? "RNDF" : word, now().rest);
+    if (fresh) return false;
+    const std::string what = fmt::format("'{}' is given twice", word);
+    const bool is_block = word.ends_with("checkpoints") || word.ends_with("speed_limits");
+    if (!word.starts_with("num_") && (is_block || before->second != now().rest))
+      statements_.fail(what + "; expected it once");
+    problems_.tolerate(now().line, what, "expected it once", "the first counts");
+    return true;
+  }
+
   void unknown() {
     const std::string_view word = now().keyword;
     if (word == "num_segments" || word == "segment")
-      statements_.fail(fmt::format("'{}' stands in an RNDF; expected an MDF", word));
+      throw WrongFile(mdf_.file, now().line, fmt::format("'{}' stands in an RNDF; expected an MDF", word));
     const bool plain = word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") ==
                        std::string_view::npos;
-    if (!plain || word.size() > 40 || unknown_.size() > 20)
-      statements_.fail(
-          fmt::format("{} is no statement; expected a keyword of MDF such as 'checkpoints'", quoted(word)));
+    if (!plain || word.size() > 40 || unknown_.size() > 20) {
+      const std::string message =
+          fmt::format("{} is no statement; expected a keyword of MDF such as 'checkpoints'", quoted(word));
+      if (seen_.empty()) throw WrongFile(mdf_.file, now().line, message);
+      statements_.fail(message);
+    }
     if (unknown_.emplace(word).second)
       warn(now().line, fmt::format("unknown keyword '{}' is ignored{}", word, suggest(word, kKeywords)));
   }
@@ -107,19 +137,31 @@ class MdfReader {
   }
 
   void promise() {
-    const int value = statements_.whole(0, 0, "the number");
-    statements_.expect_fields(1);
-    promises_[std::string(now().keyword)] = {value, now().line};
+    std::pair<int, int> said{-1, now().line};
+    try {
+      said.first = statements_.whole(0, 0, "the number");
+      statements_.expect_fields(1);
+    } catch (const base::InputError&) {
+      if (problems_.strict()) throw;
+      warn(now().line,
+           fmt::format("'{}' is {}, no number; what is there is counted", now().keyword, quoted(now().rest)));
+    }
+    promises_[std::string(now().keyword)] = said;
   }
 
+  // A number is there to be checked: what there is counts more, unless the file breaks off before as many came.
   void check_count(const std::string& keyword, std::size_t have) {
+    const std::string taken = have == 1 ? "1 is taken" : fmt::format("{} are taken", have);
     const auto said = promises_.find(keyword);
     if (said == promises_.end())
-      throw base::InputError(mdf_.file, 0, fmt::format("'{0}' is missing; expected '{0} {1}'", keyword, have));
-    if (static_cast<std::size_t>(said->second.first) == have) return;
-    throw base::InputError(mdf_.file, said->second.second,
-                           fmt::format("'{}' says {}, but there are {}; mend the number or what it counts", keyword,
-                                       said->second.first, have));
+      return problems_.tolerate(0, fmt::format("'{}' is missing", keyword),
+                                fmt::format("expected '{} {}'", keyword, have), taken);
+    const auto [count, line] = said->second;
+    if (count < 0 || static_cast<std::size_t>(count) == have) return;
+    const std::string what = fmt::format("'{}' says {}, but there are {}", keyword, count, have);
+    if (!ended_ && static_cast<std::size_t>(count) > have)
+      return problems_.refuse(line, what + ": the file is cut short");
+    problems_.tolerate(line, what, "mend the number or what it counts", taken);
   }
 
   void row() {
@@ -132,7 +174,7 @@ class MdfReader {
   }
 
   void checkpoint() {
-    statements_.expect_fields(0);
+    statements_.require_fields(0);
     mdf_.checkpoints.push_back({statements_.keyword_whole(1, "the checkpoint's id"), now().line});
   }
 
@@ -145,29 +187,35 @@ class MdfReader {
       statements_.fail(
           fmt::format("speeds from {} to {} miles per hour; expected the lowest (0: none), then the highest",
                       now().fields[0], now().fields[1]));
-    const auto [old, fresh] = limited_.emplace(limit.id, limit.line);
-    if (!fresh)
-      statements_.fail(fmt::format("{} has a speed limit in line {} already; expected one for each segment or zone",
-                                   limit.id, old->second));
+    const auto [old, fresh] = limited_.emplace(limit.id, limit);
+    if (!fresh) {
+      const std::string what = fmt::format("{} has a speed limit in line {} already", limit.id, old->second.line);
+      const bool same = old->second.least_mph == limit.least_mph && old->second.most_mph == limit.most_mph;
+      if (!same) statements_.fail(what + "; expected one for each segment or zone");
+      return problems_.tolerate(limit.line, what, "expected one for each segment or zone", "it is taken once");
+    }
     mdf_.speed_limits.push_back(limit);
   }
 
-  Statements statements_;
   Mdf mdf_;
+  Problems problems_;
+  Statements statements_;
   Block block_ = Block::file;
-  int begun_ = 0;  ///< line where the block began
-  std::set<std::string, std::less<>> seen_;
+  int begun_ = 0;                                         ///< line where the block began
+  std::map<std::string, std::string, std::less<>> seen_;  ///< keywords, and what they say
   std::set<std::string, std::less<>> unknown_;
-  std::map<std::string, std::pair<int, int>> promises_;  ///< count and line, by keyword
-  std::map<int, int> limited_;                           ///< line, by segment or zone
+  std::map<std::string, std::pair<int, int>> promises_;  ///< count (negative: unread) and line, by keyword
+  std::map<int, SpeedLimit> limited_;                    ///< by segment or zone
   bool ended_ = false;
 };
 
 }  // namespace
 
-Mdf parse_mdf(const std::string& file, std::string_view text) { return MdfReader(file, text).read(); }
+Mdf parse_mdf(const std::string& file, std::string_view text, bool strict) {
+  return MdfReader(file, text, strict).read();
+}
 
-Mdf read_mdf(const std::string& file) { return parse_mdf(file, read_text(file)); }
+Mdf read_mdf(const std::string& file, bool strict) { return parse_mdf(file, read_text(file), strict); }
 
 std::vector<Warning> check_against(const Mdf& mdf, const Rndf& rndf) {
   std::set<int> checkpoints;
@@ -185,11 +233,12 @@ std::vector<Warning> check_against(const Mdf& mdf, const Rndf& rndf) {
 
   const std::string has =
       checkpoints.empty() ? "it has none" : fmt::format("expected one of its {}", checkpoints.size());
+  std::vector<Warning> warnings;
+  Problems problems(mdf.file, false, warnings);
   for (const MdfCheckpoint& wanted : mdf.checkpoints)
     if (checkpoints.count(wanted.id) == 0)
-      throw base::InputError(mdf.file, wanted.line,
-                             fmt::format("checkpoint {} does not exist in {}; {}", wanted.id, rndf.file, has));
-  std::vector<Warning> warnings;
+      problems.refuse(wanted.line, fmt::format("checkpoint {} does not exist in {}; {}", wanted.id, rndf.file, has));
+  problems.settle();
   for (const SpeedLimit& limit : mdf.speed_limits)
     if (places.count(limit.id) == 0)
       warnings.push_back({mdf.file, limit.line,

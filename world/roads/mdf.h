@@ -35,15 +35,17 @@ struct Mdf {
   std::vector<Warning> warnings;
 };
 
-/// Reads a mission and checks its form.
+/// Reads a mission and checks its form. What is wrong but clear becomes a warning; all that has no clear meaning is
+/// thrown at once.
+/// @param strict the first thing that is wrong is thrown.
 /// @throws base::InputError with file, line, what was expected and what to do.
-Mdf read_mdf(const std::string& file);
+Mdf read_mdf(const std::string& file, bool strict = false);
 
 /// Likewise from memory; `file` names errors.
-Mdf parse_mdf(const std::string& file, std::string_view text);
+Mdf parse_mdf(const std::string& file, std::string_view text, bool strict = false);
 
 /// Checks that the mission can be driven on `rndf`. Speed limits for segments or zones that it has not are warnings.
-/// @throws base::InputError for the first checkpoint that does not exist.
+/// @throws base::InputError for all checkpoints that do not exist.
 std::vector<Warning> check_against(const Mdf& mdf, const Rndf& rndf);
 
 }  // namespace sf::world

@@ -31,7 +31,8 @@ struct RndfPoint {
   int line = 0;            ///< 1-based, here and below
 };
 
-/// A way out of a lane or a zone. `to` is a way-point of a lane or a perimeter point of a zone; both exist.
+/// A way out of a lane or a zone, and not always the one that it is listed under. Both points are way-points of lanes
+/// or perimeter points of zones that exist.
 struct RndfExit {
   PointId from;
   PointId to;
@@ -39,13 +40,13 @@ struct RndfExit {
 };
 
 struct RndfStop {
-  PointId at;
+  PointId at;  ///< a way-point of a lane
   int line = 0;
 };
 
 struct RndfCheckpoint {
   int id = 0;  ///< in [1, 32768], unique in the file
-  PointId at;
+  PointId at;  ///< a way-point of a lane or a point of a spot
   int line = 0;
 };
 
@@ -108,11 +109,13 @@ struct RoadCounts {
 };
 RoadCounts count(const Rndf& rndf);
 
-/// Reads a file, checks its form and every reference in it.
+/// Reads a file, checks its form and every reference in it. What is wrong but clear becomes a warning; all that has no
+/// clear meaning is thrown at once.
+/// @param strict the first thing that is wrong is thrown.
 /// @throws base::InputError with file, line, what was expected and what to do.
-Rndf read_rndf(const std::string& file);
+Rndf read_rndf(const std::string& file, bool strict = false);
 
 /// Likewise from memory; `file` names errors.
-Rndf parse_rndf(const std::string& file, std::string_view text);
+Rndf parse_rndf(const std::string& file, std::string_view text, bool strict = false);
 
 }  // namespace sf::world

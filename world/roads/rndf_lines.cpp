@@ -61,7 +61,8 @@ std::string quoted(std::string_view text) {
   return shown + (text.size() > kMost ? "...'" : "'");
 }
 
-Statements::Statements(std::string file, std::string_view text) : file_(std::move(file)), text_(text) {
+Statements::Statements(std::string file, std::string_view text, Problems& problems)
+    : file_(std::move(file)), text_(text), problems_(problems) {
   if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
 }
 
@@ -115,10 +116,18 @@ std::string_view Statements::field(std::size_t i, std::string_view what) const {
   fail(fmt::format("{} is missing after {}", what, quoted(now_.keyword)));
 }
 
+std::string Statements::extra(std::size_t count) const {
+  return fmt::format("{} was not expected after {}", quoted(now_.fields[count]),
+                     count == 0 ? quoted(now_.keyword) : quoted(now_.fields[count - 1]));
+}
+
 void Statements::expect_fields(std::size_t count) const {
-  if (now_.fields.size() <= count) return;
-  fail(fmt::format("{} was not expected after {}; put remarks between /* and */", quoted(now_.fields[count]),
-                   count == 0 ? quoted(now_.keyword) : quoted(now_.fields[count - 1])));
+  if (now_.fields.size() > count)
+    problems_.tolerate(now_.line, extra(count), "put remarks between /* and */", "it and what follows it is left out");
+}
+
+void Statements::require_fields(std::size_t count) const {
+  if (now_.fields.size() > count) fail(extra(count) + "; put remarks between /* and */");
 }
 
 int Statements::whole(std::size_t i, int least, std::string_view what) const {

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "world/roads/problems.h"
+
 namespace sf::world {
 
 /// Whole numbers of these formats are in [0, 32768].
@@ -40,8 +42,8 @@ struct Statement {
 /// Cuts a file into statements.
 class Statements {
  public:
-  /// @param text must outlive this
-  Statements(std::string file, std::string_view text);
+  /// @param text must outlive this, as `problems` must
+  Statements(std::string file, std::string_view text, Problems& problems);
 
   /// Moves on to the next line that is not empty; false at the end of the file.
   /// @throws base::InputError for a comment that is never closed, or a byte that no text has.
@@ -66,8 +68,10 @@ class Statements {
   int keyword_whole(int least, std::string_view what) const { return whole(now_.keyword, least, what); }
   /// `M.L` as {M, L, 0}.
   PointId pair(std::size_t i, std::string_view what) const;
-  /// @throws base::InputError when the statement has more than `count` fields after its keyword.
+  /// Tolerates more than `count` fields after the keyword: what they say is left out.
   void expect_fields(std::size_t count) const;
+  /// @throws base::InputError for them.
+  void require_fields(std::size_t count) const;
 
  private:
   bool read_line();
@@ -75,8 +79,11 @@ class Statements {
   int whole(std::string_view text, int least, std::string_view what) const;
   PointId numbers(std::string_view text, int count, std::string_view what) const;
 
+  std::string extra(std::size_t count) const;
+
   std::string file_;
   std::string_view text_;
+  Problems& problems_;
   std::size_t at_ = 0;
   int line_ = 0;
   int comment_ = 0;  ///< line where the open comment began; 0: none is open

@@ -48,6 +48,17 @@ bool is_word(std::string_view keyword) {
   });
 }
 
+constexpr int kInner = 2;
+
+/// How far inside a keyword stands that begins or ends a block: 0 in the file, 1 in a segment or zone; else `kInner`.
+int level_of(std::string_view keyword) {
+  if (keyword == "segment" || keyword == "zone" || keyword == "end_file") return 0;
+  constexpr std::array<std::string_view, 5> kSecond{"lane", "perimeter", "spot", "end_segment", "end_zone"};
+  return std::find(kSecond.begin(), kSecond.end(), keyword) != kSecond.end() ? 1 : kInner;
+}
+
+std::string counted(std::size_t have) { return have == 1 ? "1 is" : fmt::format("{} are", have); }
+
 std::string_view name_of(RndfBlock block) {
   constexpr std::array<std::string_view, 6> kNames{"file", "segment", "lane", "zone", "perimeter", "spot"};
   return kNames[static_cast<std::size_t>(block)];
@@ -101,9 +112,10 @@ const std::map<std::string_view, RndfReader::Rule>& RndfReader::rules() {
   return rules;
 }
 
-RndfReader::RndfReader(const std::string& file, std::string_view text) : statements_(file, text) {
+RndfReader::RndfReader(const std::string& file, std::string_view text, bool strict)
+    : problems_(file, strict, rndf_.warnings), statements_(file, text, problems_) {
   rndf_.file = file;
-  open_.push_back({RndfBlock::file, 1, "the file", {}, {}});
+  open_.push_back({RndfBlock::file, 1, "the file"});
 }
 
 void RndfReader::warn(int line, std::string message) {
@@ -113,20 +125,48 @@ void RndfReader::warn(int line, std::string message) {
 void RndfReader::warn_once(std::string_view keyword, std::string message) {
   if (unknown_.emplace(keyword).second) warn(now().line, std::move(message));
   if (unknown_.size() > kMostUnknown)
-    statements_.fail(fmt::format("{} keywords that no RNDF has; is this one?", unknown_.size()));
+    throw WrongFile(statements_.file(), now().line,
+                    fmt::format("{} keywords that no RNDF has; is this one?", unknown_.size()));
+}
+
+/// The next statement; false at the end, and where no text follows.
+bool RndfReader::next() {
+  bool more = false;
+  problems_.attempt(statements_.line(), [&] { more = statements_.next(); });
+  return more;
 }
 
 Rndf RndfReader::read() {
-  while (!ended_ && statements_.next()) statement();
+  while (!ended_ && next())
+    if (!problems_.attempt(now().line, [&] { statement(); })) skip(now().keyword);
   if (!ended_) {
+    cut_ = true;
     check_name();
     while (open_.size() > 1) close_implied("at the end of the file");
     warn(statements_.line(), "'end_file' is missing at the end of the file");
     close();
-  } else if (statements_.next()) {
+  } else if (next()) {
     warn(now().line, fmt::format("{} comes after 'end_file'; it and what follows is ignored", quoted(now().keyword)));
   }
+  check_references(rndf_, unread_, problems_);
+  problems_.settle();
   return std::move(rndf_);
+}
+
+/// After a statement that was refused: passes over what stands in a block that it could not begin, up to the block's
+/// end or to what its neighbours begin with.
+void RndfReader::skip(std::string_view keyword) {
+  const int level = level_of(keyword);
+  if (is_number(keyword)) ++open_.back().skipped;
+  if (level == kInner || keyword.starts_with("end_")) return;
+  ++open_.back().skipped;
+  const std::string end = "end_" + std::string(keyword);
+  while (next() && now().keyword != end) {
+    if (const auto id = read_point_id(now().keyword)) unread_.insert(*id);
+    if (level_of(now().keyword) > level) continue;
+    if (!problems_.attempt(now().line, [&] { statement(); })) skip(now().keyword);
+    return;
+  }
 }
 
 void RndfReader::statement() {
@@ -139,14 +179,28 @@ void RndfReader::statement() {
 
 void RndfReader::unknown() {
   const std::string_view keyword = now().keyword;
-  if (keyword == "MDF_name") statements_.fail("this is an MDF; expected an RNDF");
+  if (keyword == "MDF_name") throw WrongFile(statements_.file(), now().line, "this is an MDF; expected an RNDF");
   if (is_extension(keyword)) return warn_once(keyword, fmt::format("'{}' is known but not modelled; ignored", keyword));
-  if (!is_word(keyword) || keyword.size() > 40)
-    statements_.fail(
-        fmt::format("{} is no statement; expected a keyword of RNDF such as 'segment' or 'exit'", quoted(keyword)));
+  if (!is_word(keyword) || keyword.size() > 40) {
+    const std::string message =
+        fmt::format("{} is no statement; expected a keyword of RNDF such as 'segment' or 'exit'", quoted(keyword));
+    if (rndf_.segments.empty()) throw WrongFile(statements_.file(), now().line, message);
+    statements_.fail(message);
+  }
   std::vector<std::string_view> known(kExtension.begin(), kExtension.end());
   for (const auto& [word, rule] : rules()) known.push_back(word);
   warn_once(keyword, fmt::format("unknown keyword '{}' is ignored{}", keyword, suggest(keyword, known)));
+}
+
+/// True for what was said here before, in the same words or as a count, which is not relied on.
+bool RndfReader::repeats(std::string_view keyword) {
+  const auto [before, fresh] = open_.back().seen.emplace(keyword, now().rest);
+  if (fresh) return false;
+  const std::string what = fmt::format("'{}' is given twice in {}", keyword, open_.back().name);
+  const bool clear = before->second == now().rest ? keyword != "perimeter" : keyword.starts_with("num_");
+  if (!clear) statements_.fail(what + "; expected it once");
+  problems_.tolerate(now().line, what, "expected it once", "the first counts");
+  return true;
 }
 
 void RndfReader::apply(std::string_view keyword, const Rule& rule) {
@@ -161,35 +215,41 @@ void RndfReader::apply(std::string_view keyword, const Rule& rule) {
                                    rule.blocks.size() > 1 ? fmt::format(" or a {}", name_of(rule.blocks[1])) : ""));
     while (!may(open_.back())) close_implied(fmt::format("before '{}'", keyword));
   }
-  if (rule.once && !open_.back().seen.emplace(keyword).second)
-    statements_.fail(fmt::format("'{}' is given twice in {}; expected it once", keyword, open_.back().name));
+  if (rule.once && repeats(keyword)) return;
   rule.act(*this);
 }
 
 // ---------------------------------------------------------------------------------------------------- blocks
 
-void RndfReader::open(RndfBlock block, std::string name) {
-  open_.push_back({block, now().line, std::move(name), {}, {}});
-}
+void RndfReader::open(RndfBlock block, std::string name) { open_.push_back({block, now().line, std::move(name)}); }
 
-// Only zones and spots may be none, and then nothing need be said of them.
+// Only zones and spots may be none, and then nothing need be said of them. A number is there to be checked: what there
+// is counts more, unless the file breaks off before as many came.
 void RndfReader::check_promise(const Open& open, std::string_view keyword, std::size_t have) {
+  have += open.skipped;
+  const bool may_be_none = keyword == "num_zones" || keyword == "num_spots";
   const auto said = open.promises.find(keyword);
   if (said == open.promises.end()) {
-    const std::string message = fmt::format("'{0}' is missing in {1}; expected '{0} {2}'", keyword, open.name, have);
-    if (have > 0 || (keyword != "num_zones" && keyword != "num_spots"))
-      throw base::InputError(statements_.file(), open.line, message);
-    return warn(open.line, message);
+    const std::string what = fmt::format("'{}' is missing in {}", keyword, open.name);
+    const std::string remedy = fmt::format("expected '{} {}'", keyword, have);
+    if (have > 0) return problems_.tolerate(open.line, what, remedy, fmt::format("{} taken", counted(have)));
+    return may_be_none ? warn(open.line, what + "; " + remedy) : problems_.refuse(open.line, what + "; " + remedy);
   }
-  if (static_cast<std::size_t>(said->second.count) == have) return;
-  throw base::InputError(statements_.file(), said->second.line,
-                         fmt::format("'{}' says {}, but {} has {}; mend the number or what it counts", keyword,
-                                     said->second.count, open.name, have));
+  const int count = said->second.count, line = said->second.line;
+  if (static_cast<std::size_t>(count) == have || (count < 0 && have > 0)) return;
+  const std::string what = fmt::format("'{}' says {}, but {} has {}", keyword, said->second.text, open.name, have);
+  const char* remedy = "mend the number or what it counts";
+  if (have == 0 && !may_be_none) return problems_.refuse(line, fmt::format("{}; {}", what, remedy));
+  if (cut_ && static_cast<std::size_t>(std::max(count, 0)) > have)
+    return problems_.refuse(line, what + ": the file is cut short");
+  problems_.tolerate(line, what, remedy, fmt::format("{} taken", counted(have)));
 }
 
-void RndfReader::check_name() const {
+void RndfReader::check_name() {
   if (open_.front().seen.count("RNDF_name") > 0) return;
-  throw base::InputError(statements_.file(), 0, "'RNDF_name' is missing; expected a route network definition file");
+  const std::string what = "'RNDF_name' is missing", remedy = "expected a route network definition file";
+  if (rndf_.segments.empty()) throw WrongFile(statements_.file(), 0, what + "; " + remedy);
+  problems_.tolerate(0, what, remedy, "it has no name");
 }
 
 // Ends the innermost block.
@@ -208,9 +268,9 @@ void RndfReader::close() {
       break;
     case RndfBlock::zone:
       check_promise(last, "num_spots", zone().spots.size());
-      if (zone().perimeter.empty())
-        throw base::InputError(statements_.file(), last.line,
-                               fmt::format("{} has no perimeter; expected 'perimeter {}.0'", last.name, zone().id));
+      if (zone().perimeter.empty() && last.skipped == 0)
+        problems_.refuse(last.line,
+                         fmt::format("{} has no perimeter; expected 'perimeter {}.0'", last.name, zone().id));
       break;
     case RndfBlock::perimeter:
       check_promise(last, "num_perimeterpoints", zone().perimeter.size());
@@ -218,10 +278,9 @@ void RndfReader::close() {
         warn(last.line, fmt::format("{} has fewer than three points: no area", last.name));
       break;
     case RndfBlock::spot:
-      if (spot().points.size() != 2)
-        throw base::InputError(statements_.file(), last.line,
-                               fmt::format("{} has {} points; expected two, where it is entered and where it ends",
-                                           last.name, spot().points.size()));
+      if (spot().points.size() + last.skipped != 2)
+        problems_.refuse(last.line, fmt::format("{} has {} points; expected two, where it is entered and where it ends",
+                                                last.name, spot().points.size()));
       break;
   }
   open_.pop_back();

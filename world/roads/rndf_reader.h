@@ -19,15 +19,16 @@ enum class RndfBlock : std::uint8_t { file, segment, lane, zone, perimeter, spot
 
 class RndfReader {
  public:
-  RndfReader(const std::string& file, std::string_view text);
+  RndfReader(const std::string& file, std::string_view text, bool strict);
 
-  /// Everything but whether references lead somewhere. @throws base::InputError
+  /// @throws base::InputError
   Rndf read();
 
  private:
   struct Promise {
-    int count = 0;
+    int count = 0;  ///< negative: it cannot be read
     int line = 0;
+    std::string text;  ///< as written
   };
   /// A block that has begun and not ended, with what its header promised.
   struct Open {
@@ -35,13 +36,17 @@ class RndfReader {
     int line = 0;
     std::string name;                                      ///< `lane 1.2`
     std::map<std::string, Promise, std::less<>> promises;  ///< by keyword, e.g. `num_lanes`
-    std::set<std::string, std::less<>> seen;               ///< keywords that may stand here once
+    std::map<std::string, std::string, std::less<>> seen;  ///< keywords that may stand here once, and what they say
+    std::size_t skipped = 0;                               ///< blocks and points in it that were refused
   };
   struct Rule;
   static const std::map<std::string_view, Rule>& rules();
 
   // Statements
+  bool next();
   void statement();
+  bool repeats(std::string_view keyword);
+  void skip(std::string_view keyword);
   void unknown();
   void apply(std::string_view keyword, const Rule& rule);
   void waypoint();
@@ -53,7 +58,7 @@ class RndfReader {
   void end_block(RndfBlock block);
   void end_file();
   void check_promise(const Open& open, std::string_view keyword, std::size_t have);
-  void check_name() const;
+  void check_name();
 
   // What keywords do
   void promise(int least, std::string_view what);
@@ -73,20 +78,28 @@ class RndfReader {
   RndfZone& zone() { return rndf_.zones.back(); }
   RndfSpot& spot() { return zone().spots.back(); }
   std::vector<RndfPoint>& points();
+  PointId key_of_block() const;
   PointId own(PointId id, std::string_view what) const;
+  PointId own_or_known(PointId id, std::string_view what);
   void claim(PointId id, std::string_view what);
   void warn(int line, std::string message);
   void warn_once(std::string_view keyword, std::string message);
 
-  Statements statements_;
   Rndf rndf_;
-  std::vector<Open> open_;          ///< from the file down to the innermost block
-  std::map<PointId, int> claimed_;  ///< line of every id in use: {segment, 0, 0}, {segment, lane, 0}, points
-  std::map<int, int> checkpoints_;  ///< line of every checkpoint id
+  Problems problems_;
+  Statements statements_;
+  std::vector<Open> open_;                     ///< from the file down to the innermost block
+  std::map<PointId, int> claimed_;             ///< line of every id in use: {segment, 0, 0}, {segment, lane, 0}, points
+  std::map<int, RndfCheckpoint> checkpoints_;  ///< by id
   std::map<std::pair<PointId, PointId>, int> exits_;
   std::set<PointId> stops_;
   std::set<std::string, std::less<>> unknown_;  ///< keywords warned about
+  std::set<PointId> unread_;                    ///< of points that are named, and were refused
   bool ended_ = false;
+  bool cut_ = false;  ///< the file has no end of its own: it may be a part of one
 };
+
+/// Whether all that exits, stops and checkpoints name is there. @param unread points that are no problem of theirs
+void check_references(const Rndf& rndf, const std::set<PointId>& unread, Problems& problems);
 
 }  // namespace sf::world

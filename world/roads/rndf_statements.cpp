@@ -24,9 +24,16 @@ std::string shown(PointId id) {
 }  // namespace
 
 void RndfReader::promise(int least, std::string_view what) {
-  const int value = statements_.whole(0, least, what);
-  statements_.expect_fields(1);
-  open_.back().promises.emplace(now().keyword, Promise{value, now().line});
+  Promise promise{-1, now().line, std::string(now().rest)};
+  try {
+    promise.count = statements_.whole(0, least, what);
+    statements_.expect_fields(1);
+  } catch (const base::InputError&) {
+    if (problems_.strict()) throw;
+    warn(now().line,
+         fmt::format("'{}' is {}, no number above zero; what is there is counted", now().keyword, quoted(now().rest)));
+  }
+  open_.back().promises.emplace(now().keyword, promise);
 }
 
 void RndfReader::claim(PointId id, std::string_view what) {
@@ -112,22 +119,36 @@ std::vector<RndfPoint>& RndfReader::points() {
                                quoted(now().keyword), open_.back().name));
 }
 
+/// What ids of the innermost block begin with.
+PointId RndfReader::key_of_block() const {
+  const RndfBlock block = open_.back().block;
+  if (block == RndfBlock::lane) return key(rndf_.segments.back().id, rndf_.segments.back().lanes.back().number);
+  return key(rndf_.zones.back().id, block == RndfBlock::spot ? rndf_.zones.back().spots.back().number : 0);
+}
+
 // The id that a line names must be of the block it stands in.
 PointId RndfReader::own(PointId id, std::string_view what) const {
-  const RndfBlock block = open_.back().block;
-  const bool of_lane = block == RndfBlock::lane;
-  const PointId here =
-      of_lane ? key(rndf_.segments.back().id, rndf_.segments.back().lanes.back().number)
-              : key(rndf_.zones.back().id, block == RndfBlock::spot ? rndf_.zones.back().spots.back().number : 0);
+  const PointId here = key_of_block();
   if (id.segment == here.segment && id.lane == here.lane && id.point > 0) return id;
   statements_.fail(fmt::format("{} {} stands in {}; expected {}.{}.1, {}.{}.2, ...", what, text_of(id),
                                open_.back().name, here.segment, here.lane, here.segment, here.lane));
 }
 
+// Likewise, but one of a neighbour is clear: it says which point it means. Whether that is there is seen at the end.
+PointId RndfReader::own_or_known(PointId id, std::string_view what) {
+  const PointId here = key_of_block();
+  if (problems_.strict() || id.point == 0 || (id.segment == here.segment && id.lane == here.lane)) return own(id, what);
+  problems_.tolerate(now().line, fmt::format("{} {} stands in {}", what, text_of(id), open_.back().name), "",
+                     fmt::format("it is taken as one of {}.{}", id.segment, id.lane));
+  return id;
+}
+
 void RndfReader::waypoint() {
   std::vector<RndfPoint>& row = points();
-  const RndfPoint point{own(statements_.keyword_point("the way-point"), "way-point"),
-                        statements_.decimal(0, "the latitude"), statements_.decimal(1, "the longitude"), now().line};
+  const PointId id = statements_.keyword_point("the way-point");
+  unread_.insert(id);
+  const RndfPoint point{own(id, "way-point"), statements_.decimal(0, "the latitude"),
+                        statements_.decimal(1, "the longitude"), now().line};
   statements_.expect_fields(2);
   if (std::abs(point.latitude) > 90.0)
     statements_.fail(fmt::format("the latitude is {}; expected degrees from -90 to 90", quoted(now().fields[0])));
@@ -138,17 +159,19 @@ void RndfReader::waypoint() {
   if (point.id.point < expected)
     statements_.fail(fmt::format("way-point {} comes after {}; expected them in driving direction, 1, 2, 3, ...",
                                  text_of(point.id), text_of(row.back().id)));
-  if (point.id.point > expected && open_.back().seen.emplace("gap").second)
+  if (point.id.point > expected && open_.back().seen.emplace("gap", "").second)
     warn(now().line,
          fmt::format("way-point {} follows where {} was expected; numbers are left out", text_of(point.id), expected));
   row.push_back(point);
+  unread_.erase(id);
 }
 
 void RndfReader::read_boundary(Boundary& boundary) {
   const auto read = now().fields.empty() ? std::nullopt : boundary_of(now().fields[0]);
-  if (!read)
-    statements_.fail(
-        fmt::format("'{}' is {}; expected one of {}", now().keyword, quoted(now().rest), boundary_words()));
+  const std::string what = fmt::format("'{}' is {}", now().keyword, quoted(now().rest));
+  const std::string remedy = fmt::format("expected one of {}", boundary_words());
+  if (now().fields.empty()) return problems_.tolerate(now().line, what, remedy, "no paint is taken");
+  if (!read) statements_.fail(what + "; " + remedy);
   statements_.expect_fields(1);
   boundary = *read;
 }
@@ -165,32 +188,37 @@ void RndfReader::read_width(std::optional<double>& width_ft) {
 }
 
 void RndfReader::read_exit() {
-  const RndfExit exit{own(statements_.point(0, "the exit"), "exit"), statements_.point(1, "the entry of this exit"),
-                      now().line};
+  const RndfExit exit{own_or_known(statements_.point(0, "the exit"), "exit"),
+                      statements_.point(1, "the entry of this exit"), now().line};
   statements_.expect_fields(2);
   const auto [old, fresh] = exits_.emplace(std::pair(exit.from, exit.to), exit.line);
   if (!fresh)
-    statements_.fail(fmt::format("exit {} to {} is already in line {}; expected it once", text_of(exit.from),
-                                 text_of(exit.to), old->second));
+    return problems_.tolerate(
+        now().line,
+        fmt::format("exit {} to {} is already in line {}", text_of(exit.from), text_of(exit.to), old->second),
+        "expected it once", "it is taken once");
   (open_.back().block == RndfBlock::lane ? lane().exits : zone().exits).push_back(exit);
 }
 
 void RndfReader::read_stop() {
-  const RndfStop stop{own(statements_.point(0, "the stop"), "stop"), now().line};
+  const RndfStop stop{own_or_known(statements_.point(0, "the stop"), "stop"), now().line};
   statements_.expect_fields(1);
   if (!stops_.insert(stop.at).second)
-    statements_.fail(fmt::format("stop {} is given twice; expected it once", text_of(stop.at)));
+    return problems_.tolerate(now().line, fmt::format("stop {} is given twice", text_of(stop.at)), "expected it once",
+                              "it is taken once");
   lane().stops.push_back(stop);
 }
 
 void RndfReader::read_checkpoint() {
-  const PointId at = own(statements_.point(0, "the checkpoint's way-point"), "checkpoint");
+  const PointId at = own_or_known(statements_.point(0, "the checkpoint's way-point"), "checkpoint");
   const RndfCheckpoint checkpoint{statements_.whole(1, 1, "the checkpoint's id"), at, now().line};
   statements_.expect_fields(2);
-  const auto [old, fresh] = checkpoints_.emplace(checkpoint.id, checkpoint.line);
-  if (!fresh)
-    statements_.fail(
-        fmt::format("checkpoint {} is already in line {}; expected an id of its own", checkpoint.id, old->second));
+  const auto [old, fresh] = checkpoints_.emplace(checkpoint.id, checkpoint);
+  if (!fresh) {
+    const std::string what = fmt::format("checkpoint {} is already in line {}", checkpoint.id, old->second.line);
+    if (old->second.at != at) statements_.fail(what + "; expected an id of its own");
+    return problems_.tolerate(now().line, what, "expected an id of its own", "it is taken once");
+  }
   (open_.back().block == RndfBlock::lane ? lane().checkpoints : spot().checkpoints).push_back(checkpoint);
 }
 

@@ -2,8 +2,8 @@
 
 namespace sf::world {
 
-RoadNetwork load_roads(const std::string& rndf_file, std::vector<Warning>& warnings) {
-  const Rndf rndf = read_rndf(rndf_file);
+RoadNetwork load_roads(const std::string& rndf_file, std::vector<Warning>& warnings, bool strict) {
+  const Rndf rndf = read_rndf(rndf_file, strict);
   warnings.insert(warnings.end(), rndf.warnings.begin(), rndf.warnings.end());
   const RoadSidecar sidecar = read_sidecar(rndf_file, warnings);
   return build_network(rndf, sidecar, warnings);

@@ -11,9 +11,9 @@
 
 namespace sf::world {
 
-/// Reads an RNDF and the sidecar beside it. Whatever is not an error joins `warnings`.
+/// Reads an RNDF and the sidecar beside it. Whatever is not an error joins `warnings`. @param strict as of `read_rndf`
 /// @throws base::InputError with file and line.
-RoadNetwork load_roads(const std::string& rndf_file, std::vector<Warning>& warnings);
+RoadNetwork load_roads(const std::string& rndf_file, std::vector<Warning>& warnings, bool strict = false);
 
 /// The network of a world that was read, its first where it has several; nothing where it has none. What there was to
 /// warn of was said when the world was read. @throws base::InputError when its file is no longer as it was.
