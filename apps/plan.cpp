@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <string_view>
 
 #include "base/error.h"
@@ -23,8 +24,29 @@ control::Plan plan_of(const Options& options) {
           control::Settings(fmt::format("controller '{}'", options.controller), std::move(settings))};
 }
 
+namespace {
+
+/// Robots that the world file gives a controller have that one, all others the command line's; empty where that is one.
+std::vector<scenarios::Actor> actors_of_world(const world::World& world, const Options& options) {
+  const auto own = [&](const world::Mover& mover) {
+    return !mover.is_tag && !mover.controller.empty() && mover.controller != options.controller;
+  };
+  const auto count = std::count_if(world.movers.begin(), world.movers.end(), own);
+  if (count == 0) return {};
+  std::fprintf(stderr, "sensorfarm: %s driven as the world file says (ctrl); --drive NAME drives a robot by '%s'\n",
+               count == 1 ? "1 robot is" : fmt::format("{} robots are", count).c_str(), options.controller.c_str());
+  std::vector<scenarios::Actor> actors;
+  for (const world::Mover& mover : world.movers)
+    actors.push_back({.plan = mover.is_tag ? control::Plan{}
+                              : own(mover) ? control::Plan{.controller = mover.controller}
+                                           : plan_of(options)});
+  return actors;
+}
+
+}  // namespace
+
 std::vector<scenarios::Actor> actors_of(const world::World& world, const Options& options) {
-  if (options.drive.empty()) return {};
+  if (options.drive.empty()) return actors_of_world(world, options);
   std::vector<std::string_view> names;
   for (const world::Mover& mover : world.movers) names.emplace_back(mover.name);
   std::vector<scenarios::Actor> actors(world.movers.size(), {.plan = {.controller = ""}});

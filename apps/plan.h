@@ -17,7 +17,8 @@ control::Setting setting_of(const std::string& text);
 /// `--controller` with its `--set`s.
 control::Plan plan_of(const Options& options);
 
-/// The plan for whom `--drive` names, all others stand; empty where it names nobody: every robot is driven.
+/// The plan for whom `--drive` names, all others stand. Where it names nobody every robot is driven, by what its world
+/// file says first (`ctrl`); empty where that is the same for all.
 /// @throws base::InputError for a name that the world lacks.
 std::vector<scenarios::Actor> actors_of(const world::World& world, const Options& options);
 

@@ -67,8 +67,7 @@ RouteGoals::RouteGoals(const Site& site, Settings& settings) : seed_(site.seed),
 void RouteGoals::read_mission(const Site& site, const std::string& file) {
   const world::RoadNetwork& roads = *site.roads;
   const world::Mdf mdf = world::read_mdf(find_file(site.world, file));
-  if (site.warnings != nullptr)
-    site.warnings->insert(site.warnings->end(), mdf.warnings.begin(), mdf.warnings.end());
+  if (site.warnings != nullptr) site.warnings->insert(site.warnings->end(), mdf.warnings.begin(), mdf.warnings.end());
   for (const world::MdfCheckpoint& row : mdf.checkpoints) {
     const auto* checkpoint = find_checkpoint(roads, row.id);
     if (checkpoint == nullptr)

@@ -47,9 +47,12 @@ world::World world_of(const Scenario& scenario) {
 
 SimulationOptions simulation_of(const Scenario& scenario, const world::World& world) {
   SimulationOptions options{.seed = scenario.seed, .start_at = scenario.start_at};
-  // Tags stand unless they are named.
-  for (const world::Mover& mover : world.movers)
-    options.actors.push_back(mover.is_tag ? Actor{.plan = {.controller = ""}} : scenario.actor);
+  // Tags stand unless they are named. What the world file says of one robot counts more than what is said of all.
+  for (const world::Mover& mover : world.movers) {
+    Actor& actor = options.actors.emplace_back(mover.is_tag ? Actor{.plan = {.controller = ""}} : scenario.actor);
+    const bool own = !mover.is_tag && !mover.controller.empty() && mover.controller != actor.plan.controller;
+    if (own) actor.plan = {.controller = mover.controller};
+  }
   for (const RobotPlan& plan : scenario.plans)
     if (plan.actor) options.actors[row_of(scenario, world, plan.name, plan.line)] = *plan.actor;
   for (Actor& actor : options.actors) actor.link.seed = scenario.seed;

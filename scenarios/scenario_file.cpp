@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <span>
 
 #include "base/error.h"
@@ -171,6 +172,7 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
   const TomlNode* list = world::find(root, "robot");
   if (list == nullptr) return;
   if (list->kind != Kind::list) reader.fail(*list, "'robot' expects [[robot]] tables");
+  std::map<std::string, int> lines;  // by robot
   for (const TomlNode& node : list->items) {
     if (node.kind != Kind::table) reader.fail(node, "'robot' expects [[robot]] tables");
     reader.require_known(node, kRobotKeys);
@@ -184,10 +186,10 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
     if (const TomlNode* pose = world::find(node, "pose")) plan.pose = pose_of(reader, *pose);
     const TomlNode* driver = world::find(node, "controller");
     plan.driver_line = driver == nullptr ? node.line : driver->line;
-    for (const RobotPlan& other : scenario.plans)
-      if (other.name == plan.name)
-        reader.fail(node, fmt::format("the robot '{}' is told at line {} already; expected one [[robot]] for each",
-                                      plan.name, other.line));
+    const auto [other, fresh] = lines.emplace(plan.name, plan.line);
+    if (!fresh)
+      reader.fail(node, fmt::format("the robot '{}' is told at line {} already; expected one [[robot]] for each",
+                                    plan.name, other->second));
     scenario.plans.push_back(std::move(plan));
   }
 }

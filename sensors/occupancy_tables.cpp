@@ -14,7 +14,7 @@ namespace {
 using gpu::Role;
 using gpu::Texel;
 
-constexpr std::size_t kMostOfAll = 1u << 30;  ///< words of all maps; pairs of beams of all their lasers
+constexpr std::size_t kMostOfAll = 1u << 27;  ///< words of all maps; pairs of beams of all their lasers
 
 /// Blocks that a map's words take, and its strips, when a scan speaks of all of it.
 std::size_t word_blocks(const maps::GridPlan& plan) {

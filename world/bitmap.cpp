@@ -31,10 +31,11 @@ struct Open {
 
 // All vertical lines at once, row by row, as the cells lie in memory. Solid on the right lies on the left of a run
 // downwards.
-std::vector<std::vector<Run>> vertical_runs(const Grid& grid) {
+std::vector<std::vector<Run>> vertical_runs(const Grid& grid, std::size_t most) {
   std::vector<std::vector<Run>> runs(grid.width + 1);
   std::vector<Open> open(grid.width + 1);
-  for (std::uint32_t j = 0; j <= grid.height; ++j) {
+  std::size_t count = 0;
+  for (std::uint32_t j = 0; j <= grid.height && count <= most; ++j) {
     const std::uint8_t* row = j < grid.height ? grid.solid.data() + std::size_t{j} * grid.width : nullptr;
     std::uint8_t left = 0;
     for (std::uint32_t i = 0; i <= grid.width; ++i) {
@@ -44,6 +45,7 @@ std::vector<std::vector<Run>> vertical_runs(const Grid& grid) {
       if (here == open[i].side) continue;
       if (open[i].side > 0) runs[i].push_back({{i, j}, {i, open[i].begin}});
       if (open[i].side < 0) runs[i].push_back({{i, open[i].begin}, {i, j}});
+      if (open[i].side != 0) ++count;
       open[i] = {static_cast<std::int8_t>(here), j};
     }
   }
@@ -52,10 +54,12 @@ std::vector<std::vector<Run>> vertical_runs(const Grid& grid) {
 
 }  // namespace
 
-std::vector<Run> outline(const Grid& grid) {
+std::vector<Run> outline(const Grid& grid, std::size_t most) {
   std::vector<Run> runs;
-  for (std::uint32_t j = 0; j <= grid.height; ++j) horizontal_runs(grid, j, runs);
-  for (const auto& column : vertical_runs(grid)) runs.insert(runs.end(), column.begin(), column.end());
+  for (std::uint32_t j = 0; j <= grid.height && runs.size() <= most; ++j) horizontal_runs(grid, j, runs);
+  if (runs.size() > most) return runs;
+  for (const auto& column : vertical_runs(grid, most - runs.size()))
+    runs.insert(runs.end(), column.begin(), column.end());
   return runs;
 }
 

@@ -30,7 +30,8 @@ struct Run {
 /// Every boundary between solid and free, each maximal straight run once. Runs end where the boundary turns, so also
 /// where two solid cells meet only in a corner: four runs end in that very corner and nothing slips between them. The
 /// order is fixed: horizontal runs from the bottom, then vertical runs from the left.
-std::vector<Run> outline(const Grid& grid);
+/// @param most runs; where there are more it ends early, with more than that.
+std::vector<Run> outline(const Grid& grid, std::size_t most = SIZE_MAX);
 
 /// Where a corner lies in the frame of a model that shows the grid on `size_x` x `size_y`, centred. Equal corners give
 /// the very same doubles.

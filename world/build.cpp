@@ -61,8 +61,7 @@ void warn_of_misplaced(Building& b) {
 
 World build_world(const std::string& file, const std::string& content, const LoadOptions& options) {
   const Document document = parse(file, content);
-  Building b{options, {document, 1.0, M_PI / 180.0, document.warnings, {}}, {}, {}, {}, {}, {}, {}, known_types(), {},
-             {}};
+  Building b{.options = options, .source = {document, 1.0, M_PI / 180.0, document.warnings}, .types = known_types()};
   b.types.insert(b.types.end(), document.macros.begin(), document.macros.end());
 
   read_units(b.source, document.root);

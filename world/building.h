@@ -32,6 +32,7 @@ struct Building {
   World world;
   Bitmaps bitmaps;
   std::set<std::string> names;
+  std::map<std::string, int> copies;                  ///< the last number given to models of one name
   std::set<std::string> told;                         ///< types that were warned about
   std::vector<std::optional<std::uint32_t>> numbers;  ///< per mover: what its name says
   std::vector<Place> places;                          ///< per mover: where it is written
@@ -39,6 +40,9 @@ struct Building {
   std::vector<Place> light_places;                    ///< per light: where its way-points are written
   std::map<std::string, bool> way_points;             ///< of all road networks; true: with a stop line
 };
+
+/// `wanted`, or `wanted#2`, `wanted#3`, ...: a name that no other model has.
+std::string free_name(Building& b, const std::string& wanted);
 
 /// Adds the children of `entity`, of kind `kind`, and all that is in them: models, and warnings for what belongs
 /// elsewhere.

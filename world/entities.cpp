@@ -16,9 +16,10 @@ namespace {
 constexpr std::uint32_t kMostDepth = 64;
 constexpr std::uint32_t kMostWeight = 4'000'000;
 constexpr int kMostIncludes = 256;
+constexpr std::size_t kMostMacros = 20'000;
 
 Entity begin_entity(Reading& r, const Token& word) {
-  Entity entity{word.text, word.text, place(r, word), {}, {}, 1, 1};
+  Entity entity{.word = word.text, .type = word.text, .at = place(r, word)};
   if (const auto macro = r.macros.find(word.text); macro != r.macros.end()) {
     if (r.weight + macro->second.weight > kMostWeight) {
       fail(r, word.line, fmt::format("the macros of this world grow to more than {} properties", kMostWeight));
@@ -53,6 +54,8 @@ void read_body(Reading& r, Entity& entity, std::uint32_t level) {
   const int line = now(r).line;
   if (level > kMostDepth) fail(r, line, fmt::format("nested deeper than {} levels", kMostDepth));
   if (r.weight > kMostWeight) fail(r, line, fmt::format("more than {} properties in one world", kMostWeight));
+  KeyRows rows;
+  for (const Property& property : entity.properties) rows.emplace(property.key, rows.size());
   std::unordered_set<std::string> written;
   for (++r.at; now(r).kind != TokenKind::close;) {
     if (now(r).kind == TokenKind::end) {
@@ -66,10 +69,11 @@ void read_body(Reading& r, Entity& entity, std::uint32_t level) {
       const int child_line = now(r).line;
       add_child(r, entity, read_entity(r, level + 1), child_line);
     } else {
-      add_property(r, entity, written, read_property(r));
+      add_property(r, entity, rows, written, read_property(r));
     }
   }
   ++r.at;
+  sort_keys(entity);
 }
 
 void read_define(Reading& r) {
@@ -90,6 +94,7 @@ void read_define(Reading& r) {
   Entity macro = read_entity(r, 1);
   macro.at = place(r, name);
   const auto [first, fresh] = r.macros.try_emplace(name.text, std::move(macro));
+  if (r.macros.size() > kMostMacros) fail(r, line, fmt::format("more than {} definitions in one world", kMostMacros));
   const Place before = first->second.at;
   const bool same_text = before.file == r.file && before.line == name.line;
   if (!fresh && !same_text) {
@@ -141,7 +146,7 @@ void read_item(Reading& r, std::unordered_set<std::string>& written) {
   }
   if (token.text == "include") return read_include(r);
   if (token.text == "define") return read_define(r);
-  if (next(r).kind != TokenKind::open) return add_property(r, r.document.root, written, read_property(r));
+  if (next(r).kind != TokenKind::open) return add_property(r, r.document.root, r.root_rows, written, read_property(r));
   const int line = token.line;
   add_child(r, r.document.root, read_entity(r, 1), line);
 }
@@ -164,14 +169,9 @@ Document parse(const std::string& file, const std::string& text) {
   Reading r;
   r.document.root.word = "the world";
   read_file(r, file, text);
+  sort_keys(r.document.root);
   for (const auto& [name, entity] : r.macros) r.document.macros.push_back(name);
   return std::move(r.document);
-}
-
-const Property* find(const Entity& entity, std::string_view key) {
-  const auto it =
-      std::find_if(entity.properties.begin(), entity.properties.end(), [&](const Property& p) { return p.key == key; });
-  return it == entity.properties.end() ? nullptr : &*it;
 }
 
 }  // namespace sf::world

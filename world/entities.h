@@ -36,8 +36,9 @@ struct Entity {
   Place at;
   std::vector<Property> properties;
   std::vector<Entity> children;
-  std::uint32_t depth = 1;   ///< levels of this tree, itself included; at most 64
-  std::uint32_t weight = 1;  ///< entities, properties and values in this tree, itself included
+  std::vector<std::uint32_t> by_key;  ///< rows of `properties` in the order of their keys, where they are many
+  std::uint32_t depth = 1;            ///< levels of this tree, itself included; at most 64
+  std::uint32_t weight = 1;  ///< entities, properties, values and stretches of text in this tree, itself included
 };
 
 struct Document {
@@ -56,8 +57,11 @@ Document parse(const std::string& file, const std::string& text);
 /// $STAGEPATH. Empty when there is none.
 std::string find_file(const Document& document, Place from, const std::string& name);
 
-/// The whole of a file. @throws base::InputError when it cannot be read or is larger than 64 MiB.
-std::string read_text(const std::string& file);
+/// The whole of a file. @throws base::InputError when it is not there, no regular file (a folder, a device, a pipe),
+/// empty, larger than `most` bytes, or cannot be read to its end.
+std::string read_bytes(const std::string& file, std::size_t most);
+/// Likewise of a text, which says something.
+std::string read_text(const std::string& file, std::size_t most = 64u << 20);
 
 /// The property of that exact key, or null. Lives as long as the entity.
 const Property* find(const Entity& entity, std::string_view key);

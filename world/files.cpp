@@ -1,10 +1,15 @@
 #include "world/entities.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "base/error.h"
@@ -15,11 +20,24 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 64u << 20;
-
 bool is_file(const fs::path& path) {
   std::error_code error;
   return fs::is_regular_file(path, error);
+}
+
+struct Descriptor {
+  int number = -1;
+  ~Descriptor() {
+    if (number >= 0) ::close(number);
+  }
+};
+
+[[noreturn]] void fail_to_read(const std::string& file) {
+  throw base::InputError(file, 0, fmt::format("cannot be read: {}", std::strerror(errno)));
+}
+
+[[noreturn]] void refuse_size(const std::string& file, std::size_t most) {
+  throw base::InputError(file, 0, fmt::format("larger than {} MiB, the most that is read of such a file", most >> 20));
 }
 
 }  // namespace
@@ -42,18 +60,41 @@ std::string find_file(const Document& document, Place from, const std::string& n
   return {};
 }
 
-std::string read_text(const std::string& file) {
-  std::error_code error;
-  if (!fs::exists(file, error)) throw base::InputError(file, 0, "no such file; give the path of a file that is there");
-  if (!is_file(file)) throw base::InputError(file, 0, "not a file; give the path of a file that is there");
-  if (fs::file_size(file, error) > kMostBytes || error) {
-    throw base::InputError(file, 0, fmt::format("larger than {} MiB: not a world file", kMostBytes >> 20));
+std::string read_bytes(const std::string& file, std::size_t most) {
+  // Without O_NONBLOCK a pipe that nobody writes to would be waited for.
+  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  if (in.number < 0 && (errno == ENOENT || errno == ENOTDIR))
+    throw base::InputError(file, 0, "no such file; give the path of a file that is there");
+  if (in.number < 0) fail_to_read(file);
+  struct stat status = {};
+  if (::fstat(in.number, &status) != 0) fail_to_read(file);
+  if (!S_ISREG(status.st_mode))
+    throw base::InputError(file, 0,
+                           "not a file but a folder, a device or a pipe; give the path of a file that is there");
+  const auto promised = static_cast<std::size_t>(status.st_size);
+  if (promised > most) refuse_size(file, most);
+
+  std::string bytes(promised + 1, '\0');
+  std::size_t have = 0;
+  for (;;) {
+    const ssize_t got = ::read(in.number, bytes.data() + have, bytes.size() - have);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail_to_read(file);
+    if (got == 0) break;
+    have += static_cast<std::size_t>(got);
+    if (have > most) refuse_size(file, most);
+    if (have == bytes.size()) bytes.resize(std::min(2 * have, most + 1));  // it grew meanwhile
   }
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream content;
-  content << in.rdbuf();
-  if (!in) throw base::InputError(file, 0, "cannot be read; check its permissions");
-  return content.str();
+  bytes.resize(have);
+  if (bytes.empty()) throw base::InputError(file, 0, "is empty; was it saved, or copied whole?");
+  return bytes;
+}
+
+std::string read_text(const std::string& file, std::size_t most) {
+  std::string text = read_bytes(file, most);
+  if (text.find_first_not_of(" \t\r\n\v\f") == std::string::npos)
+    throw base::InputError(file, 0, "holds nothing but blanks; was it saved, or copied whole?");
+  return text;
 }
 
 }  // namespace sf::world

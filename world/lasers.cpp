@@ -64,11 +64,6 @@ void read_common(const Source& source, const LoadOptions& options, const Entity&
   laser.accuracy = accuracy(source, options, entity, laser.accuracy);
 }
 
-Place place_of(const Entity& entity, std::string_view key) {
-  const Property* property = find(entity, key);
-  return property != nullptr ? property->at : entity.at;
-}
-
 void check_range(const Source& source, Place at, const Laser& laser) {
   if (!(laser.range_max > 0.0))
     fail(source, at, fmt::format("a largest range of {} m; expected more than 0", laser.range_max));

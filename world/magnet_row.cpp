@@ -8,7 +8,7 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kMostMagnets = 1e7;
+constexpr double kMostMagnets = 1e6;
 
 }  // namespace
 
@@ -32,7 +32,8 @@ std::optional<MagnetRow> read_magnet_row(const Source& source, const Entity& ent
 void place_magnets(Building& b, const Entity& entity, const MagnetRow& row, double length,
                    const std::function<Pose(double)>& along) {
   if (length / row.spacing + static_cast<double>(b.world.magnets.size()) > kMostMagnets)
-    fail(b.source, entity.at, "'magnet_spacing' gives more than ten million magnets; expected a larger one");
+    fail(b.source, place_of(entity, "magnet_spacing"),
+         "'magnet_spacing' gives more than a million magnets; expected a larger one");
   const auto model = static_cast<std::uint32_t>(b.world.models.size() - 1);
   // The last one stands at the very end, where the length is a multiple of the spacing but for rounding.
   for (double k = 0.0; k * row.spacing <= length * (1.0 + 1e-12); ++k) {

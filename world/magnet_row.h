@@ -22,7 +22,7 @@ struct MagnetRow {
 std::optional<MagnetRow> read_magnet_row(const Source& source, const Entity& entity);
 
 /// Adds magnets at s = 0, spacing, 2 spacing ... up to `length` [m], at `along(s)`; they belong to the last model.
-/// @throws base::InputError, naming `entity`, when there are more than ten million.
+/// @throws base::InputError, naming `entity`, when there are more than a million.
 void place_magnets(Building& b, const Entity& entity, const MagnetRow& row, double length,
                    const std::function<Pose(double)>& along);
 

@@ -17,6 +17,9 @@ namespace sf::world {
 
 namespace {
 
+constexpr std::size_t kMostSuggestions = 1'000;
+constexpr double kMostModels = 500'000;
+constexpr double kMostBeams = 1e7;                // of all lasers
 constexpr std::uint32_t kStageRed = 0xFFFF0000u;  // of a model without a colour
 
 // --- Words
@@ -39,12 +42,18 @@ Where where_of(Kind kind) {
   }
 }
 
+// A slip has few neighbours to be meant; of many unknown words none is one.
+std::string suggested(const Building& b, const std::string& type) {
+  constexpr std::size_t kMostSlips = 100;
+  return b.told.size() > kMostSlips ? "" : suggest(type, b.types);
+}
+
 // A type that we do not model is a body all the same, counted and mentioned once.
 void keep(Building& b, const Entity& entity, const std::string& type, bool is_known) {
   ++b.world.kept[type];
   if (!b.told.insert(type).second) return;
   const std::string what = is_known ? fmt::format("'{}' is not modelled", type)
-                                    : fmt::format("unknown type '{}'{}", type, suggest(type, b.types));
+                                    : fmt::format("unknown type '{}'{}", type, suggested(b, type));
   warn(b.source, entity.at, what + (is_known ? ": " : " ") + "kept as a body that does nothing");
 }
 
@@ -52,8 +61,9 @@ void keep(Building& b, const Entity& entity, const std::string& type, bool is_kn
 // --------------------------------------------------------------------------------------------------------------
 
 std::string unique_name(Building& b, const Entity& entity, const std::string& wanted) {
-  std::string name = wanted;
-  for (int k = 2; !b.names.insert(name).second; ++k) name = fmt::format("{}#{}", wanted, k);
+  spend(b.source, entity.at, b.source.spent.name_bytes, static_cast<double>(wanted.size()), 1e8,
+        "bytes of models' names", "give shorter names, or nest less");
+  std::string name = free_name(b, wanted);
   if (name != wanted) warn(b.source, entity.at, fmt::format("a second model named '{}' is called '{}'", wanted, name));
   return name;
 }
@@ -117,6 +127,9 @@ void add_lasers(Building& b, const Entity& entity, const Model& model, const Pos
   }
   auto& lasers = b.world.movers[model.mover].lasers;
   auto added = lasers_of(b.source, b.options, entity, X_MB, height, name);
+  for (const Laser& laser : added)
+    spend(b.source, place_of(entity, "samples"), b.source.spent.beams, laser.samples, kMostBeams, "beams of lasers",
+          "give fewer 'samples'");
   std::move(added.begin(), added.end(), std::back_inserter(lasers));
 }
 
@@ -182,15 +195,21 @@ bool becomes_mover(Building& b, const Entity& entity, const Parent& parent, cons
 }
 
 void add_model(Building& b, const Entity& entity, Parent& parent) {
+  spend(b.source, entity.at, b.source.spent.models, 1.0, kMostModels, "models", "leave some out");
   const Said said = read_said(b, entity, parent);
   Model model = model_of(b, entity, parent, said);
 
   Parent own;  // of the model's own children
   own.X_MP = compose(parent.X_MP, said.X_PB);
   own.name_in_mover = parent.mover == kNone ? "" : joined(parent.name_in_mover, said.name);
+  const std::string controller = controller_of(b, entity);
   if (becomes_mover(b, entity, parent, said)) {
     model.mover = add_mover(b, entity, model, link_of(said.name));
+    b.world.movers[model.mover].controller = controller;
     own.X_MP = {};
+  } else if (!controller.empty()) {
+    warn(b.source, place_of(entity, "ctrl"),
+         fmt::format("'ctrl' drives robots, and '{}' is none: write it into the robot's own parentheses", said.name));
   }
 
   const Pose X_B = compose(model.mover == kNone ? model.X_WM : own.X_MP, pose(b.source, entity, "origin"));
@@ -216,10 +235,22 @@ void add_model(Building& b, const Entity& entity, Parent& parent) {
 
 }  // namespace
 
+std::string free_name(Building& b, const std::string& wanted) {
+  if (b.names.insert(wanted).second) return wanted;
+  for (int& k = b.copies.try_emplace(wanted, 1).first->second;;) {
+    std::string name = fmt::format("{}#{}", wanted, ++k);
+    if (b.names.insert(name).second) return name;
+  }
+}
+
 void check_keys(Source& source, const Entity& entity, Where where, std::span<const std::string_view> own) {
   if (where == Where::kept) return;
   for (const Property& property : entity.properties) {
     if (is_known_key(where, property.key, own)) continue;
+    if (source.warnings.size() > kMostSuggestions) {
+      warn(source, property.at, fmt::format("unknown property '{}' of '{}' is ignored", property.key, entity.word));
+      continue;
+    }
     warn(source, property.at,
          fmt::format("unknown property '{}' of '{}' is ignored{}", property.key, entity.word,
                      suggest_key(where, property.key, own)));

@@ -64,6 +64,20 @@ CommandLaw command_law_of(const Source& source, const Entity& entity) {
 
 }  // namespace
 
+std::string controller_of(Building& b, const Entity& entity) {
+  const Property* property = find(entity, "ctrl");
+  if (property == nullptr || property->values.size() != 1) return {};
+  const std::string& said = property->values.front().text;
+  const std::string word = said.substr(0, said.find(' '));
+  if (word == "wander") return word;
+  if (!word.empty() && b.told.insert("ctrl " + word).second)
+    warn(b.source, property->at,
+         fmt::format("ctrl \"{}\" names a plug-in of Stage, which is not run; choose one of ours with --controller "
+                     "NAME, or write ctrl \"wander\"",
+                     word));
+  return {};
+}
+
 std::optional<Link> link_of(std::string_view name) {
   if (name.starts_with('/')) name.remove_prefix(1);
   for (const std::string_view robot : {"roomba", "pioneer", "khepera"}) {

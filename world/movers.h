@@ -18,6 +18,9 @@ struct Link {
 /// What a model's own name links it to. Tags count from 1, robots from 0; more than nine digits are no number.
 std::optional<Link> link_of(std::string_view name);
 
+/// The controller of ours that `ctrl` names (Stage's `wander`); empty where it names none, with a warning.
+std::string controller_of(Building& b, const Entity& entity);
+
 /// Adds a mover for `model`, which becomes the next row of the models, and returns its row.
 /// @throws base::InputError for bounds, a drive, a command law or lengths that no robot can have.
 std::uint32_t add_mover(Building& b, const Entity& entity, const Model& model, std::optional<Link> link);

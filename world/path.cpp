@@ -16,6 +16,7 @@ namespace {
 constexpr double kArcError = 1e-6;  // [m] between an arc and its chords
 constexpr std::uint32_t kMostPieces = 10'000;
 constexpr int kMostDashes = 1'000'000;
+constexpr double kMostPaintPoints = 4e6;  // of the paint of all paths
 
 PathPiece read_straight(const Source& source, const Property& property) {
   const auto& v = property.values;
@@ -96,15 +97,18 @@ Paint read_paint(const Source& source, const Entity& entity, const char* side) {
   return paint;
 }
 
+/// How many chords keep within `kArcError` of an arc's edge, `offset` to the left of its middle.
+double chords_of(const PathPiece& piece, double length, double offset, const Paint& paint) {
+  if (piece.curvature == 0.0) return 1.0;
+  const double outer = 1.0 / std::abs(piece.curvature) + std::abs(offset) + paint.width;
+  const double step = 2.0 * std::acos(1.0 - kArcError / outer);
+  return std::max(1.0, std::ceil(length * std::abs(piece.curvature) / step));
+}
+
 /// The stripe between `from` and `to` along the middle [m], `offset` to its left.
 Stripe stripe_of(const PathPiece& piece, double from, double to, double offset, const Paint& paint) {
   Stripe stripe{{}, paint.width, paint.color};
-  std::uint32_t chords = 1;
-  if (piece.curvature != 0.0) {
-    const double outer = 1.0 / std::abs(piece.curvature) + std::abs(offset) + paint.width;
-    const double step = 2.0 * std::acos(1.0 - kArcError / outer);
-    chords = static_cast<std::uint32_t>(std::ceil((to - from) * std::abs(piece.curvature) / step));
-  }
+  const auto chords = static_cast<std::uint32_t>(chords_of(piece, to - from, offset, paint));
   for (std::uint32_t i = 0; i <= chords; ++i)
     stripe.line.push_back(transform(along(piece, from + (to - from) * i / chords), {0.0, offset}));
   return stripe;
@@ -125,10 +129,27 @@ void paint_edge(World& world, const PathPiece& piece, double start, double offse
   }
 }
 
-void check_dashes(const Source& source, const Entity& entity, const Paint& paint, double total) {
+void check_dashes(const Source& source, const Entity& entity, const char* side, const Paint& paint, double total) {
   if (paint.none || paint.dash == 0.0 || total / (paint.dash + paint.gap) <= kMostDashes) return;
-  fail(source, find(entity, "dash")->at,
-       fmt::format("'dash' gives more than {} dashes; expected longer ones", kMostDashes));
+  const bool said = find(entity, "dash") != nullptr;
+  fail(source, place_of(entity, said ? "dash" : side),
+       fmt::format("{} gives more than {} dashes; expected longer ones{}",
+                   said ? "'dash'" : fmt::format("'{}' without a 'dash'", side), kMostDashes,
+                   said ? "" : ": dash [length gap]"));
+}
+
+/// Counts the points of one side's paint before any is made. An arc's share is what its chords are.
+void count_paint(Source& source, const Entity& entity, const Path& path, const Paint& paint) {
+  if (paint.none) return;
+  for (std::size_t i = 0; i < path.pieces.size(); ++i) {
+    const PathPiece& piece = path.pieces[i];
+    const double dashes = paint.dash > 0.0 ? std::ceil(piece.length / (paint.dash + paint.gap)) + 1.0 : 1.0;
+    const double points = chords_of(piece, piece.length, 0.5 * piece.width + 2.5 * paint.width, paint) + 2.0 * dashes;
+    const std::string key = fmt::format("{}[{}]", piece.curvature == 0.0 ? "straight" : "arc", i);
+    spend(source, place_of(entity, key), source.spent.paint_points, (paint.twice ? 2.0 : 1.0) * points,
+          kMostPaintPoints, "points of paint along paths",
+          "give '" + key + "' a smaller radius, a shorter way, longer dashes or no paint");
+  }
 }
 
 void paint_side(World& world, const PathPiece& piece, double start, double side, const Paint& paint) {
@@ -147,14 +168,16 @@ void add_path(Building& b, const Entity& entity) {
   const Paint right = read_paint(b.source, entity, "right");
   Model model;
   model.name = text(b.source, entity, "name", "path");
-  for (int k = 2; !b.names.insert(model.name).second; ++k) model.name = fmt::format("path#{}", k);
+  model.name = free_name(b, model.name);
   model.type = "path";
   model.X_WM = path.pieces.front().X_WP;
   path.name = model.name;
   b.world.models.push_back(model);
   const double total = length_of(path);
-  check_dashes(b.source, entity, left, total);
-  check_dashes(b.source, entity, right, total);
+  for (const auto& [side, paint] : {std::pair("left", &left), std::pair("right", &right)}) {
+    check_dashes(b.source, entity, side, *paint, total);
+    count_paint(b.source, entity, path, *paint);
+  }
   double start = 0.0;
   for (const PathPiece& piece : path.pieces) {
     paint_side(b.world, piece, start, 1.0, left);

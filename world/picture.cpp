@@ -3,32 +3,26 @@
 #include <fmt/format.h>
 #include <spng.h>
 
-#include <fstream>
 #include <memory>
-#include <sstream>
 #include <string_view>
 
 #include "base/error.h"
+#include "world/entities.h"
 
 namespace sf::world {
 
 namespace {
 
-constexpr std::uint32_t kMostPixels = 16384;  // along one side
+constexpr std::uint32_t kMostPixels = 16384;       // along one side
+constexpr std::size_t kMostBytes = 300u << 20;     // of a file; the largest PGM of 8 bits has 256 MiB
+constexpr std::size_t kMostInterlaced = 1u << 26;  // pixels: they need a second copy of four times the size
+constexpr std::size_t kMostExtras = 4u << 20;      // bytes of a PNG's texts and profiles, unpacked
 
 void check_size(const std::string& file, std::uint64_t width, std::uint64_t height) {
   if (width >= 1 && height >= 1 && width <= kMostPixels && height <= kMostPixels) return;
   throw base::InputError(
       file, 0,
       fmt::format("a picture of {} x {} pixels; expected 1 to {} along each side", width, height, kMostPixels));
-}
-
-std::string read_bytes(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream content;
-  content << in.rdbuf();
-  if (!in || content.str().empty()) throw base::InputError(file, 0, "cannot be read; expected a PNG or PGM picture");
-  return content.str();
 }
 
 // --- PNG
@@ -64,6 +58,11 @@ void decode_rows(spng_ctx* png, const std::string& file, Picture& picture, Chann
 }
 
 void decode_interlaced(spng_ctx* png, const std::string& file, Picture& picture, Channel channel) {
+  if (picture.value.size() > kMostInterlaced)
+    throw base::InputError(file, 0,
+                           fmt::format("an interlaced picture of {} x {} pixels; expected at most {} of them: save it "
+                                       "without interlacing",
+                                       picture.width, picture.height, kMostInterlaced));
   std::vector<std::uint8_t> rgba(picture.value.size() * 4);
   check_png(file, spng_decode_image(png, rgba.data(), rgba.size(), SPNG_FMT_RGBA8, SPNG_DECODE_TRNS));
   for (std::uint32_t y = 0; y < picture.height; ++y) {
@@ -75,6 +74,7 @@ Picture read_png(const std::string& file, const std::string& bytes, Channel chan
   const Decoder png(spng_ctx_new(0), &spng_ctx_free);
   check_png(file, spng_set_png_buffer(png.get(), bytes.data(), bytes.size()));
   check_png(file, spng_set_image_limits(png.get(), 1u << 24, 1u << 24));
+  check_png(file, spng_set_chunk_limits(png.get(), kMostExtras, kMostExtras));
   spng_ihdr header{};
   check_png(file, spng_get_ihdr(png.get(), &header));
   check_size(file, header.width, header.height);
@@ -155,11 +155,14 @@ Picture read_pgm(const std::string& file, const std::string& bytes) {
 
 }  // namespace
 
-Picture read_picture(const std::string& file, Channel channel) {
-  const std::string bytes = read_bytes(file);
+Picture decode_picture(const std::string& file, const std::string& bytes, Channel channel) {
   if (bytes.starts_with("\x89PNG")) return read_png(file, bytes, channel);
   if (bytes.starts_with("P5") || bytes.starts_with("P2")) return read_pgm(file, bytes);
   throw base::InputError(file, 0, "neither a PNG nor a PGM (P2, P5) picture; convert it");
+}
+
+Picture read_picture(const std::string& file, Channel channel) {
+  return decode_picture(file, read_bytes(file, kMostBytes), channel);
 }
 
 }  // namespace sf::world

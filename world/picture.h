@@ -21,4 +21,7 @@ enum class Channel { first, mean };
 /// @throws base::InputError when the file is missing, broken, neither PNG nor PGM, or larger than 16384 x 16384.
 Picture read_picture(const std::string& file, Channel channel);
 
+/// Likewise from memory; `file` names errors.
+Picture decode_picture(const std::string& file, const std::string& bytes, Channel channel);
+
 }  // namespace sf::world

@@ -8,13 +8,40 @@
 
 namespace sf::world {
 
+namespace {
+
+constexpr std::size_t kMostWarnings = 10'000;
+
+}  // namespace
+
 void fail(const Source& source, Place at, const std::string& message) {
   throw base::InputError(source.document.files[at.file], at.line, message);
 }
 
 void warn(Source& source, Place at, const std::string& message) {
+  if (source.warned.size() > kMostWarnings) return;
+  if (source.warned.size() == kMostWarnings) {
+    source.warned.insert("and more");
+    source.warnings.push_back({source.document.files[at.file], at.line,
+                               fmt::format("more than {} warnings; from here on they are left out", kMostWarnings)});
+    return;
+  }
   if (!source.warned.insert(fmt::format("{}:{}:{}", at.file, at.line, message)).second) return;
   source.warnings.push_back({source.document.files[at.file], at.line, message});
+}
+
+void spend(const Source& source, Place at, double& spent, double more, double most, std::string_view what,
+           std::string_view remedy) {
+  if (spent + more > most)
+    fail(source, at,
+         fmt::format("this makes {:.0f} {} of the world; expected at most {:.0f}: {}", spent + more, what, most,
+                     remedy));
+  spent += more;
+}
+
+Place place_of(const Entity& entity, std::string_view key) {
+  const Property* property = find(entity, key);
+  return property != nullptr ? property->at : entity.at;
 }
 
 namespace {
@@ -111,7 +138,11 @@ Pose pose(Source& source, const Entity& entity, std::string_view key) {
   if (!values) return {};
   const Place at = find(entity, key)->at;
   const auto& v = *values;
-  if (v.size() == 3) warn(source, at, fmt::format("'{}' has three numbers, read as [x y z] with yaw 0", key));
+  if (v.size() == 3)
+    warn(source, at,
+         fmt::format("'{0}' has three numbers, read as [x y z] with yaw 0: z is {1:g}; write [{2:g} {3:g} {1:g} 0], or "
+                     "[{2:g} {3:g} 0 {1:g}] where the third is an angle",
+                     key, v[2], v[0], v[1]));
   const double yaw = v.size() > 3 ? source.radians * v[3] : 0.0;
   if (!(std::abs(yaw) <= 1e6)) fail(source, at, fmt::format("the yaw of '{}' is out of reach", key));
   return {metres(source, at, v[0]), metres(source, at, v[1]), metres(source, at, v[2]), yaw};

@@ -2,9 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "base/error.h"
 
 namespace sf::world {
+
+namespace {
+
+constexpr std::size_t kFewKeys = 32;  // are looked through one by one
+
+}  // namespace
 
 void fail(const Reading& r, int line, const std::string& message) {
   throw base::InputError(r.document.files[r.file], line, message);
@@ -22,6 +30,14 @@ std::string shown(const Token& token) {
 namespace {
 
 Value value_of(const Token& token) { return {token.kind == TokenKind::text, token.number, token.text}; }
+
+/// Of a property: itself, its values, and texts that are longer than most.
+std::uint32_t weight_of(const Property& property) {
+  constexpr std::size_t kStretch = 64;
+  std::size_t bytes = property.key.size();
+  for (const Value& value : property.values) bytes += value.text.size();
+  return static_cast<std::uint32_t>(1 + property.values.size() + bytes / kStretch);
+}
 
 bool is_value(const Token& token) { return token.kind == TokenKind::number || token.kind == TokenKind::text; }
 
@@ -59,7 +75,8 @@ Property read_property(Reading& r) {
   return property;
 }
 
-void add_property(Reading& r, Entity& entity, std::unordered_set<std::string>& written, Property property) {
+void add_property(Reading& r, Entity& entity, KeyRows& rows, std::unordered_set<std::string>& written,
+                  Property property) {
   if (!written.insert(property.key).second) {
     if (property.key.find('[') != std::string::npos) {
       fail(r, property.at.line,
@@ -68,16 +85,34 @@ void add_property(Reading& r, Entity& entity, std::unordered_set<std::string>& w
     }
     warn(r, property.at.line, fmt::format("'{}' is given twice; the last one counts", property.key));
   }
-  const auto same = [&](const Property& p) { return p.key == property.key; };
-  const auto old = std::find_if(entity.properties.begin(), entity.properties.end(), same);
-  const auto weight = static_cast<std::uint32_t>(1 + property.values.size());
+  const std::uint32_t weight = weight_of(property);
   entity.weight += weight;
   r.weight += weight;
-  if (old != entity.properties.end()) {
-    *old = std::move(property);
-  } else {
+  const auto [old, fresh] = rows.emplace(property.key, static_cast<std::uint32_t>(entity.properties.size()));
+  if (fresh) {
     entity.properties.push_back(std::move(property));
+  } else {
+    entity.properties[old->second] = std::move(property);
   }
+}
+
+void sort_keys(Entity& entity) {
+  if (entity.properties.size() <= kFewKeys) return;
+  entity.by_key.resize(entity.properties.size());
+  std::iota(entity.by_key.begin(), entity.by_key.end(), 0u);
+  std::sort(entity.by_key.begin(), entity.by_key.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return entity.properties[a].key < entity.properties[b].key; });
+}
+
+const Property* find(const Entity& entity, std::string_view key) {
+  const auto& all = entity.properties;
+  if (entity.by_key.size() != all.size() || all.empty()) {
+    const auto it = std::find_if(all.begin(), all.end(), [&](const Property& p) { return p.key == key; });
+    return it == all.end() ? nullptr : &*it;
+  }
+  const auto it = std::lower_bound(entity.by_key.begin(), entity.by_key.end(), key,
+                                   [&](std::uint32_t row, std::string_view wanted) { return all[row].key < wanted; });
+  return it == entity.by_key.end() || all[*it].key != key ? nullptr : &all[*it];
 }
 
 }  // namespace sf::world

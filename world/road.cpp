@@ -11,6 +11,8 @@ namespace sf::world {
 
 namespace {
 
+constexpr double kMostRoads = 100;
+
 RoadNetwork read_network(Building& b, const Entity& entity) {
   const Property* rndf = find(entity, "rndf");
   const std::string name = text(b.source, entity, "rndf", "");
@@ -22,7 +24,7 @@ RoadNetwork read_network(Building& b, const Entity& entity) {
         fmt::format("cannot find the road network \"{}\"; expected it beside this file, beside the world file or along "
                     "$STAGEPATH",
                     name));
-  return load_roads(file, b.source.warnings);
+  return load_roads(file, b.source.warnings, b.options.strict_roads);
 }
 
 /// Lanes named like "1.1 3.2", or "all".
@@ -50,6 +52,7 @@ void keep_way_points(Building& b, const RoadNetwork& roads) {
 
 void add_road(Building& b, const Entity& entity) {
   check_keys(b.source, entity, Where::road);
+  spend(b.source, entity.at, b.source.spent.roads, 1.0, kMostRoads, "road networks", "join them into one file");
   const RoadNetwork roads = read_network(b, entity);
   Model model;
   model.name = text(b.source, entity, "name", roads.name.empty() ? "road" : roads.name);

@@ -18,6 +18,8 @@ namespace sf::world {
 
 namespace {
 
+constexpr std::size_t kMostYaml = 1u << 20;  // bytes; a map's file has a few lines
+
 struct Map {
   std::string image;        ///< path
   double resolution = 0.0;  ///< [m] per pixel
@@ -89,9 +91,9 @@ void check_mode(const Yaml& yaml, std::vector<Warning>& warnings) {
   warnings.push_back({yaml.file, node.Mark().line + 1, "'mode: scale' is read as trinary: walls, free and unknown"});
 }
 
-YAML::Node parse_yaml(const std::string& file) {
+YAML::Node parse_yaml(const std::string& file, const std::string& text) {
   try {
-    YAML::Node root = YAML::Load(read_text(file));
+    YAML::Node root = YAML::Load(text);
     if (root.IsMap()) return root;
   } catch (const YAML::Exception& error) {
     throw base::InputError(file, error.mark.is_null() ? 0 : error.mark.line + 1, "not YAML: " + error.msg);
@@ -104,7 +106,6 @@ Map read_map(const Yaml& yaml, std::vector<Warning>& warnings) {
   const YAML::Node image = need(yaml, "image", "the map's picture");
   if (!image.IsScalar() || image.Scalar().empty()) fail(yaml, image, "'image' expects a file");
   map.image = (std::filesystem::path(yaml.file).parent_path() / image.Scalar()).string();
-  if (!std::filesystem::exists(map.image)) fail(yaml, image, fmt::format("cannot find the picture {}", map.image));
 
   const YAML::Node resolution = need(yaml, "resolution", "metres per pixel");
   map.resolution = finite(yaml, resolution, "'resolution'");
@@ -179,16 +180,24 @@ bool is_ros_map(const std::string& file) {
 }
 
 World load_ros_map(const std::string& file, const LoadOptions& options) {
+  return build_ros_map(file, read_text(file, kMostYaml), options);
+}
+
+World build_ros_map(const std::string& file, const std::string& text, const LoadOptions& options) {
   World world;
   world.file = file;
   world.accuracy.word = options.accuracy;
   world.name = std::filesystem::path(file).stem().string();
-  const Yaml yaml{file, parse_yaml(file)};
+  const Yaml yaml{file, parse_yaml(file, text)};
   const Map map = read_map(yaml, world.warnings);
-  const Picture picture = read_picture(map.image, Channel::mean);
-  add_walls(world, map, grid_of(map, picture, [&](Ground ground) {
-              return ground == Ground::wall || (ground == Ground::unknown && options.unknown_is_wall);
-            }));
+  try {
+    const Picture picture = read_picture(map.image, Channel::mean);
+    add_walls(world, map, grid_of(map, picture, [&](Ground ground) {
+                return ground == Ground::wall || (ground == Ground::unknown && options.unknown_is_wall);
+              }));
+  } catch (const base::InputError& error) {
+    fail(yaml, yaml.root["image"], fmt::format("'image': {}", error.what()));
+  }
   finish(world);
   return world;
 }
@@ -196,7 +205,7 @@ World load_ros_map(const std::string& file, const LoadOptions& options) {
 std::vector<Segment> known_free(const World& world) {
   if (!is_ros_map(world.file)) return {};
   std::vector<Warning> said;
-  const Map map = read_map({world.file, parse_yaml(world.file)}, said);
+  const Map map = read_map({world.file, parse_yaml(world.file, read_text(world.file, kMostYaml))}, said);
   const Picture picture = read_picture(map.image, Channel::mean);
   return outlines_of(map, grid_of(map, picture, [](Ground ground) { return ground == Ground::free; }));
 }

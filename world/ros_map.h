@@ -18,6 +18,9 @@ bool is_ros_map(const std::string& file);
 /// @throws base::InputError with file and line.
 World load_ros_map(const std::string& file, const LoadOptions& options);
 
+/// Likewise of a text that was read; `file` names errors, and the picture is looked for beside it.
+World build_ros_map(const std::string& file, const std::string& text, const LoadOptions& options);
+
 /// Outlines, solid on their left, of what the map that `world` was loaded from knows to be free: read from its files
 /// again. Empty for a world that is no map, or a map that knows nothing.
 std::vector<Segment> known_free(const World& world);

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <cmath>
 
 #include "base/error.h"
 #include "world/outline.h"
@@ -14,8 +14,10 @@ namespace sf::world {
 
 namespace {
 
-constexpr std::uint32_t kMostPoints = 2'000;  // checking a polygon against itself is quadratic
-constexpr std::size_t kMostRuns = 20'000'000;
+constexpr std::uint32_t kMostPoints = 2'000;
+constexpr double kMostCornerPairs = 1e8;  // of all blocks: checking a polygon against itself is quadratic
+constexpr std::size_t kMostRuns = 2'000'000;
+constexpr double kMostSegments = kMostRuns;
 constexpr double kBoundary = 0.01;  // [m] thickness of the walls that `boundary 1` adds
 
 struct Block {
@@ -65,28 +67,53 @@ std::vector<Block> read_blocks(Source& source, const Entity& entity) {
   return blocks;
 }
 
-// All blocks of a model are scaled together: their bounding box becomes size.x by size.y about the origin, their
-// greatest height size.z. An extent of zero stays zero.
-void scale_to(std::vector<Block>& blocks, const Size& size) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Vec2 low{kFar, kFar}, high{-kFar, -kFar};
-  double top = 0.0;
+/// What all blocks of a model span.
+struct Span {
+  Vec2 low{HUGE_VAL, HUGE_VAL};
+  Vec2 high{-HUGE_VAL, -HUGE_VAL};
+  double top = 0.0;  ///< [m]
+
+  Size size() const { return {high.x - low.x, high.y - low.y, top}; }
+};
+
+Span span_of(const std::vector<Block>& blocks) {
+  Span span;
   for (const Block& block : blocks) {
     for (const Vec2 p : block.points) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+      span.low = {std::min(span.low.x, p.x), std::min(span.low.y, p.y)};
+      span.high = {std::max(span.high.x, p.x), std::max(span.high.y, p.y)};
     }
-    top = std::max(top, block.z_max);
+    span.top = std::max(span.top, block.z_max);
   }
+  return span;
+}
+
+// All blocks of a model are scaled together: their bounding box becomes size.x by size.y about the origin, their
+// greatest height size.z. An extent of zero stays zero.
+void scale_to(std::vector<Block>& blocks, const Span& span, const Size& size) {
   const auto scaled = [](double value, double from, double to, double target) {
     return to > from ? ((value - from) / (to - from) - 0.5) * target : 0.0;
   };
   for (Block& block : blocks) {
-    for (Vec2& p : block.points) p = {scaled(p.x, low.x, high.x, size.x), scaled(p.y, low.y, high.y, size.y)};
-    if (top <= 0.0) continue;
-    block.z_min *= size.z / top;
-    block.z_max *= size.z / top;
+    for (Vec2& p : block.points)
+      p = {scaled(p.x, span.low.x, span.high.x, size.x), scaled(p.y, span.low.y, span.high.y, size.y)};
+    if (span.top <= 0.0) continue;
+    block.z_min *= size.z / span.top;
+    block.z_max *= size.z / span.top;
   }
+}
+
+/// Blocks are written in metres as if they were taken so; without a size they become a box of 10 cm.
+void warn_unsized(Source& source, const Entity& entity, const Span& span, const Size& size) {
+  const Size written = span.size();
+  const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-3 * b; };
+  if (find(entity, "size") != nullptr || (near(written.x, size.x) && near(written.y, size.y))) return;
+  const double unit = source.metres;
+  warn(source, entity.at,
+       fmt::format("'{}' has blocks of {:.4g} x {:.4g} m but no 'size': they are scaled to {:g} x {:g} x {:g} m; write "
+                   "size [{:.6g} {:.6g} {:.6g}] for what the blocks say",
+                   entity.word, written.x, written.y, size.x, size.y, size.z, written.x / unit, written.y / unit,
+                   written.z / unit));
 }
 
 void append(std::vector<Segment>& segments, const std::vector<Vec2>& points, double z_min, double z_max) {
@@ -115,18 +142,18 @@ void append_boundary(std::vector<Segment>& segments, const Size& size) {
   for (std::size_t i = inner; i < segments.size(); ++i) std::swap(segments[i].a, segments[i].b);
 }
 
-// Stage: dark is solid. Transparent is free. The picture's top row is the plan's far (+y) edge.
-Grid grid_of(const Picture& picture) {
-  Grid grid{picture.width, picture.height, std::vector<std::uint8_t>(picture.value.size())};
-  for (std::uint32_t row = 0; row < picture.height; ++row) {
-    const std::size_t from = std::size_t{row} * picture.width;
-    const std::size_t to = std::size_t{picture.height - 1 - row} * picture.width;
-    for (std::uint32_t i = 0; i < picture.width; ++i) {
-      const bool opaque = picture.opaque.empty() || picture.opaque[from + i] != 0;
-      grid.solid[to + i] = opaque && picture.value[from + i] <= 127 ? 1 : 0;
-    }
+// Stage: dark is solid. Transparent is free. The picture's top row is the plan's far (+y) edge. In place: plans are
+// large.
+Grid grid_of(Picture picture) {
+  std::vector<std::uint8_t>& cells = picture.value;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const bool opaque = picture.opaque.empty() || picture.opaque[i] != 0;
+    cells[i] = opaque && cells[i] <= 127 ? 1 : 0;
   }
-  return grid;
+  const auto row = [&](std::uint32_t y) { return cells.begin() + static_cast<std::ptrdiff_t>(y) * picture.width; };
+  for (std::uint32_t y = 0; y < picture.height / 2; ++y)
+    std::swap_ranges(row(y), row(y + 1), row(picture.height - 1 - y));
+  return {picture.width, picture.height, std::move(cells)};
 }
 
 const Traced& bitmap_of(Source& source, Bitmaps& bitmaps, const Entity& entity) {
@@ -151,10 +178,12 @@ const Traced& bitmap_of(Source& source, Bitmaps& bitmaps, const Entity& entity) 
 }  // namespace
 
 std::shared_ptr<const Traced> trace(Grid grid, const std::string& file) {
-  std::vector<Run> runs = outline(grid);
+  std::vector<Run> runs = outline(grid, kMostRuns);
   if (runs.size() > kMostRuns) {
-    throw base::InputError(
-        file, 0, fmt::format("an outline of {} pieces; expected a floor plan, not a photograph", runs.size()));
+    throw base::InputError(file, 0,
+                           fmt::format("an outline of more than {} straight pieces; expected a floor plan, not a "
+                                       "photograph or noise: smooth the picture, or make it smaller",
+                                       kMostRuns));
   }
   return std::make_shared<const Traced>(Traced{{grid.width, grid.height, {}}, std::move(runs)});
 }
@@ -175,6 +204,24 @@ std::vector<Segment> bitmap_segments(const Traced& traced, const Size& size) {
   return segments;
 }
 
+namespace {
+
+/// Counts what the body will be made of before it is made.
+void count_segments(Source& source, const Entity& entity, std::size_t runs, const std::vector<Block>& blocks) {
+  double segments = static_cast<double>(runs) + 8.0;  // a boundary, or a box
+  double pairs = 0.0;
+  for (const Block& block : blocks) {
+    const auto corners = static_cast<double>(block.points.size());
+    segments += corners;
+    pairs += 0.5 * corners * corners;
+  }
+  const char* remedy = "leave out models, or give them simpler outlines";
+  spend(source, entity.at, source.spent.segments, segments, kMostSegments, "segments", remedy);
+  spend(source, entity.at, source.spent.corner_pairs, pairs, kMostCornerPairs, "pairs of edges in blocks", remedy);
+}
+
+}  // namespace
+
 std::vector<Segment> shape_of(Source& source, Bitmaps& bitmaps, const Entity& entity, const Size& size, bool is_box) {
   std::vector<Segment> segments;
   if (flag(source, entity, "noblocks", false)) return segments;
@@ -185,8 +232,19 @@ std::vector<Segment> shape_of(Source& source, Bitmaps& bitmaps, const Entity& en
   if (has_bitmap && (size.x <= 0.0 || size.y <= 0.0)) {
     fail(source, find(entity, "bitmap")->at, "a bitmap needs a 'size' above zero in x and y");
   }
-  if (has_bitmap) segments = bitmap_segments(bitmap_of(source, bitmaps, entity), size);
-  scale_to(blocks, size);
+  const Traced* plan = has_bitmap ? &bitmap_of(source, bitmaps, entity) : nullptr;
+  count_segments(source, entity, plan != nullptr ? plan->runs.size() : 0, blocks);
+  if (plan != nullptr) {
+    segments = bitmap_segments(*plan, size);
+    if (find(entity, "size") == nullptr)
+      warn(source, find(entity, "bitmap")->at,
+           fmt::format("'{}' shows a picture of {} x {} pixels but has no 'size': it is {:g} x {:g} m; write size "
+                       "[x y z] of the whole picture",
+                       entity.word, plan->grid.width, plan->grid.height, size.x, size.y));
+  }
+  const Span span = span_of(blocks);
+  if (!blocks.empty()) warn_unsized(source, entity, span, size);
+  scale_to(blocks, span, size);
   for (const Block& block : blocks) append(segments, block.points, block.z_min, block.z_max);
   if (has_boundary) append_boundary(segments, size);
   if (is_box && !has_bitmap && !has_boundary && blocks.empty())

@@ -36,7 +36,7 @@ double pixel_of(Source& source, Bitmaps& bitmaps, const Entity& entity, const Si
 /// Segments of a traced grid shown on size.x by size.y, from 0 to size.z.
 std::vector<Segment> bitmap_segments(const Traced& traced, const Size& size);
 
-/// @throws base::InputError when the outline is absurd (more than 20 000 000 runs).
+/// @throws base::InputError when the outline is absurd (more than 2 000 000 runs).
 std::shared_ptr<const Traced> trace(Grid grid, const std::string& file);
 
 /// The `size` property, or the fallback; two numbers keep the fallback's height.

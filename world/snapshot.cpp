@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
 constexpr std::uint16_t kVersion = 4;
+constexpr std::uint32_t kMostSamples = 1'000'000;  // of a laser: what a recording's world says is as much an input
 
 template <class Row>
 void put_rows(base::ByteWriter& out, const std::vector<Row>& rows) {
@@ -101,8 +102,12 @@ void check_rows(const World& world) {
   }
   for (const Emitter& e : world.emitters) good &= e.range > 0.0 && e.fov > 0.0 && e.halo >= 0.0;
   for (const Drop& drop : world.drops) good &= drop.outline.size() >= 3;
-  for (const Mover& m : world.movers)
+  for (const Mover& m : world.movers) {
     good &= m.max_acceleration > 0.0 && m.max_turn_acceleration > 0.0 && m.track > 0.0;
+    for (const Laser& l : m.lasers)
+      good &= l.samples >= 1 && l.samples <= kMostSamples && l.resolution >= 1 && l.rate > 0.0 && l.range_max > 0.0;
+  }
+  good &= world.interval > 0.0;
   if (!good) refuse("a row breaks the rules of its table");
 }
 

@@ -11,6 +11,10 @@ namespace sf::world {
 
 namespace {
 
+// What no honest world needs, and a broken one would fill the memory with.
+constexpr std::size_t kMostTokens = 8'000'000;
+constexpr std::size_t kLongestToken = 10'000;
+
 struct Scanner {
   const std::string& file;
   std::string_view text;
@@ -23,6 +27,18 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 bool starts_number(char c) { return is_digit(c) || c == '+' || c == '-' || c == '.'; }
+
+/// Adds what was read from `begin` on; @param value of a number
+void add(Scanner& s, TokenKind kind, std::size_t begin, double value = 0.0) {
+  const std::size_t length = s.at - begin;
+  if (length > kLongestToken)
+    throw base::InputError(s.file, s.line,
+                           fmt::format("a word or text of {} characters; expected at most {}", length, kLongestToken));
+  if (s.tokens.size() >= kMostTokens)
+    throw base::InputError(
+        s.file, s.line, fmt::format("more than {} words, numbers and brackets; expected fewer in a file", kMostTokens));
+  s.tokens.push_back({kind, std::string(s.text.substr(begin, length)), value, s.line});
+}
 
 char peek(const Scanner& s, std::size_t ahead = 0) {
   return s.at + ahead < s.text.size() ? s.text[s.at + ahead] : '\0';
@@ -47,7 +63,7 @@ void scan_word(Scanner& s) {
       break;
     }
   }
-  s.tokens.push_back({TokenKind::word, std::string(s.text.substr(begin, s.at - begin)), 0.0, s.line});
+  add(s, TokenKind::word, begin);
 }
 
 void scan_number(Scanner& s) {
@@ -62,7 +78,7 @@ void scan_number(Scanner& s) {
   if (error != std::errc() || end != last || !std::isfinite(value)) {
     throw base::InputError(s.file, s.line, fmt::format("'{}' is not a number (expected e.g. 0.25)", written));
   }
-  s.tokens.push_back({TokenKind::number, written, value, s.line});
+  add(s, TokenKind::number, begin, value);
 }
 
 void scan_string(Scanner& s) {
@@ -71,7 +87,7 @@ void scan_string(Scanner& s) {
   if (peek(s) != '"') {
     throw base::InputError(s.file, s.line, "this string has no closing quote; expected \" before the end of the line");
   }
-  s.tokens.push_back({TokenKind::text, std::string(s.text.substr(begin, s.at - begin)), 0.0, s.line});
+  add(s, TokenKind::text, begin);
   ++s.at;
 }
 
@@ -113,8 +129,8 @@ bool scan_bracket(Scanner& s) {
     default:
       return false;
   }
-  s.tokens.push_back({kind, std::string(1, s.text[s.at]), 0.0, s.line});
   ++s.at;
+  add(s, kind, s.at - 1);
   return true;
 }
 

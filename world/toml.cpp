@@ -13,6 +13,8 @@ struct NoToml {};
 
 }  // namespace sf::world
 
+// Deeper values are refused by toml++ itself; keys joined by points are counted below.
+#define TOML_MAX_NESTED_VALUES 32
 #undef NDEBUG
 #define TOML_ASSERT(assumption) ((assumption) ? void() : ::sf::world::distrust())
 #include <toml++/toml.h>
@@ -24,6 +26,7 @@ namespace sf::world {
 namespace {
 
 constexpr int kDeepest = 32;
+constexpr std::size_t kMostBytes = 4u << 20;
 
 /// The same text in ASCII: comments may be in any language, all else is ours. (toml++ up to 3.3 runs into undefined
 /// behaviour at some characters beyond.)
@@ -47,6 +50,43 @@ std::string in_ascii(const std::string& file, std::string_view text) {
     c = '?';
   }
   return plain;
+}
+
+/// The last character of the text in quotes that begins at `at`; of several lines where it begins with three. One that
+/// is never closed ends with its line, and toml++ says so.
+std::size_t end_of_text(std::string_view text, std::size_t at, int& line) {
+  const char quote = text[at];
+  const bool long_one = text.substr(at, 3) == std::string(3, quote);
+  for (std::size_t i = at + (long_one ? 3 : 1); i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\') {
+      ++i;
+    } else if (text[i] == quote && (!long_one || text.substr(i, 3) == std::string(3, quote))) {
+      return long_one ? i + 2 : i;
+    } else if (text[i] == '\n' && !long_one) {
+      return i - 1;
+    }
+    if (i < text.size() && text[i] == '\n') ++line;
+  }
+  return text.size();
+}
+
+/// Refuses keys of too many parts: toml++ makes each a table in the one before, and leaves none of them again without
+/// a call in a call. Points in numbers and in quotes are none of a key's: a row of them is ended by whatever else
+/// stands between two keys, and a quote's own text is read over.
+void check_keys(const std::string& file, std::string_view text) {
+  int line = 1;
+  int points = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '\n') ++line;
+    if (c == '#') at = std::min(text.find('\n', at), text.size()) - 1;
+    if (c == '"' || c == '\'') at = end_of_text(text, at, line);
+    if (c == '.' && ++points > kDeepest)
+      throw base::InputError(
+          file, line,
+          fmt::format("nested too deep: a key of more than {0} parts; expected {0} levels at most", kDeepest));
+    if (c == '=' || c == ',' || c == '[' || c == ']' || c == '{' || c == '}' || c == '\n') points = 0;
+  }
 }
 
 int line_of(const toml::source_region& source) { return static_cast<int>(source.begin.line); }
@@ -94,8 +134,12 @@ const TomlNode* find(const TomlNode& table, std::string_view key) {
 }
 
 TomlNode parse_toml(const std::string& file, std::string_view text) {
+  if (text.size() > kMostBytes)
+    throw base::InputError(file, 0, fmt::format("larger than {} MiB, the most that is read of TOML", kMostBytes >> 20));
   try {
-    return plain(file, toml::parse(in_ascii(file, text), file), 0);
+    const std::string ascii = in_ascii(file, text);
+    check_keys(file, ascii);
+    return plain(file, toml::parse(ascii, file), 0);
   } catch (const toml::parse_error& error) {
     throw base::InputError(file, line_of(error.source()), fmt::format("not TOML: {}", error.description()));
   } catch (const NoToml&) {

@@ -25,7 +25,7 @@ const TomlNode* find(const TomlNode& table, std::string_view key);
 /// The table that the text is.
 /// @param file its name, for messages
 /// @throws base::InputError with file and line where it is no TOML, has characters beyond ASCII outside comments of
-/// their own line, or nests deeper than 32 levels.
+/// their own line, nests deeper than 32 levels (a key of many parts does, too), or is larger than 4 MiB.
 TomlNode parse_toml(const std::string& file, std::string_view text);
 
 }  // namespace sf::world

@@ -55,7 +55,7 @@ TEST(Road, WhatIsWrongIsSaid) {
             "test.world:2: 'magnet_lanes' is \"6.1 99.1\"; expected \"all\", or lanes that " SF_SOURCE_DIR
             "/worlds/simville/simville.rndf");
   EXPECT_EQ(error_of(road("magnetic_moment 1 magnet_spacing 1e-7")),
-            "test.world:1: 'magnet_spacing' gives more than ten million magnets; expected a larger one");
+            "test.world:2: 'magnet_spacing' gives more than a million magnets; expected a larger one");
 }
 
 TEST(Road, ANetworkAloneIsNoWorld) {

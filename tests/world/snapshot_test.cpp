@@ -127,6 +127,9 @@ TEST(Snapshot, RowsThatBreakTheirRulesAreRefused) {
   EXPECT_TRUE(refused([](World& w) { w.paths[0].pieces.clear(); }));
   EXPECT_TRUE(refused([](World& w) { w.paths[0].pieces[0].length = 0.0; }));
   EXPECT_TRUE(refused([](World& w) { w.movers[0].track = 0.0; }));
+  EXPECT_TRUE(refused([](World& w) { w.movers[1].lasers.at(0).samples = 4'000'000'000u; })) << "32 GB a scan";
+  EXPECT_TRUE(refused([](World& w) { w.movers[1].lasers.at(0).resolution = 0; }));
+  EXPECT_TRUE(refused([](World& w) { w.interval = 0.0; })) << "a run of no time";
   EXPECT_TRUE(refused([](World& w) { w.movers[0].drive = static_cast<Drive>(4); })) << "no such drive";
   EXPECT_TRUE(refused([](World& w) { w.lights[0].phases[0].state = static_cast<LightState>(6); }));
 }

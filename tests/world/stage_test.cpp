@@ -1,5 +1,6 @@
 #include "world/stage.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -282,6 +283,46 @@ TEST(Stage, KeysOfStageThatAreNotModelledPassSilently) {
       "position( ctrl \"wander\" gui_nose 1 localization \"gps\" localization_origin [0 0 0 0] trail_length 400 joules "
       "10 )");
   EXPECT_EQ(warnings_of(world), "");
+}
+
+TEST(Stage, BlocksWithoutASizeSayWhatToWrite) {
+  const char* const blocks = "block( points 4 point[0] [0 0] point[1] [12 0] point[2] [12 8] point[3] [0 8] z [0 3] )";
+  const World world = read_world(fmt::format("define house model( {} )\nhouse()", blocks));
+  EXPECT_EQ(
+      warnings_of(world),
+      "2: 'house' has blocks of 12 x 8 m but no 'size': they are scaled to 0.1 x 0.1 x 0.1 m; write size [12 8 3] "
+      "for what the blocks say\n");
+  EXPECT_NEAR(world.extent.x_max, 0.05, 1e-12) << "it is Stage's rule all the same";
+  EXPECT_EQ(warnings_of(read_world(fmt::format("model( size [12 8 3] {} )", blocks))), "");
+  const World millimetres = read_world(fmt::format("unit_length \"mm\"\nmodel( {} )", blocks));
+  EXPECT_NE(warnings_of(millimetres).find("write size [12 8 3]"), std::string::npos) << "in the file's own unit";
+  EXPECT_NE(warnings_of(read_world("model( bitmap \"bitmaps/cave.png\" )")).find("has no 'size': it is 0.1 x 0.1 m"),
+            std::string::npos);
+  // As large as the size that it gets: nothing is misread.
+  EXPECT_EQ(warnings_of(read_world("model( block( points 3 point[0] [0 0] point[1] [0.1 0] point[2] [0 0.1] ) )")), "");
+}
+
+TEST(Stage, PosesOfThreeNumbersSayWhatToWrite) {
+  EXPECT_EQ(
+      warnings_of(read_world("model( name \"tag1\"\n pose [1.5 -2 335] )")),
+      "2: 'pose' has three numbers, read as [x y z] with yaw 0: z is 335; write [1.5 -2 335 0], or [1.5 -2 0 335] "
+      "where the third is an angle\n");
+}
+
+TEST(Stage, OfStagesPluginsWanderIsOneOfOurs) {
+  const World world = read_world(
+      "position( name \"a\" ctrl \"wander\" )\nposition( name \"b\"\n ctrl \"fasr\" )\nposition( name \"c\" ctrl "
+      "\"fasr\" )\n"
+      "position( name \"d\" )\nmodel( name \"e\" noblocks 1 ctrl \"wander\" )\nposition( ctrl \"wander fast\" )");
+  EXPECT_EQ(world.movers.at(0).controller, "wander");
+  EXPECT_EQ(world.movers.at(1).controller, "");
+  EXPECT_EQ(world.movers.at(3).controller, "");
+  EXPECT_EQ(world.movers.at(4).controller, "wander") << "what else it says is the plug-in's";
+  EXPECT_EQ(
+      warnings_of(world),
+      "3: ctrl \"fasr\" names a plug-in of Stage, which is not run; choose one of ours with --controller NAME, or "
+      "write ctrl \"wander\"\n"
+      "6: 'ctrl' drives robots, and 'e' is none: write it into the robot's own parentheses\n");
 }
 
 TEST(Stage, BlocksAndSensorsOutsideTheirPlaceAreMentioned) {

@@ -1,0 +1,174 @@
+// Every command that loads a world tells of its warnings.
+
+#include <gtest/gtest.h>
+
+#include "tests/apps/json.h"
+#include "tests/apps/program.h"
+
+namespace sf {
+namespace {
+
+// Five slips, each in a line of its own; the robot is one all the same.
+const char* const kSlips = R"(model( name "box" pose [3 0 0 0] size [1 1 1]
+  colour "red"
+  masss 3 )
+position( name "roomba1" size [0.3 0.3 0.1]
+  velocty_bounds [-1 1 0 0 0 0 -90 90]
+  laser( samples 5
+    range_maxx 3
+    fow 90 )
+)
+)";
+
+struct Said {
+  std::string file;
+  Outcome outcome;
+};
+
+Said said_by(const Folder& folder, const std::string& command, const Words& more = {}) {
+  const std::string file = folder.write("slips.world", kSlips);
+  Words words{command, file};
+  words.insert(words.end(), more.begin(), more.end());
+  return {file, run_program(words)};
+}
+
+void expect_first_three(const Said& said) {
+  const std::string& err = said.outcome.err;
+  EXPECT_NE(err.find("sensorfarm: 5 warnings, the first 3 here, all with `sensorfarm check " + said.file + "`:\n" +
+                     said.file + ":2: warning: unknown property 'colour'"),
+            std::string::npos)
+      << err;
+  EXPECT_NE(err.find(said.file + ":5: warning: unknown property 'velocty_bounds' of 'position' is ignored; did you "
+                                 "mean 'velocity_bounds'?\n"),
+            std::string::npos)
+      << err;
+  EXPECT_EQ(err.find("range_maxx"), std::string::npos) << err;
+}
+
+TEST(Warnings, EveryCommandTellsOfTheFirstThree) {
+  const Folder folder;
+  const std::vector<std::pair<std::string, Words>> commands{
+      {"sense", {}},
+      {"run", {"--duration", "0.2"}},
+      {"serve", {"--port", "0", "--duration", "0.2"}},
+      {"draw", {"-o", folder.path("slips.png")}},
+      {"explain", {}},
+      {"robot", {"--name", "roomba1", "--port", "9", "--duration", "0.1"}},
+      {"listen", {"--duration", "0.1", "--laser-port", std::to_string(free_ports(16))}},
+  };
+  for (const auto& [command, more] : commands) {
+    SCOPED_TRACE(command);
+    expect_first_three(said_by(folder, command, more));
+  }
+}
+
+TEST(Warnings, JsonHasAllOfThem) {
+  const Folder folder;
+  for (const auto& [command, more] : std::vector<std::pair<std::string, Words>>{
+           {"check", {"--json"}},
+           {"sense", {"--json"}},
+           {"run", {"--json", "--duration", "0.2"}},
+           {"serve", {"--json", "--port", "0", "--duration", "0.2"}},
+       }) {
+    SCOPED_TRACE(command);
+    const Said said = said_by(folder, command, more);
+    ASSERT_EQ(said.outcome.code, 0) << said.outcome.err;
+    const Json facts(said.outcome.out);
+    ASSERT_EQ(facts.size("/warnings"), 5u);
+    EXPECT_EQ(facts.text("/warnings/4/file"), said.file);
+    EXPECT_EQ(facts.number("/warnings/4/line"), 8);
+    EXPECT_NE(facts.text("/warnings/4/message").find("'fow'"), std::string::npos);
+  }
+  const Outcome fine = run_program({"sense", our_world("rooms.world"), "--json"});
+  EXPECT_EQ(Json(fine.out).size("/warnings"), 0u);
+}
+
+TEST(Warnings, ScenariosTellOfTheirWorlds) {
+  const Folder folder;
+  folder.write("slips.world", kSlips);
+  const Outcome outcome = run_program(
+      {"test", folder.write("a.toml", "world = \"slips.world\"\nduration = 0.2\n[expect]\ncontacts = 9\n")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("sensorfarm: 5 warnings, the first 3 here"), std::string::npos) << outcome.err;
+}
+
+// A robot that its world file gives a controller keeps it; the command line drives the others.
+TEST(Warnings, ControllersOfTheWorldFileCountMore) {
+  const Folder folder;
+  const std::string robots =
+      "position( name \"roomba1\" size [0.3 0.3 0.1] ctrl \"wander\" laser( ) )\n"
+      "position( name \"roomba2\" pose [2 0 0 0] size [0.3 0.3 0.1] ctrl \"fasr\" laser( ) )\n";
+  const std::string world = folder.write("two.world", robots);
+  const Outcome outcome = run_program({"run", world, "--duration", "0.5", "--controller", "explore", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(
+      outcome.err.find("1 robot is driven as the world file says (ctrl); --drive NAME drives a robot by 'explore'"),
+      std::string::npos)
+      << outcome.err;
+  const Json facts(outcome.out);
+  ASSERT_EQ(facts.size("/warnings"), 1u);
+  EXPECT_EQ(facts.number("/warnings/0/line"), 2);
+  EXPECT_NE(facts.text("/warnings/0/message").find("ctrl \"fasr\" names a plug-in of Stage"), std::string::npos);
+  const Outcome ordered =
+      run_program({"run", world, "--duration", "0.5", "--controller", "explore", "--drive", "roomba1"});
+  EXPECT_EQ(ordered.err.find("as the world file says"), std::string::npos) << ordered.err;
+}
+
+TEST(Warnings, MissionsOfARunTellOfTheirSlips) {
+  const Folder folder;
+  std::string mission = read_file(our_world("simville/simville.mdf"));
+  const std::size_t at = mission.find("num_speed_limits");
+  ASSERT_NE(at, std::string::npos);
+  mission.replace(at, mission.find('\n', at) - at, "num_speed_limits 99");
+  const std::string file = folder.write("go.mdf", mission);
+  const Outcome outcome = run_program({"run", our_world("simville/simville.world"), "--duration", "0.2", "--json",
+                                       "--controller", "route", "--set", "mission=" + file, "--drive", "roomba0"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("sensorfarm: 1 warning:\n" + file), std::string::npos) << outcome.err;
+  EXPECT_EQ(Json(outcome.out).text("/warnings/0/file"), file);
+}
+
+const char* const kSlippedRoads = R"(RNDF_name slips
+num_segments 1
+num_zones 0
+segment 1
+lane 1.1
+num_waypoints 7
+lane_width 12
+1.1.1 40.000000 -83.000000
+1.1.2 40.000000 -82.999000
+end_lane
+end_segment
+end_file
+)";
+
+TEST(Warnings, RoadsWithSlipsAreTakenAndStrictlyRefused) {
+  const Folder folder;
+  const std::string rndf = folder.write("slips.rndf", kSlippedRoads);
+  const Outcome check = run_program({"check", rndf, "--json"});
+  ASSERT_EQ(check.code, 0) << check.err;
+  const Json facts(check.out);
+  ASSERT_EQ(facts.size("/warnings"), 2u);
+  EXPECT_EQ(facts.number("/warnings/0/line"), 6);
+  EXPECT_EQ(facts.number("/warnings/1/line"), 4);
+  const Outcome draw = run_program({"draw", rndf, "-o", folder.path("slips.png")});
+  EXPECT_EQ(draw.code, 0);
+  EXPECT_NE(draw.err.find("sensorfarm: 2 warnings:\n" + rndf + ":6: warning: 'num_waypoints' says 7"),
+            std::string::npos)
+      << draw.err;
+  const Outcome strict = run_program({"check", rndf, "--strict"});
+  EXPECT_EQ(strict.code, 2);
+  EXPECT_EQ(strict.err, "sensorfarm: " + rndf +
+                            ":6: 'num_waypoints' says 7, but lane 1.1 has 2; mend the number or what it counts\n");
+  const std::string world = folder.write("slips.world", "road( rndf \"slips.rndf\" )\n");
+  EXPECT_EQ(Json(run_program({"check", world, "--json"}).out).size("/warnings"), 2u);
+  EXPECT_EQ(run_program({"check", world, "--strict"}).code, 2);
+  const std::string mdf = folder.write("go.mdf",
+                                       "MDF_name go\nRNDF x\ncheckpoints\nnum_checkpoints 3\n1\nend_checkpoints\n"
+                                       "speed_limits\nnum_speed_limits 0\nend_speed_limits\nend_file\n");
+  EXPECT_EQ(run_program({"check", mdf}).code, 0);
+  EXPECT_EQ(run_program({"check", mdf, "--strict"}).code, 2);
+}
+
+}  // namespace
+}  // namespace sf
