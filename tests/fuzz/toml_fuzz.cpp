@@ -1,0 +1,34 @@
+// libFuzzer target: any bytes as TOML, as scenario files and sidecars of road networks are read.
+
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "base/error.h"
+#include "world/toml.h"
+
+namespace {
+
+using namespace sf;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+int depth_of(const world::TomlNode& node) {
+  int deepest = 0;
+  for (const world::TomlNode& item : node.items) deepest = std::max(deepest, depth_of(item));
+  return deepest + 1;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    const auto root = world::parse_toml("fuzz.toml", {reinterpret_cast<const char*>(data), size});
+    require(root.kind == world::TomlNode::Kind::table && depth_of(root) <= 33);
+  } catch (const base::InputError& error) {
+    require(std::string_view(error.what()).starts_with("fuzz.toml"));
+  }
+  return 0;
+}
