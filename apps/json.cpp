@@ -79,7 +79,7 @@ Json element_json(const sensors::SensorKind& kind, std::span<const double> value
 }
 
 std::string_view word_of(base::Unsure unsure) {
-  constexpr std::string_view kWords[] = {"no", "not cast", "grazing"};
+  constexpr std::string_view kWords[] = {"no", "not cast", "grazing", "not straight", "extrapolated"};
   return kWords[static_cast<std::size_t>(unsure)];
 }
 

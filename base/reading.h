@@ -2,6 +2,7 @@
 // What a sensor says: one block per sensor that was due, in one shape for every kind.
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "base/pose.h"
@@ -17,9 +18,11 @@ inline constexpr std::uint8_t kLaser = 1;
 
 /// Why an element's value may be wrong by more than its reading's bound.
 enum class Unsure : std::uint8_t {
-  no = 0,        ///< it is not
-  not_cast = 1,  ///< no beam was cast for it: it lies between those that were
-  grazing = 2    ///< its beam meets a surface at too small an angle
+  no = 0,            ///< it is not
+  not_cast = 1,      ///< no beam was cast for it: it lies between those that were
+  grazing = 2,       ///< its beam meets a surface at too small an angle
+  not_straight = 3,  ///< a lane edge whose points do not show one straight line
+  extrapolated = 4   ///< a lane edge's distance where no ray met it: beyond the points it rests on
 };
 
 /// One reading of one sensor. The spans live until the next tick of the farm that returned them.
@@ -36,8 +39,9 @@ struct ReadingBlock {
       hits;                 ///< laser: model row that each beam met, or kNoHit; empty where not known (interpolated)
   std::uint32_t flags = 0;  ///< what a kind has to say beside its values; which bits, its header tells
   std::uint8_t mode = 0;    ///< accuracy it was measured with: row of the kind's modes
-  double bound = 0.0;  ///< [unit of the first column] largest error of that column without noise, where `unsure` says
-                       ///< nothing (sensors/accuracy.h); infinite: none is stated
+  /// [unit of the first column] largest error of that column without noise, where `unsure` says nothing
+  /// (sensors/accuracy.h); infinite: none is stated.
+  double bound = std::numeric_limits<double>::infinity();
   std::span<const Unsure> unsure;  ///< one per element; empty: the bound holds for all
 };
 

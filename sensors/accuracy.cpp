@@ -117,13 +117,13 @@ std::vector<std::string_view> accuracy_words() {
 namespace {
 
 /// Sensors that are set up alike state the same.
-using Alike = std::tuple<std::uint8_t, double, double, std::uint32_t>;
+using Alike = std::tuple<std::uint8_t, bool, double, double, std::uint32_t>;
 
 /// @param known bounds of those that were looked at
 const Bound& bound_of(const world::World& world, const SensorKind& kind, const SensorRow& row,
                       std::map<Alike, Bound>& known) {
-  const auto [at, is_new] =
-      known.try_emplace(Alike{row.mode, row.limit, world.movers[row.mover].X_WM.z + row.X_MS.z, row.elements}, Bound{});
+  const auto [at, is_new] = known.try_emplace(
+      Alike{row.mode, row.noisy, row.limit, world.movers[row.mover].X_WM.z + row.X_MS.z, row.elements}, Bound{});
   if (is_new) at->second = kind.bound(world, row);
   return at->second;
 }

@@ -7,6 +7,7 @@
 #include "sensors/casts.h"
 #include "sensors/laneedge_packets.h"
 #include "sensors/laneedge_settings.h"
+#include "sensors/laser_modes.h"
 #include "sensors/paint/edge_fit.h"
 #include "sensors/paint/excerpt.h"
 #include "sensors/paint/road.h"
@@ -28,8 +29,9 @@ bool anything_else(const world::World& world) {
   return !world.walls.empty() || (bodies > 0 && world.movers.size() > 1);
 }
 
-/// What a reading of fewer rays says of itself.
-constexpr base::Unsure kThinned[] = {base::Unsure::not_cast};
+/// What a reading may say of its one element: a span of it outlives the tick.
+constexpr base::Unsure kReasons[] = {base::Unsure::no, base::Unsure::not_cast, base::Unsure::grazing,
+                                     base::Unsure::not_straight, base::Unsure::extrapolated};
 
 /// Rays against the excerpt, exactly; where the road is a raster, into that as well; then lines through what they met.
 class LaneEdges : public Instruments {
@@ -47,10 +49,13 @@ class LaneEdges : public Instruments {
  private:
   void make_road(const Site& site);
   void bind();
+  void state(std::size_t i, base::ReadingBlock& block);
 
   std::vector<LaneEdge> edges_;
+  bool noise_;
   bool exact_;  ///< paint is seen as it is, not in pixels
   Excerpt excerpt_;
+  double longest_;  ///< [m] face in it
   Casts casts_;
   bool casting_;  ///< there is something for `casts_` to meet
   std::optional<Road> road_;
@@ -62,8 +67,10 @@ class LaneEdges : public Instruments {
 
 LaneEdges::LaneEdges(const Site& site)
     : edges_(lane_edges_of(site.world)),
-      exact_(!(site.world.road_resolution > 0.0) || site.world.stripes.empty()),
+      noise_(site.noise),
+      exact_(!sees_pixels(site.world)),
       excerpt_(excerpt_of(site.world, exact_)),
+      longest_(reaches_of(excerpt_.world).longest),
       casts_(site, excerpt_.world, fans_of(edges_)),
       casting_(exact_ || anything_else(excerpt_.world)),
       fit_(site, edges_, excerpt_.grains) {
@@ -111,6 +118,22 @@ void LaneEdges::copies(gpu::Batch& batch) {
   fit_.copies(batch);
 }
 
+/// How wrong a reading may be, or why it does not say.
+void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
+  const LaneEdge& edge = edges_[due_[i].row];
+  const bool noisy = noise_ && edge.row.noisy;
+  const double away = std::max(std::abs(block.X_WS.x), std::abs(block.X_WS.y)) + edge.fan.range_max;
+  if (exact_ && !noisy) block.bound = lane_edge_bound(edge, longest_, away);
+  base::Unsure why = base::Unsure::no;
+  if (edge.row.mode > 0)
+    why = base::Unsure::not_cast;  // rays that were left out may have met another edge
+  else if (edge.single)
+    why = (casts_.verdicts().host<std::uint32_t>()[lanes_[i]] & SF_GRAZES) != 0 ? base::Unsure::grazing : why;
+  else if (std::isfinite(block.bound))
+    why = doubt_of(fit_.reading(i), point_error(edge, longest_, away), block.bound);
+  if (why != base::Unsure::no) block.unsure = {&kReasons[static_cast<std::size_t>(why)], 1};
+}
+
 void LaneEdges::collect(std::vector<base::ReadingBlock>& out) {
   if (casting_) casts_.count();
   for (std::size_t i = 0; i < due_.size(); ++i) {
@@ -120,10 +143,9 @@ void LaneEdges::collect(std::vector<base::ReadingBlock>& out) {
     block.sensor = edge.row.sensor;
     block.kind = kLaneEdge;
     block.X_WS = casts_.results(i).X_WS;
-    block.values = fit_.reading(i);
+    block.values = fit_.values(i);
     block.mode = edge.row.mode;
-    block.bound = exact_ ? kStraightError : HUGE_VAL;
-    if (edge.row.mode > 0) block.unsure = kThinned;
+    state(i, block);
     out.push_back(block);
   }
 }

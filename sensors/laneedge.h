@@ -12,6 +12,7 @@
 #define SF_TAG_BITS 2
 
 #define SF_EDGE_TEXELS 6
+#define SF_READING_TEXELS 3
 #define SF_EDGE_PACKED 1u
 #define SF_EDGE_SINGLE 2u
 #define SF_EDGE_CAST 4u
@@ -72,14 +73,16 @@ static_assert(sizeof(RoadRow) == SF_ROAD_TEXELS * 16);
 /// Loops of one invocation together stay below the 65 535 turns after which older Mesa ends them silently.
 inline constexpr std::uint32_t kMostEdgeSamples = 1'024;
 
-/// What a reading says: one row of four columns.
+/// What a reading says, one row of four columns, and how good it is.
 struct EdgeReading {
-  double distance;  ///< [m] to the paint's face; NaN: no edge in sight
-  double points;    ///< that the line rests on
-  double residual;  ///< [m] their root mean square distance from the line
-  double sigma;     ///< [m] standard deviation of the distance; NaN with it
+  double distance;      ///< [m] to the paint's face; NaN: no edge in sight
+  double points;        ///< that the line rests on
+  double residual;      ///< [m] their root mean square distance from the line
+  double sigma;         ///< [m] standard deviation of the distance; NaN with it
+  double gain = 0.0;    ///< [-] the distance is off by at most so many times what its points are; SF_NO_GAIN: not known
+  double others = 0.0;  ///< points that are not on the line
 };
-static_assert(sizeof(EdgeReading) == 2 * 16);
+static_assert(sizeof(EdgeReading) == SF_READING_TEXELS * 16);
 
 }  // namespace sf::sensors
 

@@ -5,6 +5,10 @@
 #include <iterator>
 
 #include "sensors/accuracy.h"
+#include "sensors/casts.h"
+#include "sensors/laser_modes.h"
+#include "sensors/paint/excerpt.h"
+#include "sensors/paint/line_fit.h"
 #include "sensors/settings.h"
 
 namespace sf::sensors {
@@ -32,6 +36,8 @@ double nearest_axis(double yaw) {
   if (std::fabs(d.y) >= std::fabs(d.x) * (1.0 - 1e-9)) return d.y >= 0.0 ? 0.5 * M_PI : -0.5 * M_PI;
   return d.x >= 0.0 ? 0.0 : M_PI;
 }
+
+constexpr double kStraightError = 1e-8;  // [m] of a distance, near the origin
 
 /// Of so many rays one is cast, in each mode.
 constexpr std::uint32_t kEveryRay[] = {1, 2, 4};
@@ -81,11 +87,41 @@ std::vector<LaneEdge> lane_edges_of(const world::World& world) {
   return edges;
 }
 
-Bound bound_of_lane_edge(const world::World& world, const SensorRow& sensor) {
-  if (world.road_resolution > 0.0 && !world.stripes.empty())
-    return {HUGE_VAL, "paint in pixels: each reading says its own sigma"};
-  if (sensor.mode == 0) return {kStraightError, "straight edges; along curves each reading says its own sigma"};
-  return {kStraightError, "one straight edge in sight; all readings are flagged: rays left out may have met another"};
+bool sees_pixels(const world::World& world) { return world.road_resolution > 0.0 && !world.stripes.empty(); }
+
+/// A range is off by 2^-53 of the arms of its products over the sine of incidence, so its point by that across the
+/// face; a face's corners are rounded where they are; and a point's x has 44 bits (SF_GRAIN_MASK).
+double point_error(const LaneEdge& edge, double longest, double farthest) {
+  return 0x1p-44 * edge.fan.range_max + 0x1p-53 * 16.0 * (edge.fan.range_max + longest + farthest);
+}
+
+double lane_edge_bound(const LaneEdge& edge, double longest, double farthest) {
+  return kStraightError + point_error(edge, longest, farthest) / kLeastSine;
+}
+
+base::Unsure doubt_of(const EdgeReading& reading, double error, double bound) {
+  if (std::isnan(reading.distance)) return base::Unsure::no;  // no distance is given
+  const double gain = std::max(reading.gain, 1.0);
+  if (reading.distance < bound) error += SF_TOUCH;                       // a ray that short may read 0
+  error = 2.0 * (error + std::sqrt(reading.points) * reading.residual);  // no point is farther from the line
+  const bool straight = reading.points > 2.5 && reading.others == 0.0 && error <= bound;
+  if (!straight) return base::Unsure::not_straight;
+  if (gain >= SF_NO_GAIN) return base::Unsure::extrapolated;
+  return gain * error <= bound ? base::Unsure::no : base::Unsure::grazing;
+}
+
+Bound bound_of_lane_edge(const world::World& world, const SensorRow& row) {
+  if (sees_pixels(world)) return {HUGE_VAL, "paint in pixels: each reading says its own sigma"};
+  if (row.noisy) return {HUGE_VAL, "its noise is in the line: each reading says its own sigma"};
+  Bound bound{0.0, "where one straight edge is seen on both sides; readings elsewhere are flagged"};
+  if (row.mode > 0) bound.condition = "one straight edge in sight; all are flagged: rays left out may have met another";
+  const double longest = reaches_of(excerpt_of(world, true).world).longest;
+  for_each_of(world, "laneedge", [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
+    if (mover != row.mover || number != row.sensor) return;
+    const LaneEdge edge = lane_edge_of(sensor, mover, number);
+    bound.error = lane_edge_bound(edge, longest, reaches_of(world).farthest + edge.fan.range_max);
+  });
+  return bound;
 }
 
 }  // namespace sf::sensors

@@ -27,8 +27,16 @@ inline constexpr Mode kLaneEdgeModes[] = {
     {"skip2", "every 2nd ray"},
     {"skip4", "every 4th ray"},
 };
-/// [m] error of the distance to one straight edge, in exact paint.
-inline constexpr double kStraightError = 1e-8;
+
+/// Whether stripes are seen in pixels: then no bound is stated.
+bool sees_pixels(const world::World& world);
+/// [m] how far a point of exact paint may lie off its face, across it: rounding. @param longest, farthest see
+/// `exact_bound`
+double point_error(const LaneEdge& edge, double longest, double farthest);
+/// [m] base::ReadingBlock::bound without noise, in exact paint: 10 nm, more far away.
+double lane_edge_bound(const LaneEdge& edge, double longest, double farthest);
+/// Why a line's distance may be off by more than `bound` [m], its points being off by up to `error` [m].
+base::Unsure doubt_of(const EdgeReading& reading, double error, double bound);
 Bound bound_of_lane_edge(const world::World& world, const SensorRow& sensor);
 
 /// A share of range_max: ranges from here on are "near the maximum" and no points.

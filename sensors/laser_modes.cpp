@@ -50,9 +50,8 @@ double laser_bound(const CastLaser& cast, double longest, double farthest) {
 Bound bound_of_laser(const world::World& world, const SensorRow& sensor) {
   const CastLaser cast = cast_laser(world, world.movers[sensor.mover].lasers[sensor.sensor]);
   const Reaches reaches = reaches_of(world);
-  Bound bound{laser_bound(cast, reaches.longest, reaches.farthest + cast.laser.range_max), "beams that graze nothing"};
-  if (cast.laser.resolution > 1) bound.condition = "beams that are cast and graze nothing; the others are flagged";
-  return bound;
+  return {laser_bound(cast, reaches.longest, reaches.farthest + cast.laser.range_max),
+          "beams that are cast and graze nothing; the others are flagged"};
 }
 
 }  // namespace sf::sensors

@@ -21,7 +21,7 @@ namespace {
 struct Array {
   Magnetometer settings;
   SensorRow row;
-  double bound = 0.0;              ///< [T]
+  FieldBound bound;                ///< the largest of its elements'
   double height = 0.0;             ///< [m] of its origin in the world, fixed at load: the world is 2.5-D
   std::size_t values = 0;          ///< first of its results
   std::vector<base::Vec2> facing;  ///< of each element: its x axis in the sensor's frame
@@ -32,7 +32,7 @@ std::vector<Array> arrays_of(const world::World& world) {
   std::size_t values = 0;
   const auto type = magnetometer_kind.word.type;
   for_each_of(world, type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
-    Array array{read_magnetometer(sensor), common_row(sensor, mover, number), 0.0, 0.0, values};
+    Array array{read_magnetometer(sensor), common_row(sensor, mover, number), {}, 0.0, values};
     array.row.mode = mode_of("magnetometer", kMagnetometerModes, accuracy_of(sensor), world);
     array.row.X_MS.z += sensor.height / 2.0;
     array.row.elements = static_cast<std::uint32_t>(array.settings.X_SE.size());
@@ -108,13 +108,14 @@ Magnetometers::Magnetometers(const Site& site)
 }
 
 void Magnetometers::bound_errors(const world::World& world) {
-  std::map<std::pair<std::uint8_t, double>, double> known;
+  std::map<std::pair<std::uint8_t, double>, FieldBound> known;
   for (Array& array : arrays_)
     for (const Pose& X_SE : array.settings.X_SE) {
       const double height = array.height + X_SE.z;
-      const auto [at, is_new] = known.try_emplace({array.row.mode, height}, 0.0);
+      const auto [at, is_new] = known.try_emplace({array.row.mode, height});
       if (is_new) at->second = field_bound(world, array.row.mode, height);
-      array.bound = std::max(array.bound, at->second);
+      array.bound.fixed = std::max(array.bound.fixed, at->second.fixed);
+      array.bound.per_metre = std::max(array.bound.per_metre, at->second.per_metre);
     }
 }
 
@@ -193,7 +194,7 @@ void Magnetometers::collect(std::vector<base::ReadingBlock>& out) {
     block.values =
         std::span<const double>(values_).subspan(array.values, kMagnetometerColumns * array.settings.X_SE.size());
     block.mode = array.row.mode;
-    block.bound = array.bound;
+    block.bound = array.bound.at(std::max(std::abs(block.X_WS.x), std::abs(block.X_WS.y)) + 1.0);
     out.push_back(block);
   }
 }

@@ -6,6 +6,7 @@
 
 #include "sensors/field/magnet_tree.h"
 #include "sensors/field/truncation.h"
+#include "sensors/laser_modes.h"
 #include "sensors/magnetometer.h"
 #include "sensors/settings.h"
 
@@ -16,19 +17,26 @@ namespace {
 constexpr double kCutoffs[] = {0.0, 10.0, 3.0, 1.0};  // [m] of each mode
 static_assert(std::size(kCutoffs) == std::size(kMagnetometerModes));
 
-constexpr double kRounding = 1e-12;  // of the sum of magnitudes
+constexpr double kArithmetic = 1e-12;  // of a magnet's field
+constexpr double kTooNear = 4e-6;      // [m] to a magnet's middle: directions are lost (magnetic_field.h)
 
-/// [T] sum of what all magnets have at most at `height` [m].
-double largest_magnitudes(const world::World& world, double height) {
-  double sum = 0.0;
-  const auto add = [&](const world::Magnet& magnet, double z) {
-    sum += field_beyond(strength_of(magnet), magnet.radius, std::abs(height - z));
-  };
-  for (const world::Magnet& magnet : world.magnets) add(magnet, magnet.z);
-  for (const world::Mover& mover : world.movers)
-    for (const world::Magnet& magnet : mover.magnets) add(magnet, mover.X_WM.z + magnet.z);
-  // Within its radius a magnet's field is that at the radius in the same direction: up to twice the one beside it.
-  return 2.0 * sum;
+/// Part of a magnet's field that is lost as the device has its moment, and where `height` [m] above it is within its
+/// radius that too, in 32 bits.
+double lost_part(const world::Magnet& magnet, double height) {
+  const double moment = std::abs(magnet.moment);
+  const DipoleRow row = dipole_row(magnet, magnet.p, magnet.z);
+  double part = moment > 0.0 ? std::abs(std::abs(double{row.moment}) - moment) / moment : 0.0;
+  if (height < magnet.radius) part += 3.0 * std::abs(magnet.radius * double{row.inverse_radius} - 1.0);
+  return part;
+}
+
+/// What one magnet adds, `height` [m] over or under the sensor. Its field is at most 2 k / r^3, where r is the height
+/// or the radius; it changes by at most 12 k / r^3 over the height a metre, and a place is off by 16 roundings.
+void add(const world::Magnet& magnet, double height, FieldBound& bound) {
+  const double nearest = std::max(height, magnet.radius);
+  const double largest = 2.0 * strength_of(magnet) / (nearest * nearest * nearest);
+  bound.fixed += (kArithmetic + lost_part(magnet, height)) * largest;
+  bound.per_metre += height > kTooNear ? 16.0 * 0x1p-53 * 6.0 * largest / height : HUGE_VAL;
 }
 
 }  // namespace
@@ -39,8 +47,12 @@ double cutoff_of(const world::World& world, std::uint8_t mode) {
   return std::min(own, world.magnet_cutoff);
 }
 
-double field_bound(const world::World& world, std::uint8_t mode, double height) {
-  return truncation_bound(world, height, cutoff_of(world, mode)) + kRounding * largest_magnitudes(world, height);
+FieldBound field_bound(const world::World& world, std::uint8_t mode, double height) {
+  FieldBound bound{truncation_bound(world, height, cutoff_of(world, mode)), 0.0};
+  for (const world::Magnet& magnet : world.magnets) add(magnet, std::abs(height - magnet.z), bound);
+  for (const world::Mover& mover : world.movers)
+    for (const world::Magnet& magnet : mover.magnets) add(magnet, std::abs(height - mover.X_WM.z - magnet.z), bound);
+  return bound;
 }
 
 std::vector<double> element_heights(const world::Mover& mover, const world::Sensor& sensor) {
@@ -54,12 +66,14 @@ std::vector<double> element_heights(const world::Mover& mover, const world::Sens
 
 Bound bound_of_magnetometer(const world::World& world, const SensorRow& row) {
   Bound bound;
+  const double farthest = reaches_of(world).farthest + 1.0;
   for_each_of(world, magnetometer_kind.word.type,
               [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
                 if (mover != row.mover || number != row.sensor) return;
                 for (const double height : element_heights(world.movers[mover], sensor))
-                  bound.error = std::max(bound.error, field_bound(world, row.mode, height));
+                  bound.error = std::max(bound.error, field_bound(world, row.mode, height).at(farthest));
               });
+  if (std::isinf(bound.error)) bound.condition = "a magnet is as high as the sensor, which may stand in its middle";
   return bound;
 }
 

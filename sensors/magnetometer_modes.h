@@ -15,9 +15,15 @@ inline constexpr Mode kMagnetometerModes[] = {
 /// [m] a mode's cut-off, or the world's where that is nearer; 0: none.
 double cutoff_of(const world::World& world, std::uint8_t mode);
 
-/// [T] largest error of a field, and of a magnitude, in a mode at `height` [m], wherever movers are: what the cut-off
-/// leaves out, and rounding (1e-12 of the sum of the magnets' own magnitudes, each at its least distance).
-double field_bound(const world::World& world, std::uint8_t mode, double height);
+/// Largest error of a field, and of a magnitude, at one height, wherever movers are.
+struct FieldBound {
+  double fixed = 0.0;      ///< [T] what the cut-off leaves out, and arithmetic
+  double per_metre = 0.0;  ///< [T/m] times the farthest coordinate: places far from the origin are rounded
+  double at(double farthest) const { return fixed + per_metre * farthest; }
+};
+/// Of a mode at `height` [m]; infinite where a magnet is as high as the sensor, which may then stand in its very
+/// middle.
+FieldBound field_bound(const world::World& world, std::uint8_t mode, double height);
 
 /// [m] heights of its elements in the world, each once, ascending.
 std::vector<double> element_heights(const world::Mover& mover, const world::Sensor& sensor);

@@ -1,8 +1,9 @@
 #pragma once
 // The field of all magnets of a world at many places, on the device.
 //
-// Sums are right to 1e-12 of the sum of magnitudes, anywhere in the world, and nearer than 4 um to a magnet's middle to
-// 4e-18 m over the distance; for moments as they are in 32 bits: 1 A m^2 is itself there, any other within 6e-8. With a
+// Sums are right to 1e-12 of the sum of magnitudes, of places and moments as they are here: places in 64 bits, nearer
+// than 4 um to a magnet's middle to 4e-18 m over the distance; moments in 32 bits: 1 A m^2 is itself there, any other
+// within 6e-8 (`field_bound` has it all). With a
 // cut-off, a magnet counts when its distance along the ground is at most the cut-off, decided magnet by magnet in 64
 // bits; what is left out is bounded by `truncation_bound`. Nearer to a magnet than its radius, the field is the one at
 // the radius in the same direction; exactly in its middle, the one above. A place's sum depends on the place and the

@@ -83,7 +83,7 @@ EdgeFit::EdgeFit(const Site& site, const std::vector<LaneEdge>& edges, const std
                   SF_BEAMS_PER_LANE * std::size_t{plan_.direction_lanes}),
       normals_(site.device, "normal deviates", gpu::Role::upload, gpu::Texel::f32x4, plan_.noise_lanes),
       grains_(site.device, "sizes of pixels", gpu::Role::upload, gpu::Texel::u32x4, grains.size()),
-      readings_(site.device, "readings", gpu::Role::download, gpu::Texel::u32x4, 2 * edges.size()),
+      readings_(site.device, "readings", gpu::Role::download, gpu::Texel::u32x4, SF_READING_TEXELS * edges.size()),
       groups_(site.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
       points_(site.device, "points", gpu::Role::download, gpu::Texel::u32x4,
               SF_BEAMS_PER_LANE * (std::size_t{plan_.lanes} + 1)),

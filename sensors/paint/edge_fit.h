@@ -43,8 +43,11 @@ class EdgeFit {
   void record(gpu::Batch& batch) const { batch.dispatch(kernel_, groups_, 0); }
   void copies(gpu::Batch& batch);
 
-  /// Of the i-th due sensor: four numbers, as EdgeReading has them. Lives until the next `prepare`.
-  std::span<const double> reading(std::size_t i) { return readings_.host<double>().subspan(4 * i, 4); }
+  /// Of the i-th due sensor: its columns, and all of it. Both live until the next `prepare`.
+  std::span<const double> values(std::size_t i) {
+    return readings_.host<double>().subspan(sizeof(EdgeReading) / sizeof(double) * i, 4);
+  }
+  const EdgeReading& reading(std::size_t i) { return readings_.host<EdgeReading>()[i]; }
 
   PointTables tables() { return {rows_, directions_, normals_, points_}; }
 

@@ -182,8 +182,12 @@ struct Doubt {
   double noise;  // [m] standard deviation of a point across the line
 };
 
+// [-] gain of what no ray met: 2^100.
+#define SF_NO_GAIN 1.2676506002282294e30
+
 struct Fitted {
   double distance, points, residual, sigma;
+  double gain;  // [-] the distance is off by at most so many times what the points are, across the line
   bool seen;
 };
 
@@ -235,10 +239,15 @@ SF_INLINE Fitted fit_at(Line line, Trend s, Bend b, Doubt doubt, double ex, doub
   SF_REAL residual = sqrt((s.vv > 0.0 ? s.vv : 0.0) / n);
   // All points are the sensor itself: it touches the edge, whatever the edge's direction.
   const bool here = line.spread == 0.0 && s.n > 1.5 && line.px * line.px + line.py * line.py < 8.673617379884035e-19;
+  // The value of a line of least squares at u0 is a mean of its points with weights 1/n (1 + u u0 / spread). Beyond its
+  // points an edge may end or bend, and two points are a line whatever they met.
+  const bool between = s.n > 2.5 && s.uu > 0.0 && u0 >= s.lowest && u0 <= s.highest;
+  const double u0_size = u0 < 0.0 ? -u0 : u0;
+  SF_REAL gain = (1.0 + u0_size / sqrt(spread)) / (ahead ? facing_size : 1.0);
   const bool there =
       line.spread > 0.0 && ahead && crosses && distance >= -9.313225746154785e-10 && distance <= distance_max;
   const double at = here || distance < 0.0 ? 0.0 : distance;
-  return Fitted(at, s.n, residual, here ? sqrt(own / n) : sigma, here || there);
+  return Fitted(at, s.n, residual, here ? sqrt(own / n) : sigma, ahead && between ? gain : SF_NO_GAIN, here || there);
 }
 
 #ifdef __cplusplus

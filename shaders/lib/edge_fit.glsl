@@ -203,8 +203,10 @@ void main() {
   const double sigma = single ? along_ray : fitted.sigma;
   const double points = single ? start.w[0] : fitted.points;
   const double residual = single ? 0.0 : fitted.residual;
-  const int out_row = 2 * int(last.y);
+  precise double left_over = all.n - fitted.points;
+  const int out_row = SF_READING_TEXELS * int(last.y);
   imageStore(readings, out_row, uvec4(unpackDouble2x32(seen ? distance : nan), unpackDouble2x32(points)));
   imageStore(readings, out_row + 1, uvec4(unpackDouble2x32(seen ? residual : 0.0), unpackDouble2x32(seen ? sigma : nan)));
+  imageStore(readings, out_row + 2, uvec4(unpackDouble2x32(single ? 1.0 : fitted.gain), unpackDouble2x32(single ? 0.0 : left_over)));
   imageStore(mixtures, int(last.y), uvec4(mixed ? 1u : 0u));
 }

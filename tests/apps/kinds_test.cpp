@@ -16,6 +16,7 @@
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/netio/documented.h"
+#include "tests/viz/png.h"
 
 namespace sf {
 
@@ -262,7 +263,7 @@ TEST_F(Kinds, ReadingsAreRecordedToTheBitAndDrawn) {
 
   const Outcome plot = run_program({"plot", folder.path("r"), "-o", folder.path("p")});
   EXPECT_EQ(plot.code, 0) << plot.err;
-  EXPECT_EQ(read_file(folder.path("p/magnetometer.png")).substr(0, 8), "\x89PNG\r\n\x1a\n");
+  scenes::expect_painted(folder.path("p/magnetometer.png"), {{0xFF0072B2u, 300}});
   EXPECT_FALSE(std::filesystem::exists(folder.path("p/lane_edge.png"))) << "nobody has one";
 
   ASSERT_EQ(run("run", world, record).code, 0);
@@ -362,6 +363,24 @@ model( name "road" bitmap "road.pgm" size [1 1 0.01] )
   const Json reading(run("sense", world, {"--json"}).out);
   EXPECT_NEAR(reading.number("/distance_m"), 0.24, 1e-9) << "row 52 of 200 begins 0.24 m above the middle";
   EXPECT_GE(reading.number("/points"), 59);
+}
+
+/// On the straight a reading states a bound and keeps to it; in the bend it says that none holds.
+TEST(LaneEdge, ABoundIsTrueOfItsReadingOrFlagged) {
+  if (!has_kind(kLaneEdge)) GTEST_SKIP() << "built without the lane edge sensor";
+  const std::string lane = our_world("testpath/testpath.world");
+  const auto sense = [&](const std::string& pose) {
+    return Json(run("sense", lane, {"--kind", "laneedge", "--json", "--pose", pose}).out);
+  };
+  const Json bend = sense("3.3,0.4,50");
+  EXPECT_EQ(bend.text("/unsure"), "not straight");
+  const Json straight = sense("1,0,0");
+  EXPECT_FALSE(straight.has("/unsure"));
+  EXPECT_LT(straight.number("/bound"), 1.1e-8);
+  EXPECT_EQ(sense("1,0,100").has("/unsure"), !sense("1,0,100").is_null("/distance_m")) << "looks along the lane";
+  EXPECT_NE(run("check", lane, {}).out.find("laneedge exact, within 10.1 nm: where one straight edge is seen"),
+            std::string::npos)
+      << run("check", lane, {}).out;
 }
 
 TEST(LaneEdge, GoesThroughEveryCommand) {

@@ -75,10 +75,7 @@ class FitRig {
     batch.up(hits, 0, hits.bytes());
     batch.run();
     std::vector<EdgeReading> readings;
-    for (std::size_t i = 0; i < edges_.size(); ++i) {
-      const auto v = fit_.reading(i);
-      readings.push_back({v[0], v[1], v[2], v[3]});
-    }
+    for (std::size_t i = 0; i < edges_.size(); ++i) readings.push_back(fit_.reading(i));
     return readings;
   }
 
@@ -332,9 +329,10 @@ TEST(LaneEdgeFit, TheHostComputesTheSameToTheBit) {
   std::size_t seen = 0;
   for (std::uint32_t i = 0; i < readings.size(); ++i) {
     const EdgeReading host = rig.on_the_host(i, shots[i]);
-    const double device_says[] = {readings[i].distance, readings[i].points, readings[i].residual, readings[i].sigma};
-    const double host_says[] = {host.distance, host.points, host.residual, host.sigma};
-    for (int c = 0; c < 4; ++c)
+    const double device_says[] = {readings[i].distance, readings[i].points, readings[i].residual,
+                                  readings[i].sigma,    readings[i].gain,   readings[i].others};
+    const double host_says[] = {host.distance, host.points, host.residual, host.sigma, host.gain, host.others};
+    for (int c = 0; c < 6; ++c)
       EXPECT_EQ(std::bit_cast<std::uint64_t>(device_says[c]), std::bit_cast<std::uint64_t>(host_says[c]))
           << i << " column " << c << ": " << device_says[c] << " " << host_says[c];
     seen += std::isnan(host.distance) ? 0 : 1;

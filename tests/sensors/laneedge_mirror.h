@@ -131,17 +131,19 @@ static inline double noise_across(const Line& line, const EdgeRow& row) {
 
 static inline EdgeReading single_ray(const EdgeRow& row, const Points& p, double grain) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  if (p.w[0] == 0.0) return {kNan, 0.0, 0.0, kNan};
+  if (p.w[0] == 0.0) return {kNan, 0.0, 0.0, kNan, 1.0, 0.0};
   const double first = std::sqrt(p.x[0] * p.x[0] + p.y[0] * p.y[0]);
   const double spread = row.range_proportional * first;
-  return {first, 1.0, 0.0, std::sqrt(row.range_sigma * row.range_sigma + spread * spread + grain * grain / 12.0)};
+  return {first, 1.0, 0.0, std::sqrt(row.range_sigma * row.range_sigma + spread * spread + grain * grain / 12.0),
+          1.0,   0.0};
 }
 
 static inline EdgeReading read_edge(const EdgeRow& row, const Points& p, std::span<const double> grains) {
   const double grain = grains[p.grain];
   if ((row.flags & SF_EDGE_SINGLE) != 0) return single_ray(row, p, grain);
   constexpr double kAll = std::numeric_limits<double>::infinity();
-  Line line = line_through(moments_near(p, 0, p.count, Line(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0), kAll));
+  const Moments all = moments_near(p, 0, p.count, Line(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0), kAll);
+  Line line = line_through(all);
   double noise = std::sqrt(noise_across(line, row));
   const double source = tolerance(grain, noise);
   Trend trend = trend_near(p, line, kAll);
@@ -158,7 +160,8 @@ static inline EdgeReading read_edge(const EdgeRow& row, const Points& p, std::sp
   const Doubt doubt = Doubt(grain, noise > kFloor ? noise : kFloor);
   const Fitted f = fit_at(line, trend, bend, doubt, row.perpendicular_x, row.perpendicular_y, row.distance_max);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  return {f.seen ? f.distance : kNan, f.points, f.seen ? f.residual : 0.0, f.seen ? f.sigma : kNan};
+  const double others = all.n - f.points;
+  return {f.seen ? f.distance : kNan, f.points, f.seen ? f.residual : 0.0, f.seen ? f.sigma : kNan, f.gain, others};
 }
 
 }  // namespace sf::mirror
