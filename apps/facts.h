@@ -29,7 +29,7 @@ struct RunFacts {
   std::uint64_t ticks = 0;
   double simulated_s = 0.0;
   double wall_s = 0.0;
-  std::uint64_t contacts = 0;  ///< robot-ticks in which something stopped a robot
+  std::uint64_t contacts = 0;  ///< of robots, that began
   ControlFacts control;        ///< no robots: others decide
   double move_s = 0.0;         ///< [s] controllers and motion
   double out_s = 0.0;          ///< [s] packets and recording

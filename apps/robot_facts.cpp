@@ -50,7 +50,7 @@ std::string text_of(const RobotFacts& f) {
   text += link_text(f.link);
   text += row("driven", fmt::format("{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
                                     f.pose.yaw * 180.0 / M_PI));
-  text += row("contacts", counted(f.contacts, "move"));
+  text += row("contacts", fmt::format("{} that began", f.contacts));
   if (f.error.steps > 0) text += row("control error", text_of(f.error));
   return text;
 }

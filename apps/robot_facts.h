@@ -22,7 +22,7 @@ struct RobotFacts {
   bool answered = false;    ///< anything came from the farm
   bool listens = true;      ///< it has sensors, so that something should have come
   LinkCounts link;
-  std::uint64_t contacts = 0;  ///< moves that something stopped
+  std::uint64_t contacts = 0;  ///< that began
   double distance_m = 0.0;     ///< driven
   base::Pose pose;             ///< at the end
   ErrorFacts error;

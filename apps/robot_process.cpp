@@ -55,7 +55,7 @@ RobotProcess::RobotProcess(const world::World& world, const sensors::Roster& ros
 
 void RobotProcess::turn(std::int64_t now) {
   body_.move(command_, now);
-  contacts_ += body_.contact();
+  contacts_ += contact_.begins(body_.contact());
   command_ = {};
   if (started_) decide(now);
   link_.say(state_of(body_.state(), made_.controller->intent()), now);

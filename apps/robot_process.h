@@ -10,6 +10,7 @@
 #include "apps/robot_link.h"
 #include "apps/stop.h"
 #include "apps/wire_names.h"
+#include "base/contact.h"
 #include "control/controllers.h"
 #include "scenarios/robot_body.h"
 #include "sensors/roster.h"
@@ -72,6 +73,7 @@ class RobotProcess {
   bool started_;
   bool complained_ = false;
   std::uint64_t steps_ = 0;
+  base::Contact contact_;
   std::uint64_t contacts_ = 0;
   ErrorFacts error_;
   std::vector<base::ReadingBlock> readings_;

@@ -17,6 +17,7 @@
 #include "apps/progress.h"
 #include "apps/stop.h"
 #include "apps/tradeoff.h"
+#include "base/contact.h"
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "netio/token.h"
@@ -125,6 +126,7 @@ int run(const Options& options) {
       advised(world, options, [&] { return scenarios::Simulation(world, device, simulation_options(world, options)); });
   if (!simulation.warnings().empty()) tell_warnings(simulation.warnings().front().file, simulation.warnings());
   ControlTally tally(simulation, world.movers.size(), options.controller);
+  std::vector<base::Contact> contacts(world.movers.size());
   Outputs outputs(world, roster, plan, options);
   catch_stop_signals();
 
@@ -137,7 +139,8 @@ int run(const Options& options) {
       const base::TickRecord tick = advised(world, options, [&] { return simulation.step(); });
       tally.look(tick);
       outputs.write(tick);
-      for (const std::uint8_t contact : tick.contacts) facts.contacts += contact;
+      for (std::size_t m = 0; m < contacts.size(); ++m)
+        facts.contacts += !world.movers[m].is_tag && contacts[m].begins(tick.contacts[m] != 0);
       const double simulated = static_cast<double>(facts.ticks + 1) * world.interval;
       progress.show(simulated / options.duration, fmt::format("{:.0f} s of {:g} s", simulated, options.duration));
       if (options.real_time) keep_pace(start, simulated);

@@ -168,7 +168,7 @@ std::string text_of(const RunFacts& f) {
   text += row("simulated", fmt::format("{:.1f} s in {:.2f} s: {:.1f} x real time", f.simulated_s, f.wall_s,
                                        f.wall_s > 0.0 ? f.simulated_s / f.wall_s : 0.0));
   text += work_text(f);
-  if (f.contacts > 0) text += row("contacts", counted(f.contacts, "robot-tick"));
+  if (f.contacts > 0) text += row("contacts", fmt::format("{} that began", f.contacts));
   text += control_text(f.control);
   if (f.sent) text += packets_text(f.post);
   if (f.received) text += row("packets received", netio::text(f.inbox));

@@ -207,11 +207,7 @@ Seen seen_of(const maps::Grid& map, const maps::Grid& reference) {
   return seen;
 }
 
-std::string text_of(const Seen& seen) {
-  // Cut, not rounded: 100.0 % is all of it.
-  return fmt::format("{:.2f} % ({} of {} cells missed)", std::floor(1e4 * seen.coverage()) / 100.0, seen.missed,
-                     seen.wanted);
-}
+std::string text_of(const Seen& seen) { return fmt::format("{} of {}", seen.missed, seen.wanted); }
 
 double disagreement(const maps::Grid& map, const maps::Grid& reference) {
   SF_CHECK(map.plan == reference.plan, "maps of two plans cannot be compared");

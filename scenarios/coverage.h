@@ -66,7 +66,7 @@ struct Seen {
 };
 /// Known is free, or occupied. Rule: both have the same plan.
 Seen seen_of(const maps::Grid& map, const maps::Grid& reference);
-/// "99.96 % (3 of 9159 cells missed)": never 100 % with one missed.
+/// Cells missed: "3 of 9159".
 std::string text_of(const Seen& seen);
 
 /// Cells that are known in both and free in one and occupied in the other, as a part of those known in both.

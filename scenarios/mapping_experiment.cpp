@@ -57,8 +57,8 @@ std::string csv_of(const std::vector<Mapped>& rows) {
 std::string report_of(const Bench& bench, const std::vector<Mapped>& rows) {
   std::string text = fmt::format(
       "# {}\n\n{}\n\nThe map is made by the robot of its own pose, 3 cm a cell. `cells missed` are those that could be "
-      "seen free from some collision-free pose connected to the start, and are unexplored in the map; percentages are "
-      "cut, not rounded. `wrong` is the part of known cells that are free here and occupied in that reference, or the "
+      "seen free from some collision-free pose connected to the start, and are unexplored in the map. `wrong` is the "
+      "part of known cells that are free here and occupied in that reference, or the "
       "other way round (cells on walls' faces go either way).\n\n"
       "`scrapes` are contacts that began. `by hand`: a supervisor takes a robot that has stood in contact for {:g} s, "
       "puts it back {:g} m along its way and turns it by {:.0f} degrees from what it touched. A `dead end`: the "

@@ -72,9 +72,7 @@ void Watch::look(const base::TickRecord& tick) {
     RobotCounts& counts = counts_[m];
     Before& before = before_[m];
     const base::Pose& X_WM = tick.reports[m].X_WM;
-    const bool contact = tick.contacts[m] != 0;
-    counts.contacts += contact && !before.contact;
-    before.contact = contact;
+    counts.contacts += before.contact.begins(tick.contacts[m] != 0);
     if (before.seen) {
       counts.travelled += std::hypot(X_WM.x - before.X_WM.x, X_WM.y - before.X_WM.y);
       look_at_lights(tick, m);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/contact.h"
 #include "base/sink.h"
 #include "scenarios/simulation.h"
 
@@ -53,7 +54,7 @@ class Watch {
     double half_width = 0.0;  ///< [m]
   };
   struct Before {
-    bool contact = false;
+    base::Contact contact;
     bool moving = false;
     base::Pose X_WM;
     bool seen = false;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/contact.h"
+
 namespace sf::viz {
 
 namespace {
@@ -68,8 +70,8 @@ double path_length(const Track& track) {
 
 std::size_t contact_count(const Track& track) {
   std::size_t begun = 0;
-  for (std::size_t i = 0; i < track.contacts.size(); ++i)
-    begun += track.contacts[i] && (i == 0 || !track.contacts[i - 1]) ? 1u : 0u;
+  base::Contact contact;
+  for (const std::uint8_t now : track.contacts) begun += contact.begins(now != 0) ? 1u : 0u;
   return begun;
 }
 

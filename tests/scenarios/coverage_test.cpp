@@ -35,10 +35,8 @@ TEST(Coverage, CountsOnlyWhatTheReferenceHasFree) {
 
 /// However few are missed.
 TEST(Coverage, IsNeverRoundedUpToAll) {
-  EXPECT_EQ(text_of({9159, 3}), "99.96 % (3 of 9159 cells missed)");
-  EXPECT_EQ(text_of({1000000, 1}), "99.99 % (1 of 1000000 cells missed)");
-  EXPECT_EQ(text_of({9159, 0}), "100.00 % (0 of 9159 cells missed)");
-  EXPECT_EQ(text_of({0, 0}), "100.00 % (0 of 0 cells missed)");
+  EXPECT_EQ(text_of({9159, 3}), "3 of 9159") << "missed, not seen";
+  EXPECT_EQ(text_of({9159, 0}), "0 of 9159");
 }
 
 /// Else cells would be asked for that the explorer does not know, a part of a cell aside from its own.

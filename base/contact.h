@@ -1,0 +1,18 @@
+#pragma once
+// How contacts are counted, everywhere: one begins when something stops a mover that nothing stopped the tick before.
+
+namespace sf::base {
+
+/// Follows one mover, tick by tick.
+struct Contact {
+  bool last = false;
+
+  /// @return whether a contact begins now.
+  bool begins(bool now) {
+    const bool began = now && !last;
+    last = now;
+    return began;
+  }
+};
+
+}  // namespace sf::base
