@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <limits>
 
 #include "apps/commands.h"
 #include "apps/facts.h"
@@ -10,6 +9,7 @@
 #include "apps/roads.h"
 #include "apps/wording.h"
 #include "base/error.h"
+#include "sensors/laser_shape.h"
 #include "viz/world_figure.h"
 #include "world/free_space.h"
 
@@ -89,12 +89,6 @@ Chosen require_sensor(const world::World& world, const sensors::Roster& roster, 
                              std::to_string(options.sensor) + "; it has " + has + " (--kind, --sensor)");
 }
 
-/// Where the user asked for it, beams that met nothing read infinity.
-void mark_no_return(const sensors::SensorRow& row, const base::ReadingBlock& reading, std::vector<double>& values) {
-  for (std::size_t i = 0; i < reading.hits.size(); ++i)
-    if (reading.hits[i] == base::kNoHit && values[i] >= row.limit) values[i] = std::numeric_limits<double>::infinity();
-}
-
 void warn_of_pose(const world::World& world, const world::Mover& robot, const base::Pose& X_WM) {
   const std::string where = world::misplaced(world, robot, X_WM);
   if (!where.empty())
@@ -145,7 +139,7 @@ int sense(const Options& options) {
   farm::Farm farm(world, device, quiet);
   base::ReadingBlock reading = farm.sense(mover, chosen.kind->id, chosen.sensor, X_WM);
   std::vector<double> values(reading.values.begin(), reading.values.end());
-  if (options.no_return_inf) mark_no_return(roster.row(reading), reading, values);
+  if (options.no_return_inf) sensors::mark_no_return(reading, roster.row(reading).limit, values);
   reading.values = values;
   if (!options.json) std::fprintf(stderr, "sensorfarm: %s\n", place_of(world, roster, reading).c_str());
   print(options.json ? with_warnings(json_of(world, roster, reading), world.warnings) : text_of(world, reading));

@@ -16,8 +16,7 @@ std::span<const base::ReadingBlock> NoReturn::apply(std::span<const base::Readin
   double* at = ranges_.data();
   for (base::ReadingBlock& r : blocks_) {
     if (r.hits.empty()) continue;  // no beams
-    const double range_max = roster_.row(r).limit;
-    for (std::size_t i = 0; i < r.values.size(); ++i) at[i] = sensors::or_infinite(r.values[i], r.hits[i], range_max);
+    sensors::mark_no_return(r, roster_.row(r).limit, {at, r.values.size()});
     r.values = {at, r.values.size()};
     at += r.values.size();
   }

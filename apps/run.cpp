@@ -95,7 +95,8 @@ bool names_one_of_several(const std::string& refusal, const world::World& world,
 }
 
 scenarios::SimulationOptions simulation_options(const world::World& world, const Options& options) {
-  scenarios::SimulationOptions simulation{.seed = options.seed, .threads = options.threads};
+  scenarios::SimulationOptions simulation{
+      .seed = options.seed, .threads = options.threads, .no_return_inf = options.no_return_inf};
   simulation.actor.plan = plan_of(options);
   simulation.actors = actors_of(world, options);
   return simulation;

@@ -51,7 +51,8 @@ class Service {
         relay_(ids_of(names_.robots)),
         plan_(plan),
         post_(world, roster, plan, netio::Outbox(inbox_.socket())),
-        farm_(world, device, farm::FarmOptions{.seed = options.seed, .true_poses = false}),
+        farm_(world, device,
+              farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
         fleet_(world),
         no_return_(roster, options.no_return_inf) {
     reports_.reserve(netio::Inbox::kMaxPerReceive);

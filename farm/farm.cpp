@@ -14,6 +14,7 @@
 #include "farm/moves.h"
 #include "farm/station.h"
 #include "gpu/batch.h"
+#include "sensors/laser_shape.h"
 
 namespace sf::farm {
 
@@ -42,6 +43,8 @@ struct Farm::State {
   base::Workers workers;
   sensors::Roster roster;
   bool give_again;
+  bool no_return_inf;
+  std::vector<std::vector<double>> marked;  ///< per thread: ranges as they are sent
   std::vector<Station> stations;
   gpu::Batch batch;
   Delivery delivery;
@@ -60,6 +63,8 @@ struct Farm::State {
         workers(options.threads),
         roster(w),
         give_again(options.give_again),
+        no_return_inf(options.no_return_inf),
+        marked(workers.threads()),
         batch(device),
         delivery(roster),
         moves(w),
@@ -85,6 +90,7 @@ struct Farm::State {
   /// @param again whether readings may be given again.
   void measure(std::int64_t now, bool again);
   void add_to_hash(std::span<const base::ReadingBlock> readings);
+  std::span<const double> sent(const base::ReadingBlock& reading, unsigned thread);
 };
 
 bool Farm::State::find_due(std::int64_t now) {
@@ -155,14 +161,24 @@ void Farm::State::collect(Station& station, std::int64_t now, bool again) {
   if (again) station.note(blocks);
 }
 
+/// A reading's values as they leave: what a hash is of.
+std::span<const double> Farm::State::sent(const base::ReadingBlock& reading, unsigned thread) {
+  if (!no_return_inf || reading.hits.empty()) return reading.values;
+  std::vector<double>& values = marked[thread];
+  values.resize(reading.values.size());
+  sensors::mark_no_return(reading, roster.row(reading).limit, values);
+  return values;
+}
+
 void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
   hashes.resize(readings.size());
-  workers.run(readings.size(), 16, [&](std::size_t first, std::size_t last, unsigned) {
+  workers.run(readings.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
     for (std::size_t i = first; i < last; ++i) {
       const base::ReadingBlock& r = readings[i];
       const std::uint64_t head[] = {r.mover, r.kind, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
       hashes[i] = base::hash_bytes(head, sizeof head);
-      hashes[i] = base::hash_bytes(r.values.data(), r.values.size_bytes(), hashes[i]);
+      const std::span<const double> values = sent(r, thread);
+      hashes[i] = base::hash_bytes(values.data(), values.size_bytes(), hashes[i]);
       hashes[i] = base::hash_bytes(r.hits.data(), r.hits.size_bytes(), hashes[i]);
     }
   });

@@ -27,8 +27,9 @@ struct FarmOptions {
   bool noise = true;       ///< false: none, whatever the world says
   bool give_again =
       true;  ///< a reading for which nothing has changed; false: everyone who is due looks. The same bytes
-  bool true_poses = true;  ///< reports say where movers are; false: where they believe to be
-  unsigned threads = 0;    ///< for the host's part; 0: as many as the machine has. Never changes a reading
+  bool true_poses = true;      ///< reports say where movers are; false: where they believe to be
+  bool no_return_inf = false;  ///< readings are sent with infinity where a beam met nothing: so `hash` takes them
+  unsigned threads = 0;        ///< for the host's part; 0: as many as the machine has. Never changes a reading
   sensors::SceneOptions scene;
 };
 

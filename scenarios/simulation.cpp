@@ -17,6 +17,7 @@ farm::FarmOptions farm_options(const SimulationOptions& options) {
   farm::FarmOptions farm;
   farm.seed = options.seed;
   farm.threads = options.threads;
+  farm.no_return_inf = options.no_return_inf;
   return farm;
 }
 

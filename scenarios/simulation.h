@@ -33,11 +33,12 @@ struct Actor {
 };
 
 struct SimulationOptions {
-  std::uint64_t seed = 1;     ///< of noise and of controllers' choices
-  unsigned threads = 0;       ///< of the host's part; 0: all. Never changes a result
-  Actor actor;                ///< of every robot
-  std::vector<Actor> actors;  ///< of each mover by row, tags too, where not empty; else tags stand
-  double start_at = 0.0;      ///< [s] the start signal is given from here on
+  std::uint64_t seed = 1;      ///< of noise and of controllers' choices
+  unsigned threads = 0;        ///< of the host's part; 0: all. Never changes a result
+  Actor actor;                 ///< of every robot
+  std::vector<Actor> actors;   ///< of each mover by row, tags too, where not empty; else tags stand
+  double start_at = 0.0;       ///< [s] the start signal is given from here on
+  bool no_return_inf = false;  ///< see farm::FarmOptions
 };
 
 /// `world` and `device` must outlive it. One thread at a time. Nothing is allocated by a tick after warm-up.

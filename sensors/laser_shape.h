@@ -33,4 +33,9 @@ inline double or_infinite(double range, std::uint32_t hit, double range_max) {
   return hit == base::kNoHit && range >= range_max ? std::numeric_limits<double>::infinity() : range;
 }
 
+/// All of a scan so, into `ranges`, one per sample.
+inline void mark_no_return(const base::ReadingBlock& scan, double range_max, std::span<double> ranges) {
+  for (std::size_t i = 0; i < scan.hits.size(); ++i) ranges[i] = or_infinite(scan.values[i], scan.hits[i], range_max);
+}
+
 }  // namespace sf::sensors

@@ -33,6 +33,33 @@ TEST(Determinism, WhateverTheThreads) {
   for (const unsigned threads : {2u, 3u, 7u}) EXPECT_EQ(run(world, {.seed = 1, .threads = threads}), one) << threads;
 }
 
+/// What leaves has infinity where a beam met nothing: so the hash is of that.
+TEST(Determinism, TheHashIsOfWhatIsSent) {
+  const world::World world = small_world(30);
+  Farm farm(world, device(), {.no_return_inf = true});
+  Farm plain(world, device());
+  farm.hear_all(), plain.hear_all();
+  std::uint64_t of_sent = 0;
+  std::size_t infinite = 0;
+  for (int k = 0; k < 3; ++k) {
+    std::vector<std::uint64_t> hashes;
+    plain.tick(k * 100'000'000ll, reports_at(world, k));
+    for (const base::ReadingBlock& r : farm.tick(k * 100'000'000ll, reports_at(world, k))) {
+      std::vector<double> sent(r.values.begin(), r.values.end());
+      for (std::size_t i = 0; i < sent.size(); ++i)
+        if (r.hits[i] == base::kNoHit) sent[i] = HUGE_VAL, ++infinite;
+      const std::uint64_t head[] = {r.mover, r.kind, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};
+      std::uint64_t hash = base::hash_bytes(head, sizeof head);
+      hash = base::hash_bytes(sent.data(), sent.size() * sizeof(double), hash);
+      hashes.push_back(base::hash_bytes(r.hits.data(), r.hits.size_bytes(), hash));
+    }
+    of_sent = base::hash_bytes(hashes.data(), hashes.size() * sizeof hashes[0], of_sent);
+  }
+  EXPECT_GT(infinite, 0u);
+  EXPECT_EQ(farm.hash(), of_sent);
+  EXPECT_NE(farm.hash(), plain.hash());
+}
+
 /// So small that cells are evicted every tick, and that the pool must grow within one.
 TEST(Determinism, WhateverThePool) {
   const world::World world = small_world(30, kNoise);
