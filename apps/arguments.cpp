@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "apps/wording.h"
 #include "control/controllers.h"
@@ -24,6 +25,16 @@ Refuse one_of(std::vector<std::string> words) {
 
 Refuse not_empty(std::string what) {
   return [what = std::move(what)](const std::string& text) { return refuse_empty(text, what); };
+}
+
+Refuse picture() {
+  return [](const std::string& text) {
+    const std::filesystem::path file(text);
+    const std::string suffix = file.extension().string();
+    if (text.empty() || suffix.empty() || suffix == ".png" || suffix == ".PNG") return refuse_empty(text, "a file");
+    return fmt::format("pictures are PNG files, and '{}' ends in {}; write {}", text, suffix,
+                       std::filesystem::path(file).replace_extension(".png").string());
+  };
 }
 
 namespace {

@@ -22,6 +22,8 @@ Refuse number(double first, double last);
 Refuse one_of(std::vector<std::string> words);
 /// @param what was expected, with its article
 Refuse not_empty(std::string what);
+/// A file that a picture is written to: there is PNG, and a name without a suffix may stand for it.
+Refuse picture();
 Refuse key_and_value();
 Refuse pose();
 Refuse line();

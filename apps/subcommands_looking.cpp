@@ -33,7 +33,7 @@ void add_check(CLI::App& app, Options& o) {
 void add_draw(CLI::App& app, Options& o) {
   CLI::App* sub = app.add_subcommand("draw", "Draw the world as understood, seen from above");
   add_world(*sub, o);
-  sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(not_empty("a file"))->type_name("FILE");
+  sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(picture())->type_name("FILE");
   sub->callback([&o] { o.command = Command::draw; });
 }
 
@@ -45,7 +45,7 @@ void add_field(CLI::App& app, Options& o) {
       ->required()
       ->check(number(-1e6, 1e6))
       ->type_name("Z");
-  sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(not_empty("a file"))->type_name("FILE");
+  sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(picture())->type_name("FILE");
   sub->add_option_function<std::string>(
          "--line", [&o](const std::string& text) { o.line = read_line(text); },
          "Ends of the profile's line [m] (default: along the magnets)")

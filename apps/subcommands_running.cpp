@@ -150,7 +150,7 @@ void add_map(CLI::App& app, Options& o) {
   add_from(*sub, o);
   sub->add_flag("--merge", o.merge, "All maps as one: what any robot saw occupied is occupied");
   sub->add_option("-o,--out", o.out, "PNG file to write at the end; of several maps that are not merged, one each")
-      ->check(not_empty("a file"))
+      ->check(picture())
       ->type_name("FILE");
   add_until(*sub, o, Command::map, "Stop after this long [s] (0: when told to, or silent)");
   sub->add_flag("--once", o.once, "Stop when every port has brought a whole map");

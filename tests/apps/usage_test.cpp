@@ -150,6 +150,27 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
     expect_refused(arguments, said);
 }
 
+/// There is PNG: a name that asks for another format is refused before anything is done.
+TEST(Usage, PicturesInFormatsThatThereAreNotAreRefused) {
+  const Folder folder;
+  const std::string world = our_world("six_magnets.world"), network = our_world("simville/simville.rndf");
+  for (const std::string suffix : {".svg", ".pdf", ".jpg", ".PDF"}) {
+    const std::string file = folder.path("x" + suffix);
+    for (const Words& words : std::vector<Words>{{"draw", world, "-o", file},
+                                                 {"draw", network, "-o", file},
+                                                 {"field", world, "--height", "0.1", "-o", file},
+                                                 {"map", "--listen", "52000", "-o", file}}) {
+      expect_refused(words, "ends in " + suffix + "; write " + folder.path("x.png"));
+      EXPECT_FALSE(std::filesystem::exists(file));
+    }
+  }
+  for (const char* name : {"x.PNG", "plain", "v1.2/x.png"}) {
+    std::filesystem::create_directories(folder.path("v1.2"));
+    EXPECT_EQ(run_program({"draw", world, "-o", folder.path(name)}).code, 0) << name;
+    EXPECT_EQ(read_file(folder.path(name)).substr(1, 3), "PNG") << name;
+  }
+}
+
 TEST(Usage, WrongFilesAreRefusedByEveryCommandThatReadsAWorld) {
   const Folder folder;
   const std::string broken = folder.write("broken.world", "model\n(\n  size [1 1\n  color \"red\"\n)\n");
