@@ -369,12 +369,12 @@ std::string json_of(const std::vector<scenarios::Grade>& grades, const scenarios
                              {"unit", g.unit},
                              {"rate_per_s", g.rate},
                              {"tick_s", g.tick},
-                             {"median_error", finite_json(g.median)},
-                             {"p99_error", finite_json(g.p99)},
-                             {"max_error", finite_json(g.max)},
-                             {"bound", finite_json(g.bound)},
-                             {"max_unflagged_error", finite_json(g.max_unflagged)},
-                             {"flagged", g.flagged},
+                             {"covered", g.covered},
+                             {"covered_max_error", g.covered > 0.0 ? finite_json(g.covered_max) : Json()},
+                             {"covered_bound", finite_json(g.bound)},
+                             {"all_median_error", finite_json(g.median)},
+                             {"all_p99_error", finite_json(g.p99)},
+                             {"all_max_error", finite_json(g.max)},
                              {"pareto", g.front}});
   return print(json);
 }

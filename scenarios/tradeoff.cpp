@@ -25,8 +25,7 @@ constexpr std::size_t kReferenceScans = 64;
 /// What one mode read along the ways, first columns only.
 struct Read {
   std::vector<double> values;
-  std::vector<base::Unsure> unsure;
-  double bound = 0.0;
+  std::vector<double> bounds;  ///< that cover them; infinite: none does
 };
 
 /// A farm of its own, in which one kind is heard, and measures in one mode.
@@ -75,10 +74,11 @@ class Entrant {
 
   void take(const base::ReadingBlock& block, Read& read) {
     if (read.values.size() > kMostValues) return;
-    read.bound = std::max(read.bound, block.bound);
     for (std::size_t i = 0; i < block.values.size(); i += width()) {
       read.values.push_back(block.values[i]);
-      read.unsure.push_back(block.unsure.empty() ? base::Unsure::no : block.unsure[i / width()]);
+      const bool flagged = !block.unsure.empty() && block.unsure[i / width()] != base::Unsure::no;
+      // What saw nothing has no error to bound.
+      read.bounds.push_back(flagged || std::isnan(block.values[i]) ? HUGE_VAL : block.bound);
     }
   }
 
@@ -139,15 +139,17 @@ void grade_errors(std::vector<double> errors, Grade& grade) {
 
 void compare(const Read& read, const Read& exact, Grade& grade) {
   std::vector<double> errors;
-  std::size_t flagged = 0;
+  std::size_t covered = 0;
+  double bound = 0.0;
   for (std::size_t i = 0; i < std::min(read.values.size(), exact.values.size()); ++i) {
     errors.push_back(apart(read.values[i], exact.values[i]));
-    if (read.unsure[i] == base::Unsure::no)
-      grade.max_unflagged = std::max(grade.max_unflagged, errors.back());
-    else
-      ++flagged;
+    if (std::isinf(read.bounds[i])) continue;
+    ++covered;
+    bound = std::max(bound, read.bounds[i]);
+    grade.covered_max = std::max(grade.covered_max, errors.back());
   }
-  grade.flagged = errors.empty() ? 0.0 : static_cast<double>(flagged) / static_cast<double>(errors.size());
+  if (covered > 0) grade.bound = bound;
+  grade.covered = errors.empty() ? 0.0 : static_cast<double>(covered) / static_cast<double>(errors.size());
   grade_errors(std::move(errors), grade);
 }
 
@@ -186,7 +188,6 @@ std::vector<Grade> tradeoff(const world::World& world, gpu::Device& device, cons
                   .unit = std::string(sensors::unit_of(kind))};
       if (mode == 0) exact = read;
       compare(read, exact, grade);
-      grade.bound = read.bound;
       if (mode == 0 && kind.id == base::kLaser) grade_errors(laser_errors(*entrants[0], ways, read, roster), grade);
       grades.push_back(grade);
       if (!go_on()) return {};
@@ -206,10 +207,13 @@ std::vector<Grade> tradeoff(const world::World& world, gpu::Device& device, cons
 }
 
 std::string csv_of(const std::vector<Grade>& grades) {
-  std::string text = "sensor,mode,rate_per_s,median_error,p99_error,max_error,bound,max_unflagged_error,flagged\n";
-  for (const Grade& g : grades)
-    text += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", g.sensor, g.mode, g.rate, g.median,
-                        g.p99, g.max, g.bound, g.max_unflagged, g.flagged);
+  std::string text =
+      "sensor,mode,rate_per_s,covered,covered_max_error,covered_bound,all_median_error,all_p99_error,all_max_error\n";
+  for (const Grade& g : grades) {
+    const std::string covered = g.covered > 0.0 ? fmt::format("{:.6g},{:.6g}", g.covered_max, g.bound) : ",";
+    text += fmt::format("{},{},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.6g}\n", g.sensor, g.mode, g.rate, g.covered, covered,
+                        g.median, g.p99, g.max);
+  }
   return text;
 }
 

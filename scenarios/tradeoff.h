@@ -21,12 +21,14 @@ struct Grade {
   std::string unit;   ///< of errors and bounds: m or T; empty: none
   double rate = 0.0;  ///< [1/s] elements (rays, fields, edges) of whole ticks in which only this kind is heard
   double tick = 0.0;  ///< [s] of such a tick, median
+  // Of all elements, whether a bound covers them or not.
   double median = 0.0, p99 = 0.0;
-  double max = 0.0;            ///< infinite: one of the two saw nothing
-  double max_unflagged = 0.0;  ///< of elements that the bound holds for
-  double flagged = 0.0;        ///< [-] part of the elements that it does not hold for
-  double bound = 0.0;          ///< largest that was stated; infinite: none was
-  bool front = false;          ///< no other mode of the kind is as fast and errs less, by `p99`
+  double max = 0.0;  ///< infinite: one of the two saw nothing
+  // Of those that a stated bound covers: it is finite, they are numbers, and not flagged.
+  double covered = 0.0;                                    ///< [-] their part of all
+  double covered_max = 0.0;                                ///< their largest error
+  double bound = std::numeric_limits<double>::infinity();  ///< the largest stated of them; infinite: none is covered
+  bool front = false;  ///< no other mode of the kind is as fast and errs less, by `p99`
 };
 
 struct TradeoffOptions {
@@ -38,8 +40,8 @@ struct TradeoffOptions {
 /// @return modes of each kind that has some, `exact` first, in order of kinds; fewer when it was stopped
 std::vector<Grade> tradeoff(const world::World& world, gpu::Device& device, const TradeoffOptions& options);
 
-/// Columns sensor, mode, rate_per_s, median_error, p99_error, max_error, bound, max_unflagged_error, flagged; metres or
-/// tesla.
+/// Columns sensor, mode, rate_per_s, covered, covered_max_error, covered_bound, all_median_error, all_p99_error,
+/// all_max_error; metres or tesla. Where nothing is covered, its error and bound are empty.
 std::string csv_of(const std::vector<Grade>& grades);
 
 enum class Judged { median, p99, max };

@@ -18,6 +18,7 @@ constexpr std::uint32_t kFrame = 0xFF404040u;
 constexpr std::uint32_t kGrid = 0x28808080u;
 constexpr std::uint32_t kFront = 0xFF0072B2u;
 constexpr std::uint32_t kBeaten = 0xFF909090u;
+constexpr std::uint32_t kCovered = 0xFFD55E00u;
 
 // [px]
 constexpr int kWidth = 1400;
@@ -39,7 +40,7 @@ struct Decades {
 Decades decades_of(const std::vector<TradeoffPoint>& points) {
   double least = HUGE_VAL, most = 0.0;
   for (const TradeoffPoint& point : points)
-    for (const double v : {point.low, point.middle, point.high}) {
+    for (const double v : {point.low, point.middle, point.high, point.covered.high, point.covered.bound}) {
       if (!(v >= kLeast) || std::isinf(v)) continue;
       least = std::min(least, v);
       most = std::max(most, v);
@@ -109,6 +110,12 @@ void draw_front(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
   if (line.size() > 1) canvas.polyline(line, 2.0, with_opacity(kFront, 0.4));
 }
 
+/// "skip4, 25 % covered".
+std::string label_of(const TradeoffPoint& point) {
+  const double percent = std::floor(100.0 * point.covered.part);  // never 100 where some are not
+  return fmt::format("{}, {:.0f} % covered", point.name, percent);
+}
+
 void draw_points(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
   Labels labels(at.plot);
   for (const TradeoffPoint& point : panel.points) {
@@ -117,6 +124,10 @@ void draw_points(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
     const Line whisker{{at.x(point.low), mark.y}, {at.x(point.high), mark.y}};
     canvas.line(whisker.a, whisker.b, 1.5, with_opacity(color, 0.6));
     for (const Vec2 end : {whisker.a, whisker.b}) canvas.line({end.x, end.y - 5.0}, {end.x, end.y + 5.0}, 1.5, color);
+    if (point.covered.part > 0.0) {
+      draw_cross(canvas, {at.x(point.covered.high), mark.y}, 5.0, 1.5, kCovered);
+      canvas.ring({at.x(point.covered.bound), mark.y}, 7.0, 1.5, kCovered);
+    }
     canvas.disc(mark, 6.0, color);
     labels.forbid({{mark.x - 7.0, mark.y - 7.0}, {mark.x + 7.0, mark.y + 7.0}});
   }
@@ -126,7 +137,7 @@ void draw_points(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
     style.color = point.front ? 0xFF202020u : 0xFF707070u;
     style.halo = 0xFFFFFFFFu;
     const Vec2 mark[] = {{at.x(point.middle), at.y(point.rate)}};
-    labels.place(canvas, mark, point.name, style, {.nearest = 10.0});
+    labels.place(canvas, mark, label_of(point), style, {.nearest = 10.0});
   }
 }
 

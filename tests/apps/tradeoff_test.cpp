@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+#include <vector>
+
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
+#include "tests/viz/png.h"
 
 namespace sf {
 namespace {
@@ -12,18 +17,77 @@ void expect_says(const Outcome& outcome, const std::string& text) {
   EXPECT_NE((outcome.out + outcome.err).find(text), std::string::npos) << text << "\n" << outcome.out << outcome.err;
 }
 
+/// Cells of a CSV, line by line; an empty one is not a number.
+std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
+  std::vector<std::vector<std::string>> rows(1, {""});
+  for (const char c : csv) {
+    if (c == '\n') rows.push_back({""});
+    if (c == ',') rows.back().emplace_back();
+    if (c != ',' && c != '\n') rows.back().back() += c;
+  }
+  rows.pop_back();
+  return rows;
+}
+
+double number(const std::string& cell) { return cell.empty() ? NAN : std::stod(cell); }
+
 TEST(Tradeoff, ATableAFileAndAPicture) {
   const Folder folder;
   const Outcome outcome =
       run_program({"tradeoff", our_world("simville/simville.world"), "-o", folder.path("t"), "--max-error", "5mm"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  for (const char* text :
-       {"skip4", "near3", "laneedge", "bound", "fastest with every error within 5 mm: --accuracy \""})
+  for (const char* text : {"covered by a stated bound ---", "--- errors of all ---",
+                           "fastest with every error within 5 mm: --accuracy \""})
     expect_says(outcome, text);
-  const std::string csv = read_file(folder.path("t/tradeoff.csv"));
-  EXPECT_EQ(csv.find("sensor,mode,rate_per_s,median_error,p99_error,max_error,bound"), 0u);
-  EXPECT_EQ(count_lines(csv), 1u + 5 + 3 + 4);
-  EXPECT_EQ(read_file(folder.path("t/tradeoff.png")).substr(1, 3), "PNG");
+
+  const auto rows = cells_of(read_file(folder.path("t/tradeoff.csv")));
+  ASSERT_EQ(rows.size(), 1u + 5 + 3 + 4);
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"sensor", "mode", "rate_per_s", "covered", "covered_max_error",
+                                               "covered_bound", "all_median_error", "all_p99_error", "all_max_error"}));
+  const char* const names[] = {"laser exact",        "laser single",        "laser skip2",        "laser skip4",
+                               "laser skip8",        "laneedge exact",      "laneedge skip2",     "laneedge skip4",
+                               "magnetometer exact", "magnetometer near10", "magnetometer near3", "magnetometer near1"};
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const auto& row = rows[i];
+    ASSERT_EQ(row.size(), 9u);
+    const std::string name = row[0] + " " + row[1];
+    EXPECT_EQ(name, names[i - 1]);
+    expect_says(outcome, row[1]);
+    EXPECT_GT(number(row[2]), 0.0) << name;
+    EXPECT_LE(number(row[6]), number(row[7])) << name << ": median, 99 %";
+    EXPECT_LE(number(row[7]), number(row[8])) << name << ": 99 %, largest";
+    const double covered = number(row[3]);
+    if (covered > 0.0) {
+      EXPECT_LE(number(row[4]), number(row[5])) << name << ": within its bound";
+      EXPECT_LE(number(row[4]), number(row[8])) << name;
+      EXPECT_GT(number(row[5]), 0.0) << name;
+    } else {
+      EXPECT_EQ(row[4] + row[5], "") << name << ": neither error nor bound of nothing";
+    }
+    const bool leaves_out = row[1].rfind("skip", 0) == 0;
+    EXPECT_EQ(covered < 1.0, leaves_out || name == "laneedge exact") << name << ": " << covered;
+    EXPECT_TRUE(row[0] != "laneedge" || !leaves_out || covered == 0.0) << name;
+  }
+  EXPECT_NEAR(number(rows[4][3]), 0.25, 0.01) << "every fourth beam of 361";
+
+  const scenes::Picture picture = scenes::read_png(folder.path("t/tradeoff.png"));
+  EXPECT_EQ(picture.width, 1400);
+  EXPECT_GT(picture.count(0xFF0072B2u), 3 * 80) << "a disc for the best of each kind";
+  EXPECT_GT(picture.count(0xFFD55E00u), 3 * 10) << "and the ring of a bound";
+}
+
+/// The terminal says what a bound is of: a mode that leaves beams out shows how many it covers, and their error.
+TEST(Tradeoff, NoBoundStandsBesideErrorsThatItDoesNotCover) {
+  const Outcome outcome = run_program({"tradeoff", our_world("cave.world"), "--robots", "10"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::size_t at = outcome.out.find("laser         skip2");
+  ASSERT_NE(at, std::string::npos) << outcome.out;
+  const std::string line = outcome.out.substr(at, outcome.out.find('\n', at) - at);
+  const std::size_t covered = line.find("50.1"), bound = line.find("1.05 nm"), largest = line.rfind(" m");
+  ASSERT_NE(covered, std::string::npos) << line;
+  ASSERT_NE(bound, std::string::npos) << line;
+  EXPECT_LT(covered, bound) << line;
+  EXPECT_LT(bound, largest) << "errors of all come last: " << line;
 }
 
 TEST(Tradeoff, AutoPrintsTheWordsAlone) {

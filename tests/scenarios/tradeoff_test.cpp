@@ -34,13 +34,16 @@ TEST(Tradeoff, MeasuresEveryModeOfEveryKind) {
     EXPECT_GT(g.rate, 0.0) << g.mode;
     EXPECT_LE(g.median, g.p99);
     EXPECT_LE(g.p99, g.max);
-    EXPECT_LE(g.max_unflagged, g.bound) << g.sensor << " " << g.mode;
+    EXPECT_LE(g.covered_max, g.bound) << g.sensor << " " << g.mode;
+    EXPECT_LE(g.covered_max, g.max);
     EXPECT_TRUE(g.mode != "exact" || g.max == 0.0) << "lasers to the bit as plain C++ has them";
   }
   EXPECT_EQ(modes, (std::map<std::string, int>{{"laser", 5}, {"magnetometer", 4}}));
   EXPECT_EQ(grades[0].unit, "m");
   EXPECT_EQ(grades.back().unit, "T");
-  EXPECT_NEAR(grades[2].flagged, 30.0 / 61.0, 0.01) << "every other beam of 61";
+  EXPECT_NEAR(grades[2].covered, 31.0 / 61.0, 0.01) << "every other beam of 61";
+  EXPECT_GT(grades[2].max, 1000.0 * grades[2].bound) << "of all: no bound covers what is left out";
+  EXPECT_EQ(grades[0].covered, 1.0);
   EXPECT_GT(grades[1].max, 0.0) << "32 bits show";
 }
 
@@ -48,11 +51,32 @@ TEST(Tradeoff, CanBeStopped) {
   EXPECT_TRUE(tradeoff(small_world(), device(), {.progress = [](double) { return false; }}).empty());
 }
 
+/// A lane edge sensor on a bend: what it reads is covered by no bound, and none is shown beside its errors.
+TEST(Tradeoff, WhatNoBoundCoversHasNone) {
+  world::World world;
+  world::Stripe bend{{}, 0.1};
+  for (int i = 0; i <= 600; ++i) bend.line.push_back(base::rotate(0.01 * i, {0.68, 0.0}));
+  world.stripes.push_back(bend);
+  scenes::add_robot(world, {0.3, 0.0, 0.0, 0.0}, scenes::laser(3));
+  world.movers[0].lasers.clear();
+  world.movers[0].sensors.push_back({"laneedge", "e", {}, 0.01, 1.0, M_PI / 180.0, {}, 0, ""});
+  world::finish(world);
+  for (const Grade& g : tradeoff(world, device(), {})) {
+    EXPECT_EQ(g.sensor, "laneedge");
+    EXPECT_EQ(g.covered, 0.0) << g.mode;
+    EXPECT_TRUE(std::isinf(g.bound)) << g.mode;
+  }
+}
+
 TEST(Tradeoff, IsAFileOfColumns) {
-  const std::string csv = csv_of({{.sensor = "laser", .mode = "exact", .unit = "m", .rate = 1e6, .bound = 1e-9}});
+  const std::string csv =
+      csv_of({{.sensor = "laser", .mode = "skip2", .unit = "m", .rate = 1e6, .max = 7.0, .covered = 0.5, .bound = 1e-9},
+              {.sensor = "laneedge", .mode = "skip2", .unit = "m", .rate = 1e3, .max = 0.5}});
   EXPECT_EQ(csv,
-            "sensor,mode,rate_per_s,median_error,p99_error,max_error,bound,max_unflagged_error,flagged\n"
-            "laser,exact,1e+06,0,0,0,1e-09,0,0\n");
+            "sensor,mode,rate_per_s,covered,covered_max_error,covered_bound,all_median_error,all_p99_error,"
+            "all_max_error\n"
+            "laser,skip2,1e+06,0.5,0,1e-09,0,0,7\n"
+            "laneedge,skip2,1000,0,,,0,0,0.5\n");
 }
 
 std::vector<Grade> made_up() {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <spng.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
@@ -24,6 +25,19 @@ Picture read_png(const std::string& path) {
   picture.width = static_cast<int>(header.width);
   picture.height = static_cast<int>(header.height);
   return picture;
+}
+
+void expect_painted(const std::string& path, std::initializer_list<Painted> expected) {
+  const Picture picture = read_png(path);
+  for (const Painted& p : expected)
+    EXPECT_GE(picture.count(p.color), p.least) << path << ", colour " << std::hex << p.color;
+}
+
+std::string own_file(const std::string& name) {
+  const auto& test = *testing::UnitTest::GetInstance()->current_test_info();
+  std::string prefix = std::string("sf_") + test.test_suite_name() + "_" + test.name() + "_";
+  std::replace(prefix.begin(), prefix.end(), '/', '_');
+  return testing::TempDir() + prefix + name;
 }
 
 }  // namespace sf::scenes

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,22 @@ struct Picture {
       for (int x = x0; x < x1; ++x) n += at(x, y) == color ? 1 : 0;
     return n;
   }
+  /// In all of it.
+  int count(std::uint32_t color) const { return count(color, 0, 0, width, height); }
 };
 
 /// Fails the test where the file is no PNG.
 Picture read_png(const std::string& path);
+
+/// A colour, and the fewest pixels of it.
+struct Painted {
+  std::uint32_t color;
+  int least;
+};
+/// What a picture must show.
+void expect_painted(const std::string& path, std::initializer_list<Painted> expected);
+
+/// A file in the temporary folder that is this test's alone: others run beside it.
+std::string own_file(const std::string& name);
 
 }  // namespace sf::scenes

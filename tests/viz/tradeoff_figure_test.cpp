@@ -11,12 +11,12 @@
 namespace sf::viz {
 namespace {
 
-constexpr std::uint32_t kFront = 0xFF0072B2u, kBeaten = 0xFF909090u;
+constexpr std::uint32_t kFront = 0xFF0072B2u, kBeaten = 0xFF909090u, kCovered = 0xFFD55E00u;
 
-std::string file(const char* name) { return testing::TempDir() + name; }
+std::string file(const char* name) { return scenes::own_file(name); }
 
 TradeoffPoint point(const char* name, double rate, double error, bool front) {
-  return {name, rate, error / 10.0, error, 10.0 * error, front};
+  return {name, rate, error / 10.0, error, 10.0 * error, front, {}};
 }
 
 scenes::Picture drawn(const std::vector<TradeoffPoint>& points) {
@@ -42,14 +42,26 @@ TEST(TradeoffFigure, FasterIsHigherAndWorseIsFartherRight) {
 }
 
 TEST(TradeoffFigure, NoErrorHasAPlaceOfItsOwn) {
-  const scenes::Picture p = drawn({{"exact", 1e6, 0.0, 0.0, 0.0, true}, point("other", 2e6, 1e-3, false)});
+  const scenes::Picture p = drawn({{"exact", 1e6, 0.0, 0.0, 0.0, true, {}}, point("other", 2e6, 1e-3, false)});
   EXPECT_LT(middle_of(p, kFront).x, 300.0);
   EXPECT_GT(middle_of(p, kBeaten).x, 300.0);
 }
 
 TEST(TradeoffFigure, InfiniteErrorsStayOnThePicture) {
-  const scenes::Picture p = drawn({{"blind", 1e6, 0.0, 1e-3, HUGE_VAL, true}});
+  const scenes::Picture p = drawn({{"blind", 1e6, 0.0, 1e-3, HUGE_VAL, true, {}}});
   EXPECT_GT(p.count(kFront, 0, 0, p.width, p.height), 50);
+}
+
+/// A bound is never drawn beside errors that it does not hold for: it has its own mark, where it is, and none where
+/// nothing is covered.
+TEST(TradeoffFigure, ABoundHasAMarkOfItsOwn) {
+  TradeoffPoint skip = point("skip", 2e6, 0.1, true);
+  skip.covered = {0.25, 1e-9, 1e-8};
+  const scenes::Picture p = drawn({skip});
+  const base::Vec2 bound = middle_of(p, kCovered), errors = middle_of(p, kFront);
+  EXPECT_LT(bound.x, errors.x - 400.0) << "seven decades";
+  EXPECT_NEAR(bound.y, errors.y, 3.0) << "of the same mode";
+  EXPECT_EQ(drawn({point("skip", 2e6, 0.1, true)}).count(kCovered), 0);
 }
 
 TEST(TradeoffFigure, NamesWhatCannotBeWritten) {
