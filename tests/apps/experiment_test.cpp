@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
 #include "tests/apps/program.h"
+#include "tests/viz/png.h"
 
 namespace sf {
 namespace {
@@ -39,9 +44,35 @@ TEST(Experiment, WritesItsFolder) {
   const Outcome outcome = run_program({"experiment", "lane-edge-p", "--trials", "1", "-o", folder.path("out"),
                                        "--files", SF_SOURCE_DIR "/experiments"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  for (const char* name : {"statistics.csv", "report.md", "trajectories.png", "errors.png", "trial-1/run.mcap"})
-    EXPECT_FALSE(read_file(folder.path(std::string("out/") + name)).empty()) << name;
-  EXPECT_EQ(count_lines(read_file(folder.path("out/statistics.csv"))), 2u);
+  const std::string csv = read_file(folder.path("out/statistics.csv"));
+  EXPECT_EQ(csv.rfind("trial,mean,std,min,max,abs_mean,abs_std,abs_min,abs_max\n1,", 0), 0u) << csv;
+  ASSERT_EQ(count_lines(csv), 2u);
+  double mean = 0, deviation = 0, least = 0, most = 0, abs_mean = 0, abs_deviation = 0, abs_least = 0, abs_most = 0;
+  ASSERT_EQ(std::sscanf(csv.c_str() + csv.find('\n'), "\n1,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &mean, &deviation, &least,
+                        &most, &abs_mean, &abs_deviation, &abs_least, &abs_most),
+            8)
+      << csv;
+  EXPECT_EQ(abs_most, std::max(-least, most));
+  EXPECT_GE(abs_least, 0.0);
+  EXPECT_NEAR(mean, 0.027, 0.01) << "docs/experiments.md";
+  EXPECT_NEAR(abs_mean, 0.046, 0.01);
+  EXPECT_NEAR(abs_most, 0.136, 0.03);
+
+  const std::string report = read_file(folder.path("out/report.md"));
+  for (const char* text : {"Plant `thesis`", "| yes |", "statistics.csv"})
+    EXPECT_NE(report.find(text), std::string::npos) << text << "\n" << report;
+  EXPECT_NE(report.find(std::to_string(mean).substr(0, 5)), std::string::npos) << "the mean of " << csv << report;
+
+  // Nobody's name is in its track's colour; 5 m of it and a minute of errors are.
+  constexpr std::uint32_t kFirst = 0xFF0072B2u;
+  for (const char* name : {"trajectories.png", "errors.png"}) {
+    const scenes::Picture picture = scenes::read_png(folder.path(std::string("out/") + name));
+    EXPECT_GT(picture.count(kFirst), 1000) << name;
+    int columns = 0;
+    for (int x = 0; x < picture.width; ++x) columns += picture.count(kFirst, x, 0, x + 1, picture.height) > 0 ? 1 : 0;
+    EXPECT_GT(columns, picture.width / 2) << name << ": from end to end";
+  }
+  EXPECT_EQ(run_program({"plot", folder.path("out/trial-1"), "-o", folder.path("pictures")}).code, 0);
 }
 
 TEST(TestCommand, PassesFailsAndSaysWhy) {

@@ -6,8 +6,11 @@
 #include <csignal>
 #include <thread>
 
+#include "record/recording.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
+#include "tests/viz/png.h"
+#include "viz/tracks.h"
 
 namespace sf {
 
@@ -27,10 +30,11 @@ Json run(const std::string& world, const Words& more) {
 
 std::string hash(const std::string& world, const Words& more) { return run(world, more).text("/hash"); }
 
-void expect_png(const std::string& path) {
-  const std::string bytes = read_file(path);
-  EXPECT_GT(bytes.size(), 1000u) << path;
-  EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n") << path;
+/// The first of the robots' ways, and what `plot` maps of it.
+void expect_pictures(const std::string& folder) {
+  scenes::expect_painted(folder + "/trajectories.png", {{0xFF0072B2u, 60}, {0xFFD55E00u, 60}, {0xFF009E73u, 60}});
+  // Occupied, unexplored, free.
+  scenes::expect_painted(folder + "/occupancy.png", {{0xFF1748D1u, 500}, {0xFF474B50u, 5000}, {0xFFFFFFFFu, 5000}});
 }
 
 /// Until the recording holds more than the world: the loop is running then.
@@ -287,8 +291,7 @@ TEST(Run, ARecordingIsDrawnElsewhere) {
   std::filesystem::rename(folder.path("here/run.mcap"), folder.path("there/run.mcap"));
   const Outcome outcome = run_program({"plot", folder.path("there"), "-o", folder.path("deep/pictures")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  expect_png(folder.path("deep/pictures/trajectories.png"));
-  expect_png(folder.path("deep/pictures/occupancy.png"));
+  expect_pictures(folder.path("deep/pictures"));
 }
 
 TEST(Run, RecordingDoesNotChangeTheRun) {
@@ -297,6 +300,39 @@ TEST(Run, RecordingDoesNotChangeTheRun) {
   Words recorded = plain;
   recorded.insert(recorded.end(), {"--record", folder.path("r"), "--record-readings"});
   EXPECT_EQ(hash("cave.world", recorded), hash("cave.world", plain));
+}
+
+/// Contacts are counted when they begin, by `run` as by `plot`.
+TEST(Run, CountsContactsAsItsPictureDoes) {
+  const Folder folder;
+  const Words words{"--robots", "20", "--duration", "20", "--record", folder.path("r")};
+  const Json facts = run("rooms.world", words);
+  std::size_t began = 0, touching = 0;
+  for (const auto& states : record::open_recording(folder.path("r")).states) {
+    viz::Track track;
+    for (const record::StateSample& s : states) track.contacts.push_back(s.contact), touching += s.contact;
+    began += viz::contact_count(track);
+  }
+  EXPECT_EQ(facts.number("/contacts"), static_cast<double>(began));
+  EXPECT_GT(began, 0u);
+  EXPECT_LT(began, touching) << "or the two could not be told apart";
+}
+
+/// A hash is of what is sent and recorded.
+TEST(Run, WhatBeamsReadThatMetNothingIsInTheHash) {
+  const Folder folder;
+  const std::string open = folder.write("open.world", "position( name \"a\" laser( samples 3 range_max 5 ) )\n");
+  const auto hash_of = [&](const std::string& no_return) {
+    const Outcome outcome = run_program({"run", open, "--json", "--duration", "1", "--no-return", no_return});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return Json(outcome.out).text("/hash");
+  };
+  EXPECT_NE(hash_of("inf"), hash_of("max")) << "every beam";
+  EXPECT_EQ(hash_of("inf"), hash_of("inf"));
+  const Words closed{"--robots", "2", "--duration", "1"};  // within range of a wall, whichever way it looks
+  Words infinite = closed;
+  infinite.insert(infinite.end(), {"--no-return", "inf"});
+  EXPECT_EQ(hash("rooms.world", infinite), hash("rooms.world", closed)) << "no beam";
 }
 
 TEST(Run, AKilledRunCanBeDrawn) {
@@ -308,8 +344,7 @@ TEST(Run, AKilledRunCanBeDrawn) {
   const Outcome outcome = run_program({"plot", folder.path("r"), "-o", folder.path("p")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("was not finished"), std::string::npos) << outcome.err;
-  expect_png(folder.path("p/trajectories.png"));
-  expect_png(folder.path("p/occupancy.png"));
+  expect_pictures(folder.path("p"));
 }
 
 TEST(Run, StoppingIsNoFailure) {

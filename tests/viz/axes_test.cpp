@@ -115,7 +115,7 @@ TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // nothing is cut off
   plan.legend.assign(12, {Sample::block, 0xFF00FF00u, "something to be known", 0xFF000000u});
   plan.bar = ColorBar{"robot", "the first", "the last of them all", {0xFF000000u, 0xFFFF0000u}};
   Axes axes(plan);
-  const std::string path = testing::TempDir() + "axes.png";
+  const std::string path = scenes::own_file("axes.png");
   axes.save(path);
   const scenes::Picture p = scenes::read_png(path);
   constexpr std::uint32_t white = 0xFFFFFFFFu;
@@ -132,7 +132,7 @@ TEST(Axes, TitleAndLegendAreThere) {
   plan.legend = {{Sample::block, 0xFF00AA00u, "green"}};
   Axes axes(plan);
   const FigureLayout at = axes.layout();
-  const std::string path = testing::TempDir() + "legend.png";
+  const std::string path = scenes::own_file("legend.png");
   axes.save(path);
   const scenes::Picture p = scenes::read_png(path);
   EXPECT_GT(p.count(0xFF202020u, 0, 0, p.width, at.plot.y_min - 2), 100) << "the title's own colour";

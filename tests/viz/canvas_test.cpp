@@ -267,7 +267,7 @@ TEST(Canvas, DashesRunOnAcrossSegments) {  // a line in pieces shorter than a da
 TEST(Canvas, PngReadsBackTheSame) {
   Canvas canvas(31, 17, 0xFFFAFBFCu);
   canvas.disc({9, 5}, 3, 0xFFD55E00u);
-  const std::string path = testing::TempDir() + "canvas.png";
+  const std::string path = scenes::own_file("canvas.png");
   canvas.save_png(path);
   const scenes::Picture picture = scenes::read_png(path);
   ASSERT_EQ(picture.width, 31);

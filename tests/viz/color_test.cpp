@@ -60,6 +60,19 @@ TEST(Color, RowsDiffer) {
   }
 }
 
+/// Up to seven rows have colours that are told apart by name, more have the ramp from end to end.
+TEST(Color, SevenRowsHaveAPaletteAndMoreARamp) {
+  for (const std::size_t count : {1u, 6u, 7u})
+    for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(row_color(i, count), row_color(i, 1 + i)) << i << " of " << count;
+  EXPECT_EQ(row_color(0, 7), 0xFF0072B2u);
+  EXPECT_EQ(row_color(6, 7), 0xFF000000u);
+  for (const std::size_t count : {8u, 100u}) {
+    EXPECT_EQ(row_color(0, count), ramp(0.0)) << count;
+    EXPECT_EQ(row_color(count / 2, count), ramp(static_cast<double>(count / 2) / static_cast<double>(count - 1)));
+    EXPECT_EQ(row_color(count - 1, count), ramp(1.0)) << count;
+  }
+}
+
 TEST(Color, MixEnds) {
   EXPECT_EQ(mix(0xFF102030u, 0xFF405060u, 0.0), 0xFF102030u);
   EXPECT_EQ(mix(0xFF102030u, 0xFF405060u, 1.0), 0xFF405060u);

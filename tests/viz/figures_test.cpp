@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 
 #include "base/error.h"
@@ -21,7 +22,7 @@ using base::Pose;
 
 constexpr std::uint32_t kWhite = 0xFFFFFFFFu;
 
-std::string file(const char* name) { return testing::TempDir() + name; }
+std::string file(const char* name) { return scenes::own_file(name); }
 
 /// A room of 6 m x 4 m in walls of 0.5 m, nothing in it.
 world::World room() { return scenes::make_world(6, 4, 0, 0); }
@@ -172,7 +173,10 @@ TEST(WorldFigure, WhatAllWallsAreNotIsDrawnToo) {  // every mixture of flags: no
 TEST(WorldFigure, OddWorldsCanBeDrawn) {  // nothing at all; no model rows; a name from the file; a robot without a body
   world::World empty;
   empty.extent = {0, 0, 0, 0};
-  EXPECT_NO_THROW(draw_world(empty, file("empty.png")));
+  draw_world(empty, file("empty.png"));
+  const scenes::Picture nothing = scenes::read_png(file("empty.png"));
+  EXPECT_GT(nothing.count(kWhite), 9 * nothing.width * nothing.height / 10) << "paper, a frame and its numbers";
+  EXPECT_GT(nothing.count(0xFF404040u), 2 * 500) << "the frame";
   world::World world = room();
   world.name.clear();
   world.file = "some/where/cave.world";
@@ -181,7 +185,10 @@ TEST(WorldFigure, OddWorldsCanBeDrawn) {  // nothing at all; no model rows; a na
   world.movers[0].is_tag = true;
   world.movers[0].lasers[0].fov = 0.0;
   world.models.clear();
-  EXPECT_NO_THROW(draw_world(world, file("odd.png")));
+  draw_world(world, file("odd.png"));
+  const Seen seen = see(file("odd.png"), 0.03);
+  EXPECT_LT(to_lab(seen.at(3.2, 0.0)).lightness, 0.6) << "walls of models that are not known";
+  EXPECT_EQ(seen.at(4.27, 2.27), kWhite) << "a view of no width";
 }
 
 TEST(WorldFigure, SameWorldSamePicture) {
@@ -305,9 +312,20 @@ TEST(TrajectoryFigure, WhatLeavesTheWorldIsShown) {  // the figure grows with th
 }
 
 TEST(TrajectoryFigure, NoTrackAndEmptyTracksCanBeDrawn) {
-  EXPECT_NO_THROW(draw_trajectories(room(), {}, file("none.png")));
-  const std::vector<Track> tracks(30);
-  EXPECT_NO_THROW(draw_trajectories(room(), tracks, file("still.png")));
+  const auto is_bare = [&](std::span<const Track> tracks) {
+    draw_trajectories(room(), tracks, file("none.png"));
+    const Seen seen = see(file("none.png"), 0.03);
+    int other = 0;
+    for (double x = 0.5; x < 5.5; x += 0.02)
+      for (double y = 0.5; y < 3.5; y += 0.02) {
+        const Lab lab = to_lab(seen.at(x, y));
+        other += std::hypot(lab.a, lab.b) > 0.02 || lab.lightness < 0.8 ? 1 : 0;
+      }
+    EXPECT_EQ(other, 0) << "the floor of a room, and the grid on it";
+    EXPECT_LT(to_lab(seen.at(3.2, 0.0)).lightness, 0.9) << "its wall";
+  };
+  is_bare({});
+  is_bare(std::vector<Track>(30));
 }
 
 TEST(TrajectoryFigureDeathTest, ContactsMustMatchPoses) {
@@ -330,7 +348,9 @@ TEST(OccupancyFigure, CellsHaveTheirColours) {
 }
 
 TEST(OccupancyFigure, OneCellCanBeDrawn) {
-  EXPECT_NO_THROW(draw_occupancy({}, OccupancyGrid({0, 0, 1, 1}, 1.0), file("cell.png")));
+  draw_occupancy({}, OccupancyGrid({0, 0, 1, 1}, 1.0), file("cell.png"));
+  const scenes::Picture p = scenes::read_png(file("cell.png"));
+  EXPECT_GT(p.count(0xFF474B50u), p.width * p.height / 2) << "unexplored";
 }
 
 TEST(Figures, UnwritablePathIsNamed) {
@@ -350,8 +370,10 @@ TEST(Figures, UnwritablePathIsNamed) {
 
 TEST(Figures, ManyRobotsCanBeDrawn) {  // the large case, once: 1000 robots in a world of 2000 segments
   const world::World world = scenes::make_world(80, 40, 500, 1000, 8.0);
-  EXPECT_NO_THROW(draw_world(world, file("many.png")));
-  EXPECT_EQ(scenes::read_png(file("many.png")).width, 1600);
+  draw_world(world, file("many.png"));
+  const scenes::Picture p = scenes::read_png(file("many.png"));
+  EXPECT_EQ(p.width, 1600);
+  EXPECT_GT(p.count(0xFF2E7D32u), 5 * 1000) << "of each robot's body a few pixels";
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "base/error.h"
 #include "tests/viz/png.h"
 
@@ -14,11 +12,7 @@ namespace {
 
 constexpr std::uint32_t kDark = 0xFF474B50u, kBlue = 0xFF1748D1u, kWhite = 0xFFFFFFFFu;
 
-std::string out(const std::string& name) {
-  const auto folder = std::filesystem::temp_directory_path() / "sf_map_figure";
-  std::filesystem::create_directories(folder);
-  return (folder / name).string();
-}
+std::string out(const std::string& name) { return scenes::own_file(name); }
 
 /// All cells in turn unexplored, occupied, free.
 maps::Grid striped(std::uint32_t columns, std::uint32_t rows) {
@@ -71,8 +65,14 @@ TEST(MapFigure, LargeMapsAreDrawnSmaller) {
   const scenes::Picture picture = scenes::read_png(out("large.png"));
   EXPECT_LE(picture.width, 8200);
   EXPECT_GT(picture.width, 7000) << "as large as it may be";
+  // A third of the cells each, less the lines between them and the mixtures at their sides.
+  const int cells = picture.count(kDark) + picture.count(kBlue);
+  EXPECT_NEAR(picture.count(kDark), 0.5 * cells, 0.02 * cells);
+  EXPECT_GT(cells, 2 * 500 * 9) << "nine pixels a cell at least";
   draw_map(striped(1, 1), {"Small", "with a name", {}}, out("small.png"));
-  EXPECT_EQ(scenes::read_png(out("small.png")).width, 640);
+  const scenes::Picture small = scenes::read_png(out("small.png"));
+  EXPECT_EQ(small.width, 640);
+  EXPECT_GE(small.count(kDark), 16) << "its one cell, which is unexplored";
 }
 
 TEST(MapFigure, APathThatCannotBeWritten) {

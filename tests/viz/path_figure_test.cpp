@@ -11,7 +11,7 @@
 namespace sf::viz {
 namespace {
 
-std::string file(const char* name) { return testing::TempDir() + name; }
+std::string file(const char* name) { return scenes::own_file(name); }
 
 /// A straight lane of 4 m along x.
 world::World lane() {

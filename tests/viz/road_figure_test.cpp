@@ -20,7 +20,7 @@ namespace {
 
 using scenes::Picture;
 
-std::string file(const char* name) { return testing::TempDir() + name; }
+std::string file(const char* name) { return scenes::own_file(name); }
 
 // Two straight lanes, 3 m wide and 60 m long, a stop line and a zone with a spot.
 world::RoadNetwork small() {
@@ -149,7 +149,10 @@ TEST(RoadFigure, NamesOfAnyBytes) {
   network.segments[0].name = std::string(100000, '\xE9');
   network.zones[0].name = "";
   draw_roads(network, file("bytes.png"));
-  EXPECT_TRUE(std::filesystem::exists(file("bytes.png")));
+  draw_roads(small(), file("plain.png"));
+  const Picture bytes = scenes::read_png(file("bytes.png")), plain = scenes::read_png(file("plain.png"));
+  EXPECT_NEAR(bytes.count(kStop), plain.count(kStop), 2) << "the same roads under other names";
+  EXPECT_NEAR(bytes.count(kSpot), plain.count(kSpot), plain.count(kSpot) / 4);
   EXPECT_EQ(printable("a\xDFz\n", 10), "a?z?");
   EXPECT_EQ(printable("abcdef", 3), "abc...");
 }
@@ -165,7 +168,9 @@ TEST(RoadFigure, OnePointIsEnough) {
   network.lanes[0].left_edge.clear(), network.lanes[0].right_edge.clear();
   network.extent = {0, 0, 0, 0};
   draw_roads(network, file("point.png"));
-  EXPECT_TRUE(std::filesystem::exists(file("point.png")));
+  const Picture picture = scenes::read_png(file("point.png"));
+  EXPECT_EQ(picture.count(kZone) + picture.count(kSpot) + picture.count(kStop), 0) << "none of what was taken away";
+  EXPECT_GT(picture.count(0xFFFFFFFFu), picture.width * picture.height / 10);
 }
 
 TEST(RoadFigure, UnwritablePathIsNamed) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::string file(const char* name) { return testing::TempDir() + name; }
+std::string file(const char* name) { return scenes::own_file(name); }
 
 /// A series of one value per second.
 Series per_second(const std::string& name, const std::vector<double>& values) {
@@ -93,17 +93,33 @@ TEST(SeriesFigure, PanelsStandBelowEachOther) {
     EXPECT_GT(three.count(color, 0, third * three.height / 3, three.width, (third + 1) * three.height / 3), 100);
 }
 
+/// Pixels that are the first series' blue, or half of it: lines are thin and lie between pixels.
+int blue(const scenes::Picture& p) {
+  int n = 0;
+  for (std::size_t i = 0; i < p.rgb.size(); i += 3) n += p.rgb[i + 2] > p.rgb[i] + 60 ? 1 : 0;
+  return n;
+}
+
 TEST(SeriesFigure, OddDataIsDrawnAllTheSame) {
-  for (const std::vector<Series>& series : {std::vector<Series>{},                   // nobody
-                                            {Series{"a", {}, {}}},                   // said nothing
-                                            {per_second("a", {7})},                  // once
-                                            {per_second("a", {kNan, kNan})},         // saw nothing
-                                            {per_second("a", {0, 0, 0})},            // the same all along, at zero
-                                            {per_second("a", {-1e-7, 1e-7})},        // tiny
-                                            {per_second("a", {1e300, -1e300})},      // huge
-                                            {Series{"a", {0, kNan, 2}, {1, 2, 3}}},  // at no time
-                                            {Series{"a", {1e9, 1e9 + 1}, {1e9, 1e9 + 1}}}})  // far from zero
-    EXPECT_GT(drawn(one_panel(series), "odd.png").height, 600);
+  struct Case {
+    Series series;
+    int least, most;  ///< blue pixels, beside the legend's
+  };
+  EXPECT_EQ(blue(drawn(one_panel({}), "nobody.png")), 0);
+  const int legend = blue(drawn(one_panel({Series{"a", {}, {}}}), "silent.png"));
+  EXPECT_GT(drawn(one_panel({per_second("a", {1e300, -1e300})}), "labels.png").height, 600) << "no room but for labels";
+  for (const Case& c : {Case{per_second("a", {7}), 2, 20},                  // once: a dot
+                        Case{per_second("a", {kNan, kNan}), 0, 0},          // saw nothing
+                        Case{per_second("a", {0, 0, 0}), 1000, 10000},      // the same all along, at zero
+                        Case{per_second("a", {-1e-7, 1e-7}), 1000, 10000},  // tiny
+                        Case{per_second("a", {1e15, -1e15}), 1000, 10000},  // huge
+                        Case{Series{"a", {0, kNan, 2}, {1, 2, 3}}, 2, 20},  // at no time: two dots
+                        Case{Series{"a", {1e9, 1e9 + 1}, {1e9, 1e9 + 1}}, 1000, 10000}}) {  // far from zero
+    const scenes::Picture p = drawn(one_panel({c.series}), "odd.png");
+    EXPECT_GT(p.height, 600);
+    EXPECT_GE(blue(p) - legend, c.least);
+    EXPECT_LE(blue(p) - legend, c.most);
+  }
 }
 
 TEST(SeriesFigure, ThePictureIsAFunctionOfTheNumbers) {

@@ -1,0 +1,99 @@
+// Dashes and samples: what is drawn where.
+
+#include "viz/legend.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace sf::viz {
+namespace {
+
+constexpr std::uint32_t kWhite = 0xFFFFFFFFu, kBlack = 0xFF000000u;
+
+/// Pixels of one row, left to right: '#' where a line 2 px thick covers them wholly.
+std::string row_of(const Canvas& canvas, int y) {
+  std::string row;
+  for (int x = 0; x < canvas.width(); ++x)
+    row += canvas.pixel(x, y) == kBlack ? '#' : canvas.pixel(x, y) == kWhite ? '.' : '+';
+  return row;
+}
+
+std::string dashes(const std::vector<Line>& lines, double on, double off) {
+  Canvas canvas(60, 8, kWhite);
+  draw_dashes(canvas, lines, 2.0, on, off, kBlack);
+  return row_of(canvas, 3);
+}
+
+std::size_t painted(const std::string& row) {
+  std::size_t n = 0;
+  for (const char c : row) n += c != '.';
+  return n;
+}
+
+/// On for 8 px, off for 12: lines have round ends of 1 px to both sides.
+TEST(Dashes, RepeatAlongALine) {
+  const std::string row = dashes({{{5, 4}, {55, 4}}}, 8.0, 12.0);
+  for (const int start : {5, 25, 45}) {
+    EXPECT_EQ(row.substr(start, 8), "########") << row;
+    EXPECT_EQ(row.substr(start + 10, 8).find_first_not_of('.'), std::string::npos) << row;
+  }
+}
+
+TEST(Dashes, StopWhereTheirLineStops) {
+  const std::string row = dashes({{{5, 4}, {28, 4}}}, 8.0, 12.0);  // 3 px into the second dash
+  EXPECT_EQ(row.substr(25, 3), "###") << row;
+  EXPECT_EQ(row.substr(30).find_first_not_of('.'), std::string::npos) << row;
+  const std::string short_of_it = dashes({{{5, 4}, {22, 4}}}, 8.0, 12.0);
+  EXPECT_EQ(short_of_it.substr(15).find_first_not_of('.'), std::string::npos) << "in the gap: no second dash";
+}
+
+/// A path in pieces has the dashes of the whole; pieces that do not hang together begin again.
+TEST(Dashes, GoOnOverTheCornersOfAPath) {
+  const std::string whole = dashes({{{5, 4}, {55, 4}}}, 8.0, 12.0);
+  EXPECT_EQ(dashes({{{5, 4}, {11, 4}}, {{11, 4}, {27, 4}}, {{27, 4}, {55, 4}}}, 8.0, 12.0), whole);
+  const std::string apart = dashes({{{5, 4}, {15, 4}}, {{30, 4}, {50, 4}}}, 8.0, 12.0);
+  EXPECT_EQ(apart.substr(30, 8), "########") << apart;
+  EXPECT_EQ(apart.substr(41, 8).find_first_not_of('.'), std::string::npos) << apart;
+}
+
+TEST(Dashes, LinesWithoutLengthAreLeftOut) {
+  EXPECT_EQ(painted(dashes({{{5, 4}, {5, 4}}, {{NAN, 4}, {9, 4}}, {{0, 4}, {1e9, 4}}}, 8.0, 12.0)), 0u);
+}
+
+/// Its four arms lie on the diagonals, `reach` long.
+TEST(Cross, HasFourArms) {
+  Canvas canvas(40, 40, kWhite);
+  draw_cross(canvas, {20, 20}, 10.0, 3.0, kBlack);
+  for (const int d : {2, 8})
+    for (const auto& [x, y] : {std::pair{20 + d, 20 + d}, {20 - d, 20 - d}, {20 + d, 20 - d}, {20 - d, 20 + d}})
+      EXPECT_EQ(canvas.pixel(x, y), kBlack) << x << ", " << y;
+  EXPECT_EQ(canvas.pixel(26, 20), kWhite) << "beside them";
+  EXPECT_EQ(canvas.pixel(34, 34), kWhite) << "beyond them";
+}
+
+/// Each sample is drawn in its own colour, in its own row, left of its text.
+TEST(Legend, SamplesStandInTheirPlaces) {
+  const std::vector<LegendItem> items{{Sample::block, 0xFFFF0000u, "a", 0}, {Sample::line, 0xFF00FF00u, "b", 0}};
+  const std::vector<LegendPlace> places{{0.0, 0}, {0.0, 1}};
+  Canvas canvas(120, 100, kWhite);
+  draw_legend(canvas, {10, 10}, items, places);
+  const auto rows_of = [&](std::uint32_t color) {
+    std::vector<int> rows;
+    for (int y = 0; y < canvas.height(); ++y)
+      for (int x = 0; x < canvas.width(); ++x)
+        if (canvas.pixel(x, y) == color && (rows.empty() || rows.back() != y)) rows.push_back(y);
+    return rows;
+  };
+  const std::vector<int> first = rows_of(0xFFFF0000u), second = rows_of(0xFF00FF00u);
+  ASSERT_FALSE(first.empty());
+  ASSERT_FALSE(second.empty());
+  EXPECT_GE(first.front(), 10);
+  EXPECT_LT(first.back(), 10 + kLegendRow);
+  EXPECT_GE(second.front(), 10 + kLegendRow);
+  EXPECT_LT(second.back(), 10 + 2 * kLegendRow);
+}
+
+}  // namespace
+}  // namespace sf::viz
