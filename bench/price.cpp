@@ -110,7 +110,7 @@ void measure_lasers(gpu::Device& device, std::vector<Fact>& facts) {
 }  // namespace
 
 std::vector<Fact> measure_program() {
-  const Process crowd = run_program({"run", simville(), "--robots", "42", "--duration", "60"});
+  const Process crowd = run_program({"run", simville(), "--robots", "50", "--duration", "60"});
   const Process town = run_program({"run", simville(), "--duration", "60"});
   const Process none = run_program({"devices"});
   const Words first{"sense", simville(), "--kind", "laser"}, tick{"run", simville(), "--duration", "0.1"};
