@@ -37,8 +37,11 @@ std::span<const base::ReadingBlock> Delivery::deliver(std::int64_t now, std::spa
   delivered_.clear();
   for (const base::ReadingBlock& block : measured)
     if (latency_of(block) > 0) hold(block, block.time + latency_of(block));
-  for (Waiting& w : waiting_)
+  next_ = kNever;
+  for (Waiting& w : waiting_) {
     if (w.used && w.due <= now) ready_.push_back(&w);
+    if (w.used && w.due > now) next_ = std::min(next_, w.due);
+  }
   std::sort(ready_.begin(), ready_.end(), [](const Waiting* p, const Waiting* q) {
     const base::ReadingBlock& a = p->reading.block();
     const base::ReadingBlock& b = q->reading.block();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/reading.h"
+#include "farm/schedule.h"
 #include "farm/stored_reading.h"
 #include "sensors/roster.h"
 
@@ -21,6 +22,9 @@ class Delivery {
   /// what has no latency. Blocks live until the next call.
   std::span<const base::ReadingBlock> deliver(std::int64_t now, std::span<const base::ReadingBlock> measured);
 
+  /// [ns] When the next of those that wait is due; kNever: none does.
+  std::int64_t next() const { return next_; }
+
  private:
   struct Waiting {
     StoredReading reading;
@@ -32,6 +36,7 @@ class Delivery {
 
   const sensors::Roster& roster_;
   bool any_ = false;
+  std::int64_t next_ = kNever;
   std::vector<Waiting> waiting_;  ///< places are reused, with their memory
   std::vector<Waiting*> ready_;
   std::vector<Waiting*> lent_;  ///< delivered last time, free from now on

@@ -83,6 +83,7 @@ struct Farm::State {
   }
 
   void move(std::span<const base::Report> reports);
+  std::span<const base::ReadingBlock> look(std::int64_t now, std::span<const base::Report> reports, bool between);
   bool find_due(std::int64_t now);
   void prepare();
   void run();
@@ -94,7 +95,7 @@ struct Farm::State {
 };
 
 bool Farm::State::find_due(std::int64_t now) {
-  for (Station& station : stations) station.find_due(now, heard);
+  for (Station& station : stations) stats.missed += station.find_due(now, heard);
   return std::any_of(stations.begin(), stations.end(), [](const Station& s) { return !s.due.empty(); });
 }
 
@@ -185,6 +186,20 @@ void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
   hash = base::hash_bytes(hashes.data(), hashes.size() * sizeof hashes[0], hash);
 }
 
+std::span<const base::ReadingBlock> Farm::State::look(std::int64_t now, std::span<const base::Report> reports,
+                                                      bool between) {
+  move(reports);
+  for (Station& station : stations) station.instruments->follow(states, now, between);
+  blocks.clear();
+  if (find_due(now)) measure(now, give_again);
+  Stopwatch watch;
+  const auto delivered = delivery.deliver(now, blocks);
+  add_to_hash(delivered);
+  watch.lap(stats.collect_s);
+  stats.readings += delivered.size();
+  return delivered;
+}
+
 Farm::Farm(const world::World& world, gpu::Device& device, const FarmOptions& options)
     : s_(std::make_unique<State>(world, device, options)) {}
 
@@ -196,18 +211,20 @@ void Farm::hear_all() { std::fill(s_->heard.begin(), s_->heard.end(), kAllKinds)
 const sensors::Roster& Farm::roster() const { return s_->roster; }
 
 std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const base::Report> reports) {
-  State& s = *s_;
-  s.move(reports);
-  for (Station& station : s.stations) station.instruments->follow(s.states, now);
-  s.blocks.clear();
-  if (s.find_due(now)) s.measure(now, s.give_again);
-  Stopwatch watch;
-  const auto delivered = s.delivery.deliver(now, s.blocks);
-  s.add_to_hash(delivered);
-  watch.lap(s.stats.collect_s);
-  ++s.stats.ticks;
-  s.stats.readings += delivered.size();
-  return delivered;
+  ++s_->stats.ticks;
+  return s_->look(now, reports, false);
+}
+
+std::int64_t Farm::next_delivery() const { return s_->delivery.next(); }
+
+std::span<const base::ReadingBlock> Farm::sample(std::int64_t now, std::span<const base::Report> reports) {
+  return s_->look(now, reports, true);
+}
+
+std::int64_t Farm::next_due() const {
+  std::int64_t soonest = kNever;
+  for (const Station& station : s_->stations) soonest = std::min(soonest, station.next_due(s_->heard));
+  return soonest;
 }
 
 base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t kind, std::uint32_t sensor, const base::Pose& X_WM) {

@@ -7,6 +7,10 @@
 //     for (reading : readings) send(reading);
 //   }
 //
+// Sensors that are due between two ticks look at their own times where `sample` is called for each of these:
+//
+//   while ((due = farm.next_due()) < now) farm.sample(due, reports at that time);
+//
 // No sockets, no clock, no window: the same calls in the same order give the same bytes, on one device.
 
 #include <cstdint>
@@ -16,6 +20,7 @@
 
 #include "base/reading.h"
 #include "base/report.h"
+#include "farm/schedule.h"
 #include "gpu/device.h"
 #include "sensors/roster.h"
 #include "world/world.h"
@@ -37,6 +42,7 @@ struct FarmOptions {
 struct FarmStats {
   std::uint64_t ticks = 0;
   std::uint64_t readings = 0;
+  std::uint64_t missed = 0;   ///< readings of heard sensors never taken: newer ones were due at the same tick
   std::uint64_t again = 0;    ///< readings given again: nothing they depend on had moved
   std::uint64_t batches = 0;  ///< submitted to the device
   sensors::Work work;         ///< of all kinds together
@@ -70,6 +76,14 @@ class Farm {
   /// @param now [ns] simulated time; does not go back.
   /// @return blocks that live until the next tick.
   std::span<const base::ReadingBlock> tick(std::int64_t now, std::span<const base::Report> reports);
+
+  /// When the next heard sensor is due, phase + k / rate to the nearest nanosecond. [ns] farm::kNever: none is heard
+  std::int64_t next_due() const;
+  /// When the next reading that latency holds back is to be delivered. [ns] farm::kNever: none is
+  std::int64_t next_delivery() const;
+  /// As `tick`, at a time between two ticks. What adds up over time (wheels) is read as it is then and goes on from the
+  /// last tick: readings at ticks do not depend on who looked in between.
+  std::span<const base::ReadingBlock> sample(std::int64_t now, std::span<const base::Report> reports);
 
   /// Computes one sensor at once, due or not, as if its mover stood at `X_WM`; noise off unless the options say so.
   /// @param kind wire id.

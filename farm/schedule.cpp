@@ -5,14 +5,25 @@
 
 namespace sf::farm {
 
+namespace {
+
+// A year in nanoseconds times a rate does not fit a double's significand.
+using Wide = long double;
+static_assert(std::numeric_limits<Wide>::digits >= 64);
+
+}  // namespace
+
 std::uint64_t readings_begun(std::int64_t now, double rate, double phase) {
   const std::int64_t since = now - std::llround(phase * 1e9);
   if (since < 0) return 0;
-  // A year in nanoseconds times a rate does not fit a double's significand.
-  using Wide = long double;
-  static_assert(std::numeric_limits<Wide>::digits >= 64);
   constexpr Wide kNanosecond = 1e-9L;
   return static_cast<std::uint64_t>(std::floor((static_cast<Wide>(since) + 1.0L) * kNanosecond * rate)) + 1;
+}
+
+std::int64_t due_time(std::uint64_t k, double rate, double phase) {
+  const Wide due =
+      std::round(1e9L * static_cast<Wide>(k) / static_cast<Wide>(rate)) + static_cast<Wide>(std::llround(phase * 1e9));
+  return due < static_cast<Wide>(kNever) ? static_cast<std::int64_t>(due) : kNever;
 }
 
 }  // namespace sf::farm

@@ -1,27 +1,45 @@
 #include "farm/station.h"
 
+#include <algorithm>
+
 #include "farm/schedule.h"
 
 namespace sf::farm {
 
 Station::Station(const sensors::Site& site, const sensors::Roster::Group& g)
     : group(&g), instruments(g.kind->make(site)), steady(g.rows, site.noise), begun(g.rows.size(), 0) {
+  for (const sensors::SensorRow& row : g.rows) next.push_back(due_time(0, row.rate, row.phase));
   due.reserve(g.rows.size());
   looking.reserve(g.rows.size());
 }
 
-void Station::find_due(std::int64_t now, std::span<const std::uint32_t> heard) {
+std::uint64_t Station::find_due(std::int64_t now, std::span<const std::uint32_t> heard) {
   due.clear();
+  std::uint64_t missed = 0;
   const std::uint32_t kind = 1u << group->kind->id;
   for (std::uint32_t i = 0; i < begun.size(); ++i) {
+    if (now < next[i] - 1) continue;
     const sensors::SensorRow& row = group->rows[i];
-    const std::uint64_t should = readings_begun(now, row.rate, row.phase);
+    const std::uint64_t should = std::max(readings_begun(now, row.rate, row.phase), begun[i] + (now >= next[i]));
     if (should <= begun[i]) continue;
+    const std::uint64_t skipped = should - begun[i] - 1;
     begun[i] = should;
+    next[i] = due_time(should, row.rate, row.phase);
     // A sensor's readings are numbered by when they are due: one that nobody heard leaves a gap, and its noise to
     // itself.
-    if ((heard[row.mover] & kind) != 0) due.push_back({i, should - 1});
+    if ((heard[row.mover] & kind) == 0) continue;
+    due.push_back({i, should - 1});
+    missed += skipped;
   }
+  return missed;
+}
+
+std::int64_t Station::next_due(std::span<const std::uint32_t> heard) const {
+  const std::uint32_t kind = 1u << group->kind->id;
+  std::int64_t soonest = kNever;
+  for (std::size_t i = 0; i < next.size(); ++i)
+    if (next[i] < soonest && (heard[group->rows[i].mover] & kind) != 0) soonest = next[i];
+  return soonest;
 }
 
 void Station::split(bool again) {

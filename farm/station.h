@@ -17,6 +17,7 @@ struct Station {
   std::unique_ptr<sensors::Instruments> instruments;
   Steady steady;
   std::vector<std::uint64_t> begun;  ///< per row: readings begun
+  std::vector<std::int64_t> next;    ///< [ns] per row: when the one after these is due
   std::vector<sensors::Due> due;
   std::vector<sensors::Due> looking;  ///< of those due: whose reading cannot be given again
   bool in_use = false;                ///< someone has looked: its kernels belong to the batch
@@ -28,7 +29,10 @@ struct Station {
 
   bool derived() const { return group->kind->derived; }
   /// What of this kind is due at `now` [ns]. @param heard per mover: bits of kinds.
-  void find_due(std::int64_t now, std::span<const std::uint32_t> heard);
+  /// @return how many readings were due before, are newer ones' now and were never taken.
+  std::uint64_t find_due(std::int64_t now, std::span<const std::uint32_t> heard);
+  /// [ns] When the next heard sensor is due; kNever: none is heard.
+  std::int64_t next_due(std::span<const std::uint32_t> heard) const;
   /// Splits what is due. @param again whether readings may be given again.
   void split(bool again);
   /// @return true when the batch must be recorded again.

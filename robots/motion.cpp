@@ -12,6 +12,21 @@ double finite(double v) { return std::isfinite(v) ? v : 0.0; }
 // sin(x)/x; below the threshold the next term of the series is under half an ulp.
 double sinc(double x) { return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x; }
 
+constexpr double kSame = 1e-7;  // [m], [rad] farther apart are no two roundings of one pose
+
+bool near(const base::Pose& p, const base::Pose& q) {
+  return std::abs(p.x - q.x) <= kSame && std::abs(p.y - q.y) <= kSame &&
+         std::abs(base::wrap_angle(p.yaw - q.yaw)) <= kSame;
+}
+
+/// The constant twist from one pose to another in `seconds`, by the lesser turn: the inverse of `advance`.
+base::Twist twist_between(const base::Pose& from, const base::Pose& to, double seconds) {
+  const double turn = base::wrap_angle(to.yaw - from.yaw);
+  const base::Vec2 chord = base::rotate(-(from.yaw + 0.5 * turn), {to.x - from.x, to.y - from.y});
+  const double per = 1.0 / (sinc(0.5 * turn) * seconds);
+  return {per * chord.x, per * chord.y, turn / seconds};
+}
+
 }  // namespace
 
 base::Twist follow(const world::Mover& mover, const base::Twist& command) {
@@ -55,6 +70,22 @@ base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double d
   const double chord = sinc(half) * dt;
   const base::Vec2 d = base::rotate(X_WM.yaw + half, {chord * velocity.forward, chord * velocity.left});
   return {X_WM.x + d.x, X_WM.y + d.y, X_WM.z, base::wrap_angle(X_WM.yaw + velocity.turn * dt)};
+}
+
+base::Report between(const base::Report& before, const base::Report& after, std::int64_t time) {
+  const base::Pose &from = before.X_WM, &to = after.X_WM;
+  base::Report report = before;
+  report.time = time;
+  // To the bit: the readings of a mover that stands may be given again.
+  if (from.x == to.x && from.y == to.y && from.yaw == to.yaw) {
+    report.velocity = after.velocity;
+    return report;
+  }
+  const double seconds = 1e-9 * static_cast<double>(after.time - before.time);
+  const bool led = near(advance(from, after.velocity, seconds), to);
+  report.velocity = led ? after.velocity : twist_between(from, to, seconds);
+  report.X_WM = advance(from, report.velocity, 1e-9 * static_cast<double>(time - before.time));
+  return report;
 }
 
 }  // namespace sf::robots

@@ -1,7 +1,10 @@
 #pragma once
 // How drives move: the twist a drive can follow, and where a constant twist leads.
 
+#include <cstdint>
+
 #include "base/pose.h"
+#include "base/report.h"
 #include "world/world.h"
 
 namespace sf::robots {
@@ -27,5 +30,11 @@ base::Twist approach(const world::Mover& mover, const base::Twist& now, const ba
 /// Where a frame that moves with the constant body twist `velocity` is after `dt` [s]: exactly, along an arc.
 /// The yaw of the result is wrapped to [-pi, pi].
 base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double dt);
+
+/// One mover at `time`, between the times of two of its states: on the arc that the later velocity leads along where it
+/// leads from one pose to the other, which is how a mover moves that nothing stops; else on the arc of constant twist
+/// between the poses, by the lesser turn. What touches it is as before. A function of the two states alone.
+/// @param time [ns] in [before.time, after.time), which are not the same
+base::Report between(const base::Report& before, const base::Report& after, std::int64_t time);
 
 }  // namespace sf::robots

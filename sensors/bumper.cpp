@@ -74,7 +74,7 @@ class Bumpers : public HostInstruments {
  public:
   explicit Bumpers(const Site& site);
 
-  void follow(std::span<const base::Report> states, std::int64_t) override {
+  void follow(std::span<const base::Report> states, std::int64_t, bool) override {
     for (std::size_t m = 0; m < states.size(); ++m) touched_[m] = states[m].touched;
   }
 

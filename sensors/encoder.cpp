@@ -35,15 +35,17 @@ class Encoders : public HostInstruments {
  public:
   explicit Encoders(const Site& site);
 
-  void follow(std::span<const base::Report> states, std::int64_t now) override;
+  void follow(std::span<const base::Report> states, std::int64_t now, bool between) override;
 
  private:
   void measure(std::span<const Sight> sights) const override;
   bool drove(const Track& track, const Pose& X_WM, double max_forward, std::int64_t now) const;
 
-  std::vector<Wheels> wheels_;  ///< per row
+  std::vector<Wheels> wheels_;  ///< per row, at the last tick
+  std::vector<Wheels> ahead_;   ///< per row, where they are read between two ticks
+  bool between_ = false;        ///< they are
   std::vector<Track> tracks_;   ///< per row
-  std::int64_t last_ = 0;       ///< [ns] of `follow`
+  std::int64_t last_ = 0;       ///< [ns] of the last tick
 };
 
 std::vector<SensorRow> rows_of(const world::World& world) {
@@ -74,23 +76,25 @@ bool Encoders::drove(const Track& track, const Pose& X_WM, double max_forward, s
   return way <= kAlwaysRolled + 2.0 * max_forward * std::max(0.0, seconds);
 }
 
-void Encoders::follow(std::span<const base::Report> states, std::int64_t now) {
+void Encoders::follow(std::span<const base::Report> states, std::int64_t now, bool between) {
+  between_ = between;
+  if (between) ahead_ = wheels_;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
     const std::uint32_t mover = rows()[i].mover;
     const Pose& X_WM = states[mover].X_WM;
     Track& track = tracks_[i];
     if (X_WM.x == track.X_WM.x && X_WM.y == track.X_WM.y && X_WM.yaw == track.X_WM.yaw) continue;
     if (drove(track, X_WM, world().movers[mover].max_forward, now)) {
-      Wheels& wheels = wheels_[i];
+      Wheels& wheels = (between ? ahead_ : wheels_)[i];
       const Rolled rolled = roll(track.X_WM, X_WM, wheels.settings.track);
       wheels.rolled.left += rolled.left;
       wheels.rolled.right += rolled.right;
       wheels.left.advance(std::abs(rolled.left));
       wheels.right.advance(std::abs(rolled.right));
     }
-    track = {X_WM, now, true};
+    if (!between) track = {X_WM, now, true};
   }
-  last_ = now;
+  if (!between) last_ = now;
 }
 
 double counts_of(double rolled, double scale, const Slippage& slippage, double per_count) {
@@ -99,7 +103,7 @@ double counts_of(double rolled, double scale, const Slippage& slippage, double p
 
 void Encoders::measure(std::span<const Sight> sights) const {
   for (const Sight& sight : sights) {
-    const Wheels& w = wheels_[sight.row];
+    const Wheels& w = (between_ ? ahead_ : wheels_)[sight.row];
     const Encoder& e = w.settings;
     sight.values[2] = counts_of(w.rolled.left, e.scale_left, w.left, e.per_count);
     sight.values[3] = counts_of(w.rolled.right, e.scale_right, w.right, e.per_count);

@@ -31,7 +31,7 @@ class Gyros : public HostInstruments {
  public:
   explicit Gyros(const Site& site);
 
-  void follow(std::span<const base::Report> states, std::int64_t) override {
+  void follow(std::span<const base::Report> states, std::int64_t, bool) override {
     for (std::size_t m = 0; m < states.size(); ++m) turns_[m] = states[m].velocity.turn;
   }
 

@@ -105,8 +105,9 @@ class Instruments {
   virtual ~Instruments() = default;
 
   /// Takes every mover's state, one per mover, each tick, whether something is due or not: for what adds up over time
-  /// (wheels) or is told by the mover (what touches it). @param now [ns]
-  virtual void follow(std::span<const base::Report>, std::int64_t /*now*/) {}
+  /// (wheels) or is told by the mover (what touches it). @param now [ns] @param between two ticks, for readings alone:
+  /// the next tick goes on from the last one.
+  virtual void follow(std::span<const base::Report>, std::int64_t /*now*/, bool /*between*/) {}
   /// Takes this tick's poses, one per mover, before `prepare`, when something is due.
   virtual void place(std::span<const Pose>) {}
   /// Host work before the batch, also when nothing is due. @return true when the batch must be recorded again.

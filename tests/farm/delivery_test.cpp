@@ -12,7 +12,8 @@ namespace {
 constexpr std::int64_t kTick = 20'000'000;
 
 TEST(Latency, AReadingComesLaterAndUnchanged) {
-  const world::World prompt = small_world(2);
+  world::World prompt = small_world(2);
+  prompt.movers[1].lasers[0].accuracy.word = "skip2";  // with flags of beams that were not cast
   world::World late = prompt;
   late.movers[1].lasers[0].latency = 0.05;
   Farm now(prompt, device());
@@ -35,7 +36,44 @@ TEST(Latency, AReadingComesLaterAndUnchanged) {
   }
   ASSERT_EQ(delivered.size(), 6u);
   ASSERT_EQ(expected.size(), 6u);
+  EXPECT_FALSE(expected[0].unsure.empty());
   EXPECT_EQ(delivered, expected);
+}
+
+/// A latency of whole ticks: at that tick, not one later. Of less than one: at the next. Boundary: 1 ns more is one
+/// more.
+TEST(Latency, OfWholeTicks) {
+  const std::int64_t tick = 100'000'000;
+  for (const auto& [latency, ticks] : {std::pair{0.1, 1}, {0.2, 2}, {0.100000001, 2}, {0.099999999, 1}, {1e-9, 1}}) {
+    world::World world = small_world(1);
+    world.movers[0].lasers[0].latency = latency;
+    Farm farm(world, device());
+    farm.hear_all();
+    for (int k = 0; k < 6; ++k) {
+      const auto readings = farm.tick(k * tick, {});
+      ASSERT_EQ(readings.size(), k < ticks ? 0u : 1u) << latency << " s, tick " << k;
+      EXPECT_TRUE(k < ticks || readings[0].time == (k - ticks) * tick) << latency << " s, tick " << k;
+    }
+  }
+}
+
+/// The farm says when the next one is to be delivered; asked for it then, it is on time between two ticks too.
+TEST(Latency, DeliveredBetweenTicks) {
+  world::World world = small_world(2);
+  world.movers[1].lasers[0].latency = 0.03;
+  world.movers[1].lasers[0].rate = 20.0;
+  Farm farm(world, device());
+  EXPECT_EQ(farm.next_delivery(), kNever);
+  farm.hear_all();
+  EXPECT_EQ(farm.tick(0, {}).size(), 1u);
+  EXPECT_EQ(farm.next_delivery(), 30'000'000);
+  EXPECT_EQ(farm.sample(29'999'999, {}).size(), 0u) << "a nanosecond early";
+  const auto readings = farm.sample(30'000'000, {});
+  ASSERT_EQ(readings.size(), 1u);
+  EXPECT_EQ(readings[0].time, 0) << "says when it was measured";
+  EXPECT_EQ(farm.next_delivery(), kNever);
+  EXPECT_EQ(farm.sample(50'000'000, {}).size(), 0u) << "measured, and waits";
+  EXPECT_EQ(farm.next_delivery(), 80'000'000);
 }
 
 /// Longer than the period: several wait at once, and come in order.
@@ -68,6 +106,23 @@ TEST(Latency, OldestFirst) {
   EXPECT_EQ(readings[1].time, 100'000'000);
   EXPECT_EQ(readings[2].mover, 0u);
   EXPECT_EQ(readings[2].time, 300'000'000);
+}
+
+/// What is due at one time comes robot by robot, though the second robot's was measured before the first's.
+TEST(Latency, RobotByRobot) {
+  world::World world = small_world(2);
+  world.movers[0].lasers[0].latency = 0.1;
+  world.movers[1].lasers[0].latency = 0.2;
+  Farm farm(world, device());
+  farm.hear_all();
+  farm.tick(0, {});
+  farm.tick(100'000'000, {});
+  const auto readings = farm.tick(200'000'000, {});
+  ASSERT_EQ(readings.size(), 2u);
+  EXPECT_EQ(readings[0].mover, 0u);
+  EXPECT_EQ(readings[0].time, 100'000'000);
+  EXPECT_EQ(readings[1].mover, 1u);
+  EXPECT_EQ(readings[1].time, 0);
 }
 
 }  // namespace

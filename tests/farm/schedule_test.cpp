@@ -49,6 +49,100 @@ TEST(Schedule, CountsEveryReadingOnceWhateverTheTick) {
   }
 }
 
+/// A sensor is due when `due_time` says, to the nanosecond: not before, and never asked for before it has begun.
+TEST(Schedule, DueTimesAreWhenReadingsBegin) {
+  EXPECT_EQ(due_time(0, 10.0, 0.0), 0);
+  EXPECT_EQ(due_time(0, 10.0, 0.25), kSecond / 4) << "its phase";
+  EXPECT_EQ(due_time(3, 10.0, 0.25), kSecond / 4 + 3 * kSecond / 10);
+  EXPECT_EQ(due_time(1, 13.0, 0.0), 76'923'077) << "76923076.92 ns";
+  EXPECT_EQ(due_time(2, 13.0, 0.0), 153'846'154) << "not twice the rounded period";
+  EXPECT_EQ(due_time(1, 3.0, 0.0), 333'333'333) << "rounded down";
+  EXPECT_EQ(due_time(1, 1e-12, 0.0), kNever) << "in 30 000 years";
+  for (const double rate : {1.0, 10.0, 13.0, 13.37, 30.0, 1.0 / 3.0, 333.3, 1000.0, 1e6})
+    for (const double phase : {0.0, 0.01, 1.0 / 3.0})
+      for (const double years : {0.0, 1.0, 10.0})
+        for (int i = 0; i < 100; ++i) {
+          const auto k = static_cast<std::uint64_t>(years * 31'556'952.0 * rate) + static_cast<std::uint64_t>(i);
+          const std::int64_t due = due_time(k, rate, phase);
+          ASSERT_GE(readings_begun(due, rate, phase), k + 1) << rate << " Hz, reading " << k;
+          ASSERT_LE(readings_begun(due - 2, rate, phase), k) << rate << " Hz, reading " << k;
+        }
+}
+
+TEST(Schedule, TheNextOneDueIsTheSoonestThatIsHeard) {
+  world::World world = small_world(3);
+  world.movers[0].lasers[0].rate = 50.0;
+  world.movers[1].lasers[0].rate = 13.0;
+  world.movers[2].lasers[0].rate = 10.0;
+  world.movers[2].lasers[0].phase = 0.03;
+  Farm farm(world, device());
+  EXPECT_EQ(farm.next_due(), kNever) << "nobody is heard";
+  farm.hear(2, kAllKinds);
+  EXPECT_EQ(farm.next_due(), 30'000'000) << "its phase";
+  farm.hear(1, kAllKinds);
+  EXPECT_EQ(farm.next_due(), 0);
+  farm.tick(0, {});
+  EXPECT_EQ(farm.next_due(), 30'000'000);
+  EXPECT_EQ(farm.sample(30'000'000, {}).size(), 1u);
+  EXPECT_EQ(farm.next_due(), 76'923'077);
+  farm.hear(0, 1u << 9);
+  EXPECT_EQ(farm.next_due(), 76'923'077) << "another kind of it is heard";
+  farm.hear(0, 1u << base::kLaser);
+  EXPECT_EQ(farm.next_due(), 40'000'000) << "0 and 20 ms went by unheard";
+  EXPECT_EQ(farm.stats().missed, 0u);
+  EXPECT_EQ(farm.stats().ticks, 1u) << "samples are no ticks";
+}
+
+/// Sensors faster than the ticks have all their readings where the farm is asked when they are due, and each says when.
+TEST(Schedule, FasterThanTheTicks) {
+  world::World world = small_world(3);
+  const double rates[] = {13.0, 25.0, 50.0};
+  for (std::size_t i = 0; i < 3; ++i) world.movers[i].lasers[0].rate = rates[i];
+  Farm farm(world, device());
+  farm.hear_all();
+  std::vector<std::uint32_t> counts(3);
+  const auto look = [&](std::span<const base::ReadingBlock> readings) {
+    for (const auto& r : readings) {
+      EXPECT_EQ(r.sequence, counts[r.mover]);
+      EXPECT_EQ(r.time, due_time(counts[r.mover]++, rates[r.mover], 0.0));
+    }
+  };
+  for (std::int64_t now = 0; now <= 2 * kSecond; now += kSecond / 10) {
+    for (std::int64_t due = farm.next_due(); due < now; due = farm.next_due()) look(farm.sample(due, {}));
+    look(farm.tick(now, {}));
+  }
+  EXPECT_EQ(counts, (std::vector<std::uint32_t>{27, 51, 101})) << "in two seconds, both ends included";
+  EXPECT_EQ(farm.stats().missed, 0u);
+}
+
+/// A tick of a third of a second is short of it by a rounding: who is due within a nanosecond is read.
+TEST(Schedule, ATickThatIsANanosecondEarly) {
+  world::World world = small_world(1);
+  world.movers[0].lasers[0].rate = 3.0;
+  Farm farm(world, device());
+  farm.hear_all();
+  for (std::int64_t k = 0; k < 3; ++k) {
+    const auto readings = farm.tick(k * 333'333'333, {});
+    ASSERT_EQ(readings.size(), 1u) << k;
+    EXPECT_EQ(readings[0].sequence, static_cast<std::uint32_t>(k));
+  }
+  EXPECT_EQ(farm.next_due(), kSecond);
+  EXPECT_TRUE(farm.tick(kSecond - 2, {}).empty()) << "two nanoseconds";
+}
+
+/// Without that they give one reading a tick, and the farm counts the others.
+TEST(Schedule, MissedReadingsAreCounted) {
+  world::World world = small_world(2);
+  world.movers[0].lasers[0].rate = 50.0;
+  Farm farm(world, device());
+  farm.hear_all();
+  for (int k = 0; k <= 10; ++k) EXPECT_EQ(farm.tick(k * kSecond / 10, {}).size(), 2u);
+  EXPECT_EQ(farm.stats().missed, 10u * 4u);
+  farm.hear(0, 0u);
+  farm.tick(2 * kSecond, {});
+  EXPECT_EQ(farm.stats().missed, 10u * 4u + 9u) << "of those that are heard";
+}
+
 TEST(Schedule, RatesAndPhasesInAFarm) {
   world::World world = small_world(3);
   world.movers[0].lasers[0].rate = 10.0;

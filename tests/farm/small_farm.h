@@ -30,11 +30,22 @@ struct Kept {
   std::int64_t time = 0;
   std::vector<double> values;
   std::vector<std::uint32_t> hits;
+  std::vector<base::Unsure> unsure;
+  double bound = 0.0;
+  std::uint8_t mode = 0;
   bool operator==(const Kept&) const = default;
 };
 
 inline Kept keep(const base::ReadingBlock& r) {
-  return {r.mover, r.sensor, r.sequence, r.time, {r.values.begin(), r.values.end()}, {r.hits.begin(), r.hits.end()}};
+  return {r.mover,
+          r.sensor,
+          r.sequence,
+          r.time,
+          {r.values.begin(), r.values.end()},
+          {r.hits.begin(), r.hits.end()},
+          {r.unsure.begin(), r.unsure.end()},
+          r.bound,
+          r.mode};
 }
 
 /// Everyone drives a small circle from where it was loaded.

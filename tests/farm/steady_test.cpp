@@ -20,7 +20,7 @@ constexpr std::int64_t kTick = 100'000'000;  // [ns]
 
 /// Everything that depends on poses alone, and some that depends on more, at different rates.
 void equip(world::Mover& mover, trial::Chance& chance) {
-  const double rates[] = {10.0, 5.0, 20.0};
+  const double rates[] = {10.0, 5.0, 13.0};
   const auto with_rate = [&](world::Sensor sensor) {
     sensor.settings.push_back(scenes::setting("rate", {rates[chance.below(3)]}));
     mover.sensors.push_back(std::move(sensor));
@@ -103,6 +103,11 @@ void expect_same(const base::ReadingBlock& p, const base::ReadingBlock& q) {
         << q.values[i];
 }
 
+void expect_same(std::span<const base::ReadingBlock> p, std::span<const base::ReadingBlock> q) {
+  ASSERT_EQ(p.size(), q.size());
+  for (std::size_t i = 0; i < p.size() && !testing::Test::HasFatalFailure(); ++i) expect_same(p[i], q[i]);
+}
+
 /// @return readings given again.
 std::uint64_t compare(const world::World& world, std::uint64_t seed, int ticks) {
   Farm again(world, device(), {.seed = seed});
@@ -115,11 +120,11 @@ std::uint64_t compare(const world::World& world, std::uint64_t seed, int ticks) 
     const std::uint32_t deaf = chance.below(static_cast<std::uint32_t>(world.movers.size()));
     const std::uint32_t kinds = chance.below(4) == 0 ? chance.below(1u << 12) : kAllKinds;
     for (Farm* farm : {&again, &anew}) farm->hear(deaf, kinds);
-    const auto p = again.tick(k * kTick / 2, reports);
-    const auto q = anew.tick(k * kTick / 2, reports);
-    EXPECT_EQ(p.size(), q.size());
-    for (std::size_t i = 0; i < std::min(p.size(), q.size()) && !testing::Test::HasFatalFailure(); ++i)
-      expect_same(p[i], q[i]);
+    for (std::int64_t due = again.next_due(); due < k * kTick / 2; due = again.next_due()) {
+      const std::vector<base::Report> on_the_way = day.next();
+      expect_same(again.sample(due, on_the_way), anew.sample(due, on_the_way));
+    }
+    expect_same(again.tick(k * kTick / 2, reports), anew.tick(k * kTick / 2, reports));
     if (testing::Test::HasFatalFailure()) return 0;
   }
   EXPECT_EQ(again.hash(), anew.hash());
@@ -208,6 +213,10 @@ TEST(Steady, OthersCountWhereTheyWereAndWhereTheyAre) {
   pair.settle(far);
   EXPECT_FALSE(pair.again_with({0.1, 2.16, 0.0, 0.0})) << "touches the range with its rim";
   pair.settle(far);
+  EXPECT_FALSE(pair.again_with({2.15, 0.1, 0.0, 0.0})) << "on either axis";
+  pair.settle(far);
+  EXPECT_FALSE(pair.again_with({-2.15, 0.1, 0.0, 0.0})) << "behind it too";
+  pair.settle(far);
   EXPECT_TRUE(pair.again_with({0.0, 2.66, 0.0, 0.0})) << "passes outside of it, and is near nobody who is not";
 }
 
@@ -216,6 +225,20 @@ TEST(Steady, RangesCountFromTheSensor) {
   Pair pair([](world::World& world) { world.movers[0].lasers[0].X_MS = {-1.0, 0.0, 0.1, 0.0}; });
   pair.settle({5.0, 0.0, 0.0, 0.0});
   EXPECT_FALSE(pair.again_with({-2.9, 0.0, 0.0, 0.0}));
+}
+
+/// Of several sensors of a kind the farthest counts, whichever it is: they are disturbed together.
+TEST(Steady, TheFarthestOfARobotsSensorsCounts) {
+  for (const std::size_t farthest : {0u, 1u}) {
+    Pair pair([&](world::World& world) {
+      world.movers[0].lasers.push_back(world.movers[0].lasers[0]);
+      world.movers[0].lasers[farthest].range_max = 4.0;
+    });
+    pair.settle({8.0, 0.0, 0.0, 0.0});
+    EXPECT_FALSE(pair.again_with({3.5, 0.0, 0.0, 0.0})) << farthest;
+    pair.settle({3.5, 0.0, 0.0, 0.0});
+    EXPECT_TRUE(pair.again_with({3.5, 0.0, 0.0, 0.0})) << "and are calm together";
+  }
 }
 
 /// A mover that comes and goes between two readings has changed nothing, but it was seen to move.

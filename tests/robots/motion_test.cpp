@@ -48,6 +48,56 @@ TEST(Advance, tiny_turns_agree_with_the_straight_line) {
 
 TEST(Advance, yaw_is_wrapped) { EXPECT_LE(std::abs(advance({0, 0, 0, 3}, {0, 0, 1}, 20.0).yaw), M_PI); }
 
+// --- Between two ticks.
+
+constexpr std::int64_t kTick = 100'000'000;
+
+base::Report at(std::int64_t time, const Pose& X_WM, const Twist& velocity) { return {0, time, X_WM, velocity, 0}; }
+
+/// What nothing stops is on the arc that it drives, whatever part of the tick.
+TEST(Between, unhindered_it_is_on_its_arc) {
+  const Twist velocities[] = {{0.7, 0, 0}, {0.7, 0, 1.5}, {0.4, -0.3, -2}, {0, 0, 3}, {-0.2, 0, 1e-9}, {1.0, 0, 50.0}};
+  for (const Twist& v : velocities) {
+    const Pose start{3, -4, 0.25, 2.5};
+    const base::Report before = at(5 * kTick, start, {}), after = at(6 * kTick, advance(start, v, 0.1), v);
+    for (const std::int64_t part : {kTick / 13, kTick / 2, kTick - 1}) {
+      const base::Report report = between(before, after, 5 * kTick + part);
+      expect_pose(report.X_WM, advance(start, v, 1e-9 * static_cast<double>(part)));
+      EXPECT_EQ(report.time, 5 * kTick + part);
+      EXPECT_EQ(report.velocity.turn, v.turn) << "what its gyro reads: more than half a turn in the tick too";
+    }
+  }
+}
+
+/// Stopped, or put elsewhere: from the one pose to the other by the lesser turn, at a steady pace.
+TEST(Between, hindered_it_is_on_the_arc_between_its_poses) {
+  const base::Report before = at(0, {1, 2, 0, 3.0}, {0.5, 0, 0}), after = at(kTick, {0.98, 2.01, 0, -3.0}, {});
+  expect_pose(between(before, after, 0).X_WM, before.X_WM);
+  expect_pose(between(before, after, kTick - 1).X_WM, after.X_WM, 1e-8);
+  const base::Report half = between(before, after, kTick / 2);
+  EXPECT_NEAR(std::abs(half.X_WM.yaw), M_PI, 1e-12) << "through straight behind";
+  expect_pose(advance(half.X_WM, half.velocity, 0.05), after.X_WM);
+  EXPECT_NEAR(half.velocity.turn, (2 * M_PI - 6.0) / 0.1, 1e-9);
+}
+
+/// To the bit, whatever a report says of its speed, and however its yaw is written.
+TEST(Between, who_stands_stands) {
+  const base::Report before = at(0, {0.1, 0.2, 0.3, 7.0}, {}), after = at(kTick, before.X_WM, {0.3, 0, 0});
+  const base::Report report = between(before, after, kTick / 3);
+  EXPECT_EQ(report.X_WM.x, 0.1);
+  EXPECT_EQ(report.X_WM.y, 0.2);
+  EXPECT_EQ(report.X_WM.yaw, 7.0);
+  EXPECT_EQ(report.X_WM.z, 0.3);
+}
+
+/// What touches it is felt at ticks.
+TEST(Between, touch_is_as_it_was_at_the_tick_before) {
+  base::Report before = at(0, {}, {}), after = at(kTick, {0.01, 0, 0, 0}, {});
+  before.touched = 5;
+  after.touched = 6;
+  EXPECT_EQ(between(before, after, 1).touched, 5u);
+}
+
 world::Mover mover(world::Drive drive) {
   world::Mover m;
   m.drive = drive;

@@ -212,6 +212,93 @@ TEST(Encoder, SlipsByTheFilesStandardDeviationAfterAMetre) {
   }
 }
 
+/// Each wheel slips over the way that it rolls itself, either way.
+TEST(Encoder, WheelsSlipOverTheirOwnWay) {
+  const auto world = one_robot({setting("slip", {0.05}), setting("per_count", {1e-6})});
+  for (const double way : {0.05, -0.05}) {
+    std::vector<double> r = drive(world, std::vector<Rolled>(10, {0.0, way}), {.seed = 5});
+    EXPECT_NEAR(r[0], 0.0, 1e-9) << "it stood";
+    EXPECT_GT(std::abs(r[1] - 10 * way), 1e-4);
+    r = drive(world, std::vector<Rolled>(10, {way, 0.0}), {.seed = 5});
+    EXPECT_GT(std::abs(r[0] - 10 * way), 1e-4);
+    EXPECT_NEAR(r[1], 0.0, 1e-9);
+  }
+}
+
+/// Read between two ticks as they are then; the next tick goes on from the last one, to the bit.
+TEST(Encoder, AreReadBetweenTicksAndGoOnFromTheLast) {
+  const world::World world = one_robot({setting("per_count", {1e-6}), setting("slip", {0.02}), setting("rate", {50})});
+  farm::Farm often(world, device(), {.seed = 2}), seldom(world, device(), {.seed = 2});
+  for (farm::Farm* farm : {&often, &seldom}) farm->hear_all();
+  std::vector<base::Report> states = states_of(world);
+  double last = 0.0;
+  for (std::int64_t tick = 0; tick < 200; ++tick) {
+    const double x = 0.0731 * static_cast<double>(tick);
+    for (const std::int64_t ms : {20, 60}) {
+      if (tick == 0) continue;
+      states[0].X_WM = {x - 0.0731 + 1e-2 * 0.0731 * static_cast<double>(ms), 0, 0, 0};
+      const auto readings = often.sample((tick - 1) * 100'000'000 + ms * 1'000'000, states);
+      ASSERT_EQ(readings.size(), 1u);
+      EXPECT_GT(readings[0].values[0], last - 1e-2);
+      EXPECT_NEAR(readings[0].values[0], states[0].X_WM.x, 0.02 * 5.0 * std::sqrt(x + 0.01));
+      last = readings[0].values[0];
+    }
+    states[0].X_WM = {x, 0, 0, 0};
+    const auto p = values_of(often.tick(tick * 100'000'000, states)[0]);
+    EXPECT_EQ(p, values_of(seldom.tick(tick * 100'000'000, states)[0])) << tick;
+  }
+}
+
+/// Without slip, the way to the point: a jump between ticks is none of it, and what is driven is.
+TEST(Encoder, BetweenTicksJumpsAreNotRolledEither) {
+  const world::World world = one_robot({setting("rate", {50})}, 1.0);
+  farm::Farm farm(world, device());
+  farm.hear_all();
+  std::vector<base::Report> states = states_of(world);
+  const auto counts = [&](std::int64_t ms, double x) {
+    states[0].X_WM.x = x;
+    const auto readings = ms % 100 == 0 ? farm.tick(ms * 1'000'000, states) : farm.sample(ms * 1'000'000, states);
+    return readings[0].values[2];
+  };
+  EXPECT_EQ(counts(0, 0.0), 0.0);
+  EXPECT_EQ(counts(20, 0.02), 20.0);
+  EXPECT_EQ(counts(40, 0.04), 40.0) << "from the tick, not on top of the last reading";
+  EXPECT_EQ(counts(60, 9.0), 0.0) << "as at the tick: it cannot have driven there";
+  EXPECT_EQ(counts(100, 0.1), 100.0);
+  EXPECT_EQ(counts(120, 0.1), 100.0) << "at rest";
+}
+
+/// How far it may have driven counts from the tick, whoever was read since: a first move too.
+TEST(Encoder, ReadingsBetweenTicksMakeNoMoveAJump) {
+  const world::World world = one_robot({setting("rate", {50})}, 1.0);
+  farm::Farm farm(world, device());
+  farm.hear_all();
+  std::vector<base::Report> states = states_of(world);
+  farm.tick(0, states);
+  farm.sample(80'000'000, states);
+  states[0].X_WM.x = 0.6;
+  EXPECT_EQ(farm.tick(100'000'000, states)[0].values[2], 600.0) << "half a metre, and twice its speed";
+}
+
+/// Fast robots go farther in a tick than the half metre that is never a jump: as far as their speed takes them, twice.
+TEST(Encoder, DrivingFastIsNoJump) {
+  for (const double max_forward : {1.0, 10.0, 30.0}) {
+    const world::World world = one_robot({}, max_forward);
+    farm::Farm farm(world, device());
+    farm.hear_all();
+    std::vector<base::Report> states = states_of(world);
+    double x = 0.0, rolled = 0.0;
+    for (std::int64_t tick = 0; tick < 30; ++tick) {
+      const double way = tick == 0 ? 0.0 : tick < 20 ? 0.1 * max_forward : 0.49 + 0.2 * max_forward;
+      states[0].X_WM.x = x += way;
+      rolled += way;
+      EXPECT_NEAR(farm.tick(tick * 100'000'000, states)[0].values[0], rolled, 1e-3) << max_forward << " m/s, " << tick;
+    }
+    states[0].X_WM.x += 0.51 + 0.2 * max_forward;
+    EXPECT_NEAR(farm.tick(3'000'000'000, states)[0].values[0], rolled, 1e-3) << "farther than that is a jump";
+  }
+}
+
 TEST(Encoder, WhoIsPutElsewhereHasNotRolled) {
   const world::World world = one_robot();
   farm::Farm farm(world, device());
