@@ -11,6 +11,7 @@
 
 #include "base/elapsed.h"
 #include "farm/farm.h"
+#include "scenarios/sampling.h"
 #include "scenarios/ways.h"
 
 namespace sf::scenarios {
@@ -32,32 +33,42 @@ class Drive {
     for (std::uint32_t m = 0; m < ways_[0].size(); ++m) farm_.hear(m, kinds);
   }
   void tick(std::size_t at) {
+    if (farm_.next_due() < now_) {
+      copy(ways_[(at + ways_.size() - 1) % ways_.size()], now_ - interval_, before_);
+      copy(ways_[at], now_, after_);
+      sample_between(farm_, before_, after_, on_the_way_, [](std::span<const base::ReadingBlock>) {});
+    }
     farm_.tick(now_, ways_[at]);
     now_ += interval_;
   }
   /// [s] a tick, mean over the laps after the first.
   double laps() {
     for (std::size_t at = 0; at < ways_.size(); ++at) tick(at);
-    before_ = farm_.stats();
+    stats_before_ = farm_.stats();
     const auto start = Clock::now();
     for (int lap = 0; lap < kLaps; ++lap)
       for (std::size_t at = 0; at < ways_.size(); ++at) tick(at);
     return base::seconds_since(start) / static_cast<double>(ticks());
   }
   std::uint64_t ticks() const { return kLaps * ways_.size(); }
-  double readings() const { return a_tick(farm_.stats().readings - before_.readings); }
-  double again() const { return a_tick(farm_.stats().again - before_.again); }
-  sensors::Work work() const { return farm_.stats().work - before_.work; }
+  double readings() const { return a_tick(farm_.stats().readings - stats_before_.readings); }
+  double again() const { return a_tick(farm_.stats().again - stats_before_.again); }
+  sensors::Work work() const { return farm_.stats().work - stats_before_.work; }
   const sensors::Roster& roster() const { return farm_.roster(); }
 
  private:
+  static void copy(const std::vector<base::Report>& states, std::int64_t time, std::vector<base::Report>& into) {
+    into = states;
+    for (base::Report& state : into) state.time = time;
+  }
   double a_tick(std::uint64_t count) const { return static_cast<double>(count) / static_cast<double>(ticks()); }
 
   farm::Farm farm_;
   const Ways& ways_;
   std::int64_t interval_;
   std::int64_t now_ = 0;
-  farm::FarmStats before_;
+  std::vector<base::Report> before_, after_, on_the_way_;
+  farm::FarmStats stats_before_;
 };
 
 ExplainedKind facts_of(const sensors::Roster::Group& group) {

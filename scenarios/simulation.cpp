@@ -7,6 +7,7 @@
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "farm/schedule.h"
+#include "scenarios/sampling.h"
 #include "world/roads/roads.h"
 
 namespace sf::scenarios {
@@ -19,6 +20,19 @@ farm::FarmOptions farm_options(const SimulationOptions& options) {
   farm.threads = options.threads;
   farm.no_return_inf = options.no_return_inf;
   return farm;
+}
+
+/// The newest of each sensor, in front of the others: between two ticks it may have looked more than once.
+std::span<base::ReadingBlock> newest_of(std::span<base::ReadingBlock> readings) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const auto newer = readings.subspan(i + 1);
+    if (std::none_of(newer.begin(), newer.end(), [&](const base::ReadingBlock& r) {
+          return r.kind == readings[i].kind && r.sensor == readings[i].sensor;
+        }))
+      readings[kept++] = readings[i];
+  }
+  return readings.first(kept);
 }
 
 }  // namespace
@@ -75,12 +89,30 @@ bool Simulation::all_done() const {
 base::TickRecord Simulation::step() {
   const std::int64_t time = static_cast<std::int64_t>(tick_) * interval_;
   if (tick_ > 0) move();
-  const auto readings = farm_.tick(time, fleet_.reports());
+  const auto readings = sense(time);
   const auto start = std::chrono::steady_clock::now();
   sort_by_mover(readings);
   decide(time);
   move_s_ += base::seconds_since(start);
   return {tick_++, time, fleet_.reports(), obeyed_, fleet_.contacts(), readings};
+}
+
+std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
+  const std::span<const base::Report> reports = fleet_.reports();
+  std::size_t early = 0;
+  readings_.clear();
+  if (!before_.empty())
+    sample_between(farm_, before_, reports, on_the_way_, [&](std::span<const base::ReadingBlock> delivered) {
+      if (early_.size() < early + delivered.size()) early_.resize(early + delivered.size());
+      for (const base::ReadingBlock& reading : delivered) early_[early++].take(reading);
+    });
+  const auto delivered = farm_.tick(time, reports);
+  before_.clear();
+  if (farm_.next_due() < time + interval_) before_.assign(reports.begin(), reports.end());
+  if (early == 0) return delivered;
+  for (std::size_t i = 0; i < early; ++i) readings_.push_back(early_[i].block());
+  readings_.insert(readings_.end(), delivered.begin(), delivered.end());
+  return readings_;
 }
 
 void Simulation::move() {
@@ -120,9 +152,12 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   driver.stepped = false;
   if (!driver.controller) return;
   const std::uint32_t first = mover == 0 ? 0 : first_[mover - 1];
-  const std::span<const base::ReadingBlock> fresh{sorted_.data() + first, first_[mover] - first};
-  if (driver.mailbox)
-    for (const base::ReadingBlock& reading : fresh) driver.mailbox->post(reading, time);
+  std::span<base::ReadingBlock> fresh{sorted_.data() + first, first_[mover] - first};
+  if (driver.mailbox) {
+    for (const base::ReadingBlock& reading : fresh) driver.mailbox->post(reading, std::min(time, leaves_at(reading)));
+  } else if (!readings_.empty()) {
+    fresh = newest_of(fresh);
+  }
   const bool contact = fleet_.contacts()[mover] != 0;
   if (!due(driver, fresh, time, contact)) return;
 
@@ -135,6 +170,11 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
       driver.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_});
   next_intents_[mover] = driver.controller->intent();
   driver.stepped = true;
+}
+
+/// [ns] When a reading is delivered, which may be between two ticks.
+std::int64_t Simulation::leaves_at(const base::ReadingBlock& reading) const {
+  return reading.time + std::llround(farm_.roster().row(reading).latency * 1e9);
 }
 
 /// Between its steps a controller's last command stands.

@@ -4,7 +4,8 @@
 //   Simulation simulation(world, device, {.seed = 7, .plan = {.controller = "wander"}});
 //   while (running) recorder.write(simulation.step());
 //
-// One tick: motion since the last one, readings, decisions. What is decided at a tick is driven until the next.
+// One tick: motion since the last one, readings, decisions. What is decided at a tick is driven until the next. Sensors
+// look at their own times, between ticks too.
 
 #include <cstdint>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "base/sink.h"
 #include "control/controllers.h"
 #include "farm/farm.h"
+#include "farm/stored_reading.h"
 #include "netio/link.h"
 #include "robots/fleet.h"
 #include "robots/neighbours.h"
@@ -47,7 +49,8 @@ class Simulation {
   /// @throws base::InputError for a controller that does not exist, cannot have its settings or lacks what it needs.
   Simulation(const world::World& world, gpu::Device& device, SimulationOptions options);
 
-  /// One tick of `world.interval`; the first looks at time 0, before anything moved. Spans live until the next.
+  /// One tick of `world.interval`; the first looks at time 0, before anything moved. Its readings are those since the
+  /// last one, by the time of their delivery. Spans live until the next.
   base::TickRecord step();
 
   /// Takes the mover by hand and puts it there, at rest. Between two steps.
@@ -77,9 +80,11 @@ class Simulation {
   };
   Driver make_driver(std::uint32_t mover, const SimulationOptions& options);
   void move();
+  std::span<const base::ReadingBlock> sense(std::int64_t time);
   void sort_by_mover(std::span<const base::ReadingBlock> readings);
   void decide(std::int64_t time);
   void decide_one(std::uint32_t mover, std::int64_t time, unsigned thread);
+  std::int64_t leaves_at(const base::ReadingBlock& reading) const;
   bool due(Driver& driver, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
   void find_others(std::uint32_t mover, double radio, std::vector<control::Neighbour>& others) const;
 
@@ -94,8 +99,12 @@ class Simulation {
   std::vector<base::Twist> obeyed_;   ///< what the tick just recorded was told to do
   std::vector<std::uint32_t> first_;  ///< per mover: range of its readings in `sorted_`
   std::vector<base::ReadingBlock> sorted_;
-  std::vector<base::Intent> intents_;                    ///< per mover, as others hear them now
-  std::vector<base::Intent> next_intents_;               ///< as they will from the next tick on
+  std::vector<base::Report> before_;          ///< at the last tick, where a sensor is due before the next; else empty
+  std::vector<base::Report> on_the_way_;      ///< between them
+  std::vector<farm::StoredReading> early_;    ///< readings from between them: places are reused, with their memory
+  std::vector<base::ReadingBlock> readings_;  ///< these, and the tick's; empty where there are none of these
+  std::vector<base::Intent> intents_;         ///< per mover, as others hear them now
+  std::vector<base::Intent> next_intents_;    ///< as they will from the next tick on
   std::vector<std::vector<control::Neighbour>> others_;  ///< per thread
   std::vector<world::Signal> signals_;
   std::vector<world::Warning> warnings_;

@@ -12,6 +12,7 @@
 
 #include "base/parallel.h"
 #include "farm/farm.h"
+#include "scenarios/sampling.h"
 #include "sensors/bumper.h"
 #include "sensors/laser_modes.h"
 #include "sensors/laser_reference.h"
@@ -54,7 +55,8 @@ void compare(std::span<const Real> ours, std::span<const Real> theirs, const std
 /// A scan that plain C++ is to cast again.
 struct Asked {
   std::uint32_t mover, sensor, sequence;
-  std::size_t tick;           ///< at which it was measured
+  std::size_t tick;           ///< at which it was measured, or the next one
+  std::int64_t time;          ///< [ns] of the measurement
   std::vector<float> ranges;  ///< [m] as recorded, or as this device says
   double allowed;             ///< [m] what its mode may be off by; 0: to the bit
 };
@@ -87,7 +89,7 @@ class Verifier {
     count_scans();
     const std::size_t ticks = recording_.states.empty() ? 0 : recording_.states[0].size();
     for (std::size_t t = 0; t < ticks; ++t) {
-      for (const base::ReadingBlock& reading : farm_.tick(recording_.states[0][t].time, reports_at(t))) look(reading);
+      look_at_tick(t);
       if (asked_.size() >= kBatch || t + 1 == ticks) cast_again();
       ++result_.ticks;
       if (options_.progress && !options_.progress(static_cast<double>(t + 1) / static_cast<double>(ticks))) break;
@@ -104,13 +106,34 @@ class Verifier {
   }
 
  private:
-  std::span<const base::Report> reports_at(std::size_t tick) {
-    reports_.clear();
+  void reports_at(std::size_t tick, std::vector<base::Report>& reports) const {
+    reports.clear();
     for (std::uint32_t m = 0; m < recording_.states.size(); ++m) {
       const record::StateSample& s = recording_.states[m][tick];
-      reports_.push_back({m, s.time, s.X_WM, s.velocity});
+      reports.push_back({m, s.time, s.X_WM, s.velocity});
     }
-    return reports_;
+  }
+
+  void look_at_tick(std::size_t tick) {
+    reports_.swap(before_);
+    reports_at(tick, reports_);
+    const auto look_at = [this](std::span<const base::ReadingBlock> readings) {
+      for (const base::ReadingBlock& reading : readings) look(reading);
+    };
+    if (tick > 0) sample_between(farm_, before_, reports_, on_the_way_, look_at);
+    look_at(farm_.tick(reports_[0].time, reports_));
+  }
+
+  /// Where everyone was when `asked` was measured.
+  void poses_of(const Asked& asked, std::vector<base::Pose>& poses) const {
+    poses.clear();
+    for (const auto& states : recording_.states) {
+      const record::StateSample& s = states[asked.tick];
+      const base::Report after{0, s.time, s.X_WM, s.velocity};
+      const record::StateSample& p = states[asked.tick - (asked.time < s.time ? 1 : 0)];
+      const base::Report before{0, p.time, p.X_WM, p.velocity};
+      poses.push_back(asked.time < s.time ? robots::between(before, after, asked.time).X_WM : s.X_WM);
+    }
   }
 
   /// How many scans there are, so that a sample is spread over all.
@@ -179,19 +202,19 @@ class Verifier {
       return;
     }
     if (seen_++ % stride_ == 0)
-      asked_.push_back({reading.mover, reading.sensor, reading.sequence, tick_at(reading.time), std::move(ours),
-                        allowed_of(reading)});
+      asked_.push_back({reading.mover, reading.sensor, reading.sequence, tick_at(reading.time), reading.time,
+                        std::move(ours), allowed_of(reading)});
   }
 
-  /// Casts what was asked for in plain C++, tick by tick, since all see the movers of their tick.
+  /// Casts what was asked for in plain C++, time by time, since all see the movers of their time.
   void cast_again() {
-    std::stable_sort(asked_.begin(), asked_.end(), [](const Asked& a, const Asked& b) { return a.tick < b.tick; });
+    std::stable_sort(asked_.begin(), asked_.end(), [](const Asked& a, const Asked& b) { return a.time < b.time; });
     std::vector<sensors::LaserReference::Scan> scans(asked_.size());
+    std::vector<base::Pose> poses;
     for (std::size_t first = 0; first < asked_.size();) {
       std::size_t last = first;
-      while (last < asked_.size() && asked_[last].tick == asked_[first].tick) ++last;
-      std::vector<base::Pose> poses;
-      for (const auto& states : recording_.states) poses.push_back(states[asked_[first].tick].X_WM);
+      while (last < asked_.size() && asked_[last].time == asked_[first].time) ++last;
+      poses_of(asked_[first], poses);
       reference_.place(poses);
       workers_.run(last - first, 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = first + begin; i < first + end; ++i)
@@ -225,7 +248,7 @@ class Verifier {
   base::Workers workers_;
   bool infinite_ = false;
   std::map<Name, std::size_t> scans_, readings_;  ///< recorded, not met yet
-  std::vector<base::Report> reports_;
+  std::vector<base::Report> reports_, before_, on_the_way_;
   std::map<std::uint8_t, Compared> again_;
   std::vector<Asked> asked_;
   std::size_t stride_ = 1, seen_ = 0;

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "farm/schedule.h"
+#include "robots/motion.h"
 #include "scenarios/watch.h"
 #include "sensors/kind.h"
 #include "tests/counted_new.h"
+#include "tests/sensors/scenes.h"
 
 namespace sf::scenarios {
 namespace {
@@ -118,6 +121,131 @@ TEST(Simulation, ControllersRunAtTheirOwnRate) {
     if (simulation.stepped(0)) steps.push_back(i);
   }
   EXPECT_EQ(steps, (std::vector<int>{0, 5, 10, 15, 20}));
+}
+
+// --- Rates that do not divide the tick's.
+
+world::Sensor sensor(const std::string& type, double rate) {
+  world::Sensor sensor;
+  sensor.type = sensor.name = type;
+  sensor.settings.push_back({"rate", {rate}, "", 0, ""});
+  if (type == "encoder") sensor.settings.push_back({"slip", {0.02}, "", 0, ""});
+  return sensor;
+}
+
+/// Robots among boxes with one laser each, which see no robot.
+world::World fast_world(const std::vector<double>& rates, const world::LaserNoise& noise = {}) {
+  world::World world = scenes::boxes(15, 12.0, 3);
+  world::Laser laser = scenes::laser(31, M_PI, 6.0);
+  laser.noise = noise;
+  scenes::add_robots(world, static_cast<std::uint32_t>(rates.size()), laser, 5);
+  for (std::size_t m = 0; m < rates.size(); ++m) {
+    world.movers[m].lasers[0].rate = rates[m];
+    for (world::Segment& side : world.movers[m].body) side.seen_by_laser = false;
+  }
+  world::finish(world);
+  return world;
+}
+
+/// Every reading is there, says when it was measured, and is that of where its robot was then: as it drove.
+TEST(Simulation, SensorsLookAtTheirOwnTimes) {
+  const std::vector<double> rates{13.0, 25.0, 50.0, 10.0, 4.0, 333.0};
+  const world::World world = fast_world(rates);
+  Simulation simulation(world, device(), {.seed = 7});
+  farm::Farm asked(world, device(), {.noise = false});
+  std::vector<std::uint32_t> counts(rates.size());
+  std::vector<base::Report> before;
+  std::size_t driven = 0;
+  for (int i = 0; i <= 20; ++i) {  // 2 s, both ends included
+    const base::TickRecord tick = simulation.step();
+    for (const base::ReadingBlock& r : tick.readings) {
+      ASSERT_EQ(r.sequence, counts[r.mover]) << rates[r.mover] << " Hz";
+      ASSERT_EQ(r.time, farm::due_time(counts[r.mover]++, rates[r.mover], 0.0));
+      if (r.time < tick.time && tick.contacts[r.mover] == 0) {
+        const double since = 1e-9 * static_cast<double>(r.time - before[r.mover].time);
+        const base::Pose X = robots::advance(before[r.mover].X_WM, tick.reports[r.mover].velocity, since);
+        EXPECT_NEAR(r.X_WM.x, X.x, 1e-12);
+        EXPECT_NEAR(r.X_WM.y, X.y, 1e-12);
+        EXPECT_NEAR(base::wrap_angle(r.X_WM.yaw - X.yaw), 0.0, 1e-12);
+        driven += r.X_WM.x != before[r.mover].X_WM.x;
+      }
+      if (r.mover == 5 && r.sequence % 16 != 0) continue;
+      const base::ReadingBlock there = asked.sense(r.mover, base::kLaser, 0, r.X_WM);
+      ASSERT_TRUE(std::equal(r.values.begin(), r.values.end(), there.values.begin(), there.values.end()));
+    }
+    before.assign(tick.reports.begin(), tick.reports.end());
+  }
+  EXPECT_EQ(counts, (std::vector<std::uint32_t>{27, 51, 101, 21, 9, 667}));
+  EXPECT_GT(driven, 200u) << "the test is meant to drive";
+}
+
+/// What one robot reads, to the bit.
+std::vector<std::vector<double>> read_by_first(const world::World& world, std::uint8_t but = 0) {
+  Simulation simulation(world, device(), {.seed = 7});
+  std::vector<std::vector<double>> all;
+  for (int i = 0; i < 60; ++i)
+    for (const base::ReadingBlock& r : simulation.step().readings) {
+      if (r.mover != 0 || r.kind == but) continue;
+      all.push_back({double(r.kind), double(r.sequence), double(r.time)});
+      all.back().insert(all.back().end(), r.values.begin(), r.values.end());
+    }
+  return all;
+}
+
+/// Who else looks between ticks, and when, changes nothing: neither what robots see nor what wheels add up.
+TEST(Simulation, OthersRatesChangeNothing) {
+  const world::LaserNoise noise{.range_sigma = 0.01, .range_proportional = 0.0, .angle_sigma = 0.002};
+  for (const double rate : {10.0, 13.0}) {
+    world::World alone = fast_world({rate}, noise);
+    alone.movers[0].sensors = {sensor("encoder", 10.0)};
+    world::finish(alone);
+    const auto expected = read_by_first(alone);
+    EXPECT_GT(expected.size(), rate == 10.0 ? 119u : 130u);
+
+    world::World company = fast_world({rate, 50.0, 333.0, 7.0}, noise);
+    company.movers[0].sensors = alone.movers[0].sensors;
+    for (std::size_t m = 1; m < 4; ++m) company.movers[m].X_WM.x += 100.0;
+    world::finish(company);
+    EXPECT_EQ(read_by_first(company), expected) << rate << " Hz, others far away";
+
+    world::World more = alone;
+    more.movers[0].sensors.push_back(sensor("gyro", 77.0));
+    world::finish(more);
+    EXPECT_EQ(read_by_first(more, 9), expected) << rate << " Hz, and a gyro on itself";
+  }
+}
+
+/// A controller is given the newest of each sensor, however many there were since it was asked last.
+TEST(Simulation, ControllersAreGivenTheNewestScan) {
+  const world::World world = fast_world({25.0, 35.0, 50.0});
+  SimulationOptions options{.seed = 7};
+  const std::uint64_t direct = hash_after(world, options, 60);
+  options.actor.link = {.jitter = 1e-12, .seed = 7};  // a mailbox, which keeps the newest alone
+  EXPECT_EQ(hash_after(world, options, 60), direct);
+}
+
+TEST(Simulation, ThreadsChangeNothingBetweenTicksEither) {
+  const world::World world = fast_world({13.0, 25.0, 50.0, 10.0, 4.0}, {.range_sigma = 0.01});
+  const std::uint64_t first = hash_after(world, {.seed = 7, .threads = 1}, 30);
+  EXPECT_EQ(hash_after(world, {.seed = 7, .threads = 3}, 30), first);
+}
+
+/// A reading leaves when it was measured, not with the tick after: first at 77 ms, and seen at the tick after it came.
+TEST(Simulation, LinksDelayFromWhenAReadingWasMeasured) {
+  for (const auto& [delay, tick] : {std::pair{0.02, 1}, {0.022, 1}, {0.024, 2}, {0.12, 2}}) {
+    world::World world = our_world("testpath/testpath.world");
+    for (world::Sensor& s : world.movers[0].sensors) s.settings.push_back({"phase", {0.077}, "", 0, ""});
+    SimulationOptions options;
+    options.actor.plan = plan("lane-keeping");
+    options.actor.link = {.delay = delay};
+    Simulation simulation(world, device(), options);
+    int first = -1;
+    for (int i = 0; i < 20 && first < 0; ++i) {
+      simulation.step();
+      if (std::isfinite(simulation.controller(0)->error())) first = i;
+    }
+    EXPECT_EQ(first, tick) << delay;
+  }
 }
 
 /// The wheel turns towards the lane only once the first reading has come.

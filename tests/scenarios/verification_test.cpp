@@ -34,9 +34,8 @@ world::World small_world() {
 }
 
 /// Two seconds of wandering.
-record::Recording recorded(bool readings, const std::string& mode = "exact") {
+record::Recording recorded(bool readings, const std::string& mode = "exact", world::World world = small_world()) {
   const auto folder = std::filesystem::temp_directory_path() / ("sf_verification_" + std::to_string(::getpid()));
-  world::World world = small_world();
   sensors::set_accuracy(world, mode);
   {
     Simulation simulation(world, device(), {.seed = 9});
@@ -58,6 +57,34 @@ TEST(Verification, ASoundRun) {
   EXPECT_EQ(v.reference.readings, v.again[0].readings) << "all of them by default";
   EXPECT_EQ(v.ticks, 20u);
   EXPECT_FALSE(v.interrupted);
+}
+
+/// Sensors that look between ticks: their poses are worked out again from those of the ticks, to the bit.
+TEST(Verification, ReadingsFromBetweenTicks) {
+  world::World world = small_world();
+  for (std::size_t m = 0; m < world.movers.size(); ++m) {
+    world.movers[m].lasers[0].rate = 13.0 + 12.0 * static_cast<double>(m);
+    for (const char* type : {"encoder", "gyro"}) {
+      world::Sensor sensor;
+      sensor.type = sensor.name = type;
+      sensor.settings = {{"rate", {37.0}, "", 0, ""}, {type[0] == 'e' ? "slip" : "noise", {0.01}, "", 0, ""}};
+      world.movers[m].sensors.push_back(sensor);
+    }
+  }
+  world::finish(world);
+  const record::Recording run = recorded(true, "exact", world);
+  const Verification v = verify(run, device(), {});
+  EXPECT_TRUE(v.sound()) << v.reference.first;
+  EXPECT_EQ(v.missing, 0u);
+  ASSERT_EQ(v.again.size(), 3u);
+  EXPECT_EQ(v.again[0].readings, run.scans.size());
+  EXPECT_GT(run.scans.size(), 6u * 10u * 2u) << "more than one a tick";
+  EXPECT_EQ(v.reference.readings, run.scans.size());
+  EXPECT_EQ(v.again[1].readings + v.again[2].readings, run.readings.size());
+
+  record::Recording moved = run;
+  moved.states[2][5].X_WM.x += 1e-6;
+  EXPECT_FALSE(verify(moved, device(), {}).sound());
 }
 
 /// Skipped beams are computed again to the bit, 32 bits on the device to the bit and beside plain C++ within the bound.
