@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/facts.h"
+#include "apps/rates.h"
 #include "apps/robot_facts.h"
 #include "base/hash.h"
 #include "sensors/accuracy.h"
@@ -146,10 +147,13 @@ std::string json_of(const gpu::Survey& survey) {
 }
 
 std::string json_of(const world::World& world, const sensors::Roster& roster) {
-  Json sensors = Json::object();
+  Json sensors = Json::object(), rates = Json::object();
   for (const sensors::SensorKind* kind : sensors::kinds()) {
     const auto* group = roster.group(kind->id);
     sensors[std::string(kind->name)] = group == nullptr ? 0 : group->rows.size();
+    if (group == nullptr) continue;
+    const auto [least, most] = rates_of(*group);
+    rates[std::string(kind->name)] = {least, most};
   }
   const sensors::FieldFacts field = sensors::field_facts(world);
   const std::size_t docks = count_docks(world);
@@ -161,6 +165,8 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
                 {"robots", count_robots(world)},
                 {"tags", world.movers.size() - count_robots(world)},
                 {"sensors", sensors},
+                {"rates_hz", rates},
+                {"between_ticks", kinds_between_ticks(roster, world.interval)},
                 {"segments", world.walls.size()},
                 {"segments_with_movers", segments},
                 {"magnets", count_magnets(world)},
@@ -199,6 +205,7 @@ std::string json_of(const RunFacts& f) {
             {"rays_per_s", f.wall_s > 0.0 ? static_cast<double>(f.farm.work.rays) / f.wall_s : 0.0},
             {"readings", f.farm.readings},
             {"given_again", f.farm.again},
+            {"missed", f.farm.missed},
             {"batches", f.farm.batches},
             {"lanes_in_doubt", f.farm.work.doubts},
             {"cells_built", f.farm.work.cells_built},

@@ -6,6 +6,7 @@
 #include "apps/commands.h"
 #include "apps/facts.h"
 #include "apps/lend.h"
+#include "apps/rates.h"
 #include "apps/roads.h"
 #include "apps/wording.h"
 #include "base/error.h"
@@ -111,6 +112,8 @@ int check(const Options& options) {
   if (const auto code = check_roads(options)) return *code;
   const world::World world = world::load_world(options.world, options.load);
   const sensors::Roster roster(world);
+  tell_many_times(roster);
+  if (options.rate > 0.0) tell_fast_sensors(roster, options.rate);
   print(options.json ? json_of(world, roster) : text_of(world, roster));
   return 0;
 }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,7 @@
 #include "apps/plan.h"
 #include "apps/post.h"
 #include "apps/progress.h"
+#include "apps/rates.h"
 #include "apps/stop.h"
 #include "apps/tradeoff.h"
 #include "base/contact.h"
@@ -35,7 +37,7 @@ class Outputs {
  public:
   Outputs(const world::World& world, const sensors::Roster& roster, const std::optional<SendPlan>& plan,
           const Options& options)
-      : no_return_(roster, options.no_return_inf) {
+      : roster_(roster), no_return_(roster, options.no_return_inf) {
     if (plan) {
       address_ = netio::resolve(options.send);
       post_.emplace(world, roster, *plan, netio::Outbox());
@@ -46,15 +48,28 @@ class Outputs {
           scenarios::run_info(world, roster, {options.seed, options.record_readings, options.no_return_inf}));
   }
 
-  void write(base::TickRecord tick) {
+  /// @param wait called with the time [ns] at which a reading is delivered, before it is sent: the tick's, or one
+  /// before it
+  template <class Wait>
+  void write(base::TickRecord tick, Wait&& wait) {
     const auto start = Clock::now();
     tick.readings = no_return_.apply(tick.readings);
-    if (post_) {
-      for (const base::ReadingBlock& reading : tick.readings) post_->queue(reading, address_, stamp_);
-      post_->flush();
+    double waited = 0.0;
+    std::int64_t sent_at = tick.time;
+    for (const base::ReadingBlock& reading : post_ ? tick.readings : std::span<const base::ReadingBlock>{}) {
+      const std::int64_t time =
+          std::min<std::int64_t>(tick.time, reading.time + std::llround(1e9 * roster_.row(reading).latency));
+      if (time != std::exchange(sent_at, time)) {
+        post_->flush();
+        const auto before = Clock::now();
+        wait(time);
+        waited += base::seconds_since(before);
+      }
+      post_->queue(reading, address_, stamp_);
     }
+    if (post_) post_->flush();
     if (recorder_) recorder_->write(tick);
-    seconds_ += base::seconds_since(start);
+    seconds_ += base::seconds_since(start) - waited;
   }
 
   void finish(RunFacts& facts) {
@@ -70,6 +85,7 @@ class Outputs {
   }
 
  private:
+  const sensors::Roster& roster_;
   NoReturn no_return_;
   std::uint32_t address_ = 0;
   netio::Stamp stamp_{netio::random_session(), 0};
@@ -123,6 +139,7 @@ int run(const Options& options) {
   gpu::Device device(options.device);
   choose_accuracy(world, device, options);
   const sensors::Roster roster(world);
+  tell_many_times(roster);
   scenarios::Simulation simulation =
       advised(world, options, [&] { return scenarios::Simulation(world, device, simulation_options(world, options)); });
   if (!simulation.warnings().empty()) tell_warnings(simulation.warnings().front().file, simulation.warnings());
@@ -139,7 +156,10 @@ int run(const Options& options) {
     for (; facts.ticks < ticks && !stop_requested(); ++facts.ticks) {
       const base::TickRecord tick = advised(world, options, [&] { return simulation.step(); });
       tally.look(tick);
-      outputs.write(tick);
+      // Motion and readings of a tick are worked out at its end, so what is due on the way is sent a tick later.
+      outputs.write(tick, [&](std::int64_t time) {
+        if (options.real_time) keep_pace(start, 1e-9 * static_cast<double>(time) + world.interval);
+      });
       for (std::size_t m = 0; m < contacts.size(); ++m)
         facts.contacts += !world.movers[m].is_tag && contacts[m].begins(tick.contacts[m] != 0);
       const double simulated = static_cast<double>(facts.ticks + 1) * world.interval;

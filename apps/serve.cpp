@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <thread>
 #include <variant>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "apps/facts.h"
 #include "apps/lend.h"
 #include "apps/post.h"
+#include "apps/rates.h"
 #include "apps/reach.h"
 #include "apps/stop.h"
 #include "apps/tradeoff.h"
@@ -54,28 +57,44 @@ class Service {
         farm_(world, device,
               farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
         fleet_(world),
-        no_return_(roster, options.no_return_inf) {
+        no_return_(roster, options.no_return_inf),
+        capped_(options.rate > 0.0) {
     reports_.reserve(netio::Inbox::kMaxPerReceive);
   }
 
   std::uint16_t port() const { return inbox_.port(); }
   std::size_t robots() const { return names_.robots.size(); }
 
+  /// [ns] When the farm has something to read or to deliver.
+  std::int64_t next_due() const { return capped_ ? farm::kNever : std::min(farm_.next_due(), farm_.next_delivery()); }
+
   /// Sleeps until `when`, taking in what comes meanwhile. Never less: at a tick that is early, a sensor of the same
   /// rate would not be due yet.
   void wait_until(Clock::time_point start, Clock::time_point when) {
     for (;;) {
-      const auto left = std::chrono::ceil<std::chrono::milliseconds>(when - Clock::now()).count();
-      if (left <= 0 || stop_requested()) return;
-      inbox_.wait(static_cast<int>(std::min<long>(left, 100)));
+      const auto left = when - Clock::now();
+      if (left <= Clock::duration::zero() || stop_requested()) return;
+      const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(left).count();
+      if (whole == 0) std::this_thread::sleep_for(left);
+      if (whole > 0) inbox_.wait(static_cast<int>(std::min<long>(whole, 100)));
       take_in((Clock::now() - start).count());
     }
   }
 
+  /// Everything that goes by ticks.
   void tick(std::int64_t now) {
+    look(now, false);
+    relay_.pass_on(inbox_, now, answers_);
+    answers_.flush();
+    ++ticks_;
+  }
+
+  /// What is due to be read or delivered. @param between two ticks
+  void look(std::int64_t now, bool between) {
     take_in(now);
     for (const auto& [id, row] : names_.robots) farm_.hear(row, wanted(id, now));
-    const auto readings = no_return_.apply(farm_.tick(now, fleet_.predict(now)));
+    const auto states = fleet_.predict(now);
+    const auto readings = no_return_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));
     for (const base::ReadingBlock& reading : readings) {
       // A reading that was on its way when its robot fell silent has nobody to go to.
       const std::uint32_t id = world_.movers[reading.mover].id;
@@ -83,9 +102,7 @@ class Service {
       if (to) post_.queue(reading, to->address, inbox_.stamp_for(id));
     }
     post_.flush();
-    relay_.pass_on(inbox_, now, answers_);
-    answers_.flush();
-    ++ticks_;
+    tell_missed();
   }
 
   /// All that waits, at `now` [ns].
@@ -127,6 +144,17 @@ class Service {
   }
 
  private:
+  /// Once, when more than one reading in twenty is missed.
+  void tell_missed() {
+    const farm::FarmStats stats = farm_.stats();
+    if (told_missed_ || capped_ || stats.missed < 20 || 20 * stats.missed < stats.readings) return;
+    told_missed_ = true;
+    std::fprintf(
+        stderr,
+        "sensorfarm: this machine is too slow for the sensors' rates: readings are missed; lower the rates, or "
+        "let fewer robots ask for them\n");
+  }
+
   /// Bit k: robot `id` is heard, and wants its sensors of kind k.
   std::uint32_t wanted(std::uint32_t id, std::int64_t now) const {
     std::uint32_t kinds = 0;
@@ -168,6 +196,8 @@ class Service {
   std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_robots_;
   std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_tags_;
   std::uint64_t ticks_ = 0;
+  bool capped_;  ///< sensors are read at ticks alone
+  bool told_missed_ = false;
 };
 
 }  // namespace
@@ -178,6 +208,8 @@ int serve(const Options& options) {
   gpu::Device device(options.device);
   choose_accuracy(world, device, options);
   const sensors::Roster roster(world);
+  if (options.rate > 0.0) tell_fast_sensors(roster, options.rate);
+  if (options.rate == 0.0) tell_many_times(roster);
   Service service(world, roster, device, plan, options);
   warn_of_reach(netio::resolve(options.bind), "say where robots are, and be sent readings");
   catch_stop_signals();
@@ -187,13 +219,19 @@ int serve(const Options& options) {
                1.0 / interval, device.facts().name.c_str());
 
   const auto start = Clock::now();
-  const auto step = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(interval));
-  for (auto next = start; !stop_requested(); next = std::max(next + step, Clock::now() - step)) {
-    service.wait_until(start, next);
+  const std::int64_t step = std::llround(interval * 1e9);
+  std::int64_t next = 0;  // [ns] of the tick
+  while (!stop_requested()) {
+    service.wait_until(start, start + std::chrono::nanoseconds(std::min(next, service.next_due())));
     if (stop_requested()) break;
-    const auto now = Clock::now() - start;
-    if (options.duration > 0.0 && std::chrono::duration<double>(now).count() >= options.duration) break;
-    service.tick(now.count());
+    const std::int64_t now = (Clock::now() - start).count();
+    if (options.duration > 0.0 && 1e-9 * static_cast<double>(now) >= options.duration) break;
+    if (now < next) {
+      service.look(now, true);
+      continue;
+    }
+    service.tick(now);
+    next = std::max(next + step, (Clock::now() - start).count() - step);
   }
 
   service.take_in((Clock::now() - start).count());  // what still waits is counted too

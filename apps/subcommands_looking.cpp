@@ -26,6 +26,9 @@ void add_check(CLI::App& app, Options& o) {
   sub->add_option("--rndf", o.rndf, "Road network that a mission (.mdf) is checked against")
       ->check(not_empty("a file"))
       ->type_name("FILE");
+  sub->add_option("--rate", o.rate, "Ticks per second that `serve --rate` is to have: name the sensors that are faster")
+      ->check(number(0.1, 10000.0))
+      ->type_name("HZ");
   add_json(*sub, o);
   sub->callback([&o] { o.command = Command::check; });
 }

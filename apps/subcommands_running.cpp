@@ -59,7 +59,9 @@ void add_serve(CLI::App& app, Options& o) {
       ->check(whole(0, 65535))
       ->type_name("PORT")
       ->capture_default_str();
-  sub->add_option("--rate", o.rate, "Ticks per second (default: the world's interval_sim)")
+  sub->add_option("--rate", o.rate,
+                  "Ticks per second, and sensors are read at ticks alone (default: the world's interval_sim, and "
+                  "sensors at their own times)")
       ->check(number(0.1, 10000.0))
       ->type_name("HZ");
   add_seed(*sub, o, "Seed of noise");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "apps/facts.h"
+#include "apps/rates.h"
 #include "apps/wording.h"
 #include "base/hash.h"
 #include "sensors/accuracy.h"
@@ -35,6 +36,14 @@ std::string accuracy_text(const world::World& world, const sensors::Roster& rost
   for (const sensors::Statement& s : sensors::statements_of(world, roster))
     text += row(text.empty() ? "accuracy" : "", text_of(s));
   return text;
+}
+
+std::string rates_text(const world::World& world, const sensors::Roster& roster) {
+  std::string rates;
+  for (const sensors::Roster::Group& group : roster.groups()) rates += (rates.empty() ? "" : ", ") + rate_text(group);
+  const std::vector<std::string> between = kinds_between_ticks(roster, world.interval);
+  return row("rates", rates) +
+         (between.empty() ? "" : row("", fmt::format("read between ticks too: {}", fmt::join(between, ", "))));
 }
 
 std::string paint_text(const world::World& world) {
@@ -96,7 +105,8 @@ std::string text_of(const world::World& world, const sensors::Roster& roster) {
   text += row("models", fmt::format("{}", world.models.size()));
   text += row("robots", fmt::format("{}", robots));
   if (world.movers.size() > robots) text += row("tags", fmt::format("{}", world.movers.size() - robots));
-  text += roster.groups().empty() ? row("sensors", "none") : sensors_text(roster) + accuracy_text(world, roster);
+  text += roster.groups().empty() ? row("sensors", "none")
+                                  : sensors_text(roster) + rates_text(world, roster) + accuracy_text(world, roster);
   text += row("wall segments", fmt::format("{}", world.walls.size()));
   text += paint_text(world) + magnets_text(world) + street_text(world);
   text += row("extent", fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max));
@@ -120,6 +130,9 @@ std::string work_text(const RunFacts& f) {
   const sensors::Work& work = f.farm.work;
   std::string text = work.rays > 0 || work.dipoles == 0 ? rows("rays", work.rays) : "";
   if (work.dipoles > 0) text += rows("dipoles", work.dipoles);
+  if (f.farm.missed > 0)
+    text += row("missed", fmt::format("{} beside {} readings: newer ones were due at the same tick", f.farm.missed,
+                                      f.farm.readings));
   if (f.farm.again > 0)
     text += row("given again", fmt::format("{} of {} readings: nothing had moved", f.farm.again, f.farm.readings));
   return text;

@@ -39,6 +39,41 @@ std::string small_world(const Folder& folder) {
 
 }  // namespace
 
+/// How often sensors are read, which of them between ticks, and for which a rate of ticks would be too low.
+TEST(Check, RatesAreSaid) {
+  const Folder folder;
+  const std::string world = folder.write("w.world",
+                                         "interval_sim 100\nposition( name \"roomba1\" laser( rate 5 ) "
+                                         "laser( rate 13 ) gps( rate 1 ) gyro( rate 10 phase 0.05 ) )\n");
+  const Outcome outcome = run_program({"check", world, "--json"});
+  const Json facts(outcome.out);
+  EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+  EXPECT_EQ(facts.number("/rates_hz/laser/0"), 5);
+  EXPECT_EQ(facts.number("/rates_hz/laser/1"), 13);
+  EXPECT_EQ(facts.number("/rates_hz/gps/1"), 1);
+  ASSERT_EQ(facts.size("/between_ticks"), 2u) << "5 Hz and 1 Hz divide the ticks' 10";
+  EXPECT_EQ(facts.text("/between_ticks/0"), "laser");
+  EXPECT_EQ(facts.text("/between_ticks/1"), "gyro") << "by its phase";
+
+  const Outcome text = run_program({"check", world, "--rate", "10"});
+  EXPECT_NE(text.out.find("laser 5 to 13 Hz"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("read between ticks too: laser, gyro"), std::string::npos) << text.out;
+  EXPECT_NE(text.err.find("--rate 10 is too low for 1 sensor (laser 5 to 13 Hz)"), std::string::npos) << text.err;
+  EXPECT_TRUE(run_program({"check", world, "--rate", "13"}).err.empty());
+}
+
+/// Boundary: a thousand batches a second are told of, a few are not.
+TEST(Check, ManySamplingTimesAreSaid) {
+  const Folder folder;
+  const std::string laser = "position( name \"roomba1\" laser( rate ";
+  EXPECT_TRUE(run_program({"check", folder.write("w.world", laser + "1000 ) )\n")}).err.empty());
+  const std::string world = folder.write("w.world", laser + "1001 ) )\n");
+  for (const Words& words : {Words{"check", world}, Words{"run", world, "--duration", "0.1"}}) {
+    const Outcome outcome = run_program(words);
+    EXPECT_NE(outcome.err.find("1001 different times a second"), std::string::npos) << outcome.err;
+  }
+}
+
 TEST(Check, JsonCountsWhatIsThere) {
   const Folder folder;
   const Outcome outcome = run_program({"check", small_world(folder), "--json"});

@@ -87,6 +87,7 @@ class Robot {
         EXPECT_EQ(netio::decode(batch_.bytes(i), packet), netio::Reason::accepted);
         EXPECT_EQ(packet.header.robot, id_);
         EXPECT_EQ(packet.header.sensor, 0u);
+        stamps_.push_back(packet.header.time);
         EXPECT_EQ(packet.header.session, radio_.farm_stamp().session);
         EXPECT_EQ(packet.header.token, radio_.farm_stamp().token);
         sensors::LaserPart scan;
@@ -99,7 +100,11 @@ class Robot {
     return ranges;
   }
 
+  /// [ns] When the scans heard so far were measured, by the farm's clock.
+  const std::vector<std::int64_t>& stamps() const { return stamps_; }
+
  private:
+  std::vector<std::int64_t> stamps_;
   std::uint16_t id_;
   netio::Radio radio_;
   netio::Socket ears_;
@@ -127,18 +132,33 @@ inline bool prove(Robot& robot) {
 
 struct Service {
   Folder folder;
-  std::string world = folder.write("room.world", kRoom);
+  std::string world;
   unsigned lasers = free_ports(24);
-  Program program{{"serve", world, "--port", "0", "--rate", "50", "--json", "--laser-port", std::to_string(lasers)}};
+  Program program;
   unsigned port = 0;
 
-  Service() {
+  /// @param rate of ticks; none: the world's
+  explicit Service(const std::string& text = kRoom, const Words& rate = {"--rate", "50"})
+      : world(folder.write("room.world", text)), program(words(rate)) {
     if (!program.says("; Ctrl-C ends it")) return;
     const std::string said = program.err();
     port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
   }
   unsigned hears(unsigned robot) const { return lasers + 8 * robot; }
+
+ private:
+  Words words(const Words& rate) const {
+    Words all{"serve", world, "--port", "0", "--json", "--laser-port", std::to_string(lasers)};
+    all.insert(all.end(), rate.begin(), rate.end());
+    return all;
+  }
 };
+
+/// The room with lasers of 50 Hz; the world's ticks are 10 a second.
+inline std::string fast_room() {
+  std::string text = kRoom;
+  return text.replace(text.find("samples 91"), 10, "samples 91 rate 50");
+}
 
 inline std::vector<double> sensed(const std::string& world, const std::string& robot, const std::string& pose) {
   const Json scan(run_program({"sense", world, "--robot", robot, "--pose", pose, "--json"}).out);
