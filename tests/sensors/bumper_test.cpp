@@ -62,6 +62,23 @@ TEST(Bumper, StagesBarsAreTheArcsBetweenTheirEnds) {
   EXPECT_THROW(read_bumper(fitted("bumper", bars)), base::InputError) << "the second bar is missing";
 }
 
+/// Behind, where bearings wrap; turned and moved with the sensor; of Stage's own length where none is said.
+TEST(Bumper, StagesBarsBehindAndOnATurnedSensor) {
+  const auto bar = [](std::vector<double> pose, const base::Pose& X_MS, std::vector<world::Setting> more = {}) {
+    std::vector<world::Setting> settings{setting("bcount", {1}), setting("bpose[0]", std::move(pose))};
+    settings.insert(settings.end(), more.begin(), more.end());
+    world::Sensor sensor = fitted("bumper", std::move(settings));
+    sensor.X_MS = X_MS;
+    return read_bumper(sensor)[0];
+  };
+  const world::Setting wide = setting("blength", {0.33});
+  constexpr std::uint32_t kRear = 0x001FF800u;  // middles from 129 to 231 degrees; the bar's ends are at 126 and 234
+  EXPECT_EQ(bar({-0.12, 0, 0, 180}, {}, {wide}), kRear);
+  EXPECT_EQ(bar({0.12, 0, 0, 0}, {0, 0, 0, M_PI}, {wide}), kRear) << "turned";
+  EXPECT_EQ(bar({0, 0, 0, 0}, {-0.12, 0, 0, M_PI}, {wide}), kRear) << "moved";
+  EXPECT_EQ(bar({0.05, 0, 0, 0}, {}), 0xF000000Fu) << "10 cm long, 45 degrees to either side";
+}
+
 /// Each sector by itself, and what the reading says of it, robot by robot.
 TEST(Bumper, ReadsWhatPressesNow) {
   const world::World world = carriers(zones({{0, 90}, {-90, 0}}), {{0, 0, 0, 0}, {1, 0, 0, 2}});

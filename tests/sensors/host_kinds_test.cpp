@@ -89,6 +89,93 @@ TEST(HostKinds, AreSensedByHandAnywhere) {
   EXPECT_EQ(sense(sensors::kGps).X_WS.x, 100.0);
 }
 
+/// Readings of robot `mover` of one kind, by sensor.
+std::vector<std::vector<double>> of(std::span<const base::ReadingBlock> readings, std::uint8_t kind,
+                                    std::uint32_t mover) {
+  std::vector<std::vector<double>> all;
+  for (const base::ReadingBlock& r : readings)
+    if (r.kind == kind && r.mover == mover) all.push_back(values_of(r));
+  return all;
+}
+
+/// Every sensor has its own settings and its own robot's state: the first robot has none, the third two of each.
+TEST(HostKinds, EachIsItsOwn) {
+  world::World world = carriers(fitted("bumper"), {{0, 0, 0, 0}, {10, 0, 0.5, 0}, {20, 0, 0, 0}});
+  const auto fit = [&](std::size_t m, const char* type, std::vector<world::Setting> settings) {
+    world.movers[m].sensors.push_back(fitted(type, std::move(settings)));
+  };
+  for (world::Mover& mover : world.movers) mover.sensors.clear();
+  fit(1, "encoder", {setting("per_count", {1e-2})});
+  fit(2, "encoder", {setting("scale", {3, 2})});
+  fit(2, "encoder", {});
+  fit(1, "gyro", {setting("range", {90})});
+  fit(2, "gyro", {});
+  fit(2, "gyro", {setting("range", {180})});
+  fit(1, "bumper", {setting("zone[0]", {0, 90})});
+  fit(2, "bumper", {setting("zone[0]", {-90, 0})});
+  fit(2, "bumper", {});
+  fit(1, "cliff", {setting("spose[0]", {0.5, 0, 0})});
+  fit(2, "cliff", {setting("spose[0]", {-0.5, 0, 0})});
+  fit(2, "cliff", {setting("spose[0]", {0, 0.5, 0})});
+  fit(1, "gps", {setting("satellites", {8})});
+  fit(2, "gps", {setting("satellites", {16})});
+  fit(2, "gps", {setting("satellites", {12})});
+  world.drops = {{square({10.5, 0}, 0.5), 0}, {square({19.5, 0}, 0.5), 0}};
+  add_solid(world, square({10, 0}, 30.0), 0.3, 0.4);  // over the third robot, under the second
+  farm::Farm farm(world, device());
+  farm.hear_all();
+  farm.tick(0, {});
+  std::vector<base::Report> states = states_of(world);
+  for (base::Report& s : states) {
+    s.X_WM.x += 0.1 * s.mover;
+    s.velocity.turn = 2.0 * (s.mover + 1.0);
+  }
+  states[0].touched = 0xFFFFFFFFu;
+  states[1].touched = 1u;
+  states[2].touched = 1u << 20;
+  const auto readings = farm.tick(1'000'000'000, states);
+  using All = std::vector<std::vector<double>>;
+  EXPECT_EQ(of(readings, sensors::kEncoder, 1), (All{{0.1, 0.1, 10, 10}}));
+  EXPECT_EQ(of(readings, sensors::kEncoder, 2), (All{{0.6, 0.4, 600, 400}, {0.2, 0.2, 200, 200}}));
+  EXPECT_EQ(of(readings, sensors::kGyro, 1), (All{{M_PI / 2}}));
+  EXPECT_EQ(of(readings, sensors::kGyro, 2), (All{{6.0}, {M_PI}}));
+  EXPECT_EQ(of(readings, sensors::kBumper, 1), (All{{1}}));
+  EXPECT_EQ(of(readings, sensors::kBumper, 2), (All{{0}, {1}}));
+  EXPECT_EQ(of(readings, sensors::kCliff, 1), (All{{1}}));
+  EXPECT_EQ(of(readings, sensors::kCliff, 2), (All{{1}, {0}}));
+  const auto seen = [&](std::uint32_t m, std::size_t i) { return of(readings, sensors::kGps, m)[i][3]; };
+  EXPECT_EQ(seen(1, 0), 8.0) << "it stands above the roof, half a metre up";
+  EXPECT_EQ(seen(2, 0), 0.0);
+  EXPECT_EQ(seen(2, 1), 0.0);
+  EXPECT_TRUE(of(readings, sensors::kGps, 0).empty());
+}
+
+/// Errors of two sensors of a kind on one robot have nothing in common.
+TEST(HostKinds, TwoOfAKindDrawByThemselves) {
+  world::World world = carriers(fitted("gyro", {setting("bias", {1.0})}));
+  const auto fit = [&](const char* type, const char* key) {
+    for (int i = 0; i < 2; ++i) world.movers[0].sensors.push_back(fitted(type, {setting(key, {0.5})}));
+  };
+  world.movers[0].sensors.clear();
+  fit("gyro", "bias");
+  fit("gps", "noise");
+  fit("encoder", "slip");
+  for (world::Sensor& s : world.movers[0].sensors)
+    if (s.type == "encoder") s.settings.push_back(setting("per_count", {1e-6}));
+  farm::Farm farm(world, device(), {.seed = 3});
+  farm.hear_all();
+  farm.tick(0, {});
+  std::vector<base::Report> states = states_of(world);
+  states[0].X_WM.x = 0.3;
+  const auto readings = farm.tick(1'000'000'000, states);
+  for (const std::uint8_t kind : {sensors::kGyro, sensors::kGps, sensors::kEncoder}) {
+    const auto pair = of(readings, kind, 0);
+    ASSERT_EQ(pair.size(), 2u);
+    EXPECT_NE(pair[0][0], pair[1][0]) << int{kind};
+    EXPECT_GT(std::abs(pair[0][0] - pair[1][0]), 1e-5) << int{kind};
+  }
+}
+
 /// Phase, latency and names are every sensor's.
 TEST(HostKinds, LatencyHoldsReadingsBack) {
   const world::World world = carriers(fitted("gyro", {setting("latency", {0.15})}));

@@ -59,6 +59,16 @@ TEST(IrReceiver, ADockHasABuoyToEachSide) {
   EXPECT_EQ(light_of(dock(), at(0.4, 0)), 8u | 4u | 2u);
 }
 
+/// A halo may reach farther than the beam, and without one there is none, on top of the emitter either.
+TEST(IrReceiver, HalosOfAnySize) {
+  Emitter wide = virtual_wall(), none = dock();
+  wide.halo = 3.0;
+  none.halo = 0.0;
+  EXPECT_EQ(read(one_receiver({wide}, {-2.9, 0, 0, 0}))[0], 1.0);
+  EXPECT_EQ(read(one_receiver({wide}, {-3.1, 0, 0, 0}))[0], 0.0);
+  EXPECT_EQ(light_of(none, {0, 0}) & 2u, 0u);
+}
+
 /// Turned and moved with the emitter, whatever its heading's whole turns.
 TEST(IrReceiver, LightTurnsWithItsEmitter) {
   Chance chance(1);
