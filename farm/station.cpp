@@ -86,11 +86,11 @@ std::size_t Station::collect(std::int64_t now, std::span<const base::Pose> poses
 
 void Station::note(std::span<const base::ReadingBlock> blocks) {
   std::size_t i = blocks.size() - due.size();
-  std::size_t next = 0;
+  std::size_t looked = 0;
   for (const sensors::Due& d : due) {
-    if (next < looking.size() && looking[next].row == d.row) {
+    if (looked < looking.size() && looking[looked].row == d.row) {
       steady.taken(d.row, blocks[i]);
-      ++next;
+      ++looked;
     }
     ++i;
   }
