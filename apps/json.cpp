@@ -209,6 +209,7 @@ std::string json_of(const RunFacts& f) {
             {"batches", f.farm.batches},
             {"lanes_in_doubt", f.farm.work.doubts},
             {"cells_built", f.farm.work.cells_built},
+            {"host_scans", f.farm.work.host_scans},
             {"contacts", f.contacts},
             {"hash", base::hash_text(f.hash)},
             {"interrupted", f.interrupted},
@@ -361,6 +362,7 @@ std::string json_of(const scenarios::Explanation& e) {
                              {"dipoles", k.work.dipoles},
                              {"movers_near", k.work.movers_near},
                              {"movers_met", k.work.movers_met},
+                             {"host_scans", k.work.host_scans},
                              {"kernels", k.kernels},
                              {"bytes", k.bytes},
                              {"tables", tables}});

@@ -133,6 +133,9 @@ std::string work_text(const RunFacts& f) {
   if (f.farm.missed > 0)
     text += row("missed", fmt::format("{} beside {} readings: newer ones were due at the same tick", f.farm.missed,
                                       f.farm.readings));
+  if (work.host_scans > 0)
+    text += row("cast on the host",
+                fmt::format("{} scans: too many surfaces around them for the device's lists", work.host_scans));
   if (f.farm.again > 0)
     text += row("given again", fmt::format("{} of {} readings: nothing had moved", f.farm.again, f.farm.readings));
   return text;

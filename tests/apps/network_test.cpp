@@ -207,7 +207,8 @@ TEST(Serve, RobotsReadWhatSenseReadsWhereTheySayTheyAre) {
   EXPECT_EQ(facts.number("/robots"), 2);
   EXPECT_GE(facts.number("/packets/sent"), 1);
   EXPECT_GE(facts.number("/received/accepted"), 1);
-  EXPECT_EQ(facts.number("/rays"), 91 * facts.number("/readings")) << "one laser was computed, not two";
+  EXPECT_EQ(facts.number("/rays"), 91 * (facts.number("/readings") - facts.number("/given_again")))
+      << "one laser was computed, not two";
 }
 
 /// Faster than the ticks: many scans nearer to each other than two ticks. How many, is the machine's affair.
@@ -268,7 +269,12 @@ TEST(Serve, StrangersAreCountedAndDropped) {
     return !one.hear().empty();
   }));
   ASSERT_TRUE(prove(impostor));
-  impostor.say({2.0, 0.0, 0.0, 0.0});
+  // On a busy machine one may have been silent for two seconds by now: it speaks again before every try.
+  ASSERT_TRUE(until([&] {
+    one.say({-1.0, 0.5, 0.0, 0.0});
+    impostor.say({2.0, 0.0, 0.0, 0.0});
+    return service.program.err().find("is dropped until") != std::string::npos;
+  }));
   nobody.say({0.0, 0.0, 0.0, 0.0});
   netio::Outbox mouth;
   mouth.queue({netio::kLoopback, static_cast<std::uint16_t>(service.port)}, base::Bytes{1, 2, 3});
@@ -277,19 +283,11 @@ TEST(Serve, StrangersAreCountedAndDropped) {
   const double nan = std::nan("");
   std::memcpy(no_number.data() + netio::kHeaderBytes, &nan, sizeof nan);
   one.send(no_number);
-  // They stand before these in the service's queue, so that what answers these has seen them.
-  for (int answered = 0; answered < 3;) {
-    ASSERT_TRUE(until([&] {
-      one.say({-1.0, 0.5, 0.0, 0.0});
-      return !one.hear().empty();
-    }));
-    ++answered;
-  }
-  service.program.signal(SIGINT);
+  service.program.signal(SIGINT);  // what waits then is still counted
   const Outcome outcome = service.program.wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const Json facts(outcome.out);
-  EXPECT_EQ(facts.number("/received/wrong source"), 1);
+  EXPECT_GE(facts.number("/received/wrong source"), 1);
   EXPECT_EQ(facts.number("/received/unknown robot"), 1);
   EXPECT_EQ(facts.number("/received/too short"), 1);
   EXPECT_EQ(facts.number("/received/not finite"), 1);
