@@ -42,6 +42,7 @@ struct RunFacts {
   netio::Counts inbox;
   std::uint64_t kernel_drops = 0;    ///< datagrams that came while the inbox' buffer was full
   netio::RelayCounts relayed;        ///< to robots, of others' states and start signals
+  std::uint64_t lines_left_out = 0;  ///< of the log
   std::string recording;             ///< file; empty: none
   std::uint64_t recorded_bytes = 0;  ///< its size
 };

@@ -230,6 +230,7 @@ std::string json_of(const RunFacts& f) {
     json["received"] = reasons(f.inbox);
     json["kernel_drops"] = f.kernel_drops;
     json["relayed"] = {{"states", f.relayed.states}, {"starts", f.relayed.starts}};
+    json["log_lines_left_out"] = f.lines_left_out;
   }
   if (!f.recording.empty()) {
     json["recording"] = f.recording;
@@ -282,10 +283,10 @@ std::string json_of(const world::World& world, const sensors::Roster& roster, co
 }
 
 std::string json_of(const RobotFacts& f) {
-  Json json{{"robot", f.robot},      {"id", f.id},         {"controller", f.controller},
-            {"farm", f.farm},        {"wall_s", f.wall_s}, {"steps", f.steps},
-            {"started", f.started},  {"done", f.done},     {"answered", f.answered},
-            {"contacts", f.contacts}};
+  Json json{{"robot", f.robot},       {"id", f.id},         {"controller", f.controller},
+            {"farm", f.farm},         {"wall_s", f.wall_s}, {"steps", f.steps},
+            {"started", f.started},   {"done", f.done},     {"answered", f.answered},
+            {"contacts", f.contacts}, {"stops", f.stops},   {"log_lines_left_out", f.lines_left_out}};
   json.update(link_json(f.link));
   json["distance_m"] = f.distance_m;
   json["pose"] = pose_json(f.pose);

@@ -181,7 +181,12 @@ int run(const Options& options) {
   std::vector<world::Warning> warnings = world.warnings;
   warnings.insert(warnings.end(), simulation.warnings().begin(), simulation.warnings().end());
   std::fputs((options.json ? with_warnings(json_of(facts), warnings) : text_of(facts)).c_str(), stdout);
-  return 0;
+  const netio::OutboxCounts& packets = facts.post.packets;
+  if (packets.failed == 0) return 0;
+  std::fprintf(stderr, "sensorfarm: %llu of %llu packets were not sent: %s\n",
+               static_cast<unsigned long long>(packets.failed), static_cast<unsigned long long>(packets.queued),
+               packets.first_failure.c_str());
+  return 1;
 }
 
 }  // namespace sf::apps

@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "apps/commands.h"
 #include "apps/facts.h"
 #include "apps/lend.h"
@@ -22,6 +24,7 @@
 #include "apps/wording.h"
 #include "base/error.h"
 #include "netio/inbox.h"
+#include "netio/log.h"
 #include "netio/relay.h"
 #include "robots/fleet.h"
 
@@ -58,6 +61,9 @@ class Service {
               farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
         fleet_(world),
         no_return_(roster, options.no_return_inf),
+        forget_(options.forget > 0.0 ? std::max<std::int64_t>(0, std::llround(1e9 * options.forget) - netio::kSilence)
+                                     : kNever),
+        last_heard_(world.movers.size(), kNever),
         capped_(options.rate > 0.0) {
     reports_.reserve(netio::Inbox::kMaxPerReceive);
   }
@@ -92,7 +98,10 @@ class Service {
   /// What is due to be read or delivered. @param between two ticks
   void look(std::int64_t now, bool between) {
     take_in(now);
-    for (const auto& [id, row] : names_.robots) farm_.hear(row, wanted(id, now));
+    for (const auto& [id, row] : names_.robots) {
+      forget_silent(id, row, now);
+      farm_.hear(row, wanted(id, now));
+    }
     const auto states = fleet_.predict(now);
     const auto readings = no_return_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));
     for (const base::ReadingBlock& reading : readings) {
@@ -121,7 +130,7 @@ class Service {
       reports_.back().time = now;
     };
     const auto strange = [&](netio::Reason reason, const netio::Packet& packet, const netio::Endpoint& who) {
-      if (reason == netio::Reason::wrong_source) return complain(packet, who);
+      if (reason == netio::Reason::wrong_source) return complain(packet, who, now);
       if (inbox_.challenge(packet, who, now, challenge_)) answers_.queue(who, challenge_);
     };
     inbox_.receive(now, take, strange);
@@ -140,6 +149,7 @@ class Service {
     facts.inbox = inbox_.counts();
     facts.kernel_drops = inbox_.kernel_drops();
     facts.relayed = relay_.counts();
+    facts.lines_left_out = log_.left_out();
     return facts;
   }
 
@@ -163,21 +173,33 @@ class Service {
     return kinds;
   }
 
+  /// A robot that spoke once and is silent now is taken out of the world until it speaks again.
+  void forget_silent(std::uint32_t id, std::uint32_t row, std::int64_t now) {
+    std::int64_t& last = last_heard_[row];
+    const bool heard = inbox_.heard(id, now);
+    const bool gone = !heard && forget_ != kNever && last != kNever && now - last >= forget_;
+    if (heard) last = now;
+    farm_.set_gone(row, gone);
+    fleet_.set_gone(row, gone);
+  }
+
   /// Of each binding's strangers, once.
-  void complain(const netio::Packet& packet, const netio::Endpoint& who) {
+  void complain(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now) {
     const bool tag = std::holds_alternative<netio::Tag>(packet.body);
     const std::uint32_t id = packet.header.robot;
     const netio::Endpoint bound = *(tag ? inbox_.tag_address(id) : inbox_.address(id));
     auto& said = (tag ? said_of_tags_ : said_of_robots_)[id];
     if (said == bound) return;
     said = bound;
-    std::fprintf(
-        stderr,
-        "sensorfarm: %s (%s %u) is heard from %s; what %s says as the same is dropped until that one leaves or "
-        "is silent for 2 s\n",
-        world_.movers[(tag ? names_.tags : names_.robots).at(id)].name.c_str(), tag ? "tag" : "id", id,
-        netio::text(bound).c_str(), netio::text(who).c_str());
+    log_.line(
+        fmt::format("{} ({} {}) is heard from {}; what {} says as the same is dropped until that one leaves or is "
+                    "silent for 2 s",
+                    world_.movers[(tag ? names_.tags : names_.robots).at(id)].name, tag ? "tag" : "id", id,
+                    netio::text(bound), netio::text(who)),
+        now);
   }
+
+  static constexpr std::int64_t kNever = -1;
 
   const world::World& world_;
   const sensors::Roster& roster_;
@@ -192,6 +214,9 @@ class Service {
   NoReturn no_return_;
   std::vector<base::Report> reports_;
   base::Bytes challenge_;
+  std::int64_t forget_;                   ///< [ns] since it was last heard, or kNever
+  std::vector<std::int64_t> last_heard_;  ///< [ns] per mover
+  netio::Log log_;
   // By id: the binding whose strangers were spoken of.
   std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_robots_;
   std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_tags_;

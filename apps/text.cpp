@@ -191,6 +191,7 @@ std::string text_of(const RunFacts& f) {
   if (f.kernel_drops > 0) text += drops_text(f.kernel_drops);
   if (f.relayed.states + f.relayed.starts > 0)
     text += row("packets passed on", fmt::format("{} V2V, {} START", f.relayed.states, f.relayed.starts));
+  if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (!f.recording.empty())
     text += row("recording", fmt::format("{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6));
   text += row("time: move", stage(f.move_s));

@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <string>
+#include <thread>
 
 #include "tests/apps/program.h"
 #include "tests/viz/png.h"
@@ -73,6 +77,28 @@ TEST(Experiment, WritesItsFolder) {
     EXPECT_GT(columns, picture.width / 2) << name << ": from end to end";
   }
   EXPECT_EQ(run_program({"plot", folder.path("out/trial-1"), "-o", folder.path("pictures")}).code, 0);
+}
+
+TEST(Experiment, StoppedLeavesNoHalfTrial) {
+  const Folder folder;
+  Program program(
+      {"experiment", "mapping", "--trials", "50", "-o", folder.path("out"), "--files", SF_SOURCE_DIR "/experiments"});
+  const auto recording = [&] {
+    std::error_code ignored;
+    return std::filesystem::exists(folder.path("out/trial-1/run.mcap"), ignored);
+  };
+  for (int i = 0; i < 12'000 && program.running() && !recording(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ASSERT_TRUE(recording()) << program.err();
+  program.signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path("out/report.md")));
+  for (const auto& trial : std::filesystem::directory_iterator(folder.path("out"))) {
+    const Outcome verified = run_program({"verify", trial.path().string(), "--sample", "1"});
+    EXPECT_EQ(verified.code, 0) << trial.path() << verified.out << verified.err;
+  }
 }
 
 TEST(TestCommand, PassesFailsAndSaysWhy) {
