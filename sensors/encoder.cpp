@@ -113,7 +113,8 @@ void Encoders::measure(std::span<const Sight> sights) const {
 }
 
 constexpr std::string_view kKeys[] = {"per_count", "slip", "scale", "track", "scrub"};
-constexpr Column kColumns[] = {{"left_m"}, {"right_m"}, {"left_counts", 1, true}, {"right_counts", 1, true}};
+// Counts have signs, which whole columns of recordings have not.
+constexpr Column kColumns[] = {{"left_m"}, {"right_m"}, {"left_counts"}, {"right_counts"}};
 constexpr PlainNumber kNumbers[] = {{1e-5}, {1e-5}, {1.0}, {1.0}};
 constexpr PlainForm kForm{kEncoder, "encoder", kNumbers};
 
