@@ -2,9 +2,9 @@
 // Fans of beams cast at once: what the laser range finder and the lane edge sensor share.
 //
 // Ranges are exact: the nearest surface along each beam, from either side, decided in 64 bits against the segments of
-// the world, within `exact_bound` of real arithmetic. A beam that meets nothing within range_max reads range_max. A surface
-// that touches the sensor (within SF_TOUCH along the beam) stops beams that go into it, which read 0, not beams that
-// leave it. A sensor inside a solid reads the way out of it. The mover that carries the sensor is never seen.
+// the world, within `exact_bound` of real arithmetic. A beam that meets nothing within range_max reads range_max. A
+// surface that touches the sensor (within SF_TOUCH along the beam) stops beams that go into it, which read 0, not beams
+// that leave it. A sensor inside a solid reads the way out of it. The mover that carries the sensor is never seen.
 
 #include <cstdint>
 #include <memory>

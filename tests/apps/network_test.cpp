@@ -97,8 +97,8 @@ TEST(SendAndListen, WhatTheNetworkDidIsTold) {
   EXPECT_EQ(in.number("/by_reason/out of range"), 1);
 }
 
-/// In real time readings are sent when they are due, not all at the tick's end: 5 of 50 Hz in a tick of 0.1 s. A machine
-/// that is busy may hand over several at once, so there is more than one trial.
+/// In real time readings are sent when they are due, not all at the tick's end: 5 of 50 Hz in a tick of 0.1 s. A
+/// machine that is busy may hand over several at once, so there is more than one trial.
 TEST(SendAndListen, InRealTimeReadingsComeAsTheyAreDue) {
   const Folder folder;
   const std::string world = folder.write("w.world", "position( name \"roomba1\" laser( samples 9 rate 50 ) )\n");
