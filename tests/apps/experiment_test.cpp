@@ -81,8 +81,8 @@ TEST(Experiment, WritesItsFolder) {
 
 TEST(Experiment, StoppedLeavesNoHalfTrial) {
   const Folder folder;
-  Program program(
-      {"experiment", "mapping", "--trials", "50", "-o", folder.path("out"), "--files", SF_SOURCE_DIR "/experiments"});
+  Program program({"experiment", "lane-edge-p", "--trials", "200", "-o", folder.path("out"), "--files",
+                   SF_SOURCE_DIR "/experiments"});
   const auto recording = [&] {
     std::error_code ignored;
     return std::filesystem::exists(folder.path("out/trial-1/run.mcap"), ignored);
