@@ -85,6 +85,7 @@ void MagneticField::place(std::span<const Pose> poses) {
   t.moving_rows.clear();
   for (std::size_t m = 0; m < t.world.movers.size(); ++m) {
     const world::Mover& mover = t.world.movers[m];
+    if (std::isnan(poses[m].x)) continue;  // gone
     for (const world::Magnet& magnet : mover.magnets) {
       const Vec2 p = base::transform(poses[m], magnet.p);
       t.moving_places.push_back(p);
