@@ -1,6 +1,7 @@
 #pragma once
 // Whose poses changed in a tick, and who may notice.
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -8,6 +9,10 @@
 #include "world/world.h"
 
 namespace sf::farm {
+
+/// Poses of movers that are gone are not numbers.
+inline bool is_gone(const base::Pose& X_WM) { return std::isnan(X_WM.x); }
+inline constexpr base::Pose kGone{NAN, NAN, NAN, NAN};
 
 /// Where movers that moved were, and where they are now. Allocates only to grow.
 class Moves {
