@@ -33,7 +33,7 @@ struct Verification {
   std::vector<std::string> skipped;  ///< kinds that cannot be computed again, and why
   std::vector<std::string> damage;   ///< of the recording, as its reader says
   bool interrupted = false;          ///< not all ticks were looked at
-  bool sound() const;                ///< something was compared, nothing differs and nothing is damaged
+  bool sound() const;  ///< something was compared, or there are no ticks; nothing differs and nothing is damaged
 };
 
 struct VerifyOptions {
