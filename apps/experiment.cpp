@@ -10,7 +10,9 @@
 
 #include "apps/commands.h"
 #include "apps/progress.h"
+#include "apps/stop.h"
 #include "base/error.h"
+#include "scenarios/trial.h"
 
 namespace sf::apps {
 
@@ -46,13 +48,17 @@ int experiment(const Options& options) {
                                           .plant = options.plant,
                                           .folder = folder_of(options),
                                           .out = options.out,
-                                          .threads = options.threads};
+                                          .threads = options.threads,
+                                          .stop = [] { return stop_requested().load(); }};
   gpu::Device device(options.device);
+  catch_stop_signals();
   std::vector<std::string> files;
-  {
+  try {
     Progress progress(options.experiment);
     files = scenarios::run_experiment(*scenarios::find_experiment(options.experiment), plan, device,
                                       [&](double part, const std::string& note) { progress.show(part, note); });
+  } catch (const scenarios::Interrupted&) {
+    throw base::InputError("interrupted: no report was written; " + options.out + " has the trials that were finished");
   }
   for (const std::string& file : files) std::fprintf(stderr, "sensorfarm: wrote %s\n", file.c_str());
   return 0;

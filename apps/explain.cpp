@@ -39,6 +39,7 @@ std::string work_of(const scenarios::ExplainedKind& k, double ticks) {
     text +=
         fmt::format(", {:.4g} movers near, {:.0f} % of them hidden or out of view", each(k.work.movers_near),
                     100.0 - 100.0 * static_cast<double>(k.work.movers_met) / static_cast<double>(k.work.movers_near));
+  if (k.work.host_scans > 0) text += fmt::format(", {:.4g} scans cast on the host", each(k.work.host_scans));
   if (k.work.dipoles > 0) text += fmt::format(", {:.4g} magnets summed", each(k.work.dipoles));
   return text;
 }

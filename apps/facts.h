@@ -41,6 +41,7 @@ struct RunFacts {
   bool received = false;  ///< `inbox` counts
   netio::Counts inbox;
   netio::RelayCounts relayed;        ///< to robots, of others' states and start signals
+  std::uint64_t lines_left_out = 0;  ///< of the log
   std::string recording;             ///< file; empty: none
   std::uint64_t recorded_bytes = 0;  ///< its size
 };

@@ -187,6 +187,7 @@ std::string json_of(const RunFacts& f) {
             {"batches", f.farm.batches},
             {"lanes_in_doubt", f.farm.work.doubts},
             {"cells_built", f.farm.work.cells_built},
+            {"host_scans", f.farm.work.host_scans},
             {"contacts", f.contacts},
             {"hash", base::hash_text(f.hash)},
             {"interrupted", f.interrupted},
@@ -205,7 +206,11 @@ std::string json_of(const RunFacts& f) {
                        {"not_numbers", f.post.not_numbers}, {"first_failure", f.post.packets.first_failure}};
   if (f.received) {
     json["received"] = reasons(f.inbox);
-    json["relayed"] = {{"states", f.relayed.states}, {"starts", f.relayed.starts}};
+    json["relayed"] = {{"states", f.relayed.states},
+                       {"datagrams", f.relayed.datagrams},
+                       {"waited", f.relayed.waited},
+                       {"starts", f.relayed.starts}};
+    json["log_lines_left_out"] = f.lines_left_out;
   }
   if (!f.recording.empty()) {
     json["recording"] = f.recording;
@@ -257,10 +262,10 @@ std::string json_of(const world::World& world, const sensors::Roster& roster, co
 }
 
 std::string json_of(const RobotFacts& f) {
-  Json json{{"robot", f.robot},      {"id", f.id},         {"controller", f.controller},
-            {"farm", f.farm},        {"wall_s", f.wall_s}, {"steps", f.steps},
-            {"started", f.started},  {"done", f.done},     {"answered", f.answered},
-            {"contacts", f.contacts}};
+  Json json{{"robot", f.robot},       {"id", f.id},         {"controller", f.controller},
+            {"farm", f.farm},         {"wall_s", f.wall_s}, {"steps", f.steps},
+            {"started", f.started},   {"done", f.done},     {"answered", f.answered},
+            {"contacts", f.contacts}, {"stops", f.stops},   {"log_lines_left_out", f.lines_left_out}};
   json.update(link_json(f.link));
   json["distance_m"] = f.distance_m;
   json["pose"] = pose_json(f.pose);
@@ -335,6 +340,7 @@ std::string json_of(const scenarios::Explanation& e) {
                              {"dipoles", k.work.dipoles},
                              {"movers_near", k.work.movers_near},
                              {"movers_met", k.work.movers_met},
+                             {"host_scans", k.work.host_scans},
                              {"kernels", k.kernels},
                              {"bytes", k.bytes},
                              {"tables", tables}});

@@ -1,5 +1,6 @@
 // sensorfarm: one program, its subcommands, and what becomes of errors.
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -60,6 +61,8 @@ int fail(int code, const char* what) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A file that may not grow any more is an error with a message, as a full disk is.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     const sf::apps::Parsed parsed = sf::apps::parse_command_line(argc, argv);
     const int code = parsed.exit_code ? *parsed.exit_code : dispatch(parsed.options);

@@ -10,6 +10,8 @@
 #include "apps/plot_maps.h"
 #include "apps/plot_readings.h"
 #include "apps/progress.h"
+#include "apps/stop.h"
+#include "base/error.h"
 #include "farm/farm.h"
 #include "record/recording.h"
 #include "scenarios/experiment.h"
@@ -47,6 +49,13 @@ void mark_moving(const world::World& world, const base::ReadingBlock& reading, s
     moving[i] = reading.hits[i] != base::kNoHit && world.models[reading.hits[i]].mover != world::kNone;
 }
 
+/// Pictures are written whole: a stop is heeded between two.
+/// @throws base::InputError when one was asked for.
+void go_on() {
+  if (stop_requested())
+    throw base::InputError("interrupted: the pictures that were written are whole, others are not there");
+}
+
 /// Computes every laser's scan once a simulated second from where its robot was.
 void map_scans(const record::Recording& recording, const world::World& world, gpu::Device& device,
                viz::OccupancyGrid& grid) {
@@ -74,6 +83,7 @@ void map_scans(const record::Recording& recording, const world::World& world, gp
       grid.add_scan(r.X_WS, r.values, world::bearing_of(laser, 0), step, laser.range_max, laser.range_min, moving);
     }
     progress.show(static_cast<double>(t) / static_cast<double>(ticks));
+    go_on();
   }
 }
 
@@ -87,14 +97,17 @@ int plot(const Options& options) {
       options.out.empty() ? std::filesystem::path(recording.file).parent_path() : std::filesystem::path(options.out);
   scenarios::make_folder(folder.string());
 
+  catch_stop_signals();
   const std::string trajectories = (folder / "trajectories.png").string();
   viz::draw_trajectories(world, tracks_of(recording, world), trajectories);
   std::fprintf(stderr, "sensorfarm: wrote %s\n", trajectories.c_str());
+  go_on();
   for (const std::string& file : draw_readings(recording, folder.string()))
     std::fprintf(stderr, "sensorfarm: wrote %s\n", file.c_str());
-
+  go_on();
   for (const std::string& file : draw_maps(recording, world, folder.string()))
     std::fprintf(stderr, "sensorfarm: wrote %s\n", file.c_str());
+  go_on();
 
   gpu::Device device(options.device);
   viz::OccupancyGrid grid(world.extent, cell_for(world.extent));

@@ -49,6 +49,8 @@ std::string text_of(const RobotFacts& f) {
   text += row("driven", fmt::format("{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
                                     f.pose.yaw * 180.0 / M_PI));
   text += row("contacts", counted(f.contacts, "move"));
+  if (f.stops > 0) text += row("stood", counted(f.stops, "time") + " for want of readings");
+  if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (f.error.steps > 0) text += row("control error", text_of(f.error));
   return text;
 }

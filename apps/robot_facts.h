@@ -22,9 +22,11 @@ struct RobotFacts {
   bool answered = false;    ///< anything came from the farm
   bool listens = true;      ///< it has sensors, so that something should have come
   LinkCounts link;
-  std::uint64_t contacts = 0;  ///< moves that something stopped
-  double distance_m = 0.0;     ///< driven
-  base::Pose pose;             ///< at the end
+  std::uint64_t contacts = 0;        ///< moves that something stopped
+  std::uint64_t stops = 0;           ///< times that it stood for want of readings
+  std::uint64_t lines_left_out = 0;  ///< of its log
+  double distance_m = 0.0;           ///< driven
+  base::Pose pose;                   ///< at the end
   ErrorFacts error;
 };
 

@@ -159,6 +159,7 @@ void RobotLink::take(std::size_t tag, std::span<const std::uint8_t> bytes, std::
   if (taken == netio::Taken::refused) return;
   last_answer_ = now;
   if (taken != netio::Taken::whole) return;
+  last_reading_ = now;
   ++streams_[tag].whole;
   clock_.see(receiver_.newest(tag)->time, now);
 }

@@ -64,6 +64,8 @@ class RobotLink {
   const netio::FarmClock& clock() const { return clock_; }
   /// [ns] when anything good came last; nothing where nothing did yet.
   std::optional<std::int64_t> last_answer() const { return last_answer_; }
+  /// [ns] when a whole reading came last; nothing where none did yet.
+  std::optional<std::int64_t> last_reading() const { return last_reading_; }
   bool listens() const { return !streams_.empty(); }  ///< to any sensor
   const netio::Endpoint& farm() const { return farm_; }
   LinkCounts counts() const;
@@ -102,7 +104,7 @@ class RobotLink {
   std::uint32_t requests_ = 0;     ///< sent
   std::int64_t next_request_ = 0;  ///< [ns]
   std::uint64_t words_ = 0;        ///< that came and are no states
-  std::optional<std::int64_t> last_answer_;
+  std::optional<std::int64_t> last_answer_, last_reading_;
   std::vector<Newest> newest_;
   base::Bytes packet_;
 };

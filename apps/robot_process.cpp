@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "apps/plan.h"
 #include "world/roads/roads.h"
@@ -28,6 +29,14 @@ netio::V2v state_of(const base::Report& report, const base::Intent& intent) {
   return state;
 }
 
+/// [ns] Never shorter than two and a half periods of the fastest sensor, so that one lost reading stops nobody.
+std::int64_t patience_of(const sensors::Roster& roster, std::uint32_t mover, double seconds) {
+  double fastest = 0.0;
+  for (const sensors::Roster::Group& group : roster.groups())
+    for (const sensors::SensorRow& row : roster.of(group.kind->id, mover)) fastest = std::max(fastest, row.rate);
+  return seconds > 0.0 && fastest > 0.0 ? std::llround(1e9 * std::max(seconds, 2.5 / fastest)) : 0;
+}
+
 }  // namespace
 
 bool waits_for_start(const Options& options) {
@@ -42,12 +51,13 @@ RobotProcess::RobotProcess(const world::World& world, const sensors::Roster& ros
     : world_(world),
       names_(wire_names(world)),
       mover_(mover),
-      body_(world, mover),
+      body_(world, mover, std::llround(1e9 * options.forget)),
       link_(world, roster, mover, options,
             [this](const netio::Packet& packet, std::int64_t now) { hear(packet, now); }),
       roads_(world::roads_of(world)),
       intents_(world.movers.size()),
-      started_(!waits_for_start(options)) {
+      started_(!waits_for_start(options)),
+      patience_(patience_of(roster, mover, options.stop_after)) {
   control::Plan plan = plan_of(options);
   plan.rate = options.rate;
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, std::move(plan));
@@ -57,7 +67,7 @@ void RobotProcess::turn(std::int64_t now) {
   body_.move(command_, now);
   contacts_ += body_.contact();
   command_ = {};
-  if (started_) decide(now);
+  if (started_ && !blind(now)) decide(now);
   link_.say(state_of(body_.state(), made_.controller->intent()), now);
   complain(now);
 }
@@ -78,6 +88,8 @@ RobotFacts RobotProcess::facts(const Options& options) const {
   facts.distance_m = body_.distance();
   facts.pose = body_.state().X_WM;
   facts.error = error_;
+  facts.stops = stops_;
+  facts.lines_left_out = log_.left_out();
   return facts;
 }
 
@@ -133,13 +145,28 @@ void RobotProcess::gather_signals(std::int64_t now) {
   for (const world::Light& light : world_.lights) signals_.push_back(world::signal_at(light, time));
 }
 
+bool RobotProcess::blind(std::int64_t now) const {
+  return patience_ > 0 && link_.listens() && now - link_.last_reading().value_or(0) > patience_;
+}
+
+/// Where nothing is heard any more, where something is again, and, once, where nothing ever was.
 void RobotProcess::complain(std::int64_t now) {
-  if (complained_ || !link_.listens() || now - link_.last_answer().value_or(0) < kAnswerIn) return;
-  complained_ = true;
-  std::fprintf(stderr,
-               "sensorfarm: nothing came from the farm at %s for 3 s; is `sensorfarm serve` running there with this "
-               "world and these ports? Going on\n",
-               netio::text(link_.farm()).c_str());
+  const std::string farm = netio::text(link_.farm());
+  if (!complained_ && link_.listens() && now - link_.last_answer().value_or(0) >= kAnswerIn) {
+    complained_ = true;
+    stands_ = patience_ > 0;
+    log_.line(fmt::format("nothing came from the farm at {} for 3 s; is `sensorfarm serve` running there with this "
+                          "world and these ports? {}",
+                          farm, patience_ > 0 ? "Standing until readings come" : "Going on"),
+              now);
+  }
+  if (stands_ == blind(now) || !link_.last_reading()) return;
+  stands_ = !stands_;
+  stops_ += stands_ ? 1 : 0;
+  log_.line(stands_ ? fmt::format("no reading came from the farm at {} for {:g} s: {} stands until one comes", farm,
+                                  1e-9 * static_cast<double>(patience_), world_.movers[mover_].name)
+                    : fmt::format("readings come: {} goes on", world_.movers[mover_].name),
+            now);
 }
 
 }  // namespace sf::apps

@@ -11,6 +11,7 @@
 #include "apps/stop.h"
 #include "apps/wire_names.h"
 #include "control/controllers.h"
+#include "netio/log.h"
 #include "scenarios/robot_body.h"
 #include "sensors/roster.h"
 #include "world/lights.h"
@@ -57,6 +58,8 @@ class RobotProcess {
   void gather_readings();
   void gather_others(std::int64_t now);
   void gather_signals(std::int64_t now);
+  /// No reading came for so long that the last one is no ground to drive by.
+  bool blind(std::int64_t now) const;
   void complain(std::int64_t now);
 
   const world::World& world_;
@@ -69,7 +72,11 @@ class RobotProcess {
   std::vector<base::Intent> intents_;  ///< per mover, as told
   base::Twist command_;
   bool started_;
+  std::int64_t patience_;  ///< [ns] without a reading; 0: for ever
   bool complained_ = false;
+  bool stands_ = false;      ///< for want of readings
+  std::uint64_t stops_ = 0;  ///< times that it came to that
+  netio::Log log_;
   std::uint64_t steps_ = 0;
   std::uint64_t contacts_ = 0;
   ErrorFacts error_;

@@ -150,7 +150,12 @@ int run(const Options& options) {
   facts.hash = simulation.farm().hash();
   outputs.finish(facts);
   std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
-  return 0;
+  const netio::OutboxCounts& packets = facts.post.packets;
+  if (packets.failed == 0) return 0;
+  std::fprintf(stderr, "sensorfarm: %llu of %llu packets were not sent: %s\n",
+               static_cast<unsigned long long>(packets.failed), static_cast<unsigned long long>(packets.queued),
+               packets.first_failure.c_str());
+  return 1;
 }
 
 }  // namespace sf::apps

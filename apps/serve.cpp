@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <optional>
 #include <variant>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "apps/commands.h"
 #include "apps/facts.h"
@@ -17,6 +20,7 @@
 #include "apps/wire_names.h"
 #include "apps/wording.h"
 #include "netio/inbox.h"
+#include "netio/log.h"
 #include "netio/relay.h"
 #include "robots/fleet.h"
 
@@ -36,11 +40,14 @@ class Service {
                 .robots = ids_of(names_.robots),
                 .tags = ids_of(names_.tags)}),
         answers_(inbox_.socket()),
-        relay_(ids_of(names_.robots)),
+        relay_(ids_of(names_.robots), {.range = options.radio}),
         post_(world, roster, options),
         farm_(world, device, farm::FarmOptions{.seed = options.seed, .true_poses = false}),
         fleet_(world),
-        no_return_(roster, options.no_return_inf) {
+        no_return_(roster, options.no_return_inf),
+        forget_(options.forget > 0.0 ? std::max<std::int64_t>(0, std::llround(1e9 * options.forget) - netio::kSilence)
+                                     : kNever),
+        last_heard_(world.movers.size(), kNever) {
     reports_.reserve(netio::Inbox::kMaxPerReceive);
   }
 
@@ -60,7 +67,10 @@ class Service {
 
   void tick(std::int64_t now) {
     take_in(now);
-    for (const auto& [id, row] : names_.robots) farm_.hear(row, wanted(id, now));
+    for (const auto& [id, row] : names_.robots) {
+      forget_silent(id, row, now);
+      farm_.hear(row, wanted(id, now));
+    }
     const auto readings = no_return_.apply(farm_.tick(now, fleet_.predict(now)));
     for (const base::ReadingBlock& reading : readings) {
       // A reading that was on its way when its robot fell silent has nobody to go to.
@@ -81,14 +91,16 @@ class Service {
       if (const auto* state = std::get_if<netio::V2v>(&packet.body)) {
         reports_.push_back(netio::report(packet.header, *state, names_.robots.at(packet.header.robot)));
       } else if (const auto* tag = std::get_if<netio::Tag>(&packet.body)) {
-        reports_.push_back(netio::report(packet.header, *tag, names_.tags.at(packet.header.robot)));
+        const std::uint32_t row = names_.tags.at(packet.header.robot);
+        reports_.push_back(netio::report(packet.header, *tag, row, world_.movers[row].X_MT));
       } else {
         return;
       }
       // Senders' clocks are their own: a state is true when it arrives.
       reports_.back().time = now;
     };
-    inbox_.receive(now, take, [&](const netio::Packet& packet, const netio::Endpoint& who) { complain(packet, who); });
+    inbox_.receive(now, take,
+                   [&](const netio::Packet& packet, const netio::Endpoint& who) { complain(packet, who, now); });
     fleet_.apply(reports_);
   }
 
@@ -102,6 +114,7 @@ class Service {
     facts.post = post_.counts();
     facts.inbox = inbox_.counts();
     facts.relayed = relay_.counts();
+    facts.lines_left_out = log_.left_out();
     return facts;
   }
 
@@ -114,21 +127,33 @@ class Service {
     return kinds;
   }
 
+  /// A robot that spoke once and is silent now is taken out of the world until it speaks again.
+  void forget_silent(std::uint32_t id, std::uint32_t row, std::int64_t now) {
+    std::int64_t& last = last_heard_[row];
+    const bool heard = inbox_.heard(id, now);
+    const bool gone = !heard && forget_ != kNever && last != kNever && now - last >= forget_;
+    if (heard) last = now;
+    farm_.set_gone(row, gone);
+    fleet_.set_gone(row, gone);
+  }
+
   /// Of each binding's strangers, once.
-  void complain(const netio::Packet& packet, const netio::Endpoint& who) {
+  void complain(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now) {
     const bool tag = std::holds_alternative<netio::Tag>(packet.body);
     const std::uint32_t id = packet.header.robot;
     const netio::Endpoint bound = *(tag ? inbox_.tag_address(id) : inbox_.address(id));
     auto& said = (tag ? said_of_tags_ : said_of_robots_)[id];
     if (said == bound) return;
     said = bound;
-    std::fprintf(
-        stderr,
-        "sensorfarm: %s (%s %u) is heard from %s; what %s says as the same is dropped until that one leaves or "
-        "is silent for 2 s\n",
-        world_.movers[(tag ? names_.tags : names_.robots).at(id)].name.c_str(), tag ? "tag" : "id", id,
-        netio::text(bound).c_str(), netio::text(who).c_str());
+    log_.line(
+        fmt::format("{} ({} {}) is heard from {}; what {} says as the same is dropped until that one leaves or is "
+                    "silent for 2 s",
+                    world_.movers[(tag ? names_.tags : names_.robots).at(id)].name, tag ? "tag" : "id", id,
+                    netio::text(bound), netio::text(who)),
+        now);
   }
+
+  static constexpr std::int64_t kNever = -1;
 
   const world::World& world_;
   const sensors::Roster& roster_;
@@ -141,6 +166,9 @@ class Service {
   robots::Fleet fleet_;
   NoReturn no_return_;
   std::vector<base::Report> reports_;
+  std::int64_t forget_;                   ///< [ns] since it was last heard, or kNever
+  std::vector<std::int64_t> last_heard_;  ///< [ns] per mover
+  netio::Log log_;
   // By id: the binding whose strangers were spoken of.
   std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_robots_;
   std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_tags_;

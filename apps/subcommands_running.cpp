@@ -44,6 +44,14 @@ void add_run(CLI::App& app, Options& o) {
   sub->callback([&o] { o.command = Command::run; });
 }
 
+void add_forget(CLI::App& app, Options& o) {
+  app.add_option("--forget", o.forget,
+                 "A robot that is silent for so long, 2 s at least, is no obstacle any more [s] (0: it stays)")
+      ->check(number(0.0, 1e9))
+      ->type_name("S")
+      ->capture_default_str();
+}
+
 void add_serve(CLI::App& app, Options& o) {
   CLI::App* sub =
       app.add_subcommand("serve", "Virtual sensors for robots that live elsewhere: V2V packets in, sensor packets out");
@@ -62,6 +70,11 @@ void add_serve(CLI::App& app, Options& o) {
   sub->add_option("--rate", o.rate, "Ticks per second (default: the world's interval_sim)")
       ->check(number(0.1, 10000.0))
       ->type_name("HZ");
+  sub->add_option("--radio", o.radio, "How far a robot's V2V is passed on to others [m]")
+      ->check(number(0.0, 1e9))
+      ->type_name("M")
+      ->capture_default_str();
+  add_forget(*sub, o);
   add_seed(*sub, o, "Seed of noise");
   add_until(*sub, o, Command::serve, "Stop after this long [s] (0: when told to)");
 }
@@ -103,6 +116,11 @@ void add_robot(CLI::App& app, Options& o) {
   sub->add_option("--rate", o.rate, "Decisions, and packets, per second (default: the controller's own)")
       ->check(number(0.1, 1000.0))
       ->type_name("HZ");
+  sub->add_option("--stop-after", o.stop_after, "Stand when no reading came for so long [s] (0: drive on)")
+      ->check(number(0.0, 1e9))
+      ->type_name("S")
+      ->capture_default_str();
+  add_forget(*sub, o);
   sub->add_flag("--wait-for-start", o.wait_for_start, "Stand until the start signal comes (`sensorfarm start`)");
   add_seed(*sub, o, "Seed of decisions and of the injected link");
   add_until(*sub, o, Command::robot, "Stop after this long [s] (0: when done or told to)");

@@ -118,6 +118,9 @@ std::string work_text(const RunFacts& f) {
   const sensors::Work& work = f.farm.work;
   std::string text = work.rays > 0 || work.dipoles == 0 ? rows("rays", work.rays) : "";
   if (work.dipoles > 0) text += rows("dipoles", work.dipoles);
+  if (work.host_scans > 0)
+    text += row("cast on the host",
+                fmt::format("{} scans: too many surfaces around them for the device's lists", work.host_scans));
   if (f.farm.again > 0)
     text += row("given again", fmt::format("{} of {} readings: nothing had moved", f.farm.again, f.farm.readings));
   return text;
@@ -161,7 +164,11 @@ std::string text_of(const RunFacts& f) {
   if (f.sent) text += packets_text(f.post);
   if (f.received) text += row("packets received", netio::text(f.inbox));
   if (f.relayed.states + f.relayed.starts > 0)
-    text += row("packets passed on", fmt::format("{} V2V, {} START", f.relayed.states, f.relayed.starts));
+    text += row("packets passed on", fmt::format("{} V2V in {}, {} START", f.relayed.states,
+                                                 counted(f.relayed.datagrams, "datagram"), f.relayed.starts));
+  if (f.relayed.waited > 0)
+    text += row("", counted(f.relayed.waited, "time") + " a robot had to wait for a turn: too many ask");
+  if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (!f.recording.empty())
     text += row("recording", fmt::format("{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6));
   text += row("time: move", stage(f.move_s));

@@ -49,6 +49,7 @@ struct Farm::State {
   std::vector<base::Pose> poses;     ///< per mover
   std::vector<base::Report> states;  ///< per mover
   std::vector<std::uint32_t> heard;  ///< per mover: bits of kinds
+  std::vector<std::uint8_t> gone;    ///< per mover
   std::vector<base::ReadingBlock> blocks;
   std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
   FarmStats stats;
@@ -63,7 +64,8 @@ struct Farm::State {
         batch(device),
         delivery(roster),
         moves(w),
-        heard(w.movers.size(), 0) {
+        heard(w.movers.size(), 0),
+        gone(w.movers.size(), 0) {
     for (const world::Mover& mover : w.movers) {
       states.push_back({.mover = static_cast<std::uint32_t>(poses.size()), .X_WM = mover.X_WM});
       poses.push_back(mover.X_WM);
@@ -94,7 +96,13 @@ bool Farm::State::find_due(std::int64_t now) {
 
 void Farm::State::move(std::span<const base::Report> reports) {
   moves.begin();
+  for (std::uint32_t m = 0; m < gone.size(); ++m) {
+    if (gone[m] == 0 || sensors::is_gone(poses[m])) continue;
+    moves.add(m, poses[m], sensors::kGone);
+    poses[m] = sensors::kGone;
+  }
   for (const base::Report& report : reports) {
+    if (gone.at(report.mover) != 0) continue;
     const base::Pose& X = report.X_WM;
     SF_CHECK(std::isfinite(X.x + X.y + X.yaw), "the pose of mover " + std::to_string(report.mover) + " is not finite");
     moves.add(report.mover, poses.at(report.mover), X);
@@ -174,7 +182,11 @@ Farm::Farm(const world::World& world, gpu::Device& device, const FarmOptions& op
 
 Farm::~Farm() = default;
 
-void Farm::hear(std::uint32_t mover, std::uint32_t kinds) { s_->heard.at(mover) = kinds; }
+void Farm::hear(std::uint32_t mover, std::uint32_t kinds) { s_->heard.at(mover) = s_->gone.at(mover) != 0 ? 0 : kinds; }
+void Farm::set_gone(std::uint32_t mover, bool is_gone) {
+  s_->gone.at(mover) = is_gone ? 1 : 0;
+  if (is_gone) s_->heard.at(mover) = 0;
+}
 void Farm::hear_all() { std::fill(s_->heard.begin(), s_->heard.end(), kAllKinds); }
 
 const sensors::Roster& Farm::roster() const { return s_->roster; }

@@ -61,6 +61,9 @@ class Farm {
   void hear(std::uint32_t mover, bool) = delete;
   void hear_all();
 
+  /// A mover that is gone is sensed by nobody, and not heard. When it is back, the first report says where it is.
+  void set_gone(std::uint32_t mover, bool gone);
+
   const sensors::Roster& roster() const;
 
   /// Computes every heard sensor that is due at `now` and returns what is delivered at `now` (latency may delay a

@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 
+#include "sensors/kind.h"
+
 namespace sf::farm {
 
 namespace {
@@ -38,8 +40,8 @@ void Moves::add(std::uint32_t mover, const base::Pose& from, const base::Pose& t
   flags_[mover] = true;
   magnets_ = magnets_ || !who.magnets.empty();
   if (who.body.empty()) return;
-  places_.push_back({from.x, from.y, who.radius});
-  places_.push_back({to.x, to.y, who.radius});
+  for (const base::Pose& X : {from, to})
+    if (!sensors::is_gone(X)) places_.push_back({X.x, X.y, who.radius});
   sorted_ = false;
 }
 

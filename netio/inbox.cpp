@@ -62,6 +62,8 @@ Reason Inbox::judge(const Packet& packet, const Endpoint& source, std::int64_t n
     case Type::start:
       return packet.header.robot == kEveryone || robots_.row(packet.header.robot) ? Reason::accepted
                                                                                   : Reason::unknown_robot;
+    case Type::neighbours:
+      break;
   }
   return Reason::wrong_direction;
 }

@@ -10,7 +10,6 @@ namespace sf::netio {
 
 namespace {
 
-constexpr std::size_t kV2vBytes = 68;
 constexpr std::size_t kTagBytes = 104;
 constexpr std::size_t kSubscribeBytes = 4;
 constexpr std::uint32_t kDockingBit = 1;
@@ -103,7 +102,7 @@ Reason read_body(std::span<const std::uint8_t> payload, Packet& packet) {
   Reason reason = Reason::accepted;
   switch (packet.header.type) {
     case Type::v2v:
-      reason = check_size(payload.size(), kV2vBytes);
+      reason = check_size(payload.size(), kV2vBytes - kHeaderBytes);
       return reason == Reason::accepted ? read_v2v(reader, packet) : reason;
     case Type::tag:
       reason = check_size(payload.size(), kTagBytes);
@@ -117,6 +116,10 @@ Reason read_body(std::span<const std::uint8_t> payload, Packet& packet) {
     case Type::leave:
       packet.body = Leave{};
       return check_size(payload.size(), 0);
+    case Type::neighbours:
+      packet.body = Neighbours{payload};
+      if (payload.size() > kMostNeighbours * kV2vBytes) return Reason::too_long;
+      return payload.empty() || payload.size() % kV2vBytes != 0 ? Reason::too_short : Reason::accepted;
   }
   if (kind_of(packet.header.type) == 0) return Reason::unknown_type;
   packet.body = Reading{payload};
@@ -220,6 +223,12 @@ void encode(const Header& header, const Subscribe& request, base::Bytes& out) {
 
 void encode(const Header& header, const Start&, base::Bytes& out) { start(header, Type::start, out); }
 void encode(const Header& header, const Leave&, base::Bytes& out) { start(header, Type::leave, out); }
+void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out) {
+  const std::size_t size = neighbours.states.size();
+  SF_CHECK(size > 0 && size % kV2vBytes == 0 && size <= kMostNeighbours * kV2vBytes, std::to_string(size) + " bytes");
+  start(header, Type::neighbours, out);
+  out.insert(out.end(), neighbours.states.begin(), neighbours.states.end());
+}
 
 void frame(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out) {
   SF_CHECK(kind_of(Type{type}) != 0, "type " + std::to_string(type) + " is no reading's");
@@ -232,14 +241,16 @@ base::Report report(const Header& header, const V2v& state, std::uint32_t mover)
   return {mover, header.time, state.X_WR, state.velocity};
 }
 
-base::Report report(const Header& header, const Tag& state, std::uint32_t mover) {
+base::Report report(const Header& header, const Tag& state, std::uint32_t mover, const base::Pose& X_MT) {
   const auto& [x, y, z, w] = state.orientation;
-  const double yaw = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
-  const base::Vec2 velocity = base::rotate(-yaw, {state.linear[0], state.linear[1]});
+  const double yaw = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)) - X_MT.yaw;
+  const base::Vec2 arm = base::rotate(yaw, {X_MT.x, X_MT.y});
+  const double turn = state.angular[2];
+  const base::Vec2 velocity = base::rotate(-yaw, {state.linear[0] + turn * arm.y, state.linear[1] - turn * arm.x});
   return {mover,
           header.time,
-          {state.position[0], state.position[1], state.position[2], yaw},
-          {velocity.x, velocity.y, state.angular[2]}};
+          {state.position[0] - arm.x, state.position[1] - arm.y, state.position[2] - X_MT.z, yaw},
+          {velocity.x, velocity.y, turn}};
 }
 
 }  // namespace sf::netio

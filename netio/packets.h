@@ -20,6 +20,7 @@ namespace sf::netio {
 inline constexpr std::array<std::uint8_t, 4> kMagic = {'S', 'F', 'P', 'K'};
 inline constexpr std::uint8_t kVersion = 1;
 inline constexpr std::size_t kHeaderBytes = 24;
+inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;
 inline constexpr std::size_t kMaxDatagram = 1400;    ///< [byte] no packet of ours is longer, so none is fragmented
 inline constexpr std::size_t kMaxPlain = 2046;       ///< [byte] but for the thesis' halves of a map
 inline constexpr std::uint32_t kMaxId = 0xFFFFu;     ///< of a robot, and of a sensor
@@ -33,7 +34,7 @@ inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 y
 
 /// From 128: states and requests sent to the farm, of which it passes V2V and START on. Below 64: a reading of the
 /// sensor kind with that number; 64 more: its second form.
-enum class Type : std::uint8_t { v2v = 128, tag = 129, subscribe = 130, start = 131, leave = 132 };
+enum class Type : std::uint8_t { v2v = 128, tag = 129, subscribe = 130, start = 131, leave = 132, neighbours = 140 };
 
 /// The sensor kind in [1, 63] whose readings, of either form, are sent as `type`; 0 when it is no reading's.
 constexpr std::uint8_t kind_of(Type type) {
@@ -90,6 +91,12 @@ struct Start {};
 /// A robot's last word: it will not be heard again, and its id is free.
 struct Leave {};
 
+/// The farm passes on what other robots said: whole V2V datagrams, one after another.
+struct Neighbours {
+  std::span<const std::uint8_t> states;  ///< kV2vBytes each, not looked into; lives as long as the datagram
+};
+inline constexpr std::size_t kMostNeighbours = (kMaxDatagram - kHeaderBytes) / kV2vBytes;  ///< of one datagram
+
 /// A sensor's reading, or a part of one; its kind reads it.
 struct Reading {
   std::span<const std::uint8_t> payload;  ///< lives as long as the datagram
@@ -97,7 +104,7 @@ struct Reading {
 
 struct Packet {
   Header header;
-  std::variant<V2v, Tag, Subscribe, Start, Leave, Reading> body;
+  std::variant<V2v, Tag, Subscribe, Start, Leave, Reading, Neighbours> body;
 };
 
 /// Reads any bytes. Fills `packet` only when the answer is Reason::accepted.
@@ -109,6 +116,8 @@ void encode(const Header& header, const Tag& state, base::Bytes& out);
 void encode(const Header& header, const Subscribe& request, base::Bytes& out);
 void encode(const Header& header, const Start& signal, base::Bytes& out);
 void encode(const Header& header, const Leave& word, base::Bytes& out);
+/// @param states 1 to kMostNeighbours of them
+void encode(const Header& header, const Neighbours& states, base::Bytes& out);
 
 /// A reading of type `type`, one of a sensor kind's two; replaces what `out` holds.
 /// Rule: header and payload together take at most kMaxDatagram.
@@ -117,9 +126,9 @@ void frame(const Header& header, std::uint8_t type, std::span<const std::uint8_t
 /// Appends the 24 bytes that every packet begins with.
 void put_header(const Header& header, base::ByteWriter& writer);
 
-/// The state of world mover `mover`, as the farm takes it in. A tag's tilt is left out; its velocity is turned into its
-/// frame.
+/// The state of world mover `mover`, as the farm takes it in. A tag's tilt is left out; its velocity is turned into the
+/// mover's frame. @param X_MT where the tag is mounted on the mover
 base::Report report(const Header& header, const V2v& state, std::uint32_t mover);
-base::Report report(const Header& header, const Tag& state, std::uint32_t mover);
+base::Report report(const Header& header, const Tag& state, std::uint32_t mover, const base::Pose& X_MT = {});
 
 }  // namespace sf::netio

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "netio/bindings.h"
@@ -36,17 +37,21 @@ class Radio {
   void send(std::span<const std::uint8_t> bytes);
 
   /// Gives `take(std::span<const std::uint8_t> bytes)` all that waits and comes from the farm, as far as it is no
-  /// flood. The rest is counted as Reason::wrong_source.
+  /// flood: NEIGHBOURS as the V2V that are in them. The rest is counted as Reason::wrong_source.
   template <class Take>
   void receive(Take&& take) {
     constexpr std::size_t kMost = 65'536;
     for (std::size_t taken = 0, n = 1; n > 0 && taken < kMost; taken += n) {
       n = batch_.fill(socket_);
       for (std::size_t i = 0; i < n; ++i) {
-        if (batch_.source(i) == options_.farm)
-          take(batch_.bytes(i));
-        else
+        if (batch_.source(i) != options_.farm) {
           counts_.add(Reason::wrong_source);
+          continue;
+        }
+        Packet packet;
+        const bool many = decode(batch_.bytes(i), packet) == Reason::accepted && packet.header.type == Type::neighbours;
+        if (!many) take(batch_.bytes(i));
+        if (many) each_state(std::get<Neighbours>(packet.body), take);
       }
     }
   }
@@ -63,6 +68,11 @@ class Radio {
   const Socket& socket() const { return socket_; }
 
  private:
+  template <class Take>
+  static void each_state(const Neighbours& neighbours, Take& take) {
+    for (std::size_t at = 0; at < neighbours.states.size(); at += kV2vBytes)
+      take(neighbours.states.subspan(at, kV2vBytes));
+  }
   Reason judge(const Packet& packet, std::int64_t now);
 
   RadioOptions options_;

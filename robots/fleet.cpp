@@ -52,6 +52,7 @@ Fleet::Fleet(const world::World& world)
   refused_.resize(count);
   struck_.resize(count);
   told_.resize(count);
+  gone_.resize(count);
   for (auto* memory : {&next_, &now_, &other_}) memory->resize(edges);
   neighbours_.build(reports_, 1.0);
 }
@@ -99,6 +100,7 @@ std::size_t Fleet::apply(std::span<const base::Report> reports) {
     SF_CHECK(report.mover < reports_.size(), "mover " + std::to_string(report.mover));
     if (report.time < reports_[report.mover].time) continue;
     reports_[report.mover] = report;
+    reports_[report.mover].X_WM.z = world_.movers[report.mover].X_WM.z;
     told_[report.mover] = 1;
     refused_[report.mover] = 0;
     ++taken;
@@ -124,7 +126,8 @@ void Fleet::feel_told() {
   reach_ = {kPressed, 0.0};
   neighbours_.build(predicted_, 4.0 * widest_ + 1e-3);
   for (std::uint32_t row = 0; row < predicted_.size(); ++row) {
-    if (told_[row] == 0) continue;
+    if (gone_[row] != 0) contacts_[row] = 0;
+    if (told_[row] == 0 || gone_[row] != 0) continue;
     if (!clear(row, predicted_)) predicted_[row].touched |= touch_of(row, predicted_).sectors;
     contacts_[row] = predicted_[row].touched != 0;
   }

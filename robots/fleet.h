@@ -46,10 +46,14 @@ class Fleet {
   void move(std::span<const base::Twist> commands, std::int64_t dt);
 
   /// Takes the states of movers that live elsewhere; what they touch is looked at in `predict`. A report older than
-  /// what is known of the mover is left out; one of the same time replaces it.
+  /// what is known of the mover is left out; one of the same time replaces it. Heights are those at load, whatever
+  /// reports say: the world is 2.5-D, for contacts as for sensors.
   /// @param reports finite, rows of movers that exist
   /// @return how many were taken
   std::size_t apply(std::span<const base::Report> reports);
+
+  /// A mover that is gone touches nobody, until it is back.
+  void set_gone(std::uint32_t row, bool gone) { gone_[row] = gone ? 1 : 0; }
 
   /// One per mover, in order of rows: the newest state. Yaw is in [-pi, pi] after `move`, as told after `apply`.
   /// A simulated mover's velocity is what it does at the end of the tick: 0 once stopped. Valid until the fleet is
@@ -99,6 +103,7 @@ class Fleet {
   std::vector<std::uint8_t> refused_;     ///< 1: a step in the last `move`
   std::vector<std::uint8_t> struck_;      ///< 1: someone was refused a step and touches it; 0 between calls
   std::vector<std::uint8_t> told_;        ///< 1: by a report, since the last `move`
+  std::vector<std::uint8_t> gone_;        ///< 1: nobody meets it
   std::vector<Edge> next_, now_, other_;  ///< memory of `place`
 };
 

@@ -15,7 +15,9 @@ using base::Twist;
 using base::Vec2;
 using world::Segment;
 
-constexpr double kGap = 4e-4;                     // [m] a refused mover stops no farther away than this
+constexpr double kGap = 4e-4;  // [m] a refused mover stops no farther away than this
+constexpr std::uint32_t kEverywhere = 0xFFFFFFFFu;
+static_assert(base::kTouchSectors == 32);
 constexpr double kYields[] = {1e-3, 2e-3, 4e-3};  // [m] that a turning body pushes itself off by
 
 Vec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }
@@ -120,7 +122,7 @@ bool Fleet::clear(std::uint32_t row, std::span<const base::Report> reports) cons
   });
   if (wall_near) return false;
   return !neighbours_.any(p, radius + widest_ + reach_.others, [&](std::uint32_t other) {
-    if (other == row || outlines_[other].edges.empty()) return false;
+    if (other == row || gone_[other] != 0 || outlines_[other].edges.empty()) return false;
     const Vec2 d = origin(reports[other].X_WM) - p;
     const double apart = radius + outlines_[other].radius;
     return dot(d, d) <= apart * apart;
@@ -133,7 +135,7 @@ bool Fleet::refused(std::uint32_t row, const Pose& X_WM) {
                                   [&](const Segment& wall) { return touches(next, wall) && !leaves(row, X_WM, wall); });
   if (by_wall) return true;
   return neighbours_.any(next.origin, next.radius + widest_ + reach_.others, [&](std::uint32_t row_other) {
-    if (row_other == row) return false;
+    if (row_other == row || gone_[row_other] != 0) return false;
     const Vec2 d = origin(reports_[row_other].X_WM) - next.origin;
     const double apart = next.radius + outlines_[row_other].radius;
     if (dot(d, d) > apart * apart * (1.0 + 1e-12)) return false;
@@ -167,12 +169,13 @@ Fleet::Touch Fleet::touch_of(std::uint32_t row, std::span<const base::Report> re
   neighbours_.any(p, reach + widest_ + reach_.others, [&](std::uint32_t other) {
     const Vec2 from_other = p - origin(reports[other].X_WM);
     const double apart = reach + outlines_[other].radius;
-    if (other == row || dot(from_other, from_other) > apart * apart) return false;
+    if (other == row || gone_[other] != 0 || dot(from_other, from_other) > apart * apart) return false;
     const std::uint32_t sectors = sectors_touched(outline, X_WM, outlines_[other], reports[other].X_WM);
     if (sectors == 0) return false;
     touch = {touch.sectors | sectors, touch.away + unit(from_other)};
     if (refused_[row] != 0) struck_[other] = 1;
-    return false;
+    // Who is told where it is only asks where it is touched: in a crowd at one place, soon everywhere.
+    return told_[row] != 0 && touch.sectors == kEverywhere;
   });
   return touch;
 }

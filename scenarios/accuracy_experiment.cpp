@@ -66,7 +66,8 @@ Outcome measure(const Bench& bench, const Test& test, const Scenario& scenario, 
     own.seed = bench.options.seed + k;
     world::World world = disturbed_world(own, {});
     sensors::set_accuracy(world, fmt::format("{}:{}", test.sensor, mode));
-    const Trial trial = run_trial(own, world, bench.device, {.maps = test.maps, .threads = bench.options.threads});
+    const Trial trial = run_trial(own, world, bench.device,
+                                  {.maps = test.maps, .threads = bench.options.threads, .stop = bench.options.stop});
     if (test.maps) add_map(reference, trial, share, outcome);
     const ThesisRow row = row_of(trial.errors.front());
     outcome.abs_error += share * row[4];

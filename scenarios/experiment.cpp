@@ -58,7 +58,15 @@ std::vector<Trial> run_trials(const Bench& bench, const TrialOptions& options) {
     TrialOptions own = options;
     own.threads = bench.options.threads;
     own.record = in_folder(bench, fmt::format("trial-{}", k + 1));
-    trials.push_back(run_trial(scenario, disturbed_world(scenario, options.disturbance), bench.device, own));
+    own.stop = bench.options.stop;
+    try {
+      trials.push_back(run_trial(scenario, disturbed_world(scenario, options.disturbance), bench.device, own));
+    } catch (const Interrupted&) {
+      std::error_code ignored;
+      std::filesystem::remove(std::filesystem::path(own.record) / "run.mcap", ignored);
+      std::filesystem::remove(own.record, ignored);  // unless the user has something there
+      throw;
+    }
   }
   return trials;
 }

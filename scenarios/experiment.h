@@ -21,6 +21,7 @@ struct ExperimentOptions {
   std::string folder;          ///< with the scenarios' files
   std::string out;             ///< folder to write into
   unsigned threads = 0;
+  std::function<bool()> stop;  ///< asked often; may be empty
 };
 
 struct ExperimentKind;
@@ -50,7 +51,8 @@ std::span<const ExperimentKind* const> experiments();
 const ExperimentKind* find_experiment(std::string_view name);
 
 /// Reads the scenario, runs, writes. @return the files written
-/// @throws base::InputError for a folder that cannot be written, or a scenario that cannot be run.
+/// @throws base::InputError for a folder that cannot be written, or a scenario that cannot be run; Interrupted when
+/// `options.stop` says so: trials that were whole by then are kept, nothing else is written.
 std::vector<std::string> run_experiment(const ExperimentKind& kind, const ExperimentOptions& options,
                                         gpu::Device& device,
                                         const std::function<void(double, const std::string&)>& progress);

@@ -23,10 +23,11 @@ world::World with_free_others(world::World world, std::uint32_t mover) {
 
 }  // namespace
 
-RobotBody::RobotBody(const world::World& world, std::uint32_t mover)
+RobotBody::RobotBody(const world::World& world, std::uint32_t mover, std::int64_t forget)
     : world_(with_free_others(world, mover)),
       fleet_(world_),
       mover_(mover),
+      forget_(forget),
       told_(world.movers.size()),
       commands_(world.movers.size()) {
   trail_[0].X_WM = state().X_WM;
@@ -36,15 +37,18 @@ void RobotBody::hear(std::uint32_t mover, const base::Pose& X_WM, const base::Tw
   // The fleet's time is what its moves added up to, a little behind: as the newest word it has that time.
   const base::Report report{mover, fleet_.reports()[mover].time, X_WM, velocity};
   fleet_.apply({&report, 1});
-  told_[mover] = {velocity, now + robots::kCoast};
+  fleet_.set_gone(mover, false);
+  told_[mover] = {velocity, now + robots::kCoast, forget_ > 0 ? now + forget_ : kNever};
 }
 
 void RobotBody::move(const base::Twist& command, std::int64_t now) {
   const std::int64_t dt = std::min(now - time_, robots::kCoast);
   time_ = now;
   if (dt <= 0) return;
-  for (std::size_t m = 0; m < told_.size(); ++m)
+  for (std::uint32_t m = 0; m < told_.size(); ++m) {
     commands_[m] = now < told_[m].until ? told_[m].velocity : base::Twist{};
+    if (now >= told_[m].gone) fleet_.set_gone(m, true);
+  }
   commands_[mover_] = command;
   const base::Pose before = state().X_WM;
   fleet_.move(commands_, dt);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "base/report.h"
@@ -15,7 +16,8 @@ namespace sf::scenarios {
 class RobotBody {
  public:
   /// @param mover its row; all begin where they are at load
-  RobotBody(const world::World& world, std::uint32_t mover);
+  /// @param forget [ns] a robot that spoke, and was silent for so long, is in nobody's way any more; 0: it stays
+  RobotBody(const world::World& world, std::uint32_t mover, std::int64_t forget = 0);
 
   /// Another robot says where it is; it came now.
   void hear(std::uint32_t mover, const base::Pose& X_WM, const base::Twist& velocity, std::int64_t now);
@@ -32,9 +34,11 @@ class RobotBody {
   base::Pose pose_at(std::int64_t time) const;
 
  private:
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
   struct Told {
     base::Twist velocity;
-    std::int64_t until = 0;  ///< [ns]
+    std::int64_t until = 0;      ///< [ns]
+    std::int64_t gone = kNever;  ///< [ns] when it is forgotten
   };
   struct Been {
     std::int64_t time = 0;  ///< [ns]
@@ -45,6 +49,7 @@ class RobotBody {
   world::World world_;  ///< a copy: others move as they say they do, whatever stands between their commands and them
   robots::Fleet fleet_;
   std::uint32_t mover_;
+  std::int64_t forget_;                ///< [ns]; 0: nobody is forgotten
   std::vector<Told> told_;             ///< per mover
   std::vector<base::Twist> commands_;  ///< per mover
   std::array<Been, 256> trail_;

@@ -1,5 +1,7 @@
 #include "scenarios/run_info.h"
 
+#include <filesystem>
+
 #include "sensors/accuracy.h"
 namespace sf::scenarios {
 
@@ -26,7 +28,7 @@ void add_kinds(const sensors::Roster& roster, record::RunInfo& info) {
 
 record::RunInfo run_info(const world::World& world, const sensors::Roster& roster, const RunSettings& settings) {
   record::RunInfo info;
-  info.world = world.name.empty() ? world.file : world.name;
+  info.world = world.name.empty() ? std::filesystem::path(world.file).filename().string() : world.name;
   info.world_hash = world.hash;
   info.seed = settings.seed;
   info.mode = sensors::modes_of(roster);

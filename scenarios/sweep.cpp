@@ -74,7 +74,8 @@ void measure(const Bench& bench, Point& point) {
         if (point.setting.one_ray) set_number(sensor, "samples", 1.0), set_number(sensor, "fov", 0.0);
       }
     world::finish(world);
-    const Trial trial = run_trial(scenario, world, bench.device, {.threads = bench.options.threads});
+    const Trial trial =
+        run_trial(scenario, world, bench.device, {.threads = bench.options.threads, .stop = bench.options.stop});
     rows.push_back(row_of(trial.errors.front()));
     point.seconds += trial.simulated / bench.options.trials;
     point.all_done = point.all_done && trial.done;

@@ -138,6 +138,7 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
   const auto ticks = std::llround(scenario.duration / world.interval);
   std::int64_t tick = 0;
   for (; tick < ticks && !simulation.all_done(); ++tick) {
+    if (options.stop && options.stop()) throw Interrupted();
     const base::TickRecord record = simulation.step();
     watch.look(record);
     keeper.look(record, simulation);

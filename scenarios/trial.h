@@ -2,6 +2,8 @@
 // One run of an experiment: a scenario, disturbed a little by its seed, kept whole.
 
 #include <cstdint>
+#include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -51,12 +53,19 @@ struct TrialOptions {
   bool maps = false;
   SupervisorPlan supervisor;  ///< unless told, nobody
   unsigned threads = 0;
+  std::function<bool()> stop;  ///< asked each tick; may be empty
+};
+
+/// Somebody stopped it.
+struct Interrupted : std::runtime_error {
+  Interrupted() : std::runtime_error("interrupted") {}
 };
 
 /// The scenario's world with the disturbance that belongs to its seed.
 world::World disturbed_world(const Scenario& scenario, const Disturbance& disturbance);
 
 /// Until all are done, or the scenario's duration.
+/// @throws Interrupted when `options.stop` says so; the recording then ends with the last whole tick.
 Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device& device, const TrialOptions& options);
 
 }  // namespace sf::scenarios

@@ -31,7 +31,7 @@ struct Verification {
   std::uint64_t missing = 0;         ///< recorded readings that this device was not due to make
   std::vector<std::string> skipped;  ///< kinds that cannot be computed again, and why
   bool interrupted = false;          ///< not all ticks were looked at
-  bool sound() const;                ///< something was compared, and nothing differs
+  bool sound() const;                ///< something was compared, or there was nothing to compare; and nothing differs
 };
 
 struct VerifyOptions {

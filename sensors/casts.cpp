@@ -13,7 +13,7 @@ const std::vector<Fan>& Casts::fans() const { return t_->fans; }
 const BeamPlan& Casts::plan(std::uint32_t fan) const { return t_->fan_rows[fan].plan; }
 Work Casts::work() const {
   const Scene::Counts scene = t_->scene.counts();
-  return {t_->rays, t_->doubts_seen, scene.cells_built, 0, scene.movers_near, scene.movers_met};
+  return {t_->rays, t_->doubts_seen, scene.cells_built, 0, scene.movers_near, scene.movers_met, t_->host_scans};
 }
 
 void Casts::place(std::span<const Pose> poses) { t_->scene.place(poses); }
@@ -49,6 +49,10 @@ bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses) {
       for (std::size_t i = first; i < last; ++i)
         if (t.fan_rows[t.due[i].row].turns) t.turn_beams(t.due[i], thread);
     });
+  t.find_for_host();
+  t.workers.run(t.for_host.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
+    for (std::size_t i = first; i < last; ++i) t.cast_for_host(t.for_host[i], thread);
+  });
   const bool again = replaced || !t.bound;
   if (again) t.bind();
   return again;
@@ -74,6 +78,13 @@ void Casts::copies(gpu::Batch& batch, bool results) {
     batch.up(*t.middles, 0, t.middles->bytes());
     batch.up(*t.directions64, 0, t.directions64->bytes());
     t.beams_changed = false;
+  }
+  for (const std::uint32_t i : t.for_host) {
+    const FanRow& row = t.fan_rows[t.due[i].row];
+    const std::size_t lanes = row.plan.lanes();
+    batch.up(*t.ranges, 32 * std::size_t{row.out}, 32 * lanes);
+    batch.up(*t.hits, 16 * std::size_t{row.out}, 16 * lanes);
+    batch.up(*t.verdicts, 4 * std::size_t{row.out}, 4 * lanes);
   }
   batch.down(*t.verdicts, 0, t.verdicts->bytes());
   if (!results) return;

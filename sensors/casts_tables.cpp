@@ -34,6 +34,7 @@ Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<F
       fans(std::move(f)) {
   plan(world);
   turned.resize(workers.threads());
+  host_casts.resize(workers.threads());
   std::uint32_t beam_lanes = 0;
   std::map<BeamKey, std::uint32_t> shared;
   for (std::size_t i = 0; i < fans.size(); ++i) {
@@ -66,6 +67,7 @@ void Casts::Tables::plan(const world::World& world) {
     any_turns = any_turns || row.turns;
     row.out = out_lanes;
     out_lanes += row.plan.lanes();
+    spare_lanes = std::max(spare_lanes, row.plan.lanes());
     fan_rows.push_back(std::move(row));
   }
 }
@@ -84,10 +86,10 @@ void Casts::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) {
       std::make_unique<gpu::Buffer>(device, "middles of lanes", Role::upload, Texel::f32, std::size_t{beam_lanes} + 1);
   directions64 = std::make_unique<gpu::Buffer>(device, "beams in 64 bits", Role::upload, Texel::u32x4,
                                                4 * std::size_t{beam_lanes} + 4);
-  ranges =
-      std::make_unique<gpu::Buffer>(device, "ranges", Role::download, Texel::u32x4, 2 * std::size_t{out_lanes} + 2);
-  hits = std::make_unique<gpu::Buffer>(device, "hits", Role::download, Texel::u32x4, std::size_t{out_lanes} + 1);
-  verdicts = std::make_unique<gpu::Buffer>(device, "verdicts", Role::download, Texel::u32, std::size_t{out_lanes} + 1);
+  const std::size_t results = std::size_t{out_lanes} + std::max(spare_lanes, 1u);
+  ranges = std::make_unique<gpu::Buffer>(device, "ranges", Role::download, Texel::u32x4, 2 * results);
+  hits = std::make_unique<gpu::Buffer>(device, "hits", Role::download, Texel::u32x4, results);
+  verdicts = std::make_unique<gpu::Buffer>(device, "verdicts", Role::download, Texel::u32, results);
 }
 
 void Casts::Tables::make_pass(gpu::Device& device, CastPass& pass, bool is_single) {
@@ -156,6 +158,42 @@ void Casts::Tables::write_lanes(CastPass& pass, bool is_single) {
   counts[0] = across;
   counts[1] = down;
   counts[2] = across > 0 ? 1 : 0;
+}
+
+void Casts::Tables::find_for_host() {
+  for_host.clear();
+  const auto ray_rows = rows->host<RayRow>();
+  for (std::uint32_t i = 0; i < due.size(); ++i) {
+    if (!scene.is_for_host(i)) continue;
+    for_host.push_back(i);
+    ray_rows[i].out = out_lanes;
+  }
+  host_scans += for_host.size();
+}
+
+/// Casts the i-th due fan and writes its results where kernels look for them.
+void Casts::Tables::cast_for_host(std::uint32_t i, unsigned thread) {
+  const FanRow& row = fan_rows[due[i].row];
+  const RayRow& ray = rows->host<RayRow>()[i];
+  const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{row.out};
+  const std::size_t beams = SF_BEAMS_PER_LANE * std::size_t{row.plan.lanes()};
+  HostCast& cast = host_casts[thread];
+  scene.surfaces(views[i], thread, cast.surfaces);
+  cast_on_host({{ray.origin_x, ray.origin_y},
+                {ray.heading_cos64, ray.heading_sin64},
+                directions64->host<double>().subspan(8 * std::size_t{row.beams}, 2 * beams),
+                ray.range_min,
+                ray.range_max},
+               cast);
+  const auto models = scene.models().host<std::uint32_t>();
+  const auto lane_verdicts = verdicts->host<std::uint32_t>().subspan(row.out, row.plan.lanes());
+  std::fill(lane_verdicts.begin(), lane_verdicts.end(), 0u);
+  for (std::size_t k = 0; k < beams; ++k) {
+    const Decision& decision = cast.decisions[k];
+    ranges->host<double>()[first + k] = decision.range;
+    hits->host<std::uint32_t>()[first + k] = decision.id == SF_NO_HIT ? SF_NO_HIT : models[decision.id];
+    if (decision.grazes(ray.least_sine)) lane_verdicts[k / SF_BEAMS_PER_LANE] |= SF_GRAZES << k % SF_BEAMS_PER_LANE;
+  }
 }
 
 void Casts::Tables::bind(CastPass& pass) {

@@ -9,6 +9,7 @@
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
 #include "sensors/casts.h"
+#include "sensors/host_cast.h"
 
 namespace sf::sensors {
 
@@ -42,7 +43,11 @@ struct Casts::Tables {
   std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, that the passes' lanes hold
   std::vector<Viewpoint> views;
   std::vector<std::vector<double>> turned;  ///< scratch per thread
+  std::vector<HostCast> host_casts;         ///< scratch per thread
+  std::vector<std::uint32_t> for_host;      ///< due fans that the host casts
   std::uint32_t out_lanes = 0;
+  std::uint32_t spare_lanes = 0;  ///< behind all results: where the device writes what the host casts
+  std::uint64_t host_scans = 0;
   std::uint64_t rays = 0;
   std::uint64_t doubts_seen = 0;
   bool bound = false;
@@ -58,6 +63,8 @@ struct Casts::Tables {
   void write_lanes(CastPass& pass, bool is_single);
   void bind(CastPass& pass);
   void turn_beams(const Due& d, unsigned thread);
+  void find_for_host();
+  void cast_for_host(std::uint32_t i, unsigned thread);
   void bind();
   BeamTables beam_tables(std::uint32_t lane) const {
     return {directions->host<float>().data() + 8 * std::size_t{lane}, middles->host<float>().data() + lane,

@@ -5,6 +5,7 @@
 // SensorKind), shaders/x.comp (physics), tests/sensors/x_test.cpp (proof), and `farm_sensor(<wire id> x DEVICE)` in
 // sensors/CMakeLists.txt.
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -24,6 +25,10 @@
 namespace sf::sensors {
 
 using base::Pose;
+
+/// Poses of movers that are gone, which nobody senses, are not numbers.
+inline bool is_gone(const Pose& X_WM) { return std::isnan(X_WM.x); }
+inline constexpr Pose kGone{NAN, NAN, NAN, NAN};
 
 /// One way a kind can measure.
 struct Mode {
@@ -83,6 +88,7 @@ struct Work {
   std::uint64_t dipoles = 0;      ///< magnet and element pairs summed
   std::uint64_t movers_near = 0;  ///< pairs of a robot that looks and a mover within its range
   std::uint64_t movers_met = 0;   ///< of these, not hidden by nearer movers or walls, nor outside of its view
+  std::uint64_t host_scans = 0;   ///< fans of beams cast on the host: too many surfaces for the device's lists
 
   Work& operator+=(const Work& more);
   Work operator-(const Work& before) const;
@@ -90,13 +96,18 @@ struct Work {
 
 inline Work& Work::operator+=(const Work& more) {
   rays += more.rays, doubts += more.doubts, cells_built += more.cells_built, dipoles += more.dipoles;
-  movers_near += more.movers_near, movers_met += more.movers_met;
+  movers_near += more.movers_near, movers_met += more.movers_met, host_scans += more.host_scans;
   return *this;
 }
 
 inline Work Work::operator-(const Work& before) const {
-  return {rays - before.rays,       doubts - before.doubts,           cells_built - before.cells_built,
-          dipoles - before.dipoles, movers_near - before.movers_near, movers_met - before.movers_met};
+  return {rays - before.rays,
+          doubts - before.doubts,
+          cells_built - before.cells_built,
+          dipoles - before.dipoles,
+          movers_near - before.movers_near,
+          movers_met - before.movers_met,
+          host_scans - before.host_scans};
 }
 
 /// All sensors of one kind, a batch at a time. One thread.
@@ -107,7 +118,7 @@ class Instruments {
   /// Takes every mover's state, one per mover, each tick, whether something is due or not: for what adds up over time
   /// (wheels) or is told by the mover (what touches it). @param now [ns]
   virtual void follow(std::span<const base::Report>, std::int64_t /*now*/) {}
-  /// Takes this tick's poses, one per mover, before `prepare`, when something is due.
+  /// Takes this tick's poses, one per mover, before `prepare`, when something is due. Some may be gone (`is_gone`).
   virtual void place(std::span<const Pose>) {}
   /// Host work before the batch, also when nothing is due. @return true when the batch must be recorded again.
   virtual bool prepare(std::span<const Due> due, std::span<const Pose> poses) = 0;

@@ -11,32 +11,6 @@ namespace {
 
 using base::Vec2;
 
-struct Answer {
-  double range;  ///< [m]
-  std::uint32_t id = SF_NO_HIT;
-  std::uint32_t model = SF_NO_HIT;
-};
-
-/// shaders/lib/decide.glsl, in its order of operations.
-template <class Surface>
-void decide(const Surface& surface, Vec2 origin, Vec2 d, Answer& best) {
-  const ExactSegment& s = surface.at;
-  const double wax = s.ax - origin.x, way = s.ay - origin.y;
-  const double wbx = s.bx - origin.x, wby = s.by - origin.y;
-  const double side_a = d.x * way - d.y * wax;
-  const double side_b = d.x * wby - d.y * wbx;
-  const bool crosses = (side_a >= 0.0 && side_b <= 0.0) || (side_a <= 0.0 && side_b >= 0.0);
-  if (!crosses) return;
-  const double ex = s.bx - s.ax, ey = s.by - s.ay;
-  const double above = ex * way - ey * wax;
-  const double below = ex * d.y - ey * d.x;
-  if (below == 0.0) return;
-  const double t = above / below;
-  if (!(t > SF_TOUCH || (below > 0.0 && t >= -SF_TOUCH))) return;
-  const double range = std::max(t, 0.0);
-  if (range < best.range || (range == best.range && surface.id < best.id)) best = {range, surface.id, surface.model};
-}
-
 }  // namespace
 
 LaserReference::LaserReference(const world::World& world, std::uint64_t seed, bool noise)
@@ -46,14 +20,13 @@ LaserReference::LaserReference(const world::World& world, std::uint64_t seed, bo
 
 void LaserReference::place(std::span<const Pose> poses) { poses_.assign(poses.begin(), poses.end()); }
 
-std::vector<LaserReference::Surface> LaserReference::in_sight(std::uint32_t self, const Pose& X_WS,
-                                                              double range) const {
-  std::vector<Surface> surfaces;
+std::vector<LaserReference::Seen> LaserReference::in_sight(std::uint32_t self, const Pose& X_WS, double range) const {
+  std::vector<Seen> surfaces;
   const double reach = 1.001 * range + 1e-3;
   const auto add = [&](Vec2 a, Vec2 b, std::uint32_t id, std::uint32_t model) {
     const bool aside = std::max(a.x, b.x) < X_WS.x - reach || std::min(a.x, b.x) > X_WS.x + reach ||
                        std::max(a.y, b.y) < X_WS.y - reach || std::min(a.y, b.y) > X_WS.y + reach;
-    if (!aside) surfaces.push_back({{a.x, a.y, b.x, b.y}, id, model});
+    if (!aside) surfaces.push_back({{{a.x, a.y, b.x, b.y}, id}, model});
   };
   std::uint32_t id = 0;
   for (const world::Segment& s : world_.walls) {
@@ -82,7 +55,7 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t las
   std::vector<double> turns(noise_ && l.noise.angle_sigma > 0.0 ? plan.samples.size() : 0);
   draw_turns(l, plan, {seed_, base::Stream::angle_noise, mover, laser, sequence}, turns);
 
-  const std::vector<Surface> surfaces = in_sight(mover, scan.X_WS, l.range_max);
+  const std::vector<Seen> surfaces = in_sight(mover, scan.X_WS, l.range_max);
   const Vec2 heading{std::cos(scan.X_WS.yaw), std::sin(scan.X_WS.yaw)};
   std::vector<double> ranges(SF_BEAMS_PER_LANE * std::size_t{plan.lanes()});
   std::vector<std::uint32_t> hits(ranges.size());
@@ -90,10 +63,15 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t las
     const double bearing = world::bearing_of(l, plan.samples[k]) + (turns.empty() ? 0.0 : turns[k]);
     const Vec2 beam{std::cos(bearing), std::sin(bearing)};
     const Vec2 d{heading.x * beam.x - heading.y * beam.y, heading.y * beam.x + heading.x * beam.y};
-    Answer answer{l.range_max};
-    for (const Surface& surface : surfaces) decide(surface, {scan.X_WS.x, scan.X_WS.y}, d, answer);
-    ranges[plan.place(k)] = std::max(answer.range, l.range_min);
-    hits[plan.place(k)] = answer.model;
+    Decision nearest{l.range_max};
+    std::uint32_t model = SF_NO_HIT;
+    for (const Seen& seen : surfaces) {
+      const std::uint32_t before = nearest.id;
+      decide(seen.surface, {scan.X_WS.x, scan.X_WS.y}, d, nearest);
+      if (nearest.id != before) model = seen.model;
+    }
+    ranges[plan.place(k)] = std::max(nearest.range, l.range_min);
+    hits[plan.place(k)] = model;
   }
   shape_scan(cast, plan, {seed_, base::Stream::range_noise, mover, laser, sequence}, noise_,
              {ranges.data(), hits.data()}, scan.ranges, scan.hits);

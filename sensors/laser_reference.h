@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "sensors/decide.h"
 #include "sensors/kind.h"
-#include "sensors/scene/records.h"
 
 namespace sf::sensors {
 
@@ -34,12 +34,11 @@ class LaserReference {
   Scan scan(std::uint32_t mover, std::uint32_t laser, std::uint64_t sequence) const;
 
  private:
-  struct Surface {
-    ExactSegment at;
-    std::uint32_t id;  ///< walls first, then movers' edges: the smaller wins a tie
+  struct Seen {
+    Surface surface;
     std::uint32_t model;
   };
-  std::vector<Surface> in_sight(std::uint32_t self, const Pose& X_WS, double range) const;
+  std::vector<Seen> in_sight(std::uint32_t self, const Pose& X_WS, double range) const;
 
   const world::World& world_;
   std::uint64_t seed_;

@@ -82,6 +82,9 @@ std::uint32_t add_mover(Building& b, const Entity& entity, const Model& model, s
   mover.model = static_cast<std::uint32_t>(b.world.models.size());
   mover.X_WM = model.X_WM;
   mover.is_tag = link && link->is_tag;
+  mover.X_MT = pose(b.source, entity, "tag_pose");
+  if (const auto* mount = find(entity, "tag_pose"); mount != nullptr && !mover.is_tag)
+    warn(b.source, mount->at, "'tag_pose' is left out: only a model that is named tag<N> follows a tag");
   mover.drive = drive_of(b.source, entity);
   mover.command_law = command_law_of(b.source, entity);
   mover.wheelbase = above_zero(b.source, entity, "wheelbase", mover.wheelbase);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <initializer_list>
 
 #include "base/bytes.h"
@@ -122,16 +123,42 @@ void get_extras(base::ByteReader& in, World& world) {
 
 }  // namespace
 
+namespace {
+
+/// Files are named from the world file's folder: how its path was spelt says nothing about the world.
+struct Spelling {
+  std::filesystem::path folder;
+
+  std::string operator()(const std::string& file) const {
+    const auto path = std::filesystem::path(file).lexically_normal();
+    const std::string own = path.lexically_relative(folder).string();
+    return file.empty() || own.empty() ? file : own;
+  }
+  Mover operator()(Mover mover) const {
+    for (Laser& laser : mover.lasers) laser.accuracy.file = (*this)(laser.accuracy.file);
+    for (Sensor& sensor : mover.sensors) {
+      sensor.file = (*this)(sensor.file);
+      for (Setting& setting : sensor.settings) setting.file = (*this)(setting.file);
+    }
+    return mover;
+  }
+};
+
+}  // namespace
+
 std::vector<std::uint8_t> snapshot(const World& world) {
+  const Spelling spelt{std::filesystem::path(world.file).parent_path().lexically_normal()};
   std::vector<std::uint8_t> bytes;
   base::ByteWriter out(bytes);
   out.put(kMagic);
   out.put(kVersion);
   out.put_string(world.name);
-  out.put_string(world.file);
+  out.put_string(spelt(world.file));
   out.put(world.road_resolution);
   out.put(world.magnet_cutoff);
-  put(out, world.accuracy, Rows::all);
+  Accuracy accuracy = world.accuracy;
+  accuracy.file = spelt(accuracy.file);
+  put(out, accuracy, Rows::all);
   out.put(world.interval);
   out.put(static_cast<std::uint32_t>(world.models.size()));
   for (const Model& model : world.models) put(out, model, Rows::all);
@@ -140,13 +167,13 @@ std::vector<std::uint8_t> snapshot(const World& world) {
   for (const Stripe& stripe : world.stripes) put(out, stripe, Rows::all);
   put_rows(out, world.magnets);
   out.put(static_cast<std::uint32_t>(world.movers.size()));
-  for (const Mover& mover : world.movers) put(out, mover, Rows::all);
+  for (const Mover& mover : world.movers) put(out, spelt(mover), Rows::all);
   put_rows(out, world.paths);
   put_rows(out, world.lights);
   put_rows(out, world.emitters);
   put_rows(out, world.drops);
   out.put(static_cast<std::uint32_t>(world.road_files.size()));
-  for (const std::string& file : world.road_files) out.put_string(file);
+  for (const std::string& file : world.road_files) out.put_string(spelt(file));
   out.put(static_cast<std::uint32_t>(world.kept.size()));
   for (const auto& [type, count] : world.kept) {
     out.put_string(type);
@@ -154,7 +181,7 @@ std::vector<std::uint8_t> snapshot(const World& world) {
   }
   out.put(static_cast<std::uint32_t>(world.warnings.size()));
   for (const Warning& warning : world.warnings) {
-    out.put_string(warning.file);
+    out.put_string(spelt(warning.file));
     out.put(static_cast<std::int32_t>(warning.line));
     out.put_string(warning.message);
   }

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "sensors/field/field_tables.h"
+#include "sensors/kind.h"
 #include "shaders/magnetometer.comp.h"
 #include "shaders/magnetometer_magnitudes.comp.h"
 
@@ -85,6 +86,7 @@ void MagneticField::place(std::span<const Pose> poses) {
   t.moving_rows.clear();
   for (std::size_t m = 0; m < t.world.movers.size(); ++m) {
     const world::Mover& mover = t.world.movers[m];
+    if (is_gone(poses[m])) continue;
     for (const world::Magnet& magnet : mover.magnets) {
       const Vec2 p = base::transform(poses[m], magnet.p);
       t.moving_places.push_back(p);

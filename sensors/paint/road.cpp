@@ -67,7 +67,7 @@ RoadRow Road::row_of(std::size_t i) const {
   r.y = static_cast<float>(y - std::floor(y));
   r.heading_cos = ray.heading_cos64;
   r.heading_sin = ray.heading_sin64;
-  r.lane = ray.out;
+  r.lane = casts_.results(i).lane;
   r.beams = ray.beams;
   r.flags = with_casts_ ? SF_EDGE_CAST : 0u;
   r.reach = static_cast<float>(ray.range_max / cell_);

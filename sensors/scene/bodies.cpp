@@ -68,10 +68,11 @@ void Bodies::place(std::span<const Pose> poses, base::Workers& workers) {
 }
 
 void Bodies::index() {
-  if (poses_.empty()) return;
-  Vec2 high{poses_[0].x, poses_[0].y};
+  const auto somewhere = std::find_if(poses_.begin(), poses_.end(), [](const Pose& X) { return !std::isnan(X.x); });
+  Vec2 high = somewhere == poses_.end() ? Vec2{} : Vec2{somewhere->x, somewhere->y};
   low_ = high;
   for (const Pose& X : poses_) {
+    if (std::isnan(X.x)) continue;
     low_ = {std::min(low_.x, X.x), std::min(low_.y, X.y)};
     high = {std::max(high.x, X.x), std::max(high.y, X.y)};
   }
@@ -83,13 +84,13 @@ void Bodies::index() {
            static_cast<std::size_t>((X.x - low_.x) / cell_);
   };
   cell_first_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
-  // Movers that no beam can meet are nobody's neighbours.
+  // Movers that no beam can meet, or that are gone, are nobody's neighbours.
   for (std::uint32_t i = 0; i < poses_.size(); ++i)
-    if (bodies_[i].count > 0) ++cell_first_[cell_of(poses_[i]) + 1];
+    if (is_met(i)) ++cell_first_[cell_of(poses_[i]) + 1];
   for (std::size_t i = 1; i < cell_first_.size(); ++i) cell_first_[i] += cell_first_[i - 1];
   cell_next_.assign(cell_first_.begin(), cell_first_.end() - 1);
   for (std::uint32_t i = 0; i < poses_.size(); ++i)
-    if (bodies_[i].count > 0) cell_items_[cell_next_[cell_of(poses_[i])]++] = i;
+    if (is_met(i)) cell_items_[cell_next_[cell_of(poses_[i])]++] = i;
 }
 
 template <class Visit>
@@ -109,7 +110,7 @@ void Bodies::each_near(Vec2 p, double reach, Visit visit) const {
 
 void Bodies::measure_clearances(std::size_t first, std::size_t last, Sight::Nearby& nearby) {
   for (std::size_t i = first; i < last; ++i) {
-    if (bodies_[i].count == 0) continue;
+    if (!is_met(i)) continue;
     const Vec2 p{poses_[i].x, poses_[i].y};
     double to_movers = kLookout;
     each_near(p, bodies_[i].radius + largest_ + kLookout, [&](std::uint32_t other) {
@@ -175,7 +176,7 @@ void Bodies::find_near(const View& view, Scratch& scratch) const {
   for (const Near& n : scratch.near) scratch.sorted[scratch.counts[step_of(n)]++] = n;
 }
 
-void Bodies::collect(const View& view, Scratch& scratch, SectorLists& lists, float clearances[SF_SECTORS]) const {
+bool Bodies::collect(const View& view, Scratch& scratch, SectorLists& lists, float clearances[SF_SECTORS]) const {
   lists.clear();
   std::fill(clearances, clearances + SF_SECTORS, std::numeric_limits<float>::infinity());
   find_near(view, scratch);
@@ -218,8 +219,20 @@ void Bodies::collect(const View& view, Scratch& scratch, SectorLists& lists, flo
       float& least = clearances[lists.items[at].sector];
       least = std::min(least, clearances_[n.body].walls);
     }
+    if (lists.items.size() > view.most) return false;
   }
   lists.sort();
+  return true;
+}
+
+void Bodies::gather(Vec2 p, double range, std::uint32_t height, std::uint32_t self, std::vector<Surface>& out) const {
+  each_near(p, range + largest_, [&](std::uint32_t number) {
+    const Body& body = bodies_[number];
+    if (number == self || length(Vec2{poses_[number].x, poses_[number].y} - p) > range + body.radius) return;
+    const double z = heights_[height].z - loaded_z_[number];
+    for (std::uint32_t row = body.first; row < body.first + body.count; ++row)
+      if (z >= local_[row].z_min && z < local_[row].z_max) out.push_back({segments_[row], wall_count_ + row});
+  });
 }
 
 void Bodies::add_body(const View& view, std::uint32_t number, double bearing, double wide, SectorLists& lists) const {
@@ -243,8 +256,9 @@ void Bodies::add_body(const View& view, std::uint32_t number, double bearing, do
     const double nearest = std::max(0.0, world::distance({}, a, b) - view.radius - 1e-6);
     if (nearest > view.range) continue;
     const auto add = [&](Vec2 from, Vec2 to) {
-      lists.candidates.push_back({from, to, nearest, wall_count_ + row});
-      if (near) return lists.add_everywhere();
+      const Candidate candidate{from, to, nearest, wall_count_ + row};
+      if (near) return lists.add_seen(candidate, view.radius + 1e-6, view.spread);
+      lists.candidates.push_back(candidate);
       if (wide < kTwoSectors || view.radius > 0.0)
         return lists.add_interval(bearing - with_spread, bearing + with_spread);
       const double bearing_a = std::atan2(a.y, a.x);

@@ -1,11 +1,13 @@
 #pragma once
 // Movers as obstacles: where their outlines are this tick, who is near whom, and what each sensor may meet of them.
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "base/parallel.h"
+#include "sensors/decide.h"
 #include "sensors/scene/depth.h"
 #include "sensors/scene/sectors.h"
 #include "world/world.h"
@@ -21,7 +23,7 @@ class Bodies {
  public:
   Bodies(const world::World& world, const Sight* any_wall);
 
-  /// Moves every outline to its mover's pose. One pose per mover.
+  /// Moves every outline to its mover's pose. One pose per mover; a mover whose x is not a number is nowhere.
   void place(std::span<const Pose> poses, base::Workers& workers);
 
   /// Exact outlines in the world frame, in order of id, as of the last `place`.
@@ -49,6 +51,7 @@ class Bodies {
     double spread = 0.0;           ///< [rad] as in CellShape
     std::uint32_t self = 0;        ///< mover that carries the sensor, and is never seen
     const Depth* depth = nullptr;  ///< of the walls at this height; none when the view lies in a solid
+    std::size_t most = SIZE_MAX;   ///< entries of all its lists together
   };
   /// Scratch of one thread.
   struct Near {
@@ -66,13 +69,17 @@ class Bodies {
   /// Collects what `view` may meet of other movers, and for each sector how near to walls any of it is,
   /// at least [m].
   /// Movers that nearer ones hide are left out.
-  void collect(const View& view, Scratch& scratch, SectorLists& lists, float clearances[SF_SECTORS]) const;
+  /// @return false, with lists that are not whole, when they would have more than `view.most` entries.
+  bool collect(const View& view, Scratch& scratch, SectorLists& lists, float clearances[SF_SECTORS]) const;
+  /// Adds every edge of other movers that may be met within `range` [m] of `p` at a height of `watch_height`.
+  void gather(Vec2 p, double range, std::uint32_t height, std::uint32_t self, std::vector<Surface>& out) const;
 
  private:
   struct Body {
     std::uint32_t first = 0, count = 0;  ///< rows of local_ and segments_
     double radius = 0.0;
   };
+  bool is_met(std::size_t body) const { return bodies_[body].count > 0 && !std::isnan(poses_[body].x); }
   void index();
   void measure_clearances(std::size_t first, std::size_t last, Sight::Nearby& nearby);
   void find_near(const View& view, Scratch& scratch) const;

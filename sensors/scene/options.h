@@ -10,6 +10,8 @@ namespace sf::sensors {
 struct SceneOptions {
   std::uint32_t pool_chunks = 1u << 20;  ///< 84 bytes each; memory is touched only as far as used
   std::uint32_t pool_cells = 1u << 14;
+  /// [chunks] of one sector: what has longer lists is cast on the host, where this is not above what the device bears.
+  std::uint32_t longest_list = 0xFFFFFFFFu;
 };
 
 }  // namespace sf::sensors

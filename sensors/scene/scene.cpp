@@ -34,12 +34,6 @@ std::vector<double> height_breaks(const std::vector<world::Segment>& walls) {
 
 }  // namespace
 
-void refuse_if_too_long(std::uint32_t chunks, std::uint32_t most, const char* what) {
-  if (chunks <= most) return;
-  throw base::InputError("more than " + std::to_string(most * SF_CHUNK) + " segments of " + what +
-                         " lie within range of one sensor in one direction; lower range_max or simplify the world");
-}
-
 Scene::Scene(const world::World& world, gpu::Device& device, base::Workers& workers, const SceneOptions& options,
              std::uint32_t carriers)
     : workers_(workers),
@@ -119,20 +113,38 @@ void Scene::place(std::span<const Pose> poses) {
 
 bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {
   replaced_ = false;
+  for_host_.assign(views.size(), 0);
   find_cells(views);
-  for (build_missing(); !missing_.empty(); build_missing())
-    grow(2 * options_.pool_cells + 64, 2 * options_.pool_chunks + 4096, view_capacity_, mover_chunks_);
-  workers_.run(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) fill_walls(views[i], i, rows[i]);
-  });
+  bool room = true;
+  for (build_missing(); !missing_.empty() && room && options_.pool_chunks < kMostPoolChunks; build_missing())
+    room = try_to_grow(2 * options_.pool_cells + 64, std::min(2 * options_.pool_chunks + 4096, kMostPoolChunks),
+                       mover_chunks_);
 
   find_groups(views);
   if (groups_.size() > view_capacity_)
     grow(options_.pool_cells, options_.pool_chunks, static_cast<std::uint32_t>(2 * groups_.size()), mover_chunks_);
-  while (!fill_some_movers(views))
-    grow(options_.pool_cells, options_.pool_chunks, view_capacity_, 2 * mover_chunks_used_);
+  room = true;
+  while (!fill_some_movers(views, room))
+    room = try_to_grow(options_.pool_cells, options_.pool_chunks, 2 * mover_chunks_used_);
+  workers_.run(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) fill_walls(views[i], i, rows[i]);
+  });
   name_movers(views, rows);
   return replaced_;
+}
+
+void Scene::surfaces(const Viewpoint& view, unsigned thread, std::vector<Surface>& out) {
+  const FamilyTables& family = *families_[view.family];
+  const Vec2 p{view.X_WS.x, view.X_WS.y};
+  const double range = family.family.range * (1.0 + 1e-6) + 1e-6;
+  Sight::Nearby& nearby = scratch_[thread]->nearby;
+  family.sight->near(p, range, nearby);
+  out.clear();
+  for (const std::uint32_t row : nearby.found) {
+    const SightSegment& s = family.sight->segments()[row];
+    out.push_back({{s.a.x, s.a.y, s.b.x, s.b.y}, s.row});
+  }
+  bodies_->gather(p, range, family.height, view.self, out);
 }
 
 Scene::Counts Scene::counts() const {

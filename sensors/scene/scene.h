@@ -52,6 +52,11 @@ class Scene {
   /// @return true when tables were replaced, so that kernels must be bound again.
   bool serve(std::span<const Viewpoint> views, std::span<RayRow> rows);
 
+  /// Whether the i-th view of the last `serve` has more surfaces than lists hold: its row names empty lists.
+  bool is_for_host(std::size_t i) const { return for_host_[i] != 0; }
+  /// All that `view` may meet. @param thread of the workers
+  void surfaces(const Viewpoint& view, unsigned thread, std::vector<Surface>& out);
+
   /// Names what changed since the last call for copying to the device.
   void upload(gpu::Batch& batch);
 
@@ -78,8 +83,9 @@ class Scene {
     std::size_t end;
     Vec2 origin;
     double radius;
-    bool in_solid;       ///< some view is
-    bool alone = false;  ///< no mover can be met: it shares the list of nobody
+    bool in_solid;          ///< some view is
+    bool alone = false;     ///< no mover can be met: it shares the list of nobody
+    bool for_host = false;  ///< too many are
   };
   struct Scratch;
 
@@ -92,10 +98,11 @@ class Scene {
   void forget_found();
   void fill_walls(const Viewpoint& view, std::size_t row, RayRow& out);
   bool fill_movers(std::span<const Viewpoint> views, std::span<RayRow> rows);
-  bool fill_some_movers(std::span<const Viewpoint> views);
-  void name_movers(std::span<const Viewpoint> views, std::span<RayRow> rows) const;
+  bool fill_some_movers(std::span<const Viewpoint> views, bool more_room);
+  void name_movers(std::span<const Viewpoint> views, std::span<RayRow> rows);
   void make_room(std::uint32_t carriers);
   void grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t views, std::uint32_t mover_chunks);
+  bool try_to_grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t mover_chunks);
   ListTables tables();
 
   base::Workers& workers_;
@@ -110,11 +117,13 @@ class Scene {
   std::unique_ptr<Sight> all_walls_;
   std::unique_ptr<Bodies> bodies_;
   CellPool pool_;
-  std::vector<std::uint8_t> uniform_;  ///< per slot: all of the cell is inside of solids, or all of it outside
-  std::vector<std::uint32_t> words_;   ///< of every exact segment, as lists call it
-  std::vector<float> own_clearances_;  ///< [m] of movers' segments: how near their own mover's others come
-  std::vector<CellKey> keys_;          ///< of this tick's views
-  std::vector<std::uint32_t> slots_;   ///< of this tick's views, where the pool had them already
+  std::vector<std::uint8_t> uniform_;   ///< per slot: all of the cell is inside of solids, or all of it outside
+  std::vector<std::uint8_t> too_long_;  ///< per slot: its lists are empty, since they would be too long
+  std::vector<std::uint8_t> for_host_;  ///< per view of this tick: its lists would be too long
+  std::vector<std::uint32_t> words_;    ///< of every exact segment, as lists call it
+  std::vector<float> own_clearances_;   ///< [m] of movers' segments: how near their own mover's others come
+  std::vector<CellKey> keys_;           ///< of this tick's views
+  std::vector<std::uint32_t> slots_;    ///< of this tick's views, where the pool had them already
   std::vector<CellKey> missing_;
   std::vector<Group> groups_;                      ///< of this tick's views
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread

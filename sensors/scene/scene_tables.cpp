@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/error.h"
 #include "sensors/scene/scene_parts.h"
 
 namespace sf::sensors {
@@ -30,9 +31,20 @@ void Scene::make_room(std::uint32_t carriers) {
        room(kEach.pool_chunks, kLeast.pool_chunks, most_.pool_chunks), 64, 4096);
 }
 
+/// @return false when the device has no room for more
+bool Scene::try_to_grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t mover_chunks) {
+  try {
+    grow(pool_cells, pool_chunks, view_capacity_, mover_chunks);
+    return true;
+  } catch (const base::DeviceError&) {
+    return false;
+  }
+}
+
 void Scene::grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t views, std::uint32_t mover_chunks) {
   const auto replace = [&](std::unique_ptr<gpu::Buffer>& table, const char* name, gpu::Texel texel,
                            std::size_t texels) {
+    replaced_ = upload_all_ = true;
     auto larger = std::make_unique<gpu::Buffer>(device_, name, gpu::Role::upload, texel, texels);
     if (table) std::memcpy(larger->host<std::uint8_t>().data(), table->host<std::uint8_t>().data(), table->bytes());
     table = std::move(larger);
@@ -49,10 +61,10 @@ void Scene::grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint3
   std::fill(nobody.begin(), nobody.end(), ListHeader{0, 0, std::numeric_limits<float>::infinity(), 0});
   pool_.grow(pool_cells, pool_chunks);
   uniform_.resize(pool_cells);
+  too_long_.resize(pool_cells);
   options_ = {pool_chunks, pool_cells};
   view_capacity_ = views;
   mover_chunks_ = mover_chunks;
-  replaced_ = upload_all_ = true;
 }
 
 void Scene::upload(gpu::Batch& batch) {

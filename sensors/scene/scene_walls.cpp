@@ -65,7 +65,6 @@ void Scene::build_missing() {
   std::mutex pool_lock;
   const ListTables out = tables();
   ListHeader* const headers = headers_->host<ListHeader>().data();
-  std::uint32_t longest = 0;
   std::atomic<bool> no_room{false};  // whoever comes later waits for the pool to grow
   workers_.run(missing_.size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
     Scratch& scratch = *scratch_[thread];
@@ -73,22 +72,26 @@ void Scene::build_missing() {
       const CellKey& key = missing_[i];
       const FamilyTables& family = *families_[static_cast<std::size_t>(key.family / 2)];
       collect(*family.sight, family.shape, centre_of(family, key), key.family % 2 == 1, scratch.nearby, scratch.lists);
+      const bool too_long = scratch.lists.longest() > std::min(kMostWallChunks, most_.longest_list);
+      if (too_long) {
+        scratch.lists.clear();
+        scratch.lists.sort();
+      }
       std::uint32_t slot;
       {
         const std::scoped_lock guard(pool_lock);
-        for (std::uint32_t s = 0; s < SF_SECTORS; ++s) longest = std::max(longest, scratch.lists.chunks(s));
-        slot = longest > kMostWallChunks ? CellPool::kNone : pool_.insert(key, scratch.lists.all_chunks());
+        slot = pool_.insert(key, scratch.lists.all_chunks());
         if (slot != CellPool::kNone) fresh_slots_.push_back(slot);
       }
       if (slot == CellPool::kNone) {
         no_room = true;
         break;
       }
+      too_long_[slot] = too_long ? 1 : 0;
       uniform_[slot] = is_uniform(family, centre_of(family, key), scratch.nearby) ? 1 : 0;
       write_lists(scratch.lists, pool_.first_chunk(slot), out, headers + std::size_t{SF_SECTORS} * slot);
     }
   });
-  refuse_if_too_long(longest, kMostWallChunks, "walls");
   forget_found();
 }
 
@@ -108,7 +111,10 @@ void Scene::fill_walls(const Viewpoint& view, std::size_t row, RayRow& out) {
   out.heading_sectors = static_cast<float>(sectors < 0.0 ? sectors + SF_SECTORS : sectors);
   out.band = static_cast<float>(SF_BAND * (family.shape.reach() + 2.0 * bodies_->largest_radius()));
   out.reach = static_cast<float>(family.family.range * (1.0 + 1e-6) + out.band);
-  out.wall_lists = SF_SECTORS * (slots_[row] != CellPool::kNone ? slots_[row] : pool_.slot_of(keys_[row]));
+  std::uint32_t slot = slots_[row] != CellPool::kNone ? slots_[row] : pool_.slot_of(keys_[row]);
+  for_host_[row] = slot == CellPool::kNone || too_long_[slot] != 0 ? 1 : 0;
+  if (slot == CellPool::kNone) slot = options_.pool_cells + view_capacity_;  // nobody's
+  out.wall_lists = SF_SECTORS * slot;
   out.origin_x = view.X_WS.x;
   out.origin_y = view.X_WS.y;
   out.range_max = family.family.range;

@@ -28,19 +28,6 @@ bool clip(Vec2& a, Vec2& b, double reach) {
   return true;
 }
 
-void add_seen(SectorLists& lists, const Candidate& candidate, double radius, double spread) {
-  lists.candidates.push_back(candidate);
-  const double distance_a = length(candidate.a);
-  const double distance_b = length(candidate.b);
-  if (candidate.nearest <= 0.0 || distance_a <= radius || distance_b <= radius) return lists.add_everywhere();
-  const double bearing_a = std::atan2(candidate.a.y, candidate.a.x);
-  const double bearing_b = bearing_a + std::atan2(cross(candidate.a, candidate.b), dot(candidate.a, candidate.b));
-  const double wide_a = std::asin(radius / distance_a) + spread;
-  const double wide_b = std::asin(radius / distance_b) + spread;
-  lists.add_interval(std::min(bearing_a - wide_a, bearing_b - wide_b),
-                     std::max(bearing_a + wide_a, bearing_b + wide_b));
-}
-
 }  // namespace
 
 void SectorLists::clear() {
@@ -60,6 +47,24 @@ void SectorLists::add_interval(double low, double high) {
 void SectorLists::add_everywhere() {
   const auto candidate = static_cast<std::uint32_t>(candidates.size() - 1);
   for (std::uint32_t sector = 0; sector < SF_SECTORS; ++sector) items.push_back({sector, candidate});
+}
+
+void SectorLists::add_seen(const Candidate& candidate, double radius, double spread) {
+  candidates.push_back(candidate);
+  const double distance_a = length(candidate.a);
+  const double distance_b = length(candidate.b);
+  if (candidate.nearest <= 0.0 || distance_a <= radius || distance_b <= radius) return add_everywhere();
+  const double bearing_a = std::atan2(candidate.a.y, candidate.a.x);
+  const double bearing_b = bearing_a + std::atan2(cross(candidate.a, candidate.b), dot(candidate.a, candidate.b));
+  const double wide_a = std::asin(radius / distance_a) + spread;
+  const double wide_b = std::asin(radius / distance_b) + spread;
+  add_interval(std::min(bearing_a - wide_a, bearing_b - wide_b), std::max(bearing_a + wide_a, bearing_b + wide_b));
+}
+
+std::uint32_t SectorLists::longest() const {
+  std::uint32_t most = 0;
+  for (std::uint32_t s = 0; s < SF_SECTORS; ++s) most = std::max(most, chunks(s));
+  return most;
 }
 
 void SectorLists::sort() {
@@ -97,10 +102,10 @@ void collect(const Sight& sight, const CellShape& shape, Vec2 centre, bool both_
     // The cell's signed distance from the segment's line: positive on its left.
     const Vec2 e = s.b - s.a;
     const double side = cross(e, centre - s.a) / length(e);
-    if (side < radius) add_seen(lists, candidate, radius, shape.spread);
+    if (side < radius) lists.add_seen(candidate, radius, shape.spread);
     if (side <= -radius || (s.solid_left && !both_sides)) continue;
     std::swap(candidate.a, candidate.b);
-    add_seen(lists, candidate, radius, shape.spread);
+    lists.add_seen(candidate, radius, shape.spread);
   }
   lists.sort();
 }

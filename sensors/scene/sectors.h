@@ -56,12 +56,15 @@ struct SectorLists {
   /// high.
   void add_interval(double low, double high);
   void add_everywhere();
+  /// Puts `candidate` into every sector in which a disc of `radius` [m] round the origin may see it.
+  void add_seen(const Candidate& candidate, double radius, double spread);
   /// Fills `order` and `first`.
   void sort();
   std::uint32_t chunks(std::uint32_t sector) const {
     return (first[sector + 1] - first[sector] + SF_CHUNK - 1) / SF_CHUNK;
   }
   std::uint32_t all_chunks() const;
+  std::uint32_t longest() const;  ///< [chunks] of one sector
 };
 
 /// Collects the lists of the cell around `centre`. With `both_sides`, viewpoints may lie inside solids.

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
 #include "tests/apps/program.h"
 
 namespace sf {
@@ -42,6 +47,28 @@ TEST(Experiment, WritesItsFolder) {
   for (const char* name : {"statistics.csv", "report.md", "trajectories.png", "errors.png", "trial-1/run.mcap"})
     EXPECT_FALSE(read_file(folder.path(std::string("out/") + name)).empty()) << name;
   EXPECT_EQ(count_lines(read_file(folder.path("out/statistics.csv"))), 2u);
+}
+
+TEST(Experiment, StoppedLeavesNoHalfTrial) {
+  const Folder folder;
+  Program program(
+      {"experiment", "mapping", "--trials", "50", "-o", folder.path("out"), "--files", SF_SOURCE_DIR "/experiments"});
+  const auto recording = [&] {
+    std::error_code ignored;
+    return std::filesystem::exists(folder.path("out/trial-1/run.mcap"), ignored);
+  };
+  for (int i = 0; i < 12'000 && program.running() && !recording(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ASSERT_TRUE(recording()) << program.err();
+  program.signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path("out/report.md")));
+  for (const auto& trial : std::filesystem::directory_iterator(folder.path("out"))) {
+    const Outcome verified = run_program({"verify", trial.path().string(), "--sample", "1"});
+    EXPECT_EQ(verified.code, 0) << trial.path() << verified.out << verified.err;
+  }
 }
 
 TEST(TestCommand, PassesFailsAndSaysWhy) {

@@ -1,6 +1,9 @@
 // `run --send` to `listen`, and `serve` to robots that live elsewhere, over loopback.
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
@@ -102,10 +105,15 @@ struct Service {
   Folder folder;
   std::string world = folder.write("room.world", kRoom);
   unsigned lasers = free_ports(24);
-  Program program{{"serve", world, "--port", "0", "--rate", "50", "--json", "--laser-port", std::to_string(lasers)}};
+  Program program;
   unsigned port = 0;
 
-  Service() {
+  static Words words(const std::string& world, unsigned lasers, const Words& more) {
+    Words all{"serve", world, "--port", "0", "--rate", "50", "--json", "--laser-port", std::to_string(lasers)};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  explicit Service(const Words& more = {}) : program(words(world, lasers, more)) {
     if (!program.says("; Ctrl-C ends it")) return;
     const std::string said = program.err();
     port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
@@ -253,7 +261,8 @@ TEST(Serve, RobotsReadWhatSenseReadsWhereTheySayTheyAre) {
   EXPECT_EQ(facts.number("/robots"), 2);
   EXPECT_GE(facts.number("/packets/sent"), 1);
   EXPECT_GE(facts.number("/received/accepted"), 1);
-  EXPECT_EQ(facts.number("/rays"), 91 * facts.number("/readings")) << "one laser was computed, not two";
+  EXPECT_EQ(facts.number("/rays"), 91 * (facts.number("/readings") - facts.number("/given_again")))
+      << "one laser was computed, not two";
 }
 
 TEST(Serve, RobotsSeeEachOther) {
@@ -271,6 +280,26 @@ TEST(Serve, RobotsSeeEachOther) {
   EXPECT_TRUE(seen) << testing::PrintToString(ranges);
 }
 
+/// The other spoke once; the wall behind it is seen once it is forgotten.
+TEST(Serve, ARobotThatFallsSilentIsGone) {
+  Service service({"--forget", "2"});
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
+  const double wall = sensed(service.world, "roomba1", "0,-0.5,0").at(45);
+  std::vector<double> ranges;
+  const auto reads = [&](double expected) {
+    one.say({0.0, -0.5, 0.0, 0.0});
+    ranges = one.hear();
+    return ranges.size() == 91 && std::fabs(ranges[45] - expected) <= 0.000501;
+  };
+  ASSERT_TRUE(until([&] {
+    two.say({1.25, -0.5, 0.0, 0.0});
+    return reads(1.0);
+  })) << testing::PrintToString(ranges);
+  EXPECT_TRUE(until([&] { return reads(wall); })) << testing::PrintToString(ranges);
+  EXPECT_GT(wall, 2.0);
+}
+
 TEST(Serve, StrangersAreCountedAndDropped) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();
@@ -280,29 +309,64 @@ TEST(Serve, StrangersAreCountedAndDropped) {
     one.say({-1.0, 0.5, 0.0, 0.0});
     return !one.hear().empty();
   }));
-  impostor.say({2.0, 0.0, 0.0, 0.0});
+  // On a busy machine one may have been silent for two seconds by now: it speaks again before every try.
+  ASSERT_TRUE(until([&] {
+    one.say({-1.0, 0.5, 0.0, 0.0});
+    impostor.say({2.0, 0.0, 0.0, 0.0});
+    return service.program.err().find("is dropped until") != std::string::npos;
+  }));
   nobody.say({0.0, 0.0, 0.0, 0.0});
   nobody.send({1, 2, 3});
   base::Bytes no_number = one.state({});
   const double nan = std::nan("");
   std::memcpy(no_number.data() + netio::kHeaderBytes, &nan, sizeof nan);
   one.send(no_number);
-  // They stand before these in the service's queue, so that what answers these has seen them.
-  for (int answered = 0; answered < 3;) {
-    ASSERT_TRUE(until([&] {
-      one.say({-1.0, 0.5, 0.0, 0.0});
-      return !one.hear().empty();
-    }));
-    ++answered;
-  }
-  service.program.signal(SIGINT);
+  service.program.signal(SIGINT);  // what waits then is still counted
   const Outcome outcome = service.program.wait();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const Json facts(outcome.out);
-  EXPECT_EQ(facts.number("/received/wrong source"), 1);
+  EXPECT_GE(facts.number("/received/wrong source"), 1);
   EXPECT_EQ(facts.number("/received/unknown robot"), 1);
   EXPECT_EQ(facts.number("/received/too short"), 1);
   EXPECT_EQ(facts.number("/received/not finite"), 1);
+}
+
+/// Its standard error is a pipe that nobody reads, and full: what it would say of a stranger holds up no reading.
+TEST(Serve, AnUnreadStandardErrorHoldsUpNothing) {
+  const Folder folder;
+  const std::string world = folder.write("room.world", kRoom), fifo = folder.path("err");
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  const int pipe = open(fifo.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(pipe, 0);
+  const unsigned lasers = free_ports(24);
+  Program program({"serve", world, "--port", "0", "--rate", "50", "--json", "--laser-port", std::to_string(lasers)}, {},
+                  "", fifo);
+  std::string said;
+  ASSERT_TRUE(until([&] {
+    char bytes[512];
+    const ssize_t n = read(pipe, bytes, sizeof bytes);
+    if (n > 0) said.append(bytes, static_cast<std::size_t>(n));
+    return said.find("; Ctrl-C ends it") != std::string::npos;
+  }));
+  const auto port = static_cast<unsigned>(std::atoi(said.c_str() + said.find("127.0.0.1:") + 10));
+  for (char junk[4096] = {}; write(pipe, junk, sizeof junk) > 0;) {
+  }
+  Robot one(1, port, lasers + 8), impostor(1, port, lasers + 1);
+  for (int heard = 0; heard < 5;) {
+    ASSERT_TRUE(until([&] {
+      one.say({-1.0, 0.5, 0.0, 0.0});
+      impostor.say({2.0, 0.0, 0.0, 0.0});
+      return !one.hear().empty();
+    }));
+    ++heard;
+  }
+  program.signal(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.code, 0);
+  const Json facts(outcome.out);
+  EXPECT_GE(facts.number("/received/wrong source"), 1);
+  EXPECT_GE(facts.number("/log_lines_left_out"), 1);
+  close(pipe);
 }
 
 TEST(Serve, StrangersAreNamedOncePerBindingAndALeaveEndsIt) {
@@ -313,8 +377,12 @@ TEST(Serve, StrangersAreNamedOncePerBindingAndALeaveEndsIt) {
     one.say({-1.0, 0.5, 0.0, 0.0});
     return !one.hear().empty();
   }));
+  const auto spoke = std::chrono::steady_clock::now();
+  one.say({-1.0, 0.5, 0.0, 0.0});
   for (int i = 0; i < 5; ++i) again.say({2.0, 0.0, 0.0, 0.0});
   ASSERT_TRUE(service.program.says("says as the same is dropped"));
+  if (std::chrono::steady_clock::now() - spoke > std::chrono::seconds(1))
+    GTEST_SKIP() << "the machine is too busy: the two seconds after which an id is free may have passed";
   one.leave();
   // It speaks for the id from here on, though not two seconds have passed.
   for (int i = 0; i < 5; ++i) again.say({2.0, 0.0, 0.0, 0.0});

@@ -2,7 +2,9 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -46,6 +48,18 @@ std::vector<std::string> environment_of(const Environment& added) {
   return words;
 }
 
+/// @throws base::InputError when another process has it.
+netio::Socket take_tcp(unsigned port) {
+  netio::Socket socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(netio::kLoopback);
+  if (bind(socket.descriptor(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    throw base::InputError("port " + std::to_string(port) + " is marked");
+  return socket;
+}
+
 std::vector<char*> pointers(std::vector<std::string>& words) {
   std::vector<char*> all;
   for (std::string& word : words) all.push_back(word.data());
@@ -71,8 +85,8 @@ std::string Folder::write(const std::string& name, const std::string& text) cons
   return path(name);
 }
 
-Program::Program(const Words& arguments, const Environment& environment, const std::string& out)
-    : out_(out.empty() ? folder_.path("out") : out) {
+Program::Program(const Words& arguments, const Environment& environment, const std::string& out, const std::string& err)
+    : out_(out.empty() ? folder_.path("out") : out), err_(err.empty() ? folder_.path("err") : err) {
   Words words{program_path()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<std::string> variables = environment_of(environment);
@@ -80,7 +94,7 @@ Program::Program(const Words& arguments, const Environment& environment, const s
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&files, 1, out_.c_str(), O_WRONLY | O_CREAT, 0600);
-  posix_spawn_file_actions_addopen(&files, 2, folder_.path("err").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+  posix_spawn_file_actions_addopen(&files, 2, err_.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
   const int failed =
       posix_spawn(&pid_, program_path(), &files, nullptr, pointers(words).data(), pointers(variables).data());
   posix_spawn_file_actions_destroy(&files);
@@ -94,7 +108,7 @@ Program::~Program() {
   waitpid(pid_, &status_, 0);
 }
 
-std::string Program::err() const { return read_file(folder_.path("err")); }
+std::string Program::err() const { return std::filesystem::is_fifo(err_) ? "" : read_file(err_); }
 
 bool Program::running() {
   if (!ended_) ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;
@@ -152,14 +166,19 @@ std::size_t count_lines(const std::string& text) {
 unsigned free_ports(unsigned count) {
   // Tests may run at once: each begins to look somewhere else.
   unsigned base = 11'000 + static_cast<unsigned>(getpid()) * 64 % 20'000;
+  constexpr unsigned kBlock = 64;  // ports under one mark
+  static std::vector<netio::Socket> marks;
   for (int attempt = 0; attempt < 200; ++attempt, base = 11'000 + (base + count) % 20'000) {
+    const std::size_t before = marks.size();
     try {
+      for (unsigned block = base / kBlock; block <= (base + count - 1) / kBlock; ++block)
+        marks.push_back(take_tcp(kBlock * block));
       std::vector<netio::Socket> sockets;
       for (unsigned i = 0; i < count; ++i)
         sockets.push_back(netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + i)}));
       return base;
     } catch (const base::InputError&) {
-      continue;
+      marks.erase(marks.begin() + static_cast<std::ptrdiff_t>(before), marks.end());
     }
   }
   ADD_FAILURE() << "no free ports";

@@ -40,7 +40,9 @@ struct Outcome {
 class Program {
  public:
   /// @param environment added to the test's own
-  explicit Program(const Words& arguments, const Environment& environment = {}, const std::string& out = "");
+  /// @param out, err files that its streams are written to, other than its own
+  explicit Program(const Words& arguments, const Environment& environment = {}, const std::string& out = "",
+                   const std::string& err = "");
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
@@ -56,7 +58,7 @@ class Program {
 
  private:
   Folder folder_;
-  std::string out_;
+  std::string out_, err_;
   pid_t pid_ = -1;
   bool ended_ = false;
   int status_ = 0;
@@ -77,7 +79,8 @@ std::string read_file(const std::string& path);
 /// Lines of `text` that are not empty.
 std::size_t count_lines(const std::string& text);
 
-/// First of `count` neighbouring UDP ports on loopback that nobody has now.
+/// First of `count` neighbouring UDP ports on loopback that nobody has now. They are kept from other tests until this
+/// one ends: a TCP port among every 64, which no program of ours uses, is taken as a mark.
 unsigned free_ports(unsigned count);
 
 }  // namespace sf

@@ -151,6 +151,26 @@ TEST_F(RobotsTest, ReadTheThesisLayoutToo) {
   EXPECT_GT(facts.number("/distance_m"), 0.0);
 }
 
+/// The farm dies: the robot does not drive on by its last scan. Neither does it drive before the first.
+TEST_F(RobotsTest, StandsWhenNoReadingComes) {
+  const Folder folder;
+  const std::string world = folder.write("room.world", kRoom), lasers = std::to_string(free_ports(48));
+  const std::string port = std::to_string(free_ports(1));
+  const auto serve = [&] {
+    return std::make_unique<Program>(Words{"serve", world, "--port", port, "--laser-port", lasers});
+  };
+  Program robot({"robot", world, "--name", "roomba2", "--port", port, "--laser-port", lasers, "--json"});
+  ASSERT_TRUE(robot.says("Standing until readings come")) << robot.err();
+  auto farm = serve();
+  ASSERT_TRUE(robot.says("readings come: roomba2 goes on")) << robot.err() << farm->err();
+  farm->signal(SIGKILL);
+  ASSERT_TRUE(robot.says("roomba2 stands until one comes")) << robot.err();
+  robot.signal(SIGINT);
+  const Outcome outcome = robot.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_GE(Json(outcome.out).number("/stops"), 1);
+}
+
 /// One process after another with one name: each is heard from its first packet on.
 TEST_F(RobotsTest, OneAfterAnotherIsHeardAtOnce) {
   Service service;

@@ -1,6 +1,7 @@
 // `run` and `plot`: a fleet in the loop, its summary, its recording and its pictures.
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <csignal>
@@ -250,7 +251,7 @@ TEST(Run, AKilledRunCanBeDrawn) {
 }
 
 TEST(Run, StoppingIsNoFailure) {
-  for (const int stop : {SIGINT, SIGTERM}) {
+  for (const int stop : {SIGINT, SIGTERM, SIGHUP}) {
     const Folder folder;
     Program program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
     ASSERT_TRUE(records(program, folder.path("r/run.mcap"), 60'000)) << program.err();
@@ -261,6 +262,80 @@ TEST(Run, StoppingIsNoFailure) {
     EXPECT_TRUE(facts.flag("/interrupted"));
     EXPECT_GT(facts.number("/ticks"), 0);
     EXPECT_LT(facts.number("/simulated_s"), 1e6);
+    const Outcome verified = run_program({"verify", folder.path("r")});
+    EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
+    EXPECT_EQ(verified.err.find("was not finished"), std::string::npos) << verified.err;
+  }
+}
+
+/// A file that may not grow (`ulimit -f`) is as a disk that is full: said, and what was whole stays.
+TEST(Run, AFileThatMayNotGrowEndsARecordingWithAMessage) {
+  const Folder folder;
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{400'000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const Outcome outcome =
+      run_program(run_words("cave.world", {"--robots", "3", "--duration", "1e6", "--record", folder.path("r")}));
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(outcome.signal, 0) << "SIGXFSZ is " << SIGXFSZ;
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find("run.mcap: cannot take more than"), std::string::npos) << outcome.err;
+  const Outcome verified = run_program({"verify", folder.path("r")});
+  EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
+}
+
+TEST(Run, ARecordingOfNoTicksIsSound) {
+  const Folder folder;
+  run("cave.world", {"--robots", "2", "--duration", "0", "--record", folder.path("r")});
+  const Outcome verified = run_program({"verify", folder.path("r")});
+  EXPECT_EQ(verified.code, 0) << verified.out << verified.err;
+  EXPECT_NE(verified.out.find("sound"), std::string::npos) << verified.out;
+  const Outcome plotted = run_program({"plot", folder.path("r")});
+  EXPECT_EQ(plotted.code, 0) << plotted.err;
+}
+
+TEST(Run, HowAWorldsPathIsSpeltDoesNotChangeARecording) {
+  const Folder folder;
+  std::filesystem::create_directories(folder.path("worlds/inc"));
+  folder.write("worlds/inc/bot.inc", "define bot position( size [0.3 0.3 0.1] laser( samples 5 ) gyro( ) )\n");
+  folder.write("worlds/w.world",
+               "include \"inc/bot.inc\"\nmodel( size [6 4 1] boundary 1 noblocks 0 )\nbot( typo 3 )\n");
+  std::string first;
+  for (const char* spelt : {"worlds/w.world", "./worlds//w.world", "worlds/inc/../w.world"}) {
+    const std::string record = folder.path("r" + std::to_string(first.size()));
+    const Outcome outcome = run_program({"run", folder.path(spelt), "--duration", "1", "--record", record});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const std::string bytes = read_file(record + "/run.mcap");
+    if (first.empty()) first = bytes;
+    EXPECT_TRUE(bytes == first) << spelt;
+  }
+}
+
+/// The kernel refuses to send to everyone: as to a network that is down, no packet leaves.
+TEST(Run, PacketsThatAreNotSentAreAFailure) {
+  const Outcome outcome = run_program(run_words("cave.world", {"--duration", "0.5", "--send", "255.255.255.255"}));
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("5 of 5 packets were not sent: 255.255.255.255:"), std::string::npos) << outcome.err;
+  EXPECT_EQ(Json(outcome.out).number("/packets/failed"), 5);
+}
+
+/// Stopped wherever it is: every picture that is there is whole.
+TEST(Plot, StoppedLeavesNoTornPicture) {
+  const Folder folder;
+  run("cave.world", {"--robots", "20", "--duration", "300", "--record", folder.path("r")});
+  Program plot({"plot", folder.path("r"), "-o", folder.path("p")});
+  ASSERT_TRUE(plot.says("wrote")) << plot.err();
+  plot.signal(SIGINT);
+  const Outcome outcome = plot.wait();
+  EXPECT_EQ(outcome.signal, 0);
+  if (outcome.code != 0) {
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
+  }
+  for (const auto& file : std::filesystem::directory_iterator(folder.path("p"))) {
+    const std::string bytes = read_file(file.path().string());
+    EXPECT_NE(bytes.find("IEND"), std::string::npos) << file.path();
   }
 }
 

@@ -59,6 +59,15 @@ inline base::Bytes leave_example() {
   return out;
 }
 
+/// What the farm passes on of two others.
+inline base::Bytes neighbours_example() {
+  base::Bytes first = v2v_example(), second, out;
+  encode({.robot = 9, .sequence = 4, .time = 1'400'000'000}, V2v{.X_WR = {3, 0, 0, 0}}, second);
+  first.insert(first.end(), second.begin(), second.end());
+  encode({.robot = 3, .sequence = 15, .time = 1'600'000'000}, Neighbours{first}, out);
+  return out;
+}
+
 /// States and requests that are sent to the farm.
 inline std::vector<base::Bytes> states() {
   return {v2v_example(), tag_example(), subscribe_example(), start_example(), leave_example()};
@@ -66,8 +75,8 @@ inline std::vector<base::Bytes> states() {
 
 /// The farm's own packets, in order of type number.
 inline std::vector<base::Bytes> examples() {
-  return {reading_example(),   extended_example(), v2v_example(),  tag_example(),
-          subscribe_example(), start_example(),    leave_example()};
+  return {reading_example(),   extended_example(), v2v_example(),   tag_example(),
+          subscribe_example(), start_example(),    leave_example(), neighbours_example()};
 }
 
 /// Overwrites the value at `offset`.

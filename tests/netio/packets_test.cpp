@@ -36,6 +36,7 @@ TEST(Packets, BytesAreTheDocumentedOnes) {
   EXPECT_EQ(subscribe_example(), documented("subscribe"));
   EXPECT_EQ(start_example(), documented("start"));
   EXPECT_EQ(leave_example(), documented("leave"));
+  EXPECT_EQ(neighbours_example(), documented("neighbours"));
 }
 
 TEST(Packets, HeaderComesBack) {
@@ -106,6 +107,22 @@ TEST(Packets, LeaveIsItsHeaderAlone) {
   EXPECT_EQ(packet.header.robot, 7);
 }
 
+TEST(Packets, NeighboursAreWholeV2v) {
+  const base::Bytes whole = neighbours_example();
+  const auto states = body_of<Neighbours>(whole).states;
+  ASSERT_EQ(states.size(), 2 * kV2vBytes);
+  Packet packet;
+  ASSERT_EQ(decode(states.subspan(kV2vBytes), packet), Reason::accepted);
+  EXPECT_EQ(packet.header.robot, 9);
+  EXPECT_EQ(reason_of({whole.begin(), whole.end() - 1}), Reason::too_short) << "the last one is cut";
+  EXPECT_EQ(reason_of({whole.begin(), whole.begin() + kHeaderBytes}), Reason::too_short) << "none";
+  base::Bytes longer = whole;
+  longer.resize(kHeaderBytes + kMostNeighbours * kV2vBytes);
+  EXPECT_EQ(reason_of(longer), Reason::accepted) << "what is in it is judged one by one";
+  longer.resize(longer.size() + kV2vBytes);
+  EXPECT_EQ(reason_of(longer), Reason::too_long);
+}
+
 TEST(Packets, ReservedBytesOfTheHeaderAreIgnored) {
   EXPECT_EQ(reason_of(patched<std::uint16_t>(v2v_example(), 10, 0xFFFF)), Reason::accepted);
 }
@@ -157,7 +174,7 @@ TEST(Packets, TypesBelow128AreReadingsOfTheirKind) {
   for (int type = 0; type < 256; ++type) {
     const bool is_reading = type < 128 && type % 64 != 0;  // kind 0 is nobody's
     EXPECT_EQ(kind_of(Type(type)), is_reading ? type % 64 : 0) << type;
-    const bool is_state = type >= 128 && type <= 132;
+    const bool is_state = (type >= 128 && type <= 132) || type == 140;
     if (is_state) continue;
     EXPECT_EQ(reason_of(patched(reading_example(), 5, static_cast<std::uint8_t>(type))),
               is_reading ? Reason::accepted : Reason::unknown_type)
@@ -265,6 +282,22 @@ TEST(Packets, ATagsVelocityTurnsIntoItsOwnFrame) {
   EXPECT_NEAR(got.X_WM.yaw, M_PI / 2, 1e-12);
   EXPECT_NEAR(got.velocity.forward, 0.0, 1e-12);
   EXPECT_NEAR(got.velocity.left, -2.0, 1e-12);
+  EXPECT_EQ(got.velocity.turn, 0.5);
+}
+
+/// A tag 0.2 m ahead of its robot's middle and 0.1 m to the left, turned by 90 degrees on it. The robot looks along
+/// world y and turns in place: the tag moves, the robot does not.
+TEST(Packets, ATagMayBeMountedAnywhereOnItsRobot) {
+  const base::Pose X_MT{0.2, 0.1, 0.3, M_PI / 2};
+  const Tag tag{
+      .position = {0.9, 2.2, 0.5}, .orientation = {0, 0, 1, 0}, .linear = {-0.1, -0.05, 0}, .angular = {0, 0, 0.5}};
+  const base::Report got = report({.robot = 1}, tag, 3, X_MT);
+  EXPECT_NEAR(got.X_WM.x, 1.0, 1e-12);
+  EXPECT_NEAR(got.X_WM.y, 2.0, 1e-12);
+  EXPECT_NEAR(got.X_WM.z, 0.2, 1e-12);
+  EXPECT_NEAR(got.X_WM.yaw, M_PI / 2, 1e-12);
+  EXPECT_NEAR(got.velocity.forward, 0.0, 1e-12);
+  EXPECT_NEAR(got.velocity.left, 0.0, 1e-12);
   EXPECT_EQ(got.velocity.turn, 0.5);
 }
 

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "netio/nearby.h"
 #include "netio/radio.h"
 #include "tests/netio/examples.h"
 
@@ -163,6 +168,138 @@ TEST_F(RelayTest, TagsAndRequestsAreNotPassedOn) {
   EXPECT_EQ(relay.counts().states + relay.counts().starts, 0u);
 }
 
+/// A fleet whose robots say where they are, all from one socket; nothing has to arrive.
+struct Crowd {
+  std::vector<std::uint32_t> ids;
+  Inbox inbox;
+  Relay relay;
+  Outbox outbox;
+  std::uint32_t sequence = 0;
+
+  static std::vector<std::uint32_t> first(std::uint32_t count) {
+    std::vector<std::uint32_t> all(count);
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
+  }
+  Crowd(std::uint32_t count, const RelayOptions& options)
+      : ids(first(count)), inbox({.bind = {kLoopback, 0}, .robots = ids}), relay(ids, options) {}
+
+  void take(const base::Bytes& bytes) {
+    Packet packet;
+    ASSERT_EQ(inbox.accept(bytes, {kLoopback, 9}, 0, packet), Reason::accepted);
+    relay.take(packet);
+  }
+  void say(std::uint32_t id, double x, double y) {
+    base::Bytes bytes;
+    encode({.robot = static_cast<std::uint16_t>(id), .sequence = sequence++}, V2v{.X_WR = {x, y, 0, 0}}, bytes);
+    take(bytes);
+  }
+  void ask(std::uint32_t id) {
+    base::Bytes bytes;
+    encode({.robot = static_cast<std::uint16_t>(id), .sequence = sequence++}, Subscribe{kOthers}, bytes);
+    take(bytes);
+  }
+  RelayCounts pass() {
+    const RelayCounts before = relay.counts();
+    relay.pass_on(inbox, 0, outbox);
+    const RelayCounts& now = relay.counts();
+    return {now.states - before.states, now.datagrams - before.datagrams, 0, now.waited - before.waited};
+  }
+};
+
+TEST(RelayBounds, OnlyStatesWithinTheRadiosRange) {
+  Crowd crowd(4, {.range = 10.0});
+  for (std::uint32_t id = 0; id < 4; ++id) crowd.ask(id);
+  crowd.say(0, 0, 0);
+  crowd.say(1, 6, 8);           // just within reach of 0
+  crowd.say(2, -6, -8.000001);  // just beyond
+  crowd.say(3, 1000, 0);
+  EXPECT_EQ(crowd.pass().states, 2u) << "0 and 1 hear each other";
+}
+
+/// Without a place there is no near: any will do.
+TEST(RelayBounds, WhoNeverSaidWhereItIsHearsAll) {
+  Crowd crowd(3, {.range = 10.0});
+  crowd.ask(0);
+  crowd.say(1, 6, 8);
+  crowd.say(2, 1000, 0);
+  EXPECT_EQ(crowd.pass().states, 2u);
+}
+
+TEST(RelayBounds, ManyStatesADatagram) {
+  Crowd crowd(40, {});
+  crowd.ask(0);
+  for (std::uint32_t id = 0; id < 40; ++id) crowd.say(id, 0.1 * id, 0);
+  const RelayCounts counts = crowd.pass();
+  EXPECT_EQ(counts.states, 39u);
+  EXPECT_EQ(counts.datagrams, (39 + kMostNeighbours - 1) / kMostNeighbours);
+}
+
+/// One socket that claims five hundred ids, and a fleet of a thousand: what is sent is bounded, and all get alike.
+TEST(RelayBounds, TheBudgetHoldsHoweverManyAsk) {
+  for (const std::uint32_t count : {500u, 1000u}) {
+    Crowd crowd(count, {});
+    for (std::uint32_t id = 0; id < count; ++id) crowd.ask(id);
+    for (std::uint32_t id = 0; id < count; ++id) crowd.say(id, 0.3 * (id % 32), 0.3 * (id / 32));
+    const RelayCounts counts = crowd.pass();
+    const std::size_t share = RelayOptions{}.budget / count;
+    EXPECT_EQ(counts.states, count * share);
+    EXPECT_LE(counts.datagrams, count * (share / kMostNeighbours + 1));
+    EXPECT_EQ(counts.waited, 0u);
+  }
+}
+
+TEST(RelayBounds, MoreThanTheBudgetServesTakeTurns) {
+  Crowd crowd(30, {.budget = 10 * Relay::kLeastShare});
+  for (std::uint32_t id = 0; id < 30; ++id) crowd.ask(id);
+  for (int pass = 0; pass < 3; ++pass) {
+    for (std::uint32_t id = 0; id < 30; ++id) crowd.say(id, id, 0);
+    const RelayCounts counts = crowd.pass();
+    EXPECT_EQ(counts.states, 40u);
+    EXPECT_EQ(counts.waited, 20u) << pass;
+  }
+}
+
+/// Beside all distances, sorted.
+TEST(Nearby, FindsTheNearest) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(-20.0, 20.0);
+  std::vector<Nearby::Place> places;
+  for (std::uint32_t row = 0; row < 300; ++row) places.push_back({{anywhere(random), anywhere(random)}, row});
+  Nearby nearby(places.size());
+  nearby.build(places);
+  for (std::uint32_t own = 0; own < 300; own += 7)
+    for (const std::size_t most : {1u, 5u, 400u}) {
+      const base::Vec2 p = places[own].p;
+      std::vector<Nearby::Place> all = places;
+      std::erase_if(all, [&](const auto& q) { return q.row == own || base::length(q.p - p) > 8.0; });
+      std::sort(all.begin(), all.end(),
+                [&](const auto& a, const auto& b) { return base::length(a.p - p) < base::length(b.p - p); });
+      all.resize(std::min(all.size(), most));
+      std::vector<std::uint32_t> expected;
+      for (const auto& q : all) expected.push_back(q.row);
+      std::sort(expected.begin(), expected.end());
+      const auto found = nearby.find(p, own, 8.0, most);
+      EXPECT_EQ(std::vector<std::uint32_t>(found.begin(), found.end()), expected) << own << " of " << most;
+    }
+}
+
+/// At one place nobody is nearer than others: each hears some, never itself, and not all the same ones.
+TEST(Nearby, ACrowdAtOnePlace) {
+  std::vector<Nearby::Place> places;
+  for (std::uint32_t row = 0; row < 5000; ++row) places.push_back({{1.0, 2.0}, row});
+  Nearby nearby(places.size());
+  nearby.build(places);
+  std::set<std::uint32_t> heard;
+  for (std::uint32_t own = 0; own < 5000; own += 100) {
+    const auto found = nearby.find(places[own].p, own, 5.0, 8);
+    EXPECT_EQ(found.size(), 8u);
+    EXPECT_EQ(std::count(found.begin(), found.end(), own), 0);
+    heard.insert(found.begin(), found.end());
+  }
+  EXPECT_GT(heard.size(), 100u);
+}
+
 struct RadioTest : testing::Test {
   Outbox farm{OutboxOptions{.bind = {kLoopback, 0}}};
   Radio radio{{.farm = farm.endpoint(), .robot = 7, .others = {3, 9}}};
@@ -200,12 +337,13 @@ TEST_F(RadioTest, JudgesWhatComes) {
   EXPECT_EQ(radio.accept(patched<std::uint16_t>(start_example(), 6, 7), 0, packet), Reason::accepted);
   EXPECT_EQ(radio.accept(patched<std::uint16_t>(start_example(), 6, 3), 0, packet), Reason::unknown_robot);
   EXPECT_EQ(radio.accept(reading_example(), 0, packet), Reason::wrong_direction);
+  EXPECT_EQ(radio.accept(neighbours_example(), 0, packet), Reason::wrong_direction) << "receive() takes it apart";
   EXPECT_EQ(radio.accept(subscribe_example(), 0, packet), Reason::wrong_direction);
   EXPECT_EQ(radio.accept(base::Bytes(5), 0, packet), Reason::too_short);
   EXPECT_TRUE(radio.heard(3, 2 * kSecond - 1));
   EXPECT_FALSE(radio.heard(3, 2 * kSecond));
   EXPECT_FALSE(radio.heard(9, 0));
-  EXPECT_EQ(radio.counts().total(), 10u);
+  EXPECT_EQ(radio.counts().total(), 11u);
 }
 
 }  // namespace

@@ -246,6 +246,53 @@ TEST(Fleet, reports_newest_wins) {
   EXPECT_EQ(fleet.reports()[0].X_WM.x, 3.0);
 }
 
+/// A report says it is above a kerb, or beneath the floor: it stands on the world's floor, for contacts as for sensors.
+TEST(Fleet, heights_are_those_at_load_whatever_reports_say) {
+  world::World world = scenes::empty_world();
+  scenes::add_wall(world, {0.9, -1}, {0.9, 1}, 0.0, 0.08);  // a kerb
+  scenes::add_square(world, {});
+  scenes::add_square(world, {5, 0, 0, 0});
+  for (const double z : {0.0, 0.12, -2.0}) {
+    Fleet fleet(world);
+    fleet.apply(std::vector<Report>{{.mover = 0, .time = 1, .X_WM = {0.9, 0, z, 0}}});
+    EXPECT_EQ(fleet.predict(1)[0].X_WM.z, 0.0) << z;
+    EXPECT_EQ(fleet.contacts()[0], 1) << z;
+    fleet.apply(std::vector<Report>{{.mover = 0, .time = 2, .X_WM = {4.95, 0, z, 0}}});
+    fleet.predict(2);
+    EXPECT_EQ(fleet.contacts()[0], 1) << "the other robot, " << z;
+  }
+}
+
+TEST(Fleet, who_is_gone_is_in_nobodys_way) {
+  world::World world = scenes::empty_world();
+  scenes::add_square(world, {});
+  scenes::add_square(world, {2, 0, 0, 0});
+  Fleet fleet(world);
+  const std::vector<Report> overlap{{.mover = 0, .time = 1, .X_WM = {2.05, 0, 0, 0}}};
+  fleet.set_gone(1, true);
+  fleet.apply(overlap);
+  fleet.predict(1);
+  EXPECT_EQ(fleet.contacts()[0], 0);
+  EXPECT_EQ(fleet.contacts()[1], 0);
+  fleet.set_gone(1, false);
+  fleet.predict(1);
+  EXPECT_EQ(fleet.contacts()[0], 1);
+}
+
+/// It drives through where the other was.
+TEST(Fleet, who_is_gone_stops_nobody) {
+  for (const bool gone : {false, true}) {
+    world::World world = scenes::empty_world();
+    scenes::add_square(world, {});
+    scenes::add_square(world, {1, 0, 0, 0});
+    Fleet fleet(world);
+    fleet.set_gone(1, gone);
+    const std::vector<base::Twist> commands{{0.5, 0, 0}, {}};
+    for (int i = 0; i < 40; ++i) fleet.move(commands, kTick);
+    EXPECT_EQ(fleet.reports()[0].X_WM.x > 1.5, gone);
+  }
+}
+
 TEST(Fleet, predicts_along_the_arc_for_a_while) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {});

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "farm/farm.h"
+#include "tests/sensors/compare.h"
 #include "tests/sensors/magnet_scenes.h"
 
 namespace sf::trial {
@@ -33,6 +34,23 @@ std::vector<base::Report> reports_at(const world::World& world, int tick) {
     reports.push_back({m, 0, X, {}});
   }
   return reports;
+}
+
+/// Magnets of a robot that is gone go with it: as in a world without them.
+TEST(MagnetTick, WhoIsGoneTakesItsMagnetsAlong) {
+  for (const double cutoff : {0.0, 1.5}) {
+    const world::World world = park(cutoff);
+    world::World without = world;
+    for (std::uint32_t m = 20; m < 30; ++m) without.movers[m].magnets.clear();
+    farm::Farm farm(world, device()), bare(without, device());
+    for (std::uint32_t m = 0; m < 30; ++m) farm.set_gone(m, m >= 20);
+    for (std::uint32_t m = 0; m < 20; ++m) farm.hear(m, farm::kAllKinds), bare.hear(m, farm::kAllKinds);
+    const auto gone = farm.tick(0, {}), never = bare.tick(0, {});
+    ASSERT_EQ(gone.size(), 20u);
+    for (std::size_t i = 0; i < gone.size(); ++i)
+      for (std::size_t k = 0; k < gone[i].values.size(); ++k)
+        EXPECT_NEAR(gone[i].values[k], never[i].values[k], 1e-15) << i << ", " << k;
+  }
 }
 
 TEST(MagnetTick, TheValidationLayerIsSilent) {

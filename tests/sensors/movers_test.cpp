@@ -45,6 +45,55 @@ TEST(Movers, AnotherIsSeenWhereItWasReported) {
   EXPECT_NEAR(farm.tick(500'000'000, {})[0].values[0], 3.0 - 0.165, 1e-12);
 }
 
+/// A robot that fell silent, until it speaks again; the reading is not one that is given again.
+TEST(Movers, WhoIsGoneIsNotSeenUntilItIsBack) {
+  world::World world;
+  scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
+  const std::uint32_t other = scenes::add_robot(world, {2, 0, 0, 0}, eye(1, 0.0, 8.0));
+  farm::Farm farm(world, device());
+  farm.hear_all();
+  std::int64_t now = 0;
+  const auto range = [&](const std::vector<base::Report>& reports) {
+    const auto readings = farm.tick(now += 100'000'000, reports);
+    EXPECT_EQ(readings.front().mover, 0u);
+    return readings.front().values[0];
+  };
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(range({}), 1.835, 1e-12);
+  farm.set_gone(other, true);
+  EXPECT_EQ(range({}), 8.0);
+  EXPECT_EQ(range({{other, 0, {1, 0, 0, 0}, {}}}), 8.0) << "whatever its last words were";
+  EXPECT_EQ(farm.tick(now += 100'000'000, {}).size(), 1u) << "and it senses nothing";
+  farm.set_gone(other, false);
+  farm.hear(other, farm::kAllKinds);
+  EXPECT_NEAR(range({{other, 0, {3, 0, 0, 0}, {}}}), 2.835, 1e-12);
+}
+
+/// Alone in the world, and all others gone.
+TEST(Movers, AllOthersMayBeGone) {
+  world::World world;
+  scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
+  for (int i = 0; i < 3; ++i) scenes::add_robot(world, {2.0 + i, 0, 0, 0}, eye(1, 0.0, 8.0));
+  farm::Farm farm(world, device());
+  farm.hear_all();
+  for (std::uint32_t m = 1; m < 4; ++m) farm.set_gone(m, true);
+  EXPECT_EQ(farm.tick(0, {})[0].values[0], 8.0);
+  farm.set_gone(0, true);
+  EXPECT_TRUE(farm.tick(100'000'000, {}).empty());
+}
+
+/// The world is 2.5-D: a height that is reported says nothing.
+TEST(Movers, AreSeenAtTheirHeightAtLoadWhateverReportsSay) {
+  world::World world;
+  scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
+  const std::uint32_t other = scenes::add_robot(world, {2, 0, 0, 0}, eye(1, 0.0, 8.0));
+  for (const double z : {0.0, 0.12, -2.0}) {
+    farm::Farm farm(world, device());
+    farm.hear(0, farm::kAllKinds);
+    const base::Report report{other, 0, {3, 0, z, 0}, {}};
+    EXPECT_NEAR(farm.tick(0, {&report, 1})[0].values[0], 2.835, 1e-12) << z;
+  }
+}
+
 TEST(Movers, OnlyTheirEchoingPartsAtTheBeamsHeightAreSeen) {
   world::World world;
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));

@@ -243,6 +243,43 @@ TEST(Sonar, EveryConeHearsWhatItsRaysMeetSteeply) {
   check(fleet(scenes::cave(500, 16.0, 3), 5, 1.2), "smooth cave");
 }
 
+/// What one sensor does not hear, another of the same world may.
+TEST(Sonar, OneThatIsDeafToFlatWallsBesideOneThatIsNot) {
+  world::World world = wall_at(2.0);
+  const auto one_ray = [](double incidence) {
+    return cones("sonar", {Pose{}},
+                 {cone_setting("incidence", {incidence}), cone_setting("rays", {1.0}), cone_setting("fov", {0.0}),
+                  cone_setting("range", {0.0, 4.0})});
+  };
+  for (const double incidence : {0.3, M_PI / 2, 0.3, 0.7}) add_ranger(world, {0, 0, 0, 0.5}, one_ray(incidence));
+  const Glance run(world);
+  const double heard = 2.0 / std::cos(0.5);
+  EXPECT_EQ(run.readings[0].values[0], 4.0);
+  EXPECT_NEAR(run.readings[1].values[0], heard, 1e-12);
+  EXPECT_EQ(run.readings[2].values[0], 4.0);
+  EXPECT_NEAR(run.readings[3].values[0], heard, 1e-12);
+}
+
+/// A robot passes by rings that stand, some of them firing in turns, and stops: given again or not, the same bytes.
+TEST(Sonar, ReadingsThatAreGivenAgainAreThoseThatWouldBeTaken) {
+  world::World world = scenes::boxes(20, 8.0, 2);
+  const auto passer = add_ranger(world, {}, cones("sonar", ring(4, 0.15)), 0.2);
+  for (int i = 0; i < 6; ++i)
+    add_ranger(world, {0.5 * i - 1.2, 0.6, 0.0, 0.4 * i},
+               cones("sonar", ring(8, 0.15), {cone_setting("arrays", {i % 2 == 0 ? 2.0 : 8.0})}), 0.16);
+  farm::Farm again(world, device()), anew(world, device(), {.give_again = false});
+  again.hear_all();
+  anew.hear_all();
+  for (int k = 0; k < 90; ++k) {
+    const double x = k < 40 ? -3.0 : std::min(3.0, 0.2 * (k - 55));
+    const base::Report report{passer, 0, {x, 0.1, 0.0, 0.0}, {}};
+    again.tick(k * 40'000'000ll, {&report, 1});
+    anew.tick(k * 40'000'000ll, {&report, 1});
+    ASSERT_EQ(again.hash(), anew.hash()) << "tick " << k;
+  }
+  EXPECT_GT(again.stats().again, 0u);
+}
+
 // --- Who fires when.
 
 TEST(Sonar, TurnsGoRound) {

@@ -209,6 +209,16 @@ TEST(Stage, NumbersComeFromNamesAndTheRestFillsTheGaps) {
   EXPECT_FALSE(world.movers[3].is_tag);
 }
 
+TEST(Stage, ATagMayBeMountedAnywhereOnItsModel) {
+  const World world = read_world(
+      "model( name \"tag1\" tag_pose [0.1 -0.2 0.3 90] ) model( name \"tag2\" ) position( tag_pose [1 0 0 0] )");
+  EXPECT_EQ(world.movers[0].X_MT.y, -0.2);
+  EXPECT_NEAR(world.movers[0].X_MT.yaw, M_PI / 2, 1e-12);
+  EXPECT_EQ(world.movers[1].X_MT.x, 0.0);
+  ASSERT_EQ(world.warnings.size(), 1u);
+  EXPECT_NE(world.warnings[0].message.find("'tag_pose' is left out"), std::string::npos);
+}
+
 TEST(Stage, OtherNamesLinkNothing) {
   const World world = read_world(
       "model( name \"roomba\" ) model( name \"tag\" ) model( name \"tag0\" ) model( name \"roombax1\" )"

@@ -1,0 +1,215 @@
+// Where surfaces are more than the device's lists hold, the host casts: the same bytes, whatever the kind of sensor.
+
+#include "sensors/host_cast.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "sensors/laser_reference.h"
+#include "tests/sensors/chance.h"
+#include "tests/sensors/compare.h"
+#include "tests/sensors/cone_trial.h"
+#include "tests/sensors/laneedge_trial.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::trial {
+namespace {
+
+using base::Pose;
+using base::ReadingBlock;
+
+/// Nothing fits into such lists.
+const farm::FarmOptions kOnHost{.scene = {.longest_list = 0}};
+
+bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
+  const auto same = [](auto a, auto b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+  };
+  return p.mover == q.mover && p.kind == q.kind && p.bound == q.bound && same(p.values, q.values) &&
+         same(p.hits, q.hits) && same(p.unsure, q.unsure);
+}
+
+/// Two ticks of both farms, everyone moved in between.
+void expect_same_bytes(const world::World& world) {
+  farm::Farm on_device(world, device());
+  farm::Farm on_host(world, device(), kOnHost);
+  on_device.hear_all();
+  on_host.hear_all();
+  for (int tick = 0; tick < 2; ++tick) {
+    std::vector<base::Report> reports;
+    for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+      Pose X = world.movers[m].X_WM;
+      X.x += 0.004 * tick;
+      X.yaw += 0.7 * tick;
+      reports.push_back({m, 0, X, {}});
+    }
+    const auto expected = on_device.tick(tick * 1'000'000'000ll, reports);
+    const auto given = on_host.tick(tick * 1'000'000'000ll, reports);
+    ASSERT_EQ(expected.size(), given.size());
+    for (std::size_t i = 0; i < given.size(); ++i)
+      EXPECT_TRUE(same_bits(expected[i], given[i])) << "tick " << tick << " reading " << i;
+  }
+  EXPECT_EQ(on_device.hash(), on_host.hash());
+  EXPECT_EQ(on_device.stats().work.host_scans, 0u);
+  EXPECT_GT(on_host.stats().work.host_scans, 0u);
+}
+
+TEST(HostCast, LasersAmongBoxesAndRobots) {
+  world::World world = scenes::boxes(60, 16.0, 3);
+  scenes::add_robots(world, 30, scenes::laser(), 3);
+  expect_same_bytes(world);
+}
+
+/// Angular noise turns beams, `resolution` leaves some out, a minimum lifts ranges.
+TEST(HostCast, LasersWithNoiseAndResolution) {
+  world::World world = scenes::boxes(60, 16.0, 4);
+  world::Laser laser = scenes::laser(91, 2.0 * M_PI, 5.0);
+  laser.noise = {.range_sigma = 0.01, .angle_sigma = 0.01};
+  laser.range_min = 0.3;
+  scenes::add_robots(world, 10, laser, 4);
+  laser.resolution = 3;
+  scenes::add_robots(world, 10, laser, 5);
+  expect_same_bytes(world);
+}
+
+/// Beams that graze are flagged alike. (On the wall itself either side may be the sensor's.)
+TEST(HostCast, AlongWalls) {
+  world::World world;
+  scenes::add_room(world, {}, 6.0);
+  for (const double y : {1e-3, 1e-4, 1e-6}) add_eye(world, {-2.9, -3.0 + y, 0.0, 0.0}, eye(721, M_PI, 8.0));
+  expect_same_bytes(world);
+}
+
+TEST(HostCast, SonarAndInfraredRings) {
+  world::World world = scenes::boxes(40, 8.0, 6);
+  for (int i = 0; i < 8; ++i) {
+    const Pose X{0.4 * i - 1.6, 0.3 * i - 1.0, 0.0, 0.3 * i};
+    add_ranger(world, X,
+               cones("sonar", ring(8, 0.15), {cone_setting("fov", {25 * kDegree}), cone_setting("range", {0.1, 5.0})}),
+               0.16);
+    add_ranger(world, {-X.x, X.y, 0.0, X.yaw}, cones("infrared", ring(5, 0.15)), 0.16);
+  }
+  expect_same_bytes(world);
+}
+
+/// @param resolution [m] of the road's pixels; 0: exact paint
+world::World road(double resolution) {
+  world::World world;
+  world.road_resolution = resolution;
+  world.stripes.push_back(stripe({20.0, 0.1}, {-20.0, 0.1}));
+  scenes::add_outline(world, {{1.2, -0.6}, {1.6, -0.6}, {1.6, 0.6}, {1.2, 0.6}}, "box on the road");
+  for (int i = 0; i < 6; ++i) {
+    add_edge_eye(world, {0.5 * i - 1.0, -0.25 - 0.02 * i, 0.0, M_PI / 2.0});
+    scenes::add_robot(world, {0.5 * i - 1.0, 0.35, 0.0, 0.0}, eye(1, 0.0, 1.0));
+  }
+  return world;
+}
+
+TEST(HostCast, LaneEdgesOnExactPaint) { expect_same_bytes(road(0.0)); }
+TEST(HostCast, LaneEdgesOnARaster) { expect_same_bytes(road(0.01)); }
+
+/// Every robot at one place, turned by its number. Three are heard.
+void crowd_at_one_place(std::uint32_t count) {
+  world::World world;
+  scenes::add_room(world, {}, 10.0);
+  for (std::uint32_t i = 0; i < count; ++i)
+    scenes::add_robot(world, {0.0, 0.0, 0.0, 1e-3 * i}, scenes::laser(61, 2.0 * M_PI));
+  farm::Farm farm(world, device());
+  for (const std::uint32_t m : {0u, 1u, count - 1}) farm.hear(m, farm::kAllKinds);
+  sensors::LaserReference reference(world, 0);
+  const auto readings = farm.tick(0, {});
+  ASSERT_EQ(readings.size(), 3u);
+  for (const ReadingBlock& r : readings) {
+    const auto scan = reference.scan(r.mover, r.sensor, r.sequence);
+    EXPECT_EQ(std::memcmp(r.values.data(), scan.ranges.data(), r.values.size_bytes()), 0) << r.mover;
+    EXPECT_EQ(std::memcmp(r.hits.data(), scan.hits.data(), r.hits.size_bytes()), 0) << r.mover;
+  }
+}
+
+TEST(HostCast, ACrowdOfAThousandAtOnePlace) { crowd_at_one_place(1'000); }
+TEST(HostCast, ACrowdOfThousandsAtOnePlace) { crowd_at_one_place(6'000); }
+
+/// Cones and lane edges in a crowd: what all of it comes to, against the device in parts that it bears is above.
+TEST(HostCast, RangersAndLaneEdgesInACrowdAtOnePlace) {
+  world::World world = road(0.0);
+  const auto array = cones("sonar", ring(4, 0.1));
+  add_ranger(world, {}, array, 0.16);
+  add_ranger(world, {}, cones("infrared", ring(4, 0.1)), 0.16);
+  for (int i = 0; i < 6'000; ++i) scenes::add_robot(world, {0.0, -0.1, 0.0, 1e-3 * i}, eye(1, 0.0, 1.0));
+  farm::Farm farm(world, device());
+  for (std::uint32_t m = 0; m < 14; ++m) farm.hear(m, farm::kAllKinds);
+  farm.tick(0, {});
+  EXPECT_GT(farm.stats().work.host_scans, 0u);
+  farm::Farm again(world, device(), kOnHost);
+  for (std::uint32_t m = 0; m < 14; ++m) again.hear(m, farm::kAllKinds);
+  again.tick(0, {});
+  EXPECT_EQ(farm.hash(), again.hash());
+}
+
+/// Surfaces through the sensor, with an end on it, and behind it: on which side of it they lie is not told by bearings.
+TEST(HostCast, SurfacesThroughTheSensor) {
+  sensors::HostCast cast;
+  cast.surfaces = {{{-1.0, 0.0, 1.0, 0.0}, 0}, {{0.0, 0.0, 0.0, 2.0}, 1}, {{-3.0, -1.0, -3.0, 1.0}, 2}};
+  std::vector<double> bearings;
+  for (int i = 0; i < 8; ++i)
+    bearings.insert(bearings.end(), {std::cos(M_PI / 8 + i * M_PI / 4), std::sin(M_PI / 8 + i * M_PI / 4)});
+  bearings.insert(bearings.end(), {-1.0, 0.0});
+  sensors::cast_on_host({{0.0, 0.5}, {1.0, 0.0}, bearings, 0.0, 10.0}, cast);
+  for (std::size_t i = 0; i < cast.decisions.size(); ++i) {
+    sensors::Decision plain{10.0};
+    for (const sensors::Surface& surface : cast.surfaces)
+      sensors::decide(surface, {0.0, 0.5}, {bearings[2 * i], bearings[2 * i + 1]}, plain);
+    EXPECT_EQ(cast.decisions[i].range, plain.range) << i;
+    EXPECT_EQ(cast.decisions[i].id, plain.id) << i;
+  }
+}
+
+/// The lasers of one robot share a list, made for a disc that holds them both: what is hidden from its middle may be
+/// seen from its rim.
+TEST(SharedLists, WhatOneOfTwoLasersSeesPastANeighbourIsSeen) {
+  for (const double y : {0.3, -0.3}) {
+    world::World world;
+    const std::uint32_t m = add_eye(world, {}, eye(361, M_PI, 8.0));
+    world.movers[m].lasers[0].X_MS.y = 0.15;
+    world.movers[m].lasers.push_back(world.movers[m].lasers[0]);
+    world.movers[m].lasers[1].X_MS.y = -0.15;
+    scenes::add_robot(world, {1.0, 0.0, 0.0, 0.0}, eye(1, 0.0, 1.0));
+    const std::uint32_t behind = scenes::add_robot(world, {2.5, y, 0.0, 0.0}, eye(1, 0.0, 1.0));
+    const Glance glance(world);
+    const auto& hits = glance.readings[y > 0.0 ? 0 : 1].hits;
+    EXPECT_GT(std::count(hits.begin(), hits.end(), world.movers[behind].model), 3) << y;
+    expect_exact("past a neighbour", sweep(world));
+  }
+}
+
+/// Robots with two lasers each, near to each other and to walls: nothing that either sees is left out.
+TEST(SharedLists, CrowdsOfRobotsWithTwoLasers) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    world::World world = scenes::boxes(12, 6.0, seed);
+    scenes::add_robots(world, 25, scenes::laser(181, 2.0 * M_PI, 5.0), seed);
+    for (world::Mover& mover : world.movers) {
+      mover.lasers.push_back(mover.lasers[0]);
+      mover.lasers[0].X_MS.y += 0.15;
+      mover.lasers[1].X_MS.y -= 0.12;
+      mover.lasers[1].X_MS.x += 0.05;
+    }
+    expect_exact("two lasers each", sweep(world));
+  }
+}
+
+/// Tables that have grown since the kernels were bound are bound again.
+TEST(SharedLists, TablesThatGrewAreReadFromTheirNewPlace) {
+  world::World world = scenes::cave(60, 30.0, 2);
+  scenes::add_robots(world, 40, scenes::laser(), 2);
+  farm::Farm farm(world, device(), {.scene = {.pool_chunks = 512, .pool_cells = 2}});
+  farm.hear(0, farm::kAllKinds);
+  farm.tick(0, {});
+  farm.hear_all();
+  const auto readings = farm.tick(1'000'000'000, {});
+  EXPECT_EQ(readings.size(), 40u);
+  expect_exact("after the tables grew", compare(world, loaded_poses(world), readings));
+}
+
+}  // namespace
+}  // namespace sf::trial
