@@ -1,5 +1,5 @@
 #pragma once
-// Who can send to a socket that is bound beyond this machine.
+// The hosts that can send to a socket bound beyond this machine.
 
 #include <cstdint>
 #include <string>

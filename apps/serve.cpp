@@ -95,7 +95,7 @@ class Service {
     ++ticks_;
   }
 
-  /// What is due to be read or delivered. @param between two ticks
+  /// Reads and delivers everything that is due. @param between two ticks
   void look(std::int64_t now, bool between) {
     take_in(now);
     for (const auto& [id, row] : names_.robots) {

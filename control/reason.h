@@ -18,7 +18,7 @@ class StatesReason {
   ~StatesReason() = default;
 };
 
-/// What the controller states; empty where it cannot.
+/// The reason that the controller states; empty where it cannot.
 std::string reason_of(const Controller& controller);
 
 }  // namespace sf::control

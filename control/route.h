@@ -45,7 +45,7 @@ class Route : public Controller, public StatesReason {
   std::uint64_t reached() const { return next_goal_; }  ///< checkpoints so far
 
  private:
-  // What the speed may be, so far, and what sets it.
+  // The speed limit so far, and its cause.
   struct Limit {
     double speed;
     double dt;

@@ -14,7 +14,7 @@ struct Operands {
   double b;
 };
 
-/// What is computed from each pair.
+/// The operations on each pair.
 struct Operation {
   enum class Form { f64, f32, word };  ///< of a result: a double, a float in the low word, or a low word of bits
   const char* name;

@@ -69,7 +69,7 @@ int choose(Considered& considered, const std::string& wanted);
 using Start = std::function<std::string(Considered&, std::size_t row)>;
 int choose(Considered& considered, const std::string& wanted, const Start& start);
 
-/// What a device must have.
+/// The features that a device must have.
 struct Abilities {
   std::uint32_t api = 0;  ///< as VK_MAKE_API_VERSION
   bool doubles = false;

@@ -174,7 +174,7 @@ Fleet::Touch Fleet::touch_of(std::uint32_t row, std::span<const base::Report> re
     if (sectors == 0) return false;
     touch = {touch.sectors | sectors, touch.away + unit(from_other)};
     if (refused_[row] != 0) struck_[other] = 1;
-    // Who is told where it is only asks where it is touched: in a crowd at one place, soon everywhere.
+    // A mover placed from outside needs its contact sectors alone: in a crowd at one place, all are found soon.
     return told_[row] != 0 && touch.sectors == kEverywhere;
   });
   return touch;

@@ -66,7 +66,7 @@ class Simulation {
   /// All controllers are done; false where there are none.
   bool all_done() const;
   const world::RoadNetwork* roads() const { return roads_ ? &*roads_ : nullptr; }
-  /// What there is to warn of in the first files that a controller has read (a mission).
+  /// Warnings of the first files that a controller has read (a mission).
   const std::vector<world::Warning>& warnings() const { return warnings_; }
 
  private:

@@ -77,7 +77,7 @@ class Entrant {
     for (std::size_t i = 0; i < block.values.size(); i += width()) {
       read.values.push_back(block.values[i]);
       const bool flagged = !block.unsure.empty() && block.unsure[i / width()] != base::Unsure::no;
-      // What saw nothing has no error to bound.
+      // A sensor that saw nothing has no error to bound.
       read.bounds.push_back(flagged || std::isnan(block.values[i]) ? HUGE_VAL : block.bound);
     }
   }

@@ -169,7 +169,7 @@ struct SensorKind {
   bool derived = false;  ///< made of other kinds' readings: its `observe` is called, and it is collected after them
 
   std::span<const Mode> modes;  ///< the first is `exact`; empty: it has no other
-  /// What the readings of one of its sensors may be wrong by. Null: none is stated, here and with each reading.
+  /// The error bound of one sensor's readings. Null: none is stated, here and with each reading.
   Bound (*bound)(const world::World& world, const SensorRow& sensor) = nullptr;
 
   /// Every sensor of this kind, by mover and in file order.

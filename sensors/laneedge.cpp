@@ -29,7 +29,7 @@ bool anything_else(const world::World& world) {
   return !world.walls.empty() || (bodies > 0 && world.movers.size() > 1);
 }
 
-/// What a reading may say of its one element: a span of it outlives the tick.
+/// The flags of a reading with one element: a span of them outlives the tick.
 constexpr base::Unsure kReasons[] = {base::Unsure::no, base::Unsure::not_cast, base::Unsure::grazing,
                                      base::Unsure::not_straight, base::Unsure::extrapolated};
 
