@@ -122,7 +122,8 @@ class Service {
       if (const auto* state = std::get_if<netio::V2v>(&packet.body)) {
         reports_.push_back(netio::report(packet.header, *state, names_.robots.at(packet.header.robot)));
       } else if (const auto* tag = std::get_if<netio::Tag>(&packet.body)) {
-        reports_.push_back(netio::report(packet.header, *tag, names_.tags.at(packet.header.robot)));
+        const std::uint32_t row = names_.tags.at(packet.header.robot);
+        reports_.push_back(netio::report(packet.header, *tag, row, world_.movers[row].X_MT));
       } else {
         return;
       }

@@ -135,9 +135,9 @@ struct Stamp {
 /// Writes both into an encoded packet.
 void stamp(std::span<std::uint8_t> packet, const Stamp& stamp);
 
-/// The state of world mover `mover`, as the farm takes it in. A tag's tilt is left out; its velocity is turned into its
-/// frame.
+/// The state of world mover `mover`, as the farm takes it in. A tag's tilt is left out; its velocity becomes that of
+/// the mover, in the mover's own frame. @param X_MT the tag in the mover's frame
 base::Report report(const Header& header, const V2v& state, std::uint32_t mover);
-base::Report report(const Header& header, const Tag& state, std::uint32_t mover);
+base::Report report(const Header& header, const Tag& state, std::uint32_t mover, const base::Pose& X_MT = {});
 
 }  // namespace sf::netio

@@ -19,7 +19,7 @@ constexpr auto kWorld = std::to_array<std::string_view>({"name", "interval_sim",
 constexpr auto kModel = std::to_array<std::string_view>({"name", "pose", "size", "origin", "color", "color_rgba", "bitmap", "boundary", "stack_children",
   "noblocks", "obstacle_return", "laser_return", "ranger_return", "magnetic_moment", "magneticmoment",
   "magnetometer_return", "laneedge_return", "blocks", "block[].points", "block[].point[]", "block[].z",
-  "cliff_return", "ir_emitter", "ir_range", "ir_fov", "ir_halo",
+  "cliff_return", "ir_emitter", "ir_range", "ir_fov", "ir_halo", "tag_pose",
   // known, not modelled
   "ctrl", "update_interval", "gui_nose", "gui_grid", "gui_outline", "gui_move", "gui_movemask", "gui_boundary",
   "fiducial_return", "fiducial_key", "blob_return", "blobfinder_return", "gripper_return", "puck_return", "mass", "friction",

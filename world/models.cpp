@@ -203,9 +203,13 @@ void add_model(Building& b, const Entity& entity, Parent& parent) {
   own.X_MP = compose(parent.X_MP, said.X_PB);
   own.name_in_mover = parent.mover == kNone ? "" : joined(parent.name_in_mover, said.name);
   const std::string controller = controller_of(b, entity);
-  if (becomes_mover(b, entity, parent, said)) {
-    model.mover = add_mover(b, entity, model, link_of(said.name));
+  const bool moves = becomes_mover(b, entity, parent, said);
+  const std::optional<Link> link = link_of(said.name);
+  const Pose X_MT = tag_pose_of(b.source, entity, moves && link && link->is_tag);
+  if (moves) {
+    model.mover = add_mover(b, entity, model, link);
     b.world.movers[model.mover].controller = controller;
+    b.world.movers[model.mover].X_MT = X_MT;
     own.X_MP = {};
   } else if (!controller.empty()) {
     warn(b.source, place_of(entity, "ctrl"),

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <initializer_list>
 #include <map>
 
 namespace sf::world {
 
 namespace {
+
+constexpr double kMostTagReach = 100.0;  // [m] a tag that turns fast says no speed that its model cannot have
 
 std::optional<std::uint32_t> number_of(std::string_view digits) {
   if (digits.empty() || digits.size() > 9) return std::nullopt;
@@ -88,6 +91,19 @@ std::optional<Link> link_of(std::string_view name) {
   const auto number = number_of(name.substr(3));
   if (!number || *number == 0) return std::nullopt;
   return Link{*number, true};
+}
+
+Pose tag_pose_of(Source& source, const Entity& entity, bool is_tag) {
+  const Property* said = find(entity, "tag_pose");
+  if (said == nullptr) return {};
+  const Pose X_MT = pose(source, entity, "tag_pose");
+  if (length(Vec2{X_MT.x, X_MT.y}) > kMostTagReach || std::abs(X_MT.z) > kMostTagReach)
+    fail(source, said->at, fmt::format("'tag_pose' expects a tag within {} m of its model's origin", kMostTagReach));
+  if (is_tag) return X_MT;
+  warn(source, said->at,
+       "'tag_pose' is ignored: expected it on a model named tag<N> (N from 1) that nothing carries, which follows tag "
+       "packets");
+  return {};
 }
 
 std::uint32_t add_mover(Building& b, const Entity& entity, const Model& model, std::optional<Link> link) {

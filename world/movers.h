@@ -21,6 +21,11 @@ std::optional<Link> link_of(std::string_view name);
 /// The controller of ours that `ctrl` names (Stage's `wander`); empty where it names none, with a warning.
 std::string controller_of(Building& b, const Entity& entity);
 
+/// `tag_pose`: where the tag is mounted on a model that follows its packets. On any other it is ignored, with a
+/// warning.
+/// @throws base::InputError as any pose, and for one 100 m from the origin.
+Pose tag_pose_of(Source& source, const Entity& entity, bool is_tag);
+
 /// Adds a mover for `model`, which becomes the next row of the models, and returns its row.
 /// @throws base::InputError for bounds, a drive, a command law or lengths that no robot can have.
 std::uint32_t add_mover(Building& b, const Entity& entity, const Model& model, std::optional<Link> link);

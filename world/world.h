@@ -154,6 +154,7 @@ struct Mover {
   std::uint32_t id = 0;       ///< number on the wire, unique among robots (or among tags)
   bool is_tag = false;        ///< follows tag packets (`tag<N>`); else V2V packets of robot `id`
   Pose X_WM;                  ///< at load
+  Pose X_MT;                  ///< where a tag is mounted; not in snapshots, since runs take no tag packets
   std::vector<Segment> body;  ///< outline in its own frame, z above its own origin; carried models included
   double radius = 0.0;        ///< [m] of the circle about its origin that holds the body
   Drive drive = Drive::differential;

@@ -318,6 +318,45 @@ TEST(Packets, ATagsVelocityTurnsIntoItsOwnFrame) {
   EXPECT_EQ(got.velocity.turn, 0.5);
 }
 
+/// Without an offset: the tag's own numbers, to the bit.
+TEST(Packets, ATagAtItsModelsOriginSaysTheModelsPose) {
+  Packet packet;
+  ASSERT_EQ(decode(tag_example(), packet), Reason::accepted);
+  const Tag& tag = std::get<Tag>(packet.body);
+  const base::Report got = report(packet.header, tag, 3, {});
+  const double yaw = std::atan2(2.0 * 0.8 * 0.6, 1.0 - 2.0 * 0.6 * 0.6);
+  const base::Vec2 velocity = base::rotate(-yaw, {tag.linear[0], tag.linear[1]});
+  EXPECT_EQ(got.X_WM.x, tag.position[0]);
+  EXPECT_EQ(got.X_WM.y, tag.position[1]);
+  EXPECT_EQ(got.X_WM.z, tag.position[2]);
+  EXPECT_EQ(got.X_WM.yaw, yaw);
+  EXPECT_EQ(got.velocity.forward, velocity.x);
+  EXPECT_EQ(got.velocity.left, velocity.y);
+}
+
+/// A tag ahead of its model's origin, to its left and above it, turned by 90 degrees. The model turns in place: its tag
+/// moves, its origin does not.
+TEST(Packets, ATagMayBeMountedAnywhereOnItsModel) {
+  const base::Pose X_MT{0.2, 0.1, 0.3, M_PI / 2};
+  for (const double yaw : {0.0, M_PI / 2, -2.5}) {
+    const base::Pose X_WM{1.0, 2.0, 0.2, yaw};
+    const base::Pose X_WT = base::compose(X_WM, X_MT);
+    const base::Vec2 arm = base::rotate(yaw, {X_MT.x, X_MT.y});
+    const Tag tag{.position = {X_WT.x, X_WT.y, X_WT.z},
+                  .orientation = {0, 0, std::sin(X_WT.yaw / 2), std::cos(X_WT.yaw / 2)},
+                  .linear = {-0.5 * arm.y, 0.5 * arm.x, 0},
+                  .angular = {0, 0, 0.5}};
+    const base::Report got = report({.robot = 1}, tag, 3, X_MT);
+    EXPECT_NEAR(got.X_WM.x, 1.0, 1e-12) << yaw;
+    EXPECT_NEAR(got.X_WM.y, 2.0, 1e-12) << yaw;
+    EXPECT_NEAR(got.X_WM.z, 0.2, 1e-12) << yaw;
+    EXPECT_NEAR(base::wrap_angle(got.X_WM.yaw - yaw), 0.0, 1e-12) << yaw;
+    EXPECT_NEAR(got.velocity.forward, 0.0, 1e-12) << yaw;
+    EXPECT_NEAR(got.velocity.left, 0.0, 1e-12) << yaw;
+    EXPECT_EQ(got.velocity.turn, 0.5);
+  }
+}
+
 TEST(Reason, EachHasItsOwnName) {
   for (std::size_t i = 0; i < kReasons; ++i) {
     EXPECT_FALSE(name(static_cast<Reason>(i)).empty());

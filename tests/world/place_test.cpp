@@ -137,6 +137,18 @@ TEST(CloneRobots, the_first_with_sensors_is_copied_or_who_is_named) {
   for (std::size_t k = 0; k < 5; ++k) EXPECT_TRUE(copies.movers[k].sensors.empty());
 }
 
+TEST(CloneRobots, a_tag_keeps_where_it_is_mounted) {
+  for (const char* const of : {"", "dummy"}) {
+    World world = with_a_dummy();
+    world.movers[0].X_MT = {0.1, 0.2, 0.3, 0.4};
+    clone_robots(world, 3, 1, of);
+    ASSERT_EQ(world.movers.size(), 4u);
+    EXPECT_TRUE(world.movers[3].is_tag);
+    EXPECT_EQ(world.movers[3].X_MT.yaw, 0.4);
+    EXPECT_EQ(world.movers[0].X_MT.yaw, 0.0);
+  }
+}
+
 TEST(CloneRobots, a_name_that_is_no_robots_is_refused) {
   for (const auto& [name, said] : {std::pair{"robot44", "has no robot 'robot44' to copy; did you mean 'robot4'?"},
                                    std::pair{"robot1", "has no robot 'robot1' to copy"}}) {

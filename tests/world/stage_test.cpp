@@ -213,6 +213,38 @@ TEST(Stage, NumbersComeFromNamesAndTheRestFillsTheGaps) {
   EXPECT_FALSE(world.movers[3].is_tag);
 }
 
+TEST(Stage, ATagMayBeMountedAnywhereOnItsModel) {
+  const World world = read_world(
+      "unit_length \"cm\" unit_angle \"radians\"\n"
+      "model( name \"tag1\" tag_pose [10 -20 30 1.5] ) model( name \"tag2\" )");
+  const Pose& X_MT = world.movers[0].X_MT;
+  EXPECT_DOUBLE_EQ(X_MT.x, 0.1);
+  EXPECT_DOUBLE_EQ(X_MT.y, -0.2);
+  EXPECT_DOUBLE_EQ(X_MT.z, 0.3);
+  EXPECT_DOUBLE_EQ(X_MT.yaw, 1.5);
+  EXPECT_EQ(world.movers[1].X_MT.x, 0.0);
+  EXPECT_EQ(warnings_of(world), "");
+}
+
+/// Robots say their own pose, and what is carried follows nothing.
+TEST(Stage, ATagPoseOfWhatFollowsNoTagIsIgnoredWithAWarning) {
+  const World world = read_world(
+      "position( name \"roomba1\" tag_pose [1 0 0 0]\n model( name \"tag3\" tag_pose [1 0 0 0] ) )\n"
+      "model( tag_pose [1 0 0 0] )");
+  EXPECT_EQ(only_mover(world).X_MT.x, 0.0);
+  for (const char* const line : {"1: 'tag_pose' is ignored: expected it on a model named tag<N>",
+                                 "2: 'tag_pose' is ignored", "3: 'tag_pose' is ignored"})
+    EXPECT_NE(warnings_of(world).find(line), std::string::npos) << line;
+}
+
+TEST(Stage, ATagPoseOfThreeNumbersIsReadAsAPoseIs) {
+  const World world = read_world("model(\n name \"tag1\" tag_pose [1 0 90] )");
+  EXPECT_EQ(world.movers[0].X_MT.z, 90.0);
+  EXPECT_EQ(world.movers[0].X_MT.yaw, 0.0);
+  EXPECT_NE(warnings_of(world).find("2: 'tag_pose' has three numbers, read as [x y z]"), std::string::npos)
+      << warnings_of(world);
+}
+
 TEST(Stage, OtherNamesLinkNothing) {
   const World world = read_world(
       "model( name \"roomba\" ) model( name \"tag\" ) model( name \"tag0\" ) model( name \"roombax1\" )"
