@@ -16,8 +16,8 @@ find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOImage Rend
 # overlapping strings (-Wrestrict) and, once headers are precompiled, of their bounds where nothing is wrong.
 add_library(house INTERFACE)
 target_include_directories(house INTERFACE ${CMAKE_SOURCE_DIR})
-target_compile_options(house INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
-                       -Wno-stringop-overread -ffp-contract=off
+target_compile_options(house INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers
+                       "$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>" -ffp-contract=off
                        $<$<BOOL:${SENSORFARM_WERROR}>:-Werror>)
 if(SENSORFARM_SANITIZE)
   target_compile_options(house INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
