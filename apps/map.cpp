@@ -16,8 +16,10 @@
 #include "maps/assembler.h"
 #include "maps/merge.h"
 #include "maps/text.h"
+#include "netio/assembler.h"
 #include "netio/ears.h"
 #include "netio/endpoint.h"
+#include "netio/leaps.h"
 #include "netio/one_farm.h"
 #include "netio/packets.h"
 #include "sensors/occupancy.h"
@@ -36,11 +38,25 @@ constexpr std::size_t kReceiveBuffer = 1u << 22;  ///< [byte] asked of the kerne
 struct Source {
   std::uint16_t port = 0;
   netio::OneFarm farm;
+  std::uint64_t farms = 0;  ///< changes of it so far
+  netio::Leaps sequences{netio::Assembler::kMostAhead};
   maps::Assembler assembler;
   std::uint16_t robot = 0;
   std::uint64_t used = 0;      ///< datagrams
-  std::uint64_t left_out = 0;  ///< late, twice, faulty, or of something else
+  std::uint64_t left_out = 0;  ///< late, twice, too far ahead, faulty, or of something else
+
+  Source(std::uint16_t on, std::uint32_t host) : port(on), farm(host) {}
 };
+
+/// Whether a sound part is of the source's one farm, and near those before it.
+bool follow(Source& source, const netio::Endpoint& from, const netio::Header& header, std::int64_t now) {
+  if (!source.farm.admit(from, header.session, now)) return false;
+  if (source.farms != source.farm.changes()) {
+    source.farms = source.farm.changes();
+    source.sequences = netio::Leaps(netio::Assembler::kMostAhead);
+  }
+  return !source.sequences.leaps(header.sequence);
+}
 
 std::string name_of(const Source& source, sensors::Wire wire) {
   return wire == sensors::Wire::farm ? "robot " + std::to_string(source.robot) : "port " + std::to_string(source.port);
@@ -62,7 +78,7 @@ maps::Taken take(Source& source, sensors::Wire wire, std::span<const std::uint8_
     return maps::Taken::faulty;
   maps::MapPart part;
   if (maps::read_part(reading->payload, part) != maps::PartFault::none) return maps::Taken::faulty;
-  if (!source.farm.admit(from, packet.header.session, now)) return maps::Taken::faulty;
+  if (!follow(source, from, packet.header, now)) return maps::Taken::faulty;
   source.robot = packet.header.robot;
   return source.assembler.take(packet.header.sequence, reading->payload);
 }
@@ -87,7 +103,7 @@ class Display {
         ears_(netio::resolve(options.bind), kReceiveBuffer, plans_of(options.map_ports)),
         on_terminal_(isatty(STDOUT_FILENO) != 0) {
     const std::uint32_t host = options.from.empty() ? 0 : netio::resolve(options.from);
-    for (const std::uint16_t port : options.map_ports) sources_.push_back({port, netio::OneFarm(host), {}, 0, 0, 0});
+    for (const std::uint16_t port : options.map_ports) sources_.emplace_back(port, host);
   }
 
   /// Takes what waits, or comes within a moment. @return true when anything did.
@@ -192,6 +208,9 @@ void Display::tell() const {
                  static_cast<unsigned long long>(source.assembler.torn_maps()),
                  static_cast<unsigned long long>(source.used), static_cast<unsigned long long>(source.left_out),
                  source.assembler.map() != nullptr && source.assembler.true_poses() ? ", made from true poses" : "");
+  if (const std::uint64_t drops = ears_.kernel_drops(); drops > 0)
+    std::fprintf(stderr, "sensorfarm: %s dropped by the kernel: they came faster than they were taken\n",
+                 counted(drops, "datagram").c_str());
 }
 
 }  // namespace

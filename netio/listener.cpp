@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "netio/leaps.h"
 #include "netio/one_farm.h"
 #include "netio/track.h"
 
@@ -30,9 +31,8 @@ void add(Gaps& gaps, const Track& track) {
 struct Stream {
   StreamPlan plan;
   Track track;
-  std::uint64_t farm = 0;                ///< which one the track is of
-  std::uint32_t highest = 0;             ///< sequence
-  std::optional<std::uint32_t> awaited;  ///< the sequence that would make a leap believed
+  std::uint64_t farm = 0;  ///< which one the track is of
+  Leaps sequences{Listener::kMostAhead};
   std::uint64_t good = 0;
   std::uint64_t elements = 0;
 };
@@ -40,15 +40,6 @@ struct Stream {
 std::int64_t steady_now() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
       .count();
-}
-
-/// Whether `sequence` is too far ahead of what came before it, and not the second in a row that is.
-bool leaps(Stream& stream, std::uint32_t sequence) {
-  const bool far = stream.track.next > 0 && newer(sequence, stream.highest) &&
-                   sequence - stream.highest > Listener::kMostAhead && stream.awaited != sequence;
-  stream.awaited = far ? std::optional(sequence + 1) : std::nullopt;
-  if (!far && (stream.track.next == 0 || newer(sequence, stream.highest))) stream.highest = sequence;
-  return far;
 }
 
 }  // namespace
@@ -144,9 +135,9 @@ Reason Listener::Streams::follow(Stream& stream, const Header& header, const End
     stream.farm = farm.changes();
     add(before, stream.track);
     stream.track = {};
-    stream.awaited.reset();
+    stream.sequences = Leaps(Listener::kMostAhead);
   }
-  return leaps(stream, header.sequence) ? Reason::out_of_range : Reason::accepted;
+  return stream.sequences.leaps(header.sequence) ? Reason::out_of_range : Reason::accepted;
 }
 
 Summary Listener::summary() const {

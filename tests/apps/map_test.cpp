@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <csignal>
+
 #include "maps/packets.h"
 #include "netio/outbox.h"
 #include "netio/packets.h"
@@ -110,6 +112,52 @@ TEST(Map, PacketsAreAsDocumented) {
   kind.encode(row, reading, sensors::Wire::thesis, 1, second);
   EXPECT_EQ(first, test::documented("thesis_occupancy"));
   EXPECT_EQ(second, test::documented("thesis_occupancy_rest"));
+}
+
+/// A map of one word, all of whose cells are in `state`.
+void send_map(netio::Outbox& farm, unsigned port, std::uint32_t sequence, std::uint32_t state) {
+  base::Bytes payload, packet;
+  maps::put_part(
+      {.left = 0, .top = 0, .cell = 1, .word_columns = 1, .word_rows = 1}, 0, 0,
+      [&](std::uint32_t) { return state * 0x55555555u; }, payload);
+  netio::frame({.robot = 7, .sequence = sequence}, sensors::kOccupancy, payload, packet);
+  farm.queue({netio::kLoopback, static_cast<std::uint16_t>(port)}, packet);
+  farm.flush();
+}
+
+/// A sequence far ahead of its farm's neither shows its map nor makes the genuine ones after it late; one that the next
+/// follows on is believed.
+TEST(Map, SequencesThatLeapAreLeftOut) {
+  for (const bool followed : {false, true}) {
+    const unsigned port = free_ports(1);
+    Program map(listen(port, {}));
+    ASSERT_TRUE(map.says("listening for maps on 1 port"));
+    netio::Outbox farm;
+    for (const std::uint32_t sequence : {0u, 1u}) send_map(farm, port, sequence, 2);
+    send_map(farm, port, 1'000'000, 1);
+    if (followed) send_map(farm, port, 1'000'001, 1);
+    send_map(farm, port, 2, 2);
+    const Outcome outcome = map.wait();
+    EXPECT_EQ(outcome.out.find('1') != std::string::npos, followed) << outcome.out;
+    EXPECT_NE(outcome.err.find(followed ? "3 datagrams used and 2 left out" : "3 datagrams used and 1 left out"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(outcome.err.find("dropped by the kernel"), std::string::npos) << outcome.err;
+  }
+}
+
+/// More than the port's buffer holds, while nobody takes it.
+TEST(Map, WhatTheKernelDroppedIsTold) {
+  const unsigned port = free_ports(1);
+  Program map(listen(port, {}));
+  ASSERT_TRUE(map.says("listening for maps on 1 port"));
+  map.signal(SIGSTOP);
+  netio::Outbox farm;
+  for (int i = 0; i < 30'000; ++i) farm.queue({netio::kLoopback, static_cast<std::uint16_t>(port)}, base::Bytes(1'000));
+  farm.flush();
+  map.signal(SIGCONT);
+  const Outcome outcome = map.wait();
+  EXPECT_NE(outcome.err.find("datagrams dropped by the kernel"), std::string::npos) << outcome.err;
 }
 
 TEST(Map, NothingCame) {
