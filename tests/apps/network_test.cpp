@@ -13,22 +13,29 @@ namespace sf {
 
 namespace {
 
-void run_to_listener(const std::string& wire) {
-  const std::string base = std::to_string(free_ports(40));
-  const Words both{our_world("cave.world"), "--robots", "4", "--json", "--wire", wire, "--laser-port", base};
-  Words listen{"listen"}, run{"run"};
-  listen.insert(listen.end(), both.begin(), both.end());
-  run.insert(run.end(), both.begin(), both.end());
-  listen.insert(listen.end(), {"--silence", "100"});
-  run.insert(run.end(), {"--duration", "3", "--send", "127.0.0.1"});
+struct Exchange {
+  Outcome sent, heard;
+};
+
+/// `run` of a world for some seconds, and `listen` beside it. @param ports as `listen` counts them
+/// @param both more words of both
+Exchange exchange(const std::string& world, const std::string& ports, const std::string& seconds, const Words& both) {
+  Words words{world, "--json", "--laser-port", std::to_string(free_ports(60))};
+  words.insert(words.end(), both.begin(), both.end());
+  Words listen{"listen", "--silence", "100"}, run{"run", "--send", "127.0.0.1", "--duration", seconds};
+  for (Words* command : {&listen, &run}) command->insert(command->end(), words.begin(), words.end());
   Program listener(listen);
-  ASSERT_TRUE(listener.says("listening on 4 ports")) << listener.err();
+  EXPECT_TRUE(listener.says("listening on " + ports)) << listener.err();
   const Outcome sent = run_program(run);
-  ASSERT_EQ(sent.code, 0) << sent.err;
+  EXPECT_EQ(sent.code, 0) << sent.err;
   listener.signal(SIGINT);
-  const Outcome received = listener.wait();
-  EXPECT_EQ(received.code, 0) << received.err;
-  const Json out(sent.out), in(received.out);
+  return {sent, listener.wait()};
+}
+
+void run_to_listener(const std::string& wire) {
+  const auto [sent, heard] = exchange(our_world("cave.world"), "4 ports", "3", {"--robots", "4", "--wire", wire});
+  EXPECT_EQ(heard.code, 0) << heard.err;
+  const Json out(sent.out), in(heard.out);
   EXPECT_EQ(out.number("/packets/sent"), 4 * 30);
   EXPECT_EQ(out.number("/packets/failed"), 0);
   EXPECT_EQ(in.number("/packets"), 4 * 30);
@@ -50,14 +57,8 @@ TEST(SendAndListen, ReadingsBetweenTicksAreSentToo) {
       folder.write("w.world",
                    "interval_sim 100\nmodel( size [6 4 1] boundary 1 noblocks 0 )\n"
                    "position( name \"roomba1\" laser( samples 9 rate 20 ) laser( samples 9 rate 7 ) )\n");
-  const std::string base = std::to_string(free_ports(16));
-  Program listener({"listen", world, "--json", "--laser-port", base, "--silence", "100"});
-  ASSERT_TRUE(listener.says("listening on 2 ports")) << listener.err();
-  const Outcome sent =
-      run_program({"run", world, "--duration", "3", "--send", "127.0.0.1", "--json", "--laser-port", base});
-  ASSERT_EQ(sent.code, 0) << sent.err;
-  listener.signal(SIGINT);
-  const Json in(listener.wait().out);
+  const auto [sent, heard] = exchange(world, "2 ports", "3", {});
+  const Json in(heard.out);
   EXPECT_EQ(Json(sent.out).number("/packets/sent"), 59 + 21) << "20 Hz and 7 Hz, from 0 to 2.9 s";
   EXPECT_EQ(in.number("/good"), 59 + 21);
   EXPECT_EQ(in.number("/lost"), 0);
@@ -361,15 +362,9 @@ TEST(SendAndListen, ThePortsOfARobotAreAsManyAsFit) {
     robots += " )\n";
   }
   const std::string world = folder.write("w.world", robots);
-  const unsigned base = free_ports(60);
-  Program listener({"listen", world, "--json", "--laser-port", std::to_string(base), "--silence", "100"});
-  ASSERT_TRUE(listener.says("listening on 34 ports")) << listener.err();
-  EXPECT_NE(listener.err().find("17 ports per robot"), std::string::npos) << listener.err();
-  const Outcome sent = run_program(
-      {"run", world, "--duration", "0.3", "--send", "127.0.0.1", "--laser-port", std::to_string(base), "--json"});
-  EXPECT_EQ(sent.code, 0) << sent.err;
-  listener.signal(SIGINT);
-  const Json in(listener.wait().out);
+  const Outcome heard = exchange(world, "34 ports", "0.3", {}).heard;
+  EXPECT_NE(heard.err.find("17 ports per robot"), std::string::npos) << heard.err;
+  const Json in(heard.out);
   EXPECT_EQ(in.number("/good"), 34 * 3);
   EXPECT_EQ(in.number("/silent_ports"), 0);
   const Outcome asked = run_program({"serve", world, "--port", "0", "--ports-per-robot", "8"});
@@ -383,17 +378,11 @@ TEST(SendAndListen, TheThesisLeavesOutWhatItHasNoLayoutFor) {
       folder.write("w.world",
                    "position( name \"roomba1\" laser( samples 2 ) infrared( scount 1 spose[0] [0 0 0] ) )\n"
                    "position( name \"roomba2\" pose [2 0 0 0] laser( samples 2 ) laser( samples 400 ) )\n");
-  const std::string base = std::to_string(free_ports(40));
-  Program listener({"listen", world, "--json", "--laser-port", base, "--silence", "100", "--wire", "thesis"});
-  ASSERT_TRUE(listener.says("listening on 2 ports")) << listener.err();
-  const Outcome sent = run_program(
-      {"run", world, "--duration", "0.3", "--send", "127.0.0.1", "--laser-port", base, "--wire", "thesis", "--json"});
-  EXPECT_EQ(sent.code, 0) << sent.err;
+  const auto [sent, heard] = exchange(world, "2 ports", "0.3", {"--wire", "thesis"});
   EXPECT_NE(sent.err.find("left out: roomba1.infrared"), std::string::npos) << sent.err;
   EXPECT_NE(sent.err.find("left out: roomba2.laser:1: 400 samples"), std::string::npos) << sent.err;
   EXPECT_EQ(count_lines(sent.err), 2u) << sent.err;
-  listener.signal(SIGINT);
-  const Json in(listener.wait().out);
+  const Json in(heard.out);
   EXPECT_EQ(in.number("/good"), 2 * 3);
   EXPECT_EQ(in.number("/packets"), 2 * 3);
   EXPECT_EQ(Json(sent.out).number("/packets/sent"), 2 * 3);
