@@ -229,7 +229,10 @@ std::string json_of(const RunFacts& f) {
   if (f.received) {
     json["received"] = reasons(f.inbox);
     json["kernel_drops"] = f.kernel_drops;
-    json["relayed"] = {{"states", f.relayed.states}, {"starts", f.relayed.starts}};
+    json["relayed"] = {{"states", f.relayed.states},
+                       {"datagrams", f.relayed.datagrams},
+                       {"waited", f.relayed.waited},
+                       {"starts", f.relayed.starts}};
     json["log_lines_left_out"] = f.lines_left_out;
   }
   if (!f.recording.empty()) {

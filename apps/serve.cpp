@@ -54,7 +54,7 @@ class Service {
         names_(wire_names(world)),
         inbox_(open_inbox(names_, options)),
         answers_(inbox_.socket()),
-        relay_(ids_of(names_.robots)),
+        relay_(ids_of(names_.robots), {.range = options.radio}),
         plan_(plan),
         post_(world, roster, plan, netio::Outbox(inbox_.socket())),
         farm_(world, device,

@@ -72,6 +72,11 @@ void add_serve(CLI::App& app, Options& o) {
                   "sensors at their own times)")
       ->check(number(0.1, 10000.0))
       ->type_name("HZ");
+  sub->add_option("--radio", o.radio,
+                  "How far robots' V2V reaches: states of others within it are passed on (0: none are) [m]")
+      ->check(number(0.0, 1e9))
+      ->type_name("M")
+      ->capture_default_str();
   add_forget(*sub, o);
   add_seed(*sub, o, "Seed of noise");
   add_until(*sub, o, Command::serve, "Stop after this long [s] (0: when told to)");

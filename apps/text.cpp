@@ -190,7 +190,10 @@ std::string text_of(const RunFacts& f) {
   if (f.received) text += row("packets received", netio::text(f.inbox));
   if (f.kernel_drops > 0) text += drops_text(f.kernel_drops);
   if (f.relayed.states + f.relayed.starts > 0)
-    text += row("packets passed on", fmt::format("{} V2V, {} START", f.relayed.states, f.relayed.starts));
+    text += row("packets passed on", fmt::format("{} V2V in {}, {} START", f.relayed.states,
+                                                 counted(f.relayed.datagrams, "datagram"), f.relayed.starts));
+  if (f.relayed.waited > 0)
+    text += row("  waited for", counted(f.relayed.waited, "time") + ": more robots ask for V2V than a tick serves");
   if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
   if (!f.recording.empty())
     text += row("recording", fmt::format("{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6));

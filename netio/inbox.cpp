@@ -68,6 +68,7 @@ Reason Inbox::judge(const Packet& packet, const Endpoint& source, std::int64_t n
       return packet.header.robot == kEveryone || robots_.row(packet.header.robot) ? Reason::accepted
                                                                                   : Reason::unknown_robot;
     case Type::challenge:
+    case Type::neighbours:
       break;
   }
   return Reason::wrong_direction;

@@ -11,7 +11,6 @@ namespace sf::netio {
 
 namespace {
 
-constexpr std::size_t kV2vBytes = 68;
 constexpr std::size_t kTagBytes = 104;
 constexpr std::size_t kSubscribeBytes = 4;
 constexpr std::size_t kChallengeBytes = 4;
@@ -108,7 +107,7 @@ Reason read_body(std::span<const std::uint8_t> payload, Packet& packet) {
   Reason reason = Reason::accepted;
   switch (packet.header.type) {
     case Type::v2v:
-      reason = check_size(payload.size(), kV2vBytes);
+      reason = check_size(payload.size(), kV2vBytes - kHeaderBytes);
       return reason == Reason::accepted ? read_v2v(reader, packet) : reason;
     case Type::tag:
       reason = check_size(payload.size(), kTagBytes);
@@ -125,6 +124,10 @@ Reason read_body(std::span<const std::uint8_t> payload, Packet& packet) {
     case Type::challenge:
       packet.body = Challenge{reader.get<std::uint32_t>()};
       return check_size(payload.size(), kChallengeBytes);
+    case Type::neighbours:
+      packet.body = Neighbours{payload};
+      if (payload.size() > kMostNeighbours * kV2vBytes) return Reason::too_long;
+      return payload.empty() || payload.size() % kV2vBytes != 0 ? Reason::too_short : Reason::accepted;
   }
   if (kind_of(packet.header.type) == 0) return Reason::unknown_type;
   packet.body = Reading{payload};
@@ -250,6 +253,14 @@ void encode(const Header& header, const Challenge& challenge, base::Bytes& out) 
   start(header, Type::challenge, out);
   base::ByteWriter writer(out);
   writer.put(challenge.token);
+}
+
+void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out) {
+  const std::size_t size = neighbours.states.size();
+  SF_CHECK(size > 0 && size % kV2vBytes == 0 && size <= kMostNeighbours * kV2vBytes,
+           std::to_string(size) + " bytes of V2V");
+  start(header, Type::neighbours, out);
+  out.insert(out.end(), neighbours.states.begin(), neighbours.states.end());
 }
 
 void frame(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out) {

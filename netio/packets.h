@@ -35,7 +35,15 @@ inline constexpr std::int64_t kMaxTime = std::int64_t{1} << 62;  ///< [ns] 146 y
 
 /// From 128: states and requests sent to the farm, of which it passes V2V and START on. Below 64: a reading of the
 /// sensor kind with that number; 64 more: its second form.
-enum class Type : std::uint8_t { v2v = 128, tag = 129, subscribe = 130, start = 131, leave = 132, challenge = 133 };
+enum class Type : std::uint8_t {
+  v2v = 128,
+  tag = 129,
+  subscribe = 130,
+  start = 131,
+  leave = 132,
+  challenge = 133,
+  neighbours = 140
+};
 
 /// The sensor kind in [1, 63] whose readings, of either form, are sent as `type`; 0 when it is no reading's.
 constexpr std::uint8_t kind_of(Type type) {
@@ -99,6 +107,15 @@ struct Challenge {
   std::uint32_t token = 0;
 };
 
+inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;              ///< of a whole V2V
+inline constexpr std::size_t kMostNeighbours = kMaxPayload / kV2vBytes;  ///< V2V in one NEIGHBOURS
+inline constexpr double kRadioRange = 50.0;  ///< [m] how far the farm passes V2V on, unless told otherwise
+
+/// The farm passes on what other robots said: whole V2V datagrams, one after another.
+struct Neighbours {
+  std::span<const std::uint8_t> states;  ///< 1 to kMostNeighbours of kV2vBytes, not looked into; live like the datagram
+};
+
 /// A sensor's reading, or a part of one; its kind reads it.
 struct Reading {
   std::span<const std::uint8_t> payload;  ///< lives as long as the datagram
@@ -106,7 +123,7 @@ struct Reading {
 
 struct Packet {
   Header header;
-  std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, Reading> body;
+  std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, Neighbours, Reading> body;
 };
 
 /// Reads any bytes. Fills `packet` only when the answer is Reason::accepted.
@@ -119,6 +136,7 @@ void encode(const Header& header, const Subscribe& request, base::Bytes& out);
 void encode(const Header& header, const Start& signal, base::Bytes& out);
 void encode(const Header& header, const Leave& word, base::Bytes& out);
 void encode(const Header& header, const Challenge& challenge, base::Bytes& out);
+void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out);
 
 /// A reading of type `type`, one of a sensor kind's two; replaces what `out` holds.
 /// Rule: the payload takes at most kMaxPayload.

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "netio/bindings.h"
@@ -37,8 +38,17 @@ class Radio {
   /// To the farm, at once, with the newest token.
   void send(std::span<const std::uint8_t> bytes);
 
+  /// Gives `take` each V2V of a NEIGHBOURS, and any other datagram as it is.
+  template <class Take>
+  static void each(std::span<const std::uint8_t> bytes, Take&& take) {
+    Packet packet;
+    if (decode(bytes, packet) != Reason::accepted || packet.header.type != Type::neighbours) return take(bytes);
+    const std::span<const std::uint8_t> states = std::get<Neighbours>(packet.body).states;
+    for (std::size_t at = 0; at < states.size(); at += kV2vBytes) take(states.subspan(at, kV2vBytes));
+  }
+
   /// Gives `take(std::span<const std::uint8_t> bytes)` all that waits and comes from the farm, as far as it is no
-  /// flood. The rest is counted as Reason::wrong_source.
+  /// flood, by `each`. The rest is counted as Reason::wrong_source.
   template <class Take>
   void receive(Take&& take) {
     constexpr std::size_t kMost = 65'536;
@@ -46,7 +56,7 @@ class Radio {
       n = batch_.fill(socket_);
       for (std::size_t i = 0; i < n; ++i) {
         if (batch_.source(i) == options_.farm)
-          take(batch_.bytes(i));
+          each(batch_.bytes(i), take);
         else
           counts_.add(Reason::wrong_source);
       }

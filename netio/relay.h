@@ -1,30 +1,46 @@
 #pragma once
-// What the farm passes on: every robot's newest V2V to those that asked for others' states, START to whom it is meant
-// for. Once per tick, so that nobody makes it send more by sending more.
+// The farm passes on states and signals: to robots that asked for others' states the newest V2V of the robots near
+// them, START to the robots that it names. Once per tick, many states a datagram, within a budget: traffic out does not
+// grow with traffic in.
 //
 //   relay.take(packet);                        // each packet that the inbox accepted
 //   relay.pass_on(inbox, now, outbox);         // each tick; then outbox.flush()
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "netio/inbox.h"
+#include "netio/nearby.h"
 #include "netio/outbox.h"
 #include "netio/packets.h"
 
 namespace sf::netio {
 
+struct RelayOptions {
+  double range = kRadioRange;   ///< [m] farther away, states are not passed on; 0: none is
+  std::size_t most = 64;        ///< states to one robot per tick, of the nearest
+  std::size_t budget = 16'384;  ///< states to all robots per tick, shared alike; at least Relay::kLeastShare
+};
+
 struct RelayCounts {
-  std::uint64_t states = 0;  ///< V2V datagrams queued
-  std::uint64_t starts = 0;  ///< START datagrams queued
+  std::uint64_t states = 0;     ///< V2V queued
+  std::uint64_t datagrams = 0;  ///< NEIGHBOURS that they were queued in
+  std::uint64_t waited = 0;     ///< robot and tick: it asked, and the budget was spent
+  std::uint64_t starts = 0;     ///< START datagrams queued
 };
 
 /// One thread. Nothing is allocated after construction.
 class Relay {
  public:
+  /// States that a robot is passed in its turn, however many ask. Where the budget does not serve all in one tick they
+  /// take turns, and each is passed what was said since its last one.
+  static constexpr std::size_t kLeastShare = 4;
+
   /// @param robots ids that the world has
-  explicit Relay(std::span<const std::uint32_t> robots);
+  explicit Relay(std::span<const std::uint32_t> robots, const RelayOptions& options = {});
 
   /// Keeps a V2V of one of the robots, or a START, until the next `pass_on`: the newest of each. Others are left out.
   void take(const Packet& packet);
@@ -34,20 +50,35 @@ class Relay {
   void pass_on(const Inbox& inbox, std::int64_t now, Outbox& outbox);
 
   const RelayCounts& counts() const { return counts_; }
+  /// Places that the search for neighbours looked at.
+  std::uint64_t looks() const { return nearby_.looks(); }
 
  private:
   struct Robot {
     std::uint32_t id = 0;
-    bool spoke = false;    ///< since the last pass
-    bool started = false;  ///< a START for it waits
+    std::uint32_t age = std::numeric_limits<std::uint32_t>::max();  ///< [passes] since it spoke
+    std::uint32_t waits = 0;                                        ///< [passes] since its turn, while it asks
+    std::uint32_t sent = 0;                                         ///< NEIGHBOURS to it
+    bool started = false;                                           ///< a START for it alone waits
+    std::optional<base::Vec2> p;                                    ///< [m] where it said it is
     base::Bytes state;
     base::Bytes start;
   };
   Robot* find(std::uint32_t id);
-  void send_others(const Robot& to, const Endpoint& where, const Stamp& stamp, Outbox& outbox);
+  void send_starts(const Inbox& inbox, std::int64_t now, Outbox& outbox);
+  void find_askers(const Inbox& inbox, std::int64_t now);
+  void send_states(const Inbox& inbox, std::int64_t now, Outbox& outbox);
+  std::size_t send_others(Robot& to, std::size_t most, const Inbox& inbox, std::int64_t now, Outbox& outbox);
 
-  std::vector<Robot> robots_;       ///< by id
-  std::vector<std::size_t> spoke_;  ///< rows, of one pass
+  RelayOptions options_;
+  std::vector<Robot> robots_;          ///< by id
+  std::vector<Nearby::Place> spoke_;   ///< of one pass
+  std::vector<std::uint32_t> askers_;  ///< rows, of one pass
+  Nearby nearby_;
+  std::uint32_t turn_ = 0;    ///< row that is served first
+  bool all_started_ = false;  ///< a START for everyone waits
+  base::Bytes start_;         ///< that one
+  base::Bytes states_, packet_;
   RelayCounts counts_;
 };
 

@@ -31,7 +31,9 @@ class Robot {
  public:
   Robot(std::uint16_t id, unsigned service, unsigned hears)
       : id_(id),
-        radio_({.farm = {netio::kLoopback, static_cast<std::uint16_t>(service)}, .robot = id, .others = {}}),
+        radio_({.farm = {netio::kLoopback, static_cast<std::uint16_t>(service)},
+                .robot = id,
+                .others = {id == 1 ? 2u : 1u}}),
         ears_(netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(hears)})),
         batch_(16) {}
 
@@ -54,10 +56,19 @@ class Robot {
   bool challenged() {
     radio_.receive([&](std::span<const std::uint8_t> bytes) {
       netio::Packet packet;
-      radio_.accept(bytes, 0, packet);
+      if (radio_.accept(bytes, 0, packet) == netio::Reason::accepted && packet.header.type == netio::Type::v2v)
+        ++states_;
     });
     return radio_.farm_stamp().session != 0;
   }
+
+  /// For its laser, and the other's states.
+  void ask() {
+    base::Bytes bytes;
+    netio::encode({.robot = id_, .sequence = requests_++}, netio::Subscribe{netio::kOthers | 1u << 1}, bytes);
+    send(bytes);
+  }
+  std::size_t states() const { return states_; }  ///< of the other, that came
 
   void leave() {
     base::Bytes bytes;
@@ -110,6 +121,8 @@ class Robot {
   netio::Socket ears_;
   netio::ReceiveBatch batch_;
   std::uint32_t sequence_ = 0;
+  std::uint32_t requests_ = 0;
+  std::size_t states_ = 0;
 };
 
 /// Polls for up to a minute.

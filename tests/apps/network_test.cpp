@@ -281,6 +281,27 @@ TEST(Serve, ATagIsWhereItIsMounted) {
   EXPECT_TRUE(seen) << testing::PrintToString(ranges);
 }
 
+TEST(Serve, StatesArePassedOnWithinTheRadiosRange) {
+  Service service(kRoom, {"--rate", "50", "--radio", "3"});
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  Robot one(1, service.port, service.hears(1)), two(2, service.port, service.hears(2));
+  const auto turn = [&](double x) {
+    one.ask();
+    one.say({-1.0, 0.0, 0.0, 0.0});
+    two.say({x, 0.0, 0.0, 0.0});
+    one.hear(), two.hear();
+  };
+  ASSERT_TRUE(until([&] { return turn(2.5), one.stamps().size() >= 5 && two.stamps().size() >= 5; }));
+  EXPECT_EQ(one.states(), 0u) << "3.5 m apart";
+  EXPECT_TRUE(until([&] { return turn(1.5), one.states() > 0; }));
+  EXPECT_EQ(two.states(), 0u) << "it did not ask";
+  service.program.signal(SIGINT);
+  const Json facts(service.program.wait().out);
+  EXPECT_GE(facts.number("/relayed/states"), 1);
+  EXPECT_EQ(facts.number("/relayed/datagrams"), facts.number("/relayed/states"));
+  EXPECT_EQ(facts.number("/relayed/waited"), 0);
+}
+
 TEST(Serve, StrangersAreCountedAndDropped) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();

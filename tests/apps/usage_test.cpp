@@ -81,7 +81,7 @@ TEST(Usage, HelpNamesTheOptions) {
       {"run",
        {"--robots", "--duration", "--seed", "--record", "--record-readings", "--real-time", "--send", "--json",
         "--wire", "--threads", "--stage-obstacles", "--drive"}},
-      {"serve", {"--bind", "--rate", "--port", "--laser-port", "--wire", "--json"}},
+      {"serve", {"--bind", "--rate", "--radio", "--port", "--laser-port", "--wire", "--json"}},
       {"robot",
        {"--name", "--controller", "--set", "--server", "--port", "--delay", "--jitter", "--loss", "--seed", "--rate",
         "--duration", "--wait-for-start", "--json", "--wire"}},
@@ -141,7 +141,10 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
            {{"sense", world, "--robot", "bob"}, "no robot 'bob'; with sensors it has roomba1, roomba2"},
            {{"serve", world, "--rate", "0"}, "from 0.1 to 10000"},  // would never tick
            {{"serve", world, "--port", "65536"}, "from 0 to 65535"},
-           {{"serve", world, "--bind", "192.0.2.1"}, "192.0.2.1"},  // not this machine's
+           {{"serve", world, "--radio", "-1"}, "from 0 to 1e+09"},   // a distance
+           {{"serve", world, "--radio", "nan"}, "from 0 to 1e+09"},  // would compare as nothing
+           {{"serve", world, "--radio", "inf"}, "from 0 to 1e+09"},  // its square is no distance
+           {{"serve", world, "--bind", "192.0.2.1"}, "192.0.2.1"},   // not this machine's
            {{"run", world, "--send", "no.such.host.invalid"}, "no.such.host.invalid"},
            {{"draw", world, "-o", folder.path("none/x.png")}, "none/x.png"},
            {{"draw", world, "-o", folder.path()}, "picture"},  // a folder

@@ -136,8 +136,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     listener.accept(sender & 1, given, source, now);
     receive(sender & 1, given, now);
-    if (radio.accept(given, now, packet) == netio::Reason::accepted)
-      require(packet.header.robot != 7 || !state_of(packet));
+    netio::Radio::each(given, [&](std::span<const std::uint8_t> one) {
+      if (radio.accept(one, now, packet) == netio::Reason::accepted)
+        require(packet.header.robot != 7 || !state_of(packet));
+    });
     if (sender % 8 == 0) relay.pass_on(inbox, now, nowhere);
   }
   return 0;

@@ -37,9 +37,21 @@ void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free
 namespace sf::netio {
 namespace {
 
+base::Bytes subscribe_to_others(std::uint32_t token) {
+  base::Bytes bytes;
+  encode({.robot = 7, .sequence = 1, .session = 1, .token = token}, Subscribe{kOthers}, bytes);
+  return bytes;
+}
+
+base::Bytes state_of_another(std::uint32_t token) {
+  base::Bytes bytes;
+  encode({.robot = 9, .session = 1, .token = token}, V2v{}, bytes);
+  return bytes;
+}
+
 TEST(Allocation, NoneOnTheWayInOrOut) {
-  Inbox inbox({.bind = {kLoopback, 0}, .robots = {7}, .tags = {12}});
-  Relay relay(std::vector<std::uint32_t>{7});
+  Inbox inbox({.bind = {kLoopback, 0}, .robots = {7, 9}, .tags = {12}});
+  Relay relay(std::vector<std::uint32_t>{7, 9});
   Outbox answers(inbox.socket());
   Outbox outbox;
   const Endpoint to{kLoopback, inbox.port()};
@@ -49,9 +61,10 @@ TEST(Allocation, NoneOnTheWayInOrOut) {
   std::vector<base::Bytes> packets = examples();
   const std::uint32_t token = inbox.token({kLoopback, outbox.endpoint().port});
   for (base::Bytes& packet : packets) stamp(packet, {1, token});
-  packets.pop_back();                        // the farm's own
+  packets.resize(packets.size() - 2);        // the farm's own
   const base::Bytes leave = packets.back();  // after it nobody is sent anything
-  packets.pop_back();
+  packets.back() = subscribe_to_others(token);
+  packets.push_back(state_of_another(token));
   base::Bytes answer;
   answer.reserve(kMaxDatagram);
   Packet unproven;
@@ -76,7 +89,8 @@ TEST(Allocation, NoneOnTheWayInOrOut) {
   EXPECT_EQ(allocations - before, 0u);
   EXPECT_GT(taken, 0u);
   EXPECT_GT(relay.counts().starts, 0u);
-  EXPECT_EQ(outbox.counts().sent, 20u * 7u + 1u);
+  EXPECT_GT(relay.counts().states, 0u);
+  EXPECT_EQ(outbox.counts().sent, 20u * 9u + 1u);
 }
 
 }  // namespace

@@ -66,6 +66,18 @@ inline base::Bytes challenge_example() {
   return out;
 }
 
+/// What the farm passes on of two others.
+inline base::Bytes neighbours_example() {
+  base::Bytes first = v2v_example(), second, out;
+  encode({.robot = 9, .sequence = 4, .time = 1'400'000'000}, V2v{.X_WR = {3, 0, 0, 0}}, second);
+  const Stamp receiver{0x11223344, 0x55667788};
+  for (base::Bytes* state : {&first, &second}) stamp(*state, receiver);
+  first.insert(first.end(), second.begin(), second.end());
+  encode({.robot = 3, .sequence = 15, .time = 1'600'000'000, .session = receiver.session, .token = receiver.token},
+         Neighbours{first}, out);
+  return out;
+}
+
 /// States and requests that are sent to the farm.
 inline std::vector<base::Bytes> states() {
   return {v2v_example(), tag_example(), subscribe_example(), start_example(), leave_example()};
@@ -73,8 +85,8 @@ inline std::vector<base::Bytes> states() {
 
 /// The farm's own packets, in order of type number.
 inline std::vector<base::Bytes> examples() {
-  return {reading_example(),   extended_example(), v2v_example(),   tag_example(),
-          subscribe_example(), start_example(),    leave_example(), challenge_example()};
+  return {reading_example(), extended_example(), v2v_example(),       tag_example(),       subscribe_example(),
+          start_example(),   leave_example(),    challenge_example(), neighbours_example()};
 }
 
 /// Overwrites the value at `offset`.

@@ -37,6 +37,7 @@ TEST(Packets, BytesAreTheDocumentedOnes) {
   EXPECT_EQ(start_example(), documented("start"));
   EXPECT_EQ(leave_example(), documented("leave"));
   EXPECT_EQ(challenge_example(), documented("challenge"));
+  EXPECT_EQ(neighbours_example(), documented("neighbours"));
 }
 
 TEST(Packets, HeaderComesBack) {
@@ -115,6 +116,23 @@ TEST(Packets, LeaveIsItsHeaderAlone) {
   EXPECT_EQ(packet.header.robot, 7);
 }
 
+TEST(Packets, NeighboursAreWholeV2v) {
+  static_assert(kMostNeighbours == 9 && kV2vBytes == 132);
+  const base::Bytes whole = neighbours_example();
+  const auto states = body_of<Neighbours>(whole).states;
+  ASSERT_EQ(states.size(), 2 * kV2vBytes);
+  Packet packet;
+  ASSERT_EQ(decode(states.subspan(kV2vBytes), packet), Reason::accepted);
+  EXPECT_EQ(packet.header.robot, 9);
+  EXPECT_EQ(reason_of({whole.begin(), whole.end() - 1}), Reason::too_short) << "the last one is cut";
+  EXPECT_EQ(reason_of({whole.begin(), whole.begin() + kHeaderBytes}), Reason::too_short) << "none";
+  base::Bytes longer = whole;
+  longer.resize(kHeaderBytes + kMostNeighbours * kV2vBytes);
+  EXPECT_EQ(reason_of(longer), Reason::accepted) << "what is in it is judged one by one";
+  longer.push_back(0);
+  EXPECT_EQ(reason_of(longer), Reason::too_long);
+}
+
 TEST(Packets, ReservedBytesOfTheHeaderAreIgnored) {
   EXPECT_EQ(reason_of(patched<std::uint16_t>(v2v_example(), 10, 0xFFFF)), Reason::accepted);
   for (std::size_t at = 32; at < 60; ++at)  // age and covariance
@@ -135,8 +153,9 @@ TEST(Packets, ATrailerIsLeftOut) {
       bytes.resize(bytes.size() + size, 0xAB);
       EXPECT_EQ(reason_of(bytes), Reason::accepted) << size;
       bytes.push_back(0);
-      const bool any_size = kind_of(Type{example[5]}) != 0;  // how long a reading is, its kind knows
-      EXPECT_EQ(reason_of(bytes), any_size ? Reason::accepted : Reason::too_long) << size;
+      const bool any_size = kind_of(Type{example[5]}) != 0;       // how long a reading is, its kind knows
+      const bool several = Type{example[5]} == Type::neighbours;  // the byte begins one more V2V
+      EXPECT_EQ(reason_of(bytes), any_size ? Reason::accepted : several ? Reason::too_short : Reason::too_long) << size;
     }
   }
   base::Bytes reading = patched<std::uint16_t>(reading_example(), 60, 5);
@@ -206,7 +225,7 @@ TEST(Packets, TypesBelow128AreReadingsOfTheirKind) {
   for (int type = 0; type < 256; ++type) {
     const bool is_reading = type < 128 && type % 64 != 0;  // kind 0 is nobody's
     EXPECT_EQ(kind_of(Type(type)), is_reading ? type % 64 : 0) << type;
-    const bool is_state = type >= 128 && type <= 133;
+    const bool is_state = (type >= 128 && type <= 133) || type == 140;
     if (is_state) continue;
     EXPECT_EQ(reason_of(patched(reading_example(), 5, static_cast<std::uint8_t>(type))),
               is_reading ? Reason::accepted : Reason::unknown_type)

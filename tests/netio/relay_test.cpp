@@ -145,6 +145,8 @@ TEST_F(RelayTest, StartMayMeanOneRobot) {
   EXPECT_EQ(relay.counts().starts, 1u);
   EXPECT_TRUE(heard(3).empty());
   EXPECT_EQ(heard(7).size(), 1u);
+  tick();
+  EXPECT_TRUE(heard(7).empty());  // once
 }
 
 TEST_F(RelayTest, PassesOnTheBytesAsTheyCame) {
@@ -213,6 +215,22 @@ TEST_F(RadioTest, OnlyTheFarmsWordCounts) {
   });
   EXPECT_EQ(came, 1);
   EXPECT_EQ(radio.counts()[Reason::wrong_source], 1u);
+}
+
+/// Each state in it is judged by itself.
+TEST_F(RadioTest, NeighboursAreTakenApart) {
+  base::Bytes states, bytes;
+  for (const base::Bytes& state : {v2v_of(3, 5), v2v_of(9, 0), v2v_of(3, 4), stamped(v2v_of(9, 1), {})})
+    states.insert(states.end(), state.begin(), state.end());
+  encode({.robot = 7, .session = kFarm, .token = kOwn}, Neighbours{states}, bytes);
+  farm.queue(to(), bytes);
+  farm.queue(to(), stamped(start_example()));
+  farm.flush();
+  std::vector<Reason> reasons;
+  radio.receive([&](std::span<const std::uint8_t> one) { reasons.push_back(radio.accept(one, 0, packet)); });
+  EXPECT_EQ(reasons,
+            (std::vector{Reason::accepted, Reason::accepted, Reason::stale, Reason::wrong_source, Reason::accepted}));
+  EXPECT_EQ(radio.accept(bytes, 0, packet), Reason::wrong_direction) << "as a whole it says nothing";
 }
 
 TEST_F(RadioTest, JudgesWhatComes) {

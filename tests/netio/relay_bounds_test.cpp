@@ -1,0 +1,196 @@
+// Others' states are passed on within the radio's range and a budget, however many ask. Work is counted, no clock read.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "tests/netio/crowd.h"
+
+namespace sf::netio {
+namespace {
+
+using test::Crowd;
+using Rows = std::vector<std::uint32_t>;
+
+TEST(RelayBounds, StatesWithinTheRadiosRange) {
+  Crowd crowd(4, {.range = 10.0});
+  crowd.all_ask();
+  crowd.say(0, {0, 0});
+  crowd.say(1, {6, 8});                         // exactly as far as the radio reaches
+  crowd.say(2, {-6, -std::nextafter(8.0, 9)});  // the next place beyond
+  crowd.say(3, {1000, 0});
+  EXPECT_EQ(crowd.pass().states, 2u);
+  auto heard = crowd.heard();
+  EXPECT_EQ(heard[0], Rows{1});
+  EXPECT_EQ(heard[1], Rows{0});
+  // One that says nothing now is still where it was, and is not passed on itself.
+  crowd.say(1, {6, 8});
+  crowd.pass();
+  heard = crowd.heard();
+  EXPECT_EQ(heard.size(), 1u);
+  EXPECT_EQ(heard[0], Rows{1});
+}
+
+TEST(RelayBounds, ARangeOfNothingPassesNothingOn) {
+  Crowd crowd(3, {.range = 0.0});
+  crowd.all_ask();
+  for (const std::uint32_t id : {1u, 2u}) crowd.say(id, {0, 0});  // not even at one place; robot 0 has none
+  crowd.take(kEveryone, Start{});
+  const RelayCounts counts = crowd.pass();
+  EXPECT_EQ(counts.states + counts.waited, 0u);
+  EXPECT_EQ(counts.starts, 3u) << "no V2V";
+}
+
+TEST(RelayBounds, WithoutAPlaceARobotHearsAllInTurn) {
+  Crowd crowd(13, {.range = 10.0, .most = Relay::kLeastShare});
+  crowd.ask(0);
+  std::set<std::uint32_t> heard;
+  for (int pass = 0; pass < 3; ++pass) {
+    for (std::uint32_t id = 1; id < 13; ++id) crowd.say(id, {1000.0 * id, 0});
+    EXPECT_EQ(crowd.pass().states, 4u);
+    const Rows states = crowd.heard()[0];
+    heard.insert(states.begin(), states.end());
+  }
+  EXPECT_EQ(heard.size(), 12u);
+}
+
+TEST(RelayBounds, ManyStatesADatagramTheNearestFirst) {
+  for (const std::uint32_t others : {1u, 9u, 10u, 80u}) {  // one, a full datagram, one more, more than are passed on
+    Crowd crowd(others + 1);
+    crowd.ask(0);
+    Rows nearest;
+    for (std::uint32_t id = 0; id <= others; ++id) crowd.say(id, {0.1 * id, 0});
+    for (std::uint32_t id = 1; id <= std::min(others, 64u); ++id) nearest.push_back(id);
+    const RelayCounts counts = crowd.pass();
+    EXPECT_EQ(counts.states, nearest.size());
+    EXPECT_EQ(counts.datagrams, (nearest.size() + 8) / 9);
+    EXPECT_EQ(crowd.heard()[0], nearest);
+    for (const base::Bytes& bytes : crowd.datagrams) EXPECT_LE(bytes.size(), kMaxDatagram - kMaxTrailer);
+  }
+}
+
+TEST(RelayBounds, AllThatIsPassedOnCarriesTheReceiversStamp) {
+  Crowd crowd(12);
+  crowd.ask(5);
+  for (const std::uint32_t id : crowd.ids) crowd.say(id, {0, 0});
+  for (std::uint32_t pass = 0, next = 0; pass < 2; ++pass) {
+    crowd.say(0, {0, 0});
+    crowd.pass();
+    crowd.heard();
+    for (const base::Bytes& bytes : crowd.datagrams) {
+      Packet packet;
+      decode(bytes, packet);
+      EXPECT_EQ(packet.header.robot, 5);
+      EXPECT_EQ(packet.header.sequence, next++) << "counts datagrams to this robot";
+      const auto carries_it = [&](std::span<const std::uint8_t> one) {
+        decode(one, packet);
+        EXPECT_EQ(packet.header.session, test::kFarm);
+        EXPECT_EQ(packet.header.token, test::kRobots);
+      };
+      carries_it(bytes);
+      Radio::each(bytes, carries_it);
+    }
+    EXPECT_EQ(next, 2u + pass);
+  }
+}
+
+/// One socket that claims 500 ids; 1000 robots that ask, side by side and all where a robot is that does not know its
+/// place: what is sent and looked at grows with their number, not with its square.
+TEST(RelayBounds, TheBudgetHoldsHoweverManyAsk) {
+  for (const bool localised : {true, false}) {
+    for (const std::uint32_t count : {500u, 1000u}) {
+      Crowd crowd(count);
+      crowd.all_ask();
+      for (const std::uint32_t id : crowd.ids)
+        crowd.say(id, localised ? base::Vec2{0.3 * (id % 32), 0.3 * (id / 32)} : base::Vec2{});
+      const RelayCounts counts = crowd.pass();
+      const std::size_t share = 16'384 / count;  // 32, and 16
+      EXPECT_EQ(counts.states, count * share);
+      EXPECT_EQ(counts.datagrams, count * ((share + 8) / 9));
+      EXPECT_EQ(counts.waited, 0u);
+      EXPECT_LE(crowd.relay.looks(), 8 * count * share) << "of " << count * (count - 1);
+    }
+  }
+}
+
+/// A budget for ten of thirty: all get their turn within three ticks, in order, and nobody twice before all.
+TEST(RelayBounds, WhereTheBudgetIsSpentRobotsTakeTurns) {
+  Crowd crowd(30, {.budget = 10 * Relay::kLeastShare});
+  crowd.all_ask();
+  for (std::uint32_t pass = 0; pass < 6; ++pass) {
+    for (const std::uint32_t id : crowd.ids) crowd.say(id, {0.1 * id, 0});
+    const RelayCounts counts = crowd.pass();
+    EXPECT_EQ(counts.states, 40u);
+    EXPECT_EQ(counts.waited, 20u);
+    std::uint32_t next = pass % 3 * 10;
+    for (const auto& [id, states] : crowd.heard()) {
+      EXPECT_EQ(id, next++) << pass;
+      EXPECT_EQ(states.size(), 4u);
+    }
+    EXPECT_EQ(next, pass % 3 * 10 + 10);
+  }
+}
+
+/// The one whose turn it would be asks no more: the next is served.
+TEST(RelayBounds, ATurnNotTakenIsTheNextRobots) {
+  Crowd crowd(4, {.budget = Relay::kLeastShare});
+  crowd.all_ask();
+  const auto served = [&] {
+    for (const std::uint32_t id : crowd.ids) crowd.say(id, {0.1 * id, 0});
+    crowd.pass();
+    const auto heard = crowd.heard();
+    return heard.size() == 1 ? heard.begin()->first : kNone;
+  };
+  EXPECT_EQ(served(), 0u);
+  crowd.ask(1, 1u << 1);
+  EXPECT_EQ(served(), 2u);
+  EXPECT_EQ(served(), 3u);
+  EXPECT_EQ(served(), 0u);
+}
+
+/// Five robots that speak, ask and stop asking at random, and a budget for one or two: a robot is passed all that was
+/// said since its last turn, or since it asked, once, and waits for four others at most.
+TEST(RelayBounds, ATurnBringsAllThatWasSaidSinceTheLast) {
+  Crowd crowd(5, {.budget = Relay::kLeastShare});
+  std::mt19937 random(3);  // NOLINT: the same every time
+  std::vector<std::set<std::uint32_t>> due(5);
+  std::vector<int> waits(5, 0);
+  for (int pass = 0; pass < 400; ++pass) {
+    std::set<std::uint32_t> spoke;
+    for (const std::uint32_t id : crowd.ids)
+      if (random() % 3 == 0) crowd.say(id, {0, 0}), spoke.insert(id);
+    for (const std::uint32_t id : crowd.ids) {
+      const bool asks = random() % 8 != 0;
+      crowd.ask(id, asks ? kOthers : 1u << 1);
+      if (asks) due[id].insert(spoke.begin(), spoke.end());
+      if (!asks) due[id].clear();
+      due[id].erase(id);
+    }
+    crowd.pass();
+    auto heard = crowd.heard();
+    for (const std::uint32_t id : crowd.ids) {
+      const Rows came = heard[id];
+      waits[id] = came.empty() && !due[id].empty() ? waits[id] + 1 : 0;
+      EXPECT_LE(waits[id], 4);
+      if (came.empty()) continue;
+      EXPECT_EQ(came, Rows(due[id].begin(), due[id].end())) << id << " in pass " << pass;
+      due[id].clear();
+    }
+  }
+}
+
+/// Robots with few neighbours use little of the budget: more than two are served.
+TEST(RelayBounds, UnusedSharesAreLeftToOthers) {
+  Crowd crowd(8, {.range = 1.0, .budget = 2 * Relay::kLeastShare});
+  crowd.all_ask();
+  for (const std::uint32_t id : crowd.ids) crowd.say(id, {100.0 * (id / 2), 0});  // in pairs
+  const RelayCounts counts = crowd.pass();
+  EXPECT_GE(counts.states, 5u);
+  EXPECT_LE(counts.waited, 3u);
+}
+
+}  // namespace
+}  // namespace sf::netio
