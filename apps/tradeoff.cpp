@@ -60,18 +60,18 @@ void draw(const std::string& world, const std::string& device, const std::vector
   std::vector<viz::TradeoffPanel> panels;
   for (const scenarios::Grade& g : grades) {
     if (panels.empty() || panels.back().title != g.sensor)
-      panels.push_back({g.sensor,
-                        fmt::format("{} per second", counted_as(g.sensor)),
-                        fmt::format("error of all [{}]: median, 99 %, largest", g.unit),
-                        {}});
+      panels.push_back(
+          {g.sensor,
+           fmt::format("{} per second", counted_as(g.sensor)),
+           fmt::format(
+               "error of all [{}]: median, 99 %, largest; of what is covered: ring the bound, cross the largest",
+               g.unit),
+           {}});
     panels.back().points.push_back(
         {g.mode, g.rate, g.median, g.p99, g.max, g.front, {g.covered, g.covered_max, g.bound}});
   }
   viz::draw_tradeoff("Speed against error: " + world,
-                     "whole ticks on " + device +
-                         "; blue: none is as fast with 99 % of errors as small; of what is covered: ring the bound, "
-                         "cross the largest error",
-                     panels, file);
+                     "whole ticks on " + device + "; blue: none is as fast with 99 % of errors as small", panels, file);
 }
 
 void write(const Options& options, const world::World& world, const gpu::Device& device,

@@ -118,6 +118,7 @@ std::string label_of(const TradeoffPoint& point) {
 
 void draw_points(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
   Labels labels(at.plot);
+  const auto keep_free = [&](double x, double y) { labels.forbid({{x - 8.0, y - 8.0}, {x + 8.0, y + 8.0}}); };
   for (const TradeoffPoint& point : panel.points) {
     const std::uint32_t color = point.front ? kFront : kBeaten;
     const Vec2 mark{at.x(point.middle), at.y(point.rate)};
@@ -127,9 +128,11 @@ void draw_points(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
     if (point.covered.part > 0.0) {
       draw_cross(canvas, {at.x(point.covered.high), mark.y}, 5.0, 1.5, kCovered);
       canvas.ring({at.x(point.covered.bound), mark.y}, 7.0, 1.5, kCovered);
+      keep_free(at.x(point.covered.high), mark.y);
+      keep_free(at.x(point.covered.bound), mark.y);
     }
     canvas.disc(mark, 6.0, color);
-    labels.forbid({{mark.x - 7.0, mark.y - 7.0}, {mark.x + 7.0, mark.y + 7.0}});
+    keep_free(mark.x, mark.y);
   }
   for (const TradeoffPoint& point : panel.points) {
     TextStyle style = small_text();

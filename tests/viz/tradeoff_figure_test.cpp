@@ -64,6 +64,16 @@ TEST(TradeoffFigure, ABoundHasAMarkOfItsOwn) {
   EXPECT_EQ(drawn({point("skip", 2e6, 0.1, true)}).count(kCovered), 0);
 }
 
+/// The bound of `exact` is a decade to the right of its error, where its name would be.
+TEST(TradeoffFigure, NamesLeaveTheMarksFree) {
+  TradeoffPoint exact = point("exact", 2e6, 1e-9, true), far = exact;
+  exact.covered = {0.5, 1e-10, 1e-8};
+  far.covered = {0.5, 1e-10, 1e-2};
+  const TradeoffPoint other = point("other", 1e6, 1e-2, false);  // the axis is the same for both
+  const auto marks = [&](const TradeoffPoint& p) { return drawn({p, other}).count(kCovered); };
+  EXPECT_NEAR(marks(exact), marks(far), 4) << "neither is hidden";
+}
+
 TEST(TradeoffFigure, NamesWhatCannotBeWritten) {
   EXPECT_THROW(draw_tradeoff("t", "s", {}, "/nowhere/t.png"), base::InputError);
 }
