@@ -125,6 +125,31 @@ TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // nothing is cut off
   EXPECT_EQ(p.count(white, p.width - 8, 0, p.width, p.height), 8 * p.height);
 }
 
+/// Above the bar's middle only its upper label tells pictures apart, below it only the lower one.
+TEST(Axes, TheBarsLabelsAreAtTheirEnds) {
+  const auto draw = [](const char* low, const char* high, const char* name) {
+    FigurePlan plan;
+    plan.extent = {0, 0, 10, 5};
+    plan.bar = ColorBar{"", low, high, {0xFF000000u, 0xFFFF0000u}};
+    Axes axes(plan);
+    axes.save(scenes::own_file(name));
+    return scenes::read_png(scenes::own_file(name));
+  };
+  const scenes::Picture p = draw("1", "8", "bar.png"), low = draw("4", "8", "low.png"),
+                        high = draw("1", "4", "high.png");
+  const int middle = p.height / 2;
+  const auto apart = [&](const scenes::Picture& q, int y0, int y1) {
+    int n = 0;
+    for (int y = y0; y < y1; ++y)
+      for (int x = 0; x < p.width; ++x) n += p.at(x, y) != q.at(x, y) ? 1 : 0;
+    return n;
+  };
+  EXPECT_EQ(apart(low, 0, middle), 0);
+  EXPECT_GT(apart(low, middle, p.height), 10);
+  EXPECT_GT(apart(high, 0, middle), 10);
+  EXPECT_EQ(apart(high, middle, p.height), 0);
+}
+
 TEST(Axes, TitleAndLegendAreThere) {
   FigurePlan plan;
   plan.title = "TITLE";

@@ -73,6 +73,35 @@ TEST(WorldFigure, LightsShowWhatTheyShowAtTheStart) {
   EXPECT_EQ(seen.at(3.0, 2.0), 0xFFE53935u);
 }
 
+TEST(WorldFigure, LightsPointWhereTheyFace) {
+  world::World world = room();
+  world.lights.push_back(
+      {.name = "light", .X_WL = {3.0, 2.0, 0.0, M_PI / 2}, .phases = {{world::LightState::green, 8.0}}});
+  draw_world(world, file("facing.png"));
+  const Seen seen = see(file("facing.png"), 0.03);
+  EXPECT_LT(to_lab(seen.at(3.0, 2.055)).lightness, 0.6) << "a stroke to the north";
+  EXPECT_GT(to_lab(seen.at(3.0, 1.945)).lightness, 0.9) << "and none to the south";
+}
+
+/// The beginning of the subtitle, in both pictures at the same place, is the same.
+TEST(WorldFigure, TagsAreNoRobotsInItsSubtitle) {
+  world::World world = room();
+  world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.0, 0, 0}, 0xFF2E7D32u, 1.0));
+  draw_world(world, file("robot_alone.png"));
+  world.movers.push_back({.name = "tag", .model = 0, .is_tag = true, .X_WM = {4.0, 2.0, 0, 0}});
+  draw_world(world, file("robot_and_tag.png"));
+  const scenes::Picture one = scenes::read_png(file("robot_alone.png")),
+                        two = scenes::read_png(file("robot_and_tag.png"));
+  int dark = 0, apart = 0;
+  for (int y = 65; y < 92; ++y)
+    for (int x = 0; x < 180; ++x) {
+      dark += to_lab(one.at(x, y)).lightness < 0.6 ? 1 : 0;
+      apart += one.at(x, y) != two.at(x, y) ? 1 : 0;
+    }
+  EXPECT_GT(dark, 50) << "1 robot,";
+  EXPECT_EQ(apart, 0);
+}
+
 TEST(WorldFigure, HolesAreDarkAndBeamsAreFaint) {
   world::World world = room();
   world.drops.push_back({{{1.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {1.0, 2.0}}, 0});
@@ -143,6 +172,14 @@ TEST(WorldFigure, RobotAndItsViewAreThere) {
   EXPECT_GT(view.lightness, 0.85) << "which is translucent";
   EXPECT_EQ(seen.at(0.77, 2.27), kWhite) << "and not behind";
   EXPECT_EQ(seen.at(5.27, 2.27), kWhite) << "nor beyond range_max";
+}
+
+TEST(WorldFigure, HeadingIsDrawn) {
+  world::World world = room();
+  world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.0, 0, M_PI / 2}, 0xFF2E7D32u, 0.2));
+  draw_world(world, file("heading.png"));
+  const Seen seen = see(file("heading.png"), 0.03);
+  EXPECT_LT(to_lab(seen.at(2.0, 2.08)).lightness, to_lab(seen.at(2.0, 1.92)).lightness - 0.1) << "to the north";
 }
 
 TEST(WorldFigure, ViewStopsAtWalls) {
@@ -293,6 +330,16 @@ TEST(TrajectoryFigure, PoseThatIsNotFiniteBreaksTheLine) {
   const Seen seen = see(file("broken.png"), 0.03);
   EXPECT_EQ(seen.at(3.03, 2.0), kWhite);
   EXPECT_EQ(seen.at(2.33, 2.0), 0xFFFF00FFu);
+}
+
+/// A path is as long as its whole steps; a contact lasts until nothing stops the mover.
+TEST(Track, LengthAndContactsOfABrokenPath) {
+  Track track;
+  track.poses = {
+      {0, 0, 0, 0}, {1, 0, 0, 0}, {std::numeric_limits<double>::quiet_NaN(), 0, 0, 0}, {3, 0, 0, 0}, {3, 2, 0, 0}};
+  track.contacts = {0, 1, 1, 0, 1};
+  EXPECT_EQ(path_length(track), 3.0);
+  EXPECT_EQ(contact_count(track), 2u);
 }
 
 TEST(TrajectoryFigure, LaterTracksLieOnTop) {
