@@ -57,6 +57,17 @@ TEST(Latency, OfWholeTicks) {
   }
 }
 
+/// The sensors after it have none.
+TEST(Latency, OfTheFirstSensorAlone) {
+  world::World world = small_world(2);
+  world.movers[0].lasers[0].latency = 0.05;
+  Farm farm(world, device());
+  farm.hear_all();
+  const auto readings = farm.tick(0, {});
+  ASSERT_EQ(readings.size(), 1u);
+  EXPECT_EQ(readings[0].mover, 1u);
+}
+
 /// The farm says when the next one is to be delivered; asked for it then, it is on time between two ticks too.
 TEST(Latency, DeliveredBetweenTicks) {
   world::World world = small_world(2);

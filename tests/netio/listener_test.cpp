@@ -291,7 +291,7 @@ TEST(Listener, ATakenPortIsRefused) {
 TEST(Outbox, RefusedDatagramsAreCountedWithTheFirstReason) {
   Outbox outbox;
   outbox.queue({kLoopback, 0}, base::Bytes{1});  // port 0 is nowhere
-  outbox.queue({kLoopback, 0}, base::Bytes{1});
+  outbox.queue({kLoopback + 1, 0}, base::Bytes{1});
   outbox.queue({kLoopback, 9}, base::Bytes{1});  // nobody listens: that is not an error
   outbox.flush();
   EXPECT_EQ(outbox.counts().queued, 3u);

@@ -293,6 +293,18 @@ TEST(McapReader, a_length_beyond_the_file_ends_it) {
   }
 }
 
+TEST(McapReader, whole_messages_of_a_cut_chunk_are_kept) {
+  Hand file = opening();
+  file.record(0x06, 40 + 2 * 31).u64(0).u64(0).u64(62).u32(1).text("").u64(62);
+  file.record(0x05, 22).u16(1).u32(7).u64(0).u64(0);
+  file.record(0x05, 22).u16(1).u32(8);  // cut here, so the CRC covers more than is left
+  const McapContents contents = read(file.bytes);
+  EXPECT_TRUE(contents.truncated);
+  EXPECT_TRUE(contents.damage.empty());
+  ASSERT_EQ(contents.messages.size(), 1u);
+  EXPECT_EQ(contents.messages[0].sequence, 7u);
+}
+
 TEST(McapReader, damage_is_told_a_hundred_times_and_no_more) {
   Hand file = opening();
   for (int i = 0; i < 1000; ++i) file.record(0x05, 0);

@@ -43,6 +43,19 @@ std::map<std::string, std::size_t> topics_of(const base::Bytes& file) {
   return topics;
 }
 
+/// Logged when they are delivered, published when they were measured.
+TEST(Recorder, readings_have_both_of_their_times) {
+  const std::string directory = fresh_directory("times");
+  Recorder recorder(directory, sample_info(true));
+  write_ticks(recorder, 4, 1);
+  recorder.finish();
+  const base::Bytes file = bytes_of(directory + "/run.mcap");
+  std::map<std::uint32_t, std::pair<std::uint64_t, std::uint64_t>> times;  // by sequence
+  for (const McapMessage& m : read_mcap(file, "run.mcap").messages) times[m.sequence] = {m.log_time, m.publish_time};
+  for (const std::uint32_t scan_and_array : {5u, 8u})
+    EXPECT_EQ(times[scan_and_array], (std::pair<std::uint64_t, std::uint64_t>{400'000'000, 200'000'000}));
+}
+
 TEST(Recorder, the_world_is_in_the_file_before_the_first_tick) {
   const std::string directory = fresh_directory("first");
   const Recorder recorder(directory, sample_info(false));

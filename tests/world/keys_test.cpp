@@ -23,6 +23,10 @@ TEST(Keys, ShortWordsAreSuggestedForOneSlipOnly) {
   const std::vector<std::string_view> words{"fov", "z"};
   EXPECT_EQ(suggest("fow", words), "; did you mean 'fov'?");
   EXPECT_EQ(suggest("abc", words), "");
+  const std::vector<std::string_view> longer{"pose", "speed"};  // boundary: four letters, and five
+  EXPECT_EQ(suggest("paxe", longer), "");
+  EXPECT_EQ(suggest("spaad", longer), "; did you mean 'speed'?");
+  EXPECT_EQ(suggest("spaax", longer), "") << "three slips";
 }
 
 TEST(Keys, IndicesDoNotMatter) {

@@ -43,6 +43,8 @@ TEST(Light, IsAPoleWithAHead) {
   ASSERT_EQ(world.walls.size(), 8u);
   EXPECT_EQ(world.walls[0].z_min, 0.0);
   EXPECT_EQ(world.walls[0].z_max, world.walls[4].z_min) << "the head stands on the pole";
+  EXPECT_DOUBLE_EQ(world.walls[4].z_min, 0.36);
+  EXPECT_DOUBLE_EQ(read_world(kLight).walls[4].z_min, 0.48) << "one lamp is a smaller head";
   EXPECT_EQ(world.walls[4].z_max, 0.6);
   EXPECT_LT(length(world.walls[0].b - world.walls[0].a), length(world.walls[4].b - world.walls[4].a));
   EXPECT_TRUE(world.walls[0].solid_left);
