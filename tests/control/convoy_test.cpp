@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "control/passing.h"
 
 namespace sf::traffic {
 namespace {
@@ -176,6 +177,32 @@ TEST(Passing, waits_until_the_other_lane_is_free) {
     ASSERT_LT(place->offset, 0.02) << 0.1 * i;
   }
   EXPECT_EQ(t.contacts, 0);
+}
+
+// A robot on the other lane counts where it would be 3 s on. Boundary: a millimetre.
+TEST(Passing, waits_for_a_robot_that_comes_up_from_behind) {
+  const Streets t;
+  const control::Corridors corridors(t.roads, t.world, {});
+  const auto lane = place_on_lane(corridors, on_lane(t.roads, "1.1", 1.2));
+  const auto beside = place_on_lane(corridors, on_lane(t.roads, "1.2", 1.2));
+  ASSERT_TRUE(lane && beside);
+  const double end = corridors.way(lane->way).length;
+  const control::RoutePlan plan{.legs = {{lane->way, 0.0, end, 0.0}, {lane->way, end, end, end}}};
+  const control::Ahead slow{.free = 0.5, .speed = 0.03, .row = 1};
+  std::vector<control::Driver> drivers(1);
+  const auto leaves = [&] {
+    const auto passing = plan_passing(corridors, plan, 1.2, 0.2, slow, drivers);
+    return passing ? passing->plan.legs[0].to : end;
+  };
+  const double free = leaves();
+  ASSERT_LT(free, end);
+  const double kept = free - 2.0 * corridors.body().radius - 0.3;  // [m] along the lane, clear before it changes
+  drivers.push_back({.speed = 0.2});
+  drivers[1].places.count = 1;
+  drivers[1].places.all[0] = {beside->way, kept - 0.6 - 0.001, 0.0};
+  EXPECT_EQ(leaves(), free);
+  drivers[1].places.all[0].s = kept - 0.6 + 0.001;
+  EXPECT_GT(leaves(), free);
 }
 
 // Boundary: `pass false` never changes lanes.

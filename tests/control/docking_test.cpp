@@ -118,6 +118,30 @@ TEST(Docking, without_light_it_goes_to_a_place_before_the_dock) {
   }
 }
 
+TEST(Docking, the_nearest_dock_is_meant_or_the_one_that_is_named) {
+  world::World world = scenes::empty_world();
+  scenes::add_create(world, {}).sensors.push_back({.type = "irreceiver"});
+  for (const auto& [name, x] : {std::pair{"behind", -6.0}, {"near", 3.0}, {"far", 9.0}}) {
+    const auto model = static_cast<std::uint32_t>(world.models.size());
+    world.models.push_back({.name = name});
+    world.emitters.push_back({.kind = world::Emitter::Kind::dock,
+                              .model = model,
+                              .X_WE = {x, 0.0, 0.0, x > 0.0 ? M_PI : 0.0},
+                              .range = kRange,
+                              .fov = kFov,
+                              .halo = kHalo});
+  }
+  const auto turns = [&](std::vector<Setting> named) {
+    Settings settings("controller 'docking'", std::move(named));
+    return std::abs(docking_controller.make({world}, settings)->step({}).turn) > 0.1;
+  };
+  EXPECT_FALSE(turns({})) << "straight ahead";
+  EXPECT_TRUE(turns({{"dock", std::string("behind"), ""}}));
+  EXPECT_FALSE(turns({{"dock", std::string("far"), ""}}));
+  world.movers[0].X_WM.x = -4.0;
+  EXPECT_TRUE(turns({})) << "now the one behind is nearest";
+}
+
 TEST(Docking, with_one_buoy_alone_it_goes_to_that_place_until_it_has_seen_both) {
   for (const double byte : {248.0, 250.0}) {
     Docking docking({.X_WD = {}, .stage = 1.0});

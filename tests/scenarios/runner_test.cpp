@@ -66,6 +66,18 @@ TEST(RunScenario, SaysWhatCannotBeMeasured) {
   EXPECT_EQ(result.outcomes[0].measured, "no robot with a control error");
 }
 
+/// Of several robots the one that drove least counts: the second stands.
+TEST(RunScenario, DistanceIsThatOfTheLeast) {
+  gpu::Device device;
+  const ScenarioResult result = run_scenario(
+      parse_scenario(kFile, std::string(kRooms) + "duration = 1\n[[robot]]\nname = \"roomba2\"\ncontroller = \"none\"\n"
+                                                  "[expect]\ndistance = 0.01\n"),
+      device);
+  ASSERT_EQ(result.outcomes.size(), 1u);
+  EXPECT_EQ(result.outcomes[0].measured, "0");
+  EXPECT_FALSE(result.outcomes[0].met);
+}
+
 /// One missed cell of 9000 is not all of them.
 TEST(RunScenario, MapCoverageIsNotRoundedUp) {
   gpu::Device device;
