@@ -45,6 +45,20 @@ TEST(Explain, AsJson) {
   EXPECT_NE(outcome.out.find("magnet"), std::string::npos) << "no magnets, so nothing is built for them";
 }
 
+/// Lanes of four beams are counted; the text has their share of all beams.
+TEST(Explain, SaysHowManyBeamsAreInDoubt) {
+  const Words words{"explain", our_world("cave.world"), "--robots", "2"};
+  Words as_json = words;
+  as_json.push_back("--json");
+  const Json json(run_program(as_json).out);
+  const double share = 400.0 * json.number("/kinds/0/doubts") / json.number("/kinds/0/rays");
+  ASSERT_GT(share, 0.0);
+  const std::string text = run_program(words).out, said = " % of beams decided in 64 bits";
+  const std::size_t end = text.find(said), begin = text.rfind(' ', end - 1);
+  ASSERT_NE(end, std::string::npos) << text;
+  EXPECT_NEAR(std::stod(text.substr(begin, end - begin)), share, 0.06 * share);
+}
+
 TEST(Explain, WrongUsage) {
   EXPECT_EQ(run_program({"explain"}).code, 2);
   EXPECT_EQ(run_program({"explain", "/nowhere.world"}).code, 2);

@@ -74,6 +74,7 @@ TEST(Field, RefusesWhatMakesNoSense) {
       {{"field", world, "--height", "1", "-o", png, "--line", "1,2,nan,2"}, "X0,Y0,X1,Y1"},
       {{"field", world, "--height", "1", "-o", png, "--line", "1,2,3,4,5"}, "X0,Y0,X1,Y1"},
       {{"field", world, "--height", "1", "-o", png, "--extent", "1,2,0,4"}, "XMIN,YMIN,XMAX,YMAX"},
+      {{"field", world, "--height", "1", "-o", png, "--extent", "1,2,3,2"}, "XMIN,YMIN,XMAX,YMAX"},
       {{"field", world, "--height", "1", "-o", folder.path("none/x.png")}, "none/x.png"},
       {{"field", world, "--height", "1", "-o", png, "--csv", folder.path("none/x.csv")}, "none/x.csv"},
       {{"field", folder.path("none.world"), "--height", "1", "-o", png}, "none.world"},

@@ -107,6 +107,12 @@ TEST(Roads, WhatIsWrongIsOneLineWithItsPlace) {
   EXPECT_EQ(count_lines(outcome.err), 1u);
 }
 
+TEST(Roads, MayHaveEitherEndingInAnyCase) {
+  const Folder folder;
+  for (const char* name : {"two.rdf", "TWO.RNDF"})
+    EXPECT_EQ(Json(run_program({"check", folder.write(name, kRoads), "--json"}).out).number("/roads/lanes"), 2) << name;
+}
+
 TEST(Roads, IsDrawn) {
   const Folder folder;
   const Outcome outcome = run_program({"draw", folder.write("two.rndf", kRoads), "-o", folder.path("two.png")});

@@ -192,4 +192,13 @@ TEST(Sense, AWorldWithoutRobotsIsLentOne) {
   EXPECT_NEAR(scan.number(beam(180, "range_m")), 2.0, kRuler);
 }
 
+TEST(Sense, TheLentRobotStandsWhereItIsFree) {
+  const Folder folder;
+  const std::string world = folder.write("pillar.world",
+                                         "model( name \"room\" size [6 4 1] boundary 1 noblocks 0 )\n"
+                                         "model( name \"pillar\" pose [0 0 0 0] size [2 2 1] )\n");
+  const Json scan(run_program({"sense", world, "--json"}).out);
+  EXPECT_GT(std::max(std::abs(scan.number("/pose/0")), std::abs(scan.number("/pose/1"))), 1.0);
+}
+
 }  // namespace sf

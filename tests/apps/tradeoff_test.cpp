@@ -76,6 +76,23 @@ TEST(Tradeoff, ATableAFileAndAPicture) {
   EXPECT_GT(picture.count(0xFFD55E00u), 3 * 10) << "and the ring of a bound";
 }
 
+/// Its columns are JSON's keys.
+TEST(Tradeoff, JsonSaysWhatTheFileDoes) {
+  const Folder folder;
+  const Json json(run_program({"tradeoff", our_world("rooms.world"), "-o", folder.path("t"), "--json"}).out);
+  const auto rows = cells_of(read_file(folder.path("t/tradeoff.csv")));
+  ASSERT_EQ(rows.size(), 1u + json.size("/modes"));
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    for (std::size_t c = 2; c < rows[0].size(); ++c) {
+      const std::string at = "/modes/" + std::to_string(i - 1) + "/" + rows[0][c];
+      if (json.is_null(at)) {
+        EXPECT_EQ(rows[i][c], "") << at;
+      } else {
+        EXPECT_NEAR(json.number(at), number(rows[i][c]), 1e-5 * json.number(at)) << at;
+      }
+    }
+}
+
 /// The terminal says what a bound is of: a mode that leaves beams out shows how many it covers, and their error.
 TEST(Tradeoff, NoBoundStandsBesideErrorsThatItDoesNotCover) {
   const Outcome outcome = run_program({"tradeoff", our_world("cave.world"), "--robots", "10"});
@@ -136,6 +153,22 @@ TEST(AccuracyOption, AutoMeasuresFirst) {
       {"run", our_world("rooms.world"), "--robots", "2", "--duration", "1", "--auto", "--max-error", "1nm"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   expect_says(outcome, "measured; with every error within 1 nm: --accuracy \"exact\"");
+}
+
+/// What is not wished for has no bound of its own; where nothing is, both have their usual one.
+TEST(AccuracyOption, AutoSaysWhatItGoesBy) {
+  const std::vector<std::pair<Words, std::string>> wishes{
+      {{}, "with every error within 10 mm and 1 uT: "},
+      {{"--max-error", "2uT"}, "with every error within 2 uT: "},
+      {{"--max-error", "5mm", "--by", "median"}, "with a median error within 5 mm: "},
+      {{"--max-error", "5mm", "--by", "p99"}, "with 99 % of errors within 5 mm: "},
+      {{"--min-rate", "1"}, "at 1 Hz or more: "},
+  };
+  for (const auto& [wish, said] : wishes) {
+    Words words{"run", our_world("rooms.world"), "--duration", "0", "--auto"};
+    words.insert(words.end(), wish.begin(), wish.end());
+    expect_says(run_program(words), "measured; " + said + "--accuracy \"");
+  }
 }
 
 }  // namespace
