@@ -94,6 +94,7 @@ TEST(Run, SaysWhoStandsAndWhy) {
   EXPECT_EQ(text.code, 0) << text.err;
   EXPECT_NE(text.out.find("stand at the end   roomba0 for "), std::string::npos) << text.out;
   EXPECT_NE(text.out.find(" s: 'roomba1' stands in its way\n"), std::string::npos) << text.out;
+  EXPECT_EQ(text.out.find("up to"), std::string::npos) << "one robot, one time: " << text.out;
   words.push_back("--json");
   const Json facts(run_program(words).out);
   ASSERT_EQ(facts.size("/control/standing"), 1u);
@@ -323,6 +324,7 @@ TEST(Run, ItsPictureIsOfItsRobots) {
   EXPECT_LT(tracks.size(), recording.states.size());
   viz::draw_trajectories(world, tracks, folder.path("expected.png"));
   EXPECT_TRUE(read_file(folder.path("r/trajectories.png")) == read_file(folder.path("expected.png")));
+  scenes::expect_painted(folder.path("r/occupancy.png"), {{0xFF1748D1u, 4000}});  // what stands still is occupied
 }
 
 /// Contacts are counted when they begin, by `run` as by `plot`.

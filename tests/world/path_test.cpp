@@ -123,6 +123,7 @@ TEST(Path, WhatIsWrongIsSaid) {
             "test.world:2: 'paint_width' expects a length above zero");
   EXPECT_EQ(error_of("path( pieces 1\narc[0] [0.2 90 0.5] )"),
             "test.world:2: 'arc[0]' is wider than its bend: expected a width below twice the radius");
+  EXPECT_EQ(error_of("path( pieces 1\narc[0] [0.26 90 0.5] )"), "") << "nearly twice";
   EXPECT_EQ(error_of("path( pieces 1 straight[0] [1 1]\nleft \"dashed\" )"),
             "test.world:2: 'left' is \"dashed\"; expected \"double_yellow\", \"solid_yellow\", \"solid_white\", "
             "\"broken_white\" or \"none\"");
