@@ -35,7 +35,7 @@ struct FarmOptions {
   bool true_poses = true;      ///< reports say where movers are; false: where they believe to be
   bool no_return_inf = false;  ///< readings are sent with infinity where a beam met nothing: so `hash` takes them
   unsigned threads = 0;        ///< for the host's part; 0: as many as the machine has. Never changes a reading
-  sensors::SceneOptions scene;
+  raycast::SceneOptions scene;
 };
 
 /// What the ticks so far cost and did.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "sensors/casts.h"
+#include "raycast/casts.h"
 #include "sensors/laneedge_packets.h"
 #include "sensors/laneedge_settings.h"
 #include "sensors/laser_modes.h"
@@ -16,8 +16,8 @@ namespace sf::sensors {
 
 namespace {
 
-std::vector<Fan> fans_of(const std::vector<LaneEdge>& edges) {
-  std::vector<Fan> fans;
+std::vector<raycast::Fan> fans_of(const std::vector<LaneEdge>& edges) {
+  std::vector<raycast::Fan> fans;
   for (const LaneEdge& edge : edges) fans.push_back({edge.fan, edge.row.mover, edge_noise_name(edge.row.sensor)});
   return fans;
 }
@@ -56,7 +56,7 @@ class LaneEdges : public Instruments {
   bool exact_;  ///< paint is seen as it is, not in pixels
   Excerpt excerpt_;
   double longest_;  ///< [m] face in it
-  Casts casts_;
+  raycast::Casts casts_;
   bool casting_;  ///< there is something for `casts_` to meet
   std::optional<Road> road_;
   EdgeFit fit_;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "raycast/casts.h"
 #include "sensors/accuracy.h"
-#include "sensors/casts.h"
 #include "sensors/laser_modes.h"
 #include "sensors/paint/excerpt.h"
 #include "sensors/paint/line_fit.h"
@@ -96,7 +96,7 @@ double point_error(const LaneEdge& edge, double longest, double farthest) {
 }
 
 double lane_edge_bound(const LaneEdge& edge, double longest, double farthest) {
-  return kStraightError + point_error(edge, longest, farthest) / kLeastSine;
+  return kStraightError + point_error(edge, longest, farthest) / raycast::kLeastSine;
 }
 
 base::Unsure doubt_of(const EdgeReading& reading, double error, double bound) {

@@ -31,7 +31,7 @@ inline constexpr Mode kLaneEdgeModes[] = {
 /// Whether stripes are seen in pixels: then no bound is stated.
 bool sees_pixels(const world::World& world);
 /// [m] how far a point of exact paint may lie off its face, across it: rounding. @param longest, farthest see
-/// `exact_bound`
+/// `raycast::exact_bound`
 double point_error(const LaneEdge& edge, double longest, double farthest);
 /// [m] base::ReadingBlock::bound without noise, in exact paint: 10 nm, more far away.
 double lane_edge_bound(const LaneEdge& edge, double longest, double farthest);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sensors/casts.h"
+#include "raycast/casts.h"
 #include "sensors/laser_modes.h"
 #include "sensors/laser_packets.h"
 #include "sensors/laser_shape.h"
@@ -27,8 +27,8 @@ std::vector<CastLaser> lasers_of(const world::World& world) {
   return lasers;
 }
 
-std::vector<Fan> fans_of(const world::World& world, std::span<const CastLaser> lasers) {
-  std::vector<Fan> fans;
+std::vector<raycast::Fan> fans_of(const world::World& world, std::span<const CastLaser> lasers) {
+  std::vector<raycast::Fan> fans;
   for (std::uint32_t m = 0; m < world.movers.size(); ++m)
     for (std::uint32_t i = 0; i < world.movers[m].lasers.size(); ++i) {
       const CastLaser& cast = lasers[fans.size()];
@@ -62,7 +62,7 @@ class Lasers : public Instruments {
   std::uint64_t seed_;
   bool noise_;
   double longest_;  ///< [m] surface that there is
-  Casts casts_;
+  raycast::Casts casts_;
   std::vector<Row> rows_;  ///< per laser
   std::vector<Due> due_;
   std::vector<double> values_;        ///< [m] of all lasers' samples, when any is reworked
@@ -95,9 +95,9 @@ Lasers::Lasers(const Site& site, const std::vector<CastLaser>& lasers)
 void Lasers::shape(std::size_t i) {
   const Due& due = due_[i];
   const Row& row = rows_[due.row];
-  const Fan& fan = casts_.fans()[due.row];
-  const FanResults results = casts_.results(i);
-  const BeamPlan& plan = *results.plan;
+  const raycast::Fan& fan = casts_.fans()[due.row];
+  const raycast::FanResults results = casts_.results(i);
+  const raycast::BeamPlan& plan = *results.plan;
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
   const double* const cast = casts_.ranges().host<double>().data() + first;
   const std::uint32_t* const cast_hits = casts_.hits().host<std::uint32_t>().data() + first;
@@ -110,8 +110,8 @@ void Lasers::shape(std::size_t i) {
 /// Samples that were not cast are marked since the beginning; those that graze come and go.
 void Lasers::mark(std::size_t i) {
   Row& row = rows_[due_[i].row];
-  const FanResults results = casts_.results(i);
-  const BeamPlan& plan = *results.plan;
+  const raycast::FanResults results = casts_.results(i);
+  const raycast::BeamPlan& plan = *results.plan;
   const auto verdicts = casts_.verdicts().host<std::uint32_t>().subspan(results.lane, plan.lanes());
   const bool grazing = std::any_of(verdicts.begin(), verdicts.end(), [](std::uint32_t v) { return v >= SF_GRAZES; });
   if (!grazing && !row.grazing) return;
@@ -125,8 +125,8 @@ void Lasers::mark(std::size_t i) {
 
 base::ReadingBlock Lasers::block_of(std::size_t i) {
   const Row& row = rows_[due_[i].row];
-  const Fan& fan = casts_.fans()[due_[i].row];
-  const FanResults results = casts_.results(i);
+  const raycast::Fan& fan = casts_.fans()[due_[i].row];
+  const raycast::FanResults results = casts_.results(i);
   const std::size_t samples = fan.laser.samples;
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
   base::ReadingBlock block;
@@ -162,8 +162,8 @@ std::vector<SensorRow> rows_of(const world::World& world) {
   const std::vector<CastLaser> lasers = lasers_of(world);
   // Whether 32 bits are enough depends on how near others come to a mover in range.
   double beyond = 0.0;
-  for (const world::Mover& mover : world.movers) beyond = std::max(beyond, 2.0 * mover.radius + kLookout);
-  for (const Fan& fan : fans_of(world, lasers)) {
+  for (const world::Mover& mover : world.movers) beyond = std::max(beyond, 2.0 * mover.radius + raycast::kLookout);
+  for (const raycast::Fan& fan : fans_of(world, lasers)) {
     const world::Laser& laser = fan.laser;
     rows.push_back({fan.mover, fan.sensor, laser.name, laser.X_MS, laser.rate, laser.phase, laser.latency,
                     laser.samples, laser.range_max, 0, 0.0, lasers[rows.size()].mode});

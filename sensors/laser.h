@@ -1,5 +1,5 @@
 #pragma once
-// The laser range finder: fans of beams (sensors/casts.h says how exact), their noise, and what `resolution` leaves
+// The laser range finder: fans of beams (raycast/casts.h says how exact), their noise, and what `resolution` leaves
 // out.
 
 #include "sensors/kind.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "raycast/casts.h"
 #include "sensors/accuracy.h"
-#include "sensors/casts.h"
 
 namespace sf::sensors {
 
@@ -43,8 +43,8 @@ Reaches reaches_of(const world::World& world) {
 }
 
 double laser_bound(const CastLaser& cast, double longest, double farthest) {
-  return exact_bound(cast.laser.range_max, longest, farthest) +
-         (cast.single ? single_bound(cast.laser.range_max) : 0.0);
+  return raycast::exact_bound(cast.laser.range_max, longest, farthest) +
+         (cast.single ? raycast::single_bound(cast.laser.range_max) : 0.0);
 }
 
 Bound bound_of_laser(const world::World& world, const SensorRow& sensor) {

@@ -18,7 +18,7 @@ inline constexpr Mode kLaserModes[] = {
 /// A laser as it is cast.
 struct CastLaser {
   world::Laser laser;         ///< its `resolution` is that of its mode as well
-  bool single = false;        ///< Fan::single
+  bool single = false;        ///< raycast::Fan::single
   std::uint8_t mode = 0;      ///< row of `kLaserModes`
   std::vector<double> sines;  ///< of 0, 1, ... `resolution` steps between samples, where those between two beams lie on
                               ///< the straight line between what these met; empty: on that between their ranges

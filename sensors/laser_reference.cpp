@@ -48,7 +48,7 @@ std::vector<LaserReference::Seen> LaserReference::in_sight(std::uint32_t self, c
 LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t laser, std::uint64_t sequence) const {
   const CastLaser cast = cast_laser(world_, world_.movers[mover].lasers[laser]);
   const world::Laser& l = cast.laser;
-  const BeamPlan plan = plan_beams(l, noise_);
+  const raycast::BeamPlan plan = raycast::plan_beams(l, noise_);
   Scan scan{base::compose(poses_[mover], l.X_MS), std::vector<double>(l.samples),
             std::vector<std::uint32_t>(l.samples)};
   scan.X_WS.z = world_.movers[mover].X_WM.z + l.X_MS.z;
@@ -63,7 +63,7 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t las
     const double bearing = world::bearing_of(l, plan.samples[k]) + (turns.empty() ? 0.0 : turns[k]);
     const Vec2 beam{std::cos(bearing), std::sin(bearing)};
     const Vec2 d{heading.x * beam.x - heading.y * beam.y, heading.y * beam.x + heading.x * beam.y};
-    Decision nearest{l.range_max};
+    raycast::Decision nearest{l.range_max};
     std::uint32_t model = SF_NO_HIT;
     for (const Seen& seen : surfaces) {
       const std::uint32_t before = nearest.id;

@@ -4,14 +4,14 @@
 // Its arithmetic is that of shaders/lib/decide.glsl, operation by operation, so its scans are the device's to the bit,
 // noise and `resolution` included: what devices are held to, and what recordings are checked against. A laser in mode
 // `single` is cast as an exact one. It shares with
-// the farm how beams are laid out and noise is drawn (sensors/beams.h, sensors/laser_shape.h), nothing of how surfaces
+// the farm how beams are laid out and noise is drawn (raycast/beams.h, sensors/laser_shape.h), nothing of how surfaces
 // are found. Some microseconds a beam in a world of a thousand walls.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "sensors/decide.h"
+#include "raycast/decide.h"
 #include "sensors/kind.h"
 
 namespace sf::sensors {
@@ -35,7 +35,7 @@ class LaserReference {
 
  private:
   struct Seen {
-    Surface surface;
+    raycast::Surface surface;
     std::uint32_t model;
   };
   std::vector<Seen> in_sight(std::uint32_t self, const Pose& X_WS, double range) const;

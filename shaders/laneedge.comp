@@ -3,7 +3,7 @@
 // The lane edge sensor's fit: every sensor that is due, in one dispatch.
 
 #include "sensors/laneedge.h"
-#include "sensors/scene/records.h"
+#include "raycast/records.h"
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;       // SF_EDGE_TEXELS a sensor: EdgeRow

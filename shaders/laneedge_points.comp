@@ -4,7 +4,7 @@
 // dispatch.
 
 #include "sensors/laneedge.h"
-#include "sensors/scene/records.h"
+#include "raycast/records.h"
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer edges;       // SF_EDGE_TEXELS a sensor: EdgeRow

@@ -3,7 +3,7 @@
 // Road paint in pixels: every ray of every lane edge sensor that is due, in one dispatch. What the cast met nearer wins.
 
 #include "sensors/laneedge.h"
-#include "sensors/scene/records.h"
+#include "raycast/records.h"
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;          // SF_ROAD_TEXELS a sensor: RoadRow

@@ -3,7 +3,7 @@
 // Sonar: the nearest surface in each cone that throws its echo back, for every transducer that fires, in one dispatch.
 
 #include "sensors/cones/records.h"
-#include "sensors/scene/records.h"
+#include "raycast/records.h"
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer cones;       // SF_CONE_TEXELS a cone: ConeRow

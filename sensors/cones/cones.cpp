@@ -15,7 +15,7 @@ constexpr std::size_t kMostCones = std::size_t{32'768} * kGroup;
 
 std::size_t padded(std::size_t cones) { return (cones + kGroup - 1) / kGroup * kGroup; }
 
-Fan fan_of(const ConeArray& array, std::size_t transducer) {
+raycast::Fan fan_of(const ConeArray& array, std::size_t transducer) {
   world::Laser beams;
   beams.X_MS = base::compose(array.row.X_MS, array.X_SC[transducer]);
   beams.fov = array.rays > 1 ? array.fov : 0.0;
@@ -100,13 +100,13 @@ bool Cones::prepare(std::span<const Due> due, std::span<const Pose> poses) {
 }
 
 ConeRow Cones::row_of(std::size_t i, std::uint32_t cone) {
-  const FanResults results = casts_.results(i);
+  const raycast::FanResults results = casts_.results(i);
   ConeRow row{};
   row.lane = results.lane;
   row.lanes = results.plan->lanes();
   row.directions = results.beams;
   row.least_cosine = least_cosines_[cone];
-  const RayRow& look = casts_.rows().host<RayRow>()[i];
+  const raycast::RayRow& look = casts_.rows().host<raycast::RayRow>()[i];
   row.heading_cos = static_cast<float>(look.heading_cos64);
   row.heading_sin = static_cast<float>(look.heading_sin64);
   row.range_max = casts_.fans()[cone].laser.range_max;

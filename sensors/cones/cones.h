@@ -8,7 +8,7 @@
 #include "gpu/batch.h"
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
-#include "sensors/casts.h"
+#include "raycast/casts.h"
 #include "sensors/cones/cone_array.h"
 #include "sensors/cones/faces.h"
 
@@ -46,7 +46,7 @@ class Cones {
 
  private:
   struct Plan {
-    std::vector<Fan> fans;
+    std::vector<raycast::Fan> fans;
     std::vector<float> least_cosines;  ///< per cone
     std::vector<std::uint32_t> first;  ///< per array
     bool incidence = false;            ///< some array hears only some angles
@@ -59,7 +59,7 @@ class Cones {
   base::Workers& workers_;
   std::vector<std::uint32_t> first_cones_;
   std::vector<float> least_cosines_;
-  Casts casts_;
+  raycast::Casts casts_;
   bool fresh_ = true;      ///< tables that never change are not on the device yet
   std::size_t count_ = 0;  ///< of due cones
   gpu::Kernel kernel_;

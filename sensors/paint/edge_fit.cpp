@@ -21,7 +21,7 @@ constexpr std::size_t kMostSensors = std::size_t{32'768} * kGroup;
 std::size_t padded(std::size_t sensors) { return (sensors + kGroup - 1) / kGroup * kGroup; }
 
 /// What the fit needs of one sensor; the tables it shares are filled in later.
-EdgeRow row_of(const LaneEdge& edge, const BeamPlan& plan, const world::LaserNoise& noise) {
+EdgeRow row_of(const LaneEdge& edge, const raycast::BeamPlan& plan, const world::LaserNoise& noise) {
   EdgeRow row{};
   row.beams = edge.fan.samples;
   row.flags = (plan.packed ? SF_EDGE_PACKED : 0u) | (edge.single ? SF_EDGE_SINGLE : 0u);
@@ -51,7 +51,7 @@ EdgeFit::Plan EdgeFit::plan(const Site& site, const std::vector<LaneEdge>& edges
   // Sensors without noise read deviates that stay 0, in front of all others.
   plan.noise_lanes = kMostEdgeSamples;
   for (const LaneEdge& edge : edges) {
-    const BeamPlan beams = plan_beams(edge.fan, site.noise);
+    const raycast::BeamPlan beams = raycast::plan_beams(edge.fan, site.noise);
     const world::LaserNoise noise = site.noise ? edge.fan.noise : world::LaserNoise{};
     EdgeRow row = row_of(edge, beams, noise);
     const auto [known, is_new] =
@@ -102,7 +102,7 @@ void EdgeFit::write_directions() {
   const auto table = directions_.host<double>();
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const world::Laser& fan = edges_[i].fan;
-    const BeamPlan& beams = plan_.beams[i];
+    const raycast::BeamPlan& beams = plan_.beams[i];
     for (std::uint32_t slot = 0; slot < SF_BEAMS_PER_LANE * beams.lanes(); ++slot) {
       const std::uint32_t beam = std::min(beams.packed ? slot : slot / SF_BEAMS_PER_LANE, fan.samples - 1);
       const double bearing = world::bearing_of(fan, beam);

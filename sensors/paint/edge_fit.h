@@ -8,7 +8,7 @@
 #include "gpu/batch.h"
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
-#include "sensors/beams.h"
+#include "raycast/beams.h"
 #include "sensors/kind.h"
 #include "sensors/laneedge_settings.h"
 
@@ -33,7 +33,7 @@ class EdgeFit {
   /// @param lanes first lane of each due fan's results.
   void prepare(std::span<const Due> due, std::span<const std::uint32_t> lanes);
   /// What makes points of the results of a cast: `lanes` (Lane), `ranges` (a lane's four doubles [m]) and `hits` (its
-  /// four tags) as sensors::Casts has them. To be called when these were replaced, and once before `record_points`.
+  /// four tags) as raycast::Casts has them. To be called when these were replaced, and once before `record_points`.
   void bind(gpu::Buffer& lanes, gpu::Buffer& ranges, gpu::Buffer& hits);
   /// @param lane_groups group counts of the cast over `lanes`.
   void record_points(gpu::Batch& batch, const gpu::Buffer& lane_groups) const {
@@ -59,7 +59,7 @@ class EdgeFit {
  private:
   struct Plan {
     std::vector<EdgeRow> rows;
-    std::vector<BeamPlan> beams;
+    std::vector<raycast::BeamPlan> beams;
     std::uint32_t lanes = 0;  ///< of results
     std::uint32_t direction_lanes = 0;
     std::uint32_t noise_lanes = 0;

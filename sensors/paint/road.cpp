@@ -17,8 +17,8 @@ namespace {
 /// below the turns that older Mesa allows.
 constexpr double kLongestRay = 8192.0;
 
-void refuse_long_rays(const Site& site, const Casts& casts, double cell) {
-  for (const Fan& fan : casts.fans()) {
+void refuse_long_rays(const Site& site, const raycast::Casts& casts, double cell) {
+  for (const raycast::Fan& fan : casts.fans()) {
     if (fan.laser.range_max <= kLongestRay * cell) continue;
     throw base::InputError(
         site.world.file, 0,
@@ -30,7 +30,7 @@ void refuse_long_rays(const Site& site, const Casts& casts, double cell) {
 
 }  // namespace
 
-Road::Road(const Site& site, const PaintRaster& raster, Casts& casts, std::uint32_t tag, bool with_casts)
+Road::Road(const Site& site, const PaintRaster& raster, raycast::Casts& casts, std::uint32_t tag, bool with_casts)
     : workers_(site.workers),
       casts_(casts),
       cell_(raster.cell()),
@@ -54,7 +54,7 @@ Road::Road(const Site& site, const PaintRaster& raster, Casts& casts, std::uint3
 }
 
 RoadRow Road::row_of(std::size_t i) const {
-  const RayRow& ray = casts_.rows().host<RayRow>()[i];
+  const raycast::RayRow& ray = casts_.rows().host<raycast::RayRow>()[i];
   const double x = ray.origin_x / cell_;
   const double y = ray.origin_y / cell_;
   const double column = std::floor(x) - first_column_;

@@ -1,7 +1,7 @@
 // Casting every beam of every sensor that is due: the whole kernel. With SF_SINGLE, a winner that 32 bits prove closely enough is measured in
 // 32 bits too.
 
-#include "sensors/scene/records.h"
+#include "raycast/records.h"
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;        // SF_ROW_TEXELS a sensor: RayRow

@@ -1,6 +1,6 @@
 // Casting the four beams of a lane against sector lists: a 32-bit search that proves its winner, a 64-bit decision.
 //
-// Assumes lists that hold every segment that could be met, near to far (sensors/scene/sectors.h), and directions of unit length.
+// Assumes lists that hold every segment that could be met, near to far (raycast/sectors.h), and directions of unit length.
 // A segment is a + u e, u in [0, 1], seen from its right; with w = a - o and a beam o + t d:
 //   t = (e x w) / (e x d),  u = (d x w) / (e x d).
 // Near-to-far order is by a lower bound of t: (e x w - E) / (e x d), where E bounds what rounding did (SF_BAND).

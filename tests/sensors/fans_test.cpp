@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sensors/beams.h"
+#include "raycast/beams.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/scenes.h"

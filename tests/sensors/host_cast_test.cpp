@@ -1,6 +1,6 @@
 // Where surfaces are more than the device's lists hold, the host casts: the same bytes, whatever the kind of sensor.
 
-#include "sensors/host_cast.h"
+#include "raycast/host_cast.h"
 
 #include <gtest/gtest.h>
 
@@ -149,17 +149,17 @@ TEST(HostCast, RangersAndLaneEdgesInACrowdAtOnePlace) {
 
 /// Surfaces through the sensor, with an end on it, and behind it: on which side of it they lie is not told by bearings.
 TEST(HostCast, SurfacesThroughTheSensor) {
-  sensors::HostCast cast;
+  raycast::HostCast cast;
   cast.surfaces = {{{-1.0, 0.0, 1.0, 0.0}, 0}, {{0.0, 0.0, 0.0, 2.0}, 1}, {{-3.0, -1.0, -3.0, 1.0}, 2}};
   std::vector<double> bearings;
   for (int i = 0; i < 8; ++i)
     bearings.insert(bearings.end(), {std::cos(M_PI / 8 + i * M_PI / 4), std::sin(M_PI / 8 + i * M_PI / 4)});
   bearings.insert(bearings.end(), {-1.0, 0.0});
-  sensors::cast_on_host({{0.0, 0.5}, {1.0, 0.0}, bearings, 0.0, 10.0}, cast);
+  raycast::cast_on_host({{0.0, 0.5}, {1.0, 0.0}, bearings, 0.0, 10.0}, cast);
   for (std::size_t i = 0; i < cast.decisions.size(); ++i) {
-    sensors::Decision plain{10.0};
-    for (const sensors::Surface& surface : cast.surfaces)
-      sensors::decide(surface, {0.0, 0.5}, {bearings[2 * i], bearings[2 * i + 1]}, plain);
+    raycast::Decision plain{10.0};
+    for (const raycast::Surface& surface : cast.surfaces)
+      raycast::decide(surface, {0.0, 0.5}, {bearings[2 * i], bearings[2 * i + 1]}, plain);
     EXPECT_EQ(cast.decisions[i].range, plain.range) << i;
     EXPECT_EQ(cast.decisions[i].id, plain.id) << i;
   }

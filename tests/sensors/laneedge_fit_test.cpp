@@ -39,12 +39,12 @@ class FitRig {
     for (std::uint32_t i = 0; i < edges_.size(); ++i) {
       due.push_back({i, 3});
       lanes.push_back(next);
-      next += sensors::plan_beams(edges_[i].fan, true).lanes();
+      next += raycast::plan_beams(edges_[i].fan, true).lanes();
     }
     gpu::Buffer ranges(device(), "ranges", gpu::Role::upload, gpu::Texel::u32x4, 2 * std::size_t{next});
     gpu::Buffer hits(device(), "hits", gpu::Role::upload, gpu::Texel::u32x4, next);
     for (std::size_t i = 0; i < edges_.size(); ++i) {
-      const sensors::BeamPlan plan = sensors::plan_beams(edges_[i].fan, true);
+      const raycast::BeamPlan plan = raycast::plan_beams(edges_[i].fan, true);
       for (std::size_t k = 0; k < shots[i].ranges.size(); ++k) {
         ranges.host<double>()[SF_BEAMS_PER_LANE * lanes[i] + plan.place(k)] = shots[i].ranges[k];
         hits.host<std::uint32_t>()[SF_BEAMS_PER_LANE * lanes[i] + plan.place(k)] = shots[i].tags[k];
@@ -53,9 +53,9 @@ class FitRig {
     const std::size_t groups = (next + 63) / 64;
     gpu::Buffer owners(device(), "owners", gpu::Role::upload, gpu::Texel::u32, 2 * 64 * groups);
     std::size_t at = 0;
-    const auto owner = owners.host<sensors::Lane>();
+    const auto owner = owners.host<raycast::Lane>();
     for (std::uint32_t i = 0; i < edges_.size(); ++i)
-      for (std::uint32_t own = 0; own < sensors::plan_beams(edges_[i].fan, true).lanes(); ++own) owner[at++] = {i, own};
+      for (std::uint32_t own = 0; own < raycast::plan_beams(edges_[i].fan, true).lanes(); ++own) owner[at++] = {i, own};
     for (; at < owner.size(); ++at) owner[at] = owner[next - 1];
     fit_.prepare(due, lanes);
     fit_.bind(owners, ranges, hits);
@@ -80,7 +80,7 @@ class FitRig {
   }
 
   EdgeReading on_the_host(std::uint32_t i, const Shot& shot) {
-    const sensors::BeamPlan plan = sensors::plan_beams(edges_[i].fan, true);
+    const raycast::BeamPlan plan = raycast::plan_beams(edges_[i].fan, true);
     std::vector<double> directions;
     std::vector<float> normals;
     const base::Draw draw{0, base::Stream::range_noise, i, sensors::edge_noise_name(0), 3};

@@ -9,9 +9,9 @@
 #include <limits>
 #include <span>
 
+#include "raycast/records.h"
 #include "sensors/laneedge.h"
 #include "sensors/paint/line_fit.h"
-#include "sensors/scene/records.h"
 
 namespace sf::mirror {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sensors/beams.h"
+#include "raycast/beams.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/scenes.h"
 
@@ -75,7 +75,7 @@ TEST(Options, InterpolatedBeamsNameWhatBothNeighboursMet) {
 TEST(Options, AResolutionBeyondTheSamplesCastsBothEnds) {
   world::Laser laser = eye(9, 1.2, 8.0);
   laser.resolution = 1000;
-  const sensors::BeamPlan plan = sensors::plan_beams(laser, false);
+  const raycast::BeamPlan plan = raycast::plan_beams(laser, false);
   EXPECT_EQ(plan.samples, (std::vector<std::uint32_t>{0, 8}));
   const auto ranges = read(laser);
   for (const double range : ranges) EXPECT_NEAR(range, 2.0 / std::cos(0.6), 1e-12);
@@ -90,21 +90,21 @@ TEST(Options, BearingsAndLanes) {
   for (std::uint32_t i = 0; i < 361; ++i) EXPECT_EQ(world::bearing_of(fan, i), -world::bearing_of(fan, 360 - i)) << i;
   EXPECT_EQ(world::bearing_of(eye(1, 3.0, 8.0), 0), 0.0);
 
-  EXPECT_TRUE(sensors::plan_beams(fan, false).packed);
-  EXPECT_EQ(sensors::plan_beams(fan, false).lanes(), 91u);
-  const sensors::BeamPlan wide = sensors::plan_beams(eye(16, 2.0 * M_PI, 8.0), false);
+  EXPECT_TRUE(raycast::plan_beams(fan, false).packed);
+  EXPECT_EQ(raycast::plan_beams(fan, false).lanes(), 91u);
+  const raycast::BeamPlan wide = raycast::plan_beams(eye(16, 2.0 * M_PI, 8.0), false);
   EXPECT_FALSE(wide.packed) << "24 degrees apart";
   EXPECT_EQ(wide.lanes(), 16u);
   world::Laser noisy = fan;
   noisy.noise.angle_sigma = 0.05;
-  EXPECT_FALSE(sensors::plan_beams(noisy, true).packed) << "noise may turn beams of a lane far apart";
-  EXPECT_TRUE(sensors::plan_beams(noisy, false).packed);
+  EXPECT_FALSE(raycast::plan_beams(noisy, true).packed) << "noise may turn beams of a lane far apart";
+  EXPECT_TRUE(raycast::plan_beams(noisy, false).packed);
 }
 
 /// Tables of a lane whose beams do not fill it repeat the last one.
 TEST(Options, TheLastLaneIsFilledUp) {
   const world::Laser laser = eye(5, 0.2, 8.0);
-  const sensors::BeamPlan plan = sensors::plan_beams(laser, false);
+  const raycast::BeamPlan plan = raycast::plan_beams(laser, false);
   ASSERT_EQ(plan.lanes(), 2u);
   std::vector<float> directions(16), middles(2);
   std::vector<double> directions64(16);

@@ -1,0 +1,52 @@
+#include "raycast/beams.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::raycast {
+
+BeamPlan plan_beams(const world::Laser& laser, bool with_noise) {
+  constexpr double kMostSpread = 0.5 * (2.0 * M_PI / SF_SECTORS);
+  BeamPlan plan;
+  for (std::uint32_t i = 0; i < laser.samples; i += laser.resolution) plan.samples.push_back(i);
+  if (plan.samples.back() != laser.samples - 1) plan.samples.push_back(laser.samples - 1);
+
+  const double step = laser.samples > 1 ? laser.fov / (laser.samples - 1) : 0.0;
+  const double jitter = with_noise ? kMostSigmas * laser.noise.angle_sigma : 0.0;
+  const double spread = 0.5 * (SF_BEAMS_PER_LANE - 1) * laser.resolution * step + jitter;
+  plan.packed = spread <= kMostSpread;
+  plan.spread = plan.packed ? spread : 0.0;
+  return plan;
+}
+
+void draw_turns(const world::Laser& laser, const BeamPlan& plan, const base::Draw& draw, std::span<double> turns) {
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    const double normal = base::random_normal(draw, plan.samples[k])[0];
+    turns[k] = laser.noise.angle_sigma * std::clamp(normal, -kMostSigmas, kMostSigmas);
+  }
+}
+
+void write_beams(const world::Laser& laser, const BeamPlan& plan, const std::vector<double>& turns,
+                 const BeamTables& tables) {
+  const std::size_t count = plan.samples.size();
+  for (std::size_t lane = 0; lane < plan.lanes(); ++lane) {
+    double low = 0.0;
+    double high = 0.0;
+    for (std::size_t i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+      // Places without a beam repeat the last one.
+      const std::size_t k = plan.packed ? std::min(SF_BEAMS_PER_LANE * lane + i, count - 1) : lane;
+      const double bearing = world::bearing_of(laser, plan.samples[k]) + (turns.empty() ? 0.0 : turns[k]);
+      low = i == 0 ? bearing : std::min(low, bearing);
+      high = i == 0 ? bearing : std::max(high, bearing);
+      const double c = std::cos(bearing);
+      const double s = std::sin(bearing);
+      tables.directions[8 * lane + i] = static_cast<float>(c);
+      tables.directions[8 * lane + 4 + i] = static_cast<float>(s);
+      tables.directions64[8 * lane + 2 * i] = c;
+      tables.directions64[8 * lane + 2 * i + 1] = s;
+    }
+    tables.middles[lane] = static_cast<float>(0.5 * (low + high) * (SF_SECTORS / (2.0 * M_PI)));
+  }
+}
+
+}  // namespace sf::raycast

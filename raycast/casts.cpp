@@ -1,0 +1,131 @@
+#include "raycast/casts.h"
+
+#include "raycast/casts_tables.h"
+
+namespace sf::raycast {
+
+Casts::Casts(const Site& site, const world::World& world, std::vector<Fan> fans)
+    : t_(std::make_unique<Tables>(site, world, std::move(fans))) {}
+
+Casts::~Casts() = default;
+
+const std::vector<Fan>& Casts::fans() const { return t_->fans; }
+const BeamPlan& Casts::plan(std::uint32_t fan) const { return t_->fan_rows[fan].plan; }
+Work Casts::work() const {
+  const Tables& t = *t_;
+  if (t.host) {
+    const ScanCounts scans = t.host->counts();
+    return {t.rays, scans.doubts, t.host->cells_built(), 0, scans.movers_near, scans.movers_met, t.host_scans};
+  }
+  const Scene::Counts scene = t.scene->counts();
+  return {t.rays, t.doubts_seen, scene.cells_built, 0, scene.movers_near, scene.movers_met, t.host_scans};
+}
+
+void Casts::place(std::span<const Pose> poses) {
+  if (t_->host)
+    t_->host->place(poses);
+  else
+    t_->scene->place(poses);
+}
+
+bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+  Tables& t = *t_;
+  t.due.assign(due.begin(), due.end());
+  t.views.resize(due.size());
+  t.workers.run(due.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) {
+      const FanRow& row = t.fan_rows[due[i].row];
+      const Fan& fan = t.fans[due[i].row];
+      Pose X_WS = base::compose(poses[fan.mover], fan.laser.X_MS);
+      X_WS.z = row.height;
+      t.views[i] = {row.family, fan.mover, X_WS};
+    }
+  });
+  for (const Due& d : due) t.rays += t.fan_rows[d.row].plan.samples.size();
+  const auto ray_rows = t.rows->host<RayRow>().first(due.size());
+  const bool replaced = t.scene && t.scene->serve(t.views, ray_rows);
+  if (t.host) t.prepare_on_host(ray_rows);
+  t.workers.run(due.size(), 512, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) {
+      const FanRow& row = t.fan_rows[due[i].row];
+      ray_rows[i].beams = row.beams;
+      ray_rows[i].out = row.out;
+      ray_rows[i].range_min = t.fans[due[i].row].laser.range_min;
+      ray_rows[i].least_sine = static_cast<float>(kLeastSine);
+    }
+  });
+  t.write_lanes();
+  if (t.scene && t.any_turns)
+    t.workers.run(due.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
+      for (std::size_t i = first; i < last; ++i)
+        if (t.fan_rows[t.due[i].row].turns) t.turn_beams(t.due[i], thread);
+    });
+  if (t.scene) t.find_for_host();
+  if (t.scene)
+    t.workers.run(t.for_host.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
+      for (std::size_t i = first; i < last; ++i) t.cast_for_host(t.for_host[i], thread);
+    });
+  const bool again = replaced || !t.bound;
+  if (again) t.bind();
+  return again;
+}
+
+void Casts::record(gpu::Batch& batch) {
+  if (t_->host) return;
+  batch.dispatch(*t_->exact.kernel, *t_->exact.groups, 0);
+  if (t_->single) batch.dispatch(*t_->single->kernel, *t_->single->groups, 0);
+}
+
+void Casts::copies(gpu::Batch& batch, bool results) {
+  Tables& t = *t_;
+  if (t.scene) t.scene->upload(batch);
+  batch.up(*t.rows, 0, t.due.size() * sizeof(RayRow));
+  const auto send = [&](const CastPass& pass) {
+    batch.up(*pass.lanes, 0, pass.lanes->bytes());
+    batch.up(*pass.groups, 0, pass.groups->bytes());
+  };
+  send(t.exact);
+  if (t.single) send(*t.single);
+  if (t.beams_changed || t.any_turns) {
+    batch.up(*t.directions, 0, t.directions->bytes());
+    batch.up(*t.middles, 0, t.middles->bytes());
+    batch.up(*t.directions64, 0, t.directions64->bytes());
+    t.beams_changed = false;
+  }
+  for (const std::uint32_t i : t.for_host) {
+    const FanRow& row = t.fan_rows[t.due[i].row];
+    const std::size_t lanes = row.plan.lanes();
+    batch.up(*t.ranges, 32 * std::size_t{row.out}, 32 * lanes);
+    batch.up(*t.hits, 16 * std::size_t{row.out}, 16 * lanes);
+    batch.up(*t.verdicts, 4 * std::size_t{row.out}, 4 * lanes);
+  }
+  batch.down(*t.verdicts, 0, t.verdicts->bytes());
+  if (!results) return;
+  batch.down(*t.ranges, 0, t.ranges->bytes());
+  batch.down(*t.hits, 0, t.hits->bytes());
+}
+
+FanResults Casts::results(std::size_t i) const {
+  const FanRow& row = t_->fan_rows[t_->due[i].row];
+  return {row.out, row.beams, &row.plan, t_->views[i].X_WS};
+}
+
+void Casts::count() {
+  const auto verdicts = t_->verdicts->host<std::uint32_t>();
+  for (const Due& due : t_->due) {
+    const FanRow& row = t_->fan_rows[due.row];
+    for (std::uint32_t lane = 0; lane < row.plan.lanes(); ++lane)
+      t_->doubts_seen += verdicts[row.out + lane] & SF_DOUBT;
+  }
+}
+
+gpu::Buffer& Casts::ranges() { return *t_->ranges; }
+gpu::Buffer& Casts::hits() { return *t_->hits; }
+gpu::Buffer& Casts::directions64() { return *t_->directions64; }
+gpu::Buffer& Casts::rows() { return *t_->rows; }
+gpu::Buffer& Casts::verdicts() { return *t_->verdicts; }
+gpu::Buffer& Casts::lanes() { return *t_->exact.lanes; }
+gpu::Buffer& Casts::groups() { return *t_->exact.groups; }
+std::uint32_t Casts::group_size() const { return kLanesPerGroup; }
+
+}  // namespace sf::raycast

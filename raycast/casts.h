@@ -1,0 +1,89 @@
+#pragma once
+// Fans of beams cast at once: what the laser range finder and the lane edge sensor share.
+//
+// Ranges are exact: the nearest surface along each beam, from either side, decided in 64 bits against the segments of
+// the world, within `exact_bound` of real arithmetic. A beam that meets nothing within range_max reads range_max. A
+// surface that touches the sensor (within SF_TOUCH along the beam) stops beams that go into it, which read 0, not beams
+// that leave it. A sensor inside a solid reads the way out of it. The mover that carries the sensor is never seen.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "raycast/beams.h"
+#include "raycast/scene.h"
+#include "raycast/site.h"
+
+namespace sf::raycast {
+
+/// Sine of the angle below which a beam grazes what it meets: rounding then moves its range by more than `exact_bound`.
+inline constexpr double kLeastSine = 1e-3;
+
+/// [m] largest error of a range in 64 bits, of a beam that does not graze, against real arithmetic on the world's own
+/// doubles and the sensor's pose: with u = 2^-53, of numerator and denominator of t = (e x w) / (e x d) at most 4 u |e|
+/// |w| and 9 u |e|, |w| <= range + longest, and of outlines that were moved 4 u farthest; and what counts as touching.
+/// @param longest [m] surface  @param farthest [m] coordinate of anything in range
+inline constexpr double exact_bound(double range_max, double longest, double farthest) {
+  return SF_TOUCH + 0x1p-53 * (16.0 * (range_max + longest) + 4.0 * farthest) / kLeastSine;
+}
+
+/// [m] what 32 bits may add to the error of a range.
+inline double single_bound(double range_max) { return range_max * (0.51 * SF_SINGLE_SHARE + 0x1p-22); }
+
+/// One fan: the beams of one sensor.
+struct Fan {
+  world::Laser laser;        ///< its settings; range noise is not applied here, angular noise is
+  std::uint32_t mover = 0;   ///< that carries it
+  std::uint32_t sensor = 0;  ///< names its noise
+  bool single = false;       ///< measured in 32 bits where these are close enough: within `single_bound`
+};
+
+/// Where one due fan's results lie in the tables of results.
+struct FanResults {
+  std::uint32_t lane = 0;          ///< first of its lanes, of SF_BEAMS_PER_LANE results each
+  std::uint32_t beams = 0;         ///< first lane of its beam tables
+  const BeamPlan* plan = nullptr;  ///< which samples were cast, and their places
+  Pose X_WS;                       ///< where it looked from
+};
+
+/// Not thread-safe. `site` without its world must outlive it.
+class Casts {
+ public:
+  /// @param world what there is to see, which may be an excerpt of the site's. Its movers are the site's.
+  /// @throws base::DeviceError when the device cannot hold the tables.
+  Casts(const Site& site, const world::World& world, std::vector<Fan> fans);
+  ~Casts();
+
+  const std::vector<Fan>& fans() const;
+  const BeamPlan& plan(std::uint32_t fan) const;
+  Work work() const;
+
+  void place(std::span<const Pose> poses);
+  /// Rows of `due` are fans. @return true when kernels must be recorded again.
+  bool prepare(std::span<const Due> due, std::span<const Pose> poses);
+  void record(gpu::Batch& batch);
+  /// @param results whether ranges and hits are wanted on the host.
+  void copies(gpu::Batch& batch, bool results);
+  /// Of the i-th due fan, after `prepare`.
+  FanResults results(std::size_t i) const;
+  /// Adds up what the batch did; to be called once after it ran.
+  void count();
+
+  // Tables of results, on the device and (when copied) on the host; and the beams' directions in their sensor's frame.
+  gpu::Buffer& ranges();        ///< SF_BEAMS_PER_LANE doubles [m] a lane
+  gpu::Buffer& hits();          ///< SF_BEAMS_PER_LANE words a lane: `Segment::model` of what was met, or SF_NO_HIT
+  gpu::Buffer& verdicts();      ///< a word a lane: SF_DOUBT, SF_GRAZES
+  gpu::Buffer& directions64();  ///< SF_BEAMS_PER_LANE pairs of doubles a lane: cosine and sine of the bearing
+  gpu::Buffer& rows();          ///< RayRow of each due fan, in order of `due`
+  gpu::Buffer& lanes();   ///< Lane: which due fan and which of its lanes each invocation casts, but for `single` fans
+  gpu::Buffer& groups();  ///< group counts of the dispatch over `lanes`
+  std::uint32_t group_size() const;
+
+ private:
+  struct Tables;
+  std::unique_ptr<Tables> t_;
+};
+
+}  // namespace sf::raycast

@@ -1,0 +1,296 @@
+#include "raycast/casts_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "base/error.h"
+#include "shaders/laser.comp.h"
+#include "shaders/laser_single.comp.h"
+
+namespace sf::raycast {
+
+namespace {
+
+/// Groups along x of a dispatch; more rows of groups follow along y. Devices promise 65 535.
+constexpr std::uint32_t kGroupsAcross = 32'768;
+
+/// Fans are in order of their movers.
+std::uint32_t carriers_of(const std::vector<Fan>& fans) {
+  std::uint32_t carriers = 0;
+  for (std::size_t i = 0; i < fans.size(); ++i) carriers += i == 0 || fans[i].mover != fans[i - 1].mover;
+  return carriers;
+}
+
+/// Fans with the same beams share their tables.
+using BeamKey = std::tuple<double, std::uint32_t, std::uint32_t>;
+
+}  // namespace
+
+Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<Fan> f)
+    : workers(site.workers), seed(site.seed), noise(site.noise), fans(std::move(f)) {
+  const bool on_host =
+      site.scene.caster == Caster::host || (site.scene.caster == Caster::automatic && site.device.facts().software);
+  if (on_host)
+    host = std::make_unique<HostScene>(world, site.workers);
+  else
+    scene = std::make_unique<Scene>(world, site.device, site.workers, site.scene, carriers_of(fans));
+  plan(world);
+  scratch.resize(workers.threads());
+  turned.resize(workers.threads());
+  host_casts.resize(workers.threads());
+  std::uint32_t beam_lanes = 0;
+  struct Shared {
+    std::uint32_t beams, pattern;
+  };
+  std::map<BeamKey, Shared> shared;
+  for (std::size_t i = 0; i < fans.size(); ++i) {
+    FanRow& row = fan_rows[i];
+    const BeamKey key{fans[i].laser.fov, fans[i].laser.samples, fans[i].laser.resolution};
+    const auto known = shared.find(key);
+    if (!row.turns && known != shared.end()) {
+      row.beams = known->second.beams;
+      row.pattern = known->second.pattern;
+      continue;
+    }
+    row.beams = beam_lanes;
+    row.pattern = static_cast<std::uint32_t>(patterns.size());
+    if (!row.turns) shared[key] = {beam_lanes, row.pattern};
+    if (host && !row.turns) make_pattern(i, {}, scratch[0], patterns.emplace_back());
+    beam_lanes += row.plan.lanes();
+  }
+  make_tables(site.device, beam_lanes);
+  write_all_beams();
+}
+
+void Casts::Tables::plan(const world::World& world) {
+  std::vector<std::size_t> beams(world.movers.size(), 0);
+  for (const Fan& fan : fans) beams[fan.mover] += fan.laser.samples / fan.laser.resolution;
+  for (const Fan& fan : fans) {
+    FanRow row;
+    row.plan = plan_beams(fan.laser, noise);
+    row.height = world.movers[fan.mover].X_WM.z + fan.laser.X_MS.z;
+    const double turn = noise ? kMostSigmas * fan.laser.noise.angle_sigma : 0.0;
+    const Family family{row.height, fan.laser.range_max, row.plan.spread, fan.laser.fov + 2.0 * turn,
+                        static_cast<std::uint32_t>(std::min<std::size_t>(beams[fan.mover], 1'000'000))};
+    row.family = host ? host->add_family(family) : scene->add_family(family);
+    row.turns = noise && fan.laser.noise.angle_sigma > 0.0;
+    any_turns = any_turns || row.turns;
+    row.out = out_lanes;
+    out_lanes += row.plan.lanes();
+    spare_lanes = std::max(spare_lanes, row.plan.lanes());
+    fan_rows.push_back(std::move(row));
+  }
+}
+
+void Casts::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) {
+  using gpu::Role;
+  using gpu::Texel;
+  const std::size_t count = std::max<std::size_t>(1, fans.size());
+  make_pass(device, exact, false);
+  const auto asks = [](const Fan& fan) { return fan.single; };
+  if (std::any_of(fans.begin(), fans.end(), asks)) make_pass(device, single.emplace(), true);
+  rows = std::make_unique<gpu::Buffer>(device, "due sensors", Role::upload, Texel::u32x4, SF_ROW_TEXELS * count);
+  directions = std::make_unique<gpu::Buffer>(device, "beams in 32 bits", Role::upload, Texel::f32x4,
+                                             2 * std::size_t{beam_lanes} + 2);
+  middles =
+      std::make_unique<gpu::Buffer>(device, "middles of lanes", Role::upload, Texel::f32, std::size_t{beam_lanes} + 1);
+  directions64 = std::make_unique<gpu::Buffer>(device, "beams in 64 bits", Role::upload, Texel::u32x4,
+                                               4 * std::size_t{beam_lanes} + 4);
+  const std::size_t results = std::size_t{out_lanes} + std::max(spare_lanes, 1u);
+  ranges = std::make_unique<gpu::Buffer>(device, "ranges", Role::download, Texel::u32x4, 2 * results);
+  hits = std::make_unique<gpu::Buffer>(device, "hits", Role::download, Texel::u32x4, results);
+  verdicts = std::make_unique<gpu::Buffer>(device, "verdicts", Role::download, Texel::u32, results);
+}
+
+void Casts::Tables::make_pass(gpu::Device& device, CastPass& pass, bool is_single) {
+  using gpu::Role;
+  using gpu::Texel;
+  // Lanes are padded to whole groups, and groups to whole rows of groups where there are many.
+  const std::size_t most_groups = out_lanes / kLanesPerGroup + 1;
+  const std::size_t padded = (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * kLanesPerGroup;
+  pass.lanes = std::make_unique<gpu::Buffer>(device, "whose beams", Role::upload, Texel::u32, 2 * padded);
+  pass.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
+  if (host) return;
+  const auto code = is_single ? std::span<const std::uint32_t>(laser_single_comp_spv)
+                              : std::span<const std::uint32_t>(laser_comp_spv);
+  pass.kernel = std::make_unique<gpu::Kernel>(device, is_single ? "laser in 32 bits" : "laser", code, 14);
+  SF_CHECK(pass.kernel->group_size() == kLanesPerGroup, "groups of lanes are counted as of 64");
+}
+
+void Casts::Tables::write_all_beams() {
+  // Tables were given out in order of rows: one that lies behind all written so far is new, others are shared.
+  std::uint32_t written = 0;
+  for (std::size_t i = 0; i < fans.size(); ++i) {
+    const FanRow& row = fan_rows[i];
+    if (row.beams < written) continue;
+    write_beams(fans[i].laser, row.plan, {}, beam_tables(row.beams));
+    written += row.plan.lanes();
+  }
+}
+
+void Casts::Tables::turn_beams(const Due& d, unsigned thread) {
+  const Fan& fan = fans[d.row];
+  const FanRow& row = fan_rows[d.row];
+  std::vector<double>& turns = turned[thread];
+  turns.resize(row.plan.samples.size());
+  draw_turns(fan.laser, row.plan, {seed, base::Stream::angle_noise, fan.mover, fan.sensor, d.sequence}, turns);
+  write_beams(fan.laser, row.plan, turns, beam_tables(row.beams));
+}
+
+void Casts::Tables::write_lanes() {
+  // Tables are born with anything in them: the first tick writes them, even when nothing is due.
+  const bool same = bound && lanes_written.size() == due.size() &&
+                    std::equal(due.begin(), due.end(), lanes_written.begin(),
+                               [](const Due& d, std::uint32_t row) { return d.row == row; });
+  if (same) return;
+  lanes_written.clear();
+  for (const Due& d : due) lanes_written.push_back(d.row);
+  write_lanes(exact, false);
+  if (single) write_lanes(*single, true);
+}
+
+void Casts::Tables::write_lanes(CastPass& pass, bool is_single) {
+  const auto table = pass.lanes->host<Lane>();
+  std::size_t at = 0;
+  for (std::uint32_t i = 0; i < due.size(); ++i) {
+    if (fans[due[i].row].single != is_single) continue;
+    for (std::uint32_t lane = 0; lane < fan_rows[due[i].row].plan.lanes(); ++lane) table[at++] = {i, lane};
+  }
+  const auto due_lanes = static_cast<std::uint32_t>(at);
+  const std::uint32_t group = kLanesPerGroup;
+  const std::uint32_t needed = (due_lanes + group - 1) / group;
+  const std::uint32_t across = std::min(needed, kGroupsAcross);
+  const std::uint32_t down = across > 0 ? (needed + across - 1) / across : 0;
+  // Padding repeats the last lane, which then is written more than once with the same values.
+  const Lane last = at > 0 ? table[at - 1] : Lane{0, 0};
+  std::fill(table.begin() + static_cast<std::ptrdiff_t>(at), table.begin() + std::ptrdiff_t{across} * down * group,
+            last);
+  const auto counts = pass.groups->host<std::uint32_t>();
+  counts[0] = across;
+  counts[1] = down;
+  counts[2] = across > 0 ? 1 : 0;
+}
+
+/// @param turns [rad] of each cast beam, or none
+void Casts::Tables::make_pattern(std::size_t i, std::span<const double> turns, Scratch& own, ScanPattern& pattern) {
+  const world::Laser& laser = fans[i].laser;
+  const std::vector<std::uint32_t>& samples = fan_rows[i].plan.samples;
+  own.bearings.resize(samples.size());
+  own.directions.resize(2 * samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const double bearing = world::bearing_of(laser, samples[k]) + (turns.empty() ? 0.0 : turns[k]);
+    own.bearings[k] = bearing;
+    own.directions[2 * k] = std::cos(bearing);
+    own.directions[2 * k + 1] = std::sin(bearing);
+  }
+  pattern.assign(own.bearings, own.directions, world::bearing_of(laser, samples.front()),
+                 world::bearing_of(laser, samples.back()));
+}
+
+/// Casts what is due, and fills in what kernels that read the results are told of it.
+void Casts::Tables::prepare_on_host(std::span<RayRow> ray_rows) {
+  host->prepare(views);
+  for_host.resize(due.size());
+  std::iota(for_host.begin(), for_host.end(), 0u);
+  workers.run(due.size(), 8, [&](std::size_t first, std::size_t last, unsigned thread) {
+    for (std::size_t i = first; i < last; ++i) {
+      const Pose& X = views[i].X_WS;
+      RayRow& row = ray_rows[i];
+      row = {};
+      row.origin_x = X.x, row.origin_y = X.y;
+      row.heading_cos64 = std::cos(X.yaw), row.heading_sin64 = std::sin(X.yaw);
+      row.range_max = fans[due[i].row].laser.range_max;
+      scan_on_host(static_cast<std::uint32_t>(i), thread);
+    }
+  });
+}
+
+/// Scans for the i-th due fan and writes its results where kernels look for them.
+void Casts::Tables::scan_on_host(std::uint32_t i, unsigned thread) {
+  const FanRow& row = fan_rows[due[i].row];
+  const Fan& fan = fans[due[i].row];
+  Scratch& own = scratch[thread];
+  if (row.turns) turn_beams(due[i], thread);
+  if (row.turns) make_pattern(due[i].row, turned[thread], own, own.pattern);
+  const ScanPattern& pattern = row.turns ? own.pattern : patterns[row.pattern];
+  const std::size_t beams = row.plan.samples.size();
+  const std::size_t lanes = row.plan.lanes(), places = SF_BEAMS_PER_LANE * lanes;
+  own.grazes.resize(places);
+  double* const out = ranges->host<double>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
+  std::uint32_t* const met = hits->host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
+  const auto lane_verdicts = verdicts->host<std::uint32_t>().subspan(row.out, lanes);
+  std::fill(lane_verdicts.begin(), lane_verdicts.end(), 0u);
+  if (row.plan.packed) {
+    host->scan(i, fan.laser.range_min, kLeastSine, fan.single, pattern, thread, {out, met, own.grazes.data()});
+    // Places without a beam repeat the last one.
+    std::fill(out + beams, out + places, out[beams - 1]);
+    std::fill(met + beams, met + places, met[beams - 1]);
+    for (std::size_t k = 0; k < beams; ++k)
+      if (own.grazes[k] != 0) lane_verdicts[k / SF_BEAMS_PER_LANE] |= SF_GRAZES << k % SF_BEAMS_PER_LANE;
+    return;
+  }
+  own.ranges.resize(beams);
+  own.models.resize(beams);
+  host->scan(i, fan.laser.range_min, kLeastSine, fan.single, pattern, thread,
+             {own.ranges.data(), own.models.data(), own.grazes.data()});
+  for (std::size_t k = 0; k < beams; ++k) {
+    std::fill_n(out + SF_BEAMS_PER_LANE * k, SF_BEAMS_PER_LANE, own.ranges[k]);
+    std::fill_n(met + SF_BEAMS_PER_LANE * k, SF_BEAMS_PER_LANE, own.models[k]);
+    if (own.grazes[k] != 0) lane_verdicts[k] |= SF_GRAZES;
+  }
+}
+
+void Casts::Tables::find_for_host() {
+  for_host.clear();
+  const auto ray_rows = rows->host<RayRow>();
+  for (std::uint32_t i = 0; i < due.size(); ++i) {
+    if (!scene->is_for_host(i)) continue;
+    for_host.push_back(i);
+    ray_rows[i].out = out_lanes;
+  }
+  host_scans += for_host.size();
+}
+
+/// Casts the i-th due fan and writes its results where kernels look for them.
+void Casts::Tables::cast_for_host(std::uint32_t i, unsigned thread) {
+  const FanRow& row = fan_rows[due[i].row];
+  const RayRow& ray = rows->host<RayRow>()[i];
+  const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{row.out};
+  const std::size_t beams = SF_BEAMS_PER_LANE * std::size_t{row.plan.lanes()};
+  HostCast& cast = host_casts[thread];
+  scene->surfaces(views[i], thread, cast.surfaces);
+  cast_on_host({{ray.origin_x, ray.origin_y},
+                {ray.heading_cos64, ray.heading_sin64},
+                directions64->host<double>().subspan(8 * std::size_t{row.beams}, 2 * beams),
+                ray.range_min,
+                ray.range_max},
+               cast);
+  const auto models = scene->models().host<std::uint32_t>();
+  const auto lane_verdicts = verdicts->host<std::uint32_t>().subspan(row.out, row.plan.lanes());
+  std::fill(lane_verdicts.begin(), lane_verdicts.end(), 0u);
+  for (std::size_t k = 0; k < beams; ++k) {
+    const Decision& decision = cast.decisions[k];
+    ranges->host<double>()[first + k] = decision.range;
+    hits->host<std::uint32_t>()[first + k] = decision.id == SF_NO_HIT ? SF_NO_HIT : models[decision.id];
+    if (decision.grazes(ray.least_sine)) lane_verdicts[k / SF_BEAMS_PER_LANE] |= SF_GRAZES << k % SF_BEAMS_PER_LANE;
+  }
+}
+
+void Casts::Tables::bind(CastPass& pass) {
+  gpu::Buffer* const tables[] = {rows.get(),         pass.lanes.get(),   directions.get(),  middles.get(),
+                                 directions64.get(), &scene->headers(),  &scene->entries(), &scene->ids(),
+                                 &scene->nearest(),  &scene->segments(), &scene->models(),  ranges.get(),
+                                 hits.get(),         verdicts.get()};
+  pass.kernel->bind(tables);
+}
+
+void Casts::Tables::bind() {
+  if (scene) bind(exact);
+  if (scene && single) bind(*single);
+  bound = true;
+}
+
+}  // namespace sf::raycast

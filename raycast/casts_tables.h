@@ -1,0 +1,92 @@
+#pragma once
+// What the sources of sensors::Casts share: one row per fan, and the device's tables.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/kernel.h"
+#include "raycast/casts.h"
+#include "raycast/host_cast.h"
+#include "raycast/host_scene.h"
+
+namespace sf::raycast {
+
+/// Of each dispatch over lanes.
+inline constexpr std::uint32_t kLanesPerGroup = 64;
+
+/// One fan, planned at load.
+struct FanRow {
+  BeamPlan plan;
+  double height = 0.0;  ///< [m] of the beams in the world, fixed at load: the world is 2.5-D
+  std::uint32_t family = 0;
+  std::uint32_t beams = 0;  ///< first lane of its beam tables
+  std::uint32_t pattern = 0;
+  std::uint32_t out = 0;  ///< first lane of its results
+  bool turns = false;     ///< has angular noise: beams are its own and change
+};
+
+/// One kernel over the lanes of its due fans.
+struct CastPass {
+  std::unique_ptr<gpu::Kernel> kernel;
+  std::unique_ptr<gpu::Buffer> lanes, groups;
+};
+
+struct Casts::Tables {
+  base::Workers& workers;
+  std::uint64_t seed;
+  bool noise;
+  std::unique_ptr<Scene> scene;     ///< where the device casts
+  std::unique_ptr<HostScene> host;  ///< where the host does
+  std::vector<Fan> fans;
+  std::vector<FanRow> fan_rows;
+  CastPass exact;
+  std::optional<CastPass> single;  ///< where a fan asks for it
+  std::unique_ptr<gpu::Buffer> rows, directions, middles, directions64, ranges, hits, verdicts;
+  std::vector<Due> due;
+  std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, that the passes' lanes hold
+  std::vector<Viewpoint> views;
+  std::vector<std::vector<double>> turned;  ///< scratch per thread
+  std::vector<HostCast> host_casts;         ///< scratch per thread
+  std::vector<ScanPattern> patterns;        ///< of fans whose beams do not change, on the host
+  struct Scratch {
+    ScanPattern pattern;
+    std::vector<double> bearings, directions, ranges;
+    std::vector<std::uint32_t> models;
+    std::vector<std::uint8_t> grazes;
+  };
+  std::vector<Scratch> scratch;         ///< per thread
+  std::vector<std::uint32_t> for_host;  ///< due fans that the host casts
+  std::uint32_t out_lanes = 0;
+  std::uint32_t spare_lanes = 0;  ///< behind all results: where the device writes what the host casts
+  std::uint64_t host_scans = 0;
+  std::uint64_t rays = 0;
+  std::uint64_t doubts_seen = 0;
+  bool bound = false;
+  bool beams_changed = true;
+  bool any_turns = false;
+
+  Tables(const Site& site, const world::World& world, std::vector<Fan> f);
+  void plan(const world::World& world);
+  void make_tables(gpu::Device& device, std::uint32_t beam_lanes);
+  void write_all_beams();
+  void make_pass(gpu::Device& device, CastPass& pass, bool is_single);
+  void write_lanes();
+  void write_lanes(CastPass& pass, bool is_single);
+  void bind(CastPass& pass);
+  void turn_beams(const Due& d, unsigned thread);
+  void make_pattern(std::size_t i, std::span<const double> turns, Scratch& own, ScanPattern& pattern);
+  void prepare_on_host(std::span<RayRow> ray_rows);
+  void scan_on_host(std::uint32_t i, unsigned thread);
+  void find_for_host();
+  void cast_for_host(std::uint32_t i, unsigned thread);
+  void bind();
+  BeamTables beam_tables(std::uint32_t lane) const {
+    return {directions->host<float>().data() + 8 * std::size_t{lane}, middles->host<float>().data() + lane,
+            directions64->host<double>().data() + 8 * std::size_t{lane}};
+  }
+};
+
+}  // namespace sf::raycast

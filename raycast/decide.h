@@ -1,0 +1,51 @@
+#pragma once
+// The 64-bit decision of one beam and one segment on the host: shaders/lib/decide.glsl, operation by operation, so that
+// both agree to the bit.
+
+#include <algorithm>
+#include <cstdint>
+
+#include "base/pose.h"
+#include "raycast/records.h"
+
+namespace sf::raycast {
+
+/// A segment that a beam may meet.
+struct Surface {
+  ExactSegment at;
+  std::uint32_t id;  ///< walls first, then movers' edges: the smaller wins a tie
+};
+
+/// The nearest so far along one beam.
+struct Decision {
+  double range;                  ///< [m]
+  std::uint32_t id = SF_NO_HIT;  ///< of the surface
+  float slant[3] = {};           ///< cross product of the segment and the beam; the segment [m]
+
+  /// True where the sine of the angle between beam and surface is below `least`.
+  bool grazes(float least) const {
+    return id != SF_NO_HIT && slant[0] * slant[0] < least * least * (slant[1] * slant[1] + slant[2] * slant[2]);
+  }
+};
+
+/// @param d unit vector
+inline void decide(const Surface& surface, base::Vec2 origin, base::Vec2 d, Decision& best) {
+  const ExactSegment& s = surface.at;
+  const double wax = s.ax - origin.x, way = s.ay - origin.y;
+  const double wbx = s.bx - origin.x, wby = s.by - origin.y;
+  const double side_a = d.x * way - d.y * wax;
+  const double side_b = d.x * wby - d.y * wbx;
+  const bool crosses = (side_a >= 0.0 && side_b <= 0.0) || (side_a <= 0.0 && side_b >= 0.0);
+  if (!crosses) return;
+  const double ex = s.bx - s.ax, ey = s.by - s.ay;
+  const double above = ex * way - ey * wax;
+  const double below = ex * d.y - ey * d.x;
+  if (below == 0.0) return;
+  const double t = above / below;
+  if (!(t > SF_TOUCH || (below > 0.0 && t >= -SF_TOUCH))) return;
+  const double range = std::max(t, 0.0);
+  if (range < best.range || (range == best.range && surface.id < best.id))
+    best = {range, surface.id, {static_cast<float>(below), static_cast<float>(ex), static_cast<float>(ey)}};
+}
+
+}  // namespace sf::raycast

@@ -1,0 +1,25 @@
+#pragma once
+// How much room a scene's lists are given.
+
+#include <cstdint>
+
+namespace sf::raycast {
+
+/// What casts rays. Both give the same bytes.
+enum class Caster : std::uint8_t {
+  automatic,  ///< host on a device of software, else vulkan
+  vulkan,     ///< kernels on the device
+  host,       ///< scan conversion on this machine's own vectors
+};
+
+/// How much room the lists may have before the oldest make way; a few robots get less. When one tick alone needs more,
+/// the room doubles.
+struct SceneOptions {
+  Caster caster = Caster::automatic;
+  std::uint32_t pool_chunks = 1u << 20;  ///< 84 bytes each; memory is touched only as far as used
+  std::uint32_t pool_cells = 1u << 14;
+  /// [chunks] of one sector: what has longer lists is cast on the host, where this is not above what the device bears.
+  std::uint32_t longest_list = 0xFFFFFFFFu;
+};
+
+}  // namespace sf::raycast

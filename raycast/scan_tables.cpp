@@ -1,0 +1,50 @@
+#include "raycast/scan_tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::raycast {
+
+void append(std::vector<SegmentBlock>& blocks, std::uint32_t& used, base::Vec2 a, base::Vec2 b, std::uint32_t row) {
+  if (blocks.empty() || used == kBlock) {
+    SegmentBlock& fresh = blocks.emplace_back();
+    for (std::uint32_t k = 0; k < kBlock; ++k) {
+      fresh.ax[k] = 0.0f, fresh.ay[k] = -1e15f, fresh.ex[k] = 1.0f, fresh.ey[k] = 0.0f;
+      fresh.row[k] = SF_NO_HIT;
+    }
+    used = 0;
+  }
+  SegmentBlock& block = blocks.back();
+  block.ax[used] = static_cast<float>(a.x), block.ay[used] = static_cast<float>(a.y);
+  block.ex[used] = static_cast<float>(b.x - a.x), block.ey[used] = static_cast<float>(b.y - a.y);
+  block.row[used++] = row;
+}
+
+void ScanPattern::assign(std::span<const double> bearings, std::span<const double> directions64, double first,
+                         double last) {
+  beams = static_cast<std::uint32_t>(bearings.size());
+  const bool spread = beams > 1 && last > first;
+  const double per = spread ? (beams - 1) / (last - first) : 1.0;
+  per_radian = static_cast<float>(per);
+  middle = static_cast<float>(-first * per);
+  const std::size_t padded = std::size_t{beams} + 2 * kBlock;
+  place.resize(padded);
+  cos32.resize(padded), sin32.resize(padded), cos64.resize(padded), sin64.resize(padded);
+  double most = 0.0, farthest = 0.0;
+  for (std::size_t i = 0; i < padded; ++i) {
+    const std::size_t k = std::min<std::size_t>(i, beams - 1);
+    const double at = (bearings[k] - first) * per;
+    place[i] = static_cast<float>(at);
+    cos64[i] = directions64[2 * k], sin64[i] = directions64[2 * k + 1];
+    cos32[i] = static_cast<float>(cos64[i]), sin32[i] = static_cast<float>(sin64[i]);
+    most = std::max(most, std::abs(at - static_cast<double>(k)));
+    farthest = std::max(farthest, std::abs(bearings[k]));
+  }
+  slack = static_cast<float>(most < 1e-6 ? 0.0 : 1.001 * most);
+  narrow = farthest <= 0.5 * M_PI;
+  // A little wider, for rounding.
+  const double edge = std::min(farthest + 1e-6, 0.5 * M_PI);
+  edge_cos = static_cast<float>(std::cos(edge)), edge_sin = static_cast<float>(std::sin(edge));
+}
+
+}  // namespace sf::raycast

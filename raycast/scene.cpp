@@ -1,0 +1,148 @@
+#include "raycast/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "raycast/clearance.h"
+#include "raycast/scene_parts.h"
+
+namespace sf::raycast {
+
+namespace {
+
+constexpr double kClearanceCap = 0.05;  ///< [m]
+
+/// Lists for small cells are short, but each cell costs: a 32nd of the range suits a scanner of some hundred beams, few
+/// beams are not worth so many (docs/performance.md).
+double cell_size(double range, std::uint32_t beams) {
+  const double fewer = std::clamp(std::sqrt(361.0 / std::max(1u, beams)), 1.0, 6.0);
+  return std::clamp(fewer * range / 32.0, 1e-3, 4.0);
+}
+
+}  // namespace
+
+Scene::Scene(const world::World& world, gpu::Device& device, base::Workers& workers, const SceneOptions& options,
+             std::uint32_t carriers)
+    : workers_(workers),
+      device_(device),
+      most_(options),
+      options_{.pool_chunks = 0, .pool_cells = 0},
+      walls_(world.walls),
+      breaks_(height_breaks(walls_)),
+      all_walls_(std::make_unique<Sight>(Sight::of_all_heights(walls_, 2.0))),
+      pool_(0, 0) {
+  bodies_ = std::make_unique<Bodies>(world, all_walls_.get());
+  for (unsigned i = 0; i < workers.threads(); ++i) scratch_.push_back(std::make_unique<Scratch>());
+
+  // Exact segments: walls now, movers each tick.
+  const std::size_t count = walls_.size() + bodies_->segments().size();
+  segments_ = std::make_unique<gpu::Buffer>(device, "walls and movers in 64 bits", gpu::Role::upload, gpu::Texel::u32x4,
+                                            2 * count + 2);
+  models_ = std::make_unique<gpu::Buffer>(device, "whose walls", gpu::Role::upload, gpu::Texel::u32, count + 1);
+  if (count >= SF_ROW_MASK)
+    throw base::InputError("the world has " + std::to_string(count) + " segments; at most " +
+                           std::to_string(SF_ROW_MASK - 1) + " are supported");
+  const auto exact = segments_->host<ExactSegment>();
+  const auto models = models_->host<std::uint32_t>();
+  std::vector<float> clearances = wall_clearances(walls_, kClearanceCap);
+  own_clearances_ = bodies_->own_clearances(kClearanceCap);
+  clearances.insert(clearances.end(), own_clearances_.begin(), own_clearances_.end());
+  for (std::size_t i = 0; i < walls_.size(); ++i)
+    exact[i] = {walls_[i].a.x, walls_[i].a.y, walls_[i].b.x, walls_[i].b.y};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    models[i] = i < walls_.size() ? walls_[i].model : bodies_->models()[i - walls_.size()];
+    words_.push_back(list_word(i, clearances[i]));
+  }
+
+  make_room(carriers);
+}
+
+Scene::~Scene() = default;
+
+std::uint32_t Scene::add_family(const Family& family) {
+  const auto interval =
+      static_cast<std::size_t>(std::upper_bound(breaks_.begin(), breaks_.end(), family.z) - breaks_.begin());
+  auto& sight = sights_[interval];
+  if (!sight) {
+    world::World view;
+    view.walls = walls_;
+    sight = std::make_unique<Sight>(view, family.z, family.range);
+  }
+  for (std::uint32_t i = 0; i < families_.size(); ++i) {
+    FamilyTables& known = *families_[i];
+    if (known.sight != sight.get() || known.family.range != family.range || known.family.z != family.z) continue;
+    known.shape.spread = std::max(known.shape.spread, family.spread + 5e-4);
+    known.family.fov = std::max(known.family.fov, family.fov);
+    return i;
+  }
+  auto tables = std::make_unique<FamilyTables>();
+  tables->family = family;
+  tables->shape = {cell_size(family.range, family.beams), family.range, family.spread + 5e-4};
+  tables->sight = sight.get();
+  // Only movers are looked up in it.
+  auto& depth = depths_[interval];
+  if (!depth && bodies_->count() > 1) depth = std::make_unique<Depth>(*sight);
+  tables->depth = depth.get();
+  tables->height = bodies_->watch_height(family.z);
+  families_.push_back(std::move(tables));
+  return static_cast<std::uint32_t>(families_.size() - 1);
+}
+
+void Scene::place(std::span<const Pose> poses) {
+  bodies_->place(poses, workers_);
+  const auto moved = bodies_->segments();
+  if (!moved.empty())
+    std::memcpy(segments_->host<ExactSegment>().data() + walls_.size(), moved.data(), moved.size_bytes());
+  for (std::uint32_t row = 0; row < moved.size(); ++row)
+    words_[walls_.size() + row] = list_word(static_cast<std::uint32_t>(walls_.size()) + row,
+                                            std::min(own_clearances_[row], bodies_->clearance_of(row)));
+}
+
+bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {
+  replaced_ = false;
+  for_host_.assign(views.size(), 0);
+  find_cells(views);
+  bool room = true;
+  for (build_missing(); !missing_.empty() && room && options_.pool_chunks < kMostPoolChunks; build_missing())
+    room = try_to_grow(2 * options_.pool_cells + 64, std::min(2 * options_.pool_chunks + 4096, kMostPoolChunks),
+                       mover_chunks_);
+
+  find_groups(views);
+  if (groups_.size() > view_capacity_)
+    grow(options_.pool_cells, options_.pool_chunks, static_cast<std::uint32_t>(2 * groups_.size()), mover_chunks_);
+  room = true;
+  while (!fill_some_movers(views, room))
+    room = try_to_grow(options_.pool_cells, options_.pool_chunks, 2 * mover_chunks_used_);
+  workers_.run(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) fill_walls(views[i], i, rows[i]);
+  });
+  name_movers(views, rows);
+  return replaced_;
+}
+
+void Scene::surfaces(const Viewpoint& view, unsigned thread, std::vector<Surface>& out) {
+  const FamilyTables& family = *families_[view.family];
+  const Vec2 p{view.X_WS.x, view.X_WS.y};
+  const double range = family.family.range * (1.0 + 1e-6) + 1e-6;
+  Sight::Nearby& nearby = scratch_[thread]->nearby;
+  family.sight->near(p, range, nearby);
+  out.clear();
+  for (const std::uint32_t row : nearby.found) {
+    const SightSegment& s = family.sight->segments()[row];
+    out.push_back({{s.a.x, s.a.y, s.b.x, s.b.y}, s.row});
+  }
+  bodies_->gather(p, range, family.height, view.self, out);
+}
+
+Scene::Counts Scene::counts() const {
+  Counts counts{pool_.built(), pool_.cells()};
+  for (const auto& scratch : scratch_) {
+    counts.movers_near += scratch->bodies.movers_near;
+    counts.movers_met += scratch->bodies.movers_met;
+  }
+  return counts;
+}
+
+}  // namespace sf::raycast

@@ -1,0 +1,70 @@
+#pragma once
+// The walls that beams of one height can meet, with the questions a caster asks of them.
+
+#include <cstdint>
+#include <vector>
+
+#include "world/wall_grid.h"
+#include "world/world.h"
+
+namespace sf::raycast {
+
+using base::Vec2;
+
+/// A segment in sight; `row` is its row in `World::walls`.
+struct SightSegment {
+  Vec2 a;
+  Vec2 b;
+  std::uint32_t row;
+  bool solid_left;
+};
+
+/// [m] heights at which the set of walls in sight changes, rising.
+std::vector<double> height_breaks(const std::vector<world::Segment>& walls);
+
+/// Immutable after construction; may be asked by several threads, each with its own `Nearby`.
+class Sight {
+ public:
+  /// The walls that a beam at height `z` [m] sees. `world` need not outlive it.
+  Sight(const world::World& world, double z, double typical_range);
+
+  /// As if a beam were at every height at once: what is far from all of it is far from whatever any beam can meet.
+  static Sight of_all_heights(const std::vector<world::Segment>& walls, double typical_range);
+
+  const std::vector<SightSegment>& segments() const { return segments_; }
+  Vec2 low() const { return low_; }  ///< [m] corner of their bounding box
+  Vec2 high() const { return high_; }
+
+  /// Scratch of one thread.
+  struct Nearby {
+    std::vector<std::uint32_t> found;  ///< rows in `segments()`, each once, in no order that matters
+    std::vector<std::uint32_t> stamps;
+    std::uint32_t stamp = 0;
+  };
+  /// Every segment within `radius` [m] of `p`, and perhaps some more.
+  void near(Vec2 p, double radius, Nearby& nearby) const;
+
+  /// True when `p` lies in a solid: the winding number of all outlines with a known solid side is not 0. Points within
+  /// rounding of a surface may get either answer.
+  bool inside_solid(Vec2 p) const;
+
+ private:
+  struct Span {
+    int x0, y0, x1, y1;
+  };
+  Span cells_of(double x0, double y0, double x1, double y1) const;
+  void index_cells(double typical_range);
+  void index_bands();
+
+  std::vector<SightSegment> segments_;
+  Vec2 low_, high_;
+  double cell_ = 1.0;
+  int columns_ = 1, rows_ = 1;
+  std::vector<std::uint32_t> cell_first_, cell_items_;  ///< segments by cell
+  double band_ = 1.0;
+  int bands_ = 1;
+  std::vector<std::uint32_t> band_first_;              ///< segments by range of y, for winding numbers:
+  std::vector<std::uint32_t> from_left_, from_right_;  ///< each band by least x rising, and by largest x falling
+};
+
+}  // namespace sf::raycast

@@ -1,0 +1,62 @@
+#pragma once
+// What a caster is given, what it is asked for, and what it did.
+
+#include <cstdint>
+
+#include "base/parallel.h"
+#include "gpu/device.h"
+#include "raycast/options.h"
+#include "world/world.h"
+
+namespace sf::raycast {
+
+using base::Pose;
+
+/// One sensor that is due.
+struct Due {
+  std::uint32_t row = 0;       ///< in the kind's rows of this world
+  std::uint64_t sequence = 0;  ///< counts this sensor's readings; names its noise
+};
+
+/// What instruments of all kinds are given. All of it outlives them.
+struct Site {
+  const world::World& world;
+  gpu::Device& device;
+  base::Workers& workers;
+  std::uint64_t seed = 0;  ///< of all noise
+  bool noise = true;       ///< false: none, whatever the world says
+  bool true_poses = true;  ///< movers are where their reports say: a simulation; false: these are estimates
+  SceneOptions scene;
+};
+
+/// What instruments did since they were made.
+struct Work {
+  std::uint64_t rays = 0;         ///< beams cast
+  std::uint64_t doubts = 0;       ///< lanes of four beams that 32 bits could not prove
+  std::uint64_t cells_built = 0;  ///< sector lists made
+  std::uint64_t dipoles = 0;      ///< magnet and element pairs summed
+  std::uint64_t movers_near = 0;  ///< pairs of a robot that looks and a mover within its range
+  std::uint64_t movers_met = 0;   ///< of these, not hidden by nearer movers or walls, nor outside of its view
+  std::uint64_t host_scans = 0;   ///< fans of beams cast on the host: too many surfaces for the device's lists
+
+  Work& operator+=(const Work& more);
+  Work operator-(const Work& before) const;
+};
+
+inline Work& Work::operator+=(const Work& more) {
+  rays += more.rays, doubts += more.doubts, cells_built += more.cells_built, dipoles += more.dipoles;
+  movers_near += more.movers_near, movers_met += more.movers_met, host_scans += more.host_scans;
+  return *this;
+}
+
+inline Work Work::operator-(const Work& before) const {
+  return {rays - before.rays,
+          doubts - before.doubts,
+          cells_built - before.cells_built,
+          dipoles - before.dipoles,
+          movers_near - before.movers_near,
+          movers_met - before.movers_met,
+          host_scans - before.host_scans};
+}
+
+}  // namespace sf::raycast
