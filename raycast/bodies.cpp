@@ -225,16 +225,6 @@ bool Bodies::collect(const View& view, Scratch& scratch, SectorLists& lists, flo
   return true;
 }
 
-void Bodies::gather(Vec2 p, double range, std::uint32_t height, std::uint32_t self, std::vector<Surface>& out) const {
-  each_near(p, range + largest_, [&](std::uint32_t number) {
-    const Body& body = bodies_[number];
-    if (number == self || length(Vec2{poses_[number].x, poses_[number].y} - p) > range + body.radius) return;
-    const double z = heights_[height].z - loaded_z_[number];
-    for (std::uint32_t row = body.first; row < body.first + body.count; ++row)
-      if (z >= local_[row].z_min && z < local_[row].z_max) out.push_back({segments_[row], wall_count_ + row});
-  });
-}
-
 void Bodies::add_body(const View& view, std::uint32_t number, double bearing, double wide, SectorLists& lists) const {
   constexpr double kTwoSectors = 2.0 * (2.0 * M_PI / SF_SECTORS);
   const Body& body = bodies_[number];
@@ -255,8 +245,8 @@ void Bodies::add_body(const View& view, std::uint32_t number, double bearing, do
     const bool keep_back = near || (!local.solid_left && facing > -unsure);
     const double nearest = std::max(0.0, world::distance({}, a, b) - view.radius - 1e-6);
     if (nearest > view.range) continue;
-    const auto add = [&](Vec2 from, Vec2 to) {
-      const Candidate candidate{from, to, nearest, wall_count_ + row};
+    const auto add = [&](Vec2 from, Vec2 to, bool facing_view) {
+      const Candidate candidate{from, to, nearest, wall_count_ + row, facing_view};
       if (near) return lists.add_seen(candidate, view.radius + 1e-6, view.spread);
       lists.candidates.push_back(candidate);
       if (wide < kTwoSectors || view.radius > 0.0)
@@ -265,8 +255,8 @@ void Bodies::add_body(const View& view, std::uint32_t number, double bearing, do
       const double bearing_b = bearing_a + std::atan2(cross(a, b), dot(a, b));
       lists.add_interval(std::min(bearing_a, bearing_b) - view.spread, std::max(bearing_a, bearing_b) + view.spread);
     };
-    if (keep_front) add(a, b);
-    if (keep_back) add(b, a);
+    if (keep_front || !keep_back) add(a, b, keep_front);
+    if (keep_back) add(b, a, true);
   }
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "raycast/decide.h"
+#include "base/pose.h"
 #include "raycast/depth.h"
 #include "raycast/sectors.h"
 #include "world/world.h"
@@ -71,8 +71,6 @@ class Bodies {
   /// Movers that nearer ones hide are left out.
   /// @return false, with lists that are not whole, when they would have more than `view.most` entries.
   bool collect(const View& view, Scratch& scratch, SectorLists& lists, float clearances[SF_SECTORS]) const;
-  /// Adds every edge of other movers that may be met within `range` [m] of `p` at a height of `watch_height`.
-  void gather(Vec2 p, double range, std::uint32_t height, std::uint32_t self, std::vector<Surface>& out) const;
 
  private:
   struct Body {

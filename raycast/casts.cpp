@@ -13,19 +13,21 @@ const std::vector<Fan>& Casts::fans() const { return t_->fans; }
 const BeamPlan& Casts::plan(std::uint32_t fan) const { return t_->fan_rows[fan].plan; }
 Work Casts::work() const {
   const Tables& t = *t_;
-  if (t.host) {
-    const ScanCounts scans = t.host->counts();
-    return {t.rays, scans.doubts, t.host->cells_built(), 0, scans.movers_near, scans.movers_met, t.host_scans};
-  }
+  const ScanCounts scans = t.host.counts();
+  Work work{t.rays,      t.doubts_seen + scans.doubts, t.host.cells_built(), 0, scans.movers_near, scans.movers_met,
+            t.host_scans};
+  if (!t.scene) return work;
   const Scene::Counts scene = t.scene->counts();
-  return {t.rays, t.doubts_seen, scene.cells_built, 0, scene.movers_near, scene.movers_met, t.host_scans};
+  work.cells_built += scene.cells_built;
+  work.movers_near += scene.movers_near;
+  work.movers_met += scene.movers_met;
+  return work;
 }
 
 void Casts::place(std::span<const Pose> poses) {
-  if (t_->host)
-    t_->host->place(poses);
-  else
-    t_->scene->place(poses);
+  t_->poses.assign(poses.begin(), poses.end());
+  t_->host_placed = false;
+  if (t_->scene) t_->scene->place(poses);
 }
 
 bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses) {
@@ -44,7 +46,7 @@ bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses) {
   for (const Due& d : due) t.rays += t.fan_rows[d.row].plan.samples.size();
   const auto ray_rows = t.rows->host<RayRow>().first(due.size());
   const bool replaced = t.scene && t.scene->serve(t.views, ray_rows);
-  if (t.host) t.prepare_on_host(ray_rows);
+  if (!t.scene) t.fill_rows(ray_rows);
   t.workers.run(due.size(), 512, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const FanRow& row = t.fan_rows[due[i].row];
@@ -60,18 +62,15 @@ bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses) {
       for (std::size_t i = first; i < last; ++i)
         if (t.fan_rows[t.due[i].row].turns) t.turn_beams(t.due[i], thread);
     });
-  if (t.scene) t.find_for_host();
-  if (t.scene)
-    t.workers.run(t.for_host.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
-      for (std::size_t i = first; i < last; ++i) t.cast_for_host(t.for_host[i], thread);
-    });
+  t.find_for_host();
+  t.scan_on_host();
   const bool again = replaced || !t.bound;
   if (again) t.bind();
   return again;
 }
 
 void Casts::record(gpu::Batch& batch) {
-  if (t_->host) return;
+  if (!t_->scene) return;
   batch.dispatch(*t_->exact.kernel, *t_->exact.groups, 0);
   if (t_->single) batch.dispatch(*t_->single->kernel, *t_->single->groups, 0);
 }

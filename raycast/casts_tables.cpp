@@ -30,17 +30,13 @@ using BeamKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 }  // namespace
 
 Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<Fan> f)
-    : workers(site.workers), seed(site.seed), noise(site.noise), fans(std::move(f)) {
+    : workers(site.workers), seed(site.seed), noise(site.noise), host(world, site.workers), fans(std::move(f)) {
   const bool on_host =
       site.scene.caster == Caster::host || (site.scene.caster == Caster::automatic && site.device.facts().software);
-  if (on_host)
-    host = std::make_unique<HostScene>(world, site.workers);
-  else
-    scene = std::make_unique<Scene>(world, site.device, site.workers, site.scene, carriers_of(fans));
+  if (!on_host) scene = std::make_unique<Scene>(world, site.device, site.workers, site.scene, carriers_of(fans));
   plan(world);
   scratch.resize(workers.threads());
   turned.resize(workers.threads());
-  host_casts.resize(workers.threads());
   std::uint32_t beam_lanes = 0;
   struct Shared {
     std::uint32_t beams, pattern;
@@ -58,7 +54,7 @@ Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<F
     row.beams = beam_lanes;
     row.pattern = static_cast<std::uint32_t>(patterns.size());
     if (!row.turns) shared[key] = {beam_lanes, row.pattern};
-    if (host && !row.turns) make_pattern(i, {}, scratch[0], patterns.emplace_back());
+    if (!row.turns) make_pattern(i, {}, scratch[0], patterns.emplace_back());
     beam_lanes += row.plan.lanes();
   }
   make_tables(site.device, beam_lanes);
@@ -75,7 +71,8 @@ void Casts::Tables::plan(const world::World& world) {
     const double turn = noise ? kMostSigmas * fan.laser.noise.angle_sigma : 0.0;
     const Family family{row.height, fan.laser.range_max, row.plan.spread, fan.laser.fov + 2.0 * turn,
                         static_cast<std::uint32_t>(std::min<std::size_t>(beams[fan.mover], 1'000'000))};
-    row.family = host ? host->add_family(family) : scene->add_family(family);
+    row.family = host.add_family(family);
+    if (scene) SF_CHECK(scene->add_family(family) == row.family, "both casters number families alike");
     row.turns = noise && fan.laser.noise.angle_sigma > 0.0;
     any_turns = any_turns || row.turns;
     row.out = out_lanes;
@@ -113,7 +110,7 @@ void Casts::Tables::make_pass(gpu::Device& device, CastPass& pass, bool is_singl
   const std::size_t padded = (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * kLanesPerGroup;
   pass.lanes = std::make_unique<gpu::Buffer>(device, "whose beams", Role::upload, Texel::u32, 2 * padded);
   pass.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
-  if (host) return;
+  if (!scene) return;
   const auto code = is_single ? std::span<const std::uint32_t>(laser_single_comp_spv)
                               : std::span<const std::uint32_t>(laser_comp_spv);
   pass.kernel = std::make_unique<gpu::Kernel>(device, is_single ? "laser in 32 bits" : "laser", code, 14);
@@ -190,12 +187,9 @@ void Casts::Tables::make_pattern(std::size_t i, std::span<const double> turns, S
                  world::bearing_of(laser, samples.back()));
 }
 
-/// Casts what is due, and fills in what kernels that read the results are told of it.
-void Casts::Tables::prepare_on_host(std::span<RayRow> ray_rows) {
-  host->prepare(views);
-  for_host.resize(due.size());
-  std::iota(for_host.begin(), for_host.end(), 0u);
-  workers.run(due.size(), 8, [&](std::size_t first, std::size_t last, unsigned thread) {
+/// What kernels that read the results are told of fans that the device does not cast.
+void Casts::Tables::fill_rows(std::span<RayRow> ray_rows) {
+  workers.run(due.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const Pose& X = views[i].X_WS;
       RayRow& row = ray_rows[i];
@@ -203,13 +197,25 @@ void Casts::Tables::prepare_on_host(std::span<RayRow> ray_rows) {
       row.origin_x = X.x, row.origin_y = X.y;
       row.heading_cos64 = std::cos(X.yaw), row.heading_sin64 = std::sin(X.yaw);
       row.range_max = fans[due[i].row].laser.range_max;
-      scan_on_host(static_cast<std::uint32_t>(i), thread);
     }
   });
 }
 
-/// Scans for the i-th due fan and writes its results where kernels look for them.
-void Casts::Tables::scan_on_host(std::uint32_t i, unsigned thread) {
+void Casts::Tables::scan_on_host() {
+  if (for_host.empty()) return;
+  if (!host_placed) host.place(poses);
+  host_placed = true;
+  host_views.clear();
+  for (const std::uint32_t i : for_host) host_views.push_back(views[i]);
+  host.prepare(host_views);
+  workers.run(for_host.size(), 8, [this](std::size_t first, std::size_t last, unsigned thread) {
+    for (std::size_t k = first; k < last; ++k) scan_on_host(k, thread);
+  });
+}
+
+/// Scans for the k-th fan of `for_host` and writes its results where kernels look for them.
+void Casts::Tables::scan_on_host(std::size_t k, unsigned thread) {
+  const std::uint32_t i = for_host[k];
   const FanRow& row = fan_rows[due[i].row];
   const Fan& fan = fans[due[i].row];
   Scratch& own = scratch[thread];
@@ -224,27 +230,30 @@ void Casts::Tables::scan_on_host(std::uint32_t i, unsigned thread) {
   const auto lane_verdicts = verdicts->host<std::uint32_t>().subspan(row.out, lanes);
   std::fill(lane_verdicts.begin(), lane_verdicts.end(), 0u);
   if (row.plan.packed) {
-    host->scan(i, fan.laser.range_min, kLeastSine, fan.single, pattern, thread, {out, met, own.grazes.data()});
+    host.scan(k, fan.laser.range_min, kLeastSine, fan.single, pattern, thread, {out, met, own.grazes.data()});
     // Places without a beam repeat the last one.
     std::fill(out + beams, out + places, out[beams - 1]);
     std::fill(met + beams, met + places, met[beams - 1]);
-    for (std::size_t k = 0; k < beams; ++k)
-      if (own.grazes[k] != 0) lane_verdicts[k / SF_BEAMS_PER_LANE] |= SF_GRAZES << k % SF_BEAMS_PER_LANE;
+    for (std::size_t b = 0; b < beams; ++b)
+      if (own.grazes[b] != 0) lane_verdicts[b / SF_BEAMS_PER_LANE] |= SF_GRAZES << b % SF_BEAMS_PER_LANE;
     return;
   }
   own.ranges.resize(beams);
   own.models.resize(beams);
-  host->scan(i, fan.laser.range_min, kLeastSine, fan.single, pattern, thread,
-             {own.ranges.data(), own.models.data(), own.grazes.data()});
-  for (std::size_t k = 0; k < beams; ++k) {
-    std::fill_n(out + SF_BEAMS_PER_LANE * k, SF_BEAMS_PER_LANE, own.ranges[k]);
-    std::fill_n(met + SF_BEAMS_PER_LANE * k, SF_BEAMS_PER_LANE, own.models[k]);
-    if (own.grazes[k] != 0) lane_verdicts[k] |= SF_GRAZES;
+  host.scan(k, fan.laser.range_min, kLeastSine, fan.single, pattern, thread,
+            {own.ranges.data(), own.models.data(), own.grazes.data()});
+  for (std::size_t b = 0; b < beams; ++b) {
+    std::fill_n(out + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own.ranges[b]);
+    std::fill_n(met + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own.models[b]);
+    if (own.grazes[b] != 0) lane_verdicts[b] |= SF_GRAZES;
   }
 }
 
+/// Fans that the host casts: all, or those around which more is than the device's lists hold.
 void Casts::Tables::find_for_host() {
   for_host.clear();
+  for (std::uint32_t i = 0; !scene && i < due.size(); ++i) for_host.push_back(i);
+  if (!scene) return;
   const auto ray_rows = rows->host<RayRow>();
   for (std::uint32_t i = 0; i < due.size(); ++i) {
     if (!scene->is_for_host(i)) continue;
@@ -252,31 +261,6 @@ void Casts::Tables::find_for_host() {
     ray_rows[i].out = out_lanes;
   }
   host_scans += for_host.size();
-}
-
-/// Casts the i-th due fan and writes its results where kernels look for them.
-void Casts::Tables::cast_for_host(std::uint32_t i, unsigned thread) {
-  const FanRow& row = fan_rows[due[i].row];
-  const RayRow& ray = rows->host<RayRow>()[i];
-  const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{row.out};
-  const std::size_t beams = SF_BEAMS_PER_LANE * std::size_t{row.plan.lanes()};
-  HostCast& cast = host_casts[thread];
-  scene->surfaces(views[i], thread, cast.surfaces);
-  cast_on_host({{ray.origin_x, ray.origin_y},
-                {ray.heading_cos64, ray.heading_sin64},
-                directions64->host<double>().subspan(8 * std::size_t{row.beams}, 2 * beams),
-                ray.range_min,
-                ray.range_max},
-               cast);
-  const auto models = scene->models().host<std::uint32_t>();
-  const auto lane_verdicts = verdicts->host<std::uint32_t>().subspan(row.out, row.plan.lanes());
-  std::fill(lane_verdicts.begin(), lane_verdicts.end(), 0u);
-  for (std::size_t k = 0; k < beams; ++k) {
-    const Decision& decision = cast.decisions[k];
-    ranges->host<double>()[first + k] = decision.range;
-    hits->host<std::uint32_t>()[first + k] = decision.id == SF_NO_HIT ? SF_NO_HIT : models[decision.id];
-    if (decision.grazes(ray.least_sine)) lane_verdicts[k / SF_BEAMS_PER_LANE] |= SF_GRAZES << k % SF_BEAMS_PER_LANE;
-  }
 }
 
 void Casts::Tables::bind(CastPass& pass) {

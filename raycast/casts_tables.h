@@ -9,7 +9,6 @@
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
 #include "raycast/casts.h"
-#include "raycast/host_cast.h"
 #include "raycast/host_scene.h"
 
 namespace sf::raycast {
@@ -38,8 +37,9 @@ struct Casts::Tables {
   base::Workers& workers;
   std::uint64_t seed;
   bool noise;
-  std::unique_ptr<Scene> scene;     ///< where the device casts
-  std::unique_ptr<HostScene> host;  ///< where the host does
+  std::unique_ptr<Scene> scene;  ///< where the device casts
+  HostScene host;                ///< where it does not, or has no room for all that a fan may meet
+  bool host_placed = false;      ///< this tick
   std::vector<Fan> fans;
   std::vector<FanRow> fan_rows;
   CastPass exact;
@@ -47,9 +47,9 @@ struct Casts::Tables {
   std::unique_ptr<gpu::Buffer> rows, directions, middles, directions64, ranges, hits, verdicts;
   std::vector<Due> due;
   std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, that the passes' lanes hold
-  std::vector<Viewpoint> views;
+  std::vector<Viewpoint> views, host_views;
+  std::vector<Pose> poses;                  ///< of all movers
   std::vector<std::vector<double>> turned;  ///< scratch per thread
-  std::vector<HostCast> host_casts;         ///< scratch per thread
   std::vector<ScanPattern> patterns;        ///< of fans whose beams do not change, on the host
   struct Scratch {
     ScanPattern pattern;
@@ -78,10 +78,10 @@ struct Casts::Tables {
   void bind(CastPass& pass);
   void turn_beams(const Due& d, unsigned thread);
   void make_pattern(std::size_t i, std::span<const double> turns, Scratch& own, ScanPattern& pattern);
-  void prepare_on_host(std::span<RayRow> ray_rows);
-  void scan_on_host(std::uint32_t i, unsigned thread);
+  void fill_rows(std::span<RayRow> ray_rows);
+  void scan_on_host();
+  void scan_on_host(std::size_t k, unsigned thread);
   void find_for_host();
-  void cast_for_host(std::uint32_t i, unsigned thread);
   void bind();
   BeamTables beam_tables(std::uint32_t lane) const {
     return {directions->host<float>().data() + 8 * std::size_t{lane}, middles->host<float>().data() + lane,

@@ -13,7 +13,7 @@ namespace {
 using base::Vec2;
 
 constexpr std::uint32_t kPageBlocks = 4;
-constexpr std::uint32_t kFirstCells = 1024, kFirstBlocks = 1u << 14;
+constexpr std::uint32_t kFirstCells = 256, kFirstBlocks = 1u << 11;
 /// [blocks] 640 MiB: a cell for which there is no room is listed anew by each scan.
 constexpr std::uint32_t kMostBlocks = 1u << 21;
 

@@ -365,6 +365,15 @@ void scan(Scratch& s, const ScanView& view, const ScanPattern& pattern, const Sc
   if (scene.movers != nullptr) draw_movers(s, p, view, pattern, scene);
 }
 
+/// The same ranges in 32 bits.
+void measure_in_32_bits(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ExactSegment& g,
+                        std::uint32_t first, std::uint32_t end) {
+  for (std::uint32_t j = first; j < end; ++j) {
+    const float t = measure_single(g, view.origin, direction_of(view, pattern, j), static_cast<float>(view.range_max));
+    if (t >= 0.0f) s.ranges[j] = std::max(std::min(static_cast<double>(t), view.range_max), view.range_min);
+  }
+}
+
 bool answer(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene) {
   const bool doubt = find_runs(s, pattern.beams);
   std::uint32_t first = 0;
@@ -377,6 +386,7 @@ bool answer(Scratch& s, const ScanView& view, const ScanPattern& pattern, const 
         std::fill(&s.ranges[first], &s.ranges[end], std::max(view.range_max, view.range_min));
       else
         measure(s, view, pattern, scene.exact[row], first, end);
+      if (k >= 0 && view.single) measure_in_32_bits(s, view, pattern, scene.exact[row], first, end);
       std::fill(&s.models[first], &s.models[end], k < 0 ? SF_NO_HIT : scene.models[row]);
       first = end;
     }
@@ -457,10 +467,12 @@ void Rasterizer::scan(const ScanView& view, const ScanPattern& pattern, const Sc
   for (std::size_t w = 0; w < s.doubts.size(); ++w)
     for (std::uint64_t open = s.doubts[w]; open != 0; open &= open - 1) {
       const std::size_t i = 64 * w + static_cast<std::size_t>(__builtin_ctzll(open));
-      const base::Vec2 h = view.heading;
-      const base::Vec2 d{h.x * pattern.cos64[i] - h.y * pattern.sin64[i],
-                         h.y * pattern.cos64[i] + h.x * pattern.sin64[i]};
-      const Decision best = decide_all(s, view, scene, d);
+      const base::Vec2 d = direction_of(view, pattern, i);
+      Decision best = decide_all(s, view, scene, d);
+      if (view.single && best.id != SF_NO_HIT) {
+        const float t = measure_single(scene.exact[best.id], view.origin, d, static_cast<float>(view.range_max));
+        if (t >= 0.0f) best.range = std::min(static_cast<double>(t), view.range_max);
+      }
       out.ranges[i] = std::max(best.range, view.range_min);
       out.models[i] = best.id == SF_NO_HIT ? SF_NO_HIT : scene.models[best.id];
       out.grazes[i] = best.grazes(static_cast<float>(view.least_sine)) ? 1 : 0;

@@ -64,10 +64,10 @@ static_assert(sizeof(RayRow) == SF_ROW_TEXELS * 16);
 
 /// One sector list: where it is and how close together the things in it may come.
 struct ListHeader {
-  std::uint32_t first;  ///< chunk
-  std::uint32_t count;  ///< [chunks]
-  float clearance;      ///< [m] movers: none of it is nearer to a wall; walls: +inf
-  std::uint32_t spare;
+  std::uint32_t first;   ///< chunk
+  std::uint32_t count;   ///< [chunks] of segments that face viewpoints
+  float clearance;       ///< [m] movers: none of it is nearer to a wall; walls: +inf
+  std::uint32_t behind;  ///< [chunks] that follow, of segments that face none: they only decide ties at corners
 };
 static_assert(sizeof(ListHeader) == 16);
 

@@ -77,6 +77,12 @@ struct ScanView {
   bool single = false;      ///< ranges are measured in 32 bits where these are close enough
 };
 
+/// Unit vector of beam `i` in the world.
+inline base::Vec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::size_t i) {
+  const double c = pattern.cos64[i], s = pattern.sin64[i];
+  return {view.heading.x * c - view.heading.y * s, view.heading.y * c + view.heading.x * s};
+}
+
 /// What there is to meet. Exact segments: walls first, then the movers'.
 struct ScanScene {
   std::span<const SegmentBlock> walls;    ///< that face the cell, near to far

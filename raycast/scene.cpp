@@ -122,20 +122,6 @@ bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {
   return replaced_;
 }
 
-void Scene::surfaces(const Viewpoint& view, unsigned thread, std::vector<Surface>& out) {
-  const FamilyTables& family = *families_[view.family];
-  const Vec2 p{view.X_WS.x, view.X_WS.y};
-  const double range = family.family.range * (1.0 + 1e-6) + 1e-6;
-  Sight::Nearby& nearby = scratch_[thread]->nearby;
-  family.sight->near(p, range, nearby);
-  out.clear();
-  for (const std::uint32_t row : nearby.found) {
-    const SightSegment& s = family.sight->segments()[row];
-    out.push_back({{s.a.x, s.a.y, s.b.x, s.b.y}, s.row});
-  }
-  bodies_->gather(p, range, family.height, view.self, out);
-}
-
 Scene::Counts Scene::counts() const {
   Counts counts{pool_.built(), pool_.cells()};
   for (const auto& scratch : scratch_) {

@@ -39,9 +39,6 @@ class Scene {
 
   /// Whether the i-th view of the last `serve` has more surfaces than lists hold: its row names empty lists.
   bool is_for_host(std::size_t i) const { return for_host_[i] != 0; }
-  /// All that `view` may meet. @param thread of the workers
-  void surfaces(const Viewpoint& view, unsigned thread, std::vector<Surface>& out);
-
   /// Names what changed since the last call for copying to the device.
   void upload(gpu::Batch& batch);
 

@@ -83,7 +83,7 @@ void Scene::upload(gpu::Batch& batch) {
     for (const std::uint32_t slot : fresh_slots_) {
       const ListHeader* own = headers_->host<ListHeader>().data() + std::size_t{SF_SECTORS} * slot;
       const ListHeader& last = own[SF_SECTORS - 1];
-      chunks_up(own->first, last.first + last.count - own->first);
+      chunks_up(own->first, last.first + last.count + last.behind - own->first);
       batch.up(*headers_, std::size_t{SF_SECTORS} * slot * 16, SF_SECTORS * 16);
     }
     chunks_up(pool, mover_chunks_used_);

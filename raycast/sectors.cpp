@@ -75,10 +75,16 @@ void SectorLists::sort() {
   std::copy(first, first + SF_SECTORS, next);
   for (const Item& item : items) order[next[item.sector]++] = item.candidate;
   const auto nearer = [this](std::uint32_t i, std::uint32_t k) {
-    return candidates[i].nearest != candidates[k].nearest ? candidates[i].nearest < candidates[k].nearest : i < k;
+    const Candidate &p = candidates[i], &q = candidates[k];
+    if (p.facing != q.facing) return p.facing;
+    return p.nearest != q.nearest ? p.nearest < q.nearest : i < k;
   };
-  for (std::uint32_t s = 0; s < SF_SECTORS; ++s)
-    std::sort(order.begin() + first[s], order.begin() + first[s + 1], nearer);
+  for (std::uint32_t s = 0; s < SF_SECTORS; ++s) {
+    const auto begin = order.begin() + first[s], end = order.begin() + first[s + 1];
+    std::sort(begin, end, nearer);
+    behind[s] = first[s] + static_cast<std::uint32_t>(
+                               std::count_if(begin, end, [this](std::uint32_t i) { return candidates[i].facing; }));
+  }
 }
 
 std::uint32_t SectorLists::all_chunks() const {
@@ -101,9 +107,12 @@ void collect(const Sight& sight, const CellShape& shape, Vec2 centre, bool both_
     // The cell's signed distance from the segment's line: positive on its left.
     const Vec2 e = s.b - s.a;
     const double side = cross(e, centre - s.a) / length(e);
-    if (side < radius) lists.add_seen(candidate, radius, shape.spread);
-    if (side <= -radius || (s.solid_left && !both_sides)) continue;
+    const bool both = both_sides || !s.solid_left;
+    candidate.facing = side < radius;
+    if (side < radius || !both) lists.add_seen(candidate, radius, shape.spread);
+    if (side <= -radius || !both) continue;
     std::swap(candidate.a, candidate.b);
+    candidate.facing = true;
     lists.add_seen(candidate, radius, shape.spread);
   }
   lists.sort();
@@ -117,29 +126,40 @@ std::uint32_t list_word(std::uint32_t row, float clearance) {
   return row | code << SF_ROW_BITS;
 }
 
+namespace {
+
+/// Writes entries [at, end) of `lists.order` to chunks from `chunk` on; gives the next chunk.
+std::uint32_t write_chunks(const SectorLists& lists, std::uint32_t at, std::uint32_t end, std::uint32_t chunk,
+                           const ListTables& tables) {
+  for (; at < end; at += SF_CHUNK, ++chunk) {
+    tables.nearest[chunk] = std::nextafter(static_cast<float>(lists.candidates[lists.order[at]].nearest), 0.0f);
+    for (std::uint32_t k = 0; k < SF_CHUNK; ++k) {
+      ListEntry& entry = tables.entries[chunk * SF_CHUNK + k];
+      std::uint32_t& id = tables.ids[chunk * SF_CHUNK + k];
+      if (at + k >= end) {
+        // Far behind every viewpoint: in front of nothing.
+        entry = {0.0f, -1e30f, 1.0f, 0.0f};
+        id = SF_NO_HIT;
+        continue;
+      }
+      const Candidate& c = lists.candidates[lists.order[at + k]];
+      const Vec2 e = c.b - c.a;
+      entry = {static_cast<float>(c.a.x), static_cast<float>(c.a.y), static_cast<float>(e.x), static_cast<float>(e.y)};
+      id = tables.words[c.id];
+    }
+  }
+  return chunk;
+}
+
+}  // namespace
+
 void write_lists(const SectorLists& lists, std::uint32_t first_chunk, const ListTables& tables, ListHeader* headers) {
   std::uint32_t chunk = first_chunk;
   for (std::uint32_t sector = 0; sector < SF_SECTORS; ++sector) {
-    headers[sector] = {chunk, lists.chunks(sector), std::numeric_limits<float>::infinity(), 0};
-    const std::uint32_t end = lists.first[sector + 1];
-    for (std::uint32_t at = lists.first[sector]; at < end; at += SF_CHUNK, ++chunk) {
-      tables.nearest[chunk] = std::nextafter(static_cast<float>(lists.candidates[lists.order[at]].nearest), 0.0f);
-      for (std::uint32_t k = 0; k < SF_CHUNK; ++k) {
-        ListEntry& entry = tables.entries[chunk * SF_CHUNK + k];
-        std::uint32_t& id = tables.ids[chunk * SF_CHUNK + k];
-        if (at + k >= end) {
-          // Far behind every viewpoint: in front of nothing.
-          entry = {0.0f, -1e30f, 1.0f, 0.0f};
-          id = SF_NO_HIT;
-          continue;
-        }
-        const Candidate& c = lists.candidates[lists.order[at + k]];
-        const Vec2 e = c.b - c.a;
-        entry = {static_cast<float>(c.a.x), static_cast<float>(c.a.y), static_cast<float>(e.x),
-                 static_cast<float>(e.y)};
-        id = tables.words[c.id];
-      }
-    }
+    const std::uint32_t facing = lists.chunks_facing(sector);
+    headers[sector] = {chunk, facing, std::numeric_limits<float>::infinity(), lists.chunks(sector) - facing};
+    chunk = write_chunks(lists, lists.first[sector], lists.behind[sector], chunk, tables);
+    chunk = write_chunks(lists, lists.behind[sector], lists.first[sector + 1], chunk, tables);
   }
 }
 

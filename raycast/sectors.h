@@ -38,6 +38,7 @@ struct Candidate {
   Vec2 b;
   double nearest = 0.0;  ///< [m] least distance to any viewpoint
   std::uint32_t id = 0;  ///< row of the exact segment
+  bool facing = true;    ///< false: no viewpoint sees it from its right, it only decides ties at corners
 };
 
 /// The part of ab within `reach` of the origin; false when there is none.
@@ -52,7 +53,8 @@ struct SectorLists {
   std::vector<Candidate> candidates;
   std::vector<Item> items;
   std::vector<std::uint32_t> order;          ///< candidates by sector, then near to far
-  std::uint32_t first[SF_SECTORS + 1] = {};  ///< range of each sector in `order`
+  std::uint32_t first[SF_SECTORS + 1] = {};  ///< range of each sector in `order`: what faces viewpoints comes first
+  std::uint32_t behind[SF_SECTORS] = {};     ///< where in `order` it ends
 
   void clear();
   /// Puts the last candidate into every sector that [low, high] touches, angles in radians from the centre, low <=
@@ -63,9 +65,11 @@ struct SectorLists {
   void add_seen(const Candidate& candidate, double radius, double spread);
   /// Fills `order` and `first`.
   void sort();
+  std::uint32_t chunks_facing(std::uint32_t sector) const { return chunks_of(behind[sector] - first[sector]); }
   std::uint32_t chunks(std::uint32_t sector) const {
-    return (first[sector + 1] - first[sector] + SF_CHUNK - 1) / SF_CHUNK;
+    return chunks_facing(sector) + chunks_of(first[sector + 1] - behind[sector]);
   }
+  static std::uint32_t chunks_of(std::uint32_t entries) { return (entries + SF_CHUNK - 1) / SF_CHUNK; }
   std::uint32_t all_chunks() const;
   std::uint32_t longest() const;  ///< [chunks] of one sector
 };

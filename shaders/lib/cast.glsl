@@ -1,5 +1,5 @@
-// Casting every beam of every sensor that is due: the whole kernel. With SF_SINGLE, a winner that 32 bits prove closely enough is measured in
-// 32 bits too.
+// Casting every beam of every sensor that is due: the whole kernel. With SF_SINGLE, ranges are measured in 32 bits where these are close
+// enough.
 
 #include "raycast/records.h"
 
@@ -62,9 +62,6 @@ void main() {
   bool sure[SF_BEAMS_PER_LANE];
   uint winner[SF_BEAMS_PER_LANE];
   uint open = 0u;  // beams in doubt
-#ifdef SF_SINGLE
-  float between[SF_BEAMS_PER_LANE];
-#endif
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
     const bool is_wall = uint(best.entry[i]) - SF_CHUNK * walls.x < SF_CHUNK * walls.y;
     const vec2 o = is_wall ? place.xy : place.zw;
@@ -72,11 +69,6 @@ void main() {
     const Proof proof = prove(best.entry[i], winner[i], o, vec2(d.dx[i], d.dy[i]), band,
                               is_wall ? movers_to_walls : 1e30, best.below[i]);
     sure[i] = proof.holds && !best.edge_on;
-#ifdef SF_SINGLE
-    // The middle between its bounds.
-    between[i] = best.above[i] / best.below[i] + 0.5 * proof.tau;
-    sure[i] = sure[i] && (best.entry[i] < 0 || proof.tau <= SF_SINGLE_SHARE * (look.z - band));
-#endif
     open |= sure[i] ? 0u : 1u << i;
   }
   uint verdict = open != 0u ? SF_DOUBT : 0u;
@@ -91,18 +83,13 @@ void main() {
     beams[i] = exact_beam(SF_BEAMS_PER_LANE * lane_beams + i, origin, heading);
     decisions[i] = Decision(range_max, SF_NO_HIT, vec3(0.0));
     const uint word = best.entry[i] < 0 || !sure[i] ? SF_NO_HIT : winner[i];
-#ifdef SF_SINGLE
-    const bool met = word != SF_NO_HIT && double(between[i]) < range_max;
-    decisions[i].range = met ? double(between[i]) : range_max;
-    decisions[i].id = met ? word & SF_ROW_MASK : SF_NO_HIT;
-#else
     decide(word, beams[i], decisions[i]);
-#endif
   }
 
-  // A beam in doubt meets every entry, until what is left is farther than what 64 bits have found; one beam after another.
+  // A beam in doubt meets every entry, those that face it until they are farther than what 64 bits have found; one beam after another.
   int chunk = int(walls.x);
-  int end = chunk + int(walls.y);
+  int facing_end = chunk + int(walls.y);
+  int end = facing_end + int(walls.w);
   int k = 0;
   bool movers_left = true;
   Decision found = Decision(range_max, SF_NO_HIT, vec3(0.0));
@@ -114,11 +101,15 @@ void main() {
     k = k + 1;
     chunk = k == SF_CHUNK ? chunk + 1 : chunk;
     k = k == SF_CHUNK ? 0 : k;
-    const bool list_done = chunk >= end || double(imageLoad(nearest, chunk).x) > found.range;
+    const bool far = chunk < facing_end && double(imageLoad(nearest, chunk).x) > found.range;
+    chunk = far ? facing_end : chunk;
+    const bool list_done = chunk >= end;
     const bool beam_done = list_done && !movers_left;
-    chunk = beam_done ? int(walls.x) : list_done ? int(movers.x) : chunk;
-    end = beam_done ? int(walls.x + walls.y) : list_done ? int(movers.x + movers.y) : end;
-    k = list_done ? 0 : k;
+    const uvec4 next = beam_done ? walls : movers;
+    chunk = list_done ? int(next.x) : chunk;
+    facing_end = list_done ? int(next.x + next.y) : facing_end;
+    end = list_done ? int(next.x + next.y + next.w) : end;
+    k = list_done || far ? 0 : k;
     movers_left = list_done ? beam_done : movers_left;
     verdict |= beam_done && grazes(found, look.w) ? SF_GRAZES << now : 0u;
     for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
@@ -130,6 +121,13 @@ void main() {
     found.id = beam_done ? SF_NO_HIT : found.id;
     open = beam_done ? open & (open - 1u) : open;
   }
+
+#ifdef SF_SINGLE
+  for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+    const float t = measure_single(decisions[i].id, beams[i], float(range_max));
+    decisions[i].range = t >= 0.0 ? min(double(t), range_max) : decisions[i].range;
+  }
+#endif
 
   const double range_min = packDouble2x32(range_words.zw);
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) decisions[i].range = max(decisions[i].range, range_min);

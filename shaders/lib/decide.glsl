@@ -40,7 +40,7 @@ void decide(uint word, Beam64 beam, inout Decision best) {
   const bool crosses = (side_a >= 0.0LF && side_b <= 0.0LF) || (side_a <= 0.0LF && side_b >= 0.0LF);
   const bool into = below > 0.0LF;
   const bool ahead = t > SF_TOUCH || (into && t >= -SF_TOUCH);
-  t = max(t, 0.0LF);
+  t = t > 0.0LF ? t : 0.0LF;
   const bool first = t < best.range || (t == best.range && id < best.id);
   if (id != SF_NO_HIT && below != 0.0LF && crosses && ahead && first) {
     best.range = t;
@@ -48,3 +48,23 @@ void decide(uint word, Beam64 beam, inout Decision best) {
     best.slant = vec3(below, ex, ey);
   }
 }
+
+#ifdef SF_SINGLE
+// [m] the range of a beam that meets segment `id`, in 32 bits; less than 0 where these are not close enough. raycast/decide.h has the bound.
+float measure_single(uint id, Beam64 beam, float range_max) {
+  const int row = 2 * int(id == SF_NO_HIT ? 0u : id);
+  const uvec4 words_a = imageLoad(segments, row);
+  const uvec4 words_b = imageLoad(segments, row + 1);
+  const double ax = packDouble2x32(words_a.xy), ay = packDouble2x32(words_a.zw);
+  const double bx = packDouble2x32(words_b.xy), by = packDouble2x32(words_b.zw);
+  precise float wx = float(ax - beam.origin.x), wy = float(ay - beam.origin.y);
+  precise float ex = float(bx - ax), ey = float(by - ay);
+  precise float dx = float(beam.direction.x), dy = float(beam.direction.y);
+  precise float below = ex * dy - ey * dx;
+  precise float above = ex * wy - ey * wx;
+  precise float rough = 1.9073486328125e-6 * (abs(ex) + abs(ey)) * (abs(wx) + abs(wy) + range_max);
+  precise float limit = SF_SINGLE_SHARE * range_max * abs(below);
+  precise float t = above / below;
+  return id != SF_NO_HIT && rough <= limit ? max(t, 0.0) : -1.0;
+}
+#endif

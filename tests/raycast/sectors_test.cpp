@@ -136,18 +136,24 @@ TEST(Sectors, WrittenListsArePadded) {
   ListHeader headers[SF_SECTORS];
   write_lists(lists, 3, {entries.data(), ids.data(), nearest.data(), words.data()}, headers);
   EXPECT_EQ(headers[0].first, 3u);
-  EXPECT_EQ(headers[SF_SECTORS - 1].first + headers[SF_SECTORS - 1].count, chunks + 3);
+  const ListHeader& end = headers[SF_SECTORS - 1];
+  EXPECT_EQ(end.first + end.count + end.behind, chunks + 3);
   for (std::uint32_t s = 0; s < SF_SECTORS; ++s) {
-    const std::uint32_t used = lists.first[s + 1] - lists.first[s];
-    for (std::uint32_t k = 0; k < headers[s].count * SF_CHUNK; ++k) {
+    const std::uint32_t facing = lists.behind[s] - lists.first[s];
+    for (std::uint32_t k = 0; k < (headers[s].count + headers[s].behind) * SF_CHUNK; ++k) {
       const std::uint32_t at = headers[s].first * SF_CHUNK + k;
-      if (k >= used) {
+      const bool faces = k < headers[s].count * SF_CHUNK;
+      const std::uint32_t number = faces ? k : k - headers[s].count * SF_CHUNK;
+      const std::uint32_t used = faces ? facing : lists.first[s + 1] - lists.behind[s];
+      const std::uint32_t* const order = lists.order.data() + (faces ? lists.first[s] : lists.behind[s]);
+      if (number >= used) {
         EXPECT_EQ(ids[at], SF_NO_HIT);
         EXPECT_LT(entries[at].ex * entries[at].ay - entries[at].ey * entries[at].ax, -1e20f);
         continue;
       }
-      EXPECT_EQ(ids[at] & SF_ROW_MASK, lists.candidates[lists.order[lists.first[s] + k]].id);
-      EXPECT_LE(nearest[at / SF_CHUNK], lists.candidates[lists.order[lists.first[s] + k]].nearest);
+      EXPECT_EQ(lists.candidates[order[number]].facing, faces);
+      EXPECT_EQ(ids[at] & SF_ROW_MASK, lists.candidates[order[number]].id);
+      EXPECT_LE(nearest[at / SF_CHUNK], lists.candidates[order[number]].nearest);
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <iostream>
 #include <sstream>
 
@@ -113,8 +114,33 @@ Glance::Glance(const world::World& world, const farm::FarmOptions& options) : fa
   readings = farm.tick(0, {});
 }
 
+void expect_same_bits(std::span<const base::ReadingBlock> p, std::span<const base::ReadingBlock> q) {
+  ASSERT_EQ(p.size(), q.size());
+  std::size_t differ = 0;
+  std::ostringstream example;
+  example.precision(17);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    EXPECT_EQ(p[i].bound, q[i].bound) << i;
+    EXPECT_TRUE(std::ranges::equal(p[i].unsure, q[i].unsure)) << "flags of reading " << i;
+    ASSERT_EQ(p[i].hits.size(), q[i].hits.size());
+    for (std::size_t k = 0; k < p[i].values.size(); ++k) {
+      const bool same = std::memcmp(&p[i].values[k], &q[i].values[k], sizeof(double)) == 0 &&
+                        (p[i].hits.empty() || p[i].hits[k] == q[i].hits[k]);
+      if (same || ++differ > 1) continue;
+      example << "reading " << i << " at (" << p[i].X_WS.x << ", " << p[i].X_WS.y << "; " << p[i].X_WS.yaw
+              << "), number " << k << ": " << p[i].values[k] << " of " << (p[i].hits.empty() ? 0 : p[i].hits[k]) << ", "
+              << q[i].values[k] << " of " << (q[i].hits.empty() ? 0 : q[i].hits[k]);
+    }
+  }
+  EXPECT_EQ(differ, 0u) << example.str();
+}
+
 Tally sweep(const world::World& world, const farm::FarmOptions& options) {
-  const Glance run(world, options);
+  farm::FarmOptions by = options;
+  by.scene.caster = raycast::Caster::host;
+  const Glance run(world, by);
+  by.scene.caster = raycast::Caster::vulkan;
+  expect_same_bits(run.readings, Glance(world, by).readings);
   std::vector<Pose> poses;
   for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
   EXPECT_GE(run.readings.size(), 1u);

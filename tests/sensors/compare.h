@@ -34,7 +34,11 @@ std::string text(const Tally& tally);
 Tally compare(const world::World& world, std::span<const base::Pose> poses,
               std::span<const base::ReadingBlock> readings);
 
-/// One tick of a new farm on `world`, everyone heard and at the pose of the load, compared.
+/// Expects the same readings, bit by bit.
+void expect_same_bits(std::span<const base::ReadingBlock> p, std::span<const base::ReadingBlock> q);
+
+/// One tick of a new farm on `world`, everyone heard and at the pose of the load, compared; and expects the same bits
+/// of both casters.
 Tally sweep(const world::World& world, const farm::FarmOptions& options = {});
 
 /// Logs `tally` as `name`, and expects no wrong beam and no error above `most` [m].

@@ -1,7 +1,5 @@
 // Where surfaces are more than the device's lists hold, the host casts: the same bytes, whatever the kind of sensor.
 
-#include "raycast/host_cast.h"
-
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -19,8 +17,9 @@ namespace {
 using base::Pose;
 using base::ReadingBlock;
 
+const farm::FarmOptions kOnDevice{.scene = {.caster = raycast::Caster::vulkan}};
 /// Nothing fits into such lists.
-const farm::FarmOptions kOnHost{.scene = {.longest_list = 0}};
+const farm::FarmOptions kOnHost{.scene = {.caster = raycast::Caster::vulkan, .longest_list = 0}};
 
 bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
   const auto same = [](auto a, auto b) {
@@ -32,7 +31,7 @@ bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
 
 /// Two ticks of both farms, everyone moved in between.
 void expect_same_bytes(const world::World& world) {
-  farm::Farm on_device(world, device());
+  farm::Farm on_device(world, device(), kOnDevice);
   farm::Farm on_host(world, device(), kOnHost);
   on_device.hear_all();
   on_host.hear_all();
@@ -115,7 +114,7 @@ void crowd_at_one_place(std::uint32_t count) {
   scenes::add_room(world, {}, 10.0);
   for (std::uint32_t i = 0; i < count; ++i)
     scenes::add_robot(world, {0.0, 0.0, 0.0, 1e-3 * i}, scenes::laser(61, 2.0 * M_PI));
-  farm::Farm farm(world, device());
+  farm::Farm farm(world, device(), kOnDevice);
   for (const std::uint32_t m : {0u, 1u, count - 1}) farm.hear(m, farm::kAllKinds);
   sensors::LaserReference reference(world, 0);
   const auto readings = farm.tick(0, {});
@@ -137,7 +136,7 @@ TEST(HostCast, RangersAndLaneEdgesInACrowdAtOnePlace) {
   add_ranger(world, {}, array, 0.16);
   add_ranger(world, {}, cones("infrared", ring(4, 0.1)), 0.16);
   for (int i = 0; i < 6'000; ++i) scenes::add_robot(world, {0.0, -0.1, 0.0, 1e-3 * i}, eye(1, 0.0, 1.0));
-  farm::Farm farm(world, device());
+  farm::Farm farm(world, device(), kOnDevice);
   for (std::uint32_t m = 0; m < 14; ++m) farm.hear(m, farm::kAllKinds);
   farm.tick(0, {});
   EXPECT_GT(farm.stats().work.host_scans, 0u);
@@ -145,24 +144,6 @@ TEST(HostCast, RangersAndLaneEdgesInACrowdAtOnePlace) {
   for (std::uint32_t m = 0; m < 14; ++m) again.hear(m, farm::kAllKinds);
   again.tick(0, {});
   EXPECT_EQ(farm.hash(), again.hash());
-}
-
-/// Surfaces through the sensor, with an end on it, and behind it: on which side of it they lie is not told by bearings.
-TEST(HostCast, SurfacesThroughTheSensor) {
-  raycast::HostCast cast;
-  cast.surfaces = {{{-1.0, 0.0, 1.0, 0.0}, 0}, {{0.0, 0.0, 0.0, 2.0}, 1}, {{-3.0, -1.0, -3.0, 1.0}, 2}};
-  std::vector<double> bearings;
-  for (int i = 0; i < 8; ++i)
-    bearings.insert(bearings.end(), {std::cos(M_PI / 8 + i * M_PI / 4), std::sin(M_PI / 8 + i * M_PI / 4)});
-  bearings.insert(bearings.end(), {-1.0, 0.0});
-  raycast::cast_on_host({{0.0, 0.5}, {1.0, 0.0}, bearings, 0.0, 10.0}, cast);
-  for (std::size_t i = 0; i < cast.decisions.size(); ++i) {
-    raycast::Decision plain{10.0};
-    for (const raycast::Surface& surface : cast.surfaces)
-      raycast::decide(surface, {0.0, 0.5}, {bearings[2 * i], bearings[2 * i + 1]}, plain);
-    EXPECT_EQ(cast.decisions[i].range, plain.range) << i;
-    EXPECT_EQ(cast.decisions[i].id, plain.id) << i;
-  }
 }
 
 /// The lasers of one robot share a list, made for a disc that holds them both: what is hidden from its middle may be
@@ -202,7 +183,7 @@ TEST(SharedLists, CrowdsOfRobotsWithTwoLasers) {
 TEST(SharedLists, TablesThatGrewAreReadFromTheirNewPlace) {
   world::World world = scenes::cave(60, 30.0, 2);
   scenes::add_robots(world, 40, scenes::laser(), 2);
-  farm::Farm farm(world, device(), {.scene = {.pool_chunks = 512, .pool_cells = 2}});
+  farm::Farm farm(world, device(), {.scene = {.caster = raycast::Caster::vulkan, .pool_chunks = 512, .pool_cells = 2}});
   farm.hear(0, farm::kAllKinds);
   farm.tick(0, {});
   farm.hear_all();
