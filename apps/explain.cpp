@@ -34,7 +34,7 @@ std::string work_of(const scenarios::ExplainedKind& k, double ticks) {
     text += fmt::format(", {:.4g} rays, {:.3g} lists built anew", each(k.work.rays), each(k.work.cells_built));
   if (k.work.doubts > 0)
     text += fmt::format(", {:.2g} % of beams decided in 64 bits against all",
-                        400.0 * static_cast<double>(k.work.doubts) / static_cast<double>(k.work.rays));
+                        100.0 * static_cast<double>(k.work.doubts) / static_cast<double>(k.work.rays));
   if (k.work.movers_near > 0)
     text +=
         fmt::format(", {:.4g} movers near, {:.0f} % of them hidden or out of view", each(k.work.movers_near),
@@ -69,6 +69,7 @@ std::string text_of(const scenarios::Explanation& e) {
   text += "together\n";
   text +=
       row("a tick", fmt::format("{:.3f} ms with all heard, {:.4f} ms with nobody heard", 1e3 * e.all, 1e3 * e.silent));
+  text += row("caster", e.caster);
   text += row("to start", fmt::format("{:.0f} ms to build, {:.0f} ms the first tick", 1e3 * e.build, 1e3 * e.first));
   if (e.resident > 0)
     text += row("memory", bytes_text(e.resident) + " resident, the driver and this measurement included");

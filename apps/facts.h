@@ -25,6 +25,7 @@ namespace sf::apps {
 struct RunFacts {
   std::string device;
   bool software = false;
+  std::string caster;  ///< what casts rays
   std::uint32_t robots = 0;
   std::uint64_t ticks = 0;
   double simulated_s = 0.0;

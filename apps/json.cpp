@@ -196,6 +196,7 @@ std::string with_warnings(std::string json, const std::vector<world::Warning>& w
 std::string json_of(const RunFacts& f) {
   Json json{{"device", f.device},
             {"software_device", f.software},
+            {"caster", f.caster},
             {"robots", f.robots},
             {"ticks", f.ticks},
             {"simulated_s", f.simulated_s},
@@ -207,7 +208,7 @@ std::string json_of(const RunFacts& f) {
             {"given_again", f.farm.again},
             {"missed", f.farm.missed},
             {"batches", f.farm.batches},
-            {"lanes_in_doubt", f.farm.work.doubts},
+            {"beams_in_doubt", f.farm.work.doubts},
             {"cells_built", f.farm.work.cells_built},
             {"host_scans", f.farm.work.host_scans},
             {"contacts", f.contacts},
@@ -337,17 +338,12 @@ std::string json_of(const SelfTest& test) {
 }
 
 std::string json_of(const scenarios::Explanation& e) {
-  Json json{{"ticks", e.ticks},
-            {"build_s", e.build},
-            {"first_tick_s", e.first},
-            {"silent_tick_s", e.silent},
-            {"tick_s", e.all},
-            {"walls", e.walls},
-            {"resident_bytes", e.resident},
-            {"absent", e.absent},
-            {"kinds", Json::array()},
-            {"slices", Json::array()},
-            {"accuracy", statements_json(e.statements)}};
+  Json json{{"ticks", e.ticks},        {"build_s", e.build},
+            {"first_tick_s", e.first}, {"silent_tick_s", e.silent},
+            {"tick_s", e.all},         {"caster", e.caster},
+            {"walls", e.walls},        {"resident_bytes", e.resident},
+            {"absent", e.absent},      {"kinds", Json::array()},
+            {"slices", Json::array()}, {"accuracy", statements_json(e.statements)}};
   for (const scenarios::Slice& s : e.slices)
     json["slices"].push_back({{"z_m", s.z}, {"sensors", s.sensors}, {"walls", s.walls}});
   for (const scenarios::ExplainedKind& k : e.kinds) {

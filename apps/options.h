@@ -42,6 +42,7 @@ struct Options {
   Command command = Command::devices;
   bool json = false;
   std::string device;  ///< row or part of a name; empty: the best
+  std::string caster;  ///< auto, vulkan or host
 
   std::string world;  ///< world file, or the recording's folder for `plot`
   world::LoadOptions load;

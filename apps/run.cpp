@@ -23,6 +23,7 @@
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "netio/token.h"
+#include "raycast/caster.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
 
@@ -36,7 +37,7 @@ using Clock = std::chrono::steady_clock;
 class Outputs {
  public:
   Outputs(const world::World& world, const sensors::Roster& roster, const std::optional<SendPlan>& plan,
-          const Options& options)
+          const std::string& caster, const Options& options)
       : roster_(roster), no_return_(roster, options.no_return_inf) {
     if (plan) {
       address_ = netio::resolve(options.send);
@@ -45,7 +46,7 @@ class Outputs {
     if (!options.record.empty())
       recorder_.emplace(
           options.record,
-          scenarios::run_info(world, roster, {options.seed, options.record_readings, options.no_return_inf}));
+          scenarios::run_info(world, roster, {options.seed, options.record_readings, options.no_return_inf, caster}));
   }
 
   /// @param wait called with the time [ns] at which a reading is delivered, before it is sent: the tick's, or one
@@ -145,7 +146,8 @@ int run(const Options& options) {
   if (!simulation.warnings().empty()) tell_warnings(simulation.warnings().front().file, simulation.warnings());
   ControlTally tally(simulation, world.movers.size(), options.controller);
   std::vector<base::Contact> contacts(world.movers.size());
-  Outputs outputs(world, roster, plan, options);
+  const std::string caster = raycast::text_of(raycast::caster_for(device.facts().software));
+  Outputs outputs(world, roster, plan, caster, options);
   catch_stop_signals();
 
   const auto ticks = static_cast<std::uint64_t>(std::llround(options.duration / world.interval));
@@ -172,6 +174,7 @@ int run(const Options& options) {
   facts.interrupted = facts.ticks < ticks;
   facts.device = device.facts().name;
   facts.software = device.facts().software;
+  facts.caster = caster;
   facts.robots = static_cast<std::uint32_t>(count_robots(world));
   facts.control = tally.facts(world);
   facts.move_s = simulation.move_seconds();

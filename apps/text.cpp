@@ -7,6 +7,7 @@
 #include "apps/rates.h"
 #include "apps/wording.h"
 #include "base/hash.h"
+#include "raycast/caster.h"
 #include "sensors/accuracy.h"
 #include "sensors/field/truncation.h"
 
@@ -91,6 +92,7 @@ std::string text_of(const gpu::Survey& survey) {
     text += fmt::format("     {}, Vulkan {}, {}{}\n", d.kind, d.api, d.driver,
                         d.software ? " (software: computed on the CPU)" : "");
     text += fmt::format("     self-check {}\n", d.self_check);
+    if (d.chosen) text += fmt::format("     rays are cast by: {}\n", raycast::text_of(raycast::caster_for(d.software)));
     text += d.chosen ? "     chosen\n" : fmt::format("     refused: {}\n", d.reason);
   }
   return text;
@@ -179,6 +181,7 @@ std::string text_of(const RunFacts& f) {
   const auto stage = [&](double seconds) { return fmt::format("{:8.3f} ms a tick", seconds * 1e3 / ticks); };
   std::string text = f.interrupted ? "Stopped before the end.\n" : "";
   text += row("device", device_text(f));
+  text += row("caster", f.caster);
   text += row("robots", fmt::format("{}", f.robots));
   text += row("ticks", fmt::format("{}", f.ticks));
   text += row("simulated", fmt::format("{:.1f} s in {:.2f} s: {:.1f} x real time", f.simulated_s, f.wall_s,

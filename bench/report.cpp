@@ -41,21 +41,21 @@ struct Stages {
 
 Stages stages_of(const DriveResult& d) {
   const auto n = static_cast<double>(d.ticks.size());
-  const double lanes = static_cast<double>(d.stages.work.rays) / 4.0;
+  const auto rays = static_cast<double>(d.stages.work.rays);
   return {1e3 * d.move_s,
           1e3 * d.stages.place_s / n,
           1e3 * d.stages.lists_s / n,
           1e3 * d.stages.device_s / n,
           1e3 * d.stages.collect_s / n,
           1e3 * d.decide_s,
-          static_cast<double>(d.stages.work.doubts) / lanes,
+          static_cast<double>(d.stages.work.doubts) / rays,
           static_cast<double>(d.stages.work.cells_built) / n};
 }
 
 std::string ticks_csv(const std::vector<DriveResult>& drives) {
   std::string text =
       "scene,what,robots,rays,range_m,wall_ms_median,cpu_ms_median,mrays_per_s,real_time_factor,move_ms,place_ms,"
-      "lists_ms,device_ms,collect_ms,decide_ms,lanes_in_doubt,cells_built_per_tick,max_error_m,hash\n";
+      "lists_ms,device_ms,collect_ms,decide_ms,beams_in_doubt,cells_built_per_tick,max_error_m,hash\n";
   for (const DriveResult& d : drives) {
     const Stages s = stages_of(d);
     text += fmt::format(

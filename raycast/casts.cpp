@@ -2,6 +2,8 @@
 
 #include "raycast/casts_tables.h"
 
+#include <bit>
+
 namespace sf::raycast {
 
 Casts::Casts(const Site& site, const world::World& world, std::vector<Fan> fans)
@@ -114,7 +116,7 @@ void Casts::count() {
   for (const Due& due : t_->due) {
     const FanRow& row = t_->fan_rows[due.row];
     for (std::uint32_t lane = 0; lane < row.plan.lanes(); ++lane)
-      t_->doubts_seen += verdicts[row.out + lane] & SF_DOUBT;
+      t_->doubts_seen += static_cast<std::uint64_t>(std::popcount(verdicts[row.out + lane] / SF_DOUBT));
   }
 }
 

@@ -3,14 +3,9 @@
 
 #include <cstdint>
 
-namespace sf::raycast {
+#include "raycast/caster.h"
 
-/// What casts rays. Both give the same bytes.
-enum class Caster : std::uint8_t {
-  automatic,  ///< host on a device of software, else vulkan
-  vulkan,     ///< kernels on the device
-  host,       ///< scan conversion on this machine's own vectors
-};
+namespace sf::raycast {
 
 /// How much room the lists may have before the oldest make way; a few robots get less. When one tick alone needs more,
 /// the room doubles.

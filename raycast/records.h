@@ -18,10 +18,10 @@
 #define SF_ROW_MASK 0xFFFFFFu
 #define SF_NO_CLEARANCE 127
 
-// What a lane says of itself: 32 bits could not prove the first of all its beams; and, shifted by each beam's place in
-// the lane, that it meets what it met at too small an angle.
-#define SF_DOUBT 1u
-#define SF_GRAZES 2u
+// What a lane says of its beams, shifted by each one's place in the lane: it meets what it met at too small an angle;
+// and 32 bits could not prove what it meets first.
+#define SF_GRAZES 1u
+#define SF_DOUBT 16u
 
 // A range measured in 32 bits is taken when its bounds are closer together than this share of the sensor's reach.
 #define SF_SINGLE_SHARE 2.44140625e-4 /* 2^-12 */

@@ -32,7 +32,7 @@ struct Site {
 /// What instruments did since they were made.
 struct Work {
   std::uint64_t rays = 0;         ///< beams cast
-  std::uint64_t doubts = 0;       ///< lanes of four beams that 32 bits could not prove
+  std::uint64_t doubts = 0;       ///< beams that 32 bits could not prove
   std::uint64_t cells_built = 0;  ///< sector lists made
   std::uint64_t dipoles = 0;      ///< magnet and element pairs summed
   std::uint64_t movers_near = 0;  ///< pairs of a robot that looks and a mover within its range

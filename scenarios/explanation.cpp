@@ -11,6 +11,7 @@
 
 #include "base/elapsed.h"
 #include "farm/farm.h"
+#include "raycast/caster.h"
 #include "scenarios/sampling.h"
 #include "scenarios/ways.h"
 
@@ -125,6 +126,7 @@ std::size_t resident_bytes() {
 Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads,
                     const std::function<void(double)>& progress) {
   Explanation e;
+  e.caster = raycast::text_of(raycast::caster_for(device.facts().software));
   double done = 0.0;
   const auto step = [&](std::size_t kinds) {
     if (progress) progress(++done / static_cast<double>(kinds + 3));

@@ -36,6 +36,7 @@ struct Slice {
 };
 
 struct Explanation {
+  std::string caster;  ///< what casts rays
   std::vector<ExplainedKind> kinds;
   std::vector<std::string> absent;             ///< kinds that are not built
   std::vector<Slice> slices;                   ///< of lasers, by height

@@ -34,7 +34,7 @@ record::RunInfo run_info(const world::World& world, const sensors::Roster& roste
   info.mode = sensors::modes_of(roster);
   info.interval = world.interval;
   info.record_readings = settings.record_readings;
-  info.options = {{"no_return", settings.no_return_inf ? "inf" : "max"}};
+  info.options = {{"no_return", settings.no_return_inf ? "inf" : "max"}, {"caster", settings.caster}};
   info.snapshot = world::snapshot(world);
   for (const world::Mover& mover : world.movers) {
     record::MoverInfo row{mover.name, "", mover.id, {}, {}};

@@ -8,6 +8,7 @@
 
 #include "base/elapsed.h"
 #include "base/random.h"
+#include "raycast/caster.h"
 #include "record/recorder.h"
 #include "scenarios/coverage.h"
 #include "scenarios/run_info.h"
@@ -131,7 +132,10 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
   std::optional<record::Recorder> recorder;
   if (!options.record.empty())
     recorder.emplace(options.record,
-                     run_info(world, simulation.farm().roster(), {.seed = scenario.seed, .record_readings = true}));
+                     run_info(world, simulation.farm().roster(),
+                              {.seed = scenario.seed,
+                               .record_readings = true,
+                               .caster = raycast::text_of(raycast::caster_for(device.facts().software))}));
 
   Trial trial;
   const auto start = std::chrono::steady_clock::now();

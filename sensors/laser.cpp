@@ -113,7 +113,7 @@ void Lasers::mark(std::size_t i) {
   const raycast::FanResults results = casts_.results(i);
   const raycast::BeamPlan& plan = *results.plan;
   const auto verdicts = casts_.verdicts().host<std::uint32_t>().subspan(results.lane, plan.lanes());
-  const bool grazing = std::any_of(verdicts.begin(), verdicts.end(), [](std::uint32_t v) { return v >= SF_GRAZES; });
+  const bool grazing = std::any_of(verdicts.begin(), verdicts.end(), [](std::uint32_t v) { return v % SF_DOUBT != 0; });
   if (!grazing && !row.grazing) return;
   row.grazing = grazing;
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {

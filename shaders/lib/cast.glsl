@@ -71,7 +71,7 @@ void main() {
     sure[i] = proof.holds && !best.edge_on;
     open |= sure[i] ? 0u : 1u << i;
   }
-  uint verdict = open != 0u ? SF_DOUBT : 0u;
+  uint verdict = SF_DOUBT * open;
 
   const uvec4 origin_words = imageLoad(rows, row + 3);
   const uvec4 range_words = imageLoad(rows, row + 5);

@@ -51,7 +51,7 @@ TEST(Explain, SaysHowManyBeamsAreInDoubt) {
   Words as_json = words;
   as_json.push_back("--json");
   const Json json(run_program(as_json).out);
-  const double share = 400.0 * json.number("/kinds/0/doubts") / json.number("/kinds/0/rays");
+  const double share = 100.0 * json.number("/kinds/0/doubts") / json.number("/kinds/0/rays");
   ASSERT_GT(share, 0.0);
   const std::string text = run_program(words).out, said = " % of beams decided in 64 bits";
   const std::size_t end = text.find(said), begin = text.rfind(' ', end - 1);

@@ -1,0 +1,22 @@
+#pragma once
+// What casts rays: the device's kernels, or this machine's own vectors. Both give the same bytes.
+
+#include <cstdint>
+#include <string>
+
+namespace sf::raycast {
+
+enum class Caster : std::uint8_t {
+  automatic,  ///< as `caster_for` says
+  vulkan,     ///< kernels on the device
+  host,       ///< scan conversion on this machine
+};
+
+/// Who casts where `asked` is automatic: the environment's SENSORFARM_CASTER ("vulkan" or "host"), else the host where
+/// the device is software, which is slower at it, else Vulkan.
+Caster caster_for(bool software, Caster asked = Caster::automatic);
+
+/// As reports name it: "Vulkan kernels", or the host with its vectors, as in "host, AVX2".
+std::string text_of(Caster caster);
+
+}  // namespace sf::raycast
