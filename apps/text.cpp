@@ -202,7 +202,7 @@ std::string text_of(const RunFacts& f) {
     text += row("recording", fmt::format("{} ({:.1f} MB)", f.recording, static_cast<double>(f.recorded_bytes) * 1e-6));
   text += row("time: move", stage(f.move_s));
   text += row("  place movers", stage(f.farm.place_s));
-  text += row("  sector lists", stage(f.farm.lists_s));
+  text += row("  lists, scans", stage(f.farm.lists_s));
   text += row("  device", stage(f.farm.device_s));
   text += row("  collect", stage(f.farm.collect_s));
   text += row("  send, record", stage(f.out_s));

@@ -112,6 +112,7 @@ FanResults Casts::results(std::size_t i) const {
 }
 
 void Casts::count() {
+  if (!t_->scene) return;
   const auto verdicts = t_->verdicts->host<std::uint32_t>();
   for (const Due& due : t_->due) {
     const FanRow& row = t_->fan_rows[due.row];

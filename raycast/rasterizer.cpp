@@ -214,9 +214,16 @@ bool is_open(const Scratch& s, const ScanPattern& pattern, float low, float high
   return false;
 }
 
-/// Lists the movers of one row of cells that are in reach and in view.
-void find_near(Scratch& s, const Projection& p, const ScanView& view, const ScanScene& scene, std::uint32_t from,
-               std::uint32_t end) {
+/// Whether some beam that the mover's disc touches may see it.
+bool is_open(const Scratch& s, const Projection& p, const ScanPattern& pattern, const NearMover& near) {
+  return is_open(s, pattern, near.low, near.high, near.distance) ||
+         is_open(s, pattern, near.low - p.full, near.high - p.full, near.distance) ||
+         is_open(s, pattern, near.low + p.full, near.high + p.full, near.distance);
+}
+
+/// Lists the movers of one row of cells that are in reach, in view and not behind walls.
+void find_near(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
+               const ScanScene& scene, std::uint32_t from, std::uint32_t end) {
   const MoverGrid& grid = *scene.movers;
   const VF x = constant(static_cast<float>(view.origin.x - grid.low.x)),
            y = constant(static_cast<float>(view.origin.y - grid.low.y));
@@ -248,12 +255,15 @@ void find_near(Scratch& s, const Projection& p, const ScanView& view, const Scan
     for (; open != 0; open &= open - 1) {
       const auto i = static_cast<std::uint32_t>(__builtin_ctz(open));
       if (grid.mover[at + i] == scene.self) continue;
-      s.near.push_back({nearest[i], grid.mover[at + i], lows[i], highs[i]});
+      ++s.counts.movers_near;
+      const NearMover near{nearest[i], grid.mover[at + i], lows[i], highs[i]};
+      if (is_open(s, p, pattern, near)) s.near.push_back(near);
     }
   }
 }
 
-void find_all_near(Scratch& s, const Projection& p, const ScanView& view, const ScanScene& scene) {
+void find_all_near(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
+                   const ScanScene& scene) {
   const MoverGrid& grid = *scene.movers;
   const double reach = view.range_max * 1.00001 + grid.largest_radius + 2.0 * static_cast<double>(grid.error);
   const auto cell_of = [&](double d, int count) {
@@ -265,7 +275,7 @@ void find_all_near(Scratch& s, const Projection& p, const ScanView& view, const 
   s.near.clear();
   for (int row = y0; row <= y1; ++row) {
     const std::size_t cells = static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns);
-    find_near(s, p, view, scene, grid.first[cells + static_cast<std::size_t>(x0)],
+    find_near(s, p, view, pattern, scene, grid.first[cells + static_cast<std::size_t>(x0)],
               grid.first[cells + static_cast<std::size_t>(x1) + 1]);
   }
 }
@@ -292,8 +302,7 @@ void draw_mover(Scratch& s, const Projection& p, const ScanView& view, const Sca
 
 void draw_movers(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
                  const ScanScene& scene) {
-  find_all_near(s, p, view, scene);
-  s.counts.movers_near += s.near.size();
+  find_all_near(s, p, view, pattern, scene);
   s.met.clear();
   s.order.clear();
   for (std::uint32_t i = 0; i < s.near.size(); ++i) {
@@ -305,10 +314,7 @@ void draw_movers(Scratch& s, const Projection& p, const ScanView& view, const Sc
   std::sort(s.order.begin(), s.order.end());
   for (const std::uint64_t key : s.order) {
     const NearMover& near = s.near[key & 0xFFFFFFFFu];
-    const bool open = is_open(s, pattern, near.low, near.high, near.distance) ||
-                      is_open(s, pattern, near.low - p.full, near.high - p.full, near.distance) ||
-                      is_open(s, pattern, near.low + p.full, near.high + p.full, near.distance);
-    if (!open) continue;
+    if (!is_open(s, p, pattern, near)) continue;
     s.met.push_back(near.mover);
     draw_mover(s, p, view, pattern, scene, near);
   }
@@ -393,6 +399,23 @@ bool answer(Scratch& s, const ScanView& view, const ScanPattern& pattern, const 
   return doubt;
 }
 
+/// Segments of a block that direction `d` may cross, those behind the viewer too: a bit each. Start and extent are
+/// turned by `heading` and moved by `from`.
+std::uint32_t crossed_by(const SegmentBlock& block, base::Vec2 from, base::Vec2 heading, base::Vec2 d, float band) {
+  const VF c = constant(static_cast<float>(heading.x)), sn = constant(static_cast<float>(heading.y));
+  const VF x = constant(static_cast<float>(from.x)), y = constant(static_cast<float>(from.y));
+  const VF dx = constant(static_cast<float>(d.x)), dy = constant(static_cast<float>(d.y)), slip = constant(2.0f * band);
+  std::uint32_t found = 0;
+  for (std::uint32_t k = 0; k < kBlock; k += lanes()) {
+    const VF ax = load(block.ax + k), ay = load(block.ay + k), ex = load(block.ex + k), ey = load(block.ey + k);
+    const VF wx = x + (c * ax - sn * ay), wy = y + (sn * ax + c * ay), gx = c * ex - sn * ey, gy = sn * ex + c * ey;
+    const VF start = dx * wy - dy * wx, end = start + (dx * gy - dy * gx);
+    const MF apart = hn::Or(hn::Min(start, end) > slip, hn::Max(start, end) < hn::Neg(slip));
+    found |= bits_of(hn::Not(apart)) << k;
+  }
+  return found;
+}
+
 bool scan_all(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene) {
   scan(s, view, pattern, scene);
   return answer(s, view, pattern, scene);
@@ -407,6 +430,7 @@ HWY_AFTER_NAMESPACE();
 namespace sf::raycast {
 
 HWY_EXPORT(scan_all);
+HWY_EXPORT(crossed_by);
 HWY_EXPORT(instructions);
 
 void Rasterizer::Scratch::begin(std::uint32_t beams) {
@@ -438,19 +462,23 @@ const ScanCounts& Rasterizer::counts() const { return scratch_->counts; }
 
 namespace {
 
-/// Decides beam `i` against all that there is.
+/// Decides a beam against all that it may cross.
 Decision decide_all(const Rasterizer::Scratch& s, const ScanView& view, const ScanScene& scene, base::Vec2 d) {
   Decision best{view.range_max};
-  const auto meet = [&](std::uint32_t row) { decide({scene.exact[row], row}, view.origin, d, best); };
+  const auto meet = [&](const SegmentBlock& block, base::Vec2 from, base::Vec2 heading, std::uint32_t first_row) {
+    std::uint32_t open = HWY_DYNAMIC_DISPATCH(crossed_by)(block, from, heading, d, view.band);
+    for (; open != 0; open &= open - 1) {
+      const std::uint32_t number = block.row[__builtin_ctz(open)];
+      if (number != SF_NO_HIT) decide({scene.exact[first_row + number], first_row + number}, view.origin, d, best);
+    }
+  };
   for (const auto& blocks : {scene.walls, scene.behind})
-    for (const SegmentBlock& block : blocks)
-      for (const std::uint32_t row : block.row)
-        if (row != SF_NO_HIT) meet(row);
+    for (const SegmentBlock& block : blocks) meet(block, -1.0 * view.offset, {1.0, 0.0}, 0);
   for (const std::uint32_t mover : s.met) {
     const OutlineTable::Outline& outline = scene.outlines->of_mover[mover];
+    const base::Vec2 from = base::Vec2{scene.poses[mover].x, scene.poses[mover].y} - view.origin;
     for (std::uint32_t i = outline.first; i < outline.first + outline.all; ++i)
-      for (const std::uint32_t row : scene.outlines->blocks[i].row)
-        if (row != SF_NO_HIT) meet(scene.first_rows[mover] + row);
+      meet(scene.outlines->blocks[i], from, scene.headings[mover], scene.first_rows[mover]);
   }
   return best;
 }

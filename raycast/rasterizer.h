@@ -12,6 +12,9 @@
 // Errors, with coordinates up to A, u = 2^-24, band = 16 u A: (e x a) is wrong by less than 0.63 band |e|, so that of 1
 // / t is less than h (2 band h + 17 u), h = |e| / (e x a), where e x a exceeds band |e|: others are edge-on and prove
 // nothing. Bearings are wrong by less than 2 band / |a| and 1.3e-6 rad of rounding.
+//
+// A proven beam does not graze: its lower bound exceeds 0, so h^2 < 1 / (2 band t), and its sine, 1 / (h t), is above
+// sqrt(2 band / t) >= sqrt(2 SF_BAND) = 1.4e-3.
 
 #include <memory>
 

@@ -20,7 +20,10 @@ TEST(Validation, TheLayerIsSilent) {
     for (world::Mover& mover : world.movers)
       for (const char* kind : {"sonar", "infrared"})
         mover.sensors.push_back(trial::cones(kind, trial::ring(8, 0.1), {trial::cone_setting("range", {0, 1})}));
-    Farm farm(world, device, {.scene = {1024, 8}});  // so small that its tables are replaced
+    Farm farm(world, device,
+              {.scene = {.caster = raycast::Caster::vulkan,
+                         .pool_chunks = 1024,
+                         .pool_cells = 8}});  // so small that its tables are replaced
     farm.hear_all();
     for (int k = 0; k < 4; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
     EXPECT_GT(farm.stats().readings, 0u);

@@ -73,6 +73,8 @@ TEST(Sectors, ListsRunNearToFarAndHoldEachWallOnce) {
     double before = 0.0;
     for (std::uint32_t at = lists.first[s]; at < lists.first[s + 1]; ++at) {
       EXPECT_TRUE(seen.insert(lists.order[at]).second);
+      EXPECT_EQ(lists.candidates[lists.order[at]].facing, at < lists.behind[s]);
+      if (at == lists.behind[s]) before = 0.0;
       EXPECT_GE(lists.candidates[lists.order[at]].nearest, before);
       before = lists.candidates[lists.order[at]].nearest;
     }

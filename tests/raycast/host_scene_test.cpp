@@ -1,0 +1,195 @@
+// Scans on the host, against the 64-bit decision of everything: patterns, instruction sets, lists that have no room.
+
+#include "raycast/host_scene.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cstring>
+
+#include "tests/sensors/chance.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::raycast {
+namespace {
+
+using base::Vec2;
+
+/// A scan's answers.
+struct Scan {
+  std::vector<double> ranges;
+  std::vector<std::uint32_t> models;
+  bool operator==(const Scan&) const = default;
+};
+
+ScanPattern pattern_of(const std::vector<double>& bearings) {
+  std::vector<double> directions;
+  for (const double b : bearings) directions.insert(directions.end(), {std::cos(b), std::sin(b)});
+  ScanPattern pattern;
+  pattern.assign(bearings, directions, bearings.front(), bearings.back());
+  return pattern;
+}
+
+std::vector<double> fan(std::size_t beams, double fov) {
+  std::vector<double> bearings;
+  for (std::size_t i = 0; i < beams; ++i)
+    bearings.push_back(beams > 1 ? fov * (static_cast<double>(i) / static_cast<double>(beams - 1) - 0.5) : 0.0);
+  return bearings;
+}
+
+std::vector<Pose> poses_of(const world::World& world) {
+  std::vector<Pose> poses;
+  for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
+  return poses;
+}
+
+Scan scan(const world::World& world, const Pose& X, std::uint32_t self, const ScanPattern& pattern, double range) {
+  base::Workers workers(1);
+  HostScene scene(world, workers);
+  const Viewpoint view{scene.add_family({X.z, range, 0.0, 2.0 * M_PI}), self, X};
+  scene.place(poses_of(world));
+  scene.prepare({&view, 1});
+  Scan scan{std::vector<double>(pattern.beams), std::vector<std::uint32_t>(pattern.beams)};
+  std::vector<std::uint8_t> grazes(pattern.beams);
+  scene.scan(0, 0.0, 1e-3, false, pattern, 0, {scan.ranges.data(), scan.models.data(), grazes.data()});
+  return scan;
+}
+
+/// The same by `decide` alone: every wall and every edge of other movers.
+Scan decide_everything(const world::World& world, const Pose& X, std::uint32_t self, const ScanPattern& pattern,
+                       double range) {
+  std::vector<ExactSegment> exact;
+  std::vector<std::uint32_t> models;
+  std::vector<Surface> surfaces;
+  const auto add = [&](const ExactSegment& s, std::uint32_t model, bool met) {
+    if (met) surfaces.push_back({s, static_cast<std::uint32_t>(models.size())});
+    models.push_back(model);
+  };
+  for (const world::Segment& s : world.walls)
+    add({s.a.x, s.a.y, s.b.x, s.b.y}, s.model, s.seen_by_laser && s.z_min <= X.z && X.z < s.z_max);
+  base::Workers workers(1);
+  MoverTables movers(world);
+  std::vector<ExactSegment> moved(movers.segments());
+  movers.place(poses_of(world), workers, moved);
+  const auto rows = movers.first_rows();
+  for (std::uint32_t row = 0; row < moved.size(); ++row)
+    add(moved[row], movers.models()[row], row + rows[0] < rows[self] || row + rows[0] >= rows[self + 1]);
+  Scan scan;
+  const ScanView view{.origin = {X.x, X.y}, .heading = {std::cos(X.yaw), std::sin(X.yaw)}};
+  for (std::size_t i = 0; i < pattern.beams; ++i) {
+    Decision best{range};
+    for (const Surface& surface : surfaces) decide(surface, view.origin, direction_of(view, pattern, i), best);
+    scan.ranges.push_back(best.range);
+    scan.models.push_back(best.id == SF_NO_HIT ? SF_NO_HIT : models[best.id]);
+  }
+  return scan;
+}
+
+world::World crowd() {
+  world::World world = scenes::boxes(40, 16.0, 2);
+  scenes::add_robots(world, 60, scenes::laser(), 2);
+  return world;
+}
+
+void expect_decided(const world::World& world, const ScanPattern& pattern, double range) {
+  for (std::uint32_t m = 0; m < 12; ++m) {
+    Pose X = world.movers[m].X_WM;
+    X.z = 0.1;
+    EXPECT_EQ(scan(world, X, m, pattern, range), decide_everything(world, X, m, pattern, range)) << m;
+  }
+}
+
+TEST(HostScene, FansOfEveryWidth) {
+  const world::World world = crowd();
+  for (const double fov : {0.0, 1e-7, 0.1, 0.5 * M_PI, M_PI, 1.5 * M_PI, 2.0 * M_PI})
+    for (const std::size_t beams : {1, 2, 15, 16, 17, 64, 65, 361})
+      expect_decided(world, pattern_of(fan(beams, fov)), 8.0);
+}
+
+/// Beams out of step: the last one nearer than the others, each turned by noise, many in one direction, out of order.
+TEST(HostScene, BeamsOutOfStep) {
+  const world::World world = crowd();
+  trial::Chance chance(3);
+  std::vector<double> short_last = fan(46, M_PI);
+  short_last.back() -= 0.06;
+  expect_decided(world, pattern_of(short_last), 8.0);
+  for (const double turn : {1e-4, 0.01, 0.3}) {
+    std::vector<double> turned = fan(181, 2.0 * M_PI);
+    ScanPattern pattern;
+    std::vector<double> directions;
+    for (double& b : turned) {
+      b += chance.between(-turn, turn);
+      directions.insert(directions.end(), {std::cos(b), std::sin(b)});
+    }
+    pattern.assign(turned, directions, -M_PI, M_PI);
+    EXPECT_GT(pattern.slack, 0.0f);
+    expect_decided(world, pattern, 8.0);
+  }
+}
+
+TEST(HostScene, EveryInstructionSetGivesTheSameBits) {
+  const world::World world = crowd();
+  const ScanPattern pattern = pattern_of(fan(361, M_PI));
+  Pose X = world.movers[0].X_WM;
+  X.z = 0.1;
+  const Scan expected = scan(world, X, 0, pattern, 8.0);
+  const std::int64_t all = hwy::SupportedTargets();
+  int tried = 0;
+  for (std::int64_t left = all; left != 0; left &= left - 1) {
+    hwy::SetSupportedTargetsForTest(left & -left);
+    hwy::GetChosenTarget().DeInit();  // looked up again by the next call
+    EXPECT_EQ(scan(world, X, 0, pattern, 8.0), expected) << vector_instructions();
+    ++tried;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+  EXPECT_GE(tried, 2) << "the fallback and at least one other";
+}
+
+TEST(HostScene, CellsAreListedOnce) {
+  const world::World world = crowd();
+  base::Workers workers(2);
+  HostScene scene(world, workers);
+  const std::uint32_t family = scene.add_family({0.1, 8.0, 0.0, M_PI});
+  EXPECT_EQ(scene.add_family({0.1, 8.0, 0.0, 0.1}), family) << "one height, one range";
+  EXPECT_NE(scene.add_family({0.1, 4.0, 0.0, M_PI}), family);
+  const Viewpoint views[] = {
+      {family, 0, {0.1, 0.1, 0.1, 0.0}}, {family, 1, {0.9, 0.9, 0.1, 1.0}}, {family, 2, {1.1, 0.1, 0.1, 0.0}}};
+  scene.place(poses_of(world));
+  scene.prepare(views);
+  EXPECT_EQ(scene.cells_built(), 2u) << "cells of a metre at 8 m";
+  scene.prepare(views);
+  EXPECT_EQ(scene.cells_built(), 2u);
+}
+
+TEST(MoverTables, MoversOfOneShapeShareItsBlocks) {
+  world::World world;
+  for (int i = 0; i < 5; ++i) scenes::add_robot(world, {2.0 * i, 0.0, 0.0, 0.3 * i}, scenes::laser());
+  MoverTables movers(world);
+  const OutlineTable& outlines = movers.outlines(movers.watch_height(0.1));
+  EXPECT_EQ(outlines.blocks.size(), 2u) << "16 edges outward, 16 inward";
+  EXPECT_EQ(outlines.of_mover[4].first, outlines.of_mover[0].first);
+  const OutlineTable& above = movers.outlines(movers.watch_height(100.0));
+  EXPECT_EQ(above.of_mover[0].all, 0u) << "nothing so high";
+}
+
+/// A mover that is gone is in no cell; what is left is found where it is.
+TEST(MoverTables, MoversThatAreGoneAreNowhere) {
+  world::World world;
+  for (int i = 0; i < 3; ++i) scenes::add_robot(world, {5.0 * i, 0.0, 0.0, 0.0}, scenes::laser());
+  MoverTables movers(world);
+  movers.watch_height(0.1);
+  base::Workers workers(1);
+  std::vector<ExactSegment> exact(movers.segments());
+  std::vector<Pose> poses = poses_of(world);
+  poses[1].x = std::nan("");
+  movers.place(poses, workers, exact);
+  EXPECT_EQ(movers.grid().first.back(), 2u);
+  EXPECT_EQ(movers.grid().low.x, 0.0);
+  for (Pose& X : poses) X.x = std::nan("");
+  movers.place(poses, workers, exact);
+  EXPECT_EQ(movers.grid().first.back(), 0u) << "all of them";
+}
+
+}  // namespace
+}  // namespace sf::raycast
