@@ -31,9 +31,8 @@ using BeamKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 
 Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<Fan> f)
     : workers(site.workers), seed(site.seed), noise(site.noise), host(world, site.workers), fans(std::move(f)) {
-  const bool on_host =
-      site.scene.caster == Caster::host || (site.scene.caster == Caster::automatic && site.device.facts().software);
-  if (!on_host) scene = std::make_unique<Scene>(world, site.device, site.workers, site.scene, carriers_of(fans));
+  if (caster_for(site.device.facts().software, site.scene.caster) == Caster::vulkan)
+    scene = std::make_unique<Scene>(world, site.device, site.workers, site.scene, carriers_of(fans));
   plan(world);
   scratch.resize(workers.threads());
   turned.resize(workers.threads());

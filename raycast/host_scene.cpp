@@ -17,8 +17,9 @@ constexpr std::uint32_t kFirstCells = 256, kFirstBlocks = 1u << 11;
 /// [blocks] 640 MiB: a cell for which there is no room is listed anew by each scan.
 constexpr std::uint32_t kMostBlocks = 1u << 21;
 
-/// [m] An eighth of the range: smaller cells cost more to make than they save where robots drive.
-double cell_size(double range) { return std::clamp(range / 8.0, 1e-3, 4.0); }
+/// [m] An eighth of the range, and not less than 0.25 m or the range: smaller cells cost more to make than they save
+/// where robots drive.
+double cell_size(double range) { return std::clamp(range / 8.0, std::clamp(range, 1e-3, 0.25), 4.0); }
 
 }  // namespace
 

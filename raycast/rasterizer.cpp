@@ -209,8 +209,12 @@ bool is_open(const Scratch& s, const ScanPattern& pattern, float low, float high
   const auto from = static_cast<std::int32_t>(std::max(std::floor(low), 0.0f)) & ~(step - 1);
   const auto to = static_cast<std::int32_t>(std::min(std::ceil(high), last));
   const VF inverse = constant(distance > 1e-6f ? 1.0001f / distance : 1e30f);
-  for (std::int32_t j = from; j <= to; j += step)
-    if (!hn::AllFalse(kF, load(&s.near_low[j]) < inverse)) return true;
+  const VF first = constant(low), end = constant(high);
+  for (std::int32_t j = from; j <= to; j += step) {
+    const VF place = load(&pattern.place[j]);
+    const MF touched = hn::And(place >= first, place <= end);
+    if (!hn::AllFalse(kF, hn::And(touched, load(&s.near_low[j]) < inverse))) return true;
+  }
   return false;
 }
 

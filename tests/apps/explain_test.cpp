@@ -11,14 +11,15 @@ namespace {
 TEST(Explain, SaysWhatIsBuiltAndWhatIsNot) {
   const Outcome outcome = run_program({"explain", our_world("simville/simville.world")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  for (const char* text : {"laser: 6 sensors on 6 robots", "magnets summed", "sector lists", "heard alone",
+  for (const char* text : {"laser: 6 sensors on 6 robots", "magnets summed", "caster", "heard alone",
                            "none: it is read on the host", "not built", "wall segments"})
     EXPECT_NE(outcome.out.find(text), std::string::npos) << text << "\n" << outcome.out;
 }
 
 /// Lasers of 181 beams: what is built for them and what they cost, in whole numbers where these are known.
 TEST(Explain, AsJson) {
-  const Outcome outcome = run_program({"explain", our_world("rooms.world"), "--robots", "3", "--json"});
+  const Outcome outcome =
+      run_program({"explain", our_world("rooms.world"), "--robots", "3", "--caster", "vulkan", "--json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const Json json(outcome.out);
   ASSERT_EQ(json.size("/kinds"), 1u);
@@ -29,7 +30,8 @@ TEST(Explain, AsJson) {
   EXPECT_EQ(json.number("/kinds/0/readings_per_tick"), 3);
   EXPECT_EQ(json.number("/kinds/0/rays"), 3 * 181 * json.number("/ticks"));
   EXPECT_GT(json.number("/kinds/0/bytes"), 0);
-  EXPECT_GT(json.size("/kinds/0/kernels"), 0u);
+  EXPECT_EQ(json.text("/caster"), "Vulkan kernels");
+  EXPECT_EQ(json.text("/kinds/0/kernels/0"), "laser");
   double held = 0.0;
   for (std::size_t i = 0; i < json.size("/kinds/0/tables"); ++i)
     held += json.number("/kinds/0/tables/" + std::to_string(i) + "/bytes");
@@ -45,7 +47,20 @@ TEST(Explain, AsJson) {
   EXPECT_NE(outcome.out.find("magnet"), std::string::npos) << "no magnets, so nothing is built for them";
 }
 
-/// Lanes of four beams are counted; the text has their share of all beams.
+/// Where the host casts there is no kernel for it. A caster that there is not is refused.
+TEST(Explain, TheCasterIsAsAsked) {
+  const Outcome host =
+      run_program({"explain", our_world("rooms.world"), "--robots", "2", "--caster", "host", "--json"});
+  EXPECT_EQ(host.code, 0) << host.err;
+  const Json json(host.out);
+  EXPECT_EQ(json.text("/caster").rfind("host, ", 0), 0u);
+  EXPECT_EQ(json.size("/kinds/0/kernels"), 0u);
+  const Outcome wrong = run_program({"explain", our_world("rooms.world"), "--caster", "gpu"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.err.find("--caster: gpu not in {auto,vulkan,host}"), std::string::npos) << wrong.err;
+}
+
+/// Beams in doubt are counted; the text has their share of all.
 TEST(Explain, SaysHowManyBeamsAreInDoubt) {
   const Words words{"explain", our_world("cave.world"), "--robots", "2"};
   Words as_json = words;

@@ -57,7 +57,8 @@ TEST(PacketsPage, ItsDecoderReadsItsExamples) {
         "1432778632, 'ranges': [1.0, 0.25, 8.0]}",
         "'total': 312, 'first': 310, 'part': 1, 'parts': 2, 'ranges': [81.9175, inf]", "'distance_m': 0.25", ", 767)]",
         "'rows': [(None, None, None, 3)]", "'words': (1, 2315255808)", "'to': 1432778632, 'token': 195948557",
-        "neighbours {'type': 140, 'robot': 3, ", "'pose': (1.5, -2.25, 0.0, 0.5)", "'robot': 9, ", "'pose': (3.0, 0.0, "})
+        "neighbours {'type': 140, 'robot': 3, ", "'pose': (1.5, -2.25, 0.0, 0.5)", "'robot': 9, ",
+        "'pose': (3.0, 0.0, "})
     EXPECT_NE(out.find(said), std::string::npos) << said << " is not in\n" << out;
 }
 
