@@ -21,6 +21,9 @@ constexpr std::uint32_t kMostBlocks = 1u << 21;
 /// where robots drive.
 double cell_size(double range) { return std::clamp(range / 8.0, std::clamp(range, 1e-3, 0.25), 4.0); }
 
+/// Rings in which distances double: segments of one are listed by bearing, so that blocks are narrow and can be hidden.
+constexpr double kRings = 2.0;
+
 }  // namespace
 
 struct HostScene::FamilyTables {
@@ -30,12 +33,16 @@ struct HostScene::FamilyTables {
   std::uint32_t height = 0;
 };
 
+/// A segment seen from its right, relative to a cell's centre.
+struct HostScene::Found {
+  Vec2 a, b;
+  std::uint32_t row;
+  double nearest;        ///< [m] to any viewer
+  double bearing, half;  ///< [rad] where viewers see it
+  int ring;              ///< steps of distance; in each, by bearing
+};
+
 struct HostScene::Thread {
-  struct Found {
-    double nearest;
-    Vec2 a, b;
-    std::uint32_t row;
-  };
   Rasterizer rasterizer;
   Sight::Nearby nearby;
   std::vector<Found> facing, behind;
@@ -126,6 +133,43 @@ void HostScene::find_cells() {
   missing_.erase(std::unique(missing_.begin(), missing_.end()), missing_.end());
 }
 
+/// @param radius [m] of the disc that holds all viewers
+HostScene::Found HostScene::found(Vec2 a, Vec2 b, std::uint32_t row, double radius) {
+  Found f{a, b, row, std::max(0.0, world::distance({}, a, b) - radius), 0.0, 2.0 * M_PI, -1};
+  const double distance_a = length(a), distance_b = length(b);
+  if (f.nearest <= 0.0 || distance_a <= radius || distance_b <= radius) return f;
+  const double bearing_a = std::atan2(a.y, a.x), turn = std::atan2(cross(a, b), dot(a, b));
+  const double wide_a = std::asin(radius / distance_a), wide_b = std::asin(radius / distance_b);
+  const double low = std::min(-wide_a, turn - wide_b), high = std::max(wide_a, turn + wide_b);
+  f.half = 0.5 * (high - low);
+  f.bearing = std::remainder(bearing_a + 0.5 * (low + high), 2.0 * M_PI);
+  f.ring = static_cast<int>(std::floor(std::log2((f.nearest + radius) / radius) * kRings));
+  return f;
+}
+
+/// Appends `found` in order of rings and bearings, with what all of a block have in common.
+void HostScene::add_blocks(std::vector<Found>& found, std::vector<SegmentBlock>& blocks) {
+  std::sort(found.begin(), found.end(), [](const Found& p, const Found& q) {
+    return std::tie(p.ring, p.bearing, p.row, p.a.x, p.a.y) < std::tie(q.ring, q.bearing, q.row, q.a.x, q.a.y);
+  });
+  std::uint32_t used = kBlock;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    append(blocks, used, found[i].a, found[i].b, found[i].row);
+    if (used < kBlock && i + 1 < found.size()) continue;
+    const std::span<const Found> own = std::span(found).subspan(i + 1 - used, used);
+    double low = 0.0, high = 0.0, nearest = own[0].nearest;
+    for (const Found& f : own) {
+      const double offset = std::remainder(f.bearing - own[0].bearing, 2.0 * M_PI);
+      low = std::min(low, offset - f.half), high = std::max(high, offset + f.half);
+      nearest = std::min(nearest, f.nearest);
+    }
+    SegmentBlock& block = blocks.back();
+    block.nearest = std::nextafter(static_cast<float>(nearest), 0.0f);
+    block.bearing = static_cast<float>(own[0].bearing + 0.5 * (low + high));
+    block.half = static_cast<float>(0.5 * (high - low));
+  }
+}
+
 /// Lists what may be met from a cell, into the thread's blocks.
 HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
   const FamilyTables& family = *families_[static_cast<std::size_t>(key.family / 2)];
@@ -142,25 +186,18 @@ HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
     Vec2 a = s.a - centre, b = s.b - centre;
     if (s.solid_left && world::distance({}, a, b) <= close) cell.uniform = false;
     if (!clip(a, b, family.shape.reach())) continue;
-    const double nearest = std::max(0.0, world::distance({}, a, b) - radius);
     // The cell's signed distance from the segment's line: positive on its left.
     const Vec2 e = s.b - s.a;
     const double side = cross(e, centre - s.a) / length(e);
     const bool both = both_sides || !s.solid_left;
-    if (side < radius) t.facing.push_back({nearest, a, b, s.row});
-    if (side > -radius && both) t.facing.push_back({nearest, b, a, s.row});
-    if (side >= radius && !both) t.behind.push_back({nearest, a, b, s.row});
+    if (side < radius) t.facing.push_back(found(a, b, s.row, radius));
+    if (side > -radius && both) t.facing.push_back(found(b, a, s.row, radius));
+    if (side >= radius && !both) t.behind.push_back(found(a, b, s.row, radius));
   }
-  const auto nearer = [](const Thread::Found& p, const Thread::Found& q) {
-    return p.nearest != q.nearest ? p.nearest < q.nearest : p.row < q.row;
-  };
-  std::sort(t.facing.begin(), t.facing.end(), nearer);
   t.blocks.clear();
-  std::uint32_t used = 0;
-  for (const Thread::Found& f : t.facing) append(t.blocks, used, f.a, f.b, f.row);
+  add_blocks(t.facing, t.blocks);
   cell.facing = static_cast<std::uint32_t>(t.blocks.size());
-  used = kBlock;
-  for (const Thread::Found& f : t.behind) append(t.blocks, used, f.a, f.b, f.row);
+  add_blocks(t.behind, t.blocks);
   cell.all = static_cast<std::uint32_t>(t.blocks.size());
   return cell;
 }
@@ -214,6 +251,7 @@ void HostScene::scan(std::size_t i, double range_min, double least_sine, bool si
   const Vec2 origin{view.X_WS.x, view.X_WS.y};
   ScanView from;
   from.origin = origin;
+  from.yaw = view.X_WS.yaw;
   from.heading = {std::cos(view.X_WS.yaw), std::sin(view.X_WS.yaw)};
   from.offset = origin - centre;
   from.range_max = family.family.range;

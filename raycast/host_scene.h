@@ -40,6 +40,7 @@ class HostScene {
  private:
   struct FamilyTables;
   struct Thread;
+  struct Found;
   /// Blocks of one cell: those that face it, then those that do not, which only decide ties at corners.
   struct Cell {
     std::uint32_t first = 0, facing = 0, all = 0;
@@ -49,6 +50,8 @@ class HostScene {
   base::Vec2 centre_of(const CellKey& key) const;
   void find_cells();
   void build_missing();
+  static Found found(base::Vec2 a, base::Vec2 b, std::uint32_t row, double radius);
+  static void add_blocks(std::vector<Found>& found, std::vector<SegmentBlock>& blocks);
   Cell collect(const CellKey& key, Thread& thread) const;
 
   base::Workers& workers_;

@@ -60,7 +60,7 @@ struct Projection {
   VF heading_cos, heading_sin;
   VF per_radian, middle, slack, turn;
   VF band;
-  float last, full;
+  float last, full, yaw;
   bool narrow;
   VF edge_cos, edge_sin;
 };
@@ -76,6 +76,7 @@ Projection projection_of(const ScanView& view, const ScanPattern& pattern) {
           constant(view.band),
           static_cast<float>(pattern.beams - 1),
           turn,
+          static_cast<float>(std::remainder(view.yaw, 2.0 * M_PI)),
           pattern.narrow,
           constant(pattern.edge_cos),
           constant(pattern.edge_sin)};
@@ -191,16 +192,6 @@ void draw_from(Scratch& s, const ScanPattern& pattern, std::size_t first_live) {
   for (std::size_t q = first_live; q < s.live.size(); ++q) draw(s, pattern, s.live[q]);
 }
 
-void draw_walls(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
-                std::span<const SegmentBlock> walls) {
-  const VF ox = constant(static_cast<float>(view.offset.x)), oy = constant(static_cast<float>(view.offset.y));
-  for (const SegmentBlock& block : walls)
-    for (std::uint32_t k = 0; k < kBlock; k += lanes())
-      project(s, p, load(block.ax + k) - ox, load(block.ay + k) - oy, load(block.ex + k), load(block.ey + k),
-              block.row + k, 0);
-  draw_from(s, pattern, 0);
-}
-
 /// Whether some beam of [low, high] may see something nearer than `distance`.
 bool is_open(const Scratch& s, const ScanPattern& pattern, float low, float high, float distance) {
   const auto last = static_cast<float>(pattern.beams - 1);
@@ -223,6 +214,28 @@ bool is_open(const Scratch& s, const Projection& p, const ScanPattern& pattern, 
   return is_open(s, pattern, near.low, near.high, near.distance) ||
          is_open(s, pattern, near.low - p.full, near.high - p.full, near.distance) ||
          is_open(s, pattern, near.low + p.full, near.high + p.full, near.distance);
+}
+
+/// Whether all of a block's segments are out of view or behind what is drawn.
+bool is_hidden(const Scratch& s, const Projection& p, const ScanPattern& pattern, const SegmentBlock& block) {
+  if (block.half > 3.0f) return false;
+  const float turned = block.bearing - p.yaw;  // within two turns
+  const float place = (turned - 6.2831853f * std::round(turned * 0.15915494f)) * pattern.per_radian + pattern.middle;
+  const float wide = (block.half + 4e-6f) * pattern.per_radian + pattern.slack + 0.01f;
+  return !is_open(s, p, pattern, {block.nearest, 0, place - wide, place + wide});
+}
+
+void draw_walls(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
+                std::span<const SegmentBlock> walls) {
+  const VF ox = constant(static_cast<float>(view.offset.x)), oy = constant(static_cast<float>(view.offset.y));
+  for (const SegmentBlock& block : walls) {
+    if (is_hidden(s, p, pattern, block)) continue;
+    const std::size_t first_live = s.live.size();
+    for (std::uint32_t k = 0; k < kBlock; k += lanes())
+      project(s, p, load(block.ax + k) - ox, load(block.ay + k) - oy, load(block.ex + k), load(block.ey + k),
+              block.row + k, 0);
+    draw_from(s, pattern, first_live);
+  }
 }
 
 /// Lists the movers of one row of cells that are in reach, in view and not behind walls.

@@ -19,6 +19,10 @@ struct SegmentBlock {
   float ax[kBlock], ay[kBlock];  ///< [m] start
   float ex[kBlock], ey[kBlock];  ///< [m] extent
   std::uint32_t row[kBlock];     ///< of the exact segment, from the cell's or the mover's first
+  // Where all of them lie, for any viewer in the cell.
+  float nearest = 0.0f;  ///< [m] at least
+  float bearing = 0.0f;  ///< [rad] in the world
+  float half = 4.0f;     ///< [rad] to either side of it; more than pi: all round
 };
 
 /// Appends segments to blocks, one at a time. `rows` counts places used in the last block.
@@ -69,6 +73,7 @@ struct MoverGrid {
 struct ScanView {
   base::Vec2 origin;        ///< [m] world
   base::Vec2 heading;       ///< unit vector
+  double yaw = 0.0;         ///< [rad] of the heading
   base::Vec2 offset;        ///< [m] of the origin from the frame of the walls' blocks
   double range_max = 0.0;   ///< [m]
   double range_min = 0.0;   ///< [m]
