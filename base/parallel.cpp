@@ -9,6 +9,18 @@
 
 namespace sf::base {
 
+namespace {
+
+constexpr int kTurnsAwake = 1000;  ///< some 20 us
+
+void pause() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
+
+}  // namespace
+
 struct Workers::State {
   std::mutex lock;
   std::condition_variable wake;
@@ -18,8 +30,9 @@ struct Workers::State {
   std::size_t count = 0;
   std::size_t piece = 1;
   std::atomic<std::size_t> next{0};
-  unsigned round = 0;
-  unsigned busy = 0;
+  std::atomic<unsigned> round{0};
+  unsigned busy = 0;  ///< threads at the job, the caller not among them
+  bool open = false;  ///< whoever wakes may still join the job
   bool stop = false;
 
   void work(unsigned thread) {
@@ -30,14 +43,21 @@ struct Workers::State {
     }
   }
 
+  /// The next job of a tick follows at once, sooner than a sleeping thread wakes.
+  void wait_awake(unsigned seen) const {
+    for (int turn = 0; turn < kTurnsAwake && round.load(std::memory_order_relaxed) == seen; ++turn) pause();
+  }
+
   void serve(unsigned thread) {
     unsigned seen = 0;
     for (;;) {
+      wait_awake(seen);
       {
         std::unique_lock guard(lock);
-        wake.wait(guard, [&] { return stop || round != seen; });
+        wake.wait(guard, [&] { return stop || (open && round != seen); });
         if (stop) return;
         seen = round;
+        ++busy;
       }
       work(thread);
       const std::scoped_lock guard(lock);
@@ -74,12 +94,14 @@ void Workers::run_job(std::size_t count, std::size_t piece, Job job) {
     s.count = count;
     s.piece = std::max<std::size_t>(1, piece);
     s.next = 0;
-    s.busy = static_cast<unsigned>(s.threads.size());
+    s.open = true;
     ++s.round;
   }
   s.wake.notify_all();
   s.work(0);
+  // Nothing is left: threads that have not woken are not waited for.
   std::unique_lock guard(s.lock);
+  s.open = false;
   s.done.wait(guard, [&] { return s.busy == 0; });
 }
 

@@ -229,22 +229,23 @@ void Casts::Tables::scan_on_host(std::size_t k, unsigned thread) {
   const auto lane_verdicts = verdicts->host<std::uint32_t>().subspan(row.out, lanes);
   std::fill(lane_verdicts.begin(), lane_verdicts.end(), 0u);
   if (row.plan.packed) {
-    host.scan(k, fan.laser.range_min, kLeastSine, fan.single, pattern, thread, {out, met, own.grazes.data()});
+    const bool grazes =
+        host.scan(k, fan.laser.range_min, kLeastSine, fan.single, pattern, thread, {out, met, own.grazes.data()});
     // Places without a beam repeat the last one.
     std::fill(out + beams, out + places, out[beams - 1]);
     std::fill(met + beams, met + places, met[beams - 1]);
-    for (std::size_t b = 0; b < beams; ++b)
+    for (std::size_t b = 0; grazes && b < beams; ++b)
       if (own.grazes[b] != 0) lane_verdicts[b / SF_BEAMS_PER_LANE] |= SF_GRAZES << b % SF_BEAMS_PER_LANE;
     return;
   }
   own.ranges.resize(beams);
   own.models.resize(beams);
-  host.scan(k, fan.laser.range_min, kLeastSine, fan.single, pattern, thread,
-            {own.ranges.data(), own.models.data(), own.grazes.data()});
+  const bool grazes = host.scan(k, fan.laser.range_min, kLeastSine, fan.single, pattern, thread,
+                                {own.ranges.data(), own.models.data(), own.grazes.data()});
   for (std::size_t b = 0; b < beams; ++b) {
     std::fill_n(out + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own.ranges[b]);
     std::fill_n(met + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own.models[b]);
-    if (own.grazes[b] != 0) lane_verdicts[b] |= SF_GRAZES;
+    if (grazes && own.grazes[b] != 0) lane_verdicts[b] |= SF_GRAZES;
   }
 }
 

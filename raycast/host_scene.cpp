@@ -238,7 +238,7 @@ void HostScene::prepare(std::span<const Viewpoint> views) {
     if (slots_[i] == CellPool::kNone) slots_[i] = pool_.slot_of(keys_[i]);
 }
 
-void HostScene::scan(std::size_t i, double range_min, double least_sine, bool single, const ScanPattern& pattern,
+bool HostScene::scan(std::size_t i, double range_min, double least_sine, bool single, const ScanPattern& pattern,
                      unsigned thread, const ScanOutput& out) {
   Thread& t = *threads_[thread];
   const Viewpoint& view = views_[i];
@@ -270,7 +270,7 @@ void HostScene::scan(std::size_t i, double range_min, double least_sine, bool si
   scene.headings = movers_.headings();
   scene.first_rows = movers_.first_rows();
   scene.self = view.self;
-  t.rasterizer.scan(from, pattern, scene, out);
+  return t.rasterizer.scan(from, pattern, scene, out);
 }
 
 ScanCounts HostScene::counts() const {

@@ -31,7 +31,8 @@ class HostScene {
   /// Makes the lists that `views` need.
   void prepare(std::span<const Viewpoint> views);
   /// Scans from the i-th view of the last `prepare`. @param thread of the workers
-  void scan(std::size_t i, double range_min, double least_sine, bool single, const ScanPattern& pattern,
+  /// @return whether any beam grazes: `out.grazes` is filled in only then
+  bool scan(std::size_t i, double range_min, double least_sine, bool single, const ScanPattern& pattern,
             unsigned thread, const ScanOutput& out);
 
   std::uint64_t cells_built() const { return pool_.built(); }

@@ -360,17 +360,25 @@ bool find_runs(Scratch& s, std::uint32_t beams) {
 }
 
 /// Ranges of beams [first, end) that meet `g`, as `decide` has them.
-inline void measure(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ExactSegment& g,
-                    std::uint32_t first, std::uint32_t end) {
+inline void measure(const ScanView& view, const ScanPattern& pattern, const ExactSegment& g, std::uint32_t first,
+                    std::uint32_t end, double* ranges) {
   const double wx = g.ax - view.origin.x, wy = g.ay - view.origin.y;
   const double ex = g.bx - g.ax, ey = g.by - g.ay;
   const VD above = hn::Set(kD, ex * wy - ey * wx), dx = hn::Set(kD, ex), dy = hn::Set(kD, ey);
   const VD c = hn::Set(kD, view.heading.x), sn = hn::Set(kD, view.heading.y);
   const VD least = hn::Set(kD, std::max(view.range_min, 0.0));
-  for (std::uint32_t j = first; j < end; j += static_cast<std::uint32_t>(hn::Lanes(kD))) {
+  const auto step = static_cast<std::uint32_t>(hn::Lanes(kD));
+  for (std::uint32_t j = first; j < end; j += step) {
     const VD bc = hn::LoadU(kD, &pattern.cos64[j]), bs = hn::LoadU(kD, &pattern.sin64[j]);
     const VD x = c * bc - sn * bs, y = c * bs + sn * bc;
-    hn::StoreU(hn::Max(above / (dx * y - dy * x), least), kD, &s.ranges[j]);
+    const VD range = hn::Max(above / (dx * y - dy * x), least);
+    if (j + step <= pattern.beams) {
+      hn::StoreU(range, kD, &ranges[j]);  // behind `end` the next run follows
+    } else {
+      HWY_ALIGN double last[kBlock];
+      hn::Store(range, kD, last);
+      std::copy(last, last + (pattern.beams - j), &ranges[j]);
+    }
   }
 }
 
@@ -389,15 +397,16 @@ void scan(Scratch& s, const ScanView& view, const ScanPattern& pattern, const Sc
 }
 
 /// The same ranges in 32 bits.
-void measure_in_32_bits(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ExactSegment& g,
-                        std::uint32_t first, std::uint32_t end) {
+void measure_in_32_bits(const ScanView& view, const ScanPattern& pattern, const ExactSegment& g, std::uint32_t first,
+                        std::uint32_t end, double* ranges) {
   for (std::uint32_t j = first; j < end; ++j) {
     const float t = measure_single(g, view.origin, direction_of(view, pattern, j), static_cast<float>(view.range_max));
-    if (t >= 0.0f) s.ranges[j] = std::max(std::min(static_cast<double>(t), view.range_max), view.range_min);
+    if (t >= 0.0f) ranges[j] = std::max(std::min(static_cast<double>(t), view.range_max), view.range_min);
   }
 }
 
-bool answer(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene) {
+bool answer(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
+            const ScanOutput& out) {
   const bool doubt = find_runs(s, pattern.beams);
   std::uint32_t first = 0;
   for (std::size_t w = 0; w < s.ends.size(); ++w)
@@ -406,11 +415,11 @@ bool answer(Scratch& s, const ScanView& view, const ScanPattern& pattern, const 
       const std::int32_t k = s.winner[first];
       const std::uint32_t row = k < 0 ? SF_NO_HIT : s.row[static_cast<std::uint32_t>(k)];
       if (k < 0)
-        std::fill(&s.ranges[first], &s.ranges[end], std::max(view.range_max, view.range_min));
+        std::fill(&out.ranges[first], &out.ranges[end], std::max(view.range_max, view.range_min));
       else
-        measure(s, view, pattern, scene.exact[row], first, end);
-      if (k >= 0 && view.single) measure_in_32_bits(s, view, pattern, scene.exact[row], first, end);
-      std::fill(&s.models[first], &s.models[end], k < 0 ? SF_NO_HIT : scene.models[row]);
+        measure(view, pattern, scene.exact[row], first, end, out.ranges);
+      if (k >= 0 && view.single) measure_in_32_bits(view, pattern, scene.exact[row], first, end, out.ranges);
+      std::fill(&out.models[first], &out.models[end], k < 0 ? SF_NO_HIT : scene.models[row]);
       first = end;
     }
   return doubt;
@@ -433,9 +442,11 @@ std::uint32_t crossed_by(const SegmentBlock& block, base::Vec2 from, base::Vec2 
   return found;
 }
 
-bool scan_all(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene) {
+/// @return whether any beam is in doubt
+bool scan_all(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
+              const ScanOutput& out) {
   scan(s, view, pattern, scene);
-  return answer(s, view, pattern, scene);
+  return answer(s, view, pattern, scene, out);
 }
 
 const char* instructions() { return hwy::TargetName(HWY_TARGET); }
@@ -454,7 +465,6 @@ void Rasterizer::Scratch::begin(std::uint32_t beams) {
   const std::size_t padded = std::size_t{beams} + 2 * kBlock;
   if (near_low.size() < padded) {
     near_low.resize(padded), near_high.resize(padded), others.resize(padded), winner.resize(padded);
-    ranges.resize(padded), models.resize(padded);
   }
   ends.resize(beams / 64 + 1);
   doubts.resize(beams / 64 + 1);
@@ -502,27 +512,28 @@ Decision decide_all(const Rasterizer::Scratch& s, const ScanView& view, const Sc
 
 }  // namespace
 
-void Rasterizer::scan(const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, const ScanOutput& out) {
+bool Rasterizer::scan(const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, const ScanOutput& out) {
   Scratch& s = *scratch_;
-  const bool doubt = HWY_DYNAMIC_DISPATCH(scan_all)(s, view, pattern, scene);
+  if (!HWY_DYNAMIC_DISPATCH(scan_all)(s, view, pattern, scene, out)) return false;
   std::fill_n(out.grazes, pattern.beams, std::uint8_t{0});
-  std::copy_n(s.ranges.begin(), pattern.beams, out.ranges);
-  std::copy_n(s.models.begin(), pattern.beams, out.models);
-  if (!doubt) return;
+  bool any_grazes = false;
   for (std::size_t w = 0; w < s.doubts.size(); ++w)
     for (std::uint64_t open = s.doubts[w]; open != 0; open &= open - 1) {
       const std::size_t i = 64 * w + static_cast<std::size_t>(__builtin_ctzll(open));
       const base::Vec2 d = direction_of(view, pattern, i);
       Decision best = decide_all(s, view, scene, d);
+      const bool grazes = best.grazes(static_cast<float>(view.least_sine));
       if (view.single && best.id != SF_NO_HIT) {
         const float t = measure_single(scene.exact[best.id], view.origin, d, static_cast<float>(view.range_max));
         if (t >= 0.0f) best.range = std::min(static_cast<double>(t), view.range_max);
       }
       out.ranges[i] = std::max(best.range, view.range_min);
       out.models[i] = best.id == SF_NO_HIT ? SF_NO_HIT : scene.models[best.id];
-      out.grazes[i] = best.grazes(static_cast<float>(view.least_sine)) ? 1 : 0;
+      out.grazes[i] = grazes ? 1 : 0;
+      any_grazes = any_grazes || grazes;
       ++s.counts.doubts;
     }
+  return any_grazes;
 }
 
 const char* vector_instructions() { return HWY_DYNAMIC_DISPATCH(instructions)(); }

@@ -29,7 +29,8 @@ class Rasterizer {
   ~Rasterizer();
   Rasterizer(Rasterizer&&) noexcept;
 
-  void scan(const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, const ScanOutput& out);
+  /// @return whether any beam grazes: `out.grazes` is filled in only then
+  bool scan(const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, const ScanOutput& out);
   const ScanCounts& counts() const;
 
   struct Scratch;

@@ -28,8 +28,6 @@ struct Rasterizer::Scratch {
   std::vector<float> near_low, near_high, others;  ///< [1/m] of the nearest so far, and the most of all others
   std::vector<std::int32_t> winner;                ///< segment, or -1
   std::vector<std::uint64_t> ends, doubts;         ///< a bit a beam
-  std::vector<double> ranges;
-  std::vector<std::uint32_t> models;
 
   // Movers.
   std::vector<NearMover> near;
