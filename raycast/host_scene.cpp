@@ -17,9 +17,12 @@ constexpr std::uint32_t kFirstCells = 256, kFirstBlocks = 1u << 11;
 /// [blocks] 640 MiB: a cell for which there is no room is listed anew by each scan.
 constexpr std::uint32_t kMostBlocks = 1u << 21;
 
-/// [m] An eighth of the range, and not less than 0.25 m or the range: smaller cells cost more to make than they save
-/// where robots drive.
-double cell_size(double range) { return std::clamp(range / 8.0, std::clamp(range, 1e-3, 0.25), 4.0); }
+/// [m] An eighth of the range for a scanner of some hundred beams, more for fewer, and not less than 0.25 m or the
+/// range: smaller cells cost more to make than they save where robots drive.
+double cell_size(double range, std::uint32_t beams) {
+  const double fewer = std::clamp(std::sqrt(361.0 / std::max(1u, beams)), 1.0, 4.0);
+  return std::clamp(fewer * range / 8.0, std::clamp(range, 1e-3, 0.25), 4.0);
+}
 
 /// Rings in which distances double: segments of one are listed by bearing, so that blocks are narrow and can be hidden.
 constexpr double kRings = 2.0;
@@ -81,8 +84,11 @@ std::uint32_t HostScene::add_family(const Family& family) {
     const FamilyTables& known = *families_[i];
     if (known.sight == sight.get() && known.family.range == family.range && known.family.z == family.z) return i;
   }
-  families_.push_back(std::make_unique<FamilyTables>(
-      FamilyTables{family, {cell_size(family.range), family.range, 0.0}, sight.get(), movers_.watch_height(family.z)}));
+  families_.push_back(
+      std::make_unique<FamilyTables>(FamilyTables{family,
+                                                  {cell_size(family.range, family.beams), family.range, 0.0},
+                                                  sight.get(),
+                                                  movers_.watch_height(family.z)}));
   return static_cast<std::uint32_t>(families_.size() - 1);
 }
 

@@ -283,18 +283,11 @@ void find_all_near(Scratch& s, const Projection& p, const ScanView& view, const 
                    const ScanScene& scene) {
   const MoverGrid& grid = *scene.movers;
   const double reach = view.range_max * 1.00001 + grid.largest_radius + 2.0 * static_cast<double>(grid.error);
-  const auto cell_of = [&](double d, int count) {
-    return static_cast<int>(std::clamp(std::floor(d / grid.cell), 0.0, count - 1.0));
-  };
   const base::Vec2 v{view.origin.x - grid.low.x, view.origin.y - grid.low.y};
-  const int x0 = cell_of(v.x - reach, grid.columns), x1 = cell_of(v.x + reach, grid.columns);
-  const int y0 = cell_of(v.y - reach, grid.rows), y1 = cell_of(v.y + reach, grid.rows);
+  const int x0 = grid.column_of(v.x - reach), x1 = grid.column_of(v.x + reach);
   s.near.clear();
-  for (int row = y0; row <= y1; ++row) {
-    const std::size_t cells = static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns);
-    find_near(s, p, view, pattern, scene, grid.first[cells + static_cast<std::size_t>(x0)],
-              grid.first[cells + static_cast<std::size_t>(x1) + 1]);
-  }
+  for (int row = grid.row_of(v.y - reach); row <= grid.row_of(v.y + reach); ++row)
+    find_near(s, p, view, pattern, scene, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
 }
 
 void draw_mover(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
@@ -320,7 +313,6 @@ void draw_mover(Scratch& s, const Projection& p, const ScanView& view, const Sca
 void draw_movers(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
                  const ScanScene& scene) {
   find_all_near(s, p, view, pattern, scene);
-  s.met.clear();
   s.order.clear();
   for (std::uint32_t i = 0; i < s.near.size(); ++i) {
     const float distance = std::max(s.near[i].distance, 0.0f);
@@ -332,10 +324,9 @@ void draw_movers(Scratch& s, const Projection& p, const ScanView& view, const Sc
   for (const std::uint64_t key : s.order) {
     const NearMover& near = s.near[key & 0xFFFFFFFFu];
     if (!is_open(s, p, pattern, near)) continue;
-    s.met.push_back(near.mover);
+    ++s.counts.movers_met;
     draw_mover(s, p, view, pattern, scene, near);
   }
-  s.counts.movers_met += s.met.size();
 }
 
 /// Bits of beams after which another segment is the nearest, and of those in doubt.
@@ -427,7 +418,8 @@ bool answer(Scratch& s, const ScanView& view, const ScanPattern& pattern, const 
 
 /// Segments of a block that direction `d` may cross, those behind the viewer too: a bit each. Start and extent are
 /// turned by `heading` and moved by `from`.
-std::uint32_t crossed_by(const SegmentBlock& block, base::Vec2 from, base::Vec2 heading, base::Vec2 d, float band) {
+inline std::uint32_t crossed_by(const SegmentBlock& block, base::Vec2 from, base::Vec2 heading, base::Vec2 d,
+                                float band) {
   const VF c = constant(static_cast<float>(heading.x)), sn = constant(static_cast<float>(heading.y));
   const VF x = constant(static_cast<float>(from.x)), y = constant(static_cast<float>(from.y));
   const VF dx = constant(static_cast<float>(d.x)), dy = constant(static_cast<float>(d.y)), slip = constant(2.0f * band);
@@ -440,6 +432,73 @@ std::uint32_t crossed_by(const SegmentBlock& block, base::Vec2 from, base::Vec2 
     found |= bits_of(hn::Not(apart)) << k;
   }
   return found;
+}
+
+/// Decides those of a block that beam `d` may cross.
+void meet(const ScanView& view, const ScanScene& scene, const SegmentBlock& block, base::Vec2 from, base::Vec2 heading,
+          std::uint32_t first_row, base::Vec2 d, Decision& best) {
+  for (std::uint32_t open = crossed_by(block, from, heading, d, view.band); open != 0; open &= open - 1) {
+    const std::uint32_t number = block.row[__builtin_ctz(open)];
+    if (number != SF_NO_HIT) decide({scene.exact[first_row + number], first_row + number}, view.origin, d, best);
+  }
+}
+
+void meet_walls(const ScanView& view, const ScanScene& scene, base::Vec2 d, Decision& best) {
+  const auto bearing = static_cast<float>(std::atan2(d.y, d.x));
+  for (const auto& blocks : {scene.walls, scene.behind})
+    for (const SegmentBlock& block : blocks) {
+      const float turned = std::abs(block.bearing - bearing);
+      const float apart = std::min(turned, std::abs(6.2831853f - turned));
+      if (apart > block.half + 1e-5f || static_cast<double>(block.nearest) > best.range) continue;
+      meet(view, scene, block, -1.0 * view.offset, {1.0, 0.0}, 0, d, best);
+    }
+}
+
+/// Lists movers of one row of cells whose discs beam `d` may cross within `range`.
+void find_across(Scratch& s, const ScanView& view, const ScanScene& scene, base::Vec2 d, double range,
+                 std::uint32_t from, std::uint32_t end) {
+  const MoverGrid& grid = *scene.movers;
+  const VF x = constant(static_cast<float>(view.origin.x - grid.low.x));
+  const VF y = constant(static_cast<float>(view.origin.y - grid.low.y));
+  const VF ux = constant(static_cast<float>(d.x)), uy = constant(static_cast<float>(d.y));
+  const VF reach = constant(static_cast<float>(range) * 1.00001f), slip = constant(grid.error + view.band);
+  for (std::uint32_t at = from; at < end; at += lanes()) {
+    const VF dx = load(&grid.x[at]) - x, dy = load(&grid.y[at]) - y;
+    const VF radius = load(&grid.radius[at]) * constant(1.0001f) + slip;
+    const VF along = dx * ux + dy * uy, aside = hn::Abs(dx * uy - dy * ux);
+    const MF across = hn::And(hn::And(aside <= radius, along >= hn::Neg(radius)), along - radius <= reach);
+    std::uint32_t open = bits_of(across);
+    if (end - at < lanes()) open &= (1u << (end - at)) - 1;
+    for (; open != 0; open &= open - 1) {
+      const std::uint32_t mover = grid.mover[at + static_cast<std::uint32_t>(__builtin_ctz(open))];
+      if (mover != scene.self) s.across.push_back(mover);
+    }
+  }
+}
+
+void meet_movers(Scratch& s, const ScanView& view, const ScanScene& scene, base::Vec2 d, Decision& best) {
+  const MoverGrid& grid = *scene.movers;
+  const double margin = grid.largest_radius * 1.001 + 2.0 * static_cast<double>(grid.error);
+  const base::Vec2 from{view.origin.x - grid.low.x, view.origin.y - grid.low.y}, to = from + best.range * d;
+  const int x0 = grid.column_of(std::min(from.x, to.x) - margin), x1 = grid.column_of(std::max(from.x, to.x) + margin);
+  const int y0 = grid.row_of(std::min(from.y, to.y) - margin), y1 = grid.row_of(std::max(from.y, to.y) + margin);
+  s.across.clear();
+  for (int row = y0; row <= y1; ++row)
+    find_across(s, view, scene, d, best.range, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
+  for (const std::uint32_t mover : s.across) {
+    const OutlineTable::Outline& outline = scene.outlines->of_mover[mover];
+    const base::Vec2 place = base::Vec2{scene.poses[mover].x, scene.poses[mover].y} - view.origin;
+    for (std::uint32_t i = outline.first; i < outline.first + outline.all; ++i)
+      meet(view, scene, scene.outlines->blocks[i], place, scene.headings[mover], scene.first_rows[mover], d, best);
+  }
+}
+
+/// A beam against all that lies across it, in 64 bits.
+Decision decide_beam(Scratch& s, const ScanView& view, const ScanScene& scene, base::Vec2 d) {
+  Decision best{view.range_max};
+  meet_walls(view, scene, d, best);
+  if (scene.movers != nullptr) meet_movers(s, view, scene, d, best);
+  return best;
 }
 
 /// @return whether any beam is in doubt
@@ -458,7 +517,7 @@ HWY_AFTER_NAMESPACE();
 namespace sf::raycast {
 
 HWY_EXPORT(scan_all);
-HWY_EXPORT(crossed_by);
+HWY_EXPORT(decide_beam);
 HWY_EXPORT(instructions);
 
 void Rasterizer::Scratch::begin(std::uint32_t beams) {
@@ -469,7 +528,6 @@ void Rasterizer::Scratch::begin(std::uint32_t beams) {
   ends.resize(beams / 64 + 1);
   doubts.resize(beams / 64 + 1);
   live.clear();
-  met.clear();
   used = 0;
 }
 
@@ -489,51 +547,40 @@ const ScanCounts& Rasterizer::counts() const { return scratch_->counts; }
 
 namespace {
 
-/// Decides a beam against all that it may cross.
-Decision decide_all(const Rasterizer::Scratch& s, const ScanView& view, const ScanScene& scene, base::Vec2 d) {
-  Decision best{view.range_max};
-  const auto meet = [&](const SegmentBlock& block, base::Vec2 from, base::Vec2 heading, std::uint32_t first_row) {
-    std::uint32_t open = HWY_DYNAMIC_DISPATCH(crossed_by)(block, from, heading, d, view.band);
-    for (; open != 0; open &= open - 1) {
-      const std::uint32_t number = block.row[__builtin_ctz(open)];
-      if (number != SF_NO_HIT) decide({scene.exact[first_row + number], first_row + number}, view.origin, d, best);
-    }
-  };
-  for (const auto& blocks : {scene.walls, scene.behind})
-    for (const SegmentBlock& block : blocks) meet(block, -1.0 * view.offset, {1.0, 0.0}, 0);
-  for (const std::uint32_t mover : s.met) {
-    const OutlineTable::Outline& outline = scene.outlines->of_mover[mover];
-    const base::Vec2 from = base::Vec2{scene.poses[mover].x, scene.poses[mover].y} - view.origin;
-    for (std::uint32_t i = outline.first; i < outline.first + outline.all; ++i)
-      meet(scene.outlines->blocks[i], from, scene.headings[mover], scene.first_rows[mover]);
+/// Answers beam `i` in 64 bits, against all. @return whether it grazes
+bool answer_beam(Rasterizer::Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
+                 std::size_t i, const ScanOutput& out) {
+  const base::Vec2 d = direction_of(view, pattern, i);
+  Decision best = HWY_DYNAMIC_DISPATCH(decide_beam)(s, view, scene, d);
+  const bool grazes = best.grazes(static_cast<float>(view.least_sine));
+  if (view.single && best.id != SF_NO_HIT) {
+    const float t = measure_single(scene.exact[best.id], view.origin, d, static_cast<float>(view.range_max));
+    if (t >= 0.0f) best.range = std::min(static_cast<double>(t), view.range_max);
   }
-  return best;
+  out.ranges[i] = std::max(best.range, view.range_min);
+  out.models[i] = best.id == SF_NO_HIT ? SF_NO_HIT : scene.models[best.id];
+  out.grazes[i] = grazes ? 1 : 0;
+  return grazes;
 }
 
 }  // namespace
 
 bool Rasterizer::scan(const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, const ScanOutput& out) {
   Scratch& s = *scratch_;
+  bool grazes = false;
+  if (pattern.beams <= kFewBeams) {
+    for (std::size_t i = 0; i < pattern.beams; ++i) grazes |= answer_beam(s, view, pattern, scene, i, out);
+    return grazes;
+  }
   if (!HWY_DYNAMIC_DISPATCH(scan_all)(s, view, pattern, scene, out)) return false;
   std::fill_n(out.grazes, pattern.beams, std::uint8_t{0});
-  bool any_grazes = false;
   for (std::size_t w = 0; w < s.doubts.size(); ++w)
     for (std::uint64_t open = s.doubts[w]; open != 0; open &= open - 1) {
       const std::size_t i = 64 * w + static_cast<std::size_t>(__builtin_ctzll(open));
-      const base::Vec2 d = direction_of(view, pattern, i);
-      Decision best = decide_all(s, view, scene, d);
-      const bool grazes = best.grazes(static_cast<float>(view.least_sine));
-      if (view.single && best.id != SF_NO_HIT) {
-        const float t = measure_single(scene.exact[best.id], view.origin, d, static_cast<float>(view.range_max));
-        if (t >= 0.0f) best.range = std::min(static_cast<double>(t), view.range_max);
-      }
-      out.ranges[i] = std::max(best.range, view.range_min);
-      out.models[i] = best.id == SF_NO_HIT ? SF_NO_HIT : scene.models[best.id];
-      out.grazes[i] = grazes ? 1 : 0;
-      any_grazes = any_grazes || grazes;
+      grazes |= answer_beam(s, view, pattern, scene, i, out);
       ++s.counts.doubts;
     }
-  return any_grazes;
+  return grazes;
 }
 
 const char* vector_instructions() { return HWY_DYNAMIC_DISPATCH(instructions)(); }

@@ -22,6 +22,9 @@
 
 namespace sf::raycast {
 
+/// So few beams are not worth drawing everything around: each is decided alone.
+inline constexpr std::uint32_t kFewBeams = 3;
+
 /// Scratch of one thread.
 class Rasterizer {
  public:

@@ -31,8 +31,8 @@ struct Rasterizer::Scratch {
 
   // Movers.
   std::vector<NearMover> near;
-  std::vector<std::uint64_t> order;  ///< of `near` by distance
-  std::vector<std::uint32_t> met;    ///< movers whose outlines were projected
+  std::vector<std::uint64_t> order;   ///< of `near` by distance
+  std::vector<std::uint32_t> across;  ///< movers whose discs one beam crosses
 
   ScanCounts counts;
 

@@ -2,6 +2,8 @@
 // What a host scan reads: the beams of a sensor, walls by cell, movers by place. Structures of arrays, ready for
 // vectors.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -67,6 +69,14 @@ struct MoverGrid {
   std::vector<float> x, y;    ///< [m] from `low`
   std::vector<float> radius;  ///< [m]
   double largest_radius = 0.0;
+
+  /// Cell of a coordinate from `low` [m]; what lies beyond the grid counts as at its edge.
+  int column_of(double at) const { return static_cast<int>(std::clamp(std::floor(at / cell), 0.0, columns - 1.0)); }
+  int row_of(double at) const { return static_cast<int>(std::clamp(std::floor(at / cell), 0.0, rows - 1.0)); }
+  /// Where the movers of a cell begin; those of the next column follow.
+  std::uint32_t begin_of(int column, int row) const {
+    return first[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
+  }
 };
 
 /// Where a scan looks from, and how far.
