@@ -101,7 +101,8 @@ void measure_lasers(gpu::Device& device, std::vector<Fact>& facts) {
   facts.push_back({"the same, nobody hears them", unheard.ms(), "ms"});
   facts.push_back({"the same, not due", idle.ms(), "ms"});
   facts.push_back({"the same, standing without noise", stands.ms(), "ms"});
-  SF_CHECK(beside.ms() < 1.5 * looks.ms(), "magnets that nobody measures cost something");
+  // A tick of half a millisecond varies by as much as that where the machine is shared.
+  SF_CHECK(beside.ms() < 1.5 * looks.ms() + 0.5, "magnets that nobody measures cost something");
   SF_CHECK(unheard.ms() < 0.1 * looks.ms(), "sensors that nobody hears cost something");
   SF_CHECK(idle.ms() < 0.1 * looks.ms(), "sensors that are not due cost something");
   SF_CHECK(stands.ms() < 0.25 * looks.ms(), "sensors that stand cost something");

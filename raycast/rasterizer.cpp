@@ -171,20 +171,28 @@ inline void draw(Scratch& s, const ScanPattern& pattern, std::uint32_t k) {
   const VF low_sure = constant(s.low_sure[k]), high_sure = constant(s.high_sure[k]);
   const auto name = hn::Set(kI, static_cast<std::int32_t>(k));
   const auto step = static_cast<std::int32_t>(lanes());
-  for (std::int32_t j = s.first[k] & ~(step - 1); j <= s.last[k]; j += step) {
-    const VF place = load(&pattern.place[j]);
+  const std::int32_t last = s.last[k];
+  const float* const places = pattern.place.data();
+  const float* const cosines = pattern.cos32.data();
+  const float* const sines = pattern.sin32.data();
+  float* const nearest_low = s.near_low.data();
+  float* const nearest_high = s.near_high.data();
+  float* const others = s.others.data();
+  std::int32_t* const winners = s.winner.data();
+  for (std::int32_t j = s.first[k] & ~(step - 1); j <= last; j += step) {
+    const VF place = load(places + j);
     const MF any = hn::And(place >= low_any, place <= high_any);
     const MF sure = hn::And(place >= low_sure, place <= high_sure);
-    const VF inverse = a * load(&pattern.cos32[j]) + b * load(&pattern.sin32[j]);
+    const VF inverse = a * load(cosines + j) + b * load(sines + j);
     const VF high = inverse + error, low = inverse - error;
-    const VF near_low = load(&s.near_low[j]), near_high = load(&s.near_high[j]);
+    const VF near_low = load(nearest_low + j), near_high = load(nearest_high + j);
     const MF nearer = hn::And(sure, low > near_low);
     const VF beaten = hn::IfThenElse(nearer, near_high, hn::IfThenElseZero(any, high));
-    store(hn::Max(load(&s.others[j]), beaten), &s.others[j]);
-    store(hn::IfThenElse(nearer, low, near_low), &s.near_low[j]);
-    store(hn::IfThenElse(nearer, high, near_high), &s.near_high[j]);
-    const auto winner = hn::LoadU(kI, &s.winner[j]);
-    hn::StoreU(hn::IfThenElse(hn::RebindMask(kI, nearer), name, winner), kI, &s.winner[j]);
+    store(hn::Max(load(others + j), beaten), others + j);
+    store(hn::IfThenElse(nearer, low, near_low), nearest_low + j);
+    store(hn::IfThenElse(nearer, high, near_high), nearest_high + j);
+    const auto winner = hn::LoadU(kI, winners + j);
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(kI, nearer), name, winner), kI, winners + j);
   }
 }
 
@@ -228,7 +236,9 @@ bool is_hidden(const Scratch& s, const Projection& p, const ScanPattern& pattern
 void draw_walls(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
                 std::span<const SegmentBlock> walls) {
   const VF ox = constant(static_cast<float>(view.offset.x)), oy = constant(static_cast<float>(view.offset.y));
-  for (const SegmentBlock& block : walls) {
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    const SegmentBlock& block = walls[i];
+    __builtin_prefetch(&walls[std::min(i + 3, walls.size() - 1)]);
     if (is_hidden(s, p, pattern, block)) continue;
     const std::size_t first_live = s.live.size();
     for (std::uint32_t k = 0; k < kBlock; k += lanes())
@@ -396,23 +406,33 @@ void measure_in_32_bits(const ScanView& view, const ScanPattern& pattern, const 
   }
 }
 
-bool answer(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
-            const ScanOutput& out) {
-  const bool doubt = find_runs(s, pattern.beams);
+/// Calls `visit(first, end, winner)` for the beams [first, end) of one winner each.
+template <class Visit>
+HWY_INLINE void each_run(const Scratch& s, Visit visit) {
   std::uint32_t first = 0;
   for (std::size_t w = 0; w < s.ends.size(); ++w)
     for (std::uint64_t open = s.ends[w]; open != 0; open &= open - 1) {
       const auto end = static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(__builtin_ctzll(open)) + 1;
-      const std::int32_t k = s.winner[first];
-      const std::uint32_t row = k < 0 ? SF_NO_HIT : s.row[static_cast<std::uint32_t>(k)];
-      if (k < 0)
-        std::fill(&out.ranges[first], &out.ranges[end], std::max(view.range_max, view.range_min));
-      else
-        measure(view, pattern, scene.exact[row], first, end, out.ranges);
-      if (k >= 0 && view.single) measure_in_32_bits(view, pattern, scene.exact[row], first, end, out.ranges);
-      std::fill(&out.models[first], &out.models[end], k < 0 ? SF_NO_HIT : scene.models[row]);
+      visit(first, end, s.winner[first]);
       first = end;
     }
+}
+
+bool answer(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
+            const ScanOutput& out) {
+  const bool doubt = find_runs(s, pattern.beams);
+  each_run(s, [&](std::uint32_t, std::uint32_t, std::int32_t k) {
+    if (k >= 0) __builtin_prefetch(&scene.exact[s.row[static_cast<std::uint32_t>(k)]]);
+  });
+  each_run(s, [&](std::uint32_t first, std::uint32_t end, std::int32_t k) {
+    const std::uint32_t row = k < 0 ? SF_NO_HIT : s.row[static_cast<std::uint32_t>(k)];
+    if (k < 0)
+      std::fill(&out.ranges[first], &out.ranges[end], std::max(view.range_max, view.range_min));
+    else
+      measure(view, pattern, scene.exact[row], first, end, out.ranges);
+    if (k >= 0 && view.single) measure_in_32_bits(view, pattern, scene.exact[row], first, end, out.ranges);
+    std::fill(&out.models[first], &out.models[end], k < 0 ? SF_NO_HIT : scene.models[row]);
+  });
   return doubt;
 }
 

@@ -18,13 +18,13 @@ inline constexpr std::uint32_t kBlock = 16;
 /// Segments seen from their right, in the frame of a cell or a mover. Places without one hold a segment that faces
 /// nobody.
 struct SegmentBlock {
+  // Where all of them lie, for any viewer in the cell.
+  float nearest = 0.0f;          ///< [m] at least
+  float bearing = 0.0f;          ///< [rad] in the world
+  float half = 4.0f;             ///< [rad] to either side of it; more than pi: all round
   float ax[kBlock], ay[kBlock];  ///< [m] start
   float ex[kBlock], ey[kBlock];  ///< [m] extent
   std::uint32_t row[kBlock];     ///< of the exact segment, from the cell's or the mover's first
-  // Where all of them lie, for any viewer in the cell.
-  float nearest = 0.0f;  ///< [m] at least
-  float bearing = 0.0f;  ///< [rad] in the world
-  float half = 4.0f;     ///< [rad] to either side of it; more than pi: all round
 };
 
 /// Appends segments to blocks, one at a time. `rows` counts places used in the last block.
