@@ -1,8 +1,8 @@
 #include "raycast/casts.h"
 
-#include "raycast/casts_tables.h"
-
 #include <bit>
+
+#include "raycast/casts_tables.h"
 
 namespace sf::raycast {
 
@@ -15,8 +15,8 @@ const std::vector<Fan>& Casts::fans() const { return t_->fans; }
 const BeamPlan& Casts::plan(std::uint32_t fan) const { return t_->fan_rows[fan].plan; }
 Work Casts::work() const {
   const Tables& t = *t_;
-  const ScanCounts scans = t.host.counts();
-  Work work{t.rays,      t.doubts_seen + scans.doubts, t.host.cells_built(), 0, scans.movers_near, scans.movers_met,
+  const ScanCounts scans = t.host->counts();
+  Work work{t.rays,      t.doubts_seen + scans.doubts, t.host->cells_built(), 0, scans.movers_near, scans.movers_met,
             t.host_scans};
   if (!t.scene) return work;
   const Scene::Counts scene = t.scene->counts();

@@ -30,10 +30,11 @@ using BeamKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 }  // namespace
 
 Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<Fan> f)
-    : workers(site.workers), seed(site.seed), noise(site.noise), host(world, site.workers), fans(std::move(f)) {
-  if (caster_for(site.device.facts().software, site.scene.caster) == Caster::vulkan)
-    scene = std::make_unique<Scene>(world, site.device, site.workers, site.scene, carriers_of(fans));
+    : workers(site.workers), seed(site.seed), noise(site.noise), families(world), fans(std::move(f)) {
   plan(world);
+  host = std::make_unique<HostScene>(world, families, workers);
+  if (caster_for(site.device.facts().software, site.scene.caster) == Caster::vulkan)
+    scene = std::make_unique<Scene>(world, families, site.device, workers, site.scene, carriers_of(fans));
   scratch.resize(workers.threads());
   turned.resize(workers.threads());
   std::uint32_t beam_lanes = 0;
@@ -70,8 +71,7 @@ void Casts::Tables::plan(const world::World& world) {
     const double turn = noise ? kMostSigmas * fan.laser.noise.angle_sigma : 0.0;
     const Family family{row.height, fan.laser.range_max, row.plan.spread, fan.laser.fov + 2.0 * turn,
                         static_cast<std::uint32_t>(std::min<std::size_t>(beams[fan.mover], 1'000'000))};
-    row.family = host.add_family(family);
-    if (scene) SF_CHECK(scene->add_family(family) == row.family, "both casters number families alike");
+    row.family = families.add(family);
     row.turns = noise && fan.laser.noise.angle_sigma > 0.0;
     any_turns = any_turns || row.turns;
     row.out = out_lanes;
@@ -202,11 +202,11 @@ void Casts::Tables::fill_rows(std::span<RayRow> ray_rows) {
 
 void Casts::Tables::scan_on_host() {
   if (for_host.empty()) return;
-  if (!host_placed) host.place(poses);
+  if (!host_placed) host->place(poses);
   host_placed = true;
   host_views.clear();
   for (const std::uint32_t i : for_host) host_views.push_back(views[i]);
-  host.prepare(host_views);
+  host->prepare(host_views);
   workers.run(for_host.size(), 8, [this](std::size_t first, std::size_t last, unsigned thread) {
     for (std::size_t k = first; k < last; ++k) scan_on_host(k, thread);
   });
@@ -230,7 +230,7 @@ void Casts::Tables::scan_on_host(std::size_t k, unsigned thread) {
   std::fill(lane_verdicts.begin(), lane_verdicts.end(), 0u);
   if (row.plan.packed) {
     const bool grazes =
-        host.scan(k, fan.laser.range_min, kLeastSine, fan.single, pattern, thread, {out, met, own.grazes.data()});
+        host->scan(k, fan.laser.range_min, kLeastSine, fan.single, pattern, thread, {out, met, own.grazes.data()});
     // Places without a beam repeat the last one.
     std::fill(out + beams, out + places, out[beams - 1]);
     std::fill(met + beams, met + places, met[beams - 1]);
@@ -240,8 +240,8 @@ void Casts::Tables::scan_on_host(std::size_t k, unsigned thread) {
   }
   own.ranges.resize(beams);
   own.models.resize(beams);
-  const bool grazes = host.scan(k, fan.laser.range_min, kLeastSine, fan.single, pattern, thread,
-                                {own.ranges.data(), own.models.data(), own.grazes.data()});
+  const bool grazes = host->scan(k, fan.laser.range_min, kLeastSine, fan.single, pattern, thread,
+                                 {own.ranges.data(), own.models.data(), own.grazes.data()});
   for (std::size_t b = 0; b < beams; ++b) {
     std::fill_n(out + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own.ranges[b]);
     std::fill_n(met + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own.models[b]);

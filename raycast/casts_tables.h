@@ -37,9 +37,10 @@ struct Casts::Tables {
   base::Workers& workers;
   std::uint64_t seed;
   bool noise;
-  std::unique_ptr<Scene> scene;  ///< where the device casts
-  HostScene host;                ///< where it does not, or has no room for all that a fan may meet
-  bool host_placed = false;      ///< this tick
+  Families families;
+  std::unique_ptr<Scene> scene;     ///< where the device casts
+  std::unique_ptr<HostScene> host;  ///< where it does not, or has no room for all that a fan may meet
+  bool host_placed = false;         ///< this tick
   std::vector<Fan> fans;
   std::vector<FanRow> fan_rows;
   CastPass exact;

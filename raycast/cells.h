@@ -41,6 +41,7 @@ class CellPool {
   std::uint32_t insert(const CellKey& key, std::uint32_t chunks);
 
   std::uint32_t first_chunk(std::uint32_t slot) const { return slots_[slot].first_page * page_; }
+  std::uint32_t slots() const { return static_cast<std::uint32_t>(slots_.size()); }
   std::uint32_t cells() const { return used_; }   ///< now in the pool
   std::uint64_t built() const { return built_; }  ///< ever inserted
 

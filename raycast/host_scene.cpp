@@ -30,10 +30,8 @@ constexpr double kRings = 2.0;
 }  // namespace
 
 struct HostScene::FamilyTables {
-  Family family;
   CellShape shape;
-  const Sight* sight = nullptr;
-  std::uint32_t height = 0;
+  std::uint32_t height;
 };
 
 /// A segment seen from its right, relative to a cell's centre.
@@ -52,91 +50,30 @@ struct HostScene::Thread {
   std::vector<SegmentBlock> blocks;
 };
 
-HostScene::HostScene(const world::World& world, base::Workers& workers)
+HostScene::HostScene(const world::World& world, const Families& families, base::Workers& workers)
     : workers_(workers),
-      walls_(world.walls),
-      breaks_(height_breaks(walls_)),
+      families_(families),
       movers_(world),
-      pool_(kFirstCells, kFirstBlocks, kPageBlocks),
-      cells_(kFirstCells),
+      cells_(families, cell_size, CellPool(kFirstCells, kFirstBlocks, kPageBlocks)),
+      lists_(kFirstCells),
       blocks_(kFirstBlocks) {
-  for (const world::Segment& s : walls_) {
+  for (std::size_t i = 0; i < families.size(); ++i) {
+    const Family& family = families[i];
+    tables_of_.push_back({{cells_.size_of(i), family.range, 0.0}, movers_.watch_height(family.z)});
+  }
+  for (const world::Segment& s : families.walls()) {
     exact_.push_back({s.a.x, s.a.y, s.b.x, s.b.y});
     models_.push_back(s.model);
   }
-  exact_.resize(walls_.size() + movers_.segments());
+  exact_.resize(exact_.size() + movers_.segments());
   models_.insert(models_.end(), movers_.models().begin(), movers_.models().end());
   for (unsigned i = 0; i < workers.threads(); ++i) threads_.push_back(std::make_unique<Thread>());
 }
 
 HostScene::~HostScene() = default;
 
-std::uint32_t HostScene::add_family(const Family& family) {
-  const auto interval =
-      static_cast<std::size_t>(std::upper_bound(breaks_.begin(), breaks_.end(), family.z) - breaks_.begin());
-  auto& sight = sights_[interval];
-  if (!sight) {
-    world::World view;
-    view.walls = walls_;
-    sight = std::make_unique<Sight>(view, family.z, family.range);
-  }
-  for (std::uint32_t i = 0; i < families_.size(); ++i) {
-    const FamilyTables& known = *families_[i];
-    if (known.sight == sight.get() && known.family.range == family.range && known.family.z == family.z) return i;
-  }
-  families_.push_back(
-      std::make_unique<FamilyTables>(FamilyTables{family,
-                                                  {cell_size(family.range, family.beams), family.range, 0.0},
-                                                  sight.get(),
-                                                  movers_.watch_height(family.z)}));
-  return static_cast<std::uint32_t>(families_.size() - 1);
-}
-
 void HostScene::place(std::span<const Pose> poses) {
-  movers_.place(poses, workers_, std::span(exact_).subspan(walls_.size()));
-}
-
-CellKey HostScene::key_of(const Viewpoint& view) const {
-  const FamilyTables& family = *families_[view.family];
-  CellKey key{2 * std::int64_t{view.family}, static_cast<std::int64_t>(std::floor(view.X_WS.x / family.shape.size)),
-              static_cast<std::int64_t>(std::floor(view.X_WS.y / family.shape.size))};
-  // A cell without a surface is on one side as a whole: whoever stood in it before has found out.
-  const auto known = [&] {
-    const std::uint32_t slot = pool_.slot_of(key);
-    return slot != CellPool::kNone && cells_[slot].uniform;
-  };
-  if (known()) return key;
-  key.family |= 1;
-  if (known() || family.sight->inside_solid({view.X_WS.x, view.X_WS.y})) return key;
-  key.family &= ~std::int64_t{1};
-  return key;
-}
-
-Vec2 HostScene::centre_of(const CellKey& key) const {
-  const double size = families_[static_cast<std::size_t>(key.family / 2)]->shape.size;
-  return {(static_cast<double>(key.x) + 0.5) * size, (static_cast<double>(key.y) + 0.5) * size};
-}
-
-void HostScene::find_cells() {
-  keys_.resize(views_.size());
-  slots_.resize(views_.size());
-  workers_.run(views_.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) {
-      const bool same = i > first && views_[i].family == views_[i - 1].family &&
-                        views_[i].X_WS.x == views_[i - 1].X_WS.x && views_[i].X_WS.y == views_[i - 1].X_WS.y;
-      keys_[i] = same ? keys_[i - 1] : key_of(views_[i]);
-      slots_[i] = same ? slots_[i - 1] : pool_.slot_of(keys_[i]);
-    }
-  });
-  pool_.begin_tick();
-  missing_.clear();
-  for (std::size_t i = 0; i < keys_.size(); ++i)
-    slots_[i] != CellPool::kNone ? pool_.keep(slots_[i]) : missing_.push_back(keys_[i]);
-  const auto order = [](const CellKey& p, const CellKey& q) {
-    return std::tie(p.family, p.x, p.y) < std::tie(q.family, q.x, q.y);
-  };
-  std::sort(missing_.begin(), missing_.end(), order);
-  missing_.erase(std::unique(missing_.begin(), missing_.end()), missing_.end());
+  movers_.place(poses, workers_, std::span(exact_).subspan(families_.walls().size()));
 }
 
 /// @param radius [m] of the disc that holds all viewers
@@ -178,20 +115,19 @@ void HostScene::add_blocks(std::vector<Found>& found, std::vector<SegmentBlock>&
 
 /// Lists what may be met from a cell, into the thread's blocks.
 HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
-  const FamilyTables& family = *families_[static_cast<std::size_t>(key.family / 2)];
-  const Vec2 centre = centre_of(key);
-  const double radius = family.shape.radius();
-  const bool both_sides = key.family % 2 == 1;
-  const double close = radius + 1e-9 * (1.0 + length(centre));
-  Cell cell{0, 0, 0, true};
+  const CellShape& shape = tables_of_[ViewCells::family_of(key)].shape;
+  const Sight& sight = families_.sight(ViewCells::family_of(key));
+  const Vec2 centre = cells_.centre_of(key);
+  const double radius = shape.radius();
+  const bool both_sides = ViewCells::in_solid(key);
+  Cell cell;
   t.facing.clear();
   t.behind.clear();
-  family.sight->near(centre, family.shape.reach(), t.nearby);
+  sight.near(centre, shape.reach(), t.nearby);
   for (const std::uint32_t i : t.nearby.found) {
-    const SightSegment& s = family.sight->segments()[i];
+    const SightSegment& s = sight.segments()[i];
     Vec2 a = s.a - centre, b = s.b - centre;
-    if (s.solid_left && world::distance({}, a, b) <= close) cell.uniform = false;
-    if (!clip(a, b, family.shape.reach())) continue;
+    if (!clip(a, b, shape.reach())) continue;
     // The cell's signed distance from the segment's line: positive on its left.
     const Vec2 e = s.b - s.a;
     const double side = cross(e, centre - s.a) / length(e);
@@ -210,57 +146,58 @@ HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
 
 void HostScene::build_missing() {
   std::mutex lock;
-  std::atomic<bool> no_room{false};  // whoever comes later waits for the pool to grow
-  workers_.run(missing_.size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
+  std::atomic<bool> no_room{false};  // the others wait for the pool to grow
+  workers_.run(cells_.missing().size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
     Thread& t = *threads_[thread];
     for (std::size_t i = first; i < last && !no_room; ++i) {
-      Cell cell = collect(missing_[i], t);
+      const CellKey& key = cells_.missing()[i];
+      Cell cell = collect(key, t);
       std::uint32_t slot;
       {
         const std::scoped_lock guard(lock);
-        slot = pool_.insert(missing_[i], cell.all);
+        slot = cells_.pool().insert(key, cell.all);
       }
       if (slot == CellPool::kNone) {
         no_room = true;
         break;
       }
-      cell.first = pool_.first_chunk(slot);
-      cells_[slot] = cell;
+      cell.first = cells_.pool().first_chunk(slot);
+      lists_[slot] = cell;
+      cells_.note_sides(key, slot, t.nearby);
       std::copy(t.blocks.begin(), t.blocks.end(), blocks_.begin() + static_cast<std::ptrdiff_t>(cell.first));
     }
   });
-  std::erase_if(missing_, [this](const CellKey& key) { return pool_.find(key) != CellPool::kNone; });
+  cells_.forget_found();
 }
 
 void HostScene::prepare(std::span<const Viewpoint> views) {
   views_.assign(views.begin(), views.end());
-  find_cells();
-  for (build_missing(); !missing_.empty() && blocks_.size() < kMostBlocks; build_missing()) {
-    cells_.resize(2 * cells_.size());
+  cells_.find(views, workers_);
+  for (build_missing(); !cells_.missing().empty() && blocks_.size() < kMostBlocks; build_missing()) {
+    lists_.resize(2 * lists_.size());
     blocks_.resize(2 * blocks_.size());
-    pool_.grow(static_cast<std::uint32_t>(cells_.size()), static_cast<std::uint32_t>(blocks_.size()));
+    cells_.grow(static_cast<std::uint32_t>(lists_.size()), static_cast<std::uint32_t>(blocks_.size()));
   }
-  for (std::size_t i = 0; i < keys_.size(); ++i)
-    if (slots_[i] == CellPool::kNone) slots_[i] = pool_.slot_of(keys_[i]);
 }
 
 bool HostScene::scan(std::size_t i, double range_min, double least_sine, bool single, const ScanPattern& pattern,
                      unsigned thread, const ScanOutput& out) {
   Thread& t = *threads_[thread];
   const Viewpoint& view = views_[i];
-  const FamilyTables& family = *families_[view.family];
-  const bool listed = slots_[i] != CellPool::kNone;
-  const Cell cell = listed ? cells_[slots_[i]] : collect(keys_[i], t);
+  const FamilyTables& family = tables_of_[view.family];
+  const std::uint32_t slot = cells_.slot(i);
+  const bool listed = slot != CellPool::kNone;
+  const Cell cell = listed ? lists_[slot] : collect(cells_.key(i), t);
   const std::span<const SegmentBlock> blocks =
       listed ? std::span<const SegmentBlock>(blocks_).subspan(cell.first, cell.all) : t.blocks;
-  const Vec2 centre = centre_of(keys_[i]);
+  const Vec2 centre = cells_.centre_of(cells_.key(i));
   const Vec2 origin{view.X_WS.x, view.X_WS.y};
   ScanView from;
   from.origin = origin;
   from.yaw = view.X_WS.yaw;
   from.heading = {std::cos(view.X_WS.yaw), std::sin(view.X_WS.yaw)};
   from.offset = origin - centre;
-  from.range_max = family.family.range;
+  from.range_max = families_[view.family].range;
   from.range_min = range_min;
   from.band = static_cast<float>(SF_BAND * (family.shape.reach() + 2.0 * movers_.largest_radius()));
   from.least_sine = least_sine;

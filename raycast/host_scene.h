@@ -2,29 +2,25 @@
 // What host scans meet: walls in lists by cell, made where sensors are, and movers.
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "base/parallel.h"
-#include "raycast/cells.h"
 #include "raycast/mover_tables.h"
 #include "raycast/options.h"
 #include "raycast/rasterizer.h"
 #include "raycast/sectors.h"
-#include "raycast/view.h"
+#include "raycast/view_cells.h"
 
 namespace sf::raycast {
 
 /// Not thread-safe, but for `scan`. `world` need not outlive it.
 class HostScene {
  public:
-  HostScene(const world::World& world, base::Workers& workers);
+  /// @param families complete, of `world`; to outlive it
+  HostScene(const world::World& world, const Families& families, base::Workers& workers);
   ~HostScene();
-
-  /// Registers a family; to be called for all before the first tick. Equal height and range give the same number.
-  std::uint32_t add_family(const Family& family);
 
   /// Takes this tick's poses, one per mover.
   void place(std::span<const Pose> poses);
@@ -35,7 +31,7 @@ class HostScene {
   bool scan(std::size_t i, double range_min, double least_sine, bool single, const ScanPattern& pattern,
             unsigned thread, const ScanOutput& out);
 
-  std::uint64_t cells_built() const { return pool_.built(); }
+  std::uint64_t cells_built() const { return cells_.pool().built(); }
   ScanCounts counts() const;
 
  private:
@@ -45,31 +41,22 @@ class HostScene {
   /// Blocks of one cell: those that face it, then those that do not, which only decide ties at corners.
   struct Cell {
     std::uint32_t first = 0, facing = 0, all = 0;
-    bool uniform = false;  ///< all of it is inside of solids, or all of it outside
   };
-  CellKey key_of(const Viewpoint& view) const;
-  base::Vec2 centre_of(const CellKey& key) const;
-  void find_cells();
   void build_missing();
   static Found found(base::Vec2 a, base::Vec2 b, std::uint32_t row, double radius);
   static void add_blocks(std::vector<Found>& found, std::vector<SegmentBlock>& blocks);
   Cell collect(const CellKey& key, Thread& thread) const;
 
   base::Workers& workers_;
-  std::vector<world::Segment> walls_;
-  std::vector<double> breaks_;                            ///< [m] heights at which the set of visible walls changes
-  std::map<std::size_t, std::unique_ptr<Sight>> sights_;  ///< by the interval between breaks
-  std::vector<std::unique_ptr<FamilyTables>> families_;
+  const Families& families_;
+  std::vector<FamilyTables> tables_of_;  ///< per family
   MoverTables movers_;
   std::vector<ExactSegment> exact_;  ///< walls, then movers
   std::vector<std::uint32_t> models_;
-  CellPool pool_;
-  std::vector<Cell> cells_;           ///< per slot
+  ViewCells cells_;
+  std::vector<Cell> lists_;           ///< per slot
   std::vector<SegmentBlock> blocks_;  ///< of all cells
   std::vector<Viewpoint> views_;
-  std::vector<CellKey> keys_;
-  std::vector<std::uint32_t> slots_;
-  std::vector<CellKey> missing_;
   std::vector<std::unique_ptr<Thread>> threads_;
 };
 

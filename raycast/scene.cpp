@@ -23,21 +23,21 @@ double cell_size(double range, std::uint32_t beams) {
 
 }  // namespace
 
-Scene::Scene(const world::World& world, gpu::Device& device, base::Workers& workers, const SceneOptions& options,
-             std::uint32_t carriers)
+Scene::Scene(const world::World& world, const Families& families, gpu::Device& device, base::Workers& workers,
+             const SceneOptions& options, std::uint32_t carriers)
     : workers_(workers),
       device_(device),
       most_(options),
       options_{.pool_chunks = 0, .pool_cells = 0},
-      walls_(world.walls),
-      breaks_(height_breaks(walls_)),
-      all_walls_(std::make_unique<Sight>(Sight::of_all_heights(walls_, 2.0))),
-      pool_(0, 0) {
+      families_(families),
+      all_walls_(std::make_unique<Sight>(Sight::of_all_heights(families.walls(), 2.0))),
+      cells_(families, cell_size, CellPool(0, 0)) {
   bodies_ = std::make_unique<Bodies>(world, all_walls_.get());
   for (unsigned i = 0; i < workers.threads(); ++i) scratch_.push_back(std::make_unique<Scratch>());
 
   // Exact segments: walls now, movers each tick.
-  const std::size_t count = walls_.size() + bodies_->segments().size();
+  const std::vector<world::Segment>& walls = families.walls();
+  const std::size_t count = walls.size() + bodies_->segments().size();
   segments_ = std::make_unique<gpu::Buffer>(device, "walls and movers in 64 bits", gpu::Role::upload, gpu::Texel::u32x4,
                                             2 * count + 2);
   models_ = std::make_unique<gpu::Buffer>(device, "whose walls", gpu::Role::upload, gpu::Texel::u32, count + 1);
@@ -46,66 +46,53 @@ Scene::Scene(const world::World& world, gpu::Device& device, base::Workers& work
                            std::to_string(SF_ROW_MASK - 1) + " are supported");
   const auto exact = segments_->host<ExactSegment>();
   const auto models = models_->host<std::uint32_t>();
-  std::vector<float> clearances = wall_clearances(walls_, kClearanceCap);
+  std::vector<float> clearances = wall_clearances(walls, kClearanceCap);
   own_clearances_ = bodies_->own_clearances(kClearanceCap);
   clearances.insert(clearances.end(), own_clearances_.begin(), own_clearances_.end());
-  for (std::size_t i = 0; i < walls_.size(); ++i)
-    exact[i] = {walls_[i].a.x, walls_[i].a.y, walls_[i].b.x, walls_[i].b.y};
+  for (std::size_t i = 0; i < walls.size(); ++i) exact[i] = {walls[i].a.x, walls[i].a.y, walls[i].b.x, walls[i].b.y};
   for (std::uint32_t i = 0; i < count; ++i) {
-    models[i] = i < walls_.size() ? walls_[i].model : bodies_->models()[i - walls_.size()];
+    models[i] = i < walls.size() ? walls[i].model : bodies_->models()[i - walls.size()];
     words_.push_back(list_word(i, clearances[i]));
   }
 
+  add_tables();
   make_room(carriers);
 }
 
 Scene::~Scene() = default;
 
-std::uint32_t Scene::add_family(const Family& family) {
-  const auto interval =
-      static_cast<std::size_t>(std::upper_bound(breaks_.begin(), breaks_.end(), family.z) - breaks_.begin());
-  auto& sight = sights_[interval];
-  if (!sight) {
-    world::World view;
-    view.walls = walls_;
-    sight = std::make_unique<Sight>(view, family.z, family.range);
+void Scene::add_tables() {
+  for (std::size_t i = 0; i < families_.size(); ++i) {
+    const Family& family = families_[i];
+    const Sight& sight = families_.sight(i);
+    // Only movers are looked up in it.
+    auto& depth = depths_[&sight];
+    if (!depth && bodies_->count() > 1) depth = std::make_unique<Depth>(sight);
+    tables_of_.push_back({family.range,
+                          family.fov,
+                          {cells_.size_of(i), family.range, family.spread + 5e-4},
+                          &sight,
+                          depth.get(),
+                          bodies_->watch_height(family.z)});
   }
-  for (std::uint32_t i = 0; i < families_.size(); ++i) {
-    FamilyTables& known = *families_[i];
-    if (known.sight != sight.get() || known.family.range != family.range || known.family.z != family.z) continue;
-    known.shape.spread = std::max(known.shape.spread, family.spread + 5e-4);
-    known.family.fov = std::max(known.family.fov, family.fov);
-    return i;
-  }
-  auto tables = std::make_unique<FamilyTables>();
-  tables->family = family;
-  tables->shape = {cell_size(family.range, family.beams), family.range, family.spread + 5e-4};
-  tables->sight = sight.get();
-  // Only movers are looked up in it.
-  auto& depth = depths_[interval];
-  if (!depth && bodies_->count() > 1) depth = std::make_unique<Depth>(*sight);
-  tables->depth = depth.get();
-  tables->height = bodies_->watch_height(family.z);
-  families_.push_back(std::move(tables));
-  return static_cast<std::uint32_t>(families_.size() - 1);
 }
 
 void Scene::place(std::span<const Pose> poses) {
   bodies_->place(poses, workers_);
   const auto moved = bodies_->segments();
   if (!moved.empty())
-    std::memcpy(segments_->host<ExactSegment>().data() + walls_.size(), moved.data(), moved.size_bytes());
+    std::memcpy(segments_->host<ExactSegment>().data() + families_.walls().size(), moved.data(), moved.size_bytes());
   for (std::uint32_t row = 0; row < moved.size(); ++row)
-    words_[walls_.size() + row] = list_word(static_cast<std::uint32_t>(walls_.size()) + row,
-                                            std::min(own_clearances_[row], bodies_->clearance_of(row)));
+    words_[families_.walls().size() + row] = list_word(static_cast<std::uint32_t>(families_.walls().size()) + row,
+                                                       std::min(own_clearances_[row], bodies_->clearance_of(row)));
 }
 
 bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {
   replaced_ = false;
   for_host_.assign(views.size(), 0);
-  find_cells(views);
+  cells_.find(views, workers_);
   bool room = true;
-  for (build_missing(); !missing_.empty() && room && options_.pool_chunks < kMostPoolChunks; build_missing())
+  for (build_missing(); !cells_.missing().empty() && room && options_.pool_chunks < kMostPoolChunks; build_missing())
     room = try_to_grow(2 * options_.pool_cells + 64, std::min(2 * options_.pool_chunks + 4096, kMostPoolChunks),
                        mover_chunks_);
 
@@ -123,7 +110,7 @@ bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {
 }
 
 Scene::Counts Scene::counts() const {
-  Counts counts{pool_.built(), pool_.cells()};
+  Counts counts{cells_.pool().built(), cells_.pool().cells()};
   for (const auto& scratch : scratch_) {
     counts.movers_near += scratch->bodies.movers_near;
     counts.movers_met += scratch->bodies.movers_met;

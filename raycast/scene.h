@@ -11,10 +11,9 @@
 #include "gpu/batch.h"
 #include "gpu/buffer.h"
 #include "raycast/bodies.h"
-#include "raycast/cells.h"
 #include "raycast/options.h"
 #include "raycast/sectors.h"
-#include "raycast/view.h"
+#include "raycast/view_cells.h"
 #include "world/world.h"
 
 namespace sf::raycast {
@@ -22,13 +21,11 @@ namespace sf::raycast {
 /// Not thread-safe. `world` need not outlive it.
 class Scene {
  public:
-  /// @param carriers movers with sensors that look: the lists get room accordingly
-  Scene(const world::World& world, gpu::Device& device, base::Workers& workers, const SceneOptions& options,
-        std::uint32_t carriers);
+  /// @param families complete, of `world`; to outlive it  @param carriers movers with sensors that look: the lists get
+  /// room accordingly
+  Scene(const world::World& world, const Families& families, gpu::Device& device, base::Workers& workers,
+        const SceneOptions& options, std::uint32_t carriers);
   ~Scene();
-
-  /// Registers a family; to be called for all before the first tick. Equal height and range give the same number.
-  std::uint32_t add_family(const Family& family);
 
   /// Takes this tick's poses, one per mover.
   void place(std::span<const Pose> poses);
@@ -71,13 +68,9 @@ class Scene {
   };
   struct Scratch;
 
-  Vec2 centre_of(const FamilyTables& family, const CellKey& key) const;
-  CellKey key_of(const Viewpoint& view) const;
-  bool is_uniform(const FamilyTables& family, Vec2 centre, const Sight::Nearby& nearby) const;
-  void find_cells(std::span<const Viewpoint> views);
+  void add_tables();
   void find_groups(std::span<const Viewpoint> views);
   void build_missing();
-  void forget_found();
   void fill_walls(const Viewpoint& view, std::size_t row, RayRow& out);
   bool fill_movers(std::span<const Viewpoint> views, std::span<RayRow> rows);
   bool fill_some_movers(std::span<const Viewpoint> views, bool more_room);
@@ -91,22 +84,16 @@ class Scene {
   gpu::Device& device_;
   const SceneOptions most_;
   SceneOptions options_;  ///< room now
-  std::vector<world::Segment> walls_;
-  std::vector<double> breaks_;                            ///< [m] heights at which the set of visible walls changes
-  std::map<std::size_t, std::unique_ptr<Sight>> sights_;  ///< by the interval between breaks
-  std::map<std::size_t, std::unique_ptr<Depth>> depths_;  ///< likewise
-  std::vector<std::unique_ptr<FamilyTables>> families_;
+  const Families& families_;
+  std::map<const Sight*, std::unique_ptr<Depth>> depths_;
+  std::vector<FamilyTables> tables_of_;  ///< per family
   std::unique_ptr<Sight> all_walls_;
   std::unique_ptr<Bodies> bodies_;
-  CellPool pool_;
-  std::vector<std::uint8_t> uniform_;   ///< per slot: all of the cell is inside of solids, or all of it outside
-  std::vector<std::uint8_t> too_long_;  ///< per slot: its lists are empty, since they would be too long
-  std::vector<std::uint8_t> for_host_;  ///< per view of this tick: its lists would be too long
-  std::vector<std::uint32_t> words_;    ///< of every exact segment, as lists call it
-  std::vector<float> own_clearances_;   ///< [m] of movers' segments: how near their own mover's others come
-  std::vector<CellKey> keys_;           ///< of this tick's views
-  std::vector<std::uint32_t> slots_;    ///< of this tick's views, where the pool had them already
-  std::vector<CellKey> missing_;
+  ViewCells cells_;
+  std::vector<std::uint8_t> too_long_;             ///< per slot: its lists are empty, since they would be too long
+  std::vector<std::uint8_t> for_host_;             ///< per view of this tick: its lists would be too long
+  std::vector<std::uint32_t> words_;               ///< of every exact segment, as lists call it
+  std::vector<float> own_clearances_;              ///< [m] of movers' segments: how near their own mover's others come
   std::vector<Group> groups_;                      ///< of this tick's views
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
   std::vector<std::uint32_t> fresh_slots_;         ///< cells built since the last upload

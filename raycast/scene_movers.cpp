@@ -18,7 +18,7 @@ void Scene::find_groups(std::span<const Viewpoint> views) {
       const Pose& X = views[i].X_WS;
       low = {std::min(low.x, X.x), std::min(low.y, X.y)};
       high = {std::max(high.x, X.x), std::max(high.y, X.y)};
-      group.in_solid = group.in_solid || keys_[i].family % 2 == 1;
+      group.in_solid = group.in_solid || ViewCells::in_solid(cells_.key(i));
     }
     group.end = i;
     if (low.x != high.x || low.y != high.y) {
@@ -46,11 +46,11 @@ bool Scene::fill_some_movers(std::span<const Viewpoint> views, bool more_room) {
     for (std::size_t i = first; i < last; ++i) {
       Group& group = groups_[i];
       const Viewpoint& view = views[group.first];
-      const FamilyTables& family = *families_[view.family];
-      const double fov = group.end - group.first == 1 ? family.family.fov : 2.0 * M_PI;
+      const FamilyTables& family = tables_of_[view.family];
+      const double fov = group.end - group.first == 1 ? family.fov : 2.0 * M_PI;
       float clearances[SF_SECTORS];
       const bool whole =
-          bodies_->collect({group.origin, group.radius, family.height, view.X_WS.yaw, fov, family.family.range,
+          bodies_->collect({group.origin, group.radius, family.height, view.X_WS.yaw, fov, family.range,
                             family.shape.spread, view.self, group.in_solid ? nullptr : family.depth, most * SF_CHUNK},
                            scratch.bodies, scratch.lists, clearances);
       group.for_host = !whole || scratch.lists.longest() > std::min(kMostMoverChunks, most_.longest_list);

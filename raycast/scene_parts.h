@@ -18,9 +18,10 @@ inline constexpr std::uint32_t kMostPoolChunks = 1u << 24;
 inline constexpr std::uint32_t kMostChunksOfAllViews = 1u << 23;
 inline constexpr std::uint32_t kLeastChunksOfAView = 256;  ///< that it may have, however many views there are
 
-/// One family with what serves it.
+/// What serves one family.
 struct Scene::FamilyTables {
-  Family family;
+  double range = 0.0;  ///< [m]
+  double fov = 0.0;    ///< [rad]
   CellShape shape;
   const Sight* sight = nullptr;
   const Depth* depth = nullptr;

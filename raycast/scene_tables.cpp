@@ -59,8 +59,7 @@ void Scene::grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint3
     replace(headers_, "heads of sector lists", gpu::Texel::u32x4, std::size_t{SF_SECTORS} * (pool_cells + views + 1));
   const auto nobody = headers_->host<ListHeader>().subspan(std::size_t{SF_SECTORS} * (pool_cells + views), SF_SECTORS);
   std::fill(nobody.begin(), nobody.end(), ListHeader{0, 0, std::numeric_limits<float>::infinity(), 0});
-  pool_.grow(pool_cells, pool_chunks);
-  uniform_.resize(pool_cells);
+  cells_.grow(pool_cells, pool_chunks);
   too_long_.resize(pool_cells);
   options_ = {.pool_chunks = pool_chunks, .pool_cells = pool_cells};
   view_capacity_ = views;
@@ -88,7 +87,7 @@ void Scene::upload(gpu::Batch& batch) {
     }
     chunks_up(pool, mover_chunks_used_);
     batch.up(*headers_, std::size_t{SF_SECTORS} * options_.pool_cells * 16, groups_.size() * SF_SECTORS * 16);
-    batch.up(*segments_, walls_.size() * sizeof(ExactSegment), bodies_->segments().size_bytes());
+    batch.up(*segments_, families_.walls().size() * sizeof(ExactSegment), bodies_->segments().size_bytes());
   }
   upload_all_ = false;
   fresh_slots_.clear();

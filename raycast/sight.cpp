@@ -31,17 +31,6 @@ double largest_x(const SightSegment& s) { return std::max(s.a.x, s.b.x); }
 
 }  // namespace
 
-std::vector<double> height_breaks(const std::vector<world::Segment>& walls) {
-  std::vector<double> breaks;
-  for (const world::Segment& s : walls) {
-    breaks.push_back(s.z_min);
-    breaks.push_back(s.z_max);
-  }
-  std::sort(breaks.begin(), breaks.end());
-  breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
-  return breaks;
-}
-
 Sight Sight::of_all_heights(const std::vector<world::Segment>& walls, double typical_range) {
   world::World flat;
   flat.walls = walls;

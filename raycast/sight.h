@@ -19,9 +19,6 @@ struct SightSegment {
   bool solid_left;
 };
 
-/// [m] heights at which the set of walls in sight changes, rising.
-std::vector<double> height_breaks(const std::vector<world::Segment>& walls);
-
 /// Immutable after construction; may be asked by several threads, each with its own `Nearby`.
 class Sight {
  public:

@@ -45,8 +45,9 @@ std::vector<Pose> poses_of(const world::World& world) {
 
 Scan scan(const world::World& world, const Pose& X, std::uint32_t self, const ScanPattern& pattern, double range) {
   base::Workers workers(1);
-  HostScene scene(world, workers);
-  const Viewpoint view{scene.add_family({X.z, range, 0.0, 2.0 * M_PI}), self, X};
+  Families families(world);
+  const Viewpoint view{families.add({X.z, range, 0.0, 2.0 * M_PI}), self, X};
+  HostScene scene(world, families, workers);
   scene.place(poses_of(world));
   scene.prepare({&view, 1});
   Scan scan{std::vector<double>(pattern.beams), std::vector<std::uint32_t>(pattern.beams)};
@@ -149,10 +150,11 @@ TEST(HostScene, EveryInstructionSetGivesTheSameBits) {
 TEST(HostScene, CellsAreListedOnce) {
   const world::World world = crowd();
   base::Workers workers(2);
-  HostScene scene(world, workers);
-  const std::uint32_t family = scene.add_family({0.1, 8.0, 0.0, M_PI});
-  EXPECT_EQ(scene.add_family({0.1, 8.0, 0.0, 0.1}), family) << "one height, one range";
-  EXPECT_NE(scene.add_family({0.1, 4.0, 0.0, M_PI}), family);
+  Families families(world);
+  const std::uint32_t family = families.add({0.1, 8.0, 0.0, M_PI});
+  EXPECT_EQ(families.add({0.1, 8.0, 0.0, 0.1}), family) << "one height, one range";
+  EXPECT_NE(families.add({0.1, 4.0, 0.0, M_PI}), family);
+  HostScene scene(world, families, workers);
   const Viewpoint views[] = {
       {family, 0, {0.1, 0.1, 0.1, 0.0}}, {family, 1, {0.9, 0.9, 0.1, 1.0}}, {family, 2, {1.1, 0.1, 0.1, 0.0}}};
   scene.place(poses_of(world));
