@@ -1,5 +1,5 @@
 #pragma once
-// What casts rays: the device's kernels, or this machine's own vectors. Both give the same bytes.
+// The two ways to cast rays: kernels of the device, and vectors of this machine. Both give the same bytes.
 
 #include <cstdint>
 #include <string>
@@ -12,7 +12,7 @@ enum class Caster : std::uint8_t {
   host,       ///< scan conversion on this machine
 };
 
-/// Who casts where `asked` is automatic: the environment's SENSORFARM_CASTER ("vulkan" or "host"), else the host where
+/// The caster where `asked` is automatic: the environment's SENSORFARM_CASTER ("vulkan" or "host"), else the host where
 /// the device is software, which is slower at it, else Vulkan.
 Caster caster_for(bool software, Caster asked = Caster::automatic);
 

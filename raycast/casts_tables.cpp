@@ -52,13 +52,18 @@ Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<F
       continue;
     }
     row.beams = beam_lanes;
-    row.pattern = static_cast<std::uint32_t>(patterns.size());
-    if (!row.turns) shared[key] = {beam_lanes, row.pattern};
-    if (!row.turns) make_pattern(i, {}, scratch[0], patterns.emplace_back());
+    if (!row.turns) {
+      row.pattern = static_cast<std::uint32_t>(shared.size());
+      shared[key] = {beam_lanes, row.pattern};
+    }
     beam_lanes += row.plan.lanes();
   }
   make_tables(site.device, beam_lanes);
   write_all_beams();
+  // Patterns were numbered in order of rows, as tables of beams were.
+  for (const FanRow& row : fan_rows)
+    if (!row.turns && row.pattern == patterns.size())
+      make_pattern(static_cast<std::size_t>(&row - fan_rows.data()), {}, scratch[0], patterns.emplace_back());
 }
 
 void Casts::Tables::plan(const world::World& world) {
@@ -170,23 +175,20 @@ void Casts::Tables::write_lanes(CastPass& pass, bool is_single) {
   counts[2] = across > 0 ? 1 : 0;
 }
 
-/// @param turns [rad] of each cast beam, or none
+/// Of the beams in the fan's tables. @param turns [rad] of each cast beam, or none
 void Casts::Tables::make_pattern(std::size_t i, std::span<const double> turns, Scratch& own, ScanPattern& pattern) {
   const world::Laser& laser = fans[i].laser;
-  const std::vector<std::uint32_t>& samples = fan_rows[i].plan.samples;
+  const FanRow& row = fan_rows[i];
+  const std::vector<std::uint32_t>& samples = row.plan.samples;
   own.bearings.resize(samples.size());
-  own.directions.resize(2 * samples.size());
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const double bearing = world::bearing_of(laser, samples[k]) + (turns.empty() ? 0.0 : turns[k]);
-    own.bearings[k] = bearing;
-    own.directions[2 * k] = std::cos(bearing);
-    own.directions[2 * k + 1] = std::sin(bearing);
-  }
-  pattern.assign(own.bearings, own.directions, world::bearing_of(laser, samples.front()),
-                 world::bearing_of(laser, samples.back()));
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    own.bearings[k] = world::bearing_of(laser, samples[k]) + (turns.empty() ? 0.0 : turns[k]);
+  pattern.assign(own.bearings, {beam_tables(row.beams).directions64, 8 * std::size_t{row.plan.lanes()}},
+                 world::bearing_of(laser, samples.front()), world::bearing_of(laser, samples.back()),
+                 row.plan.place(1));
 }
 
-/// What kernels that read the results are told of fans that the device does not cast.
+/// Fills in what later kernels read of fans that the device does not cast.
 void Casts::Tables::fill_rows(std::span<RayRow> ray_rows) {
   workers.run(due.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {

@@ -54,7 +54,7 @@ struct Casts::Tables {
   std::vector<ScanPattern> patterns;        ///< of fans whose beams do not change, on the host
   struct Scratch {
     ScanPattern pattern;
-    std::vector<double> bearings, directions, ranges;
+    std::vector<double> bearings, ranges;
     std::vector<std::uint32_t> models;
     std::vector<std::uint8_t> grazes;
   };

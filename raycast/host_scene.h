@@ -1,5 +1,5 @@
 #pragma once
-// What host scans meet: walls in lists by cell, made where sensors are, and movers.
+// The scene of host scans: walls in lists by cell, made where sensors are, and movers.
 
 #include <cstdint>
 #include <memory>

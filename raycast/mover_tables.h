@@ -25,7 +25,7 @@ class MoverTables {
   void place(std::span<const Pose> poses, base::Workers& workers, std::span<ExactSegment> exact);
 
   std::size_t segments() const { return local_.size(); }
-  /// What beams report that meet them, row by row.
+  /// Models that beams report, row by row.
   const std::vector<std::uint32_t>& models() const { return models_; }
   double largest_radius() const { return grid_.largest_radius; }  ///< [m]
 

@@ -55,7 +55,7 @@ inline VF bearing_of(VF y, VF x, VF& inverse) {
   return hn::CopySignToAbs(p, y);
 }
 
-/// What all segments of one scan are projected with.
+/// The values that all segments of one scan are projected with.
 struct Projection {
   VF heading_cos, heading_sin;
   VF per_radian, middle, slack, turn;
@@ -153,7 +153,7 @@ inline void project(Scratch& s, const Projection& p, VF wx, VF wy, VF gx, VF gy,
   const VF high_sure = high - margin_high;
   s.reserve(3 * lanes());
   keep(s, p, seen, low_any, high_any, low_sure, high_sure, a, b, error, rows, first_row);
-  // What crosses the rear is met at the other end of the view too.
+  // A segment across the rear is met at the other end of the view too.
   const MF again = hn::And(seen, hn::AndNot(anywhere, high_any + p.slack >= p.turn));
   if (!hn::AllFalse(kF, again))
     keep(s, p, again, low_any - p.turn, high_any - p.turn, low_sure - p.turn, high_sure - p.turn, a, b, error, rows,

@@ -1,5 +1,5 @@
 #pragma once
-// What one thread's scans keep between uses.
+// Memory that one thread's scans keep between uses.
 
 #include <cstdint>
 #include <vector>

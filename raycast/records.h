@@ -18,8 +18,8 @@
 #define SF_ROW_MASK 0xFFFFFFu
 #define SF_NO_CLEARANCE 127
 
-// What a lane says of its beams, shifted by each one's place in the lane: it meets what it met at too small an angle;
-// and 32 bits could not prove what it meets first.
+// The verdict of a lane on its beams, shifted by each one's place in the lane: it meets what it met at too small an
+// angle; and 32 bits could not prove what it meets first.
 #define SF_GRAZES 1u
 #define SF_DOUBT 16u
 

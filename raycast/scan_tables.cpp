@@ -21,7 +21,7 @@ void append(std::vector<SegmentBlock>& blocks, std::uint32_t& used, base::Vec2 a
 }
 
 void ScanPattern::assign(std::span<const double> bearings, std::span<const double> directions64, double first,
-                         double last) {
+                         double last, std::size_t step) {
   beams = static_cast<std::uint32_t>(bearings.size());
   const bool spread = beams > 1 && last > first;
   const double per = spread ? (beams - 1) / (last - first) : 1.0;
@@ -35,7 +35,7 @@ void ScanPattern::assign(std::span<const double> bearings, std::span<const doubl
     const std::size_t k = std::min<std::size_t>(i, beams - 1);
     const double at = (bearings[k] - first) * per;
     place[i] = static_cast<float>(at);
-    cos64[i] = directions64[2 * k], sin64[i] = directions64[2 * k + 1];
+    cos64[i] = directions64[2 * step * k], sin64[i] = directions64[2 * step * k + 1];
     cos32[i] = static_cast<float>(cos64[i]), sin32[i] = static_cast<float>(sin64[i]);
     most = std::max(most, std::abs(at - static_cast<double>(k)));
     farthest = std::max(farthest, std::abs(bearings[k]));

@@ -1,5 +1,5 @@
 #pragma once
-// What a host scan reads: the beams of a sensor, walls by cell, movers by place. Structures of arrays, ready for
+// Tables that a host scan reads: the beams of a sensor, walls by cell, movers by place. Structures of arrays, ready for
 // vectors.
 
 #include <algorithm>
@@ -44,7 +44,9 @@ struct ScanPattern {
   std::vector<double> cos64, sin64;
 
   /// @param bearings [rad] of the beams  @param first, last of the pattern without noise
-  void assign(std::span<const double> bearings, std::span<const double> directions64, double first, double last);
+  /// @param directions64 cosine and sine of each beam, one pair of `step`
+  void assign(std::span<const double> bearings, std::span<const double> directions64, double first, double last,
+              std::size_t step = 1);
 };
 
 /// The outlines of movers at one height, block by block; rows are counted from the mover's first.
@@ -98,7 +100,7 @@ inline base::Vec2 direction_of(const ScanView& view, const ScanPattern& pattern,
   return {view.heading.x * c - view.heading.y * s, view.heading.y * c + view.heading.x * s};
 }
 
-/// What there is to meet. Exact segments: walls first, then the movers'.
+/// Surfaces that there are to meet. Exact segments: walls first, then the movers'.
 struct ScanScene {
   std::span<const SegmentBlock> walls;    ///< that face the cell, near to far
   std::span<const SegmentBlock> behind;   ///< that face away from the whole cell: they decide ties at corners
@@ -119,7 +121,7 @@ struct ScanOutput {
   std::uint8_t* grazes;   ///< 1 where it was met at less than the least sine
 };
 
-/// What scans did.
+/// Work of scans, counted.
 struct ScanCounts {
   std::uint64_t doubts = 0;       ///< beams that 32 bits could not prove
   std::uint64_t movers_near = 0;  ///< discs in reach and in view
