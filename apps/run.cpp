@@ -146,7 +146,7 @@ int run(const Options& options) {
   if (!simulation.warnings().empty()) tell_warnings(simulation.warnings().front().file, simulation.warnings());
   ControlTally tally(simulation, world.movers.size(), options.controller);
   std::vector<base::Contact> contacts(world.movers.size());
-  const std::string caster = raycast::text_of(raycast::caster_for(device.facts().software));
+  const std::string caster = raycast::caster_text(device.facts().software);
   Outputs outputs(world, roster, plan, caster, options);
   catch_stop_signals();
 

@@ -265,7 +265,7 @@ int serve(const Options& options) {
   RunFacts facts = service.facts();
   facts.device = device.facts().name;
   facts.software = device.facts().software;
-  facts.caster = raycast::text_of(raycast::caster_for(device.facts().software));
+  facts.caster = raycast::caster_text(device.facts().software);
   facts.wall_s = facts.simulated_s = std::chrono::duration<double>(Clock::now() - start).count();
   std::fputs((options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts)).c_str(), stdout);
   return 0;

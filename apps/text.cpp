@@ -92,7 +92,7 @@ std::string text_of(const gpu::Survey& survey) {
     text += fmt::format("     {}, Vulkan {}, {}{}\n", d.kind, d.api, d.driver,
                         d.software ? " (software: computed on the CPU)" : "");
     text += fmt::format("     self-check {}\n", d.self_check);
-    if (d.chosen) text += fmt::format("     rays are cast by: {}\n", raycast::text_of(raycast::caster_for(d.software)));
+    if (d.chosen) text += fmt::format("     rays are cast by: {}\n", raycast::caster_text(d.software));
     text += d.chosen ? "     chosen\n" : fmt::format("     refused: {}\n", d.reason);
   }
   return text;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "raycast/clearance.h"
+#include "raycast/decide.h"
 #include "raycast/screen.h"
 
 namespace sf::raycast {
@@ -55,12 +56,9 @@ void Bodies::place(std::span<const Pose> poses, base::Workers& workers) {
   workers.run(bodies_.size(), 64, [this](std::size_t first, std::size_t last, unsigned thread) {
     for (std::size_t i = first; i < last; ++i) {
       const Pose& X = poses_[i];
-      const double c = std::cos(X.yaw);
-      const double s = std::sin(X.yaw);
+      const Vec2 heading{std::cos(X.yaw), std::sin(X.yaw)};
       for (std::uint32_t row = bodies_[i].first; row < bodies_[i].first + bodies_[i].count; ++row) {
-        const world::Segment& l = local_[row];
-        segments_[row] = {X.x + (c * l.a.x - s * l.a.y), X.y + (s * l.a.x + c * l.a.y), X.x + (c * l.b.x - s * l.b.y),
-                          X.y + (s * l.b.x + c * l.b.y)};
+        segments_[row] = placed(local_[row].a, local_[row].b, {X.x, X.y}, heading);
       }
     }
     measure_clearances(first, last, nearby_[thread]);

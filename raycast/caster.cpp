@@ -15,8 +15,8 @@ Caster caster_for(bool software, Caster asked) {
   return word == "host" || software ? Caster::host : Caster::vulkan;
 }
 
-std::string text_of(Caster caster) {
-  return caster == Caster::host ? std::string("host, ") + vector_instructions() : "Vulkan kernels";
+std::string caster_text(bool software) {
+  return caster_for(software) == Caster::host ? std::string("host, ") + vector_instructions() : "Vulkan kernels";
 }
 
 }  // namespace sf::raycast

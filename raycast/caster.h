@@ -16,7 +16,8 @@ enum class Caster : std::uint8_t {
 /// the device is software, which is slower at it, else Vulkan.
 Caster caster_for(bool software, Caster asked = Caster::automatic);
 
-/// As reports name it: "Vulkan kernels", or the host with its vectors, as in "host, AVX2".
-std::string text_of(Caster caster);
+/// The caster of farms on such a device as reports name it: "Vulkan kernels", or the host with its vectors, as in
+/// "host, AVX2".
+std::string caster_text(bool software);
 
 }  // namespace sf::raycast

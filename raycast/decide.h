@@ -11,6 +11,12 @@
 
 namespace sf::raycast {
 
+/// The segment from `a` to `b` of a mover's frame, in the world. @param p of the mover  @param heading unit vector
+inline ExactSegment placed(base::Vec2 a, base::Vec2 b, base::Vec2 p, base::Vec2 heading) {
+  const double c = heading.x, s = heading.y;
+  return {p.x + (c * a.x - s * a.y), p.y + (s * a.x + c * a.y), p.x + (c * b.x - s * b.y), p.y + (s * b.x + c * b.y)};
+}
+
 /// A segment that a beam may meet.
 struct Surface {
   ExactSegment at;

@@ -80,12 +80,9 @@ void MoverTables::place(std::span<const Pose> poses, base::Workers& workers, std
   workers.run(poses_.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const Pose& X = poses_[i];
-      const double c = std::cos(X.yaw), s = std::sin(X.yaw);
-      headings_[i] = {c, s};
+      headings_[i] = {std::cos(X.yaw), std::sin(X.yaw)};
       for (std::uint32_t row = first_rows_[i] - walls_; row < first_rows_[i + 1] - walls_; ++row) {
-        const world::Segment& l = local_[row];
-        exact[row] = {X.x + (c * l.a.x - s * l.a.y), X.y + (s * l.a.x + c * l.a.y), X.x + (c * l.b.x - s * l.b.y),
-                      X.y + (s * l.b.x + c * l.b.y)};
+        exact[row] = placed(local_[row].a, local_[row].b, {X.x, X.y}, headings_[i]);
       }
     }
   });

@@ -82,13 +82,13 @@ Projection projection_of(const ScanView& view, const ScanPattern& pattern) {
           constant(pattern.edge_sin)};
 }
 
-/// Puts the intervals of `mask` at the scratch's end. @return whether any beam is touched
-inline bool keep(Scratch& s, const Projection& p, MF mask, VF low_any, VF high_any, VF low_sure, VF high_sure, VF a,
+/// Puts the intervals of `mask` that touch beams at the scratch's end.
+inline void keep(Scratch& s, const Projection& p, MF mask, VF low_any, VF high_any, VF low_sure, VF high_sure, VF a,
                  VF b, VF error, const std::uint32_t* rows, std::uint32_t first_row) {
   const VF first = hn::Max(hn::Floor(low_any - p.slack), constant(0.0f));
   const VF last = hn::Min(hn::Ceil(high_any + p.slack), constant(p.last));
   std::uint32_t open = bits_of(hn::And(mask, first <= last));
-  if (open == 0) return false;
+  if (open == 0) return;
   const std::uint32_t at = s.used;
   store(a, &s.a[at]), store(b, &s.b[at]), store(error, &s.error[at]);
   store(low_any, &s.low_any[at]), store(high_any, &s.high_any[at]);
@@ -99,7 +99,6 @@ inline bool keep(Scratch& s, const Projection& p, MF mask, VF low_any, VF high_a
   hn::StoreU(hn::LoadU(kU, rows) + hn::Set(kU, first_row), kU, &s.row[at]);
   for (; open != 0; open &= open - 1) s.live.push_back(at + static_cast<std::uint32_t>(__builtin_ctz(open)));
   s.used += lanes();
-  return true;
 }
 
 /// Projects segments that start at (wx, wy) from the viewer and extend by (gx, gy), in the world's directions.

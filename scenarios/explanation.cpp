@@ -126,7 +126,7 @@ std::size_t resident_bytes() {
 Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads,
                     const std::function<void(double)>& progress) {
   Explanation e;
-  e.caster = raycast::text_of(raycast::caster_for(device.facts().software));
+  e.caster = raycast::caster_text(device.facts().software);
   double done = 0.0;
   const auto step = [&](std::size_t kinds) {
     if (progress) progress(++done / static_cast<double>(kinds + 3));

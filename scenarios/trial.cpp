@@ -131,11 +131,10 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
   Supervisor supervisor(world, options.supervisor);
   std::optional<record::Recorder> recorder;
   if (!options.record.empty())
-    recorder.emplace(options.record,
-                     run_info(world, simulation.farm().roster(),
-                              {.seed = scenario.seed,
-                               .record_readings = true,
-                               .caster = raycast::text_of(raycast::caster_for(device.facts().software))}));
+    recorder.emplace(options.record, run_info(world, simulation.farm().roster(),
+                                              {.seed = scenario.seed,
+                                               .record_readings = true,
+                                               .caster = raycast::caster_text(device.facts().software)}));
 
   Trial trial;
   const auto start = std::chrono::steady_clock::now();

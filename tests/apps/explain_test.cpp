@@ -58,6 +58,9 @@ TEST(Explain, TheCasterIsAsAsked) {
   const Outcome wrong = run_program({"explain", our_world("rooms.world"), "--caster", "gpu"});
   EXPECT_EQ(wrong.code, 2);
   EXPECT_NE(wrong.err.find("--caster: gpu not in {auto,vulkan,host}"), std::string::npos) << wrong.err;
+  const Outcome misspelt = run_program({"explain", our_world("rooms.world")}, {{"SENSORFARM_CASTER", "gpu"}});
+  EXPECT_EQ(misspelt.code, 2) << "from the environment too";
+  EXPECT_NE(misspelt.err.find("gpu not in {auto,vulkan,host}"), std::string::npos) << misspelt.err;
 }
 
 /// Beams in doubt are counted; the text has their share of all.
