@@ -13,6 +13,7 @@ Casts::~Casts() = default;
 
 const std::vector<Fan>& Casts::fans() const { return t_->fans; }
 const BeamPlan& Casts::plan(std::uint32_t fan) const { return t_->fan_rows[fan].plan; }
+bool Casts::on_device() const { return t_->scene != nullptr; }
 Work Casts::work() const {
   const Tables& t = *t_;
   const ScanCounts scans = t.host->counts();

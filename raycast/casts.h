@@ -59,6 +59,7 @@ class Casts {
   const std::vector<Fan>& fans() const;
   const BeamPlan& plan(std::uint32_t fan) const;
   Work work() const;
+  bool on_device() const;  ///< false: the host casts, and the batch has nothing to do for it
 
   void place(std::span<const Pose> poses);
   /// Rows of `due` are fans. @return true when kernels must be recorded again.

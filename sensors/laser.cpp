@@ -50,6 +50,7 @@ class Lasers : public Instruments {
   void copies(gpu::Batch& batch) override { casts_.copies(batch, true); }
   void collect(std::vector<base::ReadingBlock>& out) override;
   Work work() const override { return casts_.work(); }
+  bool on_device() const override { return casts_.on_device(); }
 
  private:
   Lasers(const Site& site, const std::vector<CastLaser>& lasers);

@@ -93,7 +93,7 @@ TEST(Price, TheUnheardCastAndSubmitNothing) {
 /// 10 Hz in ticks of a millisecond: one batch in a hundred.
 TEST(Price, WhoIsNotDueSubmitsNothing) {
   const world::World world = small_world(20);
-  Farm farm(world, device());
+  Farm farm(world, device(), kOnDevice);
   farm.hear_all();
   for (int k = 0; k < 1000; ++k) farm.tick(k * 1'000'000ll, reports_at(world, k));
   EXPECT_EQ(farm.stats().batches, 10u);
@@ -102,12 +102,26 @@ TEST(Price, WhoIsNotDueSubmitsNothing) {
 
 TEST(Price, WhoStandsCastsAndSubmitsNothing) {
   const world::World world = small_world(20);
-  Farm farm(world, device());
+  Farm farm(world, device(), kOnDevice);
   farm.hear_all();
   for (int k = 0; k < 50; ++k) farm.tick(k * 100'000'000ll, reports_at(world, 0));
   EXPECT_EQ(farm.stats().readings, 50u * 20u);
   EXPECT_LE(farm.stats().batches, 3u);
   EXPECT_LE(farm.stats().work.rays, 3u * 20u * kBeams);
+}
+
+/// Lasers that the host casts need no batch: the same bytes without one.
+TEST(Price, WhatTheHostCastsSubmitsNothing) {
+  const world::World world = small_world(20);
+  Farm by_host(world, device(), {.scene = {.caster = raycast::Caster::host}});
+  Farm by_device(world, device(), kOnDevice);
+  for (Farm* farm : {&by_host, &by_device}) {
+    farm->hear_all();
+    for (int k = 0; k < 5; ++k) farm->tick(k * 100'000'000ll, reports_at(world, k));
+  }
+  EXPECT_EQ(by_host.stats().batches, 0u);
+  EXPECT_EQ(by_device.stats().batches, 5u);
+  EXPECT_EQ(by_host.hash(), by_device.hash());
 }
 
 /// Some stand, one drives: they alone who may see it look.

@@ -15,6 +15,9 @@ inline gpu::Device& device() {
   return device;
 }
 
+/// Lasers are cast by the device's kernels, also where it is software.
+inline constexpr FarmOptions kOnDevice{.scene = {.caster = raycast::Caster::vulkan}};
+
 /// `robots` among boxes, each with one laser at 10 Hz.
 inline world::World small_world(std::uint32_t robots, const world::LaserNoise& noise = {}) {
   world::World world = scenes::boxes(20, 12.0, 3);

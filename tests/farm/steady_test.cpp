@@ -157,7 +157,8 @@ struct Pair {
     if (change) change(world);
     return world;
   }
-  explicit Pair(const std::function<void(world::World&)>& change = {}) : world(made(change)), farm(world, device()) {
+  explicit Pair(const std::function<void(world::World&)>& change = {})
+      : world(made(change)), farm(world, device(), kOnDevice) {
     farm.hear(0, kAllKinds);
   }
   /// Whether what is due is given again when the other one stands at `X`.
@@ -324,7 +325,7 @@ TEST(Steady, NothingIsSubmittedWhereTheHostAloneLooks) {
   world.movers[0].lasers[0].rate = 1.0;
   world.movers[1].lasers[0].rate = 1.0;
   world.movers[0].sensors.push_back(trial::fitted("bumper"));
-  Farm farm(world, device());
+  Farm farm(world, device(), kOnDevice);
   farm.hear_all();
   for (int k = 0; k < 20; ++k) farm.tick(k * kTick, reports_at(world, k));
   EXPECT_EQ(farm.stats().batches, 2u) << "the lasers look once a second";
