@@ -17,14 +17,25 @@ std::uint64_t Station::find_due(std::int64_t now, std::span<const std::uint32_t>
   due.clear();
   std::uint64_t missed = 0;
   const std::uint32_t kind = 1u << group->kind->id;
+  // Sensors in a row mostly have one rate and phase.
+  double rate = -1.0, phase = 0.0;
+  std::uint64_t ready = 0, counted = 0;
+  std::int64_t then = 0;
   for (std::uint32_t i = 0; i < begun.size(); ++i) {
     if (now < next[i] - 1) continue;
     const sensors::SensorRow& row = group->rows[i];
-    const std::uint64_t should = std::max(readings_begun(now, row.rate, row.phase), begun[i] + (now >= next[i]));
+    if (row.rate != rate || row.phase != phase) {
+      rate = row.rate, phase = row.phase;
+      ready = readings_begun(now, rate, phase);
+      counted = ~std::uint64_t{0};
+    }
+    const std::uint64_t should = std::max(ready, begun[i] + (now >= next[i]));
     if (should <= begun[i]) continue;
     const std::uint64_t skipped = should - begun[i] - 1;
     begun[i] = should;
-    next[i] = due_time(should, row.rate, row.phase);
+    if (should != counted) then = due_time(should, rate, phase);
+    counted = should;
+    next[i] = then;
     // A sensor's readings are numbered by when they are due: one that nobody heard leaves a gap, and its noise to
     // itself.
     if ((heard[row.mover] & kind) == 0) continue;

@@ -37,28 +37,16 @@ bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses) {
   Tables& t = *t_;
   t.due.assign(due.begin(), due.end());
   t.views.resize(due.size());
+  const auto ray_rows = t.rows->host<RayRow>().first(due.size());
   t.workers.run(due.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
-      const FanRow& row = t.fan_rows[due[i].row];
-      const Fan& fan = t.fans[due[i].row];
-      Pose X_WS = base::compose(poses[fan.mover], fan.laser.X_MS);
-      X_WS.z = row.height;
-      t.views[i] = {row.family, fan.mover, X_WS};
+      t.look(i, poses);
+      if (!t.scene) ray_rows[i] = t.row_of(i, {});
     }
   });
   for (const Due& d : due) t.rays += t.fan_rows[d.row].plan.samples.size();
-  const auto ray_rows = t.rows->host<RayRow>().first(due.size());
   const bool replaced = t.scene && t.scene->serve(t.views, ray_rows);
-  if (!t.scene) t.fill_rows(ray_rows);
-  t.workers.run(due.size(), 512, [&](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) {
-      const FanRow& row = t.fan_rows[due[i].row];
-      ray_rows[i].beams = row.beams;
-      ray_rows[i].out = row.out;
-      ray_rows[i].range_min = t.fans[due[i].row].laser.range_min;
-      ray_rows[i].least_sine = static_cast<float>(kLeastSine);
-    }
-  });
+  for (std::size_t i = 0; t.scene && i < due.size(); ++i) ray_rows[i] = t.row_of(i, ray_rows[i]);
   t.write_lanes();
   if (t.scene && t.any_turns)
     t.workers.run(due.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {

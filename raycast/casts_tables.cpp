@@ -24,6 +24,16 @@ std::uint32_t carriers_of(const std::vector<Fan>& fans) {
   return carriers;
 }
 
+ScanView view_of(const Fan& fan, const Viewpoint& from) {
+  ScanView view;
+  view.heading = from.heading;
+  view.yaw = from.X_WS.yaw;
+  view.range_min = fan.laser.range_min;
+  view.least_sine = kLeastSine;
+  view.single = fan.single;
+  return view;
+}
+
 /// Fans with the same beams share their tables.
 using BeamKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 
@@ -64,6 +74,7 @@ Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<F
   for (const FanRow& row : fan_rows)
     if (!row.turns && row.pattern == patterns.size())
       make_pattern(static_cast<std::size_t>(&row - fan_rows.data()), {}, scratch[0], patterns.emplace_back());
+  if (!scene) share_views();
 }
 
 void Casts::Tables::plan(const world::World& world) {
@@ -188,66 +199,138 @@ void Casts::Tables::make_pattern(std::size_t i, std::span<const double> turns, S
                  row.plan.place(1));
 }
 
-/// Fills in what later kernels read of fans that the device does not cast.
-void Casts::Tables::fill_rows(std::span<RayRow> ray_rows) {
-  workers.run(due.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) {
-      const Pose& X = views[i].X_WS;
-      RayRow& row = ray_rows[i];
-      row = {};
-      row.origin_x = X.x, row.origin_y = X.y;
-      row.heading_cos64 = std::cos(X.yaw), row.heading_sin64 = std::sin(X.yaw);
-      row.range_max = fans[due[i].row].laser.range_max;
+/// Where the i-th due fan looks from.
+void Casts::Tables::look(std::size_t i, std::span<const Pose> movers) {
+  const Fan& fan = fans[due[i].row];
+  const FanRow& row = fan_rows[due[i].row];
+  Pose X_WS = base::compose(movers[fan.mover], fan.laser.X_MS);
+  X_WS.z = row.height;
+  views[i] = {row.family, fan.mover, X_WS, {std::cos(X_WS.yaw), std::sin(X_WS.yaw)}};
+}
+
+/// What kernels read of the i-th due fan. @param row with what a scene has filled in
+RayRow Casts::Tables::row_of(std::size_t i, RayRow row) const {
+  const Fan& fan = fans[due[i].row];
+  row.origin_x = views[i].X_WS.x, row.origin_y = views[i].X_WS.y;
+  row.heading_cos64 = views[i].heading.x, row.heading_sin64 = views[i].heading.y;
+  row.range_max = fan.laser.range_max, row.range_min = fan.laser.range_min;
+  row.least_sine = static_cast<float>(kLeastSine);
+  row.beams = fan_rows[due[i].row].beams;
+  row.out = fan_rows[due[i].row].out;
+  return row;
+}
+
+/// Fans of one mover that look from one point.
+void Casts::Tables::share_views() {
+  std::vector<const BeamPlan*> plans;
+  for (const FanRow& row : fan_rows) plans.push_back(&row.plan);
+  for (std::uint32_t first = 0, end; first < fans.size(); first = end) {
+    for (end = first + 1; end < fans.size() && look_alike(fans[first], fans[end]); ++end) {
     }
-  });
+    const auto own = std::span(fan_rows).subspan(first, end - first);
+    if (own.size() < 2 || std::any_of(own.begin(), own.end(), [](const FanRow& row) { return row.turns; })) continue;
+    if (shares.add(first, std::span(fans).subspan(first, own.size()), std::span(plans).subspan(first, own.size())))
+      fan_rows[first].shared = static_cast<std::uint32_t>(shares.views().size() - 1);
+  }
 }
 
 void Casts::Tables::scan_on_host() {
   if (for_host.empty()) return;
   if (!host_placed) host->place(poses);
   host_placed = true;
-  host_views.clear();
-  for (const std::uint32_t i : for_host) host_views.push_back(views[i]);
+  list_scans();
   host->prepare(host_views);
-  workers.run(for_host.size(), 8, [this](std::size_t first, std::size_t last, unsigned thread) {
-    for (std::size_t k = first; k < last; ++k) scan_on_host(k, thread);
+  workers.run(scans.size(), 8, [this](std::size_t first, std::size_t last, unsigned thread) {
+    for (std::size_t k = first; k < last; ++k)
+      scans[k].shared == kAlone ? scan_alone(k, thread) : scan_shared(k, thread);
   });
 }
 
-/// Scans for the k-th fan of `for_host` and writes its results where kernels look for them.
-void Casts::Tables::scan_on_host(std::size_t k, unsigned thread) {
-  const std::uint32_t i = for_host[k];
-  const FanRow& row = fan_rows[due[i].row];
-  const Fan& fan = fans[due[i].row];
-  Scratch& own = scratch[thread];
-  if (row.turns) turn_beams(due[i], thread);
-  if (row.turns) make_pattern(due[i].row, turned[thread], own, own.pattern);
-  const ScanPattern& pattern = row.turns ? own.pattern : patterns[row.pattern];
-  const std::size_t beams = row.plan.samples.size();
-  const std::size_t lanes = row.plan.lanes(), places = SF_BEAMS_PER_LANE * lanes;
-  own.grazes.resize(places);
+/// Views are shared where all of their fans are due.
+void Casts::Tables::list_scans() {
+  scans.clear();
+  host_views.clear();
+  for (std::size_t k = 0, together = 1; k < for_host.size(); k += together) {
+    const std::uint32_t i = for_host[k];
+    std::uint32_t shared = fan_rows[due[i].row].shared;
+    together = shared == kAlone ? 1 : shares.views()[shared].fans;
+    const std::size_t last = k + together - 1;
+    if (last >= for_host.size() || due[for_host[last]].row - due[i].row != together - 1) shared = kAlone, together = 1;
+    scans.push_back({i, shared});
+    host_views.push_back(views[i]);
+  }
+}
+
+/// Writes a fan's results where kernels look for them. @param grazes null where none does
+void Casts::Tables::put(const FanRow& row, const double* own_ranges, const std::uint32_t* own_models,
+                        const std::uint8_t* grazes) {
+  const std::size_t beams = row.plan.samples.size(), lanes = row.plan.lanes(), places = SF_BEAMS_PER_LANE * lanes;
   double* const out = ranges->host<double>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
   std::uint32_t* const met = hits->host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
-  const auto lane_verdicts = verdicts->host<std::uint32_t>().subspan(row.out, lanes);
-  std::fill(lane_verdicts.begin(), lane_verdicts.end(), 0u);
+  std::uint32_t* const lane_verdicts = verdicts->host<std::uint32_t>().data() + row.out;
+  std::fill_n(lane_verdicts, lanes, 0u);
   if (row.plan.packed) {
-    const bool grazes =
-        host->scan(k, fan.laser.range_min, kLeastSine, fan.single, pattern, thread, {out, met, own.grazes.data()});
+    if (own_ranges != out) std::copy_n(own_ranges, beams, out);
+    if (own_models != met) std::copy_n(own_models, beams, met);
     // Places without a beam repeat the last one.
     std::fill(out + beams, out + places, out[beams - 1]);
     std::fill(met + beams, met + places, met[beams - 1]);
-    for (std::size_t b = 0; grazes && b < beams; ++b)
-      if (own.grazes[b] != 0) lane_verdicts[b / SF_BEAMS_PER_LANE] |= SF_GRAZES << b % SF_BEAMS_PER_LANE;
+    for (std::size_t b = 0; grazes != nullptr && b < beams; ++b)
+      if (grazes[b] != 0) lane_verdicts[b / SF_BEAMS_PER_LANE] |= SF_GRAZES << b % SF_BEAMS_PER_LANE;
     return;
   }
-  own.ranges.resize(beams);
-  own.models.resize(beams);
-  const bool grazes = host->scan(k, fan.laser.range_min, kLeastSine, fan.single, pattern, thread,
-                                 {own.ranges.data(), own.models.data(), own.grazes.data()});
   for (std::size_t b = 0; b < beams; ++b) {
-    std::fill_n(out + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own.ranges[b]);
-    std::fill_n(met + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own.models[b]);
-    if (grazes && own.grazes[b] != 0) lane_verdicts[b] |= SF_GRAZES;
+    std::fill_n(out + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own_ranges[b]);
+    std::fill_n(met + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own_models[b]);
+    if (grazes != nullptr && grazes[b] != 0) lane_verdicts[b] |= SF_GRAZES;
+  }
+}
+
+void Casts::Tables::scan_alone(std::size_t k, unsigned thread) {
+  const Due& d = due[scans[k].due];
+  const FanRow& row = fan_rows[d.row];
+  const Fan& fan = fans[d.row];
+  Scratch& own = scratch[thread];
+  if (row.turns) turn_beams(d, thread);
+  if (row.turns) make_pattern(d.row, turned[thread], own, own.pattern);
+  const ScanPattern& pattern = row.turns ? own.pattern : patterns[row.pattern];
+  own.make_room(pattern.beams);
+  double* to = own.ranges.data();
+  std::uint32_t* met = own.models.data();
+  if (row.plan.packed) {
+    to = ranges->host<double>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
+    met = hits->host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
+  }
+  const bool grazes = host->scan(k, view_of(fan, host_views[k]), pattern, thread, {to, met, own.grazes.data()});
+  put(row, to, met, grazes ? own.grazes.data() : nullptr);
+}
+
+/// Scans all beams of a shared view and gives each fan its own.
+void Casts::Tables::scan_shared(std::size_t k, unsigned thread) {
+  const SharedView& shared = shares.views()[scans[k].shared];
+  const SharedPattern& all = shares.pattern(shared);
+  const std::size_t beams = all.sources.size();
+  Scratch& own = scratch[thread];
+  own.make_room(2 * beams);
+  ScanView view = view_of(fans[shared.first], host_views[k]);
+  for (std::size_t b = 0; b < beams; ++b) {
+    const SharedPattern::Source& s = all.sources[b];
+    view.heading = views[scans[k].due + s.fan].heading;
+    const base::Vec2 d = direction_of(view, patterns[fan_rows[shared.first + s.fan].pattern], s.beam);
+    own.x[b] = d.x, own.y[b] = d.y;
+  }
+  view.heading = host_views[k].heading;
+  view.x = own.x.data(), view.y = own.y.data();
+  const bool grazes = host->scan(k, view, all.beams, thread, {own.ranges.data(), own.models.data(), own.grazes.data()});
+  for (std::size_t b = 0; b < beams; ++b) {
+    const std::size_t place = beams + all.sources[b].place;
+    own.ranges[place] = own.ranges[b], own.models[place] = own.models[b], own.grazes[place] = own.grazes[b];
+  }
+  std::size_t at = beams;
+  for (std::uint32_t f = 0; f < shared.fans; ++f) {
+    const FanRow& row = fan_rows[shared.first + f];
+    put(row, &own.ranges[at], &own.models[at], grazes ? &own.grazes[at] : nullptr);
+    at += row.plan.samples.size();
   }
 }
 

@@ -10,11 +10,21 @@
 #include "gpu/kernel.h"
 #include "raycast/casts.h"
 #include "raycast/host_scene.h"
+#include "raycast/shared_views.h"
 
 namespace sf::raycast {
 
 /// Of each dispatch over lanes.
 inline constexpr std::uint32_t kLanesPerGroup = 64;
+
+/// Of fans that share no view.
+inline constexpr std::uint32_t kAlone = 0xFFFFFFFFu;
+
+/// One scan of the host, for one fan or a shared view.
+struct HostScan {
+  std::uint32_t due = 0;          ///< its first fan
+  std::uint32_t shared = kAlone;  ///< view
+};
 
 /// One fan, planned at load.
 struct FanRow {
@@ -23,8 +33,9 @@ struct FanRow {
   std::uint32_t family = 0;
   std::uint32_t beams = 0;  ///< first lane of its beam tables
   std::uint32_t pattern = 0;
-  std::uint32_t out = 0;  ///< first lane of its results
-  bool turns = false;     ///< has angular noise: beams are its own and change
+  std::uint32_t out = 0;          ///< first lane of its results
+  bool turns = false;             ///< has angular noise: beams are its own and change
+  std::uint32_t shared = kAlone;  ///< the shared view that begins with it
 };
 
 /// One kernel over the lanes of its due fans.
@@ -54,12 +65,21 @@ struct Casts::Tables {
   std::vector<ScanPattern> patterns;        ///< of fans whose beams do not change, on the host
   struct Scratch {
     ScanPattern pattern;
-    std::vector<double> bearings, ranges;
+    std::vector<double> bearings, ranges, x, y;
     std::vector<std::uint32_t> models;
     std::vector<std::uint8_t> grazes;
+
+    /// Room for results and directions of so many beams.
+    void make_room(std::size_t beams) {
+      if (grazes.size() >= beams) return;
+      grazes.resize(beams), models.resize(beams), ranges.resize(beams);
+      x.resize(beams + 2 * kBlock), y.resize(beams + 2 * kBlock);
+    }
   };
   std::vector<Scratch> scratch;         ///< per thread
   std::vector<std::uint32_t> for_host;  ///< due fans that the host casts
+  SharedViews shares;                   ///< where the device casts nothing
+  std::vector<HostScan> scans;          ///< of this tick
   std::uint32_t out_lanes = 0;
   std::uint32_t spare_lanes = 0;  ///< behind all results: where the device writes what the host casts
   std::uint64_t host_scans = 0;
@@ -79,9 +99,14 @@ struct Casts::Tables {
   void bind(CastPass& pass);
   void turn_beams(const Due& d, unsigned thread);
   void make_pattern(std::size_t i, std::span<const double> turns, Scratch& own, ScanPattern& pattern);
-  void fill_rows(std::span<RayRow> ray_rows);
+  void share_views();
+  void look(std::size_t i, std::span<const Pose> movers);
+  RayRow row_of(std::size_t i, RayRow row) const;
   void scan_on_host();
-  void scan_on_host(std::size_t k, unsigned thread);
+  void list_scans();
+  void scan_alone(std::size_t k, unsigned thread);
+  void scan_shared(std::size_t k, unsigned thread);
+  void put(const FanRow& row, const double* own_ranges, const std::uint32_t* own_models, const std::uint8_t* grazes);
   void find_for_host();
   void bind();
   BeamTables beam_tables(std::uint32_t lane) const {

@@ -180,8 +180,7 @@ void HostScene::prepare(std::span<const Viewpoint> views) {
   }
 }
 
-bool HostScene::scan(std::size_t i, double range_min, double least_sine, bool single, const ScanPattern& pattern,
-                     unsigned thread, const ScanOutput& out) {
+bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, unsigned thread, const ScanOutput& out) {
   Thread& t = *threads_[thread];
   const Viewpoint& view = views_[i];
   const FamilyTables& family = tables_of_[view.family];
@@ -192,16 +191,10 @@ bool HostScene::scan(std::size_t i, double range_min, double least_sine, bool si
       listed ? std::span<const SegmentBlock>(blocks_).subspan(cell.first, cell.all) : t.blocks;
   const Vec2 centre = cells_.centre_of(cells_.key(i));
   const Vec2 origin{view.X_WS.x, view.X_WS.y};
-  ScanView from;
   from.origin = origin;
-  from.yaw = view.X_WS.yaw;
-  from.heading = {std::cos(view.X_WS.yaw), std::sin(view.X_WS.yaw)};
   from.offset = origin - centre;
   from.range_max = families_[view.family].range;
-  from.range_min = range_min;
   from.band = static_cast<float>(SF_BAND * (family.shape.reach() + 2.0 * movers_.largest_radius()));
-  from.least_sine = least_sine;
-  from.single = single;
   ScanScene scene;
   scene.walls = blocks.first(cell.facing);
   scene.behind = blocks.subspan(cell.facing);

@@ -26,10 +26,10 @@ class HostScene {
   void place(std::span<const Pose> poses);
   /// Makes the lists that `views` need.
   void prepare(std::span<const Viewpoint> views);
-  /// Scans from the i-th view of the last `prepare`. @param thread of the workers
+  /// Scans from the i-th view of the last `prepare`. @param from all but origin, offset, range_max and band, which are
+  /// the view's  @param thread of the workers
   /// @return whether any beam grazes: `out.grazes` is filled in only then
-  bool scan(std::size_t i, double range_min, double least_sine, bool single, const ScanPattern& pattern,
-            unsigned thread, const ScanOutput& out);
+  bool scan(std::size_t i, ScanView from, const ScanPattern& pattern, unsigned thread, const ScanOutput& out);
 
   std::uint64_t cells_built() const { return cells_.pool().built(); }
   ScanCounts counts() const;

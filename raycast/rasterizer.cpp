@@ -369,8 +369,13 @@ inline void measure(const ScanView& view, const ScanPattern& pattern, const Exac
   const VD least = hn::Set(kD, std::max(view.range_min, 0.0));
   const auto step = static_cast<std::uint32_t>(hn::Lanes(kD));
   for (std::uint32_t j = first; j < end; j += step) {
-    const VD bc = hn::LoadU(kD, &pattern.cos64[j]), bs = hn::LoadU(kD, &pattern.sin64[j]);
-    const VD x = c * bc - sn * bs, y = c * bs + sn * bc;
+    VD x, y;
+    if (view.x != nullptr) {
+      x = hn::LoadU(kD, &view.x[j]), y = hn::LoadU(kD, &view.y[j]);
+    } else {
+      const VD bc = hn::LoadU(kD, &pattern.cos64[j]), bs = hn::LoadU(kD, &pattern.sin64[j]);
+      x = c * bc - sn * bs, y = c * bs + sn * bc;
+    }
     const VD range = hn::Max(above / (dx * y - dy * x), least);
     if (j + step <= pattern.beams) {
       hn::StoreU(range, kD, &ranges[j]);  // behind `end` the next run follows

@@ -84,7 +84,7 @@ struct MoverGrid {
 /// Where a scan looks from, and how far.
 struct ScanView {
   base::Vec2 origin;        ///< [m] world
-  base::Vec2 heading;       ///< unit vector
+  base::Vec2 heading;       ///< unit vector: the pattern's bearing 0
   double yaw = 0.0;         ///< [rad] of the heading
   base::Vec2 offset;        ///< [m] of the origin from the frame of the walls' blocks
   double range_max = 0.0;   ///< [m]
@@ -92,10 +92,15 @@ struct ScanView {
   float band = 0.0f;        ///< [m] what 32 bits may be wrong by: SF_BAND times the largest coordinate
   double least_sine = 0.0;  ///< of the angle below which a beam grazes
   bool single = false;      ///< ranges are measured in 32 bits where these are close enough
+  /// Unit vectors of the beams in the world, padded as the pattern's arrays are; null: the pattern's, turned by the
+  /// heading.
+  const double* x = nullptr;
+  const double* y = nullptr;
 };
 
 /// Unit vector of beam `i` in the world.
 inline base::Vec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::size_t i) {
+  if (view.x != nullptr) return {view.x[i], view.y[i]};
   const double c = pattern.cos64[i], s = pattern.sin64[i];
   return {view.heading.x * c - view.heading.y * s, view.heading.y * c + view.heading.x * s};
 }

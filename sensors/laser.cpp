@@ -148,14 +148,16 @@ base::ReadingBlock Lasers::block_of(std::size_t i) {
 }
 
 void Lasers::collect(std::vector<base::ReadingBlock>& out) {
-  workers_.run(due_.size(), 8, [this](std::size_t first, std::size_t last, unsigned) {
+  const std::size_t before = out.size();
+  out.resize(before + due_.size());
+  workers_.run(due_.size(), 32, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       if (rows_[due_[i].row].reworked) shape(i);
       mark(i);
+      out[before + i] = block_of(i);
     }
   });
   casts_.count();
-  for (std::size_t i = 0; i < due_.size(); ++i) out.push_back(block_of(i));
 }
 
 std::vector<SensorRow> rows_of(const world::World& world) {

@@ -46,13 +46,14 @@ std::vector<Pose> poses_of(const world::World& world) {
 Scan scan(const world::World& world, const Pose& X, std::uint32_t self, const ScanPattern& pattern, double range) {
   base::Workers workers(1);
   Families families(world);
-  const Viewpoint view{families.add({X.z, range, 0.0, 2.0 * M_PI}), self, X};
+  const Viewpoint view{families.add({X.z, range, 0.0, 2.0 * M_PI}), self, X, {std::cos(X.yaw), std::sin(X.yaw)}};
   HostScene scene(world, families, workers);
   scene.place(poses_of(world));
   scene.prepare({&view, 1});
   Scan scan{std::vector<double>(pattern.beams), std::vector<std::uint32_t>(pattern.beams)};
   std::vector<std::uint8_t> grazes(pattern.beams);
-  scene.scan(0, 0.0, 1e-3, false, pattern, 0, {scan.ranges.data(), scan.models.data(), grazes.data()});
+  const ScanView from{.heading = view.heading, .yaw = X.yaw, .least_sine = 1e-3};
+  scene.scan(0, from, pattern, 0, {scan.ranges.data(), scan.models.data(), grazes.data()});
   return scan;
 }
 

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "raycast/beams.h"
+#include "sensors/accuracy.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/scenes.h"
@@ -41,6 +44,70 @@ TEST(Fans, EveryHeading) {
     add_eye(world, {0.3, 0.2, 0.0, 1000.0 * i}, eye(5, 1.0, 30.0));
   }
   expect_exact("headings", sweep(world));
+}
+
+/// A robot whose lasers look from one point, as spots of infrared do in Stage: `fans` of (samples, fov, heading).
+void add_spots(world::World& world, const base::Pose& pose, const std::vector<std::array<double, 3>>& fans) {
+  const std::uint32_t mover = scenes::add_robot(world, pose, eye(1, 0.0, 4.0));
+  std::vector<world::Laser>& lasers = world.movers[mover].lasers;
+  const world::Laser first = lasers[0];
+  lasers.clear();
+  for (const auto& [samples, fov, heading] : fans) {
+    lasers.push_back(first);
+    lasers.back().samples = static_cast<std::uint32_t>(samples);
+    lasers.back().fov = fov;
+    lasers.back().X_MS.yaw = heading;
+  }
+}
+
+world::World spots() {
+  world::World world = scenes::boxes(40, 8.0, 3);
+  std::vector<std::array<double, 3>> ring;
+  for (int i = 0; i < 12; ++i) ring.push_back({1, 0.0, i * 30 * kDegree});
+  Chance chance(5);
+  for (int i = 0; i < 40; ++i) {
+    const base::Vec2 p = chance.in_square(3.5);
+    const base::Pose X{p.x, p.y, 0.0, chance.between(-10.0, 10.0)};
+    // Alike all round; several at one bearing; of different width, the whole turn among them; too uneven to share.
+    if (i % 4 == 0) add_spots(world, X, ring);
+    if (i % 4 == 1) add_spots(world, X, {{1, 0, 0.5}, {1, 0, 0.5}, {1, 0, -0.5}, {1, 0, 7.0}});
+    if (i % 4 == 2) add_spots(world, X, {{9, 1.0, 0.0}, {5, 2 * M_PI, 0.3}, {2, M_PI, 2.0}, {361, 2 * M_PI, 0.0}});
+    if (i % 4 == 3) add_spots(world, X, {{40, 0.01, 0.0}, {1, 0.0, 3.0}, {1, 0.0, M_PI}});
+  }
+  return world;
+}
+
+TEST(Fans, OfOneRobotThatLookFromOnePoint) { expect_exact("spots", sweep(spots())); }
+
+TEST(Fans, OfOneRobotInThirtyTwoBits) {
+  world::World world = spots();
+  sensors::set_accuracy(world, "single");
+  sweep(world);
+}
+
+/// Fans of one point are scanned together where all are due, and alone where some are not.
+TEST(Fans, OfOneRobotWithRatesOfTheirOwn) {
+  world::World world = spots();
+  for (world::Mover& mover : world.movers) {
+    mover.lasers.back().rate = 5.0;
+    mover.lasers.front().range_min = 0.5;
+  }
+  std::uint64_t hashes[2];
+  for (const bool host : {false, true}) {
+    farm::Farm farm(world, device(), {.scene = {.caster = host ? raycast::Caster::host : raycast::Caster::vulkan}});
+    farm.hear_all();
+    for (int tick = 0; tick < 4; ++tick) {
+      std::vector<base::Report> reports;
+      for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
+        base::Pose X = world.movers[m].X_WM;
+        X.yaw += 0.3 * tick;
+        reports.push_back({m, 0, X, {}});
+      }
+      farm.tick(tick * 100'000'000ll, reports);
+    }
+    hashes[host ? 1 : 0] = farm.hash();
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
 }
 
 TEST(Fans, SymmetricWorldGivesASymmetricScan) {

@@ -1,0 +1,60 @@
+#include "raycast/shared_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace sf::raycast {
+
+namespace {
+
+/// [places] beams may lie from where an even pattern has them.
+constexpr float kMostSlack = 4.0F;
+
+SharedPattern merge(std::span<const Fan> fans, std::span<const BeamPlan* const> plans) {
+  struct Beam {
+    double bearing;
+    SharedPattern::Source source;
+  };
+  std::vector<Beam> beams;
+  for (std::uint32_t f = 0; f < fans.size(); ++f) {
+    const std::vector<std::uint32_t>& samples = plans[f]->samples;
+    for (std::uint32_t k = 0; k < samples.size(); ++k) {
+      const double bearing =
+          fans[f].laser.X_MS.yaw - fans[0].laser.X_MS.yaw + world::bearing_of(fans[f].laser, samples[k]);
+      beams.push_back({base::wrap_angle(bearing), {f, k, static_cast<std::uint32_t>(beams.size())}});
+    }
+  }
+  std::stable_sort(beams.begin(), beams.end(), [](const Beam& p, const Beam& q) { return p.bearing < q.bearing; });
+  SharedPattern pattern;
+  std::vector<double> bearings, directions;
+  for (const Beam& beam : beams) {
+    bearings.push_back(beam.bearing);
+    directions.insert(directions.end(), {std::cos(beam.bearing), std::sin(beam.bearing)});
+    pattern.sources.push_back(beam.source);
+  }
+  pattern.beams.assign(bearings, directions, bearings.front(), bearings.back());
+  return pattern;
+}
+
+}  // namespace
+
+bool look_alike(const Fan& p, const Fan& q) {
+  const world::Laser &a = p.laser, &b = q.laser;
+  return p.mover == q.mover && p.single == q.single && a.X_MS.x == b.X_MS.x && a.X_MS.y == b.X_MS.y &&
+         a.X_MS.z == b.X_MS.z && a.range_max == b.range_max && a.range_min == b.range_min;
+}
+
+bool SharedViews::add(std::uint32_t first, std::span<const Fan> fans, std::span<const BeamPlan* const> plans) {
+  std::vector<double> key;
+  for (const Fan& fan : fans)
+    key.insert(key.end(), {fan.laser.X_MS.yaw, fan.laser.fov, static_cast<double>(fan.laser.samples),
+                           static_cast<double>(fan.laser.resolution)});
+  const auto [known, fresh] = known_.try_emplace(std::move(key), static_cast<std::uint32_t>(patterns_.size()));
+  if (fresh) patterns_.push_back(merge(fans, plans));
+  if (patterns_[known->second].beams.slack > kMostSlack) return false;
+  views_.push_back({first, static_cast<std::uint32_t>(fans.size()), known->second});
+  return true;
+}
+
+}  // namespace sf::raycast
