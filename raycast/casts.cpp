@@ -33,20 +33,13 @@ void Casts::place(std::span<const Pose> poses) {
   if (t_->scene) t_->scene->place(poses);
 }
 
-bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses, bool cast) {
   Tables& t = *t_;
   t.due.assign(due.begin(), due.end());
   t.views.resize(due.size());
-  const auto ray_rows = t.rows->host<RayRow>().first(due.size());
-  t.workers.run(due.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) {
-      t.look(i, poses);
-      if (!t.scene) ray_rows[i] = t.row_of(i, {});
-    }
-  });
+  t.workers.run(due.size(), 256, [&](std::size_t first, std::size_t last, unsigned) { t.look(first, last, poses); });
   for (const Due& d : due) t.rays += t.fan_rows[d.row].plan.samples.size();
-  const bool replaced = t.scene && t.scene->serve(t.views, ray_rows);
-  for (std::size_t i = 0; t.scene && i < due.size(); ++i) ray_rows[i] = t.row_of(i, ray_rows[i]);
+  const bool replaced = t.scene && t.serve();
   t.write_lanes();
   if (t.scene && t.any_turns)
     t.workers.run(due.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
@@ -54,7 +47,7 @@ bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses) {
         if (t.fan_rows[t.due[i].row].turns) t.turn_beams(t.due[i], thread);
     });
   t.find_for_host();
-  t.scan_on_host();
+  if (cast) t.scan_on_host();
   const bool again = replaced || !t.bound;
   if (again) t.bind();
   return again;
@@ -69,7 +62,7 @@ void Casts::record(gpu::Batch& batch) {
 void Casts::copies(gpu::Batch& batch, bool results) {
   Tables& t = *t_;
   if (t.scene) t.scene->upload(batch);
-  batch.up(*t.rows, 0, t.due.size() * sizeof(RayRow));
+  if (t.scene) batch.up(*t.rows, 0, t.due.size() * sizeof(RayRow));
   const auto send = [&](const CastPass& pass) {
     batch.up(*pass.lanes, 0, pass.lanes->bytes());
     batch.up(*pass.groups, 0, pass.groups->bytes());
@@ -97,7 +90,8 @@ void Casts::copies(gpu::Batch& batch, bool results) {
 
 FanResults Casts::results(std::size_t i) const {
   const FanRow& row = t_->fan_rows[t_->due[i].row];
-  return {row.out, row.beams, &row.plan, t_->views[i].X_WS};
+  return {t_->due[i].row,      row.out, row.beams, &row.plan, &t_->fans[t_->due[i].row], t_->views[i].X_WS,
+          t_->views[i].heading};
 }
 
 void Casts::count() {
@@ -113,7 +107,6 @@ void Casts::count() {
 gpu::Buffer& Casts::ranges() { return *t_->ranges; }
 gpu::Buffer& Casts::hits() { return *t_->hits; }
 gpu::Buffer& Casts::directions64() { return *t_->directions64; }
-gpu::Buffer& Casts::rows() { return *t_->rows; }
 gpu::Buffer& Casts::verdicts() { return *t_->verdicts; }
 gpu::Buffer& Casts::lanes() { return *t_->exact.lanes; }
 gpu::Buffer& Casts::groups() { return *t_->exact.groups; }

@@ -42,10 +42,13 @@ struct Fan {
 
 /// Where one due fan's results lie in the tables of results.
 struct FanResults {
+  std::uint32_t row = 0;           ///< of the fan
   std::uint32_t lane = 0;          ///< first of its lanes, of SF_BEAMS_PER_LANE results each
   std::uint32_t beams = 0;         ///< first lane of its beam tables
   const BeamPlan* plan = nullptr;  ///< which samples were cast, and their places
+  const Fan* fan = nullptr;        ///< its settings
   Pose X_WS;                       ///< where it looked from
+  base::Vec2 heading;              ///< unit vector
 };
 
 /// Not thread-safe. `site` without its world must outlive it.
@@ -62,8 +65,9 @@ class Casts {
   bool on_device() const;  ///< false: the host casts, and the batch has nothing to do for it
 
   void place(std::span<const Pose> poses);
-  /// Rows of `due` are fans. @return true when kernels must be recorded again.
-  bool prepare(std::span<const Due> due, std::span<const Pose> poses);
+  /// Rows of `due` are fans. @param cast false: only where they look from is wanted
+  /// @return true when kernels must be recorded again.
+  bool prepare(std::span<const Due> due, std::span<const Pose> poses, bool cast = true);
   void record(gpu::Batch& batch);
   /// @param results whether ranges and hits are wanted on the host.
   void copies(gpu::Batch& batch, bool results);
@@ -77,7 +81,6 @@ class Casts {
   gpu::Buffer& hits();          ///< SF_BEAMS_PER_LANE words a lane: `Segment::model` of what was met, or SF_NO_HIT
   gpu::Buffer& verdicts();      ///< a word a lane: SF_DOUBT, SF_GRAZES
   gpu::Buffer& directions64();  ///< SF_BEAMS_PER_LANE pairs of doubles a lane: cosine and sine of the bearing
-  gpu::Buffer& rows();          ///< RayRow of each due fan, in order of `due`
   gpu::Buffer& lanes();   ///< Lane: which due fan and which of its lanes each invocation casts, but for `single` fans
   gpu::Buffer& groups();  ///< group counts of the dispatch over `lanes`
   std::uint32_t group_size() const;

@@ -104,7 +104,8 @@ void Casts::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) {
   make_pass(device, exact, false);
   const auto asks = [](const Fan& fan) { return fan.single; };
   if (std::any_of(fans.begin(), fans.end(), asks)) make_pass(device, single.emplace(), true);
-  rows = std::make_unique<gpu::Buffer>(device, "due sensors", Role::upload, Texel::u32x4, SF_ROW_TEXELS * count);
+  if (scene)
+    rows = std::make_unique<gpu::Buffer>(device, "due sensors", Role::upload, Texel::u32x4, SF_ROW_TEXELS * count);
   directions = std::make_unique<gpu::Buffer>(device, "beams in 32 bits", Role::upload, Texel::f32x4,
                                              2 * std::size_t{beam_lanes} + 2);
   middles =
@@ -199,25 +200,38 @@ void Casts::Tables::make_pattern(std::size_t i, std::span<const double> turns, S
                  row.plan.place(1));
 }
 
-/// Where the i-th due fan looks from.
-void Casts::Tables::look(std::size_t i, std::span<const Pose> movers) {
-  const Fan& fan = fans[due[i].row];
-  const FanRow& row = fan_rows[due[i].row];
-  Pose X_WS = base::compose(movers[fan.mover], fan.laser.X_MS);
-  X_WS.z = row.height;
-  views[i] = {row.family, fan.mover, X_WS, {std::cos(X_WS.yaw), std::sin(X_WS.yaw)}};
+/// Where the due fans [first, last) look from: base::compose, with the sine and cosine of each mover once.
+void Casts::Tables::look(std::size_t first, std::size_t last, std::span<const Pose> movers) {
+  std::uint32_t mover = kAlone;
+  base::Vec2 turn;
+  for (std::size_t i = first; i < last; ++i) {
+    const Fan& fan = fans[due[i].row];
+    const FanRow& row = fan_rows[due[i].row];
+    const Pose &X = movers[fan.mover], &X_MS = fan.laser.X_MS;
+    if (fan.mover != mover) turn = {std::cos(X.yaw), std::sin(X.yaw)};
+    mover = fan.mover;
+    const double yaw = X.yaw + X_MS.yaw;
+    views[i] = {row.family,
+                mover,
+                {X.x + (turn.x * X_MS.x - turn.y * X_MS.y), X.y + (turn.y * X_MS.x + turn.x * X_MS.y), row.height, yaw},
+                {std::cos(yaw), std::sin(yaw)}};
+  }
 }
 
-/// What kernels read of the i-th due fan. @param row with what a scene has filled in
-RayRow Casts::Tables::row_of(std::size_t i, RayRow row) const {
-  const Fan& fan = fans[due[i].row];
-  row.origin_x = views[i].X_WS.x, row.origin_y = views[i].X_WS.y;
-  row.heading_cos64 = views[i].heading.x, row.heading_sin64 = views[i].heading.y;
-  row.range_max = fan.laser.range_max, row.range_min = fan.laser.range_min;
-  row.least_sine = static_cast<float>(kLeastSine);
-  row.beams = fan_rows[due[i].row].beams;
-  row.out = fan_rows[due[i].row].out;
-  return row;
+/// Makes the device's lists for what is due, and its rows. @return whether tables were replaced
+bool Casts::Tables::serve() {
+  const auto ray_rows = rows->host<RayRow>().first(due.size());
+  const bool replaced = scene->serve(views, ray_rows);
+  workers.run(due.size(), 512, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) {
+      const FanRow& row = fan_rows[due[i].row];
+      ray_rows[i].beams = row.beams;
+      ray_rows[i].out = row.out;
+      ray_rows[i].range_min = fans[due[i].row].laser.range_min;
+      ray_rows[i].least_sine = static_cast<float>(kLeastSine);
+    }
+  });
+  return replaced;
 }
 
 /// Fans of one mover that look from one point.

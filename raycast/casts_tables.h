@@ -100,8 +100,8 @@ struct Casts::Tables {
   void turn_beams(const Due& d, unsigned thread);
   void make_pattern(std::size_t i, std::span<const double> turns, Scratch& own, ScanPattern& pattern);
   void share_views();
-  void look(std::size_t i, std::span<const Pose> movers);
-  RayRow row_of(std::size_t i, RayRow row) const;
+  void look(std::size_t first, std::size_t last, std::span<const Pose> movers);
+  bool serve();
   void scan_on_host();
   void list_scans();
   void scan_alone(std::size_t k, unsigned thread);

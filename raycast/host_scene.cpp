@@ -24,6 +24,21 @@ double cell_size(double range, std::uint32_t beams) {
   return std::clamp(fewer * range / 8.0, std::clamp(range, 1e-3, 0.25), 4.0);
 }
 
+/// Blocks of a cell for which directions are known.
+constexpr std::size_t kMostAhead = 64;
+
+BlocksAhead blocks_ahead(std::span<const SegmentBlock> blocks) {
+  constexpr double kPerRadian = kSectors / (2.0 * M_PI);
+  BlocksAhead ahead{};
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const double middle = static_cast<double>(blocks[b].bearing) * kPerRadian;
+    const double wide = std::min(static_cast<double>(blocks[b].half) * kPerRadian + 1e-3, 0.5 * kSectors);
+    const auto first = static_cast<int>(std::floor(middle - wide)), last = static_cast<int>(std::floor(middle + wide));
+    for (int i = first; i <= last; ++i) ahead[static_cast<std::size_t>(i & (kSectors - 1))] |= std::uint64_t{1} << b;
+  }
+  return ahead;
+}
+
 /// Rings in which distances double: segments of one are listed by bearing, so that blocks are narrow and can be hidden.
 constexpr double kRings = 2.0;
 
@@ -56,6 +71,7 @@ HostScene::HostScene(const world::World& world, const Families& families, base::
       movers_(world),
       cells_(families, cell_size, CellPool(kFirstCells, kFirstBlocks, kPageBlocks)),
       lists_(kFirstCells),
+      ahead_(kFirstCells),
       blocks_(kFirstBlocks) {
   for (std::size_t i = 0; i < families.size(); ++i) {
     const Family& family = families[i];
@@ -163,6 +179,7 @@ void HostScene::build_missing() {
       }
       cell.first = cells_.pool().first_chunk(slot);
       lists_[slot] = cell;
+      ahead_[slot] = blocks_ahead(std::span(t.blocks).first(std::min<std::size_t>(cell.facing, kMostAhead)));
       cells_.note_sides(key, slot, t.nearby);
       std::copy(t.blocks.begin(), t.blocks.end(), blocks_.begin() + static_cast<std::ptrdiff_t>(cell.first));
     }
@@ -175,6 +192,7 @@ void HostScene::prepare(std::span<const Viewpoint> views) {
   cells_.find(views, workers_);
   for (build_missing(); !cells_.missing().empty() && blocks_.size() < kMostBlocks; build_missing()) {
     lists_.resize(2 * lists_.size());
+    ahead_.resize(lists_.size());
     blocks_.resize(2 * blocks_.size());
     cells_.grow(static_cast<std::uint32_t>(lists_.size()), static_cast<std::uint32_t>(blocks_.size()));
   }
@@ -197,6 +215,7 @@ bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, u
   from.band = static_cast<float>(SF_BAND * (family.shape.reach() + 2.0 * movers_.largest_radius()));
   ScanScene scene;
   scene.walls = blocks.first(cell.facing);
+  if (listed && cell.facing <= kMostAhead) scene.ahead = &ahead_[slot];
   scene.behind = blocks.subspan(cell.facing);
   scene.exact = exact_;
   scene.models = models_;

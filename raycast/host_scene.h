@@ -55,6 +55,7 @@ class HostScene {
   std::vector<std::uint32_t> models_;
   ViewCells cells_;
   std::vector<Cell> lists_;           ///< per slot
+  std::vector<BlocksAhead> ahead_;    ///< per slot
   std::vector<SegmentBlock> blocks_;  ///< of all cells
   std::vector<Viewpoint> views_;
   std::vector<std::unique_ptr<Thread>> threads_;

@@ -227,23 +227,45 @@ bool is_open(const Scratch& s, const Projection& p, const ScanPattern& pattern, 
 bool is_hidden(const Scratch& s, const Projection& p, const ScanPattern& pattern, const SegmentBlock& block) {
   if (block.half > 3.0f) return false;
   const float turned = block.bearing - p.yaw;  // within two turns
-  const float place = (turned - 6.2831853f * std::round(turned * 0.15915494f)) * pattern.per_radian + pattern.middle;
+  const float place = (turned - 6.2831853f * std::rint(turned * 0.15915494f)) * pattern.per_radian + pattern.middle;
   const float wide = (block.half + 4e-6f) * pattern.per_radian + pattern.slack + 0.01f;
   return !is_open(s, p, pattern, {block.nearest, 0, place - wide, place + wide});
 }
 
+/// Blocks that some beam may look at, a bit each.
+std::uint64_t blocks_ahead(const Projection& p, const ScanPattern& pattern, const BlocksAhead& ahead) {
+  constexpr float kPerRadian = kSectors / 6.2831853f;
+  const float middle = p.yaw * kPerRadian, wide = pattern.half_view * kPerRadian + 1e-3f;
+  const auto first = static_cast<int>(std::floor(middle - wide)), last = static_cast<int>(std::floor(middle + wide));
+  std::uint64_t open = 0;
+  for (int i = first; i <= std::min(last, first + kSectors - 1); ++i)
+    open |= ahead[static_cast<std::size_t>(i & (kSectors - 1))];
+  return open;
+}
+
 void draw_walls(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
-                std::span<const SegmentBlock> walls) {
+                const ScanScene& scene) {
   const VF ox = constant(static_cast<float>(view.offset.x)), oy = constant(static_cast<float>(view.offset.y));
-  for (std::size_t i = 0; i < walls.size(); ++i) {
-    const SegmentBlock& block = walls[i];
-    __builtin_prefetch(&walls[std::min(i + 3, walls.size() - 1)]);
-    if (is_hidden(s, p, pattern, block)) continue;
+  const std::span<const SegmentBlock> walls = scene.walls;
+  const auto draw_block = [&](const SegmentBlock& block) {
+    if (is_hidden(s, p, pattern, block)) return;
     const std::size_t first_live = s.live.size();
     for (std::uint32_t k = 0; k < kBlock; k += lanes())
       project(s, p, load(block.ax + k) - ox, load(block.ay + k) - oy, load(block.ex + k), load(block.ey + k),
               block.row + k, 0);
     draw_from(s, pattern, first_live);
+  };
+  if (scene.ahead != nullptr) {
+    for (std::uint64_t open = blocks_ahead(p, pattern, *scene.ahead); open != 0; open &= open - 1) {
+      if ((open & (open - 1)) != 0)
+        __builtin_prefetch(&walls[static_cast<std::size_t>(__builtin_ctzll(open & (open - 1)))]);
+      draw_block(walls[static_cast<std::size_t>(__builtin_ctzll(open))]);
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    __builtin_prefetch(&walls[std::min(i + 3, walls.size() - 1)]);
+    draw_block(walls[i]);
   }
 }
 
@@ -397,7 +419,7 @@ void scan(Scratch& s, const ScanView& view, const ScanPattern& pattern, const Sc
     hn::StoreU(hn::Set(kI, -1), kI, &s.winner[j]);
   }
   const Projection p = projection_of(view, pattern);
-  draw_walls(s, p, view, pattern, scene.walls);
+  draw_walls(s, p, view, pattern, scene);
   if (scene.movers != nullptr) draw_movers(s, p, view, pattern, scene);
 }
 

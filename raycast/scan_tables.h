@@ -3,6 +3,7 @@
 // vectors.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -39,6 +40,7 @@ struct ScanPattern {
   float slack = 0.0f;                      ///< beam i lies at most so many places from place i
   float edge_cos = 0.0f, edge_sin = 0.0f;  ///< of the leftmost bearing, where `narrow`
   bool narrow = false;                     ///< all bearings are within 90 degrees of the heading
+  float half_view = 4.0f;                  ///< [rad] largest bearing to either side, at least
   std::vector<float> place;                ///< of each beam, in units of their usual distance
   std::vector<float> cos32, sin32;
   std::vector<double> cos64, sin64;
@@ -105,9 +107,16 @@ inline base::Vec2 direction_of(const ScanView& view, const ScanPattern& pattern,
   return {view.heading.x * c - view.heading.y * s, view.heading.y * c + view.heading.x * s};
 }
 
+/// Directions are told apart by so many sectors of a turn.
+inline constexpr int kSectors = 32;
+
+/// Which of the first 64 walls' blocks of a cell lie ahead in each sector: a bit each.
+using BlocksAhead = std::array<std::uint64_t, kSectors>;
+
 /// Surfaces that there are to meet. Exact segments: walls first, then the movers'.
 struct ScanScene {
   std::span<const SegmentBlock> walls;    ///< that face the cell, near to far
+  const BlocksAhead* ahead = nullptr;     ///< of walls, where they are at most 64 blocks
   std::span<const SegmentBlock> behind;   ///< that face away from the whole cell: they decide ties at corners
   std::span<const ExactSegment> exact;    ///< of walls, then of movers
   std::span<const std::uint32_t> models;  ///< of each

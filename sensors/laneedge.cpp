@@ -86,7 +86,7 @@ void LaneEdges::make_road(const Site& site) {
 
 bool LaneEdges::prepare(std::span<const Due> due, std::span<const Pose> poses) {
   due_.assign(due.begin(), due.end());
-  const bool again = casts_.prepare(due, poses) || !bound_;
+  const bool again = casts_.prepare(due, poses, casting_) || !bound_;
   lanes_.resize(due.size());
   for (std::size_t i = 0; i < due.size(); ++i) lanes_[i] = casts_.results(i).lane;
   if (road_) road_->prepare(due.size());

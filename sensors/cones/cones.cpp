@@ -13,6 +13,13 @@ namespace {
 constexpr std::uint32_t kGroup = 64;
 constexpr std::size_t kMostCones = std::size_t{32'768} * kGroup;
 
+/// A unit vector, or nearly.
+struct Direction {
+  float x, y;
+};
+
+Direction turned(Direction by, Direction v) { return {by.x * v.x - by.y * v.y, by.x * v.y + by.y * v.x}; }
+
 std::size_t padded(std::size_t cones) { return (cones + kGroup - 1) / kGroup * kGroup; }
 
 raycast::Fan fan_of(const ConeArray& array, std::size_t transducer) {
@@ -86,9 +93,10 @@ void Cones::place(std::span<const Pose> poses) {
 bool Cones::prepare(std::span<const Due> due, std::span<const Pose> poses) {
   const bool again = casts_.prepare(due, poses);
   count_ = due.size();
+  if (!on_device()) return again;
   const auto rows = rows_.host<ConeRow>();
   workers_.run(count_, 512, [&](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) rows[i] = row_of(i, due[i].row);
+    for (std::size_t i = first; i < last; ++i) rows[i] = row_of(i);
   });
   // Padding repeats one cone; its echoes lie behind all others.
   if (count_ > 0)
@@ -99,18 +107,41 @@ bool Cones::prepare(std::span<const Due> due, std::span<const Pose> poses) {
   return again;
 }
 
-ConeRow Cones::row_of(std::size_t i, std::uint32_t cone) {
+ConeRow Cones::row_of(std::size_t i) const {
   const raycast::FanResults results = casts_.results(i);
   ConeRow row{};
   row.lane = results.lane;
   row.lanes = results.plan->lanes();
   row.directions = results.beams;
-  row.least_cosine = least_cosines_[cone];
-  const raycast::RayRow& look = casts_.rows().host<raycast::RayRow>()[i];
-  row.heading_cos = static_cast<float>(look.heading_cos64);
-  row.heading_sin = static_cast<float>(look.heading_sin64);
-  row.range_max = casts_.fans()[cone].laser.range_max;
+  row.least_cosine = least_cosines_[results.row];
+  row.heading_cos = static_cast<float>(results.heading.x);
+  row.heading_sin = static_cast<float>(results.heading.y);
+  row.range_max = results.fan->laser.range_max;
   return row;
+}
+
+bool Cones::is_audible(const ConeRow& row, std::size_t beam, std::uint32_t hit) {
+  if (row.least_cosine <= 0.0F) return true;
+  const double* const bearing = casts_.directions64().host<double>().data() + 2 * beam;
+  const ConeFace& face = faces_.host<ConeFace>()[hit];
+  const float* const mover = headings_.host<float>().data() + 4 * std::size_t{face.heading};
+  const Direction look =
+      turned({row.heading_cos, row.heading_sin}, {static_cast<float>(bearing[0]), static_cast<float>(bearing[1])});
+  const Direction along = turned({mover[0], mover[1]}, {face.along_x, face.along_y});
+  return std::abs(look.x * along.y - look.y * along.x) >= row.least_cosine;
+}
+
+ConeEcho Cones::hear(std::size_t i) {
+  const ConeRow row = row_of(i);
+  const double* const ranges = casts_.ranges().host<double>().data() + SF_BEAMS_PER_LANE * std::size_t{row.lane};
+  const std::uint32_t* const hits =
+      casts_.hits().host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.lane};
+  ConeEcho echo{row.range_max, SF_NO_HIT, 0};
+  for (std::size_t k = 0; k < SF_BEAMS_PER_LANE * std::size_t{row.lanes}; ++k)
+    if (hits[k] != SF_NO_HIT && ranges[k] < echo.range &&
+        is_audible(row, SF_BEAMS_PER_LANE * std::size_t{row.directions} + k, hits[k]))
+      echo = {ranges[k], hits[k], 0};
+  return echo;
 }
 
 void Cones::copies(gpu::Batch& batch) {

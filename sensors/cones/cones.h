@@ -35,14 +35,18 @@ class Cones {
   /// Rows of `due` are cones. @return true when kernels must be recorded again.
   bool prepare(std::span<const Due> due, std::span<const Pose> poses);
   void record_measure(gpu::Batch& batch) { casts_.record(batch); }
-  void record_derive(gpu::Batch& batch) const { batch.dispatch(kernel_, groups_, 0); }
+  void record_derive(gpu::Batch& batch) const {
+    if (on_device()) batch.dispatch(kernel_, groups_, 0);
+  }
   void copies(gpu::Batch& batch);
   /// To be called once after the batch ran.
   void count() { casts_.count(); }
   Work work() const { return casts_.work(); }
 
-  /// Of the i-th due cone. Lives until the next `prepare`.
-  const ConeEcho& echo(std::size_t i) { return echoes_.host<ConeEcho>()[i]; }
+  /// Of the i-th due cone. Any thread.
+  ConeEcho echo(std::size_t i) { return on_device() ? echoes_.host<ConeEcho>()[i] : hear(i); }
+  /// False: the host casts and hears, and the batch has nothing to do.
+  bool on_device() const { return casts_.on_device(); }
 
  private:
   struct Plan {
@@ -54,7 +58,11 @@ class Cones {
   static Plan plan(const world::World& world, const std::vector<ConeArray>& arrays);
   Cones(const Site& site, const Plan& plan, const ConeKernel& kernel);
   Cones(const Site& site, const Plan& plan, const Faces& faces, const ConeKernel& kernel);
-  ConeRow row_of(std::size_t i, std::uint32_t cone);
+  ConeRow row_of(std::size_t i) const;
+  /// As shaders/lib/cone.glsl has it, operation by operation.
+  ConeEcho hear(std::size_t i);
+  /// Likewise shaders/sonar.comp. @param beam of all in the cast's directions
+  bool is_audible(const ConeRow& row, std::size_t beam, std::uint32_t hit);
 
   base::Workers& workers_;
   std::vector<std::uint32_t> first_cones_;

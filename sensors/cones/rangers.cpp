@@ -23,6 +23,7 @@ class Rangers : public Instruments {
   void copies(gpu::Batch& batch) override { cones_.copies(batch); }
   void collect(std::vector<base::ReadingBlock>& out) override;
   Work work() const override { return cones_.work(); }
+  bool on_device() const override { return cones_.on_device(); }
 
  private:
   void fire(const Due& due);
@@ -93,7 +94,7 @@ void Rangers::tell(std::size_t i) {
   const bool noisy = noise_ && (array.sigma > 0.0 || array.proportional > 0.0);
   for (std::size_t k = i > 0 ? cones_ends_[i - 1] : 0; k < cones_ends_[i]; ++k) {
     const std::uint32_t transducer = cones_due_[k].row - cones_.first_cone(due.row);
-    const ConeEcho& echo = cones_.echo(k);
+    const ConeEcho echo = cones_.echo(k);
     const double deviate = noisy ? base::random_normal(draw, transducer)[0] : 0.0;
     const auto out = std::span(values_).subspan(values_first_[due.row] + kind_.columns * transducer, kind_.columns);
     kind_.tell(array, echo.range, echo.hit != SF_NO_HIT, deviate, out);

@@ -54,9 +54,10 @@ Road::Road(const Site& site, const PaintRaster& raster, raycast::Casts& casts, s
 }
 
 RoadRow Road::row_of(std::size_t i) const {
-  const raycast::RayRow& ray = casts_.rows().host<raycast::RayRow>()[i];
-  const double x = ray.origin_x / cell_;
-  const double y = ray.origin_y / cell_;
+  const raycast::FanResults results = casts_.results(i);
+  const double range_max = results.fan->laser.range_max;
+  const double x = results.X_WS.x / cell_;
+  const double y = results.X_WS.y / cell_;
   const double column = std::floor(x) - first_column_;
   const double row = std::floor(y) - first_row_;
   const bool near = column >= 0.0 && row >= 0.0 && column < columns_ && row < rows_;
@@ -65,14 +66,14 @@ RoadRow Road::row_of(std::size_t i) const {
   r.row = near ? static_cast<std::int32_t>(row) : -1;
   r.x = static_cast<float>(x - std::floor(x));
   r.y = static_cast<float>(y - std::floor(y));
-  r.heading_cos = ray.heading_cos64;
-  r.heading_sin = ray.heading_sin64;
-  r.lane = casts_.results(i).lane;
-  r.beams = ray.beams;
+  r.heading_cos = results.heading.x;
+  r.heading_sin = results.heading.y;
+  r.lane = results.lane;
+  r.beams = results.beams;
   r.flags = with_casts_ ? SF_EDGE_CAST : 0u;
-  r.reach = static_cast<float>(ray.range_max / cell_);
+  r.reach = static_cast<float>(range_max / cell_);
   r.cell = cell_;
-  r.range_max = ray.range_max;
+  r.range_max = range_max;
   r.tag = tag_;
   r.columns = block_columns_;
   r.rows = block_rows_;

@@ -29,12 +29,12 @@ bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
          same(p.hits, q.hits) && same(p.unsure, q.unsure);
 }
 
-/// Two ticks of both farms, everyone moved in between.
+/// Two ticks of all farms, everyone moved in between.
 void expect_same_bytes(const world::World& world) {
   farm::Farm on_device(world, device(), kOnDevice);
   farm::Farm on_host(world, device(), kOnHost);
-  on_device.hear_all();
-  on_host.hear_all();
+  farm::Farm by_host(world, device(), {.scene = {.caster = raycast::Caster::host}});
+  for (farm::Farm* farm : {&on_device, &on_host, &by_host}) farm->hear_all();
   for (int tick = 0; tick < 2; ++tick) {
     std::vector<base::Report> reports;
     for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
@@ -45,11 +45,13 @@ void expect_same_bytes(const world::World& world) {
     }
     const auto expected = on_device.tick(tick * 1'000'000'000ll, reports);
     const auto given = on_host.tick(tick * 1'000'000'000ll, reports);
+    by_host.tick(tick * 1'000'000'000ll, reports);
     ASSERT_EQ(expected.size(), given.size());
     for (std::size_t i = 0; i < given.size(); ++i)
       EXPECT_TRUE(same_bits(expected[i], given[i])) << "tick " << tick << " reading " << i;
   }
   EXPECT_EQ(on_device.hash(), on_host.hash());
+  EXPECT_EQ(on_device.hash(), by_host.hash()) << "the caster of the host";
   EXPECT_EQ(on_device.stats().work.host_scans, 0u);
   EXPECT_GT(on_host.stats().work.host_scans, 0u);
 }
@@ -87,6 +89,8 @@ TEST(HostCast, SonarAndInfraredRings) {
     add_ranger(world, X,
                cones("sonar", ring(8, 0.15), {cone_setting("fov", {25 * kDegree}), cone_setting("range", {0.1, 5.0})}),
                0.16);
+    const world::Setting smooth = cone_setting("incidence", {0.4});
+    add_ranger(world, {X.x, -X.y, 0.0, X.yaw}, cones("sonar", ring(8, 0.15), {smooth}), 0.16);
     add_ranger(world, {-X.x, X.y, 0.0, X.yaw}, cones("infrared", ring(5, 0.15)), 0.16);
   }
   expect_same_bytes(world);
