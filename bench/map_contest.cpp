@@ -12,7 +12,7 @@
 #include "bench/report.h"
 #include "bench/scans.h"
 #include "maps/plain_mapper.h"
-#include "sensors/occupancy_batch.h"
+#include "sensors/occupancy_host.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::bench {
@@ -68,7 +68,8 @@ class Mapper {
 
 class FarmMapper : public Mapper {
  public:
-  FarmMapper(gpu::Device& device, const std::vector<sensors::MapPlan>& plans) : batch_(device, workers_, plans) {
+  FarmMapper(gpu::Device& device, const std::vector<sensors::MapPlan>& plans)
+      : batch_(device, workers_, plans, device.facts().software ? sensors::kFarScan : maps::kFarthestRange) {
     for (std::uint32_t i = 0; i < plans.size(); ++i) wanted_.push_back(i);
   }
   std::string name() const override { return "farm"; }
@@ -99,6 +100,7 @@ class PlainMapper : public Mapper {
     }
     beams_ = maps::beam_directions(plans[0].fov, plans[0].samples);
     ends_.resize(workers_.threads(), std::vector<std::uint32_t>(beams_.size()));
+    covered_.resize(workers_.threads(), maps::Grid(plans[0].grid));  // of one size with all
   }
   std::string name() const override { return "plain C++ mapper, -O3"; }
   void update(const Round& round) override {
@@ -106,7 +108,7 @@ class PlainMapper : public Mapper {
       for (std::size_t i = first; i < last; ++i) {
         const maps::ScanView view{round.X_WS[i], round.ranges[i], beams_, plans_[i].range_min, plans_[i].range_max};
         const maps::ScanEnds scan = maps::trace_ends(plans_[i].grid, view, ends_[thread]);
-        if (weighs_) maps::add_ends(odds_[i], scan, ends_[thread]);
+        if (weighs_) maps::add_ends(odds_[i], scan, ends_[thread], covered_[thread]);
         if (!weighs_) maps::add_ends(grids_[i], scan, ends_[thread]);
       }
     });
@@ -122,6 +124,7 @@ class PlainMapper : public Mapper {
   std::vector<maps::Grid> grids_;
   std::vector<maps::OddsGrid> odds_;
   std::vector<base::Vec2> beams_;
+  std::vector<maps::Grid> covered_;
   std::vector<std::vector<std::uint32_t>> ends_;  ///< per thread
 };
 

@@ -45,12 +45,11 @@ void add_scan(Grid& grid, const ScanView& scan) {
   add_ends(grid, trace_ends(grid.plan, scan, ends), ends);
 }
 
-void add_ends(OddsGrid& grid, const ScanEnds& scan, std::span<const std::uint32_t> ends) {
+void add_ends(OddsGrid& grid, const ScanEnds& scan, std::span<const std::uint32_t> ends, Grid& covered) {
   const CellBox part = intersect(scan.box, cells_of(grid.plan));
   if (is_empty(part)) return;
-  Grid covered(grid.plan);
   add_ends(covered, scan, ends);
-  for (std::int64_t row = part.low.row; row < part.high.row; ++row)
+  for (std::int64_t row = part.low.row; row < part.high.row; ++row) {
     for (std::int64_t column = part.low.column; column < part.high.column; ++column) {
       const Cell state = covered.at({column, row});
       if (state == Cell::unexplored) continue;
@@ -58,22 +57,32 @@ void add_ends(OddsGrid& grid, const ScanEnds& scan, std::span<const std::uint32_
       const std::int32_t more = state == Cell::occupied ? grid.rule.hit : -grid.rule.miss;
       odds = static_cast<std::int16_t>(std::clamp(odds + more, -grid.rule.limit, grid.rule.limit));
     }
+    if (row % 4 == 3 || row + 1 == part.high.row)
+      std::fill_n(&covered.words[covered.word_of({part.low.column, row})],
+                  (part.high.column - 1) / 4 - part.low.column / 4 + 1, 0u);
+  }
 }
 
 void add_scan(OddsGrid& grid, const ScanView& scan) {
   std::vector<std::uint32_t> ends(scan.ranges.size());
-  add_ends(grid, trace_ends(grid.plan, scan, ends), ends);
+  Grid covered(grid.plan);
+  add_ends(grid, trace_ends(grid.plan, scan, ends), ends, covered);
 }
 
 Grid states_of(const OddsGrid& grid) {
   Grid states(grid.plan);
+  take_states(grid, states);
+  return states;
+}
+
+void take_states(const OddsGrid& grid, Grid& states) {
+  std::fill(states.words.begin(), states.words.end(), 0u);
   for (std::size_t i = 0; i < grid.cells.size(); ++i) {
     const std::uint32_t state = grid.cells[i] > 0   ? SF_CELL_OCCUPIED
                                 : grid.cells[i] < 0 ? SF_CELL_FREE
                                                     : SF_CELL_UNEXPLORED;
     states.words[i / 16] |= state << 2 * (i % 16);
   }
-  return states;
 }
 
 }  // namespace sf::maps

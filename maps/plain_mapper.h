@@ -44,9 +44,12 @@ struct OddsGrid {
 
 /// Every cell that the scan covers is weighed once: as occupied, or else as free.
 void add_scan(OddsGrid& grid, const ScanView& scan);
-void add_ends(OddsGrid& grid, const ScanEnds& scan, std::span<const std::uint32_t> ends);
+/// @param covered scratch of the same plan: unexplored before and after
+void add_ends(OddsGrid& grid, const ScanEnds& scan, std::span<const std::uint32_t> ends, Grid& covered);
 
 /// Occupied above 0, free below, unexplored at 0.
 Grid states_of(const OddsGrid& grid);
+/// @param states of the same plan: overwritten
+void take_states(const OddsGrid& grid, Grid& states);
 
 }  // namespace sf::maps

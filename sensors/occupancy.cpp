@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "maps/packets.h"
+#include "raycast/caster.h"
+#include "sensors/occupancy_host.h"
 #include "sensors/occupancy_packets.h"
 
 namespace sf::sensors {
@@ -43,9 +45,15 @@ std::vector<MapPlan> plans_of(const std::vector<Occupancy>& all) {
   return plans;
 }
 
+/// [cells] range of scans that the device enters.
+double farthest_on(const Site& site) {
+  const bool host = raycast::caster_for(site.device.facts().software, site.scene.caster) == raycast::Caster::host;
+  return host ? kFarScan : maps::kFarthestRange;
+}
+
 Occupancies::Occupancies(const Site& site)
     : maps_(occupancies_of(site.world)),
-      batch_(site.device, site.workers, plans_of(maps_)),
+      batch_(site.device, site.workers, plans_of(maps_), farthest_on(site)),
       flags_(site.true_poses ? maps::kTruePoses : 0) {
   std::size_t values = 0;
   for (std::uint32_t i = 0; i < maps_.size(); ++i) {

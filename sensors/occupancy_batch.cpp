@@ -55,7 +55,7 @@ maps::CellBox in_whole_words(const maps::CellBox& box) {
 
 }  // namespace
 
-void MapBatch::Tables::trace(std::span<const MapScan> scans) {
+void MapBatch::Tables::trace() {
   shares.resize(scans.size());
   workers.run(scans.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
@@ -96,7 +96,7 @@ void MapBatch::Tables::add_words(MapWords& part, std::uint32_t row, MapShare& sh
       blocks[part.course.count++] = {row, static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << 16};
 }
 
-void MapBatch::Tables::hand_out(std::span<const MapScan> scans) {
+void MapBatch::Tables::hand_out() {
   strips.count = plain.course.count = weighed.course.count = 0;
   const auto table = rows->host<MapRow>();
   for (std::uint32_t i = 0; i < scans.size(); ++i) {
@@ -114,7 +114,7 @@ void MapBatch::Tables::hand_out(std::span<const MapScan> scans) {
 }
 
 /// Marks the cells that beams ended in.
-void MapBatch::Tables::strike(std::span<const MapScan> scans) {
+void MapBatch::Tables::strike() {
   workers.run(scans.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const MapShare& share = shares[i];
@@ -159,7 +159,7 @@ void MapBatch::Tables::close(MapCourse& course) {
 }
 
 /// All of rows and lines once, nobody's row among them; then what these scans have written.
-void MapBatch::Tables::send_scans(std::span<const MapScan> scans) {
+void MapBatch::Tables::send_scans() {
   if (blank) {
     batch.up(*rows, 0, rows->bytes());
     batch.up(*lines, 0, lines->bytes());
@@ -174,8 +174,8 @@ void MapBatch::Tables::send_scans(std::span<const MapScan> scans) {
   }
 }
 
-void MapBatch::Tables::send(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted) {
-  send_scans(scans);
+void MapBatch::Tables::send() {
+  send_scans();
   for (const MapCourse* course : {&strips, &plain.course, &weighed.course}) {
     if (!course->kernel) continue;
     batch.up(*course->blocks, 0, course->count * sizeof(MapBlock));
@@ -192,23 +192,31 @@ void MapBatch::Tables::send(std::span<const MapScan> scans, std::span<const std:
     batch.down(*words, 4 * std::size_t{all[map].words}, 4 * std::size_t{maps::words(all[map].plan.grid)});
 }
 
-MapBatch::MapBatch(gpu::Device& device, base::Workers& workers, std::vector<MapPlan> plans)
-    : t_(std::make_unique<Tables>(device, workers, std::move(plans))) {}
+MapBatch::MapBatch(gpu::Device& device, base::Workers& workers, std::vector<MapPlan> plans, double farthest)
+    : t_(std::make_unique<Tables>(device, workers, std::move(plans), farthest)) {}
 
 MapBatch::~MapBatch() = default;
 
 void MapBatch::update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted) {
   Tables& t = *t_;
-  if (scans.empty() && (wanted.empty() || t.unified)) return;
   SF_CHECK(scans.size() <= t.all.size(), std::to_string(scans.size()) + " scans for fewer maps");
-  t.trace(scans);
-  t.hand_out(scans);
-  t.strike(scans);
-  t.send(scans, wanted);
+  t.on_host.update(scans, wanted, t.workers);
+  t.scans.clear();
+  t.wanted.clear();
+  for (const MapScan& scan : scans)
+    if (!t.on_host.has(scan.map)) t.scans.push_back(scan);
+  for (const std::uint32_t map : wanted)
+    if (!t.on_host.has(map)) t.wanted.push_back(map);
+  if (t.scans.empty() && (t.wanted.empty() || t.unified)) return;
+  t.trace();
+  t.hand_out();
+  t.strike();
+  t.send();
   t.batch.run();
 }
 
 std::span<const std::uint32_t> MapBatch::words(std::uint32_t map) const {
+  if (t_->on_host.has(map)) return t_->on_host.words(map);
   return t_->words->host<std::uint32_t>().subspan(t_->all[map].words, maps::words(t_->all[map].plan.grid));
 }
 

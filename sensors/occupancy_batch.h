@@ -1,6 +1,6 @@
 #pragma once
-// Many occupancy maps on the device: a tick's scans entered into all of them in one batch, word by word, with exactly
-// the cells that maps::add_scan would set.
+// Many occupancy maps, on the device or the host: a tick's scans entered into all of them in one batch, word by word,
+// with exactly the cells that maps::add_scan would set.
 //
 // The host turns ranges into end cells, in double, on all cores (maps/scan_ends.h); the device owns the maps and covers
 // cells in whole numbers. So it needs no 64-bit floats, and how it rounds changes nothing.
@@ -39,8 +39,10 @@ struct MapScan {
 /// Not thread-safe. `device` and `workers` must outlive it.
 class MapBatch {
  public:
-  /// All maps unexplored. @throws base::DeviceError when the device cannot hold them.
-  MapBatch(gpu::Device& device, base::Workers& workers, std::vector<MapPlan> plans);
+  /// All maps unexplored. @param farthest [cells] range of scans that the device enters; the host enters the others
+  /// @throws base::DeviceError when the device cannot hold them.
+  MapBatch(gpu::Device& device, base::Workers& workers, std::vector<MapPlan> plans,
+           double farthest = maps::kFarthestRange);
   ~MapBatch();
 
   /// Enters scans, at most one into each map. @param wanted maps whose words are looked at afterwards

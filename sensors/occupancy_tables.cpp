@@ -29,12 +29,10 @@ std::size_t strip_blocks(const maps::GridPlan& plan) {
 
 }  // namespace
 
-MapBatch::Tables::Tables(gpu::Device& device, base::Workers& w, std::vector<MapPlan> plans)
-    : workers(w), unified(device.unified()), batch(device) {
+MapBatch::Tables::Tables(gpu::Device& device, base::Workers& w, std::vector<MapPlan> plans, double farthest)
+    : workers(w), on_host(plans, farthest), unified(device.unified()), batch(device) {
   plan(std::move(plans));
   lay_out();
-  const std::size_t all_words = all.empty() ? 0 : all.back().words + maps::words(all.back().plan.grid);
-  const std::size_t all_lines = all.empty() ? 0 : all.back().lines + pairs_of(all.back().plan);
   rows = std::make_unique<gpu::Buffer>(device, "due maps", Role::upload, Texel::u32x4,
                                        SF_MAP_ROW_TEXELS * (all.size() + 1));
   lines = std::make_unique<gpu::Buffer>(device, "lines of beams", Role::upload, Texel::f32x4, all_lines + 1);
@@ -44,7 +42,8 @@ MapBatch::Tables::Tables(gpu::Device& device, base::Workers& w, std::vector<MapP
   words = std::make_unique<gpu::Buffer>(device, "maps", Role::download, Texel::u32, all_words + 1);
   std::fill_n(words->host<std::uint32_t>().data(), all_words + 1, 0u);
   std::size_t most = 0;
-  for (const MapPlace& map : all) most += strip_blocks(map.plan.grid);
+  for (std::uint32_t i = 0; i < all.size(); ++i)
+    if (!on_host.has(i)) most += strip_blocks(all[i].plan.grid);
   const std::size_t lanes = make_course(device, "strips of a map", strips, occupancy_strips_comp_spv, 4, most);
   covered = std::make_unique<gpu::Buffer>(device, "covered cells", Role::download, Texel::u32, lanes);
   make_words(device, "map", plain, occupancy_comp_spv, false);
@@ -69,9 +68,9 @@ void MapBatch::Tables::plan(std::vector<MapPlan> plans) {
 }
 
 void MapBatch::Tables::lay_out() {
-  std::size_t all_words = 0;
-  std::size_t all_lines = 0;
-  for (MapPlace& map : all) {
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    if (on_host.has(i)) continue;
+    MapPlace& map = all[i];
     map.words = static_cast<std::uint32_t>(all_words);
     map.lines = static_cast<std::uint32_t>(all_lines);
     all_words += maps::words(map.plan.grid);
@@ -99,8 +98,8 @@ std::size_t MapBatch::Tables::make_course(gpu::Device& device, const char* name,
 void MapBatch::Tables::make_words(gpu::Device& device, const char* name, MapWords& part,
                                   std::span<const std::uint32_t> spirv, bool weighs) {
   std::size_t most = 0;
-  for (const MapPlace& map : all)
-    if (map.plan.odds.has_value() == weighs) most += word_blocks(map.plan.grid);
+  for (std::uint32_t i = 0; i < all.size(); ++i)
+    if (!on_host.has(i) && all[i].plan.odds.has_value() == weighs) most += word_blocks(all[i].plan.grid);
   const std::size_t lanes = make_course(device, name, part.course, spirv, weighs ? 6 : 5, most);
   part.struck = std::make_unique<gpu::Buffer>(device, "struck cells", Role::upload, Texel::u32, lanes);
 }

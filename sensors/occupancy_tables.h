@@ -13,6 +13,7 @@
 #include "gpu/kernel.h"
 #include "maps/scan_ends.h"
 #include "sensors/occupancy_batch.h"
+#include "sensors/occupancy_host.h"
 #include "sensors/occupancy_records.h"
 
 namespace sf::sensors {
@@ -57,8 +58,12 @@ inline std::uint32_t pairs_of(const MapPlan& plan) { return (plan.samples + 1) /
 
 struct MapBatch::Tables {
   base::Workers& workers;
+  HostMaps on_host;
   bool unified;
   std::vector<MapPlace> all;
+  std::size_t all_words = 0, all_lines = 0;  ///< on the device
+  std::vector<MapScan> scans;                ///< of this time, likewise
+  std::vector<std::uint32_t> wanted;         ///< likewise
   std::map<std::pair<double, std::uint32_t>, std::vector<base::Vec2>> fans;
   MapCourse strips;
   MapWords plain;
@@ -73,7 +78,7 @@ struct MapBatch::Tables {
   gpu::Batch batch;
   bool blank = true;  ///< maps are still to be sent
 
-  Tables(gpu::Device& device, base::Workers& w, std::vector<MapPlan> plans);
+  Tables(gpu::Device& device, base::Workers& w, std::vector<MapPlan> plans, double farthest);
   void plan(std::vector<MapPlan> plans);
   void lay_out();
   std::size_t make_course(gpu::Device& device, const char* name, MapCourse& course,
@@ -84,14 +89,14 @@ struct MapBatch::Tables {
   std::span<std::uint32_t> ends_of(const MapPlace& map) {
     return std::span(ends).subspan(2 * std::size_t{map.lines}, map.plan.samples);
   }
-  void trace(std::span<const MapScan> scans);
-  void hand_out(std::span<const MapScan> scans);
+  void trace();
+  void hand_out();
   void add_strips(std::uint32_t row, const maps::CellBox& cells, bool steep, StripTable& table);
   void add_words(MapWords& part, std::uint32_t row, MapShare& share);
-  void strike(std::span<const MapScan> scans);
+  void strike();
   void close(MapCourse& course);
-  void send_scans(std::span<const MapScan> scans);
-  void send(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted);
+  void send_scans();
+  void send();
 };
 
 }  // namespace sf::sensors

@@ -37,9 +37,9 @@ struct Tally {
 /// `rounds` scans into every map, or each time into `some` of them, forwards and backwards; all maps compared after
 /// each `every`-th.
 Tally contest(const std::vector<sensors::MapPlan>& plans, std::size_t rounds, std::size_t every, std::uint64_t seed,
-              bool some = false) {
+              bool some = false, double farthest = maps::kFarthestRange) {
   base::Workers workers;
-  sensors::MapBatch batch(device(), workers, plans);
+  sensors::MapBatch batch(device(), workers, plans, farthest);
   PlainMaps plain(plans);
   Chance chance(seed);
   std::vector<std::uint32_t> wanted;
@@ -130,9 +130,11 @@ TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
   plans[0].odds = maps::OddsRule{32767, 32767, 32767};  // the largest
   plans[2].odds = maps::OddsRule{1, 1, 1};              // the smallest
   plans[4].odds = maps::OddsRule{0, 3, 20};             // nothing is ever occupied
-  const Tally tally = contest(plans, 25, 1, 40);
-  EXPECT_EQ(tally.different, 0u);
-  EXPECT_GT(tally.occupied, 1'000u);
+  for (const double farthest : {0.0, 1e3}) {
+    const Tally tally = contest(plans, 25, 1, 40, false, farthest);
+    EXPECT_EQ(tally.different, 0u) << (farthest > 0.0 ? "on the device" : "on the host");
+    EXPECT_GT(tally.occupied, 1'000u);
+  }
 }
 
 TEST(OccupancyBatch, TheFarthestEndsAreStillRight) {
@@ -153,6 +155,7 @@ TEST(OccupancyBatch, MapsOfDifferentShapes) {
     plans.push_back(p);
   }
   EXPECT_EQ(contest(plans, 10, 1, 61).different, 0u);
+  EXPECT_EQ(contest(plans, 10, 1, 61, true, 20.0).different, 0u) << "some on the host";
 }
 
 TEST(OccupancyBatch, AFewMapsAtATimeInAnyOrder) {

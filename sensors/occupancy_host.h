@@ -1,0 +1,44 @@
+#pragma once
+// Occupancy maps on the host: scans that reach far are entered faster line by line than strip by strip.
+
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "maps/plain_mapper.h"
+#include "sensors/occupancy_batch.h"
+
+namespace sf::sensors {
+
+/// [cells] scans that reach farther are entered by the host where the device is software, which is slower at it.
+inline constexpr double kFarScan = 60.0;
+
+/// Not thread-safe.
+class HostMaps {
+ public:
+  /// @param plans of all maps  @param farthest [cells] range of scans that the device enters
+  HostMaps(std::span<const MapPlan> plans, double farthest);
+
+  bool has(std::uint32_t map) const { return rows_[map] != kNone; }
+  bool empty() const { return maps_.empty(); }
+
+  /// Enters those of `scans` that are for maps of its own, at most one into each.
+  void update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted, base::Workers& workers);
+  /// Of a map that was wanted last. Lives until the next update.
+  std::span<const std::uint32_t> words(std::uint32_t map) const { return maps_[rows_[map]].grid.words; }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+  struct Map {
+    MapPlan plan;
+    std::vector<base::Vec2> beams;
+    maps::Grid grid;  ///< its words; with log odds, what they come to
+    std::optional<maps::OddsGrid> odds;
+    maps::Grid covered;  ///< scratch, with log odds
+  };
+  std::vector<std::uint32_t> rows_;  ///< per map: its row in `maps_`, or kNone
+  std::vector<Map> maps_;
+  std::vector<std::vector<std::uint32_t>> ends_;  ///< scratch per thread
+};
+
+}  // namespace sf::sensors
