@@ -24,6 +24,7 @@
 #include "bench/map_contest.h"
 #include "bench/price.h"
 #include "bench/report.h"
+#include "bench/stage_peer.h"
 #include "tests/sensors/scenes.h"
 
 namespace sf::bench {
@@ -231,6 +232,9 @@ void register_all(Session& session) {
   }));
   once(benchmark::RegisterBenchmark("fleets", [&](benchmark::State& s) {
     tell_facts(s, facts, [&session] { return measure_fleets(session.device); });
+  }));
+  once(benchmark::RegisterBenchmark("beside_stage", [&](benchmark::State& s) {
+    tell_facts(s, facts, [&session] { return measure_beside_stage(session.device); });
   }));
   once(benchmark::RegisterBenchmark("lists", [&](benchmark::State& s) {
     tell_facts(s, facts, [&session] { return measure_lists(session.device); });
