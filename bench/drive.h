@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/reading.h"
 #include "bench/cost.h"
 #include "bench/judge.h"
@@ -48,6 +49,7 @@ class Drive {
   void decide();
 
   const world::World& world_;
+  base::Workers workers_;
   farm::Farm farm_;
   robots::Fleet fleet_;
   std::vector<std::unique_ptr<control::Controller>> controllers_;  ///< one per mover

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "base/error.h"
-#include "robots/command_law.h"
 #include "robots/motion.h"
 
 namespace sf::robots {
@@ -27,6 +28,19 @@ std::vector<Segment> stopping(const world::World& world) {
   return walls;
 }
 
+/// Robots before tags, each in order of ids: the place of every row in that order.
+std::vector<std::uint32_t> ranks_of(const world::World& world) {
+  std::vector<std::uint32_t> order(world.movers.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) {
+    const world::Mover &a = world.movers[p], &b = world.movers[q];
+    return std::pair(a.is_tag, a.id) < std::pair(b.is_tag, b.id);
+  });
+  std::vector<std::uint32_t> ranks(order.size());
+  for (std::uint32_t k = 0; k < order.size(); ++k) ranks[order[k]] = k;
+  return ranks;
+}
+
 double median_radius(const std::vector<Outline>& outlines) {
   std::vector<double> radii;
   for (const Outline& outline : outlines) radii.push_back(outline.radius);
@@ -37,8 +51,13 @@ double median_radius(const std::vector<Outline>& outlines) {
 
 }  // namespace
 
-Fleet::Fleet(const world::World& world)
-    : world_(world), outlines_(outlines_of(world)), walls_(stopping(world), 2.0 * median_radius(outlines_)) {
+Fleet::Fleet(const world::World& world, base::Workers* workers)
+    : world_(world),
+      workers_(workers),
+      outlines_(outlines_of(world)),
+      walls_(stopping(world), 2.0 * median_radius(outlines_)),
+      rank_(ranks_of(world)),
+      scratch_(workers != nullptr ? workers->threads() : 1) {
   const std::size_t count = world.movers.size();
   std::size_t edges = 0;
   for (std::uint32_t row = 0; row < count; ++row) {
@@ -47,13 +66,17 @@ Fleet::Fleet(const world::World& world)
     edges = std::max(edges, outlines_[row].edges.size());
   }
   predicted_ = reports_;
-  velocities_.resize(count);
-  contacts_.resize(count);
-  refused_.resize(count);
-  struck_.resize(count);
-  told_.resize(count);
-  gone_.resize(count);
-  for (auto* memory : {&next_, &now_, &other_}) memory->resize(edges);
+  travels_.resize(count);
+  ways_.resize(count);
+  proposed_.resize(count);
+  for (auto* flags : {&waiting_, &beaten_, &stirred_, &goes_on_, &contacts_, &refused_, &struck_, &told_, &gone_})
+    flags->resize(count);
+  for (auto* rows : {&open_, &round_}) rows->reserve(count);
+  for (Scratch& scratch : scratch_) {
+    for (auto* memory : {&scratch.next, &scratch.now, &scratch.other}) memory->resize(edges);
+    for (auto* rows : {&scratch.near, &scratch.rivals}) rows->reserve(count);
+    scratch.walls.reserve(1'000);
+  }
   neighbours_.build(reports_, 1.0);
 }
 
@@ -62,36 +85,47 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
   SF_CHECK(dt > 0, "dt " + std::to_string(dt));
   const double seconds = 1e-9 * static_cast<double>(dt);
 
-  reach_ = {0.0, 0.0};
-  for (std::size_t row = 0; row < commands.size(); ++row) {
-    const world::Mover& mover = world_.movers[row];
-    const Twist wanted = follow(mover, obey(mover, commands[row]));
-    velocities_[row] = approach(mover, reports_[row].velocity, wanted, seconds);
-    reach_.others = std::max(reach_.others, std::hypot(velocities_[row].forward, velocities_[row].left) * seconds);
-  }
-  neighbours_.build(reports_, 4.0 * (widest_ + reach_.others) + 1e-3);
+  for (Scratch& scratch : scratch_) scratch.farthest = 0.0;
+  for_rows(commands.size(), [&](std::uint32_t row, Scratch& scratch) { start(row, commands[row], seconds, scratch); });
+  farthest_ = 0.0;
+  for (const Scratch& scratch : scratch_) farthest_ = std::max(farthest_, scratch.farthest);
+  neighbours_.build(reports_, 4.0 * (widest_ + farthest_) + 1e-3);
 
-  for (std::uint32_t row = 0; row < reports_.size(); ++row) {
-    refused_[row] = 0;
-    told_[row] = 0;
-    move_one(row, velocities_[row], seconds);
-    reports_[row].time += dt;
+  open_.clear();
+  for (std::uint32_t row = 0; row < reports_.size(); ++row)
+    if (waiting_[row] != 0) open_.push_back(row);
+  std::fill(stirred_.begin(), stirred_.end(), 0);
+  round_.assign(open_.begin(), open_.end());
+  for (int k = 1; k < kRounds && !round_.empty(); ++k) {
+    run_round(false);
+    find_next();
   }
+  round_.assign(open_.begin(), open_.end());
+  run_round(true);
+
+  for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
+    const Way& way = ways_[row];
+    refused_[row] = way.refused || way.left > 0.0;
+    reports_[row].velocity = way.left > 0.0 ? Twist{} : way.velocity;
+    reports_[row].time += dt;
+  });
   feel();
 }
 
 // What was refused a step touches something, and what touched may still: nobody else is looked at, but whom these
 // were refused by.
 void Fleet::feel() {
-  for (std::uint32_t row = 0; row < reports_.size(); ++row) {
+  for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
     contacts_[row] = refused_[row] != 0 || reports_[row].touched != 0;
-    if (contacts_[row] != 0) reports_[row].touched = touch_of(row, reports_).sectors;
-  }
-  for (std::uint32_t row = 0; row < reports_.size(); ++row) {
-    if (struck_[row] != 0 && contacts_[row] == 0) reports_[row].touched = touch_of(row, reports_).sectors;
+    const auto struck = refused_[row] != 0 ? std::span(struck_) : std::span<std::uint8_t>();
+    if (contacts_[row] != 0) reports_[row].touched = touch_of(row, reports_[row].X_WM, reports_, struck).sectors;
+  });
+  for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
+    if (struck_[row] != 0 && contacts_[row] == 0)
+      reports_[row].touched = touch_of(row, reports_[row].X_WM, reports_).sectors;
     struck_[row] = 0;
     contacts_[row] = refused_[row] != 0 || reports_[row].touched != 0;
-  }
+  });
 }
 
 std::size_t Fleet::apply(std::span<const base::Report> reports) {
@@ -123,14 +157,15 @@ std::span<const base::Report> Fleet::predict(std::int64_t time) {
 
 void Fleet::feel_told() {
   if (std::find(told_.begin(), told_.end(), 1) == told_.end()) return;
-  reach_ = {kPressed, 0.0};
+  farthest_ = 0.0;
   neighbours_.build(predicted_, 4.0 * widest_ + 1e-3);
-  for (std::uint32_t row = 0; row < predicted_.size(); ++row) {
+  for_rows(predicted_.size(), [&](std::uint32_t row, Scratch&) {
     if (gone_[row] != 0) contacts_[row] = 0;
-    if (told_[row] == 0 || gone_[row] != 0) continue;
-    if (!clear(row, predicted_)) predicted_[row].touched |= touch_of(row, predicted_).sectors;
-    contacts_[row] = predicted_[row].touched != 0;
-  }
+    if (told_[row] == 0 || gone_[row] != 0) return;
+    base::Report& report = predicted_[row];
+    if (!clear(row, predicted_, kPressed)) report.touched |= touch_of(row, report.X_WM, predicted_).sectors;
+    contacts_[row] = report.touched != 0;
+  });
 }
 
 }  // namespace sf::robots

@@ -6,13 +6,22 @@
 //   fleet.apply(reports);                      // told by someone else
 //   farm.tick(fleet.reports()); ... fleet.contacts();
 //
-// The rule of `move`: movers move one after another in order of their rows, each against the walls and against where
-// all others are at that moment. The result does not depend on threads, of which there is one.
+// The rule of `move` has two phases, in at most Fleet::kRounds rounds:
+//
+//   1 propose  Every mover goes as far as the walls and the others allow, these standing where they are when the round
+//              begins. In front of one that may still go on it waits with the rest of its way.
+//   2 resolve  A mover whose proposed way meets the place that a mover of smaller id proposes stays where it was.
+//
+// The next round is for movers that wait or stayed, where one near them moved or stayed. In the last round nothing is
+// waited for: a mover that is still refused a step stands, turning where it can. So each round is what movers that go
+// one after another would do, in order of ids, and none overlaps another that did not before. A mover's result depends
+// on the movers near it alone (within kRounds times the ways of both), not on rows, threads or the rest of the fleet.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/pose.h"
 #include "base/report.h"
 #include "robots/neighbours.h"
@@ -26,18 +35,22 @@ namespace sf::robots {
 /// How long a report is carried on with its velocity. [ns]
 inline constexpr std::int64_t kCoast = 500'000'000;
 
-/// One thread at a time. Nothing is allocated after construction.
+/// One caller at a time. Nothing is allocated after construction, but where more than a thousand walls are near one
+/// mover.
 class Fleet {
  public:
-  /// All movers at their places at load, at rest, at time 0. `world` must outlive the fleet.
-  explicit Fleet(const world::World& world);
+  static constexpr int kRounds = 4;  ///< of a tick, at most
+
+  /// All movers at their places at load, at rest, at time 0. `world` must outlive the fleet, and so must `workers`.
+  /// @param workers share the work of `move` and `predict`, with the same results; null: the caller does it alone
+  explicit Fleet(const world::World& world, base::Workers* workers = nullptr);
 
   /// Simulates `dt` [ns] > 0. A command passes the mover's command law, is reduced to what the drive can follow and to
   /// what its accelerations allow from the velocity it has, then tried in substeps no longer than `Outline::step`; a
   /// substep that would make the outline touch a wall or another mover is refused, and done only as far as the last
   /// 0.5 mm before that. From there on the mover stands at once, only turning in place while it still can (a car
   /// stands): for that it may push itself off by up to 4 mm a substep. What a mover touched already (overlapping
-  /// starts, reports) stops it only where its origin would come nearer to it.
+  /// starts, reports) stops it only where its origin would come nearer to it. Other movers stop it by the rule above.
   ///
   /// `Report::touched` then says what presses where (robots/touch.h): for movers that were refused a step, for those
   /// that they were refused by, and for as long as anything touches them afterwards, also while they stand. Passing
@@ -68,43 +81,109 @@ class Fleet {
   std::span<const std::uint8_t> contacts() const { return contacts_; }
 
  private:
-  struct Reach {
-    double own;     ///< [m] farthest any point of the mover travels this tick
-    double others;  ///< [m] farthest any mover's origin travels this tick
+  static constexpr double kMostYield = 4e-3;  ///< [m] that a turning body pushes itself off by, a substep
+
+  /// How far a mover has come in this tick.
+  struct Way {
+    base::Pose X_WM;
+    base::Twist velocity;  ///< that it goes on with
+    double left = 0.0;     ///< [s] of the tick; 0: it goes no farther
+    bool refused = false;  ///< a step, in this tick
+    bool free = false;     ///< nothing stood near it
+    bool exposed = false;  ///< others' ways are near it
   };
+  /// What a step meets.
+  enum class Stop : std::uint8_t { none, waiting, refused };
   struct Touch {
     std::uint32_t sectors = 0;
     base::Vec2 away;  ///< world frame: the sum of unit vectors from what touches to the mover's origin
   };
-  void move_one(std::uint32_t row, const base::Twist& velocity, double dt);
-  void move_in_steps(std::uint32_t row, base::Twist velocity, double dt, std::int64_t steps);
-  bool clear(std::uint32_t row, std::span<const base::Report> reports) const;
-  bool refused(std::uint32_t row, const base::Pose& X_WM);
-  bool leaves(std::uint32_t row, const base::Pose& X_WM, const world::Segment& wall);
-  bool leaves(std::uint32_t row, const base::Pose& X_WM, const Placed& other);
-  bool step(std::uint32_t row, const base::Twist& velocity, double dt);
-  double press(std::uint32_t row, const base::Twist& velocity, double dt);
-  bool turn_against(std::uint32_t row, const base::Twist& velocity, double dt);
-  bool push_off(std::uint32_t row, const base::Twist& velocity, double dt);
-  Touch touch_of(std::uint32_t row, std::span<const base::Report> reports);
+  /// One thread's memory.
+  struct Scratch {
+    std::vector<Edge> next, now, other;        ///< of `place`
+    std::vector<std::uint32_t> near;           ///< movers that this one's way may meet
+    std::vector<const world::Segment*> walls;  ///< likewise
+    std::vector<std::uint32_t> rivals;  ///< of these: with a smaller id, and another place to be after this round
+    bool beaten = false;                ///< its way meets such a place
+    double farthest = 0.0;              ///< [m] that an origin may travel this tick, of all movers seen
+  };
+
+  void start(std::uint32_t row, const base::Twist& command, double seconds, Scratch& scratch);
+  void run_round(bool last);
+  void find_next();
+  void propose(std::uint32_t row, bool last, Scratch& scratch);
+  bool beaten(std::uint32_t row, bool last, Scratch& scratch);
+  bool meets_rivals_freely(std::uint32_t row, Scratch& scratch) const;
+  double sweep_of(std::uint32_t row) const;
+  double reach_of(std::uint32_t row) const;
+  void commit(std::uint32_t row);
+  void find_near(std::uint32_t row, Scratch& scratch) const;
+  bool moved(std::uint32_t row) const;
+
+  bool clear(std::uint32_t row, std::span<const base::Report> reports, double sweep) const;
+  template <class Visit>
+  bool any_wall(std::uint32_t row, const base::Pose& X_WM, double sweep, Visit&& visit) const;
+  bool comes_near(std::uint32_t row, const base::Pose& from, double sweep, std::uint32_t other,
+                  const base::Pose& X_WO) const;
+  Way go(std::uint32_t row, bool last, Scratch& scratch) const;
+  Way go_in_steps(std::uint32_t row, double steps, bool last, Scratch& scratch) const;
+  double press(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const;
+  bool turn_against(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const;
+  bool push_off(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const;
+
+  // What stops a mover on its way from one pose to another.
+  Stop stop_at(std::uint32_t row, const base::Pose& from, const base::Pose& to, bool last, Scratch& scratch) const;
+  bool meets_rival(std::uint32_t row, const base::Pose& from, const Placed& next, Scratch& scratch) const;
+  bool is_stopped(std::uint32_t row, const base::Pose& from, const Placed& next, std::uint32_t other,
+                  const base::Pose& X_WO, Scratch& scratch) const;
+  bool leaves(std::uint32_t row, const base::Pose& from, base::Vec2 to, const world::Segment& wall,
+              Scratch& scratch) const;
+
+  /// @param struck others that touch it are marked there, where not empty
+  Touch touch_of(std::uint32_t row, const base::Pose& X_WM, std::span<const base::Report> reports,
+                 std::span<std::uint8_t> struck = {}) const;
   void feel();
   void feel_told();
+  template <class Body>
+  void for_rows(std::size_t count, Body&& body);
 
   const world::World& world_;
+  base::Workers* workers_;
   std::vector<Outline> outlines_;
   world::WallGrid walls_;
   Neighbours neighbours_;
-  double widest_ = 0.0;  ///< [m] largest outline radius
-  Reach reach_{};
+  double widest_ = 0.0;    ///< [m] largest outline radius
+  double farthest_ = 0.0;  ///< [m] that an origin may be from where `neighbours_` has it
   std::vector<base::Report> reports_;
   std::vector<base::Report> predicted_;
-  std::vector<base::Twist> velocities_;
+  std::vector<std::uint32_t> rank_;  ///< in order of ids, robots before tags
+  std::vector<double> travels_;      ///< [m] farthest that its origin travels this tick
+  std::vector<Way> ways_;            ///< when the round begins; where others see it is in `reports_`
+  std::vector<Way> proposed_;
+  std::vector<std::uint8_t> waiting_;  ///< 1: its tick is not over
+  std::vector<std::uint8_t> beaten_;   ///< 1: in this round
+  std::vector<std::uint8_t> stirred_;  ///< 1: it moved or was beaten in this round
+  std::vector<std::uint8_t> goes_on_;  ///< 1: in the next round
+  std::vector<std::uint32_t> open_;    ///< rows whose tick is not over
+  std::vector<std::uint32_t> round_;   ///< of these: rows of this round
+  std::vector<Scratch> scratch_;       ///< per thread
   std::vector<std::uint8_t> contacts_;
-  std::vector<std::uint8_t> refused_;     ///< 1: a step in the last `move`
-  std::vector<std::uint8_t> struck_;      ///< 1: someone was refused a step and touches it; 0 between calls
-  std::vector<std::uint8_t> told_;        ///< 1: by a report, since the last `move`
-  std::vector<std::uint8_t> gone_;        ///< 1: nobody meets it
-  std::vector<Edge> next_, now_, other_;  ///< memory of `place`
+  std::vector<std::uint8_t> refused_;  ///< 1: a step in the last `move`
+  std::vector<std::uint8_t> struck_;   ///< 1: someone was refused a step and touches it; 0 between calls
+  std::vector<std::uint8_t> told_;     ///< 1: by a report, since the last `move`
+  std::vector<std::uint8_t> gone_;     ///< 1: nobody meets it
 };
+
+template <class Body>
+void Fleet::for_rows(std::size_t count, Body&& body) {
+  constexpr std::size_t kPiece = 32;
+  const auto piece = [&](std::size_t first, std::size_t end, unsigned thread) {
+    for (std::size_t i = first; i < end; ++i) body(static_cast<std::uint32_t>(i), scratch_[thread]);
+  };
+  if (workers_ != nullptr)
+    workers_->run(count, kPiece, piece);
+  else
+    piece(0, count, 0);
+}
 
 }  // namespace sf::robots

@@ -1,6 +1,7 @@
-// How a mover of a fleet comes up to things, and what it then touches.
+// The way of one mover of a fleet: how it comes up to things, and what it then touches.
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "robots/fleet.h"
@@ -15,14 +16,12 @@ using base::Twist;
 using base::Vec2;
 using world::Segment;
 
-constexpr double kGap = 4e-4;  // [m] a refused mover stops no farther away than this
+constexpr double kGap = 4e-4;      // [m] a refused mover stops no farther away than this
+constexpr double kWhole = 0x1p40;  // sums of integers do not depend on their order
 constexpr std::uint32_t kEverywhere = 0xFFFFFFFFu;
 static_assert(base::kTouchSectors == 32);
-constexpr double kYields[] = {1e-3, 2e-3, 4e-3};  // [m] that a turning body pushes itself off by
 
 Vec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }
-
-bool moves(const Twist& v) { return v.forward != 0.0 || v.left != 0.0 || v.turn != 0.0; }
 
 // Not nearer to what was touched already; rounding at 100 km is 1.5e-11.
 bool no_nearer(double after, double before) { return after >= before - 1e-10; }
@@ -34,130 +33,184 @@ Vec2 unit(Vec2 v) {
 
 }  // namespace
 
-void Fleet::move_one(std::uint32_t row, const Twist& velocity, double dt) {
-  reports_[row].velocity = velocity;
-  if (!moves(velocity)) return;
+/// True as soon as `visit(wall, distance [m] from the mover's circle)` is true for a wall within about `sweep` of it.
+template <class Visit>
+bool Fleet::any_wall(std::uint32_t row, const Pose& X_WM, double sweep, Visit&& visit) const {
   const Outline& outline = outlines_[row];
-  reach_.own = (std::hypot(velocity.forward, velocity.left) + std::abs(velocity.turn) * outline.radius) * dt;
-  if (clear(row, reports_)) {
-    reports_[row].X_WM = advance(reports_[row].X_WM, velocity, dt);
-    return;
-  }
-  const auto steps = static_cast<std::int64_t>(std::ceil(reach_.own / outline.step));
-  move_in_steps(row, velocity, dt / static_cast<double>(steps), steps);
+  const double radius = outline.radius + sweep;
+  const Vec2 p = origin(X_WM);
+  return !outline.edges.empty() && walls_.any(world::box_around(p, radius), [&](const Segment& wall) {
+    return wall.z_min < X_WM.z + outline.z_max && X_WM.z + outline.z_min < wall.z_max &&
+           visit(wall, world::distance(p, wall.a, wall.b) - outline.radius);
+  });
 }
 
-void Fleet::move_in_steps(std::uint32_t row, Twist velocity, double dt, std::int64_t steps) {
-  for (std::int64_t i = 0; i < steps; ++i) {
-    if (step(row, velocity, dt)) continue;
-    refused_[row] = 1;
-    const bool in_place = velocity.forward == 0.0 && velocity.left == 0.0;
-    if (!in_place) {
-      press(row, velocity, dt);
-      velocity = {0.0, 0.0, world_.movers[row].drive == world::Drive::car ? 0.0 : velocity.turn};
-      if (velocity.turn != 0.0 && step(row, velocity, dt)) continue;
+bool Fleet::clear(std::uint32_t row, std::span<const base::Report> reports, double sweep) const {
+  const Pose& X_WM = reports[row].X_WM;
+  const double reach = outlines_[row].radius + sweep + widest_ + farthest_;
+  return !any_wall(row, X_WM, sweep, [&](const Segment&, double gap) { return gap <= sweep; }) &&
+         !neighbours_.any(origin(X_WM), reach, [&](std::uint32_t other) {
+           return other != row && gone_[other] == 0 && comes_near(row, X_WM, sweep, other, reports[other].X_WM);
+         });
+}
+
+/// Whether a mover that stands at `from`, and travels by `sweep` [m], and another one have circles that meet.
+bool Fleet::comes_near(std::uint32_t row, const Pose& from, double sweep, std::uint32_t other, const Pose& X_WO) const {
+  if (outlines_[row].edges.empty() || outlines_[other].edges.empty()) return false;
+  const Vec2 d = origin(X_WO) - origin(from);
+  const double apart = outlines_[row].radius + sweep + outlines_[other].radius;
+  return dot(d, d) <= apart * apart;
+}
+
+/// [m] Farthest that any point of the mover travels, on what is left of its way.
+double Fleet::sweep_of(std::uint32_t row) const {
+  const Twist& v = ways_[row].velocity;
+  return (std::hypot(v.forward, v.left) + std::abs(v.turn) * outlines_[row].radius) * ways_[row].left;
+}
+
+/// [m] The same with what it may push itself off by.
+double Fleet::reach_of(std::uint32_t row) const {
+  return travels_[row] + std::abs(ways_[row].velocity.turn) * outlines_[row].radius * ways_[row].left;
+}
+
+Fleet::Way Fleet::go(std::uint32_t row, bool last, Scratch& scratch) const {
+  Way way = ways_[row];
+  const Pose& from = ways_[row].X_WM;
+  const double sweep = sweep_of(row);
+  const auto meets = [&](std::uint32_t other) { return comes_near(row, from, sweep, other, reports_[other].X_WM); };
+  way.free = std::none_of(scratch.near.begin(), scratch.near.end(), meets);
+  scratch.walls.clear();
+  any_wall(row, from, reach_of(row), [&](const Segment& wall, double gap) {
+    scratch.walls.push_back(&wall);
+    way.free = way.free && gap > sweep;
+    return false;
+  });
+  if (!way.free) return go_in_steps(row, std::max(1.0, std::ceil(sweep / outlines_[row].step)), last, scratch);
+  way.X_WM = advance(from, way.velocity, way.left);
+  way.left = 0.0;
+  return way;
+}
+
+Fleet::Way Fleet::go_in_steps(std::uint32_t row, double steps, bool last, Scratch& scratch) const {
+  Way way = ways_[row];
+  const double dt = way.left / steps;
+  while (steps > 0.0 && !scratch.beaten) {
+    const Pose X_next = advance(way.X_WM, way.velocity, dt);
+    const Stop stop = stop_at(row, way.X_WM, X_next, last, scratch);
+    if (stop == Stop::none) {
+      way.X_WM = X_next;
+      steps -= 1.0;
+      continue;
     }
-    if (velocity.turn != 0.0 && turn_against(row, velocity, dt)) continue;
-    velocity = {};
+    if (stop == Stop::waiting) {
+      way.left = steps * dt;
+      return way;
+    }
+    way.refused = true;
+    const bool in_place = way.velocity.forward == 0.0 && way.velocity.left == 0.0;
+    if (in_place) {
+      if (turn_against(row, way, dt, last, scratch)) {
+        steps -= 1.0;
+        continue;
+      }
+    } else {
+      press(row, way, dt, last, scratch);
+      // The same step again, turning.
+      if (way.velocity.turn != 0.0 && world_.movers[row].drive != world::Drive::car) {
+        way.velocity = {0.0, 0.0, way.velocity.turn};
+        continue;
+      }
+    }
+    way.velocity = {};
     break;
   }
-  reports_[row].velocity = velocity;
-}
-
-bool Fleet::step(std::uint32_t row, const Twist& velocity, double dt) {
-  const Pose X_WM = advance(reports_[row].X_WM, velocity, dt);
-  if (refused(row, X_WM)) return false;
-  reports_[row].X_WM = X_WM;
-  return true;
+  way.left = 0.0;
+  return way;
 }
 
 // As far along a refused step as there is nothing in the way; how long that takes [s]. The least part is tried first:
 // who presses already stays.
-double Fleet::press(std::uint32_t row, const Twist& velocity, double dt) {
-  const Pose X_start = reports_[row].X_WM;
+double Fleet::press(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const {
+  const Pose X_start = way.X_WM;
+  const auto refused = [&](double part) {
+    return stop_at(row, X_start, advance(X_start, way.velocity, part * dt), last, scratch) != Stop::none;
+  };
   const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(outlines_[row].step / kGap))));
   double free = std::ldexp(1.0, -halvings), blocked = 1.0;
-  if (refused(row, advance(X_start, velocity, free * dt))) return 0.0;
+  if (refused(free)) return 0.0;
   for (int k = 0; k < halvings; ++k) {
     const double middle = 0.5 * (free + blocked);
-    (refused(row, advance(X_start, velocity, middle * dt)) ? blocked : free) = middle;
+    (refused(middle) ? blocked : free) = middle;
   }
-  reports_[row].X_WM = advance(X_start, velocity, free * dt);
+  way.X_WM = advance(X_start, way.velocity, free * dt);
   return free * dt;
 }
 
 // Who is not near enough yet to push itself off turns until it is.
-bool Fleet::turn_against(std::uint32_t row, const Twist& velocity, double dt) {
-  if (push_off(row, velocity, dt)) return true;
-  const double done = press(row, velocity, dt);
-  return done > 0.0 && push_off(row, velocity, dt - done);
+bool Fleet::turn_against(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const {
+  if (push_off(row, way, dt, last, scratch)) return true;
+  const double done = press(row, way, dt, last, scratch);
+  return done > 0.0 && push_off(row, way, dt - done, last, scratch);
 }
 
 // A body that is not quite round (a disc of sixteen sides) pushes itself off what it presses on when it turns.
-bool Fleet::push_off(std::uint32_t row, const Twist& velocity, double dt) {
-  const Vec2 away = unit(touch_of(row, reports_).away);
+bool Fleet::push_off(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const {
+  const Vec2 away = unit(touch_of(row, way.X_WM, reports_).away);
   if (away.x == 0.0 && away.y == 0.0) return false;
-  const Pose X_turned = advance(reports_[row].X_WM, velocity, dt);
-  for (const double yield : kYields) {
+  const Pose X_turned = advance(way.X_WM, way.velocity, dt);
+  for (const double yield : {0.25 * kMostYield, 0.5 * kMostYield, kMostYield}) {
     Pose X_WM = X_turned;
     X_WM.x += yield * away.x;
     X_WM.y += yield * away.y;
-    if (refused(row, X_WM)) continue;
-    reports_[row].X_WM = X_WM;
+    if (stop_at(row, way.X_WM, X_WM, last, scratch) != Stop::none) continue;
+    way.X_WM = X_WM;
     return true;
   }
   return false;
 }
 
-// Nothing within the circle that holds all the mover can sweep this tick.
-bool Fleet::clear(std::uint32_t row, std::span<const base::Report> reports) const {
-  const Outline& outline = outlines_[row];
-  if (outline.edges.empty()) return true;
-  const Pose& X_WM = reports[row].X_WM;
-  const Vec2 p = origin(X_WM);
-  const double radius = outline.radius + reach_.own;
-  const bool wall_near = walls_.any(world::box_around(p, radius), [&](const Segment& wall) {
-    return wall.z_min < X_WM.z + outline.z_max && X_WM.z + outline.z_min < wall.z_max &&
-           world::distance(p, wall.a, wall.b) <= radius;
-  });
-  if (wall_near) return false;
-  return !neighbours_.any(p, radius + widest_ + reach_.others, [&](std::uint32_t other) {
-    if (other == row || gone_[other] != 0 || outlines_[other].edges.empty()) return false;
-    const Vec2 d = origin(reports[other].X_WM) - p;
-    const double apart = radius + outlines_[other].radius;
-    return dot(d, d) <= apart * apart;
-  });
+Fleet::Stop Fleet::stop_at(std::uint32_t row, const Pose& from, const Pose& to, bool last, Scratch& scratch) const {
+  const Placed next = place(outlines_[row], to, scratch.next);
+  for (const Segment* wall : scratch.walls)
+    if (touches(next, *wall) && !leaves(row, from, next.origin, *wall, scratch)) return Stop::refused;
+  Stop stop = Stop::none;
+  for (const std::uint32_t other : scratch.near) {
+    if (!is_stopped(row, from, next, other, reports_[other].X_WM, scratch)) continue;
+    if (last || waiting_[other] == 0) return Stop::refused;
+    stop = Stop::waiting;
+  }
+  if (stop == Stop::none && meets_rival(row, from, next, scratch)) return Stop::refused;
+  return stop;
 }
 
-bool Fleet::refused(std::uint32_t row, const Pose& X_WM) {
-  const Placed next = place(outlines_[row], X_WM, next_);
-  const bool by_wall = walls_.any(world::box_around(next.origin, next.radius),
-                                  [&](const Segment& wall) { return touches(next, wall) && !leaves(row, X_WM, wall); });
-  if (by_wall) return true;
-  return neighbours_.any(next.origin, next.radius + widest_ + reach_.others, [&](std::uint32_t row_other) {
-    if (row_other == row || gone_[row_other] != 0) return false;
-    const Vec2 d = origin(reports_[row_other].X_WM) - next.origin;
-    const double apart = next.radius + outlines_[row_other].radius;
-    if (dot(d, d) > apart * apart * (1.0 + 1e-12)) return false;
-    const Placed other = place(outlines_[row_other], reports_[row_other].X_WM, other_);
-    return touches(next, other) && !leaves(row, X_WM, other);
-  });
+/// On a way that nothing else stops.
+bool Fleet::meets_rival(std::uint32_t row, const Pose& from, const Placed& next, Scratch& scratch) const {
+  for (const std::uint32_t rival : scratch.rivals)
+    scratch.beaten = scratch.beaten || is_stopped(row, from, next, rival, proposed_[rival].X_WM, scratch);
+  return scratch.beaten;
 }
 
-bool Fleet::leaves(std::uint32_t row, const Pose& X_WM, const Segment& wall) {
-  const Placed now = place(outlines_[row], reports_[row].X_WM, now_);
+bool Fleet::is_stopped(std::uint32_t row, const Pose& from, const Placed& next, std::uint32_t other, const Pose& X_WO,
+                       Scratch& scratch) const {
+  const Vec2 d = origin(X_WO) - next.origin;
+  const double apart = next.radius + outlines_[other].radius;
+  if (dot(d, d) > apart * apart * (1.0 + 1e-12)) return false;
+  const Placed placed = place(outlines_[other], X_WO, scratch.other);
+  if (!touches(next, placed)) return false;
+  const Placed now = place(outlines_[row], from, scratch.now);
+  return !touches(now, placed) || !no_nearer(length(next.origin - placed.origin), length(now.origin - placed.origin));
+}
+
+/// It touches the wall already, and its origin comes no nearer to it.
+bool Fleet::leaves(std::uint32_t row, const Pose& from, Vec2 to, const Segment& wall, Scratch& scratch) const {
+  const Placed now = place(outlines_[row], from, scratch.now);
   return touches(now, wall) &&
-         no_nearer(world::distance(origin(X_WM), wall.a, wall.b), world::distance(now.origin, wall.a, wall.b));
+         no_nearer(world::distance(to, wall.a, wall.b), world::distance(now.origin, wall.a, wall.b));
 }
 
-bool Fleet::leaves(std::uint32_t row, const Pose& X_WM, const Placed& other) {
-  const Placed now = place(outlines_[row], reports_[row].X_WM, now_);
-  return touches(now, other) && no_nearer(length(origin(X_WM) - other.origin), length(now.origin - other.origin));
-}
-
-Fleet::Touch Fleet::touch_of(std::uint32_t row, std::span<const base::Report> reports) {
+Fleet::Touch Fleet::touch_of(std::uint32_t row, const Pose& X_WM, std::span<const base::Report> reports,
+                             std::span<std::uint8_t> struck) const {
   const Outline& outline = outlines_[row];
-  const Pose& X_WM = reports[row].X_WM;
   const Vec2 p = origin(X_WM);
   const double reach = outline.radius + kPressed;
   Touch touch;
@@ -166,17 +219,21 @@ Fleet::Touch Fleet::touch_of(std::uint32_t row, std::span<const base::Report> re
     if (sectors != 0) touch = {touch.sectors | sectors, touch.away + unit(world::from_segment(p, wall.a, wall.b))};
     return false;
   });
-  neighbours_.any(p, reach + widest_ + reach_.others, [&](std::uint32_t other) {
+  std::int64_t x = 0, y = 0;
+  neighbours_.any(p, reach + widest_ + farthest_, [&](std::uint32_t other) {
     const Vec2 from_other = p - origin(reports[other].X_WM);
     const double apart = reach + outlines_[other].radius;
     if (other == row || gone_[other] != 0 || dot(from_other, from_other) > apart * apart) return false;
     const std::uint32_t sectors = sectors_touched(outline, X_WM, outlines_[other], reports[other].X_WM);
     if (sectors == 0) return false;
-    touch = {touch.sectors | sectors, touch.away + unit(from_other)};
-    if (refused_[row] != 0) struck_[other] = 1;
+    const Vec2 away = kWhole * unit(from_other);
+    x += std::llround(away.x), y += std::llround(away.y);
+    touch.sectors |= sectors;
+    if (!struck.empty()) std::atomic_ref(struck[other]).store(1, std::memory_order_relaxed);
     // A mover placed from outside needs its contact sectors alone: in a crowd at one place, all are found soon.
     return told_[row] != 0 && touch.sectors == kEverywhere;
   });
+  touch.away = touch.away + 1.0 / kWhole * Vec2{static_cast<double>(x), static_cast<double>(y)};
   return touch;
 }
 

@@ -9,6 +9,7 @@ void Neighbours::build(std::span<const base::Report> reports, double cell) {
   cell_ = cell;
   starts_.assign(std::bit_ceil(2 * std::max<std::size_t>(reports.size(), 1)) + 1, 0);
   rows_.resize(reports.size());
+  cells_.resize(reports.size());
   bucket_of_.resize(reports.size());
 
   // Counting sort: after the second pass `starts_[at]` is the end of bucket `at - 1`, which is where it starts.
@@ -20,7 +21,9 @@ void Neighbours::build(std::span<const base::Report> reports, double cell) {
   std::uint32_t sum = 0;
   for (std::uint32_t& start : starts_) start = sum += start;
   for (std::size_t row = reports.size(); row-- > 0;) {
-    rows_[--starts_[bucket_of_[row]]] = static_cast<std::uint32_t>(row);
+    const std::uint32_t at = --starts_[bucket_of_[row]];
+    rows_[at] = static_cast<std::uint32_t>(row);
+    cells_[at] = {cell_of(reports[row].X_WM.x), cell_of(reports[row].X_WM.y)};
   }
 }
 

@@ -19,8 +19,8 @@ class Neighbours {
   /// @param cell [m] > 0, about twice the reach of a query
   void build(std::span<const base::Report> reports, double cell);
 
-  /// True as soon as `predicate(row)` is true for a row whose cell, when built, was within `reach` [m] of `p`. Rows
-  /// farther away may be asked about, and a row more than once.
+  /// True as soon as `predicate(row)` is true for a row whose cell, when built, was within `reach` [m] of `p`: each is
+  /// asked about once, in an order that depends on how many rows there are.
   template <class Predicate>
   bool any(base::Vec2 p, double reach, Predicate&& predicate) const {
     const std::int64_t x1 = cell_of(p.x + reach), y1 = cell_of(p.y + reach);
@@ -28,7 +28,7 @@ class Neighbours {
       for (std::int64_t x = cell_of(p.x - reach); x <= x1; ++x) {
         const std::size_t at = bucket(x, y);
         for (std::uint32_t e = starts_[at]; e < starts_[at + 1]; ++e) {
-          if (predicate(rows_[e])) return true;
+          if (cells_[e].x == x && cells_[e].y == y && predicate(rows_[e])) return true;
         }
       }
     }
@@ -36,6 +36,9 @@ class Neighbours {
   }
 
  private:
+  struct Cell {
+    std::int64_t x, y;
+  };
   std::int64_t cell_of(double v) const {
     constexpr double kFarthest = 4.0e15;  // whatever was reported, cell numbers stay integers
     return static_cast<std::int64_t>(std::clamp(std::floor(v / cell_), -kFarthest, kFarthest));
@@ -45,6 +48,7 @@ class Neighbours {
   double cell_ = 1.0;
   std::vector<std::uint32_t> starts_;  ///< per bucket, into rows_; one more at the end
   std::vector<std::uint32_t> rows_;
+  std::vector<Cell> cells_;               ///< beside rows_: cells share buckets
   std::vector<std::uint32_t> bucket_of_;  ///< per row
 };
 

@@ -51,6 +51,31 @@ bool any_inside(std::span<const Edge> chains, Vec2 shift, const Placed& outer) {
   return false;
 }
 
+/// Whether all edges of q lie beyond all of p along one of a few directions: then they share no point. Quick, and says
+/// yes for most pairs that do not touch.
+bool apart(const Placed& p, const Placed& q, Vec2 d) {
+  const auto beyond = [&](Vec2 axis) {
+    double p_most = -HUGE_VAL, q_least = HUGE_VAL;
+    for (const Edge& e : p.edges) p_most = std::max({p_most, dot(axis, e.a), dot(axis, e.b)});
+    for (const Edge& f : q.edges) q_least = std::min({q_least, dot(axis, f.a), dot(axis, f.b)});
+    return dot(axis, d) + q_least - p_most > 1e-9 * (p.radius + q.radius) * (std::abs(axis.x) + std::abs(axis.y));
+  };
+  if (beyond(d)) return true;
+  // Outward of the edges that face the other: on the right of a -> b.
+  const auto normal = [](std::span<const Edge> edges, Vec2 towards) {
+    Vec2 best{};
+    double most = 0.0;
+    for (const Edge& e : edges) {
+      const Vec2 n{e.b.y - e.a.y, e.a.x - e.b.x};
+      const double facing = dot(n, towards) * std::abs(dot(n, towards)) / dot(n, n);
+      if (facing > most) most = facing, best = n;
+    }
+    return best;
+  };
+  const Vec2 from_p = normal(p.edges, d), from_q = normal(q.edges, Vec2{} - d);
+  return beyond(from_p) || beyond(Vec2{} - from_q);
+}
+
 }  // namespace
 
 bool inside(std::span<const Edge> edges, Vec2 p, double z_min, double z_max) {
@@ -105,7 +130,7 @@ bool touches(const Placed& placed, const world::Segment& wall) {
 
 bool touches(const Placed& p, const Placed& q) {
   const Vec2 d = q.origin - p.origin;
-  if (dot(d, d) > (p.radius + q.radius) * (p.radius + q.radius) * (1.0 + 1e-12)) return false;
+  if (dot(d, d) > (p.radius + q.radius) * (p.radius + q.radius) * (1.0 + 1e-12) || apart(p, q, d)) return false;
   for (const Edge& e : p.edges) {
     if (world::distance(d, e.a, e.b) > q.radius * (1.0 + 1e-12)) continue;
     for (const Edge& f : q.edges) {

@@ -40,9 +40,9 @@ std::span<base::ReadingBlock> newest_of(std::span<base::ReadingBlock> readings) 
 Simulation::Simulation(const world::World& world, gpu::Device& device, SimulationOptions options)
     : world_(world),
       roads_(world::roads_of(world)),
-      farm_(world, device, farm_options(options)),
-      fleet_(world),
       workers_(options.threads),
+      farm_(world, device, farm_options(options)),
+      fleet_(world, &workers_),
       commands_(world.movers.size()),
       obeyed_(world.movers.size()),
       first_(world.movers.size() + 1),
@@ -58,7 +58,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) drivers_.push_back(make_driver(i, options));
   for (const Driver& driver : drivers_)
     if (driver.controller) radio_ = std::max(radio_, driver.controller->radio());
-  for (auto& others : others_) others.reserve(radio_ > 0.0 ? 4 * world.movers.size() : 0);
+  for (auto& others : others_) others.reserve(radio_ > 0.0 ? world.movers.size() : 0);
   sorted_.reserve(farm_.roster().count());
 }
 
@@ -203,12 +203,8 @@ void Simulation::find_others(std::uint32_t mover, double radio, std::vector<cont
     others.push_back({world_.movers[row].id, reports[row], intents_[row]});
     return false;
   });
-  // Rows may come more than once.
   std::sort(others.begin(), others.end(),
             [](const control::Neighbour& p, const control::Neighbour& q) { return p.id < q.id; });
-  others.erase(std::unique(others.begin(), others.end(),
-                           [](const control::Neighbour& p, const control::Neighbour& q) { return p.id == q.id; }),
-               others.end());
 }
 
 }  // namespace sf::scenarios

@@ -90,10 +90,10 @@ class Simulation {
 
   const world::World& world_;
   std::optional<world::RoadNetwork> roads_;
+  base::Workers workers_;
   farm::Farm farm_;
   robots::Fleet fleet_;
   robots::Neighbours neighbours_;
-  base::Workers workers_;
   std::vector<Driver> drivers_;  ///< per mover
   std::vector<base::Twist> commands_;
   std::vector<base::Twist> obeyed_;   ///< what the tick just recorded was told to do
