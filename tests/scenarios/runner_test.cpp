@@ -1,6 +1,11 @@
 #include "scenarios/runner.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "base/error.h"
 
@@ -76,6 +81,31 @@ TEST(RunScenario, DistanceIsThatOfTheLeast) {
   ASSERT_EQ(result.outcomes.size(), 1u);
   EXPECT_EQ(result.outcomes[0].measured, "0");
   EXPECT_FALSE(result.outcomes[0].met);
+}
+
+/// Of several robots the worst counts, one that starts beside its lane; and both signs of an error do, where they would
+/// cancel in a mean.
+TEST(RunScenario, TheControlErrorIsTheWorstOnes) {
+  const std::string world = testing::TempDir() + fmt::format("two_in_a_lane_{}.world", getpid());
+  std::ofstream(world) << "include \"" SF_SOURCE_DIR "/worlds/testpath/testpath.world\"\n"
+                       << "create( name \"beside\" pose [1.0 0.06 0 0] create_laneedge( name \"laneedge\" ) )\n";
+  gpu::Device device;
+  const auto measured = [&](const std::string& what) {
+    const ScenarioResult result =
+        run_scenario(parse_scenario(kFile, "world = \"" + world +
+                                               "\"\nduration = 10\n[default]\ncontroller = \"lane-keeping\"\n"
+                                               "settings = { kp = 3.0, speed = 0.1 }\n[expect]\n" +
+                                               what + "\n"),
+                     device);
+    return std::stod(result.outcomes.at(0).measured);
+  };
+  const double ahead = measured("mean_abs_error = { roomba0 = 1 }");
+  const double beside = measured("mean_abs_error = { beside = 1 }");
+  EXPECT_LT(ahead, 0.5 * beside);
+  EXPECT_GT(beside, 1e-3);
+  EXPECT_EQ(measured("mean_abs_error = 1"), beside);
+  EXPECT_LT(measured("mean_error = { beside = 1 }"), beside) << "it swings to both sides";
+  std::filesystem::remove(world);
 }
 
 /// One missed cell of 9000 is not all of them.
