@@ -1,0 +1,107 @@
+// One beam against all that it may cross, in 64 bits.
+// Compiled once for each set of instructions (hwy/foreach_target.h).
+
+#if defined(SF_RAYCAST_DOUBTS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SF_RAYCAST_DOUBTS_INL_H
+#undef SF_RAYCAST_DOUBTS_INL_H
+#else
+#define SF_RAYCAST_DOUBTS_INL_H
+#endif
+
+#include <algorithm>
+#include <cmath>
+
+#include "raycast/rasterizer/vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sf::raycast::HWY_NAMESPACE {
+
+/// Segments of a block that direction `d` may cross, those behind the viewer too: a bit each. Start and extent are
+/// turned by `heading` and moved by `from`.
+inline std::uint32_t crossed_by(const SegmentBlock& block, base::Vec2 from, base::Vec2 heading, base::Vec2 d,
+                                float band) {
+  const VF c = constant(static_cast<float>(heading.x)), sn = constant(static_cast<float>(heading.y));
+  const VF x = constant(static_cast<float>(from.x)), y = constant(static_cast<float>(from.y));
+  const VF dx = constant(static_cast<float>(d.x)), dy = constant(static_cast<float>(d.y)), slip = constant(2.0f * band);
+  std::uint32_t found = 0;
+  for (std::uint32_t k = 0; k < kBlock; k += lanes()) {
+    const VF ax = load(block.ax + k), ay = load(block.ay + k), ex = load(block.ex + k), ey = load(block.ey + k);
+    const VF wx = x + (c * ax - sn * ay), wy = y + (sn * ax + c * ay), gx = c * ex - sn * ey, gy = sn * ex + c * ey;
+    const VF start = dx * wy - dy * wx, end = start + (dx * gy - dy * gx);
+    const MF apart = hn::Or(hn::Min(start, end) > slip, hn::Max(start, end) < hn::Neg(slip));
+    found |= bits_of(hn::Not(apart)) << k;
+  }
+  return found;
+}
+
+/// Decides those of a block that beam `d` may cross.
+void meet(const ScanView& view, const ScanScene& scene, const SegmentBlock& block, base::Vec2 from, base::Vec2 heading,
+          std::uint32_t first_row, base::Vec2 d, Decision& best) {
+  for (std::uint32_t open = crossed_by(block, from, heading, d, view.band); open != 0; open &= open - 1) {
+    const std::uint32_t number = block.row[__builtin_ctz(open)];
+    if (number != SF_NO_HIT) decide({scene.exact[first_row + number], first_row + number}, view.origin, d, best);
+  }
+}
+
+void meet_walls(const ScanView& view, const ScanScene& scene, base::Vec2 d, Decision& best) {
+  const auto bearing = static_cast<float>(std::atan2(d.y, d.x));
+  for (const auto& blocks : {scene.walls, scene.behind})
+    for (const SegmentBlock& block : blocks) {
+      const float turned = std::abs(block.bearing - bearing);
+      const float apart = std::min(turned, std::abs(6.2831853f - turned));
+      if (apart > block.half + 1e-5f || static_cast<double>(block.nearest) > best.range) continue;
+      meet(view, scene, block, -1.0 * view.offset, {1.0, 0.0}, 0, d, best);
+    }
+}
+
+/// Lists movers of one row of cells whose discs beam `d` may cross within `range`.
+void find_across(Scratch& s, const ScanView& view, const ScanScene& scene, base::Vec2 d, double range,
+                 std::uint32_t from, std::uint32_t end) {
+  const MoverGrid& grid = *scene.movers;
+  const VF x = constant(static_cast<float>(view.origin.x - grid.low.x));
+  const VF y = constant(static_cast<float>(view.origin.y - grid.low.y));
+  const VF ux = constant(static_cast<float>(d.x)), uy = constant(static_cast<float>(d.y));
+  const VF reach = constant(static_cast<float>(range) * 1.00001f), slip = constant(grid.error + view.band);
+  for (std::uint32_t at = from; at < end; at += lanes()) {
+    const VF dx = load(&grid.x[at]) - x, dy = load(&grid.y[at]) - y;
+    const VF radius = load(&grid.radius[at]) * constant(1.0001f) + slip;
+    const VF along = dx * ux + dy * uy, aside = hn::Abs(dx * uy - dy * ux);
+    const MF across = hn::And(hn::And(aside <= radius, along >= hn::Neg(radius)), along - radius <= reach);
+    std::uint32_t open = bits_of(across);
+    if (end - at < lanes()) open &= (1u << (end - at)) - 1;
+    for (; open != 0; open &= open - 1) {
+      const std::uint32_t mover = grid.mover[at + static_cast<std::uint32_t>(__builtin_ctz(open))];
+      if (mover != scene.self) s.across.push_back(mover);
+    }
+  }
+}
+
+void meet_movers(Scratch& s, const ScanView& view, const ScanScene& scene, base::Vec2 d, Decision& best) {
+  const MoverGrid& grid = *scene.movers;
+  const double margin = grid.largest_radius * 1.001 + 2.0 * static_cast<double>(grid.error);
+  const base::Vec2 from{view.origin.x - grid.low.x, view.origin.y - grid.low.y}, to = from + best.range * d;
+  const int x0 = grid.column_of(std::min(from.x, to.x) - margin), x1 = grid.column_of(std::max(from.x, to.x) + margin);
+  const int y0 = grid.row_of(std::min(from.y, to.y) - margin), y1 = grid.row_of(std::max(from.y, to.y) + margin);
+  s.across.clear();
+  for (int row = y0; row <= y1; ++row)
+    find_across(s, view, scene, d, best.range, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
+  for (const std::uint32_t mover : s.across) {
+    const OutlineTable::Outline& outline = scene.outlines->of_mover[mover];
+    const base::Vec2 place = base::Vec2{scene.poses[mover].x, scene.poses[mover].y} - view.origin;
+    for (std::uint32_t i = outline.first; i < outline.first + outline.all; ++i)
+      meet(view, scene, scene.outlines->blocks[i], place, scene.headings[mover], scene.first_rows[mover], d, best);
+  }
+}
+
+/// A beam against all that lies across it, in 64 bits.
+Decision decide_beam(Scratch& s, const ScanView& view, const ScanScene& scene, base::Vec2 d) {
+  Decision best{view.range_max};
+  meet_walls(view, scene, d, best);
+  if (scene.movers != nullptr) meet_movers(s, view, scene, d, best);
+  return best;
+}
+
+}  // namespace sf::raycast::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,129 @@
+// Segments become intervals of beams: raycast/rasterizer.h derives the errors.
+// Compiled once for each set of instructions (hwy/foreach_target.h).
+
+#if defined(SF_RAYCAST_PROJECTION_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SF_RAYCAST_PROJECTION_INL_H
+#undef SF_RAYCAST_PROJECTION_INL_H
+#else
+#define SF_RAYCAST_PROJECTION_INL_H
+#endif
+
+#include <cmath>
+
+#include "raycast/rasterizer/vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sf::raycast::HWY_NAMESPACE {
+
+/// The values that all segments of one scan are projected with.
+struct Projection {
+  VF heading_cos, heading_sin;
+  VF per_radian, middle, slack, turn;
+  VF band;
+  float last, full, yaw;
+  bool narrow;
+  VF edge_cos, edge_sin;
+};
+
+Projection projection_of(const ScanView& view, const ScanPattern& pattern) {
+  const float turn = 6.2831853f * pattern.per_radian;
+  return {constant(static_cast<float>(view.heading.x)),
+          constant(static_cast<float>(view.heading.y)),
+          constant(pattern.per_radian),
+          constant(pattern.middle),
+          constant(pattern.slack),
+          constant(turn),
+          constant(view.band),
+          static_cast<float>(pattern.beams - 1),
+          turn,
+          static_cast<float>(std::remainder(view.yaw, 2.0 * M_PI)),
+          pattern.narrow,
+          constant(pattern.edge_cos),
+          constant(pattern.edge_sin)};
+}
+
+/// Puts the intervals of `mask` that touch beams at the scratch's end.
+inline void keep(Scratch& s, const Projection& p, MF mask, VF low_any, VF high_any, VF low_sure, VF high_sure, VF a,
+                 VF b, VF error, const std::uint32_t* rows, std::uint32_t first_row) {
+  const VF first = hn::Max(hn::Floor(low_any - p.slack), constant(0.0f));
+  const VF last = hn::Min(hn::Ceil(high_any + p.slack), constant(p.last));
+  std::uint32_t open = bits_of(hn::And(mask, first <= last));
+  if (open == 0) return;
+  const std::uint32_t at = s.used;
+  store(a, &s.a[at]), store(b, &s.b[at]), store(error, &s.error[at]);
+  store(low_any, &s.low_any[at]), store(high_any, &s.high_any[at]);
+  store(low_sure, &s.low_sure[at]), store(high_sure, &s.high_sure[at]);
+  // Beyond 2^31 there is no beam.
+  hn::StoreU(hn::ConvertTo(kI, hn::Min(first, constant(1e9f))), kI, &s.first[at]);
+  hn::StoreU(hn::ConvertTo(kI, hn::Max(last, constant(-1.0f))), kI, &s.last[at]);
+  hn::StoreU(hn::LoadU(kU, rows) + hn::Set(kU, first_row), kU, &s.row[at]);
+  for (; open != 0; open &= open - 1) s.live.push_back(at + static_cast<std::uint32_t>(__builtin_ctz(open)));
+  s.used += lanes();
+}
+
+/// Projects segments that start at (wx, wy) from the viewer and extend by (gx, gy), in the world's directions.
+inline void project(Scratch& s, const Projection& p, VF wx, VF wy, VF gx, VF gy, const std::uint32_t* rows,
+                    std::uint32_t first_row) {
+  const VF length = hn::Abs(gx) + hn::Abs(gy);
+  const VF unsure = p.band * length;
+  const VF ahead = gx * wy - gy * wx;
+  MF seen = ahead > hn::Neg(unsure);
+  const VF ax = p.heading_cos * wx + p.heading_sin * wy, ay = p.heading_cos * wy - p.heading_sin * wx;
+  const VF ex = p.heading_cos * gx + p.heading_sin * gy, ey = p.heading_cos * gy - p.heading_sin * gx;
+  const VF bx = ax + ex, by = ay + ey;
+  if (p.narrow) {
+    // Both ends beyond the left edge of the view, or both beyond the right one.
+    const VF slip = constant(-8.0f) * p.band;
+    const VF left_a = p.edge_sin * ax - p.edge_cos * ay, left_b = p.edge_sin * bx - p.edge_cos * by;
+    const VF right_a = p.edge_sin * ax + p.edge_cos * ay, right_b = p.edge_sin * bx + p.edge_cos * by;
+    seen = hn::And(seen, hn::And(hn::Max(left_a, left_b) >= slip, hn::Max(right_a, right_b) >= slip));
+  }
+  if (hn::AllFalse(kF, seen)) return;
+  VF inverse_a, inverse_b;
+  const VF at_a = bearing_of(ay, ax, inverse_a) * p.per_radian + p.middle;
+  const VF at_b = bearing_of(by, bx, inverse_b) * p.per_radian + p.middle;
+  const VF two_bands = p.band + p.band;
+  const VF rounding = constant(2e-6f);
+  const VF margin_a = p.per_radian * (two_bands * inverse_a + rounding);
+  const VF margin_b = p.per_radian * (two_bands * inverse_b + rounding);
+  // Seen from the right, bearings fall from a to b, unless the rear is crossed between them.
+  const VF half = constant(0.5f) * p.turn;
+  const VF wide = at_a - at_b;
+  const MF wraps = wide < hn::Neg(half);
+  const VF low = hn::IfThenElse(wraps, at_b, hn::Min(at_a, at_b));
+  const VF high = hn::IfThenElse(wraps, at_a + p.turn, hn::Max(at_a, at_b));
+  const VF margin_low = hn::IfThenElse(hn::Or(wraps, at_b <= at_a), margin_b, margin_a);
+  const VF margin_high = hn::IfThenElse(hn::Or(wraps, at_b <= at_a), margin_a, margin_b);
+  const MF edge_on = hn::Abs(ahead) <= unsure;
+  // An end too near to have a bearing, or a viewer between the ends of a segment that it stands on: anywhere.
+  const VF span = high - low;
+  const MF anywhere = hn::Or(hn::Or(hn::Max(margin_a, margin_b) > constant(0.1f) * p.per_radian,
+                                    hn::Abs(span - half) < constant(1e-5f) * p.turn),
+                             hn::And(edge_on, span > constant(0.1f) * p.per_radian));
+  const MF blind = hn::Or(edge_on, anywhere);
+  const VF inverse = constant(1.0f) / ahead;
+  const VF h = length * inverse;
+  const VF a = hn::IfThenZeroElse(blind, hn::Neg(ey) * inverse);
+  const VF b = hn::IfThenZeroElse(blind, ex * inverse);
+  const VF error = hn::IfThenElse(blind, constant(1e20f), h * (two_bands * h + constant(1.1e-6f)));
+  const VF low_any = hn::IfThenElse(anywhere, constant(-1e30f), low - margin_low);
+  const VF high_any = hn::IfThenElse(anywhere, constant(1e30f), high + margin_high);
+  const VF low_sure = hn::IfThenElse(blind, constant(1e30f), low + margin_low);
+  const VF high_sure = high - margin_high;
+  s.reserve(3 * lanes());
+  keep(s, p, seen, low_any, high_any, low_sure, high_sure, a, b, error, rows, first_row);
+  // A segment across the rear is met at the other end of the view too.
+  const MF again = hn::And(seen, hn::AndNot(anywhere, high_any + p.slack >= p.turn));
+  if (!hn::AllFalse(kF, again))
+    keep(s, p, again, low_any - p.turn, high_any - p.turn, low_sure - p.turn, high_sure - p.turn, a, b, error, rows,
+         first_row);
+  const MF before = hn::And(seen, hn::AndNot(anywhere, low_any - p.slack <= constant(p.last - p.full)));
+  if (!hn::AllFalse(kF, before))
+    keep(s, p, before, low_any + p.turn, high_any + p.turn, low_sure + p.turn, high_sure + p.turn, a, b, error, rows,
+         first_row);
+}
+
+}  // namespace sf::raycast::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
