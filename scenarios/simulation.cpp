@@ -60,6 +60,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
     if (driver.controller) radio_ = std::max(radio_, driver.controller->radio());
   for (auto& others : others_) others.reserve(radio_ > 0.0 ? world.movers.size() : 0);
   sorted_.reserve(farm_.roster().count());
+  next_.reserve(first_.size());
 }
 
 Simulation::Driver Simulation::make_driver(std::uint32_t mover, const SimulationOptions& options) {
@@ -130,11 +131,18 @@ void Simulation::put(std::uint32_t mover, const base::Pose& X_WM) {
 
 void Simulation::sort_by_mover(std::span<const base::ReadingBlock> readings) {
   std::fill(first_.begin(), first_.end(), 0u);
-  for (const base::ReadingBlock& r : readings) ++first_[r.mover + 1];
+  bool in_order = true;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    ++first_[readings[i].mover + 1];
+    in_order = in_order && (i == 0 || readings[i - 1].mover <= readings[i].mover);
+  }
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  by_mover_ = readings;
+  if (in_order && readings_.empty()) return;
   sorted_.resize(readings.size());
-  // Fills each mover's range from its start; afterwards first_[m] is its end, which is where the next one starts.
-  for (const base::ReadingBlock& r : readings) sorted_[first_[r.mover]++] = r;
+  next_.assign(first_.begin(), first_.end());
+  for (const base::ReadingBlock& r : readings) sorted_[next_[r.mover]++] = r;
+  by_mover_ = sorted_;
 }
 
 void Simulation::decide(std::int64_t time) {
@@ -151,12 +159,12 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   Driver& driver = drivers_[mover];
   driver.stepped = false;
   if (!driver.controller) return;
-  const std::uint32_t first = mover == 0 ? 0 : first_[mover - 1];
-  std::span<base::ReadingBlock> fresh{sorted_.data() + first, first_[mover] - first};
+  const std::uint32_t first = first_[mover], count = first_[mover + 1] - first;
+  std::span<const base::ReadingBlock> fresh = by_mover_.subspan(first, count);
   if (driver.mailbox) {
     for (const base::ReadingBlock& reading : fresh) driver.mailbox->post(reading, std::min(time, leaves_at(reading)));
   } else if (!readings_.empty()) {
-    fresh = newest_of(fresh);
+    fresh = newest_of(std::span(sorted_).subspan(first, count));
   }
   const bool contact = fleet_.contacts()[mover] != 0;
   if (!due(driver, fresh, time, contact)) return;

@@ -96,8 +96,10 @@ class Simulation {
   robots::Neighbours neighbours_;
   std::vector<Driver> drivers_;  ///< per mover
   std::vector<base::Twist> commands_;
-  std::vector<base::Twist> obeyed_;   ///< what the tick just recorded was told to do
-  std::vector<std::uint32_t> first_;  ///< per mover: range of its readings in `sorted_`
+  std::vector<base::Twist> obeyed_;               ///< what the tick just recorded was told to do
+  std::span<const base::ReadingBlock> by_mover_;  ///< of this tick: those given, where they are in order, or `sorted_`
+  std::vector<std::uint32_t> first_;              ///< per mover, and the end: its first of them
+  std::vector<std::uint32_t> next_;               ///< scratch
   std::vector<base::ReadingBlock> sorted_;
   std::vector<base::Report> before_;          ///< at the last tick, where a sensor is due before the next; else empty
   std::vector<base::Report> on_the_way_;      ///< between them
