@@ -1,5 +1,6 @@
 #include "apps/post.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "netio/packets.h"
@@ -23,45 +24,112 @@ std::span<const base::ReadingBlock> NoReturn::apply(std::span<const base::Readin
   return blocks_;
 }
 
-Post::Post(const world::World& world, const sensors::Roster& roster, SendPlan plan, netio::Outbox outbox)
-    : world_(world), roster_(roster), plan_(std::move(plan)), outbox_(std::move(outbox)) {
-  for (const sensors::Roster::Group& group : roster.groups()) sent_[group.kind->id].resize(group.rows.size());
-  payload_.reserve(netio::kMaxPlain);
-  packet_.reserve(netio::kMaxDatagram);
+netio::OutboxOptions outbox_options(const sensors::Roster& roster) {
+  netio::OutboxOptions options;
+  if (roster.count() <= kLargeFleet) return options;
+  options.backlog = 64;
+  options.patience_ms = 50;
+  return options;
 }
 
-void Post::queue(const base::ReadingBlock& reading, std::uint32_t address, const netio::Stamp& stamp) {
-  const sensors::Roster::Group& group = *roster_.group(reading.kind);
-  const sensors::SensorKind& kind = *group.kind;
-  const sensors::SensorRow& row = roster_.row(reading);
-  if (!plan_.sends(kind, row)) return;
-  std::uint32_t& sent = sent_[reading.kind][static_cast<std::size_t>(&row - group.rows.data())];
+Post::Post(const world::World& world, const sensors::Roster& roster, SendPlan plan, netio::Outbox outbox)
+    : world_(world),
+      roster_(roster),
+      plan_(std::move(plan)),
+      outbox_(std::move(outbox)),
+      workers_(roster.count() > kLargeFleet ? 0 : 1),
+      memory_(workers_.threads()) {
+  for (const sensors::Roster::Group& group : roster.groups())
+    for (const sensors::SensorRow& row : group.rows)
+      streams_[group.kind->id].push_back({0, plan_.sends(*group.kind, row) ? group.kind->parts(row, plan_.wire) : 0});
+  for (Memory& memory : memory_) {
+    memory.payload.reserve(netio::kMaxPlain);
+    memory.packet.reserve(netio::kMaxDatagram);
+  }
+}
+
+Post::Job Post::job_of(const Letter& letter) {
+  const sensors::Roster::Group& group = *roster_.group(letter.reading->kind);
+  const sensors::SensorRow& row = roster_.row(*letter.reading);
+  Stream& stream = streams_.at(letter.reading->kind)[static_cast<std::size_t>(&row - group.rows.data())];
+  return {letter, group.kind, &row, &stream, stream.sent, 0, true};
+}
+
+/// @return how many parts could not be made; each of the others is put: (part, endpoint, bytes).
+template <class Put>
+std::uint32_t Post::encode(const Job& job, Memory& memory, Put&& put) const {
+  const base::ReadingBlock& reading = *job.letter.reading;
   netio::Header header;
   header.robot = static_cast<std::uint16_t>(world_.movers[reading.mover].id);
   header.sensor = static_cast<std::uint16_t>(reading.sensor);
-  header.sequence = sent;
+  header.sequence = job.sequence;
   header.time = reading.time;
   header.accuracy = netio::accuracy_word({reading.mode, !reading.unsure.empty(), reading.bound});
-  header.session = stamp.session;
-  header.token = stamp.token;
-  const auto port = static_cast<std::uint16_t>(netio::port(plan_.ports(kind), header.robot, reading.sensor));
+  header.session = job.letter.stamp.session;
+  header.token = job.letter.stamp.token;
+  const auto port = static_cast<std::uint16_t>(netio::port(plan_.ports(*job.kind), header.robot, reading.sensor));
 
-  const std::uint32_t parts = kind.parts(row, plan_.wire);
-  bool any = false;
-  for (std::uint32_t part = 0; part < parts; ++part) {
-    payload_.clear();
-    const std::uint8_t type = kind.encode(row, reading, plan_.wire, part, payload_);
-    any = any || type != 0;
+  std::uint32_t failed = 0;
+  for (std::uint32_t part = 0; part < job.stream->parts; ++part) {
+    memory.payload.clear();
+    const std::uint8_t type = job.kind->encode(*job.row, reading, plan_.wire, part, memory.payload);
     if (type == 0) {
-      ++not_numbers_;
+      ++failed;
     } else if (plan_.wire == sensors::Wire::thesis) {
-      outbox_.queue({address, port}, payload_);
+      put(part, netio::Endpoint{job.letter.address, port}, memory.payload);
     } else {
-      netio::frame(header, type, payload_, packet_);
-      outbox_.queue({address, port}, packet_);
+      netio::frame(header, type, memory.payload, memory.packet);
+      put(part, netio::Endpoint{job.letter.address, port}, memory.packet);
     }
   }
-  sent += any ? 1 : 0;
+  return failed;
+}
+
+void Post::queue(std::span<const Letter> letters) {
+  std::size_t datagrams = 0;
+  jobs_.clear();
+  for (const Letter& letter : letters) {
+    Job job = job_of(letter);
+    if (job.stream->parts == 0) continue;
+    if (datagrams + job.stream->parts > outbox_.capacity()) {
+      encode_all();
+      datagrams = 0;
+    }
+    job.place = datagrams;
+    datagrams += job.stream->parts;
+    ++job.stream->sent;
+    jobs_.push_back(job);
+  }
+  encode_all();
+}
+
+/// All at once; where a part is not numbers, one by one, since what is not sent is not numbered.
+void Post::encode_all() {
+  if (jobs_.empty()) return;
+  const std::size_t datagrams = jobs_.back().place + jobs_.back().stream->parts;
+  const bool fits = datagrams <= outbox_.capacity();
+  const std::size_t first = fits ? outbox_.claim(datagrams) : 0;
+  if (fits)
+    workers_.run(jobs_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
+      for (Job& job : std::span(jobs_).subspan(begin, end - begin))
+        job.whole = encode(job, memory_[thread], [&](std::uint32_t part, const netio::Endpoint& to, const auto& bytes) {
+                      outbox_.put(first + job.place + part, to, bytes);
+                    }) == 0;
+    });
+  if (!fits || std::any_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return !job.whole; })) {
+    if (fits) outbox_.give_back(datagrams);
+    for (auto job = jobs_.rbegin(); job != jobs_.rend(); ++job) --job->stream->sent;
+    for (Job& job : jobs_) queue_alone(job);
+  }
+  jobs_.clear();
+}
+
+void Post::queue_alone(Job& job) {
+  job.sequence = job.stream->sent;
+  const std::uint32_t failed = encode(
+      job, memory_[0], [&](std::uint32_t, const netio::Endpoint& to, const auto& bytes) { outbox_.queue(to, bytes); });
+  not_numbers_ += failed;
+  job.stream->sent += failed < job.stream->parts ? 1 : 0;
 }
 
 }  // namespace sf::apps

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/send_plan.h"
+#include "base/parallel.h"
 #include "base/reading.h"
 #include "netio/outbox.h"
 #include "sensors/roster.h"
@@ -34,26 +35,64 @@ struct PostCounts {
   std::uint64_t not_numbers = 0;  ///< packets never made, for a value that is not a number where none may be missing
 };
 
+/// A reading on its way to a robot.
+struct Letter {
+  const base::ReadingBlock* reading = nullptr;
+  std::uint32_t address = 0;
+  netio::Stamp stamp;
+};
+
+/// Fleets of more sensors than this are encoded on all cores, and sent by a thread of their own.
+inline constexpr std::size_t kLargeFleet = 256;
+
+/// How `roster`'s readings are sent.
+netio::OutboxOptions outbox_options(const sensors::Roster& roster);
+
 /// Readings as packets, numbered per sensor as they are sent: a reading that was due and never sent leaves no gap.
 /// World and roster must outlive it.
 class Post {
  public:
   Post(const world::World& world, const sensors::Roster& roster, SendPlan plan, netio::Outbox outbox);
 
-  /// Queues one reading's packets to `address`, at its sensor's port; none where the plan has none of its sensor's.
-  void queue(const base::ReadingBlock& reading, std::uint32_t address, const netio::Stamp& stamp);
+  /// Queues each reading's packets to its address, at its sensor's port; none where the plan has none of its sensor's.
+  void queue(std::span<const Letter> letters);
   void flush() { outbox_.flush(); }
   PostCounts counts() const { return {outbox_.counts(), not_numbers_}; }
 
  private:
+  /// One sensor's stream.
+  struct Stream {
+    std::uint32_t sent = 0;   ///< readings
+    std::uint32_t parts = 0;  ///< datagrams of a reading; 0: it is not sent
+  };
+  /// A reading that is being encoded.
+  struct Job {
+    Letter letter;
+    const sensors::SensorKind* kind = nullptr;
+    const sensors::SensorRow* row = nullptr;
+    Stream* stream = nullptr;
+    std::uint32_t sequence = 0;
+    std::size_t place = 0;  ///< of its first datagram
+    bool whole = true;      ///< every part is numbers
+  };
+  struct Memory {
+    base::Bytes payload, packet;
+  };
+  Job job_of(const Letter& letter);
+  void encode_all();
+  void queue_alone(Job& job);
+  template <class Put>
+  std::uint32_t encode(const Job& job, Memory& memory, Put&& put) const;
+
   const world::World& world_;
   const sensors::Roster& roster_;
   SendPlan plan_;
   netio::Outbox outbox_;
-  std::map<std::uint8_t, std::vector<std::uint32_t>> sent_;  ///< by kind, per row of its group: readings
+  base::Workers workers_;
+  std::map<std::uint8_t, std::vector<Stream>> streams_;  ///< by kind, per row of its group
+  std::vector<Job> jobs_;
+  std::vector<Memory> memory_;  ///< per thread
   std::uint64_t not_numbers_ = 0;
-  base::Bytes payload_;
-  base::Bytes packet_;
 };
 
 }  // namespace sf::apps

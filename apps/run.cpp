@@ -7,6 +7,7 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -41,7 +42,7 @@ class Outputs {
       : roster_(roster), no_return_(roster, options.no_return_inf) {
     if (plan) {
       address_ = netio::resolve(options.send);
-      post_.emplace(world, roster, *plan, netio::Outbox());
+      post_.emplace(world, roster, *plan, netio::Outbox(outbox_options(roster)));
     }
     if (!options.record.empty())
       recorder_.emplace(
@@ -61,14 +62,14 @@ class Outputs {
       const std::int64_t time =
           std::min<std::int64_t>(tick.time, reading.time + std::llround(1e9 * roster_.row(reading).latency));
       if (time != std::exchange(sent_at, time)) {
-        post_->flush();
+        send();
         const auto before = Clock::now();
         wait(time);
         waited += base::seconds_since(before);
       }
-      post_->queue(reading, address_, stamp_);
+      letters_.push_back({&reading, address_, stamp_});
     }
-    if (post_) post_->flush();
+    if (post_) send();
     if (recorder_) recorder_->write(tick);
     seconds_ += base::seconds_since(start) - waited;
   }
@@ -86,8 +87,15 @@ class Outputs {
   }
 
  private:
+  void send() {
+    post_->queue(letters_);
+    post_->flush();
+    letters_.clear();
+  }
+
   const sensors::Roster& roster_;
   NoReturn no_return_;
+  std::vector<Letter> letters_;  ///< that go at one time
   std::uint32_t address_ = 0;
   netio::Stamp stamp_{netio::random_session(), 0};
   std::optional<Post> post_;

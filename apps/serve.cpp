@@ -57,7 +57,7 @@ class Service {
         answers_(inbox_.socket()),
         relay_(ids_of(names_.robots), {.range = options.radio}),
         plan_(plan),
-        post_(world, roster, plan, netio::Outbox(inbox_.socket())),
+        post_(world, roster, plan, netio::Outbox(inbox_.socket(), outbox_options(roster))),
         farm_(world, device,
               farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
         fleet_(world),
@@ -109,9 +109,11 @@ class Service {
       // A reading that was on its way when its robot fell silent has nobody to go to.
       const std::uint32_t id = world_.movers[reading.mover].id;
       const auto to = inbox_.address(id);
-      if (to) post_.queue(reading, to->address, inbox_.stamp_for(id));
+      if (to) letters_.push_back({&reading, to->address, inbox_.stamp_for(id)});
     }
+    post_.queue(letters_);
     post_.flush();
+    letters_.clear();
     tell_missed();
   }
 
@@ -215,6 +217,7 @@ class Service {
   robots::Fleet fleet_;
   NoReturn no_return_;
   std::vector<base::Report> reports_;
+  std::vector<Letter> letters_;  ///< of one tick
   base::Bytes challenge_;
   std::int64_t forget_;                   ///< [ns] since it was last heard, or kNever
   std::vector<std::int64_t> last_heard_;  ///< [ns] per mover

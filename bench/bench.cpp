@@ -21,6 +21,7 @@
 #include "bench/fleet.h"
 #include "bench/grid.h"
 #include "bench/lane_contest.h"
+#include "bench/large_fleet.h"
 #include "bench/map_contest.h"
 #include "bench/price.h"
 #include "bench/report.h"
@@ -43,6 +44,7 @@ struct Session {
   std::vector<ConeOutcome> cones;
   std::vector<MapOutcome> maps;
   std::vector<DialOutcome> dials;
+  std::vector<LargeFleetResult> large_fleets;
 };
 
 struct ScanCase {
@@ -168,6 +170,15 @@ void tell_maps(benchmark::State& state, Session& session, const MapCase& c) {
   for (const MapEntrant& e : session.maps.back().entrants) state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
 }
 
+constexpr std::uint32_t kLargeFleet = 10'000;
+constexpr std::size_t kLargeFleetTicks = 60;
+
+void tell_large_fleet(benchmark::State& state, Session& session) {
+  for (auto _ : state) session.large_fleets.push_back(drive_large_fleet(session.device, kLargeFleet, kLargeFleetTicks));
+  state.counters["p50 [ms]"] = 1e3 * session.large_fleets.back().p50_s;
+  state.counters["p99 [ms]"] = 1e3 * session.large_fleets.back().p99_s;
+}
+
 constexpr double kDialRanges[] = {8.0, 0.75};
 constexpr std::uint32_t kDialRobots = 1'000;
 constexpr std::size_t kDialTurns = 21;
@@ -221,6 +232,8 @@ void register_all(Session& session) {
   for (const double range : kDialRanges)
     once(benchmark::RegisterBenchmark(fmt::format("dial/cave/{}/{}m", kDialRobots, range).c_str(),
                                       [&session, range](benchmark::State& s) { tell_dial(s, session, range); }));
+  once(benchmark::RegisterBenchmark(fmt::format("large_fleet/{}", kLargeFleet).c_str(),
+                                    [&session](benchmark::State& s) { tell_large_fleet(s, session); }));
   for (const MapCase& c : kMapCases)
     once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_maps(s, session, c); }));
   once(benchmark::RegisterBenchmark("start", [&facts](benchmark::State& s) { tell_facts(s, facts, measure_start); }));
@@ -261,9 +274,11 @@ int run(int argc, char** argv) {
     write_cones(session.cones, folder);
     write_maps(session.maps, folder);
     write_dial(session.dials, folder);
+    write_large_fleet(session.large_fleets, folder);
   }
-  fmt::print("{}{}{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
-             cone_table(session.cones), map_table(session.maps), dial_table(session.dials));
+  fmt::print("{}{}{}{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
+             cone_table(session.cones), map_table(session.maps), dial_table(session.dials),
+             large_fleet_table(session.large_fleets));
   return 0;
 }
 

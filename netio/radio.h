@@ -75,7 +75,7 @@ class Radio {
   Stamp farm_stamp() const { return {farm_session_, options_.session}; }
 
   const Counts& counts() const { return counts_; }
-  const OutboxCounts& sent() const { return outbox_.counts(); }
+  OutboxCounts sent() const { return outbox_.counts(); }
   const Socket& socket() const { return socket_; }
 
  private:

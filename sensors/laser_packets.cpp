@@ -23,8 +23,8 @@ std::uint32_t parts_of(std::uint32_t rays) { return (rays + kPartRays - 1) / kPa
 
 template <class Word>
 Word to_word(double metres, double per_metre, Word largest) {
-  const double units = std::floor(metres * per_metre + 0.5);
-  if (!(units > 0.0)) return 0;
+  const double units = metres * per_metre + 0.5;  // conversion cuts off what is beyond the point
+  if (!(units >= 1.0)) return 0;
   return units >= static_cast<double>(largest) ? largest : static_cast<Word>(units);
 }
 

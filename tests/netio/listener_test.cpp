@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "netio/endpoint.h"
 #include "netio/outbox.h"
 #include "netio/posix.h"
@@ -301,19 +302,25 @@ TEST(Outbox, RefusedDatagramsAreCountedWithTheFirstReason) {
   EXPECT_EQ(outbox.counts().first_failure.rfind("127.0.0.1:0: ", 0), 0u) << outbox.counts().first_failure;
 }
 
-/// A socket that takes no more: a stream whose other end reads nothing.
-TEST(Outbox, WhatAFullSocketDoesNotTakeIsDroppedAndCounted) {
-  const Socket door(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  sockaddr_in where = to_posix({kLoopback, 0});
-  ASSERT_EQ(bind(door.descriptor(), reinterpret_cast<sockaddr*>(&where), sizeof where), 0);
-  ASSERT_EQ(::listen(door.descriptor(), 1), 0);
-  where = to_posix(bound_endpoint(door));
-  Socket full(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  const int small = 4096;
-  setsockopt(full.descriptor(), SOL_SOCKET, SO_SNDBUF, &small, sizeof small);
-  ASSERT_EQ(connect(full.descriptor(), reinterpret_cast<sockaddr*>(&where), sizeof where), 0);
+/// A socket that takes no more after a while: a stream whose other end reads nothing.
+class Full : public testing::Test {
+ protected:
+  Full()
+      : door_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)), full_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in where = to_posix({kLoopback, 0});
+    EXPECT_EQ(bind(door_.descriptor(), reinterpret_cast<sockaddr*>(&where), sizeof where), 0);
+    EXPECT_EQ(::listen(door_.descriptor(), 1), 0);
+    where = to_posix(bound_endpoint(door_));
+    const int small = 4096;
+    setsockopt(full_.descriptor(), SOL_SOCKET, SO_SNDBUF, &small, sizeof small);
+    EXPECT_EQ(connect(full_.descriptor(), reinterpret_cast<sockaddr*>(&where), sizeof where), 0);
+  }
+  Socket door_, full_;
+};
+using FullOutbox = Full;
 
-  Outbox outbox(std::move(full), {.capacity = 20'000, .patience_ms = 0});
+TEST_F(FullOutbox, WhatIsNotTakenIsDroppedAndCounted) {
+  Outbox outbox(std::move(full_), {.capacity = 20'000, .patience_ms = 0});
   for (int i = 0; i < 20'000; ++i) outbox.queue({kLoopback, 9}, base::Bytes(kMaxPlain));
   outbox.flush();
   const std::uint64_t sent = outbox.counts().sent;
@@ -324,6 +331,62 @@ TEST(Outbox, WhatAFullSocketDoesNotTakeIsDroppedAndCounted) {
   EXPECT_EQ(outbox.counts().sent, sent);
   EXPECT_EQ(outbox.counts().dropped, 20'000u - sent);
   EXPECT_EQ(outbox.counts().failed, 0u);
+}
+
+/// Sent by a thread of its own: the same datagrams in the same order, put by several threads.
+TEST(Outbox, AThreadOfItsOwnSendsAllInOrder) {
+  const Socket ears = open_udp({kLoopback, 0}, {.receive = 8u << 20});
+  constexpr std::uint32_t kBatches = 40, kEach = 16;
+  {
+    Outbox outbox({.capacity = kEach, .backlog = kBatches});
+    base::Workers workers(3);
+    for (std::uint32_t batch = 0; batch < kBatches; ++batch) {
+      const std::size_t first = outbox.claim(kEach);
+      workers.run(kEach, 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i)
+          outbox.put(first + i, bound_endpoint(ears), base::Bytes(20, static_cast<std::uint8_t>(batch * kEach + i)));
+      });
+    }
+    outbox.flush();
+    const OutboxCounts counts = outbox.counts();
+    EXPECT_EQ(counts.queued, kBatches * kEach);
+    EXPECT_EQ(counts.sent, kBatches * kEach);
+    EXPECT_EQ(counts.sent_bytes, 20u * kBatches * kEach);
+    EXPECT_EQ(counts.dropped, 0u);
+  }
+  ReceiveBatch batch(64);
+  std::uint32_t next = 0;
+  while (const std::size_t taken = batch.fill(ears))
+    for (std::size_t i = 0; i < taken; ++i, ++next) {
+      ASSERT_EQ(batch.bytes(i).size(), 20u);
+      ASSERT_EQ(batch.bytes(i)[0], static_cast<std::uint8_t>(next));
+    }
+  EXPECT_EQ(next, kBatches * kEach);
+}
+
+/// It holds up the thread that sends, and nobody else: what the backlog has no room for is dropped and counted.
+TEST_F(FullOutbox, ABacklogHasABound) {
+  Outbox outbox(std::move(full_), {.capacity = 100, .patience_ms = 2, .backlog = 2});
+  for (int i = 0; i < 20'000; ++i) outbox.queue({kLoopback, 9}, base::Bytes(kMaxPlain));
+  outbox.flush();
+  const OutboxCounts counts = outbox.counts();
+  EXPECT_GT(counts.sent, 0u);
+  EXPECT_GT(counts.dropped, 0u);
+  EXPECT_EQ(counts.queued, 20'000u);
+  EXPECT_EQ(counts.sent + counts.dropped, 20'000u);
+}
+
+/// Claimed and given back: neither sent nor counted.
+TEST(Outbox, WhatIsGivenBackIsForgotten) {
+  const Socket ears = open_udp({kLoopback, 0});
+  Outbox outbox;
+  outbox.queue(bound_endpoint(ears), base::Bytes{1});
+  outbox.claim(5);
+  outbox.give_back(5);
+  outbox.queue(bound_endpoint(ears), base::Bytes{2});
+  outbox.flush();
+  EXPECT_EQ(outbox.counts().sent, 2u);
+  EXPECT_EQ(outbox.counts().queued, 2u);
 }
 
 TEST(Socket, TellsWhatTheKernelDropped) {

@@ -1,0 +1,181 @@
+#include "bench/large_fleet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/post.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "bench/report.h"
+#include "bench/tiles.h"
+#include "scenarios/simulation.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::bench {
+
+namespace {
+
+constexpr std::size_t kWarmUp = 10;
+constexpr std::size_t kReceiveBuffer = 256u << 20;  // [byte] more than two ticks
+
+/// Where all packets go: taken out between ticks, outside of what is measured.
+class Sink {
+ public:
+  Sink() : socket_(netio::open_udp({netio::kLoopback, 0}, {.receive = kReceiveBuffer})), batch_(1024) {}
+
+  std::uint16_t port() const { return netio::bound_endpoint(socket_).port; }
+  std::uint64_t drain() {
+    std::uint64_t count = 0;
+    while (const std::size_t taken = batch_.fill(socket_)) count += taken;
+    return count;
+  }
+
+ private:
+  netio::Socket socket_;
+  netio::ReceiveBatch batch_;
+};
+
+/// Every packet to one port: a stride of none.
+apps::SendPlan plan_for(const sensors::Roster& roster, std::uint16_t port) {
+  apps::SendPlan plan;
+  plan.stride = 0;
+  for (const sensors::Roster::Group& group : roster.groups()) plan.bases[group.kind->id] = port;
+  return plan;
+}
+
+double percentile(std::vector<double> values, double part) {
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1, static_cast<std::size_t>(part * static_cast<double>(values.size())))];
+}
+
+farm::FarmStats minus(const farm::FarmStats& p, const farm::FarmStats& q) {
+  farm::FarmStats d = p;
+  d.readings -= q.readings;
+  d.work = p.work - q.work;
+  d.place_s -= q.place_s, d.lists_s -= q.lists_s, d.device_s -= q.device_s, d.collect_s -= q.collect_s;
+  return d;
+}
+
+class LargeFleet {
+ public:
+  LargeFleet(gpu::Device& device, std::uint32_t robots)
+      : world_(made(robots)),
+        roster_(world_),
+        simulation_(world_, device, {.seed = 7}),
+        post_(world_, roster_, plan_for(roster_, sink_.port()), netio::Outbox(apps::outbox_options(roster_))) {}
+
+  /// @return what it cost
+  Cost tick() {
+    const Cost start = now();
+    const base::TickRecord record = simulation_.step();
+    const double sensed = now().wall_s;
+    letters_.clear();
+    for (const base::ReadingBlock& reading : record.readings) letters_.push_back({&reading, netio::kLoopback, {1, 1}});
+    post_.queue(letters_);
+    post_.flush();
+    encode_s_ += now().wall_s - sensed;
+    const Cost cost = now() - start;
+    received_ += sink_.drain();
+    return cost;
+  }
+
+  /// Waits for what is on its way.
+  netio::OutboxCounts sent() {
+    const netio::OutboxCounts counts = post_.counts().packets;
+    received_ += sink_.drain();
+    return counts;
+  }
+  const scenarios::Simulation& simulation() const { return simulation_; }
+  double encode_s() const { return encode_s_; }
+  std::uint64_t received() const { return received_; }
+
+ private:
+  static world::World made(std::uint32_t robots) {
+    world::World world = tiled_cave(robots, scenes::laser());
+    add_lanes_and_magnets(world);
+    return world;
+  }
+
+  world::World world_;
+  sensors::Roster roster_;
+  scenarios::Simulation simulation_;
+  Sink sink_;
+  apps::Post post_;
+  std::vector<apps::Letter> letters_;
+  double encode_s_ = 0.0;
+  std::uint64_t received_ = 0;
+};
+
+}  // namespace
+
+LargeFleetResult drive_large_fleet(gpu::Device& device, std::uint32_t robots, std::size_t ticks) {
+  LargeFleet fleet(device, robots);
+  for (std::size_t k = 0; k < kWarmUp; ++k) fleet.tick();
+  const netio::OutboxCounts sent = fleet.sent();
+  const farm::FarmStats stages = fleet.simulation().farm().stats();
+  const double move_s = fleet.simulation().move_seconds(), encode_s = fleet.encode_s();
+  const std::uint64_t received = fleet.received();
+
+  LargeFleetResult result{.robots = robots};
+  std::vector<double> walls;
+  for (std::size_t k = 0; k < ticks; ++k) {
+    result.ticks.push_back(fleet.tick());
+    walls.push_back(result.ticks.back().wall_s);
+  }
+  const auto n = static_cast<double>(ticks);
+  const netio::OutboxCounts after = fleet.sent();
+  result.p50_s = percentile(walls, 0.5);
+  result.p99_s = percentile(walls, 0.99);
+  result.move_s = (fleet.simulation().move_seconds() - move_s) / n;
+  result.encode_s = (fleet.encode_s() - encode_s) / n;
+  result.send_s = (after.busy_s - sent.busy_s) / n;
+  result.stages = minus(fleet.simulation().farm().stats(), stages);
+  result.datagrams = after.sent - sent.sent;
+  result.bytes = after.sent_bytes - sent.sent_bytes;
+  result.received = fleet.received() - received;
+  result.dropped = after.dropped - sent.dropped;
+  result.hash = fleet.simulation().farm().hash();
+  SF_CHECK(after.failed == 0, after.first_failure);
+  return result;
+}
+
+std::string large_fleet_table(const std::vector<LargeFleetResult>& results) {
+  std::string text;
+  if (!results.empty())
+    text += fmt::format(
+        "\nlarge fleets: laser, lane edge, magnetometers, packets\n{:<8} {:>8} {:>8} {:>8} | {:>6} {:>6} {:>7} {:>7} "
+        "{:>7} {:>7} {:>7} | {:>10} {:>9} {:>8}  {}\n",
+        "robots", "p50 ms", "p99 ms", "cpu ms", "move", "place", "scans", "device", "collect", "encode", "send",
+        "packets/t", "MB/t", "lost", "hash");
+  for (const LargeFleetResult& r : results) {
+    const auto n = static_cast<double>(r.ticks.size());
+    text += fmt::format(
+        "{:<8} {:>8.2f} {:>8.2f} {:>8.2f} | {:>6.2f} {:>6.2f} {:>7.2f} {:>7.2f} {:>7.2f} {:>7.2f} {:>7.2f} | {:>10.0f} "
+        "{:>9.2f} {:>8}  {}\n",
+        r.robots, 1e3 * r.p50_s, 1e3 * r.p99_s, 1e3 * median(r.ticks).cpu_s, 1e3 * r.move_s, 1e3 * r.stages.place_s / n,
+        1e3 * r.stages.lists_s / n, 1e3 * r.stages.device_s / n, 1e3 * r.stages.collect_s / n, 1e3 * r.encode_s,
+        1e3 * r.send_s, static_cast<double>(r.datagrams) / n, 1e-6 * static_cast<double>(r.bytes) / n,
+        r.dropped + r.datagrams - r.received, base::hash_text(r.hash));
+  }
+  return text;
+}
+
+void write_large_fleet(const std::vector<LargeFleetResult>& results, const std::string& folder) {
+  if (results.empty()) return;
+  std::string text =
+      "robots,ticks,wall_ms_p50,wall_ms_p99,cpu_ms_median,move_ms,place_ms,scans_ms,device_ms,collect_ms,encode_ms,"
+      "send_ms,packets_per_tick,bytes_per_tick,never_sent,not_received,hash\n";
+  for (const LargeFleetResult& r : results) {
+    const auto n = static_cast<double>(r.ticks.size());
+    text += fmt::format(
+        "{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.0f},{:.0f},{},{},{}\n",
+        r.robots, r.ticks.size(), 1e3 * r.p50_s, 1e3 * r.p99_s, 1e3 * median(r.ticks).cpu_s, 1e3 * r.move_s,
+        1e3 * r.stages.place_s / n, 1e3 * r.stages.lists_s / n, 1e3 * r.stages.device_s / n,
+        1e3 * r.stages.collect_s / n, 1e3 * r.encode_s, 1e3 * r.send_s, static_cast<double>(r.datagrams) / n,
+        static_cast<double>(r.bytes) / n, r.dropped, r.datagrams - r.received, base::hash_text(r.hash));
+  }
+  write(folder + "/large_fleet.csv", text);
+}
+
+}  // namespace sf::bench

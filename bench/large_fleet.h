@@ -1,0 +1,37 @@
+#pragma once
+// The whole tick of a large fleet: motion, contacts, decisions, three kinds of sensors, packets to a socket.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/cost.h"
+#include "farm/farm.h"
+
+namespace sf::bench {
+
+struct LargeFleetResult {
+  std::size_t robots = 0;
+  std::vector<Cost> ticks;  ///< from motion until every packet is encoded; sending goes on beside the next one
+  double p50_s = 0.0;
+  double p99_s = 0.0;
+  double move_s = 0.0;  ///< [s] mean per tick, as are all below: decisions, motion, contacts
+  double encode_s = 0.0;
+  double send_s = 0.0;          ///< of the thread that sends
+  farm::FarmStats stages;       ///< of the measured ticks together
+  std::uint64_t datagrams = 0;  ///< of the measured ticks together, as are all below
+  std::uint64_t bytes = 0;
+  std::uint64_t received = 0;
+  std::uint64_t dropped = 0;  ///< never sent
+  std::uint64_t hash = 0;     ///< of all readings since the start
+};
+
+/// `robots` robots that wander and see each other, each with a laser of 361 beams up to 8 m, a lane edge sensor of 61
+/// rays and five magnetometers, all at 10 Hz, for `ticks` ticks.
+LargeFleetResult drive_large_fleet(gpu::Device& device, std::uint32_t robots, std::size_t ticks);
+
+std::string large_fleet_table(const std::vector<LargeFleetResult>& results);
+/// Writes large_fleet.csv; nothing where there are no results.
+void write_large_fleet(const std::vector<LargeFleetResult>& results, const std::string& folder);
+
+}  // namespace sf::bench
