@@ -179,7 +179,7 @@ void HostScene::build_missing() {
       }
       cell.first = cells_.pool().first_chunk(slot);
       lists_[slot] = cell;
-      ahead_[slot] = blocks_ahead(std::span(t.blocks).first(std::min<std::size_t>(cell.facing, kMostAhead)));
+      if (cell.all <= kMostAhead) ahead_[slot] = blocks_ahead(t.blocks);
       cells_.note_sides(key, slot, t.nearby);
       std::copy(t.blocks.begin(), t.blocks.end(), blocks_.begin() + static_cast<std::ptrdiff_t>(cell.first));
     }
@@ -214,9 +214,9 @@ bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, u
   from.range_max = families_[view.family].range;
   from.band = static_cast<float>(SF_BAND * (family.shape.reach() + 2.0 * movers_.largest_radius()));
   ScanScene scene;
-  scene.walls = blocks.first(cell.facing);
-  if (listed && cell.facing <= kMostAhead) scene.ahead = &ahead_[slot];
-  scene.behind = blocks.subspan(cell.facing);
+  scene.walls = blocks;
+  scene.facing = cell.facing;
+  if (listed && cell.all <= kMostAhead) scene.ahead = &ahead_[slot];
   scene.exact = exact_;
   scene.models = models_;
   scene.movers = movers_.segments() > 0 ? &movers_.grid() : nullptr;

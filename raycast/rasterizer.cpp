@@ -30,11 +30,12 @@ void scan(Scratch& s, const ScanView& view, const ScanPattern& pattern, const Sc
   if (scene.movers != nullptr) draw_movers(s, p, view, pattern, scene);
 }
 
-/// @return whether any beam is in doubt
+/// @return whether any beam grazes
 bool scan_all(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
               const ScanOutput& out) {
+  if (pattern.beams <= kFewBeams) return answer_all(s, view, pattern, scene, out);
   scan(s, view, pattern, scene);
-  return answer(s, view, pattern, scene, out);
+  return answer(s, view, pattern, scene, out) && answer_doubts(s, view, pattern, scene, out);
 }
 
 const char* instructions() { return hwy::TargetName(HWY_TARGET); }
@@ -46,7 +47,6 @@ HWY_AFTER_NAMESPACE();
 namespace sf::raycast {
 
 HWY_EXPORT(scan_all);
-HWY_EXPORT(decide_beam);
 HWY_EXPORT(instructions);
 
 void Rasterizer::Scratch::begin(std::uint32_t beams) {
@@ -74,42 +74,8 @@ Rasterizer::Rasterizer(Rasterizer&&) noexcept = default;
 
 const ScanCounts& Rasterizer::counts() const { return scratch_->counts; }
 
-namespace {
-
-/// Answers beam `i` in 64 bits, against all. @return whether it grazes
-bool answer_beam(Rasterizer::Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
-                 std::size_t i, const ScanOutput& out) {
-  const base::Vec2 d = direction_of(view, pattern, i);
-  Decision best = HWY_DYNAMIC_DISPATCH(decide_beam)(s, view, scene, d);
-  const bool grazes = best.grazes(static_cast<float>(view.least_sine));
-  if (view.single && best.id != SF_NO_HIT) {
-    const float t = measure_single(scene.exact[best.id], view.origin, d, static_cast<float>(view.range_max));
-    if (t >= 0.0f) best.range = std::min(static_cast<double>(t), view.range_max);
-  }
-  out.ranges[i] = std::max(best.range, view.range_min);
-  out.models[i] = best.id == SF_NO_HIT ? SF_NO_HIT : scene.models[best.id];
-  out.grazes[i] = grazes ? 1 : 0;
-  return grazes;
-}
-
-}  // namespace
-
 bool Rasterizer::scan(const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, const ScanOutput& out) {
-  Scratch& s = *scratch_;
-  bool grazes = false;
-  if (pattern.beams <= kFewBeams) {
-    for (std::size_t i = 0; i < pattern.beams; ++i) grazes |= answer_beam(s, view, pattern, scene, i, out);
-    return grazes;
-  }
-  if (!HWY_DYNAMIC_DISPATCH(scan_all)(s, view, pattern, scene, out)) return false;
-  std::fill_n(out.grazes, pattern.beams, std::uint8_t{0});
-  for (std::size_t w = 0; w < s.doubts.size(); ++w)
-    for (std::uint64_t open = s.doubts[w]; open != 0; open &= open - 1) {
-      const std::size_t i = 64 * w + static_cast<std::size_t>(__builtin_ctzll(open));
-      grazes |= answer_beam(s, view, pattern, scene, i, out);
-      ++s.counts.doubts;
-    }
-  return grazes;
+  return HWY_DYNAMIC_DISPATCH(scan_all)(*scratch_, view, pattern, scene, out);
 }
 
 const char* vector_instructions() { return HWY_DYNAMIC_DISPATCH(instructions)(); }

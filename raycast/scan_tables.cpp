@@ -48,4 +48,10 @@ void ScanPattern::assign(std::span<const double> bearings, std::span<const doubl
   edge_cos = static_cast<float>(std::cos(edge)), edge_sin = static_cast<float>(std::sin(edge));
 }
 
+base::Vec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::size_t i) {
+  if (view.x != nullptr) return {view.x[i], view.y[i]};
+  const double c = pattern.cos64[i], s = pattern.sin64[i];
+  return {view.heading.x * c - view.heading.y * s, view.heading.y * c + view.heading.x * s};
+}
+
 }  // namespace sf::raycast

@@ -100,24 +100,22 @@ struct ScanView {
   const double* y = nullptr;
 };
 
-/// Unit vector of beam `i` in the world.
-inline base::Vec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::size_t i) {
-  if (view.x != nullptr) return {view.x[i], view.y[i]};
-  const double c = pattern.cos64[i], s = pattern.sin64[i];
-  return {view.heading.x * c - view.heading.y * s, view.heading.y * c + view.heading.x * s};
-}
+/// Unit vector of beam `i` in the world. Not inline: where vectors may be fused, g++ 12 fuses this pair of products,
+/// whatever -ffp-contract says.
+base::Vec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::size_t i);
 
 /// Directions are told apart by so many sectors of a turn.
 inline constexpr int kSectors = 32;
 
-/// Which of the first 64 walls' blocks of a cell lie ahead in each sector: a bit each.
+/// Which blocks of a cell, of 64 at most, lie ahead in each sector: a bit each.
 using BlocksAhead = std::array<std::uint64_t, kSectors>;
 
 /// Surfaces that there are to meet. Exact segments: walls first, then the movers'.
 struct ScanScene {
-  std::span<const SegmentBlock> walls;    ///< that face the cell, near to far
-  const BlocksAhead* ahead = nullptr;     ///< of walls, where they are at most 64 blocks
-  std::span<const SegmentBlock> behind;   ///< that face away from the whole cell: they decide ties at corners
+  /// Walls that face the cell, near to far; then those that face away from all of it, which decide ties at corners.
+  std::span<const SegmentBlock> walls;
+  std::size_t facing = 0;                 ///< [blocks]
+  const BlocksAhead* ahead = nullptr;     ///< of `walls`, where they are at most 64 blocks
   std::span<const ExactSegment> exact;    ///< of walls, then of movers
   std::span<const std::uint32_t> models;  ///< of each
   const MoverGrid* movers = nullptr;

@@ -44,14 +44,22 @@ void meet(const ScanView& view, const ScanScene& scene, const SegmentBlock& bloc
 }
 
 void meet_walls(const ScanView& view, const ScanScene& scene, base::Vec2 d, Decision& best) {
-  const auto bearing = static_cast<float>(std::atan2(d.y, d.x));
-  for (const auto& blocks : {scene.walls, scene.behind})
-    for (const SegmentBlock& block : blocks) {
-      const float turned = std::abs(block.bearing - bearing);
-      const float apart = std::min(turned, std::abs(6.2831853f - turned));
-      if (apart > block.half + 1e-5f || static_cast<double>(block.nearest) > best.range) continue;
-      meet(view, scene, block, -1.0 * view.offset, {1.0, 0.0}, 0, d, best);
-    }
+  VF unused;
+  const float bearing =
+      hn::GetLane(bearing_of(constant(static_cast<float>(d.y)), constant(static_cast<float>(d.x)), unused));
+  const auto meet_block = [&](const SegmentBlock& block) {
+    const float turned = std::abs(block.bearing - bearing);
+    const float apart = std::min(turned, std::abs(6.2831853f - turned));
+    if (apart > block.half + 1e-5f || static_cast<double>(block.nearest) > best.range) return;
+    meet(view, scene, block, -1.0 * view.offset, {1.0, 0.0}, 0, d, best);
+  };
+  if (scene.ahead == nullptr) {
+    for (const SegmentBlock& block : scene.walls) meet_block(block);
+    return;
+  }
+  const auto sector = static_cast<int>(std::floor(bearing * (kSectors / 6.2831853f))) & (kSectors - 1);
+  for (std::uint64_t open = (*scene.ahead)[static_cast<std::size_t>(sector)]; open != 0; open &= open - 1)
+    meet_block(scene.walls[static_cast<std::size_t>(__builtin_ctzll(open))]);
 }
 
 /// Lists movers of one row of cells whose discs beam `d` may cross within `range`.
@@ -93,12 +101,44 @@ void meet_movers(Scratch& s, const ScanView& view, const ScanScene& scene, base:
   }
 }
 
-/// A beam against all that lies across it, in 64 bits.
-Decision decide_beam(Scratch& s, const ScanView& view, const ScanScene& scene, base::Vec2 d) {
+/// Answers beam `i` by all that lies across it, in 64 bits. @return whether it grazes
+bool answer_beam(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, std::size_t i,
+                 const ScanOutput& out) {
+  const base::Vec2 d = direction_of(view, pattern, i);
   Decision best{view.range_max};
   meet_walls(view, scene, d, best);
   if (scene.movers != nullptr) meet_movers(s, view, scene, d, best);
-  return best;
+  const bool grazes = best.grazes(static_cast<float>(view.least_sine));
+  if (view.single && best.id != SF_NO_HIT) {
+    const float t = measure_single(scene.exact[best.id], view.origin, d, static_cast<float>(view.range_max));
+    if (t >= 0.0f) best.range = std::min(static_cast<double>(t), view.range_max);
+  }
+  out.ranges[i] = std::max(best.range, view.range_min);
+  out.models[i] = best.id == SF_NO_HIT ? SF_NO_HIT : scene.models[best.id];
+  out.grazes[i] = grazes ? 1 : 0;
+  return grazes;
+}
+
+/// Answers every beam alone. @return whether any grazes
+bool answer_all(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
+                const ScanOutput& out) {
+  bool grazes = false;
+  for (std::size_t i = 0; i < pattern.beams; ++i) grazes |= answer_beam(s, view, pattern, scene, i, out);
+  return grazes;
+}
+
+/// Answers the beams that are in doubt. @return whether any grazes
+bool answer_doubts(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
+                   const ScanOutput& out) {
+  std::fill_n(out.grazes, pattern.beams, std::uint8_t{0});
+  bool grazes = false;
+  for (std::size_t w = 0; w < s.doubts.size(); ++w)
+    for (std::uint64_t open = s.doubts[w]; open != 0; open &= open - 1) {
+      const std::size_t i = 64 * w + static_cast<std::size_t>(__builtin_ctzll(open));
+      grazes |= answer_beam(s, view, pattern, scene, i, out);
+      ++s.counts.doubts;
+    }
+  return grazes;
 }
 
 }  // namespace sf::raycast::HWY_NAMESPACE

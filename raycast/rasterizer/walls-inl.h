@@ -99,7 +99,7 @@ std::uint64_t blocks_ahead(const Projection& p, const ScanPattern& pattern, cons
 void draw_walls(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
                 const ScanScene& scene) {
   const VF ox = constant(static_cast<float>(view.offset.x)), oy = constant(static_cast<float>(view.offset.y));
-  const std::span<const SegmentBlock> walls = scene.walls;
+  const std::span<const SegmentBlock> walls = scene.walls.first(scene.facing);
   const auto draw_block = [&](const SegmentBlock& block) {
     if (is_hidden(s, p, pattern, block)) return;
     const std::size_t first_live = s.live.size();
@@ -109,7 +109,8 @@ void draw_walls(Scratch& s, const Projection& p, const ScanView& view, const Sca
     draw_from(s, pattern, first_live);
   };
   if (scene.ahead != nullptr) {
-    for (std::uint64_t open = blocks_ahead(p, pattern, *scene.ahead); open != 0; open &= open - 1) {
+    const std::uint64_t facing = walls.size() < 64 ? (std::uint64_t{1} << walls.size()) - 1 : ~std::uint64_t{0};
+    for (std::uint64_t open = facing & blocks_ahead(p, pattern, *scene.ahead); open != 0; open &= open - 1) {
       if ((open & (open - 1)) != 0)
         __builtin_prefetch(&walls[static_cast<std::size_t>(__builtin_ctzll(open & (open - 1)))]);
       draw_block(walls[static_cast<std::size_t>(__builtin_ctzll(open))]);
