@@ -1,4 +1,5 @@
-// Runs all measurements as Google benchmarks: `sensorfarm_bench [--results=FOLDER] [--benchmark_filter=...]`.
+// Runs all measurements as Google benchmarks: `sensorfarm_bench [--results=FOLDER] [--pictures=FOLDER]
+// [--benchmark_filter=...]`.
 //
 // Contests are run whole when the first of their entrants is asked for, since what counts is that methods take turns;
 // the benchmarks then tell each method's turns one by one.
@@ -14,6 +15,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "bench/cone_contest.h"
+#include "bench/curves.h"
 #include "bench/dial.h"
 #include "bench/embree_caster.h"
 #include "bench/farm_caster.h"
@@ -45,6 +47,7 @@ struct Session {
   std::vector<MapOutcome> maps;
   std::vector<DialOutcome> dials;
   std::vector<LargeFleetResult> large_fleets;
+  std::vector<Curve> curves;
 };
 
 struct ScanCase {
@@ -179,6 +182,20 @@ void tell_large_fleet(benchmark::State& state, Session& session) {
   state.counters["p99 [ms]"] = 1e3 * session.large_fleets.back().p99_s;
 }
 
+struct CurveCase {
+  const char* name;
+  Curve (*measure)(gpu::Device& device);
+};
+constexpr CurveCase kCurveCases[] = {
+    {"curves/standing", [](gpu::Device& device) { return robots_curve(device, false, 100'000); }},
+    {"curves/wandering", [](gpu::Device& device) { return robots_curve(device, true, 30'000); }},
+    {"curves/city", [](gpu::Device& device) { return segments_curve(device, 10'000'000); }}};
+
+void tell_curve(benchmark::State& state, Session& session, const CurveCase& c) {
+  for (auto _ : state) session.curves.push_back(c.measure(session.device));
+  state.counters["exponent"] = session.curves.back().exponent;
+}
+
 constexpr double kDialRanges[] = {8.0, 0.75};
 constexpr std::uint32_t kDialRobots = 1'000;
 constexpr std::size_t kDialTurns = 21;
@@ -234,6 +251,8 @@ void register_all(Session& session) {
                                       [&session, range](benchmark::State& s) { tell_dial(s, session, range); }));
   once(benchmark::RegisterBenchmark(fmt::format("large_fleet/{}", kLargeFleet).c_str(),
                                     [&session](benchmark::State& s) { tell_large_fleet(s, session); }));
+  for (const CurveCase& c : kCurveCases)
+    once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_curve(s, session, c); }));
   for (const MapCase& c : kMapCases)
     once(benchmark::RegisterBenchmark(c.name, [&](benchmark::State& s) { tell_maps(s, session, c); }));
   once(benchmark::RegisterBenchmark("start", [&facts](benchmark::State& s) { tell_facts(s, facts, measure_start); }));
@@ -255,13 +274,16 @@ void register_all(Session& session) {
 }
 
 int run(int argc, char** argv) {
-  std::string folder;
+  std::string folder, pictures;
   benchmark::Initialize(&argc, argv);
   for (int i = 1; i < argc; ++i)
     if (std::strncmp(argv[i], "--results=", 10) == 0)
       folder = argv[i] + 10;
+    else if (std::strncmp(argv[i], "--pictures=", 11) == 0)
+      pictures = argv[i] + 11;
     else
-      throw base::InputError(std::string(argv[i]) + ": expected --results=FOLDER or an option of Google Benchmark");
+      throw base::InputError(std::string(argv[i]) +
+                             ": expected --results=FOLDER, --pictures=FOLDER or an option of Google Benchmark");
   Session session;
   benchmark::AddCustomContext("device", session.device.facts().name + ", " + session.device.facts().driver);
   register_all(session);
@@ -275,10 +297,12 @@ int run(int argc, char** argv) {
     write_maps(session.maps, folder);
     write_dial(session.dials, folder);
     write_large_fleet(session.large_fleets, folder);
+    write_curves(session.curves, folder);
   }
-  fmt::print("{}{}{}{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
+  if (!pictures.empty()) draw_curves(session.curves, pictures);
+  fmt::print("{}{}{}{}{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
              cone_table(session.cones), map_table(session.maps), dial_table(session.dials),
-             large_fleet_table(session.large_fleets));
+             large_fleet_table(session.large_fleets), curves_table(session.curves));
   return 0;
 }
 

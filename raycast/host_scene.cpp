@@ -1,5 +1,7 @@
 #include "raycast/host_scene.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -14,8 +16,12 @@ using base::Vec2;
 
 constexpr std::uint32_t kPageBlocks = 4;
 constexpr std::uint32_t kFirstCells = 256, kFirstBlocks = 1u << 11;
-/// [blocks] 640 MiB: a cell for which there is no room is listed anew by each scan.
-constexpr std::uint32_t kMostBlocks = 1u << 21;
+/// [blocks] A quarter of the machine's memory, between 0.7 and 2.7 GiB (100 000 robots need 1.4): a cell for which
+/// there is no room is listed anew by each scan.
+std::uint32_t most_blocks() {
+  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return static_cast<std::uint32_t>(std::clamp(0.25 * memory / sizeof(SegmentBlock), 0x1p21, 0x1p23));
+}
 
 /// [m] An eighth of the range for a scanner of some hundred beams, more for fewer, and not less than 0.25 m or the
 /// range: smaller cells cost more to make than they save where robots drive.
@@ -190,7 +196,8 @@ void HostScene::build_missing() {
 void HostScene::prepare(std::span<const Viewpoint> views) {
   views_.assign(views.begin(), views.end());
   cells_.find(views, workers_);
-  for (build_missing(); !cells_.missing().empty() && blocks_.size() < kMostBlocks; build_missing()) {
+  static const std::uint32_t most = most_blocks();
+  for (build_missing(); !cells_.missing().empty() && blocks_.size() < most; build_missing()) {
     lists_.resize(2 * lists_.size());
     ahead_.resize(lists_.size());
     blocks_.resize(2 * blocks_.size());

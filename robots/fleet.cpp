@@ -23,6 +23,7 @@ std::vector<Outline> outlines_of(const world::World& world) {
 
 std::vector<Segment> stopping(const world::World& world) {
   std::vector<Segment> walls;
+  walls.reserve(world.walls.size());
   std::copy_if(world.walls.begin(), world.walls.end(), std::back_inserter(walls),
                [](const Segment& wall) { return wall.stops_robots; });
   return walls;

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 
@@ -9,10 +10,11 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kGrowth = 8.0;        // cell edge from one level to the next
-constexpr double kLongest = 64.0;      // cells a wall may span on its level
-constexpr std::uint32_t kLevels = 12;  // 8^11 finest cells: 8.6e9 of them in a row
-constexpr double kFarthest = 4.0e15;   // cell numbers stay exact integers
+constexpr double kGrowth = 8.0;          // cell edge from one level to the next
+constexpr double kLongest = 64.0;        // cells a wall may span on its level
+constexpr std::uint32_t kLevels = 12;    // 8^11 finest cells: 8.6e9 of them in a row
+constexpr std::size_t kPart = 1u << 18;  // buckets that are filled together
+constexpr double kFarthest = 4.0e15;     // cell numbers stay exact integers
 
 double side(Vec2 a, Vec2 b, Vec2 p) { return base::cross(b - a, p - a); }
 
@@ -65,12 +67,38 @@ WallGrid::WallGrid(std::vector<Segment> walls, double cell) : walls_(std::move(w
   }
   starts_.assign(std::bit_ceil(std::max<std::size_t>(count, 1)) + 1, 0);
   entries_.resize(count);
-  for (const Segment& wall : walls_) for_each_bucket(wall, [&](std::size_t at) { ++starts_[at + 1]; });
-  for (std::size_t at = 1; at < starts_.size(); ++at) starts_[at] += starts_[at - 1];
-  std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
-  for (std::uint32_t row = 0; row < walls_.size(); ++row) {
-    for_each_bucket(walls_[row], [&](std::size_t at) { entries_[next[at]++] = row; });
+  fill();
+}
+
+// Buckets are random places. So entries are first sorted into parts of buckets that the cache holds, then within each.
+void WallGrid::fill() {
+  struct Entry {
+    std::uint32_t bucket, row;
+  };
+  std::vector<std::size_t> ends((starts_.size() - 2) / kPart + 2, 0);
+  for (const Segment& wall : walls_) for_each_bucket(wall, [&](std::size_t at) { ++ends[at / kPart + 1]; });
+  for (std::size_t part = 1; part < ends.size(); ++part) ends[part] += ends[part - 1];
+  std::vector<Entry> entries(entries_.size());
+  std::vector<std::size_t> next(ends.begin(), ends.end() - 1);
+  for (std::uint32_t row = 0; row < walls_.size(); ++row)
+    for_each_bucket(walls_[row], [&](std::size_t at) {
+      entries[next[at / kPart]++] = {static_cast<std::uint32_t>(at), row};
+    });
+
+  std::vector<std::uint32_t> places(kPart);
+  for (std::size_t part = 0; part + 1 < ends.size(); ++part) {
+    const std::span<const Entry> own = std::span<const Entry>(entries).subspan(ends[part], ends[part + 1] - ends[part]);
+    const std::size_t first = part * kPart, end = std::min(first + kPart, starts_.size() - 1);
+    std::fill(places.begin(), places.end(), 0u);
+    for (const Entry& e : own) ++places[e.bucket - first];
+    auto at = static_cast<std::uint32_t>(ends[part]);
+    for (std::size_t bucket = first; bucket < end; ++bucket) {
+      starts_[bucket] = at;
+      at += std::exchange(places[bucket - first], at);
+    }
+    for (const Entry& e : own) entries_[places[e.bucket - first]++] = e.row;
   }
+  starts_.back() = static_cast<std::uint32_t>(entries_.size());
 }
 
 std::int64_t WallGrid::cell_of(double v, double cell) {

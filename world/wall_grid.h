@@ -72,6 +72,7 @@ class WallGrid {
   std::uint32_t level_of(const Segment& wall) const;
   template <class Visit>
   void for_each_bucket(const Segment& wall, Visit&& visit) const;
+  void fill();
 
   std::vector<Segment> walls_;
   std::vector<double> cells_;           ///< [m] cell edge per level

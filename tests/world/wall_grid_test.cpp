@@ -112,6 +112,11 @@ void expect_same_as_brute_force(const std::vector<Segment>& walls, Vec2 around, 
 
 TEST(WallGrid, finds_what_brute_force_finds) { expect_same_as_brute_force(random_walls(2000, {}, 40, 20), {}, 50); }
 
+/// More buckets than are filled together.
+TEST(WallGrid, finds_what_brute_force_finds_among_many) {
+  expect_same_as_brute_force(random_walls(60'000, {}, 300, 5), {}, 160);
+}
+
 TEST(WallGrid, finds_it_100_km_away) {
   const Vec2 far{1e5, -1e5};
   expect_same_as_brute_force(random_walls(2000, far, 40, 20), far, 50);
