@@ -54,8 +54,9 @@ void release(const Device::Vk& vk, const Storage& storage) {
 }
 
 void make_storage(Buffer::Vk& vk, const Device& device, VkDeviceSize size) {
-  const VkBufferUsageFlags table = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
-                                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  const VkBufferUsageFlags table = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                   VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                                   VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   const VkBufferUsageFlags staging = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   if (device.unified()) {
     vk.table = allocate(*vk.device, size, table, {kCached | VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT});
@@ -109,6 +110,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 
 std::size_t Buffer::bytes() const { return vk_->texels * texel_size(vk_->texel); }
 std::size_t Buffer::texels() const { return vk_->texels; }
+bool Buffer::fits_buffer() const { return bytes() <= vk_->device->properties.limits.maxStorageBufferRange; }
 void* Buffer::mapped() const { return vk_->mapped; }
 
 }  // namespace sf::gpu

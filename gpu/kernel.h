@@ -11,12 +11,16 @@
 
 namespace sf::gpu {
 
-/// Binding i of descriptor set 0 is the i-th table given to `bind`: an `imageBuffer` of the table's texel.
+/// Binding i of descriptor set 0 is the i-th table given to `bind`: an `imageBuffer` of the table's texel, or a
+/// `buffer`.
 class Kernel {
  public:
   /// @param name what it computes, for Device::held
   /// @param spirv words of a module with one entry point `main`; its group size is read from the module.
-  Kernel(Device& device, std::string_view name, std::span<const std::uint32_t> spirv, std::uint32_t tables);
+  /// @param buffers how many of the tables, the last ones, are bound as buffers: as much of them as the device bears
+  /// @param constants of the module, from constant_id 0 on: one word each
+  Kernel(Device& device, std::string_view name, std::span<const std::uint32_t> spirv, std::uint32_t tables,
+         std::uint32_t buffers = 0, std::span<const std::uint32_t> constants = {});
   ~Kernel();
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;

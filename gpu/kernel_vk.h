@@ -14,6 +14,7 @@ struct Kernel::Vk {
   VkPipelineLayout layout = VK_NULL_HANDLE;
   VkPipeline pipeline = VK_NULL_HANDLE;
   std::uint32_t group_size = 0;
+  std::uint32_t texels = 0;  ///< bindings before the buffers
 };
 
 }  // namespace sf::gpu

@@ -40,8 +40,6 @@ void write_beams(const world::Laser& laser, const BeamPlan& plan, const std::vec
       high = i == 0 ? bearing : std::max(high, bearing);
       const double c = std::cos(bearing);
       const double s = std::sin(bearing);
-      tables.directions[8 * lane + i] = static_cast<float>(c);
-      tables.directions[8 * lane + 4 + i] = static_cast<float>(s);
       tables.directions64[8 * lane + 2 * i] = c;
       tables.directions64[8 * lane + 2 * i + 1] = s;
     }

@@ -33,7 +33,6 @@ void draw_turns(const world::Laser& laser, const BeamPlan& plan, const base::Dra
 
 /// Rows of the device's beam tables for one laser, from its first lane on.
 struct BeamTables {
-  float* directions;     ///< 8 per lane: four cosines, four sines
   float* middles;        ///< [sectors] one per lane
   double* directions64;  ///< 8 per lane: cosine, sine of each beam
 };

@@ -70,7 +70,6 @@ void Casts::copies(gpu::Batch& batch, bool results) {
   send(t.exact);
   if (t.single) send(*t.single);
   if (t.beams_changed || t.any_turns) {
-    batch.up(*t.directions, 0, t.directions->bytes());
     batch.up(*t.middles, 0, t.middles->bytes());
     batch.up(*t.directions64, 0, t.directions64->bytes());
     t.beams_changed = false;

@@ -19,7 +19,7 @@
 namespace sf::raycast {
 
 /// Sine of the angle below which a beam grazes what it meets: rounding then moves its range by more than `exact_bound`.
-inline constexpr double kLeastSine = 1e-3;
+inline constexpr double kLeastSine = SF_LEAST_SINE;
 
 /// [m] largest error of a range in 64 bits, of a beam that does not graze, against real arithmetic on the world's own
 /// doubles and the sensor's pose: with u = 2^-53, of numerator and denominator of t = (e x w) / (e x d) at most 4 u |e|

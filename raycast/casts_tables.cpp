@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "shaders/laser.comp.h"
-#include "shaders/laser_single.comp.h"
 
 namespace sf::raycast {
 
@@ -68,7 +67,7 @@ Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<F
     }
     beam_lanes += row.plan.lanes();
   }
-  make_tables(site.device, beam_lanes);
+  make_tables(site.device, site.scene.largest_buffer, beam_lanes);
   write_all_beams();
   // Patterns were numbered in order of rows, as tables of beams were.
   for (const FanRow& row : fan_rows)
@@ -97,17 +96,12 @@ void Casts::Tables::plan(const world::World& world) {
   }
 }
 
-void Casts::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) {
+void Casts::Tables::make_tables(gpu::Device& device, std::size_t largest_buffer, std::uint32_t beam_lanes) {
   using gpu::Role;
   using gpu::Texel;
   const std::size_t count = std::max<std::size_t>(1, fans.size());
-  make_pass(device, exact, false);
-  const auto asks = [](const Fan& fan) { return fan.single; };
-  if (std::any_of(fans.begin(), fans.end(), asks)) make_pass(device, single.emplace(), true);
   if (scene)
     rows = std::make_unique<gpu::Buffer>(device, "due sensors", Role::upload, Texel::u32x4, SF_ROW_TEXELS * count);
-  directions = std::make_unique<gpu::Buffer>(device, "beams in 32 bits", Role::upload, Texel::f32x4,
-                                             2 * std::size_t{beam_lanes} + 2);
   middles =
       std::make_unique<gpu::Buffer>(device, "middles of lanes", Role::upload, Texel::f32, std::size_t{beam_lanes} + 1);
   directions64 = std::make_unique<gpu::Buffer>(device, "beams in 64 bits", Role::upload, Texel::u32x4,
@@ -116,6 +110,10 @@ void Casts::Tables::make_tables(gpu::Device& device, std::uint32_t beam_lanes) {
   ranges = std::make_unique<gpu::Buffer>(device, "ranges", Role::download, Texel::u32x4, 2 * results);
   hits = std::make_unique<gpu::Buffer>(device, "hits", Role::download, Texel::u32x4, results);
   verdicts = std::make_unique<gpu::Buffer>(device, "verdicts", Role::download, Texel::u32, results);
+  texel_results = !ranges->fits_buffer() || ranges->bytes() > largest_buffer;
+  make_pass(device, exact, false);
+  const auto asks = [](const Fan& fan) { return fan.single; };
+  if (std::any_of(fans.begin(), fans.end(), asks)) make_pass(device, single.emplace(), true);
 }
 
 void Casts::Tables::make_pass(gpu::Device& device, CastPass& pass, bool is_single) {
@@ -127,9 +125,9 @@ void Casts::Tables::make_pass(gpu::Device& device, CastPass& pass, bool is_singl
   pass.lanes = std::make_unique<gpu::Buffer>(device, "whose beams", Role::upload, Texel::u32, 2 * padded);
   pass.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
   if (!scene) return;
-  const auto code = is_single ? std::span<const std::uint32_t>(laser_single_comp_spv)
-                              : std::span<const std::uint32_t>(laser_comp_spv);
-  pass.kernel = std::make_unique<gpu::Kernel>(device, is_single ? "laser in 32 bits" : "laser", code, 14);
+  const std::uint32_t constants[] = {scene->has_movers(), is_single, texel_results};
+  pass.kernel =
+      std::make_unique<gpu::Kernel>(device, is_single ? "laser in 32 bits" : "laser", laser_comp_spv, 15, 3, constants);
   SF_CHECK(pass.kernel->group_size() == kLanesPerGroup, "groups of lanes are counted as of 64");
 }
 
@@ -228,7 +226,6 @@ bool Casts::Tables::serve() {
       ray_rows[i].beams = row.beams;
       ray_rows[i].out = row.out;
       ray_rows[i].range_min = fans[due[i].row].laser.range_min;
-      ray_rows[i].least_sine = static_cast<float>(kLeastSine);
     }
   });
   return replaced;
@@ -363,10 +360,11 @@ void Casts::Tables::find_for_host() {
 }
 
 void Casts::Tables::bind(CastPass& pass) {
-  gpu::Buffer* const tables[] = {rows.get(),         pass.lanes.get(),   directions.get(),  middles.get(),
-                                 directions64.get(), &scene->headers(),  &scene->entries(), &scene->ids(),
-                                 &scene->nearest(),  &scene->segments(), &scene->models(),  ranges.get(),
-                                 hits.get(),         verdicts.get()};
+  gpu::Buffer* const results[] = {ranges.get(), hits.get(), verdicts.get()};
+  gpu::Buffer* const tables[] = {rows.get(),       pass.lanes.get(), middles.get(),    directions64.get(),
+                                 &scene->lists(),  &scene->names(),  &scene->places(), &scene->segments(),
+                                 &scene->models(), results[0],       results[1],       results[2],
+                                 results[0],       results[1],       results[2]};
   pass.kernel->bind(tables);
 }
 

@@ -56,7 +56,7 @@ struct Casts::Tables {
   std::vector<FanRow> fan_rows;
   CastPass exact;
   std::optional<CastPass> single;  ///< where a fan asks for it
-  std::unique_ptr<gpu::Buffer> rows, directions, middles, directions64, ranges, hits, verdicts;
+  std::unique_ptr<gpu::Buffer> rows, middles, directions64, ranges, hits, verdicts;
   std::vector<Due> due;
   std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, that the passes' lanes hold
   std::vector<Viewpoint> views, host_views;
@@ -88,10 +88,11 @@ struct Casts::Tables {
   bool bound = false;
   bool beams_changed = true;
   bool any_turns = false;
+  bool texel_results = false;  ///< too large for buffers
 
   Tables(const Site& site, const world::World& world, std::vector<Fan> f);
   void plan(const world::World& world);
-  void make_tables(gpu::Device& device, std::uint32_t beam_lanes);
+  void make_tables(gpu::Device& device, std::size_t largest_buffer, std::uint32_t beam_lanes);
   void write_all_beams();
   void make_pass(gpu::Device& device, CastPass& pass, bool is_single);
   void write_lanes();
@@ -110,8 +111,7 @@ struct Casts::Tables {
   void find_for_host();
   void bind();
   BeamTables beam_tables(std::uint32_t lane) const {
-    return {directions->host<float>().data() + 8 * std::size_t{lane}, middles->host<float>().data() + lane,
-            directions64->host<double>().data() + 8 * std::size_t{lane}};
+    return {middles->host<float>().data() + lane, directions64->host<double>().data() + 8 * std::size_t{lane}};
   }
 };
 

@@ -15,7 +15,7 @@ namespace sf::raycast {
 struct Family {
   double z = 0.0;             ///< [m] world height of the sensors
   double range = 0.0;         ///< [m]
-  double spread = 0.0;        ///< [rad] largest of its sensors, as in CellShape
+  double spread = 0.0;        ///< [rad] from the middle of a lane's beams to its outermost: largest of its sensors
   double fov = 0.0;           ///< [rad] largest of its sensors, with all that noise may add
   std::uint32_t beams = 361;  ///< that one robot casts in a tick: many are worth small cells
 };

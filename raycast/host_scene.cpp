@@ -45,9 +45,6 @@ BlocksAhead blocks_ahead(std::span<const SegmentBlock> blocks) {
   return ahead;
 }
 
-/// Rings in which distances double: segments of one are listed by bearing, so that blocks are narrow and can be hidden.
-constexpr double kRings = 2.0;
-
 }  // namespace
 
 struct HostScene::FamilyTables {
@@ -55,19 +52,9 @@ struct HostScene::FamilyTables {
   std::uint32_t height;
 };
 
-/// A segment seen from its right, relative to a cell's centre.
-struct HostScene::Found {
-  Vec2 a, b;
-  std::uint32_t row;
-  double nearest;        ///< [m] to any viewer
-  double bearing, half;  ///< [rad] where viewers see it
-  int ring;              ///< steps of distance; in each, by bearing
-};
-
 struct HostScene::Thread {
   Rasterizer rasterizer;
-  Sight::Nearby nearby;
-  std::vector<Found> facing, behind;
+  FoundWalls walls;
   std::vector<SegmentBlock> blocks;
 };
 
@@ -81,7 +68,7 @@ HostScene::HostScene(const world::World& world, const Families& families, base::
       blocks_(kFirstBlocks) {
   for (std::size_t i = 0; i < families.size(); ++i) {
     const Family& family = families[i];
-    tables_of_.push_back({{cells_.size_of(i), family.range, 0.0}, movers_.watch_height(family.z)});
+    tables_of_.push_back({{cells_.size_of(i), family.range}, movers_.watch_height(family.z)});
   }
   for (const world::Segment& s : families.walls()) {
     exact_.push_back({s.a.x, s.a.y, s.b.x, s.b.y});
@@ -98,32 +85,18 @@ void HostScene::place(std::span<const Pose> poses) {
   movers_.place(poses, workers_, std::span(exact_).subspan(families_.walls().size()));
 }
 
-/// @param radius [m] of the disc that holds all viewers
-HostScene::Found HostScene::found(Vec2 a, Vec2 b, std::uint32_t row, double radius) {
-  Found f{a, b, row, std::max(0.0, world::distance({}, a, b) - radius), 0.0, 2.0 * M_PI, -1};
-  const double distance_a = length(a), distance_b = length(b);
-  if (f.nearest <= 0.0 || distance_a <= radius || distance_b <= radius) return f;
-  const double bearing_a = std::atan2(a.y, a.x), turn = std::atan2(cross(a, b), dot(a, b));
-  const double wide_a = std::asin(radius / distance_a), wide_b = std::asin(radius / distance_b);
-  const double low = std::min(-wide_a, turn - wide_b), high = std::max(wide_a, turn + wide_b);
-  f.half = 0.5 * (high - low);
-  f.bearing = std::remainder(bearing_a + 0.5 * (low + high), 2.0 * M_PI);
-  f.ring = static_cast<int>(std::floor(std::log2((f.nearest + radius) / radius) * kRings));
-  return f;
-}
-
 /// Appends `found` in order of rings and bearings, with what all of a block have in common.
-void HostScene::add_blocks(std::vector<Found>& found, std::vector<SegmentBlock>& blocks) {
-  std::sort(found.begin(), found.end(), [](const Found& p, const Found& q) {
+void HostScene::add_blocks(std::vector<FoundWall>& found, std::vector<SegmentBlock>& blocks) {
+  std::sort(found.begin(), found.end(), [](const FoundWall& p, const FoundWall& q) {
     return std::tie(p.ring, p.bearing, p.row, p.a.x, p.a.y) < std::tie(q.ring, q.bearing, q.row, q.a.x, q.a.y);
   });
   std::uint32_t used = kBlock;
   for (std::size_t i = 0; i < found.size(); ++i) {
     append(blocks, used, found[i].a, found[i].b, found[i].row);
     if (used < kBlock && i + 1 < found.size()) continue;
-    const std::span<const Found> own = std::span(found).subspan(i + 1 - used, used);
+    const std::span<const FoundWall> own = std::span(found).subspan(i + 1 - used, used);
     double low = 0.0, high = 0.0, nearest = own[0].nearest;
-    for (const Found& f : own) {
+    for (const FoundWall& f : own) {
       const double offset = std::remainder(f.bearing - own[0].bearing, 2.0 * M_PI);
       low = std::min(low, offset - f.half), high = std::max(high, offset + f.half);
       nearest = std::min(nearest, f.nearest);
@@ -137,31 +110,14 @@ void HostScene::add_blocks(std::vector<Found>& found, std::vector<SegmentBlock>&
 
 /// Lists what may be met from a cell, into the thread's blocks.
 HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
-  const CellShape& shape = tables_of_[ViewCells::family_of(key)].shape;
-  const Sight& sight = families_.sight(ViewCells::family_of(key));
-  const Vec2 centre = cells_.centre_of(key);
-  const double radius = shape.radius();
-  const bool both_sides = ViewCells::in_solid(key);
+  const std::size_t family = ViewCells::family_of(key);
+  find_walls(families_.sight(family), tables_of_[family].shape, cells_.centre_of(key), ViewCells::in_solid(key),
+             t.walls);
   Cell cell;
-  t.facing.clear();
-  t.behind.clear();
-  sight.near(centre, shape.reach(), t.nearby);
-  for (const std::uint32_t i : t.nearby.found) {
-    const SightSegment& s = sight.segments()[i];
-    Vec2 a = s.a - centre, b = s.b - centre;
-    if (!clip(a, b, shape.reach())) continue;
-    // The cell's signed distance from the segment's line: positive on its left.
-    const Vec2 e = s.b - s.a;
-    const double side = cross(e, centre - s.a) / length(e);
-    const bool both = both_sides || !s.solid_left;
-    if (side < radius) t.facing.push_back(found(a, b, s.row, radius));
-    if (side > -radius && both) t.facing.push_back(found(b, a, s.row, radius));
-    if (side >= radius && !both) t.behind.push_back(found(a, b, s.row, radius));
-  }
   t.blocks.clear();
-  add_blocks(t.facing, t.blocks);
+  add_blocks(t.walls.facing, t.blocks);
   cell.facing = static_cast<std::uint32_t>(t.blocks.size());
-  add_blocks(t.behind, t.blocks);
+  add_blocks(t.walls.behind, t.blocks);
   cell.all = static_cast<std::uint32_t>(t.blocks.size());
   return cell;
 }
@@ -186,7 +142,7 @@ void HostScene::build_missing() {
       cell.first = cells_.pool().first_chunk(slot);
       lists_[slot] = cell;
       if (cell.all <= kMostAhead) ahead_[slot] = blocks_ahead(t.blocks);
-      cells_.note_sides(key, slot, t.nearby);
+      cells_.note_sides(key, slot, t.walls.nearby);
       std::copy(t.blocks.begin(), t.blocks.end(), blocks_.begin() + static_cast<std::ptrdiff_t>(cell.first));
     }
   });

@@ -10,8 +10,8 @@
 #include "raycast/mover_tables.h"
 #include "raycast/options.h"
 #include "raycast/rasterizer.h"
-#include "raycast/sectors.h"
 #include "raycast/view_cells.h"
+#include "raycast/wall_lists.h"
 
 namespace sf::raycast {
 
@@ -37,14 +37,12 @@ class HostScene {
  private:
   struct FamilyTables;
   struct Thread;
-  struct Found;
   /// Blocks of one cell: those that face it, then those that do not, which only decide ties at corners.
   struct Cell {
     std::uint32_t first = 0, facing = 0, all = 0;
   };
   void build_missing();
-  static Found found(base::Vec2 a, base::Vec2 b, std::uint32_t row, double radius);
-  static void add_blocks(std::vector<Found>& found, std::vector<SegmentBlock>& blocks);
+  static void add_blocks(std::vector<FoundWall>& found, std::vector<SegmentBlock>& blocks);
   Cell collect(const CellKey& key, Thread& thread) const;
 
   base::Workers& workers_;

@@ -30,6 +30,7 @@ class MoverTables {
   double largest_radius() const { return grid_.largest_radius; }  ///< [m]
 
   const MoverGrid& grid() const { return grid_; }
+  std::uint32_t heights() const { return static_cast<std::uint32_t>(heights_.size()); }
   const OutlineTable& outlines(std::uint32_t height) const { return heights_[height].outlines; }
   std::span<const Pose> poses() const { return poses_; }
   std::span<const base::Vec2> headings() const { return headings_; }

@@ -1,6 +1,7 @@
 #pragma once
 // How much room a scene's lists are given.
 
+#include <cstddef>
 #include <cstdint>
 
 #include "raycast/caster.h"
@@ -11,10 +12,12 @@ namespace sf::raycast {
 /// the room doubles.
 struct SceneOptions {
   Caster caster = Caster::automatic;
-  std::uint32_t pool_chunks = 1u << 20;  ///< 84 bytes each; memory is touched only as far as used
+  std::uint32_t pool_chunks = 1u << 20;  ///< 80 bytes each; memory is touched only as far as used
   std::uint32_t pool_cells = 1u << 14;
   /// [chunks] of one sector: what has longer lists is cast on the host, where this is not above what the device bears.
   std::uint32_t longest_list = 0xFFFFFFFFu;
+  /// [bytes] of results: larger tables are written as texels, where this is not above what the device's buffers bear.
+  std::size_t largest_buffer = 0xFFFFFFFFu;
 };
 
 }  // namespace sf::raycast

@@ -5,14 +5,16 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "raycast/clearance.h"
 #include "raycast/scene_parts.h"
 
 namespace sf::raycast {
 
 namespace {
 
-constexpr double kClearanceCap = 0.05;  ///< [m]
+/// Robots drive on: of the cells that each of them left lately, so many are kept, and of few robots more.
+constexpr SceneOptions kEach{.pool_chunks = 1u << 12, .pool_cells = 1u << 6};
+constexpr SceneOptions kLeast{.pool_chunks = 1u << 15, .pool_cells = 1u << 10};
+constexpr std::uint32_t kPageChunks = 8;
 
 /// Lists for small cells are short, but each cell costs: a 32nd of the range suits a scanner of some hundred beams, few
 /// beams are not worth so many (docs/performance.md).
@@ -30,61 +32,67 @@ Scene::Scene(const world::World& world, const Families& families, gpu::Device& d
       most_(options),
       options_{.pool_chunks = 0, .pool_cells = 0},
       families_(families),
-      all_walls_(std::make_unique<Sight>(Sight::of_all_heights(families.walls(), 2.0))),
-      cells_(families, cell_size, CellPool(0, 0)) {
-  bodies_ = std::make_unique<Bodies>(world, all_walls_.get());
+      movers_(world),
+      cells_(families, cell_size, CellPool(0, 0, kPageChunks)) {
   for (unsigned i = 0; i < workers.threads(); ++i) scratch_.push_back(std::make_unique<Scratch>());
+  for (std::size_t i = 0; i < families.size(); ++i)
+    tables_of_.push_back(
+        {{cells_.size_of(i), families[i].range}, families[i].spread + 5e-4, movers_.watch_height(families[i].z)});
+  for (std::uint32_t h = 0; h < movers_.heights(); ++h) {
+    outlines_.push_back(pool_begin_);
+    pool_begin_ += kBlockTexels * static_cast<std::uint32_t>(movers_.outlines(h).blocks.size());
+  }
 
-  // Exact segments: walls now, movers each tick.
   const std::vector<world::Segment>& walls = families.walls();
-  const std::size_t count = walls.size() + bodies_->segments().size();
+  const std::size_t count = walls.size() + movers_.segments();
   segments_ = std::make_unique<gpu::Buffer>(device, "walls and movers in 64 bits", gpu::Role::upload, gpu::Texel::u32x4,
                                             2 * count + 2);
   models_ = std::make_unique<gpu::Buffer>(device, "whose walls", gpu::Role::upload, gpu::Texel::u32, count + 1);
-  if (count >= SF_ROW_MASK)
-    throw base::InputError("the world has " + std::to_string(count) + " segments; at most " +
-                           std::to_string(SF_ROW_MASK - 1) + " are supported");
+  places_ = std::make_unique<gpu::Buffer>(device, "places of movers", gpu::Role::upload, gpu::Texel::u32x4,
+                                          2 * movers_.heights() * world.movers.size() + 2);
   const auto exact = segments_->host<ExactSegment>();
   const auto models = models_->host<std::uint32_t>();
-  std::vector<float> clearances = wall_clearances(walls, kClearanceCap);
-  own_clearances_ = bodies_->own_clearances(kClearanceCap);
-  clearances.insert(clearances.end(), own_clearances_.begin(), own_clearances_.end());
-  for (std::size_t i = 0; i < walls.size(); ++i) exact[i] = {walls[i].a.x, walls[i].a.y, walls[i].b.x, walls[i].b.y};
-  for (std::uint32_t i = 0; i < count; ++i) {
-    models[i] = i < walls.size() ? walls[i].model : bodies_->models()[i - walls.size()];
-    words_.push_back(list_word(i, clearances[i]));
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    exact[i] = {walls[i].a.x, walls[i].a.y, walls[i].b.x, walls[i].b.y};
+    models[i] = walls[i].model;
   }
-
-  add_tables();
+  std::copy(movers_.models().begin(), movers_.models().end(),
+            models.begin() + static_cast<std::ptrdiff_t>(walls.size()));
   make_room(carriers);
+  write_outlines();
 }
 
 Scene::~Scene() = default;
 
-void Scene::add_tables() {
-  for (std::size_t i = 0; i < families_.size(); ++i) {
-    const Family& family = families_[i];
-    const Sight& sight = families_.sight(i);
-    // Only movers are looked up in it.
-    auto& depth = depths_[&sight];
-    if (!depth && bodies_->count() > 1) depth = std::make_unique<Depth>(sight);
-    tables_of_.push_back({family.range,
-                          family.fov,
-                          {cells_.size_of(i), family.range, family.spread + 5e-4},
-                          &sight,
-                          depth.get(),
-                          bodies_->watch_height(family.z)});
+void Scene::write_outlines() {
+  const auto entries = lists_->host<ListEntry>();
+  const auto names = names_->host<std::uint32_t>();
+  std::memset(entries.data(), 0, SF_SECTORS * sizeof(ListHead));  // lists of nobody
+  for (std::uint32_t h = 0; h < movers_.heights(); ++h) {
+    std::uint32_t at = outlines_[h];
+    for (const SegmentBlock& block : movers_.outlines(h).blocks) {
+      for (std::uint32_t k = 0; k < kBlock; ++k, ++at) {
+        const float ex = 0.5f * block.ex[k], ey = 0.5f * block.ey[k];
+        entries[at] = {block.ax[k] + ex, block.ay[k] + ey, ex, ey};
+        names[at] = block.row[k];
+      }
+      entries[at] = kFacesNobody;
+      names[at++] = SF_NO_HIT;
+    }
   }
 }
 
 void Scene::place(std::span<const Pose> poses) {
-  bodies_->place(poses, workers_);
-  const auto moved = bodies_->segments();
-  if (!moved.empty())
-    std::memcpy(segments_->host<ExactSegment>().data() + families_.walls().size(), moved.data(), moved.size_bytes());
-  for (std::uint32_t row = 0; row < moved.size(); ++row)
-    words_[families_.walls().size() + row] = list_word(static_cast<std::uint32_t>(families_.walls().size()) + row,
-                                                       std::min(own_clearances_[row], bodies_->clearance_of(row)));
+  movers_.place(poses, workers_, segments_->host<ExactSegment>().subspan(families_.walls().size(), movers_.segments()));
+  const auto places = places_->host<MoverPlace>();
+  for (std::uint32_t h = 0; h < movers_.heights(); ++h)
+    for (std::size_t m = 0; m < poses.size(); ++m)
+      places[h * poses.size() + m] = {poses[m].x,
+                                      poses[m].y,
+                                      static_cast<float>(movers_.headings()[m].x),
+                                      static_cast<float>(movers_.headings()[m].y),
+                                      outlines_[h] + kBlockTexels * movers_.outlines(h).of_mover[m].first,
+                                      movers_.first_rows()[m]};
 }
 
 bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {
@@ -94,28 +102,104 @@ bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {
   bool room = true;
   for (build_missing(); !cells_.missing().empty() && room && options_.pool_chunks < kMostPoolChunks; build_missing())
     room = try_to_grow(2 * options_.pool_cells + 64, std::min(2 * options_.pool_chunks + 4096, kMostPoolChunks),
-                       mover_chunks_);
-
-  find_groups(views);
-  if (groups_.size() > view_capacity_)
-    grow(options_.pool_cells, options_.pool_chunks, static_cast<std::uint32_t>(2 * groups_.size()), mover_chunks_);
+                       near_texels_);
   room = true;
-  while (!fill_some_movers(views, room))
-    room = try_to_grow(options_.pool_cells, options_.pool_chunks, 2 * mover_chunks_used_);
+  while (!list_movers(views, rows, room)) room = try_to_grow(options_.pool_cells, options_.pool_chunks, 2 * near_used_);
   workers_.run(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) fill_walls(views[i], i, rows[i]);
+    for (std::size_t i = first; i < last; ++i) fill_row(views[i], i, rows[i]);
   });
-  name_movers(views, rows);
   return replaced_;
 }
 
+void Scene::fill_row(const Viewpoint& view, std::size_t i, RayRow& row) {
+  const FamilyTables& family = tables_of_[view.family];
+  const Vec2 centre = cells_.centre_of(cells_.key(i));
+  const double yaw = view.X_WS.yaw;
+  const double sectors = std::remainder(yaw, 2.0 * M_PI) * (SF_SECTORS / (2.0 * M_PI));
+  const std::uint32_t slot = cells_.slot(i);
+  row.offset_x = static_cast<float>(view.X_WS.x - centre.x);
+  row.offset_y = static_cast<float>(view.X_WS.y - centre.y);
+  row.heading_sectors = static_cast<float>(sectors < 0.0 ? sectors + SF_SECTORS : sectors);
+  row.band = static_cast<float>(SF_BAND * (family.shape.reach() + 2.0 * movers_.largest_radius()));
+  if (slot == CellPool::kNone || cell_tables_[slot].too_long) for_host_[i] = 1;
+  row.walls = slot == CellPool::kNone ? 0 : cell_tables_[slot].first;
+  row.origin_x = view.X_WS.x;
+  row.origin_y = view.X_WS.y;
+  row.heading_cos64 = view.heading.x;
+  row.heading_sin64 = view.heading.y;
+  row.range_max = family.shape.range;
+}
+
 Scene::Counts Scene::counts() const {
-  Counts counts{cells_.pool().built(), cells_.pool().cells()};
+  Counts counts{cells_.pool().built()};
   for (const auto& scratch : scratch_) {
-    counts.movers_near += scratch->bodies.movers_near;
-    counts.movers_met += scratch->bodies.movers_met;
+    counts.movers_near += scratch->movers_near;
+    counts.movers_met += scratch->movers_met;
   }
   return counts;
+}
+
+void Scene::make_room(std::uint32_t carriers) {
+  const auto room = [carriers](std::uint32_t each, std::uint32_t least, std::uint32_t most) {
+    return static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(std::uint64_t{each} * carriers, std::min(least, most), most));
+  };
+  grow(room(kEach.pool_cells, kLeast.pool_cells, most_.pool_cells),
+       room(kEach.pool_chunks, kLeast.pool_chunks, most_.pool_chunks), has_movers() ? 1u << 14 : 1);
+}
+
+/// @return false when the device has no room for more
+bool Scene::try_to_grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t near_texels) {
+  try {
+    grow(pool_cells, pool_chunks, near_texels);
+    return true;
+  } catch (const base::DeviceError&) {
+    return false;
+  }
+}
+
+std::uint32_t Scene::pool_end() const { return pool_begin_ + kChunkTexels * options_.pool_chunks; }
+
+void Scene::grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t near_texels) {
+  const auto replace = [&](std::unique_ptr<gpu::Buffer>& table, const char* name, gpu::Texel texel,
+                           std::size_t texels) {
+    if (table && table->texels() == texels) return;
+    auto larger = std::make_unique<gpu::Buffer>(device_, name, gpu::Role::upload, texel, texels);
+    if (table)
+      std::memcpy(larger->host<std::uint8_t>().data(), table->host<std::uint8_t>().data(),
+                  std::min(table->bytes(), larger->bytes()));
+    table = std::move(larger);
+    replaced_ = upload_all_ = true;
+  };
+  const std::size_t end = pool_begin_ + std::size_t{kChunkTexels} * pool_chunks;
+  // A search looks one chunk ahead.
+  replace(lists_, "sector lists", gpu::Texel::u32x4, end + near_texels + 1);
+  replace(names_, "names in sector lists", gpu::Texel::u32, end);
+  cells_.grow(pool_cells, pool_chunks);
+  cell_tables_.resize(pool_cells);
+  options_ = {.pool_chunks = pool_chunks, .pool_cells = pool_cells};
+  near_texels_ = near_texels;
+}
+
+void Scene::upload(gpu::Batch& batch) {
+  const auto lists_up = [&](std::size_t first, std::size_t count) { batch.up(*lists_, 16 * first, 16 * count); };
+  if (upload_all_) {
+    lists_up(0, lists_->texels());
+    batch.up(*names_, 0, names_->bytes());
+    batch.up(*segments_, 0, segments_->bytes());
+    batch.up(*models_, 0, models_->bytes());
+  } else {
+    for (const std::uint32_t slot : fresh_slots_) {
+      const Cell& cell = cell_tables_[slot];
+      lists_up(cell.first, cell.count);
+      batch.up(*names_, 4 * std::size_t{cell.first}, 4 * std::size_t{cell.count});
+    }
+    lists_up(pool_end(), near_used_);
+    batch.up(*segments_, families_.walls().size() * sizeof(ExactSegment), movers_.segments() * sizeof(ExactSegment));
+  }
+  batch.up(*places_, 0, places_->bytes());
+  upload_all_ = false;
+  fresh_slots_.clear();
 }
 
 }  // namespace sf::raycast

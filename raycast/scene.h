@@ -1,8 +1,10 @@
 #pragma once
 // What rays can meet, on the device: walls and movers as exact segments, and sector lists where sensors are.
+//
+// One table holds all lists, in texels of 16 bytes: empty lists, outlines of movers, cells from a pool (list heads,
+// entries, chunks of entries), and lists of the movers near each view, made each tick.
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -10,10 +12,11 @@
 #include "base/parallel.h"
 #include "gpu/batch.h"
 #include "gpu/buffer.h"
-#include "raycast/bodies.h"
+#include "raycast/mover_tables.h"
 #include "raycast/options.h"
-#include "raycast/sectors.h"
+#include "raycast/records.h"
 #include "raycast/view_cells.h"
+#include "raycast/wall_lists.h"
 #include "world/world.h"
 
 namespace sf::raycast {
@@ -30,7 +33,7 @@ class Scene {
   /// Takes this tick's poses, one per mover.
   void place(std::span<const Pose> poses);
 
-  /// Makes lists for all `views` and fills what `rows` says of them (all but beams and out), row by row.
+  /// Makes lists for all `views` and fills what `rows` says of them (all but beams, out and range_min), row by row.
   /// @return true when tables were replaced, so that kernels must be bound again.
   bool serve(std::span<const Viewpoint> views, std::span<RayRow> rows);
 
@@ -39,71 +42,69 @@ class Scene {
   /// Names what changed since the last call for copying to the device.
   void upload(gpu::Batch& batch);
 
-  gpu::Buffer& headers() { return *headers_; }
-  gpu::Buffer& entries() { return *entries_; }
-  gpu::Buffer& ids() { return *ids_; }
-  gpu::Buffer& nearest() { return *nearest_; }
+  bool has_movers() const { return movers_.segments() > 0; }
+  gpu::Buffer& lists() { return *lists_; }
+  gpu::Buffer& names() { return *names_; }
+  gpu::Buffer& places() { return *places_; }
   gpu::Buffer& segments() { return *segments_; }
   gpu::Buffer& models() { return *models_; }
 
   struct Counts {
     std::uint64_t cells_built = 0;  ///< ever
-    std::uint32_t cells_held = 0;   ///< now
-    std::uint64_t movers_near = 0;  ///< ever: pairs of a view's robot and a mover within its range
-    std::uint64_t movers_met = 0;   ///< of these, not hidden, nor outside of its view
+    std::uint64_t movers_near = 0;  ///< ever: pairs of a view and a mover within its range
+    std::uint64_t movers_met = 0;   ///< of these, in view
   };
   Counts counts() const;
 
  private:
-  struct FamilyTables;
-  /// Views of one robot and family, which share a list of movers.
-  struct Group {
-    std::size_t first;
-    std::size_t end;
-    Vec2 origin;
-    double radius;
-    bool in_solid;          ///< some view is
-    bool alone = false;     ///< no mover can be met: it shares the list of nobody
-    bool for_host = false;  ///< too many are
+  /// What serves one family.
+  struct FamilyTables {
+    CellShape shape;
+    double spread = 0.0;  ///< [rad] from the middle of a lane's beams to its outermost, and the search's own error
+    std::uint32_t height = 0;
   };
+  /// Texels of one cell.
+  struct Cell {
+    std::uint32_t first = 0, count = 0;
+    bool too_long = false;  ///< its lists are, so that they are empty
+  };
+  struct Near;
   struct Scratch;
 
-  void add_tables();
-  void find_groups(std::span<const Viewpoint> views);
+  void write_outlines();
   void build_missing();
-  void fill_walls(const Viewpoint& view, std::size_t row, RayRow& out);
-  bool fill_movers(std::span<const Viewpoint> views, std::span<RayRow> rows);
-  bool fill_some_movers(std::span<const Viewpoint> views, bool more_room);
-  void name_movers(std::span<const Viewpoint> views, std::span<RayRow> rows);
+  Cell make_cell(const CellKey& key, Scratch& scratch);
+  void fill_row(const Viewpoint& view, std::size_t i, RayRow& row);
+  void find_near(const Viewpoint& view, Scratch& scratch) const;
+  void find_facing(const Viewpoint& view, Near& near, Scratch& scratch) const;
+  std::uint32_t size_of_near(const Scratch& scratch, std::size_t most) const;
+  void write_near(const Viewpoint& view, std::uint32_t at, const Scratch& scratch);
+  bool list_movers(std::span<const Viewpoint> views, std::span<RayRow> rows, bool more_room);
   void make_room(std::uint32_t carriers);
-  void grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t views, std::uint32_t mover_chunks);
-  bool try_to_grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t mover_chunks);
-  ListTables tables();
+  void grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t near_texels);
+  bool try_to_grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t near_texels);
+  std::uint32_t pool_end() const;
 
   base::Workers& workers_;
   gpu::Device& device_;
   const SceneOptions most_;
   SceneOptions options_;  ///< room now
   const Families& families_;
-  std::map<const Sight*, std::unique_ptr<Depth>> depths_;
   std::vector<FamilyTables> tables_of_;  ///< per family
-  std::unique_ptr<Sight> all_walls_;
-  std::unique_ptr<Bodies> bodies_;
+  MoverTables movers_;
   ViewCells cells_;
-  std::vector<std::uint8_t> too_long_;             ///< per slot: its lists are empty, since they would be too long
+  std::vector<Cell> cell_tables_;                  ///< per slot
+  std::vector<std::uint32_t> outlines_;            ///< per height: texel of its first block
+  std::uint32_t pool_begin_ = SF_SECTORS;          ///< texel
   std::vector<std::uint8_t> for_host_;             ///< per view of this tick: its lists would be too long
-  std::vector<std::uint32_t> words_;               ///< of every exact segment, as lists call it
-  std::vector<float> own_clearances_;              ///< [m] of movers' segments: how near their own mover's others come
-  std::vector<Group> groups_;                      ///< of this tick's views
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
   std::vector<std::uint32_t> fresh_slots_;         ///< cells built since the last upload
-  std::uint32_t mover_chunks_ = 0;                 ///< capacity for movers' lists, behind the pool
-  std::uint32_t mover_chunks_used_ = 0;            ///< may exceed the capacity while a tick is being retried
-  std::uint32_t view_capacity_ = 0;                ///< groups of movers' headers; nobody's are behind them
+  std::uint32_t near_texels_ = 0;                  ///< capacity for lists of movers, behind the pool
+  std::uint32_t near_used_ = 0;                    ///< may exceed the capacity while a tick is being retried
   bool replaced_ = false;                          ///< tables were, since `serve` began
   bool upload_all_ = true;
 
-  std::unique_ptr<gpu::Buffer> headers_, entries_, ids_, nearest_, segments_, models_;
+  std::unique_ptr<gpu::Buffer> lists_, names_, places_, segments_, models_;
 };
 
 }  // namespace sf::raycast

@@ -1,9 +1,12 @@
 #pragma once
-// What the sources of sensors::Scene share among themselves.
+// What the sources of raycast::Scene share among themselves.
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "raycast/scene.h"
+#include "raycast/sector_lists.h"
 
 namespace sf::raycast {
 
@@ -13,26 +16,44 @@ inline constexpr std::uint32_t kMostWallChunks = 2'800;  ///< per sector
 inline constexpr std::uint32_t kMostMoverChunks = 1'000;
 static_assert((kMostWallChunks + kMostMoverChunks) * (1 + SF_BEAMS_PER_LANE * SF_CHUNK) + 16 < 65'535);
 
-/// Memory of all lists together, 84 bytes a chunk: what does not fit is cast on the host.
+/// Memory of all lists together, 80 bytes a chunk of the pool: what does not fit is cast on the host.
 inline constexpr std::uint32_t kMostPoolChunks = 1u << 24;
-inline constexpr std::uint32_t kMostChunksOfAllViews = 1u << 23;
-inline constexpr std::uint32_t kLeastChunksOfAView = 256;  ///< that it may have, however many views there are
+inline constexpr std::uint32_t kChunkTexels = 4;
+inline constexpr std::uint32_t kMostNearTexels = 1u << 25;
+inline constexpr std::uint32_t kLeastNearTexels = 1u << 10;  ///< that a view may have, however many there are
 
-/// What serves one family.
-struct Scene::FamilyTables {
-  double range = 0.0;  ///< [m]
-  double fov = 0.0;    ///< [rad]
-  CellShape shape;
-  const Sight* sight = nullptr;
-  const Depth* depth = nullptr;
-  std::uint32_t height = 0;
+/// Entries of a block of an outline, and one that faces nobody.
+inline constexpr std::uint32_t kBlockTexels = kBlock + 1;
+inline constexpr std::uint32_t kMostOutlineBlocks = 0xFFFFu / kBlockTexels;
+inline constexpr ListEntry kFacesNobody{0.0f, -1e15f, 0.5f, 0.0f};
+
+/// A mover that a view may see.
+struct Scene::Near {
+  float nearest;  ///< [m]
+  std::uint32_t mover;
+  float bearing, half;                 ///< [rad] of its disc, in the world
+  std::uint32_t first = 0, count = 0;  ///< entries that face the view, among the scratch's
 };
 
 /// What one thread needs to make lists.
 struct Scene::Scratch {
-  Sight::Nearby nearby;
-  SectorLists lists;
-  Bodies::Scratch bodies;
+  FoundWalls walls;
+  SectorLists facing, behind;
+  std::vector<ListEntry> entries;
+  std::vector<std::uint32_t> names;
+  std::vector<float> nearest;
+  std::vector<ListChunk> chunks;
+  ListHead heads[SF_SECTORS];
+  std::vector<Near> near;
+  std::vector<std::uint16_t> near_entries;
+  std::uint64_t movers_near = 0, movers_met = 0;
+
+  void add(std::vector<FoundWall>& found, double spread, SectorLists& sectors);
+  std::uint32_t append(std::span<const std::uint32_t> items);
 };
+
+constexpr std::uint32_t chunks_of(std::size_t entries) {
+  return static_cast<std::uint32_t>((entries + SF_CHUNK - 1) / SF_CHUNK);
+}
 
 }  // namespace sf::raycast

@@ -31,16 +31,6 @@ double largest_x(const SightSegment& s) { return std::max(s.a.x, s.b.x); }
 
 }  // namespace
 
-Sight Sight::of_all_heights(const std::vector<world::Segment>& walls, double typical_range) {
-  world::World flat;
-  flat.walls = walls;
-  for (world::Segment& s : flat.walls) {
-    s.z_min = 0.0;
-    s.z_max = 1.0;
-  }
-  return {flat, 0.5, typical_range};
-}
-
 Sight::Sight(const world::World& world, double z, double typical_range) {
   for (std::uint32_t row = 0; row < world.walls.size(); ++row) {
     const world::Segment& s = world.walls[row];

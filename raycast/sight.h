@@ -25,9 +25,6 @@ class Sight {
   /// The walls that a beam at height `z` [m] sees. `world` need not outlive it.
   Sight(const world::World& world, double z, double typical_range);
 
-  /// As if a beam were at every height at once: what is far from all of it is far from whatever any beam can meet.
-  static Sight of_all_heights(const std::vector<world::Segment>& walls, double typical_range);
-
   const std::vector<SightSegment>& segments() const { return segments_; }
   Vec2 low() const { return low_; }  ///< [m] corner of their bounding box
   Vec2 high() const { return high_; }

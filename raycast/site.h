@@ -36,7 +36,7 @@ struct Work {
   std::uint64_t cells_built = 0;  ///< sector lists made
   std::uint64_t dipoles = 0;      ///< magnet and element pairs summed
   std::uint64_t movers_near = 0;  ///< pairs of a robot that looks and a mover within its range
-  std::uint64_t movers_met = 0;   ///< of these, not hidden by nearer movers or walls, nor outside of its view
+  std::uint64_t movers_met = 0;   ///< of these, in view; on the host, not hidden by nearer movers or walls either
   std::uint64_t host_scans = 0;   ///< fans of beams cast on the host: too many surfaces for the device's lists
 
   Work& operator+=(const Work& more);

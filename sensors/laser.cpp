@@ -163,14 +163,11 @@ void Lasers::collect(std::vector<base::ReadingBlock>& out) {
 std::vector<SensorRow> rows_of(const world::World& world) {
   std::vector<SensorRow> rows;
   const std::vector<CastLaser> lasers = lasers_of(world);
-  // Whether 32 bits are enough depends on how near others come to a mover in range.
-  double beyond = 0.0;
-  for (const world::Mover& mover : world.movers) beyond = std::max(beyond, 2.0 * mover.radius + raycast::kLookout);
   for (const raycast::Fan& fan : fans_of(world, lasers)) {
     const world::Laser& laser = fan.laser;
     rows.push_back({fan.mover, fan.sensor, laser.name, laser.X_MS, laser.rate, laser.phase, laser.latency,
                     laser.samples, laser.range_max, 0, 0.0, lasers[rows.size()].mode});
-    rows.back().reach = laser.range_max + beyond;
+    rows.back().reach = laser.range_max;
     rows.back().noisy = laser.noise.has_range() || laser.noise.angle_sigma > 0.0;
   }
   return rows;

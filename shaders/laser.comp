@@ -1,5 +1,147 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Fans of beams, measured in 64 bits.
+// Casting every beam of every sensor that is due.
 
-#include "shaders/lib/cast.glsl"
+#include "raycast/records.h"
+
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool kMovers = true;   // there are some
+layout(constant_id = 1) const bool kSingle = false;  // ranges are measured in 32 bits where these are close enough
+layout(constant_id = 2) const bool kTexels = false;  // results are too large for storage buffers, which are faster
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;            // SF_ROW_TEXELS a sensor: RayRow
+layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;              // two words a lane: Lane
+layout(binding = 2, r32f) uniform readonly imageBuffer bearings;             // a lane's middle bearing [sectors]
+layout(binding = 3, rgba32ui) uniform readonly uimageBuffer directions;      // a texel a beam: cosine, sine
+layout(binding = 4, rgba32ui) uniform readonly uimageBuffer lists;           // ListHead, ListEntry, ListChunk
+layout(binding = 5, r32ui) uniform readonly uimageBuffer names;              // exact segment of each entry
+layout(binding = 6, rgba32ui) uniform readonly uimageBuffer places;          // two texels a mover and height: MoverPlace
+layout(binding = 7, rgba32ui) uniform readonly uimageBuffer segments;        // two texels a segment: ExactSegment
+layout(binding = 8, r32ui) uniform readonly uimageBuffer models;             // what a beam reports that meets the segment
+layout(binding = 9, rgba32ui) uniform writeonly uimageBuffer range_texels;   // two texels a lane: four doubles [m]
+layout(binding = 10, rgba32ui) uniform writeonly uimageBuffer hit_texels;    // a texel a lane: four models
+layout(binding = 11, r32ui) uniform writeonly uimageBuffer verdict_texels;   // a word a lane: SF_DOUBT, SF_GRAZES
+layout(binding = 12) writeonly buffer Ranges { uvec4 ranges[]; };            // the same tables
+layout(binding = 13) writeonly buffer Hits { uvec4 hits[]; };
+layout(binding = 14) writeonly buffer Verdicts { uint verdicts[]; };
+
+#include "shaders/lib/decide.glsl"
+#include "shaders/lib/rays.glsl"
+
+Beam64 exact_beam(int slot, dvec2 origin, dvec2 heading) {
+  const uvec4 words = imageLoad(directions, slot);
+  const double c = packDouble2x32(words.xy);
+  const double s = packDouble2x32(words.zw);
+  precise double x = heading.x * c - heading.y * s;
+  precise double y = heading.y * c + heading.x * s;
+  return Beam64(origin, dvec2(x, y));
+}
+
+uint model_of(uint row) { return row == SF_NO_HIT ? SF_NO_HIT : imageLoad(models, int(row)).x; }
+
+void store(int lane, uvec4 two, uvec4 more, uvec4 met, uint verdict) {
+  if (kTexels) {
+    imageStore(range_texels, 2 * lane, two);
+    imageStore(range_texels, 2 * lane + 1, more);
+    imageStore(hit_texels, lane, met);
+    imageStore(verdict_texels, lane, uvec4(verdict));
+  } else {
+    ranges[2 * lane] = two;
+    ranges[2 * lane + 1] = more;
+    hits[lane] = met;
+    verdicts[lane] = verdict;
+  }
+}
+
+void main() {
+  const int lane = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
+  const int row = SF_ROW_TEXELS * int(imageLoad(lanes, 2 * lane).x);
+  const int own = int(imageLoad(lanes, 2 * lane + 1).x);
+
+  const vec4 look = uintBitsToFloat(imageLoad(rows, row));
+  const uvec4 tables = imageLoad(rows, row + 1);
+  const uvec4 origin_words = imageLoad(rows, row + 2);
+  const uvec4 heading_words = imageLoad(rows, row + 3);
+  const uvec4 range_words = imageLoad(rows, row + 4);
+  const dvec2 origin = dvec2(packDouble2x32(origin_words.xy), packDouble2x32(origin_words.zw));
+  const dvec2 heading = dvec2(packDouble2x32(heading_words.xy), packDouble2x32(heading_words.zw));
+  const double range_max = packDouble2x32(range_words.xy);
+  const double range_min = packDouble2x32(range_words.zw);
+  const float band = look.w;
+  const int lane_beams = int(tables.z) + own;
+  Beam64 beams[SF_BEAMS_PER_LANE];
+  for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) beams[i] = exact_beam(SF_BEAMS_PER_LANE * lane_beams + i, origin, heading);
+
+  // Search in 32 bits. At first the end of the range is the nearest.
+  const int sector = int(floor(look.z + imageLoad(bearings, lane_beams).x)) & (SF_SECTORS - 1);
+  const uvec4 walls = imageLoad(lists, int(tables.x) + sector);
+  const uvec4 movers = kMovers ? imageLoad(lists, int(tables.y) + sector) : uvec4(0u);
+  const float farthest = 1.0 / float(range_max);
+  Search s;
+  s.dx = vec4(dvec4(beams[0].direction.x, beams[1].direction.x, beams[2].direction.x, beams[3].direction.x));
+  s.dy = vec4(dvec4(beams[0].direction.y, beams[1].direction.y, beams[2].direction.y, beams[3].direction.y));
+  s.most = vec4(farthest * (1.0 + 1e-6));
+  s.low = vec4(farthest * (1.0 - 1e-6));
+  s.others = vec4(0.0);
+  s.entry = ivec4(-1);
+  s.first_row = ivec4(0);
+  search_lists(walls, movers, look.xy, origin, band, s);
+
+  Decision decisions[SF_BEAMS_PER_LANE];
+  uint open = 0u;  // beams in doubt
+  for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+    open |= s.low[i] > s.others[i] ? 0u : 1u << i;
+    const uint id = s.entry[i] < 0 ? SF_NO_HIT : imageLoad(names, max(s.entry[i], 0)).x + uint(s.first_row[i]);
+    decisions[i] = Decision(measure(id, beams[i], range_max), id, vec3(0.0));
+  }
+  uint verdict = SF_DOUBT * open;
+
+  // A beam in doubt meets every entry that is not farther than what 64 bits have found; one beam after another.
+  int at = int(walls.x);
+  int facing_end = at + int(walls.y);
+  int end = facing_end + int(walls.z);
+  int k = 0;
+  bool movers_left = kMovers;
+  Decision found = Decision(range_max, SF_NO_HIT, vec3(0.0));
+  while (open != 0u) {
+    const int now = findLSB(open);
+    const dvec2 direction = now < 2 ? (now == 0 ? beams[0].direction : beams[1].direction)
+                                    : (now == 2 ? beams[2].direction : beams[3].direction);
+    const Chunk chunk = chunk_of(at < end ? imageLoad(lists, at) : uvec4(0u), look.xy, int(walls.w), origin);
+    const bool far = at >= end || double(chunk.nearest) > found.range;
+    const int entry = k < 2 ? (k == 0 ? chunk.entries.x : chunk.entries.y) : (k == 2 ? chunk.entries.z : chunk.entries.w);
+    const uint name = far ? SF_NO_HIT : imageLoad(names, entry).x;
+    decide(name == SF_NO_HIT ? SF_NO_HIT : name + uint(chunk.first_row), Beam64(origin, direction), found);
+    ++k;
+    const bool chunk_done = far || k == SF_CHUNK;
+    at = far ? (at < facing_end ? facing_end : end) : chunk_done ? at + 1 : at;
+    k = chunk_done ? 0 : k;
+    const bool list_done = at >= end;
+    const bool beam_done = list_done && !movers_left;
+    const uvec4 next = beam_done ? walls : movers;
+    at = list_done ? int(next.x) : at;
+    facing_end = list_done ? int(next.x + next.y) : facing_end;
+    end = list_done ? int(next.x + next.y + next.z) : end;
+    movers_left = list_done ? beam_done && kMovers : movers_left;
+    verdict |= beam_done && grazes(found, float(SF_LEAST_SINE)) ? SF_GRAZES << now : 0u;
+    for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+      const bool mine = beam_done && now == i;
+      decisions[i].range = mine ? found.range : decisions[i].range;
+      decisions[i].id = mine ? found.id : decisions[i].id;
+    }
+    found.range = beam_done ? range_max : found.range;
+    found.id = beam_done ? SF_NO_HIT : found.id;
+    open = beam_done ? open & (open - 1u) : open;
+  }
+
+  for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
+    if (kSingle) {
+      const float t = measure_single(decisions[i].id, beams[i], float(range_max));
+      decisions[i].range = t >= 0.0 ? min(double(t), range_max) : decisions[i].range;
+    }
+    decisions[i].range = max(decisions[i].range, range_min);
+  }
+  store(int(tables.w) + own, uvec4(unpackDouble2x32(decisions[0].range), unpackDouble2x32(decisions[1].range)),
+        uvec4(unpackDouble2x32(decisions[2].range), unpackDouble2x32(decisions[3].range)),
+        uvec4(model_of(decisions[0].id), model_of(decisions[1].id), model_of(decisions[2].id), model_of(decisions[3].id)),
+        verdict);
+}

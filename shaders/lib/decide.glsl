@@ -17,8 +17,7 @@ bool grazes(Decision d, float least) {
 }
 
 // Both ends use the same doubles for every segment that shares them, so no beam slips between two neighbours.
-void decide(uint word, Beam64 beam, inout Decision best) {
-  const uint id = word == SF_NO_HIT ? SF_NO_HIT : word & SF_ROW_MASK;
+void decide(uint id, Beam64 beam, inout Decision best) {
   const int row = 2 * int(id == SF_NO_HIT ? 0u : id);
   const uvec4 words_a = imageLoad(segments, row);
   const uvec4 words_b = imageLoad(segments, row + 1);
@@ -49,7 +48,23 @@ void decide(uint word, Beam64 beam, inout Decision best) {
   }
 }
 
-#ifdef SF_SINGLE
+// [m] the range of a beam that is known to meet segment `id`, as `decide` has it; `range_max` where it meets none.
+double measure(uint id, Beam64 beam, double range_max) {
+  const int row = 2 * int(id == SF_NO_HIT ? 0u : id);
+  const uvec4 words_a = imageLoad(segments, row);
+  const uvec4 words_b = imageLoad(segments, row + 1);
+  const double ax = packDouble2x32(words_a.xy), ay = packDouble2x32(words_a.zw);
+  const double bx = packDouble2x32(words_b.xy), by = packDouble2x32(words_b.zw);
+  precise double wax = ax - beam.origin.x;
+  precise double way = ay - beam.origin.y;
+  precise double ex = bx - ax;
+  precise double ey = by - ay;
+  precise double above = ex * way - ey * wax;
+  precise double below = ex * beam.direction.y - ey * beam.direction.x;
+  precise double t = above / below;
+  return id == SF_NO_HIT ? range_max : t;
+}
+
 // [m] the range of a beam that meets segment `id`, in 32 bits; less than 0 where these are not close enough. raycast/decide.h has the bound.
 float measure_single(uint id, Beam64 beam, float range_max) {
   const int row = 2 * int(id == SF_NO_HIT ? 0u : id);
@@ -67,4 +82,3 @@ float measure_single(uint id, Beam64 beam, float range_max) {
   precise float t = above / below;
   return id != SF_NO_HIT && rough <= limit ? max(t, 0.0) : -1.0;
 }
-#endif

@@ -1,84 +1,102 @@
-// Casting the four beams of a lane against sector lists: a 32-bit search that proves its winner, a 64-bit decision.
+// Casting the four beams of a lane against lists: a 32-bit search that proves its nearest.
 //
-// Assumes lists that hold every segment that could be met, near to far (raycast/sectors.h), and directions of unit length.
-// A segment is a + u e, u in [0, 1], seen from its right; with w = a - o and a beam o + t d:
-//   t = (e x w) / (e x d),  u = (d x w) / (e x d).
-// Near-to-far order is by a lower bound of t: (e x w - E) / (e x d), where E bounds what rounding did (SF_BAND).
-//
-// Proof of the winner. True t of any other is at least the winner's lower bound, so another surface could only come first
-// within tau = 2 E / (e x d) before the winner's. None does when tau is below the clearance of what was met, the beam passes its ends by more than
-// rounding and by 4 tau (neighbours at its ends leave at 15 degrees or more, and 1 / sin 15 < 4), and no
-// segment was seen edge-on. Otherwise every segment that might be first is decided in 64 bits.
+// Assumes lists that hold every segment that could be met, near to far, and directions of unit length. A segment is
+// m + u e, u in [-1, 1], seen from its right; with w = m - o and a beam o + t d:
+//   1 / t = (e x d) / (e x w),  u = -(d x w) / (e x d).
+// As on the host (raycast/rasterizer.h derives the errors) a beam keeps bounds of 1 / t: the most of all segments that
+// may cover it, with the lower bound of that one where it surely does, and the most of all others. Where the second
+// exceeds the last, the segment is the first surface for certain.
 
-// A proven beam does not graze: its margins leave e x d >= 2 (4 tau) = 16 E / (e x d), and with E = SF_BAND A |e|, |e| <= 2 A, a sine of
-// sqrt(8 SF_BAND) = 2.7e-3 at least.
-
-struct Beams {
-  vec4 dx;
-  vec4 dy;
+// Four beams, and what is nearest so far.
+struct Search {
+  vec4 dx, dy;
+  vec4 most, low, others;  // [1/m]
+  ivec4 entry;             // texel, or -1
+  ivec4 first_row;         // of its mover's exact segments
 };
 
-// The nearest so far, as fractions: no division in the loop.
-struct Nearest {
-  vec4 above;      // lower bound of t, numerator; positive
-  vec4 below;      // denominator; positive
-  ivec4 entry;     // row of `entries`, or -1
-  bool edge_on;    // some segment's line passes through the sensor within rounding
+// A chunk of a list, and the frame of its entries: offset and heading.
+struct Chunk {
+  float nearest;
+  ivec4 entries;  // texels
+  vec4 frame;
+  int first_row;
 };
 
-void search_chunk(int chunk, vec2 o, Beams d, float band, inout Nearest best) {
+Chunk chunk_of(uvec4 words, vec2 offset, int base, dvec2 origin) {
+  vec4 frame = vec4(-offset, 1.0, 0.0);
+  int first_row = 0;
+  if (kMovers) {
+    const bool is_wall = words.y == 0u;
+    const int place = 2 * (is_wall ? 0 : int(words.y) - 1);
+    const uvec4 at = imageLoad(places, place);
+    const uvec4 rest = imageLoad(places, place + 1);
+    const vec2 moved = vec2(dvec2(packDouble2x32(at.xy), packDouble2x32(at.zw)) - origin);
+    frame = is_wall ? frame : vec4(moved, uintBitsToFloat(rest.xy));
+    base = is_wall ? base : int(rest.z);
+    first_row = is_wall ? 0 : int(rest.w);
+  }
+  const uvec2 pairs = words.zw;
+  const ivec4 entries = base + ivec4(pairs.x & 0xFFFFu, pairs.x >> 16, pairs.y & 0xFFFFu, pairs.y >> 16);
+  return Chunk(uintBitsToFloat(words.x), entries, frame, first_row);
+}
+
+vec2 turned(vec2 by, vec2 v) { return kMovers ? vec2(by.x * v.x - by.y * v.y, by.y * v.x + by.x * v.y) : v; }
+
+void search_chunk(Chunk chunk, float band, inout Search s) {
   for (int k = 0; k < SF_CHUNK; ++k) {
-    const int entry = SF_CHUNK * chunk + k;
-    const vec4 s = imageLoad(entries, entry);
-    const vec2 w = s.xy - o;
-    const float error = band * (abs(s.z) + abs(s.w));
-    const float ahead = s.z * w.y - s.w * w.x;
-    best.edge_on = best.edge_on || abs(ahead) <= error;
-    const float above = ahead > error ? ahead - error : 1e30;
-    const vec4 c = d.dx * w.y - d.dy * w.x;
-    const vec4 below = s.z * d.dy - s.w * d.dx;
-    const bvec4 met = bvec4(uvec4(greaterThanEqual(c, vec4(-band))) & uvec4(lessThanEqual(c, below + band)) &
-                            uvec4(lessThan(above * best.below, best.above * below)));
-    best.above = mix(best.above, vec4(above), met);
-    best.below = mix(best.below, below, met);
-    best.entry = mix(best.entry, ivec4(entry), met);
+    const vec4 entry = uintBitsToFloat(imageLoad(lists, chunk.entries[k]));
+    const vec2 w = chunk.frame.xy + turned(chunk.frame.zw, entry.xy);
+    const vec2 e = turned(chunk.frame.zw, entry.zw);
+    const float len = abs(e.x) + abs(e.y);
+    const float unsure = band * len;
+    const float ahead = e.x * w.y - e.y * w.x;
+    const bool edge_on = abs(ahead) <= unsure;
+    const float inverse = ahead > unsure ? 1.0 / ahead : 0.0;
+    const float h = len * inverse;
+    // Seen edge-on it may cover every beam of the sector, at any range.
+    const float error = edge_on ? 1e20 : h * (2.0 * band * h + 1.4e-6);
+    const float twice = 2.0 * error;
+    const float slip = edge_on ? 1e30 : 2.0 * band;
+    const vec4 aside = s.dx * w.y - s.dy * w.x;
+    const vec4 below = e.x * s.dy - e.y * s.dx;
+    const vec4 inside = below - abs(aside);
+    const vec4 high = mix(vec4(0.0), below * inverse + error, greaterThanEqual(inside, vec4(-slip)));
+    const vec4 low = mix(vec4(-1.0), high - twice, greaterThanEqual(inside, vec4(slip)));
+    const bvec4 first = greaterThan(high, s.most);
+    const vec4 beaten = mix(high, s.most, first);
+    s.others = mix(s.others, beaten, greaterThan(beaten, s.others));
+    s.most = mix(s.most, high, first);
+    s.low = mix(s.low, low, first);
+    s.entry = mix(s.entry, ivec4(chunk.entries[k]), first);
+    if (kMovers) s.first_row = mix(s.first_row, ivec4(chunk.first_row), first);
   }
 }
 
-// Searches the walls, then the movers, near to far, until nothing that is left can be nearer. `o` is the sensor in the frame of the walls'
-// entries, then of the movers'. One loop for both: lavapipe runs a loop's body once more, in vain, after the last lane has left.
-void search_lists(uvec4 walls, uvec4 movers, vec4 o, Beams d, float band, inout Nearest best) {
+// True where nothing from `nearest` [m] on can be nearer to any of the beams.
+bool all_nearer(Search s, float nearest) { return all(greaterThan(nearest * s.low, vec4(1.0001))); }
+
+// Searches the walls, then the movers, until nothing that is left can be nearer. One loop for both: lavapipe runs a
+// loop's body once more, in vain, after the last lane has left.
+void search_lists(uvec4 walls, uvec4 movers, vec2 offset, dvec2 origin, float band, inout Search s) {
   bool at_walls = walls.y > 0u;
-  int chunk = int(at_walls ? walls.x : movers.x);
-  int end = chunk + int(at_walls ? walls.y : movers.y);
-  bool more = chunk < end;
+  int at = int(at_walls ? walls.x : movers.x);
+  int end = at + int(at_walls ? walls.y : movers.y);
+  const uvec4 first_mover = kMovers ? imageLoad(lists, int(movers.x)) : uvec4(0u);
+  uvec4 words = at_walls ? imageLoad(lists, at) : first_mover;
+  bool more = at < end;
   while (more) {
-    search_chunk(chunk, at_walls ? o.xy : o.zw, d, band, best);
-    ++chunk;
-    more = chunk < end && any(greaterThan(best.above, imageLoad(nearest, chunk).x * best.below));
-    const bool turn = !more && at_walls;
-    chunk = turn ? int(movers.x) : chunk;
-    end = turn ? int(movers.x + movers.y) : end;
-    at_walls = at_walls && !turn;
-    more = more || (turn && movers.y > 0u);
+    search_chunk(chunk_of(words, offset, int(walls.w), origin), band, s);
+    ++at;
+    words = imageLoad(lists, at);
+    more = at < end && !all_nearer(s, uintBitsToFloat(words.x));
+    if (kMovers) {
+      const bool turn = !more && at_walls;
+      at_walls = at_walls && !turn;
+      at = turn ? int(movers.x) : at;
+      end = turn ? int(movers.x + movers.y) : end;
+      words = turn ? first_mover : words;
+      more = more || (turn && movers.y > 0u && !all_nearer(s, uintBitsToFloat(first_mover.x)));
+    }
   }
-}
-
-// [m] how near other surfaces come to the segment that a list's word names, at least: a power of two, made of its exponent.
-float clearance_of(uint word) { return uintBitsToFloat((SF_NO_CLEARANCE - (word >> SF_ROW_BITS)) << 23); }
-
-struct Proof {
-  bool holds;  // the winner of a beam needs no further look
-  float tau;   // [m] from the lower to the upper bound of its range
-};
-
-// `word` is what the winner's list calls it.
-Proof prove(int entry, uint word, vec2 o, vec2 d, float band, float clearance, float below) {
-  const vec4 s = imageLoad(entries, max(entry, 0));
-  const vec2 w = s.xy - o;
-  const float error = 2.0 * band * (abs(s.z) + abs(s.w));
-  const float tau = error / below;
-  const float c = d.x * w.y - d.y * w.x;
-  const float margin = band + 4.0 * tau;
-  return Proof(entry < 0 || (c >= margin && c <= below - margin && tau < min(clearance_of(word), clearance)), tau);
 }

@@ -20,6 +20,8 @@ using base::ReadingBlock;
 const farm::FarmOptions kOnDevice{.scene = {.caster = raycast::Caster::vulkan}};
 /// Nothing fits into such lists.
 const farm::FarmOptions kOnHost{.scene = {.caster = raycast::Caster::vulkan, .longest_list = 0}};
+/// Results that no storage buffer holds.
+const farm::FarmOptions kInTexels{.scene = {.caster = raycast::Caster::vulkan, .largest_buffer = 0}};
 
 bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
   const auto same = [](auto a, auto b) {
@@ -60,6 +62,13 @@ TEST(HostCast, LasersAmongBoxesAndRobots) {
   world::World world = scenes::boxes(60, 16.0, 3);
   scenes::add_robots(world, 30, scenes::laser(), 3);
   expect_same_bytes(world);
+}
+
+TEST(DeviceCast, ResultsThatNoBufferHoldsAreTheSame) {
+  world::World world = scenes::boxes(60, 16.0, 3);
+  scenes::add_robots(world, 30, scenes::laser(), 3);
+  const Glance in_buffers(world, kOnDevice), in_texels(world, kInTexels);
+  expect_same_bits(in_buffers.readings, in_texels.readings);
 }
 
 /// Angular noise turns beams, `resolution` leaves some out, a minimum lifts ranges.

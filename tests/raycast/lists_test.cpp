@@ -1,0 +1,110 @@
+// Lists of walls and sectors may hold too much, never too little.
+
+#include "raycast/sector_lists.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "raycast/wall_lists.h"
+#include "tests/sensors/brute_force.h"
+#include "tests/sensors/chance.h"
+#include "tests/sensors/scenes.h"
+
+namespace sf::raycast {
+namespace {
+
+/// The row of the first wall along a beam, by the oracle: every wall is its own model here.
+std::uint32_t first_wall(const std::vector<world::Segment>& walls, Vec2 p, double direction, double range) {
+  return oracle::cast(oracle::within(walls, p, range), p, direction, range).model;
+}
+
+void every_hit_is_listed(world::World world, double range, double size, std::uint64_t seed) {
+  for (std::uint32_t row = 0; row < world.walls.size(); ++row) world.walls[row].model = row;
+  const Sight sight(world, 0.1, range);
+  const CellShape shape{size, range};
+  FoundWalls walls;
+  trial::Chance chance(seed);
+  std::size_t checked = 0;
+  for (int c = 0; c < 40; ++c) {
+    const Vec2 centre = chance.in_square(0.45 * (world.extent.x_max - world.extent.x_min));
+    for (const bool both : {false, true}) {
+      find_walls(sight, shape, centre, both, walls);
+      SectorLists lists;
+      for (const FoundWall& w : walls.facing) lists.add(w.bearing, w.half, w.row);
+      lists.sort();
+      for (int i = 0; i < 60; ++i) {
+        const bool corner = i % 4 == 0;  // of the cell
+        const Vec2 p = centre + (corner ? Vec2{(i % 8 ? 0.5 : -0.5) * size, (i % 16 < 8 ? 0.5 : -0.5) * size}
+                                        : chance.in_square(0.5 * size));
+        if (!both && sight.inside_solid(p)) continue;
+        const double direction = chance.between(0.0, 2.0 * M_PI);
+        const std::uint32_t row = first_wall(world.walls, p, direction, range);
+        if (row == 0xFFFFFFFFu) continue;
+        const auto sector = static_cast<std::uint32_t>(direction * SF_SECTORS / (2.0 * M_PI)) % SF_SECTORS;
+        EXPECT_EQ(std::ranges::count(lists.of(sector), row) > 0, true)
+            << "wall " << row << " from " << p.x << ", " << p.y;
+        ++checked;
+      }
+    }
+  }
+  EXPECT_GT(checked, 500u);
+}
+
+TEST(Sectors, EveryWallABeamMeetsIsListed) {
+  every_hit_is_listed(scenes::cave(300, 16.0, 3), 8.0, 0.25, 1);
+  every_hit_is_listed(scenes::cave(300, 16.0, 4), 30.0, 1.0, 2);
+  every_hit_is_listed(scenes::boxes(60, 16.0, 5), 8.0, 0.25, 3);
+  every_hit_is_listed(scenes::boxes(60, 16.0, 6), 30.0, 0.003, 4);
+}
+
+/// Far fewer than all walls: the point of the lists.
+TEST(Sectors, ListsAreShort) {
+  const world::World world = scenes::cave(300, 16.0, 3);
+  const Sight sight(world, 0.1, 8.0);
+  FoundWalls walls;
+  find_walls(sight, {0.25, 8.0}, {}, false, walls);
+  SectorLists lists;
+  for (const FoundWall& w : walls.facing) lists.add(w.bearing, w.half, w.row);
+  lists.sort();
+  std::size_t all = 0;
+  for (std::uint32_t s = 0; s < SF_SECTORS; ++s) all += lists.of(s).size();
+  EXPECT_LT(all / SF_SECTORS, world.walls.size() / 8);
+}
+
+TEST(Sectors, IntervalsWrapAround) {
+  const double sector = 2.0 * M_PI / SF_SECTORS;
+  const auto sectors_of = [&](double low, double high) {
+    SectorLists lists;
+    lists.add(0.5 * (low + high), 0.5 * (high - low), 7);
+    lists.sort();
+    std::set<std::uint32_t> touched;
+    for (std::uint32_t s = 0; s < SF_SECTORS; ++s) {
+      EXPECT_LE(lists.of(s).size(), 1u) << "twice";
+      if (!lists.of(s).empty()) touched.insert(s);
+    }
+    return touched;
+  };
+  EXPECT_EQ(sectors_of(0.1 * sector, 0.9 * sector), (std::set<std::uint32_t>{0}));
+  EXPECT_EQ(sectors_of(-0.1 * sector, 0.1 * sector), (std::set<std::uint32_t>{31, 0}));
+  EXPECT_EQ(sectors_of(31.5 * sector, 33.5 * sector), (std::set<std::uint32_t>{31, 0, 1}));
+  EXPECT_EQ(sectors_of(-40.5 * sector, -40.1 * sector), (std::set<std::uint32_t>{23}));
+  EXPECT_EQ(sectors_of(0.5 * sector, 31.5 * sector).size(), 32u) << "all round";
+  EXPECT_EQ(sectors_of(0.0, 100.0).size(), 32u);
+}
+
+TEST(Sectors, ItemsKeepTheirOrder) {
+  SectorLists lists;
+  for (const std::uint32_t item : {5u, 3u, 9u}) lists.add(0.1 * item, 4.0, item);
+  lists.sort();
+  for (std::uint32_t s = 0; s < SF_SECTORS; ++s)
+    EXPECT_TRUE(std::ranges::equal(lists.of(s), std::vector<std::uint32_t>{5, 3, 9})) << s;
+  lists.clear();
+  lists.sort();
+  EXPECT_TRUE(lists.of(0).empty());
+}
+
+}  // namespace
+}  // namespace sf::raycast
