@@ -49,6 +49,10 @@ inline Pose compose(const Pose& X_AB, const Pose& X_BC) {
 inline Vec2 transform(const Pose& X_AB, Vec2 p_B) { return Vec2{X_AB.x, X_AB.y} + rotate(X_AB.yaw, p_B); }
 
 /// The same heading in [-pi, pi].
-inline double wrap_angle(double angle) { return std::remainder(angle, 2.0 * M_PI); }
+inline double wrap_angle(double angle) {
+  if (std::abs(angle) <= M_PI) return angle;
+  // For a million radians and more, 2 pi in 64 bits is too far from 2 pi.
+  return std::abs(angle) < 1e6 ? std::remainder(angle, 2.0 * M_PI) : std::atan2(std::sin(angle), std::cos(angle));
+}
 
 }  // namespace sf::base

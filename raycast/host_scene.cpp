@@ -97,7 +97,7 @@ void HostScene::add_blocks(std::vector<FoundWall>& found, std::vector<SegmentBlo
     const std::span<const FoundWall> own = std::span(found).subspan(i + 1 - used, used);
     double low = 0.0, high = 0.0, nearest = own[0].nearest;
     for (const FoundWall& f : own) {
-      const double offset = std::remainder(f.bearing - own[0].bearing, 2.0 * M_PI);
+      const double offset = base::wrap_angle(f.bearing - own[0].bearing);
       low = std::min(low, offset - f.half), high = std::max(high, offset + f.half);
       nearest = std::min(nearest, f.nearest);
     }

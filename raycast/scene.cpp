@@ -115,7 +115,7 @@ void Scene::fill_row(const Viewpoint& view, std::size_t i, RayRow& row) {
   const FamilyTables& family = tables_of_[view.family];
   const Vec2 centre = cells_.centre_of(cells_.key(i));
   const double yaw = view.X_WS.yaw;
-  const double sectors = std::remainder(yaw, 2.0 * M_PI) * (SF_SECTORS / (2.0 * M_PI));
+  const double sectors = base::wrap_angle(yaw) * (SF_SECTORS / (2.0 * M_PI));
   const std::uint32_t slot = cells_.slot(i);
   row.offset_x = static_cast<float>(view.X_WS.x - centre.x);
   row.offset_y = static_cast<float>(view.X_WS.y - centre.y);

@@ -105,7 +105,7 @@ void Scene::build_missing() {
 void Scene::find_near(const Viewpoint& view, Scratch& s) const {
   const MoverGrid& grid = movers_.grid();
   const Family& family = families_[view.family];
-  const auto yaw = static_cast<float>(std::remainder(view.X_WS.yaw, 2.0 * M_PI));
+  const auto yaw = static_cast<float>(base::wrap_angle(view.X_WS.yaw));
   const auto most_turned = static_cast<float>(0.5 * family.fov + 1e-5);
   const Vec2 from{view.X_WS.x - grid.low.x, view.X_WS.y - grid.low.y};
   const double reach = family.range * 1.00001 + grid.largest_radius + 2.0 * static_cast<double>(grid.error);

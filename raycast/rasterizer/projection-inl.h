@@ -36,7 +36,7 @@ Projection projection_of(const ScanView& view, const ScanPattern& pattern) {
           constant(view.band),
           static_cast<float>(pattern.beams - 1),
           turn,
-          static_cast<float>(std::remainder(view.yaw, 2.0 * M_PI)),
+          static_cast<float>(base::wrap_angle(view.yaw)),
           pattern.narrow,
           constant(pattern.edge_cos),
           constant(pattern.edge_sin)};

@@ -48,7 +48,7 @@ base::Report odd_report(trial::Chance& chance, const world::World& world, std::i
     known = world.walls[chance.below(static_cast<std::uint32_t>(world.walls.size()))].a;
   base::Report report{mover, now - chance.below(3) * 100'000'000ll, {}, {}};
   report.X_WM = {odd_coordinate(chance, known.x), odd_coordinate(chance, known.y), odd_coordinate(chance, 0.0),
-                 chance.below(4) == 0 ? 1e6 : chance.between(-10.0, 10.0)};
+                 chance.below(4) == 0 ? 1e15 : chance.between(-10.0, 10.0)};
   const auto speed = [&] { return chance.below(3) == 0 ? chance.between(-kFastest, kFastest) : 0.0; };
   report.velocity = {speed(), speed(), speed()};
   return report;
