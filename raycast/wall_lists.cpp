@@ -27,8 +27,9 @@ double rough_bearing(Vec2 p) {
   return std::copysign(t, p.y);
 }
 
-/// [rad] at least the arc sine of v, in [0, 0.8].
+/// [rad] at least the arc sine of v in [0, 1), but for rounding.
 double wide_of(double v) {
+  if (v > 0.8) return std::asin(v);
   const double vv = v * v;
   return v * (1.0 + vv * (1.0 / 6.0 + vv * (0.075 + vv * 0.2)));
 }
@@ -44,7 +45,7 @@ int ring_of(double times) {
 FoundWall found(Vec2 a, Vec2 b, std::uint32_t row, double radius) {
   FoundWall f{a, b, row, std::max(0.0, world::distance({}, a, b) - radius), 0.0, 2.0 * M_PI, -1};
   const double share_a = radius / length(a), share_b = radius / length(b);
-  if (f.nearest <= 0.0 || std::max(share_a, share_b) > 0.8) return f;
+  if (f.nearest <= 0.0 || std::max(share_a, share_b) >= 1.0) return f;
   const double bearing_a = rough_bearing(a), turn = base::wrap_angle(rough_bearing(b) - bearing_a);
   const double wide_a = wide_of(share_a) + kSlack, wide_b = wide_of(share_b) + kSlack;
   const double low = std::min(-wide_a, turn - wide_b), high = std::max(wide_a, turn + wide_b);
