@@ -25,7 +25,7 @@ const std::map<std::string, Rooms> kMayInclude{
     {"world", {"base"}},
     {"robots", {"world", "base"}},
     {"maps", {"base"}},
-    {"raycast", {"robots", "world", "gpu", "base", "shaders"}},
+    {"raycast", {"world", "gpu", "base", "shaders"}},
     {"sensors", {"raycast", "maps", "robots", "world", "gpu", "base", "shaders"}},
     {"control", {"sensors", "maps", "robots", "world", "base"}},
     {"shaders", {"raycast", "sensors", "maps", "base"}},
