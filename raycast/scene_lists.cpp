@@ -93,8 +93,8 @@ void Scene::build_missing() {
       const auto chunks = entries + static_cast<std::uint32_t>(s.entries.size());
       for (ListHead& head : s.heads) head.first += chunks, head.base = entries;
       std::memcpy(lists + cell.first, s.heads, sizeof s.heads);
-      std::memcpy(lists + entries, s.entries.data(), 16 * s.entries.size());
-      std::memcpy(lists + chunks, s.chunks.data(), 16 * s.chunks.size());
+      if (!s.entries.empty()) std::memcpy(lists + entries, s.entries.data(), 16 * s.entries.size());
+      if (!s.chunks.empty()) std::memcpy(lists + chunks, s.chunks.data(), 16 * s.chunks.size());
       std::copy(s.names.begin(), s.names.end(), names + entries);
     }
   });

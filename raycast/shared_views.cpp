@@ -25,7 +25,9 @@ SharedPattern merge(std::span<const Fan> fans, std::span<const BeamPlan* const> 
       beams.push_back({base::wrap_angle(bearing), {f, k, static_cast<std::uint32_t>(beams.size())}});
     }
   }
-  std::stable_sort(beams.begin(), beams.end(), [](const Beam& p, const Beam& q) { return p.bearing < q.bearing; });
+  std::sort(beams.begin(), beams.end(), [](const Beam& p, const Beam& q) {
+    return p.bearing < q.bearing || (p.bearing == q.bearing && p.source.place < q.source.place);
+  });
   SharedPattern pattern;
   std::vector<double> bearings, directions;
   for (const Beam& beam : beams) {

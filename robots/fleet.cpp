@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "base/error.h"
@@ -33,9 +34,9 @@ std::vector<Segment> stopping(const world::World& world) {
 std::vector<std::uint32_t> ranks_of(const world::World& world) {
   std::vector<std::uint32_t> order(world.movers.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) {
+  std::sort(order.begin(), order.end(), [&](std::uint32_t p, std::uint32_t q) {
     const world::Mover &a = world.movers[p], &b = world.movers[q];
-    return std::pair(a.is_tag, a.id) < std::pair(b.is_tag, b.id);
+    return std::tuple(a.is_tag, a.id, p) < std::tuple(b.is_tag, b.id, q);
   });
   std::vector<std::uint32_t> ranks(order.size());
   for (std::uint32_t k = 0; k < order.size(); ++k) ranks[order[k]] = k;
