@@ -17,7 +17,7 @@ namespace sf::netio {
 
 namespace {
 
-/// What one flush sends.
+/// The packets of one flush.
 struct Batch {
   explicit Batch(std::size_t capacity);
   void put(std::size_t place, const Endpoint& to, std::span<const std::uint8_t> bytes);

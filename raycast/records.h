@@ -22,7 +22,7 @@
 // A range measured in 32 bits is taken when its bounds are closer together than this share of the sensor's reach.
 #define SF_SINGLE_SHARE 2.44140625e-4 /* 2^-12 */
 
-// What 32 bits may be wrong by, as a share of the largest coordinate A. With directions d of unit length and u = 2^-24,
+// Error of coordinates in 32 bits, as a share of the largest one, A. With directions d of unit length and u = 2^-24,
 // ends and offsets round by u A each, directions by 4 u, products and differences by u A more each:
 //   |error of w x d| < 10 u A, |error of e x d| < 10 u |e|, |error of e x w| < 10 u A |e|.
 #define SF_BAND 9.5367431640625e-7 /* 2^-20 */

@@ -57,7 +57,7 @@ class Scene {
   Counts counts() const;
 
  private:
-  /// What serves one family.
+  /// Cells and tables of one family.
   struct FamilyTables {
     CellShape shape;
     double spread = 0.0;  ///< [rad] from the middle of a lane's beams to its outermost, and the search's own error

@@ -1,5 +1,5 @@
 #pragma once
-// What the sources of raycast::Scene share among themselves.
+// Parts that the sources of raycast::Scene share.
 
 #include <cstdint>
 #include <span>

@@ -92,7 +92,7 @@ class Fleet {
     bool free = false;     ///< nothing stood near it
     bool exposed = false;  ///< others' ways are near it
   };
-  /// What a step meets.
+  /// Outcome of one step: free, held for another round, or not allowed.
   enum class Stop : std::uint8_t { none, waiting, refused };
   struct Touch {
     std::uint32_t sectors = 0;
@@ -131,7 +131,7 @@ class Fleet {
   bool turn_against(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const;
   bool push_off(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const;
 
-  // What stops a mover on its way from one pose to another.
+  // Obstacles of a mover on its way from one pose to another.
   Stop stop_at(std::uint32_t row, const base::Pose& from, const base::Pose& to, bool last, Scratch& scratch) const;
   bool meets_rival(std::uint32_t row, const base::Pose& from, const Placed& next, Scratch& scratch) const;
   bool is_stopped(std::uint32_t row, const base::Pose& from, const Placed& next, std::uint32_t other,
