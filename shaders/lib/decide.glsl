@@ -16,22 +16,29 @@ bool grazes(Decision d, float least) {
   return d.id != SF_NO_HIT && d.slant.x * d.slant.x < least * least * dot(d.slant.yz, d.slant.yz);
 }
 
+// Where a segment lies [m]; of SF_NO_HIT, where any does.
+struct Ends {
+  double ax, ay, bx, by;
+};
+
+Ends ends_of(uint id) {
+  const int row = 2 * int(id == SF_NO_HIT ? 0u : id);
+  const uvec4 a = imageLoad(segments, row), b = imageLoad(segments, row + 1);
+  return Ends(packDouble2x32(a.xy), packDouble2x32(a.zw), packDouble2x32(b.xy), packDouble2x32(b.zw));
+}
+
 // Both ends use the same doubles for every segment that shares them, so no beam slips between two neighbours.
 void decide(uint id, Beam64 beam, inout Decision best) {
-  const int row = 2 * int(id == SF_NO_HIT ? 0u : id);
-  const uvec4 words_a = imageLoad(segments, row);
-  const uvec4 words_b = imageLoad(segments, row + 1);
-  const double ax = packDouble2x32(words_a.xy), ay = packDouble2x32(words_a.zw);
-  const double bx = packDouble2x32(words_b.xy), by = packDouble2x32(words_b.zw);
+  const Ends s = ends_of(id);
 
-  precise double wax = ax - beam.origin.x;
-  precise double way = ay - beam.origin.y;
-  precise double wbx = bx - beam.origin.x;
-  precise double wby = by - beam.origin.y;
+  precise double wax = s.ax - beam.origin.x;
+  precise double way = s.ay - beam.origin.y;
+  precise double wbx = s.bx - beam.origin.x;
+  precise double wby = s.by - beam.origin.y;
   precise double side_a = beam.direction.x * way - beam.direction.y * wax;
   precise double side_b = beam.direction.x * wby - beam.direction.y * wbx;
-  precise double ex = bx - ax;
-  precise double ey = by - ay;
+  precise double ex = s.bx - s.ax;
+  precise double ey = s.by - s.ay;
   precise double above = ex * way - ey * wax;
   precise double below = ex * beam.direction.y - ey * beam.direction.x;
   precise double t = above / below;
@@ -50,15 +57,11 @@ void decide(uint id, Beam64 beam, inout Decision best) {
 
 // [m] the range of a beam that is known to meet segment `id`, as `decide` has it; `range_max` where it meets none.
 double measure(uint id, Beam64 beam, double range_max) {
-  const int row = 2 * int(id == SF_NO_HIT ? 0u : id);
-  const uvec4 words_a = imageLoad(segments, row);
-  const uvec4 words_b = imageLoad(segments, row + 1);
-  const double ax = packDouble2x32(words_a.xy), ay = packDouble2x32(words_a.zw);
-  const double bx = packDouble2x32(words_b.xy), by = packDouble2x32(words_b.zw);
-  precise double wax = ax - beam.origin.x;
-  precise double way = ay - beam.origin.y;
-  precise double ex = bx - ax;
-  precise double ey = by - ay;
+  const Ends s = ends_of(id);
+  precise double wax = s.ax - beam.origin.x;
+  precise double way = s.ay - beam.origin.y;
+  precise double ex = s.bx - s.ax;
+  precise double ey = s.by - s.ay;
   precise double above = ex * way - ey * wax;
   precise double below = ex * beam.direction.y - ey * beam.direction.x;
   precise double t = above / below;
@@ -67,13 +70,9 @@ double measure(uint id, Beam64 beam, double range_max) {
 
 // [m] the range of a beam that meets segment `id`, in 32 bits; less than 0 where these are not close enough. raycast/decide.h has the bound.
 float measure_single(uint id, Beam64 beam, float range_max) {
-  const int row = 2 * int(id == SF_NO_HIT ? 0u : id);
-  const uvec4 words_a = imageLoad(segments, row);
-  const uvec4 words_b = imageLoad(segments, row + 1);
-  const double ax = packDouble2x32(words_a.xy), ay = packDouble2x32(words_a.zw);
-  const double bx = packDouble2x32(words_b.xy), by = packDouble2x32(words_b.zw);
-  precise float wx = float(ax - beam.origin.x), wy = float(ay - beam.origin.y);
-  precise float ex = float(bx - ax), ey = float(by - ay);
+  const Ends s = ends_of(id);
+  precise float wx = float(s.ax - beam.origin.x), wy = float(s.ay - beam.origin.y);
+  precise float ex = float(s.bx - s.ax), ey = float(s.by - s.ay);
   precise float dx = float(beam.direction.x), dy = float(beam.direction.y);
   precise float below = ex * dy - ey * dx;
   precise float above = ex * wy - ey * wx;
