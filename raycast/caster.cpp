@@ -1,8 +1,11 @@
 #include "raycast/caster.h"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <string_view>
 
+#include "base/error.h"
 #include "raycast/rasterizer.h"
 
 namespace sf::raycast {
@@ -12,7 +15,10 @@ Caster caster_for(bool software, Caster asked) {
   const char* const set = std::getenv("SENSORFARM_CASTER");
   const std::string_view word = set != nullptr ? set : "";
   if (word == "vulkan") return Caster::vulkan;
-  return word == "host" || software ? Caster::host : Caster::vulkan;
+  if (word == "host") return Caster::host;
+  if (!word.empty() && word != "auto")
+    throw base::InputError(fmt::format("SENSORFARM_CASTER={}: expected auto, vulkan or host", word));
+  return software ? Caster::host : Caster::vulkan;
 }
 
 std::string caster_text(bool software) {

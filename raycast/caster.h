@@ -14,6 +14,7 @@ enum class Caster : std::uint8_t {
 
 /// The caster where `asked` is automatic: the environment's SENSORFARM_CASTER ("vulkan" or "host"), else the host where
 /// the device is software, which is slower at it, else Vulkan.
+/// @throws base::InputError where the environment names another caster.
 Caster caster_for(bool software, Caster asked = Caster::automatic);
 
 /// The caster of farms on such a device as reports name it: "Vulkan kernels", or the host with its vectors, as in
