@@ -92,9 +92,10 @@ void add_device(CLI::App& app, Options& o) {
   app.add_option("--device", o.device,
                  "Vulkan device: its row in `devices`, or part of its name (else $SENSORFARM_DEVICE, else the best)")
       ->type_name("NAME");
-  app.add_option("--caster", o.caster,
-                 "Casts rays by the device's kernels or the host's vectors, to the same bytes (else $SENSORFARM_CASTER, "
-                 "else auto: host where the device is software)")
+  app.add_option(
+         "--caster", o.caster,
+         "Casts rays by the device's kernels or the host's vectors, to the same bytes (else $SENSORFARM_CASTER, "
+         "else auto: host where the device is software)")
       ->type_name("auto|vulkan|host")
       ->check(CLI::IsMember({"auto", "vulkan", "host"}));
 }

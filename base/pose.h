@@ -2,14 +2,15 @@
 // Planar poses with a height: the frames of a 2.5-D world.
 
 #include <cmath>
+#include <glm/ext/vector_double2.hpp>
+#include <glm/ext/vector_double3.hpp>
+#include <glm/geometric.hpp>
+
+#ifndef GLM_FORCE_CTOR_INIT
+#error "GLM_FORCE_CTOR_INIT must be defined: vectors of this project start at zero"
+#endif
 
 namespace sf::base {
-
-/// A point or a direction in a plane. [m] when it is a point.
-struct Vec2 {
-  double x = 0.0;
-  double y = 0.0;
-};
 
 /// Frame B in frame A (`X_AB`): rotate by `yaw` about +z, then translate. Right-handed, x forward, y left.
 struct Pose {
@@ -26,14 +27,10 @@ struct Twist {
   double turn = 0.0;     ///< [rad/s] counter-clockwise
 };
 
-inline Vec2 operator+(Vec2 p, Vec2 q) { return {p.x + q.x, p.y + q.y}; }
-inline Vec2 operator-(Vec2 p, Vec2 q) { return {p.x - q.x, p.y - q.y}; }
-inline Vec2 operator*(double s, Vec2 p) { return {s * p.x, s * p.y}; }
-inline double dot(Vec2 p, Vec2 q) { return p.x * q.x + p.y * q.y; }
-inline double cross(Vec2 p, Vec2 q) { return p.x * q.y - p.y * q.x; }
-inline double length(Vec2 p) { return std::sqrt(p.x * p.x + p.y * p.y); }
+/// z of the cross product: twice the area of the triangle (0, p, q), positive where q is to the left of p.
+inline double cross(glm::dvec2 p, glm::dvec2 q) { return p.x * q.y - p.y * q.x; }
 
-inline Vec2 rotate(double yaw, Vec2 p) {
+inline glm::dvec2 rotate(double yaw, glm::dvec2 p) {
   const double c = std::cos(yaw);
   const double s = std::sin(yaw);
   return {c * p.x - s * p.y, s * p.x + c * p.y};
@@ -41,12 +38,14 @@ inline Vec2 rotate(double yaw, Vec2 p) {
 
 /// X_AC from X_AB and X_BC.
 inline Pose compose(const Pose& X_AB, const Pose& X_BC) {
-  const Vec2 p = rotate(X_AB.yaw, {X_BC.x, X_BC.y});
+  const glm::dvec2 p = rotate(X_AB.yaw, {X_BC.x, X_BC.y});
   return {X_AB.x + p.x, X_AB.y + p.y, X_AB.z + X_BC.z, X_AB.yaw + X_BC.yaw};
 }
 
 /// Point `p_B` expressed in A.
-inline Vec2 transform(const Pose& X_AB, Vec2 p_B) { return Vec2{X_AB.x, X_AB.y} + rotate(X_AB.yaw, p_B); }
+inline glm::dvec2 transform(const Pose& X_AB, glm::dvec2 p_B) {
+  return glm::dvec2{X_AB.x, X_AB.y} + rotate(X_AB.yaw, p_B);
+}
 
 /// The same heading in [-pi, pi].
 inline double wrap_angle(double angle) {

@@ -30,7 +30,7 @@ Clearances measure(const world::World& world, double cell, base::Workers& worker
   workers.run(c.clear.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const auto column = static_cast<double>(i % c.columns), row = static_cast<double>(i / c.columns);
-      const base::Vec2 middle{c.x + (column + 0.5) * cell, c.y + (row + 0.5) * cell};
+      const glm::dvec2 middle{c.x + (column + 0.5) * cell, c.y + (row + 0.5) * cell};
       double nearest = HUGE_VAL;
       for (const world::Segment& s : world.walls) nearest = std::min(nearest, world::distance(middle, s.a, s.b));
       c.clear[i] = static_cast<float>(std::max(0.0, nearest - M_SQRT1_2 * cell));
@@ -124,8 +124,8 @@ class PredictingCaster final : public HostCaster {
     float* const out = results_.ranges(robot);
     std::fill(out, out + beams, HUGE_VALF);
     const base::Pose then = poses_[robot];
-    const base::Vec2 moved = base::rotate(-now.yaw, {then.x - now.x, then.y - now.y});
-    const base::Vec2 turn = base::rotate(then.yaw - now.yaw, {1.0, 0.0});
+    const glm::dvec2 moved = base::rotate(-now.yaw, {then.x - now.x, then.y - now.y});
+    const glm::dvec2 turn = base::rotate(then.yaw - now.yaw, {1.0, 0.0});
     const auto c = static_cast<float>(turn.x), s = static_cast<float>(turn.y);
     for (std::size_t k = 0; k < beams; ++k) {
       const float r = ranges_[robot * beams + k];

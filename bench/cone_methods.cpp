@@ -72,7 +72,7 @@ class PlainCones final : public ConeMethod {
   Walk walk_;
   std::size_t transducers_;
   SegmentGrid grid_;
-  std::vector<base::Vec2> beams_;
+  std::vector<glm::dvec2> beams_;
   base::Workers workers_;
   std::vector<double> values_;
   std::vector<std::vector<double>> ranges_;  ///< scratch per thread

@@ -71,9 +71,9 @@ world::World city(std::size_t segments) {
   world.walls.reserve(4 * side * side);
   const double half = 0.5 * kPitch * static_cast<double>(side);
   for (std::size_t i = 0; i < side * side && world.walls.size() < segments; ++i) {
-    const base::Vec2 low{kPitch * static_cast<double>(i % side) - half, kPitch * static_cast<double>(i / side) - half};
-    const base::Vec2 high = low + base::Vec2{kBlock, kBlock};
-    const base::Vec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}};
+    const glm::dvec2 low{kPitch * static_cast<double>(i % side) - half, kPitch * static_cast<double>(i / side) - half};
+    const glm::dvec2 high = low + glm::dvec2{kBlock, kBlock};
+    const glm::dvec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}};
     for (std::size_t k = 0; k < 4; ++k) {
       world::Segment wall;
       wall.a = corners[k], wall.b = corners[(k + 1) % 4], wall.z_max = 1.0;

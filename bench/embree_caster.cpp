@@ -65,7 +65,7 @@ EmbreeCaster::EmbreeCaster(const Scans& scans, const EmbreeUse& use)
   rtcCommitScene(scene_);
   SF_CHECK(rtcGetDeviceError(device_) == RTC_ERROR_NONE, "Embree refused the scene");
 
-  for (const base::Vec2& beam : scans.beams) {
+  for (const glm::dvec2& beam : scans.beams) {
     beams_x_.push_back(static_cast<float>(beam.x));
     beams_y_.push_back(static_cast<float>(beam.y));
   }
@@ -90,7 +90,7 @@ void EmbreeCaster::add_walls(RTCGeometry geometry) {
   auto* const triangles = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), 2 * seen.size()));
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    const base::Vec2 corners[4] = {seen[i].a, seen[i].b, seen[i].b, seen[i].a};
+    const glm::dvec2 corners[4] = {seen[i].a, seen[i].b, seen[i].b, seen[i].a};
     for (std::size_t k = 0; k < 4; ++k) {
       float* const v = vertices + 3 * (4 * i + k);
       v[0] = static_cast<float>(corners[k].x);

@@ -51,7 +51,7 @@ void judge(const FieldScene& scene, const FieldMethod& method, std::size_t turn,
       const base::Pose X_WE = base::compose(scene.rounds[turn][robot], base::compose(X_MS, m.X_SE[e]));
       const scenes::Exact truth = scenes::exact(scene.world, {X_WE.x, X_WE.y, X_WE.z}, scene.world.magnet_cutoff);
       const FieldVector b = method.value(robot, e);
-      const base::Vec2 flat = base::rotate(X_WE.yaw, {b.x, b.y});
+      const glm::dvec2 flat = base::rotate(X_WE.yaw, {b.x, b.y});
       const double error = scenes::apart(truth, {flat.x, flat.y, b.z, 0.0});
       SF_CHECK(std::isfinite(error), method.name() + " left an element unanswered");
       entrant.max_error = std::max(entrant.max_error, error);

@@ -59,7 +59,7 @@ class PlainMethod final : public FieldMethod {
     for (std::size_t e = 0; e < kArrayElements; ++e) {
       const base::Pose X_WE = base::compose(X_WM, X_ME_[e]);
       const FieldVector b = sum_(magnets_, spans, X_WE.x, X_WE.y, X_WE.z);
-      const base::Vec2 flat = base::rotate(-X_WE.yaw, {b.x, b.y});
+      const glm::dvec2 flat = base::rotate(-X_WE.yaw, {b.x, b.y});
       values_[robot * kArrayElements + e] = {flat.x, flat.y, b.z};
     }
   }
@@ -80,7 +80,7 @@ class PlainMethod final : public FieldMethod {
 MagnetColumns make_columns(const world::World& world) {
   MagnetColumns columns;
   columns.cutoff = world.magnet_cutoff;
-  std::vector<base::Vec2> at;
+  std::vector<glm::dvec2> at;
   for (const world::Magnet& m : world.magnets) at.push_back(m.p);
   columns.grid.build(at, columns.cutoff, 8 * at.size() + (1u << 20));
   const auto put = [&](const world::Magnet& m) {

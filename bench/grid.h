@@ -23,13 +23,13 @@ struct SegmentGrid {
 SegmentGrid make_grid(const world::World& world, double z, double cell);
 
 /// One sensor's beams. Writes a range and a model, or base::kNoHit, per beam.
-using Walk = void (*)(const SegmentGrid& grid, const base::Pose& X_WS, const std::vector<base::Vec2>& beams,
+using Walk = void (*)(const SegmentGrid& grid, const base::Pose& X_WS, const std::vector<glm::dvec2>& beams,
                       double range_max, double* ranges, std::uint32_t* hits);
 
 /// The same source built twice: for any x86-64, and for the very processor it was built on.
-void walk_portable(const SegmentGrid& grid, const base::Pose& X_WS, const std::vector<base::Vec2>& beams,
+void walk_portable(const SegmentGrid& grid, const base::Pose& X_WS, const std::vector<glm::dvec2>& beams,
                    double range_max, double* ranges, std::uint32_t* hits);
-void walk_native(const SegmentGrid& grid, const base::Pose& X_WS, const std::vector<base::Vec2>& beams,
+void walk_native(const SegmentGrid& grid, const base::Pose& X_WS, const std::vector<glm::dvec2>& beams,
                  double range_max, double* ranges, std::uint32_t* hits);
 
 /// `scans` must outlive it.

@@ -12,7 +12,7 @@ struct Hit {
   std::uint32_t model;
 };
 
-void test(const SegmentGrid& grid, std::size_t cell, base::Vec2 o, base::Vec2 d, Hit& best) {
+void test(const SegmentGrid& grid, std::size_t cell, glm::dvec2 o, glm::dvec2 d, Hit& best) {
   for (std::uint32_t at = grid.first[cell]; at < grid.first[cell + 1]; ++at) {
     const SegmentGrid::Item& s = grid.items[at];
     const double wx = s.ax - o.x;
@@ -43,7 +43,7 @@ Axis axis(double origin, double direction, int index, double cell) {
   return {direction > 0.0 ? 1 : -1, (edge - origin) / direction, cell / std::fabs(direction)};
 }
 
-Hit walk_beam(const SegmentGrid& grid, base::Vec2 o, base::Vec2 d, double range_max) {
+Hit walk_beam(const SegmentGrid& grid, glm::dvec2 o, glm::dvec2 d, double range_max) {
   Hit best{range_max, base::kNoHit};
   int column = static_cast<int>(std::floor((o.x - grid.x) / grid.cell));
   int row = static_cast<int>(std::floor((o.y - grid.y) / grid.cell));
@@ -66,12 +66,12 @@ Hit walk_beam(const SegmentGrid& grid, base::Vec2 o, base::Vec2 d, double range_
 
 }  // namespace
 
-void SF_WALK(const SegmentGrid& grid, const base::Pose& X_WS, const std::vector<base::Vec2>& beams, double range_max,
+void SF_WALK(const SegmentGrid& grid, const base::Pose& X_WS, const std::vector<glm::dvec2>& beams, double range_max,
              double* ranges, std::uint32_t* hits) {
   const double c = std::cos(X_WS.yaw);
   const double s = std::sin(X_WS.yaw);
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    const base::Vec2 d{c * beams[i].x - s * beams[i].y, s * beams[i].x + c * beams[i].y};
+    const glm::dvec2 d{c * beams[i].x - s * beams[i].y, s * beams[i].x + c * beams[i].y};
     const Hit hit = walk_beam(grid, {X_WS.x, X_WS.y}, d, range_max);
     ranges[i] = hit.range;
     hits[i] = hit.model;

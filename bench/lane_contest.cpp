@@ -35,7 +35,7 @@ sensors::EdgeReading brute_force(const LaneScene& scene, const LaneKnowledge& kn
   const auto near = oracle::within(known.faces, {X_WS.x, X_WS.y}, known.job.range_max);
   std::vector<double> ranges;
   std::vector<std::uint32_t> tags;
-  for (const base::Vec2 beam : known.job.beams) {
+  for (const glm::dvec2& beam : known.job.beams) {
     const long double direction = static_cast<long double>(X_WS.yaw) +
                                   std::atan2(static_cast<long double>(beam.y), static_cast<long double>(beam.x));
     const oracle::Answer answer = oracle::cast(near, {X_WS.x, X_WS.y}, direction, known.job.range_max);

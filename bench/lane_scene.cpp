@@ -19,8 +19,8 @@ constexpr std::size_t kRounds = 8;
 struct Street {
   double x, y;
   bool up;
-  base::Vec2 at(double along, double aside) const {
-    return up ? base::Vec2{x - aside, y + along} : base::Vec2{x + along, y + aside};
+  glm::dvec2 at(double along, double aside) const {
+    return up ? glm::dvec2{x - aside, y + along} : glm::dvec2{x + along, y + aside};
   }
 };
 
@@ -37,7 +37,7 @@ void add_turns(world::World& world, double x, double y) {
   const double c = kLane + kTurn;
   for (int quarter = 0; quarter < 4; ++quarter) {
     const double a = 0.5 * M_PI * quarter;
-    const base::Vec2 centre = base::Vec2{x, y} + base::rotate(a, {c, c});
+    const glm::dvec2 centre = glm::dvec2{x, y} + base::rotate(a, {c, c});
     world.stripes.push_back(trial::arc(centre, kTurn, a + M_PI, a + 1.5 * M_PI, kPaint, 1e-3));
   }
 }
@@ -61,7 +61,7 @@ LaneScene make_lane_scene(std::uint32_t blocks, std::uint32_t robots, double res
   std::vector<base::Pose> poses;
   for (std::uint32_t k = 0; k < robots; ++k) {
     const Street& s = streets[chance.below(static_cast<std::uint32_t>(streets.size()))];
-    const base::Vec2 p = s.at(chance.between(0.0, kBlock), chance.between(-0.45, -0.05));
+    const glm::dvec2 p = s.at(chance.between(0.0, kBlock), chance.between(-0.45, -0.05));
     const double yaw = (s.up ? 0.5 * M_PI : 0.0) + chance.between(-0.35, 0.35);
     poses.push_back({p.x, p.y, 0.0, yaw});
     trial::add_edge_eye(scene.world, poses.back(), {});

@@ -36,9 +36,9 @@ Cell cell_at(const PaintRaster& raster, int x, int y, std::size_t plane) {
 }
 
 /// From `p` [cells of the raster] along `d`, until paint begins (or ends, where it starts on paint).
-Met walk_paint(const LaneJob& job, base::Vec2 p, base::Vec2 d, double reach) {
+Met walk_paint(const LaneJob& job, glm::dvec2 p, glm::dvec2 d, double reach) {
   const PaintRaster& raster = *job.raster;
-  const base::Vec2 inverse{d.x == 0.0 ? 1e300 : 1.0 / d.x, d.y == 0.0 ? 1e300 : 1.0 / d.y};
+  const glm::dvec2 inverse{d.x == 0.0 ? 1e300 : 1.0 / d.x, d.y == 0.0 ? 1e300 : 1.0 / d.y};
   const int most_x = static_cast<int>(raster.columns()) * kBlock;
   const int most_y = static_cast<int>(raster.rows()) * kBlock;
   int x = static_cast<int>(std::floor(p.x));
@@ -80,12 +80,12 @@ Met walk_paint(const LaneJob& job, base::Vec2 p, base::Vec2 d, double reach) {
 
 void walk_fan(const LaneJob& job, const base::Pose& X_WS, double* ranges, std::uint32_t* tags) {
   const double cell = job.raster->cell();
-  const base::Vec2 p{X_WS.x / cell - static_cast<double>(job.raster->first_column()),
+  const glm::dvec2 p{X_WS.x / cell - static_cast<double>(job.raster->first_column()),
                      X_WS.y / cell - static_cast<double>(job.raster->first_row())};
   const double c = std::cos(X_WS.yaw);
   const double s = std::sin(X_WS.yaw);
   for (std::size_t k = 0; k < job.beams.size(); ++k) {
-    const base::Vec2 b = job.beams[k];
+    const glm::dvec2 b = job.beams[k];
     const Met met = walk_paint(job, p, {c * b.x - s * b.y, s * b.x + c * b.y}, job.range_max / cell);
     ranges[k] = met.range;
     tags[k] = met.tag;

@@ -15,7 +15,7 @@ struct LaneJob {
   const sensors::PaintRaster* raster = nullptr;  ///< of paint
   std::uint32_t paint_tag = 0;                   ///< of the raster
   Walk walk = nullptr;                           ///< of the grid, of the same build
-  std::vector<base::Vec2> beams;                 ///< unit, in the sensor's frame
+  std::vector<glm::dvec2> beams;                 ///< unit, in the sensor's frame
   std::vector<double> directions;                ///< the same, number by number
   std::vector<double> grains;
   double range_max = 1.0;  ///< [m]

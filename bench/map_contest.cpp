@@ -123,7 +123,7 @@ class PlainMapper : public Mapper {
   bool weighs_;
   std::vector<maps::Grid> grids_;
   std::vector<maps::OddsGrid> odds_;
-  std::vector<base::Vec2> beams_;
+  std::vector<glm::dvec2> beams_;
   std::vector<maps::Grid> covered_;
   std::vector<std::vector<std::uint32_t>> ends_;  ///< per thread
 };

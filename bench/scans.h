@@ -15,7 +15,7 @@ struct Scans {
   world::World world;                           ///< movers carry `laser` and have no bodies
   world::Laser laser;                           ///< of every robot
   std::vector<std::vector<base::Pose>> rounds;  ///< X_WM per round and robot; round k is asked at turns k, k + n, ...
-  std::vector<base::Vec2> beams;                ///< unit, in the sensor's frame, from -fov/2 to +fov/2
+  std::vector<glm::dvec2> beams;                ///< unit, in the sensor's frame, from -fov/2 to +fov/2
 
   std::size_t robots() const { return world.movers.size(); }
   std::size_t rays() const { return robots() * beams.size(); }  ///< per round

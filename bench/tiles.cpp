@@ -21,7 +21,7 @@ void for_each_tile(std::size_t robots, Visit&& visit) {
   const std::size_t tiles = (robots + kRobotsPerTile - 1) / kRobotsPerTile;
   const auto across = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(tiles))));
   for (std::size_t k = 0; k < tiles; ++k)
-    visit(base::Vec2{kTile * static_cast<double>(k % across), kTile * static_cast<double>(k / across)});
+    visit(glm::dvec2{kTile * static_cast<double>(k % across), kTile * static_cast<double>(k / across)});
 }
 
 }  // namespace
@@ -32,7 +32,7 @@ world::World tiled_cave(std::uint32_t robots, const world::Laser& laser) {
   world::World world;
   world.models.push_back({"cave", "model"});
   std::uint32_t left = robots;
-  for_each_tile(robots, [&](base::Vec2 shift) {
+  for_each_tile(robots, [&](glm::dvec2 shift) {
     for (world::Segment wall : tile.walls) {
       wall.a = wall.a + shift, wall.b = wall.b + shift;
       world.walls.push_back(wall);
@@ -49,13 +49,13 @@ world::World tiled_cave(std::uint32_t robots, const world::Laser& laser) {
 }
 
 void add_lanes_and_magnets(world::World& world) {
-  for_each_tile(world.movers.size(), [&](base::Vec2 shift) {
+  for_each_tile(world.movers.size(), [&](glm::dvec2 shift) {
     for (int i = -3; i <= 3; ++i) {
       const double at = 2.0 * i;
-      world.stripes.push_back(trial::stripe(shift + base::Vec2{-7.0, at}, shift + base::Vec2{7.0, at}, 0.03));
-      world.stripes.push_back(trial::stripe(shift + base::Vec2{at, -7.0}, shift + base::Vec2{at, 7.0}, 0.03));
+      world.stripes.push_back(trial::stripe(shift + glm::dvec2{-7.0, at}, shift + glm::dvec2{7.0, at}, 0.03));
+      world.stripes.push_back(trial::stripe(shift + glm::dvec2{at, -7.0}, shift + glm::dvec2{at, 7.0}, 0.03));
       for (int j = -3; j <= 3; ++j)
-        world.magnets.push_back(scenes::magnet(shift + base::Vec2{at + 0.5, 2.0 * j + 0.5}));
+        world.magnets.push_back(scenes::magnet(shift + glm::dvec2{at + 0.5, 2.0 * j + 0.5}));
     }
   });
   world.magnet_cutoff = 4.0;

@@ -1,6 +1,7 @@
 # A room is a folder, a namespace, a target and a folder of tests.
 
 find_package(fmt REQUIRED)
+find_package(glm REQUIRED)
 find_package(Threads REQUIRED)
 find_package(Vulkan REQUIRED)
 find_package(ZLIB REQUIRED)
@@ -16,6 +17,8 @@ find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOImage Rend
 # overlapping strings (-Wrestrict) and, once headers are precompiled, of their bounds where nothing is wrong.
 add_library(house INTERFACE)
 target_include_directories(house INTERFACE ${CMAKE_SOURCE_DIR})
+target_link_libraries(house INTERFACE glm::glm)
+target_compile_definitions(house INTERFACE GLM_FORCE_CTOR_INIT)  # vectors start at zero
 target_compile_options(house INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers
                        "$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>" -ffp-contract=off
                        $<$<BOOL:${SENSORFARM_WERROR}>:-Werror>)
@@ -29,7 +32,8 @@ endif()
 # use; -DSENSORFARM_PCH=OFF proves it.
 option(SENSORFARM_PCH "Precompile the headers that most sources include" ON)
 set(SENSORFARM_COMMON_HEADERS <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <random>
-                              <set> <span> <string> <string_view> <variant> <vector> <fmt/format.h>)
+                              <set> <span> <string> <string_view> <variant> <vector> <fmt/format.h>
+                              <glm/ext/vector_double2.hpp> <glm/ext/vector_double3.hpp> <glm/geometric.hpp>)
 
 # add_precompiled(NAME [links...] HEADERS headers...): a target whose headers others reuse by precompiled(TARGET NAME).
 function(add_precompiled name)

@@ -22,7 +22,7 @@ void sample(Way& way, const world::Curve& line, double step) {
   way.step = way.length / static_cast<double>(spans);
   for (std::size_t i = 0; i <= spans; ++i) way.points.push_back(point_at(line, static_cast<double>(i) * way.step));
   way.yaw.resize(spans + 1);
-  const auto direction = [](Vec2 d) { return std::atan2(d.y, d.x); };
+  const auto direction = [](glm::dvec2 d) { return std::atan2(d.y, d.x); };
   for (std::size_t i = 0; i <= spans; ++i) {
     double yaw = i == 0       ? direction(line.tangents.front())
                  : i == spans ? direction(line.tangents.back())
@@ -54,7 +54,7 @@ RoadBody body_of(const world::Mover& mover) {
   return outline.edges.empty() ? RoadBody{} : RoadBody{outline.radius, front};
 }
 
-Vec2 point_on(const Way& way, double s) { return between(way.points, way, s); }
+glm::dvec2 point_on(const Way& way, double s) { return between(way.points, way, s); }
 double yaw_on(const Way& way, double s) { return between(way.yaw, way, s); }
 double curvature_on(const Way& way, double s) { return between(way.curvature, way, s); }
 

@@ -24,7 +24,6 @@
 namespace sf::control {
 
 using base::Pose;
-using base::Vec2;
 
 /// What of a robot's shape matters on a road. [m]
 struct RoadBody {
@@ -69,19 +68,19 @@ struct Way {
   bool in_zone = false;               ///< it leads into, about, or out of a zone
   std::uint32_t zone = world::kNone;  ///< row of that zone
 
-  double length = 0.0;             ///< [m] > 0
-  double step = 0.0;               ///< [m] from one point to the next
-  std::vector<Vec2> points;        ///< at least two
-  std::vector<double> yaw;         ///< [rad] of the line at each point, not wrapped
-  std::vector<Vec2> tangents;      ///< unit vectors
-  std::vector<double> curvature;   ///< [1/m] positive to the left
-  std::vector<Gate> gates;         ///< in order
-  std::vector<StopMark> stops;     ///< lanes: in order
+  double length = 0.0;               ///< [m] > 0
+  double step = 0.0;                 ///< [m] from one point to the next
+  std::vector<glm::dvec2> points;    ///< at least two
+  std::vector<double> yaw;           ///< [rad] of the line at each point, not wrapped
+  std::vector<glm::dvec2> tangents;  ///< unit vectors
+  std::vector<double> curvature;     ///< [1/m] positive to the left
+  std::vector<Gate> gates;           ///< in order
+  std::vector<StopMark> stops;       ///< lanes: in order
   std::vector<double> lines;       ///< lanes: where robots on it wait for gates of the lane and of its exits, in order
   std::vector<std::uint32_t> out;  ///< lanes: ways that leave it
 };
 
-Vec2 point_on(const Way& way, double s);
+glm::dvec2 point_on(const Way& way, double s);
 double yaw_on(const Way& way, double s);
 double curvature_on(const Way& way, double s);
 
@@ -124,7 +123,7 @@ class Corridors {
   /// Ways within `reach` [m] of the robot that run in its direction (to 45 degrees), nearest first.
   Places places(const Pose& X_WM, double reach) const;
   /// Within the perimeter of the zone, or half a radius beyond: spots may be entered from its very rim.
-  bool inside(std::uint32_t zone, Vec2 p) const;
+  bool inside(std::uint32_t zone, glm::dvec2 p) const;
   /// The origin of a robot that is parked in a spot.
   Pose parked(std::uint32_t spot) const;
   /// How near lines come before they meet. [m]
@@ -144,7 +143,7 @@ class Corridors {
   void make_gates(Way& way, std::vector<Meeting> meetings) const;
   void make_lines();
   template <class F>
-  void near(Vec2 p, double reach, F&& visit) const;
+  void near(glm::dvec2 p, double reach, F&& visit) const;
 
   const world::RoadNetwork& roads_;
   RoadBody body_;
@@ -155,10 +154,10 @@ class Corridors {
 
   // Samples of all ways by square cells of the plane, each half as wide as the clearance.
   struct Sample {
-    Vec2 p, along;  ///< where, and which way a robot looks that drives there
+    glm::dvec2 p, along;  ///< where, and which way a robot looks that drives there
     std::uint32_t way, index;
   };
-  Vec2 corner_;
+  glm::dvec2 corner_;
   double cell_ = 1.0;
   std::int64_t columns_ = 0, rows_ = 0;
   std::vector<std::uint32_t> first_;
@@ -166,7 +165,7 @@ class Corridors {
 };
 
 template <class F>
-void Corridors::near(Vec2 p, double reach, F&& visit) const {
+void Corridors::near(glm::dvec2 p, double reach, F&& visit) const {
   const auto cell = [&](double v, double low, std::int64_t most) {
     const double at = std::floor((v - low) / cell_);
     return at < 0.0 ? std::int64_t{-1} : at >= static_cast<double>(most) ? most : static_cast<std::int64_t>(at);

@@ -53,7 +53,7 @@ void Corridors::find_meetings(std::uint32_t row) {
   for (std::uint32_t i = 0; i < way.points.size(); ++i) {
     near(way.points[i], clearance_, [&](const Sample& sample) {
       if (sample.way == row) return;
-      const Vec2 d = sample.p - way.points[i];
+      const glm::dvec2 d = sample.p - way.points[i];
       if (dot(d, d) >= clearance_ * clearance_) return;
       const auto at = std::find_if(found.begin(), found.end(), [&](const Found& f) { return f.way == sample.way; });
       if (at == found.end()) {

@@ -14,9 +14,9 @@ constexpr double kAlike = 0.7;  // cosine of the angle between a robot and its w
 }  // namespace
 
 void Corridors::fill_grid() {
-  Vec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
+  glm::dvec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
   for (const Way& way : ways_)
-    for (const Vec2 p : way.points) {
+    for (const glm::dvec2& p : way.points) {
       low = {std::min(low.x, p.x), std::min(low.y, p.y)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y)};
     }
@@ -27,14 +27,14 @@ void Corridors::fill_grid() {
   cell_ = std::max(0.5 * clearance_, std::sqrt(area / 4e6));
   columns_ = static_cast<std::int64_t>((high.x - low.x) / cell_) + 1;
   rows_ = static_cast<std::int64_t>((high.y - low.y) / cell_) + 1;
-  const auto cell_of = [&](Vec2 p) {
+  const auto cell_of = [&](glm::dvec2 p) {
     return static_cast<std::size_t>(static_cast<std::int64_t>((p.y - low.y) / cell_) * columns_ +
                                     static_cast<std::int64_t>((p.x - low.x) / cell_));
   };
   first_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
   std::size_t count = 0;
   for (const Way& way : ways_)
-    for (const Vec2 p : way.points) ++first_[cell_of(p) + 1], ++count;
+    for (const glm::dvec2& p : way.points) ++first_[cell_of(p) + 1], ++count;
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   samples_.resize(count);
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
@@ -46,8 +46,8 @@ void Corridors::fill_grid() {
 }
 
 Places Corridors::places(const Pose& X_WM, double reach) const {
-  const Vec2 p{X_WM.x, X_WM.y};
-  const Vec2 facing{std::cos(X_WM.yaw), std::sin(X_WM.yaw)};
+  const glm::dvec2 p{X_WM.x, X_WM.y};
+  const glm::dvec2 facing{std::cos(X_WM.yaw), std::sin(X_WM.yaw)};
   // The nearest sample of each way, the nearest ways first.
   struct Nearest {
     std::uint32_t way = 0, index = 0;
@@ -57,7 +57,7 @@ Places Corridors::places(const Pose& X_WM, double reach) const {
   std::size_t count = 0;
   const double within = reach + 0.5 * step_;
   near(p, within, [&](const Sample& sample) {
-    const Vec2 d = sample.p - p;
+    const glm::dvec2 d = sample.p - p;
     const double dd = dot(d, d);
     if (dd > within * within) return;
     if (dot(sample.along, facing) < kAlike) return;
@@ -72,11 +72,11 @@ Places Corridors::places(const Pose& X_WM, double reach) const {
   Places places;
   for (std::size_t i = 0; i < count; ++i) {
     const Way& way = ways_[found[i].way];
-    const Vec2 along = way.tangents[found[i].index];
-    const Vec2 d = p - way.points[found[i].index];
+    const glm::dvec2 along = way.tangents[found[i].index];
+    const glm::dvec2 d = p - way.points[found[i].index];
     const double s = static_cast<double>(found[i].index) * way.step + dot(d, along);
     if (s < -1e-6 || s > way.length + 1e-6) continue;  // beyond its ends
-    const Place place{found[i].way, s, std::abs(cross(along, d))};
+    const Place place{found[i].way, s, std::abs(base::cross(along, d))};
     if (place.offset > reach) continue;
     // In order of offset, then of rows.
     std::uint32_t at = places.count;

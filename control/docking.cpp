@@ -47,13 +47,13 @@ base::Twist Docking::step(const Input& input) {
   return follows_ ? follow_beams(X_WM) : approach(X_WM);
 }
 
-base::Vec2 Docking::from_dock(const base::Pose& X_WM) const {
+glm::dvec2 Docking::from_dock(const base::Pose& X_WM) const {
   return base::rotate(-settings_.X_WD.yaw, {X_WM.x - settings_.X_WD.x, X_WM.y - settings_.X_WD.y});
 }
 
 bool Docking::docked(const base::Pose& X_WM) const {
-  const base::Vec2 p = from_dock(X_WM);
-  if (base::length(p) <= settings_.reach) return true;
+  const glm::dvec2 p = from_dock(X_WM);
+  if (glm::length(p) <= settings_.reach) return true;
   const double off = base::wrap_angle(settings_.X_WD.yaw + M_PI - X_WM.yaw);
   return contact_ && p.x > 0.0 && p.x < 2.0 * settings_.reach && std::abs(p.y) < 0.4 * settings_.reach &&
          std::abs(off) < kFaces;
@@ -61,9 +61,9 @@ bool Docking::docked(const base::Pose& X_WM) const {
 
 // To a place on the axis, round the dock where it is in between.
 base::Twist Docking::approach(const base::Pose& X_WM) {
-  const base::Vec2 p = from_dock(X_WM);
+  const glm::dvec2 p = from_dock(X_WM);
   const double wide = 1.6 * settings_.reach;
-  base::Vec2 goal{settings_.stage, 0.0};
+  glm::dvec2 goal{settings_.stage, 0.0};
   if (p.x < settings_.reach)
     goal = {std::abs(p.y) < 0.95 * wide ? p.x : 2.0 * settings_.reach, std::copysign(wide, p.y)};
   if (std::abs(p.x - goal.x) + std::abs(p.y - goal.y) < 0.02) retreats_ = false;

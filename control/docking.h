@@ -31,7 +31,7 @@ class Docking final : public Controller, public StatesReason {
   std::string reason() const override;
 
  private:
-  base::Vec2 from_dock(const base::Pose& X_WM) const;
+  glm::dvec2 from_dock(const base::Pose& X_WM) const;
   bool docked(const base::Pose& X_WM) const;
   base::Twist approach(const base::Pose& X_WM);
   base::Twist follow_beams(const base::Pose& X_WM);

@@ -11,7 +11,6 @@ namespace {
 
 using base::Pose;
 using base::Twist;
-using base::Vec2;
 
 constexpr double kStart = 0.02;      // [m] beyond all that is on it the ground is taken as free where it begins
 constexpr double kHere = 0.002;      // [m] a place is reached
@@ -34,10 +33,10 @@ constexpr Stage kStage[Explore::kStages] = {{true, false, kNearRange, 0},
                                             {false, true, kFarRange, 0},
                                             {false, false, kFarRange, kGraze}};
 
-Vec2 origin(const Pose& X) { return {X.x, X.y}; }
+glm::dvec2 origin(const Pose& X) { return {X.x, X.y}; }
 
 double reach_of(const ExploreSettings& settings) {
-  return std::max(settings.body.radius, base::length(settings.body.p_MS));
+  return std::max(settings.body.radius, glm::length(settings.body.p_MS));
 }
 
 }  // namespace
@@ -131,8 +130,8 @@ void Explore::take(const std::vector<State>& way) {
     std::size_t last = i;
     while (last + 1 < way.size() && is_turn(last + 1) == is_turn(i) && step(last + 1) == step(i)) ++last;
     Leg leg{!is_turn(i), terrain_.place(way[last].node), false, angle_of(way[last].heading), 1.0};
-    const Vec2 along = terrain_.place(way[last].node) - terrain_.place(way[i - 1].node);
-    leg.backwards = leg.straight && base::dot(along, base::rotate(leg.heading, {1.0, 0.0})) < 0.0;
+    const glm::dvec2 along = terrain_.place(way[last].node) - terrain_.place(way[i - 1].node);
+    leg.backwards = leg.straight && glm::dot(along, base::rotate(leg.heading, {1.0, 0.0})) < 0.0;
     leg.side = step(i) == 1 ? 1.0 : -1.0;
     legs.push_back(leg);
     i = last + 1;
@@ -146,9 +145,9 @@ void Explore::take(const std::vector<State>& way) {
 
 bool Explore::finished(const Leg& leg, const Pose& X_WM) const {
   if (!leg.straight) return std::abs(base::wrap_angle(leg.heading - X_WM.yaw)) < kAligned;
-  const Vec2 rest = leg.end - origin(X_WM);
-  const double ahead = base::dot(rest, base::rotate(leg.heading, {leg.backwards ? -1.0 : 1.0, 0.0}));
-  return base::length(rest) < kHere || ahead < 0.5 * kHere;
+  const glm::dvec2 rest = leg.end - origin(X_WM);
+  const double ahead = glm::dot(rest, base::rotate(leg.heading, {leg.backwards ? -1.0 : 1.0, 0.0}));
+  return glm::length(rest) < kHere || ahead < 0.5 * kHere;
 }
 
 Twist Explore::drive(const Input& input) {
@@ -170,12 +169,12 @@ Twist Explore::follow(const Leg& leg, const Pose& X_WM, double dt) const {
     if (leg.side * off < 0.0 && std::abs(off) > 0.3) off += leg.side * 2.0 * M_PI;
     return {0.0, 0.0, turn_to(off, pace)};
   }
-  const Vec2 rest = leg.end - origin(X_WM);
-  const double far = base::length(rest), sign = leg.backwards ? -1.0 : 1.0;
+  const glm::dvec2 rest = leg.end - origin(X_WM);
+  const double far = glm::length(rest), sign = leg.backwards ? -1.0 : 1.0;
   const double bearing = far < 0.02 ? leg.heading : std::atan2(sign * rest.y, sign * rest.x);
   const double off = base::wrap_angle(bearing - X_WM.yaw);
   if (std::abs(off) > pace.aim) return {0.0, 0.0, turn_to(off, pace)};
-  const Vec2 front = base::transform(X_WM, {sign * settings_.slow, 0.0});
+  const glm::dvec2 front = base::transform(X_WM, {sign * settings_.slow, 0.0});
   const bool near = terrain_.nearest(front, 1.0) < settings_.body.radius + settings_.slow;
   const double speed = std::min(near ? settings_.slow_speed : settings_.speed, far / dt);
   return {sign * speed, 0.0, turn_to(off, pace)};
@@ -185,7 +184,7 @@ Twist Explore::follow(const Leg& leg, const Pose& X_WM, double dt) const {
 bool Explore::safe(const Pose& X_WM, const Twist& twist, double dt) const {
   if (twist.forward == 0.0) return true;
   const double now = terrain_.nearest(origin(X_WM), 1.0);
-  const double rest = base::length(legs_.back().end - origin(X_WM));
+  const double rest = glm::length(legs_.back().end - origin(X_WM));
   const double ahead = std::copysign(std::min(2.0 * dt * std::abs(twist.forward), rest + kHere), twist.forward);
   const double then = terrain_.nearest(base::transform(X_WM, {ahead, 0.0}), 1.0);
   return then >= settings_.body.radius + kTouch || then > now;
@@ -195,7 +194,7 @@ bool Explore::safe(const Pose& X_WM, const Twist& twist, double dt) const {
 Twist Explore::wait(const Input& input) {
   if (!arrived_) arrived_ = input.time;
   const Pose X_WS = base::compose(input.state.X_WM, settings_.eye.X_MS);
-  const bool here = sequence_ && base::length(origin(X_WS) - origin(X_WS_)) < kHere &&
+  const bool here = sequence_ && glm::length(origin(X_WS) - origin(X_WS_)) < kHere &&
                     std::abs(base::wrap_angle(X_WS.yaw - X_WS_.yaw)) < kAligned;
   const bool late = 1e-9 * static_cast<double>(input.time - *arrived_) > settings_.patience;
   if (!here && !late) return {};

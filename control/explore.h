@@ -24,7 +24,7 @@ struct ExploreSettings {
   maps::GridPlan plan;
   Body body;
   Eye eye;
-  std::vector<base::Vec2> beams;  ///< of the laser, in its frame
+  std::vector<glm::dvec2> beams;  ///< of the laser, in its frame
   double range_min = 0.0;         ///< [m] of the laser
   double speed = 0.1;             ///< [m/s]
   double slow_speed = 0.05;       ///< [m/s] with something nearer than `slow` to the body ahead
@@ -55,7 +55,7 @@ class Explore final : public Controller {
   /// Part of a way: a turn in place, or a straight line.
   struct Leg {
     bool straight = false;
-    base::Vec2 end;  ///< [m] of a straight line
+    glm::dvec2 end;  ///< [m] of a straight line
     bool backwards = false;
     double heading = 0.0;  ///< [rad]
     double side = 1.0;     ///< +1: turns left

@@ -20,8 +20,8 @@ inline double turn_to(double heading_error, const Pace& pace) {
   return std::clamp(pace.gain * heading_error, -pace.turn, pace.turn);
 }
 
-inline base::Twist go_to(const base::Pose& X_WM, base::Vec2 p, const Pace& pace) {
-  const base::Vec2 d{p.x - X_WM.x, p.y - X_WM.y};
+inline base::Twist go_to(const base::Pose& X_WM, glm::dvec2 p, const Pace& pace) {
+  const glm::dvec2 d{p.x - X_WM.x, p.y - X_WM.y};
   const double off = base::wrap_angle(std::atan2(d.y, d.x) - X_WM.yaw);
   return {std::abs(off) <= pace.aim ? pace.speed : 0.0, 0.0, turn_to(off, pace)};
 }

@@ -18,7 +18,7 @@ LaneKeeping::LaneKeeping(const LaneSettings& settings, const PathTask& task)
 
 double LaneKeeping::error_of(const base::ReadingBlock& reading, const base::Pose& X_WM) const {
   if (reading.values.empty() || !std::isfinite(reading.values[0])) return Controller::error();
-  const base::Vec2 p_WS = base::transform(X_WM, settings_.p_MS);
+  const glm::dvec2 p_WS = base::transform(X_WM, settings_.p_MS);
   const double half = settings_.half_width ? *settings_.half_width : 0.5 * task().width_at(p_WS);
   const double edge = reading.values[0] + settings_.side * settings_.p_MS.y;  // from the robot's axis
   return settings_.side * (edge - half);

@@ -14,7 +14,7 @@ struct LaneSettings {
   std::optional<double> half_width;  ///< [m] of the lane; none: of the path's piece under the sensor
   double side = 1.0;                 ///< +1: the sensor looks at the lane's left edge; -1: right
   double hold = 1.0;                 ///< [s]
-  base::Vec2 p_MS;                   ///< [m] the sensor's place in the robot's frame
+  glm::dvec2 p_MS;                   ///< [m] the sensor's place in the robot's frame
 };
 
 /// Its error is [m] how far the robot is to the right of the lane's middle, by the edge.

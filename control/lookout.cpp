@@ -84,7 +84,7 @@ void Lookout::see(CellAt cell) {
   for (std::size_t ray = 0; ray < kRays; ++ray) {
     cast(cell, ray, [&](Node node) {
       if (!afresh && std::any_of(tried->second.begin(), tried->second.end(), [&](Node other) {
-            return base::length(terrain_.place(node) - terrain_.place(other)) < kOther;
+            return glm::length(terrain_.place(node) - terrain_.place(other)) < kOther;
           }))
         return;
       auto& headings = headings_[static_cast<std::size_t>(node)];
@@ -112,8 +112,8 @@ std::size_t Lookout::look(bool all, double range, int graze) {
 std::vector<CellAt> Lookout::targets(Node sensor, int heading) const {
   std::vector<CellAt> seen;
   for (const CellAt cell : cells_) {
-    const base::Vec2 d = terrain_.place(sensor) - maps::middle(terrain_.grid().plan, cell);
-    if (base::length(d) > range_ + terrain_.cell()) continue;
+    const glm::dvec2 d = terrain_.place(sensor) - maps::middle(terrain_.grid().plan, cell);
+    if (glm::length(d) > range_ + terrain_.cell()) continue;
     bool found = false;
     for (std::size_t ray = 0; ray < kRays && !found; ++ray) {
       // Only rays that come near the sensor.

@@ -12,15 +12,15 @@ namespace {
 
 using world::PointRef;
 
-world::Curve straight(Vec2 a, Vec2 b) { return world::smooth_curve(std::array{a, b}, {}); }
+world::Curve straight(glm::dvec2 a, glm::dvec2 b) { return world::smooth_curve(std::array{a, b}, {}); }
 
 }  // namespace
 
 Pose Corridors::parked(std::uint32_t row) const {
   const world::RoadSpot& spot = roads_.spots[row];
-  const Vec2 d = spot.end - spot.entry;
-  const Vec2 along = length(d) > 0.0 ? (1.0 / length(d)) * d : Vec2{1.0, 0.0};
-  const Vec2 p = spot.end - body_.front * along;
+  const glm::dvec2 d = spot.end - spot.entry;
+  const glm::dvec2 along = length(d) > 0.0 ? (1.0 / length(d)) * d : glm::dvec2{1.0, 0.0};
+  const glm::dvec2 p = spot.end - body_.front * along;
   return {p.x, p.y, 0.0, std::atan2(along.y, along.x)};
 }
 
@@ -33,7 +33,7 @@ void Corridors::add_zones() {
   for (std::uint32_t row = 0; row < roads_.zones.size(); ++row) {
     const world::RoadZone& zone = roads_.zones[row];
     const Way about{.kind = Way::Kind::zone, .in_zone = true, .zone = row};
-    const auto aisle = [&](Vec2 a, Vec2 b) { return add_way(about, straight(a, b)); };
+    const auto aisle = [&](glm::dvec2 a, glm::dvec2 b) { return add_way(about, straight(a, b)); };
     for (std::uint32_t i = 0; i < zone.perimeter.size(); ++i) {
       const PointRef here{PointRef::Kind::perimeter, row, i};
       for (std::uint32_t j = 0; j < zone.perimeter.size(); ++j) {
@@ -45,8 +45,9 @@ void Corridors::add_zones() {
       for (std::uint32_t spot = zone.first_spot; spot < zone.first_spot + zone.spots; ++spot) {
         const PointRef entry{PointRef::Kind::spot, spot, 0}, end{PointRef::Kind::spot, spot, 1};
         const Pose stand = parked(spot);
-        const Vec2 in{stand.x, stand.y};
-        const Vec2 before = roads_.spots[spot].entry - body_.radius * Vec2{std::cos(stand.yaw), std::sin(stand.yaw)};
+        const glm::dvec2 in{stand.x, stand.y};
+        const glm::dvec2 before =
+            roads_.spots[spot].entry - body_.radius * glm::dvec2{std::cos(stand.yaw), std::sin(stand.yaw)};
         if (leads(here, false)) {
           const std::uint32_t way = aisle(zone.perimeter[i].p, before);
           add_edge(here, entry, way, 0.0, ways_[way].length, 0.0);
@@ -67,12 +68,12 @@ void Corridors::add_zones() {
   }
 }
 
-bool Corridors::inside(std::uint32_t zone, Vec2 p) const {
+bool Corridors::inside(std::uint32_t zone, glm::dvec2 p) const {
   const auto& perimeter = roads_.zones[zone].perimeter;
   bool in = false;
   for (std::size_t i = 0, j = perimeter.size() - 1; i < perimeter.size(); j = i++) {
-    const Vec2 a = perimeter[i].p, b = perimeter[j].p;
-    const Vec2 d = b - a;
+    const glm::dvec2 a = perimeter[i].p, b = perimeter[j].p;
+    const glm::dvec2 d = b - a;
     const double t = std::clamp(dot(p - a, d) / std::max(dot(d, d), 1e-18), 0.0, 1.0);
     if (length(p - a - t * d) < 0.5 * body_.radius) return true;
     if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) in = !in;

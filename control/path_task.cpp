@@ -18,7 +18,7 @@ PathTask::PathTask(const Site& site, Settings& settings) {
   }
 }
 
-double PathTask::width_at(base::Vec2 p) const { return path_->pieces[world::nearest(*path_, p).piece].width; }
+double PathTask::width_at(glm::dvec2 p) const { return path_->pieces[world::nearest(*path_, p).piece].width; }
 
 bool PathTask::ended(const base::Pose& X_WM) const {
   if (path_ == nullptr) return false;

@@ -21,7 +21,7 @@ class PathTask {
 
   bool known() const { return path_ != nullptr; }
   /// [m] lane width of the piece nearest to `p`. Rule: known().
-  double width_at(base::Vec2 p) const;
+  double width_at(glm::dvec2 p) const;
   /// The robot's origin has come as far along the path as `stop_before` its end.
   bool ended(const base::Pose& X_WM) const;
 

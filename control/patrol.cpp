@@ -18,7 +18,7 @@ double Patrol::radio() const { return settings_.radius + settings_.keep + 1.0; }
 base::Twist Patrol::step(const Input& input) {
   const base::Pose& X_WM = input.state.X_WM;
   const auto there = [&] {
-    return base::length(settings_.points[target_] - base::Vec2{X_WM.x, X_WM.y}) <= settings_.reach;
+    return glm::length(settings_.points[target_] - glm::dvec2{X_WM.x, X_WM.y}) <= settings_.reach;
   };
   if (there()) next(input.time);
   reason_ = input.time < until_ ? "it pauses at an end of its way"
@@ -44,20 +44,20 @@ void Patrol::next(std::int64_t time) {
 bool Patrol::obstructed(const Input& input) const {
   return std::any_of(input.others.begin(), input.others.end(), [&](const Neighbour& other) {
     const base::Pose& X_WM = input.state.X_WM;
-    const base::Vec2 p = base::rotate(-X_WM.yaw, {other.state.X_WM.x - X_WM.x, other.state.X_WM.y - X_WM.y});
+    const glm::dvec2 p = base::rotate(-X_WM.yaw, {other.state.X_WM.x - X_WM.x, other.state.X_WM.y - X_WM.y});
     return p.x > 0.0 && p.x < settings_.radius + settings_.keep && std::abs(p.y) < 2.0 * settings_.radius;
   });
 }
 
 namespace {
 
-std::vector<base::Vec2> read_points(Settings& settings) {
+std::vector<glm::dvec2> read_points(Settings& settings) {
   const std::vector<double> numbers = settings.numbers("points", {});
   const bool finite = std::all_of(numbers.begin(), numbers.end(), [](double v) { return std::isfinite(v); });
   if (numbers.size() < 2 || numbers.size() % 2 != 0 || !finite)
     settings.refuse("points",
                     "'points' of controller 'patrol' expects pairs [x0 y0 x1 y1 ...] in metres, at least one");
-  std::vector<base::Vec2> points;
+  std::vector<glm::dvec2> points;
   for (std::size_t i = 0; i < numbers.size(); i += 2) points.push_back({numbers[i], numbers[i + 1]});
   return points;
 }

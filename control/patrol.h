@@ -10,7 +10,7 @@
 namespace sf::control {
 
 struct PatrolSettings {
-  std::vector<base::Vec2> points;  ///< [m] at least one
+  std::vector<glm::dvec2> points;  ///< [m] at least one
   double speed = 0.1;              ///< [m/s]
   double turn_speed = 1.0;         ///< [rad/s]
   double pause = 0.0;              ///< [s] at each end

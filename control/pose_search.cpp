@@ -56,11 +56,11 @@ PoseSearch::PoseSearch(const Terrain& terrain, const Body& body)
       cost_(static_cast<std::size_t>(terrain.nodes()) * kHeadings),
       move_(cost_.size()),
       buckets_(kMostCost + 1) {
-  const auto offset = [&](base::Vec2 p) {
+  const auto offset = [&](glm::dvec2 p) {
     return static_cast<Node>(std::lround(p.x / terrain.cell())) -
            terrain.columns() * static_cast<Node>(std::lround(p.y / terrain.cell()));
   };
-  const double reach = base::length(body.p_MS);
+  const double reach = glm::length(body.p_MS);
   for (int half = 0; half < 2 * kHeadings; ++half) {
     // Halfway headings are those that a turn passes.
     const double to = half % 2 == 0 ? 0.0 : 0.5 * base::wrap_angle(angle_of(around(half / 2 + 1)) - angle_of(half / 2));

@@ -29,7 +29,7 @@ double angle_of(int heading);
 /// What moves.
 struct Body {
   double radius = 0.165;  ///< [m]
-  base::Vec2 p_MS;        ///< [m] its sensor
+  glm::dvec2 p_MS;        ///< [m] its sensor
 };
 
 class PoseSearch {

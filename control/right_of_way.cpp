@@ -203,7 +203,7 @@ bool RightOfWay::zone_free(std::uint32_t zone) const {
     const world::RoadZone& z = roads.zones[zone];
     for (std::uint32_t spot = z.first_spot; spot < z.first_spot + z.spots; ++spot) {
       const Pose at = corridors_.parked(spot);
-      const Vec2 d{driver.X_WM.x - at.x, driver.X_WM.y - at.y};
+      const glm::dvec2 d{driver.X_WM.x - at.x, driver.X_WM.y - at.y};
       if (length(d) < 0.35 * corridors_.body().radius && driver.speed < kStanding) return true;
     }
     return false;

@@ -47,8 +47,8 @@ struct Driver {
   std::uint32_t id = 0;
   std::uint32_t follows = base::kNobody;
   Pose X_WM;
-  Vec2 velocity;       ///< [m/s] world frame
-  double speed = 0.0;  ///< [m/s] >= 0
+  glm::dvec2 velocity;  ///< [m/s] world frame
+  double speed = 0.0;   ///< [m/s] >= 0
   Places places;
   Approach approach;
 };

@@ -80,7 +80,7 @@ base::Twist Route::drive(const Input& input, double speed) {
   const Way& way = corridors_->way(leg.way);
   const double at = leg.from + progress_.s() - leg.start;
   const double yaw = yaw_on(way, at);
-  offset_ = cross({std::cos(yaw), std::sin(yaw)}, Vec2{X_WM.x, X_WM.y} - point_on(way, at));
+  offset_ = base::cross({std::cos(yaw), std::sin(yaw)}, glm::dvec2{X_WM.x, X_WM.y} - point_on(way, at));
   const double heading = base::wrap_angle(X_WM.yaw + (way.backwards ? M_PI : 0.0) - yaw);
   // Behind a kink it turns on the spot until it looks along its way.
   const bool kink = progress_.leg() > 0 && kink_after(*corridors_, plan_, progress_.leg() - 1);

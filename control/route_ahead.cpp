@@ -31,7 +31,7 @@ void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, con
   const double radius = corridors.body().radius;
   const double step = 0.25 * radius;
   struct Point {
-    Vec2 p;
+    glm::dvec2 p;
     double yaw, s, within;
   };
   std::array<Point, 128> points;
@@ -45,9 +45,9 @@ void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, con
     points[count++] = {here.p, here.yaw, std::min(at, end), radius * (zone ? 2.04 : 2.18)};
     if (at >= end) break;
   }
-  const Vec2 self{drivers[0].X_WM.x, drivers[0].X_WM.y};
+  const glm::dvec2 self{drivers[0].X_WM.x, drivers[0].X_WM.y};
   for (std::uint32_t row = 1; row < drivers.size(); ++row) {
-    const Vec2 p{drivers[row].X_WM.x, drivers[row].X_WM.y};
+    const glm::dvec2 p{drivers[row].X_WM.x, drivers[row].X_WM.y};
     if (length(p - self) > kLookAhead + 2.2 * radius) continue;
     const auto away = [&](std::size_t i) { return length(points[i].p - p); };
     for (std::size_t i = 0; i < count;) {
@@ -64,7 +64,7 @@ void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, con
         const double nearer = std::max(before - distance, 1e-9);
         free -= (points[i].s - points[i - 1].s) * std::clamp((points[i].within - distance) / nearer, 0.0, 1.0);
       }
-      const Vec2 along{std::cos(points[i].yaw), std::sin(points[i].yaw)};
+      const glm::dvec2 along{std::cos(points[i].yaw), std::sin(points[i].yaw)};
       out.push_back({std::max(free, 0.0), dot(drivers[row].velocity, along), row});
       break;
     }
@@ -73,7 +73,7 @@ void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, con
             [](const Ahead& a, const Ahead& b) { return a.free != b.free ? a.free < b.free : a.row < b.row; });
 }
 
-void Progress::update(const Corridors& corridors, const RoutePlan& plan, Vec2 p) {
+void Progress::update(const Corridors& corridors, const RoutePlan& plan, glm::dvec2 p) {
   const double reach = 2.5 * corridors.body().radius;
   for (;;) {
     const RouteLeg& leg = plan.legs[leg_];
@@ -82,7 +82,7 @@ void Progress::update(const Corridors& corridors, const RoutePlan& plan, Vec2 p)
     const double was = leg.from + s_ - leg.start;
     double best = HUGE_VAL, at = was;
     const auto consider = [&](double s) {
-      const Vec2 d = point_on(way, s) - p;
+      const glm::dvec2 d = point_on(way, s) - p;
       if (dot(d, d) >= best) return;
       best = dot(d, d);
       at = s;

@@ -26,7 +26,7 @@ void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, con
 /// Where the route is at `s` [m].
 struct OnRoute {
   std::size_t leg = 0;
-  Vec2 p;
+  glm::dvec2 p;
   double yaw = 0.0;        ///< [rad] of the route
   double curvature = 0.0;  ///< [1/m]
 };
@@ -41,7 +41,7 @@ class Progress {
   double s() const { return s_; }
   std::size_t leg() const { return leg_; }
   void set(double s, std::size_t leg) { s_ = s, leg_ = leg; }
-  void update(const Corridors& corridors, const RoutePlan& plan, Vec2 p);
+  void update(const Corridors& corridors, const RoutePlan& plan, glm::dvec2 p);
 
  private:
   double s_ = 0.0;

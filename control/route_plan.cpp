@@ -189,8 +189,8 @@ std::vector<Pose> start_poses(const world::RoadNetwork& roads, std::size_t count
     const double end = 0.5 * apart;
     if (lane.centre.points.size() < 2 || length < 2.0 * end) continue;
     for (double s = end; s <= length - end; s += 0.25 * apart) {
-      const Vec2 p = point_at(lane.centre, s);
-      const Vec2 d = point_at(lane.centre, s + 0.05 * apart) - point_at(lane.centre, s - 0.05 * apart);
+      const glm::dvec2 p = point_at(lane.centre, s);
+      const glm::dvec2 d = point_at(lane.centre, s + 0.05 * apart) - point_at(lane.centre, s - 0.05 * apart);
       open.push_back({p.x, p.y, 0.0, std::atan2(d.y, d.x)});
     }
   }

@@ -34,7 +34,7 @@ class Surroundings {
     float x, y;  ///< direction in the robot's frame
   };
   struct View {
-    base::Vec2 p_MS;
+    glm::dvec2 p_MS;
     double range_max;
     std::vector<Beam> beams;
   };

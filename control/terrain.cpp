@@ -7,8 +7,6 @@ namespace sf::control {
 
 namespace {
 
-using base::Vec2;
-
 constexpr int kFiner = 3;         // nodes along a cell of the map
 constexpr int kPointsFiner = 5;   // squares along a node's square; each keeps one point
 constexpr double kJoined = 0.03;  // [m] neighbouring beams that end this near met one surface
@@ -43,21 +41,21 @@ Terrain::Terrain(const maps::GridPlan& plan, double radius, double reach)
              [&](std::size_t node, double) { unknown_[node] = static_cast<std::uint16_t>(unknown_[node] + 1); });
 }
 
-bool Terrain::contains(Vec2 p) const { return maps::contains(grid_.plan, maps::cell_at(grid_.plan, p)); }
+bool Terrain::contains(glm::dvec2 p) const { return maps::contains(grid_.plan, maps::cell_at(grid_.plan, p)); }
 
-Node Terrain::node_at(Vec2 p) const {
+Node Terrain::node_at(glm::dvec2 p) const {
   const auto column = static_cast<Node>(std::floor((p.x - grid_.plan.left) / cell_));
   const auto row = static_cast<Node>(std::floor((grid_.plan.top - p.y) / cell_));
   return std::clamp(row, 0, rows_ - 1) * columns_ + std::clamp(column, 0, columns_ - 1);
 }
 
-Vec2 Terrain::place(Node node) const {
+glm::dvec2 Terrain::place(Node node) const {
   return {grid_.plan.left + (node % columns_ + 0.5) * cell_, grid_.plan.top - (node / columns_ + 0.5) * cell_};
 }
 
 // Every node whose place is nearer to p than the radius, with its distance.
 template <typename Visit>
-void Terrain::around(Vec2 p, double radius, Visit visit) {
+void Terrain::around(glm::dvec2 p, double radius, Visit visit) {
   const double column = (p.x - grid_.plan.left) / cell_ - 0.5, row = (grid_.plan.top - p.y) / cell_ - 0.5;
   const double reach = radius / cell_;
   const auto low = [](double v) { return static_cast<Node>(std::max(0.0, std::ceil(v))); };
@@ -78,13 +76,13 @@ void Terrain::explore(maps::CellAt at) {
          [&](std::size_t node, double) { unknown_[node] = static_cast<std::uint16_t>(unknown_[node] - 1); });
 }
 
-void Terrain::stand(Vec2 p, double radius) {
+void Terrain::stand(glm::dvec2 p, double radius) {
   for (std::int64_t row = 0; row < maps::rows(grid_.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(grid_.plan); ++column)
-      if (base::length(maps::middle(grid_.plan, {column, row}) - p) <= radius) explore({column, row});
+      if (glm::length(maps::middle(grid_.plan, {column, row}) - p) <= radius) explore({column, row});
 }
 
-bool Terrain::add_point(Vec2 p) {
+bool Terrain::add_point(glm::dvec2 p) {
   if (!contains(p)) return false;
   const double fine = cell_ / kPointsFiner;
   const auto column = static_cast<std::size_t>((p.x - grid_.plan.left) / fine);
@@ -100,10 +98,10 @@ bool Terrain::add_point(Vec2 p) {
   return true;
 }
 
-void Terrain::mark_line(Vec2 a, Vec2 b) {
-  const int steps = 1 + static_cast<int>(base::length(b - a) / (0.25 * cell_));
+void Terrain::mark_line(glm::dvec2 a, glm::dvec2 b) {
+  const int steps = 1 + static_cast<int>(glm::length(b - a) / (0.25 * cell_));
   for (int i = 0; i <= steps; ++i) {
-    const Vec2 p = a + (static_cast<double>(i) / steps) * (b - a);
+    const glm::dvec2 p = a + (static_cast<double>(i) / steps) * (b - a);
     if (contains(p)) solid_[static_cast<std::size_t>(node_at(p))] = 1;
   }
 }
@@ -126,24 +124,24 @@ bool Terrain::add(const maps::ScanView& scan) {
     }
   }
 
-  Vec2 last{HUGE_VAL, HUGE_VAL};
+  glm::dvec2 last{HUGE_VAL, HUGE_VAL};
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double range = scan.ranges[i];
     if (!(range > scan.range_min && range < scan.range_max)) {
       last = {HUGE_VAL, HUGE_VAL};
       continue;
     }
-    const Vec2 p = base::transform(scan.X_WS, range * scan.beams[i]);
+    const glm::dvec2 p = base::transform(scan.X_WS, range * scan.beams[i]);
     if (add_point(p)) news = true;
-    if (base::length(p - last) < kJoined) mark_line(last, p);
+    if (glm::length(p - last) < kJoined) mark_line(last, p);
     last = p;
   }
   return news;
 }
 
-double Terrain::nearest(Vec2 p, double most) const {
+double Terrain::nearest(glm::dvec2 p, double most) const {
   double least = most * most;
-  for (const Vec2& q : points_) least = std::min(least, base::dot(q - p, q - p));
+  for (const glm::dvec2& q : points_) least = std::min(least, glm::dot(q - p, q - p));
   return std::sqrt(least);
 }
 

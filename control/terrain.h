@@ -23,19 +23,19 @@ class Terrain {
   Terrain(const maps::GridPlan& plan, double radius, double reach);
 
   /// Ground that no laser has to look at first, since the robot stands there.
-  void stand(base::Vec2 p, double radius);
+  void stand(glm::dvec2 p, double radius);
   /// @return whether it told anything new
   bool add(const maps::ScanView& scan);
   /// Something was met at `p`.
-  bool add_point(base::Vec2 p);
+  bool add_point(glm::dvec2 p);
 
   const maps::Grid& grid() const { return grid_; }
   Node columns() const { return columns_; }
   Node nodes() const { return static_cast<Node>(solid_.size()); }
   double cell() const { return cell_; }  ///< [m] of the lattice
-  bool contains(base::Vec2 p) const;
-  Node node_at(base::Vec2 p) const;  ///< Rule: contains(p)
-  base::Vec2 place(Node node) const;
+  bool contains(glm::dvec2 p) const;
+  Node node_at(glm::dvec2 p) const;  ///< Rule: contains(p)
+  glm::dvec2 place(Node node) const;
 
   /// [m] from a node to the nearest surface point; kFarFromBody beyond the body's radius: no nearer one
   float clearance(Node node) const { return clearance_[static_cast<std::size_t>(node)]; }
@@ -46,21 +46,21 @@ class Terrain {
   bool explored(Node node) const { return explored_[static_cast<std::size_t>(node)] != 0; }
 
   /// [m] from `p` to the nearest surface point, at most `most`.
-  double nearest(base::Vec2 p, double most) const;
+  double nearest(glm::dvec2 p, double most) const;
 
   static constexpr double kFarFromBody = 0.06;  ///< [m]
 
  private:
-  void mark_line(base::Vec2 a, base::Vec2 b);
+  void mark_line(glm::dvec2 a, glm::dvec2 b);
   void explore(maps::CellAt at);
   template <typename Visit>
-  void around(base::Vec2 p, double radius, Visit visit);
+  void around(glm::dvec2 p, double radius, Visit visit);
 
   maps::Grid grid_;
   double radius_;
   double cell_;
   Node columns_, rows_;
-  std::vector<base::Vec2> points_;
+  std::vector<glm::dvec2> points_;
   std::vector<std::uint8_t> taken_;  ///< one bit per fine square that holds a point
   std::vector<float> clearance_;
   std::vector<std::uint16_t> unknown_;  ///< unexplored cells whose middle is under the body

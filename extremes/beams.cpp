@@ -18,11 +18,11 @@ void grazing(Lab& lab, Checks& checks) {
     double off = 0.0, allowed = 0.0;
     for (const double far : {0.0, 1e5})
       for (const double tilt : {0.0, 0.3, 2.0}) {
-        const auto at = [&](double x, double y) { return Vec2{far, -far} + base::rotate(tilt, {x, y}); };
+        const auto at = [&](double x, double y) { return glm::dvec2{far, -far} + base::rotate(tilt, {x, y}); };
         world::World world;
         add_wall(world, at(0.0, 0.0), at(100.0, 0.0));
         add_wall(world, at(100.0, -1.0), at(100.0, 60.0));
-        const Vec2 p = at(0.0, 50.0 * std::tan(angle));
+        const glm::dvec2 p = at(0.0, 50.0 * std::tan(angle));
         add_eye(world, {p.x, p.y, 0.0, tilt - angle}, eye);
         const Look look = lab.look(world);
         check_scan(*look.world, look.readings[0], checks, fmt::format("at {:.0e} rad, {:g} m away", angle, far));
@@ -54,16 +54,16 @@ void corners(Lab& lab, Checks& checks) {
   for (const int count : {3, 7, 64, 1000})
     for (const double far : {0.0, 1e7}) {
       world::World world;
-      std::vector<Vec2> ring, wide;
+      std::vector<glm::dvec2> ring, wide;
       for (int i = 0; i < count; ++i) {
-        const Vec2 out = base::rotate(-i * kTurn / count, {1.0, 0.0});
-        ring.push_back(Vec2{far, -far} + 4.0 * out);
-        wide.push_back(Vec2{far, -far} + 6.0 * Vec2{out.x, -out.y});
+        const glm::dvec2 out = base::rotate(-i * kTurn / count, {1.0, 0.0});
+        ring.push_back(glm::dvec2{far, -far} + 4.0 * out);
+        wide.push_back(glm::dvec2{far, -far} + 6.0 * glm::dvec2{out.x, -out.y});
       }
       add_outline(world, wide);
       add_outline(world, ring);
-      const Vec2 eye{far + 0.3125, -far - 0.4375};
-      for (const Vec2 corner : ring)
+      const glm::dvec2 eye{far + 0.3125, -far - 0.4375};
+      for (const glm::dvec2& corner : ring)
         add_eye(world, {eye.x, eye.y, 0.0, std::atan2(corner.y - eye.y, corner.x - eye.x)}, laser(3, 2e-9, 20.0));
       const Look look = lab.look(world);
       for (const base::ReadingBlock& r : look.readings) {

@@ -19,15 +19,15 @@ double random(std::uint32_t index) { return base::random_uniform({kSeed, base::S
 /// Blocks at any angle and robots between and upon them, `far` from the origin.
 world::World crowd(double far, const world::Laser& laser) {
   world::World world;
-  const Vec2 away{far, -far};
-  add_room(world, away - Vec2{8.0, 8.0}, 16.0);
+  const glm::dvec2 away{far, -far};
+  add_room(world, away - glm::dvec2{8.0, 8.0}, 16.0);
   std::uint32_t draw = 0;
   const auto next = [&] { return random(draw++); };
   for (int i = 0; i < 60; ++i) {
     const Pose X{15.0 * next() - 7.5, 15.0 * next() - 7.5, 0.0, 7.0 * next()};
     const double x = 0.1 + next(), y = 0.1 + 0.5 * next();
-    std::vector<Vec2> block;
-    for (const Vec2 p : {Vec2{-x, -y}, Vec2{x, -y}, Vec2{x, y}, Vec2{-x, y}})
+    std::vector<glm::dvec2> block;
+    for (const glm::dvec2& p : {glm::dvec2{-x, -y}, glm::dvec2{x, -y}, glm::dvec2{x, y}, glm::dvec2{-x, y}})
       block.push_back(away + base::transform(X, p));
     add_outline(world, block);
   }
@@ -90,7 +90,7 @@ void plain_cpp(Lab& lab, Checks& checks) {
 }
 
 /// The same beam by the same formula in 32 bits: what a caster in world coordinates would say.
-double in_32_bits(Vec2 eye, double yaw, const world::Segment& s) {
+double in_32_bits(glm::dvec2 eye, double yaw, const world::Segment& s) {
   const auto f = [](double x) { return static_cast<float>(x); };
   const float dx = std::cos(f(yaw)), dy = std::sin(f(yaw));
   const float wx = f(s.a.x) - f(eye.x), wy = f(s.a.y) - f(eye.y);

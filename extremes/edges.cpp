@@ -30,9 +30,9 @@ double grain(double x) { return std::nextafter(std::fabs(x), HUGE_VAL) - std::fa
 
 /// A stripe 10 cm wide and 4 m long whose near face crosses the sensor's axis `distance` ahead at `tilt` from square.
 world::World stripe_ahead(const Pose& X_WM, double distance, double tilt) {
-  const Vec2 ahead = base::rotate(X_WM.yaw, {1.0, 0.0}), normal = base::rotate(X_WM.yaw + tilt, {1.0, 0.0});
-  const Vec2 middle = Vec2{X_WM.x, X_WM.y} + distance * ahead + 0.05 * normal;
-  const Vec2 along{-normal.y, normal.x};
+  const glm::dvec2 ahead = base::rotate(X_WM.yaw, {1.0, 0.0}), normal = base::rotate(X_WM.yaw + tilt, {1.0, 0.0});
+  const glm::dvec2 middle = glm::dvec2{X_WM.x, X_WM.y} + distance * ahead + 0.05 * normal;
+  const glm::dvec2 along{-normal.y, normal.x};
   world::World world;
   world.stripes.push_back({{middle - 2.0 * along, middle + 2.0 * along}, 0.1});
   return world;
@@ -40,7 +40,7 @@ world::World stripe_ahead(const Pose& X_WM, double distance, double tilt) {
 
 /// [m] along the sensor's axis to the near face of the stripe as its doubles are.
 Real face_ahead(const world::Stripe& stripe, const Pose& X_WM) {
-  const Vec2 a = stripe.line[0], b = stripe.line[1];
+  const glm::dvec2 a = stripe.line[0], b = stripe.line[1];
   const Real tx = Real{b.x} - a.x, ty = Real{b.y} - a.y, size = std::hypot(tx, ty);
   const Real nx = ty / size, ny = -tx / size;  // away from the sensor
   const Real ex = std::cos(Real{X_WM.yaw}), ey = std::sin(Real{X_WM.yaw});

@@ -9,7 +9,7 @@ namespace sf::extremes {
 namespace {
 
 /// A wall's ends that another wall shares, on the other side of the beam, close the gap between them.
-bool is_closed(std::span<const world::Segment> surfaces, const Beam& beam, base::Vec2 end, Real other_side) {
+bool is_closed(std::span<const world::Segment> surfaces, const Beam& beam, glm::dvec2 end, Real other_side) {
   return std::any_of(surfaces.begin(), surfaces.end(), [&](const world::Segment& s) {
     for (const auto& [near, far] : {std::pair{s.a, s.b}, std::pair{s.b, s.a}}) {
       if (near.x != end.x || near.y != end.y) continue;
@@ -31,7 +31,7 @@ Beam beam_of(const base::Pose& X_WS, const world::Laser& laser, std::uint32_t sa
 
 Meeting first_met(std::span<const world::Segment> surfaces, const Beam& beam, double range_max) {
   Meeting best{.range = range_max};
-  const auto side_of = [&](base::Vec2 p) {
+  const auto side_of = [&](glm::dvec2 p) {
     return beam.x * (Real{p.y} - beam.origin.y) - beam.y * (Real{p.x} - beam.origin.x);
   };
   std::vector<std::pair<Real, const world::Segment*>> doubtful;

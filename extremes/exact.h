@@ -20,7 +20,7 @@ struct Meeting {
 
 /// A direction that needs no sum of angles: a heading of 1e6 rad leaves a sum only 5e-14 rad, even here.
 struct Beam {
-  base::Vec2 origin;
+  glm::dvec2 origin;
   Real x = 1, y = 0;
 };
 Beam beam_of(const base::Pose& X_WS, const world::Laser& laser, std::uint32_t sample);

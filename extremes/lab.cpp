@@ -24,7 +24,7 @@ std::uint32_t add_model(world::World& world, const std::string& type) {
   return row;
 }
 
-world::Segment segment(Vec2 a, Vec2 b, std::uint32_t model) {
+world::Segment segment(glm::dvec2 a, glm::dvec2 b, std::uint32_t model) {
   world::Segment s;
   s.a = a;
   s.b = b;
@@ -35,25 +35,25 @@ world::Segment segment(Vec2 a, Vec2 b, std::uint32_t model) {
 
 }  // namespace
 
-void add_wall(world::World& world, Vec2 a, Vec2 b) {
+void add_wall(world::World& world, glm::dvec2 a, glm::dvec2 b) {
   world.walls.push_back(segment(a, b, add_model(world, "model")));
   world.walls.back().solid_left = false;
 }
 
-void add_outline(world::World& world, const std::vector<Vec2>& corners) {
+void add_outline(world::World& world, const std::vector<glm::dvec2>& corners) {
   const std::uint32_t model = add_model(world, "model");
   for (std::size_t i = 0; i < corners.size(); ++i)
     world.walls.push_back(segment(corners[i], corners[(i + 1) % corners.size()], model));
 }
 
-void add_room(world::World& world, Vec2 low, double width) {
-  const Vec2 high = low + Vec2{width, width};
-  const Vec2 thick{0.25 * width, 0.25 * width};
+void add_room(world::World& world, glm::dvec2 low, double width) {
+  const glm::dvec2 high = low + glm::dvec2{width, width};
+  const glm::dvec2 thick{0.25 * width, 0.25 * width};
   add_block(world, low - thick, high + thick);
   add_outline(world, {low, {low.x, high.y}, high, {high.x, low.y}});
 }
 
-void add_block(world::World& world, Vec2 low, Vec2 high) {
+void add_block(world::World& world, glm::dvec2 low, glm::dvec2 high) {
   add_outline(world, {low, {high.x, low.y}, high, {low.x, high.y}});
 }
 
@@ -87,7 +87,7 @@ std::uint32_t add_eye(world::World& world, const Pose& X_WM, const world::Laser&
 
 void add_body(world::World& world, std::uint32_t mover, double half) {
   world::Mover& m = world.movers[mover];
-  const Vec2 corners[] = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
+  const glm::dvec2 corners[] = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
   for (std::size_t i = 0; i < 4; ++i) m.body.push_back(segment(corners[i], corners[(i + 1) % 4], m.model));
   m.radius = std::hypot(half, half);
 }

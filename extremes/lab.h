@@ -14,7 +14,6 @@
 namespace sf::extremes {
 
 using base::Pose;
-using base::Vec2;
 
 /// A farm on a world of its own, everyone heard.
 struct Look {
@@ -37,13 +36,13 @@ class Lab {
 };
 
 /// A thin wall, seen from both sides, 1 m high.
-void add_wall(world::World& world, Vec2 a, Vec2 b);
+void add_wall(world::World& world, glm::dvec2 a, glm::dvec2 b);
 /// A closed outline, solid on the left of its edges: counter-clockwise a block, clockwise a room.
-void add_outline(world::World& world, const std::vector<Vec2>& corners);
+void add_outline(world::World& world, const std::vector<glm::dvec2>& corners);
 /// The inside of a square of `width` [m], low corner at `low`: a hole in a block half as wide again.
-void add_room(world::World& world, Vec2 low, double width);
+void add_room(world::World& world, glm::dvec2 low, double width);
 /// A solid block from `low` to `high`.
-void add_block(world::World& world, Vec2 low, Vec2 high);
+void add_block(world::World& world, glm::dvec2 low, glm::dvec2 high);
 
 /// A laser at its mover's origin, 0.1 m high. Every heading is in its pose.
 world::Laser laser(std::uint32_t samples, double fov, double range_max);

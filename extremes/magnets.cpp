@@ -64,7 +64,8 @@ void one_magnet(Lab& lab, Checks& checks) {
     world.magnets.push_back({{}, 0.0, moment, 1e-9, 0});
     std::vector<Place> places;
     for (const double r : kDistances)
-      for (const Vec2 d : {Vec2{1.0, 0.0}, Vec2{0.6, 0.8}, Vec2{0.0, 1.0}, Vec2{-0.8, -0.6}, Vec2{0.0, -1.0}})
+      for (const glm::dvec2& d : {glm::dvec2{1.0, 0.0}, glm::dvec2{0.6, 0.8}, glm::dvec2{0.0, 1.0},
+                                  glm::dvec2{-0.8, -0.6}, glm::dvec2{0.0, -1.0}})
         places.push_back({r * d.x, 0.0, r * d.y});
     compare(lab, checks, world, places, fmt::format("{:g} A m^2", moment));
   }

@@ -20,8 +20,8 @@ world::World room(double far, double width, std::uint32_t samples) {
   world::World world;
   add_room(world, {far - 0.5 * width, far - 0.5 * width}, width);
   for (std::uint32_t i = 0; i < 20; ++i) {
-    const Vec2 p{far + width * (0.9 * random(2 * i) - 0.5), far + width * (0.9 * random(2 * i + 1) - 0.5)};
-    add_block(world, p, p + Vec2{0.03 * width, 0.05 * width});
+    const glm::dvec2 p{far + width * (0.9 * random(2 * i) - 0.5), far + width * (0.9 * random(2 * i + 1) - 0.5)};
+    add_block(world, p, p + glm::dvec2{0.03 * width, 0.05 * width});
   }
   for (std::uint32_t i = 100; i < 130; ++i)
     add_eye(world,

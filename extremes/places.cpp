@@ -72,8 +72,8 @@ void far_and_small(Lab& lab, Checks& checks) {
   add_room(world, {-5e5, -5e5}, 1e6);
   constexpr double kAway = 99'900.0;
   for (int i = 0; i < 16; ++i) {
-    const Vec2 p = base::rotate(i * kTurn / 16, {kAway, 0.0});
-    add_block(world, p - Vec2{5.0, 5.0}, p + Vec2{5.0, 5.0});
+    const glm::dvec2 p = base::rotate(i * kTurn / 16, {kAway, 0.0});
+    add_block(world, p - glm::dvec2{5.0, 5.0}, p + glm::dvec2{5.0, 5.0});
     add_eye(world, {0.0, 0.0, 0.0, i * kTurn / 16}, laser(5, 1e-5, 1e5));
   }
   const Look look = lab.look(world);

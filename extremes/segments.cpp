@@ -31,7 +31,8 @@ void points_given_twice(Lab& lab, Checks& checks) {
 void zero_length(Lab& lab, Checks& checks) {
   world::World world;
   add_room(world, {-2.0, -2.0}, 4.0);
-  for (const Vec2 p : {Vec2{1.0, 0.0}, Vec2{0.0, 0.0}, Vec2{2.0, 0.0}, Vec2{-2.0, -2.0}}) add_wall(world, p, p);
+  for (const glm::dvec2& p : {glm::dvec2{1.0, 0.0}, glm::dvec2{0.0, 0.0}, glm::dvec2{2.0, 0.0}, glm::dvec2{-2.0, -2.0}})
+    add_wall(world, p, p);
   add_eye(world, {0.0, 0.0, 0.0, 0.0}, laser(361, kTurn, 8.0));
   const Look look = lab.look(world);
   check_scan(*look.world, look.readings[0], checks, "walls without length");
@@ -61,8 +62,8 @@ void tiny_beside_huge(Lab& lab, Checks& checks) {
   add_wall(world, {-1e5, 3.0}, {1e5, 3.5});
   add_wall(world, {4.0, -1e5}, {4.5, 1e5});
   for (int i = 0; i < 40; ++i) {
-    const Vec2 p = base::rotate(0.151 * i, {1.0 + 0.04 * i, 0.0});
-    add_wall(world, p, p + Vec2{1e-9 * (1 + i), -2e-9});
+    const glm::dvec2 p = base::rotate(0.151 * i, {1.0 + 0.04 * i, 0.0});
+    add_wall(world, p, p + glm::dvec2{1e-9 * (1 + i), -2e-9});
     add_eye(world, {0.0, 0.0, 0.0, std::atan2(p.y - 1e-9, p.x + 0.5e-9 * (1 + i))}, laser(3, 1e-10, 8.0));
   }
   add_eye(world, {0.0, 0.0, 0.0, 0.0}, laser(361, kTurn, 8.0));
@@ -78,8 +79,8 @@ world::World posts(std::uint32_t side) {
   const double pitch = 1.0 / side;
   for (std::uint32_t x = 0; x < side; ++x)
     for (std::uint32_t y = 0; y < side; ++y) {
-      const Vec2 low{x * pitch, y * pitch}, high{(x + 0.5) * pitch, (y + 0.5) * pitch};
-      const Vec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}};
+      const glm::dvec2 low{x * pitch, y * pitch}, high{(x + 0.5) * pitch, (y + 0.5) * pitch};
+      const glm::dvec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}};
       for (std::size_t i = 0; i < 4; ++i) {
         world::Segment s;
         s.a = corners[i];

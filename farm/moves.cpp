@@ -43,14 +43,14 @@ void Moves::add(std::uint32_t mover, const base::Pose& from, const base::Pose& t
   sorted_ = false;
 }
 
-bool Moves::within(base::Vec2 p, double reach) {
+bool Moves::within(glm::dvec2 p, double reach) {
   if (!sorted_) std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) { return a.x < b.x; });
   sorted_ = true;
   const double most = reach + largest_;
   auto at = std::lower_bound(places_.begin(), places_.end(), p.x - most,
                              [](const Place& place, double x) { return place.x < x; });
   for (; at != places_.end() && at->x <= p.x + most; ++at)
-    if (base::length(base::Vec2{at->x, at->y} - p) <= reach + at->radius) return true;
+    if (glm::length(glm::dvec2{at->x, at->y} - p) <= reach + at->radius) return true;
   return false;
 }
 

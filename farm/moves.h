@@ -30,7 +30,7 @@ class Moves {
   /// Whether anyone who moved carries magnets.
   bool magnets() const { return magnets_; }
   /// Whether some part of anyone who moved was or is within `reach` [m] of `p`. What has no outline is nowhere.
-  bool within(base::Vec2 p, double reach);
+  bool within(glm::dvec2 p, double reach);
 
  private:
   struct Place {

@@ -10,7 +10,7 @@ namespace {
 constexpr double kMargin = 1e-5;
 
 double reach_of(const sensors::SensorRow& row) {
-  return (1.0 + kMargin) * (row.reach + base::length({row.X_MS.x, row.X_MS.y})) + kMargin;
+  return (1.0 + kMargin) * (row.reach + glm::length(glm::dvec2{row.X_MS.x, row.X_MS.y})) + kMargin;
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ void Steady::disturb(Moves& moves, std::span<const base::Pose> poses) {
   if (calm_carriers_ == 0 || !moves.any()) return;
   for (Carrier& carrier : carriers_) {
     if (!carrier.calm) continue;
-    const base::Vec2 p{poses[carrier.mover].x, poses[carrier.mover].y};
+    const glm::dvec2 p{poses[carrier.mover].x, poses[carrier.mover].y};
     if (moves.moved(carrier.mover) || (carrier.of_magnets ? moves.magnets() : moves.within(p, carrier.reach)))
       rouse(carrier);
   }

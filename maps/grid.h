@@ -68,7 +68,7 @@ inline std::int64_t whole_below(double value) {
 
 /// The cell that holds `p` (within 1e15 cells), by one rule for everyone: floor((x - left) / cell), floor((top - y) /
 /// cell), in double.
-inline CellAt cell_at(const GridPlan& plan, base::Vec2 p) {
+inline CellAt cell_at(const GridPlan& plan, glm::dvec2 p) {
   return {whole_below((p.x - plan.left) / plan.cell), whole_below((plan.top - p.y) / plan.cell)};
 }
 
@@ -77,7 +77,7 @@ inline bool contains(const GridPlan& plan, CellAt at) {
 }
 
 /// [m] the middle of a cell.
-inline base::Vec2 middle(const GridPlan& plan, CellAt at) {
+inline glm::dvec2 middle(const GridPlan& plan, CellAt at) {
   return {plan.left + (static_cast<double>(at.column) + 0.5) * plan.cell,
           plan.top - (static_cast<double>(at.row) + 0.5) * plan.cell};
 }

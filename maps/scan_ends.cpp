@@ -18,8 +18,8 @@ void grow(CellBox& box, CellAt at) {
 
 }  // namespace
 
-std::vector<base::Vec2> beam_directions(double fov, std::uint32_t samples) {
-  std::vector<base::Vec2> beams;
+std::vector<glm::dvec2> beam_directions(double fov, std::uint32_t samples) {
+  std::vector<glm::dvec2> beams;
   const double last = samples - 1.0;
   for (std::uint32_t i = 0; i < samples; ++i) {
     const double step = samples > 1 ? fov / last : 0.0;
@@ -41,7 +41,7 @@ ScanEnds trace_ends(const GridPlan& plan, const ScanView& scan, std::span<std::u
            std::to_string(scan.ranges.size()) + " ranges of " + std::to_string(scan.beams.size()) + " beams");
   ScanEnds out;
   const base::Pose& X = scan.X_WS;
-  const base::Vec2 place{(X.x - plan.left) / plan.cell, (plan.top - X.y) / plan.cell};
+  const glm::dvec2 place{(X.x - plan.left) / plan.cell, (plan.top - X.y) / plan.cell};
   const double c = std::cos(X.yaw);
   const double s = std::sin(X.yaw);
   // Also false for what is not a number.
@@ -59,7 +59,7 @@ ScanEnds trace_ends(const GridPlan& plan, const ScanView& scan, std::span<std::u
     if (tells) {
       const bool hit = range < scan.range_max;
       const double r = hit ? range : scan.range_max;
-      const base::Vec2 b = scan.beams[k];
+      const glm::dvec2 b = scan.beams[k];
       const CellAt end = cell_at(plan, {X.x + r * (c * b.x - s * b.y), X.y + r * (s * b.x + c * b.y)});
       const CellAt from{end.column - out.sensor.column, end.row - out.sensor.row};
       grow(box, from);

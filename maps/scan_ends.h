@@ -25,7 +25,7 @@ inline bool hit_of(std::uint32_t end) { return (end >> 30 & 1u) != 0; }
 struct ScanView {
   base::Pose X_WS;                    ///< of the sensor, as the robot believes
   std::span<const double> ranges;     ///< [m]; what is not a number, or negative, says nothing
-  std::span<const base::Vec2> beams;  ///< unit directions in the sensor's frame, one per range
+  std::span<const glm::dvec2> beams;  ///< unit directions in the sensor's frame, one per range
   double range_min = 0.0;             ///< [m] what is not farther says nothing; where 0, a range of 0 does
   double range_max = 0.0;             ///< [m] nothing was met from here on. Rule: range_max <= kFarthestRange cells
 };
@@ -33,7 +33,7 @@ struct ScanView {
 inline constexpr double kFarthestRange = 1'022.0;  ///< [cells] 30.6 m where a cell is 3 cm
 
 /// Bearings from -fov/2 to +fov/2, as world::bearing_of has them. @param fov [rad] @param samples at least 1
-std::vector<base::Vec2> beam_directions(double fov, std::uint32_t samples);
+std::vector<glm::dvec2> beam_directions(double fov, std::uint32_t samples);
 
 /// A half-open box of cells, which may lie outside of the map; empty where `low` is not below `high`.
 struct CellBox {
@@ -48,7 +48,7 @@ inline CellBox cells_of(const GridPlan& plan) { return {{0, 0}, {columns(plan), 
 /// A scan on a map.
 struct ScanEnds {
   CellAt sensor;
-  base::Vec2
+  glm::dvec2
       within;   ///< [cells] of the sensor from the middle of its cell, x along columns, y along rows: in [-.5, .5]
   CellBox box;  ///< of all cells it speaks of; empty when it says nothing, or is too far away to be counted
 };

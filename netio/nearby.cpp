@@ -9,10 +9,10 @@ namespace sf::netio {
 
 namespace {
 
-double along(base::Vec2 p, std::uint8_t by_y) { return by_y ? p.y : p.x; }
+double along(glm::dvec2 p, std::uint8_t by_y) { return by_y ? p.y : p.x; }
 
 /// Rows order equal coordinates: a crowd at one place is a tree too, and its robots find different neighbours.
-bool before(base::Vec2 p, std::uint32_t row, const Nearby::Place& place, std::uint8_t by_y) {
+bool before(glm::dvec2 p, std::uint32_t row, const Nearby::Place& place, std::uint8_t by_y) {
   return std::tuple(along(p, by_y), row) < std::tuple(along(place.p, by_y), place.row);
 }
 
@@ -88,7 +88,7 @@ bool Nearby::is_near(double square) const {
 void Nearby::look(const Place& place) {
   --left_;
   ++looks_;
-  const base::Vec2 d = query_.p ? place.p - *query_.p : base::Vec2{};
+  const glm::dvec2 d = query_.p ? place.p - *query_.p : glm::dvec2{};
   if (place.row == query_.own || place.age > query_.oldest || !is_near(dot(d, d))) return;
   if (found_.size() == query_.most) {
     std::pop_heap(found_.begin(), found_.end());

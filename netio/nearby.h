@@ -21,12 +21,12 @@ class Nearby {
   static constexpr std::size_t kMostLooks = 512;
 
   struct Place {
-    base::Vec2 p;           ///< [m]
+    glm::dvec2 p;           ///< [m]
     std::uint32_t row = 0;  ///< whose
     std::uint32_t age = 0;  ///< [passes] since it was said
   };
   struct Query {
-    std::optional<base::Vec2> p;  ///< [m]; nothing: anywhere
+    std::optional<glm::dvec2> p;  ///< [m]; nothing: anywhere
     std::uint32_t own = 0;        ///< row that is left out
     double range = 0.0;           ///< [m] >= 0, its end included
     std::size_t most = 0;         ///< rows, in [1, kMostLooks]

@@ -278,8 +278,8 @@ base::Report report(const Header& header, const Tag& state, std::uint32_t mover,
   const auto& [x, y, z, w] = state.orientation;
   const double yaw = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)) - X_MT.yaw;
   const double turn = state.angular[2];
-  const base::Vec2 arm = base::rotate(yaw, {X_MT.x, X_MT.y});  // from the mover's origin to the tag, in the world
-  const base::Vec2 velocity = base::rotate(-yaw, {state.linear[0] + turn * arm.y, state.linear[1] - turn * arm.x});
+  const glm::dvec2 arm = base::rotate(yaw, {X_MT.x, X_MT.y});  // from the mover's origin to the tag, in the world
+  const glm::dvec2 velocity = base::rotate(-yaw, {state.linear[0] + turn * arm.y, state.linear[1] - turn * arm.x});
   return {mover,
           header.time,
           {state.position[0] - arm.x, state.position[1] - arm.y, state.position[2] - X_MT.z, yaw},

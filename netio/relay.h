@@ -60,7 +60,7 @@ class Relay {
     std::uint32_t waits = 0;                                        ///< [passes] since its turn, while it asks
     std::uint32_t sent = 0;                                         ///< NEIGHBOURS to it
     bool started = false;                                           ///< a START for it alone waits
-    std::optional<base::Vec2> p;                                    ///< [m] where it said it is
+    std::optional<glm::dvec2> p;                                    ///< [m] where it said it is
     base::Bytes state;
     base::Bytes start;
   };

@@ -48,7 +48,7 @@ struct FanResults {
   const BeamPlan* plan = nullptr;  ///< which samples were cast, and their places
   const Fan* fan = nullptr;        ///< its settings
   Pose X_WS;                       ///< where it looked from
-  base::Vec2 heading;              ///< unit vector
+  glm::dvec2 heading;              ///< unit vector
 };
 
 /// Not thread-safe. `site` without its world must outlive it.

@@ -201,7 +201,7 @@ void Casts::Tables::make_pattern(std::size_t i, std::span<const double> turns, S
 /// Where the due fans [first, last) look from: base::compose, with the sine and cosine of each mover once.
 void Casts::Tables::look(std::size_t first, std::size_t last, std::span<const Pose> movers) {
   std::uint32_t mover = kAlone;
-  base::Vec2 turn;
+  glm::dvec2 turn;
   for (std::size_t i = first; i < last; ++i) {
     const Fan& fan = fans[due[i].row];
     const FanRow& row = fan_rows[due[i].row];
@@ -327,7 +327,7 @@ void Casts::Tables::scan_shared(std::size_t k, unsigned thread) {
   for (std::size_t b = 0; b < beams; ++b) {
     const SharedPattern::Source& s = all.sources[b];
     view.heading = views[scans[k].due + s.fan].heading;
-    const base::Vec2 d = direction_of(view, patterns[fan_rows[shared.first + s.fan].pattern], s.beam);
+    const glm::dvec2 d = direction_of(view, patterns[fan_rows[shared.first + s.fan].pattern], s.beam);
     own.x[b] = d.x, own.y[b] = d.y;
   }
   view.heading = host_views[k].heading;

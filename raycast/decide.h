@@ -12,7 +12,7 @@
 namespace sf::raycast {
 
 /// The segment from `a` to `b` of a mover's frame, in the world. @param p of the mover  @param heading unit vector
-inline ExactSegment placed(base::Vec2 a, base::Vec2 b, base::Vec2 p, base::Vec2 heading) {
+inline ExactSegment placed(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p, glm::dvec2 heading) {
   const double c = heading.x, s = heading.y;
   return {p.x + (c * a.x - s * a.y), p.y + (s * a.x + c * a.y), p.x + (c * b.x - s * b.y), p.y + (s * b.x + c * b.y)};
 }
@@ -36,7 +36,7 @@ struct Decision {
 };
 
 /// @param d unit vector
-inline void decide(const Surface& surface, base::Vec2 origin, base::Vec2 d, Decision& best) {
+inline void decide(const Surface& surface, glm::dvec2 origin, glm::dvec2 d, Decision& best) {
   const ExactSegment& s = surface.at;
   const double wax = s.ax - origin.x, way = s.ay - origin.y;
   const double wbx = s.bx - origin.x, wby = s.by - origin.y;
@@ -58,7 +58,7 @@ inline void decide(const Surface& surface, base::Vec2 origin, base::Vec2 d, Deci
 /// [m] the range of a beam that meets `s`, in 32 bits; less than 0 where these are not close enough. The error is at
 /// most 16 u |e| (|w| + range_max) / |e x d|, u = 2^-24, held below half of SF_SINGLE_SHARE range_max.
 /// shaders/lib/decide.glsl, operation by operation.
-inline float measure_single(const ExactSegment& s, base::Vec2 origin, base::Vec2 d, float range_max) {
+inline float measure_single(const ExactSegment& s, glm::dvec2 origin, glm::dvec2 d, float range_max) {
   const auto wx = static_cast<float>(s.ax - origin.x), wy = static_cast<float>(s.ay - origin.y);
   const auto ex = static_cast<float>(s.bx - s.ax), ey = static_cast<float>(s.by - s.ay);
   const auto dx = static_cast<float>(d.x), dy = static_cast<float>(d.y);

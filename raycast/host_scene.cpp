@@ -12,8 +12,6 @@ namespace sf::raycast {
 
 namespace {
 
-using base::Vec2;
-
 constexpr std::uint32_t kPageBlocks = 4;
 constexpr std::uint32_t kFirstCells = 256, kFirstBlocks = 1u << 11;
 /// [blocks] A quarter of the machine's memory, between 0.7 and 2.7 GiB (100 000 robots need 1.4): a cell for which
@@ -170,8 +168,8 @@ bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, u
   const Cell cell = listed ? lists_[slot] : collect(cells_.key(i), t);
   const std::span<const SegmentBlock> blocks =
       listed ? std::span<const SegmentBlock>(blocks_).subspan(cell.first, cell.all) : t.blocks;
-  const Vec2 centre = cells_.centre_of(cells_.key(i));
-  const Vec2 origin{view.X_WS.x, view.X_WS.y};
+  const glm::dvec2 centre = cells_.centre_of(cells_.key(i));
+  const glm::dvec2 origin{view.X_WS.x, view.X_WS.y};
   from.origin = origin;
   from.offset = origin - centre;
   from.range_max = families_[view.family].range;

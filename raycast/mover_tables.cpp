@@ -8,8 +8,6 @@ namespace sf::raycast {
 
 namespace {
 
-using base::Vec2;
-
 constexpr int kMostCells = 256;  ///< along an axis
 constexpr std::uint32_t kNowhere = 0xFFFFFFFFu;
 
@@ -90,7 +88,7 @@ void MoverTables::place(std::span<const Pose> poses, base::Workers& workers, std
 }
 
 void MoverTables::lay_out() {
-  Vec2 low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+  glm::dvec2 low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
   const auto is_met = [this](std::size_t i) { return radii_[i] > 0.0 && !std::isnan(poses_[i].x); };
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     if (!is_met(i)) continue;

@@ -33,7 +33,7 @@ class MoverTables {
   std::uint32_t heights() const { return static_cast<std::uint32_t>(heights_.size()); }
   const OutlineTable& outlines(std::uint32_t height) const { return heights_[height].outlines; }
   std::span<const Pose> poses() const { return poses_; }
-  std::span<const base::Vec2> headings() const { return headings_; }
+  std::span<const glm::dvec2> headings() const { return headings_; }
   /// Of each mover's exact segments among all of the scene's, and the end.
   std::span<const std::uint32_t> first_rows() const { return first_rows_; }
 
@@ -53,7 +53,7 @@ class MoverTables {
   std::uint32_t walls_;
   std::vector<Height> heights_;
   std::vector<Pose> poses_;
-  std::vector<base::Vec2> headings_;
+  std::vector<glm::dvec2> headings_;
   std::vector<std::uint32_t> cells_, next_;
   MoverGrid grid_;
 };

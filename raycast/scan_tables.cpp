@@ -5,7 +5,7 @@
 
 namespace sf::raycast {
 
-void append(std::vector<SegmentBlock>& blocks, std::uint32_t& used, base::Vec2 a, base::Vec2 b, std::uint32_t row) {
+void append(std::vector<SegmentBlock>& blocks, std::uint32_t& used, glm::dvec2 a, glm::dvec2 b, std::uint32_t row) {
   if (blocks.empty() || used == kBlock) {
     SegmentBlock& fresh = blocks.emplace_back();
     for (std::uint32_t k = 0; k < kBlock; ++k) {
@@ -48,7 +48,7 @@ void ScanPattern::assign(std::span<const double> bearings, std::span<const doubl
   edge_cos = static_cast<float>(std::cos(edge)), edge_sin = static_cast<float>(std::sin(edge));
 }
 
-base::Vec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::size_t i) {
+glm::dvec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::size_t i) {
   if (view.x != nullptr) return {view.x[i], view.y[i]};
   const double c = pattern.cos64[i], s = pattern.sin64[i];
   return {view.heading.x * c - view.heading.y * s, view.heading.y * c + view.heading.x * s};

@@ -29,7 +29,7 @@ struct SegmentBlock {
 };
 
 /// Appends segments to blocks, one at a time. `rows` counts places used in the last block.
-void append(std::vector<SegmentBlock>& blocks, std::uint32_t& used, base::Vec2 a, base::Vec2 b, std::uint32_t row);
+void append(std::vector<SegmentBlock>& blocks, std::uint32_t& used, glm::dvec2 a, glm::dvec2 b, std::uint32_t row);
 
 /// The beams of one scan in the sensor's frame. Arrays are padded with copies of the last beam, so that a vector that
 /// begins at any beam can be loaded.
@@ -64,7 +64,7 @@ struct OutlineTable {
 
 /// Movers that can be met, by cell of a grid, one row of cells after another; arrays are padded by a block.
 struct MoverGrid {
-  base::Vec2 low;      ///< [m] corner
+  glm::dvec2 low;      ///< [m] corner
   double cell = 1.0;   ///< [m]
   float error = 0.0f;  ///< [m] of x and y
   int columns = 1, rows = 1;
@@ -85,10 +85,10 @@ struct MoverGrid {
 
 /// Where a scan looks from, and how far.
 struct ScanView {
-  base::Vec2 origin;        ///< [m] world
-  base::Vec2 heading;       ///< unit vector: the pattern's bearing 0
+  glm::dvec2 origin;        ///< [m] world
+  glm::dvec2 heading;       ///< unit vector: the pattern's bearing 0
   double yaw = 0.0;         ///< [rad] of the heading
-  base::Vec2 offset;        ///< [m] of the origin from the frame of the walls' blocks
+  glm::dvec2 offset;        ///< [m] of the origin from the frame of the walls' blocks
   double range_max = 0.0;   ///< [m]
   double range_min = 0.0;   ///< [m]
   float band = 0.0f;        ///< [m] what 32 bits may be wrong by: SF_BAND times the largest coordinate
@@ -102,7 +102,7 @@ struct ScanView {
 
 /// Unit vector of beam `i` in the world. Not inline: where vectors may be fused, g++ 12 fuses this pair of products,
 /// whatever -ffp-contract says.
-base::Vec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::size_t i);
+glm::dvec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::size_t i);
 
 /// Directions are told apart by so many sectors of a turn.
 inline constexpr int kSectors = 32;
@@ -121,7 +121,7 @@ struct ScanScene {
   const MoverGrid* movers = nullptr;
   const OutlineTable* outlines = nullptr;
   std::span<const base::Pose> poses;          ///< of movers
-  std::span<const base::Vec2> headings;       ///< of movers: unit vectors
+  std::span<const glm::dvec2> headings;       ///< of movers: unit vectors
   std::span<const std::uint32_t> first_rows;  ///< of each mover's exact segments, and the end
   std::uint32_t self = 0xFFFFFFFFu;           ///< mover that is not met
 };

@@ -113,7 +113,7 @@ bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {
 
 void Scene::fill_row(const Viewpoint& view, std::size_t i, RayRow& row) {
   const FamilyTables& family = tables_of_[view.family];
-  const Vec2 centre = cells_.centre_of(cells_.key(i));
+  const glm::dvec2 centre = cells_.centre_of(cells_.key(i));
   const double yaw = view.X_WS.yaw;
   const double sectors = base::wrap_angle(yaw) * (SF_SECTORS / (2.0 * M_PI));
   const std::uint32_t slot = cells_.slot(i);

@@ -21,7 +21,7 @@ void Scene::Scratch::add(std::vector<FoundWall>& found, double spread, SectorLis
   sectors.clear();
   for (const FoundWall& w : found) {
     sectors.add(w.bearing, w.half + spread, static_cast<std::uint32_t>(entries.size()));
-    const Vec2 half = 0.5 * (w.b - w.a), middle = w.a + half;
+    const glm::dvec2 half = 0.5 * (w.b - w.a), middle = w.a + half;
     entries.push_back({static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(half.x),
                        static_cast<float>(half.y)});
     names.push_back(w.row);
@@ -107,7 +107,7 @@ void Scene::find_near(const Viewpoint& view, Scratch& s) const {
   const Family& family = families_[view.family];
   const auto yaw = static_cast<float>(base::wrap_angle(view.X_WS.yaw));
   const auto most_turned = static_cast<float>(0.5 * family.fov + 1e-5);
-  const Vec2 from{view.X_WS.x - grid.low.x, view.X_WS.y - grid.low.y};
+  const glm::dvec2 from{view.X_WS.x - grid.low.x, view.X_WS.y - grid.low.y};
   const double reach = family.range * 1.00001 + grid.largest_radius + 2.0 * static_cast<double>(grid.error);
   const auto x = static_cast<float>(from.x), y = static_cast<float>(from.y);
   const auto range = static_cast<float>(family.range * 1.00001);
@@ -150,7 +150,7 @@ void Scene::find_facing(const Viewpoint& view, Near& near, Scratch& s) const {
   const OutlineTable& outlines = movers_.outlines(height);
   const OutlineTable::Outline& outline = outlines.of_mover[near.mover];
   const Pose& X = movers_.poses()[near.mover];
-  const Vec2 heading = movers_.headings()[near.mover], p{view.X_WS.x - X.x, view.X_WS.y - X.y};
+  const glm::dvec2 heading = movers_.headings()[near.mover], p{view.X_WS.x - X.x, view.X_WS.y - X.y};
   const auto x = static_cast<float>(heading.x * p.x + heading.y * p.y);
   const auto y = static_cast<float>(heading.x * p.y - heading.y * p.x);
   const float slip = 4.0f * static_cast<float>(SF_BAND) *

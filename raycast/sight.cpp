@@ -91,7 +91,7 @@ void Sight::index_bands() {
   }
 }
 
-void Sight::near(Vec2 p, double radius, Nearby& nearby) const {
+void Sight::near(glm::dvec2 p, double radius, Nearby& nearby) const {
   nearby.found.clear();
   if (segments_.empty()) return;
   if (nearby.stamps.size() < segments_.size()) {
@@ -115,7 +115,7 @@ void Sight::near(Vec2 p, double radius, Nearby& nearby) const {
     }
 }
 
-bool Sight::inside_solid(Vec2 p) const {
+bool Sight::inside_solid(glm::dvec2 p) const {
   if (segments_.empty() || p.x < low_.x || p.x > high_.x || p.y < low_.y || p.y > high_.y) return false;
   const std::size_t band = static_cast<std::size_t>(clamp_index((p.y - low_.y) / band_, bands_));
   // A horizontal line crosses closed outlines as often up as down: what lies to one side of p counts, and the side that
@@ -128,7 +128,7 @@ bool Sight::inside_solid(Vec2 p) const {
     if (left ? least_x(s) > p.x : largest_x(s) < p.x) break;
     const bool below_a = s.a.y <= p.y;
     if (below_a == (s.b.y <= p.y)) continue;
-    const double side = (left ? -1.0 : 1.0) * cross(s.b - s.a, p - s.a);
+    const double side = (left ? -1.0 : 1.0) * base::cross(s.b - s.a, p - s.a);
     if (below_a && side > 0.0) ++winding;
     if (!below_a && side < 0.0) --winding;
   }

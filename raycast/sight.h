@@ -9,12 +9,10 @@
 
 namespace sf::raycast {
 
-using base::Vec2;
-
 /// A segment in sight; `row` is its row in `World::walls`.
 struct SightSegment {
-  Vec2 a;
-  Vec2 b;
+  glm::dvec2 a;
+  glm::dvec2 b;
   std::uint32_t row;
   bool solid_left;
 };
@@ -26,8 +24,8 @@ class Sight {
   Sight(const world::World& world, double z, double typical_range);
 
   const std::vector<SightSegment>& segments() const { return segments_; }
-  Vec2 low() const { return low_; }  ///< [m] corner of their bounding box
-  Vec2 high() const { return high_; }
+  glm::dvec2 low() const { return low_; }  ///< [m] corner of their bounding box
+  glm::dvec2 high() const { return high_; }
 
   /// Scratch of one thread.
   struct Nearby {
@@ -36,11 +34,11 @@ class Sight {
     std::uint32_t stamp = 0;
   };
   /// Every segment within `radius` [m] of `p`, and perhaps some more.
-  void near(Vec2 p, double radius, Nearby& nearby) const;
+  void near(glm::dvec2 p, double radius, Nearby& nearby) const;
 
   /// True when `p` lies in a solid: the winding number of all outlines with a known solid side is not 0. Points within
   /// rounding of a surface may get either answer.
-  bool inside_solid(Vec2 p) const;
+  bool inside_solid(glm::dvec2 p) const;
 
  private:
   struct Span {
@@ -51,7 +49,7 @@ class Sight {
   void index_bands();
 
   std::vector<SightSegment> segments_;
-  Vec2 low_, high_;
+  glm::dvec2 low_, high_;
   double cell_ = 1.0;
   int columns_ = 1, rows_ = 1;
   std::vector<std::uint32_t> cell_first_, cell_items_;  ///< segments by cell

@@ -12,7 +12,7 @@ struct Viewpoint {
   std::uint32_t family = 0;
   std::uint32_t self = 0;  ///< mover that carries it
   base::Pose X_WS;
-  base::Vec2 heading;  ///< unit vector of the yaw
+  glm::dvec2 heading;  ///< unit vector of the yaw
 };
 
 }  // namespace sf::raycast

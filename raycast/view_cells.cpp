@@ -33,7 +33,7 @@ CellKey ViewCells::key_of(const Viewpoint& view) const {
 }
 
 void ViewCells::note_sides(const CellKey& key, std::uint32_t slot, const Sight::Nearby& nearby) {
-  const Vec2 centre = centre_of(key);
+  const glm::dvec2 centre = centre_of(key);
   const Sight& sight = families_.sight(family_of(key));
   const double reach = sizes_[family_of(key)] * M_SQRT1_2 * (1.0 + 1e-9) + 1e-9 * (1.0 + length(centre));
   const bool any = std::any_of(nearby.found.begin(), nearby.found.end(), [&](std::uint32_t row) {
@@ -43,7 +43,7 @@ void ViewCells::note_sides(const CellKey& key, std::uint32_t slot, const Sight::
   uniform_[slot] = any ? 0 : 1;
 }
 
-Vec2 ViewCells::centre_of(const CellKey& key) const {
+glm::dvec2 ViewCells::centre_of(const CellKey& key) const {
   const double size = sizes_[family_of(key)];
   return {(static_cast<double>(key.x) + 0.5) * size, (static_cast<double>(key.y) + 0.5) * size};
 }

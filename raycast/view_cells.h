@@ -36,7 +36,7 @@ class ViewCells {
   const CellPool& pool() const { return pool_; }
 
   double size_of(std::size_t family) const { return sizes_[family]; }  ///< [m]
-  base::Vec2 centre_of(const CellKey& key) const;                      ///< [m]
+  glm::dvec2 centre_of(const CellKey& key) const;                      ///< [m]
   static std::size_t family_of(const CellKey& key) { return static_cast<std::size_t>(key.family / 2); }
   /// Whether viewpoints in the cell lie inside of solids.
   static bool in_solid(const CellKey& key) { return key.family % 2 == 1; }

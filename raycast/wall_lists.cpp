@@ -14,7 +14,7 @@ constexpr int kRings = 2;
 constexpr double kSlack = 1e-5;
 
 /// [rad] of p, wrong by less than 2e-6: its arc tangent after Abramowitz and Stegun 4.4.49.
-double rough_bearing(Vec2 p) {
+double rough_bearing(glm::dvec2 p) {
   const double along = std::abs(p.x), across = std::abs(p.y);
   const double q = std::min(along, across) / std::max(along, across), z = q * q;
   double t = 0.0028662257;
@@ -42,7 +42,7 @@ int ring_of(double times) {
 }
 
 /// @param radius [m] of the disc that holds all viewers
-FoundWall found(Vec2 a, Vec2 b, std::uint32_t row, double radius) {
+FoundWall found(glm::dvec2 a, glm::dvec2 b, std::uint32_t row, double radius) {
   FoundWall f{a, b, row, std::max(0.0, world::distance({}, a, b) - radius), 0.0, 2.0 * M_PI, -1};
   const double share_a = radius / length(a), share_b = radius / length(b);
   if (f.nearest <= 0.0 || std::max(share_a, share_b) >= 1.0) return f;
@@ -58,35 +58,35 @@ FoundWall found(Vec2 a, Vec2 b, std::uint32_t row, double radius) {
 
 }  // namespace
 
-bool clip(Vec2& a, Vec2& b, double reach) {
-  const Vec2 e = b - a;
+bool clip(glm::dvec2& a, glm::dvec2& b, double reach) {
+  const glm::dvec2 e = b - a;
   const double ee = dot(e, e);
   const double middle = -dot(a, e) / ee;
-  const Vec2 foot = a + middle * e;
+  const glm::dvec2 foot = a + middle * e;
   const double half_square = (reach * reach - dot(foot, foot)) / ee;
   if (half_square <= 0.0) return false;
   const double half = std::sqrt(half_square);
   const double u0 = std::max(0.0, middle - half);
   const double u1 = std::min(1.0, middle + half);
   if (u0 >= u1) return false;
-  const Vec2 start = a;
+  const glm::dvec2 start = a;
   if (u1 < 1.0) b = start + u1 * e;
   if (u0 > 0.0) a = start + u0 * e;
   return true;
 }
 
-void find_walls(const Sight& sight, const CellShape& shape, Vec2 centre, bool both_sides, FoundWalls& walls) {
+void find_walls(const Sight& sight, const CellShape& shape, glm::dvec2 centre, bool both_sides, FoundWalls& walls) {
   const double radius = shape.radius();
   walls.facing.clear();
   walls.behind.clear();
   sight.near(centre, shape.reach(), walls.nearby);
   for (const std::uint32_t i : walls.nearby.found) {
     const SightSegment& s = sight.segments()[i];
-    Vec2 a = s.a - centre, b = s.b - centre;
+    glm::dvec2 a = s.a - centre, b = s.b - centre;
     if (!clip(a, b, shape.reach())) continue;
     // The cell's signed distance from the segment's line: positive on its left.
-    const Vec2 e = s.b - s.a;
-    const double side = cross(e, centre - s.a) / length(e);
+    const glm::dvec2 e = s.b - s.a;
+    const double side = base::cross(e, centre - s.a) / length(e);
     const bool both = both_sides || !s.solid_left;
     if (side < radius) walls.facing.push_back(found(a, b, s.row, radius));
     if (side > -radius && both) walls.facing.push_back(found(b, a, s.row, radius));

@@ -25,7 +25,7 @@ struct CellShape {
 
 /// A segment seen from its right, relative to a cell's centre.
 struct FoundWall {
-  Vec2 a, b;
+  glm::dvec2 a, b;
   std::uint32_t row;     ///< of the exact segment
   double nearest;        ///< [m] to any viewer
   double bearing, half;  ///< [rad] where viewers see it; a half beyond pi: all round
@@ -40,9 +40,9 @@ struct FoundWalls {
 };
 
 /// The part of ab within `reach` of the origin; false when there is none.
-bool clip(Vec2& a, Vec2& b, double reach);
+bool clip(glm::dvec2& a, glm::dvec2& b, double reach);
 
 /// Finds the walls round the cell at `centre`. With `both_sides`, viewers may lie inside of solids.
-void find_walls(const Sight& sight, const CellShape& shape, Vec2 centre, bool both_sides, FoundWalls& walls);
+void find_walls(const Sight& sight, const CellShape& shape, glm::dvec2 centre, bool both_sides, FoundWalls& walls);
 
 }  // namespace sf::raycast

@@ -96,7 +96,7 @@ class Fleet {
   enum class Stop : std::uint8_t { none, waiting, refused };
   struct Touch {
     std::uint32_t sectors = 0;
-    base::Vec2 away;  ///< world frame: the sum of unit vectors from what touches to the mover's origin
+    glm::dvec2 away;  ///< world frame: the sum of unit vectors from what touches to the mover's origin
   };
   /// One thread's memory.
   struct Scratch {
@@ -136,7 +136,7 @@ class Fleet {
   bool meets_rival(std::uint32_t row, const base::Pose& from, const Placed& next, Scratch& scratch) const;
   bool is_stopped(std::uint32_t row, const base::Pose& from, const Placed& next, std::uint32_t other,
                   const base::Pose& X_WO, Scratch& scratch) const;
-  bool leaves(std::uint32_t row, const base::Pose& from, base::Vec2 to, const world::Segment& wall,
+  bool leaves(std::uint32_t row, const base::Pose& from, glm::dvec2 to, const world::Segment& wall,
               Scratch& scratch) const;
 
   /// @param struck others that touch it are marked there, where not empty

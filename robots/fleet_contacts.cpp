@@ -13,7 +13,6 @@ namespace {
 
 using base::Pose;
 using base::Twist;
-using base::Vec2;
 using world::Segment;
 
 constexpr double kGap = 4e-4;      // [m] a refused mover stops no farther away than this
@@ -21,14 +20,14 @@ constexpr double kWhole = 0x1p40;  // sums of integers do not depend on their or
 constexpr std::uint32_t kEverywhere = 0xFFFFFFFFu;
 static_assert(base::kTouchSectors == 32);
 
-Vec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }
+glm::dvec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }
 
 // Not nearer to what was touched already; rounding at 100 km is 1.5e-11.
 bool no_nearer(double after, double before) { return after >= before - 1e-10; }
 
-Vec2 unit(Vec2 v) {
+glm::dvec2 unit(glm::dvec2 v) {
   const double size = length(v);
-  return size > 0.0 ? 1.0 / size * v : Vec2{};
+  return size > 0.0 ? 1.0 / size * v : glm::dvec2{};
 }
 
 }  // namespace
@@ -38,7 +37,7 @@ template <class Visit>
 bool Fleet::any_wall(std::uint32_t row, const Pose& X_WM, double sweep, Visit&& visit) const {
   const Outline& outline = outlines_[row];
   const double radius = outline.radius + sweep;
-  const Vec2 p = origin(X_WM);
+  const glm::dvec2 p = origin(X_WM);
   return !outline.edges.empty() && walls_.any(world::box_around(p, radius), [&](const Segment& wall) {
     return wall.z_min < X_WM.z + outline.z_max && X_WM.z + outline.z_min < wall.z_max &&
            visit(wall, world::distance(p, wall.a, wall.b) - outline.radius);
@@ -57,7 +56,7 @@ bool Fleet::clear(std::uint32_t row, std::span<const base::Report> reports, doub
 /// Whether a mover that stands at `from`, and travels by `sweep` [m], and another one have circles that meet.
 bool Fleet::comes_near(std::uint32_t row, const Pose& from, double sweep, std::uint32_t other, const Pose& X_WO) const {
   if (outlines_[row].edges.empty() || outlines_[other].edges.empty()) return false;
-  const Vec2 d = origin(X_WO) - origin(from);
+  const glm::dvec2 d = origin(X_WO) - origin(from);
   const double apart = outlines_[row].radius + sweep + outlines_[other].radius;
   return dot(d, d) <= apart * apart;
 }
@@ -155,7 +154,7 @@ bool Fleet::turn_against(std::uint32_t row, Way& way, double dt, bool last, Scra
 
 // A body that is not quite round (a disc of sixteen sides) pushes itself off what it presses on when it turns.
 bool Fleet::push_off(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const {
-  const Vec2 away = unit(touch_of(row, way.X_WM, reports_).away);
+  const glm::dvec2 away = unit(touch_of(row, way.X_WM, reports_).away);
   if (away.x == 0.0 && away.y == 0.0) return false;
   const Pose X_turned = advance(way.X_WM, way.velocity, dt);
   for (const double yield : {0.25 * kMostYield, 0.5 * kMostYield, kMostYield}) {
@@ -192,7 +191,7 @@ bool Fleet::meets_rival(std::uint32_t row, const Pose& from, const Placed& next,
 
 bool Fleet::is_stopped(std::uint32_t row, const Pose& from, const Placed& next, std::uint32_t other, const Pose& X_WO,
                        Scratch& scratch) const {
-  const Vec2 d = origin(X_WO) - next.origin;
+  const glm::dvec2 d = origin(X_WO) - next.origin;
   const double apart = next.radius + outlines_[other].radius;
   if (dot(d, d) > apart * apart * (1.0 + 1e-12)) return false;
   const Placed placed = place(outlines_[other], X_WO, scratch.other);
@@ -202,7 +201,7 @@ bool Fleet::is_stopped(std::uint32_t row, const Pose& from, const Placed& next, 
 }
 
 /// It touches the wall already, and its origin comes no nearer to it.
-bool Fleet::leaves(std::uint32_t row, const Pose& from, Vec2 to, const Segment& wall, Scratch& scratch) const {
+bool Fleet::leaves(std::uint32_t row, const Pose& from, glm::dvec2 to, const Segment& wall, Scratch& scratch) const {
   const Placed now = place(outlines_[row], from, scratch.now);
   return touches(now, wall) &&
          no_nearer(world::distance(to, wall.a, wall.b), world::distance(now.origin, wall.a, wall.b));
@@ -211,7 +210,7 @@ bool Fleet::leaves(std::uint32_t row, const Pose& from, Vec2 to, const Segment& 
 Fleet::Touch Fleet::touch_of(std::uint32_t row, const Pose& X_WM, std::span<const base::Report> reports,
                              std::span<std::uint8_t> struck) const {
   const Outline& outline = outlines_[row];
-  const Vec2 p = origin(X_WM);
+  const glm::dvec2 p = origin(X_WM);
   const double reach = outline.radius + kPressed;
   Touch touch;
   walls_.any(world::box_around(p, reach), [&](const Segment& wall) {
@@ -221,19 +220,19 @@ Fleet::Touch Fleet::touch_of(std::uint32_t row, const Pose& X_WM, std::span<cons
   });
   std::int64_t x = 0, y = 0;
   neighbours_.any(p, reach + widest_ + farthest_, [&](std::uint32_t other) {
-    const Vec2 from_other = p - origin(reports[other].X_WM);
+    const glm::dvec2 from_other = p - origin(reports[other].X_WM);
     const double apart = reach + outlines_[other].radius;
     if (other == row || gone_[other] != 0 || dot(from_other, from_other) > apart * apart) return false;
     const std::uint32_t sectors = sectors_touched(outline, X_WM, outlines_[other], reports[other].X_WM);
     if (sectors == 0) return false;
-    const Vec2 away = kWhole * unit(from_other);
+    const glm::dvec2 away = kWhole * unit(from_other);
     x += std::llround(away.x), y += std::llround(away.y);
     touch.sectors |= sectors;
     if (!struck.empty()) std::atomic_ref(struck[other]).store(1, std::memory_order_relaxed);
     // A mover placed from outside needs its contact sectors alone: in a crowd at one place, all are found soon.
     return told_[row] != 0 && touch.sectors == kEverywhere;
   });
-  touch.away = touch.away + 1.0 / kWhole * Vec2{static_cast<double>(x), static_cast<double>(y)};
+  touch.away = touch.away + 1.0 / kWhole * glm::dvec2{static_cast<double>(x), static_cast<double>(y)};
   return touch;
 }
 

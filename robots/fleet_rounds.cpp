@@ -13,7 +13,6 @@ namespace sf::robots {
 namespace {
 
 using base::Twist;
-using base::Vec2;
 
 bool moves(const Twist& v) { return v.forward != 0.0 || v.left != 0.0 || v.turn != 0.0; }
 
@@ -112,7 +111,7 @@ void Fleet::find_near(std::uint32_t row, Scratch& scratch) const {
   scratch.rivals.clear();
   scratch.beaten = false;
   const double sweep = reach_of(row);
-  const Vec2 p{reports_[row].X_WM.x, reports_[row].X_WM.y};
+  const glm::dvec2 p{reports_[row].X_WM.x, reports_[row].X_WM.y};
   neighbours_.any(p, outlines_[row].radius + sweep + widest_ + 2.0 * farthest_, [&](std::uint32_t other) {
     if (other != row && gone_[other] == 0 &&
         comes_near(row, reports_[row].X_WM, sweep + travels_[other], other, reports_[other].X_WM))

@@ -22,7 +22,7 @@ bool near(const base::Pose& p, const base::Pose& q) {
 /// The constant twist from one pose to another in `seconds`, by the lesser turn: the inverse of `advance`.
 base::Twist twist_between(const base::Pose& from, const base::Pose& to, double seconds) {
   const double turn = base::wrap_angle(to.yaw - from.yaw);
-  const base::Vec2 chord = base::rotate(-(from.yaw + 0.5 * turn), {to.x - from.x, to.y - from.y});
+  const glm::dvec2 chord = base::rotate(-(from.yaw + 0.5 * turn), {to.x - from.x, to.y - from.y});
   const double per = 1.0 / (sinc(0.5 * turn) * seconds);
   return {per * chord.x, per * chord.y, turn / seconds};
 }
@@ -52,9 +52,9 @@ base::Twist follow(const world::Mover& mover, const base::Twist& command) {
 base::Twist approach(const world::Mover& mover, const base::Twist& now, const base::Twist& wanted, double dt) {
   if (mover.max_acceleration == HUGE_VAL && mover.max_turn_acceleration == HUGE_VAL) return wanted;
   base::Twist v = wanted;
-  const base::Vec2 change{wanted.forward - now.forward, wanted.left - now.left};
+  const glm::dvec2 change{wanted.forward - now.forward, wanted.left - now.left};
   const double most = mover.max_acceleration * dt;
-  if (const double needed = base::length(change); needed > most) {
+  if (const double needed = glm::length(change); needed > most) {
     v.forward = now.forward + most / needed * change.x;
     v.left = now.left + most / needed * change.y;
   }
@@ -68,7 +68,7 @@ base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double d
   // The integral of R(yaw + w t) v over dt is R(yaw + w dt/2) v sinc(w dt/2) dt: the chord of the arc.
   const double half = 0.5 * velocity.turn * dt;
   const double chord = sinc(half) * dt;
-  const base::Vec2 d = base::rotate(X_WM.yaw + half, {chord * velocity.forward, chord * velocity.left});
+  const glm::dvec2 d = base::rotate(X_WM.yaw + half, {chord * velocity.forward, chord * velocity.left});
   return {X_WM.x + d.x, X_WM.y + d.y, X_WM.z, base::wrap_angle(X_WM.yaw + velocity.turn * dt)};
 }
 

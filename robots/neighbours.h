@@ -22,7 +22,7 @@ class Neighbours {
   /// True as soon as `predicate(row)` is true for a row whose cell, when built, was within `reach` [m] of `p`: each is
   /// asked about once, in an order that depends on how many rows there are.
   template <class Predicate>
-  bool any(base::Vec2 p, double reach, Predicate&& predicate) const {
+  bool any(glm::dvec2 p, double reach, Predicate&& predicate) const {
     const std::int64_t x1 = cell_of(p.x + reach), y1 = cell_of(p.y + reach);
     for (std::int64_t y = cell_of(p.y - reach); y <= y1; ++y) {
       for (std::int64_t x = cell_of(p.x - reach); x <= x1; ++x) {

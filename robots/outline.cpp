@@ -10,7 +10,6 @@ namespace sf::robots {
 
 namespace {
 
-using base::Vec2;
 using world::segments_meet;
 
 bool overlap(const Edge& e, double z_min, double z_max) { return e.z_min < z_max && z_min < e.z_max; }
@@ -41,11 +40,11 @@ double largest_inradius(std::span<const Edge> edges) {
 
 // For outlines whose edges do not meet: then a chain of edges is inside as a whole or not at all, and its first corner
 // tells.
-bool any_inside(std::span<const Edge> chains, Vec2 shift, const Placed& outer) {
+bool any_inside(std::span<const Edge> chains, glm::dvec2 shift, const Placed& outer) {
   for (std::size_t i = 0; i < chains.size(); ++i) {
     const Edge& e = chains[i];
     if (i > 0 && follows(e, chains[i - 1])) continue;
-    const Vec2 p = e.a + shift;
+    const glm::dvec2 p = e.a + shift;
     if (dot(p, p) <= outer.radius * outer.radius && inside(outer.edges, p, e.z_min, e.z_max)) return true;
   }
   return false;
@@ -53,8 +52,8 @@ bool any_inside(std::span<const Edge> chains, Vec2 shift, const Placed& outer) {
 
 /// Whether all edges of q lie beyond all of p along one of a few directions: then they share no point. Quick, and says
 /// yes for most pairs that do not touch.
-bool apart(const Placed& p, const Placed& q, Vec2 d) {
-  const auto beyond = [&](Vec2 axis) {
+bool apart(const Placed& p, const Placed& q, glm::dvec2 d) {
+  const auto beyond = [&](glm::dvec2 axis) {
     double p_most = -HUGE_VAL, q_least = HUGE_VAL;
     for (const Edge& e : p.edges) p_most = std::max({p_most, dot(axis, e.a), dot(axis, e.b)});
     for (const Edge& f : q.edges) q_least = std::min({q_least, dot(axis, f.a), dot(axis, f.b)});
@@ -62,27 +61,27 @@ bool apart(const Placed& p, const Placed& q, Vec2 d) {
   };
   if (beyond(d)) return true;
   // Outward of the edges that face the other: on the right of a -> b.
-  const auto normal = [](std::span<const Edge> edges, Vec2 towards) {
-    Vec2 best{};
+  const auto normal = [](std::span<const Edge> edges, glm::dvec2 towards) {
+    glm::dvec2 best{};
     double most = 0.0;
     for (const Edge& e : edges) {
-      const Vec2 n{e.b.y - e.a.y, e.a.x - e.b.x};
+      const glm::dvec2 n{e.b.y - e.a.y, e.a.x - e.b.x};
       const double facing = dot(n, towards) * std::abs(dot(n, towards)) / dot(n, n);
       if (facing > most) most = facing, best = n;
     }
     return best;
   };
-  const Vec2 from_p = normal(p.edges, d), from_q = normal(q.edges, Vec2{} - d);
-  return beyond(from_p) || beyond(Vec2{} - from_q);
+  const glm::dvec2 from_p = normal(p.edges, d), from_q = normal(q.edges, glm::dvec2{} - d);
+  return beyond(from_p) || beyond(glm::dvec2{} - from_q);
 }
 
 }  // namespace
 
-bool inside(std::span<const Edge> edges, Vec2 p, double z_min, double z_max) {
+bool inside(std::span<const Edge> edges, glm::dvec2 p, double z_min, double z_max) {
   int winding = 0;
   for (const Edge& e : edges) {
     if (!e.solid || !overlap(e, z_min, z_max)) continue;
-    const double side = cross(e.b - e.a, p - e.a);
+    const double side = base::cross(e.b - e.a, p - e.a);
     if (e.a.y <= p.y && e.b.y > p.y && side > 0.0) ++winding;
     if (e.a.y > p.y && e.b.y <= p.y && side < 0.0) --winding;
   }
@@ -110,7 +109,7 @@ Placed place(const Outline& outline, const base::Pose& X_WM, std::span<Edge> mem
   SF_CHECK(memory.size() >= outline.edges.size(), "room for " + std::to_string(memory.size()) + " edges");
   const double c = std::cos(X_WM.yaw);
   const double s = std::sin(X_WM.yaw);
-  const auto turn = [c, s](Vec2 p) { return Vec2{c * p.x - s * p.y, s * p.x + c * p.y}; };
+  const auto turn = [c, s](glm::dvec2 p) { return glm::dvec2{c * p.x - s * p.y, s * p.x + c * p.y}; };
   for (std::size_t i = 0; i < outline.edges.size(); ++i) {
     const Edge& e = outline.edges[i];
     memory[i] = {turn(e.a), turn(e.b), e.z_min + X_WM.z, e.z_max + X_WM.z, e.solid};
@@ -119,8 +118,8 @@ Placed place(const Outline& outline, const base::Pose& X_WM, std::span<Edge> mem
 }
 
 bool touches(const Placed& placed, const world::Segment& wall) {
-  const Vec2 a = wall.a - placed.origin;
-  const Vec2 b = wall.b - placed.origin;
+  const glm::dvec2 a = wall.a - placed.origin;
+  const glm::dvec2 b = wall.b - placed.origin;
   if (world::distance({0.0, 0.0}, a, b) > placed.radius * (1.0 + 1e-12)) return false;
   for (const Edge& e : placed.edges) {
     if (overlap(e, wall.z_min, wall.z_max) && segments_meet(a, b, e.a, e.b)) return true;
@@ -129,7 +128,7 @@ bool touches(const Placed& placed, const world::Segment& wall) {
 }
 
 bool touches(const Placed& p, const Placed& q) {
-  const Vec2 d = q.origin - p.origin;
+  const glm::dvec2 d = q.origin - p.origin;
   if (dot(d, d) > (p.radius + q.radius) * (p.radius + q.radius) * (1.0 + 1e-12) || apart(p, q, d)) return false;
   for (const Edge& e : p.edges) {
     if (world::distance(d, e.a, e.b) > q.radius * (1.0 + 1e-12)) continue;
@@ -137,7 +136,7 @@ bool touches(const Placed& p, const Placed& q) {
       if (overlap(e, f.z_min, f.z_max) && segments_meet(e.a, e.b, f.a + d, f.b + d)) return true;
     }
   }
-  return any_inside(p.edges, Vec2{} - d, q) || any_inside(q.edges, d, p);
+  return any_inside(p.edges, glm::dvec2{} - d, q) || any_inside(q.edges, d, p);
 }
 
 }  // namespace sf::robots

@@ -11,8 +11,8 @@
 namespace sf::robots {
 
 struct Edge {
-  base::Vec2 a;
-  base::Vec2 b;
+  glm::dvec2 a;
+  glm::dvec2 b;
   double z_min = 0.0;
   double z_max = 0.0;  ///< [m] exclusive
   bool solid = true;   ///< part of a closed outline, the inside on the left of a -> b
@@ -33,12 +33,12 @@ Outline outline_of(const world::Mover& mover);
 
 /// Whether `p` is inside the solid outlines among `edges` that stand somewhere between the heights z_min and z_max [m].
 /// By winding number (Sunday, "Inclusion of a point in a polygon", 2001).
-bool inside(std::span<const Edge> edges, base::Vec2 p, double z_min, double z_max);
+bool inside(std::span<const Edge> edges, glm::dvec2 p, double z_min, double z_max);
 
 /// An outline put somewhere. Coordinates are relative to `origin`, so that they are as exact far from the world's
 /// origin.
 struct Placed {
-  base::Vec2 origin;    ///< [m] world frame
+  glm::dvec2 origin;    ///< [m] world frame
   double radius = 0.0;  ///< [m]
   std::span<const Edge>
       edges;  ///< turned and lifted, relative to `origin`; lives as long as the memory given to `place`

@@ -12,18 +12,17 @@ namespace sf::robots {
 namespace {
 
 using base::kTouchSectors;
-using base::Vec2;
 
 /// A piece of surface in the mover's frame; heights above the mover's origin.
 struct Surface {
-  Vec2 a, b;
+  glm::dvec2 a, b;
   double z_min, z_max;
 };
 
 /// Directions between the sectors, in the mover's frame.
-const std::array<Vec2, kTouchSectors + 1>& borders() {
+const std::array<glm::dvec2, kTouchSectors + 1>& borders() {
   static const auto table = [] {
-    std::array<Vec2, kTouchSectors + 1> directions;
+    std::array<glm::dvec2, kTouchSectors + 1> directions;
     for (std::uint32_t k = 0; k <= kTouchSectors; ++k) {
       const double bearing = 2.0 * M_PI * (k % kTouchSectors) / kTouchSectors;
       directions[k] = {std::cos(bearing), std::sin(bearing)};
@@ -51,17 +50,17 @@ void keep_positive(Part& part, double at_a, double at_b) {
 }
 
 Part within_sector(const Surface& s, std::uint32_t k) {
-  const Vec2 right = borders()[k], left = borders()[k + 1];
+  const glm::dvec2 right = borders()[k], left = borders()[k + 1];
   Part part;
-  keep_positive(part, cross(right, s.a), cross(right, s.b));
-  keep_positive(part, cross(s.a, left), cross(s.b, left));
+  keep_positive(part, base::cross(right, s.a), base::cross(right, s.b));
+  keep_positive(part, base::cross(s.a, left), base::cross(s.b, left));
   return part;
 }
 
 bool overlap(const Edge& e, const Surface& s) { return e.z_min < s.z_max && s.z_min < e.z_max; }
 
 /// Whether the segments ab and cd come within kPressed of one another.
-bool near(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+bool near(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   const auto apart = [](double p, double q, double r, double s) {
     return std::min(p, q) > std::max(r, s) + kPressed || std::min(r, s) > std::max(p, q) + kPressed;
   };
@@ -85,7 +84,7 @@ std::span<const Edge> edges_near(const Outline& outline, const Surface& s) {
 
 // A part is near an edge, or else wholly inside or outside, as its middle is.
 bool presses(const Outline& outline, std::span<const Edge> edges, const Surface& s, const Part& part) {
-  const Vec2 a = s.a + part.from * (s.b - s.a), b = s.a + part.to * (s.b - s.a);
+  const glm::dvec2 a = s.a + part.from * (s.b - s.a), b = s.a + part.to * (s.b - s.a);
   for (const Edge& e : edges)
     if (overlap(e, s) && near(a, b, e.a, e.b)) return true;
   return inside(outline.edges, 0.5 * (a + b), s.z_min, s.z_max);
@@ -106,25 +105,25 @@ std::uint32_t sectors_of(const Outline& outline, const Surface& s) {
 }  // namespace
 
 std::uint32_t sectors_touched(const Outline& outline, const base::Pose& X_WM, const world::Segment& wall) {
-  const Vec2 p{X_WM.x, X_WM.y};
+  const glm::dvec2 p{X_WM.x, X_WM.y};
   return sectors_of(outline, {base::rotate(-X_WM.yaw, wall.a - p), base::rotate(-X_WM.yaw, wall.b - p),
                               wall.z_min - X_WM.z, wall.z_max - X_WM.z});
 }
 
 std::uint32_t sectors_touched(const Outline& outline, const base::Pose& X_WM, const Outline& other,
                               const base::Pose& X_WO) {
-  const Vec2 apart = Vec2{X_WO.x, X_WO.y} - Vec2{X_WM.x, X_WM.y};
-  const Vec2 p_MO = base::rotate(-X_WM.yaw, apart);
+  const glm::dvec2 apart = glm::dvec2{X_WO.x, X_WO.y} - glm::dvec2{X_WM.x, X_WM.y};
+  const glm::dvec2 p_MO = base::rotate(-X_WM.yaw, apart);
   const double turn = X_WO.yaw - X_WM.yaw, lift = X_WO.z - X_WM.z;
   const double reach = outline.radius + kPressed;
   const double c = std::cos(turn), s = std::sin(turn);
-  const auto to_mover = [&](Vec2 q) { return p_MO + Vec2{c * q.x - s * q.y, s * q.x + c * q.y}; };
+  const auto to_mover = [&](glm::dvec2 q) { return p_MO + glm::dvec2{c * q.x - s * q.y, s * q.x + c * q.y}; };
   std::uint32_t sectors = 0;
   for (const Edge& e : other.edges)
     sectors |= sectors_of(outline, {to_mover(e.a), to_mover(e.b), e.z_min + lift, e.z_max + lift});
   if (sectors != 0 || length(apart) > reach + other.radius || outline.edges.empty()) return sectors;
   const Edge& first = outline.edges.front();
-  const Vec2 q = base::rotate(X_WM.yaw - X_WO.yaw, first.a - p_MO);
+  const glm::dvec2 q = base::rotate(X_WM.yaw - X_WO.yaw, first.a - p_MO);
   return inside(other.edges, q, first.z_min - lift, first.z_max - lift) ? ~0u : 0u;
 }
 

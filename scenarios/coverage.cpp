@@ -16,7 +16,6 @@ namespace sf::scenarios {
 namespace {
 
 using base::Pose;
-using base::Vec2;
 using maps::Cell;
 using maps::CellAt;
 
@@ -54,7 +53,7 @@ std::vector<CellAt> reachable(const world::World& world, std::uint32_t mover, co
           world, [](const world::Segment& w) { return w.stops_robots; }, robot.X_WM.z, robot.X_WM.z + top),
       0.5);
   const auto clear = [&](CellAt at) {
-    const Vec2 p = maps::middle(plan, at);
+    const glm::dvec2 p = maps::middle(plan, at);
     return !walls.any(world::box_around(p, robot.radius),
                       [&](const world::Segment& w) { return world::distance(p, w.a, w.b) < robot.radius; });
   };
@@ -73,10 +72,10 @@ std::vector<CellAt> reachable(const world::World& world, std::uint32_t mover, co
 }
 
 /// Range along a direction, at most `most` [m]: every wall in turn.
-double cast(const std::vector<world::Segment>& walls, Vec2 from, Vec2 along, double most) {
+double cast(const std::vector<world::Segment>& walls, glm::dvec2 from, glm::dvec2 along, double most) {
   double least = most;
   for (const world::Segment& wall : walls) {
-    const Vec2 side = wall.b - wall.a;
+    const glm::dvec2 side = wall.b - wall.a;
     const double across = base::cross(along, side);
     if (across == 0.0) continue;
     const double t = base::cross(wall.a - from, side) / across;
@@ -88,7 +87,7 @@ double cast(const std::vector<world::Segment>& walls, Vec2 from, Vec2 along, dou
 
 /// A place of the robot, where its laser can be when it stands there, and the walls that it may see from it.
 struct Stand {
-  Vec2 p;
+  glm::dvec2 p;
   std::vector<Pose> eyes;
   std::vector<world::Segment> near;
 };
@@ -107,7 +106,7 @@ std::vector<Stand> stands_of(const world::World& world, std::uint32_t mover, con
       if (world::distance(stand.p, wall.a, wall.b) < laser.range_max + ahead) stand.near.push_back(wall);
     for (int h = 0; h < kHeadings; ++h) {
       const Pose X_WS = base::compose({stand.p.x, stand.p.y, 0.0, 2.0 * M_PI * h / kHeadings}, laser.X_MS);
-      const Vec2 out = Vec2{X_WS.x, X_WS.y} - stand.p;
+      const glm::dvec2 out = glm::dvec2{X_WS.x, X_WS.y} - stand.p;
       // A sensor ahead of the body may stand within a wall, where it sees nothing of the room.
       if (ahead == 0.0 || cast(stand.near, stand.p, 1.0 / ahead * out, ahead) >= ahead) stand.eyes.push_back(X_WS);
     }
@@ -121,7 +120,7 @@ maps::Grid scans_from(const world::World& world, std::uint32_t mover, const maps
   const world::Laser& laser = world.movers[mover].lasers[0];
   maps::Grid grid(plan);
   std::vector<double> ranges(kBeams);
-  const std::vector<Vec2> beams = maps::beam_directions(laser.fov, kBeams);
+  const std::vector<glm::dvec2> beams = maps::beam_directions(laser.fov, kBeams);
   for (const Stand& stand : stands)
     for (const Pose& X_WS : stand.eyes) {
       for (std::uint32_t i = 0; i < kBeams; ++i)
@@ -132,12 +131,12 @@ maps::Grid scans_from(const world::World& world, std::uint32_t mover, const maps
 }
 
 /// Nothing stands between the laser and the point, which is within its range and its field of view.
-bool sees(const Stand& stand, const Pose& X_WS, const world::Laser& laser, Vec2 p) {
-  const Vec2 d = base::rotate(-X_WS.yaw, p - Vec2{X_WS.x, X_WS.y});
-  const double far = base::length(d);
+bool sees(const Stand& stand, const Pose& X_WS, const world::Laser& laser, glm::dvec2 p) {
+  const glm::dvec2 d = base::rotate(-X_WS.yaw, p - glm::dvec2{X_WS.x, X_WS.y});
+  const double far = glm::length(d);
   if (far >= laser.range_max || std::abs(std::atan2(d.y, d.x)) > 0.5 * laser.fov) return false;
   if (far == 0.0) return true;
-  const Vec2 eye{X_WS.x, X_WS.y};
+  const glm::dvec2 eye{X_WS.x, X_WS.y};
   return cast(stand.near, eye, 1.0 / far * (p - eye), far) >= far;
 }
 
@@ -151,8 +150,8 @@ void forget_hidden(const world::World& world, std::uint32_t mover, const std::ve
       if (grid.at({column, row}) == Cell::free) open.push_back({column, row});
   for (const Stand& stand : stands)
     std::erase_if(open, [&](CellAt at) {
-      const Vec2 p = maps::middle(grid.plan, at);
-      if (base::length(p - stand.p) >= reach) return false;
+      const glm::dvec2 p = maps::middle(grid.plan, at);
+      if (glm::length(p - stand.p) >= reach) return false;
       return std::any_of(stand.eyes.begin(), stand.eyes.end(),
                          [&](const Pose& X_WS) { return sees(stand, X_WS, laser, p); });
     });

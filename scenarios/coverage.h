@@ -30,7 +30,7 @@ class OwnMap {
   const world::World& world_;
   std::uint32_t mover_;
   maps::Grid grid_;
-  std::vector<base::Vec2> beams_;
+  std::vector<glm::dvec2> beams_;
 };
 
 /// Adds each scan to the map of its own mover, where there is one. @param maps by row of their movers

@@ -5,11 +5,11 @@
 namespace sf::scenarios {
 
 void DeadEnds::look(const base::Report& report, bool contact) {
-  const base::Vec2 p{report.X_WM.x, report.X_WM.y};
+  const glm::dvec2 p{report.X_WM.x, report.X_WM.y};
   time_ += interval_;
   const bool stands = report.velocity.forward == 0.0;
   const bool waits = contact && stands && report.velocity.turn == 0.0;
-  if (inside_ && base::length(p - where_) > length_) {
+  if (inside_ && glm::length(p - where_) > length_) {
     inside_ = false;
     reversals_.clear();
   }
@@ -21,15 +21,15 @@ void DeadEnds::look(const base::Report& report, bool contact) {
 
 void DeadEnds::turned(const base::Report& report, double angle) { turn({report.X_WM.x, report.X_WM.y}, angle); }
 
-void DeadEnds::turn(base::Vec2 p, double side) {
+void DeadEnds::turn(glm::dvec2 p, double side) {
   if (side == 0.0) return;
   if (side * side_ < 0.0) reverse(p);
   side_ = side;
 }
 
-void DeadEnds::reverse(base::Vec2 p) {
+void DeadEnds::reverse(glm::dvec2 p) {
   if (inside_) return;
-  std::erase_if(reversals_, [&](const Reversal& r) { return base::length(r.p - p) > length_; });
+  std::erase_if(reversals_, [&](const Reversal& r) { return glm::length(r.p - p) > length_; });
   if (reversals_.empty()) waited_ = 0.0;
   reversals_.push_back({p, time_});
   if (reversals_.size() < kReversals) return;

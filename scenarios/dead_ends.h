@@ -31,17 +31,17 @@ class DeadEnds {
 
  private:
   struct Reversal {
-    base::Vec2 p;
+    glm::dvec2 p;
     double time = 0.0;  ///< [s]
   };
-  void turn(base::Vec2 p, double side);
-  void reverse(base::Vec2 p);
+  void turn(glm::dvec2 p, double side);
+  void reverse(glm::dvec2 p);
 
   double length_, interval_;
   double time_ = 0.0, stuck_ = 0.0, stood_ = 0.0;  ///< [s]
   double side_ = 0.0;                              ///< of the last turn in place; 0: none yet
   bool inside_ = false;
-  base::Vec2 where_;
+  glm::dvec2 where_;
   std::uint32_t count_ = 0;
   std::vector<Reversal> reversals_;
   double waited_ = 0.0;  ///< [s] standing in contact since the first of `reversals_`: not to be counted twice

@@ -203,11 +203,11 @@ bool Simulation::due(Driver& driver, std::span<const base::ReadingBlock> fresh, 
 
 void Simulation::find_others(std::uint32_t mover, double radio, std::vector<control::Neighbour>& others) const {
   const std::span<const base::Report> reports = fleet_.reports();
-  const base::Vec2 here{reports[mover].X_WM.x, reports[mover].X_WM.y};
+  const glm::dvec2 here{reports[mover].X_WM.x, reports[mover].X_WM.y};
   neighbours_.any(here, radio, [&](std::uint32_t row) {
     if (row == mover || world_.movers[row].is_tag) return false;
     const base::Pose& X_WM = reports[row].X_WM;
-    if (base::length(base::Vec2{X_WM.x, X_WM.y} - here) > radio) return false;
+    if (glm::length(glm::dvec2{X_WM.x, X_WM.y} - here) > radio) return false;
     others.push_back({world_.movers[row].id, reports[row], intents_[row]});
     return false;
   });

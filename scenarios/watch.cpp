@@ -41,7 +41,7 @@ void Watch::add_lines() {
       const auto id = world::read_point_id(name);
       const auto at = id ? world::find_point(*roads, *id) : std::nullopt;
       if (!at || at->kind != world::PointRef::Kind::lane) continue;
-      const base::Vec2 p = world::position_of(*roads, *at);
+      const glm::dvec2 p = world::position_of(*roads, *at);
       const double yaw = world::yaw_of(*roads, *at).value_or(0.0);
       lines_.push_back({light, {p.x, p.y, 0.0, yaw}, 0.5 * roads->lanes[at->row].width});
     }
@@ -100,12 +100,12 @@ void Watch::look_at_lights(const base::TickRecord& tick, std::uint32_t mover) {
   const base::Pose& X_WM = tick.reports[mover].X_WM;
   const double front = fronts_[mover];
   for (const Line& line : lines_) {
-    const base::Vec2 middle{line.X_WL.x, line.X_WL.y};
+    const glm::dvec2 middle{line.X_WL.x, line.X_WL.y};
     const auto ahead = [&](const base::Pose& X) {
       return base::rotate(-line.X_WL.yaw, base::transform(X, {front, 0.0}) - middle);
     };
-    const base::Vec2 now = ahead(X_WM);
-    const base::Vec2 then = ahead(before_[mover].X_WM);
+    const glm::dvec2 now = ahead(X_WM);
+    const glm::dvec2 then = ahead(before_[mover].X_WM);
     if (then.x >= kPassed || now.x < kPassed || std::abs(now.y) > line.half_width) continue;
     if (std::cos(X_WM.yaw - line.X_WL.yaw) < 0.5) continue;
     const world::Signal shown = world::signal_at(world_.lights[line.light], 1e-9 * static_cast<double>(tick.time));

@@ -57,10 +57,10 @@ std::vector<std::uint32_t> read_bars(const world::Sensor& sensor) {
     const std::string own = fmt::format("blength[{}]", i);
     const double half = 0.5 * length(sensor, find(sensor, own) != nullptr ? own : "blength", 0.1, 0.0, 1e6);
     const double angle = sensor.radians * (*bar)[3];
-    const base::Vec2 middle{sensor.metres * (*bar)[0], sensor.metres * (*bar)[1]};
-    const base::Vec2 along = base::rotate(angle, {0.0, half});
-    const auto bearing = [&](base::Vec2 p) {
-      const base::Vec2 p_M = base::transform(sensor.X_MS, p);
+    const glm::dvec2 middle{sensor.metres * (*bar)[0], sensor.metres * (*bar)[1]};
+    const glm::dvec2 along = base::rotate(angle, {0.0, half});
+    const auto bearing = [&](glm::dvec2 p) {
+      const glm::dvec2 p_M = base::transform(sensor.X_MS, p);
       return std::atan2(p_M.y, p_M.x);
     };
     double sweep = bearing(middle + along) - bearing(middle - along);

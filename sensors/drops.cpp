@@ -7,8 +7,8 @@ namespace sf::sensors {
 namespace {
 
 Box box_of(const world::Drop& drop) {
-  Box box = world::box_around(drop.outline.empty() ? base::Vec2{} : drop.outline.front(), 0.0);
-  for (const base::Vec2 p : drop.outline) {
+  Box box = world::box_around(drop.outline.empty() ? glm::dvec2{} : drop.outline.front(), 0.0);
+  for (const glm::dvec2& p : drop.outline) {
     box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y)};
     box.max = {std::max(box.max.x, p.x), std::max(box.max.y, p.y)};
   }
@@ -23,15 +23,15 @@ std::vector<Box> boxes_of(std::span<const world::Drop> drops) {
 
 /// Whether the edge from `a` to `b` passes `p` on its right, along +x. Both ends are seen from `p` and in one order, so
 /// that neighbours that share the edge decide alike.
-bool passes(base::Vec2 a, base::Vec2 b, base::Vec2 p) {
+bool passes(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) {
   if ((a.y <= p.y) == (b.y <= p.y)) return false;
   if (a.y > b.y) std::swap(a, b);
-  return cross(b - a, p - a) > 0.0;
+  return base::cross(b - a, p - a) > 0.0;
 }
 
 }  // namespace
 
-bool holds(std::span<const base::Vec2> outline, base::Vec2 p) {
+bool holds(std::span<const glm::dvec2> outline, glm::dvec2 p) {
   bool inside = false;
   for (std::size_t i = 0; i < outline.size(); ++i) inside ^= passes(outline[i], outline[(i + 1) % outline.size()], p);
   return inside;
@@ -39,7 +39,7 @@ bool holds(std::span<const base::Vec2> outline, base::Vec2 p) {
 
 Drops::Drops(std::span<const world::Drop> drops) : drops_(drops), boxes_(boxes_of(drops)) {}
 
-bool Drops::hold(base::Vec2 p) const {
+bool Drops::hold(glm::dvec2 p) const {
   return boxes_.any(world::box_around(p, 0.0), [&](std::uint32_t i) { return holds(drops_[i].outline, p); });
 }
 

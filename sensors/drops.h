@@ -11,14 +11,14 @@ namespace sf::sensors {
 
 /// Whether `p` is within the closed polygon `outline`, either winding. Decided by the sign of one product for each
 /// edge: of polygons that share edges, exactly one holds a point on these.
-bool holds(std::span<const base::Vec2> outline, base::Vec2 p);
+bool holds(std::span<const glm::dvec2> outline, glm::dvec2 p);
 
 /// The drops of a world, which must outlive it. Any thread.
 class Drops {
  public:
   explicit Drops(std::span<const world::Drop> drops);
   /// True where one of them holds `p`.
-  bool hold(base::Vec2 p) const;
+  bool hold(glm::dvec2 p) const;
 
  private:
   std::span<const world::Drop> drops_;

@@ -58,7 +58,7 @@ void GpsReceivers::measure(std::span<const Sight> sights) const {
 void GpsReceivers::measure(const Sight& sight) const {
   const Receiver& receiver = receivers_[sight.row];
   const SensorRow& row = rows()[sight.row];
-  const base::Vec2 p{sight.X_WS.x, sight.X_WS.y};
+  const glm::dvec2 p{sight.X_WS.x, sight.X_WS.y};
   std::uint64_t seen = 0;
   for (std::size_t i = 0; i < receiver.satellites.size(); ++i)
     if (sky_.sees(p, sight.X_WS.z, receiver.satellites[i])) seen |= std::uint64_t{1} << i;
@@ -69,11 +69,11 @@ void GpsReceivers::measure(const Sight& sight) const {
   out[3] = std::popcount(seen);
   const auto fix = dilution(receiver.satellites, seen);
   if (!fix) return;
-  base::Vec2 error;
+  glm::dvec2 error;
   if (receiver.noise > 0.0) {
     const auto [n, m] =
         base::random_normal({seed(), base::Stream::satellites, row.mover, row.sensor, sight.sequence}, 0);
-    error = receiver.noise * base::Vec2{fix->xx * n, fix->yx * n + fix->yy * m};
+    error = receiver.noise * glm::dvec2{fix->xx * n, fix->yx * n + fix->yy * m};
   }
   out[0] = p.x + error.x;
   out[1] = p.y + error.y;

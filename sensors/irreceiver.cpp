@@ -13,7 +13,6 @@ namespace sf::sensors {
 
 namespace {
 
-using base::Vec2;
 using world::Emitter;
 using world::Segment;
 
@@ -46,7 +45,7 @@ class IrReceivers : public HostInstruments {
 
  private:
   void measure(std::span<const Sight> sights) const override;
-  bool hidden(const Emitter& emitter, Vec2 p, double z) const;
+  bool hidden(const Emitter& emitter, glm::dvec2 p, double z) const;
 
   world::WallGrid walls_;
   BoxTree reaches_;  ///< of the world's emitters
@@ -66,8 +65,8 @@ IrReceivers::IrReceivers(const Site& site)
       walls_(opaque(site.world), kCell),
       reaches_(reaches_of(site.world)) {}
 
-bool IrReceivers::hidden(const Emitter& emitter, Vec2 p, double z) const {
-  const Vec2 e{emitter.X_WE.x, emitter.X_WE.y};
+bool IrReceivers::hidden(const Emitter& emitter, glm::dvec2 p, double z) const {
+  const glm::dvec2 e{emitter.X_WE.x, emitter.X_WE.y};
   return walls_.any(world::box_of(p, e), [&](const Segment& wall) {
     return wall.model != emitter.model && wall.z_min <= z && z < wall.z_max &&
            world::segments_meet(e, p, wall.a, wall.b);
@@ -76,7 +75,7 @@ bool IrReceivers::hidden(const Emitter& emitter, Vec2 p, double z) const {
 
 void IrReceivers::measure(std::span<const Sight> sights) const {
   for (const Sight& sight : sights) {
-    const Vec2 p{sight.X_WS.x, sight.X_WS.y};
+    const glm::dvec2 p{sight.X_WS.x, sight.X_WS.y};
     std::uint32_t walls = 0, docks = 0;
     reaches_.any(world::box_around(p, 0.0), [&](std::uint32_t i) {
       const Emitter& emitter = world().emitters[i];
@@ -96,9 +95,9 @@ constexpr PlainForm kForm{kIrReceiver, "irreceiver", kNumbers};
 
 }  // namespace
 
-std::uint32_t light_of(const Emitter& emitter, Vec2 p) {
-  const Vec2 from{p.x - emitter.X_WE.x, p.y - emitter.X_WE.y};
-  const double distance = base::length(from);
+std::uint32_t light_of(const Emitter& emitter, glm::dvec2 p) {
+  const glm::dvec2 from{p.x - emitter.X_WE.x, p.y - emitter.X_WE.y};
+  const double distance = glm::length(from);
   const bool reached = distance <= emitter.range;
   const bool near = emitter.halo > 0.0 && distance <= emitter.halo;
   const double bearing = std::atan2(from.y, from.x) - emitter.X_WE.yaw;

@@ -23,7 +23,7 @@ inline constexpr std::uint32_t kForceField = 2;
 
 /// What of one emitter's light is at a point of the plane, walls aside.
 /// @return a virtual wall: 1 in its beam or halo; a dock: bits kRedBuoy, kGreenBuoy, kForceField; 0: none
-std::uint32_t light_of(const world::Emitter& emitter, base::Vec2 p);
+std::uint32_t light_of(const world::Emitter& emitter, glm::dvec2 p);
 
 extern const SensorKind irreceiver_kind;
 

@@ -32,7 +32,7 @@ world::LaserNoise noise_of(const world::Sensor& sensor) {
 
 /// The robot's axis nearest to where the fan's middle looks; its sides before its front and back.
 double nearest_axis(double yaw) {
-  const base::Vec2 d = base::rotate(yaw, {1.0, 0.0});
+  const glm::dvec2 d = base::rotate(yaw, {1.0, 0.0});
   if (std::fabs(d.y) >= std::fabs(d.x) * (1.0 - 1e-9)) return d.y >= 0.0 ? 0.5 * M_PI : -0.5 * M_PI;
   return d.x >= 0.0 ? 0.0 : M_PI;
 }

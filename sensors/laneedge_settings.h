@@ -12,7 +12,7 @@ namespace sf::sensors {
 struct LaneEdge {
   SensorRow row;
   world::Laser fan;           ///< its rays; X_MS at half of the model's height
-  base::Vec2 perpendicular;   ///< unit vector in the sensor's frame along which the distance is meant
+  glm::dvec2 perpendicular;   ///< unit vector in the sensor's frame along which the distance is meant
   bool single = false;        ///< one or two rays: the first one's range is the reading
   double distance_max = 0.0;  ///< [m] an edge farther away is out of sight
 };

@@ -7,11 +7,7 @@
 
 namespace sf::sensors {
 
-namespace {
-
-using base::Vec2;
-
-}  // namespace
+namespace {}  // namespace
 
 LaserReference::LaserReference(const world::World& world, std::uint64_t seed, bool noise)
     : world_(world), seed_(seed), noise_(noise) {
@@ -23,7 +19,7 @@ void LaserReference::place(std::span<const Pose> poses) { poses_.assign(poses.be
 std::vector<LaserReference::Seen> LaserReference::in_sight(std::uint32_t self, const Pose& X_WS, double range) const {
   std::vector<Seen> surfaces;
   const double reach = 1.001 * range + 1e-3;
-  const auto add = [&](Vec2 a, Vec2 b, std::uint32_t id, std::uint32_t model) {
+  const auto add = [&](glm::dvec2 a, glm::dvec2 b, std::uint32_t id, std::uint32_t model) {
     const bool aside = std::max(a.x, b.x) < X_WS.x - reach || std::min(a.x, b.x) > X_WS.x + reach ||
                        std::max(a.y, b.y) < X_WS.y - reach || std::min(a.y, b.y) > X_WS.y + reach;
     if (!aside) surfaces.push_back({{{a.x, a.y, b.x, b.y}, id}, model});
@@ -56,13 +52,13 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t las
   draw_turns(l, plan, {seed_, base::Stream::angle_noise, mover, laser, sequence}, turns);
 
   const std::vector<Seen> surfaces = in_sight(mover, scan.X_WS, l.range_max);
-  const Vec2 heading{std::cos(scan.X_WS.yaw), std::sin(scan.X_WS.yaw)};
+  const glm::dvec2 heading{std::cos(scan.X_WS.yaw), std::sin(scan.X_WS.yaw)};
   std::vector<double> ranges(SF_BEAMS_PER_LANE * std::size_t{plan.lanes()});
   std::vector<std::uint32_t> hits(ranges.size());
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {
     const double bearing = world::bearing_of(l, plan.samples[k]) + (turns.empty() ? 0.0 : turns[k]);
-    const Vec2 beam{std::cos(bearing), std::sin(bearing)};
-    const Vec2 d{heading.x * beam.x - heading.y * beam.y, heading.y * beam.x + heading.x * beam.y};
+    const glm::dvec2 beam{std::cos(bearing), std::sin(bearing)};
+    const glm::dvec2 d{heading.x * beam.x - heading.y * beam.y, heading.y * beam.x + heading.x * beam.y};
     raycast::Decision nearest{l.range_max};
     std::uint32_t model = SF_NO_HIT;
     for (const Seen& seen : surfaces) {

@@ -24,7 +24,7 @@ struct Array {
   FieldBound bound;                ///< the largest of its elements'
   double height = 0.0;             ///< [m] of its origin in the world, fixed at load: the world is 2.5-D
   std::size_t values = 0;          ///< first of its results
-  std::vector<base::Vec2> facing;  ///< of each element: its x axis in the sensor's frame
+  std::vector<glm::dvec2> facing;  ///< of each element: its x axis in the sensor's frame
 };
 
 std::vector<Array> arrays_of(const world::World& world) {
@@ -49,7 +49,7 @@ std::vector<Array> arrays_of(const world::World& world) {
 }
 
 /// `p` in a frame whose x axis is `facing`, of unit length.
-base::Vec2 along(base::Vec2 facing, base::Vec2 p) { return {base::dot(facing, p), base::cross(facing, p)}; }
+glm::dvec2 along(glm::dvec2 facing, glm::dvec2 p) { return {glm::dot(facing, p), base::cross(facing, p)}; }
 
 bool any_magnitudes(const std::vector<Array>& arrays) {
   return std::any_of(arrays.begin(), arrays.end(), [](const Array& a) { return a.settings.magnitudes; });
@@ -127,11 +127,11 @@ Work Magnetometers::work() const {
 
 void Magnetometers::add_places(const Array& array, const Pose& X_WS) {
   Wave& wave = waves_.at(array.row.mode);
-  const base::Vec2 x_S = base::rotate(X_WS.yaw, {1.0, 0.0});
+  const glm::dvec2 x_S = base::rotate(X_WS.yaw, {1.0, 0.0});
   groups_.push_back(static_cast<std::uint32_t>(wave.ends.size()));
   const auto& X_SE = array.settings.X_SE;
   for (std::size_t i = 0; i < X_SE.size(); ++i) {
-    const base::Vec2 p{x_S.x * X_SE[i].x - x_S.y * X_SE[i].y, x_S.y * X_SE[i].x + x_S.x * X_SE[i].y};
+    const glm::dvec2 p{x_S.x * X_SE[i].x - x_S.y * X_SE[i].y, x_S.y * X_SE[i].x + x_S.x * X_SE[i].y};
     wave.places.push_back({X_WS.x + p.x, X_WS.y + p.y, X_WS.z + X_SE[i].z});
     const bool full = (i + 1) % SF_FIELD_PLACES == 0 || i + 1 == X_SE.size();
     if (full) wave.ends.push_back(static_cast<std::uint32_t>(wave.places.size()));
@@ -160,11 +160,11 @@ void Magnetometers::read(std::size_t i) {
   const Magnetometer& m = array.settings;
   const base::Draw draw{seed_, base::Stream::field_noise, array.row.mover, array.row.sensor, due.sequence};
   const MagneticField& field = waves_.at(array.row.mode).field;
-  const base::Vec2 facing = base::rotate(X_WS_[i].yaw, {1.0, 0.0});
+  const glm::dvec2 facing = base::rotate(X_WS_[i].yaw, {1.0, 0.0});
   for (std::uint32_t e = 0; e < m.X_SE.size(); ++e) {
     const FieldSum sum = field.at(groups_[i] + e / SF_FIELD_PLACES, e % SF_FIELD_PLACES);
-    const base::Vec2 b_S = along(facing, {sum.x, sum.y});
-    const base::Vec2 b_E = along(array.facing[e], b_S);
+    const glm::dvec2 b_S = along(facing, {sum.x, sum.y});
+    const glm::dvec2 b_E = along(array.facing[e], b_S);
     std::array<double, 3> b{b_E.x, b_E.y, sum.z};
     double extra = 0.0;
     if (noise_ && m.sigma > 0.0) {

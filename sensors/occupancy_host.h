@@ -31,7 +31,7 @@ class HostMaps {
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   struct Map {
     MapPlan plan;
-    std::vector<base::Vec2> beams;
+    std::vector<glm::dvec2> beams;
     maps::Grid grid;  ///< its words; with log odds, what they come to
     std::optional<maps::OddsGrid> odds;
     maps::Grid covered;  ///< scratch, with log odds

@@ -25,7 +25,7 @@ struct MapPlace {
   MapPlan plan;
   std::uint32_t words = 0;                         ///< its first
   std::uint32_t lines = 0;                         ///< its first pair of beams
-  const std::vector<base::Vec2>* beams = nullptr;  ///< lasers with the same fan share them
+  const std::vector<glm::dvec2>* beams = nullptr;  ///< lasers with the same fan share them
 };
 
 /// One dispatch: blocks of eight lanes.
@@ -64,7 +64,7 @@ struct MapBatch::Tables {
   std::size_t all_words = 0, all_lines = 0;  ///< on the device
   std::vector<MapScan> scans;                ///< of this time, likewise
   std::vector<std::uint32_t> wanted;         ///< likewise
-  std::map<std::pair<double, std::uint32_t>, std::vector<base::Vec2>> fans;
+  std::map<std::pair<double, std::uint32_t>, std::vector<glm::dvec2>> fans;
   MapCourse strips;
   MapWords plain;
   MapWords weighed;

@@ -14,8 +14,8 @@ constexpr std::uint64_t kMostSteps = 1024;  // drawn one by one; a longer way at
 Rolled roll(const base::Pose& before, const base::Pose& after, double track) {
   const double turn = base::wrap_angle(after.yaw - before.yaw);
   const double half = 0.5 * turn;
-  const base::Vec2 chord{after.x - before.x, after.y - before.y};
-  const double along = base::dot(chord, base::rotate(before.yaw + half, {1.0, 0.0}));
+  const glm::dvec2 chord{after.x - before.x, after.y - before.y};
+  const double along = glm::dot(chord, base::rotate(before.yaw + half, {1.0, 0.0}));
   const double arc = along * (std::abs(half) < 1e-4 ? 1.0 + half * half / 6.0 : half / std::sin(half));
   return {arc - 0.5 * track * turn, arc + 0.5 * track * turn};
 }

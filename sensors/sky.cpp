@@ -12,7 +12,6 @@ namespace sf::sensors {
 
 namespace {
 
-using base::Vec2;
 using world::Segment;
 
 constexpr double kMask = 15.0 * M_PI / 180.0;  // [rad] no satellite stands lower
@@ -106,33 +105,33 @@ void Sky::add_solids(std::span<const Segment> walls) {
   boxes_ = BoxTree(boxes);
 }
 
-bool Sky::crosses(Vec2 p, double z, const Satellite& satellite, const Segment& wall) const {
-  const Vec2 along = wall.b - wall.a, to = wall.a - p;
-  const double turn = cross(satellite.flat, along);
+bool Sky::crosses(glm::dvec2 p, double z, const Satellite& satellite, const Segment& wall) const {
+  const glm::dvec2 along = wall.b - wall.a, to = wall.a - p;
+  const double turn = base::cross(satellite.flat, along);
   if (turn == 0.0) return false;  // edge on
-  const double way = cross(to, along) / turn;
-  const double t = cross(to, satellite.flat) / turn;
+  const double way = base::cross(to, along) / turn;
+  const double t = base::cross(to, satellite.flat) / turn;
   if (way < 0.0 || t < 0.0 || t > 1.0) return false;
   const double height = z + way * satellite.rise;
   return height >= wall.z_min && height < wall.z_max;
 }
 
-bool Sky::under(Vec2 p, double z, const Satellite& satellite, const Solid& solid) const {
+bool Sky::under(glm::dvec2 p, double z, const Satellite& satellite, const Solid& solid) const {
   if (solid.z_min <= z) return false;
-  const Vec2 q = p + (solid.z_min - z) / satellite.rise * satellite.flat;
+  const glm::dvec2 q = p + (solid.z_min - z) / satellite.rise * satellite.flat;
   return world::windings(std::span(solid_edges_).subspan(solid.first, solid.last - solid.first), q) > 0;
 }
 
-bool Sky::sees(Vec2 p, double z, const Satellite& satellite) const {
+bool Sky::sees(glm::dvec2 p, double z, const Satellite& satellite) const {
   const double way = (z_top_ - z) / satellite.rise;
   if (!(way > 0.0)) return true;
-  const Vec2 end = p + way * satellite.flat;
+  const glm::dvec2 end = p + way * satellite.flat;
   const bool roofed =
       boxes_.any(world::box_of(p, end), [&](std::uint32_t i) { return under(p, z, satellite, solids_[i]); });
   if (roofed) return false;
   const int pieces = static_cast<int>(std::min(std::ceil(way / cell_), kMostPieces));
   for (int i = 0; i < pieces; ++i) {
-    const Vec2 from = p + way * i / pieces * satellite.flat, to = p + way * (i + 1) / pieces * satellite.flat;
+    const glm::dvec2 from = p + way * i / pieces * satellite.flat, to = p + way * (i + 1) / pieces * satellite.flat;
     if (walls_.any(world::box_of(from, to), [&](const Segment& wall) { return crosses(p, z, satellite, wall); }))
       return false;
   }

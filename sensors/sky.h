@@ -22,7 +22,7 @@ namespace sf::sensors {
 
 /// Where one satellite stands, as seen from anywhere.
 struct Satellite {
-  base::Vec2 flat;    ///< [-] unit vector along the ground
+  glm::dvec2 flat;    ///< [-] unit vector along the ground
   double rise = 1.0;  ///< [-] > 0: tangent of its elevation
 };
 
@@ -47,7 +47,7 @@ class Sky {
  public:
   explicit Sky(const world::World& world);
   /// @param z [m] height of the antenna
-  bool sees(base::Vec2 p, double z, const Satellite& satellite) const;
+  bool sees(glm::dvec2 p, double z, const Satellite& satellite) const;
 
  private:
   explicit Sky(std::vector<world::Segment> walls);
@@ -57,8 +57,8 @@ class Sky {
     double z_min = 0.0;
   };
   void add_solids(std::span<const world::Segment> walls);
-  bool crosses(base::Vec2 p, double z, const Satellite& satellite, const world::Segment& wall) const;
-  bool under(base::Vec2 p, double z, const Satellite& satellite, const Solid& solid) const;
+  bool crosses(glm::dvec2 p, double z, const Satellite& satellite, const world::Segment& wall) const;
+  bool under(glm::dvec2 p, double z, const Satellite& satellite, const Solid& solid) const;
 
   double cell_ = 1.0;
   double z_top_ = 0.0;  ///< [m] nothing reaches higher

@@ -59,7 +59,7 @@ void draw_frame(Canvas& canvas, const PixelBox& plot) {
   const double y0 = plot.y_min - 0.5;
   const double x1 = plot.x_max + 0.5;
   const double y1 = plot.y_max + 0.5;
-  const Vec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
+  const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
   canvas.polyline(corners, 1.0, kFrame);
 }
 
@@ -109,7 +109,7 @@ void draw_bar(Canvas& canvas, const FigureLayout& at, const ColorBar& bar) {
   const double y0 = y1 - high;
   std::vector<std::uint32_t> colors(bar.colors.rbegin(), bar.colors.rend());
   canvas.image({x0, y0}, {x1, y1}, {1, static_cast<int>(colors.size()), colors});
-  const Vec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
+  const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
   canvas.polyline(corners, 1.0, kFrame);
   TextStyle style = small_text();
   style.down = Anchor::start;
@@ -128,10 +128,10 @@ Axes::Axes(FigurePlan plan)
     : plan_(std::move(plan)), layout_(lay_out(plan_)), canvas_(layout_.width, layout_.height, 0xFFFFFFFFu) {
   canvas_.clip(layout_.plot);
   const PixelBox& p = layout_.plot;
-  const Vec2 corners[] = {{p.x_min + 0.0, p.y_min + 0.0},
-                          {p.x_max + 0.0, p.y_min + 0.0},
-                          {p.x_max + 0.0, p.y_max + 0.0},
-                          {p.x_min + 0.0, p.y_max + 0.0}};
+  const glm::dvec2 corners[] = {{p.x_min + 0.0, p.y_min + 0.0},
+                                {p.x_max + 0.0, p.y_min + 0.0},
+                                {p.x_max + 0.0, p.y_max + 0.0},
+                                {p.x_min + 0.0, p.y_max + 0.0}};
   canvas_.polygon(corners, plan_.background);
   draw_grid(canvas_, layout_);
 }

@@ -57,7 +57,7 @@ class Axes {
   Canvas& canvas() { return canvas_; }
   const FigureLayout& layout() const { return layout_; }
   /// [px] of a point of the world [m].
-  Vec2 pixel(Vec2 p_W) const {
+  glm::dvec2 pixel(glm::dvec2 p_W) const {
     return {layout_.plot.x_min + (p_W.x - layout_.shown.x_min) * layout_.scale,
             layout_.plot.y_max - (p_W.y - layout_.shown.y_min) * layout_.scale};
   }

@@ -12,7 +12,7 @@ namespace {
 using world::Mover;
 
 void draw_heading(Axes& axes, const Mover& mover, double reach, double line_width, std::uint32_t color) {
-  const Vec2 at = axes.pixel({mover.X_WM.x, mover.X_WM.y});
+  const glm::dvec2 at = axes.pixel({mover.X_WM.x, mover.X_WM.y});
   axes.canvas().line(at, at + base::rotate(-mover.X_WM.yaw, {reach, 0.0}), line_width, color);
 }
 

@@ -54,9 +54,9 @@ double anchored(double at, double size, Anchor anchor) {
   return anchor == Anchor::middle ? at - 0.5 * size : at - size;
 }
 
-std::vector<Vec2> circle(Vec2 center, double radius) {
+std::vector<glm::dvec2> circle(glm::dvec2 center, double radius) {
   const int corners = std::clamp(static_cast<int>(4.0 * radius), 16, 360);
-  std::vector<Vec2> points;
+  std::vector<glm::dvec2> points;
   points.reserve(static_cast<std::size_t>(corners));
   for (int i = 0; i < corners; ++i) points.push_back(center + base::rotate(2.0 * M_PI * i / corners, {radius, 0.0}));
   return points;
@@ -109,7 +109,7 @@ struct Canvas::Surface {
   PixelBox clip;
 };
 
-Vec2 text_size(const std::string& text, const TextStyle& style) {
+glm::dvec2 text_size(const std::string& text, const TextStyle& style) {
   if (text.empty()) return {};
   const Stencil stencil = stencil_of(text, style);
   return {static_cast<double>(stencil.width), static_cast<double>(stencil.height)};
@@ -136,7 +136,7 @@ void Canvas::clip(const PixelBox& box) {
 }
 void Canvas::unclip() { surface_->clip = {0, 0, width(), height()}; }
 
-void Canvas::polyline(std::span<const Vec2> points, double line_width, std::uint32_t color) {
+void Canvas::polyline(std::span<const glm::dvec2> points, double line_width, std::uint32_t color) {
   if (points.size() == 1) add_line(surface_->strokes, surface_->clip, points[0], points[0], line_width);
   for (std::size_t i = 0; i + 1 < points.size(); ++i)
     add_line(surface_->strokes, surface_->clip, points[i], points[i + 1], line_width);
@@ -148,12 +148,12 @@ void Canvas::lines(std::span<const Line> lines, double line_width, std::uint32_t
   surface_->paint(surface_->strokes, false, color);
 }
 
-void Canvas::line(Vec2 a, Vec2 b, double line_width, std::uint32_t color) {
+void Canvas::line(glm::dvec2 a, glm::dvec2 b, double line_width, std::uint32_t color) {
   const Line one{a, b};
   lines({&one, 1}, line_width, color);
 }
 
-void Canvas::polygon(std::span<const Vec2> points, std::uint32_t color) {
+void Canvas::polygon(std::span<const glm::dvec2> points, std::uint32_t color) {
   for (std::size_t i = 0; i < points.size(); ++i)
     add_edge(surface_->areas, surface_->clip, points[i], points[(i + 1) % points.size()]);
   surface_->paint(surface_->areas, true, color);
@@ -164,15 +164,15 @@ void Canvas::area(std::span<const Line> edges, std::uint32_t color) {
   surface_->paint(surface_->areas, true, color);
 }
 
-void Canvas::disc(Vec2 center, double radius, std::uint32_t color) { polygon(circle(center, radius), color); }
+void Canvas::disc(glm::dvec2 center, double radius, std::uint32_t color) { polygon(circle(center, radius), color); }
 
-void Canvas::ring(Vec2 center, double radius, double line_width, std::uint32_t color) {
-  std::vector<Vec2> points = circle(center, radius);
+void Canvas::ring(glm::dvec2 center, double radius, double line_width, std::uint32_t color) {
+  std::vector<glm::dvec2> points = circle(center, radius);
   points.push_back(points.front());
   polyline(points, line_width, color);
 }
 
-void Canvas::text(Vec2 at, const std::string& text, const TextStyle& style) {
+void Canvas::text(glm::dvec2 at, const std::string& text, const TextStyle& style) {
   if (text.empty()) return;
   const Stencil letters = stencil_of(text, style);
   const int left = static_cast<int>(std::lround(anchored(at.x, letters.width, style.across)));
@@ -185,12 +185,12 @@ void Canvas::text(Vec2 at, const std::string& text, const TextStyle& style) {
   surface_->stamp(letters, left, top, style.color, 1.0f);
 }
 
-void Canvas::image(Vec2 from, Vec2 to, const Cells& cells) {
+void Canvas::image(glm::dvec2 from, glm::dvec2 to, const Cells& cells) {
   SF_CHECK(cells.columns > 0 && cells.rows > 0 && to.x > from.x && to.y > from.y &&
                cells.colors.size() == static_cast<std::size_t>(cells.columns) * static_cast<std::size_t>(cells.rows),
            "image of " + std::to_string(cells.columns) + " x " + std::to_string(cells.rows));
   const PixelBox& clip = surface_->clip;
-  const Vec2 step{cells.columns / (to.x - from.x), cells.rows / (to.y - from.y)};
+  const glm::dvec2 step{cells.columns / (to.x - from.x), cells.rows / (to.y - from.y)};
   const int y_end = std::min(clip.y_max, static_cast<int>(std::ceil(to.y)));
   const int x_end = std::min(clip.x_max, static_cast<int>(std::ceil(to.x)));
   for (int y = std::max(clip.y_min, static_cast<int>(std::floor(from.y))); y < y_end; ++y) {

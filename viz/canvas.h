@@ -19,8 +19,8 @@ namespace sf::viz {
 
 /// A straight line between two points, in pixels or in metres as the user of it says.
 struct Line {
-  Vec2 a;
-  Vec2 b;
+  glm::dvec2 a;
+  glm::dvec2 b;
 };
 
 /// Where the given point lies on the text's box.
@@ -37,7 +37,7 @@ struct TextStyle {
 };
 
 /// [px] width and height of the box that `text` (UTF-8, one line) takes on the picture.
-Vec2 text_size(const std::string& text, const TextStyle& style);
+glm::dvec2 text_size(const std::string& text, const TextStyle& style);
 
 class Canvas {
  public:
@@ -55,23 +55,23 @@ class Canvas {
   void unclip();
 
   /// A line through all points, with round joins and ends. @param line_width [px] > 0
-  void polyline(std::span<const Vec2> points, double line_width, std::uint32_t color);
+  void polyline(std::span<const glm::dvec2> points, double line_width, std::uint32_t color);
   /// The union of many lines, painted once. @param line_width [px] > 0
   void lines(std::span<const Line> lines, double line_width, std::uint32_t color);
-  void line(Vec2 a, Vec2 b, double line_width, std::uint32_t color);
+  void line(glm::dvec2 a, glm::dvec2 b, double line_width, std::uint32_t color);
 
   /// A closed polygon, first point not repeated.
-  void polygon(std::span<const Vec2> points, std::uint32_t color);
+  void polygon(std::span<const glm::dvec2> points, std::uint32_t color);
   /// Areas given by the directed edges of closed outlines in any order; outlines of one direction make their union.
   void area(std::span<const Line> edges, std::uint32_t color);
-  void disc(Vec2 center, double radius, std::uint32_t color);
-  void ring(Vec2 center, double radius, double line_width, std::uint32_t color);
+  void disc(glm::dvec2 center, double radius, std::uint32_t color);
+  void ring(glm::dvec2 center, double radius, double line_width, std::uint32_t color);
 
-  void text(Vec2 at, const std::string& text, const TextStyle& style);
+  void text(glm::dvec2 at, const std::string& text, const TextStyle& style);
 
   /// Spreads `cells`, the top row first, over [from, to): repeated where a cell is larger than a pixel, averaged where
   /// smaller.
-  void image(Vec2 from, Vec2 to, const Cells& cells);
+  void image(glm::dvec2 from, glm::dvec2 to, const Cells& cells);
 
   /// 0xFFRRGGBB of a pixel inside the picture.
   std::uint32_t pixel(int x, int y) const;

@@ -8,7 +8,7 @@
 namespace sf::viz {
 
 void draw_fan(Axes& axes, const base::Pose& X_WF, double from, double to, double reach, const FanLook& look) {
-  std::vector<Vec2> outline;
+  std::vector<glm::dvec2> outline;
   if (to - from < 2.0 * M_PI - 1e-3) outline.push_back(axes.pixel({X_WF.x, X_WF.y}));
   for (int i = 0; i <= look.sides; ++i) {
     const double bearing = from + (to - from) * i / look.sides;

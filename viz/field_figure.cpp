@@ -37,7 +37,7 @@ struct Plot {
   PixelBox box;
   double x0 = 0.0, x1 = 1.0, y0 = 0.0, y1 = 1.0;
 
-  Vec2 pixel(Vec2 p) const {
+  glm::dvec2 pixel(glm::dvec2 p) const {
     return {box.x_min + (p.x - x0) / (x1 - x0) * (box.x_max - box.x_min),
             box.y_max - (p.y - y0) / (y1 - y0) * (box.y_max - box.y_min)};
   }
@@ -48,7 +48,7 @@ double crisp(double pixel) { return std::floor(pixel) + 0.5; }
 
 void draw_box(Canvas& canvas, const PixelBox& b) {
   const double x0 = b.x_min - 0.5, y0 = b.y_min - 0.5, x1 = b.x_max + 0.5, y1 = b.y_max + 0.5;
-  const Vec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
+  const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
   canvas.polyline(corners, 1.0, kFrame);
 }
 
@@ -139,7 +139,7 @@ std::vector<world::Magnet> all_magnets(const world::World& world) {
 void draw_marks(Canvas& canvas, const world::World& world, const Plot& map) {
   const double scale = (map.box.x_max - map.box.x_min) / (map.x1 - map.x0);
   std::vector<world::Magnet> shown;
-  Vec2 low{1e300, 1e300}, high{-1e300, -1e300};
+  glm::dvec2 low{1e300, 1e300}, high{-1e300, -1e300};
   for (const world::Magnet& m : all_magnets(world)) {
     if (m.p.x < map.x0 || m.p.x > map.x1 || m.p.y < map.y0 || m.p.y > map.y1) continue;
     low = {std::min(low.x, m.p.x), std::min(low.y, m.p.y)};
@@ -182,7 +182,7 @@ void draw_map(Canvas& canvas, const world::World& world, const FieldView& view, 
 
 void draw_curve(Canvas& canvas, const Plot& plot, const std::vector<ProfilePoint>& profile, std::uint32_t color,
                 double (*value)(const ProfilePoint&)) {
-  std::vector<Vec2> points;
+  std::vector<glm::dvec2> points;
   for (const ProfilePoint& p : profile) points.push_back(plot.pixel({p.along, value(p)}));
   canvas.polyline(points, 2.2, color);
 }
@@ -196,7 +196,7 @@ const std::array<LegendItem, 2> kCurves{{{Sample::line, kVectors, "magnets summe
 void draw_profile(Canvas& canvas, const FieldView& view, const FieldSamples& samples, Plot plot) {
   double top = 0.0;
   for (const ProfilePoint& p : samples.profile) top = std::max({top, vectors(p), magnitudes(p)});
-  plot.x1 = base::length(view.line.b - view.line.a);
+  plot.x1 = glm::length(view.line.b - view.line.a);
   plot.y1 = top > 0.0 ? 1.06 * top : 1.0;
   draw_axes(canvas, plot,
             fmt::format("along the line from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) [m]", view.line.a.x, view.line.a.y,

@@ -39,7 +39,7 @@ FieldView field_view(const world::World& world, const FieldWish& wish);
 /// The field along the profile's line.
 struct ProfilePoint {
   double along = 0.0;       ///< [m] from the line's start
-  Vec2 p;                   ///< [m]
+  glm::dvec2 p;             ///< [m]
   sensors::FieldSum field;  ///< [T], the sum of magnitudes too
 };
 

@@ -31,7 +31,7 @@ struct MagnetBox {
   Extent flat{1e300, 1e300, -1e300, -1e300};
   double low = 1e300, high = -1e300;
 
-  void add(Vec2 p, double z) {
+  void add(glm::dvec2 p, double z) {
     flat = {std::min(flat.x_min, p.x), std::min(flat.y_min, p.y), std::max(flat.x_max, p.x), std::max(flat.y_max, p.y)};
     low = std::min(low, z);
     high = std::max(high, z);
@@ -58,7 +58,7 @@ Extent default_extent(const MagnetBox& box, double height) {
 
 Line default_line(const MagnetBox& box, const Extent& shown) {
   const Extent& b = box.flat;
-  const Vec2 middle{0.5 * (b.x_min + b.x_max), 0.5 * (b.y_min + b.y_max)};
+  const glm::dvec2 middle{0.5 * (b.x_min + b.x_max), 0.5 * (b.y_min + b.y_max)};
   if (b.y_max - b.y_min > b.x_max - b.x_min) return {{middle.x, shown.y_min}, {middle.x, shown.y_max}};
   return {{shown.x_min, middle.y}, {shown.x_max, middle.y}};
 }
@@ -123,12 +123,12 @@ FieldSamples sample_field(const world::World& world, gpu::Device& device, const 
   for (const sensors::FieldSum& b : sensors::survey(world, device, map_places(view, samples), {.progress = progress}))
     samples.map.push_back(std::hypot(b.x, b.y, b.z));
 
-  const Vec2 along = view.line.b - view.line.a;
+  const glm::dvec2 along = view.line.b - view.line.a;
   std::vector<sensors::Place> places;
   for (int i = 0; i < kProfilePoints; ++i) {
     const double part = static_cast<double>(i) / (kProfilePoints - 1);
-    const Vec2 p = view.line.a + part * along;
-    samples.profile.push_back({part * base::length(along), p, {}});
+    const glm::dvec2 p = view.line.a + part * along;
+    samples.profile.push_back({part * glm::length(along), p, {}});
     places.push_back({p.x, p.y, view.height});
   }
   const auto sums = sensors::survey(world, device, places, {.magnitudes = true});

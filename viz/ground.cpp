@@ -21,10 +21,10 @@ constexpr double kLaneStep = 0.02;  // [m] along a lane
 void add_band(Axes& axes, const Stripe& stripe, std::vector<Line>& edges) {
   const double half = 0.5 * std::max(stripe.width, kThinnest / axes.scale());
   for (std::size_t i = 0; i + 1 < stripe.line.size(); ++i) {
-    const Vec2 along = stripe.line[i + 1] - stripe.line[i];
-    const Vec2 aside = half / base::length(along) * Vec2{-along.y, along.x};
-    const Vec2 corners[] = {axes.pixel(stripe.line[i] + aside), axes.pixel(stripe.line[i] - aside),
-                            axes.pixel(stripe.line[i + 1] - aside), axes.pixel(stripe.line[i + 1] + aside)};
+    const glm::dvec2 along = stripe.line[i + 1] - stripe.line[i];
+    const glm::dvec2 aside = half / glm::length(along) * glm::dvec2{-along.y, along.x};
+    const glm::dvec2 corners[] = {axes.pixel(stripe.line[i] + aside), axes.pixel(stripe.line[i] - aside),
+                                  axes.pixel(stripe.line[i + 1] - aside), axes.pixel(stripe.line[i + 1] + aside)};
     for (int k = 0; k < 4; ++k) edges.push_back({corners[k], corners[(k + 1) % 4]});
   }
 }
@@ -40,7 +40,7 @@ void draw_lanes(Axes& axes, const world::World& world) {
         return axes.pixel(base::transform(X_WP, {0.0, 0.5 * side * piece.width}));
       };
       for (int i = 0; i < steps; ++i) {
-        const Vec2 corners[] = {corner(i, 1.0), corner(i, -1.0), corner(i + 1, -1.0), corner(i + 1, 1.0)};
+        const glm::dvec2 corners[] = {corner(i, 1.0), corner(i, -1.0), corner(i + 1, -1.0), corner(i + 1, 1.0)};
         for (int k = 0; k < 4; ++k) edges.push_back({corners[k], corners[(k + 1) % 4]});
       }
     }
@@ -75,13 +75,13 @@ void draw_paint(Axes& axes, const world::World& world) {
 
 void draw_streets(Axes& axes, const world::RoadNetwork& roads) {
   for (const world::RoadZone& zone : roads.zones) {
-    std::vector<Vec2> outline;
+    std::vector<glm::dvec2> outline;
     for (const world::PerimeterPoint& point : zone.perimeter) outline.push_back(axes.pixel(point.p));
     axes.canvas().polygon(outline, kStreet);
   }
   std::vector<Line> bands;
   double widest = 0.0;
-  const auto add = [&](const std::vector<Vec2>& line) {
+  const auto add = [&](const std::vector<glm::dvec2>& line) {
     for (std::size_t i = 0; i + 1 < line.size(); ++i) bands.push_back({axes.pixel(line[i]), axes.pixel(line[i + 1])});
   };
   for (const world::RoadLane& lane : roads.lanes) {

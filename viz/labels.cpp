@@ -13,13 +13,13 @@ constexpr double kRing = 9.0;  // [px] from one distance tried to the next
 constexpr std::uint32_t kLeader = 0xB0606060u;
 
 /// The box of `size` whose side or corner towards `mark` is `away` from it in direction `angle`.
-LabelBox box_beside(Vec2 mark, double angle, double away, Vec2 size) {
-  const Vec2 d{std::cos(angle), std::sin(angle)};
-  const Vec2 middle = mark + away * d + Vec2{0.5 * size.x * d.x, 0.5 * size.y * d.y};
+LabelBox box_beside(glm::dvec2 mark, double angle, double away, glm::dvec2 size) {
+  const glm::dvec2 d{std::cos(angle), std::sin(angle)};
+  const glm::dvec2 middle = mark + away * d + glm::dvec2{0.5 * size.x * d.x, 0.5 * size.y * d.y};
   return {middle - 0.5 * size, middle + 0.5 * size};
 }
 
-Vec2 nearest_in(const LabelBox& box, Vec2 p) {
+glm::dvec2 nearest_in(const LabelBox& box, glm::dvec2 p) {
   return {std::clamp(p.x, box.low.x, box.high.x), std::clamp(p.y, box.low.y, box.high.y)};
 }
 
@@ -50,14 +50,14 @@ void Labels::mark(const LabelBox& box, Cell as) {
 
 void Labels::forbid(const LabelBox& box) { mark(box, taken); }
 
-void Labels::avoid(std::span<const Vec2> line, double width) {
+void Labels::avoid(std::span<const glm::dvec2> line, double width) {
   const double radius = std::max(0.5 * width, 1.0);
-  const Vec2 reach{radius, radius};
+  const glm::dvec2 reach{radius, radius};
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    const Vec2 d = line[i + 1] - line[i];
+    const glm::dvec2 d = line[i + 1] - line[i];
     const int steps = static_cast<int>(std::min(length(d) / kCell, 1e4)) + 1;
     for (int k = 0; k <= steps; ++k) {
-      const Vec2 p = line[i] + (static_cast<double>(k) / steps) * d;
+      const glm::dvec2 p = line[i] + (static_cast<double>(k) / steps) * d;
       mark({p - reach, p + reach}, drawn);
     }
   }
@@ -83,17 +83,17 @@ double Labels::covered(const LabelBox& box) const {
   return static_cast<double>(hit) / ((c.i_max - c.i_min + 1) * (c.j_max - c.j_min + 1));
 }
 
-bool Labels::place(Canvas& canvas, std::span<const Vec2> marks, const std::string& text, const TextStyle& style,
+bool Labels::place(Canvas& canvas, std::span<const glm::dvec2> marks, const std::string& text, const TextStyle& style,
                    const LabelRules& rules) {
-  const Vec2 size = text_size(text, style) + Vec2{4.0, 2.0};
+  const glm::dvec2 size = text_size(text, style) + glm::dvec2{4.0, 2.0};
   struct Best {
     LabelBox box;
-    Vec2 mark;
+    glm::dvec2 mark;
     double away;
   };
   std::optional<Best> best;
   double least = INFINITY;
-  for (const Vec2 mark : marks)
+  for (const glm::dvec2& mark : marks)
     for (double away = rules.nearest; away <= rules.farthest; away += kRing)
       for (int k = 0; k < kDirections; ++k) {
         const double cost = away / 40.0;
@@ -112,7 +112,7 @@ bool Labels::place(Canvas& canvas, std::span<const Vec2> marks, const std::strin
   centred.across = Anchor::middle;
   centred.down = Anchor::middle;
   canvas.text(0.5 * (box.low + box.high), text, centred);
-  forbid({box.low + Vec2{1.0, 1.0}, box.high - Vec2{1.0, 1.0}});
+  forbid({box.low + glm::dvec2{1.0, 1.0}, box.high - glm::dvec2{1.0, 1.0}});
   return true;
 }
 

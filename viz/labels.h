@@ -12,8 +12,8 @@
 namespace sf::viz {
 
 struct LabelBox {
-  Vec2 low;   ///< upper left corner
-  Vec2 high;  ///< lower right corner
+  glm::dvec2 low;   ///< upper left corner
+  glm::dvec2 high;  ///< lower right corner
 };
 
 /// How far from its mark a label may be moved.
@@ -30,7 +30,7 @@ class Labels {
   explicit Labels(const PixelBox& plot);
 
   /// Ground that labels should rather not cover: a line of `width`, or the inside of a closed outline.
-  void avoid(std::span<const Vec2> line, double width);
+  void avoid(std::span<const glm::dvec2> line, double width);
   /// A box that no label may cover.
   void forbid(const LabelBox& box);
 
@@ -39,7 +39,7 @@ class Labels {
 
   /// Finds a place for `text` beside one of `marks` (the first that does best), draws it and keeps others off it.
   /// False, and nothing drawn, where there is no room.
-  bool place(Canvas& canvas, std::span<const Vec2> marks, const std::string& text, const TextStyle& style,
+  bool place(Canvas& canvas, std::span<const glm::dvec2> marks, const std::string& text, const TextStyle& style,
              const LabelRules& rules = {});
 
  private:

@@ -12,14 +12,14 @@ constexpr double kSampleWidth = 34.0;
 constexpr double kTextGap = 9.0;
 constexpr double kItemGap = 30.0;
 
-void draw_sample(Canvas& canvas, Vec2 left, const LegendItem& item) {
-  const Vec2 right = left + Vec2{kSampleWidth, 0.0};
-  const Vec2 middle = 0.5 * (left + right);
+void draw_sample(Canvas& canvas, glm::dvec2 left, const LegendItem& item) {
+  const glm::dvec2 right = left + glm::dvec2{kSampleWidth, 0.0};
+  const glm::dvec2 middle = 0.5 * (left + right);
   const Line line{left, right};
   switch (item.sample) {
     case Sample::block: {
-      const std::array<Vec2, 5> box{left + Vec2{0, -9}, right + Vec2{0, -9}, right + Vec2{0, 9}, left + Vec2{0, 9},
-                                    left + Vec2{0, -9}};
+      const std::array<glm::dvec2, 5> box{left + glm::dvec2{0, -9}, right + glm::dvec2{0, -9}, right + glm::dvec2{0, 9},
+                                          left + glm::dvec2{0, 9}, left + glm::dvec2{0, -9}};
       canvas.polygon(std::span(box).first(4), item.color);
       if (item.edge >> 24) canvas.polyline(box, 1.5, item.edge);
       return;
@@ -40,7 +40,7 @@ void draw_sample(Canvas& canvas, Vec2 left, const LegendItem& item) {
     case Sample::robot:
       canvas.disc(middle, 9.0, with_opacity(item.color, 0.45));
       canvas.ring(middle, 9.0, 1.5, item.color);
-      return canvas.line(middle, middle + Vec2{9.0, 0.0}, 2.0, item.color);
+      return canvas.line(middle, middle + glm::dvec2{9.0, 0.0}, 2.0, item.color);
   }
 }
 
@@ -65,17 +65,18 @@ std::vector<LegendPlace> place_legend(std::span<const LegendItem> items, double 
   return places;
 }
 
-void draw_legend(Canvas& canvas, Vec2 at, std::span<const LegendItem> items, std::span<const LegendPlace> places) {
+void draw_legend(Canvas& canvas, glm::dvec2 at, std::span<const LegendItem> items,
+                 std::span<const LegendPlace> places) {
   for (std::size_t i = 0; i < items.size(); ++i) {
-    const Vec2 left = at + Vec2{places[i].x, (places[i].row + 0.5) * kLegendRow};
+    const glm::dvec2 left = at + glm::dvec2{places[i].x, (places[i].row + 0.5) * kLegendRow};
     draw_sample(canvas, left, items[i]);
-    canvas.text(left + Vec2{kSampleWidth + kTextGap, 0.0}, items[i].text, small_text());
+    canvas.text(left + glm::dvec2{kSampleWidth + kTextGap, 0.0}, items[i].text, small_text());
   }
 }
 
-void draw_cross(Canvas& canvas, Vec2 at, double reach, double line_width, std::uint32_t color) {
-  const std::array<Line, 2> strokes{Line{at - Vec2{reach, reach}, at + Vec2{reach, reach}},
-                                    Line{at - Vec2{reach, -reach}, at + Vec2{reach, -reach}}};
+void draw_cross(Canvas& canvas, glm::dvec2 at, double reach, double line_width, std::uint32_t color) {
+  const std::array<Line, 2> strokes{Line{at - glm::dvec2{reach, reach}, at + glm::dvec2{reach, reach}},
+                                    Line{at - glm::dvec2{reach, -reach}, at + glm::dvec2{reach, -reach}}};
   canvas.lines(strokes, line_width, color);
 }
 
@@ -84,13 +85,13 @@ void draw_dashes(Canvas& canvas, std::span<const Line> lines, double line_width,
   std::vector<Line> dashes;
   const double period = on + off;
   double done = 0.0;
-  Vec2 end{NAN, NAN};
+  glm::dvec2 end{NAN, NAN};
   for (const Line& l : lines) {
     if (l.a.x != end.x || l.a.y != end.y) done = 0.0;
     end = l.b;
     const double whole = length(l.b - l.a);
     if (!(whole > 0.0) || !(whole < 1e6)) continue;
-    const Vec2 along = (1.0 / whole) * (l.b - l.a);
+    const glm::dvec2 along = (1.0 / whole) * (l.b - l.a);
     for (double from = -std::fmod(done, period); from < whole; from += period) {
       if (from + on <= 0.0) continue;
       dashes.push_back({l.a + std::max(from, 0.0) * along, l.a + std::min(from + on, whole) * along});

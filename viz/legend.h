@@ -33,10 +33,10 @@ struct LegendPlace {
 std::vector<LegendPlace> place_legend(std::span<const LegendItem> items, double width);
 
 /// @param at [px] left end and top of the first row
-void draw_legend(Canvas& canvas, Vec2 at, std::span<const LegendItem> items, std::span<const LegendPlace> places);
+void draw_legend(Canvas& canvas, glm::dvec2 at, std::span<const LegendItem> items, std::span<const LegendPlace> places);
 
 /// An x of two strokes: where something stopped. @param reach [px] from its middle to its ends, along x and y
-void draw_cross(Canvas& canvas, Vec2 at, double reach, double line_width, std::uint32_t color);
+void draw_cross(Canvas& canvas, glm::dvec2 at, double reach, double line_width, std::uint32_t color);
 
 /// A polyline in dashes. @param on, off [px] lengths of dash and gap
 void draw_dashes(Canvas& canvas, std::span<const Line> lines, double line_width, double on, double off,

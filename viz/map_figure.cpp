@@ -35,8 +35,8 @@ constexpr double kNarrowest = 640.0;
 struct Layout {
   double scale = kPitch;  ///< [px/cell]
   bool grid = true;
-  Vec2 low;  ///< [px] upper left corner of the map
-  Vec2 high;
+  glm::dvec2 low;  ///< [px] upper left corner of the map
+  glm::dvec2 high;
   double width = 0.0;  ///< [px] of the picture
   double height = 0.0;
   std::vector<LegendPlace> legend;
@@ -52,7 +52,7 @@ Layout lay_out(const maps::GridPlan& plan, std::span<const LegendItem> legend) {
   const double high = std::ceil(l.scale * static_cast<double>(maps::rows(plan))) + line;
   l.width = std::max(kNarrowest, kLeft + wide + kRight);
   l.low = {std::floor(kLeft + 0.5 * (l.width - kLeft - kRight - wide)), kTop};
-  l.high = l.low + Vec2{wide, high};
+  l.high = l.low + glm::dvec2{wide, high};
   l.legend = place_legend(legend, l.width - 2.0 * kRight);
   l.height = l.high.y + kLabels + kLegendRow * (l.legend.back().row + 1) + 12.0;
   return l;
@@ -78,7 +78,7 @@ void draw_cells(Canvas& canvas, const maps::Grid& grid, const Layout& l) {
   for (std::int64_t row = 0; row < maps::rows(grid.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(grid.plan); ++column)
       pixels.push_back(kStates[static_cast<std::size_t>(grid.at({column, row}))]);
-  const Vec2 line = l.grid ? Vec2{1.0, 1.0} : Vec2{};
+  const glm::dvec2 line = l.grid ? glm::dvec2{1.0, 1.0} : glm::dvec2{};
   canvas.image(l.low + line, l.high,
                {static_cast<int>(maps::columns(grid.plan)), static_cast<int>(maps::rows(grid.plan)), pixels});
   if (!l.grid) return;
@@ -95,9 +95,9 @@ void draw_cells(Canvas& canvas, const maps::Grid& grid, const Layout& l) {
 }
 
 /// [px] of a point of the world.
-Vec2 pixel(const maps::GridPlan& plan, const Layout& l, Vec2 p_W) {
+glm::dvec2 pixel(const maps::GridPlan& plan, const Layout& l, glm::dvec2 p_W) {
   const double scale = l.scale / plan.cell;
-  return l.low + Vec2{(p_W.x - plan.left) * scale, (plan.top - p_W.y) * scale};
+  return l.low + glm::dvec2{(p_W.x - plan.left) * scale, (plan.top - p_W.y) * scale};
 }
 
 void draw_axes(Canvas& canvas, const maps::GridPlan& plan, const Layout& l) {
@@ -134,8 +134,8 @@ void draw_places(Canvas& canvas, const maps::GridPlan& plan, const Layout& l, co
   for (std::size_t i = 0; i < figure.places.size(); ++i) {
     const base::Pose& X = figure.places[i].X_WR;
     const std::uint32_t color = row_color(1 + std::min(i, named - 1), named + 1);
-    const Vec2 p = pixel(plan, l, {X.x, X.y});
-    const Vec2 ahead{std::cos(X.yaw), -std::sin(X.yaw)};
+    const glm::dvec2 p = pixel(plan, l, {X.x, X.y});
+    const glm::dvec2 ahead{std::cos(X.yaw), -std::sin(X.yaw)};
     canvas.disc(p, 9.0, with_opacity(color, 0.55));
     canvas.ring(p, 9.0, 2.0, color);
     canvas.line(p, p + 14.0 * ahead, 2.5, color);

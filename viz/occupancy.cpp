@@ -99,7 +99,7 @@ void OccupancyGrid::add_scan(const base::Pose& X_WS, std::span<const double> ran
   SF_CHECK(std::isfinite(X_WS.x + X_WS.y + X_WS.yaw) && std::isfinite(range_max), "a scan's pose must be finite");
   SF_CHECK(moving.empty() || moving.size() == ranges.size(), "one mark of movement per range");
   begin_scan();
-  const base::Vec2 from{(X_WS.x - x_min_) / cell_, (X_WS.y - y_min_) / cell_};
+  const glm::dvec2 from{(X_WS.x - x_min_) / cell_, (X_WS.y - y_min_) / cell_};
   for (std::size_t k = 0; k < ranges.size(); ++k) {
     const double range = ranges[k];
     const bool known = range > range_min || (range == 0.0 && range_min == 0.0);
@@ -112,14 +112,14 @@ void OccupancyGrid::add_scan(const base::Pose& X_WS, std::span<const double> ran
   }
 }
 
-void OccupancyGrid::add_beam(base::Vec2 from, base::Vec2 along, End end) {
+void OccupancyGrid::add_beam(glm::dvec2 from, glm::dvec2 along, End end) {
   double t0 = 0.0;
   double t1 = 1.0;
   narrow(from.x, along.x, columns_, t0, t1);
   narrow(from.y, along.y, rows_, t0, t1);
   if (t0 > t1) return;
-  const base::Vec2 a = t0 > 0.0 ? from + t0 * along : from;
-  const base::Vec2 b = t1 < 1.0 ? from + t1 * along : from + along;
+  const glm::dvec2 a = t0 > 0.0 ? from + t0 * along : from;
+  const glm::dvec2 b = t1 < 1.0 ? from + t1 * along : from + along;
   const int i_a = cell_index(a.x, columns_);
   const int j_a = cell_index(a.y, rows_);
   const int i_b = cell_index(b.x, columns_);

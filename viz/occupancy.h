@@ -56,7 +56,7 @@ class OccupancyGrid {
   const Cell& at(int column, int row) const;
   void begin_scan();
   enum class End { mark, free, skip };                        // what becomes of a beam's last cell
-  void add_beam(base::Vec2 from, base::Vec2 along, End end);  // both in cells
+  void add_beam(glm::dvec2 from, glm::dvec2 along, End end);  // both in cells
   void hit(Cell& cell);
   void pass(Cell& cell);
   static void count(std::uint16_t& counter, Cell& cell);

@@ -19,10 +19,10 @@ void draw_middle(Axes& axes, const world::Path& path) {
   const double length = world::length_of(path);
   const int steps = std::max(1, static_cast<int>(std::ceil(length / kStep)));
   std::vector<Line> lines;
-  Vec2 last{};
+  glm::dvec2 last{};
   for (int i = 0; i <= steps; ++i) {
     const base::Pose X_WP = world::along(path, length * i / steps);
-    const Vec2 at = axes.pixel({X_WP.x, X_WP.y});
+    const glm::dvec2 at = axes.pixel({X_WP.x, X_WP.y});
     if (i > 0) lines.push_back({last, at});
     last = at;
   }
@@ -30,7 +30,7 @@ void draw_middle(Axes& axes, const world::Path& path) {
 }
 
 void draw_track(Axes& axes, const Track& track, std::uint32_t color) {
-  std::vector<Vec2> points;
+  std::vector<glm::dvec2> points;
   for (const base::Pose& pose : track.poses)
     if (is_finite(pose)) points.push_back(axes.pixel({pose.x, pose.y}));
   if (points.empty()) return;

@@ -5,12 +5,12 @@
 namespace sf::viz {
 namespace {
 
-bool finite(Vec2 p) { return std::isfinite(p.x) && std::isfinite(p.y); }
+bool finite(glm::dvec2 p) { return std::isfinite(p.x) && std::isfinite(p.y); }
 
 int to_int(double value) { return static_cast<int>(std::clamp(value, -1e9, 1e9)); }
 
 /// The x range of the part of a -> b whose y lies in [y_min, y_max]; false when there is none.
-bool x_range(Vec2 a, Vec2 b, double y_min, double y_max, double& x_min, double& x_max) {
+bool x_range(glm::dvec2 a, glm::dvec2 b, double y_min, double y_max, double& x_min, double& x_max) {
   if (a.y > b.y) std::swap(a, b);
   if (b.y < y_min || a.y > y_max) return false;
   const double slope = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0.0;
@@ -64,15 +64,15 @@ CoverageRows::CoverageRows(int width, int height)
       values_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0f),
       touched_(static_cast<std::size_t>(height)) {}
 
-void add_line(CoverageRows& rows, const PixelBox& clip, Vec2 a, Vec2 b, double width) {
+void add_line(CoverageRows& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b, double width) {
   if (!finite(a) || !finite(b)) return;
   const double half = 0.5 * std::max(width, 1.0);
   const float gain = static_cast<float>(std::min(width, 1.0));
   const double reach = half + 0.5;
   const int y_min = std::max(clip.y_min, to_int(std::floor(std::min(a.y, b.y) - reach)));
   const int y_max = std::min(clip.y_max, to_int(std::ceil(std::max(a.y, b.y) + reach)));
-  const Vec2 along = b - a;
-  const double length_2 = base::dot(along, along);
+  const glm::dvec2 along = b - a;
+  const double length_2 = glm::dot(along, along);
   const double inverse = length_2 > 0.0 ? 1.0 / length_2 : 0.0;
 
   for (int y = y_min; y < y_max; ++y) {
@@ -86,17 +86,17 @@ void add_line(CoverageRows& rows, const PixelBox& clip, Vec2 a, Vec2 b, double w
 
     float* row = rows.row(y);
     for (int x = x_min; x < x_max; ++x) {
-      const Vec2 p = Vec2{x + 0.5, y_mid} - a;
-      const double t = std::clamp(base::dot(p, along) * inverse, 0.0, 1.0);
-      const Vec2 off = p - t * along;
-      const float covered = static_cast<float>(std::clamp(reach - std::sqrt(base::dot(off, off)), 0.0, 1.0));
+      const glm::dvec2 p = glm::dvec2{x + 0.5, y_mid} - a;
+      const double t = std::clamp(glm::dot(p, along) * inverse, 0.0, 1.0);
+      const glm::dvec2 off = p - t * along;
+      const float covered = static_cast<float>(std::clamp(reach - std::sqrt(glm::dot(off, off)), 0.0, 1.0));
       row[x] = std::max(row[x], gain * covered);
     }
     rows.touch(y, x_min, x_max);
   }
 }
 
-void add_edge(CoverageRows& rows, const PixelBox& clip, Vec2 a, Vec2 b) {
+void add_edge(CoverageRows& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b) {
   if (!finite(a) || !finite(b) || a.y == b.y || clip.x_min >= clip.x_max) return;
   const double sign = a.y < b.y ? 1.0 : -1.0;
   if (a.y > b.y) std::swap(a, b);

@@ -11,8 +11,6 @@
 
 namespace sf::viz {
 
-using base::Vec2;
-
 /// Half-open box of whole pixels.
 struct PixelBox {
   int x_min = 0, y_min = 0, x_max = 0, y_max = 0;
@@ -59,11 +57,11 @@ class CoverageRows {
 /// Adds a line with round ends to `rows`, which holds the coverage of the union of all lines added since it was
 /// drained.
 /// @param width [px] > 0; a line thinner than a pixel is a paler line of one pixel.
-void add_line(CoverageRows& rows, const PixelBox& clip, Vec2 a, Vec2 b, double width);
+void add_line(CoverageRows& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b, double width);
 
 /// Adds one directed edge of a closed outline. `rows` then holds signed area differences: the coverage of a pixel is
 /// the absolute sum of its row from the left up to it, at most 1. Outlines in one direction therefore make their union.
-void add_edge(CoverageRows& rows, const PixelBox& clip, Vec2 a, Vec2 b);
+void add_edge(CoverageRows& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b);
 
 /// Turns the area differences of a row part into coverage in place.
 void sum_edges(std::span<float> part);

@@ -78,12 +78,12 @@ std::vector<Extent> crowded_parts(const RoadView& view, const RoadNetwork& netwo
 }
 
 /// The free box of this size that is nearest to `from`.
-std::optional<PixelBox> free_box(const RoadView& view, const Labels& labels, Vec2 from, int width, int height) {
+std::optional<PixelBox> free_box(const RoadView& view, const Labels& labels, glm::dvec2 from, int width, int height) {
   std::optional<PixelBox> best;
   double nearest = INFINITY;
   for (int y = view.box.y_min + 12; y + height < view.box.y_max - 12; y += 16)
     for (int x = view.box.x_min + 12; x + width < view.box.x_max - 12; x += 16) {
-      const double away = length(Vec2{x + 0.5 * width, y + 0.5 * height} - from);
+      const double away = length(glm::dvec2{x + 0.5 * width, y + 0.5 * height} - from);
       if (away >= nearest || !labels.is_bare({{x - 8.0, y - 8.0}, {x + width + 8.0, y + height + 8.0}})) continue;
       nearest = away;
       best = PixelBox{x, y, x + width, y + height};
@@ -93,7 +93,7 @@ std::optional<PixelBox> free_box(const RoadView& view, const Labels& labels, Vec
 
 /// Larger is better, and so is nearer: a quarter more is worth 750 pixels.
 std::optional<Inset> best_inset(const RoadView& view, const Labels& labels, const Extent& part) {
-  const Vec2 middle = view.pixel({0.5 * (part.x_min + part.x_max), 0.5 * (part.y_min + part.y_max)});
+  const glm::dvec2 middle = view.pixel({0.5 * (part.x_min + part.x_max), 0.5 * (part.y_min + part.y_max)});
   std::optional<Inset> best;
   double most = -INFINITY;
   for (double times = 4.0; times >= 1.75; times -= 0.25) {
@@ -101,7 +101,7 @@ std::optional<Inset> best_inset(const RoadView& view, const Labels& labels, cons
     const auto box = free_box(view, labels, middle, static_cast<int>((part.x_max - part.x_min) * scale),
                               static_cast<int>((part.y_max - part.y_min) * scale));
     if (!box) continue;
-    const Vec2 centre{0.5 * (box->x_min + box->x_max), 0.5 * (box->y_min + box->y_max)};
+    const glm::dvec2 centre{0.5 * (box->x_min + box->x_max), 0.5 * (box->y_min + box->y_max)};
     const double worth = times - length(centre - middle) / 3000.0;
     if (worth <= most) continue;
     most = worth;
@@ -122,16 +122,16 @@ std::vector<Inset> place_insets(const RoadView& view, const RoadNetwork& network
   return insets;
 }
 
-void draw_frame(Canvas& canvas, Vec2 low, Vec2 high, double width) {
-  const Vec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}, low};
+void draw_frame(Canvas& canvas, glm::dvec2 low, glm::dvec2 high, double width) {
+  const glm::dvec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}, low};
   canvas.polyline(corners, width, kInsetFrame);
 }
 
 void draw_inset(const RoadView& view, const RoadNetwork& network, const Inset& inset) {
-  const Vec2 low{inset.box.x_min + 0.0, inset.box.y_min + 0.0};
-  const Vec2 high{inset.box.x_max + 0.0, inset.box.y_max + 0.0};
-  const Vec2 part_low = view.pixel({inset.part.x_min, inset.part.y_max});
-  const Vec2 part_high = view.pixel({inset.part.x_max, inset.part.y_min});
+  const glm::dvec2 low{inset.box.x_min + 0.0, inset.box.y_min + 0.0};
+  const glm::dvec2 high{inset.box.x_max + 0.0, inset.box.y_max + 0.0};
+  const glm::dvec2 part_low = view.pixel({inset.part.x_min, inset.part.y_max});
+  const glm::dvec2 part_high = view.pixel({inset.part.x_max, inset.part.y_min});
   draw_frame(view.canvas, part_low, part_high, 1.5);
   const bool above = high.y < part_low.y;
   const Line ties[] = {{{low.x, above ? high.y : low.y}, {part_low.x, above ? part_low.y : part_high.y}},
@@ -139,7 +139,7 @@ void draw_inset(const RoadView& view, const RoadNetwork& network, const Inset& i
   view.canvas.lines(ties, 1.0, 0x90404040u);
 
   view.canvas.clip(inset.box);
-  const Vec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}};
+  const glm::dvec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}};
   view.canvas.polygon(corners, kRoadGround);
   const RoadView larger{view.canvas, inset.box, {inset.part.x_min, inset.part.y_min}, inset.scale};
   draw_network(larger, network);

@@ -18,13 +18,13 @@ using world::RoadZone;
 constexpr std::size_t kLongestName = 32;
 constexpr std::uint32_t kMostLanes = 8;  // of a segment, beside which its name may stand
 
-bool is_in(const Enlarged& places, Vec2 p) {
+bool is_in(const Enlarged& places, glm::dvec2 p) {
   return std::any_of(places.begin(), places.end(), [&](const world::Extent& e) {
     return p.x > e.x_min && p.x < e.x_max && p.y > e.y_min && p.y < e.y_max;
   });
 }
 
-bool is_inside(const PixelBox& box, Vec2 p) {
+bool is_inside(const PixelBox& box, glm::dvec2 p) {
   return p.x > box.x_min && p.x < box.x_max && p.y > box.y_min && p.y < box.y_max;
 }
 
@@ -41,11 +41,11 @@ TextStyle label_style(int size, std::uint32_t color, bool bold) {
 void label_segments(const RoadView& view, const RoadNetwork& network, Labels& labels, const Enlarged& elsewhere) {
   const TextStyle style = label_style(15, 0xFF202020u, true);
   for (const world::RoadSegment& segment : network.segments) {
-    std::vector<Vec2> marks;
+    std::vector<glm::dvec2> marks;
     for (std::uint32_t i = 0; i < std::min(segment.lanes, kMostLanes); ++i) {
       const RoadLane& lane = network.lanes[segment.first_lane + i];
       for (const double part : {0.5, 0.35, 0.65, 0.2, 0.8}) {
-        const Vec2 p = point_at(lane.centre, part * length_of(lane));
+        const glm::dvec2 p = point_at(lane.centre, part * length_of(lane));
         if (!is_in(elsewhere, p) && is_inside(view.box, view.pixel(p))) marks.push_back(view.pixel(p));
       }
     }
@@ -60,11 +60,11 @@ void label_segments(const RoadView& view, const RoadNetwork& network, Labels& la
 void label_zones(const RoadView& view, const RoadNetwork& network, Labels& labels, const Enlarged& elsewhere) {
   const TextStyle style = label_style(17, 0xFF36522Au, true);
   for (const RoadZone& zone : network.zones) {
-    Vec2 middle;
+    glm::dvec2 middle;
     for (const world::PerimeterPoint& point : zone.perimeter)
       middle = middle + (1.0 / static_cast<double>(zone.perimeter.size())) * point.p;
     if (is_in(elsewhere, middle)) continue;
-    const Vec2 marks[] = {view.pixel(middle)};
+    const glm::dvec2 marks[] = {view.pixel(middle)};
     const std::string name = printable(zone.name, kLongestName);
     labels.place(view.canvas, marks,
                  fmt::format("{} {}", name.empty() ? "zone" : std::to_string(zone.id),
@@ -78,7 +78,7 @@ void label_checkpoints(const RoadView& view, const RoadNetwork& network, Labels&
   for (const bool on_lanes : {true, false})
     for (const world::RoadCheckpoint& checkpoint : network.checkpoints) {
       if ((checkpoint.at.kind == world::PointRef::Kind::lane) != on_lanes || is_in(elsewhere, checkpoint.p)) continue;
-      const Vec2 marks[] = {view.pixel(checkpoint.p)};
+      const glm::dvec2 marks[] = {view.pixel(checkpoint.p)};
       labels.place(view.canvas, marks, std::to_string(checkpoint.id), style, {5.0, on_lanes ? 40.0 : 32.0, 14.0, 0.5});
     }
 }

@@ -18,27 +18,27 @@ constexpr double kArrowEvery = 70.0;    // [px] along a lane
 constexpr double kThinnestPaint = 1.3;  // [px]
 
 void draw_zone(const RoadView& view, const RoadNetwork& network, const RoadZone& zone) {
-  std::vector<Vec2> outline;
+  std::vector<glm::dvec2> outline;
   for (const world::PerimeterPoint& point : zone.perimeter) outline.push_back(view.pixel(point.p));
   view.canvas.polygon(outline, kZone);
   outline.push_back(outline.front());
   view.canvas.polyline(outline, 1.5, kZoneEdge);
   for (std::uint32_t i = 0; i < zone.spots; ++i) {
     const world::RoadSpot& spot = network.spots[zone.first_spot + i];
-    const Vec2 along = spot.end - spot.entry;
+    const glm::dvec2 along = spot.end - spot.entry;
     const double depth = length(along);
     if (depth <= 0.0) continue;
-    const Vec2 half = (0.5 * spot.width / depth) * Vec2{-along.y, along.x};
-    const Vec2 corners[] = {view.pixel(spot.entry + half), view.pixel(spot.end + half), view.pixel(spot.end - half),
-                            view.pixel(spot.entry - half)};
+    const glm::dvec2 half = (0.5 * spot.width / depth) * glm::dvec2{-along.y, along.x};
+    const glm::dvec2 corners[] = {view.pixel(spot.entry + half), view.pixel(spot.end + half),
+                                  view.pixel(spot.end - half), view.pixel(spot.entry - half)};
     view.canvas.polygon(corners, kSpot);
   }
 }
 
 void draw_asphalt(const RoadView& view, const RoadLane& lane) {
   if (lane.left_edge.empty() || lane.right_edge.empty()) return;
-  std::vector<Vec2> outline = pixels(view, lane.left_edge);
-  const std::vector<Vec2> back = pixels(view, lane.right_edge);
+  std::vector<glm::dvec2> outline = pixels(view, lane.left_edge);
+  const std::vector<glm::dvec2> back = pixels(view, lane.right_edge);
   outline.insert(outline.end(), back.rbegin(), back.rend());
   view.canvas.polygon(outline, kAsphalt);
 }
@@ -56,10 +56,10 @@ void draw_paint(const RoadView& view, const RoadNetwork& network) {
 
 // ------------------------------------------------------------------------------------------------- marks
 
-void draw_arrow(Canvas& canvas, Vec2 at, Vec2 along, double size, std::uint32_t color) {
-  const Vec2 across{-along.y, along.x};
-  const Vec2 corners[] = {at + size * along, at - size * along + (0.8 * size) * across, at - (0.45 * size) * along,
-                          at - size * along - (0.8 * size) * across};
+void draw_arrow(Canvas& canvas, glm::dvec2 at, glm::dvec2 along, double size, std::uint32_t color) {
+  const glm::dvec2 across{-along.y, along.x};
+  const glm::dvec2 corners[] = {at + size * along, at - size * along + (0.8 * size) * across,
+                                at - (0.45 * size) * along, at - size * along - (0.8 * size) * across};
   canvas.polygon(corners, color);
 }
 
@@ -71,7 +71,7 @@ void draw_directions(const RoadView& view, const RoadLane& lane) {
   for (int k = 0; k < arrows; ++k) {
     const double s = total * (k + 0.5) / arrows;
     const double step = std::min(0.25 * total, size / view.scale);
-    const Vec2 d = view.pixel(point_at(lane.centre, s + step)) - view.pixel(point_at(lane.centre, s - step));
+    const glm::dvec2 d = view.pixel(point_at(lane.centre, s + step)) - view.pixel(point_at(lane.centre, s - step));
     if (length(d) > 0.0)
       draw_arrow(view.canvas, view.pixel(point_at(lane.centre, s)), (1.0 / length(d)) * d, size, kArrow);
   }
@@ -82,7 +82,7 @@ void draw_exits(const RoadView& view, const RoadNetwork& network) {
     const auto line = pixels(view, connection_of(network, exit).points);
     if (line.size() < 2) continue;
     view.canvas.polyline(line, 1.6, kExit);
-    const Vec2 d = line.back() - line[line.size() - 2];
+    const glm::dvec2 d = line.back() - line[line.size() - 2];
     if (length(d) > 0.0 && length(line.back() - line.front()) > 12.0)
       draw_arrow(view.canvas, line.back() - (4.0 / length(d)) * d, (1.0 / length(d)) * d, 4.0,
                  with_opacity(kExit, 0.9));
@@ -104,10 +104,10 @@ void draw_checkpoints(const RoadView& view, const RoadNetwork& network) {
 
 }  // namespace
 
-std::vector<Vec2> pixels(const RoadView& view, const std::vector<Vec2>& line) {
-  std::vector<Vec2> out;
+std::vector<glm::dvec2> pixels(const RoadView& view, const std::vector<glm::dvec2>& line) {
+  std::vector<glm::dvec2> out;
   out.reserve(line.size());
-  for (const Vec2 p : line) out.push_back(view.pixel(p));
+  for (const glm::dvec2& p : line) out.push_back(view.pixel(p));
   return out;
 }
 

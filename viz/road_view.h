@@ -25,15 +25,15 @@ inline constexpr std::uint32_t kCheckpoint = 0xFF7A1FA2u;
 struct RoadView {
   Canvas& canvas;      ///< clipped to `box` by whoever draws
   PixelBox box;        ///< [px]
-  Vec2 corner;         ///< [m] world point at the lower left corner of the box
+  glm::dvec2 corner;   ///< [m] world point at the lower left corner of the box
   double scale = 1.0;  ///< [px/m]
 
-  Vec2 pixel(Vec2 p_W) const {
+  glm::dvec2 pixel(glm::dvec2 p_W) const {
     return {box.x_min + (p_W.x - corner.x) * scale, box.y_max - (p_W.y - corner.y) * scale};
   }
 };
 
-std::vector<Vec2> pixels(const RoadView& view, const std::vector<Vec2>& line);
+std::vector<glm::dvec2> pixels(const RoadView& view, const std::vector<glm::dvec2>& line);
 
 /// Lanes, paint, directions, zones, spots, exits, stop lines and checkpoints, without texts.
 void draw_network(const RoadView& view, const world::RoadNetwork& network);

@@ -38,7 +38,7 @@ struct Place {
   std::vector<LegendPlace> legend_at;
   double legend_top = 0.0;
 
-  Vec2 pixel(double t, double value) const {
+  glm::dvec2 pixel(double t, double value) const {
     return {plot.x_min + (t - time.from) / (time.to - time.from) * (plot.x_max - plot.x_min),
             plot.y_max - (value - shown.from) / (shown.to - shown.from) * (plot.y_max - plot.y_min)};
   }
@@ -155,13 +155,13 @@ void draw_scales(Canvas& canvas, const Place& at, const std::string& x_name) {
 
 void draw_curve(Canvas& canvas, const Place& at, const Series& series, std::uint32_t color) {
   std::vector<Line> lines;
-  std::optional<Vec2> last;
+  std::optional<glm::dvec2> last;
   for (std::size_t i = 0; i < series.values.size(); ++i) {
     if (!std::isfinite(series.values[i]) || !std::isfinite(series.times[i])) {
       last.reset();
       continue;
     }
-    const Vec2 here = at.pixel(series.times[i], series.values[i]);
+    const glm::dvec2 here = at.pixel(series.times[i], series.values[i]);
     lines.push_back({last.value_or(here), here});
     last = here;
   }
@@ -176,7 +176,7 @@ void draw_panel(Canvas& canvas, const Panel& panel, const Place& at, const std::
   canvas.unclip();
 
   const double x0 = at.plot.x_min - 0.5, y0 = at.plot.y_min - 0.5, x1 = at.plot.x_max + 0.5, y1 = at.plot.y_max + 0.5;
-  const Vec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
+  const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
   canvas.polyline(corners, 1.0, kFrame);
   TextStyle style = small_text();
   style.bold = true;

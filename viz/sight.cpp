@@ -6,22 +6,21 @@
 namespace sf::viz {
 namespace {
 
-using base::Vec2;
 using world::Segment;
 
 /// Relative to the sensor.
 struct Wall {
-  Vec2 a;
-  Vec2 along;
+  glm::dvec2 a;
+  glm::dvec2 along;
 };
 
 std::vector<Wall> walls_near(const world::World& world, const base::Pose& X_WS, double reach) {
   std::vector<Wall> near;
-  const Vec2 eye{X_WS.x, X_WS.y};
+  const glm::dvec2 eye{X_WS.x, X_WS.y};
   for (const Segment& s : world.walls) {
     if (!s.seen_by_laser || X_WS.z < s.z_min || X_WS.z >= s.z_max) continue;
-    const Vec2 a = s.a - eye;
-    const Vec2 b = s.b - eye;
+    const glm::dvec2 a = s.a - eye;
+    const glm::dvec2 b = s.b - eye;
     const bool aside = std::min(a.x, b.x) > reach || std::max(a.x, b.x) < -reach;
     const bool beyond = std::min(a.y, b.y) > reach || std::max(a.y, b.y) < -reach;
     if (!aside && !beyond) near.push_back({a, b - a});
@@ -29,7 +28,7 @@ std::vector<Wall> walls_near(const world::World& world, const base::Pose& X_WS, 
   return near;
 }
 
-double range_along(const std::vector<Wall>& walls, Vec2 d, double range_max) {
+double range_along(const std::vector<Wall>& walls, glm::dvec2 d, double range_max) {
   double range = range_max;
   for (const Wall& wall : walls) {
     const double across = base::cross(d, wall.along);
@@ -43,14 +42,15 @@ double range_along(const std::vector<Wall>& walls, Vec2 d, double range_max) {
 
 }  // namespace
 
-std::vector<Vec2> beam_ends(const world::World& world, const base::Pose& X_WS, const world::Laser& laser, int beams) {
+std::vector<glm::dvec2> beam_ends(const world::World& world, const base::Pose& X_WS, const world::Laser& laser,
+                                  int beams) {
   const std::vector<Wall> walls = walls_near(world, X_WS, laser.range_max);
-  std::vector<Vec2> ends;
+  std::vector<glm::dvec2> ends;
   ends.reserve(static_cast<std::size_t>(beams));
   for (int k = 0; k < beams; ++k) {
     const double bearing = laser.fov * (static_cast<double>(k) / (beams - 1) - 0.5);
-    const Vec2 d = base::rotate(X_WS.yaw + bearing, {1.0, 0.0});
-    ends.push_back(Vec2{X_WS.x, X_WS.y} + range_along(walls, d, laser.range_max) * d);
+    const glm::dvec2 d = base::rotate(X_WS.yaw + bearing, {1.0, 0.0});
+    ends.push_back(glm::dvec2{X_WS.x, X_WS.y} + range_along(walls, d, laser.range_max) * d);
   }
   return ends;
 }

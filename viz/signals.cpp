@@ -58,8 +58,8 @@ bool has(const world::World& world, Emitter::Kind kind) {
 
 void draw_drops(Axes& axes, const world::World& world) {
   for (const world::Drop& drop : world.drops) {
-    std::vector<Vec2> outline;
-    for (const Vec2 p : drop.outline) outline.push_back(axes.pixel(p));
+    std::vector<glm::dvec2> outline;
+    for (const glm::dvec2& p : drop.outline) outline.push_back(axes.pixel(p));
     axes.canvas().polygon(outline, with_opacity(kHole, 0.85));
   }
 }
@@ -70,7 +70,7 @@ void draw_emitters(Axes& axes, const world::World& world) {
 
 void draw_lights(Axes& axes, const world::World& world, double time) {
   for (const world::Light& light : world.lights) {
-    const Vec2 at = axes.pixel({light.X_WL.x, light.X_WL.y});
+    const glm::dvec2 at = axes.pixel({light.X_WL.x, light.X_WL.y});
     axes.canvas().line(at, at + base::rotate(-light.X_WL.yaw, {2.2 * kLightRadius, 0.0}), 2.5, kCase);
     axes.canvas().disc(at, kLightRadius + 1.5, kCase);
     axes.canvas().disc(at, kLightRadius, color_of(signal_at(light, time).state));

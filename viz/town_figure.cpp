@@ -83,15 +83,15 @@ FigurePlan plan_of(const World& world, std::span<const Track> tracks, const Town
 
 /// From the follower's middle to the edge of whom it follows, with an arrow head there.
 void draw_tie(Axes& axes, const base::Pose& from, const base::Pose& to, double radius) {
-  const Vec2 a = axes.pixel({from.x, from.y});
-  const Vec2 d = axes.pixel({to.x, to.y}) - a;
+  const glm::dvec2 a = axes.pixel({from.x, from.y});
+  const glm::dvec2 d = axes.pixel({to.x, to.y}) - a;
   const double far = length(d);
   if (far < 1.0) return;
-  const Vec2 along = (1.0 / far) * d;
-  const Vec2 across{-along.y, along.x};
-  const Vec2 tip = a + (far - radius * axes.scale()) * along;
+  const glm::dvec2 along = (1.0 / far) * d;
+  const glm::dvec2 across{-along.y, along.x};
+  const glm::dvec2 tip = a + (far - radius * axes.scale()) * along;
   axes.canvas().line(a, tip - 6.0 * along, 3.0, kTie);
-  const Vec2 head[] = {tip, tip - 12.0 * along + 7.0 * across, tip - 12.0 * along - 7.0 * across};
+  const glm::dvec2 head[] = {tip, tip - 12.0 * along + 7.0 * across, tip - 12.0 * along - 7.0 * across};
   axes.canvas().polygon(head, kTie);
 }
 
@@ -101,7 +101,7 @@ void draw_leader(Axes& axes, const base::Pose& X_WM, double radius) {
   style.halo = 0xFFFFFFFFu;
   style.across = Anchor::middle;
   style.down = Anchor::end;
-  axes.canvas().text(axes.pixel({X_WM.x, X_WM.y}) - Vec2{0.0, radius * axes.scale() + 4.0}, "leads", style);
+  axes.canvas().text(axes.pixel({X_WM.x, X_WM.y}) - glm::dvec2{0.0, radius * axes.scale() + 4.0}, "leads", style);
 }
 
 void draw_convoys(Axes& axes, const World& world, std::span<const Track> tracks, const TownEnd& end) {

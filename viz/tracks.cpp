@@ -30,14 +30,14 @@ world::Extent extent_of(const world::World& world, std::span<const Track> tracks
 
 void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t color) {
   std::vector<Line> path;
-  std::optional<Vec2> last;
+  std::optional<glm::dvec2> last;
   for (std::size_t i = 0; i < track.poses.size(); ++i) {
     const base::Pose& pose = track.poses[i];
     if (!is_finite(pose)) {
       last.reset();
       continue;
     }
-    const Vec2 at = axes.pixel({pose.x, pose.y});
+    const glm::dvec2 at = axes.pixel({pose.x, pose.y});
     if (last && length(at - *last) < kSmallestStep && i + 1 < track.poses.size()) continue;
     path.push_back({last.value_or(at), at});
     last = at;
@@ -46,10 +46,10 @@ void draw_path(Axes& axes, const Track& track, double line_width, std::uint32_t 
 }
 
 void draw_contacts(Axes& axes, const Track& track, double reach, double line_width) {
-  Vec2 last{-1e9, -1e9};
+  glm::dvec2 last{-1e9, -1e9};
   for (std::size_t i = 0; i < track.contacts.size(); ++i) {
     if (!track.contacts[i] || (i > 0 && track.contacts[i - 1]) || !is_finite(track.poses[i])) continue;
-    const Vec2 at = axes.pixel({track.poses[i].x, track.poses[i].y});
+    const glm::dvec2 at = axes.pixel({track.poses[i].x, track.poses[i].y});
     if (length(at - last) < reach) continue;
     // On a pale border, large ones are seen on a dot of any colour.
     if (reach >= kBordered) draw_cross(axes.canvas(), at, reach, line_width + 2.4, 0xFFFFFFFFu);

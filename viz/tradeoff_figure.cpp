@@ -105,7 +105,7 @@ void draw_front(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
   for (const TradeoffPoint& point : panel.points)
     if (point.front) front.push_back(point);
   std::sort(front.begin(), front.end(), [](const auto& a, const auto& b) { return a.rate < b.rate; });
-  std::vector<Vec2> line;
+  std::vector<glm::dvec2> line;
   for (const TradeoffPoint& point : front) line.push_back({at.x(point.middle), at.y(point.rate)});
   if (line.size() > 1) canvas.polyline(line, 2.0, with_opacity(kFront, 0.4));
 }
@@ -121,10 +121,11 @@ void draw_points(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
   const auto keep_free = [&](double x, double y) { labels.forbid({{x - 8.0, y - 8.0}, {x + 8.0, y + 8.0}}); };
   for (const TradeoffPoint& point : panel.points) {
     const std::uint32_t color = point.front ? kFront : kBeaten;
-    const Vec2 mark{at.x(point.middle), at.y(point.rate)};
+    const glm::dvec2 mark{at.x(point.middle), at.y(point.rate)};
     const Line whisker{{at.x(point.low), mark.y}, {at.x(point.high), mark.y}};
     canvas.line(whisker.a, whisker.b, 1.5, with_opacity(color, 0.6));
-    for (const Vec2 end : {whisker.a, whisker.b}) canvas.line({end.x, end.y - 5.0}, {end.x, end.y + 5.0}, 1.5, color);
+    for (const glm::dvec2& end : {whisker.a, whisker.b})
+      canvas.line({end.x, end.y - 5.0}, {end.x, end.y + 5.0}, 1.5, color);
     if (point.covered.part > 0.0) {
       draw_cross(canvas, {at.x(point.covered.high), mark.y}, 5.0, 1.5, kCovered);
       canvas.ring({at.x(point.covered.bound), mark.y}, 7.0, 1.5, kCovered);
@@ -139,7 +140,7 @@ void draw_points(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
     style.bold = point.front;
     style.color = point.front ? 0xFF202020u : 0xFF707070u;
     style.halo = 0xFFFFFFFFu;
-    const Vec2 mark[] = {{at.x(point.middle), at.y(point.rate)}};
+    const glm::dvec2 mark[] = {{at.x(point.middle), at.y(point.rate)}};
     labels.place(canvas, mark, label_of(point), style, {.nearest = 10.0});
   }
 }
@@ -152,7 +153,7 @@ void draw_panel(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
   draw_points(canvas, panel, at);
   canvas.unclip();
   const double x0 = p.x_min - 0.5, y0 = p.y_min - 0.5, x1 = p.x_max + 0.5, y1 = p.y_max + 0.5;
-  const Vec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
+  const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
   canvas.polyline(corners, 1.0, kFrame);
   TextStyle style = small_text();
   style.bold = true;

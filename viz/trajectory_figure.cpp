@@ -40,8 +40,8 @@ void draw_ends(Axes& axes, const Track& track, double mark, std::uint32_t color)
   const auto first = std::find_if(track.poses.begin(), track.poses.end(), is_finite);
   if (first == track.poses.end()) return;
   const Pose& last = *std::find_if(track.poses.rbegin(), track.poses.rend(), is_finite);
-  const Vec2 start = axes.pixel({first->x, first->y});
-  const Vec2 end = axes.pixel({last.x, last.y});
+  const glm::dvec2 start = axes.pixel({first->x, first->y});
+  const glm::dvec2 end = axes.pixel({last.x, last.y});
   axes.canvas().disc(start, mark, 0xFFFFFFFFu);
   axes.canvas().ring(start, mark - 0.8, 1.6, color);
   axes.canvas().disc(end, mark + 1.4, 0xFFFFFFFFu);

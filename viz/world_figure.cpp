@@ -37,13 +37,13 @@ std::uint32_t color_of(const World& world, const Mover& mover) {
 }
 
 /// The outline of what a laser covers, counter-clockwise in the world; a full turn has no corner at the sensor. [px]
-std::vector<Vec2> view_outline(const Axes& axes, const World& world, const Pose& X_WS, const Laser& laser) {
-  std::vector<Vec2> points;
+std::vector<glm::dvec2> view_outline(const Axes& axes, const World& world, const Pose& X_WS, const Laser& laser) {
+  std::vector<glm::dvec2> points;
   const bool whole_turn = laser.fov > 2.0 * M_PI - 1e-3;
   if (!whole_turn) points.push_back(axes.pixel({X_WS.x, X_WS.y}));
   const double arc = laser.fov * laser.range_max * axes.scale();
   const int beams = std::clamp(static_cast<int>(arc), 16, crowded(world) ? 240 : 2000);
-  for (const Vec2 end : beam_ends(world, X_WS, laser, beams)) points.push_back(axes.pixel(end));
+  for (const glm::dvec2& end : beam_ends(world, X_WS, laser, beams)) points.push_back(axes.pixel(end));
   return points;
 }
 
@@ -54,7 +54,7 @@ void draw_views(Axes& axes, const World& world) {
   std::map<std::uint32_t, std::vector<Line>> unions;
   for (const Mover& mover : world.movers) {
     for (const Laser& laser : mover.lasers) {
-      std::vector<Vec2> outline = view_outline(axes, world, compose(mover.X_WM, laser.X_MS), laser);
+      std::vector<glm::dvec2> outline = view_outline(axes, world, compose(mover.X_WM, laser.X_MS), laser);
       const std::uint32_t edge = mix(laser.color, 0xFF404040u, 0.3);
       if (!many) axes.canvas().polygon(outline, with_opacity(laser.color, 0.13));
       outline.push_back(outline.front());
@@ -73,7 +73,7 @@ void draw_views(Axes& axes, const World& world) {
 
 /// A dashed circle around what follows a tag.
 void draw_tag(Axes& axes, const Mover& mover) {
-  const Vec2 middle = axes.pixel({mover.X_WM.x, mover.X_WM.y});
+  const glm::dvec2 middle = axes.pixel({mover.X_WM.x, mover.X_WM.y});
   const double radius = std::max(mover.radius * axes.scale(), kSmallestMark) + 4.0;
   std::vector<Line> circle;
   for (int i = 0; i < 64; ++i)
@@ -87,8 +87,9 @@ void draw_name(Axes& axes, const Mover& mover) {
   style.halo = 0xFFFFFFFFu;
   style.across = Anchor::middle;
   style.down = Anchor::start;
-  const Vec2 at = axes.pixel({mover.X_WM.x, mover.X_WM.y});
-  axes.canvas().text(at + Vec2{0.0, std::max(mover.radius * axes.scale(), kSmallestMark) + 7.0}, mover.name, style);
+  const glm::dvec2 at = axes.pixel({mover.X_WM.x, mover.X_WM.y});
+  axes.canvas().text(at + glm::dvec2{0.0, std::max(mover.radius * axes.scale(), kSmallestMark) + 7.0}, mover.name,
+                     style);
 }
 
 /// "laser 270 deg, 8 m": what all lasers of one colour share, or a range of it.

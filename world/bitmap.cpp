@@ -63,7 +63,7 @@ std::vector<Run> outline(const Grid& grid, std::size_t most) {
   return runs;
 }
 
-base::Vec2 corner_position(const Grid& grid, Corner corner, double size_x, double size_y) {
+glm::dvec2 corner_position(const Grid& grid, Corner corner, double size_x, double size_y) {
   return {size_x * (static_cast<double>(corner.i) / grid.width - 0.5),
           size_y * (static_cast<double>(corner.j) / grid.height - 0.5)};
 }

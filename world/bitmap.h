@@ -35,6 +35,6 @@ std::vector<Run> outline(const Grid& grid, std::size_t most = SIZE_MAX);
 
 /// Where a corner lies in the frame of a model that shows the grid on `size_x` x `size_y`, centred. Equal corners give
 /// the very same doubles.
-base::Vec2 corner_position(const Grid& grid, Corner corner, double size_x, double size_y);
+glm::dvec2 corner_position(const Grid& grid, Corner corner, double size_x, double size_y);
 
 }  // namespace sf::world

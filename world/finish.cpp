@@ -14,7 +14,7 @@ namespace {
 Extent extent_of(const World& world) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   Extent extent{kFar, kFar, -kFar, -kFar};
-  const auto include = [&](Vec2 p) {
+  const auto include = [&](glm::dvec2 p) {
     extent = {std::min(extent.x_min, p.x), std::min(extent.y_min, p.y), std::max(extent.x_max, p.x),
               std::max(extent.y_max, p.y)};
   };
@@ -23,7 +23,7 @@ Extent extent_of(const World& world) {
     include(wall.b);
   }
   for (const Stripe& stripe : world.stripes)
-    for (const Vec2 p : stripe.line) include(p);
+    for (const glm::dvec2& p : stripe.line) include(p);
   for (const Magnet& magnet : world.magnets) include(magnet.p);
   for (const Path& path : world.paths)
     for (const PathPiece& piece : path.pieces) {
@@ -34,7 +34,7 @@ Extent extent_of(const World& world) {
   for (const Light& light : world.lights) include({light.X_WL.x, light.X_WL.y});
   for (const Emitter& emitter : world.emitters) include({emitter.X_WE.x, emitter.X_WE.y});
   for (const Drop& drop : world.drops)
-    for (const Vec2 p : drop.outline) include(p);
+    for (const glm::dvec2& p : drop.outline) include(p);
   for (const Mover& mover : world.movers) {
     include({mover.X_WM.x, mover.X_WM.y});
     for (const Segment& segment : mover.body) {
@@ -95,14 +95,14 @@ void translate(World& world, double dx, double dy) {
     move(wall.b);
   }
   for (Stripe& stripe : world.stripes)
-    for (Vec2& p : stripe.line) move(p);
+    for (glm::dvec2& p : stripe.line) move(p);
   for (Magnet& magnet : world.magnets) move(magnet.p);
   for (Path& path : world.paths)
     for (PathPiece& piece : path.pieces) move(piece.X_WP);
   for (Light& light : world.lights) move(light.X_WL);
   for (Emitter& emitter : world.emitters) move(emitter.X_WE);
   for (Drop& drop : world.drops)
-    for (Vec2& p : drop.outline) move(p);
+    for (glm::dvec2& p : drop.outline) move(p);
   for (Model& model : world.models) move(model.X_WM);
   for (Mover& mover : world.movers) move(mover.X_WM);
   finish(world);

@@ -22,7 +22,7 @@ Emitter::Kind kind_of_emitter(const Source& source, const Entity& entity) {
        fmt::format("'ir_emitter' is \"{}\"; expected \"virtual_wall\" or \"dock\"", word));
 }
 
-bool same(Vec2 p, Vec2 q) { return p.x == q.x && p.y == q.y; }
+bool same(glm::dvec2 p, glm::dvec2 q) { return p.x == q.x && p.y == q.y; }
 
 }  // namespace
 
@@ -37,7 +37,7 @@ void add_drops(Building& b, const Entity& entity, const Model& model, const std:
   const auto row = static_cast<std::uint32_t>(b.world.models.size());
   for (std::size_t i = 0; i < shape.size();) {
     Drop drop{{}, row};
-    const Vec2 first = shape[i].a;
+    const glm::dvec2 first = shape[i].a;
     bool closed = false;
     for (; i < shape.size() && !closed; ++i) {
       if (!shape[i].solid_left)

@@ -47,28 +47,28 @@ std::vector<Segment> walls_at_height(const World& world, const Mover& robot, std
   return walls;
 }
 
-bool clear_of_walls(const WallGrid& walls, Vec2 p, double radius) {
+bool clear_of_walls(const WallGrid& walls, glm::dvec2 p, double radius) {
   return !walls.any(box_around(p, radius), [&](const Segment& w) { return distance(p, w.a, w.b) < radius; });
 }
 
-bool wall_between(const WallGrid& walls, Vec2 p, Vec2 q) {
+bool wall_between(const WallGrid& walls, glm::dvec2 p, glm::dvec2 q) {
   return walls.any(box_of(p, q), [&](const Segment& w) { return segments_meet(p, q, w.a, w.b); });
 }
 
-bool in_solid(const WallGrid& walls, Vec2 p) { return windings(walls.walls(), p) != 0; }
+bool in_solid(const WallGrid& walls, glm::dvec2 p) { return windings(walls.walls(), p) != 0; }
 
-bool is_known(std::span<const Segment> known, Vec2 p) { return known.empty() || windings(known, p) != 0; }
+bool is_known(std::span<const Segment> known, glm::dvec2 p) { return known.empty() || windings(known, p) != 0; }
 
 // ---- The coarse grid and the region a robot can reach in it.
 
 struct Region {
-  Vec2 corner;        // [m] lower left
+  glm::dvec2 corner;  // [m] lower left
   double cell = 0.0;  // [m]
   std::uint32_t columns = 0;
   std::uint32_t rows = 0;
   std::vector<std::uint32_t> cells;  // reachable ones, in a fixed order
 
-  Vec2 centre(std::uint32_t at) const {
+  glm::dvec2 centre(std::uint32_t at) const {
     return {corner.x + (at % columns + 0.5) * cell, corner.y + (at / columns + 0.5) * cell};
   }
 };
@@ -77,7 +77,7 @@ struct Region {
 // that are both clear have no wall between them, since every point between is nearer to one of them than its circle
 // reaches.
 Region grid_over(const WallGrid& walls, const Mover& robot) {
-  const Vec2 p{robot.X_WM.x, robot.X_WM.y};
+  const glm::dvec2 p{robot.X_WM.x, robot.X_WM.y};
   Box box = box_around(p, kOpenWorld);
   for (const Segment& w : walls.walls()) {
     box.min = {std::min({box.min.x, w.a.x, w.b.x}), std::min({box.min.y, w.a.y, w.b.y})};
@@ -88,7 +88,7 @@ Region grid_over(const WallGrid& walls, const Mover& robot) {
   box.min = {std::max(box.min.x, most.min.x), std::max(box.min.y, most.min.y)};
   box.max = {std::min(box.max.x, most.max.x), std::min(box.max.y, most.max.y)};
 
-  const Vec2 size = box.max - box.min;
+  const glm::dvec2 size = box.max - box.min;
   Region region{.corner = box.min};
   region.cell = std::max(0.5 * radius, std::sqrt(size.x * size.y) / kMostCells);
   region.columns = static_cast<std::uint32_t>(std::ceil(size.x / region.cell));
@@ -120,7 +120,7 @@ void flood(Region& region, std::vector<Cell>& state, const WallGrid& walls, doub
 }
 
 // The nearest clear cell within sight of p, or kNone.
-std::uint32_t cell_near(const Region& region, const WallGrid& walls, double radius, Vec2 p) {
+std::uint32_t cell_near(const Region& region, const WallGrid& walls, double radius, glm::dvec2 p) {
   const double reach = 2.0 * radius + region.cell;
   const auto index = [&](double v, std::uint32_t count) {
     return static_cast<std::uint32_t>(std::clamp(std::floor(v / region.cell), 0.0, count - 1.0));
@@ -131,7 +131,7 @@ std::uint32_t cell_near(const Region& region, const WallGrid& walls, double radi
        y <= index(p.y + reach - region.corner.y, region.rows); ++y) {
     for (std::uint32_t x = index(p.x - reach - region.corner.x, region.columns);
          x <= index(p.x + reach - region.corner.x, region.columns); ++x) {
-      const Vec2 centre = region.centre(y * region.columns + x);
+      const glm::dvec2 centre = region.centre(y * region.columns + x);
       const double away = length(centre - p);
       if (away >= least || !clear_of_walls(walls, centre, radius) || wall_between(walls, p, centre)) continue;
       least = away;
@@ -156,7 +156,7 @@ bool is_open(const Region& region, const Box& known, double radius) {
   const double reach = radius + 1.5 * region.cell;
   return std::any_of(region.cells.begin(), region.cells.end(), [&](std::uint32_t at) {
     const std::uint32_t x = at % region.columns, y = at / region.columns;
-    const Vec2 p = region.centre(at);
+    const glm::dvec2 p = region.centre(at);
     return x == 0 || y == 0 || x + 1 == region.columns || y + 1 == region.rows ||
            (known.min.x <= known.max.x &&
             std::min({p.x - known.min.x, p.y - known.min.y, known.max.x - p.x, known.max.y - p.y}) < reach);
@@ -174,7 +174,7 @@ void take_largest(std::span<const Segment> known, Region& region, std::vector<Ce
     flood(region, state, walls, radius, at);
     std::vector<std::uint32_t>& largest = is_open(region, all_known, radius) ? outside : inside;
     if (region.cells.size() <= largest.size()) continue;
-    const Vec2 p = region.centre(at);
+    const glm::dvec2 p = region.centre(at);
     if (!in_solid(walls, p) && is_known(known, p)) largest.swap(region.cells);
   }
   region.cells.swap(100 * inside.size() > outside.size() ? inside : outside);
@@ -183,7 +183,7 @@ void take_largest(std::span<const Segment> known, Region& region, std::vector<Ce
 Region reachable(std::span<const Segment> known, const WallGrid& walls, const Mover& robot) {
   Region region = grid_over(walls, robot);
   const double radius = clear_radius(robot);
-  const Vec2 p{robot.X_WM.x, robot.X_WM.y};
+  const glm::dvec2 p{robot.X_WM.x, robot.X_WM.y};
   std::vector<Cell> state(static_cast<std::size_t>(region.columns) * region.rows, Cell::unknown);
   const bool free = !in_solid(walls, p) && is_known(known, p);
   const std::uint32_t first = free ? cell_near(region, walls, radius, p) : kNone;
@@ -202,7 +202,7 @@ class Crowd {
  public:
   Crowd(std::size_t count, double apart) : apart_(apart), heads_(2 * count + 1, kNone) {}
 
-  bool clear(Vec2 p) const {
+  bool clear(glm::dvec2 p) const {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         for (std::uint32_t k = heads_[bucket(p, dx, dy)]; k != kNone; k = next_[k]) {
@@ -212,7 +212,7 @@ class Crowd {
     }
     return true;
   }
-  void add(Vec2 p) {
+  void add(glm::dvec2 p) {
     const std::size_t at = bucket(p, 0, 0);
     next_.push_back(heads_[at]);
     heads_[at] = static_cast<std::uint32_t>(points_.size());
@@ -220,7 +220,7 @@ class Crowd {
   }
 
  private:
-  std::size_t bucket(Vec2 p, int dx, int dy) const {
+  std::size_t bucket(glm::dvec2 p, int dx, int dy) const {
     const auto x = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p.x / apart_)) + dx);
     const auto y = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p.y / apart_)) + dy);
     return static_cast<std::size_t>(((x * 0x9E3779B97F4A7C15u + y) * 0xBF58476D1CE4E5B9u >> 20) % heads_.size());
@@ -228,19 +228,19 @@ class Crowd {
   double apart_;  // [m] between any two
   std::vector<std::uint32_t> heads_;
   std::vector<std::uint32_t> next_;
-  std::vector<Vec2> points_;
+  std::vector<glm::dvec2> points_;
 };
 
-bool clear_of_tags(const World& world, Vec2 p, double radius) {
+bool clear_of_tags(const World& world, glm::dvec2 p, double radius) {
   return std::none_of(world.movers.begin(), world.movers.end(), [&](const Mover& mover) {
-    return mover.is_tag && length(Vec2{mover.X_WM.x, mover.X_WM.y} - p) < radius + mover.radius;
+    return mover.is_tag && length(glm::dvec2{mover.X_WM.x, mover.X_WM.y} - p) < radius + mover.radius;
   });
 }
 
 // The floor plan or map: a picture that lies under half of the walls' extent or more. Null: there is none.
 const Model* plan_of(const World& world) {
   const Box box = box_around_all(world.walls);
-  const Vec2 size = box.max - box.min;
+  const glm::dvec2 size = box.max - box.min;
   for (const Model& model : world.models)
     if (model.is_bitmap && model.mover == kNone && 2.0 * model.size.x * model.size.y >= size.x * size.y) return &model;
   return nullptr;
@@ -249,7 +249,7 @@ const Model* plan_of(const World& world) {
 // The wall that the robot's outline, a little smaller so that touching is none, would cross there.
 const Segment* wall_in(const World& world, const Mover& robot, const Pose& X_WM) {
   const Heights heights = heights_of(robot, X_WM.z);
-  const Vec2 p{X_WM.x, X_WM.y};
+  const glm::dvec2 p{X_WM.x, X_WM.y};
   for (const Segment& wall : world.walls) {
     if (!wall.stops_robots || !heights.meet(wall) || distance(p, wall.a, wall.b) > robot.radius) continue;
     for (const Segment& side : robot.body) {
@@ -263,10 +263,10 @@ const Segment* wall_in(const World& world, const Mover& robot, const Pose& X_WM)
 }  // namespace
 
 std::string misplaced(const World& world, const Mover& robot, const Pose& X_WM) {
-  const Vec2 p{X_WM.x, X_WM.y};
+  const glm::dvec2 p{X_WM.x, X_WM.y};
   const Model* plan = plan_of(world);
   if (plan != nullptr) {
-    const Vec2 at = base::rotate(-plan->X_WM.yaw, p - Vec2{plan->X_WM.x, plan->X_WM.y});
+    const glm::dvec2 at = base::rotate(-plan->X_WM.yaw, p - glm::dvec2{plan->X_WM.x, plan->X_WM.y});
     if (2.0 * std::abs(at.x) > plan->size.x || 2.0 * std::abs(at.y) > plan->size.y)
       return "outside of '" + plan->name + "'";
   }
@@ -292,9 +292,9 @@ std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32
       const base::Draw key{.seed = seed, .stream = base::Stream::place, .a = k, .b = attempt};
       const auto [which, turn] = base::random_uniform(key, 0);
       const auto [x, y] = base::random_uniform(key, 1);
-      const Vec2 centre =
+      const glm::dvec2 centre =
           region.centre(region.cells[static_cast<std::size_t>(which * static_cast<double>(region.cells.size()))]);
-      const Vec2 p = centre + region.cell * Vec2{x - 0.5, y - 0.5};
+      const glm::dvec2 p = centre + region.cell * glm::dvec2{x - 0.5, y - 0.5};
       if (!clear_of_walls(walls, p, radius) || !clear_of_tags(world, p, radius) || !crowd.clear(p)) continue;
       crowd.add(p);
       poses.push_back({p.x, p.y, robot.X_WM.z, M_PI * (2.0 * turn - 1.0)});

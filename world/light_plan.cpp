@@ -99,7 +99,7 @@ std::vector<Segment> light_shape(const Size& size, bool single) {
   std::vector<Segment> segments;
   const double neck = (single ? 0.8 : 0.6) * size.z;
   const auto add_box = [&](double x, double y, double z_min, double z_max) {
-    const std::array<Vec2, 4> corners{{{-x, -y}, {x, -y}, {x, y}, {-x, y}}};
+    const std::array<glm::dvec2, 4> corners{{{-x, -y}, {x, -y}, {x, y}, {-x, y}}};
     for (std::size_t i = 0; i < 4; ++i) {
       Segment side;
       side.a = corners[i];

@@ -97,7 +97,7 @@ Pose tag_pose_of(Source& source, const Entity& entity, bool is_tag) {
   const Property* said = find(entity, "tag_pose");
   if (said == nullptr) return {};
   const Pose X_MT = pose(source, entity, "tag_pose");
-  if (length(Vec2{X_MT.x, X_MT.y}) > kMostTagReach || std::abs(X_MT.z) > kMostTagReach)
+  if (length(glm::dvec2{X_MT.x, X_MT.y}) > kMostTagReach || std::abs(X_MT.z) > kMostTagReach)
     fail(source, said->at, fmt::format("'tag_pose' expects a tag within {} m of its model's origin", kMostTagReach));
   if (is_tag) return X_MT;
   warn(source, said->at,

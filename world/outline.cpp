@@ -6,36 +6,34 @@
 namespace sf::world {
 
 using base::cross;
-using base::dot;
-using base::Vec2;
 
 namespace {
 
-bool same(Vec2 p, Vec2 q) { return p.x == q.x && p.y == q.y; }
+bool same(glm::dvec2 p, glm::dvec2 q) { return p.x == q.x && p.y == q.y; }
 
-void drop_repeated(std::vector<Vec2>& points) {
+void drop_repeated(std::vector<glm::dvec2>& points) {
   points.erase(std::unique(points.begin(), points.end(), same), points.end());
   while (points.size() > 1 && same(points.front(), points.back())) points.pop_back();
 }
 
-double twice_area(const std::vector<Vec2>& points) {
+double twice_area(const std::vector<glm::dvec2>& points) {
   double sum = 0.0;  // relative to the first corner, so that it does not depend on where the polygon lies
   for (std::size_t i = 1; i + 1 < points.size(); ++i) sum += cross(points[i] - points[0], points[i + 1] - points[0]);
   return sum;
 }
 
-double extent(const std::vector<Vec2>& points) {
+double extent(const std::vector<glm::dvec2>& points) {
   double most = 0.0;
-  for (const Vec2 p : points) most = std::max({most, std::abs(p.x - points[0].x), std::abs(p.y - points[0].y)});
+  for (const glm::dvec2& p : points) most = std::max({most, std::abs(p.x - points[0].x), std::abs(p.y - points[0].y)});
   return most;
 }
 
-int side(const Edge& edge, Vec2 p) {
+int side(const Edge& edge, glm::dvec2 p) {
   const double value = cross(edge.b - edge.a, p - edge.a);
   return (value > 0.0) - (value < 0.0);
 }
 
-bool between(const Edge& edge, Vec2 p) {
+bool between(const Edge& edge, glm::dvec2 p) {
   return std::min(edge.a.x, edge.b.x) <= p.x && p.x <= std::max(edge.a.x, edge.b.x) &&
          std::min(edge.a.y, edge.b.y) <= p.y && p.y <= std::max(edge.a.y, edge.b.y);
 }
@@ -48,8 +46,8 @@ bool meet(const Edge& e, const Edge& f) {
 }
 
 bool folds_back(const Edge& first, const Edge& second) {
-  const Vec2 d = first.b - first.a;
-  const Vec2 e = second.b - second.a;
+  const glm::dvec2 d = first.b - first.a;
+  const glm::dvec2 e = second.b - second.a;
   return cross(d, e) == 0.0 && dot(d, e) < 0.0;
 }
 
@@ -68,7 +66,7 @@ bool is_simple(const std::vector<Edge>& edges) {
 
 }  // namespace
 
-Outline outline_of(std::vector<Vec2> points) {
+Outline outline_of(std::vector<glm::dvec2> points) {
   drop_repeated(points);
   if (points.size() < 2) return {};
   if (points.size() == 2) return {{{points[0], points[1]}}, false};

@@ -8,8 +8,8 @@
 namespace sf::world {
 
 struct Edge {
-  base::Vec2 a;
-  base::Vec2 b;  ///< never equal to a
+  glm::dvec2 a;
+  glm::dvec2 b;  ///< never equal to a
 };
 
 /// Rule: with `solid_left` the edges are a simple closed polygon, counter-clockwise.
@@ -21,6 +21,6 @@ struct Outline {
 /// Closes the polygon through `points` (either winding; repeated neighbours are dropped). Two points make one thin
 /// wall; fewer make nothing; a polygon that crosses or touches itself, or has no area, keeps its edges but not its
 /// sides.
-Outline outline_of(std::vector<base::Vec2> points);
+Outline outline_of(std::vector<glm::dvec2> points);
 
 }  // namespace sf::world

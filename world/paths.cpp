@@ -8,8 +8,8 @@ namespace sf::world {
 namespace {
 
 /// How far along the piece the nearest point of its line is [m], before it is cut to the piece.
-double project(const PathPiece& piece, Vec2 p) {
-  const Vec2 q = base::rotate(-piece.X_WP.yaw, p - Vec2{piece.X_WP.x, piece.X_WP.y});
+double project(const PathPiece& piece, glm::dvec2 p) {
+  const glm::dvec2 q = base::rotate(-piece.X_WP.yaw, p - glm::dvec2{piece.X_WP.x, piece.X_WP.y});
   if (piece.curvature == 0.0) return q.x;
   const double radius = 1.0 / piece.curvature;
   const double side = piece.curvature > 0.0 ? 1.0 : -1.0;
@@ -43,7 +43,7 @@ Pose along(const Path& path, double s) {
   return along(path.pieces[i], s);
 }
 
-OnPath nearest(const Path& path, Vec2 p) {
+OnPath nearest(const Path& path, glm::dvec2 p) {
   OnPath best;
   double least = HUGE_VAL;
   double start = 0.0;
@@ -51,8 +51,8 @@ OnPath nearest(const Path& path, Vec2 p) {
     const PathPiece& piece = path.pieces[i];
     const double s = std::clamp(project(piece, p), 0.0, piece.length);
     const Pose X_WP = along(piece, s);
-    const Vec2 d = p - Vec2{X_WP.x, X_WP.y};
-    const double far = base::length(d);
+    const glm::dvec2 d = p - glm::dvec2{X_WP.x, X_WP.y};
+    const double far = glm::length(d);
     if (far < least) {
       least = far;
       const double left = base::cross(base::rotate(X_WP.yaw, {1.0, 0.0}), d);

@@ -22,6 +22,6 @@ Pose along(const PathPiece& piece, double s);
 Pose along(const Path& path, double s);
 
 /// @param p [m] world frame
-OnPath nearest(const Path& path, Vec2 p);
+OnPath nearest(const Path& path, glm::dvec2 p);
 
 }  // namespace sf::world

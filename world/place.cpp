@@ -15,7 +15,7 @@ namespace sf::world {
 namespace {
 
 Pose inverse(const Pose& X) {
-  const Vec2 p = base::rotate(-X.yaw, {-X.x, -X.y});
+  const glm::dvec2 p = base::rotate(-X.yaw, {-X.x, -X.y});
   return {p.x, p.y, -X.z, -X.yaw};
 }
 

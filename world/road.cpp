@@ -68,7 +68,7 @@ void add_road(Building& b, const Entity& entity) {
   if (!row) return;
   for (const RoadLane* lane : named_lanes(b, entity, roads))
     place_magnets(b, entity, *row, length_of(*lane), [&](double s) {
-      const Vec2 p = point_at(lane->centre, s);
+      const glm::dvec2 p = point_at(lane->centre, s);
       return Pose{p.x, p.y, 0.0, 0.0};
     });
 }

@@ -12,12 +12,12 @@ namespace {
 constexpr std::size_t kPieceBytes = 56;
 constexpr std::size_t kPhaseBytes = 9;
 
-void put_vec(ByteWriter& out, Vec2 p) {
+void put_vec(ByteWriter& out, glm::dvec2 p) {
   out.put(p.x);
   out.put(p.y);
 }
 
-Vec2 get_vec(ByteReader& in) {
+glm::dvec2 get_vec(ByteReader& in) {
   const double x = in.get<double>();
   return {x, in.get<double>()};
 }
@@ -80,7 +80,7 @@ Segment get_segment(ByteReader& in) {
 
 void put(ByteWriter& out, const Stripe& stripe, Rows rows) {
   out.put(static_cast<std::uint32_t>(stripe.line.size()));
-  for (const Vec2 p : stripe.line) put_vec(out, p);
+  for (const glm::dvec2& p : stripe.line) put_vec(out, p);
   out.put(stripe.width);
   if (rows == Rows::all) out.put(stripe.color);
 }
@@ -88,7 +88,7 @@ void put(ByteWriter& out, const Stripe& stripe, Rows rows) {
 Stripe get_stripe(ByteReader& in) {
   Stripe stripe;
   stripe.line.resize(get_count(in, 2 * sizeof(double)));
-  for (Vec2& p : stripe.line) p = get_vec(in);
+  for (glm::dvec2& p : stripe.line) p = get_vec(in);
   stripe.width = in.get<double>();
   stripe.color = in.get<std::uint32_t>();
   return stripe;
@@ -205,14 +205,14 @@ Emitter get_emitter(ByteReader& in) {
 void put(ByteWriter& out, const Drop& drop) {
   out.put(drop.model);
   out.put(static_cast<std::uint32_t>(drop.outline.size()));
-  for (const Vec2 p : drop.outline) put_vec(out, p);
+  for (const glm::dvec2& p : drop.outline) put_vec(out, p);
 }
 
 Drop get_drop(ByteReader& in) {
   Drop drop;
   drop.model = in.get<std::uint32_t>();
   drop.outline.resize(get_count(in, 2 * sizeof(double)));
-  for (Vec2& p : drop.outline) p = get_vec(in);
+  for (glm::dvec2& p : drop.outline) p = get_vec(in);
   return drop;
 }
 

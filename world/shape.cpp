@@ -21,12 +21,12 @@ constexpr double kMostSegments = kMostRuns;
 constexpr double kBoundary = 0.01;  // [m] thickness of the walls that `boundary 1` adds
 
 struct Block {
-  std::vector<Vec2> points;
+  std::vector<glm::dvec2> points;
   double z_min = 0.0;
   double z_max = 1.0;
 };
 
-Vec2 read_point(const Source& source, const Entity& entity, const std::string& key) {
+glm::dvec2 read_point(const Source& source, const Entity& entity, const std::string& key) {
   const auto point = tuple(source, entity, key, 2, "[x y]");
   if (!point) fail(source, entity.at, fmt::format("'{}' of this '{}' is missing", key, entity.word));
   const Place at = find(entity, key)->at;
@@ -69,8 +69,8 @@ std::vector<Block> read_blocks(Source& source, const Entity& entity) {
 
 /// What all blocks of a model span.
 struct Span {
-  Vec2 low{HUGE_VAL, HUGE_VAL};
-  Vec2 high{-HUGE_VAL, -HUGE_VAL};
+  glm::dvec2 low{HUGE_VAL, HUGE_VAL};
+  glm::dvec2 high{-HUGE_VAL, -HUGE_VAL};
   double top = 0.0;  ///< [m]
 
   Size size() const { return {high.x - low.x, high.y - low.y, top}; }
@@ -79,7 +79,7 @@ struct Span {
 Span span_of(const std::vector<Block>& blocks) {
   Span span;
   for (const Block& block : blocks) {
-    for (const Vec2 p : block.points) {
+    for (const glm::dvec2& p : block.points) {
       span.low = {std::min(span.low.x, p.x), std::min(span.low.y, p.y)};
       span.high = {std::max(span.high.x, p.x), std::max(span.high.y, p.y)};
     }
@@ -95,7 +95,7 @@ void scale_to(std::vector<Block>& blocks, const Span& span, const Size& size) {
     return to > from ? ((value - from) / (to - from) - 0.5) * target : 0.0;
   };
   for (Block& block : blocks) {
-    for (Vec2& p : block.points)
+    for (glm::dvec2& p : block.points)
       p = {scaled(p.x, span.low.x, span.high.x, size.x), scaled(p.y, span.low.y, span.high.y, size.y)};
     if (span.top <= 0.0) continue;
     block.z_min *= size.z / span.top;
@@ -116,7 +116,7 @@ void warn_unsized(Source& source, const Entity& entity, const Span& span, const 
                    written.z / unit));
 }
 
-void append(std::vector<Segment>& segments, const std::vector<Vec2>& points, double z_min, double z_max) {
+void append(std::vector<Segment>& segments, const std::vector<glm::dvec2>& points, double z_min, double z_max) {
   const Outline outline = outline_of(points);
   for (const Edge& edge : outline.edges) {
     Segment segment;
@@ -129,7 +129,7 @@ void append(std::vector<Segment>& segments, const std::vector<Vec2>& points, dou
   }
 }
 
-std::vector<Vec2> rectangle(double x, double y) {
+std::vector<glm::dvec2> rectangle(double x, double y) {
   return {{-x / 2, -y / 2}, {x / 2, -y / 2}, {x / 2, y / 2}, {-x / 2, y / 2}};
 }
 

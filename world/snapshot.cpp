@@ -67,7 +67,7 @@ bool finite(const Sensor& s) {
          });
 }
 bool finite(const Stripe& stripe) {
-  return finite({stripe.width}) && std::all_of(stripe.line.begin(), stripe.line.end(), [](Vec2 p) {
+  return finite({stripe.width}) && std::all_of(stripe.line.begin(), stripe.line.end(), [](glm::dvec2 p) {
            return finite({p.x, p.y});
          });
 }

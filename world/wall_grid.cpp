@@ -16,15 +16,15 @@ constexpr std::uint32_t kLevels = 12;    // 8^11 finest cells: 8.6e9 of them in 
 constexpr std::size_t kPart = 1u << 18;  // buckets that are filled together
 constexpr double kFarthest = 4.0e15;     // cell numbers stay exact integers
 
-double side(Vec2 a, Vec2 b, Vec2 p) { return base::cross(b - a, p - a); }
+double side(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) { return base::cross(b - a, p - a); }
 
 bool within(double p, double a, double b) { return std::min(a, b) <= p && p <= std::max(a, b); }
 
 }  // namespace
 
-double distance(Vec2 p, Vec2 a, Vec2 b) { return length(from_segment(p, a, b)); }
+double distance(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) { return length(from_segment(p, a, b)); }
 
-bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+bool segments_meet(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   const double sc = side(a, b, c);
   const double sd = side(a, b, d);
   if ((sc > 0.0 && sd > 0.0) || (sc < 0.0 && sd < 0.0)) return false;
@@ -34,11 +34,13 @@ bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
   if (sa != 0.0 || sb != 0.0 || sc != 0.0 || sd != 0.0) return true;
 
   // All four on one line: the segments meet where their ranges do.
-  const auto on = [](Vec2 p, Vec2 q, Vec2 r) { return within(p.x, q.x, r.x) && within(p.y, q.y, r.y); };
+  const auto on = [](glm::dvec2 p, glm::dvec2 q, glm::dvec2 r) {
+    return within(p.x, q.x, r.x) && within(p.y, q.y, r.y);
+  };
   return on(a, c, d) || on(b, c, d) || on(c, a, b);
 }
 
-int windings(std::span<const Segment> edges, Vec2 p) {
+int windings(std::span<const Segment> edges, glm::dvec2 p) {
   int sum = 0;
   for (const Segment& e : edges) {
     if (!e.solid_left) continue;
@@ -125,8 +127,8 @@ void WallGrid::for_each_bucket(const Segment& wall, Visit&& visit) const {
   const std::uint32_t level = level_of(wall);
   const double cell = cells_[level];
   const double slack = 1e-6 * cell;  // far above rounding at 100 km, far below a cell
-  const Vec2 p = wall.a.x <= wall.b.x ? wall.a : wall.b;
-  const Vec2 q = wall.a.x <= wall.b.x ? wall.b : wall.a;
+  const glm::dvec2 p = wall.a.x <= wall.b.x ? wall.a : wall.b;
+  const glm::dvec2 q = wall.a.x <= wall.b.x ? wall.b : wall.a;
 
   // Column by column: the cells the wall crosses there.
   const std::int64_t last = cell_of(q.x, cell);

@@ -17,36 +17,36 @@ namespace sf::world {
 
 /// Axis-aligned, closed. [m] world frame
 struct Box {
-  Vec2 min;
-  Vec2 max;
+  glm::dvec2 min;
+  glm::dvec2 max;
 };
 
-inline Box box_around(Vec2 centre, double reach) {
+inline Box box_around(glm::dvec2 centre, double reach) {
   return {{centre.x - reach, centre.y - reach}, {centre.x + reach, centre.y + reach}};
 }
 
 /// Around two corners, in any order.
-inline Box box_of(Vec2 p, Vec2 q) {
+inline Box box_of(glm::dvec2 p, glm::dvec2 q) {
   return {{std::min(p.x, q.x), std::min(p.y, q.y)}, {std::max(p.x, q.x), std::max(p.y, q.y)}};
 }
 
 /// From the segment's nearest point to `p`. [m]
-inline Vec2 from_segment(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 along = b - a;
+inline glm::dvec2 from_segment(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
+  const glm::dvec2 along = b - a;
   const double size = dot(along, along);
   const double t = size > 0.0 ? std::clamp(dot(p - a, along) / size, 0.0, 1.0) : 0.0;
   return p - a - t * along;
 }
 
 /// Distance from `p` to the nearest point of the segment. [m] >= 0
-double distance(Vec2 p, Vec2 a, Vec2 b);
+double distance(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b);
 
 /// Whether two closed segments share a point. Touching counts.
-bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d);
+bool segments_meet(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d);
 
 /// How often outlines, counter-clockwise around what is solid, go round `p`. Edges that are not solid to their left
 /// are skipped.
-int windings(std::span<const Segment> edges, Vec2 p);
+int windings(std::span<const Segment> edges, glm::dvec2 p);
 
 class WallGrid {
  public:

@@ -18,7 +18,6 @@
 namespace sf::world {
 
 using base::Pose;
-using base::Vec2;
 
 inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
@@ -26,8 +25,8 @@ inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 /// Rule: `a != b`. Where `solid_left`, it belongs to closed simple outlines of a bounded solid, which lies on the left
 /// of a -> b: counter-clockwise around it, clockwise around its holes.
 struct Segment {
-  Vec2 a;
-  Vec2 b;  ///< [m] world frame for walls, mover frame for bodies
+  glm::dvec2 a;
+  glm::dvec2 b;  ///< [m] world frame for walls, mover frame for bodies
   double z_min = 0.0;
   double z_max = 0.0;            ///< [m] a beam at height z sees it when z_min <= z < z_max
   std::uint32_t model = 0;       ///< row in `World::models`
@@ -44,7 +43,7 @@ struct Model {
   std::uint32_t parent = kNone;  ///< row of the enclosing model
   std::uint32_t mover = kNone;   ///< row in `World::movers` when it moves (or is carried), else kNone
   Pose X_WM;                     ///< at load
-  Vec2 size;                     ///< [m] bounding box
+  glm::dvec2 size;               ///< [m] bounding box
   std::uint32_t color = 0xFF808080u;  ///< 0xAARRGGBB
   bool is_bitmap = false;             ///< its outline came from a picture (a floor plan)
   double pixel = 0.0;                 ///< [m] larger side of that picture's pixels; 0: no picture
@@ -53,14 +52,14 @@ struct Model {
 /// One painted stripe: a band of constant width along a line. Every dash is a stripe of its own.
 /// Rule: at least two points, neighbours distinct; the line turns by less than 90 degrees at each.
 struct Stripe {
-  std::vector<Vec2> line;             ///< [m] its middle, world frame
+  std::vector<glm::dvec2> line;       ///< [m] its middle, world frame
   double width = 0.0;                 ///< [m] > 0
   std::uint32_t color = 0xFFFFFFFFu;  ///< 0xAARRGGBB
 };
 
 /// A permanent magnet: a point dipole at the middle of its model, its moment along the world's +z.
 struct Magnet {
-  Vec2 p;                   ///< [m] world frame, or the mover's frame where a mover carries it
+  glm::dvec2 p;             ///< [m] world frame, or the mover's frame where a mover carries it
   double z = 0.0;           ///< [m] likewise
   double moment = 0.0;      ///< [A m^2] not 0; negative: the south pole is up
   double radius = 0.0;      ///< [m] > 0: nearer than this the field stays what it is at this distance
@@ -218,8 +217,8 @@ struct Emitter {
 
 /// An edge in the floor: within its outline there is none.
 struct Drop {
-  std::vector<Vec2> outline;  ///< [m] world frame, closed, simple
-  std::uint32_t model = 0;    ///< row in `World::models`
+  std::vector<glm::dvec2> outline;  ///< [m] world frame, closed, simple
+  std::uint32_t model = 0;          ///< row in `World::models`
 };
 
 /// Something to tell the user that did not stop the load.

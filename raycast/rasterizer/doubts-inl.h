@@ -18,7 +18,7 @@ namespace sf::raycast::HWY_NAMESPACE {
 
 /// Segments of a block that direction `d` may cross, those behind the viewer too: a bit each. Start and extent are
 /// turned by `heading` and moved by `from`.
-inline std::uint32_t crossed_by(const SegmentBlock& block, base::Vec2 from, base::Vec2 heading, base::Vec2 d,
+inline std::uint32_t crossed_by(const SegmentBlock& block, glm::dvec2 from, glm::dvec2 heading, glm::dvec2 d,
                                 float band) {
   const VF c = constant(static_cast<float>(heading.x)), sn = constant(static_cast<float>(heading.y));
   const VF x = constant(static_cast<float>(from.x)), y = constant(static_cast<float>(from.y));
@@ -35,15 +35,15 @@ inline std::uint32_t crossed_by(const SegmentBlock& block, base::Vec2 from, base
 }
 
 /// Decides those of a block that beam `d` may cross.
-void meet(const ScanView& view, const ScanScene& scene, const SegmentBlock& block, base::Vec2 from, base::Vec2 heading,
-          std::uint32_t first_row, base::Vec2 d, Decision& best) {
+void meet(const ScanView& view, const ScanScene& scene, const SegmentBlock& block, glm::dvec2 from, glm::dvec2 heading,
+          std::uint32_t first_row, glm::dvec2 d, Decision& best) {
   for (std::uint32_t open = crossed_by(block, from, heading, d, view.band); open != 0; open &= open - 1) {
     const std::uint32_t number = block.row[__builtin_ctz(open)];
     if (number != SF_NO_HIT) decide({scene.exact[first_row + number], first_row + number}, view.origin, d, best);
   }
 }
 
-void meet_walls(const ScanView& view, const ScanScene& scene, base::Vec2 d, Decision& best) {
+void meet_walls(const ScanView& view, const ScanScene& scene, glm::dvec2 d, Decision& best) {
   VF unused;
   const float bearing =
       hn::GetLane(bearing_of(constant(static_cast<float>(d.y)), constant(static_cast<float>(d.x)), unused));
@@ -63,7 +63,7 @@ void meet_walls(const ScanView& view, const ScanScene& scene, base::Vec2 d, Deci
 }
 
 /// Lists movers of one row of cells whose discs beam `d` may cross within `range`.
-void find_across(Scratch& s, const ScanView& view, const ScanScene& scene, base::Vec2 d, double range,
+void find_across(Scratch& s, const ScanView& view, const ScanScene& scene, glm::dvec2 d, double range,
                  std::uint32_t from, std::uint32_t end) {
   const MoverGrid& grid = *scene.movers;
   const VF x = constant(static_cast<float>(view.origin.x - grid.low.x));
@@ -84,10 +84,10 @@ void find_across(Scratch& s, const ScanView& view, const ScanScene& scene, base:
   }
 }
 
-void meet_movers(Scratch& s, const ScanView& view, const ScanScene& scene, base::Vec2 d, Decision& best) {
+void meet_movers(Scratch& s, const ScanView& view, const ScanScene& scene, glm::dvec2 d, Decision& best) {
   const MoverGrid& grid = *scene.movers;
   const double margin = grid.largest_radius * 1.001 + 2.0 * static_cast<double>(grid.error);
-  const base::Vec2 from{view.origin.x - grid.low.x, view.origin.y - grid.low.y}, to = from + best.range * d;
+  const glm::dvec2 from{view.origin.x - grid.low.x, view.origin.y - grid.low.y}, to = from + best.range * d;
   const int x0 = grid.column_of(std::min(from.x, to.x) - margin), x1 = grid.column_of(std::max(from.x, to.x) + margin);
   const int y0 = grid.row_of(std::min(from.y, to.y) - margin), y1 = grid.row_of(std::max(from.y, to.y) + margin);
   s.across.clear();
@@ -95,7 +95,7 @@ void meet_movers(Scratch& s, const ScanView& view, const ScanScene& scene, base:
     find_across(s, view, scene, d, best.range, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
   for (const std::uint32_t mover : s.across) {
     const OutlineTable::Outline& outline = scene.outlines->of_mover[mover];
-    const base::Vec2 place = base::Vec2{scene.poses[mover].x, scene.poses[mover].y} - view.origin;
+    const glm::dvec2 place = glm::dvec2{scene.poses[mover].x, scene.poses[mover].y} - view.origin;
     for (std::uint32_t i = outline.first; i < outline.first + outline.all; ++i)
       meet(view, scene, scene.outlines->blocks[i], place, scene.headings[mover], scene.first_rows[mover], d, best);
   }
@@ -104,7 +104,7 @@ void meet_movers(Scratch& s, const ScanView& view, const ScanScene& scene, base:
 /// Answers beam `i` by all that lies across it, in 64 bits. @return whether it grazes
 bool answer_beam(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, std::size_t i,
                  const ScanOutput& out) {
-  const base::Vec2 d = direction_of(view, pattern, i);
+  const glm::dvec2 d = direction_of(view, pattern, i);
   Decision best{view.range_max};
   meet_walls(view, scene, d, best);
   if (scene.movers != nullptr) meet_movers(s, view, scene, d, best);

@@ -62,7 +62,7 @@ void find_all_near(Scratch& s, const Projection& p, const ScanView& view, const 
                    const ScanScene& scene) {
   const MoverGrid& grid = *scene.movers;
   const double reach = view.range_max * 1.00001 + grid.largest_radius + 2.0 * static_cast<double>(grid.error);
-  const base::Vec2 v{view.origin.x - grid.low.x, view.origin.y - grid.low.y};
+  const glm::dvec2 v{view.origin.x - grid.low.x, view.origin.y - grid.low.y};
   const int x0 = grid.column_of(v.x - reach), x1 = grid.column_of(v.x + reach);
   s.near.clear();
   for (int row = grid.row_of(v.y - reach); row <= grid.row_of(v.y + reach); ++row)

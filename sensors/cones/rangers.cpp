@@ -129,7 +129,7 @@ std::vector<SensorRow> ranger_rows(const std::vector<ConeArray>& arrays) {
     // Where transducers take turns, a reading holds what was heard before.
     if (array.turns > 1) continue;
     for (const Pose& X_SC : array.X_SC)
-      rows.back().reach = std::max(rows.back().reach, array.range_max + base::length({X_SC.x, X_SC.y}));
+      rows.back().reach = std::max(rows.back().reach, array.range_max + glm::length(glm::dvec2{X_SC.x, X_SC.y}));
   }
   return rows;
 }

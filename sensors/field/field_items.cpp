@@ -60,9 +60,9 @@ void MagneticField::Tables::gather(std::span<const Place> at, std::span<const st
     group.places = end - first;
     SF_CHECK(group.places >= 1 && group.places <= SF_FIELD_PLACES, std::to_string(group.places) + " places a group");
     for (std::uint32_t i = first; i < end; ++i)
-      group.centre = group.centre + (1.0 / group.places) * base::Vec2{at[i].x, at[i].y};
+      group.centre = group.centre + (1.0 / group.places) * glm::dvec2{at[i].x, at[i].y};
     for (std::uint32_t i = first; i < end; ++i)
-      group.reach = std::max(group.reach, base::length(base::Vec2{at[i].x, at[i].y} - group.centre));
+      group.reach = std::max(group.reach, glm::length(glm::dvec2{at[i].x, at[i].y} - group.centre));
     // What rounding does to a centre far from the origin.
     const double slack = 1e-9 * cutoff + 1e-15 * (std::abs(group.centre.x) + std::abs(group.centre.y));
     group.reach += cutoff + slack;

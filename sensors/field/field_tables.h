@@ -21,7 +21,7 @@ inline constexpr std::uint32_t kMostTurns = 60'000;
 
 /// Neighbouring places, which share their lists of magnets.
 struct PlaceGroup {
-  base::Vec2 centre;   ///< [m]
+  glm::dvec2 centre;   ///< [m]
   double reach = 0.0;  ///< [m] from the centre: every magnet that counts for one of its places is nearer
   std::uint32_t places = 0;
   std::uint32_t spans = 0;    ///< found, first of them at its number times `stride`
@@ -44,7 +44,7 @@ struct MagneticField::Tables {
   std::uint32_t standing = 0;  ///< magnets of the world; the movers' come behind them
   std::uint32_t moving = 0;
   MagnetGrid standing_grid, moving_grid;
-  std::vector<base::Vec2> moving_places;  ///< [m] this tick
+  std::vector<glm::dvec2> moving_places;  ///< [m] this tick
   std::vector<DipoleRow> moving_rows;
 
   std::unique_ptr<gpu::Kernel> kernel;

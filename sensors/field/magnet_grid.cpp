@@ -18,9 +18,9 @@ double rounding(double a, double b) { return 8.0 * std::numeric_limits<double>::
 
 }  // namespace
 
-void MagnetGrid::measure(std::span<const Vec2> magnets, double cutoff, std::size_t most_cells) {
-  Vec2 high = low_ = magnets.empty() ? Vec2{} : magnets.front();
-  for (const Vec2 p : magnets) {
+void MagnetGrid::measure(std::span<const glm::dvec2> magnets, double cutoff, std::size_t most_cells) {
+  glm::dvec2 high = low_ = magnets.empty() ? glm::dvec2{} : magnets.front();
+  for (const glm::dvec2& p : magnets) {
     low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y)};
   }
@@ -40,7 +40,7 @@ void MagnetGrid::measure(std::span<const Vec2> magnets, double cutoff, std::size
 double MagnetGrid::column_of(double x) const { return std::floor((x - low_.x) / width_); }
 double MagnetGrid::row_of(double y) const { return std::floor((y - low_.y) / depth_); }
 
-void MagnetGrid::build(std::span<const Vec2> magnets, double cutoff, std::size_t most_cells) {
+void MagnetGrid::build(std::span<const glm::dvec2> magnets, double cutoff, std::size_t most_cells) {
   order_.resize(magnets.size());
   std::iota(order_.begin(), order_.end(), 0u);
   whole_ = cutoff == 0.0;
@@ -68,7 +68,7 @@ std::uint32_t MagnetGrid::most_spans(double reach) const {
   return static_cast<std::uint32_t>(std::min(2.0 * reach / depth_ + 3.0, static_cast<double>(rows_)));
 }
 
-std::uint32_t MagnetGrid::find(Vec2 centre, double reach, std::span<MagnetSpan> out) const {
+std::uint32_t MagnetGrid::find(glm::dvec2 centre, double reach, std::span<MagnetSpan> out) const {
   if (order_.empty()) return 0;
   if (whole_) {
     out[0] = {0, static_cast<std::uint32_t>(order_.size())};

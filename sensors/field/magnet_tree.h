@@ -11,11 +11,9 @@
 
 namespace sf::sensors {
 
-using base::Vec2;
-
 /// Axis-aligned, closed.
 struct Box {
-  Vec2 low, high;  ///< [m]
+  glm::dvec2 low, high;  ///< [m]
 };
 
 /// [T m^3] mu0 / 4 pi times its moment, as a magnitude.
@@ -43,7 +41,7 @@ class MagnetTree {
     bool leaf = false;       ///< one magnet
   };
   struct Item {
-    Vec2 p;
+    glm::dvec2 p;
     double strength, above;
   };
   void build(std::span<Item> items);

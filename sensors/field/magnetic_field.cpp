@@ -10,8 +10,6 @@
 
 namespace sf::sensors {
 
-using base::Vec2;
-
 namespace {
 
 constexpr double kLeastRadius = 1e-9;  // [m] whose inverse cubed is still a number in 32 bits
@@ -28,7 +26,7 @@ std::uint32_t count_of(const Rows& rows) {
 
 }  // namespace
 
-DipoleRow dipole_row(const world::Magnet& magnet, Vec2 p, double z) {
+DipoleRow dipole_row(const world::Magnet& magnet, glm::dvec2 p, double z) {
   return {p.x, p.y, z, static_cast<float>(magnet.moment),
           static_cast<float>(1.0 / std::max(magnet.radius, kLeastRadius))};
 }
@@ -62,7 +60,7 @@ MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::Worke
 }
 
 void MagneticField::Tables::write_standing() {
-  std::vector<Vec2> at;
+  std::vector<glm::dvec2> at;
   for (const world::Magnet& magnet : world.magnets) at.push_back(magnet.p);
   standing_grid.build(at, cutoff, most_cells(at.size(), kLeastCells));
   const auto rows = dipoles->host<DipoleRow>();
@@ -87,7 +85,7 @@ void MagneticField::place(std::span<const Pose> poses) {
     const world::Mover& mover = t.world.movers[m];
     if (std::isnan(poses[m].x)) continue;  // gone
     for (const world::Magnet& magnet : mover.magnets) {
-      const Vec2 p = base::transform(poses[m], magnet.p);
+      const glm::dvec2 p = base::transform(poses[m], magnet.p);
       t.moving_places.push_back(p);
       t.moving_rows.push_back(dipole_row(magnet, p, mover.X_WM.z + magnet.z));
     }

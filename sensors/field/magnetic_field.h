@@ -32,7 +32,7 @@ struct Place {
 };
 
 /// What the kernel takes: row of the world's magnet, or of a mover's at its place in the world.
-DipoleRow dipole_row(const world::Magnet& magnet, base::Vec2 p, double z);
+DipoleRow dipole_row(const world::Magnet& magnet, glm::dvec2 p, double z);
 
 /// One thread. World, device and workers must outlive it.
 class MagneticField {

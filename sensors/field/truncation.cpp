@@ -28,10 +28,10 @@ struct Square {
 /// cut-off.
 Box around(const Box& magnets, double cutoff) {
   const double margin = 1.01 * cutoff;
-  const Vec2 middle = 0.5 * (magnets.low + magnets.high);
+  const glm::dvec2 middle = 0.5 * (magnets.low + magnets.high);
   const double half =
       margin + 0.5 * std::max(magnets.high.x - magnets.low.x, magnets.high.y - magnets.low.y) * kRounding;
-  return {middle - Vec2{half, half}, middle + Vec2{half, half}};
+  return {middle - glm::dvec2{half, half}, middle + glm::dvec2{half, half}};
 }
 
 /// The largest bound over all squares of places: the one on top is halved until it is small enough.
@@ -44,7 +44,7 @@ double largest(const MagnetTree& tree, double cutoff) {
     const double half = 0.5 * (top.box.high.x - top.box.low.x);
     if (2.0 * half <= kFinest * cutoff || !(half > 0.0)) break;
     squares.pop();
-    const Vec2 middle = 0.5 * (top.box.low + top.box.high);
+    const glm::dvec2 middle = 0.5 * (top.box.low + top.box.high);
     for (const Box& quarter : {Box{top.box.low, middle}, Box{middle, top.box.high},
                                Box{{middle.x, top.box.low.y}, {top.box.high.x, middle.y}},
                                Box{{top.box.low.x, middle.y}, {middle.x, top.box.high.y}}})

@@ -9,37 +9,37 @@ namespace sf::sensors {
 
 namespace {
 
-bool same(Vec2 p, Vec2 q) { return p.x == q.x && p.y == q.y; }
+bool same(glm::dvec2 p, glm::dvec2 q) { return p.x == q.x && p.y == q.y; }
 
-Vec2 direction(Vec2 from, Vec2 to) {
-  const Vec2 d = to - from;
+glm::dvec2 direction(glm::dvec2 from, glm::dvec2 to) {
+  const glm::dvec2 d = to - from;
   return (1.0 / length(d)) * d;
 }
 
-Vec2 left_of(Vec2 d) { return {-d.y, d.x}; }
+glm::dvec2 left_of(glm::dvec2 d) { return {-d.y, d.x}; }
 
 /// From a point of the line to its left side: half the width off both pieces that meet there.
-Vec2 mitre(Vec2 before, Vec2 after, double half) {
-  const Vec2 sum = left_of(before) + left_of(after);
+glm::dvec2 mitre(glm::dvec2 before, glm::dvec2 after, double half) {
+  const glm::dvec2 sum = left_of(before) + left_of(after);
   return (2.0 * half / dot(sum, sum)) * sum;
 }
 
 /// One side of the line, point by point.
 struct Sides {
-  std::vector<Vec2> left, right;
+  std::vector<glm::dvec2> left, right;
 };
 
-Sides sides_of(const std::vector<Vec2>& line, double half, bool closed) {
+Sides sides_of(const std::vector<glm::dvec2>& line, double half, bool closed) {
   Sides sides;
   const std::size_t count = closed ? line.size() - 1 : line.size();
   for (std::size_t i = 0; i < count; ++i) {
     const bool starts = i == 0 && !closed;
     const bool ends = i + 1 == count && !closed;
-    const Vec2 previous = i == 0 ? line[count - 1] : line[i - 1];
-    const Vec2 next = i + 1 == count ? line[0] : line[i + 1];
-    const Vec2 before = starts ? direction(line[i], next) : direction(previous, line[i]);
-    const Vec2 after = ends ? before : direction(line[i], next);
-    const Vec2 offset = mitre(before, after, half);
+    const glm::dvec2 previous = i == 0 ? line[count - 1] : line[i - 1];
+    const glm::dvec2 next = i + 1 == count ? line[0] : line[i + 1];
+    const glm::dvec2 before = starts ? direction(line[i], next) : direction(previous, line[i]);
+    const glm::dvec2 after = ends ? before : direction(line[i], next);
+    const glm::dvec2 offset = mitre(before, after, half);
     sides.left.push_back(line[i] + offset);
     sides.right.push_back(line[i] - offset);
   }
@@ -47,19 +47,19 @@ Sides sides_of(const std::vector<Vec2>& line, double half, bool closed) {
 }
 
 /// True when a side of a piece runs against its line: the band is wider than the bend it follows.
-bool runs_back(const std::vector<Vec2>& line, const std::vector<Vec2>& side) {
+bool runs_back(const std::vector<glm::dvec2>& line, const std::vector<glm::dvec2>& side) {
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    const Vec2 along = side[(i + 1) % side.size()] - side[i];
+    const glm::dvec2 along = side[(i + 1) % side.size()] - side[i];
     if (dot(along, line[i + 1] - line[i]) <= 0.0) return true;
   }
   return false;
 }
 
-void add_side(const std::vector<Vec2>& side, bool closed, bool forward, bool solid, std::vector<Face>& out) {
+void add_side(const std::vector<glm::dvec2>& side, bool closed, bool forward, bool solid, std::vector<Face>& out) {
   const std::size_t pieces = closed ? side.size() : side.size() - 1;
   for (std::size_t i = 0; i < pieces; ++i) {
-    const Vec2 a = side[i];
-    const Vec2 b = side[(i + 1) % side.size()];
+    const glm::dvec2 a = side[i];
+    const glm::dvec2 b = side[(i + 1) % side.size()];
     if (!same(a, b)) out.push_back({forward ? a : b, forward ? b : a, false, solid});
   }
 }
@@ -67,7 +67,7 @@ void add_side(const std::vector<Vec2>& side, bool closed, bool forward, bool sol
 }  // namespace
 
 void add_faces(const world::Stripe& stripe, std::vector<Face>& out) {
-  const std::vector<Vec2>& line = stripe.line;
+  const std::vector<glm::dvec2>& line = stripe.line;
   const bool closed = line.size() > 3 && same(line.front(), line.back());
   const Sides sides = sides_of(line, 0.5 * stripe.width, closed);
   const bool solid = !runs_back(line, sides.left) && !runs_back(line, sides.right);
@@ -83,7 +83,7 @@ std::vector<world::Stripe> distinct_stripes(std::span<const world::Stripe> strip
   // Stripes whose ends fall into neighbouring squares may be one, so keys are coarse and every neighbour is looked at.
   const double square = std::max(1e-2, 4.0 * within);
   const auto key_of = [&](const world::Stripe& s, int dx, int dy) {
-    const Vec2 sum = s.line.front() + s.line.back();
+    const glm::dvec2 sum = s.line.front() + s.line.back();
     return Key{s.line.size(), static_cast<std::int64_t>(std::floor(sum.x / square)) + dx,
                static_cast<std::int64_t>(std::floor(sum.y / square)) + dy};
   };

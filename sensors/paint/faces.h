@@ -13,12 +13,10 @@
 
 namespace sf::sensors {
 
-using base::Vec2;
-
 /// One straight face. The paint lies on the left of a -> b.
 struct Face {
-  Vec2 a;
-  Vec2 b;                ///< [m] world frame
+  glm::dvec2 a;
+  glm::dvec2 b;          ///< [m] world frame
   bool is_end = false;   ///< across the stripe's line: not a lane edge
   bool is_solid = true;  ///< false: the outline crosses itself here, and nothing is known about sides
 };

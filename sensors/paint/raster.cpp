@@ -18,7 +18,7 @@ struct Box {
   double x_min = std::numeric_limits<double>::infinity(), y_min = x_min;
   double x_max = -x_min, y_max = -x_min;  ///< [m]
 
-  void add(Vec2 p) {
+  void add(glm::dvec2 p) {
     x_min = std::min(x_min, p.x);
     y_min = std::min(y_min, p.y);
     x_max = std::max(x_max, p.x);
@@ -68,11 +68,11 @@ const std::vector<Crossing>& Sweep::cross(double y) {
 }
 
 /// Within one cell of an end face, on the paint's side of it.
-bool near_end(const std::vector<Face>& ends, Vec2 p, double cell) {
+bool near_end(const std::vector<Face>& ends, glm::dvec2 p, double cell) {
   return std::any_of(ends.begin(), ends.end(), [&](const Face& f) {
-    const Vec2 e = f.b - f.a;
+    const glm::dvec2 e = f.b - f.a;
     const double width = length(e);
-    const double behind = cross(e, p - f.a) / width;
+    const double behind = base::cross(e, p - f.a) / width;
     const double beside = dot(e, p - f.a) / width;
     return behind >= 0.0 && behind <= cell && beside >= -cell && beside <= width + cell;
   });
@@ -137,7 +137,7 @@ void PaintRaster::paint(const world::Stripe& stripe) {
   std::vector<Face> faces;
   add_faces(stripe, faces);
   // Relative to the raster, so that it is as good far from the origin.
-  const Vec2 corner{static_cast<double>(column_) * cell_, static_cast<double>(row_) * cell_};
+  const glm::dvec2 corner{static_cast<double>(column_) * cell_, static_cast<double>(row_) * cell_};
   Box box;
   for (Face& f : faces) {
     f.a = f.a - corner;

@@ -24,9 +24,9 @@ TEST(Pose, ComposesByTurningThenMoving) {
 TEST(Pose, ComposingIsTransformingTheOrigin) {
   const Pose X_AB{-3, 0.5, 0, 0.7};
   const Pose X_BC{0.2, -0.9, 0, 1.1};
-  const Vec2 p_C{2, -5};
-  const Vec2 once = transform(compose(X_AB, X_BC), p_C);
-  const Vec2 twice = transform(X_AB, transform(X_BC, p_C));
+  const glm::dvec2 p_C{2, -5};
+  const glm::dvec2 once = transform(compose(X_AB, X_BC), p_C);
+  const glm::dvec2 twice = transform(X_AB, transform(X_BC, p_C));
   EXPECT_NEAR(once.x, twice.x, 1e-14);
   EXPECT_NEAR(once.y, twice.y, 1e-14);
 }

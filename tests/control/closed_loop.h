@@ -14,7 +14,6 @@ namespace sf::loop {
 
 using base::Pose;
 using base::Twist;
-using base::Vec2;
 
 inline constexpr std::int64_t kSecond = 1'000'000'000;
 
@@ -29,11 +28,11 @@ inline std::vector<double> scan(const world::World& world, const world::Laser& l
   std::vector<double> ranges;
   for (std::uint32_t i = 0; i < laser.samples; ++i) {
     const double bearing = X_WS.yaw + world::bearing_of(laser, i);
-    const Vec2 u{std::cos(bearing), std::sin(bearing)}, p{X_WS.x, X_WS.y};
+    const glm::dvec2 u{std::cos(bearing), std::sin(bearing)}, p{X_WS.x, X_WS.y};
     double range = laser.range_max;
     for (const world::Segment* wall : near) {
-      const double area = cross(u, wall->b - wall->a);
-      const double t = cross(wall->a - p, wall->b - wall->a) / area, s = cross(wall->a - p, u) / area;
+      const double area = base::cross(u, wall->b - wall->a);
+      const double t = base::cross(wall->a - p, wall->b - wall->a) / area, s = base::cross(wall->a - p, u) / area;
       if (area != 0.0 && t >= 0.0 && s >= 0.0 && s <= 1.0) range = std::min(range, t);
     }
     ranges.push_back(range);

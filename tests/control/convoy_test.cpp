@@ -27,9 +27,9 @@ TEST(Parking, stops_with_its_front_at_the_end_of_every_spot) {
     ASSERT_TRUE(t.controllers[0]->done()) << spot;
     EXPECT_TRUE(docking);
     const world::RoadSpot& s = t.roads.spots[spot];
-    const Vec2 d = s.end - s.entry;
+    const glm::dvec2 d = s.end - s.entry;
     const Pose& X = t.pose(0);
-    const Vec2 front{X.x + 0.165 * std::cos(X.yaw), X.y + 0.165 * std::sin(X.yaw)};
+    const glm::dvec2 front{X.x + 0.165 * std::cos(X.yaw), X.y + 0.165 * std::sin(X.yaw)};
     EXPECT_LT(length(front - s.end), 0.02) << spot;
     EXPECT_LT(std::abs(base::wrap_angle(X.yaw - std::atan2(d.y, d.x))), 3.0 * M_PI / 180) << spot;
     EXPECT_EQ(t.contacts, 0);
@@ -48,7 +48,7 @@ TEST(Parking, a_full_car_park_empties_while_another_comes_in) {
     t.tick();
     int about = 0;
     for (std::uint32_t row = 0; row < 6; ++row) {
-      const Vec2 p{t.pose(row).x, t.pose(row).y};
+      const glm::dvec2 p{t.pose(row).x, t.pose(row).y};
       const bool stands = control::spot_at(corridors, t.pose(row)).has_value();
       about += corridors.inside(0, p) && !stands;
     }
@@ -88,12 +88,12 @@ TEST(Convoy, a_chain_of_five_keeps_its_gaps) {
 
 // Where a robot is along the way that the leader of all has driven: the order of a convoy.
 struct Trail {
-  std::vector<Vec2> points;
+  std::vector<glm::dvec2> points;
   void add(const Pose& X) { points.push_back({X.x, X.y}); }
   std::size_t nearest(const Pose& X) const {
     std::size_t best = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
-      if (length(points[i] - Vec2{X.x, X.y}) <= length(points[best] - Vec2{X.x, X.y})) best = i;
+      if (length(points[i] - glm::dvec2{X.x, X.y}) <= length(points[best] - glm::dvec2{X.x, X.y})) best = i;
     return best;
   }
 };

@@ -12,16 +12,15 @@ namespace sf::control {
 namespace {
 
 using base::Pose;
-using base::Vec2;
 
 constexpr std::int64_t kTick = 100'000'000;
 constexpr double kRange = 1.8, kFov = 0.7, kHalo = 0.6;
 
 // The dock's light by formula, at a receiver in the robot's middle: the red buoy's beam on the left, the green one's on
 // the right, a quarter of each in common. (tests/scenarios/docking_test.cpp has the shipped receiver and dock.)
-double byte_at(const Pose& X_WD, Vec2 p) {
-  const Vec2 from = base::rotate(-X_WD.yaw, p - Vec2{X_WD.x, X_WD.y});
-  const double bearing = std::atan2(from.y, from.x), far = base::length(from);
+double byte_at(const Pose& X_WD, glm::dvec2 p) {
+  const glm::dvec2 from = base::rotate(-X_WD.yaw, p - glm::dvec2{X_WD.x, X_WD.y});
+  const double bearing = std::atan2(from.y, from.x), far = glm::length(from);
   int byte = far <= kHalo ? 2 : 0;
   if (far <= kRange && std::abs(bearing - 0.375 * kFov) <= 0.5 * kFov) byte += 8;
   if (far <= kRange && std::abs(bearing + 0.375 * kFov) <= 0.5 * kFov) byte += 4;
@@ -59,8 +58,8 @@ Docked dock(const Pose& X_WD, const Pose& from, bool solid) {
     result.seconds += 0.1;
   }
   const Pose& X = fleet.reports()[0].X_WM;
-  const Vec2 at = base::rotate(-X_WD.yaw, Vec2{X.x, X.y} - Vec2{X_WD.x, X_WD.y});
-  return {controller->done(), std::abs(at.y), std::abs(base::wrap_angle(X.yaw - X_WD.yaw - M_PI)), base::length(at),
+  const glm::dvec2 at = base::rotate(-X_WD.yaw, glm::dvec2{X.x, X.y} - glm::dvec2{X_WD.x, X_WD.y});
+  return {controller->done(), std::abs(at.y), std::abs(base::wrap_angle(X.yaw - X_WD.yaw - M_PI)), glm::length(at),
           result.seconds};
 }
 

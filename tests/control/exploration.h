@@ -16,7 +16,6 @@
 namespace sf::exploration {
 
 using base::Pose;
-using base::Vec2;
 
 /// How the reference sees the robot.
 struct Looker {
@@ -32,7 +31,7 @@ inline constexpr int kTurns = 48;      ///< headings of each
 /// Everything within the map's rectangle, on a lattice of kStep.
 class Reference {
  public:
-  Reference(const world::World& world, const maps::GridPlan& plan, Vec2 start, const Looker& looker)
+  Reference(const world::World& world, const maps::GridPlan& plan, glm::dvec2 start, const Looker& looker)
       : world_(world), plan_(plan), looker_(looker) {
     wide_ = static_cast<int>(std::lround(static_cast<double>(maps::columns(plan)) * plan.cell / kStep));
     high_ = static_cast<int>(std::lround(static_cast<double>(maps::rows(plan)) * plan.cell / kStep));
@@ -53,22 +52,22 @@ class Reference {
   }
 
  private:
-  Vec2 place(int column, int row) const {
+  glm::dvec2 place(int column, int row) const {
     return {plan_.left + (column + 0.5) * kStep, plan_.top - (row + 0.5) * kStep};
   }
-  bool clear(Vec2 p) const {
+  bool clear(glm::dvec2 p) const {
     for (const auto& wall : world_.walls)
       if (wall.z_min < 0.1 && world::distance(p, wall.a, wall.b) < looker_.radius + looker_.spare) return false;
     return true;
   }
-  bool hidden(Vec2 p, Vec2 q) const {
+  bool hidden(glm::dvec2 p, glm::dvec2 q) const {
     for (const auto& wall : world_.walls)
       if (wall.z_min <= 0.17 && wall.z_max > 0.17 && world::segments_meet(p, q, wall.a, wall.b)) return true;
     return false;
   }
 
   // Places of the disc that are connected with the start.
-  void reach(Vec2 start) {
+  void reach(glm::dvec2 start) {
     reached_.resize(static_cast<std::size_t>(wide_ * high_));
     std::vector<int> open{static_cast<int>((plan_.top - start.y) / kStep) * wide_ +
                           static_cast<int>((start.x - plan_.left) / kStep)};
@@ -92,10 +91,10 @@ class Reference {
     headings_.resize(reached_.size());
     for (int at = 0; at < wide_ * high_; ++at) {
       if (reached_[static_cast<std::size_t>(at)] == 0) continue;
-      const Vec2 p = place(at % wide_, at / wide_);
+      const glm::dvec2 p = place(at % wide_, at / wide_);
       for (int k = 0; k < kTurns; ++k) {
         const double yaw = 2.0 * M_PI * k / kTurns;
-        const Vec2 s = p + looker_.ahead * Vec2{std::cos(yaw), std::sin(yaw)};
+        const glm::dvec2 s = p + looker_.ahead * glm::dvec2{std::cos(yaw), std::sin(yaw)};
         const int column = static_cast<int>((s.x - plan_.left) / kStep),
                   row = static_cast<int>((plan_.top - s.y) / kStep);
         if (column < 0 || row < 0 || column >= wide_ || row >= high_) continue;
@@ -106,7 +105,7 @@ class Reference {
   }
 
   // Cells that a point reaches from the start.
-  void flood(Vec2 start) {
+  void flood(glm::dvec2 start) {
     connected_.resize(static_cast<std::size_t>(maps::columns(plan_) * maps::rows(plan_)));
     std::vector<maps::CellAt> open{maps::cell_at(plan_, start)};
     while (!open.empty()) {
@@ -123,24 +122,24 @@ class Reference {
     }
   }
 
-  bool in_view(Vec2 m) const {
+  bool in_view(glm::dvec2 m) const {
     const int reach = static_cast<int>(looker_.range / kStep) + 1;
     const int column = static_cast<int>((m.x - plan_.left) / kStep), row = static_cast<int>((plan_.top - m.y) / kStep);
     for (int r = std::max(0, row - reach); r < std::min(high_, row + reach + 1); ++r) {
       for (int c = std::max(0, column - reach); c < std::min(wide_, column + reach + 1); ++c) {
         const std::uint64_t headings = headings_[static_cast<std::size_t>(r * wide_ + c)];
         if (headings == 0) continue;
-        const Vec2 s = place(c, r), d = m - s;
-        if (base::dot(d, d) > looker_.range * looker_.range) continue;
+        const glm::dvec2 s = place(c, r), d = m - s;
+        if (glm::dot(d, d) > looker_.range * looker_.range) continue;
         if (faces(headings, d) && !hidden(s, m)) return true;
       }
     }
     return false;
   }
-  static bool faces(std::uint64_t headings, Vec2 d) {
+  static bool faces(std::uint64_t headings, glm::dvec2 d) {
     for (int k = 0; k < kTurns; ++k) {
       const double yaw = 2.0 * M_PI * k / kTurns;
-      if ((headings >> k & 1u) != 0 && base::dot(d, {std::cos(yaw), std::sin(yaw)}) >= 0.0) return true;
+      if ((headings >> k & 1u) != 0 && glm::dot(d, {std::cos(yaw), std::sin(yaw)}) >= 0.0) return true;
     }
     return false;
   }
@@ -162,14 +161,14 @@ inline world::World boxes(std::uint64_t seed, int count) {
   };
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
     const auto place = draw(i, 0), size = draw(i, 1), turn = draw(i, 2);
-    const Vec2 centre{3.0 * place[0] - 1.5, 3.0 * place[1] - 1.5};
-    std::vector<Vec2> corners = scenes::rectangle({}, 0.2 + 0.4 * size[0], 0.2 + 0.4 * size[1]);
-    for (Vec2& corner : corners) corner = centre + base::rotate(2.0 * M_PI * turn[0], corner);
+    const glm::dvec2 centre{3.0 * place[0] - 1.5, 3.0 * place[1] - 1.5};
+    std::vector<glm::dvec2> corners = scenes::rectangle({}, 0.2 + 0.4 * size[0], 0.2 + 0.4 * size[1]);
+    for (glm::dvec2& corner : corners) corner = centre + base::rotate(2.0 * M_PI * turn[0], corner);
     scenes::add_outline(world.walls, corners);
   }
   for (std::uint32_t i = 1000; world.movers.empty(); ++i) {
     const auto place = draw(i, 0);
-    const Vec2 p{3.0 * place[0] - 1.5, 3.0 * place[1] - 1.5};
+    const glm::dvec2 p{3.0 * place[0] - 1.5, 3.0 * place[1] - 1.5};
     bool free = std::abs(p.x) < 1.25 && std::abs(p.y) < 1.25;
     for (const auto& wall : world.walls) free = free && world::distance(p, wall.a, wall.b) > 0.24;
     int crossings = 0;

@@ -12,7 +12,6 @@ namespace sf::control {
 namespace {
 
 using base::Pose;
-using base::Vec2;
 
 std::unique_ptr<Explore> make_explore(const world::World& world, std::vector<Setting> given = {}) {
   Settings settings("controller 'explore'", std::move(given));
@@ -166,13 +165,15 @@ TEST(Explore, odd_readings_do_no_harm) {
 
 TEST(Terrain, clearance_is_the_distance_to_points) {
   Terrain terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
-  for (const Vec2 p : {Vec2{0.3, 0.1}, Vec2{0.5, 0.1}, Vec2{0.3, -0.9}}) EXPECT_TRUE(terrain.add_point(p));
+  for (const glm::dvec2& p : {glm::dvec2{0.3, 0.1}, glm::dvec2{0.5, 0.1}, glm::dvec2{0.3, -0.9}})
+    EXPECT_TRUE(terrain.add_point(p));
   EXPECT_FALSE(terrain.add_point({0.3, 0.1})) << "known";
   EXPECT_FALSE(terrain.add_point({5.0, 0.1})) << "off the map";
-  for (const Vec2 p : {Vec2{0.2, 0.0}, Vec2{0.41, 0.13}, Vec2{0.3, 0.1}, Vec2{1.0, 1.0}}) {
-    const Vec2 at = terrain.place(terrain.node_at(p));
+  for (const glm::dvec2& p :
+       {glm::dvec2{0.2, 0.0}, glm::dvec2{0.41, 0.13}, glm::dvec2{0.3, 0.1}, glm::dvec2{1.0, 1.0}}) {
+    const glm::dvec2 at = terrain.place(terrain.node_at(p));
     EXPECT_LT(length(at - p), 0.0071) << "half a node's diagonal";
-    const double nearest = std::min({length(at - Vec2{0.3, 0.1}), length(at - Vec2{0.5, 0.1}), 0.225});
+    const double nearest = std::min({length(at - glm::dvec2{0.3, 0.1}), length(at - glm::dvec2{0.5, 0.1}), 0.225});
     EXPECT_NEAR(terrain.clearance(terrain.node_at(p)), nearest, 1e-6);
   }
   EXPECT_TRUE(terrain.solid(terrain.node_at({0.3, 0.1})));
@@ -241,7 +242,8 @@ TEST(PlanAround, holds_the_world_and_is_never_smaller_than_the_thesis) {
   EXPECT_NEAR(small.top, 1.8, 1e-12);
   world.extent = {10.0, -1.5, 18.0, 1.5};
   const maps::GridPlan wide = plan_around(world);
-  for (const Vec2 p : {Vec2{10, -1.5}, Vec2{18, 1.5}}) EXPECT_TRUE(maps::contains(wide, maps::cell_at(wide, p)));
+  for (const glm::dvec2& p : {glm::dvec2{10, -1.5}, glm::dvec2{18, 1.5}})
+    EXPECT_TRUE(maps::contains(wide, maps::cell_at(wide, p)));
   EXPECT_GT(wide.word_columns, 60u);
 }
 

@@ -20,7 +20,6 @@ namespace {
 
 using base::Pose;
 using base::Twist;
-using base::Vec2;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kTick = 100'000'000;

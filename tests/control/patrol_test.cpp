@@ -11,7 +11,6 @@ namespace sf::control {
 namespace {
 
 using base::Pose;
-using base::Vec2;
 
 constexpr std::int64_t kTick = 100'000'000;
 
@@ -61,7 +60,7 @@ TEST(Patrol, a_car_comes_round) {
 }
 
 struct Standing {
-  Vec2 other;
+  glm::dvec2 other;
   bool stands;
   const char* why;
 };

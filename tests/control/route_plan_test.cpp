@@ -29,12 +29,12 @@ TEST(RoutePlan, every_leg_begins_where_the_one_before_ends) {
     for (std::size_t i = 0; i + 1 < plan.legs.size(); ++i) {
       const auto& a = plan.legs[i];
       const auto& b = plan.legs[i + 1];
-      const Vec2 end = point_on(p.corridors.way(a.way), a.to), start = point_on(p.corridors.way(b.way), b.from);
+      const glm::dvec2 end = point_on(p.corridors.way(a.way), a.to), start = point_on(p.corridors.way(b.way), b.from);
       EXPECT_LT(length(end - start), 1e-6) << checkpoint.id << " leg " << i;
       EXPECT_EQ(b.start, end_of(a));
     }
     const auto& last = plan.legs.back();
-    const Vec2 end = point_on(p.corridors.way(last.way), last.to);
+    const glm::dvec2 end = point_on(p.corridors.way(last.way), last.to);
     // A spot's way ends where the robot's origin stands, its front at the checkpoint.
     const double off = checkpoint.at.kind == world::PointRef::Kind::spot ? 0.165 : 0.0;
     EXPECT_NEAR(length(end - checkpoint.p), off, 2e-4) << checkpoint.id;  // chords of 4 cm in bends

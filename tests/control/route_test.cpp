@@ -79,7 +79,8 @@ TEST(Route, parks_at_half_its_speed) {
     const double speed = std::abs(t.fleet->reports()[0].velocity.forward);
     fastest = std::max(fastest, speed);
     for (const world::RoadSpot& spot : t.roads.spots)
-      if (spot.number == 4 && length(Vec2{t.pose(0).x, t.pose(0).y} - spot.end) < 0.6) near = std::max(near, speed);
+      if (spot.number == 4 && length(glm::dvec2{t.pose(0).x, t.pose(0).y} - spot.end) < 0.6)
+        near = std::max(near, speed);
   }
   EXPECT_TRUE(t.controllers[0]->done());
   EXPECT_NEAR(fastest, 0.2, 1e-9);
@@ -93,14 +94,14 @@ TEST(Route, stops_fully_at_every_stop_sign) {
   t.begin();
   int crossed = 0;
   bool stood = false;
-  Vec2 last{t.pose(0).x + 0.165 * std::cos(t.pose(0).yaw), t.pose(0).y + 0.165 * std::sin(t.pose(0).yaw)};
+  glm::dvec2 last{t.pose(0).x + 0.165 * std::cos(t.pose(0).yaw), t.pose(0).y + 0.165 * std::sin(t.pose(0).yaw)};
   while (!t.controllers[0]->done() && t.time < 1'500'000'000'000) {
     t.tick();
     const Pose& X = t.pose(0);
-    const Vec2 front{X.x + 0.165 * std::cos(X.yaw), X.y + 0.165 * std::sin(X.yaw)};
+    const glm::dvec2 front{X.x + 0.165 * std::cos(X.yaw), X.y + 0.165 * std::sin(X.yaw)};
     for (const world::StopLine& stop : t.roads.stops) {
-      const Vec2 middle = 0.5 * (stop.left + stop.right), across = stop.left - stop.right;
-      const Vec2 along{across.y, -across.x};
+      const glm::dvec2 middle = 0.5 * (stop.left + stop.right), across = stop.left - stop.right;
+      const glm::dvec2 along{across.y, -across.x};
       const double before = dot(last - middle, along) / length(along),
                    after = dot(front - middle, along) / length(along);
       if (length(front - middle) > 0.2) continue;

@@ -86,7 +86,7 @@ TEST(Town, a_route_cut_in_the_car_park_stays_in_one_piece) {
     ASSERT_TRUE(extend(corridors, plan, *find_checkpoint(t.roads, 9))) << s;
     for (std::size_t i = 1; i < plan.legs.size(); ++i) {
       const auto &a = plan.legs[i - 1], &b = plan.legs[i];
-      const Vec2 gap = point_on(corridors.way(a.way), a.to) - point_on(corridors.way(b.way), b.from);
+      const glm::dvec2 gap = point_on(corridors.way(a.way), a.to) - point_on(corridors.way(b.way), b.from);
       ASSERT_LT(length(gap), 0.05) << s << " leg " << i;
     }
   }

@@ -17,7 +17,6 @@ namespace sf::traffic {
 
 using base::Pose;
 using base::Twist;
-using base::Vec2;
 using control::Setting;
 
 inline constexpr std::int64_t kTick = 100'000'000;
@@ -31,8 +30,8 @@ inline world::RoadNetwork simville() {
 inline Pose on_lane(const world::RoadNetwork& roads, const std::string& name, double s) {
   for (const world::RoadLane& lane : roads.lanes) {
     if (name_of(roads, lane) != name) continue;
-    const Vec2 p = point_at(lane.centre, s);
-    const Vec2 d = point_at(lane.centre, s + 0.01) - point_at(lane.centre, s - 0.01);
+    const glm::dvec2 p = point_at(lane.centre, s);
+    const glm::dvec2 d = point_at(lane.centre, s + 0.01) - point_at(lane.centre, s - 0.01);
     return {p.x, p.y, 0.0, std::atan2(d.y, d.x)};
   }
   return {};
@@ -87,7 +86,7 @@ class Streets {
     for (std::uint32_t row = 0; row < controllers.size(); ++row) {
       others.clear();
       for (std::uint32_t o = 0; o < controllers.size(); ++o) {
-        const Vec2 d{reports[o].X_WM.x - reports[row].X_WM.x, reports[o].X_WM.y - reports[row].X_WM.y};
+        const glm::dvec2 d{reports[o].X_WM.x - reports[row].X_WM.x, reports[o].X_WM.y - reports[row].X_WM.y};
         if (o != row && length(d) <= controllers[row]->radio())
           others.push_back({world.movers[o].id, reports[o], intents[o]});
       }

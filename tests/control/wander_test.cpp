@@ -16,7 +16,6 @@ namespace {
 using base::Pose;
 using base::ReadingBlock;
 using base::Twist;
-using base::Vec2;
 
 constexpr std::int64_t kTick = 100'000'000;
 
@@ -30,13 +29,13 @@ world::Laser laser(double fov, std::uint32_t samples, double range_max, const Po
 }
 
 // The range along a bearing: walls and the bodies of other movers, brute force.
-double cast(const world::World& world, std::span<const base::Report> reports, std::size_t own, Vec2 p, double bearing,
-            double range_max) {
-  const Vec2 u{std::cos(bearing), std::sin(bearing)};
+double cast(const world::World& world, std::span<const base::Report> reports, std::size_t own, glm::dvec2 p,
+            double bearing, double range_max) {
+  const glm::dvec2 u{std::cos(bearing), std::sin(bearing)};
   double range = range_max;
-  const auto meet = [&](Vec2 a, Vec2 b) {
-    const double area = cross(u, b - a);
-    const double t = cross(a - p, b - a) / area, s = cross(a - p, u) / area;
+  const auto meet = [&](glm::dvec2 a, glm::dvec2 b) {
+    const double area = base::cross(u, b - a);
+    const double t = base::cross(a - p, b - a) / area, s = base::cross(a - p, u) / area;
     if (area != 0.0 && t >= 0.0 && s >= 0.0 && s <= 1.0) range = std::min(range, t);
   };
   for (const auto& wall : world.walls) meet(wall.a, wall.b);
@@ -176,8 +175,8 @@ TEST(Wander, without_a_laser_walks_by_touch) {
 
 TEST(Wander, a_tiny_robot_with_short_sight) {
   world::World world = scenes::boxed_world(1, 1);
-  std::vector<Vec2> corners;
-  for (int i = 0; i < 12; ++i) corners.push_back(0.035 * Vec2{std::cos(M_PI * i / 6), std::sin(M_PI * i / 6)});
+  std::vector<glm::dvec2> corners;
+  for (int i = 0; i < 12; ++i) corners.push_back(0.035 * glm::dvec2{std::cos(M_PI * i / 6), std::sin(M_PI * i / 6)});
   world::Mover& mover = scenes::add_mover(world, {0.5, 0.5, 0, 1}, corners);
   mover.max_forward = 0.3;
   for (int i = -2; i <= 2; ++i) mover.lasers.push_back(laser(0, 1, 0.1, {0.035, 0, 0, 0.5 * i}));

@@ -61,10 +61,10 @@ Met first_met(const world::World& world, const Pose& eye, const world::Laser& la
 }
 
 /// Blocks and thin walls from 1e-3 to 10 times `size` [m], about an eye at `at`.
-world::World scene(Chance& chance, Vec2 at, double size) {
+world::World scene(Chance& chance, glm::dvec2 at, double size) {
   world::World world;
   for (int i = 0; i < 12; ++i) {
-    const Vec2 p = at + size * chance.in_square(1.0);
+    const glm::dvec2 p = at + size * chance.in_square(1.0);
     const double length = size * magnitude(chance, 1e-3, 10.0);
     add_wall(world, p, p + base::rotate(chance.between(-4.0, 4.0), {length, 0.0}));
   }
@@ -79,7 +79,7 @@ TEST(Oracle, LaserRangesInRandomScenes) {
   double worst = 0.0;
   for (int trial = 0; trial < 150; ++trial) {
     const double size = magnitude(chance, 1e-3, 1e5), far = chance.below(3) == 0 ? 0.0 : magnitude(chance, 1.0, 1e7);
-    const Vec2 at = base::rotate(chance.between(-3.0, 3.0), {far, 0.0});
+    const glm::dvec2 at = base::rotate(chance.between(-3.0, 3.0), {far, 0.0});
     world::World world = scene(chance, at, size);
     const double turn = chance.below(4) == 0 ? 1e6 : 4.0;
     const world::Laser eye = laser(1 + chance.below(40), chance.between(0.0, 2.0 * M_PI), std::min(size, 1e5));
@@ -118,7 +118,7 @@ TEST(Oracle, FieldsOfRandomMagnets) {
     const double far = chance.below(2) == 0 ? 0.0 : 1e7;
     world::World world;
     for (std::uint32_t i = 0; i < 1 + chance.below(30); ++i) {
-      const Vec2 p = magnitude(chance, 1e-6, 1e6) * chance.in_square(1.0);
+      const glm::dvec2 p = magnitude(chance, 1e-6, 1e6) * chance.in_square(1.0);
       const double sign = chance.below(2) == 0 ? -1.0 : 1.0;
       // As the device has it: a moment in 32 bits.
       const auto moment = static_cast<float>(sign * magnitude(chance, 1e-12, 1e12));
@@ -161,14 +161,15 @@ TEST(Oracle, DistancesToRandomEdges) {
     const double distance = magnitude(chance, std::max(1e-5, 1e4 * grain), 1e3);
     const double tilt = chance.between(-1.2, 1.2), yaw = chance.between(-4.0, 4.0);
     const Pose X{far, -far, 0.0, yaw};
-    const Vec2 normal = base::rotate(yaw + tilt, {1.0, 0.0}), along{-normal.y, normal.x};
-    const Vec2 middle = Vec2{X.x, X.y} + distance * base::rotate(yaw, {1.0, 0.0}) + 0.05 * distance * normal;
+    const glm::dvec2 normal = base::rotate(yaw + tilt, {1.0, 0.0}), along{-normal.y, normal.x};
+    const glm::dvec2 middle =
+        glm::dvec2{X.x, X.y} + distance * base::rotate(yaw, {1.0, 0.0}) + 0.05 * distance * normal;
     world::World world;
     world.stripes.push_back({{middle - 5.0 * distance * along, middle + 5.0 * distance * along}, 0.1 * distance});
     world.movers[add_mover(world, X)].sensors.push_back(
         sensor("laneedge", {{"perpendicular", {0.0}}, {"range_max", {3.0 * distance}}}, 0.1));
     const Look look = lab().look(world);
-    const Vec2 a = world.stripes[0].line[0], b = world.stripes[0].line[1];
+    const glm::dvec2 a = world.stripes[0].line[0], b = world.stripes[0].line[1];
     const Digits50 tx = Digits50(b.x) - a.x, ty = Digits50(b.y) - a.y, size = sqrt(tx * tx + ty * ty);
     const Digits50 nx = ty / size, ny = -tx / size;
     const Digits50 height =

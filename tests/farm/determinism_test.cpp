@@ -154,8 +154,8 @@ TEST(Determinism, GoldenHash) {
   world::World world;
   scenes::add_room(world, {}, 12.0);
   for (int i = 0; i < 12; ++i) {
-    const base::Vec2 p{static_cast<double>(i % 4) * 2.5 - 4.0, static_cast<double>(i / 4) * 3.0 - 3.5};
-    scenes::add_outline(world, {p, p + base::Vec2{0.75, 0.25}, p + base::Vec2{0.5, 1.0}}, "wedge");
+    const glm::dvec2 p{static_cast<double>(i % 4) * 2.5 - 4.0, static_cast<double>(i / 4) * 3.0 - 3.5};
+    scenes::add_outline(world, {p, p + glm::dvec2{0.75, 0.25}, p + glm::dvec2{0.5, 1.0}}, "wedge");
   }
   for (int i = 0; i < 24; ++i) {
     const world::Laser laser = scenes::laser(17, 2.0 * M_PI, 8.0);

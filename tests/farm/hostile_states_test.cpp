@@ -43,7 +43,7 @@ base::Report odd_report(trial::Chance& chance, const world::World& world, std::i
   const auto mover = chance.below(static_cast<std::uint32_t>(world.movers.size()));
   // Around a corner of a wall, another mover, or the mover's own place at load.
   const base::Pose& other = world.movers[chance.below(static_cast<std::uint32_t>(world.movers.size()))].X_WM;
-  base::Vec2 known{other.x, other.y};
+  glm::dvec2 known{other.x, other.y};
   if (!world.walls.empty() && chance.below(2) == 0)
     known = world.walls[chance.below(static_cast<std::uint32_t>(world.walls.size()))].a;
   base::Report report{mover, now - chance.below(3) * 100'000'000ll, {}, {}};

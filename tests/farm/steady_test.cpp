@@ -75,7 +75,7 @@ class Day {
  private:
   void step(base::Pose& X) {
     if (chance_.below(8) == 0) {
-      const base::Vec2 p = chance_.in_square(4.0);
+      const glm::dvec2 p = chance_.in_square(4.0);
       X.x = p.x, X.y = p.y;
     }
     X.x += chance_.between(-0.1, 0.1);

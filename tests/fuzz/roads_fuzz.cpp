@@ -27,7 +27,7 @@ void check_network(std::string_view text, bool strict) {
   for (const world::RoadLane& lane : roads.lanes) require(!lane.points.empty() && lane.width > 0.0);
   for (const world::Stripe& stripe : world::paint_of(roads)) {
     require(stripe.line.size() >= 2 && stripe.width > 0.0);
-    for (const base::Vec2 p : stripe.line) require(std::isfinite(p.x) && std::isfinite(p.y));
+    for (const glm::dvec2& p : stripe.line) require(std::isfinite(p.x) && std::isfinite(p.y));
   }
 }
 

@@ -19,7 +19,7 @@ Grid filled(const GridPlan& plan, std::uint64_t seed) {
   return grid;
 }
 
-Cell at_point(const Grid& grid, base::Vec2 p) {
+Cell at_point(const Grid& grid, glm::dvec2 p) {
   const CellAt at = cell_at(grid.plan, p);
   return contains(grid.plan, at) ? grid.at(at) : Cell::unexplored;
 }
@@ -47,7 +47,7 @@ TEST(Merge, EveryCellIsThatOfItsMaps) {
     Census seen;
     for (std::int64_t row = 0; row < rows(careful.plan); ++row)
       for (std::int64_t column = 0; column < columns(careful.plan); ++column) {
-        const base::Vec2 p = middle(careful.plan, {column, row});
+        const glm::dvec2 p = middle(careful.plan, {column, row});
         bool occupied = false;
         Cell last = Cell::unexplored;
         for (const Grid* grid : all) {

@@ -18,7 +18,7 @@ GridPlan plan() { return {0.0, 12.0, 1.0, 3, 3}; }
 /// One beam along +x of the sensor's frame.
 Grid one_beam(const base::Pose& X_WS, double range, double range_max, double range_min = 0.0) {
   Grid grid(plan());
-  const std::vector<base::Vec2> beams = beam_directions(0.0, 1);
+  const std::vector<glm::dvec2> beams = beam_directions(0.0, 1);
   const std::vector<double> ranges{range};
   add_scan(grid, {X_WS, ranges, beams, range_min, range_max});
   return grid;
@@ -62,7 +62,7 @@ TEST(MapRule, HalvesGoAwayFromTheSensor) {
 TEST(MapRule, WithinAScanOccupiedBeatsFree) {
   // The first beam's end lies on the second's line, and would be wiped out if they were set in turn.
   Grid grid(plan());
-  const std::vector<base::Vec2> beams{{1, 0}, {1, 0}};
+  const std::vector<glm::dvec2> beams{{1, 0}, {1, 0}};
   const std::vector<double> ranges{3.0, 5.0};
   add_scan(grid, {{2.5, 9.5, 0, 0}, ranges, beams, 0.0, 8.0});
   EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00   1 10000");
@@ -70,7 +70,7 @@ TEST(MapRule, WithinAScanOccupiedBeatsFree) {
 
 TEST(MapRule, ALaterScanIsRight) {
   Grid grid = one_beam({2.5, 9.5, 0, 0}, 3.0, 8.0);
-  const std::vector<base::Vec2> beams{{1, 0}};
+  const std::vector<glm::dvec2> beams{{1, 0}};
   const std::vector<double> ranges{6.0};
   add_scan(grid, {{2.5, 9.5, 0, 0}, ranges, beams, 0.0, 8.0});
   EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00      1000");
@@ -90,7 +90,7 @@ TEST(MapRule, BesideTheMap) {
 TEST(MapRule, FarFromTheOriginTheSameCells) {
   // 2^17 m away, places in 1/64 m: sums are exact, so the map must not change at all.
   trial::Chance chance(3);
-  const std::vector<base::Vec2> beams = beam_directions(M_PI, 91);
+  const std::vector<glm::dvec2> beams = beam_directions(M_PI, 91);
   for (int k = 0; k < 50; ++k) {
     const base::Pose X{chance.below(12 * 64) / 64.0, chance.below(12 * 64) / 64.0, 0, chance.between(-4, 4)};
     std::vector<double> ranges;
@@ -152,7 +152,7 @@ TEST(MapRule, BearingsEndExactlyAtTheFieldOfView) {
 TEST(LogOdds, EachScanWeighsOnceAndStaysWithinLimits) {
   OddsGrid grid(plan(), {85, 40, 200});
   // Two beams through the same cells: still one miss each.
-  const std::vector<base::Vec2> beams{{1, 0}, {1, 0}};
+  const std::vector<glm::dvec2> beams{{1, 0}, {1, 0}};
   const std::vector<double> ranges{3.0, 3.0};
   const auto add = [&](double range) {
     const std::vector<double> both{range, range};

@@ -44,7 +44,7 @@ struct Crowd {
     ASSERT_EQ(inbox.accept(bytes, where, 0, packet), Reason::accepted);
     relay.take(packet);
   }
-  void say(std::uint32_t id, base::Vec2 p) { take(id, V2v{.X_WR = {p.x, p.y, 0, 0}}); }
+  void say(std::uint32_t id, glm::dvec2 p) { take(id, V2v{.X_WR = {p.x, p.y, 0, 0}}); }
   void ask(std::uint32_t id, std::uint32_t kinds = kOthers) { take(id, Subscribe{kinds}); }
   void all_ask() {
     for (const std::uint32_t id : ids) ask(id);

@@ -33,7 +33,7 @@ Rows nearest(const Places& places, const Nearby::Query& query) {
 TEST(Nearby, FindsTheNearest) {
   std::mt19937 random(5);  // NOLINT: the same every time
   std::uniform_real_distribution<double> anywhere(-50.0, 50.0);
-  for (const base::Vec2 street : {base::Vec2{1, 1}, base::Vec2{0, 1}, base::Vec2{1, 0}}) {
+  for (const glm::dvec2& street : {glm::dvec2{1, 1}, glm::dvec2{0, 1}, glm::dvec2{1, 0}}) {
     Places places;
     for (std::uint32_t row = 0; row < 2000; ++row)
       places.push_back({{street.x * anywhere(random), street.y * anywhere(random)}, row, row % 3});
@@ -72,7 +72,7 @@ TEST(Nearby, ACrowdOnACircleCostsNoMoreThanItsBound) {
   for (std::uint32_t row = 0; row < 5000; ++row) places.push_back({{std::cos(row), std::sin(row)}, row});
   Nearby nearby(places.size());
   nearby.build(places);
-  EXPECT_EQ(nearby.find({base::Vec2{}, 9999, 5.0, 8}).size(), 8u);
+  EXPECT_EQ(nearby.find({glm::dvec2{}, 9999, 5.0, 8}).size(), 8u);
   EXPECT_LE(nearby.looks(), Nearby::kMostLooks);
 }
 
@@ -98,7 +98,7 @@ TEST(Nearby, AnyWhereThereIsNoPlace) {
   EXPECT_EQ(found, (std::set<std::uint32_t>{1, 2})) << "neither itself nor what is old";
   nearby.build({});
   EXPECT_TRUE(nearby.find({.own = 0, .range = 1.0, .most = 1}).empty());
-  EXPECT_TRUE(nearby.find({base::Vec2{}, 0, 1.0, 1}).empty());
+  EXPECT_TRUE(nearby.find({glm::dvec2{}, 0, 1.0, 1}).empty());
 }
 
 }  // namespace

@@ -344,7 +344,7 @@ TEST(Packets, ATagAtItsModelsOriginSaysTheModelsPose) {
   const Tag& tag = std::get<Tag>(packet.body);
   const base::Report got = report(packet.header, tag, 3, {});
   const double yaw = std::atan2(2.0 * 0.8 * 0.6, 1.0 - 2.0 * 0.6 * 0.6);
-  const base::Vec2 velocity = base::rotate(-yaw, {tag.linear[0], tag.linear[1]});
+  const glm::dvec2 velocity = base::rotate(-yaw, {tag.linear[0], tag.linear[1]});
   EXPECT_EQ(got.X_WM.x, tag.position[0]);
   EXPECT_EQ(got.X_WM.y, tag.position[1]);
   EXPECT_EQ(got.X_WM.z, tag.position[2]);
@@ -360,7 +360,7 @@ TEST(Packets, ATagMayBeMountedAnywhereOnItsModel) {
   for (const double yaw : {0.0, M_PI / 2, -2.5}) {
     const base::Pose X_WM{1.0, 2.0, 0.2, yaw};
     const base::Pose X_WT = base::compose(X_WM, X_MT);
-    const base::Vec2 arm = base::rotate(yaw, {X_MT.x, X_MT.y});
+    const glm::dvec2 arm = base::rotate(yaw, {X_MT.x, X_MT.y});
     const Tag tag{.position = {X_WT.x, X_WT.y, X_WT.z},
                   .orientation = {0, 0, std::sin(X_WT.yaw / 2), std::cos(X_WT.yaw / 2)},
                   .linear = {-0.5 * arm.y, 0.5 * arm.x, 0},

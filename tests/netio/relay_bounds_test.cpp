@@ -105,7 +105,7 @@ TEST(RelayBounds, TheBudgetHoldsHoweverManyAsk) {
       Crowd crowd(count);
       crowd.all_ask();
       for (const std::uint32_t id : crowd.ids)
-        crowd.say(id, localised ? base::Vec2{0.3 * (id % 32), 0.3 * (id / 32)} : base::Vec2{});
+        crowd.say(id, localised ? glm::dvec2{0.3 * (id % 32), 0.3 * (id / 32)} : glm::dvec2{});
       const RelayCounts counts = crowd.pass();
       const std::size_t share = 16'384 / count;  // 32, and 16
       EXPECT_EQ(counts.states, count * share);

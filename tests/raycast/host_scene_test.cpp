@@ -13,8 +13,6 @@
 namespace sf::raycast {
 namespace {
 
-using base::Vec2;
-
 /// A scan's answers.
 struct Scan {
   std::vector<double> ranges;

@@ -17,7 +17,7 @@ namespace sf::raycast {
 namespace {
 
 /// The row of the first wall along a beam, by the oracle: every wall is its own model here.
-std::uint32_t first_wall(const std::vector<world::Segment>& walls, Vec2 p, double direction, double range) {
+std::uint32_t first_wall(const std::vector<world::Segment>& walls, glm::dvec2 p, double direction, double range) {
   return oracle::cast(oracle::within(walls, p, range), p, direction, range).model;
 }
 
@@ -29,7 +29,7 @@ void every_hit_is_listed(world::World world, double range, double size, std::uin
   trial::Chance chance(seed);
   std::size_t checked = 0;
   for (int c = 0; c < 40; ++c) {
-    const Vec2 centre = chance.in_square(0.45 * (world.extent.x_max - world.extent.x_min));
+    const glm::dvec2 centre = chance.in_square(0.45 * (world.extent.x_max - world.extent.x_min));
     for (const bool both : {false, true}) {
       find_walls(sight, shape, centre, both, walls);
       SectorLists lists;
@@ -37,8 +37,9 @@ void every_hit_is_listed(world::World world, double range, double size, std::uin
       lists.sort();
       for (int i = 0; i < 60; ++i) {
         const bool corner = i % 4 == 0;  // of the cell
-        const Vec2 p = centre + (corner ? Vec2{(i % 8 ? 0.5 : -0.5) * size, (i % 16 < 8 ? 0.5 : -0.5) * size}
-                                        : chance.in_square(0.5 * size));
+        const glm::dvec2 p =
+            centre + (corner ? glm::dvec2{(i % 8 ? 0.5 : -0.5) * size, (i % 16 < 8 ? 0.5 : -0.5) * size}
+                             : chance.in_square(0.5 * size));
         if (!both && sight.inside_solid(p)) continue;
         const double direction = chance.between(0.0, 2.0 * M_PI);
         const std::uint32_t row = first_wall(world.walls, p, direction, range);

@@ -18,7 +18,7 @@ TEST(Sight, FindsEverythingNear) {
   Sight::Nearby nearby;
   trial::Chance chance(3);
   for (int i = 0; i < 200; ++i) {
-    const Vec2 p = chance.in_square(10.0);
+    const glm::dvec2 p = chance.in_square(10.0);
     const double radius = chance.between(0.01, 5.0);
     sight.near(p, radius, nearby);
     for (std::uint32_t k = 0; k < sight.segments().size(); ++k) {

@@ -14,7 +14,6 @@ namespace {
 using base::Pose;
 using base::Report;
 using base::Twist;
-using base::Vec2;
 
 constexpr std::int64_t kTick = 100'000'000;
 

@@ -19,7 +19,6 @@ namespace {
 using base::Pose;
 using base::Report;
 using base::Twist;
-using base::Vec2;
 
 constexpr std::int64_t kTick = 100'000'000;
 
@@ -62,8 +61,8 @@ std::vector<Twist> random_commands(std::size_t count, int tick) {
 }
 
 // By signed areas in long double, of everything against everything: not the code under test.
-bool strictly_cross(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-  const auto side = [](Vec2 p, Vec2 q, Vec2 r) {
+bool strictly_cross(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
+  const auto side = [](glm::dvec2 p, glm::dvec2 q, glm::dvec2 r) {
     return (static_cast<long double>(q.x) - p.x) * (static_cast<long double>(r.y) - p.y) -
            (static_cast<long double>(q.y) - p.y) * (static_cast<long double>(r.x) - p.x);
   };
@@ -285,9 +284,10 @@ TEST(Crowd, all_who_push_through_a_gap_get_through) {
     for (std::size_t row = 0; row < 20; ++row) {
       const Pose& X = fleet.reports()[row].X_WM;
       const auto u = base::random_uniform({.seed = 3, .a = std::uint32_t(row), .c = std::uint64_t(tick / 5)}, 0);
-      const Vec2 goal = X.x < 0.3 ? Vec2{0.4, 0.0} : Vec2{5.5, 2.0 * u[0] - 1.0};
-      const Vec2 way = base::rotate(-X.yaw, goal - Vec2{X.x, X.y});
-      const Vec2 v = fleet.contacts()[row] != 0 ? base::rotate(2.0 * M_PI * u[1], {0.3, 0}) : 0.4 / length(way) * way;
+      const glm::dvec2 goal = X.x < 0.3 ? glm::dvec2{0.4, 0.0} : glm::dvec2{5.5, 2.0 * u[0] - 1.0};
+      const glm::dvec2 way = base::rotate(-X.yaw, goal - glm::dvec2{X.x, X.y});
+      const glm::dvec2 v =
+          fleet.contacts()[row] != 0 ? base::rotate(2.0 * M_PI * u[1], {0.3, 0}) : 0.4 / length(way) * way;
       commands[row] = {v.x, v.y, 0};
     }
     fleet.move(commands, kTick);

@@ -10,7 +10,6 @@ namespace sf::robots {
 namespace {
 
 using base::Pose;
-using base::Vec2;
 
 // Outlines of squares of edge 0.4 m, put where asked.
 struct Square {
@@ -27,7 +26,7 @@ struct Square {
   Placed placed;
 };
 
-bool touches_wall(const Square& square, Vec2 a, Vec2 b, double z_min = 0.0, double z_max = 1.0) {
+bool touches_wall(const Square& square, glm::dvec2 a, glm::dvec2 b, double z_min = 0.0, double z_max = 1.0) {
   return touches(square.placed, {.a = a, .b = b, .z_min = z_min, .z_max = z_max});
 }
 
@@ -76,7 +75,7 @@ TEST(Outline, step_is_a_quarter_of_the_inradius) {
   EXPECT_DOUBLE_EQ(outline_of(mover).step, 0.05);
   scenes::add_outline(mover.body, scenes::rectangle({0.1, 0}, 0.02, 0.02), 0.1, 0.2);
   EXPECT_DOUBLE_EQ(outline_of(mover).step, 0.05) << "a small part carried on top does not shorten it";
-  for (world::Segment& s : mover.body) s.a = s.a + Vec2{1, 0}, s.b = s.b + Vec2{1, 0};
+  for (world::Segment& s : mover.body) s.a = s.a + glm::dvec2{1, 0}, s.b = s.b + glm::dvec2{1, 0};
   EXPECT_NEAR(outline_of(mover).step, std::hypot(1.2, 0.2) / 16, 1e-12) << "the origin is outside";
 }
 

@@ -13,21 +13,20 @@
 namespace sf::scenes {
 
 using base::Pose;
-using base::Vec2;
 
-inline void add_wall(world::World& world, Vec2 a, Vec2 b, double z_min = 0.0, double z_max = 1.0) {
+inline void add_wall(world::World& world, glm::dvec2 a, glm::dvec2 b, double z_min = 0.0, double z_max = 1.0) {
   world.walls.push_back({.a = a, .b = b, .z_min = z_min, .z_max = z_max, .model = 0, .solid_left = false});
 }
 
 /// A closed outline in `corners`' order; counter-clockwise has its solid inside.
-inline void add_outline(std::vector<world::Segment>& to, const std::vector<Vec2>& corners, double z_min = 0.0,
+inline void add_outline(std::vector<world::Segment>& to, const std::vector<glm::dvec2>& corners, double z_min = 0.0,
                         double z_max = 1.0) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
     to.push_back({.a = corners[i], .b = corners[(i + 1) % corners.size()], .z_min = z_min, .z_max = z_max});
   }
 }
 
-inline std::vector<Vec2> rectangle(Vec2 centre, double length, double width) {
+inline std::vector<glm::dvec2> rectangle(glm::dvec2 centre, double length, double width) {
   const double x = length / 2.0, y = width / 2.0;
   return {{centre.x - x, centre.y - y},
           {centre.x + x, centre.y - y},
@@ -45,9 +44,9 @@ inline world::World empty_world() {
 }
 
 /// Four thin walls around [x0, x0 + width] x [y0, y0 + height].
-inline world::World boxed_world(double width, double height, Vec2 corner = {}) {
+inline world::World boxed_world(double width, double height, glm::dvec2 corner = {}) {
   world::World world = empty_world();
-  const Vec2 p = corner, q{corner.x + width, corner.y + height};
+  const glm::dvec2 p = corner, q{corner.x + width, corner.y + height};
   add_wall(world, p, {q.x, p.y});
   add_wall(world, {q.x, p.y}, q);
   add_wall(world, q, {p.x, q.y});
@@ -56,7 +55,7 @@ inline world::World boxed_world(double width, double height, Vec2 corner = {}) {
 }
 
 /// Adds a mover whose body is one outline, its height [0, 0.1].
-inline world::Mover& add_mover(world::World& world, const Pose& X_WM, const std::vector<Vec2>& corners) {
+inline world::Mover& add_mover(world::World& world, const Pose& X_WM, const std::vector<glm::dvec2>& corners) {
   world::Mover mover;
   mover.name = "robot" + std::to_string(world.movers.size() + 1);
   mover.id = static_cast<std::uint32_t>(world.movers.size() + 1);
@@ -75,8 +74,8 @@ inline world::Mover& add_mover(world::World& world, const Pose& X_WM, const std:
 
 /// A 16-sided disc of radius 0.165 m that does at most 0.5 m/s and 90 degrees a second.
 inline world::Mover& add_create(world::World& world, const Pose& X_WM) {
-  std::vector<Vec2> corners;
-  for (int i = 0; i < 16; ++i) corners.push_back(0.165 * Vec2{std::cos(M_PI * i / 8), std::sin(M_PI * i / 8)});
+  std::vector<glm::dvec2> corners;
+  for (int i = 0; i < 16; ++i) corners.push_back(0.165 * glm::dvec2{std::cos(M_PI * i / 8), std::sin(M_PI * i / 8)});
   return add_mover(world, X_WM, corners);
 }
 
@@ -89,7 +88,7 @@ inline world::Mover& add_square(world::World& world, const Pose& X_WM) {
 inline void add_bitmap(world::World& world, const std::vector<std::vector<bool>>& solid, double cell) {
   const int rows = static_cast<int>(solid.size()), columns = static_cast<int>(solid.front().size());
   const auto at = [&](int x, int y) { return x >= 0 && y >= 0 && x < columns && y < rows && solid[y][x]; };
-  const auto add = [&](Vec2 a, Vec2 b) {
+  const auto add = [&](glm::dvec2 a, glm::dvec2 b) {
     world.walls.push_back({.a = cell * a, .b = cell * b, .z_min = 0.0, .z_max = 1.0});
   };
   // Edges between a row and the one below, then the same for columns.

@@ -13,7 +13,6 @@ namespace sf::robots {
 namespace {
 
 using base::Pose;
-using base::Vec2;
 
 Outline square() {
   world::World world = scenes::empty_world();
@@ -25,7 +24,7 @@ Outline disc() {
   return outline_of(scenes::add_create(world, {}));
 }
 
-world::Segment wall(Vec2 a, Vec2 b, double z_min = 0.0, double z_max = 1.0) {
+world::Segment wall(glm::dvec2 a, glm::dvec2 b, double z_min = 0.0, double z_max = 1.0) {
   return {.a = a, .b = b, .z_min = z_min, .z_max = z_max, .solid_left = false};
 }
 
@@ -100,7 +99,7 @@ TEST(Sectors, of_nothing_are_none) {
 
 TEST(Sectors, the_same_100_km_away) {
   const Pose X{1e5, -1e5, 0, 0.3};
-  const auto moved = [&](Vec2 p) { return transform(X, p); };
+  const auto moved = [&](glm::dvec2 p) { return transform(X, p); };
   EXPECT_EQ(sectors_touched(square(), X, wall(moved({0.2005, -0.01}), moved({0.2005, -0.012}))), bit(-1));
 }
 
@@ -114,14 +113,14 @@ TEST(Sectors, agree_with_points_along_the_wall) {
     const Pose X{u[0], u[1], 0, 6.0 * v[0]};
     const double bearing = 2.0 * M_PI * v[1];
     const double far = 0.1 + 0.08 * base::random_uniform({.seed = 21, .stream = base::Stream::place, .a = k}, 2)[0];
-    const Vec2 middle = transform(X, base::rotate(bearing, {far, 0.0}));
-    const Vec2 along = base::rotate(bearing + X.yaw + 0.5 * M_PI + 0.8 * (v[0] - 0.5), {0.1, 0.0});
+    const glm::dvec2 middle = transform(X, base::rotate(bearing, {far, 0.0}));
+    const glm::dvec2 along = base::rotate(bearing + X.yaw + 0.5 * M_PI + 0.8 * (v[0] - 0.5), {0.1, 0.0});
     const world::Segment w = wall(middle - along, middle + along);
     std::uint32_t expected = 0, border = 0;
     for (int i = 0; i <= 4000; ++i) {
-      const Vec2 p = base::rotate(-X.yaw, w.a + i / 4000.0 * (w.b - w.a) - Vec2{X.x, X.y});
+      const glm::dvec2 p = base::rotate(-X.yaw, w.a + i / 4000.0 * (w.b - w.a) - glm::dvec2{X.x, X.y});
       double depth = HUGE_VAL;  // [m] least distance inside all sides: negative outside
-      for (const Edge& e : outline.edges) depth = std::min(depth, cross(e.b - e.a, p - e.a) / length(e.b - e.a));
+      for (const Edge& e : outline.edges) depth = std::min(depth, base::cross(e.b - e.a, p - e.a) / length(e.b - e.a));
       const double sector = (base::wrap_angle(std::atan2(p.y, p.x)) + (p.y < 0.0 ? 2.0 * M_PI : 0.0)) * 16.0 / M_PI;
       // Points that are hardly within reach, or hardly within the sector, decide nothing.
       const bool doubtful = std::abs(depth + kPressed) < 1e-4 || std::abs(sector - std::round(sector)) < 0.01;

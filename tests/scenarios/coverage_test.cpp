@@ -52,7 +52,7 @@ TEST(Coverage, CellsWithinObstaclesAreNotAskedFor) {
   const maps::Grid seen = what_could_be_seen(world, 0, map.grid().plan);
   for (std::int64_t row = 0; row < maps::rows(seen.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
-      const base::Vec2 p = maps::middle(seen.plan, {column, row});
+      const glm::dvec2 p = maps::middle(seen.plan, {column, row});
       const bool in_box = std::abs(p.x + 0.65) < 0.249 && std::abs(p.y - 0.75) < 0.249;
       const bool in_wall = std::max(std::abs(p.x), std::abs(p.y)) > 1.501;
       EXPECT_FALSE((in_box || in_wall) && seen.at({column, row}) == Cell::free) << p.x << " " << p.y;
@@ -68,7 +68,7 @@ TEST(Coverage, WhatCouldBeSeenIsTheRoom) {
   for (std::int64_t row = 0; row < maps::rows(seen.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
       if (seen.at({column, row}) != Cell::free) continue;
-      const base::Vec2 p = maps::middle(seen.plan, {column, row});
+      const glm::dvec2 p = maps::middle(seen.plan, {column, row});
       EXPECT_LT(std::max(std::abs(p.x), std::abs(p.y)), 1.53) << p.x << " " << p.y;
       area += seen.plan.cell * seen.plan.cell;
     }
@@ -78,7 +78,7 @@ TEST(Coverage, WhatCouldBeSeenIsTheRoom) {
 /// Behind a wall without a door nothing is seen.
 TEST(Coverage, StopsAtWalls) {
   world::World world = mapping_world();
-  const base::Vec2 from{-1.5, 0.0}, to{1.5, 0.0};
+  const glm::dvec2 from{-1.5, 0.0}, to{1.5, 0.0};
   world::Segment wall{.a = from, .b = to, .z_max = 0.5, .solid_left = false};
   world.walls.push_back(wall);
   world::finish(world);

@@ -43,7 +43,7 @@ TEST(Crowd, NamedRobotsStayAndCopiesFillTheLanes) {
     double nearest = 1e9;
     for (const world::RoadLane& lane : roads.lanes)
       for (double s = 0.0; s < length_of(lane); s += 0.01) {
-        const base::Vec2 p = point_at(lane.centre, s);
+        const glm::dvec2 p = point_at(lane.centre, s);
         nearest = std::min(nearest, std::hypot(p.x - X.x, p.y - X.y));
       }
     EXPECT_LT(nearest, 0.006) << i;

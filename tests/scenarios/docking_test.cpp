@@ -35,7 +35,7 @@ world::World car_park() {
   return world;
 }
 
-bool is_free(const world::World& world, base::Vec2 p) {
+bool is_free(const world::World& world, glm::dvec2 p) {
   return std::all_of(world.walls.begin(), world.walls.end(), [&](const world::Segment& wall) {
     return wall.z_min > 0.1 || world::distance(p, wall.a, wall.b) > world.movers.front().radius + 0.01;
   });
@@ -43,7 +43,7 @@ bool is_free(const world::World& world, base::Vec2 p) {
 
 struct Docked {
   double seconds = HUGE_VAL;
-  base::Vec2 p;      ///< [m] in the dock's frame
+  glm::dvec2 p;      ///< [m] in the dock's frame
   double off = 0.0;  ///< [rad] from facing it
   std::string reason;
 };

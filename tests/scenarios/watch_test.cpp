@@ -70,7 +70,7 @@ base::Pose line_of(const Town& town, const std::string& name) {
   const auto at = world::find_point(
       roads, {static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b), static_cast<std::uint16_t>(c)});
   EXPECT_TRUE(at) << name;
-  const base::Vec2 p = world::position_of(roads, *at);
+  const glm::dvec2 p = world::position_of(roads, *at);
   return {p.x, p.y, 0.0, *world::yaw_of(roads, *at)};
 }
 

@@ -251,7 +251,7 @@ TEST(Accuracy, NearMagnetsAloneStayWithinTheBound) {
     world.magnets.push_back({chance.in_square(15.0), -0.04, chance.between(-1.0, 1.0), 0.01, 0});
   world.models.push_back({.name = "magnets"});
   for (int i = 0; i < 200; ++i) {
-    const base::Vec2 p = chance.in_square(15.0);
+    const glm::dvec2 p = chance.in_square(15.0);
     const std::uint32_t m = scenes::add_robot(world, {p.x, p.y, 0.0, chance.between(-3.0, 3.0)}, scenes::laser(3));
     world.movers[m].lasers.clear();
     world.movers[m].sensors.push_back({"magnetometer", "m", {0.1, 0.0, 0.0, 0.0}, 0.1, 1.0, 1.0, {}, 0, ""});
@@ -296,11 +296,11 @@ TEST(Accuracy, FieldsAreWithinTheirBoundAnywhere) {
       Chance chance(21);
       world::World world;
       for (int i = 0; i < 20; ++i) {
-        const base::Vec2 p = base::Vec2{far, -far} + chance.in_square(0.1);
+        const glm::dvec2 p = glm::dvec2{far, -far} + chance.in_square(0.1);
         world.magnets.push_back({p, 0.0, chance.between(-1.0, 1.0), 0.0125, 0});
       }
       for (int i = 0; i < 300; ++i) {
-        const base::Vec2 p = base::Vec2{far, -far} + chance.in_square(0.15);
+        const glm::dvec2 p = glm::dvec2{far, -far} + chance.in_square(0.15);
         scenes::add_carrier(world, {p.x, p.y, 0.0, chance.between(-3.0, 3.0)},
                             scenes::array({{0.1, 0.0, 0.0, 0.0}, {-0.03, 0.07, 0.0, 0.0}}, height));
       }

@@ -9,8 +9,6 @@
 namespace sf::trial {
 namespace {
 
-using base::Vec2;
-
 #if defined(__SANITIZE_ADDRESS__)
 constexpr int kEyes = 100;  ///< the oracle is slow with ASan
 #else
@@ -23,7 +21,7 @@ void aim_at_vertices(world::World& world, double half, double range, std::uint64
   for (int i = 0; i < kEyes; ++i) {
     const world::Segment& s = world.walls[chance.below(static_cast<std::uint32_t>(world.walls.size()))];
     const world::Laser laser = i % 2 ? eye(9, 1e-6, range) : eye(5, 4e-10, range);
-    Vec2 from = chance.in_square(half);
+    glm::dvec2 from = chance.in_square(half);
     if (i % 3) from = s.a + (0.1 * range / half) * from;  // most of them near by, so that the beam arrives
     aim(world, from, chance.below(2) ? s.a : s.b, laser);
   }
@@ -53,9 +51,10 @@ world::World checkerboard(int n) {
   world::World world;
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x) {
-      const Vec2 p{1.0 * x, 1.0 * y};
+      const glm::dvec2 p{1.0 * x, 1.0 * y};
       if ((x + y) % 2 == 0)
-        scenes::add_outline(world, {p, p + Vec2{1, 0}, p + Vec2{1, 1}, p + Vec2{0, 1}}, "field" + std::to_string(x));
+        scenes::add_outline(world, {p, p + glm::dvec2{1, 0}, p + glm::dvec2{1, 1}, p + glm::dvec2{0, 1}},
+                            "field" + std::to_string(x));
     }
   return world;
 }
@@ -65,13 +64,13 @@ TEST(Aimed, NothingSlipsThroughDiagonalCorners) {
   world::World world = checkerboard(8);
   Chance chance(4);
   for (int i = 0; i < kEyes; ++i) {
-    const Vec2 field{3.0, 4.0};
+    const glm::dvec2 field{3.0, 4.0};
     // On lattices of eighths and thirds, and anywhere.
     const double grid = i % 3 == 0 ? 8.0 : 3.0;
-    Vec2 p{(1.0 + chance.below(static_cast<std::uint32_t>(grid) - 1)) / grid,
-           (1.0 + chance.below(static_cast<std::uint32_t>(grid) - 1)) / grid};
+    glm::dvec2 p{(1.0 + chance.below(static_cast<std::uint32_t>(grid) - 1)) / grid,
+                 (1.0 + chance.below(static_cast<std::uint32_t>(grid) - 1)) / grid};
     if (i % 3 == 2) p = {chance.between(0.001, 0.999), chance.between(0.001, 0.999)};
-    const Vec2 corner{static_cast<double>(chance.below(2)), static_cast<double>(chance.below(2))};
+    const glm::dvec2 corner{static_cast<double>(chance.below(2)), static_cast<double>(chance.below(2))};
     aim(world, field + p, field + corner, eye(i % 2 ? 1 : 5, i % 2 ? 0.0 : 1e-15, 20.0));
   }
   for (const double far : {0.0, 1048576.0}) {
@@ -141,7 +140,7 @@ TEST(Aimed, CollinearWithAWall) {
     scenes::add_room(world, {1, 0}, 14.0);
     for (const double x : {-2.0, 0.0, 1.0, 1.5, 2.0, 3.0})
       for (const double turn : {0.0, M_PI}) {
-        const Vec2 p = at(x, 0.0);
+        const glm::dvec2 p = at(x, 0.0);
         add_eye(world, {p.x, p.y, 0.0, yaw + turn}, eye(9, 1e-3, 20.0));
         add_eye(world, {p.x, p.y, 0.0, yaw + turn}, eye(37, 2.0 * M_PI, 20.0));
       }

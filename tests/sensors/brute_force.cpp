@@ -6,7 +6,6 @@
 
 namespace sf::oracle {
 
-using base::Vec2;
 using Wide = long double;
 
 std::vector<world::Segment> surfaces(const world::World& world, std::span<const base::Pose> poses, std::uint32_t self,
@@ -26,7 +25,7 @@ std::vector<world::Segment> surfaces(const world::World& world, std::span<const 
   return all;
 }
 
-std::vector<world::Segment> within(std::span<const world::Segment> all, Vec2 origin, double range) {
+std::vector<world::Segment> within(std::span<const world::Segment> all, glm::dvec2 origin, double range) {
   std::vector<world::Segment> near;
   const double reach = 1.001 * range + 0.001;
   for (const world::Segment& s : all) {
@@ -37,7 +36,7 @@ std::vector<world::Segment> within(std::span<const world::Segment> all, Vec2 ori
   return near;
 }
 
-Answer cast(std::span<const world::Segment> surfaces, Vec2 origin, long double direction, double range_max) {
+Answer cast(std::span<const world::Segment> surfaces, glm::dvec2 origin, long double direction, double range_max) {
   const Wide dx = std::cos(direction);
   const Wide dy = std::sin(direction);
   Wide best = range_max;
@@ -57,7 +56,7 @@ Answer cast(std::span<const world::Segment> surfaces, Vec2 origin, long double d
   }
   answer.range = static_cast<double>(best);
   for (const world::Segment& s : surfaces)
-    for (const Vec2 end : {s.a, s.b}) {
+    for (const glm::dvec2& end : {s.a, s.b}) {
       const Wide ahead = (end.x - origin.x) * dx + (end.y - origin.y) * dy;
       const Wide aside = (end.x - origin.x) * dy - (end.y - origin.y) * dx;
       if (ahead > -1e-6L && ahead <= best + 1e-6L)

@@ -22,10 +22,10 @@ std::vector<world::Segment> surfaces(const world::World& world, std::span<const 
                                      double z);
 
 /// Those of `all` that come within `range` [m] of `origin`, and perhaps some more.
-std::vector<world::Segment> within(std::span<const world::Segment> all, base::Vec2 origin, double range);
+std::vector<world::Segment> within(std::span<const world::Segment> all, glm::dvec2 origin, double range);
 
 /// First surface along origin + t (cos, sin), from either side.
-Answer cast(std::span<const world::Segment> surfaces, base::Vec2 origin, long double direction, double range_max);
+Answer cast(std::span<const world::Segment> surfaces, glm::dvec2 origin, long double direction, double range_max);
 
 /// A beam that passes a free end this near [m] may go either way.
 inline constexpr long double kEitherWay = 1e-6L;
@@ -49,7 +49,7 @@ struct Truth {
 
 /// Nothing of a wall may be missed where two segments share an end (the same doubles) and leave the beam on both sides.
 /// Surfaces within kTouch count as 0 into them, and not at all off them; the solid is on the left of a segment.
-Truth judge(std::span<const world::Segment> surfaces, base::Vec2 origin, long double direction, double range_max);
+Truth judge(std::span<const world::Segment> surfaces, glm::dvec2 origin, long double direction, double range_max);
 
 /// What 64-bit arithmetic may be wrong by [m] at `meeting`: the beam's direction is rounded, and so are the products
 /// with the surface's start. A surface seen edge-on within rounding may be met anywhere along it.

@@ -20,7 +20,7 @@ class Chance {
   std::uint32_t below(std::uint32_t count) {
     return base::random_words({seed_, base::Stream::place, 78, 0, count_++}, 0)[0] % count;
   }
-  base::Vec2 in_square(double half) {
+  glm::dvec2 in_square(double half) {
     const double x = between(-half, half);
     return {x, between(-half, half)};
   }

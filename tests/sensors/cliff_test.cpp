@@ -12,7 +12,6 @@
 namespace sf::trial {
 namespace {
 
-using base::Vec2;
 using sensors::holds;
 
 world::Sensor four_points() {
@@ -21,7 +20,7 @@ world::Sensor four_points() {
                  setting("spose[2]", {-0.1, 0.1, 0}), setting("spose[3]", {-0.1, -0.1, 0})});
 }
 
-void add_drop(world::World& world, std::vector<Vec2> outline) { world.drops.push_back({std::move(outline), 0}); }
+void add_drop(world::World& world, std::vector<glm::dvec2> outline) { world.drops.push_back({std::move(outline), 0}); }
 
 std::vector<double> read(const world::World& world) { return values_of(Glance(world).readings[0]); }
 
@@ -45,8 +44,8 @@ TEST(Cliff, TheSensorsOwnPoseCounts) {
 }
 
 TEST(Cliff, EitherWindingAndAnyShape) {
-  const std::vector<Vec2> notch{{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}};
-  const std::vector<Vec2> reversed(notch.rbegin(), notch.rend());
+  const std::vector<glm::dvec2> notch{{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}};
+  const std::vector<glm::dvec2> reversed(notch.rbegin(), notch.rend());
   for (const auto& outline : {notch, reversed}) {
     EXPECT_TRUE(holds(outline, {0.5, 2}));
     EXPECT_TRUE(holds(outline, {2, 0.5}));
@@ -57,7 +56,7 @@ TEST(Cliff, EitherWindingAndAnyShape) {
     EXPECT_FALSE(holds(outline, {-1, 0})) << "level with an edge";
   }
   EXPECT_FALSE(holds({}, {0, 0}));
-  EXPECT_FALSE(holds(std::vector<Vec2>{{0, 0}, {1, 1}}, {0.5, 0.5})) << "two points hold nothing";
+  EXPECT_FALSE(holds(std::vector<glm::dvec2>{{0, 0}, {1, 1}}, {0.5, 0.5})) << "two points hold nothing";
 }
 
 /// A square cut into a fan of triangles: every point of it, those on shared edges too, is in exactly one of them.
@@ -65,14 +64,14 @@ TEST(Cliff, PointsOnSharedEdgesAreInExactlyOneDrop) {
   Chance chance(1);
   for (int round = 0; round < 50; ++round) {
     const double far = round % 2 == 0 ? 0.0 : 1e5;
-    const Vec2 hub{far + chance.between(-0.9, 0.9), chance.between(-0.9, 0.9) - far};
-    const std::vector<Vec2> rim = square({far, -far}, 2.0);
-    const auto count = [&](Vec2 p) {
+    const glm::dvec2 hub{far + chance.between(-0.9, 0.9), chance.between(-0.9, 0.9) - far};
+    const std::vector<glm::dvec2> rim = square({far, -far}, 2.0);
+    const auto count = [&](glm::dvec2 p) {
       int held = 0;
-      for (std::size_t i = 0; i < 4; ++i) held += holds(std::vector<Vec2>{hub, rim[i], rim[(i + 1) % 4]}, p);
+      for (std::size_t i = 0; i < 4; ++i) held += holds(std::vector<glm::dvec2>{hub, rim[i], rim[(i + 1) % 4]}, p);
       return held;
     };
-    for (const Vec2 corner : rim)
+    for (const glm::dvec2& corner : rim)
       for (const double t : {0.25, 0.5, 0.75}) EXPECT_EQ(count(hub + t * (corner - hub)), 1);
     EXPECT_EQ(count(hub), 1);
     for (int i = 0; i < 20; ++i)
@@ -85,8 +84,8 @@ TEST(Cliff, ManyDropsAnswerAsEachOneDoes) {
   Chance chance(2);
   std::vector<world::Drop> drops;
   for (int i = 0; i < 300; ++i) {
-    const Vec2 p = chance.in_square(10.0);
-    std::vector<Vec2> outline;
+    const glm::dvec2 p = chance.in_square(10.0);
+    std::vector<glm::dvec2> outline;
     for (int k = 0; k < 5; ++k)
       outline.push_back(p + base::rotate(2 * M_PI * k / 5, {chance.between(0.1, i % 10 == 0 ? 4.0 : 0.5), 0.0}));
     drops.push_back({outline, 0});
@@ -94,7 +93,7 @@ TEST(Cliff, ManyDropsAnswerAsEachOneDoes) {
   const sensors::Drops all(drops);
   int inside = 0;
   for (int i = 0; i < 5000; ++i) {
-    const Vec2 p = chance.in_square(11.0);
+    const glm::dvec2 p = chance.in_square(11.0);
     const bool any = std::any_of(drops.begin(), drops.end(), [&](const auto& d) { return holds(d.outline, p); });
     inside += any;
     EXPECT_EQ(all.hold(p), any);

@@ -13,7 +13,6 @@
 namespace sf::trial {
 
 using base::Pose;
-using base::Vec2;
 
 gpu::Device& device() {
   static gpu::Device device;
@@ -96,7 +95,7 @@ Tally compare(const world::World& world, std::span<const Pose> poses, std::span<
   Tally tally;
   for (const base::ReadingBlock& r : readings) {
     const world::Laser& laser = world.movers[r.mover].lasers[r.sensor];
-    const Vec2 origin{r.X_WS.x, r.X_WS.y};
+    const glm::dvec2 origin{r.X_WS.x, r.X_WS.y};
     const auto all = oracle::surfaces(world, poses, r.mover, r.X_WS.z);
     const auto near = oracle::within(all, origin, laser.range_max);
     // The oracle is slow: of a fan with very many beams, some thousand all over it.
@@ -178,7 +177,7 @@ std::uint32_t add_eye(world::World& world, const Pose& pose, const world::Laser&
   return number;
 }
 
-std::uint32_t aim(world::World& world, Vec2 from, Vec2 target, const world::Laser& laser) {
+std::uint32_t aim(world::World& world, glm::dvec2 from, glm::dvec2 target, const world::Laser& laser) {
   const double yaw = std::atan2(target.y - from.y, target.x - from.x);
   return add_eye(world, {from.x, from.y, 0.0, yaw}, laser);
 }

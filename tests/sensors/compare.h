@@ -51,7 +51,7 @@ std::uint32_t add_eye(world::World& world, const base::Pose& pose, const world::
 world::Laser eye(std::uint32_t samples, double fov, double range_max);
 
 /// Adds an eye whose middle beam is aimed at `target` in double precision.
-std::uint32_t aim(world::World& world, base::Vec2 from, base::Vec2 target, const world::Laser& laser);
+std::uint32_t aim(world::World& world, glm::dvec2 from, glm::dvec2 target, const world::Laser& laser);
 
 /// One tick at time 0 of a farm that hears everyone; the farm outlives the readings.
 struct Glance {

@@ -47,7 +47,7 @@ struct ConeTruth {
 inline ConeTruth cone_truth(std::span<const world::Segment> all, const base::Pose& X_WC,
                             const sensors::ConeArray& array) {
   using Wide = long double;
-  const base::Vec2 origin{X_WC.x, X_WC.y};
+  const glm::dvec2 origin{X_WC.x, X_WC.y};
   const auto near = oracle::within(all, origin, array.range_max);
   ConeTruth truth{array.range_max, array.range_max};
   for (std::uint32_t i = 0; i < array.rays; ++i) {

@@ -20,7 +20,7 @@ TEST(Fans, EveryWidthAndCount) {
   Chance chance(1);
   for (const double fov : {0.0, 1e-6, 1e-3, 10 * kDegree, 180 * kDegree, 270 * kDegree, 360 * kDegree})
     for (const std::uint32_t samples : {1, 2, 3, 4, 5, 6, 7, 8, 31, 33, 64, 65, 361, 1001}) {
-      const base::Vec2 p = chance.in_square(7.0);
+      const glm::dvec2 p = chance.in_square(7.0);
       add_eye(world, {p.x, p.y, 0.0, chance.between(-10.0, 10.0)}, eye(samples, fov, 8.0));
     }
   expect_exact("fans", sweep(world));
@@ -66,7 +66,7 @@ world::World spots() {
   for (int i = 0; i < 12; ++i) ring.push_back({1, 0.0, i * 30 * kDegree});
   Chance chance(5);
   for (int i = 0; i < 40; ++i) {
-    const base::Vec2 p = chance.in_square(3.5);
+    const glm::dvec2 p = chance.in_square(3.5);
     const base::Pose X{p.x, p.y, 0.0, chance.between(-10.0, 10.0)};
     // Alike all round; several at one bearing; of different width, the whole turn among them; too uneven to share.
     if (i % 4 == 0) add_spots(world, X, ring);

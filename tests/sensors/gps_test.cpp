@@ -14,7 +14,6 @@
 namespace sf::trial {
 namespace {
 
-using base::Vec2;
 using sensors::constellation;
 using sensors::dilution;
 using sensors::Satellite;
@@ -27,7 +26,7 @@ std::vector<double> read(const world::World& world) { return values_of(Glance(wo
 /// Due east, 45 degrees up.
 constexpr Satellite kEast{{1, 0}, 1.0};
 
-bool sees(const world::World& world, Vec2 p, double z, const Satellite& satellite) {
+bool sees(const world::World& world, glm::dvec2 p, double z, const Satellite& satellite) {
   return Sky(world).sees(p, z, satellite);
 }
 
@@ -36,14 +35,14 @@ bool sees(const world::World& world, Vec2 p, double z, const Satellite& satellit
 TEST(Gps, SatellitesStandAboveTheMaskAllRound) {
   for (const std::uint32_t count : {4u, 8u, 32u, 64u}) {
     const auto all = constellation(count);
-    Vec2 sum;
+    glm::dvec2 sum;
     for (const Satellite& s : all) {
-      EXPECT_NEAR(base::length(s.flat), 1.0, 1e-12);
+      EXPECT_NEAR(glm::length(s.flat), 1.0, 1e-12);
       EXPECT_GT(std::atan(s.rise), 15.0 * M_PI / 180);
       EXPECT_LT(std::atan(s.rise), M_PI / 2);
       sum = sum + s.flat;
     }
-    EXPECT_LT(base::length(sum), 2.0) << "evenly";
+    EXPECT_LT(glm::length(sum), 2.0) << "evenly";
   }
 }
 
@@ -179,7 +178,7 @@ TEST(Gps, SightAgreesWithWalkingAlongTheLine) {
   for (int round = 0; round < 20; ++round) {
     world::World world;
     struct Solid {
-      Vec2 middle;
+      glm::dvec2 middle;
       double half, z_min, z_max;
     };
     std::vector<Solid> solids;
@@ -190,8 +189,8 @@ TEST(Gps, SightAgreesWithWalkingAlongTheLine) {
     }
     const Sky sky(world);
     for (int i = 0; i < 40; ++i) {
-      const Vec2 p = chance.in_square(6);
-      const auto inside = [&](Vec2 q, double z) {
+      const glm::dvec2 p = chance.in_square(6);
+      const auto inside = [&](glm::dvec2 q, double z) {
         return std::any_of(solids.begin(), solids.end(), [&](const Solid& s) {
           return std::max(std::abs(q.x - s.middle.x), std::abs(q.y - s.middle.y)) < s.half && z >= s.z_min &&
                  z < s.z_max;

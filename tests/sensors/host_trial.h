@@ -50,7 +50,7 @@ inline std::vector<double> values_of(const base::ReadingBlock& reading) {
 }
 
 /// Adds a static box-like outline, solid within, from `z_min` to `z_max`; corners counter-clockwise.
-inline void add_solid(world::World& world, const std::vector<base::Vec2>& corners, double z_min, double z_max) {
+inline void add_solid(world::World& world, const std::vector<glm::dvec2>& corners, double z_min, double z_max) {
   const auto model = static_cast<std::uint32_t>(world.models.size());
   world.models.push_back({"solid" + std::to_string(model), "model"});
   for (std::size_t i = 0; i < corners.size(); ++i)
@@ -58,7 +58,7 @@ inline void add_solid(world::World& world, const std::vector<base::Vec2>& corner
         {.a = corners[i], .b = corners[(i + 1) % corners.size()], .z_min = z_min, .z_max = z_max, .model = model});
 }
 
-inline std::vector<base::Vec2> square(base::Vec2 middle, double side) {
+inline std::vector<glm::dvec2> square(glm::dvec2 middle, double side) {
   const double h = 0.5 * side;
   return {{middle.x - h, middle.y - h},
           {middle.x + h, middle.y - h},

@@ -79,7 +79,7 @@ TEST(Infrared, EveryConeIsTheNearestOfItsRays) {
   world::World world = scenes::boxes(40, 2.0, 7);
   Chance chance(1);
   for (int m = 0; m < 60; ++m) {
-    const base::Vec2 p = chance.in_square(0.9);
+    const glm::dvec2 p = chance.in_square(0.9);
     add_ranger(world, {p.x, p.y, 0.0, chance.between(-9, 9)}, cones("infrared", ring(8, 0.03)), 0.035);
   }
   const auto arrays = sensors::cone_arrays_of(world, "infrared", sensors::read_infrared);

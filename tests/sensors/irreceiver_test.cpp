@@ -12,7 +12,6 @@ namespace sf::trial {
 namespace {
 
 using base::Pose;
-using base::Vec2;
 using sensors::light_of;
 using world::Emitter;
 
@@ -24,7 +23,7 @@ Emitter virtual_wall(const Pose& X_WE = {}) {
 /// Buoys of 40 degrees: 15 to each side alone, 5 + 5 in the middle together.
 Emitter dock(const Pose& X_WE = {}) { return {Emitter::Kind::dock, world::kNone, X_WE, 2.0, 40 * kDegree, 0.5}; }
 
-Vec2 at(double distance, double degrees) { return base::rotate(degrees * kDegree, {distance, 0.0}); }
+glm::dvec2 at(double distance, double degrees) { return base::rotate(degrees * kDegree, {distance, 0.0}); }
 
 std::vector<double> read(const world::World& world) { return values_of(Glance(world).readings[0]); }
 
@@ -74,7 +73,7 @@ TEST(IrReceiver, LightTurnsWithItsEmitter) {
   Chance chance(1);
   for (int i = 0; i < 500; ++i) {
     const Pose X_WE{chance.between(-9, 9), chance.between(-9, 9), 0, chance.between(-20, 20)};
-    const Vec2 p = chance.in_square(2.2);
+    const glm::dvec2 p = chance.in_square(2.2);
     EXPECT_EQ(light_of(dock(X_WE), base::transform(X_WE, p)), light_of(dock(), p));
     EXPECT_EQ(light_of(virtual_wall(X_WE), base::transform(X_WE, p)), light_of(virtual_wall(), p));
   }
@@ -83,7 +82,7 @@ TEST(IrReceiver, LightTurnsWithItsEmitter) {
 // --- Readings.
 
 TEST(IrReceiver, BytesOfTheOpenInterface) {
-  const auto byte = [](const Vec2& p) { return read(one_receiver({dock()}, {p.x, p.y, 0, 1}))[1]; };
+  const auto byte = [](const glm::dvec2& p) { return read(one_receiver({dock()}, {p.x, p.y, 0, 1}))[1]; };
   EXPECT_EQ(byte(at(3, 0)), 255.0) << "none";
   EXPECT_EQ(byte(at(1.5, 20)), 248.0) << "red buoy";
   EXPECT_EQ(byte(at(1.5, -20)), 244.0) << "green buoy";
@@ -128,8 +127,8 @@ TEST(IrReceiver, ManyEmittersAnswerAsEachOneDoes) {
   Chance chance(2);
   world::World world = carriers(fitted("irreceiver"), {});
   for (int i = 0; i < 400; ++i) {
-    const Vec2 p = chance.in_square(15);
-    const Vec2 q = chance.in_square(15);
+    const glm::dvec2 p = chance.in_square(15);
+    const glm::dvec2 q = chance.in_square(15);
     world.emitters.push_back(i % 2 == 0 ? dock({p.x, p.y, 0, chance.between(-4, 4)})
                                         : virtual_wall({p.x, p.y, 0, chance.between(-4, 4)}));
     scenes::add_carrier(world, {q.x, q.y, 0, 0}, fitted("irreceiver"));

@@ -5,7 +5,6 @@
 
 namespace sf::oracle {
 
-using base::Vec2;
 using Wide = long double;
 
 namespace {
@@ -17,14 +16,14 @@ struct Crossing {
   Meeting meeting;
   Wide aside_a = 0.0L;  ///< [m] of its ends, positive on the left of the beam
   Wide aside_b = 0.0L;
-  Vec2 a, b;
+  glm::dvec2 a, b;
   bool strict = false;     ///< met in real arithmetic
   bool firm = false;       ///< and by more than kEitherWay
   bool uncertain = false;  ///< rounding decides whether it touches the sensor
 };
 
 /// False when the beam's line passes the segment by more than kEitherWay, or never comes near.
-bool meet(const world::Segment& s, Vec2 origin, Wide dx, Wide dy, Crossing& out) {
+bool meet(const world::Segment& s, glm::dvec2 origin, Wide dx, Wide dy, Crossing& out) {
   const Wide wx = static_cast<Wide>(s.a.x) - origin.x;
   const Wide wy = static_cast<Wide>(s.a.y) - origin.y;
   const Wide ex = static_cast<Wide>(s.b.x) - s.a.x;
@@ -52,7 +51,7 @@ bool meet(const world::Segment& s, Vec2 origin, Wide dx, Wide dy, Crossing& out)
 
 /// The ends of two crossings that are one point near the beam, with the other ends on both sides of it.
 bool closes(const Crossing& p, const Crossing& q) {
-  const auto same = [](Vec2 v, Vec2 w) { return v.x == w.x && v.y == w.y; };
+  const auto same = [](glm::dvec2 v, glm::dvec2 w) { return v.x == w.x && v.y == w.y; };
   const auto apart = [](Wide shared, Wide other_p, Wide other_q) {
     if (std::fabs(shared) > kEitherWay) return false;
     return std::min(other_p, other_q) < -kEitherWay && std::max(other_p, other_q) > kEitherWay;
@@ -84,7 +83,7 @@ double rounding(const Meeting& meeting) {
   return 1e-12 + 1e-15 * (static_cast<double>(meeting.range) + meeting.arm) / sine;
 }
 
-Truth judge(std::span<const world::Segment> surfaces, Vec2 origin, Wide direction, double range_max) {
+Truth judge(std::span<const world::Segment> surfaces, glm::dvec2 origin, Wide direction, double range_max) {
   const Wide dx = std::cos(direction);
   const Wide dy = std::sin(direction);
   std::vector<Crossing> crossings;

@@ -15,22 +15,21 @@ namespace {
 
 using base::Pose;
 using base::Unsure;
-using base::Vec2;
 using Wide = long double;
 
 constexpr double kWidth = 0.1;  // [m]
 
 /// A straight face, from `a` to `b`: one side of a stripe whose middle runs between these.
 struct Face {
-  Vec2 a, b;
+  glm::dvec2 a, b;
   Wide side = 0.0;  ///< [m] to the left of the line
 };
 
-void add_sides(std::vector<Face>& faces, Vec2 a, Vec2 b) {
+void add_sides(std::vector<Face>& faces, glm::dvec2 a, glm::dvec2 b) {
   for (const Wide side : {0.5L * kWidth, -0.5L * kWidth}) faces.push_back({a, b, side});
 }
 
-void add_straight(world::World& world, std::vector<Face>& faces, Vec2 a, Vec2 b) {
+void add_straight(world::World& world, std::vector<Face>& faces, glm::dvec2 a, glm::dvec2 b) {
   world.stripes.push_back(stripe(a, b, kWidth));
   add_sides(faces, a, b);
 }
@@ -85,11 +84,11 @@ Seen judge(world::World world, const std::vector<Face>& faces, const std::vector
 }
 
 /// Somewhere in a square round `middle`, looking anywhere.
-std::vector<Pose> anywhere(int count, Vec2 middle, double half, std::uint64_t seed) {
+std::vector<Pose> anywhere(int count, glm::dvec2 middle, double half, std::uint64_t seed) {
   Chance chance(seed);
   std::vector<Pose> poses;
   for (int i = 0; i < count; ++i) {
-    const Vec2 p = middle + chance.in_square(half);
+    const glm::dvec2 p = middle + chance.in_square(half);
     poses.push_back({p.x, p.y, 0.0, chance.between(-M_PI, M_PI)});
   }
   return poses;
@@ -99,8 +98,8 @@ TEST(LaneEdgeBounds, HoldOnStraightPaintAndAtItsEnds) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
     std::vector<Face> faces;
-    const Vec2 o{far, -far};
-    add_straight(world, faces, o + Vec2{-1.0, 0.2}, o + Vec2{1.0, -0.3});
+    const glm::dvec2 o{far, -far};
+    add_straight(world, faces, o + glm::dvec2{-1.0, 0.2}, o + glm::dvec2{1.0, -0.3});
     const Seen seen = judge(world, faces, anywhere(4000, o, 1.2, 7));
     EXPECT_EQ(seen.beyond, 0) << far << ": " << seen.example;
     EXPECT_GT(seen.stated, seen.read / 2) << far;

@@ -19,7 +19,6 @@ namespace sf::trial {
 namespace {
 
 using base::Pose;
-using base::Vec2;
 using sensors::EdgeReading;
 using sensors::PaintRaster;
 
@@ -34,7 +33,7 @@ struct Entry {
 };
 
 /// Where origin + t d enters the box of one cell, corner by corner in long double.
-void meet_cell(Vec2 low, double cell, Vec2 o, Vec2 d, Entry& best) {
+void meet_cell(glm::dvec2 low, double cell, glm::dvec2 o, glm::dvec2 d, Entry& best) {
   const long double x0 = (static_cast<long double>(low.x) - o.x) / d.x;
   const long double x1 = (static_cast<long double>(low.x) + cell - o.x) / d.x;
   const long double y0 = (static_cast<long double>(low.y) - o.y) / d.y;
@@ -53,7 +52,7 @@ TEST(LaneEdgeRaster, EveryRayEntersTheFirstPaintedCell) {
     for (int i = 0; i < 5; ++i)
       world.stripes.push_back(stripe(chance.in_square(1.0), chance.in_square(1.0), chance.between(0.02, 0.1)));
     const PaintRaster raster(world.stripes, h, 1.2, "");
-    std::vector<Vec2> cells;
+    std::vector<glm::dvec2> cells;
     for (std::int64_t y = 0; y < 8 * raster.rows(); ++y)
       for (std::int64_t x = 0; x < 8 * raster.columns(); ++x)
         if (raster.painted(x, y))
@@ -61,7 +60,7 @@ TEST(LaneEdgeRaster, EveryRayEntersTheFirstPaintedCell) {
               {static_cast<double>(raster.first_column() + x) * h, static_cast<double>(raster.first_row() + y) * h});
     std::vector<Pose> poses;
     for (int i = 0; i < 400; ++i) {
-      const Vec2 p = chance.in_square(1.2);
+      const glm::dvec2 p = chance.in_square(1.2);
       // Every eighth along an axis, where a ray runs on the pixels' own lines.
       const double yaw = i % 8 == 0 ? 0.5 * M_PI * (i / 8 % 4) : chance.between(-M_PI, M_PI);
       add_edge_eye(world, {p.x, p.y, 0.0, yaw}, {{"samples", {1}}});
@@ -76,7 +75,7 @@ TEST(LaneEdgeRaster, EveryRayEntersTheFirstPaintedCell) {
       const auto y = static_cast<std::int64_t>(std::floor(X.y / h)) - raster.first_row();
       if (raster.painted(x, y)) continue;
       Entry truth;
-      for (const Vec2 low : cells)
+      for (const glm::dvec2& low : cells)
         meet_cell(low, h, {X.x, X.y}, {std::cos(X.yaw) + 1e-300, std::sin(X.yaw) + 1e-300}, truth);
       const bool in_sight = truth.range < 0.99;
       if (truth.doubtful) {
@@ -204,15 +203,15 @@ Trial straight(double h, std::size_t count, double from_degrees, double to_degre
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t k = i % kStripes;
     const double a = 0.1 * static_cast<double>(k);
-    const Vec2 o{5.0 * static_cast<double>(k % 10), 5.0 * static_cast<double>(k / 10) + 0.0037 * a};
-    const Vec2 t{std::cos(a), std::sin(a)};
-    const Vec2 n{-t.y, t.x};
+    const glm::dvec2 o{5.0 * static_cast<double>(k % 10), 5.0 * static_cast<double>(k / 10) + 0.0037 * a};
+    const glm::dvec2 t{std::cos(a), std::sin(a)};
+    const glm::dvec2 n{-t.y, t.x};
     if (i < kStripes && paint > 0.0) add_dashes(trial.world, o - 2.4 * t, o + 2.4 * t, kWidth, paint, gap);
     if (i < kStripes && paint == 0.0) trial.world.stripes.push_back(stripe(o - 2.4 * t, o + 2.4 * t, kWidth));
     const double side = chance.below(2) == 0 ? 1.0 : -1.0;
     const double tilt = side * chance.between(from_degrees, to_degrees) * kDegrees;
     const double d = chance.between(nearest, farthest);
-    const Vec2 p = o + chance.between(-1.0, 1.0) * t + (0.5 * kWidth + d) * n;
+    const glm::dvec2 p = o + chance.between(-1.0, 1.0) * t + (0.5 * kWidth + d) * n;
     add_edge_eye(trial.world, {p.x, p.y, 0.0, std::atan2(-n.y, -n.x) + tilt}, {{"perpendicular", {0}}});
     trial.truth.push_back(d / std::cos(tilt));
   }
@@ -256,7 +255,8 @@ Trial turn(double h, bool inside, double look) {
   constexpr double kWidth = 0.03;
   for (std::size_t i = 0; i < 800; ++i) {
     const std::size_t k = i % 16;
-    const Vec2 o{3.0 * static_cast<double>(k % 4) + 0.0037 * static_cast<double>(k), 3.0 * static_cast<double>(k / 4)};
+    const glm::dvec2 o{3.0 * static_cast<double>(k % 4) + 0.0037 * static_cast<double>(k),
+                       3.0 * static_cast<double>(k / 4)};
     if (i < 16) trial.world.stripes.push_back(arc(o, kRadius, 0.0, 2.0 * M_PI - 0.01, kWidth, 1e-5));
     const double d = chance.between(0.05, 0.4);
     const double at = chance.between(1.0, 5.0);
@@ -291,7 +291,7 @@ TEST(LaneEdgeRaster, AStageBitmapReadsAsTheRasterDoes) {
   constexpr double kPixel = 1.0 / 128.0;
   Trial trial = straight(kPixel, 10, 0.0, 30.0, 0.05, 0.4);
   trial.world.stripes.resize(1);
-  const Vec2 o = 0.5 * (trial.world.stripes[0].line[0] + trial.world.stripes[0].line[1]);
+  const glm::dvec2 o = 0.5 * (trial.world.stripes[0].line[0] + trial.world.stripes[0].line[1]);
   trial.world.movers.clear();
   Chance chance(3);
   std::vector<Pose> poses;

@@ -14,7 +14,6 @@ namespace sf::trial {
 namespace {
 
 using base::Pose;
-using base::Vec2;
 using sensors::EdgeReading;
 
 constexpr double kDegrees = M_PI / 180.0;
@@ -144,7 +143,7 @@ TEST(LaneEdge, ThePerpendicularIsTheRobotsAxisNearestToTheView) {
   for (const Case c : {Case{0, 0}, Case{44, 0}, Case{45, 90}, Case{46, 90}, Case{90, 90}, Case{135, 90}, Case{136, 180},
                        Case{180, 180}, Case{-135, -90}, Case{-90, -90}, Case{-45, -90}, Case{-44, 0}}) {
     const auto edge = sensors::lane_edge_of(edge_sensor({}, {0, 0, 0, c.yaw * kDegrees}), 0, 0);
-    const Vec2 in_robot = base::rotate(c.yaw * kDegrees, edge.perpendicular);
+    const glm::dvec2 in_robot = base::rotate(c.yaw * kDegrees, edge.perpendicular);
     EXPECT_NEAR(in_robot.x, std::cos(c.expected * kDegrees), 1e-12) << c.yaw;
     EXPECT_NEAR(in_robot.y, std::sin(c.expected * kDegrees), 1e-12) << c.yaw;
   }
@@ -223,20 +222,20 @@ struct Scene {
   std::vector<long double> truth;
 };
 
-Scene straight_scene(std::uint32_t sensors_wanted, double most_degrees, std::uint64_t seed, Vec2 offset = {}) {
+Scene straight_scene(std::uint32_t sensors_wanted, double most_degrees, std::uint64_t seed, glm::dvec2 offset = {}) {
   Scene scene;
   Chance chance(seed);
   constexpr std::uint32_t kStripes = 40;
   for (std::uint32_t i = 0; i < sensors_wanted; ++i) {
     const std::uint32_t k = i % kStripes;
     const double a = 0.31 * k;
-    const Vec2 o = offset + Vec2{7.0 * (k % 8), 7.0 * (k / 8.0)};
-    const Vec2 t{std::cos(a), std::sin(a)};
-    const Vec2 n{-t.y, t.x};
+    const glm::dvec2 o = offset + glm::dvec2{7.0 * (k % 8), 7.0 * (k / 8.0)};
+    const glm::dvec2 t{std::cos(a), std::sin(a)};
+    const glm::dvec2 n{-t.y, t.x};
     if (i < kStripes) scene.world.stripes.push_back(stripe(o - 3.0 * t, o + 3.0 * t, kWidth));
     const double tilt = chance.between(-most_degrees, most_degrees) * kDegrees;
     const double d = chance.between(0.02, std::fabs(tilt) > 60.0 * kDegrees ? 0.1 : 0.6);
-    const Vec2 p = o + chance.between(-0.5, 0.5) * t + (0.5 * kWidth + d) * n;
+    const glm::dvec2 p = o + chance.between(-0.5, 0.5) * t + (0.5 * kWidth + d) * n;
     const Pose X_WS{p.x, p.y, 0.0, std::atan2(-n.y, -n.x) + tilt};
     add_edge_eye(scene.world, X_WS, {{"perpendicular", {0}}});
     scene.truth.push_back(face_distance(scene.world.stripes[k], X_WS, 0.0));
@@ -280,7 +279,7 @@ TEST(LaneEdge, FarFromTheOrigin) {
   RecordProperty("worst_10000km_nm", std::to_string(far.worst * 1e9));
 }
 
-Vec2 mirrored(Vec2 p) { return {p.x, -p.y}; }
+glm::dvec2 mirrored(glm::dvec2 p) { return {p.x, -p.y}; }
 
 /// Turned, moved and mirrored, with a robot added that hides nothing: the same reading.
 TEST(LaneEdge, WhatMustNotMatter) {
@@ -297,9 +296,9 @@ TEST(LaneEdge, WhatMustNotMatter) {
   world::World mirror = world;
   const Pose X{31.0, -17.0, 0.0, 1.234};
   for (world::Stripe& s : moved.stripes)
-    for (Vec2& p : s.line) p = base::transform(X, p);
+    for (glm::dvec2& p : s.line) p = base::transform(X, p);
   for (world::Stripe& s : mirror.stripes)
-    for (Vec2& p : s.line) p = mirrored(p);
+    for (glm::dvec2& p : s.line) p = mirrored(p);
   for (std::size_t i = 0; i < world.movers.size(); ++i) {
     moved.movers[i].X_WM = base::compose(X, world.movers[i].X_WM);
     const Pose& p = world.movers[i].X_WM;

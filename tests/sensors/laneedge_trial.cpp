@@ -7,8 +7,6 @@
 
 namespace sf::trial {
 
-using base::Vec2;
-
 world::Sensor edge_sensor(const Settings& settings, const base::Pose& X_MS) {
   world::Sensor sensor;
   sensor.type = "laneedge";
@@ -32,16 +30,16 @@ std::uint32_t add_edge_eye(world::World& world, const base::Pose& X_WM, Settings
   return mover.id;
 }
 
-world::Stripe stripe(Vec2 from, Vec2 to, double width) { return {{from, to}, width}; }
+world::Stripe stripe(glm::dvec2 from, glm::dvec2 to, double width) { return {{from, to}, width}; }
 
-void add_dashes(world::World& world, Vec2 from, Vec2 to, double width, double paint, double gap) {
+void add_dashes(world::World& world, glm::dvec2 from, glm::dvec2 to, double width, double paint, double gap) {
   const double all = length(to - from);
-  const Vec2 along = (1.0 / all) * (to - from);
+  const glm::dvec2 along = (1.0 / all) * (to - from);
   for (double at = 0.0; at < all - 1e-6; at += paint + gap)
     world.stripes.push_back(stripe(from + at * along, from + std::min(at + paint, all) * along, width));
 }
 
-world::Stripe arc(Vec2 centre, double radius, double from, double to, double width, double sagitta) {
+world::Stripe arc(glm::dvec2 centre, double radius, double from, double to, double width, double sagitta) {
   const double step = std::sqrt(8.0 * sagitta / (radius + width));
   const int pieces = std::max(2, static_cast<int>(std::ceil(std::fabs(to - from) / step)));
   world::Stripe s;

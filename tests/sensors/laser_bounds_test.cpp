@@ -18,7 +18,6 @@
 namespace sf::trial {
 namespace {
 
-using base::Vec2;
 using Wide = long double;
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -32,7 +31,7 @@ constexpr std::uint32_t kRobots = 100;  // of 361 beams
 struct Scene {
   std::string name;
   world::World world;
-  Vec2 middle;
+  glm::dvec2 middle;
   double half = 1.0;  ///< [m] of the square that they are drawn from
 };
 
@@ -46,7 +45,7 @@ struct Seen {
 };
 
 /// Segments by their ends, relative to the sensor: what needs no division is not divided.
-Wide cast(std::span<const world::Segment> surfaces, Vec2 o, Wide direction, Wide range_max) {
+Wide cast(std::span<const world::Segment> surfaces, glm::dvec2 o, Wide direction, Wide range_max) {
   const Wide dx = std::cos(direction), dy = std::sin(direction);
   Wide best = range_max;
   for (const world::Segment& s : surfaces) {
@@ -109,7 +108,7 @@ Seen measure(Scene& scene, const std::string& mode) {
     std::vector<base::Pose> poses;
     std::vector<base::Report> reports;
     for (std::uint32_t m = 0; m < scene.world.movers.size(); ++m) {
-      const Vec2 p = scene.middle + chance.in_square(scene.half);
+      const glm::dvec2 p = scene.middle + chance.in_square(scene.half);
       poses.push_back({p.x, p.y, 0.0, chance.between(-M_PI, M_PI)});
       reports.push_back({m, 0, poses.back(), {}});
     }
@@ -123,7 +122,7 @@ Seen measure(Scene& scene, const std::string& mode) {
   return sum;
 }
 
-Scene with_robots(std::string name, world::World world, double half, double range, Vec2 middle = {}) {
+Scene with_robots(std::string name, world::World world, double half, double range, glm::dvec2 middle = {}) {
   for (std::uint32_t i = 0; i < kRobots; ++i)
     scenes::add_robot(world, {middle.x, middle.y, 0.0, 0.0}, scenes::laser(361, M_PI, range));
   world::finish(world);
@@ -131,7 +130,7 @@ Scene with_robots(std::string name, world::World world, double half, double rang
 }
 
 /// Without bodies: what is there is walls alone.
-Scene with_eyes(std::string name, world::World world, double half, double range, Vec2 middle = {}) {
+Scene with_eyes(std::string name, world::World world, double half, double range, glm::dvec2 middle = {}) {
   for (std::uint32_t i = 0; i < kRobots; ++i)
     add_eye(world, {middle.x, middle.y, 0.0, 0.0}, eye(361, 2.0 * M_PI, range));
   world::finish(world);
@@ -156,8 +155,8 @@ world::World slivers(double length, double half) {
   world::World world;
   Chance chance(5);
   for (int i = 0; i < 200; ++i) {
-    const Vec2 p = chance.in_square(half);
-    const Vec2 along = base::rotate(chance.between(-M_PI, M_PI), {length, 0.0});
+    const glm::dvec2 p = chance.in_square(half);
+    const glm::dvec2 along = base::rotate(chance.between(-M_PI, M_PI), {length, 0.0});
     scenes::add_outline(world, {p, p + along, p + 0.5 * along + 1e-3 * base::rotate(0.5 * M_PI, along)}, "sliver");
   }
   return world;
@@ -168,9 +167,9 @@ world::World forest(double half) {
   world::World world;
   Chance chance(6);
   for (int i = 0; i < 150; ++i) {
-    const Vec2 p = chance.in_square(half);
+    const glm::dvec2 p = chance.in_square(half);
     const double turn = chance.between(0.0, M_PI);
-    std::vector<Vec2> corners;
+    std::vector<glm::dvec2> corners;
     for (int k = 0; k < 4; ++k) corners.push_back(p + base::rotate(turn + 0.5 * M_PI * k, {0.005, 0.0}));
     scenes::add_outline(world, corners, "stem");
   }

@@ -15,7 +15,6 @@
 namespace sf::trial {
 
 using base::Pose;
-using base::Vec2;
 
 /// A box on a lattice of 1/64 m, turned in steps of 1/64 turn.
 struct Block {
@@ -69,17 +68,17 @@ constexpr double kFov = 1.5 * M_PI;
 /// To a lattice fine enough for any box, coarse enough that 1e6 m can be added without rounding.
 double snap(double x) { return std::round(x * 1048576.0) / 1048576.0; }
 
-using Map = Vec2 (*)(Vec2);
-Vec2 same(Vec2 p) { return p; }
+using Map = glm::dvec2 (*)(glm::dvec2);
+glm::dvec2 same(glm::dvec2 p) { return p; }
 /// Keeps the solid on the left: the order of corners is turned round.
-Vec2 mirrored(Vec2 p) { return {p.x, -p.y}; }
+glm::dvec2 mirrored(glm::dvec2 p) { return {p.x, -p.y}; }
 
 world::World build(const Blocks& blocks, Map map = same, bool reverse = false) {
   world::World world;
   for (const Block& b : blocks) {
-    std::vector<Vec2> corners;
-    for (const Vec2 sign : {Vec2{-1, -1}, Vec2{1, -1}, Vec2{1, 1}, Vec2{-1, 1}}) {
-      const Vec2 p = base::rotate(2.0 * M_PI * b.turn / 64, {sign.x * b.w / 128.0, sign.y * b.h / 128.0});
+    std::vector<glm::dvec2> corners;
+    for (const glm::dvec2& sign : {glm::dvec2{-1, -1}, glm::dvec2{1, -1}, glm::dvec2{1, 1}, glm::dvec2{-1, 1}}) {
+      const glm::dvec2 p = base::rotate(2.0 * M_PI * b.turn / 64, {sign.x * b.w / 128.0, sign.y * b.h / 128.0});
       corners.push_back(map({snap(b.x / 64.0 + p.x), snap(b.y / 64.0 + p.y)}));
     }
     if (reverse) std::reverse(corners.begin(), corners.end());
@@ -128,11 +127,11 @@ Stands some_stands() { return *rc::gen::nonEmpty<Stands>(); }
 RC_GTEST_PROP(LaserProperties, MovingTheWholeSceneChangesNoBit, (const Blocks& blocks)) {
   // Sums of lattice points are exact, so nothing may change at all.
   const Stands stands = some_stands();
-  static Vec2 by;
+  static glm::dvec2 by;
   by = {1.0 * *rc::gen::inRange(-1'000'000, 1'000'001), 1.0 * *rc::gen::inRange(-1'000'000, 1'000'001)};
   std::vector<Pose> there = poses_of(stands);
   for (Pose& pose : there) pose.x += by.x, pose.y += by.y;
-  RC_ASSERT(look(build(blocks), poses_of(stands)) == look(build(blocks, [](Vec2 p) { return p + by; }), there));
+  RC_ASSERT(look(build(blocks), poses_of(stands)) == look(build(blocks, [](glm::dvec2 p) { return p + by; }), there));
 }
 
 RC_GTEST_PROP(LaserProperties, TurningTheWholeSceneChangesNoRange, (const Blocks& blocks)) {
@@ -141,7 +140,7 @@ RC_GTEST_PROP(LaserProperties, TurningTheWholeSceneChangesNoRange, (const Blocks
   angle = 2.0 * M_PI * *rc::gen::inRange(1, 1000) / 1000;
   std::vector<Pose> there = poses_of(stands);
   for (Pose& pose : there) pose = base::compose({0, 0, 0, angle}, pose);
-  const Scans after = look(build(blocks, [](Vec2 p) { return base::rotate(angle, p); }), there);
+  const Scans after = look(build(blocks, [](glm::dvec2 p) { return base::rotate(angle, p); }), there);
   expect_alike(build(blocks), poses_of(stands), look(build(blocks), poses_of(stands)), after);
 }
 

@@ -108,7 +108,7 @@ TEST(LaserReference, WideApart) {
 
 TEST(LaserReference, FarFromTheOrigin) {
   world::World world = crowd(scenes::laser(), 8);
-  const base::Vec2 away{1e7, -1e5};
+  const glm::dvec2 away{1e7, -1e5};
   for (world::Segment& s : world.walls) s.a = s.a + away, s.b = s.b + away;
   for (world::Mover& m : world.movers) m.X_WM.x += away.x, m.X_WM.y += away.y;
   world::finish(world);

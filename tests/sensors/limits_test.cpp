@@ -11,9 +11,7 @@ namespace {
 
 const farm::FarmOptions kOnDevice{.scene = {.caster = raycast::Caster::vulkan}};
 
-using base::Vec2;
-
-void add_thin(std::vector<world::Segment>& out, Vec2 a, Vec2 b, std::uint32_t model) {
+void add_thin(std::vector<world::Segment>& out, glm::dvec2 a, glm::dvec2 b, std::uint32_t model) {
   world::Segment s;
   s.a = a;
   s.b = b;
@@ -83,7 +81,7 @@ TEST(Limits, MoreOfMoversInOneSectorThanTheBoundAreCastOnTheHost) {
   world::World world;
   add_eye(world, {}, eye(1, 0.0, 8.0));
   const std::uint32_t m = add_eye(world, {7.0, 0.0, 0.0, 0.0}, eye(1, 0.0, 8.0));
-  const auto at = [](int i) { return Vec2{0.0, 1e-4 * i - 0.625}; };
+  const auto at = [](int i) { return glm::dvec2{0.0, 1e-4 * i - 0.625}; };
   for (int i = 0; i < 12'500; ++i) add_thin(world.movers[m].body, at(i), at(i + 1), 0);
   world.movers[m].radius = 0.63;
   const Glance glance(world, kOnDevice);

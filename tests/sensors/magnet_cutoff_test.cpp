@@ -15,7 +15,6 @@
 namespace sf::trial {
 namespace {
 
-using base::Vec2;
 using scenes::magnet;
 using sensors::Place;
 
@@ -43,7 +42,7 @@ TEST(MagnetCutoff, SumsTheMagnetsThatAreNearEnough) {
   for (const double cutoff : {0.05, 0.5, 3.0, 30.0})
     for (const double offset : {0.0, 1e5}) {
       world::World world = scenes::sheet(3000, 20.0, 6, true);
-      for (world::Magnet& m : world.magnets) m.p = m.p + Vec2{offset, offset};
+      for (world::Magnet& m : world.magnets) m.p = m.p + glm::dvec2{offset, offset};
       world.magnet_cutoff = cutoff;
       std::vector<Place> places;
       for (int i = 0; i < 250; ++i)
@@ -84,8 +83,8 @@ Measured measure(world::World world, double half, double height, std::uint32_t c
   std::vector<Place> places;
   const double cutoff = world.magnet_cutoff;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Vec2 p = chance.in_square(half + 1.2 * cutoff);
-    const Vec2 m = world.magnets[chance.below(static_cast<std::uint32_t>(world.magnets.size()))].p;
+    const glm::dvec2 p = chance.in_square(half + 1.2 * cutoff);
+    const glm::dvec2 m = world.magnets[chance.below(static_cast<std::uint32_t>(world.magnets.size()))].p;
     const double a = chance.between(-M_PI, M_PI), r = cutoff * chance.between(0.999, 1.01);
     const bool at_rim = i % 2 == 0;
     places.push_back({at_rim ? m.x + r * std::cos(a) : p.x, at_rim ? m.y + r * std::sin(a) : p.y, height});

@@ -11,10 +11,9 @@
 namespace sf::trial {
 namespace {
 
-using base::Vec2;
-
 /// Every magnet within reach is in some span; spans are in order and do not overlap.
-void expect_found(std::span<const Vec2> magnets, const sensors::MagnetGrid& grid, Vec2 centre, double reach) {
+void expect_found(std::span<const glm::dvec2> magnets, const sensors::MagnetGrid& grid, glm::dvec2 centre,
+                  double reach) {
   std::vector<sensors::MagnetSpan> spans(grid.most_spans(reach));
   spans.resize(grid.find(centre, reach, spans));
   std::vector<bool> found(magnets.size(), false);
@@ -26,7 +25,7 @@ void expect_found(std::span<const Vec2> magnets, const sensors::MagnetGrid& grid
     for (std::uint32_t i = span.first; i < span.end; ++i) found[grid.order()[i]] = true;
   }
   for (std::size_t i = 0; i < magnets.size(); ++i) {
-    if (base::length(magnets[i] - centre) <= reach) {
+    if (glm::length(magnets[i] - centre) <= reach) {
       EXPECT_TRUE(found[i]) << "magnet " << i;
     }
   }
@@ -37,14 +36,14 @@ TEST(MagnetGrid, FindsAllThatAreNear) {
   for (int round = 0; round < 60; ++round) {
     const double offset = round % 3 == 0 ? 1e5 : 0.0;
     const double cutoff = std::pow(10.0, chance.between(-3, 2));
-    std::vector<Vec2> magnets;
+    std::vector<glm::dvec2> magnets;
     const auto count = chance.below(300);
     for (std::uint32_t i = 0; i < count; ++i)
-      magnets.push_back(Vec2{offset, offset} + chance.in_square(round % 2 == 0 ? 10.0 : 0.01));
+      magnets.push_back(glm::dvec2{offset, offset} + chance.in_square(round % 2 == 0 ? 10.0 : 0.01));
     sensors::MagnetGrid grid;
     grid.build(magnets, cutoff, 1 << (round % 12));
     for (int i = 0; i < 30; ++i) {
-      const Vec2 centre = Vec2{offset, offset} + chance.in_square(12.0);
+      const glm::dvec2 centre = glm::dvec2{offset, offset} + chance.in_square(12.0);
       expect_found(magnets, grid, centre, cutoff);
       if (count > 0) expect_found(magnets, grid, magnets[chance.below(count)], cutoff);
     }
@@ -54,18 +53,18 @@ TEST(MagnetGrid, FindsAllThatAreNear) {
 /// A magnet exactly at the reach, in each direction; cells' edges fall on places too.
 TEST(MagnetGrid, FindsMagnetsAtTheRim) {
   for (const double offset : {0.0, 1e5}) {
-    std::vector<Vec2> magnets;
+    std::vector<glm::dvec2> magnets;
     for (int i = -8; i <= 8; ++i)
       for (int j = -8; j <= 8; ++j) magnets.push_back({offset + 0.25 * i, offset + 0.25 * j});
     sensors::MagnetGrid grid;
     grid.build(magnets, 1.0, 1 << 20);
-    for (const Vec2 centre : magnets) expect_found(magnets, grid, centre, 1.0);
+    for (const glm::dvec2& centre : magnets) expect_found(magnets, grid, centre, 1.0);
   }
 }
 
 TEST(MagnetGrid, LeavesMostOthersOut) {
   const world::World world = scenes::sheet(40'000, 200.0, 3);
-  std::vector<Vec2> magnets;
+  std::vector<glm::dvec2> magnets;
   for (const world::Magnet& m : world.magnets) magnets.push_back(m.p);
   sensors::MagnetGrid grid;
   grid.build(magnets, 10.0, 1 << 20);

@@ -12,7 +12,7 @@
 
 namespace sf::scenes {
 
-inline world::Magnet magnet(base::Vec2 p, double z = 0.0, double moment = 1.0, double radius = 0.0125) {
+inline world::Magnet magnet(glm::dvec2 p, double z = 0.0, double moment = 1.0, double radius = 0.0125) {
   return {p, z, moment, radius, 0};
 }
 
@@ -28,7 +28,7 @@ inline world::World sheet(std::uint32_t count, double side, std::uint64_t seed, 
   world::World world;
   trial::Chance chance(seed);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const base::Vec2 p = chance.in_square(0.5 * side);
+    const glm::dvec2 p = chance.in_square(0.5 * side);
     const bool down = both_ways && chance.below(2) == 1;
     world.magnets.push_back(magnet(p, chance.between(-0.02, 0.02), down ? -1.0 : 1.0));
   }

@@ -74,7 +74,7 @@ Errors errors(const world::World& world, std::span<const Place> places) {
 std::vector<Place> places_over(const world::World& world, std::uint32_t count, double half, double height) {
   Chance chance(11);
   std::vector<Place> places;
-  const base::Vec2 middle = world.magnets[0].p;
+  const glm::dvec2 middle = world.magnets[0].p;
   for (std::uint32_t i = 0; i < count; ++i) {
     const world::Magnet& m = world.magnets[chance.below(static_cast<std::uint32_t>(world.magnets.size()))];
     const bool above = i % 4 == 0;
@@ -113,7 +113,7 @@ TEST(MagnetSum, TwoHundredThousandMagnetsAreRightAnywhere) {
   for (const double offset : {0.0, 1e5})
     for (const double height : {0.1, 1.0}) {
       world::World world = scenes::sheet(kMany, 400.0, 7);
-      for (world::Magnet& m : world.magnets) m.p = m.p + base::Vec2{offset, -offset};
+      for (world::Magnet& m : world.magnets) m.p = m.p + glm::dvec2{offset, -offset};
       const auto places = places_over(world, kPlaces, 100.0, height);
       const auto sums = sensors::survey(world, device(), places);
       const auto truths = direct_sums(world, places);
@@ -237,9 +237,9 @@ TEST(MagnetSum, TurnsAndMirrorsWithTheWorld) {
     world::World turned = world, mirrored_world = world;
     for (world::Magnet& m : turned.magnets) m.p = base::transform(X, m.p);
     for (world::Magnet& m : mirrored_world.magnets) m.p.x = -m.p.x;
-    const base::Vec2 q = base::transform(X, {p.x, p.y});
+    const glm::dvec2 q = base::transform(X, {p.x, p.y});
     const FieldSum b = field(world, p), t = field(turned, {q.x, q.y, p.z}), s = field(mirrored_world, {-p.x, p.y, p.z});
-    const base::Vec2 expected = base::rotate(X.yaw, {b.x, b.y});
+    const glm::dvec2 expected = base::rotate(X.yaw, {b.x, b.y});
     const double some = 1e-10 * b.magnitudes;
     EXPECT_NEAR(t.x, expected.x, some);
     EXPECT_NEAR(t.y, expected.y, some);

@@ -15,7 +15,6 @@ namespace sf::trial {
 namespace {
 
 using base::Pose;
-using base::Vec2;
 using scenes::Element;
 using scenes::element;
 using scenes::magnet;
@@ -72,7 +71,7 @@ TEST(Magnetometer, VectorsAreInTheElementsOwnFrame) {
     const Pose X_WE = base::compose(X_WM, base::compose(sensor.X_MS, X_SE));
     // The origin of a sensor's frame is at half its model's height.
     const scenes::Exact truth = scenes::exact(world, {X_WE.x, X_WE.y, X_WE.z + 0.03});
-    const Vec2 flat = base::rotate(-X_WE.yaw, {static_cast<double>(truth.x), static_cast<double>(truth.y)});
+    const glm::dvec2 flat = base::rotate(-X_WE.yaw, {static_cast<double>(truth.x), static_cast<double>(truth.y)});
     const Element e = element(run.readings[0], 0);
     EXPECT_NEAR(e.x, flat.x, 1e-7 * e.field);
     EXPECT_NEAR(e.y, flat.y, 1e-7 * e.field);

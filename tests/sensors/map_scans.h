@@ -67,7 +67,7 @@ class PlainMaps {
   std::vector<sensors::MapPlan> plans_;
   std::vector<maps::Grid> grids_;
   std::vector<maps::OddsGrid> odds_;
-  std::vector<std::vector<base::Vec2>> beams_;
+  std::vector<std::vector<glm::dvec2>> beams_;
 };
 
 }  // namespace sf::trial

@@ -143,7 +143,7 @@ TEST(Movers, ADenseCrowd) {
     world::World world = scenes::boxes(8, 7.0, 6);
     Chance chance(7);
     for (int i = 0; i < 90; ++i) {
-      const base::Vec2 p = chance.in_square(3.3);
+      const glm::dvec2 p = chance.in_square(3.3);
       world::Laser laser = scenes::laser(91, i % 3 ? 2.0 * M_PI : 2.0, i % 2 ? 8.0 : 0.75);
       scenes::add_robot(world, {p.x, p.y, 0.0, chance.between(-4.0, 4.0)}, laser);
     }
@@ -180,7 +180,7 @@ TEST(Movers, LongThinMovers) {
   world::World world;
   Chance chance(11);
   for (int i = 0; i < 10; ++i) {
-    const base::Vec2 p = chance.in_square(3.0);
+    const glm::dvec2 p = chance.in_square(3.0);
     const std::uint32_t m = add_eye(world, {p.x, p.y, 0.0, chance.between(-4.0, 4.0)}, eye(181, 2.0 * M_PI, 8.0));
     world::Mover& mover = world.movers[m];
     mover.radius = 1.5;
@@ -190,7 +190,7 @@ TEST(Movers, LongThinMovers) {
     s.z_max = 1.0;
     s.solid_left = false;
     s.model = mover.model;
-    mover.radius = base::length(s.b);
+    mover.radius = glm::length(s.b);
     mover.body = {s};
   }
   expect_exact("long thin movers", sweep(world));

@@ -17,7 +17,7 @@ gpu::Device& device() {
 }
 
 sensors::MapPlan plan(double fov, std::uint32_t samples, double range_max, double cell = 0.03,
-                      base::Vec2 corner = {0.0, 0.0}) {
+                      glm::dvec2 corner = {0.0, 0.0}) {
   sensors::MapPlan p;
   p.grid = {corner.x, corner.y, cell, 30, 30};
   p.fov = fov;

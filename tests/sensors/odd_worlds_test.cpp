@@ -9,9 +9,7 @@
 namespace sf::trial {
 namespace {
 
-using base::Vec2;
-
-void add_wall(world::World& world, Vec2 a, Vec2 b) {
+void add_wall(world::World& world, glm::dvec2 a, glm::dvec2 b) {
   scenes::add_outline(world, {a, b}, "wall" + std::to_string(world.models.size()));
   world.walls.pop_back();
   world.walls.back().solid_left = false;
@@ -22,7 +20,7 @@ void look_at_everything(world::World& world, double half, double range, std::uin
   Chance chance(seed);
   const std::vector<world::Segment> walls = world.walls;
   for (int i = 0; i < 12; ++i) {
-    const Vec2 p = chance.in_square(half);
+    const glm::dvec2 p = chance.in_square(half);
     add_eye(world, {p.x, p.y, 0.0, chance.between(-4.0, 4.0)}, eye(90, 2.0 * M_PI, range));
     for (const world::Segment& s : walls) {
       aim(world, p, s.a, eye(5, 1e-9, range));
@@ -56,7 +54,7 @@ TEST(OddWorlds, OneSegment) {
 TEST(OddWorlds, JunctionsAndCrossings) {
   for (const double yaw : {0.0, 0.4}) {
     world::World world;
-    const auto wall = [&](Vec2 a, Vec2 b) { add_wall(world, base::rotate(yaw, a), base::rotate(yaw, b)); };
+    const auto wall = [&](glm::dvec2 a, glm::dvec2 b) { add_wall(world, base::rotate(yaw, a), base::rotate(yaw, b)); };
     wall({-2, 0}, {2, 0});
     wall({0.7, 0}, {0.7, 1.5});
     wall({-1, -1}, {-0.5, 1.1});
@@ -98,7 +96,7 @@ TEST(OddWorlds, TinyAndHugeSegments) {
     Chance chance(6);
     for (const double size : {1e-9, 1e-7, 1e-6, 1e-5, 1e-3, 1.0})
       for (int i = 0; i < 5; ++i) {
-        const Vec2 p = chance.in_square(0.5 * range);
+        const glm::dvec2 p = chance.in_square(0.5 * range);
         add_wall(world, p, p + size * chance.in_square(1.0));
       }
     add_wall(world, {-1e5, 0.31 * range}, {1e5, 0.33 * range});
@@ -112,12 +110,12 @@ TEST(OddWorlds, TinyAndHugeSegments) {
 /// A curve of a thousand chords, each shorter than a millimetre: neighbours leave at less than 15 degrees.
 TEST(OddWorlds, ARoundPillarOfManyChords) {
   world::World world;
-  std::vector<Vec2> corners;
+  std::vector<glm::dvec2> corners;
   for (int i = 0; i < 1000; ++i) corners.push_back(base::rotate(i * 2.0 * M_PI / 1000, {0.1, 0.0}));
   scenes::add_outline(world, corners, "pillar");
   Chance chance(8);
   for (int i = 0; i < 60; ++i) {
-    const Vec2 p = chance.in_square(1.0);
+    const glm::dvec2 p = chance.in_square(1.0);
     aim(world, p, corners[chance.below(1000)], eye(9, 1e-3, 8.0));
     aim(world, p, {}, eye(61, 0.5, 8.0));
   }

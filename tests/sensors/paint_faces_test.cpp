@@ -12,7 +12,6 @@
 namespace sf::trial {
 namespace {
 
-using base::Vec2;
 using sensors::Face;
 
 std::vector<Face> faces_of(const world::Stripe& s) {
@@ -24,7 +23,7 @@ std::vector<Face> faces_of(const world::Stripe& s) {
 /// [m^2] signed area of closed outlines, counter-clockwise positive.
 double area(const std::vector<Face>& faces) {
   double twice = 0.0;
-  for (const Face& f : faces) twice += cross(f.a, f.b);
+  for (const Face& f : faces) twice += base::cross(f.a, f.b);
   return 0.5 * twice;
 }
 
@@ -36,10 +35,10 @@ void expect_closed(const std::vector<Face>& faces) {
   }
 }
 
-double distance_to_line(const std::vector<Vec2>& line, Vec2 p) {
+double distance_to_line(const std::vector<glm::dvec2>& line, glm::dvec2 p) {
   double least = 1e300;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    const Vec2 e = line[i + 1] - line[i];
+    const glm::dvec2 e = line[i + 1] - line[i];
     const double u = std::clamp(dot(e, p - line[i]) / dot(e, e), 0.0, 1.0);
     least = std::min(least, length(p - (line[i] + u * e)));
   }
@@ -65,10 +64,10 @@ TEST(PaintFaces, BendsAreMitred) {
     world::Stripe s;
     s.width = chance.between(0.02, 0.3);
     double heading = chance.between(-M_PI, M_PI);
-    Vec2 at = chance.in_square(10.0);
+    glm::dvec2 at = chance.in_square(10.0);
     for (int i = 0; i < 6; ++i) {
       s.line.push_back(at);
-      at = at + chance.between(1.0, 2.0) * Vec2{std::cos(heading), std::sin(heading)};
+      at = at + chance.between(1.0, 2.0) * glm::dvec2{std::cos(heading), std::sin(heading)};
       heading += chance.between(-1.5, 1.5);
     }
     const auto faces = faces_of(s);
@@ -82,9 +81,10 @@ TEST(PaintFaces, BendsAreMitred) {
       // Between the mitres of its two ends, half a width off a straight piece: at its middle third for certain.
       bool parallel = false;
       for (std::size_t i = 0; i + 1 < s.line.size(); ++i) {
-        const Vec2 e = s.line[i + 1] - s.line[i];
-        parallel = parallel || (std::fabs(cross(e, f.b - f.a)) < 1e-9 &&
-                                std::fabs(std::fabs(cross(e, f.a - s.line[i])) / length(e) - 0.5 * s.width) < 1e-9);
+        const glm::dvec2 e = s.line[i + 1] - s.line[i];
+        parallel =
+            parallel || (std::fabs(base::cross(e, f.b - f.a)) < 1e-9 &&
+                         std::fabs(std::fabs(base::cross(e, f.a - s.line[i])) / length(e) - 0.5 * s.width) < 1e-9);
       }
       EXPECT_TRUE(parallel);
     }
@@ -97,10 +97,10 @@ TEST(PaintFaces, PaintLiesOnTheLeft) {
     const world::Stripe s =
         arc({0, 0}, chance.between(0.5, 3.0), chance.between(-3, 0), chance.between(0.5, 3), 0.1, 1e-4);
     for (const Face& f : faces_of(s)) {
-      const Vec2 middle = 0.5 * (f.a + f.b);
-      const Vec2 e = (1.0 / length(f.b - f.a)) * (f.b - f.a);
-      const Vec2 inside = middle + 1e-4 * Vec2{-e.y, e.x};
-      const Vec2 outside = middle - 1e-4 * Vec2{-e.y, e.x};
+      const glm::dvec2 middle = 0.5 * (f.a + f.b);
+      const glm::dvec2 e = (1.0 / length(f.b - f.a)) * (f.b - f.a);
+      const glm::dvec2 inside = middle + 1e-4 * glm::dvec2{-e.y, e.x};
+      const glm::dvec2 outside = middle - 1e-4 * glm::dvec2{-e.y, e.x};
       const double reach = 0.05;
       EXPECT_LT(distance_to_line(s.line, inside), f.is_end ? 0.06 : reach);
       EXPECT_GT(distance_to_line(s.line, outside), f.is_end ? 0.0 : reach);
@@ -128,9 +128,9 @@ TEST(PaintFaces, StripesOnStripesAreOne) {
   world::Stripe turned = s;
   std::reverse(turned.line.begin(), turned.line.end());
   world::Stripe nearly = s;
-  for (Vec2& p : nearly.line) p.x += 5e-5;
+  for (glm::dvec2& p : nearly.line) p.x += 5e-5;
   world::Stripe beside = s;
-  for (Vec2& p : beside.line) p.x += 0.2;
+  for (glm::dvec2& p : beside.line) p.x += 0.2;
   world::Stripe wider = s;
   wider.width = 0.15;
   EXPECT_EQ(sensors::distinct_stripes(std::vector{s, turned, nearly, s}).size(), 1u);

@@ -12,21 +12,20 @@
 namespace sf::trial {
 namespace {
 
-using base::Vec2;
 using sensors::PaintRaster;
 
 /// Whether `p` is within half the width of a piece, between its ends: exact for straight stripes. `doubt`: within 1e-9
 /// m of the outline.
-bool in_straight(const world::Stripe& s, Vec2 p, bool& doubt) {
-  const Vec2 e = s.line[1] - s.line[0];
+bool in_straight(const world::Stripe& s, glm::dvec2 p, bool& doubt) {
+  const glm::dvec2 e = s.line[1] - s.line[0];
   const double size = length(e);
   const double along = dot(e, p - s.line[0]) / size;
-  const double beside = std::fabs(cross(e, p - s.line[0])) / size - 0.5 * s.width;
+  const double beside = std::fabs(base::cross(e, p - s.line[0])) / size - 0.5 * s.width;
   doubt = doubt || std::fabs(beside) < 1e-9 || std::fabs(along) < 1e-9 || std::fabs(along - size) < 1e-9;
   return along >= 0.0 && along <= size && beside <= 0.0;
 }
 
-Vec2 centre_of(const PaintRaster& raster, std::int64_t x, std::int64_t y) {
+glm::dvec2 centre_of(const PaintRaster& raster, std::int64_t x, std::int64_t y) {
   return {(static_cast<double>(raster.first_column() + x) + 0.5) * raster.cell(),
           (static_cast<double>(raster.first_row() + y) + 0.5) * raster.cell()};
 }
@@ -117,7 +116,7 @@ TEST(PaintRaster, FarFromTheOrigin) {
   constexpr double kCell = 1.0 / 128.0;
   const world::Stripe s = arc({0.3, 0.2}, 1.0, 0.1, 2.0, 0.1, 1e-5);
   world::Stripe far = s;
-  for (Vec2& p : far.line) p = p + Vec2{1e7, -1e7};
+  for (glm::dvec2& p : far.line) p = p + glm::dvec2{1e7, -1e7};
   const PaintRaster near_raster({s}, kCell, 0.2, "");
   const PaintRaster far_raster({far}, kCell, 0.2, "");
   ASSERT_EQ(near_raster.columns(), far_raster.columns());

@@ -7,8 +7,6 @@
 
 namespace sf::scenes {
 
-using base::Vec2;
-
 namespace {
 
 struct Cells {
@@ -38,7 +36,7 @@ Cells grow(std::uint32_t n, std::uint64_t seed) {
   return cells;
 }
 
-void add_segment(world::World& world, Vec2 a, Vec2 b) {
+void add_segment(world::World& world, glm::dvec2 a, glm::dvec2 b) {
   world::Segment s;
   s.a = a;
   s.b = b;
@@ -51,8 +49,8 @@ void add_runs(world::World& world, const Cells& cells, double cell, bool transpo
   const auto solid = [&](std::int64_t x, std::int64_t y) { return transposed ? cells.at(y, x) : cells.at(x, y); };
   const double half = 0.5 * cells.n * cell;
   const auto point = [&](std::int64_t x, std::int64_t y) {
-    const Vec2 p{static_cast<double>(x) * cell - half, static_cast<double>(y) * cell - half};
-    return transposed ? Vec2{p.y, p.x} : p;
+    const glm::dvec2 p{static_cast<double>(x) * cell - half, static_cast<double>(y) * cell - half};
+    return transposed ? glm::dvec2{p.y, p.x} : p;
   };
   for (std::int64_t y = 0; y <= cells.n; ++y)
     for (std::int64_t x = 0; x < cells.n;) {
@@ -84,7 +82,7 @@ world::World cave(std::uint32_t n, double size, std::uint64_t seed) {
   return world;
 }
 
-void add_outline(world::World& world, const std::vector<Vec2>& corners, const std::string& name) {
+void add_outline(world::World& world, const std::vector<glm::dvec2>& corners, const std::string& name) {
   world.models.push_back({name, "model"});
   for (std::size_t i = 0; i < corners.size(); ++i) {
     add_segment(world, corners[i], corners[(i + 1) % corners.size()]);
@@ -92,10 +90,10 @@ void add_outline(world::World& world, const std::vector<Vec2>& corners, const st
   }
 }
 
-void add_room(world::World& world, Vec2 centre, double size) {
+void add_room(world::World& world, glm::dvec2 centre, double size) {
   const double h = 0.5 * size;
   const double g = h + 0.1;
-  const auto at = [centre](double x, double y) { return centre + Vec2{x, y}; };
+  const auto at = [centre](double x, double y) { return centre + glm::dvec2{x, y}; };
   add_outline(world, {at(-g, -g), at(g, -g), at(g, g), at(-g, g)}, "border");
   add_outline(world, {at(-h, -h), at(-h, h), at(h, h), at(h, -h)}, "border");
 }
@@ -109,8 +107,9 @@ world::World boxes(std::uint32_t count, double size, std::uint64_t seed) {
     const auto q = base::random_uniform({seed, base::Stream::place, i, 3, 0}, 0);
     const base::Pose pose{(p[0] - 0.5) * 0.9 * size, (p[1] - 0.5) * 0.9 * size, 0.0, 2.0 * M_PI * q[0]};
     const double a = 0.2 + 0.6 * q[1];
-    std::vector<Vec2> corners;
-    for (const Vec2 corner : {Vec2{-a, -0.3}, Vec2{a, -0.3}, Vec2{a, 0.3}, Vec2{-a, 0.3}})
+    std::vector<glm::dvec2> corners;
+    for (const glm::dvec2& corner :
+         {glm::dvec2{-a, -0.3}, glm::dvec2{a, -0.3}, glm::dvec2{a, 0.3}, glm::dvec2{-a, 0.3}})
       corners.push_back(transform(pose, corner));
     add_outline(world, corners, "box" + std::to_string(i));
   }
@@ -154,18 +153,18 @@ std::uint32_t add_robot(world::World& world, const base::Pose& pose, const world
 
 namespace {
 
-bool is_free(const world::World& world, Vec2 p, double radius, double apart) {
+bool is_free(const world::World& world, glm::dvec2 p, double radius, double apart) {
   int winding = 0;
   for (const world::Segment& s : world.walls) {
-    const Vec2 e = s.b - s.a;
+    const glm::dvec2 e = s.b - s.a;
     const double u = std::clamp(dot(p - s.a, e) / dot(e, e), 0.0, 1.0);
     if (length(p - (s.a + u * e)) < radius) return false;
-    if (s.a.y <= p.y && s.b.y > p.y && cross(e, p - s.a) > 0.0) ++winding;
-    if (s.a.y > p.y && s.b.y <= p.y && cross(e, p - s.a) < 0.0) --winding;
+    if (s.a.y <= p.y && s.b.y > p.y && base::cross(e, p - s.a) > 0.0) ++winding;
+    if (s.a.y > p.y && s.b.y <= p.y && base::cross(e, p - s.a) < 0.0) --winding;
   }
   if (winding != 0) return false;
   return std::none_of(world.movers.begin(), world.movers.end(), [&](const world::Mover& m) {
-    return length(p - Vec2{m.X_WM.x, m.X_WM.y}) < apart;
+    return length(p - glm::dvec2{m.X_WM.x, m.X_WM.y}) < apart;
   });
 }
 

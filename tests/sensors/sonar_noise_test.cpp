@@ -192,7 +192,7 @@ world::World busy_world(int robots) {
   world::World world = scenes::boxes(40, 16.0, 3);
   Chance chance(9);
   for (int m = 0; m < robots; ++m) {
-    const base::Vec2 p = chance.in_square(7.0);
+    const glm::dvec2 p = chance.in_square(7.0);
     const double incidence = m % 2 == 0 ? 0.6 : M_PI / 2;
     const std::uint32_t mover = add_ranger(world, {p.x, p.y, 0.0, chance.between(-9, 9)},
                                            cones("sonar", ring(16, 0.2),

@@ -154,7 +154,7 @@ ConeTally check(const world::World& world, const std::string& name) {
 world::World fleet(world::World world, std::uint64_t seed, double incidence = 0.0) {
   Chance chance(seed);
   for (int m = 0; m < 24; ++m) {
-    const base::Vec2 p = chance.in_square(7.0);
+    const glm::dvec2 p = chance.in_square(7.0);
     std::vector<Pose> poses;
     for (int i = 0; i < 1 + m % 16; ++i)
       poses.push_back({chance.between(-0.3, 0.3), chance.between(-0.3, 0.3), 0.01 * (i % 3), chance.between(-9, 9)});
@@ -220,7 +220,7 @@ TEST(Sonar, RobotsTurnTheirSmoothSides) {
     add_ranger(world, {}, sonar({Pose{}}, {cone_setting("incidence", {0.05}), cone_setting("rays", {1.0})}));
     const std::uint32_t other = add_eye(world, {2.0, 0.0, 0.0, yaw}, {});
     world.movers[other].lasers.clear();
-    const base::Vec2 corners[] = {{-0.3, -0.3}, {0.3, -0.3}, {0.3, 0.3}, {-0.3, 0.3}};
+    const glm::dvec2 corners[] = {{-0.3, -0.3}, {0.3, -0.3}, {0.3, 0.3}, {-0.3, 0.3}};
     for (int i = 0; i < 4; ++i) {
       world::Segment side;
       side.a = corners[i];

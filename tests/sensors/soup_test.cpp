@@ -9,8 +9,6 @@
 namespace sf::trial {
 namespace {
 
-using base::Vec2;
-
 #if defined(__SANITIZE_ADDRESS__)
 constexpr int kBowls = 4;  ///< the oracle is slow with ASan
 #else
@@ -20,48 +18,49 @@ constexpr double kBowl = 6.0;    ///< [m] half the side of the room round each s
 constexpr double kRange = 18.0;  ///< [m] more than its diagonal
 constexpr double kApart = 64.0;  ///< [m] so that no soup sees another
 
-std::vector<Vec2> star(Chance& chance) {
+std::vector<glm::dvec2> star(Chance& chance) {
   const std::uint32_t corners = 3 + chance.below(7);
-  std::vector<Vec2> outline;
+  std::vector<glm::dvec2> outline;
   for (std::uint32_t i = 0; i < corners; ++i)
     outline.push_back(base::rotate(2.0 * M_PI * i / corners, {chance.between(0.05, 1.5), 0.0}));
   return outline;
 }
 
 /// Rounds to a coarse lattice, where things meet exactly.
-Vec2 snap(Vec2 p) { return {std::round(4.0 * p.x) / 4.0, std::round(4.0 * p.y) / 4.0}; }
+glm::dvec2 snap(glm::dvec2 p) { return {std::round(4.0 * p.x) / 4.0, std::round(4.0 * p.y) / 4.0}; }
 
-std::vector<Vec2> ingredient(const std::vector<std::vector<Vec2>>& soup, Chance& chance) {
+std::vector<glm::dvec2> ingredient(const std::vector<std::vector<glm::dvec2>>& soup, Chance& chance) {
   const std::uint32_t what = soup.empty() ? 0 : chance.below(6);
-  std::vector<Vec2> outline = star(chance);
-  const Vec2 at = chance.in_square(kBowl - 2.0);
+  std::vector<glm::dvec2> outline = star(chance);
+  const glm::dvec2 at = chance.in_square(kBowl - 2.0);
   if (what == 1) {  // a box on the lattice
-    const Vec2 p = snap(at);
+    const glm::dvec2 p = snap(at);
     const double w = 0.25 * (1 + chance.below(6));
     const double h = 0.25 * (1 + chance.below(6));
-    return {p, p + Vec2{w, 0}, p + Vec2{w, h}, p + Vec2{0, h}};
+    return {p, p + glm::dvec2{w, 0}, p + glm::dvec2{w, h}, p + glm::dvec2{0, h}};
   }
-  const std::vector<Vec2>& other = soup.empty() ? outline : soup[chance.below(static_cast<std::uint32_t>(soup.size()))];
+  const std::vector<glm::dvec2>& other =
+      soup.empty() ? outline : soup[chance.below(static_cast<std::uint32_t>(soup.size()))];
   if (what == 2) return other;                                         // the same again
   if (what == 3) return {other[0], other[0] + chance.in_square(1.0)};  // a thin wall from a corner
   const std::uint32_t corner = chance.below(static_cast<std::uint32_t>(outline.size()));
-  const Vec2 target = what == 4 ? other[chance.below(static_cast<std::uint32_t>(other.size()))] : at;
-  const Vec2 shift = target - outline[corner];
-  for (Vec2& p : outline) p = p + shift;
+  const glm::dvec2 target = what == 4 ? other[chance.below(static_cast<std::uint32_t>(other.size()))] : at;
+  const glm::dvec2 shift = target - outline[corner];
+  for (glm::dvec2& p : outline) p = p + shift;
   outline[corner] = target;  // to the bit, where they share a vertex
   return outline;
 }
 
 /// One soup in its room around `centre`, and eyes in it: at random and aimed at vertices.
-void cook(world::World& world, Vec2 centre, std::uint64_t seed) {
+void cook(world::World& world, glm::dvec2 centre, std::uint64_t seed) {
   Chance chance(seed);
-  std::vector<std::vector<Vec2>> soup;
+  std::vector<std::vector<glm::dvec2>> soup;
   const std::uint32_t count = 4 + chance.below(20);
   while (soup.size() < count) soup.push_back(ingredient(soup, chance));
-  std::vector<Vec2> corners;
-  for (const std::vector<Vec2>& outline : soup) {
-    std::vector<Vec2> moved;
-    for (const Vec2 p : outline) moved.push_back(centre + p);
+  std::vector<glm::dvec2> corners;
+  for (const std::vector<glm::dvec2>& outline : soup) {
+    std::vector<glm::dvec2> moved;
+    for (const glm::dvec2& p : outline) moved.push_back(centre + p);
     const std::size_t first = world.walls.size();
     scenes::add_outline(world, moved, "soup" + std::to_string(world.models.size()));
     if (moved.size() == 2) world.walls.pop_back();
@@ -70,21 +69,21 @@ void cook(world::World& world, Vec2 centre, std::uint64_t seed) {
   }
   scenes::add_room(world, centre, 2.0 * kBowl);
   for (int i = 0; i < 20; ++i) {
-    const Vec2 p = centre + chance.in_square(0.99 * kBowl);
+    const glm::dvec2 p = centre + chance.in_square(0.99 * kBowl);
     add_eye(world, {p.x, p.y, 0.0, chance.between(-M_PI, M_PI)}, eye(91, 2.0 * M_PI, kRange));
     for (int k = 0; k < 8; ++k) {
-      const Vec2 corner = corners[chance.below(static_cast<std::uint32_t>(corners.size()))];
-      const Vec2 from = k < 6 ? p : snap(p);
+      const glm::dvec2 corner = corners[chance.below(static_cast<std::uint32_t>(corners.size()))];
+      const glm::dvec2 from = k < 6 ? p : snap(p);
       if (from.x != corner.x || from.y != corner.y)
         aim(world, from, corner, eye(k % 2 ? 1 : 5, k % 2 ? 0.0 : 1e-8, kRange));
     }
   }
 }
 
-void taste(std::uint64_t seed, Vec2 far) {
+void taste(std::uint64_t seed, glm::dvec2 far) {
   world::World world;
   for (int i = 0; i < kBowls; ++i)
-    cook(world, far + Vec2{kApart * (i % 5), kApart * (i / 5)}, seed + static_cast<std::uint64_t>(i));
+    cook(world, far + glm::dvec2{kApart * (i % 5), kApart * (i / 5)}, seed + static_cast<std::uint64_t>(i));
   const Tally tally = sweep(world);
   expect_exact("soups " + std::to_string(seed), tally);
   EXPECT_EQ(tally.met, tally.beams) << "something slipped out of a closed room";

@@ -11,8 +11,6 @@
 namespace sf::trial {
 namespace {
 
-using base::Vec2;
-
 constexpr double kFar = 8.0;
 
 world::World unit_box() {
@@ -87,10 +85,10 @@ TEST(Touch, EverywhereOnTheWallsOfBoxesAndACave) {
     Chance chance(3);
     for (int i = 0; i < 150; ++i) {
       const world::Segment s = world.walls[chance.below(static_cast<std::uint32_t>(world.walls.size()))];
-      const Vec2 e = s.b - s.a;
+      const glm::dvec2 e = s.b - s.a;
       const double along = i % 4 == 0 ? 0.0 : i % 4 == 1 ? 0.5 : chance.between(0.0, 1.0);
       constexpr double kAside[] = {0.0, 0.5e-9, -0.5e-9, 3e-9, -3e-9, 1e-6, -1e-6};
-      const Vec2 p = s.a + along * e + (kAside[i % 7] / length(e)) * Vec2{e.y, -e.x};
+      const glm::dvec2 p = s.a + along * e + (kAside[i % 7] / length(e)) * glm::dvec2{e.y, -e.x};
       add_eye(world, {p.x, p.y, 0.0, chance.between(-M_PI, M_PI)}, eye(37, 2.0 * M_PI, kFar));
     }
     expect_exact(bitmap ? "on the walls of a cave" : "on the walls of boxes", sweep(world));
@@ -102,7 +100,7 @@ TEST(Touch, InsideOverlappingSolids) {
   world::World world = scenes::boxes(120, 10.0, 9);
   Chance chance(5);
   for (int i = 0; i < 150; ++i) {
-    const Vec2 p = chance.in_square(4.5);
+    const glm::dvec2 p = chance.in_square(4.5);
     add_eye(world, {p.x, p.y, 0.0, chance.between(-M_PI, M_PI)}, eye(61, 2.0 * M_PI, kFar));
   }
   expect_exact("inside overlapping solids", sweep(world));

@@ -36,7 +36,7 @@ TEST(Canvas, StartsAsBackground) {
 
 TEST(Canvas, PolygonFillsWholePixels) {  // whole pixels: no grey anywhere
   Canvas canvas(8, 8, kWhite);
-  const Vec2 box[] = {{2, 3}, {5, 3}, {5, 7}, {2, 7}};
+  const glm::dvec2 box[] = {{2, 3}, {5, 3}, {5, 7}, {2, 7}};
   canvas.polygon(box, kBlack);
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x)
@@ -45,7 +45,7 @@ TEST(Canvas, PolygonFillsWholePixels) {  // whole pixels: no grey anywhere
 
 TEST(Canvas, PolygonCoversItsArea) {  // any slope: coverage sums to the area, here of a triangle of 20 x 11 / 2
   Canvas canvas(32, 32, kWhite);
-  const Vec2 triangle[] = {{3.3, 4.2}, {23.3, 4.2}, {9.1, 15.2}};
+  const glm::dvec2 triangle[] = {{3.3, 4.2}, {23.3, 4.2}, {9.1, 15.2}};
   canvas.polygon(triangle, kBlack);
   EXPECT_NEAR(area_of(canvas), 110.0, 0.3);
 }
@@ -53,8 +53,8 @@ TEST(Canvas, PolygonCoversItsArea) {  // any slope: coverage sums to the area, h
 TEST(Canvas, PolygonDirectionDoesNotMatter) {
   Canvas one(16, 16, kWhite);
   Canvas other(16, 16, kWhite);
-  const Vec2 there[] = {{2, 2}, {13, 4}, {7, 12}};
-  const Vec2 back[] = {{7, 12}, {13, 4}, {2, 2}};
+  const glm::dvec2 there[] = {{2, 2}, {13, 4}, {7, 12}};
+  const glm::dvec2 back[] = {{7, 12}, {13, 4}, {2, 2}};
   one.polygon(there, kBlack);
   other.polygon(back, kBlack);
   for (int y = 0; y < 16; ++y)
@@ -65,7 +65,7 @@ TEST(Canvas, OverlapOfOneShapeIsPaintedOnce) {  // the middle of two overlapping
   Canvas canvas(12, 12, kWhite);
   std::vector<Line> edges;
   for (const double d : {0.0, 3.0}) {
-    const Vec2 p[] = {{1 + d, 1 + d}, {7 + d, 1 + d}, {7 + d, 7 + d}, {1 + d, 7 + d}};
+    const glm::dvec2 p[] = {{1 + d, 1 + d}, {7 + d, 1 + d}, {7 + d, 7 + d}, {1 + d, 7 + d}};
     for (int i = 0; i < 4; ++i) edges.push_back({p[i], p[(i + 1) % 4]});
   }
   canvas.area(edges, 0x80000000u);
@@ -76,8 +76,8 @@ TEST(Canvas, OverlapOfOneShapeIsPaintedOnce) {  // the middle of two overlapping
 
 TEST(Canvas, HoleStaysEmpty) {  // an outline the other way round takes away
   Canvas canvas(12, 12, kWhite);
-  const Vec2 outer[] = {{1, 1}, {11, 1}, {11, 11}, {1, 11}};
-  const Vec2 inner[] = {{4, 4}, {4, 8}, {8, 8}, {8, 4}};
+  const glm::dvec2 outer[] = {{1, 1}, {11, 1}, {11, 11}, {1, 11}};
+  const glm::dvec2 inner[] = {{4, 4}, {4, 8}, {8, 8}, {8, 4}};
   std::vector<Line> edges;
   for (int i = 0; i < 4; ++i) edges.push_back({outer[i], outer[(i + 1) % 4]});
   for (int i = 0; i < 4; ++i) edges.push_back({inner[i], inner[(i + 1) % 4]});
@@ -88,16 +88,16 @@ TEST(Canvas, HoleStaysEmpty) {  // an outline the other way round takes away
 
 TEST(Canvas, AreaMayReachFarOutside) {  // clipped on all sides: everything inside is covered
   Canvas canvas(10, 6, kWhite);
-  const Vec2 huge[] = {{-1e7, -1e7}, {1e7, -1e7}, {1e7, 1e7}, {-1e7, 1e7}};
+  const glm::dvec2 huge[] = {{-1e7, -1e7}, {1e7, -1e7}, {1e7, 1e7}, {-1e7, 1e7}};
   canvas.polygon(huge, kBlack);
   EXPECT_NEAR(area_of(canvas), 60.0, 1e-9);
 }
 
 TEST(Canvas, AreaAcrossOneSideIsCut) {  // each side in turn: half of the square remains
-  for (const Vec2 shift : {Vec2{-5, 0}, Vec2{5, 0}, Vec2{0, -5}, Vec2{0, 5}}) {
+  for (const glm::dvec2& shift : {glm::dvec2{-5, 0}, glm::dvec2{5, 0}, glm::dvec2{0, -5}, glm::dvec2{0, 5}}) {
     Canvas canvas(10, 10, kWhite);
-    std::vector<Vec2> box{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
-    for (Vec2& p : box) p = p + shift;
+    std::vector<glm::dvec2> box{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+    for (glm::dvec2& p : box) p = p + shift;
     canvas.polygon(box, kBlack);
     EXPECT_NEAR(area_of(canvas), 50.0, 1e-9) << shift.x << ", " << shift.y;
   }
@@ -116,7 +116,7 @@ TEST(Canvas, JointsOfAPolylineAreNotDarker) {
   Canvas one(40, 10, kWhite);
   Canvas many(40, 10, kWhite);
   one.line({5, 5}, {35, 5}, 2.0, 0x80000000u);
-  std::vector<Vec2> points;
+  std::vector<glm::dvec2> points;
   for (int i = 0; i <= 300; ++i) points.push_back({5.0 + i / 10.0, 5.0});
   many.polyline(points, 2.0, 0x80000000u);
   for (int y = 0; y < 10; ++y)
@@ -125,7 +125,7 @@ TEST(Canvas, JointsOfAPolylineAreNotDarker) {
 
 TEST(Canvas, OnePointIsADot) {
   Canvas canvas(9, 9, kWhite);
-  const Vec2 point{4.5, 4.5};
+  const glm::dvec2 point{4.5, 4.5};
   canvas.polyline({&point, 1}, 3.0, kBlack);
   EXPECT_EQ(canvas.pixel(4, 4), kBlack);
   EXPECT_EQ(canvas.pixel(0, 4), kWhite);
@@ -134,7 +134,7 @@ TEST(Canvas, OnePointIsADot) {
 TEST(Canvas, ClipKeepsTheRest) {
   Canvas canvas(10, 10, kWhite);
   canvas.clip({2, 3, 6, 7});
-  const Vec2 all[] = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+  const glm::dvec2 all[] = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
   canvas.polygon(all, kBlack);
   canvas.line({0, 0}, {10, 10}, 3.0, kBlack);
   TextStyle style;
@@ -176,7 +176,7 @@ TEST(Canvas, DiscHasItsArea) {
 
 TEST(Canvas, OpacityMixes) {
   Canvas canvas(3, 3, kWhite);
-  const Vec2 all[] = {{0, 0}, {3, 0}, {3, 3}, {0, 3}};
+  const glm::dvec2 all[] = {{0, 0}, {3, 0}, {3, 3}, {0, 3}};
   canvas.polygon(all, 0x80FF0000u);
   EXPECT_NEAR(static_cast<double>(canvas.pixel(1, 1) & 0xFFu), 127.0, 1.0);
   EXPECT_EQ(canvas.pixel(1, 1) >> 16 & 0xFFu, 255u);
@@ -209,7 +209,7 @@ TEST(Canvas, ImageStartsWithItsTopRow) {
 TEST(Canvas, TextLiesInItsBox) {
   TextStyle style;
   style.color = kBlack;
-  const Vec2 size = text_size("Robot 7", style);
+  const glm::dvec2 size = text_size("Robot 7", style);
   ASSERT_GT(size.x, 40.0);
   ASSERT_GT(size.y, 12.0);
   Canvas canvas(200, 60, kWhite);
@@ -217,7 +217,7 @@ TEST(Canvas, TextLiesInItsBox) {
   EXPECT_GT(area_of(canvas), 60.0);
   canvas.clip(
       {20, static_cast<int>(30 - size.y / 2) - 1, 21 + static_cast<int>(size.x), static_cast<int>(31 + size.y / 2)});
-  const Vec2 all[] = {{0, 0}, {200, 0}, {200, 60}, {0, 60}};
+  const glm::dvec2 all[] = {{0, 0}, {200, 0}, {200, 60}, {0, 60}};
   canvas.polygon(all, kWhite);
   EXPECT_EQ(darkness(canvas), 0) << "text outside of the box that text_size told";
 }
@@ -229,7 +229,7 @@ TEST(Canvas, TextAnchors) {  // the same text ends, is centred, or starts at the
     style.across = anchor;
     canvas.text({100, 20}, "IMI", style);
     canvas.clip({from, 0, to, 40});
-    const Vec2 all[] = {{0, 0}, {200, 0}, {200, 40}, {0, 40}};
+    const glm::dvec2 all[] = {{0, 0}, {200, 0}, {200, 40}, {0, 40}};
     EXPECT_GT(darkness(canvas), 0);
     canvas.polygon(all, kWhite);
     EXPECT_EQ(darkness(canvas), 0);
@@ -238,9 +238,9 @@ TEST(Canvas, TextAnchors) {  // the same text ends, is centred, or starts at the
 
 TEST(Canvas, TextUpwardsIsTall) {
   TextStyle style;
-  const Vec2 flat = text_size("metres", style);
+  const glm::dvec2 flat = text_size("metres", style);
   style.upwards = true;
-  const Vec2 tall = text_size("metres", style);
+  const glm::dvec2 tall = text_size("metres", style);
   EXPECT_GT(tall.y, tall.x);
   EXPECT_NEAR(tall.y, flat.x, 4.0);
 }

@@ -29,8 +29,8 @@ FieldSamples slope(const FieldView& view) {
   FieldSamples samples{100, 50, {}, {}};
   for (int i = 0; i < 5000; ++i) samples.map.push_back(2e-4 * (i % 100) / 99.0);
   for (int i = 0; i <= 100; ++i) {
-    const Vec2 p = view.line.a + 0.01 * i * (view.line.b - view.line.a);
-    samples.profile.push_back({0.01 * i * base::length(view.line.b - view.line.a), p, {0.0, 0.0, 2e-6 * i, 3e-6 * i}});
+    const glm::dvec2 p = view.line.a + 0.01 * i * (view.line.b - view.line.a);
+    samples.profile.push_back({0.01 * i * glm::length(view.line.b - view.line.a), p, {0.0, 0.0, 2e-6 * i, 3e-6 * i}});
   }
   return samples;
 }
@@ -83,7 +83,7 @@ TEST(FieldFigure, OddWorldsHaveAView) {
     const FieldView view = field_view(world, {.height = height});
     EXPECT_LT(view.extent.x_min, 10.1);
     EXPECT_GT(view.extent.x_max, 10.0);
-    EXPECT_GT(base::length(view.line.b - view.line.a), 0.0);
+    EXPECT_GT(glm::length(view.line.b - view.line.a), 0.0);
     draw_field(world, view, slope(view), file("odd.png"));
     EXPECT_GT(colours_of_the_map(view, file("odd.png")), 50u) << height << ": from nothing to all";
   }
@@ -137,7 +137,7 @@ TEST(FieldFigure, SixMagnetsAreNearlyContinuous) {
   EXPECT_NEAR(most / 1e-4, 1.96, 0.01);
   EXPECT_GT(least, 0.995 * most) << "between the two in the middle";
   EXPECT_NEAR(*std::max_element(samples.map.begin(), samples.map.end()), most, 1e-6 * most + 1e-8);
-  EXPECT_NEAR(samples.profile.back().along, base::length(view.line.b - view.line.a), 1e-12);
+  EXPECT_NEAR(samples.profile.back().along, glm::length(view.line.b - view.line.a), 1e-12);
 }
 
 }  // namespace

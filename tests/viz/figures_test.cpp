@@ -239,7 +239,7 @@ TEST(WorldFigure, FarFromTheOriginIsTheSamePlot) {  // 100 km away: the labels d
   world::World near = room();
   near.movers.push_back(scenes::make_robot(near, 1, {2.0, 2.2, 0, 0}, 0xFF2E7D32u, 3.0));
   world::World far = near;
-  for (world::Segment& s : far.walls) s.a = s.a + Vec2{100000, 100000}, s.b = s.b + Vec2{100000, 100000};
+  for (world::Segment& s : far.walls) s.a = s.a + glm::dvec2{100000, 100000}, s.b = s.b + glm::dvec2{100000, 100000};
   far.movers[0].X_WM.x += 100000, far.movers[0].X_WM.y += 100000;
   far.extent = {99999.5, 99999.5, 100006.5, 100004.5};
   draw_world(near, file("near.png"));

@@ -14,7 +14,6 @@ namespace sf::viz {
 namespace {
 
 using base::Pose;
-using base::Vec2;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -166,10 +165,10 @@ TEST(Occupancy, WhatMovesLeavesNoMark) {
 }
 
 /// The length that a segment from `a` to `b` has within [x, x + 1] x [y, y + 1], or less than 0 when it misses.
-double length_within(Vec2 a, Vec2 b, double x, double y) {
+double length_within(glm::dvec2 a, glm::dvec2 b, double x, double y) {
   double t0 = 0.0;
   double t1 = 1.0;
-  const Vec2 d = b - a;
+  const glm::dvec2 d = b - a;
   const double from[] = {x - a.x, y - a.y};
   const double along[] = {d.x, d.y};
   for (int axis = 0; axis < 2; ++axis) {
@@ -202,10 +201,10 @@ TEST(Occupancy, AgreesWithLookingAtEveryCell) {
         bool hit = false;
         double longest = -1.0;
         for (std::size_t n = 0; n < ranges.size(); ++n) {
-          const Vec2 from{(X_WS.x + 1) / cell, (X_WS.y + 1) / cell};
+          const glm::dvec2 from{(X_WS.x + 1) / cell, (X_WS.y + 1) / cell};
           const bool met = ranges[n] < range_max;
           const double bearing = X_WS.yaw - 1.0 + 0.08 * static_cast<double>(n);
-          const Vec2 to = from + base::rotate(bearing, {ranges[n] / cell + (met ? kBehind : 0.0), 0.0});
+          const glm::dvec2 to = from + base::rotate(bearing, {ranges[n] / cell + (met ? kBehind : 0.0), 0.0});
           const double inside = length_within(from, to, i, j);
           longest = std::max(longest, inside);
           hit = hit || (met && std::floor(to.x) == i && std::floor(to.y) == j);

@@ -105,7 +105,7 @@ TEST(RoadView, EverythingIsWhereItShouldBe) {
   const RoadView view{canvas, {0, 0, 1000, 300}, {-2.05, -12.05}, 10.0};
   draw_network(view, small());
   const auto at = [&](double x, double y) {
-    const Vec2 p = view.pixel({x, y});
+    const glm::dvec2 p = view.pixel({x, y});
     return canvas.pixel(static_cast<int>(p.x), static_cast<int>(p.y));
   };
   EXPECT_EQ(at(10, 0.8), kAsphalt);
@@ -131,7 +131,7 @@ TEST(RoadView, ArrowsPointInDrivingDirection) {
   const auto white = [&](double x, double y_low, double y_high) {
     int n = 0;
     for (double y = y_low; y < y_high; y += 0.1) {
-      const Vec2 p = view.pixel({x, y});
+      const glm::dvec2 p = view.pixel({x, y});
       n += canvas.pixel(static_cast<int>(p.x), static_cast<int>(p.y)) == 0xFFFFFFFFu;
     }
     return n;
@@ -164,7 +164,7 @@ TEST(RoadFigure, OnePointIsEnough) {
       network.checkpoints.clear();
   network.segments[0].lanes = 1;
   network.lanes[0].points.resize(1);
-  network.lanes[0].centre = world::smooth_curve(std::vector<Vec2>{{0, 0}}, {});
+  network.lanes[0].centre = world::smooth_curve(std::vector<glm::dvec2>{{0, 0}}, {});
   network.lanes[0].left_edge.clear(), network.lanes[0].right_edge.clear();
   network.extent = {0, 0, 0, 0};
   draw_roads(network, file("point.png"));
@@ -185,7 +185,7 @@ TEST(RoadFigure, UnwritablePathIsNamed) {
 TEST(Labels, KeepOffEachOther) {
   Canvas canvas(400, 200, 0xFFFFFFFFu);
   Labels labels({0, 0, 400, 200});
-  const Vec2 mark[] = {{200, 100}};
+  const glm::dvec2 mark[] = {{200, 100}};
   int placed = 0;
   for (int i = 0; i < 100; ++i) placed += labels.place(canvas, mark, "label", small_text(), {4.0, 60.0, 100.0, 1.0});
   EXPECT_GT(placed, 3);
@@ -195,11 +195,11 @@ TEST(Labels, KeepOffEachOther) {
 TEST(Labels, PreferBareGround) {
   Canvas canvas(400, 200, 0xFFFFFFFFu);
   Labels labels({0, 0, 400, 200});
-  const Vec2 road[] = {{200, 0}, {200, 200}};
+  const glm::dvec2 road[] = {{200, 0}, {200, 200}};
   labels.avoid(road, 60.0);
   EXPECT_FALSE(labels.is_bare({{190, 90}, {210, 110}}));
   EXPECT_TRUE(labels.is_bare({{250, 90}, {270, 110}}));
-  const Vec2 mark[] = {{200, 100}};
+  const glm::dvec2 mark[] = {{200, 100}};
   ASSERT_TRUE(labels.place(canvas, mark, "x", small_text(), {4.0, 90.0, 100.0, 1.0}));
   for (int x = 172; x < 228; ++x)
     for (int y = 0; y < 200; ++y) ASSERT_EQ(canvas.pixel(x, y), 0xFFFFFFFFu) << x << " " << y;
@@ -208,7 +208,7 @@ TEST(Labels, PreferBareGround) {
 TEST(Labels, StayInside) {
   Canvas canvas(60, 20, 0xFFFFFFFFu);
   Labels labels({0, 0, 60, 20});
-  const Vec2 mark[] = {{30, 10}};
+  const glm::dvec2 mark[] = {{30, 10}};
   EXPECT_FALSE(labels.place(canvas, mark, "much too long to stand in here", small_text()));
 }
 

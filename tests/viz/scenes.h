@@ -17,12 +17,11 @@
 namespace sf::scenes {
 
 using base::Pose;
-using base::Vec2;
 
 /// Four walls of a rectangle, solid inside (or outside: the walls of a room).
 inline void add_box(world::World& world, double x0, double y0, double x1, double y1, std::uint32_t model,
                     bool room = false) {
-  std::vector<Vec2> p{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+  std::vector<glm::dvec2> p{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
   if (room) std::reverse(p.begin(), p.end());
   for (std::size_t i = 0; i < 4; ++i) world.walls.push_back({p[i], p[(i + 1) % 4], 0.0, 1.0, model, true, true, true});
 }
@@ -57,7 +56,7 @@ inline world::Mover make_robot(world::World& world, std::uint32_t id, const Pose
   return mover;
 }
 
-inline bool inside_block(const world::World& world, Vec2 p, double clearance) {
+inline bool inside_block(const world::World& world, glm::dvec2 p, double clearance) {
   for (std::size_t i = 4; i + 3 < world.walls.size(); i += 4) {
     const world::Segment& low = world.walls[i];
     const world::Segment& high = world.walls[i + 2];
@@ -90,7 +89,7 @@ inline world::World make_world(double width, double height, int blocks, std::uin
   add_box(world, -0.5, -0.5, width + 0.5, height + 0.5, plan);
   world.extent = {-0.5, -0.5, width + 0.5, height + 0.5};
   for (std::uint32_t k = 0; k < robots; ++k) {
-    Vec2 p{};
+    glm::dvec2 p{};
     std::size_t skip_outer = world.walls.size() - 4;
     do p = {unit(draw) * width, unit(draw) * height};
     while ([&] {
@@ -123,7 +122,7 @@ inline std::vector<viz::Track> wander(const world::World& world, int poses, doub
       turn = 0.95 * turn + 0.02 * normal(draw);
       Pose next = pose;
       next.yaw += turn;
-      const Vec2 step = base::rotate(next.yaw, {0.1 * speed, 0.0});
+      const glm::dvec2 step = base::rotate(next.yaw, {0.1 * speed, 0.0});
       next.x += step.x, next.y += step.y;
       const bool blocked = inside_block(inner, {next.x, next.y}, 0.165);
       track.contacts.push_back(blocked ? 1 : 0);
@@ -138,11 +137,11 @@ inline std::vector<viz::Track> wander(const world::World& world, int poses, doub
 }
 
 /// The range along `bearing` to the first wall, at most range_max. [m]
-inline double cast(const world::World& world, Vec2 p, double bearing, double range_max) {
-  const Vec2 d = base::rotate(bearing, {1.0, 0.0});
+inline double cast(const world::World& world, glm::dvec2 p, double bearing, double range_max) {
+  const glm::dvec2 d = base::rotate(bearing, {1.0, 0.0});
   double best = range_max;
   for (const world::Segment& s : world.walls) {
-    const Vec2 e = s.b - s.a;
+    const glm::dvec2 e = s.b - s.a;
     const double across = base::cross(d, e);
     if (across == 0.0) continue;
     const double t = base::cross(s.a - p, e) / across;

@@ -26,7 +26,7 @@ scenes::Picture drawn(const std::vector<TradeoffPoint>& points) {
 }
 
 /// Middle of all pixels of one colour.
-base::Vec2 middle_of(const scenes::Picture& p, std::uint32_t color) {
+glm::dvec2 middle_of(const scenes::Picture& p, std::uint32_t color) {
   double x = 0.0, y = 0.0, count = 0.0;
   for (int column = 0; column < p.width; ++column)
     for (int row = 0; row < p.height; ++row)
@@ -36,7 +36,7 @@ base::Vec2 middle_of(const scenes::Picture& p, std::uint32_t color) {
 
 TEST(TradeoffFigure, FasterIsHigherAndWorseIsFartherRight) {
   const scenes::Picture p = drawn({point("slow", 1e6, 1e-6, false), point("fast", 3e6, 1e-3, true)});
-  const base::Vec2 slow = middle_of(p, kBeaten), fast = middle_of(p, kFront);
+  const glm::dvec2 slow = middle_of(p, kBeaten), fast = middle_of(p, kFront);
   EXPECT_GT(fast.x, slow.x + 200.0) << "three decades";
   EXPECT_LT(fast.y, slow.y - 150.0) << "three times as fast";
 }
@@ -58,7 +58,7 @@ TEST(TradeoffFigure, ABoundHasAMarkOfItsOwn) {
   TradeoffPoint skip = point("skip", 2e6, 0.1, true);
   skip.covered = {0.25, 1e-9, 1e-8};
   const scenes::Picture p = drawn({skip});
-  const base::Vec2 bound = middle_of(p, kCovered), errors = middle_of(p, kFront);
+  const glm::dvec2 bound = middle_of(p, kCovered), errors = middle_of(p, kFront);
   EXPECT_LT(bound.x, errors.x - 400.0) << "seven decades";
   EXPECT_NEAR(bound.y, errors.y, 3.0) << "of the same mode";
   EXPECT_EQ(drawn({point("skip", 2e6, 0.1, true)}).count(kCovered), 0);

@@ -44,7 +44,7 @@ TEST(Path, PaintLiesOutsideTheLane) {
 
 TEST(Path, ArcsAreWithinAMicrometre) {
   const World world = read_world(kThesis);
-  const Vec2 centre{3.72, 2.93};
+  const glm::dvec2 centre{3.72, 2.93};
   for (const std::size_t side : {2u, 3u}) {
     const double radius = 0.93 + (side == 2 ? -1.0 : 1.0) * 0.31;
     const auto& line = world.stripes[side].line;
@@ -78,7 +78,7 @@ TEST(Path, MagnetsKeepTheirSpacingAlongTheMiddle) {
     if (s < 2.72) {
       EXPECT_NEAR(m.p.x, 1.0 + s, 1e-12);
     } else if (s < 2.72 + 0.93 * M_PI / 2) {
-      EXPECT_NEAR(length(m.p - Vec2{3.72, 2.93}), 0.93, 1e-12);
+      EXPECT_NEAR(length(m.p - glm::dvec2{3.72, 2.93}), 0.93, 1e-12);
     } else {
       EXPECT_NEAR(m.p.x, 4.65, 1e-12);
     }

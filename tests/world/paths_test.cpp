@@ -33,8 +33,8 @@ TEST(Along, GoesOneMetreAMetre) {
   for (double s = -0.5; s < length_of(path) + 0.5; s += 0.01) {
     const Pose a = along(path, s), b = along(path, s + step);
     EXPECT_NEAR(std::hypot(b.x - a.x, b.y - a.y), step, 1e-11) << s;
-    const Vec2 ahead = base::rotate(a.yaw, {1.0, 0.0});
-    EXPECT_NEAR(dot(ahead, Vec2{b.x - a.x, b.y - a.y}), step, 1e-11) << "x is along it";
+    const glm::dvec2 ahead = base::rotate(a.yaw, {1.0, 0.0});
+    EXPECT_NEAR(dot(ahead, glm::dvec2{b.x - a.x, b.y - a.y}), step, 1e-11) << "x is along it";
   }
 }
 
@@ -71,7 +71,7 @@ TEST(Nearest, NoPointOfThePathIsNearer) {
   const double length = length_of(path);
   for (std::uint32_t k = 0; k < 300; ++k) {
     const auto u = base::random_uniform({.seed = 4, .stream = base::Stream::place, .a = k}, 0);
-    const Vec2 p{8.0 * u[0] - 1.0, 8.0 * u[1]};
+    const glm::dvec2 p{8.0 * u[0] - 1.0, 8.0 * u[1]};
     double least = HUGE_VAL;
     for (double s = 0.0; s <= length; s += 0.002) {
       const Pose X = along(path, s);

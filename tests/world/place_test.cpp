@@ -12,13 +12,13 @@
 namespace sf::world {
 namespace {
 
-double nearest_wall(const World& world, Vec2 p) {
+double nearest_wall(const World& world, glm::dvec2 p) {
   double nearest = HUGE_VAL;
   for (const Segment& wall : world.walls) nearest = std::min(nearest, distance(p, wall.a, wall.b));
   return nearest;
 }
 
-Vec2 at(const Mover& mover) { return {mover.X_WM.x, mover.X_WM.y}; }
+glm::dvec2 at(const Mover& mover) { return {mover.X_WM.x, mover.X_WM.y}; }
 
 // Two rooms of 6 m x 6 m without a door between them; the robot is in the left one.
 World two_rooms() {
@@ -48,7 +48,7 @@ TEST(CloneRobots, all_could_have_come_from_where_the_first_stood) {
   World world = two_rooms();
   clone_robots(world, 60, 1);
   for (const Mover& mover : world.movers) {
-    const Vec2 p = at(mover);
+    const glm::dvec2 p = at(mover);
     EXPECT_TRUE(p.x > 0 && p.x < 6 && p.y > 0 && p.y < 6) << "outside, or behind the wall: " << p.x << ", " << p.y;
     EXPECT_FALSE(std::abs(p.x - 3) < 1 && std::abs(p.y - 3) < 1) << "in the block";
   }
@@ -167,7 +167,7 @@ TEST(CloneRobots, from_within_a_solid_they_go_inside_though_there_is_more_outsid
   scenes::add_create(world, {2, 2, 0, 0});
   clone_robots(world, 20, 1);
   for (const Mover& mover : world.movers) {
-    const Vec2 p = at(mover);
+    const glm::dvec2 p = at(mover);
     EXPECT_TRUE(p.x > 0 && p.x < 4 && p.y > 0 && p.y < 4) << p.x << ", " << p.y;
   }
 }

@@ -61,7 +61,7 @@ void expect_sound(const RoadNetwork& network) {
     ASSERT_GT(lane.width, 0.0);
     ASSERT_FALSE(lane.points.empty());
     ASSERT_EQ(lane.centre.points.size(), lane.centre.s.size());
-    for (const Vec2 p : lane.centre.points) ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
+    for (const glm::dvec2& p : lane.centre.points) ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
   }
   for (const RoadExit& exit : network.exits) ASSERT_TRUE(std::isfinite(exit.length));
   for (const auto& [id, ref] : network.index) successors(network, ref);

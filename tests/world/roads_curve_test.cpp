@@ -13,7 +13,7 @@
 namespace sf::world {
 namespace {
 
-using Points = std::vector<Vec2>;
+using Points = std::vector<glm::dvec2>;
 
 constexpr Sampling kFine{1e-3, 1.8, 1u << 20};
 
@@ -30,17 +30,17 @@ Points wild(std::uint32_t k) {
   return p;
 }
 
-double distance(Vec2 p, const Points& line) {
+double distance(glm::dvec2 p, const Points& line) {
   double best = INFINITY;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    const Vec2 d = line[i + 1] - line[i];
+    const glm::dvec2 d = line[i + 1] - line[i];
     const double t = std::clamp(dot(p - line[i], d) / dot(d, d), 0.0, 1.0);
     best = std::min(best, length(p - (line[i] + t * d)));
   }
   return best;
 }
 
-double angle(Vec2 a, Vec2 b) { return std::atan2(cross(a, b), dot(a, b)); }
+double angle(glm::dvec2 a, glm::dvec2 b) { return std::atan2(base::cross(a, b), dot(a, b)); }
 
 TEST(Curve, PassesThroughEveryWayPointExactly) {
   for (std::uint32_t k = 0; k < 300; ++k) {
@@ -72,13 +72,13 @@ TEST(Curve, NeverRunsBackwardsAlongAChordNorFarAside) {
     for (std::size_t i = 0; i + 1 < p.size(); ++i) {
       const double d = length(p[i + 1] - p[i]);
       if (d == 0.0) continue;
-      const Vec2 along = (1.0 / d) * (p[i + 1] - p[i]);
+      const glm::dvec2 along = (1.0 / d) * (p[i + 1] - p[i]);
       double last = -1e-9;
       for (std::size_t j = curve.knots[i]; j <= curve.knots[i + 1]; ++j) {
         const double x = dot(curve.points[j] - p[i], along);
         EXPECT_GE(x, last - 1e-9);
         EXPECT_LE(x, d + 1e-9);
-        EXPECT_LE(std::abs(cross(along, curve.points[j] - p[i])), 0.5 * d + 1e-9);
+        EXPECT_LE(std::abs(base::cross(along, curve.points[j] - p[i])), 0.5 * d + 1e-9);
         last = x;
       }
     }
@@ -109,7 +109,7 @@ TEST(Curve, PolylineIsWithinTolerance) {
 
 TEST(Curve, StraightsStayStraight) {
   const Curve line = smooth_curve(Points{{0, 0}, {5, 0}, {6, 0}, {20, 0}}, kFine);
-  for (const Vec2 p : line.points) EXPECT_EQ(p.y, 0.0);
+  for (const glm::dvec2& p : line.points) EXPECT_EQ(p.y, 0.0);
   EXPECT_EQ(line.points.size(), 4u);
   EXPECT_DOUBLE_EQ(line.s.back(), 20.0);
 }
@@ -119,7 +119,7 @@ TEST(Curve, ACornerBendsItsOwnSpansOnly) {
   const Curve curve = smooth_curve(Points{{0, 0}, {5, 0}, {10, 0}, {10, 5}, {10, 10}}, kFine);
   for (std::size_t j = 0; j <= curve.knots[1]; ++j) EXPECT_EQ(curve.points[j].y, 0.0);
   for (std::size_t j = curve.knots[3]; j < curve.points.size(); ++j) EXPECT_EQ(curve.points[j].x, 10.0);
-  const Vec2 corner = curve.tangents[curve.knots[2]];
+  const glm::dvec2 corner = curve.tangents[curve.knots[2]];
   EXPECT_NEAR(std::atan2(corner.y, corner.x), M_PI / 4, 1e-12);
 }
 
@@ -130,7 +130,7 @@ TEST(Curve, ShortChordsHoldLongOnes) {
                    Points{{-0.7, 0.7}, {0, 0}, {100, 0}, {100.7, 0.7}, {101.4, 1.4}}})
     for (int way = 0; way < 2; ++way, std::reverse(p.begin(), p.end())) {
       double worst = 0.0;
-      for (const Vec2 at : smooth_curve(p, kFine).points)
+      for (const glm::dvec2& at : smooth_curve(p, kFine).points)
         if (at.x > 0.0 && at.x < 100.0) worst = std::max(worst, std::abs(at.y));
       EXPECT_LT(worst, 0.25 * 0.7 * 1.1716);
     }
@@ -142,7 +142,7 @@ TEST(Curve, CirclesOfCircles) {
   Points p;
   for (int i = 0; i <= 12; ++i) p.push_back(base::rotate(i * M_PI / 6, {radius, 0.0}));
   double worst = 0.0;
-  for (const Vec2 at : smooth_curve(p, {1e-9, 0.0, 1u << 20}).points)
+  for (const glm::dvec2& at : smooth_curve(p, {1e-9, 0.0, 1u << 20}).points)
     worst = std::max(worst, std::abs(length(at) - radius) / radius);
   EXPECT_LT(worst, 1e-6);
 }
@@ -150,13 +150,14 @@ TEST(Curve, CirclesOfCircles) {
 // Straight, quarter circle, straight, given by few points: the thesis' test path. A lane is found within millimetres.
 TEST(Curve, StraightAndBend) {
   Points p{{0, 0}, {2.72, 0}};
-  for (int i = 1; i <= 6; ++i) p.push_back(Vec2{2.72, 0.93} + base::rotate(-M_PI / 2 + i * M_PI / 12, {0.93, 0.0}));
+  for (int i = 1; i <= 6; ++i)
+    p.push_back(glm::dvec2{2.72, 0.93} + base::rotate(-M_PI / 2 + i * M_PI / 12, {0.93, 0.0}));
   p.push_back({3.65, 0.93 + 1.349});
   double worst = 0.0;
-  for (const Vec2 at : smooth_curve(p, {1e-6, 0.25, 1u << 20}).points) {
+  for (const glm::dvec2& at : smooth_curve(p, {1e-6, 0.25, 1u << 20}).points) {
     const double off = at.x <= 2.72   ? std::abs(at.y)
                        : at.y >= 0.93 ? std::abs(at.x - 3.65)
-                                      : std::abs(length(at - Vec2{2.72, 0.93}) - 0.93);
+                                      : std::abs(length(at - glm::dvec2{2.72, 0.93}) - 0.93);
     worst = std::max(worst, off);
   }
   EXPECT_LT(worst, 1e-3);
@@ -174,9 +175,9 @@ TEST(Curve, OddWayPoints) {
 
 TEST(Curve, ConnectionsMakeArcs) {
   const Curve quarter = connection({0, 0}, {1, 0}, {5, 5}, {0, 1}, kFine);
-  for (const Vec2 p : quarter.points) EXPECT_NEAR(length(p - Vec2{0, 5}), 5.0, 2e-3);
+  for (const glm::dvec2& p : quarter.points) EXPECT_NEAR(length(p - glm::dvec2{0, 5}), 5.0, 2e-3);
   const Curve turn = connection({0, 0}, {1, 0}, {0, 4}, {-1, 0}, kFine);  // a U-turn
-  for (const Vec2 p : turn.points) EXPECT_NEAR(length(p - Vec2{0, 2}), 2.0, 4e-2);
+  for (const glm::dvec2& p : turn.points) EXPECT_NEAR(length(p - glm::dvec2{0, 2}), 2.0, 4e-2);
   EXPECT_EQ(connection({1, 2}, {1, 0}, {1, 2}, {0, 1}, kFine).points.size(), 1u);
 }
 
@@ -196,18 +197,18 @@ TEST(Parallel, OfACircle) {
   Points p;
   for (int i = 0; i <= 9; ++i) p.push_back(base::rotate(i * M_PI / 18, {5.0, 0.0}));
   const Curve arc = smooth_curve(p, kFine);
-  for (const Vec2 at : parallel(arc, 1.8)) EXPECT_NEAR(length(at), 3.2, 2e-3);
-  for (const Vec2 at : parallel(arc, -1.8)) EXPECT_NEAR(length(at), 6.8, 2e-3);
+  for (const glm::dvec2& at : parallel(arc, 1.8)) EXPECT_NEAR(length(at), 3.2, 2e-3);
+  for (const glm::dvec2& at : parallel(arc, -1.8)) EXPECT_NEAR(length(at), 6.8, 2e-3);
 }
 
 // A bend of 1 m radius with edges at 2 m: the loop inside of it is gone, and what is left keeps its distance.
 TEST(Parallel, LoopsInsideTightBendsAreCutOff) {
   Points p{{-10, 0}, {-5, 0}, {0, 0}};
-  for (int i = 1; i <= 6; ++i) p.push_back(Vec2{0, 1} + base::rotate(-M_PI / 2 + i * M_PI / 12, {1.0, 0.0}));
+  for (int i = 1; i <= 6; ++i) p.push_back(glm::dvec2{0, 1} + base::rotate(-M_PI / 2 + i * M_PI / 12, {1.0, 0.0}));
   p.push_back({1, 6}), p.push_back({1, 11});
   const Curve bend = smooth_curve(p, {1e-3, 2.0, 1u << 20});
   const Points inside = parallel(bend, 2.0);
-  for (const Vec2 at : inside) EXPECT_GE(distance(at, bend.points), 2.0 - 5e-3) << at.x << " " << at.y;
+  for (const glm::dvec2& at : inside) EXPECT_GE(distance(at, bend.points), 2.0 - 5e-3) << at.x << " " << at.y;
   for (std::size_t i = 1; i + 1 < inside.size(); ++i)
     EXPECT_GT(dot(inside[i] - inside[i - 1], inside[i + 1] - inside[i]), -1e-9) << "turned round at " << i;
   EXPECT_LT(inside.size(), bend.points.size());

@@ -47,7 +47,7 @@ Geodesic geodesic(Geodetic a, Geodetic b) {
 }
 
 TEST(LocalPlane, OriginIsNought) {
-  const Vec2 p = LocalPlane({34.5, -117.4}).east_north({34.5, -117.4});
+  const glm::dvec2 p = LocalPlane({34.5, -117.4}).east_north({34.5, -117.4});
   EXPECT_EQ(p.x, 0.0);
   EXPECT_EQ(p.y, 0.0);
 }
@@ -80,7 +80,7 @@ TEST(LocalPlane, AgreesWithGeodesics) {
     const double reach = std::pow(10.0, -4.0 + 3.3 * v[0]);  // [deg] 10 m to 20 km
     const Geodetic at{origin.latitude + reach * std::sin(40.0 * v[1]),
                       origin.longitude + reach * std::cos(40.0 * v[1])};
-    const Vec2 flat = LocalPlane(origin).east_north(at);
+    const glm::dvec2 flat = LocalPlane(origin).east_north(at);
     const Geodesic over = geodesic(origin, at);
     const double d = static_cast<double>(over.length);
     const double east = d * static_cast<double>(std::sin(over.azimuth));
@@ -89,7 +89,7 @@ TEST(LocalPlane, AgreesWithGeodesics) {
     const double allowed = 1.2 * d * d * d / (6.0 * 6371e3 * 6371e3) + 2e-4;
     EXPECT_NEAR(flat.x, east, allowed) << d;
     EXPECT_NEAR(flat.y, north, allowed) << d;
-    worst = std::max(worst, length(flat - Vec2{east, north}) / d);
+    worst = std::max(worst, length(flat - glm::dvec2{east, north}) / d);
   }
   EXPECT_LT(worst, 3e-5);
 }

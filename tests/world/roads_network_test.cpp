@@ -25,7 +25,7 @@ RoadNetwork build(const std::string& rndf, const std::string& sidecar = "") {
 }
 RoadNetwork small(const std::string& sidecar = "") { return build(std::string(kSmallRndf), sidecar); }
 
-Vec2 at(const RoadNetwork& network, PointId id) { return position_of(network, *find_point(network, id)); }
+glm::dvec2 at(const RoadNetwork& network, PointId id) { return position_of(network, *find_point(network, id)); }
 
 TEST(RoadNetwork, MetresFromTheFirstPoint) {
   const RoadNetwork network = small();
@@ -195,7 +195,7 @@ TEST(RoadNetworkFiles, EdgesKeepTheirDistance) {
         ASSERT_GE(edge->size(), 2u) << name_of(network, lane);
         for (std::size_t i = 0; i < edge->size(); i += 3) {
           double nearest = INFINITY;
-          for (const Vec2 p : lane.centre.points) nearest = std::min(nearest, length(p - (*edge)[i]));
+          for (const glm::dvec2& p : lane.centre.points) nearest = std::min(nearest, length(p - (*edge)[i]));
           // Points of the centre line, not its pieces: a little farther at most.
           EXPECT_GE(nearest, half - 0.01) << name_of(network, lane);
           EXPECT_LE(nearest, half + 3.0) << name_of(network, lane);

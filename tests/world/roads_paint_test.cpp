@@ -103,7 +103,7 @@ TEST(RoadPaint, DashesFollowBends) {
   std::string points, sidecar = "lane_width_m = 4\n";
   for (int i = 1; i <= 7; ++i) {
     points += "1.1." + std::to_string(i) + " 0 0\n";
-    const Vec2 p = base::rotate(i * M_PI / 12, {30.0, 0.0});
+    const glm::dvec2 p = base::rotate(i * M_PI / 12, {30.0, 0.0});
     sidecar += "[points.\"1.1." + std::to_string(i) + "\"]\nposition = [" + std::to_string(p.x) + ", " +
                std::to_string(p.y) + "]\n";
   }
@@ -113,7 +113,7 @@ TEST(RoadPaint, DashesFollowBends) {
   ASSERT_EQ(stripes.size(), 5u);  // the outer edge is 50.3 m long: dashes begin every 12.192 m
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_NEAR(length_of(stripes[k]), 10 * kFoot, 1e-6);
-    for (const Vec2 p : stripes[k].line) EXPECT_NEAR(length(p), 32.0, 2e-3);
+    for (const glm::dvec2& p : stripes[k].line) EXPECT_NEAR(length(p), 32.0, 2e-3);
   }
 }
 

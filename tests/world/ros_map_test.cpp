@@ -40,7 +40,7 @@ class RosMap : public ::testing::Test {
   }
   static double area(const World& world) {
     double sum = 0.0;
-    for (const Segment& wall : world.walls) sum += cross(wall.a, wall.b) / 2;
+    for (const Segment& wall : world.walls) sum += base::cross(wall.a, wall.b) / 2;
     return sum;
   }
   std::filesystem::path folder_ =
@@ -82,7 +82,7 @@ TEST_F(RosMap, Grey205IsUnknownAnd206IsFree) {
   const auto known = [&](const std::string& greys, const std::string& more = "") {
     write("m.pgm", "P2 2 1 255\n" + greys + "\n");
     double sum = 0.0;
-    for (const Segment& edge : known_free(load(yaml + more))) sum += cross(edge.a, edge.b) / 2;
+    for (const Segment& edge : known_free(load(yaml + more))) sum += base::cross(edge.a, edge.b) / 2;
     return sum;
   };
   EXPECT_NEAR(known("205 206"), 0.25, 1e-12);

@@ -103,7 +103,7 @@ TEST(Stage, AClockwiseBlockIsTurnedSoThatItsSolidIsOnTheLeft) {
   const World world =
       read_world("model( size [1 1 1] block( points 3 point[0] [0 0] point[1] [0 1] point[2] [1 0] ) )");
   double area = 0.0;
-  for (const Segment& wall : world.walls) area += cross(wall.a, wall.b);
+  for (const Segment& wall : world.walls) area += base::cross(wall.a, wall.b);
   EXPECT_DOUBLE_EQ(area, 1.0);
 }
 
@@ -119,7 +119,7 @@ TEST(Stage, ABoundaryIsAFrameOfFourWalls) {
   const World world = read_world("model( size [4 2 1] boundary 1 )");
   ASSERT_EQ(world.walls.size(), 8u);
   double area = 0.0;
-  for (const Segment& wall : world.walls) area += cross(wall.a, wall.b) / 2;
+  for (const Segment& wall : world.walls) area += base::cross(wall.a, wall.b) / 2;
   EXPECT_NEAR(area, 4 * 2 - 3.98 * 1.98, 1e-12);  // the frame is solid, what it encloses is not
 }
 
@@ -164,7 +164,7 @@ TEST(Stage, ABitmapIsDarkSolidAndUpright) {
   EXPECT_EQ(world.extent.x_min, -8.0);
   EXPECT_EQ(world.extent.y_max, 8.0);
   double area = 0.0;
-  for (const Segment& wall : world.walls) area += cross(wall.a, wall.b) / 2;
+  for (const Segment& wall : world.walls) area += base::cross(wall.a, wall.b) / 2;
   EXPECT_GT(area, 0.45 * 256);
   EXPECT_LT(area, 0.55 * 256);
 }

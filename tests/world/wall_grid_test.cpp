@@ -30,8 +30,8 @@ TEST(Distance, ends_and_middle) {
 }
 
 TEST(FromSegment, ends_and_middle) {
-  const auto from = [](Vec2 p, Vec2 a, Vec2 b) {
-    const Vec2 d = from_segment(p, a, b);
+  const auto from = [](glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
+    const glm::dvec2 d = from_segment(p, a, b);
     return std::pair(d.x, d.y);
   };
   EXPECT_EQ(from({0, 2}, {-1, 0}, {1, 0}), std::pair(0.0, 2.0)) << "square to it";
@@ -46,7 +46,7 @@ TEST(BoxOf, corners_in_any_order) {
 }
 
 std::vector<Segment> square(double half, bool counter_clockwise, bool solid_left = true) {
-  const Vec2 corners[] = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
+  const glm::dvec2 corners[] = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
   std::vector<Segment> edges;
   for (std::size_t i = 0; i < 4; ++i) {
     Segment edge{.a = corners[i], .b = corners[(i + 1) % 4]};
@@ -75,14 +75,14 @@ TEST(Windings, case_by_case) {
   EXPECT_EQ(windings(twice, {0, 0}), 2) << "where two overlap";
 }
 
-std::vector<Segment> random_walls(std::uint32_t count, Vec2 around, double spread, double longest) {
+std::vector<Segment> random_walls(std::uint32_t count, glm::dvec2 around, double spread, double longest) {
   std::vector<Segment> walls;
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto u = base::random_uniform({.seed = 7, .a = i}, 0);
     const auto v = base::random_uniform({.seed = 7, .a = i}, 1);
-    const Vec2 a = around + spread * Vec2{u[0] - 0.5, u[1] - 0.5};
+    const glm::dvec2 a = around + spread * glm::dvec2{u[0] - 0.5, u[1] - 0.5};
     const double length = longest * v[0] * v[0] * v[0];
-    Vec2 d = length * Vec2{std::cos(6.3 * v[1]), std::sin(6.3 * v[1])};
+    glm::dvec2 d = length * glm::dvec2{std::cos(6.3 * v[1]), std::sin(6.3 * v[1])};
     if (i % 5 == 0) d.y = 0.0;
     if (i % 5 == 1) d.x = 0.0;
     walls.push_back({.a = a, .b = a + d, .model = i});
@@ -91,11 +91,11 @@ std::vector<Segment> random_walls(std::uint32_t count, Vec2 around, double sprea
 }
 
 // Every wall that really passes through the box is asked about, none outside it.
-void expect_same_as_brute_force(const std::vector<Segment>& walls, Vec2 around, double spread) {
+void expect_same_as_brute_force(const std::vector<Segment>& walls, glm::dvec2 around, double spread) {
   const WallGrid grid(walls, 0.5);
   for (std::uint32_t i = 0; i < 300; ++i) {
     const auto u = base::random_uniform({.seed = 9, .a = i}, 0);
-    const Vec2 p = around + spread * Vec2{u[0] - 0.5, u[1] - 0.5};
+    const glm::dvec2 p = around + spread * glm::dvec2{u[0] - 0.5, u[1] - 0.5};
     const double reach = 0.1 + 2.0 * base::random_uniform({.seed = 9, .a = i}, 1)[0];
     std::set<std::uint32_t> met;
     grid.any(box_around(p, reach), [&](const Segment& wall) {
@@ -118,7 +118,7 @@ TEST(WallGrid, finds_what_brute_force_finds_among_many) {
 }
 
 TEST(WallGrid, finds_it_100_km_away) {
-  const Vec2 far{1e5, -1e5};
+  const glm::dvec2 far{1e5, -1e5};
   expect_same_as_brute_force(random_walls(2000, far, 40, 20), far, 50);
 }
 

@@ -30,9 +30,9 @@ struct Builder {
 
   void warn(int line, std::string message) { warnings.push_back({rndf.file, line, std::move(message)}); }
 
-  Vec2 place(const RndfPoint& point) {
+  glm::dvec2 place(const RndfPoint& point) {
     if (const auto own = sidecar.points.find(point.id); own != sidecar.points.end()) return own->second.p;
-    const Vec2 flat = plane.east_north({point.latitude, point.longitude});
+    const glm::dvec2 flat = plane.east_north({point.latitude, point.longitude});
     if (!warned_far && length(flat) > kFar) {
       warned_far = true;
       warn(point.line,
@@ -62,7 +62,7 @@ double lane_width(Builder& b, const RndfSegment& segment, const RndfLane& lane, 
 }
 
 void trace_lane(Builder& b, RoadLane& lane, const RndfLane& from) {
-  std::vector<Vec2> waypoints;
+  std::vector<glm::dvec2> waypoints;
   for (const RndfPoint& point : from.points) waypoints.push_back(b.place(point));
   for (std::size_t i = 1; i < waypoints.size(); ++i)
     if (length(waypoints[i] - waypoints[i - 1]) < 1e-6)
@@ -77,7 +77,7 @@ void trace_lane(Builder& b, RoadLane& lane, const RndfLane& from) {
                                        kMostSamples));
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     const std::size_t knot = lane.centre.knots[i];
-    const Vec2 tangent = lane.centre.tangents[knot];
+    const glm::dvec2 tangent = lane.centre.tangents[knot];
     lane.points.push_back({from.points[i].id, waypoints[i], lane.centre.s[knot], std::atan2(tangent.y, tangent.x)});
   }
 }
@@ -161,7 +161,7 @@ void add_stop(RoadNetwork& network, const RndfStop& stop) {
   const RoadLane& lane = network.lanes[at.row];
   if (lane.centre.points.size() < 2) return;
   const LanePoint& point = lane.points[at.index];
-  const Vec2 half = base::rotate(point.yaw, {0.0, 0.5 * lane.width});
+  const glm::dvec2 half = base::rotate(point.yaw, {0.0, 0.5 * lane.width});
   network.stops.push_back({at, point.p + half, point.p - half});
 }
 
@@ -197,12 +197,12 @@ void join(Builder& b) {
 
 Extent extent_of(const RoadNetwork& network) {
   Extent e{INFINITY, INFINITY, -INFINITY, -INFINITY};
-  const auto add = [&](Vec2 p) {
+  const auto add = [&](glm::dvec2 p) {
     e = {std::min(e.x_min, p.x), std::min(e.y_min, p.y), std::max(e.x_max, p.x), std::max(e.y_max, p.y)};
   };
   for (const RoadLane& lane : network.lanes)
     for (const auto* line : {&lane.centre.points, &lane.left_edge, &lane.right_edge})
-      for (const Vec2 p : *line) add(p);
+      for (const glm::dvec2& p : *line) add(p);
   for (const RoadZone& zone : network.zones)
     for (const PerimeterPoint& point : zone.perimeter) add(point.p);
   for (const RoadSpot& spot : network.spots) add(spot.entry), add(spot.end);

@@ -13,19 +13,19 @@ constexpr double kWidths = 3.0;  // of a lane, for a change along it
 
 struct Beside {
   double s = 0.0;  ///< [m] along the other lane
-  Vec2 p;
-  Vec2 tangent;
+  glm::dvec2 p;
+  glm::dvec2 tangent;
 };
 
 /// The point of a lane's centre line nearest to `p`. The lane has two points at least.
-Beside nearest_of(const RoadLane& lane, Vec2 p) {
+Beside nearest_of(const RoadLane& lane, glm::dvec2 p) {
   const Curve& c = lane.centre;
   Beside best;
   double least = HUGE_VAL;
   for (std::size_t i = 0; i + 1 < c.points.size(); ++i) {
-    const Vec2 d = c.points[i + 1] - c.points[i];
+    const glm::dvec2 d = c.points[i + 1] - c.points[i];
     const double t = std::clamp(dot(p - c.points[i], d) / dot(d, d), 0.0, 1.0);
-    const Vec2 q = c.points[i] + t * d;
+    const glm::dvec2 q = c.points[i] + t * d;
     const double distance = length(p - q);
     if (distance >= least) continue;
     least = distance;
@@ -36,19 +36,19 @@ Beside nearest_of(const RoadLane& lane, Vec2 p) {
 
 bool may_cross(Boundary boundary) { return boundary == Boundary::broken_white || boundary == Boundary::none; }
 
-Vec2 direction(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
+glm::dvec2 direction(double yaw) { return {std::cos(yaw), std::sin(yaw)}; }
 
 /// Nothing where the lanes are not side by side there, or the paint forbids it.
 std::optional<double> beside(const RoadLane& from, std::uint32_t index, const RoadLane& to) {
   const LanePoint& point = from.points[index];
   const Beside other = nearest_of(to, point.p);
-  const Vec2 along = direction(point.yaw);
-  const Vec2 across = other.p - point.p;
+  const glm::dvec2 along = direction(point.yaw);
+  const glm::dvec2 across = other.p - point.p;
   const double width = 0.5 * (from.width + to.width);
   const double apart = length(across);
   if (dot(along, other.tangent) < 0.9 || apart < 0.5 * width || apart > 1.5 * width) return std::nullopt;
   if (std::abs(dot(along, across)) > 0.3 * apart) return std::nullopt;  // beyond one of its ends
-  if (!may_cross(cross(along, across) > 0.0 ? from.left : from.right)) return std::nullopt;
+  if (!may_cross(base::cross(along, across) > 0.0 ? from.left : from.right)) return std::nullopt;
   return other.s;
 }
 

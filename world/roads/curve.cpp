@@ -13,37 +13,37 @@ constexpr double kCoincident = 1e-6;  // [m]
 constexpr int kDeepest = 20;          // halvings of one span
 constexpr double kMostTurn = 0.5;     // [rad] from one point of the polyline to the next
 
-Vec2 unit(Vec2 v) {
+glm::dvec2 unit(glm::dvec2 v) {
   const double l = length(v);
-  return l > 0.0 ? Vec2{v.x / l, v.y / l} : Vec2{1.0, 0.0};
+  return l > 0.0 ? glm::dvec2{v.x / l, v.y / l} : glm::dvec2{1.0, 0.0};
 }
 
 /// [rad] in [-pi, pi], counter-clockwise.
-double turn_between(Vec2 a, Vec2 b) { return std::atan2(cross(a, b), dot(a, b)); }
+double turn_between(glm::dvec2 a, glm::dvec2 b) { return std::atan2(base::cross(a, b), dot(a, b)); }
 
-double distance_to_segment(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 d = b - a;
+double distance_to_segment(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
+  const glm::dvec2 d = b - a;
   const double dd = dot(d, d);
   const double t = dd > 0.0 ? std::clamp(dot(p - a, d) / dd, 0.0, 1.0) : 0.0;
   return length(p - (a + t * d));
 }
 
 struct Bezier {
-  Vec2 p0, p1, p2, p3;
+  glm::dvec2 p0, p1, p2, p3;
 };
 
-Vec2 middle(Vec2 a, Vec2 b) { return 0.5 * (a + b); }
+glm::dvec2 middle(glm::dvec2 a, glm::dvec2 b) { return 0.5 * (a + b); }
 
-Vec2 start_of(const Bezier& b) {
+glm::dvec2 start_of(const Bezier& b) {
   if (length(b.p1 - b.p0) > 0.0) return unit(b.p1 - b.p0);
   return unit(length(b.p2 - b.p0) > 0.0 ? b.p2 - b.p0 : b.p3 - b.p0);
 }
-Vec2 end_of(const Bezier& b) {
+glm::dvec2 end_of(const Bezier& b) {
   if (length(b.p3 - b.p2) > 0.0) return unit(b.p3 - b.p2);
   return unit(length(b.p3 - b.p1) > 0.0 ? b.p3 - b.p1 : b.p3 - b.p0);
 }
 
-void add_point(Curve& curve, Vec2 p, Vec2 tangent) {
+void add_point(Curve& curve, glm::dvec2 p, glm::dvec2 tangent) {
   const double step = curve.points.empty() ? 0.0 : length(p - curve.points.back());
   curve.s.push_back(curve.points.empty() ? 0.0 : curve.s.back() + step);
   curve.points.push_back(p);
@@ -60,15 +60,15 @@ void flatten(Curve& curve, const Bezier& b, const Sampling& sampling, int depth)
   const bool fine = flat + bulge <= sampling.tolerance && turn <= kMostTurn;
   if (fine || depth == kDeepest || curve.points.size() + static_cast<std::size_t>(depth) >= sampling.most)
     return add_point(curve, b.p3, end_of(b));
-  const Vec2 p01 = middle(b.p0, b.p1), p12 = middle(b.p1, b.p2), p23 = middle(b.p2, b.p3);
-  const Vec2 p012 = middle(p01, p12), p123 = middle(p12, p23);
-  const Vec2 half = middle(p012, p123);
+  const glm::dvec2 p01 = middle(b.p0, b.p1), p12 = middle(b.p1, b.p2), p23 = middle(b.p2, b.p3);
+  const glm::dvec2 p012 = middle(p01, p12), p123 = middle(p12, p23);
+  const glm::dvec2 half = middle(p012, p123);
   flatten(curve, {b.p0, p01, p012, half}, sampling, depth + 1);
   flatten(curve, {half, p123, p23, b.p3}, sampling, depth + 1);
 }
 
 /// A Hermite span whose tangents reach `reach_a` and `reach_b` [m] before the factor that makes circles of circles.
-Bezier span_of(Vec2 a, Vec2 tangent_a, double reach_a, Vec2 b, Vec2 tangent_b, double reach_b) {
+Bezier span_of(glm::dvec2 a, glm::dvec2 tangent_a, double reach_a, glm::dvec2 b, glm::dvec2 tangent_b, double reach_b) {
   const double c = std::cos(turn_between(tangent_a, tangent_b) / 4.0);
   const double factor = 1.0 / (3.0 * c * c);
   return {a, a + factor * reach_a * tangent_a, b - factor * reach_b * tangent_b, b};
@@ -76,12 +76,12 @@ Bezier span_of(Vec2 a, Vec2 tangent_a, double reach_a, Vec2 b, Vec2 tangent_b, d
 
 /// Directions and lengths of the chords of a line.
 struct Chords {
-  std::vector<Vec2> along;
+  std::vector<glm::dvec2> along;
   std::vector<double> length;
   std::vector<double> turn;  ///< [rad] at every way-point, 0 at the ends
 };
 
-Chords chords_of(const std::vector<Vec2>& p) {
+Chords chords_of(const std::vector<glm::dvec2>& p) {
   Chords chords;
   chords.turn.assign(p.size(), 0.0);
   for (std::size_t i = 0; i + 1 < p.size(); ++i) {
@@ -101,10 +101,10 @@ double bend(const Chords& chords, std::size_t of, std::size_t at) {
 }
 
 /// Direction at every way-point of a line without coincident ones, at least two.
-std::vector<Vec2> directions(const std::vector<Vec2>& p) {
+std::vector<glm::dvec2> directions(const std::vector<glm::dvec2>& p) {
   const std::size_t n = p.size();
   const Chords chords = chords_of(p);
-  std::vector<Vec2> tangents(n);
+  std::vector<glm::dvec2> tangents(n);
   for (std::size_t i = 1; i + 1 < n; ++i) {
     // How a chord bends shows at its far end; where the line ends there, at this one.
     const double before = bend(chords, i - 1, i > 1 ? i - 1 : i);
@@ -116,7 +116,7 @@ std::vector<Vec2> directions(const std::vector<Vec2>& p) {
     tangents[i] = base::rotate(std::copysign(angle, chords.turn[i]), chords.along[i - 1]);
   }
   // An end mirrors its neighbour about their chord, as an arc does.
-  const auto mirrored = [](Vec2 tangent, Vec2 axis) { return 2.0 * dot(tangent, axis) * axis - tangent; };
+  const auto mirrored = [](glm::dvec2 tangent, glm::dvec2 axis) { return 2.0 * dot(tangent, axis) * axis - tangent; };
   tangents[0] = n > 2 ? mirrored(tangents[1], chords.along[0]) : chords.along[0];
   tangents[n - 1] = n > 2 ? mirrored(tangents[n - 2], chords.along[n - 2]) : chords.along[0];
   return tangents;
@@ -124,17 +124,17 @@ std::vector<Vec2> directions(const std::vector<Vec2>& p) {
 
 }  // namespace
 
-Curve smooth_curve(std::span<const Vec2> waypoints, const Sampling& sampling) {
+Curve smooth_curve(std::span<const glm::dvec2> waypoints, const Sampling& sampling) {
   SF_CHECK(!waypoints.empty(), "a curve through no points");
-  std::vector<Vec2> p;
+  std::vector<glm::dvec2> p;
   std::vector<std::size_t> row;
-  for (const Vec2 at : waypoints) {
+  for (const glm::dvec2& at : waypoints) {
     if (p.empty() || length(at - p.back()) > kCoincident) p.push_back(at);
     row.push_back(p.size() - 1);
   }
 
   Curve curve;
-  const std::vector<Vec2> tangents = p.size() > 1 ? directions(p) : std::vector<Vec2>{{1.0, 0.0}};
+  const std::vector<glm::dvec2> tangents = p.size() > 1 ? directions(p) : std::vector<glm::dvec2>{{1.0, 0.0}};
   std::vector<std::size_t> knots{0};
   add_point(curve, p[0], tangents[0]);
   for (std::size_t i = 0; i + 1 < p.size(); ++i) {
@@ -152,7 +152,7 @@ Curve smooth_curve(std::span<const Vec2> waypoints, const Sampling& sampling) {
   return curve;
 }
 
-Curve connection(Vec2 a, Vec2 tangent_a, Vec2 b, Vec2 tangent_b, const Sampling& sampling) {
+Curve connection(glm::dvec2 a, glm::dvec2 tangent_a, glm::dvec2 b, glm::dvec2 tangent_b, const Sampling& sampling) {
   Curve curve;
   add_point(curve, a, tangent_a);
   const double chord = length(b - a);
@@ -161,7 +161,7 @@ Curve connection(Vec2 a, Vec2 tangent_a, Vec2 b, Vec2 tangent_b, const Sampling&
   return curve;
 }
 
-Vec2 point_at(const Curve& curve, double s) {
+glm::dvec2 point_at(const Curve& curve, double s) {
   const auto next = std::upper_bound(curve.s.begin(), curve.s.end(), s);
   if (next == curve.s.begin()) return curve.points.front();
   if (next == curve.s.end()) return curve.points.back();

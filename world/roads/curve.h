@@ -19,14 +19,12 @@
 
 namespace sf::world {
 
-using base::Vec2;
-
 /// A curve as a polyline. Rows of `points`, `tangents` and `s` belong together; neighbouring points are distinct.
 struct Curve {
-  std::vector<Vec2> points;        ///< [m]
-  std::vector<Vec2> tangents;      ///< unit vectors along the curve; {1, 0} where there is one point only
-  std::vector<double> s;           ///< [m] length of the polyline up to here
-  std::vector<std::size_t> knots;  ///< row of each way-point; way-points that coincide share one
+  std::vector<glm::dvec2> points;    ///< [m]
+  std::vector<glm::dvec2> tangents;  ///< unit vectors along the curve; {1, 0} where there is one point only
+  std::vector<double> s;             ///< [m] length of the polyline up to here
+  std::vector<std::size_t> knots;    ///< row of each way-point; way-points that coincide share one
 };
 
 /// How finely a curve becomes a polyline.
@@ -37,17 +35,17 @@ struct Sampling {
 };
 
 /// The smooth line through `waypoints`, at least one. Those nearer than 1e-6 m to the last are one with it.
-Curve smooth_curve(std::span<const Vec2> waypoints, const Sampling& sampling);
+Curve smooth_curve(std::span<const glm::dvec2> waypoints, const Sampling& sampling);
 
 /// A smooth connection that leaves `a` along `tangent_a` and arrives at `b` along `tangent_b` (unit vectors).
-Curve connection(Vec2 a, Vec2 tangent_a, Vec2 b, Vec2 tangent_b, const Sampling& sampling);
+Curve connection(glm::dvec2 a, glm::dvec2 tangent_a, glm::dvec2 b, glm::dvec2 tangent_b, const Sampling& sampling);
 
 /// The curve's parallel at `distance` to its left (negative: right) [m]. Where the curve bends tighter than that, what
 /// would come nearer to it is left out, so that the inside of a bend has a corner and no loop. Neighbouring points are
 /// distinct; empty where nothing is left, and where the curve has one point only.
-std::vector<Vec2> parallel(const Curve& curve, double distance);
+std::vector<glm::dvec2> parallel(const Curve& curve, double distance);
 
 /// Point at `s` [m] along the polyline, clamped to its ends.
-Vec2 point_at(const Curve& curve, double s);
+glm::dvec2 point_at(const Curve& curve, double s);
 
 }  // namespace sf::world

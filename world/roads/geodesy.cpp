@@ -28,7 +28,7 @@ LocalPlane::LocalPlane(Geodetic origin)
       sin_lon_(std::sin(origin.longitude * kDegree)),
       cos_lon_(std::cos(origin.longitude * kDegree)) {}
 
-Vec2 LocalPlane::east_north(Geodetic at) const {
+glm::dvec2 LocalPlane::east_north(Geodetic at) const {
   const Earth p = earth(at);
   const double dx = p.x - origin_.x;
   const double dy = p.y - origin_.y;

@@ -11,8 +11,6 @@
 
 namespace sf::world {
 
-using base::Vec2;
-
 /// Rule: latitude in [-90, 90], longitude in [-180, 180].
 struct Geodetic {
   double latitude = 0.0;   ///< [deg] north positive
@@ -24,7 +22,7 @@ class LocalPlane {
   explicit LocalPlane(Geodetic origin);
 
   /// [m] east and north of the origin; rounding is below 1e-8 m.
-  Vec2 east_north(Geodetic at) const;
+  glm::dvec2 east_north(Geodetic at) const;
 
  private:
   struct Earth {

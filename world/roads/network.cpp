@@ -61,7 +61,7 @@ PointId id_of(const RoadNetwork& network, PointRef at) {
           static_cast<std::uint16_t>(at.index + 1)};
 }
 
-Vec2 position_of(const RoadNetwork& network, PointRef at) {
+glm::dvec2 position_of(const RoadNetwork& network, PointRef at) {
   if (at.kind == PointRef::Kind::lane) return network.lanes[at.row].points[at.index].p;
   if (at.kind == PointRef::Kind::perimeter) return network.zones[at.row].perimeter[at.index].p;
   return at.index == 0 ? network.spots[at.row].entry : network.spots[at.row].end;
@@ -70,7 +70,7 @@ Vec2 position_of(const RoadNetwork& network, PointRef at) {
 std::optional<double> yaw_of(const RoadNetwork& network, PointRef at) {
   if (at.kind == PointRef::Kind::perimeter) return std::nullopt;
   if (at.kind == PointRef::Kind::spot) {
-    const Vec2 along = network.spots[at.row].end - network.spots[at.row].entry;
+    const glm::dvec2 along = network.spots[at.row].end - network.spots[at.row].entry;
     return std::atan2(along.y, along.x);
   }
   const RoadLane& lane = network.lanes[at.row];
@@ -105,13 +105,13 @@ std::vector<Step> successors(const RoadNetwork& network, PointRef at) {
 }
 
 Curve connection_of(const RoadNetwork& network, const RoadExit& exit) {
-  const Vec2 a = position_of(network, exit.from);
-  const Vec2 b = position_of(network, exit.to);
+  const glm::dvec2 a = position_of(network, exit.from);
+  const glm::dvec2 b = position_of(network, exit.to);
   const double d = length(b - a);
-  const Vec2 straight = d > 0.0 ? (1.0 / d) * (b - a) : Vec2{1.0, 0.0};
+  const glm::dvec2 straight = d > 0.0 ? (1.0 / d) * (b - a) : glm::dvec2{1.0, 0.0};
   const auto direction = [&](PointRef at) {
     const auto yaw = yaw_of(network, at);
-    return yaw ? Vec2{std::cos(*yaw), std::sin(*yaw)} : straight;
+    return yaw ? glm::dvec2{std::cos(*yaw), std::sin(*yaw)} : straight;
   };
   return connection(a, direction(exit.from), b, direction(exit.to), {network.tolerance, 0.0, 4096});
 }

@@ -29,7 +29,7 @@ struct PointRef {
 
 struct LanePoint {
   PointId id;
-  Vec2 p;            ///< [m] world frame
+  glm::dvec2 p;      ///< [m] world frame
   double s = 0.0;    ///< [m] along the lane's centre line, from 0 to the lane's length, never falling
   double yaw = 0.0;  ///< [rad] driving direction here; 0 where the lane has one point only
 };
@@ -41,10 +41,10 @@ struct RoadLane {
   double width = 0.0;         ///< [m] > 0
   Boundary left = Boundary::none;
   Boundary right = Boundary::none;
-  std::vector<LanePoint> points;  ///< at least one, in driving direction
-  Curve centre;                   ///< knots: `points`
-  std::vector<Vec2> left_edge;    ///< [m] half the width to the left of the centre line, in driving direction
-  std::vector<Vec2> right_edge;   ///< [m] likewise
+  std::vector<LanePoint> points;       ///< at least one, in driving direction
+  Curve centre;                        ///< knots: `points`
+  std::vector<glm::dvec2> left_edge;   ///< [m] half the width to the left of the centre line, in driving direction
+  std::vector<glm::dvec2> right_edge;  ///< [m] likewise
 };
 inline double length_of(const RoadLane& lane) { return lane.centre.s.back(); }
 
@@ -57,7 +57,7 @@ struct RoadSegment {
 
 struct PerimeterPoint {
   PointId id;
-  Vec2 p;  ///< [m] world frame
+  glm::dvec2 p;  ///< [m] world frame
 };
 
 struct RoadZone {
@@ -72,8 +72,8 @@ struct RoadSpot {
   std::uint32_t zone = 0;  ///< row in `zones`
   int number = 0;
   double width = 0.0;  ///< [m] > 0
-  Vec2 entry;          ///< [m] world frame
-  Vec2 end;            ///< [m] where a car's front comes to stand
+  glm::dvec2 entry;    ///< [m] world frame
+  glm::dvec2 end;      ///< [m] where a car's front comes to stand
 };
 
 struct RoadExit {
@@ -85,14 +85,14 @@ struct RoadExit {
 /// Across the lane, as wide as the lane. None on lanes without a direction.
 struct StopLine {
   PointRef at;
-  Vec2 left;   ///< [m] its end on the lane's left edge
-  Vec2 right;  ///< [m]
+  glm::dvec2 left;   ///< [m] its end on the lane's left edge
+  glm::dvec2 right;  ///< [m]
 };
 
 struct RoadCheckpoint {
   int id = 0;
   PointRef at;
-  Vec2 p;  ///< [m] world frame
+  glm::dvec2 p;  ///< [m] world frame
 };
 
 /// Sizes of paint, scaled. [m] > 0
@@ -130,7 +130,7 @@ std::optional<PointRef> find_point(const RoadNetwork& network, PointId id);
 const RoadCheckpoint* find_checkpoint(const RoadNetwork& network, int id);
 
 PointId id_of(const RoadNetwork& network, PointRef at);
-Vec2 position_of(const RoadNetwork& network, PointRef at);
+glm::dvec2 position_of(const RoadNetwork& network, PointRef at);
 /// Driving direction [rad]; nothing for perimeter points, and for lanes without one.
 std::optional<double> yaw_of(const RoadNetwork& network, PointRef at);
 /// "1.2": as the file has it.

@@ -19,7 +19,7 @@ struct Painter {
   std::vector<Stripe> stripes;
 
   // A stripe turns by less than 90 degrees at each point: sharper ones become two.
-  void add(std::vector<Vec2> line, double width, std::uint32_t color) {
+  void add(std::vector<glm::dvec2> line, double width, std::uint32_t color) {
     if (stripes.size() >= kMostStripes)
       throw base::InputError(network.file, 0,
                              fmt::format("more than {} painted lines and dashes; check its coordinates, or its "
@@ -40,9 +40,10 @@ struct Painter {
 };
 
 /// The part of `line` from `begin` to `end` [m] along it.
-std::vector<Vec2> part_of(const std::vector<Vec2>& line, const std::vector<double>& s, double begin, double end) {
-  std::vector<Vec2> part;
-  const auto add = [&](Vec2 p) {
+std::vector<glm::dvec2> part_of(const std::vector<glm::dvec2>& line, const std::vector<double>& s, double begin,
+                                double end) {
+  std::vector<glm::dvec2> part;
+  const auto add = [&](glm::dvec2 p) {
     if (part.empty() || length(p - part.back()) > kShortest) part.push_back(p);
   };
   const auto at = [&](double where) {
@@ -57,7 +58,7 @@ std::vector<Vec2> part_of(const std::vector<Vec2>& line, const std::vector<doubl
   return part;
 }
 
-void add_dashes(Painter& painter, const std::vector<Vec2>& line) {
+void add_dashes(Painter& painter, const std::vector<glm::dvec2>& line) {
   std::vector<double> s{0.0};
   for (std::size_t i = 1; i < line.size(); ++i) s.push_back(s.back() + length(line[i] - line[i - 1]));
   const RoadPaint& paint = painter.network.paint;
@@ -71,7 +72,7 @@ void add_dashes(Painter& painter, const std::vector<Vec2>& line) {
 
 /// @param side 1: left, -1: right
 void add_edge(Painter& painter, const RoadLane& lane, Boundary boundary, double side) {
-  const std::vector<Vec2>& edge = side > 0.0 ? lane.left_edge : lane.right_edge;
+  const std::vector<glm::dvec2>& edge = side > 0.0 ? lane.left_edge : lane.right_edge;
   const double width = painter.network.paint.line_width;
   if (edge.size() < 2) return;
   switch (boundary) {
@@ -93,10 +94,10 @@ void add_edge(Painter& painter, const RoadLane& lane, Boundary boundary, double 
 }
 
 void add_spot(Painter& painter, const RoadSpot& spot) {
-  const Vec2 along = spot.end - spot.entry;
+  const glm::dvec2 along = spot.end - spot.entry;
   const double depth = length(along);
   if (depth < kShortest) return;
-  const Vec2 half = (0.5 * spot.width / depth) * Vec2{-along.y, along.x};
+  const glm::dvec2 half = (0.5 * spot.width / depth) * glm::dvec2{-along.y, along.x};
   const double width = painter.network.paint.line_width;
   painter.add({spot.entry + half, spot.end + half}, width, kWhitePaint);
   painter.add({spot.entry - half, spot.end - half}, width, kWhitePaint);

@@ -18,30 +18,30 @@ constexpr std::size_t kEnds = 8;     // pieces at either end of what is left out
 constexpr double kNearer = 2e-3;     // [distances] that a point may come nearer: rounding of the polyline
 
 /// Where the pieces a-b and c-d cross.
-std::optional<Vec2> crossing(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-  const Vec2 ab = b - a;
-  const Vec2 cd = d - c;
-  const double area = cross(ab, cd);
+std::optional<glm::dvec2> crossing(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
+  const glm::dvec2 ab = b - a;
+  const glm::dvec2 cd = d - c;
+  const double area = base::cross(ab, cd);
   if (area == 0.0) return std::nullopt;
-  const double t = cross(c - a, cd) / area;
-  const double u = cross(c - a, ab) / area;
+  const double t = base::cross(c - a, cd) / area;
+  const double u = base::cross(c - a, ab) / area;
   if (t < 0.0 || t > 1.0 || u < 0.0 || u > 1.0) return std::nullopt;
   return a + t * ab;
 }
 
-double distance(Vec2 p, Vec2 a, Vec2 b) {
-  const Vec2 d = b - a;
+double distance(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
+  const glm::dvec2 d = b - a;
   return length(p - (a + std::clamp(dot(p - a, d) / dot(d, d), 0.0, 1.0) * d));
 }
 
 /// The parallel before anything is left out, and which of its points stay.
 struct Raw {
-  std::vector<Vec2> points;
+  std::vector<glm::dvec2> points;
   std::vector<bool> kept;
 };
 
 // True where no piece of the curve within reach is nearer to the raw point than it should be.
-bool is_clear(const Curve& curve, Vec2 p, std::size_t i, double distance_to_keep) {
+bool is_clear(const Curve& curve, glm::dvec2 p, std::size_t i, double distance_to_keep) {
   const double around = kAround * distance_to_keep;
   const double least = (1.0 - kNearer) * distance_to_keep;
   for (std::size_t j = i, n = 0; j > 0 && n < kReach && curve.s[i] - curve.s[j] < around; --j, ++n)
@@ -56,7 +56,7 @@ Raw raw_parallel(const Curve& curve, double distance) {
   const std::size_t n = curve.points.size();
   Raw raw;
   for (std::size_t i = 0; i < n; ++i)
-    raw.points.push_back(curve.points[i] + distance * Vec2{-curve.tangents[i].y, curve.tangents[i].x});
+    raw.points.push_back(curve.points[i] + distance * glm::dvec2{-curve.tangents[i].y, curve.tangents[i].x});
   raw.kept.assign(n, true);
 
   // Pieces that run backwards are bends too tight; only points around them are looked at.
@@ -78,7 +78,7 @@ Raw raw_parallel(const Curve& curve, double distance) {
   return raw;
 }
 
-void add_distinct(std::vector<Vec2>& line, Vec2 p) {
+void add_distinct(std::vector<glm::dvec2>& line, glm::dvec2 p) {
   if (line.empty() || length(p - line.back()) > 1e-9) line.push_back(p);
 }
 
@@ -86,10 +86,10 @@ void add_distinct(std::vector<Vec2>& line, Vec2 p) {
 struct Join {
   std::size_t leave = 0;  ///< last point of the run before it
   std::size_t enter = 0;  ///< first point of the run after it
-  std::optional<Vec2> at;
+  std::optional<glm::dvec2> at;
 };
 
-Join join(const std::vector<Vec2>& raw, std::size_t begin, std::size_t end, std::size_t from, std::size_t to) {
+Join join(const std::vector<glm::dvec2>& raw, std::size_t begin, std::size_t end, std::size_t from, std::size_t to) {
   for (std::size_t i = end; i-- > begin && end - i <= kEnds;)
     for (std::size_t j = from; j < to && j - from < kEnds; ++j)
       if (const auto at = crossing(raw[i], raw[i + 1], raw[j - 1], raw[j])) return {i, j, at};
@@ -98,7 +98,7 @@ Join join(const std::vector<Vec2>& raw, std::size_t begin, std::size_t end, std:
 
 }  // namespace
 
-std::vector<Vec2> parallel(const Curve& curve, double distance) {
+std::vector<glm::dvec2> parallel(const Curve& curve, double distance) {
   const std::size_t n = curve.points.size();
   if (n < 2) return {};
   const Raw raw = raw_parallel(curve, distance);
@@ -111,7 +111,7 @@ std::vector<Vec2> parallel(const Curve& curve, double distance) {
     return i;
   };
 
-  std::vector<Vec2> line;
+  std::vector<glm::dvec2> line;
   std::size_t begin = next_kept(0);
   while (begin < n) {
     const std::size_t end = end_of_run(begin);
@@ -122,7 +122,7 @@ std::vector<Vec2> parallel(const Curve& curve, double distance) {
     if (way.at) add_distinct(line, *way.at);
     begin = way.enter;
   }
-  return line.size() < 2 ? std::vector<Vec2>{} : line;
+  return line.size() < 2 ? std::vector<glm::dvec2>{} : line;
 }
 
 }  // namespace sf::world

@@ -57,7 +57,7 @@ struct Reader {
     fail(*node, fmt::format("'{}' is {}; expected metres from 1e-6 to {}", key, value, kMostWidth));
   }
 
-  Vec2 pair(const TomlNode& node, std::string_view key, Vec2 most, std::string_view expected) const {
+  glm::dvec2 pair(const TomlNode& node, std::string_view key, glm::dvec2 most, std::string_view expected) const {
     if (node.kind != TomlNode::Kind::list || node.items.size() != 2)
       fail(node, fmt::format("'{}' expects {}", key, expected));
     return {number(node.items[0], key, -most.x, most.x), number(node.items[1], key, -most.y, most.y)};
@@ -105,7 +105,7 @@ void read_points(const Reader& reader, const TomlNode& points, RoadSidecar& into
 
 void read_frame(const Reader& reader, const TomlNode& root, RoadSidecar& into) {
   if (const TomlNode* node = find(root, "origin")) {
-    const Vec2 origin = reader.pair(*node, "origin", {90.0, 180.0}, "[latitude, longitude] in degrees");
+    const glm::dvec2 origin = reader.pair(*node, "origin", {90.0, 180.0}, "[latitude, longitude] in degrees");
     into.origin = Geodetic{origin.x, origin.y};
   }
   if (const TomlNode* node = find(root, "scale")) {

@@ -21,14 +21,14 @@ struct RoadSidecar {
     int line = 0;
   };
   struct Point {
-    Vec2 p;  ///< [m] world frame, in place of latitude and longitude
+    glm::dvec2 p;  ///< [m] world frame, in place of latitude and longitude
     int line = 0;
   };
 
   std::string file;                  ///< empty: there is none
   std::optional<Geodetic> origin;    ///< else the network's first point
   double scale = 1.0;                ///< [-] metres of the world per metre of the RNDF, in (0, 1000]
-  Vec2 position;                     ///< [m] of the origin in the world
+  glm::dvec2 position;               ///< [m] of the origin in the world
   double heading = 0.0;              ///< [rad] of the RNDF's east in the world, counter-clockwise from +x
   std::optional<double> lane_width;  ///< [m] of every lane that has no width of its own below
   std::optional<double> paint_width;
