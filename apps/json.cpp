@@ -79,19 +79,19 @@ Json element_json(const sensors::SensorKind& kind, std::span<const double> value
   return json;
 }
 
-std::string_view word_of(base::Unsure unsure) {
+std::string_view word_of(base::QualityFlag quality) {
   constexpr std::string_view kWords[] = {"no", "not cast", "grazing", "not straight", "extrapolated"};
-  return kWords[static_cast<std::size_t>(unsure)];
+  return kWords[static_cast<std::size_t>(quality)];
 }
 
 /// Beams have as many decimals as a ruler will ever need: nlohmann/json prints no fixed number.
 std::string beam_json(const world::World& world, const base::ReadingBlock& reading, std::uint32_t i) {
   const world::Laser& laser = world.movers[reading.mover].lasers[reading.sensor];
   const std::uint32_t hit = reading.hits[i];
-  const base::Unsure unsure = reading.unsure.empty() ? base::Unsure::no : reading.unsure[i];
+  const base::QualityFlag quality = reading.quality.empty() ? base::QualityFlag::none : reading.quality[i];
   return fmt::format("{{\"bearing_rad\": {:.12f}, \"range_m\": {}, \"hit\": {}{}}}", world::bearing_of(laser, i),
                      metres(reading.values[i]), hit == base::kNoHit ? "null" : dump(world.models[hit].name),
-                     unsure == base::Unsure::no ? "" : fmt::format(", \"unsure\": \"{}\"", word_of(unsure)));
+                     quality == base::QualityFlag::none ? "" : fmt::format(", \"unsure\": \"{}\"", word_of(quality)));
 }
 
 Json error_json(const ErrorFacts& f) { return {{"steps", f.steps}, {"mean", f.mean}, {"abs_mean", f.abs_mean}}; }
@@ -184,7 +184,7 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
                 {"interval_s", world.interval},
                 {"accuracy", statements_json(sensors::statements_of(world, roster))},
                 {"kept", world.kept},
-                {"hash", base::hash_text(world.hash)},
+                {"hash", base::hash_hex(world.hash)},
                 {"warnings", warnings_json(world.warnings)}});
 }
 
@@ -212,7 +212,7 @@ std::string json_of(const RunFacts& f) {
             {"cells_built", f.farm.work.cells_built},
             {"host_scans", f.farm.work.host_scans},
             {"contacts", f.contacts},
-            {"hash", base::hash_text(f.hash)},
+            {"hash", base::hash_hex(f.hash)},
             {"interrupted", f.interrupted},
             {"stages_s",
              {{"move", f.move_s},
@@ -269,7 +269,7 @@ std::string json_of(const world::World& world, const sensors::Roster& roster, co
     head["accuracy"] = sensors::word_of(kind, reading.mode);
     head["bound"] = finite_json(reading.bound);
   }
-  if (kind.list.empty() && !reading.unsure.empty()) head["unsure"] = word_of(reading.unsure.front());
+  if (kind.list.empty() && !reading.quality.empty()) head["unsure"] = word_of(reading.quality.front());
   if (kind.list.empty()) {
     head.update(element_json(kind, reading.values));
     return dump(head) + "\n";

@@ -37,8 +37,8 @@ Post::Post(const world::World& world, const sensors::Roster& roster, SendPlan pl
       roster_(roster),
       plan_(std::move(plan)),
       outbox_(std::move(outbox)),
-      workers_(roster.count() > kLargeFleet ? 0 : 1),
-      memory_(workers_.threads()) {
+      thread_pool_(roster.count() > kLargeFleet ? 0 : 1),
+      memory_(thread_pool_.threads()) {
   for (const sensors::Roster::Group& group : roster.groups())
     for (const sensors::SensorRow& row : group.rows)
       streams_[group.kind->id].push_back({0, plan_.sends(*group.kind, row) ? group.kind->parts(row, plan_.wire) : 0});
@@ -64,7 +64,7 @@ std::uint32_t Post::encode(const Job& job, Memory& memory, Put&& put) const {
   header.sensor = static_cast<std::uint16_t>(reading.sensor);
   header.sequence = job.sequence;
   header.time = reading.time;
-  header.accuracy = netio::accuracy_word({reading.mode, !reading.unsure.empty(), reading.bound});
+  header.accuracy = netio::accuracy_word({reading.mode, !reading.quality.empty(), reading.bound});
   header.session = job.letter.stamp.session;
   header.token = job.letter.stamp.token;
   const auto port = static_cast<std::uint16_t>(netio::port(plan_.ports(*job.kind), header.robot, reading.sensor));
@@ -110,7 +110,7 @@ void Post::encode_all() {
   const bool fits = datagrams <= outbox_.capacity();
   const std::size_t first = fits ? outbox_.claim(datagrams) : 0;
   if (fits)
-    workers_.run(jobs_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
+    thread_pool_.parallel_for(jobs_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
       for (Job& job : std::span(jobs_).subspan(begin, end - begin))
         job.whole = encode(job, memory_[thread], [&](std::uint32_t part, const netio::Endpoint& to, const auto& bytes) {
                       outbox_.put(first + job.place + part, to, bytes);

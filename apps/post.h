@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/send_plan.h"
-#include "base/parallel.h"
 #include "base/reading.h"
+#include "base/thread_pool.h"
 #include "netio/outbox.h"
 #include "sensors/roster.h"
 #include "world/world.h"
@@ -88,7 +88,7 @@ class Post {
   const sensors::Roster& roster_;
   SendPlan plan_;
   netio::Outbox outbox_;
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
   std::map<std::uint8_t, std::vector<Stream>> streams_;  ///< by kind, per row of its group
   std::vector<Job> jobs_;
   std::vector<Memory> memory_;  ///< per thread

@@ -10,7 +10,7 @@
 #include "apps/robot_link.h"
 #include "apps/stop.h"
 #include "apps/wire_names.h"
-#include "base/contact.h"
+#include "base/contact_onset.h"
 #include "control/controllers.h"
 #include "netio/log.h"
 #include "scenarios/robot_body.h"
@@ -80,7 +80,7 @@ class RobotProcess {
   std::uint64_t stops_ = 0;  ///< times that it came to that
   netio::Log log_;
   std::uint64_t steps_ = 0;
-  base::Contact contact_;
+  base::ContactOnset contact_;
   std::uint64_t contacts_ = 0;
   ErrorFacts error_;
   std::vector<base::ReadingBlock> readings_;

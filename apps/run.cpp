@@ -20,7 +20,7 @@
 #include "apps/rates.h"
 #include "apps/stop.h"
 #include "apps/tradeoff.h"
-#include "base/contact.h"
+#include "base/contact_onset.h"
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "netio/token.h"
@@ -153,7 +153,7 @@ int run(const Options& options) {
       advised(world, options, [&] { return scenarios::Simulation(world, device, simulation_options(world, options)); });
   if (!simulation.warnings().empty()) tell_warnings(simulation.warnings().front().file, simulation.warnings());
   ControlTally tally(simulation, world.movers.size(), options.controller);
-  std::vector<base::Contact> contacts(world.movers.size());
+  std::vector<base::ContactOnset> contacts(world.movers.size());
   const std::string caster = raycast::caster_text(device.facts().software);
   Outputs outputs(world, roster, plan, caster, options);
   catch_stop_signals();

@@ -114,7 +114,7 @@ std::string text_of(const world::World& world, const sensors::Roster& roster) {
   text += row("extent", fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max));
   text += row("tick", fmt::format("{:g} s", world.interval));
   for (const auto& [type, count] : world.kept) text += row("kept as bodies", fmt::format("{} x {}", count, type));
-  text += row("hash", base::hash_text(world.hash));
+  text += row("hash", base::hash_hex(world.hash));
   text += row("warnings", fmt::format("{}", world.warnings.size()));
   return text;
 }
@@ -206,7 +206,7 @@ std::string text_of(const RunFacts& f) {
   text += row("  device", stage(f.farm.device_s));
   text += row("  collect", stage(f.farm.collect_s));
   text += row("  send, record", stage(f.out_s));
-  text += row("hash of readings", base::hash_text(f.hash));
+  text += row("hash of readings", base::hash_hex(f.hash));
   return text;
 }
 

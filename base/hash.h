@@ -11,6 +11,6 @@ namespace sf::base {
 std::uint64_t hash_bytes(const void* data, std::size_t size, std::uint64_t seed = 0);
 
 /// 16 lower-case hexadecimal digits.
-std::string hash_text(std::uint64_t hash);
+std::string hash_hex(std::uint64_t hash);
 
 }  // namespace sf::base

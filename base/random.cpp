@@ -17,7 +17,7 @@ std::uint32_t fold(std::uint64_t word) { return static_cast<std::uint32_t>(word 
 
 }  // namespace
 
-std::array<std::uint32_t, 4> random_words(const Draw& draw, std::uint32_t index) {
+std::array<std::uint32_t, 4> random_words(const RandomKey& draw, std::uint32_t index) {
   // The key takes the seed; the counter takes what is asked. A draw's 64-bit tick and its stream share a word each with
   // what stays small (sensor below 2^16, stream below 2^8).
   const philox4x32_key_t key = {{static_cast<std::uint32_t>(draw.seed), static_cast<std::uint32_t>(draw.seed >> 32)}};
@@ -27,12 +27,12 @@ std::array<std::uint32_t, 4> random_words(const Draw& draw, std::uint32_t index)
   return {words.v[0], words.v[1], words.v[2], words.v[3]};
 }
 
-std::array<double, 2> random_uniform(const Draw& draw, std::uint32_t index) {
+std::array<double, 2> random_uniform(const RandomKey& draw, std::uint32_t index) {
   const auto w = random_words(draw, index);
   return {open_unit(w[0], w[1]), open_unit(w[2], w[3])};
 }
 
-std::array<double, 2> random_normal(const Draw& draw, std::uint32_t index) {
+std::array<double, 2> random_normal(const RandomKey& draw, std::uint32_t index) {
   const auto u = random_uniform(draw, index);
   const double radius = std::sqrt(-2.0 * std::log(u[0]));
   const double angle = 2.0 * M_PI * u[1];

@@ -9,8 +9,8 @@
 namespace sf::base {
 
 /// Which question is asked. Two streams with one key never share a number.
-enum class Stream : std::uint32_t {
-  place = 1,
+enum class RandomStream : std::uint32_t {
+  placement = 1,
   wander = 2,
   range_noise = 3,
   angle_noise = 4,
@@ -24,21 +24,21 @@ enum class Stream : std::uint32_t {
 };
 
 /// Names one draw: all five fields matter.
-struct Draw {
+struct RandomKey {
   std::uint64_t seed = 0;
-  Stream stream = Stream::place;
+  RandomStream stream = RandomStream::placement;
   std::uint32_t a = 0;  ///< e.g. robot
   std::uint32_t b = 0;  ///< e.g. sensor or attempt
   std::uint64_t c = 0;  ///< e.g. tick; the beam goes into `index` below
 };
 
 /// Four independent 32-bit words for draw `draw`, element `index`.
-std::array<std::uint32_t, 4> random_words(const Draw& draw, std::uint32_t index);
+std::array<std::uint32_t, 4> random_words(const RandomKey& draw, std::uint32_t index);
 
 /// Two uniform numbers in (0, 1), never 0 and never 1.
-std::array<double, 2> random_uniform(const Draw& draw, std::uint32_t index);
+std::array<double, 2> random_uniform(const RandomKey& draw, std::uint32_t index);
 
 /// Two independent standard normal numbers (Box-Muller).
-std::array<double, 2> random_normal(const Draw& draw, std::uint32_t index);
+std::array<double, 2> random_normal(const RandomKey& draw, std::uint32_t index);
 
 }  // namespace sf::base

@@ -17,8 +17,8 @@ inline constexpr std::uint32_t kNoHit = 0xFFFFFFFFu;
 inline constexpr std::uint8_t kLaser = 1;
 
 /// Why an element's value may be wrong by more than its reading's bound.
-enum class Unsure : std::uint8_t {
-  no = 0,            ///< it is not
+enum class QualityFlag : std::uint8_t {
+  none = 0,          ///< it is not
   not_cast = 1,      ///< no beam was cast for it: it lies between those that were
   grazing = 2,       ///< its beam meets a surface at too small an angle
   not_straight = 3,  ///< a lane edge whose points do not show one straight line
@@ -39,10 +39,10 @@ struct ReadingBlock {
       hits;                 ///< laser: model row that each beam met, or kNoHit; empty where not known (interpolated)
   std::uint32_t flags = 0;  ///< what a kind has to say beside its values; which bits, its header tells
   std::uint8_t mode = 0;    ///< accuracy it was measured with: row of the kind's modes
-  /// [unit of the first column] largest error of that column without noise, where `unsure` says nothing
+  /// [unit of the first column] largest error of that column without noise, where `quality` says nothing
   /// (sensors/accuracy.h); infinite: none is stated.
   double bound = std::numeric_limits<double>::infinity();
-  std::span<const Unsure> unsure;  ///< one per element; empty: the bound holds for all
+  std::span<const QualityFlag> quality;  ///< one per element; empty: the bound holds for all
 };
 
 }  // namespace sf::base

@@ -9,22 +9,22 @@ namespace sf::base {
 
 /// The state of one mover at one time.
 struct Report {
-  std::uint32_t mover = 0;    ///< row in `world::World::movers`
-  std::int64_t time = 0;      ///< [ns] simulated time (or the sender's clock) at which the state was true
-  Pose X_WM;                  ///< the mover's frame in the world; finite
-  Twist velocity;             ///< in the mover's own frame; zero where unknown
-  std::uint32_t touched = 0;  ///< bit k: something presses on the body in sector k, see kTouchSectors
+  std::uint32_t mover = 0;         ///< row in `world::World::movers`
+  std::int64_t time = 0;           ///< [ns] simulated time (or the sender's clock) at which the state was true
+  Pose X_WM;                       ///< the mover's frame in the world; finite
+  Twist velocity;                  ///< in the mover's own frame; zero where unknown
+  std::uint32_t contact_mask = 0;  ///< bit k: something presses on the body in sector k, see kContactSectors
 };
 
-/// Sector k of a body are the bearings from k to k + 1 times 2 pi / kTouchSectors, counter-clockwise from its x axis.
-inline constexpr std::uint32_t kTouchSectors = 32;
+/// Sector k of a body are the bearings from k to k + 1 times 2 pi / kContactSectors, counter-clockwise from its x axis.
+inline constexpr std::uint32_t kContactSectors = 32;
 
-inline constexpr std::uint32_t kNobody = 0xFFFFFFFFu;
+inline constexpr std::uint32_t kNoId = 0xFFFFFFFFu;
 
 /// What a robot tells others beside its state.
 struct Intent {
-  std::uint32_t follows = kNobody;     ///< id of the robot it follows
-  std::uint32_t checkpoint = kNobody;  ///< id of the checkpoint it heads for
+  std::uint32_t follows = kNoId;     ///< id of the robot it follows
+  std::uint32_t checkpoint = kNoId;  ///< id of the checkpoint it heads for
   bool docking = false;
 };
 

@@ -19,7 +19,7 @@ struct Clearances {
   std::vector<float> clear;
 };
 
-Clearances measure(const world::World& world, double cell, base::Workers& workers) {
+Clearances measure(const world::World& world, double cell, base::ThreadPool& thread_pool) {
   Clearances c;
   c.cell = static_cast<float>(cell);
   c.x = static_cast<float>(world.extent.x_min - cell);
@@ -27,7 +27,7 @@ Clearances measure(const world::World& world, double cell, base::Workers& worker
   c.columns = static_cast<int>((world.extent.x_max - c.x) / cell) + 2;
   c.rows = static_cast<int>((world.extent.y_max - c.y) / cell) + 2;
   c.clear.resize(static_cast<std::size_t>(c.columns) * c.rows);
-  workers.run(c.clear.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
+  thread_pool.parallel_for(c.clear.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const auto column = static_cast<double>(i % c.columns), row = static_cast<double>(i / c.columns);
       const glm::dvec2 middle{c.x + (column + 0.5) * cell, c.y + (row + 0.5) * cell};
@@ -66,13 +66,13 @@ class HostCaster : public Caster {
  protected:
   template <class One>
   void each(One one) {
-    workers_.run(scans_.robots(), kRobotsPerPiece, [&](std::size_t first, std::size_t last, unsigned) {
+    thread_pool_.parallel_for(scans_.robots(), kRobotsPerPiece, [&](std::size_t first, std::size_t last, unsigned) {
       for (std::size_t i = first; i < last; ++i) one(i);
     });
   }
   const Scans& scans_;
   Results<float> results_;
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
 
  private:
   std::string name_;
@@ -82,7 +82,7 @@ class MarchCaster final : public HostCaster {
  public:
   MarchCaster(const Scans& scans, double cell)
       : HostCaster(scans, fmt::format("distance field, {:g} mm", 1e3 * cell)),
-        clear_(measure(scans.world, cell, workers_)) {}
+        clear_(measure(scans.world, cell, thread_pool_)) {}
 
   void cast(std::size_t round) override {
     const auto range_max = static_cast<float>(scans_.laser.range_max);

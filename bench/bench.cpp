@@ -85,8 +85,8 @@ void tell(benchmark::State& state, const std::vector<Cost>& costs, std::size_t r
   state.counters["Mrays/s"] = benchmark::Counter(1e-6 * static_cast<double>(rays * k), benchmark::Counter::kIsRate,
                                                  benchmark::Counter::kIs1000);
   state.counters["cpu_ms"] = 1e3 * cpu_s / static_cast<double>(k);
-  state.SetLabel(fmt::format("max error {:.1e} m of {} beams, hash {}", verdict.max_error_m, verdict.beams,
-                             base::hash_text(hash)));
+  state.SetLabel(
+      fmt::format("max error {:.1e} m of {} beams, hash {}", verdict.max_error_m, verdict.beams, base::hash_hex(hash)));
 }
 
 void tell_entrant(benchmark::State& state, Session& session, const ScanCase& c, std::size_t which) {

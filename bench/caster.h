@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "bench/scans.h"
 
 namespace sf::bench {

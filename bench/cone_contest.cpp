@@ -134,7 +134,7 @@ void write_cones(const std::vector<ConeOutcome>& outcomes, const std::string& fo
       text += fmt::format("\"{}\",{},{},{},{},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.3g},{},{}\n", e.method, o.robots,
                           o.cones, o.rays, e.turns.size(), 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
                           1e-6 * static_cast<double>(o.rays) / e.typical.wall_s, e.ratio, e.cpu_ratio, e.worst,
-                          o.judged, base::hash_text(e.hash));
+                          o.judged, base::hash_hex(e.hash));
   write(folder + "/cones.csv", text);
 }
 

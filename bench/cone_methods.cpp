@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "bench/farm_rounds.h"
 
 namespace sf::bench {
@@ -41,15 +41,17 @@ class PlainCones final : public ConeMethod {
       beams_.push_back({std::cos(bearing), std::sin(bearing)});
     }
     values_.assign(arrays_.size() * transducers_, kNaN);
-    ranges_.resize(workers_.threads(), std::vector<double>(array.rays));
-    hits_.resize(workers_.threads(), std::vector<std::uint32_t>(array.rays));
+    ranges_.resize(thread_pool_.threads(), std::vector<double>(array.rays));
+    hits_.resize(thread_pool_.threads(), std::vector<std::uint32_t>(array.rays));
   }
   std::string name() const override { return name_; }
   void poison() override { std::fill(values_.begin(), values_.end(), kNaN); }
   void hear(std::size_t round) override {
-    workers_.run(arrays_.size(), kRobotsPerPiece, [&](std::size_t first, std::size_t last, unsigned thread) {
-      for (std::size_t i = first; i < last; ++i) hear_ring(i, scene_.rounds[round][i], thread);
-    });
+    thread_pool_.parallel_for(arrays_.size(), kRobotsPerPiece,
+                              [&](std::size_t first, std::size_t last, unsigned thread) {
+                                for (std::size_t i = first; i < last; ++i)
+                                  hear_ring(i, scene_.rounds[round][i], thread);
+                              });
   }
   double range(std::size_t robot, std::size_t transducer) const override {
     return values_[robot * transducers_ + transducer];
@@ -73,7 +75,7 @@ class PlainCones final : public ConeMethod {
   std::size_t transducers_;
   SegmentGrid grid_;
   std::vector<glm::dvec2> beams_;
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
   std::vector<double> values_;
   std::vector<std::vector<double>> ranges_;  ///< scratch per thread
   std::vector<std::vector<std::uint32_t>> hits_;

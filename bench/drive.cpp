@@ -28,7 +28,7 @@ farm::FarmStats operator-(const farm::FarmStats& p, const farm::FarmStats& q) {
 Drive::Drive(const world::World& world, gpu::Device& device)
     : world_(world),
       farm_(world, device, {.give_again = false}),
-      fleet_(world, &workers_),
+      fleet_(world, &thread_pool_),
       commands_(world.movers.size()),
       interval_(std::llround(1e9 / world.movers[0].lasers[0].rate)) {
   farm_.hear_all();
@@ -51,7 +51,7 @@ void Drive::tick(bool wander) {
 
 /// Every robot has one laser here, so that its reading is the row of its number.
 void Drive::decide() {
-  workers_.run(readings_.size(), 16, [this](std::size_t first, std::size_t end, unsigned) {
+  thread_pool_.parallel_for(readings_.size(), 16, [this](std::size_t first, std::size_t end, unsigned) {
     for (const base::ReadingBlock& reading : readings_.subspan(first, end - first)) {
       const std::uint32_t row = reading.mover;
       const control::Input input{time_, fleet_.reports()[row], {&reading, 1}, fleet_.contacts()[row] != 0};

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/parallel.h"
 #include "base/reading.h"
+#include "base/thread_pool.h"
 #include "bench/cost.h"
 #include "bench/judge.h"
 #include "control/controller.h"
@@ -49,7 +49,7 @@ class Drive {
   void decide();
 
   const world::World& world_;
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
   farm::Farm farm_;
   robots::Fleet fleet_;
   std::vector<std::unique_ptr<control::Controller>> controllers_;  ///< one per mover

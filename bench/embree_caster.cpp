@@ -25,7 +25,7 @@ class EmbreeCaster final : public Caster {
   }
   void poison() override { results_.poison(); }
   void cast(std::size_t round) override {
-    workers_.run(scans_.robots(), kRobotsPerPiece, [&](std::size_t first, std::size_t last, unsigned) {
+    thread_pool_.parallel_for(scans_.robots(), kRobotsPerPiece, [&](std::size_t first, std::size_t last, unsigned) {
       for (std::size_t i = first; i < last; ++i)
         use_.packets ? cast_packets(i, scans_.X_WS(round, i)) : cast_single(i, scans_.X_WS(round, i));
     });
@@ -49,7 +49,7 @@ class EmbreeCaster final : public Caster {
   RTCScene scene_;
   std::vector<std::uint32_t> models_;     ///< by wall
   std::vector<float> beams_x_, beams_y_;  ///< padded to whole packets with the last beam
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
 };
 
 EmbreeCaster::EmbreeCaster(const Scans& scans, const EmbreeUse& use)

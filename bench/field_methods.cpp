@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "bench/farm_rounds.h"
 #include "sensors/magnetometer.h"
 
@@ -40,15 +40,17 @@ class PlainMethod final : public FieldMethod {
       reach_ = std::max(reach_, std::hypot(X_SE.x, X_SE.y));
     }
     reach_ += 1.000001 * scene.world.magnet_cutoff;
-    spans_.resize(workers_.threads());
+    spans_.resize(thread_pool_.threads());
     for (auto& spans : spans_) spans.resize(magnets_.grid.most_spans(reach_));
   }
   std::string name() const override { return name_; }
   void poison() override { std::fill(values_.begin(), values_.end(), FieldVector{kNaN, kNaN, kNaN}); }
   void sum(std::size_t turn) override {
-    workers_.run(scene_.rounds[turn].size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
-      for (std::size_t i = first; i < last; ++i) sum_array(i, scene_.rounds[turn][i], spans_[thread]);
-    });
+    thread_pool_.parallel_for(scene_.rounds[turn].size(), 16,
+                              [&](std::size_t first, std::size_t last, unsigned thread) {
+                                for (std::size_t i = first; i < last; ++i)
+                                  sum_array(i, scene_.rounds[turn][i], spans_[thread]);
+                              });
   }
   FieldVector value(std::size_t robot, std::size_t e) const override { return values_[robot * kArrayElements + e]; }
 
@@ -68,7 +70,7 @@ class PlainMethod final : public FieldMethod {
   std::string name_;
   SumField sum_;
   MagnetColumns magnets_;
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
   std::vector<base::Pose> X_ME_;
   double reach_ = 0.0;                                   ///< [m]
   std::vector<std::vector<sensors::MagnetSpan>> spans_;  ///< scratch per thread

@@ -19,7 +19,7 @@ class GridCaster final : public Caster {
   std::string name() const override { return name_; }
   void poison() override { results_.poison(); }
   void cast(std::size_t round) override {
-    workers_.run(scans_.robots(), kRobotsPerPiece, [&](std::size_t first, std::size_t last, unsigned) {
+    thread_pool_.parallel_for(scans_.robots(), kRobotsPerPiece, [&](std::size_t first, std::size_t last, unsigned) {
       for (std::size_t i = first; i < last; ++i)
         walk_(grid_, scans_.X_WS(round, i), scans_.beams, scans_.laser.range_max, results_.ranges(i), results_.hits(i));
     });
@@ -34,7 +34,7 @@ class GridCaster final : public Caster {
   Walk walk_;
   Results<double> results_;
   SegmentGrid grid_;
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
 };
 
 }  // namespace

@@ -114,7 +114,7 @@ void write_lanes(const std::vector<LaneOutcome>& outcomes, const std::string& fo
       text += fmt::format("\"{}\",\"{}\",{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{},{}\n",
                           o.resolution > 0.0 ? fmt::format("raster of {:g} m", o.resolution) : "exact", e.method,
                           o.sensors, o.rays, o.seen, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio,
-                          e.cpu_ratio, e.worst, e.alone, base::hash_text(e.hash));
+                          e.cpu_ratio, e.worst, e.alone, base::hash_hex(e.hash));
   write(folder + "/lanes.csv", text);
 }
 

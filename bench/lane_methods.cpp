@@ -12,7 +12,7 @@ class FarmLanes final : public LaneReader {
  public:
   FarmLanes(const LaneScene& scene, gpu::Device& device)
       : scene_(scene),
-        site_{scene.world, device, workers_, 0, true, {}},
+        site_{scene.world, device, thread_pool_, 0, true, {}},
         instruments_(sensors::laneedge_kind.make(site_)),
         batch_(device) {
     for (std::uint32_t row = 0; row < scene.world.movers.size(); ++row) due_.push_back({row, 0});
@@ -44,7 +44,7 @@ class FarmLanes final : public LaneReader {
 
  private:
   const LaneScene& scene_;
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
   sensors::Site site_;
   std::unique_ptr<sensors::Instruments> instruments_;
   gpu::Batch batch_;
@@ -63,7 +63,7 @@ class PlainLanes final : public LaneReader {
   void poison() override { readings_.assign(readings_.size(), {kPoisonDistance, 0, 0, 0}); }
   void read(std::size_t round) override {
     const LaneRead one = native_ ? read_lane_native : read_lane_portable;
-    workers_.run(readings_.size(), 32, [&](std::size_t first, std::size_t last, unsigned) {
+    thread_pool_.parallel_for(readings_.size(), 32, [&](std::size_t first, std::size_t last, unsigned) {
       for (std::size_t i = first; i < last; ++i)
         one(job_, known_.rows[i], base::compose(scene_.rounds[round][i], known_.X_MS[i]), readings_[i]);
     });
@@ -75,7 +75,7 @@ class PlainLanes final : public LaneReader {
   const LaneKnowledge& known_;
   LaneJob job_;
   bool native_;
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
   std::vector<sensors::EdgeReading> readings_;
 };
 

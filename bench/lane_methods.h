@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "bench/lane_scene.h"
 #include "bench/lane_walk.h"
 #include "gpu/device.h"

@@ -156,7 +156,7 @@ std::string large_fleet_table(const std::vector<LargeFleetResult>& results) {
         r.robots, 1e3 * r.p50_s, 1e3 * r.p99_s, 1e3 * median(r.ticks).cpu_s, 1e3 * r.move_s, 1e3 * r.stages.place_s / n,
         1e3 * r.stages.lists_s / n, 1e3 * r.stages.device_s / n, 1e3 * r.stages.collect_s / n, 1e3 * r.encode_s,
         1e3 * r.send_s, static_cast<double>(r.datagrams) / n, 1e-6 * static_cast<double>(r.bytes) / n,
-        r.dropped + r.datagrams - r.received, base::hash_text(r.hash));
+        r.dropped + r.datagrams - r.received, base::hash_hex(r.hash));
   }
   return text;
 }
@@ -173,7 +173,7 @@ void write_large_fleet(const std::vector<LargeFleetResult>& results, const std::
         r.robots, r.ticks.size(), 1e3 * r.p50_s, 1e3 * r.p99_s, 1e3 * median(r.ticks).cpu_s, 1e3 * r.move_s,
         1e3 * r.stages.place_s / n, 1e3 * r.stages.lists_s / n, 1e3 * r.stages.device_s / n,
         1e3 * r.stages.collect_s / n, 1e3 * r.encode_s, 1e3 * r.send_s, static_cast<double>(r.datagrams) / n,
-        static_cast<double>(r.bytes) / n, r.dropped, r.datagrams - r.received, base::hash_text(r.hash));
+        static_cast<double>(r.bytes) / n, r.dropped, r.datagrams - r.received, base::hash_hex(r.hash));
   }
   write(folder + "/large_fleet.csv", text);
 }

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "base/hash.h"
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "bench/farm_rounds.h"
 #include "bench/report.h"
 #include "bench/scans.h"
@@ -69,7 +69,7 @@ class Mapper {
 class FarmMapper : public Mapper {
  public:
   FarmMapper(gpu::Device& device, const std::vector<sensors::MapPlan>& plans)
-      : batch_(device, workers_, plans, device.facts().software ? sensors::kFarScan : maps::kFarthestRange) {
+      : batch_(device, thread_pool_, plans, device.facts().software ? sensors::kFarScan : maps::kFarthestRange) {
     for (std::uint32_t i = 0; i < plans.size(); ++i) wanted_.push_back(i);
   }
   std::string name() const override { return "farm"; }
@@ -84,7 +84,7 @@ class FarmMapper : public Mapper {
   }
 
  private:
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
   sensors::MapBatch batch_;
   std::vector<std::uint32_t> wanted_;
   std::vector<sensors::MapScan> scans_;
@@ -99,12 +99,12 @@ class PlainMapper : public Mapper {
       odds_.emplace_back(plan.grid, maps::OddsRule{});
     }
     beams_ = maps::beam_directions(plans[0].fov, plans[0].samples);
-    ends_.resize(workers_.threads(), std::vector<std::uint32_t>(beams_.size()));
-    covered_.resize(workers_.threads(), maps::Grid(plans[0].grid));  // of one size with all
+    ends_.resize(thread_pool_.threads(), std::vector<std::uint32_t>(beams_.size()));
+    covered_.resize(thread_pool_.threads(), maps::Grid(plans[0].grid));  // of one size with all
   }
   std::string name() const override { return "plain C++ mapper, -O3"; }
   void update(const Round& round) override {
-    workers_.run(plans_.size(), 4, [&](std::size_t first, std::size_t last, unsigned thread) {
+    thread_pool_.parallel_for(plans_.size(), 4, [&](std::size_t first, std::size_t last, unsigned thread) {
       for (std::size_t i = first; i < last; ++i) {
         const maps::ScanView view{round.X_WS[i], round.ranges[i], beams_, plans_[i].range_min, plans_[i].range_max};
         const maps::ScanEnds scan = maps::trace_ends(plans_[i].grid, view, ends_[thread]);
@@ -118,7 +118,7 @@ class PlainMapper : public Mapper {
   }
 
  private:
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
   const std::vector<sensors::MapPlan>& plans_;
   bool weighs_;
   std::vector<maps::Grid> grids_;
@@ -178,7 +178,7 @@ void write_maps(const std::vector<MapOutcome>& outcomes, const std::string& fold
     for (const MapEntrant& e : o.entrants)
       text += fmt::format("{},{},{:g},{},\"{}\",{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", o.robots, o.beams, o.range_m,
                           o.weighs ? 1 : 0, e.method, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio,
-                          e.cpu_ratio, e.different, base::hash_text(e.hash));
+                          e.cpu_ratio, e.different, base::hash_hex(e.hash));
   write(folder + "/maps.csv", text);
 }
 

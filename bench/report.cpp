@@ -30,7 +30,7 @@ std::string scans_csv(const std::vector<Outcome>& contests) {
       text += fmt::format("{},{},{},{},{},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.3g},{}\n", quoted(o.scene),
                           quoted(e.method), o.robots, o.rays, o.range_m, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
                           mrays_per_s(o.rays, e.typical), e.ratio, e.cpu_ratio, e.verdict.max_error_m,
-                          base::hash_text(e.hash));
+                          base::hash_hex(e.hash));
   return text;
 }
 
@@ -63,7 +63,7 @@ std::string ticks_csv(const std::vector<DriveResult>& drives) {
         "{:.1f},{:.3g},{}\n",
         quoted(d.scene), d.what, d.robots, d.rays, d.range_m, 1e3 * d.typical.wall_s, 1e3 * d.typical.cpu_s,
         mrays_per_s(d.rays, d.typical), d.interval_s / d.typical.wall_s, s.move, s.place, s.lists, s.device, s.collect,
-        s.decide, s.doubts, s.cells, d.verdict.max_error_m, base::hash_text(d.hash));
+        s.decide, s.doubts, s.cells, d.verdict.max_error_m, base::hash_hex(d.hash));
   }
   return text;
 }
@@ -92,7 +92,7 @@ std::string tables(const Book& book) {
     for (const Entrant& e : o.entrants)
       text += fmt::format("{:<32} {:>9.2f} {:>9.2f} {:>8.1f} {:>7.2f} {:>7.2f} {:>10.1e}  {}\n", e.method,
                           1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, mrays_per_s(o.rays, e.typical), e.ratio,
-                          e.cpu_ratio, e.verdict.max_error_m, base::hash_text(e.hash));
+                          e.cpu_ratio, e.verdict.max_error_m, base::hash_hex(e.hash));
   }
   if (!book.drives.empty())
     text += fmt::format(

@@ -14,7 +14,7 @@ constexpr double kBehind = 1.2;  // [m] who is farther off has fallen behind
 
 /// Another follower of the same leader.
 std::optional<std::uint32_t> newcomer(const Company& company, const std::vector<Driver>& drivers) {
-  if (company.leader == base::kNobody || company.merges) return std::nullopt;
+  if (company.leader == base::kNoId || company.merges) return std::nullopt;
   for (std::uint32_t row = 1; row < drivers.size(); ++row)
     if (drivers[row].follows == company.leader) return row;
   return std::nullopt;
@@ -50,7 +50,7 @@ std::optional<std::uint32_t> heading_for(const Corridors& corridors, const Drive
 
 void keep_company(Company& company, const Corridors& corridors, const std::vector<Driver>& drivers,
                   const std::vector<Ahead>& ahead) {
-  if (company.leader == base::kNobody || ahead.empty()) return;
+  if (company.leader == base::kNoId || ahead.empty()) return;
   const Driver& next = drivers[ahead.front().row];
   if (company.merges) {
     if (next.id == company.leader && on_one_lane(corridors, drivers.front(), next)) company.merges = false;

@@ -18,8 +18,8 @@ namespace sf::control {
 
 /// Whom a robot follows.
 struct Company {
-  std::uint32_t leader = base::kNobody;  ///< id; nobody: it goes its own way
-  bool merges = false;                   ///< it still has to come in behind the leader
+  std::uint32_t leader = base::kNoId;  ///< id; nobody: it goes its own way
+  bool merges = false;                 ///< it still has to come in behind the leader
 };
 
 /// The row of a robot among the drivers; nothing when it is not in sight.

@@ -14,7 +14,7 @@ constexpr double kStanding = 0.01;  // [m/s]
 
 std::uint32_t lot(std::uint32_t id, std::int64_t turn) {
   return base::random_words(
-      {.stream = base::Stream::decision, .a = id, .b = 0x6C6F74u, .c = static_cast<std::uint64_t>(turn)}, 0)[0];
+      {.stream = base::RandomStream::decision, .a = id, .b = 0x6C6F74u, .c = static_cast<std::uint64_t>(turn)}, 0)[0];
 }
 
 }  // namespace
@@ -127,7 +127,7 @@ void RightOfWay::remember(Driver& driver, std::int64_t time) {
 
 bool RightOfWay::precedes(const Driver& other, const Approach& own) const {
   const Driver& self = drivers_.front();
-  if (self.follows != base::kNobody) {
+  if (self.follows != base::kNoId) {
     if (other.id == self.follows) return true;
     if (other.follows == self.follows) return !merges_;
   }

@@ -45,7 +45,7 @@ struct Approach {
 /// A robot on the roads.
 struct Driver {
   std::uint32_t id = 0;
-  std::uint32_t follows = base::kNobody;
+  std::uint32_t follows = base::kNoId;
   Pose X_WM;
   glm::dvec2 velocity;  ///< [m/s] world frame
   double speed = 0.0;   ///< [m/s] >= 0

@@ -62,13 +62,13 @@ base::Twist Route::step(const Input& input) {
   limit_by_others(limit);
   const bool stands = limit.speed < kStands;
   why_ = stands ? limit.why : "";
-  who_ = stands ? limit.who : base::kNobody;
+  who_ = stands ? limit.who : base::kNoId;
   return drive(input, limit.speed);
 }
 
 std::string Route::reason() const {
   if (done_) return "";
-  if (who_ == base::kNobody) return started_ ? why_ : "the start signal was not given";
+  if (who_ == base::kNoId) return started_ ? why_ : "the start signal was not given";
   for (const world::Mover& mover : site_.world.movers)
     if (!mover.is_tag && mover.id == who_) return fmt::format("'{}' {}", mover.name, why_);
   return fmt::format("robot {} {}", who_, why_);

@@ -50,7 +50,7 @@ class Route : public Controller, public StatesReason {
     double speed;
     double dt;
     const char* why = "";
-    std::uint32_t who = base::kNobody;               ///< id of the robot that does
+    std::uint32_t who = base::kNoId;                 ///< id of the robot that does
     void stop_in(double distance, const char* why);  ///< [m] before something that it must not pass
   };
   void start(const Input& input);
@@ -94,7 +94,7 @@ class Route : public Controller, public StatesReason {
   std::int64_t last_ = -1;  ///< [ns] time of the last step
   double offset_ = 0.0;     ///< [m]
   const char* why_ = "";    ///< it stands, by the last step's limits
-  std::uint32_t who_ = base::kNobody;
+  std::uint32_t who_ = base::kNoId;
   double stopped_at_ = -HUGE_VAL;     ///< [m] along the route: the stop line that it stopped at
   std::int64_t standing_since_ = -1;  ///< [ns] at a stop line; -1: it is not
   std::int64_t blocked_since_ = -1;   ///< [ns] that a full lane keeps it waiting; -1: it does not

@@ -103,7 +103,8 @@ void RouteGoals::read_park(const Site& site, Settings& settings) {
 const world::RoadCheckpoint* RouteGoals::at(std::uint64_t k) const {
   if (tour_) {
     if (lots_.empty()) return nullptr;
-    const base::Draw draw{.seed = seed_, .stream = base::Stream::decision, .a = robot_, .b = 0x746F7572u, .c = k};
+    const base::RandomKey draw{
+        .seed = seed_, .stream = base::RandomStream::decision, .a = robot_, .b = 0x746F7572u, .c = k};
     const double u = base::random_uniform(draw, 0)[0];
     const auto i = static_cast<std::size_t>(u * static_cast<double>(lots_.size()));
     return &lots_[std::min(i, lots_.size() - 1)];

@@ -22,7 +22,7 @@ void Route::Limit::stop_in(double distance, const char* reason) {
   if (v >= speed) return;
   speed = v;
   why = reason;
-  who = base::kNobody;
+  who = base::kNoId;
 }
 
 void Route::limit_by_bends(Limit& limit) const {

@@ -196,8 +196,8 @@ std::vector<Pose> start_poses(const world::RoadNetwork& roads, std::size_t count
   }
   std::vector<Pose> poses;
   for (std::uint64_t draw = 0; poses.size() < count && !open.empty(); ++draw) {
-    const double u =
-        base::random_uniform({.seed = seed, .stream = base::Stream::place, .b = 0x726F6164u, .c = draw}, 0)[0];
+    const double u = base::random_uniform(
+        {.seed = seed, .stream = base::RandomStream::placement, .b = 0x726F6164u, .c = draw}, 0)[0];
     const auto at = static_cast<std::size_t>(u * static_cast<double>(open.size()));
     const Pose pose = open[std::min(at, open.size() - 1)];
     poses.push_back(pose);

@@ -90,7 +90,7 @@ void Route::pass_goals(const Input& input) {
 }
 
 void Route::chase() {
-  if (company_.leader == base::kNobody || (goals_ && company_.merges)) return;
+  if (company_.leader == base::kNoId || (goals_ && company_.merges)) return;
   const auto row = row_of(right_of_way_.drivers(), company_.leader);
   const auto node = row ? heading_for(*corridors_, right_of_way_.drivers()[*row]) : std::nullopt;
   if (!node) return search();
@@ -146,7 +146,7 @@ void Route::give_up_change(const Input& input) {
 }
 
 void Route::consider_passing(const Input& input) {
-  if (!settings_.pass || company_.leader != base::kNobody || progress_.s() < pass_until_) return;
+  if (!settings_.pass || company_.leader != base::kNoId || progress_.s() < pass_until_) return;
   const bool behind = !ahead_.empty() && ahead_.front().free < 0.5 && ahead_.front().speed > 0.02 &&
                       ahead_.front().speed < 0.8 * settings_.speed;
   if (!behind) {

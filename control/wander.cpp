@@ -11,9 +11,9 @@ namespace sf::control {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-/// Bits of `Report::touched` from 90 degrees to the left over the rear to 90 degrees to the right.
+/// Bits of `Report::contact_mask` from 90 degrees to the left over the rear to 90 degrees to the right.
 constexpr std::uint32_t kRear = 0x00FFFF00u;
-static_assert(base::kTouchSectors == 32);
+static_assert(base::kContactSectors == 32);
 
 }  // namespace
 
@@ -33,7 +33,7 @@ Wander::Wander(const world::Mover& mover, std::uint32_t robot, std::uint64_t see
     : surroundings_(mover), settings_(wander_settings(mover, surroundings_.sight())), robot_(robot), seed_(seed) {}
 
 double Wander::random() {
-  return base::random_uniform({.seed = seed_, .stream = base::Stream::wander, .a = robot_, .c = draws_++}, 0)[0];
+  return base::random_uniform({.seed = seed_, .stream = base::RandomStream::wander, .a = robot_, .c = draws_++}, 0)[0];
 }
 
 base::Twist Wander::step(const Input& input) {
@@ -54,7 +54,7 @@ base::Twist Wander::step(const Input& input) {
 
 void Wander::choose(const Input& input, const Clearance& clearance) {
   // Pressed from behind alone: backing off would go on pressing.
-  const bool from_behind = input.state.touched != 0 && (input.state.touched & ~kRear) == 0;
+  const bool from_behind = input.state.contact_mask != 0 && (input.state.contact_mask & ~kRear) == 0;
   if (input.contact && from_behind) return leave_behind(clearance);
   // Met something: away from it first, then some random angle to the side.
   if (input.contact) {

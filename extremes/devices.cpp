@@ -14,7 +14,9 @@ namespace {
 constexpr double kCount = 1e-4;  ///< [m] of the laser's wire
 constexpr std::uint64_t kSeed = 11;
 
-double random(std::uint32_t index) { return base::random_uniform({kSeed, base::Stream::place, 0, 0, index}, 0)[0]; }
+double random(std::uint32_t index) {
+  return base::random_uniform({kSeed, base::RandomStream::placement, 0, 0, index}, 0)[0];
+}
 
 /// Blocks at any angle and robots between and upon them, `far` from the origin.
 world::World crowd(double far, const world::Laser& laser) {

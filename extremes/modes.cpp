@@ -11,9 +11,11 @@ namespace sf::extremes {
 
 namespace {
 
-using base::Unsure;
+using base::QualityFlag;
 
-double random(std::uint32_t index) { return base::random_uniform({17, base::Stream::place, 0, 0, index}, 0)[0]; }
+double random(std::uint32_t index) {
+  return base::random_uniform({17, base::RandomStream::placement, 0, 0, index}, 0)[0];
+}
 
 /// A room with blocks, and eyes somewhere in it, of some width somewhere.
 world::World room(double far, double width, std::uint32_t samples) {
@@ -31,8 +33,8 @@ world::World room(double far, double width, std::uint32_t samples) {
   return world;
 }
 
-Unsure unsure_of(const base::ReadingBlock& reading, std::size_t i) {
-  return reading.unsure.empty() ? Unsure::no : reading.unsure[i];
+QualityFlag quality_of(const base::ReadingBlock& reading, std::size_t i) {
+  return reading.quality.empty() ? QualityFlag::none : reading.quality[i];
 }
 
 void stated_bounds(Lab& lab, Checks& checks) {
@@ -44,7 +46,7 @@ void stated_bounds(Lab& lab, Checks& checks) {
         const Look look = lab.look(std::move(world));
         for (const base::ReadingBlock& r : look.readings)
           for (std::uint32_t i = 0; i < r.values.size(); ++i) {
-            if (unsure_of(r, i) != Unsure::no) continue;
+            if (quality_of(r, i) != QualityFlag::none) continue;
             const world::Laser& laser = look.world->movers[r.mover].lasers[0];
             const Meeting met = first_met(look.world->walls, beam_of(r.X_WS, laser, i), laser.range_max);
             if (met.by_a_hair) continue;
@@ -65,7 +67,7 @@ void skipped_beams(Lab& lab, Checks& checks) {
         for (std::uint32_t i = 0; i < samples; ++i) {
           const bool cast = i % every == 0 || i + 1 == samples;
           const auto what = fmt::format("{} of {} samples", mode, samples);
-          checks.holds((unsure_of(some.readings[k], i) == Unsure::not_cast) == !cast, what + ": the flag", i);
+          checks.holds((quality_of(some.readings[k], i) == QualityFlag::not_cast) == !cast, what + ": the flag", i);
           if (cast) checks.same(some.readings[k].values[i], all.readings[k].values[i], what, i);
         }
     }

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "farm/delivery.h"
 #include "farm/moves.h"
 #include "farm/station.h"
@@ -40,7 +40,7 @@ class Stopwatch {
 struct Farm::State {
   const world::World& world;
   gpu::Device& device;
-  base::Workers workers;
+  base::ThreadPool thread_pool;
   sensors::Roster roster;
   bool give_again;
   bool no_return_inf;
@@ -61,11 +61,11 @@ struct Farm::State {
   State(const world::World& w, gpu::Device& d, const FarmOptions& options)
       : world(w),
         device(d),
-        workers(options.threads),
+        thread_pool(options.threads),
         roster(w),
         give_again(options.give_again),
         no_return_inf(options.no_return_inf),
-        marked(workers.threads()),
+        marked(thread_pool.threads()),
         batch(device),
         delivery(roster),
         moves(w),
@@ -75,7 +75,7 @@ struct Farm::State {
       states.push_back({.mover = static_cast<std::uint32_t>(poses.size()), .X_WM = mover.X_WM});
       poses.push_back(mover.X_WM);
     }
-    const sensors::Site site{w, device, workers, options.seed, options.noise, options.true_poses, options.scene};
+    const sensors::Site site{w, device, thread_pool, options.seed, options.noise, options.true_poses, options.scene};
     for (const auto& group : roster.groups()) {
       device.owned_by(group.kind->name);
       stations.emplace_back(site, group);
@@ -181,7 +181,7 @@ std::span<const double> Farm::State::sent(const base::ReadingBlock& reading, uns
 
 void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
   hashes.resize(readings.size());
-  workers.run(readings.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
+  thread_pool.parallel_for(readings.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
     for (std::size_t i = first; i < last; ++i) {
       const base::ReadingBlock& r = readings[i];
       const std::uint64_t head[] = {r.mover, r.kind, r.sensor, r.sequence, static_cast<std::uint64_t>(r.time)};

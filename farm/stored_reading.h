@@ -19,10 +19,10 @@ class StoredReading {
     block_ = block;
     values_.assign(block.values.begin(), block.values.end());
     hits_.assign(block.hits.begin(), block.hits.end());
-    unsure_.assign(block.unsure.begin(), block.unsure.end());
+    quality_.assign(block.quality.begin(), block.quality.end());
     block_.values = values_;
     block_.hits = hits_;
-    block_.unsure = unsure_;
+    block_.quality = quality_;
   }
   /// Its spans live until another one is taken.
   const base::ReadingBlock& block() const { return block_; }
@@ -31,7 +31,7 @@ class StoredReading {
   base::ReadingBlock block_;
   std::vector<double> values_;
   std::vector<std::uint32_t> hits_;
-  std::vector<base::Unsure> unsure_;
+  std::vector<base::QualityFlag> quality_;
 };
 
 }  // namespace sf::farm

@@ -19,7 +19,7 @@ BeamPlan plan_beams(const world::Laser& laser, bool with_noise) {
   return plan;
 }
 
-void draw_turns(const world::Laser& laser, const BeamPlan& plan, const base::Draw& draw, std::span<double> turns) {
+void draw_turns(const world::Laser& laser, const BeamPlan& plan, const base::RandomKey& draw, std::span<double> turns) {
   for (std::size_t k = 0; k < turns.size(); ++k) {
     const double normal = base::random_normal(draw, plan.samples[k])[0];
     turns[k] = laser.noise.angle_sigma * std::clamp(normal, -kMostSigmas, kMostSigmas);

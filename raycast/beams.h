@@ -27,9 +27,9 @@ struct BeamPlan {
 
 BeamPlan plan_beams(const world::Laser& laser, bool with_noise);
 
-/// Angular noise: how far each cast beam is turned. @param draw of `base::Stream::angle_noise` @param turns [rad] one
-/// per cast beam
-void draw_turns(const world::Laser& laser, const BeamPlan& plan, const base::Draw& draw, std::span<double> turns);
+/// Angular noise: how far each cast beam is turned. @param draw of `base::RandomStream::angle_noise` @param turns [rad]
+/// one per cast beam
+void draw_turns(const world::Laser& laser, const BeamPlan& plan, const base::RandomKey& draw, std::span<double> turns);
 
 /// Rows of the device's beam tables for one laser, from its first lane on.
 struct BeamTables {

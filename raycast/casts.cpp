@@ -37,12 +37,13 @@ bool Casts::prepare(std::span<const Due> due, std::span<const Pose> poses, bool 
   Tables& t = *t_;
   t.due.assign(due.begin(), due.end());
   t.views.resize(due.size());
-  t.workers.run(due.size(), 256, [&](std::size_t first, std::size_t last, unsigned) { t.look(first, last, poses); });
+  t.thread_pool.parallel_for(due.size(), 256,
+                             [&](std::size_t first, std::size_t last, unsigned) { t.look(first, last, poses); });
   for (const Due& d : due) t.rays += t.fan_rows[d.row].plan.samples.size();
   const bool replaced = t.scene && t.serve();
   t.write_lanes();
   if (t.scene && t.any_turns)
-    t.workers.run(due.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
+    t.thread_pool.parallel_for(due.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
       for (std::size_t i = first; i < last; ++i)
         if (t.fan_rows[t.due[i].row].turns) t.turn_beams(t.due[i], thread);
     });

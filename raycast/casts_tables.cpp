@@ -39,13 +39,13 @@ using BeamKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 }  // namespace
 
 Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<Fan> f)
-    : workers(site.workers), seed(site.seed), noise(site.noise), families(world), fans(std::move(f)) {
+    : thread_pool(site.thread_pool), seed(site.seed), noise(site.noise), families(world), fans(std::move(f)) {
   plan(world);
-  host = std::make_unique<HostScene>(world, families, workers);
+  host = std::make_unique<HostScene>(world, families, thread_pool);
   if (caster_for(site.device.facts().software, site.scene.caster) == Caster::vulkan)
-    scene = std::make_unique<Scene>(world, families, site.device, workers, site.scene, carriers_of(fans));
-  scratch.resize(workers.threads());
-  turned.resize(workers.threads());
+    scene = std::make_unique<Scene>(world, families, site.device, thread_pool, site.scene, carriers_of(fans));
+  scratch.resize(thread_pool.threads());
+  turned.resize(thread_pool.threads());
   std::uint32_t beam_lanes = 0;
   struct Shared {
     std::uint32_t beams, pattern;
@@ -147,7 +147,7 @@ void Casts::Tables::turn_beams(const Due& d, unsigned thread) {
   const FanRow& row = fan_rows[d.row];
   std::vector<double>& turns = turned[thread];
   turns.resize(row.plan.samples.size());
-  draw_turns(fan.laser, row.plan, {seed, base::Stream::angle_noise, fan.mover, fan.sensor, d.sequence}, turns);
+  draw_turns(fan.laser, row.plan, {seed, base::RandomStream::angle_noise, fan.mover, fan.sensor, d.sequence}, turns);
   write_beams(fan.laser, row.plan, turns, beam_tables(row.beams));
 }
 
@@ -220,7 +220,7 @@ void Casts::Tables::look(std::size_t first, std::size_t last, std::span<const Po
 bool Casts::Tables::serve() {
   const auto ray_rows = rows->host<RayRow>().first(due.size());
   const bool replaced = scene->serve(views, ray_rows);
-  workers.run(due.size(), 512, [&](std::size_t first, std::size_t last, unsigned) {
+  thread_pool.parallel_for(due.size(), 512, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const FanRow& row = fan_rows[due[i].row];
       ray_rows[i].beams = row.beams;
@@ -251,7 +251,7 @@ void Casts::Tables::scan_on_host() {
   host_placed = true;
   list_scans();
   host->prepare(host_views);
-  workers.run(scans.size(), 8, [this](std::size_t first, std::size_t last, unsigned thread) {
+  thread_pool.parallel_for(scans.size(), 8, [this](std::size_t first, std::size_t last, unsigned thread) {
     for (std::size_t k = first; k < last; ++k)
       scans[k].shared == kAlone ? scan_alone(k, thread) : scan_shared(k, thread);
   });

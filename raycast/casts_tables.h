@@ -45,7 +45,7 @@ struct CastPass {
 };
 
 struct Casts::Tables {
-  base::Workers& workers;
+  base::ThreadPool& thread_pool;
   std::uint64_t seed;
   bool noise;
   Families families;

@@ -56,8 +56,8 @@ struct HostScene::Thread {
   std::vector<SegmentBlock> blocks;
 };
 
-HostScene::HostScene(const world::World& world, const Families& families, base::Workers& workers)
-    : workers_(workers),
+HostScene::HostScene(const world::World& world, const Families& families, base::ThreadPool& thread_pool)
+    : thread_pool_(thread_pool),
       families_(families),
       movers_(world),
       cells_(families, cell_size, CellPool(kFirstCells, kFirstBlocks, kPageBlocks)),
@@ -74,13 +74,13 @@ HostScene::HostScene(const world::World& world, const Families& families, base::
   }
   exact_.resize(exact_.size() + movers_.segments());
   models_.insert(models_.end(), movers_.models().begin(), movers_.models().end());
-  for (unsigned i = 0; i < workers.threads(); ++i) threads_.push_back(std::make_unique<Thread>());
+  for (unsigned i = 0; i < thread_pool.threads(); ++i) threads_.push_back(std::make_unique<Thread>());
 }
 
 HostScene::~HostScene() = default;
 
 void HostScene::place(std::span<const Pose> poses) {
-  movers_.place(poses, workers_, std::span(exact_).subspan(families_.walls().size()));
+  movers_.place(poses, thread_pool_, std::span(exact_).subspan(families_.walls().size()));
 }
 
 /// Appends `found` in order of rings and bearings, with what all of a block have in common.
@@ -123,7 +123,7 @@ HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
 void HostScene::build_missing() {
   std::mutex lock;
   std::atomic<bool> no_room{false};  // the others wait for the pool to grow
-  workers_.run(cells_.missing().size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
+  thread_pool_.parallel_for(cells_.missing().size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
     Thread& t = *threads_[thread];
     for (std::size_t i = first; i < last && !no_room; ++i) {
       const CellKey& key = cells_.missing()[i];
@@ -149,7 +149,7 @@ void HostScene::build_missing() {
 
 void HostScene::prepare(std::span<const Viewpoint> views) {
   views_.assign(views.begin(), views.end());
-  cells_.find(views, workers_);
+  cells_.find(views, thread_pool_);
   static const std::uint32_t most = most_blocks();
   for (build_missing(); !cells_.missing().empty() && blocks_.size() < most; build_missing()) {
     lists_.resize(2 * lists_.size());

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "raycast/mover_tables.h"
 #include "raycast/options.h"
 #include "raycast/rasterizer.h"
@@ -19,7 +19,7 @@ namespace sf::raycast {
 class HostScene {
  public:
   /// @param families complete, of `world`; to outlive it
-  HostScene(const world::World& world, const Families& families, base::Workers& workers);
+  HostScene(const world::World& world, const Families& families, base::ThreadPool& thread_pool);
   ~HostScene();
 
   /// Takes this tick's poses, one per mover.
@@ -45,7 +45,7 @@ class HostScene {
   static void add_blocks(std::vector<FoundWall>& found, std::vector<SegmentBlock>& blocks);
   Cell collect(const CellKey& key, Thread& thread) const;
 
-  base::Workers& workers_;
+  base::ThreadPool& thread_pool_;
   const Families& families_;
   std::vector<FamilyTables> tables_of_;  ///< per family
   MoverTables movers_;

@@ -73,9 +73,9 @@ OutlineTable MoverTables::outlines_at(double z) const {
   return table;
 }
 
-void MoverTables::place(std::span<const Pose> poses, base::Workers& workers, std::span<ExactSegment> exact) {
+void MoverTables::place(std::span<const Pose> poses, base::ThreadPool& thread_pool, std::span<ExactSegment> exact) {
   std::copy(poses.begin(), poses.end(), poses_.begin());
-  workers.run(poses_.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
+  thread_pool.parallel_for(poses_.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const Pose& X = poses_[i];
       headings_[i] = {std::cos(X.yaw), std::sin(X.yaw)};

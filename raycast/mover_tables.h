@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "raycast/scan_tables.h"
 #include "world/world.h"
 
@@ -22,7 +22,7 @@ class MoverTables {
   std::uint32_t watch_height(double z);
 
   /// Moves every outline. One pose per mover; a mover whose x is not a number is nowhere. @param exact of movers' rows
-  void place(std::span<const Pose> poses, base::Workers& workers, std::span<ExactSegment> exact);
+  void place(std::span<const Pose> poses, base::ThreadPool& thread_pool, std::span<ExactSegment> exact);
 
   std::size_t segments() const { return local_.size(); }
   /// Models that beams report, row by row.

@@ -25,16 +25,16 @@ double cell_size(double range, std::uint32_t beams) {
 
 }  // namespace
 
-Scene::Scene(const world::World& world, const Families& families, gpu::Device& device, base::Workers& workers,
+Scene::Scene(const world::World& world, const Families& families, gpu::Device& device, base::ThreadPool& thread_pool,
              const SceneOptions& options, std::uint32_t carriers)
-    : workers_(workers),
+    : thread_pool_(thread_pool),
       device_(device),
       most_(options),
       options_{.pool_chunks = 0, .pool_cells = 0},
       families_(families),
       movers_(world),
       cells_(families, cell_size, CellPool(0, 0, kPageChunks)) {
-  for (unsigned i = 0; i < workers.threads(); ++i) scratch_.push_back(std::make_unique<Scratch>());
+  for (unsigned i = 0; i < thread_pool.threads(); ++i) scratch_.push_back(std::make_unique<Scratch>());
   for (std::size_t i = 0; i < families.size(); ++i)
     tables_of_.push_back(
         {{cells_.size_of(i), families[i].range}, families[i].spread + 5e-4, movers_.watch_height(families[i].z)});
@@ -83,7 +83,8 @@ void Scene::write_outlines() {
 }
 
 void Scene::place(std::span<const Pose> poses) {
-  movers_.place(poses, workers_, segments_->host<ExactSegment>().subspan(families_.walls().size(), movers_.segments()));
+  movers_.place(poses, thread_pool_,
+                segments_->host<ExactSegment>().subspan(families_.walls().size(), movers_.segments()));
   const auto places = places_->host<MoverPlace>();
   for (std::uint32_t h = 0; h < movers_.heights(); ++h)
     for (std::size_t m = 0; m < poses.size(); ++m)
@@ -98,14 +99,14 @@ void Scene::place(std::span<const Pose> poses) {
 bool Scene::serve(std::span<const Viewpoint> views, std::span<RayRow> rows) {
   replaced_ = false;
   for_host_.assign(views.size(), 0);
-  cells_.find(views, workers_);
+  cells_.find(views, thread_pool_);
   bool room = true;
   for (build_missing(); !cells_.missing().empty() && room && options_.pool_chunks < kMostPoolChunks; build_missing())
     room = try_to_grow(2 * options_.pool_cells + 64, std::min(2 * options_.pool_chunks + 4096, kMostPoolChunks),
                        near_texels_);
   room = true;
   while (!list_movers(views, rows, room)) room = try_to_grow(options_.pool_cells, options_.pool_chunks, 2 * near_used_);
-  workers_.run(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
+  thread_pool_.parallel_for(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) fill_row(views[i], i, rows[i]);
   });
   return replaced_;

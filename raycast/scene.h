@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "gpu/batch.h"
 #include "gpu/buffer.h"
 #include "raycast/mover_tables.h"
@@ -26,7 +26,7 @@ class Scene {
  public:
   /// @param families complete, of `world`; to outlive it  @param carriers movers with sensors that look: the lists get
   /// room accordingly
-  Scene(const world::World& world, const Families& families, gpu::Device& device, base::Workers& workers,
+  Scene(const world::World& world, const Families& families, gpu::Device& device, base::ThreadPool& thread_pool,
         const SceneOptions& options, std::uint32_t carriers);
   ~Scene();
 
@@ -85,7 +85,7 @@ class Scene {
   bool try_to_grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t near_texels);
   std::uint32_t pool_end() const;
 
-  base::Workers& workers_;
+  base::ThreadPool& thread_pool_;
   gpu::Device& device_;
   const SceneOptions most_;
   SceneOptions options_;  ///< room now

@@ -71,7 +71,7 @@ void Scene::build_missing() {
   ListEntry* const lists = lists_->host<ListEntry>().data();
   std::uint32_t* const names = names_->host<std::uint32_t>().data();
   std::atomic<bool> no_room{false};  // the others wait for the pool to grow
-  workers_.run(cells_.missing().size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
+  thread_pool_.parallel_for(cells_.missing().size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
     Scratch& s = *scratch_[thread];
     for (std::size_t i = first; i < last && !no_room; ++i) {
       const CellKey& key = cells_.missing()[i];
@@ -214,7 +214,7 @@ bool Scene::list_movers(std::span<const Viewpoint> views, std::span<RayRow> rows
   std::atomic<std::uint32_t> next{0};
   const std::size_t most =
       std::max<std::size_t>(kMostNearTexels / std::max<std::size_t>(views.size(), 1), kLeastNearTexels);
-  workers_.run(views.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
+  thread_pool_.parallel_for(views.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
     Scratch& s = *scratch_[thread];
     for (std::size_t i = first; i < last; ++i) {
       rows[i].movers = 0;  // of nobody

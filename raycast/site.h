@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "gpu/device.h"
 #include "raycast/options.h"
 #include "world/world.h"
@@ -22,7 +22,7 @@ struct Due {
 struct Site {
   const world::World& world;
   gpu::Device& device;
-  base::Workers& workers;
+  base::ThreadPool& thread_pool;
   std::uint64_t seed = 0;  ///< of all noise
   bool noise = true;       ///< false: none, whatever the world says
   bool true_poses = true;  ///< movers are where their reports say: a simulation; false: these are estimates

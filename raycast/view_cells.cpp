@@ -48,10 +48,10 @@ glm::dvec2 ViewCells::centre_of(const CellKey& key) const {
   return {(static_cast<double>(key.x) + 0.5) * size, (static_cast<double>(key.y) + 0.5) * size};
 }
 
-void ViewCells::find(std::span<const Viewpoint> views, base::Workers& workers) {
+void ViewCells::find(std::span<const Viewpoint> views, base::ThreadPool& thread_pool) {
   keys_.resize(views.size());
   slots_.resize(views.size());
-  workers.run(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
+  thread_pool.parallel_for(views.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const bool same = i > first && views[i].family == views[i - 1].family && views[i].X_WS.x == views[i - 1].X_WS.x &&
                         views[i].X_WS.y == views[i - 1].X_WS.y;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "raycast/cells.h"
 #include "raycast/families.h"
 #include "raycast/view.h"
@@ -19,7 +19,7 @@ class ViewCells {
   ViewCells(const Families& families, double (*size)(double range, std::uint32_t beams), CellPool pool);
 
   /// Finds the cell of each of `views`, keeps what the pool has of them for this tick, and names the others.
-  void find(std::span<const Viewpoint> views, base::Workers& workers);
+  void find(std::span<const Viewpoint> views, base::ThreadPool& thread_pool);
   /// Leaves out of `missing` what the pool has by now.
   void forget_found();
   /// More room in the pool; never less.

@@ -23,7 +23,7 @@ RunInfo named(RunInfo info) {
 TextPairs summary_of(const RunInfo& info) {
   TextPairs pairs = {
       {"world", info.world},
-      {"world_hash", base::hash_text(info.world_hash)},
+      {"world_hash", base::hash_hex(info.world_hash)},
       {"seed", std::to_string(info.seed)},
       {"mode", info.mode},
       {"interval_s", std::to_string(info.interval)},

@@ -53,13 +53,13 @@ double median_radius(const std::vector<Outline>& outlines) {
 
 }  // namespace
 
-Fleet::Fleet(const world::World& world, base::Workers* workers)
+Fleet::Fleet(const world::World& world, base::ThreadPool* thread_pool)
     : world_(world),
-      workers_(workers),
+      thread_pool_(thread_pool),
       outlines_(outlines_of(world)),
       walls_(stopping(world), 2.0 * median_radius(outlines_)),
       rank_(ranks_of(world)),
-      scratch_(workers != nullptr ? workers->threads() : 1) {
+      scratch_(thread_pool != nullptr ? thread_pool->threads() : 1) {
   const std::size_t count = world.movers.size();
   std::size_t edges = 0;
   for (std::uint32_t row = 0; row < count; ++row) {
@@ -118,15 +118,15 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
 // were refused by.
 void Fleet::feel() {
   for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
-    contacts_[row] = refused_[row] != 0 || reports_[row].touched != 0;
+    contacts_[row] = refused_[row] != 0 || reports_[row].contact_mask != 0;
     const auto struck = refused_[row] != 0 ? std::span(struck_) : std::span<std::uint8_t>();
-    if (contacts_[row] != 0) reports_[row].touched = touch_of(row, reports_[row].X_WM, reports_, struck).sectors;
+    if (contacts_[row] != 0) reports_[row].contact_mask = touch_of(row, reports_[row].X_WM, reports_, struck).sectors;
   });
   for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
     if (struck_[row] != 0 && contacts_[row] == 0)
-      reports_[row].touched = touch_of(row, reports_[row].X_WM, reports_).sectors;
+      reports_[row].contact_mask = touch_of(row, reports_[row].X_WM, reports_).sectors;
     struck_[row] = 0;
-    contacts_[row] = refused_[row] != 0 || reports_[row].touched != 0;
+    contacts_[row] = refused_[row] != 0 || reports_[row].contact_mask != 0;
   });
 }
 
@@ -165,8 +165,8 @@ void Fleet::feel_told() {
     if (gone_[row] != 0) contacts_[row] = 0;
     if (told_[row] == 0 || gone_[row] != 0) return;
     base::Report& report = predicted_[row];
-    if (!clear(row, predicted_, kPressed)) report.touched |= touch_of(row, report.X_WM, predicted_).sectors;
-    contacts_[row] = report.touched != 0;
+    if (!clear(row, predicted_, kPressed)) report.contact_mask |= touch_of(row, report.X_WM, predicted_).sectors;
+    contacts_[row] = report.contact_mask != 0;
   });
 }
 

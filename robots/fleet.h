@@ -21,9 +21,9 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.h"
 #include "base/pose.h"
 #include "base/report.h"
+#include "base/thread_pool.h"
 #include "robots/neighbours.h"
 #include "robots/outline.h"
 #include "robots/touch.h"
@@ -41,9 +41,9 @@ class Fleet {
  public:
   static constexpr int kRounds = 4;  ///< of a tick, at most
 
-  /// All movers at their places at load, at rest, at time 0. `world` must outlive the fleet, and so must `workers`.
+  /// All movers at their places at load, at rest, at time 0. `world` must outlive the fleet, and so must `thread_pool`.
   /// @param workers share the work of `move` and `predict`, with the same results; null: the caller does it alone
-  explicit Fleet(const world::World& world, base::Workers* workers = nullptr);
+  explicit Fleet(const world::World& world, base::ThreadPool* thread_pool = nullptr);
 
   /// Simulates `dt` [ns] > 0. A command passes the mover's command law, is reduced to what the drive can follow and to
   /// what its accelerations allow from the velocity it has, then tried in substeps no longer than `Outline::step`; a
@@ -52,9 +52,9 @@ class Fleet {
   /// stands): for that it may push itself off by up to 4 mm a substep. What a mover touched already (overlapping
   /// starts, reports) stops it only where its origin would come nearer to it. Other movers stop it by the rule above.
   ///
-  /// `Report::touched` then says what presses where (robots/touch.h): for movers that were refused a step, for those
-  /// that they were refused by, and for as long as anything touches them afterwards, also while they stand. Passing
-  /// by without being stopped is no touch.
+  /// `Report::contact_mask` then says what presses where (robots/touch.h): for movers that were refused a step, for
+  /// those that they were refused by, and for as long as anything touches them afterwards, also while they stand.
+  /// Passing by without being stopped is no touch.
   /// @param commands one per mover; not finite means 0
   void move(std::span<const base::Twist> commands, std::int64_t dt);
 
@@ -77,7 +77,7 @@ class Fleet {
   /// movers that were told by reports, there, is added to what the reports themselves say. Valid until the next call.
   std::span<const base::Report> predict(std::int64_t time);
 
-  /// One per mover: 1 where the last `move` refused it a step, or where something touches it (`Report::touched`).
+  /// One per mover: 1 where the last `move` refused it a step, or where something touches it (`Report::contact_mask`).
   std::span<const std::uint8_t> contacts() const { return contacts_; }
 
  private:
@@ -148,7 +148,7 @@ class Fleet {
   void for_rows(std::size_t count, Body&& body);
 
   const world::World& world_;
-  base::Workers* workers_;
+  base::ThreadPool* thread_pool_;
   std::vector<Outline> outlines_;
   world::WallGrid walls_;
   Neighbours neighbours_;
@@ -176,12 +176,12 @@ class Fleet {
 
 template <class Body>
 void Fleet::for_rows(std::size_t count, Body&& body) {
-  constexpr std::size_t kPiece = 32;
+  constexpr std::size_t kGrain = 32;
   const auto piece = [&](std::size_t first, std::size_t end, unsigned thread) {
     for (std::size_t i = first; i < end; ++i) body(static_cast<std::uint32_t>(i), scratch_[thread]);
   };
-  if (workers_ != nullptr)
-    workers_->run(count, kPiece, piece);
+  if (thread_pool_ != nullptr)
+    thread_pool_->parallel_for(count, kGrain, piece);
   else
     piece(0, count, 0);
 }

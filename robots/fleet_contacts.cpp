@@ -18,7 +18,7 @@ using world::Segment;
 constexpr double kGap = 4e-4;      // [m] a refused mover stops no farther away than this
 constexpr double kWhole = 0x1p40;  // sums of integers do not depend on their order
 constexpr std::uint32_t kEverywhere = 0xFFFFFFFFu;
-static_assert(base::kTouchSectors == 32);
+static_assert(base::kContactSectors == 32);
 
 glm::dvec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }
 

@@ -11,7 +11,7 @@ namespace sf::robots {
 
 namespace {
 
-using base::kTouchSectors;
+using base::kContactSectors;
 
 /// A piece of surface in the mover's frame; heights above the mover's origin.
 struct Surface {
@@ -20,11 +20,11 @@ struct Surface {
 };
 
 /// Directions between the sectors, in the mover's frame.
-const std::array<glm::dvec2, kTouchSectors + 1>& borders() {
+const std::array<glm::dvec2, kContactSectors + 1>& borders() {
   static const auto table = [] {
-    std::array<glm::dvec2, kTouchSectors + 1> directions;
-    for (std::uint32_t k = 0; k <= kTouchSectors; ++k) {
-      const double bearing = 2.0 * M_PI * (k % kTouchSectors) / kTouchSectors;
+    std::array<glm::dvec2, kContactSectors + 1> directions;
+    for (std::uint32_t k = 0; k <= kContactSectors; ++k) {
+      const double bearing = 2.0 * M_PI * (k % kContactSectors) / kContactSectors;
       directions[k] = {std::cos(bearing), std::sin(bearing)};
     }
     return directions;
@@ -95,7 +95,7 @@ std::uint32_t sectors_of(const Outline& outline, const Surface& s) {
   const std::span<const Edge> edges = edges_near(outline, s);
   if (edges.empty() && !inside(outline.edges, s.a, s.z_min, s.z_max)) return 0;
   std::uint32_t sectors = 0;
-  for (std::uint32_t k = 0; k < kTouchSectors; ++k) {
+  for (std::uint32_t k = 0; k < kContactSectors; ++k) {
     const Part part = within_sector(s, k);
     if (part.from < part.to && presses(outline, edges, s, part)) sectors |= 1u << k;
   }

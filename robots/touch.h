@@ -1,5 +1,5 @@
 #pragma once
-// Where something presses on a body: which of its sectors (base::kTouchSectors) have a surface within kPressed of its
+// Where something presses on a body: which of its sectors (base::kContactSectors) have a surface within kPressed of its
 // outline, or inside it.
 
 #include <cstdint>

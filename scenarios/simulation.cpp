@@ -40,15 +40,15 @@ std::span<base::ReadingBlock> newest_of(std::span<base::ReadingBlock> readings) 
 Simulation::Simulation(const world::World& world, gpu::Device& device, SimulationOptions options)
     : world_(world),
       roads_(world::roads_of(world)),
-      workers_(options.threads),
+      thread_pool_(options.threads),
       farm_(world, device, farm_options(options)),
-      fleet_(world, &workers_),
+      fleet_(world, &thread_pool_),
       commands_(world.movers.size()),
       obeyed_(world.movers.size()),
       first_(world.movers.size() + 1),
       intents_(world.movers.size()),
       next_intents_(world.movers.size()),
-      others_(workers_.threads()),
+      others_(thread_pool_.threads()),
       signals_(world.lights.size()),
       start_at_(std::llround(options.start_at * 1e9)),
       interval_(std::llround(world.interval * 1e9)) {
@@ -149,7 +149,7 @@ void Simulation::decide(std::int64_t time) {
   for (std::size_t i = 0; i < signals_.size(); ++i)
     signals_[i] = world::signal_at(world_.lights[i], 1e-9 * static_cast<double>(time));
   if (radio_ > 0.0) neighbours_.build(fleet_.reports(), radio_);
-  workers_.run(drivers_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
+  thread_pool_.parallel_for(drivers_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
     for (std::size_t m = begin; m < end; ++m) decide_one(static_cast<std::uint32_t>(m), time, thread);
   });
   std::copy(next_intents_.begin(), next_intents_.end(), intents_.begin());

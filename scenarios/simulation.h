@@ -13,8 +13,8 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.h"
 #include "base/sink.h"
+#include "base/thread_pool.h"
 #include "control/controllers.h"
 #include "farm/farm.h"
 #include "farm/stored_reading.h"
@@ -90,7 +90,7 @@ class Simulation {
 
   const world::World& world_;
   std::optional<world::RoadNetwork> roads_;
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
   farm::Farm farm_;
   robots::Fleet fleet_;
   robots::Neighbours neighbours_;

@@ -12,10 +12,10 @@ constexpr std::size_t kRemembered = 400;  // places
 double distance(const base::Pose& a, const base::Pose& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 /// +1: more of what presses is on the left.
-double side_of(std::uint32_t touched) {
+double side_of(std::uint32_t contact_mask) {
   double side = 0.0;
-  for (std::uint32_t k = 0; k < base::kTouchSectors; ++k)
-    if ((touched >> k & 1u) != 0) side += std::sin(2.0 * M_PI * (k + 0.5) / base::kTouchSectors);
+  for (std::uint32_t k = 0; k < base::kContactSectors; ++k)
+    if ((contact_mask >> k & 1u) != 0) side += std::sin(2.0 * M_PI * (k + 0.5) / base::kContactSectors);
   return side > 0.0 ? 1.0 : -1.0;
 }
 
@@ -50,7 +50,7 @@ base::Pose Supervisor::place_for(const base::Report& report, const Watched& watc
     place.y = at->y;
     if (distance(place, report.X_WM) >= plan_.back) break;
   }
-  place.yaw = base::wrap_angle(report.X_WM.yaw - side_of(report.touched) * plan_.turn);
+  place.yaw = base::wrap_angle(report.X_WM.yaw - side_of(report.contact_mask) * plan_.turn);
   return place;
 }
 

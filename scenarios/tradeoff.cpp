@@ -76,7 +76,7 @@ class Entrant {
     if (read.values.size() > kMostValues) return;
     for (std::size_t i = 0; i < block.values.size(); i += width()) {
       read.values.push_back(block.values[i]);
-      const bool flagged = !block.unsure.empty() && block.unsure[i / width()] != base::Unsure::no;
+      const bool flagged = !block.quality.empty() && block.quality[i / width()] != base::QualityFlag::none;
       // A sensor that saw nothing has no error to bound.
       read.bounds.push_back(flagged || std::isnan(block.values[i]) ? HUGE_VAL : block.bound);
     }

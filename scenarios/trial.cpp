@@ -90,8 +90,8 @@ class Keeper {
   /// The track of the robot that this one says it follows.
   std::uint32_t followed_by(std::uint32_t row, const world::World& world, const Simulation& simulation) const {
     const control::Controller* controller = simulation.controller(row);
-    const std::uint32_t id = controller == nullptr ? base::kNobody : controller->intent().follows;
-    for (std::size_t i = 0; i < rows_.size() && id != base::kNobody; ++i)
+    const std::uint32_t id = controller == nullptr ? base::kNoId : controller->intent().follows;
+    for (std::size_t i = 0; i < rows_.size() && id != base::kNoId; ++i)
       if (!world.movers[rows_[i]].is_tag && world.movers[rows_[i]].id == id) return static_cast<std::uint32_t>(i);
     return world::kNone;
   }
@@ -111,7 +111,7 @@ world::World disturbed_world(const Scenario& scenario, const Disturbance& distur
   for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
     world::Mover& mover = world.movers[row];
     if (mover.is_tag) continue;
-    const base::Draw draw{scenario.seed, base::Stream::place, kStart, row, 0};
+    const base::RandomKey draw{scenario.seed, base::RandomStream::placement, kStart, row, 0};
     const auto place = base::random_normal(draw, 0);
     const double turn = base::random_normal(draw, 1)[0];
     mover.X_WM = base::compose(

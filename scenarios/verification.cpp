@@ -10,7 +10,7 @@
 #include <span>
 #include <tuple>
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "farm/farm.h"
 #include "scenarios/sampling.h"
 #include "sensors/bumper.h"
@@ -69,7 +69,7 @@ class Verifier {
         world_(world::from_snapshot(recording.info.snapshot)),
         farm_(world_, device, {.seed = recording.info.seed, .threads = options.threads}),
         reference_(world_, recording.info.seed),
-        workers_(options.threads) {
+        thread_pool_(options.threads) {
     for (const auto& [key, value] : recording.info.options)
       infinite_ = infinite_ || (key == "no_return" && value == "inf");
     for (std::size_t i = 0; i < recording.scans.size(); ++i) {
@@ -216,7 +216,7 @@ class Verifier {
       while (last < asked_.size() && asked_[last].time == asked_[first].time) ++last;
       poses_of(asked_[first], poses);
       reference_.place(poses);
-      workers_.run(last - first, 1, [&](std::size_t begin, std::size_t end, unsigned) {
+      thread_pool_.parallel_for(last - first, 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = first + begin; i < first + end; ++i)
           scans[i] = reference_.scan(asked_[i].mover, asked_[i].sensor, asked_[i].sequence);
       });
@@ -245,7 +245,7 @@ class Verifier {
   const world::World world_;
   farm::Farm farm_;
   sensors::LaserReference reference_;
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
   bool infinite_ = false;
   std::map<Name, std::size_t> scans_, readings_;  ///< recorded, not met yet
   std::vector<base::Report> reports_, before_, on_the_way_;

@@ -22,8 +22,8 @@ double front_of(const world::Mover& mover) {
 }  // namespace
 
 void Goals::look(std::uint32_t next) {
-  any = any || next != base::kNobody;
-  passed += now != base::kNobody && next != now;
+  any = any || next != base::kNoId;
+  passed += now != base::kNoId && next != now;
   now = next;
 }
 

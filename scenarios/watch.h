@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/contact.h"
+#include "base/contact_onset.h"
 #include "base/sink.h"
 #include "scenarios/simulation.h"
 
@@ -12,11 +12,11 @@ namespace sf::scenarios {
 
 /// Checkpoints that one mover heads for.
 struct Goals {
-  std::uint32_t now = base::kNobody;  ///< base::kNobody: none
-  bool any = false;                   ///< there was one
-  std::uint64_t passed = 0;           ///< that it no longer heads for, since the next or none is due
+  std::uint32_t now = base::kNoId;  ///< base::kNoId: none
+  bool any = false;                 ///< there was one
+  std::uint64_t passed = 0;         ///< that it no longer heads for, since the next or none is due
 
-  /// @param next the one that it heads for from now on; base::kNobody: none
+  /// @param next the one that it heads for from now on; base::kNoId: none
   void look(std::uint32_t next);
 };
 
@@ -54,7 +54,7 @@ class Watch {
     double half_width = 0.0;  ///< [m]
   };
   struct Before {
-    base::Contact contact;
+    base::ContactOnset contact;
     bool moving = false;
     base::Pose X_WM;
     bool seen = false;

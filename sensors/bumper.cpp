@@ -14,13 +14,13 @@ namespace sf::sensors {
 namespace {
 
 constexpr double kTurn = 2.0 * M_PI;
-constexpr double kSector = kTurn / base::kTouchSectors;
+constexpr double kSector = kTurn / base::kContactSectors;
 constexpr double kRounding = 1e-9;  // [rad] of degrees made radians
 
 /// Bearings from `from` counter-clockwise to `from` + `sweep` [rad].
 std::uint32_t sectors_of(double from, double sweep) {
   std::uint32_t sectors = 0;
-  for (std::uint32_t k = 0; k < base::kTouchSectors; ++k) {
+  for (std::uint32_t k = 0; k < base::kContactSectors; ++k) {
     const double ahead = (k + 0.5) * kSector - from;
     const double turned = ahead - kTurn * std::floor((ahead + kRounding) / kTurn);
     if (turned < sweep - kRounding) sectors |= 1u << k;
@@ -43,7 +43,7 @@ std::uint32_t read_zone(const world::Sensor& sensor, const world::Setting& setti
   refuse(sensor, setting.key,
          fmt::format("'{}' is [{:g} {:g}], which holds the middle of none of the {} sectors that contacts are told in; "
                      "widen it",
-                     setting.key, degrees[0], degrees[1], base::kTouchSectors));
+                     setting.key, degrees[0], degrees[1], base::kContactSectors));
 }
 
 /// Stage's way: bars [x y z angle] of `blength`, square to `angle`. A bar is the arc of bearings between its ends.
@@ -75,14 +75,14 @@ class Bumpers : public HostInstruments {
   explicit Bumpers(const Site& site);
 
   void follow(std::span<const base::Report> states, std::int64_t, bool) override {
-    for (std::size_t m = 0; m < states.size(); ++m) touched_[m] = states[m].touched;
+    for (std::size_t m = 0; m < states.size(); ++m) contact_masks_[m] = states[m].contact_mask;
   }
 
  private:
   void measure(std::span<const Sight> sights) const override;
 
   std::vector<std::vector<std::uint32_t>> switches_;  ///< per row: the sectors of each
-  std::vector<std::uint32_t> touched_;                ///< per mover
+  std::vector<std::uint32_t> contact_masks_;          ///< per mover
 };
 
 std::vector<SensorRow> rows_of(const world::World& world) {
@@ -96,16 +96,16 @@ std::vector<SensorRow> rows_of(const world::World& world) {
 }
 
 Bumpers::Bumpers(const Site& site)
-    : HostInstruments(site, bumper_kind, rows_of(site.world)), touched_(site.world.movers.size(), 0) {
+    : HostInstruments(site, bumper_kind, rows_of(site.world)), contact_masks_(site.world.movers.size(), 0) {
   for_each_sensor(site.world, bumper_kind,
                   [this](const Fitted& fitted) { switches_.push_back(read_bumper(fitted.settings)); });
 }
 
 void Bumpers::measure(std::span<const Sight> sights) const {
   for (const Sight& sight : sights) {
-    const std::uint32_t touched = touched_[rows()[sight.row].mover];
+    const std::uint32_t contact_mask = contact_masks_[rows()[sight.row].mover];
     const auto& switches = switches_[sight.row];
-    for (std::size_t i = 0; i < switches.size(); ++i) sight.values[i] = (touched & switches[i]) != 0 ? 1.0 : 0.0;
+    for (std::size_t i = 0; i < switches.size(); ++i) sight.values[i] = (contact_mask & switches[i]) != 0 ? 1.0 : 0.0;
   }
 }
 

@@ -8,7 +8,7 @@
 // [x y z angle], `blength`) are understood as the arcs between their ends.
 //
 // A reading has one row for each switch: 1 while it is pressed, else 0. Contacts are told in sectors
-// (base::kTouchSectors); a sector belongs to the zones that hold its middle.
+// (base::kContactSectors); a sector belongs to the zones that hold its middle.
 
 #include <cstdint>
 #include <vector>
@@ -20,7 +20,7 @@ namespace sf::sensors {
 inline constexpr std::uint8_t kBumper = 6;             ///< wire id
 inline constexpr std::uint32_t kMostBumperZones = 32;  ///< of one sensor
 
-/// The sectors of each switch, bit k as in base::Report::touched, never none.
+/// The sectors of each switch, bit k as in base::Report::contact_mask, never none.
 /// @throws base::InputError with file and line.
 std::vector<std::uint32_t> read_bumper(const world::Sensor& sensor);
 

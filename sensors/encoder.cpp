@@ -61,7 +61,7 @@ Encoders::Encoders(const Site& site) : HostInstruments(site, encoder_kind, rows_
   for_each_sensor(site.world, encoder_kind, [&](const Fitted& fitted) {
     const world::Mover& mover = site.world.movers[fitted.row.mover];
     const Encoder settings = read_encoder(fitted.settings, mover);
-    const base::Draw walk{site.seed, base::Stream::slip, fitted.row.mover, fitted.row.sensor};
+    const base::RandomKey walk{site.seed, base::RandomStream::slip, fitted.row.mover, fitted.row.sensor};
     const double slip = site.noise ? settings.slip : 0.0;
     wheels_.push_back({settings, {}, {walk, 0, slip}, {walk, 1, slip}});
     tracks_.push_back({mover.X_WM});

@@ -72,7 +72,7 @@ void GpsReceivers::measure(const Sight& sight) const {
   glm::dvec2 error;
   if (receiver.noise > 0.0) {
     const auto [n, m] =
-        base::random_normal({seed(), base::Stream::satellites, row.mover, row.sensor, sight.sequence}, 0);
+        base::random_normal({seed(), base::RandomStream::satellites, row.mover, row.sensor, sight.sequence}, 0);
     error = receiver.noise * glm::dvec2{fix->xx * n, fix->yx * n + fix->yy * m};
   }
   out[0] = p.x + error.x;

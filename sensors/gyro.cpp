@@ -23,8 +23,8 @@ struct Fixed {
   double noise = 0.0;
 };
 
-base::Draw draw_of(std::uint64_t seed, const SensorRow& row, std::uint64_t sequence) {
-  return {seed, base::Stream::gyro, row.mover, row.sensor, sequence};
+base::RandomKey draw_of(std::uint64_t seed, const SensorRow& row, std::uint64_t sequence) {
+  return {seed, base::RandomStream::gyro, row.mover, row.sensor, sequence};
 }
 
 class Gyros : public HostInstruments {

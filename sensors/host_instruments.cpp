@@ -13,7 +13,7 @@ constexpr std::size_t kPiece = 64;  // readings that a worker takes at once
 }  // namespace
 
 HostInstruments::HostInstruments(const Site& site, const SensorKind& kind, std::vector<SensorRow> rows)
-    : world_(site.world), workers_(site.workers), seed_(site.seed), kind_(kind.id), rows_(std::move(rows)) {
+    : world_(site.world), thread_pool_(site.thread_pool), seed_(site.seed), kind_(kind.id), rows_(std::move(rows)) {
   first_.push_back(0);
   for (const SensorRow& row : rows_) first_.push_back(first_.back() + std::size_t{row.elements} * element_width(kind));
   values_.resize(first_.back());
@@ -34,7 +34,7 @@ bool HostInstruments::prepare(std::span<const Due> due, std::span<const Pose> po
 }
 
 void HostInstruments::collect(std::vector<base::ReadingBlock>& out) {
-  workers_.run(sights_.size(), kPiece, [this](std::size_t first, std::size_t last, unsigned) {
+  thread_pool_.parallel_for(sights_.size(), kPiece, [this](std::size_t first, std::size_t last, unsigned) {
     measure(std::span<const Sight>(sights_).subspan(first, last - first));
   });
   for (const Sight& sight : sights_) {

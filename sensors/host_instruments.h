@@ -41,7 +41,7 @@ class HostInstruments : public Instruments {
 
  private:
   const world::World& world_;
-  base::Workers& workers_;
+  base::ThreadPool& thread_pool_;
   std::uint64_t seed_;
   std::uint8_t kind_;
   std::vector<SensorRow> rows_;

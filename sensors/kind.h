@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "base/parallel.h"
 #include "base/reading.h"
 #include "base/report.h"
+#include "base/thread_pool.h"
 #include "gpu/batch.h"
 #include "gpu/device.h"
 #include "raycast/site.h"

@@ -30,8 +30,9 @@ bool anything_else(const world::World& world) {
 }
 
 /// The flags of a reading with one element: a span of them outlives the tick.
-constexpr base::Unsure kReasons[] = {base::Unsure::no, base::Unsure::not_cast, base::Unsure::grazing,
-                                     base::Unsure::not_straight, base::Unsure::extrapolated};
+constexpr base::QualityFlag kReasons[] = {base::QualityFlag::none, base::QualityFlag::not_cast,
+                                          base::QualityFlag::grazing, base::QualityFlag::not_straight,
+                                          base::QualityFlag::extrapolated};
 
 /// Rays against the excerpt, exactly; where the road is a raster, into that as well; then lines through what they met.
 class LaneEdges : public Instruments {
@@ -124,14 +125,14 @@ void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
   const bool noisy = noise_ && edge.row.noisy;
   const double away = std::max(std::abs(block.X_WS.x), std::abs(block.X_WS.y)) + edge.fan.range_max;
   if (exact_ && !noisy) block.bound = lane_edge_bound(edge, longest_, away);
-  base::Unsure why = base::Unsure::no;
+  base::QualityFlag why = base::QualityFlag::none;
   if (edge.row.mode > 0)
-    why = base::Unsure::not_cast;  // rays that were left out may have met another edge
+    why = base::QualityFlag::not_cast;  // rays that were left out may have met another edge
   else if (edge.single)
-    why = (casts_.verdicts().host<std::uint32_t>()[lanes_[i]] & SF_GRAZES) != 0 ? base::Unsure::grazing : why;
+    why = (casts_.verdicts().host<std::uint32_t>()[lanes_[i]] & SF_GRAZES) != 0 ? base::QualityFlag::grazing : why;
   else if (std::isfinite(block.bound))
     why = doubt_of(fit_.reading(i), point_error(edge, longest_, away), block.bound);
-  if (why != base::Unsure::no) block.unsure = {&kReasons[static_cast<std::size_t>(why)], 1};
+  if (why != base::QualityFlag::none) block.quality = {&kReasons[static_cast<std::size_t>(why)], 1};
 }
 
 void LaneEdges::collect(std::vector<base::ReadingBlock>& out) {

@@ -99,15 +99,15 @@ double lane_edge_bound(const LaneEdge& edge, double longest, double farthest) {
   return kStraightError + point_error(edge, longest, farthest) / raycast::kLeastSine;
 }
 
-base::Unsure doubt_of(const EdgeReading& reading, double error, double bound) {
-  if (std::isnan(reading.distance)) return base::Unsure::no;  // no distance is given
+base::QualityFlag doubt_of(const EdgeReading& reading, double error, double bound) {
+  if (std::isnan(reading.distance)) return base::QualityFlag::none;  // no distance is given
   const double gain = std::max(reading.gain, 1.0);
   if (reading.distance < bound) error += SF_TOUCH;                       // a ray that short may read 0
   error = 2.0 * (error + std::sqrt(reading.points) * reading.residual);  // no point is farther from the line
   const bool straight = reading.points > 2.5 && reading.others == 0.0 && error <= bound;
-  if (!straight) return base::Unsure::not_straight;
-  if (gain >= SF_NO_GAIN) return base::Unsure::extrapolated;
-  return gain * error <= bound ? base::Unsure::no : base::Unsure::grazing;
+  if (!straight) return base::QualityFlag::not_straight;
+  if (gain >= SF_NO_GAIN) return base::QualityFlag::extrapolated;
+  return gain * error <= bound ? base::QualityFlag::none : base::QualityFlag::grazing;
 }
 
 Bound bound_of_lane_edge(const world::World& world, const SensorRow& row) {

@@ -36,7 +36,7 @@ double point_error(const LaneEdge& edge, double longest, double farthest);
 /// [m] base::ReadingBlock::bound without noise, in exact paint: 10 nm, more far away.
 double lane_edge_bound(const LaneEdge& edge, double longest, double farthest);
 /// Why a line's distance may be off by more than `bound` [m], its points being off by up to `error` [m].
-base::Unsure doubt_of(const EdgeReading& reading, double error, double bound);
+base::QualityFlag doubt_of(const EdgeReading& reading, double error, double bound);
 Bound bound_of_lane_edge(const world::World& world, const SensorRow& sensor);
 
 /// A share of range_max: ranges from here on are "near the maximum" and no points.

@@ -59,20 +59,20 @@ class Lasers : public Instruments {
   void mark(std::size_t i);
   base::ReadingBlock block_of(std::size_t i);
 
-  base::Workers& workers_;
+  base::ThreadPool& thread_pool_;
   std::uint64_t seed_;
   bool noise_;
   double longest_;  ///< [m] surface that there is
   raycast::Casts casts_;
   std::vector<Row> rows_;  ///< per laser
   std::vector<Due> due_;
-  std::vector<double> values_;        ///< [m] of all lasers' samples, when any is reworked
-  std::vector<std::uint32_t> met_;    ///< likewise
-  std::vector<base::Unsure> unsure_;  ///< of all lasers' samples
+  std::vector<double> values_;              ///< [m] of all lasers' samples, when any is reworked
+  std::vector<std::uint32_t> met_;          ///< likewise
+  std::vector<base::QualityFlag> quality_;  ///< of all lasers' samples
 };
 
 Lasers::Lasers(const Site& site, const std::vector<CastLaser>& lasers)
-    : workers_(site.workers),
+    : thread_pool_(site.thread_pool),
       seed_(site.seed),
       noise_(site.noise),
       longest_(reaches_of(site.world).longest),
@@ -88,9 +88,10 @@ Lasers::Lasers(const Site& site, const std::vector<CastLaser>& lasers)
   }
   values_.resize(any ? samples : 0);
   met_.resize(any ? samples : 0);
-  unsure_.assign(samples, base::Unsure::not_cast);
+  quality_.assign(samples, base::QualityFlag::not_cast);
   for (std::uint32_t i = 0; i < lasers.size(); ++i)
-    for (const std::uint32_t sample : casts_.plan(i).samples) unsure_[rows_[i].samples + sample] = base::Unsure::no;
+    for (const std::uint32_t sample : casts_.plan(i).samples)
+      quality_[rows_[i].samples + sample] = base::QualityFlag::none;
 }
 
 void Lasers::shape(std::size_t i) {
@@ -104,7 +105,7 @@ void Lasers::shape(std::size_t i) {
   const std::uint32_t* const cast_hits = casts_.hits().host<std::uint32_t>().data() + first;
   double* const out = values_.data() + row.samples;
   std::uint32_t* const out_hits = met_.data() + row.samples;
-  shape_scan(row.cast, plan, {seed_, base::Stream::range_noise, fan.mover, fan.sensor, due.sequence}, noise_,
+  shape_scan(row.cast, plan, {seed_, base::RandomStream::range_noise, fan.mover, fan.sensor, due.sequence}, noise_,
              {cast, cast_hits}, {out, fan.laser.samples}, {out_hits, fan.laser.samples});
 }
 
@@ -120,7 +121,7 @@ void Lasers::mark(std::size_t i) {
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {
     const std::size_t place = plan.place(k);
     const bool grazes = (verdicts[place / SF_BEAMS_PER_LANE] >> (place % SF_BEAMS_PER_LANE) & SF_GRAZES) != 0;
-    unsure_[row.samples + plan.samples[k]] = grazes ? base::Unsure::grazing : base::Unsure::no;
+    quality_[row.samples + plan.samples[k]] = grazes ? base::QualityFlag::grazing : base::QualityFlag::none;
   }
 }
 
@@ -143,14 +144,14 @@ base::ReadingBlock Lasers::block_of(std::size_t i) {
   const double away = std::max(std::abs(results.X_WS.x), std::abs(results.X_WS.y));
   block.bound = laser_bound(row.cast, longest_, away + fan.laser.range_max);
   if (row.grazing || row.cast.laser.resolution > 1)
-    block.unsure = std::span<const base::Unsure>(unsure_).subspan(row.samples, samples);
+    block.quality = std::span<const base::QualityFlag>(quality_).subspan(row.samples, samples);
   return block;
 }
 
 void Lasers::collect(std::vector<base::ReadingBlock>& out) {
   const std::size_t before = out.size();
   out.resize(before + due_.size());
-  workers_.run(due_.size(), 32, [&](std::size_t first, std::size_t last, unsigned) {
+  thread_pool_.parallel_for(due_.size(), 32, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       if (rows_[due_[i].row].reworked) shape(i);
       mark(i);

@@ -49,7 +49,7 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t las
             std::vector<std::uint32_t>(l.samples)};
   scan.X_WS.z = world_.movers[mover].X_WM.z + l.X_MS.z;
   std::vector<double> turns(noise_ && l.noise.angle_sigma > 0.0 ? plan.samples.size() : 0);
-  draw_turns(l, plan, {seed_, base::Stream::angle_noise, mover, laser, sequence}, turns);
+  draw_turns(l, plan, {seed_, base::RandomStream::angle_noise, mover, laser, sequence}, turns);
 
   const std::vector<Seen> surfaces = in_sight(mover, scan.X_WS, l.range_max);
   const glm::dvec2 heading{std::cos(scan.X_WS.yaw), std::sin(scan.X_WS.yaw)};
@@ -69,7 +69,7 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t las
     ranges[plan.place(k)] = std::max(nearest.range, l.range_min);
     hits[plan.place(k)] = model;
   }
-  shape_scan(cast, plan, {seed_, base::Stream::range_noise, mover, laser, sequence}, noise_,
+  shape_scan(cast, plan, {seed_, base::RandomStream::range_noise, mover, laser, sequence}, noise_,
              {ranges.data(), hits.data()}, scan.ranges, scan.hits);
   return scan;
 }

@@ -38,7 +38,7 @@ void fill_lines(const Cast& a, const Cast& b, std::span<double> ranges) {
 
 }  // namespace
 
-void shape_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const base::Draw& draw, bool noise,
+void shape_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const base::RandomKey& draw, bool noise,
                 const CastScan& cast, std::span<double> ranges, std::span<std::uint32_t> hits) {
   const world::Laser& laser = shape.laser;
   const bool noisy = noise && laser.noise.has_range();

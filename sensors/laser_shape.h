@@ -23,9 +23,9 @@ struct CastScan {
 /// model where both of its neighbours met the same. Its range lies on a straight line between theirs, as Stage has it;
 /// or, where it has sines, on the straight line between the points that these met, which is right on a flat wall, and
 /// is the nearer neighbour's where they met different models.
-/// @param draw of `base::Stream::range_noise` @param noise false: none, whatever the laser has
+/// @param draw of `base::RandomStream::range_noise` @param noise false: none, whatever the laser has
 /// @param ranges, hits one per sample
-void shape_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const base::Draw& draw, bool noise,
+void shape_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const base::RandomKey& draw, bool noise,
                 const CastScan& cast, std::span<double> ranges, std::span<std::uint32_t> hits);
 
 /// A range as users who want infinity for "nothing met" are told it. @param range [m] of a beam that met `hit`

@@ -84,7 +84,7 @@ class Magnetometers : public Instruments {
   void add_places(const Array& array, const Pose& X_WS);
   void read(std::size_t i);
 
-  base::Workers& workers_;
+  base::ThreadPool& thread_pool_;
   std::uint64_t seed_;
   bool noise_;
   std::vector<Array> arrays_;
@@ -96,13 +96,13 @@ class Magnetometers : public Instruments {
 };
 
 Magnetometers::Magnetometers(const Site& site)
-    : workers_(site.workers), seed_(site.seed), noise_(site.noise), arrays_(arrays_of(site.world)) {
+    : thread_pool_(site.thread_pool), seed_(site.seed), noise_(site.noise), arrays_(arrays_of(site.world)) {
   const bool magnitudes = any_magnitudes(arrays_);
   for (const Array& array : arrays_)
     if (!waves_.contains(array.row.mode))
       waves_.emplace(
           array.row.mode,
-          Wave{{site.world, site.device, site.workers, magnitudes, cutoff_of(site.world, array.row.mode)}, {}, {}});
+          Wave{{site.world, site.device, site.thread_pool, magnitudes, cutoff_of(site.world, array.row.mode)}, {}, {}});
   bound_errors(site.world);
   if (!arrays_.empty()) values_.resize(arrays_.back().values + kMagnetometerColumns * arrays_.back().row.elements);
 }
@@ -158,7 +158,7 @@ void Magnetometers::read(std::size_t i) {
   const Due& due = due_[i];
   const Array& array = arrays_[due.row];
   const Magnetometer& m = array.settings;
-  const base::Draw draw{seed_, base::Stream::field_noise, array.row.mover, array.row.sensor, due.sequence};
+  const base::RandomKey draw{seed_, base::RandomStream::field_noise, array.row.mover, array.row.sensor, due.sequence};
   const MagneticField& field = waves_.at(array.row.mode).field;
   const glm::dvec2 facing = base::rotate(X_WS_[i].yaw, {1.0, 0.0});
   for (std::uint32_t e = 0; e < m.X_SE.size(); ++e) {
@@ -181,7 +181,7 @@ void Magnetometers::read(std::size_t i) {
 }
 
 void Magnetometers::collect(std::vector<base::ReadingBlock>& out) {
-  workers_.run(due_.size(), 64, [this](std::size_t first, std::size_t last, unsigned) {
+  thread_pool_.parallel_for(due_.size(), 64, [this](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) read(i);
   });
   for (std::size_t i = 0; i < due_.size(); ++i) {

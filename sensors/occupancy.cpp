@@ -53,7 +53,7 @@ double farthest_on(const Site& site) {
 
 Occupancies::Occupancies(const Site& site)
     : maps_(occupancies_of(site.world)),
-      batch_(site.device, site.workers, plans_of(maps_), farthest_on(site)),
+      batch_(site.device, site.thread_pool, plans_of(maps_), farthest_on(site)),
       flags_(site.true_poses ? maps::kTruePoses : 0) {
   std::size_t values = 0;
   for (std::uint32_t i = 0; i < maps_.size(); ++i) {

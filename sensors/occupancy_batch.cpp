@@ -57,7 +57,7 @@ maps::CellBox in_whole_words(const maps::CellBox& box) {
 
 void MapBatch::Tables::trace() {
   shares.resize(scans.size());
-  workers.run(scans.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
+  thread_pool.parallel_for(scans.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const MapPlace& map = all[scans[i].map];
       const maps::ScanView view{scans[i].X_WS, scans[i].ranges, *map.beams, map.plan.range_min, map.plan.range_max};
@@ -115,7 +115,7 @@ void MapBatch::Tables::hand_out() {
 
 /// Marks the cells that beams ended in.
 void MapBatch::Tables::strike() {
-  workers.run(scans.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
+  thread_pool.parallel_for(scans.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const MapShare& share = shares[i];
       if (maps::is_empty(share.cells)) continue;
@@ -192,15 +192,15 @@ void MapBatch::Tables::send() {
     batch.down(*words, 4 * std::size_t{all[map].words}, 4 * std::size_t{maps::words(all[map].plan.grid)});
 }
 
-MapBatch::MapBatch(gpu::Device& device, base::Workers& workers, std::vector<MapPlan> plans, double farthest)
-    : t_(std::make_unique<Tables>(device, workers, std::move(plans), farthest)) {}
+MapBatch::MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapPlan> plans, double farthest)
+    : t_(std::make_unique<Tables>(device, thread_pool, std::move(plans), farthest)) {}
 
 MapBatch::~MapBatch() = default;
 
 void MapBatch::update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted) {
   Tables& t = *t_;
   SF_CHECK(scans.size() <= t.all.size(), std::to_string(scans.size()) + " scans for fewer maps");
-  t.on_host.update(scans, wanted, t.workers);
+  t.on_host.update(scans, wanted, t.thread_pool);
   t.scans.clear();
   t.wanted.clear();
   for (const MapScan& scan : scans)

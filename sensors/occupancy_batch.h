@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "gpu/device.h"
 #include "maps/plain_mapper.h"
 
@@ -36,12 +36,12 @@ struct MapScan {
   std::span<const double> ranges;  ///< [m] `samples` of them
 };
 
-/// Not thread-safe. `device` and `workers` must outlive it.
+/// Not thread-safe. `device` and `thread_pool` must outlive it.
 class MapBatch {
  public:
   /// All maps unexplored. @param farthest [cells] range of scans that the device enters; the host enters the others
   /// @throws base::DeviceError when the device cannot hold them.
-  MapBatch(gpu::Device& device, base::Workers& workers, std::vector<MapPlan> plans,
+  MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapPlan> plans,
            double farthest = maps::kFarthestRange);
   ~MapBatch();
 

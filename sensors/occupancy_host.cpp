@@ -15,10 +15,11 @@ HostMaps::HostMaps(std::span<const MapPlan> plans, double farthest) : rows_(plan
   }
 }
 
-void HostMaps::update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted, base::Workers& workers) {
+void HostMaps::update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted,
+                      base::ThreadPool& thread_pool) {
   if (empty()) return;
-  ends_.resize(workers.threads());
-  workers.run(scans.size(), 4, [&](std::size_t first, std::size_t last, unsigned thread) {
+  ends_.resize(thread_pool.threads());
+  thread_pool.parallel_for(scans.size(), 4, [&](std::size_t first, std::size_t last, unsigned thread) {
     for (std::size_t i = first; i < last; ++i) {
       if (!has(scans[i].map)) continue;
       Map& map = maps_[rows_[scans[i].map]];

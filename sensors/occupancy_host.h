@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "maps/plain_mapper.h"
 #include "sensors/occupancy_batch.h"
 
@@ -23,7 +23,7 @@ class HostMaps {
   bool empty() const { return maps_.empty(); }
 
   /// Enters those of `scans` that are for maps of its own, at most one into each.
-  void update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted, base::Workers& workers);
+  void update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted, base::ThreadPool& thread_pool);
   /// Of a map that was wanted last. Lives until the next update.
   std::span<const std::uint32_t> words(std::uint32_t map) const { return maps_[rows_[map]].grid.words; }
 

@@ -29,8 +29,8 @@ std::size_t strip_blocks(const maps::GridPlan& plan) {
 
 }  // namespace
 
-MapBatch::Tables::Tables(gpu::Device& device, base::Workers& w, std::vector<MapPlan> plans, double farthest)
-    : workers(w), on_host(plans, farthest), unified(device.unified()), batch(device) {
+MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapPlan> plans, double farthest)
+    : thread_pool(w), on_host(plans, farthest), unified(device.unified()), batch(device) {
   plan(std::move(plans));
   lay_out();
   rows = std::make_unique<gpu::Buffer>(device, "due maps", Role::upload, Texel::u32x4,

@@ -57,7 +57,7 @@ inline std::uint32_t units_of(std::int64_t cells, std::int64_t unit) {
 inline std::uint32_t pairs_of(const MapPlan& plan) { return (plan.samples + 1) / 2; }
 
 struct MapBatch::Tables {
-  base::Workers& workers;
+  base::ThreadPool& thread_pool;
   HostMaps on_host;
   bool unified;
   std::vector<MapPlace> all;
@@ -78,7 +78,7 @@ struct MapBatch::Tables {
   gpu::Batch batch;
   bool blank = true;  ///< maps are still to be sent
 
-  Tables(gpu::Device& device, base::Workers& w, std::vector<MapPlan> plans, double farthest);
+  Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapPlan> plans, double farthest);
   void plan(std::vector<MapPlan> plans);
   void lay_out();
   std::size_t make_course(gpu::Device& device, const char* name, MapCourse& course,

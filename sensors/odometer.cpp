@@ -21,7 +21,7 @@ Rolled roll(const base::Pose& before, const base::Pose& after, double track) {
 }
 
 double Slippage::step(std::uint64_t number) const {
-  base::Draw draw = walk_;
+  base::RandomKey draw = walk_;
   draw.c = number;
   return slip_ * std::sqrt(kStep) * base::random_normal(draw, wheel_)[0];
 }

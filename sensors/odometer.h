@@ -25,7 +25,7 @@ Rolled roll(const base::Pose& before, const base::Pose& after, double track);
 class Slippage {
  public:
   /// @param walk names it: its `c` counts steps; @param slip [m^(1/2)] >= 0; 0: none
-  Slippage(const base::Draw& walk, std::uint32_t wheel, double slip) : walk_(walk), wheel_(wheel), slip_(slip) {}
+  Slippage(const base::RandomKey& walk, std::uint32_t wheel, double slip) : walk_(walk), wheel_(wheel), slip_(slip) {}
 
   /// @param distance [m] >= 0, rolled on
   void advance(double distance);
@@ -35,7 +35,7 @@ class Slippage {
  private:
   double step(std::uint64_t number) const;
 
-  base::Draw walk_;
+  base::RandomKey walk_;
   std::uint32_t wheel_;
   double slip_;
   double rolled_ = 0.0;      ///< [steps] either way

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/contact.h"
+#include "base/contact_onset.h"
 
 namespace sf::viz {
 
@@ -70,7 +70,7 @@ double path_length(const Track& track) {
 
 std::size_t contact_count(const Track& track) {
   std::size_t begun = 0;
-  base::Contact contact;
+  base::ContactOnset contact;
   for (const std::uint8_t now : track.contacts) begun += contact.begins(now != 0) ? 1u : 0u;
   return begun;
 }

@@ -28,7 +28,7 @@ inline constexpr std::uint32_t kContact = 0xFFD4351Cu;
 bool is_finite(const base::Pose& X_WM);
 /// [m] of the whole path.
 double path_length(const Track& track);
-/// Contacts that began (base/contact.h).
+/// Contacts that began (base/contact_onset.h).
 std::size_t contact_count(const Track& track);
 
 /// Of the world and of all tracks. [m]

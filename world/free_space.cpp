@@ -289,7 +289,7 @@ std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32
   std::vector<Pose> poses;
   const auto draw = [&](std::uint32_t k) {
     for (std::uint32_t attempt = 0; attempt < kAttempts && !region.cells.empty(); ++attempt) {
-      const base::Draw key{.seed = seed, .stream = base::Stream::place, .a = k, .b = attempt};
+      const base::RandomKey key{.seed = seed, .stream = base::RandomStream::placement, .a = k, .b = attempt};
       const auto [which, turn] = base::random_uniform(key, 0);
       const auto [x, y] = base::random_uniform(key, 1);
       const glm::dvec2 centre =

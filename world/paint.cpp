@@ -14,7 +14,7 @@ std::uint32_t paint(Source& source, const Entity& entity, std::string_view key, 
                     std::uint32_t seed) {
   if (const Property* named = find(entity, key)) {
     const std::string name = text(source, entity, key, "");
-    if (name == "random") return 0xFF000000u | base::random_words({0, base::Stream::place, seed, 0, 0}, 0)[0];
+    if (name == "random") return 0xFF000000u | base::random_words({0, base::RandomStream::placement, seed, 0, 0}, 0)[0];
     if (const auto color = color_of(name)) return *color;
     warn(source, named->at, fmt::format("unknown colour \"{}\"; expected a name of X11, e.g. \"steel blue\"", name));
     return fallback;

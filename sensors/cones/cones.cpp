@@ -57,7 +57,7 @@ Cones::Cones(const Site& site, const Plan& plan, const ConeKernel& kernel)
     : Cones(site, plan, plan.incidence ? faces_of(site.world) : Faces{}, kernel) {}
 
 Cones::Cones(const Site& site, const Plan& plan, const Faces& faces, const ConeKernel& kernel)
-    : workers_(site.workers),
+    : thread_pool_(site.thread_pool),
       first_cones_(plan.first),
       least_cosines_(plan.least_cosines),
       casts_(site, plan.incidence ? faces.world : site.world, plan.fans),
@@ -95,7 +95,7 @@ bool Cones::prepare(std::span<const Due> due, std::span<const Pose> poses) {
   count_ = due.size();
   if (!on_device()) return again;
   const auto rows = rows_.host<ConeRow>();
-  workers_.run(count_, 512, [&](std::size_t first, std::size_t last, unsigned) {
+  thread_pool_.parallel_for(count_, 512, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) rows[i] = row_of(i);
   });
   // Padding repeats one cone; its echoes lie behind all others.

@@ -64,7 +64,7 @@ class Cones {
   /// Likewise shaders/sonar.comp. @param beam of all in the cast's directions
   bool is_audible(const ConeRow& row, std::size_t beam, std::uint32_t hit);
 
-  base::Workers& workers_;
+  base::ThreadPool& thread_pool_;
   std::vector<std::uint32_t> first_cones_;
   std::vector<float> least_cosines_;
   raycast::Casts casts_;

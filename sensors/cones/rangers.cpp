@@ -29,7 +29,7 @@ class Rangers : public Instruments {
   void fire(const Due& due);
   void tell(std::size_t i);
 
-  base::Workers& workers_;
+  base::ThreadPool& thread_pool_;
   std::uint64_t seed_;
   bool noise_;
   std::vector<ConeArray> arrays_;
@@ -46,7 +46,7 @@ class Rangers : public Instruments {
 };
 
 Rangers::Rangers(const Site& site, std::vector<ConeArray> arrays, const RangerKind& kind)
-    : workers_(site.workers),
+    : thread_pool_(site.thread_pool),
       seed_(site.seed),
       noise_(site.noise),
       arrays_(std::move(arrays)),
@@ -90,7 +90,7 @@ void Rangers::tell(std::size_t i) {
   const ConeArray& array = arrays_[due.row];
   // Kinds share a stream, and sensors of two kinds share numbers; a draw keeps 24 bits of this name.
   const std::uint32_t name = (std::uint32_t{kind_.id} << 16) | array.row.sensor;
-  const base::Draw draw{seed_, base::Stream::range_cone, array.row.mover, name, due.sequence};
+  const base::RandomKey draw{seed_, base::RandomStream::range_cone, array.row.mover, name, due.sequence};
   const bool noisy = noise_ && (array.sigma > 0.0 || array.proportional > 0.0);
   for (std::size_t k = i > 0 ? cones_ends_[i - 1] : 0; k < cones_ends_[i]; ++k) {
     const std::uint32_t transducer = cones_due_[k].row - cones_.first_cone(due.row);
@@ -102,7 +102,7 @@ void Rangers::tell(std::size_t i) {
 }
 
 void Rangers::collect(std::vector<base::ReadingBlock>& out) {
-  workers_.run(due_.size(), 64, [this](std::size_t first, std::size_t last, unsigned) {
+  thread_pool_.parallel_for(due_.size(), 64, [this](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) tell(i);
   });
   cones_.count();

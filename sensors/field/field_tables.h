@@ -39,7 +39,7 @@ struct PlannedItem {
 struct MagneticField::Tables {
   const world::World& world;
   gpu::Device& device;
-  base::Workers& workers;
+  base::ThreadPool& thread_pool;
   double cutoff;
   std::uint32_t standing = 0;  ///< magnets of the world; the movers' come behind them
   std::uint32_t moving = 0;
@@ -59,7 +59,7 @@ struct MagneticField::Tables {
   std::uint32_t stride = 1;                   ///< spans a group has room for
   std::uint64_t dipoles_summed = 0;
 
-  Tables(const world::World& w, gpu::Device& d, base::Workers& k, bool magnitudes, double c);
+  Tables(const world::World& w, gpu::Device& d, base::ThreadPool& k, bool magnitudes, double c);
   void write_standing();
   void write_moving();
   void gather(std::span<const Place> at, std::span<const std::uint32_t> ends);

@@ -31,9 +31,9 @@ DipoleRow dipole_row(const world::Magnet& magnet, glm::dvec2 p, double z) {
           static_cast<float>(1.0 / std::max(magnet.radius, kLeastRadius))};
 }
 
-MagneticField::MagneticField(const world::World& world, gpu::Device& device, base::Workers& workers, bool magnitudes,
-                             double cutoff)
-    : t_(std::make_unique<Tables>(world, device, workers, magnitudes, cutoff)) {
+MagneticField::MagneticField(const world::World& world, gpu::Device& device, base::ThreadPool& thread_pool,
+                             bool magnitudes, double cutoff)
+    : t_(std::make_unique<Tables>(world, device, thread_pool, magnitudes, cutoff)) {
   std::vector<Pose> poses;
   for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
   place(poses);
@@ -42,8 +42,8 @@ MagneticField::MagneticField(const world::World& world, gpu::Device& device, bas
 MagneticField::MagneticField(MagneticField&&) noexcept = default;
 MagneticField::~MagneticField() = default;
 
-MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::Workers& k, bool magnitudes, double c)
-    : world(w), device(d), workers(k), cutoff(c) {
+MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::ThreadPool& k, bool magnitudes, double c)
+    : world(w), device(d), thread_pool(k), cutoff(c) {
   using gpu::Role;
   using gpu::Texel;
   standing = count_of(world.magnets);
@@ -97,7 +97,7 @@ bool MagneticField::prepare(std::span<const Place> places, std::span<const std::
   Tables& t = *t_;
   SF_CHECK(ends.empty() ? places.empty() : ends.back() == places.size(), "groups that are not the places");
   t.gather(places, ends);
-  t.workers.run(ends.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
+  t.thread_pool.parallel_for(ends.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t g = first; g < last; ++g) {
       t.write_places(g, places.first(ends[g]).last(t.asked[g].places));
       t.find_spans(g);

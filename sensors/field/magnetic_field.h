@@ -13,8 +13,8 @@
 #include <memory>
 #include <span>
 
-#include "base/parallel.h"
 #include "base/pose.h"
+#include "base/thread_pool.h"
 #include "gpu/batch.h"
 #include "gpu/device.h"
 #include "sensors/field/records.h"
@@ -41,7 +41,8 @@ class MagneticField {
   /// @param magnitudes also add up the magnets' own magnitudes.
   /// @param cutoff [m] instead of the world's; 0: none
   /// @throws base::DeviceError when the device cannot hold them.
-  MagneticField(const world::World& world, gpu::Device& device, base::Workers& workers, bool magnitudes, double cutoff);
+  MagneticField(const world::World& world, gpu::Device& device, base::ThreadPool& thread_pool, bool magnitudes,
+                double cutoff);
   MagneticField(MagneticField&&) noexcept;
   ~MagneticField();
 

@@ -13,8 +13,8 @@ constexpr std::size_t kBatch = std::size_t{SF_FIELD_PLACES} * 1024;
 
 std::vector<FieldSum> survey(const world::World& world, gpu::Device& device, std::span<const Place> places,
                              const SurveyOptions& options) {
-  base::Workers workers(options.threads);
-  MagneticField field(world, device, workers, options.magnitudes, world.magnet_cutoff);
+  base::ThreadPool thread_pool(options.threads);
+  MagneticField field(world, device, thread_pool, options.magnitudes, world.magnet_cutoff);
   gpu::Batch batch(device);
   std::vector<FieldSum> sums;
   std::vector<std::uint32_t> ends;

@@ -72,7 +72,7 @@ EdgeFit::Plan EdgeFit::plan(const Site& site, const std::vector<LaneEdge>& edges
 }
 
 EdgeFit::EdgeFit(const Site& site, const std::vector<LaneEdge>& edges, const std::vector<double>& grains)
-    : workers_(site.workers),
+    : thread_pool_(site.thread_pool),
       seed_(site.seed),
       edges_(edges),
       plan_(plan(site, edges)),
@@ -122,7 +122,7 @@ void EdgeFit::prepare(std::span<const Due> due, std::span<const std::uint32_t> l
   due_.assign(due.begin(), due.end());
   write_order(write_rows(lanes));
   if (!plan_.any_noise) return;
-  workers_.run(due_.size(), 16, [this](std::size_t first, std::size_t last, unsigned) {
+  thread_pool_.parallel_for(due_.size(), 16, [this](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) draw_noise(due_[i]);
   });
 }
@@ -173,7 +173,8 @@ void EdgeFit::draw_noise(const Due& due) {
   const EdgeRow& row = plan_.rows[due.row];
   if (row.noise_share == 0.0F) return;
   const SensorRow& sensor = edges_[due.row].row;
-  const base::Draw draw{seed_, base::Stream::range_noise, sensor.mover, edge_noise_name(sensor.sensor), due.sequence};
+  const base::RandomKey draw{seed_, base::RandomStream::range_noise, sensor.mover, edge_noise_name(sensor.sensor),
+                             due.sequence};
   float* const out = normals_.host<float>().data() + SF_BEAMS_PER_LANE * std::size_t{row.noise};
   for (std::uint32_t k = 0; k < row.beams; ++k)
     out[plan_.beams[due.row].place(k)] = static_cast<float>(base::random_normal(draw, k)[0]);

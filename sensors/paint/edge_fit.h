@@ -71,7 +71,7 @@ class EdgeFit {
   void write_order(bool same_due);
   void draw_noise(const Due& due);
 
-  base::Workers& workers_;
+  base::ThreadPool& thread_pool_;
   std::uint64_t seed_;
   const std::vector<LaneEdge>& edges_;
   Plan plan_;

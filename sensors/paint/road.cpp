@@ -31,7 +31,7 @@ void refuse_long_rays(const Site& site, const raycast::Casts& casts, double cell
 }  // namespace
 
 Road::Road(const Site& site, const PaintRaster& raster, raycast::Casts& casts, std::uint32_t tag, bool with_casts)
-    : workers_(site.workers),
+    : thread_pool_(site.thread_pool),
       casts_(casts),
       cell_(raster.cell()),
       columns_(static_cast<double>(raster.columns()) * PaintRaster::kBlock),
@@ -83,7 +83,7 @@ RoadRow Road::row_of(std::size_t i) const {
 void Road::prepare(std::size_t due) {
   due_ = due;
   const auto rows = place_.host<RoadRow>();
-  workers_.run(due, 256, [&](std::size_t first, std::size_t last, unsigned) {
+  thread_pool_.parallel_for(due, 256, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) rows[i] = row_of(i);
   });
   // One invocation a beam where the cast has one a lane.

@@ -33,7 +33,7 @@ class Road {
  private:
   RoadRow row_of(std::size_t i) const;
 
-  base::Workers& workers_;
+  base::ThreadPool& thread_pool_;
   raycast::Casts& casts_;
   double cell_;
   double columns_, rows_;            ///< [cells]

@@ -41,7 +41,7 @@ bool other_c_library() {
          {std::sin(x), std::cos(x), std::log(x), std::exp(-x), std::atan2(x, 3.0 - x), std::hypot(x, 2.0)})
       values.push_back(y);
   }
-  return base::hash_text(base::hash_bytes(values.data(), values.size() * sizeof(double))) != kProbe;
+  return base::hash_hex(base::hash_bytes(values.data(), values.size() * sizeof(double))) != kProbe;
 }
 
 struct HeldBytes : testing::Test {
@@ -77,7 +77,7 @@ TEST_F(HeldBytes, Recordings) {
   }
   for (const record::McapAttachment& a : contents.attachments) hash = chain(a.data, chain(a.name, hash));
   EXPECT_GT(contents.messages.size(), 1000u);
-  EXPECT_EQ(base::hash_text(hash), "c5b80f55e26518d0");
+  EXPECT_EQ(base::hash_hex(hash), "c5b80f55e26518d0");
 }
 
 /// Every datagram of two seconds, in the order of sending.
@@ -106,7 +106,7 @@ TEST_F(HeldBytes, Packets) {
       for (std::size_t i = 0; i < taken; ++i, ++count) hash = chain(batch.bytes(i), hash);
   }
   EXPECT_EQ(count, post.counts().packets.sent);
-  EXPECT_EQ(base::hash_text(hash), "80e65f0e552aa7da");
+  EXPECT_EQ(base::hash_hex(hash), "80e65f0e552aa7da");
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ TEST(Hash, ChainsAndPrints) {
   EXPECT_EQ(hash_bytes(text, 6), hash_bytes(text, 6));
   EXPECT_NE(hash_bytes(text, 6), hash_bytes(text, 5));
   EXPECT_NE(hash_bytes(text + 3, 3, hash_bytes(text, 3)), hash_bytes(text, 3, hash_bytes(text + 3, 3))) << "order";
-  EXPECT_EQ(hash_text(0x1F), "000000000000001f");
+  EXPECT_EQ(hash_hex(0x1F), "000000000000001f");
 }
 
 TEST(Error, SaysFileLineAndMessage) {

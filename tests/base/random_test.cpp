@@ -10,22 +10,22 @@
 namespace sf::base {
 namespace {
 
-constexpr Draw kDraw{42, Stream::range_noise, 1, 2, 3};
+constexpr RandomKey kKey{42, RandomStream::range_noise, 1, 2, 3};
 
 TEST(Random, IsAPureFunction) {
-  const auto first = random_words(kDraw, 7);
-  random_words(kDraw, 8);
-  EXPECT_EQ(random_words(kDraw, 7), first);
+  const auto first = random_words(kKey, 7);
+  random_words(kKey, 8);
+  EXPECT_EQ(random_words(kKey, 7), first);
 }
 
 /// Every field of a draw, and the index, gives other numbers.
 TEST(Random, EveryFieldMatters) {
-  std::set<std::array<std::uint32_t, 4>> seen{random_words(kDraw, 0), random_words(kDraw, 1)};
+  std::set<std::array<std::uint32_t, 4>> seen{random_words(kKey, 0), random_words(kKey, 1)};
   for (int field = 0; field < 7; ++field) {
-    Draw d = kDraw;
+    RandomKey d = kKey;
     if (field == 0) d.seed += 1;
     if (field == 1) d.seed += std::uint64_t{1} << 32;
-    if (field == 2) d.stream = Stream::angle_noise;
+    if (field == 2) d.stream = RandomStream::angle_noise;
     if (field == 3) d.a += 1;
     if (field == 4) d.b += 1;
     if (field == 5) d.c += 1;
@@ -38,7 +38,7 @@ TEST(Random, UniformIsOpenAndEven) {
   double sum = 0.0, squares = 0.0;
   constexpr std::uint32_t kCount = 100'000;
   for (std::uint32_t i = 0; i < kCount; ++i)
-    for (const double u : random_uniform(kDraw, i)) {
+    for (const double u : random_uniform(kKey, i)) {
       ASSERT_GT(u, 0.0);
       ASSERT_LT(u, 1.0);
       sum += u;
@@ -53,7 +53,7 @@ TEST(Random, NormalHasTheMomentsOfANormal) {
   double mean = 0.0, variance = 0.0, fourth = 0.0, both = 0.0;
   constexpr std::uint32_t kCount = 200'000;
   for (std::uint32_t i = 0; i < kCount; ++i) {
-    const auto n = random_normal(kDraw, i);
+    const auto n = random_normal(kKey, i);
     mean += n[0] / kCount;
     variance += n[0] * n[0] / kCount;
     fourth += n[0] * n[0] * n[0] * n[0] / kCount;

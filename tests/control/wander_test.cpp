@@ -132,11 +132,11 @@ TEST(Wander, with_a_scanner_covers_ground_and_meets_nothing) {
 TEST(Wander, leaves_what_presses_from_behind) {
   world::World world = arena();
   scenes::add_create(world, {2, 2, 0, 0.3}).lasers.push_back(laser(M_PI, 181, 8.0));
-  const auto first_twist = [&](double range, std::uint32_t touched) {
+  const auto first_twist = [&](double range, std::uint32_t contact_mask) {
     Wander wander(world.movers[0], 0, 1);
     const std::vector<double> ranges(181, range);
     const ReadingBlock block{.mover = 0, .sensor = 0, .kind = 1, .values = ranges};
-    base::Report state{.X_WM = world.movers[0].X_WM, .touched = touched};
+    base::Report state{.X_WM = world.movers[0].X_WM, .contact_mask = contact_mask};
     return wander.step({0, state, {&block, 1}, true});
   };
   EXPECT_GT(first_twist(8.0, 1u << 16).forward, 0.0) << "straight behind";

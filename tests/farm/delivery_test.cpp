@@ -36,7 +36,7 @@ TEST(Latency, AReadingComesLaterAndUnchanged) {
   }
   ASSERT_EQ(delivered.size(), 6u);
   ASSERT_EQ(expected.size(), 6u);
-  EXPECT_FALSE(expected[0].unsure.empty());
+  EXPECT_FALSE(expected[0].quality.empty());
   EXPECT_EQ(delivered, expected);
 }
 

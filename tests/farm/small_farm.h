@@ -33,7 +33,7 @@ struct Kept {
   std::int64_t time = 0;
   std::vector<double> values;
   std::vector<std::uint32_t> hits;
-  std::vector<base::Unsure> unsure;
+  std::vector<base::QualityFlag> quality;
   double bound = 0.0;
   std::uint8_t mode = 0;
   bool operator==(const Kept&) const = default;
@@ -46,7 +46,7 @@ inline Kept keep(const base::ReadingBlock& r) {
           r.time,
           {r.values.begin(), r.values.end()},
           {r.hits.begin(), r.hits.end()},
-          {r.unsure.begin(), r.unsure.end()},
+          {r.quality.begin(), r.quality.end()},
           r.bound,
           r.mode};
 }

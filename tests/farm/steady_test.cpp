@@ -94,7 +94,7 @@ void expect_same(const base::ReadingBlock& p, const base::ReadingBlock& q) {
   ASSERT_EQ(p.flags, q.flags);
   ASSERT_EQ(p.mode, q.mode);
   ASSERT_EQ(p.bound, q.bound);
-  ASSERT_TRUE(std::ranges::equal(p.unsure, q.unsure));
+  ASSERT_TRUE(std::ranges::equal(p.quality, q.quality));
   ASSERT_EQ(poses(p), poses(q));
   ASSERT_EQ(keep(p).hits, keep(q).hits);
   for (std::size_t i = 0; i < p.values.size(); ++i)

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "base/error.h"
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "netio/endpoint.h"
 #include "netio/outbox.h"
 #include "netio/posix.h"
@@ -339,10 +339,10 @@ TEST(Outbox, AThreadOfItsOwnSendsAllInOrder) {
   constexpr std::uint32_t kBatches = 40, kEach = 16;
   {
     Outbox outbox({.capacity = kEach, .backlog = kBatches});
-    base::Workers workers(3);
+    base::ThreadPool thread_pool(3);
     for (std::uint32_t batch = 0; batch < kBatches; ++batch) {
       const std::size_t first = outbox.claim(kEach);
-      workers.run(kEach, 1, [&](std::size_t begin, std::size_t end, unsigned) {
+      thread_pool.parallel_for(kEach, 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i)
           outbox.put(first + i, bound_endpoint(ears), base::Bytes(20, static_cast<std::uint8_t>(batch * kEach + i)));
       });

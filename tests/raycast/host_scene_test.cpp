@@ -42,10 +42,10 @@ std::vector<Pose> poses_of(const world::World& world) {
 }
 
 Scan scan(const world::World& world, const Pose& X, std::uint32_t self, const ScanPattern& pattern, double range) {
-  base::Workers workers(1);
+  base::ThreadPool thread_pool(1);
   Families families(world);
   const Viewpoint view{families.add({X.z, range, 0.0, 2.0 * M_PI}), self, X, {std::cos(X.yaw), std::sin(X.yaw)}};
-  HostScene scene(world, families, workers);
+  HostScene scene(world, families, thread_pool);
   scene.place(poses_of(world));
   scene.prepare({&view, 1});
   Scan scan{std::vector<double>(pattern.beams), std::vector<std::uint32_t>(pattern.beams)};
@@ -67,10 +67,10 @@ Scan decide_everything(const world::World& world, const Pose& X, std::uint32_t s
   };
   for (const world::Segment& s : world.walls)
     add({s.a.x, s.a.y, s.b.x, s.b.y}, s.model, s.seen_by_laser && s.z_min <= X.z && X.z < s.z_max);
-  base::Workers workers(1);
+  base::ThreadPool thread_pool(1);
   MoverTables movers(world);
   std::vector<ExactSegment> moved(movers.segments());
-  movers.place(poses_of(world), workers, moved);
+  movers.place(poses_of(world), thread_pool, moved);
   const auto rows = movers.first_rows();
   for (std::uint32_t row = 0; row < moved.size(); ++row)
     add(moved[row], movers.models()[row], row + rows[0] < rows[self] || row + rows[0] >= rows[self + 1]);
@@ -148,12 +148,12 @@ TEST(HostScene, EveryInstructionSetGivesTheSameBits) {
 
 TEST(HostScene, CellsAreListedOnce) {
   const world::World world = crowd();
-  base::Workers workers(2);
+  base::ThreadPool thread_pool(2);
   Families families(world);
   const std::uint32_t family = families.add({0.1, 8.0, 0.0, M_PI});
   EXPECT_EQ(families.add({0.1, 8.0, 0.0, 0.1}), family) << "one height, one range";
   EXPECT_NE(families.add({0.1, 4.0, 0.0, M_PI}), family);
-  HostScene scene(world, families, workers);
+  HostScene scene(world, families, thread_pool);
   const Viewpoint views[] = {
       {family, 0, {0.1, 0.1, 0.1, 0.0}}, {family, 1, {0.9, 0.9, 0.1, 1.0}}, {family, 2, {1.1, 0.1, 0.1, 0.0}}};
   scene.place(poses_of(world));
@@ -180,15 +180,15 @@ TEST(MoverTables, MoversThatAreGoneAreNowhere) {
   for (int i = 0; i < 3; ++i) scenes::add_robot(world, {5.0 * i, 0.0, 0.0, 0.0}, scenes::laser());
   MoverTables movers(world);
   movers.watch_height(0.1);
-  base::Workers workers(1);
+  base::ThreadPool thread_pool(1);
   std::vector<ExactSegment> exact(movers.segments());
   std::vector<Pose> poses = poses_of(world);
   poses[1].x = std::nan("");
-  movers.place(poses, workers, exact);
+  movers.place(poses, thread_pool, exact);
   EXPECT_EQ(movers.grid().first.back(), 2u);
   EXPECT_EQ(movers.grid().low.x, 0.0);
   for (Pose& X : poses) X.x = std::nan("");
-  movers.place(poses, workers, exact);
+  movers.place(poses, thread_pool, exact);
   EXPECT_EQ(movers.grid().first.back(), 0u) << "all of them";
 }
 

@@ -68,7 +68,7 @@ TEST(Obey, a_create_spins_in_place_by_whole_millimetres_of_its_wheels) {
 
 TEST(Obey, a_create_turns_about_twice_as_much_as_it_is_told) {
   for (std::uint32_t k = 0; k < 2000; ++k) {
-    const auto u = base::random_uniform({.seed = 11, .stream = base::Stream::slip, .a = k}, 0);
+    const auto u = base::random_uniform({.seed = 11, .stream = base::RandomStream::slip, .a = k}, 0);
     const double forward = 0.05 + 0.45 * u[0], turn = (u[1] < 0.5 ? -1.0 : 1.0) * (0.02 + std::abs(u[1] - 0.5));
     const Twist v = obey(create(), {forward, 0.0, turn});
     EXPECT_NEAR(v.forward, forward, 5e-4);

@@ -35,7 +35,7 @@ double gap_to(const world::World& world, const Pose& X_WM, const world::Mover& m
 
 TEST(Contact, whatever_a_robot_runs_into_it_comes_within_half_a_millimetre) {
   for (std::uint32_t k = 0; k < 60; ++k) {
-    const auto u = base::random_uniform({.seed = 31, .stream = base::Stream::place, .a = k}, 0);
+    const auto u = base::random_uniform({.seed = 31, .stream = base::RandomStream::placement, .a = k}, 0);
     world::World world = scenes::boxed_world(2, 2);
     scenes::add_outline(world.walls, scenes::rectangle({1.5, 0.4}, 0.1, 0.1));
     const Pose X{0.4 + 0.7 * u[0], 0.9 + 0.7 * u[1], 0, 6.28 * std::fmod(7.0 * u[0] + u[1], 1.0)};
@@ -45,7 +45,7 @@ TEST(Contact, whatever_a_robot_runs_into_it_comes_within_half_a_millimetre) {
     ASSERT_EQ(fleet.contacts()[0], 1) << k;
     const double gap = gap_to(world, fleet.reports()[0].X_WM, mover);
     EXPECT_LE(gap, 5e-4) << k;
-    EXPECT_NE(fleet.reports()[0].touched, 0u) << k;
+    EXPECT_NE(fleet.reports()[0].contact_mask, 0u) << k;
     const Pose stopped = fleet.reports()[0].X_WM;
     drive(fleet, {{0.5, 0, 0}}, 5);
     EXPECT_LT(std::hypot(fleet.reports()[0].X_WM.x - stopped.x, fleet.reports()[0].X_WM.y - stopped.y), 1e-3)
@@ -63,7 +63,7 @@ TEST(Contact, is_felt_where_it_presses) {
     const_cast<world::Mover&>(world.movers[0]).X_WM.yaw = -yaw;
     Fleet turned(world);
     drive(turned, {{0.5 * std::cos(yaw), 0.5 * std::sin(yaw), 0}}, 20);
-    EXPECT_EQ(turned.reports()[0].touched, sectors) << yaw;
+    EXPECT_EQ(turned.reports()[0].contact_mask, sectors) << yaw;
     EXPECT_NEAR(turned.reports()[0].X_WM.x, 0.335, 5e-4);
   }
 }
@@ -74,15 +74,15 @@ TEST(Contact, stays_while_it_touches_and_ends_when_it_leaves) {
   scenes::add_create(world, {0, 0, 0, 0});
   Fleet fleet(world);
   drive(fleet, {{0.5, 0, 0}}, 20);
-  const std::uint32_t pressed = fleet.reports()[0].touched;
+  const std::uint32_t pressed = fleet.reports()[0].contact_mask;
   EXPECT_NE(pressed, 0u);
   drive(fleet, {{0, 0, 0}}, 10);
-  EXPECT_EQ(fleet.reports()[0].touched, pressed) << "a bumper stays pressed while its robot stands";
+  EXPECT_EQ(fleet.reports()[0].contact_mask, pressed) << "a bumper stays pressed while its robot stands";
   EXPECT_EQ(fleet.contacts()[0], 1);
   drive(fleet, {{-0.005, 0, 0}});  // 0.5 mm: still near enough
   EXPECT_EQ(fleet.contacts()[0], 1);
   drive(fleet, {{-0.02, 0, 0}});
-  EXPECT_EQ(fleet.reports()[0].touched, 0u);
+  EXPECT_EQ(fleet.reports()[0].contact_mask, 0u);
   EXPECT_EQ(fleet.contacts()[0], 0);
 }
 
@@ -92,7 +92,7 @@ TEST(Contact, passing_by_is_none) {
   scenes::add_square(world, {0, 0, 0, 0});
   Fleet fleet(world);
   drive(fleet, {{0.5, 0, 0}}, 10);
-  EXPECT_EQ(fleet.reports()[0].touched, 0u) << "half a millimetre beside, but nothing stopped it";
+  EXPECT_EQ(fleet.reports()[0].contact_mask, 0u) << "half a millimetre beside, but nothing stopped it";
   EXPECT_EQ(fleet.contacts()[0], 0);
 }
 
@@ -105,12 +105,12 @@ TEST(Contact, who_is_run_into_feels_it_too) {
   drive(fleet, {{}, {0.5, 0, 0}, {}}, 20);
   EXPECT_EQ(fleet.contacts()[0], 1);
   EXPECT_EQ(fleet.contacts()[1], 1);
-  EXPECT_NE(fleet.reports()[0].touched & (bit(15) | bit(16)), 0u) << "behind";
-  EXPECT_NE(fleet.reports()[1].touched & (bit(0) | bit(-1)), 0u) << "ahead";
+  EXPECT_NE(fleet.reports()[0].contact_mask & (bit(15) | bit(16)), 0u) << "behind";
+  EXPECT_NE(fleet.reports()[1].contact_mask & (bit(0) | bit(-1)), 0u) << "ahead";
   EXPECT_EQ(fleet.contacts()[2], 0) << "nobody ran into the third";
   drive(fleet, {{}, {-0.5, 0, 0}, {}}, 1);
   EXPECT_EQ(fleet.contacts()[1], 0);
-  EXPECT_EQ(fleet.reports()[0].touched & (bit(15) | bit(16)), 0u) << "released on that side";
+  EXPECT_EQ(fleet.reports()[0].contact_mask & (bit(15) | bit(16)), 0u) << "released on that side";
 }
 
 TEST(Contact, a_round_robot_that_presses_can_turn_whatever_side_it_presses_with) {
@@ -169,27 +169,27 @@ TEST(Contact, a_robot_that_is_told_presses_on_virtual_things) {
     fleet.apply(std::vector<Report>{{.mover = 0, .time = time, .X_WM = {x, 0, 0, 0}, .velocity = {0.5, 0, 0}}});
   };
   tell(kTick, 0.2);
-  EXPECT_EQ(fleet.predict(kTick)[0].touched, 0u);
+  EXPECT_EQ(fleet.predict(kTick)[0].contact_mask, 0u);
   EXPECT_EQ(fleet.contacts()[0], 0);
-  EXPECT_NE(fleet.predict(4 * kTick)[0].touched & (bit(0) | bit(-1)), 0u) << "carried on into the wall";
+  EXPECT_NE(fleet.predict(4 * kTick)[0].contact_mask & (bit(0) | bit(-1)), 0u) << "carried on into the wall";
   EXPECT_EQ(fleet.contacts()[0], 1);
-  EXPECT_EQ(fleet.predict(kTick)[0].touched, 0u) << "where it is at that time";
+  EXPECT_EQ(fleet.predict(kTick)[0].contact_mask, 0u) << "where it is at that time";
   tell(5 * kTick, 0.45);
-  EXPECT_NE(fleet.predict(5 * kTick)[0].touched, 0u) << "half way through";
-  EXPECT_EQ(fleet.predict(5 * kTick)[1].touched, 0u);
+  EXPECT_NE(fleet.predict(5 * kTick)[0].contact_mask, 0u) << "half way through";
+  EXPECT_EQ(fleet.predict(5 * kTick)[1].contact_mask, 0u);
 }
 
 TEST(Contact, what_a_report_says_of_a_real_bumper_stays) {
   world::World world = scenes::empty_world();
   scenes::add_create(world, {0, 0, 0, 0});
   Fleet fleet(world);
-  fleet.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {}, .touched = bit(3)}});
-  EXPECT_EQ(fleet.predict(kTick)[0].touched, bit(3));
+  fleet.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {}, .contact_mask = bit(3)}});
+  EXPECT_EQ(fleet.predict(kTick)[0].contact_mask, bit(3));
   EXPECT_EQ(fleet.contacts()[0], 1);
   scenes::add_wall(world, {0.1655, -1}, {0.1655, 1});
   Fleet beside(world);
-  beside.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {}, .touched = bit(3)}});
-  EXPECT_EQ(beside.predict(kTick)[0].touched, bit(3) | bit(0) | bit(-1)) << "beside what the virtual world adds";
+  beside.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}, .velocity = {}, .contact_mask = bit(3)}});
+  EXPECT_EQ(beside.predict(kTick)[0].contact_mask, bit(3) | bit(0) | bit(-1)) << "beside what the virtual world adds";
 }
 
 TEST(Contact, robots_that_are_told_press_on_each_other) {
@@ -200,8 +200,8 @@ TEST(Contact, robots_that_are_told_press_on_each_other) {
   fleet.apply(std::vector<Report>{{.mover = 0, .time = kTick, .X_WM = {}},
                                   {.mover = 1, .time = kTick, .X_WM = {0.4, 0, 0, 0}}});
   const auto reports = fleet.predict(kTick);
-  EXPECT_NE(reports[0].touched & (bit(0) | bit(-1)), 0u);
-  EXPECT_NE(reports[1].touched & (bit(15) | bit(16)), 0u);
+  EXPECT_NE(reports[0].contact_mask & (bit(0) | bit(-1)), 0u);
+  EXPECT_NE(reports[1].contact_mask & (bit(15) | bit(16)), 0u);
 }
 
 }  // namespace

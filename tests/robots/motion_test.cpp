@@ -93,9 +93,9 @@ TEST(Between, who_stands_stands) {
 /// What touches it is felt at ticks.
 TEST(Between, touch_is_as_it_was_at_the_tick_before) {
   base::Report before = at(0, {}, {}), after = at(kTick, {0.01, 0, 0, 0}, {});
-  before.touched = 5;
-  after.touched = 6;
-  EXPECT_EQ(between(before, after, 1).touched, 5u);
+  before.contact_mask = 5;
+  after.contact_mask = 6;
+  EXPECT_EQ(between(before, after, 1).contact_mask, 5u);
 }
 
 world::Mover mover(world::Drive drive) {

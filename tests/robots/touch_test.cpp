@@ -108,11 +108,12 @@ TEST(Sectors, agree_with_points_along_the_wall) {
   const Outline outline = disc();
   int pressed = 0;
   for (std::uint32_t k = 0; k < 300; ++k) {
-    const auto u = base::random_uniform({.seed = 21, .stream = base::Stream::place, .a = k}, 0);
-    const auto v = base::random_uniform({.seed = 21, .stream = base::Stream::place, .a = k}, 1);
+    const auto u = base::random_uniform({.seed = 21, .stream = base::RandomStream::placement, .a = k}, 0);
+    const auto v = base::random_uniform({.seed = 21, .stream = base::RandomStream::placement, .a = k}, 1);
     const Pose X{u[0], u[1], 0, 6.0 * v[0]};
     const double bearing = 2.0 * M_PI * v[1];
-    const double far = 0.1 + 0.08 * base::random_uniform({.seed = 21, .stream = base::Stream::place, .a = k}, 2)[0];
+    const double far =
+        0.1 + 0.08 * base::random_uniform({.seed = 21, .stream = base::RandomStream::placement, .a = k}, 2)[0];
     const glm::dvec2 middle = transform(X, base::rotate(bearing, {far, 0.0}));
     const glm::dvec2 along = base::rotate(bearing + X.yaw + 0.5 * M_PI + 0.8 * (v[0] - 0.5), {0.1, 0.0});
     const world::Segment w = wall(middle - along, middle + along);

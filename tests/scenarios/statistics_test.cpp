@@ -50,7 +50,7 @@ TEST(Statistics, SquaresAgree) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     std::vector<double> errors;
     for (std::uint32_t i = 0; i < 200; ++i)
-      errors.push_back(0.1 + 0.3 * base::random_normal({seed, base::Stream::decision}, i)[0]);
+      errors.push_back(0.1 + 0.3 * base::random_normal({seed, base::RandomStream::decision}, i)[0]);
     const ErrorStatistics s = statistics_of(errors);
     const double n = 200.0;
     const double plain = s.mean * s.mean + s.deviation * s.deviation * (n - 1.0) / n;

@@ -78,7 +78,7 @@ TEST(Supervisor, PutsItBackAlongItsWay) {
 TEST(Supervisor, TurnsItFromWhatItTouched) {
   for (const bool left : {true, false}) {
     Ride ride({.patience = 1.0, .turn = 0.5});
-    ride.report.touched = left ? 1u << 2 : 1u << (base::kTouchSectors - 3);
+    ride.report.contact_mask = left ? 1u << 2 : 1u << (base::kContactSectors - 3);
     Supervisor::Help help;
     ride.wait(help);
     EXPECT_NEAR(help.X_WM.yaw, left ? -0.5 : 0.5, 1e-12);

@@ -114,7 +114,7 @@ TEST(Watch, OtherLanesAndTheOtherDirectionAreNotMeant) {
 
 TEST(Goals, OnesThatAreNoLongerHeadedForArePassed) {
   Goals goals;
-  goals.look(base::kNobody);
+  goals.look(base::kNoId);
   EXPECT_FALSE(goals.any);
   goals.look(3);  // the first is not passed yet
   EXPECT_TRUE(goals.any);
@@ -123,8 +123,8 @@ TEST(Goals, OnesThatAreNoLongerHeadedForArePassed) {
   EXPECT_EQ(goals.passed, 0u);
   goals.look(5);
   EXPECT_EQ(goals.passed, 1u);
-  goals.look(base::kNobody);  // the last
-  goals.look(base::kNobody);
+  goals.look(base::kNoId);  // the last
+  goals.look(base::kNoId);
   EXPECT_EQ(goals.passed, 2u);
   goals.look(0);  // an id like any other
   goals.look(7);

@@ -21,7 +21,7 @@
 namespace sf::trial {
 namespace {
 
-using base::Unsure;
+using base::QualityFlag;
 
 /// A robot with a laser, a magnetometer and a bumper, each with what is put in.
 world::World load(const std::string& of_all, const std::string& laser = "", const std::string& magnetometer = "",
@@ -110,7 +110,7 @@ TEST(Accuracy, ChangesTheWorldsHashAndSurvivesASnapshot) {
 struct Read {
   std::vector<double> values;
   std::vector<std::uint32_t> hits;
-  std::vector<Unsure> unsure;
+  std::vector<QualityFlag> quality;
   double bound = 0.0;
   std::uint8_t mode = 0;
 };
@@ -122,9 +122,9 @@ Read read_in(world::World world, const std::string& mode) {
   for (const base::ReadingBlock& r : glance.readings) {
     read.values.insert(read.values.end(), r.values.begin(), r.values.end());
     read.hits.insert(read.hits.end(), r.hits.begin(), r.hits.end());
-    const std::size_t columns = r.unsure.empty() ? 1 : r.values.size() / r.unsure.size();
+    const std::size_t columns = r.quality.empty() ? 1 : r.values.size() / r.quality.size();
     for (std::size_t i = 0; i < r.values.size(); ++i)
-      read.unsure.push_back(r.unsure.empty() ? Unsure::no : r.unsure[i / columns]);
+      read.quality.push_back(r.quality.empty() ? QualityFlag::none : r.quality[i / columns]);
     read.bound = std::max(read.bound, r.bound);
     read.mode = r.mode;
   }
@@ -147,7 +147,8 @@ TEST(Accuracy, SkippingCastsTheSameBeamsToTheBit) {
       for (std::size_t i = 0; i < exact.values.size(); ++i) {
         const auto sample = static_cast<std::uint32_t>(i % samples);
         const bool cast = sample % every == 0 || sample == samples - 1;
-        ASSERT_EQ(some.unsure[i] == Unsure::not_cast, !cast) << mode << ", sample " << sample << " of " << samples;
+        ASSERT_EQ(some.quality[i] == QualityFlag::not_cast, !cast)
+            << mode << ", sample " << sample << " of " << samples;
         if (!cast) continue;
         ASSERT_EQ(some.values[i], exact.values[i]);
         ASSERT_EQ(some.hits[i], exact.hits[i]);
@@ -221,11 +222,11 @@ TEST(Accuracy, GrazingBeamsAreFlagged) {
   add_eye(world, {0.0, 0.0, 0.0, -0.1}, laser);
   world::finish(world);
   const Glance glance(world);
-  ASSERT_EQ(glance.readings[0].unsure.size(), 3u);
-  EXPECT_EQ(glance.readings[0].unsure[0], Unsure::grazing) << "2e-4 rad";
-  EXPECT_EQ(glance.readings[0].unsure[1], Unsure::no) << "parallel: it meets nothing";
-  EXPECT_EQ(glance.readings[0].unsure[2], Unsure::no);
-  EXPECT_TRUE(glance.readings[1].unsure.empty()) << "at 0.1 rad";
+  ASSERT_EQ(glance.readings[0].quality.size(), 3u);
+  EXPECT_EQ(glance.readings[0].quality[0], QualityFlag::grazing) << "2e-4 rad";
+  EXPECT_EQ(glance.readings[0].quality[1], QualityFlag::none) << "parallel: it meets nothing";
+  EXPECT_EQ(glance.readings[0].quality[2], QualityFlag::none);
+  EXPECT_TRUE(glance.readings[1].quality.empty()) << "at 0.1 rad";
 }
 
 TEST(Accuracy, BoundsAreStatedBeforehandAndGrowWithTheWorld) {
@@ -368,7 +369,8 @@ TEST(Accuracy, FewerRaysFindAStraightEdgeAsWell) {
     const Read some = read_in(world, mode);
     EXPECT_NEAR(some.values[0], exact.values[0], 1e-9) << mode;
     EXPECT_LT(some.values[1], exact.values[1]) << "fewer points";
-    EXPECT_EQ(some.unsure, std::vector<Unsure>(4, Unsure::not_cast)) << "rays left out may have met something else";
+    EXPECT_EQ(some.quality, std::vector<QualityFlag>(4, QualityFlag::not_cast))
+        << "rays left out may have met something else";
   }
 }
 

@@ -85,9 +85,9 @@ TEST(Bumper, ReadsWhatPressesNow) {
   farm::Farm farm(world, device());
   farm.hear_all();
   std::vector<base::Report> states = states_of(world);
-  for (std::uint32_t k = 0; k < base::kTouchSectors; ++k) {
-    states[0].touched = 1u << k;
-    states[1].touched = k == 3 ? 0xFFFFFFFFu : 0u;
+  for (std::uint32_t k = 0; k < base::kContactSectors; ++k) {
+    states[0].contact_mask = 1u << k;
+    states[1].contact_mask = k == 3 ? 0xFFFFFFFFu : 0u;
     const auto readings = farm.tick(k * 100'000'000ll, states);
     ASSERT_EQ(readings.size(), 2u);
     EXPECT_EQ(readings[0].kind, sensors::kBumper);

@@ -14,11 +14,11 @@ class Chance {
   explicit Chance(std::uint64_t seed) : seed_(seed) {}
   /// Uniform in (low, high).
   double between(double low, double high) {
-    return low + (high - low) * base::random_uniform({seed_, base::Stream::place, 77, 0, count_++}, 0)[0];
+    return low + (high - low) * base::random_uniform({seed_, base::RandomStream::placement, 77, 0, count_++}, 0)[0];
   }
   /// Uniform in {0, ..., count - 1}.
   std::uint32_t below(std::uint32_t count) {
-    return base::random_words({seed_, base::Stream::place, 78, 0, count_++}, 0)[0] % count;
+    return base::random_words({seed_, base::RandomStream::placement, 78, 0, count_++}, 0)[0] % count;
   }
   glm::dvec2 in_square(double half) {
     const double x = between(-half, half);

@@ -120,7 +120,7 @@ void expect_same_bits(std::span<const base::ReadingBlock> p, std::span<const bas
   example.precision(17);
   for (std::size_t i = 0; i < p.size(); ++i) {
     EXPECT_EQ(p[i].bound, q[i].bound) << i;
-    EXPECT_TRUE(std::ranges::equal(p[i].unsure, q[i].unsure)) << "flags of reading " << i;
+    EXPECT_TRUE(std::ranges::equal(p[i].quality, q[i].quality)) << "flags of reading " << i;
     ASSERT_EQ(p[i].hits.size(), q[i].hits.size());
     for (std::size_t k = 0; k < p[i].values.size(); ++k) {
       const bool same = std::memcmp(&p[i].values[k], &q[i].values[k], sizeof(double)) == 0 &&

@@ -68,7 +68,7 @@ TEST(Odometer, BoundaryCases) {
 // --- Slippage.
 
 TEST(Odometer, SlippageIsOneWalkHoweverTheWayIsCut) {
-  const base::Draw walk{3, base::Stream::slip, 1, 2};
+  const base::RandomKey walk{3, base::RandomStream::slip, 1, 2};
   Slippage whole(walk, 0, 0.01), cut(walk, 0, 0.01), other(walk, 1, 0.01);
   Chance chance(2);
   double way = 0.0;
@@ -89,7 +89,7 @@ TEST(Odometer, SlippageVariesAsTheWay) {
   for (const double way : {0.01, 0.25, 1.0, 4.0}) {
     std::vector<double> draws;
     for (std::uint32_t robot = 0; robot < 2000; ++robot) {
-      Slippage slippage({7, base::Stream::slip, robot, 0}, 0, kSlip);
+      Slippage slippage({7, base::RandomStream::slip, robot, 0}, 0, kSlip);
       for (int k = 0; k < 5; ++k) slippage.advance(way / 5);
       draws.push_back(slippage.error() / (kSlip * std::sqrt(way)));
     }
@@ -100,7 +100,7 @@ TEST(Odometer, SlippageVariesAsTheWay) {
 TEST(Odometer, ALeapIsOneStepOfAsMuchVariance) {
   std::vector<double> draws;
   for (std::uint32_t robot = 0; robot < 2000; ++robot) {
-    Slippage slippage({8, base::Stream::slip, robot, 0}, 0, 0.01);
+    Slippage slippage({8, base::RandomStream::slip, robot, 0}, 0, 0.01);
     slippage.advance(1e9);
     draws.push_back(slippage.error() / (0.01 * std::sqrt(1e9)));
   }
@@ -108,7 +108,7 @@ TEST(Odometer, ALeapIsOneStepOfAsMuchVariance) {
 }
 
 TEST(Odometer, NothingSlipsAtRestOrWithoutSlip) {
-  Slippage none({1, base::Stream::slip, 0, 0}, 0, 0.0), still({1, base::Stream::slip, 0, 0}, 0, 0.1);
+  Slippage none({1, base::RandomStream::slip, 0, 0}, 0, 0.0), still({1, base::RandomStream::slip, 0, 0}, 0, 0.1);
   none.advance(3.0);
   still.advance(0.0);
   EXPECT_EQ(none.error(), 0.0);

@@ -28,7 +28,7 @@ bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
   };
   return p.mover == q.mover && p.kind == q.kind && p.bound == q.bound && same(p.values, q.values) &&
-         same(p.hits, q.hits) && same(p.unsure, q.unsure);
+         same(p.hits, q.hits) && same(p.quality, q.quality);
 }
 
 /// Two ticks of all farms, everyone moved in between.

@@ -41,7 +41,7 @@ std::vector<base::Report> moved(const world::World& world, int tick) {
     s.X_WM.x += 0.02 * (tick % 8);
     s.X_WM.yaw += 0.1 * (tick % 8);
     s.velocity.turn = 0.1 * tick;
-    s.touched = static_cast<std::uint32_t>(tick) << s.mover % 8;
+    s.contact_mask = static_cast<std::uint32_t>(tick) << s.mover % 8;
   }
   return states;
 }
@@ -130,9 +130,9 @@ TEST(HostKinds, EachIsItsOwn) {
     s.X_WM.x += 0.1 * s.mover;
     s.velocity.turn = 2.0 * (s.mover + 1.0);
   }
-  states[0].touched = 0xFFFFFFFFu;
-  states[1].touched = 1u;
-  states[2].touched = 1u << 20;
+  states[0].contact_mask = 0xFFFFFFFFu;
+  states[1].contact_mask = 1u;
+  states[2].contact_mask = 1u << 20;
   const auto readings = farm.tick(1'000'000'000, states);
   using All = std::vector<std::vector<double>>;
   EXPECT_EQ(of(readings, sensors::kEncoder, 1), (All{{0.1, 0.1, 10, 10}}));

@@ -14,7 +14,7 @@ namespace sf::trial {
 namespace {
 
 using base::Pose;
-using base::Unsure;
+using base::QualityFlag;
 using Wide = long double;
 
 constexpr double kWidth = 0.1;  // [m]
@@ -69,7 +69,7 @@ Seen judge(world::World world, const std::vector<Face>& faces, const std::vector
   for (const base::ReadingBlock& r : rig.tick(due, poses)) {
     if (std::isnan(r.values[0])) continue;
     ++seen.read;
-    if (!r.unsure.empty() || std::isinf(r.bound)) continue;
+    if (!r.quality.empty() || std::isinf(r.bound)) continue;
     ++seen.stated;
     const auto error =
         static_cast<double>(error_of(r.values[0], faces, r.X_WS, static_cast<Wide>(r.X_WS.yaw) + bearing));
@@ -180,32 +180,32 @@ TEST(LaneEdgeBounds, OfASingleRayIsThatOfItsRange) {
   add_edge_eye(world, {-0.9, 0.05 + 1e-5, 0.0, -1e-4}, one);  // meets the face 0.1 m ahead, at 1e-4 rad
   EdgeRig rig(world);
   const auto& blocks = rig.tick({{0, 0}}, {world.movers[0].X_WM});
-  ASSERT_EQ(blocks[0].unsure.size(), 1u);
-  EXPECT_EQ(blocks[0].unsure[0], Unsure::grazing);
+  ASSERT_EQ(blocks[0].quality.size(), 1u);
+  EXPECT_EQ(blocks[0].quality[0], QualityFlag::grazing);
 }
 
 /// What one sensor at `pose` says of its reading.
-Unsure said(world::World world, const Pose& pose, const Settings& settings = {{"perpendicular", {0}}}) {
+QualityFlag said(world::World world, const Pose& pose, const Settings& settings = {{"perpendicular", {0}}}) {
   add_edge_eye(world, pose, settings);
   EdgeRig rig(world);
   const auto& blocks = rig.tick({{0, 0}}, {pose});
   EXPECT_FALSE(std::isnan(blocks[0].values[0]));
-  return blocks[0].unsure.empty() ? Unsure::no : blocks[0].unsure[0];
+  return blocks[0].quality.empty() ? QualityFlag::none : blocks[0].quality[0];
 }
 
 TEST(LaneEdgeBounds, AFlagSaysWhy) {
   world::World line;
   line.stripes.push_back(stripe({-1.0, 0.0}, {1.0, 0.0}, kWidth));
-  EXPECT_EQ(said(line, {0.0, -0.3, 0.0, 0.5 * M_PI}), Unsure::no);
-  EXPECT_EQ(said(line, {1.02, -0.3, 0.0, 0.5 * M_PI}), Unsure::extrapolated) << "2 cm past the end";
-  EXPECT_EQ(said(line, {0.0, -0.3, 0.0, 0.5 * M_PI}, {{"perpendicular", {-20}}}), Unsure::extrapolated);
+  EXPECT_EQ(said(line, {0.0, -0.3, 0.0, 0.5 * M_PI}), QualityFlag::none);
+  EXPECT_EQ(said(line, {1.02, -0.3, 0.0, 0.5 * M_PI}), QualityFlag::extrapolated) << "2 cm past the end";
+  EXPECT_EQ(said(line, {0.0, -0.3, 0.0, 0.5 * M_PI}, {{"perpendicular", {-20}}}), QualityFlag::extrapolated);
   world::World bend;
   bend.stripes.push_back(arc({0.0, 0.0}, 0.68, 0.0, 3.0, kWidth));
-  EXPECT_EQ(said(bend, {0.0, 0.4, 0.0, 0.5 * M_PI}), Unsure::not_straight);
+  EXPECT_EQ(said(bend, {0.0, 0.4, 0.0, 0.5 * M_PI}), QualityFlag::not_straight);
   world::World two = line;
   two.stripes.push_back(stripe({0.0, 0.3}, {1.0, 0.3}, kWidth));
   two.stripes[0].line[1] = {0.02, 0.0};
-  EXPECT_EQ(said(two, {0.0, -0.3, 0.0, 0.5 * M_PI}), Unsure::not_straight) << "another edge behind its end";
+  EXPECT_EQ(said(two, {0.0, -0.3, 0.0, 0.5 * M_PI}), QualityFlag::not_straight) << "another edge behind its end";
 }
 
 /// Noise is in the line, and pixels are: then no bound is stated, and sigma counts.

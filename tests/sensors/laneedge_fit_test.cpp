@@ -30,7 +30,7 @@ const std::vector<double> kGrains{0.0, 0.005, 0.02};
 class FitRig {
  public:
   explicit FitRig(const std::vector<Settings>& settings)
-      : site_{world_, device(), workers_, 0, true, {}}, edges_(edges_of(settings)), fit_(site_, edges_, kGrains) {}
+      : site_{world_, device(), thread_pool_, 0, true, {}}, edges_(edges_of(settings)), fit_(site_, edges_, kGrains) {}
 
   std::vector<EdgeReading> read(const std::vector<Shot>& shots) {
     std::vector<sensors::Due> due;
@@ -83,7 +83,7 @@ class FitRig {
     const raycast::BeamPlan plan = raycast::plan_beams(edges_[i].fan, true);
     std::vector<double> directions;
     std::vector<float> normals;
-    const base::Draw draw{0, base::Stream::range_noise, i, sensors::edge_noise_name(0), 3};
+    const base::RandomKey draw{0, base::RandomStream::range_noise, i, sensors::edge_noise_name(0), 3};
     for (std::uint32_t k = 0; k < shot.ranges.size(); ++k) {
       directions.push_back(fit_.directions(i)[2 * plan.place(k)]);
       directions.push_back(fit_.directions(i)[2 * plan.place(k) + 1]);
@@ -105,7 +105,7 @@ class FitRig {
   }
 
   world::World world_;
-  base::Workers workers_;
+  base::ThreadPool thread_pool_;
   sensors::Site site_;
   std::vector<sensors::LaneEdge> edges_;
   sensors::EdgeFit fit_;

@@ -53,7 +53,7 @@ world::Stripe arc(glm::dvec2 centre, double radius, double from, double to, doub
 
 struct EdgeRig::State {
   world::World world;
-  base::Workers workers;
+  base::ThreadPool thread_pool;
   sensors::Site site;
   std::unique_ptr<sensors::Instruments> instruments;
   gpu::Batch batch;
@@ -62,8 +62,8 @@ struct EdgeRig::State {
 
   State(const world::World& w, std::uint64_t seed, unsigned threads, bool noise, gpu::Device& on)
       : world(w),
-        workers(threads),
-        site{world, on, workers, seed, noise, {}},
+        thread_pool(threads),
+        site{world, on, thread_pool, seed, noise, {}},
         instruments(sensors::laneedge_kind.make(site)),
         batch(on),
         rows(sensors::laneedge_kind.rows(world).size()) {}

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 #include "sensors/accuracy.h"
 #include "tests/sensors/brute_force.h"
 #include "tests/sensors/chance.h"
@@ -72,7 +72,7 @@ void look(const Scene& scene, std::span<const base::Pose> poses, const base::Rea
     const Wide truth = cast(near, {reading.X_WS.x, reading.X_WS.y}, direction, laser.range_max);
     const double error = std::abs(static_cast<double>(reading.values[i] - truth));
     ++seen.beams;
-    if (!reading.unsure.empty() && reading.unsure[i] != base::Unsure::no) {
+    if (!reading.quality.empty() && reading.quality[i] != base::QualityFlag::none) {
       ++seen.flagged;
       seen.flagged_worst = std::max(seen.flagged_worst, error);
       continue;
@@ -101,7 +101,7 @@ Seen measure(Scene& scene, const std::string& mode) {
   sensors::set_accuracy(scene.world, mode);
   farm::Farm farm(scene.world, device());
   farm.hear_all();
-  base::Workers workers(0);
+  base::ThreadPool thread_pool(0);
   Chance chance(11);
   Seen sum;
   for (int tick = 0; tick < kTicks; ++tick) {
@@ -114,7 +114,7 @@ Seen measure(Scene& scene, const std::string& mode) {
     }
     const auto readings = farm.tick(tick * 1'000'000'000ll, reports);
     std::vector<Seen> parts(readings.size());
-    workers.run(readings.size(), 1, [&](std::size_t first, std::size_t last, unsigned) {
+    thread_pool.parallel_for(readings.size(), 1, [&](std::size_t first, std::size_t last, unsigned) {
       for (std::size_t i = first; i < last; ++i) look(scene, poses, readings[i], parts[i]);
     });
     for (const Seen& part : parts) add(part, sum);

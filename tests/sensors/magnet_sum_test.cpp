@@ -93,8 +93,8 @@ constexpr std::uint32_t kMany = 200'000, kPlaces = 500;
 /// The thesis' components in plain doubles, on all cores.
 std::vector<FieldSum> direct_sums(const world::World& world, std::span<const Place> places) {
   std::vector<FieldSum> sums(places.size());
-  base::Workers workers;
-  workers.run(places.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
+  base::ThreadPool thread_pool;
+  thread_pool.parallel_for(places.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i)
       for (const world::Magnet& m : world.magnets) {
         const double x = places[i].x - m.p.x, y = places[i].y - m.p.y, z = places[i].z - m.z;

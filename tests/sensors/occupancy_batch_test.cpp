@@ -38,8 +38,8 @@ struct Tally {
 /// each `every`-th.
 Tally contest(const std::vector<sensors::MapPlan>& plans, std::size_t rounds, std::size_t every, std::uint64_t seed,
               bool some = false, double farthest = maps::kFarthestRange) {
-  base::Workers workers;
-  sensors::MapBatch batch(device(), workers, plans, farthest);
+  base::ThreadPool thread_pool;
+  sensors::MapBatch batch(device(), thread_pool, plans, farthest);
   PlainMaps plain(plans);
   Chance chance(seed);
   std::vector<std::uint32_t> wanted;
@@ -169,8 +169,8 @@ TEST(OccupancyBatch, AFewMapsAtATimeInAnyOrder) {
 }
 
 TEST(OccupancyBatch, ScansThatSayNothingChangeNothing) {
-  base::Workers workers(2);
-  sensors::MapBatch batch(device(), workers, {plan(M_PI, 3, 1.0), plan(M_PI, 3, 1.0)});
+  base::ThreadPool thread_pool(2);
+  sensors::MapBatch batch(device(), thread_pool, {plan(M_PI, 3, 1.0), plan(M_PI, 3, 1.0)});
   const double nan = std::nan("");
   const std::vector<double> silent{nan, -1.0, nan};
   const std::vector<double> loud{1.0, 0.5, 1.0};
@@ -190,8 +190,8 @@ TEST(OccupancyBatch, OneScanCellByCell) {
   // meets nothing within 4.
   sensors::MapPlan p = plan(M_PI, 3, 4.0, 1.0, {0.0, 40.0});
   p.grid.word_columns = p.grid.word_rows = 10;
-  base::Workers workers(1);
-  sensors::MapBatch batch(device(), workers, {p});
+  base::ThreadPool thread_pool(1);
+  sensors::MapBatch batch(device(), thread_pool, {p});
   const std::vector<double> ranges{4.0, 3.0, 4.0};
   const std::uint32_t all[] = {0};
   const sensors::MapScan scans[] = {{0, {10.5, 29.5, 0, 0}, ranges}};

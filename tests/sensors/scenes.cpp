@@ -24,8 +24,8 @@ Cells grow(std::uint32_t n, std::uint64_t seed) {
     for (std::uint32_t x = 0; x < n; ++x) {
       double sum = 0.0;
       for (std::uint32_t k = 0; k < 12; ++k) {
-        const auto u = base::random_uniform({seed, base::Stream::place, k, 0, 0}, 0);
-        const auto v = base::random_uniform({seed, base::Stream::place, k, 1, 0}, 0);
+        const auto u = base::random_uniform({seed, base::RandomStream::placement, k, 0, 0}, 0);
+        const auto v = base::random_uniform({seed, base::RandomStream::placement, k, 1, 0}, 0);
         const double wave = 2.0 * M_PI * (2.0 + 9.0 * u[0]);
         const double angle = 2.0 * M_PI * u[1];
         sum += std::sin(wave * (x * std::cos(angle) + y * std::sin(angle)) / n + 2.0 * M_PI * v[0]);
@@ -103,8 +103,8 @@ world::World boxes(std::uint32_t count, double size, std::uint64_t seed) {
   const double h = 0.5 * size;
   add_room(world, {}, size);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const auto p = base::random_uniform({seed, base::Stream::place, i, 2, 0}, 0);
-    const auto q = base::random_uniform({seed, base::Stream::place, i, 3, 0}, 0);
+    const auto p = base::random_uniform({seed, base::RandomStream::placement, i, 2, 0}, 0);
+    const auto q = base::random_uniform({seed, base::RandomStream::placement, i, 3, 0}, 0);
     const base::Pose pose{(p[0] - 0.5) * 0.9 * size, (p[1] - 0.5) * 0.9 * size, 0.0, 2.0 * M_PI * q[0]};
     const double a = 0.2 + 0.6 * q[1];
     std::vector<glm::dvec2> corners;
@@ -176,8 +176,8 @@ void add_robots(world::World& world, std::uint32_t count, const world::Laser& la
   double apart = 0.5;
   for (std::uint32_t tries = 0; count > 0; ++tries) {
     if (tries % 20'000 == 19'999) apart *= 0.5;
-    const auto p = base::random_uniform({seed, base::Stream::place, tries, 4, 0}, 0);
-    const auto q = base::random_uniform({seed, base::Stream::place, tries, 5, 0}, 0);
+    const auto p = base::random_uniform({seed, base::RandomStream::placement, tries, 4, 0}, 0);
+    const auto q = base::random_uniform({seed, base::RandomStream::placement, tries, 5, 0}, 0);
     const base::Pose pose{world.extent.x_min + p[0] * width, world.extent.y_min + p[1] * height, 0.0,
                           2.0 * M_PI * q[0] - M_PI};
     if (!is_free(world, {pose.x, pose.y}, 0.17, apart)) continue;

@@ -137,7 +137,7 @@ TEST(Bitmap, RandomGridsOfAllDensities) {
   for (std::uint32_t k = 0; k < 60; ++k) {
     Grid grid{1 + k % 13, 1 + k % 11, {}};
     for (std::uint32_t i = 0; i < grid.width * grid.height; ++i) {
-      const double u = base::random_uniform({7, base::Stream::place, k, 0, 0}, i)[0];
+      const double u = base::random_uniform({7, base::RandomStream::placement, k, 0, 0}, i)[0];
       grid.solid.push_back(u < (k % 9 + 1) / 10.0 ? 1 : 0);
     }
     check(grid);

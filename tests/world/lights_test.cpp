@@ -43,7 +43,7 @@ TEST(SignalAt, OnePhaseNeverChanges) {
 
 TEST(SignalAt, WhatIsLeftIsWhatItTakes) {
   for (std::uint32_t k = 0; k < 2000; ++k) {
-    const auto u = base::random_uniform({.seed = 3, .stream = base::Stream::place, .a = k}, 0);
+    const auto u = base::random_uniform({.seed = 3, .stream = base::RandomStream::placement, .a = k}, 0);
     Light light = plan();
     light.phases[0].duration = 0.1 + u[1];
     const double time = 1000.0 * (u[0] - 0.5);

@@ -33,9 +33,9 @@ constexpr std::array<std::string_view, 16> kPieces{"(",
 
 /// One to three changes: a piece put in, a stretch left out, a stretch doubled, a byte turned.
 std::string mutated(std::string text, std::uint32_t k) {
-  const auto count = 1 + base::random_words({3, base::Stream::place, k, 0, 0}, 1000)[0] % 3;
+  const auto count = 1 + base::random_words({3, base::RandomStream::placement, k, 0, 0}, 1000)[0] % 3;
   for (std::uint32_t change = 0; change < count; ++change) {
-    const auto words = base::random_words({3, base::Stream::place, k, 0, 0}, change);
+    const auto words = base::random_words({3, base::RandomStream::placement, k, 0, 0}, change);
     const std::size_t at = words[0] % (text.size() + 1);
     const std::size_t stretch = std::min<std::size_t>(words[1] % 60, text.size() - at);
     switch (words[2] % 4) {

@@ -70,7 +70,7 @@ TEST(Nearest, NoPointOfThePathIsNearer) {
   const Path path = lane();
   const double length = length_of(path);
   for (std::uint32_t k = 0; k < 300; ++k) {
-    const auto u = base::random_uniform({.seed = 4, .stream = base::Stream::place, .a = k}, 0);
+    const auto u = base::random_uniform({.seed = 4, .stream = base::RandomStream::placement, .a = k}, 0);
     const glm::dvec2 p{8.0 * u[0] - 1.0, 8.0 * u[1]};
     double least = HUGE_VAL;
     for (double s = 0.0; s <= length; s += 0.002) {

@@ -14,7 +14,7 @@
 namespace sf::world {
 namespace {
 
-using base::Stream;
+using base::RandomStream;
 
 std::vector<std::string> lines_of_text(const std::string& text) {
   std::vector<std::string> lines;
@@ -31,9 +31,9 @@ std::string mutated(const std::string& text, std::uint32_t k) {
   constexpr std::array<std::string_view, 10> kPieces{"/*",    "*/",  "1.1.1",      "32769", "-0",
                                                      "1e308", "nan", "end_lane\n", "\r",    "\xFF"};
   std::string changed = text;
-  const auto count = 1 + base::random_words({9, Stream::place, k, 0, 0}, 999)[0] % 3;
+  const auto count = 1 + base::random_words({9, RandomStream::placement, k, 0, 0}, 999)[0] % 3;
   for (std::uint32_t change = 0; change < count && !changed.empty(); ++change) {
-    const auto words = base::random_words({9, Stream::place, k, 0, 0}, change);
+    const auto words = base::random_words({9, RandomStream::placement, k, 0, 0}, change);
     const std::size_t at = words[0] % changed.size();
     if (words[1] % 5 == 0) {
       changed[at] = static_cast<char>(words[2] & 0xFF);
@@ -124,7 +124,7 @@ TEST(RndfMutation, OfPlacesAllOverTheEarth) {
           "RNDF_name far\nnum_segments 1\nnum_zones 0\nsegment 1\nnum_lanes 1\nlane 1.1\nnum_waypoints 500\n" +
           boundary;
       for (std::uint32_t i = 1; i <= 500; ++i) {
-        const auto u = base::random_uniform({4, Stream::place, k, i, 0}, 0);
+        const auto u = base::random_uniform({4, RandomStream::placement, k, i, 0}, 0);
         text += "1.1." + std::to_string(i) + " " + std::to_string(180 * u[0] - 90) + " " +
                 std::to_string(360 * u[1] - 180) + "\n";
       }

@@ -20,10 +20,10 @@ constexpr Sampling kFine{1e-3, 1.8, 1u << 20};
 /// Random way-points; about one in five repeats the last one, and turns may be as sharp as they like.
 Points wild(std::uint32_t k) {
   Points p{{0, 0}};
-  const auto n = 1 + base::random_words({7, base::Stream::place, k, 0, 0}, 999)[0] % 12;
+  const auto n = 1 + base::random_words({7, base::RandomStream::placement, k, 0, 0}, 999)[0] % 12;
   for (std::uint32_t i = 0; i < n; ++i) {
-    const auto u = base::random_uniform({7, base::Stream::place, k, 0, 0}, i);
-    const auto v = base::random_uniform({7, base::Stream::place, k, 1, 0}, i);
+    const auto u = base::random_uniform({7, base::RandomStream::placement, k, 0, 0}, i);
+    const auto v = base::random_uniform({7, base::RandomStream::placement, k, 1, 0}, i);
     const double d = v[1] < 0.2 ? 0.0 : std::pow(10.0, -1.0 + 3.0 * u[0]);
     p.push_back(p.back() + base::rotate(2.0 * M_PI * u[1], {d, 0.0}));
   }

@@ -74,8 +74,8 @@ TEST(LocalPlane, SignsAndPoles) {
 TEST(LocalPlane, AgreesWithGeodesics) {
   double worst = 0.0;
   for (std::uint32_t k = 0; k < 500; ++k) {
-    const auto u = base::random_uniform({1, base::Stream::place, k, 0, 0}, 0);
-    const auto v = base::random_uniform({1, base::Stream::place, k, 0, 0}, 1);
+    const auto u = base::random_uniform({1, base::RandomStream::placement, k, 0, 0}, 0);
+    const auto v = base::random_uniform({1, base::RandomStream::placement, k, 0, 0}, 1);
     const Geodetic origin{-80.0 + 160.0 * u[0], -180.0 + 360.0 * u[1]};
     const double reach = std::pow(10.0, -4.0 + 3.3 * v[0]);  // [deg] 10 m to 20 km
     const Geodetic at{origin.latitude + reach * std::sin(40.0 * v[1]),

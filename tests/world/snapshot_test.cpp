@@ -184,7 +184,7 @@ TEST(Snapshot, ChangedBytesAreRefusedOrHarmless) {
   const auto bytes = snapshot(street());
   for (std::uint32_t k = 0; k < 2000; ++k) {
     auto changed = bytes;
-    const auto words = base::random_words({1, base::Stream::place, 0, 0, 0}, k);
+    const auto words = base::random_words({1, base::RandomStream::placement, 0, 0, 0}, k);
     changed[words[0] % changed.size()] ^= static_cast<std::uint8_t>(1 + words[1] % 255);
     try {
       const World world = from_snapshot(changed);

@@ -1,6 +1,6 @@
 // Every piece of a loop is done once, by whoever is free.
 
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -10,14 +10,14 @@
 namespace sf::base {
 namespace {
 
-TEST(Workers, EveryItemOnceWhateverThePiecesAndThreads) {
+TEST(ThreadPool, EveryItemOnceWhateverThePiecesAndThreads) {
   for (const unsigned threads : {1u, 2u, 5u}) {
-    Workers workers(threads);
-    EXPECT_EQ(workers.threads(), threads);
+    ThreadPool thread_pool(threads);
+    EXPECT_EQ(thread_pool.threads(), threads);
     for (const std::size_t count : {0u, 1u, 2u, 63u, 1000u})
       for (const std::size_t piece : {1u, 7u, 64u, 5000u}) {
         std::vector<std::atomic<int>> visits(count);
-        workers.run(count, piece, [&](std::size_t first, std::size_t last, unsigned thread) {
+        thread_pool.parallel_for(count, piece, [&](std::size_t first, std::size_t last, unsigned thread) {
           EXPECT_LT(thread, threads);
           EXPECT_LT(first, last);
           for (std::size_t i = first; i < last; ++i) ++visits[i];
@@ -28,17 +28,17 @@ TEST(Workers, EveryItemOnceWhateverThePiecesAndThreads) {
 }
 
 /// Many short loops one after the other: none is missed, none overtakes.
-TEST(Workers, ManyShortLoops) {
-  Workers workers(3);
+TEST(ThreadPool, ManyShortLoops) {
+  ThreadPool thread_pool(3);
   std::atomic<std::uint64_t> sum{0};
   for (int round = 0; round < 3000; ++round) {
     const std::uint64_t before = sum;
-    workers.run(4, 1, [&](std::size_t first, std::size_t last, unsigned) { sum += last - first; });
+    thread_pool.parallel_for(4, 1, [&](std::size_t first, std::size_t last, unsigned) { sum += last - first; });
     ASSERT_EQ(sum, before + 4);
   }
 }
 
-TEST(Workers, AsManyAsTheMachineHasByDefault) { EXPECT_GE(Workers().threads(), 1u); }
+TEST(ThreadPool, AsManyAsTheMachineHasByDefault) { EXPECT_GE(ThreadPool().threads(), 1u); }
 
 }  // namespace
 }  // namespace sf::base

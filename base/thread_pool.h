@@ -8,20 +8,20 @@
 namespace sf::base {
 
 /// A few threads that wait for loops to run. One caller at a time.
-class Workers {
+class ThreadPool {
  public:
   /// @param threads how many run a loop together, the caller among them; 0: as many as the machine has.
-  explicit Workers(unsigned threads = 0);
-  ~Workers();
-  Workers(const Workers&) = delete;
-  Workers& operator=(const Workers&) = delete;
+  explicit ThreadPool(unsigned threads = 0);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
 
   unsigned threads() const;
 
   /// Calls `body(first, last, thread)` on pieces of [0, count) until all are done; `thread` < threads(). Pieces go to
   /// whoever is free, so `body` must not care. Does not allocate.
   template <class Body>
-  void run(std::size_t count, std::size_t piece, Body&& body) {
+  void parallel_for(std::size_t count, std::size_t piece, Body&& body) {
     using Plain = std::remove_reference_t<Body>;
     run_job(count, piece,
             {const_cast<void*>(static_cast<const void*>(&body)),

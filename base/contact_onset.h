@@ -4,13 +4,13 @@
 namespace sf::base {
 
 /// Follows one mover, tick by tick.
-struct Contact {
-  bool last = false;
+struct ContactOnset {
+  bool previous = false;
 
   /// @return whether a contact begins now.
   bool begins(bool now) {
-    const bool began = now && !last;
-    last = now;
+    const bool began = now && !previous;
+    previous = now;
     return began;
   }
 };

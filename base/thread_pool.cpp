@@ -1,4 +1,4 @@
-#include "base/parallel.h"
+#include "base/thread_pool.h"
 
 #include <algorithm>
 #include <atomic>
@@ -21,7 +21,7 @@ void pause() {
 
 }  // namespace
 
-struct Workers::State {
+struct ThreadPool::State {
   std::mutex lock;
   std::condition_variable wake;
   std::condition_variable done;
@@ -66,12 +66,12 @@ struct Workers::State {
   }
 };
 
-Workers::Workers(unsigned threads) : state_(std::make_unique<State>()) {
+ThreadPool::ThreadPool(unsigned threads) : state_(std::make_unique<State>()) {
   const unsigned wanted = threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
   for (unsigned i = 1; i < wanted; ++i) state_->threads.emplace_back([this, i] { state_->serve(i); });
 }
 
-Workers::~Workers() {
+ThreadPool::~ThreadPool() {
   {
     const std::scoped_lock guard(state_->lock);
     state_->stop = true;
@@ -80,9 +80,9 @@ Workers::~Workers() {
   for (std::thread& thread : state_->threads) thread.join();
 }
 
-unsigned Workers::threads() const { return static_cast<unsigned>(state_->threads.size()) + 1; }
+unsigned ThreadPool::threads() const { return static_cast<unsigned>(state_->threads.size()) + 1; }
 
-void Workers::run_job(std::size_t count, std::size_t piece, Job job) {
+void ThreadPool::run_job(std::size_t count, std::size_t piece, Job job) {
   State& s = *state_;
   if (s.threads.empty() || count <= piece) {
     if (count > 0) job.call(job.body, 0, count, 0);
