@@ -56,7 +56,7 @@ std::string text_of(const scenarios::ExplainedKind& k, const scenarios::Explanat
               k.kernels.empty() ? "none: it is read on the host" : fmt::format("{}", fmt::join(k.kernels, ", ")));
   if (k.tables.empty()) return text;
   std::string tables;
-  for (const gpu::Held& h : k.tables)
+  for (const gpu::DeviceAllocation& h : k.tables)
     tables += fmt::format("{}{} {}", tables.empty() ? "" : ", ", h.name, bytes_text(h.bytes));
   return text + row("tables", fmt::format("{}: {}", bytes_text(k.bytes), tables));
 }

@@ -50,7 +50,7 @@ struct RunFacts {
 
 /// What came of `selftest`.
 struct SelfTest {
-  gpu::DeviceFacts device;
+  gpu::DeviceInfo device;
   std::vector<std::pair<const extremes::Case*, extremes::Outcome>> cases;  ///< that were run
   std::size_t asked = 0;                                                   ///< to be run; more, where interrupted
   double seconds = 0.0;                                                    ///< [s] of all of them
@@ -74,14 +74,14 @@ std::size_t count_magnets(const world::World& world);
 /// Of the infrared emitters; the others are virtual walls.
 std::size_t count_docks(const world::World& world);
 
-std::string json_of(const gpu::Survey& survey);
+std::string json_of(const gpu::DeviceList& survey);
 std::string json_of(const world::World& world, const sensors::Roster& roster);
 std::string json_of(const RunFacts& facts);
 std::string json_of(const netio::Summary& summary);
 /// One reading; what is infinite or missing is null.
 std::string json_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading);
 
-std::string text_of(const gpu::Survey& survey);
+std::string text_of(const gpu::DeviceList& survey);
 std::string text_of(const world::World& world, const sensors::Roster& roster);
 std::string text_of(const RunFacts& facts);
 /// "5 lasers exact, within 1.03 nm: beams that graze nothing".

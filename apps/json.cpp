@@ -130,9 +130,9 @@ Json link_json(const LinkCounts& link) {
 
 }  // namespace
 
-std::string json_of(const gpu::Survey& survey) {
+std::string json_of(const gpu::DeviceList& survey) {
   Json rows = Json::array();
-  for (const gpu::DeviceFacts& d : survey.devices)
+  for (const gpu::DeviceInfo& d : survey.devices)
     rows.push_back({{"name", d.name},
                     {"driver", d.driver},
                     {"api", d.api},
@@ -348,7 +348,7 @@ std::string json_of(const scenarios::Explanation& e) {
     json["slices"].push_back({{"z_m", s.z}, {"sensors", s.sensors}, {"walls", s.walls}});
   for (const scenarios::ExplainedKind& k : e.kinds) {
     Json tables = Json::array();
-    for (const gpu::Held& h : k.tables) tables.push_back({{"name", h.name}, {"bytes", h.bytes}});
+    for (const gpu::DeviceAllocation& h : k.tables) tables.push_back({{"name", h.name}, {"bytes", h.bytes}});
     json["kinds"].push_back({{"kind", k.kind},
                              {"sensors", k.sensors},
                              {"robots", k.robots},

@@ -100,7 +100,7 @@ void warn_of_pose(const world::World& world, const world::Mover& robot, const ba
 }  // namespace
 
 int devices(const Options& options) {
-  const gpu::Survey survey = gpu::survey_devices(options.device);
+  const gpu::DeviceList survey = gpu::list_devices(options.device);
   const bool any = std::any_of(survey.devices.begin(), survey.devices.end(), [](const auto& d) { return d.chosen; });
   print(options.json ? json_of(survey) : text_of(survey));
   // Says in one line why there is none.

@@ -154,7 +154,7 @@ int run(const Options& options) {
   if (!simulation.warnings().empty()) tell_warnings(simulation.warnings().front().file, simulation.warnings());
   ControlTally tally(simulation, world.movers.size(), options.controller);
   std::vector<base::ContactOnset> contacts(world.movers.size());
-  const std::string caster = raycast::caster_text(device.facts().software);
+  const std::string caster = raycast::caster_text(device.info().software);
   Outputs outputs(world, roster, plan, caster, options);
   catch_stop_signals();
 
@@ -180,8 +180,8 @@ int run(const Options& options) {
   facts.wall_s = base::seconds_since(start);
   facts.simulated_s = static_cast<double>(facts.ticks) * world.interval;
   facts.interrupted = facts.ticks < ticks;
-  facts.device = device.facts().name;
-  facts.software = device.facts().software;
+  facts.device = device.info().name;
+  facts.software = device.info().software;
   facts.caster = caster;
   facts.robots = static_cast<std::uint32_t>(count_robots(world));
   facts.control = tally.facts(world);

@@ -76,7 +76,7 @@ int selftest(const Options& options) {
   gpu::Device device(options.device);
   extremes::Lab lab(device);
   const std::vector<const Case*> some = chosen(options.cases);
-  SelfTest test{.device = device.facts(), .asked = some.size()};
+  SelfTest test{.device = device.info(), .asked = some.size()};
   catch_stop_signals();
   {
     Progress progress("selftest");

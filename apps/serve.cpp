@@ -246,7 +246,7 @@ int serve(const Options& options) {
   const double interval = options.rate > 0.0 ? 1.0 / options.rate : world.interval;
   std::fprintf(stderr, "sensorfarm: serving %s of %s on %s:%u, %g ticks/s, on %s; Ctrl-C ends it\n",
                counted(service.robots(), "robot").c_str(), world.file.c_str(), options.bind.c_str(), service.port(),
-               1.0 / interval, device.facts().name.c_str());
+               1.0 / interval, device.info().name.c_str());
 
   const auto start = Clock::now();
   const std::int64_t step = std::llround(interval * 1e9);
@@ -266,9 +266,9 @@ int serve(const Options& options) {
 
   service.take_in((Clock::now() - start).count());  // what still waits is counted too
   RunFacts facts = service.facts();
-  facts.device = device.facts().name;
-  facts.software = device.facts().software;
-  facts.caster = raycast::caster_text(device.facts().software);
+  facts.device = device.info().name;
+  facts.software = device.info().software;
+  facts.caster = raycast::caster_text(device.info().software);
   facts.wall_s = facts.simulated_s = std::chrono::duration<double>(Clock::now() - start).count();
   std::fputs((options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts)).c_str(), stdout);
   return 0;

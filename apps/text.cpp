@@ -84,10 +84,10 @@ std::string text_of(const sensors::Statement& s) {
                      s.bound.condition.empty() ? "" : ": ", s.bound.condition);
 }
 
-std::string text_of(const gpu::Survey& survey) {
+std::string text_of(const gpu::DeviceList& survey) {
   std::string text;
   for (std::size_t i = 0; i < survey.devices.size(); ++i) {
-    const gpu::DeviceFacts& d = survey.devices[i];
+    const gpu::DeviceInfo& d = survey.devices[i];
     text += fmt::format("{} {}  {}\n", d.chosen ? "*" : " ", i, d.name);
     text += fmt::format("     {}, Vulkan {}, {}{}\n", d.kind, d.api, d.driver,
                         d.software ? " (software: computed on the CPU)" : "");

@@ -79,7 +79,7 @@ void write(const Options& options, const world::World& world, const gpu::Device&
   scenarios::make_folder(options.out);
   const std::filesystem::path folder(options.out);
   scenarios::write_text((folder / "tradeoff.csv").string(), scenarios::csv_of(grades));
-  draw(world.name, device.facts().name, grades, (folder / "tradeoff.png").string());
+  draw(world.name, device.info().name, grades, (folder / "tradeoff.png").string());
 }
 
 std::vector<scenarios::Grade> measure(const world::World& world, gpu::Device& device, const Options& options) {

@@ -285,7 +285,7 @@ int run(int argc, char** argv) {
       throw base::InputError(std::string(argv[i]) +
                              ": expected --results=FOLDER, --pictures=FOLDER or an option of Google Benchmark");
   Session session;
-  benchmark::AddCustomContext("device", session.device.facts().name + ", " + session.device.facts().driver);
+  benchmark::AddCustomContext("device", session.device.info().name + ", " + session.device.info().driver);
   register_all(session);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();

@@ -69,7 +69,7 @@ class Mapper {
 class FarmMapper : public Mapper {
  public:
   FarmMapper(gpu::Device& device, const std::vector<sensors::MapPlan>& plans)
-      : batch_(device, thread_pool_, plans, device.facts().software ? sensors::kFarScan : maps::kFarthestRange) {
+      : batch_(device, thread_pool_, plans, device.info().software ? sensors::kFarScan : maps::kFarthestRange) {
     for (std::uint32_t i = 0; i < plans.size(); ++i) wanted_.push_back(i);
   }
   std::string name() const override { return "farm"; }

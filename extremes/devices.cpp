@@ -48,7 +48,7 @@ struct Disagreements {
 void beside(Lab& lab, Checks& checks, const world::World& world, const std::string& what, Disagreements& all) {
   Look look = lab.look(world, {.seed = kSeed});
   sensors::LaserReference reference(*look.world, kSeed);
-  const bool exactly = lab.device().facts().software;
+  const bool exactly = lab.device().info().software;
   std::vector<Pose> poses;
   for (const world::Mover& m : world.movers) poses.push_back(m.X_WM);
   for (int tick = 1; tick <= 2; ++tick) {

@@ -77,7 +77,7 @@ struct Farm::State {
     }
     const sensors::Site site{w, device, thread_pool, options.seed, options.noise, options.true_poses, options.scene};
     for (const auto& group : roster.groups()) {
-      device.owned_by(group.kind->name);
+      device.set_owner(group.kind->name);
       stations.emplace_back(site, group);
     }
     blocks.reserve(roster.count());
@@ -122,7 +122,7 @@ void Farm::State::move(std::span<const base::Report> reports) {
 void Farm::State::prepare() {
   bool again = false;
   for (Station& station : stations) {
-    device.owned_by(station.group->kind->name);  // tables may grow
+    device.set_owner(station.group->kind->name);  // tables may grow
     again |= station.prepare(poses);
   }
   if (!again) return;

@@ -35,7 +35,7 @@ namespace {
 void start(VkCommandBuffer commands, VkCommandBufferUsageFlags flags) {
   VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   begin.flags = flags;
-  must(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
+  check_vk(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
 }
 
 void wait_between(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags wrote, VkPipelineStageFlags to,
@@ -60,14 +60,14 @@ Batch::Batch(Device& device) : vk_(std::make_unique<Vk>()) {
   VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   pool.queueFamilyIndex = vk_->device->family;
-  must(vkCreateCommandPool(vk_->device->device, &pool, nullptr, &vk_->pool), "vkCreateCommandPool");
+  check_vk(vkCreateCommandPool(vk_->device->device, &pool, nullptr, &vk_->pool), "vkCreateCommandPool");
   VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
   allocate.commandPool = vk_->pool;
   allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
   allocate.commandBufferCount = static_cast<std::uint32_t>(vk_->commands.size());
-  must(vkAllocateCommandBuffers(vk_->device->device, &allocate, vk_->commands.data()), "vkAllocateCommandBuffers");
+  check_vk(vkAllocateCommandBuffers(vk_->device->device, &allocate, vk_->commands.data()), "vkAllocateCommandBuffers");
   VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-  must(vkCreateFence(vk_->device->device, &fence, nullptr, &vk_->done), "vkCreateFence");
+  check_vk(vkCreateFence(vk_->device->device, &fence, nullptr, &vk_->done), "vkCreateFence");
 }
 
 Batch::~Batch() {
@@ -96,16 +96,16 @@ void Batch::barrier() {
 void Batch::end() {
   wait_between(vk_->run(), kCompute, VK_ACCESS_SHADER_WRITE_BIT, kTransfer | VK_PIPELINE_STAGE_HOST_BIT,
                VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_HOST_READ_BIT);
-  must(vkEndCommandBuffer(vk_->run()), "vkEndCommandBuffer");
+  check_vk(vkEndCommandBuffer(vk_->run()), "vkEndCommandBuffer");
 }
 
-void Batch::up(const Buffer& table, std::size_t offset, std::size_t size) {
+void Batch::upload(const Buffer& table, std::size_t offset, std::size_t size) {
   const Buffer::Vk& b = table.vk();
   SF_CHECK(offset + size <= table.bytes(), "a copy past the end of a table");
   if (b.staging.buffer && size > 0) vk_->ups.push_back({b.staging.buffer, b.table.buffer, {offset, offset, size}});
 }
 
-void Batch::down(const Buffer& table, std::size_t offset, std::size_t size) {
+void Batch::download(const Buffer& table, std::size_t offset, std::size_t size) {
   const Buffer::Vk& b = table.vk();
   SF_CHECK(offset + size <= table.bytes(), "a copy past the end of a table");
   if (b.staging.buffer && size > 0) vk_->downs.push_back({b.table.buffer, b.staging.buffer, {offset, offset, size}});
@@ -121,7 +121,7 @@ void Batch::run() {
     if (!before)
       wait_between(commands, kTransfer, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
                    VK_ACCESS_HOST_READ_BIT);
-    must(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
+    check_vk(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
     used[count++] = commands;
     copies.clear();
   };
@@ -132,9 +132,9 @@ void Batch::run() {
   VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
   submit.commandBufferCount = count;
   submit.pCommandBuffers = used.data();
-  must(vkQueueSubmit(vk_->device->queue, 1, &submit, vk_->done), "vkQueueSubmit");
-  must(vkWaitForFences(vk_->device->device, 1, &vk_->done, VK_TRUE, UINT64_MAX), "vkWaitForFences");
-  must(vkResetFences(vk_->device->device, 1, &vk_->done), "vkResetFences");
+  check_vk(vkQueueSubmit(vk_->device->queue, 1, &submit, vk_->done), "vkQueueSubmit");
+  check_vk(vkWaitForFences(vk_->device->device, 1, &vk_->done, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  check_vk(vkResetFences(vk_->device->device, 1, &vk_->done), "vkResetFences");
 }
 
 }  // namespace sf::gpu

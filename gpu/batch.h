@@ -27,8 +27,8 @@ class Batch {
   void end();
 
   /// This tick's bytes to copy, from the host view up or from the device down.
-  void up(const Buffer& table, std::size_t offset, std::size_t size);
-  void down(const Buffer& table, std::size_t offset, std::size_t size);
+  void upload(const Buffer& table, std::size_t offset, std::size_t size);
+  void download(const Buffer& table, std::size_t offset, std::size_t size);
 
   /// Submits all of it once and waits.
   void run();

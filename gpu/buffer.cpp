@@ -30,7 +30,7 @@ Storage allocate(const Device::Vk& vk, VkDeviceSize size, VkBufferUsageFlags usa
   VkBufferCreateInfo create{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   create.size = size;
   create.usage = usage;
-  must(vkCreateBuffer(vk.device, &create, nullptr, &storage.buffer), "vkCreateBuffer");
+  check_vk(vkCreateBuffer(vk.device, &create, nullptr, &storage.buffer), "vkCreateBuffer");
   VkMemoryRequirements needs;
   vkGetBufferMemoryRequirements(vk.device, storage.buffer, &needs);
   int type = -1;
@@ -41,10 +41,10 @@ Storage allocate(const Device::Vk& vk, VkDeviceSize size, VkBufferUsageFlags usa
   allocation.memoryTypeIndex = static_cast<std::uint32_t>(type < 0 ? 0 : type);
   if (type < 0 || vkAllocateMemory(vk.device, &allocation, nullptr, &storage.memory) != VK_SUCCESS) {
     vkDestroyBuffer(vk.device, storage.buffer, nullptr);
-    throw base::DeviceError("the Vulkan device " + vk.facts.name + " has no room for " + std::to_string(size >> 20) +
+    throw base::DeviceError("the Vulkan device " + vk.info.name + " has no room for " + std::to_string(size >> 20) +
                             " MiB; use fewer robots or beams");
   }
-  must(vkBindBufferMemory(vk.device, storage.buffer, storage.memory, 0), "vkBindBufferMemory");
+  check_vk(vkBindBufferMemory(vk.device, storage.buffer, storage.memory, 0), "vkBindBufferMemory");
   return storage;
 }
 
@@ -66,7 +66,7 @@ void make_storage(Buffer::Vk& vk, const Device& device, VkDeviceSize size) {
                                          : allocate(*vk.device, size, staging, {kCached, kHost});
   }
   const VkDeviceMemory seen = vk.staging.memory ? vk.staging.memory : vk.table.memory;
-  must(vkMapMemory(vk.device->device, seen, 0, VK_WHOLE_SIZE, 0, &vk.mapped), "vkMapMemory");
+  check_vk(vkMapMemory(vk.device->device, seen, 0, VK_WHOLE_SIZE, 0, &vk.mapped), "vkMapMemory");
 }
 
 }  // namespace
@@ -81,7 +81,7 @@ Buffer::Buffer(Device& device, std::string_view name, Role role, Texel texel, st
   vk_->texels = texels;
   const std::size_t limit = device.vk().properties.limits.maxTexelBufferElements;
   if (texels > limit)
-    throw base::DeviceError("the Vulkan device " + device.facts().name + " holds at most " + std::to_string(limit) +
+    throw base::DeviceError("the Vulkan device " + device.info().name + " holds at most " + std::to_string(limit) +
                             " elements in one table, " + std::to_string(texels) +
                             " are needed; use fewer robots or beams");
   make_storage(*vk_, device, bytes());
@@ -90,13 +90,13 @@ Buffer::Buffer(Device& device, std::string_view name, Role role, Texel texel, st
   view.buffer = vk_->table.buffer;
   view.format = format_of(texel);
   view.range = VK_WHOLE_SIZE;
-  must(vkCreateBufferView(vk_->device->device, &view, nullptr, &vk_->view), "vkCreateBufferView");
-  vk_->device->hold(vk_.get(), name, bytes(), false);
+  check_vk(vkCreateBufferView(vk_->device->device, &view, nullptr, &vk_->view), "vkCreateBufferView");
+  vk_->device->add_allocation(vk_.get(), name, bytes(), false);
 }
 
 Buffer::~Buffer() {
   if (!vk_) return;
-  vk_->device->let_go(vk_.get());
+  vk_->device->remove_allocation(vk_.get());
   vkDestroyBufferView(vk_->device->device, vk_->view, nullptr);
   release(*vk_->device, vk_->table);
   release(*vk_->device, vk_->staging);
@@ -110,7 +110,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 
 std::size_t Buffer::bytes() const { return vk_->texels * texel_size(vk_->texel); }
 std::size_t Buffer::texels() const { return vk_->texels; }
-bool Buffer::fits_buffer() const { return bytes() <= vk_->device->properties.limits.maxStorageBufferRange; }
+bool Buffer::fits_storage_buffer() const { return bytes() <= vk_->device->properties.limits.maxStorageBufferRange; }
 void* Buffer::mapped() const { return vk_->mapped; }
 
 }  // namespace sf::gpu

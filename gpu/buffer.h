@@ -26,7 +26,7 @@ std::size_t texel_size(Texel texel);  ///< [bytes] 4 or 16
 /// A table of texels with a host view. On a unified device the host view is the table itself; elsewhere a Batch copies.
 class Buffer {
  public:
-  /// @param name what is in it, for Device::held
+  /// @param name what is in it, for Device::allocations
   /// @param texels capacity, at least 1.
   /// @throws base::DeviceError when the device cannot hold so many, saying its limit.
   Buffer(Device& device, std::string_view name, Role role, Texel texel, std::size_t texels);
@@ -42,7 +42,7 @@ class Buffer {
   std::size_t bytes() const;
   std::size_t texels() const;
   /// Whether a kernel can write all of it as a `buffer`.
-  bool fits_buffer() const;
+  bool fits_storage_buffer() const;
 
   struct Vk;
   Vk& vk() const { return *vk_; }

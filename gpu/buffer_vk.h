@@ -2,7 +2,7 @@
 // The Vulkan handles behind gpu::Buffer, for the sources of this room only.
 
 #include "gpu/buffer.h"
-#include "gpu/vk.h"
+#include "gpu/device_vk.h"
 
 namespace sf::gpu {
 

@@ -3,19 +3,19 @@
 #include <utility>
 
 #include "base/error.h"
+#include "gpu/device_vk.h"
 #include "gpu/self_check.h"
-#include "gpu/vk.h"
 
 namespace sf::gpu {
 
 namespace {
 
-std::string why_none(const Instance& instance, const Considered& considered) {
+std::string no_device_message(const Instance& instance, const DeviceCandidates& candidates) {
   if (!instance.problem.empty())
     return "no Vulkan device: " + instance.problem + "; install a driver (Debian: mesa-vulkan-drivers)";
-  if (considered.facts.empty()) return "no Vulkan device found; install a driver (Debian: mesa-vulkan-drivers)";
-  std::string line = "no usable Vulkan device among " + std::to_string(considered.facts.size()) + ":";
-  for (const DeviceFacts& facts : considered.facts) line += " " + facts.name + " " + facts.reason + ";";
+  if (candidates.info.empty()) return "no Vulkan device found; install a driver (Debian: mesa-vulkan-drivers)";
+  std::string line = "no usable Vulkan device among " + std::to_string(candidates.info.size()) + ":";
+  for (const DeviceInfo& info : candidates.info) line += " " + info.name + " " + info.reason + ";";
   return line + " name another with --device or SENSORFARM_DEVICE, or install a driver";
 }
 
@@ -23,7 +23,7 @@ std::string why_none(const Instance& instance, const Considered& considered) {
 std::string open(Device::Vk& vk) {
   vkGetPhysicalDeviceProperties(vk.physical, &vk.properties);
   vkGetPhysicalDeviceMemoryProperties(vk.physical, &vk.memory);
-  vk.family = static_cast<std::uint32_t>(compute_family(vk.physical));
+  vk.family = static_cast<std::uint32_t>(compute_queue_family(vk.physical));
 
   const float priority = 1.0f;
   VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
@@ -55,14 +55,14 @@ void close(Device::Vk& vk) {
 }
 
 /// Opens row `row` in `device` and keeps it open if it computes as the host does. Returns "" or its fault.
-std::string start(Device& device, Considered& considered, std::size_t row) {
+std::string start(Device& device, DeviceCandidates& candidates, std::size_t row) {
   Device::Vk& vk = device.vk();
-  DeviceFacts& facts = considered.facts[row];
-  vk.physical = considered.handles[row];
-  vk.facts = facts;
+  DeviceInfo& info = candidates.info[row];
+  vk.physical = candidates.handles[row];
+  vk.info = info;
   if (const std::string fault = open(vk); !fault.empty()) return fault;
   const std::string fault = self_check(device);
-  facts.self_check = fault.empty() ? "passed" : "failed";
+  info.self_check = fault.empty() ? "passed" : "failed";
   if (!fault.empty()) close(vk);
   return fault;
 }
@@ -75,49 +75,49 @@ int Device::Vk::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted)
   return -1;
 }
 
-void Device::Vk::hold(const void* what, std::string_view name, std::size_t bytes, bool is_kernel) {
-  held.emplace_back(what, Held{owner, std::string(name), bytes, is_kernel});
+void Device::Vk::add_allocation(const void* what, std::string_view name, std::size_t bytes, bool is_kernel) {
+  allocations.emplace_back(what, DeviceAllocation{owner, std::string(name), bytes, is_kernel});
 }
 
-void Device::Vk::let_go(const void* what) {
-  std::erase_if(held, [&](const auto& entry) { return entry.first == what; });
+void Device::Vk::remove_allocation(const void* what) {
+  std::erase_if(allocations, [&](const auto& entry) { return entry.first == what; });
 }
 
-Survey survey_devices(const std::string& wanted) {
+DeviceList list_devices(const std::string& wanted) {
   Device probe(std::make_unique<Device::Vk>());
-  Considered considered = consider(*probe.vk().instance);
-  for (std::size_t row = 0; row < considered.facts.size(); ++row) {
-    if (!considered.facts[row].reason.empty()) continue;
-    considered.facts[row].reason = start(probe, considered, row);
+  DeviceCandidates candidates = find_candidates(*probe.vk().instance);
+  for (std::size_t row = 0; row < candidates.info.size(); ++row) {
+    if (!candidates.info[row].reason.empty()) continue;
+    candidates.info[row].reason = start(probe, candidates, row);
     close(probe.vk());
   }
-  choose(considered, wanted);
-  return {considered.facts, probe.vk().instance->problem};
+  choose_device(candidates, wanted);
+  return {candidates.info, probe.vk().instance->problem};
 }
 
 Device::Device(std::unique_ptr<Vk> vk) : vk_(std::move(vk)) { vk_->instance = std::make_unique<Instance>(); }
 
 Device::Device(const std::string& wanted) : Device(std::make_unique<Vk>()) {
-  Considered considered = consider(*vk_->instance);
-  const int row =
-      choose(considered, wanted, [&](Considered& tried, std::size_t at) { return start(*this, tried, at); });
-  if (row < 0) throw base::DeviceError(why_none(*vk_->instance, considered));
-  vk_->facts = considered.facts[static_cast<std::size_t>(row)];
+  DeviceCandidates candidates = find_candidates(*vk_->instance);
+  const int row = choose_device(candidates, wanted,
+                                [&](DeviceCandidates& tried, std::size_t at) { return start(*this, tried, at); });
+  if (row < 0) throw base::DeviceError(no_device_message(*vk_->instance, candidates));
+  vk_->info = candidates.info[static_cast<std::size_t>(row)];
 }
 
 Device::~Device() { close(*vk_); }
 
-const DeviceFacts& Device::facts() const { return vk_->facts; }
+const DeviceInfo& Device::info() const { return vk_->info; }
 
 bool Device::unified() const { return vk_->unified; }
 
-std::vector<Held> Device::held() const {
-  std::vector<Held> all;
-  for (const auto& [what, held] : vk_->held) all.push_back(held);
+std::vector<DeviceAllocation> Device::allocations() const {
+  std::vector<DeviceAllocation> all;
+  for (const auto& [what, held] : vk_->allocations) all.push_back(held);
   return all;
 }
 
-void Device::owned_by(std::string_view owner) { vk_->owner = owner; }
+void Device::set_owner(std::string_view owner) { vk_->owner = owner; }
 
 std::string Device::validation_messages() const {
   const std::scoped_lock guard(vk_->instance->lock);

@@ -10,7 +10,7 @@
 namespace sf::gpu {
 
 /// One Vulkan device as it was considered.
-struct DeviceFacts {
+struct DeviceInfo {
   std::string name;       ///< as the driver gives it
   std::string driver;     ///< driver name and version
   std::string api;        ///< Vulkan version, e.g. "1.3.230"
@@ -25,15 +25,15 @@ struct DeviceFacts {
 /// `wanted` is empty (best usable device), a row number of the list, or a part of a device's name.
 /// Throws nothing for "no device": the list then has no chosen row. `problem` says what is wrong with Vulkan itself, if
 /// anything.
-struct Survey {
-  std::vector<DeviceFacts> devices;
+struct DeviceList {
+  std::vector<DeviceInfo> devices;
   std::string problem;
 };
-Survey survey_devices(const std::string& wanted);
+DeviceList list_devices(const std::string& wanted);
 
 /// A table or a kernel on a device.
-struct Held {
-  std::string owner;  ///< as `Device::owned_by` had it when it was made
+struct DeviceAllocation {
+  std::string owner;  ///< as `Device::set_owner` had it when it was made
   std::string name;
   std::size_t bytes = 0;  ///< of the table, or of the kernel's SPIR-V
   bool is_kernel = false;
@@ -49,14 +49,14 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  const DeviceFacts& facts() const;
+  const DeviceInfo& info() const;
   /// Host and device share memory: uploads and downloads copy nothing. Never so where the environment had
   /// SENSORFARM_STAGING=1 when it was opened, by which tests copy on any device.
   bool unified() const;
   /// All tables and kernels that live on it, in the order in which they were made.
-  std::vector<Held> held() const;
+  std::vector<DeviceAllocation> allocations() const;
   /// Whose what is made from here on is: a kind of sensor.
-  void owned_by(std::string_view owner);
+  void set_owner(std::string_view owner);
   /// Messages of the validation layer so far; it is on when the environment has SENSORFARM_VALIDATE=1. "" when silent.
   std::string validation_messages() const;
 

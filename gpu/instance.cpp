@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "gpu/vk.h"
+#include "gpu/device_vk.h"
 
 namespace sf::gpu {
 
@@ -38,7 +38,7 @@ bool is_set(const char* variable) {
   return value && *value && std::strcmp(value, "0") != 0;
 }
 
-void must(VkResult result, const char* call) {
+void check_vk(VkResult result, const char* call) {
   if (result == VK_SUCCESS) return;
   base::check(false, __FILE__, __LINE__, std::string(call) + " gave VkResult " + std::to_string(result));
 }
@@ -78,7 +78,7 @@ Instance::Instance() {
   if (!validate) return;
   const auto make = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
       vkGetInstanceProcAddr(handle, "vkCreateDebugUtilsMessengerEXT"));
-  if (make) must(make(handle, &listen, nullptr, &messenger), "vkCreateDebugUtilsMessengerEXT");
+  if (make) check_vk(make(handle, &listen, nullptr, &messenger), "vkCreateDebugUtilsMessengerEXT");
 }
 
 Instance::~Instance() {

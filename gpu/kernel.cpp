@@ -22,12 +22,12 @@ void make_layout(Kernel::Vk& vk, std::uint32_t tables) {
   VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   set.bindingCount = tables;
   set.pBindings = bindings.data();
-  must(vkCreateDescriptorSetLayout(vk.device->device, &set, nullptr, &vk.tables), "vkCreateDescriptorSetLayout");
+  check_vk(vkCreateDescriptorSetLayout(vk.device->device, &set, nullptr, &vk.tables), "vkCreateDescriptorSetLayout");
 
   VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
   layout.setLayoutCount = 1;
   layout.pSetLayouts = &vk.tables;
-  must(vkCreatePipelineLayout(vk.device->device, &layout, nullptr, &vk.layout), "vkCreatePipelineLayout");
+  check_vk(vkCreatePipelineLayout(vk.device->device, &layout, nullptr, &vk.layout), "vkCreatePipelineLayout");
 }
 
 void make_set(Kernel::Vk& vk, std::uint32_t tables) {
@@ -36,12 +36,12 @@ void make_set(Kernel::Vk& vk, std::uint32_t tables) {
   pool.maxSets = 1;
   pool.poolSizeCount = tables > vk.texels ? 2 : 1;
   pool.pPoolSizes = sizes;
-  must(vkCreateDescriptorPool(vk.device->device, &pool, nullptr, &vk.pool), "vkCreateDescriptorPool");
+  check_vk(vkCreateDescriptorPool(vk.device->device, &pool, nullptr, &vk.pool), "vkCreateDescriptorPool");
   VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
   allocate.descriptorPool = vk.pool;
   allocate.descriptorSetCount = 1;
   allocate.pSetLayouts = &vk.tables;
-  must(vkAllocateDescriptorSets(vk.device->device, &allocate, &vk.set), "vkAllocateDescriptorSets");
+  check_vk(vkAllocateDescriptorSets(vk.device->device, &allocate, &vk.set), "vkAllocateDescriptorSets");
 }
 
 void make_pipeline(Kernel::Vk& vk, std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> constants) {
@@ -53,7 +53,7 @@ void make_pipeline(Kernel::Vk& vk, std::span<const std::uint32_t> spirv, std::sp
   code.codeSize = spirv.size_bytes();
   code.pCode = spirv.data();
   VkShaderModule module = VK_NULL_HANDLE;
-  must(vkCreateShaderModule(vk.device->device, &code, nullptr, &module), "vkCreateShaderModule");
+  check_vk(vkCreateShaderModule(vk.device->device, &code, nullptr, &module), "vkCreateShaderModule");
   VkComputePipelineCreateInfo create{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
   create.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
   create.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
@@ -61,8 +61,8 @@ void make_pipeline(Kernel::Vk& vk, std::span<const std::uint32_t> spirv, std::sp
   create.stage.pName = "main";
   create.stage.pSpecializationInfo = &special;
   create.layout = vk.layout;
-  must(vkCreateComputePipelines(vk.device->device, VK_NULL_HANDLE, 1, &create, nullptr, &vk.pipeline),
-       "vkCreateComputePipelines");
+  check_vk(vkCreateComputePipelines(vk.device->device, VK_NULL_HANDLE, 1, &create, nullptr, &vk.pipeline),
+           "vkCreateComputePipelines");
   vkDestroyShaderModule(vk.device->device, module, nullptr);
 }
 
@@ -91,11 +91,11 @@ Kernel::Kernel(Device& device, std::string_view name, std::span<const std::uint3
   make_layout(*vk_, tables);
   make_set(*vk_, tables);
   make_pipeline(*vk_, spirv, constants);
-  vk_->device->hold(vk_.get(), name, spirv.size_bytes(), true);
+  vk_->device->add_allocation(vk_.get(), name, spirv.size_bytes(), true);
 }
 
 Kernel::~Kernel() {
-  vk_->device->let_go(vk_.get());
+  vk_->device->remove_allocation(vk_.get());
   const VkDevice device = vk_->device->device;
   vkDestroyPipeline(device, vk_->pipeline, nullptr);
   vkDestroyPipelineLayout(device, vk_->layout, nullptr);

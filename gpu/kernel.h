@@ -15,7 +15,7 @@ namespace sf::gpu {
 /// `buffer`.
 class Kernel {
  public:
-  /// @param name what it computes, for Device::held
+  /// @param name what it computes, for Device::allocations
   /// @param spirv words of a module with one entry point `main`; its group size is read from the module.
   /// @param buffers how many of the tables, the last ones, are bound as buffers: as much of them as the device bears
   /// @param constants of the module, from constant_id 0 on: one word each

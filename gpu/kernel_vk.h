@@ -1,8 +1,8 @@
 #pragma once
 // The Vulkan handles behind gpu::Kernel, for the sources of this room only.
 
+#include "gpu/device_vk.h"
 #include "gpu/kernel.h"
-#include "gpu/vk.h"
 
 namespace sf::gpu {
 

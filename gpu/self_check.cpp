@@ -2,10 +2,10 @@
 
 #include <cstring>
 
-#include "gpu/arithmetic.h"
 #include "gpu/batch.h"
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
+#include "gpu/self_check_arithmetic.h"
 #include "shaders/self_check.comp.h"
 
 namespace sf::gpu {
@@ -28,11 +28,11 @@ std::string self_check(Device& device, std::span<const std::uint32_t> spirv) {
   batch.begin();
   batch.dispatch(kernel, counts, 0);
   batch.end();
-  batch.up(in, 0, in.bytes());
-  batch.up(counts, 0, counts.bytes());
-  batch.down(out, 0, out.bytes());
+  batch.upload(in, 0, in.bytes());
+  batch.upload(counts, 0, counts.bytes());
+  batch.download(out, 0, out.bytes());
   batch.run();
-  return difference(out.host<std::uint64_t>());
+  return first_difference(out.host<std::uint64_t>());
 }
 
 }  // namespace sf::gpu

@@ -9,7 +9,8 @@
 
 namespace sf::gpu {
 
-/// Runs the operations of gpu/arithmetic.h, in the form in which kernels use them, on the device and on the host.
+/// Runs the operations of gpu/self_check_arithmetic.h, in the form in which kernels use them, on the device and on the
+/// host.
 /// @return "" when they agree, else one line with the first difference: operation, operands, found and expected.
 std::string self_check(Device& device);
 

@@ -63,29 +63,29 @@ void Casts::record(gpu::Batch& batch) {
 void Casts::copies(gpu::Batch& batch, bool results) {
   Tables& t = *t_;
   if (t.scene) t.scene->upload(batch);
-  if (t.scene) batch.up(*t.rows, 0, t.due.size() * sizeof(RayRow));
+  if (t.scene) batch.upload(*t.rows, 0, t.due.size() * sizeof(RayRow));
   const auto send = [&](const CastPass& pass) {
-    batch.up(*pass.lanes, 0, pass.lanes->bytes());
-    batch.up(*pass.groups, 0, pass.groups->bytes());
+    batch.upload(*pass.lanes, 0, pass.lanes->bytes());
+    batch.upload(*pass.groups, 0, pass.groups->bytes());
   };
   send(t.exact);
   if (t.single) send(*t.single);
   if (t.beams_changed || t.any_turns) {
-    batch.up(*t.middles, 0, t.middles->bytes());
-    batch.up(*t.directions64, 0, t.directions64->bytes());
+    batch.upload(*t.middles, 0, t.middles->bytes());
+    batch.upload(*t.directions64, 0, t.directions64->bytes());
     t.beams_changed = false;
   }
   for (const std::uint32_t i : t.for_host) {
     const FanRow& row = t.fan_rows[t.due[i].row];
     const std::size_t lanes = row.plan.lanes();
-    batch.up(*t.ranges, 32 * std::size_t{row.out}, 32 * lanes);
-    batch.up(*t.hits, 16 * std::size_t{row.out}, 16 * lanes);
-    batch.up(*t.verdicts, 4 * std::size_t{row.out}, 4 * lanes);
+    batch.upload(*t.ranges, 32 * std::size_t{row.out}, 32 * lanes);
+    batch.upload(*t.hits, 16 * std::size_t{row.out}, 16 * lanes);
+    batch.upload(*t.verdicts, 4 * std::size_t{row.out}, 4 * lanes);
   }
-  batch.down(*t.verdicts, 0, t.verdicts->bytes());
+  batch.download(*t.verdicts, 0, t.verdicts->bytes());
   if (!results) return;
-  batch.down(*t.ranges, 0, t.ranges->bytes());
-  batch.down(*t.hits, 0, t.hits->bytes());
+  batch.download(*t.ranges, 0, t.ranges->bytes());
+  batch.download(*t.hits, 0, t.hits->bytes());
 }
 
 FanResults Casts::results(std::size_t i) const {

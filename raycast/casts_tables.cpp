@@ -42,7 +42,7 @@ Casts::Tables::Tables(const Site& site, const world::World& world, std::vector<F
     : thread_pool(site.thread_pool), seed(site.seed), noise(site.noise), families(world), fans(std::move(f)) {
   plan(world);
   host = std::make_unique<HostScene>(world, families, thread_pool);
-  if (caster_for(site.device.facts().software, site.scene.caster) == Caster::vulkan)
+  if (caster_for(site.device.info().software, site.scene.caster) == Caster::vulkan)
     scene = std::make_unique<Scene>(world, families, site.device, thread_pool, site.scene, carriers_of(fans));
   scratch.resize(thread_pool.threads());
   turned.resize(thread_pool.threads());
@@ -110,7 +110,7 @@ void Casts::Tables::make_tables(gpu::Device& device, std::size_t largest_buffer,
   ranges = std::make_unique<gpu::Buffer>(device, "ranges", Role::download, Texel::u32x4, 2 * results);
   hits = std::make_unique<gpu::Buffer>(device, "hits", Role::download, Texel::u32x4, results);
   verdicts = std::make_unique<gpu::Buffer>(device, "verdicts", Role::download, Texel::u32, results);
-  texel_results = !ranges->fits_buffer() || ranges->bytes() > largest_buffer;
+  texel_results = !ranges->fits_storage_buffer() || ranges->bytes() > largest_buffer;
   make_pass(device, exact, false);
   const auto asks = [](const Fan& fan) { return fan.single; };
   if (std::any_of(fans.begin(), fans.end(), asks)) make_pass(device, single.emplace(), true);

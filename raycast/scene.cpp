@@ -183,22 +183,23 @@ void Scene::grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint3
 }
 
 void Scene::upload(gpu::Batch& batch) {
-  const auto lists_up = [&](std::size_t first, std::size_t count) { batch.up(*lists_, 16 * first, 16 * count); };
+  const auto lists_up = [&](std::size_t first, std::size_t count) { batch.upload(*lists_, 16 * first, 16 * count); };
   if (upload_all_) {
     lists_up(0, lists_->texels());
-    batch.up(*names_, 0, names_->bytes());
-    batch.up(*segments_, 0, segments_->bytes());
-    batch.up(*models_, 0, models_->bytes());
+    batch.upload(*names_, 0, names_->bytes());
+    batch.upload(*segments_, 0, segments_->bytes());
+    batch.upload(*models_, 0, models_->bytes());
   } else {
     for (const std::uint32_t slot : fresh_slots_) {
       const Cell& cell = cell_tables_[slot];
       lists_up(cell.first, cell.count);
-      batch.up(*names_, 4 * std::size_t{cell.first}, 4 * std::size_t{cell.count});
+      batch.upload(*names_, 4 * std::size_t{cell.first}, 4 * std::size_t{cell.count});
     }
     lists_up(pool_end(), near_used_);
-    batch.up(*segments_, families_.walls().size() * sizeof(ExactSegment), movers_.segments() * sizeof(ExactSegment));
+    batch.upload(*segments_, families_.walls().size() * sizeof(ExactSegment),
+                 movers_.segments() * sizeof(ExactSegment));
   }
-  batch.up(*places_, 0, places_->bytes());
+  batch.upload(*places_, 0, places_->bytes());
   upload_all_ = false;
   fresh_slots_.clear();
 }

@@ -87,8 +87,8 @@ ExplainedKind facts_of(const sensors::Roster::Group& group) {
   return kind;
 }
 
-void add_held(const std::vector<gpu::Held>& held, ExplainedKind& kind) {
-  for (const gpu::Held& h : held) {
+void add_held(const std::vector<gpu::DeviceAllocation>& held, ExplainedKind& kind) {
+  for (const gpu::DeviceAllocation& h : held) {
     if (h.owner != kind.kind) continue;
     if (h.is_kernel) {
       kind.kernels.push_back(h.name);
@@ -98,7 +98,7 @@ void add_held(const std::vector<gpu::Held>& held, ExplainedKind& kind) {
     kind.bytes += h.bytes;
   }
   std::stable_sort(kind.tables.begin(), kind.tables.end(),
-                   [](const gpu::Held& a, const gpu::Held& b) { return a.bytes > b.bytes; });
+                   [](const gpu::DeviceAllocation& a, const gpu::DeviceAllocation& b) { return a.bytes > b.bytes; });
 }
 
 std::vector<Slice> slices_of(const world::World& world) {
@@ -126,7 +126,7 @@ std::size_t resident_bytes() {
 Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads,
                     const std::function<void(double)>& progress) {
   Explanation e;
-  e.caster = raycast::caster_text(device.facts().software);
+  e.caster = raycast::caster_text(device.info().software);
   double done = 0.0;
   const auto step = [&](std::size_t kinds) {
     if (progress) progress(++done / static_cast<double>(kinds + 3));
@@ -161,7 +161,7 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   farm.hear(farm::kAllKinds);
   e.all = farm.laps();
   e.ticks = farm.ticks();
-  for (ExplainedKind& kind : e.kinds) add_held(device.held(), kind);
+  for (ExplainedKind& kind : e.kinds) add_held(device.allocations(), kind);
   for (const sensors::SensorKind* kind : sensors::kinds())
     if (!present.contains(kind->name)) e.absent.emplace_back(kind->name);
   e.slices = slices_of(world);

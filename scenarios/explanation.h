@@ -19,13 +19,13 @@ struct ExplainedKind {
   std::uint32_t robots = 0;                  ///< that carry them
   double least_rate = 0.0, most_rate = 0.0;  ///< [Hz]
   std::vector<std::string> kernels;
-  std::vector<gpu::Held> tables;  ///< largest first
-  std::size_t bytes = 0;          ///< of all tables
-  bool derived = false;           ///< made of lasers' readings: heard with these
-  double tick = 0.0;              ///< [s] a tick on the clock with this kind heard alone, mean
-  double readings = 0.0;          ///< a tick, mean
-  double again = 0.0;             ///< of these, given again since nothing they depend on had moved
-  sensors::Work work;             ///< of all measured ticks together
+  std::vector<gpu::DeviceAllocation> tables;  ///< largest first
+  std::size_t bytes = 0;                      ///< of all tables
+  bool derived = false;                       ///< made of lasers' readings: heard with these
+  double tick = 0.0;                          ///< [s] a tick on the clock with this kind heard alone, mean
+  double readings = 0.0;                      ///< a tick, mean
+  double again = 0.0;                         ///< of these, given again since nothing they depend on had moved
+  sensors::Work work;                         ///< of all measured ticks together
 };
 
 /// Walls that lasers and other rays at one height can meet.

@@ -134,7 +134,7 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
     recorder.emplace(options.record, run_info(world, simulation.farm().roster(),
                                               {.seed = scenario.seed,
                                                .record_readings = true,
-                                               .caster = raycast::caster_text(device.facts().software)}));
+                                               .caster = raycast::caster_text(device.info().software)}));
 
   Trial trial;
   const auto start = std::chrono::steady_clock::now();

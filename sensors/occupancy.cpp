@@ -47,7 +47,7 @@ std::vector<MapPlan> plans_of(const std::vector<Occupancy>& all) {
 
 /// [cells] range of scans that the device enters.
 double farthest_on(const Site& site) {
-  const bool host = raycast::caster_for(site.device.facts().software, site.scene.caster) == raycast::Caster::host;
+  const bool host = raycast::caster_for(site.device.info().software, site.scene.caster) == raycast::Caster::host;
   return host ? kFarScan : maps::kFarthestRange;
 }
 

@@ -161,16 +161,16 @@ void MapBatch::Tables::close(MapCourse& course) {
 /// All of rows and lines once, nobody's row among them; then what these scans have written.
 void MapBatch::Tables::send_scans() {
   if (blank) {
-    batch.up(*rows, 0, rows->bytes());
-    batch.up(*lines, 0, lines->bytes());
+    batch.upload(*rows, 0, rows->bytes());
+    batch.upload(*lines, 0, lines->bytes());
   } else if (!scans.empty()) {
     constexpr std::size_t kPair = 2 * sizeof(BeamLine);
     const auto [low, high] = std::minmax_element(scans.begin(), scans.end(),
                                                  [](const MapScan& a, const MapScan& b) { return a.map < b.map; });
     const std::size_t first = all[low->map].lines;
     const std::size_t end = all[high->map].lines + pairs_of(all[high->map].plan);
-    batch.up(*rows, 0, scans.size() * sizeof(MapRow));
-    batch.up(*lines, kPair * first, kPair * (end - first));
+    batch.upload(*rows, 0, scans.size() * sizeof(MapRow));
+    batch.upload(*lines, kPair * first, kPair * (end - first));
   }
 }
 
@@ -178,18 +178,18 @@ void MapBatch::Tables::send() {
   send_scans();
   for (const MapCourse* course : {&strips, &plain.course, &weighed.course}) {
     if (!course->kernel) continue;
-    batch.up(*course->blocks, 0, course->count * sizeof(MapBlock));
-    batch.up(*course->groups, 0, course->groups->bytes());
+    batch.upload(*course->blocks, 0, course->count * sizeof(MapBlock));
+    batch.upload(*course->groups, 0, course->groups->bytes());
   }
   for (const MapWords* part : {&plain, &weighed})
-    if (part->struck) batch.up(*part->struck, 0, 4 * SF_MAP_BLOCK * part->course.count);
+    if (part->struck) batch.upload(*part->struck, 0, 4 * SF_MAP_BLOCK * part->course.count);
   if (blank) {
-    batch.up(*words, 0, words->bytes());
-    if (odds) batch.up(*odds, 0, odds->bytes());
+    batch.upload(*words, 0, words->bytes());
+    if (odds) batch.upload(*odds, 0, odds->bytes());
     blank = false;
   }
   for (const std::uint32_t map : wanted)
-    batch.down(*words, 4 * std::size_t{all[map].words}, 4 * std::size_t{maps::words(all[map].plan.grid)});
+    batch.download(*words, 4 * std::size_t{all[map].words}, 4 * std::size_t{maps::words(all[map].plan.grid)});
 }
 
 MapBatch::MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapPlan> plans, double farthest)

@@ -1,6 +1,6 @@
 #version 450
 // The arithmetic that decides readings, each operation in the form in which kernels have it: what the host computes for the same operands
-// is in gpu/arithmetic.cpp, in this order.
+// is in gpu/self_check_arithmetic.cpp, in this order.
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer operands;  // a, b as two words each

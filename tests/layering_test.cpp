@@ -225,7 +225,7 @@ TEST(LayeringJudge, TakesWhatThePlanAllows) {
                            {"netio/a.cpp", "#include <sys/socket.h>\n"},
                            {"shaders/a.comp", "#include \"raycast/records.h\"\n"},
                            {"apps/a.cpp", "#include <CLI/CLI.hpp>\n#include \"netio/inbox.h\"\n"},
-                           {"tests/a.cpp", "#include <nlohmann/json.hpp>\n#include \"gpu/vk.h\"\n"},
+                           {"tests/a.cpp", "#include <nlohmann/json.hpp>\n#include \"gpu/device_vk.h\"\n"},
                            {"world/a.cpp", "// #include \"gpu/device.h\"\nstruct Vkontakte {};\n"}})
     EXPECT_TRUE(complaints(fine).empty()) << testing::PrintToString(complaints(fine));
 }
@@ -241,7 +241,7 @@ TEST(LayeringJudge, FindsEachBrokenRule) {
                            {"shaders/a.comp", "#include \"world/world.h\""},         // kernels read records only
                            {"sensors/a.cpp", "#include \"shaders/lib/rays.glsl\""},  // hosts read compiled kernels only
                            {"world/a.cpp", "#include \"shape.h\""},                  // not from the root
-                           {"world/a.cpp", "#include \"../gpu/vk.h\""},              // not from the root
+                           {"world/a.cpp", "#include \"../gpu/device_vk.h\""},       // not from the root
                            {"attic/a.cpp", "#include \"base/pose.h\""},              // a room without a row
                            {"world/a.cpp", "  #  include<vulkan/vulkan.h>"},         // Vulkan's header
                            {"world/a.cpp", "VkDevice device;"},                      // Vulkan's types
@@ -257,7 +257,7 @@ TEST(LayeringJudge, FindsEachBrokenRule) {
 }
 
 TEST(LayeringJudge, NamesFileAndLine) {
-  const auto found = complaints({"base/a.cpp", "// one\n// two\n#include \"gpu/vk.h\"\n"});
+  const auto found = complaints({"base/a.cpp", "// one\n// two\n#include \"gpu/device_vk.h\"\n"});
   ASSERT_EQ(found.size(), 1u);
   EXPECT_TRUE(starts_with(found[0], "base/a.cpp:3: ")) << found[0];
 }

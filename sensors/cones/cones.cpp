@@ -146,12 +146,12 @@ ConeEcho Cones::hear(std::size_t i) {
 
 void Cones::copies(gpu::Batch& batch) {
   casts_.copies(batch, false);
-  batch.up(rows_, 0, padded(count_) * sizeof(ConeRow));
-  batch.up(groups_, 0, groups_.bytes());
-  if (incidence_ || fresh_) batch.up(headings_, 0, headings_.bytes());
-  if (fresh_) batch.up(faces_, 0, faces_.bytes());
+  batch.upload(rows_, 0, padded(count_) * sizeof(ConeRow));
+  batch.upload(groups_, 0, groups_.bytes());
+  if (incidence_ || fresh_) batch.upload(headings_, 0, headings_.bytes());
+  if (fresh_) batch.upload(faces_, 0, faces_.bytes());
   fresh_ = false;
-  batch.down(echoes_, 0, count_ * sizeof(ConeEcho));
+  batch.download(echoes_, 0, count_ * sizeof(ConeEcho));
 }
 
 }  // namespace sf::sensors

@@ -116,13 +116,13 @@ void MagneticField::record(gpu::Batch& batch) { batch.dispatch(*t_->kernel, *t_-
 void MagneticField::copies(gpu::Batch& batch) {
   Tables& t = *t_;
   const std::size_t first = t.standing_sent ? t.standing * sizeof(DipoleRow) : 0;
-  batch.up(*t.dipoles, first, t.dipoles->bytes() - first);
+  batch.upload(*t.dipoles, first, t.dipoles->bytes() - first);
   t.standing_sent = true;
-  batch.up(*t.items, 0, t.items->bytes());
-  batch.up(*t.spans, 0, t.asked.size() * t.stride * sizeof(MagnetSpan));
-  batch.up(*t.places, 0, t.asked.size() * SF_FIELD_PLACES * sizeof(PlaceRow));
-  batch.up(*t.groups, 0, t.groups->bytes());
-  batch.down(*t.results, 0, t.planned.size() * SF_FIELD_PLACES * sizeof(FieldSum));
+  batch.upload(*t.items, 0, t.items->bytes());
+  batch.upload(*t.spans, 0, t.asked.size() * t.stride * sizeof(MagnetSpan));
+  batch.upload(*t.places, 0, t.asked.size() * SF_FIELD_PLACES * sizeof(PlaceRow));
+  batch.upload(*t.groups, 0, t.groups->bytes());
+  batch.download(*t.results, 0, t.planned.size() * SF_FIELD_PLACES * sizeof(FieldSum));
 }
 
 FieldSum MagneticField::at(std::size_t group, std::size_t i) const {

@@ -186,15 +186,15 @@ void EdgeFit::bind(gpu::Buffer& lanes, gpu::Buffer& ranges, gpu::Buffer& hits) {
 }
 
 void EdgeFit::copies(gpu::Batch& batch) {
-  batch.up(rows_, 0, padded(due_.size()) * sizeof(EdgeRow));
-  batch.up(groups_, 0, groups_.bytes());
-  if (fresh_) batch.up(directions_, 0, directions_.bytes());
-  if (fresh_) batch.up(grains_, 0, grains_.bytes());
-  if (fresh_ || plan_.any_noise) batch.up(normals_, 0, normals_.bytes());
+  batch.upload(rows_, 0, padded(due_.size()) * sizeof(EdgeRow));
+  batch.upload(groups_, 0, groups_.bytes());
+  if (fresh_) batch.upload(directions_, 0, directions_.bytes());
+  if (fresh_) batch.upload(grains_, 0, grains_.bytes());
+  if (fresh_ || plan_.any_noise) batch.upload(normals_, 0, normals_.bytes());
   fresh_ = false;
-  batch.up(order_, 0, padded(due_.size()) * sizeof(std::uint32_t));
-  batch.down(mixtures_, 0, due_.size() * sizeof(std::uint32_t));
-  batch.down(readings_, 0, due_.size() * sizeof(EdgeReading));
+  batch.upload(order_, 0, padded(due_.size()) * sizeof(std::uint32_t));
+  batch.download(mixtures_, 0, due_.size() * sizeof(std::uint32_t));
+  batch.download(readings_, 0, due_.size() * sizeof(EdgeReading));
 }
 
 }  // namespace sf::sensors

@@ -104,11 +104,11 @@ void Road::bind(const PointTables& out) {
 void Road::record(gpu::Batch& batch) { batch.dispatch(kernel_, groups_, 0); }
 
 void Road::copies(gpu::Batch& batch) {
-  batch.up(place_, 0, due_ * sizeof(RoadRow));
-  batch.up(groups_, 0, groups_.bytes());
+  batch.upload(place_, 0, due_ * sizeof(RoadRow));
+  batch.upload(groups_, 0, groups_.bytes());
   if (!fresh_) return;
-  batch.up(directory_, 0, directory_.bytes());
-  batch.up(blocks_, 0, blocks_.bytes());
+  batch.upload(directory_, 0, directory_.bytes());
+  batch.upload(blocks_, 0, blocks_.bytes());
   fresh_ = false;
 }
 

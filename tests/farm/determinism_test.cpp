@@ -149,8 +149,8 @@ TEST(Determinism, SenseLeavesNoTrace) {
 /// A fixed scene has a fixed hash. Beams at multiples of 22.5 degrees, poses on a lattice, no noise: of the C library
 /// it depends on sin and cos of multiples of pi/8 and of 1/4 alone.
 TEST(Determinism, GoldenHash) {
-  if (device().facts().name.find("llvmpipe") == std::string::npos)
-    GTEST_SKIP() << "the hash is lavapipe's; this is " << device().facts().name;
+  if (device().info().name.find("llvmpipe") == std::string::npos)
+    GTEST_SKIP() << "the hash is lavapipe's; this is " << device().info().name;
   world::World world;
   scenes::add_room(world, {}, 12.0);
   for (int i = 0; i < 12; ++i) {

@@ -20,7 +20,7 @@ std::map<std::string, std::vector<std::pair<std::string, std::size_t>>> held_for
   farm.hear_all();
   for (int k = 0; k < 3; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
   std::map<std::string, std::vector<std::pair<std::string, std::size_t>>> held;
-  for (const gpu::Held& h : own.held()) held[h.owner].emplace_back(h.name, h.bytes);
+  for (const gpu::DeviceAllocation& h : own.allocations()) held[h.owner].emplace_back(h.name, h.bytes);
   return held;
 }
 

@@ -11,19 +11,19 @@ namespace {
 
 TEST(Device, OpensTheBestDeviceAndSaysWhatItIs) {
   const Device device;
-  EXPECT_FALSE(device.facts().name.empty());
-  EXPECT_TRUE(device.facts().chosen);
-  EXPECT_EQ(device.facts().software, device.facts().kind == "CPU");
-  EXPECT_NE(device.facts().driver, "");
-  EXPECT_EQ(device.facts().api.find("1."), 0u) << device.facts().api;
+  EXPECT_FALSE(device.info().name.empty());
+  EXPECT_TRUE(device.info().chosen);
+  EXPECT_EQ(device.info().software, device.info().kind == "CPU");
+  EXPECT_NE(device.info().driver, "");
+  EXPECT_EQ(device.info().api.find("1."), 0u) << device.info().api;
 }
 
 TEST(Device, SurveyChoosesExactlyOneAndGivesTheOthersAReason) {
-  const Survey survey = survey_devices("");
+  const DeviceList survey = list_devices("");
   int chosen = 0;
-  for (const DeviceFacts& facts : survey.devices) {
-    chosen += facts.chosen;
-    EXPECT_EQ(facts.chosen, facts.reason.empty()) << facts.name;
+  for (const DeviceInfo& info : survey.devices) {
+    chosen += info.chosen;
+    EXPECT_EQ(info.chosen, info.reason.empty()) << info.name;
   }
   EXPECT_EQ(chosen, 1);
 }
@@ -31,10 +31,10 @@ TEST(Device, SurveyChoosesExactlyOneAndGivesTheOthersAReason) {
 TEST(Device, AnUnknownNameIsRefusedWithEveryDeviceAndItsReason) {
   try {
     Device device("no such device");
-    FAIL() << "opened " << device.facts().name;
+    FAIL() << "opened " << device.info().name;
   } catch (const base::DeviceError& error) {
     const std::string text = error.what();
-    const std::size_t devices = survey_devices("").devices.size();
+    const std::size_t devices = list_devices("").devices.size();
     EXPECT_EQ(text.find("no usable Vulkan device among " + std::to_string(devices) + ": "), 0u) << text;
     EXPECT_NE(text.find("is not the wanted one ('no such device');"), std::string::npos) << text;
     EXPECT_NE(text.find("name another with --device"), std::string::npos) << text;
@@ -45,12 +45,12 @@ TEST(Device, WithoutADriverItSaysWhatToInstall) {
   const char* set = std::getenv("VK_DRIVER_FILES");
   const std::string before = set ? set : "";
   setenv("VK_DRIVER_FILES", "/no/such/driver.json", 1);
-  const Survey survey = survey_devices("");
+  const DeviceList survey = list_devices("");
   EXPECT_TRUE(survey.devices.empty());
   EXPECT_EQ(survey.problem.find("Vulkan has no usable driver"), 0u) << survey.problem;
   try {
     Device device;
-    ADD_FAILURE() << "opened " << device.facts().name;
+    ADD_FAILURE() << "opened " << device.info().name;
   } catch (const base::DeviceError& error) {
     EXPECT_EQ(std::string(error.what()),
               "no Vulkan device: " + survey.problem + "; install a driver (Debian: mesa-vulkan-drivers)");
@@ -58,7 +58,7 @@ TEST(Device, WithoutADriverItSaysWhatToInstall) {
   before.empty() ? unsetenv("VK_DRIVER_FILES") : setenv("VK_DRIVER_FILES", before.c_str(), 1);
 }
 
-TEST(Device, ARowNumberNamesADevice) { EXPECT_EQ(Device("0").facts().name, survey_devices("0").devices[0].name); }
+TEST(Device, ARowNumberNamesADevice) { EXPECT_EQ(Device("0").info().name, list_devices("0").devices[0].name); }
 
 }  // namespace
 }  // namespace sf::gpu

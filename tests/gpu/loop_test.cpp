@@ -36,9 +36,9 @@ Counted count_to(std::uint32_t n) {
   batch.begin();
   batch.dispatch(kernel, groups, 0);
   batch.end();
-  batch.up(counts, 0, counts.bytes());
-  batch.up(groups, 0, groups.bytes());
-  batch.down(sums, 0, sums.bytes());
+  batch.upload(counts, 0, counts.bytes());
+  batch.upload(groups, 0, groups.bytes());
+  batch.download(sums, 0, sums.bytes());
   batch.run();
   const auto words = sums.host<std::uint32_t>();
   for (std::size_t row = 1; row < 64; ++row) EXPECT_EQ(words[4 * row], words[0]) << "lanes differ";
@@ -55,7 +55,7 @@ TEST(Loops, FortyFiveThousandTurnsAreCountedByEveryDriver) {
 /// Documents the driver at hand. Neither answer is a failure; any other is.
 TEST(Loops, SeventyThousandTurnsMayBeCutOff) {
   const Counted counted = count_to(70'000);
-  std::cout << "[ measured ] 70 000 turns of one loop: " << counted.one << " on " << Device().facts().driver << "\n";
+  std::cout << "[ measured ] 70 000 turns of one loop: " << counted.one << " on " << Device().info().driver << "\n";
   EXPECT_TRUE(counted.one == 70'000u || counted.one == kLimit) << counted.one;
   EXPECT_TRUE(counted.two == 70'000u || counted.two < kLimit) << counted.two;
 }

@@ -47,7 +47,7 @@ TEST_F(Staging, IsForcedByTheEnvironmentWhenADeviceOpens) {
   const bool shared = Device().unified();
   unsetenv("SENSORFARM_STAGING");
   EXPECT_EQ(Device().unified(), shared);
-  EXPECT_TRUE(shared || Device().facts().driver.find("llvmpipe") == std::string::npos);
+  EXPECT_TRUE(shared || Device().info().driver.find("llvmpipe") == std::string::npos);
 }
 
 /// Only the bytes that are named travel, to the same place, once.
@@ -57,26 +57,26 @@ TEST_F(Staging, PiecesTravelToTheirPlaces) {
   for (const Role role : {Role::upload, Role::download}) {
     Buffer table(device, "table", role, Texel::u32, 8);
     fill(table, 1);
-    batch.up(table, 0, table.bytes());
+    batch.upload(table, 0, table.bytes());
     run_copies(batch);
 
     fill(table, 2);
-    batch.up(table, 8, 12);
-    batch.up(table, 28, 4);
-    batch.up(table, 0, 0);
+    batch.upload(table, 8, 12);
+    batch.upload(table, 28, 4);
+    batch.upload(table, 0, 0);
     run_copies(batch);
     fill(table, 3);
     run_copies(batch);
 
     fill(table, 9);
-    batch.down(table, 4, 8);
-    batch.down(table, 20, 0);
+    batch.download(table, 4, 8);
+    batch.download(table, 20, 0);
     run_copies(batch);
     EXPECT_EQ(words(table), (std::vector<std::uint32_t>{9, 1, 2, 9, 9, 9, 9, 9}));
     fill(table, 9);
     run_copies(batch);
     EXPECT_EQ(words(table), std::vector<std::uint32_t>(8, 9u)) << "a copy is asked for anew each time";
-    batch.down(table, 0, table.bytes());
+    batch.download(table, 0, table.bytes());
     run_copies(batch);
     EXPECT_EQ(words(table), (std::vector<std::uint32_t>{1, 1, 2, 2, 2, 1, 1, 2}));
   }
@@ -99,10 +99,10 @@ TEST_F(Staging, AKernelReadsWhatWasCopiedUpAndIsCopiedDown) {
   batch.begin();
   batch.dispatch(kernel, groups, 16);
   batch.end();
-  batch.up(counts, 0, counts.bytes());
-  batch.up(groups, 0, groups.bytes());
-  batch.up(sums, 0, sums.bytes());
-  batch.down(sums, 0, sums.bytes());
+  batch.upload(counts, 0, counts.bytes());
+  batch.upload(groups, 0, groups.bytes());
+  batch.upload(sums, 0, sums.bytes());
+  batch.download(sums, 0, sums.bytes());
   batch.run();
   for (std::uint32_t i = 0; i < 128; ++i) {
     EXPECT_EQ(sums.host<std::uint32_t>()[4 * i], i < 64 ? i : 77) << "one group of 64";
@@ -111,8 +111,8 @@ TEST_F(Staging, AKernelReadsWhatWasCopiedUpAndIsCopiedDown) {
 
   // Recorded once, run again with other counts.
   groups.host<std::uint32_t>()[4] = 2;
-  batch.up(groups, 16, 4);
-  batch.down(sums, 0, sums.bytes());
+  batch.upload(groups, 16, 4);
+  batch.download(sums, 0, sums.bytes());
   batch.run();
   EXPECT_EQ(sums.host<std::uint32_t>()[4 * 127], 127u);
 }

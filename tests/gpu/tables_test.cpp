@@ -8,9 +8,9 @@
 #include "base/error.h"
 #include "gpu/batch.h"
 #include "gpu/buffer.h"
+#include "gpu/device_vk.h"
 #include "gpu/kernel.h"
 #include "gpu/self_check.h"
-#include "gpu/vk.h"
 #include "shaders/loop.comp.h"
 #include "shaders/wrong.comp.h"
 
@@ -38,26 +38,26 @@ TEST(Buffer, AssignmentSwaps) {
   }
   EXPECT_EQ(table.texels(), 3u);
   EXPECT_EQ(table.host<double>()[5], 2.5);
-  ASSERT_EQ(device.held().size(), 1u);
-  EXPECT_EQ(device.held()[0].name, "other");
+  ASSERT_EQ(device.allocations().size(), 1u);
+  EXPECT_EQ(device.allocations()[0].name, "other");
 }
 
 TEST(Device, NamesWhatItHolds) {
   Device device;
-  EXPECT_TRUE(device.held().empty()) << "the self-check leaves nothing behind";
+  EXPECT_TRUE(device.allocations().empty()) << "the self-check leaves nothing behind";
   Buffer first(device, "first", Role::upload, Texel::u32, 3);
-  device.owned_by("laser");
+  device.set_owner("laser");
   {
     const Buffer second(device, "second", Role::download, Texel::f32x4, 2);
     const Buffer moved(std::move(first));
-    ASSERT_EQ(device.held().size(), 2u);
-    EXPECT_EQ(device.held()[0].name, "first");
-    EXPECT_EQ(device.held()[0].owner, "");
-    EXPECT_EQ(device.held()[1].owner, "laser");
-    EXPECT_EQ(device.held()[1].bytes, 32u);
-    EXPECT_FALSE(device.held()[1].is_kernel);
+    ASSERT_EQ(device.allocations().size(), 2u);
+    EXPECT_EQ(device.allocations()[0].name, "first");
+    EXPECT_EQ(device.allocations()[0].owner, "");
+    EXPECT_EQ(device.allocations()[1].owner, "laser");
+    EXPECT_EQ(device.allocations()[1].bytes, 32u);
+    EXPECT_FALSE(device.allocations()[1].is_kernel);
   }
-  EXPECT_TRUE(device.held().empty());
+  EXPECT_TRUE(device.allocations().empty());
 }
 
 /// More than the device's limit is refused with the limit and what to do, not with a crash.
@@ -84,22 +84,22 @@ TEST(Buffer, NoRoomIsRefusedWithTheSize) {
         << error.what();
   }
   device.vk().memory.memoryTypeCount = types;
-  EXPECT_TRUE(device.held().empty());
+  EXPECT_TRUE(device.allocations().empty());
 }
 
 TEST(Batch, ACopyPastTheEndIsOurMistake) {
   Device device;
   Batch batch(device);
   Buffer table(device, "table", Role::upload, Texel::u32, 4);
-  batch.up(table, 12, 4);
-  batch.down(table, 16, 0);
-  EXPECT_DEATH(batch.up(table, 12, 8), "a copy past the end of a table");
-  EXPECT_DEATH(batch.down(table, 16, 4), "a copy past the end of a table");
+  batch.upload(table, 12, 4);
+  batch.download(table, 16, 0);
+  EXPECT_DEATH(batch.upload(table, 12, 8), "a copy past the end of a table");
+  EXPECT_DEATH(batch.download(table, 16, 4), "a copy past the end of a table");
 }
 
 TEST(Vulkan, ACallThatFailsEndsTheProgramByName) {
-  must(VK_SUCCESS, "vkQueueSubmit");
-  EXPECT_DEATH(must(VK_ERROR_DEVICE_LOST, "vkQueueSubmit"), "vkQueueSubmit gave VkResult -4");
+  check_vk(VK_SUCCESS, "vkQueueSubmit");
+  EXPECT_DEATH(check_vk(VK_ERROR_DEVICE_LOST, "vkQueueSubmit"), "vkQueueSubmit gave VkResult -4");
 }
 
 TEST(Kernel, GroupSizeIsReadFromTheModule) {
@@ -132,7 +132,7 @@ TEST(Buffer, TexelsHaveTheirSizes) {
 TEST(SelfCheck, TheChosenDeviceComputesAsTheHostDoes) {
   Device device;
   EXPECT_EQ(self_check(device), "");
-  EXPECT_EQ(device.facts().self_check, "passed");
+  EXPECT_EQ(device.info().self_check, "passed");
 }
 
 TEST(SelfCheck, AKernelThatComputesOtherwiseIsFound) {
@@ -142,9 +142,9 @@ TEST(SelfCheck, AKernelThatComputesOtherwiseIsFound) {
 }
 
 TEST(SelfCheck, TheSurveyHasItOfEveryDeviceThatLacksNothing) {
-  for (const DeviceFacts& facts : survey_devices("").devices) {
-    EXPECT_NE(facts.self_check, "") << facts.name;
-    EXPECT_EQ(facts.self_check == "passed", facts.chosen || facts.reason.find("usable") == 0) << facts.name;
+  for (const DeviceInfo& info : list_devices("").devices) {
+    EXPECT_NE(info.self_check, "") << info.name;
+    EXPECT_EQ(info.self_check == "passed", info.chosen || info.reason.find("usable") == 0) << info.name;
   }
 }
 

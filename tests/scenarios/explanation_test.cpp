@@ -43,7 +43,7 @@ TEST(Explanation, CountsWhatThereIs) {
   EXPECT_EQ(e.caster.rfind("host, ", 0), 0u) << "on a device of software: " << e.caster;
   EXPECT_TRUE(k.kernels.empty()) << "nothing is left for the device";
   std::size_t sum = 0;
-  for (const gpu::Held& h : k.tables) sum += h.bytes;
+  for (const gpu::DeviceAllocation& h : k.tables) sum += h.bytes;
   EXPECT_EQ(k.bytes, sum);
   EXPECT_TRUE(std::any_of(k.tables.begin(), k.tables.end(), [](const auto& h) { return h.name == "ranges"; }));
   EXPECT_GT(e.resident, 1u << 20);
@@ -95,7 +95,7 @@ TEST(Explanation, AKindThatTheWorldLacksIsNotBuilt) {
   const Explanation e = explain(lasers(2), device(), 1, 1);
   EXPECT_EQ(e.absent.size(), sensors::kinds().size() - 1);
   EXPECT_EQ(std::count(e.absent.begin(), e.absent.end(), "magnetometer"), 1);
-  for (const gpu::Held& h : device().held()) EXPECT_EQ(h.owner, "") << "nothing is left behind";
+  for (const gpu::DeviceAllocation& h : device().allocations()) EXPECT_EQ(h.owner, "") << "nothing is left behind";
 }
 
 }  // namespace

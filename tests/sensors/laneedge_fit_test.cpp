@@ -69,10 +69,10 @@ class FitRig {
     fit_.record(batch);
     batch.end();
     fit_.copies(batch);
-    batch.up(owners, 0, owners.bytes());
-    batch.up(counts, 0, counts.bytes());
-    batch.up(ranges, 0, ranges.bytes());
-    batch.up(hits, 0, hits.bytes());
+    batch.upload(owners, 0, owners.bytes());
+    batch.upload(counts, 0, counts.bytes());
+    batch.upload(ranges, 0, ranges.bytes());
+    batch.upload(hits, 0, hits.bytes());
     batch.run();
     std::vector<EdgeReading> readings;
     for (std::size_t i = 0; i < edges_.size(); ++i) readings.push_back(fit_.reading(i));

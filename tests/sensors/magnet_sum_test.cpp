@@ -180,7 +180,7 @@ FieldSum mirrored(const sensors::DipoleRow& m, const Place& p) {
 }
 
 TEST(MagnetSum, TheKernelIsItsMirrorToTheBit) {
-  if (!device().facts().software) GTEST_SKIP() << "32-bit roots of GPUs need not be correctly rounded";
+  if (!device().info().software) GTEST_SKIP() << "32-bit roots of GPUs need not be correctly rounded";
   const world::World world = scenes::sheet(50, 1.0, 9, true);
   const auto places = places_over(world, 301, 0.6, 0.05);
   const auto sums = sensors::survey(world, device(), places, {.magnitudes = true});

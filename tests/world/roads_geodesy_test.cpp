@@ -11,8 +11,8 @@
 namespace sf::world {
 namespace {
 
-/// Vincenty's inverse formula ("Direct and inverse solutions of geodesics on the ellipsoid", Survey Review 23, 1975) in
-/// long double: the length of the geodesic and its azimuth at `a`, clockwise from north.
+/// Vincenty's inverse formula ("Direct and inverse solutions of geodesics on the ellipsoid", DeviceList Review 23,
+/// 1975) in long double: the length of the geodesic and its azimuth at `a`, clockwise from north.
 struct Geodesic {
   long double length, azimuth;
 };

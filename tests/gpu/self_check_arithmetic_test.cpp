@@ -1,6 +1,6 @@
 // The self-check's comparison: on made-up results, since no driver at hand is wrong.
 
-#include "gpu/arithmetic.h"
+#include "gpu/self_check_arithmetic.h"
 
 #include <gtest/gtest.h>
 
@@ -24,15 +24,15 @@ std::size_t place(std::size_t row, std::string_view name) {
 }
 
 std::string difference_with(std::size_t at, std::uint64_t result) {
-  std::vector<std::uint64_t> found = on_host();
+  std::vector<std::uint64_t> found = expected_results();
   found[at] = result;
-  return difference(found);
+  return first_difference(found);
 }
 
 TEST(Arithmetic, TheHostAgreesWithItself) {
   EXPECT_EQ(operands().size(), 64u) << "one group";
-  EXPECT_EQ(on_host().size(), 64 * operations().size());
-  EXPECT_EQ(difference(on_host()), "");
+  EXPECT_EQ(expected_results().size(), 64 * operations().size());
+  EXPECT_EQ(first_difference(expected_results()), "");
 }
 
 TEST(Arithmetic, ARefusalNamesOperationOperandsFoundAndExpected) {
@@ -50,7 +50,7 @@ TEST(Arithmetic, ARefusalNamesOperationOperandsFoundAndExpected) {
 
 /// One count in the last place, in any row: where the bits decide, it is found under its own name.
 TEST(Arithmetic, ALastBitIsFoundInEveryOperation) {
-  const std::vector<std::uint64_t> right = on_host();
+  const std::vector<std::uint64_t> right = expected_results();
   for (std::size_t at = 0; at < right.size(); ++at) {
     const Operation& operation = operations()[at % operations().size()];
     const bool is_zero = right[at] << 1 == 0;  // +-0 and the least denormal
@@ -64,7 +64,7 @@ TEST(Arithmetic, ALastBitIsFoundInEveryOperation) {
 /// What Vulkan leaves open, and no reading depends on.
 TEST(Arithmetic, SignsOfZeroAndBitsOfNaNAreFree) {
   const std::size_t zero = place(0, "a + b");
-  EXPECT_EQ(on_host()[zero], 0u);
+  EXPECT_EQ(expected_results()[zero], 0u);
   EXPECT_EQ(difference_with(zero, std::bit_cast<std::uint64_t>(-0.0)), "");
   EXPECT_NE(difference_with(zero, 1), "") << "the least number is not 0";
   const std::size_t nan = place(1, "a where a > b, else NaN");
@@ -78,7 +78,7 @@ TEST(Arithmetic, NewtonsRootsHaveATolerance) {
   for (const char* name :
        {"1 / sqrt(1 + a * a) to 1e-12, by Newton's method", "sqrt(1 + a * a) to 1e-12, by Newton's method"}) {
     const std::size_t at = place(kOrdinary, name);
-    const auto right = std::bit_cast<double>(on_host()[at]);
+    const auto right = std::bit_cast<double>(expected_results()[at]);
     EXPECT_EQ(difference_with(at, std::bit_cast<std::uint64_t>(right * (1 + 0.9e-12))), "");
     EXPECT_EQ(difference_with(at, std::bit_cast<std::uint64_t>(right * (1 - 0.9e-12))), "");
     EXPECT_NE(difference_with(at, std::bit_cast<std::uint64_t>(right * (1 + 1.1e-12))), "");
@@ -90,9 +90,9 @@ TEST(Arithmetic, NewtonsRootsHaveATolerance) {
 /// conversion.
 TEST(Arithmetic, MistakesOfDriversAreFound) {
   const auto found_in = [](const char* name, auto wrong) {
-    std::vector<std::uint64_t> found = on_host();
+    std::vector<std::uint64_t> found = expected_results();
     for (std::size_t row = 0; row < operands().size(); ++row) found[place(row, name)] = wrong(operands()[row]);
-    return difference(found);
+    return first_difference(found);
   };
   const auto f64 = [](double x) { return std::bit_cast<std::uint64_t>(x); };
   EXPECT_NE(found_in("a * b - b * (0.9 * a), unfused",

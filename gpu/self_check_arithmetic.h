@@ -20,7 +20,7 @@ struct Operation {
   const char* name;
   double tolerance;  ///< relative; 0 where readings are to be the same bits on every device
   Form form;
-  std::uint64_t (*on_host)(Operands);
+  std::uint64_t (*evaluate)(Operands);
 };
 std::span<const Operation> operations();
 
@@ -28,11 +28,11 @@ std::span<const Operation> operations();
 std::vector<Operands> operands();
 
 /// Row by row of `operands()`, all operations: the order in which the device answers.
-std::vector<std::uint64_t> on_host();
+std::vector<std::uint64_t> expected_results();
 
-/// @param found as many results as `on_host()` has
+/// @param found as many results as `expected_results()` has
 /// @return "" when they agree (the sign of a zero and the bits of a NaN are free), else one line with the first
 /// difference: operation, operands, expected and found.
-std::string difference(std::span<const std::uint64_t> found);
+std::string first_difference(std::span<const std::uint64_t> found);
 
 }  // namespace sf::gpu

@@ -19,7 +19,7 @@ namespace sf::gpu {
 bool is_set(const char* variable);
 
 /// Aborts with the call's name: a Vulkan call that fails after start-up is our bug or a lost device.
-void must(VkResult result, const char* call);
+void check_vk(VkResult result, const char* call);
 
 struct Instance {
   VkInstance handle = VK_NULL_HANDLE;
@@ -41,36 +41,36 @@ struct Device::Vk {
   VkPhysicalDeviceProperties properties{};
   VkPhysicalDeviceMemoryProperties memory{};
   bool unified = false;
-  DeviceFacts facts;
+  DeviceInfo info;
   std::string owner;
-  std::vector<std::pair<const void*, Held>> held;  ///< in the order in which they were made
+  std::vector<std::pair<const void*, DeviceAllocation>> allocations;  ///< in the order in which they were made
 
-  void hold(const void* what, std::string_view name, std::size_t bytes, bool is_kernel);
-  void let_go(const void* what);
+  void add_allocation(const void* what, std::string_view name, std::size_t bytes, bool is_kernel);
+  void remove_allocation(const void* what);
   /// Row of a memory type with all of `wanted` among `allowed`, or -1.
   int memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
 };
 
-/// All physical devices of `instance`, considered but none chosen yet: row i of `facts` belongs to row i of `handles`.
+/// All physical devices of `instance`, considered but none chosen yet: row i of `info` belongs to row i of `handles`.
 /// A non-empty `reason` says what the device lacks.
-struct Considered {
+struct DeviceCandidates {
   std::vector<VkPhysicalDevice> handles;
-  std::vector<DeviceFacts> facts;
+  std::vector<DeviceInfo> info;
 };
-Considered consider(const Instance& instance);
+DeviceCandidates find_candidates(const Instance& instance);
 
-/// As in `DeviceFacts::kind`.
-const char* kind_text(VkPhysicalDeviceType type);
+/// As in `DeviceInfo::kind`.
+const char* device_type_text(VkPhysicalDeviceType type);
 
 /// Marks the chosen row, gives the others a reason, and returns the chosen row or -1.
-int choose(Considered& considered, const std::string& wanted);
+int choose_device(DeviceCandidates& candidates, const std::string& wanted);
 
 /// As above, but a row for which `start` gives a fault has that for its reason, and the next best is chosen.
-using Start = std::function<std::string(Considered&, std::size_t row)>;
-int choose(Considered& considered, const std::string& wanted, const Start& start);
+using TryDevice = std::function<std::string(DeviceCandidates&, std::size_t row)>;
+int choose_device(DeviceCandidates& candidates, const std::string& wanted, const TryDevice& start);
 
 /// The features that a device must have.
-struct Abilities {
+struct DeviceFeatures {
   std::uint32_t api = 0;  ///< as VK_MAKE_API_VERSION
   bool doubles = false;
   bool compute = false;
@@ -78,10 +78,10 @@ struct Abilities {
 };
 
 /// The first of its lacks, or "".
-std::string lacks(const Abilities& abilities);
+std::string missing_feature(const DeviceFeatures& supported);
 
 /// Compute queue family, one without graphics if there is one, or -1.
-int compute_family(std::span<const VkQueueFamilyProperties> families);
-int compute_family(VkPhysicalDevice physical);
+int compute_queue_family(std::span<const VkQueueFamilyProperties> families);
+int compute_queue_family(VkPhysicalDevice physical);
 
 }  // namespace sf::gpu

@@ -1,4 +1,4 @@
-#include "gpu/arithmetic.h"
+#include "gpu/self_check_arithmetic.h"
 
 #include <fmt/format.h>
 
@@ -109,16 +109,16 @@ std::vector<Operands> operands() {
   return rows;
 }
 
-std::vector<std::uint64_t> on_host() {
+std::vector<std::uint64_t> expected_results() {
   std::vector<std::uint64_t> results;
   for (const Operands& row : operands())
-    for (const Operation& operation : kOperations) results.push_back(operation.on_host(row));
+    for (const Operation& operation : kOperations) results.push_back(operation.evaluate(row));
   return results;
 }
 
-std::string difference(std::span<const std::uint64_t> found) {
+std::string first_difference(std::span<const std::uint64_t> found) {
   const std::vector<Operands> rows = operands();
-  const std::vector<std::uint64_t> expected = on_host();
+  const std::vector<std::uint64_t> expected = expected_results();
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const Operation& operation = kOperations[i % std::size(kOperations)];
     if (agree(operation, expected[i], found[i])) continue;
