@@ -46,7 +46,7 @@ bool lend_robot(world::World& world) {
   row.size = {0.33, 0.33};
   world.models.push_back(row);
   world.movers.push_back(create_robot(model));
-  world::finish(world);
+  world::update_extent_and_hash(world);
   return true;
 }
 

@@ -91,7 +91,7 @@ Chosen require_sensor(const world::World& world, const sensors::Roster& roster, 
 }
 
 void warn_of_pose(const world::World& world, const world::Mover& robot, const base::Pose& X_WM) {
-  const std::string where = world::misplaced(world, robot, X_WM);
+  const std::string where = world::placement_problem(world, robot, X_WM);
   if (!where.empty())
     std::fprintf(stderr, "sensorfarm: warning: at (%g, %g) '%s' is %s\n", X_WM.x, X_WM.y, robot.name.c_str(),
                  where.c_str());

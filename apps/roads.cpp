@@ -33,7 +33,7 @@ void append(std::vector<world::Warning>& all, const std::vector<world::Warning>&
 int check_network(const Options& options) {
   std::vector<world::Warning> warnings;
   const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict_roads);
-  const RoadFacts facts{network, world::paint_of(network).size(), warnings};
+  const RoadFacts facts{network, world::lane_markings_of(network).size(), warnings};
   std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
   return 0;
 }
@@ -75,7 +75,7 @@ std::string text_of(const RoadFacts& facts) {
   text += row("exits", fmt::format("{}", c.exits));
   text += row("stops", fmt::format("{}", c.stops));
   text += row("checkpoints", fmt::format("{}", c.checkpoints));
-  text += row("painted lines", fmt::format("{}", facts.stripes));
+  text += row("painted lines", fmt::format("{}", facts.lane_markings));
   text += row("scale", fmt::format("{:g}", network.scale));
   text += row("extent", fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max));
   return text + row("warnings", fmt::format("{}", facts.warnings.size()));

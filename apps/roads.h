@@ -14,7 +14,7 @@ namespace sf::apps {
 /// What a network is, for programs and people.
 struct RoadFacts {
   const world::RoadNetwork& network;
-  std::size_t stripes = 0;  ///< painted lines and dashes
+  std::size_t lane_markings = 0;  ///< painted lines and dashes
   const std::vector<world::Warning>& warnings;
 };
 

@@ -68,8 +68,8 @@ std::string json_of(const RoadFacts& facts) {
       "    \"lane_waypoints\": {},\n    \"points\": {},\n    \"exits\": {},\n    \"stops\": {},\n"
       "    \"checkpoints\": {}\n  }},\n",
       c.segments, c.lanes, c.zones, c.spots, c.lane_waypoints, c.points, c.exits, c.stops, c.checkpoints);
-  json += fmt::format("  \"lane_length_m\": {:.3f},\n  \"stripes\": {},\n  \"scale\": {},\n", length, facts.stripes,
-                      facts.network.scale);
+  json += fmt::format("  \"lane_length_m\": {:.3f},\n  \"stripes\": {},\n  \"scale\": {},\n", length,
+                      facts.lane_markings, facts.network.scale);
   json += fmt::format("  \"extent\": [{:.6f}, {:.6f}, {:.6f}, {:.6f}],\n", e.x_min, e.y_min, e.x_max, e.y_max);
   return json + fmt::format("  \"warnings\": {}\n}}\n", json_of(facts.warnings));
 }

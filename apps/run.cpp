@@ -74,7 +74,7 @@ class Outputs {
     seconds_ += base::seconds_since(start) - waited;
   }
 
-  void finish(RunFacts& facts) {
+  void update_extent_and_hash(RunFacts& facts) {
     facts.out_s = seconds_;
     if (post_) {
       facts.sent = true;

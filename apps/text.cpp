@@ -48,9 +48,9 @@ std::string rates_text(const world::World& world, const sensors::Roster& roster)
 }
 
 std::string paint_text(const world::World& world) {
-  if (world.stripes.empty()) return "";
+  if (world.lane_markings.empty()) return "";
   const double cell = world.road_resolution;
-  return row("paint", fmt::format("{}, seen {}", counted(world.stripes.size(), "stripe"),
+  return row("paint", fmt::format("{}, seen {}", counted(world.lane_markings.size(), "stripe"),
                                   cell > 0.0 ? fmt::format("as a raster of {:g} m", cell) : "exactly"));
 }
 
@@ -70,7 +70,8 @@ std::string street_text(const world::World& world) {
   if (!world.lights.empty()) text += row("traffic lights", fmt::format("{}", world.lights.size()));
   if (docks > 0) text += row("docks", fmt::format("{}", docks));
   if (walls > 0) text += row("virtual walls", fmt::format("{}", walls));
-  if (!world.drops.empty()) text += row("holes", fmt::format("{}, seen by cliff sensors only", world.drops.size()));
+  if (!world.floor_holes.empty())
+    text += row("holes", fmt::format("{}, seen by cliff sensors only", world.floor_holes.size()));
   if (!world.paths.empty()) text += row("paths", fmt::format("{}", world.paths.size()));
   return text;
 }
@@ -113,7 +114,7 @@ std::string text_of(const world::World& world, const sensors::Roster& roster) {
   text += paint_text(world) + magnets_text(world) + street_text(world);
   text += row("extent", fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max));
   text += row("tick", fmt::format("{:g} s", world.interval));
-  for (const auto& [type, count] : world.kept) text += row("kept as bodies", fmt::format("{} x {}", count, type));
+  for (const auto& [type, count] : world.unmodelled) text += row("kept as bodies", fmt::format("{} x {}", count, type));
   text += row("hash", base::hash_hex(world.hash));
   text += row("warnings", fmt::format("{}", world.warnings.size()));
   return text;

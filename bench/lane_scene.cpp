@@ -28,7 +28,7 @@ void add_street(world::World& world, const Street& s) {
   const double from = kLane + kTurn;
   const double to = kBlock - kLane - kTurn;
   for (const double side : {-kLane, kLane})
-    world.stripes.push_back(trial::stripe(s.at(from, side), s.at(to, side), kPaint));
+    world.lane_markings.push_back(trial::stripe(s.at(from, side), s.at(to, side), kPaint));
   trial::add_dashes(world, s.at(from, 0.0), s.at(to, 0.0), kPaint, 0.15, 0.15);
 }
 
@@ -38,7 +38,7 @@ void add_turns(world::World& world, double x, double y) {
   for (int quarter = 0; quarter < 4; ++quarter) {
     const double a = 0.5 * M_PI * quarter;
     const glm::dvec2 centre = glm::dvec2{x, y} + base::rotate(a, {c, c});
-    world.stripes.push_back(trial::arc(centre, kTurn, a + M_PI, a + 1.5 * M_PI, kPaint, 1e-3));
+    world.lane_markings.push_back(trial::arc(centre, kTurn, a + M_PI, a + 1.5 * M_PI, kPaint, 1e-3));
   }
 }
 
@@ -76,7 +76,7 @@ LaneScene make_lane_scene(std::uint32_t blocks, std::uint32_t robots, double res
     }
     scene.rounds.push_back(poses);
   }
-  world::finish(scene.world);
+  world::update_extent_and_hash(scene.world);
   return scene;
 }
 

@@ -131,7 +131,7 @@ void Corridors::add_exits() {
       way.in_zone = true;
       way.zone = exit.to.row;
     }
-    const std::uint32_t row = add_way(way, connection_of(roads_, exit));
+    const std::uint32_t row = add_way(way, exit_curve(roads_, exit));
     add_edge(exit.from, exit.to, row, 0.0, ways_[row].length, 0.0);
   }
 }
@@ -140,11 +140,11 @@ void Corridors::add_changes() {
   for (std::uint32_t row = 0; row < roads_.lanes.size(); ++row) {
     for (std::uint32_t i = 0; i < roads_.lanes[row].points.size(); ++i) {
       const PointRef from{PointRef::Kind::lane, row, i};
-      for (const world::Step& step : lane_changes(roads_, from)) {
+      for (const world::Transition& step : lane_changes(roads_, from)) {
         Way way{.kind = Way::Kind::change, .from = row, .into = step.to.row};
         way.leave = roads_.lanes[row].points[i].s;
         way.enter = roads_.lanes[step.to.row].points[step.to.index].s;
-        const std::uint32_t added = add_way(way, change_of(roads_, from, step.to));
+        const std::uint32_t added = add_way(way, lane_change_curve(roads_, from, step.to));
         add_edge(from, step.to, added, 0.0, ways_[added].length, kChangeCost);
       }
     }

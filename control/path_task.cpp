@@ -11,18 +11,18 @@ PathTask::PathTask(const Site& site, Settings& settings) {
   const base::Pose& X_WM = site.world.movers[site.mover].X_WM;
   double least = HUGE_VAL;
   for (const world::Path& path : site.world.paths) {
-    const double far = std::abs(world::nearest(path, {X_WM.x, X_WM.y}).offset);
+    const double far = std::abs(world::project_onto(path, {X_WM.x, X_WM.y}).offset);
     if (!(far < least)) continue;
     least = far;
     path_ = &path;
   }
 }
 
-double PathTask::width_at(glm::dvec2 p) const { return path_->pieces[world::nearest(*path_, p).piece].width; }
+double PathTask::width_at(glm::dvec2 p) const { return path_->pieces[world::project_onto(*path_, p).piece].width; }
 
 bool PathTask::ended(const base::Pose& X_WM) const {
   if (path_ == nullptr) return false;
-  return world::nearest(*path_, {X_WM.x, X_WM.y}).s >= world::length_of(*path_) - stop_before_;
+  return world::project_onto(*path_, {X_WM.x, X_WM.y}).s >= world::length_of(*path_) - stop_before_;
 }
 
 bool Hold::speaks(const base::ReadingBlock* reading, std::int64_t time) {

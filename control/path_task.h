@@ -8,7 +8,7 @@
 #include "control/controllers.h"
 #include "control/pi_law.h"
 #include "control/reason.h"
-#include "world/paths.h"
+#include "world/path_geometry.h"
 
 namespace sf::control {
 

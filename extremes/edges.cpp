@@ -29,18 +29,18 @@ Said read(Lab& lab, world::World world, const Pose& X_WM, Settings settings = {}
 double grain(double x) { return std::nextafter(std::fabs(x), HUGE_VAL) - std::fabs(x); }
 
 /// A stripe 10 cm wide and 4 m long whose near face crosses the sensor's axis `distance` ahead at `tilt` from square.
-world::World stripe_ahead(const Pose& X_WM, double distance, double tilt) {
+world::World marking_ahead(const Pose& X_WM, double distance, double tilt) {
   const glm::dvec2 ahead = base::rotate(X_WM.yaw, {1.0, 0.0}), normal = base::rotate(X_WM.yaw + tilt, {1.0, 0.0});
   const glm::dvec2 middle = glm::dvec2{X_WM.x, X_WM.y} + distance * ahead + 0.05 * normal;
   const glm::dvec2 along{-normal.y, normal.x};
   world::World world;
-  world.stripes.push_back({{middle - 2.0 * along, middle + 2.0 * along}, 0.1});
+  world.lane_markings.push_back({{middle - 2.0 * along, middle + 2.0 * along}, 0.1});
   return world;
 }
 
 /// [m] along the sensor's axis to the near face of the stripe as its doubles are.
-Real face_ahead(const world::Stripe& stripe, const Pose& X_WM) {
-  const glm::dvec2 a = stripe.line[0], b = stripe.line[1];
+Real face_ahead(const world::LaneMarking& marking, const Pose& X_WM) {
+  const glm::dvec2 a = marking.line[0], b = marking.line[1];
   const Real tx = Real{b.x} - a.x, ty = Real{b.y} - a.y, size = std::hypot(tx, ty);
   const Real nx = ty / size, ny = -tx / size;  // away from the sensor
   const Real ex = std::cos(Real{X_WM.yaw}), ey = std::sin(Real{X_WM.yaw});
@@ -57,7 +57,7 @@ void angles(Lab& lab, Checks& checks) {
     for (const double yaw : {0.0, 0.5 * M_PI, -0.5 * M_PI, M_PI, 0.7, 1e6})
       for (const double tilt : {0.0, 0.3, -0.8, 1.2}) {
         const Pose X_WM{far + 20.0 * static_cast<double>(tilts.size()), -far, 0.0, yaw};
-        world.stripes.push_back(stripe_ahead(X_WM, 0.45, tilt).stripes[0]);
+        world.lane_markings.push_back(marking_ahead(X_WM, 0.45, tilt).lane_markings[0]);
         world.movers[add_mover(world, X_WM)].sensors.push_back(sensor("laneedge", {{"perpendicular", {0.0}}}, 0.1));
         tilts.push_back(tilt);
       }
@@ -65,7 +65,7 @@ void angles(Lab& lab, Checks& checks) {
     for (const base::ReadingBlock& r : look.readings) {
       const Pose& X_WM = world.movers[r.mover].X_WM;
       const double allowed = (1e-13 + 4.0 * grain(2.0 * far)) / std::pow(std::cos(tilts[r.mover]), 2);
-      checks.near(r.values[0], face_ahead(world.stripes[r.mover], X_WM), allowed,
+      checks.near(r.values[0], face_ahead(world.lane_markings[r.mover], X_WM), allowed,
                   fmt::format("{:g} m away, heading {:g}, tilt {:g}", far, X_WM.yaw, tilts[r.mover]));
     }
   }
@@ -75,17 +75,17 @@ void through_the_sensor(Lab& lab, Checks& checks) {
   for (const double far : {0.0, 1e5})
     for (const double tilt : {0.0, 0.3, -0.9}) {
       const Pose X_WM{far, -far, 0.0, 0.0};
-      world::World world = stripe_ahead(X_WM, 0.0, tilt);
+      world::World world = marking_ahead(X_WM, 0.0, tilt);
       checks.near(read(lab, world, X_WM).distance, 0, 1e-9, fmt::format("{:g} m away, tilt {:g}", far, tilt));
     }
   // On the paint, the way off it.
-  checks.near(read(lab, stripe_ahead({}, -0.025, 0.0), {}).distance, 0.075L, 1e-13, "on the paint");
+  checks.near(read(lab, marking_ahead({}, -0.025, 0.0), {}).distance, 0.075L, 1e-13, "on the paint");
 }
 
 void ranges(Lab& lab, Checks& checks) {
   for (const double range : {1e-6, 1e-4, 1.0, 100.0, 1e4}) {
     world::World world;
-    world.stripes.push_back({{{0.55 * range, -2.0 * range}, {0.55 * range, 2.0 * range}}, 0.1 * range});
+    world.lane_markings.push_back({{{0.55 * range, -2.0 * range}, {0.55 * range, 2.0 * range}}, 0.1 * range});
     const Said said = read(lab, world, {}, {{"range_max", {range}}});
     checks.near(said.distance / range, 0.5L, 1e-12, fmt::format("range_max {:g}", range));
   }
@@ -100,7 +100,7 @@ void ranges(Lab& lab, Checks& checks) {
 /// One ray of three meets a dash 2 cm long; then two rays of two, which give the first one's range.
 void one_point(Lab& lab, Checks& checks) {
   world::World world;
-  world.stripes.push_back({{{0.5, -0.01}, {0.5, 0.01}}, 0.1});
+  world.lane_markings.push_back({{{0.5, -0.01}, {0.5, 0.01}}, 0.1});
   const Said one = read(lab, world, {}, {{"samples", {3}}, {"fov", {60}}});
   checks.same(one.distance, kNone, "one point is no edge");
   checks.same(one.points, 1.0, "it is counted");
@@ -113,7 +113,7 @@ void one_point(Lab& lab, Checks& checks) {
 /// Rays so close together that their points are one.
 void equal_points(Lab& lab, Checks& checks) {
   world::World world;
-  world.stripes.push_back({{{0.5, -1.0}, {0.5, 1.0}}, 0.1});
+  world.lane_markings.push_back({{{0.5, -1.0}, {0.5, 1.0}}, 0.1});
   for (const double samples : {3.0, 61.0}) {
     const Said said = read(lab, world, {}, {{"samples", {samples}}, {"fov", {1e-6}}});
     checks.same(said.distance, kNone, "points closer than 1e-7 of their distance are no edge");
@@ -126,8 +126,8 @@ void equal_points(Lab& lab, Checks& checks) {
 /// Ahead and behind, three points on one line with the sensor between them.
 void collinear_with_the_sensor(Lab& lab, Checks& checks) {
   world::World world;
-  world.stripes.push_back({{{0.5, -1.0}, {0.5, 1.0}}, 0.1});
-  world.stripes.push_back({{{-0.4, -1.0}, {-0.4, 1.0}}, 0.1});
+  world.lane_markings.push_back({{{0.5, -1.0}, {0.5, 1.0}}, 0.1});
+  world.lane_markings.push_back({{{-0.4, -1.0}, {-0.4, 1.0}}, 0.1});
   const Settings fan{{"samples", {3}}, {"fov", {360}}};
   Settings across = fan;
   across.push_back({"perpendicular", {90.0}});
@@ -139,11 +139,11 @@ void collinear_with_the_sensor(Lab& lab, Checks& checks) {
 
 void out_of_sight(Lab& lab, Checks& checks) {
   world::World world;
-  world.stripes.push_back({{{-3.0, 0.5}, {3.0, 0.5}}, 0.1});
+  world.lane_markings.push_back({{{-3.0, 0.5}, {3.0, 0.5}}, 0.1});
   checks.same(read(lab, world, {}, {{"fov", {170}}}).distance, kNone, "an edge along the perpendicular");
-  checks.same(read(lab, stripe_ahead({}, 0.5, 0.0), {}, {{"perpendicular", {180}}}).distance, kNone,
+  checks.same(read(lab, marking_ahead({}, 0.5, 0.0), {}, {{"perpendicular", {180}}}).distance, kNone,
               "an edge on the other side");
-  checks.same(read(lab, stripe_ahead({}, 0.99, 0.0), {}).distance, kNone, "an edge near the range's end");
+  checks.same(read(lab, marking_ahead({}, 0.99, 0.0), {}).distance, kNone, "an edge near the range's end");
 }
 
 constexpr Case kCases[] = {

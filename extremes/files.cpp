@@ -4,7 +4,7 @@
 
 #include "extremes/suite.h"
 #include "world/roads/rndf.h"
-#include "world/stage.h"
+#include "world/stage/stage.h"
 
 namespace sf::extremes {
 
@@ -65,9 +65,9 @@ void snapshots(Lab&, Checks& checks) {
   add_wall(good, {1.0, -1.0}, {1.0, 1.0});
   add_eye(good, {}, laser(5, 1.0, 8.0));
   good.magnets.push_back({{1.0, 2.0}, 0.0, 1.0, 0.01, 0});
-  good.stripes.push_back({{{0.0, 0.0}, {1.0, 0.0}}, 0.1});
+  good.lane_markings.push_back({{{0.0, 0.0}, {1.0, 0.0}}, 0.1});
   const auto keep = [](world::World world) {
-    world::finish(world);
+    world::update_extent_and_hash(world);
     return world::from_snapshot(world::snapshot(world));
   };
   checks.equal(keep(good).walls.size(), 1u, "a good one");
@@ -80,8 +80,8 @@ void snapshots(Lab&, Checks& checks) {
                                 &world.movers[0].lasers[0].range_max,
                                 &world.movers[0].lasers[0].fov,
                                 &world.magnets[0].moment,
-                                &world.stripes[0].width,
-                                &world.stripes[0].line[1].x};
+                                &world.lane_markings[0].width,
+                                &world.lane_markings[0].line[1].x};
       *places[where] = bad;
       checks.refused([&] { keep(world); }, "broken world snapshot", fmt::format("{:g} in place {}", bad, where));
     }

@@ -97,7 +97,7 @@ world::Sensor sensor(const std::string& type, const Settings& settings, double h
   sensor.type = type;
   sensor.name = type;
   sensor.X_MS.z = height;
-  sensor.radians = M_PI / 180.0;
+  sensor.radians_per_unit = M_PI / 180.0;
   sensor.file = "extremes";
   sensor.line = 1;
   for (const auto& [key, numbers] : settings) sensor.settings.push_back({key, numbers, "", 1, sensor.file});

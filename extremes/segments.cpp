@@ -4,7 +4,7 @@
 
 #include "extremes/exact.h"
 #include "extremes/suite.h"
-#include "world/stage.h"
+#include "world/stage/stage.h"
 
 namespace sf::extremes {
 

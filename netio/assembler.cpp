@@ -35,7 +35,7 @@ bool Assembler::leaps(const Piece& piece, std::int64_t now) const {
   return far || piece.time - newest_.piece.time > now - came_ + kLeap || piece.time < newest_.piece.time;
 }
 
-Taken Assembler::finish(const Piece& piece, std::int64_t now, Open& open) {
+Taken Assembler::update_extent_and_hash(const Piece& piece, std::int64_t now, Open& open) {
   last_ = now;
   open.seen[piece.part] = true;
   if (--open.missing > 0) return Taken::part;

@@ -60,7 +60,7 @@ class Assembler {
     const Taken fate = place(piece, now, open);
     if (open == nullptr) return fate;
     write(std::span<double>(open->values));
-    return finish(piece, now, *open);
+    return update_extent_and_hash(piece, now, *open);
   }
 
   std::optional<Whole> newest() const;
@@ -79,7 +79,7 @@ class Assembler {
     std::vector<double> values;
   };
   Taken place(const Piece& piece, std::int64_t now, Open*& open);
-  Taken finish(const Piece& piece, std::int64_t now, Open& open);
+  Taken update_extent_and_hash(const Piece& piece, std::int64_t now, Open& open);
   bool leaps(const Piece& piece, std::int64_t now) const;
   void count(const Piece& piece);
   Open* find(std::uint32_t sequence);

@@ -43,7 +43,7 @@ base::Twist obey_create(const world::Mover& mover, double forward, double turn) 
 
 base::Twist obey(const world::Mover& mover, const base::Twist& command) {
   const base::Twist v{finite(command.forward), finite(command.left), finite(command.turn)};
-  return mover.command_law == world::CommandLaw::player_create ? obey_create(mover, v.forward, v.turn) : v;
+  return mover.driver_model == world::DriverModel::player_create ? obey_create(mover, v.forward, v.turn) : v;
 }
 
 }  // namespace sf::robots

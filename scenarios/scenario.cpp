@@ -35,13 +35,13 @@ world::World world_of(const Scenario& scenario) {
   if (scenario.tick > 0.0) world.interval = scenario.tick;
   if (scenario.plant)
     for (world::Mover& mover : world.movers)
-      mover.command_law =
-          *scenario.plant == Plant::thesis ? world::CommandLaw::player_create : world::CommandLaw::direct;
+      mover.driver_model =
+          *scenario.plant == Plant::thesis ? world::DriverModel::player_create : world::DriverModel::direct;
   for (const RobotPlan& plan : scenario.plans) {
     world::Mover& mover = world.movers[row_of(scenario, world, plan.name, plan.line)];
     if (plan.pose) mover.X_WM = {plan.pose->x, plan.pose->y, mover.X_WM.z, plan.pose->yaw};
   }
-  world::finish(world);
+  world::update_extent_and_hash(world);
   return world;
 }
 

@@ -11,8 +11,8 @@
 
 #include "base/error.h"
 #include "scenarios/scenario.h"
-#include "world/entities.h"
 #include "world/keys.h"
+#include "world/stage/document.h"
 #include "world/toml.h"
 
 namespace sf::scenarios {

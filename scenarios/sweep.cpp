@@ -73,7 +73,7 @@ void measure(const Bench& bench, Point& point) {
         set_number(sensor, "rate", point.setting.rate);
         if (point.setting.one_ray) set_number(sensor, "samples", 1.0), set_number(sensor, "fov", 0.0);
       }
-    world::finish(world);
+    world::update_extent_and_hash(world);
     const Trial trial =
         run_trial(scenario, world, bench.device, {.threads = bench.options.threads, .stop = bench.options.stop});
     rows.push_back(row_of(trial.errors.front()));

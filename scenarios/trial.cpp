@@ -26,7 +26,8 @@ void add_noise(world::Mover& mover, const Disturbance& d) {
                                    [](const world::Setting& s) { return s.key == "noise"; });
     if (noisy) continue;
     if (sensor.type == "laneedge" && d.edge_noise > 0.0)
-      sensor.settings.push_back({"noise", {d.edge_noise / sensor.metres, 0.0, 0.0}, "", sensor.line, sensor.file});
+      sensor.settings.push_back(
+          {"noise", {d.edge_noise / sensor.metres_per_unit, 0.0, 0.0}, "", sensor.line, sensor.file});
     if (sensor.type == "magnetometer" && d.field_noise > 0.0)
       sensor.settings.push_back({"noise", {d.field_noise}, "", sensor.line, sensor.file});
   }
@@ -118,7 +119,7 @@ world::World disturbed_world(const Scenario& scenario, const Disturbance& distur
         mover.X_WM, {disturbance.place * place[0], disturbance.place * place[1], 0.0, disturbance.heading * turn});
     add_noise(mover, disturbance);
   }
-  world::finish(world);
+  world::update_extent_and_hash(world);
   return world;
 }
 

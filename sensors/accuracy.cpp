@@ -103,7 +103,7 @@ void set_accuracy(world::World& world, const std::string& words) {
     for (world::Sensor& sensor : mover.sensors)
       std::erase_if(sensor.settings, [](const world::Setting& setting) { return setting.key == "accuracy"; });
   }
-  world::finish(world);
+  world::update_extent_and_hash(world);
 }
 
 std::vector<std::string_view> accuracy_words() {

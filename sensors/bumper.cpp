@@ -30,8 +30,8 @@ std::uint32_t sectors_of(double from, double sweep) {
 
 std::uint32_t read_zone(const world::Sensor& sensor, const world::Setting& setting) {
   const auto degrees = *tuple(sensor, setting.key, 2, "[from to], bearings counter-clockwise");
-  const double from = sensor.radians * degrees[0];
-  double sweep = sensor.radians * degrees[1] - from;
+  const double from = sensor.radians_per_unit * degrees[0];
+  double sweep = sensor.radians_per_unit * degrees[1] - from;
   if (sweep < -kRounding) sweep += kTurn;
   if (!(std::abs(from) <= kTurn) || !(sweep > kRounding && sweep <= kTurn + kRounding))
     refuse(sensor, setting.key,
@@ -56,8 +56,8 @@ std::vector<std::uint32_t> read_bars(const world::Sensor& sensor) {
     if (!bar) refuse(sensor, "bcount", fmt::format("'{}' is missing: 'bcount' is {}", key, count));
     const std::string own = fmt::format("blength[{}]", i);
     const double half = 0.5 * length(sensor, find(sensor, own) != nullptr ? own : "blength", 0.1, 0.0, 1e6);
-    const double angle = sensor.radians * (*bar)[3];
-    const glm::dvec2 middle{sensor.metres * (*bar)[0], sensor.metres * (*bar)[1]};
+    const double angle = sensor.radians_per_unit * (*bar)[3];
+    const glm::dvec2 middle{sensor.metres_per_unit * (*bar)[0], sensor.metres_per_unit * (*bar)[1]};
     const glm::dvec2 along = base::rotate(angle, {0.0, half});
     const auto bearing = [&](glm::dvec2 p) {
       const glm::dvec2 p_M = base::transform(sensor.X_MS, p);

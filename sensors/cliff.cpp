@@ -30,7 +30,8 @@ std::vector<SensorRow> rows_of(const world::World& world) {
   return rows;
 }
 
-Cliffs::Cliffs(const Site& site) : HostInstruments(site, cliff_kind, rows_of(site.world)), drops_(site.world.drops) {
+Cliffs::Cliffs(const Site& site)
+    : HostInstruments(site, cliff_kind, rows_of(site.world)), drops_(site.world.floor_holes) {
   for_each_sensor(site.world, cliff_kind, [this](const Fitted& fitted) {
     points_.push_back(read_elements(fitted.settings, kMostCliffPoints));
   });

@@ -4,7 +4,7 @@
 // In a world file, inside a robot:
 //   cliff( scount N  spose[0] [x y yaw] ... )
 // Points are in the frame of their model and keep the order of the file. A reading has one row for each: 1 where there
-// is no floor, that is within the outline of a drop (world::Drop), else 0.
+// is no floor, that is within the outline of a drop (world::FloorHole), else 0.
 
 #include <cstdint>
 

@@ -6,7 +6,7 @@ namespace sf::sensors {
 
 namespace {
 
-Box box_of(const world::Drop& drop) {
+Box box_of(const world::FloorHole& drop) {
   Box box = world::box_around(drop.outline.empty() ? glm::dvec2{} : drop.outline.front(), 0.0);
   for (const glm::dvec2& p : drop.outline) {
     box.min = {std::min(box.min.x, p.x), std::min(box.min.y, p.y)};
@@ -15,9 +15,9 @@ Box box_of(const world::Drop& drop) {
   return box;
 }
 
-std::vector<Box> boxes_of(std::span<const world::Drop> drops) {
+std::vector<Box> boxes_of(std::span<const world::FloorHole> drops) {
   std::vector<Box> boxes;
-  for (const world::Drop& drop : drops) boxes.push_back(box_of(drop));
+  for (const world::FloorHole& drop : drops) boxes.push_back(box_of(drop));
   return boxes;
 }
 
@@ -37,7 +37,7 @@ bool holds(std::span<const glm::dvec2> outline, glm::dvec2 p) {
   return inside;
 }
 
-Drops::Drops(std::span<const world::Drop> drops) : drops_(drops), boxes_(boxes_of(drops)) {}
+Drops::Drops(std::span<const world::FloorHole> drops) : drops_(drops), boxes_(boxes_of(drops)) {}
 
 bool Drops::hold(glm::dvec2 p) const {
   return boxes_.any(world::box_around(p, 0.0), [&](std::uint32_t i) { return holds(drops_[i].outline, p); });

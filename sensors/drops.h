@@ -16,12 +16,12 @@ bool holds(std::span<const glm::dvec2> outline, glm::dvec2 p);
 /// The drops of a world, which must outlive it. Any thread.
 class Drops {
  public:
-  explicit Drops(std::span<const world::Drop> drops);
+  explicit Drops(std::span<const world::FloorHole> drops);
   /// True where one of them holds `p`.
   bool hold(glm::dvec2 p) const;
 
  private:
-  std::span<const world::Drop> drops_;
+  std::span<const world::FloorHole> drops_;
   BoxTree boxes_;
 };
 

@@ -16,8 +16,9 @@ constexpr double kFarthest = 1e6;  // [m] of an element from its sensor
 Pose element_pose(const world::Sensor& sensor, const world::Setting& setting, bool has_height) {
   const std::size_t least = has_height ? 4 : 3;
   const auto p = *tuple(sensor, setting.key, least, has_height ? "[x y z yaw]" : "[x y yaw]");
-  const double z = has_height ? sensor.metres * p[2] : 0.0;
-  const Pose pose{sensor.metres * p[0], sensor.metres * p[1], z, sensor.radians * p[least - 1]};
+  const double z = has_height ? sensor.metres_per_unit * p[2] : 0.0;
+  const Pose pose{sensor.metres_per_unit * p[0], sensor.metres_per_unit * p[1], z,
+                  sensor.radians_per_unit * p[least - 1]};
   if (std::max({std::abs(pose.x), std::abs(pose.y), std::abs(pose.z)}) <= kFarthest) return pose;
   refuse(sensor, setting.key, fmt::format("'{}' is farther than {:g} m from its sensor", setting.key, kFarthest));
 }

@@ -118,7 +118,7 @@ inline constexpr std::uint8_t kExtended = 64;
 struct SensorKind {
   std::uint8_t id = 0;          ///< on the wire, in [1, 31]
   std::string_view name;        ///< the word for it everywhere, e.g. "laser"
-  world::SensorWord word;       ///< in world files; empty for the kind that world reads itself
+  world::SensorKeyword word;    ///< in world files; empty for the kind that world reads itself
   std::uint32_t base_port = 0;  ///< of its packets, unless told otherwise
   std::string_view list;        ///< JSON name of the list of elements; empty: a reading is one row
   std::span<const Column> columns;
@@ -168,6 +168,6 @@ std::span<const SensorKind* const> kinds();
 /// @return null when no kind has that id.
 const SensorKind* find_kind(std::uint8_t id);
 /// What world files may call sensors: for world::LoadOptions.
-std::span<const world::SensorWord> vocabulary();
+std::span<const world::SensorKeyword> vocabulary();
 
 }  // namespace sf::sensors

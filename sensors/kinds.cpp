@@ -10,9 +10,9 @@ const SensorKind* find_kind(std::uint8_t id) {
   return found == all.end() ? nullptr : *found;
 }
 
-std::span<const world::SensorWord> vocabulary() {
-  static const std::vector<world::SensorWord> words = [] {
-    std::vector<world::SensorWord> all;
+std::span<const world::SensorKeyword> vocabulary() {
+  static const std::vector<world::SensorKeyword> words = [] {
+    std::vector<world::SensorKeyword> all;
     for (const SensorKind* kind : kinds())
       if (!kind->word.type.empty()) all.push_back(kind->word);
     return all;

@@ -24,7 +24,7 @@ world::LaserNoise noise_of(const world::Sensor& sensor) {
   const auto& v = *values;
   if (!(v[0] >= 0.0 && v[1] >= 0.0 && v[2] >= 0.0))
     refuse(sensor, "noise", "'noise' expects numbers that are not negative");
-  const world::LaserNoise noise{sensor.metres * v[0], v[1], sensor.radians * v[2]};
+  const world::LaserNoise noise{sensor.metres_per_unit * v[0], v[1], sensor.radians_per_unit * v[2]};
   if (!(noise.range_sigma <= kLongest && noise.range_proportional <= 1e3 && noise.angle_sigma <= 2.0 * M_PI))
     refuse(sensor, "noise", "'noise' is out of reach; expected [metres, metres per metre, angle]");
   return noise;
@@ -87,7 +87,7 @@ std::vector<LaneEdge> lane_edges_of(const world::World& world) {
   return edges;
 }
 
-bool sees_pixels(const world::World& world) { return world.road_resolution > 0.0 && !world.stripes.empty(); }
+bool sees_pixels(const world::World& world) { return world.road_resolution > 0.0 && !world.lane_markings.empty(); }
 
 /// A range is off by 2^-53 of the arms of its products over the sine of incidence, so its point by that across the
 /// face; a face's corners are rounded where they are; and a point's x has 44 bits (SF_GRAIN_MASK).

@@ -47,8 +47,8 @@ maps::GridPlan grid_of(const world::Sensor& sensor, const Pose& place) {
                        plan.word_columns, plan.word_rows, maps::kMostWords));
   centre(plan, place);
   if (const auto offset = tuple(sensor, "offset", 2, "[x y]")) {
-    plan.left = -sensor.metres * (*offset)[0];
-    plan.top = -sensor.metres * (*offset)[1];
+    plan.left = -sensor.metres_per_unit * (*offset)[0];
+    plan.top = -sensor.metres_per_unit * (*offset)[1];
   }
   if (!maps::is_sound(plan))
     refuse(sensor, "offset", fmt::format("a map more than {:g} m from the world's origin; change 'offset'", kFarthest));

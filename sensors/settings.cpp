@@ -52,11 +52,11 @@ double number(const world::Sensor& sensor, std::string_view key, double fallback
 }
 
 double length(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most) {
-  return scaled(sensor, key, fallback, least, most, sensor.metres, "");
+  return scaled(sensor, key, fallback, least, most, sensor.metres_per_unit, "");
 }
 
 double angle(const world::Sensor& sensor, std::string_view key, double fallback, double least, double most) {
-  return scaled(sensor, key, fallback, least, most, sensor.radians, "");
+  return scaled(sensor, key, fallback, least, most, sensor.radians_per_unit, "");
 }
 
 std::uint32_t whole(const world::Sensor& sensor, std::string_view key, std::uint32_t fallback, std::uint32_t least,

@@ -119,7 +119,7 @@ bool Sky::crosses(glm::dvec2 p, double z, const Satellite& satellite, const Segm
 bool Sky::under(glm::dvec2 p, double z, const Satellite& satellite, const Solid& solid) const {
   if (solid.z_min <= z) return false;
   const glm::dvec2 q = p + (solid.z_min - z) / satellite.rise * satellite.flat;
-  return world::windings(std::span(solid_edges_).subspan(solid.first, solid.last - solid.first), q) > 0;
+  return world::winding_number(std::span(solid_edges_).subspan(solid.first, solid.last - solid.first), q) > 0;
 }
 
 bool Sky::sees(glm::dvec2 p, double z, const Satellite& satellite) const {

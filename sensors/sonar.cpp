@@ -34,7 +34,7 @@ std::uint32_t read_turns(const world::Sensor& sensor, std::uint32_t transducers)
 void read_noise(const world::Sensor& sensor, ConeArray& array) {
   const auto values = tuple(sensor, "noise", 1, "[constant proportional]");
   if (!values) return;
-  array.sigma = sensor.metres * (*values)[0];
+  array.sigma = sensor.metres_per_unit * (*values)[0];
   array.proportional = values->size() > 1 ? (*values)[1] : 0.0;
   if (array.sigma >= 0.0 && array.sigma <= kLongest && array.proportional >= 0.0 && array.proportional <= kMostShare)
     return;

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "world/paths.h"
+#include "world/path_geometry.h"
 
 namespace sf::viz {
 
 namespace {
 
-using world::Stripe;
+using world::LaneMarking;
 
 constexpr std::uint32_t kNorth = 0xFFC62828u;
 constexpr std::uint32_t kSouth = 0xFF1565C0u;
@@ -18,13 +18,13 @@ constexpr double kThinnest = 1.3;   // [px] of a stripe
 constexpr double kLaneStep = 0.02;  // [m] along a lane
 
 /// Stripes have square ends, lines of a canvas round ones: each piece is a quadrilateral.
-void add_band(Axes& axes, const Stripe& stripe, std::vector<Line>& edges) {
-  const double half = 0.5 * std::max(stripe.width, kThinnest / axes.scale());
-  for (std::size_t i = 0; i + 1 < stripe.line.size(); ++i) {
-    const glm::dvec2 along = stripe.line[i + 1] - stripe.line[i];
+void add_band(Axes& axes, const LaneMarking& marking, std::vector<Line>& edges) {
+  const double half = 0.5 * std::max(marking.width, kThinnest / axes.scale());
+  for (std::size_t i = 0; i + 1 < marking.line.size(); ++i) {
+    const glm::dvec2 along = marking.line[i + 1] - marking.line[i];
     const glm::dvec2 aside = half / glm::length(along) * glm::dvec2{-along.y, along.x};
-    const glm::dvec2 corners[] = {axes.pixel(stripe.line[i] + aside), axes.pixel(stripe.line[i] - aside),
-                                  axes.pixel(stripe.line[i + 1] - aside), axes.pixel(stripe.line[i + 1] + aside)};
+    const glm::dvec2 corners[] = {axes.pixel(marking.line[i] + aside), axes.pixel(marking.line[i] - aside),
+                                  axes.pixel(marking.line[i + 1] - aside), axes.pixel(marking.line[i + 1] + aside)};
     for (int k = 0; k < 4; ++k) edges.push_back({corners[k], corners[(k + 1) % 4]});
   }
 }
@@ -36,7 +36,7 @@ void draw_lanes(Axes& axes, const world::World& world) {
     for (const world::PathPiece& piece : path.pieces) {
       const int steps = std::max(1, static_cast<int>(std::ceil(piece.length / kLaneStep)));
       const auto corner = [&](int step, double side) {
-        const base::Pose X_WP = world::along(piece, piece.length * step / steps);
+        const base::Pose X_WP = world::pose_at(piece, piece.length * step / steps);
         return axes.pixel(base::transform(X_WP, {0.0, 0.5 * side * piece.width}));
       };
       for (int i = 0; i < steps; ++i) {
@@ -50,25 +50,25 @@ void draw_lanes(Axes& axes, const world::World& world) {
 }  // namespace
 
 void draw_paint(Axes& axes, const world::World& world) {
-  if (world.stripes.empty()) return;
+  if (world.lane_markings.empty()) return;
   std::vector<Line> asphalt;
   double widest = 0.0;
-  for (const Stripe& stripe : world.stripes) {
-    widest = std::max(widest, stripe.width * axes.scale());
-    for (std::size_t i = 0; i + 1 < stripe.line.size(); ++i)
-      asphalt.push_back({axes.pixel(stripe.line[i]), axes.pixel(stripe.line[i + 1])});
+  for (const LaneMarking& marking : world.lane_markings) {
+    widest = std::max(widest, marking.width * axes.scale());
+    for (std::size_t i = 0; i + 1 < marking.line.size(); ++i)
+      asphalt.push_back({axes.pixel(marking.line[i]), axes.pixel(marking.line[i + 1])});
   }
   axes.canvas().lines(asphalt, widest + 2.0 * kShoulder, kStreet);
   draw_lanes(axes, world);
 
   std::vector<std::uint32_t> colors;
-  for (const Stripe& stripe : world.stripes) colors.push_back(stripe.color);
+  for (const LaneMarking& marking : world.lane_markings) colors.push_back(marking.color);
   std::sort(colors.begin(), colors.end());
   colors.erase(std::unique(colors.begin(), colors.end()), colors.end());
   for (const std::uint32_t color : colors) {
     std::vector<Line> edges;
-    for (const Stripe& stripe : world.stripes)
-      if (stripe.color == color) add_band(axes, stripe, edges);
+    for (const LaneMarking& marking : world.lane_markings)
+      if (marking.color == color) add_band(axes, marking, edges);
     axes.canvas().area(edges, color);
   }
 }
@@ -88,7 +88,7 @@ void draw_streets(Axes& axes, const world::RoadNetwork& roads) {
     add(lane.centre.points);
     widest = std::max(widest, lane.width);
   }
-  for (const world::RoadExit& exit : roads.exits) add(connection_of(roads, exit).points);
+  for (const world::RoadExit& exit : roads.exits) add(exit_curve(roads, exit).points);
   if (widest > 0.0) axes.canvas().lines(bands, widest * axes.scale(), kStreet);
 }
 
@@ -101,7 +101,7 @@ void draw_magnets(Axes& axes, const world::World& world) {
 
 std::vector<LegendItem> ground_legend(const world::World& world) {
   std::vector<LegendItem> items;
-  if (!world.stripes.empty()) items.push_back({Sample::block, kStreet, "road, with its paint"});
+  if (!world.lane_markings.empty()) items.push_back({Sample::block, kStreet, "road, with its paint"});
   const auto has = [&](bool north) {
     return std::any_of(world.magnets.begin(), world.magnets.end(),
                        [&](const world::Magnet& m) { return (m.moment > 0.0) == north; });

@@ -7,7 +7,7 @@
 #include "viz/color.h"
 #include "viz/ground.h"
 #include "viz/walls.h"
-#include "world/paths.h"
+#include "world/path_geometry.h"
 
 namespace sf::viz {
 namespace {
@@ -21,7 +21,7 @@ void draw_middle(Axes& axes, const world::Path& path) {
   std::vector<Line> lines;
   glm::dvec2 last{};
   for (int i = 0; i <= steps; ++i) {
-    const base::Pose X_WP = world::along(path, length * i / steps);
+    const base::Pose X_WP = world::pose_at(path, length * i / steps);
     const glm::dvec2 at = axes.pixel({X_WP.x, X_WP.y});
     if (i > 0) lines.push_back({last, at});
     last = at;

@@ -10,7 +10,7 @@
 
 #include "viz/axes.h"
 #include "viz/road_view.h"
-#include "world/roads/paint.h"
+#include "world/roads/lane_markings.h"
 
 namespace sf::viz {
 namespace {
@@ -154,9 +154,9 @@ void draw_inset(const RoadView& view, const RoadNetwork& network, const Inset& i
 
 std::vector<LegendItem> legend_of(const RoadNetwork& network) {
   std::vector<LegendItem> items{{Sample::block, kAsphalt, "lane", kLaneEdge}};
-  const auto paint = world::paint_of(network);
+  const auto paint = world::lane_markings_of(network);
   const auto painted = [&](std::uint32_t color) {
-    return std::any_of(paint.begin(), paint.end(), [&](const world::Stripe& s) { return s.color == color; });
+    return std::any_of(paint.begin(), paint.end(), [&](const world::LaneMarking& s) { return s.color == color; });
   };
   if (painted(world::kYellowPaint)) items.push_back({Sample::line, world::kYellowPaint, "yellow lines"});
   if (painted(world::kWhitePaint)) items.push_back({Sample::block, world::kWhitePaint, "white lines", kLaneEdge});

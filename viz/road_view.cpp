@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "viz/color.h"
-#include "world/roads/paint.h"
+#include "world/roads/lane_markings.h"
 
 namespace sf::viz {
 namespace {
@@ -50,8 +50,9 @@ void draw_edges(const RoadView& view, const RoadLane& lane) {
 
 // Stop lines are among the stripes; here they get a colour of their own later.
 void draw_paint(const RoadView& view, const RoadNetwork& network) {
-  for (const world::Stripe& stripe : world::paint_of(network))
-    view.canvas.polyline(pixels(view, stripe.line), std::max(stripe.width * view.scale, kThinnestPaint), stripe.color);
+  for (const world::LaneMarking& marking : world::lane_markings_of(network))
+    view.canvas.polyline(pixels(view, marking.line), std::max(marking.width * view.scale, kThinnestPaint),
+                         marking.color);
 }
 
 // ------------------------------------------------------------------------------------------------- marks
@@ -79,7 +80,7 @@ void draw_directions(const RoadView& view, const RoadLane& lane) {
 
 void draw_exits(const RoadView& view, const RoadNetwork& network) {
   for (const world::RoadExit& exit : network.exits) {
-    const auto line = pixels(view, connection_of(network, exit).points);
+    const auto line = pixels(view, exit_curve(network, exit).points);
     if (line.size() < 2) continue;
     view.canvas.polyline(line, 1.6, kExit);
     const glm::dvec2 d = line.back() - line[line.size() - 2];

@@ -57,7 +57,7 @@ bool has(const world::World& world, Emitter::Kind kind) {
 }  // namespace
 
 void draw_drops(Axes& axes, const world::World& world) {
-  for (const world::Drop& drop : world.drops) {
+  for (const world::FloorHole& drop : world.floor_holes) {
     std::vector<glm::dvec2> outline;
     for (const glm::dvec2& p : drop.outline) outline.push_back(axes.pixel(p));
     axes.canvas().polygon(outline, with_opacity(kHole, 0.85));
@@ -101,7 +101,7 @@ std::vector<LegendItem> signals_legend(const world::World& world) {
   if (has(world, Emitter::Kind::dock))
     items.push_back({Sample::block, with_opacity(kRedBuoy.color, kRedBuoy.inside),
                      "dock: red and green buoy, force field", with_opacity(kRedBuoy.color, kRedBuoy.border)});
-  if (!world.drops.empty()) items.push_back({Sample::block, with_opacity(kHole, 0.85), "hole in the floor"});
+  if (!world.floor_holes.empty()) items.push_back({Sample::block, with_opacity(kHole, 0.85), "hole in the floor"});
   return items;
 }
 

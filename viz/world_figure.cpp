@@ -146,7 +146,7 @@ std::string subtitle_of(const World& world) {
   if (lasers > 0) text += count(lasers, "laser") + ", ";
   if (tags > 0) text += count(tags, "tag") + ", ";
   text += count(world.walls.size(), "wall segment");
-  if (!world.stripes.empty()) text += ", " + count(world.stripes.size(), "stripe");
+  if (!world.lane_markings.empty()) text += ", " + count(world.lane_markings.size(), "stripe");
   if (!world.magnets.empty()) text += ", " + count(world.magnets.size(), "magnet");
   if (!world.lights.empty()) text += ", " + count(world.lights.size(), "light");
   return text + fmt::format(", {:.4g} m x {:.4g} m", world.extent.x_max - world.extent.x_min,

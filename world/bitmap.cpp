@@ -8,7 +8,7 @@ namespace {
 int step(std::uint8_t before, std::uint8_t after) { return int{after} - int{before}; }
 
 // Along the line between rows j - 1 and j. Solid above lies on the left of a run to the right.
-void horizontal_runs(const Grid& grid, std::uint32_t j, std::vector<Run>& runs) {
+void horizontal_runs(const Bitmap& grid, std::uint32_t j, std::vector<BoundaryRun>& runs) {
   const std::vector<std::uint8_t> outside(grid.width, 0);
   const std::uint8_t* below = j > 0 ? grid.solid.data() + std::size_t{j - 1} * grid.width : outside.data();
   const std::uint8_t* above = j < grid.height ? grid.solid.data() + std::size_t{j} * grid.width : outside.data();
@@ -31,8 +31,8 @@ struct Open {
 
 // All vertical lines at once, row by row, as the cells lie in memory. Solid on the right lies on the left of a run
 // downwards.
-std::vector<std::vector<Run>> vertical_runs(const Grid& grid, std::size_t most) {
-  std::vector<std::vector<Run>> runs(grid.width + 1);
+std::vector<std::vector<BoundaryRun>> vertical_runs(const Bitmap& grid, std::size_t most) {
+  std::vector<std::vector<BoundaryRun>> runs(grid.width + 1);
   std::vector<Open> open(grid.width + 1);
   std::size_t count = 0;
   for (std::uint32_t j = 0; j <= grid.height && count <= most; ++j) {
@@ -54,8 +54,8 @@ std::vector<std::vector<Run>> vertical_runs(const Grid& grid, std::size_t most) 
 
 }  // namespace
 
-std::vector<Run> outline(const Grid& grid, std::size_t most) {
-  std::vector<Run> runs;
+std::vector<BoundaryRun> trace_boundary(const Bitmap& grid, std::size_t most) {
+  std::vector<BoundaryRun> runs;
   for (std::uint32_t j = 0; j <= grid.height && runs.size() <= most; ++j) horizontal_runs(grid, j, runs);
   if (runs.size() > most) return runs;
   for (const auto& column : vertical_runs(grid, most - runs.size()))
@@ -63,7 +63,7 @@ std::vector<Run> outline(const Grid& grid, std::size_t most) {
   return runs;
 }
 
-glm::dvec2 corner_position(const Grid& grid, Corner corner, double size_x, double size_y) {
+glm::dvec2 corner_position(const Bitmap& grid, Corner corner, double size_x, double size_y) {
   return {size_x * (static_cast<double>(corner.i) / grid.width - 0.5),
           size_y * (static_cast<double>(corner.j) / grid.height - 0.5)};
 }

@@ -9,7 +9,7 @@
 namespace sf::world {
 
 /// Cells from the lower left, row by row upwards.
-struct Grid {
+struct Bitmap {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<std::uint8_t> solid;  ///< 1 solid, 0 free; outside of the grid everything is free
@@ -22,7 +22,7 @@ struct Corner {
 };
 
 /// A straight piece of boundary with the solid on the left of a -> b. `a` and `b` differ in exactly one coordinate.
-struct Run {
+struct BoundaryRun {
   Corner a;
   Corner b;
 };
@@ -31,10 +31,10 @@ struct Run {
 /// where two solid cells meet only in a corner: four runs end in that very corner and nothing slips between them. The
 /// order is fixed: horizontal runs from the bottom, then vertical runs from the left.
 /// @param most runs; where there are more it ends early, with more than that.
-std::vector<Run> outline(const Grid& grid, std::size_t most = SIZE_MAX);
+std::vector<BoundaryRun> trace_boundary(const Bitmap& grid, std::size_t most = SIZE_MAX);
 
 /// Where a corner lies in the frame of a model that shows the grid on `size_x` x `size_y`, centred. Equal corners give
 /// the very same doubles.
-glm::dvec2 corner_position(const Grid& grid, Corner corner, double size_x, double size_y);
+glm::dvec2 corner_position(const Bitmap& grid, Corner corner, double size_x, double size_y);
 
 }  // namespace sf::world

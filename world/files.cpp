@@ -1,4 +1,4 @@
-#include "world/entities.h"
+#include "world/stage/document.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -42,7 +42,7 @@ struct Descriptor {
 
 }  // namespace
 
-std::string find_file(const Document& document, Place from, const std::string& name) {
+std::string find_file(const Document& document, SourceLocation from, const std::string& name) {
   if (name.empty()) return {};
   const fs::path wanted(name);
   if (wanted.is_absolute()) return is_file(wanted) ? wanted.lexically_normal().string() : std::string();

@@ -14,7 +14,7 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kMostCells = 2000.0;      // of the coarse grid, each way
+constexpr double kMaxCells = 2000.0;       // of the coarse grid, each way
 constexpr double kOpenWorld = 10.0;        // [m] around the first robot that are used at least
 constexpr std::uint32_t kAttempts = 4000;  // draws per copy; a random packing is full long before
 
@@ -55,9 +55,9 @@ bool wall_between(const WallGrid& walls, glm::dvec2 p, glm::dvec2 q) {
   return walls.any(box_of(p, q), [&](const Segment& w) { return segments_meet(p, q, w.a, w.b); });
 }
 
-bool in_solid(const WallGrid& walls, glm::dvec2 p) { return windings(walls.walls(), p) != 0; }
+bool in_solid(const WallGrid& walls, glm::dvec2 p) { return winding_number(walls.walls(), p) != 0; }
 
-bool is_known(std::span<const Segment> known, glm::dvec2 p) { return known.empty() || windings(known, p) != 0; }
+bool is_known(std::span<const Segment> known, glm::dvec2 p) { return known.empty() || winding_number(known, p) != 0; }
 
 // ---- The coarse grid and the region a robot can reach in it.
 
@@ -84,13 +84,13 @@ Region grid_over(const WallGrid& walls, const Mover& robot) {
     box.max = {std::max({box.max.x, w.a.x, w.b.x}), std::max({box.max.y, w.a.y, w.b.y})};
   }
   const double radius = clear_radius(robot);
-  const Box most = box_around(p, 2.0 * radius * kMostCells / 2.0);
+  const Box most = box_around(p, 2.0 * radius * kMaxCells / 2.0);
   box.min = {std::max(box.min.x, most.min.x), std::max(box.min.y, most.min.y)};
   box.max = {std::min(box.max.x, most.max.x), std::min(box.max.y, most.max.y)};
 
   const glm::dvec2 size = box.max - box.min;
   Region region{.corner = box.min};
-  region.cell = std::max(0.5 * radius, std::sqrt(size.x * size.y) / kMostCells);
+  region.cell = std::max(0.5 * radius, std::sqrt(size.x * size.y) / kMaxCells);
   region.columns = static_cast<std::uint32_t>(std::ceil(size.x / region.cell));
   region.rows = static_cast<std::uint32_t>(std::ceil(size.y / region.cell));
   return region;
@@ -198,9 +198,9 @@ Region reachable(std::span<const Segment> known, const WallGrid& walls, const Mo
 // ---- Poses drawn one after another.
 
 // Points kept in lists per bucket of a hash, so that the memory follows the copies and not the world.
-class Crowd {
+class PlacedRobots {
  public:
-  Crowd(std::size_t count, double apart) : apart_(apart), heads_(2 * count + 1, kNone) {}
+  PlacedRobots(std::size_t count, double apart) : apart_(apart), heads_(2 * count + 1, kNone) {}
 
   bool clear(glm::dvec2 p) const {
     for (int dy = -1; dy <= 1; ++dy) {
@@ -262,7 +262,7 @@ const Segment* wall_in(const World& world, const Mover& robot, const Pose& X_WM)
 
 }  // namespace
 
-std::string misplaced(const World& world, const Mover& robot, const Pose& X_WM) {
+std::string placement_problem(const World& world, const Mover& robot, const Pose& X_WM) {
   const glm::dvec2 p{X_WM.x, X_WM.y};
   const Model* plan = plan_of(world);
   if (plan != nullptr) {
@@ -273,7 +273,7 @@ std::string misplaced(const World& world, const Mover& robot, const Pose& X_WM) 
   const Heights heights = heights_of(robot, X_WM.z);
   int around = 0;
   for (const Segment& wall : world.walls)
-    if (wall.stops_robots && heights.meet(wall)) around += windings({&wall, 1}, p);
+    if (wall.stops_robots && heights.meet(wall)) around += winding_number({&wall, 1}, p);
   if (around != 0) return "within a wall";
   const Segment* wall = wall_in(world, robot, X_WM);
   if (wall != nullptr) return "partly in a wall of '" + world.models[wall->model].name + "'";
@@ -285,7 +285,7 @@ std::vector<Pose> free_poses(const World& world, const Mover& robot, std::uint32
   const std::vector<Segment> known = known_free(world);
   const WallGrid walls(walls_at_height(world, robot, known), 2.0 * radius);
   const Region region = reachable(known, walls, robot);
-  Crowd crowd(std::min<std::size_t>(count, region.cells.size()), 2.0 * robot.radius + kPlaceMargin);
+  PlacedRobots crowd(std::min<std::size_t>(count, region.cells.size()), 2.0 * robot.radius + kPlaceMargin);
   std::vector<Pose> poses;
   const auto draw = [&](std::uint32_t k) {
     for (std::uint32_t attempt = 0; attempt < kAttempts && !region.cells.empty(); ++attempt) {

@@ -34,6 +34,6 @@ void clone_robots(World& world, std::uint32_t count, std::uint64_t seed, const s
 
 /// Where the robot would be with that pose if it should not be there, such as "within a wall": in or on a wall that
 /// stops it, outside of the floor plan, in unknown space; empty: nothing speaks against it.
-std::string misplaced(const World& world, const Mover& robot, const Pose& X_WM);
+std::string placement_problem(const World& world, const Mover& robot, const Pose& X_WM);
 
 }  // namespace sf::world

@@ -53,9 +53,9 @@ constexpr auto kRoad = std::to_array<std::string_view>({"name", "rndf", "magneti
 constexpr auto kPath = std::to_array<std::string_view>({"name", "pose", "pieces", "straight[]", "arc[]", "left", "right", "paint_width", "dash",
   "magnetic_moment", "magnet_spacing", "magnet_size", "magnet_top"});
 
-constexpr auto kKeptTypes = std::to_array<std::string_view>({"actuator", "blinkenlight", "blobfinder", "bumper", "camera", "charger", "fiducial", "gripper",
+constexpr auto kUnmodelledTypes = std::to_array<std::string_view>({"actuator", "blinkenlight", "blobfinder", "bumper", "camera", "charger", "fiducial", "gripper",
   "laneedge", "lightindicator", "magnetometer", "map", "powerpack", "puck", "sonar", "speech", "wifi"});
-constexpr auto kBodiless = std::to_array<std::string_view>({"blobfinder", "bumper", "fiducial", "laneedge", "magnetometer", "powerpack", "ranger", "sonar",
+constexpr auto kNoBodyTypes = std::to_array<std::string_view>({"blobfinder", "bumper", "fiducial", "laneedge", "magnetometer", "powerpack", "ranger", "sonar",
   "speech", "wifi"});
 constexpr auto kIgnoredTypes = std::to_array<std::string_view>({"window", "gui", "menu"});
 // clang-format on
@@ -74,32 +74,32 @@ std::string without_indices(std::string_view key) {
   return plain;
 }
 
-std::vector<Words> words_at(Where where) {
+std::vector<Words> keys_in(KeyScope where) {
   switch (where) {
-    case Where::world:
+    case KeyScope::world:
       return {kWorld};
-    case Where::position:
+    case KeyScope::position:
       return {kModel, kPosition};
-    case Where::laser:
+    case KeyScope::laser:
       return {kModel, kSensing, kLaser};
-    case Where::ranger:
+    case KeyScope::ranger:
       return {kModel, kSensing, kRanger};
-    case Where::light:
+    case KeyScope::light:
       return {kModel, kLight};
-    case Where::sensor:
+    case KeyScope::sensor:
       return {kSensor, kSensing};
-    case Where::block:
+    case KeyScope::block:
       return {kBlock};
-    case Where::device:
+    case KeyScope::device:
       return {kModel, kSensing};
-    case Where::sensing:
+    case KeyScope::sensing:
       return {kSensing};
-    case Where::road:
+    case KeyScope::road:
       return {kRoad};
-    case Where::path:
+    case KeyScope::path:
       return {kPath};
-    case Where::model:
-    case Where::kept:
+    case KeyScope::model:
+    case KeyScope::unmodelled:
       break;
   }
   return {kModel};
@@ -107,37 +107,37 @@ std::vector<Words> words_at(Where where) {
 
 }  // namespace
 
-Kind kind_of(std::string_view type) {
-  if (type == "model") return Kind::model;
-  if (type == "position") return Kind::position;
-  if (type == "laser") return Kind::laser;
-  if (type == "ranger") return Kind::ranger;
-  if (type == "light") return Kind::light;
-  if (type == "road") return Kind::road;
-  if (type == "path") return Kind::path;
-  if (has(kIgnoredTypes, type)) return Kind::ignored;
-  return has(kKeptTypes, type) ? Kind::kept : Kind::unknown;
+EntityKind entity_kind(std::string_view type) {
+  if (type == "model") return EntityKind::model;
+  if (type == "position") return EntityKind::position;
+  if (type == "laser") return EntityKind::laser;
+  if (type == "ranger") return EntityKind::ranger;
+  if (type == "light") return EntityKind::light;
+  if (type == "road") return EntityKind::road;
+  if (type == "path") return EntityKind::path;
+  if (has(kIgnoredTypes, type)) return EntityKind::ignored;
+  return has(kUnmodelledTypes, type) ? EntityKind::unmodelled : EntityKind::unknown;
 }
 
-bool bodiless(std::string_view type) { return has(kBodiless, type); }
+bool has_no_body(std::string_view type) { return has(kNoBodyTypes, type); }
 
 std::vector<std::string_view> known_types() {
   std::vector<std::string_view> types{"model",  "position", "laser", "ranger", "light",
                                       "sensor", "block",    "road",  "path"};
-  types.insert(types.end(), kKeptTypes.begin(), kKeptTypes.end());
+  types.insert(types.end(), kUnmodelledTypes.begin(), kUnmodelledTypes.end());
   types.insert(types.end(), kIgnoredTypes.begin(), kIgnoredTypes.end());
   return types;
 }
 
-bool is_known_key(Where where, std::string_view key, std::span<const std::string_view> own) {
+bool is_known_key(KeyScope where, std::string_view key, std::span<const std::string_view> own) {
   const std::string plain = without_indices(key);
-  const auto words = words_at(where);
+  const auto words = keys_in(where);
   return has(own, plain) || std::any_of(words.begin(), words.end(), [&](Words list) { return has(list, plain); });
 }
 
-std::string suggest_key(Where where, std::string_view key, std::span<const std::string_view> own) {
+std::string suggest_key(KeyScope where, std::string_view key, std::span<const std::string_view> own) {
   std::vector<std::string_view> candidates(own.begin(), own.end());
-  for (const Words list : words_at(where)) candidates.insert(candidates.end(), list.begin(), list.end());
+  for (const Words list : keys_in(where)) candidates.insert(candidates.end(), list.begin(), list.end());
   return suggest(without_indices(key), candidates);
 }
 

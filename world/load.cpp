@@ -2,9 +2,9 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "world/entities.h"
 #include "world/ros_map.h"
-#include "world/stage.h"
+#include "world/stage/document.h"
+#include "world/stage/stage.h"
 #include "world/world.h"
 
 namespace sf::world {

@@ -7,22 +7,21 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "world/entities.h"
+#include "world/stage/document.h"
 
 namespace sf::world {
 
 namespace {
 
-constexpr std::uint32_t kMostPixels = 16384;       // along one side
-constexpr std::size_t kMostBytes = 300u << 20;     // of a file; the largest PGM of 8 bits has 256 MiB
-constexpr std::size_t kMostInterlaced = 1u << 26;  // pixels: they need a second copy of four times the size
-constexpr std::size_t kMostExtras = 4u << 20;      // bytes of a PNG's texts and profiles, unpacked
+constexpr std::uint32_t kMaxPixels = 16384;       // along one side
+constexpr std::size_t kMaxBytes = 300u << 20;     // of a file; the largest PGM of 8 bits has 256 MiB
+constexpr std::size_t kMaxInterlaced = 1u << 26;  // pixels: they need a second copy of four times the size
+constexpr std::size_t kMaxExtras = 4u << 20;      // bytes of a PNG's texts and profiles, unpacked
 
 void check_size(const std::string& file, std::uint64_t width, std::uint64_t height) {
-  if (width >= 1 && height >= 1 && width <= kMostPixels && height <= kMostPixels) return;
+  if (width >= 1 && height >= 1 && width <= kMaxPixels && height <= kMaxPixels) return;
   throw base::InputError(
-      file, 0,
-      fmt::format("a picture of {} x {} pixels; expected 1 to {} along each side", width, height, kMostPixels));
+      file, 0, fmt::format("a picture of {} x {} pixels; expected 1 to {} along each side", width, height, kMaxPixels));
 }
 
 // --- PNG
@@ -58,11 +57,11 @@ void decode_rows(spng_ctx* png, const std::string& file, Picture& picture, Chann
 }
 
 void decode_interlaced(spng_ctx* png, const std::string& file, Picture& picture, Channel channel) {
-  if (picture.value.size() > kMostInterlaced)
+  if (picture.value.size() > kMaxInterlaced)
     throw base::InputError(file, 0,
                            fmt::format("an interlaced picture of {} x {} pixels; expected at most {} of them: save it "
                                        "without interlacing",
-                                       picture.width, picture.height, kMostInterlaced));
+                                       picture.width, picture.height, kMaxInterlaced));
   std::vector<std::uint8_t> rgba(picture.value.size() * 4);
   check_png(file, spng_decode_image(png, rgba.data(), rgba.size(), SPNG_FMT_RGBA8, SPNG_DECODE_TRNS));
   for (std::uint32_t y = 0; y < picture.height; ++y) {
@@ -74,7 +73,7 @@ Picture read_png(const std::string& file, const std::string& bytes, Channel chan
   const Decoder png(spng_ctx_new(0), &spng_ctx_free);
   check_png(file, spng_set_png_buffer(png.get(), bytes.data(), bytes.size()));
   check_png(file, spng_set_image_limits(png.get(), 1u << 24, 1u << 24));
-  check_png(file, spng_set_chunk_limits(png.get(), kMostExtras, kMostExtras));
+  check_png(file, spng_set_chunk_limits(png.get(), kMaxExtras, kMaxExtras));
   spng_ihdr header{};
   check_png(file, spng_get_ihdr(png.get(), &header));
   check_size(file, header.width, header.height);
@@ -162,7 +161,7 @@ Picture decode_picture(const std::string& file, const std::string& bytes, Channe
 }
 
 Picture read_picture(const std::string& file, Channel channel) {
-  return decode_picture(file, read_bytes(file, kMostBytes), channel);
+  return decode_picture(file, read_bytes(file, kMaxBytes), channel);
 }
 
 }  // namespace sf::world

@@ -9,16 +9,16 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "world/entities.h"
 #include "world/picture.h"
-#include "world/properties.h"
-#include "world/shape.h"
+#include "world/stage/document.h"
+#include "world/stage/model_shape.h"
+#include "world/stage/properties.h"
 
 namespace sf::world {
 
 namespace {
 
-constexpr std::size_t kMostYaml = 1u << 20;  // bytes; a map's file has a few lines
+constexpr std::size_t kMaxYaml = 1u << 20;  // bytes; a map's file has a few lines
 
 struct Map {
   std::string image;        ///< path
@@ -65,7 +65,7 @@ Pose origin_of(const Yaml& yaml) {
   X_WL.x = finite(yaml, node[0], "x of 'origin'");
   X_WL.y = finite(yaml, node[1], "y of 'origin'");
   X_WL.yaw = finite(yaml, node[2], "yaw of 'origin'");
-  if (std::abs(X_WL.x) > kMostLength || std::abs(X_WL.y) > kMostLength || std::abs(X_WL.yaw) > 1e6) {
+  if (std::abs(X_WL.x) > kMaxLength || std::abs(X_WL.y) > kMaxLength || std::abs(X_WL.yaw) > 1e6) {
     fail(yaml, node, "'origin' is out of reach");
   }
   return X_WL;
@@ -126,8 +126,8 @@ enum class Ground : std::uint8_t { wall, unknown, free };
 
 /// @param counts whether ground of that kind is solid in the grid
 template <class Counts>
-Grid grid_of(const Map& map, const Picture& picture, Counts&& counts) {
-  Grid grid{picture.width, picture.height, std::vector<std::uint8_t>(picture.value.size())};
+Bitmap grid_of(const Map& map, const Picture& picture, Counts&& counts) {
+  Bitmap grid{picture.width, picture.height, std::vector<std::uint8_t>(picture.value.size())};
   for (std::uint32_t row = 0; row < picture.height; ++row) {
     const std::size_t from = std::size_t{row} * picture.width;
     const std::size_t to = std::size_t{picture.height - 1 - row} * picture.width;
@@ -143,14 +143,14 @@ Grid grid_of(const Map& map, const Picture& picture, Counts&& counts) {
   return grid;
 }
 
-Pose middle_of(const Map& map, const Grid& grid) {
+Pose middle_of(const Map& map, const Bitmap& grid) {
   return compose(map.X_WL, {map.resolution * grid.width / 2.0, map.resolution * grid.height / 2.0, 0.0, 0.0});
 }
 
-std::vector<Segment> outlines_of(const Map& map, Grid grid) {
+std::vector<Segment> outlines_of(const Map& map, Bitmap grid) {
   const Size size{map.resolution * grid.width, map.resolution * grid.height, kMapWallHeight};
   const Pose X_WM = middle_of(map, grid);
-  std::vector<Segment> outlines = bitmap_segments(*trace(std::move(grid), map.image), size);
+  std::vector<Segment> outlines = bitmap_segments(*trace_bitmap(std::move(grid), map.image), size);
   for (Segment& edge : outlines) {
     edge.a = transform(X_WM, edge.a);
     edge.b = transform(X_WM, edge.b);
@@ -158,7 +158,7 @@ std::vector<Segment> outlines_of(const Map& map, Grid grid) {
   return outlines;
 }
 
-void add_walls(World& world, const Map& map, Grid grid) {
+void add_walls(World& world, const Map& map, Bitmap grid) {
   Model model;
   model.name = "map";
   model.type = "map";
@@ -180,7 +180,7 @@ bool is_ros_map(const std::string& file) {
 }
 
 World load_ros_map(const std::string& file, const LoadOptions& options) {
-  return build_ros_map(file, read_text(file, kMostYaml), options);
+  return build_ros_map(file, read_text(file, kMaxYaml), options);
 }
 
 World build_ros_map(const std::string& file, const std::string& text, const LoadOptions& options) {
@@ -198,14 +198,14 @@ World build_ros_map(const std::string& file, const std::string& text, const Load
   } catch (const base::InputError& error) {
     fail(yaml, yaml.root["image"], fmt::format("'image': {}", error.what()));
   }
-  finish(world);
+  update_extent_and_hash(world);
   return world;
 }
 
 std::vector<Segment> known_free(const World& world) {
   if (!is_ros_map(world.file)) return {};
   std::vector<Warning> said;
-  const Map map = read_map({world.file, parse_yaml(world.file, read_text(world.file, kMostYaml))}, said);
+  const Map map = read_map({world.file, parse_yaml(world.file, read_text(world.file, kMaxYaml))}, said);
   const Picture picture = read_picture(map.image, Channel::mean);
   return outlines_of(map, grid_of(map, picture, [](Ground ground) { return ground == Ground::free; }));
 }

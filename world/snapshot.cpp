@@ -5,7 +5,7 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
-#include "world/rows.h"
+#include "world/serialization.h"
 #include "world/world.h"
 
 namespace sf::world {
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
 constexpr std::uint16_t kVersion = 4;
-constexpr std::uint32_t kMostSamples = 1'000'000;  // of a laser: what a recording's world says is as much an input
+constexpr std::uint32_t kMaxSamples = 1'000'000;  // of a laser: what a recording's world says is as much an input
 
 template <class Row>
 void put_rows(base::ByteWriter& out, const std::vector<Row>& rows) {
@@ -45,7 +45,7 @@ void check_links(const World& world) {
   }
   good &= std::all_of(world.lights.begin(), world.lights.end(), known);
   good &= std::all_of(world.emitters.begin(), world.emitters.end(), known);
-  good &= std::all_of(world.drops.begin(), world.drops.end(), known);
+  good &= std::all_of(world.floor_holes.begin(), world.floor_holes.end(), known);
   if (!good) refuse("a row names a row that is not there");
 }
 
@@ -60,14 +60,14 @@ bool finite(const Laser& l) {
                                    l.noise.range_proportional, l.noise.angle_sigma});
 }
 bool finite(const Sensor& s) {
-  return finite(s.X_MS) && finite({s.height, s.metres, s.radians}) &&
+  return finite(s.X_MS) && finite({s.height, s.metres_per_unit, s.radians_per_unit}) &&
          std::all_of(s.settings.begin(), s.settings.end(), [](const Setting& setting) {
            return std::all_of(setting.numbers.begin(), setting.numbers.end(),
                               [](double n) { return std::isfinite(n); });
          });
 }
-bool finite(const Stripe& stripe) {
-  return finite({stripe.width}) && std::all_of(stripe.line.begin(), stripe.line.end(), [](glm::dvec2 p) {
+bool finite(const LaneMarking& marking) {
+  return finite({marking.width}) && std::all_of(marking.line.begin(), marking.line.end(), [](glm::dvec2 p) {
            return finite({p.x, p.y});
          });
 }
@@ -85,7 +85,7 @@ bool finite(const Mover& m) {
 
 // What is measured must be numbers: world files are read so, and a recording's world may come from anywhere.
 void check_numbers(const World& world) {
-  const bool good = all_finite(world.walls) && all_finite(world.stripes) && all_finite(world.magnets) &&
+  const bool good = all_finite(world.walls) && all_finite(world.lane_markings) && all_finite(world.magnets) &&
                     all_finite(world.movers) && finite({world.road_resolution, world.magnet_cutoff, world.interval});
   if (!good) refuse("a number in it is infinite, or none");
 }
@@ -102,11 +102,11 @@ void check_rows(const World& world) {
     for (const LightPhase& phase : light.phases) good &= phase.duration > 0.0 && std::isfinite(phase.duration);
   }
   for (const Emitter& e : world.emitters) good &= e.range > 0.0 && e.fov > 0.0 && e.halo >= 0.0;
-  for (const Drop& drop : world.drops) good &= drop.outline.size() >= 3;
+  for (const FloorHole& hole : world.floor_holes) good &= hole.outline.size() >= 3;
   for (const Mover& m : world.movers) {
     good &= m.max_acceleration > 0.0 && m.max_turn_acceleration > 0.0 && m.track > 0.0;
     for (const Laser& l : m.lasers)
-      good &= l.samples >= 1 && l.samples <= kMostSamples && l.resolution >= 1 && l.rate > 0.0 && l.range_max > 0.0;
+      good &= l.samples >= 1 && l.samples <= kMaxSamples && l.resolution >= 1 && l.rate > 0.0 && l.range_max > 0.0;
   }
   good &= world.interval > 0.0;
   if (!good) refuse("a row breaks the rules of its table");
@@ -115,7 +115,7 @@ void check_rows(const World& world) {
 void get_extras(base::ByteReader& in, World& world) {
   for (std::uint32_t left = get_count(in, 8); left > 0; --left) {
     const std::string type = in.get_string();
-    world.kept[type] = in.get<std::int32_t>();
+    world.unmodelled[type] = in.get<std::int32_t>();
   }
   get_rows(in, world.warnings, 12, [](base::ByteReader& bytes) {
     Warning warning;
@@ -163,24 +163,24 @@ std::vector<std::uint8_t> snapshot(const World& world) {
   out.put(world.magnet_cutoff);
   Accuracy accuracy = world.accuracy;
   accuracy.file = spelt(accuracy.file);
-  put(out, accuracy, Rows::all);
+  put(out, accuracy, RowFields::all);
   out.put(world.interval);
   out.put(static_cast<std::uint32_t>(world.models.size()));
-  for (const Model& model : world.models) put(out, model, Rows::all);
+  for (const Model& model : world.models) put(out, model, RowFields::all);
   put_rows(out, world.walls);
-  out.put(static_cast<std::uint32_t>(world.stripes.size()));
-  for (const Stripe& stripe : world.stripes) put(out, stripe, Rows::all);
+  out.put(static_cast<std::uint32_t>(world.lane_markings.size()));
+  for (const LaneMarking& marking : world.lane_markings) put(out, marking, RowFields::all);
   put_rows(out, world.magnets);
   out.put(static_cast<std::uint32_t>(world.movers.size()));
-  for (const Mover& mover : world.movers) put(out, spelt(mover), Rows::all);
+  for (const Mover& mover : world.movers) put(out, spelt(mover), RowFields::all);
   put_rows(out, world.paths);
   put_rows(out, world.lights);
   put_rows(out, world.emitters);
-  put_rows(out, world.drops);
+  put_rows(out, world.floor_holes);
   out.put(static_cast<std::uint32_t>(world.road_files.size()));
   for (const std::string& file : world.road_files) out.put_string(spelt(file));
-  out.put(static_cast<std::uint32_t>(world.kept.size()));
-  for (const auto& [type, count] : world.kept) {
+  out.put(static_cast<std::uint32_t>(world.unmodelled.size()));
+  for (const auto& [type, count] : world.unmodelled) {
     out.put_string(type);
     out.put(static_cast<std::int32_t>(count));
   }
@@ -209,13 +209,13 @@ World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   world.interval = in.get<double>();
   get_rows(in, world.models, 68, get_model);
   get_rows(in, world.walls, 53, get_segment);
-  get_rows(in, world.stripes, kStripeBytes, get_stripe);
+  get_rows(in, world.lane_markings, kLaneMarkingBytes, get_lane_marking);
   get_rows(in, world.magnets, kMagnetBytes, get_magnet);
   get_rows(in, world.movers, kMoverBytes, get_mover);
   get_rows(in, world.paths, kPathBytes, get_path);
   get_rows(in, world.lights, kLightBytes, get_light);
   get_rows(in, world.emitters, kEmitterBytes, get_emitter);
-  get_rows(in, world.drops, kDropBytes, get_drop);
+  get_rows(in, world.floor_holes, kFloorHoleBytes, get_floor_hole);
   get_rows(in, world.road_files, 4, [](base::ByteReader& from) { return from.get_string(); });
   get_extras(in, world);
   const auto hash = in.get<std::uint64_t>();
@@ -223,7 +223,7 @@ World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   check_links(world);
   check_rows(world);
   check_numbers(world);
-  finish(world);
+  update_extent_and_hash(world);
   if (world.hash != hash) refuse("its content does not have the hash it was saved with");
   return world;
 }

@@ -26,7 +26,7 @@ namespace sf::world {
 namespace {
 
 constexpr int kDeepest = 32;
-constexpr std::size_t kMostBytes = 4u << 20;
+constexpr std::size_t kMaxBytes = 4u << 20;
 
 /// The same text in ASCII: comments may be in any language, all else is ours. (toml++ up to 3.3 runs into undefined
 /// behaviour at some characters beyond.)
@@ -134,8 +134,8 @@ const TomlNode* find(const TomlNode& table, std::string_view key) {
 }
 
 TomlNode parse_toml(const std::string& file, std::string_view text) {
-  if (text.size() > kMostBytes)
-    throw base::InputError(file, 0, fmt::format("larger than {} MiB, the most that is read of TOML", kMostBytes >> 20));
+  if (text.size() > kMaxBytes)
+    throw base::InputError(file, 0, fmt::format("larger than {} MiB, the most that is read of TOML", kMaxBytes >> 20));
   try {
     const std::string ascii = in_ascii(file, text);
     check_keys(file, ascii);

@@ -40,7 +40,7 @@ bool segments_meet(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   return on(a, c, d) || on(b, c, d) || on(c, a, b);
 }
 
-int windings(std::span<const Segment> edges, glm::dvec2 p) {
+int winding_number(std::span<const Segment> edges, glm::dvec2 p) {
   int sum = 0;
   for (const Segment& e : edges) {
     if (!e.solid_left) continue;

@@ -46,7 +46,7 @@ bool segments_meet(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d);
 
 /// How often outlines, counter-clockwise around what is solid, go round `p`. Edges that are not solid to their left
 /// are skipped.
-int windings(std::span<const Segment> edges, glm::dvec2 p);
+int winding_number(std::span<const Segment> edges, glm::dvec2 p);
 
 class WallGrid {
  public:

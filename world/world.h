@@ -51,7 +51,7 @@ struct Model {
 
 /// One painted stripe: a band of constant width along a line. Every dash is a stripe of its own.
 /// Rule: at least two points, neighbours distinct; the line turns by less than 90 degrees at each.
-struct Stripe {
+struct LaneMarking {
   std::vector<glm::dvec2> line;       ///< [m] its middle, world frame
   double width = 0.0;                 ///< [m] > 0
   std::uint32_t color = 0xFFFFFFFFu;  ///< 0xAARRGGBB
@@ -78,12 +78,12 @@ struct Setting {
 /// A sensor that a mover carries, as the world file describes it. What its settings mean is its kind's business
 /// (sensors/<type>.cpp).
 struct Sensor {
-  std::string type;      ///< the kind's word, e.g. `magnetometer`
-  std::string name;      ///< unique among the mover's sensors
-  Pose X_MS;             ///< the model's frame in the mover's, its origin included; z is its foot
-  double height = 0.0;   ///< [m] of the model
-  double metres = 1.0;   ///< [m] per unit of length of the file
-  double radians = 1.0;  ///< [rad] per unit of angle of the file
+  std::string type;               ///< the kind's word, e.g. `magnetometer`
+  std::string name;               ///< unique among the mover's sensors
+  Pose X_MS;                      ///< the model's frame in the mover's, its origin included; z is its foot
+  double height = 0.0;            ///< [m] of the model
+  double metres_per_unit = 1.0;   ///< [m] per unit of length of the file
+  double radians_per_unit = 1.0;  ///< [rad] per unit of angle of the file
   std::vector<Setting> settings;
   int line = 0;  ///< 1-based, of the model in `file`
   std::string file;
@@ -91,7 +91,7 @@ struct Sensor {
 
 /// A word that a world file may use for a sensor, and the properties it may have beside those of every model and of
 /// every sensor (rate, phase, latency, noise).
-struct SensorWord {
+struct SensorKeyword {
   std::string_view type;
   std::span<const std::string_view> keys;  ///< indices left empty: `spose[]`
 };
@@ -141,7 +141,7 @@ inline double bearing_of(const Laser& laser, std::uint32_t i) {
 enum class Drive { differential, omni, car, skid };
 
 /// What stands between a commanded twist and the wheels (robots/command_law.h).
-enum class CommandLaw : std::uint8_t {
+enum class DriverModel : std::uint8_t {
   direct,        ///< nothing
   player_create  ///< Player's driver for the iRobot Create: whole millimetres, half the radius, at most 2 m of it
 };
@@ -163,7 +163,7 @@ struct Mover {
   double max_turn_acceleration = HUGE_VAL;  ///< [rad/s^2] > 0
   double wheelbase = 1.0;                   ///< [m] between the axles of a car
   double track = 0.3;                       ///< [m] > 0, between left and right wheels, as encoders see it
-  CommandLaw command_law = CommandLaw::direct;
+  DriverModel driver_model = DriverModel::direct;
   std::string controller;  ///< that drives it where nobody says otherwise; empty: the file names none of ours
   std::vector<Laser> lasers;
   std::vector<Sensor> sensors;  ///< of all other kinds, in file order
@@ -216,7 +216,7 @@ struct Emitter {
 };
 
 /// An edge in the floor: within its outline there is none.
-struct Drop {
+struct FloorHole {
   std::vector<glm::dvec2> outline;  ///< [m] world frame, closed, simple
   std::uint32_t model = 0;          ///< row in `World::models`
 };
@@ -236,20 +236,20 @@ struct World {
   std::string name;
   std::string file;  ///< as given by the user
   std::vector<Model> models;
-  std::vector<Segment> walls;    ///< static segments in the world frame
-  std::vector<Stripe> stripes;   ///< road paint: seen by lane edge sensors only
-  double road_resolution = 0.0;  ///< [m] of the raster that stripes are seen in; 0: they are seen exactly
-  std::vector<Magnet> magnets;   ///< that stand still
-  double magnet_cutoff = 0.0;    ///< [m] magnets farther away along the ground are left out; 0: none is
-  Accuracy accuracy;             ///< of sensors that say nothing of it and know the word
+  std::vector<Segment> walls;              ///< static segments in the world frame
+  std::vector<LaneMarking> lane_markings;  ///< road paint: seen by lane edge sensors only
+  double road_resolution = 0.0;            ///< [m] of the raster that stripes are seen in; 0: they are seen exactly
+  std::vector<Magnet> magnets;             ///< that stand still
+  double magnet_cutoff = 0.0;              ///< [m] magnets farther away along the ground are left out; 0: none is
+  Accuracy accuracy;                       ///< of sensors that say nothing of it and know the word
   std::vector<Mover> movers;
   std::vector<Path> paths;
   std::vector<Light> lights;
   std::vector<Emitter> emitters;
-  std::vector<Drop> drops;
-  std::vector<std::string> road_files;  ///< RNDFs that the world is painted from, as load_roads opens them
-  std::map<std::string, int> kept;      ///< entity types that we do not model but keep as bodies, with their count
-  double interval = 0.1;                ///< [s] simulated time per tick (`interval_sim`)
+  std::vector<FloorHole> floor_holes;
+  std::vector<std::string> road_files;    ///< RNDFs that the world is painted from, as load_roads opens them
+  std::map<std::string, int> unmodelled;  ///< entity types that we do not model but keep as bodies, with their count
+  double interval = 0.1;                  ///< [s] simulated time per tick (`interval_sim`)
   Extent extent;
   std::vector<Warning> warnings;
   std::uint64_t hash = 0;  ///< of everything above that a reading depends on
@@ -257,12 +257,12 @@ struct World {
 
 /// How to read.
 struct LoadOptions {
-  bool stage_obstacles = false;         ///< keep Stage's rule that `obstacle_return 0` floor plans do not stop robots
-  bool stage_noise = false;             ///< read `noise`'s first number as Stage does, as a variance
-  bool unknown_is_wall = false;         ///< ROS maps: unknown cells are walls
-  bool strict_roads = false;            ///< refuse road networks that do not keep to the letter of their format
-  std::string accuracy;                 ///< of all sensors, whatever the file says; empty: as it says
-  std::span<const SensorWord> sensors;  ///< kinds that are modelled; others are kept as bodies that do nothing
+  bool stage_obstacles = false;  ///< keep Stage's rule that `obstacle_return 0` floor plans do not stop robots
+  bool stage_noise = false;      ///< read `noise`'s first number as Stage does, as a variance
+  bool unknown_is_wall = false;  ///< ROS maps: unknown cells are walls
+  bool strict_roads = false;     ///< refuse road networks that do not keep to the letter of their format
+  std::string accuracy;          ///< of all sensors, whatever the file says; empty: as it says
+  std::span<const SensorKeyword> sensors;  ///< kinds that are modelled; others are kept as bodies that do nothing
 };
 
 /// Reads a Stage world (either dialect) or a ROS map_server map (`.yaml`).
@@ -288,6 +288,6 @@ std::vector<std::uint8_t> snapshot(const World& world);
 World from_snapshot(const std::vector<std::uint8_t>& bytes);
 
 /// Recomputes `extent` and `hash` from the tables.
-void finish(World& world);
+void update_extent_and_hash(World& world);
 
 }  // namespace sf::world

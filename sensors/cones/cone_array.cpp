@@ -20,8 +20,8 @@ void read_range(const world::Sensor& sensor, const ConeDefaults& defaults, ConeA
   const bool staged = find(sensor, "range") == nullptr && find(sensor, "sview") != nullptr;
   const char* const key = staged ? "sview" : "range";
   const auto values = staged ? tuple(sensor, key, 3, "[min max fov]") : tuple(sensor, key, 2, "[min max]");
-  array.range_min = values ? sensor.metres * (*values)[0] : defaults.range_min;
-  array.range_max = values ? sensor.metres * (*values)[1] : defaults.range_max;
+  array.range_min = values ? sensor.metres_per_unit * (*values)[0] : defaults.range_min;
+  array.range_max = values ? sensor.metres_per_unit * (*values)[1] : defaults.range_max;
   if (array.range_min >= 0.0 && array.range_max > array.range_min && array.range_max >= kShortest &&
       array.range_max <= kLongest)
     return;
@@ -33,7 +33,7 @@ void read_range(const world::Sensor& sensor, const ConeDefaults& defaults, ConeA
 double read_fov(const world::Sensor& sensor, double usual) {
   const bool staged = find(sensor, "fov") == nullptr && find(sensor, "sview") != nullptr;
   if (!staged) return angle(sensor, "fov", usual, 0.0, 2.0 * M_PI);
-  const double fov = sensor.radians * (*tuple(sensor, "sview", 3, "[min max fov]"))[2];
+  const double fov = sensor.radians_per_unit * (*tuple(sensor, "sview", 3, "[min max fov]"))[2];
   if (fov >= 0.0 && fov <= 2.0 * M_PI) return fov;
   refuse(sensor, "sview", "the third number of 'sview' is its field of view; expected 0 to a whole turn");
 }

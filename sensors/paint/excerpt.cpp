@@ -39,7 +39,7 @@ Excerpt excerpt_of(const world::World& world, bool exact) {
                            "the world's pictures have " + std::to_string(e.grains.size()) +
                                " different sizes of pixels; lane edge sensors tell at most 254 apart");
   e.paint_tag = exact ? 0 : grain_tag(e.grains, world.road_resolution);
-  e.paint = distinct_stripes(world.stripes);
+  e.paint = distinct_stripes(world.lane_markings);
 
   for (const world::Segment& wall : world.walls) {
     if (!in_sight(wall)) continue;
@@ -47,8 +47,8 @@ Excerpt excerpt_of(const world::World& world, bool exact) {
     e.world.walls.back().model = grain_tag(e.grains, pixel_of(world, wall));
   }
   std::vector<Face> faces;
-  for (const world::Stripe& stripe : e.paint)
-    if (exact) add_faces(stripe, faces);
+  for (const world::LaneMarking& marking : e.paint)
+    if (exact) add_faces(marking, faces);
   for (const Face& f : faces)
     e.world.walls.push_back({.a = f.a,
                              .b = f.b,

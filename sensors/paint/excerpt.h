@@ -12,10 +12,10 @@ namespace sf::sensors {
 /// Stripes exactly, or none of them; static walls that lasers and lane edge sensors see; movers, which hide what is
 /// behind them.
 struct Excerpt {
-  world::World world;                ///< walls and movers; `Segment::model` is a tag
-  std::vector<double> grains;        ///< [m] pixel sizes by row, rising; the first is 0
-  std::uint32_t paint_tag = 0;       ///< of a raster of road_resolution
-  std::vector<world::Stripe> paint;  ///< the distinct stripes of the road
+  world::World world;                     ///< walls and movers; `Segment::model` is a tag
+  std::vector<double> grains;             ///< [m] pixel sizes by row, rising; the first is 0
+  std::uint32_t paint_tag = 0;            ///< of a raster of road_resolution
+  std::vector<world::LaneMarking> paint;  ///< the distinct stripes of the road
 };
 
 /// @throws base::InputError where bitmaps have more sizes of pixels than a point's grain can say.

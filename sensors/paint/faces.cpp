@@ -66,10 +66,10 @@ void add_side(const std::vector<glm::dvec2>& side, bool closed, bool forward, bo
 
 }  // namespace
 
-void add_faces(const world::Stripe& stripe, std::vector<Face>& out) {
-  const std::vector<glm::dvec2>& line = stripe.line;
+void add_faces(const world::LaneMarking& marking, std::vector<Face>& out) {
+  const std::vector<glm::dvec2>& line = marking.line;
   const bool closed = line.size() > 3 && same(line.front(), line.back());
-  const Sides sides = sides_of(line, 0.5 * stripe.width, closed);
+  const Sides sides = sides_of(line, 0.5 * marking.width, closed);
   const bool solid = !runs_back(line, sides.left) && !runs_back(line, sides.right);
   add_side(sides.right, closed, true, solid, out);
   add_side(sides.left, closed, false, solid, out);
@@ -78,36 +78,36 @@ void add_faces(const world::Stripe& stripe, std::vector<Face>& out) {
   out.push_back({sides.left.front(), sides.right.front(), true, solid});
 }
 
-std::vector<world::Stripe> distinct_stripes(std::span<const world::Stripe> stripes, double within) {
+std::vector<world::LaneMarking> distinct_stripes(std::span<const world::LaneMarking> lane_markings, double within) {
   using Key = std::tuple<std::size_t, std::int64_t, std::int64_t>;
   // Stripes whose ends fall into neighbouring squares may be one, so keys are coarse and every neighbour is looked at.
   const double square = std::max(1e-2, 4.0 * within);
-  const auto key_of = [&](const world::Stripe& s, int dx, int dy) {
+  const auto key_of = [&](const world::LaneMarking& s, int dx, int dy) {
     const glm::dvec2 sum = s.line.front() + s.line.back();
     return Key{s.line.size(), static_cast<std::int64_t>(std::floor(sum.x / square)) + dx,
                static_cast<std::int64_t>(std::floor(sum.y / square)) + dy};
   };
-  const auto alike = [&](const world::Stripe& p, const world::Stripe& q, bool turned) {
+  const auto alike = [&](const world::LaneMarking& p, const world::LaneMarking& q, bool turned) {
     const std::size_t n = p.line.size();
     if (std::fabs(p.width - q.width) > within) return false;
     for (std::size_t i = 0; i < n; ++i)
       if (length(p.line[i] - q.line[turned ? n - 1 - i : i]) > within) return false;
     return true;
   };
-  std::vector<world::Stripe> kept;
+  std::vector<world::LaneMarking> kept;
   std::map<Key, std::vector<std::size_t>> known;
-  for (const world::Stripe& stripe : stripes) {
+  for (const world::LaneMarking& marking : lane_markings) {
     bool is_new = true;
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy) {
-        const auto found = known.find(key_of(stripe, dx, dy));
+        const auto found = known.find(key_of(marking, dx, dy));
         if (found == known.end()) continue;
         for (const std::size_t k : found->second)
-          is_new = is_new && !alike(stripe, kept[k], false) && !alike(stripe, kept[k], true);
+          is_new = is_new && !alike(marking, kept[k], false) && !alike(marking, kept[k], true);
       }
     if (!is_new) continue;
-    known[key_of(stripe, 0, 0)].push_back(kept.size());
-    kept.push_back(stripe);
+    known[key_of(marking, 0, 0)].push_back(kept.size());
+    kept.push_back(marking);
   }
   return kept;
 }

@@ -22,11 +22,12 @@ struct Face {
 };
 
 /// Faces of one stripe. A line that ends where it began has no end faces.
-/// Rule (World::stripes): at least two points, neighbours distinct, turns below 90 degrees.
-void add_faces(const world::Stripe& stripe, std::vector<Face>& out);
+/// Rule (World::lane_markings): at least two points, neighbours distinct, turns below 90 degrees.
+void add_faces(const world::LaneMarking& marking, std::vector<Face>& out);
 
 /// The stripes without those that lie on another: two lanes paint the edge that they share twice. Same width, same
 /// points within `within` [m], in either direction; the first of each stays.
-std::vector<world::Stripe> distinct_stripes(std::span<const world::Stripe> stripes, double within = 1e-4);
+std::vector<world::LaneMarking> distinct_stripes(std::span<const world::LaneMarking> lane_markings,
+                                                 double within = 1e-4);
 
 }  // namespace sf::sensors

@@ -80,12 +80,12 @@ bool near_end(const std::vector<Face>& ends, glm::dvec2 p, double cell) {
 
 }  // namespace
 
-PaintRaster::PaintRaster(const std::vector<world::Stripe>& stripes, double cell, double margin, const std::string& file,
-                         std::size_t most_bytes)
+PaintRaster::PaintRaster(const std::vector<world::LaneMarking>& lane_markings, double cell, double margin,
+                         const std::string& file, std::size_t most_bytes)
     : cell_(cell) {
   Box box;
   double length_of_all = 0.0;
-  for (const world::Stripe& s : stripes) {
+  for (const world::LaneMarking& s : lane_markings) {
     for (std::size_t i = 0; i < s.line.size(); ++i) {
       box.add({s.line[i].x - s.width, s.line[i].y - s.width});
       box.add({s.line[i].x + s.width, s.line[i].y + s.width});
@@ -96,13 +96,13 @@ PaintRaster::PaintRaster(const std::vector<world::Stripe>& stripes, double cell,
   const double across = (box.x_max - box.x_min + 2.0 * margin) / block + 3.0;
   const double down = (box.y_max - box.y_min + 2.0 * margin) / block + 3.0;
   const double bytes = 4.0 * across * down + 16.0 * length_of_all / block;
-  if (!stripes.empty() && !(bytes <= static_cast<double>(most_bytes)))
+  if (!lane_markings.empty() && !(bytes <= static_cast<double>(most_bytes)))
     throw base::InputError(file, 0,
                            fmt::format("road_resolution {:g} m makes {:.0f} MiB of pixels of this road; expected at "
                                        "most {}; use a coarser one, from {:.2g} m, or 0 for exact paint",
                                        cell, bytes / (1 << 20), most_bytes >> 20,
                                        cell * std::sqrt(bytes / static_cast<double>(most_bytes)) * 1.05));
-  if (stripes.empty()) {
+  if (lane_markings.empty()) {
     directory_.assign(1, std::numeric_limits<std::uint32_t>::max() >> 1);
     return;
   }
@@ -111,7 +111,7 @@ PaintRaster::PaintRaster(const std::vector<world::Stripe>& stripes, double cell,
   columns_ = static_cast<std::uint32_t>(across) + 1;
   rows_ = static_cast<std::uint32_t>(down) + 1;
   directory_.assign(std::size_t{columns_} * rows_, 0);
-  for (const world::Stripe& s : stripes) paint(s);
+  for (const world::LaneMarking& s : lane_markings) paint(s);
   measure_distances();
 }
 
@@ -133,9 +133,9 @@ void PaintRaster::set(std::int64_t x, std::int64_t y, std::size_t plane) {
   blocks_[at] |= 1u << (y % 4 * kBlock + x % kBlock);
 }
 
-void PaintRaster::paint(const world::Stripe& stripe) {
+void PaintRaster::paint(const world::LaneMarking& marking) {
   std::vector<Face> faces;
-  add_faces(stripe, faces);
+  add_faces(marking, faces);
   // Relative to the raster, so that it is as good far from the origin.
   const glm::dvec2 corner{static_cast<double>(column_) * cell_, static_cast<double>(row_) * cell_};
   Box box;

@@ -18,7 +18,7 @@ class PaintRaster {
 
   /// @param cell [m] > 0. @param margin [m] empty space kept round all paint, at least.
   /// @throws base::InputError naming road_resolution, with `file`, when the raster would take more than `most_bytes`.
-  PaintRaster(const std::vector<world::Stripe>& stripes, double cell, double margin, const std::string& file,
+  PaintRaster(const std::vector<world::LaneMarking>& lane_markings, double cell, double margin, const std::string& file,
               std::size_t most_bytes = std::size_t{1} << 29);
 
   double cell() const { return cell_; }                  ///< [m]
@@ -40,7 +40,7 @@ class PaintRaster {
  private:
   bool bit(std::int64_t x, std::int64_t y, std::size_t plane) const;
   void set(std::int64_t x, std::int64_t y, std::size_t plane);
-  void paint(const world::Stripe& stripe);
+  void paint(const world::LaneMarking& marking);
   void measure_distances();
 
   double cell_;

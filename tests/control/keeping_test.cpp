@@ -13,7 +13,7 @@
 #include "sensors/laneedge.h"
 #include "sensors/magnetometer.h"
 #include "tests/robots/scenes.h"
-#include "world/paths.h"
+#include "world/path_geometry.h"
 
 namespace sf::control {
 namespace {
@@ -46,7 +46,7 @@ Setting set(const char* key, double value) { return {key, value, ""}; }
 
 /// To the left edge, by formula: what a perfect lane edge sensor reads, but for its perpendicular.
 std::vector<double> edge_from(const world::World& world, const Pose& X_WM) {
-  const world::OnPath at = world::nearest(world.paths[0], transform(X_WM, {0.225, 0.0}));
+  const world::PathProjection at = world::project_onto(world.paths[0], transform(X_WM, {0.225, 0.0}));
   return {0.5 * world.paths[0].pieces[at.piece].width - at.offset, 61, 0, 0};
 }
 
@@ -54,7 +54,7 @@ std::vector<double> edge_from(const world::World& world, const Pose& X_WM) {
 std::vector<double> field_over(const world::World& world, const Pose& X_WM) {
   std::vector<double> values;
   for (int i = 0; i < 5; ++i) {
-    const double far = world::nearest(world.paths[0], transform(X_WM, {0.2, -0.15 + 0.075 * i})).offset;
+    const double far = world::project_onto(world.paths[0], transform(X_WM, {0.2, -0.15 + 0.075 * i})).offset;
     const double field = 1.81 * sensors::kGauss / (1.0 + far * far / 0.015);
     values.insert(values.end(), {field, 0.0, 0.0, field});
   }
@@ -92,12 +92,12 @@ Drive drive(const world::World& world, Controller& controller, std::uint8_t kind
     result.mean_abs += std::abs(controller.error());
     result.largest = std::max(result.largest, std::abs(controller.error()));
     X_WM = robots::advance(X_WM, plant(twist), 0.1);
-    result.farthest = std::max(result.farthest, std::abs(world::nearest(world.paths[0], {X_WM.x, X_WM.y}).offset));
+    result.farthest = std::max(result.farthest, std::abs(world::project_onto(world.paths[0], {X_WM.x, X_WM.y}).offset));
   }
   result.seconds = 0.1 * steps;
   result.mean /= steps;
   result.mean_abs /= steps;
-  result.end = world::nearest(world.paths[0], {X_WM.x, X_WM.y}).s;
+  result.end = world::project_onto(world.paths[0], {X_WM.x, X_WM.y}).s;
   return result;
 }
 
@@ -209,7 +209,7 @@ TEST(LaneKeeping, its_own_gain_keeps_the_lane) {
   for (const auto plant : {&ideal, &player_create})
     for (const double speed : {0.1, 0.2, 0.4}) {
       world::World world = path_world();
-      if (plant == &player_create) world.movers[0].command_law = world::CommandLaw::player_create;
+      if (plant == &player_create) world.movers[0].driver_model = world::DriverModel::player_create;
       const auto controller = make(world, lane_keeping_controller, {set("speed", speed)});
       const Drive d = drive(
           world, *controller, sensors::kLaneEdge, [&](const Pose& X) { return edge_from(world, X); }, *plant);
@@ -219,10 +219,10 @@ TEST(LaneKeeping, its_own_gain_keeps_the_lane) {
 }
 
 TEST(LaneKeeping, its_own_gain_follows_from_speed_and_sensor) {
-  const auto gain = [](double speed, double ahead, world::CommandLaw law = world::CommandLaw::direct) {
+  const auto gain = [](double speed, double ahead, world::DriverModel law = world::DriverModel::direct) {
     world::World world = path_world();
     world.movers[0].sensors[0].X_MS.x = ahead;
-    world.movers[0].command_law = law;
+    world.movers[0].driver_model = law;
     const auto controller = make(world, lane_keeping_controller, {set("speed", speed), set("half_width", 0.25)});
     const std::vector<double> values{0.35};
     const base::ReadingBlock block{.kind = sensors::kLaneEdge, .values = values};
@@ -230,7 +230,7 @@ TEST(LaneKeeping, its_own_gain_follows_from_speed_and_sensor) {
   };
   EXPECT_NEAR(gain(0.1, 0.2), 5.0, 1e-9) << "2 v / l^2";
   EXPECT_NEAR(gain(0.05, 0.2), 2.5, 1e-9);
-  EXPECT_NEAR(gain(0.1, 0.2, world::CommandLaw::player_create), 2.5, 1e-9) << "its driver doubles it";
+  EXPECT_NEAR(gain(0.1, 0.2, world::DriverModel::player_create), 2.5, 1e-9) << "its driver doubles it";
   EXPECT_NEAR(gain(0.4, 0.2), 10.0, 1e-9) << "2 rad/s / l, for steps at 10 Hz";
   EXPECT_NEAR(gain(0.1, -0.1), 20.0, 1e-9) << "as if 0.1 m ahead";
 }

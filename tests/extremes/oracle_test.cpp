@@ -165,15 +165,15 @@ TEST(Oracle, DistancesToRandomEdges) {
     const glm::dvec2 middle =
         glm::dvec2{X.x, X.y} + distance * base::rotate(yaw, {1.0, 0.0}) + 0.05 * distance * normal;
     world::World world;
-    world.stripes.push_back({{middle - 5.0 * distance * along, middle + 5.0 * distance * along}, 0.1 * distance});
+    world.lane_markings.push_back({{middle - 5.0 * distance * along, middle + 5.0 * distance * along}, 0.1 * distance});
     world.movers[add_mover(world, X)].sensors.push_back(
         sensor("laneedge", {{"perpendicular", {0.0}}, {"range_max", {3.0 * distance}}}, 0.1));
     const Look look = lab().look(world);
-    const glm::dvec2 a = world.stripes[0].line[0], b = world.stripes[0].line[1];
+    const glm::dvec2 a = world.lane_markings[0].line[0], b = world.lane_markings[0].line[1];
     const Digits50 tx = Digits50(b.x) - a.x, ty = Digits50(b.y) - a.y, size = sqrt(tx * tx + ty * ty);
     const Digits50 nx = ty / size, ny = -tx / size;
     const Digits50 height =
-        nx * (Digits50(a.x) - X.x) + ny * (Digits50(a.y) - X.y) - Digits50(world.stripes[0].width) / 2;
+        nx * (Digits50(a.x) - X.x) + ny * (Digits50(a.y) - X.y) - Digits50(world.lane_markings[0].width) / 2;
     const Digits50 exact = height / (nx * cos(Digits50(yaw)) + ny * sin(Digits50(yaw)));
     const double got = look.readings[0].values[0];
     const double allowed = (4.0 * grain + 1e-13 * distance) / std::pow(std::cos(tilt), 2);

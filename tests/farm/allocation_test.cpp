@@ -84,7 +84,7 @@ TEST(Allocation, NoneWithSensorsOfTheHostEither) {
     sensors.push_back(trial::fitted("gps", {scenes::setting("noise", {1.0}), scenes::setting("rate", {10.0})}));
   }
   trial::add_solid(world, trial::square({0, 0}, 1.5), 0.5, 0.6);
-  world.drops.push_back({trial::square({1, 0}, 0.7), 0});
+  world.floor_holes.push_back({trial::square({1, 0}, 0.7), 0});
   using Kind = world::Emitter::Kind;
   for (const Kind kind : {Kind::dock, Kind::virtual_wall})
     world.emitters.push_back({kind, world::kNone, {2, 0, 0, 0}, 2.0, 0.7, 0.5});

@@ -38,7 +38,7 @@ TEST(Price, KindsThatAreAbsentHoldNothing) {
   EXPECT_EQ(lasers.begin()->first, "laser");
 
   for (int i = 0; i < 400; ++i) world.magnets.push_back(scenes::magnet({0.02 * i, 0.0}));
-  world.stripes.push_back({{{-4.0, 0.0}, {4.0, 0.0}}, 0.1});
+  world.lane_markings.push_back({{{-4.0, 0.0}, {4.0, 0.0}}, 0.1});
   EXPECT_EQ(held_for(world), lasers) << "magnets and paint that nobody measures";
 
   world.movers[0].sensors.push_back(scenes::five());

@@ -46,7 +46,7 @@ void equip(world::Mover& mover, trial::Chance& chance) {
 world::World varied_world(std::uint64_t seed) {
   trial::Chance chance(seed);
   world::World world = scenes::boxes(8, 10.0, seed);
-  world.stripes.push_back({{{-4.0, 0.0}, {4.0, 0.3}}, 0.1});
+  world.lane_markings.push_back({{{-4.0, 0.0}, {4.0, 0.3}}, 0.1});
   if (seed % 3 == 1) world.road_resolution = 0.02;
   for (int i = 0; i < 60; ++i) world.magnets.push_back(scenes::magnet(chance.in_square(4.0)));
   if (seed % 2 == 1) world.magnet_cutoff = 1.0;

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "world/picture.h"
-#include "world/shape.h"
+#include "world/stage/model_shape.h"
 
 namespace {
 
@@ -26,10 +26,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(picture.value.size() == std::size_t{picture.width} * picture.height);
     require(picture.opaque.empty() || picture.opaque.size() == picture.value.size());
     if (picture.value.size() > kMost) return 0;
-    world::Grid grid{picture.width, picture.height, picture.value};
+    world::Bitmap grid{picture.width, picture.height, picture.value};
     for (std::uint8_t& cell : grid.solid) cell = cell <= 127 ? 1 : 0;
     const auto traced = world::trace(std::move(grid), "fuzz.png");
-    for (const world::Run& run : traced->runs) require(run.a.i <= picture.width && run.b.j <= picture.height);
+    for (const world::BoundaryRun& run : traced->runs) require(run.a.i <= picture.width && run.b.j <= picture.height);
   } catch (const base::InputError& error) {
     require(std::string_view(error.what()).starts_with("fuzz.png"));
   }

@@ -25,7 +25,7 @@ void check_network(std::string_view text, bool strict) {
   const world::RoadNetwork roads = world::build_network(rndf, {}, warnings);
   require(roads.counts.lanes == roads.lanes.size() && roads.counts.exits == roads.exits.size());
   for (const world::RoadLane& lane : roads.lanes) require(!lane.points.empty() && lane.width > 0.0);
-  for (const world::Stripe& stripe : world::paint_of(roads)) {
+  for (const world::LaneMarking& stripe : world::lane_markings_of(roads)) {
     require(stripe.line.size() >= 2 && stripe.width > 0.0);
     for (const glm::dvec2& p : stripe.line) require(std::isfinite(p.x) && std::isfinite(p.y));
   }

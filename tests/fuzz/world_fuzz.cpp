@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "world/stage.h"
+#include "world/stage/stage.h"
 
 namespace {
 
@@ -20,7 +20,7 @@ void require(bool holds) {
 void examine(const world::World& world) {
   for (const world::Segment& wall : world.walls)
     require((wall.a.x != wall.b.x || wall.a.y != wall.b.y) && wall.model < world.models.size());
-  for (const world::Stripe& stripe : world.stripes) require(stripe.line.size() >= 2 && stripe.width > 0.0);
+  for (const world::LaneMarking& stripe : world.lane_markings) require(stripe.line.size() >= 2 && stripe.width > 0.0);
   for (const world::Mover& mover : world.movers) {
     require(mover.model < world.models.size() && std::isfinite(mover.radius) && mover.max_forward > 0.0);
     for (const world::Laser& laser : mover.lasers)

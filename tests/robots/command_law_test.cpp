@@ -15,7 +15,7 @@ using base::Twist;
 world::Mover create() {
   world::Mover mover;
   mover.track = 0.258;
-  mover.command_law = world::CommandLaw::player_create;
+  mover.driver_model = world::DriverModel::player_create;
   return mover;
 }
 

@@ -149,11 +149,11 @@ TEST(Contact, accelerations_limit_driving_but_not_being_stopped) {
   EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.forward, -0.1) << "and leaves from standing";
 }
 
-TEST(Contact, the_command_law_comes_first) {
+TEST(Contact, the_driver_model_comes_first) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_create(world, {0, 0, 0, 0});
   mover.track = 0.258;
-  mover.command_law = world::CommandLaw::player_create;
+  mover.driver_model = world::DriverModel::player_create;
   Fleet fleet(world);
   drive(fleet, {{0.1, 0, 0.1}});
   EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.turn, 0.2);

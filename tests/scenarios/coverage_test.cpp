@@ -81,7 +81,7 @@ TEST(Coverage, StopsAtWalls) {
   const glm::dvec2 from{-1.5, 0.0}, to{1.5, 0.0};
   world::Segment wall{.a = from, .b = to, .z_max = 0.5, .solid_left = false};
   world.walls.push_back(wall);
-  world::finish(world);
+  world::update_extent_and_hash(world);
   const OwnMap map(world, 0);
   const maps::Grid seen = what_could_be_seen(world, 0, map.grid().plan);
   for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {

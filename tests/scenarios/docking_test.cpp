@@ -31,7 +31,7 @@ world::World car_park() {
   std::erase_if(mover.sensors, [](const world::Sensor& sensor) { return sensor.type != "irreceiver"; });
   world.road_files.clear();
   world.magnets.clear();
-  world::finish(world);
+  world::update_extent_and_hash(world);
   return world;
 }
 

@@ -24,7 +24,7 @@ world::World lasers(std::uint32_t robots) {
   world.walls.push_back(world.walls.front());
   world.walls.back().z_min = 5.0;
   world.walls.back().z_max = 6.0;
-  world::finish(world);
+  world::update_extent_and_hash(world);
   return world;
 }
 
@@ -66,7 +66,7 @@ TEST(Explanation, WhatIsGivenAgainIsCounted) {
 TEST(Explanation, HiddenMoversAreCounted) {
   world::World world;
   for (int i = 0; i < 6; ++i) scenes::add_robot(world, {0.5 * i, 0.0, 0.0, 0.1}, scenes::laser(61, 2.0 * M_PI, 4.0));
-  world::finish(world);
+  world::update_extent_and_hash(world);
   farm::Farm farm(world, device());
   farm.hear_all();
   farm.tick(0, {});

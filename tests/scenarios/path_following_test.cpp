@@ -9,7 +9,7 @@
 #include "scenarios/simulation.h"
 #include "scenarios/trial.h"
 #include "sensors/kind.h"
-#include "world/paths.h"
+#include "world/path_geometry.h"
 
 namespace sf::scenarios {
 namespace {
@@ -110,7 +110,7 @@ TEST(PathFollowing, ByItsOwnDefaultsTheShippedRobotKeepsTheLane) {
     int ticks = 0;
     for (; ticks < 800 && !simulation.all_done(); ++ticks) {
       const base::Pose X_WM = simulation.step().reports[0].X_WM;
-      const world::OnPath at = world::nearest(world.paths[0], {X_WM.x, X_WM.y});
+      const world::PathProjection at = world::project_onto(world.paths[0], {X_WM.x, X_WM.y});
       least =
           std::min(least, 0.5 * world.paths[0].pieces[at.piece].width - std::abs(at.offset) - world.movers[0].radius);
     }

@@ -122,10 +122,10 @@ TEST(ScenarioFile, RobotsWithAPoseAloneKeepTheDefault) {
   EXPECT_NE(world.hash, world_of(parse("")).hash);
 }
 
-TEST(ScenarioFile, ThePlantIsEveryMoversCommandLaw) {
-  EXPECT_EQ(world_of(parse("")).movers[0].command_law, world::CommandLaw::direct);
-  EXPECT_EQ(world_of(parse("plant = \"thesis\"")).movers[0].command_law, world::CommandLaw::player_create);
-  EXPECT_EQ(world_of(parse("plant = \"ideal\"")).movers[0].command_law, world::CommandLaw::direct);
+TEST(ScenarioFile, ThePlantIsEveryMoversDriverModel) {
+  EXPECT_EQ(world_of(parse("")).movers[0].driver_model, world::DriverModel::direct);
+  EXPECT_EQ(world_of(parse("plant = \"thesis\"")).movers[0].driver_model, world::DriverModel::player_create);
+  EXPECT_EQ(world_of(parse("plant = \"ideal\"")).movers[0].driver_model, world::DriverModel::direct);
 }
 
 TEST(ScenarioFile, LinksHaveTheScenariosSeed) {

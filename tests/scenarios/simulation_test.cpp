@@ -143,7 +143,7 @@ world::World fast_world(const std::vector<double>& rates, const world::LaserNois
     world.movers[m].lasers[0].rate = rates[m];
     for (world::Segment& side : world.movers[m].body) side.seen_by_laser = false;
   }
-  world::finish(world);
+  world::update_extent_and_hash(world);
   return world;
 }
 
@@ -198,19 +198,19 @@ TEST(Simulation, OthersRatesChangeNothing) {
   for (const double rate : {10.0, 13.0}) {
     world::World alone = fast_world({rate}, noise);
     alone.movers[0].sensors = {sensor("encoder", 10.0)};
-    world::finish(alone);
+    world::update_extent_and_hash(alone);
     const auto expected = read_by_first(alone);
     EXPECT_GT(expected.size(), rate == 10.0 ? 119u : 130u);
 
     world::World company = fast_world({rate, 50.0, 333.0, 7.0}, noise);
     company.movers[0].sensors = alone.movers[0].sensors;
     for (std::size_t m = 1; m < 4; ++m) company.movers[m].X_WM.x += 100.0;
-    world::finish(company);
+    world::update_extent_and_hash(company);
     EXPECT_EQ(read_by_first(company), expected) << rate << " Hz, others far away";
 
     world::World more = alone;
     more.movers[0].sensors.push_back(sensor("gyro", 77.0));
-    world::finish(more);
+    world::update_extent_and_hash(more);
     EXPECT_EQ(read_by_first(more, 9), expected) << rate << " Hz, and a gyro on itself";
   }
 }
@@ -274,7 +274,7 @@ TEST(Simulation, RobotsHearEachOther) {
   for (world::Mover& mover : world.movers) mover.X_WM = {100.0, 100.0, 0.0, 0.0};
   world.movers[rows[0]].X_WM = {0.0, 0.0, 0.0, 0.0};
   world.movers[rows[1]].X_WM = {3.0, 0.0, 0.0, M_PI};
-  world::finish(world);
+  world::update_extent_and_hash(world);
   SimulationOptions options = nobody(world);
   const auto towards = [&](double x) {
     return plan("patrol", {{"points", std::vector<double>{x, 0.0}, ""}, {"speed", 0.3, ""}});

@@ -22,7 +22,7 @@ world::World small_world() {
   scenes::add_robots(world, 4, scenes::laser(61, M_PI, 4.0), 5);
   world.magnets.push_back({{0.5, 0.5}, -0.04, 1.0, 0.01, 0});
   for (world::Mover& mover : world.movers) mover.sensors.push_back({"magnetometer", "m", {}, 0.1, 1.0, 1.0, {}, 0, ""});
-  world::finish(world);
+  world::update_extent_and_hash(world);
   return world;
 }
 
@@ -54,13 +54,13 @@ TEST(Tradeoff, CanBeStopped) {
 /// A lane edge sensor on a bend: what it reads is covered by no bound, and none is shown beside its errors.
 TEST(Tradeoff, WhatNoBoundCoversHasNone) {
   world::World world;
-  world::Stripe bend{{}, 0.1};
+  world::LaneMarking bend{{}, 0.1};
   for (int i = 0; i <= 600; ++i) bend.line.push_back(base::rotate(0.01 * i, {0.68, 0.0}));
-  world.stripes.push_back(bend);
+  world.lane_markings.push_back(bend);
   scenes::add_robot(world, {0.3, 0.0, 0.0, 0.0}, scenes::laser(3));
   world.movers[0].lasers.clear();
   world.movers[0].sensors.push_back({"laneedge", "e", {}, 0.01, 1.0, M_PI / 180.0, {}, 0, ""});
-  world::finish(world);
+  world::update_extent_and_hash(world);
   for (const Grade& g : tradeoff(world, device(), {})) {
     EXPECT_EQ(g.sensor, "laneedge");
     EXPECT_EQ(g.covered, 0.0) << g.mode;

@@ -29,7 +29,7 @@ world::World small_world() {
   laser.noise = {.range_sigma = 0.01, .range_proportional = 0.0, .angle_sigma = 0.002};
   laser.latency = 0.15;
   scenes::add_robots(world, 6, laser, 5);
-  world::finish(world);
+  world::update_extent_and_hash(world);
   return world;
 }
 
@@ -71,7 +71,7 @@ TEST(Verification, ReadingsFromBetweenTicks) {
       world.movers[m].sensors.push_back(sensor);
     }
   }
-  world::finish(world);
+  world::update_extent_and_hash(world);
   const record::Recording run = recorded(true, "exact", world);
   const Verification v = verify(run, device(), {});
   ASSERT_EQ(v.again.size(), 3u);

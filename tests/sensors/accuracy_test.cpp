@@ -134,7 +134,7 @@ Read read_in(world::World world, const std::string& mode) {
 world::World crowd(std::uint32_t samples, double fov = M_PI) {
   world::World world = scenes::boxes(60, 16.0, 1);
   scenes::add_robots(world, 20, scenes::laser(samples, fov, 8.0), 1);
-  world::finish(world);
+  world::update_extent_and_hash(world);
   return world;
 }
 
@@ -162,7 +162,7 @@ TEST(Accuracy, SkippingIsRightOnFlatWalls) {
   world::World world;
   scenes::add_room(world, {0.0, 0.0}, 4.0);
   scenes::add_robot(world, {0.3, -0.7, 0.0, 0.4}, scenes::laser(361, 2.0 * M_PI, 8.0));
-  world::finish(world);
+  world::update_extent_and_hash(world);
   const Read exact = read_in(world, "exact"), some = read_in(world, "skip4");
   std::size_t near_corners = 0;
   for (std::size_t i = 0; i < exact.values.size(); ++i) {
@@ -178,7 +178,7 @@ TEST(Accuracy, BetweenTwoThingsTheNearerBeamIsTaken) {
   scenes::add_room(world, {0.0, 0.0}, 8.0);
   scenes::add_outline(world, {{1.0, 0.02}, {1.2, 0.02}, {1.2, 1.0}, {1.0, 1.0}}, "box");
   scenes::add_robot(world, {0.0, 0.0, 0.0, 0.0}, scenes::laser(5, 0.08, 9.0));  // bearings -0.04, -0.02, 0, 0.02, 0.04
-  world::finish(world);
+  world::update_extent_and_hash(world);
   const Read some = read_in(world, "skip4");
   EXPECT_EQ(some.values[1], some.values[0]);
   EXPECT_EQ(some.values[2], some.values[4]) << "half way: the later one";
@@ -220,7 +220,7 @@ TEST(Accuracy, GrazingBeamsAreFlagged) {
   const world::Laser laser = eye(3, 4e-4, 8.0);  // bearings -2e-4, 0, 2e-4
   add_eye(world, {0.0, 0.0, 0.0, -0.0}, laser);
   add_eye(world, {0.0, 0.0, 0.0, -0.1}, laser);
-  world::finish(world);
+  world::update_extent_and_hash(world);
   const Glance glance(world);
   ASSERT_EQ(glance.readings[0].quality.size(), 3u);
   EXPECT_EQ(glance.readings[0].quality[0], QualityFlag::grazing) << "2e-4 rad";
@@ -235,7 +235,7 @@ TEST(Accuracy, BoundsAreStatedBeforehandAndGrowWithTheWorld) {
   };
   world::World near = crowd(61), far = crowd(61);
   world::translate(far, 1e7, 1e7);
-  world::finish(far);
+  world::update_extent_and_hash(far);
   EXPECT_LT(stated(near), 2e-9);
   EXPECT_GT(stated(far), 1e-6);
   EXPECT_LT(stated(far), 1e-5) << "10 000 km away";
@@ -257,7 +257,7 @@ TEST(Accuracy, NearMagnetsAloneStayWithinTheBound) {
     world.movers[m].lasers.clear();
     world.movers[m].sensors.push_back({"magnetometer", "m", {0.1, 0.0, 0.0, 0.0}, 0.1, 1.0, 1.0, {}, 0, ""});
   }
-  world::finish(world);
+  world::update_extent_and_hash(world);
   const Read exact = read_in(world, "exact");
   EXPECT_LT(exact.bound, 1e-7) << "moments are kept in 32 bits";
   double last = 0.0;
@@ -305,7 +305,7 @@ TEST(Accuracy, FieldsAreWithinTheirBoundAnywhere) {
         scenes::add_carrier(world, {p.x, p.y, 0.0, chance.between(-3.0, 3.0)},
                             scenes::array({{0.1, 0.0, 0.0, 0.0}, {-0.03, 0.07, 0.0, 0.0}}, height));
       }
-      world::finish(world);
+      world::update_extent_and_hash(world);
       const Glance glance(world, {.noise = false});
       double worst = 0.0;
       for (const base::ReadingBlock& r : glance.readings)
@@ -326,7 +326,7 @@ TEST(Accuracy, AMagnetAsHighAsTheSensorHasNoBound) {
   world::World world;
   world.magnets.push_back({{0.0, 0.0}, 0.05, 1.0, 0.01, 0});
   scenes::add_carrier(world, {0.3, 0.0, 0.0, 0.0}, scenes::array({{0.0, 0.0, 0.0, 0.0}}, 0.05));
-  world::finish(world);
+  world::update_extent_and_hash(world);
   EXPECT_TRUE(std::isinf(Glance(world).readings[0].bound));
   EXPECT_TRUE(std::isinf(sensors::statements_of(world, sensors::Roster(world)).at(0).bound.error));
 }
@@ -338,7 +338,7 @@ TEST(Accuracy, KindsWithoutABoundStateNone) {
   const std::uint32_t m = scenes::add_robot(world, {}, scenes::laser(3));
   for (const char* type : {"sonar", "infrared", "bumper", "cliff", "encoder", "gyro", "gps", "irreceiver"})
     world.movers[m].sensors.push_back({type, type, {}, 0.1, 1.0, 1.0, {}, 0, ""});
-  world::finish(world);
+  world::update_extent_and_hash(world);
   const Glance glance(world);
   EXPECT_EQ(glance.readings.size(), 9u);
   for (const base::ReadingBlock& r : glance.readings)
@@ -360,9 +360,9 @@ TEST(Accuracy, AWorldsOwnCutOffStaysTheNearest) {
 
 TEST(Accuracy, FewerRaysFindAStraightEdgeAsWell) {
   world::World world;
-  world.stripes.push_back({{{-10.0, 0.4}, {10.0, 0.4}}, 0.1, 0xFFFFFFFFu});
+  world.lane_markings.push_back({{{-10.0, 0.4}, {10.0, 0.4}}, 0.1, 0xFFFFFFFFu});
   add_edge_eye(world, {0.0, 0.0, 0.0, 0.5 * M_PI + 0.1});
-  world::finish(world);
+  world::update_extent_and_hash(world);
   const Read exact = read_in(world, "exact");
   EXPECT_NEAR(exact.bound, 1e-8, 1e-9);
   for (const char* mode : {"skip2", "skip4"}) {

@@ -20,7 +20,9 @@ world::Sensor four_points() {
                  setting("spose[2]", {-0.1, 0.1, 0}), setting("spose[3]", {-0.1, -0.1, 0})});
 }
 
-void add_drop(world::World& world, std::vector<glm::dvec2> outline) { world.drops.push_back({std::move(outline), 0}); }
+void add_drop(world::World& world, std::vector<glm::dvec2> outline) {
+  world.floor_holes.push_back({std::move(outline), 0});
+}
 
 std::vector<double> read(const world::World& world) { return values_of(Glance(world).readings[0]); }
 
@@ -82,7 +84,7 @@ TEST(Cliff, PointsOnSharedEdgesAreInExactlyOneDrop) {
 /// The tree of boxes against asking every drop.
 TEST(Cliff, ManyDropsAnswerAsEachOneDoes) {
   Chance chance(2);
-  std::vector<world::Drop> drops;
+  std::vector<world::FloorHole> drops;
   for (int i = 0; i < 300; ++i) {
     const glm::dvec2 p = chance.in_square(10.0);
     std::vector<glm::dvec2> outline;

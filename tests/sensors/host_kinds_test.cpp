@@ -30,7 +30,7 @@ world::World everything(int robots) {
   }
   add_solid(world, square({2, 1}, 1.5), 0.5, 0.6);
   add_solid(world, square({4, 1}, 0.2), 0.0, 2.0);
-  world.drops.push_back({square({1, 0.5}, 0.7), 0});
+  world.floor_holes.push_back({square({1, 0.5}, 0.7), 0});
   world.emitters.push_back({world::Emitter::Kind::dock, world::kNone, {3, 1, 0, 0}, 2.0, 0.7, 0.5});
   return world;
 }
@@ -120,7 +120,7 @@ TEST(HostKinds, EachIsItsOwn) {
   fit(1, "gps", {setting("satellites", {8})});
   fit(2, "gps", {setting("satellites", {16})});
   fit(2, "gps", {setting("satellites", {12})});
-  world.drops = {{square({10.5, 0}, 0.5), 0}, {square({19.5, 0}, 0.5), 0}};
+  world.floor_holes = {{square({10.5, 0}, 0.5), 0}, {square({19.5, 0}, 0.5), 0}};
   add_solid(world, square({10, 0}, 30.0), 0.3, 0.4);  // over the third robot, under the second
   farm::Farm farm(world, device());
   farm.hear_all();

@@ -22,7 +22,7 @@ inline world::Sensor fitted(const std::string& type, std::vector<world::Setting>
   world::Sensor sensor;
   sensor.type = type;
   sensor.name = type;
-  sensor.radians = M_PI / 180.0;
+  sensor.radians_per_unit = M_PI / 180.0;
   sensor.file = "park.world";
   sensor.line = 7;
   sensor.settings = std::move(settings);

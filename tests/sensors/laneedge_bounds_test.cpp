@@ -30,7 +30,7 @@ void add_sides(std::vector<Face>& faces, glm::dvec2 a, glm::dvec2 b) {
 }
 
 void add_straight(world::World& world, std::vector<Face>& faces, glm::dvec2 a, glm::dvec2 b) {
-  world.stripes.push_back(stripe(a, b, kWidth));
+  world.lane_markings.push_back(stripe(a, b, kWidth));
   add_sides(faces, a, b);
 }
 
@@ -124,12 +124,12 @@ TEST(LaneEdgeBounds, HoldWhereStripesCross) {
 TEST(LaneEdgeBounds, HoldIntoABendAndOutOfIt) {
   world::World world;
   std::vector<Face> faces;
-  world::Stripe whole = arc({0.0, 0.68}, 0.68, -0.5 * M_PI, 0.0, kWidth);
+  world::LaneMarking whole = arc({0.0, 0.68}, 0.68, -0.5 * M_PI, 0.0, kWidth);
   whole.line.front() = {0.0, 0.0};
   whole.line.back() = {0.68, 0.68};
   whole.line.insert(whole.line.begin(), {-1.0, 0.0});
   whole.line.push_back({0.68, 1.68});
-  world.stripes = {whole};
+  world.lane_markings = {whole};
   // A bend is chords: within one of them, 2 mm long, an edge is straight.
   for (std::size_t i = 0; i + 1 < whole.line.size(); ++i) add_sides(faces, whole.line[i], whole.line[i + 1]);
   const Seen seen = judge(world, faces, anywhere(8000, {0.0, 0.5}, 1.0, 9));
@@ -145,7 +145,7 @@ TEST(LaneEdgeBounds, HoldOnDashes) {
   world::World world;
   std::vector<Face> faces;
   add_straight(world, faces, {-1.0, 0.0}, {1.0, 0.0});
-  world.stripes.clear();
+  world.lane_markings.clear();
   add_dashes(world, {-1.0, 0.0}, {1.0, 0.0}, kWidth, 0.1, 0.1);
   const Seen seen = judge(world, faces, anywhere(4000, {}, 1.2, 11));
   EXPECT_EQ(seen.beyond, 0) << seen.example;
@@ -195,23 +195,23 @@ QualityFlag said(world::World world, const Pose& pose, const Settings& settings 
 
 TEST(LaneEdgeBounds, AFlagSaysWhy) {
   world::World line;
-  line.stripes.push_back(stripe({-1.0, 0.0}, {1.0, 0.0}, kWidth));
+  line.lane_markings.push_back(stripe({-1.0, 0.0}, {1.0, 0.0}, kWidth));
   EXPECT_EQ(said(line, {0.0, -0.3, 0.0, 0.5 * M_PI}), QualityFlag::none);
   EXPECT_EQ(said(line, {1.02, -0.3, 0.0, 0.5 * M_PI}), QualityFlag::extrapolated) << "2 cm past the end";
   EXPECT_EQ(said(line, {0.0, -0.3, 0.0, 0.5 * M_PI}, {{"perpendicular", {-20}}}), QualityFlag::extrapolated);
   world::World bend;
-  bend.stripes.push_back(arc({0.0, 0.0}, 0.68, 0.0, 3.0, kWidth));
+  bend.lane_markings.push_back(arc({0.0, 0.0}, 0.68, 0.0, 3.0, kWidth));
   EXPECT_EQ(said(bend, {0.0, 0.4, 0.0, 0.5 * M_PI}), QualityFlag::not_straight);
   world::World two = line;
-  two.stripes.push_back(stripe({0.0, 0.3}, {1.0, 0.3}, kWidth));
-  two.stripes[0].line[1] = {0.02, 0.0};
+  two.lane_markings.push_back(stripe({0.0, 0.3}, {1.0, 0.3}, kWidth));
+  two.lane_markings[0].line[1] = {0.02, 0.0};
   EXPECT_EQ(said(two, {0.0, -0.3, 0.0, 0.5 * M_PI}), QualityFlag::not_straight) << "another edge behind its end";
 }
 
 /// Noise is in the line, and pixels are: then no bound is stated, and sigma counts.
 TEST(LaneEdgeBounds, AreNotStatedOfNoiseAndPixels) {
   world::World world;
-  world.stripes.push_back(stripe({-1.0, 0.0}, {1.0, 0.0}, kWidth));
+  world.lane_markings.push_back(stripe({-1.0, 0.0}, {1.0, 0.0}, kWidth));
   const Pose pose{0.0, -0.3, 0.0, 0.5 * M_PI};
   add_edge_eye(world, pose, {{"perpendicular", {0}}, {"noise", {0.002, 0, 0}}});
   EXPECT_TRUE(std::isinf(EdgeRig(world).tick({{0, 0}}, {pose})[0].bound));

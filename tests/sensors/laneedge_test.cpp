@@ -21,7 +21,7 @@ constexpr double kWidth = 0.1;
 
 /// Distance from `X_WS` along `bearing` [rad, sensor frame] to the left face of a straight stripe, from its formula
 /// alone.
-long double face_distance(const world::Stripe& s, const Pose& X_WS, double bearing) {
+long double face_distance(const world::LaneMarking& s, const Pose& X_WS, double bearing) {
   const long double tx = static_cast<long double>(s.line[1].x) - s.line[0].x;
   const long double ty = static_cast<long double>(s.line[1].y) - s.line[0].y;
   const long double size = std::sqrt(tx * tx + ty * ty);
@@ -36,7 +36,7 @@ long double face_distance(const world::Stripe& s, const Pose& X_WS, double beari
 /// A stripe along +x, its near face `d` metres ahead of a sensor at the origin that sees it askew by `degrees`.
 EdgeReading askew(double d, double degrees, const Settings& settings = {{"perpendicular", {0}}}) {
   world::World world;
-  world.stripes.push_back(stripe({20.0, 0.0}, {-20.0, 0.0}, kWidth));
+  world.lane_markings.push_back(stripe({20.0, 0.0}, {-20.0, 0.0}, kWidth));
   // The stripe's left side is -y.
   add_edge_eye(world, {0.0, -d - 0.5 * kWidth, 0.0, (90.0 + degrees) * kDegrees}, settings);
   return read_edges(world)[0];
@@ -82,7 +82,7 @@ TEST(LaneEdge, WhatIsBehindIsNotSeen) {
 
 TEST(LaneEdge, TheEndOfADashIsNoEdge) {
   world::World world;
-  world.stripes.push_back(stripe({0.3, 0.0}, {2.0, 0.0}, 0.2));
+  world.lane_markings.push_back(stripe({0.3, 0.0}, {2.0, 0.0}, 0.2));
   add_edge_eye(world, {});
   add_edge_eye(world, {1.0, -0.3, 0.0, 0.5 * M_PI});
   const auto readings = read_edges(world);
@@ -117,7 +117,7 @@ TEST(LaneEdge, ASingleRayReadsItsRange) {
 /// along +y. Both see the same edge, by default perpendicular to the robot.
 TEST(LaneEdge, TheThesisFrameAndOurs) {
   world::World world;
-  world.stripes.push_back(stripe({5.0, 0.5}, {-5.0, 0.5}, kWidth));
+  world.lane_markings.push_back(stripe({5.0, 0.5}, {-5.0, 0.5}, kWidth));
   for (const double tilt : {0.0, 20.0, -20.0}) {
     world::Mover ours;
     ours.X_WM = {0.0, 0.0, 0.0, tilt * kDegrees};
@@ -186,7 +186,7 @@ TEST(LaneEdge, DefaultsAreThoseOfTheThesis) {
 /// Movers hide paint and are none; what only the sensor's own robot carries hides nothing.
 TEST(LaneEdge, AMoverInTheWayIsNoEdge) {
   world::World world;
-  world.stripes.push_back(stripe({5.0, 0.0}, {-5.0, 0.0}, kWidth));
+  world.lane_markings.push_back(stripe({5.0, 0.0}, {-5.0, 0.0}, kWidth));
   add_edge_eye(world, {0.0, -0.55, 0.0, 0.5 * M_PI});
   EXPECT_EQ(read_edges(world)[0].points, 61);
   scenes::add_robot(world, {0.2, -0.25, 0.0, 0.0}, scenes::laser());
@@ -232,13 +232,13 @@ Scene straight_scene(std::uint32_t sensors_wanted, double most_degrees, std::uin
     const glm::dvec2 o = offset + glm::dvec2{7.0 * (k % 8), 7.0 * (k / 8.0)};
     const glm::dvec2 t{std::cos(a), std::sin(a)};
     const glm::dvec2 n{-t.y, t.x};
-    if (i < kStripes) scene.world.stripes.push_back(stripe(o - 3.0 * t, o + 3.0 * t, kWidth));
+    if (i < kStripes) scene.world.lane_markings.push_back(stripe(o - 3.0 * t, o + 3.0 * t, kWidth));
     const double tilt = chance.between(-most_degrees, most_degrees) * kDegrees;
     const double d = chance.between(0.02, std::fabs(tilt) > 60.0 * kDegrees ? 0.1 : 0.6);
     const glm::dvec2 p = o + chance.between(-0.5, 0.5) * t + (0.5 * kWidth + d) * n;
     const Pose X_WS{p.x, p.y, 0.0, std::atan2(-n.y, -n.x) + tilt};
     add_edge_eye(scene.world, X_WS, {{"perpendicular", {0}}});
-    scene.truth.push_back(face_distance(scene.world.stripes[k], X_WS, 0.0));
+    scene.truth.push_back(face_distance(scene.world.lane_markings[k], X_WS, 0.0));
   }
   return scene;
 }
@@ -286,7 +286,7 @@ TEST(LaneEdge, WhatMustNotMatter) {
   world::World world;
   Chance chance(8);
   add_dashes(world, {-3.0, 0.0}, {3.0, 0.7}, 0.05, 0.2, 0.1);
-  world.stripes.push_back(arc({0.0, -3.0}, 2.0, 0.3, 2.7, 0.08));
+  world.lane_markings.push_back(arc({0.0, -3.0}, 2.0, 0.3, 2.7, 0.08));
   for (int i = 0; i < 300; ++i)
     add_edge_eye(world, {chance.between(-2.5, 2.5), chance.between(-1.5, 1.2), 0.0, chance.between(-M_PI, M_PI)},
                  {{"perpendicular", {chance.between(-40.0, 40.0)}}});
@@ -295,9 +295,9 @@ TEST(LaneEdge, WhatMustNotMatter) {
   world::World moved = world;
   world::World mirror = world;
   const Pose X{31.0, -17.0, 0.0, 1.234};
-  for (world::Stripe& s : moved.stripes)
+  for (world::LaneMarking& s : moved.lane_markings)
     for (glm::dvec2& p : s.line) p = base::transform(X, p);
-  for (world::Stripe& s : mirror.stripes)
+  for (world::LaneMarking& s : mirror.lane_markings)
     for (glm::dvec2& p : s.line) p = mirrored(p);
   for (std::size_t i = 0; i < world.movers.size(); ++i) {
     moved.movers[i].X_WM = base::compose(X, world.movers[i].X_WM);
@@ -330,11 +330,11 @@ TEST(LaneEdge, WhatMustNotMatter) {
 /// Two lanes paint the edge that they share: seen once, and the same.
 TEST(LaneEdge, PaintOnPaintIsOnePaint) {
   world::World world;
-  world.stripes.push_back(stripe({-2, 0}, {2, 0}));
-  world.stripes.push_back(stripe({2, 0}, {-2, 0}));
+  world.lane_markings.push_back(stripe({-2, 0}, {2, 0}));
+  world.lane_markings.push_back(stripe({2, 0}, {-2, 0}));
   add_edge_eye(world, {0.1, -0.4, 0.0, 1.5});
   const EdgeReading twice = read_edges(world)[0];
-  world.stripes.pop_back();
+  world.lane_markings.pop_back();
   const EdgeReading once = read_edges(world)[0];
   EXPECT_EQ(once.distance, twice.distance);
   EXPECT_EQ(once.points, twice.points);
@@ -346,7 +346,7 @@ TEST(LaneEdge, AnArcIsOffByItsBendAndSaysSo) {
   std::vector<double> truth;
   Chance chance(12);
   constexpr double kRadius = 0.68;
-  world.stripes.push_back(arc({0, 0}, kRadius + 0.015, 0.0, 2.0 * M_PI - 0.01, 0.03, 1e-7));
+  world.lane_markings.push_back(arc({0, 0}, kRadius + 0.015, 0.0, 2.0 * M_PI - 0.01, 0.03, 1e-7));
   for (int i = 0; i < 500; ++i) {
     const double a = chance.between(0.5, 5.5);
     const double d = chance.between(0.05, 0.4);

@@ -12,7 +12,7 @@ world::Sensor edge_sensor(const Settings& settings, const base::Pose& X_MS) {
   sensor.type = "laneedge";
   sensor.name = "edge";
   sensor.X_MS = X_MS;
-  sensor.radians = M_PI / 180.0;
+  sensor.radians_per_unit = M_PI / 180.0;
   sensor.line = 7;
   sensor.file = "hand.world";
   int line = 8;
@@ -30,19 +30,19 @@ std::uint32_t add_edge_eye(world::World& world, const base::Pose& X_WM, Settings
   return mover.id;
 }
 
-world::Stripe stripe(glm::dvec2 from, glm::dvec2 to, double width) { return {{from, to}, width}; }
+world::LaneMarking stripe(glm::dvec2 from, glm::dvec2 to, double width) { return {{from, to}, width}; }
 
 void add_dashes(world::World& world, glm::dvec2 from, glm::dvec2 to, double width, double paint, double gap) {
   const double all = length(to - from);
   const glm::dvec2 along = (1.0 / all) * (to - from);
   for (double at = 0.0; at < all - 1e-6; at += paint + gap)
-    world.stripes.push_back(stripe(from + at * along, from + std::min(at + paint, all) * along, width));
+    world.lane_markings.push_back(stripe(from + at * along, from + std::min(at + paint, all) * along, width));
 }
 
-world::Stripe arc(glm::dvec2 centre, double radius, double from, double to, double width, double sagitta) {
+world::LaneMarking arc(glm::dvec2 centre, double radius, double from, double to, double width, double sagitta) {
   const double step = std::sqrt(8.0 * sagitta / (radius + width));
   const int pieces = std::max(2, static_cast<int>(std::ceil(std::fabs(to - from) / step)));
-  world::Stripe s;
+  world::LaneMarking s;
   s.width = width;
   for (int i = 0; i <= pieces; ++i) {
     const double a = from + (to - from) * i / pieces;

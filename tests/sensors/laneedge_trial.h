@@ -22,13 +22,13 @@ world::Sensor edge_sensor(const Settings& settings, const base::Pose& X_MS = {})
 std::uint32_t add_edge_eye(world::World& world, const base::Pose& X_WM, Settings settings = {});
 
 /// A straight stripe.
-world::Stripe stripe(glm::dvec2 from, glm::dvec2 to, double width = 0.1);
+world::LaneMarking stripe(glm::dvec2 from, glm::dvec2 to, double width = 0.1);
 
 /// Dashes along a straight line: `paint` metres of it, then `gap` without, from `from` on.
 void add_dashes(world::World& world, glm::dvec2 from, glm::dvec2 to, double width, double paint, double gap);
 
 /// A stripe along an arc about `centre`, in chords that stay within `sagitta` of it [m].
-world::Stripe arc(glm::dvec2 centre, double radius, double from, double to, double width, double sagitta = 1e-6);
+world::LaneMarking arc(glm::dvec2 centre, double radius, double from, double to, double width, double sagitta = 1e-6);
 
 /// The instruments of one world, driven without a farm.
 class EdgeRig {

@@ -125,7 +125,7 @@ Seen measure(Scene& scene, const std::string& mode) {
 Scene with_robots(std::string name, world::World world, double half, double range, glm::dvec2 middle = {}) {
   for (std::uint32_t i = 0; i < kRobots; ++i)
     scenes::add_robot(world, {middle.x, middle.y, 0.0, 0.0}, scenes::laser(361, M_PI, range));
-  world::finish(world);
+  world::update_extent_and_hash(world);
   return {std::move(name), std::move(world), middle, half};
 }
 
@@ -133,7 +133,7 @@ Scene with_robots(std::string name, world::World world, double half, double rang
 Scene with_eyes(std::string name, world::World world, double half, double range, glm::dvec2 middle = {}) {
   for (std::uint32_t i = 0; i < kRobots; ++i)
     add_eye(world, {middle.x, middle.y, 0.0, 0.0}, eye(361, 2.0 * M_PI, range));
-  world::finish(world);
+  world::update_extent_and_hash(world);
   return {std::move(name), std::move(world), middle, half};
 }
 

@@ -49,8 +49,8 @@ TEST(MagnetometerSettings, NothingSaidIsOneElementInTheMiddle) {
 
 TEST(MagnetometerSettings, UnitsAreTheFiles) {
   world::Sensor sensor = bare();
-  sensor.metres = 0.01;
-  sensor.radians = M_PI / 180;
+  sensor.metres_per_unit = 0.01;
+  sensor.radians_per_unit = M_PI / 180;
   sensor.settings = {setting("scount", {2}), setting("spose[0]", {20, -5, 90}), setting("spose3[1]", {1, 2, 3, -180}),
                      setting("ssensitivity", {-2, 3}), setting("noise", {0.5})};
   const Magnetometer m = read_magnetometer(sensor);

@@ -24,7 +24,7 @@ world::Sensor map_sensor(std::vector<world::Setting> settings = {}) {
   world::Sensor sensor;
   sensor.type = "occupancy";
   sensor.name = "map";
-  sensor.radians = M_PI / 180.0;
+  sensor.radians_per_unit = M_PI / 180.0;
   sensor.settings = std::move(settings);
   sensor.line = 9;
   sensor.file = "a.world";

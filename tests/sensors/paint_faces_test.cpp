@@ -14,7 +14,7 @@ namespace {
 
 using sensors::Face;
 
-std::vector<Face> faces_of(const world::Stripe& s) {
+std::vector<Face> faces_of(const world::LaneMarking& s) {
   std::vector<Face> faces;
   sensors::add_faces(s, faces);
   return faces;
@@ -61,7 +61,7 @@ TEST(PaintFaces, AStraightStripeIsARectangle) {
 TEST(PaintFaces, BendsAreMitred) {
   Chance chance(4);
   for (int round = 0; round < 200; ++round) {
-    world::Stripe s;
+    world::LaneMarking s;
     s.width = chance.between(0.02, 0.3);
     double heading = chance.between(-M_PI, M_PI);
     glm::dvec2 at = chance.in_square(10.0);
@@ -94,7 +94,7 @@ TEST(PaintFaces, BendsAreMitred) {
 TEST(PaintFaces, PaintLiesOnTheLeft) {
   Chance chance(9);
   for (int round = 0; round < 100; ++round) {
-    const world::Stripe s =
+    const world::LaneMarking s =
         arc({0, 0}, chance.between(0.5, 3.0), chance.between(-3, 0), chance.between(0.5, 3), 0.1, 1e-4);
     for (const Face& f : faces_of(s)) {
       const glm::dvec2 middle = 0.5 * (f.a + f.b);
@@ -109,7 +109,7 @@ TEST(PaintFaces, PaintLiesOnTheLeft) {
 }
 
 TEST(PaintFaces, ALineThatClosesHasNoEnds) {
-  world::Stripe s = arc({1, 1}, 2.0, 0.0, 2.0 * M_PI, 0.1, 1e-3);
+  world::LaneMarking s = arc({1, 1}, 2.0, 0.0, 2.0 * M_PI, 0.1, 1e-3);
   s.line.back() = s.line.front();
   const auto faces = faces_of(s);
   EXPECT_EQ(std::count_if(faces.begin(), faces.end(), [](const Face& f) { return f.is_end; }), 0);
@@ -124,14 +124,14 @@ TEST(PaintFaces, ABandWiderThanItsBendIsThin) {
 }
 
 TEST(PaintFaces, StripesOnStripesAreOne) {
-  const world::Stripe s = arc({0, 0}, 2.0, 0.0, 1.0, 0.1, 1e-3);
-  world::Stripe turned = s;
+  const world::LaneMarking s = arc({0, 0}, 2.0, 0.0, 1.0, 0.1, 1e-3);
+  world::LaneMarking turned = s;
   std::reverse(turned.line.begin(), turned.line.end());
-  world::Stripe nearly = s;
+  world::LaneMarking nearly = s;
   for (glm::dvec2& p : nearly.line) p.x += 5e-5;
-  world::Stripe beside = s;
+  world::LaneMarking beside = s;
   for (glm::dvec2& p : beside.line) p.x += 0.2;
-  world::Stripe wider = s;
+  world::LaneMarking wider = s;
   wider.width = 0.15;
   EXPECT_EQ(sensors::distinct_stripes(std::vector{s, turned, nearly, s}).size(), 1u);
   EXPECT_EQ(sensors::distinct_stripes(std::vector{s, beside, wider}).size(), 3u);

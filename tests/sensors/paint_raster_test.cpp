@@ -16,7 +16,7 @@ using sensors::PaintRaster;
 
 /// Whether `p` is within half the width of a piece, between its ends: exact for straight stripes. `doubt`: within 1e-9
 /// m of the outline.
-bool in_straight(const world::Stripe& s, glm::dvec2 p, bool& doubt) {
+bool in_straight(const world::LaneMarking& s, glm::dvec2 p, bool& doubt) {
   const glm::dvec2 e = s.line[1] - s.line[0];
   const double size = length(e);
   const double along = dot(e, p - s.line[0]) / size;
@@ -33,16 +33,17 @@ glm::dvec2 centre_of(const PaintRaster& raster, std::int64_t x, std::int64_t y) 
 TEST(PaintRaster, ACellIsPaintedWhenItsCentreIs) {
   Chance chance(2);
   for (int round = 0; round < 20; ++round) {
-    std::vector<world::Stripe> stripes;
+    std::vector<world::LaneMarking> lane_markings;
     for (int i = 0; i < 6; ++i)
-      stripes.push_back(stripe(chance.in_square(0.5), chance.in_square(0.5), chance.between(0.004, 0.08)));
-    const PaintRaster raster(stripes, chance.between(0.005, 0.02), 0.1, "hand.world");
+      lane_markings.push_back(stripe(chance.in_square(0.5), chance.in_square(0.5), chance.between(0.004, 0.08)));
+    const PaintRaster raster(lane_markings, chance.between(0.005, 0.02), 0.1, "hand.world");
     std::size_t painted = 0;
     for (std::int64_t y = 0; y < 8 * raster.rows(); ++y)
       for (std::int64_t x = 0; x < 8 * raster.columns(); ++x) {
         bool doubt = false;
         bool expected = false;
-        for (const world::Stripe& s : stripes) expected = in_straight(s, centre_of(raster, x, y), doubt) || expected;
+        for (const world::LaneMarking& s : lane_markings)
+          expected = in_straight(s, centre_of(raster, x, y), doubt) || expected;
         EXPECT_TRUE(doubt || raster.painted(x, y) == expected) << x << " " << y;
         painted += raster.painted(x, y) ? 1 : 0;
         EXPECT_TRUE(raster.painted(x, y) || !raster.at_end(x, y));
@@ -55,7 +56,7 @@ TEST(PaintRaster, ACellIsPaintedWhenItsCentreIs) {
 TEST(PaintRaster, DashesHaveTrueLengths) {
   world::World world;
   add_dashes(world, {0.0, 0.005}, {5.0, 0.005}, 0.05, 0.3, 0.2);
-  const PaintRaster raster(world.stripes, 0.01, 0.1, "hand.world");
+  const PaintRaster raster(world.lane_markings, 0.01, 0.1, "hand.world");
   for (int k = 0; k < 500; ++k) {
     const bool paint = k % 50 < 30;
     EXPECT_EQ(raster.painted(k - raster.first_column(), -raster.first_row()), paint) << k;
@@ -66,9 +67,9 @@ TEST(PaintRaster, DashesHaveTrueLengths) {
 
 TEST(PaintRaster, TheDirectorySaysHowFarPaintIs) {
   Chance chance(6);
-  std::vector<world::Stripe> stripes;
-  for (int i = 0; i < 4; ++i) stripes.push_back(stripe(chance.in_square(1.5), chance.in_square(1.5), 0.02));
-  const PaintRaster raster(stripes, 0.01, 0.5, "hand.world");
+  std::vector<world::LaneMarking> lane_markings;
+  for (int i = 0; i < 4; ++i) lane_markings.push_back(stripe(chance.in_square(1.5), chance.in_square(1.5), 0.02));
+  const PaintRaster raster(lane_markings, 0.01, 0.5, "hand.world");
   const auto columns = static_cast<int>(raster.columns());
   const auto rows = static_cast<int>(raster.rows());
   const auto word = [&](int x, int y) { return raster.directory()[static_cast<std::size_t>(y * columns + x)]; };
@@ -114,8 +115,8 @@ TEST(PaintRaster, NoPaintIsOneEmptyBlock) {
 /// The same pixels 10 000 km away, where the road is moved by whole pixels.
 TEST(PaintRaster, FarFromTheOrigin) {
   constexpr double kCell = 1.0 / 128.0;
-  const world::Stripe s = arc({0.3, 0.2}, 1.0, 0.1, 2.0, 0.1, 1e-5);
-  world::Stripe far = s;
+  const world::LaneMarking s = arc({0.3, 0.2}, 1.0, 0.1, 2.0, 0.1, 1e-5);
+  world::LaneMarking far = s;
   for (glm::dvec2& p : far.line) p = p + glm::dvec2{1e7, -1e7};
   const PaintRaster near_raster({s}, kCell, 0.2, "");
   const PaintRaster far_raster({far}, kCell, 0.2, "");

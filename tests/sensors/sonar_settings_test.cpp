@@ -65,8 +65,8 @@ TEST(SonarSettings, UnitsAreTheFiles) {
       with({cone_setting("scount", {2}), cone_setting("spose[0]", {20, -5, 90}),
             cone_setting("spose3[1]", {1, 2, 3, -180}), cone_setting("fov", {15}), cone_setting("range", {10, 300}),
             cone_setting("incidence", {60}), cone_setting("noise", {2, 0.01})});
-  sensor.metres = 0.01;
-  sensor.radians = kDegree;
+  sensor.metres_per_unit = 0.01;
+  sensor.radians_per_unit = kDegree;
   const ConeArray s = read_sonar(sensor, 0, 0);
   EXPECT_DOUBLE_EQ(s.X_SC[0].x, 0.2);
   EXPECT_DOUBLE_EQ(s.X_SC[0].y, -0.05);

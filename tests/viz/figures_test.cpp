@@ -104,7 +104,7 @@ TEST(WorldFigure, TagsAreNoRobotsInItsSubtitle) {
 
 TEST(WorldFigure, HolesAreDarkAndBeamsAreFaint) {
   world::World world = room();
-  world.drops.push_back({{{1.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {1.0, 2.0}}, 0});
+  world.floor_holes.push_back({{{1.0, 1.0}, {2.0, 1.0}, {2.0, 2.0}, {1.0, 2.0}}, 0});
   world.emitters.push_back({world::Emitter::Kind::virtual_wall, 0, {3.0, 1.0, 0.0, M_PI / 2}, 2.0, 0.4, 0.3});
   world.emitters.push_back({world::Emitter::Kind::dock, 0, {5.8, 3.0, 0.0, M_PI}, 1.5, 0.7, 0.0});
   draw_world(world, file("signals.png"));
@@ -134,7 +134,7 @@ TEST(WorldFigure, WallsAreWhereTheyShouldBe) {
 
 TEST(WorldFigure, PaintAndMagnetsAreThere) {
   world::World world = room();
-  world.stripes.push_back({{{1.0, 2.25}, {5.0, 2.25}}, 0.3, 0xFFF2B800u});
+  world.lane_markings.push_back({{{1.0, 2.25}, {5.0, 2.25}}, 0.3, 0xFFF2B800u});
   world.magnets.push_back({{3.0, 1.0}, 0.0, 1.0, 0.05, 0});
   world.magnets.push_back({{4.0, 1.0}, 0.0, -1.0, 0.05, 0});
   draw_world(world, file("paint.png"));

@@ -68,7 +68,7 @@ TEST(PathFigure, TheMiddleIsDrawnWhereThereIsAPath) {
 /// Between its painted edges a lane is asphalt, not two bands with ground between.
 TEST(PathFigure, ALaneIsFilledFromEdgeToEdge) {
   world::World world = lane();
-  for (const double y : {0.25, -0.25}) world.stripes.push_back({{{0.0, y}, {4.0, y}}, 0.02});
+  for (const double y : {0.25, -0.25}) world.lane_markings.push_back({{{0.0, y}, {4.0, y}}, 0.02});
   draw_along_paths(world, {}, "Title", "subtitle", file("lane.png"));
   const int filled = colored(scenes::read_png(file("lane.png")), kStreet);
   world.paths.clear();

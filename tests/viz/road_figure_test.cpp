@@ -12,7 +12,7 @@
 #include "viz/labels.h"
 #include "viz/legend.h"
 #include "viz/road_view.h"
-#include "world/roads/paint.h"
+#include "world/roads/lane_markings.h"
 #include "world/roads/roads.h"
 
 namespace sf::viz {

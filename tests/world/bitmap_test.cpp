@@ -14,21 +14,21 @@ namespace {
 using Key = std::tuple<int, int, int, int>;
 
 /// Rows as one sees them, the top one first; `#` is solid.
-Grid grid_of(const std::vector<std::string>& rows) {
-  Grid grid{static_cast<std::uint32_t>(rows[0].size()), static_cast<std::uint32_t>(rows.size()), {}};
+Bitmap grid_of(const std::vector<std::string>& rows) {
+  Bitmap grid{static_cast<std::uint32_t>(rows[0].size()), static_cast<std::uint32_t>(rows.size()), {}};
   for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
     for (const char c : *row) grid.solid.push_back(c == '#' ? 1 : 0);
   }
   return grid;
 }
 
-bool solid(const Grid& grid, int i, int j) {
+bool solid(const Bitmap& grid, int i, int j) {
   const int width = static_cast<int>(grid.width), height = static_cast<int>(grid.height);
   return i >= 0 && j >= 0 && i < width && j < height && grid.solid[static_cast<std::size_t>(j * width + i)] != 0;
 }
 
 /// Every boundary between two cells by itself, solid on the left: found cell by cell, independently of the runs.
-std::set<Key> unit_edges(const Grid& grid) {
+std::set<Key> unit_edges(const Bitmap& grid) {
   std::set<Key> edges;
   for (int j = 0; j < static_cast<int>(grid.height); ++j) {
     for (int i = 0; i < static_cast<int>(grid.width); ++i) {
@@ -42,9 +42,9 @@ std::set<Key> unit_edges(const Grid& grid) {
   return edges;
 }
 
-std::set<Key> cut(const std::vector<Run>& runs) {
+std::set<Key> cut(const std::vector<BoundaryRun>& runs) {
   std::set<Key> edges;
-  for (const Run& run : runs) {
+  for (const BoundaryRun& run : runs) {
     const int di = (run.b.i > run.a.i) - (run.b.i < run.a.i), dj = (run.b.j > run.a.j) - (run.b.j < run.a.j);
     int i = static_cast<int>(run.a.i), j = static_cast<int>(run.a.j);
     while (i != static_cast<int>(run.b.i) || j != static_cast<int>(run.b.j)) {
@@ -63,9 +63,9 @@ std::size_t fewest(const std::set<Key>& edges) {
   return count;
 }
 
-int winding(const std::vector<Run>& runs, int i, int j) {
+int winding(const std::vector<BoundaryRun>& runs, int i, int j) {
   int number = 0;  // of the centre of cell (i, j): signed crossings of a beam to the right
-  for (const Run& run : runs) {
+  for (const BoundaryRun& run : runs) {
     if (run.a.i != run.b.i || static_cast<int>(run.a.i) <= i) continue;
     const int low = static_cast<int>(std::min(run.a.j, run.b.j)), high = static_cast<int>(std::max(run.a.j, run.b.j));
     if (low <= j && j < high) number += run.b.j > run.a.j ? 1 : -1;
@@ -73,13 +73,13 @@ int winding(const std::vector<Run>& runs, int i, int j) {
   return number;
 }
 
-void check(const Grid& grid) {
-  const auto runs = outline(grid);
+void check(const Bitmap& grid) {
+  const auto runs = trace_boundary(grid);
   const auto edges = unit_edges(grid);
   EXPECT_EQ(cut(runs), edges);            // every boundary, once, solid on its left: so also the total length
   EXPECT_EQ(runs.size(), fewest(edges));  // and in as few runs as there are
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
-  for (const Run& run : runs) {
+  for (const BoundaryRun& run : runs) {
     ++balance[{run.a.i, run.a.j}];
     --balance[{run.b.i, run.b.j}];
   }
@@ -90,34 +90,34 @@ void check(const Grid& grid) {
 }
 
 TEST(Bitmap, OnePixelHasFourSides) {
-  const Grid grid = grid_of({"...", ".#.", "..."});
-  EXPECT_EQ(outline(grid).size(), 4u);
+  const Bitmap grid = grid_of({"...", ".#.", "..."});
+  EXPECT_EQ(trace_boundary(grid).size(), 4u);
   check(grid);
 }
 
 TEST(Bitmap, APixelAtTheEdgeOfThePictureIsClosedThere) {
-  const Grid grid = grid_of({"#"});
-  EXPECT_EQ(outline(grid).size(), 4u);
+  const Bitmap grid = grid_of({"#"});
+  EXPECT_EQ(trace_boundary(grid).size(), 4u);
   check(grid);
 }
 
-TEST(Bitmap, NothingSolidHasNoOutline) { EXPECT_TRUE(outline(grid_of({"...", "..."})).empty()); }
+TEST(Bitmap, NothingSolidHasNoOutline) { EXPECT_TRUE(trace_boundary(grid_of({"...", "..."})).empty()); }
 
 TEST(Bitmap, AnLHasSixSides) {
-  const Grid grid = grid_of({"#..", "#..", "###"});
-  EXPECT_EQ(outline(grid).size(), 6u);
+  const Bitmap grid = grid_of({"#..", "#..", "###"});
+  EXPECT_EQ(trace_boundary(grid).size(), 6u);
   check(grid);
 }
 
 TEST(Bitmap, ARingHasAnOutlineInsideToo) {
-  const Grid grid = grid_of({"####", "#..#", "#..#", "####"});
-  EXPECT_EQ(outline(grid).size(), 8u);
+  const Bitmap grid = grid_of({"####", "#..#", "#..#", "####"});
+  EXPECT_EQ(trace_boundary(grid).size(), 8u);
   check(grid);
 }
 
 TEST(Bitmap, TwoDiagonalPixelsMeetInOneCornerThatEndsFourRuns) {
-  const Grid grid = grid_of({"#.", ".#"});
-  const auto runs = outline(grid);
+  const Bitmap grid = grid_of({"#.", ".#"});
+  const auto runs = trace_boundary(grid);
   EXPECT_EQ(runs.size(), 8u);
   int at_middle = 0;
   for (const auto& run : runs) at_middle += (run.a.i == 1 && run.a.j == 1) + (run.b.i == 1 && run.b.j == 1);
@@ -128,14 +128,14 @@ TEST(Bitmap, TwoDiagonalPixelsMeetInOneCornerThatEndsFourRuns) {
 TEST(Bitmap, TheOtherDiagonalAsWell) { check(grid_of({".#", "#."})); }
 
 TEST(Bitmap, ACheckerboardHasFourSidesPerPixel) {
-  const Grid grid = grid_of({"#.#.", ".#.#", "#.#.", ".#.#"});
-  EXPECT_EQ(outline(grid).size(), 4u * 8u);
+  const Bitmap grid = grid_of({"#.#.", ".#.#", "#.#.", ".#.#"});
+  EXPECT_EQ(trace_boundary(grid).size(), 4u * 8u);
   check(grid);
 }
 
 TEST(Bitmap, RandomGridsOfAllDensities) {
   for (std::uint32_t k = 0; k < 60; ++k) {
-    Grid grid{1 + k % 13, 1 + k % 11, {}};
+    Bitmap grid{1 + k % 13, 1 + k % 11, {}};
     for (std::uint32_t i = 0; i < grid.width * grid.height; ++i) {
       const double u = base::random_uniform({7, base::RandomStream::placement, k, 0, 0}, i)[0];
       grid.solid.push_back(u < (k % 9 + 1) / 10.0 ? 1 : 0);
@@ -145,7 +145,7 @@ TEST(Bitmap, RandomGridsOfAllDensities) {
 }
 
 TEST(Bitmap, CornersSpanTheSizeAboutTheOrigin) {
-  const Grid grid = grid_of({"..", "..", ".."});
+  const Bitmap grid = grid_of({"..", "..", ".."});
   const auto low = corner_position(grid, {0, 0}, 4.0, 3.0), high = corner_position(grid, {2, 3}, 4.0, 3.0);
   EXPECT_EQ(low.x, -2.0);
   EXPECT_EQ(low.y, -1.5);

@@ -90,7 +90,7 @@ TEST(WorldFiles, RoombaHasABumperThatIsKept) {
   NEED_SHARED();
   const World world = load_world(kShared + "/stage/roomba.world");
   EXPECT_EQ(world.movers.size(), 1u);
-  EXPECT_EQ(world.kept, (std::map<std::string, int>{{"bumper", 1}}));
+  EXPECT_EQ(world.unmodelled, (std::map<std::string, int>{{"bumper", 1}}));
   EXPECT_EQ(world.warnings.size(), 1u) << warnings_of(world);
   EXPECT_EQ(world.movers[0].body.size(), 16u);
   EXPECT_NEAR(world.movers[0].radius, 0.165, 1e-3);
@@ -132,8 +132,8 @@ TEST(WorldFiles, EveryIncludeOfStageLoadsAndEveryDefinitionInItToo) {
                  "laserchatterbox( fancysicklaser() pantiltcamera() ) pioneer3dx() pioneer3at() amigobot() walle()\n"
                  "ubot() fancypantiltcamer() laserbeacon() visionbeacon_cyan() red_puck() charger() zone()\n"
                  "position( p3dx_sonar() fancypioneer2dx() pioneer2dx_front_sonar() )");
-  EXPECT_EQ(world.kept.at("reb_position"), 1);
-  EXPECT_EQ(world.kept.at("puck"), 1);
+  EXPECT_EQ(world.unmodelled.at("reb_position"), 1);
+  EXPECT_EQ(world.unmodelled.at("puck"), 1);
   EXPECT_GT(world.walls.size(), 20u);
 }
 

@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "tests/world/read_world.h"
-#include "world/entities.h"
+#include "world/stage/document.h"
 #include "world/toml.h"
 
 namespace sf::world {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "world/colors.h"
-#include "world/movers.h"
+#include "world/stage/color_names.h"
+#include "world/stage/mover_entities.h"
 
 namespace sf::world {
 namespace {
@@ -30,16 +30,16 @@ TEST(Keys, ShortWordsAreSuggestedForOneSlipOnly) {
 }
 
 TEST(Keys, IndicesDoNotMatter) {
-  EXPECT_TRUE(is_known_key(Where::block, "point[17]"));
-  EXPECT_TRUE(is_known_key(Where::model, "block[2].point[17]"));
-  EXPECT_FALSE(is_known_key(Where::model, "point[17]"));
+  EXPECT_TRUE(is_known_key(KeyScope::block, "point[17]"));
+  EXPECT_TRUE(is_known_key(KeyScope::model, "block[2].point[17]"));
+  EXPECT_FALSE(is_known_key(KeyScope::model, "point[17]"));
 }
 
 TEST(Keys, KeysAreKnownWhereTheyAreRead) {
-  EXPECT_TRUE(is_known_key(Where::laser, "samples"));
-  EXPECT_FALSE(is_known_key(Where::model, "samples"));
-  EXPECT_TRUE(is_known_key(Where::ranger, "pose"));
-  EXPECT_FALSE(is_known_key(Where::world, "pose"));
+  EXPECT_TRUE(is_known_key(KeyScope::laser, "samples"));
+  EXPECT_FALSE(is_known_key(KeyScope::model, "samples"));
+  EXPECT_TRUE(is_known_key(KeyScope::ranger, "pose"));
+  EXPECT_FALSE(is_known_key(KeyScope::world, "pose"));
 }
 
 TEST(Colors, AreSortedSoThatEveryNameIsFound) {
@@ -58,14 +58,14 @@ TEST(Colors, AreSortedSoThatEveryNameIsFound) {
 }
 
 TEST(Links, ComeFromNames) {
-  EXPECT_EQ(link_of("roomba12")->number, 12u);
-  EXPECT_EQ(link_of("/khepera3")->number, 3u);
-  EXPECT_EQ(link_of("roomba0")->number, 0u);
-  EXPECT_TRUE(link_of("tag32")->is_tag);
-  EXPECT_FALSE(link_of("tag0"));
-  EXPECT_FALSE(link_of("roomba-1"));
-  EXPECT_FALSE(link_of("roomba"));
-  EXPECT_FALSE(link_of("pioneer2dx"));
+  EXPECT_EQ(packet_id_of("roomba12")->number, 12u);
+  EXPECT_EQ(packet_id_of("/khepera3")->number, 3u);
+  EXPECT_EQ(packet_id_of("roomba0")->number, 0u);
+  EXPECT_TRUE(packet_id_of("tag32")->is_tag);
+  EXPECT_FALSE(packet_id_of("tag0"));
+  EXPECT_FALSE(packet_id_of("roomba-1"));
+  EXPECT_FALSE(packet_id_of("roomba"));
+  EXPECT_FALSE(packet_id_of("pioneer2dx"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "world/lasers.h"
+#include "world/stage/laser_entities.h"
 
 #include <gtest/gtest.h>
 
@@ -118,7 +118,7 @@ TEST(Lasers, ALaserThatNobodyCarriesMeasuresNothing) {
 TEST(Lasers, ALaserCalledLaneedgeIsNoRangeFinder) {
   const World world = read_world("position( laser( name \"laneedge\" ) laser() )");
   EXPECT_EQ(world.movers.at(0).lasers.size(), 1u);
-  EXPECT_EQ(world.kept.at("laneedge"), 1);
+  EXPECT_EQ(world.unmodelled.at("laneedge"), 1);
 }
 
 TEST(Lasers, ARangerWithoutSensorsIsMentioned) {

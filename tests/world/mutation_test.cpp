@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "world/entities.h"
-#include "world/stage.h"
+#include "world/stage/document.h"
+#include "world/stage/stage.h"
 
 namespace sf::world {
 namespace {
@@ -86,7 +86,7 @@ void expect_sound(const World& world) {
     ASSERT_GT(emitter.range, 0.0);
     ASSERT_GT(emitter.fov, 0.0);
   }
-  for (const Drop& drop : world.drops) {
+  for (const FloorHole& drop : world.floor_holes) {
     ASSERT_LT(drop.model, world.models.size());
     ASSERT_GE(drop.outline.size(), 3u);
   }

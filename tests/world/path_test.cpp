@@ -32,14 +32,14 @@ TEST(Path, ItsPiecesAreKept) {
 
 TEST(Path, PaintLiesOutsideTheLane) {
   const World world = read_world(kThesis);
-  ASSERT_EQ(world.stripes.size(), 6u);
-  const Stripe& left = world.stripes[0];
+  ASSERT_EQ(world.lane_markings.size(), 6u);
+  const LaneMarking& left = world.lane_markings[0];
   ASSERT_EQ(left.line.size(), 2u) << "a straight is two points";
   EXPECT_DOUBLE_EQ(left.line[0].x, 1.0);
   EXPECT_DOUBLE_EQ(left.line[0].y, 2.0 + 0.25 + 0.01);
   EXPECT_DOUBLE_EQ(left.line[1].x, 3.72);
   EXPECT_EQ(left.color, 0xFFFFFFFFu);
-  EXPECT_EQ(world.stripes[1].color, 0xFFFFCC00u);
+  EXPECT_EQ(world.lane_markings[1].color, 0xFFFFCC00u);
 }
 
 TEST(Path, ArcsAreWithinAMicrometre) {
@@ -47,7 +47,7 @@ TEST(Path, ArcsAreWithinAMicrometre) {
   const glm::dvec2 centre{3.72, 2.93};
   for (const std::size_t side : {2u, 3u}) {
     const double radius = 0.93 + (side == 2 ? -1.0 : 1.0) * 0.31;
-    const auto& line = world.stripes[side].line;
+    const auto& line = world.lane_markings[side].line;
     for (std::size_t i = 0; i < line.size(); ++i) EXPECT_NEAR(length(line[i] - centre), radius, 1e-12);
     for (std::size_t i = 1; i < line.size(); ++i) {
       const double middle = length(0.5 * (line[i] + line[i - 1]) - centre);
@@ -59,7 +59,7 @@ TEST(Path, ArcsAreWithinAMicrometre) {
 
 TEST(Path, PiecesFollowOneAnother) {
   const World world = read_world(kThesis);
-  const auto& last = world.stripes[4].line;
+  const auto& last = world.lane_markings[4].line;
   EXPECT_NEAR(last[0].x, 3.72 + 0.93 - 0.235, 1e-12);
   EXPECT_NEAR(last[0].y, 2.93, 1e-12);
   EXPECT_NEAR(last[1].y, 2.93 + 1.349, 1e-12);
@@ -89,7 +89,8 @@ TEST(Path, DashesGoOnFromPieceToPiece) {
   const World world =
       read_world(R"(path( pieces 2 straight[0] [1 0.5] straight[1] [1 0.5] right "broken_white" dash [0.3 0.4] ))");
   std::vector<std::pair<double, double>> dashes;
-  for (const Stripe& stripe : world.stripes) dashes.emplace_back(stripe.line.front().x, stripe.line.back().x);
+  for (const LaneMarking& stripe : world.lane_markings)
+    dashes.emplace_back(stripe.line.front().x, stripe.line.back().x);
   const std::vector<std::pair<double, double>> expected{{0.0, 0.3}, {0.7, 1.0}, {1.4, 1.7}};
   ASSERT_EQ(dashes.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -101,15 +102,15 @@ TEST(Path, DashesGoOnFromPieceToPiece) {
 TEST(Path, ADashMayCrossFromOnePieceToTheNext) {
   const World world =
       read_world(R"(path( pieces 2 straight[0] [1 0.5] straight[1] [1 0.5] left "broken_white" dash [0.8 0.15] ))");
-  ASSERT_EQ(world.stripes.size(), 4u);  // 0..0.8, 0.95..1 | 1..1.75, 1.9..2
-  EXPECT_NEAR(world.stripes[2].line.back().x, 1.75, 1e-12);
+  ASSERT_EQ(world.lane_markings.size(), 4u);  // 0..0.8, 0.95..1 | 1..1.75, 1.9..2
+  EXPECT_NEAR(world.lane_markings[2].line.back().x, 1.75, 1e-12);
 }
 
 TEST(Path, ADoubleLineIsTwoStripes) {
   const World world = read_world(R"(path( pieces 1 straight[0] [1 0.5] left "double_yellow" paint_width 0.02 ))");
-  ASSERT_EQ(world.stripes.size(), 2u);
-  EXPECT_NEAR(world.stripes[0].line[0].y, 0.26, 1e-12);
-  EXPECT_NEAR(world.stripes[1].line[0].y, 0.30, 1e-12);
+  ASSERT_EQ(world.lane_markings.size(), 2u);
+  EXPECT_NEAR(world.lane_markings[0].line[0].y, 0.26, 1e-12);
+  EXPECT_NEAR(world.lane_markings[1].line[0].y, 0.30, 1e-12);
 }
 
 TEST(Path, WhatIsWrongIsSaid) {

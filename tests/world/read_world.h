@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "world/stage.h"
+#include "world/stage/stage.h"
 
 namespace sf::world {
 

@@ -7,9 +7,9 @@
 
 #include "base/random.h"
 #include "tests/world/rndf_text.h"
-#include "world/entities.h"
 #include "world/roads/mdf.h"
 #include "world/roads/roads.h"
+#include "world/stage/document.h"
 
 namespace sf::world {
 namespace {
@@ -86,7 +86,7 @@ void read_all(const std::string& text) {
   std::vector<Warning> warnings;
   const RoadNetwork network = build_network(parse_rndf("x.rndf", text), {}, warnings);
   expect_sound(network);
-  paint_of(network);
+  lane_markings_of(network);
 }
 
 TEST(RndfMutation, OfTheSmallNetwork) { run(std::string(kSmallRndf), 4000, read_all); }

@@ -72,7 +72,7 @@ TEST(RndfSlips, AnExitOfTheNeighbourLeavesTheNeighbour) {
       build_network(parse_rndf("x", small_with("exit 1.1.3 2.1.1", "exit 1.2.2 2.1.1")), {}, warnings);
   const auto from = find_point(roads, {1, 2, 2});
   ASSERT_TRUE(from.has_value());
-  const std::vector<Step> steps = successors(roads, *from);
+  const std::vector<Transition> steps = successors(roads, *from);
   ASSERT_EQ(steps.size(), 1u);
   EXPECT_EQ(id_of(roads, steps[0].to), (PointId{2, 1, 1}));
 }

@@ -18,7 +18,7 @@ TEST(Road, ItsPaintIsTheNetworks) {
   const World world = read_world(road(""));
   std::vector<Warning> warnings;
   const RoadNetwork roads = load_roads(SF_SOURCE_DIR "/worlds/simville/simville.rndf", warnings);
-  EXPECT_EQ(world.stripes.size(), paint_of(roads).size());
+  EXPECT_EQ(world.lane_markings.size(), lane_markings_of(roads).size());
   EXPECT_TRUE(world.magnets.empty());
   ASSERT_EQ(world.models.size(), 1u);
   EXPECT_EQ(world.models[0].name, "SimVille");

@@ -190,7 +190,7 @@ TEST(Parallel, OfAStraight) {
   EXPECT_EQ(left[1].x, 10.0);
   EXPECT_EQ(left[1].y, 2.0);
   EXPECT_EQ(parallel(line, -2.0)[0].y, -2.0);
-  EXPECT_TRUE(parallel(smooth_curve(Points{{0, 0}}, kFine), 1.0).empty());
+  EXPECT_TRUE(offset_curve(smooth_curve(Points{{0, 0}}, kFine), 1.0).empty());
 }
 
 TEST(Parallel, OfACircle) {
@@ -218,7 +218,7 @@ TEST(Parallel, NeighboursAreDistinct) {
   for (std::uint32_t k = 0; k < 200; ++k) {
     const Curve curve = smooth_curve(wild(k), kFine);
     for (const double d : {1.8, -1.8}) {
-      const Points edge = parallel(curve, d);
+      const Points edge = offset_curve(curve, d);
       EXPECT_NE(edge.size(), 1u);
       for (std::size_t i = 1; i < edge.size(); ++i) EXPECT_GT(length(edge[i] - edge[i - 1]), 0.0);
     }

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "tests/world/rndf_text.h"
-#include "world/roads/paint.h"
+#include "world/roads/lane_markings.h"
 #include "world/roads/roads.h"
 
 namespace sf::world {
@@ -113,7 +113,8 @@ TEST(RoadNetwork, EveryPointIsFound) {
 
 std::set<std::string> onward(const RoadNetwork& network, PointId from) {
   std::set<std::string> all;
-  for (const Step& step : successors(network, *find_point(network, from))) all.insert(text_of(id_of(network, step.to)));
+  for (const Transition& step : successors(network, *find_point(network, from)))
+    all.insert(text_of(id_of(network, step.to)));
   return all;
 }
 
@@ -130,13 +131,13 @@ TEST(RoadNetwork, Successors) {
   EXPECT_EQ(onward(network, {3, 1, 2}), (Set{"3.0.3"}));
   const auto steps = successors(network, *find_point(network, {1, 1, 1}));
   EXPECT_NEAR(steps[0].length, 0.001 * kLongitude, 1e-3);
-  EXPECT_EQ(steps[0].way, Step::Way::lane);
+  EXPECT_EQ(steps[0].way, Transition::Kind::lane);
 }
 
 TEST(RoadNetwork, ConnectionsLeaveAndArriveInDirection) {
   const RoadNetwork network = small();
   for (const RoadExit& exit : network.exits) {
-    const Curve way = connection_of(network, exit);
+    const Curve way = exit_curve(network, exit);
     EXPECT_EQ(way.points.front().x, position_of(network, exit.from).x);
     EXPECT_EQ(way.points.back().y, position_of(network, exit.to).y);
     EXPECT_EQ(exit.length, way.s.back());
@@ -211,11 +212,11 @@ std::set<int> missed_from(const RoadNetwork& network, PointId start, bool with_c
   while (!open.empty()) {
     const PointRef here = open.back();
     open.pop_back();
-    for (const Step& step : successors(network, here)) {
+    for (const Transition& step : successors(network, here)) {
       EXPECT_GE(step.length, 0.0);
       if (seen.insert(id_of(network, step.to)).second) open.push_back(step.to);
     }
-    for (const Step& step : lane_changes(network, here))
+    for (const Transition& step : lane_changes(network, here))
       if (with_changes && seen.insert(id_of(network, step.to)).second) open.push_back(step.to);
   }
   std::set<int> missed;
@@ -246,11 +247,11 @@ TEST(RoadNetwork, LaneChanges) {
     if (!two_lanes) {
       EXPECT_TRUE(changes.empty()) << text_of(id);
     }
-    for (const Step& step : changes) {
+    for (const Transition& step : changes) {
       const PointId to = id_of(network, step.to);
       EXPECT_EQ(to.segment, 1) << text_of(id);
       EXPECT_EQ(to.lane, 3 - id.lane) << text_of(id);
-      EXPECT_EQ(step.way, Step::Way::change);
+      EXPECT_EQ(step.kind, Transition::Kind::change);
       EXPECT_GE(step.length, 1.2) << text_of(id);  // three widths, or a little less on the outside of a bend
       EXPECT_LE(step.length, 2.6) << text_of(id);
     }

@@ -114,12 +114,12 @@ TEST_F(RosMap, CopiesStartInsideTheArenaAmidTheUnknown) {
       if (threshold[3] == '5' && start.x < -5.0) continue;  // it stands in what the file calls free
       World world = load(std::string(kSandbox) + threshold + "\n");
       scenes::add_create(world, start);
-      finish(world);
+      update_extent_and_hash(world);
       clone_robots(world, 8, 1);
       ASSERT_EQ(world.movers.size(), 8u);
       for (const Mover& mover : world.movers) {
         EXPECT_LT(std::max(std::abs(mover.X_WM.x), std::abs(mover.X_WM.y)), 2.5) << start.x;
-        EXPECT_EQ(misplaced(world, mover, mover.X_WM), "");
+        EXPECT_EQ(placement_problem(world, mover, mover.X_WM), "");
       }
     }
 }
@@ -128,8 +128,8 @@ TEST_F(RosMap, PosesThatNobodyCanHaveAreNamed) {
   write_sandbox(folder_);
   World world = load(std::string(kSandbox) + "0.196\n");
   scenes::add_create(world, {});
-  finish(world);
-  const auto where = [&](double x, double y) { return misplaced(world, world.movers[0], {x, y, 0.0, 0.3}); };
+  update_extent_and_hash(world);
+  const auto where = [&](double x, double y) { return placement_problem(world, world.movers[0], {x, y, 0.0, 0.3}); };
   EXPECT_EQ(where(1, 1), "");
   EXPECT_EQ(where(0, 0), "within a wall");
   EXPECT_EQ(where(2.35, 1), "partly in a wall of 'map'");
@@ -141,8 +141,8 @@ TEST_F(RosMap, WhatIsKnownTurnsWithTheMap) {
   std::string yaml = kGood;
   yaml.replace(yaml.find("20, 0]"), 6, "20, 1.5707963267948966]");
   const std::vector<Segment> known = known_free(load(yaml));
-  EXPECT_NE(windings(known, {9.25, 21.25}), 0) << "the pixel beside the unknown one";
-  EXPECT_EQ(windings(known, {9.25, 20.75}), 0) << "the unknown one";
+  EXPECT_NE(winding_number(known, {9.25, 21.25}), 0) << "the pixel beside the unknown one";
+  EXPECT_EQ(winding_number(known, {9.25, 20.75}), 0) << "the unknown one";
 }
 
 TEST_F(RosMap, NegatedMapsAreBrightWhereTheyAreOccupied) {

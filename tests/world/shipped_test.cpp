@@ -21,10 +21,10 @@ World shipped(const std::string& name) {
   static constexpr std::string_view kFelt[] = {"zones", "zone[]", "scount", "spose[]",     "per_count", "track",
                                                "slip",  "scrub",  "bias",   "scale_error", "range",     "satellites"};
   static constexpr std::string_view kCones[] = {"scount", "spose[]", "fov", "range", "firing", "arrays"};
-  static constexpr SensorWord kWords[] = {{"laneedge", kAny},    {"magnetometer", kAny}, {"occupancy", kMap},
-                                          {"bumper", kFelt},     {"cliff", kFelt},       {"encoder", kFelt},
-                                          {"irreceiver", kFelt}, {"gyro", kFelt},        {"gps", kFelt},
-                                          {"sonar", kCones},     {"infrared", kCones}};
+  static constexpr SensorKeyword kWords[] = {{"laneedge", kAny},    {"magnetometer", kAny}, {"occupancy", kMap},
+                                             {"bumper", kFelt},     {"cliff", kFelt},       {"encoder", kFelt},
+                                             {"irreceiver", kFelt}, {"gyro", kFelt},        {"gps", kFelt},
+                                             {"sonar", kCones},     {"infrared", kCones}};
   LoadOptions options;
   options.sensors = kWords;
   return load_world(SF_SOURCE_DIR "/worlds/" + name, options);
@@ -44,7 +44,7 @@ TEST(Shipped, EveryWorldLoadsWithoutAWarning) {
 TEST(Shipped, TheTestPathIsTheThesis) {
   const World world = shipped("testpath/testpath.world");
   double straight = 0.0;
-  for (const Stripe& stripe : world.stripes)
+  for (const LaneMarking& stripe : world.lane_markings)
     if (stripe.line.size() == 2) straight += length(stripe.line[1] - stripe.line[0]);
   EXPECT_NEAR(straight, 2 * (2.72 + 1.349), 1e-12);
   EXPECT_EQ(world.magnets.size(), 78u);
@@ -117,7 +117,7 @@ TEST(Shipped, RobotsAreWhatTheirDataSheetsSay) {
   EXPECT_EQ(create.id, 3u);
   EXPECT_EQ(create.max_forward, 0.5);
   EXPECT_EQ(create.track, 0.258);
-  EXPECT_EQ(create.command_law, CommandLaw::direct);
+  EXPECT_EQ(create.driver_model, DriverModel::direct);
   EXPECT_LT(create.max_acceleration, HUGE_VAL);
   const Mover& pioneer = world.movers.at(1);
   EXPECT_EQ(pioneer.id, 4u);

@@ -23,11 +23,11 @@ void add_street(World& world) {
                           -3.0,
                           {"3.1.11", "4.2.5"}});
   world.emitters.push_back({Emitter::Kind::dock, 1, {0.5, 0.25, 0.05, 2.0}, 1.8, 0.7, 0.6});
-  world.drops.push_back({{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}, 1});
+  world.floor_holes.push_back({{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}, 1});
   world.road_files.push_back("some.rndf");
   Mover& mover = world.movers.at(0);
   mover.drive = Drive::skid;
-  mover.command_law = CommandLaw::player_create;
+  mover.driver_model = DriverModel::player_create;
   mover.max_acceleration = 2.0;
   mover.max_turn_acceleration = 5.0;
   mover.track = 0.258;
@@ -36,9 +36,9 @@ void add_street(World& world) {
 TEST(Snapshot, ARoundTripKeepsEverything) {
   World world = rooms();
   world.warnings.push_back({"some.world", 3, "text"});
-  world.kept["camera"] = 2;
+  world.unmodelled["camera"] = 2;
   world.magnets.push_back({{1.0, 2.0}, -0.04, 0.5, 0.01, 1});
-  world.stripes.push_back({{{0.0, 0.0}, {1.0, 0.5}, {2.0, 0.5}}, 0.02, 0xFFFFCC00u});
+  world.lane_markings.push_back({{{0.0, 0.0}, {1.0, 0.5}, {2.0, 0.5}}, 0.02, 0xFFFFCC00u});
   world.road_resolution = 0.005;
   world.magnet_cutoff = 3.0;
   world.movers.at(0).magnets.push_back({{0.1, 0.0}, 0.2, -1.0, 0.02, 0});
@@ -53,22 +53,22 @@ TEST(Snapshot, ARoundTripKeepsEverything) {
        6,
        "some.world"});
   add_street(world);
-  finish(world);
+  update_extent_and_hash(world);
   const auto bytes = snapshot(world);
   const World again = from_snapshot(bytes);
   EXPECT_EQ(again.hash, world.hash);
   EXPECT_EQ(snapshot(again), bytes);  // so also names, colours, warnings and counts
   EXPECT_EQ(again.extent.x_max, world.extent.x_max);
   EXPECT_EQ(again.movers.at(0).sensors.at(0).settings.at(1).text, "vector");
-  EXPECT_EQ(again.stripes.at(0).line.at(1).y, 0.5);
+  EXPECT_EQ(again.lane_markings.at(0).line.at(1).y, 0.5);
   EXPECT_EQ(again.paths.at(0).pieces.at(1).curvature, 1.07);
   EXPECT_EQ(again.lights.at(0).phases.at(1).state, LightState::flashing_yellow);
   EXPECT_EQ(again.lights.at(0).points.at(1), "4.2.5");
   EXPECT_EQ(again.emitters.at(0).X_WE.yaw, 2.0);
-  EXPECT_EQ(again.drops.at(0).outline.at(2).y, 1.0);
+  EXPECT_EQ(again.floor_holes.at(0).outline.at(2).y, 1.0);
   EXPECT_EQ(again.road_files.at(0), "some.rndf");
   EXPECT_EQ(again.movers.at(0).drive, Drive::skid);
-  EXPECT_EQ(again.movers.at(0).command_law, CommandLaw::player_create);
+  EXPECT_EQ(again.movers.at(0).driver_model, DriverModel::player_create);
   EXPECT_EQ(again.movers.at(0).track, 0.258);
   EXPECT_EQ(again.movers.at(1).max_acceleration, HUGE_VAL);
   EXPECT_EQ(again.movers.at(1).lasers.at(0).color, world.movers.at(1).lasers.at(0).color);
@@ -80,17 +80,17 @@ TEST(Snapshot, NumbersThatAreNoneAreRefused) {
     World world = rooms();
     world.movers[0].lasers.resize(1);
     world.movers[0].body.push_back(world.walls[0]);
-    finish(world);
+    update_extent_and_hash(world);
     EXPECT_NO_THROW(from_snapshot(snapshot(world)));
     for (double* const number : {&world.walls[0].a.x, &world.walls[1].z_max, &world.movers[0].X_WM.yaw,
                                  &world.movers[0].body[0].b.y, &world.movers[0].lasers[0].range_max, &world.interval}) {
       const double good = std::exchange(*number, bad);
-      finish(world);
+      update_extent_and_hash(world);
       EXPECT_THROW(from_snapshot(snapshot(world)), base::InputError);
       *number = good;
     }
     world.movers[0].max_acceleration = HUGE_VAL;
-    finish(world);
+    update_extent_and_hash(world);
     EXPECT_NO_THROW(from_snapshot(snapshot(world)));
   }
 }
@@ -98,7 +98,7 @@ TEST(Snapshot, NumbersThatAreNoneAreRefused) {
 World street() {
   World world = rooms();
   add_street(world);
-  finish(world);
+  update_extent_and_hash(world);
   return world;
 }
 
@@ -106,7 +106,7 @@ TEST(Snapshot, RowsThatBreakTheirRulesAreRefused) {
   const auto refused = [](auto&& spoil) {
     World world = street();
     spoil(world);
-    finish(world);
+    update_extent_and_hash(world);
     try {
       from_snapshot(snapshot(world));
     } catch (const base::InputError& error) {
@@ -122,8 +122,8 @@ TEST(Snapshot, RowsThatBreakTheirRulesAreRefused) {
   EXPECT_TRUE(refused([](World& w) { w.lights[0].model = 9999; }));
   EXPECT_TRUE(refused([](World& w) { w.emitters[0].model = 9999; }));
   EXPECT_TRUE(refused([](World& w) { w.emitters[0].range = 0.0; }));
-  EXPECT_TRUE(refused([](World& w) { w.drops[0].model = 9999; }));
-  EXPECT_TRUE(refused([](World& w) { w.drops[0].outline.pop_back(); }));
+  EXPECT_TRUE(refused([](World& w) { w.floor_holes[0].model = 9999; }));
+  EXPECT_TRUE(refused([](World& w) { w.floor_holes[0].outline.pop_back(); }));
   EXPECT_TRUE(refused([](World& w) { w.paths[0].pieces.clear(); }));
   EXPECT_TRUE(refused([](World& w) { w.paths[0].pieces[0].length = 0.0; }));
   EXPECT_TRUE(refused([](World& w) { w.movers[0].track = 0.0; }));
@@ -144,7 +144,7 @@ TEST(Snapshot, LinksPastTheEndAreRefused) {
   const auto movers = static_cast<std::uint32_t>(world.movers.size());
   const auto refused = [&](std::uint32_t& link, std::uint32_t row) {
     const std::uint32_t good = std::exchange(link, row);
-    finish(world);
+    update_extent_and_hash(world);
     std::string what;
     try {
       from_snapshot(snapshot(world));
@@ -160,11 +160,12 @@ TEST(Snapshot, LinksPastTheEndAreRefused) {
     bool optional;
   };
   Mover& mover = world.movers[0];
-  for (const Link& link : {Link{&world.walls[0].model, models, false}, Link{&world.magnets[0].model, models, false},
-                           Link{&world.models[0].parent, models, true}, Link{&world.models[0].mover, movers, true},
-                           Link{&mover.model, models, false}, Link{&mover.body.back().model, models, false},
-                           Link{&mover.magnets[0].model, models, false}, Link{&world.lights[0].model, models, false},
-                           Link{&world.emitters[0].model, models, false}, Link{&world.drops[0].model, models, false}}) {
+  for (const Link& link :
+       {Link{&world.walls[0].model, models, false}, Link{&world.magnets[0].model, models, false},
+        Link{&world.models[0].parent, models, true}, Link{&world.models[0].mover, movers, true},
+        Link{&mover.model, models, false}, Link{&mover.body.back().model, models, false},
+        Link{&mover.magnets[0].model, models, false}, Link{&world.lights[0].model, models, false},
+        Link{&world.emitters[0].model, models, false}, Link{&world.floor_holes[0].model, models, false}}) {
     EXPECT_FALSE(refused(*link.row, link.count - 1)) << "the last row";
     EXPECT_TRUE(refused(*link.row, link.count)) << "one past the end";
     EXPECT_TRUE(refused(*link.row, link.count + 1));
@@ -243,7 +244,7 @@ TEST(Translate, MovesEverythingThatHasAPlace) {
   EXPECT_EQ(after.paths[0].pieces[1].X_WP.x, before.paths[0].pieces[1].X_WP.x + 100'000.0);
   EXPECT_EQ(after.lights[0].X_WL.y, before.lights[0].X_WL.y - 50'000.0);
   EXPECT_EQ(after.emitters[0].X_WE.x, before.emitters[0].X_WE.x + 100'000.0);
-  EXPECT_EQ(after.drops[0].outline[1].y, before.drops[0].outline[1].y - 50'000.0);
+  EXPECT_EQ(after.floor_holes[0].outline[1].y, before.floor_holes[0].outline[1].y - 50'000.0);
   EXPECT_EQ(after.extent.x_max, before.extent.x_max + 100'000.0);
   EXPECT_NE(after.hash, before.hash);
 }

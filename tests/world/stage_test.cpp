@@ -1,4 +1,4 @@
-#include "world/stage.h"
+#include "world/stage/stage.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -282,14 +282,14 @@ TEST(Stage, NamesAreUnique) {
 TEST(Stage, TypesThatAreNotModelledAreKeptCountedAndMentionedOnce) {
   const World world =
       read_world("position( fiducial() camera() )\nposition( fiducial( fov 60 ) bumper( size [.1 .1 .1 0] ) )");
-  EXPECT_EQ(world.kept, (std::map<std::string, int>{{"bumper", 1}, {"camera", 1}, {"fiducial", 2}}));
+  EXPECT_EQ(world.unmodelled, (std::map<std::string, int>{{"bumper", 1}, {"camera", 1}, {"fiducial", 2}}));
   EXPECT_EQ(world.warnings.size(), 3u) << warnings_of(world);
   EXPECT_EQ(world.movers[0].body.size(), 8u);  // the camera is a box; a fiducial finder is nothing to run into
 }
 
 TEST(Stage, AnUnknownTypeIsKeptWithASuggestion) {
   const World world = read_world("define mybot position()\n\nmybto( size [1 1 1] )");
-  EXPECT_EQ(world.kept.at("mybto"), 1);
+  EXPECT_EQ(world.unmodelled.at("mybto"), 1);
   EXPECT_EQ(world.walls.size(), 4u);
   EXPECT_NE(warnings_of(world).find("3: unknown type 'mybto'; did you mean 'mybot'?"), std::string::npos)
       << warnings_of(world);
@@ -393,7 +393,7 @@ TEST(Stage, AMagnetWithoutAWidthHasNoRadius) {
 
 TEST(Stage, KindsThatAreGivenClaimTheirSensors) {
   constexpr std::string_view keys[] = {"scount", "spose[]"};
-  const SensorWord words[] = {{"magnetometer", keys}, {"laneedge", {}}};
+  const SensorKeyword words[] = {{"magnetometer", keys}, {"laneedge", {}}};
   LoadOptions options;
   options.sensors = words;
   const World world = read_world(

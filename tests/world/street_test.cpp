@@ -113,28 +113,28 @@ TEST(Emitter, SaysItsOwn) {
   EXPECT_EQ(world.emitters.at(0).halo, 0.0);
 }
 
-TEST(Drop, IsNoWallButAHole) {
+TEST(FloorHole, IsNoWallButAHole) {
   const World world = read_world("model( name \"stairs\" pose [1 2 0 90] size [2 1 1] cliff_return 1 )");
   EXPECT_TRUE(world.walls.empty());
-  ASSERT_EQ(world.drops.size(), 1u);
-  EXPECT_EQ(world.models[world.drops[0].model].name, "stairs");
-  const auto& outline = world.drops[0].outline;
+  ASSERT_EQ(world.floor_holes.size(), 1u);
+  EXPECT_EQ(world.models[world.floor_holes[0].model].name, "stairs");
+  const auto& outline = world.floor_holes[0].outline;
   ASSERT_EQ(outline.size(), 4u);
   EXPECT_NEAR(outline[0].x, 1.5, 1e-12);
   EXPECT_NEAR(outline[0].y, 1.0, 1e-12);
   EXPECT_NEAR(world.extent.y_max, 3.0, 1e-12);
 }
 
-TEST(Drop, EveryBlockIsOne) {
+TEST(FloorHole, EveryBlockIsOne) {
   const World world = read_world(R"(model( size [3 1 1] cliff_return 1
     block( points 3 point[0] [0 0] point[1] [1 0] point[2] [0 1] )
     block( points 4 point[0] [2 0] point[1] [3 0] point[2] [3 1] point[3] [2 1] ) ))");
-  ASSERT_EQ(world.drops.size(), 2u);
-  EXPECT_EQ(world.drops[0].outline.size(), 3u);
-  EXPECT_EQ(world.drops[1].outline.size(), 4u);
+  ASSERT_EQ(world.floor_holes.size(), 2u);
+  EXPECT_EQ(world.floor_holes[0].outline.size(), 3u);
+  EXPECT_EQ(world.floor_holes[1].outline.size(), 4u);
 }
 
-TEST(Drop, IsOnePropertyAwayFromAWall) { EXPECT_EQ(read_world("model( cliff_return 0 )").walls.size(), 4u); }
+TEST(FloorHole, IsOnePropertyAwayFromAWall) { EXPECT_EQ(read_world("model( cliff_return 0 )").walls.size(), 4u); }
 
 TEST(Position, SaysHowItMoves) {
   const World world = read_world(R"(position( drive "skid" track 0.4 acceleration_bounds [-1 2 0 0 0 0 -90 180]
@@ -145,9 +145,9 @@ TEST(Position, SaysHowItMoves) {
   EXPECT_EQ(skid.track, 0.4);
   EXPECT_EQ(skid.max_acceleration, 2.0);
   EXPECT_DOUBLE_EQ(skid.max_turn_acceleration, M_PI);
-  EXPECT_EQ(skid.command_law, CommandLaw::player_create);
+  EXPECT_EQ(skid.driver_model, DriverModel::player_create);
   EXPECT_EQ(world.movers.at(1).max_acceleration, HUGE_VAL) << "nothing said: no limit";
-  EXPECT_EQ(world.movers.at(1).command_law, CommandLaw::direct);
+  EXPECT_EQ(world.movers.at(1).driver_model, DriverModel::direct);
   EXPECT_EQ(world.movers.at(2).max_acceleration, 2.0);
   EXPECT_EQ(world.movers.at(2).max_turn_acceleration, HUGE_VAL);
 }
@@ -168,7 +168,7 @@ TEST(Clone, LightsEmittersAndHolesKeepTheirModels) {
   clone_robots(world, 5, 1);
   EXPECT_EQ(world.models.at(world.lights.at(0).model).name, "l");
   EXPECT_EQ(world.models.at(world.emitters.at(0).model).name, "d");
-  EXPECT_EQ(world.models.at(world.drops.at(0).model).name, "h");
+  EXPECT_EQ(world.models.at(world.floor_holes.at(0).model).name, "h");
   EXPECT_NO_THROW(from_snapshot(snapshot(world)));
 }
 

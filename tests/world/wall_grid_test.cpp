@@ -59,20 +59,20 @@ std::vector<Segment> square(double half, bool counter_clockwise, bool solid_left
 
 TEST(Windings, case_by_case) {
   const std::vector<Segment> outer = square(2.0, true);
-  EXPECT_EQ(windings(outer, {0, 0}), 1) << "within";
-  EXPECT_EQ(windings(outer, {3, 0}), 0) << "to its right";
-  EXPECT_EQ(windings(outer, {-3, 0}), 0) << "to its left, both sides ahead";
-  EXPECT_EQ(windings(outer, {0, 3}), 0) << "above";
-  EXPECT_EQ(windings(square(2.0, false), {0, 0}), -1) << "the other way round";
-  EXPECT_EQ(windings(square(2.0, true, false), {0, 0}), 0) << "a line, nothing solid";
+  EXPECT_EQ(winding_number(outer, {0, 0}), 1) << "within";
+  EXPECT_EQ(winding_number(outer, {3, 0}), 0) << "to its right";
+  EXPECT_EQ(winding_number(outer, {-3, 0}), 0) << "to its left, both sides ahead";
+  EXPECT_EQ(winding_number(outer, {0, 3}), 0) << "above";
+  EXPECT_EQ(winding_number(square(2.0, false), {0, 0}), -1) << "the other way round";
+  EXPECT_EQ(winding_number(square(2.0, true, false), {0, 0}), 0) << "a line, nothing solid";
 
   std::vector<Segment> frame = outer;
   for (const Segment& edge : square(1.0, false)) frame.push_back(edge);
-  EXPECT_EQ(windings(frame, {0, 0}), 0) << "in its hole";
-  EXPECT_EQ(windings(frame, {1.5, 0}), 1) << "in the frame";
+  EXPECT_EQ(winding_number(frame, {0, 0}), 0) << "in its hole";
+  EXPECT_EQ(winding_number(frame, {1.5, 0}), 1) << "in the frame";
   std::vector<Segment> twice = outer;
   for (const Segment& edge : square(1.0, true)) twice.push_back(edge);
-  EXPECT_EQ(windings(twice, {0, 0}), 2) << "where two overlap";
+  EXPECT_EQ(winding_number(twice, {0, 0}), 2) << "where two overlap";
 }
 
 std::vector<Segment> random_walls(std::uint32_t count, glm::dvec2 around, double spread, double longest) {

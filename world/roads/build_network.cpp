@@ -6,18 +6,18 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "world/roads/lane_markings.h"
 #include "world/roads/network.h"
-#include "world/roads/paint.h"
 
 namespace sf::world {
 
 namespace {
 
-constexpr double kLaneWidthFt = 12.0;           // where nobody says; the lane of US highways
-constexpr double kSpotWidthFt = 9.0;            // where nobody says; a usual US parking stall
-constexpr double kFar = 20e3;                   // [m] from the origin; flattening costs 3 cm there
-constexpr std::size_t kMostSamples = 1u << 20;  // points of all centre lines
-constexpr std::size_t kMostExitSamples = 4 * kMostSamples;
+constexpr double kLaneWidthFt = 12.0;          // where nobody says; the lane of US highways
+constexpr double kSpotWidthFt = 9.0;           // where nobody says; a usual US parking stall
+constexpr double kFar = 20e3;                  // [m] from the origin; flattening costs 3 cm there
+constexpr std::size_t kMaxSamples = 1u << 20;  // points of all centre lines
+constexpr std::size_t kMaxExitSamples = 4 * kMaxSamples;
 
 struct Builder {
   const Rndf& rndf;
@@ -68,13 +68,13 @@ void trace_lane(Builder& b, RoadLane& lane, const RndfLane& from) {
     if (length(waypoints[i] - waypoints[i - 1]) < 1e-6)
       b.warn(from.points[i].line,
              fmt::format("way-points {} and {} coincide", text_of(from.points[i - 1].id), text_of(from.points[i].id)));
-  lane.centre = smooth_curve(waypoints, {b.network.tolerance, 0.5 * lane.width, kMostSamples - b.samples});
+  lane.centre = smooth_curve(waypoints, {b.network.tolerance, 0.5 * lane.width, kMaxSamples - b.samples});
   b.samples += lane.centre.points.size();
-  if (b.samples >= kMostSamples)
+  if (b.samples >= kMaxSamples)
     throw base::InputError(b.rndf.file, from.line,
                            fmt::format("more than {} points make its lanes smooth; check the coordinates or split the "
                                        "network",
-                                       kMostSamples));
+                                       kMaxSamples));
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     const std::size_t knot = lane.centre.knots[i];
     const glm::dvec2 tangent = lane.centre.tangents[knot];
@@ -93,8 +93,8 @@ void add_lane(Builder& b, const RndfSegment& segment, const RndfLane& from) {
   lane.left = own.left.value_or(from.left);
   lane.right = own.right.value_or(from.right);
   trace_lane(b, lane, from);
-  lane.left_edge = parallel(lane.centre, 0.5 * lane.width);
-  lane.right_edge = parallel(lane.centre, -0.5 * lane.width);
+  lane.left_edge = offset_curve(lane.centre, 0.5 * lane.width);
+  lane.right_edge = offset_curve(lane.centre, -0.5 * lane.width);
   if (lane.centre.points.size() < 2)
     b.warn(from.line,
            fmt::format("lane {}.{} has one point only: no direction, no edges and no paint", segment.id, from.number));
@@ -182,14 +182,14 @@ void join(Builder& b) {
                    [&](const RoadExit& x, const RoadExit& y) { return key(x) < key(y); });
   std::size_t samples = 0;
   for (RoadExit& exit : network.exits) {
-    const Curve way = connection_of(network, exit);
+    const Curve way = exit_curve(network, exit);
     exit.length = way.s.back();
     samples += way.points.size();
-    if (samples > kMostExitSamples)
+    if (samples > kMaxExitSamples)
       throw base::InputError(b.rndf.file, 0,
                              fmt::format("more than {} points make its exits smooth; check the coordinates or split "
                                          "the network",
-                                         kMostExitSamples));
+                                         kMaxExitSamples));
   }
   std::sort(network.checkpoints.begin(), network.checkpoints.end(),
             [](const RoadCheckpoint& x, const RoadCheckpoint& y) { return x.id < y.id; });
@@ -209,7 +209,7 @@ Extent extent_of(const RoadNetwork& network) {
   return e;
 }
 
-RoadPaint paint_sizes(const RoadSidecar& sidecar) {
+MarkingSizes marking_sizes(const RoadSidecar& sidecar) {
   return {sidecar.paint_width.value_or(4.0 * kInch * sidecar.scale),
           sidecar.dash_length.value_or(10.0 * kFoot * sidecar.scale),
           sidecar.dash_gap.value_or(30.0 * kFoot * sidecar.scale),
@@ -226,7 +226,7 @@ RoadNetwork build_network(const Rndf& rndf, const RoadSidecar& sidecar, std::vec
   b.network.scale = sidecar.scale;
   // A millimetre of the real road; small models are kept to a tenth of a millimetre at least.
   b.network.tolerance = sidecar.scale < 1.0 ? std::min(1e-3 * sidecar.scale, 1e-4) : 1e-3 * sidecar.scale;
-  b.network.paint = paint_sizes(sidecar);
+  b.network.paint = marking_sizes(sidecar);
   b.network.counts = count(rndf);
   add_segments(b);
   for (const RndfZone& zone : rndf.zones) add_zone(b, zone);

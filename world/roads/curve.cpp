@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kCoincident = 1e-6;  // [m]
 constexpr int kDeepest = 20;          // halvings of one span
-constexpr double kMostTurn = 0.5;     // [rad] from one point of the polyline to the next
+constexpr double kMaxTurn = 0.5;      // [rad] from one point of the polyline to the next
 
 glm::dvec2 unit(glm::dvec2 v) {
   const double l = length(v);
@@ -57,7 +57,7 @@ void flatten(Curve& curve, const Bezier& b, const Sampling& sampling, int depth)
   const double flat = std::max(distance_to_segment(b.p1, b.p0, b.p3), distance_to_segment(b.p2, b.p0, b.p3));
   const double turn = std::abs(turn_between(start_of(b), end_of(b)));
   const double bulge = sampling.half_width * turn * turn / 8.0;
-  const bool fine = flat + bulge <= sampling.tolerance && turn <= kMostTurn;
+  const bool fine = flat + bulge <= sampling.tolerance && turn <= kMaxTurn;
   if (fine || depth == kDeepest || curve.points.size() + static_cast<std::size_t>(depth) >= sampling.most)
     return add_point(curve, b.p3, end_of(b));
   const glm::dvec2 p01 = middle(b.p0, b.p1), p12 = middle(b.p1, b.p2), p23 = middle(b.p2, b.p3);

@@ -43,7 +43,7 @@ Curve connection(glm::dvec2 a, glm::dvec2 tangent_a, glm::dvec2 b, glm::dvec2 ta
 /// The curve's parallel at `distance` to its left (negative: right) [m]. Where the curve bends tighter than that, what
 /// would come nearer to it is left out, so that the inside of a bend has a corner and no loop. Neighbouring points are
 /// distinct; empty where nothing is left, and where the curve has one point only.
-std::vector<glm::dvec2> parallel(const Curve& curve, double distance);
+std::vector<glm::dvec2> offset_curve(const Curve& curve, double distance);
 
 /// Point at `s` [m] along the polyline, clamped to its ends.
 glm::dvec2 point_at(const Curve& curve, double s);

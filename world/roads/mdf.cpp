@@ -9,8 +9,8 @@
 #include <set>
 
 #include "base/error.h"
-#include "world/entities.h"
 #include "world/keys.h"
+#include "world/stage/document.h"
 
 namespace sf::world {
 
@@ -28,12 +28,12 @@ constexpr std::array<std::string_view, 12> kKeywords{"MDF_name",         "RNDF",
 class MdfReader {
  public:
   MdfReader(const std::string& file, std::string_view text, bool strict)
-      : problems_(file, strict, mdf_.warnings), statements_(file, text, problems_) {
+      : diagnostics_(file, strict, mdf_.warnings), statements_(file, text, diagnostics_) {
     mdf_.file = file;
   }
 
   Mdf read() {
-    while (!ended_ && next()) problems_.attempt(now().line, [&] { statement(); });
+    while (!ended_ && next()) diagnostics_.attempt(now().line, [&] { statement(); });
     end_block("at the end of the file");
     check_name();
     if (!ended_) warn(statements_.line(), "'end_file' is missing at the end of the file");
@@ -41,7 +41,7 @@ class MdfReader {
       warn(now().line, fmt::format("{} comes after 'end_file'; it and what follows is ignored", quoted(now().keyword)));
     check_count("num_checkpoints", mdf_.checkpoints.size());
     check_count("num_speed_limits", mdf_.speed_limits.size());
-    problems_.settle();
+    diagnostics_.throw_errors();
     return std::move(mdf_);
   }
 
@@ -51,15 +51,15 @@ class MdfReader {
 
   bool next() {
     bool more = false;
-    problems_.attempt(statements_.line(), [&] { more = statements_.next(); });
+    diagnostics_.attempt(statements_.line(), [&] { more = statements_.next(); });
     return more;
   }
 
   void check_name() {
     if (seen_.count("MDF_name") > 0) return;
     const std::string what = "'MDF_name' is missing", remedy = "expected a mission data file";
-    if (mdf_.checkpoints.empty()) throw WrongFile(mdf_.file, 0, what + "; " + remedy);
-    problems_.tolerate(0, what, remedy, "it has no name");
+    if (mdf_.checkpoints.empty()) throw WrongFormatError(mdf_.file, 0, what + "; " + remedy);
+    diagnostics_.add_warning(0, what, remedy, "it has no name");
   }
 
   void statement() {
@@ -85,20 +85,20 @@ class MdfReader {
     const bool is_block = word.ends_with("checkpoints") || word.ends_with("speed_limits");
     if (!word.starts_with("num_") && (is_block || before->second != now().rest))
       statements_.fail(what + "; expected it once");
-    problems_.tolerate(now().line, what, "expected it once", "the first counts");
+    diagnostics_.add_warning(now().line, what, "expected it once", "the first counts");
     return true;
   }
 
   void unknown() {
     const std::string_view word = now().keyword;
     if (word == "num_segments" || word == "segment")
-      throw WrongFile(mdf_.file, now().line, fmt::format("'{}' stands in an RNDF; expected an MDF", word));
+      throw WrongFormatError(mdf_.file, now().line, fmt::format("'{}' stands in an RNDF; expected an MDF", word));
     const bool plain = word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") ==
                        std::string_view::npos;
     if (!plain || word.size() > 40 || unknown_.size() > 20) {
       const std::string message =
           fmt::format("{} is no statement; expected a keyword of MDF such as 'checkpoints'", quoted(word));
-      if (seen_.empty()) throw WrongFile(mdf_.file, now().line, message);
+      if (seen_.empty()) throw WrongFormatError(mdf_.file, now().line, message);
       statements_.fail(message);
     }
     if (unknown_.emplace(word).second)
@@ -142,7 +142,7 @@ class MdfReader {
       said.first = statements_.whole(0, 0, "the number");
       statements_.expect_fields(1);
     } catch (const base::InputError&) {
-      if (problems_.strict()) throw;
+      if (diagnostics_.strict()) throw;
       warn(now().line,
            fmt::format("'{}' is {}, no number; what is there is counted", now().keyword, quoted(now().rest)));
     }
@@ -154,14 +154,14 @@ class MdfReader {
     const std::string taken = have == 1 ? "1 is taken" : fmt::format("{} are taken", have);
     const auto said = promises_.find(keyword);
     if (said == promises_.end())
-      return problems_.tolerate(0, fmt::format("'{}' is missing", keyword),
-                                fmt::format("expected '{} {}'", keyword, have), taken);
+      return diagnostics_.add_warning(0, fmt::format("'{}' is missing", keyword),
+                                      fmt::format("expected '{} {}'", keyword, have), taken);
     const auto [count, line] = said->second;
     if (count < 0 || static_cast<std::size_t>(count) == have) return;
     const std::string what = fmt::format("'{}' says {}, but there are {}", keyword, count, have);
     if (!ended_ && static_cast<std::size_t>(count) > have)
-      return problems_.refuse(line, what + ": the file is cut short");
-    problems_.tolerate(line, what, "mend the number or what it counts", taken);
+      return diagnostics_.add_error(line, what + ": the file is cut short");
+    diagnostics_.add_warning(line, what, "mend the number or what it counts", taken);
   }
 
   void row() {
@@ -183,7 +183,7 @@ class MdfReader {
                            statements_.decimal(0, "the lowest speed"), statements_.decimal(1, "the highest speed"),
                            now().line};
     statements_.expect_fields(2);
-    if (limit.least_mph < 0.0 || limit.most_mph < limit.least_mph || limit.most_mph > kMostRoadNumber)
+    if (limit.least_mph < 0.0 || limit.most_mph < limit.least_mph || limit.most_mph > kMaxRoadNumber)
       statements_.fail(
           fmt::format("speeds from {} to {} miles per hour; expected the lowest (0: none), then the highest",
                       now().fields[0], now().fields[1]));
@@ -192,14 +192,14 @@ class MdfReader {
       const std::string what = fmt::format("{} has a speed limit in line {} already", limit.id, old->second.line);
       const bool same = old->second.least_mph == limit.least_mph && old->second.most_mph == limit.most_mph;
       if (!same) statements_.fail(what + "; expected one for each segment or zone");
-      return problems_.tolerate(limit.line, what, "expected one for each segment or zone", "it is taken once");
+      return diagnostics_.add_warning(limit.line, what, "expected one for each segment or zone", "it is taken once");
     }
     mdf_.speed_limits.push_back(limit);
   }
 
   Mdf mdf_;
-  Problems problems_;
-  Statements statements_;
+  Diagnostics diagnostics_;
+  StatementReader statements_;
   Block block_ = Block::file;
   int begun_ = 0;                                         ///< line where the block began
   std::map<std::string, std::string, std::less<>> seen_;  ///< keywords, and what they say
@@ -234,11 +234,12 @@ std::vector<Warning> check_against(const Mdf& mdf, const Rndf& rndf) {
   const std::string has =
       checkpoints.empty() ? "it has none" : fmt::format("expected one of its {}", checkpoints.size());
   std::vector<Warning> warnings;
-  Problems problems(mdf.file, false, warnings);
+  Diagnostics diagnostics(mdf.file, false, warnings);
   for (const MdfCheckpoint& wanted : mdf.checkpoints)
     if (checkpoints.count(wanted.id) == 0)
-      problems.refuse(wanted.line, fmt::format("checkpoint {} does not exist in {}; {}", wanted.id, rndf.file, has));
-  problems.settle();
+      diagnostics.add_error(wanted.line,
+                            fmt::format("checkpoint {} does not exist in {}; {}", wanted.id, rndf.file, has));
+  diagnostics.throw_errors();
   for (const SpeedLimit& limit : mdf.speed_limits)
     if (places.count(limit.id) == 0)
       warnings.push_back({mdf.file, limit.line,

@@ -24,12 +24,12 @@ std::pair<std::vector<RoadExit>::const_iterator, std::vector<RoadExit>::const_it
   return std::equal_range(network.exits.begin(), network.exits.end(), at, ByFrom{});
 }
 
-Step across(const RoadNetwork& network, PointRef from, PointRef to) {
-  return {Step::Way::zone, to, length(position_of(network, to) - position_of(network, from))};
+Transition across(const RoadNetwork& network, PointRef from, PointRef to) {
+  return {Transition::Kind::zone, to, length(position_of(network, to) - position_of(network, from))};
 }
 
 /// Across a zone to all of its perimeter points that lead out of it.
-void add_ways_out(const RoadNetwork& network, std::uint32_t zone, PointRef from, std::vector<Step>& steps) {
+void add_ways_out(const RoadNetwork& network, std::uint32_t zone, PointRef from, std::vector<Transition>& steps) {
   const auto points = static_cast<std::uint32_t>(network.zones[zone].perimeter.size());
   for (std::uint32_t i = 0; i < points; ++i) {
     const PointRef to{PointRef::Kind::perimeter, zone, i};
@@ -82,16 +82,17 @@ std::string name_of(const RoadNetwork& network, const RoadLane& lane) {
   return fmt::format("{}.{}", network.segments[lane.segment].id, lane.number);
 }
 
-std::vector<Step> successors(const RoadNetwork& network, PointRef at) {
-  std::vector<Step> steps;
+std::vector<Transition> successors(const RoadNetwork& network, PointRef at) {
+  std::vector<Transition> steps;
   if (at.kind == PointRef::Kind::lane) {
     const std::vector<LanePoint>& points = network.lanes[at.row].points;
     if (at.index + 1 < points.size())
-      steps.push_back(
-          {Step::Way::lane, {PointRef::Kind::lane, at.row, at.index + 1}, points[at.index + 1].s - points[at.index].s});
+      steps.push_back({Transition::Kind::lane,
+                       {PointRef::Kind::lane, at.row, at.index + 1},
+                       points[at.index + 1].s - points[at.index].s});
   }
   const auto [first, last] = exits_from(network, at);
-  for (auto exit = first; exit != last; ++exit) steps.push_back({Step::Way::exit, exit->to, exit->length});
+  for (auto exit = first; exit != last; ++exit) steps.push_back({Transition::Kind::exit, exit->to, exit->length});
   if (at.kind == PointRef::Kind::perimeter) {
     const RoadZone& zone = network.zones[at.row];
     for (std::uint32_t i = 0; i < zone.spots; ++i)
@@ -104,7 +105,7 @@ std::vector<Step> successors(const RoadNetwork& network, PointRef at) {
   return steps;
 }
 
-Curve connection_of(const RoadNetwork& network, const RoadExit& exit) {
+Curve exit_curve(const RoadNetwork& network, const RoadExit& exit) {
   const glm::dvec2 a = position_of(network, exit.from);
   const glm::dvec2 b = position_of(network, exit.to);
   const double d = length(b - a);

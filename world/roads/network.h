@@ -79,7 +79,7 @@ struct RoadSpot {
 struct RoadExit {
   PointRef from;
   PointRef to;
-  double length = 0.0;  ///< [m] of `connection_of`
+  double length = 0.0;  ///< [m] of `exit_curve`
 };
 
 /// Across the lane, as wide as the lane. None on lanes without a direction.
@@ -96,7 +96,7 @@ struct RoadCheckpoint {
 };
 
 /// Sizes of paint, scaled. [m] > 0
-struct RoadPaint {
+struct MarkingSizes {
   double line_width = 0.0;
   double dash_length = 0.0;
   double dash_gap = 0.0;
@@ -115,7 +115,7 @@ struct RoadNetwork {
   std::vector<RoadExit> exits;  ///< sorted by `from` in the order of the tables, then as in the file
   std::vector<StopLine> stops;
   std::vector<RoadCheckpoint> checkpoints;  ///< sorted by id
-  RoadPaint paint;
+  MarkingSizes paint;
   RoadCounts counts;
   Extent extent;                                    ///< [m] of all points, edges and spots
   std::vector<std::pair<PointId, PointRef>> index;  ///< sorted: see `find_point`
@@ -137,9 +137,9 @@ std::optional<double> yaw_of(const RoadNetwork& network, PointRef at);
 std::string name_of(const RoadNetwork& network, const RoadLane& lane);
 
 /// One way on from a point.
-struct Step {
-  enum class Way : std::uint8_t { lane, exit, zone, change };
-  Way way = Way::lane;  ///< along the lane, over an exit, freely across a zone, or over to the lane beside
+struct Transition {
+  enum class Kind : std::uint8_t { lane, exit, zone, change };
+  Kind kind = Kind::lane;  ///< along the lane, over an exit, freely across a zone, or over to the lane beside
   PointRef to;
   double length = 0.0;  ///< [m] along the lane; of the connection of an exit or change; straight across a zone
 };
@@ -147,17 +147,17 @@ struct Step {
 /// Where one can go from `at`: on along the lane, over its exits; from a perimeter point also to every spot of the zone
 /// and to every perimeter point that has exits; within a spot to its end, and from its end to every perimeter point
 /// that has exits.
-std::vector<Step> successors(const RoadNetwork& network, PointRef at);
+std::vector<Transition> successors(const RoadNetwork& network, PointRef at);
 
 /// The lanes that one may change to from `at`, of the same segment, side by side with it in the same direction, where
 /// the paint between them is broken or the file says nothing of it. Each step ends at the first point of the other lane
 /// that is at least three lane widths farther on. Nothing from points of zones and spots. Not among `successors`.
-std::vector<Step> lane_changes(const RoadNetwork& network, PointRef at);
+std::vector<Transition> lane_changes(const RoadNetwork& network, PointRef at);
 
 /// The way of a change of lanes, from one lane's direction into the other's.
-Curve change_of(const RoadNetwork& network, PointRef from, PointRef to);
+Curve lane_change_curve(const RoadNetwork& network, PointRef from, PointRef to);
 
 /// The way an exit takes: from the lane's direction into that of the entry; straight where a direction is not known.
-Curve connection_of(const RoadNetwork& network, const RoadExit& exit);
+Curve exit_curve(const RoadNetwork& network, const RoadExit& exit);
 
 }  // namespace sf::world

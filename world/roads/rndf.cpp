@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "world/entities.h"
 #include "world/roads/rndf_reader.h"
+#include "world/stage/document.h"
 
 namespace sf::world {
 

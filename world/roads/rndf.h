@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "world/roads/rndf_lines.h"
+#include "world/roads/rndf_statement_reader.h"
 #include "world/world.h"
 
 namespace sf::world {

@@ -36,7 +36,7 @@ constexpr std::array<std::string_view, 20> kExtension{"num_intersections",
                                                       "end_intersection"};
 
 // A text that uses more unknown words than this is something else.
-constexpr std::size_t kMostUnknown = 50;
+constexpr std::size_t kMaxUnknown = 50;
 
 bool is_extension(std::string_view keyword) {
   return std::find(kExtension.begin(), kExtension.end(), keyword) != kExtension.end();
@@ -82,13 +82,13 @@ const std::map<std::string_view, RndfReader::Rule>& RndfReader::rules() {
       {"RNDF_name", {{B::file}, true, false, [](R& r) { r.rndf_.name = r.now().rest; }}},
       {"format_version", {{B::file}, true, false, [](R& r) { r.rndf_.format_version = r.now().rest; }}},
       {"creation_date", {{B::file}, true, false, [](R& r) { r.rndf_.creation_date = r.now().rest; }}},
-      {"num_segments", {{B::file}, true, false, [](R& r) { r.promise(1, "the number of segments"); }}},
-      {"num_zones", {{B::file}, true, false, [](R& r) { r.promise(0, "the number of zones"); }}},
+      {"num_segments", {{B::file}, true, false, [](R& r) { r.read_declared_count(1, "the number of segments"); }}},
+      {"num_zones", {{B::file}, true, false, [](R& r) { r.read_declared_count(0, "the number of zones"); }}},
       {"segment", {{B::file}, false, true, [](R& r) { r.begin_segment(); }}},
-      {"num_lanes", {{B::segment}, true, false, [](R& r) { r.promise(1, "the number of lanes"); }}},
+      {"num_lanes", {{B::segment}, true, false, [](R& r) { r.read_declared_count(1, "the number of lanes"); }}},
       {"segment_name", {{B::segment}, true, false, [](R& r) { r.rndf_.segments.back().name = r.now().rest; }}},
       {"lane", {{B::segment}, false, true, [](R& r) { r.begin_lane(); }}},
-      {"num_waypoints", {{B::lane}, true, false, [](R& r) { r.promise(1, "the number of way-points"); }}},
+      {"num_waypoints", {{B::lane}, true, false, [](R& r) { r.read_declared_count(1, "the number of way-points"); }}},
       {"lane_width", {{B::lane}, true, false, [](R& r) { r.read_width(r.lane().width_ft); }}},
       {"left_boundary", {{B::lane}, true, false, [](R& r) { r.read_boundary(r.lane().left); }}},
       {"right_boundary", {{B::lane}, true, false, [](R& r) { r.read_boundary(r.lane().right); }}},
@@ -98,11 +98,11 @@ const std::map<std::string_view, RndfReader::Rule>& RndfReader::rules() {
       {"end_lane", {{B::lane}, false, true, [](R& r) { r.end_block(B::lane); }}},
       {"end_segment", {{B::segment}, false, true, [](R& r) { r.end_block(B::segment); }}},
       {"zone", {{B::file}, false, true, [](R& r) { r.begin_zone(); }}},
-      {"num_spots", {{B::zone}, true, false, [](R& r) { r.promise(0, "the number of spots"); }}},
+      {"num_spots", {{B::zone}, true, false, [](R& r) { r.read_declared_count(0, "the number of spots"); }}},
       {"zone_name", {{B::zone}, true, false, [](R& r) { r.zone().name = r.now().rest; }}},
       {"perimeter", {{B::zone}, true, true, [](R& r) { r.begin_perimeter(); }}},
       {"num_perimeterpoints",
-       {{B::perimeter}, true, false, [](R& r) { r.promise(1, "the number of perimeter points"); }}},
+       {{B::perimeter}, true, false, [](R& r) { r.read_declared_count(1, "the number of perimeter points"); }}},
       {"end_perimeter", {{B::perimeter}, false, true, [](R& r) { r.end_block(B::perimeter); }}},
       {"spot", {{B::zone}, false, true, [](R& r) { r.begin_spot(); }}},
       {"spot_width", {{B::spot}, true, false, [](R& r) { r.read_width(r.spot().width_ft); }}},
@@ -113,7 +113,7 @@ const std::map<std::string_view, RndfReader::Rule>& RndfReader::rules() {
 }
 
 RndfReader::RndfReader(const std::string& file, std::string_view text, bool strict)
-    : problems_(file, strict, rndf_.warnings), statements_(file, text, problems_) {
+    : diagnostics_(file, strict, rndf_.warnings), statements_(file, text, diagnostics_) {
   rndf_.file = file;
   open_.push_back({RndfBlock::file, 1, "the file"});
 }
@@ -124,21 +124,21 @@ void RndfReader::warn(int line, std::string message) {
 
 void RndfReader::warn_once(std::string_view keyword, std::string message) {
   if (unknown_.emplace(keyword).second) warn(now().line, std::move(message));
-  if (unknown_.size() > kMostUnknown)
-    throw WrongFile(statements_.file(), now().line,
-                    fmt::format("{} keywords that no RNDF has; is this one?", unknown_.size()));
+  if (unknown_.size() > kMaxUnknown)
+    throw WrongFormatError(statements_.file(), now().line,
+                           fmt::format("{} keywords that no RNDF has; is this one?", unknown_.size()));
 }
 
 /// The next statement; false at the end, and where no text follows.
 bool RndfReader::next() {
   bool more = false;
-  problems_.attempt(statements_.line(), [&] { more = statements_.next(); });
+  diagnostics_.attempt(statements_.line(), [&] { more = statements_.next(); });
   return more;
 }
 
 Rndf RndfReader::read() {
   while (!ended_ && next())
-    if (!problems_.attempt(now().line, [&] { statement(); })) skip(now().keyword);
+    if (!diagnostics_.attempt(now().line, [&] { statement(); })) skip(now().keyword);
   if (!ended_) {
     cut_ = true;
     check_name();
@@ -148,8 +148,8 @@ Rndf RndfReader::read() {
   } else if (next()) {
     warn(now().line, fmt::format("{} comes after 'end_file'; it and what follows is ignored", quoted(now().keyword)));
   }
-  check_references(rndf_, unread_, problems_);
-  problems_.settle();
+  check_references(rndf_, unread_, diagnostics_);
+  diagnostics_.throw_errors();
   return std::move(rndf_);
 }
 
@@ -164,7 +164,7 @@ void RndfReader::skip(std::string_view keyword) {
   while (next() && now().keyword != end) {
     if (const auto id = read_point_id(now().keyword)) unread_.insert(*id);
     if (level_of(now().keyword) > level) continue;
-    if (!problems_.attempt(now().line, [&] { statement(); })) skip(now().keyword);
+    if (!diagnostics_.attempt(now().line, [&] { statement(); })) skip(now().keyword);
     return;
   }
 }
@@ -179,12 +179,12 @@ void RndfReader::statement() {
 
 void RndfReader::unknown() {
   const std::string_view keyword = now().keyword;
-  if (keyword == "MDF_name") throw WrongFile(statements_.file(), now().line, "this is an MDF; expected an RNDF");
+  if (keyword == "MDF_name") throw WrongFormatError(statements_.file(), now().line, "this is an MDF; expected an RNDF");
   if (is_extension(keyword)) return warn_once(keyword, fmt::format("'{}' is known but not modelled; ignored", keyword));
   if (!is_word(keyword) || keyword.size() > 40) {
     const std::string message =
         fmt::format("{} is no statement; expected a keyword of RNDF such as 'segment' or 'exit'", quoted(keyword));
-    if (rndf_.segments.empty()) throw WrongFile(statements_.file(), now().line, message);
+    if (rndf_.segments.empty()) throw WrongFormatError(statements_.file(), now().line, message);
     statements_.fail(message);
   }
   std::vector<std::string_view> known(kExtension.begin(), kExtension.end());
@@ -199,7 +199,7 @@ bool RndfReader::repeats(std::string_view keyword) {
   const std::string what = fmt::format("'{}' is given twice in {}", keyword, open_.back().name);
   const bool clear = before->second == now().rest ? keyword != "perimeter" : keyword.starts_with("num_");
   if (!clear) statements_.fail(what + "; expected it once");
-  problems_.tolerate(now().line, what, "expected it once", "the first counts");
+  diagnostics_.add_warning(now().line, what, "expected it once", "the first counts");
   return true;
 }
 
@@ -225,31 +225,32 @@ void RndfReader::open(RndfBlock block, std::string name) { open_.push_back({bloc
 
 // Only zones and spots may be none, and then nothing need be said of them. A number is there to be checked: what there
 // is counts more, unless the file breaks off before as many came.
-void RndfReader::check_promise(const Open& open, std::string_view keyword, std::size_t have) {
+void RndfReader::check_declared(const Open& open, std::string_view keyword, std::size_t have) {
   have += open.skipped;
   const bool may_be_none = keyword == "num_zones" || keyword == "num_spots";
-  const auto said = open.promises.find(keyword);
-  if (said == open.promises.end()) {
+  const auto said = open.declared.find(keyword);
+  if (said == open.declared.end()) {
     const std::string what = fmt::format("'{}' is missing in {}", keyword, open.name);
     const std::string remedy = fmt::format("expected '{} {}'", keyword, have);
-    if (have > 0) return problems_.tolerate(open.line, what, remedy, fmt::format("{} taken", counted(have)));
-    return may_be_none ? warn(open.line, what + "; " + remedy) : problems_.refuse(open.line, what + "; " + remedy);
+    if (have > 0) return diagnostics_.add_warning(open.line, what, remedy, fmt::format("{} taken", counted(have)));
+    return may_be_none ? warn(open.line, what + "; " + remedy)
+                       : diagnostics_.add_error(open.line, what + "; " + remedy);
   }
   const int count = said->second.count, line = said->second.line;
   if (static_cast<std::size_t>(count) == have || (count < 0 && have > 0)) return;
   const std::string what = fmt::format("'{}' says {}, but {} has {}", keyword, said->second.text, open.name, have);
   const char* remedy = "mend the number or what it counts";
-  if (have == 0 && !may_be_none) return problems_.refuse(line, fmt::format("{}; {}", what, remedy));
+  if (have == 0 && !may_be_none) return diagnostics_.add_error(line, fmt::format("{}; {}", what, remedy));
   if (cut_ && static_cast<std::size_t>(std::max(count, 0)) > have)
-    return problems_.refuse(line, what + ": the file is cut short");
-  problems_.tolerate(line, what, remedy, fmt::format("{} taken", counted(have)));
+    return diagnostics_.add_error(line, what + ": the file is cut short");
+  diagnostics_.add_warning(line, what, remedy, fmt::format("{} taken", counted(have)));
 }
 
 void RndfReader::check_name() {
   if (open_.front().seen.count("RNDF_name") > 0) return;
   const std::string what = "'RNDF_name' is missing", remedy = "expected a route network definition file";
-  if (rndf_.segments.empty()) throw WrongFile(statements_.file(), 0, what + "; " + remedy);
-  problems_.tolerate(0, what, remedy, "it has no name");
+  if (rndf_.segments.empty()) throw WrongFormatError(statements_.file(), 0, what + "; " + remedy);
+  diagnostics_.add_warning(0, what, remedy, "it has no name");
 }
 
 // Ends the innermost block.
@@ -257,30 +258,31 @@ void RndfReader::close() {
   const Open& last = open_.back();
   switch (last.block) {
     case RndfBlock::file:
-      check_promise(last, "num_segments", rndf_.segments.size());
-      check_promise(last, "num_zones", rndf_.zones.size());
+      check_declared(last, "num_segments", rndf_.segments.size());
+      check_declared(last, "num_zones", rndf_.zones.size());
       break;
     case RndfBlock::segment:
-      check_promise(last, "num_lanes", rndf_.segments.back().lanes.size());
+      check_declared(last, "num_lanes", rndf_.segments.back().lanes.size());
       break;
     case RndfBlock::lane:
-      check_promise(last, "num_waypoints", lane().points.size());
+      check_declared(last, "num_waypoints", lane().points.size());
       break;
     case RndfBlock::zone:
-      check_promise(last, "num_spots", zone().spots.size());
+      check_declared(last, "num_spots", zone().spots.size());
       if (zone().perimeter.empty() && last.skipped == 0)
-        problems_.refuse(last.line,
-                         fmt::format("{} has no perimeter; expected 'perimeter {}.0'", last.name, zone().id));
+        diagnostics_.add_error(last.line,
+                               fmt::format("{} has no perimeter; expected 'perimeter {}.0'", last.name, zone().id));
       break;
     case RndfBlock::perimeter:
-      check_promise(last, "num_perimeterpoints", zone().perimeter.size());
+      check_declared(last, "num_perimeterpoints", zone().perimeter.size());
       if (zone().perimeter.size() < 3)
         warn(last.line, fmt::format("{} has fewer than three points: no area", last.name));
       break;
     case RndfBlock::spot:
       if (spot().points.size() + last.skipped != 2)
-        problems_.refuse(last.line, fmt::format("{} has {} points; expected two, where it is entered and where it ends",
-                                                last.name, spot().points.size()));
+        diagnostics_.add_error(
+            last.line, fmt::format("{} has {} points; expected two, where it is entered and where it ends", last.name,
+                                   spot().points.size()));
       break;
   }
   open_.pop_back();

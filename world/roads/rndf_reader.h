@@ -25,7 +25,7 @@ class RndfReader {
   Rndf read();
 
  private:
-  struct Promise {
+  struct DeclaredCount {
     int count = 0;  ///< negative: it cannot be read
     int line = 0;
     std::string text;  ///< as written
@@ -34,15 +34,15 @@ class RndfReader {
   struct Open {
     RndfBlock block = RndfBlock::file;
     int line = 0;
-    std::string name;                                      ///< `lane 1.2`
-    std::map<std::string, Promise, std::less<>> promises;  ///< by keyword, e.g. `num_lanes`
+    std::string name;                                            ///< `lane 1.2`
+    std::map<std::string, DeclaredCount, std::less<>> declared;  ///< by keyword, e.g. `num_lanes`
     std::map<std::string, std::string, std::less<>> seen;  ///< keywords that may stand here once, and what they say
     std::size_t skipped = 0;                               ///< blocks and points in it that were refused
   };
   struct Rule;
   static const std::map<std::string_view, Rule>& rules();
 
-  // Statements
+  // StatementReader
   bool next();
   void statement();
   bool repeats(std::string_view keyword);
@@ -57,11 +57,11 @@ class RndfReader {
   void close_implied(const std::string& because);
   void end_block(RndfBlock block);
   void end_file();
-  void check_promise(const Open& open, std::string_view keyword, std::size_t have);
+  void check_declared(const Open& open, std::string_view keyword, std::size_t have);
   void check_name();
 
   // What keywords do
-  void promise(int least, std::string_view what);
+  void read_declared_count(int least, std::string_view what);
   void begin_segment();
   void begin_lane();
   void begin_zone();
@@ -86,8 +86,8 @@ class RndfReader {
   void warn_once(std::string_view keyword, std::string message);
 
   Rndf rndf_;
-  Problems problems_;
-  Statements statements_;
+  Diagnostics diagnostics_;
+  StatementReader statements_;
   std::vector<Open> open_;                     ///< from the file down to the innermost block
   std::map<PointId, int> claimed_;             ///< line of every id in use: {segment, 0, 0}, {segment, lane, 0}, points
   std::map<int, RndfCheckpoint> checkpoints_;  ///< by id
@@ -100,6 +100,6 @@ class RndfReader {
 };
 
 /// Whether all that exits, stops and checkpoints name is there. @param unread points that are no problem of theirs
-void check_references(const Rndf& rndf, const std::set<PointId>& unread, Problems& problems);
+void check_references(const Rndf& rndf, const std::set<PointId>& unread, Diagnostics& diagnostics);
 
 }  // namespace sf::world

@@ -14,7 +14,7 @@ enum class PlaceKind { unread, lane, perimeter, spot };
 
 class Places {
  public:
-  Places(const Rndf& rndf, const std::set<PointId>& unread, Problems& problems) : problems_(problems) {
+  Places(const Rndf& rndf, const std::set<PointId>& unread, Diagnostics& diagnostics) : diagnostics_(diagnostics) {
     for (const PointId id : unread) places_.emplace(packed(id), PlaceKind::unread);
     for (const RndfSegment& segment : rndf.segments)
       for (const RndfLane& lane : segment.lanes) add(lane.points, PlaceKind::lane);
@@ -28,19 +28,20 @@ class Places {
   void require(PointId id, int line, std::string_view what, PlaceKind no) const {
     const auto found = places_.find(packed(id));
     if (found == places_.end())
-      return problems_.refuse(
+      return diagnostics_.add_error(
           line, fmt::format("{} way-point {}, which does not exist; expected one of this file", what, text_of(id)));
     if (found->second == no)
-      problems_.refuse(line, fmt::format("{} {}, a point of a {}; expected a way-point of a lane or a {}", what,
-                                         text_of(id), no == PlaceKind::spot ? "parking spot" : "zone's perimeter",
-                                         no == PlaceKind::spot ? "perimeter point of a zone" : "point of a spot"));
+      diagnostics_.add_error(
+          line, fmt::format("{} {}, a point of a {}; expected a way-point of a lane or a {}", what, text_of(id),
+                            no == PlaceKind::spot ? "parking spot" : "zone's perimeter",
+                            no == PlaceKind::spot ? "perimeter point of a zone" : "point of a spot"));
   }
 
   void require_lane(PointId id, int line, std::string_view what) const {
     const auto found = places_.find(packed(id));
     if (found == places_.end()) return require(id, line, what, PlaceKind::spot);
     if (found->second != PlaceKind::lane && found->second != PlaceKind::unread)
-      problems_.refuse(line, fmt::format("{} {}; expected a way-point of a lane", what, text_of(id)));
+      diagnostics_.add_error(line, fmt::format("{} {}; expected a way-point of a lane", what, text_of(id)));
   }
 
  private:
@@ -51,7 +52,7 @@ class Places {
     for (const RndfPoint& point : points) places_.insert_or_assign(packed(point.id), kind);
   }
 
-  Problems& problems_;
+  Diagnostics& diagnostics_;
   std::unordered_map<std::uint64_t, PlaceKind> places_;
 };
 
@@ -70,8 +71,8 @@ void check_checkpoints(const Places& places, const std::vector<RndfCheckpoint>& 
 
 }  // namespace
 
-void check_references(const Rndf& rndf, const std::set<PointId>& unread, Problems& problems) {
-  const Places places(rndf, unread, problems);
+void check_references(const Rndf& rndf, const std::set<PointId>& unread, Diagnostics& diagnostics) {
+  const Places places(rndf, unread, diagnostics);
   for (const RndfSegment& segment : rndf.segments)
     for (const RndfLane& lane : segment.lanes) {
       check_exits(places, lane.exits);

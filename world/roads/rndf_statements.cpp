@@ -23,17 +23,17 @@ std::string shown(PointId id) {
 
 }  // namespace
 
-void RndfReader::promise(int least, std::string_view what) {
-  Promise promise{-1, now().line, std::string(now().rest)};
+void RndfReader::read_declared_count(int least, std::string_view what) {
+  DeclaredCount promise{-1, now().line, std::string(now().rest)};
   try {
     promise.count = statements_.whole(0, least, what);
     statements_.expect_fields(1);
   } catch (const base::InputError&) {
-    if (problems_.strict()) throw;
+    if (diagnostics_.strict()) throw;
     warn(now().line,
          fmt::format("'{}' is {}, no number above zero; what is there is counted", now().keyword, quoted(now().rest)));
   }
-  open_.back().promises.emplace(now().keyword, promise);
+  open_.back().declared.emplace(now().keyword, promise);
 }
 
 void RndfReader::claim(PointId id, std::string_view what) {
@@ -137,9 +137,10 @@ PointId RndfReader::own(PointId id, std::string_view what) const {
 // Likewise, but one of a neighbour is clear: it says which point it means. Whether that is there is seen at the end.
 PointId RndfReader::own_or_known(PointId id, std::string_view what) {
   const PointId here = key_of_block();
-  if (problems_.strict() || id.point == 0 || (id.segment == here.segment && id.lane == here.lane)) return own(id, what);
-  problems_.tolerate(now().line, fmt::format("{} {} stands in {}", what, text_of(id), open_.back().name), "",
-                     fmt::format("it is taken as one of {}.{}", id.segment, id.lane));
+  if (diagnostics_.strict() || id.point == 0 || (id.segment == here.segment && id.lane == here.lane))
+    return own(id, what);
+  diagnostics_.add_warning(now().line, fmt::format("{} {} stands in {}", what, text_of(id), open_.back().name), "",
+                           fmt::format("it is taken as one of {}.{}", id.segment, id.lane));
   return id;
 }
 
@@ -170,7 +171,7 @@ void RndfReader::read_boundary(Boundary& boundary) {
   const auto read = now().fields.empty() ? std::nullopt : boundary_of(now().fields[0]);
   const std::string what = fmt::format("'{}' is {}", now().keyword, quoted(now().rest));
   const std::string remedy = fmt::format("expected one of {}", boundary_words());
-  if (now().fields.empty()) return problems_.tolerate(now().line, what, remedy, "no paint is taken");
+  if (now().fields.empty()) return diagnostics_.add_warning(now().line, what, remedy, "no paint is taken");
   if (!read) statements_.fail(what + "; " + remedy);
   statements_.expect_fields(1);
   boundary = *read;
@@ -181,9 +182,9 @@ void RndfReader::read_width(std::optional<double>& width_ft) {
   if (now().fields.empty()) return;
   const double feet = statements_.decimal(0, "the width");
   statements_.expect_fields(1);
-  if (feet < 0.0 || feet > kMostRoadNumber)
+  if (feet < 0.0 || feet > kMaxRoadNumber)
     statements_.fail(
-        fmt::format("the width is {}; expected feet from 0 to {}", quoted(now().fields[0]), kMostRoadNumber));
+        fmt::format("the width is {}; expected feet from 0 to {}", quoted(now().fields[0]), kMaxRoadNumber));
   if (feet > 0.0) width_ft = feet;
 }
 
@@ -193,7 +194,7 @@ void RndfReader::read_exit() {
   statements_.expect_fields(2);
   const auto [old, fresh] = exits_.emplace(std::pair(exit.from, exit.to), exit.line);
   if (!fresh)
-    return problems_.tolerate(
+    return diagnostics_.add_warning(
         now().line,
         fmt::format("exit {} to {} is already in line {}", text_of(exit.from), text_of(exit.to), old->second),
         "expected it once", "it is taken once");
@@ -204,8 +205,8 @@ void RndfReader::read_stop() {
   const RndfStop stop{own_or_known(statements_.point(0, "the stop"), "stop"), now().line};
   statements_.expect_fields(1);
   if (!stops_.insert(stop.at).second)
-    return problems_.tolerate(now().line, fmt::format("stop {} is given twice", text_of(stop.at)), "expected it once",
-                              "it is taken once");
+    return diagnostics_.add_warning(now().line, fmt::format("stop {} is given twice", text_of(stop.at)),
+                                    "expected it once", "it is taken once");
   lane().stops.push_back(stop);
 }
 
@@ -217,7 +218,7 @@ void RndfReader::read_checkpoint() {
   if (!fresh) {
     const std::string what = fmt::format("checkpoint {} is already in line {}", checkpoint.id, old->second.line);
     if (old->second.at != at) statements_.fail(what + "; expected an id of its own");
-    return problems_.tolerate(now().line, what, "expected an id of its own", "it is taken once");
+    return diagnostics_.add_warning(now().line, what, "expected an id of its own", "it is taken once");
   }
   (open_.back().block == RndfBlock::lane ? lane().checkpoints : spot().checkpoints).push_back(checkpoint);
 }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "world/roads/lane_markings.h"
 #include "world/roads/network.h"
-#include "world/roads/paint.h"
 #include "world/world.h"
 
 namespace sf::world {

@@ -10,16 +10,16 @@
 #include <set>
 
 #include "base/error.h"
-#include "world/entities.h"
 #include "world/keys.h"
+#include "world/stage/document.h"
 #include "world/toml.h"
 
 namespace sf::world {
 
 namespace {
 
-constexpr double kMostPosition = 1e7;  // [m]
-constexpr double kMostWidth = 1e4;     // [m]
+constexpr double kMaxPosition = 1e7;  // [m]
+constexpr double kMaxWidth = 1e4;     // [m]
 
 constexpr std::array<std::string_view, 12> kKeys{"origin",       "scale",         "position",      "heading_deg",
                                                  "lane_width_m", "paint_width_m", "dash_length_m", "dash_gap_m",
@@ -52,9 +52,9 @@ struct Reader {
   std::optional<double> width(const TomlNode& table, std::string_view key) const {
     const TomlNode* node = find(table, key);
     if (node == nullptr) return std::nullopt;
-    const double value = number(*node, key, 0.0, kMostWidth);
+    const double value = number(*node, key, 0.0, kMaxWidth);
     if (value >= 1e-6) return value;
-    fail(*node, fmt::format("'{}' is {}; expected metres from 1e-6 to {}", key, value, kMostWidth));
+    fail(*node, fmt::format("'{}' is {}; expected metres from 1e-6 to {}", key, value, kMaxWidth));
   }
 
   glm::dvec2 pair(const TomlNode& node, std::string_view key, glm::dvec2 most, std::string_view expected) const {
@@ -98,7 +98,7 @@ void read_points(const Reader& reader, const TomlNode& points, RoadSidecar& into
     reader.warn_unknown(table, kPointKeys);
     const TomlNode* position = find(table, "position");
     if (position == nullptr) reader.fail(node, "'position' is missing; expected position = [x, y] in metres");
-    into.points[*id] = {reader.pair(*position, "position", {kMostPosition, kMostPosition}, "[x, y] in metres"),
+    into.points[*id] = {reader.pair(*position, "position", {kMaxPosition, kMaxPosition}, "[x, y] in metres"),
                         node.line};
   }
 }
@@ -113,7 +113,7 @@ void read_frame(const Reader& reader, const TomlNode& root, RoadSidecar& into) {
     if (into.scale < 1e-6) reader.fail(*node, "'scale' expects a number from 1e-6 to 1000, e.g. 0.142857142857");
   }
   if (const TomlNode* node = find(root, "position"))
-    into.position = reader.pair(*node, "position", {kMostPosition, kMostPosition}, "[x, y] in metres");
+    into.position = reader.pair(*node, "position", {kMaxPosition, kMaxPosition}, "[x, y] in metres");
   if (const TomlNode* node = find(root, "heading_deg"))
     into.heading = reader.number(*node, "heading_deg", -1e6, 1e6) * (M_PI / 180.0);
 }

@@ -1,0 +1,86 @@
+#include "world/stage/stage.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "world/free_space.h"
+#include "world/keys.h"
+#include "world/stage/build_state.h"
+#include "world/stage/light_entities.h"
+#include "world/stage/mover_entities.h"
+
+namespace sf::world {
+
+namespace {
+
+void read_units(StageContext& context, const Entity& root) {
+  const std::string length_unit = text(context, root, "unit_length", "m");
+  if (length_unit == "cm") {
+    context.metres_per_unit = 0.01;
+  } else if (length_unit == "mm") {
+    context.metres_per_unit = 0.001;
+  } else if (length_unit != "m") {
+    fail(context, find(root, "unit_length")->at,
+         fmt::format("'unit_length' is \"{}\"; expected \"m\", \"cm\" or \"mm\"", length_unit));
+  }
+  const std::string angle_unit = text(context, root, "unit_angle", "degrees");
+  if (angle_unit == "radians") {
+    context.radians_per_unit = 1.0;
+  } else if (angle_unit != "degrees") {
+    fail(context, find(root, "unit_angle")->at,
+         fmt::format("'unit_angle' is \"{}\"; expected \"degrees\" or \"radians\"", angle_unit));
+  }
+}
+
+double interval_of(const StageContext& context, const Entity& root) {
+  const double milliseconds = number(context, root, "interval_sim", 100.0);
+  if (milliseconds >= 0.001 && milliseconds <= 1e6) return milliseconds / 1000.0;
+  fail(context, find(root, "interval_sim")->at,
+       fmt::format("'interval_sim' is {}; expected milliseconds from 0.001 to 1000000", milliseconds));
+}
+
+double reach(const StageContext& context, const Entity& root, std::string_view key) {
+  const double value = length(context, root, key, 0.0);
+  if (value < 0.0) fail(context, find(root, key)->at, fmt::format("'{}' is {} m; expected 0 or more", key, value));
+  return value;
+}
+
+void warn_of_placements(BuildState& b) {
+  for (std::size_t row = 0; row < b.world.movers.size(); ++row) {
+    const Mover& robot = b.world.movers[row];
+    const std::string where = robot.is_tag ? "" : placement_problem(b.world, robot, robot.X_WM);
+    if (where.empty()) continue;
+    warn(b.context, b.locations[row],
+         fmt::format("'{}' starts at ({:g}, {:g}), {}; expected a 'pose' in free space", robot.name, robot.X_WM.x,
+                     robot.X_WM.y, where));
+  }
+}
+
+}  // namespace
+
+World build_world(const std::string& file, const std::string& content, const LoadOptions& options) {
+  const Document document = parse(file, content);
+  BuildState b{.options = options, .context = {document, 1.0, M_PI / 180.0, document.warnings}, .types = known_types()};
+  b.types.insert(b.types.end(), document.macros.begin(), document.macros.end());
+
+  read_units(b.context, document.root);
+  check_keys(b.context, document.root, KeyScope::world);
+  b.world.file = file;
+  b.world.name = text(b.context, document.root, "name", std::filesystem::path(file).stem().string());
+  b.world.interval = interval_of(b.context, document.root);
+  b.world.road_resolution = reach(b.context, document.root, "road_resolution");
+  b.world.magnet_cutoff = reach(b.context, document.root, "magnet_cutoff");
+  b.world.accuracy = accuracy(b.context, options, document.root, {options.accuracy, "", 0});
+  Parent nowhere;
+  add_children(b, document.root, EntityKind::unknown, nowhere);
+  number_movers(b);
+  check_stop_lines(b);
+
+  update_extent_and_hash(b.world);
+  warn_of_placements(b);
+  b.world.warnings = std::move(b.context.warnings);
+  return std::move(b.world);
+}
+
+}  // namespace sf::world

@@ -1,0 +1,177 @@
+#include "world/stage/document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <unordered_set>
+
+#include "world/stage/parse_state.h"
+
+namespace sf::world {
+
+namespace {
+
+// What no honest world needs, and a hostile or broken one would use to exhaust stack or memory.
+constexpr std::uint32_t kMaxDepth = 64;
+constexpr std::uint32_t kMaxWeight = 4'000'000;
+constexpr int kMaxIncludes = 256;
+constexpr std::size_t kMaxMacros = 20'000;
+
+Entity begin_entity(ParseState& r, const Token& word) {
+  Entity entity{.word = word.text, .type = word.text, .at = location(r, word)};
+  if (const auto macro = r.macros.find(word.text); macro != r.macros.end()) {
+    if (r.weight + macro->second.weight > kMaxWeight) {
+      fail(r, word.line, fmt::format("the macros of this world grow to more than {} properties", kMaxWeight));
+    }
+    const SourceLocation at = entity.at;
+    entity = macro->second;
+    entity.word = word.text;
+    entity.at = at;
+  }
+  r.weight += entity.weight;
+  return entity;
+}
+
+void read_body(ParseState& r, Entity& entity, std::uint32_t level);
+
+Entity read_entity(ParseState& r, std::uint32_t level) {
+  Entity entity = begin_entity(r, now(r));
+  ++r.at;
+  read_body(r, entity, level);
+  return entity;
+}
+
+void add_child(ParseState& r, Entity& entity, Entity child, int line) {
+  entity.depth = std::max(entity.depth, child.depth + 1);
+  entity.weight += child.weight;
+  if (entity.depth > kMaxDepth) fail(r, line, fmt::format("nested deeper than {} levels", kMaxDepth));
+  entity.children.push_back(std::move(child));
+}
+
+// From the opening to the closing parenthesis.
+void read_body(ParseState& r, Entity& entity, std::uint32_t level) {
+  const int line = now(r).line;
+  if (level > kMaxDepth) fail(r, line, fmt::format("nested deeper than {} levels", kMaxDepth));
+  if (r.weight > kMaxWeight) fail(r, line, fmt::format("more than {} properties in one world", kMaxWeight));
+  KeyRows rows;
+  for (const Property& property : entity.properties) rows.emplace(property.key, rows.size());
+  std::unordered_set<std::string> written;
+  for (++r.at; now(r).kind != TokenKind::close;) {
+    if (now(r).kind == TokenKind::end) {
+      fail(r, line, fmt::format("the '(' of '{}' is never closed; expected ')'", entity.word));
+    }
+    if (now(r).kind != TokenKind::word) {
+      fail(r, now(r).line,
+           fmt::format("expected a property, an entity or ')' in '{}', found {}", entity.word, shown(now(r))));
+    }
+    if (next(r).kind == TokenKind::open) {
+      const int child_line = now(r).line;
+      add_child(r, entity, read_entity(r, level + 1), child_line);
+    } else {
+      add_property(r, entity, rows, written, read_property(r));
+    }
+  }
+  ++r.at;
+  sort_keys(entity);
+}
+
+void read_define(ParseState& r) {
+  const int line = now(r).line;
+  ++r.at;
+  const Token name = now(r);
+  const Token base = next(r);
+  if (name.kind != TokenKind::word || base.kind != TokenKind::word) {
+    fail(r, line, "expected: define NEW-NAME BASE-TYPE ( ... )");
+  }
+  if (name.text == base.text)
+    fail(r, line, fmt::format("'{}' is defined by itself; name what it is made of", name.text));
+  ++r.at;
+  if (next(r).kind != TokenKind::open) {
+    fail(r, line, fmt::format("expected '(' after 'define {} {}', found {}", name.text, base.text, shown(next(r))));
+  }
+
+  Entity macro = read_entity(r, 1);
+  macro.at = location(r, name);
+  const auto [first, fresh] = r.macros.try_emplace(name.text, std::move(macro));
+  if (r.macros.size() > kMaxMacros) fail(r, line, fmt::format("more than {} definitions in one world", kMaxMacros));
+  const SourceLocation before = first->second.at;
+  const bool same_text = before.file == r.file && before.line == name.line;
+  if (!fresh && !same_text) {
+    warn(r, line,
+         fmt::format("'{}' is defined again; the first one counts ({}:{})", name.text, r.document.files[before.file],
+                     before.line));
+  }
+}
+
+void read_file(ParseState& r, const std::string& file, const std::string& text);
+
+[[noreturn]] void refuse_cycle(const ParseState& r, int line, const std::string& file) {
+  std::string chain;
+  for (const std::string& open : r.open_files) chain += open + " -> ";
+  fail(r, line, "this include closes a circle: " + chain + file);
+}
+
+void read_include(ParseState& r) {
+  const int line = now(r).line;
+  ++r.at;
+  if (now(r).kind != TokenKind::text) fail(r, line, "expected: include \"file\"");
+  const std::string name = now(r).text;
+  ++r.at;
+  const std::string found = find_file(r.document, {r.file, line}, name);
+  if (found.empty()) {
+    fail(r, line,
+         fmt::format("cannot find the include \"{}\"; expected it beside this file, beside the world file or along "
+                     "$STAGEPATH",
+                     name));
+  }
+  if (std::find(r.open_files.begin(), r.open_files.end(), found) != r.open_files.end()) refuse_cycle(r, line, found);
+  if (++r.includes > kMaxIncludes) fail(r, line, fmt::format("more than {} includes", kMaxIncludes));
+
+  // The including file is put aside, and taken up again where it was left.
+  const std::uint32_t outer_file = r.file;
+  const std::size_t outer_at = r.at;
+  std::vector<Token> outer_tokens = std::move(r.tokens);
+  read_file(r, found, read_text(found));
+  r.tokens = std::move(outer_tokens);
+  r.at = outer_at;
+  r.file = outer_file;
+}
+
+void read_item(ParseState& r, std::unordered_set<std::string>& written) {
+  const Token& token = now(r);
+  if (token.kind == TokenKind::close) fail(r, token.line, "this ')' closes nothing");
+  if (token.kind != TokenKind::word) {
+    fail(r, token.line, fmt::format("expected include, define, a property or an entity, found {}", shown(token)));
+  }
+  if (token.text == "include") return read_include(r);
+  if (token.text == "define") return read_define(r);
+  if (next(r).kind != TokenKind::open) return add_property(r, r.document.root, r.root_rows, written, read_property(r));
+  const int line = token.line;
+  add_child(r, r.document.root, read_entity(r, 1), line);
+}
+
+void read_file(ParseState& r, const std::string& file, const std::string& text) {
+  const auto known = std::find(r.document.files.begin(), r.document.files.end(), file);
+  r.file = static_cast<std::uint32_t>(known - r.document.files.begin());
+  if (known == r.document.files.end()) r.document.files.push_back(file);
+  r.open_files.push_back(std::filesystem::path(file).lexically_normal().string());
+  r.tokens = tokenize(file, text);
+  r.at = 0;
+  std::unordered_set<std::string> written;
+  while (now(r).kind != TokenKind::end) read_item(r, written);
+  r.open_files.pop_back();
+}
+
+}  // namespace
+
+Document parse(const std::string& file, const std::string& text) {
+  ParseState r;
+  r.document.root.word = "the world";
+  read_file(r, file, text);
+  sort_keys(r.document.root);
+  for (const auto& [name, entity] : r.macros) r.document.macros.push_back(name);
+  return std::move(r.document);
+}
+
+}  // namespace sf::world

@@ -1,0 +1,76 @@
+#include "world/stage/floor_entities.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::world {
+
+namespace {
+
+// A virtual wall reaches 2.4 m (8 feet: the accessory's own range) and is felt all around within 0.45 m (18 inches);
+// the width of its beam, and all three of the dock, are assumptions.
+constexpr double kWallRange = 2.4, kWallFov = 0.4, kWallHalo = 0.45;  // [m], [rad], [m]
+constexpr double kDockRange = 1.8, kDockFov = 0.7, kDockHalo = 0.6;   // [m], [rad], [m]
+
+Emitter::Kind emitter_kind(const StageContext& context, const Entity& entity) {
+  const std::string word = text(context, entity, "ir_emitter", "");
+  if (word == "virtual_wall") return Emitter::Kind::virtual_wall;
+  if (word == "dock") return Emitter::Kind::dock;
+  fail(context, find(entity, "ir_emitter")->at,
+       fmt::format("'ir_emitter' is \"{}\"; expected \"virtual_wall\" or \"dock\"", word));
+}
+
+bool same(glm::dvec2 p, glm::dvec2 q) { return p.x == q.x && p.y == q.y; }
+
+}  // namespace
+
+bool is_floor_hole(const StageContext& context, const Entity& entity) {
+  return flag(context, entity, "cliff_return", false);
+}
+
+void add_floor_holes(BuildState& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
+                     const Pose& X_B) {
+  const SourceLocation at = find(entity, "cliff_return")->at;
+  if (model.mover != kNone) fail(b.context, at, "a hole in the floor stands still; expected it outside of what moves");
+  if (model.is_bitmap || flag(b.context, entity, "boundary", false))
+    fail(b.context, at, "'cliff_return' expects blocks or a box, neither a bitmap nor a boundary");
+  const auto row = static_cast<std::uint32_t>(b.world.models.size());
+  for (std::size_t i = 0; i < shape.size();) {
+    FloorHole hole{{}, row};
+    const glm::dvec2 first = shape[i].a;
+    bool closed = false;
+    for (; i < shape.size() && !closed; ++i) {
+      if (!shape[i].solid_left)
+        fail(b.context, at, "'cliff_return' expects outlines of at least three corners that do not cross themselves");
+      hole.outline.push_back(transform(X_B, shape[i].a));
+      closed = same(shape[i].b, first);
+    }
+    b.world.floor_holes.push_back(std::move(hole));
+  }
+}
+
+void add_emitter(BuildState& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B) {
+  const StageContext& context = b.context;
+  const Property* property = find(entity, "ir_emitter");
+  if (property == nullptr) return;
+  if (model.mover != kNone)
+    fail(context, property->at, "an infrared emitter stands still; expected it outside of what moves");
+  Emitter emitter;
+  emitter.kind = emitter_kind(context, entity);
+  const bool dock = emitter.kind == Emitter::Kind::dock;
+  emitter.model = static_cast<std::uint32_t>(b.world.models.size());
+  emitter.X_WE = X_B;
+  emitter.X_WE.z += 0.5 * size.z;
+  emitter.range = above_zero(context, entity, "ir_range", dock ? kDockRange : kWallRange);
+  emitter.fov = angle(context, entity, "ir_fov", dock ? kDockFov : kWallFov);
+  emitter.halo = length(context, entity, "ir_halo", dock ? kDockHalo : kWallHalo);
+  if (!(emitter.fov > 0.0 && emitter.fov <= 2.0 * M_PI * (1.0 + 1e-12)))
+    fail(context, find(entity, "ir_fov")->at, "'ir_fov' expects an angle above zero, to a whole turn");
+  emitter.fov = std::min(emitter.fov, 2.0 * M_PI);
+  if (!(emitter.halo >= 0.0)) fail(context, find(entity, "ir_halo")->at, "'ir_halo' expects a length of 0 or more");
+  b.world.emitters.push_back(emitter);
+}
+
+}  // namespace sf::world

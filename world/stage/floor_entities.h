@@ -1,0 +1,25 @@
+#pragma once
+// What models are to the sensors under and beside a robot: infrared emitters (`ir_emitter`), and holes in the floor
+// (`cliff_return 1`).
+
+#include <vector>
+
+#include "world/stage/build_state.h"
+
+namespace sf::world {
+
+/// True where `entity` is a hole in the floor.
+bool is_floor_hole(const StageContext& context, const Entity& entity);
+
+/// Adds each closed outline of `shape` as a hole. `model` becomes the next row of the models.
+/// @param shape in the body's frame
+/// @param X_B the body frame in the world
+/// @throws base::InputError for a hole that a mover would carry, a bitmap, or an outline that crosses itself.
+void add_floor_holes(BuildState& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
+                     const Pose& X_B);
+
+/// Adds an emitter where `entity` is one. `model` becomes the next row of the models.
+/// @throws base::InputError for an unknown kind, lengths and angles out of reach, or one that a mover would carry.
+void add_emitter(BuildState& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B);
+
+}  // namespace sf::world

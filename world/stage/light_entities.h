@@ -1,0 +1,25 @@
+#pragma once
+// Traffic lights of a world file:
+//
+//   light( name "light1" pose [x y z yaw] lamps 3 phases 3
+//     phase[0] ["green" 8] phase[1] ["yellow" 2] phase[2] ["red" 10] offset 0 stop_lines "3.1.11 4.2.5" )
+
+#include <vector>
+
+#include "world/stage/build_state.h"
+
+namespace sf::world {
+
+/// Adds the light that `entity` describes; `model` becomes the next row of the models.
+/// @throws base::InputError with file and line for a plan that is none, way-points that are no names, or a light that
+/// would be carried by a mover.
+void add_light(BuildState& b, const Entity& entity, const Model& model);
+
+/// The body of a light without blocks of its own: a pole, and a head of the full size on it. Frame as in `shape_of`.
+std::vector<Segment> light_shape(const Size& size, bool single);
+
+/// After everything is read: the way-points that lights govern are there, wherever the world has roads; one without a
+/// stop line is warned about. @throws base::InputError naming the light's line.
+void check_stop_lines(BuildState& b);
+
+}  // namespace sf::world

@@ -1,0 +1,29 @@
+#pragma once
+// Magnets in a row under a lane: as few words as a road needs for thousands of them.
+
+#include <functional>
+#include <optional>
+
+#include "world/stage/build_state.h"
+
+namespace sf::world {
+
+/// Upright magnets at equal distances.
+struct MagnetRow {
+  double moment = 0.0;   ///< [A m^2] not 0
+  double spacing = 0.0;  ///< [m] > 0
+  double width = 0.0;    ///< [m] > 0, of each
+  double length = 0.0;   ///< [m] of each, upright
+  double top = 0.0;      ///< [m] above the ground
+};
+
+/// `magnetic_moment`, `magnet_spacing`, `magnet_size [width length]` and `magnet_top`; nothing where the first two are
+/// absent. @throws base::InputError with file and line.
+std::optional<MagnetRow> read_magnet_row(const StageContext& context, const Entity& entity);
+
+/// Adds magnets at s = 0, spacing, 2 spacing ... up to `length` [m], at `along(s)`; they belong to the last model.
+/// @throws base::InputError, naming `entity`, when there are more than a million.
+void place_magnets(BuildState& b, const Entity& entity, const MagnetRow& row, double length,
+                   const std::function<Pose(double)>& along);
+
+}  // namespace sf::world

@@ -1,0 +1,287 @@
+#include "world/stage/build_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "world/keys.h"
+#include "world/stage/attached_devices.h"
+#include "world/stage/entity_color.h"
+#include "world/stage/floor_entities.h"
+#include "world/stage/laser_entities.h"
+#include "world/stage/light_entities.h"
+#include "world/stage/mover_entities.h"
+#include "world/stage/road_entities.h"
+
+namespace sf::world {
+
+namespace {
+
+constexpr std::size_t kMaxSuggestions = 1'000;
+constexpr double kMaxModels = 500'000;
+constexpr double kMaxBeams = 1e7;                 // of all lasers
+constexpr std::uint32_t kStageRed = 0xFFFF0000u;  // of a model without a colour
+
+// --- Words
+// --------------------------------------------------------------------------------------------------------------
+
+KeyScope key_scope(EntityKind kind) {
+  switch (kind) {
+    case EntityKind::model:
+      return KeyScope::model;
+    case EntityKind::position:
+      return KeyScope::position;
+    case EntityKind::laser:
+      return KeyScope::laser;
+    case EntityKind::ranger:
+      return KeyScope::ranger;
+    case EntityKind::light:
+      return KeyScope::light;
+    default:
+      return KeyScope::unmodelled;
+  }
+}
+
+// A slip has few neighbours to be meant; of many unknown words none is one.
+std::string suggested(const BuildState& b, const std::string& type) {
+  constexpr std::size_t kMaxSlips = 100;
+  return b.warned_types.size() > kMaxSlips ? "" : suggest(type, b.types);
+}
+
+// A type that we do not model is a body all the same, counted and mentioned once.
+void count_unmodelled(BuildState& b, const Entity& entity, const std::string& type, bool is_known) {
+  ++b.world.unmodelled[type];
+  if (!b.warned_types.insert(type).second) return;
+  const std::string what = is_known ? fmt::format("'{}' is not modelled", type)
+                                    : fmt::format("unknown type '{}'{}", type, suggested(b, type));
+  warn(b.context, entity.at, what + (is_known ? ": " : " ") + "kept as a body that does nothing");
+}
+
+// --- Names
+// --------------------------------------------------------------------------------------------------------------
+
+std::string unique_name(BuildState& b, const Entity& entity, const std::string& wanted) {
+  charge(b.context, entity.at, b.context.usage.name_bytes, static_cast<double>(wanted.size()), 1e8,
+         "bytes of models' names", "give shorter names, or nest less");
+  std::string name = free_name(b, wanted);
+  if (name != wanted) warn(b.context, entity.at, fmt::format("a second model named '{}' is called '{}'", wanted, name));
+  return name;
+}
+
+// "parent.child" within a parent; a leading / says that the name is meant for the whole world.
+std::string own_name(BuildState& b, const Entity& entity, Parent& parent) {
+  const std::string given = text(b.context, entity, "name", "");
+  return given.empty() ? fmt::format("{}:{}", entity.word, parent.unnamed[entity.word]++) : given;
+}
+
+std::string joined(const std::string& parent, const std::string& name) {
+  if (name.size() > 1 && name.front() == '/') return name.substr(1);
+  return parent.empty() ? name : parent + "." + name;
+}
+
+// --- Models
+// -------------------------------------------------------------------------------------------------------------
+
+Size default_size(EntityKind kind) {
+  if (kind == EntityKind::light) return {0.12, 0.12, 0.6};
+  return kind == EntityKind::laser ? Size{0.15, 0.15, 0.2} : Size{};
+}
+
+Segment placed(const Segment& local, const Pose& X) {
+  Segment segment = local;
+  segment.a = transform(X, local.a);
+  segment.b = transform(X, local.b);
+  segment.z_min += X.z;
+  segment.z_max += X.z;
+  return segment;
+}
+
+/// @param X_B the body frame, in the mover's frame for a mover's body, else in the world.
+void add_body(BuildState& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
+              const Pose& X_B) {
+  const StageContext& context = b.context;
+  const bool seen =
+      number(context, entity, "laser_return", 1.0) != 0.0 && number(context, entity, "ranger_return", 1.0) >= 0.0;
+  const bool is_plan = model.is_bitmap && !b.options.stage_obstacles;
+  const bool seen_as_paint = flag(context, entity, "laneedge_return", true);
+  const bool stops = is_plan || flag(context, entity, "obstacle_return", true);
+  auto& segments = model.mover == kNone ? b.world.walls : b.world.movers[model.mover].body;
+  for (const Segment& local : shape) {
+    Segment segment = placed(local, X_B);
+    const bool lost_in_rounding = segment.a.x == segment.b.x && segment.a.y == segment.b.y;
+    if (lost_in_rounding) continue;
+    segment.model = static_cast<std::uint32_t>(b.world.models.size());
+    segment.seen_by_laser = seen;
+    segment.stops_robots = stops;
+    segment.seen_by_laneedge = seen_as_paint;
+    segments.push_back(segment);
+  }
+}
+
+void add_lasers(BuildState& b, const Entity& entity, const Model& model, const Pose& X_MB, double height,
+                const std::string& name) {
+  if (model.mover == kNone) {
+    warn(b.context, entity.at,
+         fmt::format("'{}' is carried by no robot: kept as a body that measures nothing", entity.word));
+    return;
+  }
+  auto& lasers = b.world.movers[model.mover].lasers;
+  auto added = lasers_of(b.context, b.options, entity, X_MB, height, name);
+  for (const Laser& laser : added)
+    charge(b.context, location_of(entity, "samples"), b.context.usage.beams, laser.samples, kMaxBeams,
+           "beams of lasers", "give fewer 'samples'");
+  std::move(added.begin(), added.end(), std::back_inserter(lasers));
+}
+
+/// What the file says of a model before anything is derived from it.
+struct ModelProperties {
+  EntityKind kind = EntityKind::model;
+  bool is_lane_edge = false;              ///< a laser of that name measures the edge of the lane, no ranges
+  const SensorKeyword* sensor = nullptr;  ///< the kind that measures with it; null: none, or one that is read here
+  std::string name;                       ///< as written, or made up
+  Pose X_PB;                              ///< children stand on top of their parent, unless it says otherwise
+  Size size;
+};
+
+ModelProperties read_model_properties(BuildState& b, const Entity& entity, Parent& parent) {
+  ModelProperties said;
+  said.kind = entity_kind(entity.type);
+  said.name = own_name(b, entity, parent);
+  said.is_lane_edge = said.kind == EntityKind::laser && (said.name == "laneedge" || said.name == "/laneedge");
+  said.X_PB = pose(b.context, entity, "pose");
+  said.X_PB.z += parent.lift;
+  said.size = size_of(b.context, entity, default_size(said.kind));
+
+  said.sensor = find_sensor_keyword(b, said.is_lane_edge ? "laneedge" : entity.type);
+  if (said.sensor != nullptr) {
+    check_keys(b.context, entity, KeyScope::device, said.sensor->keys);
+    return said;
+  }
+  check_keys(b.context, entity, key_scope(said.kind));
+  if (said.is_lane_edge) count_unmodelled(b, entity, "laneedge", true);
+  if (said.kind == EntityKind::unmodelled || said.kind == EntityKind::unknown)
+    count_unmodelled(b, entity, entity.type, said.kind == EntityKind::unmodelled);
+  return said;
+}
+
+std::vector<Segment> shape_of_model(BuildState& b, const Entity& entity, const ModelProperties& said) {
+  const bool is_light = said.kind == EntityKind::light;
+  const bool is_box =
+      !is_light && !has_no_body(entity.type) && (said.sensor == nullptr || said.kind == EntityKind::laser);
+  std::vector<Segment> shape = shape_of(b.context, b.bitmaps, entity, said.size, is_box);
+  if (is_light && shape.empty() && !flag(b.context, entity, "noblocks", false))
+    return light_shape(said.size, number(b.context, entity, "lamps", 3.0) == 1.0);
+  return shape;
+}
+
+Model model_of(BuildState& b, const Entity& entity, const Parent& parent, const ModelProperties& said) {
+  Model model;
+  model.name = unique_name(b, entity, joined(parent.name, said.name));
+  model.type = entity.word;
+  model.parent = parent.model;
+  model.mover = parent.mover;
+  model.X_WM = compose(parent.X_WP, said.X_PB);
+  model.size = {said.size.x, said.size.y};
+  model.color = entity_color(b.context, entity, "color", kStageRed, static_cast<std::uint32_t>(b.world.models.size()));
+  model.is_bitmap = find(entity, "bitmap") != nullptr;
+  model.pixel = pixel_of(b.context, b.bitmaps, entity, said.size);
+  return model;
+}
+
+// A robot or a linked object becomes a mover; what a mover carries belongs to it, whatever its type or name.
+bool becomes_mover(BuildState& b, const Entity& entity, const Parent& parent, const ModelProperties& said) {
+  if (said.kind != EntityKind::position && !packet_id_of(said.name)) return false;
+  if (parent.mover == kNone) return true;
+  warn(b.context, entity.at, fmt::format("'{}' is carried by '{}' and moves with it", said.name, parent.name));
+  return false;
+}
+
+void add_model(BuildState& b, const Entity& entity, Parent& parent) {
+  charge(b.context, entity.at, b.context.usage.models, 1.0, kMaxModels, "models", "leave some out");
+  const ModelProperties said = read_model_properties(b, entity, parent);
+  Model model = model_of(b, entity, parent, said);
+
+  Parent own;  // of the model's own children
+  own.X_MP = compose(parent.X_MP, said.X_PB);
+  own.name_in_mover = parent.mover == kNone ? "" : joined(parent.name_in_mover, said.name);
+  const std::string controller = controller_of(b, entity);
+  const bool moves = becomes_mover(b, entity, parent, said);
+  const std::optional<PacketId> packet_id = packet_id_of(said.name);
+  const Pose X_MT = tag_pose_of(b.context, entity, moves && packet_id && packet_id->is_tag);
+  if (moves) {
+    model.mover = add_mover(b, entity, model, packet_id);
+    b.world.movers[model.mover].controller = controller;
+    b.world.movers[model.mover].X_MT = X_MT;
+    own.X_MP = {};
+  } else if (!controller.empty()) {
+    warn(b.context, location_of(entity, "ctrl"),
+         fmt::format("'ctrl' drives robots, and '{}' is none: write it into the robot's own parentheses", said.name));
+  }
+
+  const Pose X_B = compose(model.mover == kNone ? model.X_WM : own.X_MP, pose(b.context, entity, "origin"));
+  const std::vector<Segment> shape = shape_of_model(b, entity, said);
+  is_floor_hole(b.context, entity) ? add_floor_holes(b, entity, model, shape, X_B)
+                                   : add_body(b, entity, model, shape, X_B);
+  add_magnet(b, entity, model, said.size, X_B);
+  add_emitter(b, entity, model, said.size, X_B);
+  if (said.kind == EntityKind::light) add_light(b, entity, model);
+  if (said.sensor != nullptr) {
+    add_sensor(b, entity, model, *said.sensor, X_B, said.size.z, own.name_in_mover);
+  } else if ((said.kind == EntityKind::laser && !said.is_lane_edge) || said.kind == EntityKind::ranger) {
+    add_lasers(b, entity, model, X_B, said.size.z, own.name_in_mover);
+  }
+
+  own.model = static_cast<std::uint32_t>(b.world.models.size());
+  own.mover = model.mover;
+  own.X_WP = model.X_WM;
+  own.lift = flag(b.context, entity, "stack_children", true) ? said.size.z : 0.0;
+  own.name = model.name;
+  b.world.models.push_back(std::move(model));
+  add_children(b, entity, said.kind, own);
+}
+
+}  // namespace
+
+std::string free_name(BuildState& b, const std::string& wanted) {
+  if (b.names.insert(wanted).second) return wanted;
+  for (int& k = b.copies.try_emplace(wanted, 1).first->second;;) {
+    std::string name = fmt::format("{}#{}", wanted, ++k);
+    if (b.names.insert(name).second) return name;
+  }
+}
+
+void check_keys(StageContext& context, const Entity& entity, KeyScope where, std::span<const std::string_view> own) {
+  if (where == KeyScope::unmodelled) return;
+  for (const Property& property : entity.properties) {
+    if (is_known_key(where, property.key, own)) continue;
+    if (context.warnings.size() > kMaxSuggestions) {
+      warn(context, property.at, fmt::format("unknown property '{}' of '{}' is ignored", property.key, entity.word));
+      continue;
+    }
+    warn(context, property.at,
+         fmt::format("unknown property '{}' of '{}' is ignored{}", property.key, entity.word,
+                     suggest_key(where, property.key, own)));
+  }
+}
+
+void add_children(BuildState& b, const Entity& entity, EntityKind kind, Parent& parent) {
+  for (const Entity& child : entity.children) {
+    if (entity_kind(child.type) == EntityKind::ignored) continue;
+    if (child.type == "block" && parent.model != kNone) {
+      check_keys(b.context, child, KeyScope::block);
+    } else if (child.type == "sensor" && kind == EntityKind::ranger) {
+      check_keys(b.context, child, KeyScope::sensor);
+    } else if (child.type == "block" || child.type == "sensor") {
+      const char* home = child.type == "block" ? "a model" : "a ranger";
+      warn(b.context, child.at, fmt::format("'{}' is ignored here; expected it inside {}", child.word, home));
+    } else if (entity_kind(child.type) == EntityKind::road || entity_kind(child.type) == EntityKind::path) {
+      if (parent.model != kNone)
+        fail(b.context, child.at, fmt::format("'{}' is part of a model; expected it at the top level", child.word));
+      entity_kind(child.type) == EntityKind::road ? add_road(b, child) : add_path(b, child);
+    } else {
+      add_model(b, child, parent);
+    }
+  }
+}
+
+}  // namespace sf::world

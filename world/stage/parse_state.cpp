@@ -1,0 +1,118 @@
+#include "world/stage/parse_state.h"
+
+#include <fmt/format.h>
+
+#include <numeric>
+
+#include "base/error.h"
+
+namespace sf::world {
+
+namespace {
+
+constexpr std::size_t kFewKeys = 32;  // are looked through one by one
+
+}  // namespace
+
+void fail(const ParseState& r, int line, const std::string& message) {
+  throw base::InputError(r.document.files[r.file], line, message);
+}
+
+void warn(ParseState& r, int line, std::string message) {
+  r.document.warnings.push_back({r.document.files[r.file], line, std::move(message)});
+}
+
+std::string shown(const Token& token) {
+  if (token.kind == TokenKind::end) return "the end of the file";
+  return token.kind == TokenKind::text ? '"' + token.text + '"' : '\'' + token.text + '\'';
+}
+
+namespace {
+
+Value value_of(const Token& token) { return {token.kind == TokenKind::text, token.number, token.text}; }
+
+/// Of a property: itself, its values, and texts that are longer than most.
+std::uint32_t weight_of(const Property& property) {
+  constexpr std::size_t kStretch = 64;
+  std::size_t bytes = property.key.size();
+  for (const Value& value : property.values) bytes += value.text.size();
+  return static_cast<std::uint32_t>(1 + property.values.size() + bytes / kStretch);
+}
+
+bool is_value(const Token& token) { return token.kind == TokenKind::number || token.kind == TokenKind::text; }
+
+void read_tuple(ParseState& r, Property& property) {
+  const int line = now(r).line;
+  property.is_tuple = true;
+  for (++r.at; now(r).kind != TokenKind::close_tuple; ++r.at) {
+    if (now(r).kind == TokenKind::end) fail(r, line, "this '[' is never closed; expected ']'");
+    if (!is_value(now(r))) {
+      fail(r, now(r).line,
+           fmt::format("expected a number, a \"string\" or ']' in the tuple of '{}', found {}", property.key,
+                       shown(now(r))));
+    }
+    property.values.push_back(value_of(now(r)));
+  }
+  ++r.at;
+}
+
+}  // namespace
+
+Property read_property(ParseState& r) {
+  Property property{now(r).text, {}, false, location(r, now(r))};
+  const int line = now(r).line;
+  ++r.at;
+  if (now(r).kind == TokenKind::open_tuple) {
+    read_tuple(r, property);
+  } else if (is_value(now(r))) {
+    property.values.push_back(value_of(now(r)));
+    ++r.at;
+  } else {
+    fail(r, line,
+         fmt::format("'{}' needs a value (a number, a \"string\" or a [tuple]) or a body in parentheses; found {}",
+                     property.key, shown(now(r))));
+  }
+  return property;
+}
+
+void add_property(ParseState& r, Entity& entity, KeyRows& rows, std::unordered_set<std::string>& written,
+                  Property property) {
+  if (!written.insert(property.key).second) {
+    if (property.key.find('[') != std::string::npos) {
+      fail(r, property.at.line,
+           fmt::format("'{}' is given twice in the same '{}'; number them one by one: [0], [1], [2] ...", property.key,
+                       entity.word));
+    }
+    warn(r, property.at.line, fmt::format("'{}' is given twice; the last one counts", property.key));
+  }
+  const std::uint32_t weight = weight_of(property);
+  entity.weight += weight;
+  r.weight += weight;
+  const auto [old, fresh] = rows.emplace(property.key, static_cast<std::uint32_t>(entity.properties.size()));
+  if (fresh) {
+    entity.properties.push_back(std::move(property));
+  } else {
+    entity.properties[old->second] = std::move(property);
+  }
+}
+
+void sort_keys(Entity& entity) {
+  if (entity.properties.size() <= kFewKeys) return;
+  entity.by_key.resize(entity.properties.size());
+  std::iota(entity.by_key.begin(), entity.by_key.end(), 0u);
+  std::sort(entity.by_key.begin(), entity.by_key.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return entity.properties[a].key < entity.properties[b].key; });
+}
+
+const Property* find(const Entity& entity, std::string_view key) {
+  const auto& all = entity.properties;
+  if (entity.by_key.size() != all.size() || all.empty()) {
+    const auto it = std::find_if(all.begin(), all.end(), [&](const Property& p) { return p.key == key; });
+    return it == all.end() ? nullptr : &*it;
+  }
+  const auto it = std::lower_bound(entity.by_key.begin(), entity.by_key.end(), key,
+                                   [&](std::uint32_t row, std::string_view wanted) { return all[row].key < wanted; });
+  return it == entity.by_key.end() || all[*it].key != key ? nullptr : &all[*it];
+}
+
+}  // namespace sf::world

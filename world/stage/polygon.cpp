@@ -1,0 +1,83 @@
+#include "world/stage/polygon.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sf::world {
+
+using base::cross;
+
+namespace {
+
+bool same(glm::dvec2 p, glm::dvec2 q) { return p.x == q.x && p.y == q.y; }
+
+void drop_repeated(std::vector<glm::dvec2>& points) {
+  points.erase(std::unique(points.begin(), points.end(), same), points.end());
+  while (points.size() > 1 && same(points.front(), points.back())) points.pop_back();
+}
+
+double twice_area(const std::vector<glm::dvec2>& points) {
+  double sum = 0.0;  // relative to the first corner, so that it does not depend on where the polygon lies
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) sum += cross(points[i] - points[0], points[i + 1] - points[0]);
+  return sum;
+}
+
+double extent(const std::vector<glm::dvec2>& points) {
+  double most = 0.0;
+  for (const glm::dvec2& p : points) most = std::max({most, std::abs(p.x - points[0].x), std::abs(p.y - points[0].y)});
+  return most;
+}
+
+int side(const PolygonEdge& edge, glm::dvec2 p) {
+  const double value = cross(edge.b - edge.a, p - edge.a);
+  return (value > 0.0) - (value < 0.0);
+}
+
+bool between(const PolygonEdge& edge, glm::dvec2 p) {
+  return std::min(edge.a.x, edge.b.x) <= p.x && p.x <= std::max(edge.a.x, edge.b.x) &&
+         std::min(edge.a.y, edge.b.y) <= p.y && p.y <= std::max(edge.a.y, edge.b.y);
+}
+
+bool meet(const PolygonEdge& e, const PolygonEdge& f) {
+  const int ea = side(f, e.a), eb = side(f, e.b), fa = side(e, f.a), fb = side(e, f.b);
+  if (ea * eb < 0 && fa * fb < 0) return true;
+  return (ea == 0 && between(f, e.a)) || (eb == 0 && between(f, e.b)) || (fa == 0 && between(e, f.a)) ||
+         (fb == 0 && between(e, f.b));
+}
+
+bool folds_back(const PolygonEdge& first, const PolygonEdge& second) {
+  const glm::dvec2 d = first.b - first.a;
+  const glm::dvec2 e = second.b - second.a;
+  return cross(d, e) == 0.0 && dot(d, e) < 0.0;
+}
+
+// Quadratic; blocks have tens of corners.
+bool is_simple(const std::vector<PolygonEdge>& edges) {
+  const std::size_t n = edges.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (folds_back(edges[i], edges[(i + 1) % n])) return false;
+    for (std::size_t j = i + 2; j < n; ++j) {
+      const bool neighbours = i == 0 && j == n - 1;
+      if (!neighbours && meet(edges[i], edges[j])) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+Polygon make_polygon(std::vector<glm::dvec2> points) {
+  drop_repeated(points);
+  if (points.size() < 2) return {};
+  if (points.size() == 2) return {{{points[0], points[1]}}, false};
+
+  const double area = twice_area(points);
+  if (area < 0.0) std::reverse(points.begin(), points.end());
+  Polygon outline;
+  for (std::size_t i = 0; i < points.size(); ++i) outline.edges.push_back({points[i], points[(i + 1) % points.size()]});
+  const double size = extent(points);
+  outline.solid_left = std::abs(area) > 1e-12 * size * size && is_simple(outline.edges);
+  return outline;
+}
+
+}  // namespace sf::world

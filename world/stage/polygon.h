@@ -1,0 +1,26 @@
+#pragma once
+// Polygons as the world file gives them, made into outlines whose sides are known.
+
+#include <vector>
+
+#include "base/pose.h"
+
+namespace sf::world {
+
+struct PolygonEdge {
+  glm::dvec2 a;
+  glm::dvec2 b;  ///< never equal to a
+};
+
+/// Rule: with `solid_left` the edges are a simple closed polygon, counter-clockwise.
+struct Polygon {
+  std::vector<PolygonEdge> edges;
+  bool solid_left = true;
+};
+
+/// Closes the polygon through `points` (either winding; repeated neighbours are dropped). Two points make one thin
+/// wall; fewer make nothing; a polygon that crosses or touches itself, or has no area, keeps its edges but not its
+/// sides.
+Polygon make_polygon(std::vector<glm::dvec2> points);
+
+}  // namespace sf::world
