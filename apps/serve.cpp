@@ -183,8 +183,8 @@ class Service {
     const bool heard = inbox_.heard(id, now);
     const bool gone = !heard && forget_ != kNever && last != kNever && now - last >= forget_;
     if (heard) last = now;
-    farm_.set_gone(row, gone);
-    fleet_.set_gone(row, gone);
+    farm_.set_absent(row, gone);
+    fleet_.set_absent(row, gone);
   }
 
   /// Of each binding's strangers, once.

@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "base/error.h"
-#include "robots/outline.h"
+#include "robots/footprint.h"
 
 namespace sf::control {
 
@@ -48,9 +48,9 @@ T between(const std::vector<T>& values, const Way& way, double s) {
 }  // namespace
 
 RoadBody body_of(const world::Mover& mover) {
-  const robots::Outline outline = robots::outline_of(mover);
+  const robots::Footprint outline = robots::footprint_of(mover);
   double front = 0.0;
-  for (const robots::Edge& edge : outline.edges) front = std::max({front, edge.a.x, edge.b.x});
+  for (const robots::FootprintEdge& edge : outline.edges) front = std::max({front, edge.a.x, edge.b.x});
   return outline.edges.empty() ? RoadBody{} : RoadBody{outline.radius, front};
 }
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "control/go.h"
-#include "robots/outline.h"
+#include "robots/footprint.h"
 #include "sensors/irreceiver.h"
 
 namespace sf::control {
@@ -123,7 +123,7 @@ std::unique_ptr<Controller> make_docking(const Site& site, Settings& settings) {
   DockingSettings docking;
   docking.X_WD = dock.X_WE;
   docking.stage = settings.number("stage", 0.7 * dock.range, 0.0, 1e3);
-  docking.reach = settings.number("reach", robots::outline_of(mover).radius + 0.03, 0.0, 1e3);
+  docking.reach = settings.number("reach", robots::footprint_of(mover).radius + 0.03, 0.0, 1e3);
   docking.speed = settings.number("speed", std::min(docking.speed, mover.max_forward), 1e-4, mover.max_forward);
   docking.slow_speed =
       settings.number("slow_speed", std::min(docking.slow_speed, docking.speed), 1e-4, mover.max_forward);

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "control/explore.h"
-#include "robots/outline.h"
+#include "robots/footprint.h"
 
 namespace sf::control {
 
@@ -60,7 +60,7 @@ std::unique_ptr<Controller> make_explore(const Site& site, Settings& settings) {
   const world::Laser& laser = mover.lasers.front();
   ExploreSettings explore;
   explore.plan = read_plan(site, settings);
-  explore.body = {robots::outline_of(mover).radius, {laser.X_MS.x, laser.X_MS.y}};
+  explore.body = {robots::footprint_of(mover).radius, {laser.X_MS.x, laser.X_MS.y}};
   explore.eye = {laser.X_MS, laser.fov, laser.range_max};
   explore.beams = maps::beam_directions(laser.fov, laser.samples);
   explore.range_min = laser.range_min;

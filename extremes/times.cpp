@@ -5,7 +5,7 @@
 #include "extremes/suite.h"
 #include "farm/schedule.h"
 #include "robots/fleet.h"
-#include "robots/motion.h"
+#include "robots/kinematics.h"
 #include "sensors/laser_reference.h"
 #include "world/lights.h"
 

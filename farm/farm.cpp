@@ -214,7 +214,7 @@ Farm::Farm(const world::World& world, gpu::Device& device, const FarmOptions& op
 Farm::~Farm() = default;
 
 void Farm::hear(std::uint32_t mover, std::uint32_t kinds) { s_->heard.at(mover) = s_->gone.at(mover) != 0 ? 0 : kinds; }
-void Farm::set_gone(std::uint32_t mover, bool gone) {
+void Farm::set_absent(std::uint32_t mover, bool gone) {
   s_->gone.at(mover) = gone ? 1 : 0;
   if (gone) s_->heard.at(mover) = 0;
 }

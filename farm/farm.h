@@ -69,7 +69,7 @@ class Farm {
   void hear_all();
 
   /// A mover that is gone is sensed by nobody, and not heard. When it is back, the first report says where it is.
-  void set_gone(std::uint32_t mover, bool gone);
+  void set_absent(std::uint32_t mover, bool gone);
 
   const sensors::Roster& roster() const;
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "robots/motion.h"
+#include "robots/kinematics.h"
 
 namespace sf::robots {
 
@@ -16,9 +16,9 @@ namespace {
 using base::Twist;
 using world::Segment;
 
-std::vector<Outline> outlines_of(const world::World& world) {
-  std::vector<Outline> outlines;
-  for (const world::Mover& mover : world.movers) outlines.push_back(outline_of(mover));
+std::vector<Footprint> footprints_of(const world::World& world) {
+  std::vector<Footprint> outlines;
+  for (const world::Mover& mover : world.movers) outlines.push_back(footprint_of(mover));
   return outlines;
 }
 
@@ -43,9 +43,9 @@ std::vector<std::uint32_t> ranks_of(const world::World& world) {
   return ranks;
 }
 
-double median_radius(const std::vector<Outline>& outlines) {
+double median_radius(const std::vector<Footprint>& outlines) {
   std::vector<double> radii;
-  for (const Outline& outline : outlines) radii.push_back(outline.radius);
+  for (const Footprint& outline : outlines) radii.push_back(outline.radius);
   if (radii.empty()) return 1.0;
   std::nth_element(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2), radii.end());
   return std::clamp(radii[radii.size() / 2], 0.05, 10.0);
@@ -56,27 +56,28 @@ double median_radius(const std::vector<Outline>& outlines) {
 Fleet::Fleet(const world::World& world, base::ThreadPool* thread_pool)
     : world_(world),
       thread_pool_(thread_pool),
-      outlines_(outlines_of(world)),
-      walls_(stopping(world), 2.0 * median_radius(outlines_)),
+      footprints_(footprints_of(world)),
+      walls_(stopping(world), 2.0 * median_radius(footprints_)),
       rank_(ranks_of(world)),
       scratch_(thread_pool != nullptr ? thread_pool->threads() : 1) {
   const std::size_t count = world.movers.size();
   std::size_t edges = 0;
   for (std::uint32_t row = 0; row < count; ++row) {
     reports_.push_back({.mover = row, .time = 0, .X_WM = world.movers[row].X_WM, .velocity = {}});
-    widest_ = std::max(widest_, outlines_[row].radius);
-    edges = std::max(edges, outlines_[row].edges.size());
+    widest_ = std::max(widest_, footprints_[row].radius);
+    edges = std::max(edges, footprints_[row].edges.size());
   }
   predicted_ = reports_;
   travels_.resize(count);
-  ways_.resize(count);
+  progress_.resize(count);
   proposed_.resize(count);
-  for (auto* flags : {&waiting_, &beaten_, &stirred_, &goes_on_, &contacts_, &refused_, &struck_, &told_, &gone_})
+  for (auto* flags :
+       {&waiting_, &yielded_, &changed_, &continues_, &contacts_, &refused_, &struck_, &reported_, &absent_})
     flags->resize(count);
-  for (auto* rows : {&open_, &round_}) rows->reserve(count);
+  for (auto* rows : {&unfinished_, &round_rows_}) rows->reserve(count);
   for (Scratch& scratch : scratch_) {
     for (auto* memory : {&scratch.next, &scratch.now, &scratch.other}) memory->resize(edges);
-    for (auto* rows : {&scratch.near, &scratch.rivals}) rows->reserve(count);
+    for (auto* rows : {&scratch.near, &scratch.priority_movers}) rows->reserve(count);
     scratch.walls.reserve(1'000);
   }
   neighbours_.build(reports_, 1.0);
@@ -93,38 +94,39 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
   for (const Scratch& scratch : scratch_) farthest_ = std::max(farthest_, scratch.farthest);
   neighbours_.build(reports_, 4.0 * (widest_ + farthest_) + 1e-3);
 
-  open_.clear();
+  unfinished_.clear();
   for (std::uint32_t row = 0; row < reports_.size(); ++row)
-    if (waiting_[row] != 0) open_.push_back(row);
-  std::fill(stirred_.begin(), stirred_.end(), 0);
-  round_.assign(open_.begin(), open_.end());
-  for (int k = 1; k < kRounds && !round_.empty(); ++k) {
+    if (waiting_[row] != 0) unfinished_.push_back(row);
+  std::fill(changed_.begin(), changed_.end(), 0);
+  round_rows_.assign(unfinished_.begin(), unfinished_.end());
+  for (int k = 1; k < kRounds && !round_rows_.empty(); ++k) {
     run_round(false);
     find_next();
   }
-  round_.assign(open_.begin(), open_.end());
+  round_rows_.assign(unfinished_.begin(), unfinished_.end());
   run_round(true);
 
   for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
-    const Way& way = ways_[row];
-    refused_[row] = way.refused || way.left > 0.0;
-    reports_[row].velocity = way.left > 0.0 ? Twist{} : way.velocity;
+    const Progress& progress = progress_[row];
+    refused_[row] = progress.refused || progress.left > 0.0;
+    reports_[row].velocity = progress.left > 0.0 ? Twist{} : progress.velocity;
     reports_[row].time += dt;
   });
-  feel();
+  update_contacts();
 }
 
 // What was refused a step touches something, and what touched may still: nobody else is looked at, but whom these
 // were refused by.
-void Fleet::feel() {
+void Fleet::update_contacts() {
   for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
     contacts_[row] = refused_[row] != 0 || reports_[row].contact_mask != 0;
     const auto struck = refused_[row] != 0 ? std::span(struck_) : std::span<std::uint8_t>();
-    if (contacts_[row] != 0) reports_[row].contact_mask = touch_of(row, reports_[row].X_WM, reports_, struck).sectors;
+    if (contacts_[row] != 0)
+      reports_[row].contact_mask = body_contact(row, reports_[row].X_WM, reports_, struck).sectors;
   });
   for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
     if (struck_[row] != 0 && contacts_[row] == 0)
-      reports_[row].contact_mask = touch_of(row, reports_[row].X_WM, reports_).sectors;
+      reports_[row].contact_mask = body_contact(row, reports_[row].X_WM, reports_).sectors;
     struck_[row] = 0;
     contacts_[row] = refused_[row] != 0 || reports_[row].contact_mask != 0;
   });
@@ -137,7 +139,7 @@ std::size_t Fleet::apply(std::span<const base::Report> reports) {
     if (report.time < reports_[report.mover].time) continue;
     reports_[report.mover] = report;
     reports_[report.mover].X_WM.z = world_.movers[report.mover].X_WM.z;
-    told_[report.mover] = 1;
+    reported_[report.mover] = 1;
     refused_[report.mover] = 0;
     ++taken;
   }
@@ -148,24 +150,25 @@ std::span<const base::Report> Fleet::predict(std::int64_t time) {
   for (std::size_t row = 0; row < reports_.size(); ++row) {
     const base::Report& known = reports_[row];
     predicted_[row] = known;
-    const std::int64_t ahead = std::clamp<std::int64_t>(time - known.time, 0, kCoast);
+    const std::int64_t ahead = std::clamp<std::int64_t>(time - known.time, 0, kMaxExtrapolation);
     if (ahead == 0) continue;
     predicted_[row].time = known.time + ahead;
     predicted_[row].X_WM = advance(known.X_WM, known.velocity, 1e-9 * static_cast<double>(ahead));
   }
-  feel_told();
+  update_reported_contacts();
   return predicted_;
 }
 
-void Fleet::feel_told() {
-  if (std::find(told_.begin(), told_.end(), 1) == told_.end()) return;
+void Fleet::update_reported_contacts() {
+  if (std::find(reported_.begin(), reported_.end(), 1) == reported_.end()) return;
   farthest_ = 0.0;
   neighbours_.build(predicted_, 4.0 * widest_ + 1e-3);
   for_rows(predicted_.size(), [&](std::uint32_t row, Scratch&) {
-    if (gone_[row] != 0) contacts_[row] = 0;
-    if (told_[row] == 0 || gone_[row] != 0) return;
+    if (absent_[row] != 0) contacts_[row] = 0;
+    if (reported_[row] == 0 || absent_[row] != 0) return;
     base::Report& report = predicted_[row];
-    if (!clear(row, predicted_, kPressed)) report.contact_mask |= touch_of(row, report.X_WM, predicted_).sectors;
+    if (!clear(row, predicted_, kContactDistance))
+      report.contact_mask |= body_contact(row, report.X_WM, predicted_).sectors;
     contacts_[row] = report.contact_mask != 0;
   });
 }

@@ -24,16 +24,16 @@
 #include "base/pose.h"
 #include "base/report.h"
 #include "base/thread_pool.h"
-#include "robots/neighbours.h"
-#include "robots/outline.h"
-#include "robots/touch.h"
+#include "robots/contact_sectors.h"
+#include "robots/footprint.h"
+#include "robots/neighbour_grid.h"
 #include "world/wall_grid.h"
 #include "world/world.h"
 
 namespace sf::robots {
 
 /// How long a report is carried on with its velocity. [ns]
-inline constexpr std::int64_t kCoast = 500'000'000;
+inline constexpr std::int64_t kMaxExtrapolation = 500'000'000;
 
 /// One caller at a time. Nothing is allocated after construction, but where more than a thousand walls are near one
 /// mover.
@@ -46,15 +46,15 @@ class Fleet {
   explicit Fleet(const world::World& world, base::ThreadPool* thread_pool = nullptr);
 
   /// Simulates `dt` [ns] > 0. A command passes the mover's command law, is reduced to what the drive can follow and to
-  /// what its accelerations allow from the velocity it has, then tried in substeps no longer than `Outline::step`; a
+  /// what its accelerations allow from the velocity it has, then tried in substeps no longer than `Footprint::step`; a
   /// substep that would make the outline touch a wall or another mover is refused, and done only as far as the last
   /// 0.5 mm before that. From there on the mover stands at once, only turning in place while it still can (a car
   /// stands): for that it may push itself off by up to 4 mm a substep. What a mover touched already (overlapping
   /// starts, reports) stops it only where its origin would come nearer to it. Other movers stop it by the rule above.
   ///
-  /// `Report::contact_mask` then says what presses where (robots/touch.h): for movers that were refused a step, for
-  /// those that they were refused by, and for as long as anything touches them afterwards, also while they stand.
-  /// Passing by without being stopped is no touch.
+  /// `Report::contact_mask` then says what presses where (robots/contact_sectors.h): for movers that were refused a
+  /// step, for those that they were refused by, and for as long as anything touches them afterwards, also while they
+  /// stand. Passing by without being stopped is no touch.
   /// @param commands one per mover; not finite means 0
   void move(std::span<const base::Twist> commands, std::int64_t dt);
 
@@ -66,25 +66,26 @@ class Fleet {
   std::size_t apply(std::span<const base::Report> reports);
 
   /// A mover that is gone touches nobody, until it is back.
-  void set_gone(std::uint32_t row, bool gone) { gone_[row] = gone ? 1 : 0; }
+  void set_absent(std::uint32_t row, bool gone) { absent_[row] = gone ? 1 : 0; }
 
   /// One per mover, in order of rows: the newest state. Yaw is in [-pi, pi] after `move`, as told after `apply`.
   /// A simulated mover's velocity is what it does at the end of the tick: 0 once stopped. Valid until the fleet is
   /// gone.
   std::span<const base::Report> reports() const { return reports_; }
 
-  /// `reports()` carried on to `time` [ns] with constant twists, by kCoast at most; never backwards. What touches
-  /// movers that were told by reports, there, is added to what the reports themselves say. Valid until the next call.
+  /// `reports()` carried on to `time` [ns] with constant twists, by kMaxExtrapolation at most; never backwards. What
+  /// touches movers that were told by reports, there, is added to what the reports themselves say. Valid until the next
+  /// call.
   std::span<const base::Report> predict(std::int64_t time);
 
   /// One per mover: 1 where the last `move` refused it a step, or where something touches it (`Report::contact_mask`).
   std::span<const std::uint8_t> contacts() const { return contacts_; }
 
  private:
-  static constexpr double kMostYield = 4e-3;  ///< [m] that a turning body pushes itself off by, a substep
+  static constexpr double kMaxYield = 4e-3;  ///< [m] that a turning body pushes itself off by, a substep
 
   /// How far a mover has come in this tick.
-  struct Way {
+  struct Progress {
     base::Pose X_WM;
     base::Twist velocity;  ///< that it goes on with
     double left = 0.0;     ///< [s] of the tick; 0: it goes no farther
@@ -94,26 +95,27 @@ class Fleet {
   };
   /// Outcome of one step: free, held for another round, or not allowed.
   enum class Stop : std::uint8_t { none, waiting, refused };
-  struct Touch {
+  struct BodyContact {
     std::uint32_t sectors = 0;
     glm::dvec2 away;  ///< world frame: the sum of unit vectors from what touches to the mover's origin
   };
   /// One thread's memory.
   struct Scratch {
-    std::vector<Edge> next, now, other;        ///< of `place`
-    std::vector<std::uint32_t> near;           ///< movers that this one's way may meet
-    std::vector<const world::Segment*> walls;  ///< likewise
-    std::vector<std::uint32_t> rivals;  ///< of these: with a smaller id, and another place to be after this round
-    bool beaten = false;                ///< its way meets such a place
-    double farthest = 0.0;              ///< [m] that an origin may travel this tick, of all movers seen
+    std::vector<FootprintEdge> next, now, other;  ///< of `place`
+    std::vector<std::uint32_t> near;              ///< movers that this one's way may meet
+    std::vector<const world::Segment*> walls;     ///< likewise
+    std::vector<std::uint32_t>
+        priority_movers;    ///< of these: with a smaller id, and another place to be after this round
+    bool yields = false;    ///< its way meets such a place
+    double farthest = 0.0;  ///< [m] that an origin may travel this tick, of all movers seen
   };
 
   void start(std::uint32_t row, const base::Twist& command, double seconds, Scratch& scratch);
   void run_round(bool last);
   void find_next();
   void propose(std::uint32_t row, bool last, Scratch& scratch);
-  bool beaten(std::uint32_t row, bool last, Scratch& scratch);
-  bool meets_rivals_freely(std::uint32_t row, Scratch& scratch) const;
+  bool yields(std::uint32_t row, bool last, Scratch& scratch);
+  bool meets_priority_movers_freely(std::uint32_t row, Scratch& scratch) const;
   double sweep_of(std::uint32_t row) const;
   double reach_of(std::uint32_t row) const;
   void commit(std::uint32_t row);
@@ -125,53 +127,54 @@ class Fleet {
   bool any_wall(std::uint32_t row, const base::Pose& X_WM, double sweep, Visit&& visit) const;
   bool comes_near(std::uint32_t row, const base::Pose& from, double sweep, std::uint32_t other,
                   const base::Pose& X_WO) const;
-  Way go(std::uint32_t row, bool last, Scratch& scratch) const;
-  Way go_in_steps(std::uint32_t row, double steps, bool last, Scratch& scratch) const;
-  double press(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const;
-  bool turn_against(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const;
-  bool push_off(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const;
+  Progress advance_mover(std::uint32_t row, bool last, Scratch& scratch) const;
+  Progress advance_in_steps(std::uint32_t row, double steps, bool last, Scratch& scratch) const;
+  double advance_to_contact(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const;
+  bool turn_in_contact(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const;
+  bool push_off(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const;
 
   // Obstacles of a mover on its way from one pose to another.
   Stop stop_at(std::uint32_t row, const base::Pose& from, const base::Pose& to, bool last, Scratch& scratch) const;
-  bool meets_rival(std::uint32_t row, const base::Pose& from, const Placed& next, Scratch& scratch) const;
-  bool is_stopped(std::uint32_t row, const base::Pose& from, const Placed& next, std::uint32_t other,
+  bool meets_priority_mover(std::uint32_t row, const base::Pose& from, const PlacedFootprint& next,
+                            Scratch& scratch) const;
+  bool is_stopped(std::uint32_t row, const base::Pose& from, const PlacedFootprint& next, std::uint32_t other,
                   const base::Pose& X_WO, Scratch& scratch) const;
   bool leaves(std::uint32_t row, const base::Pose& from, glm::dvec2 to, const world::Segment& wall,
               Scratch& scratch) const;
 
   /// @param struck others that touch it are marked there, where not empty
-  Touch touch_of(std::uint32_t row, const base::Pose& X_WM, std::span<const base::Report> reports,
-                 std::span<std::uint8_t> struck = {}) const;
-  void feel();
-  void feel_told();
+  BodyContact body_contact(std::uint32_t row, const base::Pose& X_WM, std::span<const base::Report> reports,
+                           std::span<std::uint8_t> struck = {}) const;
+  void update_contacts();
+  void update_reported_contacts();
   template <class Body>
   void for_rows(std::size_t count, Body&& body);
 
   const world::World& world_;
   base::ThreadPool* thread_pool_;
-  std::vector<Outline> outlines_;
+  std::vector<Footprint> footprints_;
   world::WallGrid walls_;
-  Neighbours neighbours_;
+  NeighbourGrid neighbours_;
   double widest_ = 0.0;    ///< [m] largest outline radius
   double farthest_ = 0.0;  ///< [m] that an origin may be from where `neighbours_` has it
   std::vector<base::Report> reports_;
   std::vector<base::Report> predicted_;
   std::vector<std::uint32_t> rank_;  ///< in order of ids, robots before tags
   std::vector<double> travels_;      ///< [m] farthest that its origin travels this tick
-  std::vector<Way> ways_;            ///< when the round begins; where others see it is in `reports_`
-  std::vector<Way> proposed_;
-  std::vector<std::uint8_t> waiting_;  ///< 1: its tick is not over
-  std::vector<std::uint8_t> beaten_;   ///< 1: in this round
-  std::vector<std::uint8_t> stirred_;  ///< 1: it moved or was beaten in this round
-  std::vector<std::uint8_t> goes_on_;  ///< 1: in the next round
-  std::vector<std::uint32_t> open_;    ///< rows whose tick is not over
-  std::vector<std::uint32_t> round_;   ///< of these: rows of this round
-  std::vector<Scratch> scratch_;       ///< per thread
+  std::vector<Progress> progress_;   ///< when the round begins; where others see it is in `reports_`
+  std::vector<Progress> proposed_;
+  std::vector<std::uint8_t> waiting_;      ///< 1: its tick is not over
+  std::vector<std::uint8_t> yielded_;      ///< 1: in this round
+  std::vector<std::uint8_t> changed_;      ///< 1: it moved or was beaten in this round
+  std::vector<std::uint8_t> continues_;    ///< 1: in the next round
+  std::vector<std::uint32_t> unfinished_;  ///< rows whose tick is not over
+  std::vector<std::uint32_t> round_rows_;  ///< of these: rows of this round
+  std::vector<Scratch> scratch_;           ///< per thread
   std::vector<std::uint8_t> contacts_;
-  std::vector<std::uint8_t> refused_;  ///< 1: a step in the last `move`
-  std::vector<std::uint8_t> struck_;   ///< 1: someone was refused a step and touches it; 0 between calls
-  std::vector<std::uint8_t> told_;     ///< 1: by a report, since the last `move`
-  std::vector<std::uint8_t> gone_;     ///< 1: nobody meets it
+  std::vector<std::uint8_t> refused_;   ///< 1: a step in the last `move`
+  std::vector<std::uint8_t> struck_;    ///< 1: someone was refused a step and touches it; 0 between calls
+  std::vector<std::uint8_t> reported_;  ///< 1: by a report, since the last `move`
+  std::vector<std::uint8_t> absent_;    ///< 1: nobody meets it
 };
 
 template <class Body>

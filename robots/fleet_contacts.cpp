@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "robots/fleet.h"
-#include "robots/motion.h"
+#include "robots/kinematics.h"
 
 namespace sf::robots {
 
@@ -35,7 +35,7 @@ glm::dvec2 unit(glm::dvec2 v) {
 /// True as soon as `visit(wall, distance [m] from the mover's circle)` is true for a wall within about `sweep` of it.
 template <class Visit>
 bool Fleet::any_wall(std::uint32_t row, const Pose& X_WM, double sweep, Visit&& visit) const {
-  const Outline& outline = outlines_[row];
+  const Footprint& outline = footprints_[row];
   const double radius = outline.radius + sweep;
   const glm::dvec2 p = origin(X_WM);
   return !outline.edges.empty() && walls_.any(world::box_around(p, radius), [&](const Segment& wall) {
@@ -46,130 +46,131 @@ bool Fleet::any_wall(std::uint32_t row, const Pose& X_WM, double sweep, Visit&& 
 
 bool Fleet::clear(std::uint32_t row, std::span<const base::Report> reports, double sweep) const {
   const Pose& X_WM = reports[row].X_WM;
-  const double reach = outlines_[row].radius + sweep + widest_ + farthest_;
+  const double reach = footprints_[row].radius + sweep + widest_ + farthest_;
   return !any_wall(row, X_WM, sweep, [&](const Segment&, double gap) { return gap <= sweep; }) &&
          !neighbours_.any(origin(X_WM), reach, [&](std::uint32_t other) {
-           return other != row && gone_[other] == 0 && comes_near(row, X_WM, sweep, other, reports[other].X_WM);
+           return other != row && absent_[other] == 0 && comes_near(row, X_WM, sweep, other, reports[other].X_WM);
          });
 }
 
 /// Whether a mover that stands at `from`, and travels by `sweep` [m], and another one have circles that meet.
 bool Fleet::comes_near(std::uint32_t row, const Pose& from, double sweep, std::uint32_t other, const Pose& X_WO) const {
-  if (outlines_[row].edges.empty() || outlines_[other].edges.empty()) return false;
+  if (footprints_[row].edges.empty() || footprints_[other].edges.empty()) return false;
   const glm::dvec2 d = origin(X_WO) - origin(from);
-  const double apart = outlines_[row].radius + sweep + outlines_[other].radius;
+  const double apart = footprints_[row].radius + sweep + footprints_[other].radius;
   return dot(d, d) <= apart * apart;
 }
 
 /// [m] Farthest that any point of the mover travels, on what is left of its way.
 double Fleet::sweep_of(std::uint32_t row) const {
-  const Twist& v = ways_[row].velocity;
-  return (std::hypot(v.forward, v.left) + std::abs(v.turn) * outlines_[row].radius) * ways_[row].left;
+  const Twist& v = progress_[row].velocity;
+  return (std::hypot(v.forward, v.left) + std::abs(v.turn) * footprints_[row].radius) * progress_[row].left;
 }
 
 /// [m] The same with what it may push itself off by.
 double Fleet::reach_of(std::uint32_t row) const {
-  return travels_[row] + std::abs(ways_[row].velocity.turn) * outlines_[row].radius * ways_[row].left;
+  return travels_[row] + std::abs(progress_[row].velocity.turn) * footprints_[row].radius * progress_[row].left;
 }
 
-Fleet::Way Fleet::go(std::uint32_t row, bool last, Scratch& scratch) const {
-  Way way = ways_[row];
-  const Pose& from = ways_[row].X_WM;
+Fleet::Progress Fleet::advance_mover(std::uint32_t row, bool last, Scratch& scratch) const {
+  Progress progress = progress_[row];
+  const Pose& from = progress_[row].X_WM;
   const double sweep = sweep_of(row);
   const auto meets = [&](std::uint32_t other) { return comes_near(row, from, sweep, other, reports_[other].X_WM); };
-  way.free = std::none_of(scratch.near.begin(), scratch.near.end(), meets);
+  progress.free = std::none_of(scratch.near.begin(), scratch.near.end(), meets);
   scratch.walls.clear();
   any_wall(row, from, reach_of(row), [&](const Segment& wall, double gap) {
     scratch.walls.push_back(&wall);
-    way.free = way.free && gap > sweep;
+    progress.free = progress.free && gap > sweep;
     return false;
   });
-  if (!way.free) return go_in_steps(row, std::max(1.0, std::ceil(sweep / outlines_[row].step)), last, scratch);
-  way.X_WM = advance(from, way.velocity, way.left);
-  way.left = 0.0;
-  return way;
+  if (!progress.free)
+    return advance_in_steps(row, std::max(1.0, std::ceil(sweep / footprints_[row].step)), last, scratch);
+  progress.X_WM = advance(from, progress.velocity, progress.left);
+  progress.left = 0.0;
+  return progress;
 }
 
-Fleet::Way Fleet::go_in_steps(std::uint32_t row, double steps, bool last, Scratch& scratch) const {
-  Way way = ways_[row];
-  const double dt = way.left / steps;
-  while (steps > 0.0 && !scratch.beaten) {
-    const Pose X_next = advance(way.X_WM, way.velocity, dt);
-    const Stop stop = stop_at(row, way.X_WM, X_next, last, scratch);
+Fleet::Progress Fleet::advance_in_steps(std::uint32_t row, double steps, bool last, Scratch& scratch) const {
+  Progress progress = progress_[row];
+  const double dt = progress.left / steps;
+  while (steps > 0.0 && !scratch.yields) {
+    const Pose X_next = advance(progress.X_WM, progress.velocity, dt);
+    const Stop stop = stop_at(row, progress.X_WM, X_next, last, scratch);
     if (stop == Stop::none) {
-      way.X_WM = X_next;
+      progress.X_WM = X_next;
       steps -= 1.0;
       continue;
     }
     if (stop == Stop::waiting) {
-      way.left = steps * dt;
-      return way;
+      progress.left = steps * dt;
+      return progress;
     }
-    way.refused = true;
-    const bool in_place = way.velocity.forward == 0.0 && way.velocity.left == 0.0;
+    progress.refused = true;
+    const bool in_place = progress.velocity.forward == 0.0 && progress.velocity.left == 0.0;
     if (in_place) {
-      if (turn_against(row, way, dt, last, scratch)) {
+      if (turn_in_contact(row, progress, dt, last, scratch)) {
         steps -= 1.0;
         continue;
       }
     } else {
-      press(row, way, dt, last, scratch);
+      advance_to_contact(row, progress, dt, last, scratch);
       // The same step again, turning.
-      if (way.velocity.turn != 0.0 && world_.movers[row].drive != world::Drive::car) {
-        way.velocity = {0.0, 0.0, way.velocity.turn};
+      if (progress.velocity.turn != 0.0 && world_.movers[row].drive != world::Drive::car) {
+        progress.velocity = {0.0, 0.0, progress.velocity.turn};
         continue;
       }
     }
-    way.velocity = {};
+    progress.velocity = {};
     break;
   }
-  way.left = 0.0;
-  return way;
+  progress.left = 0.0;
+  return progress;
 }
 
 // As far along a refused step as there is nothing in the way; how long that takes [s]. The least part is tried first:
 // who presses already stays.
-double Fleet::press(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const {
-  const Pose X_start = way.X_WM;
+double Fleet::advance_to_contact(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const {
+  const Pose X_start = progress.X_WM;
   const auto refused = [&](double part) {
-    return stop_at(row, X_start, advance(X_start, way.velocity, part * dt), last, scratch) != Stop::none;
+    return stop_at(row, X_start, advance(X_start, progress.velocity, part * dt), last, scratch) != Stop::none;
   };
-  const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(outlines_[row].step / kGap))));
+  const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(footprints_[row].step / kGap))));
   double free = std::ldexp(1.0, -halvings), blocked = 1.0;
   if (refused(free)) return 0.0;
   for (int k = 0; k < halvings; ++k) {
     const double middle = 0.5 * (free + blocked);
     (refused(middle) ? blocked : free) = middle;
   }
-  way.X_WM = advance(X_start, way.velocity, free * dt);
+  progress.X_WM = advance(X_start, progress.velocity, free * dt);
   return free * dt;
 }
 
 // Who is not near enough yet to push itself off turns until it is.
-bool Fleet::turn_against(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const {
-  if (push_off(row, way, dt, last, scratch)) return true;
-  const double done = press(row, way, dt, last, scratch);
-  return done > 0.0 && push_off(row, way, dt - done, last, scratch);
+bool Fleet::turn_in_contact(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const {
+  if (push_off(row, progress, dt, last, scratch)) return true;
+  const double done = advance_to_contact(row, progress, dt, last, scratch);
+  return done > 0.0 && push_off(row, progress, dt - done, last, scratch);
 }
 
 // A body that is not quite round (a disc of sixteen sides) pushes itself off what it presses on when it turns.
-bool Fleet::push_off(std::uint32_t row, Way& way, double dt, bool last, Scratch& scratch) const {
-  const glm::dvec2 away = unit(touch_of(row, way.X_WM, reports_).away);
+bool Fleet::push_off(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const {
+  const glm::dvec2 away = unit(body_contact(row, progress.X_WM, reports_).away);
   if (away.x == 0.0 && away.y == 0.0) return false;
-  const Pose X_turned = advance(way.X_WM, way.velocity, dt);
-  for (const double yield : {0.25 * kMostYield, 0.5 * kMostYield, kMostYield}) {
+  const Pose X_turned = advance(progress.X_WM, progress.velocity, dt);
+  for (const double yield : {0.25 * kMaxYield, 0.5 * kMaxYield, kMaxYield}) {
     Pose X_WM = X_turned;
     X_WM.x += yield * away.x;
     X_WM.y += yield * away.y;
-    if (stop_at(row, way.X_WM, X_WM, last, scratch) != Stop::none) continue;
-    way.X_WM = X_WM;
+    if (stop_at(row, progress.X_WM, X_WM, last, scratch) != Stop::none) continue;
+    progress.X_WM = X_WM;
     return true;
   }
   return false;
 }
 
 Fleet::Stop Fleet::stop_at(std::uint32_t row, const Pose& from, const Pose& to, bool last, Scratch& scratch) const {
-  const Placed next = place(outlines_[row], to, scratch.next);
+  const PlacedFootprint next = place_footprint(footprints_[row], to, scratch.next);
   for (const Segment* wall : scratch.walls)
     if (touches(next, *wall) && !leaves(row, from, next.origin, *wall, scratch)) return Stop::refused;
   Stop stop = Stop::none;
@@ -178,59 +179,60 @@ Fleet::Stop Fleet::stop_at(std::uint32_t row, const Pose& from, const Pose& to, 
     if (last || waiting_[other] == 0) return Stop::refused;
     stop = Stop::waiting;
   }
-  if (stop == Stop::none && meets_rival(row, from, next, scratch)) return Stop::refused;
+  if (stop == Stop::none && meets_priority_mover(row, from, next, scratch)) return Stop::refused;
   return stop;
 }
 
 /// On a way that nothing else stops.
-bool Fleet::meets_rival(std::uint32_t row, const Pose& from, const Placed& next, Scratch& scratch) const {
-  for (const std::uint32_t rival : scratch.rivals)
-    scratch.beaten = scratch.beaten || is_stopped(row, from, next, rival, proposed_[rival].X_WM, scratch);
-  return scratch.beaten;
+bool Fleet::meets_priority_mover(std::uint32_t row, const Pose& from, const PlacedFootprint& next,
+                                 Scratch& scratch) const {
+  for (const std::uint32_t rival : scratch.priority_movers)
+    scratch.yields = scratch.yields || is_stopped(row, from, next, rival, proposed_[rival].X_WM, scratch);
+  return scratch.yields;
 }
 
-bool Fleet::is_stopped(std::uint32_t row, const Pose& from, const Placed& next, std::uint32_t other, const Pose& X_WO,
-                       Scratch& scratch) const {
+bool Fleet::is_stopped(std::uint32_t row, const Pose& from, const PlacedFootprint& next, std::uint32_t other,
+                       const Pose& X_WO, Scratch& scratch) const {
   const glm::dvec2 d = origin(X_WO) - next.origin;
-  const double apart = next.radius + outlines_[other].radius;
+  const double apart = next.radius + footprints_[other].radius;
   if (dot(d, d) > apart * apart * (1.0 + 1e-12)) return false;
-  const Placed placed = place(outlines_[other], X_WO, scratch.other);
+  const PlacedFootprint placed = place_footprint(footprints_[other], X_WO, scratch.other);
   if (!touches(next, placed)) return false;
-  const Placed now = place(outlines_[row], from, scratch.now);
+  const PlacedFootprint now = place_footprint(footprints_[row], from, scratch.now);
   return !touches(now, placed) || !no_nearer(length(next.origin - placed.origin), length(now.origin - placed.origin));
 }
 
 /// It touches the wall already, and its origin comes no nearer to it.
 bool Fleet::leaves(std::uint32_t row, const Pose& from, glm::dvec2 to, const Segment& wall, Scratch& scratch) const {
-  const Placed now = place(outlines_[row], from, scratch.now);
+  const PlacedFootprint now = place_footprint(footprints_[row], from, scratch.now);
   return touches(now, wall) &&
          no_nearer(world::distance(to, wall.a, wall.b), world::distance(now.origin, wall.a, wall.b));
 }
 
-Fleet::Touch Fleet::touch_of(std::uint32_t row, const Pose& X_WM, std::span<const base::Report> reports,
-                             std::span<std::uint8_t> struck) const {
-  const Outline& outline = outlines_[row];
+Fleet::BodyContact Fleet::body_contact(std::uint32_t row, const Pose& X_WM, std::span<const base::Report> reports,
+                                       std::span<std::uint8_t> struck) const {
+  const Footprint& outline = footprints_[row];
   const glm::dvec2 p = origin(X_WM);
-  const double reach = outline.radius + kPressed;
-  Touch touch;
+  const double reach = outline.radius + kContactDistance;
+  BodyContact touch;
   walls_.any(world::box_around(p, reach), [&](const Segment& wall) {
-    const std::uint32_t sectors = sectors_touched(outline, X_WM, wall);
+    const std::uint32_t sectors = contact_sectors(outline, X_WM, wall);
     if (sectors != 0) touch = {touch.sectors | sectors, touch.away + unit(world::from_segment(p, wall.a, wall.b))};
     return false;
   });
   std::int64_t x = 0, y = 0;
   neighbours_.any(p, reach + widest_ + farthest_, [&](std::uint32_t other) {
     const glm::dvec2 from_other = p - origin(reports[other].X_WM);
-    const double apart = reach + outlines_[other].radius;
-    if (other == row || gone_[other] != 0 || dot(from_other, from_other) > apart * apart) return false;
-    const std::uint32_t sectors = sectors_touched(outline, X_WM, outlines_[other], reports[other].X_WM);
+    const double apart = reach + footprints_[other].radius;
+    if (other == row || absent_[other] != 0 || dot(from_other, from_other) > apart * apart) return false;
+    const std::uint32_t sectors = contact_sectors(outline, X_WM, footprints_[other], reports[other].X_WM);
     if (sectors == 0) return false;
     const glm::dvec2 away = kWhole * unit(from_other);
     x += std::llround(away.x), y += std::llround(away.y);
     touch.sectors |= sectors;
     if (!struck.empty()) std::atomic_ref(struck[other]).store(1, std::memory_order_relaxed);
     // A mover placed from outside needs its contact sectors alone: in a crowd at one place, all are found soon.
-    return told_[row] != 0 && touch.sectors == kEverywhere;
+    return reported_[row] != 0 && touch.sectors == kEverywhere;
   });
   touch.away = touch.away + 1.0 / kWhole * glm::dvec2{static_cast<double>(x), static_cast<double>(y)};
   return touch;

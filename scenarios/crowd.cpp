@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "control/route_plan.h"
-#include "robots/outline.h"
+#include "robots/footprint.h"
 #include "world/free_space.h"
 #include "world/roads/roads.h"
 
@@ -52,7 +52,7 @@ std::uint32_t original_of(const Scenario& scenario, const world::World& world) {
 
 bool clear(const base::Pose& X_WM, double radius, const world::World& world, const std::vector<Stays>& stays) {
   return std::all_of(stays.begin(), stays.end(), [&](const Stays& s) {
-    const double apart = radius + robots::outline_of(world.movers[s.row]).radius + kBetween;
+    const double apart = radius + robots::footprint_of(world.movers[s.row]).radius + kBetween;
     return std::hypot(X_WM.x - s.X_WM.x, X_WM.y - s.X_WM.y) >= apart;
   });
 }
@@ -63,7 +63,7 @@ std::vector<base::Pose> places_on_lanes(const Scenario& scenario, const world::W
                                         const world::RoadNetwork& roads, const world::Mover& original,
                                         const std::vector<Stays>& stays) {
   const std::size_t wanted = scenario.crowd.robots;
-  const double radius = robots::outline_of(original).radius;
+  const double radius = robots::footprint_of(original).radius;
   const double apart = 2.0 * radius + kBetween;
   std::vector<base::Pose> poses;
   for (std::size_t drawn = wanted; poses.size() < wanted; drawn += wanted - poses.size()) {

@@ -37,17 +37,17 @@ void RobotBody::hear(std::uint32_t mover, const base::Pose& X_WM, const base::Tw
   // The fleet's time is what its moves added up to, a little behind: as the newest word it has that time.
   const base::Report report{mover, fleet_.reports()[mover].time, X_WM, velocity};
   fleet_.apply({&report, 1});
-  fleet_.set_gone(mover, false);
-  told_[mover] = {velocity, now + robots::kCoast, forget_ > 0 ? now + forget_ : kNever};
+  fleet_.set_absent(mover, false);
+  told_[mover] = {velocity, now + robots::kMaxExtrapolation, forget_ > 0 ? now + forget_ : kNever};
 }
 
 void RobotBody::move(const base::Twist& command, std::int64_t now) {
-  const std::int64_t dt = std::min(now - time_, robots::kCoast);
+  const std::int64_t dt = std::min(now - time_, robots::kMaxExtrapolation);
   time_ = now;
   if (dt <= 0) return;
   for (std::uint32_t m = 0; m < told_.size(); ++m) {
     commands_[m] = now < told_[m].until ? told_[m].velocity : base::Twist{};
-    if (now >= told_[m].gone) fleet_.set_gone(m, true);
+    if (now >= told_[m].gone) fleet_.set_absent(m, true);
   }
   commands_[mover_] = command;
   const base::Pose before = state().X_WM;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "farm/farm.h"
-#include "robots/motion.h"
+#include "robots/kinematics.h"
 
 namespace sf::scenarios {
 
@@ -21,7 +21,7 @@ void sample_between(farm::Farm& farm, std::span<const base::Report> before, std:
   for (std::int64_t due = farm.next_due(); due < after[0].time; due = farm.next_due()) {
     memory.clear();
     for (std::size_t row = 0; row < after.size(); ++row)
-      memory.push_back(robots::between(before[row], after[row], due));
+      memory.push_back(robots::interpolate(before[row], after[row], due));
     take(farm.sample(due, memory));
   }
 }

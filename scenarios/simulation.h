@@ -20,7 +20,7 @@
 #include "farm/stored_reading.h"
 #include "netio/link.h"
 #include "robots/fleet.h"
-#include "robots/neighbours.h"
+#include "robots/neighbour_grid.h"
 #include "scenarios/mailbox.h"
 #include "world/lights.h"
 #include "world/roads/network.h"
@@ -93,7 +93,7 @@ class Simulation {
   base::ThreadPool thread_pool_;
   farm::Farm farm_;
   robots::Fleet fleet_;
-  robots::Neighbours neighbours_;
+  robots::NeighbourGrid neighbours_;
   std::vector<Driver> drivers_;  ///< per mover
   std::vector<base::Twist> commands_;
   std::vector<base::Twist> obeyed_;               ///< what the tick just recorded was told to do

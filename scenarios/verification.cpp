@@ -132,7 +132,7 @@ class Verifier {
       const base::Report after{0, s.time, s.X_WM, s.velocity};
       const record::StateSample& p = states[asked.tick - (asked.time < s.time ? 1 : 0)];
       const base::Report before{0, p.time, p.X_WM, p.velocity};
-      poses.push_back(asked.time < s.time ? robots::between(before, after, asked.time).X_WM : s.X_WM);
+      poses.push_back(asked.time < s.time ? robots::interpolate(before, after, asked.time).X_WM : s.X_WM);
     }
   }
 

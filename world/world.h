@@ -140,7 +140,7 @@ inline double bearing_of(const Laser& laser, std::uint32_t i) {
 /// Skid: wheels on both sides that cannot be steered (Pioneer 3-AT), which scrub when they turn.
 enum class Drive { differential, omni, car, skid };
 
-/// What stands between a commanded twist and the wheels (robots/command_law.h).
+/// What stands between a commanded twist and the wheels (robots/driver_model.h).
 enum class DriverModel : std::uint8_t {
   direct,        ///< nothing
   player_create  ///< Player's driver for the iRobot Create: whole millimetres, half the radius, at most 2 m of it

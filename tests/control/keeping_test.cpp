@@ -9,7 +9,7 @@
 #include "control/lane_keeping.h"
 #include "control/magnet_keeping.h"
 #include "control/reason.h"
-#include "robots/motion.h"
+#include "robots/kinematics.h"
 #include "sensors/laneedge.h"
 #include "sensors/magnetometer.h"
 #include "tests/robots/scenes.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "robots/motion.h"
+#include "robots/kinematics.h"
 #include "tests/robots/scenes.h"
 
 namespace sf::control {
@@ -29,7 +29,7 @@ Walk walk(Patrol& patrol, const Pose& from, int ticks, const std::vector<Neighbo
   for (int i = 0; i < ticks; ++i) {
     const base::Twist twist = patrol.step({.time = i * kTick, .state = {.X_WM = walk.X_WM}, .others = others});
     if (twist.forward == 0.0 && twist.turn == 0.0) walk.standing += 0.1;
-    walk.X_WM = robots::advance(walk.X_WM, robots::follow(mover, twist), 0.1);
+    walk.X_WM = robots::advance(walk.X_WM, robots::limit_kinematics(mover, twist), 0.1);
     if (patrol.target() != walk.targets.back()) walk.targets.push_back(patrol.target());
   }
   return walk;

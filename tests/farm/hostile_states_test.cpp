@@ -85,8 +85,8 @@ std::uint64_t under_siege(const world::World& world, std::uint64_t seed, unsigne
     fleet.apply(reports);
     const auto row = chance.below(static_cast<std::uint32_t>(world.movers.size()));
     gone[row] = chance.below(2) == 0 ? 1 : 0;
-    farm.set_gone(row, gone[row] != 0);
-    fleet.set_gone(row, gone[row] != 0);
+    farm.set_absent(row, gone[row] != 0);
+    fleet.set_absent(row, gone[row] != 0);
     farm.hear(row, chance.below(2) == 0 ? kAllKinds : 0);
     const auto states = fleet.predict(now);
     std::vector<base::Pose> poses;

@@ -33,9 +33,9 @@ world::World crowd() {
     const world::Mover& mover = i % 3 == 0   ? scenes::add_create(trial, X)
                                 : i % 3 == 1 ? scenes::add_mover(trial, X, scenes::rectangle({0.03, 0}, 0.3, 0.15))
                                              : scenes::add_square(trial, X);
-    std::vector<Edge> memory(mover.body.size());
-    const Outline outline = outline_of(mover);
-    const Placed placed = place(outline, X, memory);
+    std::vector<FootprintEdge> memory(mover.body.size());
+    const Footprint outline = footprint_of(mover);
+    const PlacedFootprint placed = place_footprint(outline, X, memory);
     bool clear = true;
     for (const auto& wall : world.walls) clear = clear && !touches(placed, wall);
     for (const auto& other : world.movers) {

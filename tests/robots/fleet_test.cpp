@@ -268,12 +268,12 @@ TEST(Fleet, who_is_gone_is_in_nobodys_way) {
   scenes::add_square(world, {2, 0, 0, 0});
   Fleet fleet(world);
   const std::vector<Report> overlap{{.mover = 0, .time = 1, .X_WM = {2.05, 0, 0, 0}}};
-  fleet.set_gone(1, true);
+  fleet.set_absent(1, true);
   fleet.apply(overlap);
   fleet.predict(1);
   EXPECT_EQ(fleet.contacts()[0], 0);
   EXPECT_EQ(fleet.contacts()[1], 0);
-  fleet.set_gone(1, false);
+  fleet.set_absent(1, false);
   fleet.predict(1);
   EXPECT_EQ(fleet.contacts()[0], 1);
 }
@@ -285,7 +285,7 @@ TEST(Fleet, who_is_gone_stops_nobody) {
     scenes::add_square(world, {});
     scenes::add_square(world, {1, 0, 0, 0});
     Fleet fleet(world);
-    fleet.set_gone(1, gone);
+    fleet.set_absent(1, gone);
     const std::vector<base::Twist> commands{{0.5, 0, 0}, {}};
     for (int i = 0; i < 40; ++i) fleet.move(commands, kTick);
     EXPECT_EQ(fleet.reports()[0].X_WM.x > 1.5, gone);

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "farm/schedule.h"
-#include "robots/motion.h"
+#include "robots/kinematics.h"
 #include "scenarios/watch.h"
 #include "sensors/kind.h"
 #include "tests/counted_new.h"

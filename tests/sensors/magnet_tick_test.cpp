@@ -43,7 +43,7 @@ TEST(MagnetTick, WhoIsGoneTakesItsMagnetsAlong) {
     world::World without = world;
     for (std::uint32_t m = 20; m < 30; ++m) without.movers[m].magnets.clear();
     farm::Farm farm(world, device()), bare(without, device());
-    for (std::uint32_t m = 0; m < 30; ++m) farm.set_gone(m, m >= 20);
+    for (std::uint32_t m = 0; m < 30; ++m) farm.set_absent(m, m >= 20);
     for (std::uint32_t m = 0; m < 20; ++m) farm.hear(m, farm::kAllKinds), bare.hear(m, farm::kAllKinds);
     const auto gone = farm.tick(0, {}), never = bare.tick(0, {});
     ASSERT_EQ(gone.size(), 20u);

@@ -59,11 +59,11 @@ TEST(Movers, WhoIsGoneIsNotSeenUntilItIsBack) {
     return readings.front().values[0];
   };
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(range({}), 1.835, 1e-12);
-  farm.set_gone(other, true);
+  farm.set_absent(other, true);
   EXPECT_EQ(range({}), 8.0);
   EXPECT_EQ(range({{other, 0, {1, 0, 0, 0}, {}}}), 8.0) << "whatever its last words were";
   EXPECT_EQ(farm.tick(now += 100'000'000, {}).size(), 1u) << "and it senses nothing";
-  farm.set_gone(other, false);
+  farm.set_absent(other, false);
   farm.hear(other, farm::kAllKinds);
   EXPECT_NEAR(range({{other, 0, {3, 0, 0, 0}, {}}}), 2.835, 1e-12);
 }
@@ -75,9 +75,9 @@ TEST(Movers, AllOthersMayBeGone) {
   for (int i = 0; i < 3; ++i) scenes::add_robot(world, {2.0 + i, 0, 0, 0}, eye(1, 0.0, 8.0));
   farm::Farm farm(world, device());
   farm.hear_all();
-  for (std::uint32_t m = 1; m < 4; ++m) farm.set_gone(m, true);
+  for (std::uint32_t m = 1; m < 4; ++m) farm.set_absent(m, true);
   EXPECT_EQ(farm.tick(0, {})[0].values[0], 8.0);
-  farm.set_gone(0, true);
+  farm.set_absent(0, true);
   EXPECT_TRUE(farm.tick(100'000'000, {}).empty());
 }
 

@@ -19,13 +19,13 @@ inline constexpr double kMaxSteer = M_PI / 6.0;
 /// - omni: the velocity's length <= max_forward, direction kept.
 /// - car (kinematic bicycle): as differential, and |turn| <= |forward| tan(kMaxSteer) / wheelbase: it cannot turn in
 /// place.
-base::Twist follow(const world::Mover& mover, const base::Twist& command);
+base::Twist limit_kinematics(const world::Mover& mover, const base::Twist& command);
 
 /// The twist after `dt` [s] > 0 on the way from `now` to `wanted`: both its velocity (its length, for all drives) and
 /// its turn change by no more than the mover's accelerations allow, whether it speeds up or slows down; `wanted`
-/// exactly where they allow it. Then `follow`.
-/// @param wanted as `follow` gives it
-base::Twist approach(const world::Mover& mover, const base::Twist& now, const base::Twist& wanted, double dt);
+/// exactly where they allow it. Then `limit_kinematics`.
+/// @param wanted as `limit_kinematics` gives it
+base::Twist limit_acceleration(const world::Mover& mover, const base::Twist& now, const base::Twist& wanted, double dt);
 
 /// Where a frame that moves with the constant body twist `velocity` is after `dt` [s]: exactly, along an arc.
 /// The yaw of the result is wrapped to [-pi, pi].
@@ -35,6 +35,6 @@ base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double d
 /// leads from one pose to the other, which is how a mover moves that nothing stops; else on the arc of constant twist
 /// between the poses, by the lesser turn. What touches it is as before. A function of the two states alone.
 /// @param time [ns] in [before.time, after.time), which are not the same
-base::Report between(const base::Report& before, const base::Report& after, std::int64_t time);
+base::Report interpolate(const base::Report& before, const base::Report& after, std::int64_t time);
 
 }  // namespace sf::robots

@@ -1,4 +1,4 @@
-#include "robots/touch.h"
+#include "robots/contact_sectors.h"
 
 #include <algorithm>
 #include <array>
@@ -57,24 +57,24 @@ Part within_sector(const Surface& s, std::uint32_t k) {
   return part;
 }
 
-bool overlap(const Edge& e, const Surface& s) { return e.z_min < s.z_max && s.z_min < e.z_max; }
+bool overlap(const FootprintEdge& e, const Surface& s) { return e.z_min < s.z_max && s.z_min < e.z_max; }
 
-/// Whether the segments ab and cd come within kPressed of one another.
+/// Whether the segments ab and cd come within kContactDistance of one another.
 bool near(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   const auto apart = [](double p, double q, double r, double s) {
-    return std::min(p, q) > std::max(r, s) + kPressed || std::min(r, s) > std::max(p, q) + kPressed;
+    return std::min(p, q) > std::max(r, s) + kContactDistance || std::min(r, s) > std::max(p, q) + kContactDistance;
   };
   if (apart(a.x, b.x, c.x, d.x) || apart(a.y, b.y, c.y, d.y)) return false;
-  return world::segments_meet(a, b, c, d) || world::distance(a, c, d) <= kPressed ||
-         world::distance(b, c, d) <= kPressed || world::distance(c, a, b) <= kPressed ||
-         world::distance(d, a, b) <= kPressed;
+  return world::segments_meet(a, b, c, d) || world::distance(a, c, d) <= kContactDistance ||
+         world::distance(b, c, d) <= kContactDistance || world::distance(c, a, b) <= kContactDistance ||
+         world::distance(d, a, b) <= kContactDistance;
 }
 
 /// The edges from the first to the last one that a surface comes near to; none: an empty span.
-std::span<const Edge> edges_near(const Outline& outline, const Surface& s) {
+std::span<const FootprintEdge> edges_near(const Footprint& outline, const Surface& s) {
   std::size_t first = 0, end = 0;
   for (std::size_t i = 0; i < outline.edges.size(); ++i) {
-    const Edge& e = outline.edges[i];
+    const FootprintEdge& e = outline.edges[i];
     if (!overlap(e, s) || !near(s.a, s.b, e.a, e.b)) continue;
     if (end == 0) first = i;
     end = i + 1;
@@ -83,16 +83,16 @@ std::span<const Edge> edges_near(const Outline& outline, const Surface& s) {
 }
 
 // A part is near an edge, or else wholly inside or outside, as its middle is.
-bool presses(const Outline& outline, std::span<const Edge> edges, const Surface& s, const Part& part) {
+bool presses(const Footprint& outline, std::span<const FootprintEdge> edges, const Surface& s, const Part& part) {
   const glm::dvec2 a = s.a + part.from * (s.b - s.a), b = s.a + part.to * (s.b - s.a);
-  for (const Edge& e : edges)
+  for (const FootprintEdge& e : edges)
     if (overlap(e, s) && near(a, b, e.a, e.b)) return true;
   return inside(outline.edges, 0.5 * (a + b), s.z_min, s.z_max);
 }
 
-std::uint32_t sectors_of(const Outline& outline, const Surface& s) {
-  if (world::distance({0.0, 0.0}, s.a, s.b) > outline.radius + kPressed) return 0;
-  const std::span<const Edge> edges = edges_near(outline, s);
+std::uint32_t sectors_of(const Footprint& outline, const Surface& s) {
+  if (world::distance({0.0, 0.0}, s.a, s.b) > outline.radius + kContactDistance) return 0;
+  const std::span<const FootprintEdge> edges = edges_near(outline, s);
   if (edges.empty() && !inside(outline.edges, s.a, s.z_min, s.z_max)) return 0;
   std::uint32_t sectors = 0;
   for (std::uint32_t k = 0; k < kContactSectors; ++k) {
@@ -104,25 +104,25 @@ std::uint32_t sectors_of(const Outline& outline, const Surface& s) {
 
 }  // namespace
 
-std::uint32_t sectors_touched(const Outline& outline, const base::Pose& X_WM, const world::Segment& wall) {
+std::uint32_t contact_sectors(const Footprint& outline, const base::Pose& X_WM, const world::Segment& wall) {
   const glm::dvec2 p{X_WM.x, X_WM.y};
   return sectors_of(outline, {base::rotate(-X_WM.yaw, wall.a - p), base::rotate(-X_WM.yaw, wall.b - p),
                               wall.z_min - X_WM.z, wall.z_max - X_WM.z});
 }
 
-std::uint32_t sectors_touched(const Outline& outline, const base::Pose& X_WM, const Outline& other,
+std::uint32_t contact_sectors(const Footprint& outline, const base::Pose& X_WM, const Footprint& other,
                               const base::Pose& X_WO) {
   const glm::dvec2 apart = glm::dvec2{X_WO.x, X_WO.y} - glm::dvec2{X_WM.x, X_WM.y};
   const glm::dvec2 p_MO = base::rotate(-X_WM.yaw, apart);
   const double turn = X_WO.yaw - X_WM.yaw, lift = X_WO.z - X_WM.z;
-  const double reach = outline.radius + kPressed;
+  const double reach = outline.radius + kContactDistance;
   const double c = std::cos(turn), s = std::sin(turn);
   const auto to_mover = [&](glm::dvec2 q) { return p_MO + glm::dvec2{c * q.x - s * q.y, s * q.x + c * q.y}; };
   std::uint32_t sectors = 0;
-  for (const Edge& e : other.edges)
+  for (const FootprintEdge& e : other.edges)
     sectors |= sectors_of(outline, {to_mover(e.a), to_mover(e.b), e.z_min + lift, e.z_max + lift});
   if (sectors != 0 || length(apart) > reach + other.radius || outline.edges.empty()) return sectors;
-  const Edge& first = outline.edges.front();
+  const FootprintEdge& first = outline.edges.front();
   const glm::dvec2 q = base::rotate(X_WM.yaw - X_WO.yaw, first.a - p_MO);
   return inside(other.edges, q, first.z_min - lift, first.z_max - lift) ? ~0u : 0u;
 }

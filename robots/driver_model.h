@@ -12,7 +12,7 @@ namespace sf::robots {
 ///   0.5 m/s, and a radius in whole millimetres, half of the one that was asked for and at most 2 m. A turn command is
 ///   therefore about doubled, and any turn is at least |forward| / 2 m. Without a turn it drives straight; without a
 ///   forward speed it spins in place, its wheels at `track` / 2 times the turn, in whole mm/s.
-/// Pure: what the drive can follow is `follow`'s business.
-base::Twist obey(const world::Mover& mover, const base::Twist& command);
+/// Pure: what the drive can follow is `limit_kinematics`'s business.
+base::Twist apply_driver(const world::Mover& mover, const base::Twist& command);
 
 }  // namespace sf::robots

@@ -1,4 +1,4 @@
-#include "robots/outline.h"
+#include "robots/footprint.h"
 
 #include <gtest/gtest.h>
 
@@ -17,20 +17,20 @@ struct Square {
     world::World world = scenes::empty_world();
     world::Mover& mover = scenes::add_mover(world, X_WM, scenes::rectangle({}, edge, edge));
     for (world::Segment& s : mover.body) s.z_max = height;
-    outline = outline_of(mover);
+    outline = footprint_of(mover);
     memory.resize(outline.edges.size());
-    placed = place(outline, X_WM, memory);
+    placed = place_footprint(outline, X_WM, memory);
   }
-  Outline outline;
-  std::vector<Edge> memory;
-  Placed placed;
+  Footprint outline;
+  std::vector<FootprintEdge> memory;
+  PlacedFootprint placed;
 };
 
 bool touches_wall(const Square& square, glm::dvec2 a, glm::dvec2 b, double z_min = 0.0, double z_max = 1.0) {
   return touches(square.placed, {.a = a, .b = b, .z_min = z_min, .z_max = z_max});
 }
 
-TEST(Outline, wall_case_by_case) {
+TEST(Footprint, wall_case_by_case) {
   const Square square({1, 1, 0, 0});
   EXPECT_TRUE(touches_wall(square, {1.1, 0}, {1.1, 3})) << "straight through";
   EXPECT_TRUE(touches_wall(square, {1.2, 0}, {1.2, 3})) << "along the front: touching counts";
@@ -40,7 +40,7 @@ TEST(Outline, wall_case_by_case) {
   EXPECT_TRUE(touches_wall(square, {1.15, 1.15}, {3, 3})) << "a wall's end inside";
 }
 
-TEST(Outline, heights) {
+TEST(Footprint, heights) {
   const Square square({0, 0, 0.5, 0});  // stands at z = 0.5, 0.1 high
   EXPECT_FALSE(touches_wall(square, {0, -1}, {0, 1}, 0.6, 1)) << "a bridge exactly above";
   EXPECT_TRUE(touches_wall(square, {0, -1}, {0, 1}, 0.59, 1));
@@ -48,12 +48,12 @@ TEST(Outline, heights) {
   EXPECT_TRUE(touches_wall(square, {0, -1}, {0, 1}, 0, 0.51));
 }
 
-TEST(Outline, turns) {
+TEST(Footprint, turns) {
   EXPECT_FALSE(touches_wall(Square({0, 0, 0, 0}), {0.25, -1}, {0.25, 1}));
   EXPECT_TRUE(touches_wall(Square({0, 0, 0, M_PI / 4}), {0.25, -1}, {0.25, 1})) << "the corner reaches 0.283 m";
 }
 
-TEST(Outline, pairs_case_by_case) {
+TEST(Footprint, pairs_case_by_case) {
   const Square square({0, 0, 0, 0});
   EXPECT_TRUE(touches(square.placed, Square({0.3, 0.1, 0, 1}).placed)) << "crossing";
   EXPECT_FALSE(touches(square.placed, Square({0.41, 0, 0, 0}).placed)) << "side by side";
@@ -64,27 +64,27 @@ TEST(Outline, pairs_case_by_case) {
   EXPECT_FALSE(touches(square.placed, Square({0, 0, 0.1, 0}).placed)) << "one on top of the other";
 }
 
-TEST(Outline, the_same_100_km_away) {
+TEST(Footprint, the_same_100_km_away) {
   EXPECT_TRUE(touches_wall(Square({1e5, 1e5, 0, 0}), {1e5 + 0.2 - 1e-9, 1e5 - 1}, {1e5 + 0.2 - 1e-9, 1e5 + 1}));
   EXPECT_FALSE(touches_wall(Square({1e5, 1e5, 0, 0}), {1e5 + 0.2 + 1e-9, 1e5 - 1}, {1e5 + 0.2 + 1e-9, 1e5 + 1}));
 }
 
-TEST(Outline, step_is_a_quarter_of_the_inradius) {
+TEST(Footprint, step_is_a_quarter_of_the_inradius) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
-  EXPECT_DOUBLE_EQ(outline_of(mover).step, 0.05);
+  EXPECT_DOUBLE_EQ(footprint_of(mover).step, 0.05);
   scenes::add_outline(mover.body, scenes::rectangle({0.1, 0}, 0.02, 0.02), 0.1, 0.2);
-  EXPECT_DOUBLE_EQ(outline_of(mover).step, 0.05) << "a small part carried on top does not shorten it";
+  EXPECT_DOUBLE_EQ(footprint_of(mover).step, 0.05) << "a small part carried on top does not shorten it";
   for (world::Segment& s : mover.body) s.a = s.a + glm::dvec2{1, 0}, s.b = s.b + glm::dvec2{1, 0};
-  EXPECT_NEAR(outline_of(mover).step, std::hypot(1.2, 0.2) / 16, 1e-12) << "the origin is outside";
+  EXPECT_NEAR(footprint_of(mover).step, std::hypot(1.2, 0.2) / 16, 1e-12) << "the origin is outside";
 }
 
-TEST(Outline, what_does_not_stop_is_left_out) {
+TEST(Footprint, what_does_not_stop_is_left_out) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
   for (world::Segment& s : mover.body) s.stops_robots = false;
-  EXPECT_TRUE(outline_of(mover).edges.empty());
-  EXPECT_GT(outline_of(mover).step, 0.0);
+  EXPECT_TRUE(footprint_of(mover).edges.empty());
+  EXPECT_GT(footprint_of(mover).step, 0.0);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace sf::robots {
 
 /// Not for several threads while it is built.
-class Neighbours {
+class NeighbourGrid {
  public:
   /// @param reports one per row; their number must not grow between calls if nothing is to be allocated
   /// @param cell [m] > 0, about twice the reach of a query

@@ -1,4 +1,4 @@
-#include "robots/motion.h"
+#include "robots/kinematics.h"
 
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ TEST(Between, unhindered_it_is_on_its_arc) {
     const Pose start{3, -4, 0.25, 2.5};
     const base::Report before = at(5 * kTick, start, {}), after = at(6 * kTick, advance(start, v, 0.1), v);
     for (const std::int64_t part : {kTick / 13, kTick / 2, kTick - 1}) {
-      const base::Report report = between(before, after, 5 * kTick + part);
+      const base::Report report = interpolate(before, after, 5 * kTick + part);
       expect_pose(report.X_WM, advance(start, v, 1e-9 * static_cast<double>(part)));
       EXPECT_EQ(report.time, 5 * kTick + part);
       EXPECT_EQ(report.velocity.turn, v.turn) << "what its gyro reads: more than half a turn in the tick too";
@@ -72,9 +72,9 @@ TEST(Between, unhindered_it_is_on_its_arc) {
 /// Stopped, or put elsewhere: from the one pose to the other by the lesser turn, at a steady pace.
 TEST(Between, hindered_it_is_on_the_arc_between_its_poses) {
   const base::Report before = at(0, {1, 2, 0, 3.0}, {0.5, 0, 0}), after = at(kTick, {0.98, 2.01, 0, -3.0}, {});
-  expect_pose(between(before, after, 0).X_WM, before.X_WM);
-  expect_pose(between(before, after, kTick - 1).X_WM, after.X_WM, 1e-8);
-  const base::Report half = between(before, after, kTick / 2);
+  expect_pose(interpolate(before, after, 0).X_WM, before.X_WM);
+  expect_pose(interpolate(before, after, kTick - 1).X_WM, after.X_WM, 1e-8);
+  const base::Report half = interpolate(before, after, kTick / 2);
   EXPECT_NEAR(std::abs(half.X_WM.yaw), M_PI, 1e-12) << "through straight behind";
   expect_pose(advance(half.X_WM, half.velocity, 0.05), after.X_WM);
   EXPECT_NEAR(half.velocity.turn, (2 * M_PI - 6.0) / 0.1, 1e-9);
@@ -83,7 +83,7 @@ TEST(Between, hindered_it_is_on_the_arc_between_its_poses) {
 /// To the bit, whatever a report says of its speed, and however its yaw is written.
 TEST(Between, who_stands_stands) {
   const base::Report before = at(0, {0.1, 0.2, 0.3, 7.0}, {}), after = at(kTick, before.X_WM, {0.3, 0, 0});
-  const base::Report report = between(before, after, kTick / 3);
+  const base::Report report = interpolate(before, after, kTick / 3);
   EXPECT_EQ(report.X_WM.x, 0.1);
   EXPECT_EQ(report.X_WM.y, 0.2);
   EXPECT_EQ(report.X_WM.yaw, 7.0);
@@ -95,7 +95,7 @@ TEST(Between, touch_is_as_it_was_at_the_tick_before) {
   base::Report before = at(0, {}, {}), after = at(kTick, {0.01, 0, 0, 0}, {});
   before.contact_mask = 5;
   after.contact_mask = 6;
-  EXPECT_EQ(between(before, after, 1).contact_mask, 5u);
+  EXPECT_EQ(interpolate(before, after, 1).contact_mask, 5u);
 }
 
 world::Mover mover(world::Drive drive) {
@@ -108,26 +108,26 @@ world::Mover mover(world::Drive drive) {
 }
 
 TEST(Follow, differential_clamps_and_cannot_slide) {
-  const Twist v = follow(mover(world::Drive::differential), {-3, 0.4, 7});
+  const Twist v = limit_kinematics(mover(world::Drive::differential), {-3, 0.4, 7});
   EXPECT_EQ(v.forward, -0.5);
   EXPECT_EQ(v.left, 0.0);
   EXPECT_EQ(v.turn, 1.0);
 }
 
 TEST(Follow, omni_keeps_its_direction) {
-  const Twist v = follow(mover(world::Drive::omni), {3, -4, -0.5});
+  const Twist v = limit_kinematics(mover(world::Drive::omni), {3, -4, -0.5});
   EXPECT_NEAR(v.forward, 0.3, 1e-15);
   EXPECT_NEAR(v.left, -0.4, 1e-15);
   EXPECT_EQ(v.turn, -0.5);
 }
 
 TEST(Follow, car_turns_no_sharper_than_it_steers) {
-  EXPECT_EQ(follow(mover(world::Drive::car), {0, 0, 1}).turn, 0.0);
-  EXPECT_NEAR(follow(mover(world::Drive::car), {-0.1, 0, 1}).turn, 0.1 * std::tan(kMaxSteer) / 0.25, 1e-15);
+  EXPECT_EQ(limit_kinematics(mover(world::Drive::car), {0, 0, 1}).turn, 0.0);
+  EXPECT_NEAR(limit_kinematics(mover(world::Drive::car), {-0.1, 0, 1}).turn, 0.1 * std::tan(kMaxSteer) / 0.25, 1e-15);
 }
 
 TEST(Follow, a_skid_drive_goes_where_a_differential_one_goes) {
-  const Twist v = follow(mover(world::Drive::skid), {-3, 0.4, 7});
+  const Twist v = limit_kinematics(mover(world::Drive::skid), {-3, 0.4, 7});
   EXPECT_EQ(v.forward, -0.5);
   EXPECT_EQ(v.left, 0.0);
   EXPECT_EQ(v.turn, 1.0);
@@ -141,42 +141,42 @@ world::Mover lazy(world::Drive drive) {
 }
 
 TEST(Approach, without_limits_what_is_wanted_is_had) {
-  const Twist v = approach(mover(world::Drive::differential), {0.1, 0, 0.3}, {0.37, 0, -0.9}, 0.1);
+  const Twist v = limit_acceleration(mover(world::Drive::differential), {0.1, 0, 0.3}, {0.37, 0, -0.9}, 0.1);
   EXPECT_EQ(v.forward, 0.37);
   EXPECT_EQ(v.turn, -0.9);
 }
 
 TEST(Approach, speeds_up_and_slows_down_by_no_more_than_it_may) {
   const world::Mover m = lazy(world::Drive::differential);
-  EXPECT_DOUBLE_EQ(approach(m, {}, {0.5, 0, 1.0}, 0.1).forward, 0.2);
-  EXPECT_DOUBLE_EQ(approach(m, {}, {0.5, 0, 1.0}, 0.1).turn, 0.4);
-  EXPECT_DOUBLE_EQ(approach(m, {0.5, 0, 1.0}, {}, 0.1).forward, 0.3);
-  EXPECT_DOUBLE_EQ(approach(m, {0.5, 0, 1.0}, {}, 0.1).turn, 0.6);
-  EXPECT_DOUBLE_EQ(approach(m, {0.1, 0, 0}, {-0.5, 0, 0}, 0.1).forward, -0.1) << "through standing";
-  EXPECT_EQ(approach(m, {0.5, 0, 0}, {0.31, 0, 0}, 0.1).forward, 0.31) << "within reach: exactly";
-  EXPECT_EQ(approach(m, {0, 0, 0.9}, {0, 0, 0.55}, 0.1).turn, 0.55);
+  EXPECT_DOUBLE_EQ(limit_acceleration(m, {}, {0.5, 0, 1.0}, 0.1).forward, 0.2);
+  EXPECT_DOUBLE_EQ(limit_acceleration(m, {}, {0.5, 0, 1.0}, 0.1).turn, 0.4);
+  EXPECT_DOUBLE_EQ(limit_acceleration(m, {0.5, 0, 1.0}, {}, 0.1).forward, 0.3);
+  EXPECT_DOUBLE_EQ(limit_acceleration(m, {0.5, 0, 1.0}, {}, 0.1).turn, 0.6);
+  EXPECT_DOUBLE_EQ(limit_acceleration(m, {0.1, 0, 0}, {-0.5, 0, 0}, 0.1).forward, -0.1) << "through standing";
+  EXPECT_EQ(limit_acceleration(m, {0.5, 0, 0}, {0.31, 0, 0}, 0.1).forward, 0.31) << "within reach: exactly";
+  EXPECT_EQ(limit_acceleration(m, {0, 0, 0.9}, {0, 0, 0.55}, 0.1).turn, 0.55);
 }
 
 TEST(Approach, an_omni_changes_its_velocity_in_one_direction) {
-  const Twist v = approach(lazy(world::Drive::omni), {0.3, 0, 0}, {0, 0.4, 0}, 0.1);
+  const Twist v = limit_acceleration(lazy(world::Drive::omni), {0.3, 0, 0}, {0, 0.4, 0}, 0.1);
   EXPECT_NEAR(v.forward, 0.3 - 0.2 * 0.6, 1e-15);
   EXPECT_NEAR(v.left, 0.2 * 0.8, 1e-15);
 }
 
 TEST(Approach, a_car_that_stands_does_not_turn) {
-  const Twist v = approach(lazy(world::Drive::car), {0.1, 0, 0.2}, {0, 0, 0}, 0.1);
+  const Twist v = limit_acceleration(lazy(world::Drive::car), {0.1, 0, 0.2}, {0, 0, 0}, 0.1);
   EXPECT_EQ(v.forward, 0.0);
   EXPECT_EQ(v.turn, 0.0) << "its steering allows no turn without speed";
 }
 
 TEST(Approach, reports_that_say_too_much_are_followed_back_at_once) {
-  EXPECT_EQ(approach(lazy(world::Drive::differential), {5.0, 0.3, 0}, {0.5, 0, 0}, 0.1).forward, 0.5);
+  EXPECT_EQ(limit_acceleration(lazy(world::Drive::differential), {5.0, 0.3, 0}, {0.5, 0, 0}, 0.1).forward, 0.5);
 }
 
 TEST(Follow, what_is_not_finite_is_zero) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const auto drive : {world::Drive::differential, world::Drive::omni, world::Drive::car}) {
-    const Twist v = follow(mover(drive), {nan, inf, -inf});
+    const Twist v = limit_kinematics(mover(drive), {nan, inf, -inf});
     EXPECT_EQ(v.forward, 0.0);
     EXPECT_EQ(v.left, 0.0);
     EXPECT_EQ(v.turn, 0.0);

@@ -1,4 +1,4 @@
-#include "robots/motion.h"
+#include "robots/kinematics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ base::Twist twist_between(const base::Pose& from, const base::Pose& to, double s
 
 }  // namespace
 
-base::Twist follow(const world::Mover& mover, const base::Twist& command) {
+base::Twist limit_kinematics(const world::Mover& mover, const base::Twist& command) {
   base::Twist v{finite(command.forward), finite(command.left), finite(command.turn)};
   v.turn = std::clamp(v.turn, -mover.max_turn, mover.max_turn);
   if (mover.drive == world::Drive::omni) {
@@ -49,7 +49,8 @@ base::Twist follow(const world::Mover& mover, const base::Twist& command) {
   return v;
 }
 
-base::Twist approach(const world::Mover& mover, const base::Twist& now, const base::Twist& wanted, double dt) {
+base::Twist limit_acceleration(const world::Mover& mover, const base::Twist& now, const base::Twist& wanted,
+                               double dt) {
   if (mover.max_acceleration == HUGE_VAL && mover.max_turn_acceleration == HUGE_VAL) return wanted;
   base::Twist v = wanted;
   const glm::dvec2 change{wanted.forward - now.forward, wanted.left - now.left};
@@ -61,7 +62,7 @@ base::Twist approach(const world::Mover& mover, const base::Twist& now, const ba
   const double most_turn = mover.max_turn_acceleration * dt;
   if (std::abs(wanted.turn - now.turn) > most_turn)
     v.turn = now.turn + std::copysign(most_turn, wanted.turn - now.turn);
-  return follow(mover, v);
+  return limit_kinematics(mover, v);
 }
 
 base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double dt) {
@@ -72,7 +73,7 @@ base::Pose advance(const base::Pose& X_WM, const base::Twist& velocity, double d
   return {X_WM.x + d.x, X_WM.y + d.y, X_WM.z, base::wrap_angle(X_WM.yaw + velocity.turn * dt)};
 }
 
-base::Report between(const base::Report& before, const base::Report& after, std::int64_t time) {
+base::Report interpolate(const base::Report& before, const base::Report& after, std::int64_t time) {
   const base::Pose &from = before.X_WM, &to = after.X_WM;
   base::Report report = before;
   report.time = time;

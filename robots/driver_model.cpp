@@ -1,4 +1,4 @@
-#include "robots/command_law.h"
+#include "robots/driver_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,26 +8,26 @@ namespace sf::robots {
 
 namespace {
 
-constexpr double kMostSpeed = 500.0;  // [mm/s] of the Open Interface's drive command
-constexpr int kMostRadius = 2000;     // [mm]
+constexpr double kMaxSpeed = 500.0;  // [mm/s] of the Open Interface's drive command
+constexpr int kMaxRadius = 2000;     // [mm]
 
 double finite(double v) { return std::isfinite(v) ? v : 0.0; }
 
 /// [mm/s] whole, within what the robot takes
 double whole_speed(double metres_per_second) {
-  return std::clamp(std::rint(1e3 * metres_per_second), -kMostSpeed, kMostSpeed);
+  return std::clamp(std::rint(1e3 * metres_per_second), -kMaxSpeed, kMaxSpeed);
 }
 
 /// [mm] as Player 3's driver of the Create computes it (create_comms.c, `rad_mm /= 2`); in its integers, the half is
 /// cut towards zero. 0 is no radius of the robot's: the sharpest turn is meant.
 int radius_mm(double speed_mm, double turn) {
   const double asked = std::clamp(std::rint(speed_mm / turn), -1e9, 1e9);
-  const int radius = std::clamp(static_cast<int>(asked) / 2, -kMostRadius, kMostRadius);
+  const int radius = std::clamp(static_cast<int>(asked) / 2, -kMaxRadius, kMaxRadius);
   if (radius != 0) return radius;
   return (speed_mm < 0.0) == (turn < 0.0) ? 1 : -1;
 }
 
-base::Twist obey_create(const world::Mover& mover, double forward, double turn) {
+base::Twist apply_create_driver(const world::Mover& mover, double forward, double turn) {
   if (turn == 0.0) return {1e-3 * whole_speed(forward), 0.0, 0.0};
   const double half_track = 0.5 * mover.track;
   if (forward == 0.0) return {0.0, 0.0, 1e-3 * whole_speed(half_track * turn) / half_track};
@@ -41,9 +41,9 @@ base::Twist obey_create(const world::Mover& mover, double forward, double turn) 
 
 }  // namespace
 
-base::Twist obey(const world::Mover& mover, const base::Twist& command) {
+base::Twist apply_driver(const world::Mover& mover, const base::Twist& command) {
   const base::Twist v{finite(command.forward), finite(command.left), finite(command.turn)};
-  return mover.driver_model == world::DriverModel::player_create ? obey_create(mover, v.forward, v.turn) : v;
+  return mover.driver_model == world::DriverModel::player_create ? apply_create_driver(mover, v.forward, v.turn) : v;
 }
 
 }  // namespace sf::robots

@@ -1,4 +1,4 @@
-#include "robots/outline.h"
+#include "robots/footprint.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,22 +12,22 @@ namespace {
 
 using world::segments_meet;
 
-bool overlap(const Edge& e, double z_min, double z_max) { return e.z_min < z_max && z_min < e.z_max; }
+bool overlap(const FootprintEdge& e, double z_min, double z_max) { return e.z_min < z_max && z_min < e.z_max; }
 
-bool follows(const Edge& e, const Edge& before) {
+bool follows(const FootprintEdge& e, const FootprintEdge& before) {
   return e.a.x == before.b.x && e.a.y == before.b.y && e.z_min == before.z_min && e.z_max == before.z_max;
 }
 
 // Inradius about the origin of one closed outline; 0 when the origin is outside.
-double inradius(std::span<const Edge> loop) {
+double inradius(std::span<const FootprintEdge> loop) {
   if (!inside(loop, {0.0, 0.0}, loop.front().z_min, loop.front().z_max)) return 0.0;
   double nearest = HUGE_VAL;
-  for (const Edge& e : loop) nearest = std::min(nearest, world::distance({0.0, 0.0}, e.a, e.b));
+  for (const FootprintEdge& e : loop) nearest = std::min(nearest, world::distance({0.0, 0.0}, e.a, e.b));
   return nearest;
 }
 
 // The largest inradius among the chains of edges that follow one another.
-double largest_inradius(std::span<const Edge> edges) {
+double largest_inradius(std::span<const FootprintEdge> edges) {
   double largest = 0.0;
   std::size_t first = 0;
   for (std::size_t i = 1; i <= edges.size(); ++i) {
@@ -40,9 +40,9 @@ double largest_inradius(std::span<const Edge> edges) {
 
 // For outlines whose edges do not meet: then a chain of edges is inside as a whole or not at all, and its first corner
 // tells.
-bool any_inside(std::span<const Edge> chains, glm::dvec2 shift, const Placed& outer) {
+bool any_inside(std::span<const FootprintEdge> chains, glm::dvec2 shift, const PlacedFootprint& outer) {
   for (std::size_t i = 0; i < chains.size(); ++i) {
-    const Edge& e = chains[i];
+    const FootprintEdge& e = chains[i];
     if (i > 0 && follows(e, chains[i - 1])) continue;
     const glm::dvec2 p = e.a + shift;
     if (dot(p, p) <= outer.radius * outer.radius && inside(outer.edges, p, e.z_min, e.z_max)) return true;
@@ -52,19 +52,19 @@ bool any_inside(std::span<const Edge> chains, glm::dvec2 shift, const Placed& ou
 
 /// Whether all edges of q lie beyond all of p along one of a few directions: then they share no point. Quick, and says
 /// yes for most pairs that do not touch.
-bool apart(const Placed& p, const Placed& q, glm::dvec2 d) {
+bool apart(const PlacedFootprint& p, const PlacedFootprint& q, glm::dvec2 d) {
   const auto beyond = [&](glm::dvec2 axis) {
     double p_most = -HUGE_VAL, q_least = HUGE_VAL;
-    for (const Edge& e : p.edges) p_most = std::max({p_most, dot(axis, e.a), dot(axis, e.b)});
-    for (const Edge& f : q.edges) q_least = std::min({q_least, dot(axis, f.a), dot(axis, f.b)});
+    for (const FootprintEdge& e : p.edges) p_most = std::max({p_most, dot(axis, e.a), dot(axis, e.b)});
+    for (const FootprintEdge& f : q.edges) q_least = std::min({q_least, dot(axis, f.a), dot(axis, f.b)});
     return dot(axis, d) + q_least - p_most > 1e-9 * (p.radius + q.radius) * (std::abs(axis.x) + std::abs(axis.y));
   };
   if (beyond(d)) return true;
   // Outward of the edges that face the other: on the right of a -> b.
-  const auto normal = [](std::span<const Edge> edges, glm::dvec2 towards) {
+  const auto normal = [](std::span<const FootprintEdge> edges, glm::dvec2 towards) {
     glm::dvec2 best{};
     double most = 0.0;
-    for (const Edge& e : edges) {
+    for (const FootprintEdge& e : edges) {
       const glm::dvec2 n{e.b.y - e.a.y, e.a.x - e.b.x};
       const double facing = dot(n, towards) * std::abs(dot(n, towards)) / dot(n, n);
       if (facing > most) most = facing, best = n;
@@ -77,9 +77,9 @@ bool apart(const Placed& p, const Placed& q, glm::dvec2 d) {
 
 }  // namespace
 
-bool inside(std::span<const Edge> edges, glm::dvec2 p, double z_min, double z_max) {
+bool inside(std::span<const FootprintEdge> edges, glm::dvec2 p, double z_min, double z_max) {
   int winding = 0;
-  for (const Edge& e : edges) {
+  for (const FootprintEdge& e : edges) {
     if (!e.solid || !overlap(e, z_min, z_max)) continue;
     const double side = base::cross(e.b - e.a, p - e.a);
     if (e.a.y <= p.y && e.b.y > p.y && side > 0.0) ++winding;
@@ -88,8 +88,8 @@ bool inside(std::span<const Edge> edges, glm::dvec2 p, double z_min, double z_ma
   return winding != 0;
 }
 
-Outline outline_of(const world::Mover& mover) {
-  Outline outline;
+Footprint footprint_of(const world::Mover& mover) {
+  Footprint outline;
   outline.z_min = HUGE_VAL;
   outline.z_max = -HUGE_VAL;
   for (const world::Segment& s : mover.body) {
@@ -105,34 +105,34 @@ Outline outline_of(const world::Mover& mover) {
   return outline;
 }
 
-Placed place(const Outline& outline, const base::Pose& X_WM, std::span<Edge> memory) {
+PlacedFootprint place_footprint(const Footprint& outline, const base::Pose& X_WM, std::span<FootprintEdge> memory) {
   SF_CHECK(memory.size() >= outline.edges.size(), "room for " + std::to_string(memory.size()) + " edges");
   const double c = std::cos(X_WM.yaw);
   const double s = std::sin(X_WM.yaw);
   const auto turn = [c, s](glm::dvec2 p) { return glm::dvec2{c * p.x - s * p.y, s * p.x + c * p.y}; };
   for (std::size_t i = 0; i < outline.edges.size(); ++i) {
-    const Edge& e = outline.edges[i];
+    const FootprintEdge& e = outline.edges[i];
     memory[i] = {turn(e.a), turn(e.b), e.z_min + X_WM.z, e.z_max + X_WM.z, e.solid};
   }
   return {{X_WM.x, X_WM.y}, outline.radius, memory.first(outline.edges.size())};
 }
 
-bool touches(const Placed& placed, const world::Segment& wall) {
+bool touches(const PlacedFootprint& placed, const world::Segment& wall) {
   const glm::dvec2 a = wall.a - placed.origin;
   const glm::dvec2 b = wall.b - placed.origin;
   if (world::distance({0.0, 0.0}, a, b) > placed.radius * (1.0 + 1e-12)) return false;
-  for (const Edge& e : placed.edges) {
+  for (const FootprintEdge& e : placed.edges) {
     if (overlap(e, wall.z_min, wall.z_max) && segments_meet(a, b, e.a, e.b)) return true;
   }
   return dot(a, a) <= placed.radius * placed.radius && inside(placed.edges, a, wall.z_min, wall.z_max);
 }
 
-bool touches(const Placed& p, const Placed& q) {
+bool touches(const PlacedFootprint& p, const PlacedFootprint& q) {
   const glm::dvec2 d = q.origin - p.origin;
   if (dot(d, d) > (p.radius + q.radius) * (p.radius + q.radius) * (1.0 + 1e-12) || apart(p, q, d)) return false;
-  for (const Edge& e : p.edges) {
+  for (const FootprintEdge& e : p.edges) {
     if (world::distance(d, e.a, e.b) > q.radius * (1.0 + 1e-12)) continue;
-    for (const Edge& f : q.edges) {
+    for (const FootprintEdge& f : q.edges) {
       if (overlap(e, f.z_min, f.z_max) && segments_meet(e.a, e.b, f.a + d, f.b + d)) return true;
     }
   }

@@ -1,11 +1,11 @@
-#include "robots/neighbours.h"
+#include "robots/neighbour_grid.h"
 
 #include <algorithm>
 #include <bit>
 
 namespace sf::robots {
 
-void Neighbours::build(std::span<const base::Report> reports, double cell) {
+void NeighbourGrid::build(std::span<const base::Report> reports, double cell) {
   cell_ = cell;
   starts_.assign(std::bit_ceil(2 * std::max<std::size_t>(reports.size(), 1)) + 1, 0);
   rows_.resize(reports.size());
@@ -27,7 +27,7 @@ void Neighbours::build(std::span<const base::Report> reports, double cell) {
   }
 }
 
-std::size_t Neighbours::bucket(std::int64_t x, std::int64_t y) const {
+std::size_t NeighbourGrid::bucket(std::int64_t x, std::int64_t y) const {
   std::uint64_t h = static_cast<std::uint64_t>(x) * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(y);
   h = (h ^ (h >> 32)) * 0xBF58476D1CE4E5B9u;
   return (h ^ (h >> 29)) & (starts_.size() - 2);

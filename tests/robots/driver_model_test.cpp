@@ -1,0 +1,84 @@
+#include "robots/driver_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/random.h"
+
+namespace sf::robots {
+namespace {
+
+using base::Twist;
+
+world::Mover create() {
+  world::Mover mover;
+  mover.track = 0.258;
+  mover.driver_model = world::DriverModel::player_create;
+  return mover;
+}
+
+void expect_twist(const Twist& actual, const Twist& expected) {
+  EXPECT_DOUBLE_EQ(actual.forward, expected.forward);
+  EXPECT_DOUBLE_EQ(actual.left, expected.left);
+  EXPECT_DOUBLE_EQ(actual.turn, expected.turn);
+}
+
+TEST(Obey, direct_is_the_command_itself) {
+  expect_twist(apply_driver(world::Mover{}, {0.1234, 0.2, -3.3}), {0.1234, 0.2, -3.3});
+}
+
+TEST(Obey, what_is_not_finite_is_zero) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  expect_twist(apply_driver(world::Mover{}, {nan, inf, 1.0}), {0.0, 0.0, 1.0});
+  expect_twist(apply_driver(create(), {nan, inf, -inf}), {0.0, 0.0, 0.0});
+}
+
+// The cases of Player's driver one by one; radii worked out by hand.
+TEST(Obey, a_create_is_told_whole_millimetres) {
+  expect_twist(apply_driver(create(), {0.1234, 0.0, 0.0}), {0.123, 0.0, 0.0});        // 123 mm/s, straight
+  expect_twist(apply_driver(create(), {0.7, 0.0, 0.0}), {0.5, 0.0, 0.0});             // it drives no faster
+  expect_twist(apply_driver(create(), {-0.7, 0.0, 0.0}), {-0.5, 0.0, 0.0});           // nor backwards
+  expect_twist(apply_driver(create(), {0.1, 0.3, 0.0}), {0.1, 0.0, 0.0});             // it cannot slide
+  expect_twist(apply_driver(create(), {0.1, 0.0, 0.1}), {0.1, 0.0, 0.1 / 0.5});       // 1000 mm, halved
+  expect_twist(apply_driver(create(), {0.1, 0.0, -0.1}), {0.1, 0.0, -0.1 / 0.5});     // to the right
+  expect_twist(apply_driver(create(), {-0.1, 0.0, 0.1}), {-0.1, 0.0, 0.1 / 0.5});     // backwards: radius -500
+  expect_twist(apply_driver(create(), {0.1, 0.0, 0.03}), {0.1, 0.0, 0.1 / 1.666});    // 3333 / 2: cut, not rounded
+  expect_twist(apply_driver(create(), {0.1, 0.0, -0.03}), {0.1, 0.0, -0.1 / 1.666});  // towards zero
+  expect_twist(apply_driver(create(), {0.1, 0.0, 0.001}), {0.1, 0.0, 0.1 / 2.0});     // clamped to 2 m
+  expect_twist(apply_driver(create(), {0.1, 0.0, -1e-300}), {0.1, 0.0, -0.1 / 2.0});  // however little is asked
+  expect_twist(apply_driver(create(), {0.1, 0.0, 25.0}), {0.1, 0.0, 0.1 / 0.002});    // 4 mm, halved
+  expect_twist(apply_driver(create(), {0.0001, 0.0, 0.5}), {0.0, 0.0, 0.0});          // rounded to 0 mm/s: stands
+}
+
+TEST(Obey, a_create_spins_where_no_radius_is_left) {
+  expect_twist(apply_driver(create(), {0.1, 0.0, 50.0}),
+               {0.0, 0.0, 0.1 / 0.129});  // 2 mm halved is 1: its word for spinning
+  expect_twist(apply_driver(create(), {0.1, 0.0, 100.0}), {0.0, 0.0, 0.1 / 0.129});  // 1 mm halved is 0: likewise
+  expect_twist(apply_driver(create(), {0.1, 0.0, -100.0}), {0.0, 0.0, -0.1 / 0.129});
+  expect_twist(apply_driver(create(), {-0.1, 0.0, 100.0}), {0.0, 0.0, 0.1 / 0.129});
+}
+
+TEST(Obey, a_create_spins_in_place_by_whole_millimetres_of_its_wheels) {
+  expect_twist(apply_driver(create(), {0.0, 0.0, 1.0}), {0.0, 0.0, 0.129 / 0.129});
+  expect_twist(apply_driver(create(), {0.0, 0.0, -1.001}), {0.0, 0.0, -0.129 / 0.129});
+  expect_twist(apply_driver(create(), {0.0, 0.0, 100.0}), {0.0, 0.0, 0.5 / 0.129});
+  expect_twist(apply_driver(create(), {0.0, 0.0, 0.003}), {0.0, 0.0, 0.0});  // less than half a millimetre a second
+}
+
+TEST(Obey, a_create_turns_about_twice_as_much_as_it_is_told) {
+  for (std::uint32_t k = 0; k < 2000; ++k) {
+    const auto u = base::random_uniform({.seed = 11, .stream = base::RandomStream::slip, .a = k}, 0);
+    const double forward = 0.05 + 0.45 * u[0], turn = (u[1] < 0.5 ? -1.0 : 1.0) * (0.02 + std::abs(u[1] - 0.5));
+    const Twist v = apply_driver(create(), {forward, 0.0, turn});
+    EXPECT_NEAR(v.forward, forward, 5e-4);
+    EXPECT_EQ(v.turn > 0.0, turn > 0.0);
+    EXPECT_GE(std::abs(v.turn), v.forward / 2.0 * (1.0 - 1e-12)) << "2 m is the widest bend it knows";
+    if (std::abs(forward / turn) > 3.9) continue;
+    EXPECT_NEAR(v.turn / turn, 2.0, 0.15);
+  }
+}
+
+}  // namespace
+}  // namespace sf::robots
