@@ -13,9 +13,9 @@
 #include "apps/wording.h"
 #include "base/elapsed.h"
 #include "base/error.h"
-#include "maps/assembler.h"
+#include "maps/map_assembler.h"
+#include "maps/map_text.h"
 #include "maps/merge.h"
-#include "maps/text.h"
 #include "netio/assembler.h"
 #include "netio/ears.h"
 #include "netio/endpoint.h"
@@ -40,7 +40,7 @@ struct Source {
   netio::OneFarm farm;
   std::uint64_t farms = 0;  ///< changes of it so far
   netio::Leaps sequences{netio::Assembler::kMostAhead};
-  maps::Assembler assembler;
+  maps::MapAssembler assembler;
   std::uint16_t robot = 0;
   std::uint64_t used = 0;      ///< datagrams
   std::uint64_t left_out = 0;  ///< late, twice, too far ahead, faulty, or of something else
@@ -63,24 +63,24 @@ std::string name_of(const Source& source, sensors::Wire wire) {
 }
 
 /// The datagram `bytes` that came from `from` at `now` [ns].
-maps::Taken take(Source& source, sensors::Wire wire, std::span<const std::uint8_t> bytes, const netio::Endpoint& from,
-                 std::int64_t now) {
-  if (!source.farm.may(from)) return maps::Taken::faulty;
+maps::PartStatus take(Source& source, sensors::Wire wire, std::span<const std::uint8_t> bytes,
+                      const netio::Endpoint& from, std::int64_t now) {
+  if (!source.farm.may(from)) return maps::PartStatus::faulty;
   if (wire == sensors::Wire::thesis) {
     maps::PlainPart part;
     const bool sound = maps::read_plain(bytes, part) == maps::PartFault::none;
-    return sound && source.farm.admit(from, 0, now) ? source.assembler.take_plain(bytes) : maps::Taken::faulty;
+    return sound && source.farm.admit(from, 0, now) ? source.assembler.add_plain_part(bytes) : maps::PartStatus::faulty;
   }
   netio::Packet packet;
-  if (netio::decode(bytes, packet) != netio::Reason::accepted) return maps::Taken::faulty;
+  if (netio::decode(bytes, packet) != netio::Reason::accepted) return maps::PartStatus::faulty;
   const auto* reading = std::get_if<netio::Reading>(&packet.body);
   if (reading == nullptr || static_cast<std::uint8_t>(packet.header.type) != sensors::kOccupancy)
-    return maps::Taken::faulty;
+    return maps::PartStatus::faulty;
   maps::MapPart part;
-  if (maps::read_part(reading->payload, part) != maps::PartFault::none) return maps::Taken::faulty;
-  if (!follow(source, from, packet.header, now)) return maps::Taken::faulty;
+  if (maps::read_part(reading->payload, part) != maps::PartFault::none) return maps::PartStatus::faulty;
+  if (!follow(source, from, packet.header, now)) return maps::PartStatus::faulty;
   source.robot = packet.header.robot;
-  return source.assembler.take(packet.header.sequence, reading->payload);
+  return source.assembler.add_part(packet.header.sequence, reading->payload);
 }
 
 /// One per port, in their order. @throws base::InputError for one that is given twice.
@@ -116,7 +116,7 @@ class Display {
   void tell() const;
 
  private:
-  std::vector<maps::Grid> pictures() const;
+  std::vector<maps::OccupancyGrid> pictures() const;
 
   const Options& options_;
   netio::Ears ears_;
@@ -129,17 +129,17 @@ bool Display::drain() {
   const std::int64_t now = (Clock::now() - Clock::time_point{}).count();
   const auto hear = [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& from) {
     Source& source = sources_[i];
-    const maps::Taken taken = take(source, options_.wire, bytes, from, now);
-    const bool used = taken == maps::Taken::part || taken == maps::Taken::whole;
+    const maps::PartStatus taken = take(source, options_.wire, bytes, from, now);
+    const bool used = taken == maps::PartStatus::part || taken == maps::PartStatus::whole;
     ++(used ? source.used : source.left_out);
-    changed_ = changed_ || taken == maps::Taken::whole;
+    changed_ = changed_ || taken == maps::PartStatus::whole;
   };
   return ears_.drain(kPatience, hear) > 0;
 }
 
 bool Display::all_whole() const {
   for (const Source& source : sources_)
-    if (source.assembler.whole_maps() == 0) return false;
+    if (source.assembler.complete_maps() == 0) return false;
   return true;
 }
 
@@ -150,16 +150,16 @@ bool Display::any() const {
 }
 
 /// One map per port that has one, or all of them as one where they go together: what strangers send must not end this.
-std::vector<maps::Grid> Display::pictures() const {
-  std::vector<const maps::Grid*> grids;
+std::vector<maps::OccupancyGrid> Display::pictures() const {
+  std::vector<const maps::OccupancyGrid*> grids;
   for (const Source& source : sources_)
     if (source.assembler.map() != nullptr) grids.push_back(source.assembler.map());
-  std::vector<maps::Grid> out;
-  const bool merged = options_.merge && grids.size() > 1 && maps::refuse_merge(grids).empty();
+  std::vector<maps::OccupancyGrid> out;
+  const bool merged = options_.merge && grids.size() > 1 && maps::merge_problem(grids).empty();
   if (merged)
     out.push_back(maps::merge(grids));
   else
-    for (const maps::Grid* grid : grids) out.push_back(*grid);
+    for (const maps::OccupancyGrid* grid : grids) out.push_back(*grid);
   return out;
 }
 
@@ -168,21 +168,21 @@ void Display::redraw() {
   changed_ = false;
   winsize size{};
   if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) size = {24, 80, 0, 0};
-  const std::vector<maps::Grid> all = pictures();
+  const std::vector<maps::OccupancyGrid> all = pictures();
   const int down = std::max(1, (size.ws_row - 1) / static_cast<int>(all.size()));
   std::string text = "\x1b[H\x1b[2J";  // home, and nothing left of the last one
-  for (const maps::Grid& grid : all) text += maps::text_within(grid, size.ws_col, down);
+  for (const maps::OccupancyGrid& grid : all) text += maps::text_within(grid, size.ws_col, down);
   std::fputs(text.c_str(), stdout);
   std::fflush(stdout);
 }
 
 void Display::print() const {
   if (on_terminal_) return;
-  for (const maps::Grid& grid : pictures()) std::fputs(maps::text_of(grid).c_str(), stdout);
+  for (const maps::OccupancyGrid& grid : pictures()) std::fputs(maps::text_of(grid).c_str(), stdout);
 }
 
 void Display::save(const std::string& file) const {
-  const std::vector<maps::Grid> all = pictures();
+  const std::vector<maps::OccupancyGrid> all = pictures();
   viz::MapFigure figure{options_.merge && sources_.size() > 1 ? "Merged occupancy map" : "Occupancy map", "", {}};
   if (all.size() == 1) {
     for (const Source& source : sources_)
@@ -204,8 +204,8 @@ void Display::save(const std::string& file) const {
 void Display::tell() const {
   for (const Source& source : sources_)
     std::fprintf(stderr, "sensorfarm: port %u: %llu whole maps, %llu torn, %llu datagrams used and %llu left out%s\n",
-                 unsigned{source.port}, static_cast<unsigned long long>(source.assembler.whole_maps()),
-                 static_cast<unsigned long long>(source.assembler.torn_maps()),
+                 unsigned{source.port}, static_cast<unsigned long long>(source.assembler.complete_maps()),
+                 static_cast<unsigned long long>(source.assembler.incomplete_maps()),
                  static_cast<unsigned long long>(source.used), static_cast<unsigned long long>(source.left_out),
                  source.assembler.map() != nullptr && source.assembler.true_poses() ? ", made from true poses" : "");
   if (const std::uint64_t drops = ears_.kernel_drops(); drops > 0)

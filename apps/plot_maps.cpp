@@ -16,7 +16,7 @@ namespace {
 struct LastMap {
   std::string name;  ///< its robot's; with the sensor's number where that is not 0
   viz::MapPlace place;
-  maps::Grid grid;
+  maps::OccupancyGrid grid;
 };
 
 const record::ReadingSample* last_of(const record::Recording& recording, const sensors::SensorRow& row) {
@@ -35,7 +35,7 @@ std::vector<LastMap> last_maps(const record::Recording& recording, const world::
     const std::string& robot = world.movers[map.row.mover].name;
     LastMap found{map.row.sensor == 0 ? robot : fmt::format("{}_{}", robot, map.row.sensor),
                   {robot, world.movers[map.row.mover].X_WM},
-                  maps::Grid(map.plan.grid)};
+                  maps::OccupancyGrid(map.plan.grid)};
     std::transform(last->values.begin(), last->values.end(), found.grid.words.begin(),
                    [](double word) { return static_cast<std::uint32_t>(word); });
     const auto& states = recording.states[map.row.mover];
@@ -51,18 +51,18 @@ std::vector<std::string> draw_maps(const record::Recording& recording, const wor
                                    const std::string& folder) {
   const std::vector<LastMap> all = last_maps(recording, world);
   std::vector<std::string> files;
-  const auto draw = [&](const maps::Grid& grid, const viz::MapFigure& figure, const std::string& file) {
+  const auto draw = [&](const maps::OccupancyGrid& grid, const viz::MapFigure& figure, const std::string& file) {
     files.push_back(folder + "/" + file);
     viz::draw_map(grid, figure, files.back());
   };
   if (all.empty()) return files;
-  std::vector<const maps::Grid*> grids;
+  std::vector<const maps::OccupancyGrid*> grids;
   viz::MapFigure figure{all.size() > 1 ? "Merged occupancy map" : "Occupancy map", recording.info.world, {}};
   for (const LastMap& map : all) {
     grids.push_back(&map.grid);
     figure.places.push_back(map.place);
   }
-  if (maps::refuse_merge(grids).empty()) {
+  if (maps::merge_problem(grids).empty()) {
     if (all.size() > 1) figure.subtitle += fmt::format(", {} maps", all.size());
     draw(maps::merge(grids), figure, "map.png");
     return files;

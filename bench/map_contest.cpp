@@ -11,7 +11,7 @@
 #include "bench/farm_rounds.h"
 #include "bench/report.h"
 #include "bench/scans.h"
-#include "maps/plain_mapper.h"
+#include "maps/grid_update.h"
 #include "sensors/occupancy_host.h"
 #include "tests/sensors/scenes.h"
 
@@ -49,7 +49,7 @@ std::vector<sensors::MapPlan> plans_of(const Scans& scans, bool weighs) {
   for (const base::Pose& X : scans.rounds[0]) {
     sensors::MapPlan plan;
     plan.grid = {X.x - half, X.y + half, kCell, words, words};
-    if (weighs) plan.odds = maps::OddsRule{};
+    if (weighs) plan.odds = maps::LogOddsUpdate{};
     plan.fov = scans.laser.fov;
     plan.samples = scans.laser.samples;
     plan.range_max = scans.laser.range_max;
@@ -69,7 +69,7 @@ class Mapper {
 class FarmMapper : public Mapper {
  public:
   FarmMapper(gpu::Device& device, const std::vector<sensors::MapPlan>& plans)
-      : batch_(device, thread_pool_, plans, device.info().software ? sensors::kFarScan : maps::kFarthestRange) {
+      : batch_(device, thread_pool_, plans, device.info().software ? sensors::kFarScan : maps::kMaxRangeCells) {
     for (std::uint32_t i = 0; i < plans.size(); ++i) wanted_.push_back(i);
   }
   std::string name() const override { return "farm"; }
@@ -96,35 +96,35 @@ class PlainMapper : public Mapper {
   PlainMapper(const std::vector<sensors::MapPlan>& plans, bool weighs) : plans_(plans), weighs_(weighs) {
     for (const sensors::MapPlan& plan : plans) {
       grids_.emplace_back(plan.grid);
-      odds_.emplace_back(plan.grid, maps::OddsRule{});
+      odds_.emplace_back(plan.grid, maps::LogOddsUpdate{});
     }
     beams_ = maps::beam_directions(plans[0].fov, plans[0].samples);
     ends_.resize(thread_pool_.threads(), std::vector<std::uint32_t>(beams_.size()));
-    covered_.resize(thread_pool_.threads(), maps::Grid(plans[0].grid));  // of one size with all
+    covered_.resize(thread_pool_.threads(), maps::OccupancyGrid(plans[0].grid));  // of one size with all
   }
   std::string name() const override { return "plain C++ mapper, -O3"; }
   void update(const Round& round) override {
     thread_pool_.parallel_for(plans_.size(), 4, [&](std::size_t first, std::size_t last, unsigned thread) {
       for (std::size_t i = first; i < last; ++i) {
         const maps::ScanView view{round.X_WS[i], round.ranges[i], beams_, plans_[i].range_min, plans_[i].range_max};
-        const maps::ScanEnds scan = maps::trace_ends(plans_[i].grid, view, ends_[thread]);
-        if (weighs_) maps::add_ends(odds_[i], scan, ends_[thread], covered_[thread]);
-        if (!weighs_) maps::add_ends(grids_[i], scan, ends_[thread]);
+        const maps::TracedScan scan = maps::trace_scan(plans_[i].grid, view, ends_[thread]);
+        if (weighs_) maps::add_traced_scan(odds_[i], scan, ends_[thread], covered_[thread]);
+        if (!weighs_) maps::add_traced_scan(grids_[i], scan, ends_[thread]);
       }
     });
   }
   std::vector<std::uint32_t> words(std::uint32_t map) const override {
-    return weighs_ ? maps::states_of(odds_[map]).words : grids_[map].words;
+    return weighs_ ? maps::to_occupancy(odds_[map]).words : grids_[map].words;
   }
 
  private:
   base::ThreadPool thread_pool_;
   const std::vector<sensors::MapPlan>& plans_;
   bool weighs_;
-  std::vector<maps::Grid> grids_;
-  std::vector<maps::OddsGrid> odds_;
+  std::vector<maps::OccupancyGrid> grids_;
+  std::vector<maps::LogOddsGrid> odds_;
   std::vector<glm::dvec2> beams_;
-  std::vector<maps::Grid> covered_;
+  std::vector<maps::OccupancyGrid> covered_;
   std::vector<std::vector<std::uint32_t>> ends_;  ///< per thread
 };
 

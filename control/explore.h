@@ -21,7 +21,7 @@
 namespace sf::control {
 
 struct ExploreSettings {
-  maps::GridPlan plan;
+  maps::GridGeometry plan;
   Body body;
   Eye eye;
   std::vector<glm::dvec2> beams;  ///< of the laser, in its frame
@@ -38,7 +38,7 @@ struct ExploreSettings {
 
 /// A map of cells of 3 cm around all walls, at least the thesis' 30 x 30 words, the world's middle in its own.
 /// @throws base::InputError for an area that is too large
-maps::GridPlan plan_around(const world::World& world, double cell = 0.03);
+maps::GridGeometry plan_around(const world::World& world, double cell = 0.03);
 
 class Explore final : public Controller {
  public:
@@ -47,7 +47,7 @@ class Explore final : public Controller {
   base::Twist step(const Input& input) override;
   bool done() const override { return stage_ == kStages; }
 
-  const maps::Grid& grid() const { return terrain_.grid(); }
+  const maps::OccupancyGrid& grid() const { return terrain_.grid(); }
   int stage() const { return stage_; }  ///< in [0, kStages]
   static constexpr int kStages = 5;
 

@@ -15,9 +15,9 @@ constexpr double kMostNodes = 2e6;  // of the lattice: 128 MB for ways
 
 }  // namespace
 
-maps::GridPlan plan_around(const world::World& world, double cell) {
+maps::GridGeometry plan_around(const world::World& world, double cell) {
   world::Extent extent = world.extent;
-  maps::GridPlan plan{.cell = cell};
+  maps::GridGeometry plan{.cell = cell};
   const auto words = [&](double length) { return std::max(30.0, std::ceil(length / (4.0 * cell) + 2.0)); };
   const double wide = words(extent.x_max - extent.x_min), high = words(extent.y_max - extent.y_min);
   if (!(wide * high * 144.0 <= kMostNodes))
@@ -34,11 +34,11 @@ maps::GridPlan plan_around(const world::World& world, double cell) {
 
 namespace {
 
-maps::GridPlan read_plan(const Site& site, Settings& settings) {
+maps::GridGeometry read_plan(const Site& site, Settings& settings) {
   const double cell = settings.number("cell", 0.03, 0.005, 1.0);
   const bool given = settings.has("map_width") || settings.has("map_height");
   if (!given) return plan_around(site.world, cell);
-  maps::GridPlan plan{.cell = cell};
+  maps::GridGeometry plan{.cell = cell};
   plan.left = settings.number("map_left", 0.0, -1e6, 1e6);
   plan.top = settings.number("map_top", 0.0, -1e6, 1e6);
   const double wide = std::ceil(settings.number("map_width", 3.6, cell, 1e3) / (4.0 * cell) - 1e-9);

@@ -34,7 +34,7 @@ Lookout::Lookout(const Terrain& terrain, const Eye& eye)
 std::int64_t Lookout::key(CellAt cell) const { return cell.row * maps::columns(terrain_.grid().plan) + cell.column; }
 
 bool Lookout::wanted(CellAt cell, bool all) const {
-  const maps::Grid& grid = terrain_.grid();
+  const maps::OccupancyGrid& grid = terrain_.grid();
   if (grid.at(cell) != Cell::unexplored) return false;
   if (!all) {
     bool beside = false;
@@ -98,7 +98,7 @@ std::size_t Lookout::look(bool all, double range, int graze) {
   graze_ = graze;
   std::fill(headings_.begin(), headings_.end(), std::uint16_t{0});
   cells_.clear();
-  const maps::GridPlan& plan = terrain_.grid().plan;
+  const maps::GridGeometry& plan = terrain_.grid().plan;
   for (std::int64_t row = 0; row < maps::rows(plan); ++row) {
     for (std::int64_t column = 0; column < maps::columns(plan); ++column) {
       if (!wanted({column, row}, all)) continue;

@@ -13,7 +13,7 @@ constexpr double kJoined = 0.03;  // [m] neighbouring beams that end this near m
 
 }  // namespace
 
-Terrain::Terrain(const maps::GridPlan& plan, double radius, double reach)
+Terrain::Terrain(const maps::GridGeometry& plan, double radius, double reach)
     : grid_(plan),
       radius_(radius),
       cell_(plan.cell / kFiner),

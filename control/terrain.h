@@ -1,5 +1,5 @@
 #pragma once
-// What an explorer knows of its surroundings: the map (maps/plain_mapper.h's rule), every surface point its laser met,
+// What an explorer knows of its surroundings: the map (maps/grid_update.h's rule), every surface point its laser met,
 // and, on a lattice three times as fine as the map, how near the next surface is and whether unexplored ground is under
 // a body that stands there.
 //
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "maps/grid.h"
-#include "maps/plain_mapper.h"
+#include "maps/grid_update.h"
 
 namespace sf::control {
 
@@ -20,7 +20,7 @@ using Node = std::int32_t;
 class Terrain {
  public:
   /// @param radius [m] of the body @param reach [m] >= radius, of anything on it: it stays this far within the map
-  Terrain(const maps::GridPlan& plan, double radius, double reach);
+  Terrain(const maps::GridGeometry& plan, double radius, double reach);
 
   /// Ground that no laser has to look at first, since the robot stands there.
   void stand(glm::dvec2 p, double radius);
@@ -29,7 +29,7 @@ class Terrain {
   /// Something was met at `p`.
   bool add_point(glm::dvec2 p);
 
-  const maps::Grid& grid() const { return grid_; }
+  const maps::OccupancyGrid& grid() const { return grid_; }
   Node columns() const { return columns_; }
   Node nodes() const { return static_cast<Node>(solid_.size()); }
   double cell() const { return cell_; }  ///< [m] of the lattice
@@ -56,7 +56,7 @@ class Terrain {
   template <typename Visit>
   void around(glm::dvec2 p, double radius, Visit visit);
 
-  maps::Grid grid_;
+  maps::OccupancyGrid grid_;
   double radius_;
   double cell_;
   Node columns_, rows_;

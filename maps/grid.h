@@ -20,38 +20,38 @@
 
 namespace sf::maps {
 
-inline constexpr std::uint32_t kMostWordColumns = 4096;  ///< and rows
-inline constexpr std::uint32_t kMostWords = 1u << 20;    ///< of one map: 4 MiB, 4096 x 4096 cells
+inline constexpr std::uint32_t kMaxWordColumns = 4096;  ///< and rows
+inline constexpr std::uint32_t kMaxWords = 1u << 20;    ///< of one map: 4 MiB, 4096 x 4096 cells
 
 /// Two bits hold one more state, which no map has.
 enum class Cell : std::uint8_t { unexplored = SF_CELL_UNEXPLORED, occupied = SF_CELL_OCCUPIED, free = SF_CELL_FREE };
 
 /// Where a map lies and how large it is.
 /// The thesis' offset (O_x, O_y) (equations 9 and 10) is left = -O_x, top = -O_y.
-struct GridPlan {
+struct GridGeometry {
   double left = 0.0;                ///< [m] x of the first column's left side
   double top = 0.0;                 ///< [m] y of the first row's upper side
   double cell = 0.03;               ///< [m] > 0
-  std::uint32_t word_columns = 30;  ///< in [1, kMostWordColumns]: 4 cells each
-  std::uint32_t word_rows = 30;     ///< likewise; word_columns * word_rows <= kMostWords
-  bool operator==(const GridPlan&) const = default;
+  std::uint32_t word_columns = 30;  ///< in [1, kMaxWordColumns]: 4 cells each
+  std::uint32_t word_rows = 30;     ///< likewise; word_columns * word_rows <= kMaxWords
+  bool operator==(const GridGeometry&) const = default;
 };
 
-inline std::int64_t columns(const GridPlan& plan) { return 4 * std::int64_t{plan.word_columns}; }
-inline std::int64_t rows(const GridPlan& plan) { return 4 * std::int64_t{plan.word_rows}; }
-inline std::uint32_t words(const GridPlan& plan) { return plan.word_columns * plan.word_rows; }
+inline std::int64_t columns(const GridGeometry& plan) { return 4 * std::int64_t{plan.word_columns}; }
+inline std::int64_t rows(const GridGeometry& plan) { return 4 * std::int64_t{plan.word_rows}; }
+inline std::uint32_t words(const GridGeometry& plan) { return plan.word_columns * plan.word_rows; }
 
 /// Finite, and within the limits above and those of packets: nothing that is worked out from it can overflow.
-inline bool is_sound(const GridPlan& plan) {
+inline bool is_valid(const GridGeometry& plan) {
   constexpr double kFarthest = 1e7;  // [m]
   const bool placed = std::abs(plan.left) <= kFarthest && std::abs(plan.top) <= kFarthest;
-  const bool sized = plan.word_columns >= 1 && plan.word_columns <= kMostWordColumns && plan.word_rows >= 1 &&
-                     plan.word_rows <= kMostWordColumns && plan.word_columns <= kMostWords / plan.word_rows;
+  const bool sized = plan.word_columns >= 1 && plan.word_columns <= kMaxWordColumns && plan.word_rows >= 1 &&
+                     plan.word_rows <= kMaxWordColumns && plan.word_columns <= kMaxWords / plan.word_rows;
   return placed && sized && plan.cell >= 1e-4 && plan.cell <= 1e3;
 }
 
 /// True when every cell is in one of the three states.
-inline bool is_sound(std::uint32_t word) { return (word & (word >> 1) & 0x55555555u) == 0; }
+inline bool is_valid(std::uint32_t word) { return (word & (word >> 1) & 0x55555555u) == 0; }
 
 /// A cell by its place, within the map or not.
 struct CellAt {
@@ -68,26 +68,26 @@ inline std::int64_t whole_below(double value) {
 
 /// The cell that holds `p` (within 1e15 cells), by one rule for everyone: floor((x - left) / cell), floor((top - y) /
 /// cell), in double.
-inline CellAt cell_at(const GridPlan& plan, glm::dvec2 p) {
+inline CellAt cell_at(const GridGeometry& plan, glm::dvec2 p) {
   return {whole_below((p.x - plan.left) / plan.cell), whole_below((plan.top - p.y) / plan.cell)};
 }
 
-inline bool contains(const GridPlan& plan, CellAt at) {
+inline bool contains(const GridGeometry& plan, CellAt at) {
   return at.column >= 0 && at.row >= 0 && at.column < columns(plan) && at.row < rows(plan);
 }
 
 /// [m] the middle of a cell.
-inline glm::dvec2 middle(const GridPlan& plan, CellAt at) {
+inline glm::dvec2 middle(const GridGeometry& plan, CellAt at) {
   return {plan.left + (static_cast<double>(at.column) + 0.5) * plan.cell,
           plan.top - (static_cast<double>(at.row) + 0.5) * plan.cell};
 }
 
 /// One map.
-struct Grid {
-  GridPlan plan;
+struct OccupancyGrid {
+  GridGeometry plan;
   std::vector<std::uint32_t> words;  ///< word_columns * word_rows
 
-  explicit Grid(const GridPlan& p = {}) : plan(p), words(std::size_t{p.word_columns} * p.word_rows) {}
+  explicit OccupancyGrid(const GridGeometry& p = {}) : plan(p), words(std::size_t{p.word_columns} * p.word_rows) {}
 
   std::size_t word_of(CellAt at) const {
     return static_cast<std::size_t>(at.row / 4) * plan.word_columns + static_cast<std::size_t>(at.column / 4);

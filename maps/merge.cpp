@@ -10,7 +10,7 @@ namespace sf::maps {
 namespace {
 
 /// [cells] of `other`'s corner from that of `plan`.
-CellAt corner_in(const GridPlan& plan, const GridPlan& other) {
+CellAt corner_in(const GridGeometry& plan, const GridGeometry& other) {
   return {static_cast<std::int64_t>(std::llround((other.left - plan.left) / plan.cell)),
           static_cast<std::int64_t>(std::llround((plan.top - other.top) / plan.cell))};
 }
@@ -22,9 +22,9 @@ struct WordBox {
   std::int64_t left = 0, top = 0, right = 0, bottom = 0;
 };
 
-WordBox box_of(std::span<const Grid* const> grids) {
+WordBox box_of(std::span<const OccupancyGrid* const> grids) {
   WordBox box;
-  for (const Grid* grid : grids) {
+  for (const OccupancyGrid* grid : grids) {
     const CellAt corner = corner_in(grids[0]->plan, grid->plan);
     box.left = std::min(box.left, words_below(corner.column));
     box.top = std::min(box.top, words_below(corner.row));
@@ -34,35 +34,35 @@ WordBox box_of(std::span<const Grid* const> grids) {
   return box;
 }
 
-Cell both(Cell old, Cell more, Precedence precedence) {
+Cell both(Cell old, Cell more, MergePolicy precedence) {
   if (more == Cell::unexplored) return old;
-  return precedence == Precedence::occupied && old == Cell::occupied ? old : more;
+  return precedence == MergePolicy::occupied && old == Cell::occupied ? old : more;
 }
 
 }  // namespace
 
-std::string refuse_merge(std::span<const Grid* const> grids) {
-  for (const Grid* grid : grids)
+std::string merge_problem(std::span<const OccupancyGrid* const> grids) {
+  for (const OccupancyGrid* grid : grids)
     if (grid->plan.cell != grids[0]->plan.cell)
       return "maps with cells of " + std::to_string(grids[0]->plan.cell) + " m and of " +
              std::to_string(grid->plan.cell) + " m cannot be merged; give them the same `cell`";
   const WordBox box = box_of(grids);
   const std::int64_t across = box.right - box.left;
   const std::int64_t down = box.bottom - box.top;
-  if (across <= kMostWordColumns && down <= kMostWordColumns && across * down <= kMostWords) return "";
+  if (across <= kMaxWordColumns && down <= kMaxWordColumns && across * down <= kMaxWords) return "";
   return "maps that lie so far apart cannot be merged: one of " + std::to_string(4 * across) + " x " +
          std::to_string(4 * down) + " cells would hold them all; merge those that are neighbours";
 }
 
-Grid merge(std::span<const Grid* const> grids, Precedence precedence) {
-  SF_CHECK(!grids.empty() && refuse_merge(grids).empty(), "maps that cannot be merged");
+OccupancyGrid merge(std::span<const OccupancyGrid* const> grids, MergePolicy precedence) {
+  SF_CHECK(!grids.empty() && merge_problem(grids).empty(), "maps that cannot be merged");
   const WordBox box = box_of(grids);
-  const GridPlan& first = grids[0]->plan;
+  const GridGeometry& first = grids[0]->plan;
   const double word = 4.0 * first.cell;
-  Grid merged({first.left + word * static_cast<double>(box.left), first.top - word * static_cast<double>(box.top),
-               first.cell, static_cast<std::uint32_t>(box.right - box.left),
-               static_cast<std::uint32_t>(box.bottom - box.top)});
-  for (const Grid* grid : grids) {
+  OccupancyGrid merged(
+      {first.left + word * static_cast<double>(box.left), first.top - word * static_cast<double>(box.top), first.cell,
+       static_cast<std::uint32_t>(box.right - box.left), static_cast<std::uint32_t>(box.bottom - box.top)});
+  for (const OccupancyGrid* grid : grids) {
     const CellAt corner = corner_in(first, grid->plan);
     const CellAt shift{corner.column - 4 * box.left, corner.row - 4 * box.top};
     for (std::int64_t row = 0; row < rows(grid->plan); ++row)

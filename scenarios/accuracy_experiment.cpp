@@ -51,8 +51,8 @@ const sensors::SensorKind& kind_called(std::string_view name) {
 }
 
 void add_map(Reference& reference, const Trial& trial, double share, Outcome& outcome) {
-  const maps::Grid& map = trial.maps.front();
-  const maps::Grid& seeable = reference.of(trial.mapped.front(), map.plan);
+  const maps::OccupancyGrid& map = trial.maps.front();
+  const maps::OccupancyGrid& seeable = reference.of(trial.mapped.front(), map.plan);
   outcome.missed += share * (1.0 - seen_of(map, seeable).coverage());
   outcome.wrong += share * disagreement(map, seeable);
 }

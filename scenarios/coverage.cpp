@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "control/explore.h"
-#include "maps/plain_mapper.h"
+#include "maps/grid_update.h"
 #include "world/wall_grid.h"
 
 namespace sf::scenarios {
@@ -23,7 +23,7 @@ constexpr int kHeadings = 16;
 constexpr std::uint32_t kBeams = 361;
 
 /// The explorer's own grid where there can be one: cells of another would be others than those it looks for.
-maps::GridPlan plan_over(const world::World& world, double cell) {
+maps::GridGeometry plan_over(const world::World& world, double cell) {
   try {
     return control::plan_around(world, cell);
   } catch (const base::InputError&) {
@@ -44,7 +44,7 @@ std::vector<world::Segment> walls_where(const world::World& world, bool (*take)(
 }
 
 /// Cells whose middles the robot's origin can come to: clear of walls by its radius, connected to its start.
-std::vector<CellAt> reachable(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan) {
+std::vector<CellAt> reachable(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan) {
   const world::Mover& robot = world.movers[mover];
   double top = 0.0;
   for (const world::Segment& side : robot.body) top = std::max(top, side.z_max);
@@ -57,7 +57,7 @@ std::vector<CellAt> reachable(const world::World& world, std::uint32_t mover, co
     return !walls.any(world::box_around(p, robot.radius),
                       [&](const world::Segment& w) { return world::distance(p, w.a, w.b) < robot.radius; });
   };
-  maps::Grid seen(plan);
+  maps::OccupancyGrid seen(plan);
   std::vector<CellAt> found{maps::cell_at(plan, {robot.X_WM.x, robot.X_WM.y})};
   if (!maps::contains(plan, found[0])) return {};
   seen.set(found[0], Cell::free);
@@ -92,7 +92,7 @@ struct Stand {
   std::vector<world::Segment> near;
 };
 
-std::vector<Stand> stands_of(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan) {
+std::vector<Stand> stands_of(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan) {
   const world::Mover& robot = world.movers[mover];
   const world::Laser& laser = robot.lasers[0];
   const double z = robot.X_WM.z + laser.X_MS.z;
@@ -115,10 +115,10 @@ std::vector<Stand> stands_of(const world::World& world, std::uint32_t mover, con
   return stands;
 }
 
-maps::Grid scans_from(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan,
-                      const std::vector<Stand>& stands) {
+maps::OccupancyGrid scans_from(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan,
+                               const std::vector<Stand>& stands) {
   const world::Laser& laser = world.movers[mover].lasers[0];
-  maps::Grid grid(plan);
+  maps::OccupancyGrid grid(plan);
   std::vector<double> ranges(kBeams);
   const std::vector<glm::dvec2> beams = maps::beam_directions(laser.fov, kBeams);
   for (const Stand& stand : stands)
@@ -141,7 +141,8 @@ bool sees(const Stand& stand, const Pose& X_WS, const world::Laser& laser, glm::
 }
 
 /// Free cells whose middle is in view from nowhere: a line's rounding to cells went past a corner.
-void forget_hidden(const world::World& world, std::uint32_t mover, const std::vector<Stand>& stands, maps::Grid& grid) {
+void forget_hidden(const world::World& world, std::uint32_t mover, const std::vector<Stand>& stands,
+                   maps::OccupancyGrid& grid) {
   const world::Laser& laser = world.movers[mover].lasers[0];
   const double reach = laser.range_max + std::hypot(laser.X_MS.x, laser.X_MS.y);
   std::vector<CellAt> open;
@@ -180,21 +181,21 @@ void enter(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t,
     if (const auto at = maps.find(reading.mover); at != maps.end()) at->second.add(reading);
 }
 
-maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan) {
+maps::OccupancyGrid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan) {
   SF_CHECK(!world.movers[mover].lasers.empty(), "nothing is seen without a laser: " + world.movers[mover].name);
   const std::vector<Stand> stands = stands_of(world, mover, plan);
-  maps::Grid grid = scans_from(world, mover, plan, stands);
+  maps::OccupancyGrid grid = scans_from(world, mover, plan, stands);
   forget_hidden(world, mover, stands, grid);
   return grid;
 }
 
-const maps::Grid& Reference::of(std::uint32_t mover, const maps::GridPlan& plan) {
+const maps::OccupancyGrid& Reference::of(std::uint32_t mover, const maps::GridGeometry& plan) {
   if (!grid_ || mover_ != mover || !(grid_->plan == plan)) grid_ = what_could_be_seen(world_, mover, plan);
   mover_ = mover;
   return *grid_;
 }
 
-Seen seen_of(const maps::Grid& map, const maps::Grid& reference) {
+Seen seen_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference) {
   SF_CHECK(map.plan == reference.plan, "maps of two plans cannot be compared");
   Seen seen;
   for (std::int64_t row = 0; row < maps::rows(map.plan); ++row)
@@ -208,7 +209,7 @@ Seen seen_of(const maps::Grid& map, const maps::Grid& reference) {
 
 std::string text_of(const Seen& seen) { return fmt::format("{} of {}", seen.missed, seen.wanted); }
 
-double disagreement(const maps::Grid& map, const maps::Grid& reference) {
+double disagreement(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference) {
   SF_CHECK(map.plan == reference.plan, "maps of two plans cannot be compared");
   std::size_t both = 0, apart = 0;
   for (std::int64_t row = 0; row < maps::rows(map.plan); ++row)

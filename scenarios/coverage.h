@@ -24,12 +24,12 @@ class OwnMap {
   OwnMap(const world::World& world, std::uint32_t mover, double cell = 0.03);
   /// Adds it when it is a scan of that laser.
   void add(const base::ReadingBlock& reading);
-  const maps::Grid& grid() const { return grid_; }
+  const maps::OccupancyGrid& grid() const { return grid_; }
 
  private:
   const world::World& world_;
   std::uint32_t mover_;
-  maps::Grid grid_;
+  maps::OccupancyGrid grid_;
   std::vector<glm::dvec2> beams_;
 };
 
@@ -39,7 +39,7 @@ void enter(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t,
 /// All that the robot's first laser could see from wherever the robot can go without touching a wall: a map of scans
 /// from the middles of all cells of `plan` that are connected to its start, with sixteen headings. Cells whose middle
 /// is in view from none of these are left unexplored. Movers are not looked at.
-maps::Grid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridPlan& plan);
+maps::OccupancyGrid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan);
 
 /// `what_could_be_seen` in one world, which must outlive it: kept while mover and plan stay the same, since it takes
 /// its time.
@@ -47,12 +47,12 @@ class Reference {
  public:
   explicit Reference(const world::World& world) : world_(world) {}
   /// Lives until the next call.
-  const maps::Grid& of(std::uint32_t mover, const maps::GridPlan& plan);
+  const maps::OccupancyGrid& of(std::uint32_t mover, const maps::GridGeometry& plan);
 
  private:
   const world::World& world_;
   std::uint32_t mover_ = 0;
-  std::optional<maps::Grid> grid_;
+  std::optional<maps::OccupancyGrid> grid_;
 };
 
 /// The free cells of a reference, and those of them that a map does not know.
@@ -65,11 +65,11 @@ struct Seen {
   }
 };
 /// Known is free, or occupied. Rule: both have the same plan.
-Seen seen_of(const maps::Grid& map, const maps::Grid& reference);
+Seen seen_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference);
 /// Cells missed: "3 of 9159".
 std::string text_of(const Seen& seen);
 
 /// Cells that are known in both and free in one and occupied in the other, as a part of those known in both.
-double disagreement(const maps::Grid& map, const maps::Grid& reference);
+double disagreement(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference);
 
 }  // namespace sf::scenarios

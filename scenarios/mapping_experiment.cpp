@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "maps/text.h"
+#include "maps/map_text.h"
 #include "scenarios/coverage.h"
 #include "scenarios/experiment.h"
 #include "viz/map_figure.h"
@@ -78,7 +78,8 @@ std::string report_of(const Bench& bench, const std::vector<Mapped>& rows) {
   return text + fmt::format("\n## Beside the thesis\n\n{}\n", bench.kind.reasons);
 }
 
-Mapped mapped_of(const Entrant& entrant, std::uint32_t number, const Trial& trial, const maps::Grid& reference) {
+Mapped mapped_of(const Entrant& entrant, std::uint32_t number, const Trial& trial,
+                 const maps::OccupancyGrid& reference) {
   const RobotCounts& counts = trial.counts.front();
   const DeadEnds& ends = trial.dead_ends.front();
   return {.entrant = entrant.name,
@@ -107,7 +108,7 @@ void run_with(const Bench& bench, const Entrant& entrant, std::vector<Mapped>& r
   Reference reference(world);
   for (std::size_t k = 0; k < trials.size(); ++k) {
     const Trial& trial = trials[k];
-    const maps::Grid& seeable = reference.of(trial.mapped.front(), trial.maps.front().plan);
+    const maps::OccupancyGrid& seeable = reference.of(trial.mapped.front(), trial.maps.front().plan);
     rows.push_back(mapped_of(entrant, static_cast<std::uint32_t>(k + 1), trial, seeable));
     tracks.push_back(trial.tracks.front());
     tracks.back().name = fmt::format("trial {}", k + 1);

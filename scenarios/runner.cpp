@@ -117,7 +117,7 @@ class Run {
   }
 
   Seen seen_by(std::uint32_t mover) const {
-    const maps::Grid& grid = maps_.at(mover).grid();
+    const maps::OccupancyGrid& grid = maps_.at(mover).grid();
     return seen_of(grid, what_could_be_seen(world_, mover, grid.plan));
   }
 

@@ -30,21 +30,21 @@ struct Disturbance {
 
 /// What is kept of a run.
 struct Trial {
-  std::vector<viz::Track> tracks;       ///< per robot, and per tag that is driven
-  std::vector<std::uint32_t> rows;      ///< of their movers
-  std::vector<std::uint32_t> follows;   ///< per track, at the end: the track that it follows; world::kNone: nobody
-  std::vector<RobotCounts> counts;      ///< one per track
-  std::vector<ErrorStatistics> errors;  ///< one per track
-  std::vector<DeadEnds> dead_ends;      ///< one per track
-  std::vector<std::uint32_t> helped;    ///< one per track: how often the supervisor took it by hand
-  std::vector<double> times;            ///< [s] of the first robot's errors
-  std::vector<maps::Grid> maps;         ///< of each robot with a laser, where asked for
-  std::vector<std::uint32_t> mapped;    ///< their rows
-  double simulated = 0.0;               ///< [s]
-  double wall = 0.0;                    ///< [s]
-  double decided = 0.0;                 ///< [s] of it, spent on controllers and motion
-  bool done = false;                    ///< all controllers were
-  std::uint64_t hash = 0;               ///< of all readings
+  std::vector<viz::Track> tracks;         ///< per robot, and per tag that is driven
+  std::vector<std::uint32_t> rows;        ///< of their movers
+  std::vector<std::uint32_t> follows;     ///< per track, at the end: the track that it follows; world::kNone: nobody
+  std::vector<RobotCounts> counts;        ///< one per track
+  std::vector<ErrorStatistics> errors;    ///< one per track
+  std::vector<DeadEnds> dead_ends;        ///< one per track
+  std::vector<std::uint32_t> helped;      ///< one per track: how often the supervisor took it by hand
+  std::vector<double> times;              ///< [s] of the first robot's errors
+  std::vector<maps::OccupancyGrid> maps;  ///< of each robot with a laser, where asked for
+  std::vector<std::uint32_t> mapped;      ///< their rows
+  double simulated = 0.0;                 ///< [s]
+  double wall = 0.0;                      ///< [s]
+  double decided = 0.0;                   ///< [s] of it, spent on controllers and motion
+  bool done = false;                      ///< all controllers were
+  std::uint64_t hash = 0;                 ///< of all readings
 };
 
 struct TrialOptions {

@@ -3,7 +3,7 @@
 #include <map>
 #include <utility>
 
-#include "maps/packets.h"
+#include "maps/map_packets.h"
 #include "raycast/caster.h"
 #include "sensors/occupancy_host.h"
 #include "sensors/occupancy_packets.h"
@@ -48,7 +48,7 @@ std::vector<MapPlan> plans_of(const std::vector<Occupancy>& all) {
 /// [cells] range of scans that the device enters.
 double farthest_on(const Site& site) {
   const bool host = raycast::caster_for(site.device.info().software, site.scene.caster) == raycast::Caster::host;
-  return host ? kFarScan : maps::kFarthestRange;
+  return host ? kFarScan : maps::kMaxRangeCells;
 }
 
 Occupancies::Occupancies(const Site& site)

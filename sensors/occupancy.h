@@ -4,7 +4,7 @@
 // In a world file, inside a robot:
 //   occupancy( cell 0.03  words [30 30]  offset [ox oy]  laser "name"  rate 1  log_odds 0 )
 // A sensor without a body, made of the readings of one of its robot's lasers: every scan of it is entered, by the rule
-// of maps/plain_mapper.h, from where the robot believes to be. `offset` is the thesis' (O_x, O_y): the map begins at
+// of maps/grid_update.h, from where the robot believes to be. `offset` is the thesis' (O_x, O_y): the map begins at
 // x = -ox and y = -oy and goes along +x and -y; without one, its middle is where the robot stood when the world was
 // loaded, to the cell. `log_odds` weighs scans: 1, or [hit miss limit] in whole numbers; with 0 the last scan is right.
 //

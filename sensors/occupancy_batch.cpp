@@ -23,7 +23,7 @@ BeamLine line_of(std::uint32_t end) {
 }
 
 /// What the device needs of a scan, but for where its strips lie.
-MapRow row_of(const MapPlace& map, const maps::ScanEnds& scan, const base::Pose& X_WS) {
+MapRow row_of(const MapPlace& map, const maps::TracedScan& scan, const base::Pose& X_WS) {
   MapRow row{};
   row.words = map.words;
   row.word_columns = map.plan.grid.word_columns;
@@ -63,7 +63,7 @@ void MapBatch::Tables::trace() {
       const maps::ScanView view{scans[i].X_WS, scans[i].ranges, *map.beams, map.plan.range_min, map.plan.range_max};
       MapShare& share = shares[i];
       const std::span<std::uint32_t> own = ends_of(map);
-      share.scan = maps::trace_ends(map.plan.grid, view, own);
+      share.scan = maps::trace_scan(map.plan.grid, view, own);
       const auto table = lines->host<BeamLine>().subspan(2 * std::size_t{map.lines}, own.size());
       std::transform(own.begin(), own.end(), table.begin(), line_of);
       share.cells = maps::intersect(share.scan.box, maps::cells_of(map.plan.grid));
@@ -135,7 +135,7 @@ void MapBatch::Tables::strike() {
                             at.row < box.high.row;
         if (!maps::hit_of(end) || !inside) continue;
         const std::int64_t word = (at.row - box.low.row) / 4 * across + (at.column - box.low.column) / 4;
-        struck[static_cast<std::size_t>(word)] |= 1u << maps::Grid::shift_of(at);
+        struck[static_cast<std::size_t>(word)] |= 1u << maps::OccupancyGrid::shift_of(at);
       }
     }
   });

@@ -2,8 +2,8 @@
 // Many occupancy maps, on the device or the host: a tick's scans entered into all of them in one batch, word by word,
 // with exactly the cells that maps::add_scan would set.
 //
-// The host turns ranges into end cells, in double, on all cores (maps/scan_ends.h); the device owns the maps and covers
-// cells in whole numbers. So it needs no 64-bit floats, and how it rounds changes nothing.
+// The host turns ranges into end cells, in double, on all cores (maps/traced_scan.h); the device owns the maps and
+// covers cells in whole numbers. So it needs no 64-bit floats, and how it rounds changes nothing.
 
 #include <cstdint>
 #include <memory>
@@ -13,7 +13,7 @@
 
 #include "base/thread_pool.h"
 #include "gpu/device.h"
-#include "maps/plain_mapper.h"
+#include "maps/grid_update.h"
 
 namespace sf::sensors {
 
@@ -21,12 +21,12 @@ inline constexpr std::uint32_t kMostMapBeams = 20'000;  ///< three runs of candi
 
 /// One map and the laser that fills it.
 struct MapPlan {
-  maps::GridPlan grid;                 ///< is_sound
-  std::optional<maps::OddsRule> odds;  ///< cells are weighed; else the last scan is right
-  double fov = 0.0;                    ///< [rad] in [0, 2 pi]
-  std::uint32_t samples = 1;           ///< in [1, kMostMapBeams]
-  double range_min = 0.0;              ///< [m]
-  double range_max = 0.0;              ///< [m] at most maps::kFarthestRange cells
+  maps::GridGeometry grid;                  ///< is_valid
+  std::optional<maps::LogOddsUpdate> odds;  ///< cells are weighed; else the last scan is right
+  double fov = 0.0;                         ///< [rad] in [0, 2 pi]
+  std::uint32_t samples = 1;                ///< in [1, kMostMapBeams]
+  double range_min = 0.0;                   ///< [m]
+  double range_max = 0.0;                   ///< [m] at most maps::kMaxRangeCells cells
 };
 
 /// A scan for one map.
@@ -42,7 +42,7 @@ class MapBatch {
   /// All maps unexplored. @param farthest [cells] range of scans that the device enters; the host enters the others
   /// @throws base::DeviceError when the device cannot hold them.
   MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapPlan> plans,
-           double farthest = maps::kFarthestRange);
+           double farthest = maps::kMaxRangeCells);
   ~MapBatch();
 
   /// Enters scans, at most one into each map. @param wanted maps whose words are looked at afterwards

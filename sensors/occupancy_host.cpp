@@ -7,11 +7,11 @@ HostMaps::HostMaps(std::span<const MapPlan> plans, double farthest) : rows_(plan
     const MapPlan& plan = plans[i];
     if (plan.range_max <= farthest * plan.grid.cell) continue;
     rows_[i] = static_cast<std::uint32_t>(maps_.size());
-    Map& map = maps_.emplace_back(
-        Map{plan, maps::beam_directions(plan.fov, plan.samples), maps::Grid(plan.grid), std::nullopt, maps::Grid()});
+    Map& map = maps_.emplace_back(Map{plan, maps::beam_directions(plan.fov, plan.samples),
+                                      maps::OccupancyGrid(plan.grid), std::nullopt, maps::OccupancyGrid()});
     if (!plan.odds) continue;
     map.odds.emplace(plan.grid, *plan.odds);
-    map.covered = maps::Grid(plan.grid);
+    map.covered = maps::OccupancyGrid(plan.grid);
   }
 }
 
@@ -26,13 +26,13 @@ void HostMaps::update(std::span<const MapScan> scans, std::span<const std::uint3
       std::vector<std::uint32_t>& ends = ends_[thread];
       ends.resize(map.beams.size());
       const maps::ScanView view{scans[i].X_WS, scans[i].ranges, map.beams, map.plan.range_min, map.plan.range_max};
-      const maps::ScanEnds scan = maps::trace_ends(map.plan.grid, view, ends);
-      if (map.odds) maps::add_ends(*map.odds, scan, ends, map.covered);
-      if (!map.odds) maps::add_ends(map.grid, scan, ends);
+      const maps::TracedScan scan = maps::trace_scan(map.plan.grid, view, ends);
+      if (map.odds) maps::add_traced_scan(*map.odds, scan, ends, map.covered);
+      if (!map.odds) maps::add_traced_scan(map.grid, scan, ends);
     }
   });
   for (const std::uint32_t map : wanted)
-    if (has(map) && maps_[rows_[map]].odds) maps::take_states(*maps_[rows_[map]].odds, maps_[rows_[map]].grid);
+    if (has(map) && maps_[rows_[map]].odds) maps::write_occupancy(*maps_[rows_[map]].odds, maps_[rows_[map]].grid);
 }
 
 }  // namespace sf::sensors

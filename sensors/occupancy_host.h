@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/thread_pool.h"
-#include "maps/plain_mapper.h"
+#include "maps/grid_update.h"
 #include "sensors/occupancy_batch.h"
 
 namespace sf::sensors {
@@ -32,9 +32,9 @@ class HostMaps {
   struct Map {
     MapPlan plan;
     std::vector<glm::dvec2> beams;
-    maps::Grid grid;  ///< its words; with log odds, what they come to
-    std::optional<maps::OddsGrid> odds;
-    maps::Grid covered;  ///< scratch, with log odds
+    maps::OccupancyGrid grid;  ///< its words; with log odds, what they come to
+    std::optional<maps::LogOddsGrid> odds;
+    maps::OccupancyGrid covered;  ///< scratch, with log odds
   };
   std::vector<std::uint32_t> rows_;  ///< per map: its row in `maps_`, or kNone
   std::vector<Map> maps_;

@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "maps/packets.h"
+#include "maps/map_packets.h"
 #include "sensors/occupancy.h"
 
 namespace sf::sensors {
 
 namespace {
 
-maps::GridPlan plan_of(const SensorRow& sensor, const Pose& corner) {
+maps::GridGeometry plan_of(const SensorRow& sensor, const Pose& corner) {
   return {corner.x, corner.y, sensor.pitch, sensor.across, sensor.elements / sensor.across};
 }
 
@@ -55,12 +55,12 @@ std::string refuse_occupancy(const SensorRow& sensor, Wire wire) {
   if (wire == Wire::farm) return "";
   const std::uint32_t rows = sensor.elements / sensor.across;
   const bool fits =
-      sensor.elements <= maps::kMostPlainWords && sensor.across <= maps::kMostPlainSide && rows <= maps::kMostPlainSide;
+      sensor.elements <= maps::kMaxPlainWords && sensor.across <= maps::kMaxPlainSide && rows <= maps::kMaxPlainSide;
   if (fits) return "";
   return fmt::format(
       "a map of {} x {} words does not fit the thesis' layout, which holds {} words, at most {} in a row or column: "
       "lower `words`, or send the farm's own packets (`--wire farm`)",
-      sensor.across, rows, maps::kMostPlainWords, maps::kMostPlainSide);
+      sensor.across, rows, maps::kMaxPlainWords, maps::kMaxPlainSide);
 }
 
 std::uint32_t occupancy_parts(const SensorRow& sensor, Wire wire) {

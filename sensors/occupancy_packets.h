@@ -1,6 +1,6 @@
 #pragma once
-// Occupancy maps as payloads: maps/packets.h as the wire part of a SensorKind. Of a row they read `elements` (words),
-// `across` (words in a row) and `pitch` (side of a cell).
+// Occupancy maps as payloads: maps/map_packets.h as the wire part of a SensorKind. Of a row they read `elements`
+// (words), `across` (words in a row) and `pitch` (side of a cell).
 
 #include <cstdint>
 #include <span>

@@ -46,7 +46,7 @@ struct MapRow {
   float per_radian;  ///< [pairs of beams/rad]
   float slack;       ///< [rad] by which bearings may be wrong
   float round;       ///< [pairs of beams] of a whole turn
-  std::int32_t hit;  ///< log odds: see maps::OddsRule
+  std::int32_t hit;  ///< log odds: see maps::LogOddsUpdate
   std::int32_t miss;
   std::int32_t limit;
   std::uint32_t spare3;

@@ -17,22 +17,22 @@ constexpr double kFarthest = 1e7;     // [m]
 constexpr double kMostOdds = 32767.0;
 
 std::uint32_t words_along(const world::Sensor& sensor, double count) {
-  if (count >= 1.0 && count <= maps::kMostWordColumns && count == std::floor(count))
+  if (count >= 1.0 && count <= maps::kMaxWordColumns && count == std::floor(count))
     return static_cast<std::uint32_t>(count);
   refuse(sensor, "words",
          fmt::format("'words' has {:g}; expected whole numbers from 1 to {} (a word is 4 x 4 cells)", count,
-                     maps::kMostWordColumns));
+                     maps::kMaxWordColumns));
 }
 
 /// Left and top of a map of that size around `place`, on the lattice of all such maps, so that they can be merged
 /// exactly.
-void centre(maps::GridPlan& plan, const Pose& place) {
+void centre(maps::GridGeometry& plan, const Pose& place) {
   plan.left = plan.cell * std::round(place.x / plan.cell - 0.5 * static_cast<double>(maps::columns(plan)));
   plan.top = plan.cell * std::round(place.y / plan.cell + 0.5 * static_cast<double>(maps::rows(plan)));
 }
 
-maps::GridPlan grid_of(const world::Sensor& sensor, const Pose& place) {
-  maps::GridPlan plan;
+maps::GridGeometry grid_of(const world::Sensor& sensor, const Pose& place) {
+  maps::GridGeometry plan;
   plan.cell = length(sensor, "cell", kDefaultCell, 1e-4, 1e3);
   if (const auto size = tuple(sensor, "words", 2, "[columns rows]")) {
     plan.word_columns = words_along(sensor, (*size)[0]);
@@ -40,33 +40,33 @@ maps::GridPlan grid_of(const world::Sensor& sensor, const Pose& place) {
   } else {
     plan.word_columns = plan.word_rows = kDefaultWords;
   }
-  if (plan.word_columns > maps::kMostWords / plan.word_rows)
+  if (plan.word_columns > maps::kMaxWords / plan.word_rows)
     refuse(sensor, "words",
            fmt::format("a map of {} x {} words is too large; expected at most {} words in all: raise 'cell' or give "
                        "each robot a part",
-                       plan.word_columns, plan.word_rows, maps::kMostWords));
+                       plan.word_columns, plan.word_rows, maps::kMaxWords));
   centre(plan, place);
   if (const auto offset = tuple(sensor, "offset", 2, "[x y]")) {
     plan.left = -sensor.metres_per_unit * (*offset)[0];
     plan.top = -sensor.metres_per_unit * (*offset)[1];
   }
-  if (!maps::is_sound(plan))
+  if (!maps::is_valid(plan))
     refuse(sensor, "offset", fmt::format("a map more than {:g} m from the world's origin; change 'offset'", kFarthest));
   return plan;
 }
 
-std::optional<maps::OddsRule> odds_of(const world::Sensor& sensor) {
+std::optional<maps::LogOddsUpdate> odds_of(const world::Sensor& sensor) {
   const auto said = tuple(sensor, "log_odds", 1, "0, 1 or [hit miss limit]");
   if (!said || (said->size() == 1 && said->front() == 0.0)) return std::nullopt;
-  if (said->size() == 1 && said->front() == 1.0) return maps::OddsRule{};
+  if (said->size() == 1 && said->front() == 1.0) return maps::LogOddsUpdate{};
   const auto fits = [](double v, double least) { return v == std::floor(v) && v >= least && v <= kMostOdds; };
   const auto& v = *said;
   if (v.size() != 3 || !fits(v[0], 0.0) || !fits(v[1], 0.0) || !fits(v[2], 1.0))
     refuse(sensor, "log_odds",
            fmt::format("'log_odds' expects 0, 1 or [hit miss limit] in whole numbers up to {:g}, such as [85 40 350]",
                        kMostOdds));
-  return maps::OddsRule{static_cast<std::int32_t>(v[0]), static_cast<std::int32_t>(v[1]),
-                        static_cast<std::int32_t>(v[2])};
+  return maps::LogOddsUpdate{static_cast<std::int32_t>(v[0]), static_cast<std::int32_t>(v[1]),
+                             static_cast<std::int32_t>(v[2])};
 }
 
 std::uint32_t laser_of(const world::Sensor& sensor, const world::Mover& mover) {
@@ -91,10 +91,10 @@ void fill_from(const world::Sensor& sensor, const world::Laser& laser, MapPlan& 
     refuse(
         sensor, "laser",
         fmt::format("laser '{}' has {} samples; maps are made of at most {}", laser.name, plan.samples, kMostMapBeams));
-  if (!(plan.range_max <= maps::kFarthestRange * plan.grid.cell))
+  if (!(plan.range_max <= maps::kMaxRangeCells * plan.grid.cell))
     refuse(sensor, "cell",
            fmt::format("laser '{}' looks {:g} m far, which is more than {:g} cells of {:g} m; raise 'cell'", laser.name,
-                       plan.range_max, maps::kFarthestRange, plan.grid.cell));
+                       plan.range_max, maps::kMaxRangeCells, plan.grid.cell));
 }
 
 Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, std::uint32_t m, std::uint32_t number) {

@@ -17,10 +17,10 @@ using gpu::Texel;
 constexpr std::size_t kMostOfAll = 1u << 27;  ///< words of all maps; pairs of beams of all their lasers
 
 /// Blocks that a map's words take, and its strips, when a scan speaks of all of it.
-std::size_t word_blocks(const maps::GridPlan& plan) {
+std::size_t word_blocks(const maps::GridGeometry& plan) {
   return std::size_t{units_of(plan.word_columns, SF_MAP_BLOCK)} * plan.word_rows;
 }
-std::size_t strip_blocks(const maps::GridPlan& plan) {
+std::size_t strip_blocks(const maps::GridGeometry& plan) {
   const auto blocks = [](std::int64_t along, std::int64_t across) {
     return std::size_t{units_of(along, SF_MAP_BLOCK)} * units_of(across, SF_STRIP);
   };
@@ -58,7 +58,7 @@ MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<M
 
 void MapBatch::Tables::plan(std::vector<MapPlan> plans) {
   for (MapPlan& p : plans) {
-    SF_CHECK(maps::is_sound(p.grid) && p.samples >= 1 && p.samples <= kMostMapBeams,
+    SF_CHECK(maps::is_valid(p.grid) && p.samples >= 1 && p.samples <= kMostMapBeams,
              std::to_string(p.samples) + " beams on a map of " + std::to_string(p.grid.cell) + " m cells");
     auto& fan = fans[{p.fov, p.samples}];
     if (fan.empty()) fan = maps::beam_directions(p.fov, p.samples);

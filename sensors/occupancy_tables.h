@@ -11,7 +11,7 @@
 #include "gpu/batch.h"
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
-#include "maps/scan_ends.h"
+#include "maps/traced_scan.h"
 #include "sensors/occupancy_batch.h"
 #include "sensors/occupancy_host.h"
 #include "sensors/occupancy_records.h"
@@ -44,7 +44,7 @@ struct MapWords {
 
 /// What one scan is about.
 struct MapShare {
-  maps::ScanEnds scan;
+  maps::TracedScan scan;
   maps::CellBox cells;          ///< of the map, whole words
   std::size_t first_block = 0;  ///< of its words
 };

@@ -47,7 +47,7 @@ std::uint8_t encode_plain(const PlainForm& form, const SensorRow& sensor, const 
                           base::Bytes& out) {
   const std::span<const double> values = reading.values;
   const std::size_t width = form.numbers.size();
-  SF_CHECK(values.size() == sensor.elements * width && !values.empty() && values.size() <= kMostPlainWords,
+  SF_CHECK(values.size() == sensor.elements * width && !values.empty() && values.size() <= kMaxPlainWords,
            fmt::format("{} values of {} rows of {}", values.size(), sensor.elements, form.name));
   base::ByteWriter writer(out);
   writer.put(static_cast<std::uint16_t>(sensor.elements));
@@ -66,7 +66,7 @@ Part decode_plain(const PlainForm& form, const SensorRow& sensor, std::span<cons
   if (!reader.good() || reader.left() < kWord * width * count) return {.fault = Fault::too_short};
   if (reader.left() > kWord * width * count) return {.fault = Fault::too_long};
   const bool whole = sensor.elements == 0 || count == sensor.elements;
-  if (count < 1 || !whole || count * width > kMostPlainWords) return {.fault = Fault::out_of_range};
+  if (count < 1 || !whole || count * width > kMaxPlainWords) return {.fault = Fault::out_of_range};
   for (std::size_t i = 0; i < count * width; ++i)
     if (!plausible(reader.get<Word>(), form.numbers[i % width])) return {.fault = Fault::out_of_range};
   return {.elements = count};

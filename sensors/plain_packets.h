@@ -20,7 +20,7 @@
 namespace sf::sensors {
 
 inline constexpr std::int32_t kNoNumber = std::numeric_limits<std::int32_t>::min();  ///< on the wire: not a number
-inline constexpr std::uint32_t kMostPlainWords =
+inline constexpr std::uint32_t kMaxPlainWords =
     313;  ///< numbers in one datagram of 1400 bytes, header and signature and all
 
 /// One number of a row on the wire.
@@ -37,7 +37,7 @@ struct PlainForm {
   std::span<const PlainNumber> numbers;  ///< of one row: as many as its columns have; alive for good
 };
 
-// What SensorKind asks of a kind, for `form`. Rows have at most kMostPlainWords numbers in all: one datagram.
+// What SensorKind asks of a kind, for `form`. Rows have at most kMaxPlainWords numbers in all: one datagram.
 
 /// The thesis' wire is refused.
 std::string refuse_plain(const PlainForm& form, Wire wire);

@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Occupancy maps that weigh: log odds per cell, and the states that follow from them (maps/plain_mapper.h).
+// Occupancy maps that weigh: log odds per cell, and the states that follow from them (maps/grid_update.h).
 
 #include "maps/grid.h"
 #include "sensors/occupancy_records.h"

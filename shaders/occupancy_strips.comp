@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Which cells of a strip the lines of a scan's beams cover, to the cell as maps/plain_mapper.h has the rule.
+// Which cells of a strip the lines of a scan's beams cover, to the cell as maps/grid_update.h has the rule.
 //
 // A strip is 32 cells of one column (flat lines cross it in one cell each) or of one row (steep lines). At step i a line to an end n
 // cells along and a to the side is floor(i a / n + 1/2) cells to the side. That sum is a multiple of 1 / (2 n), so a bias that is right

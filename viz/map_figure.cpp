@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "maps/text.h"
+#include "maps/map_text.h"
 #include "viz/canvas.h"
 #include "viz/color.h"
 #include "viz/legend.h"
@@ -42,7 +42,7 @@ struct Layout {
   std::vector<LegendPlace> legend;
 };
 
-Layout lay_out(const maps::GridPlan& plan, std::span<const LegendItem> legend) {
+Layout lay_out(const maps::GridGeometry& plan, std::span<const LegendItem> legend) {
   Layout l;
   const std::int64_t longest = std::max(maps::columns(plan), maps::rows(plan));
   l.grid = longest <= kMostWithGrid;
@@ -58,7 +58,7 @@ Layout lay_out(const maps::GridPlan& plan, std::span<const LegendItem> legend) {
   return l;
 }
 
-std::vector<LegendItem> legend_of(const maps::Census& census, const MapFigure& figure) {
+std::vector<LegendItem> legend_of(const maps::CellCounts& census, const MapFigure& figure) {
   const auto all = static_cast<double>(census.all());
   const auto item = [&](std::uint32_t state, const char* name, std::uint64_t cells) {
     return LegendItem{Sample::block, kStates[state],
@@ -73,7 +73,7 @@ std::vector<LegendItem> legend_of(const maps::Census& census, const MapFigure& f
   return items;
 }
 
-void draw_cells(Canvas& canvas, const maps::Grid& grid, const Layout& l) {
+void draw_cells(Canvas& canvas, const maps::OccupancyGrid& grid, const Layout& l) {
   std::vector<std::uint32_t> pixels;
   for (std::int64_t row = 0; row < maps::rows(grid.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(grid.plan); ++column)
@@ -95,12 +95,12 @@ void draw_cells(Canvas& canvas, const maps::Grid& grid, const Layout& l) {
 }
 
 /// [px] of a point of the world.
-glm::dvec2 pixel(const maps::GridPlan& plan, const Layout& l, glm::dvec2 p_W) {
+glm::dvec2 pixel(const maps::GridGeometry& plan, const Layout& l, glm::dvec2 p_W) {
   const double scale = l.scale / plan.cell;
   return l.low + glm::dvec2{(p_W.x - plan.left) * scale, (plan.top - p_W.y) * scale};
 }
 
-void draw_axes(Canvas& canvas, const maps::GridPlan& plan, const Layout& l) {
+void draw_axes(Canvas& canvas, const maps::GridGeometry& plan, const Layout& l) {
   TextStyle style = small_text();
   style.across = Anchor::middle;
   style.down = Anchor::start;
@@ -127,7 +127,7 @@ void draw_axes(Canvas& canvas, const maps::GridPlan& plan, const Layout& l) {
   canvas.text({l.low.x - 66.0, 0.5 * (l.low.y + l.high.y)}, "y [m]", style);
 }
 
-void draw_places(Canvas& canvas, const maps::GridPlan& plan, const Layout& l, const MapFigure& figure) {
+void draw_places(Canvas& canvas, const maps::GridGeometry& plan, const Layout& l, const MapFigure& figure) {
   canvas.clip(
       {static_cast<int>(l.low.x), static_cast<int>(l.low.y), static_cast<int>(l.high.x), static_cast<int>(l.high.y)});
   const std::size_t named = std::min(figure.places.size(), kNamedPlaces);
@@ -145,8 +145,8 @@ void draw_places(Canvas& canvas, const maps::GridPlan& plan, const Layout& l, co
 
 }  // namespace
 
-void draw_map(const maps::Grid& grid, const MapFigure& figure, const std::string& png_path) {
-  const maps::Census census = maps::count(grid);
+void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const std::string& png_path) {
+  const maps::CellCounts census = maps::count(grid);
   const std::vector<LegendItem> legend = legend_of(census, figure);
   const Layout l = lay_out(grid.plan, legend);
   Canvas canvas(static_cast<int>(std::ceil(l.width)), static_cast<int>(std::ceil(l.height)), 0xFFFFFFFFu);

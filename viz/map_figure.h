@@ -24,6 +24,6 @@ struct MapFigure {
 
 /// Maps of more than 1600 cells along a side are drawn without a grid, and smaller, as far as they must be.
 /// @throws base::InputError naming the path when it cannot be written.
-void draw_map(const maps::Grid& grid, const MapFigure& figure, const std::string& png_path);
+void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const std::string& png_path);
 
 }  // namespace sf::viz

@@ -5,7 +5,7 @@
 
 #include <csignal>
 
-#include "maps/packets.h"
+#include "maps/map_packets.h"
 #include "netio/outbox.h"
 #include "netio/packets.h"
 #include "sensors/occupancy.h"

@@ -31,7 +31,7 @@ inline constexpr int kTurns = 48;      ///< headings of each
 /// Everything within the map's rectangle, on a lattice of kStep.
 class Reference {
  public:
-  Reference(const world::World& world, const maps::GridPlan& plan, glm::dvec2 start, const Looker& looker)
+  Reference(const world::World& world, const maps::GridGeometry& plan, glm::dvec2 start, const Looker& looker)
       : world_(world), plan_(plan), looker_(looker) {
     wide_ = static_cast<int>(std::lround(static_cast<double>(maps::columns(plan)) * plan.cell / kStep));
     high_ = static_cast<int>(std::lround(static_cast<double>(maps::rows(plan)) * plan.cell / kStep));
@@ -145,7 +145,7 @@ class Reference {
   }
 
   const world::World& world_;
-  maps::GridPlan plan_;
+  maps::GridGeometry plan_;
   Looker looker_;
   int wide_ = 0, high_ = 0;
   std::vector<std::uint8_t> reached_;

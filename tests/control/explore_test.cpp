@@ -34,7 +34,7 @@ Explored explore(const world::World& world, const exploration::Looker& looker = 
   result.seconds = 1e-9 * static_cast<double>(run.fleet.reports()[0].time);
 
   const Pose& X = world.movers[0].X_WM;
-  const maps::Grid& grid = controller->grid();
+  const maps::OccupancyGrid& grid = controller->grid();
   const auto must = exploration::Reference(world, grid.plan, {X.x, X.y}, looker).seen();
   for (std::size_t i = 0; i < must.size(); ++i) {
     const auto at = static_cast<std::int64_t>(i);
@@ -236,12 +236,12 @@ TEST(PoseSearch, finds_the_cheapest_way) {
 TEST(PlanAround, holds_the_world_and_is_never_smaller_than_the_thesis) {
   world::World world = scenes::empty_world();
   world.extent = {-1.5, -1.5, 1.5, 1.5};
-  const maps::GridPlan small = plan_around(world);
+  const maps::GridGeometry small = plan_around(world);
   EXPECT_EQ(small.word_columns, 30u);
   EXPECT_NEAR(small.left, -1.8, 1e-12);
   EXPECT_NEAR(small.top, 1.8, 1e-12);
   world.extent = {10.0, -1.5, 18.0, 1.5};
-  const maps::GridPlan wide = plan_around(world);
+  const maps::GridGeometry wide = plan_around(world);
   for (const glm::dvec2& p : {glm::dvec2{10, -1.5}, glm::dvec2{18, 1.5}})
     EXPECT_TRUE(maps::contains(wide, maps::cell_at(wide, p)));
   EXPECT_GT(wide.word_columns, 60u);

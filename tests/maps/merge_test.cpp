@@ -4,29 +4,29 @@
 
 #include <gtest/gtest.h>
 
-#include "maps/text.h"
+#include "maps/map_text.h"
 #include "tests/sensors/chance.h"
 
 namespace sf::maps {
 namespace {
 
-Grid filled(const GridPlan& plan, std::uint64_t seed) {
+OccupancyGrid filled(const GridGeometry& plan, std::uint64_t seed) {
   trial::Chance chance(seed);
-  Grid grid(plan);
+  OccupancyGrid grid(plan);
   for (std::int64_t row = 0; row < rows(plan); ++row)
     for (std::int64_t column = 0; column < columns(plan); ++column)
       grid.set({column, row}, static_cast<Cell>(chance.below(3)));
   return grid;
 }
 
-Cell at_point(const Grid& grid, glm::dvec2 p) {
+Cell at_point(const OccupancyGrid& grid, glm::dvec2 p) {
   const CellAt at = cell_at(grid.plan, p);
   return contains(grid.plan, at) ? grid.at(at) : Cell::unexplored;
 }
 
 TEST(Merge, OneMapStaysWhatItIs) {
-  const Grid grid = filled({-1.2, 3.4, 0.5, 3, 2}, 1);
-  const Grid* const one[] = {&grid};
+  const OccupancyGrid grid = filled({-1.2, 3.4, 0.5, 3, 2}, 1);
+  const OccupancyGrid* const one[] = {&grid};
   EXPECT_EQ(merge(one).plan, grid.plan);
   EXPECT_EQ(merge(one).words, grid.words);
 }
@@ -40,17 +40,17 @@ TEST(Merge, EveryCellIsThatOfItsMaps) {
       const double dy = 0.5 * (static_cast<double>(chance.below(60)) - 30.0);
       return filled({dx, dy, 0.5, 1 + chance.below(5), 1 + chance.below(5)}, seed);
     };
-    const Grid a = shifted(3 * k + 10), b = shifted(3 * k + 11), c = shifted(3 * k + 12);
-    const Grid* const all[] = {&a, &b, &c};
-    const Grid careful = merge(all, Precedence::occupied);
-    const Grid newest = merge(all, Precedence::newest);
-    Census seen;
+    const OccupancyGrid a = shifted(3 * k + 10), b = shifted(3 * k + 11), c = shifted(3 * k + 12);
+    const OccupancyGrid* const all[] = {&a, &b, &c};
+    const OccupancyGrid careful = merge(all, MergePolicy::occupied);
+    const OccupancyGrid newest = merge(all, MergePolicy::newest);
+    CellCounts seen;
     for (std::int64_t row = 0; row < rows(careful.plan); ++row)
       for (std::int64_t column = 0; column < columns(careful.plan); ++column) {
         const glm::dvec2 p = middle(careful.plan, {column, row});
         bool occupied = false;
         Cell last = Cell::unexplored;
-        for (const Grid* grid : all) {
+        for (const OccupancyGrid* grid : all) {
           const Cell cell = at_point(*grid, p);
           occupied = occupied || cell == Cell::occupied;
           if (cell != Cell::unexplored) last = cell;
@@ -59,9 +59,9 @@ TEST(Merge, EveryCellIsThatOfItsMaps) {
         ASSERT_EQ(careful.at({column, row}), occupied ? Cell::occupied : last);
         if (last != Cell::unexplored) ++seen.free;
       }
-    const Census own = count(careful);
+    const CellCounts own = count(careful);
     EXPECT_EQ(own.free + own.occupied, seen.free);
-    for (const Grid* grid : all) {
+    for (const OccupancyGrid* grid : all) {
       EXPECT_LE(careful.plan.left, grid->plan.left);
       EXPECT_GE(careful.plan.top, grid->plan.top);
     }
@@ -69,21 +69,22 @@ TEST(Merge, EveryCellIsThatOfItsMaps) {
 }
 
 TEST(Merge, WhatCannotBeOneIsRefused) {
-  const Grid a(GridPlan{0, 0, 0.03, 2, 2}), coarse(GridPlan{0, 0, 0.05, 2, 2}), far(GridPlan{1e5, 0, 0.03, 2, 2});
-  const Grid* const cells[] = {&a, &coarse};
-  EXPECT_NE(refuse_merge(cells).find("cannot be merged"), std::string::npos);
-  const Grid* const places[] = {&a, &far};
-  EXPECT_NE(refuse_merge(places).find("far apart"), std::string::npos);
-  const Grid* const fine[] = {&a, &a};
-  EXPECT_EQ(refuse_merge(fine), "");
+  const OccupancyGrid a(GridGeometry{0, 0, 0.03, 2, 2}), coarse(GridGeometry{0, 0, 0.05, 2, 2}),
+      far(GridGeometry{1e5, 0, 0.03, 2, 2});
+  const OccupancyGrid* const cells[] = {&a, &coarse};
+  EXPECT_NE(merge_problem(cells).find("cannot be merged"), std::string::npos);
+  const OccupancyGrid* const places[] = {&a, &far};
+  EXPECT_NE(merge_problem(places).find("far apart"), std::string::npos);
+  const OccupancyGrid* const fine[] = {&a, &a};
+  EXPECT_EQ(merge_problem(fine), "");
   // The largest coordinates that a sound plan may have.
-  const Grid one(GridPlan{-1e7, 1e7, 1e-4, 1, 1}), other(GridPlan{1e7, -1e7, 1e-4, 1, 1});
-  const Grid* const ends[] = {&one, &other};
-  EXPECT_NE(refuse_merge(ends), "");
+  const OccupancyGrid one(GridGeometry{-1e7, 1e7, 1e-4, 1, 1}), other(GridGeometry{1e7, -1e7, 1e-4, 1, 1});
+  const OccupancyGrid* const ends[] = {&one, &other};
+  EXPECT_NE(merge_problem(ends), "");
 }
 
 TEST(MapText, AsTheThesisPrintsIt) {
-  Grid grid(GridPlan{0, 0, 1, 1, 1});
+  OccupancyGrid grid(GridGeometry{0, 0, 1, 1, 1});
   grid.set({0, 0}, Cell::occupied);
   grid.set({3, 0}, Cell::free);
   grid.set({1, 3}, Cell::free);
@@ -92,7 +93,7 @@ TEST(MapText, AsTheThesisPrintsIt) {
 }
 
 TEST(MapText, ATerminalsSizeIsKept) {
-  const Grid grid = filled({0, 0, 1, 5, 3}, 5);  // 20 x 12
+  const OccupancyGrid grid = filled({0, 0, 1, 5, 3}, 5);  // 20 x 12
   EXPECT_EQ(text_within(grid, 20, 12), text_of(grid));
   const std::string half = text_within(grid, 10, 99);
   EXPECT_EQ(half.size(), 6u * 11u);

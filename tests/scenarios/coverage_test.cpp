@@ -14,10 +14,10 @@ world::World mapping_world() {
   return world::load_world(SF_SOURCE_DIR "/worlds/mapping/mapping.world", {.sensors = sensors::vocabulary()});
 }
 
-maps::GridPlan small() { return {-0.12, 0.12, 0.03, 2, 2}; }
+maps::GridGeometry small() { return {-0.12, 0.12, 0.03, 2, 2}; }
 
 TEST(Coverage, CountsOnlyWhatTheReferenceHasFree) {
-  maps::Grid reference(small()), map(small());
+  maps::OccupancyGrid reference(small()), map(small());
   EXPECT_EQ(seen_of(map, reference).coverage(), 1.0);
   for (int i = 0; i < 4; ++i) reference.set({i, 0}, Cell::free);
   reference.set({4, 0}, Cell::occupied);
@@ -49,7 +49,7 @@ TEST(Coverage, ItsCellsAreTheExplorers) {
 TEST(Coverage, CellsWithinObstaclesAreNotAskedFor) {
   const world::World world = mapping_world();
   const OwnMap map(world, 0);
-  const maps::Grid seen = what_could_be_seen(world, 0, map.grid().plan);
+  const maps::OccupancyGrid seen = what_could_be_seen(world, 0, map.grid().plan);
   for (std::int64_t row = 0; row < maps::rows(seen.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
       const glm::dvec2 p = maps::middle(seen.plan, {column, row});
@@ -63,7 +63,7 @@ TEST(Coverage, CellsWithinObstaclesAreNotAskedFor) {
 TEST(Coverage, WhatCouldBeSeenIsTheRoom) {
   const world::World world = mapping_world();
   const OwnMap map(world, 0);
-  const maps::Grid seen = what_could_be_seen(world, 0, map.grid().plan);
+  const maps::OccupancyGrid seen = what_could_be_seen(world, 0, map.grid().plan);
   double area = 0.0;
   for (std::int64_t row = 0; row < maps::rows(seen.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
@@ -83,7 +83,7 @@ TEST(Coverage, StopsAtWalls) {
   world.walls.push_back(wall);
   world::update_extent_and_hash(world);
   const OwnMap map(world, 0);
-  const maps::Grid seen = what_could_be_seen(world, 0, map.grid().plan);
+  const maps::OccupancyGrid seen = what_could_be_seen(world, 0, map.grid().plan);
   for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
     const maps::CellAt north = maps::cell_at(seen.plan, {maps::middle(seen.plan, {column, 0}).x, 0.2});
     EXPECT_NE(seen.at(north), Cell::free) << column;

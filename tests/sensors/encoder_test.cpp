@@ -129,7 +129,7 @@ std::vector<double> drive(const world::World& world, const std::vector<Rolled>& 
                           farm::FarmOptions options = {}) {
   farm::Farm farm(world, device(), options);
   farm.hear_all();
-  std::vector<base::Report> states = states_of(world);
+  std::vector<base::Report> states = to_occupancy(world);
   std::vector<double> last;
   std::int64_t now = 0;
   for (const Rolled& r : wheels) {
@@ -194,7 +194,7 @@ TEST(Encoder, SlipsByTheFilesStandardDeviationAfterAMetre) {
   farm::Farm farm(world, device(), {.seed = 11}), quiet(world, device(), {.noise = false});
   farm.hear_all();
   quiet.hear_all();
-  std::vector<base::Report> states = states_of(world);
+  std::vector<base::Report> states = to_occupancy(world);
   for (int tick = 0; tick < 20; ++tick) {
     for (base::Report& s : states) s.X_WM.x += 0.05;
     const auto readings = farm.tick(tick * 100'000'000ll, states), still = quiet.tick(tick * 100'000'000ll, states);
@@ -230,7 +230,7 @@ TEST(Encoder, AreReadBetweenTicksAndGoOnFromTheLast) {
   const world::World world = one_robot({setting("per_count", {1e-6}), setting("slip", {0.02}), setting("rate", {50})});
   farm::Farm often(world, device(), {.seed = 2}), seldom(world, device(), {.seed = 2});
   for (farm::Farm* farm : {&often, &seldom}) farm->hear_all();
-  std::vector<base::Report> states = states_of(world);
+  std::vector<base::Report> states = to_occupancy(world);
   double last = 0.0;
   for (std::int64_t tick = 0; tick < 200; ++tick) {
     const double x = 0.0731 * static_cast<double>(tick);
@@ -254,7 +254,7 @@ TEST(Encoder, BetweenTicksJumpsAreNotRolledEither) {
   const world::World world = one_robot({setting("rate", {50})}, 1.0);
   farm::Farm farm(world, device());
   farm.hear_all();
-  std::vector<base::Report> states = states_of(world);
+  std::vector<base::Report> states = to_occupancy(world);
   const auto counts = [&](std::int64_t ms, double x) {
     states[0].X_WM.x = x;
     const auto readings = ms % 100 == 0 ? farm.tick(ms * 1'000'000, states) : farm.sample(ms * 1'000'000, states);
@@ -273,7 +273,7 @@ TEST(Encoder, ReadingsBetweenTicksMakeNoMoveAJump) {
   const world::World world = one_robot({setting("rate", {50})}, 1.0);
   farm::Farm farm(world, device());
   farm.hear_all();
-  std::vector<base::Report> states = states_of(world);
+  std::vector<base::Report> states = to_occupancy(world);
   farm.tick(0, states);
   farm.sample(80'000'000, states);
   states[0].X_WM.x = 0.6;
@@ -286,7 +286,7 @@ TEST(Encoder, DrivingFastIsNoJump) {
     const world::World world = one_robot({}, max_forward);
     farm::Farm farm(world, device());
     farm.hear_all();
-    std::vector<base::Report> states = states_of(world);
+    std::vector<base::Report> states = to_occupancy(world);
     double x = 0.0, rolled = 0.0;
     for (std::int64_t tick = 0; tick < 30; ++tick) {
       const double way = tick == 0 ? 0.0 : tick < 20 ? 0.1 * max_forward : 0.49 + 0.2 * max_forward;
@@ -303,7 +303,7 @@ TEST(Encoder, WhoIsPutElsewhereHasNotRolled) {
   const world::World world = one_robot();
   farm::Farm farm(world, device());
   farm.hear_all();
-  std::vector<base::Report> states = states_of(world);
+  std::vector<base::Report> states = to_occupancy(world);
   const auto counts = [&](std::int64_t ms, double x) {
     states[0].X_WM.x = x;
     return farm.tick(ms * 1'000'000, states)[0].values[2];
@@ -320,7 +320,7 @@ TEST(Encoder, WhoIsPutElsewhereHasNotRolled) {
 TEST(Encoder, CountsWhetherHeardOrNot) {
   const world::World world = one_robot();
   farm::Farm farm(world, device());
-  std::vector<base::Report> states = states_of(world);
+  std::vector<base::Report> states = to_occupancy(world);
   for (int tick = 0; tick < 10; ++tick) {
     if (tick == 9) farm.hear_all();
     states[0].X_WM.x += 0.01;

@@ -19,7 +19,7 @@ std::vector<std::vector<double>> turning(const world::World& world, double turn,
                                          farm::FarmOptions options = {}) {
   farm::Farm farm(world, device(), options);
   farm.hear_all();
-  std::vector<base::Report> states = states_of(world);
+  std::vector<base::Report> states = to_occupancy(world);
   for (base::Report& s : states) s.velocity.turn = turn;
   std::vector<std::vector<double>> rates(world.movers.size());
   for (int tick = 0; tick < ticks; ++tick)

@@ -36,7 +36,7 @@ world::World everything(int robots) {
 }
 
 std::vector<base::Report> moved(const world::World& world, int tick) {
-  std::vector<base::Report> states = states_of(world);
+  std::vector<base::Report> states = to_occupancy(world);
   for (base::Report& s : states) {
     s.X_WM.x += 0.02 * (tick % 8);
     s.X_WM.yaw += 0.1 * (tick % 8);
@@ -125,7 +125,7 @@ TEST(HostKinds, EachIsItsOwn) {
   farm::Farm farm(world, device());
   farm.hear_all();
   farm.tick(0, {});
-  std::vector<base::Report> states = states_of(world);
+  std::vector<base::Report> states = to_occupancy(world);
   for (base::Report& s : states) {
     s.X_WM.x += 0.1 * s.mover;
     s.velocity.turn = 2.0 * (s.mover + 1.0);
@@ -165,7 +165,7 @@ TEST(HostKinds, TwoOfAKindDrawByThemselves) {
   farm::Farm farm(world, device(), {.seed = 3});
   farm.hear_all();
   farm.tick(0, {});
-  std::vector<base::Report> states = states_of(world);
+  std::vector<base::Report> states = to_occupancy(world);
   states[0].X_WM.x = 0.3;
   const auto readings = farm.tick(1'000'000'000, states);
   for (const std::uint8_t kind : {sensors::kGyro, sensors::kGps, sensors::kEncoder}) {

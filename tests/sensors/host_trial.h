@@ -39,7 +39,7 @@ inline world::World carriers(const world::Sensor& sensor, const std::vector<base
 }
 
 /// Everyone's states: at rest where they were loaded.
-inline std::vector<base::Report> states_of(const world::World& world) {
+inline std::vector<base::Report> to_occupancy(const world::World& world) {
   std::vector<base::Report> states;
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) states.push_back({.mover = m, .X_WM = world.movers[m].X_WM});
   return states;

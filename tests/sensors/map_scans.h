@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "maps/plain_mapper.h"
+#include "maps/grid_update.h"
 #include "sensors/occupancy_batch.h"
 #include "tests/sensors/chance.h"
 
@@ -49,7 +49,7 @@ class PlainMaps {
   explicit PlainMaps(const std::vector<sensors::MapPlan>& plans) : plans_(plans) {
     for (const sensors::MapPlan& plan : plans) {
       grids_.emplace_back(plan.grid);
-      odds_.emplace_back(plan.grid, plan.odds.value_or(maps::OddsRule{}));
+      odds_.emplace_back(plan.grid, plan.odds.value_or(maps::LogOddsUpdate{}));
       beams_.push_back(maps::beam_directions(plan.fov, plan.samples));
     }
   }
@@ -60,13 +60,13 @@ class PlainMaps {
     if (!plan.odds) maps::add_scan(grids_[scan.map], view);
   }
   std::vector<std::uint32_t> words(std::uint32_t map) const {
-    return plans_[map].odds ? maps::states_of(odds_[map]).words : grids_[map].words;
+    return plans_[map].odds ? maps::to_occupancy(odds_[map]).words : grids_[map].words;
   }
 
  private:
   std::vector<sensors::MapPlan> plans_;
-  std::vector<maps::Grid> grids_;
-  std::vector<maps::OddsGrid> odds_;
+  std::vector<maps::OccupancyGrid> grids_;
+  std::vector<maps::LogOddsGrid> odds_;
   std::vector<std::vector<glm::dvec2>> beams_;
 };
 

@@ -37,7 +37,7 @@ struct Tally {
 /// `rounds` scans into every map, or each time into `some` of them, forwards and backwards; all maps compared after
 /// each `every`-th.
 Tally contest(const std::vector<sensors::MapPlan>& plans, std::size_t rounds, std::size_t every, std::uint64_t seed,
-              bool some = false, double farthest = maps::kFarthestRange) {
+              bool some = false, double farthest = maps::kMaxRangeCells) {
   base::ThreadPool thread_pool;
   sensors::MapBatch batch(device(), thread_pool, plans, farthest);
   PlainMaps plain(plans);
@@ -126,10 +126,10 @@ TEST(OccupancyBatch, AgreesWithTheRuleWhereLasersAreBlindNearby) {
 
 TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
   std::vector<sensors::MapPlan> plans = spread(plan(M_PI, 181, 1.2), 24);
-  for (std::size_t i = 0; i < plans.size(); i += 2) plans[i].odds = maps::OddsRule{};
-  plans[0].odds = maps::OddsRule{32767, 32767, 32767};  // the largest
-  plans[2].odds = maps::OddsRule{1, 1, 1};              // the smallest
-  plans[4].odds = maps::OddsRule{0, 3, 20};             // nothing is ever occupied
+  for (std::size_t i = 0; i < plans.size(); i += 2) plans[i].odds = maps::LogOddsUpdate{};
+  plans[0].odds = maps::LogOddsUpdate{32767, 32767, 32767};  // the largest
+  plans[2].odds = maps::LogOddsUpdate{1, 1, 1};              // the smallest
+  plans[4].odds = maps::LogOddsUpdate{0, 3, 20};             // nothing is ever occupied
   for (const double farthest : {0.0, 1e3}) {
     const Tally tally = contest(plans, 25, 1, 40, false, farthest);
     EXPECT_EQ(tally.different, 0u) << (farthest > 0.0 ? "on the device" : "on the host");
@@ -196,7 +196,7 @@ TEST(OccupancyBatch, OneScanCellByCell) {
   const std::uint32_t all[] = {0};
   const sensors::MapScan scans[] = {{0, {10.5, 29.5, 0, 0}, ranges}};
   batch.update(scans, all);
-  maps::Grid grid(p.grid);
+  maps::OccupancyGrid grid(p.grid);
   grid.words.assign(batch.words(0).begin(), batch.words(0).end());
   for (std::int64_t row = 0; row < 40; ++row)
     for (std::int64_t column = 0; column < 40; ++column) {

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "farm/farm.h"
-#include "maps/packets.h"
+#include "maps/map_packets.h"
 #include "tests/sensors/map_scans.h"
 #include "tests/sensors/scenes.h"
 
@@ -78,10 +78,10 @@ TEST(OccupancySettings, AsWritten) {
   const sensors::Occupancy map =
       only(mapped(1, {numbers("cell", {0.05}), numbers("words", {20, 10}), numbers("offset", {0.25, -1.75}),
                       numbers("rate", {2}), numbers("log_odds", {70, 30, 500}), text("laser", "laser")}));
-  EXPECT_EQ(map.plan.grid, (maps::GridPlan{-0.25, 1.75, 0.05, 20, 10})) << "the thesis' offset";
+  EXPECT_EQ(map.plan.grid, (maps::GridGeometry{-0.25, 1.75, 0.05, 20, 10})) << "the thesis' offset";
   EXPECT_EQ(map.row.rate, 2.0);
-  EXPECT_EQ(*map.plan.odds, (maps::OddsRule{70, 30, 500}));
-  EXPECT_EQ(*only(mapped(1, {numbers("log_odds", {1})})).plan.odds, maps::OddsRule{});
+  EXPECT_EQ(*map.plan.odds, (maps::LogOddsUpdate{70, 30, 500}));
+  EXPECT_EQ(*only(mapped(1, {numbers("log_odds", {1})})).plan.odds, maps::LogOddsUpdate{});
   EXPECT_FALSE(only(mapped(1, {numbers("log_odds", {0})})).plan.odds);
 }
 

@@ -15,8 +15,8 @@ constexpr std::uint32_t kDark = 0xFF474B50u, kBlue = 0xFF1748D1u, kWhite = 0xFFF
 std::string out(const std::string& name) { return scenes::own_file(name); }
 
 /// All cells in turn unexplored, occupied, free.
-maps::Grid striped(std::uint32_t columns, std::uint32_t rows) {
-  maps::Grid grid(maps::GridPlan{-1.0, 2.0, 0.1, columns, rows});
+maps::OccupancyGrid striped(std::uint32_t columns, std::uint32_t rows) {
+  maps::OccupancyGrid grid(maps::GridGeometry{-1.0, 2.0, 0.1, columns, rows});
   for (std::int64_t row = 0; row < maps::rows(grid.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(grid.plan); ++column)
       grid.set({column, row}, static_cast<maps::Cell>((row + column) % 3));
@@ -24,7 +24,7 @@ maps::Grid striped(std::uint32_t columns, std::uint32_t rows) {
 }
 
 TEST(MapFigure, CellsAreFourPixelsWithALineBetween) {
-  const maps::Grid grid = striped(30, 30);
+  const maps::OccupancyGrid grid = striped(30, 30);
   draw_map(grid, {"Title", "", {}}, out("cells.png"));
   const scenes::Picture picture = scenes::read_png(out("cells.png"));
   // The map's left side: the first column that is one colour, of the grid's lines, for a map's height.
@@ -41,7 +41,7 @@ TEST(MapFigure, CellsAreFourPixelsWithALineBetween) {
 }
 
 TEST(MapFigure, RobotsAreMarkedWhereTheyAre) {
-  maps::Grid grid(maps::GridPlan{-1.0, 2.0, 0.1, 10, 10});
+  maps::OccupancyGrid grid(maps::GridGeometry{-1.0, 2.0, 0.1, 10, 10});
   draw_map(grid, {"", "", {}}, out("bare.png"));
   draw_map(grid, {"", "", {{"one", {0.0, 0.0, 0.0, 0.0}}, {"far", {99.0, 0.0, 0.0, 0.0}}}}, out("robot.png"));
   const scenes::Picture bare = scenes::read_png(out("bare.png"));

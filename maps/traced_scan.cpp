@@ -1,4 +1,4 @@
-#include "maps/scan_ends.h"
+#include "maps/traced_scan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,12 +34,12 @@ CellBox intersect(const CellBox& a, const CellBox& b) {
           {std::min(a.high.column, b.high.column), std::min(a.high.row, b.high.row)}};
 }
 
-ScanEnds trace_ends(const GridPlan& plan, const ScanView& scan, std::span<std::uint32_t> ends) {
-  SF_CHECK(scan.range_max <= kFarthestRange * plan.cell && scan.range_min >= 0.0,
+TracedScan trace_scan(const GridGeometry& plan, const ScanView& scan, std::span<std::uint32_t> ends) {
+  SF_CHECK(scan.range_max <= kMaxRangeCells * plan.cell && scan.range_min >= 0.0,
            std::to_string(scan.range_max) + " m on cells of " + std::to_string(plan.cell) + " m");
   SF_CHECK(scan.beams.size() == scan.ranges.size() && ends.size() == scan.ranges.size(),
            std::to_string(scan.ranges.size()) + " ranges of " + std::to_string(scan.beams.size()) + " beams");
-  ScanEnds out;
+  TracedScan out;
   const base::Pose& X = scan.X_WS;
   const glm::dvec2 place{(X.x - plan.left) / plan.cell, (plan.top - X.y) / plan.cell};
   const double c = std::cos(X.yaw);

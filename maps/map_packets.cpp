@@ -1,4 +1,4 @@
-#include "maps/packets.h"
+#include "maps/map_packets.h"
 
 #include <algorithm>
 
@@ -17,13 +17,13 @@ std::uint32_t word_at(std::span<const std::uint8_t> bytes, std::uint32_t i) {
 
 bool all_sound(std::span<const std::uint8_t> bytes) {
   for (std::uint32_t i = 0; 4 * std::size_t{i} < bytes.size(); ++i)
-    if (!is_sound(word_at(bytes, i))) return false;
+    if (!is_valid(word_at(bytes, i))) return false;
   return true;
 }
 
 /// The split is fixed, so each field follows from the plan and the part: nothing a receiver adds up can surprise it.
 bool fits(const MapPart& part) {
-  if (!is_sound(part.plan) || part.parts != parts_of(part.plan) || part.part >= part.parts) return false;
+  if (!is_valid(part.plan) || part.parts != parts_of(part.plan) || part.part >= part.parts) return false;
   return part.count == std::min(kPartWords, words(part.plan) - part.first) && part.flags <= kTruePoses;
 }
 
@@ -64,12 +64,12 @@ PartFault read_plain(std::span<const std::uint8_t> datagram, PlainPart& part) {
   part.bytes = datagram.subspan(part.second ? 0 : kPlainHeader);
   if (part.bytes.size() % 4 != 0) return PartFault::too_short;
   part.count = static_cast<std::uint32_t>(part.bytes.size() / 4);
-  if (part.count > plain_half(kMostPlainWords)) return PartFault::too_long;
+  if (part.count > plain_half(kMaxPlainWords)) return PartFault::too_long;
   if (!part.second) {
     part.word_rows = datagram[0];
     part.word_columns = datagram[1];
     const std::uint32_t all = part.word_rows * part.word_columns;
-    if (all < 1 || all > kMostPlainWords) return PartFault::out_of_range;
+    if (all < 1 || all > kMaxPlainWords) return PartFault::out_of_range;
     if (part.count < plain_half(all)) return PartFault::too_short;
     if (part.count > plain_half(all)) return PartFault::too_long;
   }

@@ -1,4 +1,4 @@
-#include "maps/assembler.h"
+#include "maps/map_assembler.h"
 
 namespace sf::maps {
 
@@ -9,8 +9,8 @@ bool is_newer(std::uint32_t sequence, std::uint32_t than) { return sequence != t
 
 }  // namespace
 
-void Assembler::begin(std::uint32_t sequence, const GridPlan& plan, std::uint32_t parts) {
-  if (missing_ > 0) ++torn_;
+void MapAssembler::begin(std::uint32_t sequence, const GridGeometry& plan, std::uint32_t parts) {
+  if (missing_ > 0) ++incomplete_;
   if (!map_ || !(map_->plan == plan)) map_.emplace(plan);
   sequence_ = sequence;
   missing_ = parts;
@@ -18,14 +18,14 @@ void Assembler::begin(std::uint32_t sequence, const GridPlan& plan, std::uint32_
   old_sequence_.reset();
 }
 
-std::optional<Taken> Assembler::place(std::uint32_t sequence, const GridPlan& plan, std::uint32_t parts) {
+std::optional<PartStatus> MapAssembler::place(std::uint32_t sequence, const GridGeometry& plan, std::uint32_t parts) {
   if (!map_ || is_newer(sequence, sequence_)) {
     begin(sequence, plan, parts);
     return std::nullopt;
   }
   if (sequence == sequence_) {
     old_sequence_.reset();
-    if (!(map_->plan == plan)) return Taken::contradicts;
+    if (!(map_->plan == plan)) return PartStatus::contradicts;
     return std::nullopt;
   }
   if (old_sequence_ && is_newer(sequence, *old_sequence_)) {
@@ -33,39 +33,39 @@ std::optional<Taken> Assembler::place(std::uint32_t sequence, const GridPlan& pl
     return std::nullopt;
   }
   old_sequence_ = sequence;
-  return Taken::late;
+  return PartStatus::late;
 }
 
-Taken Assembler::arrived(std::uint32_t part) {
+PartStatus MapAssembler::arrived(std::uint32_t part) {
   here_[part] = true;
-  if (--missing_ > 0) return Taken::part;
-  ++whole_;
-  return Taken::whole;
+  if (--missing_ > 0) return PartStatus::part;
+  ++complete_;
+  return PartStatus::whole;
 }
 
-Taken Assembler::take(std::uint32_t sequence, std::span<const std::uint8_t> payload) {
+PartStatus MapAssembler::add_part(std::uint32_t sequence, std::span<const std::uint8_t> payload) {
   MapPart part;
-  if (read_part(payload, part) != PartFault::none) return Taken::faulty;
+  if (read_part(payload, part) != PartFault::none) return PartStatus::faulty;
   if (const auto left_out = place(sequence, part.plan, part.parts)) return *left_out;
-  if (here_[part.part]) return Taken::duplicate;
+  if (here_[part.part]) return PartStatus::duplicate;
   true_poses_ = (part.flags & kTruePoses) != 0;
   for (std::uint32_t i = 0; i < part.count; ++i) map_->words[part.first + i] = word_of(part, i);
   return arrived(part.part);
 }
 
-Taken Assembler::take_plain(std::span<const std::uint8_t> datagram, const GridPlan& place) {
+PartStatus MapAssembler::add_plain_part(std::span<const std::uint8_t> datagram, const GridGeometry& place) {
   PlainPart part;
-  if (read_plain(datagram, part) != PartFault::none) return Taken::faulty;
+  if (read_plain(datagram, part) != PartFault::none) return PartStatus::faulty;
   if (!part.second) {
-    GridPlan plan = place;
+    GridGeometry plan = place;
     plan.word_columns = part.word_columns;
     plan.word_rows = part.word_rows;
     begin(sequence_ + 1, plan, words(plan) > 1 ? 2 : 1);
   }
   const std::uint32_t all = map_ ? words(map_->plan) : 0;
-  if (part.second && part.count != all - plain_half(all)) return Taken::orphan;
+  if (part.second && part.count != all - plain_half(all)) return PartStatus::orphan;
   const std::uint32_t half = part.second ? 1 : 0;
-  if (here_[half]) return Taken::duplicate;
+  if (here_[half]) return PartStatus::duplicate;
   const std::uint32_t first = part.second ? plain_half(all) : 0;
   for (std::uint32_t i = 0; i < part.count; ++i) map_->words[first + i] = word_of(part, i);
   return arrived(half);

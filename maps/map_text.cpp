@@ -1,4 +1,4 @@
-#include "maps/text.h"
+#include "maps/map_text.h"
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@ namespace {
 char sign_of(Cell cell) { return cell == Cell::occupied ? '1' : cell == Cell::free ? ' ' : '0'; }
 
 /// What a square of cells is, those outside of the map left out.
-Cell of_square(const Grid& grid, std::int64_t column, std::int64_t row, std::int64_t side) {
+Cell of_square(const OccupancyGrid& grid, std::int64_t column, std::int64_t row, std::int64_t side) {
   Cell all = Cell::unexplored;
   for (std::int64_t r = row; r < std::min(row + side, rows(grid.plan)); ++r)
     for (std::int64_t c = column; c < std::min(column + side, columns(grid.plan)); ++c) {
@@ -20,7 +20,7 @@ Cell of_square(const Grid& grid, std::int64_t column, std::int64_t row, std::int
   return all;
 }
 
-std::string text_of_squares(const Grid& grid, std::int64_t side) {
+std::string text_of_squares(const OccupancyGrid& grid, std::int64_t side) {
   std::string text;
   for (std::int64_t row = 0; row < rows(grid.plan); row += side) {
     for (std::int64_t column = 0; column < columns(grid.plan); column += side)
@@ -32,15 +32,15 @@ std::string text_of_squares(const Grid& grid, std::int64_t side) {
 
 }  // namespace
 
-std::string text_of(const Grid& grid) { return text_of_squares(grid, 1); }
+std::string text_of(const OccupancyGrid& grid) { return text_of_squares(grid, 1); }
 
-std::string text_within(const Grid& grid, int across, int down) {
+std::string text_within(const OccupancyGrid& grid, int across, int down) {
   const auto squares = [](std::int64_t cells, int most) { return (cells + most - 1) / most; };
   return text_of_squares(grid, std::max(squares(columns(grid.plan), across), squares(rows(grid.plan), down)));
 }
 
-Census count(const Grid& grid) {
-  Census census;
+CellCounts count(const OccupancyGrid& grid) {
+  CellCounts census;
   for (const std::uint32_t word : grid.words)
     for (unsigned shift = 0; shift < 32; shift += 2) {
       const auto cell = static_cast<Cell>(word >> shift & 3u);

@@ -1,4 +1,4 @@
-#include "maps/plain_mapper.h"
+#include "maps/grid_update.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -8,7 +8,7 @@ namespace sf::maps {
 namespace {
 
 /// Frees every cell of one beam's line. `inside`: none of them needs to be looked for outside of the map.
-void free_line(Grid& grid, CellAt sensor, std::int32_t columns, std::int32_t rows, bool inside) {
+void free_line(OccupancyGrid& grid, CellAt sensor, std::int32_t columns, std::int32_t rows, bool inside) {
   const bool flat = std::abs(columns) >= std::abs(rows);
   const std::int32_t steps = std::abs(flat ? columns : rows);
   const std::int32_t aside = std::abs(flat ? rows : columns);
@@ -29,7 +29,7 @@ void free_line(Grid& grid, CellAt sensor, std::int32_t columns, std::int32_t row
 
 }  // namespace
 
-void add_ends(Grid& grid, const ScanEnds& scan, std::span<const std::uint32_t> ends) {
+void add_traced_scan(OccupancyGrid& grid, const TracedScan& scan, std::span<const std::uint32_t> ends) {
   const CellBox part = intersect(scan.box, cells_of(grid.plan));
   if (is_empty(part)) return;
   const bool inside = part.low == scan.box.low && part.high == scan.box.high;
@@ -40,20 +40,21 @@ void add_ends(Grid& grid, const ScanEnds& scan, std::span<const std::uint32_t> e
   }
 }
 
-void add_scan(Grid& grid, const ScanView& scan) {
+void add_scan(OccupancyGrid& grid, const ScanView& scan) {
   std::vector<std::uint32_t> ends(scan.ranges.size());
-  add_ends(grid, trace_ends(grid.plan, scan, ends), ends);
+  add_traced_scan(grid, trace_scan(grid.plan, scan, ends), ends);
 }
 
-void add_ends(OddsGrid& grid, const ScanEnds& scan, std::span<const std::uint32_t> ends, Grid& covered) {
+void add_traced_scan(LogOddsGrid& grid, const TracedScan& scan, std::span<const std::uint32_t> ends,
+                     OccupancyGrid& covered) {
   const CellBox part = intersect(scan.box, cells_of(grid.plan));
   if (is_empty(part)) return;
-  add_ends(covered, scan, ends);
+  add_traced_scan(covered, scan, ends);
   for (std::int64_t row = part.low.row; row < part.high.row; ++row) {
     for (std::int64_t column = part.low.column; column < part.high.column; ++column) {
       const Cell state = covered.at({column, row});
       if (state == Cell::unexplored) continue;
-      std::int16_t& odds = grid.cells[16 * covered.word_of({column, row}) + Grid::shift_of({column, row}) / 2];
+      std::int16_t& odds = grid.cells[16 * covered.word_of({column, row}) + OccupancyGrid::shift_of({column, row}) / 2];
       const std::int32_t more = state == Cell::occupied ? grid.rule.hit : -grid.rule.miss;
       odds = static_cast<std::int16_t>(std::clamp(odds + more, -grid.rule.limit, grid.rule.limit));
     }
@@ -63,19 +64,19 @@ void add_ends(OddsGrid& grid, const ScanEnds& scan, std::span<const std::uint32_
   }
 }
 
-void add_scan(OddsGrid& grid, const ScanView& scan) {
+void add_scan(LogOddsGrid& grid, const ScanView& scan) {
   std::vector<std::uint32_t> ends(scan.ranges.size());
-  Grid covered(grid.plan);
-  add_ends(grid, trace_ends(grid.plan, scan, ends), ends, covered);
+  OccupancyGrid covered(grid.plan);
+  add_traced_scan(grid, trace_scan(grid.plan, scan, ends), ends, covered);
 }
 
-Grid states_of(const OddsGrid& grid) {
-  Grid states(grid.plan);
-  take_states(grid, states);
+OccupancyGrid to_occupancy(const LogOddsGrid& grid) {
+  OccupancyGrid states(grid.plan);
+  write_occupancy(grid, states);
   return states;
 }
 
-void take_states(const OddsGrid& grid, Grid& states) {
+void write_occupancy(const LogOddsGrid& grid, OccupancyGrid& states) {
   std::fill(states.words.begin(), states.words.end(), 0u);
   for (std::size_t i = 0; i < grid.cells.size(); ++i) {
     const std::uint32_t state = grid.cells[i] > 0   ? SF_CELL_OCCUPIED

@@ -16,40 +16,41 @@
 #include <vector>
 
 #include "maps/grid.h"
-#include "maps/scan_ends.h"
+#include "maps/traced_scan.h"
 
 namespace sf::maps {
 
-void add_scan(Grid& grid, const ScanView& scan);
+void add_scan(OccupancyGrid& grid, const ScanView& scan);
 
 /// The same of a scan that is traced already.
-void add_ends(Grid& grid, const ScanEnds& scan, std::span<const std::uint32_t> ends);
+void add_traced_scan(OccupancyGrid& grid, const TracedScan& scan, std::span<const std::uint32_t> ends);
 
 /// What one scan adds to a cell's log odds, in whole units of the user's own (a hundredth, by default).
-struct OddsRule {
+struct LogOddsUpdate {
   std::int32_t hit = 85;     ///< added where a beam ended; in [0, 32767]
   std::int32_t miss = 40;    ///< taken off where beams only passed; in [0, 32767]
   std::int32_t limit = 350;  ///< in [1, 32767]: odds stay within +-limit, so that a map can change its mind
-  bool operator==(const OddsRule&) const = default;
+  bool operator==(const LogOddsUpdate&) const = default;
 };
 
 /// A map that weighs: log odds per cell, word by word as in Grid, within a word in the order of its bits. 0: not known.
-struct OddsGrid {
-  GridPlan plan;
-  OddsRule rule;
+struct LogOddsGrid {
+  GridGeometry plan;
+  LogOddsUpdate rule;
   std::vector<std::int16_t> cells;  ///< 16 a word
 
-  OddsGrid(const GridPlan& p, const OddsRule& r) : plan(p), rule(r), cells(16 * std::size_t{words(p)}) {}
+  LogOddsGrid(const GridGeometry& p, const LogOddsUpdate& r) : plan(p), rule(r), cells(16 * std::size_t{words(p)}) {}
 };
 
 /// Every cell that the scan covers is weighed once: as occupied, or else as free.
-void add_scan(OddsGrid& grid, const ScanView& scan);
+void add_scan(LogOddsGrid& grid, const ScanView& scan);
 /// @param covered scratch of the same plan: unexplored before and after
-void add_ends(OddsGrid& grid, const ScanEnds& scan, std::span<const std::uint32_t> ends, Grid& covered);
+void add_traced_scan(LogOddsGrid& grid, const TracedScan& scan, std::span<const std::uint32_t> ends,
+                     OccupancyGrid& covered);
 
 /// Occupied above 0, free below, unexplored at 0.
-Grid states_of(const OddsGrid& grid);
+OccupancyGrid to_occupancy(const LogOddsGrid& grid);
 /// @param states of the same plan: overwritten
-void take_states(const OddsGrid& grid, Grid& states);
+void write_occupancy(const LogOddsGrid& grid, OccupancyGrid& states);
 
 }  // namespace sf::maps

@@ -5,19 +5,19 @@
 #include <cmath>
 #include <limits>
 
-#include "maps/plain_mapper.h"
-#include "maps/text.h"
+#include "maps/grid_update.h"
+#include "maps/map_text.h"
 #include "tests/sensors/chance.h"
 
 namespace sf::maps {
 namespace {
 
 /// Cells of 1 m, 12 x 12, the first at the origin.
-GridPlan plan() { return {0.0, 12.0, 1.0, 3, 3}; }
+GridGeometry plan() { return {0.0, 12.0, 1.0, 3, 3}; }
 
 /// One beam along +x of the sensor's frame.
-Grid one_beam(const base::Pose& X_WS, double range, double range_max, double range_min = 0.0) {
-  Grid grid(plan());
+OccupancyGrid one_beam(const base::Pose& X_WS, double range, double range_max, double range_min = 0.0) {
+  OccupancyGrid grid(plan());
   const std::vector<glm::dvec2> beams = beam_directions(0.0, 1);
   const std::vector<double> ranges{range};
   add_scan(grid, {X_WS, ranges, beams, range_min, range_max});
@@ -25,7 +25,7 @@ Grid one_beam(const base::Pose& X_WS, double range, double range_max, double ran
 }
 
 TEST(MapRule, ABeamThatMeetsSomething) {
-  const Grid grid = one_beam({2.5, 9.5, 0, 0}, 3.0, 8.0);
+  const OccupancyGrid grid = one_beam({2.5, 9.5, 0, 0}, 3.0, 8.0);
   EXPECT_EQ(text_of(grid).substr(2 * 13, 12), "00   1000000");
   EXPECT_EQ(count(grid).occupied, 1u);
   EXPECT_EQ(count(grid).free, 3u);
@@ -45,7 +45,7 @@ TEST(MapRule, WhatSaysNothing) {
 }
 
 TEST(MapRule, ZeroRangeOccupiesTheSensorsCell) {
-  const Grid grid = one_beam({2.5, 9.5, 0, 0}, 0.0, 3.0);
+  const OccupancyGrid grid = one_beam({2.5, 9.5, 0, 0}, 0.0, 3.0);
   EXPECT_EQ(grid.at({2, 2}), Cell::occupied);
   EXPECT_EQ(count(grid).unexplored, 143u);
 }
@@ -61,7 +61,7 @@ TEST(MapRule, HalvesGoAwayFromTheSensor) {
 
 TEST(MapRule, WithinAScanOccupiedBeatsFree) {
   // The first beam's end lies on the second's line, and would be wiped out if they were set in turn.
-  Grid grid(plan());
+  OccupancyGrid grid(plan());
   const std::vector<glm::dvec2> beams{{1, 0}, {1, 0}};
   const std::vector<double> ranges{3.0, 5.0};
   add_scan(grid, {{2.5, 9.5, 0, 0}, ranges, beams, 0.0, 8.0});
@@ -69,7 +69,7 @@ TEST(MapRule, WithinAScanOccupiedBeatsFree) {
 }
 
 TEST(MapRule, ALaterScanIsRight) {
-  Grid grid = one_beam({2.5, 9.5, 0, 0}, 3.0, 8.0);
+  OccupancyGrid grid = one_beam({2.5, 9.5, 0, 0}, 3.0, 8.0);
   const std::vector<glm::dvec2> beams{{1, 0}};
   const std::vector<double> ranges{6.0};
   add_scan(grid, {{2.5, 9.5, 0, 0}, ranges, beams, 0.0, 8.0});
@@ -77,9 +77,9 @@ TEST(MapRule, ALaterScanIsRight) {
 }
 
 TEST(MapRule, BesideTheMap) {
-  const Grid into = one_beam({-2.5, 9.5, 0, 0}, 4.0, 8.0);
+  const OccupancyGrid into = one_beam({-2.5, 9.5, 0, 0}, 4.0, 8.0);
   EXPECT_EQ(text_of(into).substr(2 * 13, 12), " 10000000000") << "it comes from outside";
-  const Grid out = one_beam({9.5, 9.5, 0, 0}, 7.0, 8.0);
+  const OccupancyGrid out = one_beam({9.5, 9.5, 0, 0}, 7.0, 8.0);
   EXPECT_EQ(text_of(out).substr(2 * 13, 12), "000000000   ") << "its end is outside";
   EXPECT_EQ(count(one_beam({-5.5, 9.5, 0, 0}, 4.0, 8.0)).unexplored, 144u);
   for (const double far : {1e9, 1e300, std::numeric_limits<double>::infinity(), std::nan("")})
@@ -96,8 +96,8 @@ TEST(MapRule, FarFromTheOriginTheSameCells) {
     std::vector<double> ranges;
     for (int i = 0; i < 91; ++i) ranges.push_back(chance.below(6 * 64) / 64.0);
     const double far = 131072.0;
-    Grid here(plan());
-    Grid there(GridPlan{far, 12.0 - far, 1.0, 3, 3});
+    OccupancyGrid here(plan());
+    OccupancyGrid there(GridGeometry{far, 12.0 - far, 1.0, 3, 3});
     add_scan(here, {X, ranges, beams, 0.0, 5.0});
     add_scan(there, {{X.x + far, X.y - far, 0, X.yaw}, ranges, beams, 0.0, 5.0});
     // An end within rounding of a border may fall to either side; none of these does.
@@ -111,14 +111,14 @@ TEST(MapRule, LinesAreAsWorded) {
   for (int k = 0; k < 3000; ++k) {
     const auto dc = static_cast<std::int32_t>(chance.below(41)) - 20;
     const auto dr = static_cast<std::int32_t>(chance.below(41)) - 20;
-    GridPlan wide{0, 0, 1, 11, 11};
-    Grid grid(wide);
-    ScanEnds scan;
+    GridGeometry wide{0, 0, 1, 11, 11};
+    OccupancyGrid grid(wide);
+    TracedScan scan;
     scan.sensor = {21, 21};
     scan.box = cells_of(wide);
     const std::uint32_t end[] = {pack_end(dc, dr, false)};
-    add_ends(grid, scan, end);
-    Grid expected(wide);
+    add_traced_scan(grid, scan, end);
+    OccupancyGrid expected(wide);
     const bool flat = std::abs(dc) >= std::abs(dr);
     const int n = std::max(std::abs(dc), std::abs(dr));
     for (int i = 0; i <= n; ++i) {
@@ -150,7 +150,7 @@ TEST(MapRule, BearingsEndExactlyAtTheFieldOfView) {
 }
 
 TEST(LogOdds, EachScanWeighsOnceAndStaysWithinLimits) {
-  OddsGrid grid(plan(), {85, 40, 200});
+  LogOddsGrid grid(plan(), {85, 40, 200});
   // Two beams through the same cells: still one miss each.
   const std::vector<glm::dvec2> beams{{1, 0}, {1, 0}};
   const std::vector<double> ranges{3.0, 3.0};
@@ -159,8 +159,8 @@ TEST(LogOdds, EachScanWeighsOnceAndStaysWithinLimits) {
     add_scan(grid, {{2.5, 9.5, 0, 0}, both, beams, 0.0, 8.0});
   };
   const auto at = [&](std::int64_t column) {
-    const Grid shape(plan());
-    return grid.cells[16 * shape.word_of({column, 2}) + Grid::shift_of({column, 2}) / 2];
+    const OccupancyGrid shape(plan());
+    return grid.cells[16 * shape.word_of({column, 2}) + OccupancyGrid::shift_of({column, 2}) / 2];
   };
   add(3.0);
   EXPECT_EQ(at(5), 85);
@@ -169,13 +169,13 @@ TEST(LogOdds, EachScanWeighsOnceAndStaysWithinLimits) {
   for (int k = 0; k < 9; ++k) add(3.0);
   EXPECT_EQ(at(5), 200);
   EXPECT_EQ(at(4), -200);
-  EXPECT_EQ(states_of(grid).at({5, 2}), Cell::occupied);
+  EXPECT_EQ(to_occupancy(grid).at({5, 2}), Cell::occupied);
   add(6.0);
-  EXPECT_EQ(states_of(grid).at({5, 2}), Cell::occupied) << "one scan does not change its mind";
+  EXPECT_EQ(to_occupancy(grid).at({5, 2}), Cell::occupied) << "one scan does not change its mind";
   for (int k = 0; k < 5; ++k) add(6.0);
   EXPECT_EQ(at(5), -40);
-  EXPECT_EQ(states_of(grid).at({5, 2}), Cell::free);
-  EXPECT_EQ(states_of(grid).at({9, 9}), Cell::unexplored);
+  EXPECT_EQ(to_occupancy(grid).at({5, 2}), Cell::free);
+  EXPECT_EQ(to_occupancy(grid).at({9, 9}), Cell::unexplored);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Scans as end cells: the part of the rule (maps/plain_mapper.h) that needs real numbers, in double, done once for
+// Scans as end cells: the part of the rule (maps/grid_update.h) that needs real numbers, in double, done once for
 // everyone. What follows from it is whole numbers.
 
 #include <cstdint>
@@ -27,10 +27,10 @@ struct ScanView {
   std::span<const double> ranges;     ///< [m]; what is not a number, or negative, says nothing
   std::span<const glm::dvec2> beams;  ///< unit directions in the sensor's frame, one per range
   double range_min = 0.0;             ///< [m] what is not farther says nothing; where 0, a range of 0 does
-  double range_max = 0.0;             ///< [m] nothing was met from here on. Rule: range_max <= kFarthestRange cells
+  double range_max = 0.0;             ///< [m] nothing was met from here on. Rule: range_max <= kMaxRangeCells cells
 };
 
-inline constexpr double kFarthestRange = 1'022.0;  ///< [cells] 30.6 m where a cell is 3 cm
+inline constexpr double kMaxRangeCells = 1'022.0;  ///< [cells] 30.6 m where a cell is 3 cm
 
 /// Bearings from -fov/2 to +fov/2, as world::bearing_of has them. @param fov [rad] @param samples at least 1
 std::vector<glm::dvec2> beam_directions(double fov, std::uint32_t samples);
@@ -43,10 +43,10 @@ struct CellBox {
 CellBox intersect(const CellBox& a, const CellBox& b);
 inline bool is_empty(const CellBox& box) { return box.low.column >= box.high.column || box.low.row >= box.high.row; }
 /// All of a map.
-inline CellBox cells_of(const GridPlan& plan) { return {{0, 0}, {columns(plan), rows(plan)}}; }
+inline CellBox cells_of(const GridGeometry& plan) { return {{0, 0}, {columns(plan), rows(plan)}}; }
 
 /// A scan on a map.
-struct ScanEnds {
+struct TracedScan {
   CellAt sensor;
   glm::dvec2
       within;   ///< [cells] of the sensor from the middle of its cell, x along columns, y along rows: in [-.5, .5]
@@ -54,6 +54,6 @@ struct ScanEnds {
 };
 
 /// Writes one end per range into `ends`. A beam that says nothing repeats one that does, which changes nothing.
-ScanEnds trace_ends(const GridPlan& plan, const ScanView& scan, std::span<std::uint32_t> ends);
+TracedScan trace_scan(const GridGeometry& plan, const ScanView& scan, std::span<std::uint32_t> ends);
 
 }  // namespace sf::maps

@@ -1,6 +1,6 @@
 // Maps over a network that loses, repeats and reorders, from senders that start again; and any bytes at all.
 
-#include "maps/assembler.h"
+#include "maps/map_assembler.h"
 
 #include <gtest/gtest.h>
 
@@ -11,16 +11,16 @@
 namespace sf::maps {
 namespace {
 
-GridPlan plan() { return {-1.8, 1.8, 0.03, 30, 30}; }
+GridGeometry plan() { return {-1.8, 1.8, 0.03, 30, 30}; }
 
 /// A map whose words tell the map and the word.
-Grid numbered(std::uint32_t map, const GridPlan& p = plan()) {
-  Grid grid(p);
+OccupancyGrid numbered(std::uint32_t map, const GridGeometry& p = plan()) {
+  OccupancyGrid grid(p);
   for (std::uint32_t i = 0; i < grid.words.size(); ++i) grid.words[i] = (map * 2654435761u + i) & 0x55555555u;
   return grid;
 }
 
-std::vector<base::Bytes> parts_of(const Grid& grid, std::uint32_t flags = 0) {
+std::vector<base::Bytes> parts_of(const OccupancyGrid& grid, std::uint32_t flags = 0) {
   std::vector<base::Bytes> parts(maps::parts_of(grid.plan));
   for (std::uint32_t p = 0; p < parts.size(); ++p)
     put_part(
@@ -28,7 +28,7 @@ std::vector<base::Bytes> parts_of(const Grid& grid, std::uint32_t flags = 0) {
   return parts;
 }
 
-std::vector<base::Bytes> plain_parts(const Grid& grid) {
+std::vector<base::Bytes> plain_parts(const OccupancyGrid& grid) {
   std::vector<base::Bytes> parts(2);
   const std::uint32_t half = plain_half(words(grid.plan));
   parts[0] = {static_cast<std::uint8_t>(grid.plan.word_rows), static_cast<std::uint8_t>(grid.plan.word_columns)};
@@ -37,7 +37,7 @@ std::vector<base::Bytes> plain_parts(const Grid& grid) {
 }
 
 TEST(MapPackets, EveryByteOfAPart) {
-  Grid grid(GridPlan{1.0, -2.0, 0.5, 2, 1});
+  OccupancyGrid grid(GridGeometry{1.0, -2.0, 0.5, 2, 1});
   grid.words = {0x00000001u, 0x8A000000u};
   const base::Bytes bytes = parts_of(grid, kTruePoses)[0];
   const base::Bytes expected{0,    0,    0, 0, 0, 0, 0xF0, 0x3F, 0, 0, 0, 0, 0, 0, 0, 0xC0, 0, 0, 0, 0, 0, 0,
@@ -79,115 +79,116 @@ TEST(MapPackets, WhatNoMapSaysIsRefused) {
   EXPECT_EQ(patched(36, std::uint32_t{3}), PartFault::out_of_range) << "a state that no cell has";
 }
 
-TEST(Assembler, PartsInAnyOrderMakeTheMap) {
-  Assembler assembler;
+TEST(MapAssembler, PartsInAnyOrderMakeTheMap) {
+  MapAssembler assembler;
   EXPECT_EQ(assembler.map(), nullptr);
-  const Grid grid = numbered(1);
+  const OccupancyGrid grid = numbered(1);
   const auto parts = parts_of(grid, kTruePoses);
-  EXPECT_EQ(assembler.take(7, parts[2]), Taken::part);
-  EXPECT_EQ(assembler.take(7, parts[0]), Taken::part);
-  EXPECT_EQ(assembler.take(7, parts[0]), Taken::duplicate);
-  EXPECT_EQ(assembler.take(7, parts[1]), Taken::whole);
-  EXPECT_EQ(assembler.take(7, parts[1]), Taken::duplicate);
+  EXPECT_EQ(assembler.add_part(7, parts[2]), PartStatus::part);
+  EXPECT_EQ(assembler.add_part(7, parts[0]), PartStatus::part);
+  EXPECT_EQ(assembler.add_part(7, parts[0]), PartStatus::duplicate);
+  EXPECT_EQ(assembler.add_part(7, parts[1]), PartStatus::whole);
+  EXPECT_EQ(assembler.add_part(7, parts[1]), PartStatus::duplicate);
   EXPECT_EQ(assembler.map()->words, grid.words);
   EXPECT_EQ(assembler.map()->plan, grid.plan);
   EXPECT_TRUE(assembler.true_poses());
-  EXPECT_EQ(assembler.whole_maps(), 1u);
-  EXPECT_EQ(assembler.torn_maps(), 0u);
+  EXPECT_EQ(assembler.complete_maps(), 1u);
+  EXPECT_EQ(assembler.incomplete_maps(), 0u);
 }
 
-TEST(Assembler, WhatWasLostIsAsBefore) {
-  Assembler assembler;
-  for (const base::Bytes& part : parts_of(numbered(1))) assembler.take(1, part);
+TEST(MapAssembler, WhatWasLostIsAsBefore) {
+  MapAssembler assembler;
+  for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(1, part);
   const auto next = parts_of(numbered(2));
-  assembler.take(2, next[0]);
-  assembler.take(2, next[2]);
-  EXPECT_EQ(assembler.take(3, parts_of(numbered(3))[0]), Taken::part) << "a newer map begins";
-  EXPECT_EQ(assembler.torn_maps(), 1u);
-  EXPECT_EQ(assembler.whole_maps(), 1u);
+  assembler.add_part(2, next[0]);
+  assembler.add_part(2, next[2]);
+  EXPECT_EQ(assembler.add_part(3, parts_of(numbered(3))[0]), PartStatus::part) << "a newer map begins";
+  EXPECT_EQ(assembler.incomplete_maps(), 1u);
+  EXPECT_EQ(assembler.complete_maps(), 1u);
   EXPECT_EQ(assembler.map()->words[0], numbered(3).words[0]);
   EXPECT_EQ(assembler.map()->words[400], numbered(1).words[400]) << "its newest part";
   EXPECT_EQ(assembler.map()->words[899], numbered(2).words[899]);
 }
 
-TEST(Assembler, LatePartsAreLeftOut) {
-  Assembler assembler;
+TEST(MapAssembler, LatePartsAreLeftOut) {
+  MapAssembler assembler;
   const auto old = parts_of(numbered(1));
-  assembler.take(1, old[0]);
-  for (const base::Bytes& part : parts_of(numbered(2))) assembler.take(2, part);
-  EXPECT_EQ(assembler.take(1, old[1]), Taken::late);
-  EXPECT_EQ(assembler.take(1, old[2]), Taken::late) << "another of the same old map is no sign of a restart";
+  assembler.add_part(1, old[0]);
+  for (const base::Bytes& part : parts_of(numbered(2))) assembler.add_part(2, part);
+  EXPECT_EQ(assembler.add_part(1, old[1]), PartStatus::late);
+  EXPECT_EQ(assembler.add_part(1, old[2]), PartStatus::late) << "another of the same old map is no sign of a restart";
   EXPECT_EQ(assembler.map()->words, numbered(2).words);
 }
 
-TEST(Assembler, ASenderThatStartsAgainIsBelieved) {
-  Assembler assembler;
-  for (const base::Bytes& part : parts_of(numbered(1))) assembler.take(1000, part);
+TEST(MapAssembler, ASenderThatStartsAgainIsBelieved) {
+  MapAssembler assembler;
+  for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(1000, part);
   const auto again = [&](std::uint32_t sequence) {
-    Taken last = Taken::faulty;
-    for (const base::Bytes& part : parts_of(numbered(50 + sequence))) last = assembler.take(sequence, part);
+    PartStatus last = PartStatus::faulty;
+    for (const base::Bytes& part : parts_of(numbered(50 + sequence))) last = assembler.add_part(sequence, part);
     return last;
   };
-  EXPECT_EQ(again(0), Taken::late) << "it could be a late one";
-  EXPECT_EQ(again(1), Taken::whole);
-  EXPECT_EQ(again(2), Taken::whole);
+  EXPECT_EQ(again(0), PartStatus::late) << "it could be a late one";
+  EXPECT_EQ(again(1), PartStatus::whole);
+  EXPECT_EQ(again(2), PartStatus::whole);
   EXPECT_EQ(assembler.map()->words, numbered(52).words);
 }
 
-TEST(Assembler, CountersWrap) {
-  Assembler assembler;
-  for (const base::Bytes& part : parts_of(numbered(1))) assembler.take(0xFFFFFFFFu, part);
-  Taken last = Taken::faulty;
-  for (const base::Bytes& part : parts_of(numbered(2))) last = assembler.take(0, part);
-  EXPECT_EQ(last, Taken::whole);
+TEST(MapAssembler, CountersWrap) {
+  MapAssembler assembler;
+  for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(0xFFFFFFFFu, part);
+  PartStatus last = PartStatus::faulty;
+  for (const base::Bytes& part : parts_of(numbered(2))) last = assembler.add_part(0, part);
+  EXPECT_EQ(last, PartStatus::whole);
 }
 
 /// Of two that are half way round apart neither is newer.
-TEST(Assembler, HalfWayRoundIsNotNewer) {
+TEST(MapAssembler, HalfWayRoundIsNotNewer) {
   const auto after = [](std::uint32_t first, std::uint32_t next) {
-    Assembler assembler;
-    for (const base::Bytes& part : parts_of(numbered(1))) assembler.take(first, part);
-    return assembler.take(next, parts_of(numbered(2))[0]);
+    MapAssembler assembler;
+    for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(first, part);
+    return assembler.add_part(next, parts_of(numbered(2))[0]);
   };
-  EXPECT_EQ(after(5, 5 + 0x7FFFFFFFu), Taken::part);  // the farthest that is ahead
-  EXPECT_EQ(after(5, 5 + 0x80000000u), Taken::late);
-  EXPECT_EQ(after(5 + 0x80000000u, 5), Taken::late);
-  EXPECT_EQ(after(5, 4), Taken::late);
+  EXPECT_EQ(after(5, 5 + 0x7FFFFFFFu), PartStatus::part);  // the farthest that is ahead
+  EXPECT_EQ(after(5, 5 + 0x80000000u), PartStatus::late);
+  EXPECT_EQ(after(5 + 0x80000000u, 5), PartStatus::late);
+  EXPECT_EQ(after(5, 4), PartStatus::late);
 }
 
-TEST(Assembler, AMapThatChangesItsPlanBeginsAnew) {
-  Assembler assembler;
-  for (const base::Bytes& part : parts_of(numbered(1))) assembler.take(1, part);
-  GridPlan other = plan();
+TEST(MapAssembler, AMapThatChangesItsPlanBeginsAnew) {
+  MapAssembler assembler;
+  for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(1, part);
+  GridGeometry other = plan();
   other.word_rows = 2;
-  EXPECT_EQ(assembler.take(1, parts_of(numbered(2, other))[0]), Taken::contradicts);
-  EXPECT_EQ(assembler.take(2, parts_of(numbered(2, other))[0]), Taken::whole);
+  EXPECT_EQ(assembler.add_part(1, parts_of(numbered(2, other))[0]), PartStatus::contradicts);
+  EXPECT_EQ(assembler.add_part(2, parts_of(numbered(2, other))[0]), PartStatus::whole);
   EXPECT_EQ(assembler.map()->words.size(), 60u);
 }
 
-TEST(Assembler, TheThesisFormInTwoDatagrams) {
-  Assembler assembler;
-  const Grid grid = numbered(4);
+TEST(MapAssembler, TheThesisFormInTwoDatagrams) {
+  MapAssembler assembler;
+  const OccupancyGrid grid = numbered(4);
   const auto parts = plain_parts(grid);
-  EXPECT_EQ(assembler.take_plain(parts[1]), Taken::orphan) << "whose half is it?";
-  EXPECT_EQ(assembler.take_plain(parts[0]), Taken::part);
-  EXPECT_EQ(assembler.take_plain(parts[1]), Taken::whole);
+  EXPECT_EQ(assembler.add_plain_part(parts[1]), PartStatus::orphan) << "whose half is it?";
+  EXPECT_EQ(assembler.add_plain_part(parts[0]), PartStatus::part);
+  EXPECT_EQ(assembler.add_plain_part(parts[1]), PartStatus::whole);
   EXPECT_EQ(assembler.map()->words, grid.words);
-  EXPECT_EQ(assembler.take_plain(parts[1]), Taken::duplicate);
-  GridPlan odd = plan();
+  EXPECT_EQ(assembler.add_plain_part(parts[1]), PartStatus::duplicate);
+  GridGeometry odd = plan();
   odd.word_columns = 3;
   odd.word_rows = 5;
-  for (const base::Bytes& part : plain_parts(numbered(5, odd))) assembler.take_plain(part);
+  for (const base::Bytes& part : plain_parts(numbered(5, odd))) assembler.add_plain_part(part);
   EXPECT_EQ(assembler.map()->words, numbered(5, odd).words) << "8 words and 7";
-  GridPlan one = plan();
+  GridGeometry one = plan();
   one.word_columns = one.word_rows = 1;
-  EXPECT_EQ(assembler.take_plain(plain_parts(numbered(6, one))[0]), Taken::whole) << "one word is all in the first";
+  EXPECT_EQ(assembler.add_plain_part(plain_parts(numbered(6, one))[0]), PartStatus::whole)
+      << "one word is all in the first";
 }
 
-TEST(Assembler, AnyBytesAndAnyNetwork) {
+TEST(MapAssembler, AnyBytesAndAnyNetwork) {
   // Parts of a few maps, cut, flipped, repeated and shuffled: nothing breaks, and what is shown was sent by somebody.
   trial::Chance chance(9);
-  Assembler assembler, plain;
+  MapAssembler assembler, plain;
   std::uint64_t used = 0;
   for (int k = 0; k < 20'000; ++k) {
     const std::uint32_t map = chance.below(8);
@@ -198,13 +199,13 @@ TEST(Assembler, AnyBytesAndAnyNetwork) {
     if (harm == 1)
       for (int flips = 0; flips < 3; ++flips)
         bytes[chance.below(40)] ^= static_cast<std::uint8_t>(1u << chance.below(8));
-    const Taken taken = assembler.take(chance.below(6), bytes);
-    used += taken == Taken::part || taken == Taken::whole;
-    plain.take_plain(bytes);
-    for (const Assembler* a : {&assembler, &plain}) {
+    const PartStatus taken = assembler.add_part(chance.below(6), bytes);
+    used += taken == PartStatus::part || taken == PartStatus::whole;
+    plain.add_plain_part(bytes);
+    for (const MapAssembler* a : {&assembler, &plain}) {
       if (a->map() == nullptr) continue;
-      ASSERT_TRUE(a == &plain || is_sound(a->map()->plan));
-      ASSERT_LE(a->map()->words.size(), std::size_t{kMostWords});
+      ASSERT_TRUE(a == &plain || is_valid(a->map()->plan));
+      ASSERT_LE(a->map()->words.size(), std::size_t{kMaxWords});
     }
   }
   EXPECT_GT(used, 500u);

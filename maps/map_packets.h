@@ -13,20 +13,20 @@
 
 namespace sf::maps {
 
-inline constexpr std::uint32_t kPartWords = 305;        ///< of every part but the last
-inline constexpr std::uint32_t kMostPlainWords = 1022;  ///< of a map in the thesis' form: datagrams below 2048 bytes
-inline constexpr std::uint32_t kMostPlainSide = 255;    ///< word rows and columns of such a map
-inline constexpr std::uint32_t kTruePoses = 1;          ///< flag: made from where the robot was, not from an estimate
+inline constexpr std::uint32_t kPartWords = 305;       ///< of every part but the last
+inline constexpr std::uint32_t kMaxPlainWords = 1022;  ///< of a map in the thesis' form: datagrams below 2048 bytes
+inline constexpr std::uint32_t kMaxPlainSide = 255;    ///< word rows and columns of such a map
+inline constexpr std::uint32_t kTruePoses = 1;         ///< flag: made from where the robot was, not from an estimate
 
 inline std::uint32_t parts_of(std::uint32_t words) { return (words + kPartWords - 1) / kPartWords; }
-inline std::uint32_t parts_of(const GridPlan& plan) { return parts_of(words(plan)); }
+inline std::uint32_t parts_of(const GridGeometry& plan) { return parts_of(words(plan)); }
 
 /// Words of the first datagram in the thesis' form.
 inline std::uint32_t plain_half(std::uint32_t words) { return (words + 1) / 2; }
 
 /// A receiver's view of a payload of the farm's form.
 struct MapPart {
-  GridPlan plan;
+  GridGeometry plan;
   std::uint32_t part = 0;
   std::uint32_t parts = 1;
   std::uint32_t flags = 0;
@@ -45,7 +45,7 @@ PartFault read_part(std::span<const std::uint8_t> payload, MapPart& part);
 
 /// Appends part `part` of a map. `word_at(i)` gives word i. @param flags see kTruePoses
 template <class WordAt>
-void put_part(const GridPlan& plan, std::uint32_t part, std::uint32_t flags, WordAt&& word_at, base::Bytes& out) {
+void put_part(const GridGeometry& plan, std::uint32_t part, std::uint32_t flags, WordAt&& word_at, base::Bytes& out) {
   const std::uint32_t first = part * kPartWords;
   const std::uint32_t count = words(plan) - first < kPartWords ? words(plan) - first : kPartWords;
   base::ByteWriter writer(out);
