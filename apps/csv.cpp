@@ -60,7 +60,7 @@ std::string place_of(const world::World& world, const sensors::Roster& roster, c
 
 std::string text_of(const world::World& world, const base::ReadingBlock& reading) {
   if (reading.kind == base::kLaser) return beams_csv(world, reading);
-  const sensors::SensorKind& kind = *sensors::find_kind(reading.kind);
+  const sensors::SensorKind& kind = *sensors::find_sensor_type(reading.kind);
   std::string text = csv_heading(kind);
   const std::size_t width = element_width(kind);
   for (std::size_t first = 0; first + width <= reading.values.size(); first += width) {

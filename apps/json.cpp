@@ -37,7 +37,7 @@ Json reasons(const netio::Counts& counts) {
 }
 
 std::uint64_t count_rays(const netio::Summary& summary) {
-  const auto lasers = summary.of.find(std::string(sensors::find_kind(base::kLaser)->name));
+  const auto lasers = summary.of.find(std::string(sensors::find_sensor_type(base::kLaser)->name));
   return lasers == summary.of.end() ? 0 : lasers->second.elements;
 }
 
@@ -261,7 +261,7 @@ std::string json_of(const netio::Summary& s) {
 }
 
 std::string json_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading) {
-  const sensors::SensorKind& kind = *sensors::find_kind(reading.kind);
+  const sensors::SensorKind& kind = *sensors::find_sensor_type(reading.kind);
   Json head{{"robot", world.movers[reading.mover].name}, {"sensor", reading.sensor},
             {"sensor_name", roster.row(reading).name},   {"kind", kind.name},
             {"pose", pose_json(reading.X_WM)},           {"sensor_pose", pose_json(reading.X_WS)}};

@@ -84,7 +84,7 @@ Chosen require_sensor(const world::World& world, const sensors::Roster& roster, 
   const std::string has = all_sensors_of(roster, mover);
   const std::string& robot = world.movers[mover].name;
   if (has.empty()) throw base::InputError(world.file, 0, robot + " has no sensor");
-  const sensors::SensorKind* kind = sensors::find_kind(options.kind);
+  const sensors::SensorKind* kind = sensors::find_sensor_type(options.kind);
   throw base::InputError(world.file, 0,
                          robot + " has no " + std::string(kind != nullptr ? kind->name : "sensor") + " " +
                              std::to_string(options.sensor) + "; it has " + has + " (--kind, --sensor)");

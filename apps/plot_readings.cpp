@@ -6,7 +6,7 @@
 #include <map>
 
 #include "apps/wording.h"
-#include "record/readings.h"
+#include "record/reading_messages.h"
 #include "viz/series_figure.h"
 
 namespace sf::apps {
@@ -22,14 +22,14 @@ struct Channel {
   std::vector<const record::ReadingSample*> readings;
 };
 
-const record::KindInfo* find_kind(const record::RunInfo& info, const std::string& name) {
-  for (const record::KindInfo& kind : info.kinds)
+const record::SensorTypeInfo* find_sensor_type(const record::RunInfo& info, const std::string& name) {
+  for (const record::SensorTypeInfo& kind : info.sensor_types)
     if (kind.name == name) return &kind;
   return nullptr;
 }
 
 /// Every sensor of a kind that said something.
-std::vector<Channel> channels_of(const record::Recording& recording, const record::KindInfo& kind) {
+std::vector<Channel> channels_of(const record::Recording& recording, const record::SensorTypeInfo& kind) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Channel> rows;
   for (const record::ReadingSample& reading : recording.readings)
     if (reading.kind == kind.id) rows[{reading.mover, reading.sensor}].readings.push_back(&reading);
@@ -101,7 +101,7 @@ viz::SeriesPlan fields(const record::Recording& recording, const std::vector<Cha
 std::vector<std::string> draw_readings(const record::Recording& recording, const std::string& folder) {
   std::vector<std::string> files;
   const auto draw = [&](const std::string& name, const char* file, auto&& plan_of) {
-    const record::KindInfo* kind = find_kind(recording.info, name);
+    const record::SensorTypeInfo* kind = find_sensor_type(recording.info, name);
     if (kind == nullptr) return;
     const std::vector<Channel> channels = channels_of(recording, *kind);
     if (channels.empty()) return;

@@ -3,7 +3,7 @@
 #include <map>
 #include <string_view>
 
-#include "record/readings.h"
+#include "record/reading_messages.h"
 #include "record/schemas.h"
 
 namespace sf::record {
@@ -38,7 +38,7 @@ void add_motion(McapWriter& mcap, const RunInfo& info, Channels& channels) {
 void add_readings(McapWriter& mcap, const RunInfo& info, Channels& channels) {
   const std::uint16_t scan = add_schema(mcap, kLaserScan);
   std::map<std::uint8_t, std::uint16_t> schemas;  // by kind
-  for (const KindInfo& kind : info.kinds)
+  for (const SensorTypeInfo& kind : info.sensor_types)
     schemas[kind.id] = mcap.add_schema(type_of(kind), "ros2msg", schema_text(kind));
   for (std::size_t row = 0; row < info.movers.size(); ++row) {
     const MoverInfo& mover = info.movers[row];
@@ -55,7 +55,7 @@ void add_frames(const RunInfo& info, Channels& channels) {
     MoverChannels& row = channels.movers.emplace_back();
     for (const LaserInfo& laser : mover.lasers) row.frames.push_back(frame_of(laser.topic));
     for (const SensorInfo& sensor : mover.sensors)
-      row.readings.push_back({0, frame_of(sensor.topic), find_kind(info, sensor.kind)});
+      row.readings.push_back({0, frame_of(sensor.topic), find_sensor_type(info, sensor.kind)});
   }
 }
 

@@ -14,7 +14,7 @@ namespace sf::record {
 struct SensorChannel {
   std::uint16_t channel = 0;  ///< 0: readings are not kept
   std::string frame;
-  const KindInfo* kind = nullptr;  ///< row of the run info that the channels were made of
+  const SensorTypeInfo* kind = nullptr;  ///< row of the run info that the channels were made of
 };
 
 struct MoverChannels {

@@ -4,7 +4,7 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
-#include "record/crc.h"
+#include "record/crc32.h"
 
 namespace sf::record {
 
@@ -14,7 +14,7 @@ using View = std::span<const std::uint8_t>;
 namespace {
 
 constexpr std::size_t kRecordHead = 9;  // opcode and length
-constexpr std::size_t kMostDamage = 100;
+constexpr std::size_t kMaxDamage = 100;
 
 /// A record's place in the file and its content.
 struct Record {
@@ -25,7 +25,7 @@ struct Record {
 };
 
 void note(McapContents& contents, std::size_t at, const std::string& what) {
-  if (contents.damage.size() < kMostDamage) contents.damage.push_back("byte " + std::to_string(at) + ": " + what);
+  if (contents.damage.size() < kMaxDamage) contents.damage.push_back("byte " + std::to_string(at) + ": " + what);
 }
 
 /// @returns false at the end, or where not even a head is left.
@@ -125,7 +125,7 @@ void read_chunk(const Record& record, McapContents& contents) {
   const std::size_t offset = record.at + kRecordHead + in.position();
   const View records = in.get_bytes(static_cast<std::size_t>(std::min<std::uint64_t>(size, in.left())));
   if (record.whole && records.size() != size) return note(contents, record.at, "malformed chunk");
-  if (record.whole && crc != 0 && crc_of(records) != crc) {
+  if (record.whole && crc != 0 && crc32_of(records) != crc) {
     return note(contents, record.at, "chunk left out: its CRC does not fit");
   }
   read_chunk_records(records, offset, contents);
@@ -142,7 +142,7 @@ void read_attachment(const Record& record, McapContents& contents) {
   const std::size_t covered = in.position();
   const auto crc = in.get<std::uint32_t>();
   if (!in.good()) return note(contents, record.at, "malformed attachment");
-  if (crc != 0 && crc != crc_of(record.body.first(covered))) {
+  if (crc != 0 && crc != crc32_of(record.body.first(covered))) {
     return note(contents, record.at, "attachment left out: its CRC does not fit");
   }
   contents.attachments.push_back(std::move(attachment));
@@ -159,7 +159,7 @@ void read_metadata(const Record& record, McapContents& contents) {
 
 void check_data_end(const Record& record, View file, McapContents& contents) {
   const auto crc = ByteReader(record.body).get<std::uint32_t>();
-  if (crc != 0 && crc != crc_of(file.first(record.at))) {
+  if (crc != 0 && crc != crc32_of(file.first(record.at))) {
     note(contents, record.at, "the data does not fit its CRC: bytes were changed after writing");
   }
 }

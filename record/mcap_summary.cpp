@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "record/crc.h"
+#include "record/crc32.h"
 #include "record/mcap_record.h"
 #include "record/mcap_writer.h"
 
@@ -66,7 +66,7 @@ void McapWriter::write_summary() {
   out.put(std::uint64_t{20});
   out.put(summary_start);
   out.put(offsets_start);
-  out.put(crc_of(std::span(pending_).subspan(summary_at)));
+  out.put(crc32_of(std::span(pending_).subspan(summary_at)));
 }
 
 }  // namespace sf::record

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "record/crc.h"
+#include "record/crc32.h"
 #include "record/mcap_record.h"
 
 namespace sf::record {
@@ -66,7 +66,7 @@ void McapWriter::add_attachment(const McapAttachment& attachment) {
     out.put_string(attachment.media_type);
     out.put(static_cast<std::uint64_t>(attachment.data.size()));
     out.put_bytes(attachment.data.data(), attachment.data.size());
-    out.put(crc_of(std::span(pending_).subspan(body)));
+    out.put(crc32_of(std::span(pending_).subspan(body)));
   }
   ++attachment_count_;
   const OpenRecord record(attachment_indexes_, Opcode::attachment_index);
@@ -126,7 +126,7 @@ void McapWriter::end_chunk() {
     out.put(chunk_first_);
     out.put(chunk_last_);
     out.put(static_cast<std::uint64_t>(chunk_.size()));
-    out.put(crc_of(chunk_));
+    out.put(crc32_of(chunk_));
     out.put_string("");
     out.put(static_cast<std::uint64_t>(chunk_.size()));
     out.put_bytes(chunk_.data(), chunk_.size());
@@ -178,14 +178,14 @@ void McapWriter::write_chunk_index(std::uint64_t chunk_start, std::uint64_t chun
 }
 
 void McapWriter::drained() {
-  drained_crc_ = crc_of(pending_, drained_crc_);
+  drained_crc_ = crc32_of(pending_, drained_crc_);
   drained_ += pending_.size();
   pending_.clear();
 }
 
 void McapWriter::finish() {
   end_chunk();
-  const std::uint32_t crc = crc_of(pending_, drained_crc_);
+  const std::uint32_t crc = crc32_of(pending_, drained_crc_);
   {
     const OpenRecord record(pending_, Opcode::data_end);
     ByteWriter(pending_).put(crc);

@@ -4,14 +4,14 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "record/fleet.h"
-#include "record/readings.h"
+#include "record/fleet_message.h"
+#include "record/reading_messages.h"
 
 namespace sf::record {
 
 namespace {
 
-constexpr std::size_t kMostChannels = 0xFFFF;
+constexpr std::size_t kMaxChannels = 0xFFFF;
 
 RunInfo named(RunInfo info) {
   SF_CHECK(!info.snapshot.empty(), "a recording without its world");
@@ -38,7 +38,7 @@ TextPairs summary_of(const RunInfo& info) {
 
 Recorder::Recorder(const std::string& directory, RunInfo info)
     : info_(named(std::move(info))), file_(directory + "/run.mcap"), mcap_("ros2", "sensorfarm") {
-  if (count_channels(info_) > kMostChannels) {
+  if (count_channels(info_) > kMaxChannels) {
     throw base::InputError(file_.path(), 0,
                            "needs " + std::to_string(count_channels(info_)) +
                                " topics, and a file holds 65535: record fewer robots, or no readings");

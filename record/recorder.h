@@ -13,9 +13,9 @@
 
 #include "base/sink.h"
 #include "record/channels.h"
-#include "record/file.h"
 #include "record/mcap_writer.h"
-#include "record/messages.h"
+#include "record/recording_files.h"
+#include "record/ros_messages.h"
 #include "record/run_info.h"
 
 namespace sf::record {

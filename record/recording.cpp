@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "base/error.h"
-#include "record/file.h"
 #include "record/mcap_reader.h"
-#include "record/readings.h"
+#include "record/reading_messages.h"
+#include "record/recording_files.h"
 #include "record/schemas.h"
 
 namespace sf::record {
@@ -18,8 +18,8 @@ namespace {
 /// Which sensor a topic belongs to.
 struct SensorTopic {
   std::uint32_t mover = 0;
-  const KindInfo* kind = nullptr;  ///< null: a laser
-  std::uint32_t sensor = 0;        ///< among the mover's of its kind
+  const SensorTypeInfo* kind = nullptr;  ///< null: a laser
+  std::uint32_t sensor = 0;              ///< among the mover's of its kind
 };
 using Topics = std::map<std::string, SensorTopic>;
 
@@ -63,7 +63,7 @@ Topics sensor_topics(const RunInfo& info) {
     for (std::uint32_t i = 0; i < lasers.size(); ++i) topics[lasers[i].topic] = {mover, nullptr, i};
     std::map<std::uint8_t, std::uint32_t> before;  // by kind
     for (const SensorInfo& sensor : info.movers[mover].sensors) {
-      const KindInfo* kind = find_kind(info, sensor.kind);
+      const SensorTypeInfo* kind = find_sensor_type(info, sensor.kind);
       if (kind != nullptr) topics[sensor.topic] = {mover, kind, before[sensor.kind]++};
     }
   }
@@ -111,14 +111,14 @@ bool read_message(const McapMessage& message, std::string_view type, const std::
 }
 
 void read_messages(const McapContents& contents, Recording& recording) {
-  constexpr std::size_t kMostDamage = 100;
+  constexpr std::size_t kMaxDamage = 100;
   const Topics topics = sensor_topics(recording.info);
   recording.states.resize(recording.info.movers.size());
   FleetState fleet;
   for (const McapMessage& message : contents.messages) {
     const std::string& name = contents.channels.at(message.channel).topic;
     if (read_message(message, type_of(contents, message), name, topics, fleet, recording)) continue;
-    if (recording.damage.size() >= kMostDamage) continue;
+    if (recording.damage.size() >= kMaxDamage) continue;
     recording.damage.push_back(name + " at " + std::to_string(message.log_time) + " ns: not understood, left out");
   }
 }

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "record/fleet.h"
-#include "record/messages.h"
+#include "record/fleet_message.h"
+#include "record/ros_messages.h"
 #include "record/run_info.h"
 
 namespace sf::record {
@@ -34,7 +34,7 @@ struct ScanSample {
 /// One kept reading of a sensor of any other kind.
 struct ReadingSample {
   std::uint32_t mover = 0;   ///< row in `RunInfo::movers`
-  std::uint8_t kind = 0;     ///< id of a row of `RunInfo::kinds`
+  std::uint8_t kind = 0;     ///< id of a row of `RunInfo::sensor_types`
   std::uint32_t sensor = 0;  ///< among the mover's sensors of this kind
   std::uint32_t sequence = 0;
   std::int64_t delivered = 0;  ///< [ns] simulated time of the tick that delivered it

@@ -63,7 +63,7 @@ LaserInfo get_laser(CdrReader& cdr) {
   return laser;
 }
 
-void put_kind(CdrWriter& cdr, const KindInfo& kind) {
+void put_sensor_type(CdrWriter& cdr, const SensorTypeInfo& kind) {
   cdr.put(kind.id);
   cdr.put(std::string_view(kind.name));
   cdr.put(std::string_view(kind.list));
@@ -75,9 +75,9 @@ void put_kind(CdrWriter& cdr, const KindInfo& kind) {
   }
 }
 
-KindInfo get_kind(CdrReader& cdr) {
+SensorTypeInfo get_sensor_type(CdrReader& cdr) {
   constexpr std::size_t kLeastColumn = 10;  // [byte]
-  KindInfo kind;
+  SensorTypeInfo kind;
   kind.id = cdr.get<std::uint8_t>();
   kind.name = cdr.get_string();
   kind.list = cdr.get_string();
@@ -133,8 +133,8 @@ MoverInfo get_mover(CdrReader& cdr) {
 
 }  // namespace
 
-const KindInfo* find_kind(const RunInfo& info, std::uint8_t id) {
-  for (const KindInfo& kind : info.kinds)
+const SensorTypeInfo* find_sensor_type(const RunInfo& info, std::uint8_t id) {
+  for (const SensorTypeInfo& kind : info.sensor_types)
     if (kind.id == id) return &kind;
   return nullptr;
 }
@@ -148,7 +148,7 @@ void name_frames(RunInfo& info) {
       laser.topic = "/" + mover.frame + "/" + unique(ros_name(laser.name, "laser"), sensors) + "/scan";
     }
     for (SensorInfo& sensor : mover.sensors) {
-      const KindInfo* kind = find_kind(info, sensor.kind);
+      const SensorTypeInfo* kind = find_sensor_type(info, sensor.kind);
       SF_CHECK(kind != nullptr, "sensor kind " + std::to_string(sensor.kind));
       sensor.topic = "/" + mover.frame + "/" + unique(ros_name(sensor.name, kind->name), sensors) + "/" + kind->name;
     }
@@ -164,8 +164,8 @@ void encode_run_info(const RunInfo& info, base::Bytes& out) {
   cdr.put(info.interval);
   cdr.put(info.record_readings);
   cdr.put(info.odometry_rate);
-  cdr.put_count(info.kinds.size());
-  for (const KindInfo& kind : info.kinds) put_kind(cdr, kind);
+  cdr.put_count(info.sensor_types.size());
+  for (const SensorTypeInfo& kind : info.sensor_types) put_sensor_type(cdr, kind);
   cdr.put_count(info.movers.size());
   for (const MoverInfo& mover : info.movers) put_mover(cdr, mover);
   cdr.put_count(info.options.size());
@@ -185,8 +185,8 @@ bool decode_run_info(std::span<const std::uint8_t> message, RunInfo& info) {
   info.interval = cdr.get<double>();
   info.record_readings = cdr.get<bool>();
   info.odometry_rate = cdr.get<double>();
-  info.kinds.resize(cdr.get_count(kLeastKind));
-  for (KindInfo& kind : info.kinds) kind = get_kind(cdr);
+  info.sensor_types.resize(cdr.get_count(kLeastKind));
+  for (SensorTypeInfo& kind : info.sensor_types) kind = get_sensor_type(cdr);
   info.movers.resize(cdr.get_count(kLeastMover));
   for (MoverInfo& mover : info.movers) mover = get_mover(cdr);
   info.options.resize(cdr.get_count(kLeastOption));

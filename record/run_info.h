@@ -31,7 +31,7 @@ struct ColumnInfo {
 };
 
 /// A kind of sensor, lasers aside: what its readings' numbers are.
-struct KindInfo {
+struct SensorTypeInfo {
   std::uint8_t id = 0;              ///< `base::ReadingBlock::kind`
   std::string name;                 ///< one word of lower-case letters and digits
   std::string list;                 ///< what its elements are called; empty: a reading is one row
@@ -40,7 +40,7 @@ struct KindInfo {
 
 /// A sensor of such a kind.
 struct SensorInfo {
-  std::uint8_t kind = 0;  ///< id of a row of `RunInfo::kinds`
+  std::uint8_t kind = 0;  ///< id of a row of `RunInfo::sensor_types`
   std::string name;
   std::string topic;   ///< of its readings; set by the recorder
   base::Pose X_MS;     ///< sensor in the mover's frame
@@ -62,15 +62,15 @@ struct RunInfo {
   std::string mode = "exact";
   double interval = 0.1;  ///< [s] simulated time per tick
   bool record_readings = false;
-  double odometry_rate = 1.0;     ///< [Hz] of the Odometry and TwistStamped messages; 0: none; states come every tick
-  std::vector<KindInfo> kinds;    ///< that movers have sensors of
-  std::vector<MoverInfo> movers;  ///< in the rows of `base::Report::mover`
+  double odometry_rate = 1.0;  ///< [Hz] of the Odometry and TwistStamped messages; 0: none; states come every tick
+  std::vector<SensorTypeInfo> sensor_types;                  ///< that movers have sensors of
+  std::vector<MoverInfo> movers;                             ///< in the rows of `base::Report::mover`
   std::vector<std::pair<std::string, std::string>> options;  ///< whatever else a run was told
   base::Bytes snapshot;                                      ///< the world, not empty
 };
 
 /// @return null when the run has no sensors of that kind.
-const KindInfo* find_kind(const RunInfo& info, std::uint8_t id);
+const SensorTypeInfo* find_sensor_type(const RunInfo& info, std::uint8_t id);
 
 /// Gives every mover a frame and every sensor a topic: names with all but [A-Za-z0-9_] turned to '_', made unique.
 void name_frames(RunInfo& info);

@@ -69,7 +69,7 @@ const Definition& find(std::string_view name) {
 }
 
 /// Adds the types that `fields` mention, and theirs, in order of first mention.
-void add_needed(std::string_view fields, std::vector<std::string_view>& needed) {
+void add_dependencies(std::string_view fields, std::vector<std::string_view>& needed) {
   while (!fields.empty()) {
     std::string_view type = fields.substr(0, fields.find(' '));
     fields.remove_prefix(fields.find('\n') + 1);
@@ -77,7 +77,7 @@ void add_needed(std::string_view fields, std::vector<std::string_view>& needed) 
     if (type.find('/') == std::string_view::npos) continue;
     if (std::find(needed.begin(), needed.end(), type) != needed.end()) continue;
     needed.push_back(type);
-    add_needed(find(type).fields, needed);
+    add_dependencies(find(type).fields, needed);
   }
 }
 
@@ -90,13 +90,13 @@ std::string schema_text(std::string_view type) {
   const std::string name =
       std::string(type.substr(0, middle)) + "/" + std::string(type.substr(middle + kMiddle.size()));
 
-  return with_needed_types(find(name).fields);
+  return with_dependencies(find(name).fields);
 }
 
-std::string with_needed_types(std::string_view fields) {
+std::string with_dependencies(std::string_view fields) {
   std::string text(fields);
   std::vector<std::string_view> needed;
-  add_needed(fields, needed);
+  add_dependencies(fields, needed);
   for (const std::string_view other : needed) {
     text += std::string(80, '=') + "\nMSG: " + std::string(other) + "\n" + std::string(find(other).fields);
   }

@@ -17,6 +17,6 @@ inline constexpr std::string_view kRunInfo = "sensorfarm_msgs/msg/RunInfo";
 /// '=' and a line `MSG: package/Name`.
 std::string schema_text(std::string_view type);
 /// The same for a type of its own, given its fields, a line each.
-std::string with_needed_types(std::string_view fields);
+std::string with_dependencies(std::string_view fields);
 
 }  // namespace sf::record

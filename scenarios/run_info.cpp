@@ -7,8 +7,8 @@ namespace sf::scenarios {
 
 namespace {
 
-record::KindInfo kind_info(const sensors::SensorKind& kind) {
-  record::KindInfo info{kind.id, std::string(kind.name), std::string(kind.list), {}};
+record::SensorTypeInfo kind_info(const sensors::SensorKind& kind) {
+  record::SensorTypeInfo info{kind.id, std::string(kind.name), std::string(kind.list), {}};
   for (const sensors::Column& column : kind.columns)
     info.columns.push_back({std::string(column.name), column.width, column.whole});
   return info;
@@ -18,7 +18,7 @@ record::KindInfo kind_info(const sensors::SensorKind& kind) {
 void add_kinds(const sensors::Roster& roster, record::RunInfo& info) {
   for (const sensors::Roster::Group& group : roster.groups()) {
     if (group.kind->id == base::kLaser) continue;
-    info.kinds.push_back(kind_info(*group.kind));
+    info.sensor_types.push_back(kind_info(*group.kind));
     for (const sensors::SensorRow& row : group.rows)
       info.movers[row.mover].sensors.push_back({group.kind->id, row.name, "", row.X_MS, row.rate});
   }

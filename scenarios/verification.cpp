@@ -236,7 +236,7 @@ class Verifier {
 
   Compared& compared(std::uint8_t kind) {
     Compared& into = again_[kind];
-    if (into.kind.empty()) into.kind = sensors::find_kind(kind)->name;
+    if (into.kind.empty()) into.kind = sensors::find_sensor_type(kind)->name;
     return into;
   }
 

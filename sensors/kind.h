@@ -166,7 +166,7 @@ std::unique_ptr<Instruments> make_instruments(const Site& site) {
 /// Every kind there is, by id: generated from sensors/CMakeLists.txt.
 std::span<const SensorKind* const> kinds();
 /// @return null when no kind has that id.
-const SensorKind* find_kind(std::uint8_t id);
+const SensorKind* find_sensor_type(std::uint8_t id);
 /// What world files may call sensors: for world::LoadOptions.
 std::span<const world::SensorKeyword> vocabulary();
 

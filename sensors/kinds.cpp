@@ -4,7 +4,7 @@
 
 namespace sf::sensors {
 
-const SensorKind* find_kind(std::uint8_t id) {
+const SensorKind* find_sensor_type(std::uint8_t id) {
   const auto all = kinds();
   const auto found = std::find_if(all.begin(), all.end(), [&](const SensorKind* kind) { return kind->id == id; });
   return found == all.end() ? nullptr : *found;

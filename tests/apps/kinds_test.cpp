@@ -25,7 +25,7 @@ namespace {
 constexpr std::uint8_t kLaneEdge = 2;
 constexpr std::uint8_t kMagnetometer = 3;
 
-bool has_kind(std::uint8_t id) { return sensors::find_kind(id) != nullptr; }
+bool has_kind(std::uint8_t id) { return sensors::find_sensor_type(id) != nullptr; }
 
 // A magnet of 1 A m^2, and robots that carry a laser and two elements 0.5 m and 1 m ahead, as high as the magnet.
 const char* const kWorld = R"(
@@ -315,7 +315,7 @@ TEST_F(Kinds, WhatNobodyDrivesByChangesNoPath) {
 }
 
 TEST(Wire, MagnetometersSendTheDocumentedBytes) {
-  const sensors::SensorKind* kind = sensors::find_kind(kMagnetometer);
+  const sensors::SensorKind* kind = sensors::find_sensor_type(kMagnetometer);
   if (kind == nullptr) GTEST_SKIP() << "built without the magnetometer";
   const std::vector<double> values{1.3e-4, 0, -0.5e-4, 1.2e-4, 0.25e-4, 0, 0, -0.25e-4};
   sensors::SensorRow row;
@@ -330,7 +330,7 @@ TEST(Wire, MagnetometersSendTheDocumentedBytes) {
 }
 
 TEST(Wire, LaneEdgesSendTheDocumentedBytes) {
-  const sensors::SensorKind* kind = sensors::find_kind(kLaneEdge);
+  const sensors::SensorKind* kind = sensors::find_sensor_type(kLaneEdge);
   if (kind == nullptr) GTEST_SKIP() << "built without the lane edge sensor";
   const std::vector<double> values{0.25, 61, 12e-6, 1.5e-3};
   base::Bytes payload, packet, plain;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "record/crc.h"
+#include "record/crc32.h"
 #include "record/mcap_reader.h"
 #include "record/mcap_writer.h"
 
@@ -142,12 +142,12 @@ Hand opening() {
 TEST(Crc, agrees_with_the_definition) {
   const std::string digits = "123456789";
   const Bytes bytes(digits.begin(), digits.end());
-  EXPECT_EQ(crc_of(bytes), 0xCBF43926u);  // the check value of CRC-32/ISO-HDLC
+  EXPECT_EQ(crc32_of(bytes), 0xCBF43926u);  // the check value of CRC-32/ISO-HDLC
   EXPECT_EQ(slow_crc(bytes), 0xCBF43926u);
   const std::span all(bytes);
-  EXPECT_EQ(crc_of(all.subspan(4), crc_of(all.first(4))), 0xCBF43926u);
-  EXPECT_EQ(crc_of({}, 5u), 5u);
-  EXPECT_EQ(crc_of({}), 0u);
+  EXPECT_EQ(crc32_of(all.subspan(4), crc32_of(all.first(4))), 0xCBF43926u);
+  EXPECT_EQ(crc32_of({}, 5u), 5u);
+  EXPECT_EQ(crc32_of({}), 0u);
 }
 
 TEST(McapWriter, a_tiny_file_is_what_the_specification_says_byte_by_byte) {

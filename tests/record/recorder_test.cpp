@@ -289,7 +289,7 @@ TEST(Recorder, broken_contracts_abort_with_the_values) {
   EXPECT_DEATH(wrong_kind(3, 2), "mover 0 kind 3 sensor 2");  // two of them only
   EXPECT_DEATH(wrong_kind(2, 0), "10 values in a reading of kind edge");
   RunInfo kindless = sample_info(true);
-  kindless.kinds.pop_back();
+  kindless.sensor_types.pop_back();
   EXPECT_DEATH(Recorder(directory, kindless), "sensor kind 3");
 }
 

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "record/mcap_writer.h"
-#include "record/readings.h"
+#include "record/reading_messages.h"
 #include "record/schemas.h"
 #include "tests/record/sample.h"
 
@@ -250,7 +250,7 @@ TEST(Recording, a_reading_that_its_kind_does_not_explain_is_left_out_and_told) {
   RunInfo info = test::sample_info(true);
   name_frames(info);
   add_run_info(writer, info);
-  const KindInfo edge = test::edge_kind();
+  const SensorTypeInfo edge = test::edge_kind();
   Bytes message;
   encode_reading(edge, 0, "f", std::vector<double>{1, 2, 3, 4, 5}, message);
   const auto schema = writer.add_schema(type_of(edge), "ros2msg", schema_text(edge));

@@ -12,12 +12,12 @@
 namespace sf::record::test {
 
 /// One row of a number, a count and a vector.
-inline KindInfo edge_kind() {
+inline SensorTypeInfo edge_kind() {
   return {.id = 2, .name = "edge", .columns = {{"distance_m", 1}, {"points", 1, true}, {"normal_W", 3}}};
 }
 
 /// Elements of a number, a vector and a count.
-inline KindInfo array_kind() {
+inline SensorTypeInfo array_kind() {
   return {
       .id = 3, .name = "array", .list = "elements", .columns = {{"field_T", 1}, {"vector_T", 3}, {"hits", 1, true}}};
 }
@@ -30,7 +30,7 @@ inline RunInfo sample_info(bool readings) {
   info.interval = 0.1;
   info.record_readings = readings;
   info.odometry_rate = 5.0;
-  info.kinds = {edge_kind(), array_kind()};
+  info.sensor_types = {edge_kind(), array_kind()};
   info.movers = {
       {.name = "roomba:1",
        .id = 7,

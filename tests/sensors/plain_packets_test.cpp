@@ -138,7 +138,7 @@ TEST(PlainPackets, PayloadsAreTheDocumentedOnes) {
              {"gps", 10, 1, {kNan, kNan, kNan, 3}},
              {"irreceiver", 11, 1, {1, 252}}};
   for (const auto& [example, id, rows, values] : all) {
-    const SensorKind* kind = find_kind(id);
+    const SensorKind* kind = find_sensor_type(id);
     ASSERT_NE(kind, nullptr) << example;
     EXPECT_EQ(kind->name, example);
     base::ReadingBlock block;

@@ -26,7 +26,7 @@ SensorRow row_of(std::uint32_t elements, double limit = 0.0) {
 
 /// What a receiver has of `values` after every part of them.
 std::vector<double> back(std::uint8_t id, const SensorRow& row, const std::vector<double>& values, Wire wire) {
-  const SensorKind& kind = *find_kind(id);
+  const SensorKind& kind = *find_sensor_type(id);
   base::ReadingBlock block;
   block.kind = id;
   block.values = values;
@@ -69,7 +69,7 @@ TEST(ReadingBack, ExtendedScansPartByPart) {
 }
 
 TEST(ReadingBack, APartLeavesTheOthersAsTheyAre) {
-  const SensorKind& kind = *find_kind(base::kLaser);
+  const SensorKind& kind = *find_sensor_type(base::kLaser);
   const SensorRow row = row_of(700, 100.0);
   const std::vector<double> ranges(700, 5.0);
   base::ReadingBlock block;

@@ -1,4 +1,4 @@
-#include "record/readings.h"
+#include "record/reading_messages.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using test::array_kind;
 using test::at;
 using test::edge_kind;
 
-Bytes encoded(const KindInfo& kind, const std::vector<double>& values) {
+Bytes encoded(const SensorTypeInfo& kind, const std::vector<double>& values) {
   Bytes out;
   encode_reading(kind, 12'000'000'034, "r/s", values, out);
   return out;
@@ -67,7 +67,7 @@ TEST(Readings, a_list_lies_column_by_column) {
 TEST(Readings, readings_of_any_shape_come_back_to_the_bit) {
   std::mt19937 random(3);  // NOLINT: the same shapes every time
   for (int i = 0; i < 2000; ++i) {
-    KindInfo kind{.id = 9, .name = "any", .list = random() % 2 == 0 ? "rows" : ""};
+    SensorTypeInfo kind{.id = 9, .name = "any", .list = random() % 2 == 0 ? "rows" : ""};
     for (std::uint32_t c = 1 + random() % 4; c > 0; --c)
       kind.columns.push_back(
           {"c" + std::to_string(c), 1 + static_cast<std::uint32_t>(random() % 4), random() % 3 == 0});
@@ -127,7 +127,7 @@ TEST(Readings, kinds_that_make_no_sense_are_not_read) {
   std::vector<double> values;
   std::int64_t time = 0;
   const Bytes bytes = encoded(edge_kind(), {1, 2, 3, 4, 5});
-  KindInfo kind{.id = 2, .name = "edge"};
+  SensorTypeInfo kind{.id = 2, .name = "edge"};
   EXPECT_FALSE(decode_reading(kind, bytes, time, values));  // nothing in it
   kind.columns = {{"a", 0}};
   EXPECT_FALSE(decode_reading(kind, bytes, time, values));  // a column of nothing

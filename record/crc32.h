@@ -7,6 +7,6 @@
 namespace sf::record {
 
 /// Of `bytes`, continued from `before`: crc(ab) == crc(b, crc(a)). 0 of nothing.
-std::uint32_t crc_of(std::span<const std::uint8_t> bytes, std::uint32_t before = 0);
+std::uint32_t crc32_of(std::span<const std::uint8_t> bytes, std::uint32_t before = 0);
 
 }  // namespace sf::record

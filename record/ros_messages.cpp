@@ -1,4 +1,4 @@
-#include "record/messages.h"
+#include "record/ros_messages.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "record/readings.h"
+#include "record/reading_messages.h"
 
 #include <algorithm>
 #include <cctype>
@@ -15,7 +15,7 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
-std::string field_of(const KindInfo& kind, const ColumnInfo& column) {
+std::string field_of(const SensorTypeInfo& kind, const ColumnInfo& column) {
   std::string name = column.name;
   std::transform(name.begin(), name.end(), name.begin(), lower);
   std::string type = column.whole ? "uint32" : "float64";
@@ -40,32 +40,32 @@ void put_number(CdrWriter& cdr, const ColumnInfo& column, double value) {
 }
 
 /// Whether a message can hold that many elements: a number takes at least four bytes of it.
-bool fits(const KindInfo& kind, std::size_t elements, std::size_t message) {
+bool fits(const SensorTypeInfo& kind, std::size_t elements, std::size_t message) {
   return elements <= message && element_width(kind) * elements <= message / 4;
 }
 
 }  // namespace
 
-std::string type_of(const KindInfo& kind) {
+std::string type_of(const SensorTypeInfo& kind) {
   std::string name = kind.name;
   if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   return "sensorfarm_msgs/msg/" + name;
 }
 
-std::string schema_text(const KindInfo& kind) {
+std::string schema_text(const SensorTypeInfo& kind) {
   std::string fields = "std_msgs/Header header\n";
   for (const ColumnInfo& column : kind.columns) fields += field_of(kind, column);
-  return with_needed_types(fields);
+  return with_dependencies(fields);
 }
 
-std::size_t element_width(const KindInfo& kind) {
+std::size_t element_width(const SensorTypeInfo& kind) {
   std::size_t width = 0;
   for (const ColumnInfo& column : kind.columns) width += column.width;
   return width;
 }
 
-void encode_reading(const KindInfo& kind, std::int64_t time, std::string_view frame, std::span<const double> values,
-                    base::Bytes& out) {
+void encode_reading(const SensorTypeInfo& kind, std::int64_t time, std::string_view frame,
+                    std::span<const double> values, base::Bytes& out) {
   SF_CHECK(time >= 0, "time " + std::to_string(time) + " ns");
   const std::size_t width = element_width(kind);
   const bool whole = width > 0 && values.size() % width == 0;
@@ -86,7 +86,7 @@ void encode_reading(const KindInfo& kind, std::int64_t time, std::string_view fr
   }
 }
 
-bool decode_reading(const KindInfo& kind, std::span<const std::uint8_t> message, std::int64_t& time,
+bool decode_reading(const SensorTypeInfo& kind, std::span<const std::uint8_t> message, std::int64_t& time,
                     std::vector<double>& values) {
   CdrReader cdr(message);
   time = cdr.get<std::int32_t>() * kSecond;

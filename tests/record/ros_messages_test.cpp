@@ -1,4 +1,4 @@
-#include "record/messages.h"
+#include "record/ros_messages.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "record/fleet.h"
+#include "record/fleet_message.h"
 #include "record/run_info.h"
 #include "tests/record/bytes_at.h"
 #include "tests/record/sample.h"
@@ -170,15 +170,15 @@ TEST(Messages, run_info_comes_back) {
   EXPECT_EQ(laser.samples, 4u);
   EXPECT_EQ(back.movers[0].lasers[1].range_min, 0.5);
   EXPECT_EQ(back.movers[0].lasers[1].rate, 5.0);
-  ASSERT_EQ(back.kinds.size(), 2u);
-  EXPECT_EQ(back.kinds[0].id, 2);
-  EXPECT_EQ(back.kinds[0].list, "");
-  EXPECT_EQ(back.kinds[1].name, "array");
-  EXPECT_EQ(back.kinds[1].list, "elements");
-  ASSERT_EQ(back.kinds[1].columns.size(), 3u);
-  EXPECT_EQ(back.kinds[1].columns[1].name, "vector_T");
-  EXPECT_EQ(back.kinds[1].columns[1].width, 3u);
-  EXPECT_TRUE(back.kinds[1].columns[2].whole);
+  ASSERT_EQ(back.sensor_types.size(), 2u);
+  EXPECT_EQ(back.sensor_types[0].id, 2);
+  EXPECT_EQ(back.sensor_types[0].list, "");
+  EXPECT_EQ(back.sensor_types[1].name, "array");
+  EXPECT_EQ(back.sensor_types[1].list, "elements");
+  ASSERT_EQ(back.sensor_types[1].columns.size(), 3u);
+  EXPECT_EQ(back.sensor_types[1].columns[1].name, "vector_T");
+  EXPECT_EQ(back.sensor_types[1].columns[1].width, 3u);
+  EXPECT_TRUE(back.sensor_types[1].columns[2].whole);
   ASSERT_EQ(back.movers[0].sensors.size(), 3u);
   EXPECT_EQ(back.movers[0].sensors[0].X_MS.x, 0.5);
   EXPECT_EQ(back.movers[0].sensors[1].kind, 2);

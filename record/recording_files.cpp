@@ -1,4 +1,4 @@
-#include "record/file.h"
+#include "record/recording_files.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

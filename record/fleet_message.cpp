@@ -1,4 +1,4 @@
-#include "record/fleet.h"
+#include "record/fleet_message.h"
 
 #include "base/error.h"
 #include "record/cdr.h"
