@@ -7,7 +7,6 @@
 #include "apps/control_facts.h"
 #include "apps/post.h"
 #include "base/reading.h"
-#include "extremes/case.h"
 #include "farm/farm.h"
 #include "gpu/device.h"
 #include "netio/inbox.h"
@@ -16,6 +15,7 @@
 #include "scenarios/explanation.h"
 #include "scenarios/tradeoff.h"
 #include "scenarios/verification.h"
+#include "selftest/case.h"
 #include "sensors/roster.h"
 #include "world/world.h"
 
@@ -51,7 +51,7 @@ struct RunFacts {
 /// What came of `selftest`.
 struct SelfTest {
   gpu::DeviceInfo device;
-  std::vector<std::pair<const extremes::Case*, extremes::Outcome>> cases;  ///< that were run
+  std::vector<std::pair<const selftest::Case*, selftest::Outcome>> cases;  ///< that were run
   std::size_t asked = 0;                                                   ///< to be run; more, where interrupted
   double seconds = 0.0;                                                    ///< [s] of all of them
 

@@ -10,28 +10,29 @@
 #include "apps/progress.h"
 #include "apps/stop.h"
 #include "apps/wording.h"
-#include "extremes/suite.h"
+#include "selftest/suite.h"
 
 namespace sf::apps {
 
 namespace {
 
-using extremes::Case;
-using extremes::Outcome;
+using selftest::Case;
+using selftest::Outcome;
 
 std::vector<const Case*> chosen(const std::vector<std::string>& names) {
   std::vector<const Case*> some;
-  for (const Case& c : extremes::cases()) {
+  for (const Case& c : selftest::cases()) {
     const bool asked =
         std::any_of(names.begin(), names.end(), [&](const auto& n) { return n == c.name || n == c.group; });
     if (names.empty() || asked) some.push_back(&c);
   }
-  if (std::count(names.begin(), names.end(), extremes::failure().name) > 0) some.push_back(&extremes::failure());
+  if (std::count(names.begin(), names.end(), selftest::failing_case().name) > 0)
+    some.push_back(&selftest::failing_case());
   return some;
 }
 
 int list_all() {
-  for (const Case& c : extremes::cases())
+  for (const Case& c : selftest::cases())
     std::fputs(fmt::format("{:<9} {:<27} {}\n", c.group, c.name, c.why).c_str(), stdout);
   return 0;
 }
@@ -74,7 +75,7 @@ std::string text_of(const SelfTest& test) {
 int selftest(const Options& options) {
   if (options.list) return list_all();
   gpu::Device device(options.device);
-  extremes::Lab lab(device);
+  selftest::Fixture fixture(device);
   const std::vector<const Case*> some = chosen(options.cases);
   SelfTest test{.device = device.info(), .asked = some.size()};
   catch_stop_signals();
@@ -82,7 +83,7 @@ int selftest(const Options& options) {
     Progress progress("selftest");
     for (std::size_t i = 0; i < some.size() && !stop_requested(); ++i) {
       progress.show(static_cast<double>(i) / static_cast<double>(some.size()), std::string(some[i]->name));
-      test.cases.emplace_back(some[i], extremes::run(*some[i], lab));
+      test.cases.emplace_back(some[i], selftest::run(*some[i], fixture));
       test.seconds += test.cases.back().second.seconds;
     }
   }

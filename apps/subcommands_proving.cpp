@@ -6,8 +6,8 @@
 #include "apps/arguments.h"
 #include "apps/subcommands.h"
 #include "apps/wording.h"
-#include "extremes/suite.h"
 #include "scenarios/experiment.h"
+#include "selftest/suite.h"
 
 namespace sf::apps {
 
@@ -90,8 +90,8 @@ void add_tradeoff(CLI::App& app, Options& o) {
 }
 
 bool is_case_or_group(const std::string& name) {
-  const auto all = extremes::cases();
-  return name == extremes::failure().name || std::any_of(all.begin(), all.end(), [&](const extremes::Case& c) {
+  const auto all = selftest::cases();
+  return name == selftest::failing_case().name || std::any_of(all.begin(), all.end(), [&](const selftest::Case& c) {
            return c.name == name || c.group == name;
          });
 }

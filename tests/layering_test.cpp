@@ -32,10 +32,10 @@ const std::map<std::string, Rooms> kMayInclude{
     {"farm", {"sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"record", {"base"}},
     {"netio", {"base"}},
-    {"extremes", {"netio", "record", "farm", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
+    {"selftest", {"netio", "record", "farm", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"viz", {"farm", "record", "sensors", "raycast", "maps", "robots", "world", "gpu", "base"}},
     {"scenarios",
-     {"extremes", "viz", "netio", "record", "farm", "control", "sensors", "raycast", "maps", "robots", "world", "gpu",
+     {"selftest", "viz", "netio", "record", "farm", "control", "sensors", "raycast", "maps", "robots", "world", "gpu",
       "base"}},
 };
 const Rooms kMayIncludeAnything{"apps", "bench", "tests"};

@@ -2,17 +2,17 @@
 
 #include <fmt/format.h>
 
-#include "extremes/exact.h"
-#include "extremes/suite.h"
+#include "selftest/exact_ray_cast.h"
+#include "selftest/suite.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
 constexpr double kTurn = 2.0 * M_PI;
 
 /// An eye beside the start of a wall of 100 m looks along it so that it meets it half way; a wall stands behind.
-void grazing(Lab& lab, Checks& checks) {
+void grazing(Fixture& fixture, Checks& checks) {
   const world::Laser eye = laser(1, 0.0, 1000.0);
   for (double angle = 1e-1; angle > 0.5e-9; angle *= 0.1) {
     double off = 0.0, allowed = 0.0;
@@ -23,12 +23,12 @@ void grazing(Lab& lab, Checks& checks) {
         add_wall(world, at(0.0, 0.0), at(100.0, 0.0));
         add_wall(world, at(100.0, -1.0), at(100.0, 60.0));
         const glm::dvec2 p = at(0.0, 50.0 * std::tan(angle));
-        add_eye(world, {p.x, p.y, 0.0, tilt - angle}, eye);
-        const Look look = lab.look(world);
-        check_scan(*look.world, look.readings[0], checks, fmt::format("at {:.0e} rad, {:g} m away", angle, far));
-        checks.equal(look.readings[0].hits[0], 0u, "the wall that is grazed is named");
-        const Meeting met = first_met(look.world->walls, beam_of(look.readings[0].X_WS, eye, 0), eye.range_max);
-        off = std::max(off, static_cast<double>(std::fabs(Real{look.readings[0].values[0]} - met.range)));
+        add_laser_mover(world, {p.x, p.y, 0.0, tilt - angle}, eye);
+        const TestFarm test = fixture.measure(world);
+        check_scan(*test.world, test.readings[0], checks, fmt::format("at {:.0e} rad, {:g} m away", angle, far));
+        checks.equal(test.readings[0].hits[0], 0u, "the wall that is grazed is named");
+        const Hit met = nearest_hit(test.world->walls, beam_of(test.readings[0].X_WS, eye, 0), eye.range_max);
+        off = std::max(off, static_cast<double>(std::fabs(Real{test.readings[0].values[0]} - met.range)));
         allowed = std::max(allowed, rounding(met));
       }
     checks.note(fmt::format("50 m ahead at {:.0e} rad: {:.1e} m off, {:.1e} m allowed", angle, off, allowed));
@@ -36,21 +36,21 @@ void grazing(Lab& lab, Checks& checks) {
 }
 
 /// Along x beside a wall, or in its very line: what stands across is met.
-void parallel(Lab& lab, Checks& checks) {
+void parallel(Fixture& fixture, Checks& checks) {
   for (const double beside : {1.0, 1e-3, 1e-6, 1e-8, 1e-300, 0.0, -1e-8, -1.0})
     for (const double from : {-2.0, 0.0, 3.0}) {
       world::World world;
       add_wall(world, {0.0, 0.0}, {10.0, 0.0});
       add_wall(world, {12.0, -5.0}, {12.0, 5.0});
-      add_eye(world, {from, beside, 0.0, 0.0}, laser(1, 0.0, 100.0));
-      const Look look = lab.look(world);
-      checks.same(look.readings[0].values[0], 12.0 - from, fmt::format("{:g} m beside, from {:g}", beside, from));
-      checks.equal(look.readings[0].hits[0], 1u, "the wall across is named");
+      add_laser_mover(world, {from, beside, 0.0, 0.0}, laser(1, 0.0, 100.0));
+      const TestFarm test = fixture.measure(world);
+      checks.same(test.readings[0].values[0], 12.0 - from, fmt::format("{:g} m beside, from {:g}", beside, from));
+      checks.equal(test.readings[0].hits[0], 1u, "the wall across is named");
     }
 }
 
 /// From inside a polygon at each of its corners: the range is the corner's distance, whichever of its walls is met.
-void corners(Lab& lab, Checks& checks) {
+void corners(Fixture& fixture, Checks& checks) {
   for (const int count : {3, 7, 64, 1000})
     for (const double far : {0.0, 1e7}) {
       world::World world;
@@ -64,10 +64,11 @@ void corners(Lab& lab, Checks& checks) {
       add_outline(world, ring);
       const glm::dvec2 eye{far + 0.3125, -far - 0.4375};
       for (const glm::dvec2& corner : ring)
-        add_eye(world, {eye.x, eye.y, 0.0, std::atan2(corner.y - eye.y, corner.x - eye.x)}, laser(3, 2e-9, 20.0));
-      const Look look = lab.look(world);
-      for (const base::ReadingBlock& r : look.readings) {
-        check_scan(*look.world, r, checks, fmt::format("{} corners, {:g} m away", count, far));
+        add_laser_mover(world, {eye.x, eye.y, 0.0, std::atan2(corner.y - eye.y, corner.x - eye.x)},
+                        laser(3, 2e-9, 20.0));
+      const TestFarm test = fixture.measure(world);
+      for (const base::ReadingBlock& r : test.readings) {
+        check_scan(*test.world, r, checks, fmt::format("{} corners, {:g} m away", count, far));
         const Real dx = Real{ring[r.mover].x} - eye.x, dy = Real{ring[r.mover].y} - eye.y;
         // Walls of a ring of 1 000 are met at a right angle or nearly so; a triangle's at 20 degrees at least.
         checks.near(r.values[1], std::hypot(dx, dy), 5e-14, "the middle beam ends in the corner", r.mover);
@@ -76,48 +77,48 @@ void corners(Lab& lab, Checks& checks) {
 }
 
 /// Two blocks that touch in a corner alone: a beam along the diagonal between them ends there.
-void touching_corners(Lab& lab, Checks& checks) {
+void touching_corners(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
     add_block(world, {far - 1.0, far - 1.0}, {far, far});
     add_block(world, {far, far}, {far + 1.0, far + 1.0});
-    add_eye(world, {far + 0.75, far - 0.75, 0.0, 0.75 * M_PI}, laser(1, 0.0, 8.0));
-    const Look look = lab.look(world);
-    checks.near(look.readings[0].values[0], 0.75L * std::sqrt(2.0L), 1e-14, fmt::format("{:g} m away", far));
+    add_laser_mover(world, {far + 0.75, far - 0.75, 0.0, 0.75 * M_PI}, laser(1, 0.0, 8.0));
+    const TestFarm test = fixture.measure(world);
+    checks.near(test.readings[0].values[0], 0.75L * std::sqrt(2.0L), 1e-14, fmt::format("{:g} m away", far));
   }
 }
 
 /// On a wall's inner side: 0 into it, the room's other side away from it.
-void from_on_a_wall(Lab& lab, Checks& checks) {
+void from_on_a_wall(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
     add_room(world, {far, far}, 4.0);
-    add_eye(world, {far, far + 1.5, 0.0, M_PI}, laser(180, M_PI - 0.01, 20.0));
-    add_eye(world, {far, far + 1.5, 0.0, 0.0}, laser(180, M_PI - 0.01, 20.0));
-    const Look look = lab.look(world);
+    add_laser_mover(world, {far, far + 1.5, 0.0, M_PI}, laser(180, M_PI - 0.01, 20.0));
+    add_laser_mover(world, {far, far + 1.5, 0.0, 0.0}, laser(180, M_PI - 0.01, 20.0));
+    const TestFarm test = fixture.measure(world);
     for (std::size_t i = 0; i < 180; ++i) {
-      checks.same(look.readings[0].values[i], 0.0, fmt::format("into it, {:g} m away", far), i);
-      checks.holds(look.readings[0].hits[i] != base::kNoHit, "what is touched is named", i);
-      world::World rest = *look.world;
+      checks.same(test.readings[0].values[i], 0.0, fmt::format("into it, {:g} m away", far), i);
+      checks.holds(test.readings[0].hits[i] != base::kNoHit, "what is touched is named", i);
+      world::World rest = *test.world;
       std::erase_if(rest.walls, [&](const world::Segment& s) { return s.a.x == far && s.b.x == far; });
-      const Meeting met =
-          first_met(rest.walls,
-                    beam_of(look.readings[1].X_WS, laser(180, M_PI - 0.01, 20.0), static_cast<std::uint32_t>(i)), 20.0);
-      checks.near(look.readings[1].values[i], met.range, rounding(met), fmt::format("off it, {:g} m away", far), i);
+      const Hit met = nearest_hit(
+          rest.walls, beam_of(test.readings[1].X_WS, laser(180, M_PI - 0.01, 20.0), static_cast<std::uint32_t>(i)),
+          20.0);
+      checks.near(test.readings[1].values[i], met.range, rounding(met), fmt::format("off it, {:g} m away", far), i);
     }
   }
 }
 
 /// Inside of three overlapping blocks: the first surface, whosever it is.
-void from_inside(Lab& lab, Checks& checks) {
+void from_inside(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
     add_block(world, {far - 1.0, far - 1.0}, {far + 1.0, far + 1.0});
     add_block(world, {far - 0.5, far - 0.5}, {far + 2.0, far + 0.25});
     add_block(world, {far - 0.125, far - 3.0}, {far + 0.5, far + 3.0});
-    add_eye(world, {far + 0.0625, far + 0.03125, 0.0, 0.1}, laser(721, kTurn, 10.0));
-    const Look look = lab.look(world);
-    check_scan(*look.world, look.readings[0], checks, fmt::format("{:g} m away", far));
+    add_laser_mover(world, {far + 0.0625, far + 0.03125, 0.0, 0.1}, laser(721, kTurn, 10.0));
+    const TestFarm test = fixture.measure(world);
+    check_scan(*test.world, test.readings[0], checks, fmt::format("{:g} m away", far));
   }
 }
 
@@ -138,6 +139,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> beams() { return kCases; }
+std::span<const Case> beam_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

@@ -1,10 +1,10 @@
-#include "extremes/suite.h"
+#include "selftest/suite.h"
 
 #include <algorithm>
 #include <chrono>
 #include <exception>
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 std::span<const Case> cases() {
   static const std::vector<Case> all = [] {
@@ -19,9 +19,9 @@ std::span<const Case> cases() {
   return all;
 }
 
-const Case& failure() {
+const Case& failing_case() {
   static constexpr Case kFailure{"", "failure", "", "fails on purpose",
-                                 [](Lab&, Checks& checks) { checks.holds(false, "asked to fail"); }};
+                                 [](Fixture&, Checks& checks) { checks.holds(false, "asked to fail"); }};
   return kFailure;
 }
 
@@ -31,12 +31,12 @@ const Case* find_case(std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-Outcome run(const Case& c, Lab& lab) {
+Outcome run(const Case& c, Fixture& fixture) {
   Checks checks;
   const auto begun = std::chrono::steady_clock::now();
   std::string thrown;
   try {
-    c.run(lab, checks);
+    c.run(fixture, checks);
   } catch (const std::exception& error) {
     thrown = error.what();
   }
@@ -46,4 +46,4 @@ Outcome run(const Case& c, Lab& lab) {
   return outcome;
 }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

@@ -1,19 +1,19 @@
-#include "extremes/lab.h"
+#include "selftest/fixture.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sf::extremes {
+namespace sf::selftest {
 
-Look Lab::look(world::World world, farm::FarmOptions options) const {
+TestFarm Fixture::measure(world::World world, farm::FarmOptions options) const {
   // Room for little: it grows where a case needs more, and never changes a reading.
   options.scene = {.pool_chunks = 1u << 12, .pool_cells = 1u << 7};
-  Look look;
-  look.world = std::make_unique<world::World>(std::move(world));
-  look.farm = std::make_unique<farm::Farm>(*look.world, device_, options);
-  look.farm->hear_all();
-  look.readings = look.farm->tick(0, {});
-  return look;
+  TestFarm test;
+  test.world = std::make_unique<world::World>(std::move(world));
+  test.farm = std::make_unique<farm::Farm>(*test.world, device_, options);
+  test.farm->hear_all();
+  test.readings = test.farm->tick(0, {});
+  return test;
 }
 
 namespace {
@@ -79,7 +79,7 @@ std::uint32_t add_mover(world::World& world, const Pose& X_WM) {
   return row;
 }
 
-std::uint32_t add_eye(world::World& world, const Pose& X_WM, const world::Laser& laser) {
+std::uint32_t add_laser_mover(world::World& world, const Pose& X_WM, const world::Laser& laser) {
   const std::uint32_t row = add_mover(world, X_WM);
   world.movers[row].lasers.push_back(laser);
   return row;
@@ -104,4 +104,4 @@ world::Sensor sensor(const std::string& type, const Settings& settings, double h
   return sensor;
 }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

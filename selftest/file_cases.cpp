@@ -2,18 +2,18 @@
 
 #include <fmt/format.h>
 
-#include "extremes/suite.h"
+#include "selftest/suite.h"
 #include "world/roads/rndf.h"
 #include "world/stage/stage.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-void world_files(Lab& lab, Checks& checks) {
+void world_files(Fixture& fixture, Checks& checks) {
   const auto world_with = [](const std::string& x) {
     return "model( name \"post\" pose [" + x +
            " 0 0 0]\n size [1 1 1] block( points 4 point[0] [0 0] point[1] [1 0] "
@@ -25,8 +25,8 @@ void world_files(Lab& lab, Checks& checks) {
     checks.refused([&] { world::build_world("bad.world", world_with(word)); }, "too large", word);
   for (const char* word : {"5e-324", "-5e-324", "1e-310", "-0", "2.3e-308"}) {
     world::World world = world::build_world("small.world", world_with(word));
-    add_eye(world, {-2.0, 0.0, 0.0, 0.0}, laser(1, 0.0, 8.0));
-    checks.same(lab.look(world).readings[0].values[0], 1.5, word);
+    add_laser_mover(world, {-2.0, 0.0, 0.0, 0.0}, laser(1, 0.0, 8.0));
+    checks.same(fixture.measure(world).readings[0].values[0], 1.5, word);
   }
 }
 
@@ -48,7 +48,7 @@ end_segment
 end_file
 )";
 
-void road_files(Lab&, Checks& checks) {
+void road_files(Fixture&, Checks& checks) {
   const auto roads_with = [](const std::string& latitude) {
     std::string text(kRoads);
     return text.replace(text.find("LATITUDE"), 8, latitude);
@@ -60,10 +60,10 @@ void road_files(Lab&, Checks& checks) {
 }
 
 /// What a recording carries its world as; the hash in it is as its bytes are, so only the numbers can be wrong.
-void snapshots(Lab&, Checks& checks) {
+void snapshots(Fixture&, Checks& checks) {
   world::World good;
   add_wall(good, {1.0, -1.0}, {1.0, 1.0});
-  add_eye(good, {}, laser(5, 1.0, 8.0));
+  add_laser_mover(good, {}, laser(5, 1.0, 8.0));
   good.magnets.push_back({{1.0, 2.0}, 0.0, 1.0, 0.01, 0});
   good.lane_markings.push_back({{{0.0, 0.0}, {1.0, 0.0}}, 0.1});
   const auto keep = [](world::World world) {
@@ -95,6 +95,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> files() { return kCases; }
+std::span<const Case> file_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "extremes/exact.h"
-#include "extremes/suite.h"
+#include "selftest/exact_ray_cast.h"
+#include "selftest/suite.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
@@ -14,33 +14,33 @@ constexpr double kWidths[] = {1e-3, 1.0, 1e3, 1e6};  ///< [m]
 constexpr double kTurn = 2.0 * M_PI;
 
 /// A square room, and an eye somewhere in it that sees all of its walls.
-void look_round(Lab& lab, Checks& checks, double far, double width, std::uint32_t samples) {
+void check_full_turn(Fixture& fixture, Checks& checks, double far, double width, std::uint32_t samples) {
   world::World world;
   add_room(world, {far - 0.4 * width, far - 0.3 * width}, width);
-  add_eye(world, {far + 0.137 * width, far - 0.0211 * width, 0.0, 0.3}, laser(samples, kTurn, 2.0 * width));
-  const Look look = lab.look(world);
-  check_scan(*look.world, look.readings[0], checks, fmt::format("{:g} m wide, {:g} m away", width, far));
+  add_laser_mover(world, {far + 0.137 * width, far - 0.0211 * width, 0.0, 0.3}, laser(samples, kTurn, 2.0 * width));
+  const TestFarm test = fixture.measure(world);
+  check_scan(*test.world, test.readings[0], checks, fmt::format("{:g} m wide, {:g} m away", width, far));
 }
 
-void widths(Lab& lab, Checks& checks) {
-  for (const double width : kWidths) look_round(lab, checks, 0.0, width, 361);
+void widths(Fixture& fixture, Checks& checks) {
+  for (const double width : kWidths) check_full_turn(fixture, checks, 0.0, width, 361);
 }
 
-void distances(Lab& lab, Checks& checks) {
+void distances(Fixture& fixture, Checks& checks) {
   for (const double far : kFar)
-    for (const double width : kWidths) look_round(lab, checks, far, width, 61);
+    for (const double width : kWidths) check_full_turn(fixture, checks, far, width, 61);
 }
 
 /// Corners, eyes and shifts on a lattice of 2^-20 m: every sum is exact, so no bit may change.
-void moved(Lab& lab, Checks& checks) {
+void moved(Fixture& fixture, Checks& checks) {
   std::vector<std::vector<double>> scans;
   for (const double far : kFar) {
     world::World world;
     add_room(world, {far - 3.0, far - 2.5}, 6.0);
     add_block(world, {far + 0.5 + 0x1p-20, far + 0.25}, {far + 1.5, far + 1.0 - 0x1p-19});
-    add_eye(world, {far - 1.25, far - 0.5 + 0x1p-20, 0.0, 1.0}, laser(361, kTurn, 8.0));
-    const Look look = lab.look(world);
-    scans.emplace_back(look.readings[0].values.begin(), look.readings[0].values.end());
+    add_laser_mover(world, {far - 1.25, far - 0.5 + 0x1p-20, 0.0, 1.0}, laser(361, kTurn, 8.0));
+    const TestFarm test = fixture.measure(world);
+    scans.emplace_back(test.readings[0].values.begin(), test.readings[0].values.end());
   }
   for (std::size_t f = 1; f < scans.size(); ++f)
     for (std::size_t i = 0; i < scans[0].size(); ++i)
@@ -48,38 +48,38 @@ void moved(Lab& lab, Checks& checks) {
 }
 
 /// A wall `distance` in front of an eye that sees `range`.
-double straight(Lab& lab, double range, double distance, double across) {
+double straight(Fixture& fixture, double range, double distance, double across) {
   world::World world;
   add_wall(world, {distance, -across}, {distance, across});
-  add_eye(world, {}, laser(1, 0.0, range));
-  return lab.look(world).readings[0].values[0];
+  add_laser_mover(world, {}, laser(1, 0.0, range));
+  return fixture.measure(world).readings[0].values[0];
 }
 
-void ranges(Lab& lab, Checks& checks) {
+void ranges(Fixture& fixture, Checks& checks) {
   for (const double range : {1e-6, 1e-3, 1.0, 1e3, 1e5}) {
     const auto what = fmt::format("range {:g} m", range);
-    checks.same(straight(lab, range, 0.5 * range, range), 0.5 * range, what + ", a wall half way");
-    checks.same(straight(lab, range, 0.999 * range, range), 0.999 * range, what + ", a wall just within");
-    checks.same(straight(lab, range, range, range), range, what + ", a wall at its end");
-    checks.same(straight(lab, range, 1.001 * range, range), range, what + ", a wall just beyond");
-    checks.same(straight(lab, range, 0.7 * range, 1e6), 0.7 * range, what + ", a wall of 2 000 km");
+    checks.same(straight(fixture, range, 0.5 * range, range), 0.5 * range, what + ", a wall half way");
+    checks.same(straight(fixture, range, 0.999 * range, range), 0.999 * range, what + ", a wall just within");
+    checks.same(straight(fixture, range, range, range), range, what + ", a wall at its end");
+    checks.same(straight(fixture, range, 1.001 * range, range), range, what + ", a wall just beyond");
+    checks.same(straight(fixture, range, 0.7 * range, 1e6), 0.7 * range, what + ", a wall of 2 000 km");
   }
 }
 
 /// From the middle of a world of 1 000 km, at most 100 km are seen: towers 10 m wide, 99.9 km away.
-void far_and_small(Lab& lab, Checks& checks) {
+void far_and_small(Fixture& fixture, Checks& checks) {
   world::World world;
   add_room(world, {-5e5, -5e5}, 1e6);
   constexpr double kAway = 99'900.0;
   for (int i = 0; i < 16; ++i) {
     const glm::dvec2 p = base::rotate(i * kTurn / 16, {kAway, 0.0});
     add_block(world, p - glm::dvec2{5.0, 5.0}, p + glm::dvec2{5.0, 5.0});
-    add_eye(world, {0.0, 0.0, 0.0, i * kTurn / 16}, laser(5, 1e-5, 1e5));
+    add_laser_mover(world, {0.0, 0.0, 0.0, i * kTurn / 16}, laser(5, 1e-5, 1e5));
   }
-  const Look look = lab.look(world);
-  for (const base::ReadingBlock& reading : look.readings) {
+  const TestFarm test = fixture.measure(world);
+  for (const base::ReadingBlock& reading : test.readings) {
     checks.holds(reading.values[2] < 1e5, "the tower is seen", reading.mover);
-    check_scan(*look.world, reading, checks, "towers");
+    check_scan(*test.world, reading, checks, "towers");
   }
 }
 
@@ -97,6 +97,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> places() { return kCases; }
+std::span<const Case> world_size_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

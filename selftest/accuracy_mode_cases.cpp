@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "base/random.h"
-#include "extremes/exact.h"
-#include "extremes/suite.h"
+#include "selftest/exact_ray_cast.h"
+#include "selftest/suite.h"
 #include "sensors/accuracy.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
@@ -26,10 +26,10 @@ world::World room(double far, double width, std::uint32_t samples) {
     add_block(world, p, p + glm::dvec2{0.03 * width, 0.05 * width});
   }
   for (std::uint32_t i = 100; i < 130; ++i)
-    add_eye(world,
-            {far + 0.9 * width * (random(3 * i) - 0.5), far + 0.9 * width * (random(3 * i + 1) - 0.5), 0.0,
-             7.0 * random(3 * i + 2)},
-            laser(samples, 2.0 * M_PI, 0.4 * width));
+    add_laser_mover(world,
+                    {far + 0.9 * width * (random(3 * i) - 0.5), far + 0.9 * width * (random(3 * i + 1) - 0.5), 0.0,
+                     7.0 * random(3 * i + 2)},
+                    laser(samples, 2.0 * M_PI, 0.4 * width));
   return world;
 }
 
@@ -37,31 +37,31 @@ QualityFlag quality_of(const base::ReadingBlock& reading, std::size_t i) {
   return reading.quality.empty() ? QualityFlag::none : reading.quality[i];
 }
 
-void stated_bounds(Lab& lab, Checks& checks) {
+void stated_bounds(Fixture& fixture, Checks& checks) {
   for (const char* mode : {"exact", "single"})
     for (const double far : {0.0, 1e5, 1e7})
       for (const double width : {1e-3, 1.0, 1e3, 1e6}) {
         world::World world = room(far, width, 361);
         sensors::set_accuracy(world, mode);
-        const Look look = lab.look(std::move(world));
-        for (const base::ReadingBlock& r : look.readings)
+        const TestFarm test = fixture.measure(std::move(world));
+        for (const base::ReadingBlock& r : test.readings)
           for (std::uint32_t i = 0; i < r.values.size(); ++i) {
             if (quality_of(r, i) != QualityFlag::none) continue;
-            const world::Laser& laser = look.world->movers[r.mover].lasers[0];
-            const Meeting met = first_met(look.world->walls, beam_of(r.X_WS, laser, i), laser.range_max);
-            if (met.by_a_hair) continue;
+            const world::Laser& laser = test.world->movers[r.mover].lasers[0];
+            const Hit met = nearest_hit(test.world->walls, beam_of(r.X_WS, laser, i), laser.range_max);
+            if (met.ambiguous) continue;
             checks.near(r.values[i], met.range, r.bound, fmt::format("{}, {:g} m wide, {:g} m away", mode, width, far),
                         i);
           }
       }
 }
 
-void skipped_beams(Lab& lab, Checks& checks) {
+void skipped_beams(Fixture& fixture, Checks& checks) {
   for (const auto& [mode, skip] : {std::pair{"skip2", 2u}, std::pair{"skip4", 4u}, std::pair{"skip8", 8u}})
     for (const std::uint32_t samples : {1u, 2u, 3u, 9u, 360u, 3601u}) {
       world::World thin = room(0.0, 10.0, samples);
       sensors::set_accuracy(thin, mode);
-      const Look all = lab.look(room(0.0, 10.0, samples)), some = lab.look(std::move(thin));
+      const TestFarm all = fixture.measure(room(0.0, 10.0, samples)), some = fixture.measure(std::move(thin));
       const std::uint32_t every = std::min(skip, std::max(1u, samples - 1));
       for (std::size_t k = 0; k < all.readings.size(); ++k)
         for (std::uint32_t i = 0; i < samples; ++i) {
@@ -73,7 +73,7 @@ void skipped_beams(Lab& lab, Checks& checks) {
     }
 }
 
-void near_magnets(Lab& lab, Checks& checks) {
+void near_magnets(Fixture& fixture, Checks& checks) {
   world::World world;
   for (std::uint32_t i = 0; i < 300; ++i)
     world.magnets.push_back({{30.0 * random(4 * i) - 15.0, 30.0 * random(4 * i + 1) - 15.0},
@@ -85,10 +85,10 @@ void near_magnets(Lab& lab, Checks& checks) {
     const std::uint32_t m = add_mover(world, {32.0 * random(2 * i) - 16.0, 32.0 * random(2 * i + 1) - 16.0, 0.0, 0.0});
     world.movers[m].sensors.push_back(sensor("magnetometer", {}, 0.05));
   }
-  const Look all = lab.look(world);
+  const TestFarm all = fixture.measure(world);
   for (const char* mode : {"near10", "near3", "near1"}) {
     sensors::set_accuracy(world, mode);
-    const Look near = lab.look(world);
+    const TestFarm near = fixture.measure(world);
     for (std::size_t k = 0; k < all.readings.size(); ++k)
       checks.near(near.readings[k].values[0], all.readings[k].values[0], near.readings[k].bound, mode, k);
   }
@@ -105,6 +105,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> modes() { return kCases; }
+std::span<const Case> accuracy_mode_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

@@ -1,4 +1,4 @@
-#include "extremes/case.h"
+#include "selftest/case.h"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,11 @@
 
 #include "base/error.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
-constexpr std::size_t kMostNotes = 12;
+constexpr std::size_t kMaxNotes = 12;
 
 std::string named(std::string_view what, std::uint64_t index) { return fmt::format("{} [{}]", what, index); }
 
@@ -26,7 +26,7 @@ void Checks::count(bool good, double error, double allowed, const std::function<
     outcome_.allowed = allowed;
   }
   if (good) return;
-  if (outcome_.failed++ == 0) outcome_.failure = failure();
+  if (outcome_.failed++ == 0) outcome_.failure = failing_case();
 }
 
 void Checks::near(double got, Real exact, double allowed, std::string_view what, std::uint64_t index) {
@@ -65,7 +65,7 @@ void Checks::refused(const std::function<void()>& call, std::string_view word, s
 }
 
 void Checks::note(std::string text) {
-  if (outcome_.notes.size() < kMostNotes) outcome_.notes.push_back(std::move(text));
+  if (outcome_.notes.size() < kMaxNotes) outcome_.notes.push_back(std::move(text));
 }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

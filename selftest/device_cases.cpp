@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "base/random.h"
-#include "extremes/exact.h"
-#include "extremes/suite.h"
+#include "selftest/exact_ray_cast.h"
+#include "selftest/suite.h"
 #include "sensors/laser_reference.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
@@ -35,7 +35,7 @@ world::World crowd(double far, const world::Laser& laser) {
   }
   for (int i = 0; i < 60; ++i) {
     const std::uint32_t m =
-        add_eye(world, {far + 15.0 * next() - 7.5, -far + 15.0 * next() - 7.5, 0.0, 9.0 * next()}, laser);
+        add_laser_mover(world, {far + 15.0 * next() - 7.5, -far + 15.0 * next() - 7.5, 0.0, 9.0 * next()}, laser);
     add_body(world, m, 0.2);
   }
   return world;
@@ -45,10 +45,10 @@ struct Disagreements {
   std::uint64_t beams = 0, found = 0;
 };
 
-void beside(Lab& lab, Checks& checks, const world::World& world, const std::string& what, Disagreements& all) {
-  Look look = lab.look(world, {.seed = kSeed});
-  sensors::LaserReference reference(*look.world, kSeed);
-  const bool exactly = lab.device().info().software;
+void beside(Fixture& fixture, Checks& checks, const world::World& world, const std::string& what, Disagreements& all) {
+  TestFarm test = fixture.measure(world, {.seed = kSeed});
+  sensors::LaserReference reference(*test.world, kSeed);
+  const bool exactly = fixture.device().info().software;
   std::vector<Pose> poses;
   for (const world::Mover& m : world.movers) poses.push_back(m.X_WM);
   for (int tick = 1; tick <= 2; ++tick) {
@@ -59,7 +59,7 @@ void beside(Lab& lab, Checks& checks, const world::World& world, const std::stri
       reports.push_back({m, 0, poses[m], {}});
     }
     reference.place(poses);
-    for (const base::ReadingBlock& r : look.farm->tick(tick * 100'000'000ll, reports)) {
+    for (const base::ReadingBlock& r : test.farm->tick(tick * 100'000'000ll, reports)) {
       const auto scan = reference.scan(r.mover, r.sensor, r.sequence);
       for (std::size_t i = 0; i < r.values.size(); ++i, ++all.beams) {
         const bool same = r.values[i] == scan.ranges[i] && r.hits[i] == scan.hits[i];
@@ -75,7 +75,7 @@ void beside(Lab& lab, Checks& checks, const world::World& world, const std::stri
   }
 }
 
-void plain_cpp(Lab& lab, Checks& checks) {
+void plain_cpp(Fixture& fixture, Checks& checks) {
   Disagreements all;
   world::Laser noisy = laser(91, 4.0, 6.0);
   noisy.noise = {.range_sigma = 0.01, .range_proportional = 0.02, .angle_sigma = 0.005};
@@ -83,11 +83,11 @@ void plain_cpp(Lab& lab, Checks& checks) {
   sparse.resolution = 7;
   sparse.range_min = 0.3;
   for (const double far : {0.0, 1e5, 1e7})
-    beside(lab, checks, crowd(far, laser(181, M_PI, 8.0)), fmt::format("{:g} m away", far), all);
-  beside(lab, checks, crowd(0.0, noisy), "with noise", all);
-  beside(lab, checks, crowd(0.0, sparse), "every 7th beam", all);
-  beside(lab, checks, crowd(0.0, laser(12, 2.0 * M_PI, 100.0)), "12 beams of 100 m", all);
-  beside(lab, checks, crowd(0.0, laser(181, 1e-3, 0.05)), "a range of 5 cm", all);
+    beside(fixture, checks, crowd(far, laser(181, M_PI, 8.0)), fmt::format("{:g} m away", far), all);
+  beside(fixture, checks, crowd(0.0, noisy), "with noise", all);
+  beside(fixture, checks, crowd(0.0, sparse), "every 7th beam", all);
+  beside(fixture, checks, crowd(0.0, laser(12, 2.0 * M_PI, 100.0)), "12 beams of 100 m", all);
+  beside(fixture, checks, crowd(0.0, laser(181, 1e-3, 0.05)), "a range of 5 cm", all);
   checks.note(fmt::format("{} of {} beams are not the same to the bit", all.found, all.beams));
 }
 
@@ -101,18 +101,18 @@ double in_32_bits(glm::dvec2 eye, double yaw, const world::Segment& s) {
 }
 
 /// Robots 2 m in front of a slanted wall: the farm's answer is held to rounding of 64 bits, that of 32 is noted.
-void where_32_bits_break(Lab& lab, Checks& checks) {
+void where_32_bits_break(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e3, 1e5, 1e7}) {
     world::World world;
     add_wall(world, {far + 2.1, far - 5.3}, {far + 3.7, far + 5.9});
     for (std::uint32_t i = 0; i < 100; ++i)
-      add_eye(world, {far + random(2 * i), far + random(2 * i + 1), 0.0, 0.1 * random(i)}, laser(1, 0.0, 8.0));
-    const Look look = lab.look(world);
+      add_laser_mover(world, {far + random(2 * i), far + random(2 * i + 1), 0.0, 0.1 * random(i)}, laser(1, 0.0, 8.0));
+    const TestFarm test = fixture.measure(world);
     Real ours = 0, theirs = 0;
-    for (const base::ReadingBlock& r : look.readings) {
-      const Meeting met = first_met(look.world->walls, beam_of(r.X_WS, laser(1, 0.0, 8.0), 0), 8.0);
+    for (const base::ReadingBlock& r : test.readings) {
+      const Hit met = nearest_hit(test.world->walls, beam_of(r.X_WS, laser(1, 0.0, 8.0), 0), 8.0);
       checks.near(r.values[0], met.range, rounding(met), fmt::format("{:g} m away", far), r.mover);
-      const double single = in_32_bits({r.X_WS.x, r.X_WS.y}, r.X_WS.yaw, look.world->walls[0]);
+      const double single = in_32_bits({r.X_WS.x, r.X_WS.y}, r.X_WS.yaw, test.world->walls[0]);
       ours = std::max(ours, std::fabs(Real{r.values[0]} - met.range));
       if (std::isfinite(single)) theirs = std::max(theirs, std::fabs(Real{single} - met.range));
     }
@@ -132,6 +132,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> devices() { return kCases; }
+std::span<const Case> device_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

@@ -2,57 +2,57 @@
 
 #include <fmt/format.h>
 
-#include "extremes/exact.h"
-#include "extremes/suite.h"
+#include "selftest/exact_ray_cast.h"
+#include "selftest/suite.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
-void nobody(Lab& lab, Checks& checks) {
+void nobody(Fixture& fixture, Checks& checks) {
   world::World world;
   add_room(world, {-1.0, -1.0}, 2.0);
   for (const world::World& w : {world::World{}, world}) {
-    const Look look = lab.look(w);
-    checks.holds(look.readings.empty(), "no robots, no readings");
+    const TestFarm test = fixture.measure(w);
+    checks.holds(test.readings.empty(), "no robots, no readings");
     for (int tick = 1; tick < 5; ++tick)
-      checks.holds(look.farm->tick(tick * 1'000'000'000ll, {}).empty(), "none later either", tick);
+      checks.holds(test.farm->tick(tick * 1'000'000'000ll, {}).empty(), "none later either", tick);
   }
 }
 
 /// Robots in one place see each other's outline from inside, at its own distance, and all the same.
-void coincident(Lab& lab, Checks& checks) {
+void coincident(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kRobots = 100;
   world::World world;
   add_room(world, {-4.0, -4.0}, 8.0);
   for (std::uint32_t i = 0; i < kRobots; ++i)
-    add_body(world, add_eye(world, {0.5, 0.25, 0.0, 0.0}, laser(45, 2.0 * M_PI, 8.0)), 0.25);
-  const Look look = lab.look(world);
+    add_body(world, add_laser_mover(world, {0.5, 0.25, 0.0, 0.0}, laser(45, 2.0 * M_PI, 8.0)), 0.25);
+  const TestFarm test = fixture.measure(world);
   world::World outline;
   add_block(outline, {0.25, 0.0}, {0.75, 0.5});
-  checks.equal(look.readings.size(), kRobots, "readings");
-  for (const base::ReadingBlock& r : look.readings)
+  checks.equal(test.readings.size(), kRobots, "readings");
+  for (const base::ReadingBlock& r : test.readings)
     for (std::uint32_t i = 0; i < 45; ++i) {
-      checks.same(r.values[i], look.readings[0].values[i], "all the same", r.mover);
-      const Meeting met = first_met(outline.walls, beam_of(r.X_WS, laser(45, 2.0 * M_PI, 8.0), i), 8.0);
+      checks.same(r.values[i], test.readings[0].values[i], "all the same", r.mover);
+      const Hit met = nearest_hit(outline.walls, beam_of(r.X_WS, laser(45, 2.0 * M_PI, 8.0), i), 8.0);
       checks.near(r.values[i], met.range, rounding(met), "the others' outline", r.mover);
     }
 }
 
 /// A square of robots a metre apart, each looking at the next one's back: 0.75 m to the bit, the last row at nobody.
-void a_hundred_thousand(Lab& lab, Checks& checks) {
+void a_hundred_thousand(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kSide = 320, kRobots = 100'000;
   world::World world;
   for (std::uint32_t i = 0; i < kRobots; ++i) {
     const double x = i % kSide, y = i / kSide;
-    add_body(world, add_eye(world, {x, y, 0.0, 0.0}, laser(1, 0.0, 2.0)), 0.25);
+    add_body(world, add_laser_mover(world, {x, y, 0.0, 0.0}, laser(1, 0.0, 2.0)), 0.25);
   }
-  const Look look = lab.look(std::move(world));
-  checks.equal(look.readings.size(), kRobots, "readings");
-  for (const base::ReadingBlock& r : look.readings) {
+  const TestFarm test = fixture.measure(std::move(world));
+  checks.equal(test.readings.size(), kRobots, "readings");
+  for (const base::ReadingBlock& r : test.readings) {
     const bool last = r.mover % kSide == kSide - 1 || r.mover == kRobots - 1;
     checks.same(r.values[0], last ? 2.0 : 0.75, "the next robot's back", r.mover);
-    checks.equal(r.hits[0], last ? base::kNoHit : look.world->movers[r.mover + 1].model, "by name", r.mover);
+    checks.equal(r.hits[0], last ? base::kNoHit : test.world->movers[r.mover + 1].model, "by name", r.mover);
   }
 }
 
@@ -66,6 +66,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> fleets() { return kCases; }
+std::span<const Case> fleet_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 /// More than 64 bits, where the machine has them: x86's 64-bit significand.
 using Real = long double;
@@ -62,14 +62,14 @@ class Checks {
   double nearest_ = -1.0;  ///< largest error as a share of what was allowed
 };
 
-class Lab;
+class Fixture;
 
 struct Case {
   std::string_view group;
   std::string_view name;  ///< unique: words with dashes
   std::string_view unit;  ///< of its errors; empty: nothing in it is near, it is right or wrong
   std::string_view why;   ///< the answer, and the reason for what is allowed
-  void (*run)(Lab& lab, Checks& checks);
+  void (*run)(Fixture& fixture, Checks& checks);
 };
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

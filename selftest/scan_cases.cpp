@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "extremes/exact.h"
-#include "extremes/suite.h"
+#include "selftest/exact_ray_cast.h"
+#include "selftest/suite.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
@@ -19,49 +19,49 @@ world::World room_with_blocks() {
   return world;
 }
 
-void look(Lab& lab, Checks& checks, std::span<const std::uint32_t> samples, std::uint32_t stride) {
+void check_scans(Fixture& fixture, Checks& checks, std::span<const std::uint32_t> samples, std::uint32_t stride) {
   world::World world = room_with_blocks();
   for (const std::uint32_t count : samples)
     for (const double fov : {0.0, 1e-6, 1.0, 90.0, 180.0, 270.0, 360.0})
-      add_eye(world, {0.21, -0.13, 0.0, 0.5}, laser(count, fov * kDegree, 20.0));
-  const Look look = lab.look(world);
-  for (const base::ReadingBlock& r : look.readings) {
-    const world::Laser& laser = look.world->movers[r.mover].lasers[0];
+      add_laser_mover(world, {0.21, -0.13, 0.0, 0.5}, laser(count, fov * kDegree, 20.0));
+  const TestFarm test = fixture.measure(world);
+  for (const base::ReadingBlock& r : test.readings) {
+    const world::Laser& laser = test.world->movers[r.mover].lasers[0];
     const auto what = fmt::format("{} samples in {:g} degrees", laser.samples, laser.fov / kDegree);
-    check_scan(*look.world, r, checks, what, stride);
+    check_scan(*test.world, r, checks, what, stride);
     if (laser.fov == 0.0)
       for (const double range : r.values) checks.same(range, r.values[0], what + ": all beams are one");
   }
 }
 
-void few_and_many(Lab& lab, Checks& checks) {
+void few_and_many(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kCounts[] = {1, 2, 3, 4, 5, 7, 8, 9, 31, 64, 361, 1001};
-  look(lab, checks, kCounts, 1);
+  check_scans(fixture, checks, kCounts, 1);
 }
 
-void a_hundred_thousand(Lab& lab, Checks& checks) {
+void a_hundred_thousand(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kCounts[] = {100'000};
-  look(lab, checks, kCounts, 7);
+  check_scans(fixture, checks, kCounts, 7);
 }
 
 /// A whole turn: its first and last beams look backwards, both along one line.
-void whole_turn(Lab& lab, Checks& checks) {
+void whole_turn(Fixture& fixture, Checks& checks) {
   world::World world = room_with_blocks();
   for (const std::uint32_t count : {2u, 3u, 361u, 100'000u})
-    add_eye(world, {0.21, -0.13, 0.0, 0.0}, laser(count, 2.0 * M_PI, 20.0));
-  const Look look = lab.look(world);
-  for (const base::ReadingBlock& r : look.readings)
+    add_laser_mover(world, {0.21, -0.13, 0.0, 0.0}, laser(count, 2.0 * M_PI, 20.0));
+  const TestFarm test = fixture.measure(world);
+  for (const base::ReadingBlock& r : test.readings)
     checks.near(r.values.front(), static_cast<Real>(r.values.back()), 2e-15 * (5.21 + 5.0), "first and last", r.mover);
 }
 
 /// The same beam at the same heading, given as one of many turns: the cosine of the double that was given counts.
-void headings(Lab& lab, Checks& checks) {
+void headings(Fixture& fixture, Checks& checks) {
   world::World world = room_with_blocks();
   for (const double yaw : {0.0, -0.0, 0.5 * M_PI, M_PI, -M_PI, 100.0, -1234.5, 1e6, -1e6, 999'999.9, 1e-300, 5e-324})
-    add_eye(world, {0.21, -0.13, 0.0, yaw}, laser(61, 2.0, 20.0));
-  const Look look = lab.look(world);
-  for (const base::ReadingBlock& r : look.readings)
-    check_scan(*look.world, r, checks, fmt::format("heading {:g}", r.X_WS.yaw));
+    add_laser_mover(world, {0.21, -0.13, 0.0, yaw}, laser(61, 2.0, 20.0));
+  const TestFarm test = fixture.measure(world);
+  for (const base::ReadingBlock& r : test.readings)
+    check_scan(*test.world, r, checks, fmt::format("heading {:g}", r.X_WS.yaw));
 }
 
 constexpr Case kCases[] = {
@@ -76,6 +76,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> fans() { return kCases; }
+std::span<const Case> scan_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

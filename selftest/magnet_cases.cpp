@@ -4,11 +4,11 @@
 
 #include <array>
 
-#include "extremes/suite.h"
+#include "selftest/suite.h"
 #include "sensors/field/survey.h"
 #include "sensors/magnetometer.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
@@ -45,9 +45,9 @@ double allowed_at(const world::World& world, const Place& p) {
   return 1e-13 + 4e-18 / nearest;
 }
 
-void compare(Lab& lab, Checks& checks, const world::World& world, std::span<const Place> places,
+void compare(Fixture& fixture, Checks& checks, const world::World& world, std::span<const Place> places,
              const std::string& what) {
-  const auto sums = sensors::survey(world, lab.device(), places, {.magnitudes = true});
+  const auto sums = sensors::survey(world, fixture.device(), places, {.magnitudes = true});
   for (std::size_t i = 0; i < places.size(); ++i) {
     Field exact;
     for (const world::Magnet& m : world.magnets) add(m, places[i], exact);
@@ -58,7 +58,7 @@ void compare(Lab& lab, Checks& checks, const world::World& world, std::span<cons
   }
 }
 
-void one_magnet(Lab& lab, Checks& checks) {
+void one_magnet(Fixture& fixture, Checks& checks) {
   for (const double moment : kMoments) {
     world::World world;
     world.magnets.push_back({{}, 0.0, moment, 1e-9, 0});
@@ -67,12 +67,12 @@ void one_magnet(Lab& lab, Checks& checks) {
       for (const glm::dvec2& d : {glm::dvec2{1.0, 0.0}, glm::dvec2{0.6, 0.8}, glm::dvec2{0.0, 1.0},
                                   glm::dvec2{-0.8, -0.6}, glm::dvec2{0.0, -1.0}})
         places.push_back({r * d.x, 0.0, r * d.y});
-    compare(lab, checks, world, places, fmt::format("{:g} A m^2", moment));
+    compare(fixture, checks, world, places, fmt::format("{:g} A m^2", moment));
   }
 }
 
 /// In its very middle and around it: what it is at its radius, in the same direction; in the middle, above it.
-void within_it(Lab& lab, Checks& checks) {
+void within_it(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
     world.magnets.push_back({{far, -far}, 0.5, -2.0, 0.0125, 0});
@@ -82,40 +82,40 @@ void within_it(Lab& lab, Checks& checks) {
                                        {far + 0x1p-10, -far + 0x1p-10, 0.5 - 0x1p-9},
                                        {far, -far + 0x1p-20, 0.5},
                                        {far, -far, 0.51}}};
-    compare(lab, checks, world, places, fmt::format("{:g} m away", far));
+    compare(fixture, checks, world, places, fmt::format("{:g} m away", far));
   }
 }
 
-void far_origins(Lab& lab, Checks& checks) {
+void far_origins(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
     for (int i = 0; i < 200; ++i) world.magnets.push_back({{far + 0.071 * i, far}, 0.0, i % 3 ? 1.0 : -2.5, 0.0125, 0});
     std::vector<Place> places;
     for (int i = 0; i < 25; ++i) places.push_back({far + 0.6 * i, far + 0.01 * i, 0.075});
-    compare(lab, checks, world, places, fmt::format("200 magnets {:g} m away", far));
+    compare(fixture, checks, world, places, fmt::format("200 magnets {:g} m away", far));
   }
 }
 
 /// Pairs in one place, and a million times as strong ones: what is left is nothing, or the one that has no partner.
-void cancelling_pairs(Lab& lab, Checks& checks) {
+void cancelling_pairs(Fixture& fixture, Checks& checks) {
   world::World world;
   for (int i = 0; i < 500; ++i)
     for (const double sign : {1.0, -1.0})
       world.magnets.push_back({{0.071 * i, 0.25}, 0.1, sign * (1.0 + 1e6 * (i % 2)), 0.0125, 0});
   std::vector<Place> places;
   for (int i = 0; i < 50; ++i) places.push_back({0.7 * i, -0.1, 0.3});
-  const auto sums = sensors::survey(world, lab.device(), places, {.magnitudes = true});
+  const auto sums = sensors::survey(world, fixture.device(), places, {.magnitudes = true});
   for (std::size_t i = 0; i < places.size(); ++i) {
     for (const double component : {sums[i].x, sums[i].y, sums[i].z})
       checks.same(component + 0.0, 0.0, "nothing is left", i);
     checks.holds(sums[i].magnitudes > 0.0, "their magnitudes are", i);
   }
   world.magnets.push_back({{3.0, 0.0}, 0.0, 1e-3, 0.0125, 0});
-  compare(lab, checks, world, places, "one without a partner");
+  compare(fixture, checks, world, places, "one without a partner");
 }
 
 /// As readings: they saturate where the sensor does, and are numbers always.
-void saturated(Lab& lab, Checks& checks) {
+void saturated(Fixture& fixture, Checks& checks) {
   for (const double moment : {1e12, -1e12, 1e-12}) {
     world::World world;
     const std::uint32_t m = add_mover(world, {});
@@ -123,11 +123,11 @@ void saturated(Lab& lab, Checks& checks) {
     world.movers[m].sensors.push_back(
         sensor("magnetometer", {{"scount", {2}}, {"spose3[0]", {0, 0, 0, 0}}, {"spose3[1]", {1e-6, 0, 1e-6, 0}}}, 0.2));
     world.movers[m].sensors[0].X_MS.z = 0.1;
-    const Look look = lab.look(world);
+    const TestFarm test = fixture.measure(world);
     const double most = 2147483647e-8;
     for (std::size_t e = 0; e < 2; ++e) {
       const auto row =
-          look.readings[0].values.subspan(sensors::kMagnetometerColumns * e, sensors::kMagnetometerColumns);
+          test.readings[0].values.subspan(sensors::kMagnetometerColumns * e, sensors::kMagnetometerColumns);
       for (const double value : row)
         checks.holds(std::isfinite(value) && std::fabs(value) <= most + 1e-14, "within its sensitivity", e);
       if (std::fabs(moment) > 1.0) checks.near(row[0], most, 1e-14, "saturated", e);
@@ -152,6 +152,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> magnets() { return kCases; }
+std::span<const Case> magnet_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

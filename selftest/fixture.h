@@ -11,25 +11,25 @@
 #include "gpu/device.h"
 #include "world/world.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 using base::Pose;
 
 /// A farm on a world of its own, everyone heard.
-struct Look {
+struct TestFarm {
   std::unique_ptr<world::World> world;
   std::unique_ptr<farm::Farm> farm;
   std::span<const base::ReadingBlock> readings;  ///< of the tick at time 0; until the next one
 };
 
 /// One thread. The device must outlive it.
-class Lab {
+class Fixture {
  public:
-  explicit Lab(gpu::Device& device) : device_(device) {}
+  explicit Fixture(gpu::Device& device) : device_(device) {}
 
   gpu::Device& device() const { return device_; }
   /// A farm of small pools, ticked once at time 0.
-  Look look(world::World world, farm::FarmOptions options = {}) const;
+  TestFarm measure(world::World world, farm::FarmOptions options = {}) const;
 
  private:
   gpu::Device& device_;
@@ -47,7 +47,7 @@ void add_block(world::World& world, glm::dvec2 low, glm::dvec2 high);
 /// A laser at its mover's origin, 0.1 m high. Every heading is in its pose.
 world::Laser laser(std::uint32_t samples, double fov, double range_max);
 /// A mover without a body. @return its row
-std::uint32_t add_eye(world::World& world, const Pose& X_WM, const world::Laser& laser);
+std::uint32_t add_laser_mover(world::World& world, const Pose& X_WM, const world::Laser& laser);
 std::uint32_t add_mover(world::World& world, const Pose& X_WM);
 /// Gives a mover a square body of `half` [m].
 void add_body(world::World& world, std::uint32_t mover, double half);
@@ -55,4 +55,4 @@ void add_body(world::World& world, std::uint32_t mover, double half);
 using Settings = std::vector<std::pair<std::string, std::vector<double>>>;  ///< in metres and degrees
 world::Sensor sensor(const std::string& type, const Settings& settings, double height = 0.0);
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

@@ -5,21 +5,21 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
-#include "extremes/lab.h"
+#include "selftest/fixture.h"
 #include "sensors/field/survey.h"
 #include "tests/sensors/chance.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 namespace {
 
 using Digits50 = boost::multiprecision::cpp_bin_float_50;
 using Digits100 = boost::multiprecision::cpp_bin_float_100;
 using trial::Chance;
 
-Lab& lab() {
+Fixture& fixture() {
   static gpu::Device device;
-  static Lab lab(device);
-  return lab;
+  static Fixture fixture(device);
+  return fixture;
 }
 
 /// Evenly in the exponent.
@@ -30,11 +30,11 @@ double magnitude(Chance& chance, double low, double high) {
 struct Met {
   Digits50 range;
   double sine = 1.0, arm = 0.0;
-  bool by_a_hair = false;  ///< a free end is so near that 64 bits decide
+  bool ambiguous = false;  ///< a free end is so near that 64 bits decide
 };
 
 /// Every wall one after another: signs and quotients in 50 digits.
-Met first_met(const world::World& world, const Pose& eye, const world::Laser& laser, std::uint32_t sample) {
+Met nearest_hit(const world::World& world, const Pose& eye, const world::Laser& laser, std::uint32_t sample) {
   Digits50 part = laser.samples < 2 ? Digits50(0) : Digits50(sample) / Digits50(laser.samples - 1) - Digits50(0.5);
   const Digits50 angle = Digits50(eye.yaw) + Digits50(laser.fov) * part;
   const Digits50 dx = cos(angle), dy = sin(angle);
@@ -56,7 +56,7 @@ Met first_met(const world::World& world, const Pose& eye, const world::Laser& la
     if (u < 0 || u > 1 || t >= met.range) continue;
     met = {t, sine, arm};
   }
-  for (const Digits50& t : hairs) met.by_a_hair = met.by_a_hair || t < met.range * (1 + 1e-12);
+  for (const Digits50& t : hairs) met.ambiguous = met.ambiguous || t < met.range * (1 + 1e-12);
   return met;
 }
 
@@ -83,15 +83,15 @@ TEST(Oracle, LaserRangesInRandomScenes) {
     world::World world = scene(chance, at, size);
     const double turn = chance.below(4) == 0 ? 1e6 : 4.0;
     const world::Laser eye = laser(1 + chance.below(40), chance.between(0.0, 2.0 * M_PI), std::min(size, 1e5));
-    add_eye(world, {at.x, at.y, 0.0, chance.between(-turn, turn)}, eye);
-    const Look look = lab().look(world);
+    add_laser_mover(world, {at.x, at.y, 0.0, chance.between(-turn, turn)}, eye);
+    const TestFarm test = fixture().look(world);
     for (std::uint32_t i = 0; i < eye.samples; ++i, ++beams) {
-      const Met met = first_met(world, look.readings[0].X_WS, eye, i);
-      if (met.by_a_hair) {
+      const Met met = nearest_hit(world, test.readings[0].X_WS, eye, i);
+      if (met.ambiguous) {
         ++hairs;
         continue;
       }
-      const double range = look.readings[0].values[i];
+      const double range = test.readings[0].values[i];
       if (met.range == eye.range_max) {
         EXPECT_EQ(range, eye.range_max) << "trial " << trial << " beam " << i;
         continue;
@@ -136,7 +136,7 @@ TEST(Oracle, FieldsOfRandomMagnets) {
       magnitudes += sqrt(bx * bx + by * by + bz * bz);
       nearest = std::min(nearest, static_cast<double>(sqrt(r2)));
     }
-    const auto sum = sensors::survey(world, lab().device(), {&place, 1}, {.magnitudes = true})[0];
+    const auto sum = sensors::survey(world, fixture().device(), {&place, 1}, {.magnitudes = true})[0];
     const Digits100 ex = sum.x - x, ey = sum.y - y, ez = sum.z - z;
     const auto apart = static_cast<double>(sqrt(ex * ex + ey * ey + ez * ez) / magnitudes);
     const double allowed = 1e-13 + 4e-18 / nearest;
@@ -168,14 +168,14 @@ TEST(Oracle, DistancesToRandomEdges) {
     world.lane_markings.push_back({{middle - 5.0 * distance * along, middle + 5.0 * distance * along}, 0.1 * distance});
     world.movers[add_mover(world, X)].sensors.push_back(
         sensor("laneedge", {{"perpendicular", {0.0}}, {"range_max", {3.0 * distance}}}, 0.1));
-    const Look look = lab().look(world);
+    const TestFarm test = fixture().look(world);
     const glm::dvec2 a = world.lane_markings[0].line[0], b = world.lane_markings[0].line[1];
     const Digits50 tx = Digits50(b.x) - a.x, ty = Digits50(b.y) - a.y, size = sqrt(tx * tx + ty * ty);
     const Digits50 nx = ty / size, ny = -tx / size;
     const Digits50 height =
         nx * (Digits50(a.x) - X.x) + ny * (Digits50(a.y) - X.y) - Digits50(world.lane_markings[0].width) / 2;
     const Digits50 exact = height / (nx * cos(Digits50(yaw)) + ny * sin(Digits50(yaw)));
-    const double got = look.readings[0].values[0];
+    const double got = test.readings[0].values[0];
     const double allowed = (4.0 * grain + 1e-13 * distance) / std::pow(std::cos(tilt), 2);
     const double error = std::abs(static_cast<double>(Digits50(got) - exact));
     seen += std::isfinite(got);
@@ -192,13 +192,13 @@ TEST(Oracle, SeesAWallThatIsElsewhere) {
   world::World world;
   add_wall(world, {2.0, -1.0}, {2.5, 1.0});
   const world::Laser eye = laser(1, 0.0, 8.0);
-  add_eye(world, {0.0, 0.0, 0.0, 0.1}, eye);
-  const Look look = lab().look(world);
-  const Met there = first_met(world, look.readings[0].X_WS, eye, 0);
-  EXPECT_LE(abs(Digits50(look.readings[0].values[0]) - there.range), 2e-14);
+  add_laser_mover(world, {0.0, 0.0, 0.0, 0.1}, eye);
+  const TestFarm test = fixture().look(world);
+  const Met there = nearest_hit(world, test.readings[0].X_WS, eye, 0);
+  EXPECT_LE(abs(Digits50(test.readings[0].values[0]) - there.range), 2e-14);
   world.walls[0].a.x += 1e-12;
-  EXPECT_GT(abs(Digits50(look.readings[0].values[0]) - first_met(world, look.readings[0].X_WS, eye, 0).range), 2e-13);
+  EXPECT_GT(abs(Digits50(test.readings[0].values[0]) - nearest_hit(world, test.readings[0].X_WS, eye, 0).range), 2e-13);
 }
 
 }  // namespace
-}  // namespace sf::extremes
+}  // namespace sf::selftest

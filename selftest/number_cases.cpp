@@ -4,11 +4,11 @@
 
 #include <cstring>
 
-#include "extremes/suite.h"
 #include "netio/packets.h"
 #include "robots/fleet.h"
+#include "selftest/suite.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
@@ -39,7 +39,7 @@ void try_field(Checks& checks, const base::Bytes& good, std::size_t at, double m
   for (const double value : {beyond, -beyond, kHuge, -kHuge}) expect(value, Reason::out_of_range);
 }
 
-void packets(Lab&, Checks& checks) {
+void packets(Fixture&, Checks& checks) {
   using namespace netio;
   base::Bytes v2v, tag;
   encode({.robot = 7}, V2v{}, v2v);
@@ -60,25 +60,25 @@ void packets(Lab&, Checks& checks) {
 }
 
 /// From the bytes of a packet to readings: the least and the largest numbers that a pose may have.
-void poses(Lab& lab, Checks& checks) {
+void poses(Fixture& fixture, Checks& checks) {
   for (const double x : {kDenormal, -kDenormal, 1e-310, std::numeric_limits<double>::min(), 1e7, -1e7})
     for (const double yaw : {0.0, kDenormal, -1e-310}) {
       world::World world;
       add_wall(world, {x + 2.0, -1.0}, {x + 2.0, 1.0});
-      add_eye(world, {}, laser(1, 0.0, 8.0));
-      Look look = lab.look(world);
+      add_laser_mover(world, {}, laser(1, 0.0, 8.0));
+      TestFarm test = fixture.measure(world);
       base::Bytes bytes;
       netio::Packet packet;
       netio::encode({.robot = 0}, netio::V2v{.X_WR = {x, kDenormal, 0.0, yaw}}, bytes);
       checks.holds(netio::decode(bytes, packet) == Reason::accepted, "taken");
       const base::Report report = netio::report(packet.header, std::get<netio::V2v>(packet.body), 0);
-      const auto readings = look.farm->tick(1'000'000'000, {&report, 1});
+      const auto readings = test.farm->tick(1'000'000'000, {&report, 1});
       checks.same(readings[0].values[0], 2.0, fmt::format("x {:g}, yaw {:g}", x, yaw));
     }
 }
 
 /// Commands are whatever a controller says.
-void commands(Lab&, Checks& checks) {
+void commands(Fixture&, Checks& checks) {
   world::World world;
   add_mover(world, {1.0, 2.0, 0.0, 0.5});
   for (const double bad : {kNan, kInfinity, -kInfinity, kHuge, kDenormal}) {
@@ -106,6 +106,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> numbers() { return kCases; }
+std::span<const Case> number_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

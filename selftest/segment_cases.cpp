@@ -2,18 +2,18 @@
 
 #include <fmt/format.h>
 
-#include "extremes/exact.h"
-#include "extremes/suite.h"
+#include "selftest/exact_ray_cast.h"
+#include "selftest/suite.h"
 #include "world/stage/stage.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
 constexpr double kTurn = 2.0 * M_PI;
 
 /// Corners given twice and three times, as drawing programs write them.
-void points_given_twice(Lab& lab, Checks& checks) {
+void points_given_twice(Fixture& fixture, Checks& checks) {
   const world::World read =
       world::build_world("twice.world",
                          "model( name \"post\" pose [2 0 0 0] size [2 2 1] block( points 7 point[0] [0 0] "
@@ -21,26 +21,26 @@ void points_given_twice(Lab& lab, Checks& checks) {
                          "point[6] [0 1] z [0 1] ) )");
   for (const world::Segment& s : read.walls) checks.holds(s.a.x != s.b.x || s.a.y != s.b.y, "no wall without length");
   world::World world = read;
-  add_eye(world, {0.0, 0.0, 0.0, 0.0}, laser(61, 0.5, 8.0));
-  const Look look = lab.look(world);
-  check_scan(*look.world, look.readings[0], checks, "corners given twice");
-  checks.same(look.readings[0].values[30], 1.0, "the face in front");
+  add_laser_mover(world, {0.0, 0.0, 0.0, 0.0}, laser(61, 0.5, 8.0));
+  const TestFarm test = fixture.measure(world);
+  check_scan(*test.world, test.readings[0], checks, "corners given twice");
+  checks.same(test.readings[0].values[30], 1.0, "the face in front");
 }
 
 /// A wall without length among others, put there past the reader: it is never met, and hides nothing.
-void zero_length(Lab& lab, Checks& checks) {
+void zero_length(Fixture& fixture, Checks& checks) {
   world::World world;
   add_room(world, {-2.0, -2.0}, 4.0);
   for (const glm::dvec2& p : {glm::dvec2{1.0, 0.0}, glm::dvec2{0.0, 0.0}, glm::dvec2{2.0, 0.0}, glm::dvec2{-2.0, -2.0}})
     add_wall(world, p, p);
-  add_eye(world, {0.0, 0.0, 0.0, 0.0}, laser(361, kTurn, 8.0));
-  const Look look = lab.look(world);
-  check_scan(*look.world, look.readings[0], checks, "walls without length");
-  checks.same(look.readings[0].values[180], 2.0, "straight through them");
+  add_laser_mover(world, {0.0, 0.0, 0.0, 0.0}, laser(361, kTurn, 8.0));
+  const TestFarm test = fixture.measure(world);
+  check_scan(*test.world, test.readings[0], checks, "walls without length");
+  checks.same(test.readings[0].values[180], 2.0, "straight through them");
 }
 
 /// Blocks 1 m long and down to an atom thin, seen from their sides and from their ends.
-void slivers(Lab& lab, Checks& checks) {
+void slivers(Fixture& fixture, Checks& checks) {
   for (const double thick : {1e-3, 1e-6, 1e-9, 1e-12})
     for (const double far : {0.0, 1e5}) {
       // Far away doubles are 1.5e-11 m apart: thinner is nothing.
@@ -48,27 +48,27 @@ void slivers(Lab& lab, Checks& checks) {
       world::World world;
       add_block(world, {far + 1.0, far - 0.5}, {far + 1.0 + thick, far + 0.5});
       add_outline(world, {{far - 1.0, far - 0.5}, {far - 1.0, far + 0.5}, {far - 1.0 - thick, far}});
-      for (const double yaw : {0.0, 0.3, M_PI, 2.9}) add_eye(world, {far, far, 0.0, yaw}, laser(31, 0.4, 8.0));
-      add_eye(world, {far + 1.0 + 0.5 * thick, far - 2.0, 0.0, 0.5 * M_PI}, laser(1, 0.0, 8.0));
-      const Look look = lab.look(world);
-      for (const base::ReadingBlock& r : look.readings)
-        check_scan(*look.world, r, checks, fmt::format("{:g} m thick, {:g} m away", thick, far));
+      for (const double yaw : {0.0, 0.3, M_PI, 2.9}) add_laser_mover(world, {far, far, 0.0, yaw}, laser(31, 0.4, 8.0));
+      add_laser_mover(world, {far + 1.0 + 0.5 * thick, far - 2.0, 0.0, 0.5 * M_PI}, laser(1, 0.0, 8.0));
+      const TestFarm test = fixture.measure(world);
+      for (const base::ReadingBlock& r : test.readings)
+        check_scan(*test.world, r, checks, fmt::format("{:g} m thick, {:g} m away", thick, far));
     }
 }
 
 /// Nanometres beside 200 km.
-void tiny_beside_huge(Lab& lab, Checks& checks) {
+void tiny_beside_huge(Fixture& fixture, Checks& checks) {
   world::World world;
   add_wall(world, {-1e5, 3.0}, {1e5, 3.5});
   add_wall(world, {4.0, -1e5}, {4.5, 1e5});
   for (int i = 0; i < 40; ++i) {
     const glm::dvec2 p = base::rotate(0.151 * i, {1.0 + 0.04 * i, 0.0});
     add_wall(world, p, p + glm::dvec2{1e-9 * (1 + i), -2e-9});
-    add_eye(world, {0.0, 0.0, 0.0, std::atan2(p.y - 1e-9, p.x + 0.5e-9 * (1 + i))}, laser(3, 1e-10, 8.0));
+    add_laser_mover(world, {0.0, 0.0, 0.0, std::atan2(p.y - 1e-9, p.x + 0.5e-9 * (1 + i))}, laser(3, 1e-10, 8.0));
   }
-  add_eye(world, {0.0, 0.0, 0.0, 0.0}, laser(361, kTurn, 8.0));
-  const Look look = lab.look(world);
-  for (const base::ReadingBlock& r : look.readings) check_scan(*look.world, r, checks, "nanometres beside 200 km");
+  add_laser_mover(world, {0.0, 0.0, 0.0, 0.0}, laser(361, kTurn, 8.0));
+  const TestFarm test = fixture.measure(world);
+  for (const base::ReadingBlock& r : test.readings) check_scan(*test.world, r, checks, "nanometres beside 200 km");
 }
 
 /// `side` x `side` posts of four walls each on a square metre.
@@ -93,18 +93,18 @@ world::World posts(std::uint32_t side) {
 }
 
 /// Cells of an eye of few beams are wider than the square: all walls lie in one.
-void a_million(Lab& lab, Checks& checks) {
+void a_million(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kSide = 500;
   world::World world = posts(kSide);
   checks.equal(world.walls.size(), 1'000'000u, "walls");
   const double between = (250.0 + 0.75) / kSide;  // four posts
-  add_eye(world, {between, between, 0.0, 0.0}, laser(17, kTurn, 0.1));
-  const Look look = lab.look(std::move(world));
-  check_scan(*look.world, look.readings[0], checks, "between a million walls");
-  checks.same(look.readings[0].values[8], 0.1, "along the lane between them");
+  add_laser_mover(world, {between, between, 0.0, 0.0}, laser(17, kTurn, 0.1));
+  const TestFarm test = fixture.measure(std::move(world));
+  check_scan(*test.world, test.readings[0], checks, "between a million walls");
+  checks.same(test.readings[0].values[8], 0.1, "along the lane between them");
   world::World fewer = posts(kSide / 2);
-  add_eye(fewer, {-1.0, 0.5, 0.0, 0.0}, laser(16, 0.1, 8.0));
-  const Look longest = lab.look(std::move(fewer));
+  add_laser_mover(fewer, {-1.0, 0.5, 0.0, 0.0}, laser(16, 0.1, 8.0));
+  const TestFarm longest = fixture.measure(std::move(fewer));
   check_scan(*longest.world, longest.readings[0], checks, "a quarter of a million in one direction of one cell");
 }
 
@@ -122,6 +122,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> segments() { return kCases; }
+std::span<const Case> segment_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

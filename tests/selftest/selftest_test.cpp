@@ -6,18 +6,18 @@
 #include <set>
 
 #include "base/error.h"
-#include "extremes/suite.h"
+#include "selftest/suite.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 namespace {
 
-Lab& lab() {
+Fixture& fixture() {
   static gpu::Device device;
-  static Lab lab(device);
-  return lab;
+  static Fixture fixture(device);
+  return fixture;
 }
 
 std::string test_name(const testing::TestParamInfo<Case>& info) {
@@ -29,7 +29,7 @@ std::string test_name(const testing::TestParamInfo<Case>& info) {
 class Extremes : public testing::TestWithParam<Case> {};
 
 TEST_P(Extremes, Holds) {
-  const Outcome o = run(GetParam(), lab());
+  const Outcome o = run(GetParam(), fixture());
   std::printf("[ measured ] %s: %llu checks, closest call %.3g of %.3g allowed, %.2f s\n",
               std::string(GetParam().name).c_str(), static_cast<unsigned long long>(o.checks), o.error, o.allowed,
               o.seconds);
@@ -50,17 +50,17 @@ TEST(Suite, NamesAreUniqueAndReasonsAreGiven) {
   EXPECT_EQ(find_case("no-such-case"), nullptr);
 }
 
-Outcome outcome_of(void (*body)(Lab&, Checks&)) { return run({"made", "made", "m", "made", body}, lab()); }
+Outcome outcome_of(void (*body)(Fixture&, Checks&)) { return run({"made", "made", "m", "made", body}, fixture()); }
 
 /// A case whose answer is wrong is told, with the check that failed and by how much.
 TEST(Suite, AWrongAnswerFails) {
-  const Outcome o = outcome_of([](Lab& l, Checks& checks) {
+  const Outcome o = outcome_of([](Fixture& l, Checks& checks) {
     world::World world;
     add_wall(world, {2.0, -1.0}, {2.0, 1.0});
-    add_eye(world, {}, laser(1, 0.0, 8.0));
-    const Look look = l.look(world);
-    checks.near(look.readings[0].values[0], 2.0, 1e-9, "right");
-    checks.near(look.readings[0].values[0], 2.5, 1e-9, "wrong", 7);
+    add_laser_mover(world, {}, laser(1, 0.0, 8.0));
+    const TestFarm test = l.look(world);
+    checks.near(test.readings[0].values[0], 2.0, 1e-9, "right");
+    checks.near(test.readings[0].values[0], 2.5, 1e-9, "wrong", 7);
   });
   EXPECT_FALSE(o.passed());
   EXPECT_EQ(o.checks, 2u);
@@ -71,20 +71,21 @@ TEST(Suite, AWrongAnswerFails) {
 
 TEST(Suite, EveryKindOfCheckCanFail) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.near(kNan, 0, 1e300, "not a number"); }).passed());
-  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.near(1, kNan, 1e300, "not a number"); }).passed());
-  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.same(0.0, -0.0, "another bit"); }).passed());
-  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.equal(-1, 0xFFFFFFFFu, "signs"); }).passed());
-  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.holds(false, "false"); }).passed());
-  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.refused([] {}, "", "taken"); }).passed());
-  EXPECT_FALSE(outcome_of([](Lab&, Checks& c) { c.refused([] { throw base::InputError("y"); }, "x", "y"); }).passed());
-  EXPECT_FALSE(outcome_of([](Lab&, Checks&) { throw base::InputError("thrown"); }).passed());
-  EXPECT_FALSE(outcome_of([](Lab&, Checks&) {}).passed()) << "a case without checks";
-  EXPECT_TRUE(outcome_of([](Lab&, Checks& c) { c.same(kNan, -kNan, "neither is a number"); }).passed());
+  EXPECT_FALSE(outcome_of([](Fixture&, Checks& c) { c.near(kNan, 0, 1e300, "not a number"); }).passed());
+  EXPECT_FALSE(outcome_of([](Fixture&, Checks& c) { c.near(1, kNan, 1e300, "not a number"); }).passed());
+  EXPECT_FALSE(outcome_of([](Fixture&, Checks& c) { c.same(0.0, -0.0, "another bit"); }).passed());
+  EXPECT_FALSE(outcome_of([](Fixture&, Checks& c) { c.equal(-1, 0xFFFFFFFFu, "signs"); }).passed());
+  EXPECT_FALSE(outcome_of([](Fixture&, Checks& c) { c.holds(false, "false"); }).passed());
+  EXPECT_FALSE(outcome_of([](Fixture&, Checks& c) { c.refused([] {}, "", "taken"); }).passed());
+  EXPECT_FALSE(
+      outcome_of([](Fixture&, Checks& c) { c.refused([] { throw base::InputError("y"); }, "x", "y"); }).passed());
+  EXPECT_FALSE(outcome_of([](Fixture&, Checks&) { throw base::InputError("thrown"); }).passed());
+  EXPECT_FALSE(outcome_of([](Fixture&, Checks&) {}).passed()) << "a case without checks";
+  EXPECT_TRUE(outcome_of([](Fixture&, Checks& c) { c.same(kNan, -kNan, "neither is a number"); }).passed());
 }
 
 TEST(Suite, TheNearestToItsToleranceIsTold) {
-  const Outcome o = outcome_of([](Lab&, Checks& c) {
+  const Outcome o = outcome_of([](Fixture&, Checks& c) {
     c.near(1.0 + 1e-3, 1, 1e-2, "a tenth");
     c.near(1.0 + 1e-6, 1, 2e-6, "a half");
     c.same(1.0, 1.0, "nothing");
@@ -97,11 +98,11 @@ TEST(Suite, TheNearestToItsToleranceIsTold) {
 /// A pose that is not finite is the caller's broken promise: packets and files are judged before.
 TEST(SuiteDeathTest, APoseThatIsNoNumberStopsTheFarm) {
   world::World world;
-  add_eye(world, {}, laser(1, 0.0, 8.0));
-  const Look look = lab().look(world);
+  add_laser_mover(world, {}, laser(1, 0.0, 8.0));
+  const TestFarm test = fixture().look(world);
   const base::Report report{.mover = 0, .X_WM = {std::numeric_limits<double>::quiet_NaN(), 0, 0, 0}};
-  EXPECT_DEATH(look.farm->tick(1, {&report, 1}), "the pose of mover 0 is not finite");
+  EXPECT_DEATH(test.farm->tick(1, {&report, 1}), "the pose of mover 0 is not finite");
 }
 
 }  // namespace
-}  // namespace sf::extremes
+}  // namespace sf::selftest

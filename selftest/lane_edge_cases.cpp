@@ -2,27 +2,27 @@
 
 #include <fmt/format.h>
 
-#include "extremes/suite.h"
+#include "selftest/suite.h"
 #include "sensors/laneedge.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-struct Said {
+struct LaneEdgeReading {
   double distance, points;
 };
 
-Said read(Lab& lab, world::World world, const Pose& X_WM, Settings settings = {}) {
+LaneEdgeReading read(Fixture& fixture, world::World world, const Pose& X_WM, Settings settings = {}) {
   const bool said =
       std::any_of(settings.begin(), settings.end(), [](const auto& s) { return s.first == "perpendicular"; });
   if (!said) settings.push_back({"perpendicular", {0.0}});
   world.movers[add_mover(world, X_WM)].sensors.push_back(sensor("laneedge", settings, 0.1));
-  const Look look = lab.look(std::move(world));
-  return {look.readings[0].values[0], look.readings[0].values[1]};
+  const TestFarm test = fixture.measure(std::move(world));
+  return {test.readings[0].values[0], test.readings[0].values[1]};
 }
 
 /// [m] between neighbouring doubles at `x`.
@@ -50,7 +50,7 @@ Real face_ahead(const world::LaneMarking& marking, const Pose& X_WM) {
 
 /// Faces are made of corners that are rounded to doubles, four roundings of half a grain; a point's pixel size rides in
 /// the last bits of its x, 6e-14 of it; a tilt lengthens both.
-void angles(Lab& lab, Checks& checks) {
+void angles(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
     std::vector<double> tilts;
@@ -61,8 +61,8 @@ void angles(Lab& lab, Checks& checks) {
         world.movers[add_mover(world, X_WM)].sensors.push_back(sensor("laneedge", {{"perpendicular", {0.0}}}, 0.1));
         tilts.push_back(tilt);
       }
-    const Look look = lab.look(world);
-    for (const base::ReadingBlock& r : look.readings) {
+    const TestFarm test = fixture.measure(world);
+    for (const base::ReadingBlock& r : test.readings) {
       const Pose& X_WM = world.movers[r.mover].X_WM;
       const double allowed = (1e-13 + 4.0 * grain(2.0 * far)) / std::pow(std::cos(tilts[r.mover]), 2);
       checks.near(r.values[0], face_ahead(world.lane_markings[r.mover], X_WM), allowed,
@@ -71,79 +71,79 @@ void angles(Lab& lab, Checks& checks) {
   }
 }
 
-void through_the_sensor(Lab& lab, Checks& checks) {
+void through_the_sensor(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5})
     for (const double tilt : {0.0, 0.3, -0.9}) {
       const Pose X_WM{far, -far, 0.0, 0.0};
       world::World world = marking_ahead(X_WM, 0.0, tilt);
-      checks.near(read(lab, world, X_WM).distance, 0, 1e-9, fmt::format("{:g} m away, tilt {:g}", far, tilt));
+      checks.near(read(fixture, world, X_WM).distance, 0, 1e-9, fmt::format("{:g} m away, tilt {:g}", far, tilt));
     }
   // On the paint, the way off it.
-  checks.near(read(lab, marking_ahead({}, -0.025, 0.0), {}).distance, 0.075L, 1e-13, "on the paint");
+  checks.near(read(fixture, marking_ahead({}, -0.025, 0.0), {}).distance, 0.075L, 1e-13, "on the paint");
 }
 
-void ranges(Lab& lab, Checks& checks) {
+void ranges(Fixture& fixture, Checks& checks) {
   for (const double range : {1e-6, 1e-4, 1.0, 100.0, 1e4}) {
     world::World world;
     world.lane_markings.push_back({{{0.55 * range, -2.0 * range}, {0.55 * range, 2.0 * range}}, 0.1 * range});
-    const Said said = read(lab, world, {}, {{"range_max", {range}}});
+    const LaneEdgeReading said = read(fixture, world, {}, {{"range_max", {range}}});
     checks.near(said.distance / range, 0.5L, 1e-12, fmt::format("range_max {:g}", range));
   }
   for (const double range : {0.5e-6, 1.1e4})
     checks.refused(
         [&] {
-          read(lab, {}, {}, {{"range_max", {range}}});
+          read(fixture, {}, {}, {{"range_max", {range}}});
         },
         "range_max", fmt::format("range_max {:g}", range));
 }
 
 /// One ray of three meets a dash 2 cm long; then two rays of two, which give the first one's range.
-void one_point(Lab& lab, Checks& checks) {
+void one_point(Fixture& fixture, Checks& checks) {
   world::World world;
   world.lane_markings.push_back({{{0.5, -0.01}, {0.5, 0.01}}, 0.1});
-  const Said one = read(lab, world, {}, {{"samples", {3}}, {"fov", {60}}});
+  const LaneEdgeReading one = read(fixture, world, {}, {{"samples", {3}}, {"fov", {60}}});
   checks.same(one.distance, kNone, "one point is no edge");
   checks.same(one.points, 1.0, "it is counted");
-  checks.near(read(lab, world, {}, {{"samples", {1}}, {"fov", {0}}}).distance, 0.45L, 6e-14,
+  checks.near(read(fixture, world, {}, {{"samples", {1}}, {"fov", {0}}}).distance, 0.45L, 6e-14,
               "a single ray's range is its reading");
-  checks.same(read(lab, {}, {}).distance, kNone, "no point at all");
-  checks.same(read(lab, {}, {}).points, 0.0, "none is counted");
+  checks.same(read(fixture, {}, {}).distance, kNone, "no point at all");
+  checks.same(read(fixture, {}, {}).points, 0.0, "none is counted");
 }
 
 /// Rays so close together that their points are one.
-void equal_points(Lab& lab, Checks& checks) {
+void equal_points(Fixture& fixture, Checks& checks) {
   world::World world;
   world.lane_markings.push_back({{{0.5, -1.0}, {0.5, 1.0}}, 0.1});
   for (const double samples : {3.0, 61.0}) {
-    const Said said = read(lab, world, {}, {{"samples", {samples}}, {"fov", {1e-6}}});
+    const LaneEdgeReading said = read(fixture, world, {}, {{"samples", {samples}}, {"fov", {1e-6}}});
     checks.same(said.distance, kNone, "points closer than 1e-7 of their distance are no edge");
     checks.same(said.points, samples, "they are counted");
   }
-  checks.near(read(lab, world, {}, {{"samples", {3}}, {"fov", {1.0}}}).distance, 0.45L, 1e-13,
+  checks.near(read(fixture, world, {}, {{"samples", {3}}, {"fov", {1.0}}}).distance, 0.45L, 1e-13,
               "a degree apart they are one");
 }
 
 /// Ahead and behind, three points on one line with the sensor between them.
-void collinear_with_the_sensor(Lab& lab, Checks& checks) {
+void collinear_with_the_sensor(Fixture& fixture, Checks& checks) {
   world::World world;
   world.lane_markings.push_back({{{0.5, -1.0}, {0.5, 1.0}}, 0.1});
   world.lane_markings.push_back({{{-0.4, -1.0}, {-0.4, 1.0}}, 0.1});
   const Settings fan{{"samples", {3}}, {"fov", {360}}};
   Settings across = fan;
   across.push_back({"perpendicular", {90.0}});
-  const Said along = read(lab, world, {}, fan);
+  const LaneEdgeReading along = read(fixture, world, {}, fan);
   checks.same(along.distance, kNone, "a line along the perpendicular is met nowhere");
   checks.same(along.points, 3.0, "its points are counted");
-  checks.near(read(lab, world, {}, across).distance, 0, 1e-15, "across it, the line goes through the sensor");
+  checks.near(read(fixture, world, {}, across).distance, 0, 1e-15, "across it, the line goes through the sensor");
 }
 
-void out_of_sight(Lab& lab, Checks& checks) {
+void out_of_sight(Fixture& fixture, Checks& checks) {
   world::World world;
   world.lane_markings.push_back({{{-3.0, 0.5}, {3.0, 0.5}}, 0.1});
-  checks.same(read(lab, world, {}, {{"fov", {170}}}).distance, kNone, "an edge along the perpendicular");
-  checks.same(read(lab, marking_ahead({}, 0.5, 0.0), {}, {{"perpendicular", {180}}}).distance, kNone,
+  checks.same(read(fixture, world, {}, {{"fov", {170}}}).distance, kNone, "an edge along the perpendicular");
+  checks.same(read(fixture, marking_ahead({}, 0.5, 0.0), {}, {{"perpendicular", {180}}}).distance, kNone,
               "an edge on the other side");
-  checks.same(read(lab, marking_ahead({}, 0.99, 0.0), {}).distance, kNone, "an edge near the range's end");
+  checks.same(read(fixture, marking_ahead({}, 0.99, 0.0), {}).distance, kNone, "an edge near the range's end");
 }
 
 constexpr Case kCases[] = {
@@ -162,6 +162,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> edges() { return kCases; }
+std::span<const Case> lane_edge_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "extremes/suite.h"
+#include "selftest/suite.h"
 #include "sensors/gyro.h"
 #include "sensors/laneedge_settings.h"
 #include "sensors/laser.h"
 #include "sensors/magnetometer.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
@@ -21,8 +21,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHuge = std::numeric_limits<double>::max();
 
 /// What a receiver is told of `values`; empty where nothing is sent.
-std::vector<double> told(const SensorKind& kind, const SensorRow& row, const std::vector<double>& values,
-                         Checks& checks) {
+std::vector<double> decoded(const SensorKind& kind, const SensorRow& row, const std::vector<double>& values,
+                            Checks& checks) {
   base::ReadingBlock reading;
   reading.values = values;
   base::Bytes payload;
@@ -45,7 +45,7 @@ void expect(Checks& checks, const SensorKind& kind, const SensorRow& row, std::s
   for (const Sent& s : sent) {
     std::vector<double> values(width, 0.0);
     values[at] = s.value;
-    const auto got = told(kind, row, values, checks);
+    const auto got = decoded(kind, row, values, checks);
     const auto what = fmt::format("{} number {}: {:.17g}", kind.name, at, s.value);
     if (got.size() == width)
       checks.same(got[at], s.told, what);
@@ -102,26 +102,26 @@ constexpr Sent kTurn[] = {{2147.483647, 2147.483647},   {2147.483648, 2147.48364
                           {kInfinity, 2147.483647},     {-kInfinity, -2147.483647},
                           {kHuge, 2147.483647},         {kNan, kNan}};
 
-void lasers(Lab&, Checks& checks) {
+void lasers(Fixture&, Checks& checks) {
   expect(checks, sensors::laser_kind, row_of(1, 65.535), kPlainLaser, 0, 1);
   expect(checks, sensors::laser_kind, row_of(1, 1e6), kExtendedLaser, 0, 1);
   for (std::uint32_t word = 0; word <= 0xFFFF; ++word)
-    checks.same(told(sensors::laser_kind, row_of(1, 65.535), {word / 1e3}, checks)[0], word / 1e3, "every word of u16",
-                word);
+    checks.same(decoded(sensors::laser_kind, row_of(1, 65.535), {word / 1e3}, checks)[0], word / 1e3,
+                "every word of u16", word);
 }
 
-void lane_edges(Lab&, Checks& checks) {
+void lane_edges(Fixture&, Checks& checks) {
   expect(checks, sensors::laneedge_kind, row_of(1, 0.0), kDistance, 0, 4);
   expect(checks, sensors::laneedge_kind, row_of(1, 0.0), kPoints, 1, 4);
   for (const std::size_t at : {2, 3}) expect(checks, sensors::laneedge_kind, row_of(1, 0.0), kSigma, at, 4);
 }
 
-void fields(Lab&, Checks& checks) {
+void fields(Fixture&, Checks& checks) {
   for (const std::size_t at : {0, 1, 2, 3}) expect(checks, sensors::magnetometer_kind, row_of(1, 0.0), kField, at, 4);
 }
 
 /// Every kind's numbers, whatever they count: told in order, the sign kept, from -1e300 to 1e300.
-void all_kinds(Lab&, Checks& checks) {
+void all_kinds(Fixture&, Checks& checks) {
   expect(checks, sensors::gyro_kind, row_of(1, 0.0), kTurn, 0, 1);
   for (const SensorKind* kind : sensors::kinds()) {
     if (kind->id == sensors::kLaneEdge || kind->name == "occupancy") continue;
@@ -153,6 +153,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> wires() { return kCases; }
+std::span<const Case> wire_format_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

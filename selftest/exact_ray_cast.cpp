@@ -1,10 +1,10 @@
-#include "extremes/exact.h"
+#include "selftest/exact_ray_cast.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
@@ -29,8 +29,8 @@ Beam beam_of(const base::Pose& X_WS, const world::Laser& laser, std::uint32_t sa
   return {{X_WS.x, X_WS.y}, c * d - s * e, s * d + c * e};
 }
 
-Meeting first_met(std::span<const world::Segment> surfaces, const Beam& beam, double range_max) {
-  Meeting best{.range = range_max};
+Hit nearest_hit(std::span<const world::Segment> surfaces, const Beam& beam, double range_max) {
+  Hit best{.range = range_max};
   const auto side_of = [&](glm::dvec2 p) {
     return beam.x * (Real{p.y} - beam.origin.y) - beam.y * (Real{p.x} - beam.origin.x);
   };
@@ -52,12 +52,12 @@ Meeting first_met(std::span<const world::Segment> surfaces, const Beam& beam, do
     if (t > best.range * (1 + 1e-12L)) continue;
     const Real side_a = side_of(s->a), side_b = side_of(s->b);
     const bool a_is_near = std::fabs(side_a) < std::fabs(side_b);
-    if (!is_closed(surfaces, beam, a_is_near ? s->a : s->b, a_is_near ? side_b : side_a)) best.by_a_hair = true;
+    if (!is_closed(surfaces, beam, a_is_near ? s->a : s->b, a_is_near ? side_b : side_a)) best.ambiguous = true;
   }
   return best;
 }
 
-double rounding(const Meeting& m) { return static_cast<double>(2e-15L * (m.arm + m.range) / m.sine); }
+double rounding(const Hit& m) { return static_cast<double>(2e-15L * (m.arm + m.range) / m.sine); }
 
 void check_scan(const world::World& world, const base::ReadingBlock& reading, Checks& checks, std::string_view what,
                 std::uint32_t stride) {
@@ -65,8 +65,8 @@ void check_scan(const world::World& world, const base::ReadingBlock& reading, Ch
   checks.equal(reading.values.size(), laser.samples, fmt::format("{}: samples", what));
   std::uint64_t hairs = 0;
   for (std::uint32_t i = 0; i < reading.values.size(); i += stride) {
-    const Meeting met = first_met(world.walls, beam_of(reading.X_WS, laser, i), laser.range_max);
-    if (met.by_a_hair) {
+    const Hit met = nearest_hit(world.walls, beam_of(reading.X_WS, laser, i), laser.range_max);
+    if (met.ambiguous) {
       ++hairs;
     } else if (met.model == base::kNoHit) {
       checks.same(reading.values[i], laser.range_max, what, i);
@@ -77,4 +77,4 @@ void check_scan(const world::World& world, const base::ReadingBlock& reading, Ch
   if (hairs > 0) checks.note(fmt::format("{}: {} beams pass an end within rounding and were not judged", what, hairs));
 }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include "extremes/suite.h"
 #include "farm/schedule.h"
 #include "robots/fleet.h"
 #include "robots/kinematics.h"
+#include "selftest/suite.h"
 #include "sensors/laser_reference.h"
 #include "world/lights.h"
 
-namespace sf::extremes {
+namespace sf::selftest {
 
 namespace {
 
@@ -22,30 +22,30 @@ world::World noisy_room() {
   add_room(world, {-2.0, -2.0}, 4.0);
   world::Laser eye = laser(61, 3.0, 8.0);
   eye.noise = {.range_sigma = 0.01, .angle_sigma = 0.001};
-  add_eye(world, {0.2, 0.1, 0.0, 0.0}, eye);
+  add_laser_mover(world, {0.2, 0.1, 0.0, 0.0}, eye);
   return world;
 }
 
 /// A reading at `now` [ns] beside plain C++ and its number.
-void read_at(Look& look, Checks& checks, std::int64_t now, std::uint64_t number, const std::string& what) {
-  const auto readings = look.farm->tick(now, {});
+void read_at(TestFarm& test, Checks& checks, std::int64_t now, std::uint64_t number, const std::string& what) {
+  const auto readings = test.farm->tick(now, {});
   checks.equal(readings.size(), 1u, what + ": readings");
   if (readings.empty()) return;
   checks.equal(readings[0].sequence, number, what + ": number");
   checks.equal(readings[0].time, now, what + ": time");
-  const auto exact = sensors::LaserReference(*look.world, kSeed).scan(0, 0, number);
+  const auto exact = sensors::LaserReference(*test.world, kSeed).scan(0, 0, number);
   for (std::size_t i = 0; i < exact.ranges.size(); ++i) checks.same(readings[0].values[i], exact.ranges[i], what, i);
 }
 
-void tick_1e9(Lab& lab, Checks& checks) {
-  Look look = lab.look(noisy_room(), {.seed = kSeed});
-  read_at(look, checks, kYear, 315'569'520u, "after a year");
-  read_at(look, checks, 1'000'000'000ll * (kSecond / 10), 1'000'000'000u, "tick 1e9");
-  read_at(look, checks, 1'000'000'001ll * (kSecond / 10), 1'000'000'001u, "the one after");
+void tick_1e9(Fixture& fixture, Checks& checks) {
+  TestFarm test = fixture.measure(noisy_room(), {.seed = kSeed});
+  read_at(test, checks, kYear, 315'569'520u, "after a year");
+  read_at(test, checks, 1'000'000'000ll * (kSecond / 10), 1'000'000'000u, "tick 1e9");
+  read_at(test, checks, 1'000'000'001ll * (kSecond / 10), 1'000'000'001u, "the one after");
 }
 
 /// Whole periods in whole nanoseconds: counted in integers.
-void due_for_a_year(Lab&, Checks& checks) {
+void due_for_a_year(Fixture&, Checks& checks) {
   for (const std::int64_t rate : {1, 10, 50, 1000, 1'000'000}) {
     const std::int64_t period = kSecond / rate;
     for (std::int64_t i = 0; i < 2000; ++i) {
@@ -58,26 +58,26 @@ void due_for_a_year(Lab&, Checks& checks) {
   }
 }
 
-void microsecond_ticks(Lab& lab, Checks& checks) {
-  Look look = lab.look(noisy_room(), {.seed = kSeed});
+void microsecond_ticks(Fixture& fixture, Checks& checks) {
+  TestFarm test = fixture.measure(noisy_room(), {.seed = kSeed});
   constexpr std::int64_t kMicrosecond = 1000;
   std::vector<std::int64_t> times;
   for (std::int64_t tick = 1; tick <= 200'001; ++tick)
-    for (const base::ReadingBlock& r : look.farm->tick(tick * kMicrosecond, {})) times.push_back(r.time);
+    for (const base::ReadingBlock& r : test.farm->tick(tick * kMicrosecond, {})) times.push_back(r.time);
   checks.equal(times.size(), 2u, "readings in 0.2 s");
   for (std::size_t i = 0; i < times.size(); ++i)
     checks.equal(times[i], static_cast<std::int64_t>(i + 1) * kSecond / 10, "each at its time", i);
 }
 
-void ten_second_ticks(Lab& lab, Checks& checks) {
-  Look look = lab.look(noisy_room(), {.seed = kSeed});
+void ten_second_ticks(Fixture& fixture, Checks& checks) {
+  TestFarm test = fixture.measure(noisy_room(), {.seed = kSeed});
   for (std::int64_t tick = 1; tick <= 100; ++tick)
-    read_at(look, checks, tick * 10 * kSecond, static_cast<std::uint64_t>(100 * tick), "every 10 s");
+    read_at(test, checks, tick * 10 * kSecond, static_cast<std::uint64_t>(100 * tick), "every 10 s");
 }
 
 /// A circle of 1 m at 0.3 m/s, in steps of 1 us for a second and in one of 10 s. A step rounds a pose three times, by
 /// half a grain of 2 m each, and steps add up.
-void motion(Lab&, Checks& checks) {
+void motion(Fixture&, Checks& checks) {
   const base::Twist twist{0.3, 0.0, 0.3};
   const auto expect = [&](const base::Pose& X, Real seconds, double allowed, const std::string& what) {
     const Real angle = Real{0.3} * seconds;
@@ -102,7 +102,7 @@ void motion(Lab&, Checks& checks) {
 }
 
 /// Plans of whole seconds, asked half a second into each: counted in integers.
-void lights(Lab&, Checks& checks) {
+void lights(Fixture&, Checks& checks) {
   using State = world::LightState;
   const world::Light light{.phases = {{State::green, 8.0}, {State::yellow, 2.0}, {State::red, 10.0}}, .offset = 3.0};
   for (std::int64_t second = kYear / kSecond; second < kYear / kSecond + 100; ++second) {
@@ -132,6 +132,6 @@ constexpr Case kCases[] = {
 
 }  // namespace
 
-std::span<const Case> times() { return kCases; }
+std::span<const Case> time_cases() { return kCases; }
 
-}  // namespace sf::extremes
+}  // namespace sf::selftest
