@@ -45,7 +45,7 @@ int field(const Options& options) {
   const world::World world = world::load_world(options.world, options.load);
   tell_warnings(options.world, world.warnings);
   refuse_without_magnets(world);
-  viz::FieldWish wish{.height = options.height};
+  viz::FieldRequest wish{.height = options.height};
   if (options.line) wish.line = {{(*options.line)[0], (*options.line)[1]}, {(*options.line)[2], (*options.line)[3]}};
   if (options.extent)
     wish.extent = {(*options.extent)[0], (*options.extent)[1], (*options.extent)[2], (*options.extent)[3]};

@@ -15,7 +15,7 @@
 #include "farm/farm.h"
 #include "record/recording.h"
 #include "scenarios/experiment.h"
-#include "viz/occupancy.h"
+#include "viz/scan_hit_grid.h"
 #include "viz/trajectory_figure.h"
 
 namespace sf::apps {
@@ -58,7 +58,7 @@ void go_on() {
 
 /// Computes every laser's scan once a simulated second from where its robot was.
 void map_scans(const record::Recording& recording, const world::World& world, gpu::Device& device,
-               viz::OccupancyGrid& grid) {
+               viz::ScanHitGrid& grid) {
   farm::FarmOptions quiet;
   quiet.noise = false;
   farm::Farm farm(world, device, quiet);
@@ -110,7 +110,7 @@ int plot(const Options& options) {
   go_on();
 
   gpu::Device device(options.device);
-  viz::OccupancyGrid grid(world.extent, cell_for(world.extent));
+  viz::ScanHitGrid grid(world.extent, cell_for(world.extent));
   map_scans(recording, world, device, grid);
   const std::string occupancy = (folder / "occupancy.png").string();
   viz::draw_occupancy(world, grid, occupancy);

@@ -15,7 +15,7 @@ namespace {
 /// The last that one sensor said.
 struct LastMap {
   std::string name;  ///< its robot's; with the sensor's number where that is not 0
-  viz::MapPlace place;
+  viz::PoseMarker place;
   maps::OccupancyGrid grid;
 };
 

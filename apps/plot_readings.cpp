@@ -53,7 +53,7 @@ viz::Series series_of(const std::string& name, const Channel& channel, Value&& v
   return series;
 }
 
-viz::SeriesPlan lane_edges(const record::Recording& recording, const std::vector<Channel>& channels) {
+viz::SeriesOptions lane_edges(const record::Recording& recording, const std::vector<Channel>& channels) {
   viz::Panel panel{"", "distance [m]", {}};
   std::size_t readings = 0, seen = 0;
   for (const Channel& channel : channels) {
@@ -80,8 +80,8 @@ viz::Panel fields_of(const Channel& channel, std::size_t width) {
 
 /// A reading's row is |B|, then the vector. Path followers steer by how much stronger the last element's field is than
 /// the first's.
-viz::SeriesPlan fields(const record::Recording& recording, const std::vector<Channel>& channels, std::size_t width) {
-  viz::SeriesPlan plan{"Magnetic field", "", {}};
+viz::SeriesOptions fields(const record::Recording& recording, const std::vector<Channel>& channels, std::size_t width) {
+  viz::SeriesOptions plan{"Magnetic field", "", {}};
   viz::Panel difference{"last element less the first", "|B| [G]", {}};
   const std::size_t drawn = std::min(channels.size(), kMostMagnetometers);
   for (std::size_t i = 0; i < drawn; ++i) {

@@ -142,7 +142,7 @@ void write_curves(const std::vector<Curve>& curves, const std::string& folder) {
 
 void draw_curves(const std::vector<Curve>& curves, const std::string& folder) {
   if (curves.empty()) return;
-  viz::SeriesPlan plan;
+  viz::SeriesOptions plan;
   plan.title = "Cost of a tick";
   plan.subtitle = "361 beams to 8 m a robot; a line's slope is the exponent of growth";
   plan.x_name = "robots or segments, as powers of ten";

@@ -129,7 +129,7 @@ viz::Panel panel_of(const std::vector<Outcome>& outcomes, const std::string& tes
 }
 
 std::string draw(const Bench& bench, const std::vector<Outcome>& outcomes) {
-  viz::SeriesPlan plan{
+  viz::SeriesOptions plan{
       .title = "What controllers make of accuracy modes",
       .subtitle = fmt::format("means of {} from seed {}", counted(bench.options.trials, "trial"), bench.options.seed),
       .x_name = "mode, as numbered above each panel",

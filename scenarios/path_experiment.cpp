@@ -34,7 +34,7 @@ std::string draw_paths(const Bench& bench, const std::vector<Trial>& trials, con
 }
 
 std::string draw_errors(const Bench& bench, const std::vector<Trial>& trials, std::string_view unit) {
-  viz::SeriesPlan plan{.title = "Control error: " + bench.scenario.name};
+  viz::SeriesOptions plan{.title = "Control error: " + bench.scenario.name};
   viz::Panel panel{.y_name = fmt::format("error [{}]", unit)};
   for (std::size_t k = 0; k < trials.size(); ++k)
     panel.series.push_back({fmt::format("trial {}", k + 1), trials[k].times, trials[k].counts.front().errors});

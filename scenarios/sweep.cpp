@@ -133,11 +133,12 @@ std::string csv_of_points(const std::vector<Point>& points) {
 std::string draw(const Bench& bench, const std::vector<Point>& points, const std::string& sweep) {
   constexpr std::array<std::pair<std::size_t, const char*>, 3> kShown{
       {{0, "mean error [m]"}, {4, "mean |error| [m]"}, {7, "largest |error| [m]"}}};
-  viz::SeriesPlan plan{.title = "Lane edge loop: " + sweep,
-                       .subtitle = bench.options.trials == 1 ? fmt::format("seed {}", bench.options.seed)
-                                                             : fmt::format("means of {} seeds", bench.options.trials),
-                       .x_name = kAxes.at(stem_of(sweep)),
-                       .from_zero = true};
+  viz::SeriesOptions plan{.title = "Lane edge loop: " + sweep,
+                          .subtitle = bench.options.trials == 1
+                                          ? fmt::format("seed {}", bench.options.seed)
+                                          : fmt::format("means of {} seeds", bench.options.trials),
+                          .x_name = kAxes.at(stem_of(sweep)),
+                          .from_zero = true};
   for (const auto& [column, name] : kShown) {
     viz::Panel panel{.y_name = name};
     for (const Law& law : kLaws) {

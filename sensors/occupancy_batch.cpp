@@ -23,7 +23,7 @@ BeamLine line_of(std::uint32_t end) {
 }
 
 /// What the device needs of a scan, but for where its strips lie.
-MapRow row_of(const MapPlace& map, const maps::TracedScan& scan, const base::Pose& X_WS) {
+MapRow row_of(const PoseMarker& map, const maps::TracedScan& scan, const base::Pose& X_WS) {
   MapRow row{};
   row.words = map.words;
   row.word_columns = map.plan.grid.word_columns;
@@ -59,7 +59,7 @@ void MapBatch::Tables::trace() {
   shares.resize(scans.size());
   thread_pool.parallel_for(scans.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
-      const MapPlace& map = all[scans[i].map];
+      const PoseMarker& map = all[scans[i].map];
       const maps::ScanView view{scans[i].X_WS, scans[i].ranges, *map.beams, map.plan.range_min, map.plan.range_max};
       MapShare& share = shares[i];
       const std::span<std::uint32_t> own = ends_of(map);
@@ -100,7 +100,7 @@ void MapBatch::Tables::hand_out() {
   strips.count = plain.course.count = weighed.course.count = 0;
   const auto table = rows->host<MapRow>();
   for (std::uint32_t i = 0; i < scans.size(); ++i) {
-    const MapPlace& map = all[scans[i].map];
+    const PoseMarker& map = all[scans[i].map];
     MapShare& share = shares[i];
     if (maps::is_empty(share.cells)) continue;
     table[i] = row_of(map, share.scan, scans[i].X_WS);
@@ -119,7 +119,7 @@ void MapBatch::Tables::strike() {
     for (std::size_t i = first; i < last; ++i) {
       const MapShare& share = shares[i];
       if (maps::is_empty(share.cells)) continue;
-      const MapPlace& map = all[scans[i].map];
+      const PoseMarker& map = all[scans[i].map];
       const std::int64_t across =
           SF_MAP_BLOCK * units_of(share.cells.high.column - share.cells.low.column, 4 * SF_MAP_BLOCK);
       const std::int64_t down = (share.cells.high.row - share.cells.low.row) / 4;

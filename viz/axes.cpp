@@ -70,7 +70,7 @@ std::string fitted(std::string text, const TextStyle& style, double width) {
   return text + "...";
 }
 
-void draw_names(Canvas& canvas, const FigureLayout& at, const FigurePlan& plan) {
+void draw_names(Canvas& canvas, const FigureLayout& at, const FigureOptions& plan) {
   const double room = at.width - at.plot.x_min - 20.0;
   TextStyle style;
   style.size = 28;
@@ -124,7 +124,7 @@ void draw_bar(Canvas& canvas, const FigureLayout& at, const ColorBar& bar) {
 
 }  // namespace
 
-Axes::Axes(FigurePlan plan)
+Axes::Axes(FigureOptions plan)
     : plan_(std::move(plan)), layout_(lay_out(plan_)), canvas_(layout_.width, layout_.height, 0xFFFFFFFFu) {
   canvas_.clip(layout_.plot);
   const PixelBox& p = layout_.plot;

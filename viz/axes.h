@@ -25,7 +25,7 @@ struct ColorBar {
   std::vector<std::uint32_t> colors;  ///< from low to high, at least one
 };
 
-struct FigurePlan {
+struct FigureOptions {
   std::string title;
   std::string subtitle;
   world::Extent extent;                    ///< [m] what must be shown; finite; a figure of no size is given some
@@ -47,12 +47,12 @@ struct FigureLayout {
   std::vector<LegendPlace> legend;
   double legend_top = 0.0;
 };
-FigureLayout lay_out(const FigurePlan& plan);
+FigureLayout lay_out(const FigureOptions& plan);
 
 class Axes {
  public:
   /// Paints background and grid. What is drawn on the canvas until `save` stays inside the plot.
-  explicit Axes(FigurePlan plan);
+  explicit Axes(FigureOptions plan);
 
   Canvas& canvas() { return canvas_; }
   const FigureLayout& layout() const { return layout_; }
@@ -68,7 +68,7 @@ class Axes {
   void save(const std::string& path);
 
  private:
-  FigurePlan plan_;
+  FigureOptions plan_;
   FigureLayout layout_;
   Canvas canvas_;
 };

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "viz/pen.h"
+#include "viz/text_renderer.h"
 
 namespace sf::viz {
 namespace {
@@ -42,9 +42,9 @@ const std::string& font_file(bool bold) {
 }
 
 /// The letters of `text`, tightly boxed.
-Stencil stencil_of(const std::string& text, const TextStyle& style) {
-  Stencil stencil;
-  SF_CHECK(pen().print({text, style.size, style.bold, style.upwards, font_file(style.bold)}, stencil),
+GlyphBitmap glyph_bitmap(const std::string& text, const TextStyle& style) {
+  GlyphBitmap stencil;
+  SF_CHECK(text_renderer().render({text, style.size, style.bold, style.upwards, font_file(style.bold)}, stencil),
            "cannot render '" + text + "'");
   return stencil;
 }
@@ -78,24 +78,24 @@ struct Canvas::Surface {
     return pixels.data() +
            3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
   }
-  void paint(CoverageRows& rows, bool edges, std::uint32_t color) {
+  void paint(CoverageBuffer& rows, bool edges, std::uint32_t color) {
     const Channels rgb = channels(color);
     const float whole = opacity(color);
     rows.drain([&](int y, int x_min, std::span<float> part) {
       if (edges) sum_edges(part);
       std::uint8_t* pixel = at(x_min, y);
-      for (const float covered : part) {
-        if (covered > 0.002f) blend(pixel, rgb, covered * whole);
+      for (const float coverage : part) {
+        if (coverage > 0.002f) blend(pixel, rgb, coverage * whole);
         pixel += 3;
       }
     });
   }
-  void stamp(const Stencil& text, int left, int top, std::uint32_t color, float gain) {
+  void stamp(const GlyphBitmap& text, int left, int top, std::uint32_t color, float gain) {
     const Channels rgb = channels(color);
-    const std::uint8_t* covered = text.covered.data();
+    const std::uint8_t* coverage = text.coverage.data();
     for (int y = top; y < top + text.height; ++y)
       for (int x = left; x < left + text.width; ++x) {
-        const float alpha = static_cast<float>(*covered++) / 255.0f;
+        const float alpha = static_cast<float>(*coverage++) / 255.0f;
         const bool inside = y >= clip.y_min && y < clip.y_max && x >= clip.x_min && x < clip.x_max;
         if (inside && alpha > 0.0f) blend(at(x, y), rgb, std::min(1.0f, alpha * gain) * opacity(color));
       }
@@ -104,14 +104,14 @@ struct Canvas::Surface {
   int width;
   int height;
   std::vector<std::uint8_t> pixels;  ///< red, green, blue; row by row, the top row first
-  CoverageRows strokes;
-  CoverageRows areas;
+  CoverageBuffer strokes;
+  CoverageBuffer areas;
   PixelBox clip;
 };
 
 glm::dvec2 text_size(const std::string& text, const TextStyle& style) {
   if (text.empty()) return {};
-  const Stencil stencil = stencil_of(text, style);
+  const GlyphBitmap stencil = glyph_bitmap(text, style);
   return {static_cast<double>(stencil.width), static_cast<double>(stencil.height)};
 }
 
@@ -174,7 +174,7 @@ void Canvas::ring(glm::dvec2 center, double radius, double line_width, std::uint
 
 void Canvas::text(glm::dvec2 at, const std::string& text, const TextStyle& style) {
   if (text.empty()) return;
-  const Stencil letters = stencil_of(text, style);
+  const GlyphBitmap letters = glyph_bitmap(text, style);
   const int left = static_cast<int>(std::lround(anchored(at.x, letters.width, style.across)));
   const int top = static_cast<int>(std::lround(anchored(at.y, letters.height, style.down)));
   if (style.halo >> 24) {
@@ -185,7 +185,7 @@ void Canvas::text(glm::dvec2 at, const std::string& text, const TextStyle& style
   surface_->stamp(letters, left, top, style.color, 1.0f);
 }
 
-void Canvas::image(glm::dvec2 from, glm::dvec2 to, const Cells& cells) {
+void Canvas::image(glm::dvec2 from, glm::dvec2 to, const ColorGrid& cells) {
   SF_CHECK(cells.columns > 0 && cells.rows > 0 && to.x > from.x && to.y > from.y &&
                cells.colors.size() == static_cast<std::size_t>(cells.columns) * static_cast<std::size_t>(cells.rows),
            "image of " + std::to_string(cells.columns) + " x " + std::to_string(cells.rows));
@@ -214,7 +214,7 @@ std::uint32_t Canvas::pixel(int x, int y) const {
 
 void Canvas::save_png(const std::string& path) const {
   std::vector<std::uint8_t> png;
-  SF_CHECK(pen().encode_png(surface_->pixels.data(), width(), height(), png), "VTK made no PNG");
+  SF_CHECK(text_renderer().encode_png(surface_->pixels.data(), width(), height(), png), "VTK made no PNG");
 
   errno = 0;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);

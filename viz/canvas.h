@@ -12,7 +12,7 @@
 #include <string>
 
 #include "base/pose.h"
-#include "viz/raster.h"
+#include "viz/coverage.h"
 #include "viz/resample.h"
 
 namespace sf::viz {
@@ -71,7 +71,7 @@ class Canvas {
 
   /// Spreads `cells`, the top row first, over [from, to): repeated where a cell is larger than a pixel, averaged where
   /// smaller.
-  void image(glm::dvec2 from, glm::dvec2 to, const Cells& cells);
+  void image(glm::dvec2 from, glm::dvec2 to, const ColorGrid& cells);
 
   /// 0xFFRRGGBB of a pixel inside the picture.
   std::uint32_t pixel(int x, int y) const;

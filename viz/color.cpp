@@ -19,7 +19,7 @@ std::uint32_t pack(double r, double g, double b) { return 0xFF000000u | byte(r) 
 double cube(double v) { return v * v * v; }
 
 /// Linear light of an OKLab colour; outside [0, 1] where a screen cannot show it.
-std::array<double, 3> light(const Lab& c) {
+std::array<double, 3> light(const OklabColor& c) {
   const double l = cube(c.lightness + 0.3963377774 * c.a + 0.2158037573 * c.b);
   const double m = cube(c.lightness - 0.1055613458 * c.a - 0.0638541728 * c.b);
   const double s = cube(c.lightness - 0.0894841775 * c.a - 1.2914855480 * c.b);
@@ -41,7 +41,7 @@ std::uint32_t mix(std::uint32_t a, std::uint32_t b, double t) {
   return pack(part(16), part(8), part(0));
 }
 
-Lab to_lab(std::uint32_t color) {
+OklabColor to_oklab(std::uint32_t color) {
   const double r = from_srgb(channel(color, 16));
   const double g = from_srgb(channel(color, 8));
   const double b = from_srgb(channel(color, 0));

@@ -14,12 +14,12 @@ std::uint32_t mix(std::uint32_t a, std::uint32_t b, double t);
 
 /// Coordinates of an opaque colour in OKLab, where equal distances look equally different (Ottosson, "A perceptual
 /// color space for image processing", 2020).
-struct Lab {
+struct OklabColor {
   double lightness = 0.0;  ///< in [0, 1]
   double a = 0.0;          ///< green to red
   double b = 0.0;          ///< blue to yellow
 };
-Lab to_lab(std::uint32_t color);
+OklabColor to_oklab(std::uint32_t color);
 
 /// Violet over blue and green to amber, t in [0, 1]. Lightness rises evenly with t, from 0.30 to 0.80, so the order
 /// shows in grey and to colour-blind eyes as well; all of it stands out from white.

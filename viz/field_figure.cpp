@@ -190,8 +190,8 @@ void draw_curve(Canvas& canvas, const Plot& plot, const std::vector<ProfilePoint
 double vectors(const ProfilePoint& p) { return std::hypot(p.field.x, p.field.y, p.field.z) / kGauss; }
 double magnitudes(const ProfilePoint& p) { return p.field.magnitudes / kGauss; }
 
-const std::array<LegendItem, 2> kCurves{{{Sample::line, kVectors, "magnets summed as vectors, as on the map"},
-                                         {Sample::line, kMagnitudes, "their magnitudes summed"}}};
+const std::array<LegendItem, 2> kCurves{{{LegendMark::line, kVectors, "magnets summed as vectors, as on the map"},
+                                         {LegendMark::line, kMagnitudes, "their magnitudes summed"}}};
 
 void draw_profile(Canvas& canvas, const FieldView& view, const FieldSamples& samples, Plot plot) {
   double top = 0.0;

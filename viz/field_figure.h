@@ -17,7 +17,7 @@
 namespace sf::viz {
 
 /// What is asked for.
-struct FieldWish {
+struct FieldRequest {
   double height = 0.0;                  ///< [m] in the world
   std::optional<Line> line;             ///< [m] of the profile; ends distinct
   std::optional<world::Extent> extent;  ///< [m] of the map; of some size both ways
@@ -34,7 +34,7 @@ struct FieldView {
 /// Fills in what was not asked for: the map holds all magnets, as they were loaded, and where their field fades at this
 /// height; the line runs along the longer side of their bounding box through its middle, as far as the map does.
 /// Rule: the world has a magnet.
-FieldView field_view(const world::World& world, const FieldWish& wish);
+FieldView field_view(const world::World& world, const FieldRequest& wish);
 
 /// The field along the profile's line.
 struct ProfilePoint {

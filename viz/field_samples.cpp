@@ -21,9 +21,9 @@ constexpr double kWidest = 1180.0;
 constexpr double kLowest = 220.0;
 constexpr double kHighest = 900.0;
 
-constexpr int kFinestCell = 2;         // [px]
-constexpr int kCoarsestCell = 10;      // [px]
-constexpr double kMostPairs = 1.5e10;  // of a magnet and a cell: some ten seconds on two cores
+constexpr int kFinestCell = 2;        // [px]
+constexpr int kCoarsestCell = 10;     // [px]
+constexpr double kMaxPairs = 1.5e10;  // of a magnet and a cell: some ten seconds on two cores
 constexpr int kProfilePoints = 1201;
 
 /// Where all magnets are at load, and the height of the highest and of the lowest.
@@ -87,7 +87,7 @@ double magnets_counted(const world::World& world, const FieldView& view) {
 int cell_pixels(const world::World& world, const FieldView& view) {
   const double pixels = static_cast<double>(view.map.x_max - view.map.x_min) * (view.map.y_max - view.map.y_min);
   int cell = kFinestCell;
-  while (cell < kCoarsestCell && pixels / (cell * cell) * magnets_counted(world, view) > kMostPairs) ++cell;
+  while (cell < kCoarsestCell && pixels / (cell * cell) * magnets_counted(world, view) > kMaxPairs) ++cell;
   return cell;
 }
 
@@ -103,7 +103,7 @@ std::vector<sensors::Place> map_places(const FieldView& view, const FieldSamples
 
 }  // namespace
 
-FieldView field_view(const world::World& world, const FieldWish& wish) {
+FieldView field_view(const world::World& world, const FieldRequest& wish) {
   const MagnetBox box = box_of(world);
   FieldView view;
   view.height = wish.height;

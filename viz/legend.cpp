@@ -17,27 +17,27 @@ void draw_sample(Canvas& canvas, glm::dvec2 left, const LegendItem& item) {
   const glm::dvec2 middle = 0.5 * (left + right);
   const Line line{left, right};
   switch (item.sample) {
-    case Sample::block: {
+    case LegendMark::block: {
       const std::array<glm::dvec2, 5> box{left + glm::dvec2{0, -9}, right + glm::dvec2{0, -9}, right + glm::dvec2{0, 9},
                                           left + glm::dvec2{0, 9}, left + glm::dvec2{0, -9}};
       canvas.polygon(std::span(box).first(4), item.color);
       if (item.edge >> 24) canvas.polyline(box, 1.5, item.edge);
       return;
     }
-    case Sample::line:
+    case LegendMark::line:
       return canvas.line(left, right, 2.5, item.color);
-    case Sample::dashed:
+    case LegendMark::dashed:
       return draw_dashes(canvas, {&line, 1}, 2.0, 9.0, 3.5, item.color);
-    case Sample::dotted:
+    case LegendMark::dotted:
       return draw_dashes(canvas, {&line, 1}, 2.0, 2.0, 4.0, item.color);
-    case Sample::dot:
+    case LegendMark::dot:
       canvas.disc(middle, 7.5, 0xFFFFFFFFu);
       return canvas.disc(middle, 6.0, item.color);
-    case Sample::ring:
+    case LegendMark::ring:
       return canvas.ring(middle, 5.5, 2.0, item.color);
-    case Sample::cross:
+    case LegendMark::cross:
       return draw_cross(canvas, middle, 5.0, 2.0, item.color);
-    case Sample::robot:
+    case LegendMark::robot:
       canvas.disc(middle, 9.0, with_opacity(item.color, 0.45));
       canvas.ring(middle, 9.0, 1.5, item.color);
       return canvas.line(middle, middle + glm::dvec2{9.0, 0.0}, 2.0, item.color);

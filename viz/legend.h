@@ -10,10 +10,10 @@
 
 namespace sf::viz {
 
-enum class Sample { block, line, dashed, dotted, dot, ring, cross, robot };
+enum class LegendMark { block, line, dashed, dotted, dot, ring, cross, robot };
 
 struct LegendItem {
-  Sample sample = Sample::line;
+  LegendMark sample = LegendMark::line;
   std::uint32_t color = 0xFF000000u;
   std::string text;
   std::uint32_t edge = 0x00000000u;  ///< outline of a block; alpha 0: none

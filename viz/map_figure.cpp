@@ -23,7 +23,7 @@ constexpr std::size_t kNamedPlaces = 7;
 
 // [px]
 constexpr int kPitch = 5;  // a cell of 4 and a line of 1
-constexpr std::int64_t kMostWithGrid = 1600;
+constexpr std::int64_t kMaxWithGrid = 1600;
 constexpr double kLongest = 8000.0;
 constexpr double kLeft = 86.0;
 constexpr double kRight = 40.0;
@@ -45,7 +45,7 @@ struct Layout {
 Layout lay_out(const maps::GridGeometry& plan, std::span<const LegendItem> legend) {
   Layout l;
   const std::int64_t longest = std::max(maps::columns(plan), maps::rows(plan));
-  l.grid = longest <= kMostWithGrid;
+  l.grid = longest <= kMaxWithGrid;
   if (!l.grid) l.scale = std::min(static_cast<double>(kPitch), kLongest / static_cast<double>(longest));
   const double line = l.grid ? 1.0 : 0.0;
   const double wide = std::ceil(l.scale * static_cast<double>(maps::columns(plan))) + line;
@@ -61,7 +61,7 @@ Layout lay_out(const maps::GridGeometry& plan, std::span<const LegendItem> legen
 std::vector<LegendItem> legend_of(const maps::CellCounts& census, const MapFigure& figure) {
   const auto all = static_cast<double>(census.all());
   const auto item = [&](std::uint32_t state, const char* name, std::uint64_t cells) {
-    return LegendItem{Sample::block, kStates[state],
+    return LegendItem{LegendMark::block, kStates[state],
                       fmt::format("{} {:.1f} %", name, 100.0 * static_cast<double>(cells) / all), kFrame};
   };
   std::vector<LegendItem> items{item(SF_CELL_FREE, "free", census.free),
@@ -69,7 +69,7 @@ std::vector<LegendItem> legend_of(const maps::CellCounts& census, const MapFigur
                                 item(SF_CELL_UNEXPLORED, "unexplored", census.unexplored)};
   const std::size_t named = std::min(figure.places.size(), kNamedPlaces);
   for (std::size_t i = 0; i < named; ++i)
-    items.push_back({Sample::robot, row_color(i + 1, named + 1), figure.places[i].name});
+    items.push_back({LegendMark::robot, row_color(i + 1, named + 1), figure.places[i].name});
   return items;
 }
 

@@ -11,15 +11,15 @@
 namespace sf::viz {
 
 /// Who stood where, to be marked.
-struct MapPlace {
+struct PoseMarker {
   std::string name;
   base::Pose X_WR;  ///< beside the map: left out
 };
 
 struct MapFigure {
   std::string title;
-  std::string subtitle;          ///< before what the figure says itself: how many cells, how much of them is known
-  std::vector<MapPlace> places;  ///< at most seven have a name beside the map
+  std::string subtitle;            ///< before what the figure says itself: how many cells, how much of them is known
+  std::vector<PoseMarker> places;  ///< at most seven have a name beside the map
 };
 
 /// Maps of more than 1600 cells along a side are drawn without a grid, and smaller, as far as they must be.

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "viz/axes.h"
-#include "viz/occupancy.h"
+#include "viz/scan_hit_grid.h"
 
 namespace sf::viz {
 namespace {
@@ -12,7 +12,7 @@ constexpr std::array<std::uint32_t, 3> kStateColors{0xFF474B50u, 0xFF1748D1u, 0x
 constexpr double kGridLinesFrom = 5.0;  // [px] side of a cell from which its border is drawn
 constexpr std::uint32_t kCellBorder = 0xFF8A8F96u;
 
-std::vector<std::uint32_t> pixels_of(const OccupancyGrid& grid) {
+std::vector<std::uint32_t> pixels_of(const ScanHitGrid& grid) {
   std::vector<std::uint32_t> pixels;
   pixels.reserve(static_cast<std::size_t>(grid.columns()) * static_cast<std::size_t>(grid.rows()));
   for (int row = grid.rows() - 1; row >= 0; --row)
@@ -21,7 +21,7 @@ std::vector<std::uint32_t> pixels_of(const OccupancyGrid& grid) {
   return pixels;
 }
 
-void draw_cell_borders(Axes& axes, const OccupancyGrid& grid) {
+void draw_cell_borders(Axes& axes, const ScanHitGrid& grid) {
   if (grid.cell() * axes.scale() < kGridLinesFrom) return;
   const world::Extent e = grid.extent();
   std::vector<Line> lines;
@@ -34,13 +34,13 @@ void draw_cell_borders(Axes& axes, const OccupancyGrid& grid) {
   axes.canvas().lines(lines, 1.0, kCellBorder);
 }
 
-FigurePlan plan_of(const world::World& world, const OccupancyGrid& grid) {
-  const Shares part = shares(grid);
+FigureOptions plan_of(const world::World& world, const ScanHitGrid& grid) {
+  const AreaShares part = shares(grid);
   const auto item = [&](CellState state, const char* name, double share) {
-    return LegendItem{Sample::block, kStateColors[static_cast<std::size_t>(state)],
+    return LegendItem{LegendMark::block, kStateColors[static_cast<std::size_t>(state)],
                       fmt::format("{} {:.1f} %", name, 100.0 * share), 0xFF404040u};
   };
-  FigurePlan plan;
+  FigureOptions plan;
   plan.title = "Occupancy";
   plan.subtitle =
       fmt::format("{}{}{:.1f} % explored, {} x {} cells of {:g} m", world.name, world.name.empty() ? "" : ": ",
@@ -55,7 +55,7 @@ FigurePlan plan_of(const world::World& world, const OccupancyGrid& grid) {
 
 }  // namespace
 
-void draw_occupancy(const world::World& world, const OccupancyGrid& grid, const std::string& png_path) {
+void draw_occupancy(const world::World& world, const ScanHitGrid& grid, const std::string& png_path) {
   Axes axes(plan_of(world, grid));
   const world::Extent e = grid.extent();
   const std::vector<std::uint32_t> pixels = pixels_of(grid);

@@ -5,8 +5,8 @@
 
 #include "viz/axes.h"
 #include "viz/color.h"
-#include "viz/ground.h"
-#include "viz/walls.h"
+#include "viz/road_layer.h"
+#include "viz/wall_layer.h"
 #include "world/path_geometry.h"
 
 namespace sf::viz {
@@ -44,12 +44,12 @@ void draw_track(Axes& axes, const Track& track, std::uint32_t color) {
 
 void draw_along_paths(const world::World& world, std::span<const Track> tracks, const std::string& title,
                       const std::string& subtitle, const std::string& png_path) {
-  FigurePlan plan{
-      .title = title, .subtitle = subtitle, .extent = extent_of(world, tracks), .legend = ground_legend(world)};
-  if (!world.paths.empty()) plan.legend.push_back({Sample::dashed, kMiddle, "middle of the lane"});
+  FigureOptions plan{
+      .title = title, .subtitle = subtitle, .extent = extent_of(world, tracks), .legend = road_legend(world)};
+  if (!world.paths.empty()) plan.legend.push_back({LegendMark::dashed, kMiddle, "middle of the lane"});
   const auto color = [&](std::size_t i) { return tracks[i].color.value_or(row_color(i, tracks.size())); };
   for (std::size_t i = 0; i < std::min<std::size_t>(tracks.size(), 7); ++i)
-    plan.legend.push_back({Sample::line, color(i), tracks[i].name});
+    plan.legend.push_back({LegendMark::line, color(i), tracks[i].name});
   Axes axes(std::move(plan));
   draw_paint(axes, world);
   draw_magnets(axes, world);

@@ -11,7 +11,7 @@ double overlap(double from, double to, int i) { return std::min(to, i + 1.0) - s
 
 }  // namespace
 
-BoxMean box_mean(const Cells& cells, double u_min, double u_max, double v_min, double v_max) {
+BoxMean box_mean(const ColorGrid& cells, double u_min, double u_max, double v_min, double v_max) {
   u_min = std::max(u_min, 0.0);
   v_min = std::max(v_min, 0.0);
   u_max = std::min(u_max, static_cast<double>(cells.columns));

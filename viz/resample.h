@@ -8,7 +8,7 @@
 namespace sf::viz {
 
 /// `columns` * `rows` opaque colours, row by row.
-struct Cells {
+struct ColorGrid {
   int columns = 0;
   int rows = 0;
   std::span<const std::uint32_t> colors;
@@ -20,6 +20,6 @@ struct BoxMean {
   std::array<double, 3> rgb{};
   double area = 0.0;
 };
-BoxMean box_mean(const Cells& cells, double u_min, double u_max, double v_min, double v_max);
+BoxMean box_mean(const ColorGrid& cells, double u_min, double u_max, double v_min, double v_max);
 
 }  // namespace sf::viz

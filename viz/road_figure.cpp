@@ -153,18 +153,18 @@ void draw_inset(const RoadView& view, const RoadNetwork& network, const Inset& i
 // ------------------------------------------------------------------------------------------------- figure
 
 std::vector<LegendItem> legend_of(const RoadNetwork& network) {
-  std::vector<LegendItem> items{{Sample::block, kAsphalt, "lane", kLaneEdge}};
+  std::vector<LegendItem> items{{LegendMark::block, kAsphalt, "lane", kLaneEdge}};
   const auto paint = world::lane_markings_of(network);
   const auto painted = [&](std::uint32_t color) {
     return std::any_of(paint.begin(), paint.end(), [&](const world::LaneMarking& s) { return s.color == color; });
   };
-  if (painted(world::kYellowPaint)) items.push_back({Sample::line, world::kYellowPaint, "yellow lines"});
-  if (painted(world::kWhitePaint)) items.push_back({Sample::block, world::kWhitePaint, "white lines", kLaneEdge});
-  if (!network.exits.empty()) items.push_back({Sample::line, kExit, "exit"});
-  if (!network.stops.empty()) items.push_back({Sample::line, kStop, "stop line"});
-  if (!network.checkpoints.empty()) items.push_back({Sample::dot, kCheckpoint, "checkpoint and its id"});
-  if (!network.zones.empty()) items.push_back({Sample::block, kZone, "zone", kZoneEdge});
-  if (!network.spots.empty()) items.push_back({Sample::block, kSpot, "parking spot"});
+  if (painted(world::kYellowPaint)) items.push_back({LegendMark::line, world::kYellowPaint, "yellow lines"});
+  if (painted(world::kWhitePaint)) items.push_back({LegendMark::block, world::kWhitePaint, "white lines", kLaneEdge});
+  if (!network.exits.empty()) items.push_back({LegendMark::line, kExit, "exit"});
+  if (!network.stops.empty()) items.push_back({LegendMark::line, kStop, "stop line"});
+  if (!network.checkpoints.empty()) items.push_back({LegendMark::dot, kCheckpoint, "checkpoint and its id"});
+  if (!network.zones.empty()) items.push_back({LegendMark::block, kZone, "zone", kZoneEdge});
+  if (!network.spots.empty()) items.push_back({LegendMark::block, kSpot, "parking spot"});
   return items;
 }
 
@@ -182,7 +182,7 @@ std::string subtitle_of(const RoadNetwork& network) {
 }  // namespace
 
 void draw_roads(const RoadNetwork& network, const std::string& png_path) {
-  FigurePlan plan;
+  FigureOptions plan;
   plan.title =
       printable(network.name.empty() ? std::filesystem::path(network.file).filename().string() : network.name, 120);
   plan.subtitle = subtitle_of(network);
@@ -198,7 +198,7 @@ void draw_roads(const RoadNetwork& network, const std::string& png_path) {
   Labels labels(layout.plot);
   avoid_network(view, network, labels);
   const std::vector<Inset> insets = place_insets(view, network, labels);
-  Enlarged enlarged;
+  DetailViews enlarged;
   for (const Inset& inset : insets) enlarged.push_back(inset.part);
   draw_texts(view, network, labels, enlarged);
   for (const Inset& inset : insets) draw_inset(view, network, inset);

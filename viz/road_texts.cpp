@@ -16,9 +16,9 @@ using world::RoadNetwork;
 using world::RoadZone;
 
 constexpr std::size_t kLongestName = 32;
-constexpr std::uint32_t kMostLanes = 8;  // of a segment, beside which its name may stand
+constexpr std::uint32_t kMaxLanes = 8;  // of a segment, beside which its name may stand
 
-bool is_in(const Enlarged& places, glm::dvec2 p) {
+bool is_in(const DetailViews& places, glm::dvec2 p) {
   return std::any_of(places.begin(), places.end(), [&](const world::Extent& e) {
     return p.x > e.x_min && p.x < e.x_max && p.y > e.y_min && p.y < e.y_max;
   });
@@ -38,11 +38,11 @@ TextStyle label_style(int size, std::uint32_t color, bool bold) {
 }
 
 /// Beside one of several places along the segment.
-void label_segments(const RoadView& view, const RoadNetwork& network, Labels& labels, const Enlarged& elsewhere) {
+void label_segments(const RoadView& view, const RoadNetwork& network, Labels& labels, const DetailViews& elsewhere) {
   const TextStyle style = label_style(15, 0xFF202020u, true);
   for (const world::RoadSegment& segment : network.segments) {
     std::vector<glm::dvec2> marks;
-    for (std::uint32_t i = 0; i < std::min(segment.lanes, kMostLanes); ++i) {
+    for (std::uint32_t i = 0; i < std::min(segment.lanes, kMaxLanes); ++i) {
       const RoadLane& lane = network.lanes[segment.first_lane + i];
       for (const double part : {0.5, 0.35, 0.65, 0.2, 0.8}) {
         const glm::dvec2 p = point_at(lane.centre, part * length_of(lane));
@@ -57,7 +57,7 @@ void label_segments(const RoadView& view, const RoadNetwork& network, Labels& la
   }
 }
 
-void label_zones(const RoadView& view, const RoadNetwork& network, Labels& labels, const Enlarged& elsewhere) {
+void label_zones(const RoadView& view, const RoadNetwork& network, Labels& labels, const DetailViews& elsewhere) {
   const TextStyle style = label_style(17, 0xFF36522Au, true);
   for (const RoadZone& zone : network.zones) {
     glm::dvec2 middle;
@@ -73,7 +73,7 @@ void label_zones(const RoadView& view, const RoadNetwork& network, Labels& label
   }
 }
 
-void label_checkpoints(const RoadView& view, const RoadNetwork& network, Labels& labels, const Enlarged& elsewhere) {
+void label_checkpoints(const RoadView& view, const RoadNetwork& network, Labels& labels, const DetailViews& elsewhere) {
   const TextStyle style = label_style(12, kCheckpoint, true);
   for (const bool on_lanes : {true, false})
     for (const world::RoadCheckpoint& checkpoint : network.checkpoints) {
@@ -99,7 +99,7 @@ void avoid_network(const RoadView& view, const RoadNetwork& network, Labels& lab
     labels.avoid(pixels(view, {checkpoint.p, checkpoint.p}), 8.0);
 }
 
-void draw_texts(const RoadView& view, const RoadNetwork& network, Labels& labels, const Enlarged& elsewhere) {
+void draw_texts(const RoadView& view, const RoadNetwork& network, Labels& labels, const DetailViews& elsewhere) {
   label_segments(view, network, labels, elsewhere);
   label_checkpoints(view, network, labels, elsewhere);
   label_zones(view, network, labels, elsewhere);

@@ -45,9 +45,9 @@ std::string printable(const std::string& name, std::size_t most);
 void avoid_network(const RoadView& view, const world::RoadNetwork& network, Labels& labels);
 
 /// A piece of the world [m] that another view shows larger; empty: none.
-using Enlarged = std::vector<world::Extent>;
+using DetailViews = std::vector<world::Extent>;
 
 /// Names of zones and segments and ids of checkpoints; none of what lies within `elsewhere`.
-void draw_texts(const RoadView& view, const world::RoadNetwork& network, Labels& labels, const Enlarged& elsewhere);
+void draw_texts(const RoadView& view, const world::RoadNetwork& network, Labels& labels, const DetailViews& elsewhere);
 
 }  // namespace sf::viz

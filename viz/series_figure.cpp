@@ -30,7 +30,7 @@ struct Span {
 };
 
 /// One panel on the picture.
-struct Place {
+struct PlotArea {
   PixelBox plot;
   Span time;   ///< [s]
   Span shown;  ///< of the values
@@ -58,7 +58,7 @@ Span with_zero(Span span) {
   return span;
 }
 
-Span time_span(const SeriesPlan& plan) {
+Span time_span(const SeriesOptions& plan) {
   std::optional<Span> span;
   for (const Panel& panel : plan.panels)
     for (const Series& series : panel.series) widen(span, series.times, [](double t) { return std::isfinite(t); });
@@ -98,23 +98,23 @@ double widest_label(const Span& shown, double height) {
 
 double plot_height(std::size_t panels) { return panels == 1 ? 620.0 : panels == 2 ? 420.0 : 300.0; }
 
-std::vector<Place> lay_out(const SeriesPlan& plan) {
+std::vector<PlotArea> lay_out(const SeriesOptions& plan) {
   const double height = plot_height(plan.panels.size());
   double left = 0.0;
   for (const Panel& panel : plan.panels) left = std::max(left, widest_label(value_span(panel, plan.from_zero), height));
   left += kEdge + kAxisName + 14.0;
 
-  std::vector<Place> places;
+  std::vector<PlotArea> places;
   double top = kHeader;
   for (const Panel& panel : plan.panels) {
-    Place& place = places.emplace_back();
+    PlotArea& place = places.emplace_back();
     place.time = time_span(plan);
     place.shown = value_span(panel, plan.from_zero);
     if (!panel.title.empty()) top += kPanelTitle;
     place.plot = {static_cast<int>(left), static_cast<int>(top), plan.width - static_cast<int>(kEdge),
                   static_cast<int>(top + height)};
     for (const std::size_t row : named_rows(panel.series.size()))
-      place.legend.push_back({Sample::line, row_color(row, panel.series.size()), panel.series[row].name});
+      place.legend.push_back({LegendMark::line, row_color(row, panel.series.size()), panel.series[row].name});
     place.legend_at = place_legend(place.legend, place.plot.x_max - place.plot.x_min);
     const bool last = &panel == &plan.panels.back();
     place.legend_top = place.plot.y_max + (last ? kTicksBelow + 8.0 : 20.0);
@@ -132,7 +132,7 @@ Ticks ticks_of(const Span& span, double pixels, double smallest) {
 }
 
 /// @param x_name of the axis; empty: neither name nor labels
-void draw_scales(Canvas& canvas, const Place& at, const std::string& x_name) {
+void draw_scales(Canvas& canvas, const PlotArea& at, const std::string& x_name) {
   const PixelBox& p = at.plot;
   TextStyle style = small_text();
   style.across = Anchor::end;
@@ -153,7 +153,7 @@ void draw_scales(Canvas& canvas, const Place& at, const std::string& x_name) {
   if (!x_name.empty()) canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, x_name, style);
 }
 
-void draw_curve(Canvas& canvas, const Place& at, const Series& series, std::uint32_t color) {
+void draw_curve(Canvas& canvas, const PlotArea& at, const Series& series, std::uint32_t color) {
   std::vector<Line> lines;
   std::optional<glm::dvec2> last;
   for (std::size_t i = 0; i < series.values.size(); ++i) {
@@ -168,7 +168,7 @@ void draw_curve(Canvas& canvas, const Place& at, const Series& series, std::uint
   canvas.lines(lines, 2.0, color);
 }
 
-void draw_panel(Canvas& canvas, const Panel& panel, const Place& at, const std::string& x_name) {
+void draw_panel(Canvas& canvas, const Panel& panel, const PlotArea& at, const std::string& x_name) {
   draw_scales(canvas, at, x_name);
   canvas.clip(at.plot);
   for (std::size_t i = 0; i < panel.series.size(); ++i)
@@ -190,7 +190,7 @@ void draw_panel(Canvas& canvas, const Panel& panel, const Place& at, const std::
 
 }  // namespace
 
-void draw_series(const SeriesPlan& plan, const std::string& png_path) {
+void draw_series(const SeriesOptions& plan, const std::string& png_path) {
   SF_CHECK(!plan.panels.empty() && plan.panels.size() <= 16, std::to_string(plan.panels.size()) + " panels");
   SF_CHECK(plan.width >= 600 && plan.width <= 8000, "width " + std::to_string(plan.width) + " px");
   for (const Panel& panel : plan.panels)
@@ -199,8 +199,8 @@ void draw_series(const SeriesPlan& plan, const std::string& png_path) {
                                                                 std::to_string(series.times.size()) + " times for " +
                                                                 std::to_string(series.values.size()) + " values");
 
-  const std::vector<Place> places = lay_out(plan);
-  const Place& last = places.back();
+  const std::vector<PlotArea> places = lay_out(plan);
+  const PlotArea& last = places.back();
   const int rows = last.legend_at.empty() ? 0 : last.legend_at.back().row + 1;
   Canvas canvas(plan.width, static_cast<int>(last.legend_top + rows * kLegendRow + kEdge), 0xFFFFFFFFu);
   TextStyle style;

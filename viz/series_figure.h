@@ -22,7 +22,7 @@ struct Panel {
   bool from_zero = false;  ///< its axis begins at 0 whatever is shown: what differs little then looks so
 };
 
-struct SeriesPlan {
+struct SeriesOptions {
   std::string title;
   std::string subtitle;
   std::vector<Panel> panels;  ///< at least one, at most 16
@@ -34,6 +34,6 @@ struct SeriesPlan {
 /// Draws every series in a colour of its own, told by its row. Up to seven are named below their panel; of more, seven
 /// from the first to the last.
 /// @throws base::InputError naming the path when it cannot be written.
-void draw_series(const SeriesPlan& plan, const std::string& png_path);
+void draw_series(const SeriesOptions& plan, const std::string& png_path);
 
 }  // namespace sf::viz

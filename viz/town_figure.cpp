@@ -8,11 +8,11 @@
 
 #include "base/error.h"
 #include "viz/axes.h"
-#include "viz/bodies.h"
 #include "viz/color.h"
-#include "viz/ground.h"
-#include "viz/signals.h"
-#include "viz/walls.h"
+#include "viz/mover_layer.h"
+#include "viz/road_layer.h"
+#include "viz/signal_layer.h"
+#include "viz/wall_layer.h"
 #include "world/roads/roads.h"
 
 namespace sf::viz {
@@ -33,7 +33,7 @@ enum class Group { car, convoy, other };
 std::uint32_t color_of(Group group) { return group == Group::car ? kCar : group == Group::convoy ? kConvoy : kOther; }
 
 /// In a convoy is who follows, and who is followed. Others are those of another size than most.
-std::vector<Group> groups_of(const World& world, const TownEnd& end) {
+std::vector<Group> groups_of(const World& world, const TownFinalState& end) {
   std::map<double, int> sizes;
   for (const std::uint32_t row : end.movers) ++sizes[world.movers[row].radius];
   const auto most =
@@ -46,7 +46,7 @@ std::vector<Group> groups_of(const World& world, const TownEnd& end) {
   return groups;
 }
 
-std::string subtitle_of(const World& world, std::span<const Track> tracks, const TownEnd& end) {
+std::string subtitle_of(const World& world, std::span<const Track> tracks, const TownFinalState& end) {
   double metres = 0.0;
   std::size_t contacts = 0;
   for (const Track& track : tracks) {
@@ -57,27 +57,27 @@ std::string subtitle_of(const World& world, std::span<const Track> tracks, const
                      world.name, tracks.size(), end.time, metres, contacts, contacts == 1 ? "" : "s");
 }
 
-FigurePlan plan_of(const World& world, std::span<const Track> tracks, const TownEnd& end,
-                   const std::vector<Group>& groups) {
-  FigurePlan plan;
+FigureOptions plan_of(const World& world, std::span<const Track> tracks, const TownFinalState& end,
+                      const std::vector<Group>& groups) {
+  FigureOptions plan;
   plan.title = "Town traffic";
   plan.subtitle = subtitle_of(world, tracks, end);
   plan.extent = world.extent;
   plan.legend = wall_legend(world, WallColors::of_models);
-  plan.legend.push_back({Sample::block, kStreet, "street, with its paint"});
+  plan.legend.push_back({LegendMark::block, kAsphaltBand, "street, with its paint"});
   const auto has = [&](Group group) { return std::find(groups.begin(), groups.end(), group) != groups.end(); };
   const auto add = [&](Group group, const char* body, const char* way) {
     if (!has(group)) return;
-    plan.legend.push_back({Sample::robot, color_of(group), body});
-    plan.legend.push_back({Sample::line, color_of(group), way});
+    plan.legend.push_back({LegendMark::robot, color_of(group), body});
+    plan.legend.push_back({LegendMark::line, color_of(group), way});
   };
   add(Group::car, "car", "its way");
   add(Group::convoy, "in a convoy", "its way");
-  if (has(Group::convoy)) plan.legend.push_back({Sample::line, kTie, "follows"});
-  if (has(Group::other)) plan.legend.push_back({Sample::dot, kOther, "pedestrian"});
+  if (has(Group::convoy)) plan.legend.push_back({LegendMark::line, kTie, "follows"});
+  if (has(Group::other)) plan.legend.push_back({LegendMark::dot, kOther, "pedestrian"});
   for (const LegendItem& item : lights_legend(world, end.time)) plan.legend.push_back(item);
   if (std::any_of(tracks.begin(), tracks.end(), [](const Track& t) { return contact_count(t) > 0; }))
-    plan.legend.push_back({Sample::cross, kContact, "contact"});
+    plan.legend.push_back({LegendMark::cross, kContact, "contact"});
   return plan;
 }
 
@@ -104,7 +104,7 @@ void draw_leader(Axes& axes, const base::Pose& X_WM, double radius) {
   axes.canvas().text(axes.pixel({X_WM.x, X_WM.y}) - glm::dvec2{0.0, radius * axes.scale() + 4.0}, "leads", style);
 }
 
-void draw_convoys(Axes& axes, const World& world, std::span<const Track> tracks, const TownEnd& end) {
+void draw_convoys(Axes& axes, const World& world, std::span<const Track> tracks, const TownFinalState& end) {
   for (std::size_t i = 0; i < end.follows.size(); ++i)
     if (end.follows[i] != world::kNone && !tracks[i].poses.empty() && !tracks[end.follows[i]].poses.empty())
       draw_tie(axes, tracks[i].poses.back(), tracks[end.follows[i]].poses.back(), world.movers[end.movers[i]].radius);
@@ -117,7 +117,8 @@ void draw_convoys(Axes& axes, const World& world, std::span<const Track> tracks,
 
 }  // namespace
 
-void draw_town(const World& world, std::span<const Track> tracks, const TownEnd& end, const std::string& png_path) {
+void draw_town(const World& world, std::span<const Track> tracks, const TownFinalState& end,
+               const std::string& png_path) {
   SF_CHECK(end.movers.size() == tracks.size() && end.follows.size() == tracks.size(),
            "tracks, movers and whom they follow: expected as many of each");
   const std::vector<Group> groups = groups_of(world, end);

@@ -50,7 +50,7 @@ Decades decades_of(const std::vector<TradeoffPoint>& points) {
   return {from, std::max(from + 1, static_cast<int>(std::ceil(std::log10(most) + 0.05)))};
 }
 
-struct Place {
+struct PlotArea {
   PixelBox plot;
   Decades error;
   double fastest = 1.0;  ///< [1/s] upper end; the lower one is 0
@@ -73,7 +73,7 @@ std::string rate_text(double rate) {
   return fmt::format("{:g}", std::abs(rate));  // no -0
 }
 
-void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
+void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) {
   const PixelBox& p = at.plot;
   TextStyle style = small_text();
   style.across = Anchor::end;
@@ -100,7 +100,7 @@ void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
 }
 
 /// The best from fast to exact, joined.
-void draw_front(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
+void draw_front(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) {
   std::vector<TradeoffPoint> front;
   for (const TradeoffPoint& point : panel.points)
     if (point.front) front.push_back(point);
@@ -116,7 +116,7 @@ std::string label_of(const TradeoffPoint& point) {
   return fmt::format("{}, {:.0f} % covered", point.name, percent);
 }
 
-void draw_points(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
+void draw_points(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) {
   Labels labels(at.plot);
   const auto keep_free = [&](double x, double y) { labels.forbid({{x - 8.0, y - 8.0}, {x + 8.0, y + 8.0}}); };
   for (const TradeoffPoint& point : panel.points) {
@@ -145,7 +145,7 @@ void draw_points(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
   }
 }
 
-void draw_panel(Canvas& canvas, const TradeoffPanel& panel, const Place& at) {
+void draw_panel(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) {
   draw_scales(canvas, panel, at);
   const PixelBox& p = at.plot;
   canvas.clip(p);
@@ -176,7 +176,7 @@ void draw_tradeoff(const std::string& title, const std::string& subtitle, std::s
   canvas.text({kLeft + 0.0, 77.0}, subtitle, style);
   int top = kHeader + 50;
   for (const TradeoffPanel& panel : panels) {
-    Place at{{kLeft, top, kWidth - kRight, top + kPlot}, {}};
+    PlotArea at{{kLeft, top, kWidth - kRight, top + kPlot}, {}};
     at.error = decades_of(panel.points);
     double fastest = 0.0;
     for (const TradeoffPoint& point : panel.points) fastest = std::max(fastest, point.rate);

@@ -8,7 +8,7 @@
 namespace sf::viz {
 
 /// What a stated bound says of a part of all.
-struct Covered {
+struct BoundedShare {
   double part = 0.0;   ///< [-] in [0, 1]
   double high = 0.0;   ///< its largest error
   double bound = 0.0;  ///< not looked at where the part is 0
@@ -21,7 +21,7 @@ struct TradeoffPoint {
   double low = 0.0, middle = 0.0,
          high = 0.0;   ///< errors of all, ascending; below 1e-12 they are none; infinite: beyond the plot
   bool front = false;  ///< on the line of those that nothing beats
-  Covered covered;
+  BoundedShare covered;
 };
 
 struct TradeoffPanel {

@@ -9,8 +9,8 @@
 #include "base/error.h"
 #include "viz/axes.h"
 #include "viz/color.h"
-#include "viz/ground.h"
-#include "viz/walls.h"
+#include "viz/road_layer.h"
+#include "viz/wall_layer.h"
 
 namespace sf::viz {
 namespace {
@@ -63,20 +63,20 @@ std::string subtitle_of(const World& world, std::span<const Track> tracks, std::
   return world.name.empty() ? text : world.name + ": " + text;
 }
 
-FigurePlan plan_of(const World& world, std::span<const Track> tracks, std::string_view what) {
-  FigurePlan plan;
+FigureOptions plan_of(const World& world, std::span<const Track> tracks, std::string_view what) {
+  FigureOptions plan;
   plan.title = "Trajectories";
   plan.subtitle = subtitle_of(world, tracks, what);
   plan.extent = extent_of(world, tracks);
   plan.legend = wall_legend(world, WallColors::quiet);
-  for (const LegendItem& item : ground_legend(world)) plan.legend.push_back(item);
+  for (const LegendItem& item : road_legend(world)) plan.legend.push_back(item);
   const std::uint32_t sample = tracks.empty() ? 0xFF404040u : tracks.size() <= kNamedTracks ? 0xFF404040u : ramp(0.3);
-  plan.legend.push_back({Sample::ring, sample, "start"});
-  plan.legend.push_back({Sample::dot, sample, "end"});
-  plan.legend.push_back({Sample::cross, kContact, "contact"});
+  plan.legend.push_back({LegendMark::ring, sample, "start"});
+  plan.legend.push_back({LegendMark::dot, sample, "end"});
+  plan.legend.push_back({LegendMark::cross, kContact, "contact"});
   if (tracks.size() <= kNamedTracks) {
     for (std::size_t i = 0; i < tracks.size(); ++i)
-      plan.legend.push_back({Sample::line, color_of(tracks, i), tracks[i].name});
+      plan.legend.push_back({LegendMark::line, color_of(tracks, i), tracks[i].name});
     return plan;
   }
   ColorBar bar{"robot", tracks.front().name, tracks.back().name, {}};

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "viz/axes.h"
-#include "viz/bodies.h"
-#include "viz/carried.h"
 #include "viz/color.h"
-#include "viz/ground.h"
-#include "viz/sight.h"
-#include "viz/signals.h"
-#include "viz/walls.h"
+#include "viz/mover_layer.h"
+#include "viz/road_layer.h"
+#include "viz/sensor_overlay.h"
+#include "viz/signal_layer.h"
+#include "viz/visibility_layer.h"
+#include "viz/wall_layer.h"
 
 namespace sf::viz {
 namespace {
@@ -43,7 +43,7 @@ std::vector<glm::dvec2> view_outline(const Axes& axes, const World& world, const
   if (!whole_turn) points.push_back(axes.pixel({X_WS.x, X_WS.y}));
   const double arc = laser.fov * laser.range_max * axes.scale();
   const int beams = std::clamp(static_cast<int>(arc), 16, crowded(world) ? 240 : 2000);
-  for (const glm::dvec2& end : beam_ends(world, X_WS, laser, beams)) points.push_back(axes.pixel(end));
+  for (const glm::dvec2& end : visible_points(world, X_WS, laser, beams)) points.push_back(axes.pixel(end));
   return points;
 }
 
@@ -110,7 +110,7 @@ std::vector<LegendItem> view_legend(const World& world) {
   };
   std::vector<LegendItem> items;
   for (const auto& [color, seen] : by_color)
-    items.push_back({Sample::block, with_opacity(color, 0.13),
+    items.push_back({LegendMark::block, with_opacity(color, 0.13),
                      fmt::format("laser, {} deg, {} m", span(seen.fovs), span(seen.ranges)),
                      with_opacity(mix(color, 0xFF404040u, 0.3), 0.55)});
   return items;
@@ -118,7 +118,7 @@ std::vector<LegendItem> view_legend(const World& world) {
 
 std::vector<LegendItem> legend_of(const World& world) {
   std::vector<LegendItem> items = wall_legend(world, WallColors::of_models);
-  const auto ground = ground_legend(world);
+  const auto ground = road_legend(world);
   items.insert(items.end(), ground.begin(), ground.end());
   const auto signals = signals_legend(world);
   items.insert(items.end(), signals.begin(), signals.end());
@@ -126,11 +126,11 @@ std::vector<LegendItem> legend_of(const World& world) {
     return std::find_if(world.movers.begin(), world.movers.end(), [&](const Mover& m) { return m.is_tag == tag; });
   };
   if (const auto robot = first(false); robot != world.movers.end())
-    items.push_back({Sample::robot, color_of(world, *robot), "robot and heading"});
-  if (first(true) != world.movers.end()) items.push_back({Sample::dashed, kTagColor, "follows a tag"});
+    items.push_back({LegendMark::robot, color_of(world, *robot), "robot and heading"});
+  if (first(true) != world.movers.end()) items.push_back({LegendMark::dashed, kTagColor, "follows a tag"});
   const auto views = view_legend(world);
   items.insert(items.end(), views.begin(), views.end());
-  const auto carried = carried_legend(world);
+  const auto carried = sensor_legend(world);
   items.insert(items.end(), carried.begin(), carried.end());
   return items;
 }
@@ -156,21 +156,21 @@ std::string subtitle_of(const World& world) {
 }  // namespace
 
 void draw_world(const World& world, const std::string& png_path) {
-  FigurePlan plan;
+  FigureOptions plan;
   plan.title = world.name.empty() ? std::filesystem::path(world.file).filename().string() : world.name;
   plan.subtitle = subtitle_of(world);
   plan.extent = world.extent;
   plan.legend = legend_of(world);
   Axes axes(std::move(plan));
   draw_paint(axes, world);
-  draw_drops(axes, world);
+  draw_floor_holes(axes, world);
   draw_magnets(axes, world);
   draw_emitters(axes, world);
   draw_views(axes, world);
   draw_walls(axes, world, WallColors::of_models);
   draw_lights(axes, world);
   for (const Mover& mover : world.movers) draw_body(axes, mover, color_of(world, mover));
-  if (!crowded(world)) draw_carried(axes, world);
+  if (!crowded(world)) draw_sensors(axes, world);
   for (const Mover& mover : world.movers)
     if (mover.is_tag) draw_tag(axes, mover);
   for (const Mover& mover : world.movers)

@@ -244,8 +244,8 @@ TEST_F(Kinds, ARobotGetsTheKindsItAsksFor) {
 
 /// The figure of two magnetometers of two elements each, in Gauss: a panel each, and what the last has more than the
 /// first.
-viz::SeriesPlan fields_of(const record::Recording& recording) {
-  viz::SeriesPlan plan{"Magnetic field", recording.info.world + ": 2 sensors", {}};
+viz::SeriesOptions fields_of(const record::Recording& recording) {
+  viz::SeriesOptions plan{"Magnetic field", recording.info.world + ": 2 sensors", {}};
   viz::Panel difference{"last element less the first", "|B| [G]", {}};
   for (std::uint32_t mover = 0; mover < 2; ++mover) {
     const std::string& name = recording.info.movers[mover].name;

@@ -20,7 +20,7 @@ TEST(Loading, WhoDrawsNothingLoadsNothingToDrawWith) {
   for (const Words& arguments : {Words{"--version"}, Words{"check", world}, Words{"run", world, "--duration", "0.3"},
                                  Words{"sense", world}, Words{"explain", world}}) {
     const std::string said = loaded_by(arguments);
-    for (const char* library : {"libvtk", "libfreetype", "libpng", "sensorfarm_pen"})
+    for (const char* library : {"libvtk", "libfreetype", "libpng", "sensorfarm_text_renderer"})
       EXPECT_EQ(said.find(library), std::string::npos) << arguments[0] << " loads " << library;
   }
 }
@@ -28,7 +28,7 @@ TEST(Loading, WhoDrawsNothingLoadsNothingToDrawWith) {
 TEST(Loading, WhoDrawsDoes) {
   const Folder folder;
   const std::string said = loaded_by({"draw", our_world("rooms.world"), "-o", folder.path("rooms.png")});
-  EXPECT_NE(said.find("sensorfarm_pen.so"), std::string::npos);
+  EXPECT_NE(said.find("sensorfarm_text_renderer.so"), std::string::npos);
   EXPECT_NE(said.find("libvtkIOImage"), std::string::npos);
 }
 

@@ -53,11 +53,11 @@ struct Shape {
 class LayoutOf : public testing::TestWithParam<Shape> {};
 
 TEST_P(LayoutOf, ShowsEverythingAtOneScale) {
-  FigurePlan plan;
+  FigureOptions plan;
   plan.title = "a title";
   plan.subtitle = "and what is below it";
   plan.extent = GetParam().extent;
-  for (int i = 0; i < 9; ++i) plan.legend.push_back({Sample::line, 0xFF000000u, "an item of the legend"});
+  for (int i = 0; i < 9; ++i) plan.legend.push_back({LegendMark::line, 0xFF000000u, "an item of the legend"});
   const FigureLayout at = lay_out(plan);
   EXPECT_LE(std::max(at.width, at.height), 1602);
   EXPECT_GE(std::max(at.width, at.height), 1500);
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, LayoutOf,
 
 TEST(Layout, LabelsDoNotRunIntoEachOther) {  // long numbers stand further apart
   for (const double offset : {0.0, 1e5, 1e7}) {
-    FigurePlan plan;
+    FigureOptions plan;
     plan.extent = {offset, 0, offset + 1.3, 0.7};
     const FigureLayout at = lay_out(plan);
     const Ticks ticks = make_ticks(at.shown.x_min, at.shown.x_max, at.tick_spacing / at.scale);
@@ -96,7 +96,7 @@ TEST(Layout, LabelsDoNotRunIntoEachOther) {  // long numbers stand further apart
 }
 
 TEST(Axes, PixelsAndMetresAgree) {
-  FigurePlan plan;
+  FigureOptions plan;
   plan.extent = {0, 0, 20, 10};
   plan.margin = 0.0;
   const Axes axes(plan);
@@ -108,11 +108,11 @@ TEST(Axes, PixelsAndMetresAgree) {
 }
 
 TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // nothing is cut off
-  FigurePlan plan;
+  FigureOptions plan;
   plan.title = std::string(200, 'W');
   plan.subtitle = std::string(300, 'w');
   plan.extent = {99999000, -99999000, 99999020, -99998990};
-  plan.legend.assign(12, {Sample::block, 0xFF00FF00u, "something to be known", 0xFF000000u});
+  plan.legend.assign(12, {LegendMark::block, 0xFF00FF00u, "something to be known", 0xFF000000u});
   plan.bar = ColorBar{"robot", "the first", "the last of them all", {0xFF000000u, 0xFFFF0000u}};
   Axes axes(plan);
   const std::string path = scenes::own_file("axes.png");
@@ -128,7 +128,7 @@ TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // nothing is cut off
 /// Above the bar's middle only its upper label tells pictures apart, below it only the lower one.
 TEST(Axes, TheBarsLabelsAreAtTheirEnds) {
   const auto draw = [](const char* low, const char* high, const char* name) {
-    FigurePlan plan;
+    FigureOptions plan;
     plan.extent = {0, 0, 10, 5};
     plan.bar = ColorBar{"", low, high, {0xFF000000u, 0xFFFF0000u}};
     Axes axes(plan);
@@ -151,10 +151,10 @@ TEST(Axes, TheBarsLabelsAreAtTheirEnds) {
 }
 
 TEST(Axes, TitleAndLegendAreThere) {
-  FigurePlan plan;
+  FigureOptions plan;
   plan.title = "TITLE";
   plan.extent = {0, 0, 10, 5};
-  plan.legend = {{Sample::block, 0xFF00AA00u, "green"}};
+  plan.legend = {{LegendMark::block, 0xFF00AA00u, "green"}};
   Axes axes(plan);
   const FigureLayout at = axes.layout();
   const std::string path = scenes::own_file("legend.png");

@@ -10,15 +10,15 @@ namespace sf::viz {
 namespace {
 
 double distance(std::uint32_t a, std::uint32_t b) {
-  const Lab p = to_lab(a);
-  const Lab q = to_lab(b);
+  const OklabColor p = to_oklab(a);
+  const OklabColor q = to_oklab(b);
   return std::hypot(p.lightness - q.lightness, p.a - q.a, p.b - q.b);
 }
 
 TEST(Color, LabOfKnownColours) {  // from the definition's own table: white, and red
-  EXPECT_NEAR(to_lab(0xFFFFFFFFu).lightness, 1.0, 1e-4);
-  EXPECT_NEAR(to_lab(0xFF000000u).lightness, 0.0, 1e-9);
-  const Lab red = to_lab(0xFFFF0000u);
+  EXPECT_NEAR(to_oklab(0xFFFFFFFFu).lightness, 1.0, 1e-4);
+  EXPECT_NEAR(to_oklab(0xFF000000u).lightness, 0.0, 1e-9);
+  const OklabColor red = to_oklab(0xFFFF0000u);
   EXPECT_NEAR(red.lightness, 0.628, 1e-3);
   EXPECT_NEAR(red.a, 0.225, 1e-3);
   EXPECT_NEAR(red.b, 0.126, 1e-3);
@@ -26,8 +26,8 @@ TEST(Color, LabOfKnownColours) {  // from the definition's own table: white, and
 
 TEST(Color, RampLightensEvenly) {  // what a colour-blind eye or a grey printer is left with
   for (int i = 0; i < 100; ++i) {
-    const double from = to_lab(ramp(i / 100.0)).lightness;
-    const double to = to_lab(ramp((i + 1) / 100.0)).lightness;
+    const double from = to_oklab(ramp(i / 100.0)).lightness;
+    const double to = to_oklab(ramp((i + 1) / 100.0)).lightness;
     EXPECT_NEAR(to - from, 0.005, 0.003) << i;
   }
 }
@@ -44,7 +44,7 @@ TEST(Color, RampStepsAreAlike) {
 }
 
 TEST(Color, RampStandsOutFromWhite) {
-  for (int i = 0; i <= 100; ++i) EXPECT_LT(to_lab(ramp(i / 100.0)).lightness, 0.81);
+  for (int i = 0; i <= 100; ++i) EXPECT_LT(to_oklab(ramp(i / 100.0)).lightness, 0.81);
 }
 
 TEST(Color, RampStopsAtItsEnds) {

@@ -97,7 +97,7 @@ TEST(FieldFigure, MoreFieldIsLighterAllAlong) {
   const int y = view.map.y_min + 20;
   for (int i = 0; i <= 20; ++i) {
     const int x = std::min(view.map.x_min + i * (view.map.x_max - view.map.x_min) / 20, view.map.x_max - 1);
-    const double lightness = to_lab(picture.at(x, y)).lightness;
+    const double lightness = to_oklab(picture.at(x, y)).lightness;
     EXPECT_GT(lightness, before) << i;
     if (i > 0)
       steps_most = std::max(steps_most, lightness - before), steps_least = std::min(steps_least, lightness - before);

@@ -10,9 +10,9 @@
 #include "tests/viz/scenes.h"
 #include "viz/axes.h"
 #include "viz/color.h"
-#include "viz/occupancy.h"
-#include "viz/sight.h"
+#include "viz/scan_hit_grid.h"
 #include "viz/trajectory_figure.h"
+#include "viz/visibility_layer.h"
 #include "viz/world_figure.h"
 
 namespace sf::viz {
@@ -79,8 +79,8 @@ TEST(WorldFigure, LightsPointWhereTheyFace) {
       {.name = "light", .X_WL = {3.0, 2.0, 0.0, M_PI / 2}, .phases = {{world::LightState::green, 8.0}}});
   draw_world(world, file("facing.png"));
   const Seen seen = see(file("facing.png"), 0.03);
-  EXPECT_LT(to_lab(seen.at(3.0, 2.055)).lightness, 0.6) << "a stroke to the north";
-  EXPECT_GT(to_lab(seen.at(3.0, 1.945)).lightness, 0.9) << "and none to the south";
+  EXPECT_LT(to_oklab(seen.at(3.0, 2.055)).lightness, 0.6) << "a stroke to the north";
+  EXPECT_GT(to_oklab(seen.at(3.0, 1.945)).lightness, 0.9) << "and none to the south";
 }
 
 /// The beginning of the subtitle, in both pictures at the same place, is the same.
@@ -95,7 +95,7 @@ TEST(WorldFigure, TagsAreNoRobotsInItsSubtitle) {
   int dark = 0, apart = 0;
   for (int y = 65; y < 92; ++y)
     for (int x = 0; x < 180; ++x) {
-      dark += to_lab(one.at(x, y)).lightness < 0.6 ? 1 : 0;
+      dark += to_oklab(one.at(x, y)).lightness < 0.6 ? 1 : 0;
       apart += one.at(x, y) != two.at(x, y) ? 1 : 0;
     }
   EXPECT_GT(dark, 50) << "1 robot,";
@@ -128,8 +128,8 @@ TEST(WorldFigure, WallsAreWhereTheyShouldBe) {
   EXPECT_EQ(seen.at(3.27, 2.27), kWhite) << "inside the room";
   EXPECT_EQ(seen.at(-0.6, 2.27), kWhite) << "outside of the walls";
   for (const auto& [x, y] : {std::pair{-0.25, 2.2}, {6.25, 2.2}, {3.2, -0.25}, {3.2, 4.25}, {-0.25, -0.25}})
-    EXPECT_LT(to_lab(seen.at(x, y)).lightness, 0.8) << x << ", " << y << " is within a wall";
-  EXPECT_LT(to_lab(seen.at(3.2, 0.0)).lightness, 0.6) << "the wall's edge";
+    EXPECT_LT(to_oklab(seen.at(x, y)).lightness, 0.8) << x << ", " << y << " is within a wall";
+  EXPECT_LT(to_oklab(seen.at(3.2, 0.0)).lightness, 0.6) << "the wall's edge";
 }
 
 TEST(WorldFigure, PaintAndMagnetsAreThere) {
@@ -142,8 +142,8 @@ TEST(WorldFigure, PaintAndMagnetsAreThere) {
   EXPECT_EQ(seen.at(3.27, 2.27), 0xFFF2B800u) << "in its colour";
   EXPECT_NE(seen.at(3.27, 2.42), kWhite) << "on asphalt";
   EXPECT_EQ(seen.at(5.6, 2.27), kWhite) << "which ends with it";
-  EXPECT_GT(to_lab(seen.at(3.0, 1.0)).a, 0.1) << "red: north is up";
-  EXPECT_LT(to_lab(seen.at(4.0, 1.0)).b, -0.05) << "blue: south is up";
+  EXPECT_GT(to_oklab(seen.at(3.0, 1.0)).a, 0.1) << "red: north is up";
+  EXPECT_LT(to_oklab(seen.at(4.0, 1.0)).b, -0.05) << "blue: south is up";
 }
 
 TEST(WorldFigure, SensorsOfOtherKindsAreThere) {
@@ -157,7 +157,7 @@ TEST(WorldFigure, SensorsOfOtherKindsAreThere) {
   EXPECT_NE(seen.at(2.03, 2.7), kWhite) << "a fan of 1 m to the left";
   EXPECT_EQ(seen.at(2.53, 2.7), kWhite) << "of 30 degrees";
   EXPECT_EQ(seen.at(2.03, 3.2), kWhite) << "and no longer";
-  EXPECT_LT(to_lab(seen.at(3.0, 1.0)).lightness, 0.6) << "an element";
+  EXPECT_LT(to_oklab(seen.at(3.0, 1.0)).lightness, 0.6) << "an element";
 }
 
 TEST(WorldFigure, RobotAndItsViewAreThere) {
@@ -165,9 +165,9 @@ TEST(WorldFigure, RobotAndItsViewAreThere) {
   world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.2, 0, 0}, 0xFF2E7D32u, 3.0));
   draw_world(world, file("robot.png"));
   const Seen seen = see(file("robot.png"), 0.03);
-  const Lab body = to_lab(seen.at(1.92, 2.25));
+  const OklabColor body = to_oklab(seen.at(1.92, 2.25));
   EXPECT_LT(body.a, -0.03) << "a green body";
-  const Lab view = to_lab(seen.at(4.27, 2.27));
+  const OklabColor view = to_oklab(seen.at(4.27, 2.27));
   EXPECT_LT(view.b, -0.02) << "a blue field of view ahead";
   EXPECT_GT(view.lightness, 0.85) << "which is translucent";
   EXPECT_EQ(seen.at(0.77, 2.27), kWhite) << "and not behind";
@@ -179,7 +179,7 @@ TEST(WorldFigure, HeadingIsDrawn) {
   world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.0, 0, M_PI / 2}, 0xFF2E7D32u, 0.2));
   draw_world(world, file("heading.png"));
   const Seen seen = see(file("heading.png"), 0.03);
-  EXPECT_LT(to_lab(seen.at(2.0, 2.08)).lightness, to_lab(seen.at(2.0, 1.92)).lightness - 0.1) << "to the north";
+  EXPECT_LT(to_oklab(seen.at(2.0, 2.08)).lightness, to_oklab(seen.at(2.0, 1.92)).lightness - 0.1) << "to the north";
 }
 
 TEST(WorldFigure, ViewStopsAtWalls) {
@@ -202,7 +202,7 @@ TEST(WorldFigure, WhatAllWallsAreNotIsDrawnToo) {  // every mixture of flags: no
     draw_world(world, file("flags.png"));
     const Seen seen = see(file("flags.png"), 0.03);
     int dark = 0;
-    for (double x = 0.5; x < 5.5; x += 0.01) dark += to_lab(seen.at(x, 0.0)).lightness < 0.8 ? 1 : 0;
+    for (double x = 0.5; x < 5.5; x += 0.01) dark += to_oklab(seen.at(x, 0.0)).lightness < 0.8 ? 1 : 0;
     EXPECT_GT(dark, 60) << flags;
   }
 }
@@ -224,7 +224,7 @@ TEST(WorldFigure, OddWorldsCanBeDrawn) {  // nothing at all; no model rows; a na
   world.models.clear();
   draw_world(world, file("odd.png"));
   const Seen seen = see(file("odd.png"), 0.03);
-  EXPECT_LT(to_lab(seen.at(3.2, 0.0)).lightness, 0.6) << "walls of models that are not known";
+  EXPECT_LT(to_oklab(seen.at(3.2, 0.0)).lightness, 0.6) << "walls of models that are not known";
   EXPECT_EQ(seen.at(4.27, 2.27), kWhite) << "a view of no width";
 }
 
@@ -255,11 +255,11 @@ TEST(Sight, BeamsEndAtTheFirstWallOrAtRangeMax) {
   world::Laser laser;
   laser.fov = M_PI;
   laser.range_max = 3.0;
-  const auto ends = beam_ends(world, {5.0, 2.0, 0.5, 0}, laser, 3);
+  const auto ends = visible_points(world, {5.0, 2.0, 0.5, 0}, laser, 3);
   EXPECT_NEAR(ends[0].y, 0.0, 1e-9);  // right: the wall
   EXPECT_NEAR(ends[1].x, 6.0, 1e-9);  // ahead: the wall
   EXPECT_NEAR(ends[2].y, 4.0, 1e-9);  // left: the wall
-  const auto back = beam_ends(world, {5.0, 2.0, 0.5, M_PI}, laser, 3);
+  const auto back = visible_points(world, {5.0, 2.0, 0.5, M_PI}, laser, 3);
   EXPECT_NEAR(back[1].x, 2.0, 1e-9);  // nothing within range_max
 }
 
@@ -268,8 +268,8 @@ TEST(Sight, SeesOnlyWhatSpansItsHeight) {  // z_min <= z < z_max, as the segment
   world::Laser laser;
   laser.fov = 0.1;
   laser.range_max = 30.0;
-  EXPECT_NEAR(beam_ends(world, {5.0, 2.0, 0.0, 0}, laser, 3)[1].x, 6.0, 1e-9);
-  EXPECT_NEAR(beam_ends(world, {5.0, 2.0, 1.0, 0}, laser, 3)[1].x, 35.0, 1e-9);
+  EXPECT_NEAR(visible_points(world, {5.0, 2.0, 0.0, 0}, laser, 3)[1].x, 6.0, 1e-9);
+  EXPECT_NEAR(visible_points(world, {5.0, 2.0, 1.0, 0}, laser, 3)[1].x, 35.0, 1e-9);
 }
 
 /// One robot along y = 2 from x = 1 to x = 5, stopped at its end.
@@ -365,11 +365,11 @@ TEST(TrajectoryFigure, NoTrackAndEmptyTracksCanBeDrawn) {
     int other = 0;
     for (double x = 0.5; x < 5.5; x += 0.02)
       for (double y = 0.5; y < 3.5; y += 0.02) {
-        const Lab lab = to_lab(seen.at(x, y));
+        const OklabColor lab = to_oklab(seen.at(x, y));
         other += std::hypot(lab.a, lab.b) > 0.02 || lab.lightness < 0.8 ? 1 : 0;
       }
     EXPECT_EQ(other, 0) << "the floor of a room, and the grid on it";
-    EXPECT_LT(to_lab(seen.at(3.2, 0.0)).lightness, 0.9) << "its wall";
+    EXPECT_LT(to_oklab(seen.at(3.2, 0.0)).lightness, 0.9) << "its wall";
   };
   is_bare({});
   is_bare(std::vector<Track>(30));
@@ -383,19 +383,19 @@ TEST(TrajectoryFigureDeathTest, ContactsMustMatchPoses) {
 
 TEST(OccupancyFigure, CellsHaveTheirColours) {
   const world::World world = room();
-  OccupancyGrid grid(world.extent, 0.1);
+  ScanHitGrid grid(world.extent, 0.1);
   grid.add_scan({3.0, 2.0, 0, 0}, scenes::scan(world, {3.0, 2.0, 0, 0}, 2 * M_PI, 1441, 8.0), -M_PI, 2 * M_PI / 1440,
                 8.0);
   draw_occupancy(world, grid, file("grid.png"));
   const Seen seen = see(file("grid.png"), 0.0);
   EXPECT_EQ(seen.at(3.25, 2.25), kWhite) << "free";
   EXPECT_EQ(seen.at(-0.35, 2.25), 0xFF474B50u) << "unexplored";
-  const Lab wall = to_lab(seen.at(6.05, 2.05));
+  const OklabColor wall = to_oklab(seen.at(6.05, 2.05));
   EXPECT_LT(wall.b, -0.15) << "occupied";
 }
 
 TEST(OccupancyFigure, OneCellCanBeDrawn) {
-  draw_occupancy({}, OccupancyGrid({0, 0, 1, 1}, 1.0), file("cell.png"));
+  draw_occupancy({}, ScanHitGrid({0, 0, 1, 1}, 1.0), file("cell.png"));
   const scenes::Picture p = scenes::read_png(file("cell.png"));
   EXPECT_GT(p.count(0xFF474B50u), p.width * p.height / 2) << "unexplored";
 }
@@ -412,7 +412,7 @@ TEST(Figures, UnwritablePathIsNamed) {
   };
   EXPECT_TRUE(named([&] { draw_world(room(), path); }));
   EXPECT_TRUE(named([&] { draw_trajectories(room(), {}, path); }));
-  EXPECT_TRUE(named([&] { draw_occupancy(room(), OccupancyGrid({0, 0, 1, 1}, 0.5), path); }));
+  EXPECT_TRUE(named([&] { draw_occupancy(room(), ScanHitGrid({0, 0, 1, 1}, 0.5), path); }));
 }
 
 TEST(Figures, ManyRobotsCanBeDrawn) {  // the large case, once: 1000 robots in a world of 2000 segments

@@ -75,7 +75,8 @@ TEST(Cross, HasFourArms) {
 
 /// Each sample is drawn in its own colour, in its own row, left of its text.
 TEST(Legend, SamplesStandInTheirPlaces) {
-  const std::vector<LegendItem> items{{Sample::block, 0xFFFF0000u, "a", 0}, {Sample::line, 0xFF00FF00u, "b", 0}};
+  const std::vector<LegendItem> items{{LegendMark::block, 0xFFFF0000u, "a", 0},
+                                      {LegendMark::line, 0xFF00FF00u, "b", 0}};
   const std::vector<LegendPlace> places{{0.0, 0}, {0.0, 1}};
   Canvas canvas(120, 100, kWhite);
   draw_legend(canvas, {10, 10}, items, places);

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "tests/viz/png.h"
 #include "viz/color.h"
-#include "viz/ground.h"
+#include "viz/road_layer.h"
 #include "viz/series_figure.h"
 
 namespace sf::viz {
@@ -91,7 +91,7 @@ TEST(PathFigure, AFolderThatIsNotThereIsNamed) {
 
 /// The axis of a sweep has its own name: the pictures differ there, below the plot, and nowhere else.
 TEST(SeriesFigureAxis, SaysWhatWasVaried) {
-  SeriesPlan plan{.title = "T", .panels = {{"", "y", {{"a", {0.0, 1.0}, {1.0, 2.0}}}}}};
+  SeriesOptions plan{.title = "T", .panels = {{"", "y", {{"a", {0.0, 1.0}, {1.0, 2.0}}}}}};
   draw_series(plan, file("axis_a.png"));
   plan.x_name = "delay of readings [s]";
   draw_series(plan, file("axis_b.png"));

@@ -23,11 +23,11 @@ Series per_second(const std::string& name, const std::vector<double>& values) {
   return series;
 }
 
-SeriesPlan one_panel(const std::vector<Series>& series) {
+SeriesOptions one_panel(const std::vector<Series>& series) {
   return {"Title", "subtitle", {{"", "distance [m]", series}}};
 }
 
-scenes::Picture drawn(const SeriesPlan& plan, const char* name) {
+scenes::Picture drawn(const SeriesOptions& plan, const char* name) {
   draw_series(plan, file(name));
   return scenes::read_png(file(name));
 }
@@ -56,7 +56,7 @@ TEST(SeriesFigure, WhatIsMissingIsAGap) {
 TEST(SeriesFigure, FromZeroWhereThatDoesNotSquash) {
   const std::uint32_t color = row_color(0, 1);
   const auto first_column = [&](double from, bool zero) {
-    SeriesPlan plan = one_panel({{"a", {from, 2.0}, {1.0, 2.0}}});
+    SeriesOptions plan = one_panel({{"a", {from, 2.0}, {1.0, 2.0}}});
     plan.from_zero = zero;
     const scenes::Picture p = drawn(plan, "zero.png");
     for (int x = 0; x < p.width; ++x)
@@ -123,7 +123,7 @@ TEST(SeriesFigure, OddDataIsDrawnAllTheSame) {
 }
 
 TEST(SeriesFigure, ThePictureIsAFunctionOfTheNumbers) {
-  const SeriesPlan plan = one_panel({per_second("a", {1, 2, kNan, 4}), per_second("b", {2, 1, 0, 3})});
+  const SeriesOptions plan = one_panel({per_second("a", {1, 2, kNan, 4}), per_second("b", {2, 1, 0, 3})});
   EXPECT_EQ(drawn(plan, "same1.png").rgb, drawn(plan, "same2.png").rgb);
 }
 

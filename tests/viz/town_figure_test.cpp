@@ -34,7 +34,7 @@ struct Scene {
     return scenes::read_png(file(name));
   }
   std::vector<Track> tracks;
-  TownEnd end;
+  TownFinalState end;
 };
 
 int pixels(const scenes::Picture& picture, std::uint32_t color) {

@@ -17,9 +17,9 @@ struct PixelBox {
 };
 
 /// One float per pixel of a canvas, and which part of each row holds something. All zero between shapes.
-class CoverageRows {
+class CoverageBuffer {
  public:
-  CoverageRows(int width, int height);
+  CoverageBuffer(int width, int height);
   float* row(int y) { return values_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_); }
   void touch(int y, int x_min, int x_max) {
     Touched& t = touched_[static_cast<std::size_t>(y)];
@@ -57,11 +57,11 @@ class CoverageRows {
 /// Adds a line with round ends to `rows`, which holds the coverage of the union of all lines added since it was
 /// drained.
 /// @param width [px] > 0; a line thinner than a pixel is a paler line of one pixel.
-void add_line(CoverageRows& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b, double width);
+void add_line(CoverageBuffer& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b, double width);
 
 /// Adds one directed edge of a closed outline. `rows` then holds signed area differences: the coverage of a pixel is
 /// the absolute sum of its row from the left up to it, at most 1. Outlines in one direction therefore make their union.
-void add_edge(CoverageRows& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b);
+void add_edge(CoverageBuffer& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b);
 
 /// Turns the area differences of a row part into coverage in place.
 void sum_edges(std::span<float> part);

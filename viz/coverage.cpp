@@ -1,4 +1,4 @@
-#include "viz/raster.h"
+#include "viz/coverage.h"
 
 #include <cmath>
 
@@ -29,7 +29,7 @@ void add_to_column(float* row, int column, int x_end, double height, double x_me
 }
 
 /// Part of an edge within one row, from x_a to x_b >= x_a, `height` [px] signed.
-void add_to_row(CoverageRows& rows, const PixelBox& clip, int y, double x_a, double x_b, double height) {
+void add_to_row(CoverageBuffer& rows, const PixelBox& clip, int y, double x_a, double x_b, double height) {
   float* row = rows.row(y);
   if (x_a >= clip.x_max) return rows.touch(y, clip.x_max, clip.x_max);
   if (x_b <= clip.x_min) {
@@ -59,12 +59,12 @@ void add_to_row(CoverageRows& rows, const PixelBox& clip, int y, double x_a, dou
 
 }  // namespace
 
-CoverageRows::CoverageRows(int width, int height)
+CoverageBuffer::CoverageBuffer(int width, int height)
     : width_(width),
       values_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0f),
       touched_(static_cast<std::size_t>(height)) {}
 
-void add_line(CoverageRows& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b, double width) {
+void add_line(CoverageBuffer& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b, double width) {
   if (!finite(a) || !finite(b)) return;
   const double half = 0.5 * std::max(width, 1.0);
   const float gain = static_cast<float>(std::min(width, 1.0));
@@ -96,7 +96,7 @@ void add_line(CoverageRows& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2
   }
 }
 
-void add_edge(CoverageRows& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b) {
+void add_edge(CoverageBuffer& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b) {
   if (!finite(a) || !finite(b) || a.y == b.y || clip.x_min >= clip.x_max) return;
   const double sign = a.y < b.y ? 1.0 : -1.0;
   if (a.y > b.y) std::swap(a, b);

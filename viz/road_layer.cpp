@@ -1,4 +1,4 @@
-#include "viz/ground.h"
+#include "viz/road_layer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +44,7 @@ void draw_lanes(Axes& axes, const world::World& world) {
         for (int k = 0; k < 4; ++k) edges.push_back({corners[k], corners[(k + 1) % 4]});
       }
     }
-  if (!edges.empty()) axes.canvas().area(edges, kStreet);
+  if (!edges.empty()) axes.canvas().area(edges, kAsphaltBand);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ void draw_paint(Axes& axes, const world::World& world) {
     for (std::size_t i = 0; i + 1 < marking.line.size(); ++i)
       asphalt.push_back({axes.pixel(marking.line[i]), axes.pixel(marking.line[i + 1])});
   }
-  axes.canvas().lines(asphalt, widest + 2.0 * kShoulder, kStreet);
+  axes.canvas().lines(asphalt, widest + 2.0 * kShoulder, kAsphaltBand);
   draw_lanes(axes, world);
 
   std::vector<std::uint32_t> colors;
@@ -77,7 +77,7 @@ void draw_streets(Axes& axes, const world::RoadNetwork& roads) {
   for (const world::RoadZone& zone : roads.zones) {
     std::vector<glm::dvec2> outline;
     for (const world::PerimeterPoint& point : zone.perimeter) outline.push_back(axes.pixel(point.p));
-    axes.canvas().polygon(outline, kStreet);
+    axes.canvas().polygon(outline, kAsphaltBand);
   }
   std::vector<Line> bands;
   double widest = 0.0;
@@ -89,7 +89,7 @@ void draw_streets(Axes& axes, const world::RoadNetwork& roads) {
     widest = std::max(widest, lane.width);
   }
   for (const world::RoadExit& exit : roads.exits) add(exit_curve(roads, exit).points);
-  if (widest > 0.0) axes.canvas().lines(bands, widest * axes.scale(), kStreet);
+  if (widest > 0.0) axes.canvas().lines(bands, widest * axes.scale(), kAsphaltBand);
 }
 
 void draw_magnets(Axes& axes, const world::World& world) {
@@ -99,15 +99,15 @@ void draw_magnets(Axes& axes, const world::World& world) {
   }
 }
 
-std::vector<LegendItem> ground_legend(const world::World& world) {
+std::vector<LegendItem> road_legend(const world::World& world) {
   std::vector<LegendItem> items;
-  if (!world.lane_markings.empty()) items.push_back({Sample::block, kStreet, "road, with its paint"});
+  if (!world.lane_markings.empty()) items.push_back({LegendMark::block, kAsphaltBand, "road, with its paint"});
   const auto has = [&](bool north) {
     return std::any_of(world.magnets.begin(), world.magnets.end(),
                        [&](const world::Magnet& m) { return (m.moment > 0.0) == north; });
   };
-  if (has(true)) items.push_back({Sample::dot, kNorth, "magnet, north pole up"});
-  if (has(false)) items.push_back({Sample::dot, kSouth, "magnet, south pole up"});
+  if (has(true)) items.push_back({LegendMark::dot, kNorth, "magnet, north pole up"});
+  if (has(false)) items.push_back({LegendMark::dot, kSouth, "magnet, south pole up"});
   return items;
 }
 

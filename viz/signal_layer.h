@@ -11,7 +11,7 @@
 namespace sf::viz {
 
 /// Dark areas, beneath everything that stands.
-void draw_drops(Axes& axes, const world::World& world);
+void draw_floor_holes(Axes& axes, const world::World& world);
 
 /// The beams and halos of virtual walls and docks, faint: without regard to what stands in their way.
 void draw_emitters(Axes& axes, const world::World& world);

@@ -8,7 +8,7 @@
 
 namespace sf::viz {
 
-struct FanLook {
+struct SectorStyle {
   std::uint32_t color = 0;  ///< 0xAARRGGBB
   double inside = 0.0;      ///< opacity, 0 to 1
   double border = 0.0;      ///< opacity, 0 to 1
@@ -17,6 +17,7 @@ struct FanLook {
 
 /// @param from, to [rad] bearings in the frame F; a whole turn is a circle
 /// @param reach [m]
-void draw_fan(Axes& axes, const base::Pose& X_WF, double from, double to, double reach, const FanLook& look);
+void draw_view_sector(Axes& axes, const base::Pose& X_WF, double from, double to, double reach,
+                      const SectorStyle& look);
 
 }  // namespace sf::viz

@@ -1,4 +1,4 @@
-#include "viz/fan.h"
+#include "viz/view_sector.h"
 
 #include <cmath>
 #include <vector>
@@ -7,7 +7,8 @@
 
 namespace sf::viz {
 
-void draw_fan(Axes& axes, const base::Pose& X_WF, double from, double to, double reach, const FanLook& look) {
+void draw_view_sector(Axes& axes, const base::Pose& X_WF, double from, double to, double reach,
+                      const SectorStyle& look) {
   std::vector<glm::dvec2> outline;
   if (to - from < 2.0 * M_PI - 1e-3) outline.push_back(axes.pixel({X_WF.x, X_WF.y}));
   for (int i = 0; i <= look.sides; ++i) {

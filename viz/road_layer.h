@@ -10,7 +10,7 @@
 
 namespace sf::viz {
 
-inline constexpr std::uint32_t kStreet = 0xFFC3C8CEu;  ///< asphalt under paint
+inline constexpr std::uint32_t kAsphaltBand = 0xFFC3C8CEu;  ///< asphalt under paint
 
 /// Stripes in their colours on a band of asphalt, so that white ones are seen; at least a pixel wide. Lanes that the
 /// world has as paths are asphalt from edge to edge.
@@ -23,6 +23,6 @@ void draw_streets(Axes& axes, const world::RoadNetwork& roads);
 void draw_magnets(Axes& axes, const world::World& world);
 
 /// What of these the world has.
-std::vector<LegendItem> ground_legend(const world::World& world);
+std::vector<LegendItem> road_legend(const world::World& world);
 
 }  // namespace sf::viz

@@ -1,4 +1,4 @@
-#include "viz/pen.h"
+#include "viz/text_renderer.h"
 
 #include <dlfcn.h>
 
@@ -10,15 +10,15 @@ namespace sf::viz {
 
 namespace {
 
-constexpr const char* kModule = "sensorfarm_pen.so";
+constexpr const char* kModule = "sensorfarm_text_renderer.so";
 
-const Pen* load() {
+const TextRenderer* load() {
   std::error_code ignored;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
   const std::string beside = (program.parent_path() / kModule).string();
   void* module = dlopen(std::filesystem::exists(beside, ignored) ? beside.c_str() : kModule, RTLD_NOW | RTLD_LOCAL);
-  const void* symbol = module != nullptr ? dlsym(module, kPenSymbol) : nullptr;
-  if (symbol != nullptr) return static_cast<const Pen*>(symbol);
+  const void* symbol = module != nullptr ? dlsym(module, kTextRendererSymbol) : nullptr;
+  if (symbol != nullptr) return static_cast<const TextRenderer*>(symbol);
   const char* const why = dlerror();
   throw base::InputError(beside, 0,
                          std::string("cannot be loaded, so nothing can be drawn (") + (why != nullptr ? why : "?") +
@@ -27,8 +27,8 @@ const Pen* load() {
 
 }  // namespace
 
-const Pen& pen() {
-  static const Pen* const loaded = load();
+const TextRenderer& text_renderer() {
+  static const TextRenderer* const loaded = load();
   return *loaded;
 }
 

@@ -1,4 +1,4 @@
-#include "viz/sight.h"
+#include "viz/visibility_layer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,8 +42,8 @@ double range_along(const std::vector<Wall>& walls, glm::dvec2 d, double range_ma
 
 }  // namespace
 
-std::vector<glm::dvec2> beam_ends(const world::World& world, const base::Pose& X_WS, const world::Laser& laser,
-                                  int beams) {
+std::vector<glm::dvec2> visible_points(const world::World& world, const base::Pose& X_WS, const world::Laser& laser,
+                                       int beams) {
   const std::vector<Wall> walls = walls_near(world, X_WS, laser.range_max);
   std::vector<glm::dvec2> ends;
   ends.reserve(static_cast<std::size_t>(beams));

@@ -18,13 +18,13 @@ namespace sf::viz {
 enum class CellState : std::uint8_t { unexplored, occupied, free };
 
 /// One thread at a time may add.
-class OccupancyGrid {
+class ScanHitGrid {
  public:
   static constexpr std::uint32_t kPassesPerHit = 8;
 
   /// Cells cover `extent`, the last column and row perhaps beyond it.
   /// @param cell [m] side of a cell, > 0; columns * rows must stay below 2^27
-  OccupancyGrid(const world::Extent& extent, double cell);
+  ScanHitGrid(const world::Extent& extent, double cell);
 
   /// Adds one scan. Beam k looks at `bearing_min + k * bearing_increment` [rad] in the sensor's frame.
   /// A range in (range_min, range_max) ended on something, or in [0, range_max) where range_min is 0; one of at least
@@ -69,14 +69,14 @@ class OccupancyGrid {
 };
 
 /// Shares of the grid's area, in [0, 1]; their sum is 1.
-struct Shares {
+struct AreaShares {
   double unexplored = 0.0, occupied = 0.0, free = 0.0;
 };
-Shares shares(const OccupancyGrid& grid);
+AreaShares shares(const ScanHitGrid& grid);
 
 /// The grid in the colours of Vernier's thesis (Virtual Sensor System, 2010, figure 44): unexplored dark grey, occupied
 /// blue, free white.
 /// @throws base::InputError naming the path when it cannot be written.
-void draw_occupancy(const world::World& world, const OccupancyGrid& grid, const std::string& png_path);
+void draw_occupancy(const world::World& world, const ScanHitGrid& grid, const std::string& png_path);
 
 }  // namespace sf::viz

@@ -1,6 +1,6 @@
 // The module: the one source that knows VTK. Nothing here opens a window or asks for OpenGL.
 
-#include "viz/pen.h"
+#include "viz/text_renderer.h"
 
 #include <vtkFreeTypeTools.h>
 #include <vtkImageData.h>
@@ -17,7 +17,7 @@ namespace {
 constexpr int kDotsPerInch = 72;  // so that a point of VTK's font size is a pixel
 
 /// VTK's first row is the lowest one, and its last component the alpha.
-bool print(const Letters& letters, Stencil& out) {
+bool render(const TextRun& letters, GlyphBitmap& out) {
   vtkNew<vtkTextProperty> property;
   property->SetFontFamilyToArial();
   if (!letters.font_file.empty()) {
@@ -37,10 +37,10 @@ bool print(const Letters& letters, Stencil& out) {
   const int parts = image->GetNumberOfScalarComponents();
   out.width = extent[1] - extent[0] + 1;
   out.height = extent[3] - extent[2] + 1;
-  out.covered.clear();
+  out.coverage.clear();
   for (int j = extent[3]; j >= extent[2]; --j)
     for (int i = extent[0]; i <= extent[1]; ++i)
-      out.covered.push_back(static_cast<const std::uint8_t*>(image->GetScalarPointer(i, j, 0))[parts - 1]);
+      out.coverage.push_back(static_cast<const std::uint8_t*>(image->GetScalarPointer(i, j, 0))[parts - 1]);
   return true;
 }
 
@@ -69,6 +69,6 @@ bool encode_png(const std::uint8_t* rgb, int width, int height, std::vector<std:
 }  // namespace sf::viz
 
 extern "C" {
-extern const sf::viz::Pen sensorfarm_pen;
-const sf::viz::Pen sensorfarm_pen{sf::viz::print, sf::viz::encode_png};
+extern const sf::viz::TextRenderer sensorfarm_text_renderer;
+const sf::viz::TextRenderer sensorfarm_text_renderer{sf::viz::render, sf::viz::encode_png};
 }

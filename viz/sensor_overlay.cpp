@@ -1,15 +1,15 @@
-#include "viz/carried.h"
+#include "viz/sensor_overlay.h"
 
 #include "sensors/laneedge_settings.h"
 #include "sensors/magnetometer.h"
 #include "viz/color.h"
-#include "viz/fan.h"
+#include "viz/view_sector.h"
 
 namespace sf::viz {
 
 namespace {
 
-constexpr FanLook kFan{0xFFEF6C00u, 0.16, 0.7, 24};
+constexpr SectorStyle kSectorStyle{0xFFEF6C00u, 0.16, 0.7, 24};
 constexpr std::uint32_t kElement = 0xFF6A1B9Au;
 
 bool has(const world::World& world, std::string_view type) {
@@ -21,10 +21,10 @@ bool has(const world::World& world, std::string_view type) {
 
 }  // namespace
 
-void draw_carried(Axes& axes, const world::World& world) {
+void draw_sensors(Axes& axes, const world::World& world) {
   for (const sensors::LaneEdge& edge : sensors::lane_edges_of(world))
-    draw_fan(axes, compose(world.movers[edge.row.mover].X_WM, edge.fan.X_MS), -0.5 * edge.fan.fov, 0.5 * edge.fan.fov,
-             edge.fan.range_max, kFan);
+    draw_view_sector(axes, compose(world.movers[edge.row.mover].X_WM, edge.fan.X_MS), -0.5 * edge.fan.fov,
+                     0.5 * edge.fan.fov, edge.fan.range_max, kSectorStyle);
   for (const world::Mover& mover : world.movers)
     for (const world::Sensor& sensor : mover.sensors) {
       if (sensor.type != sensors::magnetometer_kind.word.type) continue;
@@ -35,12 +35,12 @@ void draw_carried(Axes& axes, const world::World& world) {
     }
 }
 
-std::vector<LegendItem> carried_legend(const world::World& world) {
+std::vector<LegendItem> sensor_legend(const world::World& world) {
   std::vector<LegendItem> items;
   if (has(world, sensors::laneedge_kind.word.type))
-    items.push_back({Sample::block, with_opacity(kFan.color, kFan.inside), "lane edge sensor",
-                     with_opacity(kFan.color, kFan.border)});
-  if (has(world, sensors::magnetometer_kind.word.type)) items.push_back({Sample::dot, kElement, "magnetometer"});
+    items.push_back({LegendMark::block, with_opacity(kSectorStyle.color, kSectorStyle.inside), "lane edge sensor",
+                     with_opacity(kSectorStyle.color, kSectorStyle.border)});
+  if (has(world, sensors::magnetometer_kind.word.type)) items.push_back({LegendMark::dot, kElement, "magnetometer"});
   return items;
 }
 

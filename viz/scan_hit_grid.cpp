@@ -1,4 +1,4 @@
-#include "viz/occupancy.h"
+#include "viz/scan_hit_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +8,14 @@
 namespace sf::viz {
 namespace {
 
-constexpr double kMostCells = 1 << 27;
+constexpr double kMaxCells = 1 << 27;
 
 /// An echo is counted this much behind the surface, so that a wall on the border of two cells always lies in the one
 /// behind it and not, by the rounding of each range, in either. [cells]
 constexpr double kBehindSurface = 0.01;
 
 int cells_along(double from, double to, double cell) {
-  return static_cast<int>(std::min(std::max(1.0, std::ceil((to - from) / cell - 1e-6)), kMostCells + 1.0));
+  return static_cast<int>(std::min(std::max(1.0, std::ceil((to - from) / cell - 1e-6)), kMaxCells + 1.0));
 }
 
 /// Narrows [t0, t1] to where a + t * d lies in [0, end] (Liang and Barsky, 1984).
@@ -34,7 +34,7 @@ int cell_index(double x, int count) { return std::clamp(static_cast<int>(std::fl
 
 }  // namespace
 
-OccupancyGrid::OccupancyGrid(const world::Extent& extent, double cell)
+ScanHitGrid::ScanHitGrid(const world::Extent& extent, double cell)
     : x_min_(extent.x_min),
       y_min_(extent.y_min),
       cell_(cell),
@@ -42,28 +42,28 @@ OccupancyGrid::OccupancyGrid(const world::Extent& extent, double cell)
       rows_(cells_along(extent.y_min, extent.y_max, cell)) {
   SF_CHECK(cell > 0.0 && std::isfinite(cell) && std::isfinite(x_min_) && std::isfinite(y_min_),
            "occupancy cells of " + std::to_string(cell) + " m");
-  SF_CHECK(static_cast<double>(columns_) * rows_ <= kMostCells,
+  SF_CHECK(static_cast<double>(columns_) * rows_ <= kMaxCells,
            "an occupancy grid of " + std::to_string(columns_) + " x " + std::to_string(rows_) + " cells");
   cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
 }
 
-world::Extent OccupancyGrid::extent() const {
+world::Extent ScanHitGrid::extent() const {
   return {x_min_, y_min_, x_min_ + columns_ * cell_, y_min_ + rows_ * cell_};
 }
 
-const OccupancyGrid::Cell& OccupancyGrid::at(int column, int row) const {
+const ScanHitGrid::Cell& ScanHitGrid::at(int column, int row) const {
   SF_CHECK(column >= 0 && row >= 0 && column < columns_ && row < rows_,
            "cell " + std::to_string(column) + ", " + std::to_string(row) + " is outside the grid");
   return cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)];
 }
 
-CellState OccupancyGrid::state(int column, int row) const {
+CellState ScanHitGrid::state(int column, int row) const {
   const Cell& cell = at(column, row);
   if (cell.hits == 0) return cell.passes == 0 ? CellState::unexplored : CellState::free;
   return cell.hits * kPassesPerHit >= cell.passes ? CellState::occupied : CellState::free;
 }
 
-void OccupancyGrid::begin_scan() {
+void ScanHitGrid::begin_scan() {
   constexpr std::uint32_t last = 0xFFFFFFF0u;
   if (scan_ >= last) {
     for (Cell& cell : cells_) cell.stamp = 0;
@@ -72,7 +72,7 @@ void OccupancyGrid::begin_scan() {
   scan_ += 2;
 }
 
-void OccupancyGrid::count(std::uint16_t& counter, Cell& cell) {
+void ScanHitGrid::count(std::uint16_t& counter, Cell& cell) {
   if (counter == 0xFFFFu) {
     cell.hits /= 2;
     cell.passes /= 2;
@@ -80,22 +80,22 @@ void OccupancyGrid::count(std::uint16_t& counter, Cell& cell) {
   ++counter;
 }
 
-void OccupancyGrid::hit(Cell& cell) {
+void ScanHitGrid::hit(Cell& cell) {
   if (cell.stamp == scan_ + 1) return;
   if (cell.stamp == scan_ && cell.passes > 0) --cell.passes;
   cell.stamp = scan_ + 1;
   count(cell.hits, cell);
 }
 
-void OccupancyGrid::pass(Cell& cell) {
+void ScanHitGrid::pass(Cell& cell) {
   if (cell.stamp >= scan_) return;
   cell.stamp = scan_;
   count(cell.passes, cell);
 }
 
-void OccupancyGrid::add_scan(const base::Pose& X_WS, std::span<const double> ranges, double bearing_min,
-                             double bearing_increment, double range_max, double range_min,
-                             std::span<const std::uint8_t> moving) {
+void ScanHitGrid::add_scan(const base::Pose& X_WS, std::span<const double> ranges, double bearing_min,
+                           double bearing_increment, double range_max, double range_min,
+                           std::span<const std::uint8_t> moving) {
   SF_CHECK(std::isfinite(X_WS.x + X_WS.y + X_WS.yaw) && std::isfinite(range_max), "a scan's pose must be finite");
   SF_CHECK(moving.empty() || moving.size() == ranges.size(), "one mark of movement per range");
   begin_scan();
@@ -112,7 +112,7 @@ void OccupancyGrid::add_scan(const base::Pose& X_WS, std::span<const double> ran
   }
 }
 
-void OccupancyGrid::add_beam(glm::dvec2 from, glm::dvec2 along, End end) {
+void ScanHitGrid::add_beam(glm::dvec2 from, glm::dvec2 along, End end) {
   double t0 = 0.0;
   double t1 = 1.0;
   narrow(from.x, along.x, columns_, t0, t1);
@@ -154,7 +154,7 @@ void OccupancyGrid::add_beam(glm::dvec2 from, glm::dvec2 along, End end) {
   if (end == End::mark) hit(*cell);
 }
 
-Shares shares(const OccupancyGrid& grid) {
+AreaShares shares(const ScanHitGrid& grid) {
   double count[3] = {0.0, 0.0, 0.0};
   for (int row = 0; row < grid.rows(); ++row)
     for (int column = 0; column < grid.columns(); ++column) ++count[static_cast<std::size_t>(grid.state(column, row))];

@@ -20,7 +20,7 @@ struct Size {
 };
 
 /// The extent with its margin, never empty.
-world::Extent padded(const FigurePlan& plan) {
+world::Extent padded(const FigureOptions& plan) {
   world::Extent e = plan.extent;
   SF_CHECK(std::isfinite(e.x_min + e.x_max + e.y_min + e.y_max) && e.x_min <= e.x_max && e.y_min <= e.y_max,
            "the extent of a figure must be finite and in order");
@@ -39,7 +39,7 @@ double widest_label(double from, double to, double smallest_step) {
   return widest;
 }
 
-double bar_width(const FigurePlan& plan) {
+double bar_width(const FigureOptions& plan) {
   if (!plan.bar) return 0.0;
   const TextStyle style = small_text();
   const double texts = std::max(text_size(plan.bar->low, style).x, text_size(plan.bar->high, style).x);
@@ -55,7 +55,7 @@ void fill_plot(world::Extent& shown, Size plot, double scale) {
 
 }  // namespace
 
-FigureLayout lay_out(const FigurePlan& plan) {
+FigureLayout lay_out(const FigureOptions& plan) {
   SF_CHECK(plan.long_side >= 600 && plan.long_side <= 8000, "long side " + std::to_string(plan.long_side) + " px");
   const world::Extent wanted = padded(plan);
   const Size extent{std::max(wanted.x_max - wanted.x_min, 1e-9), std::max(wanted.y_max - wanted.y_min, 1e-9)};

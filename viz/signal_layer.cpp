@@ -1,10 +1,10 @@
-#include "viz/signals.h"
+#include "viz/signal_layer.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "viz/color.h"
-#include "viz/fan.h"
+#include "viz/view_sector.h"
 #include "world/lights.h"
 
 namespace sf::viz {
@@ -15,10 +15,10 @@ using world::Emitter;
 using world::LightState;
 
 constexpr std::uint32_t kHole = 0xFF2B2B33u;
-constexpr FanLook kWallBeam{0xFF8E24AAu, 0.14, 0.55};
-constexpr FanLook kRedBuoy{0xFFD32F2Fu, 0.14, 0.55};
-constexpr FanLook kGreenBuoy{0xFF2E7D32u, 0.14, 0.55};
-constexpr FanLook kField{0xFF455A64u, 0.14, 0.55};
+constexpr SectorStyle kWallBeam{0xFF8E24AAu, 0.14, 0.55};
+constexpr SectorStyle kRedBuoy{0xFFD32F2Fu, 0.14, 0.55};
+constexpr SectorStyle kGreenBuoy{0xFF2E7D32u, 0.14, 0.55};
+constexpr SectorStyle kField{0xFF455A64u, 0.14, 0.55};
 constexpr std::uint32_t kCase = 0xFF202020u;
 constexpr double kLightRadius = 6.0;  // [px]
 
@@ -41,13 +41,13 @@ std::uint32_t color_of(LightState state) {
 void draw_emitter(Axes& axes, const Emitter& emitter) {
   const double fov = emitter.fov;
   if (emitter.kind == Emitter::Kind::virtual_wall) {
-    if (emitter.halo > 0.0) draw_fan(axes, emitter.X_WE, 0.0, 2.0 * M_PI, emitter.halo, kWallBeam);
-    return draw_fan(axes, emitter.X_WE, -0.5 * fov, 0.5 * fov, emitter.range, kWallBeam);
+    if (emitter.halo > 0.0) draw_view_sector(axes, emitter.X_WE, 0.0, 2.0 * M_PI, emitter.halo, kWallBeam);
+    return draw_view_sector(axes, emitter.X_WE, -0.5 * fov, 0.5 * fov, emitter.range, kWallBeam);
   }
-  if (emitter.halo > 0.0) draw_fan(axes, emitter.X_WE, 0.0, 2.0 * M_PI, emitter.halo, kField);
+  if (emitter.halo > 0.0) draw_view_sector(axes, emitter.X_WE, 0.0, 2.0 * M_PI, emitter.halo, kField);
   // A quarter of each buoy's beam is the other's, too (sensors/irreceiver.h).
-  draw_fan(axes, emitter.X_WE, -0.125 * fov, 0.875 * fov, emitter.range, kRedBuoy);
-  draw_fan(axes, emitter.X_WE, -0.875 * fov, 0.125 * fov, emitter.range, kGreenBuoy);
+  draw_view_sector(axes, emitter.X_WE, -0.125 * fov, 0.875 * fov, emitter.range, kRedBuoy);
+  draw_view_sector(axes, emitter.X_WE, -0.875 * fov, 0.125 * fov, emitter.range, kGreenBuoy);
 }
 
 bool has(const world::World& world, Emitter::Kind kind) {
@@ -56,7 +56,7 @@ bool has(const world::World& world, Emitter::Kind kind) {
 
 }  // namespace
 
-void draw_drops(Axes& axes, const world::World& world) {
+void draw_floor_holes(Axes& axes, const world::World& world) {
   for (const world::FloorHole& drop : world.floor_holes) {
     std::vector<glm::dvec2> outline;
     for (const glm::dvec2& p : drop.outline) outline.push_back(axes.pixel(p));
@@ -83,7 +83,7 @@ std::vector<LegendItem> lights_legend(const world::World& world, double time) {
     const std::uint32_t color = color_of(state);
     if (std::any_of(world.lights.begin(), world.lights.end(),
                     [&](const world::Light& light) { return color_of(signal_at(light, time).state) == color; }))
-      items.push_back({Sample::dot, color, text});
+      items.push_back({LegendMark::dot, color, text});
   };
   add(LightState::green, "light, green");
   add(LightState::yellow, "light, yellow");
@@ -94,14 +94,15 @@ std::vector<LegendItem> lights_legend(const world::World& world, double time) {
 
 std::vector<LegendItem> signals_legend(const world::World& world) {
   std::vector<LegendItem> items;
-  if (!world.lights.empty()) items.push_back({Sample::dot, color_of(LightState::green), "traffic light, at the start"});
+  if (!world.lights.empty())
+    items.push_back({LegendMark::dot, color_of(LightState::green), "traffic light, at the start"});
   if (has(world, Emitter::Kind::virtual_wall))
-    items.push_back({Sample::block, with_opacity(kWallBeam.color, kWallBeam.inside), "virtual wall",
+    items.push_back({LegendMark::block, with_opacity(kWallBeam.color, kWallBeam.inside), "virtual wall",
                      with_opacity(kWallBeam.color, kWallBeam.border)});
   if (has(world, Emitter::Kind::dock))
-    items.push_back({Sample::block, with_opacity(kRedBuoy.color, kRedBuoy.inside),
+    items.push_back({LegendMark::block, with_opacity(kRedBuoy.color, kRedBuoy.inside),
                      "dock: red and green buoy, force field", with_opacity(kRedBuoy.color, kRedBuoy.border)});
-  if (!world.floor_holes.empty()) items.push_back({Sample::block, with_opacity(kHole, 0.85), "hole in the floor"});
+  if (!world.floor_holes.empty()) items.push_back({LegendMark::block, with_opacity(kHole, 0.85), "hole in the floor"});
   return items;
 }
 

@@ -11,9 +11,9 @@
 namespace sf::viz {
 
 /// @throws base::InputError with file and line for a sensor whose settings make no sense.
-void draw_carried(Axes& axes, const world::World& world);
+void draw_sensors(Axes& axes, const world::World& world);
 
 /// What of these the world has.
-std::vector<LegendItem> carried_legend(const world::World& world);
+std::vector<LegendItem> sensor_legend(const world::World& world);
 
 }  // namespace sf::viz

@@ -1,4 +1,4 @@
-#include "viz/occupancy.h"
+#include "viz/scan_hit_grid.h"
 
 #include <gtest/gtest.h>
 
@@ -20,13 +20,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBehind = 0.01;  // cells, as the header says
 
 /// One beam along +x from the middle of cell (0, 2) of a 10 x 5 grid of 1 m cells.
-OccupancyGrid one_beam(double range, double range_max, double range_min = 0.0) {
-  OccupancyGrid grid({0, 0, 10, 5}, 1.0);
+ScanHitGrid one_beam(double range, double range_max, double range_min = 0.0) {
+  ScanHitGrid grid({0, 0, 10, 5}, 1.0);
   grid.add_scan({0.5, 2.5, 0, 0}, {&range, 1}, 0.0, 0.0, range_max, range_min);
   return grid;
 }
 
-int known_cells(const OccupancyGrid& grid) {
+int known_cells(const ScanHitGrid& grid) {
   int known = 0;
   for (int j = 0; j < grid.rows(); ++j)
     for (int i = 0; i < grid.columns(); ++i) known += grid.state(i, j) == CellState::unexplored ? 0 : 1;
@@ -34,24 +34,24 @@ int known_cells(const OccupancyGrid& grid) {
 }
 
 TEST(Occupancy, StartsUnexplored) {
-  const OccupancyGrid grid({0, 0, 2, 1}, 0.5);
+  const ScanHitGrid grid({0, 0, 2, 1}, 0.5);
   EXPECT_EQ(grid.columns(), 4);
   EXPECT_EQ(grid.rows(), 2);
   EXPECT_EQ(known_cells(grid), 0);
 }
 
 TEST(Occupancy, LastColumnMayReachBeyond) {  // 1.2 m in cells of 0.5 m: three, and 1.5 m of them
-  const OccupancyGrid grid({1, 2, 2.2, 3}, 0.5);
+  const ScanHitGrid grid({1, 2, 2.2, 3}, 0.5);
   EXPECT_EQ(grid.columns(), 3);
   EXPECT_DOUBLE_EQ(grid.extent().x_max, 2.5);
 }
 
 TEST(Occupancy, WholeCellsAreNotOneMore) {  // 3 m / 0.03 m is 100.00000000000001 in floating point
-  EXPECT_EQ(OccupancyGrid({0, 0, 3, 3}, 0.03).columns(), 100);
+  EXPECT_EQ(ScanHitGrid({0, 0, 3, 3}, 0.03).columns(), 100);
 }
 
 TEST(Occupancy, EndIsOccupiedPathIsFree) {
-  const OccupancyGrid grid = one_beam(4.2, 8.0);
+  const ScanHitGrid grid = one_beam(4.2, 8.0);
   for (int i = 0; i < 4; ++i) EXPECT_EQ(grid.state(i, 2), CellState::free) << i;
   EXPECT_EQ(grid.state(4, 2), CellState::occupied);
   EXPECT_EQ(grid.state(5, 2), CellState::unexplored);
@@ -59,7 +59,7 @@ TEST(Occupancy, EndIsOccupiedPathIsFree) {
 }
 
 TEST(Occupancy, RangeMaxMarksNothing) {  // met nothing: the cell at the end is free as well
-  const OccupancyGrid grid = one_beam(4.2, 4.2);
+  const ScanHitGrid grid = one_beam(4.2, 4.2);
   EXPECT_EQ(grid.state(4, 2), CellState::free);
   EXPECT_EQ(known_cells(grid), 5);
 }
@@ -85,7 +85,7 @@ TEST(Occupancy, ZeroIsAnEchoWithoutRangeMin) {  // a sensor on a surface
 TEST(Occupancy, WallOnABorderLiesBehindIt) {  // seen from either side, and with a nanometre of rounding
   for (const double error : {-1e-9, 0.0, 1e-9}) {
     EXPECT_EQ(one_beam(3.5 + error, 8.0).state(4, 2), CellState::occupied);
-    OccupancyGrid back({0, 0, 10, 5}, 1.0);
+    ScanHitGrid back({0, 0, 10, 5}, 1.0);
     const double range = 4.5 + error;
     back.add_scan({8.5, 2.5, 0, M_PI}, {&range, 1}, 0.0, 0.0, 8.0);
     EXPECT_EQ(back.state(3, 2), CellState::occupied);
@@ -94,12 +94,12 @@ TEST(Occupancy, WallOnABorderLiesBehindIt) {  // seen from either side, and with
 }
 
 TEST(Occupancy, EchoOutsideTheGridIsNoEcho) {
-  const OccupancyGrid grid = one_beam(40.0, 80.0);
+  const ScanHitGrid grid = one_beam(40.0, 80.0);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(grid.state(i, 2), CellState::free);
 }
 
 TEST(Occupancy, SensorOutsideTheGrid) {  // what crosses the grid counts
-  OccupancyGrid grid({0, 0, 10, 5}, 1.0);
+  ScanHitGrid grid({0, 0, 10, 5}, 1.0);
   const double range = 9.7;
   grid.add_scan({-5.0, 2.5, 0, 0}, {&range, 1}, 0.0, 0.0, 80.0);
   EXPECT_EQ(grid.state(4, 2), CellState::occupied);
@@ -107,7 +107,7 @@ TEST(Occupancy, SensorOutsideTheGrid) {  // what crosses the grid counts
 }
 
 TEST(Occupancy, BeamBesideTheGrid) {
-  OccupancyGrid grid({0, 0, 10, 5}, 1.0);
+  ScanHitGrid grid({0, 0, 10, 5}, 1.0);
   const double range = 9.7;
   grid.add_scan({-5.0, 7.0, 0, 0}, {&range, 1}, 0.0, 0.0, 80.0);
   grid.add_scan({-5.0, 2.0, 0, M_PI}, {&range, 1}, 0.0, 0.0, 80.0);
@@ -116,7 +116,7 @@ TEST(Occupancy, BeamBesideTheGrid) {
 
 TEST(Occupancy, OccupiedBeatsFreeWithinAScan) {  // two beams through one cell, in either order
   for (const bool echo_first : {true, false}) {
-    OccupancyGrid grid({0, 0, 10, 5}, 1.0);
+    ScanHitGrid grid({0, 0, 10, 5}, 1.0);
     std::vector<double> ranges{echo_first ? 4.2 : 8.0, echo_first ? 8.0 : 4.2};
     grid.add_scan({0.5, 2.5, 0, 0}, ranges, 0.0, 1e-6, 8.0);
     EXPECT_EQ(grid.hits(4, 2), 1u);
@@ -126,7 +126,7 @@ TEST(Occupancy, OccupiedBeatsFreeWithinAScan) {  // two beams through one cell, 
 }
 
 TEST(Occupancy, ACellCountsOncePerScan) {
-  OccupancyGrid grid({0, 0, 10, 5}, 1.0);
+  ScanHitGrid grid({0, 0, 10, 5}, 1.0);
   const std::vector<double> ranges(50, 4.2);
   grid.add_scan({0.5, 2.5, 0, 0}, ranges, 0.0, 1e-6, 8.0);
   EXPECT_EQ(grid.hits(4, 2), 1u);
@@ -134,11 +134,11 @@ TEST(Occupancy, ACellCountsOncePerScan) {
 }
 
 TEST(Occupancy, PassesOutvoteHits) {  // one hit: occupied up to kPassesPerHit passes, free beyond
-  OccupancyGrid grid({0, 0, 10, 5}, 1.0);
+  ScanHitGrid grid({0, 0, 10, 5}, 1.0);
   const double echo = 4.2;
   const double nothing = 8.0;
   grid.add_scan({0.5, 2.5, 0, 0}, {&echo, 1}, 0.0, 0.0, 8.0);
-  for (std::uint32_t k = 0; k < OccupancyGrid::kPassesPerHit; ++k) {
+  for (std::uint32_t k = 0; k < ScanHitGrid::kPassesPerHit; ++k) {
     grid.add_scan({0.5, 2.5, 0, 0}, {&nothing, 1}, 0.0, 0.0, 8.0);
     EXPECT_EQ(grid.state(4, 2), CellState::occupied);
   }
@@ -147,7 +147,7 @@ TEST(Occupancy, PassesOutvoteHits) {  // one hit: occupied up to kPassesPerHit p
 }
 
 TEST(Occupancy, CountersDoNotOverflow) {  // beyond 65535 scans the balance stays
-  OccupancyGrid grid({0, 0, 10, 5}, 1.0);
+  ScanHitGrid grid({0, 0, 10, 5}, 1.0);
   const double echo = 4.2;
   for (int k = 0; k < 70000; ++k) grid.add_scan({0.5, 2.5, 0, 0}, {&echo, 1}, 0.0, 0.0, 8.0);
   EXPECT_EQ(grid.state(4, 2), CellState::occupied);
@@ -156,7 +156,7 @@ TEST(Occupancy, CountersDoNotOverflow) {  // beyond 65535 scans the balance stay
 }
 
 TEST(Occupancy, WhatMovesLeavesNoMark) {
-  OccupancyGrid grid({0, 0, 10, 5}, 1.0);
+  ScanHitGrid grid({0, 0, 10, 5}, 1.0);
   const double echo = 4.2;
   const std::uint8_t moving = 1;
   grid.add_scan({0.5, 2.5, 0, 0}, {&echo, 1}, 0.0, 0.0, 8.0, 0.0, {&moving, 1});
@@ -191,7 +191,7 @@ TEST(Occupancy, AgreesWithLookingAtEveryCell) {
   std::mt19937 draw(3);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (int k = 0; k < 60; ++k) {
-    OccupancyGrid grid({-1, -1, 2, 1}, cell);
+    ScanHitGrid grid({-1, -1, 2, 1}, cell);
     const Pose X_WS{-1.5 + 4 * unit(draw), -1.5 + 3 * unit(draw), 0, k % 5 ? 6.3 * unit(draw) : 0.5 * M_PI * k};
     std::vector<double> ranges;
     for (int i = 0; i < 25; ++i) ranges.push_back(std::min(range_max, 2.4 * unit(draw)));
@@ -223,7 +223,7 @@ TEST(Occupancy, AgreesWithLookingAtEveryCell) {
 }
 
 TEST(Occupancy, SharesSumToOne) {
-  const Shares part = shares(one_beam(4.2, 8.0));
+  const AreaShares part = shares(one_beam(4.2, 8.0));
   EXPECT_DOUBLE_EQ(part.free, 4.0 / 50.0);
   EXPECT_DOUBLE_EQ(part.occupied, 1.0 / 50.0);
   EXPECT_DOUBLE_EQ(part.unexplored, 45.0 / 50.0);
@@ -231,7 +231,7 @@ TEST(Occupancy, SharesSumToOne) {
 
 TEST(Occupancy, FindsTheWallsOfARoom) {
   const world::World room = scenes::make_world(6, 4, 0, 0);
-  OccupancyGrid grid(room.extent, 0.05);
+  ScanHitGrid grid(room.extent, 0.05);
   for (double x = 1.0; x < 6.0; x += 1.0)
     grid.add_scan({x, 2.0, 0, 0}, scenes::scan(room, {x, 2.0, 0, 0}, 2 * M_PI, 1441, 8.0), -M_PI, 2 * M_PI / 1440, 8.0);
   const auto at = [&](double x, double y) {

@@ -1,4 +1,4 @@
-#include "viz/bodies.h"
+#include "viz/mover_layer.h"
 
 #include <algorithm>
 #include <vector>
