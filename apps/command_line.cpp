@@ -93,7 +93,7 @@ Parsed parse_command_line(int argc, const char* const* argv) {
       std::fputs(text.c_str(), stdout);
       parsed.exit_code = 0;
     }
-    // Farms look it up where they are made (raycast/caster.h).
+    // Farms look it up where they are made (raycast/caster_choice.h).
     if (!o.caster.empty()) setenv("SENSORFARM_CASTER", o.caster.c_str(), 1);
   } catch (const CLI::ParseError& error) {
     // CLI11 has a code for each mistake; ours is 2 for all of them.

@@ -32,13 +32,13 @@ std::string work_of(const scenarios::ExplainedKind& k, double ticks) {
   if (k.again > 0.0) text += fmt::format(", {:.4g} of them given again since nothing moved", k.again);
   if (k.work.rays > 0)
     text += fmt::format(", {:.4g} rays, {:.3g} lists built anew", each(k.work.rays), each(k.work.cells_built));
-  if (k.work.doubts > 0)
+  if (k.work.uncertain > 0)
     text += fmt::format(", {:.2g} % of beams decided in 64 bits against all",
-                        100.0 * static_cast<double>(k.work.doubts) / static_cast<double>(k.work.rays));
-  if (k.work.movers_near > 0)
-    text +=
-        fmt::format(", {:.4g} movers near, {:.0f} % of them hidden or out of view", each(k.work.movers_near),
-                    100.0 - 100.0 * static_cast<double>(k.work.movers_met) / static_cast<double>(k.work.movers_near));
+                        100.0 * static_cast<double>(k.work.uncertain) / static_cast<double>(k.work.rays));
+  if (k.work.movers_in_range > 0)
+    text += fmt::format(
+        ", {:.4g} movers near, {:.0f} % of them hidden or out of view", each(k.work.movers_in_range),
+        100.0 - 100.0 * static_cast<double>(k.work.movers_visible) / static_cast<double>(k.work.movers_in_range));
   if (k.work.host_scans > 0) text += fmt::format(", {:.4g} scans cast on the host", each(k.work.host_scans));
   if (k.work.dipoles > 0) text += fmt::format(", {:.4g} magnets summed", each(k.work.dipoles));
   return text;

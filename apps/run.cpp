@@ -24,7 +24,7 @@
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "netio/token.h"
-#include "raycast/caster.h"
+#include "raycast/caster_choice.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
 
@@ -154,7 +154,7 @@ int run(const Options& options) {
   if (!simulation.warnings().empty()) tell_warnings(simulation.warnings().front().file, simulation.warnings());
   ControlTally tally(simulation, world.movers.size(), options.controller);
   std::vector<base::ContactOnset> contacts(world.movers.size());
-  const std::string caster = raycast::caster_text(device.info().software);
+  const std::string caster = raycast::describe_caster(device.info().software);
   Outputs outputs(world, roster, plan, caster, options);
   catch_stop_signals();
 

@@ -26,7 +26,7 @@
 #include "netio/inbox.h"
 #include "netio/log.h"
 #include "netio/relay.h"
-#include "raycast/caster.h"
+#include "raycast/caster_choice.h"
 #include "robots/fleet.h"
 
 namespace sf::apps {
@@ -268,7 +268,7 @@ int serve(const Options& options) {
   RunFacts facts = service.facts();
   facts.device = device.info().name;
   facts.software = device.info().software;
-  facts.caster = raycast::caster_text(device.info().software);
+  facts.caster = raycast::describe_caster(device.info().software);
   facts.wall_s = facts.simulated_s = std::chrono::duration<double>(Clock::now() - start).count();
   std::fputs((options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts)).c_str(), stdout);
   return 0;

@@ -7,7 +7,7 @@
 #include "apps/rates.h"
 #include "apps/wording.h"
 #include "base/hash.h"
-#include "raycast/caster.h"
+#include "raycast/caster_choice.h"
 #include "sensors/accuracy.h"
 #include "sensors/field/truncation.h"
 
@@ -93,7 +93,7 @@ std::string text_of(const gpu::DeviceList& survey) {
     text += fmt::format("     {}, Vulkan {}, {}{}\n", d.kind, d.api, d.driver,
                         d.software ? " (software: computed on the CPU)" : "");
     text += fmt::format("     self-check {}\n", d.self_check);
-    if (d.chosen) text += fmt::format("     rays are cast by: {}\n", raycast::caster_text(d.software));
+    if (d.chosen) text += fmt::format("     rays are cast by: {}\n", raycast::describe_caster(d.software));
     text += d.chosen ? "     chosen\n" : fmt::format("     refused: {}\n", d.reason);
   }
   return text;
@@ -130,7 +130,7 @@ std::string work_text(const RunFacts& f) {
     return row(what, fmt::format("{}, {} of the whole run", count, per(f.wall_s))) +
            row("", per(sensing) + " while sensing");
   };
-  const sensors::Work& work = f.farm.work;
+  const sensors::SensorStats& work = f.farm.work;
   std::string text = work.rays > 0 || work.dipoles == 0 ? rows("rays", work.rays) : "";
   if (work.dipoles > 0) text += rows("dipoles", work.dipoles);
   if (f.farm.missed > 0)

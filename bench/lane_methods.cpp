@@ -12,8 +12,8 @@ class FarmLanes final : public LaneReader {
  public:
   FarmLanes(const LaneScene& scene, gpu::Device& device)
       : scene_(scene),
-        site_{scene.world, device, thread_pool_, 0, true, {}},
-        instruments_(sensors::laneedge_kind.make(site_)),
+        context_{scene.world, device, thread_pool_, 0, true, {}},
+        instruments_(sensors::laneedge_kind.make(context_)),
         batch_(device) {
     for (std::uint32_t row = 0; row < scene.world.movers.size(); ++row) due_.push_back({row, 0});
   }
@@ -24,7 +24,7 @@ class FarmLanes final : public LaneReader {
   }
   void read(std::size_t round) override {
     const std::vector<base::Pose>& poses = scene_.rounds[round];
-    instruments_->place(poses);
+    instruments_->set_poses(poses);
     if (instruments_->prepare(due_, poses)) {
       batch_.begin();
       instruments_->record_measure(batch_);
@@ -32,7 +32,7 @@ class FarmLanes final : public LaneReader {
       instruments_->record_derive(batch_);
       batch_.end();
     }
-    instruments_->copies(batch_);
+    instruments_->add_copies(batch_);
     batch_.run();
     blocks_.clear();
     instruments_->collect(blocks_);
@@ -45,10 +45,10 @@ class FarmLanes final : public LaneReader {
  private:
   const LaneScene& scene_;
   base::ThreadPool thread_pool_;
-  sensors::Site site_;
+  sensors::SensorContext context_;
   std::unique_ptr<sensors::Instruments> instruments_;
   gpu::Batch batch_;
-  std::vector<sensors::Due> due_;
+  std::vector<sensors::DueSample> due_;
   std::vector<base::ReadingBlock> blocks_;
 };
 

@@ -48,7 +48,7 @@ Stages stages_of(const DriveResult& d) {
           1e3 * d.stages.device_s / n,
           1e3 * d.stages.collect_s / n,
           1e3 * d.decide_s,
-          static_cast<double>(d.stages.work.doubts) / rays,
+          static_cast<double>(d.stages.work.uncertain) / rays,
           static_cast<double>(d.stages.work.cells_built) / n};
 }
 

@@ -75,10 +75,11 @@ struct Farm::State {
       states.push_back({.mover = static_cast<std::uint32_t>(poses.size()), .X_WM = mover.X_WM});
       poses.push_back(mover.X_WM);
     }
-    const sensors::Site site{w, device, thread_pool, options.seed, options.noise, options.true_poses, options.scene};
+    const sensors::SensorContext context{
+        w, device, thread_pool, options.seed, options.noise, options.true_poses, options.scene};
     for (const auto& group : roster.groups()) {
       device.set_owner(group.kind->name);
-      stations.emplace_back(site, group);
+      stations.emplace_back(context, group);
     }
     blocks.reserve(roster.count());
     hashes.reserve(roster.count());
@@ -138,7 +139,7 @@ void Farm::State::prepare() {
 
 void Farm::State::run() {
   if (std::none_of(stations.begin(), stations.end(), [](const Station& s) { return s.needs_device(); })) return;
-  for (Station& station : stations) station.copies(batch);
+  for (Station& station : stations) station.add_copies(batch);
   batch.run();
   ++stats.batches;
 }
@@ -147,7 +148,7 @@ void Farm::State::measure(std::int64_t now, bool again) {
   Stopwatch watch;
   for (Station& station : stations) {
     station.split(again);
-    if (!station.looking.empty()) station.instruments->place(poses);
+    if (!station.looking.empty()) station.instruments->set_poses(poses);
   }
   watch.lap(stats.place_s);
   prepare();
@@ -262,7 +263,7 @@ std::uint64_t Farm::hash() const { return s_->hash; }
 
 FarmStats Farm::stats() const {
   FarmStats stats = s_->stats;
-  for (const Station& station : s_->stations) stats.work += station.instruments->work();
+  for (const Station& station : s_->stations) stats.work += station.instruments->stats();
   return stats;
 }
 

@@ -45,7 +45,7 @@ struct FarmStats {
   std::uint64_t missed = 0;   ///< readings of heard sensors never taken: newer ones were due at the same tick
   std::uint64_t again = 0;    ///< readings given again: nothing they depend on had moved
   std::uint64_t batches = 0;  ///< submitted to the device
-  sensors::Work work;         ///< of all kinds together
+  sensors::SensorStats work;  ///< of all kinds together
   double place_s = 0.0;       ///< [s] host: movers' outlines
   double lists_s = 0.0;       ///< [s] host: what each sensor may meet
   double device_s = 0.0;      ///< [s] submit to done

@@ -6,8 +6,8 @@
 
 namespace sf::farm {
 
-Station::Station(const sensors::Site& site, const sensors::Roster::Group& g)
-    : group(&g), instruments(g.kind->make(site)), steady(g.rows, site.noise), begun(g.rows.size(), 0) {
+Station::Station(const sensors::SensorContext& context, const sensors::Roster::Group& g)
+    : group(&g), instruments(g.kind->make(context)), steady(g.rows, context.noise), begun(g.rows.size(), 0) {
   for (const sensors::SensorRow& row : g.rows) next.push_back(due_time(0, row.rate, row.phase));
   due.reserve(g.rows.size());
   looking.reserve(g.rows.size());
@@ -55,7 +55,7 @@ std::int64_t Station::next_due(std::span<const std::uint32_t> heard) const {
 
 void Station::split(bool again) {
   looking.clear();
-  for (const sensors::Due& d : due)
+  for (const sensors::DueSample& d : due)
     if (!again || !steady.keeps(d.row)) looking.push_back(d);
 }
 
@@ -68,9 +68,9 @@ bool Station::prepare(std::span<const base::Pose> poses) {
   return instruments->prepare(looking, poses);
 }
 
-void Station::copies(gpu::Batch& batch) {
+void Station::add_copies(gpu::Batch& batch) {
   if (told) return;
-  instruments->copies(batch);
+  instruments->add_copies(batch);
   told = at_rest;
 }
 
@@ -98,7 +98,7 @@ std::size_t Station::collect(std::int64_t now, std::span<const base::Pose> poses
 void Station::note(std::span<const base::ReadingBlock> blocks) {
   std::size_t i = blocks.size() - due.size();
   std::size_t looked = 0;
-  for (const sensors::Due& d : due) {
+  for (const sensors::DueSample& d : due) {
     if (looked < looking.size() && looking[looked].row == d.row) {
       steady.taken(d.row, blocks[i]);
       ++looked;

@@ -18,14 +18,14 @@ struct Station {
   Steady steady;
   std::vector<std::uint64_t> begun;  ///< per row: readings begun
   std::vector<std::int64_t> next;    ///< [ns] per row: when the one after these is due
-  std::vector<sensors::Due> due;
-  std::vector<sensors::Due> looking;  ///< of those due: whose reading cannot be given again
-  bool in_use = false;                ///< someone has looked: its kernels belong to the batch
-  bool at_rest = true;                ///< the instruments know that nothing is due
-  bool told = true;                   ///< so do the tables on the device, as far as kernels are in use
+  std::vector<sensors::DueSample> due;
+  std::vector<sensors::DueSample> looking;  ///< of those due: whose reading cannot be given again
+  bool in_use = false;                      ///< someone has looked: its kernels belong to the batch
+  bool at_rest = true;                      ///< the instruments know that nothing is due
+  bool told = true;                         ///< so do the tables on the device, as far as kernels are in use
 
   /// @param site of all kinds. @param group of the farm's roster.
-  Station(const sensors::Site& site, const sensors::Roster::Group& group);
+  Station(const sensors::SensorContext& context, const sensors::Roster::Group& group);
 
   bool derived() const { return group->kind->derived; }
   /// What of this kind is due at `now` [ns]. @param heard per mover: bits of kinds.
@@ -39,7 +39,7 @@ struct Station {
   bool prepare(std::span<const base::Pose> poses);
   /// Whether the batch has something to do for this kind.
   bool needs_device() const { return !looking.empty() && instruments->on_device(); }
-  void copies(gpu::Batch& batch);
+  void add_copies(gpu::Batch& batch);
   /// Appends the readings of all that are due, in order. @return how many are given again.
   std::size_t collect(std::int64_t now, std::span<const base::Pose> poses, std::vector<base::ReadingBlock>& blocks);
   /// Takes note of what `collect` appended last: those that looked may be given again later.

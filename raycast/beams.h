@@ -29,19 +29,20 @@ BeamPlan plan_beams(const world::Laser& laser, bool with_noise);
 
 /// Angular noise: how far each cast beam is turned. @param draw of `base::RandomStream::angle_noise` @param turns [rad]
 /// one per cast beam
-void draw_turns(const world::Laser& laser, const BeamPlan& plan, const base::RandomKey& draw, std::span<double> turns);
+void draw_angle_noise(const world::Laser& laser, const BeamPlan& plan, const base::RandomKey& draw,
+                      std::span<double> angle_noise);
 
 /// Rows of the device's beam tables for one laser, from its first lane on.
 struct BeamTables {
-  float* middles;        ///< [sectors] one per lane
+  float* mid_bearings;   ///< [sectors] one per lane
   double* directions64;  ///< 8 per lane: cosine, sine of each beam
 };
 
-/// Writes the tables of `plan`, each cast beam k turned by `turns[k]` [rad] (empty: none).
-void write_beams(const world::Laser& laser, const BeamPlan& plan, const std::vector<double>& turns,
+/// Writes the tables of `plan`, each cast beam k turned by `angle_noise[k]` [rad] (empty: none).
+void write_beams(const world::Laser& laser, const BeamPlan& plan, const std::vector<double>& angle_noise,
                  const BeamTables& tables);
 
 /// Largest turn angular noise may give, in standard deviations: beyond, it is cut off, so that lists can be trusted.
-inline constexpr double kMostSigmas = 6.0;
+inline constexpr double kMaxSigmas = 6.0;
 
 }  // namespace sf::raycast

@@ -29,11 +29,11 @@ double cell_size(double range, std::uint32_t beams) {
 }
 
 /// Blocks of a cell for which directions are known.
-constexpr std::size_t kMostAhead = 64;
+constexpr std::size_t kMaxMaskedBlocks = 64;
 
-BlocksAhead blocks_ahead(std::span<const SegmentBlock> blocks) {
+SectorBlockMasks sector_block_masks(std::span<const SegmentBlock> blocks) {
   constexpr double kPerRadian = kSectors / (2.0 * M_PI);
-  BlocksAhead ahead{};
+  SectorBlockMasks ahead{};
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const double middle = static_cast<double>(blocks[b].bearing) * kPerRadian;
     const double wide = std::min(static_cast<double>(blocks[b].half) * kPerRadian + 1e-3, 0.5 * kSectors);
@@ -45,30 +45,30 @@ BlocksAhead blocks_ahead(std::span<const SegmentBlock> blocks) {
 
 }  // namespace
 
-struct HostScene::FamilyTables {
+struct HostScene::ConfigTables {
   CellShape shape;
   std::uint32_t height;
 };
 
 struct HostScene::Thread {
   Rasterizer rasterizer;
-  FoundWalls walls;
+  CandidateWalls walls;
   std::vector<SegmentBlock> blocks;
 };
 
-HostScene::HostScene(const world::World& world, const Families& families, base::ThreadPool& thread_pool)
+HostScene::HostScene(const world::World& world, const ListConfigs& configs, base::ThreadPool& thread_pool)
     : thread_pool_(thread_pool),
-      families_(families),
+      configs_(configs),
       movers_(world),
-      cells_(families, cell_size, CellPool(kFirstCells, kFirstBlocks, kPageBlocks)),
+      cells_(configs, cell_size, CellCache(kFirstCells, kFirstBlocks, kPageBlocks)),
       lists_(kFirstCells),
-      ahead_(kFirstCells),
+      block_masks_(kFirstCells),
       blocks_(kFirstBlocks) {
-  for (std::size_t i = 0; i < families.size(); ++i) {
-    const Family& family = families[i];
-    tables_of_.push_back({{cells_.size_of(i), family.range}, movers_.watch_height(family.z)});
+  for (std::size_t i = 0; i < configs.size(); ++i) {
+    const ListConfig& config = configs[i];
+    config_tables_.push_back({{cells_.size_of(i), config.range}, movers_.add_height(config.z)});
   }
-  for (const world::Segment& s : families.walls()) {
+  for (const world::Segment& s : configs.walls()) {
     exact_.push_back({s.a.x, s.a.y, s.b.x, s.b.y});
     models_.push_back(s.model);
   }
@@ -79,22 +79,23 @@ HostScene::HostScene(const world::World& world, const Families& families, base::
 
 HostScene::~HostScene() = default;
 
-void HostScene::place(std::span<const Pose> poses) {
-  movers_.place(poses, thread_pool_, std::span(exact_).subspan(families_.walls().size()));
+void HostScene::set_poses(std::span<const Pose> poses) {
+  movers_.set_poses(poses, thread_pool_, std::span(exact_).subspan(configs_.walls().size()));
 }
 
 /// Appends `found` in order of rings and bearings, with what all of a block have in common.
-void HostScene::add_blocks(std::vector<FoundWall>& found, std::vector<SegmentBlock>& blocks) {
-  std::sort(found.begin(), found.end(), [](const FoundWall& p, const FoundWall& q) {
-    return std::tie(p.ring, p.bearing, p.row, p.a.x, p.a.y) < std::tie(q.ring, q.bearing, q.row, q.a.x, q.a.y);
+void HostScene::add_blocks(std::vector<CandidateWall>& found, std::vector<SegmentBlock>& blocks) {
+  std::sort(found.begin(), found.end(), [](const CandidateWall& p, const CandidateWall& q) {
+    return std::tie(p.distance_ring, p.bearing, p.row, p.a.x, p.a.y) <
+           std::tie(q.distance_ring, q.bearing, q.row, q.a.x, q.a.y);
   });
   std::uint32_t used = kBlock;
   for (std::size_t i = 0; i < found.size(); ++i) {
     append(blocks, used, found[i].a, found[i].b, found[i].row);
     if (used < kBlock && i + 1 < found.size()) continue;
-    const std::span<const FoundWall> own = std::span(found).subspan(i + 1 - used, used);
+    const std::span<const CandidateWall> own = std::span(found).subspan(i + 1 - used, used);
     double low = 0.0, high = 0.0, nearest = own[0].nearest;
-    for (const FoundWall& f : own) {
+    for (const CandidateWall& f : own) {
       const double offset = base::wrap_angle(f.bearing - own[0].bearing);
       low = std::min(low, offset - f.half), high = std::max(high, offset + f.half);
       nearest = std::min(nearest, f.nearest);
@@ -108,19 +109,19 @@ void HostScene::add_blocks(std::vector<FoundWall>& found, std::vector<SegmentBlo
 
 /// Lists what may be met from a cell, into the thread's blocks.
 HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
-  const std::size_t family = ViewCells::family_of(key);
-  find_walls(families_.sight(family), tables_of_[family].shape, cells_.centre_of(key), ViewCells::in_solid(key),
-             t.walls);
+  const std::size_t config = ViewCells::config_of(key);
+  find_candidate_walls(configs_.wall_index(config), config_tables_[config].shape, cells_.centre_of(key),
+                       ViewCells::in_solid(key), t.walls);
   Cell cell;
   t.blocks.clear();
-  add_blocks(t.walls.facing, t.blocks);
-  cell.facing = static_cast<std::uint32_t>(t.blocks.size());
-  add_blocks(t.walls.behind, t.blocks);
+  add_blocks(t.walls.front_facing, t.blocks);
+  cell.front_facing = static_cast<std::uint32_t>(t.blocks.size());
+  add_blocks(t.walls.back_facing, t.blocks);
   cell.all = static_cast<std::uint32_t>(t.blocks.size());
   return cell;
 }
 
-void HostScene::build_missing() {
+void HostScene::build_missing_cells() {
   std::mutex lock;
   std::atomic<bool> no_room{false};  // the others wait for the pool to grow
   thread_pool_.parallel_for(cells_.missing().size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
@@ -131,29 +132,29 @@ void HostScene::build_missing() {
       std::uint32_t slot;
       {
         const std::scoped_lock guard(lock);
-        slot = cells_.pool().insert(key, cell.all);
+        slot = cells_.cache().insert(key, cell.all);
       }
-      if (slot == CellPool::kNone) {
+      if (slot == CellCache::kNone) {
         no_room = true;
         break;
       }
-      cell.first = cells_.pool().first_chunk(slot);
+      cell.first = cells_.cache().first_chunk(slot);
       lists_[slot] = cell;
-      if (cell.all <= kMostAhead) ahead_[slot] = blocks_ahead(t.blocks);
-      cells_.note_sides(key, slot, t.walls.nearby);
+      if (cell.all <= kMaxMaskedBlocks) block_masks_[slot] = sector_block_masks(t.blocks);
+      cells_.classify_cell(key, slot, t.walls.query);
       std::copy(t.blocks.begin(), t.blocks.end(), blocks_.begin() + static_cast<std::ptrdiff_t>(cell.first));
     }
   });
-  cells_.forget_found();
+  cells_.drop_cached();
 }
 
 void HostScene::prepare(std::span<const Viewpoint> views) {
   views_.assign(views.begin(), views.end());
   cells_.find(views, thread_pool_);
   static const std::uint32_t most = most_blocks();
-  for (build_missing(); !cells_.missing().empty() && blocks_.size() < most; build_missing()) {
+  for (build_missing_cells(); !cells_.missing().empty() && blocks_.size() < most; build_missing_cells()) {
     lists_.resize(2 * lists_.size());
-    ahead_.resize(lists_.size());
+    block_masks_.resize(lists_.size());
     blocks_.resize(2 * blocks_.size());
     cells_.grow(static_cast<std::uint32_t>(lists_.size()), static_cast<std::uint32_t>(blocks_.size()));
   }
@@ -162,9 +163,9 @@ void HostScene::prepare(std::span<const Viewpoint> views) {
 bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, unsigned thread, const ScanOutput& out) {
   Thread& t = *threads_[thread];
   const Viewpoint& view = views_[i];
-  const FamilyTables& family = tables_of_[view.family];
+  const ConfigTables& config = config_tables_[view.config];
   const std::uint32_t slot = cells_.slot(i);
-  const bool listed = slot != CellPool::kNone;
+  const bool listed = slot != CellCache::kNone;
   const Cell cell = listed ? lists_[slot] : collect(cells_.key(i), t);
   const std::span<const SegmentBlock> blocks =
       listed ? std::span<const SegmentBlock>(blocks_).subspan(cell.first, cell.all) : t.blocks;
@@ -172,16 +173,16 @@ bool HostScene::scan(std::size_t i, ScanView from, const ScanPattern& pattern, u
   const glm::dvec2 origin{view.X_WS.x, view.X_WS.y};
   from.origin = origin;
   from.offset = origin - centre;
-  from.range_max = families_[view.family].range;
-  from.band = static_cast<float>(SF_BAND * (family.shape.reach() + 2.0 * movers_.largest_radius()));
+  from.range_max = configs_[view.config].range;
+  from.band = static_cast<float>(SF_COORDINATE_ERROR * (config.shape.reach() + 2.0 * movers_.largest_radius()));
   ScanScene scene;
   scene.walls = blocks;
-  scene.facing = cell.facing;
-  if (listed && cell.all <= kMostAhead) scene.ahead = &ahead_[slot];
+  scene.front_facing = cell.front_facing;
+  if (listed && cell.all <= kMaxMaskedBlocks) scene.block_masks = &block_masks_[slot];
   scene.exact = exact_;
   scene.models = models_;
   scene.movers = movers_.segments() > 0 ? &movers_.grid() : nullptr;
-  scene.outlines = &movers_.outlines(family.height);
+  scene.outlines = &movers_.outlines(config.height);
   scene.poses = movers_.poses();
   scene.headings = movers_.headings();
   scene.first_rows = movers_.first_rows();
@@ -193,7 +194,8 @@ ScanCounts HostScene::counts() const {
   ScanCounts sum;
   for (const auto& thread : threads_) {
     const ScanCounts& own = thread->rasterizer.counts();
-    sum.doubts += own.doubts, sum.movers_near += own.movers_near, sum.movers_met += own.movers_met;
+    sum.uncertain += own.uncertain, sum.movers_in_range += own.movers_in_range,
+        sum.movers_visible += own.movers_visible;
   }
   return sum;
 }

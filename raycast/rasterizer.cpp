@@ -9,9 +9,9 @@
 #define HWY_TARGET_INCLUDE "raycast/rasterizer.cpp"
 #include <hwy/foreach_target.h>
 // Behind it: what is compiled for each.
-#include "raycast/rasterizer/answers-inl.h"
-#include "raycast/rasterizer/doubts-inl.h"
+#include "raycast/rasterizer/exact-inl.h"
 #include "raycast/rasterizer/movers-inl.h"
+#include "raycast/rasterizer/ranges-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sf::raycast::HWY_NAMESPACE {
@@ -23,19 +23,19 @@ void scan(Scratch& s, const ScanView& view, const ScanPattern& pattern, const Sc
     store(constant(inverse * (1.0f - 1e-6f)), &s.near_low[j]);
     store(constant(inverse * (1.0f + 1e-6f)), &s.near_high[j]);
     store(constant(0.0f), &s.others[j]);
-    hn::StoreU(hn::Set(kI, -1), kI, &s.winner[j]);
+    hn::StoreU(hn::Set(kI, -1), kI, &s.nearest_segment[j]);
   }
   const Projection p = projection_of(view, pattern);
-  draw_walls(s, p, view, pattern, scene);
-  if (scene.movers != nullptr) draw_movers(s, p, view, pattern, scene);
+  rasterize_walls(s, p, view, pattern, scene);
+  if (scene.movers != nullptr) rasterize_movers(s, p, view, pattern, scene);
 }
 
 /// @return whether any beam grazes
 bool scan_all(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
               const ScanOutput& out) {
-  if (pattern.beams <= kFewBeams) return answer_all(s, view, pattern, scene, out);
+  if (pattern.beams <= kMaxExactBeams) return intersect_all_beams(s, view, pattern, scene, out);
   scan(s, view, pattern, scene);
-  return answer(s, view, pattern, scene, out) && answer_doubts(s, view, pattern, scene, out);
+  return write_certain_ranges(s, view, pattern, scene, out) && intersect_uncertain_beams(s, view, pattern, scene, out);
 }
 
 const char* instructions() { return hwy::TargetName(HWY_TARGET); }
@@ -52,10 +52,10 @@ HWY_EXPORT(instructions);
 void Rasterizer::Scratch::begin(std::uint32_t beams) {
   const std::size_t padded = std::size_t{beams} + 2 * kBlock;
   if (near_low.size() < padded) {
-    near_low.resize(padded), near_high.resize(padded), others.resize(padded), winner.resize(padded);
+    near_low.resize(padded), near_high.resize(padded), others.resize(padded), nearest_segment.resize(padded);
   }
   ends.resize(beams / 64 + 1);
-  doubts.resize(beams / 64 + 1);
+  uncertain.resize(beams / 64 + 1);
   live.clear();
   used = 0;
 }
@@ -64,7 +64,8 @@ void Rasterizer::Scratch::reserve(std::uint32_t more) {
   const std::size_t needed = std::size_t{used} + more;
   if (a.size() >= needed) return;
   const std::size_t room = 2 * needed + 256;
-  for (std::vector<float>* v : {&a, &b, &error, &low_any, &high_any, &low_sure, &high_sure}) v->resize(room);
+  for (std::vector<float>* v : {&a, &b, &error, &low_possible, &high_possible, &low_certain, &high_certain})
+    v->resize(room);
   first.resize(room), last.resize(room), row.resize(room);
 }
 

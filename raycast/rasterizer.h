@@ -23,7 +23,7 @@
 namespace sf::raycast {
 
 /// So few beams are not worth drawing everything around: each is decided alone.
-inline constexpr std::uint32_t kFewBeams = 3;
+inline constexpr std::uint32_t kMaxExactBeams = 3;
 
 /// Scratch of one thread.
 class Rasterizer {

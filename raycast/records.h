@@ -13,23 +13,23 @@
 
 // The verdict of a lane on its beams, shifted by each one's place in the lane: it meets what it met at too small an
 // angle; and 32 bits could not prove what it meets first.
-#define SF_GRAZES 1u
-#define SF_DOUBT 16u
+#define SF_GRAZING 1u
+#define SF_UNCERTAIN 16u
 
 // The sine of the angle below which a beam grazes what it meets.
-#define SF_LEAST_SINE 1e-3
+#define SF_MIN_SINE 1e-3
 
 // A range measured in 32 bits is taken when its bounds are closer together than this share of the sensor's reach.
-#define SF_SINGLE_SHARE 2.44140625e-4 /* 2^-12 */
+#define SF_SINGLE_TOLERANCE 2.44140625e-4 /* 2^-12 */
 
 // Error of coordinates in 32 bits, as a share of the largest one, A. With directions d of unit length and u = 2^-24,
 // ends and offsets round by u A each, directions by 4 u, products and differences by u A more each:
 //   |error of w x d| < 10 u A, |error of e x d| < 10 u |e|, |error of e x w| < 10 u A |e|.
-#define SF_BAND 9.5367431640625e-7 /* 2^-20 */
+#define SF_COORDINATE_ERROR 9.5367431640625e-7 /* 2^-20 */
 
 // A surface within this distance [m] along the beam counts as touching the sensor: beams into it read 0, beams off it
 // pass.
-#define SF_TOUCH 1e-9
+#define SF_CONTACT_DISTANCE 1e-9
 
 #ifdef __cplusplus
 
@@ -58,10 +58,10 @@ static_assert(sizeof(RayRow) == SF_ROW_TEXELS * 16);
 
 /// One sector's list. It is a texel, as chunks and entries are: all lie in one table.
 struct ListHead {
-  std::uint32_t first;   ///< texel of the first chunk
-  std::uint32_t count;   ///< [chunks] of segments that face viewers
-  std::uint32_t behind;  ///< [chunks] that follow, of segments that face none: they only decide ties at corners
-  std::uint32_t base;    ///< texel of the walls' entries
+  std::uint32_t first;        ///< texel of the first chunk
+  std::uint32_t count;        ///< [chunks] of segments that face viewers
+  std::uint32_t back_facing;  ///< [chunks] that follow, of segments that face none: they only decide ties at corners
+  std::uint32_t base;         ///< texel of the walls' entries
 };
 static_assert(sizeof(ListHead) == 16);
 
@@ -74,13 +74,13 @@ struct ListChunk {
 static_assert(sizeof(ListChunk) == 16);
 
 /// Where a mover is, and its outline at one height: two texels.
-struct MoverPlace {
+struct MoverRow {
   double x, y;              ///< [m] world
   float cos, sin;           ///< of its heading
   std::uint32_t base;       ///< texel of its outline's entries
   std::uint32_t first_row;  ///< of its exact segments
 };
-static_assert(sizeof(MoverPlace) == 32);
+static_assert(sizeof(MoverRow) == 32);
 
 /// A segment as the search sees it, from its right, in the cell's or the mover's frame.
 struct ListEntry {

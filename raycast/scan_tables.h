@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "raycast/decide.h"
+#include "raycast/intersect.h"
 
 namespace sf::raycast {
 
@@ -85,15 +85,15 @@ struct MoverGrid {
 
 /// Where a scan looks from, and how far.
 struct ScanView {
-  glm::dvec2 origin;        ///< [m] world
-  glm::dvec2 heading;       ///< unit vector: the pattern's bearing 0
-  double yaw = 0.0;         ///< [rad] of the heading
-  glm::dvec2 offset;        ///< [m] of the origin from the frame of the walls' blocks
-  double range_max = 0.0;   ///< [m]
-  double range_min = 0.0;   ///< [m]
-  float band = 0.0f;        ///< [m] what 32 bits may be wrong by: SF_BAND times the largest coordinate
-  double least_sine = 0.0;  ///< of the angle below which a beam grazes
-  bool single = false;      ///< ranges are measured in 32 bits where these are close enough
+  glm::dvec2 origin;       ///< [m] world
+  glm::dvec2 heading;      ///< unit vector: the pattern's bearing 0
+  double yaw = 0.0;        ///< [rad] of the heading
+  glm::dvec2 offset;       ///< [m] of the origin from the frame of the walls' blocks
+  double range_max = 0.0;  ///< [m]
+  double range_min = 0.0;  ///< [m]
+  float band = 0.0f;       ///< [m] what 32 bits may be wrong by: SF_BAND times the largest coordinate
+  double min_sine = 0.0;   ///< of the angle below which a beam grazes
+  bool single = false;     ///< ranges are measured in 32 bits where these are close enough
   /// Unit vectors of the beams in the world, padded as the pattern's arrays are; null: the pattern's, turned by the
   /// heading.
   const double* x = nullptr;
@@ -108,16 +108,16 @@ glm::dvec2 direction_of(const ScanView& view, const ScanPattern& pattern, std::s
 inline constexpr int kSectors = 32;
 
 /// Which blocks of a cell, of 64 at most, lie ahead in each sector: a bit each.
-using BlocksAhead = std::array<std::uint64_t, kSectors>;
+using SectorBlockMasks = std::array<std::uint64_t, kSectors>;
 
 /// Surfaces that there are to meet. Exact segments: walls first, then the movers'.
 struct ScanScene {
   /// Walls that face the cell, near to far; then those that face away from all of it, which decide ties at corners.
   std::span<const SegmentBlock> walls;
-  std::size_t facing = 0;                 ///< [blocks]
-  const BlocksAhead* ahead = nullptr;     ///< of `walls`, where they are at most 64 blocks
-  std::span<const ExactSegment> exact;    ///< of walls, then of movers
-  std::span<const std::uint32_t> models;  ///< of each
+  std::size_t front_facing = 0;                   ///< [blocks]
+  const SectorBlockMasks* block_masks = nullptr;  ///< of `walls`, where they are at most 64 blocks
+  std::span<const ExactSegment> exact;            ///< of walls, then of movers
+  std::span<const std::uint32_t> models;          ///< of each
   const MoverGrid* movers = nullptr;
   const OutlineTable* outlines = nullptr;
   std::span<const base::Pose> poses;          ///< of movers
@@ -135,9 +135,9 @@ struct ScanOutput {
 
 /// Work of scans, counted.
 struct ScanCounts {
-  std::uint64_t doubts = 0;       ///< beams that 32 bits could not prove
-  std::uint64_t movers_near = 0;  ///< discs in reach and in view
-  std::uint64_t movers_met = 0;   ///< of these, not hidden
+  std::uint64_t uncertain = 0;        ///< beams that 32 bits could not prove
+  std::uint64_t movers_in_range = 0;  ///< discs in reach and in view
+  std::uint64_t movers_visible = 0;   ///< of these, not hidden
 };
 
 }  // namespace sf::raycast

@@ -9,19 +9,19 @@ namespace sf::raycast {
 namespace {
 
 /// [places] beams may lie from where an even pattern has them.
-constexpr float kMostSlack = 4.0F;
+constexpr float kMaxSlack = 4.0F;
 
-SharedPattern merge(std::span<const Fan> fans, std::span<const BeamPlan* const> plans) {
+SharedPattern merge(std::span<const Scanner> scanners, std::span<const BeamPlan* const> plans) {
   struct Beam {
     double bearing;
     SharedPattern::Source source;
   };
   std::vector<Beam> beams;
-  for (std::uint32_t f = 0; f < fans.size(); ++f) {
+  for (std::uint32_t f = 0; f < scanners.size(); ++f) {
     const std::vector<std::uint32_t>& samples = plans[f]->samples;
     for (std::uint32_t k = 0; k < samples.size(); ++k) {
       const double bearing =
-          fans[f].laser.X_MS.yaw - fans[0].laser.X_MS.yaw + world::bearing_of(fans[f].laser, samples[k]);
+          scanners[f].laser.X_MS.yaw - scanners[0].laser.X_MS.yaw + world::bearing_of(scanners[f].laser, samples[k]);
       beams.push_back({base::wrap_angle(bearing), {f, k, static_cast<std::uint32_t>(beams.size())}});
     }
   }
@@ -41,21 +41,21 @@ SharedPattern merge(std::span<const Fan> fans, std::span<const BeamPlan* const> 
 
 }  // namespace
 
-bool look_alike(const Fan& p, const Fan& q) {
+bool same_viewpoint(const Scanner& p, const Scanner& q) {
   const world::Laser &a = p.laser, &b = q.laser;
   return p.mover == q.mover && p.single == q.single && a.X_MS.x == b.X_MS.x && a.X_MS.y == b.X_MS.y &&
          a.X_MS.z == b.X_MS.z && a.range_max == b.range_max && a.range_min == b.range_min;
 }
 
-bool SharedViews::add(std::uint32_t first, std::span<const Fan> fans, std::span<const BeamPlan* const> plans) {
+bool SharedViews::add(std::uint32_t first, std::span<const Scanner> scanners, std::span<const BeamPlan* const> plans) {
   std::vector<double> key;
-  for (const Fan& fan : fans)
-    key.insert(key.end(), {fan.laser.X_MS.yaw, fan.laser.fov, static_cast<double>(fan.laser.samples),
-                           static_cast<double>(fan.laser.resolution)});
+  for (const Scanner& scanner : scanners)
+    key.insert(key.end(), {scanner.laser.X_MS.yaw, scanner.laser.fov, static_cast<double>(scanner.laser.samples),
+                           static_cast<double>(scanner.laser.resolution)});
   const auto [known, fresh] = known_.try_emplace(std::move(key), static_cast<std::uint32_t>(patterns_.size()));
-  if (fresh) patterns_.push_back(merge(fans, plans));
-  if (patterns_[known->second].beams.slack > kMostSlack) return false;
-  views_.push_back({first, static_cast<std::uint32_t>(fans.size()), known->second});
+  if (fresh) patterns_.push_back(merge(scanners, plans));
+  if (patterns_[known->second].beams.slack > kMaxSlack) return false;
+  views_.push_back({first, static_cast<std::uint32_t>(scanners.size()), known->second});
   return true;
 }
 

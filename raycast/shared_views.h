@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "raycast/casts.h"
+#include "raycast/ray_caster.h"
 #include "raycast/scan_tables.h"
 
 namespace sf::raycast {
@@ -14,9 +14,9 @@ namespace sf::raycast {
 /// The beams of several fans in the frame of the first.
 struct SharedPattern {
   struct Source {
-    std::uint32_t fan;    ///< from the view's first
-    std::uint32_t beam;   ///< of that fan's pattern
-    std::uint32_t place;  ///< of it where fans' beams follow one another
+    std::uint32_t scanner;  ///< from the view's first
+    std::uint32_t beam;     ///< of that fan's pattern
+    std::uint32_t place;    ///< of it where fans' beams follow one another
   };
   ScanPattern beams;
   std::vector<Source> sources;  ///< of each beam
@@ -24,7 +24,7 @@ struct SharedPattern {
 
 /// A run of fans, by row.
 struct SharedView {
-  std::uint32_t first = 0, fans = 0;
+  std::uint32_t first = 0, scanners = 0;
   std::uint32_t pattern = 0;
 };
 
@@ -33,7 +33,7 @@ class SharedViews {
  public:
   /// Adds fans [first, first + fans.size()), of which each could be scanned with the first.
   /// @param plans of each fan  @return false where one pattern would serve them badly: their bearings are too uneven
-  bool add(std::uint32_t first, std::span<const Fan> fans, std::span<const BeamPlan* const> plans);
+  bool add(std::uint32_t first, std::span<const Scanner> scanners, std::span<const BeamPlan* const> plans);
 
   std::span<const SharedView> views() const { return views_; }
   const SharedPattern& pattern(const SharedView& view) const { return patterns_[view.pattern]; }
@@ -45,6 +45,6 @@ class SharedViews {
 };
 
 /// Whether two fans of a world, without angular noise, look from one point in one way.
-bool look_alike(const Fan& p, const Fan& q);
+bool same_viewpoint(const Scanner& p, const Scanner& q);
 
 }  // namespace sf::raycast

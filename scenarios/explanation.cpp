@@ -11,7 +11,7 @@
 
 #include "base/elapsed.h"
 #include "farm/farm.h"
-#include "raycast/caster.h"
+#include "raycast/caster_choice.h"
 #include "scenarios/sampling.h"
 #include "scenarios/ways.h"
 
@@ -54,7 +54,7 @@ class Drive {
   std::uint64_t ticks() const { return kLaps * ways_.size(); }
   double readings() const { return a_tick(farm_.stats().readings - stats_before_.readings); }
   double again() const { return a_tick(farm_.stats().again - stats_before_.again); }
-  sensors::Work work() const { return farm_.stats().work - stats_before_.work; }
+  sensors::SensorStats work() const { return farm_.stats().work - stats_before_.work; }
   const sensors::Roster& roster() const { return farm_.roster(); }
 
  private:
@@ -126,7 +126,7 @@ std::size_t resident_bytes() {
 Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads,
                     const std::function<void(double)>& progress) {
   Explanation e;
-  e.caster = raycast::caster_text(device.info().software);
+  e.caster = raycast::describe_caster(device.info().software);
   double done = 0.0;
   const auto step = [&](std::size_t kinds) {
     if (progress) progress(++done / static_cast<double>(kinds + 3));

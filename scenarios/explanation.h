@@ -25,7 +25,7 @@ struct ExplainedKind {
   double tick = 0.0;                          ///< [s] a tick on the clock with this kind heard alone, mean
   double readings = 0.0;                      ///< a tick, mean
   double again = 0.0;                         ///< of these, given again since nothing they depend on had moved
-  sensors::Work work;                         ///< of all measured ticks together
+  sensors::SensorStats work;                  ///< of all measured ticks together
 };
 
 /// Walls that lasers and other rays at one height can meet.

@@ -14,7 +14,7 @@ struct RunSettings {
   std::uint64_t seed = 0;
   bool record_readings = false;
   bool no_return_inf = false;  ///< beams that met nothing read infinity
-  std::string caster;          ///< what casts rays, as `raycast::caster_text` has it
+  std::string caster;          ///< what casts rays, as `raycast::describe_caster` has it
 };
 
 record::RunInfo run_info(const world::World& world, const sensors::Roster& roster, const RunSettings& settings);

@@ -8,7 +8,7 @@
 
 #include "base/elapsed.h"
 #include "base/random.h"
-#include "raycast/caster.h"
+#include "raycast/caster_choice.h"
 #include "record/recorder.h"
 #include "scenarios/coverage.h"
 #include "scenarios/run_info.h"
@@ -135,7 +135,7 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
     recorder.emplace(options.record, run_info(world, simulation.farm().roster(),
                                               {.seed = scenario.seed,
                                                .record_readings = true,
-                                               .caster = raycast::caster_text(device.info().software)}));
+                                               .caster = raycast::describe_caster(device.info().software)}));
 
   Trial trial;
   const auto start = std::chrono::steady_clock::now();

@@ -72,7 +72,7 @@ std::vector<std::uint32_t> read_bars(const world::Sensor& sensor) {
 
 class Bumpers : public HostInstruments {
  public:
-  explicit Bumpers(const Site& site);
+  explicit Bumpers(const SensorContext& context);
 
   void follow(std::span<const base::Report> states, std::int64_t, bool) override {
     for (std::size_t m = 0; m < states.size(); ++m) contact_masks_[m] = states[m].contact_mask;
@@ -95,9 +95,9 @@ std::vector<SensorRow> rows_of(const world::World& world) {
   return rows;
 }
 
-Bumpers::Bumpers(const Site& site)
-    : HostInstruments(site, bumper_kind, rows_of(site.world)), contact_masks_(site.world.movers.size(), 0) {
-  for_each_sensor(site.world, bumper_kind,
+Bumpers::Bumpers(const SensorContext& context)
+    : HostInstruments(context, bumper_kind, rows_of(context.world)), contact_masks_(context.world.movers.size(), 0) {
+  for_each_sensor(context.world, bumper_kind,
                   [this](const Fitted& fitted) { switches_.push_back(read_bumper(fitted.settings)); });
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 class Cliffs : public HostInstruments {
  public:
-  explicit Cliffs(const Site& site);
+  explicit Cliffs(const SensorContext& context);
 
  private:
   void measure(std::span<const Sight> sights) const override;
@@ -30,9 +30,9 @@ std::vector<SensorRow> rows_of(const world::World& world) {
   return rows;
 }
 
-Cliffs::Cliffs(const Site& site)
-    : HostInstruments(site, cliff_kind, rows_of(site.world)), drops_(site.world.floor_holes) {
-  for_each_sensor(site.world, cliff_kind, [this](const Fitted& fitted) {
+Cliffs::Cliffs(const SensorContext& context)
+    : HostInstruments(context, cliff_kind, rows_of(context.world)), drops_(context.world.floor_holes) {
+  for_each_sensor(context.world, cliff_kind, [this](const Fitted& fitted) {
     points_.push_back(read_elements(fitted.settings, kMostCliffPoints));
   });
 }

@@ -33,7 +33,7 @@ struct Wheels {
 
 class Encoders : public HostInstruments {
  public:
-  explicit Encoders(const Site& site);
+  explicit Encoders(const SensorContext& context);
 
   void follow(std::span<const base::Report> states, std::int64_t now, bool between) override;
 
@@ -57,12 +57,12 @@ std::vector<SensorRow> rows_of(const world::World& world) {
   return rows;
 }
 
-Encoders::Encoders(const Site& site) : HostInstruments(site, encoder_kind, rows_of(site.world)) {
-  for_each_sensor(site.world, encoder_kind, [&](const Fitted& fitted) {
-    const world::Mover& mover = site.world.movers[fitted.row.mover];
+Encoders::Encoders(const SensorContext& context) : HostInstruments(context, encoder_kind, rows_of(context.world)) {
+  for_each_sensor(context.world, encoder_kind, [&](const Fitted& fitted) {
+    const world::Mover& mover = context.world.movers[fitted.row.mover];
     const Encoder settings = read_encoder(fitted.settings, mover);
-    const base::RandomKey walk{site.seed, base::RandomStream::slip, fitted.row.mover, fitted.row.sensor};
-    const double slip = site.noise ? settings.slip : 0.0;
+    const base::RandomKey walk{context.seed, base::RandomStream::slip, fitted.row.mover, fitted.row.sensor};
+    const double slip = context.noise ? settings.slip : 0.0;
     wheels_.push_back({settings, {}, {walk, 0, slip}, {walk, 1, slip}});
     tracks_.push_back({mover.X_WM});
   });

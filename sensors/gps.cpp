@@ -22,7 +22,7 @@ struct Receiver {
 
 class GpsReceivers : public HostInstruments {
  public:
-  explicit GpsReceivers(const Site& site);
+  explicit GpsReceivers(const SensorContext& context);
 
  private:
   void measure(std::span<const Sight> sights) const override;
@@ -44,10 +44,11 @@ std::vector<SensorRow> rows_of(const world::World& world) {
   return rows;
 }
 
-GpsReceivers::GpsReceivers(const Site& site) : HostInstruments(site, gps_kind, rows_of(site.world)), sky_(site.world) {
-  for_each_sensor(site.world, gps_kind, [&](const Fitted& fitted) {
+GpsReceivers::GpsReceivers(const SensorContext& context)
+    : HostInstruments(context, gps_kind, rows_of(context.world)), sky_(context.world) {
+  for_each_sensor(context.world, gps_kind, [&](const Fitted& fitted) {
     const Gps gps = read_gps(fitted.settings);
-    receivers_.push_back({site.noise ? gps.noise : 0.0, constellation(gps.satellites)});
+    receivers_.push_back({context.noise ? gps.noise : 0.0, constellation(gps.satellites)});
   });
 }
 

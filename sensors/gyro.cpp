@@ -29,7 +29,7 @@ base::RandomKey draw_of(std::uint64_t seed, const SensorRow& row, std::uint64_t 
 
 class Gyros : public HostInstruments {
  public:
-  explicit Gyros(const Site& site);
+  explicit Gyros(const SensorContext& context);
 
   void follow(std::span<const base::Report> states, std::int64_t, bool) override {
     for (std::size_t m = 0; m < states.size(); ++m) turns_[m] = states[m].velocity.turn;
@@ -51,13 +51,13 @@ std::vector<SensorRow> rows_of(const world::World& world) {
   return rows;
 }
 
-Gyros::Gyros(const Site& site)
-    : HostInstruments(site, gyro_kind, rows_of(site.world)), turns_(site.world.movers.size(), 0.0) {
-  for_each_sensor(site.world, gyro_kind, [&](const Fitted& fitted) {
+Gyros::Gyros(const SensorContext& context)
+    : HostInstruments(context, gyro_kind, rows_of(context.world)), turns_(context.world.movers.size(), 0.0) {
+  for_each_sensor(context.world, gyro_kind, [&](const Fitted& fitted) {
     const Gyro gyro = read_gyro(fitted.settings);
     Fixed fixed{.range = gyro.range};
-    if (site.noise) {
-      const auto [bias, scale] = base::random_normal(draw_of(site.seed, fitted.row, 0), kRun);
+    if (context.noise) {
+      const auto [bias, scale] = base::random_normal(draw_of(context.seed, fitted.row, 0), kRun);
       fixed = {gyro.range, 1.0 + gyro.scale_error * scale, gyro.bias * bias, gyro.noise};
     }
     gyros_.push_back(fixed);

@@ -12,17 +12,21 @@ constexpr std::size_t kPiece = 64;  // readings that a worker takes at once
 
 }  // namespace
 
-HostInstruments::HostInstruments(const Site& site, const SensorKind& kind, std::vector<SensorRow> rows)
-    : world_(site.world), thread_pool_(site.thread_pool), seed_(site.seed), kind_(kind.id), rows_(std::move(rows)) {
+HostInstruments::HostInstruments(const SensorContext& context, const SensorKind& kind, std::vector<SensorRow> rows)
+    : world_(context.world),
+      thread_pool_(context.thread_pool),
+      seed_(context.seed),
+      kind_(kind.id),
+      rows_(std::move(rows)) {
   first_.push_back(0);
   for (const SensorRow& row : rows_) first_.push_back(first_.back() + std::size_t{row.elements} * element_width(kind));
   values_.resize(first_.back());
   sights_.reserve(rows_.size());
 }
 
-bool HostInstruments::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+bool HostInstruments::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
   sights_.clear();
-  for (const Due& d : due) {
+  for (const DueSample& d : due) {
     const SensorRow& row = rows_[d.row];
     Pose X_WS = base::compose(poses[row.mover], row.X_MS);
     X_WS.z = world_.movers[row.mover].X_WM.z + row.X_MS.z;

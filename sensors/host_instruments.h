@@ -21,16 +21,16 @@ struct Sight {
 /// All sensors of one kind that needs no device. One thread.
 class HostInstruments : public Instruments {
  public:
-  bool prepare(std::span<const Due> due, std::span<const Pose> poses) override;
+  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override;
   void record_measure(gpu::Batch&) override {}
-  void copies(gpu::Batch&) override {}
+  void add_copies(gpu::Batch&) override {}
   void collect(std::vector<base::ReadingBlock>& out) override;
-  Work work() const override { return {}; }
+  SensorStats stats() const override { return {}; }
   bool on_device() const override { return false; }
 
  protected:
   /// @param rows the kind's, as its `rows` gives them
-  HostInstruments(const Site& site, const SensorKind& kind, std::vector<SensorRow> rows);
+  HostInstruments(const SensorContext& context, const SensorKind& kind, std::vector<SensorRow> rows);
 
   /// Fills in readings. On any worker, each reading once and by itself.
   virtual void measure(std::span<const Sight> sights) const = 0;

@@ -49,7 +49,7 @@ constinit const SensorKind infrared_kind = plain<kForm>({
     .list = "elements",
     .columns = kColumns,
     .rows = [](const world::World& world) { return ranger_rows(infrareds_of(world)); },
-    .make = [](const Site& site) { return make_rangers(site, infrareds_of(site.world), kRanger); },
+    .make = [](const SensorContext& context) { return make_rangers(context, infrareds_of(context.world), kRanger); },
 });
 
 }  // namespace sf::sensors

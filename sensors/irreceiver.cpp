@@ -41,7 +41,7 @@ std::vector<Segment> opaque(const world::World& world) {
 
 class IrReceivers : public HostInstruments {
  public:
-  explicit IrReceivers(const Site& site);
+  explicit IrReceivers(const SensorContext& context);
 
  private:
   void measure(std::span<const Sight> sights) const override;
@@ -60,10 +60,10 @@ std::vector<SensorRow> rows_of(const world::World& world) {
   return rows;
 }
 
-IrReceivers::IrReceivers(const Site& site)
-    : HostInstruments(site, irreceiver_kind, rows_of(site.world)),
-      walls_(opaque(site.world), kCell),
-      reaches_(reaches_of(site.world)) {}
+IrReceivers::IrReceivers(const SensorContext& context)
+    : HostInstruments(context, irreceiver_kind, rows_of(context.world)),
+      walls_(opaque(context.world), kCell),
+      reaches_(reaches_of(context.world)) {}
 
 bool IrReceivers::hidden(const Emitter& emitter, glm::dvec2 p, double z) const {
   const glm::dvec2 e{emitter.X_WE.x, emitter.X_WE.y};

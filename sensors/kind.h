@@ -18,15 +18,15 @@
 #include "base/thread_pool.h"
 #include "gpu/batch.h"
 #include "gpu/device.h"
-#include "raycast/site.h"
+#include "raycast/sensor_context.h"
 #include "world/world.h"
 
 namespace sf::sensors {
 
 using base::Pose;
-using raycast::Due;
-using raycast::Site;
-using raycast::Work;
+using raycast::DueSample;
+using raycast::SensorContext;
+using raycast::SensorStats;
 
 /// One way a kind can measure.
 struct Mode {
@@ -72,21 +72,21 @@ class Instruments {
   virtual void follow(std::span<const base::Report>, std::int64_t /*now*/, bool /*between*/) {}
   /// Takes this tick's poses, one per mover, before `prepare`, when something is due. A mover whose x is not a number
   /// is gone, and nobody senses it.
-  virtual void place(std::span<const Pose>) {}
+  virtual void set_poses(std::span<const Pose>) {}
   /// Host work before the batch, also when nothing is due. @return true when the batch must be recorded again.
-  virtual bool prepare(std::span<const Due> due, std::span<const Pose> poses) = 0;
+  virtual bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) = 0;
   /// Kernels that read the world, then those that read what these wrote: a barrier lies between.
   virtual void record_measure(gpu::Batch& batch) = 0;
   virtual void record_derive(gpu::Batch&) {}
   /// This tick's copies, up and down.
-  virtual void copies(gpu::Batch& batch) = 0;
+  virtual void add_copies(gpu::Batch& batch) = 0;
   /// What other kinds measured this tick, before latency, of heard movers: for kinds that are made of others' readings
   /// (SensorKind::derived), every tick in which there is any, before `collect`.
   virtual void observe(std::span<const base::ReadingBlock>) {}
   /// Host work after the batch: appends one block per due sensor, in order. The farm fills in time, sequence and X_WM.
   /// Spans live until the next `prepare`.
   virtual void collect(std::vector<base::ReadingBlock>& out) = 0;
-  virtual Work work() const = 0;
+  virtual SensorStats stats() const = 0;
   /// Whether the farm's batch is needed for what is due.
   virtual bool on_device() const { return true; }
 };
@@ -132,7 +132,7 @@ struct SensorKind {
   /// @throws base::InputError with file and line for settings that it cannot have.
   std::vector<SensorRow> (*rows)(const world::World& world);
   /// For a world that has some. @throws base::DeviceError when the device cannot hold its tables.
-  std::unique_ptr<Instruments> (*make)(const Site& site);
+  std::unique_ptr<Instruments> (*make)(const SensorContext& context);
 
   /// Why `wire` cannot carry this sensor's readings and what to do; empty when it can.
   std::string (*refuse)(const SensorRow& sensor, Wire wire);
@@ -159,8 +159,8 @@ inline std::size_t element_width(const SensorKind& kind) {
 
 /// What a kind's `make` is where its instruments need the site alone.
 template <class Made>
-std::unique_ptr<Instruments> make_instruments(const Site& site) {
-  return std::make_unique<Made>(site);
+std::unique_ptr<Instruments> make_instruments(const SensorContext& context) {
+  return std::make_unique<Made>(context);
 }
 
 /// Every kind there is, by id: generated from sensors/CMakeLists.txt.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "raycast/casts.h"
+#include "raycast/ray_caster.h"
 #include "sensors/laneedge_packets.h"
 #include "sensors/laneedge_settings.h"
 #include "sensors/laser_modes.h"
@@ -16,8 +16,8 @@ namespace sf::sensors {
 
 namespace {
 
-std::vector<raycast::Fan> fans_of(const std::vector<LaneEdge>& edges) {
-  std::vector<raycast::Fan> fans;
+std::vector<raycast::Scanner> fans_of(const std::vector<LaneEdge>& edges) {
+  std::vector<raycast::Scanner> fans;
   for (const LaneEdge& edge : edges) fans.push_back({edge.fan, edge.row.mover, edge_noise_name(edge.row.sensor)});
   return fans;
 }
@@ -37,18 +37,18 @@ constexpr base::QualityFlag kReasons[] = {base::QualityFlag::none, base::Quality
 /// Rays against the excerpt, exactly; where the road is a raster, into that as well; then lines through what they met.
 class LaneEdges : public Instruments {
  public:
-  explicit LaneEdges(const Site& site);
+  explicit LaneEdges(const SensorContext& context);
 
-  void place(std::span<const Pose> poses) override { casts_.place(poses); }
-  bool prepare(std::span<const Due> due, std::span<const Pose> poses) override;
+  void set_poses(std::span<const Pose> poses) override { casts_.set_poses(poses); }
+  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override;
   void record_measure(gpu::Batch& batch) override;
   void record_derive(gpu::Batch& batch) override { fit_.record(batch); }
-  void copies(gpu::Batch& batch) override;
+  void add_copies(gpu::Batch& batch) override;
   void collect(std::vector<base::ReadingBlock>& out) override;
-  Work work() const override { return casts_.work(); }
+  SensorStats stats() const override { return casts_.stats(); }
 
  private:
-  void make_road(const Site& site);
+  void make_road(const SensorContext& context);
   void bind();
   void state(std::size_t i, base::ReadingBlock& block);
 
@@ -57,35 +57,35 @@ class LaneEdges : public Instruments {
   bool exact_;  ///< paint is seen as it is, not in pixels
   Excerpt excerpt_;
   double longest_;  ///< [m] face in it
-  raycast::Casts casts_;
+  raycast::RayCaster casts_;
   bool casting_;  ///< there is something for `casts_` to meet
   std::optional<Road> road_;
   EdgeFit fit_;
-  std::vector<Due> due_;
+  std::vector<DueSample> due_;
   std::vector<std::uint32_t> lanes_;  ///< first of each due fan's results
   bool bound_ = false;
 };
 
-LaneEdges::LaneEdges(const Site& site)
-    : edges_(lane_edges_of(site.world)),
-      noise_(site.noise),
-      exact_(!sees_pixels(site.world)),
-      excerpt_(excerpt_of(site.world, exact_)),
+LaneEdges::LaneEdges(const SensorContext& context)
+    : edges_(lane_edges_of(context.world)),
+      noise_(context.noise),
+      exact_(!sees_pixels(context.world)),
+      excerpt_(excerpt_of(context.world, exact_)),
       longest_(reaches_of(excerpt_.world).longest),
-      casts_(site, excerpt_.world, fans_of(edges_)),
+      casts_(context, excerpt_.world, fans_of(edges_)),
       casting_(exact_ || anything_else(excerpt_.world)),
-      fit_(site, edges_, excerpt_.grains) {
-  if (!exact_) make_road(site);
+      fit_(context, edges_, excerpt_.grains) {
+  if (!exact_) make_road(context);
 }
 
-void LaneEdges::make_road(const Site& site) {
+void LaneEdges::make_road(const SensorContext& context) {
   double longest = 0.0;
   for (const LaneEdge& edge : edges_) longest = std::max(longest, edge.fan.range_max);
-  const PaintRaster raster(excerpt_.paint, site.world.road_resolution, longest, site.world.file);
-  road_.emplace(site, raster, casts_, excerpt_.paint_tag, casting_);
+  const PaintRaster raster(excerpt_.paint, context.world.road_resolution, longest, context.world.file);
+  road_.emplace(context, raster, casts_, excerpt_.paint_tag, casting_);
 }
 
-bool LaneEdges::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+bool LaneEdges::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
   due_.assign(due.begin(), due.end());
   const bool again = casts_.prepare(due, poses, casting_) || !bound_;
   lanes_.resize(due.size());
@@ -113,10 +113,10 @@ void LaneEdges::record_measure(gpu::Batch& batch) {
     fit_.record_points(batch, casts_.groups());
 }
 
-void LaneEdges::copies(gpu::Batch& batch) {
-  casts_.copies(batch, false);
-  if (road_) road_->copies(batch);
-  fit_.copies(batch);
+void LaneEdges::add_copies(gpu::Batch& batch) {
+  casts_.add_copies(batch, false);
+  if (road_) road_->add_copies(batch);
+  fit_.add_copies(batch);
 }
 
 /// How wrong a reading may be, or why it does not say.
@@ -129,7 +129,7 @@ void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
   if (edge.row.mode > 0)
     why = base::QualityFlag::not_cast;  // rays that were left out may have met another edge
   else if (edge.single)
-    why = (casts_.verdicts().host<std::uint32_t>()[lanes_[i]] & SF_GRAZES) != 0 ? base::QualityFlag::grazing : why;
+    why = (casts_.beam_flags().host<std::uint32_t>()[lanes_[i]] & SF_GRAZING) != 0 ? base::QualityFlag::grazing : why;
   else if (std::isfinite(block.bound))
     why = doubt_of(fit_.reading(i), point_error(edge, longest_, away), block.bound);
   if (why != base::QualityFlag::none) block.quality = {&kReasons[static_cast<std::size_t>(why)], 1};

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "raycast/casts.h"
+#include "raycast/ray_caster.h"
 #include "sensors/accuracy.h"
 #include "sensors/laser_modes.h"
 #include "sensors/paint/excerpt.h"
@@ -96,13 +96,13 @@ double point_error(const LaneEdge& edge, double longest, double farthest) {
 }
 
 double lane_edge_bound(const LaneEdge& edge, double longest, double farthest) {
-  return kStraightError + point_error(edge, longest, farthest) / raycast::kLeastSine;
+  return kStraightError + point_error(edge, longest, farthest) / raycast::kMinSine;
 }
 
 base::QualityFlag doubt_of(const EdgeReading& reading, double error, double bound) {
   if (std::isnan(reading.distance)) return base::QualityFlag::none;  // no distance is given
   const double gain = std::max(reading.gain, 1.0);
-  if (reading.distance < bound) error += SF_TOUCH;                       // a ray that short may read 0
+  if (reading.distance < bound) error += SF_CONTACT_DISTANCE;            // a ray that short may read 0
   error = 2.0 * (error + std::sqrt(reading.points) * reading.residual);  // no point is farther from the line
   const bool straight = reading.points > 2.5 && reading.others == 0.0 && error <= bound;
   if (!straight) return base::QualityFlag::not_straight;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raycast/casts.h"
+#include "raycast/ray_caster.h"
 #include "sensors/laser_modes.h"
 #include "sensors/laser_packets.h"
 #include "sensors/laser_shape.h"
@@ -27,8 +27,8 @@ std::vector<CastLaser> lasers_of(const world::World& world) {
   return lasers;
 }
 
-std::vector<raycast::Fan> fans_of(const world::World& world, std::span<const CastLaser> lasers) {
-  std::vector<raycast::Fan> fans;
+std::vector<raycast::Scanner> fans_of(const world::World& world, std::span<const CastLaser> lasers) {
+  std::vector<raycast::Scanner> fans;
   for (std::uint32_t m = 0; m < world.movers.size(); ++m)
     for (std::uint32_t i = 0; i < world.movers[m].lasers.size(); ++i) {
       const CastLaser& cast = lasers[fans.size()];
@@ -39,21 +39,21 @@ std::vector<raycast::Fan> fans_of(const world::World& world, std::span<const Cas
 
 class Lasers : public Instruments {
  public:
-  explicit Lasers(const Site& site) : Lasers(site, lasers_of(site.world)) {}
+  explicit Lasers(const SensorContext& context) : Lasers(context, lasers_of(context.world)) {}
 
-  void place(std::span<const Pose> poses) override { casts_.place(poses); }
-  bool prepare(std::span<const Due> due, std::span<const Pose> poses) override {
+  void set_poses(std::span<const Pose> poses) override { casts_.set_poses(poses); }
+  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override {
     due_.assign(due.begin(), due.end());
     return casts_.prepare(due, poses);
   }
   void record_measure(gpu::Batch& batch) override { casts_.record(batch); }
-  void copies(gpu::Batch& batch) override { casts_.copies(batch, true); }
+  void add_copies(gpu::Batch& batch) override { casts_.add_copies(batch, true); }
   void collect(std::vector<base::ReadingBlock>& out) override;
-  Work work() const override { return casts_.work(); }
+  SensorStats stats() const override { return casts_.stats(); }
   bool on_device() const override { return casts_.on_device(); }
 
  private:
-  Lasers(const Site& site, const std::vector<CastLaser>& lasers);
+  Lasers(const SensorContext& context, const std::vector<CastLaser>& lasers);
 
   void shape(std::size_t i);
   void mark(std::size_t i);
@@ -63,20 +63,20 @@ class Lasers : public Instruments {
   std::uint64_t seed_;
   bool noise_;
   double longest_;  ///< [m] surface that there is
-  raycast::Casts casts_;
+  raycast::RayCaster casts_;
   std::vector<Row> rows_;  ///< per laser
-  std::vector<Due> due_;
+  std::vector<DueSample> due_;
   std::vector<double> values_;              ///< [m] of all lasers' samples, when any is reworked
   std::vector<std::uint32_t> met_;          ///< likewise
   std::vector<base::QualityFlag> quality_;  ///< of all lasers' samples
 };
 
-Lasers::Lasers(const Site& site, const std::vector<CastLaser>& lasers)
-    : thread_pool_(site.thread_pool),
-      seed_(site.seed),
-      noise_(site.noise),
-      longest_(reaches_of(site.world).longest),
-      casts_(site, site.world, fans_of(site.world, lasers)) {
+Lasers::Lasers(const SensorContext& context, const std::vector<CastLaser>& lasers)
+    : thread_pool_(context.thread_pool),
+      seed_(context.seed),
+      noise_(context.noise),
+      longest_(reaches_of(context.world).longest),
+      casts_(context, context.world, fans_of(context.world, lasers)) {
   std::size_t samples = 0;
   bool any = false;
   for (std::uint32_t i = 0; i < lasers.size(); ++i) {
@@ -95,10 +95,10 @@ Lasers::Lasers(const Site& site, const std::vector<CastLaser>& lasers)
 }
 
 void Lasers::shape(std::size_t i) {
-  const Due& due = due_[i];
+  const DueSample& due = due_[i];
   const Row& row = rows_[due.row];
-  const raycast::Fan& fan = casts_.fans()[due.row];
-  const raycast::FanResults results = casts_.results(i);
+  const raycast::Scanner& fan = casts_.scanners()[due.row];
+  const raycast::ScanResult results = casts_.results(i);
   const raycast::BeamPlan& plan = *results.plan;
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
   const double* const cast = casts_.ranges().host<double>().data() + first;
@@ -112,23 +112,24 @@ void Lasers::shape(std::size_t i) {
 /// Samples that were not cast are marked since the beginning; those that graze come and go.
 void Lasers::mark(std::size_t i) {
   Row& row = rows_[due_[i].row];
-  const raycast::FanResults results = casts_.results(i);
+  const raycast::ScanResult results = casts_.results(i);
   const raycast::BeamPlan& plan = *results.plan;
-  const auto verdicts = casts_.verdicts().host<std::uint32_t>().subspan(results.lane, plan.lanes());
-  const bool grazing = std::any_of(verdicts.begin(), verdicts.end(), [](std::uint32_t v) { return v % SF_DOUBT != 0; });
+  const auto beam_flags = casts_.beam_flags().host<std::uint32_t>().subspan(results.lane, plan.lanes());
+  const bool grazing =
+      std::any_of(beam_flags.begin(), beam_flags.end(), [](std::uint32_t v) { return v % SF_UNCERTAIN != 0; });
   if (!grazing && !row.grazing) return;
   row.grazing = grazing;
   for (std::size_t k = 0; k < plan.samples.size(); ++k) {
     const std::size_t place = plan.place(k);
-    const bool grazes = (verdicts[place / SF_BEAMS_PER_LANE] >> (place % SF_BEAMS_PER_LANE) & SF_GRAZES) != 0;
+    const bool grazes = (beam_flags[place / SF_BEAMS_PER_LANE] >> (place % SF_BEAMS_PER_LANE) & SF_GRAZING) != 0;
     quality_[row.samples + plan.samples[k]] = grazes ? base::QualityFlag::grazing : base::QualityFlag::none;
   }
 }
 
 base::ReadingBlock Lasers::block_of(std::size_t i) {
   const Row& row = rows_[due_[i].row];
-  const raycast::Fan& fan = casts_.fans()[due_[i].row];
-  const raycast::FanResults results = casts_.results(i);
+  const raycast::Scanner& fan = casts_.scanners()[due_[i].row];
+  const raycast::ScanResult results = casts_.results(i);
   const std::size_t samples = fan.laser.samples;
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
   base::ReadingBlock block;
@@ -164,7 +165,7 @@ void Lasers::collect(std::vector<base::ReadingBlock>& out) {
 std::vector<SensorRow> rows_of(const world::World& world) {
   std::vector<SensorRow> rows;
   const std::vector<CastLaser> lasers = lasers_of(world);
-  for (const raycast::Fan& fan : fans_of(world, lasers)) {
+  for (const raycast::Scanner& fan : fans_of(world, lasers)) {
     const world::Laser& laser = fan.laser;
     rows.push_back({fan.mover, fan.sensor, laser.name, laser.X_MS, laser.rate, laser.phase, laser.latency,
                     laser.samples, laser.range_max, 0, 0.0, lasers[rows.size()].mode});

@@ -1,6 +1,6 @@
 #pragma once
-// The laser range finder: fans of beams (raycast/casts.h says how exact), their noise, and what `resolution` leaves
-// out.
+// The laser range finder: fans of beams (raycast/ray_caster.h says how exact), their noise, and what `resolution`
+// leaves out.
 
 #include "sensors/kind.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "raycast/casts.h"
+#include "raycast/ray_caster.h"
 #include "sensors/accuracy.h"
 
 namespace sf::sensors {

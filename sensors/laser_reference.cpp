@@ -14,7 +14,7 @@ LaserReference::LaserReference(const world::World& world, std::uint64_t seed, bo
   for (const world::Mover& mover : world.movers) poses_.push_back(mover.X_WM);
 }
 
-void LaserReference::place(std::span<const Pose> poses) { poses_.assign(poses.begin(), poses.end()); }
+void LaserReference::set_poses(std::span<const Pose> poses) { poses_.assign(poses.begin(), poses.end()); }
 
 std::vector<LaserReference::Seen> LaserReference::in_sight(std::uint32_t self, const Pose& X_WS, double range) const {
   std::vector<Seen> surfaces;
@@ -49,7 +49,7 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t las
             std::vector<std::uint32_t>(l.samples)};
   scan.X_WS.z = world_.movers[mover].X_WM.z + l.X_MS.z;
   std::vector<double> turns(noise_ && l.noise.angle_sigma > 0.0 ? plan.samples.size() : 0);
-  draw_turns(l, plan, {seed_, base::RandomStream::angle_noise, mover, laser, sequence}, turns);
+  draw_angle_noise(l, plan, {seed_, base::RandomStream::angle_noise, mover, laser, sequence}, turns);
 
   const std::vector<Seen> surfaces = in_sight(mover, scan.X_WS, l.range_max);
   const glm::dvec2 heading{std::cos(scan.X_WS.yaw), std::sin(scan.X_WS.yaw)};
@@ -59,11 +59,11 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t las
     const double bearing = world::bearing_of(l, plan.samples[k]) + (turns.empty() ? 0.0 : turns[k]);
     const glm::dvec2 beam{std::cos(bearing), std::sin(bearing)};
     const glm::dvec2 d{heading.x * beam.x - heading.y * beam.y, heading.y * beam.x + heading.x * beam.y};
-    raycast::Decision nearest{l.range_max};
+    raycast::ClosestHit nearest{l.range_max};
     std::uint32_t model = SF_NO_HIT;
     for (const Seen& seen : surfaces) {
       const std::uint32_t before = nearest.id;
-      decide(seen.surface, {scan.X_WS.x, scan.X_WS.y}, d, nearest);
+      intersect(seen.surface, {scan.X_WS.x, scan.X_WS.y}, d, nearest);
       if (nearest.id != before) model = seen.model;
     }
     ranges[plan.place(k)] = std::max(nearest.range, l.range_min);

@@ -1,17 +1,17 @@
 #pragma once
 // The laser range finder by the plainest means: every beam against every segment, one after another, on the host.
 //
-// Its arithmetic is that of shaders/lib/decide.glsl, operation by operation, so its scans are the device's to the bit,
-// noise and `resolution` included: what devices are held to, and what recordings are checked against. A laser in mode
-// `single` is cast as an exact one. It shares with
-// the farm how beams are laid out and noise is drawn (raycast/beams.h, sensors/laser_shape.h), nothing of how surfaces
-// are found. Some microseconds a beam in a world of a thousand walls.
+// Its arithmetic is that of shaders/lib/intersect.glsl, operation by operation, so its scans are the device's to the
+// bit, noise and `resolution` included: what devices are held to, and what recordings are checked against. A laser in
+// mode `single` is cast as an exact one. It shares with the farm how beams are laid out and noise is drawn
+// (raycast/beams.h, sensors/laser_shape.h), nothing of how surfaces are found. Some microseconds a beam in a world of a
+// thousand walls.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "raycast/decide.h"
+#include "raycast/intersect.h"
 #include "sensors/kind.h"
 
 namespace sf::sensors {
@@ -23,7 +23,7 @@ class LaserReference {
   LaserReference(const world::World& world, std::uint64_t seed, bool noise = true);
 
   /// Moves every mover to its pose: one a mover. Until then they stand where they were loaded.
-  void place(std::span<const Pose> poses);
+  void set_poses(std::span<const Pose> poses);
 
   struct Scan {
     Pose X_WS;
@@ -35,7 +35,7 @@ class LaserReference {
 
  private:
   struct Seen {
-    raycast::Surface surface;
+    raycast::CandidateSegment surface;
     std::uint32_t model;
   };
   std::vector<Seen> in_sight(std::uint32_t self, const Pose& X_WS, double range) const;

@@ -64,20 +64,20 @@ struct Wave {
 
 class Magnetometers : public Instruments {
  public:
-  explicit Magnetometers(const Site& site);
+  explicit Magnetometers(const SensorContext& context);
 
-  void place(std::span<const Pose> poses) override {
-    for (auto& [mode, wave] : waves_) wave.field.place(poses);
+  void set_poses(std::span<const Pose> poses) override {
+    for (auto& [mode, wave] : waves_) wave.field.set_poses(poses);
   }
-  bool prepare(std::span<const Due> due, std::span<const Pose> poses) override;
+  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override;
   void record_measure(gpu::Batch& batch) override {
     for (auto& [mode, wave] : waves_) wave.field.record(batch);
   }
-  void copies(gpu::Batch& batch) override {
-    for (auto& [mode, wave] : waves_) wave.field.copies(batch);
+  void add_copies(gpu::Batch& batch) override {
+    for (auto& [mode, wave] : waves_) wave.field.add_copies(batch);
   }
   void collect(std::vector<base::ReadingBlock>& out) override;
-  Work work() const override;
+  SensorStats stats() const override;
 
  private:
   void bound_errors(const world::World& world);
@@ -89,21 +89,22 @@ class Magnetometers : public Instruments {
   bool noise_;
   std::vector<Array> arrays_;
   std::map<std::uint8_t, Wave> waves_;  ///< by mode
-  std::vector<Due> due_;
+  std::vector<DueSample> due_;
   std::vector<Pose> X_WS_;             ///< per due array
   std::vector<std::uint32_t> groups_;  ///< per due array: its first group in its wave
   std::vector<double> values_;         ///< [T] of all arrays
 };
 
-Magnetometers::Magnetometers(const Site& site)
-    : thread_pool_(site.thread_pool), seed_(site.seed), noise_(site.noise), arrays_(arrays_of(site.world)) {
+Magnetometers::Magnetometers(const SensorContext& context)
+    : thread_pool_(context.thread_pool), seed_(context.seed), noise_(context.noise), arrays_(arrays_of(context.world)) {
   const bool magnitudes = any_magnitudes(arrays_);
   for (const Array& array : arrays_)
     if (!waves_.contains(array.row.mode))
-      waves_.emplace(
-          array.row.mode,
-          Wave{{site.world, site.device, site.thread_pool, magnitudes, cutoff_of(site.world, array.row.mode)}, {}, {}});
-  bound_errors(site.world);
+      waves_.emplace(array.row.mode, Wave{{context.world, context.device, context.thread_pool, magnitudes,
+                                           cutoff_of(context.world, array.row.mode)},
+                                          {},
+                                          {}});
+  bound_errors(context.world);
   if (!arrays_.empty()) values_.resize(arrays_.back().values + kMagnetometerColumns * arrays_.back().row.elements);
 }
 
@@ -119,8 +120,8 @@ void Magnetometers::bound_errors(const world::World& world) {
     }
 }
 
-Work Magnetometers::work() const {
-  Work work;
+SensorStats Magnetometers::stats() const {
+  SensorStats work;
   for (const auto& [mode, wave] : waves_) work.dipoles += wave.field.dipoles();
   return work;
 }
@@ -138,12 +139,12 @@ void Magnetometers::add_places(const Array& array, const Pose& X_WS) {
   }
 }
 
-bool Magnetometers::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+bool Magnetometers::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
   due_.assign(due.begin(), due.end());
   X_WS_.clear();
   groups_.clear();
   for (auto& [mode, wave] : waves_) wave.places.clear(), wave.ends.clear();
-  for (const Due& d : due_) {
+  for (const DueSample& d : due_) {
     const Array& array = arrays_[d.row];
     X_WS_.push_back(base::compose(poses[array.row.mover], array.row.X_MS));
     X_WS_.back().z = array.height;
@@ -155,7 +156,7 @@ bool Magnetometers::prepare(std::span<const Due> due, std::span<const Pose> pose
 }
 
 void Magnetometers::read(std::size_t i) {
-  const Due& due = due_[i];
+  const DueSample& due = due_[i];
   const Array& array = arrays_[due.row];
   const Magnetometer& m = array.settings;
   const base::RandomKey draw{seed_, base::RandomStream::field_noise, array.row.mover, array.row.sensor, due.sequence};

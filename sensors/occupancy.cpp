@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "maps/map_packets.h"
-#include "raycast/caster.h"
+#include "raycast/caster_choice.h"
 #include "sensors/occupancy_host.h"
 #include "sensors/occupancy_packets.h"
 
@@ -14,17 +14,17 @@ namespace {
 
 class Occupancies : public Instruments {
  public:
-  explicit Occupancies(const Site& site);
+  explicit Occupancies(const SensorContext& context);
 
-  bool prepare(std::span<const Due> due, std::span<const Pose>) override {
+  bool prepare(std::span<const DueSample> due, std::span<const Pose>) override {
     due_.assign(due.begin(), due.end());
     return false;
   }
   void record_measure(gpu::Batch&) override {}
-  void copies(gpu::Batch&) override {}
+  void add_copies(gpu::Batch&) override {}
   void observe(std::span<const base::ReadingBlock> readings) override;
   void collect(std::vector<base::ReadingBlock>& out) override;
-  Work work() const override { return {}; }
+  SensorStats stats() const override { return {}; }
   bool on_device() const override { return false; }  // it runs a batch of its own
 
  private:
@@ -32,7 +32,7 @@ class Occupancies : public Instruments {
   MapBatch batch_;
   std::uint32_t flags_;
   std::multimap<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> of_laser_;  ///< (mover, laser) to its maps
-  std::vector<Due> due_;
+  std::vector<DueSample> due_;
   std::vector<MapScan> scans_;
   std::vector<std::uint32_t> wanted_;
   std::vector<std::size_t> first_;  ///< per map: its values
@@ -46,15 +46,16 @@ std::vector<MapPlan> plans_of(const std::vector<Occupancy>& all) {
 }
 
 /// [cells] range of scans that the device enters.
-double farthest_on(const Site& site) {
-  const bool host = raycast::caster_for(site.device.info().software, site.scene.caster) == raycast::Caster::host;
+double farthest_on(const SensorContext& context) {
+  const bool host =
+      raycast::choose_caster(context.device.info().software, context.scene.caster) == raycast::CasterChoice::host;
   return host ? kFarScan : maps::kMaxRangeCells;
 }
 
-Occupancies::Occupancies(const Site& site)
-    : maps_(occupancies_of(site.world)),
-      batch_(site.device, site.thread_pool, plans_of(maps_), farthest_on(site)),
-      flags_(site.true_poses ? maps::kTruePoses : 0) {
+Occupancies::Occupancies(const SensorContext& context)
+    : maps_(occupancies_of(context.world)),
+      batch_(context.device, context.thread_pool, plans_of(maps_), farthest_on(context)),
+      flags_(context.true_poses ? maps::kTruePoses : 0) {
   std::size_t values = 0;
   for (std::uint32_t i = 0; i < maps_.size(); ++i) {
     of_laser_.emplace(std::pair{maps_[i].row.mover, maps_[i].laser}, i);
@@ -74,12 +75,12 @@ void Occupancies::observe(std::span<const base::ReadingBlock> readings) {
     const auto [first, last] = of_laser_.equal_range({r.mover, r.sensor});
     for (auto it = first; it != last; ++it) scans_.push_back({it->second, r.X_WS, r.values});
   }
-  for (const Due& due : due_) wanted_.push_back(due.row);
+  for (const DueSample& due : due_) wanted_.push_back(due.row);
   batch_.update(scans_, wanted_);
 }
 
 void Occupancies::collect(std::vector<base::ReadingBlock>& out) {
-  for (const Due& due : due_) {
+  for (const DueSample& due : due_) {
     const Occupancy& map = maps_[due.row];
     const std::span<const std::uint32_t> words = batch_.words(due.row);
     const std::span<double> values = std::span(values_).subspan(first_[due.row], words.size());

@@ -78,7 +78,7 @@ constinit const SensorKind sonar_kind = plain<kForm>({
     .list = "transducers",
     .columns = kColumns,
     .rows = [](const world::World& world) { return ranger_rows(sonars_of(world)); },
-    .make = [](const Site& site) { return make_rangers(site, sonars_of(site.world), kRanger); },
+    .make = [](const SensorContext& context) { return make_rangers(context, sonars_of(context.world), kRanger); },
 });
 
 }  // namespace sf::sensors

@@ -231,28 +231,28 @@ TEST(LayeringJudge, TakesWhatThePlanAllows) {
 }
 
 TEST(LayeringJudge, FindsEachBrokenRule) {
-  for (const Source& broken :
-       std::vector<Source>{{"base/a.cpp", "#include \"world/world.h\""},             // upwards
-                           {"world/a.cpp", "#include \"robots/fleet.h\""},           // upwards, one floor
-                           {"netio/a.cpp", "#include \"record/mcap.h\""},            // sideways
-                           {"farm/a.cpp", "#include \"netio/inbox.h\""},             // the farm knows no sockets
-                           {"control/a.cpp", "#include \"farm/farm.h\""},            // controllers know no farm
-                           {"viz/a.cpp", "#include \"apps/options.h\""},             // nobody knows the program
-                           {"shaders/a.comp", "#include \"world/world.h\""},         // kernels read records only
-                           {"sensors/a.cpp", "#include \"shaders/lib/rays.glsl\""},  // hosts read compiled kernels only
-                           {"world/a.cpp", "#include \"shape.h\""},                  // not from the root
-                           {"world/a.cpp", "#include \"../gpu/device_vk.h\""},       // not from the root
-                           {"attic/a.cpp", "#include \"base/pose.h\""},              // a room without a row
-                           {"world/a.cpp", "  #  include<vulkan/vulkan.h>"},         // Vulkan's header
-                           {"world/a.cpp", "VkDevice device;"},                      // Vulkan's types
-                           {"farm/a.cpp", "vkQueueSubmit(queue);"},                  // Vulkan's functions
-                           {"record/a.cpp", "#include <vtkImageData.h>"},            // VTK's door is viz
-                           {"apps/a.h", "#include <CLI/CLI.hpp>"},                   // in a header
-                           {"viz/a.h", "#include <vtkNew.h>"},                       // in a header, in the right room
-                           {"world/a.cpp", "#include <CLI/App.hpp>"},    // the command line is the program's
-                           {"apps/a.cpp", "#include <poll.h>"},          // sockets are netio's
-                           {"robots/a.cpp", "#include <netinet/in.h>"},  // sockets are netio's
-                           {"base/a.cpp", "#include HEADER"}})           // cannot be judged
+  for (const Source& broken : std::vector<Source>{
+           {"base/a.cpp", "#include \"world/world.h\""},                    // upwards
+           {"world/a.cpp", "#include \"robots/fleet.h\""},                  // upwards, one floor
+           {"netio/a.cpp", "#include \"record/mcap.h\""},                   // sideways
+           {"farm/a.cpp", "#include \"netio/inbox.h\""},                    // the farm knows no sockets
+           {"control/a.cpp", "#include \"farm/farm.h\""},                   // controllers know no farm
+           {"viz/a.cpp", "#include \"apps/options.h\""},                    // nobody knows the program
+           {"shaders/a.comp", "#include \"world/world.h\""},                // kernels read records only
+           {"sensors/a.cpp", "#include \"shaders/lib/list_search.glsl\""},  // hosts read compiled kernels only
+           {"world/a.cpp", "#include \"shape.h\""},                         // not from the root
+           {"world/a.cpp", "#include \"../gpu/device_vk.h\""},              // not from the root
+           {"attic/a.cpp", "#include \"base/pose.h\""},                     // a room without a row
+           {"world/a.cpp", "  #  include<vulkan/vulkan.h>"},                // Vulkan's header
+           {"world/a.cpp", "VkDevice device;"},                             // Vulkan's types
+           {"farm/a.cpp", "vkQueueSubmit(queue);"},                         // Vulkan's functions
+           {"record/a.cpp", "#include <vtkImageData.h>"},                   // VTK's door is viz
+           {"apps/a.h", "#include <CLI/CLI.hpp>"},                          // in a header
+           {"viz/a.h", "#include <vtkNew.h>"},                              // in a header, in the right room
+           {"world/a.cpp", "#include <CLI/App.hpp>"},                       // the command line is the program's
+           {"apps/a.cpp", "#include <poll.h>"},                             // sockets are netio's
+           {"robots/a.cpp", "#include <netinet/in.h>"},                     // sockets are netio's
+           {"base/a.cpp", "#include HEADER"}})                              // cannot be judged
     EXPECT_EQ(complaints(broken).size(), 1u) << broken.path << ": " << broken.text;
 }
 

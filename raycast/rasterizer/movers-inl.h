@@ -18,15 +18,15 @@ HWY_BEFORE_NAMESPACE();
 namespace sf::raycast::HWY_NAMESPACE {
 
 /// Lists the movers of one row of cells that are in reach, in view and not behind walls.
-void find_near(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
-               const ScanScene& scene, std::uint32_t from, std::uint32_t end) {
+void find_movers_in_row(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
+                        const ScanScene& scene, std::uint32_t from, std::uint32_t end) {
   const MoverGrid& grid = *scene.movers;
   const VF x = constant(static_cast<float>(view.origin.x - grid.low.x)),
            y = constant(static_cast<float>(view.origin.y - grid.low.y));
-  const VF reach = constant(static_cast<float>(view.range_max) * 1.00001f), slip = constant(grid.error) + p.band;
+  const VF reach = constant(static_cast<float>(view.range_max) * 1.00001f), tolerance = constant(grid.error) + p.band;
   for (std::uint32_t at = from; at < end; at += lanes()) {
     const VF dx = load(&grid.x[at]) - x, dy = load(&grid.y[at]) - y;
-    const VF radius = load(&grid.radius[at]) * constant(1.0001f) + slip;
+    const VF radius = load(&grid.radius[at]) * constant(1.0001f) + tolerance;
     const VF ahead = p.heading_cos * dx + p.heading_sin * dy, left = p.heading_cos * dy - p.heading_sin * dx;
     const VF distance = hn::Sqrt(ahead * ahead + left * left);
     MF seen = distance - radius <= reach;
@@ -34,9 +34,9 @@ void find_near(Scratch& s, const Projection& p, const ScanView& view, const Scan
       seen = hn::And(seen, p.edge_sin * ahead - p.edge_cos * left >= hn::Neg(radius));
       seen = hn::And(seen, p.edge_sin * ahead + p.edge_cos * left >= hn::Neg(radius));
     }
-    std::uint32_t open = bits_of(seen);
-    if (end - at < lanes()) open &= (1u << (end - at)) - 1;
-    if (open == 0) continue;
+    std::uint32_t pending = bits_of(seen);
+    if (end - at < lanes()) pending &= (1u << (end - at)) - 1;
+    if (pending == 0) continue;
     VF unused;
     const VF place = bearing_of(left, ahead, unused) * p.per_radian + p.middle;
     // asin(v) <= v + v^3 / 6 + 3 v^5 / 40 + v^7 / 5 up to v = 0.8.
@@ -48,29 +48,29 @@ void find_near(Scratch& s, const Projection& p, const ScanView& view, const Scan
         around, p.turn, (turned * constant(1.0001f) + constant(4e-6f)) * p.per_radian + p.slack + constant(0.01f));
     HWY_ALIGN float nearest[kBlock], lows[kBlock], highs[kBlock];
     store(distance - radius, nearest), store(place - wide, lows), store(place + wide, highs);
-    for (; open != 0; open &= open - 1) {
-      const auto i = static_cast<std::uint32_t>(__builtin_ctz(open));
+    for (; pending != 0; pending &= pending - 1) {
+      const auto i = static_cast<std::uint32_t>(__builtin_ctz(pending));
       if (grid.mover[at + i] == scene.self) continue;
-      ++s.counts.movers_near;
+      ++s.counts.movers_in_range;
       const NearMover near{nearest[i], grid.mover[at + i], lows[i], highs[i]};
-      if (is_open(s, p, pattern, near)) s.near.push_back(near);
+      if (may_be_visible(s, p, pattern, near)) s.near.push_back(near);
     }
   }
 }
 
-void find_all_near(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
-                   const ScanScene& scene) {
+void find_movers_in_view(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
+                         const ScanScene& scene) {
   const MoverGrid& grid = *scene.movers;
   const double reach = view.range_max * 1.00001 + grid.largest_radius + 2.0 * static_cast<double>(grid.error);
   const glm::dvec2 v{view.origin.x - grid.low.x, view.origin.y - grid.low.y};
   const int x0 = grid.column_of(v.x - reach), x1 = grid.column_of(v.x + reach);
   s.near.clear();
   for (int row = grid.row_of(v.y - reach); row <= grid.row_of(v.y + reach); ++row)
-    find_near(s, p, view, pattern, scene, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
+    find_movers_in_row(s, p, view, pattern, scene, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
 }
 
-void draw_mover(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
-                const ScanScene& scene, const NearMover& near) {
+void rasterize_mover(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
+                     const ScanScene& scene, const NearMover& near) {
   const OutlineTable::Outline& outline = scene.outlines->of_mover[near.mover];
   const base::Pose& X = scene.poses[near.mover];
   const VF c = constant(static_cast<float>(scene.headings[near.mover].x)),
@@ -86,12 +86,12 @@ void draw_mover(Scratch& s, const Projection& p, const ScanView& view, const Sca
               scene.first_rows[near.mover]);
     }
   }
-  draw_from(s, pattern, first_live);
+  rasterize_from(s, pattern, first_live);
 }
 
-void draw_movers(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
-                 const ScanScene& scene) {
-  find_all_near(s, p, view, pattern, scene);
+void rasterize_movers(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
+                      const ScanScene& scene) {
+  find_movers_in_view(s, p, view, pattern, scene);
   s.order.clear();
   for (std::uint32_t i = 0; i < s.near.size(); ++i) {
     const float distance = std::max(s.near[i].distance, 0.0f);
@@ -102,9 +102,9 @@ void draw_movers(Scratch& s, const Projection& p, const ScanView& view, const Sc
   std::sort(s.order.begin(), s.order.end());
   for (const std::uint64_t key : s.order) {
     const NearMover& near = s.near[key & 0xFFFFFFFFu];
-    if (!is_open(s, p, pattern, near)) continue;
-    ++s.counts.movers_met;
-    draw_mover(s, p, view, pattern, scene, near);
+    if (!may_be_visible(s, p, pattern, near)) continue;
+    ++s.counts.movers_visible;
+    rasterize_mover(s, p, view, pattern, scene, near);
   }
 }
 

@@ -43,21 +43,22 @@ Projection projection_of(const ScanView& view, const ScanPattern& pattern) {
 }
 
 /// Puts the intervals of `mask` that touch beams at the scratch's end.
-inline void keep(Scratch& s, const Projection& p, MF mask, VF low_any, VF high_any, VF low_sure, VF high_sure, VF a,
-                 VF b, VF error, const std::uint32_t* rows, std::uint32_t first_row) {
-  const VF first = hn::Max(hn::Floor(low_any - p.slack), constant(0.0f));
-  const VF last = hn::Min(hn::Ceil(high_any + p.slack), constant(p.last));
-  std::uint32_t open = bits_of(hn::And(mask, first <= last));
-  if (open == 0) return;
+inline void append_interval(Scratch& s, const Projection& p, MF mask, VF low_possible, VF high_possible, VF low_certain,
+                            VF high_certain, VF a, VF b, VF error, const std::uint32_t* rows, std::uint32_t first_row) {
+  const VF first = hn::Max(hn::Floor(low_possible - p.slack), constant(0.0f));
+  const VF last = hn::Min(hn::Ceil(high_possible + p.slack), constant(p.last));
+  std::uint32_t pending = bits_of(hn::And(mask, first <= last));
+  if (pending == 0) return;
   const std::uint32_t at = s.used;
   store(a, &s.a[at]), store(b, &s.b[at]), store(error, &s.error[at]);
-  store(low_any, &s.low_any[at]), store(high_any, &s.high_any[at]);
-  store(low_sure, &s.low_sure[at]), store(high_sure, &s.high_sure[at]);
+  store(low_possible, &s.low_possible[at]), store(high_possible, &s.high_possible[at]);
+  store(low_certain, &s.low_certain[at]), store(high_certain, &s.high_certain[at]);
   // Beyond 2^31 there is no beam.
   hn::StoreU(hn::ConvertTo(kI, hn::Min(first, constant(1e9f))), kI, &s.first[at]);
   hn::StoreU(hn::ConvertTo(kI, hn::Max(last, constant(-1.0f))), kI, &s.last[at]);
   hn::StoreU(hn::LoadU(kU, rows) + hn::Set(kU, first_row), kU, &s.row[at]);
-  for (; open != 0; open &= open - 1) s.live.push_back(at + static_cast<std::uint32_t>(__builtin_ctz(open)));
+  for (; pending != 0; pending &= pending - 1)
+    s.live.push_back(at + static_cast<std::uint32_t>(__builtin_ctz(pending)));
   s.used += lanes();
 }
 
@@ -65,18 +66,18 @@ inline void keep(Scratch& s, const Projection& p, MF mask, VF low_any, VF high_a
 inline void project(Scratch& s, const Projection& p, VF wx, VF wy, VF gx, VF gy, const std::uint32_t* rows,
                     std::uint32_t first_row) {
   const VF length = hn::Abs(gx) + hn::Abs(gy);
-  const VF unsure = p.band * length;
+  const VF error_margin = p.band * length;
   const VF ahead = gx * wy - gy * wx;
-  MF seen = ahead > hn::Neg(unsure);
+  MF seen = ahead > hn::Neg(error_margin);
   const VF ax = p.heading_cos * wx + p.heading_sin * wy, ay = p.heading_cos * wy - p.heading_sin * wx;
   const VF ex = p.heading_cos * gx + p.heading_sin * gy, ey = p.heading_cos * gy - p.heading_sin * gx;
   const VF bx = ax + ex, by = ay + ey;
   if (p.narrow) {
     // Both ends beyond the left edge of the view, or both beyond the right one.
-    const VF slip = constant(-8.0f) * p.band;
+    const VF tolerance = constant(-8.0f) * p.band;
     const VF left_a = p.edge_sin * ax - p.edge_cos * ay, left_b = p.edge_sin * bx - p.edge_cos * by;
     const VF right_a = p.edge_sin * ax + p.edge_cos * ay, right_b = p.edge_sin * bx + p.edge_cos * by;
-    seen = hn::And(seen, hn::And(hn::Max(left_a, left_b) >= slip, hn::Max(right_a, right_b) >= slip));
+    seen = hn::And(seen, hn::And(hn::Max(left_a, left_b) >= tolerance, hn::Max(right_a, right_b) >= tolerance));
   }
   if (hn::AllFalse(kF, seen)) return;
   VF inverse_a, inverse_b;
@@ -94,7 +95,7 @@ inline void project(Scratch& s, const Projection& p, VF wx, VF wy, VF gx, VF gy,
   const VF high = hn::IfThenElse(wraps, at_a + p.turn, hn::Max(at_a, at_b));
   const VF margin_low = hn::IfThenElse(hn::Or(wraps, at_b <= at_a), margin_b, margin_a);
   const VF margin_high = hn::IfThenElse(hn::Or(wraps, at_b <= at_a), margin_a, margin_b);
-  const MF edge_on = hn::Abs(ahead) <= unsure;
+  const MF edge_on = hn::Abs(ahead) <= error_margin;
   // An end too near to have a bearing, or a viewer between the ends of a segment that it stands on: anywhere.
   const VF span = high - low;
   const MF anywhere = hn::Or(hn::Or(hn::Max(margin_a, margin_b) > constant(0.1f) * p.per_radian,
@@ -106,21 +107,21 @@ inline void project(Scratch& s, const Projection& p, VF wx, VF wy, VF gx, VF gy,
   const VF a = hn::IfThenZeroElse(blind, hn::Neg(ey) * inverse);
   const VF b = hn::IfThenZeroElse(blind, ex * inverse);
   const VF error = hn::IfThenElse(blind, constant(1e20f), h * (two_bands * h + constant(1.1e-6f)));
-  const VF low_any = hn::IfThenElse(anywhere, constant(-1e30f), low - margin_low);
-  const VF high_any = hn::IfThenElse(anywhere, constant(1e30f), high + margin_high);
-  const VF low_sure = hn::IfThenElse(blind, constant(1e30f), low + margin_low);
-  const VF high_sure = high - margin_high;
+  const VF low_possible = hn::IfThenElse(anywhere, constant(-1e30f), low - margin_low);
+  const VF high_possible = hn::IfThenElse(anywhere, constant(1e30f), high + margin_high);
+  const VF low_certain = hn::IfThenElse(blind, constant(1e30f), low + margin_low);
+  const VF high_certain = high - margin_high;
   s.reserve(3 * lanes());
-  keep(s, p, seen, low_any, high_any, low_sure, high_sure, a, b, error, rows, first_row);
+  append_interval(s, p, seen, low_possible, high_possible, low_certain, high_certain, a, b, error, rows, first_row);
   // A segment across the rear is met at the other end of the view too.
-  const MF again = hn::And(seen, hn::AndNot(anywhere, high_any + p.slack >= p.turn));
-  if (!hn::AllFalse(kF, again))
-    keep(s, p, again, low_any - p.turn, high_any - p.turn, low_sure - p.turn, high_sure - p.turn, a, b, error, rows,
-         first_row);
-  const MF before = hn::And(seen, hn::AndNot(anywhere, low_any - p.slack <= constant(p.last - p.full)));
+  const MF wrapped = hn::And(seen, hn::AndNot(anywhere, high_possible + p.slack >= p.turn));
+  if (!hn::AllFalse(kF, wrapped))
+    append_interval(s, p, wrapped, low_possible - p.turn, high_possible - p.turn, low_certain - p.turn,
+                    high_certain - p.turn, a, b, error, rows, first_row);
+  const MF before = hn::And(seen, hn::AndNot(anywhere, low_possible - p.slack <= constant(p.last - p.full)));
   if (!hn::AllFalse(kF, before))
-    keep(s, p, before, low_any + p.turn, high_any + p.turn, low_sure + p.turn, high_sure + p.turn, a, b, error, rows,
-         first_row);
+    append_interval(s, p, before, low_possible + p.turn, high_possible + p.turn, low_certain + p.turn,
+                    high_certain + p.turn, a, b, error, rows, first_row);
 }
 
 }  // namespace sf::raycast::HWY_NAMESPACE

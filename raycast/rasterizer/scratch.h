@@ -17,17 +17,18 @@ struct NearMover {
 
 struct Rasterizer::Scratch {
   // Segments as projected, in vectors of which not all places need be in use.
-  std::vector<float> a, b, error;                             ///< 1 / t = a cos + b sin, within error [1/m]
-  std::vector<float> low_any, high_any, low_sure, high_sure;  ///< places of beams that it may cover and surely covers
-  std::vector<std::int32_t> first, last;                      ///< beams to look at
-  std::vector<std::uint32_t> row;                             ///< exact segment
-  std::vector<std::uint32_t> live;                            ///< indices in use
+  std::vector<float> a, b, error;  ///< 1 / t = a cos + b sin, within error [1/m]
+  std::vector<float> low_possible, high_possible, low_certain,
+      high_certain;                       ///< places of beams that it may cover and surely covers
+  std::vector<std::int32_t> first, last;  ///< beams to look at
+  std::vector<std::uint32_t> row;         ///< exact segment
+  std::vector<std::uint32_t> live;        ///< indices in use
   std::uint32_t used = 0;
 
   // Beams.
   std::vector<float> near_low, near_high, others;  ///< [1/m] of the nearest so far, and the most of all others
-  std::vector<std::int32_t> winner;                ///< segment, or -1
-  std::vector<std::uint64_t> ends, doubts;         ///< a bit a beam
+  std::vector<std::int32_t> nearest_segment;       ///< segment, or -1
+  std::vector<std::uint64_t> ends, uncertain;      ///< a bit a beam
 
   // Movers.
   std::vector<NearMover> near;

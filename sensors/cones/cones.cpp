@@ -22,7 +22,7 @@ Direction turned(Direction by, Direction v) { return {by.x * v.x - by.y * v.y, b
 
 std::size_t padded(std::size_t cones) { return (cones + kGroup - 1) / kGroup * kGroup; }
 
-raycast::Fan fan_of(const ConeArray& array, std::size_t transducer) {
+raycast::Scanner fan_of(const ConeArray& array, std::size_t transducer) {
   world::Laser beams;
   beams.X_MS = base::compose(array.row.X_MS, array.X_SC[transducer]);
   beams.fov = array.rays > 1 ? array.fov : 0.0;
@@ -50,23 +50,24 @@ Cones::Plan Cones::plan(const world::World& world, const std::vector<ConeArray>&
   return plan;
 }
 
-Cones::Cones(const Site& site, const std::vector<ConeArray>& arrays, const ConeKernel& kernel)
-    : Cones(site, plan(site.world, arrays), kernel) {}
+Cones::Cones(const SensorContext& context, const std::vector<ConeArray>& arrays, const ConeKernel& kernel)
+    : Cones(context, plan(context.world, arrays), kernel) {}
 
-Cones::Cones(const Site& site, const Plan& plan, const ConeKernel& kernel)
-    : Cones(site, plan, plan.incidence ? faces_of(site.world) : Faces{}, kernel) {}
+Cones::Cones(const SensorContext& context, const Plan& plan, const ConeKernel& kernel)
+    : Cones(context, plan, plan.incidence ? faces_of(context.world) : Faces{}, kernel) {}
 
-Cones::Cones(const Site& site, const Plan& plan, const Faces& faces, const ConeKernel& kernel)
-    : thread_pool_(site.thread_pool),
+Cones::Cones(const SensorContext& context, const Plan& plan, const Faces& faces, const ConeKernel& kernel)
+    : thread_pool_(context.thread_pool),
       first_cones_(plan.first),
       least_cosines_(plan.least_cosines),
-      casts_(site, plan.incidence ? faces.world : site.world, plan.fans),
-      kernel_(site.device, kernel.name, kernel.spirv, kernel.hears_incidence ? 7 : 4),
-      rows_(site.device, "cones", gpu::Role::upload, gpu::Texel::u32x4, SF_CONE_TEXELS * padded(plan.fans.size() + 1)),
-      echoes_(site.device, "echoes", gpu::Role::download, gpu::Texel::u32x4, padded(plan.fans.size() + 1)),
-      groups_(site.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
-      faces_(site.device, "faces", gpu::Role::upload, gpu::Texel::u32x4, faces.rows.size() + 1),
-      headings_(site.device, "headings", gpu::Role::upload, gpu::Texel::f32x4, site.world.movers.size() + 1),
+      casts_(context, plan.incidence ? faces.world : context.world, plan.fans),
+      kernel_(context.device, kernel.name, kernel.spirv, kernel.hears_incidence ? 7 : 4),
+      rows_(context.device, "cones", gpu::Role::upload, gpu::Texel::u32x4,
+            SF_CONE_TEXELS * padded(plan.fans.size() + 1)),
+      echoes_(context.device, "echoes", gpu::Role::download, gpu::Texel::u32x4, padded(plan.fans.size() + 1)),
+      groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
+      faces_(context.device, "faces", gpu::Role::upload, gpu::Texel::u32x4, faces.rows.size() + 1),
+      headings_(context.device, "headings", gpu::Role::upload, gpu::Texel::f32x4, context.world.movers.size() + 1),
       incidence_(plan.incidence) {
   SF_CHECK(kernel_.group_size() == kGroup, "groups of cones are counted as of 64");
   SF_CHECK(kernel.hears_incidence || !incidence_, "this kernel hears all angles");
@@ -80,8 +81,8 @@ Cones::Cones(const Site& site, const Plan& plan, const Faces& faces, const ConeK
   headings_.host<float>()[0] = 1.0F;
 }
 
-void Cones::place(std::span<const Pose> poses) {
-  casts_.place(poses);
+void Cones::set_poses(std::span<const Pose> poses) {
+  casts_.set_poses(poses);
   if (!incidence_) return;
   const auto table = headings_.host<float>();
   for (std::size_t m = 0; m < poses.size(); ++m) {
@@ -90,7 +91,7 @@ void Cones::place(std::span<const Pose> poses) {
   }
 }
 
-bool Cones::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+bool Cones::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
   const bool again = casts_.prepare(due, poses);
   count_ = due.size();
   if (!on_device()) return again;
@@ -108,7 +109,7 @@ bool Cones::prepare(std::span<const Due> due, std::span<const Pose> poses) {
 }
 
 ConeRow Cones::row_of(std::size_t i) const {
-  const raycast::FanResults results = casts_.results(i);
+  const raycast::ScanResult results = casts_.results(i);
   ConeRow row{};
   row.lane = results.lane;
   row.lanes = results.plan->lanes();
@@ -116,7 +117,7 @@ ConeRow Cones::row_of(std::size_t i) const {
   row.least_cosine = least_cosines_[results.row];
   row.heading_cos = static_cast<float>(results.heading.x);
   row.heading_sin = static_cast<float>(results.heading.y);
-  row.range_max = results.fan->laser.range_max;
+  row.range_max = results.scanner->laser.range_max;
   return row;
 }
 
@@ -144,8 +145,8 @@ ConeEcho Cones::hear(std::size_t i) {
   return echo;
 }
 
-void Cones::copies(gpu::Batch& batch) {
-  casts_.copies(batch, false);
+void Cones::add_copies(gpu::Batch& batch) {
+  casts_.add_copies(batch, false);
   batch.upload(rows_, 0, padded(count_) * sizeof(ConeRow));
   batch.upload(groups_, 0, groups_.bytes());
   if (incidence_ || fresh_) batch.upload(headings_, 0, headings_.bytes());

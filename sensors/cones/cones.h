@@ -8,7 +8,7 @@
 #include "gpu/batch.h"
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
-#include "raycast/casts.h"
+#include "raycast/ray_caster.h"
 #include "sensors/cones/cone_array.h"
 #include "sensors/cones/faces.h"
 
@@ -21,27 +21,27 @@ struct ConeKernel {
   bool hears_incidence = false;  ///< takes the tables of directions, faces and headings too
 };
 
-/// Not thread-safe. `site` without its world must outlive it.
+/// Not thread-safe. `context` without its world must outlive it.
 class Cones {
  public:
   /// @throws base::DeviceError when the device cannot hold the tables, base::InputError for more cones than one
   /// dispatch takes.
-  Cones(const Site& site, const std::vector<ConeArray>& arrays, const ConeKernel& kernel);
+  Cones(const SensorContext& context, const std::vector<ConeArray>& arrays, const ConeKernel& kernel);
 
   /// Number of the first cone of an array; its others follow in order.
   std::uint32_t first_cone(std::uint32_t array) const { return first_cones_[array]; }
 
-  void place(std::span<const Pose> poses);
+  void set_poses(std::span<const Pose> poses);
   /// Rows of `due` are cones. @return true when kernels must be recorded again.
-  bool prepare(std::span<const Due> due, std::span<const Pose> poses);
+  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses);
   void record_measure(gpu::Batch& batch) { casts_.record(batch); }
   void record_derive(gpu::Batch& batch) const {
     if (on_device()) batch.dispatch(kernel_, groups_, 0);
   }
-  void copies(gpu::Batch& batch);
+  void add_copies(gpu::Batch& batch);
   /// To be called once after the batch ran.
   void count() { casts_.count(); }
-  Work work() const { return casts_.work(); }
+  SensorStats stats() const { return casts_.stats(); }
 
   /// Of the i-th due cone. Any thread.
   ConeEcho echo(std::size_t i) { return on_device() ? echoes_.host<ConeEcho>()[i] : hear(i); }
@@ -50,14 +50,14 @@ class Cones {
 
  private:
   struct Plan {
-    std::vector<raycast::Fan> fans;
+    std::vector<raycast::Scanner> fans;
     std::vector<float> least_cosines;  ///< per cone
     std::vector<std::uint32_t> first;  ///< per array
     bool incidence = false;            ///< some array hears only some angles
   };
   static Plan plan(const world::World& world, const std::vector<ConeArray>& arrays);
-  Cones(const Site& site, const Plan& plan, const ConeKernel& kernel);
-  Cones(const Site& site, const Plan& plan, const Faces& faces, const ConeKernel& kernel);
+  Cones(const SensorContext& context, const Plan& plan, const ConeKernel& kernel);
+  Cones(const SensorContext& context, const Plan& plan, const Faces& faces, const ConeKernel& kernel);
   ConeRow row_of(std::size_t i) const;
   /// As shaders/lib/cone.glsl has it, operation by operation.
   ConeEcho hear(std::size_t i);
@@ -67,7 +67,7 @@ class Cones {
   base::ThreadPool& thread_pool_;
   std::vector<std::uint32_t> first_cones_;
   std::vector<float> least_cosines_;
-  raycast::Casts casts_;
+  raycast::RayCaster casts_;
   bool fresh_ = true;      ///< tables that never change are not on the device yet
   std::size_t count_ = 0;  ///< of due cones
   gpu::Kernel kernel_;

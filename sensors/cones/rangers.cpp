@@ -14,19 +14,19 @@ constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 
 class Rangers : public Instruments {
  public:
-  Rangers(const Site& site, std::vector<ConeArray> arrays, const RangerKind& kind);
+  Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerKind& kind);
 
-  void place(std::span<const Pose> poses) override { cones_.place(poses); }
-  bool prepare(std::span<const Due> due, std::span<const Pose> poses) override;
+  void set_poses(std::span<const Pose> poses) override { cones_.set_poses(poses); }
+  bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override;
   void record_measure(gpu::Batch& batch) override { cones_.record_measure(batch); }
   void record_derive(gpu::Batch& batch) override { cones_.record_derive(batch); }
-  void copies(gpu::Batch& batch) override { cones_.copies(batch); }
+  void add_copies(gpu::Batch& batch) override { cones_.add_copies(batch); }
   void collect(std::vector<base::ReadingBlock>& out) override;
-  Work work() const override { return cones_.work(); }
+  SensorStats stats() const override { return cones_.stats(); }
   bool on_device() const override { return cones_.on_device(); }
 
  private:
-  void fire(const Due& due);
+  void fire(const DueSample& due);
   void tell(std::size_t i);
 
   base::ThreadPool& thread_pool_;
@@ -39,35 +39,35 @@ class Rangers : public Instruments {
   std::vector<double> heights_;      ///< [m] per array, of its origin in the world
   std::vector<std::size_t> values_first_;
   std::vector<double> values_;  ///< of all arrays; those of transducers that do not fire stand
-  std::vector<Due> due_;
+  std::vector<DueSample> due_;
   std::vector<Pose> X_WS_;               ///< per due array
-  std::vector<Due> cones_due_;           ///< transducers that fire
+  std::vector<DueSample> cones_due_;     ///< transducers that fire
   std::vector<std::size_t> cones_ends_;  ///< per due array: behind the last of its own
 };
 
-Rangers::Rangers(const Site& site, std::vector<ConeArray> arrays, const RangerKind& kind)
-    : thread_pool_(site.thread_pool),
-      seed_(site.seed),
-      noise_(site.noise),
+Rangers::Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerKind& kind)
+    : thread_pool_(context.thread_pool),
+      seed_(context.seed),
+      noise_(context.noise),
       arrays_(std::move(arrays)),
       kind_(kind),
-      cones_(site, arrays_, kind.kernel),
+      cones_(context, arrays_, kind.kernel),
       last_(arrays_.size(), kNever) {
   std::size_t values = 0;
   for (const ConeArray& array : arrays_) {
-    heights_.push_back(site.world.movers[array.row.mover].X_WM.z + array.row.X_MS.z);
+    heights_.push_back(context.world.movers[array.row.mover].X_WM.z + array.row.X_MS.z);
     values_first_.push_back(values);
     values += kind_.columns * array.X_SC.size();
   }
   values_.resize(values);
 }
 
-bool Rangers::prepare(std::span<const Due> due, std::span<const Pose> poses) {
+bool Rangers::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
   due_.assign(due.begin(), due.end());
   X_WS_.clear();
   cones_due_.clear();
   cones_ends_.clear();
-  for (const Due& d : due_) {
+  for (const DueSample& d : due_) {
     const SensorRow& row = arrays_[d.row].row;
     X_WS_.push_back(base::compose(poses[row.mover], row.X_MS));
     X_WS_.back().z = heights_[d.row];
@@ -77,7 +77,7 @@ bool Rangers::prepare(std::span<const Due> due, std::span<const Pose> poses) {
   return cones_.prepare(cones_due_, poses);
 }
 
-void Rangers::fire(const Due& due) {
+void Rangers::fire(const DueSample& due) {
   const ConeArray& array = arrays_[due.row];
   const std::uint64_t last = std::exchange(last_[due.row], due.sequence);
   for (std::uint32_t i = 0; i < array.X_SC.size(); ++i)
@@ -86,7 +86,7 @@ void Rangers::fire(const Due& due) {
 }
 
 void Rangers::tell(std::size_t i) {
-  const Due& due = due_[i];
+  const DueSample& due = due_[i];
   const ConeArray& array = arrays_[due.row];
   // Kinds share a stream, and sensors of two kinds share numbers; a draw keeps 24 bits of this name.
   const std::uint32_t name = (std::uint32_t{kind_.id} << 16) | array.row.sensor;
@@ -134,8 +134,9 @@ std::vector<SensorRow> ranger_rows(const std::vector<ConeArray>& arrays) {
   return rows;
 }
 
-std::unique_ptr<Instruments> make_rangers(const Site& site, std::vector<ConeArray> arrays, const RangerKind& kind) {
-  return std::make_unique<Rangers>(site, std::move(arrays), kind);
+std::unique_ptr<Instruments> make_rangers(const SensorContext& context, std::vector<ConeArray> arrays,
+                                          const RangerKind& kind) {
+  return std::make_unique<Rangers>(context, std::move(arrays), kind);
 }
 
 bool has_fired(std::uint32_t number, std::uint32_t turns, std::uint64_t sequence, std::uint64_t last) {

@@ -24,7 +24,8 @@ std::vector<SensorRow> ranger_rows(const std::vector<ConeArray>& arrays);
 
 /// A reading renews the transducers whose turn has come since its sensor's last one, all of them when that was a round
 /// ago or there was none; the others stand.
-std::unique_ptr<Instruments> make_rangers(const Site& site, std::vector<ConeArray> arrays, const RangerKind& kind);
+std::unique_ptr<Instruments> make_rangers(const SensorContext& context, std::vector<ConeArray> arrays,
+                                          const RangerKind& kind);
 
 /// Whether transducer `number` fires in reading `sequence` when the last one that was taken is `last`; both count all
 /// readings, taken or not. @param turns readings of a round.

@@ -36,7 +36,7 @@ MagneticField::MagneticField(const world::World& world, gpu::Device& device, bas
     : t_(std::make_unique<Tables>(world, device, thread_pool, magnitudes, cutoff)) {
   std::vector<Pose> poses;
   for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
-  place(poses);
+  set_poses(poses);
 }
 
 MagneticField::MagneticField(MagneticField&&) noexcept = default;
@@ -76,7 +76,7 @@ void MagneticField::Tables::write_moving() {
   for (std::size_t i = 0; i < moving_rows.size(); ++i) rows[i] = moving_rows[moving_grid.order()[i]];
 }
 
-void MagneticField::place(std::span<const Pose> poses) {
+void MagneticField::set_poses(std::span<const Pose> poses) {
   Tables& t = *t_;
   if (t.moving == 0) return;
   t.moving_places.clear();
@@ -113,7 +113,7 @@ bool MagneticField::prepare(std::span<const Place> places, std::span<const std::
 
 void MagneticField::record(gpu::Batch& batch) { batch.dispatch(*t_->kernel, *t_->groups, 0); }
 
-void MagneticField::copies(gpu::Batch& batch) {
+void MagneticField::add_copies(gpu::Batch& batch) {
   Tables& t = *t_;
   const std::size_t first = t.standing_sent ? t.standing * sizeof(DipoleRow) : 0;
   batch.upload(*t.dipoles, first, t.dipoles->bytes() - first);

@@ -47,14 +47,14 @@ class MagneticField {
   ~MagneticField();
 
   /// Moves what movers carry: one pose a mover, whose z is not looked at (the world is 2.5-D).
-  void place(std::span<const Pose> poses);
+  void set_poses(std::span<const Pose> poses);
 
   /// Names the places of the next batch, in groups of up to SF_FIELD_PLACES neighbours.
   /// @param ends of each group: one past its last place; ascending.
   /// @return true when the batch must be recorded again.
   bool prepare(std::span<const Place> places, std::span<const std::uint32_t> ends);
   void record(gpu::Batch& batch);
-  void copies(gpu::Batch& batch);
+  void add_copies(gpu::Batch& batch);
   /// After the batch: the field at place `i` of group `group`.
   FieldSum at(std::size_t group, std::size_t i) const;
 

@@ -30,7 +30,7 @@ std::vector<FieldSum> survey(const world::World& world, gpu::Device& device, std
       field.record(batch);
       batch.end();
     }
-    field.copies(batch);
+    field.add_copies(batch);
     batch.run();
     for (std::size_t i = 0; i < some.size(); ++i) sums.push_back(field.at(i / SF_FIELD_PLACES, i % SF_FIELD_PLACES));
     if (options.progress) options.progress(static_cast<double>(sums.size()) / static_cast<double>(places.size()));

@@ -41,9 +41,9 @@ EdgeRow row_of(const LaneEdge& edge, const raycast::BeamPlan& plan, const world:
 
 std::uint32_t edge_noise_name(std::uint32_t sensor) { return (std::uint32_t{kLaneEdge} << 16) | sensor; }
 
-EdgeFit::Plan EdgeFit::plan(const Site& site, const std::vector<LaneEdge>& edges) {
+EdgeFit::Plan EdgeFit::plan(const SensorContext& context, const std::vector<LaneEdge>& edges) {
   if (edges.size() > kMostSensors)
-    throw base::InputError(site.world.file, 0,
+    throw base::InputError(context.world.file, 0,
                            "the world has " + std::to_string(edges.size()) + " lane edge sensors; at most " +
                                std::to_string(kMostSensors) + " are supported");
   Plan plan;
@@ -51,8 +51,8 @@ EdgeFit::Plan EdgeFit::plan(const Site& site, const std::vector<LaneEdge>& edges
   // Sensors without noise read deviates that stay 0, in front of all others.
   plan.noise_lanes = kMostEdgeSamples;
   for (const LaneEdge& edge : edges) {
-    const raycast::BeamPlan beams = raycast::plan_beams(edge.fan, site.noise);
-    const world::LaserNoise noise = site.noise ? edge.fan.noise : world::LaserNoise{};
+    const raycast::BeamPlan beams = raycast::plan_beams(edge.fan, context.noise);
+    const world::LaserNoise noise = context.noise ? edge.fan.noise : world::LaserNoise{};
     EdgeRow row = row_of(edge, beams, noise);
     const auto [known, is_new] =
         shared.try_emplace({edge.fan.fov, edge.fan.samples, beams.packed}, plan.direction_lanes);
@@ -71,24 +71,24 @@ EdgeFit::Plan EdgeFit::plan(const Site& site, const std::vector<LaneEdge>& edges
   return plan;
 }
 
-EdgeFit::EdgeFit(const Site& site, const std::vector<LaneEdge>& edges, const std::vector<double>& grains)
-    : thread_pool_(site.thread_pool),
-      seed_(site.seed),
+EdgeFit::EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edges, const std::vector<double>& grains)
+    : thread_pool_(context.thread_pool),
+      seed_(context.seed),
       edges_(edges),
-      plan_(plan(site, edges)),
-      kernel_(site.device, "line through points", laneedge_comp_spv, 6),
-      maker_(site.device, "points of paint", laneedge_points_comp_spv, 7),
-      rows_(site.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4, SF_EDGE_TEXELS * padded(edges.size())),
-      directions_(site.device, "bearings", gpu::Role::upload, gpu::Texel::u32x4,
+      plan_(plan(context, edges)),
+      kernel_(context.device, "line through points", laneedge_comp_spv, 6),
+      maker_(context.device, "points of paint", laneedge_points_comp_spv, 7),
+      rows_(context.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4, SF_EDGE_TEXELS * padded(edges.size())),
+      directions_(context.device, "bearings", gpu::Role::upload, gpu::Texel::u32x4,
                   SF_BEAMS_PER_LANE * std::size_t{plan_.direction_lanes}),
-      normals_(site.device, "normal deviates", gpu::Role::upload, gpu::Texel::f32x4, plan_.noise_lanes),
-      grains_(site.device, "sizes of pixels", gpu::Role::upload, gpu::Texel::u32x4, grains.size()),
-      readings_(site.device, "readings", gpu::Role::download, gpu::Texel::u32x4, SF_READING_TEXELS * edges.size()),
-      groups_(site.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
-      points_(site.device, "points", gpu::Role::download, gpu::Texel::u32x4,
+      normals_(context.device, "normal deviates", gpu::Role::upload, gpu::Texel::f32x4, plan_.noise_lanes),
+      grains_(context.device, "sizes of pixels", gpu::Role::upload, gpu::Texel::u32x4, grains.size()),
+      readings_(context.device, "readings", gpu::Role::download, gpu::Texel::u32x4, SF_READING_TEXELS * edges.size()),
+      groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
+      points_(context.device, "points", gpu::Role::download, gpu::Texel::u32x4,
               SF_BEAMS_PER_LANE * (std::size_t{plan_.lanes} + 1)),
-      order_(site.device, "order of work", gpu::Role::upload, gpu::Texel::u32, padded(edges.size())),
-      mixtures_(site.device, "mixtures", gpu::Role::download, gpu::Texel::u32, edges.size()) {
+      order_(context.device, "order of work", gpu::Role::upload, gpu::Texel::u32, padded(edges.size())),
+      mixtures_(context.device, "mixtures", gpu::Role::download, gpu::Texel::u32, edges.size()) {
   SF_CHECK(kernel_.group_size() == kGroup, "groups of the fit are counted as of 64");
   gpu::Buffer* const fitting[] = {&rows_, &points_, &grains_, &readings_, &order_, &mixtures_};
   kernel_.bind(fitting);
@@ -118,7 +118,7 @@ std::span<const double> EdgeFit::directions(std::uint32_t edge) {
                                             2 * SF_BEAMS_PER_LANE * std::size_t{plan_.beams[edge].lanes()});
 }
 
-void EdgeFit::prepare(std::span<const Due> due, std::span<const std::uint32_t> lanes) {
+void EdgeFit::prepare(std::span<const DueSample> due, std::span<const std::uint32_t> lanes) {
   due_.assign(due.begin(), due.end());
   write_order(write_rows(lanes));
   if (!plan_.any_noise) return;
@@ -130,7 +130,7 @@ void EdgeFit::prepare(std::span<const Due> due, std::span<const std::uint32_t> l
 bool EdgeFit::write_rows(std::span<const std::uint32_t> lanes) {
   const bool same =
       written_.size() == due_.size() && std::equal(due_.begin(), due_.end(), written_.begin(),
-                                                   [](const Due& d, std::uint32_t row) { return d.row == row; });
+                                                   [](const DueSample& d, std::uint32_t row) { return d.row == row; });
   if (same) return true;
   written_.clear();
   const auto rows = rows_.host<EdgeRow>();
@@ -169,7 +169,7 @@ void EdgeFit::write_order(bool same_due) {
   while (at < groups * kGroup) put(last);
 }
 
-void EdgeFit::draw_noise(const Due& due) {
+void EdgeFit::draw_noise(const DueSample& due) {
   const EdgeRow& row = plan_.rows[due.row];
   if (row.noise_share == 0.0F) return;
   const SensorRow& sensor = edges_[due.row].row;
@@ -185,7 +185,7 @@ void EdgeFit::bind(gpu::Buffer& lanes, gpu::Buffer& ranges, gpu::Buffer& hits) {
   maker_.bind(making);
 }
 
-void EdgeFit::copies(gpu::Batch& batch) {
+void EdgeFit::add_copies(gpu::Batch& batch) {
   batch.upload(rows_, 0, padded(due_.size()) * sizeof(EdgeRow));
   batch.upload(groups_, 0, groups_.bytes());
   if (fresh_) batch.upload(directions_, 0, directions_.bytes());

@@ -22,16 +22,16 @@ struct PointTables {
   gpu::Buffer& points;      ///< a texel a beam: x, y [m], its grain in x
 };
 
-/// One thread. `site` without its world must outlive it.
+/// One thread. `context` without its world must outlive it.
 class EdgeFit {
  public:
   /// @param grains [m] pixel sizes by the rows that tags name.
   /// @throws base::DeviceError when the device cannot hold the tables, base::InputError for more sensors than one
   /// dispatch takes.
-  EdgeFit(const Site& site, const std::vector<LaneEdge>& edges, const std::vector<double>& grains);
+  EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edges, const std::vector<double>& grains);
 
   /// @param lanes first lane of each due fan's results.
-  void prepare(std::span<const Due> due, std::span<const std::uint32_t> lanes);
+  void prepare(std::span<const DueSample> due, std::span<const std::uint32_t> lanes);
   /// What makes points of the results of a cast: `lanes` (Lane), `ranges` (a lane's four doubles [m]) and `hits` (its
   /// four tags) as raycast::Casts has them. To be called when these were replaced, and once before `record_points`.
   void bind(gpu::Buffer& lanes, gpu::Buffer& ranges, gpu::Buffer& hits);
@@ -41,7 +41,7 @@ class EdgeFit {
   }
   std::uint32_t group_size() const { return maker_.group_size(); }  ///< of `record_points`, in lanes
   void record(gpu::Batch& batch) const { batch.dispatch(kernel_, groups_, 0); }
-  void copies(gpu::Batch& batch);
+  void add_copies(gpu::Batch& batch);
 
   /// Of the i-th due sensor: its columns, and all of it. Both live until the next `prepare`.
   std::span<const double> values(std::size_t i) {
@@ -65,17 +65,17 @@ class EdgeFit {
     std::uint32_t noise_lanes = 0;
     bool any_noise = false;
   };
-  static Plan plan(const Site& site, const std::vector<LaneEdge>& edges);
+  static Plan plan(const SensorContext& context, const std::vector<LaneEdge>& edges);
   void write_directions();
   bool write_rows(std::span<const std::uint32_t> lanes);
   void write_order(bool same_due);
-  void draw_noise(const Due& due);
+  void draw_noise(const DueSample& due);
 
   base::ThreadPool& thread_pool_;
   std::uint64_t seed_;
   const std::vector<LaneEdge>& edges_;
   Plan plan_;
-  std::vector<Due> due_;
+  std::vector<DueSample> due_;
   std::vector<std::uint32_t> written_;  ///< due rows, in order, that `rows_` holds
   bool fresh_ = true;                   ///< tables that never change are not on the device yet
   gpu::Kernel kernel_, maker_;

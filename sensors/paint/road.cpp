@@ -17,11 +17,11 @@ namespace {
 /// below the turns that older Mesa allows.
 constexpr double kLongestRay = 8192.0;
 
-void refuse_long_rays(const Site& site, const raycast::Casts& casts, double cell) {
-  for (const raycast::Fan& fan : casts.fans()) {
+void refuse_long_rays(const SensorContext& context, const raycast::RayCaster& casts, double cell) {
+  for (const raycast::Scanner& fan : casts.scanners()) {
     if (fan.laser.range_max <= kLongestRay * cell) continue;
     throw base::InputError(
-        site.world.file, 0,
+        context.world.file, 0,
         fmt::format("road_resolution {:g} m is too fine for the lane edge sensor '{}', whose range_max is {:g} m; "
                     "expected at most {:g} pixels along a ray; use at least {:g} m, or 0 for exact paint",
                     cell, fan.laser.name, fan.laser.range_max, kLongestRay, fan.laser.range_max / kLongestRay));
@@ -30,8 +30,9 @@ void refuse_long_rays(const Site& site, const raycast::Casts& casts, double cell
 
 }  // namespace
 
-Road::Road(const Site& site, const PaintRaster& raster, raycast::Casts& casts, std::uint32_t tag, bool with_casts)
-    : thread_pool_(site.thread_pool),
+Road::Road(const SensorContext& context, const PaintRaster& raster, raycast::RayCaster& casts, std::uint32_t tag,
+           bool with_casts)
+    : thread_pool_(context.thread_pool),
       casts_(casts),
       cell_(raster.cell()),
       columns_(static_cast<double>(raster.columns()) * PaintRaster::kBlock),
@@ -42,20 +43,21 @@ Road::Road(const Site& site, const PaintRaster& raster, raycast::Casts& casts, s
       block_rows_(raster.rows()),
       tag_(tag),
       with_casts_(with_casts),
-      kernel_(site.device, "paint raster", paint_raster_comp_spv, 11),
-      place_(site.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4, SF_ROAD_TEXELS * casts.fans().size()),
-      groups_(site.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
-      directory_(site.device, "blocks of the raster", gpu::Role::upload, gpu::Texel::u32, raster.directory().size()),
-      blocks_(site.device, "raster of the paint", gpu::Role::upload, gpu::Texel::u32, raster.blocks().size() + 4) {
-  refuse_long_rays(site, casts, cell_);
+      kernel_(context.device, "paint raster", paint_raster_comp_spv, 11),
+      place_(context.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4,
+             SF_ROAD_TEXELS * casts.scanners().size()),
+      groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
+      directory_(context.device, "blocks of the raster", gpu::Role::upload, gpu::Texel::u32, raster.directory().size()),
+      blocks_(context.device, "raster of the paint", gpu::Role::upload, gpu::Texel::u32, raster.blocks().size() + 4) {
+  refuse_long_rays(context, casts, cell_);
   SF_CHECK(kernel_.group_size() == casts.group_size(), "the raster's rays are the cast's lanes, beam by beam");
   std::memcpy(directory_.host<std::uint32_t>().data(), raster.directory().data(), 4 * raster.directory().size());
   std::memcpy(blocks_.host<std::uint32_t>().data(), raster.blocks().data(), 4 * raster.blocks().size());
 }
 
 RoadRow Road::row_of(std::size_t i) const {
-  const raycast::FanResults results = casts_.results(i);
-  const double range_max = results.fan->laser.range_max;
+  const raycast::ScanResult results = casts_.results(i);
+  const double range_max = results.scanner->laser.range_max;
   const double x = results.X_WS.x / cell_;
   const double y = results.X_WS.y / cell_;
   const double column = std::floor(x) - first_column_;
@@ -103,7 +105,7 @@ void Road::bind(const PointTables& out) {
 
 void Road::record(gpu::Batch& batch) { batch.dispatch(kernel_, groups_, 0); }
 
-void Road::copies(gpu::Batch& batch) {
+void Road::add_copies(gpu::Batch& batch) {
   batch.upload(place_, 0, due_ * sizeof(RoadRow));
   batch.upload(groups_, 0, groups_.bytes());
   if (!fresh_) return;

@@ -9,32 +9,34 @@
 #include "gpu/batch.h"
 #include "gpu/buffer.h"
 #include "gpu/kernel.h"
-#include "raycast/casts.h"
+#include "raycast/ray_caster.h"
 #include "sensors/laneedge.h"
 #include "sensors/paint/edge_fit.h"
 #include "sensors/paint/raster.h"
 
 namespace sf::sensors {
 
-/// Casts the fans of a `raycast::Casts` into a raster, after that has cast them into the rest of the world. One thread.
+/// Casts the fans of a `raycast::RayCaster` into a raster, after that has cast them into the rest of the world. One
+/// thread.
 class Road {
  public:
   /// @param tag of paint. @param with_casts whether what `casts` met counts.
   /// @throws base::DeviceError when the device cannot hold the tables.
-  Road(const Site& site, const PaintRaster& raster, raycast::Casts& casts, std::uint32_t tag, bool with_casts);
+  Road(const SensorContext& context, const PaintRaster& raster, raycast::RayCaster& casts, std::uint32_t tag,
+       bool with_casts);
 
   /// Where the fans due look from, after `casts` was prepared for as many.
   void prepare(std::size_t due);
   /// To be called when the tables of `casts` were replaced, and once before `record`.
   void bind(const PointTables& out);
   void record(gpu::Batch& batch);
-  void copies(gpu::Batch& batch);
+  void add_copies(gpu::Batch& batch);
 
  private:
   RoadRow row_of(std::size_t i) const;
 
   base::ThreadPool& thread_pool_;
-  raycast::Casts& casts_;
+  raycast::RayCaster& casts_;
   double cell_;
   double columns_, rows_;            ///< [cells]
   double first_column_, first_row_;  ///< of the world's cells

@@ -66,18 +66,20 @@ TEST(Determinism, WhateverThePool) {
   const std::uint64_t large = run(world, {.seed = 1});
   for (const std::uint32_t chunks : {32u, 1024u, 16'384u})
     for (const std::uint32_t cells : {1u, 8u, 40u})
-      EXPECT_EQ(run(world, {.seed = 1,
-                            .scene = {.caster = raycast::Caster::vulkan, .pool_chunks = chunks, .pool_cells = cells}}),
-                large)
+      EXPECT_EQ(
+          run(world, {.seed = 1,
+                      .scene = {.caster = raycast::CasterChoice::vulkan, .pool_chunks = chunks, .pool_cells = cells}}),
+          large)
           << chunks << " chunks, " << cells << " cells";
 }
 
 TEST(Determinism, EvictedCellsAreBuiltAgain) {
   const world::World world = small_world(30);
-  Farm farm(world, device(), {.scene = {.caster = raycast::Caster::vulkan, .pool_chunks = 16'384, .pool_cells = 32}});
+  Farm farm(world, device(),
+            {.scene = {.caster = raycast::CasterChoice::vulkan, .pool_chunks = 16'384, .pool_cells = 32}});
   farm.hear_all();
   for (int k = 0; k < 12; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
-  Farm roomy(world, device(), {.scene = {.caster = raycast::Caster::vulkan}});
+  Farm roomy(world, device(), {.scene = {.caster = raycast::CasterChoice::vulkan}});
   roomy.hear_all();
   for (int k = 0; k < 12; ++k) roomy.tick(k * 100'000'000ll, reports_at(world, k));
   EXPECT_GT(farm.stats().work.cells_built, roomy.stats().work.cells_built) << "the test is meant to evict";

@@ -66,7 +66,8 @@ void expect_sound(const sensors::LaserReference& reference, const base::ReadingB
 }
 
 /// @return the hash of all readings
-std::uint64_t under_siege(const world::World& world, std::uint64_t seed, unsigned threads, raycast::Caster caster) {
+std::uint64_t under_siege(const world::World& world, std::uint64_t seed, unsigned threads,
+                          raycast::CasterChoice caster) {
   trial::Chance chance(seed);
   Farm farm(world, device(), {.true_poses = false, .threads = threads, .scene = {.caster = caster}});
   robots::Fleet fleet(world);
@@ -92,7 +93,7 @@ std::uint64_t under_siege(const world::World& world, std::uint64_t seed, unsigne
     std::vector<base::Pose> poses;
     for (const base::Report& state : states)
       poses.push_back(gone[state.mover] != 0 ? base::Pose{std::nan(""), 0.0, 0.0, 0.0} : state.X_WM);
-    reference.place(poses);
+    reference.set_poses(poses);
     for (const base::ReadingBlock& reading : farm.tick(now, states)) expect_sound(reference, reading);
     now += std::int64_t{chance.below(4)} * 50'000'000 + (tick % 10 == 9 ? 3'600'000'000'000ll : 0);
   }
@@ -100,9 +101,9 @@ std::uint64_t under_siege(const world::World& world, std::uint64_t seed, unsigne
 }
 
 void expect_the_same_from_all(const world::World& world, std::uint64_t seed) {
-  const std::uint64_t hash = under_siege(world, seed, 2, raycast::Caster::host);
-  EXPECT_EQ(under_siege(world, seed, 1, raycast::Caster::host), hash) << "one thread";
-  EXPECT_EQ(under_siege(world, seed, 2, raycast::Caster::vulkan), hash) << "the device's kernels";
+  const std::uint64_t hash = under_siege(world, seed, 2, raycast::CasterChoice::host);
+  EXPECT_EQ(under_siege(world, seed, 1, raycast::CasterChoice::host), hash) << "one thread";
+  EXPECT_EQ(under_siege(world, seed, 2, raycast::CasterChoice::vulkan), hash) << "the device's kernels";
 }
 
 TEST(HostileStates, AmongBoxes) {

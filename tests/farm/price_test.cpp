@@ -113,7 +113,7 @@ TEST(Price, WhoStandsCastsAndSubmitsNothing) {
 /// Lasers that the host casts need no batch: the same bytes without one.
 TEST(Price, WhatTheHostCastsSubmitsNothing) {
   const world::World world = small_world(20);
-  Farm by_host(world, device(), {.scene = {.caster = raycast::Caster::host}});
+  Farm by_host(world, device(), {.scene = {.caster = raycast::CasterChoice::host}});
   Farm by_device(world, device(), kOnDevice);
   for (Farm* farm : {&by_host, &by_device}) {
     farm->hear_all();

@@ -16,7 +16,7 @@ inline gpu::Device& device() {
 }
 
 /// Lasers are cast by the device's kernels, also where it is software.
-inline constexpr FarmOptions kOnDevice{.scene = {.caster = raycast::Caster::vulkan}};
+inline constexpr FarmOptions kOnDevice{.scene = {.caster = raycast::CasterChoice::vulkan}};
 
 /// `robots` among boxes, each with one laser at 10 Hz.
 inline world::World small_world(std::uint32_t robots, const world::LaserNoise& noise = {}) {

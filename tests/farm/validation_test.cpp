@@ -21,7 +21,7 @@ TEST(Validation, TheLayerIsSilent) {
       for (const char* kind : {"sonar", "infrared"})
         mover.sensors.push_back(trial::cones(kind, trial::ring(8, 0.1), {trial::cone_setting("range", {0, 1})}));
     Farm farm(world, device,
-              {.scene = {.caster = raycast::Caster::vulkan,
+              {.scene = {.caster = raycast::CasterChoice::vulkan,
                          .pool_chunks = 1024,
                          .pool_cells = 8}});  // so small that its tables are replaced
     farm.hear_all();

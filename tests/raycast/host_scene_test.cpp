@@ -28,7 +28,7 @@ ScanPattern pattern_of(const std::vector<double>& bearings) {
   return pattern;
 }
 
-std::vector<double> fan(std::size_t beams, double fov) {
+std::vector<double> even_bearings(std::size_t beams, double fov) {
   std::vector<double> bearings;
   for (std::size_t i = 0; i < beams; ++i)
     bearings.push_back(beams > 1 ? fov * (static_cast<double>(i) / static_cast<double>(beams - 1) - 0.5) : 0.0);
@@ -43,24 +43,24 @@ std::vector<Pose> poses_of(const world::World& world) {
 
 Scan scan(const world::World& world, const Pose& X, std::uint32_t self, const ScanPattern& pattern, double range) {
   base::ThreadPool thread_pool(1);
-  Families families(world);
-  const Viewpoint view{families.add({X.z, range, 0.0, 2.0 * M_PI}), self, X, {std::cos(X.yaw), std::sin(X.yaw)}};
-  HostScene scene(world, families, thread_pool);
-  scene.place(poses_of(world));
+  ListConfigs configs(world);
+  const Viewpoint view{configs.add({X.z, range, 0.0, 2.0 * M_PI}), self, X, {std::cos(X.yaw), std::sin(X.yaw)}};
+  HostScene scene(world, configs, thread_pool);
+  scene.set_poses(poses_of(world));
   scene.prepare({&view, 1});
   Scan scan{std::vector<double>(pattern.beams), std::vector<std::uint32_t>(pattern.beams)};
   std::vector<std::uint8_t> grazes(pattern.beams);
-  const ScanView from{.heading = view.heading, .yaw = X.yaw, .least_sine = 1e-3};
+  const ScanView from{.heading = view.heading, .yaw = X.yaw, .min_sine = 1e-3};
   scene.scan(0, from, pattern, 0, {scan.ranges.data(), scan.models.data(), grazes.data()});
   return scan;
 }
 
-/// The same by `decide` alone: every wall and every edge of other movers.
-Scan decide_everything(const world::World& world, const Pose& X, std::uint32_t self, const ScanPattern& pattern,
-                       double range) {
+/// The same by `intersect` alone: every wall and every edge of other movers.
+Scan intersect_everything(const world::World& world, const Pose& X, std::uint32_t self, const ScanPattern& pattern,
+                          double range) {
   std::vector<ExactSegment> exact;
   std::vector<std::uint32_t> models;
-  std::vector<Surface> surfaces;
+  std::vector<CandidateSegment> surfaces;
   const auto add = [&](const ExactSegment& s, std::uint32_t model, bool met) {
     if (met) surfaces.push_back({s, static_cast<std::uint32_t>(models.size())});
     models.push_back(model);
@@ -68,17 +68,18 @@ Scan decide_everything(const world::World& world, const Pose& X, std::uint32_t s
   for (const world::Segment& s : world.walls)
     add({s.a.x, s.a.y, s.b.x, s.b.y}, s.model, s.seen_by_laser && s.z_min <= X.z && X.z < s.z_max);
   base::ThreadPool thread_pool(1);
-  MoverTables movers(world);
+  MoverGeometry movers(world);
   std::vector<ExactSegment> moved(movers.segments());
-  movers.place(poses_of(world), thread_pool, moved);
+  movers.set_poses(poses_of(world), thread_pool, moved);
   const auto rows = movers.first_rows();
   for (std::uint32_t row = 0; row < moved.size(); ++row)
     add(moved[row], movers.models()[row], row + rows[0] < rows[self] || row + rows[0] >= rows[self + 1]);
   Scan scan;
   const ScanView view{.origin = {X.x, X.y}, .heading = {std::cos(X.yaw), std::sin(X.yaw)}};
   for (std::size_t i = 0; i < pattern.beams; ++i) {
-    Decision best{range};
-    for (const Surface& surface : surfaces) decide(surface, view.origin, direction_of(view, pattern, i), best);
+    ClosestHit best{range};
+    for (const CandidateSegment& surface : surfaces)
+      intersect(surface, view.origin, direction_of(view, pattern, i), best);
     scan.ranges.push_back(best.range);
     scan.models.push_back(best.id == SF_NO_HIT ? SF_NO_HIT : models[best.id]);
   }
@@ -95,7 +96,7 @@ void expect_decided(const world::World& world, const ScanPattern& pattern, doubl
   for (std::uint32_t m = 0; m < 12; ++m) {
     Pose X = world.movers[m].X_WM;
     X.z = 0.1;
-    EXPECT_EQ(scan(world, X, m, pattern, range), decide_everything(world, X, m, pattern, range)) << m;
+    EXPECT_EQ(scan(world, X, m, pattern, range), intersect_everything(world, X, m, pattern, range)) << m;
   }
 }
 
@@ -103,18 +104,18 @@ TEST(HostScene, FansOfEveryWidth) {
   const world::World world = crowd();
   for (const double fov : {0.0, 1e-7, 0.1, 0.5 * M_PI, M_PI, 1.5 * M_PI, 2.0 * M_PI})
     for (const std::size_t beams : {1, 2, 15, 16, 17, 64, 65, 361})
-      expect_decided(world, pattern_of(fan(beams, fov)), 8.0);
+      expect_decided(world, pattern_of(even_bearings(beams, fov)), 8.0);
 }
 
 /// Beams out of step: the last one nearer than the others, each turned by noise, many in one direction, out of order.
 TEST(HostScene, BeamsOutOfStep) {
   const world::World world = crowd();
   trial::Chance chance(3);
-  std::vector<double> short_last = fan(46, M_PI);
+  std::vector<double> short_last = even_bearings(46, M_PI);
   short_last.back() -= 0.06;
   expect_decided(world, pattern_of(short_last), 8.0);
   for (const double turn : {1e-4, 0.01, 0.3}) {
-    std::vector<double> turned = fan(181, 2.0 * M_PI);
+    std::vector<double> turned = even_bearings(181, 2.0 * M_PI);
     ScanPattern pattern;
     std::vector<double> directions;
     for (double& b : turned) {
@@ -129,7 +130,7 @@ TEST(HostScene, BeamsOutOfStep) {
 
 TEST(HostScene, EveryInstructionSetGivesTheSameBits) {
   const world::World world = crowd();
-  const ScanPattern pattern = pattern_of(fan(361, M_PI));
+  const ScanPattern pattern = pattern_of(even_bearings(361, M_PI));
   Pose X = world.movers[0].X_WM;
   X.z = 0.1;
   const Scan expected = scan(world, X, 0, pattern, 8.0);
@@ -149,46 +150,46 @@ TEST(HostScene, EveryInstructionSetGivesTheSameBits) {
 TEST(HostScene, CellsAreListedOnce) {
   const world::World world = crowd();
   base::ThreadPool thread_pool(2);
-  Families families(world);
-  const std::uint32_t family = families.add({0.1, 8.0, 0.0, M_PI});
-  EXPECT_EQ(families.add({0.1, 8.0, 0.0, 0.1}), family) << "one height, one range";
-  EXPECT_NE(families.add({0.1, 4.0, 0.0, M_PI}), family);
-  HostScene scene(world, families, thread_pool);
+  ListConfigs configs(world);
+  const std::uint32_t config = configs.add({0.1, 8.0, 0.0, M_PI});
+  EXPECT_EQ(configs.add({0.1, 8.0, 0.0, 0.1}), config) << "one height, one range";
+  EXPECT_NE(configs.add({0.1, 4.0, 0.0, M_PI}), config);
+  HostScene scene(world, configs, thread_pool);
   const Viewpoint views[] = {
-      {family, 0, {0.1, 0.1, 0.1, 0.0}}, {family, 1, {0.9, 0.9, 0.1, 1.0}}, {family, 2, {1.1, 0.1, 0.1, 0.0}}};
-  scene.place(poses_of(world));
+      {config, 0, {0.1, 0.1, 0.1, 0.0}}, {config, 1, {0.9, 0.9, 0.1, 1.0}}, {config, 2, {1.1, 0.1, 0.1, 0.0}}};
+  scene.set_poses(poses_of(world));
   scene.prepare(views);
   EXPECT_EQ(scene.cells_built(), 2u) << "cells of a metre at 8 m";
   scene.prepare(views);
   EXPECT_EQ(scene.cells_built(), 2u);
 }
 
-TEST(MoverTables, MoversOfOneShapeShareItsBlocks) {
+TEST(MoverGeometry, MoversOfOneShapeShareItsBlocks) {
   world::World world;
   for (int i = 0; i < 5; ++i) scenes::add_robot(world, {2.0 * i, 0.0, 0.0, 0.3 * i}, scenes::laser());
-  MoverTables movers(world);
-  const OutlineTable& outlines = movers.outlines(movers.watch_height(0.1));
+  MoverGeometry movers(world);
+  const OutlineTable& outlines = movers.outlines(movers.add_height(0.1));
   EXPECT_EQ(outlines.blocks.size(), 2u) << "16 edges outward, 16 inward";
   EXPECT_EQ(outlines.of_mover[4].first, outlines.of_mover[0].first);
-  const OutlineTable& above = movers.outlines(movers.watch_height(100.0));
+  const OutlineTable& above = movers.outlines(movers.add_height(100.0));
   EXPECT_EQ(above.of_mover[0].all, 0u) << "nothing so high";
 }
 
 /// A mover that is gone is in no cell; what is left is found where it is.
-TEST(MoverTables, MoversThatAreGoneAreNowhere) {
+TEST(MoverGeometry, MoversThatAreGoneAreNowhere) {
   world::World world;
   for (int i = 0; i < 3; ++i) scenes::add_robot(world, {5.0 * i, 0.0, 0.0, 0.0}, scenes::laser());
-  MoverTables movers(world);
-  movers.watch_height(0.1);
+  MoverGeometry movers(world);
+  movers.add_height(0.1);
   base::ThreadPool thread_pool(1);
   std::vector<ExactSegment> exact(movers.segments());
   std::vector<Pose> poses = poses_of(world);
   poses[1].x = std::nan("");
-  movers.place(poses, thread_pool, exact);
+  movers.set_poses(poses, thread_pool, exact);
   EXPECT_EQ(movers.grid().first.back(), 2u);
   EXPECT_EQ(movers.grid().low.x, 0.0);
   for (Pose& X : poses) X.x = std::nan("");
-  movers.place(poses, thread_pool, exact);
+  movers.set_poses(poses, thread_pool, exact);
   EXPECT_EQ(movers.grid().first.back(), 0u) << "all of them";
 }
 

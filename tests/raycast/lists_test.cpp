@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "raycast/wall_lists.h"
+#include "raycast/candidate_walls.h"
 #include "tests/sensors/brute_force.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/scenes.h"
@@ -23,24 +23,24 @@ std::uint32_t first_wall(const std::vector<world::Segment>& walls, glm::dvec2 p,
 
 void every_hit_is_listed(world::World world, double range, double size, std::uint64_t seed) {
   for (std::uint32_t row = 0; row < world.walls.size(); ++row) world.walls[row].model = row;
-  const Sight sight(world, 0.1, range);
+  const WallIndex wall_index(world, 0.1, range);
   const CellShape shape{size, range};
-  FoundWalls walls;
+  CandidateWalls walls;
   trial::Chance chance(seed);
   std::size_t checked = 0;
   for (int c = 0; c < 40; ++c) {
     const glm::dvec2 centre = chance.in_square(0.45 * (world.extent.x_max - world.extent.x_min));
     for (const bool both : {false, true}) {
-      find_walls(sight, shape, centre, both, walls);
+      find_candidate_walls(wall_index, shape, centre, both, walls);
       SectorLists lists;
-      for (const FoundWall& w : walls.facing) lists.add(w.bearing, w.half, w.row);
+      for (const CandidateWall& w : walls.front_facing) lists.add(w.bearing, w.half, w.row);
       lists.sort();
       for (int i = 0; i < 60; ++i) {
         const bool corner = i % 4 == 0;  // of the cell
         const glm::dvec2 p =
             centre + (corner ? glm::dvec2{(i % 8 ? 0.5 : -0.5) * size, (i % 16 < 8 ? 0.5 : -0.5) * size}
                              : chance.in_square(0.5 * size));
-        if (!both && sight.inside_solid(p)) continue;
+        if (!both && wall_index.inside_solid(p)) continue;
         const double direction = chance.between(0.0, 2.0 * M_PI);
         const std::uint32_t row = first_wall(world.walls, p, direction, range);
         if (row == 0xFFFFFFFFu) continue;
@@ -64,11 +64,11 @@ TEST(Sectors, EveryWallABeamMeetsIsListed) {
 /// Far fewer than all walls: the point of the lists.
 TEST(Sectors, ListsAreShort) {
   const world::World world = scenes::cave(300, 16.0, 3);
-  const Sight sight(world, 0.1, 8.0);
-  FoundWalls walls;
-  find_walls(sight, {0.25, 8.0}, {}, false, walls);
+  const WallIndex wall_index(world, 0.1, 8.0);
+  CandidateWalls walls;
+  find_candidate_walls(wall_index, {0.25, 8.0}, {}, false, walls);
   SectorLists lists;
-  for (const FoundWall& w : walls.facing) lists.add(w.bearing, w.half, w.row);
+  for (const CandidateWall& w : walls.front_facing) lists.add(w.bearing, w.half, w.row);
   lists.sort();
   std::size_t all = 0;
   for (std::uint32_t s = 0; s < SF_SECTORS; ++s) all += lists.of(s).size();

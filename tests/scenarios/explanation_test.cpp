@@ -70,8 +70,8 @@ TEST(Explanation, HiddenMoversAreCounted) {
   farm::Farm farm(world, device());
   farm.hear_all();
   farm.tick(0, {});
-  EXPECT_EQ(farm.stats().work.movers_near, 6u * 5u);
-  EXPECT_EQ(farm.stats().work.movers_met, 2u * 5u) << "both neighbours, one at the ends";
+  EXPECT_EQ(farm.stats().work.movers_in_range, 6u * 5u);
+  EXPECT_EQ(farm.stats().work.movers_visible, 2u * 5u) << "both neighbours, one at the ends";
 }
 
 TEST(Explanation, StatesModesAndBounds) {

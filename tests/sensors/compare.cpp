@@ -136,9 +136,9 @@ void expect_same_bits(std::span<const base::ReadingBlock> p, std::span<const bas
 
 Tally sweep(const world::World& world, const farm::FarmOptions& options) {
   farm::FarmOptions by = options;
-  by.scene.caster = raycast::Caster::host;
+  by.scene.caster = raycast::CasterChoice::host;
   const Glance run(world, by);
-  by.scene.caster = raycast::Caster::vulkan;
+  by.scene.caster = raycast::CasterChoice::vulkan;
   expect_same_bits(run.readings, Glance(world, by).readings);
   std::vector<Pose> poses;
   for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);

@@ -94,7 +94,8 @@ TEST(Fans, OfOneRobotWithRatesOfTheirOwn) {
   }
   std::uint64_t hashes[2];
   for (const bool host : {false, true}) {
-    farm::Farm farm(world, device(), {.scene = {.caster = host ? raycast::Caster::host : raycast::Caster::vulkan}});
+    farm::Farm farm(world, device(),
+                    {.scene = {.caster = host ? raycast::CasterChoice::host : raycast::CasterChoice::vulkan}});
     farm.hear_all();
     for (int tick = 0; tick < 4; ++tick) {
       std::vector<base::Report> reports;

@@ -17,11 +17,11 @@ namespace {
 using base::Pose;
 using base::ReadingBlock;
 
-const farm::FarmOptions kOnDevice{.scene = {.caster = raycast::Caster::vulkan}};
+const farm::FarmOptions kOnDevice{.scene = {.caster = raycast::CasterChoice::vulkan}};
 /// Nothing fits into such lists.
-const farm::FarmOptions kOnHost{.scene = {.caster = raycast::Caster::vulkan, .longest_list = 0}};
+const farm::FarmOptions kOnHost{.scene = {.caster = raycast::CasterChoice::vulkan, .longest_list = 0}};
 /// Results that no storage buffer holds.
-const farm::FarmOptions kInTexels{.scene = {.caster = raycast::Caster::vulkan, .largest_buffer = 0}};
+const farm::FarmOptions kInTexels{.scene = {.caster = raycast::CasterChoice::vulkan, .largest_buffer = 0}};
 
 bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
   const auto same = [](auto a, auto b) {
@@ -35,7 +35,7 @@ bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
 void expect_same_bytes(const world::World& world) {
   farm::Farm on_device(world, device(), kOnDevice);
   farm::Farm on_host(world, device(), kOnHost);
-  farm::Farm by_host(world, device(), {.scene = {.caster = raycast::Caster::host}});
+  farm::Farm by_host(world, device(), {.scene = {.caster = raycast::CasterChoice::host}});
   for (farm::Farm* farm : {&on_device, &on_host, &by_host}) farm->hear_all();
   for (int tick = 0; tick < 2; ++tick) {
     std::vector<base::Report> reports;
@@ -196,7 +196,8 @@ TEST(SharedLists, CrowdsOfRobotsWithTwoLasers) {
 TEST(SharedLists, TablesThatGrewAreReadFromTheirNewPlace) {
   world::World world = scenes::cave(60, 30.0, 2);
   scenes::add_robots(world, 40, scenes::laser(), 2);
-  farm::Farm farm(world, device(), {.scene = {.caster = raycast::Caster::vulkan, .pool_chunks = 512, .pool_cells = 2}});
+  farm::Farm farm(world, device(),
+                  {.scene = {.caster = raycast::CasterChoice::vulkan, .pool_chunks = 512, .pool_cells = 2}});
   farm.hear(0, farm::kAllKinds);
   farm.tick(0, {});
   farm.hear_all();

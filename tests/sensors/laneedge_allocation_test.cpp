@@ -14,8 +14,8 @@ std::uint64_t allocations_per_lap(const world::World& world) {
   EdgeRig rig(world);
   std::vector<base::Pose> poses;
   for (const world::Mover& mover : world.movers) poses.push_back(mover.X_WM);
-  std::vector<sensors::Due> all;
-  std::vector<sensors::Due> some;
+  std::vector<sensors::DueSample> all;
+  std::vector<sensors::DueSample> some;
   for (std::uint32_t row = 0; row + 1 < world.movers.size(); ++row) {
     all.push_back({row, row});
     if (row % 2 == 0) some.push_back({row, row});

@@ -62,7 +62,7 @@ Seen judge(world::World world, const std::vector<Face>& faces, const std::vector
            const Settings& settings = {{"perpendicular", {0}}}) {
   for (const Pose& pose : poses) add_edge_eye(world, pose, settings);
   EdgeRig rig(world);
-  std::vector<sensors::Due> due;
+  std::vector<sensors::DueSample> due;
   for (std::uint32_t row = 0; row < poses.size(); ++row) due.push_back({row, 0});
   Seen seen;
   const double bearing = settings[0].second[0] * M_PI / 180.0;

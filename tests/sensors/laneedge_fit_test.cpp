@@ -30,10 +30,12 @@ const std::vector<double> kGrains{0.0, 0.005, 0.02};
 class FitRig {
  public:
   explicit FitRig(const std::vector<Settings>& settings)
-      : site_{world_, device(), thread_pool_, 0, true, {}}, edges_(edges_of(settings)), fit_(site_, edges_, kGrains) {}
+      : context_{world_, device(), thread_pool_, 0, true, {}},
+        edges_(edges_of(settings)),
+        fit_(context_, edges_, kGrains) {}
 
   std::vector<EdgeReading> read(const std::vector<Shot>& shots) {
-    std::vector<sensors::Due> due;
+    std::vector<sensors::DueSample> due;
     std::vector<std::uint32_t> lanes;
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < edges_.size(); ++i) {
@@ -68,7 +70,7 @@ class FitRig {
     batch.barrier();
     fit_.record(batch);
     batch.end();
-    fit_.copies(batch);
+    fit_.add_copies(batch);
     batch.upload(owners, 0, owners.bytes());
     batch.upload(counts, 0, counts.bytes());
     batch.upload(ranges, 0, ranges.bytes());
@@ -106,7 +108,7 @@ class FitRig {
 
   world::World world_;
   base::ThreadPool thread_pool_;
-  sensors::Site site_;
+  sensors::SensorContext context_;
   std::vector<sensors::LaneEdge> edges_;
   sensors::EdgeFit fit_;
 };

@@ -54,7 +54,7 @@ world::LaneMarking arc(glm::dvec2 centre, double radius, double from, double to,
 struct EdgeRig::State {
   world::World world;
   base::ThreadPool thread_pool;
-  sensors::Site site;
+  sensors::SensorContext context;
   std::unique_ptr<sensors::Instruments> instruments;
   gpu::Batch batch;
   std::size_t rows;
@@ -63,8 +63,8 @@ struct EdgeRig::State {
   State(const world::World& w, std::uint64_t seed, unsigned threads, bool noise, gpu::Device& on)
       : world(w),
         thread_pool(threads),
-        site{world, on, thread_pool, seed, noise, {}},
-        instruments(sensors::laneedge_kind.make(site)),
+        context{world, on, thread_pool, seed, noise, {}},
+        instruments(sensors::laneedge_kind.make(context)),
         batch(on),
         rows(sensors::laneedge_kind.rows(world).size()) {}
 };
@@ -74,10 +74,10 @@ EdgeRig::EdgeRig(const world::World& world, std::uint64_t seed, unsigned threads
 
 EdgeRig::~EdgeRig() = default;
 
-const std::vector<base::ReadingBlock>& EdgeRig::tick(const std::vector<sensors::Due>& due,
+const std::vector<base::ReadingBlock>& EdgeRig::tick(const std::vector<sensors::DueSample>& due,
                                                      const std::vector<base::Pose>& poses) {
   State& s = *s_;
-  s.instruments->place(poses);
+  s.instruments->set_poses(poses);
   if (s.instruments->prepare(due, poses)) {
     s.batch.begin();
     s.instruments->record_measure(s.batch);
@@ -85,14 +85,14 @@ const std::vector<base::ReadingBlock>& EdgeRig::tick(const std::vector<sensors::
     s.instruments->record_derive(s.batch);
     s.batch.end();
   }
-  s.instruments->copies(s.batch);
+  s.instruments->add_copies(s.batch);
   s.batch.run();
   s.blocks.clear();
   s.instruments->collect(s.blocks);
   return s.blocks;
 }
 
-std::vector<sensors::EdgeReading> EdgeRig::read_some(const std::vector<sensors::Due>& due,
+std::vector<sensors::EdgeReading> EdgeRig::read_some(const std::vector<sensors::DueSample>& due,
                                                      const std::vector<base::Pose>& poses) {
   std::vector<sensors::EdgeReading> readings;
   for (const base::ReadingBlock& block : tick(due, poses))
@@ -103,7 +103,7 @@ std::vector<sensors::EdgeReading> EdgeRig::read_some(const std::vector<sensors::
 std::vector<sensors::EdgeReading> EdgeRig::read(std::uint64_t sequence, std::vector<base::Pose> poses) {
   if (poses.empty())
     for (const world::Mover& mover : s_->world.movers) poses.push_back(mover.X_WM);
-  std::vector<sensors::Due> due;
+  std::vector<sensors::DueSample> due;
   for (std::uint32_t row = 0; row < s_->rows; ++row) due.push_back({row, sequence});
   return read_some(due, poses);
 }

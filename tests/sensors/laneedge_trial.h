@@ -41,10 +41,10 @@ class EdgeRig {
   /// One reading of each sensor, in order of rows; poses are those of the load unless given.
   std::vector<sensors::EdgeReading> read(std::uint64_t sequence = 0, std::vector<base::Pose> poses = {});
   /// Of the rows given.
-  std::vector<sensors::EdgeReading> read_some(const std::vector<sensors::Due>& due,
+  std::vector<sensors::EdgeReading> read_some(const std::vector<sensors::DueSample>& due,
                                               const std::vector<base::Pose>& poses);
   /// The same without a copy, for counting allocations: spans live until the next call.
-  const std::vector<base::ReadingBlock>& tick(const std::vector<sensors::Due>& due,
+  const std::vector<base::ReadingBlock>& tick(const std::vector<sensors::DueSample>& due,
                                               const std::vector<base::Pose>& poses);
 
  private:

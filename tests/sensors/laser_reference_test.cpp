@@ -40,7 +40,7 @@ Disagreement disagreement(const world::World& world, std::uint64_t seed, bool no
       poses[m].yaw += 0.7 * tick;
       reports.push_back({m, 0, poses[m], {}});
     }
-    reference.place(poses);
+    reference.set_poses(poses);
     for (const base::ReadingBlock& r : farm.tick(tick * 1'000'000'000ll, reports)) {
       const sensors::LaserReference::Scan scan = reference.scan(r.mover, r.sensor, r.sequence);
       for (std::size_t i = 0; i < r.values.size(); ++i, ++found.beams) {

@@ -9,7 +9,7 @@
 namespace sf::trial {
 namespace {
 
-const farm::FarmOptions kOnDevice{.scene = {.caster = raycast::Caster::vulkan}};
+const farm::FarmOptions kOnDevice{.scene = {.caster = raycast::CasterChoice::vulkan}};
 
 void add_thin(std::vector<world::Segment>& out, glm::dvec2 a, glm::dvec2 b, std::uint32_t model) {
   world::Segment s;
@@ -43,7 +43,7 @@ TEST(Limits, ListsNearlyAsLongAsTheBoundAreReadToTheEnd) {
   const Glance glance(world, kOnDevice);
   EXPECT_NEAR(glance.readings[0].values[0], 7.0, 1e-12) << "the last of the list is what the first beam meets";
   EXPECT_EQ(glance.readings[0].hits[0], 1u);
-  EXPECT_GT(glance.farm.stats().work.doubts, 0u) << "the test is meant to send every entry to the 64-bit decision";
+  EXPECT_GT(glance.farm.stats().work.uncertain, 0u) << "the test is meant to send every entry to the 64-bit decision";
   expect_exact("5 500 rails", sweep(world));
 }
 

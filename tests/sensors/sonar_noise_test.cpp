@@ -231,7 +231,7 @@ TEST(SonarHash, NoThreadCountNoRoomAndNoRunChangesAReading) {
   EXPECT_EQ(hash_of(world, {.seed = 4, .threads = 5}), one);
   EXPECT_EQ(hash_of(world, {.seed = 4,
                             .threads = 2,
-                            .scene = {.caster = raycast::Caster::vulkan, .pool_chunks = 4096, .pool_cells = 64}}),
+                            .scene = {.caster = raycast::CasterChoice::vulkan, .pool_chunks = 4096, .pool_cells = 64}}),
             one);
   EXPECT_NE(hash_of(world, {.seed = 5, .threads = 2}), one);
 }

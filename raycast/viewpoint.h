@@ -9,7 +9,7 @@ namespace sf::raycast {
 
 /// A sensor about to look.
 struct Viewpoint {
-  std::uint32_t family = 0;
+  std::uint32_t config = 0;
   std::uint32_t self = 0;  ///< mover that carries it
   base::Pose X_WS;
   glm::dvec2 heading;  ///< unit vector of the yaw

@@ -5,15 +5,15 @@ struct Beam64 {
   dvec2 direction;
 };
 
-struct Decision {
+struct ClosestHit {
   double range;  // [m]
   uint id;       // exact segment, or SF_NO_HIT
-  vec3 slant;    // cross product of the segment and the beam; the segment [m]
+  vec3 incidence;    // cross product of the segment and the beam; the segment [m]
 };
 
 // True where the sine of the angle between beam and surface is below `least`.
-bool grazes(Decision d, float least) {
-  return d.id != SF_NO_HIT && d.slant.x * d.slant.x < least * least * dot(d.slant.yz, d.slant.yz);
+bool grazes(ClosestHit d, float least) {
+  return d.id != SF_NO_HIT && d.incidence.x * d.incidence.x < least * least * dot(d.incidence.yz, d.incidence.yz);
 }
 
 // Where a segment lies [m]; of SF_NO_HIT, where any does.
@@ -28,7 +28,7 @@ Ends ends_of(uint id) {
 }
 
 // Both ends use the same doubles for every segment that shares them, so no beam slips between two neighbours.
-void decide(uint id, Beam64 beam, inout Decision best) {
+void intersect(uint id, Beam64 beam, inout ClosestHit best) {
   const Ends s = ends_of(id);
 
   precise double wax = s.ax - beam.origin.x;
@@ -39,45 +39,45 @@ void decide(uint id, Beam64 beam, inout Decision best) {
   precise double side_b = beam.direction.x * wby - beam.direction.y * wbx;
   precise double ex = s.bx - s.ax;
   precise double ey = s.by - s.ay;
-  precise double above = ex * way - ey * wax;
-  precise double below = ex * beam.direction.y - ey * beam.direction.x;
-  precise double t = above / below;
+  precise double numerator = ex * way - ey * wax;
+  precise double denominator = ex * beam.direction.y - ey * beam.direction.x;
+  precise double t = numerator / denominator;
 
   const bool crosses = (side_a >= 0.0LF && side_b <= 0.0LF) || (side_a <= 0.0LF && side_b >= 0.0LF);
-  const bool into = below > 0.0LF;
-  const bool ahead = t > SF_TOUCH || (into && t >= -SF_TOUCH);
+  const bool into = denominator > 0.0LF;
+  const bool ahead = t > SF_CONTACT_DISTANCE || (into && t >= -SF_CONTACT_DISTANCE);
   t = t > 0.0LF ? t : 0.0LF;
   const bool first = t < best.range || (t == best.range && id < best.id);
-  if (id != SF_NO_HIT && below != 0.0LF && crosses && ahead && first) {
+  if (id != SF_NO_HIT && denominator != 0.0LF && crosses && ahead && first) {
     best.range = t;
     best.id = id;
-    best.slant = vec3(below, ex, ey);
+    best.incidence = vec3(denominator, ex, ey);
   }
 }
 
-// [m] the range of a beam that is known to meet segment `id`, as `decide` has it; `range_max` where it meets none.
-double measure(uint id, Beam64 beam, double range_max) {
+// [m] the range of a beam that is known to meet segment `id`, as `intersect` has it; `range_max` where it meets none.
+double exact_range(uint id, Beam64 beam, double range_max) {
   const Ends s = ends_of(id);
   precise double wax = s.ax - beam.origin.x;
   precise double way = s.ay - beam.origin.y;
   precise double ex = s.bx - s.ax;
   precise double ey = s.by - s.ay;
-  precise double above = ex * way - ey * wax;
-  precise double below = ex * beam.direction.y - ey * beam.direction.x;
-  precise double t = above / below;
+  precise double numerator = ex * way - ey * wax;
+  precise double denominator = ex * beam.direction.y - ey * beam.direction.x;
+  precise double t = numerator / denominator;
   return id == SF_NO_HIT ? range_max : t;
 }
 
-// [m] the range of a beam that meets segment `id`, in 32 bits; less than 0 where these are not close enough. raycast/decide.h has the bound.
-float measure_single(uint id, Beam64 beam, float range_max) {
+// [m] the range of a beam that meets segment `id`, in 32 bits; less than 0 where these are not close enough. raycast/intersect.h has the bound.
+float range_single(uint id, Beam64 beam, float range_max) {
   const Ends s = ends_of(id);
   precise float wx = float(s.ax - beam.origin.x), wy = float(s.ay - beam.origin.y);
   precise float ex = float(s.bx - s.ax), ey = float(s.by - s.ay);
   precise float dx = float(beam.direction.x), dy = float(beam.direction.y);
-  precise float below = ex * dy - ey * dx;
-  precise float above = ex * wy - ey * wx;
-  precise float rough = 1.9073486328125e-6 * (abs(ex) + abs(ey)) * (abs(wx) + abs(wy) + range_max);
-  precise float limit = SF_SINGLE_SHARE * range_max * abs(below);
-  precise float t = above / below;
-  return id != SF_NO_HIT && rough <= limit ? max(t, 0.0) : -1.0;
+  precise float denominator = ex * dy - ey * dx;
+  precise float numerator = ex * wy - ey * wx;
+  precise float error_scale = 1.9073486328125e-6 * (abs(ex) + abs(ey)) * (abs(wx) + abs(wy) + range_max);
+  precise float limit = SF_SINGLE_TOLERANCE * range_max * abs(denominator);
+  precise float t = numerator / denominator;
+  return id != SF_NO_HIT && error_scale <= limit ? max(t, 0.0) : -1.0;
 }

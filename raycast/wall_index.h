@@ -10,31 +10,31 @@
 namespace sf::raycast {
 
 /// A segment in sight; `row` is its row in `World::walls`.
-struct SightSegment {
+struct IndexedWall {
   glm::dvec2 a;
   glm::dvec2 b;
   std::uint32_t row;
   bool solid_left;
 };
 
-/// Immutable after construction; may be asked by several threads, each with its own `Nearby`.
-class Sight {
+/// Immutable after construction; may be asked by several threads, each with its own `Query`.
+class WallIndex {
  public:
   /// The walls that a beam at height `z` [m] sees. `world` need not outlive it.
-  Sight(const world::World& world, double z, double typical_range);
+  WallIndex(const world::World& world, double z, double typical_range);
 
-  const std::vector<SightSegment>& segments() const { return segments_; }
+  const std::vector<IndexedWall>& segments() const { return segments_; }
   glm::dvec2 low() const { return low_; }  ///< [m] corner of their bounding box
   glm::dvec2 high() const { return high_; }
 
   /// Scratch of one thread.
-  struct Nearby {
+  struct Query {
     std::vector<std::uint32_t> found;  ///< rows in `segments()`, each once, in no order that matters
     std::vector<std::uint32_t> stamps;
     std::uint32_t stamp = 0;
   };
   /// Every segment within `radius` [m] of `p`, and perhaps some more.
-  void near(glm::dvec2 p, double radius, Nearby& nearby) const;
+  void near(glm::dvec2 p, double radius, Query& query) const;
 
   /// True when `p` lies in a solid: the winding number of all outlines with a known solid side is not 0. Points within
   /// rounding of a surface may get either answer.
@@ -48,7 +48,7 @@ class Sight {
   void index_cells(double typical_range);
   void index_bands();
 
-  std::vector<SightSegment> segments_;
+  std::vector<IndexedWall> segments_;
   glm::dvec2 low_, high_;
   double cell_ = 1.0;
   int columns_ = 1, rows_ = 1;

@@ -4,14 +4,14 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "raycast/caster.h"
+#include "raycast/caster_choice.h"
 
 namespace sf::raycast {
 
 /// How much room the lists may have before the oldest make way; a few robots get less. When one tick alone needs more,
 /// the room doubles.
 struct SceneOptions {
-  Caster caster = Caster::automatic;
+  CasterChoice caster = CasterChoice::automatic;
   std::uint32_t pool_chunks = 1u << 20;  ///< 80 bytes each; memory is touched only as far as used
   std::uint32_t pool_cells = 1u << 14;
   /// [chunks] of one sector: what has longer lists is cast on the host, where this is not above what the device bears.

@@ -1,6 +1,6 @@
 #pragma once
-// The 64-bit decision of one beam and one segment on the host: shaders/lib/decide.glsl, operation by operation, so that
-// both agree to the bit.
+// The 64-bit decision of one beam and one segment on the host: shaders/lib/intersect.glsl, operation by operation, so
+// that both agree to the bit.
 
 #include <algorithm>
 #include <cmath>
@@ -12,31 +12,32 @@
 namespace sf::raycast {
 
 /// The segment from `a` to `b` of a mover's frame, in the world. @param p of the mover  @param heading unit vector
-inline ExactSegment placed(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p, glm::dvec2 heading) {
+inline ExactSegment to_world(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p, glm::dvec2 heading) {
   const double c = heading.x, s = heading.y;
   return {p.x + (c * a.x - s * a.y), p.y + (s * a.x + c * a.y), p.x + (c * b.x - s * b.y), p.y + (s * b.x + c * b.y)};
 }
 
 /// A segment that a beam may meet.
-struct Surface {
+struct CandidateSegment {
   ExactSegment at;
   std::uint32_t id;  ///< walls first, then movers' edges: the smaller wins a tie
 };
 
 /// The nearest so far along one beam.
-struct Decision {
+struct ClosestHit {
   double range;                  ///< [m]
   std::uint32_t id = SF_NO_HIT;  ///< of the surface
-  float slant[3] = {};           ///< cross product of the segment and the beam; the segment [m]
+  float incidence[3] = {};       ///< cross product of the segment and the beam; the segment [m]
 
   /// True where the sine of the angle between beam and surface is below `least`.
   bool grazes(float least) const {
-    return id != SF_NO_HIT && slant[0] * slant[0] < least * least * (slant[1] * slant[1] + slant[2] * slant[2]);
+    return id != SF_NO_HIT &&
+           incidence[0] * incidence[0] < least * least * (incidence[1] * incidence[1] + incidence[2] * incidence[2]);
   }
 };
 
 /// @param d unit vector
-inline void decide(const Surface& surface, glm::dvec2 origin, glm::dvec2 d, Decision& best) {
+inline void intersect(const CandidateSegment& surface, glm::dvec2 origin, glm::dvec2 d, ClosestHit& best) {
   const ExactSegment& s = surface.at;
   const double wax = s.ax - origin.x, way = s.ay - origin.y;
   const double wbx = s.bx - origin.x, wby = s.by - origin.y;
@@ -45,28 +46,29 @@ inline void decide(const Surface& surface, glm::dvec2 origin, glm::dvec2 d, Deci
   const bool crosses = (side_a >= 0.0 && side_b <= 0.0) || (side_a <= 0.0 && side_b >= 0.0);
   if (!crosses) return;
   const double ex = s.bx - s.ax, ey = s.by - s.ay;
-  const double above = ex * way - ey * wax;
-  const double below = ex * d.y - ey * d.x;
-  if (below == 0.0) return;
-  const double t = above / below;
-  if (!(t > SF_TOUCH || (below > 0.0 && t >= -SF_TOUCH))) return;
+  const double numerator = ex * way - ey * wax;
+  const double denominator = ex * d.y - ey * d.x;
+  if (denominator == 0.0) return;
+  const double t = numerator / denominator;
+  if (!(t > SF_CONTACT_DISTANCE || (denominator > 0.0 && t >= -SF_CONTACT_DISTANCE))) return;
   const double range = t > 0.0 ? t : 0.0;
   if (range < best.range || (range == best.range && surface.id < best.id))
-    best = {range, surface.id, {static_cast<float>(below), static_cast<float>(ex), static_cast<float>(ey)}};
+    best = {range, surface.id, {static_cast<float>(denominator), static_cast<float>(ex), static_cast<float>(ey)}};
 }
 
 /// [m] the range of a beam that meets `s`, in 32 bits; less than 0 where these are not close enough. The error is at
 /// most 16 u |e| (|w| + range_max) / |e x d|, u = 2^-24, held below half of SF_SINGLE_SHARE range_max.
-/// shaders/lib/decide.glsl, operation by operation.
-inline float measure_single(const ExactSegment& s, glm::dvec2 origin, glm::dvec2 d, float range_max) {
+/// shaders/lib/intersect.glsl, operation by operation.
+inline float range_single(const ExactSegment& s, glm::dvec2 origin, glm::dvec2 d, float range_max) {
   const auto wx = static_cast<float>(s.ax - origin.x), wy = static_cast<float>(s.ay - origin.y);
   const auto ex = static_cast<float>(s.bx - s.ax), ey = static_cast<float>(s.by - s.ay);
   const auto dx = static_cast<float>(d.x), dy = static_cast<float>(d.y);
-  const float below = ex * dy - ey * dx;
-  const float above = ex * wy - ey * wx;
-  const float rough = 0x1p-19f * (std::abs(ex) + std::abs(ey)) * (std::abs(wx) + std::abs(wy) + range_max);
-  return rough <= static_cast<float>(SF_SINGLE_SHARE) * range_max * std::abs(below) ? std::max(above / below, 0.0f)
-                                                                                    : -1.0f;
+  const float denominator = ex * dy - ey * dx;
+  const float numerator = ex * wy - ey * wx;
+  const float error_scale = 0x1p-19f * (std::abs(ex) + std::abs(ey)) * (std::abs(wx) + std::abs(wy) + range_max);
+  return error_scale <= static_cast<float>(SF_SINGLE_TOLERANCE) * range_max * std::abs(denominator)
+             ? std::max(numerator / denominator, 0.0f)
+             : -1.0f;
 }
 
 }  // namespace sf::raycast

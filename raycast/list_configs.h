@@ -6,13 +6,13 @@
 #include <memory>
 #include <vector>
 
-#include "raycast/sight.h"
+#include "raycast/wall_index.h"
 #include "world/world.h"
 
 namespace sf::raycast {
 
 /// Sensors that can share lists: one height, one range.
-struct Family {
+struct ListConfig {
   double z = 0.0;             ///< [m] world height of the sensors
   double range = 0.0;         ///< [m]
   double spread = 0.0;        ///< [rad] from the middle of a lane's beams to its outermost: largest of its sensors
@@ -21,28 +21,28 @@ struct Family {
 };
 
 /// `world` need not outlive it.
-class Families {
+class ListConfigs {
  public:
-  explicit Families(const world::World& world);
+  explicit ListConfigs(const world::World& world);
 
   /// Equal height and range give the same number.
-  std::uint32_t add(const Family& family);
+  std::uint32_t add(const ListConfig& config);
 
   std::size_t size() const { return rows_.size(); }
-  const Family& operator[](std::size_t i) const { return rows_[i].family; }
+  const ListConfig& operator[](std::size_t i) const { return rows_[i].config; }
   /// The walls that family `i` sees; families between the same two breaks of height share them.
-  const Sight& sight(std::size_t i) const { return *rows_[i].sight; }
+  const WallIndex& wall_index(std::size_t i) const { return *rows_[i].wall_index; }
   /// Of the world, row by row.
   const std::vector<world::Segment>& walls() const { return walls_; }
 
  private:
   struct Row {
-    Family family;
-    const Sight* sight;
+    ListConfig config;
+    const WallIndex* wall_index;
   };
   std::vector<world::Segment> walls_;
-  std::vector<double> breaks_;                            ///< [m] heights at which the set of visible walls changes
-  std::map<std::size_t, std::unique_ptr<Sight>> sights_;  ///< by the interval between breaks
+  std::vector<double> breaks_;  ///< [m] heights at which the set of visible walls changes
+  std::map<std::size_t, std::unique_ptr<WallIndex>> wall_indices_;  ///< by the interval between breaks
   std::vector<Row> rows_;
 };
 

@@ -8,7 +8,7 @@ namespace sf::raycast {
 
 /// Names one cell of one family of sensors.
 struct CellKey {
-  std::int64_t family = 0;  ///< which sensors share it, and whether viewpoints may lie inside solids
+  std::int64_t config = 0;  ///< which sensors share it, and whether viewpoints may lie inside solids
   std::int64_t x = 0;
   std::int64_t y = 0;
   bool operator==(const CellKey&) const = default;
@@ -18,11 +18,11 @@ struct CellKey {
 ///
 /// Chunks are handed out in pages, round and round; what was there is forgotten, unless this tick needs it. Allocates
 /// only to grow.
-class CellPool {
+class CellCache {
  public:
   /// @param slots how many cells at most. @param chunks how many chunks of entries at most.
   /// @param page [chunks] that are handed out together
-  CellPool(std::uint32_t slots, std::uint32_t chunks, std::uint32_t page = kPage);
+  CellCache(std::uint32_t slots, std::uint32_t chunks, std::uint32_t page = kPage);
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
   static constexpr std::uint32_t kPage = 32;  ///< [chunks] unless told otherwise
@@ -36,7 +36,7 @@ class CellPool {
   /// The slot of `key`, or kNone; may be asked by several threads at once.
   std::uint32_t slot_of(const CellKey& key) const;
   /// Keeps what is in `slot` for this tick.
-  void keep(std::uint32_t slot) { slots_[slot].tick = tick_; }
+  void touch(std::uint32_t slot) { slots_[slot].tick = tick_; }
   /// Room for `key` (not in the pool) with `chunks` chunks: its slot, or kNone when this tick's cells fill the pool.
   std::uint32_t insert(const CellKey& key, std::uint32_t chunks);
 
@@ -53,18 +53,18 @@ class CellPool {
     std::uint64_t tick = 0;  ///< last tick that needed it
     bool used = false;
   };
-  std::size_t home_of(const CellKey& key) const;
-  void enter(std::uint32_t slot);
-  void forget(std::uint32_t slot);
+  std::size_t bucket_of(const CellKey& key) const;
+  void insert_key(std::uint32_t slot);
+  void evict(std::uint32_t slot);
   std::uint32_t free_slot();
   std::uint32_t free_pages(std::uint32_t pages);
 
   std::uint32_t page_;
   std::vector<Slot> slots_;
-  std::vector<std::uint32_t> table_;   ///< open addressing by key: a slot or kNone
-  std::vector<std::uint32_t> owners_;  ///< by page: a slot or kNone
-  std::uint32_t head_ = 0;             ///< page where the search for room goes on
-  std::uint32_t hand_ = 0;             ///< slot where the search for a free one goes on
+  std::vector<std::uint32_t> table_;        ///< open addressing by key: a slot or kNone
+  std::vector<std::uint32_t> page_owners_;  ///< by page: a slot or kNone
+  std::uint32_t next_page_ = 0;             ///< page where the search for room goes on
+  std::uint32_t clock_hand_ = 0;            ///< slot where the search for a free one goes on
   std::uint32_t used_ = 0;
   std::uint64_t built_ = 0;
   std::uint64_t tick_ = 1;

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "raycast/sight.h"
+#include "raycast/wall_index.h"
 
 namespace sf::raycast {
 
@@ -24,25 +24,26 @@ struct CellShape {
 };
 
 /// A segment seen from its right, relative to a cell's centre.
-struct FoundWall {
+struct CandidateWall {
   glm::dvec2 a, b;
   std::uint32_t row;     ///< of the exact segment
   double nearest;        ///< [m] to any viewer
   double bearing, half;  ///< [rad] where viewers see it; a half beyond pi: all round
-  int ring;              ///< step of distance
+  int distance_ring;     ///< step of distance
 };
 
 /// Walls round one cell. Keeps its memory between uses.
-struct FoundWalls {
-  std::vector<FoundWall> facing;
-  std::vector<FoundWall> behind;  ///< facing away from the whole cell: they decide ties at corners
-  Sight::Nearby nearby;
+struct CandidateWalls {
+  std::vector<CandidateWall> front_facing;
+  std::vector<CandidateWall> back_facing;  ///< facing away from the whole cell: they decide ties at corners
+  WallIndex::Query query;
 };
 
 /// The part of ab within `reach` of the origin; false when there is none.
 bool clip(glm::dvec2& a, glm::dvec2& b, double reach);
 
 /// Finds the walls round the cell at `centre`. With `both_sides`, viewers may lie inside of solids.
-void find_walls(const Sight& sight, const CellShape& shape, glm::dvec2 centre, bool both_sides, FoundWalls& walls);
+void find_candidate_walls(const WallIndex& wall_index, const CellShape& shape, glm::dvec2 centre, bool both_sides,
+                          CandidateWalls& walls);
 
 }  // namespace sf::raycast

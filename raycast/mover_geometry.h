@@ -14,15 +14,15 @@ namespace sf::raycast {
 using base::Pose;
 
 /// All movers' outlines. Exact segments follow those of the walls: row = walls + the mover's first + number.
-class MoverTables {
+class MoverGeometry {
  public:
-  explicit MoverTables(const world::World& world);
+  explicit MoverGeometry(const world::World& world);
 
   /// Prepares for scans at world height `z` [m]: to be called for each before the first `place`. Gives its number.
-  std::uint32_t watch_height(double z);
+  std::uint32_t add_height(double z);
 
   /// Moves every outline. One pose per mover; a mover whose x is not a number is nowhere. @param exact of movers' rows
-  void place(std::span<const Pose> poses, base::ThreadPool& thread_pool, std::span<ExactSegment> exact);
+  void set_poses(std::span<const Pose> poses, base::ThreadPool& thread_pool, std::span<ExactSegment> exact);
 
   std::size_t segments() const { return local_.size(); }
   /// Models that beams report, row by row.
@@ -43,13 +43,13 @@ class MoverTables {
     OutlineTable outlines;
   };
   OutlineTable outlines_at(double z) const;
-  void lay_out();
+  void build_grid();
 
   std::vector<world::Segment> local_;  ///< mover frame
   std::vector<std::uint32_t> models_;
   std::vector<std::uint32_t> first_rows_;
-  std::vector<double> radii_;     ///< [m] 0: nothing to meet
-  std::vector<double> loaded_z_;  ///< [m] heights are those at load, the world is 2.5-D
+  std::vector<double> radii_;   ///< [m] 0: nothing to meet
+  std::vector<double> load_z_;  ///< [m] heights are those at load, the world is 2.5-D
   std::uint32_t walls_;
   std::vector<Height> heights_;
   std::vector<Pose> poses_;

@@ -1,4 +1,4 @@
-#include "raycast/wall_lists.h"
+#include "raycast/candidate_walls.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr int kRings = 2;
 constexpr double kSlack = 1e-5;
 
 /// [rad] of p, wrong by less than 2e-6: its arc tangent after Abramowitz and Stegun 4.4.49.
-double rough_bearing(glm::dvec2 p) {
+double fast_bearing(glm::dvec2 p) {
   const double along = std::abs(p.x), across = std::abs(p.y);
   const double q = std::min(along, across) / std::max(along, across), z = q * q;
   double t = 0.0028662257;
@@ -28,28 +28,28 @@ double rough_bearing(glm::dvec2 p) {
 }
 
 /// [rad] at least the arc sine of v in [0, 1), but for rounding.
-double wide_of(double v) {
+double asin_bound(double v) {
   if (v > 0.8) return std::asin(v);
   const double vv = v * v;
   return v * (1.0 + vv * (1.0 / 6.0 + vv * (0.075 + vv * 0.2)));
 }
 
 /// Steps of distance, of which kRings double it. @param times at least 1
-int ring_of(double times) {
+int distance_ring_of(double times) {
   int exponent = 0;
   const double part = std::frexp(times, &exponent);  // in [0.5, 1)
   return kRings * (exponent - 1) + (part >= M_SQRT1_2 ? 1 : 0);
 }
 
 /// @param radius [m] of the disc that holds all viewers
-FoundWall found(glm::dvec2 a, glm::dvec2 b, std::uint32_t row, double radius) {
-  FoundWall f{a, b, row, std::max(0.0, world::distance({}, a, b) - radius), 0.0, 2.0 * M_PI, -1};
+CandidateWall found(glm::dvec2 a, glm::dvec2 b, std::uint32_t row, double radius) {
+  CandidateWall f{a, b, row, std::max(0.0, world::distance({}, a, b) - radius), 0.0, 2.0 * M_PI, -1};
   const double share_a = radius / length(a), share_b = radius / length(b);
   if (f.nearest <= 0.0 || std::max(share_a, share_b) >= 1.0) return f;
-  const double bearing_a = rough_bearing(a), turn = base::wrap_angle(rough_bearing(b) - bearing_a);
-  const double wide_a = wide_of(share_a) + kSlack, wide_b = wide_of(share_b) + kSlack;
+  const double bearing_a = fast_bearing(a), turn = base::wrap_angle(fast_bearing(b) - bearing_a);
+  const double wide_a = asin_bound(share_a) + kSlack, wide_b = asin_bound(share_b) + kSlack;
   const double low = std::min(-wide_a, turn - wide_b), high = std::max(wide_a, turn + wide_b);
-  f.ring = ring_of((f.nearest + radius) / radius);
+  f.distance_ring = distance_ring_of((f.nearest + radius) / radius);
   if (std::abs(turn) > M_PI - kSlack) return f;
   f.half = 0.5 * (high - low);
   f.bearing = base::wrap_angle(bearing_a + 0.5 * (low + high));
@@ -75,22 +75,23 @@ bool clip(glm::dvec2& a, glm::dvec2& b, double reach) {
   return true;
 }
 
-void find_walls(const Sight& sight, const CellShape& shape, glm::dvec2 centre, bool both_sides, FoundWalls& walls) {
+void find_candidate_walls(const WallIndex& wall_index, const CellShape& shape, glm::dvec2 centre, bool both_sides,
+                          CandidateWalls& walls) {
   const double radius = shape.radius();
-  walls.facing.clear();
-  walls.behind.clear();
-  sight.near(centre, shape.reach(), walls.nearby);
-  for (const std::uint32_t i : walls.nearby.found) {
-    const SightSegment& s = sight.segments()[i];
+  walls.front_facing.clear();
+  walls.back_facing.clear();
+  wall_index.near(centre, shape.reach(), walls.query);
+  for (const std::uint32_t i : walls.query.found) {
+    const IndexedWall& s = wall_index.segments()[i];
     glm::dvec2 a = s.a - centre, b = s.b - centre;
     if (!clip(a, b, shape.reach())) continue;
     // The cell's signed distance from the segment's line: positive on its left.
     const glm::dvec2 e = s.b - s.a;
     const double side = base::cross(e, centre - s.a) / length(e);
     const bool both = both_sides || !s.solid_left;
-    if (side < radius) walls.facing.push_back(found(a, b, s.row, radius));
-    if (side > -radius && both) walls.facing.push_back(found(b, a, s.row, radius));
-    if (side >= radius && !both) walls.behind.push_back(found(a, b, s.row, radius));
+    if (side < radius) walls.front_facing.push_back(found(a, b, s.row, radius));
+    if (side > -radius && both) walls.front_facing.push_back(found(b, a, s.row, radius));
+    if (side >= radius && !both) walls.back_facing.push_back(found(a, b, s.row, radius));
   }
 }
 

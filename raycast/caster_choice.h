@@ -6,8 +6,8 @@
 
 namespace sf::raycast {
 
-enum class Caster : std::uint8_t {
-  automatic,  ///< as `caster_for` says
+enum class CasterChoice : std::uint8_t {
+  automatic,  ///< as `choose_caster` says
   vulkan,     ///< kernels on the device
   host,       ///< scan conversion on this machine
 };
@@ -15,10 +15,10 @@ enum class Caster : std::uint8_t {
 /// The caster where `asked` is automatic: the environment's SENSORFARM_CASTER ("vulkan" or "host"), else the host where
 /// the device is software, which is slower at it, else Vulkan.
 /// @throws base::InputError where the environment names another caster.
-Caster caster_for(bool software, Caster asked = Caster::automatic);
+CasterChoice choose_caster(bool software, CasterChoice asked = CasterChoice::automatic);
 
 /// The caster of farms on such a device as reports name it: "Vulkan kernels", or the host with its vectors, as in
 /// "host, AVX2".
-std::string caster_text(bool software);
+std::string describe_caster(bool software);
 
 }  // namespace sf::raycast

@@ -1,11 +1,11 @@
 // One beam against all that it may cross, in 64 bits.
 // Compiled once for each set of instructions (hwy/foreach_target.h).
 
-#if defined(SF_RAYCAST_DOUBTS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SF_RAYCAST_DOUBTS_INL_H
-#undef SF_RAYCAST_DOUBTS_INL_H
+#if defined(SF_RAYCAST_EXACT_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SF_RAYCAST_EXACT_INL_H
+#undef SF_RAYCAST_EXACT_INL_H
 #else
-#define SF_RAYCAST_DOUBTS_INL_H
+#define SF_RAYCAST_EXACT_INL_H
 #endif
 
 #include <algorithm>
@@ -18,73 +18,76 @@ namespace sf::raycast::HWY_NAMESPACE {
 
 /// Segments of a block that direction `d` may cross, those behind the viewer too: a bit each. Start and extent are
 /// turned by `heading` and moved by `from`.
-inline std::uint32_t crossed_by(const SegmentBlock& block, glm::dvec2 from, glm::dvec2 heading, glm::dvec2 d,
-                                float band) {
+inline std::uint32_t segments_crossing(const SegmentBlock& block, glm::dvec2 from, glm::dvec2 heading, glm::dvec2 d,
+                                       float band) {
   const VF c = constant(static_cast<float>(heading.x)), sn = constant(static_cast<float>(heading.y));
   const VF x = constant(static_cast<float>(from.x)), y = constant(static_cast<float>(from.y));
-  const VF dx = constant(static_cast<float>(d.x)), dy = constant(static_cast<float>(d.y)), slip = constant(2.0f * band);
+  const VF dx = constant(static_cast<float>(d.x)), dy = constant(static_cast<float>(d.y)),
+           tolerance = constant(2.0f * band);
   std::uint32_t found = 0;
   for (std::uint32_t k = 0; k < kBlock; k += lanes()) {
     const VF ax = load(block.ax + k), ay = load(block.ay + k), ex = load(block.ex + k), ey = load(block.ey + k);
     const VF wx = x + (c * ax - sn * ay), wy = y + (sn * ax + c * ay), gx = c * ex - sn * ey, gy = sn * ex + c * ey;
     const VF start = dx * wy - dy * wx, end = start + (dx * gy - dy * gx);
-    const MF apart = hn::Or(hn::Min(start, end) > slip, hn::Max(start, end) < hn::Neg(slip));
+    const MF apart = hn::Or(hn::Min(start, end) > tolerance, hn::Max(start, end) < hn::Neg(tolerance));
     found |= bits_of(hn::Not(apart)) << k;
   }
   return found;
 }
 
 /// Decides those of a block that beam `d` may cross.
-void meet(const ScanView& view, const ScanScene& scene, const SegmentBlock& block, glm::dvec2 from, glm::dvec2 heading,
-          std::uint32_t first_row, glm::dvec2 d, Decision& best) {
-  for (std::uint32_t open = crossed_by(block, from, heading, d, view.band); open != 0; open &= open - 1) {
-    const std::uint32_t number = block.row[__builtin_ctz(open)];
-    if (number != SF_NO_HIT) decide({scene.exact[first_row + number], first_row + number}, view.origin, d, best);
+void intersect_block(const ScanView& view, const ScanScene& scene, const SegmentBlock& block, glm::dvec2 from,
+                     glm::dvec2 heading, std::uint32_t first_row, glm::dvec2 d, ClosestHit& best) {
+  for (std::uint32_t pending = segments_crossing(block, from, heading, d, view.band); pending != 0;
+       pending &= pending - 1) {
+    const std::uint32_t number = block.row[__builtin_ctz(pending)];
+    if (number != SF_NO_HIT) intersect({scene.exact[first_row + number], first_row + number}, view.origin, d, best);
   }
 }
 
-void meet_walls(const ScanView& view, const ScanScene& scene, glm::dvec2 d, Decision& best) {
+void intersect_walls(const ScanView& view, const ScanScene& scene, glm::dvec2 d, ClosestHit& best) {
   VF unused;
   const float bearing =
       hn::GetLane(bearing_of(constant(static_cast<float>(d.y)), constant(static_cast<float>(d.x)), unused));
-  const auto meet_block = [&](const SegmentBlock& block) {
+  const auto visit_block = [&](const SegmentBlock& block) {
     const float turned = std::abs(block.bearing - bearing);
     const float apart = std::min(turned, std::abs(6.2831853f - turned));
     if (apart > block.half + 1e-5f || static_cast<double>(block.nearest) > best.range) return;
-    meet(view, scene, block, -1.0 * view.offset, {1.0, 0.0}, 0, d, best);
+    intersect_block(view, scene, block, -1.0 * view.offset, {1.0, 0.0}, 0, d, best);
   };
-  if (scene.ahead == nullptr) {
-    for (const SegmentBlock& block : scene.walls) meet_block(block);
+  if (scene.block_masks == nullptr) {
+    for (const SegmentBlock& block : scene.walls) visit_block(block);
     return;
   }
   const auto sector = static_cast<int>(std::floor(bearing * (kSectors / 6.2831853f))) & (kSectors - 1);
-  for (std::uint64_t open = (*scene.ahead)[static_cast<std::size_t>(sector)]; open != 0; open &= open - 1)
-    meet_block(scene.walls[static_cast<std::size_t>(__builtin_ctzll(open))]);
+  for (std::uint64_t pending = (*scene.block_masks)[static_cast<std::size_t>(sector)]; pending != 0;
+       pending &= pending - 1)
+    visit_block(scene.walls[static_cast<std::size_t>(__builtin_ctzll(pending))]);
 }
 
 /// Lists movers of one row of cells whose discs beam `d` may cross within `range`.
-void find_across(Scratch& s, const ScanView& view, const ScanScene& scene, glm::dvec2 d, double range,
-                 std::uint32_t from, std::uint32_t end) {
+void find_movers_on_beam(Scratch& s, const ScanView& view, const ScanScene& scene, glm::dvec2 d, double range,
+                         std::uint32_t from, std::uint32_t end) {
   const MoverGrid& grid = *scene.movers;
   const VF x = constant(static_cast<float>(view.origin.x - grid.low.x));
   const VF y = constant(static_cast<float>(view.origin.y - grid.low.y));
   const VF ux = constant(static_cast<float>(d.x)), uy = constant(static_cast<float>(d.y));
-  const VF reach = constant(static_cast<float>(range) * 1.00001f), slip = constant(grid.error + view.band);
+  const VF reach = constant(static_cast<float>(range) * 1.00001f), tolerance = constant(grid.error + view.band);
   for (std::uint32_t at = from; at < end; at += lanes()) {
     const VF dx = load(&grid.x[at]) - x, dy = load(&grid.y[at]) - y;
-    const VF radius = load(&grid.radius[at]) * constant(1.0001f) + slip;
+    const VF radius = load(&grid.radius[at]) * constant(1.0001f) + tolerance;
     const VF along = dx * ux + dy * uy, aside = hn::Abs(dx * uy - dy * ux);
     const MF across = hn::And(hn::And(aside <= radius, along >= hn::Neg(radius)), along - radius <= reach);
-    std::uint32_t open = bits_of(across);
-    if (end - at < lanes()) open &= (1u << (end - at)) - 1;
-    for (; open != 0; open &= open - 1) {
-      const std::uint32_t mover = grid.mover[at + static_cast<std::uint32_t>(__builtin_ctz(open))];
+    std::uint32_t pending = bits_of(across);
+    if (end - at < lanes()) pending &= (1u << (end - at)) - 1;
+    for (; pending != 0; pending &= pending - 1) {
+      const std::uint32_t mover = grid.mover[at + static_cast<std::uint32_t>(__builtin_ctz(pending))];
       if (mover != scene.self) s.across.push_back(mover);
     }
   }
 }
 
-void meet_movers(Scratch& s, const ScanView& view, const ScanScene& scene, glm::dvec2 d, Decision& best) {
+void intersect_movers(Scratch& s, const ScanView& view, const ScanScene& scene, glm::dvec2 d, ClosestHit& best) {
   const MoverGrid& grid = *scene.movers;
   const double margin = grid.largest_radius * 1.001 + 2.0 * static_cast<double>(grid.error);
   const glm::dvec2 from{view.origin.x - grid.low.x, view.origin.y - grid.low.y}, to = from + best.range * d;
@@ -92,25 +95,26 @@ void meet_movers(Scratch& s, const ScanView& view, const ScanScene& scene, glm::
   const int y0 = grid.row_of(std::min(from.y, to.y) - margin), y1 = grid.row_of(std::max(from.y, to.y) + margin);
   s.across.clear();
   for (int row = y0; row <= y1; ++row)
-    find_across(s, view, scene, d, best.range, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
+    find_movers_on_beam(s, view, scene, d, best.range, grid.begin_of(x0, row), grid.begin_of(x1 + 1, row));
   for (const std::uint32_t mover : s.across) {
     const OutlineTable::Outline& outline = scene.outlines->of_mover[mover];
     const glm::dvec2 place = glm::dvec2{scene.poses[mover].x, scene.poses[mover].y} - view.origin;
     for (std::uint32_t i = outline.first; i < outline.first + outline.all; ++i)
-      meet(view, scene, scene.outlines->blocks[i], place, scene.headings[mover], scene.first_rows[mover], d, best);
+      intersect_block(view, scene, scene.outlines->blocks[i], place, scene.headings[mover], scene.first_rows[mover], d,
+                      best);
   }
 }
 
 /// Answers beam `i` by all that lies across it, in 64 bits. @return whether it grazes
-bool answer_beam(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, std::size_t i,
-                 const ScanOutput& out) {
+bool intersect_beam(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, std::size_t i,
+                    const ScanOutput& out) {
   const glm::dvec2 d = direction_of(view, pattern, i);
-  Decision best{view.range_max};
-  meet_walls(view, scene, d, best);
-  if (scene.movers != nullptr) meet_movers(s, view, scene, d, best);
-  const bool grazes = best.grazes(static_cast<float>(view.least_sine));
+  ClosestHit best{view.range_max};
+  intersect_walls(view, scene, d, best);
+  if (scene.movers != nullptr) intersect_movers(s, view, scene, d, best);
+  const bool grazes = best.grazes(static_cast<float>(view.min_sine));
   if (view.single && best.id != SF_NO_HIT) {
-    const float t = measure_single(scene.exact[best.id], view.origin, d, static_cast<float>(view.range_max));
+    const float t = range_single(scene.exact[best.id], view.origin, d, static_cast<float>(view.range_max));
     if (t >= 0.0f) best.range = std::min(static_cast<double>(t), view.range_max);
   }
   out.ranges[i] = std::max(best.range, view.range_min);
@@ -120,23 +124,23 @@ bool answer_beam(Scratch& s, const ScanView& view, const ScanPattern& pattern, c
 }
 
 /// Answers every beam alone. @return whether any grazes
-bool answer_all(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
-                const ScanOutput& out) {
+bool intersect_all_beams(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
+                         const ScanOutput& out) {
   bool grazes = false;
-  for (std::size_t i = 0; i < pattern.beams; ++i) grazes |= answer_beam(s, view, pattern, scene, i, out);
+  for (std::size_t i = 0; i < pattern.beams; ++i) grazes |= intersect_beam(s, view, pattern, scene, i, out);
   return grazes;
 }
 
 /// Answers the beams that are in doubt. @return whether any grazes
-bool answer_doubts(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
-                   const ScanOutput& out) {
+bool intersect_uncertain_beams(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
+                               const ScanOutput& out) {
   std::fill_n(out.grazes, pattern.beams, std::uint8_t{0});
   bool grazes = false;
-  for (std::size_t w = 0; w < s.doubts.size(); ++w)
-    for (std::uint64_t open = s.doubts[w]; open != 0; open &= open - 1) {
-      const std::size_t i = 64 * w + static_cast<std::size_t>(__builtin_ctzll(open));
-      grazes |= answer_beam(s, view, pattern, scene, i, out);
-      ++s.counts.doubts;
+  for (std::size_t w = 0; w < s.uncertain.size(); ++w)
+    for (std::uint64_t pending = s.uncertain[w]; pending != 0; pending &= pending - 1) {
+      const std::size_t i = 64 * w + static_cast<std::size_t>(__builtin_ctzll(pending));
+      grazes |= intersect_beam(s, view, pattern, scene, i, out);
+      ++s.counts.uncertain;
     }
   return grazes;
 }

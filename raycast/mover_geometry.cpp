@@ -1,4 +1,4 @@
-#include "raycast/mover_tables.h"
+#include "raycast/mover_geometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +8,12 @@ namespace sf::raycast {
 
 namespace {
 
-constexpr int kMostCells = 256;  ///< along an axis
-constexpr std::uint32_t kNowhere = 0xFFFFFFFFu;
+constexpr int kMaxCells = 256;  ///< along an axis
+constexpr std::uint32_t kNoCell = 0xFFFFFFFFu;
 
 }  // namespace
 
-MoverTables::MoverTables(const world::World& world) : walls_(static_cast<std::uint32_t>(world.walls.size())) {
+MoverGeometry::MoverGeometry(const world::World& world) : walls_(static_cast<std::uint32_t>(world.walls.size())) {
   for (const world::Mover& mover : world.movers) {
     first_rows_.push_back(walls_ + static_cast<std::uint32_t>(local_.size()));
     for (const world::Segment& s : mover.body) {
@@ -23,7 +23,7 @@ MoverTables::MoverTables(const world::World& world) : walls_(static_cast<std::ui
     }
     const bool met = first_rows_.back() - walls_ < local_.size();
     radii_.push_back(met ? mover.radius : 0.0);
-    loaded_z_.push_back(mover.X_WM.z);
+    load_z_.push_back(mover.X_WM.z);
     grid_.largest_radius = std::max(grid_.largest_radius, mover.radius);
   }
   first_rows_.push_back(walls_ + static_cast<std::uint32_t>(local_.size()));
@@ -33,11 +33,11 @@ MoverTables::MoverTables(const world::World& world) : walls_(static_cast<std::ui
   cells_.resize(movers);
   grid_.mover.resize(padded);
   grid_.x.resize(padded), grid_.y.resize(padded), grid_.radius.resize(padded);
-  grid_.first.reserve(std::size_t{kMostCells} * kMostCells + 1);
+  grid_.first.reserve(std::size_t{kMaxCells} * kMaxCells + 1);
   next_.reserve(grid_.first.capacity());
 }
 
-std::uint32_t MoverTables::watch_height(double z) {
+std::uint32_t MoverGeometry::add_height(double z) {
   for (std::uint32_t i = 0; i < heights_.size(); ++i)
     if (heights_[i].z == z) return i;
   heights_.push_back({z, outlines_at(z)});
@@ -45,7 +45,7 @@ std::uint32_t MoverTables::watch_height(double z) {
 }
 
 /// Movers of one shape share its blocks.
-OutlineTable MoverTables::outlines_at(double z) const {
+OutlineTable MoverGeometry::outlines_at(double z) const {
   OutlineTable table;
   std::map<std::vector<double>, OutlineTable::Outline> known;
   for (std::size_t m = 0; m + 1 < first_rows_.size(); ++m) {
@@ -54,7 +54,7 @@ OutlineTable MoverTables::outlines_at(double z) const {
     std::uint32_t used_outward = 0, used_inward = 0;
     for (std::uint32_t row = first_rows_[m]; row < first_rows_[m + 1]; ++row) {
       const world::Segment& s = local_[row - walls_];
-      if (z - loaded_z_[m] < s.z_min || z - loaded_z_[m] >= s.z_max) continue;
+      if (z - load_z_[m] < s.z_min || z - load_z_[m] >= s.z_max) continue;
       const std::uint32_t number = row - first_rows_[m];
       append(outward, used_outward, s.a, s.b, number);
       s.solid_left ? append(inward, used_inward, s.b, s.a, number) : append(outward, used_outward, s.b, s.a, number);
@@ -73,40 +73,41 @@ OutlineTable MoverTables::outlines_at(double z) const {
   return table;
 }
 
-void MoverTables::place(std::span<const Pose> poses, base::ThreadPool& thread_pool, std::span<ExactSegment> exact) {
+void MoverGeometry::set_poses(std::span<const Pose> poses, base::ThreadPool& thread_pool,
+                              std::span<ExactSegment> exact) {
   std::copy(poses.begin(), poses.end(), poses_.begin());
   thread_pool.parallel_for(poses_.size(), 64, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const Pose& X = poses_[i];
       headings_[i] = {std::cos(X.yaw), std::sin(X.yaw)};
       for (std::uint32_t row = first_rows_[i] - walls_; row < first_rows_[i + 1] - walls_; ++row) {
-        exact[row] = placed(local_[row].a, local_[row].b, {X.x, X.y}, headings_[i]);
+        exact[row] = to_world(local_[row].a, local_[row].b, {X.x, X.y}, headings_[i]);
       }
     }
   });
-  lay_out();
+  build_grid();
 }
 
-void MoverTables::lay_out() {
+void MoverGeometry::build_grid() {
   glm::dvec2 low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-  const auto is_met = [this](std::size_t i) { return radii_[i] > 0.0 && !std::isnan(poses_[i].x); };
+  const auto is_present = [this](std::size_t i) { return radii_[i] > 0.0 && !std::isnan(poses_[i].x); };
   for (std::size_t i = 0; i < poses_.size(); ++i) {
-    if (!is_met(i)) continue;
+    if (!is_present(i)) continue;
     low = {std::min(low.x, poses_[i].x), std::min(low.y, poses_[i].y)};
     high = {std::max(high.x, poses_[i].x), std::max(high.y, poses_[i].y)};
   }
   if (!(low.x <= high.x)) low = high = {0.0, 0.0};
   const double extent = std::max(high.x - low.x, high.y - low.y);
   grid_.low = low;
-  grid_.cell = std::max({4.0 * grid_.largest_radius, extent / (kMostCells - 1), 1e-6});
+  grid_.cell = std::max({4.0 * grid_.largest_radius, extent / (kMaxCells - 1), 1e-6});
   grid_.columns = static_cast<int>((high.x - low.x) / grid_.cell) + 1;
   grid_.rows = static_cast<int>((high.y - low.y) / grid_.cell) + 1;
   // Of a mover's place, and of a viewer's, which may be outside by as much as it sees.
   grid_.error = static_cast<float>(0x1p-21 * (extent + grid_.cell));
   grid_.first.assign(static_cast<std::size_t>(grid_.columns) * static_cast<std::size_t>(grid_.rows) + 1, 0);
   for (std::size_t i = 0; i < poses_.size(); ++i) {
-    cells_[i] = kNowhere;
-    if (!is_met(i)) continue;
+    cells_[i] = kNoCell;
+    if (!is_present(i)) continue;
     cells_[i] =
         static_cast<std::uint32_t>((poses_[i].y - low.y) / grid_.cell) * static_cast<std::uint32_t>(grid_.columns) +
         static_cast<std::uint32_t>((poses_[i].x - low.x) / grid_.cell);
@@ -115,7 +116,7 @@ void MoverTables::lay_out() {
   for (std::size_t i = 1; i < grid_.first.size(); ++i) grid_.first[i] += grid_.first[i - 1];
   next_.assign(grid_.first.begin(), grid_.first.end() - 1);
   for (std::uint32_t i = 0; i < poses_.size(); ++i) {
-    if (cells_[i] == kNowhere) continue;
+    if (cells_[i] == kNoCell) continue;
     const std::uint32_t at = next_[cells_[i]]++;
     grid_.mover[at] = i;
     grid_.x[at] = static_cast<float>(poses_[i].x - low.x);

@@ -1,4 +1,4 @@
-#include "raycast/sight.h"
+#include "raycast/wall_index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@ namespace sf::raycast {
 
 namespace {
 
-constexpr int kMostCells = 512;  ///< along an axis
-constexpr int kMostBands = 1024;
+constexpr int kMaxCells = 512;  ///< along an axis
+constexpr int kMaxBands = 1024;
 
 /// Counting sort of (bucket, item) pairs, given by a function that calls back with each pair.
 template <class EachPair>
@@ -26,19 +26,19 @@ int clamp_index(double value, int count) {
   return static_cast<int>(std::clamp(std::floor(value), 0.0, static_cast<double>(count - 1)));
 }
 
-double least_x(const SightSegment& s) { return std::min(s.a.x, s.b.x); }
-double largest_x(const SightSegment& s) { return std::max(s.a.x, s.b.x); }
+double least_x(const IndexedWall& s) { return std::min(s.a.x, s.b.x); }
+double largest_x(const IndexedWall& s) { return std::max(s.a.x, s.b.x); }
 
 }  // namespace
 
-Sight::Sight(const world::World& world, double z, double typical_range) {
+WallIndex::WallIndex(const world::World& world, double z, double typical_range) {
   for (std::uint32_t row = 0; row < world.walls.size(); ++row) {
     const world::Segment& s = world.walls[row];
     if (s.seen_by_laser && s.z_min <= z && z < s.z_max) segments_.push_back({s.a, s.b, row, s.solid_left});
   }
   if (segments_.empty()) return;
   low_ = high_ = segments_[0].a;
-  for (const SightSegment& s : segments_) {
+  for (const IndexedWall& s : segments_) {
     low_ = {std::min({low_.x, s.a.x, s.b.x}), std::min({low_.y, s.a.y, s.b.y})};
     high_ = {std::max({high_.x, s.a.x, s.b.x}), std::max({high_.y, s.a.y, s.b.y})};
   }
@@ -46,20 +46,20 @@ Sight::Sight(const world::World& world, double z, double typical_range) {
   index_bands();
 }
 
-Sight::Span Sight::cells_of(double x0, double y0, double x1, double y1) const {
+WallIndex::Span WallIndex::cells_of(double x0, double y0, double x1, double y1) const {
   return {clamp_index((x0 - low_.x) / cell_, columns_), clamp_index((y0 - low_.y) / cell_, rows_),
           clamp_index((x1 - low_.x) / cell_, columns_), clamp_index((y1 - low_.y) / cell_, rows_)};
 }
 
-void Sight::index_cells(double typical_range) {
+void WallIndex::index_cells(double typical_range) {
   const double width = high_.x - low_.x;
   const double height = high_.y - low_.y;
-  cell_ = std::max({typical_range / 4.0, width / kMostCells, height / kMostCells, 1e-6});
+  cell_ = std::max({typical_range / 4.0, width / kMaxCells, height / kMaxCells, 1e-6});
   columns_ = static_cast<int>(width / cell_) + 1;
   rows_ = static_cast<int>(height / cell_) + 1;
   fill_buckets(static_cast<std::size_t>(columns_) * rows_, cell_first_, cell_items_, [&](auto put) {
     for (std::uint32_t i = 0; i < segments_.size(); ++i) {
-      const SightSegment& s = segments_[i];
+      const IndexedWall& s = segments_[i];
       const Span span =
           cells_of(std::min(s.a.x, s.b.x), std::min(s.a.y, s.b.y), std::max(s.a.x, s.b.x), std::max(s.a.y, s.b.y));
       for (int y = span.y0; y <= span.y1; ++y)
@@ -68,12 +68,12 @@ void Sight::index_cells(double typical_range) {
   });
 }
 
-void Sight::index_bands() {
-  bands_ = std::clamp(static_cast<int>(segments_.size() / 8), 1, kMostBands);
+void WallIndex::index_bands() {
+  bands_ = std::clamp(static_cast<int>(segments_.size() / 8), 1, kMaxBands);
   band_ = std::max((high_.y - low_.y) / bands_, 1e-9);
   fill_buckets(static_cast<std::size_t>(bands_), band_first_, from_left_, [&](auto put) {
     for (std::uint32_t i = 0; i < segments_.size(); ++i) {
-      const SightSegment& s = segments_[i];
+      const IndexedWall& s = segments_[i];
       if (!s.solid_left) continue;
       const int first = clamp_index((std::min(s.a.y, s.b.y) - low_.y) / band_ - 1e-6, bands_);
       const int last = clamp_index((std::max(s.a.y, s.b.y) - low_.y) / band_ + 1e-6, bands_);
@@ -91,16 +91,16 @@ void Sight::index_bands() {
   }
 }
 
-void Sight::near(glm::dvec2 p, double radius, Nearby& nearby) const {
-  nearby.found.clear();
+void WallIndex::near(glm::dvec2 p, double radius, Query& query) const {
+  query.found.clear();
   if (segments_.empty()) return;
-  if (nearby.stamps.size() < segments_.size()) {
-    nearby.stamps.resize(segments_.size(), 0);
-    nearby.found.reserve(segments_.size());
+  if (query.stamps.size() < segments_.size()) {
+    query.stamps.resize(segments_.size(), 0);
+    query.found.reserve(segments_.size());
   }
-  if (++nearby.stamp == 0) {
-    std::fill(nearby.stamps.begin(), nearby.stamps.end(), 0);
-    nearby.stamp = 1;
+  if (++query.stamp == 0) {
+    std::fill(query.stamps.begin(), query.stamps.end(), 0);
+    query.stamp = 1;
   }
   const Span span = cells_of(p.x - radius, p.y - radius, p.x + radius, p.y + radius);
   for (int y = span.y0; y <= span.y1; ++y)
@@ -108,14 +108,14 @@ void Sight::near(glm::dvec2 p, double radius, Nearby& nearby) const {
       const std::size_t cell = static_cast<std::size_t>(y) * columns_ + x;
       for (std::uint32_t at = cell_first_[cell]; at < cell_first_[cell + 1]; ++at) {
         const std::uint32_t i = cell_items_[at];
-        if (nearby.stamps[i] == nearby.stamp) continue;
-        nearby.stamps[i] = nearby.stamp;
-        nearby.found.push_back(i);
+        if (query.stamps[i] == query.stamp) continue;
+        query.stamps[i] = query.stamp;
+        query.found.push_back(i);
       }
     }
 }
 
-bool Sight::inside_solid(glm::dvec2 p) const {
+bool WallIndex::inside_solid(glm::dvec2 p) const {
   if (segments_.empty() || p.x < low_.x || p.x > high_.x || p.y < low_.y || p.y > high_.y) return false;
   const std::size_t band = static_cast<std::size_t>(clamp_index((p.y - low_.y) / band_, bands_));
   // A horizontal line crosses closed outlines as often up as down: what lies to one side of p counts, and the side that
@@ -124,7 +124,7 @@ bool Sight::inside_solid(glm::dvec2 p) const {
   const std::vector<std::uint32_t>& items = left ? from_left_ : from_right_;
   int winding = 0;
   for (std::uint32_t at = band_first_[band]; at < band_first_[band + 1]; ++at) {
-    const SightSegment& s = segments_[items[at]];
+    const IndexedWall& s = segments_[items[at]];
     if (left ? least_x(s) > p.x : largest_x(s) < p.x) break;
     const bool below_a = s.a.y <= p.y;
     if (below_a == (s.b.y <= p.y)) continue;

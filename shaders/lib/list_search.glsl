@@ -29,8 +29,8 @@ Chunk chunk_of(uvec4 words, vec2 offset, int base, dvec2 origin) {
   if (kMovers) {
     const bool is_wall = words.y == 0u;
     const int place = 2 * (is_wall ? 0 : int(words.y) - 1);
-    const uvec4 at = imageLoad(places, place);
-    const uvec4 rest = imageLoad(places, place + 1);
+    const uvec4 at = imageLoad(mover_rows, place);
+    const uvec4 rest = imageLoad(mover_rows, place + 1);
     const vec2 moved = vec2(dvec2(packDouble2x32(at.xy), packDouble2x32(at.zw)) - origin);
     frame = is_wall ? frame : vec4(moved, uintBitsToFloat(rest.xy));
     base = is_wall ? base : int(rest.z);
@@ -49,20 +49,20 @@ void search_chunk(Chunk chunk, float band, inout Search s) {
     const vec2 w = chunk.frame.xy + turned(chunk.frame.zw, entry.xy);
     const vec2 e = turned(chunk.frame.zw, entry.zw);
     const float len = abs(e.x) + abs(e.y);
-    const float unsure = band * len;
+    const float error_margin = band * len;
     const float ahead = e.x * w.y - e.y * w.x;
-    const bool edge_on = abs(ahead) <= unsure;
-    const float inverse = ahead > unsure ? 1.0 / ahead : 0.0;
+    const bool edge_on = abs(ahead) <= error_margin;
+    const float inverse = ahead > error_margin ? 1.0 / ahead : 0.0;
     const float h = len * inverse;
     // Seen edge-on it may cover every beam of the sector, at any range.
     const float error = edge_on ? 1e20 : h * (2.0 * band * h + 1.4e-6);
     const float twice = 2.0 * error;
-    const float slip = edge_on ? 1e30 : 2.0 * band;
+    const float tolerance = edge_on ? 1e30 : 2.0 * band;
     const vec4 aside = s.dx * w.y - s.dy * w.x;
     const vec4 below = e.x * s.dy - e.y * s.dx;
     const vec4 inside = below - abs(aside);
-    const vec4 high = mix(vec4(0.0), below * inverse + error, greaterThanEqual(inside, vec4(-slip)));
-    const vec4 low = mix(vec4(-1.0), high - twice, greaterThanEqual(inside, vec4(slip)));
+    const vec4 high = mix(vec4(0.0), below * inverse + error, greaterThanEqual(inside, vec4(-tolerance)));
+    const vec4 low = mix(vec4(-1.0), high - twice, greaterThanEqual(inside, vec4(tolerance)));
     const bvec4 first = greaterThan(high, s.most);
     const vec4 beaten = mix(high, s.most, first);
     s.others = mix(s.others, beaten, greaterThan(beaten, s.others));

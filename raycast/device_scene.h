@@ -1,0 +1,110 @@
+#pragma once
+// What rays can meet, on the device: walls and movers as exact segments, and sector lists where sensors are.
+//
+// One table holds all lists, in texels of 16 bytes: empty lists, outlines of movers, cells from a pool (list heads,
+// entries, chunks of entries), and lists of the movers near each view, made each tick.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/thread_pool.h"
+#include "gpu/batch.h"
+#include "gpu/buffer.h"
+#include "raycast/candidate_walls.h"
+#include "raycast/mover_geometry.h"
+#include "raycast/records.h"
+#include "raycast/scene_options.h"
+#include "raycast/view_cells.h"
+#include "world/world.h"
+
+namespace sf::raycast {
+
+/// Not thread-safe. `world` need not outlive it.
+class DeviceScene {
+ public:
+  /// @param families complete, of `world`; to outlive it  @param carriers movers with sensors that look: the lists get
+  /// room accordingly
+  DeviceScene(const world::World& world, const ListConfigs& configs, gpu::Device& device, base::ThreadPool& thread_pool,
+              const SceneOptions& options, std::uint32_t sensing_movers);
+  ~DeviceScene();
+
+  /// Takes this tick's poses, one per mover.
+  void set_poses(std::span<const Pose> poses);
+
+  /// Makes lists for all `views` and fills what `rows` says of them (all but beams, out and range_min), row by row.
+  /// @return true when tables were replaced, so that kernels must be bound again.
+  bool prepare(std::span<const Viewpoint> views, std::span<RayRow> rows);
+
+  /// Whether the i-th view of the last `prepare` has more surfaces than lists hold: its row names empty lists.
+  bool needs_host(std::size_t i) const { return needs_host_[i] != 0; }
+  /// Names what changed since the last call for copying to the device.
+  void upload(gpu::Batch& batch);
+
+  bool has_movers() const { return movers_.segments() > 0; }
+  gpu::Buffer& lists() { return *lists_; }
+  gpu::Buffer& segment_ids() { return *segment_ids_; }
+  gpu::Buffer& mover_rows() { return *mover_rows_; }
+  gpu::Buffer& segments() { return *segments_; }
+  gpu::Buffer& models() { return *models_; }
+
+  struct Counts {
+    std::uint64_t cells_built = 0;      ///< ever
+    std::uint64_t movers_in_range = 0;  ///< ever: pairs of a view and a mover within its range
+    std::uint64_t movers_visible = 0;   ///< of these, in view
+  };
+  Counts counts() const;
+
+ private:
+  /// Cells and tables of one family.
+  struct ConfigTables {
+    CellShape shape;
+    double spread = 0.0;  ///< [rad] from the middle of a lane's beams to its outermost, and the search's own error
+    std::uint32_t height = 0;
+  };
+  /// Texels of one cell.
+  struct Cell {
+    std::uint32_t first = 0, count = 0;
+    bool too_long = false;  ///< its lists are, so that they are empty
+  };
+  struct NearbyMover;
+  struct Scratch;
+
+  void write_outlines();
+  void build_missing_cells();
+  Cell make_cell(const CellKey& key, Scratch& scratch);
+  void fill_row(const Viewpoint& view, std::size_t i, RayRow& row);
+  void find_nearby_movers(const Viewpoint& view, Scratch& scratch) const;
+  void find_front_edges(const Viewpoint& view, NearbyMover& near, Scratch& scratch) const;
+  std::uint32_t mover_lists_size(const Scratch& scratch, std::size_t most) const;
+  void write_mover_lists(const Viewpoint& view, std::uint32_t at, const Scratch& scratch);
+  bool build_mover_lists(std::span<const Viewpoint> views, std::span<RayRow> rows, bool more_room);
+  void make_room(std::uint32_t sensing_movers);
+  void grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t mover_texels);
+  bool try_to_grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t mover_texels);
+  std::uint32_t pool_end() const;
+
+  base::ThreadPool& thread_pool_;
+  gpu::Device& device_;
+  const SceneOptions limits_;
+  SceneOptions options_;  ///< room now
+  const ListConfigs& configs_;
+  std::vector<ConfigTables> config_tables_;  ///< per family
+  MoverGeometry movers_;
+  ViewCells cells_;
+  std::vector<Cell> cell_tables_;                  ///< per slot
+  std::vector<std::uint32_t> outlines_;            ///< per height: texel of its first block
+  std::uint32_t pool_begin_ = SF_SECTORS;          ///< texel
+  std::vector<std::uint8_t> needs_host_;           ///< per view of this tick: its lists would be too long
+  std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
+  std::vector<std::uint32_t> new_slots_;           ///< cells built since the last upload
+  std::uint32_t mover_texels_ = 0;                 ///< capacity for lists of movers, behind the pool
+  std::uint32_t mover_texels_used_ = 0;            ///< may exceed the capacity while a tick is being retried
+  bool tables_replaced_ = false;                   ///< tables were, since `prepare` began
+  bool upload_all_ = true;
+
+  std::unique_ptr<gpu::Buffer> lists_, segment_ids_, mover_rows_, segments_, models_;
+};
+
+}  // namespace sf::raycast

@@ -1,0 +1,121 @@
+#include "raycast/ray_caster.h"
+
+#include <bit>
+
+#include "raycast/ray_caster_tables.h"
+
+namespace sf::raycast {
+
+RayCaster::RayCaster(const SensorContext& context, const world::World& world, std::vector<Scanner> scanners)
+    : t_(std::make_unique<Tables>(context, world, std::move(scanners))) {}
+
+RayCaster::~RayCaster() = default;
+
+const std::vector<Scanner>& RayCaster::scanners() const { return t_->scanners; }
+const BeamPlan& RayCaster::plan(std::uint32_t scanner) const { return t_->scanner_rows[scanner].plan; }
+bool RayCaster::on_device() const { return t_->scene != nullptr; }
+SensorStats RayCaster::stats() const {
+  const Tables& t = *t_;
+  const ScanCounts scans = t.host->counts();
+  SensorStats stats{t.rays,
+                    t.uncertain_beams + scans.uncertain,
+                    t.host->cells_built(),
+                    0,
+                    scans.movers_in_range,
+                    scans.movers_visible,
+                    t.host_scans};
+  if (!t.scene) return stats;
+  const DeviceScene::Counts scene = t.scene->counts();
+  stats.cells_built += scene.cells_built;
+  stats.movers_in_range += scene.movers_in_range;
+  stats.movers_visible += scene.movers_visible;
+  return stats;
+}
+
+void RayCaster::set_poses(std::span<const Pose> poses) {
+  t_->poses.assign(poses.begin(), poses.end());
+  t_->host_has_poses = false;
+  if (t_->scene) t_->scene->set_poses(poses);
+}
+
+bool RayCaster::prepare(std::span<const DueSample> due, std::span<const Pose> poses, bool cast) {
+  Tables& t = *t_;
+  t.due.assign(due.begin(), due.end());
+  t.views.resize(due.size());
+  t.thread_pool.parallel_for(due.size(), 256, [&](std::size_t first, std::size_t last, unsigned) {
+    t.compute_viewpoints(first, last, poses);
+  });
+  for (const DueSample& d : due) t.rays += t.scanner_rows[d.row].plan.samples.size();
+  const bool replaced = t.scene && t.prepare();
+  t.write_lanes();
+  if (t.scene && t.any_angle_noise)
+    t.thread_pool.parallel_for(due.size(), 1, [&t](std::size_t first, std::size_t last, unsigned thread) {
+      for (std::size_t i = first; i < last; ++i)
+        if (t.scanner_rows[t.due[i].row].angle_noise) t.apply_angle_noise(t.due[i], thread);
+    });
+  t.find_host_due();
+  if (cast) t.scan_on_host();
+  const bool rebind = replaced || !t.bound;
+  if (rebind) t.bind();
+  return rebind;
+}
+
+void RayCaster::record(gpu::Batch& batch) {
+  if (!t_->scene) return;
+  batch.dispatch(*t_->exact.kernel, *t_->exact.groups, 0);
+  if (t_->single) batch.dispatch(*t_->single->kernel, *t_->single->groups, 0);
+}
+
+void RayCaster::add_copies(gpu::Batch& batch, bool results) {
+  Tables& t = *t_;
+  if (t.scene) t.scene->upload(batch);
+  if (t.scene) batch.upload(*t.rows, 0, t.due.size() * sizeof(RayRow));
+  const auto send = [&](const CastDispatch& pass) {
+    batch.upload(*pass.lanes, 0, pass.lanes->bytes());
+    batch.upload(*pass.groups, 0, pass.groups->bytes());
+  };
+  send(t.exact);
+  if (t.single) send(*t.single);
+  if (t.beams_changed || t.any_angle_noise) {
+    batch.upload(*t.mid_bearings, 0, t.mid_bearings->bytes());
+    batch.upload(*t.directions64, 0, t.directions64->bytes());
+    t.beams_changed = false;
+  }
+  for (const std::uint32_t i : t.host_due) {
+    const ScannerRow& row = t.scanner_rows[t.due[i].row];
+    const std::size_t lanes = row.plan.lanes();
+    batch.upload(*t.ranges, 32 * std::size_t{row.out}, 32 * lanes);
+    batch.upload(*t.hits, 16 * std::size_t{row.out}, 16 * lanes);
+    batch.upload(*t.beam_flags, 4 * std::size_t{row.out}, 4 * lanes);
+  }
+  batch.download(*t.beam_flags, 0, t.beam_flags->bytes());
+  if (!results) return;
+  batch.download(*t.ranges, 0, t.ranges->bytes());
+  batch.download(*t.hits, 0, t.hits->bytes());
+}
+
+ScanResult RayCaster::results(std::size_t i) const {
+  const ScannerRow& row = t_->scanner_rows[t_->due[i].row];
+  return {t_->due[i].row,      row.out, row.beams, &row.plan, &t_->scanners[t_->due[i].row], t_->views[i].X_WS,
+          t_->views[i].heading};
+}
+
+void RayCaster::count() {
+  if (!t_->scene) return;
+  const auto beam_flags = t_->beam_flags->host<std::uint32_t>();
+  for (const DueSample& due : t_->due) {
+    const ScannerRow& row = t_->scanner_rows[due.row];
+    for (std::uint32_t lane = 0; lane < row.plan.lanes(); ++lane)
+      t_->uncertain_beams += static_cast<std::uint64_t>(std::popcount(beam_flags[row.out + lane] / SF_UNCERTAIN));
+  }
+}
+
+gpu::Buffer& RayCaster::ranges() { return *t_->ranges; }
+gpu::Buffer& RayCaster::hits() { return *t_->hits; }
+gpu::Buffer& RayCaster::directions64() { return *t_->directions64; }
+gpu::Buffer& RayCaster::beam_flags() { return *t_->beam_flags; }
+gpu::Buffer& RayCaster::lanes() { return *t_->exact.lanes; }
+gpu::Buffer& RayCaster::groups() { return *t_->exact.groups; }
+std::uint32_t RayCaster::group_size() const { return kLanesPerGroup; }
+
+}  // namespace sf::raycast

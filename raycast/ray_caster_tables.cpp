@@ -1,0 +1,390 @@
+#include "raycast/ray_caster_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "base/error.h"
+#include "shaders/laser.comp.h"
+
+namespace sf::raycast {
+
+namespace {
+
+/// Groups along x of a dispatch; more rows of groups follow along y. Devices promise 65 535.
+constexpr std::uint32_t kGroupsAcross = 32'768;
+
+/// Fans are in order of their movers.
+std::uint32_t count_sensing_movers(const std::vector<Scanner>& scanners) {
+  std::uint32_t sensing_movers = 0;
+  for (std::size_t i = 0; i < scanners.size(); ++i)
+    sensing_movers += i == 0 || scanners[i].mover != scanners[i - 1].mover;
+  return sensing_movers;
+}
+
+ScanView scan_view_of(const Scanner& scanner, const Viewpoint& from) {
+  ScanView view;
+  view.heading = from.heading;
+  view.yaw = from.X_WS.yaw;
+  view.range_min = scanner.laser.range_min;
+  view.min_sine = kMinSine;
+  view.single = scanner.single;
+  return view;
+}
+
+/// Fans with the same beams share their tables.
+using BeamTableKey = std::tuple<double, std::uint32_t, std::uint32_t>;
+
+}  // namespace
+
+RayCaster::Tables::Tables(const SensorContext& context, const world::World& world, std::vector<Scanner> f)
+    : thread_pool(context.thread_pool),
+      seed(context.seed),
+      noise(context.noise),
+      configs(world),
+      scanners(std::move(f)) {
+  plan(world);
+  host = std::make_unique<HostScene>(world, configs, thread_pool);
+  if (choose_caster(context.device.info().software, context.scene.caster) == CasterChoice::vulkan)
+    scene = std::make_unique<DeviceScene>(world, configs, context.device, thread_pool, context.scene,
+                                          count_sensing_movers(scanners));
+  scratch.resize(thread_pool.threads());
+  angle_offsets.resize(thread_pool.threads());
+  std::uint32_t beam_lanes = 0;
+  struct Shared {
+    std::uint32_t beams, pattern;
+  };
+  std::map<BeamTableKey, Shared> shared;
+  for (std::size_t i = 0; i < scanners.size(); ++i) {
+    ScannerRow& row = scanner_rows[i];
+    const BeamTableKey key{scanners[i].laser.fov, scanners[i].laser.samples, scanners[i].laser.resolution};
+    const auto known = shared.find(key);
+    if (!row.angle_noise && known != shared.end()) {
+      row.beams = known->second.beams;
+      row.pattern = known->second.pattern;
+      continue;
+    }
+    row.beams = beam_lanes;
+    if (!row.angle_noise) {
+      row.pattern = static_cast<std::uint32_t>(shared.size());
+      shared[key] = {beam_lanes, row.pattern};
+    }
+    beam_lanes += row.plan.lanes();
+  }
+  make_tables(context.device, context.scene.largest_buffer, beam_lanes);
+  write_all_beams();
+  // Patterns were numbered in order of rows, as tables of beams were.
+  for (const ScannerRow& row : scanner_rows)
+    if (!row.angle_noise && row.pattern == patterns.size())
+      make_pattern(static_cast<std::size_t>(&row - scanner_rows.data()), {}, scratch[0], patterns.emplace_back());
+  if (!scene) find_shared_views();
+}
+
+void RayCaster::Tables::plan(const world::World& world) {
+  std::vector<std::size_t> beams(world.movers.size(), 0);
+  for (const Scanner& scanner : scanners) beams[scanner.mover] += scanner.laser.samples / scanner.laser.resolution;
+  for (const Scanner& scanner : scanners) {
+    ScannerRow row;
+    row.plan = plan_beams(scanner.laser, noise);
+    row.height = world.movers[scanner.mover].X_WM.z + scanner.laser.X_MS.z;
+    const double turn = noise ? kMaxSigmas * scanner.laser.noise.angle_sigma : 0.0;
+    const ListConfig config{row.height, scanner.laser.range_max, row.plan.spread, scanner.laser.fov + 2.0 * turn,
+                            static_cast<std::uint32_t>(std::min<std::size_t>(beams[scanner.mover], 1'000'000))};
+    row.config = configs.add(config);
+    row.angle_noise = noise && scanner.laser.noise.angle_sigma > 0.0;
+    any_angle_noise = any_angle_noise || row.angle_noise;
+    row.out = out_lanes;
+    out_lanes += row.plan.lanes();
+    spare_lanes = std::max(spare_lanes, row.plan.lanes());
+    scanner_rows.push_back(std::move(row));
+  }
+}
+
+void RayCaster::Tables::make_tables(gpu::Device& device, std::size_t largest_buffer, std::uint32_t beam_lanes) {
+  using gpu::Role;
+  using gpu::Texel;
+  const std::size_t count = std::max<std::size_t>(1, scanners.size());
+  if (scene)
+    rows = std::make_unique<gpu::Buffer>(device, "due sensors", Role::upload, Texel::u32x4, SF_ROW_TEXELS * count);
+  mid_bearings =
+      std::make_unique<gpu::Buffer>(device, "middles of lanes", Role::upload, Texel::f32, std::size_t{beam_lanes} + 1);
+  directions64 = std::make_unique<gpu::Buffer>(device, "beams in 64 bits", Role::upload, Texel::u32x4,
+                                               4 * std::size_t{beam_lanes} + 4);
+  const std::size_t results = std::size_t{out_lanes} + std::max(spare_lanes, 1u);
+  ranges = std::make_unique<gpu::Buffer>(device, "ranges", Role::download, Texel::u32x4, 2 * results);
+  hits = std::make_unique<gpu::Buffer>(device, "hits", Role::download, Texel::u32x4, results);
+  beam_flags = std::make_unique<gpu::Buffer>(device, "verdicts", Role::download, Texel::u32, results);
+  texel_results = !ranges->fits_storage_buffer() || ranges->bytes() > largest_buffer;
+  make_pass(device, exact, false);
+  const auto asks = [](const Scanner& scanner) { return scanner.single; };
+  if (std::any_of(scanners.begin(), scanners.end(), asks)) make_pass(device, single.emplace(), true);
+}
+
+void RayCaster::Tables::make_pass(gpu::Device& device, CastDispatch& pass, bool is_single) {
+  using gpu::Role;
+  using gpu::Texel;
+  // Lanes are padded to whole groups, and groups to whole rows of groups where there are many.
+  const std::size_t most_groups = out_lanes / kLanesPerGroup + 1;
+  const std::size_t padded = (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * kLanesPerGroup;
+  pass.lanes = std::make_unique<gpu::Buffer>(device, "whose beams", Role::upload, Texel::u32, 2 * padded);
+  pass.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
+  if (!scene) return;
+  const std::uint32_t constants[] = {scene->has_movers(), is_single, texel_results};
+  pass.kernel =
+      std::make_unique<gpu::Kernel>(device, is_single ? "laser in 32 bits" : "laser", laser_comp_spv, 15, 3, constants);
+  SF_CHECK(pass.kernel->group_size() == kLanesPerGroup, "groups of lanes are counted as of 64");
+}
+
+void RayCaster::Tables::write_all_beams() {
+  // Tables were given out in order of rows: one that lies behind all written so far is new, others are shared.
+  std::uint32_t written = 0;
+  for (std::size_t i = 0; i < scanners.size(); ++i) {
+    const ScannerRow& row = scanner_rows[i];
+    if (row.beams < written) continue;
+    write_beams(scanners[i].laser, row.plan, {}, beam_tables(row.beams));
+    written += row.plan.lanes();
+  }
+}
+
+void RayCaster::Tables::apply_angle_noise(const DueSample& d, unsigned thread) {
+  const Scanner& scanner = scanners[d.row];
+  const ScannerRow& row = scanner_rows[d.row];
+  std::vector<double>& angle_noise = angle_offsets[thread];
+  angle_noise.resize(row.plan.samples.size());
+  draw_angle_noise(scanner.laser, row.plan,
+                   {seed, base::RandomStream::angle_noise, scanner.mover, scanner.sensor, d.sequence}, angle_noise);
+  write_beams(scanner.laser, row.plan, angle_noise, beam_tables(row.beams));
+}
+
+void RayCaster::Tables::write_lanes() {
+  // Tables are born with anything in them: the first tick writes them, even when nothing is due.
+  const bool same = bound && lanes_written.size() == due.size() &&
+                    std::equal(due.begin(), due.end(), lanes_written.begin(),
+                               [](const DueSample& d, std::uint32_t row) { return d.row == row; });
+  if (same) return;
+  lanes_written.clear();
+  for (const DueSample& d : due) lanes_written.push_back(d.row);
+  write_lanes(exact, false);
+  if (single) write_lanes(*single, true);
+}
+
+void RayCaster::Tables::write_lanes(CastDispatch& pass, bool is_single) {
+  const auto table = pass.lanes->host<Lane>();
+  std::size_t at = 0;
+  for (std::uint32_t i = 0; i < due.size(); ++i) {
+    if (scanners[due[i].row].single != is_single) continue;
+    for (std::uint32_t lane = 0; lane < scanner_rows[due[i].row].plan.lanes(); ++lane) table[at++] = {i, lane};
+  }
+  const auto due_lanes = static_cast<std::uint32_t>(at);
+  const std::uint32_t group = kLanesPerGroup;
+  const std::uint32_t needed = (due_lanes + group - 1) / group;
+  const std::uint32_t across = std::min(needed, kGroupsAcross);
+  const std::uint32_t down = across > 0 ? (needed + across - 1) / across : 0;
+  // Padding repeats the last lane, which then is written more than once with the same values.
+  const Lane last = at > 0 ? table[at - 1] : Lane{0, 0};
+  std::fill(table.begin() + static_cast<std::ptrdiff_t>(at), table.begin() + std::ptrdiff_t{across} * down * group,
+            last);
+  const auto counts = pass.groups->host<std::uint32_t>();
+  counts[0] = across;
+  counts[1] = down;
+  counts[2] = across > 0 ? 1 : 0;
+}
+
+/// Of the beams in the fan's tables. @param turns [rad] of each cast beam, or none
+void RayCaster::Tables::make_pattern(std::size_t i, std::span<const double> angle_noise, Scratch& own,
+                                     ScanPattern& pattern) {
+  const world::Laser& laser = scanners[i].laser;
+  const ScannerRow& row = scanner_rows[i];
+  const std::vector<std::uint32_t>& samples = row.plan.samples;
+  own.bearings.resize(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    own.bearings[k] = world::bearing_of(laser, samples[k]) + (angle_noise.empty() ? 0.0 : angle_noise[k]);
+  pattern.assign(own.bearings, {beam_tables(row.beams).directions64, 8 * std::size_t{row.plan.lanes()}},
+                 world::bearing_of(laser, samples.front()), world::bearing_of(laser, samples.back()),
+                 row.plan.place(1));
+}
+
+/// Where the due fans [first, last) look from: base::compose, with the sine and cosine of each mover once.
+void RayCaster::Tables::compute_viewpoints(std::size_t first, std::size_t last, std::span<const Pose> movers) {
+  std::uint32_t mover = kNotShared;
+  glm::dvec2 turn;
+  for (std::size_t i = first; i < last; ++i) {
+    const Scanner& scanner = scanners[due[i].row];
+    const ScannerRow& row = scanner_rows[due[i].row];
+    const Pose &X = movers[scanner.mover], &X_MS = scanner.laser.X_MS;
+    if (scanner.mover != mover) turn = {std::cos(X.yaw), std::sin(X.yaw)};
+    mover = scanner.mover;
+    const double yaw = X.yaw + X_MS.yaw;
+    views[i] = {row.config,
+                mover,
+                {X.x + (turn.x * X_MS.x - turn.y * X_MS.y), X.y + (turn.y * X_MS.x + turn.x * X_MS.y), row.height, yaw},
+                {std::cos(yaw), std::sin(yaw)}};
+  }
+}
+
+/// Makes the device's lists for what is due, and its rows. @return whether tables were replaced
+bool RayCaster::Tables::prepare() {
+  const auto ray_rows = rows->host<RayRow>().first(due.size());
+  const bool replaced = scene->prepare(views, ray_rows);
+  thread_pool.parallel_for(due.size(), 512, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) {
+      const ScannerRow& row = scanner_rows[due[i].row];
+      ray_rows[i].beams = row.beams;
+      ray_rows[i].out = row.out;
+      ray_rows[i].range_min = scanners[due[i].row].laser.range_min;
+    }
+  });
+  return replaced;
+}
+
+/// Fans of one mover that look from one point.
+void RayCaster::Tables::find_shared_views() {
+  std::vector<const BeamPlan*> plans;
+  for (const ScannerRow& row : scanner_rows) plans.push_back(&row.plan);
+  for (std::uint32_t first = 0, end; first < scanners.size(); first = end) {
+    for (end = first + 1; end < scanners.size() && same_viewpoint(scanners[first], scanners[end]); ++end) {
+    }
+    const auto own = std::span(scanner_rows).subspan(first, end - first);
+    if (own.size() < 2 || std::any_of(own.begin(), own.end(), [](const ScannerRow& row) { return row.angle_noise; }))
+      continue;
+    if (shared_views.add(first, std::span(scanners).subspan(first, own.size()),
+                         std::span(plans).subspan(first, own.size())))
+      scanner_rows[first].shared = static_cast<std::uint32_t>(shared_views.views().size() - 1);
+  }
+}
+
+void RayCaster::Tables::scan_on_host() {
+  if (host_due.empty()) return;
+  if (!host_has_poses) host->set_poses(poses);
+  host_has_poses = true;
+  list_scans();
+  host->prepare(host_views);
+  thread_pool.parallel_for(scans.size(), 8, [this](std::size_t first, std::size_t last, unsigned thread) {
+    for (std::size_t k = first; k < last; ++k)
+      scans[k].shared == kNotShared ? scan_one(k, thread) : scan_shared(k, thread);
+  });
+}
+
+/// Views are shared where all of their fans are due.
+void RayCaster::Tables::list_scans() {
+  scans.clear();
+  host_views.clear();
+  for (std::size_t k = 0, together = 1; k < host_due.size(); k += together) {
+    const std::uint32_t i = host_due[k];
+    std::uint32_t shared = scanner_rows[due[i].row].shared;
+    together = shared == kNotShared ? 1 : shared_views.views()[shared].scanners;
+    const std::size_t last = k + together - 1;
+    if (last >= host_due.size() || due[host_due[last]].row - due[i].row != together - 1)
+      shared = kNotShared, together = 1;
+    scans.push_back({i, shared});
+    host_views.push_back(views[i]);
+  }
+}
+
+/// Writes a fan's results where kernels look for them. @param grazes null where none does
+void RayCaster::Tables::write_results(const ScannerRow& row, const double* own_ranges, const std::uint32_t* own_models,
+                                      const std::uint8_t* grazes) {
+  const std::size_t beams = row.plan.samples.size(), lanes = row.plan.lanes(), places = SF_BEAMS_PER_LANE * lanes;
+  double* const out = ranges->host<double>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
+  std::uint32_t* const hit_models = hits->host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
+  std::uint32_t* const lane_flags = beam_flags->host<std::uint32_t>().data() + row.out;
+  std::fill_n(lane_flags, lanes, 0u);
+  if (row.plan.packed) {
+    if (own_ranges != out) std::copy_n(own_ranges, beams, out);
+    if (own_models != hit_models) std::copy_n(own_models, beams, hit_models);
+    // Places without a beam repeat the last one.
+    std::fill(out + beams, out + places, out[beams - 1]);
+    std::fill(hit_models + beams, hit_models + places, hit_models[beams - 1]);
+    for (std::size_t b = 0; grazes != nullptr && b < beams; ++b)
+      if (grazes[b] != 0) lane_flags[b / SF_BEAMS_PER_LANE] |= SF_GRAZING << b % SF_BEAMS_PER_LANE;
+    return;
+  }
+  for (std::size_t b = 0; b < beams; ++b) {
+    std::fill_n(out + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own_ranges[b]);
+    std::fill_n(hit_models + SF_BEAMS_PER_LANE * b, SF_BEAMS_PER_LANE, own_models[b]);
+    if (grazes != nullptr && grazes[b] != 0) lane_flags[b] |= SF_GRAZING;
+  }
+}
+
+void RayCaster::Tables::scan_one(std::size_t k, unsigned thread) {
+  const DueSample& d = due[scans[k].due];
+  const ScannerRow& row = scanner_rows[d.row];
+  const Scanner& scanner = scanners[d.row];
+  Scratch& own = scratch[thread];
+  if (row.angle_noise) apply_angle_noise(d, thread);
+  if (row.angle_noise) make_pattern(d.row, angle_offsets[thread], own, own.pattern);
+  const ScanPattern& pattern = row.angle_noise ? own.pattern : patterns[row.pattern];
+  own.make_room(pattern.beams);
+  double* to = own.ranges.data();
+  std::uint32_t* hit_models = own.models.data();
+  if (row.plan.packed) {
+    to = ranges->host<double>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
+    hit_models = hits->host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.out};
+  }
+  const bool grazes =
+      host->scan(k, scan_view_of(scanner, host_views[k]), pattern, thread, {to, hit_models, own.grazes.data()});
+  write_results(row, to, hit_models, grazes ? own.grazes.data() : nullptr);
+}
+
+/// Scans all beams of a shared view and gives each fan its own.
+void RayCaster::Tables::scan_shared(std::size_t k, unsigned thread) {
+  const SharedView& shared = shared_views.views()[scans[k].shared];
+  const SharedPattern& all = shared_views.pattern(shared);
+  const std::size_t beams = all.sources.size();
+  Scratch& own = scratch[thread];
+  own.make_room(2 * beams);
+  ScanView view = scan_view_of(scanners[shared.first], host_views[k]);
+  for (std::size_t b = 0; b < beams; ++b) {
+    const SharedPattern::Source& s = all.sources[b];
+    view.heading = views[scans[k].due + s.scanner].heading;
+    const glm::dvec2 d = direction_of(view, patterns[scanner_rows[shared.first + s.scanner].pattern], s.beam);
+    own.x[b] = d.x, own.y[b] = d.y;
+  }
+  view.heading = host_views[k].heading;
+  view.x = own.x.data(), view.y = own.y.data();
+  const bool grazes = host->scan(k, view, all.beams, thread, {own.ranges.data(), own.models.data(), own.grazes.data()});
+  for (std::size_t b = 0; b < beams; ++b) {
+    const std::size_t place = beams + all.sources[b].place;
+    own.ranges[place] = own.ranges[b], own.models[place] = own.models[b], own.grazes[place] = own.grazes[b];
+  }
+  std::size_t at = beams;
+  for (std::uint32_t f = 0; f < shared.scanners; ++f) {
+    const ScannerRow& row = scanner_rows[shared.first + f];
+    write_results(row, &own.ranges[at], &own.models[at], grazes ? &own.grazes[at] : nullptr);
+    at += row.plan.samples.size();
+  }
+}
+
+/// Fans that the host casts: all, or those around which more is than the device's lists hold.
+void RayCaster::Tables::find_host_due() {
+  host_due.clear();
+  for (std::uint32_t i = 0; !scene && i < due.size(); ++i) host_due.push_back(i);
+  if (!scene) return;
+  const auto ray_rows = rows->host<RayRow>();
+  for (std::uint32_t i = 0; i < due.size(); ++i) {
+    if (!scene->needs_host(i)) continue;
+    host_due.push_back(i);
+    ray_rows[i].out = out_lanes;
+  }
+  host_scans += host_due.size();
+}
+
+void RayCaster::Tables::bind(CastDispatch& pass) {
+  gpu::Buffer* const results[] = {ranges.get(), hits.get(), beam_flags.get()};
+  gpu::Buffer* const tables[] = {rows.get(),           pass.lanes.get(),   mid_bearings.get(),
+                                 directions64.get(),   &scene->lists(),    &scene->segment_ids(),
+                                 &scene->mover_rows(), &scene->segments(), &scene->models(),
+                                 results[0],           results[1],         results[2],
+                                 results[0],           results[1],         results[2]};
+  pass.kernel->bind(tables);
+}
+
+void RayCaster::Tables::bind() {
+  if (scene) bind(exact);
+  if (scene && single) bind(*single);
+  bound = true;
+}
+
+}  // namespace sf::raycast

@@ -1,0 +1,119 @@
+#pragma once
+// What the sources of sensors::Casts share: one row per fan, and the device's tables.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/kernel.h"
+#include "raycast/host_scene.h"
+#include "raycast/ray_caster.h"
+#include "raycast/shared_views.h"
+
+namespace sf::raycast {
+
+/// Of each dispatch over lanes.
+inline constexpr std::uint32_t kLanesPerGroup = 64;
+
+/// Of fans that share no view.
+inline constexpr std::uint32_t kNotShared = 0xFFFFFFFFu;
+
+/// One scan of the host, for one fan or a shared view.
+struct HostScan {
+  std::uint32_t due = 0;              ///< its first fan
+  std::uint32_t shared = kNotShared;  ///< view
+};
+
+/// One fan, planned at load.
+struct ScannerRow {
+  BeamPlan plan;
+  double height = 0.0;  ///< [m] of the beams in the world, fixed at load: the world is 2.5-D
+  std::uint32_t config = 0;
+  std::uint32_t beams = 0;  ///< first lane of its beam tables
+  std::uint32_t pattern = 0;
+  std::uint32_t out = 0;              ///< first lane of its results
+  bool angle_noise = false;           ///< has angular noise: beams are its own and change
+  std::uint32_t shared = kNotShared;  ///< the shared view that begins with it
+};
+
+/// One kernel over the lanes of its due fans.
+struct CastDispatch {
+  std::unique_ptr<gpu::Kernel> kernel;
+  std::unique_ptr<gpu::Buffer> lanes, groups;
+};
+
+struct RayCaster::Tables {
+  base::ThreadPool& thread_pool;
+  std::uint64_t seed;
+  bool noise;
+  ListConfigs configs;
+  std::unique_ptr<DeviceScene> scene;  ///< where the device casts
+  std::unique_ptr<HostScene> host;     ///< where it does not, or has no room for all that a fan may meet
+  bool host_has_poses = false;         ///< this tick
+  std::vector<Scanner> scanners;
+  std::vector<ScannerRow> scanner_rows;
+  CastDispatch exact;
+  std::optional<CastDispatch> single;  ///< where a fan asks for it
+  std::unique_ptr<gpu::Buffer> rows, mid_bearings, directions64, ranges, hits, beam_flags;
+  std::vector<DueSample> due;
+  std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, that the passes' lanes hold
+  std::vector<Viewpoint> views, host_views;
+  std::vector<Pose> poses;                         ///< of all movers
+  std::vector<std::vector<double>> angle_offsets;  ///< scratch per thread
+  std::vector<ScanPattern> patterns;               ///< of fans whose beams do not change, on the host
+  struct Scratch {
+    ScanPattern pattern;
+    std::vector<double> bearings, ranges, x, y;
+    std::vector<std::uint32_t> models;
+    std::vector<std::uint8_t> grazes;
+
+    /// Room for results and directions of so many beams.
+    void make_room(std::size_t beams) {
+      if (grazes.size() >= beams) return;
+      grazes.resize(beams), models.resize(beams), ranges.resize(beams);
+      x.resize(beams + 2 * kBlock), y.resize(beams + 2 * kBlock);
+    }
+  };
+  std::vector<Scratch> scratch;         ///< per thread
+  std::vector<std::uint32_t> host_due;  ///< due fans that the host casts
+  SharedViews shared_views;             ///< where the device casts nothing
+  std::vector<HostScan> scans;          ///< of this tick
+  std::uint32_t out_lanes = 0;
+  std::uint32_t spare_lanes = 0;  ///< behind all results: where the device writes what the host casts
+  std::uint64_t host_scans = 0;
+  std::uint64_t rays = 0;
+  std::uint64_t uncertain_beams = 0;
+  bool bound = false;
+  bool beams_changed = true;
+  bool any_angle_noise = false;
+  bool texel_results = false;  ///< too large for buffers
+
+  Tables(const SensorContext& context, const world::World& world, std::vector<Scanner> f);
+  void plan(const world::World& world);
+  void make_tables(gpu::Device& device, std::size_t largest_buffer, std::uint32_t beam_lanes);
+  void write_all_beams();
+  void make_pass(gpu::Device& device, CastDispatch& pass, bool is_single);
+  void write_lanes();
+  void write_lanes(CastDispatch& pass, bool is_single);
+  void bind(CastDispatch& pass);
+  void apply_angle_noise(const DueSample& d, unsigned thread);
+  void make_pattern(std::size_t i, std::span<const double> angle_noise, Scratch& own, ScanPattern& pattern);
+  void find_shared_views();
+  void compute_viewpoints(std::size_t first, std::size_t last, std::span<const Pose> movers);
+  bool prepare();
+  void scan_on_host();
+  void list_scans();
+  void scan_one(std::size_t k, unsigned thread);
+  void scan_shared(std::size_t k, unsigned thread);
+  void write_results(const ScannerRow& row, const double* own_ranges, const std::uint32_t* own_models,
+                     const std::uint8_t* grazes);
+  void find_host_due();
+  void bind();
+  BeamTables beam_tables(std::uint32_t lane) const {
+    return {mid_bearings->host<float>().data() + lane, directions64->host<double>().data() + 8 * std::size_t{lane}};
+  }
+};
+
+}  // namespace sf::raycast
