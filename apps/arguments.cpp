@@ -174,7 +174,9 @@ void add_no_return(CLI::App& app, Options& o) {
 void add_wire(CLI::App& app, Options& o) {
   app.add_option_function<std::string>(
          "--wire",
-         [&o](const std::string& text) { o.wire = text == "thesis" ? sensors::Wire::thesis : sensors::Wire::farm; },
+         [&o](const std::string& text) {
+           o.wire = text == "thesis" ? sensors::WireFormat::thesis : sensors::WireFormat::farm;
+         },
          "Layout of sensor packets: farm (docs/packets.md) or thesis (plain)")
       ->check(one_of({"farm", "thesis"}))
       ->type_name("farm|thesis")
@@ -212,7 +214,7 @@ void add_until(CLI::App& sub, Options& o, Command command, const std::string& he
 
 void add_ports(CLI::App& app, Options& o) {
   constexpr const char* kPorts = "Ports of sensor packets: first + robot id * ports per robot + sensor";
-  for (const sensors::SensorKind* kind : sensors::kinds())
+  for (const sensors::SensorType* kind : sensors::sensor_types())
     app.add_option(fmt::format("--{}-port", kind->name), o.base_ports[kind->id],
                    fmt::format("First of the {} ports", kind->name))
         ->check(whole(1, 65535))
@@ -238,11 +240,11 @@ void add_recording(CLI::App& app, Options& o) {
 
 void add_kind(CLI::App& app, Options& o) {
   std::vector<std::string> names;
-  for (const sensors::SensorKind* kind : sensors::kinds()) names.emplace_back(kind->name);
+  for (const sensors::SensorType* kind : sensors::sensor_types()) names.emplace_back(kind->name);
   app.add_option_function<std::string>(
          "--kind",
          [&o](const std::string& text) {
-           for (const sensors::SensorKind* kind : sensors::kinds())
+           for (const sensors::SensorType* kind : sensors::sensor_types())
              if (kind->name == text) o.kind = kind->id;
          },
          "Kind of its sensor: " + either(names) + " (default: the first that it has)")

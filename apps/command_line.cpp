@@ -76,8 +76,8 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   app.get_formatter()->column_width(34);
   Options& o = parsed.options;
   if (const char* device = std::getenv("SENSORFARM_DEVICE")) o.device = device;
-  o.load.sensors = sensors::vocabulary();
-  for (const sensors::SensorKind* kind : sensors::kinds()) o.base_ports[kind->id] = kind->base_port;
+  o.load.sensors = sensors::world_file_words();
+  for (const sensors::SensorType* kind : sensors::sensor_types()) o.base_ports[kind->id] = kind->base_port;
   add_looking(app, o);
   add_running(app, o);
   add_proving(app, o);

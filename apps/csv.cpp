@@ -35,7 +35,7 @@ std::string beams_csv(const world::World& world, const base::ReadingBlock& readi
 }
 
 /// `distance_m,points`; a vector's columns are `vector_T_x,vector_T_y,vector_T_z`.
-std::string csv_heading(const sensors::SensorKind& kind) {
+std::string csv_heading(const sensors::SensorType& kind) {
   std::string text;
   for (const sensors::Column& column : kind.columns)
     for (std::uint32_t k = 0; k < column.width; ++k) {
@@ -48,19 +48,20 @@ std::string csv_heading(const sensors::SensorKind& kind) {
 
 }  // namespace
 
-std::string place_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading) {
+std::string place_of(const world::World& world, const sensors::SensorSet& sensor_set,
+                     const base::ReadingBlock& reading) {
   const world::Mover& mover = world.movers[reading.mover];
   const base::Pose& R = reading.X_WM;
   const base::Pose& S = reading.X_WS;
   constexpr double kDegrees = 180.0 / M_PI;
   return fmt::format("{} at ({:.6f}, {:.6f}) m, {:.6f} deg; its {} at ({:.6f}, {:.6f}, {:.6f}) m, {:.6f} deg",
-                     mover.name, R.x, R.y, kDegrees * base::wrap_angle(R.yaw), roster.row(reading).name, S.x, S.y, S.z,
-                     kDegrees * base::wrap_angle(S.yaw));
+                     mover.name, R.x, R.y, kDegrees * base::wrap_angle(R.yaw), sensor_set.row(reading).name, S.x, S.y,
+                     S.z, kDegrees * base::wrap_angle(S.yaw));
 }
 
 std::string text_of(const world::World& world, const base::ReadingBlock& reading) {
   if (reading.kind == base::kLaser) return beams_csv(world, reading);
-  const sensors::SensorKind& kind = *sensors::find_sensor_type(reading.kind);
+  const sensors::SensorType& kind = *sensors::find_sensor_type(reading.kind);
   std::string text = csv_heading(kind);
   const std::size_t width = element_width(kind);
   for (std::size_t first = 0; first + width <= reading.values.size(); first += width) {

@@ -50,7 +50,7 @@ std::string text_of(const scenarios::ExplainedKind& k, const scenarios::Explanat
   text += row("a tick", fmt::format("{:.3f} ms heard {}, {:.3f} ms more than nobody heard", 1e3 * k.tick,
                                     k.derived ? "with the lasers" : "alone", 1e3 * (k.tick - e.silent)));
   text += row("", work_of(k, static_cast<double>(e.ticks)));
-  for (const sensors::Statement& s : e.statements)
+  for (const sensors::AccuracyStatement& s : e.statements)
     if (s.kind->name == k.kind) text += row("accuracy", apps::text_of(s));
   text += row("kernels",
               k.kernels.empty() ? "none: it is read on the host" : fmt::format("{}", fmt::join(k.kernels, ", ")));

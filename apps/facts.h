@@ -16,7 +16,7 @@
 #include "scenarios/tradeoff.h"
 #include "scenarios/verification.h"
 #include "selftest/case.h"
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 #include "world/world.h"
 
 namespace sf::apps {
@@ -75,17 +75,17 @@ std::size_t count_magnets(const world::World& world);
 std::size_t count_docks(const world::World& world);
 
 std::string json_of(const gpu::DeviceList& survey);
-std::string json_of(const world::World& world, const sensors::Roster& roster);
+std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set);
 std::string json_of(const RunFacts& facts);
 std::string json_of(const netio::Summary& summary);
 /// One reading; what is infinite or missing is null.
-std::string json_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading);
+std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading);
 
 std::string text_of(const gpu::DeviceList& survey);
-std::string text_of(const world::World& world, const sensors::Roster& roster);
+std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set);
 std::string text_of(const RunFacts& facts);
 /// "5 lasers exact, within 1.03 nm: beams that graze nothing".
-std::string text_of(const sensors::Statement& statement);
+std::string text_of(const sensors::AccuracyStatement& statement);
 std::string text_of(const netio::Summary& summary);
 /// Comma-separated: a heading, then one line per element; what is missing is left out between its commas.
 std::string text_of(const world::World& world, const base::ReadingBlock& reading);
@@ -99,6 +99,7 @@ std::string json_of(const std::vector<scenarios::Grade>& grades, const scenarios
 std::string text_of(const SelfTest& test);
 std::string json_of(const SelfTest& test);
 /// Where robot and sensor stood, in one line for people.
-std::string place_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading);
+std::string place_of(const world::World& world, const sensors::SensorSet& sensor_set,
+                     const base::ReadingBlock& reading);
 
 }  // namespace sf::apps

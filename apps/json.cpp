@@ -8,7 +8,7 @@
 #include "apps/robot_facts.h"
 #include "base/hash.h"
 #include "sensors/accuracy.h"
-#include "sensors/field/truncation.h"
+#include "sensors/magnetic_field/truncation.h"
 
 namespace sf::apps {
 
@@ -50,9 +50,9 @@ Json warnings_json(const std::vector<world::Warning>& warnings) {
 /// What is infinite has no number in JSON.
 Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json statements_json(const std::vector<sensors::Statement>& statements) {
+Json statements_json(const std::vector<sensors::AccuracyStatement>& statements) {
   Json json = Json::array();
-  for (const sensors::Statement& s : statements)
+  for (const sensors::AccuracyStatement& s : statements)
     json.push_back({{"kind", s.kind->name},
                     {"sensors", s.sensors},
                     {"mode", sensors::word_of(*s.kind, s.mode)},
@@ -68,7 +68,7 @@ Json number_json(double value, bool whole) {
 }
 
 /// One element's columns, by name.
-Json element_json(const sensors::SensorKind& kind, std::span<const double> values) {
+Json element_json(const sensors::SensorType& kind, std::span<const double> values) {
   Json json = Json::object();
   std::size_t at = 0;
   for (const sensors::Column& column : kind.columns) {
@@ -146,16 +146,16 @@ std::string json_of(const gpu::DeviceList& survey) {
   return print(json);
 }
 
-std::string json_of(const world::World& world, const sensors::Roster& roster) {
+std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set) {
   Json sensors = Json::object(), rates = Json::object();
-  for (const sensors::SensorKind* kind : sensors::kinds()) {
-    const auto* group = roster.group(kind->id);
+  for (const sensors::SensorType* kind : sensors::sensor_types()) {
+    const auto* group = sensor_set.group(kind->id);
     sensors[std::string(kind->name)] = group == nullptr ? 0 : group->rows.size();
     if (group == nullptr) continue;
     const auto [least, most] = rates_of(*group);
     rates[std::string(kind->name)] = {least, most};
   }
-  const sensors::FieldFacts field = sensors::field_facts(world);
+  const sensors::MagnetSummary field = sensors::summarize_magnets(world);
   const std::size_t docks = count_docks(world);
   std::size_t segments = world.walls.size();
   for (const world::Mover& mover : world.movers) segments += mover.body.size();
@@ -166,7 +166,7 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
                 {"tags", world.movers.size() - count_robots(world)},
                 {"sensors", sensors},
                 {"rates_hz", rates},
-                {"between_ticks", kinds_between_ticks(roster, world.interval)},
+                {"between_ticks", kinds_between_ticks(sensor_set, world.interval)},
                 {"segments", world.walls.size()},
                 {"segments_with_movers", segments},
                 {"magnets", count_magnets(world)},
@@ -182,7 +182,7 @@ std::string json_of(const world::World& world, const sensors::Roster& roster) {
                 {"road_resolution_m", world.road_resolution},
                 {"extent", {e.x_min, e.y_min, e.x_max, e.y_max}},
                 {"interval_s", world.interval},
-                {"accuracy", statements_json(sensors::statements_of(world, roster))},
+                {"accuracy", statements_json(sensors::accuracy_statements(world, sensor_set))},
                 {"kept", world.unmodelled},
                 {"hash", base::hash_hex(world.hash)},
                 {"warnings", warnings_json(world.warnings)}});
@@ -260,11 +260,15 @@ std::string json_of(const netio::Summary& s) {
                 {"by_reason", reasons(s.counts)}});
 }
 
-std::string json_of(const world::World& world, const sensors::Roster& roster, const base::ReadingBlock& reading) {
-  const sensors::SensorKind& kind = *sensors::find_sensor_type(reading.kind);
-  Json head{{"robot", world.movers[reading.mover].name}, {"sensor", reading.sensor},
-            {"sensor_name", roster.row(reading).name},   {"kind", kind.name},
-            {"pose", pose_json(reading.X_WM)},           {"sensor_pose", pose_json(reading.X_WS)}};
+std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set,
+                    const base::ReadingBlock& reading) {
+  const sensors::SensorType& kind = *sensors::find_sensor_type(reading.kind);
+  Json head{{"robot", world.movers[reading.mover].name},
+            {"sensor", reading.sensor},
+            {"sensor_name", sensor_set.row(reading).name},
+            {"kind", kind.name},
+            {"pose", pose_json(reading.X_WM)},
+            {"sensor_pose", pose_json(reading.X_WS)}};
   if (kind.bound != nullptr) {
     head["accuracy"] = sensors::word_of(kind, reading.mode);
     head["bound"] = finite_json(reading.bound);

@@ -16,13 +16,13 @@ namespace sf::apps {
 
 int listen(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
-  const sensors::Roster roster(world);
-  const SendPlan sent = send_plan(world, roster, options);
-  const std::vector<Source> sources = sources_of(roster, sent);
+  const sensors::SensorSet sensor_set(world);
+  const SendPlan sent = send_plan(world, sensor_set, options);
+  const std::vector<Source> sources = sources_of(sensor_set, sent);
   netio::ListenerOptions plan;
   plan.address = netio::resolve(options.bind);
   if (!options.from.empty()) plan.farm = netio::resolve(options.from);
-  plan.headerless = options.wire == sensors::Wire::thesis;
+  plan.headerless = options.wire == sensors::WireFormat::thesis;
   plan.judge = [&](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
     return judge_payload(sources[i], options.wire, header, payload);
   };

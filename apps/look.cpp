@@ -21,22 +21,22 @@ namespace {
 void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
 
 /// Whether the mover has a sensor of that kind; 0: of any.
-bool has_kind(const sensors::Roster& roster, std::uint8_t kind, std::uint32_t mover) {
-  return kind == 0 ? roster.count_of(mover) > 0 : !roster.of(kind, mover).empty();
+bool has_kind(const sensors::SensorSet& sensor_set, std::uint8_t kind, std::uint32_t mover) {
+  return kind == 0 ? sensor_set.count_of(mover) > 0 : !sensor_set.of(kind, mover).empty();
 }
 
 [[noreturn]] void refuse_blind_world(const world::World& world, std::uint8_t kind) {
   std::vector<std::string> words;
-  for (const sensors::SensorKind* known : sensors::kinds())
+  for (const sensors::SensorType* known : sensors::sensor_types())
     if (kind == 0 || known->id == kind) words.push_back("a " + std::string(known->name) + "( )");
   throw base::InputError(world.file, 0, "no robot has such a sensor; give one " + either(words));
 }
 
-std::uint32_t find_robot(const world::World& world, const sensors::Roster& roster, const Options& options) {
+std::uint32_t find_robot(const world::World& world, const sensors::SensorSet& sensor_set, const Options& options) {
   std::string known;
   std::size_t others = 0;
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
-    const bool senses = has_kind(roster, options.kind, i);
+    const bool senses = has_kind(sensor_set, options.kind, i);
     if (options.robot.empty() ? senses : world.movers[i].name == options.robot) return i;
     if (senses && ++others <= 10) known += (known.empty() ? "" : ", ") + world.movers[i].name;
   }
@@ -47,10 +47,10 @@ std::uint32_t find_robot(const world::World& world, const sensors::Roster& roste
 }
 
 /// "laser 0 to 2, magnetometer 0".
-std::string all_sensors_of(const sensors::Roster& roster, std::uint32_t mover) {
+std::string all_sensors_of(const sensors::SensorSet& sensor_set, std::uint32_t mover) {
   std::string text;
-  for (const sensors::Roster::Group& group : roster.groups()) {
-    const std::size_t count = roster.of(group.kind->id, mover).size();
+  for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
+    const std::size_t count = sensor_set.of(group.kind->id, mover).size();
     if (count == 0) continue;
     text += (text.empty() ? "" : ", ") + std::string(group.kind->name) + " 0";
     if (count > 1) text += " to " + std::to_string(count - 1);
@@ -60,16 +60,16 @@ std::string all_sensors_of(const sensors::Roster& roster, std::uint32_t mover) {
 
 /// A sensor by its kind and its number among the mover's sensors of that kind.
 struct Chosen {
-  const sensors::SensorKind* kind = nullptr;
+  const sensors::SensorType* kind = nullptr;
   std::uint32_t sensor = 0;
 };
 
 /// Numbers count among one kind where it was named, else through all of the mover's sensors, kind after kind.
-Chosen find_sensor(const sensors::Roster& roster, const Options& options, std::uint32_t mover) {
+Chosen find_sensor(const sensors::SensorSet& sensor_set, const Options& options, std::uint32_t mover) {
   std::uint32_t number = options.sensor;
-  for (const sensors::Roster::Group& group : roster.groups()) {
+  for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
     if (options.kind != 0 && group.kind->id != options.kind) continue;
-    const auto count = static_cast<std::uint32_t>(roster.of(group.kind->id, mover).size());
+    const auto count = static_cast<std::uint32_t>(sensor_set.of(group.kind->id, mover).size());
     if (number < count) return {group.kind, number};
     number -= count;
   }
@@ -77,14 +77,14 @@ Chosen find_sensor(const sensors::Roster& roster, const Options& options, std::u
 }
 
 /// The sensor that was asked for, which is there.
-Chosen require_sensor(const world::World& world, const sensors::Roster& roster, const Options& options,
+Chosen require_sensor(const world::World& world, const sensors::SensorSet& sensor_set, const Options& options,
                       std::uint32_t mover) {
-  const Chosen chosen = find_sensor(roster, options, mover);
+  const Chosen chosen = find_sensor(sensor_set, options, mover);
   if (chosen.kind != nullptr) return chosen;
-  const std::string has = all_sensors_of(roster, mover);
+  const std::string has = all_sensors_of(sensor_set, mover);
   const std::string& robot = world.movers[mover].name;
   if (has.empty()) throw base::InputError(world.file, 0, robot + " has no sensor");
-  const sensors::SensorKind* kind = sensors::find_sensor_type(options.kind);
+  const sensors::SensorType* kind = sensors::find_sensor_type(options.kind);
   throw base::InputError(world.file, 0,
                          robot + " has no " + std::string(kind != nullptr ? kind->name : "sensor") + " " +
                              std::to_string(options.sensor) + "; it has " + has + " (--kind, --sensor)");
@@ -111,10 +111,10 @@ int devices(const Options& options) {
 int check(const Options& options) {
   if (const auto code = check_roads(options)) return *code;
   const world::World world = world::load_world(options.world, options.load);
-  const sensors::Roster roster(world);
-  tell_many_times(roster);
-  if (options.rate > 0.0) tell_fast_sensors(roster, options.rate);
-  print(options.json ? json_of(world, roster) : text_of(world, roster));
+  const sensors::SensorSet sensor_set(world);
+  tell_many_times(sensor_set);
+  if (options.rate > 0.0) tell_fast_sensors(sensor_set, options.rate);
+  print(options.json ? json_of(world, sensor_set) : text_of(world, sensor_set));
   return 0;
 }
 
@@ -129,9 +129,9 @@ int draw(const Options& options) {
 
 int sense(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
-  const sensors::Roster roster(world);
-  const std::uint32_t mover = find_robot(world, roster, options);
-  const Chosen chosen = require_sensor(world, roster, options, mover);
+  const sensors::SensorSet sensor_set(world);
+  const std::uint32_t mover = find_robot(world, sensor_set, options);
+  const Chosen chosen = require_sensor(world, sensor_set, options, mover);
   base::Pose X_WM = world.movers[mover].X_WM;
   if (options.pose) X_WM = {options.pose->x, options.pose->y, X_WM.z, options.pose->yaw};
   if (options.pose) warn_of_pose(world, world.movers[mover], X_WM);
@@ -142,10 +142,10 @@ int sense(const Options& options) {
   farm::Farm farm(world, device, quiet);
   base::ReadingBlock reading = farm.sense(mover, chosen.kind->id, chosen.sensor, X_WM);
   std::vector<double> values(reading.values.begin(), reading.values.end());
-  if (options.no_return_inf) sensors::mark_no_return(reading, roster.row(reading).limit, values);
+  if (options.no_return_inf) sensors::mark_no_return(reading, sensor_set.row(reading).limit, values);
   reading.values = values;
-  if (!options.json) std::fprintf(stderr, "sensorfarm: %s\n", place_of(world, roster, reading).c_str());
-  print(options.json ? with_warnings(json_of(world, roster, reading), world.warnings) : text_of(world, reading));
+  if (!options.json) std::fprintf(stderr, "sensorfarm: %s\n", place_of(world, sensor_set, reading).c_str());
+  print(options.json ? with_warnings(json_of(world, sensor_set, reading), world.warnings) : text_of(world, reading));
   return 0;
 }
 

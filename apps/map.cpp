@@ -58,15 +58,16 @@ bool follow(Source& source, const netio::Endpoint& from, const netio::Header& he
   return !source.sequences.leaps(header.sequence);
 }
 
-std::string name_of(const Source& source, sensors::Wire wire) {
-  return wire == sensors::Wire::farm ? "robot " + std::to_string(source.robot) : "port " + std::to_string(source.port);
+std::string name_of(const Source& source, sensors::WireFormat wire) {
+  return wire == sensors::WireFormat::farm ? "robot " + std::to_string(source.robot)
+                                           : "port " + std::to_string(source.port);
 }
 
 /// The datagram `bytes` that came from `from` at `now` [ns].
-maps::PartStatus take(Source& source, sensors::Wire wire, std::span<const std::uint8_t> bytes,
+maps::PartStatus take(Source& source, sensors::WireFormat wire, std::span<const std::uint8_t> bytes,
                       const netio::Endpoint& from, std::int64_t now) {
   if (!source.farm.may(from)) return maps::PartStatus::faulty;
-  if (wire == sensors::Wire::thesis) {
+  if (wire == sensors::WireFormat::thesis) {
     maps::PlainPart part;
     const bool sound = maps::read_plain(bytes, part) == maps::PartFault::none;
     return sound && source.farm.admit(from, 0, now) ? source.assembler.add_plain_part(bytes) : maps::PartStatus::faulty;

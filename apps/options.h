@@ -12,7 +12,7 @@
 #include "netio/packets.h"
 #include "scenarios/plant.h"
 #include "scenarios/tradeoff.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 #include "world/world.h"
 
 namespace sf::apps {
@@ -87,7 +87,7 @@ struct Options {
   std::vector<std::string> drive;     ///< whom, by name; empty: every robot
   std::string send;                   ///< host; empty: nobody
   std::string from;                   ///< host that `listen` and `map` take packets from; empty: the first that sends
-  sensors::Wire wire = sensors::Wire::farm;
+  sensors::WireFormat wire = sensors::WireFormat::farm;
   std::map<std::uint8_t, std::uint32_t> base_ports;  ///< by sensor kind; every kind is in it
   std::uint32_t ports_per_robot = 0;                 ///< 0: 8, or the least that fits
 

@@ -4,52 +4,52 @@ namespace sf::apps {
 
 namespace {
 
-netio::Reason reason_of(sensors::Fault fault) {
+netio::Reason reason_of(sensors::PayloadError fault) {
   switch (fault) {
-    case sensors::Fault::none:
+    case sensors::PayloadError::none:
       return netio::Reason::accepted;
-    case sensors::Fault::too_short:
+    case sensors::PayloadError::too_short:
       return netio::Reason::too_short;
-    case sensors::Fault::too_long:
+    case sensors::PayloadError::too_long:
       return netio::Reason::too_long;
-    case sensors::Fault::out_of_range:
+    case sensors::PayloadError::out_of_range:
       break;
   }
   return netio::Reason::out_of_range;
 }
 
 /// The thesis' datagrams do not tell their type: the port does.
-std::uint8_t type_of(const Source& source, sensors::Wire wire, const netio::Header& header) {
-  return wire == sensors::Wire::farm ? static_cast<std::uint8_t>(header.type) : source.kind->id;
+std::uint8_t type_of(const Source& source, sensors::WireFormat wire, const netio::Header& header) {
+  return wire == sensors::WireFormat::farm ? static_cast<std::uint8_t>(header.type) : source.kind->id;
 }
 
 }  // namespace
 
-std::vector<Source> sources_of(const sensors::Roster& roster, const SendPlan& plan) {
+std::vector<Source> sources_of(const sensors::SensorSet& sensor_set, const SendPlan& plan) {
   std::vector<Source> sources;
-  for (const sensors::Roster::Group& group : roster.groups())
-    for (const sensors::SensorRow& row : group.rows)
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : group.rows)
       if (plan.sends(*group.kind, row)) sources.push_back({group.kind, &row});
   return sources;
 }
 
-std::vector<Source> sources_of(const sensors::Roster& roster, const SendPlan& plan, std::uint32_t mover) {
+std::vector<Source> sources_of(const sensors::SensorSet& sensor_set, const SendPlan& plan, std::uint32_t mover) {
   std::vector<Source> sources;
-  for (const sensors::Roster::Group& group : roster.groups())
-    for (const sensors::SensorRow& row : roster.of(group.kind->id, mover))
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : sensor_set.of(group.kind->id, mover))
       if (plan.sends(*group.kind, row)) sources.push_back({group.kind, &row});
   return sources;
 }
 
-netio::Verdict judge_payload(const Source& source, sensors::Wire wire, const netio::Header& header,
+netio::Verdict judge_payload(const Source& source, sensors::WireFormat wire, const netio::Header& header,
                              std::span<const std::uint8_t> payload) {
-  if (wire == sensors::Wire::farm && netio::kind_of(header.type) != source.kind->id)
+  if (wire == sensors::WireFormat::farm && netio::kind_of(header.type) != source.kind->id)
     return {netio::Reason::wrong_source};
-  const sensors::Part part = source.kind->decode(*source.row, payload, type_of(source, wire, header), wire);
+  const sensors::PayloadPart part = source.kind->decode(*source.row, payload, type_of(source, wire, header), wire);
   return {reason_of(part.fault), part.elements, part.part, part.parts};
 }
 
-void read_payload(const Source& source, sensors::Wire wire, const netio::Header& header,
+void read_payload(const Source& source, sensors::WireFormat wire, const netio::Header& header,
                   std::span<const std::uint8_t> payload, std::span<double> values) {
   source.kind->read(*source.row, payload, type_of(source, wire, header), wire, values);
 }

@@ -7,27 +7,27 @@
 
 #include "apps/send_plan.h"
 #include "netio/listener.h"
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 
 namespace sf::apps {
 
 /// The sensor behind one port.
 struct Source {
-  const sensors::SensorKind* kind = nullptr;
-  const sensors::SensorRow* row = nullptr;
+  const sensors::SensorType* kind = nullptr;
+  const sensors::SensorSpec* row = nullptr;
 };
 
 /// All sensors of a world that are sent, kind after kind. They live as long as the roster.
-std::vector<Source> sources_of(const sensors::Roster& roster, const SendPlan& plan);
+std::vector<Source> sources_of(const sensors::SensorSet& sensor_set, const SendPlan& plan);
 /// One mover's.
-std::vector<Source> sources_of(const sensors::Roster& roster, const SendPlan& plan, std::uint32_t mover);
+std::vector<Source> sources_of(const sensors::SensorSet& sensor_set, const SendPlan& plan, std::uint32_t mover);
 
 /// Judges any bytes that came to the sensor's port behind a header of its robot and number.
-netio::Verdict judge_payload(const Source& source, sensors::Wire wire, const netio::Header& header,
+netio::Verdict judge_payload(const Source& source, sensors::WireFormat wire, const netio::Header& header,
                              std::span<const std::uint8_t> payload);
 
 /// Writes what an accepted payload says into its reading's values.
-void read_payload(const Source& source, sensors::Wire wire, const netio::Header& header,
+void read_payload(const Source& source, sensors::WireFormat wire, const netio::Header& header,
                   std::span<const std::uint8_t> payload, std::span<double> values);
 
 }  // namespace sf::apps

@@ -19,7 +19,7 @@ struct LastMap {
   maps::OccupancyGrid grid;
 };
 
-const record::ReadingSample* last_of(const record::Recording& recording, const sensors::SensorRow& row) {
+const record::ReadingSample* last_of(const record::Recording& recording, const sensors::SensorSpec& row) {
   const auto& all = recording.readings;
   const auto last = std::find_if(all.rbegin(), all.rend(), [&](const record::ReadingSample& r) {
     return r.kind == sensors::kOccupancy && r.mover == row.mover && r.sensor == row.sensor;

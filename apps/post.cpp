@@ -17,30 +17,30 @@ std::span<const base::ReadingBlock> NoReturn::apply(std::span<const base::Readin
   double* at = ranges_.data();
   for (base::ReadingBlock& r : blocks_) {
     if (r.hits.empty()) continue;  // no beams
-    sensors::mark_no_return(r, roster_.row(r).limit, {at, r.values.size()});
+    sensors::mark_no_return(r, sensor_set_.row(r).limit, {at, r.values.size()});
     r.values = {at, r.values.size()};
     at += r.values.size();
   }
   return blocks_;
 }
 
-netio::OutboxOptions outbox_options(const sensors::Roster& roster) {
+netio::OutboxOptions outbox_options(const sensors::SensorSet& sensor_set) {
   netio::OutboxOptions options;
-  if (roster.count() <= kLargeFleet) return options;
+  if (sensor_set.count() <= kLargeFleet) return options;
   options.backlog = 64;
   options.patience_ms = 50;
   return options;
 }
 
-Post::Post(const world::World& world, const sensors::Roster& roster, SendPlan plan, netio::Outbox outbox)
+Post::Post(const world::World& world, const sensors::SensorSet& sensor_set, SendPlan plan, netio::Outbox outbox)
     : world_(world),
-      roster_(roster),
+      sensor_set_(sensor_set),
       plan_(std::move(plan)),
       outbox_(std::move(outbox)),
-      thread_pool_(roster.count() > kLargeFleet ? 0 : 1),
+      thread_pool_(sensor_set.count() > kLargeFleet ? 0 : 1),
       memory_(thread_pool_.threads()) {
-  for (const sensors::Roster::Group& group : roster.groups())
-    for (const sensors::SensorRow& row : group.rows)
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : group.rows)
       streams_[group.kind->id].push_back({0, plan_.sends(*group.kind, row) ? group.kind->parts(row, plan_.wire) : 0});
   for (Memory& memory : memory_) {
     memory.payload.reserve(netio::kMaxPlain);
@@ -49,8 +49,8 @@ Post::Post(const world::World& world, const sensors::Roster& roster, SendPlan pl
 }
 
 Post::Job Post::job_of(const Letter& letter) {
-  const sensors::Roster::Group& group = *roster_.group(letter.reading->kind);
-  const sensors::SensorRow& row = roster_.row(*letter.reading);
+  const sensors::SensorSet::Group& group = *sensor_set_.group(letter.reading->kind);
+  const sensors::SensorSpec& row = sensor_set_.row(*letter.reading);
   Stream& stream = streams_.at(letter.reading->kind)[static_cast<std::size_t>(&row - group.rows.data())];
   return {letter, group.kind, &row, &stream, stream.sent, 0, true};
 }
@@ -75,7 +75,7 @@ std::uint32_t Post::encode(const Job& job, Memory& memory, Put&& put) const {
     const std::uint8_t type = job.kind->encode(*job.row, reading, plan_.wire, part, memory.payload);
     if (type == 0) {
       ++failed;
-    } else if (plan_.wire == sensors::Wire::thesis) {
+    } else if (plan_.wire == sensors::WireFormat::thesis) {
       put(part, netio::Endpoint{job.letter.address, port}, memory.payload);
     } else {
       netio::frame(header, type, memory.payload, memory.packet);

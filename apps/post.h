@@ -10,7 +10,7 @@
 #include "base/reading.h"
 #include "base/thread_pool.h"
 #include "netio/outbox.h"
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 #include "world/world.h"
 
 namespace sf::apps {
@@ -18,13 +18,13 @@ namespace sf::apps {
 /// Beams that met nothing read infinity from here on, where the user asked for it.
 class NoReturn {
  public:
-  /// `roster` must outlive it.
-  NoReturn(const sensors::Roster& roster, bool infinite) : roster_(roster), infinite_(infinite) {}
+  /// `sensor_set` must outlive it.
+  NoReturn(const sensors::SensorSet& sensor_set, bool infinite) : sensor_set_(sensor_set), infinite_(infinite) {}
   /// The same readings, or copies that live until the next call.
   std::span<const base::ReadingBlock> apply(std::span<const base::ReadingBlock> readings);
 
  private:
-  const sensors::Roster& roster_;
+  const sensors::SensorSet& sensor_set_;
   bool infinite_;
   std::vector<base::ReadingBlock> blocks_;
   std::vector<double> ranges_;
@@ -45,14 +45,14 @@ struct Letter {
 /// Fleets of more sensors than this are encoded on all cores, and sent by a thread of their own.
 inline constexpr std::size_t kLargeFleet = 256;
 
-/// How `roster`'s readings are sent.
-netio::OutboxOptions outbox_options(const sensors::Roster& roster);
+/// How `sensor_set`'s readings are sent.
+netio::OutboxOptions outbox_options(const sensors::SensorSet& sensor_set);
 
 /// Readings as packets, numbered per sensor as they are sent: a reading that was due and never sent leaves no gap.
 /// World and roster must outlive it.
 class Post {
  public:
-  Post(const world::World& world, const sensors::Roster& roster, SendPlan plan, netio::Outbox outbox);
+  Post(const world::World& world, const sensors::SensorSet& sensor_set, SendPlan plan, netio::Outbox outbox);
 
   /// Queues each reading's packets to its address, at its sensor's port; none where the plan has none of its sensor's.
   void queue(std::span<const Letter> letters);
@@ -68,8 +68,8 @@ class Post {
   /// A reading that is being encoded.
   struct Job {
     Letter letter;
-    const sensors::SensorKind* kind = nullptr;
-    const sensors::SensorRow* row = nullptr;
+    const sensors::SensorType* kind = nullptr;
+    const sensors::SensorSpec* row = nullptr;
     Stream* stream = nullptr;
     std::uint32_t sequence = 0;
     std::size_t place = 0;  ///< of its first datagram
@@ -85,7 +85,7 @@ class Post {
   std::uint32_t encode(const Job& job, Memory& memory, Put&& put) const;
 
   const world::World& world_;
-  const sensors::Roster& roster_;
+  const sensors::SensorSet& sensor_set_;
   SendPlan plan_;
   netio::Outbox outbox_;
   base::ThreadPool thread_pool_;

@@ -5,23 +5,23 @@
 #include <utility>
 #include <vector>
 
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 
 namespace sf::apps {
 
 /// [Hz] The least and the largest of one kind.
-std::pair<double, double> rates_of(const sensors::Roster::Group& group);
+std::pair<double, double> rates_of(const sensors::SensorSet::Group& group);
 /// "laser 10 to 13 Hz", of one kind.
-std::string rate_text(const sensors::Roster::Group& group);
+std::string rate_text(const sensors::SensorSet::Group& group);
 
 /// Names of the kinds that have sensors which are due between ticks of `interval` [s].
-std::vector<std::string> kinds_between_ticks(const sensors::Roster& roster, double interval);
+std::vector<std::string> kinds_between_ticks(const sensors::SensorSet& sensor_set, double interval);
 
 /// Says on standard error which sensors ticks at `rate` [Hz] are too slow for, where they are read at ticks alone.
-void tell_fast_sensors(const sensors::Roster& roster, double rate);
+void tell_fast_sensors(const sensors::SensorSet& sensor_set, double rate);
 
 /// Says on standard error when sensors are due at more than a thousand different times a second: each is a batch of its
 /// own.
-void tell_many_times(const sensors::Roster& roster);
+void tell_many_times(const sensors::SensorSet& sensor_set);
 
 }  // namespace sf::apps

@@ -40,9 +40,9 @@ std::uint32_t find_robot(const world::World& world, const std::string& name) {
 
 int robot(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
-  const sensors::Roster roster(world);
+  const sensors::SensorSet sensor_set(world);
   const std::uint32_t mover = find_robot(world, options.robot);
-  RobotProcess process(world, roster, mover, send_plan(world, roster, options), options);
+  RobotProcess process(world, sensor_set, mover, send_plan(world, sensor_set, options), options);
   catch_stop_signals();
   std::fprintf(stderr, "sensorfarm: %s (id %u) drives by '%s' at %g Hz beside the farm at %s%s; Ctrl-C ends it\n",
                world.movers[mover].name.c_str(), world.movers[mover].id, options.controller.c_str(), process.rate(),

@@ -34,11 +34,11 @@ std::uint32_t listening_address(std::uint32_t farm) { return netio::is_loopback(
 
 }  // namespace
 
-RobotLink::RobotLink(const world::World& world, const sensors::Roster& roster, std::uint32_t mover,
+RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
                      const SendPlan& plan, const Options& options, Hear hear)
     : mover_(mover),
       id_(world.movers[mover].id),
-      streams_(streams_of(roster, plan, mover)),
+      streams_(streams_of(sensor_set, plan, mover)),
       farm_{netio::resolve(options.server), static_cast<std::uint16_t>(options.port)},
       radio_({.farm = farm_, .robot = id_, .others = others_of(world, id_)}),
       ears_(listening_address(farm_.address), std::size_t{1} << 20, plans(plan)),
@@ -49,10 +49,10 @@ RobotLink::RobotLink(const world::World& world, const sensors::Roster& roster, s
   receiver_.bind(radio_.farm_stamp());
 }
 
-std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::Roster& roster, const SendPlan& plan,
+std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& sensor_set, const SendPlan& plan,
                                                      std::uint32_t mover) {
   std::vector<Stream> streams;
-  for (const Source& source : sources_of(roster, plan, mover))
+  for (const Source& source : sources_of(sensor_set, plan, mover))
     if (source.kind->read != nullptr) streams.push_back({source});
   return streams;
 }
@@ -60,7 +60,7 @@ std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::Roster& rost
 std::vector<netio::StreamPlan> RobotLink::plans(const SendPlan& plan) const {
   std::vector<netio::StreamPlan> plans;
   for (const Stream& stream : streams_) {
-    const sensors::SensorKind& kind = *stream.source.kind;
+    const sensors::SensorType& kind = *stream.source.kind;
     plans.push_back({id_, stream.source.row->sensor, plan.ports(kind), std::string(kind.name)});
   }
   return plans;
@@ -73,8 +73,8 @@ netio::ReceiverOptions RobotLink::receiver_options(const SendPlan& plan) const {
     const Source& source = streams_[i].source;
     receiver.streams.push_back({all[i], source.row->elements * element_width(*source.kind)});
   }
-  receiver.headerless = plan.wire == sensors::Wire::thesis;
-  const sensors::Wire wire = plan.wire;
+  receiver.headerless = plan.wire == sensors::WireFormat::thesis;
+  const sensors::WireFormat wire = plan.wire;
   receiver.judge = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
     return judge_payload(streams_[i].source, wire, header, payload);
   };

@@ -18,7 +18,7 @@
 #include "netio/farm_clock.h"
 #include "netio/radio.h"
 #include "netio/receiver.h"
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 #include "world/world.h"
 
 namespace sf::apps {
@@ -41,7 +41,7 @@ class RobotLink {
   using Hear = std::function<void(const netio::Packet&, std::int64_t now)>;
 
   /// @throws base::InputError when a port is taken or the farm's host is unknown.
-  RobotLink(const world::World& world, const sensors::Roster& roster, std::uint32_t mover, const SendPlan& plan,
+  RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover, const SendPlan& plan,
             const Options& options, Hear hear);
 
   /// Sends a state, and every half a second what it wants to be sent.
@@ -57,7 +57,7 @@ class RobotLink {
   /// until the next call, or `run`.
   struct Newest {
     base::ReadingBlock block;
-    const sensors::SensorRow* row = nullptr;
+    const sensors::SensorSpec* row = nullptr;
   };
   std::span<Newest> readings();
 
@@ -80,7 +80,8 @@ class RobotLink {
     std::uint64_t piece = 0;     ///< datagrams of it that came before
     std::uint64_t whole = 0;     ///< readings
   };
-  static std::vector<Stream> streams_of(const sensors::Roster& roster, const SendPlan& plan, std::uint32_t mover);
+  static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const SendPlan& plan,
+                                        std::uint32_t mover);
   std::vector<netio::StreamPlan> plans(const SendPlan& plan) const;
   netio::ReceiverOptions receiver_options(const SendPlan& plan) const;
   void send(netio::Type type, std::uint32_t sequence, std::int64_t now);

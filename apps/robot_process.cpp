@@ -30,10 +30,10 @@ netio::V2v state_of(const base::Report& report, const base::Intent& intent) {
 }
 
 /// [ns] Never shorter than two and a half periods of the fastest sensor, so that one lost reading stops nobody.
-std::int64_t patience_of(const sensors::Roster& roster, std::uint32_t mover, double seconds) {
+std::int64_t patience_of(const sensors::SensorSet& sensor_set, std::uint32_t mover, double seconds) {
   double fastest = 0.0;
-  for (const sensors::Roster::Group& group : roster.groups())
-    for (const sensors::SensorRow& row : roster.of(group.kind->id, mover)) fastest = std::max(fastest, row.rate);
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : sensor_set.of(group.kind->id, mover)) fastest = std::max(fastest, row.rate);
   return seconds > 0.0 && fastest > 0.0 ? std::llround(1e9 * std::max(seconds, 2.5 / fastest)) : 0;
 }
 
@@ -46,18 +46,18 @@ bool waits_for_start(const Options& options) {
          });
 }
 
-RobotProcess::RobotProcess(const world::World& world, const sensors::Roster& roster, std::uint32_t mover,
+RobotProcess::RobotProcess(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
                            const SendPlan& sent, const Options& options)
     : world_(world),
       names_(wire_names(world)),
       mover_(mover),
       body_(world, mover, std::llround(1e9 * options.forget)),
-      link_(world, roster, mover, sent, options,
+      link_(world, sensor_set, mover, sent, options,
             [this](const netio::Packet& packet, std::int64_t now) { hear(packet, now); }),
       roads_(world::roads_of(world)),
       intents_(world.movers.size()),
       started_(!waits_for_start(options)),
-      patience_(patience_of(roster, mover, options.stop_after)) {
+      patience_(patience_of(sensor_set, mover, options.stop_after)) {
   control::Plan plan = plan_of(options);
   plan.rate = options.rate;
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, std::move(plan));

@@ -14,7 +14,7 @@
 #include "control/controllers.h"
 #include "netio/log.h"
 #include "scenarios/robot_body.h"
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 #include "world/lights.h"
 #include "world/roads/network.h"
 #include "world/world.h"
@@ -29,8 +29,8 @@ bool waits_for_start(const Options& options);
 class RobotProcess {
  public:
   /// @throws base::InputError for a controller that cannot be had, a port that is taken, a farm's host that is unknown.
-  RobotProcess(const world::World& world, const sensors::Roster& roster, std::uint32_t mover, const SendPlan& plan,
-               const Options& options);
+  RobotProcess(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
+               const SendPlan& plan, const Options& options);
 
   /// Takes in and lets out what comes and is due until `until`, or until a stop is asked for. @param now the clock
   template <class Now>

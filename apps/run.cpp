@@ -37,17 +37,17 @@ using Clock = std::chrono::steady_clock;
 /// Where readings go: a recording, the network, both or neither.
 class Outputs {
  public:
-  Outputs(const world::World& world, const sensors::Roster& roster, const std::optional<SendPlan>& plan,
+  Outputs(const world::World& world, const sensors::SensorSet& sensor_set, const std::optional<SendPlan>& plan,
           const std::string& caster, const Options& options)
-      : roster_(roster), no_return_(roster, options.no_return_inf) {
+      : sensor_set_(sensor_set), no_return_(sensor_set, options.no_return_inf) {
     if (plan) {
       address_ = netio::resolve(options.send);
-      post_.emplace(world, roster, *plan, netio::Outbox(outbox_options(roster)));
+      post_.emplace(world, sensor_set, *plan, netio::Outbox(outbox_options(sensor_set)));
     }
     if (!options.record.empty())
-      recorder_.emplace(
-          options.record,
-          scenarios::run_info(world, roster, {options.seed, options.record_readings, options.no_return_inf, caster}));
+      recorder_.emplace(options.record,
+                        scenarios::run_info(world, sensor_set,
+                                            {options.seed, options.record_readings, options.no_return_inf, caster}));
   }
 
   /// @param wait called with the time [ns] at which a reading is delivered, before it is sent: the tick's, or one
@@ -60,7 +60,7 @@ class Outputs {
     std::int64_t sent_at = tick.time;
     for (const base::ReadingBlock& reading : post_ ? tick.readings : std::span<const base::ReadingBlock>{}) {
       const std::int64_t time =
-          std::min<std::int64_t>(tick.time, reading.time + std::llround(1e9 * roster_.row(reading).latency));
+          std::min<std::int64_t>(tick.time, reading.time + std::llround(1e9 * sensor_set_.row(reading).latency));
       if (time != std::exchange(sent_at, time)) {
         send();
         const auto before = Clock::now();
@@ -93,7 +93,7 @@ class Outputs {
     letters_.clear();
   }
 
-  const sensors::Roster& roster_;
+  const sensors::SensorSet& sensor_set_;
   NoReturn no_return_;
   std::vector<Letter> letters_;  ///< that go at one time
   std::uint32_t address_ = 0;
@@ -144,18 +144,18 @@ auto advised(const world::World& world, const Options& options, Act&& act) {
 int run(const Options& options) {
   world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   std::optional<SendPlan> plan;
-  if (!options.send.empty()) plan = send_plan(world, sensors::Roster(world), options);
+  if (!options.send.empty()) plan = send_plan(world, sensors::SensorSet(world), options);
   gpu::Device device(options.device);
   choose_accuracy(world, device, options);
-  const sensors::Roster roster(world);
-  tell_many_times(roster);
+  const sensors::SensorSet sensor_set(world);
+  tell_many_times(sensor_set);
   scenarios::Simulation simulation =
       advised(world, options, [&] { return scenarios::Simulation(world, device, simulation_options(world, options)); });
   if (!simulation.warnings().empty()) tell_warnings(simulation.warnings().front().file, simulation.warnings());
   ControlTally tally(simulation, world.movers.size(), options.controller);
   std::vector<base::ContactOnset> contacts(world.movers.size());
   const std::string caster = raycast::describe_caster(device.info().software);
-  Outputs outputs(world, roster, plan, caster, options);
+  Outputs outputs(world, sensor_set, plan, caster, options);
   catch_stop_signals();
 
   const auto ticks = static_cast<std::uint64_t>(std::llround(options.duration / world.interval));

@@ -15,20 +15,21 @@ namespace {
 constexpr std::uint32_t kUsualStride = 8;
 constexpr std::size_t kMostLines = 20;  ///< about sensors that are left out
 
-std::string port_option(const sensors::SensorKind& kind) { return "--" + std::string(kind.name) + "-port"; }
+std::string port_option(const sensors::SensorType& kind) { return "--" + std::string(kind.name) + "-port"; }
 
 /// One line for each sensor that the wire cannot carry.
-std::vector<std::string> left_out(const world::World& world, const sensors::Roster& roster, const SendPlan& plan) {
+std::vector<std::string> left_out(const world::World& world, const sensors::SensorSet& sensor_set,
+                                  const SendPlan& plan) {
   std::vector<std::string> lines;
-  for (const sensors::Roster::Group& group : roster.groups())
-    for (const sensors::SensorRow& row : group.rows)
-      if (const std::string why = group.kind->refuse(row, plan.wire); !why.empty())
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : group.rows)
+      if (const std::string why = group.kind->wire_problem(row, plan.wire); !why.empty())
         lines.push_back(world.movers[row.mover].name + "." + row.name + ": " + why);
   return lines;
 }
 
-void require_some(const sensors::Roster& roster, const std::vector<std::string>& lines, const SendPlan& plan) {
-  if (lines.empty() || (plan.wire == sensors::Wire::thesis && lines.size() < roster.count())) {
+void require_some(const sensors::SensorSet& sensor_set, const std::vector<std::string>& lines, const SendPlan& plan) {
+  if (lines.empty() || (plan.wire == sensors::WireFormat::thesis && lines.size() < sensor_set.count())) {
     for (std::size_t i = 0; i < std::min(lines.size(), kMostLines); ++i)
       std::fprintf(stderr, "sensorfarm: left out: %s\n", lines[i].c_str());
     if (lines.size() > kMostLines)
@@ -38,11 +39,12 @@ void require_some(const sensors::Roster& roster, const std::vector<std::string>&
   throw base::InputError(lines.front());
 }
 
-std::vector<netio::PortUse> uses_of(const world::World& world, const sensors::Roster& roster, const SendPlan& plan) {
+std::vector<netio::PortUse> uses_of(const world::World& world, const sensors::SensorSet& sensor_set,
+                                    const SendPlan& plan) {
   std::vector<netio::PortUse> uses;
-  for (const sensors::Roster::Group& group : roster.groups())
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-      const auto rows = roster.of(group.kind->id, m);
+      const auto rows = sensor_set.of(group.kind->id, m);
       if (rows.empty()) continue;
       uses.push_back({world.movers[m].id, static_cast<std::uint32_t>(rows.size()), plan.ports(*group.kind),
                       world.movers[m].name, 0, std::string(group.kind->name), port_option(*group.kind)});
@@ -52,21 +54,21 @@ std::vector<netio::PortUse> uses_of(const world::World& world, const sensors::Ro
 
 }  // namespace
 
-bool SendPlan::sends_any(const sensors::Roster::Group& group) const {
+bool SendPlan::sends_any(const sensors::SensorSet::Group& group) const {
   return std::any_of(group.rows.begin(), group.rows.end(),
-                     [&](const sensors::SensorRow& row) { return sends(*group.kind, row); });
+                     [&](const sensors::SensorSpec& row) { return sends(*group.kind, row); });
 }
 
-SendPlan send_plan(const world::World& world, const sensors::Roster& roster, const Options& options) {
+SendPlan send_plan(const world::World& world, const sensors::SensorSet& sensor_set, const Options& options) {
   SendPlan plan{options.base_ports, options.ports_per_robot, options.wire};
   const bool chosen = plan.stride != 0;
-  if (!chosen) plan.stride = netio::least_stride(uses_of(world, roster, plan), kUsualStride);
-  require_some(roster, left_out(world, roster, plan), plan);
+  if (!chosen) plan.stride = netio::least_stride(uses_of(world, sensor_set, plan), kUsualStride);
+  require_some(sensor_set, left_out(world, sensor_set, plan), plan);
   std::string bases;
-  for (const sensors::Roster::Group& group : roster.groups())
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
     bases += (bases.empty() ? "" : ", ") + port_option(*group.kind);
   try {
-    netio::require_ports(uses_of(world, roster, plan));
+    netio::require_ports(uses_of(world, sensor_set, plan));
   } catch (const base::InputError& error) {
     throw base::InputError(std::string(error.what()) + " (base: " + bases + "; stride: --ports-per-robot)");
   }

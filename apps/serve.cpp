@@ -48,20 +48,20 @@ netio::Inbox open_inbox(const WireNames& names, const Options& options) {
 
 class Service {
  public:
-  Service(const world::World& world, const sensors::Roster& roster, gpu::Device& device, const SendPlan& plan,
+  Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device, const SendPlan& plan,
           const Options& options)
       : world_(world),
-        roster_(roster),
+        sensor_set_(sensor_set),
         names_(wire_names(world)),
         inbox_(open_inbox(names_, options)),
         answers_(inbox_.socket()),
         relay_(ids_of(names_.robots), {.range = options.radio}),
         plan_(plan),
-        post_(world, roster, plan, netio::Outbox(inbox_.socket(), outbox_options(roster))),
+        post_(world, sensor_set, plan, netio::Outbox(inbox_.socket(), outbox_options(sensor_set))),
         farm_(world, device,
               farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
         fleet_(world),
-        no_return_(roster, options.no_return_inf),
+        no_return_(sensor_set, options.no_return_inf),
         forget_(options.forget > 0.0 ? std::max<std::int64_t>(0, std::llround(1e9 * options.forget) - netio::kSilence)
                                      : kNever),
         last_heard_(world.movers.size(), kNever),
@@ -172,7 +172,7 @@ class Service {
   /// Bit k: robot `id` is heard, and wants its sensors of kind k.
   std::uint32_t wanted(std::uint32_t id, std::int64_t now) const {
     std::uint32_t kinds = 0;
-    for (const sensors::Roster::Group& group : roster_.groups())
+    for (const sensors::SensorSet::Group& group : sensor_set_.groups())
       if (inbox_.wants(id, group.kind->id, now) && plan_.sends_any(group)) kinds |= 1u << group.kind->id;
     return kinds;
   }
@@ -206,7 +206,7 @@ class Service {
   static constexpr std::int64_t kNever = -1;
 
   const world::World& world_;
-  const sensors::Roster& roster_;
+  const sensors::SensorSet& sensor_set_;
   WireNames names_;
   netio::Inbox inbox_;
   netio::Outbox answers_;  ///< from where the robots speak to
@@ -234,13 +234,13 @@ class Service {
 
 int serve(const Options& options) {
   world::World world = load_with_robots(options.world, options.load, 0, options.seed);
-  const SendPlan plan = send_plan(world, sensors::Roster(world), options);
+  const SendPlan plan = send_plan(world, sensors::SensorSet(world), options);
   gpu::Device device(options.device);
   choose_accuracy(world, device, options);
-  const sensors::Roster roster(world);
-  if (options.rate > 0.0) tell_fast_sensors(roster, options.rate);
-  if (options.rate == 0.0) tell_many_times(roster);
-  Service service(world, roster, device, plan, options);
+  const sensors::SensorSet sensor_set(world);
+  if (options.rate > 0.0) tell_fast_sensors(sensor_set, options.rate);
+  if (options.rate == 0.0) tell_many_times(sensor_set);
+  Service service(world, sensor_set, device, plan, options);
   warn_of_reach(netio::resolve(options.bind), "say where robots are, and be sent readings");
   catch_stop_signals();
   const double interval = options.rate > 0.0 ? 1.0 / options.rate : world.interval;

@@ -9,7 +9,7 @@
 #include "base/hash.h"
 #include "raycast/caster_choice.h"
 #include "sensors/accuracy.h"
-#include "sensors/field/truncation.h"
+#include "sensors/magnetic_field/truncation.h"
 
 namespace sf::apps {
 
@@ -21,28 +21,29 @@ std::string rate(double per_second) {
 
 std::string device_text(const RunFacts& f) { return f.device + (f.software ? " (software: computed on the CPU)" : ""); }
 
-std::string sensors_text(const sensors::Roster& roster) {
+std::string sensors_text(const sensors::SensorSet& sensor_set) {
   std::string text;
-  for (const sensors::Roster::Group& group : roster.groups()) {
+  for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
     std::size_t elements = 0;
-    for (const sensors::SensorRow& sensor : group.rows) elements += sensor.elements;
+    for (const sensors::SensorSpec& sensor : group.rows) elements += sensor.elements;
     const std::string list = group.kind->list.empty() ? "" : fmt::format(" ({} {} in all)", elements, group.kind->list);
     text += row(group.kind->name, fmt::format("{}{}", group.rows.size(), list));
   }
   return text;
 }
 
-std::string accuracy_text(const world::World& world, const sensors::Roster& roster) {
+std::string accuracy_text(const world::World& world, const sensors::SensorSet& sensor_set) {
   std::string text;
-  for (const sensors::Statement& s : sensors::statements_of(world, roster))
+  for (const sensors::AccuracyStatement& s : sensors::accuracy_statements(world, sensor_set))
     text += row(text.empty() ? "accuracy" : "", text_of(s));
   return text;
 }
 
-std::string rates_text(const world::World& world, const sensors::Roster& roster) {
+std::string rates_text(const world::World& world, const sensors::SensorSet& sensor_set) {
   std::string rates;
-  for (const sensors::Roster::Group& group : roster.groups()) rates += (rates.empty() ? "" : ", ") + rate_text(group);
-  const std::vector<std::string> between = kinds_between_ticks(roster, world.interval);
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    rates += (rates.empty() ? "" : ", ") + rate_text(group);
+  const std::vector<std::string> between = kinds_between_ticks(sensor_set, world.interval);
   return row("rates", rates) +
          (between.empty() ? "" : row("", fmt::format("read between ticks too: {}", fmt::join(between, ", "))));
 }
@@ -58,7 +59,7 @@ std::string magnets_text(const world::World& world) {
   const std::size_t magnets = count_magnets(world);
   if (magnets == 0) return "";
   if (world.magnet_cutoff == 0.0) return row("magnets", fmt::format("{}, all of them felt everywhere", magnets));
-  const sensors::FieldFacts facts = sensors::field_facts(world);
+  const sensors::MagnetSummary facts = sensors::summarize_magnets(world);
   return row("magnets", fmt::format("{}, felt within {:g} m", magnets, facts.cutoff_m)) +
          row("", fmt::format("what is left out is at most {:.3g} T ({:.3g} Gauss), {:g} m above the ground",
                              facts.bound_T, 1e4 * facts.bound_T, facts.height_m));
@@ -78,7 +79,7 @@ std::string street_text(const world::World& world) {
 
 }  // namespace
 
-std::string text_of(const sensors::Statement& s) {
+std::string text_of(const sensors::AccuracyStatement& s) {
   const std::string error =
       std::isinf(s.bound.error) ? "no bound" : "within " + quantity_text(s.bound.error, sensors::unit_of(*s.kind));
   return fmt::format("{} {}, {}{}{}", counted(s.sensors, s.kind->name), sensors::word_of(*s.kind, s.mode), error,
@@ -99,7 +100,7 @@ std::string text_of(const gpu::DeviceList& survey) {
   return text;
 }
 
-std::string text_of(const world::World& world, const sensors::Roster& roster) {
+std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set) {
   const std::size_t robots = count_robots(world);
   const world::Extent& e = world.extent;
   std::string text;
@@ -108,8 +109,9 @@ std::string text_of(const world::World& world, const sensors::Roster& roster) {
   text += row("models", fmt::format("{}", world.models.size()));
   text += row("robots", fmt::format("{}", robots));
   if (world.movers.size() > robots) text += row("tags", fmt::format("{}", world.movers.size() - robots));
-  text += roster.groups().empty() ? row("sensors", "none")
-                                  : sensors_text(roster) + rates_text(world, roster) + accuracy_text(world, roster);
+  text += sensor_set.groups().empty()
+              ? row("sensors", "none")
+              : sensors_text(sensor_set) + rates_text(world, sensor_set) + accuracy_text(world, sensor_set);
   text += row("wall segments", fmt::format("{}", world.walls.size()));
   text += paint_text(world) + magnets_text(world) + street_text(world);
   text += row("extent", fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max));
@@ -216,7 +218,7 @@ namespace {
 /// " (laser 120 with 43320 beams, laneedge 30)".
 std::string shares_text(const netio::Summary& summary) {
   std::string text;
-  for (const sensors::SensorKind* kind : sensors::kinds()) {
+  for (const sensors::SensorType* kind : sensors::sensor_types()) {
     const auto found = summary.of.find(std::string(kind->name));
     if (found == summary.of.end()) continue;
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kind->name, found->second.good);

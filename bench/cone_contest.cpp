@@ -25,7 +25,7 @@ constexpr std::size_t kPlain = 1;          // the entrant that ratios refer to
 /// The Pioneer's ring as worlds/robots.inc has it, but for its firing.
 world::Sensor pioneers_ring() {
   const world::World pioneer =
-      world::load_world(SF_SOURCE_DIR "/bench/pioneer.world", {.sensors = sensors::vocabulary()});
+      world::load_world(SF_SOURCE_DIR "/bench/pioneer.world", {.sensors = sensors::world_file_words()});
   world::Sensor ring = pioneer.movers.at(0).sensors.at(0);
   std::erase_if(ring.settings, [](const world::Setting& s) { return s.key == "firing"; });
   ring.settings.push_back({"firing", {}, "all", 0, ring.file});

@@ -37,7 +37,7 @@ DialEntry entry_of(const Entrant& entrant, const Caster& caster, const Caster& e
 DialOutcome compete_dial(gpu::Device& device, std::uint32_t robots, double range, std::size_t turns) {
   std::deque<Scans> scans;
   std::vector<std::unique_ptr<Caster>> casters;
-  for (const sensors::Mode& mode : sensors::kLaserModes) {
+  for (const sensors::AccuracyMode& mode : sensors::kLaserModes) {
     scans.push_back(make_scans("cave", load_cave(), robots, scenes::laser(361, M_PI, range)));
     sensors::set_accuracy(scans.back().world, std::string(mode.word));
     casters.push_back(make_farm_caster(scans.back(), device, std::string(mode.word)));

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sensors/field/magnet_grid.h"
+#include "sensors/magnetic_field/magnet_grid.h"
 #include "world/world.h"
 
 namespace sf::bench {

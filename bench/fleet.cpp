@@ -35,7 +35,7 @@ std::vector<Fact> measure_fleets(gpu::Device& device) {
   std::vector<Fact> facts{simville(device)};
   const std::string hospital = std::string(SF_SOURCE_DIR) + "/../shared/data/stage/benchmark/hospital.world";
   if (!std::filesystem::exists(hospital)) return facts;
-  world::World world = world::load_world(hospital, {.sensors = sensors::vocabulary()});
+  world::World world = world::load_world(hospital, {.sensors = sensors::world_file_words()});
   world::clone_robots(world, kHospitalRobots, 1);
   const auto [first, hash] = wander_in(world, device);
   const auto [second, same] = wander_in(world, device);

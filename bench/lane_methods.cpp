@@ -1,7 +1,7 @@
 #include "bench/lane_methods.h"
 
+#include "sensors/lane_markings/filtered_scene.h"
 #include "sensors/laneedge_settings.h"
-#include "sensors/paint/excerpt.h"
 
 namespace sf::bench {
 
@@ -13,7 +13,7 @@ class FarmLanes final : public LaneReader {
   FarmLanes(const LaneScene& scene, gpu::Device& device)
       : scene_(scene),
         context_{scene.world, device, thread_pool_, 0, true, {}},
-        instruments_(sensors::laneedge_kind.make(context_)),
+        backend_(sensors::laneedge_type.make(context_)),
         batch_(device) {
     for (std::uint32_t row = 0; row < scene.world.movers.size(); ++row) due_.push_back({row, 0});
   }
@@ -24,18 +24,18 @@ class FarmLanes final : public LaneReader {
   }
   void read(std::size_t round) override {
     const std::vector<base::Pose>& poses = scene_.rounds[round];
-    instruments_->set_poses(poses);
-    if (instruments_->prepare(due_, poses)) {
+    backend_->set_poses(poses);
+    if (backend_->prepare(due_, poses)) {
       batch_.begin();
-      instruments_->record_measure(batch_);
+      backend_->record_measure(batch_);
       batch_.barrier();
-      instruments_->record_derive(batch_);
+      backend_->record_derive(batch_);
       batch_.end();
     }
-    instruments_->add_copies(batch_);
+    backend_->add_copies(batch_);
     batch_.run();
     blocks_.clear();
-    instruments_->collect(blocks_);
+    backend_->collect(blocks_);
   }
   sensors::EdgeReading reading(std::size_t sensor) const override {
     const auto v = blocks_[sensor].values;
@@ -46,7 +46,7 @@ class FarmLanes final : public LaneReader {
   const LaneScene& scene_;
   base::ThreadPool thread_pool_;
   sensors::SensorContext context_;
-  std::unique_ptr<sensors::Instruments> instruments_;
+  std::unique_ptr<sensors::SensorBackend> backend_;
   gpu::Batch batch_;
   std::vector<sensors::DueSample> due_;
   std::vector<base::ReadingBlock> blocks_;
@@ -109,7 +109,7 @@ std::unique_ptr<LaneKnowledge> know(const LaneScene& scene) {
     job.directions.insert(job.directions.end(), {std::cos(bearing), std::sin(bearing)});
   }
   job.range_max = fan.range_max;
-  sensors::Excerpt excerpt = sensors::excerpt_of(scene.world, exact);
+  sensors::FilteredScene excerpt = sensors::filter_scene(scene.world, exact);
   job.grains = excerpt.grains;
   job.paint_tag = excerpt.paint_tag;
   if (exact) {
@@ -124,8 +124,8 @@ std::unique_ptr<LaneKnowledge> know(const LaneScene& scene) {
     known->grid = make_grid(excerpt.world, 0.0, 0.25);
     job.grid = &known->grid;
   } else {
-    known->raster = std::make_unique<sensors::PaintRaster>(excerpt.paint, scene.world.road_resolution, fan.range_max,
-                                                           scene.world.file);
+    known->raster = std::make_unique<sensors::MarkingRaster>(excerpt.paint, scene.world.road_resolution, fan.range_max,
+                                                             scene.world.file);
     job.raster = known->raster.get();
   }
   return known;

@@ -31,7 +31,7 @@ inline constexpr double kPoisonDistance = -7.0;
 struct LaneKnowledge {
   LaneJob job;
   SegmentGrid grid;
-  std::unique_ptr<sensors::PaintRaster> raster;
+  std::unique_ptr<sensors::MarkingRaster> raster;
   std::vector<sensors::EdgeRow> rows;
   std::vector<base::Pose> X_MS;
   std::vector<world::Segment> faces;  ///< exact ones; none of a raster

@@ -8,9 +8,9 @@ namespace sf::bench {
 
 namespace {
 
-using sensors::PaintRaster;
+using sensors::MarkingRaster;
 
-constexpr int kBlock = PaintRaster::kBlock;
+constexpr int kBlock = MarkingRaster::kBlock;
 
 struct Met {
   double range;  ///< [m]
@@ -23,12 +23,12 @@ struct Cell {
   int side;  ///< [cells] of the empty square round a free cell of a full block
 };
 
-Cell cell_at(const PaintRaster& raster, int x, int y, std::size_t plane) {
+Cell cell_at(const MarkingRaster& raster, int x, int y, std::size_t plane) {
   const std::uint32_t word =
       raster
           .directory()[static_cast<std::size_t>(y / kBlock) * raster.columns() + static_cast<std::size_t>(x / kBlock)];
-  if ((word & PaintRaster::kFull) == 0) return {word, false, 1};
-  const std::size_t at = 4 * std::size_t{word & ~PaintRaster::kFull} + plane + static_cast<std::size_t>((y & 7) >> 2);
+  if ((word & MarkingRaster::kFull) == 0) return {word, false, 1};
+  const std::size_t at = 4 * std::size_t{word & ~MarkingRaster::kFull} + plane + static_cast<std::size_t>((y & 7) >> 2);
   const std::uint32_t half = raster.blocks()[at];
   const bool quarter_free = (half & (0x0F0F0F0Fu << (x & 4))) == 0;
   const bool pair_free = (half & (0x0303u << (((y & 2) << 3) | (x & 6)))) == 0;
@@ -37,7 +37,7 @@ Cell cell_at(const PaintRaster& raster, int x, int y, std::size_t plane) {
 
 /// From `p` [cells of the raster] along `d`, until paint begins (or ends, where it starts on paint).
 Met walk_paint(const LaneJob& job, glm::dvec2 p, glm::dvec2 d, double reach) {
-  const PaintRaster& raster = *job.raster;
+  const MarkingRaster& raster = *job.raster;
   const glm::dvec2 inverse{d.x == 0.0 ? 1e300 : 1.0 / d.x, d.y == 0.0 ? 1e300 : 1.0 / d.y};
   const int most_x = static_cast<int>(raster.columns()) * kBlock;
   const int most_y = static_cast<int>(raster.rows()) * kBlock;
@@ -54,7 +54,7 @@ Met walk_paint(const LaneJob& job, glm::dvec2 p, glm::dvec2 d, double reach) {
       const bool end = cell_at(raster, wanted ? x : last_x, wanted ? y : last_y, 2).painted;
       return {t * raster.cell(), job.paint_tag | (end ? SF_TAG_END : 0u)};
     }
-    const bool full = (c.word & PaintRaster::kFull) != 0;
+    const bool full = (c.word & MarkingRaster::kFull) != 0;
     const int clear = full || !wanted ? 0 : static_cast<int>(c.word);
     const int side = wanted ? c.side : 1;
     const int low_x = clear > 0 ? (x / kBlock - clear + 1) * kBlock : x & -side;

@@ -4,19 +4,19 @@
 
 #include "base/pose.h"
 #include "bench/grid.h"
+#include "sensors/lane_markings/marking_raster.h"
 #include "sensors/laneedge.h"
-#include "sensors/paint/raster.h"
 
 namespace sf::bench {
 
 /// What all sensors of a scene share.
 struct LaneJob {
-  const SegmentGrid* grid = nullptr;             ///< of exact faces, or
-  const sensors::PaintRaster* raster = nullptr;  ///< of paint
-  std::uint32_t paint_tag = 0;                   ///< of the raster
-  Walk walk = nullptr;                           ///< of the grid, of the same build
-  std::vector<glm::dvec2> beams;                 ///< unit, in the sensor's frame
-  std::vector<double> directions;                ///< the same, number by number
+  const SegmentGrid* grid = nullptr;               ///< of exact faces, or
+  const sensors::MarkingRaster* raster = nullptr;  ///< of paint
+  std::uint32_t paint_tag = 0;                     ///< of the raster
+  Walk walk = nullptr;                             ///< of the grid, of the same build
+  std::vector<glm::dvec2> beams;                   ///< unit, in the sensor's frame
+  std::vector<double> directions;                  ///< the same, number by number
   std::vector<double> grains;
   double range_max = 1.0;  ///< [m]
 };

@@ -37,10 +37,10 @@ class Sink {
 };
 
 /// Every packet to one port: a stride of none.
-apps::SendPlan plan_for(const sensors::Roster& roster, std::uint16_t port) {
+apps::SendPlan plan_for(const sensors::SensorSet& sensor_set, std::uint16_t port) {
   apps::SendPlan plan;
   plan.stride = 0;
-  for (const sensors::Roster::Group& group : roster.groups()) plan.bases[group.kind->id] = port;
+  for (const sensors::SensorSet::Group& group : sensor_set.groups()) plan.bases[group.kind->id] = port;
   return plan;
 }
 
@@ -61,9 +61,10 @@ class LargeFleet {
  public:
   LargeFleet(gpu::Device& device, std::uint32_t robots)
       : world_(made(robots)),
-        roster_(world_),
+        sensor_set_(world_),
         simulation_(world_, device, {.seed = 7}),
-        post_(world_, roster_, plan_for(roster_, sink_.port()), netio::Outbox(apps::outbox_options(roster_))) {}
+        post_(world_, sensor_set_, plan_for(sensor_set_, sink_.port()),
+              netio::Outbox(apps::outbox_options(sensor_set_))) {}
 
   /// @return what it cost
   Cost tick() {
@@ -98,7 +99,7 @@ class LargeFleet {
   }
 
   world::World world_;
-  sensors::Roster roster_;
+  sensors::SensorSet sensor_set_;
   scenarios::Simulation simulation_;
   Sink sink_;
   apps::Post post_;

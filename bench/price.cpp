@@ -134,7 +134,7 @@ std::vector<Fact> measure_program() {
 
 std::vector<Fact> measure_features(gpu::Device& device) {
   std::vector<Fact> facts;
-  const world::World world = world::load_world(simville(), {.sensors = sensors::vocabulary()});
+  const world::World world = world::load_world(simville(), {.sensors = sensors::world_file_words()});
   const scenarios::Explanation e = scenarios::explain(world, device, 1, 0);
   facts.push_back({"SimVille, building the farm", 1e3 * e.build, "ms"});
   facts.push_back({"SimVille, the first tick", 1e3 * e.first, "ms"});

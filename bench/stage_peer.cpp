@@ -40,7 +40,7 @@ world::World load_cave(const Crowd& crowd, const std::string& file) {
   replace("[16 16 0.8]", fmt::format("[{0} {0} 0.8]", crowd.side));
   replace("\"bitmaps/cave.png\"", "\"" SF_SOURCE_DIR "/worlds/bitmaps/cave.png\"");
   std::ofstream(file) << text;
-  world::World world = world::load_world(file, {.sensors = sensors::vocabulary()});
+  world::World world = world::load_world(file, {.sensors = sensors::world_file_words()});
   world::clone_robots(world, crowd.robots, 1);
   return world;
 }

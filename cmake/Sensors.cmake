@@ -1,6 +1,6 @@
-# The list of sensor kinds: one line each in sensors/CMakeLists.txt.
+# The list of sensor types: one line each in sensors/CMakeLists.txt.
 
-# farm_sensor(WIRE_ID NAME DEVICE|HOST): sensors/NAME.h, sensors/NAME.cpp (which defines `NAME_kind`), its kernel
+# farm_sensor(WIRE_ID NAME DEVICE|HOST): sensors/NAME.h, sensors/NAME.cpp (which defines `NAME_type`), its kernel
 # shaders/NAME.comp where it has one, and its proof tests/sensors/NAME_test.cpp.
 function(farm_sensor id name where)
   set(files sensors/${name}.h sensors/${name}.cpp tests/sensors/${name}_test.cpp)
@@ -17,35 +17,35 @@ function(farm_sensor id name where)
   if(NOT id MATCHES "^[0-9]+$" OR id LESS 1 OR id GREATER 31)
     message(FATAL_ERROR "farm_sensor(${id} ${name} ${where}): expected a wire id from 1 to 31")
   endif()
-  get_property(known GLOBAL PROPERTY SENSOR_KINDS)
-  foreach(kind ${known})
-    if(kind MATCHES "^${id}/" OR kind MATCHES "/${name}$")
-      message(FATAL_ERROR "farm_sensor(${id} ${name} ${where}): ${kind} has that id or name already")
+  get_property(known GLOBAL PROPERTY SENSOR_TYPES)
+  foreach(type ${known})
+    if(type MATCHES "^${id}/" OR type MATCHES "/${name}$")
+      message(FATAL_ERROR "farm_sensor(${id} ${name} ${where}): ${type} has that id or name already")
     endif()
   endforeach()
-  set_property(GLOBAL APPEND PROPERTY SENSOR_KINDS ${id}/${name})
+  set_property(GLOBAL APPEND PROPERTY SENSOR_TYPES ${id}/${name})
 endfunction()
 
-# write_kinds(FILE): every kind by id, as a source that defines sensors::kinds().
-function(write_kinds file)
-  get_property(known GLOBAL PROPERTY SENSOR_KINDS)
+# write_sensor_types(FILE): every kind by id, as a source that defines sensors::sensor_types().
+function(write_sensor_types file)
+  get_property(known GLOBAL PROPERTY SENSOR_TYPES)
   list(SORT known COMPARE NATURAL)
   set(declared "")
   set(listed "")
-  foreach(kind ${known})
-    string(REGEX REPLACE ".*/" "" name ${kind})
-    string(APPEND declared "extern const SensorKind ${name}_kind;\n")
-    string(APPEND listed "&${name}_kind, ")
+  foreach(type ${known})
+    string(REGEX REPLACE ".*/" "" name ${type})
+    string(APPEND declared "extern const SensorType ${name}_type;\n")
+    string(APPEND listed "&${name}_type, ")
   endforeach()
   file(CONFIGURE OUTPUT ${file} @ONLY CONTENT "// Written from sensors/CMakeLists.txt.
-#include \"sensors/kind.h\"
+#include \"sensors/sensor_type.h\"
 
 namespace sf::sensors {
 
 @declared@
-std::span<const SensorKind* const> kinds() {
-  static constexpr const SensorKind* kKinds[] = {@listed@};
-  return kKinds;
+std::span<const SensorType* const> sensor_types() {
+  static constexpr const SensorType* kSensorTypes[] = {@listed@};
+  return kSensorTypes;
 }
 
 }  // namespace sf::sensors

@@ -8,15 +8,15 @@
 #include "base/reading.h"
 #include "farm/schedule.h"
 #include "farm/stored_reading.h"
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 
 namespace sf::farm {
 
 /// Holds back the readings of sensors with a latency. Sensors without one cost nothing here.
 class Delivery {
  public:
-  /// `roster` must outlive it.
-  explicit Delivery(const sensors::Roster& roster);
+  /// `sensor_set` must outlive it.
+  explicit Delivery(const sensors::SensorSet& sensor_set);
 
   /// Takes what was measured at `now` [ns] and gives what is delivered at `now`: first what waited, oldest first, then
   /// what has no latency. Blocks live until the next call.
@@ -34,7 +34,7 @@ class Delivery {
   std::int64_t latency_of(const base::ReadingBlock& block) const;
   void hold(const base::ReadingBlock& block, std::int64_t due);
 
-  const sensors::Roster& roster_;
+  const sensors::SensorSet& sensor_set_;
   bool any_ = false;
   std::int64_t next_ = kNever;
   std::vector<Waiting> waiting_;  ///< places are reused, with their memory

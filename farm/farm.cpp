@@ -41,7 +41,7 @@ struct Farm::State {
   const world::World& world;
   gpu::Device& device;
   base::ThreadPool thread_pool;
-  sensors::Roster roster;
+  sensors::SensorSet sensor_set;
   bool give_again;
   bool no_return_inf;
   std::vector<std::vector<double>> marked;  ///< per thread: ranges as they are sent
@@ -62,12 +62,12 @@ struct Farm::State {
       : world(w),
         device(d),
         thread_pool(options.threads),
-        roster(w),
+        sensor_set(w),
         give_again(options.give_again),
         no_return_inf(options.no_return_inf),
         marked(thread_pool.threads()),
         batch(device),
-        delivery(roster),
+        delivery(sensor_set),
         moves(w),
         heard(w.movers.size(), 0),
         gone(w.movers.size(), 0) {
@@ -77,12 +77,12 @@ struct Farm::State {
     }
     const sensors::SensorContext context{
         w, device, thread_pool, options.seed, options.noise, options.true_poses, options.scene};
-    for (const auto& group : roster.groups()) {
+    for (const auto& group : sensor_set.groups()) {
       device.set_owner(group.kind->name);
       stations.emplace_back(context, group);
     }
-    blocks.reserve(roster.count());
-    hashes.reserve(roster.count());
+    blocks.reserve(sensor_set.count());
+    hashes.reserve(sensor_set.count());
   }
 
   void move(std::span<const base::Report> reports);
@@ -130,10 +130,10 @@ void Farm::State::prepare() {
   // A kernel is compiled when it first runs, if only for nothing: those that nobody has needed yet stay out.
   batch.begin();
   for (Station& station : stations)
-    if (station.in_use) station.instruments->record_measure(batch);
+    if (station.in_use) station.backend->record_measure(batch);
   batch.barrier();
   for (Station& station : stations)
-    if (station.in_use) station.instruments->record_derive(batch);
+    if (station.in_use) station.backend->record_derive(batch);
   batch.end();
 }
 
@@ -148,7 +148,7 @@ void Farm::State::measure(std::int64_t now, bool again) {
   Stopwatch watch;
   for (Station& station : stations) {
     station.split(again);
-    if (!station.looking.empty()) station.instruments->set_poses(poses);
+    if (!station.looking.empty()) station.backend->set_poses(poses);
   }
   watch.lap(stats.place_s);
   prepare();
@@ -160,7 +160,7 @@ void Farm::State::measure(std::int64_t now, bool again) {
   const std::size_t measured = blocks.size();
   for (Station& station : stations) {
     if (!station.derived()) continue;
-    station.instruments->observe(std::span(blocks).first(measured));
+    station.backend->observe(std::span(blocks).first(measured));
     collect(station, now, again);
   }
   watch.lap(stats.collect_s);
@@ -176,7 +176,7 @@ std::span<const double> Farm::State::sent(const base::ReadingBlock& reading, uns
   if (!no_return_inf || reading.hits.empty()) return reading.values;
   std::vector<double>& values = marked[thread];
   values.resize(reading.values.size());
-  sensors::mark_no_return(reading, roster.row(reading).limit, values);
+  sensors::mark_no_return(reading, sensor_set.row(reading).limit, values);
   return values;
 }
 
@@ -198,7 +198,7 @@ void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
 std::span<const base::ReadingBlock> Farm::State::look(std::int64_t now, std::span<const base::Report> reports,
                                                       bool between) {
   move(reports);
-  for (Station& station : stations) station.instruments->follow(states, now, between);
+  for (Station& station : stations) station.backend->update_states(states, now, between);
   blocks.clear();
   if (find_due(now)) measure(now, give_again);
   Stopwatch watch;
@@ -221,7 +221,7 @@ void Farm::set_absent(std::uint32_t mover, bool gone) {
 }
 void Farm::hear_all() { std::fill(s_->heard.begin(), s_->heard.end(), kAllKinds); }
 
-const sensors::Roster& Farm::roster() const { return s_->roster; }
+const sensors::SensorSet& Farm::sensor_set() const { return s_->sensor_set; }
 
 std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const base::Report> reports) {
   ++s_->stats.ticks;
@@ -246,7 +246,7 @@ base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t kind, std::uint
   for (Station& station : s.stations) {
     station.due.clear();
     const auto& rows = station.group->rows;
-    const auto row = std::find_if(rows.begin(), rows.end(), [&](const sensors::SensorRow& r) {
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const sensors::SensorSpec& r) {
       return station.group->kind->id == kind && r.mover == mover && r.sensor == sensor;
     });
     if (row != rows.end()) station.due.push_back({static_cast<std::uint32_t>(row - rows.begin()), 0});
@@ -263,7 +263,7 @@ std::uint64_t Farm::hash() const { return s_->hash; }
 
 FarmStats Farm::stats() const {
   FarmStats stats = s_->stats;
-  for (const Station& station : s_->stations) stats.work += station.instruments->stats();
+  for (const Station& station : s_->stations) stats.work += station.backend->stats();
   return stats;
 }
 

@@ -22,7 +22,7 @@
 #include "base/report.h"
 #include "farm/schedule.h"
 #include "gpu/device.h"
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 #include "world/world.h"
 
 namespace sf::farm {
@@ -71,7 +71,7 @@ class Farm {
   /// A mover that is gone is sensed by nobody, and not heard. When it is back, the first report says where it is.
   void set_absent(std::uint32_t mover, bool gone);
 
-  const sensors::Roster& roster() const;
+  const sensors::SensorSet& sensor_set() const;
 
   /// Computes every heard sensor that is due at `now` and returns what is delivered at `now` (latency may delay a
   /// reading). Movers without a report stay where they were. A sensor is due at phase + k / rate for k = 0, 1, ...: at

@@ -6,9 +6,9 @@
 
 namespace sf::farm {
 
-Station::Station(const sensors::SensorContext& context, const sensors::Roster::Group& g)
-    : group(&g), instruments(g.kind->make(context)), steady(g.rows, context.noise), begun(g.rows.size(), 0) {
-  for (const sensors::SensorRow& row : g.rows) next.push_back(due_time(0, row.rate, row.phase));
+Station::Station(const sensors::SensorContext& context, const sensors::SensorSet::Group& g)
+    : group(&g), backend(g.kind->make(context)), steady(g.rows, context.noise), begun(g.rows.size(), 0) {
+  for (const sensors::SensorSpec& row : g.rows) next.push_back(due_time(0, row.rate, row.phase));
   due.reserve(g.rows.size());
   looking.reserve(g.rows.size());
 }
@@ -23,7 +23,7 @@ std::uint64_t Station::find_due(std::int64_t now, std::span<const std::uint32_t>
   std::int64_t then = 0;
   for (std::uint32_t i = 0; i < begun.size(); ++i) {
     if (now < next[i] - 1) continue;
-    const sensors::SensorRow& row = group->rows[i];
+    const sensors::SensorSpec& row = group->rows[i];
     if (row.rate != rate || row.phase != phase) {
       rate = row.rate, phase = row.phase;
       ready = readings_begun(now, rate, phase);
@@ -65,19 +65,19 @@ bool Station::prepare(std::span<const base::Pose> poses) {
   at_rest = nothing;
   in_use = true;
   told = false;
-  return instruments->prepare(looking, poses);
+  return backend->prepare(looking, poses);
 }
 
 void Station::add_copies(gpu::Batch& batch) {
   if (told) return;
-  instruments->add_copies(batch);
+  backend->add_copies(batch);
   told = at_rest;
 }
 
 std::size_t Station::collect(std::int64_t now, std::span<const base::Pose> poses,
                              std::vector<base::ReadingBlock>& blocks) {
   const std::size_t first = blocks.size();
-  instruments->collect(blocks);
+  backend->collect(blocks);
   // Readings that are given again take their places among those just taken, from the last one on.
   const std::size_t again = due.size() - looking.size();
   blocks.resize(first + due.size());

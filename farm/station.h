@@ -8,13 +8,13 @@
 
 #include "farm/steady.h"
 #include "gpu/batch.h"
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 
 namespace sf::farm {
 
 struct Station {
-  const sensors::Roster::Group* group = nullptr;
-  std::unique_ptr<sensors::Instruments> instruments;
+  const sensors::SensorSet::Group* group = nullptr;
+  std::unique_ptr<sensors::SensorBackend> backend;
   Steady steady;
   std::vector<std::uint64_t> begun;  ///< per row: readings begun
   std::vector<std::int64_t> next;    ///< [ns] per row: when the one after these is due
@@ -25,7 +25,7 @@ struct Station {
   bool told = true;                         ///< so do the tables on the device, as far as kernels are in use
 
   /// @param site of all kinds. @param group of the farm's roster.
-  Station(const sensors::SensorContext& context, const sensors::Roster::Group& group);
+  Station(const sensors::SensorContext& context, const sensors::SensorSet::Group& group);
 
   bool derived() const { return group->kind->derived; }
   /// What of this kind is due at `now` [ns]. @param heard per mover: bits of kinds.
@@ -38,7 +38,7 @@ struct Station {
   /// @return true when the batch must be recorded again.
   bool prepare(std::span<const base::Pose> poses);
   /// Whether the batch has something to do for this kind.
-  bool needs_device() const { return !looking.empty() && instruments->on_device(); }
+  bool needs_device() const { return !looking.empty() && backend->on_device(); }
   void add_copies(gpu::Batch& batch);
   /// Appends the readings of all that are due, in order. @return how many are given again.
   std::size_t collect(std::int64_t now, std::span<const base::Pose> poses, std::vector<base::ReadingBlock>& blocks);

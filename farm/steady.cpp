@@ -9,20 +9,20 @@ namespace {
 /// Searches in 32 bits may look a little farther than a sensor's range; what they decide does not.
 constexpr double kMargin = 1e-5;
 
-double reach_of(const sensors::SensorRow& row) {
-  return (1.0 + kMargin) * (row.reach + glm::length(glm::dvec2{row.X_MS.x, row.X_MS.y})) + kMargin;
+double reach_of(const sensors::SensorSpec& row) {
+  return (1.0 + kMargin) * (row.dependency_radius + glm::length(glm::dvec2{row.X_MS.x, row.X_MS.y})) + kMargin;
 }
 
 }  // namespace
 
-Steady::Steady(std::span<const sensors::SensorRow> rows, bool noise)
+Steady::Steady(std::span<const sensors::SensorSpec> rows, bool noise)
     : carrier_of_(rows.size()), calm_(rows.size(), Calm::never), stored_(rows.size()) {
   for (std::uint32_t i = 0; i < rows.size(); ++i) {
-    const sensors::SensorRow& row = rows[i];
-    if (!(row.reach > 0.0) || (noise && row.noisy)) continue;
+    const sensors::SensorSpec& row = rows[i];
+    if (!(row.dependency_radius > 0.0) || (noise && row.noisy)) continue;
     calm_[i] = Calm::no;
     if (carriers_.empty() || carriers_.back().mover != row.mover)
-      carriers_.push_back({row.mover, i, i, 0.0, row.of_magnets, false});
+      carriers_.push_back({row.mover, i, i, 0.0, row.depends_on_magnets, false});
     Carrier& carrier = carriers_.back();
     carrier_of_[i] = static_cast<std::uint32_t>(carriers_.size() - 1);
     carrier.end = i + 1;
@@ -42,7 +42,7 @@ void Steady::disturb(Moves& moves, std::span<const base::Pose> poses) {
   for (Carrier& carrier : carriers_) {
     if (!carrier.calm) continue;
     const glm::dvec2 p{poses[carrier.mover].x, poses[carrier.mover].y};
-    if (moves.moved(carrier.mover) || (carrier.of_magnets ? moves.magnets() : moves.within(p, carrier.reach)))
+    if (moves.moved(carrier.mover) || (carrier.depends_on_magnets ? moves.magnets() : moves.within(p, carrier.reach)))
       rouse(carrier);
   }
 }

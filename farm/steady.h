@@ -2,8 +2,9 @@
 // Sensors that stand where nothing moves: their last reading is given again instead of being taken.
 //
 // A reading without noise is a function of where its sensor stands and of where those are that come within its reach
-// (`SensorRow::reach`). A sensor is calm while none of these has moved since its last reading. The first reading that
-// is taken in calm is kept, so fleets that drive copy nothing; those after it are given again, the same bytes.
+// (`SensorSpec::dependency_radius`). A sensor is calm while none of these has moved since its last reading. The first
+// reading that is taken in calm is kept, so fleets that drive copy nothing; those after it are given again, the same
+// bytes.
 
 #include <cstdint>
 #include <memory>
@@ -12,7 +13,7 @@
 
 #include "farm/moves.h"
 #include "farm/stored_reading.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::farm {
 
@@ -20,7 +21,7 @@ namespace sf::farm {
 class Steady {
  public:
   /// @param rows the kind's. @param noise whether readings have their noise.
-  Steady(std::span<const sensors::SensorRow> rows, bool noise);
+  Steady(std::span<const sensors::SensorSpec> rows, bool noise);
 
   /// Takes the moves of a tick and everyone's poses after them, before its readings.
   void disturb(Moves& moves, std::span<const base::Pose> poses);
@@ -43,7 +44,7 @@ class Steady {
     std::uint32_t mover;
     std::uint32_t first, end;  ///< rows
     double reach;              ///< [m] from the mover's origin, of all of them
-    bool of_magnets;           ///< magnets count, bodies do not
+    bool depends_on_magnets;   ///< magnets count, bodies do not
     bool calm;                 ///< some sensor is
   };
   void rouse(Carrier& carrier);

@@ -43,8 +43,8 @@ const std::vector<Test>& tests() {
   return kTests;
 }
 
-const sensors::SensorKind& kind_called(std::string_view name) {
-  const auto kinds = sensors::kinds();
+const sensors::SensorType& kind_called(std::string_view name) {
+  const auto kinds = sensors::sensor_types();
   const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const auto* kind) { return kind->name == name; });
   SF_CHECK(found != kinds.end(), "no kind " + std::string(name));
   return **found;
@@ -154,7 +154,7 @@ std::vector<std::string> run_accuracy(const Bench& bench) {
     const world::World world = world_of(scenario);
     Reference reference(world);
     const auto modes = kind_called(test.sensor).modes;
-    for (const sensors::Mode& mode : modes) {
+    for (const sensors::AccuracyMode& mode : modes) {
       if (bench.progress) bench.progress(done, fmt::format("{}, {}", test.name, mode.word));
       outcomes.push_back(measure(bench, test, scenario, mode.word, reference));
       done += 1.0 / static_cast<double>(tests().size() * modes.size());

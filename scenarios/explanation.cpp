@@ -55,7 +55,7 @@ class Drive {
   double readings() const { return a_tick(farm_.stats().readings - stats_before_.readings); }
   double again() const { return a_tick(farm_.stats().again - stats_before_.again); }
   sensors::SensorStats work() const { return farm_.stats().work - stats_before_.work; }
-  const sensors::Roster& roster() const { return farm_.roster(); }
+  const sensors::SensorSet& sensor_set() const { return farm_.sensor_set(); }
 
  private:
   static void copy(const std::vector<base::Report>& states, std::int64_t time, std::vector<base::Report>& into) {
@@ -72,13 +72,13 @@ class Drive {
   farm::FarmStats stats_before_;
 };
 
-ExplainedKind facts_of(const sensors::Roster::Group& group) {
+ExplainedKind facts_of(const sensors::SensorSet::Group& group) {
   ExplainedKind kind;
   kind.kind = group.kind->name;
   kind.sensors = static_cast<std::uint32_t>(group.rows.size());
   kind.least_rate = HUGE_VAL;
   std::set<std::uint32_t> carriers;
-  for (const sensors::SensorRow& row : group.rows) {
+  for (const sensors::SensorSpec& row : group.rows) {
     carriers.insert(row.mover);
     kind.least_rate = std::min(kind.least_rate, row.rate);
     kind.most_rate = std::max(kind.most_rate, row.rate);
@@ -141,12 +141,12 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   e.first = base::seconds_since(first);
 
   farm.hear(0);
-  const std::size_t kinds = farm.roster().groups().size();
+  const std::size_t kinds = farm.sensor_set().groups().size();
   step(kinds);
   e.silent = farm.laps();
   step(kinds);
   std::set<std::string_view> present;
-  for (const sensors::Roster::Group& group : farm.roster().groups()) {
+  for (const sensors::SensorSet::Group& group : farm.sensor_set().groups()) {
     present.insert(group.kind->name);
     ExplainedKind kind = facts_of(group);
     kind.derived = group.kind->derived;
@@ -162,10 +162,10 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   e.all = farm.laps();
   e.ticks = farm.ticks();
   for (ExplainedKind& kind : e.kinds) add_held(device.allocations(), kind);
-  for (const sensors::SensorKind* kind : sensors::kinds())
+  for (const sensors::SensorType* kind : sensors::sensor_types())
     if (!present.contains(kind->name)) e.absent.emplace_back(kind->name);
   e.slices = slices_of(world);
-  e.statements = sensors::statements_of(world, farm.roster());
+  e.statements = sensors::accuracy_statements(world, farm.sensor_set());
   e.walls = world.walls.size();
   e.resident = resident_bytes();
   return e;

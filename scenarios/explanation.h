@@ -38,16 +38,16 @@ struct Slice {
 struct Explanation {
   std::string caster;  ///< what casts rays
   std::vector<ExplainedKind> kinds;
-  std::vector<std::string> absent;             ///< kinds that are not built
-  std::vector<Slice> slices;                   ///< of lasers, by height
-  std::size_t walls = 0;                       ///< of the world
-  std::vector<sensors::Statement> statements;  ///< modes and bounds, kind by kind
-  std::uint64_t ticks = 0;                     ///< measured, for each row
-  double build = 0.0;                          ///< [s] tables and kernels
-  double first = 0.0;                          ///< [s] the first tick with all heard
-  double silent = 0.0;                         ///< [s] a tick with nobody heard, mean
-  double all = 0.0;                            ///< [s] a tick with all heard, mean
-  std::size_t resident = 0;                    ///< [bytes] of this process, driver included; 0: not known
+  std::vector<std::string> absent;                     ///< kinds that are not built
+  std::vector<Slice> slices;                           ///< of lasers, by height
+  std::size_t walls = 0;                               ///< of the world
+  std::vector<sensors::AccuracyStatement> statements;  ///< modes and bounds, kind by kind
+  std::uint64_t ticks = 0;                             ///< measured, for each row
+  double build = 0.0;                                  ///< [s] tables and kernels
+  double first = 0.0;                                  ///< [s] the first tick with all heard
+  double silent = 0.0;                                 ///< [s] a tick with nobody heard, mean
+  double all = 0.0;                                    ///< [s] a tick with all heard, mean
+  std::size_t resident = 0;                            ///< [bytes] of this process, driver included; 0: not known
 };
 
 /// Drives the robots about for two seconds (`wander`), then ticks a farm along their ways: once with nobody heard, once

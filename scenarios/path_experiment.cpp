@@ -7,7 +7,7 @@
 #include "scenarios/experiment.h"
 #include "scenarios/path_report.h"
 #include "scenarios/thesis.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 #include "viz/field_figure.h"
 #include "viz/path_figure.h"
 #include "viz/series_figure.h"
@@ -49,7 +49,7 @@ std::vector<std::string> draw_field_line(const Bench& bench) {
   const std::filesystem::path worlds = std::filesystem::path(bench.scenario.world).parent_path().parent_path();
   const std::string six = (worlds / "six_magnets.world").string();
   if (!std::filesystem::exists(six)) return {};
-  const world::World world = world::load_world(six, {.sensors = sensors::vocabulary()});
+  const world::World world = world::load_world(six, {.sensors = sensors::world_file_words()});
   const viz::FieldView view = viz::field_view(world, {.height = kTopToArray});
   const viz::FieldSamples samples = viz::sample_field(world, bench.device, view, {});
   const std::string file = in_folder(bench, "field.png");

@@ -7,7 +7,7 @@ namespace sf::scenarios {
 
 namespace {
 
-record::SensorTypeInfo kind_info(const sensors::SensorKind& kind) {
+record::SensorTypeInfo kind_info(const sensors::SensorType& kind) {
   record::SensorTypeInfo info{kind.id, std::string(kind.name), std::string(kind.list), {}};
   for (const sensors::Column& column : kind.columns)
     info.columns.push_back({std::string(column.name), column.width, column.whole});
@@ -15,23 +15,23 @@ record::SensorTypeInfo kind_info(const sensors::SensorKind& kind) {
 }
 
 /// Every kind but the laser, which has a message type of the world's own and a row of its own facts.
-void add_kinds(const sensors::Roster& roster, record::RunInfo& info) {
-  for (const sensors::Roster::Group& group : roster.groups()) {
+void add_kinds(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
+  for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
     if (group.kind->id == base::kLaser) continue;
     info.sensor_types.push_back(kind_info(*group.kind));
-    for (const sensors::SensorRow& row : group.rows)
+    for (const sensors::SensorSpec& row : group.rows)
       info.movers[row.mover].sensors.push_back({group.kind->id, row.name, "", row.X_MS, row.rate});
   }
 }
 
 }  // namespace
 
-record::RunInfo run_info(const world::World& world, const sensors::Roster& roster, const RunSettings& settings) {
+record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const RunSettings& settings) {
   record::RunInfo info;
   info.world = world.name.empty() ? std::filesystem::path(world.file).filename().string() : world.name;
   info.world_hash = world.hash;
   info.seed = settings.seed;
-  info.mode = sensors::modes_of(roster);
+  info.mode = sensors::modes_of(sensor_set);
   info.interval = world.interval;
   info.record_readings = settings.record_readings;
   info.options = {{"no_return", settings.no_return_inf ? "inf" : "max"}, {"caster", settings.caster}};
@@ -43,7 +43,7 @@ record::RunInfo run_info(const world::World& world, const sensors::Roster& roste
           {laser.name, "", laser.X_MS, laser.fov, laser.samples, laser.range_min, laser.range_max, laser.rate});
     info.movers.push_back(std::move(row));
   }
-  add_kinds(roster, info);
+  add_kinds(sensor_set, info);
   return info;
 }
 

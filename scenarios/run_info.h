@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "record/recorder.h"
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 #include "world/world.h"
 
 namespace sf::scenarios {
@@ -17,6 +17,6 @@ struct RunSettings {
   std::string caster;          ///< what casts rays, as `raycast::describe_caster` has it
 };
 
-record::RunInfo run_info(const world::World& world, const sensors::Roster& roster, const RunSettings& settings);
+record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const RunSettings& settings);
 
 }  // namespace sf::scenarios

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "scenarios/crowd.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 #include "world/keys.h"
 
 namespace sf::scenarios {
@@ -25,7 +25,7 @@ std::uint32_t row_of(const Scenario& scenario, const world::World& world, const 
 
 world::World world_of(const Scenario& scenario) {
   world::LoadOptions load;
-  load.sensors = sensors::vocabulary();
+  load.sensors = sensors::world_file_words();
   if (!std::filesystem::is_regular_file(scenario.world) && !scenario.file.empty())
     throw base::InputError(
         scenario.file, scenario.world_line,

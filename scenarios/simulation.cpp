@@ -59,7 +59,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
   for (const Driver& driver : drivers_)
     if (driver.controller) radio_ = std::max(radio_, driver.controller->radio());
   for (auto& others : others_) others.reserve(radio_ > 0.0 ? world.movers.size() : 0);
-  sorted_.reserve(farm_.roster().count());
+  sorted_.reserve(farm_.sensor_set().count());
   next_.reserve(first_.size());
 }
 
@@ -182,7 +182,7 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
 
 /// [ns] When a reading is delivered, which may be between two ticks.
 std::int64_t Simulation::leaves_at(const base::ReadingBlock& reading) const {
-  return reading.time + std::llround(farm_.roster().row(reading).latency * 1e9);
+  return reading.time + std::llround(farm_.sensor_set().row(reading).latency * 1e9);
 }
 
 /// Between its steps a controller's last command stands.

@@ -31,7 +31,7 @@ struct Read {
 /// A farm of its own, in which one kind is heard, and measures in one mode.
 class Entrant {
  public:
-  Entrant(const world::World& world, gpu::Device& device, const sensors::SensorKind& kind, std::uint8_t mode,
+  Entrant(const world::World& world, gpu::Device& device, const sensors::SensorType& kind, std::uint8_t mode,
           const Ways& ways, const TradeoffOptions& options)
       : kind_(kind), mode_(mode), world_(world), ways_(ways) {
     sensors::set_accuracy(world_, std::string(sensors::word_of(kind, mode)));
@@ -88,7 +88,7 @@ class Entrant {
     return sorted[sorted.size() / 2];
   }
 
-  const sensors::SensorKind& kind_;
+  const sensors::SensorType& kind_;
   std::uint8_t mode_;
   world::World world_;
   const Ways& ways_;
@@ -106,10 +106,10 @@ double apart(double ours, double theirs) {
 
 /// [m] of a sample of scans in 64 bits against plain C++, which knows nothing of the device.
 std::vector<double> laser_errors(const Entrant& exact, const Ways& ways, const Read& read,
-                                 const sensors::Roster& roster) {
+                                 const sensors::SensorSet& sensor_set) {
   std::vector<double> errors;
   sensors::LaserReference reference(exact.world(), 0, false);
-  const auto& rows = roster.group(base::kLaser)->rows;
+  const auto& rows = sensor_set.group(base::kLaser)->rows;
   // Scans of the first tick: every laser has its first reading there unless its phase is later.
   std::vector<base::Pose> poses;
   for (const base::Report& report : ways.front()) poses.push_back(report.X_WM);
@@ -166,15 +166,15 @@ void find_front(std::vector<Grade>& grades, std::size_t first) {
 }  // namespace
 
 std::vector<Grade> tradeoff(const world::World& world, gpu::Device& device, const TradeoffOptions& options) {
-  const sensors::Roster roster(world);
+  const sensors::SensorSet sensor_set(world);
   const Ways ways = drive_ways(world, device, kDriven, options.seed, options.threads);
   double all = 0.0, done = 0.0;
-  for (const auto& group : roster.groups()) all += static_cast<double>(group.kind->modes.size() * (1 + kRounds));
+  for (const auto& group : sensor_set.groups()) all += static_cast<double>(group.kind->modes.size() * (1 + kRounds));
   const auto go_on = [&] { return !options.progress || options.progress(++done / all); };
 
   std::vector<Grade> grades;
-  for (const auto& group : roster.groups()) {
-    const sensors::SensorKind& kind = *group.kind;
+  for (const auto& group : sensor_set.groups()) {
+    const sensors::SensorType& kind = *group.kind;
     if (kind.modes.empty()) continue;
     std::vector<std::unique_ptr<Entrant>> entrants;
     const std::size_t first = grades.size();
@@ -188,7 +188,7 @@ std::vector<Grade> tradeoff(const world::World& world, gpu::Device& device, cons
                   .unit = std::string(sensors::unit_of(kind))};
       if (mode == 0) exact = read;
       compare(read, exact, grade);
-      if (mode == 0 && kind.id == base::kLaser) grade_errors(laser_errors(*entrants[0], ways, read, roster), grade);
+      if (mode == 0 && kind.id == base::kLaser) grade_errors(laser_errors(*entrants[0], ways, read, sensor_set), grade);
       grades.push_back(grade);
       if (!go_on()) return {};
     }

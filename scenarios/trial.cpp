@@ -132,7 +132,7 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
   Supervisor supervisor(world, options.supervisor);
   std::optional<record::Recorder> recorder;
   if (!options.record.empty())
-    recorder.emplace(options.record, run_info(world, simulation.farm().roster(),
+    recorder.emplace(options.record, run_info(world, simulation.farm().sensor_set(),
                                               {.seed = scenario.seed,
                                                .record_readings = true,
                                                .caster = raycast::describe_caster(device.info().software)}));

@@ -5,14 +5,14 @@
 #include <array>
 
 #include "selftest/suite.h"
-#include "sensors/field/survey.h"
+#include "sensors/magnetic_field/sampling.h"
 #include "sensors/magnetometer.h"
 
 namespace sf::selftest {
 
 namespace {
 
-using sensors::Place;
+using sensors::FieldPoint;
 
 constexpr double kMoments[] = {1e-12, 1e-6, 1.0, 1e6, 1e12};  ///< [A m^2]
 constexpr double kDistances[] = {1e-6, 1e-3, 1.0, 1e3, 1e6};  ///< [m]
@@ -47,7 +47,7 @@ double allowed_at(const world::World& world, const Place& p) {
 
 void compare(Fixture& fixture, Checks& checks, const world::World& world, std::span<const Place> places,
              const std::string& what) {
-  const auto sums = sensors::survey(world, fixture.device(), places, {.magnitudes = true});
+  const auto sums = sensors::sample_field(world, fixture.device(), places, {.magnitudes = true});
   for (std::size_t i = 0; i < places.size(); ++i) {
     Field exact;
     for (const world::Magnet& m : world.magnets) add(m, places[i], exact);
@@ -104,7 +104,7 @@ void cancelling_pairs(Fixture& fixture, Checks& checks) {
       world.magnets.push_back({{0.071 * i, 0.25}, 0.1, sign * (1.0 + 1e6 * (i % 2)), 0.0125, 0});
   std::vector<Place> places;
   for (int i = 0; i < 50; ++i) places.push_back({0.7 * i, -0.1, 0.3});
-  const auto sums = sensors::survey(world, fixture.device(), places, {.magnitudes = true});
+  const auto sums = sensors::sample_field(world, fixture.device(), places, {.magnitudes = true});
   for (std::size_t i = 0; i < places.size(); ++i) {
     for (const double component : {sums[i].x, sums[i].y, sums[i].z})
       checks.same(component + 0.0, 0.0, "nothing is left", i);

@@ -12,26 +12,26 @@ namespace sf::selftest {
 
 namespace {
 
-using sensors::SensorKind;
-using sensors::SensorRow;
-using sensors::Wire;
+using sensors::SensorSpec;
+using sensors::SensorType;
+using sensors::WireFormat;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHuge = std::numeric_limits<double>::max();
 
 /// What a receiver is told of `values`; empty where nothing is sent.
-std::vector<double> decoded(const SensorKind& kind, const SensorRow& row, const std::vector<double>& values,
+std::vector<double> decoded(const SensorType& kind, const SensorSpec& row, const std::vector<double>& values,
                             Checks& checks) {
   base::ReadingBlock reading;
   reading.values = values;
   base::Bytes payload;
-  const std::uint8_t type = kind.encode(row, reading, Wire::farm, 0, payload);
+  const std::uint8_t type = kind.encode(row, reading, WireFormat::farm, 0, payload);
   if (type == 0) return {};
-  const sensors::Part part = kind.decode(row, payload, type, Wire::farm);
-  checks.holds(part.fault == sensors::Fault::none, fmt::format("{}: what was sent is taken", kind.name));
+  const sensors::PayloadPart part = kind.decode(row, payload, type, WireFormat::farm);
+  checks.holds(part.fault == sensors::PayloadError::none, fmt::format("{}: what was sent is taken", kind.name));
   std::vector<double> got(values.size());
-  if (part.fault == sensors::Fault::none) kind.read(row, payload, type, Wire::farm, got);
+  if (part.fault == sensors::PayloadError::none) kind.read(row, payload, type, WireFormat::farm, got);
   return got;
 }
 
@@ -40,7 +40,7 @@ struct Sent {
 };
 
 /// Of one number beside others.
-void expect(Checks& checks, const SensorKind& kind, const SensorRow& row, std::span<const Sent> sent, std::size_t at,
+void expect(Checks& checks, const SensorType& kind, const SensorSpec& row, std::span<const Sent> sent, std::size_t at,
             std::size_t width) {
   for (const Sent& s : sent) {
     std::vector<double> values(width, 0.0);
@@ -54,8 +54,8 @@ void expect(Checks& checks, const SensorKind& kind, const SensorRow& row, std::s
   }
 }
 
-SensorRow row_of(std::uint32_t elements, double limit) {
-  SensorRow row;
+SensorSpec row_of(std::uint32_t elements, double limit) {
+  SensorSpec row;
   row.elements = elements;
   row.limit = limit;
   return row;
@@ -103,27 +103,27 @@ constexpr Sent kTurn[] = {{2147.483647, 2147.483647},   {2147.483648, 2147.48364
                           {kHuge, 2147.483647},         {kNan, kNan}};
 
 void lasers(Fixture&, Checks& checks) {
-  expect(checks, sensors::laser_kind, row_of(1, 65.535), kPlainLaser, 0, 1);
-  expect(checks, sensors::laser_kind, row_of(1, 1e6), kExtendedLaser, 0, 1);
+  expect(checks, sensors::laser_type, row_of(1, 65.535), kPlainLaser, 0, 1);
+  expect(checks, sensors::laser_type, row_of(1, 1e6), kExtendedLaser, 0, 1);
   for (std::uint32_t word = 0; word <= 0xFFFF; ++word)
-    checks.same(decoded(sensors::laser_kind, row_of(1, 65.535), {word / 1e3}, checks)[0], word / 1e3,
+    checks.same(decoded(sensors::laser_type, row_of(1, 65.535), {word / 1e3}, checks)[0], word / 1e3,
                 "every word of u16", word);
 }
 
 void lane_edges(Fixture&, Checks& checks) {
-  expect(checks, sensors::laneedge_kind, row_of(1, 0.0), kDistance, 0, 4);
-  expect(checks, sensors::laneedge_kind, row_of(1, 0.0), kPoints, 1, 4);
-  for (const std::size_t at : {2, 3}) expect(checks, sensors::laneedge_kind, row_of(1, 0.0), kSigma, at, 4);
+  expect(checks, sensors::laneedge_type, row_of(1, 0.0), kDistance, 0, 4);
+  expect(checks, sensors::laneedge_type, row_of(1, 0.0), kPoints, 1, 4);
+  for (const std::size_t at : {2, 3}) expect(checks, sensors::laneedge_type, row_of(1, 0.0), kSigma, at, 4);
 }
 
 void fields(Fixture&, Checks& checks) {
-  for (const std::size_t at : {0, 1, 2, 3}) expect(checks, sensors::magnetometer_kind, row_of(1, 0.0), kField, at, 4);
+  for (const std::size_t at : {0, 1, 2, 3}) expect(checks, sensors::magnetometer_type, row_of(1, 0.0), kField, at, 4);
 }
 
 /// Every kind's numbers, whatever they count: told in order, the sign kept, from -1e300 to 1e300.
 void all_kinds(Fixture&, Checks& checks) {
-  expect(checks, sensors::gyro_kind, row_of(1, 0.0), kTurn, 0, 1);
-  for (const SensorKind* kind : sensors::kinds()) {
+  expect(checks, sensors::gyro_type, row_of(1, 0.0), kTurn, 0, 1);
+  for (const SensorType* kind : sensors::sensor_types()) {
     if (kind->id == sensors::kLaneEdge || kind->name == "occupancy") continue;
     double before = -kInfinity;
     for (const double value : {-kInfinity, -1e300, -1e18, -4294967296.0, -2147483648.0, -1.0, 0.0, 1.0, 65'536.0,
@@ -132,9 +132,9 @@ void all_kinds(Fixture&, Checks& checks) {
       const std::vector<double> values(sensors::element_width(*kind), value);
       reading.values = values;
       base::Bytes payload;
-      const std::uint8_t type = kind->encode(row_of(1, 0.0), reading, Wire::farm, 0, payload);
+      const std::uint8_t type = kind->encode(row_of(1, 0.0), reading, WireFormat::farm, 0, payload);
       std::vector<double> got(values.size());
-      kind->read(row_of(1, 0.0), payload, type, Wire::farm, got);
+      kind->read(row_of(1, 0.0), payload, type, WireFormat::farm, got);
       checks.holds(got[0] >= before && (value <= 0.0 ? got[0] <= 0.0 : got[0] >= 0.0),
                    fmt::format("{}: {:g} is told as {:g}", kind->name, value, got[0]));
       before = got[0];

@@ -19,11 +19,12 @@ namespace {
 constexpr std::string_view kExact = "exact";
 
 /// What `word`, with or without its kind before a colon, is to a kind; null: nothing.
-const Mode* find_mode(std::string_view kind, std::span<const Mode> modes, std::string_view word) {
+const AccuracyMode* find_mode(std::string_view kind, std::span<const AccuracyMode> modes, std::string_view word) {
   const std::size_t colon = word.find(':');
   if (colon != std::string_view::npos && word.substr(0, colon) != kind) return nullptr;
   const std::string_view own = colon == std::string_view::npos ? word : word.substr(colon + 1);
-  const auto found = std::find_if(modes.begin(), modes.end(), [&](const Mode& mode) { return mode.word == own; });
+  const auto found =
+      std::find_if(modes.begin(), modes.end(), [&](const AccuracyMode& mode) { return mode.word == own; });
   return found == modes.end() ? nullptr : &*found;
 }
 
@@ -45,14 +46,15 @@ std::string listed(const std::vector<std::string_view>& words) {
 
 }  // namespace
 
-std::uint8_t mode_of(std::string_view kind, std::span<const Mode> modes, const world::Accuracy& own,
+std::uint8_t mode_of(std::string_view kind, std::span<const AccuracyMode> modes, const world::Accuracy& own,
                      const world::World& world) {
   const world::Accuracy& asked = own.word.empty() ? world.accuracy : own;
   for (const std::string& word : words_in(asked.word))
-    if (const Mode* const mode = find_mode(kind, modes, word)) return static_cast<std::uint8_t>(mode - modes.data());
+    if (const AccuracyMode* const mode = find_mode(kind, modes, word))
+      return static_cast<std::uint8_t>(mode - modes.data());
   if (own.word.empty() || own.word == kExact) return 0;
   std::vector<std::string_view> words;
-  for (const Mode& known : modes) words.push_back(known.word);
+  for (const AccuracyMode& known : modes) words.push_back(known.word);
   if (words.empty()) words.push_back(kExact);
   refuse(world, own, fmt::format("'accuracy' is \"{}\"; this sensor knows {}", own.word, listed(words)));
 }
@@ -66,16 +68,16 @@ world::Accuracy accuracy_of(const world::Sensor& sensor) {
 
 namespace {
 
-void check_word(const world::World& world, std::span<const SensorKind* const> present, const std::string& word) {
+void check_word(const world::World& world, std::span<const SensorType* const> present, const std::string& word) {
   if (word == kExact) return;
-  const auto knows = [&](const SensorKind* kind) { return find_mode(kind->name, kind->modes, word) != nullptr; };
+  const auto knows = [&](const SensorType* kind) { return find_mode(kind->name, kind->modes, word) != nullptr; };
   if (std::any_of(present.begin(), present.end(), knows)) return;
-  const auto all = kinds();
+  const auto all = sensor_types();
   if (std::none_of(all.begin(), all.end(), knows))
     refuse(world, world.accuracy,
            fmt::format("there is no accuracy \"{}\"; expected one of {}", word, listed(accuracy_words())));
   std::string who;
-  for (const SensorKind* kind : all)
+  for (const SensorType* kind : all)
     if (knows(kind)) who += fmt::format("{}{}", who.empty() ? "" : ", ", kind->name);
   refuse(world, world.accuracy,
          fmt::format("accuracy \"{}\" is for {}, and the world has no such sensor; leave it out", word, who));
@@ -83,14 +85,14 @@ void check_word(const world::World& world, std::span<const SensorKind* const> pr
 
 /// Kinds with modes judge what their own sensors say; for the others only one word is right.
 void check_sensor(const world::World& world, const world::Sensor& sensor) {
-  const auto all = kinds();
+  const auto all = sensor_types();
   const auto kind = std::find_if(all.begin(), all.end(), [&](const auto* k) { return k->word.type == sensor.type; });
   if (kind != all.end() && (*kind)->modes.empty()) mode_of((*kind)->name, {}, accuracy_of(sensor), world);
 }
 
 }  // namespace
 
-void check_accuracy(const world::World& world, std::span<const SensorKind* const> present) {
+void check_accuracy(const world::World& world, std::span<const SensorType* const> present) {
   for (const std::string& word : words_in(world.accuracy.word)) check_word(world, present, word);
   for (const world::Mover& mover : world.movers)
     for (const world::Sensor& sensor : mover.sensors) check_sensor(world, sensor);
@@ -108,8 +110,8 @@ void set_accuracy(world::World& world, const std::string& words) {
 
 std::vector<std::string_view> accuracy_words() {
   std::vector<std::string_view> words{kExact};
-  for (const SensorKind* kind : kinds())
-    for (const Mode& mode : kind->modes)
+  for (const SensorType* kind : sensor_types())
+    for (const AccuracyMode& mode : kind->modes)
       if (std::find(words.begin(), words.end(), mode.word) == words.end()) words.push_back(mode.word);
   return words;
 }
@@ -120,27 +122,27 @@ namespace {
 using Alike = std::tuple<std::uint8_t, bool, double, double, std::uint32_t>;
 
 /// @param known bounds of those that were looked at
-const Bound& bound_of(const world::World& world, const SensorKind& kind, const SensorRow& row,
-                      std::map<Alike, Bound>& known) {
+const ErrorBound& bound_of(const world::World& world, const SensorType& kind, const SensorSpec& row,
+                           std::map<Alike, ErrorBound>& known) {
   const auto [at, is_new] = known.try_emplace(
-      Alike{row.mode, row.noisy, row.limit, world.movers[row.mover].X_WM.z + row.X_MS.z, row.elements}, Bound{});
+      Alike{row.mode, row.noisy, row.limit, world.movers[row.mover].X_WM.z + row.X_MS.z, row.elements}, ErrorBound{});
   if (is_new) at->second = kind.bound(world, row);
   return at->second;
 }
 
 }  // namespace
 
-std::vector<Statement> statements_of(const world::World& world, const Roster& roster) {
-  std::vector<Statement> statements;
-  for (const Roster::Group& group : roster.groups()) {
+std::vector<AccuracyStatement> accuracy_statements(const world::World& world, const SensorSet& sensor_set) {
+  std::vector<AccuracyStatement> statements;
+  for (const SensorSet::Group& group : sensor_set.groups()) {
     if (group.kind->bound == nullptr) continue;
     const std::size_t first = statements.size();
-    std::map<Alike, Bound> known;
-    for (const SensorRow& row : group.rows) {
-      const Bound& bound = bound_of(world, *group.kind, row, known);
+    std::map<Alike, ErrorBound> known;
+    for (const SensorSpec& row : group.rows) {
+      const ErrorBound& bound = bound_of(world, *group.kind, row, known);
       const auto same =
           std::find_if(statements.begin() + static_cast<std::ptrdiff_t>(first), statements.end(),
-                       [&](const Statement& s) { return s.mode == row.mode && s.bound.error == bound.error; });
+                       [&](const AccuracyStatement& s) { return s.mode == row.mode && s.bound.error == bound.error; });
       if (same != statements.end())
         ++same->sensors;
       else
@@ -150,11 +152,11 @@ std::vector<Statement> statements_of(const world::World& world, const Roster& ro
   return statements;
 }
 
-std::string modes_of(const Roster& roster) {
+std::string modes_of(const SensorSet& sensor_set) {
   std::string text;
-  for (const Roster::Group& group : roster.groups()) {
+  for (const SensorSet::Group& group : sensor_set.groups()) {
     std::set<std::uint8_t> modes;
-    for (const SensorRow& row : group.rows)
+    for (const SensorSpec& row : group.rows)
       if (row.mode > 0) modes.insert(row.mode);
     for (const std::uint8_t mode : modes)
       text += fmt::format("{}{}:{}", text.empty() ? "" : " ", group.kind->name, word_of(*group.kind, mode));
@@ -162,12 +164,12 @@ std::string modes_of(const Roster& roster) {
   return text.empty() ? std::string(kExact) : text;
 }
 
-std::string_view unit_of(const SensorKind& kind) {
+std::string_view unit_of(const SensorType& kind) {
   const std::string_view column = kind.columns.front().name;
   return column.ends_with("_m") ? "m" : column.ends_with("_T") ? "T" : "";
 }
 
-std::string_view word_of(const SensorKind& kind, std::uint8_t mode) {
+std::string_view word_of(const SensorType& kind, std::uint8_t mode) {
   return kind.modes.empty() ? kExact : kind.modes[mode].word;
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sensors/host_instruments.h"
+#include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
 
@@ -70,42 +70,42 @@ std::vector<std::uint32_t> read_bars(const world::Sensor& sensor) {
   return switches;
 }
 
-class Bumpers : public HostInstruments {
+class Bumpers : public HostBackend {
  public:
   explicit Bumpers(const SensorContext& context);
 
-  void follow(std::span<const base::Report> states, std::int64_t, bool) override {
+  void update_states(std::span<const base::Report> states, std::int64_t, bool) override {
     for (std::size_t m = 0; m < states.size(); ++m) contact_masks_[m] = states[m].contact_mask;
   }
 
  private:
-  void measure(std::span<const Sight> sights) const override;
+  void measure(std::span<const HostSample> samples) const override;
 
   std::vector<std::vector<std::uint32_t>> switches_;  ///< per row: the sectors of each
   std::vector<std::uint32_t> contact_masks_;          ///< per mover
 };
 
-std::vector<SensorRow> rows_of(const world::World& world) {
-  std::vector<SensorRow> rows;
-  for_each_sensor(world, bumper_kind, [&](const Fitted& fitted) {
-    rows.push_back(fitted.row);
-    rows.back().elements = static_cast<std::uint32_t>(read_bumper(fitted.settings).size());
+std::vector<SensorSpec> specs_of(const world::World& world) {
+  std::vector<SensorSpec> rows;
+  for_each_sensor(world, bumper_type, [&](const MountedSensor& mounted) {
+    rows.push_back(mounted.row);
+    rows.back().elements = static_cast<std::uint32_t>(read_bumper(mounted.settings).size());
     rows.back().limit = 1.0;
   });
   return rows;
 }
 
 Bumpers::Bumpers(const SensorContext& context)
-    : HostInstruments(context, bumper_kind, rows_of(context.world)), contact_masks_(context.world.movers.size(), 0) {
-  for_each_sensor(context.world, bumper_kind,
-                  [this](const Fitted& fitted) { switches_.push_back(read_bumper(fitted.settings)); });
+    : HostBackend(context, bumper_type, specs_of(context.world)), contact_masks_(context.world.movers.size(), 0) {
+  for_each_sensor(context.world, bumper_type,
+                  [this](const MountedSensor& mounted) { switches_.push_back(read_bumper(mounted.settings)); });
 }
 
-void Bumpers::measure(std::span<const Sight> sights) const {
-  for (const Sight& sight : sights) {
-    const std::uint32_t contact_mask = contact_masks_[rows()[sight.row].mover];
-    const auto& switches = switches_[sight.row];
-    for (std::size_t i = 0; i < switches.size(); ++i) sight.values[i] = (contact_mask & switches[i]) != 0 ? 1.0 : 0.0;
+void Bumpers::measure(std::span<const HostSample> samples) const {
+  for (const HostSample& sample : samples) {
+    const std::uint32_t contact_mask = contact_masks_[rows()[sample.row].mover];
+    const auto& switches = switches_[sample.row];
+    for (std::size_t i = 0; i < switches.size(); ++i) sample.values[i] = (contact_mask & switches[i]) != 0 ? 1.0 : 0.0;
   }
 }
 
@@ -135,13 +135,13 @@ std::vector<std::uint32_t> read_bumper(const world::Sensor& sensor) {
   return switches;
 }
 
-constinit const SensorKind bumper_kind = plain<kForm>({
+constinit const SensorType bumper_type = plain<kForm>({
     .word = {"bumper", kKeys},
     .base_port = 40000,
     .list = "switches",
     .columns = kColumns,
-    .rows = rows_of,
-    .make = make_instruments<Bumpers>,
+    .specs = specs_of,
+    .make = make_backend<Bumpers>,
 });
 
 }  // namespace sf::sensors

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -24,6 +24,6 @@ inline constexpr std::uint32_t kMostBumperZones = 32;  ///< of one sensor
 /// @throws base::InputError with file and line.
 std::vector<std::uint32_t> read_bumper(const world::Sensor& sensor);
 
-extern const SensorKind bumper_kind;
+extern const SensorType bumper_type;
 
 }  // namespace sf::sensors

@@ -1,47 +1,47 @@
 #include "sensors/cliff.h"
 
-#include "sensors/drops.h"
+#include "sensors/drop_off_index.h"
 #include "sensors/elements.h"
-#include "sensors/host_instruments.h"
+#include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
 
 namespace sf::sensors {
 
 namespace {
 
-class Cliffs : public HostInstruments {
+class Cliffs : public HostBackend {
  public:
   explicit Cliffs(const SensorContext& context);
 
  private:
-  void measure(std::span<const Sight> sights) const override;
+  void measure(std::span<const HostSample> samples) const override;
 
-  Drops drops_;
+  DropOffIndex drop_offs_;
   std::vector<std::vector<Pose>> points_;  ///< per row, in the sensor's frame
 };
 
-std::vector<SensorRow> rows_of(const world::World& world) {
-  std::vector<SensorRow> rows;
-  for_each_sensor(world, cliff_kind, [&](const Fitted& fitted) {
-    rows.push_back(fitted.row);
-    rows.back().elements = static_cast<std::uint32_t>(read_elements(fitted.settings, kMostCliffPoints).size());
+std::vector<SensorSpec> specs_of(const world::World& world) {
+  std::vector<SensorSpec> rows;
+  for_each_sensor(world, cliff_type, [&](const MountedSensor& mounted) {
+    rows.push_back(mounted.row);
+    rows.back().elements = static_cast<std::uint32_t>(read_elements(mounted.settings, kMostCliffPoints).size());
     rows.back().limit = 1.0;
   });
   return rows;
 }
 
 Cliffs::Cliffs(const SensorContext& context)
-    : HostInstruments(context, cliff_kind, rows_of(context.world)), drops_(context.world.floor_holes) {
-  for_each_sensor(context.world, cliff_kind, [this](const Fitted& fitted) {
-    points_.push_back(read_elements(fitted.settings, kMostCliffPoints));
+    : HostBackend(context, cliff_type, specs_of(context.world)), drop_offs_(context.world.floor_holes) {
+  for_each_sensor(context.world, cliff_type, [this](const MountedSensor& mounted) {
+    points_.push_back(read_elements(mounted.settings, kMostCliffPoints));
   });
 }
 
-void Cliffs::measure(std::span<const Sight> sights) const {
-  for (const Sight& sight : sights) {
-    const auto& points = points_[sight.row];
+void Cliffs::measure(std::span<const HostSample> samples) const {
+  for (const HostSample& sample : samples) {
+    const auto& points = points_[sample.row];
     for (std::size_t i = 0; i < points.size(); ++i)
-      sight.values[i] = drops_.hold(base::transform(sight.X_WS, {points[i].x, points[i].y})) ? 1.0 : 0.0;
+      sample.values[i] = drop_offs_.hold(base::transform(sample.X_WS, {points[i].x, points[i].y})) ? 1.0 : 0.0;
   }
 }
 
@@ -52,13 +52,13 @@ constexpr PlainForm kForm{kCliff, "cliff", kNumbers};
 
 }  // namespace
 
-constinit const SensorKind cliff_kind = plain<kForm>({
+constinit const SensorType cliff_type = plain<kForm>({
     .word = {"cliff", kKeys},
     .base_port = 42000,
     .list = "points",
     .columns = kColumns,
-    .rows = rows_of,
-    .make = make_instruments<Cliffs>,
+    .specs = specs_of,
+    .make = make_backend<Cliffs>,
 });
 
 }  // namespace sf::sensors

@@ -8,13 +8,13 @@
 
 #include <cstdint>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
 inline constexpr std::uint8_t kCliff = 7;              ///< wire id
 inline constexpr std::uint32_t kMostCliffPoints = 32;  ///< of one sensor
 
-extern const SensorKind cliff_kind;
+extern const SensorType cliff_type;
 
 }  // namespace sf::sensors

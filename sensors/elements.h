@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "sensors/host_instruments.h"
+#include "sensors/host_backend.h"
 #include "sensors/odometer.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
@@ -31,14 +31,14 @@ struct Wheels {
   Slippage right;
 };
 
-class Encoders : public HostInstruments {
+class Encoders : public HostBackend {
  public:
   explicit Encoders(const SensorContext& context);
 
-  void follow(std::span<const base::Report> states, std::int64_t now, bool between) override;
+  void update_states(std::span<const base::Report> states, std::int64_t now, bool between) override;
 
  private:
-  void measure(std::span<const Sight> sights) const override;
+  void measure(std::span<const HostSample> samples) const override;
   bool drove(const Track& track, const Pose& X_WM, double max_forward, std::int64_t now) const;
 
   std::vector<Wheels> wheels_;  ///< per row, at the last tick
@@ -48,20 +48,20 @@ class Encoders : public HostInstruments {
   std::int64_t last_ = 0;       ///< [ns] of the last tick
 };
 
-std::vector<SensorRow> rows_of(const world::World& world) {
-  std::vector<SensorRow> rows;
-  for_each_sensor(world, encoder_kind, [&](const Fitted& fitted) {
-    read_encoder(fitted.settings, world.movers[fitted.row.mover]);
-    rows.push_back(fitted.row);
+std::vector<SensorSpec> specs_of(const world::World& world) {
+  std::vector<SensorSpec> rows;
+  for_each_sensor(world, encoder_type, [&](const MountedSensor& mounted) {
+    read_encoder(mounted.settings, world.movers[mounted.row.mover]);
+    rows.push_back(mounted.row);
   });
   return rows;
 }
 
-Encoders::Encoders(const SensorContext& context) : HostInstruments(context, encoder_kind, rows_of(context.world)) {
-  for_each_sensor(context.world, encoder_kind, [&](const Fitted& fitted) {
-    const world::Mover& mover = context.world.movers[fitted.row.mover];
-    const Encoder settings = read_encoder(fitted.settings, mover);
-    const base::RandomKey walk{context.seed, base::RandomStream::slip, fitted.row.mover, fitted.row.sensor};
+Encoders::Encoders(const SensorContext& context) : HostBackend(context, encoder_type, specs_of(context.world)) {
+  for_each_sensor(context.world, encoder_type, [&](const MountedSensor& mounted) {
+    const world::Mover& mover = context.world.movers[mounted.row.mover];
+    const Encoder settings = read_encoder(mounted.settings, mover);
+    const base::RandomKey walk{context.seed, base::RandomStream::slip, mounted.row.mover, mounted.row.sensor};
     const double slip = context.noise ? settings.slip : 0.0;
     wheels_.push_back({settings, {}, {walk, 0, slip}, {walk, 1, slip}});
     tracks_.push_back({mover.X_WM});
@@ -76,7 +76,7 @@ bool Encoders::drove(const Track& track, const Pose& X_WM, double max_forward, s
   return way <= kAlwaysRolled + 2.0 * max_forward * std::max(0.0, seconds);
 }
 
-void Encoders::follow(std::span<const base::Report> states, std::int64_t now, bool between) {
+void Encoders::update_states(std::span<const base::Report> states, std::int64_t now, bool between) {
   between_ = between;
   if (between) ahead_ = wheels_;
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
@@ -101,14 +101,14 @@ double counts_of(double rolled, double scale, const Slippage& slippage, double p
   return std::floor((rolled * scale + slippage.error()) / per_count + 0.5);
 }
 
-void Encoders::measure(std::span<const Sight> sights) const {
-  for (const Sight& sight : sights) {
-    const Wheels& w = (between_ ? ahead_ : wheels_)[sight.row];
+void Encoders::measure(std::span<const HostSample> samples) const {
+  for (const HostSample& sample : samples) {
+    const Wheels& w = (between_ ? ahead_ : wheels_)[sample.row];
     const Encoder& e = w.settings;
-    sight.values[2] = counts_of(w.rolled.left, e.scale_left, w.left, e.per_count);
-    sight.values[3] = counts_of(w.rolled.right, e.scale_right, w.right, e.per_count);
-    sight.values[0] = sight.values[2] * e.per_count;
-    sight.values[1] = sight.values[3] * e.per_count;
+    sample.values[2] = counts_of(w.rolled.left, e.scale_left, w.left, e.per_count);
+    sample.values[3] = counts_of(w.rolled.right, e.scale_right, w.right, e.per_count);
+    sample.values[0] = sample.values[2] * e.per_count;
+    sample.values[1] = sample.values[3] * e.per_count;
   }
 }
 
@@ -137,13 +137,13 @@ Encoder read_encoder(const world::Sensor& sensor, const world::Mover& mover) {
   return e;
 }
 
-constinit const SensorKind encoder_kind = plain<kForm>({
+constinit const SensorType encoder_type = plain<kForm>({
     .word = {"encoder", kKeys},
     .base_port = 44000,
     .list = "",
     .columns = kColumns,
-    .rows = rows_of,
-    .make = make_instruments<Encoders>,
+    .specs = specs_of,
+    .make = make_backend<Encoders>,
 });
 
 }  // namespace sf::sensors

@@ -13,7 +13,7 @@
 
 #include <cstdint>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -31,6 +31,6 @@ struct Encoder {
 /// @throws base::InputError with file and line.
 Encoder read_encoder(const world::Sensor& sensor, const world::Mover& mover);
 
-extern const SensorKind encoder_kind;
+extern const SensorType encoder_type;
 
 }  // namespace sf::sensors

@@ -4,10 +4,10 @@
 #include <limits>
 
 #include "base/random.h"
-#include "sensors/host_instruments.h"
+#include "sensors/gnss_visibility.h"
+#include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
-#include "sensors/sky.h"
 
 namespace sf::sensors {
 
@@ -20,52 +20,52 @@ struct Receiver {
   std::vector<Satellite> satellites;
 };
 
-class GpsReceivers : public HostInstruments {
+class GpsReceivers : public HostBackend {
  public:
   explicit GpsReceivers(const SensorContext& context);
 
  private:
-  void measure(std::span<const Sight> sights) const override;
-  void measure(const Sight& sight) const;
+  void measure(std::span<const HostSample> samples) const override;
+  void measure(const HostSample& sample) const;
 
-  Sky sky_;
+  GnssVisibility visibility_;
   std::vector<Receiver> receivers_;  ///< per row
 };
 
-std::vector<SensorRow> rows_of(const world::World& world) {
-  std::vector<SensorRow> rows;
-  for_each_sensor(world, gps_kind, [&](const Fitted& fitted) {
-    read_gps(fitted.settings);
-    SensorRow row = fitted.row;
-    row.rate = rate_of(fitted.settings, kRate);
-    row.X_MS.z += fitted.settings.height;
+std::vector<SensorSpec> specs_of(const world::World& world) {
+  std::vector<SensorSpec> rows;
+  for_each_sensor(world, gps_type, [&](const MountedSensor& mounted) {
+    read_gps(mounted.settings);
+    SensorSpec row = mounted.row;
+    row.rate = rate_of(mounted.settings, kRate);
+    row.X_MS.z += mounted.settings.height;
     rows.push_back(row);
   });
   return rows;
 }
 
 GpsReceivers::GpsReceivers(const SensorContext& context)
-    : HostInstruments(context, gps_kind, rows_of(context.world)), sky_(context.world) {
-  for_each_sensor(context.world, gps_kind, [&](const Fitted& fitted) {
-    const Gps gps = read_gps(fitted.settings);
+    : HostBackend(context, gps_type, specs_of(context.world)), visibility_(context.world) {
+  for_each_sensor(context.world, gps_type, [&](const MountedSensor& mounted) {
+    const Gps gps = read_gps(mounted.settings);
     receivers_.push_back({context.noise ? gps.noise : 0.0, constellation(gps.satellites)});
   });
 }
 
-void GpsReceivers::measure(std::span<const Sight> sights) const {
-  for (const Sight& sight : sights) measure(sight);
+void GpsReceivers::measure(std::span<const HostSample> samples) const {
+  for (const HostSample& sample : samples) measure(sample);
 }
 
-void GpsReceivers::measure(const Sight& sight) const {
-  const Receiver& receiver = receivers_[sight.row];
-  const SensorRow& row = rows()[sight.row];
-  const glm::dvec2 p{sight.X_WS.x, sight.X_WS.y};
+void GpsReceivers::measure(const HostSample& sample) const {
+  const Receiver& receiver = receivers_[sample.row];
+  const SensorSpec& row = rows()[sample.row];
+  const glm::dvec2 p{sample.X_WS.x, sample.X_WS.y};
   std::uint64_t seen = 0;
   for (std::size_t i = 0; i < receiver.satellites.size(); ++i)
-    if (sky_.sees(p, sight.X_WS.z, receiver.satellites[i])) seen |= std::uint64_t{1} << i;
+    if (visibility_.is_visible(p, sample.X_WS.z, receiver.satellites[i])) seen |= std::uint64_t{1} << i;
 
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const std::span<double> out = sight.values;
+  const std::span<double> out = sample.values;
   out[0] = out[1] = out[2] = kNan;
   out[3] = std::popcount(seen);
   const auto fix = dilution(receiver.satellites, seen);
@@ -73,7 +73,7 @@ void GpsReceivers::measure(const Sight& sight) const {
   glm::dvec2 error;
   if (receiver.noise > 0.0) {
     const auto [n, m] =
-        base::random_normal({seed(), base::RandomStream::satellites, row.mover, row.sensor, sight.sequence}, 0);
+        base::random_normal({seed(), base::RandomStream::satellites, row.mover, row.sensor, sample.sequence}, 0);
     error = receiver.noise * glm::dvec2{fix->xx * n, fix->yx * n + fix->yy * m};
   }
   out[0] = p.x + error.x;
@@ -95,13 +95,13 @@ Gps read_gps(const world::Sensor& sensor) {
   return gps;
 }
 
-constinit const SensorKind gps_kind = plain<kForm>({
+constinit const SensorType gps_type = plain<kForm>({
     .word = {"gps", kKeys},
     .base_port = 48000,
     .list = "",
     .columns = kColumns,
-    .rows = rows_of,
-    .make = make_instruments<GpsReceivers>,
+    .specs = specs_of,
+    .make = make_backend<GpsReceivers>,
 });
 
 }  // namespace sf::sensors

@@ -1,6 +1,6 @@
 #pragma once
-// Satellite positioning that loses its fix under bridges and between walls (docs/sensors.md; sensors/sky.h has the
-// constellation and what blocks a line of sight).
+// Satellite positioning that loses its fix under bridges and between walls (docs/sensors.md; sensors/gnss_visibility.h
+// has the constellation and what blocks a line of sight).
 //
 // In a world file, inside a robot:
 //   gps( satellites 8  noise 2  rate 1  latency 0.1 )
@@ -13,7 +13,7 @@
 
 #include <cstdint>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -29,6 +29,6 @@ struct Gps {
 /// @throws base::InputError with file and line.
 Gps read_gps(const world::Sensor& sensor);
 
-extern const SensorKind gps_kind;
+extern const SensorType gps_type;
 
 }  // namespace sf::sensors

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/random.h"
-#include "sensors/host_instruments.h"
+#include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
 #include "sensors/settings.h"
 
@@ -23,54 +23,54 @@ struct Fixed {
   double noise = 0.0;
 };
 
-base::RandomKey draw_of(std::uint64_t seed, const SensorRow& row, std::uint64_t sequence) {
+base::RandomKey draw_of(std::uint64_t seed, const SensorSpec& row, std::uint64_t sequence) {
   return {seed, base::RandomStream::gyro, row.mover, row.sensor, sequence};
 }
 
-class Gyros : public HostInstruments {
+class Gyros : public HostBackend {
  public:
   explicit Gyros(const SensorContext& context);
 
-  void follow(std::span<const base::Report> states, std::int64_t, bool) override {
+  void update_states(std::span<const base::Report> states, std::int64_t, bool) override {
     for (std::size_t m = 0; m < states.size(); ++m) turns_[m] = states[m].velocity.turn;
   }
 
  private:
-  void measure(std::span<const Sight> sights) const override;
+  void measure(std::span<const HostSample> samples) const override;
 
   std::vector<Fixed> gyros_;   ///< per row
   std::vector<double> turns_;  ///< [rad/s] per mover
 };
 
-std::vector<SensorRow> rows_of(const world::World& world) {
-  std::vector<SensorRow> rows;
-  for_each_sensor(world, gyro_kind, [&](const Fitted& fitted) {
-    rows.push_back(fitted.row);
-    rows.back().limit = read_gyro(fitted.settings).range;
+std::vector<SensorSpec> specs_of(const world::World& world) {
+  std::vector<SensorSpec> rows;
+  for_each_sensor(world, gyro_type, [&](const MountedSensor& mounted) {
+    rows.push_back(mounted.row);
+    rows.back().limit = read_gyro(mounted.settings).range;
   });
   return rows;
 }
 
 Gyros::Gyros(const SensorContext& context)
-    : HostInstruments(context, gyro_kind, rows_of(context.world)), turns_(context.world.movers.size(), 0.0) {
-  for_each_sensor(context.world, gyro_kind, [&](const Fitted& fitted) {
-    const Gyro gyro = read_gyro(fitted.settings);
+    : HostBackend(context, gyro_type, specs_of(context.world)), turns_(context.world.movers.size(), 0.0) {
+  for_each_sensor(context.world, gyro_type, [&](const MountedSensor& mounted) {
+    const Gyro gyro = read_gyro(mounted.settings);
     Fixed fixed{.range = gyro.range};
     if (context.noise) {
-      const auto [bias, scale] = base::random_normal(draw_of(context.seed, fitted.row, 0), kRun);
+      const auto [bias, scale] = base::random_normal(draw_of(context.seed, mounted.row, 0), kRun);
       fixed = {gyro.range, 1.0 + gyro.scale_error * scale, gyro.bias * bias, gyro.noise};
     }
     gyros_.push_back(fixed);
   });
 }
 
-void Gyros::measure(std::span<const Sight> sights) const {
-  for (const Sight& sight : sights) {
-    const SensorRow& row = rows()[sight.row];
-    const Fixed& gyro = gyros_[sight.row];
+void Gyros::measure(std::span<const HostSample> samples) const {
+  for (const HostSample& sample : samples) {
+    const SensorSpec& row = rows()[sample.row];
+    const Fixed& gyro = gyros_[sample.row];
     double rate = gyro.scale * turns_[row.mover] + gyro.bias;
-    if (gyro.noise > 0.0) rate += gyro.noise * base::random_normal(draw_of(seed(), row, sight.sequence), kReading)[0];
-    sight.values[0] = std::clamp(rate, -gyro.range, gyro.range);
+    if (gyro.noise > 0.0) rate += gyro.noise * base::random_normal(draw_of(seed(), row, sample.sequence), kReading)[0];
+    sample.values[0] = std::clamp(rate, -gyro.range, gyro.range);
   }
 }
 
@@ -91,13 +91,13 @@ Gyro read_gyro(const world::Sensor& sensor) {
   return g;
 }
 
-constinit const SensorKind gyro_kind = plain<kForm>({
+constinit const SensorType gyro_type = plain<kForm>({
     .word = {"gyro", kKeys},
     .base_port = 46000,
     .list = "",
     .columns = kColumns,
-    .rows = rows_of,
-    .make = make_instruments<Gyros>,
+    .specs = specs_of,
+    .make = make_backend<Gyros>,
 });
 
 }  // namespace sf::sensors

@@ -11,7 +11,7 @@
 
 #include <cstdint>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -28,6 +28,6 @@ struct Gyro {
 /// @throws base::InputError with file and line.
 Gyro read_gyro(const world::Sensor& sensor);
 
-extern const SensorKind gyro_kind;
+extern const SensorType gyro_type;
 
 }  // namespace sf::sensors

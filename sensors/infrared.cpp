@@ -25,10 +25,10 @@ void tell_response(const ConeArray& array, double range, bool met, double deviat
 }
 
 std::vector<ConeArray> infrareds_of(const world::World& world) {
-  return cone_arrays_of(world, infrared_kind.word.type, read_infrared);
+  return cone_arrays_of(world, infrared_type.word.type, read_infrared);
 }
 
-constexpr RangerKind kRanger{kInfrared, kInfraredColumns, {"infrared", infrared_comp_spv, false}, tell_response};
+constexpr RangerType kRanger{kInfrared, kInfraredColumns, {"infrared", infrared_comp_spv, false}, tell_response};
 
 constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize", "sview", "fov", "range", "rays"};
 constexpr Column kColumns[] = {{"range_m"}, {"value", 1, true}};
@@ -43,13 +43,14 @@ ConeArray read_infrared(const world::Sensor& sensor, std::uint32_t mover, std::u
   return array;
 }
 
-constinit const SensorKind infrared_kind = plain<kForm>({
+constinit const SensorType infrared_type = plain<kForm>({
     .word = {"infrared", kKeys},
     .base_port = 38000,
     .list = "elements",
     .columns = kColumns,
-    .rows = [](const world::World& world) { return ranger_rows(infrareds_of(world)); },
-    .make = [](const SensorContext& context) { return make_rangers(context, infrareds_of(context.world), kRanger); },
+    .specs = [](const world::World& world) { return ranger_specs(infrareds_of(world)); },
+    .make =
+        [](const SensorContext& context) { return make_ranger_backend(context, infrareds_of(context.world), kRanger); },
 });
 
 }  // namespace sf::sensors

@@ -12,7 +12,7 @@
 #include <cstdint>
 
 #include "sensors/cones/cone_array.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -23,6 +23,6 @@ inline constexpr std::uint32_t kInfraredColumns = 2;  ///< numbers of one elemen
 /// @throws base::InputError with file and line.
 ConeArray read_infrared(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind);
 
-extern const SensorKind infrared_kind;
+extern const SensorType infrared_type;
 
 }  // namespace sf::sensors

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sensors/box_tree.h"
-#include "sensors/host_instruments.h"
+#include "sensors/host_backend.h"
 #include "sensors/plain_packets.h"
 #include "world/wall_grid.h"
 
@@ -39,29 +39,29 @@ std::vector<Segment> opaque(const world::World& world) {
   return walls;
 }
 
-class IrReceivers : public HostInstruments {
+class IrReceivers : public HostBackend {
  public:
   explicit IrReceivers(const SensorContext& context);
 
  private:
-  void measure(std::span<const Sight> sights) const override;
+  void measure(std::span<const HostSample> samples) const override;
   bool hidden(const Emitter& emitter, glm::dvec2 p, double z) const;
 
   world::WallGrid walls_;
   BoxTree reaches_;  ///< of the world's emitters
 };
 
-std::vector<SensorRow> rows_of(const world::World& world) {
-  std::vector<SensorRow> rows;
-  for_each_sensor(world, irreceiver_kind, [&](const Fitted& fitted) {
-    rows.push_back(fitted.row);
-    rows.back().X_MS.z += 0.5 * fitted.settings.height;
+std::vector<SensorSpec> specs_of(const world::World& world) {
+  std::vector<SensorSpec> rows;
+  for_each_sensor(world, irreceiver_type, [&](const MountedSensor& mounted) {
+    rows.push_back(mounted.row);
+    rows.back().X_MS.z += 0.5 * mounted.settings.height;
   });
   return rows;
 }
 
 IrReceivers::IrReceivers(const SensorContext& context)
-    : HostInstruments(context, irreceiver_kind, rows_of(context.world)),
+    : HostBackend(context, irreceiver_type, specs_of(context.world)),
       walls_(opaque(context.world), kCell),
       reaches_(reaches_of(context.world)) {}
 
@@ -73,19 +73,19 @@ bool IrReceivers::hidden(const Emitter& emitter, glm::dvec2 p, double z) const {
   });
 }
 
-void IrReceivers::measure(std::span<const Sight> sights) const {
-  for (const Sight& sight : sights) {
-    const glm::dvec2 p{sight.X_WS.x, sight.X_WS.y};
+void IrReceivers::measure(std::span<const HostSample> samples) const {
+  for (const HostSample& sample : samples) {
+    const glm::dvec2 p{sample.X_WS.x, sample.X_WS.y};
     std::uint32_t walls = 0, docks = 0;
     reaches_.any(world::box_around(p, 0.0), [&](std::uint32_t i) {
       const Emitter& emitter = world().emitters[i];
       const std::uint32_t light = light_of(emitter, p);
-      if (light != 0 && !hidden(emitter, p, sight.X_WS.z))
+      if (light != 0 && !hidden(emitter, p, sample.X_WS.z))
         (emitter.kind == Emitter::Kind::virtual_wall ? walls : docks) |= light;
       return false;
     });
-    sight.values[0] = walls;
-    sight.values[1] = docks == 0 ? kNoIrByte : kDockByte + docks;
+    sample.values[0] = walls;
+    sample.values[1] = docks == 0 ? kNoIrByte : kDockByte + docks;
   }
 }
 
@@ -110,13 +110,13 @@ std::uint32_t light_of(const Emitter& emitter, glm::dvec2 p) {
   return light;
 }
 
-constinit const SensorKind irreceiver_kind = plain<kForm>({
+constinit const SensorType irreceiver_type = plain<kForm>({
     .word = {"irreceiver", {}},
     .base_port = 50000,
     .list = "",
     .columns = kColumns,
-    .rows = rows_of,
-    .make = make_instruments<IrReceivers>,
+    .specs = specs_of,
+    .make = make_backend<IrReceivers>,
 });
 
 }  // namespace sf::sensors

@@ -10,7 +10,7 @@
 
 #include <cstdint>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -25,6 +25,6 @@ inline constexpr std::uint32_t kForceField = 2;
 /// @return a virtual wall: 1 in its beam or halo; a dock: bits kRedBuoy, kGreenBuoy, kForceField; 0: none
 std::uint32_t light_of(const world::Emitter& emitter, glm::dvec2 p);
 
-extern const SensorKind irreceiver_kind;
+extern const SensorType irreceiver_type;
 
 }  // namespace sf::sensors

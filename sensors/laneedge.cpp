@@ -5,21 +5,21 @@
 #include <optional>
 
 #include "raycast/ray_caster.h"
+#include "sensors/lane_markings/edge_fit.h"
+#include "sensors/lane_markings/filtered_scene.h"
+#include "sensors/lane_markings/raster_caster.h"
 #include "sensors/laneedge_packets.h"
 #include "sensors/laneedge_settings.h"
 #include "sensors/laser_modes.h"
-#include "sensors/paint/edge_fit.h"
-#include "sensors/paint/excerpt.h"
-#include "sensors/paint/road.h"
 
 namespace sf::sensors {
 
 namespace {
 
-std::vector<raycast::Scanner> fans_of(const std::vector<LaneEdge>& edges) {
-  std::vector<raycast::Scanner> fans;
-  for (const LaneEdge& edge : edges) fans.push_back({edge.fan, edge.row.mover, edge_noise_name(edge.row.sensor)});
-  return fans;
+std::vector<raycast::Scanner> scanners_of(const std::vector<LaneEdge>& edges) {
+  std::vector<raycast::Scanner> scanners;
+  for (const LaneEdge& edge : edges) scanners.push_back({edge.fan, edge.row.mover, edge_noise_id(edge.row.sensor)});
+  return scanners;
 }
 
 /// Whether beams can meet anything but paint.
@@ -35,31 +35,31 @@ constexpr base::QualityFlag kReasons[] = {base::QualityFlag::none, base::Quality
                                           base::QualityFlag::extrapolated};
 
 /// Rays against the excerpt, exactly; where the road is a raster, into that as well; then lines through what they met.
-class LaneEdges : public Instruments {
+class LaneEdges : public SensorBackend {
  public:
   explicit LaneEdges(const SensorContext& context);
 
-  void set_poses(std::span<const Pose> poses) override { casts_.set_poses(poses); }
+  void set_poses(std::span<const Pose> poses) override { caster_.set_poses(poses); }
   bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override;
   void record_measure(gpu::Batch& batch) override;
   void record_derive(gpu::Batch& batch) override { fit_.record(batch); }
   void add_copies(gpu::Batch& batch) override;
   void collect(std::vector<base::ReadingBlock>& out) override;
-  SensorStats stats() const override { return casts_.stats(); }
+  SensorStats stats() const override { return caster_.stats(); }
 
  private:
-  void make_road(const SensorContext& context);
+  void make_raster_caster(const SensorContext& context);
   void bind();
   void state(std::size_t i, base::ReadingBlock& block);
 
   std::vector<LaneEdge> edges_;
   bool noise_;
   bool exact_;  ///< paint is seen as it is, not in pixels
-  Excerpt excerpt_;
+  FilteredScene scene_;
   double longest_;  ///< [m] face in it
-  raycast::RayCaster casts_;
-  bool casting_;  ///< there is something for `casts_` to meet
-  std::optional<Road> road_;
+  raycast::RayCaster caster_;
+  bool casting_;  ///< there is something for `caster_` to meet
+  std::optional<RasterCaster> raster_caster_;
   EdgeFit fit_;
   std::vector<DueSample> due_;
   std::vector<std::uint32_t> lanes_;  ///< first of each due fan's results
@@ -69,53 +69,53 @@ class LaneEdges : public Instruments {
 LaneEdges::LaneEdges(const SensorContext& context)
     : edges_(lane_edges_of(context.world)),
       noise_(context.noise),
-      exact_(!sees_pixels(context.world)),
-      excerpt_(excerpt_of(context.world, exact_)),
-      longest_(reaches_of(excerpt_.world).longest),
-      casts_(context, excerpt_.world, fans_of(edges_)),
-      casting_(exact_ || anything_else(excerpt_.world)),
-      fit_(context, edges_, excerpt_.grains) {
-  if (!exact_) make_road(context);
+      exact_(!uses_raster(context.world)),
+      scene_(filter_scene(context.world, exact_)),
+      longest_(reaches_of(scene_.world).longest),
+      caster_(context, scene_.world, scanners_of(edges_)),
+      casting_(exact_ || anything_else(scene_.world)),
+      fit_(context, edges_, scene_.grains) {
+  if (!exact_) make_raster_caster(context);
 }
 
-void LaneEdges::make_road(const SensorContext& context) {
+void LaneEdges::make_raster_caster(const SensorContext& context) {
   double longest = 0.0;
   for (const LaneEdge& edge : edges_) longest = std::max(longest, edge.fan.range_max);
-  const PaintRaster raster(excerpt_.paint, context.world.road_resolution, longest, context.world.file);
-  road_.emplace(context, raster, casts_, excerpt_.paint_tag, casting_);
+  const MarkingRaster raster(scene_.paint, context.world.road_resolution, longest, context.world.file);
+  raster_caster_.emplace(context, raster, caster_, scene_.paint_tag, casting_);
 }
 
 bool LaneEdges::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
   due_.assign(due.begin(), due.end());
-  const bool again = casts_.prepare(due, poses, casting_) || !bound_;
+  const bool again = caster_.prepare(due, poses, casting_) || !bound_;
   lanes_.resize(due.size());
-  for (std::size_t i = 0; i < due.size(); ++i) lanes_[i] = casts_.results(i).lane;
-  if (road_) road_->prepare(due.size());
+  for (std::size_t i = 0; i < due.size(); ++i) lanes_[i] = caster_.results(i).lane;
+  if (raster_caster_) raster_caster_->prepare(due.size());
   fit_.prepare(due, lanes_);
   if (again) bind();
   return again;
 }
 
 void LaneEdges::bind() {
-  if (road_)
-    road_->bind(fit_.tables());
+  if (raster_caster_)
+    raster_caster_->bind(fit_.tables());
   else
-    fit_.bind(casts_.lanes(), casts_.ranges(), casts_.hits());
+    fit_.bind(caster_.lanes(), caster_.ranges(), caster_.hits());
   bound_ = true;
 }
 
 void LaneEdges::record_measure(gpu::Batch& batch) {
-  if (casting_) casts_.record(batch);
+  if (casting_) caster_.record(batch);
   if (casting_) batch.barrier();
-  if (road_)
-    road_->record(batch);
+  if (raster_caster_)
+    raster_caster_->record(batch);
   else
-    fit_.record_points(batch, casts_.groups());
+    fit_.record_points(batch, caster_.groups());
 }
 
 void LaneEdges::add_copies(gpu::Batch& batch) {
-  casts_.add_copies(batch, false);
-  if (road_) road_->add_copies(batch);
+  caster_.add_copies(batch, false);
+  if (raster_caster_) raster_caster_->add_copies(batch);
   fit_.add_copies(batch);
 }
 
@@ -129,21 +129,21 @@ void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
   if (edge.row.mode > 0)
     why = base::QualityFlag::not_cast;  // rays that were left out may have met another edge
   else if (edge.single)
-    why = (casts_.beam_flags().host<std::uint32_t>()[lanes_[i]] & SF_GRAZING) != 0 ? base::QualityFlag::grazing : why;
+    why = (caster_.beam_flags().host<std::uint32_t>()[lanes_[i]] & SF_GRAZING) != 0 ? base::QualityFlag::grazing : why;
   else if (std::isfinite(block.bound))
-    why = doubt_of(fit_.reading(i), point_error(edge, longest_, away), block.bound);
+    why = quality_of(fit_.reading(i), point_error(edge, longest_, away), block.bound);
   if (why != base::QualityFlag::none) block.quality = {&kReasons[static_cast<std::size_t>(why)], 1};
 }
 
 void LaneEdges::collect(std::vector<base::ReadingBlock>& out) {
-  if (casting_) casts_.count();
+  if (casting_) caster_.count();
   for (std::size_t i = 0; i < due_.size(); ++i) {
     const LaneEdge& edge = edges_[due_[i].row];
     base::ReadingBlock block;
     block.mover = edge.row.mover;
     block.sensor = edge.row.sensor;
     block.kind = kLaneEdge;
-    block.X_WS = casts_.results(i).X_WS;
+    block.X_WS = caster_.results(i).X_WS;
     block.values = fit_.values(i);
     block.mode = edge.row.mode;
     state(i, block);
@@ -151,8 +151,8 @@ void LaneEdges::collect(std::vector<base::ReadingBlock>& out) {
   }
 }
 
-std::vector<SensorRow> rows_of(const world::World& world) {
-  std::vector<SensorRow> rows;
+std::vector<SensorSpec> specs_of(const world::World& world) {
+  std::vector<SensorSpec> rows;
   for (const LaneEdge& edge : lane_edges_of(world)) rows.push_back(edge.row);
   return rows;
 }
@@ -161,7 +161,7 @@ constexpr Column kColumns[] = {{"distance_m"}, {"points", 1, true}, {"residual_m
 
 }  // namespace
 
-constinit const SensorKind laneedge_kind{
+constinit const SensorType laneedge_type{
     .id = kLaneEdge,
     .name = "laneedge",
     .word = {"laneedge", kLaneEdgeKeys},
@@ -170,9 +170,9 @@ constinit const SensorKind laneedge_kind{
     .columns = kColumns,
     .modes = kLaneEdgeModes,
     .bound = bound_of_lane_edge,
-    .rows = rows_of,
-    .make = make_instruments<LaneEdges>,
-    .refuse = refuse_lane_edge,
+    .specs = specs_of,
+    .make = make_backend<LaneEdges>,
+    .wire_problem = lane_edge_wire_problem,
     .parts = lane_edge_parts,
     .encode = encode_lane_edge,
     .decode = decode_lane_edge,

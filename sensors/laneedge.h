@@ -5,8 +5,8 @@
 //
 // What host and device agree on. Read by both compilers.
 
-// What a ray met, as the excerpt of the world (sensors/paint/excerpt.h) and the raster name it: flags below a grain,
-// the row of a table of pixel sizes in rising order. Row 0: no pixels, an exact outline.
+// What a ray met, as the excerpt of the world (sensors/lane_markings/filtered_scene.h) and the raster name it: flags
+// below a grain, the row of a table of pixel sizes in rising order. Row 0: no pixels, an exact outline.
 #define SF_TAG_END 1u
 #define SF_TAG_MOVER 2u
 #define SF_TAG_BITS 2
@@ -22,7 +22,7 @@
 // A point's grain, in the last bits of its x: 6e-14 of it.
 #define SF_GRAIN_MASK 0xFFu
 
-#define SF_ROAD_TEXELS 5
+#define SF_RASTER_TEXELS 5
 
 #ifdef __cplusplus
 
@@ -54,7 +54,7 @@ struct EdgeRow {
 static_assert(sizeof(EdgeRow) == SF_EDGE_TEXELS * 16);
 
 /// One sensor that is due, as the raster of the road sees it.
-struct RoadRow {
+struct RasterRow {
   std::int32_t column, row;  ///< cell of the raster that the sensor stands in; -1 where it is too far from all paint
   float x, y;                ///< [cells] where in that cell, in [0, 1]
   double heading_cos, heading_sin;
@@ -68,7 +68,7 @@ struct RoadRow {
   std::uint32_t columns, rows;  ///< [blocks] of the raster
   std::uint32_t spare;
 };
-static_assert(sizeof(RoadRow) == SF_ROAD_TEXELS * 16);
+static_assert(sizeof(RasterRow) == SF_RASTER_TEXELS * 16);
 
 /// Loops of one invocation together stay below the 65 535 turns after which older Mesa ends them silently.
 inline constexpr std::uint32_t kMostEdgeSamples = 1'024;

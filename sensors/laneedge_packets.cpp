@@ -29,40 +29,41 @@ double from_units(Word word, double unit) {
 
 }  // namespace
 
-std::string refuse_lane_edge(const SensorRow&, Wire) { return ""; }
+std::string lane_edge_wire_problem(const SensorSpec&, WireFormat) { return ""; }
 
-std::uint32_t lane_edge_parts(const SensorRow&, Wire) { return 1; }
+std::uint32_t lane_edge_parts(const SensorSpec&, WireFormat) { return 1; }
 
-std::uint8_t encode_lane_edge(const SensorRow&, const base::ReadingBlock& reading, Wire wire, std::uint32_t part,
+std::uint8_t encode_lane_edge(const SensorSpec&, const base::ReadingBlock& reading, WireFormat wire, std::uint32_t part,
                               base::Bytes& out) {
   SF_CHECK(part == 0 && reading.values.size() == 4, "a lane edge reading is four numbers in one datagram");
   constexpr auto kMost32 = std::numeric_limits<std::uint32_t>::max();
   const double distance = reading.values[0];
   base::ByteWriter writer(out);
   writer.put(std::isnan(distance) ? kNoEdge : in_units<std::uint16_t>(distance, 1e-3, kNoEdge - 1));
-  if (wire == Wire::thesis) return kLaneEdge;
+  if (wire == WireFormat::thesis) return kLaneEdge;
   writer.put(in_units<std::uint16_t>(reading.values[1], 1.0, 65'535));
   writer.put(in_units<std::uint32_t>(reading.values[2], 1e-6, kMost32));
   writer.put(in_units<std::uint32_t>(reading.values[3], 1e-6, kMost32));
   return kLaneEdge;
 }
 
-Part decode_lane_edge(const SensorRow&, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire) {
-  const std::size_t bytes = wire == Wire::thesis ? kThesisBytes : kFarmBytes;
-  Part part;
+PayloadPart decode_lane_edge(const SensorSpec&, std::span<const std::uint8_t> payload, std::uint8_t type,
+                             WireFormat wire) {
+  const std::size_t bytes = wire == WireFormat::thesis ? kThesisBytes : kFarmBytes;
+  PayloadPart part;
   part.elements = 1;
-  if (wire == Wire::farm && type != kLaneEdge) part.fault = Fault::out_of_range;
-  if (payload.size() < bytes) part.fault = Fault::too_short;
-  if (payload.size() > bytes) part.fault = Fault::too_long;
+  if (wire == WireFormat::farm && type != kLaneEdge) part.fault = PayloadError::out_of_range;
+  if (payload.size() < bytes) part.fault = PayloadError::too_short;
+  if (payload.size() > bytes) part.fault = PayloadError::too_long;
   return part;
 }
 
-void read_lane_edge(const SensorRow&, std::span<const std::uint8_t> payload, std::uint8_t, Wire wire,
+void read_lane_edge(const SensorSpec&, std::span<const std::uint8_t> payload, std::uint8_t, WireFormat wire,
                     std::span<double> values) {
   SF_CHECK(values.size() == 4, "a lane edge reading is four numbers");
   base::ByteReader reader(payload);
   values[0] = from_units(reader.get<std::uint16_t>(), 1e-3);
-  if (wire == Wire::thesis) return;
+  if (wire == WireFormat::thesis) return;
   values[1] = reader.get<std::uint16_t>();
   values[2] = from_units(reader.get<std::uint32_t>(), 1e-6);
   values[3] = from_units(reader.get<std::uint32_t>(), 1e-6);

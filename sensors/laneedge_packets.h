@@ -9,21 +9,22 @@
 #include <span>
 #include <string>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
 inline constexpr std::uint16_t kNoEdge = 65'535;  ///< on the wire: no edge in sight
 
-std::string refuse_lane_edge(const SensorRow& sensor, Wire wire);   ///< never refuses
-std::uint32_t lane_edge_parts(const SensorRow& sensor, Wire wire);  ///< one
+std::string lane_edge_wire_problem(const SensorSpec& sensor, WireFormat wire);  ///< never refuses
+std::uint32_t lane_edge_parts(const SensorSpec& sensor, WireFormat wire);       ///< one
 /// @return its type. A sensor that sees no edge says so: no reading is withheld.
-std::uint8_t encode_lane_edge(const SensorRow& sensor, const base::ReadingBlock& reading, Wire wire, std::uint32_t part,
-                              base::Bytes& out);
-Part decode_lane_edge(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire);
+std::uint8_t encode_lane_edge(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
+                              std::uint32_t part, base::Bytes& out);
+PayloadPart decode_lane_edge(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
+                             WireFormat wire);
 /// Fills in the four columns from a payload that `decode_lane_edge` took; the thesis' gives the first alone. NaN where
 /// the wire says none.
-void read_lane_edge(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire,
+void read_lane_edge(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, WireFormat wire,
                     std::span<double> values);
 
 }  // namespace sf::sensors

@@ -6,9 +6,9 @@
 
 #include "raycast/ray_caster.h"
 #include "sensors/accuracy.h"
+#include "sensors/lane_markings/filtered_scene.h"
+#include "sensors/lane_markings/line_fit.h"
 #include "sensors/laser_modes.h"
-#include "sensors/paint/excerpt.h"
-#include "sensors/paint/line_fit.h"
 #include "sensors/settings.h"
 
 namespace sf::sensors {
@@ -52,7 +52,7 @@ void thin_out(LaneEdge& edge, std::uint32_t every) {
 
 LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind) {
   LaneEdge edge;
-  edge.row = common_row(sensor, mover, number_of_kind);
+  edge.row = common_spec(sensor, mover, number_of_kind);
   world::Laser& fan = edge.fan;
   fan.samples = whole(sensor, "samples", 61, 1, kMostEdgeSamples);
   fan.fov = angle(sensor, "fov", 30.0 * kDegrees, 0.0, 2.0 * M_PI);
@@ -71,7 +71,7 @@ LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uin
   edge.distance_max = kFarthest * fan.range_max;
   edge.row.X_MS = fan.X_MS;
   edge.row.limit = edge.distance_max;
-  edge.row.reach = fan.range_max;
+  edge.row.dependency_radius = fan.range_max;
   edge.row.noisy = fan.noise.has_range() || fan.noise.angle_sigma > 0.0;
   return edge;
 }
@@ -87,7 +87,7 @@ std::vector<LaneEdge> lane_edges_of(const world::World& world) {
   return edges;
 }
 
-bool sees_pixels(const world::World& world) { return world.road_resolution > 0.0 && !world.lane_markings.empty(); }
+bool uses_raster(const world::World& world) { return world.road_resolution > 0.0 && !world.lane_markings.empty(); }
 
 /// A range is off by 2^-53 of the arms of its products over the sine of incidence, so its point by that across the
 /// face; a face's corners are rounded where they are; and a point's x has 44 bits (SF_GRAIN_MASK).
@@ -99,7 +99,7 @@ double lane_edge_bound(const LaneEdge& edge, double longest, double farthest) {
   return kStraightError + point_error(edge, longest, farthest) / raycast::kMinSine;
 }
 
-base::QualityFlag doubt_of(const EdgeReading& reading, double error, double bound) {
+base::QualityFlag quality_of(const EdgeReading& reading, double error, double bound) {
   if (std::isnan(reading.distance)) return base::QualityFlag::none;  // no distance is given
   const double gain = std::max(reading.gain, 1.0);
   if (reading.distance < bound) error += SF_CONTACT_DISTANCE;            // a ray that short may read 0
@@ -110,12 +110,12 @@ base::QualityFlag doubt_of(const EdgeReading& reading, double error, double boun
   return gain * error <= bound ? base::QualityFlag::none : base::QualityFlag::grazing;
 }
 
-Bound bound_of_lane_edge(const world::World& world, const SensorRow& row) {
-  if (sees_pixels(world)) return {HUGE_VAL, "paint in pixels: each reading says its own sigma"};
+ErrorBound bound_of_lane_edge(const world::World& world, const SensorSpec& row) {
+  if (uses_raster(world)) return {HUGE_VAL, "paint in pixels: each reading says its own sigma"};
   if (row.noisy) return {HUGE_VAL, "its noise is in the line: each reading says its own sigma"};
-  Bound bound{0.0, "where one straight edge is seen on both sides; readings elsewhere are flagged"};
+  ErrorBound bound{0.0, "where one straight edge is seen on both sides; readings elsewhere are flagged"};
   if (row.mode > 0) bound.condition = "one straight edge in sight; all are flagged: rays left out may have met another";
-  const double longest = reaches_of(excerpt_of(world, true).world).longest;
+  const double longest = reaches_of(filter_scene(world, true).world).longest;
   for_each_of(world, "laneedge", [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
     if (mover != row.mover || number != row.sensor) return;
     const LaneEdge edge = lane_edge_of(sensor, mover, number);

@@ -27,30 +27,30 @@ std::vector<CastLaser> lasers_of(const world::World& world) {
   return lasers;
 }
 
-std::vector<raycast::Scanner> fans_of(const world::World& world, std::span<const CastLaser> lasers) {
-  std::vector<raycast::Scanner> fans;
+std::vector<raycast::Scanner> scanners_of(const world::World& world, std::span<const CastLaser> lasers) {
+  std::vector<raycast::Scanner> scanners;
   for (std::uint32_t m = 0; m < world.movers.size(); ++m)
     for (std::uint32_t i = 0; i < world.movers[m].lasers.size(); ++i) {
-      const CastLaser& cast = lasers[fans.size()];
-      fans.push_back({cast.laser, m, i, cast.single});
+      const CastLaser& cast = lasers[scanners.size()];
+      scanners.push_back({cast.laser, m, i, cast.single});
     }
-  return fans;
+  return scanners;
 }
 
-class Lasers : public Instruments {
+class Lasers : public SensorBackend {
  public:
   explicit Lasers(const SensorContext& context) : Lasers(context, lasers_of(context.world)) {}
 
-  void set_poses(std::span<const Pose> poses) override { casts_.set_poses(poses); }
+  void set_poses(std::span<const Pose> poses) override { caster_.set_poses(poses); }
   bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override {
     due_.assign(due.begin(), due.end());
-    return casts_.prepare(due, poses);
+    return caster_.prepare(due, poses);
   }
-  void record_measure(gpu::Batch& batch) override { casts_.record(batch); }
-  void add_copies(gpu::Batch& batch) override { casts_.add_copies(batch, true); }
+  void record_measure(gpu::Batch& batch) override { caster_.record(batch); }
+  void add_copies(gpu::Batch& batch) override { caster_.add_copies(batch, true); }
   void collect(std::vector<base::ReadingBlock>& out) override;
-  SensorStats stats() const override { return casts_.stats(); }
-  bool on_device() const override { return casts_.on_device(); }
+  SensorStats stats() const override { return caster_.stats(); }
+  bool on_device() const override { return caster_.on_device(); }
 
  private:
   Lasers(const SensorContext& context, const std::vector<CastLaser>& lasers);
@@ -63,7 +63,7 @@ class Lasers : public Instruments {
   std::uint64_t seed_;
   bool noise_;
   double longest_;  ///< [m] surface that there is
-  raycast::RayCaster casts_;
+  raycast::RayCaster caster_;
   std::vector<Row> rows_;  ///< per laser
   std::vector<DueSample> due_;
   std::vector<double> values_;              ///< [m] of all lasers' samples, when any is reworked
@@ -76,12 +76,12 @@ Lasers::Lasers(const SensorContext& context, const std::vector<CastLaser>& laser
       seed_(context.seed),
       noise_(context.noise),
       longest_(reaches_of(context.world).longest),
-      casts_(context, context.world, fans_of(context.world, lasers)) {
+      caster_(context, context.world, scanners_of(context.world, lasers)) {
   std::size_t samples = 0;
   bool any = false;
   for (std::uint32_t i = 0; i < lasers.size(); ++i) {
     const world::Laser& laser = lasers[i].laser;
-    const bool reworked = laser.resolution > 1 || !casts_.plan(i).packed || (noise_ && laser.noise.has_range());
+    const bool reworked = laser.resolution > 1 || !caster_.plan(i).packed || (noise_ && laser.noise.has_range());
     rows_.push_back({lasers[i], reworked, samples});
     samples += laser.samples;
     any = any || reworked;
@@ -90,19 +90,19 @@ Lasers::Lasers(const SensorContext& context, const std::vector<CastLaser>& laser
   met_.resize(any ? samples : 0);
   quality_.assign(samples, base::QualityFlag::not_cast);
   for (std::uint32_t i = 0; i < lasers.size(); ++i)
-    for (const std::uint32_t sample : casts_.plan(i).samples)
+    for (const std::uint32_t sample : caster_.plan(i).samples)
       quality_[rows_[i].samples + sample] = base::QualityFlag::none;
 }
 
 void Lasers::shape(std::size_t i) {
   const DueSample& due = due_[i];
   const Row& row = rows_[due.row];
-  const raycast::Scanner& fan = casts_.scanners()[due.row];
-  const raycast::ScanResult results = casts_.results(i);
+  const raycast::Scanner& fan = caster_.scanners()[due.row];
+  const raycast::ScanResult results = caster_.results(i);
   const raycast::BeamPlan& plan = *results.plan;
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
-  const double* const cast = casts_.ranges().host<double>().data() + first;
-  const std::uint32_t* const cast_hits = casts_.hits().host<std::uint32_t>().data() + first;
+  const double* const cast = caster_.ranges().host<double>().data() + first;
+  const std::uint32_t* const cast_hits = caster_.hits().host<std::uint32_t>().data() + first;
   double* const out = values_.data() + row.samples;
   std::uint32_t* const out_hits = met_.data() + row.samples;
   shape_scan(row.cast, plan, {seed_, base::RandomStream::range_noise, fan.mover, fan.sensor, due.sequence}, noise_,
@@ -112,9 +112,9 @@ void Lasers::shape(std::size_t i) {
 /// Samples that were not cast are marked since the beginning; those that graze come and go.
 void Lasers::mark(std::size_t i) {
   Row& row = rows_[due_[i].row];
-  const raycast::ScanResult results = casts_.results(i);
+  const raycast::ScanResult results = caster_.results(i);
   const raycast::BeamPlan& plan = *results.plan;
-  const auto beam_flags = casts_.beam_flags().host<std::uint32_t>().subspan(results.lane, plan.lanes());
+  const auto beam_flags = caster_.beam_flags().host<std::uint32_t>().subspan(results.lane, plan.lanes());
   const bool grazing =
       std::any_of(beam_flags.begin(), beam_flags.end(), [](std::uint32_t v) { return v % SF_UNCERTAIN != 0; });
   if (!grazing && !row.grazing) return;
@@ -128,8 +128,8 @@ void Lasers::mark(std::size_t i) {
 
 base::ReadingBlock Lasers::block_of(std::size_t i) {
   const Row& row = rows_[due_[i].row];
-  const raycast::Scanner& fan = casts_.scanners()[due_[i].row];
-  const raycast::ScanResult results = casts_.results(i);
+  const raycast::Scanner& fan = caster_.scanners()[due_[i].row];
+  const raycast::ScanResult results = caster_.results(i);
   const std::size_t samples = fan.laser.samples;
   const std::size_t first = SF_BEAMS_PER_LANE * std::size_t{results.lane};
   base::ReadingBlock block;
@@ -138,9 +138,9 @@ base::ReadingBlock Lasers::block_of(std::size_t i) {
   block.kind = base::kLaser;
   block.X_WS = results.X_WS;
   block.values = row.reworked ? std::span<const double>(values_).subspan(row.samples, samples)
-                              : casts_.ranges().host<double>().subspan(first, samples);
+                              : caster_.ranges().host<double>().subspan(first, samples);
   block.hits = row.reworked ? std::span<const std::uint32_t>(met_).subspan(row.samples, samples)
-                            : casts_.hits().host<std::uint32_t>().subspan(first, samples);
+                            : caster_.hits().host<std::uint32_t>().subspan(first, samples);
   block.mode = row.cast.mode;
   const double away = std::max(std::abs(results.X_WS.x), std::abs(results.X_WS.y));
   block.bound = laser_bound(row.cast, longest_, away + fan.laser.range_max);
@@ -159,17 +159,17 @@ void Lasers::collect(std::vector<base::ReadingBlock>& out) {
       out[before + i] = block_of(i);
     }
   });
-  casts_.count();
+  caster_.count();
 }
 
-std::vector<SensorRow> rows_of(const world::World& world) {
-  std::vector<SensorRow> rows;
+std::vector<SensorSpec> specs_of(const world::World& world) {
+  std::vector<SensorSpec> rows;
   const std::vector<CastLaser> lasers = lasers_of(world);
-  for (const raycast::Scanner& fan : fans_of(world, lasers)) {
+  for (const raycast::Scanner& fan : scanners_of(world, lasers)) {
     const world::Laser& laser = fan.laser;
     rows.push_back({fan.mover, fan.sensor, laser.name, laser.X_MS, laser.rate, laser.phase, laser.latency,
                     laser.samples, laser.range_max, 0, 0.0, lasers[rows.size()].mode});
-    rows.back().reach = laser.range_max;
+    rows.back().dependency_radius = laser.range_max;
     rows.back().noisy = laser.noise.has_range() || laser.noise.angle_sigma > 0.0;
   }
   return rows;
@@ -179,7 +179,7 @@ constexpr Column kColumns[] = {{"range_m"}};
 
 }  // namespace
 
-constinit const SensorKind laser_kind{
+constinit const SensorType laser_type{
     .id = base::kLaser,
     .name = "laser",
     .word = {},  // world reads `laser` and `ranger` itself: Stage knows them
@@ -188,9 +188,9 @@ constinit const SensorKind laser_kind{
     .columns = kColumns,
     .modes = kLaserModes,
     .bound = bound_of_laser,
-    .rows = rows_of,
-    .make = make_instruments<Lasers>,
-    .refuse = refuse_laser,
+    .specs = specs_of,
+    .make = make_backend<Lasers>,
+    .wire_problem = laser_wire_problem,
     .parts = laser_parts,
     .encode = encode_laser,
     .decode = decode_laser,

@@ -2,10 +2,10 @@
 // The laser range finder: fans of beams (raycast/ray_caster.h says how exact), their noise, and what `resolution`
 // leaves out.
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
-extern const SensorKind laser_kind;
+extern const SensorType laser_type;
 
 }  // namespace sf::sensors

@@ -47,7 +47,7 @@ double laser_bound(const CastLaser& cast, double longest, double farthest) {
          (cast.single ? raycast::single_bound(cast.laser.range_max) : 0.0);
 }
 
-Bound bound_of_laser(const world::World& world, const SensorRow& sensor) {
+ErrorBound bound_of_laser(const world::World& world, const SensorSpec& sensor) {
   const CastLaser cast = cast_laser(world, world.movers[sensor.mover].lasers[sensor.sensor]);
   const Reaches reaches = reaches_of(world);
   return {laser_bound(cast, reaches.longest, reaches.farthest + cast.laser.range_max),

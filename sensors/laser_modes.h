@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
-inline constexpr Mode kLaserModes[] = {
+inline constexpr AccuracyMode kLaserModes[] = {
     {"exact", "every beam, decided and measured in 64 bits"},
     {"single", "every beam, decided exactly, measured in 32 bits where these are close enough"},
     {"skip2", "every 2nd beam; the others on straight lines between what these met"},
@@ -35,6 +35,6 @@ Reaches reaches_of(const world::World& world);
 /// [m] base::ReadingBlock::bound of a laser. @param farthest [m] coordinate of anything in range
 double laser_bound(const CastLaser& laser, double longest, double farthest);
 
-Bound bound_of_laser(const world::World& world, const SensorRow& sensor);
+ErrorBound bound_of_laser(const world::World& world, const SensorSpec& sensor);
 
 }  // namespace sf::sensors

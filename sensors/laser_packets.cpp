@@ -17,7 +17,7 @@ constexpr std::size_t kMaxPayload = 1400 - 64 - 80;  ///< [byte] between the hea
 constexpr std::size_t kPartHeaderBytes = 16;
 static_assert(kPartHeaderBytes + 4 * kPartRays <= kMaxPayload);
 
-bool fits_plain(const SensorRow& sensor) { return sensor.elements <= kPlainRays && sensor.limit <= kPlainRange; }
+bool fits_plain(const SensorSpec& sensor) { return sensor.elements <= kPlainRays && sensor.limit <= kPlainRange; }
 
 std::uint32_t parts_of(std::uint32_t rays) { return (rays + kPartRays - 1) / kPartRays; }
 
@@ -54,23 +54,23 @@ bool has_nan(std::span<const double> ranges) {
   return std::any_of(ranges.begin(), ranges.end(), [](double metres) { return std::isnan(metres); });
 }
 
-Fault take_words(std::span<const std::uint8_t> rest, std::size_t word, LaserPart& scan) {
-  if (rest.size() < scan.count * word) return Fault::too_short;
-  if (rest.size() > scan.count * word) return Fault::too_long;
+PayloadError take_words(std::span<const std::uint8_t> rest, std::size_t word, LaserPart& scan) {
+  if (rest.size() < scan.count * word) return PayloadError::too_short;
+  if (rest.size() > scan.count * word) return PayloadError::too_long;
   scan.words = rest;
-  return Fault::none;
+  return PayloadError::none;
 }
 
-Fault read_plain(std::span<const std::uint8_t> payload, LaserPart& scan) {
+PayloadError read_plain(std::span<const std::uint8_t> payload, LaserPart& scan) {
   base::ByteReader reader(payload);
   scan.total = scan.count = reader.get<std::uint16_t>();
-  if (!reader.good()) return Fault::too_short;
-  const Fault size = take_words(payload.subspan(reader.position()), 2, scan);
-  if (size != Fault::none) return size;
-  return scan.count >= 1 && scan.count <= kPlainRays ? Fault::none : Fault::out_of_range;
+  if (!reader.good()) return PayloadError::too_short;
+  const PayloadError size = take_words(payload.subspan(reader.position()), 2, scan);
+  if (size != PayloadError::none) return size;
+  return scan.count >= 1 && scan.count <= kPlainRays ? PayloadError::none : PayloadError::out_of_range;
 }
 
-Fault read_extended(std::span<const std::uint8_t> payload, LaserPart& scan) {
+PayloadError read_extended(std::span<const std::uint8_t> payload, LaserPart& scan) {
   base::ByteReader reader(payload);
   scan.total = reader.get<std::uint32_t>();
   scan.first = reader.get<std::uint32_t>();
@@ -78,15 +78,15 @@ Fault read_extended(std::span<const std::uint8_t> payload, LaserPart& scan) {
   scan.parts = reader.get<std::uint16_t>();
   scan.count = reader.get<std::uint16_t>();
   reader.get<std::uint16_t>();  // reserved
-  if (!reader.good()) return Fault::too_short;
-  const Fault size = take_words(payload.subspan(reader.position()), 4, scan);
-  if (size != Fault::none) return size;
+  if (!reader.good()) return PayloadError::too_short;
+  const PayloadError size = take_words(payload.subspan(reader.position()), 4, scan);
+  if (size != PayloadError::none) return size;
 
   // The split is fixed, so each field follows from the total and the part: nothing a receiver adds up can surprise it.
-  if (scan.total < 1 || scan.total > kExtendedRays) return Fault::out_of_range;
-  if (scan.parts != parts_of(scan.total) || scan.part >= scan.parts) return Fault::out_of_range;
-  if (scan.first != scan.part * kPartRays) return Fault::out_of_range;
-  return scan.count == std::min(kPartRays, scan.total - scan.first) ? Fault::none : Fault::out_of_range;
+  if (scan.total < 1 || scan.total > kExtendedRays) return PayloadError::out_of_range;
+  if (scan.parts != parts_of(scan.total) || scan.part >= scan.parts) return PayloadError::out_of_range;
+  if (scan.first != scan.part * kPartRays) return PayloadError::out_of_range;
+  return scan.count == std::min(kPartRays, scan.total - scan.first) ? PayloadError::none : PayloadError::out_of_range;
 }
 
 /// The plain form saturates, so its largest word says "this or more".
@@ -102,21 +102,21 @@ bool plausible(const LaserPart& scan, double range_max) {
 
 }  // namespace
 
-std::string refuse_laser(const SensorRow& sensor, Wire wire) {
+std::string laser_wire_problem(const SensorSpec& sensor, WireFormat wire) {
   if (sensor.elements > kExtendedRays)
     return std::to_string(sensor.elements) + " samples, but a scan is sent with at most " +
            std::to_string(kExtendedRays) + ": lower `samples`";
-  if (wire == Wire::farm || fits_plain(sensor)) return "";
+  if (wire == WireFormat::farm || fits_plain(sensor)) return "";
   return std::to_string(sensor.elements) + " samples up to " + std::to_string(sensor.limit) +
          " m do not fit the thesis' layout, which holds 361 rays up to 65.535 m: lower `samples` or `range_max`, or "
          "send the farm's own packets (`--wire farm`)";
 }
 
-std::uint32_t laser_parts(const SensorRow& sensor, Wire wire) {
-  return wire == Wire::thesis || fits_plain(sensor) ? 1 : parts_of(sensor.elements);
+std::uint32_t laser_parts(const SensorSpec& sensor, WireFormat wire) {
+  return wire == WireFormat::thesis || fits_plain(sensor) ? 1 : parts_of(sensor.elements);
 }
 
-std::uint8_t encode_laser(const SensorRow& sensor, const base::ReadingBlock& scan, Wire wire, std::uint32_t part,
+std::uint8_t encode_laser(const SensorSpec& sensor, const base::ReadingBlock& scan, WireFormat wire, std::uint32_t part,
                           base::Bytes& out) {
   const std::span<const double> ranges = scan.values;
   const auto total = static_cast<std::uint32_t>(ranges.size());
@@ -124,7 +124,7 @@ std::uint8_t encode_laser(const SensorRow& sensor, const base::ReadingBlock& sca
            "part " + std::to_string(part) + " of a scan of " + std::to_string(ranges.size()) + " rays, of " +
                std::to_string(sensor.elements) + " samples");
   const bool plain = fits_plain(sensor);
-  SF_CHECK(plain || wire == Wire::farm, "a scan of " + std::to_string(total) + " rays in the thesis' layout");
+  SF_CHECK(plain || wire == WireFormat::farm, "a scan of " + std::to_string(total) + " rays in the thesis' layout");
 
   const auto mine = plain ? ranges : ranges.subspan(part * kPartRays, std::min(kPartRays, total - part * kPartRays));
   if (has_nan(mine)) return 0;
@@ -137,26 +137,27 @@ std::uint8_t encode_laser(const SensorRow& sensor, const base::ReadingBlock& sca
   return plain ? base::kLaser : base::kLaser + kExtended;
 }
 
-Part decode_laser(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire) {
-  const bool extended = wire == Wire::farm && type == base::kLaser + kExtended;
-  if (!extended && type != base::kLaser) return {.fault = Fault::out_of_range};
+PayloadPart decode_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
+                         WireFormat wire) {
+  const bool extended = wire == WireFormat::farm && type == base::kLaser + kExtended;
+  if (!extended && type != base::kLaser) return {.fault = PayloadError::out_of_range};
   LaserPart scan;
-  Part part{.fault = read_laser(payload, extended, scan)};
-  if (part.fault != Fault::none) return part;
+  PayloadPart part{.fault = read_laser(payload, extended, scan)};
+  if (part.fault != PayloadError::none) return part;
 
   const bool whole = sensor.elements == 0 || scan.total == sensor.elements;
-  if (!whole || !plausible(scan, sensor.limit)) return {.fault = Fault::out_of_range};
+  if (!whole || !plausible(scan, sensor.limit)) return {.fault = PayloadError::out_of_range};
   part.elements = scan.count;
   part.part = scan.part;
   part.parts = scan.parts;
   return part;
 }
 
-void fill_laser(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire,
+void fill_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, WireFormat wire,
                 std::span<double> values) {
   LaserPart scan;
-  const Fault fault = read_laser(payload, wire == Wire::farm && type == base::kLaser + kExtended, scan);
-  SF_CHECK(fault == Fault::none && scan.first + scan.count <= values.size(),
+  const PayloadError fault = read_laser(payload, wire == WireFormat::farm && type == base::kLaser + kExtended, scan);
+  SF_CHECK(fault == PayloadError::none && scan.first + scan.count <= values.size(),
            "a payload of rays " + std::to_string(scan.first) + " to " + std::to_string(scan.first + scan.count) +
                " for a scan of " + std::to_string(values.size()));
   const bool beyond = sensor.limit > 0.0 && sensor.limit + kRangeSlack < kPlainRange;
@@ -167,7 +168,7 @@ void fill_laser(const SensorRow& sensor, std::span<const std::uint8_t> payload, 
   }
 }
 
-Fault read_laser(std::span<const std::uint8_t> payload, bool extended, LaserPart& scan) {
+PayloadError read_laser(std::span<const std::uint8_t> payload, bool extended, LaserPart& scan) {
   scan = {};
   scan.extended = extended;
   return extended ? read_extended(payload, scan) : read_plain(payload, scan);

@@ -11,7 +11,7 @@
 
 #include "base/bytes.h"
 #include "base/reading.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -22,24 +22,25 @@ inline constexpr std::uint32_t kExtendedRays = 1'000'000;  ///< most rays of a s
 inline constexpr std::uint32_t kNoReturn = 0xFFFFFFFFu;    ///< extended word of an infinite range
 
 /// Why `wire` cannot carry this laser's scans and what to do; empty when it can.
-std::string refuse_laser(const SensorRow& sensor, Wire wire);
+std::string laser_wire_problem(const SensorSpec& sensor, WireFormat wire);
 
 /// Datagrams that one scan takes. At most 361 rays of at most 65.535 m are sent plain, in one.
-std::uint32_t laser_parts(const SensorRow& sensor, Wire wire);
+std::uint32_t laser_parts(const SensorSpec& sensor, WireFormat wire);
 
 /// Appends payload `part` in [0, laser_parts) of a scan. @return its type, or 0, with nothing appended, when a range of
 /// this part is NaN.
 /// @param scan its values are ranges [m]: negative ones become 0, infinity is no return
-std::uint8_t encode_laser(const SensorRow& sensor, const base::ReadingBlock& scan, Wire wire, std::uint32_t part,
+std::uint8_t encode_laser(const SensorSpec& sensor, const base::ReadingBlock& scan, WireFormat wire, std::uint32_t part,
                           base::Bytes& out);
 
 /// Takes a payload for what this laser may have sent: as many rays, none farther than range_max by more than 1 mm
 /// (saturated words and no return aside). A row of no elements, or of no limit, leaves that unchecked.
-Part decode_laser(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire);
+PayloadPart decode_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
+                         WireFormat wire);
 
 /// Fills in this part's ranges of a scan's `values`, from a payload that `decode_laser` took. A saturated plain word is
 /// infinite where the laser cannot see as far as it says.
-void fill_laser(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire,
+void fill_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, WireFormat wire,
                 std::span<double> values);
 
 /// A receiver's view of a payload: a whole scan, or one part of an extended one.
@@ -54,7 +55,7 @@ struct LaserPart {
 };
 
 /// Any bytes give a part or a fault. The thesis' datagram is a plain payload.
-Fault read_laser(std::span<const std::uint8_t> payload, bool extended, LaserPart& scan);
+PayloadError read_laser(std::span<const std::uint8_t> payload, bool extended, LaserPart& scan);
 
 /// [m] of ray `i` of [0, scan.count); infinity for no return.
 double range_of(const LaserPart& scan, std::uint32_t i);

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "raycast/intersect.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 

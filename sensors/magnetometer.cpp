@@ -8,7 +8,7 @@
 
 #include "base/random.h"
 #include "sensors/accuracy.h"
-#include "sensors/field/magnetic_field.h"
+#include "sensors/magnetic_field/magnetic_field.h"
 #include "sensors/magnetometer_modes.h"
 #include "sensors/magnetometer_packets.h"
 #include "sensors/settings.h"
@@ -20,7 +20,7 @@ namespace {
 /// One array of a world.
 struct Array {
   Magnetometer settings;
-  SensorRow row;
+  SensorSpec row;
   FieldBound bound;                ///< the largest of its elements'
   double height = 0.0;             ///< [m] of its origin in the world, fixed at load: the world is 2.5-D
   std::size_t values = 0;          ///< first of its results
@@ -30,15 +30,16 @@ struct Array {
 std::vector<Array> arrays_of(const world::World& world) {
   std::vector<Array> arrays;
   std::size_t values = 0;
-  const auto type = magnetometer_kind.word.type;
+  const auto type = magnetometer_type.word.type;
   for_each_of(world, type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
-    Array array{read_magnetometer(sensor), common_row(sensor, mover, number), {}, 0.0, values};
+    Array array{read_magnetometer(sensor), common_spec(sensor, mover, number), {}, 0.0, values};
     array.row.mode = mode_of("magnetometer", kMagnetometerModes, accuracy_of(sensor), world);
     array.row.X_MS.z += sensor.height / 2.0;
     array.row.elements = static_cast<std::uint32_t>(array.settings.X_SE.size());
     array.row.limit = std::max(std::abs(array.settings.least), std::abs(array.settings.most));
-    array.row.reach = HUGE_VAL;  // in which order magnets that move are summed depends on where all of them are
-    array.row.of_magnets = true;
+    array.row.dependency_radius =
+        HUGE_VAL;  // in which order magnets that move are summed depends on where all of them are
+    array.row.depends_on_magnets = true;
     array.row.noisy = array.settings.sigma > 0.0;
     array.height = world.movers[mover].X_WM.z + array.row.X_MS.z;
     for (const Pose& X_SE : array.settings.X_SE) array.facing.push_back(base::rotate(X_SE.yaw, {1.0, 0.0}));
@@ -58,11 +59,11 @@ bool any_magnitudes(const std::vector<Array>& arrays) {
 /// The places of all arrays that measure in one mode.
 struct Wave {
   MagneticField field;
-  std::vector<Place> places;
+  std::vector<FieldPoint> places;
   std::vector<std::uint32_t> ends;  ///< per group
 };
 
-class Magnetometers : public Instruments {
+class Magnetometers : public SensorBackend {
  public:
   explicit Magnetometers(const SensorContext& context);
 
@@ -134,7 +135,7 @@ void Magnetometers::add_places(const Array& array, const Pose& X_WS) {
   for (std::size_t i = 0; i < X_SE.size(); ++i) {
     const glm::dvec2 p{x_S.x * X_SE[i].x - x_S.y * X_SE[i].y, x_S.y * X_SE[i].x + x_S.x * X_SE[i].y};
     wave.places.push_back({X_WS.x + p.x, X_WS.y + p.y, X_WS.z + X_SE[i].z});
-    const bool full = (i + 1) % SF_FIELD_PLACES == 0 || i + 1 == X_SE.size();
+    const bool full = (i + 1) % SF_FIELD_POINTS == 0 || i + 1 == X_SE.size();
     if (full) wave.ends.push_back(static_cast<std::uint32_t>(wave.places.size()));
   }
 }
@@ -163,7 +164,7 @@ void Magnetometers::read(std::size_t i) {
   const MagneticField& field = waves_.at(array.row.mode).field;
   const glm::dvec2 facing = base::rotate(X_WS_[i].yaw, {1.0, 0.0});
   for (std::uint32_t e = 0; e < m.X_SE.size(); ++e) {
-    const FieldSum sum = field.at(groups_[i] + e / SF_FIELD_PLACES, e % SF_FIELD_PLACES);
+    const FieldSum sum = field.at(groups_[i] + e / SF_FIELD_POINTS, e % SF_FIELD_POINTS);
     const glm::dvec2 b_S = along(facing, {sum.x, sum.y});
     const glm::dvec2 b_E = along(array.facing[e], b_S);
     std::array<double, 3> b{b_E.x, b_E.y, sum.z};
@@ -200,8 +201,8 @@ void Magnetometers::collect(std::vector<base::ReadingBlock>& out) {
   }
 }
 
-std::vector<SensorRow> rows_of(const world::World& world) {
-  std::vector<SensorRow> rows;
+std::vector<SensorSpec> specs_of(const world::World& world) {
+  std::vector<SensorSpec> rows;
   for (Array& array : arrays_of(world)) rows.push_back(std::move(array.row));
   return rows;
 }
@@ -211,7 +212,7 @@ constexpr Column kColumns[] = {{"field_T"}, {"vector_T", 3}};
 
 }  // namespace
 
-constinit const SensorKind magnetometer_kind{
+constinit const SensorType magnetometer_type{
     .id = kMagnetometer,
     .name = "magnetometer",
     .word = {"magnetometer", kKeys},
@@ -220,9 +221,9 @@ constinit const SensorKind magnetometer_kind{
     .columns = kColumns,
     .modes = kMagnetometerModes,
     .bound = bound_of_magnetometer,
-    .rows = rows_of,
-    .make = make_instruments<Magnetometers>,
-    .refuse = refuse_magnetometer,
+    .specs = specs_of,
+    .make = make_backend<Magnetometers>,
+    .wire_problem = magnetometer_wire_problem,
     .parts = magnetometer_parts,
     .encode = encode_magnetometer,
     .decode = decode_magnetometer,

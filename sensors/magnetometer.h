@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -36,6 +36,6 @@ struct Magnetometer {
 /// @throws base::InputError with file and line.
 Magnetometer read_magnetometer(const world::Sensor& sensor);
 
-extern const SensorKind magnetometer_kind;
+extern const SensorType magnetometer_type;
 
 }  // namespace sf::sensors

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "sensors/field/magnet_tree.h"
-#include "sensors/field/truncation.h"
 #include "sensors/laser_modes.h"
+#include "sensors/magnetic_field/magnet_tree.h"
+#include "sensors/magnetic_field/truncation.h"
 #include "sensors/magnetometer.h"
 #include "sensors/settings.h"
 
@@ -64,10 +64,10 @@ std::vector<double> element_heights(const world::Mover& mover, const world::Sens
   return heights;
 }
 
-Bound bound_of_magnetometer(const world::World& world, const SensorRow& row) {
-  Bound bound;
+ErrorBound bound_of_magnetometer(const world::World& world, const SensorSpec& row) {
+  ErrorBound bound;
   const double farthest = reaches_of(world).farthest + 1.0;
-  for_each_of(world, magnetometer_kind.word.type,
+  for_each_of(world, magnetometer_type.word.type,
               [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
                 if (mover != row.mover || number != row.sensor) return;
                 for (const double height : element_heights(world.movers[mover], sensor))

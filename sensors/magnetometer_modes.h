@@ -1,11 +1,11 @@
 #pragma once
 // The magnetometer's modes: how far each looks for magnets, and what that may leave out.
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
-inline constexpr Mode kMagnetometerModes[] = {
+inline constexpr AccuracyMode kMagnetometerModes[] = {
     {"exact", "all magnets, or those within the world's magnet_cutoff"},
     {"near10", "magnets within 10 m along the ground"},
     {"near3", "within 3 m"},
@@ -28,6 +28,6 @@ FieldBound field_bound(const world::World& world, std::uint8_t mode, double heig
 /// [m] heights of its elements in the world, each once, ascending.
 std::vector<double> element_heights(const world::Mover& mover, const world::Sensor& sensor);
 
-Bound bound_of_magnetometer(const world::World& world, const SensorRow& sensor);
+ErrorBound bound_of_magnetometer(const world::World& world, const SensorSpec& sensor);
 
 }  // namespace sf::sensors

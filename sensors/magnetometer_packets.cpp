@@ -23,11 +23,11 @@ Word to_word(double tesla) {
   return static_cast<Word>(std::clamp(std::round(tesla / kUnit), 1.0 * kLeast, 1.0 * kMost));
 }
 
-std::size_t words_of(Wire wire) { return wire == Wire::farm ? kMagnetometerColumns : 1; }
-std::size_t header_of(Wire wire) { return wire == Wire::farm ? kHeader : 0; }
+std::size_t words_of(WireFormat wire) { return wire == WireFormat::farm ? kMagnetometerColumns : 1; }
+std::size_t header_of(WireFormat wire) { return wire == WireFormat::farm ? kHeader : 0; }
 
 /// A saturated word says "this or more".
-bool plausible(std::span<const std::uint8_t> payload, Wire wire, std::size_t words, double limit) {
+bool plausible(std::span<const std::uint8_t> payload, WireFormat wire, std::size_t words, double limit) {
   base::ByteReader reader(payload.subspan(header_of(wire)));
   for (std::size_t i = 0; i < words; ++i) {
     const Word word = reader.get<Word>();
@@ -39,11 +39,11 @@ bool plausible(std::span<const std::uint8_t> payload, Wire wire, std::size_t wor
 
 }  // namespace
 
-std::string refuse_magnetometer(const SensorRow&, Wire) { return ""; }
+std::string magnetometer_wire_problem(const SensorSpec&, WireFormat) { return ""; }
 
-std::uint32_t magnetometer_parts(const SensorRow&, Wire) { return 1; }
+std::uint32_t magnetometer_parts(const SensorSpec&, WireFormat) { return 1; }
 
-std::uint8_t encode_magnetometer(const SensorRow& sensor, const base::ReadingBlock& reading, Wire wire,
+std::uint8_t encode_magnetometer(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
                                  std::uint32_t part, base::Bytes& out) {
   const std::span<const double> values = reading.values;
   const std::size_t count = values.size() / kMagnetometerColumns;
@@ -52,7 +52,7 @@ std::uint8_t encode_magnetometer(const SensorRow& sensor, const base::ReadingBlo
            std::to_string(values.size()) + " values of " + std::to_string(sensor.elements) + " elements");
   if (std::any_of(values.begin(), values.end(), [](double tesla) { return std::isnan(tesla); })) return 0;
   base::ByteWriter writer(out);
-  if (wire == Wire::farm) {
+  if (wire == WireFormat::farm) {
     writer.put(static_cast<std::uint16_t>(count));
     writer.put(std::uint16_t{0});
   }
@@ -61,22 +61,24 @@ std::uint8_t encode_magnetometer(const SensorRow& sensor, const base::ReadingBlo
   return kMagnetometer;
 }
 
-Part decode_magnetometer(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire) {
-  if (type != kMagnetometer) return {.fault = Fault::out_of_range};
+PayloadPart decode_magnetometer(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
+                                WireFormat wire) {
+  if (type != kMagnetometer) return {.fault = PayloadError::out_of_range};
   base::ByteReader reader(payload);
   const std::size_t element = kWord * words_of(wire);
   const std::size_t body = payload.size() - std::min(payload.size(), header_of(wire));
-  const std::size_t said = wire == Wire::farm ? reader.get<std::uint16_t>() : std::max<std::size_t>(1, body / element);
-  if (payload.size() < header_of(wire) || body < said * element) return {.fault = Fault::too_short};
-  if (body > said * element) return {.fault = Fault::too_long};
-  if (said < 1 || said > kMostElements) return {.fault = Fault::out_of_range};
+  const std::size_t said =
+      wire == WireFormat::farm ? reader.get<std::uint16_t>() : std::max<std::size_t>(1, body / element);
+  if (payload.size() < header_of(wire) || body < said * element) return {.fault = PayloadError::too_short};
+  if (body > said * element) return {.fault = PayloadError::too_long};
+  if (said < 1 || said > kMostElements) return {.fault = PayloadError::out_of_range};
   const bool whole = sensor.elements == 0 || said == sensor.elements;
   const bool likely = sensor.limit <= 0.0 || plausible(payload, wire, said * words_of(wire), sensor.limit);
-  if (!whole || !likely) return {.fault = Fault::out_of_range};
+  if (!whole || !likely) return {.fault = PayloadError::out_of_range};
   return {.elements = static_cast<std::uint32_t>(said)};
 }
 
-void read_magnetometer_payload(const SensorRow&, std::span<const std::uint8_t> payload, std::uint8_t, Wire wire,
+void read_magnetometer_payload(const SensorSpec&, std::span<const std::uint8_t> payload, std::uint8_t, WireFormat wire,
                                std::span<double> values) {
   base::ByteReader reader(payload.subspan(header_of(wire)));
   const std::size_t words = words_of(wire);
@@ -86,7 +88,7 @@ void read_magnetometer_payload(const SensorRow&, std::span<const std::uint8_t> p
     for (std::size_t k = 0; k < words; ++k) values[kMagnetometerColumns * e + k] = reader.get<Word>() * kUnit;
 }
 
-double magnetometer_word(std::span<const std::uint8_t> payload, Wire wire, std::uint32_t i) {
+double magnetometer_word(std::span<const std::uint8_t> payload, WireFormat wire, std::uint32_t i) {
   base::ByteReader reader(payload.subspan(header_of(wire) + kWord * std::size_t{i}));
   return reader.get<Word>() * kUnit;
 }

@@ -13,29 +13,30 @@
 
 #include "base/bytes.h"
 #include "base/reading.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
 /// Always empty: every array fits both forms.
-std::string refuse_magnetometer(const SensorRow& sensor, Wire wire);
+std::string magnetometer_wire_problem(const SensorSpec& sensor, WireFormat wire);
 
 /// Always 1.
-std::uint32_t magnetometer_parts(const SensorRow& sensor, Wire wire);
+std::uint32_t magnetometer_parts(const SensorSpec& sensor, WireFormat wire);
 
 /// Appends the payload of a reading. @return its type, or 0, with nothing appended, when a value is NaN.
-std::uint8_t encode_magnetometer(const SensorRow& sensor, const base::ReadingBlock& reading, Wire wire,
+std::uint8_t encode_magnetometer(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
                                  std::uint32_t part, base::Bytes& out);
 
 /// Takes a payload for what this array may have sent: as many elements, none beyond its limit by more than a unit. A
 /// row of no elements, or of no limit, leaves that unchecked.
-Part decode_magnetometer(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire);
+PayloadPart decode_magnetometer(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
+                                WireFormat wire);
 
 /// Fills in all columns from a payload that `decode_magnetometer` took; the thesis' gives each element's field alone.
-void read_magnetometer_payload(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
-                               Wire wire, std::span<double> values);
+void read_magnetometer_payload(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
+                               WireFormat wire, std::span<double> values);
 
 /// [T] word `i` of a payload that `decode_magnetometer` took: four an element, or one in the thesis' form.
-double magnetometer_word(std::span<const std::uint8_t> payload, Wire wire, std::uint32_t i);
+double magnetometer_word(std::span<const std::uint8_t> payload, WireFormat wire, std::uint32_t i);
 
 }  // namespace sf::sensors

@@ -12,7 +12,7 @@ namespace sf::sensors {
 
 namespace {
 
-class Occupancies : public Instruments {
+class Occupancies : public SensorBackend {
  public:
   explicit Occupancies(const SensorContext& context);
 
@@ -96,8 +96,8 @@ void Occupancies::collect(std::vector<base::ReadingBlock>& out) {
   }
 }
 
-std::vector<SensorRow> rows_of(const world::World& world) {
-  std::vector<SensorRow> rows;
+std::vector<SensorSpec> specs_of(const world::World& world) {
+  std::vector<SensorSpec> rows;
   for (Occupancy& map : occupancies_of(world)) rows.push_back(std::move(map.row));
   return rows;
 }
@@ -107,7 +107,7 @@ constexpr Column kColumns[] = {{"word", 1, true}};
 
 }  // namespace
 
-constinit const SensorKind occupancy_kind{
+constinit const SensorType occupancy_type{
     .id = kOccupancy,
     .name = "occupancy",
     .word = {"occupancy", kKeys},
@@ -115,9 +115,9 @@ constinit const SensorKind occupancy_kind{
     .list = "words",
     .columns = kColumns,
     .derived = true,
-    .rows = rows_of,
-    .make = make_instruments<Occupancies>,
-    .refuse = refuse_occupancy,
+    .specs = specs_of,
+    .make = make_backend<Occupancies>,
+    .wire_problem = occupancy_wire_problem,
     .parts = occupancy_parts,
     .encode = encode_occupancy,
     .decode = decode_occupancy,

@@ -14,8 +14,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "sensors/kind.h"
 #include "sensors/occupancy_batch.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -23,7 +23,7 @@ inline constexpr std::uint8_t kOccupancy = 12;  ///< wire id
 
 /// What a world file says of one map.
 struct Occupancy {
-  SensorRow row;
+  SensorSpec row;
   MapPlan plan;
   std::uint32_t laser = 0;  ///< number of the mover's laser that fills it
 };
@@ -31,6 +31,6 @@ struct Occupancy {
 /// All maps, by mover and in file order. @throws base::InputError with file and line.
 std::vector<Occupancy> occupancies_of(const world::World& world);
 
-extern const SensorKind occupancy_kind;
+extern const SensorType occupancy_type;
 
 }  // namespace sf::sensors

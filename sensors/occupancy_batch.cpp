@@ -56,12 +56,12 @@ maps::CellBox in_whole_words(const maps::CellBox& box) {
 }  // namespace
 
 void MapBatch::Tables::trace() {
-  shares.resize(scans.size());
+  scan_works.resize(scans.size());
   thread_pool.parallel_for(scans.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
       const PoseMarker& map = all[scans[i].map];
       const maps::ScanView view{scans[i].X_WS, scans[i].ranges, *map.beams, map.plan.range_min, map.plan.range_max};
-      MapShare& share = shares[i];
+      ScanWork& share = scan_works[i];
       const std::span<std::uint32_t> own = ends_of(map);
       share.scan = maps::trace_scan(map.plan.grid, view, own);
       const auto table = lines->host<BeamLine>().subspan(2 * std::size_t{map.lines}, own.size());
@@ -88,45 +88,45 @@ void MapBatch::Tables::add_strips(std::uint32_t row, const maps::CellBox& cells,
                                 static_cast<std::uint32_t>(at) | static_cast<std::uint32_t>(chunk) << 16};
 }
 
-void MapBatch::Tables::add_words(MapWords& part, std::uint32_t row, MapShare& share) {
-  share.first_block = part.course.count;
-  const auto blocks = part.course.blocks->host<MapBlock>();
+void MapBatch::Tables::add_words(MapWords& part, std::uint32_t row, ScanWork& share) {
+  share.first_block = part.dispatch.count;
+  const auto blocks = part.dispatch.blocks->host<MapBlock>();
   for (std::int64_t y = share.cells.low.row / 4; y < share.cells.high.row / 4; ++y)
     for (std::int64_t x = share.cells.low.column / 4; x < share.cells.high.column / 4; x += SF_MAP_BLOCK)
-      blocks[part.course.count++] = {row, static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << 16};
+      blocks[part.dispatch.count++] = {row, static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << 16};
 }
 
-void MapBatch::Tables::hand_out() {
-  strips.count = plain.course.count = weighed.course.count = 0;
+void MapBatch::Tables::assign_blocks() {
+  strips.count = plain.dispatch.count = log_odds_words.dispatch.count = 0;
   const auto table = rows->host<MapRow>();
   for (std::uint32_t i = 0; i < scans.size(); ++i) {
     const PoseMarker& map = all[scans[i].map];
-    MapShare& share = shares[i];
+    ScanWork& share = scan_works[i];
     if (maps::is_empty(share.cells)) continue;
     table[i] = row_of(map, share.scan, scans[i].X_WS);
     table[i].box_right = static_cast<std::uint32_t>(share.cells.high.column / 4);
     add_strips(i, share.cells, false, table[i].flat);
     add_strips(i, share.cells, true, table[i].steep);
-    add_words(map.plan.odds ? weighed : plain, i, share);
+    add_words(map.plan.odds ? log_odds_words : plain, i, share);
   }
-  for (MapCourse* course : {&strips, &plain.course, &weighed.course})
-    if (course->kernel) close(*course);
+  for (MapDispatch* dispatch : {&strips, &plain.dispatch, &log_odds_words.dispatch})
+    if (dispatch->kernel) close(*dispatch);
 }
 
 /// Marks the cells that beams ended in.
-void MapBatch::Tables::strike() {
+void MapBatch::Tables::mark_hits() {
   thread_pool.parallel_for(scans.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
-      const MapShare& share = shares[i];
+      const ScanWork& share = scan_works[i];
       if (maps::is_empty(share.cells)) continue;
       const PoseMarker& map = all[scans[i].map];
       const std::int64_t across =
           SF_MAP_BLOCK * units_of(share.cells.high.column - share.cells.low.column, 4 * SF_MAP_BLOCK);
       const std::int64_t down = (share.cells.high.row - share.cells.low.row) / 4;
-      const auto struck = (map.plan.odds ? weighed : plain)
-                              .struck->host<std::uint32_t>()
-                              .subspan(SF_MAP_BLOCK * share.first_block, static_cast<std::size_t>(across * down));
-      std::fill(struck.begin(), struck.end(), 0u);
+      const auto hit_words = (map.plan.odds ? log_odds_words : plain)
+                                 .hit_words->host<std::uint32_t>()
+                                 .subspan(SF_MAP_BLOCK * share.first_block, static_cast<std::size_t>(across * down));
+      std::fill(hit_words.begin(), hit_words.end(), 0u);
       const maps::CellBox& box = share.cells;
       for (const std::uint32_t end : ends_of(map)) {
         const maps::CellAt at{share.scan.sensor.column + maps::columns_of(end),
@@ -135,24 +135,24 @@ void MapBatch::Tables::strike() {
                             at.row < box.high.row;
         if (!maps::hit_of(end) || !inside) continue;
         const std::int64_t word = (at.row - box.low.row) / 4 * across + (at.column - box.low.column) / 4;
-        struck[static_cast<std::size_t>(word)] |= 1u << maps::OccupancyGrid::shift_of(at);
+        hit_words[static_cast<std::size_t>(word)] |= 1u << maps::OccupancyGrid::shift_of(at);
       }
     }
   });
 }
 
-void MapBatch::Tables::close(MapCourse& course) {
-  const std::size_t group = course.kernel->group_size() / SF_MAP_BLOCK;
-  const auto needed = static_cast<std::uint32_t>((course.count + group - 1) / group);
+void MapBatch::Tables::close(MapDispatch& dispatch) {
+  const std::size_t group = dispatch.kernel->group_size() / SF_MAP_BLOCK;
+  const auto needed = static_cast<std::uint32_t>((dispatch.count + group - 1) / group);
   const std::uint32_t across = std::min(needed, kMapGroupsAcross);
   const std::uint32_t down = across > 0 ? (needed + across - 1) / across : 0;
-  const auto blocks = course.blocks->host<MapBlock>();
+  const auto blocks = dispatch.blocks->host<MapBlock>();
   const std::size_t padded = std::size_t{across} * down * group;
   const MapBlock nobody{static_cast<std::uint32_t>(all.size()), 0};
-  std::fill(blocks.begin() + static_cast<std::ptrdiff_t>(course.count),
+  std::fill(blocks.begin() + static_cast<std::ptrdiff_t>(dispatch.count),
             blocks.begin() + static_cast<std::ptrdiff_t>(padded), nobody);
-  course.count = padded;
-  const auto counts = course.groups->host<std::uint32_t>();
+  dispatch.count = padded;
+  const auto counts = dispatch.groups->host<std::uint32_t>();
   counts[0] = across;
   counts[1] = down;
   counts[2] = across > 0 ? 1 : 0;
@@ -176,13 +176,13 @@ void MapBatch::Tables::send_scans() {
 
 void MapBatch::Tables::send() {
   send_scans();
-  for (const MapCourse* course : {&strips, &plain.course, &weighed.course}) {
-    if (!course->kernel) continue;
-    batch.upload(*course->blocks, 0, course->count * sizeof(MapBlock));
-    batch.upload(*course->groups, 0, course->groups->bytes());
+  for (const MapDispatch* dispatch : {&strips, &plain.dispatch, &log_odds_words.dispatch}) {
+    if (!dispatch->kernel) continue;
+    batch.upload(*dispatch->blocks, 0, dispatch->count * sizeof(MapBlock));
+    batch.upload(*dispatch->groups, 0, dispatch->groups->bytes());
   }
-  for (const MapWords* part : {&plain, &weighed})
-    if (part->struck) batch.upload(*part->struck, 0, 4 * SF_MAP_BLOCK * part->course.count);
+  for (const MapWords* part : {&plain, &log_odds_words})
+    if (part->hit_words) batch.upload(*part->hit_words, 0, 4 * SF_MAP_BLOCK * part->dispatch.count);
   if (blank) {
     batch.upload(*words, 0, words->bytes());
     if (odds) batch.upload(*odds, 0, odds->bytes());
@@ -209,8 +209,8 @@ void MapBatch::update(std::span<const MapScan> scans, std::span<const std::uint3
     if (!t.on_host.has(map)) t.wanted.push_back(map);
   if (t.scans.empty() && (t.wanted.empty() || t.unified)) return;
   t.trace();
-  t.hand_out();
-  t.strike();
+  t.assign_blocks();
+  t.mark_hits();
   t.send();
   t.batch.run();
 }

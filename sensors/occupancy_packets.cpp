@@ -10,25 +10,25 @@ namespace sf::sensors {
 
 namespace {
 
-maps::GridGeometry plan_of(const SensorRow& sensor, const Pose& corner) {
+maps::GridGeometry plan_of(const SensorSpec& sensor, const Pose& corner) {
   return {corner.x, corner.y, sensor.pitch, sensor.across, sensor.elements / sensor.across};
 }
 
-Fault fault_of(maps::PartFault fault) {
+PayloadError fault_of(maps::PartFault fault) {
   switch (fault) {
     case maps::PartFault::none:
-      return Fault::none;
+      return PayloadError::none;
     case maps::PartFault::too_short:
-      return Fault::too_short;
+      return PayloadError::too_short;
     case maps::PartFault::too_long:
-      return Fault::too_long;
+      return PayloadError::too_long;
     case maps::PartFault::out_of_range:
       break;
   }
-  return Fault::out_of_range;
+  return PayloadError::out_of_range;
 }
 
-void put_plain(const SensorRow& sensor, std::span<const double> words, std::uint32_t part, base::Bytes& out) {
+void put_plain(const SensorSpec& sensor, std::span<const double> words, std::uint32_t part, base::Bytes& out) {
   const std::uint32_t half = maps::plain_half(sensor.elements);
   base::ByteWriter writer(out);
   if (part == 0) writer.put(static_cast<std::uint8_t>(sensor.elements / sensor.across));
@@ -37,7 +37,7 @@ void put_plain(const SensorRow& sensor, std::span<const double> words, std::uint
     writer.put(static_cast<std::uint32_t>(word));
 }
 
-Part decode_plain(const SensorRow& sensor, std::span<const std::uint8_t> payload) {
+PayloadPart decode_plain(const SensorSpec& sensor, std::span<const std::uint8_t> payload) {
   maps::PlainPart part;
   const maps::PartFault fault = maps::read_plain(payload, part);
   if (fault != maps::PartFault::none) return {.fault = fault_of(fault)};
@@ -45,14 +45,14 @@ Part decode_plain(const SensorRow& sensor, std::span<const std::uint8_t> payload
   const std::uint32_t expected = part.second ? sensor.elements - half : half;
   const bool shaped =
       part.second || (part.word_columns == sensor.across && part.word_rows * part.word_columns == sensor.elements);
-  if (sensor.elements != 0 && (part.count != expected || !shaped)) return {.fault = Fault::out_of_range};
-  return {Fault::none, part.count, part.second ? 1u : 0u, occupancy_parts(sensor, Wire::thesis)};
+  if (sensor.elements != 0 && (part.count != expected || !shaped)) return {.fault = PayloadError::out_of_range};
+  return {PayloadError::none, part.count, part.second ? 1u : 0u, occupancy_parts(sensor, WireFormat::thesis)};
 }
 
 }  // namespace
 
-std::string refuse_occupancy(const SensorRow& sensor, Wire wire) {
-  if (wire == Wire::farm) return "";
+std::string occupancy_wire_problem(const SensorSpec& sensor, WireFormat wire) {
+  if (wire == WireFormat::farm) return "";
   const std::uint32_t rows = sensor.elements / sensor.across;
   const bool fits =
       sensor.elements <= maps::kMaxPlainWords && sensor.across <= maps::kMaxPlainSide && rows <= maps::kMaxPlainSide;
@@ -63,16 +63,16 @@ std::string refuse_occupancy(const SensorRow& sensor, Wire wire) {
       sensor.across, rows, maps::kMaxPlainWords, maps::kMaxPlainSide);
 }
 
-std::uint32_t occupancy_parts(const SensorRow& sensor, Wire wire) {
-  if (wire == Wire::thesis) return sensor.elements == 1 ? 1 : 2;
+std::uint32_t occupancy_parts(const SensorSpec& sensor, WireFormat wire) {
+  if (wire == WireFormat::thesis) return sensor.elements == 1 ? 1 : 2;
   return maps::parts_of(sensor.elements);
 }
 
-std::uint8_t encode_occupancy(const SensorRow& sensor, const base::ReadingBlock& reading, Wire wire, std::uint32_t part,
-                              base::Bytes& out) {
+std::uint8_t encode_occupancy(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
+                              std::uint32_t part, base::Bytes& out) {
   SF_CHECK(reading.values.size() == sensor.elements && part < occupancy_parts(sensor, wire) && sensor.across > 0,
            fmt::format("part {} of a map of {} words, of {}", part, reading.values.size(), sensor.elements));
-  if (wire == Wire::thesis) {
+  if (wire == WireFormat::thesis) {
     put_plain(sensor, reading.values, part, out);
     return kOccupancy;
   }
@@ -82,21 +82,22 @@ std::uint8_t encode_occupancy(const SensorRow& sensor, const base::ReadingBlock&
   return kOccupancy;
 }
 
-Part decode_occupancy(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire) {
-  if (type != kOccupancy) return {.fault = Fault::out_of_range};
-  if (wire == Wire::thesis) return decode_plain(sensor, payload);
+PayloadPart decode_occupancy(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
+                             WireFormat wire) {
+  if (type != kOccupancy) return {.fault = PayloadError::out_of_range};
+  if (wire == WireFormat::thesis) return decode_plain(sensor, payload);
   maps::MapPart part;
   const maps::PartFault fault = maps::read_part(payload, part);
   if (fault != maps::PartFault::none) return {.fault = fault_of(fault)};
   const bool mine = sensor.elements == 0 || (maps::words(part.plan) == sensor.elements &&
                                              part.plan.word_columns == sensor.across && part.plan.cell == sensor.pitch);
-  if (!mine) return {.fault = Fault::out_of_range};
-  return {Fault::none, part.count, part.part, part.parts};
+  if (!mine) return {.fault = PayloadError::out_of_range};
+  return {PayloadError::none, part.count, part.part, part.parts};
 }
 
-void read_occupancy(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t, Wire wire,
+void read_occupancy(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t, WireFormat wire,
                     std::span<double> values) {
-  if (wire == Wire::thesis) {
+  if (wire == WireFormat::thesis) {
     maps::PlainPart part;
     maps::read_plain(payload, part);
     const std::uint32_t first = part.second ? maps::plain_half(sensor.elements) : 0;

@@ -6,24 +6,25 @@
 #include <span>
 #include <string>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
 /// The thesis' form holds at most 1 022 words, and 255 rows or columns of them.
-std::string refuse_occupancy(const SensorRow& sensor, Wire wire);
+std::string occupancy_wire_problem(const SensorSpec& sensor, WireFormat wire);
 
-std::uint32_t occupancy_parts(const SensorRow& sensor, Wire wire);
+std::uint32_t occupancy_parts(const SensorSpec& sensor, WireFormat wire);
 
 /// @param reading its X_WS is the map's upper left corner. @return kOccupancy
-std::uint8_t encode_occupancy(const SensorRow& sensor, const base::ReadingBlock& reading, Wire wire, std::uint32_t part,
-                              base::Bytes& out);
+std::uint8_t encode_occupancy(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
+                              std::uint32_t part, base::Bytes& out);
 
 /// Takes a payload for what this sensor may have sent: a map of its size and of its cells, wherever it lies. A row of
 /// no elements leaves that unchecked.
-Part decode_occupancy(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire);
+PayloadPart decode_occupancy(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
+                             WireFormat wire);
 
-void read_occupancy(const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire,
+void read_occupancy(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, WireFormat wire,
                     std::span<double> values);
 
 }  // namespace sf::sensors

@@ -99,7 +99,7 @@ void fill_from(const world::Sensor& sensor, const world::Laser& laser, MapPlan& 
 
 Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, std::uint32_t m, std::uint32_t number) {
   Occupancy map;
-  map.row = common_row(sensor, m, number);
+  map.row = common_spec(sensor, m, number);
   map.row.rate = rate_of(sensor, kDefaultRate);
   map.plan.grid = grid_of(sensor, mover.X_WM);
   map.plan.odds = odds_of(sensor);
@@ -116,7 +116,7 @@ Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, s
 
 std::vector<Occupancy> occupancies_of(const world::World& world) {
   std::vector<Occupancy> all;
-  for_each_of(world, occupancy_kind.word.type, [&](const world::Sensor& sensor, std::uint32_t m, std::uint32_t number) {
+  for_each_of(world, occupancy_type.word.type, [&](const world::Sensor& sensor, std::uint32_t m, std::uint32_t number) {
     all.push_back(occupancy_of(sensor, world.movers[m], m, number));
   });
   return all;

@@ -32,7 +32,7 @@ std::size_t strip_blocks(const maps::GridGeometry& plan) {
 MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapPlan> plans, double farthest)
     : thread_pool(w), on_host(plans, farthest), unified(device.unified()), batch(device) {
   plan(std::move(plans));
-  lay_out();
+  assign_layout();
   rows = std::make_unique<gpu::Buffer>(device, "due maps", Role::upload, Texel::u32x4,
                                        SF_MAP_ROW_TEXELS * (all.size() + 1));
   lines = std::make_unique<gpu::Buffer>(device, "lines of beams", Role::upload, Texel::f32x4, all_lines + 1);
@@ -44,14 +44,14 @@ MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<M
   std::size_t most = 0;
   for (std::uint32_t i = 0; i < all.size(); ++i)
     if (!on_host.has(i)) most += strip_blocks(all[i].plan.grid);
-  const std::size_t lanes = make_course(device, "strips of a map", strips, occupancy_strips_comp_spv, 4, most);
+  const std::size_t lanes = make_dispatch(device, "strips of a map", strips, occupancy_strips_comp_spv, 4, most);
   covered = std::make_unique<gpu::Buffer>(device, "covered cells", Role::download, Texel::u32, lanes);
   make_words(device, "map", plain, occupancy_comp_spv, false);
   if (std::any_of(all.begin(), all.end(), [](const PoseMarker& map) { return map.plan.odds.has_value(); })) {
     odds = std::make_unique<gpu::Buffer>(device, "log odds", Role::download, Texel::u32x4,
                                          SF_ODDS_TEXELS * (all_words + 1));
     std::fill_n(odds->host<std::uint32_t>().data(), 4 * SF_ODDS_TEXELS * (all_words + 1), 0u);
-    make_words(device, "map with log odds", weighed, occupancy_odds_comp_spv, true);
+    make_words(device, "map with log odds", log_odds_words, occupancy_odds_comp_spv, true);
   }
   record();
 }
@@ -64,10 +64,10 @@ void MapBatch::Tables::plan(std::vector<MapPlan> plans) {
     if (fan.empty()) fan = maps::beam_directions(p.fov, p.samples);
     all.push_back({std::move(p), 0, 0, &fan});
   }
-  shares.reserve(all.size());
+  scan_works.reserve(all.size());
 }
 
-void MapBatch::Tables::lay_out() {
+void MapBatch::Tables::assign_layout() {
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     if (on_host.has(i)) continue;
     PoseMarker& map = all[i];
@@ -82,26 +82,26 @@ void MapBatch::Tables::lay_out() {
 }
 
 /// @return lanes, whole groups of them.
-std::size_t MapBatch::Tables::make_course(gpu::Device& device, const char* name, MapCourse& course,
-                                          std::span<const std::uint32_t> spirv, std::uint32_t tables,
-                                          std::size_t most_blocks) {
-  course.kernel = std::make_unique<gpu::Kernel>(device, name, spirv, tables);
+std::size_t MapBatch::Tables::make_dispatch(gpu::Device& device, const char* name, MapDispatch& dispatch,
+                                            std::span<const std::uint32_t> spirv, std::uint32_t tables,
+                                            std::size_t most_blocks) {
+  dispatch.kernel = std::make_unique<gpu::Kernel>(device, name, spirv, tables);
   // Padded to whole groups, and to whole rows of groups where there are many.
-  const std::size_t group = course.kernel->group_size() / SF_MAP_BLOCK;
+  const std::size_t group = dispatch.kernel->group_size() / SF_MAP_BLOCK;
   const std::size_t groups = most_blocks / group + 1;
   const std::size_t padded = (groups > kMapGroupsAcross ? groups + kMapGroupsAcross : groups) * group;
-  course.blocks = std::make_unique<gpu::Buffer>(device, "blocks of work", Role::upload, Texel::u32, 2 * padded);
-  course.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
+  dispatch.blocks = std::make_unique<gpu::Buffer>(device, "blocks of work", Role::upload, Texel::u32, 2 * padded);
+  dispatch.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
   return SF_MAP_BLOCK * padded;
 }
 
 void MapBatch::Tables::make_words(gpu::Device& device, const char* name, MapWords& part,
-                                  std::span<const std::uint32_t> spirv, bool weighs) {
+                                  std::span<const std::uint32_t> spirv, bool has_log_odds) {
   std::size_t most = 0;
   for (std::uint32_t i = 0; i < all.size(); ++i)
-    if (!on_host.has(i) && all[i].plan.odds.has_value() == weighs) most += word_blocks(all[i].plan.grid);
-  const std::size_t lanes = make_course(device, name, part.course, spirv, weighs ? 6 : 5, most);
-  part.struck = std::make_unique<gpu::Buffer>(device, "struck cells", Role::upload, Texel::u32, lanes);
+    if (!on_host.has(i) && all[i].plan.odds.has_value() == has_log_odds) most += word_blocks(all[i].plan.grid);
+  const std::size_t lanes = make_dispatch(device, name, part.dispatch, spirv, has_log_odds ? 6 : 5, most);
+  part.hit_words = std::make_unique<gpu::Buffer>(device, "struck cells", Role::upload, Texel::u32, lanes);
 }
 
 void MapBatch::Tables::record() {
@@ -110,12 +110,12 @@ void MapBatch::Tables::record() {
   batch.begin();
   batch.dispatch(*strips.kernel, *strips.groups, 0);
   batch.barrier();
-  for (MapWords* part : {&plain, &weighed}) {
-    if (!part->course.kernel) continue;
+  for (MapWords* part : {&plain, &log_odds_words}) {
+    if (!part->dispatch.kernel) continue;
     gpu::Buffer* const tables[] = {
-        rows.get(), part->course.blocks.get(), covered.get(), part->struck.get(), words.get(), odds.get()};
-    part->course.kernel->bind(std::span(tables).first(part == &plain ? 5 : 6));
-    batch.dispatch(*part->course.kernel, *part->course.groups, 0);
+        rows.get(), part->dispatch.blocks.get(), covered.get(), part->hit_words.get(), words.get(), odds.get()};
+    part->dispatch.kernel->bind(std::span(tables).first(part == &plain ? 5 : 6));
+    batch.dispatch(*part->dispatch.kernel, *part->dispatch.groups, 0);
   }
   batch.end();
 }

@@ -29,7 +29,7 @@ struct PoseMarker {
 };
 
 /// One dispatch: blocks of eight lanes.
-struct MapCourse {
+struct MapDispatch {
   std::unique_ptr<gpu::Kernel> kernel;
   std::unique_ptr<gpu::Buffer> blocks;
   std::unique_ptr<gpu::Buffer> groups;  ///< counts of the dispatch
@@ -38,12 +38,12 @@ struct MapCourse {
 
 /// Words of the maps of one kind: with log odds, or without.
 struct MapWords {
-  MapCourse course;
-  std::unique_ptr<gpu::Buffer> struck;  ///< a word a lane: where beams ended
+  MapDispatch dispatch;
+  std::unique_ptr<gpu::Buffer> hit_words;  ///< a word a lane: where beams ended
 };
 
 /// What one scan is about.
-struct MapShare {
+struct ScanWork {
   maps::TracedScan scan;
   maps::CellBox cells;          ///< of the map, whole words
   std::size_t first_block = 0;  ///< of its words
@@ -65,36 +65,36 @@ struct MapBatch::Tables {
   std::vector<MapScan> scans;                ///< of this time, likewise
   std::vector<std::uint32_t> wanted;         ///< likewise
   std::map<std::pair<double, std::uint32_t>, std::vector<glm::dvec2>> fans;
-  MapCourse strips;
+  MapDispatch strips;
   MapWords plain;
-  MapWords weighed;
+  MapWords log_odds_words;
   std::unique_ptr<gpu::Buffer> rows;
   std::unique_ptr<gpu::Buffer> lines;
   std::vector<std::uint32_t> ends;       ///< of all maps: two for each pair of lines
   std::unique_ptr<gpu::Buffer> covered;  ///< a word a strip
   std::unique_ptr<gpu::Buffer> words;
   std::unique_ptr<gpu::Buffer> odds;
-  std::vector<MapShare> shares;  ///< per scan
+  std::vector<ScanWork> scan_works;  ///< per scan
   gpu::Batch batch;
   bool blank = true;  ///< maps are still to be sent
 
   Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapPlan> plans, double farthest);
   void plan(std::vector<MapPlan> plans);
-  void lay_out();
-  std::size_t make_course(gpu::Device& device, const char* name, MapCourse& course,
-                          std::span<const std::uint32_t> spirv, std::uint32_t tables, std::size_t most_blocks);
+  void assign_layout();
+  std::size_t make_dispatch(gpu::Device& device, const char* name, MapDispatch& dispatch,
+                            std::span<const std::uint32_t> spirv, std::uint32_t tables, std::size_t most_blocks);
   void make_words(gpu::Device& device, const char* name, MapWords& part, std::span<const std::uint32_t> spirv,
-                  bool weighs);
+                  bool has_log_odds);
   void record();
   std::span<std::uint32_t> ends_of(const PoseMarker& map) {
     return std::span(ends).subspan(2 * std::size_t{map.lines}, map.plan.samples);
   }
   void trace();
-  void hand_out();
+  void assign_blocks();
   void add_strips(std::uint32_t row, const maps::CellBox& cells, bool steep, StripTable& table);
-  void add_words(MapWords& part, std::uint32_t row, MapShare& share);
-  void strike();
-  void close(MapCourse& course);
+  void add_words(MapWords& part, std::uint32_t row, ScanWork& share);
+  void mark_hits();
+  void close(MapDispatch& dispatch);
   void send_scans();
   void send();
 };

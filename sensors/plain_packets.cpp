@@ -37,13 +37,13 @@ bool plausible(Word word, const PlainNumber& number) {
 
 }  // namespace
 
-std::string refuse_plain(const PlainForm& form, Wire wire) {
-  if (wire == Wire::farm) return "";
+std::string plain_wire_problem(const PlainForm& form, WireFormat wire) {
+  if (wire == WireFormat::farm) return "";
   return fmt::format("the thesis has no layout for {} readings: send the farm's own packets (`--wire farm`)",
                      form.name);
 }
 
-std::uint8_t encode_plain(const PlainForm& form, const SensorRow& sensor, const base::ReadingBlock& reading,
+std::uint8_t encode_plain(const PlainForm& form, const SensorSpec& sensor, const base::ReadingBlock& reading,
                           base::Bytes& out) {
   const std::span<const double> values = reading.values;
   const std::size_t width = form.numbers.size();
@@ -56,19 +56,19 @@ std::uint8_t encode_plain(const PlainForm& form, const SensorRow& sensor, const 
   return form.id;
 }
 
-Part decode_plain(const PlainForm& form, const SensorRow& sensor, std::span<const std::uint8_t> payload,
-                  std::uint8_t type, Wire wire) {
-  if (type != form.id || wire != Wire::farm) return {.fault = Fault::out_of_range};
+PayloadPart decode_plain(const PlainForm& form, const SensorSpec& sensor, std::span<const std::uint8_t> payload,
+                         std::uint8_t type, WireFormat wire) {
+  if (type != form.id || wire != WireFormat::farm) return {.fault = PayloadError::out_of_range};
   base::ByteReader reader(payload);
   const std::size_t width = form.numbers.size();
   const std::uint32_t count = reader.get<std::uint16_t>();
   reader.get<std::uint16_t>();  // reserved
-  if (!reader.good() || reader.left() < kWord * width * count) return {.fault = Fault::too_short};
-  if (reader.left() > kWord * width * count) return {.fault = Fault::too_long};
+  if (!reader.good() || reader.left() < kWord * width * count) return {.fault = PayloadError::too_short};
+  if (reader.left() > kWord * width * count) return {.fault = PayloadError::too_long};
   const bool whole = sensor.elements == 0 || count == sensor.elements;
-  if (count < 1 || !whole || count * width > kMaxPlainWords) return {.fault = Fault::out_of_range};
+  if (count < 1 || !whole || count * width > kMaxPlainWords) return {.fault = PayloadError::out_of_range};
   for (std::size_t i = 0; i < count * width; ++i)
-    if (!plausible(reader.get<Word>(), form.numbers[i % width])) return {.fault = Fault::out_of_range};
+    if (!plausible(reader.get<Word>(), form.numbers[i % width])) return {.fault = PayloadError::out_of_range};
   return {.elements = count};
 }
 

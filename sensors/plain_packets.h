@@ -15,7 +15,7 @@
 
 #include "base/bytes.h"
 #include "base/reading.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -40,28 +40,26 @@ struct PlainForm {
 // What SensorKind asks of a kind, for `form`. Rows have at most kMaxPlainWords numbers in all: one datagram.
 
 /// The thesis' wire is refused.
-std::string refuse_plain(const PlainForm& form, Wire wire);
-std::uint8_t encode_plain(const PlainForm& form, const SensorRow& sensor, const base::ReadingBlock& reading,
+std::string plain_wire_problem(const PlainForm& form, WireFormat wire);
+std::uint8_t encode_plain(const PlainForm& form, const SensorSpec& sensor, const base::ReadingBlock& reading,
                           base::Bytes& out);
 /// Any bytes are judged. A row of no elements leaves their number unchecked.
-Part decode_plain(const PlainForm& form, const SensorRow& sensor, std::span<const std::uint8_t> payload,
-                  std::uint8_t type, Wire wire);
+PayloadPart decode_plain(const PlainForm& form, const SensorSpec& sensor, std::span<const std::uint8_t> payload,
+                         std::uint8_t type, WireFormat wire);
 void read_plain(const PlainForm& form, std::span<const std::uint8_t> payload, std::span<double> values);
 
 /// `kind`, sent in the form kForm, whose id and name it has.
 template <const PlainForm& kForm>
-consteval SensorKind plain(SensorKind kind) {
+consteval SensorType plain(SensorType kind) {
   kind.id = kForm.id;
   kind.name = kForm.name;
-  kind.refuse = [](const SensorRow&, Wire wire) { return refuse_plain(kForm, wire); };
-  kind.parts = [](const SensorRow&, Wire) -> std::uint32_t { return 1; };
-  kind.encode = [](const SensorRow& sensor, const base::ReadingBlock& reading, Wire, std::uint32_t, base::Bytes& out) {
-    return encode_plain(kForm, sensor, reading, out);
-  };
-  kind.decode = [](const SensorRow& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, Wire wire) {
-    return decode_plain(kForm, sensor, payload, type, wire);
-  };
-  kind.read = [](const SensorRow&, std::span<const std::uint8_t> payload, std::uint8_t, Wire,
+  kind.wire_problem = [](const SensorSpec&, WireFormat wire) { return plain_wire_problem(kForm, wire); };
+  kind.parts = [](const SensorSpec&, WireFormat) -> std::uint32_t { return 1; };
+  kind.encode = [](const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat, std::uint32_t,
+                   base::Bytes& out) { return encode_plain(kForm, sensor, reading, out); };
+  kind.decode = [](const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
+                   WireFormat wire) { return decode_plain(kForm, sensor, payload, type, wire); };
+  kind.read = [](const SensorSpec&, std::span<const std::uint8_t> payload, std::uint8_t, WireFormat,
                  std::span<double> values) { read_plain(kForm, payload, values); };
   return kind;
 }

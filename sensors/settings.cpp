@@ -104,8 +104,8 @@ double rate_of(const world::Sensor& sensor, double fallback) {
   return fallback;
 }
 
-SensorRow common_row(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind) {
-  SensorRow row;
+SensorSpec common_spec(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind) {
+  SensorSpec row;
   row.mover = mover;
   row.sensor = number_of_kind;
   row.name = sensor.name;

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -44,7 +44,7 @@ void refuse_beyond(const world::Sensor& sensor, std::string_view prefix, std::st
                    std::uint32_t most);
 
 /// Name, rate (or update_interval), phase and latency, as every sensor has them; one element.
-SensorRow common_row(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind);
+SensorSpec common_spec(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind);
 
 /// Calls `body` for every sensor called `type`, by mover and in file order. @param number 0-based among the mover's
 void for_each_of(

@@ -50,10 +50,10 @@ void tell_range(const ConeArray& array, double range, bool met, double deviate, 
 }
 
 std::vector<ConeArray> sonars_of(const world::World& world) {
-  return cone_arrays_of(world, sonar_kind.word.type, read_sonar);
+  return cone_arrays_of(world, sonar_type.word.type, read_sonar);
 }
 
-constexpr RangerKind kRanger{kSonar, 1, {"sonar", sonar_comp_spv, true}, tell_range};
+constexpr RangerType kRanger{kSonar, 1, {"sonar", sonar_comp_spv, true}, tell_range};
 
 constexpr std::string_view kKeys[] = {"scount", "spose[]", "spose3[]", "ssize",  "sview",    "fov",
                                       "range",  "rays",    "firing",   "arrays", "incidence"};
@@ -67,18 +67,19 @@ ConeArray read_sonar(const world::Sensor& sensor, std::uint32_t mover, std::uint
   ConeArray array = read_cones(sensor, mover, number_of_kind, {25.0 * kDegrees, 0.10, 4.0, 25.0});
   array.turns = read_turns(sensor, array.row.elements);
   const double incidence = angle(sensor, "incidence", 0.5 * M_PI, 1e-3 * kDegrees, 0.5 * M_PI);
-  array.least_cosine = incidence < 0.5 * M_PI * (1.0 - 1e-12) ? std::cos(incidence) : 0.0;
+  array.min_cosine = incidence < 0.5 * M_PI * (1.0 - 1e-12) ? std::cos(incidence) : 0.0;
   read_noise(sensor, array);
   return array;
 }
 
-constinit const SensorKind sonar_kind = plain<kForm>({
+constinit const SensorType sonar_type = plain<kForm>({
     .word = {"sonar", kKeys},
     .base_port = 36000,
     .list = "transducers",
     .columns = kColumns,
-    .rows = [](const world::World& world) { return ranger_rows(sonars_of(world)); },
-    .make = [](const SensorContext& context) { return make_rangers(context, sonars_of(context.world), kRanger); },
+    .specs = [](const world::World& world) { return ranger_specs(sonars_of(world)); },
+    .make =
+        [](const SensorContext& context) { return make_ranger_backend(context, sonars_of(context.world), kRanger); },
 });
 
 }  // namespace sf::sensors

@@ -12,7 +12,7 @@
 #include <cstdint>
 
 #include "sensors/cones/cone_array.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -21,6 +21,6 @@ inline constexpr std::uint8_t kSonar = 4;  ///< wire id
 /// @throws base::InputError with file and line.
 ConeArray read_sonar(const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number_of_kind);
 
-extern const SensorKind sonar_kind;
+extern const SensorType sonar_type;
 
 }  // namespace sf::sensors

@@ -12,6 +12,6 @@ layout(binding = 2, rgba32ui) uniform readonly uimageBuffer hits;     // a texel
 layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer echoes;  // a texel a cone: ConeEcho
 
 // Light is scattered back from any angle.
-bool audible(int beam, uint hit, vec2 heading, float least_cosine) { return true; }
+bool returns_echo(int beam, uint hit, vec2 heading, float min_cosine) { return true; }
 
 #include "shaders/lib/cone.glsl"

@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;   // SF_MAP_ROW_TEXELS a map: MapRow
 layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;    // two words for eight lanes: MapBlock
 layout(binding = 2, r32ui) uniform readonly uimageBuffer strips;    // what occupancy_strips.comp wrote
-layout(binding = 3, r32ui) uniform readonly uimageBuffer struck;    // a word a lane: bit 2 k where a beam ended in cell k
+layout(binding = 3, r32ui) uniform readonly uimageBuffer hit_words;    // a word a lane: bit 2 k where a beam ended in cell k
 layout(binding = 4, r32ui) uniform uimageBuffer words;              // of all maps, and a last one that is nobody's
 
 #include "shaders/lib/cover.glsl"
@@ -17,7 +17,7 @@ layout(binding = 4, r32ui) uniform uimageBuffer words;              // of all ma
 void main() {
   const int lane = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
   const int row = SF_MAP_ROW_TEXELS * int(imageLoad(blocks, 2 * (lane / SF_MAP_BLOCK)).x);
-  const Share share = cover_word(lane, row);
+  const WordUpdate share = cover_word(lane, row);
   const int word = share.word < 0 ? imageSize(words) - 1 : share.word;
   const uint old = imageLoad(words, word).x;
   const uint covered = share.freed | share.occupied;

@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;   // SF_MAP_ROW_TEXELS a map: MapRow
 layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;    // two words for eight lanes: MapBlock
 layout(binding = 2, r32ui) uniform readonly uimageBuffer strips;    // what occupancy_strips.comp wrote
-layout(binding = 3, r32ui) uniform readonly uimageBuffer struck;    // a word a lane: bit 2 k where a beam ended in cell k
+layout(binding = 3, r32ui) uniform readonly uimageBuffer hit_words;    // a word a lane: bit 2 k where a beam ended in cell k
 layout(binding = 4, r32ui) uniform writeonly uimageBuffer words;    // of all maps, and a last one that is nobody's
 layout(binding = 5, rgba32ui) uniform uimageBuffer odds;            // SF_ODDS_TEXELS for each of these words
 
@@ -36,7 +36,7 @@ Weighed weigh(uint pair, uint freed, uint occupied, ivec3 rule) {
 void main() {
   const int lane = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
   const int row = SF_MAP_ROW_TEXELS * int(imageLoad(blocks, 2 * (lane / SF_MAP_BLOCK)).x);
-  const Share share = cover_word(lane, row);
+  const WordUpdate share = cover_word(lane, row);
   const ivec3 rule = ivec3(imageLoad(rows, row + 4).xyz);
   const int word = share.word < 0 ? imageSize(words) - 1 : share.word;
   uint states = 0u;

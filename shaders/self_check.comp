@@ -16,7 +16,7 @@ void main() {
   const double a = packDouble2x32(words.xy);
   const double b = packDouble2x32(words.zw);
 
-  // Differences, products and quotients: rays (lib/decide.glsl), points (lib/edge_point.glsl), fits (line_fit.h), dipoles.
+  // Differences, products and quotients: rays (lib/intersect.glsl), points (lib/edge_point.glsl), fits (line_fit.h), dipoles.
   precise double sum = a + b;
   precise double difference = a - b;
   precise double product = a * b;

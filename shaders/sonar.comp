@@ -11,7 +11,7 @@ layout(binding = 1, rgba32ui) uniform readonly uimageBuffer ranges;      // two 
 layout(binding = 2, rgba32ui) uniform readonly uimageBuffer hits;        // a texel a lane: rows of faces, or models
 layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer echoes;     // a texel a cone: ConeEcho
 layout(binding = 4, rgba32ui) uniform readonly uimageBuffer directions;  // a texel a beam: cosine, sine of its bearing
-layout(binding = 5, rgba32ui) uniform readonly uimageBuffer faces;       // a texel a surface: ConeFace
+layout(binding = 5, rgba32ui) uniform readonly uimageBuffer reflectors;       // a texel a surface: ConeFace
 layout(binding = 6, rgba32f) uniform readonly imageBuffer headings;      // a texel a mover, the first stands still: cosine, sine
 
 vec2 turned(vec2 by, vec2 v) {
@@ -21,14 +21,14 @@ vec2 turned(vec2 by, vec2 v) {
 }
 
 // Sound that meets a smooth surface flatly is thrown away from the sonar.
-bool audible(int beam, uint hit, vec2 heading, float least_cosine) {
-  const bool any = least_cosine <= 0.0;
+bool returns_echo(int beam, uint hit, vec2 heading, float min_cosine) {
+  const bool any = min_cosine <= 0.0;
   const uvec4 bearing = imageLoad(directions, beam);
-  const uvec4 face = imageLoad(faces, any || hit == SF_NO_HIT ? 0 : int(hit));
+  const uvec4 face = imageLoad(reflectors, any || hit == SF_NO_HIT ? 0 : int(hit));
   const vec2 look = turned(heading, vec2(float(packDouble2x32(bearing.xy)), float(packDouble2x32(bearing.zw))));
   const vec2 along = turned(imageLoad(headings, int(face.z)).xy, uintBitsToFloat(face.xy));
   precise float cosine = look.x * along.y - look.y * along.x;
-  return any || abs(cosine) >= least_cosine;
+  return any || abs(cosine) >= min_cosine;
 }
 
 #include "shaders/lib/cone.glsl"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "gpu/device.h"
-#include "sensors/field/records.h"
+#include "sensors/magnetic_field/records.h"
 #include "viz/canvas.h"
 #include "world/world.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "sensors/field/survey.h"
+#include "sensors/magnetic_field/sampling.h"
 #include "viz/field_figure.h"
 
 namespace sf::viz {
@@ -91,9 +91,9 @@ int cell_pixels(const world::World& world, const FieldView& view) {
   return cell;
 }
 
-std::vector<sensors::Place> map_places(const FieldView& view, const FieldSamples& samples) {
+std::vector<sensors::FieldPoint> map_places(const FieldView& view, const FieldSamples& samples) {
   const Extent& e = view.extent;
-  std::vector<sensors::Place> places;
+  std::vector<sensors::FieldPoint> places;
   for (int row = 0; row < samples.rows; ++row)
     for (int column = 0; column < samples.columns; ++column)
       places.push_back({e.x_min + (column + 0.5) / samples.columns * (e.x_max - e.x_min),
@@ -120,18 +120,19 @@ FieldSamples sample_field(const world::World& world, gpu::Device& device, const 
   const int cell = cell_pixels(world, view);
   samples.columns = std::max(1, (view.map.x_max - view.map.x_min) / cell);
   samples.rows = std::max(1, (view.map.y_max - view.map.y_min) / cell);
-  for (const sensors::FieldSum& b : sensors::survey(world, device, map_places(view, samples), {.progress = progress}))
+  for (const sensors::FieldSum& b :
+       sensors::sample_field(world, device, map_places(view, samples), {.progress = progress}))
     samples.map.push_back(std::hypot(b.x, b.y, b.z));
 
   const glm::dvec2 along = view.line.b - view.line.a;
-  std::vector<sensors::Place> places;
+  std::vector<sensors::FieldPoint> places;
   for (int i = 0; i < kProfilePoints; ++i) {
     const double part = static_cast<double>(i) / (kProfilePoints - 1);
     const glm::dvec2 p = view.line.a + part * along;
     samples.profile.push_back({part * glm::length(along), p, {}});
     places.push_back({p.x, p.y, view.height});
   }
-  const auto sums = sensors::survey(world, device, places, {.magnitudes = true});
+  const auto sums = sensors::sample_field(world, device, places, {.magnitudes = true});
   for (std::size_t i = 0; i < sums.size(); ++i) samples.profile[i].field = sums[i];
   return samples;
 }

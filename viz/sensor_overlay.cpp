@@ -27,7 +27,7 @@ void draw_sensors(Axes& axes, const world::World& world) {
                      0.5 * edge.fan.fov, edge.fan.range_max, kSectorStyle);
   for (const world::Mover& mover : world.movers)
     for (const world::Sensor& sensor : mover.sensors) {
-      if (sensor.type != sensors::magnetometer_kind.word.type) continue;
+      if (sensor.type != sensors::magnetometer_type.word.type) continue;
       for (const base::Pose& X_SE : sensors::read_magnetometer(sensor).X_SE) {
         const base::Pose X_WE = compose(compose(mover.X_WM, sensor.X_MS), X_SE);
         axes.canvas().disc(axes.pixel({X_WE.x, X_WE.y}), 2.4, kElement);
@@ -37,10 +37,10 @@ void draw_sensors(Axes& axes, const world::World& world) {
 
 std::vector<LegendItem> sensor_legend(const world::World& world) {
   std::vector<LegendItem> items;
-  if (has(world, sensors::laneedge_kind.word.type))
+  if (has(world, sensors::laneedge_type.word.type))
     items.push_back({LegendMark::block, with_opacity(kSectorStyle.color, kSectorStyle.inside), "lane edge sensor",
                      with_opacity(kSectorStyle.color, kSectorStyle.border)});
-  if (has(world, sensors::magnetometer_kind.word.type)) items.push_back({LegendMark::dot, kElement, "magnetometer"});
+  if (has(world, sensors::magnetometer_type.word.type)) items.push_back({LegendMark::dot, kElement, "magnetometer"});
   return items;
 }
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::sensors {
 
@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kMostTransducers = 64;  ///< of one sensor
 inline constexpr std::uint32_t kMostConeRays = 1'025;  ///< of one cone
 /// One sensor: its transducers and what their cones are like.
 struct ConeArray {
-  SensorRow row;           ///< X_MS at half of the model's height
+  SensorSpec row;          ///< X_MS at half of the model's height
   std::vector<Pose> X_SC;  ///< of each transducer in the sensor's frame; its cone looks along x
   double fov = 0.0;        ///< [rad] of a cone, in [0, 2 pi]
   std::uint32_t rays = 1;  ///< of a cone: odd, so that one looks along its axis
@@ -24,7 +24,7 @@ struct ConeArray {
   double range_max = 0.0;  ///< [m] > 0
   /// Readings until every transducer has fired: reading k fires those whose number leaves the same remainder.
   std::uint32_t turns = 1;
-  double least_cosine = 0.0;  ///< of the angle of incidence that is heard; 0: whatever it is
+  double min_cosine = 0.0;    ///< of the angle of incidence that is heard; 0: whatever it is
   double sigma = 0.0;         ///< [m] constant part of the noise
   double proportional = 0.0;  ///< [-] part of the noise per metre; or what the kind says
 };

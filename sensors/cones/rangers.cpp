@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 
-class Rangers : public Instruments {
+class Rangers : public SensorBackend {
  public:
-  Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerKind& kind);
+  Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerType& kind);
 
   void set_poses(std::span<const Pose> poses) override { cones_.set_poses(poses); }
   bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override;
@@ -27,25 +27,25 @@ class Rangers : public Instruments {
 
  private:
   void fire(const DueSample& due);
-  void tell(std::size_t i);
+  void write_reading(std::size_t i);
 
   base::ThreadPool& thread_pool_;
   std::uint64_t seed_;
   bool noise_;
   std::vector<ConeArray> arrays_;
-  RangerKind kind_;
-  Cones cones_;
+  RangerType kind_;
+  ConeCaster cones_;
   std::vector<std::uint64_t> last_;  ///< per array: its last reading, or kNever
   std::vector<double> heights_;      ///< [m] per array, of its origin in the world
   std::vector<std::size_t> values_first_;
   std::vector<double> values_;  ///< of all arrays; those of transducers that do not fire stand
   std::vector<DueSample> due_;
   std::vector<Pose> X_WS_;               ///< per due array
-  std::vector<DueSample> cones_due_;     ///< transducers that fire
+  std::vector<DueSample> due_cones_;     ///< transducers that fire
   std::vector<std::size_t> cones_ends_;  ///< per due array: behind the last of its own
 };
 
-Rangers::Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerKind& kind)
+Rangers::Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerType& kind)
     : thread_pool_(context.thread_pool),
       seed_(context.seed),
       noise_(context.noise),
@@ -65,16 +65,16 @@ Rangers::Rangers(const SensorContext& context, std::vector<ConeArray> arrays, co
 bool Rangers::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
   due_.assign(due.begin(), due.end());
   X_WS_.clear();
-  cones_due_.clear();
+  due_cones_.clear();
   cones_ends_.clear();
   for (const DueSample& d : due_) {
-    const SensorRow& row = arrays_[d.row].row;
+    const SensorSpec& row = arrays_[d.row].row;
     X_WS_.push_back(base::compose(poses[row.mover], row.X_MS));
     X_WS_.back().z = heights_[d.row];
     fire(d);
-    cones_ends_.push_back(cones_due_.size());
+    cones_ends_.push_back(due_cones_.size());
   }
-  return cones_.prepare(cones_due_, poses);
+  return cones_.prepare(due_cones_, poses);
 }
 
 void Rangers::fire(const DueSample& due) {
@@ -82,10 +82,10 @@ void Rangers::fire(const DueSample& due) {
   const std::uint64_t last = std::exchange(last_[due.row], due.sequence);
   for (std::uint32_t i = 0; i < array.X_SC.size(); ++i)
     if (has_fired(i, array.turns, due.sequence, last))
-      cones_due_.push_back({cones_.first_cone(due.row) + i, due.sequence});
+      due_cones_.push_back({cones_.first_cone(due.row) + i, due.sequence});
 }
 
-void Rangers::tell(std::size_t i) {
+void Rangers::write_reading(std::size_t i) {
   const DueSample& due = due_[i];
   const ConeArray& array = arrays_[due.row];
   // Kinds share a stream, and sensors of two kinds share numbers; a draw keeps 24 bits of this name.
@@ -93,17 +93,17 @@ void Rangers::tell(std::size_t i) {
   const base::RandomKey draw{seed_, base::RandomStream::range_cone, array.row.mover, name, due.sequence};
   const bool noisy = noise_ && (array.sigma > 0.0 || array.proportional > 0.0);
   for (std::size_t k = i > 0 ? cones_ends_[i - 1] : 0; k < cones_ends_[i]; ++k) {
-    const std::uint32_t transducer = cones_due_[k].row - cones_.first_cone(due.row);
+    const std::uint32_t transducer = due_cones_[k].row - cones_.first_cone(due.row);
     const ConeEcho echo = cones_.echo(k);
     const double deviate = noisy ? base::random_normal(draw, transducer)[0] : 0.0;
     const auto out = std::span(values_).subspan(values_first_[due.row] + kind_.columns * transducer, kind_.columns);
-    kind_.tell(array, echo.range, echo.hit != SF_NO_HIT, deviate, out);
+    kind_.write_reading(array, echo.range, echo.hit != SF_NO_HIT, deviate, out);
   }
 }
 
 void Rangers::collect(std::vector<base::ReadingBlock>& out) {
   thread_pool_.parallel_for(due_.size(), 64, [this](std::size_t first, std::size_t last, unsigned) {
-    for (std::size_t i = first; i < last; ++i) tell(i);
+    for (std::size_t i = first; i < last; ++i) write_reading(i);
   });
   cones_.count();
   for (std::size_t i = 0; i < due_.size(); ++i) {
@@ -121,21 +121,22 @@ void Rangers::collect(std::vector<base::ReadingBlock>& out) {
 
 }  // namespace
 
-std::vector<SensorRow> ranger_rows(const std::vector<ConeArray>& arrays) {
-  std::vector<SensorRow> rows;
+std::vector<SensorSpec> ranger_specs(const std::vector<ConeArray>& arrays) {
+  std::vector<SensorSpec> rows;
   for (const ConeArray& array : arrays) {
     rows.push_back(array.row);
     rows.back().noisy = array.sigma > 0.0 || array.proportional > 0.0;
     // Where transducers take turns, a reading holds what was heard before.
     if (array.turns > 1) continue;
     for (const Pose& X_SC : array.X_SC)
-      rows.back().reach = std::max(rows.back().reach, array.range_max + glm::length(glm::dvec2{X_SC.x, X_SC.y}));
+      rows.back().dependency_radius =
+          std::max(rows.back().dependency_radius, array.range_max + glm::length(glm::dvec2{X_SC.x, X_SC.y}));
   }
   return rows;
 }
 
-std::unique_ptr<Instruments> make_rangers(const SensorContext& context, std::vector<ConeArray> arrays,
-                                          const RangerKind& kind) {
+std::unique_ptr<SensorBackend> make_ranger_backend(const SensorContext& context, std::vector<ConeArray> arrays,
+                                                   const RangerType& kind) {
   return std::make_unique<Rangers>(context, std::move(arrays), kind);
 }
 

@@ -15,7 +15,7 @@ struct ConeRow {
   std::uint32_t lane;        ///< first of its lanes among the results of the cast
   std::uint32_t lanes;       ///< of them
   std::uint32_t directions;  ///< first lane of its beams' directions
-  float least_cosine;        ///< of the angle of incidence that is heard; 0: whatever it is
+  float min_cosine;          ///< of the angle of incidence that is heard; 0: whatever it is
   float heading_cos, heading_sin;
   double range_max;  ///< [m] what it reads when it hears nothing
 };
@@ -30,12 +30,12 @@ struct ConeEcho {
 static_assert(sizeof(ConeEcho) == 16);
 
 /// Which way a surface runs.
-struct ConeFace {
+struct ReflectorDirection {
   float along_x, along_y;  ///< unit vector in the frame of its mover, or of the world
   std::uint32_t heading;   ///< row of the headings: 0 for what stands still, 1 + mover
   std::uint32_t spare;
 };
-static_assert(sizeof(ConeFace) == 16);
+static_assert(sizeof(ReflectorDirection) == 16);
 
 }  // namespace sf::sensors
 

@@ -1,12 +1,12 @@
 // The nearest echo of every cone of beams that is due. Who includes this gives the tables cones (SF_CONE_TEXELS a cone:
-// ConeRow), ranges, hits, and echoes to write to; and `audible`, which says whether what a beam met sends its echo back.
+// ConeRow), ranges, hits, and echoes to write to; and `returns_echo`, which says whether what a beam met sends its echo back.
 
 void main() {
   const int at = int(gl_GlobalInvocationID.x);
   const uvec4 where = imageLoad(cones, SF_CONE_TEXELS * at);
   const uvec4 rest = imageLoad(cones, SF_CONE_TEXELS * at + 1);
   const vec2 heading = uintBitsToFloat(rest.xy);
-  const float least_cosine = uintBitsToFloat(where.w);
+  const float min_cosine = uintBitsToFloat(where.w);
 
   // Places of a lane without a beam repeat one.
   double nearest = packDouble2x32(rest.zw);
@@ -22,7 +22,7 @@ void main() {
         packDouble2x32(two.xy), packDouble2x32(two.zw), packDouble2x32(more.xy), packDouble2x32(more.zw));
     for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
       const int beam = SF_BEAMS_PER_LANE * (int(where.z) + own) + i;
-      const bool nearer = hit[i] != SF_NO_HIT && range[i] < nearest && audible(beam, hit[i], heading, least_cosine);
+      const bool nearer = hit[i] != SF_NO_HIT && range[i] < nearest && returns_echo(beam, hit[i], heading, min_cosine);
       nearest = nearer ? range[i] : nearest;
       met = nearer ? hit[i] : met;
     }

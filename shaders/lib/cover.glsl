@@ -2,7 +2,7 @@
 //
 // The caller declares: rows (MapRow), blocks (MapBlock), strips, struck.
 
-struct Share {
+struct WordUpdate {
   int word;        // in the table of all maps; -1: this lane has none
   uint freed;      // bit 2 k of cell k
   uint occupied;   // likewise
@@ -17,7 +17,7 @@ uvec4 nibbles(uvec4 table, int at, int across, bool inside) {
   return (four >> uint(across & (SF_STRIP - 1))) & 15u;
 }
 
-Share cover_word(int lane, int row) {
+WordUpdate cover_word(int lane, int row) {
   const uint place = imageLoad(blocks, 2 * (lane / SF_MAP_BLOCK) + 1).x;
   const uvec4 map = imageLoad(rows, row);
   const ivec2 at = ivec2(int(place & 0xFFFFu) + lane % SF_MAP_BLOCK, int(place >> 16));
@@ -30,6 +30,6 @@ Share cover_word(int lane, int row) {
   const uvec4 pairs = (lines | lines << 2) & 0x33u;
   const uvec4 over = (pairs | pairs << 1) & 0x55u;
   const uint freed = down.x | down.y << 2 | down.z << 4 | down.w << 6 | over.x | over.y << 8 | over.z << 16 | over.w << 24;
-  return Share(inside ? int(map.x + uint(at.y) * map.y) + at.x : -1, inside ? freed : 0u,
-               inside ? imageLoad(struck, lane).x : 0u);
+  return WordUpdate(inside ? int(map.x + uint(at.y) * map.y) + at.x : -1, inside ? freed : 0u,
+               inside ? imageLoad(hit_words, lane).x : 0u);
 }

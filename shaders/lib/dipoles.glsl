@@ -6,7 +6,7 @@
 // its 23 bits: a 64-bit root and division cost four times as much. Every operation is `precise` and in one order: host
 // and device agree to the bit.
 
-#include "sensors/field/records.h"
+#include "sensors/magnetic_field/records.h"
 
 layout(local_size_x = 32) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer items;     // FieldItem
@@ -78,11 +78,11 @@ void add(Dipole m, Place p, double cutoff_squared, inout Sum sum) {
 void main() {
   const int lane = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
   const uvec4 item = imageLoad(items, lane);
-  const int first = SF_FIELD_PLACES * int(item.z);
+  const int first = SF_FIELD_POINTS * int(item.z);
   const double cutoff_squared = packDouble2x32(imageLoad(places, 2 * first + 1).zw);
-  Place at[SF_FIELD_PLACES];
-  precise Sum sums[SF_FIELD_PLACES];
-  for (int i = 0; i < SF_FIELD_PLACES; ++i) {
+  Place at[SF_FIELD_POINTS];
+  precise Sum sums[SF_FIELD_POINTS];
+  for (int i = 0; i < SF_FIELD_POINTS; ++i) {
     const uvec4 p = imageLoad(places, 2 * (first + i));
     const uvec4 q = imageLoad(places, 2 * (first + i) + 1);
     at[i] = Place(packDouble2x32(p.xy), packDouble2x32(p.zw), packDouble2x32(q.xy));
@@ -97,7 +97,7 @@ void main() {
   while (span < end) {
     for (int k = 0; k < SF_FIELD_UNROLL; ++k) {
       const Dipole m = dipole_at(magnet + k, magnet + k < last);
-      for (int i = 0; i < SF_FIELD_PLACES; ++i) add(m, at[i], cutoff_squared, sums[i]);
+      for (int i = 0; i < SF_FIELD_POINTS; ++i) add(m, at[i], cutoff_squared, sums[i]);
     }
     magnet += SF_FIELD_UNROLL;
     const bool done = magnet >= last;
@@ -106,8 +106,8 @@ void main() {
     last = done ? int(imageLoad(spans, 2 * span + 1).x) : last;
   }
 
-  for (int i = 0; i < SF_FIELD_PLACES; ++i) {
-    const int out_row = 2 * (SF_FIELD_PLACES * int(item.w) + i);
+  for (int i = 0; i < SF_FIELD_POINTS; ++i) {
+    const int out_row = 2 * (SF_FIELD_POINTS * int(item.w) + i);
     imageStore(results, out_row, uvec4(unpackDouble2x32(sums[i].x), unpackDouble2x32(sums[i].y)));
     imageStore(results, out_row + 1, uvec4(unpackDouble2x32(sums[i].z), unpackDouble2x32(sums[i].magnitudes)));
   }

@@ -6,7 +6,7 @@
 //    points vote (line_fit.h, `vote`); the best candidate's inliers make a line, and that line's inliers the last one.
 // All loops leave at the top: lavapipe asks for it.
 
-#include "sensors/paint/line_fit.h"
+#include "sensors/lane_markings/line_fit.h"
 
 #define SF_WINDOWS 16
 
@@ -65,15 +65,15 @@ Moments moments_near(EdgeFan fan, int first, int end, Line line, double allowed)
   return m;
 }
 
-Trend trend_near(EdgeFan fan, int end, Line line, double allowed) {
-  Trend s = no_trend();
+LineMoments trend_near(EdgeFan fan, int end, Line line, double allowed) {
+  LineMoments s = no_moments();
   int own = 0;
   while (own < end) {
     const Points p = points_of(fan, own);
     for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
       const double v = across(line, p.x[i], p.y[i]);
       const double w = v <= allowed && v >= -allowed ? p.w[i] : 0.0;
-      add_to_trend(s, w, along(line, p.x[i], p.y[i]), v);
+      add_to_moments(s, w, along(line, p.x[i], p.y[i]), v);
     }
     ++own;
   }
@@ -93,7 +93,7 @@ ivec2 window(EdgeFan fan, int k) {
 struct Candidate {
   Line line;
   double allowed;
-  Ballot ballot;
+  Hypothesis hypothesis_of;
   float votes;
 };
 
@@ -105,12 +105,12 @@ Candidate candidate(EdgeFan fan, int k, bool wanted, double source) {
   // A bend within the fan may take points this far off: a part of how wide the fan is on the edge.
   precise double wide = sqrt(line.spread * 12.0) * double(fan.lanes) / double(lanes.y - lanes.x);
   precise double allowed = 0.625 * source + 0.015625 * wide;
-  return Candidate(line, allowed, ballot(line, allowed), 0.0);
+  return Candidate(line, allowed, hypothesis_of(line, allowed), 0.0);
 }
 
 Candidate elect(EdgeFan fan, bool wanted, double source) {
   const Line none = Line(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0);
-  Candidate best = Candidate(none, 0.0, ballot(none, 0.0), -1e30);
+  Candidate best = Candidate(none, 0.0, hypothesis_of(none, 0.0), -1e30);
   // Of a wide fan every other lane votes.
   const int stride = fan.lanes >= 12 ? 2 : 1;
   int k = wanted ? 0 : SF_WINDOWS;
@@ -122,7 +122,7 @@ Candidate elect(EdgeFan fan, bool wanted, double source) {
       const Points p = points_of(fan, own);
       for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
         const float w = float(p.w[i]), x = float(p.x[i]), y = float(p.y[i]);
-        for (int j = 0; j < 4; ++j) c[j].votes = c[j].votes + vote(c[j].ballot, w, x, y);
+        for (int j = 0; j < 4; ++j) c[j].votes = c[j].votes + vote(c[j].hypothesis_of, w, x, y);
       }
       own += stride;
     }
@@ -169,28 +169,28 @@ void main() {
   Line line = line_through(all);
   double noise = sqrt(noise_across(line, range_sigma, range_proportional, angle_sigma));
   const double source = tolerance(grain, noise);
-  Trend trend = trend_near(fan, lanes, line, 1e30);
-  Bend bend = bend_of(trend);
+  LineMoments trend = trend_near(fan, lanes, line, 1e30);
+  Parabola curvature = parabola_of(trend);
 
   // Those of one edge among several.
-  const bool mixed = !single && trend.n > 2.5 && !is_one_edge(trend, bend, source);
+  const bool mixed = !single && trend.n > 2.5 && !is_one_edge(trend, curvature, source);
   const Candidate best = elect(fan, mixed, source);
   const int again = mixed ? lanes : 0;
   const Moments near = moments_near(fan, 0, again, best.line, best.allowed);
   const Line second = line_through(near);
   const Moments nearer = moments_near(fan, 0, again, second, best.allowed);
   const Line third = line_through(nearer);
-  const Trend third_trend = trend_near(fan, again, third, best.allowed);
+  const LineMoments third_trend = trend_near(fan, again, third, best.allowed);
   if (mixed) {
     line = third;
     trend = third_trend;
-    bend = bend_of(third_trend);
+    curvature = parabola_of(third_trend);
     noise = sqrt(noise_across(third, range_sigma, range_proportional, angle_sigma));
   }
 
   const double floor_of_noise = 9.313225746154785e-10;
-  const Doubt doubt = Doubt(grain, noise > floor_of_noise ? noise : floor_of_noise);
-  const Fitted fitted = fit_at(line, trend, bend, doubt, ex, ey, distance_max);
+  const PointError point_error = PointError(grain, noise > floor_of_noise ? noise : floor_of_noise);
+  const LineFit fitted = fit_at(line, trend, curvature, point_error, ex, ey, distance_max);
 
   // A single ray is its own reading.
   const Points start = points_of(fan, 0);

@@ -103,7 +103,7 @@ class Robot {
         EXPECT_EQ(packet.header.token, radio_.farm_stamp().token);
         sensors::LaserPart scan;
         EXPECT_EQ(sensors::read_laser(std::get<netio::Reading>(packet.body).payload, false, scan),
-                  sensors::Fault::none);
+                  sensors::PayloadError::none);
         ranges.clear();
         for (std::uint32_t k = 0; k < scan.count; ++k) ranges.push_back(sensors::range_of(scan, k));
       }

@@ -11,7 +11,7 @@
 #include "netio/socket.h"
 #include "record/mcap_reader.h"
 #include "scenarios/simulation.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "world/world.h"
@@ -82,16 +82,16 @@ TEST_F(HeldBytes, Recordings) {
 
 /// Every datagram of two seconds, in the order of sending.
 TEST_F(HeldBytes, Packets) {
-  const world::World world = world::load_world(kTown, {.sensors = sensors::vocabulary()});
-  const sensors::Roster roster(world);
+  const world::World world = world::load_world(kTown, {.sensors = sensors::world_file_words()});
+  const sensors::SensorSet sensor_set(world);
   gpu::Device device;
   scenarios::Simulation simulation(world, device, {.seed = 1});
   const netio::Socket sink = netio::open_udp({netio::kLoopback, 0}, {.receive = 4u << 20});
   apps::SendPlan plan;
   plan.stride = 0;  // all to one port
-  for (const sensors::Roster::Group& group : roster.groups())
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
     plan.bases[group.kind->id] = netio::bound_endpoint(sink).port;
-  apps::Post post(world, roster, plan, netio::Outbox(apps::outbox_options(roster)));
+  apps::Post post(world, sensor_set, plan, netio::Outbox(apps::outbox_options(sensor_set)));
 
   netio::ReceiveBatch batch(64);
   std::uint64_t hash = 0;

@@ -12,7 +12,7 @@
 #include "netio/radio.h"
 #include "netio/socket.h"
 #include "record/recording.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 #include "tests/netio/documented.h"
@@ -136,7 +136,7 @@ TEST_F(Kinds, CheckCountsThem) {
   const Json facts(run("check", world, {"--json"}).out);
   EXPECT_EQ(facts.number("/sensors/laser"), 2);
   EXPECT_EQ(facts.number("/sensors/magnetometer"), 2);
-  EXPECT_EQ(facts.size("/sensors"), sensors::kinds().size()) << "kinds that are not there are 0";
+  EXPECT_EQ(facts.size("/sensors"), sensors::sensor_types().size()) << "kinds that are not there are 0";
   EXPECT_EQ(facts.number("/magnets"), 1);
   EXPECT_EQ(facts.number("/magnet_cutoff_m"), 0);
   EXPECT_EQ(facts.number("/paint"), 0);
@@ -314,35 +314,37 @@ TEST_F(Kinds, WhatNobodyDrivesByChangesNoPath) {
   EXPECT_NE(alone.front().X_WM.x, alone.back().X_WM.x) << "the robot is meant to drive";
 }
 
-TEST(Wire, MagnetometersSendTheDocumentedBytes) {
-  const sensors::SensorKind* kind = sensors::find_sensor_type(kMagnetometer);
+TEST(WireFormat, MagnetometersSendTheDocumentedBytes) {
+  const sensors::SensorType* kind = sensors::find_sensor_type(kMagnetometer);
   if (kind == nullptr) GTEST_SKIP() << "built without the magnetometer";
   const std::vector<double> values{1.3e-4, 0, -0.5e-4, 1.2e-4, 0.25e-4, 0, 0, -0.25e-4};
-  sensors::SensorRow row;
+  sensors::SensorSpec row;
   row.elements = 2;
   row.limit = 1.0;
   base::Bytes payload, packet, plain;
-  const std::uint8_t type = kind->encode(row, {.kind = kind->id, .values = values}, sensors::Wire::farm, 0, payload);
+  const std::uint8_t type =
+      kind->encode(row, {.kind = kind->id, .values = values}, sensors::WireFormat::farm, 0, payload);
   netio::frame({.robot = 7, .sequence = 30, .time = 3'000'000'000}, type, payload, packet);
   EXPECT_EQ(packet, test::documented("magnetometer"));
-  EXPECT_NE(kind->encode(row, {.kind = kind->id, .values = values}, sensors::Wire::thesis, 0, plain), 0);
+  EXPECT_NE(kind->encode(row, {.kind = kind->id, .values = values}, sensors::WireFormat::thesis, 0, plain), 0);
   EXPECT_EQ(plain, test::documented("thesis_magnetometer"));
 }
 
-TEST(Wire, LaneEdgesSendTheDocumentedBytes) {
-  const sensors::SensorKind* kind = sensors::find_sensor_type(kLaneEdge);
+TEST(WireFormat, LaneEdgesSendTheDocumentedBytes) {
+  const sensors::SensorType* kind = sensors::find_sensor_type(kLaneEdge);
   if (kind == nullptr) GTEST_SKIP() << "built without the lane edge sensor";
   const std::vector<double> values{0.25, 61, 12e-6, 1.5e-3};
   base::Bytes payload, packet, plain;
-  const std::uint8_t type = kind->encode({}, {.kind = kind->id, .values = values}, sensors::Wire::farm, 0, payload);
+  const std::uint8_t type =
+      kind->encode({}, {.kind = kind->id, .values = values}, sensors::WireFormat::farm, 0, payload);
   netio::frame({.robot = 7, .sequence = 30, .time = 3'000'000'000}, type, payload, packet);
   EXPECT_EQ(packet, test::documented("lane_edge"));
-  EXPECT_NE(kind->encode({}, {.kind = kind->id, .values = values}, sensors::Wire::thesis, 0, plain), 0);
+  EXPECT_NE(kind->encode({}, {.kind = kind->id, .values = values}, sensors::WireFormat::thesis, 0, plain), 0);
   EXPECT_EQ(plain, test::documented("thesis_lane_edge"));
   // No edge in sight.
   const std::vector<double> none{NAN, 0, NAN, NAN};
   plain.clear();
-  kind->encode({}, {.kind = kind->id, .values = none}, sensors::Wire::thesis, 0, plain);
+  kind->encode({}, {.kind = kind->id, .values = none}, sensors::WireFormat::thesis, 0, plain);
   EXPECT_EQ(plain, (base::Bytes{0xff, 0xff}));
 }
 

@@ -95,7 +95,7 @@ TEST(Map, MergesSeveralAndSurvivesNonsense) {
 }
 
 TEST(Map, PacketsAreAsDocumented) {
-  sensors::SensorRow row;
+  sensors::SensorSpec row;
   row.elements = row.across = 2;
   row.pitch = 0.5;
   const double words[] = {1.0, 0x8A000000};
@@ -103,13 +103,13 @@ TEST(Map, PacketsAreAsDocumented) {
   reading.X_WS = {1.0, -2.0, 0.0, 0.0};
   reading.values = words;
   reading.flags = maps::kTruePoses;
-  const sensors::SensorKind& kind = sensors::occupancy_kind;
+  const sensors::SensorType& kind = sensors::occupancy_type;
   base::Bytes payload, packet, first, second;
-  kind.encode(row, reading, sensors::Wire::farm, 0, payload);
+  kind.encode(row, reading, sensors::WireFormat::farm, 0, payload);
   netio::frame({.robot = 7, .sequence = 30, .time = 3'000'000'000}, kind.id, payload, packet);
   EXPECT_EQ(packet, test::documented("occupancy"));
-  kind.encode(row, reading, sensors::Wire::thesis, 0, first);
-  kind.encode(row, reading, sensors::Wire::thesis, 1, second);
+  kind.encode(row, reading, sensors::WireFormat::thesis, 0, first);
+  kind.encode(row, reading, sensors::WireFormat::thesis, 1, second);
   EXPECT_EQ(first, test::documented("thesis_occupancy"));
   EXPECT_EQ(second, test::documented("thesis_occupancy_rest"));
 }

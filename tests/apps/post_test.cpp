@@ -61,16 +61,16 @@ class PostTest : public testing::TestWithParam<std::uint32_t> {};
 TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
   const std::uint32_t robots = GetParam();
   const world::World world = fleet(robots);
-  const sensors::Roster roster(world);
+  const sensors::SensorSet sensor_set(world);
   const netio::Socket ears = netio::open_udp({netio::kLoopback, 0}, {.receive = 32u << 20});
   if (netio::receive_buffer(ears) < 2'000 * robots) GTEST_SKIP() << "this user's receive buffers hold too little";
   SendPlan plan;
   plan.stride = 0;  // all to one port
   plan.bases[base::kLaser] = netio::bound_endpoint(ears).port;
-  Post post(world, roster, plan, netio::Outbox(outbox_options(roster)));
+  Post post(world, sensor_set, plan, netio::Outbox(outbox_options(sensor_set)));
 
   const Day day(robots, 5);
-  const sensors::SensorKind& kind = *roster.group(base::kLaser)->kind;
+  const sensors::SensorType& kind = *sensor_set.group(base::kLaser)->kind;
   std::map<std::uint32_t, std::uint32_t> sent;
   netio::ReceiveBatch batch(64);
   std::size_t first = 0, lost = 0;
@@ -81,7 +81,7 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
       const base::ReadingBlock& block = day.blocks[i];
       letters.push_back({&block, netio::kLoopback, {7, 9}});
       base::Bytes payload, packet;
-      const std::uint8_t type = kind.encode(roster.row(block), block, sensors::Wire::farm, 0, payload);
+      const std::uint8_t type = kind.encode(sensor_set.row(block), block, sensors::WireFormat::farm, 0, payload);
       if (type == 0) continue;
       netio::Header header;
       header.robot = static_cast<std::uint16_t>(block.mover + 1);

@@ -7,7 +7,7 @@
 #include "record/recorder.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
 
@@ -24,10 +24,11 @@ std::string record(const Folder& folder, const Words& more = {}) {
 
 /// Half a second of two robots, its checksums right, with one range of one scan at `tick` a millimetre off.
 std::string altered(const Folder& folder, std::uint64_t tick) {
-  const world::World world = world::load_world(our_world("rooms.world"), {.sensors = sensors::vocabulary()});
+  const world::World world = world::load_world(our_world("rooms.world"), {.sensors = sensors::world_file_words()});
   gpu::Device device;
   scenarios::Simulation simulation(world, device, {.seed = 3});
-  record::Recorder recorder(folder.path("altered"), scenarios::run_info(world, simulation.farm().roster(), {3, true}));
+  record::Recorder recorder(folder.path("altered"),
+                            scenarios::run_info(world, simulation.farm().sensor_set(), {3, true}));
   for (std::uint64_t t = 0; t < 5; ++t) {
     base::TickRecord record = simulation.step();
     std::vector<base::ReadingBlock> readings(record.readings.begin(), record.readings.end());

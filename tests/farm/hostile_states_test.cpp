@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "robots/fleet.h"
-#include "sensors/kind.h"
 #include "sensors/laser_reference.h"
+#include "sensors/sensor_type.h"
 #include "tests/farm/small_farm.h"
 #include "tests/sensors/chance.h"
 
@@ -113,7 +113,7 @@ TEST(HostileStates, AmongBoxes) {
 /// Every kind of sensor, road, lights and magnets.
 TEST(HostileStates, InSimVille) {
   const world::World world =
-      world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::vocabulary()});
+      world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
   for (const std::uint64_t seed : {4u, 5u}) expect_the_same_from_all(world, seed);
 }
 

@@ -66,8 +66,8 @@ void challenge(netio::Inbox& inbox, const netio::Packet& packet, const netio::En
 }
 
 /// A laser of 3 beams up to 8 m, and one of whatever: the two streams of the listener below.
-sensors::SensorRow laser_of(std::size_t stream) {
-  sensors::SensorRow row;
+sensors::SensorSpec laser_of(std::size_t stream) {
+  sensors::SensorSpec row;
   row.elements = stream == 0 ? 3 : 0;
   row.limit = stream == 0 ? 8.0 : 100.0;
   return row;
@@ -75,11 +75,11 @@ sensors::SensorRow laser_of(std::size_t stream) {
 
 netio::Verdict judge_scan(std::size_t stream, const netio::Header& header, std::span<const std::uint8_t> payload) {
   const auto type = static_cast<std::uint8_t>(header.type);
-  const sensors::Part part = sensors::decode_laser(laser_of(stream), payload, type, sensors::Wire::farm);
-  if (part.fault != sensors::Fault::none) return {netio::Reason::out_of_range};
+  const sensors::PayloadPart part = sensors::decode_laser(laser_of(stream), payload, type, sensors::WireFormat::farm);
+  if (part.fault != sensors::PayloadError::none) return {netio::Reason::out_of_range};
 
   sensors::LaserPart scan;
-  require(sensors::read_laser(payload, type > sensors::kExtended, scan) == sensors::Fault::none);
+  require(sensors::read_laser(payload, type > sensors::kExtended, scan) == sensors::PayloadError::none);
   require(std::uint64_t{scan.first} + scan.count <= scan.total && scan.part < scan.parts);
   for (std::uint32_t i = 0; i < scan.count; ++i) require(sensors::range_of(scan, i) >= 0.0);
   return {netio::Reason::accepted, part.elements, part.part, part.parts};

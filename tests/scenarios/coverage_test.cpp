@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "control/explore.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 
 namespace sf::scenarios {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 using maps::Cell;
 
 world::World mapping_world() {
-  return world::load_world(SF_SOURCE_DIR "/worlds/mapping/mapping.world", {.sensors = sensors::vocabulary()});
+  return world::load_world(SF_SOURCE_DIR "/worlds/mapping/mapping.world", {.sensors = sensors::world_file_words()});
 }
 
 maps::GridGeometry small() { return {-0.12, 0.12, 0.03, 2, 2}; }

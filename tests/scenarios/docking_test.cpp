@@ -7,7 +7,7 @@
 
 #include "control/reason.h"
 #include "scenarios/simulation.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 #include "world/wall_grid.h"
 
 namespace sf::scenarios {
@@ -21,7 +21,7 @@ gpu::Device& device() {
 /// SimVille with roomba5 alone, which carries nothing but its receiver.
 world::World car_park() {
   world::World world =
-      world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::vocabulary()});
+      world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
   const auto robot = std::find_if(world.movers.begin(), world.movers.end(),
                                   [](const world::Mover& mover) { return mover.name == "roomba5"; });
   const base::Pose at[] = {robot->X_WM};

@@ -93,7 +93,7 @@ TEST(Explanation, WallsThatNoLaserMeetsAreNotCounted) {
 
 TEST(Explanation, AKindThatTheWorldLacksIsNotBuilt) {
   const Explanation e = explain(lasers(2), device(), 1, 1);
-  EXPECT_EQ(e.absent.size(), sensors::kinds().size() - 1);
+  EXPECT_EQ(e.absent.size(), sensors::sensor_types().size() - 1);
   EXPECT_EQ(std::count(e.absent.begin(), e.absent.end(), "magnetometer"), 1);
   for (const gpu::DeviceAllocation& h : device().allocations()) EXPECT_EQ(h.owner, "") << "nothing is left behind";
 }

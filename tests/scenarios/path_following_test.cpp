@@ -8,7 +8,7 @@
 #include "scenarios/path_report.h"
 #include "scenarios/simulation.h"
 #include "scenarios/trial.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 #include "world/path_geometry.h"
 
 namespace sf::scenarios {
@@ -101,7 +101,7 @@ TEST(PathFollowing, TheThesisPlantDoublesTheGain) {
 /// With the shipped robot, its own sensor and no settings at all, its body stays within the lane, bend and narrow end.
 TEST(PathFollowing, ByItsOwnDefaultsTheShippedRobotKeepsTheLane) {
   const world::World world =
-      world::load_world(SF_SOURCE_DIR "/worlds/testpath/testpath.world", {.sensors = sensors::vocabulary()});
+      world::load_world(SF_SOURCE_DIR "/worlds/testpath/testpath.world", {.sensors = sensors::world_file_words()});
   for (const char* controller : {"lane-keeping", "magnet-keeping"}) {
     SimulationOptions options;
     options.actor.plan.controller = controller;

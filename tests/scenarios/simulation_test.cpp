@@ -6,7 +6,7 @@
 #include "farm/schedule.h"
 #include "robots/kinematics.h"
 #include "scenarios/watch.h"
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 #include "tests/counted_new.h"
 #include "tests/sensors/scenes.h"
 
@@ -19,7 +19,7 @@ gpu::Device& device() {
 }
 
 world::World our_world(const std::string& name, std::uint32_t robots = 0) {
-  world::World world = world::load_world(SF_SOURCE_DIR "/worlds/" + name, {.sensors = sensors::vocabulary()});
+  world::World world = world::load_world(SF_SOURCE_DIR "/worlds/" + name, {.sensors = sensors::world_file_words()});
   if (robots > 0) world::clone_robots(world, robots, 3);
   return world;
 }

@@ -39,7 +39,7 @@ record::Recording recorded(bool readings, const std::string& mode = "exact", wor
   sensors::set_accuracy(world, mode);
   {
     Simulation simulation(world, device(), {.seed = 9});
-    record::Recorder recorder(folder.string(), run_info(world, simulation.farm().roster(), {9, readings}));
+    record::Recorder recorder(folder.string(), run_info(world, simulation.farm().sensor_set(), {9, readings}));
     for (int tick = 0; tick < 20; ++tick) recorder.write(simulation.step());
     recorder.finish();
   }

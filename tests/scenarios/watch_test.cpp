@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "sensors/kind.h"
+#include "sensors/sensor_type.h"
 #include "world/lights.h"
 #include "world/roads/network.h"
 
@@ -45,7 +45,7 @@ class Town {
 
  private:
   static world::World load() {
-    return world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::vocabulary()});
+    return world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
   }
   static SimulationOptions nobody() {
     SimulationOptions options;

@@ -6,7 +6,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "selftest/fixture.h"
-#include "sensors/field/survey.h"
+#include "sensors/magnetic_field/sampling.h"
 #include "tests/sensors/chance.h"
 
 namespace sf::selftest {
@@ -124,7 +124,7 @@ TEST(Oracle, FieldsOfRandomMagnets) {
       const auto moment = static_cast<float>(sign * magnitude(chance, 1e-12, 1e12));
       world.magnets.push_back({{far + p.x, p.y}, chance.between(-1e-3, 1e-3), moment, 1e-9, 0});
     }
-    const sensors::Place place{far, 0.0, chance.between(-1e-2, 1e-2)};
+    const sensors::FieldPoint place{far, 0.0, chance.between(-1e-2, 1e-2)};
     Digits100 x = 0, y = 0, z = 0, magnitudes = 0;
     double nearest = HUGE_VAL;
     for (const world::Magnet& m : world.magnets) {
@@ -136,7 +136,7 @@ TEST(Oracle, FieldsOfRandomMagnets) {
       magnitudes += sqrt(bx * bx + by * by + bz * bz);
       nearest = std::min(nearest, static_cast<double>(sqrt(r2)));
     }
-    const auto sum = sensors::survey(world, fixture().device(), {&place, 1}, {.magnitudes = true})[0];
+    const auto sum = sensors::sample_field(world, fixture().device(), {&place, 1}, {.magnitudes = true})[0];
     const Digits100 ex = sum.x - x, ey = sum.y - y, ez = sum.z - z;
     const auto apart = static_cast<double>(sqrt(ex * ex + ey * ey + ez * ez) / magnitudes);
     const double allowed = 1e-13 + 4e-18 / nearest;

@@ -30,14 +30,14 @@ world::World load(const std::string& of_all, const std::string& laser = "", cons
   std::ofstream(file) << of_all << "\nposition( size [0.3 0.3 0.3]\nlaser( samples 11 " << laser << " )\nmagnetometer( "
                       << magnetometer << " )\nbumper( " << bumper
                       << " ) )\nmodel( pose [0.5 0 0 0] size [0.02 0.02 0.02] magnetic_moment 1 )\n";
-  return world::load_world(file.string(), {.accuracy = order, .sensors = sensors::vocabulary()});
+  return world::load_world(file.string(), {.accuracy = order, .sensors = sensors::world_file_words()});
 }
 
-std::string modes(const world::World& world) { return sensors::modes_of(sensors::Roster(world)); }
+std::string modes(const world::World& world) { return sensors::modes_of(sensors::SensorSet(world)); }
 
 std::string refusal(const world::World& world) {
   try {
-    sensors::Roster roster(world);
+    sensors::SensorSet sensor_set(world);
   } catch (const base::InputError& error) {
     return error.what();
   }
@@ -231,7 +231,7 @@ TEST(Accuracy, GrazingBeamsAreFlagged) {
 
 TEST(Accuracy, BoundsAreStatedBeforehandAndGrowWithTheWorld) {
   const auto stated = [](const world::World& world) {
-    return sensors::statements_of(world, sensors::Roster(world)).at(0).bound.error;
+    return sensors::accuracy_statements(world, sensors::SensorSet(world)).at(0).bound.error;
   };
   world::World near = crowd(61), far = crowd(61);
   world::translate(far, 1e7, 1e7);
@@ -317,7 +317,8 @@ TEST(Accuracy, FieldsAreWithinTheirBoundAnywhere) {
           worst = std::max(worst, error / r.bound);
         }
       EXPECT_GT(worst, 1e-4) << "or the bound says nothing";
-      EXPECT_LE(glance.readings[0].bound, sensors::statements_of(world, sensors::Roster(world)).at(0).bound.error);
+      EXPECT_LE(glance.readings[0].bound,
+                sensors::accuracy_statements(world, sensors::SensorSet(world)).at(0).bound.error);
     }
 }
 
@@ -328,7 +329,7 @@ TEST(Accuracy, AMagnetAsHighAsTheSensorHasNoBound) {
   scenes::add_carrier(world, {0.3, 0.0, 0.0, 0.0}, scenes::array({{0.0, 0.0, 0.0, 0.0}}, 0.05));
   world::update_extent_and_hash(world);
   EXPECT_TRUE(std::isinf(Glance(world).readings[0].bound));
-  EXPECT_TRUE(std::isinf(sensors::statements_of(world, sensors::Roster(world)).at(0).bound.error));
+  EXPECT_TRUE(std::isinf(sensors::accuracy_statements(world, sensors::SensorSet(world)).at(0).bound.error));
 }
 
 /// Who states nothing says so: kinds without bounds.

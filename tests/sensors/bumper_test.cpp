@@ -100,7 +100,7 @@ TEST(Bumper, NothingIsPressedBeforeAnythingIsReported) {
   const world::World world = carriers(fitted("bumper"));
   const Glance run(world);
   EXPECT_EQ(values_of(run.readings[0]), std::vector<double>{0.0});
-  EXPECT_EQ(run.farm.roster().of(sensors::kBumper, 0)[0].elements, 1u);
+  EXPECT_EQ(run.farm.sensor_set().of(sensors::kBumper, 0)[0].elements, 1u);
 }
 
 TEST(Bumper, SettingsThatMakeNoSense) {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "sensors/drops.h"
+#include "sensors/drop_off_index.h"
 #include "tests/sensors/host_trial.h"
 
 namespace sf::trial {
@@ -92,7 +92,7 @@ TEST(Cliff, ManyDropsAnswerAsEachOneDoes) {
       outline.push_back(p + base::rotate(2 * M_PI * k / 5, {chance.between(0.1, i % 10 == 0 ? 4.0 : 0.5), 0.0}));
     drops.push_back({outline, 0});
   }
-  const sensors::Drops all(drops);
+  const sensors::DropOffIndex all(drops);
   int inside = 0;
   for (int i = 0; i < 5000; ++i) {
     const glm::dvec2 p = chance.in_square(11.0);

@@ -57,9 +57,9 @@ inline ConeTruth cone_truth(std::span<const world::Segment> all, const base::Pos
     double low = array.range_max, high = 0.0;
     for (const oracle::Meeting& m : ray.right) {
       double range = static_cast<double>(m.range);
-      if (array.least_cosine > 0.0 && m.model != base::kNoHit) {
-        if (std::fabs(m.sine - array.least_cosine) < 1e-5) truth.delicate = true;
-        if (m.sine < array.least_cosine) range = array.range_max;
+      if (array.min_cosine > 0.0 && m.model != base::kNoHit) {
+        if (std::fabs(m.sine - array.min_cosine) < 1e-5) truth.delicate = true;
+        if (m.sine < array.min_cosine) range = array.range_max;
       }
       low = std::min(low, range);
       high = std::max(high, range);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "sensors/sky.h"
+#include "sensors/gnss_visibility.h"
 #include "tests/sensors/host_trial.h"
 #include "tests/sensors/statistics.h"
 
@@ -16,8 +16,8 @@ namespace {
 
 using sensors::constellation;
 using sensors::dilution;
+using sensors::GnssVisibility;
 using sensors::Satellite;
-using sensors::Sky;
 
 constexpr std::uint64_t kAll = 0xFF;
 
@@ -26,8 +26,8 @@ std::vector<double> read(const world::World& world) { return values_of(Glance(wo
 /// Due east, 45 degrees up.
 constexpr Satellite kEast{{1, 0}, 1.0};
 
-bool sees(const world::World& world, glm::dvec2 p, double z, const Satellite& satellite) {
-  return Sky(world).sees(p, z, satellite);
+bool is_visible(const world::World& world, glm::dvec2 p, double z, const Satellite& satellite) {
+  return GnssVisibility(world).is_visible(p, z, satellite);
 }
 
 // --- The constellation.
@@ -37,10 +37,10 @@ TEST(Gps, SatellitesStandAboveTheMaskAllRound) {
     const auto all = constellation(count);
     glm::dvec2 sum;
     for (const Satellite& s : all) {
-      EXPECT_NEAR(glm::length(s.flat), 1.0, 1e-12);
-      EXPECT_GT(std::atan(s.rise), 15.0 * M_PI / 180);
-      EXPECT_LT(std::atan(s.rise), M_PI / 2);
-      sum = sum + s.flat;
+      EXPECT_NEAR(glm::length(s.horizontal), 1.0, 1e-12);
+      EXPECT_GT(std::atan(s.tan_elevation), 15.0 * M_PI / 180);
+      EXPECT_LT(std::atan(s.tan_elevation), M_PI / 2);
+      sum = sum + s.horizontal;
     }
     EXPECT_LT(glm::length(sum), 2.0) << "evenly";
   }
@@ -51,9 +51,9 @@ std::array<std::array<long double, 4>, 4> covariance(const std::vector<Satellite
   long double m[4][8]{};
   for (std::size_t i = 0; i < satellites.size(); ++i) {
     if ((seen >> i & 1) == 0) continue;
-    const long double elevation = std::atan(static_cast<long double>(satellites[i].rise));
-    const long double row[] = {satellites[i].flat.x * std::cos(elevation), satellites[i].flat.y * std::cos(elevation),
-                               std::sin(elevation), 1};
+    const long double elevation = std::atan(static_cast<long double>(satellites[i].tan_elevation));
+    const long double row[] = {satellites[i].horizontal.x * std::cos(elevation),
+                               satellites[i].horizontal.y * std::cos(elevation), std::sin(elevation), 1};
     for (int r = 0; r < 4; ++r)
       for (int c = 0; c < 4; ++c) m[r][c] += row[r] * row[c];
   }
@@ -110,44 +110,44 @@ TEST(Gps, AWallBlocksWhereTheLineCrossesItsHeights) {
   const auto wall = [&](double x, double z_min, double z_max) {
     world.walls = {{.a = {x, -1}, .b = {x, 1}, .z_min = z_min, .z_max = z_max, .solid_left = false}};
   };
-  EXPECT_TRUE(sees(world, {0, 0}, 0, kEast)) << "nothing stands";
+  EXPECT_TRUE(is_visible(world, {0, 0}, 0, kEast)) << "nothing stands";
   wall(1, 0, 2);
-  EXPECT_FALSE(sees(world, {0, 0}, 0, kEast));
-  EXPECT_TRUE(sees(world, {2, 0}, 0, kEast)) << "behind";
-  EXPECT_TRUE(sees(world, {0, 2}, 0, kEast)) << "beside";
-  EXPECT_FALSE(sees(world, {0, 1}, 0, kEast)) << "its very end";
-  EXPECT_TRUE(sees(world, {0, 0}, 1.5, kEast)) << "the antenna is high enough";
-  EXPECT_TRUE(sees(world, {0, 0}, 1.0, kEast)) << "just over the top";
-  EXPECT_TRUE(sees(world, {-1.5, 0}, 0, kEast)) << "far enough";
+  EXPECT_FALSE(is_visible(world, {0, 0}, 0, kEast));
+  EXPECT_TRUE(is_visible(world, {2, 0}, 0, kEast)) << "behind";
+  EXPECT_TRUE(is_visible(world, {0, 2}, 0, kEast)) << "beside";
+  EXPECT_FALSE(is_visible(world, {0, 1}, 0, kEast)) << "its very end";
+  EXPECT_TRUE(is_visible(world, {0, 0}, 1.5, kEast)) << "the antenna is high enough";
+  EXPECT_TRUE(is_visible(world, {0, 0}, 1.0, kEast)) << "just over the top";
+  EXPECT_TRUE(is_visible(world, {-1.5, 0}, 0, kEast)) << "far enough";
   wall(1, 1.0, 2);
-  EXPECT_FALSE(sees(world, {0, 0}, 0, kEast)) << "at its foot";
+  EXPECT_FALSE(is_visible(world, {0, 0}, 0, kEast)) << "at its foot";
   wall(1, 1.01, 2);
-  EXPECT_TRUE(sees(world, {0, 0}, 0, kEast)) << "below its foot: it hangs";
+  EXPECT_TRUE(is_visible(world, {0, 0}, 0, kEast)) << "below its foot: it hangs";
   wall(1, 0, 1);
-  EXPECT_TRUE(sees(world, {0, 0}, 0, kEast)) << "its top is open";
+  EXPECT_TRUE(is_visible(world, {0, 0}, 0, kEast)) << "its top is open";
   world.walls = {{.a = {1, 0}, .b = {2, 0}, .z_min = 0, .z_max = 9, .solid_left = false}};
-  EXPECT_TRUE(sees(world, {0, 0}, 0, kEast)) << "edge on";
+  EXPECT_TRUE(is_visible(world, {0, 0}, 0, kEast)) << "edge on";
 }
 
 TEST(Gps, WhatNeitherLasersSeeNorStopsRobotsIsAir) {
   world::World world;
   world.walls = {{.a = {1, -1}, .b = {1, 1}, .z_min = 0, .z_max = 9}};
   world.walls[0].seen_by_laser = false;
-  EXPECT_FALSE(sees(world, {0, 0}, 0, kEast));
+  EXPECT_FALSE(is_visible(world, {0, 0}, 0, kEast));
   world.walls[0].stops_robots = false;
-  EXPECT_TRUE(sees(world, {0, 0}, 0, kEast));
+  EXPECT_TRUE(is_visible(world, {0, 0}, 0, kEast));
 }
 
 TEST(Gps, ADeckBlocksWhereTheLineReachesItsUnderside) {
   world::World world;
   add_solid(world, square({0, 0}, 4), 1.0, 1.1);
-  EXPECT_FALSE(sees(world, {0, 0}, 0, kEast)) << "under its middle";
-  EXPECT_FALSE(sees(world, {0.99, 0}, 0, kEast)) << "the line meets it at x = 1.99";
-  EXPECT_TRUE(sees(world, {1.01, 0}, 0, kEast)) << "it is through before";
-  EXPECT_FALSE(sees(world, {-2.99, 0}, 0, kEast)) << "from outside, in under the edge";
-  EXPECT_FALSE(sees(world, {-3.05, 0}, 0, kEast)) << "its side";
-  EXPECT_TRUE(sees(world, {-3.2, 0}, 0, kEast)) << "over it";
-  EXPECT_TRUE(sees(world, {0, 0}, 1.2, kEast)) << "on top of it";
+  EXPECT_FALSE(is_visible(world, {0, 0}, 0, kEast)) << "under its middle";
+  EXPECT_FALSE(is_visible(world, {0.99, 0}, 0, kEast)) << "the line meets it at x = 1.99";
+  EXPECT_TRUE(is_visible(world, {1.01, 0}, 0, kEast)) << "it is through before";
+  EXPECT_FALSE(is_visible(world, {-2.99, 0}, 0, kEast)) << "from outside, in under the edge";
+  EXPECT_FALSE(is_visible(world, {-3.05, 0}, 0, kEast)) << "its side";
+  EXPECT_TRUE(is_visible(world, {-3.2, 0}, 0, kEast)) << "over it";
+  EXPECT_TRUE(is_visible(world, {0, 0}, 1.2, kEast)) << "on top of it";
 }
 
 TEST(Gps, ADeckWithAHoleAndDecksThatOverlap) {
@@ -157,9 +157,9 @@ TEST(Gps, ADeckWithAHoleAndDecksThatOverlap) {
   const auto ring = square({0.5, 0}, 0.6);
   for (std::size_t i = 4; i > 0; --i)
     world.walls.push_back({.a = ring[i % 4], .b = ring[i - 1], .z_min = 1.0, .z_max = 1.1});
-  EXPECT_TRUE(sees(world, {-0.55, 0}, 0, kEast)) << "through the hole";
-  EXPECT_FALSE(sees(world, {-0.25, 0}, 0, kEast)) << "in, but against its side";
-  EXPECT_FALSE(sees(world, {0, 0}, 0, kEast));
+  EXPECT_TRUE(is_visible(world, {-0.55, 0}, 0, kEast)) << "through the hole";
+  EXPECT_FALSE(is_visible(world, {-0.25, 0}, 0, kEast)) << "in, but against its side";
+  EXPECT_FALSE(is_visible(world, {0, 0}, 0, kEast));
   world::World twice;
   add_solid(twice, square({0, 0}, 4), 1.0, 1.1);
   for (world::Segment wall : std::vector(twice.walls)) {
@@ -167,7 +167,7 @@ TEST(Gps, ADeckWithAHoleAndDecksThatOverlap) {
     wall.b.x += 1;
     twice.walls.push_back(wall);
   }
-  EXPECT_FALSE(sees(twice, {0.5, 0}, 0, kEast)) << "where both parts lie";
+  EXPECT_FALSE(is_visible(twice, {0.5, 0}, 0, kEast)) << "where both parts lie";
 }
 
 /// Random boxes, some of them overhead: the line is walked in small steps.
@@ -187,7 +187,7 @@ TEST(Gps, SightAgreesWithWalkingAlongTheLine) {
       solids.push_back({chance.in_square(6), chance.between(0.1, 0.8), foot, foot + chance.between(0.1, 2.0)});
       add_solid(world, square(solids.back().middle, 2 * solids.back().half), foot, solids.back().z_max);
     }
-    const Sky sky(world);
+    const GnssVisibility sky(world);
     for (int i = 0; i < 40; ++i) {
       const glm::dvec2 p = chance.in_square(6);
       const auto inside = [&](glm::dvec2 q, double z) {
@@ -199,10 +199,10 @@ TEST(Gps, SightAgreesWithWalkingAlongTheLine) {
       if (inside(p, 0.2)) continue;
       for (const Satellite& s : satellites) {
         bool met = false;
-        for (double way = 0; 0.2 + way * s.rise < 4.1 && !met; way += 2e-3)
-          met = inside(p + way * s.flat, 0.2 + way * s.rise);
+        for (double way = 0; 0.2 + way * s.tan_elevation < 4.1 && !met; way += 2e-3)
+          met = inside(p + way * s.horizontal, 0.2 + way * s.tan_elevation);
         (met ? blocked : clear) += 1;
-        differ += sky.sees(p, 0.2, s) == met;
+        differ += sky.is_visible(p, 0.2, s) == met;
       }
     }
   }
@@ -248,8 +248,8 @@ TEST(Gps, InAStreetErrorsGrow) {
 
 TEST(Gps, ComesOnceASecondUnlessToldOtherwise) {
   const auto rate = [](std::vector<world::Setting> settings) {
-    const sensors::Roster roster(carriers(fitted("gps", std::move(settings))));
-    return roster.of(sensors::kGps, 0)[0].rate;
+    const sensors::SensorSet sensor_set(carriers(fitted("gps", std::move(settings))));
+    return sensor_set.of(sensors::kGps, 0)[0].rate;
   };
   EXPECT_EQ(rate({}), 1.0);
   EXPECT_EQ(rate({setting("rate", {5})}), 5.0);
@@ -268,7 +268,7 @@ TEST(Gps, ErrorsAreNoiseTimesTheDilution) {
   double squares = 0.0, hdop = 0.0;
   std::uint64_t seen = 0;
   const auto all = constellation(8);
-  for (std::size_t i = 0; i < 8; ++i) seen |= std::uint64_t{sees(world, {0, 0}, 0, all[i])} << i;
+  for (std::size_t i = 0; i < 8; ++i) seen |= std::uint64_t{is_visible(world, {0, 0}, 0, all[i])} << i;
   ASSERT_LT(std::popcount(seen), 8);
   const auto d = dilution(all, seen);
   ASSERT_TRUE(d);
@@ -308,7 +308,7 @@ TEST(Gps, SettingsThatMakeNoSense) {
 /// The town that comes with the program has a bridge over Second Street.
 TEST(Gps, UnderSimVillesBridge) {
   world::World world =
-      world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::vocabulary()});
+      world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});
   world.movers.clear();
   world::Sensor sensor = fitted("gps");
   sensor.X_MS.z = 0.1;

@@ -109,7 +109,7 @@ TEST(HostCast, SonarAndInfraredRings) {
 world::World road(double resolution) {
   world::World world;
   world.road_resolution = resolution;
-  world.lane_markings.push_back(stripe({20.0, 0.1}, {-20.0, 0.1}));
+  world.lane_markings.push_back(marking({20.0, 0.1}, {-20.0, 0.1}));
   scenes::add_outline(world, {{1.2, -0.6}, {1.6, -0.6}, {1.6, 0.6}, {1.2, 0.6}}, "box on the road");
   for (int i = 0; i < 6; ++i) {
     add_edge_eye(world, {0.5 * i - 1.0, -0.25 - 0.02 * i, 0.0, M_PI / 2.0});

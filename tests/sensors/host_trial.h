@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/magnet_scenes.h"
 
@@ -70,7 +70,7 @@ inline std::vector<glm::dvec2> square(glm::dvec2 middle, double side) {
 inline void expect_refused(const std::string& type, std::vector<world::Setting> settings, int line,
                            const std::string& words) {
   try {
-    const sensors::Roster roster(carriers(fitted(type, std::move(settings))));
+    const sensors::SensorSet sensor_set(carriers(fitted(type, std::move(settings))));
     FAIL() << "not refused: " << words;
   } catch (const base::InputError& error) {
     const std::string what = error.what();

@@ -32,7 +32,7 @@ TEST(LaneEdgeAllocation, NoneOnceWarm) {
     world::World world;
     world.road_resolution = h;
     add_dashes(world, {-3.0, 0.0}, {3.0, 0.0}, 0.05, 0.2, 0.2);
-    world.lane_markings.push_back(stripe({-3.0, 0.2}, {3.0, 0.2}));
+    world.lane_markings.push_back(marking({-3.0, 0.2}, {3.0, 0.2}));
     for (int i = 0; i < 40; ++i)
       add_edge_eye(world, {-2.0 + 0.1 * i, -0.3, 0.0, 1.3}, {{"perpendicular", {0}}, {"noise", {0.002, 0.001, 0.1}}});
     scenes::add_robot(world, {0.0, -0.2, 0.0, 0.0}, scenes::laser());

@@ -30,7 +30,7 @@ void add_sides(std::vector<Face>& faces, glm::dvec2 a, glm::dvec2 b) {
 }
 
 void add_straight(world::World& world, std::vector<Face>& faces, glm::dvec2 a, glm::dvec2 b) {
-  world.lane_markings.push_back(stripe(a, b, kWidth));
+  world.lane_markings.push_back(marking(a, b, kWidth));
   add_sides(faces, a, b);
 }
 
@@ -195,15 +195,15 @@ QualityFlag said(world::World world, const Pose& pose, const Settings& settings 
 
 TEST(LaneEdgeBounds, AFlagSaysWhy) {
   world::World line;
-  line.lane_markings.push_back(stripe({-1.0, 0.0}, {1.0, 0.0}, kWidth));
+  line.lane_markings.push_back(marking({-1.0, 0.0}, {1.0, 0.0}, kWidth));
   EXPECT_EQ(said(line, {0.0, -0.3, 0.0, 0.5 * M_PI}), QualityFlag::none);
   EXPECT_EQ(said(line, {1.02, -0.3, 0.0, 0.5 * M_PI}), QualityFlag::extrapolated) << "2 cm past the end";
   EXPECT_EQ(said(line, {0.0, -0.3, 0.0, 0.5 * M_PI}, {{"perpendicular", {-20}}}), QualityFlag::extrapolated);
-  world::World bend;
-  bend.lane_markings.push_back(arc({0.0, 0.0}, 0.68, 0.0, 3.0, kWidth));
-  EXPECT_EQ(said(bend, {0.0, 0.4, 0.0, 0.5 * M_PI}), QualityFlag::not_straight);
+  world::World curvature;
+  curvature.lane_markings.push_back(arc({0.0, 0.0}, 0.68, 0.0, 3.0, kWidth));
+  EXPECT_EQ(said(curvature, {0.0, 0.4, 0.0, 0.5 * M_PI}), QualityFlag::not_straight);
   world::World two = line;
-  two.lane_markings.push_back(stripe({0.0, 0.3}, {1.0, 0.3}, kWidth));
+  two.lane_markings.push_back(marking({0.0, 0.3}, {1.0, 0.3}, kWidth));
   two.lane_markings[0].line[1] = {0.02, 0.0};
   EXPECT_EQ(said(two, {0.0, -0.3, 0.0, 0.5 * M_PI}), QualityFlag::not_straight) << "another edge behind its end";
 }
@@ -211,7 +211,7 @@ TEST(LaneEdgeBounds, AFlagSaysWhy) {
 /// Noise is in the line, and pixels are: then no bound is stated, and sigma counts.
 TEST(LaneEdgeBounds, AreNotStatedOfNoiseAndPixels) {
   world::World world;
-  world.lane_markings.push_back(stripe({-1.0, 0.0}, {1.0, 0.0}, kWidth));
+  world.lane_markings.push_back(marking({-1.0, 0.0}, {1.0, 0.0}, kWidth));
   const Pose pose{0.0, -0.3, 0.0, 0.5 * M_PI};
   add_edge_eye(world, pose, {{"perpendicular", {0}}, {"noise", {0.002, 0, 0}}});
   EXPECT_TRUE(std::isinf(EdgeRig(world).tick({{0, 0}}, {pose})[0].bound));

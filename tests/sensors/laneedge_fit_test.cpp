@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "base/random.h"
-#include "sensors/paint/edge_fit.h"
+#include "sensors/lane_markings/edge_fit.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/laneedge_mirror.h"
@@ -85,7 +85,7 @@ class FitRig {
     const raycast::BeamPlan plan = raycast::plan_beams(edges_[i].fan, true);
     std::vector<double> directions;
     std::vector<float> normals;
-    const base::RandomKey draw{0, base::RandomStream::range_noise, i, sensors::edge_noise_name(0), 3};
+    const base::RandomKey draw{0, base::RandomStream::range_noise, i, sensors::edge_noise_id(0), 3};
     for (std::uint32_t k = 0; k < shot.ranges.size(); ++k) {
       directions.push_back(fit_.directions(i)[2 * plan.place(k)]);
       directions.push_back(fit_.directions(i)[2 * plan.place(k) + 1]);

@@ -10,8 +10,8 @@
 #include <span>
 
 #include "raycast/records.h"
+#include "sensors/lane_markings/line_fit.h"
 #include "sensors/laneedge.h"
-#include "sensors/paint/line_fit.h"
 
 namespace sf::mirror {
 
@@ -64,12 +64,12 @@ static inline Moments moments_near(const Points& p, std::uint32_t first, std::ui
   return m;
 }
 
-static inline Trend trend_near(const Points& p, const Line& line, double allowed) {
-  Trend s = no_trend();
+static inline LineMoments trend_near(const Points& p, const Line& line, double allowed) {
+  LineMoments s = no_moments();
   double v = 0.0;
   for (std::uint32_t k = 0; k < p.count; ++k) {
     const double w = near(line, p, k, allowed, v) ? p.w[k] : 0.0;
-    add_to_trend(s, w, along(line, p.x[k], p.y[k]), v);
+    add_to_moments(s, w, along(line, p.x[k], p.y[k]), v);
   }
   return s;
 }
@@ -107,7 +107,7 @@ static inline Candidate elect(const Points& p, double source) {
     const double wide = std::sqrt(c.line.spread * 12.0) * double(lanes) / double(w.end - w.first);
     c.allowed = 0.625 * source + 0.015625 * wide;
     c.votes = 0.0F;
-    const Ballot paper = ballot(c.line, c.allowed);
+    const Hypothesis paper = hypothesis_of(c.line, c.allowed);
     // Of a wide fan every other lane votes.
     for (std::uint32_t i = 0; i < p.count; ++i) {
       if (lanes >= 12 && i / p.lane % 2 == 1) continue;
@@ -146,19 +146,20 @@ static inline EdgeReading read_edge(const EdgeRow& row, const Points& p, std::sp
   Line line = line_through(all);
   double noise = std::sqrt(noise_across(line, row));
   const double source = tolerance(grain, noise);
-  Trend trend = trend_near(p, line, kAll);
-  Bend bend = bend_of(trend);
-  if (trend.n > 2.5 && !is_one_edge(trend, bend, source)) {
+  LineMoments trend = trend_near(p, line, kAll);
+  Parabola curvature = parabola_of(trend);
+  if (trend.n > 2.5 && !is_one_edge(trend, curvature, source)) {
     const Candidate best = elect(p, source);
     line = line_through(moments_near(p, 0, p.count, best.line, best.allowed));
     line = line_through(moments_near(p, 0, p.count, line, best.allowed));
     trend = trend_near(p, line, best.allowed);
-    bend = bend_of(trend);
+    curvature = parabola_of(trend);
     noise = std::sqrt(noise_across(line, row));
   }
   constexpr double kFloor = 9.313225746154785e-10;
-  const Doubt doubt = Doubt(grain, noise > kFloor ? noise : kFloor);
-  const Fitted f = fit_at(line, trend, bend, doubt, row.perpendicular_x, row.perpendicular_y, row.distance_max);
+  const PointError point_error = PointError(grain, noise > kFloor ? noise : kFloor);
+  const LineFit f =
+      fit_at(line, trend, curvature, point_error, row.perpendicular_x, row.perpendicular_y, row.distance_max);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const double others = all.n - f.points;
   return {f.seen ? f.distance : kNan, f.points, f.seen ? f.residual : 0.0, f.seen ? f.sigma : kNan, f.gain, others};

@@ -11,7 +11,7 @@
 namespace sf::sensors {
 namespace {
 
-base::Bytes encoded(const std::vector<double>& values, Wire wire) {
+base::Bytes encoded(const std::vector<double>& values, WireFormat wire) {
   base::ReadingBlock block;
   block.values = values;
   base::Bytes out;
@@ -20,13 +20,13 @@ base::Bytes encoded(const std::vector<double>& values, Wire wire) {
 }
 
 TEST(LaneEdgePackets, EveryByte) {
-  const base::Bytes farm = encoded({0.25, 61, 0.000'123, 0.004'567}, Wire::farm);
+  const base::Bytes farm = encoded({0.25, 61, 0.000'123, 0.004'567}, WireFormat::farm);
   EXPECT_EQ(farm, (base::Bytes{0xFA, 0x00, 61, 0, 123, 0, 0, 0, 0xD7, 0x11, 0, 0}));
-  EXPECT_EQ(encoded({0.25, 61, 0.1, 0.1}, Wire::thesis), (base::Bytes{0xFA, 0x00}));
+  EXPECT_EQ(encoded({0.25, 61, 0.1, 0.1}, WireFormat::thesis), (base::Bytes{0xFA, 0x00}));
 }
 
 std::uint16_t millimetres(double metres) {
-  const base::Bytes b = encoded({metres, 2, 0, 0}, Wire::thesis);
+  const base::Bytes b = encoded({metres, 2, 0, 0}, WireFormat::thesis);
   return static_cast<std::uint16_t>(b[0] | b[1] << 8);
 }
 
@@ -44,29 +44,31 @@ TEST(LaneEdgePackets, RoundsToNearestAndSaturates) {
 
 TEST(LaneEdgePackets, NoEdgeInSightKeepsItsPoints) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(encoded({kNan, 1, 0, kNan}, Wire::farm),
+  EXPECT_EQ(encoded({kNan, 1, 0, kNan}, WireFormat::farm),
             (base::Bytes{0xFF, 0xFF, 1, 0, 0, 0, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF}));
-  EXPECT_EQ(encoded({0.1, 1e9, 1e9, 1e9}, Wire::farm),
+  EXPECT_EQ(encoded({0.1, 1e9, 1e9, 1e9}, WireFormat::farm),
             (base::Bytes{100, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}));
 }
 
 TEST(LaneEdgePackets, AnyBytesGiveAPartOrAFault) {
-  for (const Wire wire : {Wire::farm, Wire::thesis}) {
-    const std::size_t right = wire == Wire::farm ? 12 : 2;
+  for (const WireFormat wire : {WireFormat::farm, WireFormat::thesis}) {
+    const std::size_t right = wire == WireFormat::farm ? 12 : 2;
     for (std::size_t size = 0; size < 20; ++size) {
       const std::vector<std::uint8_t> bytes(size, 0xA5);
-      const Fault expected = size < right ? Fault::too_short : size > right ? Fault::too_long : Fault::none;
+      const PayloadError expected = size < right   ? PayloadError::too_short
+                                    : size > right ? PayloadError::too_long
+                                                   : PayloadError::none;
       EXPECT_EQ(decode_lane_edge({}, bytes, kLaneEdge, wire).fault, expected) << size;
     }
   }
-  EXPECT_EQ(decode_lane_edge({}, std::vector<std::uint8_t>(12), 7, Wire::farm).fault, Fault::out_of_range);
-  EXPECT_EQ(decode_lane_edge({}, std::vector<std::uint8_t>(12), kLaneEdge, Wire::farm).elements, 1u);
+  EXPECT_EQ(decode_lane_edge({}, std::vector<std::uint8_t>(12), 7, WireFormat::farm).fault, PayloadError::out_of_range);
+  EXPECT_EQ(decode_lane_edge({}, std::vector<std::uint8_t>(12), kLaneEdge, WireFormat::farm).elements, 1u);
 }
 
 TEST(LaneEdgePackets, OneDatagramAndNeverRefused) {
-  for (const Wire wire : {Wire::farm, Wire::thesis}) {
+  for (const WireFormat wire : {WireFormat::farm, WireFormat::thesis}) {
     EXPECT_EQ(lane_edge_parts({}, wire), 1u);
-    EXPECT_EQ(refuse_lane_edge({}, wire), "");
+    EXPECT_EQ(lane_edge_wire_problem({}, wire), "");
   }
 }
 

@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "sensors/paint/raster.h"
+#include "sensors/lane_markings/marking_raster.h"
 #include "tests/sensors/chance.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/laneedge_trial.h"
@@ -20,7 +20,7 @@ namespace {
 
 using base::Pose;
 using sensors::EdgeReading;
-using sensors::PaintRaster;
+using sensors::MarkingRaster;
 
 constexpr double kDegrees = M_PI / 180.0;
 constexpr double kPixels[] = {0.002, 0.005, 0.01, 0.02};
@@ -50,8 +50,8 @@ TEST(LaneEdgeRaster, EveryRayEntersTheFirstPaintedCell) {
     world::World world;
     world.road_resolution = h;
     for (int i = 0; i < 5; ++i)
-      world.lane_markings.push_back(stripe(chance.in_square(1.0), chance.in_square(1.0), chance.between(0.02, 0.1)));
-    const PaintRaster raster(world.lane_markings, h, 1.2, "");
+      world.lane_markings.push_back(marking(chance.in_square(1.0), chance.in_square(1.0), chance.between(0.02, 0.1)));
+    const MarkingRaster raster(world.lane_markings, h, 1.2, "");
     std::vector<glm::dvec2> cells;
     for (std::int64_t y = 0; y < 8 * raster.rows(); ++y)
       for (std::int64_t x = 0; x < 8 * raster.columns(); ++x)
@@ -96,7 +96,7 @@ TEST(LaneEdgeRaster, EveryRayEntersTheFirstPaintedCell) {
 TEST(LaneEdgeRaster, OnPaintARayReadsTheWayOff) {
   world::World world;
   world.road_resolution = 0.01;
-  world.lane_markings.push_back(stripe({-1.0, 0.0}, {1.0, 0.0}, 0.1));
+  world.lane_markings.push_back(marking({-1.0, 0.0}, {1.0, 0.0}, 0.1));
   add_edge_eye(world, {0.003, 0.002, 0.0, 0.5 * M_PI}, {{"samples", {1}}});
   add_edge_eye(world, {0.003, 0.002, 0.0, 0.0}, {{"samples", {1}}});
   const auto readings = read_edges(world);
@@ -108,7 +108,7 @@ TEST(LaneEdgeRaster, OnPaintARayReadsTheWayOff) {
 TEST(LaneEdgeRaster, FarFromAllPaint) {
   world::World world;
   world.road_resolution = 0.01;
-  world.lane_markings.push_back(stripe({-1.0, 0.0}, {1.0, 0.0}, 0.1));
+  world.lane_markings.push_back(marking({-1.0, 0.0}, {1.0, 0.0}, 0.1));
   for (const double far : {3.0, 1e3, 1e7, -1e12}) add_edge_eye(world, {far, far, 0.0, -0.75 * M_PI});
   for (const EdgeReading& r : read_edges(world)) {
     EXPECT_TRUE(std::isnan(r.distance));
@@ -120,7 +120,7 @@ TEST(LaneEdgeRaster, FarFromAllPaint) {
 TEST(LaneEdgeRaster, WallsAndMoversBesidePixels) {
   world::World world;
   world.road_resolution = 0.005;
-  world.lane_markings.push_back(stripe({-3.0, 0.55}, {3.0, 0.55}, 0.1));
+  world.lane_markings.push_back(marking({-3.0, 0.55}, {3.0, 0.55}, 0.1));
   scenes::add_outline(world, {{1, 0.3}, {3, 0.3}, {3, 0.4}, {1, 0.4}}, "kerb");
   add_edge_eye(world, {0.0, 0.0, 0.0, 0.5 * M_PI});
   add_edge_eye(world, {2.0, 0.0, 0.0, 0.5 * M_PI});
@@ -137,7 +137,7 @@ TEST(LaneEdgeRaster, TooFineForItsRangeIsRefusedByName) {
   world::World world;
   world.file = "hand.world";
   world.road_resolution = 1e-4;
-  world.lane_markings.push_back(stripe({0.0, 0.0}, {0.5, 0.0}, 0.1));
+  world.lane_markings.push_back(marking({0.0, 0.0}, {0.5, 0.0}, 0.1));
   add_edge_eye(world, {});
   try {
     read_edges(world);
@@ -207,7 +207,7 @@ Trial straight(double h, std::size_t count, double from_degrees, double to_degre
     const glm::dvec2 t{std::cos(a), std::sin(a)};
     const glm::dvec2 n{-t.y, t.x};
     if (i < kStripes && paint > 0.0) add_dashes(trial.world, o - 2.4 * t, o + 2.4 * t, kWidth, paint, gap);
-    if (i < kStripes && paint == 0.0) trial.world.lane_markings.push_back(stripe(o - 2.4 * t, o + 2.4 * t, kWidth));
+    if (i < kStripes && paint == 0.0) trial.world.lane_markings.push_back(marking(o - 2.4 * t, o + 2.4 * t, kWidth));
     const double side = chance.below(2) == 0 ? 1.0 : -1.0;
     const double tilt = side * chance.between(from_degrees, to_degrees) * kDegrees;
     const double d = chance.between(nearest, farthest);
@@ -301,7 +301,7 @@ TEST(LaneEdgeRaster, AStageBitmapReadsAsTheRasterDoes) {
   for (const Pose& X : poses) add_edge_eye(trial.world, X, {{"perpendicular", {0}}});
   const auto from_raster = read_edges(trial.world);
 
-  const PaintRaster raster(trial.world.lane_markings, kPixel, 0.05, "");
+  const MarkingRaster raster(trial.world.lane_markings, kPixel, 0.05, "");
   const int width = 8 * static_cast<int>(raster.columns());
   const int height = 8 * static_cast<int>(raster.rows());
   const std::filesystem::path folder = std::filesystem::path(SF_BINARY_DIR) / "laneedge_bitmap";

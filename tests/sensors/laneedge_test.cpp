@@ -36,7 +36,7 @@ long double face_distance(const world::LaneMarking& s, const Pose& X_WS, double 
 /// A stripe along +x, its near face `d` metres ahead of a sensor at the origin that sees it askew by `degrees`.
 EdgeReading askew(double d, double degrees, const Settings& settings = {{"perpendicular", {0}}}) {
   world::World world;
-  world.lane_markings.push_back(stripe({20.0, 0.0}, {-20.0, 0.0}, kWidth));
+  world.lane_markings.push_back(marking({20.0, 0.0}, {-20.0, 0.0}, kWidth));
   // The stripe's left side is -y.
   add_edge_eye(world, {0.0, -d - 0.5 * kWidth, 0.0, (90.0 + degrees) * kDegrees}, settings);
   return read_edges(world)[0];
@@ -82,7 +82,7 @@ TEST(LaneEdge, WhatIsBehindIsNotSeen) {
 
 TEST(LaneEdge, TheEndOfADashIsNoEdge) {
   world::World world;
-  world.lane_markings.push_back(stripe({0.3, 0.0}, {2.0, 0.0}, 0.2));
+  world.lane_markings.push_back(marking({0.3, 0.0}, {2.0, 0.0}, 0.2));
   add_edge_eye(world, {});
   add_edge_eye(world, {1.0, -0.3, 0.0, 0.5 * M_PI});
   const auto readings = read_edges(world);
@@ -117,7 +117,7 @@ TEST(LaneEdge, ASingleRayReadsItsRange) {
 /// along +y. Both see the same edge, by default perpendicular to the robot.
 TEST(LaneEdge, TheThesisFrameAndOurs) {
   world::World world;
-  world.lane_markings.push_back(stripe({5.0, 0.5}, {-5.0, 0.5}, kWidth));
+  world.lane_markings.push_back(marking({5.0, 0.5}, {-5.0, 0.5}, kWidth));
   for (const double tilt : {0.0, 20.0, -20.0}) {
     world::Mover ours;
     ours.X_WM = {0.0, 0.0, 0.0, tilt * kDegrees};
@@ -186,7 +186,7 @@ TEST(LaneEdge, DefaultsAreThoseOfTheThesis) {
 /// Movers hide paint and are none; what only the sensor's own robot carries hides nothing.
 TEST(LaneEdge, AMoverInTheWayIsNoEdge) {
   world::World world;
-  world.lane_markings.push_back(stripe({5.0, 0.0}, {-5.0, 0.0}, kWidth));
+  world.lane_markings.push_back(marking({5.0, 0.0}, {-5.0, 0.0}, kWidth));
   add_edge_eye(world, {0.0, -0.55, 0.0, 0.5 * M_PI});
   EXPECT_EQ(read_edges(world)[0].points, 61);
   scenes::add_robot(world, {0.2, -0.25, 0.0, 0.0}, scenes::laser());
@@ -232,7 +232,7 @@ Scene straight_scene(std::uint32_t sensors_wanted, double most_degrees, std::uin
     const glm::dvec2 o = offset + glm::dvec2{7.0 * (k % 8), 7.0 * (k / 8.0)};
     const glm::dvec2 t{std::cos(a), std::sin(a)};
     const glm::dvec2 n{-t.y, t.x};
-    if (i < kStripes) scene.world.lane_markings.push_back(stripe(o - 3.0 * t, o + 3.0 * t, kWidth));
+    if (i < kStripes) scene.world.lane_markings.push_back(marking(o - 3.0 * t, o + 3.0 * t, kWidth));
     const double tilt = chance.between(-most_degrees, most_degrees) * kDegrees;
     const double d = chance.between(0.02, std::fabs(tilt) > 60.0 * kDegrees ? 0.1 : 0.6);
     const glm::dvec2 p = o + chance.between(-0.5, 0.5) * t + (0.5 * kWidth + d) * n;
@@ -330,8 +330,8 @@ TEST(LaneEdge, WhatMustNotMatter) {
 /// Two lanes paint the edge that they share: seen once, and the same.
 TEST(LaneEdge, PaintOnPaintIsOnePaint) {
   world::World world;
-  world.lane_markings.push_back(stripe({-2, 0}, {2, 0}));
-  world.lane_markings.push_back(stripe({2, 0}, {-2, 0}));
+  world.lane_markings.push_back(marking({-2, 0}, {2, 0}));
+  world.lane_markings.push_back(marking({2, 0}, {-2, 0}));
   add_edge_eye(world, {0.1, -0.4, 0.0, 1.5});
   const EdgeReading twice = read_edges(world)[0];
   world.lane_markings.pop_back();

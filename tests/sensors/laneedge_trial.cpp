@@ -30,13 +30,13 @@ std::uint32_t add_edge_eye(world::World& world, const base::Pose& X_WM, Settings
   return mover.id;
 }
 
-world::LaneMarking stripe(glm::dvec2 from, glm::dvec2 to, double width) { return {{from, to}, width}; }
+world::LaneMarking marking(glm::dvec2 from, glm::dvec2 to, double width) { return {{from, to}, width}; }
 
 void add_dashes(world::World& world, glm::dvec2 from, glm::dvec2 to, double width, double paint, double gap) {
   const double all = length(to - from);
   const glm::dvec2 along = (1.0 / all) * (to - from);
   for (double at = 0.0; at < all - 1e-6; at += paint + gap)
-    world.lane_markings.push_back(stripe(from + at * along, from + std::min(at + paint, all) * along, width));
+    world.lane_markings.push_back(marking(from + at * along, from + std::min(at + paint, all) * along, width));
 }
 
 world::LaneMarking arc(glm::dvec2 centre, double radius, double from, double to, double width, double sagitta) {
@@ -55,7 +55,7 @@ struct EdgeRig::State {
   world::World world;
   base::ThreadPool thread_pool;
   sensors::SensorContext context;
-  std::unique_ptr<sensors::Instruments> instruments;
+  std::unique_ptr<sensors::SensorBackend> backend;
   gpu::Batch batch;
   std::size_t rows;
   std::vector<base::ReadingBlock> blocks;
@@ -64,9 +64,9 @@ struct EdgeRig::State {
       : world(w),
         thread_pool(threads),
         context{world, on, thread_pool, seed, noise, {}},
-        instruments(sensors::laneedge_kind.make(context)),
+        backend(sensors::laneedge_type.make(context)),
         batch(on),
-        rows(sensors::laneedge_kind.rows(world).size()) {}
+        rows(sensors::laneedge_type.rows(world).size()) {}
 };
 
 EdgeRig::EdgeRig(const world::World& world, std::uint64_t seed, unsigned threads, bool noise, gpu::Device* on)
@@ -77,18 +77,18 @@ EdgeRig::~EdgeRig() = default;
 const std::vector<base::ReadingBlock>& EdgeRig::tick(const std::vector<sensors::DueSample>& due,
                                                      const std::vector<base::Pose>& poses) {
   State& s = *s_;
-  s.instruments->set_poses(poses);
-  if (s.instruments->prepare(due, poses)) {
+  s.backend->set_poses(poses);
+  if (s.backend->prepare(due, poses)) {
     s.batch.begin();
-    s.instruments->record_measure(s.batch);
+    s.backend->record_measure(s.batch);
     s.batch.barrier();
-    s.instruments->record_derive(s.batch);
+    s.backend->record_derive(s.batch);
     s.batch.end();
   }
-  s.instruments->add_copies(s.batch);
+  s.backend->add_copies(s.batch);
   s.batch.run();
   s.blocks.clear();
-  s.instruments->collect(s.blocks);
+  s.backend->collect(s.blocks);
   return s.blocks;
 }
 

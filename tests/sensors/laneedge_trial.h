@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "sensors/kind.h"
 #include "sensors/laneedge.h"
+#include "sensors/sensor_type.h"
 #include "world/world.h"
 
 namespace sf::trial {
@@ -22,7 +22,7 @@ world::Sensor edge_sensor(const Settings& settings, const base::Pose& X_MS = {})
 std::uint32_t add_edge_eye(world::World& world, const base::Pose& X_WM, Settings settings = {});
 
 /// A straight stripe.
-world::LaneMarking stripe(glm::dvec2 from, glm::dvec2 to, double width = 0.1);
+world::LaneMarking marking(glm::dvec2 from, glm::dvec2 to, double width = 0.1);
 
 /// Dashes along a straight line: `paint` metres of it, then `gap` without, from `from` on.
 void add_dashes(world::World& world, glm::dvec2 from, glm::dvec2 to, double width, double paint, double gap);

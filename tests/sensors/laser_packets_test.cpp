@@ -21,8 +21,8 @@ constexpr std::uint8_t kSecond = 65;
 constexpr std::size_t kHeader = 64;     ///< [byte] before every payload on the wire
 constexpr std::size_t kSignature = 80;  ///< [byte] of room behind it
 
-SensorRow laser(std::uint32_t samples, double range_max) {
-  SensorRow row;
+SensorSpec laser(std::uint32_t samples, double range_max) {
+  SensorSpec row;
   row.elements = samples;
   row.limit = range_max;
   return row;
@@ -31,7 +31,7 @@ SensorRow laser(std::uint32_t samples, double range_max) {
 base::ReadingBlock scan_of(const std::vector<double>& ranges) { return {.kind = 1, .values = ranges}; }
 
 base::Bytes encoded(const std::vector<double>& ranges, double range_max, std::uint32_t part = 0,
-                    Wire wire = Wire::farm) {
+                    WireFormat wire = WireFormat::farm) {
   base::Bytes out;
   encode_laser(laser(static_cast<std::uint32_t>(ranges.size()), range_max), scan_of(ranges), wire, part, out);
   return out;
@@ -49,7 +49,7 @@ base::Bytes patched(base::Bytes bytes, std::size_t offset, T value) {
 double through_wire(double metres, double range_max) {
   const base::Bytes bytes = encoded({metres}, range_max);
   LaserPart scan;
-  EXPECT_EQ(read_laser(bytes, range_max > kPlainRange, scan), Fault::none);
+  EXPECT_EQ(read_laser(bytes, range_max > kPlainRange, scan), PayloadError::none);
   return range_of(scan, 0);
 }
 
@@ -59,7 +59,7 @@ TEST(LaserPackets, PayloadsAreTheDocumentedOnes) {
   parts[311] = kInf;
   EXPECT_EQ(encoded({1.0, 0.25, 8.0}, 8.0), payload_of(documented("laser")));
   EXPECT_EQ(encoded(parts, 100.0, 1), payload_of(documented("laser_extended")));
-  EXPECT_EQ(encoded({1.0, 0.25, 8.0}, 8.0, 0, Wire::thesis), documented("thesis"));
+  EXPECT_EQ(encoded({1.0, 0.25, 8.0}, 8.0, 0, WireFormat::thesis), documented("thesis"));
   EXPECT_EQ(documented("laser").at(5), kPlain);
   EXPECT_EQ(documented("laser_extended").at(5), kSecond);
 }
@@ -99,25 +99,25 @@ TEST(LaserPackets, NanIsNeverSent) {
   for (const double range_max : {8.0, 80.0}) {
     for (const auto& ranges : {std::vector{1.0, kNan}, std::vector{kNan, 1.0}}) {
       base::Bytes out = {1, 2, 3};
-      EXPECT_EQ(encode_laser(laser(2, range_max), scan_of(ranges), Wire::farm, 0, out), 0);
+      EXPECT_EQ(encode_laser(laser(2, range_max), scan_of(ranges), WireFormat::farm, 0, out), 0);
       EXPECT_EQ(out, (base::Bytes{1, 2, 3}));  // nothing appended
     }
   }
   base::Bytes out;
-  EXPECT_EQ(encode_laser(laser(1, 8.0), scan_of({kNan}), Wire::thesis, 0, out), 0);
+  EXPECT_EQ(encode_laser(laser(1, 8.0), scan_of({kNan}), WireFormat::thesis, 0, out), 0);
 }
 
 TEST(LaserPackets, ANanStopsItsOwnPartOnly) {
   std::vector<double> ranges(311, 1.0);
   ranges[310] = kNan;
   base::Bytes out;
-  EXPECT_EQ(encode_laser(laser(311, 80.0), scan_of(ranges), Wire::farm, 0, out), kSecond);
-  EXPECT_EQ(encode_laser(laser(311, 80.0), scan_of(ranges), Wire::farm, 1, out), 0);
+  EXPECT_EQ(encode_laser(laser(311, 80.0), scan_of(ranges), WireFormat::farm, 0, out), kSecond);
+  EXPECT_EQ(encode_laser(laser(311, 80.0), scan_of(ranges), WireFormat::farm, 1, out), 0);
 }
 
 TEST(LaserPackets, PayloadsAreAppended) {
   base::Bytes out = {9};
-  EXPECT_EQ(encode_laser(laser(1, 8.0), scan_of({1.0}), Wire::farm, 0, out), kPlain);
+  EXPECT_EQ(encode_laser(laser(1, 8.0), scan_of({1.0}), WireFormat::farm, 0, out), kPlain);
   EXPECT_EQ(out, (base::Bytes{9, 1, 0, 0xe8, 3}));
 }
 
@@ -125,38 +125,38 @@ TEST(LaserPackets, TheFormFollowsFromTheSensor) {
   const auto type = [](std::uint32_t samples, double range_max) {
     base::Bytes out;
     const std::vector<double> ranges(samples, 1.0);
-    return encode_laser(laser(samples, range_max), scan_of(ranges), Wire::farm, 0, out);
+    return encode_laser(laser(samples, range_max), scan_of(ranges), WireFormat::farm, 0, out);
   };
   EXPECT_EQ(type(361, 65.535), kPlain);
   EXPECT_EQ(type(362, 8.0), kSecond);
   EXPECT_EQ(type(1, 65.536), kSecond);
   EXPECT_EQ(type(1, kInf), kSecond);
-  EXPECT_EQ(laser_parts(laser(361, 8.0), Wire::farm), 1u);
-  EXPECT_EQ(laser_parts(laser(362, 8.0), Wire::farm), 2u);
-  EXPECT_EQ(laser_parts(laser(310, 80.0), Wire::farm), 1u);  // exactly one full part
-  EXPECT_EQ(laser_parts(laser(311, 80.0), Wire::farm), 2u);
-  EXPECT_EQ(laser_parts(laser(kExtendedRays, 80.0), Wire::farm), 3226u);
+  EXPECT_EQ(laser_parts(laser(361, 8.0), WireFormat::farm), 1u);
+  EXPECT_EQ(laser_parts(laser(362, 8.0), WireFormat::farm), 2u);
+  EXPECT_EQ(laser_parts(laser(310, 80.0), WireFormat::farm), 1u);  // exactly one full part
+  EXPECT_EQ(laser_parts(laser(311, 80.0), WireFormat::farm), 2u);
+  EXPECT_EQ(laser_parts(laser(kExtendedRays, 80.0), WireFormat::farm), 3226u);
 }
 
 TEST(LaserPackets, ScansOfAnySizeComeBackWhole) {
   for (const std::uint32_t samples : {1u, 2u, 309u, 310u, 311u, 361u, 362u, 620u, 621u, 10'000u, kExtendedRays}) {
     for (const double range_max : {8.0, 100.0}) {
-      const SensorRow row = laser(samples, range_max);
+      const SensorSpec row = laser(samples, range_max);
       std::vector<double> sent(samples);
       for (std::uint32_t i = 0; i < samples; ++i) sent[i] = (i * 7919 % 7000) * 1e-3;
       std::vector<double> got;
-      const std::uint32_t parts = laser_parts(row, Wire::farm);
+      const std::uint32_t parts = laser_parts(row, WireFormat::farm);
       for (std::uint32_t part = 0; part < parts; ++part) {
         base::Bytes bytes;
-        const std::uint8_t type = encode_laser(row, scan_of(sent), Wire::farm, part, bytes);
+        const std::uint8_t type = encode_laser(row, scan_of(sent), WireFormat::farm, part, bytes);
         ASSERT_LE(kHeader + bytes.size() + kSignature, 1400u);
         LaserPart scan;
-        ASSERT_EQ(read_laser(bytes, type == kSecond, scan), Fault::none) << samples << " part " << part;
+        ASSERT_EQ(read_laser(bytes, type == kSecond, scan), PayloadError::none) << samples << " part " << part;
         ASSERT_EQ(scan.total, samples);
         ASSERT_EQ(scan.first, got.size());
         ASSERT_EQ(scan.parts, parts);
-        const Part judged = decode_laser(row, bytes, type, Wire::farm);
-        ASSERT_EQ(judged.fault, Fault::none);
+        const PayloadPart judged = decode_laser(row, bytes, type, WireFormat::farm);
+        ASSERT_EQ(judged.fault, PayloadError::none);
         ASSERT_EQ(judged.elements, scan.count);
         ASSERT_EQ(judged.part, part);
         ASSERT_EQ(judged.parts, parts);
@@ -170,7 +170,7 @@ TEST(LaserPackets, ScansOfAnySizeComeBackWhole) {
 
 TEST(LaserPackets, LargestPayloadsAreTheDocumentedOnes) {
   EXPECT_EQ(kHeader + encoded(std::vector<double>(361, 1.0), 8.0).size(), 788u);
-  EXPECT_EQ(encoded(std::vector<double>(361, 1.0), 8.0, 0, Wire::thesis).size(), 724u);
+  EXPECT_EQ(encoded(std::vector<double>(361, 1.0), 8.0, 0, WireFormat::thesis).size(), 724u);
   EXPECT_EQ(kHeader + encoded(std::vector<double>(310, 1.0), 80.0).size() + kSignature, 1400u);
 }
 
@@ -180,35 +180,35 @@ TEST(LaserPackets, CountsThatDoNotFitAreRefused) {
     return read_laser(payload, false, scan);
   };
   const base::Bytes three = payload_of(documented("laser"));
-  EXPECT_EQ(plain(three), Fault::none);
-  EXPECT_EQ(plain({0, 0}), Fault::out_of_range);  // a scan without rays
+  EXPECT_EQ(plain(three), PayloadError::none);
+  EXPECT_EQ(plain({0, 0}), PayloadError::out_of_range);  // a scan without rays
   base::Bytes many = patched<std::uint16_t>(three, 0, 362);
   many.resize(2 + 2 * 362);
-  EXPECT_EQ(plain(many), Fault::out_of_range);                              // one ray too many
-  EXPECT_EQ(plain(patched<std::uint16_t>(three, 0, 4)), Fault::too_short);  // says more than it has
-  EXPECT_EQ(plain(patched<std::uint16_t>(three, 0, 2)), Fault::too_long);   // says less
-  EXPECT_EQ(plain(patched<std::uint16_t>(three, 0, 65535)), Fault::too_short);
+  EXPECT_EQ(plain(many), PayloadError::out_of_range);                              // one ray too many
+  EXPECT_EQ(plain(patched<std::uint16_t>(three, 0, 4)), PayloadError::too_short);  // says more than it has
+  EXPECT_EQ(plain(patched<std::uint16_t>(three, 0, 2)), PayloadError::too_long);   // says less
+  EXPECT_EQ(plain(patched<std::uint16_t>(three, 0, 65535)), PayloadError::too_short);
 
   const auto extended = [](const base::Bytes& payload) {
     LaserPart scan;
     return read_laser(payload, true, scan);
   };
   const base::Bytes part = payload_of(documented("laser_extended"));
-  EXPECT_EQ(extended(part), Fault::none);
-  EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 0)), Fault::out_of_range);                  // no rays
-  EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, kExtendedRays + 1)), Fault::out_of_range);  // too many
-  EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 0xFFFFFFFF)), Fault::out_of_range);         // their sum would wrap
-  EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 313)), Fault::out_of_range);                // one ray missing
-  EXPECT_EQ(extended(patched<std::uint32_t>(part, 4, 311)), Fault::out_of_range);                // begins elsewhere
-  EXPECT_EQ(extended(patched<std::uint16_t>(part, 8, 2)), Fault::out_of_range);                  // part 2 of 2
+  EXPECT_EQ(extended(part), PayloadError::none);
+  EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 0)), PayloadError::out_of_range);                  // no rays
+  EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, kExtendedRays + 1)), PayloadError::out_of_range);  // too many
+  EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 0xFFFFFFFF)), PayloadError::out_of_range);  // their sum would wrap
+  EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 313)), PayloadError::out_of_range);         // one ray missing
+  EXPECT_EQ(extended(patched<std::uint32_t>(part, 4, 311)), PayloadError::out_of_range);         // begins elsewhere
+  EXPECT_EQ(extended(patched<std::uint16_t>(part, 8, 2)), PayloadError::out_of_range);           // part 2 of 2
   base::Bytes behind =
       patched<std::uint32_t>(patched<std::uint16_t>(patched<std::uint16_t>(part, 8, 2), 12, 310), 4, 620);
   behind.resize(16 + 4 * 310);
-  EXPECT_EQ(extended(behind), Fault::out_of_range);  // the same with all else in order: what is left would wrap
-  EXPECT_EQ(extended(patched<std::uint16_t>(part, 10, 3)), Fault::out_of_range);  // 3 parts for 312 rays
-  EXPECT_EQ(extended(patched<std::uint16_t>(part, 12, 1)), Fault::too_long);
-  EXPECT_EQ(extended(patched<std::uint16_t>(part, 12, 3)), Fault::too_short);
-  EXPECT_EQ(extended(patched<std::uint16_t>(part, 14, 9)), Fault::none);  // reserved: ignored
+  EXPECT_EQ(extended(behind), PayloadError::out_of_range);  // the same with all else in order: what is left would wrap
+  EXPECT_EQ(extended(patched<std::uint16_t>(part, 10, 3)), PayloadError::out_of_range);  // 3 parts for 312 rays
+  EXPECT_EQ(extended(patched<std::uint16_t>(part, 12, 1)), PayloadError::too_long);
+  EXPECT_EQ(extended(patched<std::uint16_t>(part, 12, 3)), PayloadError::too_short);
+  EXPECT_EQ(extended(patched<std::uint16_t>(part, 14, 9)), PayloadError::none);  // reserved: ignored
 }
 
 TEST(LaserPackets, EveryShorterPrefixIsTooShortAndOneByteMoreTooLong) {
@@ -216,53 +216,54 @@ TEST(LaserPackets, EveryShorterPrefixIsTooShortAndOneByteMoreTooLong) {
     base::Bytes whole = payload_of(documented(extended ? "laser_extended" : "laser"));
     LaserPart scan;
     for (std::size_t size = 0; size < whole.size(); ++size)
-      EXPECT_EQ(read_laser(std::span(whole).first(size), extended, scan), Fault::too_short) << size;
+      EXPECT_EQ(read_laser(std::span(whole).first(size), extended, scan), PayloadError::too_short) << size;
     whole.push_back(0);
-    EXPECT_EQ(read_laser(whole, extended, scan), Fault::too_long);
+    EXPECT_EQ(read_laser(whole, extended, scan), PayloadError::too_long);
   }
 }
 
 TEST(LaserPackets, AScanIsWhatItsSensorMayHaveSent) {
-  const auto judged = [](const std::vector<double>& ranges, double said, const SensorRow& row) {
+  const auto judged = [](const std::vector<double>& ranges, double said, const SensorSpec& row) {
     const base::Bytes bytes = encoded(ranges, said);
     const std::uint8_t type = said > kPlainRange ? kSecond : kPlain;
-    return decode_laser(row, bytes, type, Wire::farm).fault;
+    return decode_laser(row, bytes, type, WireFormat::farm).fault;
   };
-  EXPECT_EQ(judged({0, 8, 8.001}, 8.0, laser(3, 8.0)), Fault::none);          // rounding may add one count
-  EXPECT_EQ(judged({0, 8, kInf}, 8.0, laser(3, 8.0)), Fault::none);           // saturated: no return
-  EXPECT_EQ(judged({0, 8, 8.002}, 8.0, laser(3, 8.0)), Fault::out_of_range);  // farther than the sensor sees
-  EXPECT_EQ(judged({0, 8}, 8.0, laser(3, 8.0)), Fault::out_of_range);         // a ray is missing
-  EXPECT_EQ(judged({99, kInf, 100.001}, 100.0, laser(3, 100.0)), Fault::none);
-  EXPECT_EQ(judged({99, kInf, 100.002}, 100.0, laser(3, 100.0)), Fault::out_of_range);
-  EXPECT_EQ(judged({429'496}, 100.0, laser(0, 0.0)), Fault::none);  // nothing is known of the sensor
+  EXPECT_EQ(judged({0, 8, 8.001}, 8.0, laser(3, 8.0)), PayloadError::none);          // rounding may add one count
+  EXPECT_EQ(judged({0, 8, kInf}, 8.0, laser(3, 8.0)), PayloadError::none);           // saturated: no return
+  EXPECT_EQ(judged({0, 8, 8.002}, 8.0, laser(3, 8.0)), PayloadError::out_of_range);  // farther than the sensor sees
+  EXPECT_EQ(judged({0, 8}, 8.0, laser(3, 8.0)), PayloadError::out_of_range);         // a ray is missing
+  EXPECT_EQ(judged({99, kInf, 100.001}, 100.0, laser(3, 100.0)), PayloadError::none);
+  EXPECT_EQ(judged({99, kInf, 100.002}, 100.0, laser(3, 100.0)), PayloadError::out_of_range);
+  EXPECT_EQ(judged({429'496}, 100.0, laser(0, 0.0)), PayloadError::none);  // nothing is known of the sensor
 }
 
 TEST(LaserPackets, OtherTypesAreNoScans) {
   const base::Bytes bytes = encoded({1.0}, 8.0);
   for (const int type : {0, 2, 64, 66, 128})
-    EXPECT_EQ(decode_laser(laser(1, 8.0), bytes, static_cast<std::uint8_t>(type), Wire::farm).fault,
-              Fault::out_of_range);
+    EXPECT_EQ(decode_laser(laser(1, 8.0), bytes, static_cast<std::uint8_t>(type), WireFormat::farm).fault,
+              PayloadError::out_of_range);
 }
 
 TEST(LaserPackets, SensorsThatAWireCannotCarryAreRefusedAtLoad) {
-  EXPECT_EQ(refuse_laser(laser(361, 65.535), Wire::thesis), "");
-  EXPECT_EQ(refuse_laser(laser(kExtendedRays, 1e5), Wire::farm), "");
-  EXPECT_NE(refuse_laser(laser(362, 8.0), Wire::thesis).find("362 samples up to 8"), std::string::npos);
-  EXPECT_NE(refuse_laser(laser(1, 65.6), Wire::thesis).find("--wire farm"), std::string::npos);
-  EXPECT_NE(refuse_laser(laser(kExtendedRays + 1, 8.0), Wire::farm).find("lower `samples`"), std::string::npos);
+  EXPECT_EQ(laser_wire_problem(laser(361, 65.535), WireFormat::thesis), "");
+  EXPECT_EQ(laser_wire_problem(laser(kExtendedRays, 1e5), WireFormat::farm), "");
+  EXPECT_NE(laser_wire_problem(laser(362, 8.0), WireFormat::thesis).find("362 samples up to 8"), std::string::npos);
+  EXPECT_NE(laser_wire_problem(laser(1, 65.6), WireFormat::thesis).find("--wire farm"), std::string::npos);
+  EXPECT_NE(laser_wire_problem(laser(kExtendedRays + 1, 8.0), WireFormat::farm).find("lower `samples`"),
+            std::string::npos);
 }
 
 TEST(LaserPackets, OurOwnBadScansAbort) {
   base::Bytes out;
   const std::vector<double> three(3, 1.0);
-  EXPECT_DEATH(encode_laser(laser(4, 8.0), scan_of(three), Wire::farm, 0, out), "3 rays, of 4 samples");
-  EXPECT_DEATH(encode_laser(laser(3, 8.0), scan_of(three), Wire::farm, 1, out), "part 1");
-  EXPECT_DEATH(encode_laser(laser(3, 99.0), scan_of(three), Wire::thesis, 0, out), "in the thesis' layout");
+  EXPECT_DEATH(encode_laser(laser(4, 8.0), scan_of(three), WireFormat::farm, 0, out), "3 rays, of 4 samples");
+  EXPECT_DEATH(encode_laser(laser(3, 8.0), scan_of(three), WireFormat::farm, 1, out), "part 1");
+  EXPECT_DEATH(encode_laser(laser(3, 99.0), scan_of(three), WireFormat::thesis, 0, out), "in the thesis' layout");
 }
 
 TEST(LaserPackets, AnyBytesAreJudged) {
   std::mt19937 random(20260102);  // NOLINT: the same payloads every time
-  const SensorRow rows[] = {laser(3, 8.0), laser(312, 100.0), laser(0, 0.0)};
+  const SensorSpec rows[] = {laser(3, 8.0), laser(312, 100.0), laser(0, 0.0)};
   const base::Bytes seeds[] = {payload_of(documented("laser")), payload_of(documented("laser_extended"))};
   std::uint64_t good = 0;
   for (int i = 0; i < 200'000; ++i) {
@@ -272,13 +273,13 @@ TEST(LaserPackets, AnyBytesAreJudged) {
       bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
     if (random() % 8 == 0) bytes.resize(random() % 60);
     LaserPart scan;
-    if (read_laser(bytes, extended, scan) == Fault::none) {
+    if (read_laser(bytes, extended, scan) == PayloadError::none) {
       ASSERT_LE(std::uint64_t{scan.first} + scan.count, scan.total);
       ASSERT_LT(scan.part, scan.parts);
       for (std::uint32_t ray = 0; ray < scan.count; ++ray) ASSERT_GE(range_of(scan, ray), 0.0);
     }
-    for (const SensorRow& row : rows)
-      good += decode_laser(row, bytes, extended ? kSecond : kPlain, Wire::farm).fault == Fault::none;
+    for (const SensorSpec& row : rows)
+      good += decode_laser(row, bytes, extended ? kSecond : kPlain, WireFormat::farm).fault == PayloadError::none;
   }
   EXPECT_GT(good, 10'000u);
   EXPECT_LT(good, 590'000u);

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <iostream>
 
-#include "sensors/field/magnet_tree.h"
-#include "sensors/field/survey.h"
-#include "sensors/field/truncation.h"
+#include "sensors/magnetic_field/magnet_tree.h"
+#include "sensors/magnetic_field/sampling.h"
+#include "sensors/magnetic_field/truncation.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/magnet_scenes.h"
 
@@ -16,12 +16,12 @@ namespace sf::trial {
 namespace {
 
 using scenes::magnet;
-using sensors::Place;
+using sensors::FieldPoint;
 
 // --- Which magnets count.
 
 double field_z(const world::World& world, const Place& place) {
-  return sensors::survey(world, device(), {&place, 1})[0].z;
+  return sensors::sample_field(world, device(), {&place, 1})[0].z;
 }
 
 /// Along the ground, whatever the height; at exactly the cut-off it counts, a unit in the last place farther it does
@@ -47,7 +47,7 @@ TEST(MagnetCutoff, SumsTheMagnetsThatAreNearEnough) {
       std::vector<Place> places;
       for (int i = 0; i < 250; ++i)
         places.push_back({offset + chance.between(-12, 12), offset + chance.between(-12, 12), 0.1});
-      const auto sums = sensors::survey(world, device(), places);
+      const auto sums = sensors::sample_field(world, device(), places);
       for (std::size_t i = 0; i < places.size(); ++i) {
         const scenes::Exact truth = scenes::exact(world, places[i], cutoff);
         ASSERT_LE(scenes::apart(truth, sums[i]), 1e-7 * static_cast<double>(truth.magnitudes))
@@ -89,10 +89,10 @@ Measured measure(world::World world, double half, double height, std::uint32_t c
     const bool at_rim = i % 2 == 0;
     places.push_back({at_rim ? m.x + r * std::cos(a) : p.x, at_rim ? m.y + r * std::sin(a) : p.y, height});
   }
-  const auto cut = sensors::survey(world, device(), places);
+  const auto cut = sensors::sample_field(world, device(), places);
   Measured result{sensors::truncation_bound(world, height), 0.0};
   world.magnet_cutoff = 0.0;
-  const auto all = sensors::survey(world, device(), places);
+  const auto all = sensors::sample_field(world, device(), places);
   for (std::size_t i = 0; i < places.size(); ++i)
     result.worst = std::max(result.worst, std::hypot(all[i].x - cut[i].x, all[i].y - cut[i].y, all[i].z - cut[i].z));
   return result;
@@ -176,7 +176,7 @@ TEST(MagnetBound, CountsMovingMagnetsAtTheCutoff) {
 TEST(MagnetBound, FactsAreOfTheWorstElement) {
   world::World world = scenes::line(100, 0.1);
   world.magnet_cutoff = 1.5;
-  const sensors::FieldFacts nobody = sensors::field_facts(world);
+  const sensors::MagnetSummary nobody = sensors::summarize_magnets(world);
   EXPECT_EQ(nobody.magnets, 100u);
   EXPECT_EQ(nobody.moving, 0u);
   EXPECT_EQ(nobody.cutoff_m, 1.5);
@@ -184,7 +184,7 @@ TEST(MagnetBound, FactsAreOfTheWorstElement) {
 
   scenes::add_carrier(world, {0, 0, 0.1, 0}, scenes::array({{0, 0, 0.5, 0}, {0, 0, 0.2, 0}}, 0.1));
   world.movers[0].magnets = {magnet({0, 0}, -0.5, 1e-9)};
-  const sensors::FieldFacts facts = sensors::field_facts(world);
+  const sensors::MagnetSummary facts = sensors::summarize_magnets(world);
   EXPECT_EQ(facts.moving, 1u);
   EXPECT_DOUBLE_EQ(facts.height_m, 0.1 + 0.1 + 0.2);
   EXPECT_EQ(facts.bound_T, sensors::truncation_bound(world, facts.height_m));

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "sensors/field/survey.h"
+#include "sensors/magnetic_field/sampling.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/magnet_scenes.h"
 
@@ -13,8 +13,8 @@ namespace {
 
 using scenes::magnet;
 using scenes::magnitude;
+using sensors::FieldPoint;
 using sensors::FieldSum;
-using sensors::Place;
 
 constexpr double kGauss = 1e-4;
 /// Moments have 32 bits on the device.
@@ -27,7 +27,7 @@ world::World one(const world::Magnet& m) {
 }
 
 FieldSum field(const world::World& world, const Place& place) {
-  return sensors::survey(world, device(), {&place, 1}, {.magnitudes = true})[0];
+  return sensors::sample_field(world, device(), {&place, 1}, {.magnitudes = true})[0];
 }
 
 TEST(MagnetField, AboveAndBelowItIsTwiceTheStrengthByTheCube) {

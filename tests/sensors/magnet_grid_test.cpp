@@ -1,6 +1,6 @@
 // The lists of magnets behind a cut-off.
 
-#include "sensors/field/magnet_grid.h"
+#include "sensors/magnetic_field/magnet_grid.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/reading.h"
-#include "sensors/field/magnetic_field.h"
+#include "sensors/magnetic_field/magnetic_field.h"
 #include "tests/sensors/chance.h"
 #include "world/world.h"
 
@@ -98,7 +98,7 @@ struct Exact {
 
 /// The thesis' equation 1, component by component, as it stands there: |B| has these components' squares under its
 /// root. Inside of a magnet's radius, at the radius.
-inline void add_exact(const world::Magnet& m, const sensors::Place& place, Exact& sum) {
+inline void add_exact(const world::Magnet& m, const sensors::FieldPoint& place, Exact& sum) {
   Real x = Real{place.x} - m.p.x, y = Real{place.y} - m.p.y, z = Real{place.z} - m.z;
   Real r = std::sqrt(x * x + y * y + z * z);
   if (r == 0) z = r = 1e-30L;
@@ -111,7 +111,7 @@ inline void add_exact(const world::Magnet& m, const sensors::Place& place, Exact
 }
 
 /// Of all magnets that stand still, or of those within `cutoff` [m] along the ground.
-inline Exact exact(const world::World& world, const sensors::Place& place, double cutoff = 0.0) {
+inline Exact exact(const world::World& world, const sensors::FieldPoint& place, double cutoff = 0.0) {
   Exact sum;
   for (const world::Magnet& m : world.magnets) {
     const double dx = place.x - m.p.x, dy = place.y - m.p.y;

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <iostream>
 
-#include "sensors/field/field_tables.h"
-#include "sensors/field/survey.h"
+#include "sensors/magnetic_field/sampling.h"
+#include "sensors/magnetic_field/tables.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/magnet_scenes.h"
 
@@ -17,13 +17,13 @@ namespace {
 
 using scenes::magnet;
 using scenes::magnitude;
+using sensors::FieldPoint;
 using sensors::FieldSum;
-using sensors::Place;
 
 constexpr double kGauss = 1e-4;
 
 FieldSum field(const world::World& world, const Place& place) {
-  return sensors::survey(world, device(), {&place, 1}, {.magnitudes = true})[0];
+  return sensors::sample_field(world, device(), {&place, 1}, {.magnitudes = true})[0];
 }
 
 TEST(MagnetSum, TheSumOfMagnitudesIsThat) {
@@ -44,8 +44,8 @@ TEST(MagnetSum, MagnitudesDoNotChangeVectors) {
   Chance chance(6);
   std::vector<Place> places;
   for (int i = 0; i < 203; ++i) places.push_back({chance.between(-2, 2), chance.between(-2, 2), 0.1});
-  const auto plain = sensors::survey(world, device(), places);
-  const auto both = sensors::survey(world, device(), places, {.magnitudes = true});
+  const auto plain = sensors::sample_field(world, device(), places);
+  const auto both = sensors::sample_field(world, device(), places, {.magnitudes = true});
   for (std::size_t i = 0; i < places.size(); ++i) {
     EXPECT_EQ(std::memcmp(&plain[i].x, &both[i].x, 3 * sizeof(double)), 0);
     EXPECT_EQ(plain[i].magnitudes, 0.0);
@@ -58,7 +58,7 @@ struct Errors {
 };
 
 Errors errors(const world::World& world, std::span<const Place> places) {
-  const auto sums = sensors::survey(world, device(), places, {.magnitudes = true});
+  const auto sums = sensors::sample_field(world, device(), places, {.magnitudes = true});
   Errors e;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const scenes::Exact truth = scenes::exact(world, places[i]);
@@ -115,7 +115,7 @@ TEST(MagnetSum, TwoHundredThousandMagnetsAreRightAnywhere) {
       world::World world = scenes::sheet(kMany, 400.0, 7);
       for (world::Magnet& m : world.magnets) m.p = m.p + glm::dvec2{offset, -offset};
       const auto places = places_over(world, kPlaces, 100.0, height);
-      const auto sums = sensors::survey(world, device(), places);
+      const auto sums = sensors::sample_field(world, device(), places);
       const auto truths = direct_sums(world, places);
       double worst = 0.0, largest = 0.0;
       for (std::size_t i = 0; i < places.size(); ++i) {
@@ -183,7 +183,7 @@ TEST(MagnetSum, TheKernelIsItsMirrorToTheBit) {
   if (!device().info().software) GTEST_SKIP() << "32-bit roots of GPUs need not be correctly rounded";
   const world::World world = scenes::sheet(50, 1.0, 9, true);
   const auto places = places_over(world, 301, 0.6, 0.05);
-  const auto sums = sensors::survey(world, device(), places, {.magnitudes = true});
+  const auto sums = sensors::sample_field(world, device(), places, {.magnitudes = true});
   for (std::size_t i = 0; i < places.size(); ++i) {
     FieldSum sum;
     for (const world::Magnet& m : world.magnets) {
@@ -200,12 +200,12 @@ TEST(MagnetSum, ThreadsAndCompanyChangeNothing) {
     world::World world = scenes::sheet(3000, 10.0, 10, true);
     world.magnet_cutoff = cutoff;
     const auto places = places_over(world, 400, 5.0, 0.1);
-    const auto all = sensors::survey(world, device(), places, {.threads = 1});
-    const auto threaded = sensors::survey(world, device(), places, {.threads = 3});
+    const auto all = sensors::sample_field(world, device(), places, {.threads = 1});
+    const auto threaded = sensors::sample_field(world, device(), places, {.threads = 3});
     EXPECT_EQ(std::memcmp(all.data(), threaded.data(), all.size() * sizeof all[0]), 0);
     for (std::size_t i = 0; i < places.size(); i += 40) {
       const auto group = std::span(places).subspan(i / 5 * 5, 5);
-      const auto alone = sensors::survey(world, device(), group);
+      const auto alone = sensors::sample_field(world, device(), group);
       EXPECT_EQ(std::memcmp(&all[i / 5 * 5], alone.data(), 5 * sizeof alone[0]), 0) << cutoff << ", place " << i;
     }
   }

@@ -13,14 +13,14 @@
 namespace sf::sensors {
 namespace {
 
-SensorRow row(std::uint32_t elements, double limit = 0.0) {
-  SensorRow r;
+SensorSpec row(std::uint32_t elements, double limit = 0.0) {
+  SensorSpec r;
   r.elements = elements;
   r.limit = limit;
   return r;
 }
 
-base::Bytes bytes_of(std::vector<double> values, Wire wire, std::uint8_t expected = kMagnetometer) {
+base::Bytes bytes_of(std::vector<double> values, WireFormat wire, std::uint8_t expected = kMagnetometer) {
   base::ReadingBlock reading;
   reading.values = values;
   base::Bytes out;
@@ -30,18 +30,18 @@ base::Bytes bytes_of(std::vector<double> values, Wire wire, std::uint8_t expecte
 
 TEST(MagnetometerPackets, EveryByteOfTheFarmsForm) {
   // 1 Gauss, -1e-4 Gauss, 0x01020304 units and nothing.
-  const base::Bytes bytes = bytes_of({1e-4, -1e-8, 0x01020304 * 1e-8, 0.0}, Wire::farm);
+  const base::Bytes bytes = bytes_of({1e-4, -1e-8, 0x01020304 * 1e-8, 0.0}, WireFormat::farm);
   EXPECT_EQ(bytes, (base::Bytes{1, 0, 0, 0, 0x10, 0x27, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 4, 3, 2, 1, 0, 0, 0, 0}));
 }
 
 TEST(MagnetometerPackets, EveryByteOfTheThesisForm) {
-  const base::Bytes bytes = bytes_of({1e-4, 7, 7, 7, -2e-8, 7, 7, 7}, Wire::thesis);
+  const base::Bytes bytes = bytes_of({1e-4, 7, 7, 7, -2e-8, 7, 7, 7}, WireFormat::thesis);
   EXPECT_EQ(bytes, (base::Bytes{0x10, 0x27, 0, 0, 0xFE, 0xFF, 0xFF, 0xFF}));
 }
 
 TEST(MagnetometerPackets, RoundsToNearestAndSaturates) {
   const auto word = [](double tesla) {
-    return magnetometer_word(bytes_of({tesla, 0, 0, 0}, Wire::farm), Wire::farm, 0);
+    return magnetometer_word(bytes_of({tesla, 0, 0, 0}, WireFormat::farm), WireFormat::farm, 0);
   };
   EXPECT_DOUBLE_EQ(word(1.49e-8), 1e-8);
   EXPECT_DOUBLE_EQ(word(1.51e-8), 2e-8);
@@ -58,61 +58,61 @@ TEST(MagnetometerPackets, WhatIsNotANumberIsNotSent) {
   for (std::size_t i = 0; i < 8; ++i) {
     std::vector<double> values(8, 1e-5);
     values[i] = std::nan("");
-    EXPECT_TRUE(bytes_of(values, Wire::farm, 0).empty());
-    EXPECT_TRUE(bytes_of(values, Wire::thesis, 0).empty());
+    EXPECT_TRUE(bytes_of(values, WireFormat::farm, 0).empty());
+    EXPECT_TRUE(bytes_of(values, WireFormat::thesis, 0).empty());
   }
 }
 
 TEST(MagnetometerPackets, GoesThereAndBackInBothForms) {
   trial::Chance chance(1);
-  for (const Wire wire : {Wire::farm, Wire::thesis})
+  for (const WireFormat wire : {WireFormat::farm, WireFormat::thesis})
     for (std::uint32_t count = 1; count <= kMostElements; ++count) {
       std::vector<double> values;
       for (std::uint32_t i = 0; i < 4 * count; ++i) values.push_back(chance.between(-1e-3, 1e-3));
       const base::Bytes bytes = bytes_of(values, wire);
       EXPECT_LE(bytes.size(), 4 + 16 * 16u);
-      const Part part = decode_magnetometer(row(count, 1e-3), bytes, kMagnetometer, wire);
-      ASSERT_EQ(part.fault, Fault::none);
+      const PayloadPart part = decode_magnetometer(row(count, 1e-3), bytes, kMagnetometer, wire);
+      ASSERT_EQ(part.fault, PayloadError::none);
       EXPECT_EQ(part.elements, count);
       EXPECT_EQ(part.parts, 1u);
-      const std::uint32_t columns = wire == Wire::farm ? 4 : 1;
+      const std::uint32_t columns = wire == WireFormat::farm ? 4 : 1;
       for (std::uint32_t i = 0; i < columns * count; ++i)
         EXPECT_NEAR(magnetometer_word(bytes, wire, i), values[i * 4 / columns], 0.5001e-8);
     }
 }
 
 TEST(MagnetometerPackets, JudgesWhatCannotBe) {
-  const base::Bytes good = bytes_of({1e-5, 0, 0, 1e-5, 2e-5, 0, 0, 2e-5}, Wire::farm);
-  const auto fault = [&](base::Bytes bytes, SensorRow sensor, Wire wire = Wire::farm, std::uint8_t type = 3) {
-    return decode_magnetometer(sensor, bytes, type, wire).fault;
-  };
-  EXPECT_EQ(fault(good, row(2)), Fault::none);
-  EXPECT_EQ(fault(good, row(0)), Fault::none) << "of any number of elements";
-  EXPECT_EQ(fault(good, row(3)), Fault::out_of_range) << "of another array";
-  EXPECT_EQ(fault(good, row(2, 2e-5)), Fault::none) << "at the limit";
-  EXPECT_EQ(fault(good, row(2, 1.9e-5)), Fault::out_of_range) << "beyond what the sensor can read";
-  EXPECT_EQ(fault(good, row(2), Wire::farm, 3 + kExtended), Fault::out_of_range) << "there is no second form";
-  EXPECT_EQ(fault(good, row(2), Wire::farm, 1), Fault::out_of_range) << "a laser's";
-  EXPECT_EQ(fault({}, row(2)), Fault::too_short);
-  EXPECT_EQ(fault({1, 0, 0}, row(2)), Fault::too_short);
-  EXPECT_EQ(fault({0, 0, 0, 0}, row(0)), Fault::out_of_range) << "of no elements";
-  EXPECT_EQ(fault({}, row(0), Wire::thesis), Fault::too_short);
-  EXPECT_EQ(fault({1, 2, 3}, row(0), Wire::thesis), Fault::too_short);
-  EXPECT_EQ(fault({1, 2, 3, 4, 5}, row(0), Wire::thesis), Fault::too_long);
-  EXPECT_EQ(fault(base::Bytes(64, 0), row(0), Wire::thesis), Fault::none);
-  EXPECT_EQ(fault(base::Bytes(68, 0), row(0), Wire::thesis), Fault::out_of_range) << "seventeen elements";
+  const base::Bytes good = bytes_of({1e-5, 0, 0, 1e-5, 2e-5, 0, 0, 2e-5}, WireFormat::farm);
+  const auto fault = [&](base::Bytes bytes, SensorSpec sensor, WireFormat wire = WireFormat::farm,
+                         std::uint8_t type = 3) { return decode_magnetometer(sensor, bytes, type, wire).fault; };
+  EXPECT_EQ(fault(good, row(2)), PayloadError::none);
+  EXPECT_EQ(fault(good, row(0)), PayloadError::none) << "of any number of elements";
+  EXPECT_EQ(fault(good, row(3)), PayloadError::out_of_range) << "of another array";
+  EXPECT_EQ(fault(good, row(2, 2e-5)), PayloadError::none) << "at the limit";
+  EXPECT_EQ(fault(good, row(2, 1.9e-5)), PayloadError::out_of_range) << "beyond what the sensor can read";
+  EXPECT_EQ(fault(good, row(2), WireFormat::farm, 3 + kExtended), PayloadError::out_of_range)
+      << "there is no second form";
+  EXPECT_EQ(fault(good, row(2), WireFormat::farm, 1), PayloadError::out_of_range) << "a laser's";
+  EXPECT_EQ(fault({}, row(2)), PayloadError::too_short);
+  EXPECT_EQ(fault({1, 0, 0}, row(2)), PayloadError::too_short);
+  EXPECT_EQ(fault({0, 0, 0, 0}, row(0)), PayloadError::out_of_range) << "of no elements";
+  EXPECT_EQ(fault({}, row(0), WireFormat::thesis), PayloadError::too_short);
+  EXPECT_EQ(fault({1, 2, 3}, row(0), WireFormat::thesis), PayloadError::too_short);
+  EXPECT_EQ(fault({1, 2, 3, 4, 5}, row(0), WireFormat::thesis), PayloadError::too_long);
+  EXPECT_EQ(fault(base::Bytes(64, 0), row(0), WireFormat::thesis), PayloadError::none);
+  EXPECT_EQ(fault(base::Bytes(68, 0), row(0), WireFormat::thesis), PayloadError::out_of_range) << "seventeen elements";
   for (std::size_t size = 0; size < good.size(); ++size)
-    EXPECT_EQ(fault({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)}, row(2)), Fault::too_short)
+    EXPECT_EQ(fault({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)}, row(2)), PayloadError::too_short)
         << size;
   base::Bytes longer = good;
   longer.push_back(0);
-  EXPECT_EQ(fault(longer, row(2)), Fault::too_long);
+  EXPECT_EQ(fault(longer, row(2)), PayloadError::too_long);
 }
 
 /// A saturated word stands for more than it says.
 TEST(MagnetometerPackets, ASaturatedWordIsBelieved) {
-  const base::Bytes bytes = bytes_of({100.0, -100.0, 0, 0}, Wire::farm);
-  EXPECT_EQ(decode_magnetometer(row(1, 50.0), bytes, kMagnetometer, Wire::farm).fault, Fault::none);
+  const base::Bytes bytes = bytes_of({100.0, -100.0, 0, 0}, WireFormat::farm);
+  EXPECT_EQ(decode_magnetometer(row(1, 50.0), bytes, kMagnetometer, WireFormat::farm).fault, PayloadError::none);
 }
 
 /// No bytes bring it down.
@@ -122,9 +122,9 @@ TEST(MagnetometerPackets, AnyBytesAreJudged) {
     base::Bytes bytes(chance.below(300));
     for (std::uint8_t& b : bytes) b = static_cast<std::uint8_t>(chance.below(256));
     if (bytes.size() > 1 && i % 2 == 0) bytes[0] = static_cast<std::uint8_t>((bytes.size() - 4) / 16), bytes[1] = 0;
-    for (const Wire wire : {Wire::farm, Wire::thesis}) {
-      const Part part = decode_magnetometer(row(chance.below(4)), bytes, kMagnetometer, wire);
-      if (part.fault == Fault::none) {
+    for (const WireFormat wire : {WireFormat::farm, WireFormat::thesis}) {
+      const PayloadPart part = decode_magnetometer(row(chance.below(4)), bytes, kMagnetometer, wire);
+      if (part.fault == PayloadError::none) {
         EXPECT_GE(part.elements, 1u);
         EXPECT_LE(part.elements, kMostElements);
       }

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "sensors/magnetometer.h"
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 #include "tests/sensors/magnet_scenes.h"
 
 namespace sf::sensors {
@@ -71,8 +71,8 @@ TEST(MagnetometerSettings, ElementsStandAtHalfTheModelsHeight) {
   sensor.height = 0.05;
   scenes::add_carrier(world, {0, 0, 0, 0}, sensor);
   scenes::add_carrier(world, {0, 0, 0, 0}, sensor);
-  const Roster roster(world);
-  const auto rows = roster.of(kMagnetometer, 1);
+  const SensorSet sensor_set(world);
+  const auto rows = sensor_set.of(kMagnetometer, 1);
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_DOUBLE_EQ(rows[0].X_MS.z, 0.085);
   EXPECT_EQ(rows[0].elements, 3u);

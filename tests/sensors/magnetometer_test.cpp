@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "sensors/field/truncation.h"
+#include "sensors/magnetic_field/truncation.h"
 #include "tests/sensors/compare.h"
 #include "tests/sensors/magnet_scenes.h"
 

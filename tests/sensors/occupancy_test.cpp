@@ -13,7 +13,7 @@
 namespace sf::trial {
 namespace {
 
-using sensors::Wire;
+using sensors::WireFormat;
 
 gpu::Device& device() {
   static gpu::Device device;
@@ -216,8 +216,8 @@ TEST(OccupancyTick, TheValidationLayerIsSilent) {
 
 // As packets.
 
-sensors::SensorRow row_of(std::uint32_t columns, std::uint32_t rows) {
-  sensors::SensorRow row;
+sensors::SensorSpec row_of(std::uint32_t columns, std::uint32_t rows) {
+  sensors::SensorSpec row;
   row.elements = columns * rows;
   row.across = columns;
   row.pitch = 0.03;
@@ -236,23 +236,23 @@ std::vector<double> any_words(std::uint32_t count, std::uint64_t seed) {
 }
 
 TEST(OccupancyPackets, GoThereAndBackInBothForms) {
-  const sensors::SensorKind& kind = sensors::occupancy_kind;
+  const sensors::SensorType& kind = sensors::occupancy_type;
   for (const auto& [columns, rows] : {std::pair{30u, 30u}, {1u, 1u}, {67u, 5u}, {7u, 146u}}) {
-    const sensors::SensorRow row = row_of(columns, rows);
+    const sensors::SensorSpec row = row_of(columns, rows);
     const auto words = any_words(row.elements, columns);
     base::ReadingBlock reading;
     reading.values = words;
     reading.flags = maps::kTruePoses;
-    for (const Wire wire : {Wire::farm, Wire::thesis}) {
-      ASSERT_EQ(kind.refuse(row, wire), "");
+    for (const WireFormat wire : {WireFormat::farm, WireFormat::thesis}) {
+      ASSERT_EQ(kind.wire_problem(row, wire), "");
       std::vector<double> back(words.size(), -1.0);
       const std::uint32_t parts = kind.parts(row, wire);
       for (std::uint32_t p = 0; p < parts; ++p) {
         base::Bytes bytes;
         ASSERT_EQ(kind.encode(row, reading, wire, p, bytes), kind.id);
-        ASSERT_LE(bytes.size(), wire == Wire::farm ? 1376u : 2046u);
-        const sensors::Part part = kind.decode(row, bytes, kind.id, wire);
-        ASSERT_EQ(part.fault, sensors::Fault::none);
+        ASSERT_LE(bytes.size(), wire == WireFormat::farm ? 1376u : 2046u);
+        const sensors::PayloadPart part = kind.decode(row, bytes, kind.id, wire);
+        ASSERT_EQ(part.fault, sensors::PayloadError::none);
         ASSERT_EQ(part.part, p);
         ASSERT_EQ(part.parts, parts);
         kind.read(row, bytes, kind.id, wire, back);
@@ -263,29 +263,29 @@ TEST(OccupancyPackets, GoThereAndBackInBothForms) {
 }
 
 TEST(OccupancyPackets, OthersMapsAreRefused) {
-  const sensors::SensorKind& kind = sensors::occupancy_kind;
+  const sensors::SensorType& kind = sensors::occupancy_type;
   const auto words = any_words(900, 3);
   base::ReadingBlock reading;
   reading.values = words;
   base::Bytes bytes;
-  kind.encode(row_of(30, 30), reading, Wire::farm, 0, bytes);
-  EXPECT_EQ(kind.decode(row_of(30, 30), bytes, kind.id, Wire::farm).fault, sensors::Fault::none);
-  EXPECT_EQ(kind.decode(row_of(25, 36), bytes, kind.id, Wire::farm).fault, sensors::Fault::out_of_range);
-  EXPECT_EQ(kind.decode(row_of(30, 29), bytes, kind.id, Wire::farm).fault, sensors::Fault::out_of_range);
-  EXPECT_EQ(kind.decode(row_of(30, 30), bytes, 3, Wire::farm).fault, sensors::Fault::out_of_range);
-  EXPECT_EQ(kind.decode(row_of(0, 0), bytes, kind.id, Wire::farm).fault, sensors::Fault::none)
+  kind.encode(row_of(30, 30), reading, WireFormat::farm, 0, bytes);
+  EXPECT_EQ(kind.decode(row_of(30, 30), bytes, kind.id, WireFormat::farm).fault, sensors::PayloadError::none);
+  EXPECT_EQ(kind.decode(row_of(25, 36), bytes, kind.id, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
+  EXPECT_EQ(kind.decode(row_of(30, 29), bytes, kind.id, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
+  EXPECT_EQ(kind.decode(row_of(30, 30), bytes, 3, WireFormat::farm).fault, sensors::PayloadError::out_of_range);
+  EXPECT_EQ(kind.decode(row_of(0, 0), bytes, kind.id, WireFormat::farm).fault, sensors::PayloadError::none)
       << "nothing is known of it";
   base::Bytes plain;
-  kind.encode(row_of(30, 30), reading, Wire::thesis, 0, plain);
-  EXPECT_EQ(kind.decode(row_of(25, 36), plain, kind.id, Wire::thesis).fault, sensors::Fault::out_of_range);
+  kind.encode(row_of(30, 30), reading, WireFormat::thesis, 0, plain);
+  EXPECT_EQ(kind.decode(row_of(25, 36), plain, kind.id, WireFormat::thesis).fault, sensors::PayloadError::out_of_range);
 }
 
 TEST(OccupancyPackets, TheThesisFormIsForSmallMaps) {
-  const sensors::SensorKind& kind = sensors::occupancy_kind;
-  EXPECT_EQ(kind.refuse(row_of(7, 146), Wire::thesis), "") << "1022 words";
-  EXPECT_NE(kind.refuse(row_of(32, 32), Wire::thesis), "");
-  EXPECT_NE(kind.refuse(row_of(256, 1), Wire::thesis), "");
-  EXPECT_EQ(kind.refuse(row_of(1024, 1024), Wire::farm), "");
+  const sensors::SensorType& kind = sensors::occupancy_type;
+  EXPECT_EQ(kind.wire_problem(row_of(7, 146), WireFormat::thesis), "") << "1022 words";
+  EXPECT_NE(kind.wire_problem(row_of(32, 32), WireFormat::thesis), "");
+  EXPECT_NE(kind.wire_problem(row_of(256, 1), WireFormat::thesis), "");
+  EXPECT_EQ(kind.wire_problem(row_of(1024, 1024), WireFormat::farm), "");
 }
 
 }  // namespace

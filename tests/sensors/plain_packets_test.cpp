@@ -16,10 +16,10 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr PlainNumber kNumbers[] = {{1e-3}, {1.0, 0.0, 5.0}};
 constexpr PlainForm kForm{29, "trial", kNumbers};
-constexpr SensorKind kTrial = plain<kForm>({});
+constexpr SensorType kTrial = plain<kForm>({});
 
-SensorRow row_of(std::uint32_t elements) {
-  SensorRow row;
+SensorSpec row_of(std::uint32_t elements) {
+  SensorSpec row;
   row.elements = elements;
   return row;
 }
@@ -28,14 +28,14 @@ base::Bytes bytes_of(const std::vector<double>& values) {
   base::ReadingBlock block;
   block.values = values;
   base::Bytes out;
-  EXPECT_EQ(kTrial.encode(row_of(static_cast<std::uint32_t>(values.size() / 2)), block, Wire::farm, 0, out), 29);
+  EXPECT_EQ(kTrial.encode(row_of(static_cast<std::uint32_t>(values.size() / 2)), block, WireFormat::farm, 0, out), 29);
   return out;
 }
 
 std::vector<double> back(const std::vector<double>& values) {
   const base::Bytes bytes = bytes_of(values);
   std::vector<double> read(values.size(), 77.0);
-  kTrial.read(row_of(static_cast<std::uint32_t>(values.size() / 2)), bytes, 29, Wire::farm, read);
+  kTrial.read(row_of(static_cast<std::uint32_t>(values.size() / 2)), bytes, 29, WireFormat::farm, read);
   return read;
 }
 
@@ -58,25 +58,27 @@ TEST(PlainPackets, RoundsToNearestAndSaturates) {
 
 TEST(PlainPackets, JudgesWhatCannotBe) {
   const base::Bytes good = bytes_of({1, 2, 3, 4});
-  const auto fault = [&](base::Bytes bytes, std::uint32_t rows, std::uint8_t type = 29, Wire wire = Wire::farm) {
+  const auto fault = [&](base::Bytes bytes, std::uint32_t rows, std::uint8_t type = 29,
+                         WireFormat wire = WireFormat::farm) {
     return kTrial.decode(row_of(rows), bytes, type, wire).fault;
   };
-  EXPECT_EQ(fault(good, 2), Fault::none);
-  EXPECT_EQ(fault(good, 0), Fault::none) << "of any number of rows";
-  EXPECT_EQ(fault(good, 1), Fault::out_of_range) << "of another sensor";
-  EXPECT_EQ(fault(good, 2, 28), Fault::out_of_range) << "of another kind";
-  EXPECT_EQ(fault(good, 2, 29 + kExtended), Fault::out_of_range) << "there is no second form";
-  EXPECT_EQ(fault(good, 2, 29, Wire::thesis), Fault::out_of_range);
-  EXPECT_EQ(fault({0, 0, 0, 0}, 0), Fault::out_of_range) << "no rows";
+  EXPECT_EQ(fault(good, 2), PayloadError::none);
+  EXPECT_EQ(fault(good, 0), PayloadError::none) << "of any number of rows";
+  EXPECT_EQ(fault(good, 1), PayloadError::out_of_range) << "of another sensor";
+  EXPECT_EQ(fault(good, 2, 28), PayloadError::out_of_range) << "of another kind";
+  EXPECT_EQ(fault(good, 2, 29 + kExtended), PayloadError::out_of_range) << "there is no second form";
+  EXPECT_EQ(fault(good, 2, 29, WireFormat::thesis), PayloadError::out_of_range);
+  EXPECT_EQ(fault({0, 0, 0, 0}, 0), PayloadError::out_of_range) << "no rows";
   for (std::size_t size = 0; size < good.size(); ++size)
-    EXPECT_EQ(fault({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)}, 2), Fault::too_short) << size;
+    EXPECT_EQ(fault({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)}, 2), PayloadError::too_short)
+        << size;
   base::Bytes longer = good;
   longer.push_back(0);
-  EXPECT_EQ(fault(longer, 2), Fault::too_long);
-  EXPECT_EQ(fault(bytes_of({1, 6}), 1), Fault::out_of_range) << "more than its column has";
-  EXPECT_EQ(fault(bytes_of({1, -1}), 1), Fault::out_of_range) << "less than its column has";
-  EXPECT_EQ(fault(bytes_of({1, kNan}), 1), Fault::none) << "no number is no nonsense";
-  EXPECT_EQ(fault(bytes_of({1e9, 0}), 1), Fault::none) << "saturated says more";
+  EXPECT_EQ(fault(longer, 2), PayloadError::too_long);
+  EXPECT_EQ(fault(bytes_of({1, 6}), 1), PayloadError::out_of_range) << "more than its column has";
+  EXPECT_EQ(fault(bytes_of({1, -1}), 1), PayloadError::out_of_range) << "less than its column has";
+  EXPECT_EQ(fault(bytes_of({1, kNan}), 1), PayloadError::none) << "no number is no nonsense";
+  EXPECT_EQ(fault(bytes_of({1e9, 0}), 1), PayloadError::none) << "saturated says more";
 }
 
 TEST(PlainPackets, AsManyNumbersAsADatagramHolds) {
@@ -84,18 +86,18 @@ TEST(PlainPackets, AsManyNumbersAsADatagramHolds) {
   const base::Bytes bytes = bytes_of(most);
   EXPECT_EQ(bytes.size(), 4 + 4 * 312u);
   EXPECT_LE(bytes.size() + 64 + 80, 1400u);
-  EXPECT_EQ(kTrial.decode(row_of(0), bytes, 29, Wire::farm).fault, Fault::none);
+  EXPECT_EQ(kTrial.decode(row_of(0), bytes, 29, WireFormat::farm).fault, PayloadError::none);
   base::Bytes more(4 + 4 * 314, 0);
   more[0] = 157;
-  EXPECT_EQ(kTrial.decode(row_of(0), more, 29, Wire::farm).fault, Fault::out_of_range);
+  EXPECT_EQ(kTrial.decode(row_of(0), more, 29, WireFormat::farm).fault, PayloadError::out_of_range);
 }
 
 TEST(PlainPackets, TheThesisHasNoLayoutForThem) {
-  EXPECT_EQ(kTrial.refuse({}, Wire::farm), "");
-  const std::string why = kTrial.refuse({}, Wire::thesis);
+  EXPECT_EQ(kTrial.refuse({}, WireFormat::farm), "");
+  const std::string why = kTrial.refuse({}, WireFormat::thesis);
   EXPECT_NE(why.find("trial"), std::string::npos);
   EXPECT_NE(why.find("--wire farm"), std::string::npos);
-  EXPECT_EQ(kTrial.parts({}, Wire::farm), 1u);
+  EXPECT_EQ(kTrial.parts({}, WireFormat::farm), 1u);
 }
 
 /// No bytes bring it down; what is taken can be read.
@@ -107,15 +109,15 @@ TEST(PlainPackets, AnyBytesAreJudged) {
     for (std::uint8_t& b : bytes)
       b = static_cast<std::uint8_t>(i % 3 == 0 && chance.below(9) > 0 ? 0 : chance.below(256));
     if (bytes.size() > 3 && i % 2 == 0) bytes[0] = static_cast<std::uint8_t>((bytes.size() - 4) / 8), bytes[1] = 0;
-    for (const SensorKind* kind : kinds()) {
-      const Part part = kind->decode(row_of(0), bytes, kind->id, Wire::farm);
-      EXPECT_TRUE(part.fault != Fault::none || part.elements >= 1u);
+    for (const SensorType* kind : sensor_types()) {
+      const PayloadPart part = kind->decode(row_of(0), bytes, kind->id, WireFormat::farm);
+      EXPECT_TRUE(part.fault != PayloadError::none || part.elements >= 1u);
     }
-    const Part part = kTrial.decode(row_of(0), bytes, 29, Wire::farm);
-    if (part.fault != Fault::none) continue;
+    const PayloadPart part = kTrial.decode(row_of(0), bytes, 29, WireFormat::farm);
+    if (part.fault != PayloadError::none) continue;
     ++taken;
     std::vector<double> values(2 * part.elements);
-    kTrial.read(row_of(0), bytes, 29, Wire::farm, values);
+    kTrial.read(row_of(0), bytes, 29, WireFormat::farm, values);
     for (std::size_t k = 0; k < part.elements; ++k)
       EXPECT_TRUE(std::isnan(values[2 * k + 1]) || (values[2 * k + 1] >= 0.0 && values[2 * k + 1] <= 5.0));
   }
@@ -138,19 +140,19 @@ TEST(PlainPackets, PayloadsAreTheDocumentedOnes) {
              {"gps", 10, 1, {kNan, kNan, kNan, 3}},
              {"irreceiver", 11, 1, {1, 252}}};
   for (const auto& [example, id, rows, values] : all) {
-    const SensorKind* kind = find_sensor_type(id);
+    const SensorType* kind = find_sensor_type(id);
     ASSERT_NE(kind, nullptr) << example;
     EXPECT_EQ(kind->name, example);
     base::ReadingBlock block;
     block.values = values;
     base::Bytes bytes;
-    EXPECT_EQ(kind->encode(row_of(rows), block, Wire::farm, 0, bytes), id);
+    EXPECT_EQ(kind->encode(row_of(rows), block, WireFormat::farm, 0, bytes), id);
     const base::Bytes packet = test::documented(example);
     ASSERT_GT(packet.size(), 64u) << example;
     EXPECT_EQ(packet[5], id);
     EXPECT_EQ(base::Bytes(packet.begin() + 64, packet.end()), bytes) << example;
-    EXPECT_EQ(kind->decode(row_of(rows), bytes, id, Wire::farm).fault, Fault::none) << example;
-    EXPECT_NE(kind->refuse(row_of(rows), Wire::thesis), "") << example;
+    EXPECT_EQ(kind->decode(row_of(rows), bytes, id, WireFormat::farm).fault, PayloadError::none) << example;
+    EXPECT_NE(kind->wire_problem(row_of(rows), WireFormat::thesis), "") << example;
   }
 }
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "sensors/kind.h"
 #include "sensors/laneedge.h"
 #include "sensors/magnetometer.h"
+#include "sensors/sensor_type.h"
 #include "tests/sensors/chance.h"
 
 namespace sf::sensors {
@@ -17,16 +17,16 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-SensorRow row_of(std::uint32_t elements, double limit = 0.0) {
-  SensorRow row;
+SensorSpec row_of(std::uint32_t elements, double limit = 0.0) {
+  SensorSpec row;
   row.elements = elements;
   row.limit = limit;
   return row;
 }
 
 /// What a receiver has of `values` after every part of them.
-std::vector<double> back(std::uint8_t id, const SensorRow& row, const std::vector<double>& values, Wire wire) {
-  const SensorKind& kind = *find_sensor_type(id);
+std::vector<double> back(std::uint8_t id, const SensorSpec& row, const std::vector<double>& values, WireFormat wire) {
+  const SensorType& kind = *find_sensor_type(id);
   base::ReadingBlock block;
   block.kind = id;
   block.values = values;
@@ -35,8 +35,8 @@ std::vector<double> back(std::uint8_t id, const SensorRow& row, const std::vecto
     base::Bytes bytes;
     const std::uint8_t type = kind.encode(row, block, wire, part, bytes);
     EXPECT_NE(type, 0);
-    const Part judged = kind.decode(row, bytes, type, wire);
-    EXPECT_EQ(judged.fault, Fault::none);
+    const PayloadPart judged = kind.decode(row, bytes, type, wire);
+    EXPECT_EQ(judged.fault, PayloadError::none);
     EXPECT_EQ(judged.part, part);
     kind.read(row, bytes, type, wire, read);
   }
@@ -44,12 +44,12 @@ std::vector<double> back(std::uint8_t id, const SensorRow& row, const std::vecto
 }
 
 TEST(ReadingBack, EveryKindReads) {
-  for (const SensorKind* kind : kinds()) EXPECT_NE(kind->read, nullptr) << kind->name;
+  for (const SensorType* kind : sensor_types()) EXPECT_NE(kind->read, nullptr) << kind->name;
 }
 
 TEST(ReadingBack, PlainScansToTheMillimetre) {
   trial::Chance chance(1);
-  for (const Wire wire : {Wire::farm, Wire::thesis})
+  for (const WireFormat wire : {WireFormat::farm, WireFormat::thesis})
     for (const std::uint32_t samples : {1u, 2u, 360u, 361u}) {
       std::vector<double> ranges;
       for (std::uint32_t i = 0; i < samples; ++i) ranges.push_back(chance.between(0.0, 8.0));
@@ -63,44 +63,46 @@ TEST(ReadingBack, ExtendedScansPartByPart) {
   for (const std::uint32_t samples : {1u, 310u, 311u, 620u, 1000u}) {
     std::vector<double> ranges;
     for (std::uint32_t i = 0; i < samples; ++i) ranges.push_back(chance.between(0.0, 200.0));
-    const std::vector<double> read = back(base::kLaser, row_of(samples, 200.0), ranges, Wire::farm);
+    const std::vector<double> read = back(base::kLaser, row_of(samples, 200.0), ranges, WireFormat::farm);
     for (std::uint32_t i = 0; i < samples; ++i) EXPECT_NEAR(read[i], ranges[i], 0.500001e-4) << i;
   }
 }
 
 TEST(ReadingBack, APartLeavesTheOthersAsTheyAre) {
-  const SensorKind& kind = *find_sensor_type(base::kLaser);
-  const SensorRow row = row_of(700, 100.0);
+  const SensorType& kind = *find_sensor_type(base::kLaser);
+  const SensorSpec row = row_of(700, 100.0);
   const std::vector<double> ranges(700, 5.0);
   base::ReadingBlock block;
   block.values = ranges;
   base::Bytes bytes;
-  const std::uint8_t type = kind.encode(row, block, Wire::farm, 1, bytes);
+  const std::uint8_t type = kind.encode(row, block, WireFormat::farm, 1, bytes);
   std::vector<double> read(700, kNan);
-  kind.read(row, bytes, type, Wire::farm, read);
+  kind.read(row, bytes, type, WireFormat::farm, read);
   for (std::size_t i = 0; i < 700; ++i) EXPECT_EQ(std::isnan(read[i]), i < 310 || i >= 620) << i;
 }
 
 TEST(ReadingBack, NoReturn) {
-  EXPECT_EQ(back(base::kLaser, row_of(1, 100.0), {kInf}, Wire::farm)[0], kInf) << "the extended form has a word for it";
-  EXPECT_EQ(back(base::kLaser, row_of(1, 8.0), {kInf}, Wire::farm)[0], kInf) << "farther than the laser sees";
-  EXPECT_EQ(back(base::kLaser, row_of(1, 8.0), {kInf}, Wire::thesis)[0], kInf);
-  EXPECT_EQ(back(base::kLaser, row_of(1, 65.535), {kInf}, Wire::farm)[0], 65.535) << "it may be a range";
-  EXPECT_EQ(back(base::kLaser, row_of(1), {kInf}, Wire::farm)[0], 65.535) << "nothing is known of the laser";
-  EXPECT_EQ(back(base::kLaser, row_of(1, 8.0), {8.0}, Wire::farm)[0], 8.0);
+  EXPECT_EQ(back(base::kLaser, row_of(1, 100.0), {kInf}, WireFormat::farm)[0], kInf)
+      << "the extended form has a word for it";
+  EXPECT_EQ(back(base::kLaser, row_of(1, 8.0), {kInf}, WireFormat::farm)[0], kInf) << "farther than the laser sees";
+  EXPECT_EQ(back(base::kLaser, row_of(1, 8.0), {kInf}, WireFormat::thesis)[0], kInf);
+  EXPECT_EQ(back(base::kLaser, row_of(1, 65.535), {kInf}, WireFormat::farm)[0], 65.535) << "it may be a range";
+  EXPECT_EQ(back(base::kLaser, row_of(1), {kInf}, WireFormat::farm)[0], 65.535) << "nothing is known of the laser";
+  EXPECT_EQ(back(base::kLaser, row_of(1, 8.0), {8.0}, WireFormat::farm)[0], 8.0);
 }
 
 TEST(ReadingBack, LaneEdges) {
-  const std::vector<double> seen = back(kLaneEdge, row_of(1), {0.2504, 61, 12.4e-6, 1.5e-3}, Wire::farm);
+  const std::vector<double> seen = back(kLaneEdge, row_of(1), {0.2504, 61, 12.4e-6, 1.5e-3}, WireFormat::farm);
   EXPECT_DOUBLE_EQ(seen[0], 0.250);
   EXPECT_EQ(seen[1], 61.0);
   EXPECT_DOUBLE_EQ(seen[2], 12e-6);
   EXPECT_DOUBLE_EQ(seen[3], 1.5e-3);
-  EXPECT_DOUBLE_EQ(back(kLaneEdge, row_of(1), {70.0, 2, 0, 0}, Wire::farm)[0], 65.534) << "far is not out of sight";
+  EXPECT_DOUBLE_EQ(back(kLaneEdge, row_of(1), {70.0, 2, 0, 0}, WireFormat::farm)[0], 65.534)
+      << "far is not out of sight";
 }
 
 TEST(ReadingBack, NoLaneEdgeInSight) {
-  const std::vector<double> none = back(kLaneEdge, row_of(1), {kNan, 1, kNan, kNan}, Wire::farm);
+  const std::vector<double> none = back(kLaneEdge, row_of(1), {kNan, 1, kNan, kNan}, WireFormat::farm);
   EXPECT_TRUE(std::isnan(none[0]));
   EXPECT_EQ(none[1], 1.0);
   EXPECT_TRUE(std::isnan(none[2]));
@@ -108,21 +110,21 @@ TEST(ReadingBack, NoLaneEdgeInSight) {
 }
 
 TEST(ReadingBack, TheThesisCarriesADistanceAlone) {
-  const std::vector<double> read = back(kLaneEdge, row_of(1), {0.25, 61, 12e-6, 1.5e-3}, Wire::thesis);
+  const std::vector<double> read = back(kLaneEdge, row_of(1), {0.25, 61, 12e-6, 1.5e-3}, WireFormat::thesis);
   EXPECT_DOUBLE_EQ(read[0], 0.25);
   for (std::size_t i = 1; i < 4; ++i) EXPECT_TRUE(std::isnan(read[i])) << i;
-  EXPECT_TRUE(std::isnan(back(kLaneEdge, row_of(1), {kNan, 0, 0, kNan}, Wire::thesis)[0]));
+  EXPECT_TRUE(std::isnan(back(kLaneEdge, row_of(1), {kNan, 0, 0, kNan}, WireFormat::thesis)[0]));
 }
 
 TEST(ReadingBack, Magnetometers) {
   trial::Chance chance(3);
-  for (const Wire wire : {Wire::farm, Wire::thesis})
+  for (const WireFormat wire : {WireFormat::farm, WireFormat::thesis})
     for (std::uint32_t count = 1; count <= kMostElements; ++count) {
       std::vector<double> values;
       for (std::uint32_t i = 0; i < 4 * count; ++i) values.push_back(chance.between(-1e-3, 1e-3));
       const std::vector<double> read = back(kMagnetometer, row_of(count, 1e-3), values, wire);
       for (std::uint32_t i = 0; i < 4 * count; ++i) {
-        if (wire == Wire::thesis && i % 4 != 0) {
+        if (wire == WireFormat::thesis && i % 4 != 0) {
           EXPECT_TRUE(std::isnan(read[i])) << "the thesis carries magnitudes alone";
         } else {
           EXPECT_NEAR(read[i], values[i], 0.500001e-8);

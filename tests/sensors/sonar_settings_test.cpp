@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "sensors/infrared.h"
-#include "sensors/roster.h"
+#include "sensors/sensor_set.h"
 #include "sensors/sonar.h"
 #include "tests/sensors/cone_trial.h"
 
@@ -42,7 +42,7 @@ TEST(SonarSettings, NothingSaidIsOneTransducerOfAPioneer) {
   EXPECT_EQ(s.range_min, 0.10);
   EXPECT_EQ(s.range_max, 4.0);
   EXPECT_EQ(s.turns, 1u);
-  EXPECT_EQ(s.least_cosine, 0.0);
+  EXPECT_EQ(s.min_cosine, 0.0);
   EXPECT_EQ(s.sigma, 0.0);
   EXPECT_EQ(s.proportional, 0.0);
 }
@@ -75,7 +75,7 @@ TEST(SonarSettings, UnitsAreTheFiles) {
   EXPECT_DOUBLE_EQ(s.fov, 15 * kDegree);
   EXPECT_DOUBLE_EQ(s.range_min, 0.1);
   EXPECT_DOUBLE_EQ(s.range_max, 3.0);
-  EXPECT_DOUBLE_EQ(s.least_cosine, 0.5);
+  EXPECT_DOUBLE_EQ(s.min_cosine, 0.5);
   EXPECT_DOUBLE_EQ(s.sigma, 0.02);
   EXPECT_EQ(s.proportional, 0.01);
 }
@@ -106,7 +106,7 @@ TEST(SonarSettings, TurnsAreWhatOneArrayHas) {
 
 TEST(SonarSettings, OneRayLooksAlongTheAxis) {
   EXPECT_EQ(read_sonar(with({cone_setting("fov", {0})}), 0, 0).rays, 1u);
-  EXPECT_EQ(read_sonar(with({cone_setting("incidence", {M_PI / 2})}), 0, 0).least_cosine, 0.0) << "off";
+  EXPECT_EQ(read_sonar(with({cone_setting("incidence", {M_PI / 2})}), 0, 0).min_cosine, 0.0) << "off";
 }
 
 struct Wrong {
@@ -179,7 +179,7 @@ TEST(SonarSettings, ArraysDivideTheTransducers) {
 world::World shipped(const std::string& body) {
   const std::string file = testing::TempDir() + "/rangers.world";
   std::ofstream(file) << "include \"" SF_SOURCE_DIR "/worlds/robots.inc\"\n" << body;
-  return world::load_world(file, {.sensors = vocabulary()});
+  return world::load_world(file, {.sensors = world_file_words()});
 }
 
 TEST(SonarSettings, ThePioneersRings) {
@@ -223,44 +223,44 @@ TEST(SonarSettings, TheKheperasEight) {
 // --- Payloads.
 
 /// What was read is what was sent, to the wire's unit.
-void expect_there_and_back(const SensorKind& kind, const std::vector<double>& values, std::uint32_t elements,
+void expect_there_and_back(const SensorType& kind, const std::vector<double>& values, std::uint32_t elements,
                            double unit) {
-  SensorRow row;
+  SensorSpec row;
   row.elements = elements;
   base::ReadingBlock block;
   block.values = values;
   base::Bytes bytes;
-  ASSERT_EQ(kind.encode(row, block, Wire::farm, 0, bytes), kind.id);
-  const Part part = kind.decode(row, bytes, kind.id, Wire::farm);
-  EXPECT_EQ(part.fault, Fault::none);
+  ASSERT_EQ(kind.encode(row, block, WireFormat::farm, 0, bytes), kind.id);
+  const PayloadPart part = kind.decode(row, bytes, kind.id, WireFormat::farm);
+  EXPECT_EQ(part.fault, PayloadError::none);
   EXPECT_EQ(part.elements, elements);
   std::vector<double> back(values.size(), -1.0);
-  kind.read(row, bytes, kind.id, Wire::farm, back);
+  kind.read(row, bytes, kind.id, WireFormat::farm, back);
   for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(back[i], values[i], 0.5000001 * unit) << i;
   bytes.pop_back();
-  EXPECT_EQ(kind.decode(row, bytes, kind.id, Wire::farm).fault, Fault::too_short);
-  EXPECT_FALSE(kind.refuse(row, Wire::thesis).empty()) << "the thesis has no such message";
+  EXPECT_EQ(kind.decode(row, bytes, kind.id, WireFormat::farm).fault, PayloadError::too_short);
+  EXPECT_FALSE(kind.wire_problem(row, WireFormat::thesis).empty()) << "the thesis has no such message";
 }
 
 TEST(SonarPackets, ThereAndBack) {
-  expect_there_and_back(sonar_kind, {0.1, 1.2344, 4.0, 2.71828}, 4, 1e-3);
-  expect_there_and_back(infrared_kind, {0.05, 0.0, 0.0, 1023.0, 0.012345, 770.0}, 3, 1e-6);
+  expect_there_and_back(sonar_type, {0.1, 1.2344, 4.0, 2.71828}, 4, 1e-3);
+  expect_there_and_back(infrared_type, {0.05, 0.0, 0.0, 1023.0, 0.012345, 770.0}, 3, 1e-6);
 }
 
 TEST(SonarPackets, NumbersThatCannotBeAreRefused) {
-  SensorRow row;
+  SensorSpec row;
   row.elements = 1;
   base::ReadingBlock block;
   base::Bytes bytes;
   const std::vector<double> nearer_than_nothing{-0.5};
   block.values = nearer_than_nothing;
-  sonar_kind.encode(row, block, Wire::farm, 0, bytes);
-  EXPECT_EQ(sonar_kind.decode(row, bytes, kSonar, Wire::farm).fault, Fault::out_of_range);
+  sonar_type.encode(row, block, WireFormat::farm, 0, bytes);
+  EXPECT_EQ(sonar_type.decode(row, bytes, kSonar, WireFormat::farm).fault, PayloadError::out_of_range);
   bytes.clear();
   const std::vector<double> beyond_ten_bits{0.01, 1030.0};
   block.values = beyond_ten_bits;
-  infrared_kind.encode(row, block, Wire::farm, 0, bytes);
-  EXPECT_EQ(infrared_kind.decode(row, bytes, kInfrared, Wire::farm).fault, Fault::out_of_range);
+  infrared_type.encode(row, block, WireFormat::farm, 0, bytes);
+  EXPECT_EQ(infrared_type.decode(row, bytes, kInfrared, WireFormat::farm).fault, PayloadError::out_of_range);
 }
 
 }  // namespace

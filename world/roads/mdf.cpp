@@ -46,7 +46,7 @@ class MdfReader {
   }
 
  private:
-  const Statement& now() const { return statements_.now(); }
+  const AccuracyStatement& now() const { return statements_.now(); }
   void warn(int line, std::string message) { mdf_.warnings.push_back({mdf_.file, line, std::move(message)}); }
 
   bool next() {

@@ -32,7 +32,7 @@ std::string text_of(PointId id);
 std::optional<PointId> read_point_id(std::string_view text, int parts = 3);
 
 /// One line that says something. All views live until the next call of `StatementReader::next`.
-struct Statement {
+struct AccuracyStatement {
   std::string_view keyword;              ///< its first field
   std::vector<std::string_view> fields;  ///< those after it
   std::string_view rest;                 ///< all of the line after the keyword, without the blanks around it
@@ -48,7 +48,7 @@ class StatementReader {
   /// Moves on to the next line that is not empty; false at the end of the file.
   /// @throws base::InputError for a comment that is never closed, or a byte that no text has.
   bool next();
-  const Statement& now() const { return now_; }
+  const AccuracyStatement& now() const { return now_; }
   const std::string& file() const { return file_; }
   /// Lines read so far: at the end, the file's last line.
   int line() const { return line_; }
@@ -88,7 +88,7 @@ class StatementReader {
   int line_ = 0;
   int comment_ = 0;  ///< line where the open comment began; 0: none is open
   std::string current_;
-  Statement now_;
+  AccuracyStatement now_;
 };
 
 /// The keyword of a way-point line is its number: true when `keyword` starts with a digit.

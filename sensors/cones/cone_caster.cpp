@@ -1,0 +1,159 @@
+#include "sensors/cones/cone_caster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr std::uint32_t kGroup = 64;
+constexpr std::size_t kMostCones = std::size_t{32'768} * kGroup;
+
+/// A unit vector, or nearly.
+struct Direction {
+  float x, y;
+};
+
+Direction turned(Direction by, Direction v) { return {by.x * v.x - by.y * v.y, by.x * v.y + by.y * v.x}; }
+
+std::size_t padded(std::size_t cones) { return (cones + kGroup - 1) / kGroup * kGroup; }
+
+raycast::Scanner scanner_of(const ConeArray& array, std::size_t transducer) {
+  world::Laser beams;
+  beams.X_MS = base::compose(array.row.X_MS, array.X_SC[transducer]);
+  beams.fov = array.rays > 1 ? array.fov : 0.0;
+  beams.samples = array.rays;
+  beams.range_max = array.range_max;
+  return {beams, array.row.mover, array.row.sensor};
+}
+
+}  // namespace
+
+ConeCaster::Plan ConeCaster::plan(const world::World& world, const std::vector<ConeArray>& arrays) {
+  Plan plan;
+  for (const ConeArray& array : arrays) {
+    plan.first.push_back(static_cast<std::uint32_t>(plan.scanners.size()));
+    plan.incidence = plan.incidence || array.min_cosine > 0.0;
+    for (std::size_t i = 0; i < array.X_SC.size(); ++i) {
+      plan.scanners.push_back(scanner_of(array, i));
+      plan.min_cosines.push_back(static_cast<float>(array.min_cosine));
+    }
+  }
+  if (plan.scanners.size() > kMostCones)
+    throw base::InputError(world.file, 0,
+                           "the world has " + std::to_string(plan.scanners.size()) +
+                               " transducers of one kind; at most " + std::to_string(kMostCones) + " are supported");
+  return plan;
+}
+
+ConeCaster::ConeCaster(const SensorContext& context, const std::vector<ConeArray>& arrays, const ConeKernel& kernel)
+    : ConeCaster(context, plan(context.world, arrays), kernel) {}
+
+ConeCaster::ConeCaster(const SensorContext& context, const Plan& plan, const ConeKernel& kernel)
+    : ConeCaster(context, plan, plan.incidence ? reflectors_of(context.world) : Reflectors{}, kernel) {}
+
+ConeCaster::ConeCaster(const SensorContext& context, const Plan& plan, const Reflectors& reflectors,
+                       const ConeKernel& kernel)
+    : thread_pool_(context.thread_pool),
+      first_cones_(plan.first),
+      min_cosines_(plan.min_cosines),
+      caster_(context, plan.incidence ? reflectors.world : context.world, plan.scanners),
+      kernel_(context.device, kernel.name, kernel.spirv, kernel.uses_incidence ? 7 : 4),
+      rows_(context.device, "cones", gpu::Role::upload, gpu::Texel::u32x4,
+            SF_CONE_TEXELS * padded(plan.scanners.size() + 1)),
+      echoes_(context.device, "echoes", gpu::Role::download, gpu::Texel::u32x4, padded(plan.scanners.size() + 1)),
+      groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
+      reflectors_(context.device, "faces", gpu::Role::upload, gpu::Texel::u32x4, reflectors.rows.size() + 1),
+      headings_(context.device, "headings", gpu::Role::upload, gpu::Texel::f32x4, context.world.movers.size() + 1),
+      incidence_(plan.incidence) {
+  SF_CHECK(kernel_.group_size() == kGroup, "groups of cones are counted as of 64");
+  SF_CHECK(kernel.uses_incidence || !incidence_, "this kernel hears all angles");
+  gpu::Buffer* const tables[] = {&rows_,       &caster_.ranges(), &caster_.hits(), &echoes_, &caster_.directions64(),
+                                 &reflectors_, &headings_};
+  kernel_.bind(std::span(tables).first(kernel.uses_incidence ? 7 : 4));
+  std::memset(groups_.host<std::uint32_t>().data(), 0, groups_.bytes());
+  std::memset(reflectors_.host<std::uint32_t>().data(), 0, reflectors_.bytes());
+  std::copy(reflectors.rows.begin(), reflectors.rows.end(), reflectors_.host<ReflectorDirection>().begin());
+  std::memset(headings_.host<float>().data(), 0, headings_.bytes());
+  headings_.host<float>()[0] = 1.0F;
+}
+
+void ConeCaster::set_poses(std::span<const Pose> poses) {
+  caster_.set_poses(poses);
+  if (!incidence_) return;
+  const auto table = headings_.host<float>();
+  for (std::size_t m = 0; m < poses.size(); ++m) {
+    table[4 * (m + 1)] = static_cast<float>(std::cos(poses[m].yaw));
+    table[4 * (m + 1) + 1] = static_cast<float>(std::sin(poses[m].yaw));
+  }
+}
+
+bool ConeCaster::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
+  const bool again = caster_.prepare(due, poses);
+  count_ = due.size();
+  if (!on_device()) return again;
+  const auto rows = rows_.host<ConeRow>();
+  thread_pool_.parallel_for(count_, 512, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) rows[i] = row_of(i);
+  });
+  // Padding repeats one cone; its echoes lie behind all others.
+  if (count_ > 0)
+    std::fill_n(rows.begin() + static_cast<std::ptrdiff_t>(count_), padded(count_) - count_, rows[count_ - 1]);
+  const auto counts = groups_.host<std::uint32_t>();
+  counts[0] = static_cast<std::uint32_t>(padded(count_) / kGroup);
+  counts[1] = counts[2] = count_ > 0 ? 1 : 0;
+  return again;
+}
+
+ConeRow ConeCaster::row_of(std::size_t i) const {
+  const raycast::ScanResult results = caster_.results(i);
+  ConeRow row{};
+  row.lane = results.lane;
+  row.lanes = results.plan->lanes();
+  row.directions = results.beams;
+  row.min_cosine = min_cosines_[results.row];
+  row.heading_cos = static_cast<float>(results.heading.x);
+  row.heading_sin = static_cast<float>(results.heading.y);
+  row.range_max = results.scanner->laser.range_max;
+  return row;
+}
+
+bool ConeCaster::returns_echo(const ConeRow& row, std::size_t beam, std::uint32_t hit) {
+  if (row.min_cosine <= 0.0F) return true;
+  const double* const bearing = caster_.directions64().host<double>().data() + 2 * beam;
+  const ReflectorDirection& face = reflectors_.host<ReflectorDirection>()[hit];
+  const float* const mover = headings_.host<float>().data() + 4 * std::size_t{face.heading};
+  const Direction look =
+      turned({row.heading_cos, row.heading_sin}, {static_cast<float>(bearing[0]), static_cast<float>(bearing[1])});
+  const Direction along = turned({mover[0], mover[1]}, {face.along_x, face.along_y});
+  return std::abs(look.x * along.y - look.y * along.x) >= row.min_cosine;
+}
+
+ConeEcho ConeCaster::nearest_echo(std::size_t i) {
+  const ConeRow row = row_of(i);
+  const double* const ranges = caster_.ranges().host<double>().data() + SF_BEAMS_PER_LANE * std::size_t{row.lane};
+  const std::uint32_t* const hits =
+      caster_.hits().host<std::uint32_t>().data() + SF_BEAMS_PER_LANE * std::size_t{row.lane};
+  ConeEcho echo{row.range_max, SF_NO_HIT, 0};
+  for (std::size_t k = 0; k < SF_BEAMS_PER_LANE * std::size_t{row.lanes}; ++k)
+    if (hits[k] != SF_NO_HIT && ranges[k] < echo.range &&
+        returns_echo(row, SF_BEAMS_PER_LANE * std::size_t{row.directions} + k, hits[k]))
+      echo = {ranges[k], hits[k], 0};
+  return echo;
+}
+
+void ConeCaster::add_copies(gpu::Batch& batch) {
+  caster_.add_copies(batch, false);
+  batch.upload(rows_, 0, padded(count_) * sizeof(ConeRow));
+  batch.upload(groups_, 0, groups_.bytes());
+  if (incidence_ || fresh_) batch.upload(headings_, 0, headings_.bytes());
+  if (fresh_) batch.upload(reflectors_, 0, reflectors_.bytes());
+  fresh_ = false;
+  batch.download(echoes_, 0, count_ * sizeof(ConeEcho));
+}
+
+}  // namespace sf::sensors

@@ -1,0 +1,58 @@
+#include "sensors/host_backend.h"
+
+#include <utility>
+
+#include "sensors/settings.h"
+
+namespace sf::sensors {
+
+namespace {
+
+constexpr std::size_t kPiece = 64;  // readings that a worker takes at once
+
+}  // namespace
+
+HostBackend::HostBackend(const SensorContext& context, const SensorType& kind, std::vector<SensorSpec> rows)
+    : world_(context.world),
+      thread_pool_(context.thread_pool),
+      seed_(context.seed),
+      kind_(kind.id),
+      rows_(std::move(rows)) {
+  first_.push_back(0);
+  for (const SensorSpec& row : rows_) first_.push_back(first_.back() + std::size_t{row.elements} * element_width(kind));
+  values_.resize(first_.back());
+  samples_.reserve(rows_.size());
+}
+
+bool HostBackend::prepare(std::span<const DueSample> due, std::span<const Pose> poses) {
+  samples_.clear();
+  for (const DueSample& d : due) {
+    const SensorSpec& row = rows_[d.row];
+    Pose X_WS = base::compose(poses[row.mover], row.X_MS);
+    X_WS.z = world_.movers[row.mover].X_WM.z + row.X_MS.z;
+    const auto values = std::span(values_).subspan(first_[d.row], first_[d.row + 1] - first_[d.row]);
+    samples_.push_back({d.row, d.sequence, X_WS, values});
+  }
+  // A world of such kinds alone needs its empty batch recorded once.
+  return !std::exchange(recorded_, true);
+}
+
+void HostBackend::collect(std::vector<base::ReadingBlock>& out) {
+  thread_pool_.parallel_for(samples_.size(), kPiece, [this](std::size_t first, std::size_t last, unsigned) {
+    measure(std::span<const HostSample>(samples_).subspan(first, last - first));
+  });
+  for (const HostSample& sample : samples_) {
+    const SensorSpec& row = rows_[sample.row];
+    out.push_back(
+        {.mover = row.mover, .sensor = row.sensor, .kind = kind_, .X_WS = sample.X_WS, .values = sample.values});
+  }
+}
+
+void for_each_sensor(const world::World& world, const SensorType& kind,
+                     const std::function<void(MountedSensor)>& body) {
+  for_each_of(world, kind.word.type, [&](const world::Sensor& sensor, std::uint32_t mover, std::uint32_t number) {
+    body({sensor, common_spec(sensor, mover, number)});
+  });
+}
+
+}  // namespace sf::sensors

@@ -1,0 +1,117 @@
+#include "sensors/lane_markings/raster_caster.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "shaders/marking_raster.comp.h"
+
+namespace sf::sensors {
+
+namespace {
+
+/// [cells] of a ray: 32-bit reals name a place that far away within a thousandth of a cell, and a ray's steps stay
+/// below the turns that older Mesa allows.
+constexpr double kLongestRay = 8192.0;
+
+void refuse_long_rays(const SensorContext& context, const raycast::RayCaster& caster, double cell) {
+  for (const raycast::Scanner& fan : caster.scanners()) {
+    if (fan.laser.range_max <= kLongestRay * cell) continue;
+    throw base::InputError(
+        context.world.file, 0,
+        fmt::format("road_resolution {:g} m is too fine for the lane edge sensor '{}', whose range_max is {:g} m; "
+                    "expected at most {:g} pixels along a ray; use at least {:g} m, or 0 for exact paint",
+                    cell, fan.laser.name, fan.laser.range_max, kLongestRay, fan.laser.range_max / kLongestRay));
+  }
+}
+
+}  // namespace
+
+RasterCaster::RasterCaster(const SensorContext& context, const MarkingRaster& raster, raycast::RayCaster& caster,
+                           std::uint32_t tag, bool with_casts)
+    : thread_pool_(context.thread_pool),
+      caster_(caster),
+      cell_(raster.cell()),
+      columns_(static_cast<double>(raster.columns()) * MarkingRaster::kBlock),
+      rows_(static_cast<double>(raster.rows()) * MarkingRaster::kBlock),
+      first_column_(static_cast<double>(raster.first_column())),
+      first_row_(static_cast<double>(raster.first_row())),
+      block_columns_(raster.columns()),
+      block_rows_(raster.rows()),
+      tag_(tag),
+      with_casts_(with_casts),
+      kernel_(context.device, "paint raster", marking_raster_comp_spv, 11),
+      place_(context.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4,
+             SF_RASTER_TEXELS * caster.scanners().size()),
+      groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
+      directory_(context.device, "blocks of the raster", gpu::Role::upload, gpu::Texel::u32, raster.directory().size()),
+      blocks_(context.device, "raster of the paint", gpu::Role::upload, gpu::Texel::u32, raster.blocks().size() + 4) {
+  refuse_long_rays(context, caster, cell_);
+  SF_CHECK(kernel_.group_size() == caster.group_size(), "the raster's rays are the cast's lanes, beam by beam");
+  std::memcpy(directory_.host<std::uint32_t>().data(), raster.directory().data(), 4 * raster.directory().size());
+  std::memcpy(blocks_.host<std::uint32_t>().data(), raster.blocks().data(), 4 * raster.blocks().size());
+}
+
+RasterRow RasterCaster::row_of(std::size_t i) const {
+  const raycast::ScanResult results = caster_.results(i);
+  const double range_max = results.scanner->laser.range_max;
+  const double x = results.X_WS.x / cell_;
+  const double y = results.X_WS.y / cell_;
+  const double column = std::floor(x) - first_column_;
+  const double row = std::floor(y) - first_row_;
+  const bool near = column >= 0.0 && row >= 0.0 && column < columns_ && row < rows_;
+  RasterRow r{};
+  r.column = near ? static_cast<std::int32_t>(column) : -1;
+  r.row = near ? static_cast<std::int32_t>(row) : -1;
+  r.x = static_cast<float>(x - std::floor(x));
+  r.y = static_cast<float>(y - std::floor(y));
+  r.heading_cos = results.heading.x;
+  r.heading_sin = results.heading.y;
+  r.lane = results.lane;
+  r.beams = results.beams;
+  r.flags = with_casts_ ? SF_EDGE_CAST : 0u;
+  r.reach = static_cast<float>(range_max / cell_);
+  r.cell = cell_;
+  r.range_max = range_max;
+  r.tag = tag_;
+  r.columns = block_columns_;
+  r.specs = block_rows_;
+  return r;
+}
+
+void RasterCaster::prepare(std::size_t due) {
+  due_ = due;
+  const auto rows = place_.host<RasterRow>();
+  thread_pool_.parallel_for(due, 256, [&](std::size_t first, std::size_t last, unsigned) {
+    for (std::size_t i = first; i < last; ++i) rows[i] = row_of(i);
+  });
+  // One invocation a beam where the cast has one a lane.
+  const auto lanes = caster_.groups().host<std::uint32_t>();
+  const auto groups = groups_.host<std::uint32_t>();
+  groups[0] = lanes[0];
+  groups[1] = SF_BEAMS_PER_LANE * lanes[1];
+  groups[2] = lanes[2];
+}
+
+void RasterCaster::bind(const PointTables& out) {
+  gpu::Buffer* const tables[] = {
+      &place_,         &caster_.lanes(), &caster_.directions64(), &directory_,  &blocks_,   &caster_.ranges(),
+      &caster_.hits(), &out.rows,        &out.directions,         &out.normals, &out.points};
+  kernel_.bind(tables);
+}
+
+void RasterCaster::record(gpu::Batch& batch) { batch.dispatch(kernel_, groups_, 0); }
+
+void RasterCaster::add_copies(gpu::Batch& batch) {
+  batch.upload(place_, 0, due_ * sizeof(RasterRow));
+  batch.upload(groups_, 0, groups_.bytes());
+  if (!fresh_) return;
+  batch.upload(directory_, 0, directory_.bytes());
+  batch.upload(blocks_, 0, blocks_.bytes());
+  fresh_ = false;
+}
+
+}  // namespace sf::sensors

@@ -1,0 +1,57 @@
+#include "sensors/sensor_set.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "sensors/accuracy.h"
+
+namespace sf::sensors {
+
+SensorSet::SensorSet(const world::World& world) {
+  for (const SensorType* kind : sensor_types()) {
+    Group group{kind, kind->specs(world), {}};
+    if (group.rows.empty()) continue;
+    std::uint32_t at = 0;
+    for (std::uint32_t m = 0; m <= world.movers.size(); ++m) {
+      while (at < group.rows.size() && group.rows[at].mover < m) ++at;
+      group.first.push_back(at);
+    }
+    groups_.push_back(std::move(group));
+  }
+  std::vector<const SensorType*> present;
+  for (const Group& group : groups_) present.push_back(group.kind);
+  check_accuracy(world, present);
+}
+
+const SensorSet::Group* SensorSet::group(std::uint8_t kind) const {
+  const auto found = std::find_if(groups_.begin(), groups_.end(), [&](const Group& g) { return g.kind->id == kind; });
+  return found == groups_.end() ? nullptr : &*found;
+}
+
+std::span<const SensorSpec> SensorSet::of(std::uint8_t kind, std::uint32_t mover) const {
+  const Group* found = group(kind);
+  if (found == nullptr || mover + 1 >= found->first.size()) return {};
+  return std::span(found->rows).subspan(found->first[mover], found->first[mover + 1] - found->first[mover]);
+}
+
+const SensorSpec& SensorSet::row(const base::ReadingBlock& reading) const {
+  const auto rows = of(reading.kind, reading.mover);
+  SF_CHECK(reading.sensor < rows.size(), "kind " + std::to_string(reading.kind) + " of mover " +
+                                             std::to_string(reading.mover) + " has no sensor " +
+                                             std::to_string(reading.sensor));
+  return rows[reading.sensor];
+}
+
+std::size_t SensorSet::count() const {
+  std::size_t sum = 0;
+  for (const Group& group : groups_) sum += group.rows.size();
+  return sum;
+}
+
+std::size_t SensorSet::count_of(std::uint32_t mover) const {
+  std::size_t sum = 0;
+  for (const Group& group : groups_) sum += of(group.kind->id, mover).size();
+  return sum;
+}
+
+}  // namespace sf::sensors

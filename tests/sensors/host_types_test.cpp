@@ -1,0 +1,228 @@
+// What every kind that needs no device does: the same bytes for any threads, no allocation once warm.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <fstream>
+
+#include "sensors/bumper.h"
+#include "sensors/cliff.h"
+#include "sensors/encoder.h"
+#include "sensors/gps.h"
+#include "sensors/gyro.h"
+#include "sensors/irreceiver.h"
+#include "tests/sensors/host_trial.h"
+
+namespace sf::trial {
+namespace {
+
+/// Robots with one of each, a roof, walls, a hole and a dock.
+world::World everything(int robots) {
+  world::World world;
+  for (int i = 0; i < robots; ++i) {
+    const auto m = scenes::add_carrier(world, {0.1 * i, 0.05 * i, 0, 0.3 * i}, fitted("bumper"));
+    auto& sensors = world.movers[m].sensors;
+    sensors.push_back(fitted("cliff"));
+    sensors.push_back(fitted("encoder", {setting("slip", {0.01}), setting("per_count", {1e-6})}));
+    sensors.push_back(fitted("gyro", {setting("noise", {0.1}), setting("bias", {0.1})}));
+    sensors.push_back(fitted("gps", {setting("noise", {1}), setting("rate", {10})}));
+    sensors.push_back(fitted("irreceiver"));
+  }
+  add_solid(world, square({2, 1}, 1.5), 0.5, 0.6);
+  add_solid(world, square({4, 1}, 0.2), 0.0, 2.0);
+  world.floor_holes.push_back({square({1, 0.5}, 0.7), 0});
+  world.emitters.push_back({world::Emitter::Kind::dock, world::kNone, {3, 1, 0, 0}, 2.0, 0.7, 0.5});
+  return world;
+}
+
+std::vector<base::Report> moved(const world::World& world, int tick) {
+  std::vector<base::Report> states = to_occupancy(world);
+  for (base::Report& s : states) {
+    s.X_WM.x += 0.02 * (tick % 8);
+    s.X_WM.yaw += 0.1 * (tick % 8);
+    s.velocity.turn = 0.1 * tick;
+    s.contact_mask = static_cast<std::uint32_t>(tick) << s.mover % 8;
+  }
+  return states;
+}
+
+std::uint64_t hash_of(const world::World& world, const farm::FarmOptions& options) {
+  farm::Farm farm(world, device(), options);
+  farm.hear_all();
+  for (int tick = 0; tick < 30; ++tick) farm.tick(tick * 100'000'000ll, moved(world, tick));
+  return farm.hash();
+}
+
+TEST(HostKinds, TheSameBytesForAnyThreads) {
+  const world::World world = everything(200);
+  const std::uint64_t one = hash_of(world, {.seed = 1, .threads = 1});
+  for (const unsigned threads : {2u, 3u}) EXPECT_EQ(hash_of(world, {.seed = 1, .threads = threads}), one);
+  EXPECT_NE(hash_of(world, {.seed = 2}), one);
+}
+
+/// A robot's readings do not depend on who else is there.
+TEST(HostKinds, OthersChangeNothing) {
+  const world::World few = everything(3), many = everything(50);
+  farm::Farm a(few, device(), {.seed = 1}), b(many, device(), {.seed = 1});
+  a.hear_all();
+  b.hear_all();
+  for (int tick = 0; tick < 5; ++tick) {
+    std::vector<std::vector<double>> first, second;
+    for (const auto& r : a.tick(tick * 100'000'000ll, moved(few, tick))) first.push_back(values_of(r));
+    for (const auto& r : b.tick(tick * 100'000'000ll, moved(many, tick)))
+      if (r.mover < 3) second.push_back(values_of(r));
+    ASSERT_EQ(first.size(), second.size());
+    for (std::size_t i = 0; i < first.size(); ++i)
+      for (std::size_t k = 0; k < first[i].size(); ++k)
+        EXPECT_TRUE(first[i][k] == second[i][k] || (std::isnan(first[i][k]) && std::isnan(second[i][k])));
+  }
+}
+
+TEST(HostKinds, AreSensedByHandAnywhere) {
+  const world::World world = everything(2);
+  farm::Farm farm(world, device());
+  const auto sense = [&](std::uint8_t kind) { return farm.sense(1, kind, 0, {100, 100, 0, 1}); };
+  EXPECT_EQ(sense(sensors::kGps).values[3], 8.0);
+  EXPECT_EQ(sense(sensors::kEncoder).values[2], 0.0);
+  EXPECT_EQ(sense(sensors::kBumper).values[0], 0.0);
+  EXPECT_EQ(sense(sensors::kIrReceiver).values[1], 255.0);
+  EXPECT_EQ(sense(sensors::kGps).X_WS.x, 100.0);
+}
+
+/// Readings of robot `mover` of one kind, by sensor.
+std::vector<std::vector<double>> of(std::span<const base::ReadingBlock> readings, std::uint8_t kind,
+                                    std::uint32_t mover) {
+  std::vector<std::vector<double>> all;
+  for (const base::ReadingBlock& r : readings)
+    if (r.kind == kind && r.mover == mover) all.push_back(values_of(r));
+  return all;
+}
+
+/// Every sensor has its own settings and its own robot's state: the first robot has none, the third two of each.
+TEST(HostKinds, EachIsItsOwn) {
+  world::World world = carriers(fitted("bumper"), {{0, 0, 0, 0}, {10, 0, 0.5, 0}, {20, 0, 0, 0}});
+  const auto fit = [&](std::size_t m, const char* type, std::vector<world::Setting> settings) {
+    world.movers[m].sensors.push_back(fitted(type, std::move(settings)));
+  };
+  for (world::Mover& mover : world.movers) mover.sensors.clear();
+  fit(1, "encoder", {setting("per_count", {1e-2})});
+  fit(2, "encoder", {setting("scale", {3, 2})});
+  fit(2, "encoder", {});
+  fit(1, "gyro", {setting("range", {90})});
+  fit(2, "gyro", {});
+  fit(2, "gyro", {setting("range", {180})});
+  fit(1, "bumper", {setting("zone[0]", {0, 90})});
+  fit(2, "bumper", {setting("zone[0]", {-90, 0})});
+  fit(2, "bumper", {});
+  fit(1, "cliff", {setting("spose[0]", {0.5, 0, 0})});
+  fit(2, "cliff", {setting("spose[0]", {-0.5, 0, 0})});
+  fit(2, "cliff", {setting("spose[0]", {0, 0.5, 0})});
+  fit(1, "gps", {setting("satellites", {8})});
+  fit(2, "gps", {setting("satellites", {16})});
+  fit(2, "gps", {setting("satellites", {12})});
+  world.floor_holes = {{square({10.5, 0}, 0.5), 0}, {square({19.5, 0}, 0.5), 0}};
+  add_solid(world, square({10, 0}, 30.0), 0.3, 0.4);  // over the third robot, under the second
+  farm::Farm farm(world, device());
+  farm.hear_all();
+  farm.tick(0, {});
+  std::vector<base::Report> states = to_occupancy(world);
+  for (base::Report& s : states) {
+    s.X_WM.x += 0.1 * s.mover;
+    s.velocity.turn = 2.0 * (s.mover + 1.0);
+  }
+  states[0].contact_mask = 0xFFFFFFFFu;
+  states[1].contact_mask = 1u;
+  states[2].contact_mask = 1u << 20;
+  const auto readings = farm.tick(1'000'000'000, states);
+  using All = std::vector<std::vector<double>>;
+  EXPECT_EQ(of(readings, sensors::kEncoder, 1), (All{{0.1, 0.1, 10, 10}}));
+  EXPECT_EQ(of(readings, sensors::kEncoder, 2), (All{{0.6, 0.4, 600, 400}, {0.2, 0.2, 200, 200}}));
+  EXPECT_EQ(of(readings, sensors::kGyro, 1), (All{{M_PI / 2}}));
+  EXPECT_EQ(of(readings, sensors::kGyro, 2), (All{{6.0}, {M_PI}}));
+  EXPECT_EQ(of(readings, sensors::kBumper, 1), (All{{1}}));
+  EXPECT_EQ(of(readings, sensors::kBumper, 2), (All{{0}, {1}}));
+  EXPECT_EQ(of(readings, sensors::kCliff, 1), (All{{1}}));
+  EXPECT_EQ(of(readings, sensors::kCliff, 2), (All{{1}, {0}}));
+  const auto seen = [&](std::uint32_t m, std::size_t i) { return of(readings, sensors::kGps, m)[i][3]; };
+  EXPECT_EQ(seen(1, 0), 8.0) << "it stands above the roof, half a metre up";
+  EXPECT_EQ(seen(2, 0), 0.0);
+  EXPECT_EQ(seen(2, 1), 0.0);
+  EXPECT_TRUE(of(readings, sensors::kGps, 0).empty());
+}
+
+/// Errors of two sensors of a kind on one robot have nothing in common.
+TEST(HostKinds, TwoOfAKindDrawByThemselves) {
+  world::World world = carriers(fitted("gyro", {setting("bias", {1.0})}));
+  const auto fit = [&](const char* type, const char* key) {
+    for (int i = 0; i < 2; ++i) world.movers[0].sensors.push_back(fitted(type, {setting(key, {0.5})}));
+  };
+  world.movers[0].sensors.clear();
+  fit("gyro", "bias");
+  fit("gps", "noise");
+  fit("encoder", "slip");
+  for (world::Sensor& s : world.movers[0].sensors)
+    if (s.type == "encoder") s.settings.push_back(setting("per_count", {1e-6}));
+  farm::Farm farm(world, device(), {.seed = 3});
+  farm.hear_all();
+  farm.tick(0, {});
+  std::vector<base::Report> states = to_occupancy(world);
+  states[0].X_WM.x = 0.3;
+  const auto readings = farm.tick(1'000'000'000, states);
+  for (const std::uint8_t kind : {sensors::kGyro, sensors::kGps, sensors::kEncoder}) {
+    const auto pair = of(readings, kind, 0);
+    ASSERT_EQ(pair.size(), 2u);
+    EXPECT_NE(pair[0][0], pair[1][0]) << int{kind};
+    EXPECT_GT(std::abs(pair[0][0] - pair[1][0]), 1e-5) << int{kind};
+  }
+}
+
+/// Phase, latency and names are every sensor's.
+TEST(HostKinds, LatencyHoldsReadingsBack) {
+  const world::World world = carriers(fitted("gyro", {setting("latency", {0.15})}));
+  farm::Farm farm(world, device());
+  farm.hear_all();
+  for (int tick = 0; tick < 10; ++tick) {
+    const auto readings = farm.tick(tick * 100'000'000ll, {});
+    ASSERT_EQ(readings.size(), tick < 2 ? 0u : 1u) << tick;
+    EXPECT_TRUE(tick < 2 || readings[0].time == (tick - 2) * 100'000'000ll);
+  }
+}
+
+/// A world file with a robot of `sensors`, as robots.inc defines them.
+world::World ready_made(const std::string& sensors) {
+  const std::string file = testing::TempDir() + "ready_made.world";
+  std::ofstream(file) << "include \"" SF_SOURCE_DIR "/worlds/robots.inc\"\ncreate( name \"one\" " << sensors << ")\n";
+  return world::load_world(file, {.sensors = sensors::world_file_words()});
+}
+
+TEST(HostKinds, TheReadyMadeOnesAreRead) {
+  const world::World world = ready_made(
+      "create_bumper() create_cliff() create_irreceiver() create_encoder() pioneer_bumpers() pioneer_encoder() "
+      "khepera_encoder() mems_gyro() outdoor_gps()");
+  EXPECT_TRUE(world.warnings.empty());
+  const sensors::SensorSet sensor_set(world);
+  EXPECT_EQ(sensor_set.count(), 9u);
+  EXPECT_EQ(sensor_set.of(sensors::kBumper, 0)[0].elements, 2u);
+  EXPECT_EQ(sensor_set.of(sensors::kBumper, 0)[1].elements, 10u);
+  EXPECT_EQ(sensor_set.of(sensors::kCliff, 0)[0].elements, 4u);
+  EXPECT_EQ(sensor_set.of(sensors::kEncoder, 0).size(), 3u);
+  EXPECT_EQ(sensor_set.of(sensors::kGps, 0)[0].latency, 0.1);
+  EXPECT_NEAR(sensor_set.of(sensors::kIrReceiver, 0)[0].X_MS.z, 0.09, 1e-12);
+  EXPECT_NEAR(sensor_set.of(sensors::kGps, 0)[0].X_MS.z, 0.12, 1e-12) << "the antenna is on top";
+
+  const auto& fitted = world.movers[0].sensors;
+  const auto create = sensors::read_bumper(fitted[0]), pioneer = sensors::read_bumper(fitted[4]);
+  EXPECT_EQ(create[0] & create[1], 0x80000001u) << "both switches meet straight ahead";
+  EXPECT_EQ(create[0] | create[1], 0xFF0000FFu) << "the front half";
+  std::uint32_t all = 0;
+  for (const std::uint32_t panel : pioneer) {
+    EXPECT_EQ(std::popcount(panel), 2);
+    EXPECT_EQ(all & panel, 0u);
+    all |= panel;
+  }
+  EXPECT_DOUBLE_EQ(sensors::read_encoder(fitted[5], world.movers[0]).track, 1.5 * 0.394);
+  EXPECT_DOUBLE_EQ(sensors::read_encoder(fitted[6], world.movers[0]).per_count, 1e-3 / 12);
+}
+
+}  // namespace
+}  // namespace sf::trial
