@@ -12,7 +12,7 @@ namespace sf::base {
 /// Hit value of a beam that met nothing within range.
 inline constexpr std::uint32_t kNoHit = 0xFFFFFFFFu;
 
-/// Wire id of the laser: the one kind that rooms beside `sensors` know by number, since controllers drive by it and
+/// Wire id of the laser: the one kind that modules beside `sensors` know by number, since controllers drive by it and
 /// recordings keep it as ROS knows it.
 inline constexpr std::uint8_t kLaser = 1;
 

@@ -1,5 +1,5 @@
 #pragma once
-// The Vulkan handles behind gpu::Buffer, for the sources of this room only.
+// The Vulkan handles behind gpu::Buffer, for the sources of this module only.
 
 #include "gpu/buffer.h"
 #include "gpu/device_vk.h"

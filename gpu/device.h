@@ -1,5 +1,5 @@
 #pragma once
-// Which Vulkan device computes, and why the others do not. No Vulkan type leaves this room.
+// Which Vulkan device computes, and why the others do not. No Vulkan type leaves this module.
 
 #include <cstdint>
 #include <memory>
@@ -60,7 +60,7 @@ class Device {
   /// Messages of the validation layer so far; it is on when the environment has SENSORFARM_VALIDATE=1. "" when silent.
   std::string validation_messages() const;
 
-  struct Vk;  ///< the Vulkan handles, for this room only
+  struct Vk;  ///< the Vulkan handles, for this module only
   explicit Device(std::unique_ptr<Vk> vk);
   Vk& vk() const { return *vk_; }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The Vulkan handles behind gpu::Device, for the sources of this room only.
+// The Vulkan handles behind gpu::Device, for the sources of this module only.
 
 #include <vulkan/vulkan.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-// The Vulkan handles behind gpu::Kernel, for the sources of this room only.
+// The Vulkan handles behind gpu::Kernel, for the sources of this module only.
 
 #include "gpu/device_vk.h"
 #include "gpu/kernel.h"

@@ -40,7 +40,7 @@ struct ErrorBound {
   std::string condition;  ///< where it holds; empty: everywhere
 };
 
-/// One sensor of a world, as every room but its own kind sees it.
+/// One sensor of a world, as every module but its own kind sees it.
 struct SensorSpec {
   std::uint32_t mover = 0;     ///< row in `World::movers`
   std::uint32_t sensor = 0;    ///< 0-based among the mover's sensors of this kind

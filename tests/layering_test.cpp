@@ -1,4 +1,4 @@
-// The house's plan as a test: which room may include which, and behind which door each heavy library lives.
+// The architecture as a test: which module may include which, and which module wraps each heavy library.
 
 #include <gtest/gtest.h>
 
@@ -16,10 +16,11 @@ namespace sf {
 namespace {
 
 namespace fs = std::filesystem;
-using Rooms = std::set<std::string>;
+using Modules = std::set<std::string>;
 
-// What each room may include beside itself. `shaders` stands for the compiled kernels, which only their hosts may name.
-const std::map<std::string, Rooms> kMayInclude{
+// What each module may include beside itself. `shaders` stands for the compiled kernels, which only their hosts may
+// name.
+const std::map<std::string, Modules> kMayInclude{
     {"base", {}},
     {"gpu", {"base", "shaders"}},
     {"world", {"base"}},
@@ -38,13 +39,13 @@ const std::map<std::string, Rooms> kMayInclude{
      {"selftest", "viz", "netio", "record", "farm", "control", "sensors", "raycast", "maps", "robots", "world", "gpu",
       "base"}},
 };
-const Rooms kMayIncludeAnything{"apps", "bench", "tests"};
+const Modules kMayIncludeAnything{"apps", "bench", "tests"};
 
 // Libraries that cost seconds per file that includes them: never in a header, in one source each unless said here, some
-// in one room only.
+// in one module only.
 struct Heavy {
   std::string prefix;
-  std::string room;  ///< empty: any
+  std::string module;  ///< empty: any
   std::size_t sources = 1;
 };
 const std::vector<Heavy> kHeavy{{"CLI/", "apps", 5}, {"nlohmann/", ""},  {"vtk", "viz"},    {"opencv2/", "viz"},
@@ -64,17 +65,17 @@ bool starts_with(const std::string& text, const std::string& prefix) {
   return text.compare(0, prefix.size(), prefix) == 0;
 }
 bool is_header(const std::string& path) { return fs::path(path).extension() == ".h"; }
-std::string room_of(const std::string& path) { return path.substr(0, path.find('/')); }
+std::string module_of(const std::string& path) { return path.substr(0, path.find('/')); }
 
 std::string complain_of_quoted(const Source& source, const std::string& target) {
-  const std::string from = room_of(source.path);
-  const std::string to = room_of(target);
+  const std::string from = module_of(source.path);
+  const std::string to = module_of(target);
   const bool known =
       target.find('/') != std::string::npos && (kMayInclude.count(to) > 0 || kMayIncludeAnything.count(to) > 0);
   if (!known) return "is not a full path from the root";
   if (from == to || kMayIncludeAnything.count(from) > 0) return "";
   const auto row = kMayInclude.find(from);
-  if (row == kMayInclude.end()) return "stands in a room that is not in the plan";
+  if (row == kMayInclude.end()) return "stands in a module that is not in the plan";
   if (row->second.count(to) == 0) return "points from " + from + " to " + to + ", which is not in the plan";
   if (to == "shaders" && !std::regex_match(target, std::regex("shaders/\\w+\\.comp\\.h")))
     return "is not a compiled kernel";
@@ -82,15 +83,15 @@ std::string complain_of_quoted(const Source& source, const std::string& target) 
 }
 
 std::string complain_of_angled(const Source& source, const std::string& target) {
-  const std::string room = room_of(source.path);
-  if (room == "tests") return "";
-  if (starts_with(target, "vulkan/") && room != "gpu") return "is for gpu only";
+  const std::string module = module_of(source.path);
+  if (module == "tests") return "";
+  if (starts_with(target, "vulkan/") && module != "gpu") return "is for gpu only";
   for (const std::string& sockets : kSockets)
-    if (starts_with(target, sockets) && room != "netio") return "is for netio only";
+    if (starts_with(target, sockets) && module != "netio") return "is for netio only";
   for (const Heavy& heavy : kHeavy) {
     if (!starts_with(target, heavy.prefix)) continue;
     if (is_header(source.path)) return "is too heavy for a header";
-    if (!heavy.room.empty() && heavy.room != room) return "is for " + heavy.room + " only";
+    if (!heavy.module.empty() && heavy.module != module) return "is for " + heavy.module + " only";
   }
   return "";
 }
@@ -107,7 +108,7 @@ std::string complain_of_include(const Source& source, const std::string& rest) {
 std::vector<std::string> complaints(const Source& source) {
   static const std::regex kInclude("\\s*#\\s*include(.*)");
   static const std::regex kVulkan("\\b(Vk|vk|PFN_vk)[A-Z]\\w*");
-  const std::string room = room_of(source.path);
+  const std::string module = module_of(source.path);
   std::vector<std::string> found;
   std::istringstream lines(source.text);
   std::string line;
@@ -116,7 +117,7 @@ std::vector<std::string> complaints(const Source& source) {
     std::string why;
     if (std::regex_match(line, m, kInclude)) {
       why = complain_of_include(source, m[1]);
-    } else if (room != "gpu" && room != "tests" && std::regex_search(line, kVulkan)) {
+    } else if (module != "gpu" && module != "tests" && std::regex_search(line, kVulkan)) {
       why = "names a type of Vulkan outside gpu";
     }
     if (!why.empty()) found.push_back(source.path + ":" + std::to_string(number) + ": " + line + ": " + why);
@@ -129,7 +130,7 @@ std::vector<std::string> users_of(const Heavy& heavy, const std::vector<Source>&
   const std::regex include("#\\s*include\\s*<" + heavy.prefix);
   std::vector<std::string> users;
   for (const Source& source : sources)
-    if (room_of(source.path) != "tests" && std::regex_search(source.text, include)) users.push_back(source.path);
+    if (module_of(source.path) != "tests" && std::regex_search(source.text, include)) users.push_back(source.path);
   return users;
 }
 
@@ -143,7 +144,7 @@ std::string read(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-bool is_room(const fs::path& folder) {
+bool is_module(const fs::path& folder) {
   const std::string name = folder.filename().string();
   return fs::is_directory(folder) && name[0] != '.' && !starts_with(name, "build") && name != "out" &&
          name != "node_modules";
@@ -152,9 +153,9 @@ bool is_room(const fs::path& folder) {
 /// Everything of ours that a compiler reads.
 std::vector<Source> read_sources() {
   std::vector<Source> sources;
-  for (const auto& room : fs::directory_iterator(SF_SOURCE_DIR)) {
-    if (!is_room(room.path())) continue;
-    for (const auto& entry : fs::recursive_directory_iterator(room.path()))
+  for (const auto& module : fs::directory_iterator(SF_SOURCE_DIR)) {
+    if (!is_module(module.path())) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(module.path()))
       if (entry.is_regular_file() && is_source(entry.path()))
         sources.push_back({fs::relative(entry.path(), SF_SOURCE_DIR).generic_string(), read(entry.path())});
   }
@@ -170,27 +171,27 @@ TEST(Layering, EveryArrowIsInThePlan) {
     for (const std::string& complaint : complaints(source)) ADD_FAILURE() << complaint;
 }
 
-TEST(Layering, EveryRoomIsInThePlan) {
+TEST(Layering, EveryModuleIsInThePlan) {
   for (const Source& source : read_sources()) {
-    const std::string room = room_of(source.path);
-    EXPECT_TRUE(kMayInclude.count(room) > 0 || kMayIncludeAnything.count(room) > 0) << source.path;
+    const std::string module = module_of(source.path);
+    EXPECT_TRUE(kMayInclude.count(module) > 0 || kMayIncludeAnything.count(module) > 0) << source.path;
   }
 }
 
 TEST(Layering, ThePlanHasNoCircles) {
-  // Rooms are below one another: whoever may be included by A may not include A, at any distance.
-  for (const auto& [room, below] : kMayInclude) {
-    if (room == "shaders") continue;
+  // The graph is acyclic: a module that A may include may not include A, at any distance.
+  for (const auto& [module, below] : kMayInclude) {
+    if (module == "shaders") continue;
     std::vector<std::string> open(below.begin(), below.end());
-    Rooms reached;
+    Modules reached;
     while (!open.empty()) {
       const std::string next = open.back();
       open.pop_back();
       if (next == "shaders" || !reached.insert(next).second) continue;
-      const Rooms& more = kMayInclude.at(next);
+      const Modules& more = kMayInclude.at(next);
       open.insert(open.end(), more.begin(), more.end());
     }
-    EXPECT_EQ(reached.count(room), 0u) << room;
+    EXPECT_EQ(reached.count(module), 0u) << module;
   }
 }
 
@@ -206,7 +207,7 @@ TEST(Layering, KernelsReadSharedHeadersOnly) {
   // A header that both compilers read says so with a guard, since GLSL has no `#pragma once`, and includes nothing.
   static const std::regex kOurs("#\\s*include\\s*\"((raycast|sensors|maps|base)/[^\"]+)\"");
   for (const Source& source : read_sources()) {
-    if (room_of(source.path) != "shaders") continue;
+    if (module_of(source.path) != "shaders") continue;
     for (std::sregex_iterator m(source.text.begin(), source.text.end(), kOurs), end; m != end; ++m) {
       const std::string header = read(fs::path(SF_SOURCE_DIR) / (*m)[1].str());
       EXPECT_NE(header.find("#ifndef"), std::string::npos) << source.path << " includes " << (*m)[1];
@@ -242,13 +243,13 @@ TEST(LayeringJudge, FindsEachBrokenRule) {
            {"sensors/a.cpp", "#include \"shaders/lib/list_search.glsl\""},  // hosts read compiled kernels only
            {"world/a.cpp", "#include \"shape.h\""},                         // not from the root
            {"world/a.cpp", "#include \"../gpu/device_vk.h\""},              // not from the root
-           {"attic/a.cpp", "#include \"base/pose.h\""},                     // a room without a row
+           {"attic/a.cpp", "#include \"base/pose.h\""},                     // a module without a row
            {"world/a.cpp", "  #  include<vulkan/vulkan.h>"},                // Vulkan's header
            {"world/a.cpp", "VkDevice device;"},                             // Vulkan's types
            {"farm/a.cpp", "vkQueueSubmit(queue);"},                         // Vulkan's functions
            {"record/a.cpp", "#include <vtkImageData.h>"},                   // VTK's door is viz
            {"apps/a.h", "#include <CLI/CLI.hpp>"},                          // in a header
-           {"viz/a.h", "#include <vtkNew.h>"},                              // in a header, in the right room
+           {"viz/a.h", "#include <vtkNew.h>"},                              // in a header, in the right module
            {"world/a.cpp", "#include <CLI/App.hpp>"},                       // the command line is the program's
            {"apps/a.cpp", "#include <poll.h>"},                             // sockets are netio's
            {"robots/a.cpp", "#include <netinet/in.h>"},                     // sockets are netio's

@@ -1,4 +1,4 @@
-# A room is a folder, a namespace, a target and a folder of tests.
+# A module is a folder, a namespace, a target and a folder of tests.
 
 find_package(fmt REQUIRED)
 find_package(glm REQUIRED)
@@ -15,17 +15,17 @@ find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOImage Rend
 
 # Flags every target of ours is built with. Contraction is off so that host and device round alike; g++ 12 warns of
 # overlapping strings (-Wrestrict) and, once headers are precompiled, of their bounds where nothing is wrong.
-add_library(house INTERFACE)
-target_include_directories(house INTERFACE ${CMAKE_SOURCE_DIR})
-target_link_libraries(house INTERFACE glm::glm)
-target_compile_definitions(house INTERFACE GLM_FORCE_CTOR_INIT)  # vectors start at zero
-target_compile_options(house INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers
+add_library(project_options INTERFACE)
+target_include_directories(project_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_link_libraries(project_options INTERFACE glm::glm)
+target_compile_definitions(project_options INTERFACE GLM_FORCE_CTOR_INIT)  # vectors start at zero
+target_compile_options(project_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers
                        "$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>" -ffp-contract=off
                        $<$<BOOL:${SENSORFARM_WERROR}>:-Werror>)
 if(SENSORFARM_SANITIZE)
-  target_compile_options(house INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
-  target_link_options(house INTERFACE -fsanitize=address,undefined)
-  target_sources(house INTERFACE ${CMAKE_SOURCE_DIR}/tests/keep_loaded.cpp)
+  target_compile_options(project_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  target_link_options(project_options INTERFACE -fsanitize=address,undefined)
+  target_sources(project_options INTERFACE ${CMAKE_SOURCE_DIR}/tests/keep_loaded.cpp)
 endif()
 
 # Standard headers that most sources include are compiled once: a third of the build's time. Sources still name what they
@@ -40,7 +40,7 @@ function(add_precompiled name)
   cmake_parse_arguments(PCH "" "" "HEADERS" ${ARGN})
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/${name}.cpp CONTENT "")
   add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/generated/${name}.cpp)
-  target_link_libraries(${name} PRIVATE house fmt::fmt ${PCH_UNPARSED_ARGUMENTS})
+  target_link_libraries(${name} PRIVATE project_options fmt::fmt ${PCH_UNPARSED_ARGUMENTS})
   target_precompile_headers(${name} PRIVATE ${PCH_HEADERS})
 endfunction()
 function(precompiled target name)
@@ -65,53 +65,53 @@ if(SENSORFARM_PCH)
   endif()
 endif()
 
-# add_room(NAME [PUBLIC targets...] [PRIVATE targets...] [SOURCES sources...] [MODULES names...])
-# SOURCES: written at configure time, beside those of the folder. MODULES: sources NAME/<name>.cpp that are loaded when they
+# add_module(NAME [PUBLIC targets...] [PRIVATE targets...] [SOURCES sources...] [PLUGINS names...])
+# SOURCES: written at configure time, beside those of the folder. PLUGINS: sources NAME/<name>.cpp that are loaded when they
 # are first needed, as sensorfarm_<name>.so beside the program.
-function(add_room name)
-  cmake_parse_arguments(ROOM "" "" "PUBLIC;PRIVATE;SOURCES;MODULES" ${ARGN})
+function(add_module name)
+  cmake_parse_arguments(MODULE "" "" "PUBLIC;PRIVATE;SOURCES;PLUGINS" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${name}/*.cpp)
-  foreach(module ${ROOM_MODULES})
-    list(REMOVE_ITEM sources ${CMAKE_SOURCE_DIR}/${name}/${module}.cpp)
-    add_library(sensorfarm_${module} MODULE ${name}/${module}.cpp)
-    set_target_properties(sensorfarm_${module} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
-    target_link_libraries(sensorfarm_${module} PRIVATE house)
+  foreach(plugin ${MODULE_PLUGINS})
+    list(REMOVE_ITEM sources ${CMAKE_SOURCE_DIR}/${name}/${plugin}.cpp)
+    add_library(sensorfarm_${plugin} MODULE ${name}/${plugin}.cpp)
+    set_target_properties(sensorfarm_${plugin} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+    target_link_libraries(sensorfarm_${plugin} PRIVATE project_options)
   endforeach()
-  add_library(${name} STATIC ${sources} ${ROOM_SOURCES})
-  target_link_libraries(${name} PUBLIC house Threads::Threads ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
+  add_library(${name} STATIC ${sources} ${MODULE_SOURCES})
+  target_link_libraries(${name} PUBLIC project_options Threads::Threads ${MODULE_PUBLIC} PRIVATE ${MODULE_PRIVATE})
   precompiled(${name} common_headers)
-  foreach(module ${ROOM_MODULES})
-    add_dependencies(${name} sensorfarm_${module})
+  foreach(plugin ${MODULE_PLUGINS})
+    add_dependencies(${name} sensorfarm_${plugin})
   endforeach()
   if(SENSORFARM_CHECKED)
-    add_library(${name}_checked OBJECT ${sources} ${ROOM_SOURCES})
-    target_link_libraries(${name}_checked PRIVATE house Threads::Threads ${ROOM_PUBLIC} ${ROOM_PRIVATE} checked)
+    add_library(${name}_checked OBJECT ${sources} ${MODULE_SOURCES})
+    target_link_libraries(${name}_checked PRIVATE project_options Threads::Threads ${MODULE_PUBLIC} ${MODULE_PRIVATE} checked)
     precompiled(${name}_checked common_headers_checked)
-    set_property(GLOBAL PROPERTY SENSORFARM_BELOW_${name} ${ROOM_PUBLIC} ${ROOM_PRIVATE})
+    set_property(GLOBAL PROPERTY SENSORFARM_BELOW_${name} ${MODULE_PUBLIC} ${MODULE_PRIVATE})
   endif()
 endfunction()
 
-# add_checked_program(NAME OBJECTS targets... ROOMS rooms... [LIBRARIES targets...]): NAME of the objects of targets and of
-# all instrumented modules below `rooms`. The linker keeps the first copy of an inline function: the instrumented one.
+# add_checked_program(NAME OBJECTS targets... MODULES modules... [LIBRARIES targets...]): NAME of the objects of targets and of
+# all instrumented modules below `modules`. The linker keeps the first copy of an inline function: the instrumented one.
 function(add_checked_program name)
-  cmake_parse_arguments(PROGRAM "" "" "OBJECTS;ROOMS;LIBRARIES" ${ARGN})
-  set(rooms "")
+  cmake_parse_arguments(PROGRAM "" "" "OBJECTS;MODULES;LIBRARIES" ${ARGN})
+  set(modules "")
   set(libraries ${PROGRAM_LIBRARIES})
-  set(open ${PROGRAM_ROOMS})
+  set(open ${PROGRAM_MODULES})
   while(open)
     list(POP_FRONT open next)
     if(NOT TARGET ${next}_checked)
       list(APPEND libraries ${next})
-    elseif(NOT next IN_LIST rooms)
-      list(APPEND rooms ${next})
+    elseif(NOT next IN_LIST modules)
+      list(APPEND modules ${next})
       get_property(below GLOBAL PROPERTY SENSORFARM_BELOW_${next})
       list(APPEND open ${below})
     endif()
   endwhile()
   set(objects ${PROGRAM_OBJECTS})
-  list(TRANSFORM rooms REPLACE "(.+)" "$<TARGET_OBJECTS:\\1_checked>")
+  list(TRANSFORM modules REPLACE "(.+)" "$<TARGET_OBJECTS:\\1_checked>")
   list(TRANSFORM objects REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>")
   list(REMOVE_DUPLICATES libraries)
-  add_executable(${name} ${CMAKE_SOURCE_DIR}/tests/keep_loaded.cpp ${rooms} ${objects})
+  add_executable(${name} ${CMAKE_SOURCE_DIR}/tests/keep_loaded.cpp ${modules} ${objects})
   target_link_libraries(${name} PRIVATE checked Threads::Threads ${libraries})
 endfunction()
