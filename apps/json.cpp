@@ -205,7 +205,7 @@ std::string json_of(const RunFacts& f) {
             {"rays", f.farm.work.rays},
             {"rays_per_s", f.wall_s > 0.0 ? static_cast<double>(f.farm.work.rays) / f.wall_s : 0.0},
             {"readings", f.farm.readings},
-            {"given_again", f.farm.again},
+            {"given_again", f.farm.reused},
             {"missed", f.farm.missed},
             {"batches", f.farm.batches},
             {"beams_in_doubt", f.farm.work.uncertain},

@@ -62,7 +62,7 @@ void map_scans(const record::Recording& recording, const world::World& world, gp
   farm::FarmOptions quiet;
   quiet.noise = false;
   farm::Farm farm(world, device, quiet);
-  for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.hear(m, 1u << base::kLaser);
+  for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.subscribe(m, 1u << base::kLaser);
   const auto every = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / recording.info.interval)));
   std::vector<base::Report> reports;
   std::vector<std::uint8_t> moving;

@@ -101,7 +101,7 @@ class Service {
     take_in(now);
     for (const auto& [id, row] : names_.robots) {
       forget_silent(id, row, now);
-      farm_.hear(row, wanted(id, now));
+      farm_.subscribe(row, wanted(id, now));
     }
     const auto states = fleet_.predict(now);
     const auto readings = no_return_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));

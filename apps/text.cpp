@@ -141,8 +141,8 @@ std::string work_text(const RunFacts& f) {
   if (work.host_scans > 0)
     text += row("cast on the host",
                 fmt::format("{} scans: too many surfaces around them for the device's lists", work.host_scans));
-  if (f.farm.again > 0)
-    text += row("given again", fmt::format("{} of {} readings: nothing had moved", f.farm.again, f.farm.readings));
+  if (f.farm.reused > 0)
+    text += row("given again", fmt::format("{} of {} readings: nothing had moved", f.farm.reused, f.farm.readings));
   return text;
 }
 

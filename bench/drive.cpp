@@ -27,11 +27,11 @@ farm::FarmStats operator-(const farm::FarmStats& p, const farm::FarmStats& q) {
 
 Drive::Drive(const world::World& world, gpu::Device& device)
     : world_(world),
-      farm_(world, device, {.give_again = false}),
+      farm_(world, device, {.reuse_unchanged = false}),
       fleet_(world, &thread_pool_),
       commands_(world.movers.size()),
       interval_(std::llround(1e9 / world.movers[0].lasers[0].rate)) {
-  farm_.hear_all();
+  farm_.subscribe_all();
   for (std::uint32_t row = 0; row < world.movers.size(); ++row)
     controllers_.push_back(std::make_unique<control::Wander>(world.movers[row], row, kSeed));
 }

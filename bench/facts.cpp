@@ -16,7 +16,7 @@ namespace {
 constexpr int kRepeats = 21;
 
 /// Everyone who is due looks, though nobody moves.
-constexpr farm::FarmOptions kAnew{.give_again = false};
+constexpr farm::FarmOptions kAnew{.reuse_unchanged = false};
 
 /// Median of what one tick costs, every sensor due in each.
 Cost tick_cost(farm::Farm& farm) {
@@ -32,7 +32,7 @@ Cost tick_cost(farm::Farm& farm) {
 
 double first_tick(const world::World& world, gpu::Device& device) {
   farm::Farm farm(world, device);
-  farm.hear_all();
+  farm.subscribe_all();
   const double start = now().wall_s;
   farm.tick(0, {});
   return now().wall_s - start;
@@ -71,7 +71,7 @@ std::vector<Fact> measure_ticks(gpu::Device& device) {
 
   const world::World one = make_scans("cave", load_cave(), 1, scenes::laser(1)).world;
   farm::Farm single(one, device, kAnew);
-  single.hear_all();
+  single.subscribe_all();
   facts.push_back({"tick of 1 robot with 1 beam", 1e6 * tick_cost(single).wall_s, "us"});
 
   const Scans many = make_scans("cave", load_cave(), 1, scenes::laser(100'000));
@@ -89,7 +89,7 @@ std::vector<Fact> measure_lists(gpu::Device& device) {
   for (const double range : {8.0, 0.75}) {
     const Scans scans = make_scans("cave", load_cave(), 1000, scenes::laser(361, M_PI, range));
     farm::Farm farm(scans.world, device, kAnew);
-    farm.hear_all();
+    farm.subscribe_all();
     const Cost start = now();
     farm.tick(0, {});
     const Cost first = now() - start;

@@ -16,8 +16,8 @@ class FarmRounds {
   /// Every sensor is heard. @param rounds poses, one per mover @param interval [ns] of simulated time between ticks
   FarmRounds(const world::World& world, gpu::Device& device, const std::vector<std::vector<base::Pose>>& rounds,
              std::int64_t interval)
-      : farm_(world, device, {.give_again = false}), interval_(interval) {
-    farm_.hear_all();
+      : farm_(world, device, {.reuse_unchanged = false}), interval_(interval) {
+    farm_.subscribe_all();
     for (const std::vector<base::Pose>& poses : rounds) {
       std::vector<base::Report>& reports = reports_.emplace_back();
       for (std::uint32_t m = 0; m < poses.size(); ++m) reports.push_back({m, 0, poses[m], {}});

@@ -65,9 +65,9 @@ constexpr std::int64_t kPeriod = 100'000'000;  ///< [ns] of a sensor
 /// A farm that is ticked in turns with others.
 class Turn {
  public:
-  Turn(const world::World& world, gpu::Device& device, bool heard, std::int64_t interval, bool give_again)
-      : farm_(world, device, {.give_again = give_again}), interval_(interval) {
-    if (heard) farm_.hear_all();
+  Turn(const world::World& world, gpu::Device& device, bool heard, std::int64_t interval, bool reuse_unchanged)
+      : farm_(world, device, {.reuse_unchanged = reuse_unchanged}), interval_(interval) {
+    if (heard) farm_.subscribe_all();
     for (int k = 0; k < 4; ++k) tick();
     costs_.clear();
   }

@@ -31,8 +31,8 @@ void Delivery::hold(const base::ReadingBlock& block, std::int64_t due) {
 
 std::span<const base::ReadingBlock> Delivery::deliver(std::int64_t now, std::span<const base::ReadingBlock> measured) {
   if (!any_) return measured;
-  for (Waiting* lent : lent_) lent->used = false;
-  lent_.clear();
+  for (Waiting* slot : last_delivered_) slot->used = false;
+  last_delivered_.clear();
   ready_.clear();
   delivered_.clear();
   for (const base::ReadingBlock& block : measured)
@@ -49,7 +49,7 @@ std::span<const base::ReadingBlock> Delivery::deliver(std::int64_t now, std::spa
            std::tie(q->due, b.mover, b.kind, b.sensor, b.sequence);
   });
   for (const Waiting* w : ready_) delivered_.push_back(w->reading.block());
-  lent_.swap(ready_);
+  last_delivered_.swap(ready_);
   for (const base::ReadingBlock& block : measured)
     if (latency_of(block) == 0) delivered_.push_back(block);
   return delivered_;

@@ -39,7 +39,7 @@ class Delivery {
   std::int64_t next_ = kNever;
   std::vector<Waiting> waiting_;  ///< places are reused, with their memory
   std::vector<Waiting*> ready_;
-  std::vector<Waiting*> lent_;  ///< delivered last time, free from now on
+  std::vector<Waiting*> last_delivered_;  ///< delivered last time, free from now on
   std::vector<base::ReadingBlock> delivered_;
 };
 

@@ -11,8 +11,8 @@
 #include "base/hash.h"
 #include "base/thread_pool.h"
 #include "farm/delivery.h"
-#include "farm/moves.h"
-#include "farm/station.h"
+#include "farm/pose_changes.h"
+#include "farm/sensor_pipeline.h"
 #include "gpu/batch.h"
 #include "sensors/laser_shape.h"
 
@@ -42,17 +42,17 @@ struct Farm::State {
   gpu::Device& device;
   base::ThreadPool thread_pool;
   sensors::SensorSet sensor_set;
-  bool give_again;
+  bool reuse_unchanged;
   bool no_return_inf;
   std::vector<std::vector<double>> marked;  ///< per thread: ranges as they are sent
-  std::vector<Station> stations;
+  std::vector<SensorPipeline> pipelines;
   gpu::Batch batch;
   Delivery delivery;
-  Moves moves;                       ///< of this tick
-  std::vector<base::Pose> poses;     ///< per mover
-  std::vector<base::Report> states;  ///< per mover
-  std::vector<std::uint32_t> heard;  ///< per mover: bits of kinds
-  std::vector<std::uint8_t> gone;    ///< per mover
+  PoseChanges pose_changes;               ///< of this tick
+  std::vector<base::Pose> poses;          ///< per mover
+  std::vector<base::Report> states;       ///< per mover
+  std::vector<std::uint32_t> subscribed;  ///< per mover: bits of kinds
+  std::vector<std::uint8_t> gone;         ///< per mover
   std::vector<base::ReadingBlock> blocks;
   std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
   FarmStats stats;
@@ -63,13 +63,13 @@ struct Farm::State {
         device(d),
         thread_pool(options.threads),
         sensor_set(w),
-        give_again(options.give_again),
+        reuse_unchanged(options.reuse_unchanged),
         no_return_inf(options.no_return_inf),
         marked(thread_pool.threads()),
         batch(device),
         delivery(sensor_set),
-        moves(w),
-        heard(w.movers.size(), 0),
+        pose_changes(w),
+        subscribed(w.movers.size(), 0),
         gone(w.movers.size(), 0) {
     for (const world::Mover& mover : w.movers) {
       states.push_back({.mover = static_cast<std::uint32_t>(poses.size()), .X_WM = mover.X_WM});
@@ -79,96 +79,97 @@ struct Farm::State {
         w, device, thread_pool, options.seed, options.noise, options.true_poses, options.scene};
     for (const auto& group : sensor_set.groups()) {
       device.set_owner(group.kind->name);
-      stations.emplace_back(context, group);
+      pipelines.emplace_back(context, group);
     }
     blocks.reserve(sensor_set.count());
     hashes.reserve(sensor_set.count());
   }
 
-  void move(std::span<const base::Report> reports);
-  std::span<const base::ReadingBlock> look(std::int64_t now, std::span<const base::Report> reports, bool between);
+  void apply_reports(std::span<const base::Report> reports);
+  std::span<const base::ReadingBlock> advance(std::int64_t now, std::span<const base::Report> reports, bool between);
   bool find_due(std::int64_t now);
   void prepare();
   void run();
-  void collect(Station& station, std::int64_t now, bool again);
+  void collect(SensorPipeline& pipeline, std::int64_t now, bool reuse);
   /// @param again whether readings may be given again.
-  void measure(std::int64_t now, bool again);
+  void measure(std::int64_t now, bool reuse);
   void add_to_hash(std::span<const base::ReadingBlock> readings);
   std::span<const double> sent(const base::ReadingBlock& reading, unsigned thread);
 };
 
 bool Farm::State::find_due(std::int64_t now) {
-  for (Station& station : stations) stats.missed += station.find_due(now, heard);
-  return std::any_of(stations.begin(), stations.end(), [](const Station& s) { return !s.due.empty(); });
+  for (SensorPipeline& pipeline : pipelines) stats.missed += pipeline.find_due(now, subscribed);
+  return std::any_of(pipelines.begin(), pipelines.end(), [](const SensorPipeline& s) { return !s.due.empty(); });
 }
 
-void Farm::State::move(std::span<const base::Report> reports) {
-  moves.begin();
+void Farm::State::apply_reports(std::span<const base::Report> reports) {
+  pose_changes.begin();
   for (std::uint32_t m = 0; m < gone.size(); ++m) {
     if (gone[m] == 0 || is_gone(poses[m])) continue;
-    moves.add(m, poses[m], kGone);
+    pose_changes.add(m, poses[m], kGone);
     poses[m] = kGone;
   }
   for (const base::Report& report : reports) {
     if (gone.at(report.mover) != 0) continue;
     const base::Pose& X = report.X_WM;
     SF_CHECK(std::isfinite(X.x + X.y + X.yaw), "the pose of mover " + std::to_string(report.mover) + " is not finite");
-    moves.add(report.mover, poses.at(report.mover), X);
+    pose_changes.add(report.mover, poses.at(report.mover), X);
     poses[report.mover] = X;
     states[report.mover] = report;
   }
-  for (Station& station : stations) station.steady.disturb(moves, poses);
+  for (SensorPipeline& pipeline : pipelines) pipeline.cache.invalidate(pose_changes, poses);
 }
 
 void Farm::State::prepare() {
-  bool again = false;
-  for (Station& station : stations) {
-    device.set_owner(station.group->kind->name);  // tables may grow
-    again |= station.prepare(poses);
+  bool rerecord = false;
+  for (SensorPipeline& pipeline : pipelines) {
+    device.set_owner(pipeline.group->kind->name);  // tables may grow
+    rerecord |= pipeline.prepare(poses);
   }
-  if (!again) return;
+  if (!rerecord) return;
   // A kernel is compiled when it first runs, if only for nothing: those that nobody has needed yet stay out.
   batch.begin();
-  for (Station& station : stations)
-    if (station.in_use) station.backend->record_measure(batch);
+  for (SensorPipeline& pipeline : pipelines)
+    if (pipeline.active) pipeline.backend->record_measure(batch);
   batch.barrier();
-  for (Station& station : stations)
-    if (station.in_use) station.backend->record_derive(batch);
+  for (SensorPipeline& pipeline : pipelines)
+    if (pipeline.active) pipeline.backend->record_derive(batch);
   batch.end();
 }
 
 void Farm::State::run() {
-  if (std::none_of(stations.begin(), stations.end(), [](const Station& s) { return s.needs_device(); })) return;
-  for (Station& station : stations) station.add_copies(batch);
+  if (std::none_of(pipelines.begin(), pipelines.end(), [](const SensorPipeline& s) { return s.needs_device(); }))
+    return;
+  for (SensorPipeline& pipeline : pipelines) pipeline.add_copies(batch);
   batch.run();
   ++stats.batches;
 }
 
-void Farm::State::measure(std::int64_t now, bool again) {
+void Farm::State::measure(std::int64_t now, bool reuse) {
   Stopwatch watch;
-  for (Station& station : stations) {
-    station.split(again);
-    if (!station.looking.empty()) station.backend->set_poses(poses);
+  for (SensorPipeline& pipeline : pipelines) {
+    pipeline.split(reuse);
+    if (!pipeline.to_measure.empty()) pipeline.backend->set_poses(poses);
   }
   watch.lap(stats.place_s);
   prepare();
   watch.lap(stats.lists_s);
   run();
   watch.lap(stats.device_s);
-  for (Station& station : stations)
-    if (!station.derived()) collect(station, now, again);
+  for (SensorPipeline& pipeline : pipelines)
+    if (!pipeline.derived()) collect(pipeline, now, reuse);
   const std::size_t measured = blocks.size();
-  for (Station& station : stations) {
-    if (!station.derived()) continue;
-    station.backend->observe(std::span(blocks).first(measured));
-    collect(station, now, again);
+  for (SensorPipeline& pipeline : pipelines) {
+    if (!pipeline.derived()) continue;
+    pipeline.backend->observe(std::span(blocks).first(measured));
+    collect(pipeline, now, reuse);
   }
   watch.lap(stats.collect_s);
 }
 
-void Farm::State::collect(Station& station, std::int64_t now, bool again) {
-  stats.again += station.collect(now, poses, blocks);
-  if (again) station.note(blocks);
+void Farm::State::collect(SensorPipeline& pipeline, std::int64_t now, bool reuse) {
+  stats.reused += pipeline.collect(now, poses, blocks);
+  if (reuse) pipeline.store(blocks);
 }
 
 /// A reading's values as they leave: what a hash is of.
@@ -195,12 +196,12 @@ void Farm::State::add_to_hash(std::span<const base::ReadingBlock> readings) {
   hash = base::hash_bytes(hashes.data(), hashes.size() * sizeof hashes[0], hash);
 }
 
-std::span<const base::ReadingBlock> Farm::State::look(std::int64_t now, std::span<const base::Report> reports,
-                                                      bool between) {
-  move(reports);
-  for (Station& station : stations) station.backend->update_states(states, now, between);
+std::span<const base::ReadingBlock> Farm::State::advance(std::int64_t now, std::span<const base::Report> reports,
+                                                         bool between) {
+  apply_reports(reports);
+  for (SensorPipeline& pipeline : pipelines) pipeline.backend->update_states(states, now, between);
   blocks.clear();
-  if (find_due(now)) measure(now, give_again);
+  if (find_due(now)) measure(now, reuse_unchanged);
   Stopwatch watch;
   const auto delivered = delivery.deliver(now, blocks);
   add_to_hash(delivered);
@@ -214,42 +215,44 @@ Farm::Farm(const world::World& world, gpu::Device& device, const FarmOptions& op
 
 Farm::~Farm() = default;
 
-void Farm::hear(std::uint32_t mover, std::uint32_t kinds) { s_->heard.at(mover) = s_->gone.at(mover) != 0 ? 0 : kinds; }
+void Farm::subscribe(std::uint32_t mover, std::uint32_t kinds) {
+  s_->subscribed.at(mover) = s_->gone.at(mover) != 0 ? 0 : kinds;
+}
 void Farm::set_absent(std::uint32_t mover, bool gone) {
   s_->gone.at(mover) = gone ? 1 : 0;
-  if (gone) s_->heard.at(mover) = 0;
+  if (gone) s_->subscribed.at(mover) = 0;
 }
-void Farm::hear_all() { std::fill(s_->heard.begin(), s_->heard.end(), kAllKinds); }
+void Farm::subscribe_all() { std::fill(s_->subscribed.begin(), s_->subscribed.end(), kAllSensorTypes); }
 
 const sensors::SensorSet& Farm::sensor_set() const { return s_->sensor_set; }
 
 std::span<const base::ReadingBlock> Farm::tick(std::int64_t now, std::span<const base::Report> reports) {
   ++s_->stats.ticks;
-  return s_->look(now, reports, false);
+  return s_->advance(now, reports, false);
 }
 
 std::int64_t Farm::next_delivery() const { return s_->delivery.next(); }
 
 std::span<const base::ReadingBlock> Farm::sample(std::int64_t now, std::span<const base::Report> reports) {
-  return s_->look(now, reports, true);
+  return s_->advance(now, reports, true);
 }
 
 std::int64_t Farm::next_due() const {
   std::int64_t soonest = kNever;
-  for (const Station& station : s_->stations) soonest = std::min(soonest, station.next_due(s_->heard));
+  for (const SensorPipeline& pipeline : s_->pipelines) soonest = std::min(soonest, pipeline.next_due(s_->subscribed));
   return soonest;
 }
 
 base::ReadingBlock Farm::sense(std::uint32_t mover, std::uint8_t kind, std::uint32_t sensor, const base::Pose& X_WM) {
   State& s = *s_;
   s.blocks.clear();
-  for (Station& station : s.stations) {
-    station.due.clear();
-    const auto& rows = station.group->rows;
+  for (SensorPipeline& pipeline : s.pipelines) {
+    pipeline.due.clear();
+    const auto& rows = pipeline.group->rows;
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const sensors::SensorSpec& r) {
-      return station.group->kind->id == kind && r.mover == mover && r.sensor == sensor;
+      return pipeline.group->kind->id == kind && r.mover == mover && r.sensor == sensor;
     });
-    if (row != rows.end()) station.due.push_back({static_cast<std::uint32_t>(row - rows.begin()), 0});
+    if (row != rows.end()) pipeline.due.push_back({static_cast<std::uint32_t>(row - rows.begin()), 0});
   }
   const base::Pose stands = std::exchange(s.poses[mover], X_WM);
   s.measure(0, false);
@@ -263,7 +266,7 @@ std::uint64_t Farm::hash() const { return s_->hash; }
 
 FarmStats Farm::stats() const {
   FarmStats stats = s_->stats;
-  for (const Station& station : s_->stations) stats.work += station.backend->stats();
+  for (const SensorPipeline& pipeline : s_->pipelines) stats.work += pipeline.backend->stats();
   return stats;
 }
 

@@ -30,7 +30,7 @@ namespace sf::farm {
 struct FarmOptions {
   std::uint64_t seed = 0;  ///< of all noise
   bool noise = true;       ///< false: none, whatever the world says
-  bool give_again =
+  bool reuse_unchanged =
       true;  ///< a reading for which nothing has changed; false: everyone who is due looks. The same bytes
   bool true_poses = true;      ///< reports say where movers are; false: where they believe to be
   bool no_return_inf = false;  ///< readings are sent with infinity where a beam met nothing: so `hash` takes them
@@ -43,7 +43,7 @@ struct FarmStats {
   std::uint64_t ticks = 0;
   std::uint64_t readings = 0;
   std::uint64_t missed = 0;   ///< readings of heard sensors never taken: newer ones were due at the same tick
-  std::uint64_t again = 0;    ///< readings given again: nothing they depend on had moved
+  std::uint64_t reused = 0;   ///< readings given again: nothing they depend on had moved
   std::uint64_t batches = 0;  ///< submitted to the device
   sensors::SensorStats work;  ///< of all kinds together
   double place_s = 0.0;       ///< [s] host: movers' outlines
@@ -52,7 +52,7 @@ struct FarmStats {
   double collect_s = 0.0;     ///< [s] host: noise, interpolation, delivery
 };
 
-inline constexpr std::uint32_t kAllKinds = 0xFFFFFFFFu;
+inline constexpr std::uint32_t kAllSensorTypes = 0xFFFFFFFFu;
 
 /// Not thread-safe. `world` and `device` must outlive it. Only kinds of sensors that the world has are built.
 class Farm {
@@ -64,9 +64,9 @@ class Farm {
 
   /// Which of a mover's sensors are computed: none at first.
   /// @param kinds bit k: those of the kind with wire id k.
-  void hear(std::uint32_t mover, std::uint32_t kinds);
-  void hear(std::uint32_t mover, bool) = delete;
-  void hear_all();
+  void subscribe(std::uint32_t mover, std::uint32_t kinds);
+  void subscribe(std::uint32_t mover, bool) = delete;
+  void subscribe_all();
 
   /// A mover that is gone is sensed by nobody, and not heard. When it is back, the first report says where it is.
   void set_absent(std::uint32_t mover, bool gone);

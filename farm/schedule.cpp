@@ -13,7 +13,7 @@ static_assert(std::numeric_limits<Wide>::digits >= 64);
 
 }  // namespace
 
-std::uint64_t readings_begun(std::int64_t now, double rate, double phase) {
+std::uint64_t readings_started(std::int64_t now, double rate, double phase) {
   const std::int64_t since = now - std::llround(phase * 1e9);
   if (since < 0) return 0;
   constexpr Wide kNanosecond = 1e-9L;

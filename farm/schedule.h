@@ -8,7 +8,7 @@ namespace sf::farm {
 
 /// How many readings a sensor with `rate` [Hz] and `phase` [s] should have begun by `now` [ns]: due times are
 /// phase + k / rate. 0 before the first. Exact to 1 ns however long the run.
-std::uint64_t readings_begun(std::int64_t now, double rate, double phase);
+std::uint64_t readings_started(std::int64_t now, double rate, double phase);
 
 /// When reading `k` is due [ns]: phase + k / rate, to the nearest nanosecond; kNever beyond what a time can say. Never
 /// before it has begun.

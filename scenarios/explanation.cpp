@@ -30,8 +30,8 @@ class Drive {
   Drive(const world::World& world, gpu::Device& device, const Ways& ways, const farm::FarmOptions& options)
       : farm_(world, device, options), ways_(ways), interval_(std::llround(world.interval * 1e9)) {}
 
-  void hear(std::uint32_t kinds) {
-    for (std::uint32_t m = 0; m < ways_[0].size(); ++m) farm_.hear(m, kinds);
+  void subscribe(std::uint32_t kinds) {
+    for (std::uint32_t m = 0; m < ways_[0].size(); ++m) farm_.subscribe(m, kinds);
   }
   void tick(std::size_t at) {
     if (farm_.next_due() < now_) {
@@ -53,7 +53,7 @@ class Drive {
   }
   std::uint64_t ticks() const { return kLaps * ways_.size(); }
   double readings() const { return a_tick(farm_.stats().readings - stats_before_.readings); }
-  double again() const { return a_tick(farm_.stats().again - stats_before_.again); }
+  double again() const { return a_tick(farm_.stats().reused - stats_before_.reused); }
   sensors::SensorStats work() const { return farm_.stats().work - stats_before_.work; }
   const sensors::SensorSet& sensor_set() const { return farm_.sensor_set(); }
 
@@ -135,12 +135,12 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   const auto start = Clock::now();
   Drive farm(world, device, ways, {.seed = seed, .threads = threads});
   e.build = base::seconds_since(start);
-  farm.hear(farm::kAllKinds);
+  farm.subscribe(farm::kAllSensorTypes);
   const auto first = Clock::now();
   farm.tick(0);
   e.first = base::seconds_since(first);
 
-  farm.hear(0);
+  farm.subscribe(0);
   const std::size_t kinds = farm.sensor_set().groups().size();
   step(kinds);
   e.silent = farm.laps();
@@ -150,7 +150,7 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
     present.insert(group.kind->name);
     ExplainedKind kind = facts_of(group);
     kind.derived = group.kind->derived;
-    farm.hear(1u << group.kind->id | (kind.derived ? 1u << base::kLaser : 0u));
+    farm.subscribe(1u << group.kind->id | (kind.derived ? 1u << base::kLaser : 0u));
     kind.tick = farm.laps();
     kind.readings = farm.readings();
     kind.again = farm.again();
@@ -158,7 +158,7 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
     e.kinds.push_back(std::move(kind));
     step(kinds);
   }
-  farm.hear(farm::kAllKinds);
+  farm.subscribe(farm::kAllSensorTypes);
   e.all = farm.laps();
   e.ticks = farm.ticks();
   for (ExplainedKind& kind : e.kinds) add_held(device.allocations(), kind);

@@ -54,7 +54,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
       interval_(std::llround(world.interval * 1e9)) {
   SF_CHECK(options.actors.empty() || options.actors.size() == world.movers.size(),
            "actors: expected none or one per mover");
-  farm_.hear_all();
+  farm_.subscribe_all();
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) drivers_.push_back(make_driver(i, options));
   for (const Driver& driver : drivers_)
     if (driver.controller) radio_ = std::max(radio_, driver.controller->radio());
@@ -195,7 +195,7 @@ bool Simulation::due(Driver& driver, std::span<const base::ReadingBlock> fresh, 
                                          });
     return looked || contact;
   }
-  const std::uint64_t begun = farm::readings_begun(time, driver.rate, 0.0);
+  const std::uint64_t begun = farm::readings_started(time, driver.rate, 0.0);
   if (begun <= driver.begun) return false;
   driver.begun = begun;
   return true;

@@ -37,8 +37,8 @@ class Entrant {
     sensors::set_accuracy(world_, std::string(sensors::word_of(kind, mode)));
     farm_ = std::make_unique<farm::Farm>(
         world_, device,
-        farm::FarmOptions{.seed = options.seed, .noise = false, .give_again = false, .threads = options.threads});
-    for (std::uint32_t m = 0; m < world_.movers.size(); ++m) farm_->hear(m, 1u << kind.id);
+        farm::FarmOptions{.seed = options.seed, .noise = false, .reuse_unchanged = false, .threads = options.threads});
+    for (std::uint32_t m = 0; m < world_.movers.size(); ++m) farm_->subscribe(m, 1u << kind.id);
   }
 
   /// The first lap: what it reads, and warm afterwards.

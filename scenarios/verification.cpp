@@ -80,7 +80,7 @@ class Verifier {
       const record::ReadingSample& r = recording.readings[i];
       readings_[{r.kind, r.mover, r.sensor, r.sequence}] = i;
     }
-    farm_.hear_all();
+    farm_.subscribe_all();
   }
 
   Verification run() {

@@ -11,7 +11,7 @@ TestFarm Fixture::measure(world::World world, farm::FarmOptions options) const {
   TestFarm test;
   test.world = std::make_unique<world::World>(std::move(world));
   test.farm = std::make_unique<farm::Farm>(*test.world, device_, options);
-  test.farm->hear_all();
+  test.farm->subscribe_all();
   test.readings = test.farm->tick(0, {});
   return test;
 }

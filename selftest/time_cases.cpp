@@ -51,8 +51,8 @@ void due_for_a_year(Fixture&, Checks& checks) {
     for (std::int64_t i = 0; i < 2000; ++i) {
       const std::int64_t k = kYear / period + 7919 * i;
       const auto what = fmt::format("{} Hz, reading {}", rate, k);
-      checks.equal(farm::readings_begun(k * period, static_cast<double>(rate), 0.0), k + 1, what + " is due");
-      checks.equal(farm::readings_begun(k * period - 2, static_cast<double>(rate), 0.0), k,
+      checks.equal(farm::readings_started(k * period, static_cast<double>(rate), 0.0), k + 1, what + " is due");
+      checks.equal(farm::readings_started(k * period - 2, static_cast<double>(rate), 0.0), k,
                    what + " is not, 2 ns before");
     }
   }

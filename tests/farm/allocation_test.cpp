@@ -18,7 +18,7 @@ using counted::counting;
 /// A lap: the same cells, the same neighbours.
 std::uint64_t allocations_per_lap(const world::World& world, const FarmOptions& options) {
   Farm farm(world, device(), options);
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<std::vector<base::Report>> reports;
   for (int k = 0; k < 8; ++k) reports.push_back(reports_at(world, k));
   std::int64_t now = 0;

@@ -18,8 +18,8 @@ TEST(Latency, AReadingComesLaterAndUnchanged) {
   late.movers[1].lasers[0].latency = 0.05;
   Farm now(prompt, device());
   Farm later(late, device());
-  now.hear_all();
-  later.hear_all();
+  now.subscribe_all();
+  later.subscribe_all();
   std::vector<Kept> expected, delivered;
   for (int k = 0; k < 30; ++k) {
     for (const auto& r : now.tick(k * kTick, reports_at(prompt, k)))
@@ -48,7 +48,7 @@ TEST(Latency, OfWholeTicks) {
     world::World world = small_world(1);
     world.movers[0].lasers[0].latency = latency;
     Farm farm(world, device());
-    farm.hear_all();
+    farm.subscribe_all();
     for (int k = 0; k < 6; ++k) {
       const auto readings = farm.tick(k * tick, {});
       ASSERT_EQ(readings.size(), k < ticks ? 0u : 1u) << latency << " s, tick " << k;
@@ -62,7 +62,7 @@ TEST(Latency, OfTheFirstSensorAlone) {
   world::World world = small_world(2);
   world.movers[0].lasers[0].latency = 0.05;
   Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   const auto readings = farm.tick(0, {});
   ASSERT_EQ(readings.size(), 1u);
   EXPECT_EQ(readings[0].mover, 1u);
@@ -75,7 +75,7 @@ TEST(Latency, DeliveredBetweenTicks) {
   world.movers[1].lasers[0].rate = 20.0;
   Farm farm(world, device());
   EXPECT_EQ(farm.next_delivery(), kNever);
-  farm.hear_all();
+  farm.subscribe_all();
   EXPECT_EQ(farm.tick(0, {}).size(), 1u);
   EXPECT_EQ(farm.next_delivery(), 30'000'000);
   EXPECT_EQ(farm.sample(29'999'999, {}).size(), 0u) << "a nanosecond early";
@@ -92,7 +92,7 @@ TEST(Latency, LongerThanThePeriod) {
   world::World world = small_world(3);
   for (world::Mover& mover : world.movers) mover.lasers[0].latency = 0.35;
   Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   std::uint32_t next[3] = {0, 0, 0};
   for (int k = 0; k < 100; ++k)
     for (const auto& r : farm.tick(k * kTick, {})) {
@@ -108,7 +108,7 @@ TEST(Latency, OldestFirst) {
   world.movers[0].lasers[0].latency = 0.0;
   world.movers[1].lasers[0].latency = 0.15;
   Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   farm.tick(0, {});
   farm.tick(100'000'000, {});
   const auto readings = farm.tick(300'000'000, {});
@@ -125,7 +125,7 @@ TEST(Latency, RobotByRobot) {
   world.movers[0].lasers[0].latency = 0.1;
   world.movers[1].lasers[0].latency = 0.2;
   Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   farm.tick(0, {});
   farm.tick(100'000'000, {});
   const auto readings = farm.tick(200'000'000, {});

@@ -15,7 +15,7 @@ constexpr world::LaserNoise kNoise{.range_sigma = 0.01, .range_proportional = 0.
 
 std::uint64_t run(const world::World& world, const FarmOptions& options, int ticks = 12) {
   Farm farm(world, device(), options);
-  farm.hear_all();
+  farm.subscribe_all();
   for (int k = 0; k < ticks; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
   EXPECT_EQ(farm.stats().readings, world.movers.size() * static_cast<std::size_t>(ticks));
   return farm.hash();
@@ -38,7 +38,7 @@ TEST(Determinism, TheHashIsOfWhatIsSent) {
   const world::World world = small_world(30);
   Farm farm(world, device(), {.no_return_inf = true});
   Farm plain(world, device());
-  farm.hear_all(), plain.hear_all();
+  farm.subscribe_all(), plain.subscribe_all();
   std::uint64_t of_sent = 0;
   std::size_t infinite = 0;
   for (int k = 0; k < 3; ++k) {
@@ -77,10 +77,10 @@ TEST(Determinism, EvictedCellsAreBuiltAgain) {
   const world::World world = small_world(30);
   Farm farm(world, device(),
             {.scene = {.caster = raycast::CasterChoice::vulkan, .pool_chunks = 16'384, .pool_cells = 32}});
-  farm.hear_all();
+  farm.subscribe_all();
   for (int k = 0; k < 12; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
   Farm roomy(world, device(), {.scene = {.caster = raycast::CasterChoice::vulkan}});
-  roomy.hear_all();
+  roomy.subscribe_all();
   for (int k = 0; k < 12; ++k) roomy.tick(k * 100'000'000ll, reports_at(world, k));
   EXPECT_GT(farm.stats().work.cells_built, roomy.stats().work.cells_built) << "the test is meant to evict";
   EXPECT_EQ(farm.hash(), roomy.hash());
@@ -89,8 +89,8 @@ TEST(Determinism, EvictedCellsAreBuiltAgain) {
 /// Readings of robot 0 with `others` about.
 std::vector<Kept> of_first(const world::World& world, bool hear_others) {
   Farm farm(world, device(), {.seed = 3});
-  farm.hear(0, kAllKinds);
-  if (hear_others) farm.hear_all();
+  farm.subscribe(0, kAllSensorTypes);
+  if (hear_others) farm.subscribe_all();
   std::vector<Kept> kept;
   for (int k = 0; k < 6; ++k)
     for (const auto& r : farm.tick(k * 100'000'000ll, reports_at(world, k)))
@@ -136,7 +136,7 @@ TEST(Determinism, SenseLeavesNoTrace) {
   Farm asked(world, device(), {.seed = 1});
   Farm plain(world, device(), {.seed = 1});
   for (Farm* farm : {&asked, &plain}) {
-    farm->hear_all();
+    farm->subscribe_all();
     farm->tick(0, {});
   }
   const base::Pose elsewhere{0.5, 0.25, 0.0, 1.0};

@@ -73,7 +73,7 @@ std::uint64_t under_siege(const world::World& world, std::uint64_t seed, unsigne
   robots::Fleet fleet(world);
   sensors::LaserReference reference(world, 0);
   std::vector<std::uint8_t> gone(world.movers.size());
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<base::Report> reports;
   std::int64_t now = 0;
   for (int tick = 0; tick < 40; ++tick) {
@@ -88,7 +88,7 @@ std::uint64_t under_siege(const world::World& world, std::uint64_t seed, unsigne
     gone[row] = chance.below(2) == 0 ? 1 : 0;
     farm.set_absent(row, gone[row] != 0);
     fleet.set_absent(row, gone[row] != 0);
-    farm.hear(row, chance.below(2) == 0 ? kAllKinds : 0);
+    farm.subscribe(row, chance.below(2) == 0 ? kAllSensorTypes : 0);
     const auto states = fleet.predict(now);
     std::vector<base::Pose> poses;
     for (const base::Report& state : states)

@@ -17,7 +17,7 @@ namespace {
 std::map<std::string, std::vector<std::pair<std::string, std::size_t>>> held_for(const world::World& world) {
   gpu::Device own;
   Farm farm(world, own);
-  farm.hear_all();
+  farm.subscribe_all();
   for (int k = 0; k < 3; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
   std::map<std::string, std::vector<std::pair<std::string, std::size_t>>> held;
   for (const gpu::DeviceAllocation& h : own.allocations()) held[h.owner].emplace_back(h.name, h.bytes);
@@ -65,20 +65,20 @@ TEST(Price, KindsThatAreHeardLaterReadTheSame) {
     mover.sensors.push_back(trial::cones("infrared", trial::ring(4, 0.1)));
   }
   const auto readings = [&](const std::vector<std::uint32_t>& heard) {
-    Farm farm(world, device(), {.give_again = false});
+    Farm farm(world, device(), {.reuse_unchanged = false});
     std::vector<Kept> kept;
     for (int k = 0; k < 12; ++k) {
-      for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.hear(m, heard[static_cast<std::size_t>(k / 3)]);
+      for (std::uint32_t m = 0; m < world.movers.size(); ++m) farm.subscribe(m, heard[static_cast<std::size_t>(k / 3)]);
       for (const auto& r : farm.tick(k * 100'000'000ll, reports_at(world, k)))
         if (k >= 9) kept.push_back(keep(r));
     }
     return kept;
   };
   const std::uint32_t laser = 1u << base::kLaser, magnets = 1u << sensors::kMagnetometer;
-  const std::vector<Kept> all = readings({kAllKinds, kAllKinds, kAllKinds, kAllKinds});
+  const std::vector<Kept> all = readings({kAllSensorTypes, kAllSensorTypes, kAllSensorTypes, kAllSensorTypes});
   EXPECT_EQ(all.size(), 3u * 6u * 3u);
-  EXPECT_EQ(readings({laser, 0, laser | magnets, kAllKinds}), all);
-  EXPECT_EQ(readings({0, magnets, laser, kAllKinds}), all);
+  EXPECT_EQ(readings({laser, 0, laser | magnets, kAllSensorTypes}), all);
+  EXPECT_EQ(readings({0, magnets, laser, kAllSensorTypes}), all);
 }
 
 TEST(Price, TheUnheardCastAndSubmitNothing) {
@@ -94,7 +94,7 @@ TEST(Price, TheUnheardCastAndSubmitNothing) {
 TEST(Price, WhoIsNotDueSubmitsNothing) {
   const world::World world = small_world(20);
   Farm farm(world, device(), kOnDevice);
-  farm.hear_all();
+  farm.subscribe_all();
   for (int k = 0; k < 1000; ++k) farm.tick(k * 1'000'000ll, reports_at(world, k));
   EXPECT_EQ(farm.stats().batches, 10u);
   EXPECT_EQ(farm.stats().work.rays, 10u * 20u * kBeams);
@@ -103,7 +103,7 @@ TEST(Price, WhoIsNotDueSubmitsNothing) {
 TEST(Price, WhoStandsCastsAndSubmitsNothing) {
   const world::World world = small_world(20);
   Farm farm(world, device(), kOnDevice);
-  farm.hear_all();
+  farm.subscribe_all();
   for (int k = 0; k < 50; ++k) farm.tick(k * 100'000'000ll, reports_at(world, 0));
   EXPECT_EQ(farm.stats().readings, 50u * 20u);
   EXPECT_LE(farm.stats().batches, 3u);
@@ -116,7 +116,7 @@ TEST(Price, WhatTheHostCastsSubmitsNothing) {
   Farm by_host(world, device(), {.scene = {.caster = raycast::CasterChoice::host}});
   Farm by_device(world, device(), kOnDevice);
   for (Farm* farm : {&by_host, &by_device}) {
-    farm->hear_all();
+    farm->subscribe_all();
     for (int k = 0; k < 5; ++k) farm->tick(k * 100'000'000ll, reports_at(world, k));
   }
   EXPECT_EQ(by_host.stats().batches, 0u);
@@ -131,7 +131,7 @@ TEST(Price, OneThatDrivesIsSeenByThoseInReach) {
   for (int i = 0; i < 10; ++i)
     scenes::add_robot(world, {5.0 * i - 25.0, 0.0, 0.0, 0.0}, scenes::laser(kBeams, M_PI, 4.0));
   Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   for (int k = 0; k < 3; ++k) farm.tick(k * 100'000'000ll, {});
   const FarmStats before = farm.stats();
   const base::Report moved{0, 0, {-25.0, 0.5, 0.0, 0.0}, {}};

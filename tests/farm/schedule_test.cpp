@@ -14,14 +14,14 @@ namespace {
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 TEST(Schedule, DueAtPhasePlusWholePeriods) {
-  EXPECT_EQ(readings_begun(-1, 10.0, 0.0), 0u) << "before time began";
-  EXPECT_EQ(readings_begun(0, 10.0, 0.0), 1u) << "the first at once";
-  EXPECT_EQ(readings_begun(kSecond / 10 - 2, 10.0, 0.0), 1u) << "2 ns early";
-  EXPECT_EQ(readings_begun(kSecond / 10, 10.0, 0.0), 2u) << "on time";
-  EXPECT_EQ(readings_begun(kSecond, 10.0, 0.0), 11u);
-  EXPECT_EQ(readings_begun(kSecond / 4 - 1, 10.0, 0.25), 0u) << "before its phase";
-  EXPECT_EQ(readings_begun(kSecond / 4, 10.0, 0.25), 1u) << "at its phase";
-  EXPECT_EQ(readings_begun(100 * kSecond, 0.01, 0.0), 2u) << "slower than a tick a second";
+  EXPECT_EQ(readings_started(-1, 10.0, 0.0), 0u) << "before time began";
+  EXPECT_EQ(readings_started(0, 10.0, 0.0), 1u) << "the first at once";
+  EXPECT_EQ(readings_started(kSecond / 10 - 2, 10.0, 0.0), 1u) << "2 ns early";
+  EXPECT_EQ(readings_started(kSecond / 10, 10.0, 0.0), 2u) << "on time";
+  EXPECT_EQ(readings_started(kSecond, 10.0, 0.0), 11u);
+  EXPECT_EQ(readings_started(kSecond / 4 - 1, 10.0, 0.25), 0u) << "before its phase";
+  EXPECT_EQ(readings_started(kSecond / 4, 10.0, 0.25), 1u) << "at its phase";
+  EXPECT_EQ(readings_started(100 * kSecond, 0.01, 0.0), 2u) << "slower than a tick a second";
 }
 
 /// phase + k / rate, rounded to a nanosecond, begins reading k: for odd rates too, and after a year.
@@ -32,8 +32,8 @@ TEST(Schedule, ExactToANanosecondAfterAYear) {
         const auto k = static_cast<std::uint64_t>(years * 31'556'952.0 * rate) + static_cast<std::uint64_t>(i);
         const long double due = 1e9L * static_cast<long double>(k) / static_cast<long double>(rate);
         const auto on_time = static_cast<std::int64_t>(std::ceil(due));
-        ASSERT_EQ(readings_begun(on_time + 1, rate, 0.0), k + 1) << rate << " Hz, reading " << k << " is late";
-        ASSERT_EQ(readings_begun(on_time - 3, rate, 0.0), k) << rate << " Hz, reading " << k << " is early";
+        ASSERT_EQ(readings_started(on_time + 1, rate, 0.0), k + 1) << rate << " Hz, reading " << k << " is late";
+        ASSERT_EQ(readings_started(on_time - 3, rate, 0.0), k) << rate << " Hz, reading " << k << " is early";
       }
 }
 
@@ -41,7 +41,7 @@ TEST(Schedule, CountsEveryReadingOnceWhateverTheTick) {
   for (const std::int64_t dt : {std::int64_t{1'000'003}, std::int64_t{16'666'667}, std::int64_t{99'999'999}}) {
     std::uint64_t before = 0;
     for (std::int64_t now = 0; now < 20 * kSecond; now += dt) {
-      const std::uint64_t begun = readings_begun(now, 10.0, 0.03);
+      const std::uint64_t begun = readings_started(now, 10.0, 0.03);
       EXPECT_LE(begun, before + 1);
       before = begun;
     }
@@ -64,8 +64,8 @@ TEST(Schedule, DueTimesAreWhenReadingsBegin) {
         for (int i = 0; i < 100; ++i) {
           const auto k = static_cast<std::uint64_t>(years * 31'556'952.0 * rate) + static_cast<std::uint64_t>(i);
           const std::int64_t due = due_time(k, rate, phase);
-          ASSERT_GE(readings_begun(due, rate, phase), k + 1) << rate << " Hz, reading " << k;
-          ASSERT_LE(readings_begun(due - 2, rate, phase), k) << rate << " Hz, reading " << k;
+          ASSERT_GE(readings_started(due, rate, phase), k + 1) << rate << " Hz, reading " << k;
+          ASSERT_LE(readings_started(due - 2, rate, phase), k) << rate << " Hz, reading " << k;
         }
 }
 
@@ -77,17 +77,17 @@ TEST(Schedule, TheNextOneDueIsTheSoonestThatIsHeard) {
   world.movers[2].lasers[0].phase = 0.03;
   Farm farm(world, device());
   EXPECT_EQ(farm.next_due(), kNever) << "nobody is heard";
-  farm.hear(2, kAllKinds);
+  farm.subscribe(2, kAllSensorTypes);
   EXPECT_EQ(farm.next_due(), 30'000'000) << "its phase";
-  farm.hear(1, kAllKinds);
+  farm.subscribe(1, kAllSensorTypes);
   EXPECT_EQ(farm.next_due(), 0);
   farm.tick(0, {});
   EXPECT_EQ(farm.next_due(), 30'000'000);
   EXPECT_EQ(farm.sample(30'000'000, {}).size(), 1u);
   EXPECT_EQ(farm.next_due(), 76'923'077);
-  farm.hear(0, 1u << 9);
+  farm.subscribe(0, 1u << 9);
   EXPECT_EQ(farm.next_due(), 76'923'077) << "another kind of it is heard";
-  farm.hear(0, 1u << base::kLaser);
+  farm.subscribe(0, 1u << base::kLaser);
   EXPECT_EQ(farm.next_due(), 40'000'000) << "0 and 20 ms went by unheard";
   EXPECT_EQ(farm.stats().missed, 0u);
   EXPECT_EQ(farm.stats().ticks, 1u) << "samples are no ticks";
@@ -99,7 +99,7 @@ TEST(Schedule, FasterThanTheTicks) {
   const double rates[] = {13.0, 25.0, 50.0};
   for (std::size_t i = 0; i < 3; ++i) world.movers[i].lasers[0].rate = rates[i];
   Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<std::uint32_t> counts(3);
   const auto look = [&](std::span<const base::ReadingBlock> readings) {
     for (const auto& r : readings) {
@@ -120,7 +120,7 @@ TEST(Schedule, ATickThatIsANanosecondEarly) {
   world::World world = small_world(1);
   world.movers[0].lasers[0].rate = 3.0;
   Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   for (std::int64_t k = 0; k < 3; ++k) {
     const auto readings = farm.tick(k * 333'333'333, {});
     ASSERT_EQ(readings.size(), 1u) << k;
@@ -135,10 +135,10 @@ TEST(Schedule, MissedReadingsAreCounted) {
   world::World world = small_world(2);
   world.movers[0].lasers[0].rate = 50.0;
   Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   for (int k = 0; k <= 10; ++k) EXPECT_EQ(farm.tick(k * kSecond / 10, {}).size(), 2u);
   EXPECT_EQ(farm.stats().missed, 10u * 4u);
-  farm.hear(0, 0u);
+  farm.subscribe(0, 0u);
   farm.tick(2 * kSecond, {});
   EXPECT_EQ(farm.stats().missed, 10u * 4u + 9u) << "of those that are heard";
 }
@@ -150,7 +150,7 @@ TEST(Schedule, RatesAndPhasesInAFarm) {
   world.movers[2].lasers[0].rate = 10.0;
   world.movers[2].lasers[0].phase = 0.05;
   Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<int> counts(3, 0);
   for (int k = 0; k < 100; ++k)  // 2 s of 20 ms
     for (const auto& r : farm.tick(k * 20'000'000ll, {})) {
@@ -168,14 +168,14 @@ TEST(Schedule, RatesAndPhasesInAFarm) {
 TEST(Schedule, TenSecondTicksAndMicrosecondTicks) {
   const world::World world = small_world(1);
   Farm slow(world, device());
-  slow.hear_all();
+  slow.subscribe_all();
   for (int k = 0; k < 5; ++k) {
     const auto readings = slow.tick(k * 10 * kSecond, {});
     ASSERT_EQ(readings.size(), 1u);
     EXPECT_EQ(readings[0].sequence, 100u * static_cast<std::uint32_t>(k));
   }
   Farm fast(world, device());
-  fast.hear_all();
+  fast.subscribe_all();
   std::size_t readings = 0;
   for (std::int64_t now = 0; now < kSecond / 5; now += 1000) readings += fast.tick(now, {}).size();
   EXPECT_EQ(readings, 2u) << "at 0 and at 0.1 s";
@@ -185,7 +185,7 @@ TEST(Schedule, TenSecondTicksAndMicrosecondTicks) {
 TEST(Schedule, AYearOfSimulatedTime) {
   const world::World world = small_world(1);
   Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   constexpr std::int64_t kDay = 86'400 * kSecond;
   for (int day = 0; day <= 366; ++day) {
     const auto readings = farm.tick(day * kDay, {});
@@ -200,13 +200,13 @@ TEST(Schedule, NothingIsComputedForTheUnheard) {
   EXPECT_TRUE(farm.tick(0, {}).empty());
   EXPECT_EQ(farm.stats().work.rays, 0u);
   EXPECT_EQ(farm.stats().work.cells_built, 0u);
-  farm.hear(2, 1u << 1);
+  farm.subscribe(2, 1u << 1);
   const auto readings = farm.tick(kSecond / 10, {});
   ASSERT_EQ(readings.size(), 1u);
   EXPECT_EQ(readings[0].mover, 2u);
   EXPECT_EQ(readings[0].sequence, 1u) << "numbered by when it is due: the first was not heard";
   EXPECT_EQ(farm.stats().work.rays, kBeams);
-  farm.hear(2, ~(1u << 1));
+  farm.subscribe(2, ~(1u << 1));
   EXPECT_TRUE(farm.tick(kSecond / 5, {}).empty());
   EXPECT_EQ(farm.stats().work.rays, kBeams);
 }

@@ -24,7 +24,7 @@ TEST(Validation, TheLayerIsSilent) {
               {.scene = {.caster = raycast::CasterChoice::vulkan,
                          .pool_chunks = 1024,
                          .pool_cells = 8}});  // so small that its tables are replaced
-    farm.hear_all();
+    farm.subscribe_all();
     for (int k = 0; k < 4; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
     EXPECT_GT(farm.stats().readings, 0u);
     EXPECT_EQ(device.validation_messages(), "");

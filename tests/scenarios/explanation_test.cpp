@@ -68,7 +68,7 @@ TEST(Explanation, HiddenMoversAreCounted) {
   for (int i = 0; i < 6; ++i) scenes::add_robot(world, {0.5 * i, 0.0, 0.0, 0.1}, scenes::laser(61, 2.0 * M_PI, 4.0));
   world::update_extent_and_hash(world);
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   farm.tick(0, {});
   EXPECT_EQ(farm.stats().work.movers_in_range, 6u * 5u);
   EXPECT_EQ(farm.stats().work.movers_visible, 2u * 5u) << "both neighbours, one at the ends";

@@ -83,7 +83,7 @@ TEST(Bumper, StagesBarsBehindAndOnATurnedSensor) {
 TEST(Bumper, ReadsWhatPressesNow) {
   const world::World world = carriers(zones({{0, 90}, {-90, 0}}), {{0, 0, 0, 0}, {1, 0, 0, 2}});
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<base::Report> states = to_occupancy(world);
   for (std::uint32_t k = 0; k < base::kContactSectors; ++k) {
     states[0].contact_mask = 1u << k;

@@ -109,7 +109,7 @@ Tally compare(const world::World& world, std::span<const Pose> poses, std::span<
 }
 
 Glance::Glance(const world::World& world, const farm::FarmOptions& options) : farm(world, device(), options) {
-  farm.hear_all();
+  farm.subscribe_all();
   readings = farm.tick(0, {});
 }
 

@@ -128,7 +128,7 @@ world::World one_robot(std::vector<world::Setting> settings = {}, double max_for
 std::vector<double> drive(const world::World& world, const std::vector<Rolled>& wheels,
                           farm::FarmOptions options = {}) {
   farm::Farm farm(world, device(), options);
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<base::Report> states = to_occupancy(world);
   std::vector<double> last;
   std::int64_t now = 0;
@@ -192,8 +192,8 @@ TEST(Encoder, SlipsByTheFilesStandardDeviationAfterAMetre) {
                         fitted("encoder", {setting("slip", {0.05}), setting("per_count", {1e-6})}));
   for (world::Mover& mover : world.movers) mover.max_forward = 1.0;
   farm::Farm farm(world, device(), {.seed = 11}), quiet(world, device(), {.noise = false});
-  farm.hear_all();
-  quiet.hear_all();
+  farm.subscribe_all();
+  quiet.subscribe_all();
   std::vector<base::Report> states = to_occupancy(world);
   for (int tick = 0; tick < 20; ++tick) {
     for (base::Report& s : states) s.X_WM.x += 0.05;
@@ -229,7 +229,7 @@ TEST(Encoder, WheelsSlipOverTheirOwnWay) {
 TEST(Encoder, AreReadBetweenTicksAndGoOnFromTheLast) {
   const world::World world = one_robot({setting("per_count", {1e-6}), setting("slip", {0.02}), setting("rate", {50})});
   farm::Farm often(world, device(), {.seed = 2}), seldom(world, device(), {.seed = 2});
-  for (farm::Farm* farm : {&often, &seldom}) farm->hear_all();
+  for (farm::Farm* farm : {&often, &seldom}) farm->subscribe_all();
   std::vector<base::Report> states = to_occupancy(world);
   double last = 0.0;
   for (std::int64_t tick = 0; tick < 200; ++tick) {
@@ -253,7 +253,7 @@ TEST(Encoder, AreReadBetweenTicksAndGoOnFromTheLast) {
 TEST(Encoder, BetweenTicksJumpsAreNotRolledEither) {
   const world::World world = one_robot({setting("rate", {50})}, 1.0);
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<base::Report> states = to_occupancy(world);
   const auto counts = [&](std::int64_t ms, double x) {
     states[0].X_WM.x = x;
@@ -272,7 +272,7 @@ TEST(Encoder, BetweenTicksJumpsAreNotRolledEither) {
 TEST(Encoder, ReadingsBetweenTicksMakeNoMoveAJump) {
   const world::World world = one_robot({setting("rate", {50})}, 1.0);
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<base::Report> states = to_occupancy(world);
   farm.tick(0, states);
   farm.sample(80'000'000, states);
@@ -285,7 +285,7 @@ TEST(Encoder, DrivingFastIsNoJump) {
   for (const double max_forward : {1.0, 10.0, 30.0}) {
     const world::World world = one_robot({}, max_forward);
     farm::Farm farm(world, device());
-    farm.hear_all();
+    farm.subscribe_all();
     std::vector<base::Report> states = to_occupancy(world);
     double x = 0.0, rolled = 0.0;
     for (std::int64_t tick = 0; tick < 30; ++tick) {
@@ -302,7 +302,7 @@ TEST(Encoder, DrivingFastIsNoJump) {
 TEST(Encoder, WhoIsPutElsewhereHasNotRolled) {
   const world::World world = one_robot();
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<base::Report> states = to_occupancy(world);
   const auto counts = [&](std::int64_t ms, double x) {
     states[0].X_WM.x = x;
@@ -322,7 +322,7 @@ TEST(Encoder, CountsWhetherHeardOrNot) {
   farm::Farm farm(world, device());
   std::vector<base::Report> states = to_occupancy(world);
   for (int tick = 0; tick < 10; ++tick) {
-    if (tick == 9) farm.hear_all();
+    if (tick == 9) farm.subscribe_all();
     states[0].X_WM.x += 0.01;
     const auto readings = farm.tick(tick * 100'000'000ll, states);
     ASSERT_EQ(readings.size(), tick == 9 ? 1u : 0u);

@@ -263,7 +263,7 @@ TEST(Gps, ErrorsAreNoiseTimesTheDilution) {
   world::World world = carriers(fitted("gps", {setting("noise", {2.0}), setting("rate", {10})}), poses);
   add_solid(world, {{-50, 1}, {50, 1}, {50, 2}, {-50, 2}}, 0, 2);  // to one side: errors are no circle
   farm::Farm farm(world, device(), {.seed = 12});
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<double> n, m;
   double squares = 0.0, hdop = 0.0;
   std::uint64_t seen = 0;

@@ -18,7 +18,7 @@ constexpr double kDegree = M_PI / 180.0;
 std::vector<std::vector<double>> turning(const world::World& world, double turn, int ticks,
                                          farm::FarmOptions options = {}) {
   farm::Farm farm(world, device(), options);
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<base::Report> states = to_occupancy(world);
   for (base::Report& s : states) s.velocity.turn = turn;
   std::vector<std::vector<double>> rates(world.movers.size());

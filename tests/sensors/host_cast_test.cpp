@@ -36,7 +36,7 @@ void expect_same_bytes(const world::World& world) {
   farm::Farm on_device(world, device(), kOnDevice);
   farm::Farm on_host(world, device(), kOnHost);
   farm::Farm by_host(world, device(), {.scene = {.caster = raycast::CasterChoice::host}});
-  for (farm::Farm* farm : {&on_device, &on_host, &by_host}) farm->hear_all();
+  for (farm::Farm* farm : {&on_device, &on_host, &by_host}) farm->subscribe_all();
   for (int tick = 0; tick < 2; ++tick) {
     std::vector<base::Report> reports;
     for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
@@ -128,7 +128,7 @@ void crowd_at_one_place(std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i)
     scenes::add_robot(world, {0.0, 0.0, 0.0, 1e-3 * i}, scenes::laser(61, 2.0 * M_PI));
   farm::Farm farm(world, device(), kOnDevice);
-  for (const std::uint32_t m : {0u, 1u, count - 1}) farm.hear(m, farm::kAllKinds);
+  for (const std::uint32_t m : {0u, 1u, count - 1}) farm.subscribe(m, farm::kAllSensorTypes);
   sensors::LaserReference reference(world, 0);
   const auto readings = farm.tick(0, {});
   ASSERT_EQ(readings.size(), 3u);
@@ -150,11 +150,11 @@ TEST(HostCast, RangersAndLaneEdgesInACrowdAtOnePlace) {
   add_ranger(world, {}, cones("infrared", ring(4, 0.1)), 0.16);
   for (int i = 0; i < 6'000; ++i) scenes::add_robot(world, {0.0, -0.1, 0.0, 1e-3 * i}, eye(1, 0.0, 1.0));
   farm::Farm farm(world, device(), kOnDevice);
-  for (std::uint32_t m = 0; m < 14; ++m) farm.hear(m, farm::kAllKinds);
+  for (std::uint32_t m = 0; m < 14; ++m) farm.subscribe(m, farm::kAllSensorTypes);
   farm.tick(0, {});
   EXPECT_GT(farm.stats().work.host_scans, 0u);
   farm::Farm again(world, device(), kOnHost);
-  for (std::uint32_t m = 0; m < 14; ++m) again.hear(m, farm::kAllKinds);
+  for (std::uint32_t m = 0; m < 14; ++m) again.subscribe(m, farm::kAllSensorTypes);
   again.tick(0, {});
   EXPECT_EQ(farm.hash(), again.hash());
 }
@@ -198,9 +198,9 @@ TEST(SharedLists, TablesThatGrewAreReadFromTheirNewPlace) {
   scenes::add_robots(world, 40, scenes::laser(), 2);
   farm::Farm farm(world, device(),
                   {.scene = {.caster = raycast::CasterChoice::vulkan, .pool_chunks = 512, .pool_cells = 2}});
-  farm.hear(0, farm::kAllKinds);
+  farm.subscribe(0, farm::kAllSensorTypes);
   farm.tick(0, {});
-  farm.hear_all();
+  farm.subscribe_all();
   const auto readings = farm.tick(1'000'000'000, {});
   EXPECT_EQ(readings.size(), 40u);
   expect_exact("after the tables grew", compare(world, loaded_poses(world), readings));

@@ -48,7 +48,7 @@ std::vector<base::Report> moved(const world::World& world, int tick) {
 
 std::uint64_t hash_of(const world::World& world, const farm::FarmOptions& options) {
   farm::Farm farm(world, device(), options);
-  farm.hear_all();
+  farm.subscribe_all();
   for (int tick = 0; tick < 30; ++tick) farm.tick(tick * 100'000'000ll, moved(world, tick));
   return farm.hash();
 }
@@ -64,8 +64,8 @@ TEST(HostKinds, TheSameBytesForAnyThreads) {
 TEST(HostKinds, OthersChangeNothing) {
   const world::World few = everything(3), many = everything(50);
   farm::Farm a(few, device(), {.seed = 1}), b(many, device(), {.seed = 1});
-  a.hear_all();
-  b.hear_all();
+  a.subscribe_all();
+  b.subscribe_all();
   for (int tick = 0; tick < 5; ++tick) {
     std::vector<std::vector<double>> first, second;
     for (const auto& r : a.tick(tick * 100'000'000ll, moved(few, tick))) first.push_back(values_of(r));
@@ -123,7 +123,7 @@ TEST(HostKinds, EachIsItsOwn) {
   world.floor_holes = {{square({10.5, 0}, 0.5), 0}, {square({19.5, 0}, 0.5), 0}};
   add_solid(world, square({10, 0}, 30.0), 0.3, 0.4);  // over the third robot, under the second
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   farm.tick(0, {});
   std::vector<base::Report> states = to_occupancy(world);
   for (base::Report& s : states) {
@@ -163,7 +163,7 @@ TEST(HostKinds, TwoOfAKindDrawByThemselves) {
   for (world::Sensor& s : world.movers[0].sensors)
     if (s.type == "encoder") s.settings.push_back(setting("per_count", {1e-6}));
   farm::Farm farm(world, device(), {.seed = 3});
-  farm.hear_all();
+  farm.subscribe_all();
   farm.tick(0, {});
   std::vector<base::Report> states = to_occupancy(world);
   states[0].X_WM.x = 0.3;
@@ -180,7 +180,7 @@ TEST(HostKinds, TwoOfAKindDrawByThemselves) {
 TEST(HostKinds, LatencyHoldsReadingsBack) {
   const world::World world = carriers(fitted("gyro", {setting("latency", {0.15})}));
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   for (int tick = 0; tick < 10; ++tick) {
     const auto readings = farm.tick(tick * 100'000'000ll, {});
     ASSERT_EQ(readings.size(), tick < 2 ? 0u : 1u) << tick;

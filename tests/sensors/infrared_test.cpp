@@ -95,8 +95,8 @@ TEST(Infrared, EveryConeIsTheNearestOfItsRays) {
 TEST(Infrared, ElementsAllLookInEveryReading) {
   world::World world;
   add_ranger(world, {}, cones("infrared", ring(8, 0.03)));
-  farm::Farm farm(world, device(), {.give_again = false});
-  farm.hear_all();
+  farm::Farm farm(world, device(), {.reuse_unchanged = false});
+  farm.subscribe_all();
   for (int k = 0; k < 5; ++k) EXPECT_EQ(farm.tick(k * 20'000'000ll, {}).size(), 1u) << "50 Hz";
   EXPECT_EQ(farm.stats().work.rays, 5u * 8u * 11u);
 }

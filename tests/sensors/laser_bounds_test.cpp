@@ -100,7 +100,7 @@ void add(const Seen& part, Seen& sum) {
 Seen measure(Scene& scene, const std::string& mode) {
   sensors::set_accuracy(scene.world, mode);
   farm::Farm farm(scene.world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   base::ThreadPool thread_pool(0);
   Chance chance(11);
   Seen sum;

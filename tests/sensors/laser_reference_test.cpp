@@ -28,7 +28,7 @@ struct Disagreement {
 /// Three ticks of a farm, everyone moved a little from tick to tick, every beam of every laser beside the reference.
 Disagreement disagreement(const world::World& world, std::uint64_t seed, bool noise = true) {
   farm::Farm farm(world, device(), {.seed = seed, .noise = noise});
-  farm.hear_all();
+  farm.subscribe_all();
   sensors::LaserReference reference(world, seed, noise);
   Disagreement found;
   std::vector<base::Pose> poses;
@@ -121,7 +121,7 @@ TEST(LaserReference, SeesAnotherSeed) {
   laser.noise.range_sigma = 0.01;
   const world::World world = crowd(laser, 2);
   farm::Farm farm(world, device(), {.seed = 2});
-  farm.hear_all();
+  farm.subscribe_all();
   const base::ReadingBlock r = farm.tick(0, {})[0];
   EXPECT_NE(sensors::LaserReference(world, 3).scan(r.mover, 0, 0).ranges,
             std::vector<double>(r.values.begin(), r.values.end()));

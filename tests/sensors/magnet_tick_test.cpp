@@ -44,7 +44,8 @@ TEST(MagnetTick, WhoIsGoneTakesItsMagnetsAlong) {
     for (std::uint32_t m = 20; m < 30; ++m) without.movers[m].magnets.clear();
     farm::Farm farm(world, device()), bare(without, device());
     for (std::uint32_t m = 0; m < 30; ++m) farm.set_absent(m, m >= 20);
-    for (std::uint32_t m = 0; m < 20; ++m) farm.hear(m, farm::kAllKinds), bare.hear(m, farm::kAllKinds);
+    for (std::uint32_t m = 0; m < 20; ++m)
+      farm.subscribe(m, farm::kAllSensorTypes), bare.subscribe(m, farm::kAllSensorTypes);
     const auto gone = farm.tick(0, {}), never = bare.tick(0, {});
     ASSERT_EQ(gone.size(), 20u);
     for (std::size_t i = 0; i < gone.size(); ++i)
@@ -64,7 +65,8 @@ TEST(MagnetTick, TheValidationLayerIsSilent) {
       farm::Farm farm(world, device);
       for (int k = 0; k < 4; ++k) {
         // More and more robots are heard, so that tables are replaced.
-        for (std::uint32_t m = 0; m < 30; ++m) farm.hear(m, static_cast<int>(m) < 10 * k ? farm::kAllKinds : 0u);
+        for (std::uint32_t m = 0; m < 30; ++m)
+          farm.subscribe(m, static_cast<int>(m) < 10 * k ? farm::kAllSensorTypes : 0u);
         farm.tick(k * 100'000'000ll, reports_at(world, k));
       }
       EXPECT_EQ(farm.stats().readings, 60u);

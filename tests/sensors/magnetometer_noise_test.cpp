@@ -33,8 +33,8 @@ NoiseDraws draw_noise(bool magnitudes) {
     scenes::add_carrier(world, {0.01 * i, 0, 0, 0.1 * i}, sensor);
   }
   farm::Farm noisy(world, device(), {.seed = 5}), quiet(world, device(), {.noise = false});
-  noisy.hear_all();
-  quiet.hear_all();
+  noisy.subscribe_all();
+  quiet.subscribe_all();
   NoiseDraws draws;
   for (int tick = 0; tick < 20; ++tick) {
     const auto with = noisy.tick(tick * 100'000'000ll, {}), without = quiet.tick(tick * 100'000'000ll, {});

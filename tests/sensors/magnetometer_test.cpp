@@ -189,7 +189,7 @@ void expect_moving_magnets(double cutoff) {
     for (int k = 0; k < i % 4; ++k) world.movers[m].magnets.push_back(magnet(chance.in_square(0.2), 0.05, k + 1.0));
   }
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   for (int tick = 0; tick < 5; ++tick) {
     std::vector<base::Report> reports;
     world::World now = world;
@@ -249,7 +249,7 @@ TEST(Magnetometer, ThreadsChangeNothing) {
   std::uint64_t hash = 0;
   for (const unsigned threads : {1u, 2u, 5u}) {
     farm::Farm farm(world, device(), {.seed = 3, .threads = threads});
-    farm.hear_all();
+    farm.subscribe_all();
     for (int k = 0; k < 3; ++k) farm.tick(k * 100'000'000ll, {});
     if (threads == 1) hash = farm.hash();
     EXPECT_EQ(farm.hash(), hash) << threads << " threads";
@@ -263,7 +263,7 @@ TEST(Magnetometer, CompanyChangesNothing) {
   for (int i = 0; i < 60; ++i) scenes::add_carrier(world, {0.05 * i - 1.5, 0.1, 0, 0}, scenes::five());
   const Glance all(world);
   farm::Farm one(world, device());
-  one.hear(31, farm::kAllKinds);
+  one.subscribe(31, farm::kAllSensorTypes);
   const auto alone = one.tick(0, {});
   ASSERT_EQ(alone.size(), 1u);
   EXPECT_EQ(std::memcmp(alone[0].values.data(), all.readings[31].values.data(), alone[0].values.size_bytes()), 0);

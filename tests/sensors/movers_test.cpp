@@ -31,7 +31,7 @@ TEST(Movers, AnotherIsSeenWhereItWasReported) {
   const std::uint32_t other = scenes::add_robot(world, {50, 0, 0, 0}, eye(1, 0.0, 8.0));
   world.movers[other].is_tag = true;  // a linked object is a mover like any other
   farm::Farm farm(world, device());
-  farm.hear(0, farm::kAllKinds);
+  farm.subscribe(0, farm::kAllSensorTypes);
   for (int k = 0; k < 5; ++k) {
     const double x = 1.0 + 0.5 * k;
     const base::Report report{other, 0, {x, 0, 0, M_PI / 8 * k}, {}};
@@ -51,7 +51,7 @@ TEST(Movers, WhoIsGoneIsNotSeenUntilItIsBack) {
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
   const std::uint32_t other = scenes::add_robot(world, {2, 0, 0, 0}, eye(1, 0.0, 8.0));
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   std::int64_t now = 0;
   const auto range = [&](const std::vector<base::Report>& reports) {
     const auto readings = farm.tick(now += 100'000'000, reports);
@@ -64,7 +64,7 @@ TEST(Movers, WhoIsGoneIsNotSeenUntilItIsBack) {
   EXPECT_EQ(range({{other, 0, {1, 0, 0, 0}, {}}}), 8.0) << "whatever its last words were";
   EXPECT_EQ(farm.tick(now += 100'000'000, {}).size(), 1u) << "and it senses nothing";
   farm.set_absent(other, false);
-  farm.hear(other, farm::kAllKinds);
+  farm.subscribe(other, farm::kAllSensorTypes);
   EXPECT_NEAR(range({{other, 0, {3, 0, 0, 0}, {}}}), 2.835, 1e-12);
 }
 
@@ -74,7 +74,7 @@ TEST(Movers, AllOthersMayBeGone) {
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
   for (int i = 0; i < 3; ++i) scenes::add_robot(world, {2.0 + i, 0, 0, 0}, eye(1, 0.0, 8.0));
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   for (std::uint32_t m = 1; m < 4; ++m) farm.set_absent(m, true);
   EXPECT_EQ(farm.tick(0, {})[0].values[0], 8.0);
   farm.set_absent(0, true);
@@ -88,7 +88,7 @@ TEST(Movers, AreSeenAtTheirHeightAtLoadWhateverReportsSay) {
   const std::uint32_t other = scenes::add_robot(world, {2, 0, 0, 0}, eye(1, 0.0, 8.0));
   for (const double z : {0.0, 0.12, -2.0}) {
     farm::Farm farm(world, device());
-    farm.hear(0, farm::kAllKinds);
+    farm.subscribe(0, farm::kAllSensorTypes);
     const base::Report report{other, 0, {3, 0, z, 0}, {}};
     EXPECT_NEAR(farm.tick(0, {&report, 1})[0].values[0], 2.835, 1e-12) << z;
   }
@@ -157,7 +157,7 @@ TEST(Movers, EveryTickOfAMovingCrowd) {
   world::World world = scenes::boxes(8, 12.0, 6);
   scenes::add_robots(world, 20, scenes::laser(61, 4.0, 8.0), 3);
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   Chance chance(9);
   Tally tally;
   std::vector<Pose> poses = poses_of(world);

@@ -52,8 +52,8 @@ template <class Of>
 std::vector<double> draws(const world::World& world, std::uint64_t seed, Of of) {
   farm::Farm noisy(world, device(), {.seed = seed});
   farm::Farm quiet(world, device(), {.noise = false});
-  noisy.hear_all();
-  quiet.hear_all();
+  noisy.subscribe_all();
+  quiet.subscribe_all();
   std::vector<double> all;
   for (int k = 0; k < kTicks; ++k) {
     const auto with = noisy.tick(k * 100'000'000ll, {});

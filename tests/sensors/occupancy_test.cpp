@@ -121,7 +121,7 @@ std::vector<base::Report> reports_at(const world::World& world, int tick) {
 /// Runs `ticks` tenths of seconds; every map that is delivered must be what the delivered scans say.
 std::size_t compare_run(const world::World& world, int ticks) {
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   const auto all = sensors::occupancies_of(world);
   std::vector<sensors::MapPlan> plans;
   for (const sensors::Occupancy& map : all) plans.push_back(map.plan);
@@ -155,7 +155,7 @@ TEST(OccupancyTick, TheWordIsSaidWherePosesAreEstimates) {
   farm::FarmOptions options;
   options.true_poses = false;
   farm::Farm farm(world, device(), options);
-  farm.hear_all();
+  farm.subscribe_all();
   std::size_t seen = 0;
   for (const base::ReadingBlock& r : farm.tick(0, {}))
     if (r.kind == sensors::kOccupancy) seen += r.flags == 0;
@@ -165,10 +165,10 @@ TEST(OccupancyTick, TheWordIsSaidWherePosesAreEstimates) {
 TEST(OccupancyTick, AMapThatNobodyHearsStillGrows) {
   const world::World world = mapped(1);
   farm::Farm quiet(world, device()), loud(world, device());
-  loud.hear_all();
-  quiet.hear(0, 1u << base::kLaser);
+  loud.subscribe_all();
+  quiet.subscribe(0, 1u << base::kLaser);
   for (int k = 0; k < 10; ++k) quiet.tick(k * 100'000'000ll, reports_at(world, k));
-  quiet.hear_all();
+  quiet.subscribe_all();
   for (int k = 0; k < 10; ++k) loud.tick(k * 100'000'000ll, reports_at(world, k));
   const auto map_of = [](std::span<const base::ReadingBlock> readings) {
     std::vector<double> words;
@@ -189,7 +189,7 @@ TEST(OccupancyTick, ThreadsChangeNothing) {
     farm::FarmOptions options;
     options.threads = threads;
     farm::Farm farm(world, device(), options);
-    farm.hear_all();
+    farm.subscribe_all();
     for (int k = 0; k < 11; ++k) farm.tick(k * 100'000'000ll, reports_at(world, k));
     hashes[threads == 1 ? 0 : 1] = farm.hash();
   }
@@ -206,7 +206,7 @@ TEST(OccupancyTick, TheValidationLayerIsSilent) {
     world.movers[2].sensors[0].settings.push_back(numbers("log_odds", {1}));
     farm::Farm farm(world, own);
     for (int k = 0; k < 12; ++k) {
-      for (std::uint32_t m = 0; m < 6; ++m) farm.hear(m, static_cast<int>(m) < k ? farm::kAllKinds : 0u);
+      for (std::uint32_t m = 0; m < 6; ++m) farm.subscribe(m, static_cast<int>(m) < k ? farm::kAllSensorTypes : 0u);
       farm.tick(k * 100'000'000ll, reports_at(world, k));
     }
     EXPECT_EQ(own.validation_messages(), "");

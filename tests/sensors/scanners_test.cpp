@@ -96,7 +96,7 @@ TEST(Fans, OfOneRobotWithRatesOfTheirOwn) {
   for (const bool host : {false, true}) {
     farm::Farm farm(world, device(),
                     {.scene = {.caster = host ? raycast::CasterChoice::host : raycast::CasterChoice::vulkan}});
-    farm.hear_all();
+    farm.subscribe_all();
     for (int tick = 0; tick < 4; ++tick) {
       std::vector<base::Report> reports;
       for (std::uint32_t m = 0; m < world.movers.size(); ++m) {

@@ -41,8 +41,8 @@ template <class Of>
 std::vector<double> draws(const world::World& world, std::size_t columns, std::int64_t interval, Of of) {
   farm::Farm noisy(world, device(), {.seed = 5});
   farm::Farm quiet(world, device(), {.noise = false});
-  noisy.hear_all();
-  quiet.hear_all();
+  noisy.subscribe_all();
+  quiet.subscribe_all();
   std::vector<double> all;
   for (int k = 0; k < kTicks; ++k) {
     const auto with = noisy.tick(k * interval, {});
@@ -98,7 +98,7 @@ TEST(SonarNoise, StaysWithinRangeAndLeavesAloneWhatHeardNothing) {
   sensor.settings.back() = cone_setting("spose3[15]", {0, 0, 0, M_PI});
   add_ranger(world, {}, sensor);
   farm::Farm farm(world, device(), {.seed = 7});
-  farm.hear_all();
+  farm.subscribe_all();
   std::size_t low = 0, high = 0;
   for (int k = 0; k < 20; ++k) {
     const auto readings = farm.tick(k * 40'000'000ll, {});
@@ -120,7 +120,7 @@ TEST(SonarNoise, WhatDoesNotFireStands) {
   scenes::add_outline(world, {{1, -50}, {2, -50}, {2, 50}, {1, 50}}, "wall");
   add_ranger(world, {}, cones("sonar", std::vector<Pose>(8), {cone_setting("noise", {0.05})}));
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<double> before;
   for (int k = 0; k < 24; ++k) {
     const auto values = farm.tick(k * 40'000'000ll, {})[0].values;
@@ -154,7 +154,7 @@ TEST(InfraredNoise, TheValueIsTheDisturbedResponse) {
   scenes::add_outline(world, {{0.03, -1}, {1, -1}, {1, 1}, {0.03, 1}}, "wall");
   add_ranger(world, {}, cones("infrared", ring(8, 0.001), {cone_setting("noise", {0.2})}));
   farm::Farm farm(world, device(), {.seed = 3});
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<double> seen;
   for (int k = 0; k < 10; ++k) {
     const auto values = farm.tick(k * 20'000'000ll, {})[0].values;
@@ -218,7 +218,7 @@ std::vector<base::Report> reports_of(const world::World& world, int tick) {
 
 std::uint64_t hash_of(const world::World& world, const farm::FarmOptions& options) {
   farm::Farm farm(world, device(), options);
-  farm.hear_all();
+  farm.subscribe_all();
   for (int k = 0; k < 12; ++k) farm.tick(k * 40'000'000ll, reports_of(world, k));
   return farm.hash();
 }
@@ -243,8 +243,8 @@ TEST(SonarHash, StrangersChangeNothing) {
   for (int i = 0; i < 5; ++i)
     add_ranger(more, {200.0 + i, 0, 0, 0}, cones("sonar", ring(16, 0.2), {cone_setting("noise", {0.01})}), 0.25);
   farm::Farm a(few, device(), {.seed = 2}), b(more, device(), {.seed = 2});
-  a.hear_all();
-  b.hear_all();
+  a.subscribe_all();
+  b.subscribe_all();
   for (int k = 0; k < 10; ++k) {
     const auto one = a.tick(k * 40'000'000ll, {});
     const auto two = b.tick(k * 40'000'000ll, {});

@@ -267,9 +267,9 @@ TEST(Sonar, ReadingsThatAreGivenAgainAreThoseThatWouldBeTaken) {
   for (int i = 0; i < 6; ++i)
     add_ranger(world, {0.5 * i - 1.2, 0.6, 0.0, 0.4 * i},
                cones("sonar", ring(8, 0.15), {cone_setting("arrays", {i % 2 == 0 ? 2.0 : 8.0})}), 0.16);
-  farm::Farm again(world, device()), anew(world, device(), {.give_again = false});
-  again.hear_all();
-  anew.hear_all();
+  farm::Farm again(world, device()), anew(world, device(), {.reuse_unchanged = false});
+  again.subscribe_all();
+  anew.subscribe_all();
   for (int k = 0; k < 90; ++k) {
     const double x = k < 40 ? -3.0 : std::min(3.0, 0.2 * (k - 55));
     const base::Report report{passer, 0, {x, 0.1, 0.0, 0.0}, {}};
@@ -277,7 +277,7 @@ TEST(Sonar, ReadingsThatAreGivenAgainAreThoseThatWouldBeTaken) {
     anew.tick(k * 40'000'000ll, {&report, 1});
     ASSERT_EQ(again.hash(), anew.hash()) << "tick " << k;
   }
-  EXPECT_GT(again.stats().again, 0u);
+  EXPECT_GT(again.stats().reused, 0u);
 }
 
 // --- Who fires when.
@@ -307,7 +307,7 @@ TEST(Sonar, OneTransducerOfEachArrayFiresAtATime) {
   world::World world = wall_at(3.0);
   add_ranger(world, {}, cones("sonar", std::vector<Pose>(8), {cone_setting("arrays", {2.0})}));
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<double> expected(8);
   for (int k = 0; k < 30; ++k) {
     const double x = 0.01 * k;
@@ -327,7 +327,7 @@ TEST(Sonar, SlowTicksLoseNoTurn) {
   world::World world = wall_at(3.0);
   add_ranger(world, {}, cones("sonar", std::vector<Pose>(8)));
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   std::vector<double> fired(8, 0.0);
   for (int k = 0; k < 12; ++k) {
     const std::int64_t now = k * 100'000'000ll;
@@ -346,11 +346,11 @@ TEST(Sonar, AfterAPauseAllAreRenewed) {
   world::World world = wall_at(3.0);
   add_ranger(world, {}, cones("sonar", std::vector<Pose>(8)));
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   farm.tick(0, standing_at(0.0));
-  farm.hear(0, 0u);
+  farm.subscribe(0, 0u);
   for (int k = 1; k < 20; ++k) EXPECT_TRUE(farm.tick(k * 40'000'000ll, standing_at(1.0)).empty());
-  farm.hear_all();
+  farm.subscribe_all();
   const auto readings = farm.tick(20 * 40'000'000ll, standing_at(1.0));
   for (const double range : readings[0].values) EXPECT_NEAR(range, 2.0, 1e-12);
   for (const double range : farm.sense(0, sensors::kSonar, 0, {1.5, 0, 0, 0}).values) EXPECT_NEAR(range, 1.5, 1e-12);
@@ -365,7 +365,7 @@ TEST(Sonar, SomeAreDueAndSomeAreNot) {
     add_ranger(world, {0.01 * m, 0, 0, 0}, sensor);
   }
   farm::Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   for (const std::size_t due : {0u, 200u, 100u, 200u, 100u}) {
     static std::int64_t now = 0;
     const auto readings = farm.tick(now, {});

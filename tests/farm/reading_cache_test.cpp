@@ -111,15 +111,15 @@ void expect_same(std::span<const base::ReadingBlock> p, std::span<const base::Re
 /// @return readings given again.
 std::uint64_t compare(const world::World& world, std::uint64_t seed, int ticks) {
   Farm again(world, device(), {.seed = seed});
-  Farm anew(world, device(), {.seed = seed, .give_again = false});
+  Farm anew(world, device(), {.seed = seed, .reuse_unchanged = false});
   Day day(world, seed);
   trial::Chance chance(seed + 100);
-  for (Farm* farm : {&again, &anew}) farm->hear_all();
+  for (Farm* farm : {&again, &anew}) farm->subscribe_all();
   for (int k = 0; k < ticks; ++k) {
     const std::vector<base::Report> reports = day.next();
     const std::uint32_t deaf = chance.below(static_cast<std::uint32_t>(world.movers.size()));
-    const std::uint32_t kinds = chance.below(4) == 0 ? chance.below(1u << 12) : kAllKinds;
-    for (Farm* farm : {&again, &anew}) farm->hear(deaf, kinds);
+    const std::uint32_t kinds = chance.below(4) == 0 ? chance.below(1u << 12) : kAllSensorTypes;
+    for (Farm* farm : {&again, &anew}) farm->subscribe(deaf, kinds);
     for (std::int64_t due = again.next_due(); due < k * kTick / 2; due = again.next_due()) {
       const std::vector<base::Report> on_the_way = day.next();
       expect_same(again.sample(due, on_the_way), anew.sample(due, on_the_way));
@@ -128,11 +128,11 @@ std::uint64_t compare(const world::World& world, std::uint64_t seed, int ticks) 
     if (testing::Test::HasFatalFailure()) return 0;
   }
   EXPECT_EQ(again.hash(), anew.hash());
-  EXPECT_EQ(anew.stats().again, 0u);
-  return again.stats().again;
+  EXPECT_EQ(anew.stats().reused, 0u);
+  return again.stats().reused;
 }
 
-TEST(Steady, TheSameBytesAsIfEveryoneHadLooked) {
+TEST(ReadingCache, TheSameBytesAsIfEveryoneHadLooked) {
   std::uint64_t again = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
@@ -159,7 +159,7 @@ struct Pair {
   }
   explicit Pair(const std::function<void(world::World&)>& change = {})
       : world(made(change)), farm(world, device(), kOnDevice) {
-    farm.hear(0, kAllKinds);
+    farm.subscribe(0, kAllSensorTypes);
   }
   /// Whether what is due is given again when the other one stands at `X`.
   bool again_with(const base::Pose& X, const base::Pose& own = {}) {
@@ -167,7 +167,7 @@ struct Pair {
     const std::vector<base::Report> reports{{0, 0, own, {}}, {1, 0, X, {}}};
     const auto readings = farm.tick(std::exchange(now, now + kTick), reports);
     EXPECT_FALSE(readings.empty());
-    const std::uint64_t again = farm.stats().again - before.again;
+    const std::uint64_t again = farm.stats().reused - before.reused;
     EXPECT_TRUE(again == 0 || again == readings.size()) << "some of them only";
     EXPECT_EQ(farm.stats().batches - before.batches, again == 0 ? 1u : 0u);
     return again > 0;
@@ -179,7 +179,7 @@ struct Pair {
   }
 };
 
-TEST(Steady, WhoStandsLooksTwiceAndNeverAgain) {
+TEST(ReadingCache, WhoStandsLooksTwiceAndNeverAgain) {
   Pair pair;
   const base::Pose far{5.0, 0.0, 0.0, 0.0};
   EXPECT_FALSE(pair.again_with(far));
@@ -189,7 +189,7 @@ TEST(Steady, WhoStandsLooksTwiceAndNeverAgain) {
 }
 
 /// Any bit of its own pose counts, the sign of a zero too.
-TEST(Steady, WhoMovesLooks) {
+TEST(ReadingCache, WhoMovesLooks) {
   const base::Pose far{5.0, 0.0, 0.0, 0.0};
   for (const base::Pose& own : {base::Pose{1e-300, 0, 0, 0}, base::Pose{0, -1e-9, 0, 0}, base::Pose{0, 0, 0, 1e-16},
                                 base::Pose{0, 0, 0, 2.0 * M_PI}, base::Pose{0, 0, 0, -0.0}}) {
@@ -200,7 +200,7 @@ TEST(Steady, WhoMovesLooks) {
   }
 }
 
-TEST(Steady, OthersCountWhereTheyWereAndWhereTheyAre) {
+TEST(ReadingCache, OthersCountWhereTheyWereAndWhereTheyAre) {
   const base::Pose far{5.0, 0.0, 0.0, 0.0}, farther{6.0, 0.0, 0.0, 0.0}, near{1.0, 0.0, 0.0, 0.0};
   Pair pair;
   pair.settle(far);
@@ -222,14 +222,14 @@ TEST(Steady, OthersCountWhereTheyWereAndWhereTheyAre) {
 }
 
 /// The range counts from the sensor, which may stand off its robot's middle.
-TEST(Steady, RangesCountFromTheSensor) {
+TEST(ReadingCache, RangesCountFromTheSensor) {
   Pair pair([](world::World& world) { world.movers[0].lasers[0].X_MS = {-1.0, 0.0, 0.1, 0.0}; });
   pair.settle({5.0, 0.0, 0.0, 0.0});
   EXPECT_FALSE(pair.again_with({-2.9, 0.0, 0.0, 0.0}));
 }
 
 /// Of several sensors of a kind the farthest counts, whichever it is: they are disturbed together.
-TEST(Steady, TheFarthestOfARobotsSensorsCounts) {
+TEST(ReadingCache, TheFarthestOfARobotsSensorsCounts) {
   for (const std::size_t farthest : {0u, 1u}) {
     Pair pair([&](world::World& world) {
       world.movers[0].lasers.push_back(world.movers[0].lasers[0]);
@@ -243,19 +243,19 @@ TEST(Steady, TheFarthestOfARobotsSensorsCounts) {
 }
 
 /// A mover that comes and goes between two readings has changed nothing, but it was seen to move.
-TEST(Steady, BetweenReadingsToo) {
+TEST(ReadingCache, BetweenReadingsToo) {
   Pair pair([](world::World& world) { world.movers[0].lasers[0].rate = 5.0; });
   const std::vector<base::Report> far{{1, 0, {5.0, 0.0, 0.0, 0.0}, {}}}, near{{1, 0, {1.0, 0.0, 0.0, 0.0}, {}}};
   for (int k = 0; k < 6; ++k) pair.farm.tick(k * kTick, far);
-  EXPECT_EQ(pair.farm.stats().again, 1u);
+  EXPECT_EQ(pair.farm.stats().reused, 1u);
   pair.farm.tick(6 * kTick, far);
-  EXPECT_EQ(pair.farm.stats().again, 2u);
+  EXPECT_EQ(pair.farm.stats().reused, 2u);
   pair.farm.tick(7 * kTick, near);  // not due
   pair.farm.tick(8 * kTick, near);
-  EXPECT_EQ(pair.farm.stats().again, 2u) << "moved when nothing was due";
+  EXPECT_EQ(pair.farm.stats().reused, 2u) << "moved when nothing was due";
 }
 
-TEST(Steady, NoiseIsNeverGivenAgain) {
+TEST(ReadingCache, NoiseIsNeverGivenAgain) {
   for (const world::LaserNoise noise :
        {world::LaserNoise{.range_sigma = 0.01}, {.range_proportional = 0.01}, {.angle_sigma = 0.01}}) {
     Pair pair([&](world::World& world) { world.movers[0].lasers[0].noise = noise; });
@@ -263,16 +263,16 @@ TEST(Steady, NoiseIsNeverGivenAgain) {
   }
 }
 
-TEST(Steady, UnlessNoiseIsOff) {
+TEST(ReadingCache, UnlessNoiseIsOff) {
   world::World world = small_world(3, {.range_sigma = 0.01});
   Farm farm(world, device(), {.noise = false});
-  farm.hear_all();
+  farm.subscribe_all();
   for (int k = 0; k < 4; ++k) farm.tick(k * kTick, {});
-  EXPECT_EQ(farm.stats().again, 2u * 3u);
+  EXPECT_EQ(farm.stats().reused, 2u * 3u);
 }
 
 /// Magnets that move count wherever they are; bodies without magnets do not.
-TEST(Steady, MagnetometersMindMagnetsAlone) {
+TEST(ReadingCache, MagnetometersMindMagnetsAlone) {
   for (const bool carries : {false, true}) {
     Pair pair([&](world::World& world) {
       world.movers[0].lasers.clear();
@@ -287,17 +287,17 @@ TEST(Steady, MagnetometersMindMagnetsAlone) {
 }
 
 /// A robot without an outline is seen by nobody.
-TEST(Steady, WhatHasNoOutlineDisturbsNobody) {
+TEST(ReadingCache, WhatHasNoOutlineDisturbsNobody) {
   Pair pair([](world::World& world) { world.movers[1].body.clear(); });
   pair.settle({5.0, 0.0, 0.0, 0.0});
   EXPECT_TRUE(pair.again_with({1.0, 0.0, 0.0, 0.0}));
 }
 
 /// What is asked for elsewhere in between is neither given again nor kept.
-TEST(Steady, SenseNeitherTakesNorLeaves) {
+TEST(ReadingCache, SenseNeitherTakesNorLeaves) {
   const world::World world = small_world(5);
   Farm asked(world, device()), plain(world, device());
-  for (Farm* farm : {&asked, &plain}) farm->hear_all();
+  for (Farm* farm : {&asked, &plain}) farm->subscribe_all();
   const base::Pose elsewhere{0.5, 0.25, 0.0, 1.0};
   std::vector<double> first;
   for (int k = 0; k < 6; ++k) {
@@ -308,25 +308,25 @@ TEST(Steady, SenseNeitherTakesNorLeaves) {
     EXPECT_EQ(seen.values, first);
   }
   EXPECT_EQ(asked.hash(), plain.hash());
-  EXPECT_EQ(asked.stats().again, plain.stats().again);
+  EXPECT_EQ(asked.stats().reused, plain.stats().reused);
 }
 
 /// Nobody who drives is copied, and who stands allocates once.
-TEST(Steady, AFleetThatDrivesKeepsNothing) {
+TEST(ReadingCache, AFleetThatDrivesKeepsNothing) {
   const world::World world = small_world(10);
   Farm farm(world, device());
-  farm.hear_all();
+  farm.subscribe_all();
   for (int k = 0; k < 12; ++k) farm.tick(k * kTick, reports_at(world, k));
-  EXPECT_EQ(farm.stats().again, 0u);
+  EXPECT_EQ(farm.stats().reused, 0u);
 }
 
-TEST(Steady, NothingIsSubmittedWhereTheHostAloneLooks) {
+TEST(ReadingCache, NothingIsSubmittedWhereTheHostAloneLooks) {
   world::World world = small_world(2);
   world.movers[0].lasers[0].rate = 1.0;
   world.movers[1].lasers[0].rate = 1.0;
   world.movers[0].sensors.push_back(trial::fitted("bumper"));
   Farm farm(world, device(), kOnDevice);
-  farm.hear_all();
+  farm.subscribe_all();
   for (int k = 0; k < 20; ++k) farm.tick(k * kTick, reports_at(world, k));
   EXPECT_EQ(farm.stats().batches, 2u) << "the lasers look once a second";
   EXPECT_EQ(farm.stats().readings, 20u + 2u * 2u);

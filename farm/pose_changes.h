@@ -15,10 +15,10 @@ inline bool is_gone(const base::Pose& X_WM) { return std::isnan(X_WM.x); }
 inline constexpr base::Pose kGone{NAN, NAN, NAN, NAN};
 
 /// Where movers that moved were, and where they are now. Allocates only to grow.
-class Moves {
+class PoseChanges {
  public:
   /// `world` must outlive it.
-  explicit Moves(const world::World& world);
+  explicit PoseChanges(const world::World& world);
 
   /// A tick begins: nobody has moved yet.
   void begin();

@@ -1,4 +1,4 @@
-#include "farm/moves.h"
+#include "farm/pose_changes.h"
 
 #include <algorithm>
 #include <array>
@@ -17,13 +17,13 @@ bool same(const base::Pose& p, const base::Pose& q) {
 
 }  // namespace
 
-Moves::Moves(const world::World& world) : world_(world), flags_(world.movers.size(), false) {
+PoseChanges::PoseChanges(const world::World& world) : world_(world), flags_(world.movers.size(), false) {
   moved_.reserve(world.movers.size());
   places_.reserve(2 * world.movers.size());
   for (const world::Mover& mover : world.movers) largest_ = std::max(largest_, mover.radius);
 }
 
-void Moves::begin() {
+void PoseChanges::begin() {
   for (const std::uint32_t mover : moved_) flags_[mover] = false;
   moved_.clear();
   places_.clear();
@@ -31,7 +31,7 @@ void Moves::begin() {
   sorted_ = true;
 }
 
-void Moves::add(std::uint32_t mover, const base::Pose& from, const base::Pose& to) {
+void PoseChanges::add(std::uint32_t mover, const base::Pose& from, const base::Pose& to) {
   if (same(from, to)) return;
   const world::Mover& who = world_.movers[mover];
   moved_.push_back(mover);
@@ -43,7 +43,7 @@ void Moves::add(std::uint32_t mover, const base::Pose& from, const base::Pose& t
   sorted_ = false;
 }
 
-bool Moves::within(glm::dvec2 p, double reach) {
+bool PoseChanges::within(glm::dvec2 p, double reach) {
   if (!sorted_) std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) { return a.x < b.x; });
   sorted_ = true;
   const double most = reach + largest_;

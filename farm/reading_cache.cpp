@@ -1,4 +1,4 @@
-#include "farm/steady.h"
+#include "farm/reading_cache.h"
 
 #include <algorithm>
 
@@ -15,12 +15,12 @@ double reach_of(const sensors::SensorSpec& row) {
 
 }  // namespace
 
-Steady::Steady(std::span<const sensors::SensorSpec> rows, bool noise)
-    : carrier_of_(rows.size()), calm_(rows.size(), Calm::never), stored_(rows.size()) {
+ReadingCache::ReadingCache(std::span<const sensors::SensorSpec> rows, bool noise)
+    : carrier_of_(rows.size()), validity_(rows.size(), Validity::never), stored_(rows.size()) {
   for (std::uint32_t i = 0; i < rows.size(); ++i) {
     const sensors::SensorSpec& row = rows[i];
     if (!(row.dependency_radius > 0.0) || (noise && row.noisy)) continue;
-    calm_[i] = Calm::no;
+    validity_[i] = Validity::changed;
     if (carriers_.empty() || carriers_.back().mover != row.mover)
       carriers_.push_back({row.mover, i, i, 0.0, row.depends_on_magnets, false});
     Carrier& carrier = carriers_.back();
@@ -30,35 +30,36 @@ Steady::Steady(std::span<const sensors::SensorSpec> rows, bool noise)
   }
 }
 
-void Steady::rouse(Carrier& carrier) {
+void ReadingCache::invalidate_all(Carrier& carrier) {
   for (std::uint32_t row = carrier.first; row < carrier.end; ++row)
-    if (calm_[row] != Calm::never) calm_[row] = Calm::no;
-  carrier.calm = false;
-  --calm_carriers_;
+    if (validity_[row] != Validity::never) validity_[row] = Validity::changed;
+  carrier.unchanged = false;
+  --unchanged_carriers_;
 }
 
-void Steady::disturb(Moves& moves, std::span<const base::Pose> poses) {
-  if (calm_carriers_ == 0 || !moves.any()) return;
+void ReadingCache::invalidate(PoseChanges& pose_changes, std::span<const base::Pose> poses) {
+  if (unchanged_carriers_ == 0 || !pose_changes.any()) return;
   for (Carrier& carrier : carriers_) {
-    if (!carrier.calm) continue;
+    if (!carrier.unchanged) continue;
     const glm::dvec2 p{poses[carrier.mover].x, poses[carrier.mover].y};
-    if (moves.moved(carrier.mover) || (carrier.depends_on_magnets ? moves.magnets() : moves.within(p, carrier.reach)))
-      rouse(carrier);
+    if (pose_changes.moved(carrier.mover) ||
+        (carrier.depends_on_magnets ? pose_changes.magnets() : pose_changes.within(p, carrier.reach)))
+      invalidate_all(carrier);
   }
 }
 
-void Steady::taken(std::uint32_t row, const base::ReadingBlock& block) {
-  if (calm_[row] == Calm::never) return;
-  if (calm_[row] == Calm::since) {
+void ReadingCache::store(std::uint32_t row, const base::ReadingBlock& block) {
+  if (validity_[row] == Validity::never) return;
+  if (validity_[row] == Validity::unchanged) {
     if (!stored_[row]) stored_[row] = std::make_unique<StoredReading>();
     stored_[row]->take(block);
-    calm_[row] = Calm::kept;
+    validity_[row] = Validity::stored;
     return;
   }
-  calm_[row] = Calm::since;
+  validity_[row] = Validity::unchanged;
   Carrier& carrier = carriers_[carrier_of_[row]];
-  if (!carrier.calm) ++calm_carriers_;
-  carrier.calm = true;
+  if (!carrier.unchanged) ++unchanged_carriers_;
+  carrier.unchanged = true;
 }
 
 }  // namespace sf::farm

@@ -1,0 +1,110 @@
+#include "farm/sensor_pipeline.h"
+
+#include <algorithm>
+
+#include "farm/schedule.h"
+
+namespace sf::farm {
+
+SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& g)
+    : group(&g), backend(g.kind->make(context)), cache(g.rows, context.noise), started(g.rows.size(), 0) {
+  for (const sensors::SensorSpec& row : g.rows) next.push_back(due_time(0, row.rate, row.phase));
+  due.reserve(g.rows.size());
+  to_measure.reserve(g.rows.size());
+}
+
+std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::uint32_t> subscribed) {
+  due.clear();
+  std::uint64_t missed = 0;
+  const std::uint32_t kind = 1u << group->kind->id;
+  // Sensors in a row mostly have one rate and phase.
+  double rate = -1.0, phase = 0.0;
+  std::uint64_t ready = 0, counted = 0;
+  std::int64_t then = 0;
+  for (std::uint32_t i = 0; i < started.size(); ++i) {
+    if (now < next[i] - 1) continue;
+    const sensors::SensorSpec& row = group->rows[i];
+    if (row.rate != rate || row.phase != phase) {
+      rate = row.rate, phase = row.phase;
+      ready = readings_started(now, rate, phase);
+      counted = ~std::uint64_t{0};
+    }
+    const std::uint64_t should = std::max(ready, started[i] + (now >= next[i]));
+    if (should <= started[i]) continue;
+    const std::uint64_t skipped = should - started[i] - 1;
+    started[i] = should;
+    if (should != counted) then = due_time(should, rate, phase);
+    counted = should;
+    next[i] = then;
+    // A sensor's readings are numbered by when they are due: one that nobody heard leaves a gap, and its noise to
+    // itself.
+    if ((subscribed[row.mover] & kind) == 0) continue;
+    due.push_back({i, should - 1});
+    missed += skipped;
+  }
+  return missed;
+}
+
+std::int64_t SensorPipeline::next_due(std::span<const std::uint32_t> subscribed) const {
+  const std::uint32_t kind = 1u << group->kind->id;
+  std::int64_t soonest = kNever;
+  for (std::size_t i = 0; i < next.size(); ++i)
+    if (next[i] < soonest && (subscribed[group->rows[i].mover] & kind) != 0) soonest = next[i];
+  return soonest;
+}
+
+void SensorPipeline::split(bool reuse) {
+  to_measure.clear();
+  for (const sensors::DueSample& d : due)
+    if (!reuse || !cache.has(d.row)) to_measure.push_back(d);
+}
+
+bool SensorPipeline::prepare(std::span<const base::Pose> poses) {
+  const bool nothing = to_measure.empty();
+  if (nothing && idle) return false;
+  idle = nothing;
+  active = true;
+  uploaded = false;
+  return backend->prepare(to_measure, poses);
+}
+
+void SensorPipeline::add_copies(gpu::Batch& batch) {
+  if (uploaded) return;
+  backend->add_copies(batch);
+  uploaded = idle;
+}
+
+std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Pose> poses,
+                                    std::vector<base::ReadingBlock>& blocks) {
+  const std::size_t first = blocks.size();
+  backend->collect(blocks);
+  // Readings that are given again take their places among those just taken, from the last one on.
+  const std::size_t again = due.size() - to_measure.size();
+  blocks.resize(first + due.size());
+  std::size_t fresh = to_measure.size();
+  for (std::size_t i = due.size(); again > 0 && i-- > 0;) {
+    const bool measured = fresh > 0 && to_measure[fresh - 1].row == due[i].row;
+    blocks[first + i] = measured ? blocks[first + --fresh] : cache.reading(due[i].row);
+  }
+  for (std::size_t i = 0; i < due.size(); ++i) {
+    base::ReadingBlock& block = blocks[first + i];
+    block.time = now;
+    block.sequence = static_cast<std::uint32_t>(due[i].sequence);
+    block.X_WM = poses[block.mover];
+  }
+  return again;
+}
+
+void SensorPipeline::store(std::span<const base::ReadingBlock> blocks) {
+  std::size_t i = blocks.size() - due.size();
+  std::size_t measured = 0;
+  for (const sensors::DueSample& d : due) {
+    if (measured < to_measure.size() && to_measure[measured].row == d.row) {
+      cache.store(d.row, blocks[i]);
+      ++measured;
+    }
+    ++i;
+  }
+}
+
+}  // namespace sf::farm
