@@ -125,8 +125,8 @@ class PredictingCaster final : public HostCaster {
     std::fill(out, out + beams, HUGE_VALF);
     const base::Pose then = poses_[robot];
     const glm::dvec2 moved = base::rotate(-now.yaw, {then.x - now.x, then.y - now.y});
-    const glm::dvec2 turn = base::rotate(then.yaw - now.yaw, {1.0, 0.0});
-    const auto c = static_cast<float>(turn.x), s = static_cast<float>(turn.y);
+    const glm::dvec2 repeat = base::rotate(then.yaw - now.yaw, {1.0, 0.0});
+    const auto c = static_cast<float>(repeat.x), s = static_cast<float>(repeat.y);
     for (std::size_t k = 0; k < beams; ++k) {
       const float r = ranges_[robot * beams + k];
       const float bx = r * static_cast<float>(scans_.beams[k].x), by = r * static_cast<float>(scans_.beams[k].y);

@@ -14,17 +14,17 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "bench/cone_contest.h"
+#include "bench/accuracy_modes.h"
+#include "bench/cone_comparison.h"
 #include "bench/curves.h"
-#include "bench/dial.h"
 #include "bench/embree_caster.h"
 #include "bench/farm_caster.h"
-#include "bench/field_contest.h"
-#include "bench/fleet.h"
+#include "bench/field_comparison.h"
+#include "bench/fleet_runs.h"
 #include "bench/grid.h"
-#include "bench/lane_contest.h"
+#include "bench/lane_comparison.h"
 #include "bench/large_fleet.h"
-#include "bench/map_contest.h"
+#include "bench/map_comparison.h"
 #include "bench/price.h"
 #include "bench/report.h"
 #include "bench/stage_peer.h"
@@ -40,12 +40,12 @@ constexpr const char* kReference = "embree, 8-ray packets";
 struct Session {
   gpu::Device device;
   Book book;
-  std::map<std::string, Outcome> contests;
-  std::vector<FieldOutcome> fields;
-  std::vector<LaneOutcome> lanes;
-  std::vector<ConeOutcome> cones;
-  std::vector<MapOutcome> maps;
-  std::vector<DialOutcome> dials;
+  std::map<std::string, Comparison> contests;
+  std::vector<FieldComparison> fields;
+  std::vector<LaneComparison> lanes;
+  std::vector<ConeComparison> cones;
+  std::vector<MapComparison> maps;
+  std::vector<AccuracyModeComparison> dials;
   std::vector<LargeFleetResult> large_fleets;
   std::vector<Curve> curves;
 };
@@ -53,12 +53,12 @@ struct Session {
 struct ScanCase {
   std::uint32_t robots;
   double range;
-  std::size_t turns;
+  std::size_t repeats;
 };
 constexpr ScanCase kScanCases[] = {{1'000, 8.0, 41}, {1'000, 0.75, 41}, {10'000, 8.0, 15}, {10'000, 0.75, 15}};
 constexpr std::size_t kMethods = 6;
 
-const Outcome& contest(Session& session, const ScanCase& c) {
+const Comparison& contest(Session& session, const ScanCase& c) {
   const std::string name = fmt::format("{}/{}", c.robots, c.range);
   const auto known = session.contests.find(name);
   if (known != session.contests.end()) return known->second;
@@ -69,12 +69,12 @@ const Outcome& contest(Session& session, const ScanCase& c) {
   casters.push_back(make_grid_caster(scans, "plain C++ grid, -march=native", walk_native));
   for (const EmbreeUse use : {EmbreeUse{true, false}, EmbreeUse{true, true}, EmbreeUse{false, false}})
     if (auto caster = make_embree_caster(scans, use)) casters.push_back(std::move(caster));
-  const Outcome outcome = compete(scans, casters, kReference, c.turns);
-  session.book.contests.push_back(outcome);
-  return session.contests[name] = outcome;
+  const Comparison comparison = compare(scans, casters, kReference, c.repeats);
+  session.book.contests.push_back(comparison);
+  return session.contests[name] = comparison;
 }
 
-void tell(benchmark::State& state, const std::vector<Cost>& costs, std::size_t rays, const Verdict& verdict,
+void tell(benchmark::State& state, const std::vector<Cost>& costs, std::size_t rays, const AccuracyCheck& accuracy,
           std::uint64_t hash) {
   std::size_t k = 0;
   double cpu_s = 0.0;
@@ -85,15 +85,15 @@ void tell(benchmark::State& state, const std::vector<Cost>& costs, std::size_t r
   state.counters["Mrays/s"] = benchmark::Counter(1e-6 * static_cast<double>(rays * k), benchmark::Counter::kIsRate,
                                                  benchmark::Counter::kIs1000);
   state.counters["cpu_ms"] = 1e3 * cpu_s / static_cast<double>(k);
-  state.SetLabel(
-      fmt::format("max error {:.1e} m of {} beams, hash {}", verdict.max_error_m, verdict.beams, base::hash_hex(hash)));
+  state.SetLabel(fmt::format("max error {:.1e} m of {} beams, hash {}", accuracy.max_error_m, accuracy.beams,
+                             base::hash_hex(hash)));
 }
 
 void tell_entrant(benchmark::State& state, Session& session, const ScanCase& c, std::size_t which) {
-  const Outcome& outcome = contest(session, c);
-  if (which >= outcome.entrants.size()) return state.SkipWithError("built without Embree");
-  const Entrant& e = outcome.entrants[which];
-  tell(state, e.turns, outcome.rays, e.verdict, e.hash);
+  const Comparison& comparison = contest(session, c);
+  if (which >= comparison.method_results.size()) return state.SkipWithError("built without Embree");
+  const MethodResult& e = comparison.method_results[which];
+  tell(state, e.repeats, comparison.rays, e.accuracy, e.hash);
   state.counters["ratio"] = e.ratio;
 }
 
@@ -112,9 +112,9 @@ void tell_drive(benchmark::State& state, Session& session, const DriveCase& c) {
   const bool large = c.robots > 100;
   world::World world = large ? scenes::cave(1500, 48.0, 3) : load_cave();
   scenes::add_robots(world, c.robots, scenes::laser(361, M_PI, c.range), 1);
-  const DriveResult result = drive(large ? "large cave" : "cave", world, session.device, c.wander, kWarmUp, c.ticks);
+  const TickResult result = run_ticks(large ? "large cave" : "cave", world, session.device, c.wander, kWarmUp, c.ticks);
   session.book.drives.push_back(result);
-  tell(state, result.ticks, result.rays, result.verdict, result.hash);
+  tell(state, result.ticks, result.rays, result.accuracy, result.hash);
   state.counters["x_real_time"] = result.interval_s / result.typical.wall_s;
 }
 
@@ -128,8 +128,8 @@ constexpr FieldCase kFieldCases[] = {
     {"field/200000_magnets/100/no_cutoff", [] { return sheet_scene(100, 200'000, 0.0, 11); }}};
 
 void tell_field(benchmark::State& state, Session& session, const FieldCase& c) {
-  for (auto _ : state) session.fields.push_back(compete(c.scene(), session.device));
-  for (const FieldEntrant& e : session.fields.back().entrants)
+  for (auto _ : state) session.fields.push_back(compare(c.scene(), session.device));
+  for (const FieldMethodResult& e : session.fields.back().method_results)
     state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
 }
 
@@ -143,8 +143,8 @@ constexpr std::size_t kLaneTurns = 15;
 
 void tell_lanes(benchmark::State& state, Session& session, const LaneCase& c) {
   const LaneScene scene = make_lane_scene(20, 10'000, c.resolution);
-  for (auto _ : state) session.lanes.push_back(compete_lanes(session.device, scene, kLaneTurns));
-  for (const LaneEntrant& e : session.lanes.back().entrants)
+  for (auto _ : state) session.lanes.push_back(compare_lanes(session.device, scene, kLaneTurns));
+  for (const LaneMethodResult& e : session.lanes.back().method_results)
     state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
 }
 
@@ -152,8 +152,8 @@ constexpr std::uint32_t kConeCases[] = {100, 1'000};
 constexpr std::size_t kConeTurns = 31;
 
 void tell_cones(benchmark::State& state, Session& session, std::uint32_t robots) {
-  for (auto _ : state) session.cones.push_back(compete_cones(session.device, make_cone_scene(robots), kConeTurns));
-  for (const ConeEntrant& e : session.cones.back().entrants)
+  for (auto _ : state) session.cones.push_back(compare_cones(session.device, make_cone_scene(robots), kConeTurns));
+  for (const ConeMethodResult& e : session.cones.back().method_results)
     state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
 }
 
@@ -169,8 +169,9 @@ constexpr MapCase kMapCases[] = {{"maps/1000/0.75m", 1'000, 0.75, false},
 constexpr std::size_t kMapTurns = 25;
 
 void tell_maps(benchmark::State& state, Session& session, const MapCase& c) {
-  for (auto _ : state) session.maps.push_back(compete_maps(session.device, c.robots, c.range, c.weighs, kMapTurns));
-  for (const MapEntrant& e : session.maps.back().entrants) state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
+  for (auto _ : state) session.maps.push_back(compare_maps(session.device, c.robots, c.range, c.weighs, kMapTurns));
+  for (const MapMethodResult& e : session.maps.back().method_results)
+    state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
 }
 
 constexpr std::uint32_t kLargeFleet = 10'000;
@@ -201,13 +202,15 @@ constexpr std::uint32_t kDialRobots = 1'000;
 constexpr std::size_t kDialTurns = 21;
 
 void tell_dial(benchmark::State& state, Session& session, double range) {
-  for (auto _ : state) session.dials.push_back(compete_dial(session.device, kDialRobots, range, kDialTurns));
-  for (const DialEntry& e : session.dials.back().entries) state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
+  for (auto _ : state) session.dials.push_back(compare_accuracy_modes(session.device, kDialRobots, range, kDialTurns));
+  for (const AccuracyModeResult& e : session.dials.back().entries)
+    state.counters[e.method + " [ms]"] = 1e3 * e.typical.wall_s;
 }
 
-void tell_facts(benchmark::State& state, std::vector<Fact>& facts, const std::function<std::vector<Fact>()>& measure) {
+void tell_facts(benchmark::State& state, std::vector<Measurement>& facts,
+                const std::function<std::vector<Measurement>()>& measure) {
   for (auto _ : state)
-    for (const Fact& fact : measure()) {
+    for (const Measurement& fact : measure()) {
       state.counters[fact.what] = fact.value;
       facts.push_back(fact);
     }
@@ -220,8 +223,8 @@ const char* method_key(std::size_t which) {
 
 void register_all(Session& session) {
   const auto once = [](benchmark::internal::Benchmark* b) { b->Unit(benchmark::kMillisecond)->Iterations(1); };
-  std::vector<Fact>& facts = session.book.facts;
-  std::vector<Fact>& prices = session.book.prices;
+  std::vector<Measurement>& facts = session.book.facts;
+  std::vector<Measurement>& prices = session.book.prices;
   // First: a process that is started counts as resident at least what this one was.
   once(benchmark::RegisterBenchmark("price/program",
                                     [&prices](benchmark::State& s) { tell_facts(s, prices, measure_program); }));
@@ -231,7 +234,7 @@ void register_all(Session& session) {
                                    [&session, &c, which](benchmark::State& s) { tell_entrant(s, session, c, which); })
           ->UseManualTime()
           ->Unit(benchmark::kMillisecond)
-          ->Iterations(static_cast<benchmark::IterationCount>(c.turns));
+          ->Iterations(static_cast<benchmark::IterationCount>(c.repeats));
   for (const DriveCase& c : kDriveCases)
     benchmark::RegisterBenchmark(
         fmt::format("tick/{}/{}m/{}", c.robots, c.range, c.wander ? "wandering" : "standing").c_str(),
@@ -295,13 +298,13 @@ int run(int argc, char** argv) {
     write_lanes(session.lanes, folder);
     write_cones(session.cones, folder);
     write_maps(session.maps, folder);
-    write_dial(session.dials, folder);
+    write_accuracy_modes(session.dials, folder);
     write_large_fleet(session.large_fleets, folder);
     write_curves(session.curves, folder);
   }
   if (!pictures.empty()) draw_curves(session.curves, pictures);
   fmt::print("{}{}{}{}{}{}{}{}", tables(session.book), table(session.fields), lane_table(session.lanes),
-             cone_table(session.cones), map_table(session.maps), dial_table(session.dials),
+             cone_table(session.cones), map_table(session.maps), accuracy_mode_table(session.dials),
              large_fleet_table(session.large_fleets), curves_table(session.curves));
   return 0;
 }

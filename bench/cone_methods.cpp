@@ -18,7 +18,7 @@ class FarmCones final : public ConeMethod {
   FarmCones(const ConeScene& scene, gpu::Device& device) : farm_(scene.world, device, scene.rounds, 40'000'000) {}
   std::string name() const override { return "farm"; }
   void poison() override { farm_.poison(); }
-  void hear(std::size_t round) override { farm_.tick(round); }
+  void measure(std::size_t round) override { farm_.tick(round); }
   double range(std::size_t robot, std::size_t transducer) const override {
     return farm_.readings()[robot].values[transducer];
   }
@@ -46,7 +46,7 @@ class PlainCones final : public ConeMethod {
   }
   std::string name() const override { return name_; }
   void poison() override { std::fill(values_.begin(), values_.end(), kNaN); }
-  void hear(std::size_t round) override {
+  void measure(std::size_t round) override {
     thread_pool_.parallel_for(arrays_.size(), kRobotsPerPiece,
                               [&](std::size_t first, std::size_t last, unsigned thread) {
                                 for (std::size_t i = first; i < last; ++i)

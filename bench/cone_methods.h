@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "bench/cone_contest.h"
+#include "bench/cone_comparison.h"
 #include "bench/grid.h"
 #include "sensors/cones/cone_array.h"
 
@@ -17,7 +17,7 @@ class ConeMethod {
   /// Spoils what the last turn gave.
   virtual void poison() = 0;
   /// What is measured: from poses to ranges.
-  virtual void hear(std::size_t round) = 0;
+  virtual void measure(std::size_t round) = 0;
   /// [m] not a number when it was not written.
   virtual double range(std::size_t robot, std::size_t transducer) const = 0;
 };

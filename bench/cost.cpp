@@ -38,10 +38,10 @@ Cost median(const std::vector<Cost>& costs) {
   return {median(wall), median(cpu)};
 }
 
-Cost ratio(const std::vector<Cost>& reference, const std::vector<Cost>& turns) {
+Cost ratio(const std::vector<Cost>& reference, const std::vector<Cost>& repeats) {
   std::vector<Cost> quotients;
-  for (std::size_t k = 0; k < turns.size(); ++k)
-    quotients.push_back({reference[k].wall_s / turns[k].wall_s, reference[k].cpu_s / turns[k].cpu_s});
+  for (std::size_t k = 0; k < repeats.size(); ++k)
+    quotients.push_back({reference[k].wall_s / repeats[k].wall_s, reference[k].cpu_s / repeats[k].cpu_s});
   return median(quotients);
 }
 

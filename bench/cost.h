@@ -25,6 +25,6 @@ Cost median(const std::vector<Cost>& costs);
 
 /// [-] How many times as long `reference` took: medians over turns of its time / the other's, of both parts. As many
 /// turns of each.
-Cost ratio(const std::vector<Cost>& reference, const std::vector<Cost>& turns);
+Cost ratio(const std::vector<Cost>& reference, const std::vector<Cost>& repeats);
 
 }  // namespace sf::bench

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "bench/drive.h"
 #include "bench/report.h"
+#include "bench/tick_benchmark.h"
 #include "bench/tiles.h"
 #include "tests/sensors/scenes.h"
 #include "viz/series_figure.h"
@@ -46,7 +46,7 @@ CurvePoint measure(gpu::Device& device, double count, bool wander, std::size_t t
   const double before = resident();
   const world::World world = make();
   const double start = now().wall_s;
-  Drive fleet(world, device);
+  TickBenchmark fleet(world, device);
   fleet.tick(wander);
   point.load_s = now().wall_s - start;
   for (std::size_t k = 1; k < kWarmUp; ++k) fleet.tick(wander);

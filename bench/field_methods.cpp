@@ -18,7 +18,7 @@ class FarmMethod final : public FieldMethod {
   FarmMethod(const FieldScene& scene, gpu::Device& device) : farm_(scene.world, device, scene.rounds, 100'000'000) {}
   std::string name() const override { return "farm"; }
   void poison() override { farm_.poison(); }
-  void sum(std::size_t turn) override { farm_.tick(turn); }
+  void sum(std::size_t repeat) override { farm_.tick(repeat); }
   FieldVector value(std::size_t robot, std::size_t e) const override {
     const double* const at = farm_.readings()[robot].values.data() + sensors::kMagnetometerColumns * e;
     return {at[1], at[2], at[3]};
@@ -45,19 +45,19 @@ class PlainMethod final : public FieldMethod {
   }
   std::string name() const override { return name_; }
   void poison() override { std::fill(values_.begin(), values_.end(), FieldVector{kNaN, kNaN, kNaN}); }
-  void sum(std::size_t turn) override {
-    thread_pool_.parallel_for(scene_.rounds[turn].size(), 16,
+  void sum(std::size_t repeat) override {
+    thread_pool_.parallel_for(scene_.rounds[repeat].size(), 16,
                               [&](std::size_t first, std::size_t last, unsigned thread) {
                                 for (std::size_t i = first; i < last; ++i)
-                                  sum_array(i, scene_.rounds[turn][i], spans_[thread]);
+                                  sum_array(i, scene_.rounds[repeat][i], spans_[thread]);
                               });
   }
   FieldVector value(std::size_t robot, std::size_t e) const override { return values_[robot * kArrayElements + e]; }
 
  private:
-  void sum_array(std::size_t robot, const base::Pose& X_WM, std::vector<sensors::MagnetSpan>& room) {
+  void sum_array(std::size_t robot, const base::Pose& X_WM, std::vector<sensors::MagnetSpan>& spans_buffer) {
     const base::Pose X_WS = base::compose(X_WM, scene_.world.movers[robot].sensors[0].X_MS);
-    const auto spans = std::span(room).first(magnets_.grid.find({X_WS.x, X_WS.y}, reach_, room));
+    const auto spans = std::span(spans_buffer).first(magnets_.grid.find({X_WS.x, X_WS.y}, reach_, spans_buffer));
     for (std::size_t e = 0; e < kArrayElements; ++e) {
       const base::Pose X_WE = base::compose(X_WM, X_ME_[e]);
       const FieldVector b = sum_(magnets_, spans, X_WE.x, X_WE.y, X_WE.z);

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "bench/field_contest.h"
+#include "bench/field_comparison.h"
 #include "bench/field_sums.h"
 
 namespace sf::bench {
@@ -19,7 +19,7 @@ class FieldMethod {
   /// Spoils what the last turn gave.
   virtual void poison() = 0;
   /// What is measured: from poses to readings.
-  virtual void sum(std::size_t turn) = 0;
+  virtual void sum(std::size_t repeat) = 0;
   /// [T] element `e` of robot `robot`, in the element's frame; not a number when it was not written.
   virtual FieldVector value(std::size_t robot, std::size_t e) const = 0;
   /// Pairs of a magnet and an element summed so far; 0 where nobody counts.

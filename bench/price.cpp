@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "bench/contest.h"
+#include "bench/comparison.h"
 #include "bench/cost.h"
 #include "bench/scans.h"
 #include "farm/farm.h"
@@ -87,7 +87,7 @@ class Turn {
 };
 
 /// The same hundred lasers in a cave, under what makes them pay or not.
-void measure_lasers(gpu::Device& device, std::vector<Fact>& facts) {
+void measure_lasers(gpu::Device& device, std::vector<Measurement>& facts) {
   const world::World plain = make_scans("cave", load_cave(), 100, scenes::laser()).world;
   world::World magnets = plain;
   for (int i = 0; i < 10'000; ++i) magnets.magnets.push_back({{0.001 * i - 5.0, 0.0}, 0.0, 1.0, 0.01, 0});
@@ -95,7 +95,7 @@ void measure_lasers(gpu::Device& device, std::vector<Fact>& facts) {
   Turn unheard(plain, device, false, kPeriod, false), stands(plain, device, true, kPeriod, true);
   Turn idle(plain, device, true, 1000, false);
   for (int k = 0; k < kTurns; ++k)
-    for (Turn* turn : {&looks, &beside, &unheard, &stands, &idle}) turn->tick();
+    for (Turn* repeat : {&looks, &beside, &unheard, &stands, &idle}) repeat->tick();
   facts.push_back({"100 lasers of 361 beams that look", looks.ms(), "ms"});
   facts.push_back({"the same, 10 000 magnets in the world and no magnetometer", beside.ms(), "ms"});
   facts.push_back({"the same, nobody hears them", unheard.ms(), "ms"});
@@ -110,7 +110,7 @@ void measure_lasers(gpu::Device& device, std::vector<Fact>& facts) {
 
 }  // namespace
 
-std::vector<Fact> measure_program() {
+std::vector<Measurement> measure_program() {
   const Process crowd = run_program({"run", simville(), "--robots", "50", "--duration", "60"});
   const Process town = run_program({"run", simville(), "--duration", "60"});
   const Process none = run_program({"devices"});
@@ -132,8 +132,8 @@ std::vector<Fact> measure_program() {
           {"from exec to exit, --version", median_start({"--version"}), "s"}};
 }
 
-std::vector<Fact> measure_features(gpu::Device& device) {
-  std::vector<Fact> facts;
+std::vector<Measurement> measure_features(gpu::Device& device) {
+  std::vector<Measurement> facts;
   const world::World world = world::load_world(simville(), {.sensors = sensors::world_file_words()});
   const scenarios::Explanation e = scenarios::explain(world, device, 1, 0);
   facts.push_back({"SimVille, building the farm", 1e3 * e.build, "ms"});

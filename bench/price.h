@@ -3,15 +3,15 @@
 
 #include <vector>
 
-#include "bench/facts.h"
+#include "bench/measurements.h"
 
 namespace sf::bench {
 
 /// The program itself, as a process: most resident memory and seconds to the first reading. Fails where SimVille with
 /// 50 robots takes 200 MiB or a cold start to the first reading 1 s.
-std::vector<Fact> measure_program();
+std::vector<Measurement> measure_program();
 
 /// SimVille with each kind of sensor heard alone; magnets that nobody measures; who is not due; who stands.
-std::vector<Fact> measure_features(gpu::Device& device);
+std::vector<Measurement> measure_features(gpu::Device& device);
 
 }  // namespace sf::bench

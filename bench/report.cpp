@@ -21,15 +21,15 @@ namespace {
 /// A field that may hold a comma.
 std::string quoted(const std::string& text) { return "\"" + text + "\""; }
 
-std::string scans_csv(const std::vector<Outcome>& contests) {
+std::string scans_csv(const std::vector<Comparison>& contests) {
   std::string text =
       "scene,method,robots,rays,range_m,wall_ms_median,cpu_ms_median,mrays_per_s,ratio_to_embree8,"
       "cpu_ratio_to_embree8,max_error_m,hash\n";
-  for (const Outcome& o : contests)
-    for (const Entrant& e : o.entrants)
+  for (const Comparison& o : contests)
+    for (const MethodResult& e : o.method_results)
       text += fmt::format("{},{},{},{},{},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.3g},{}\n", quoted(o.scene),
                           quoted(e.method), o.robots, o.rays, o.range_m, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
-                          mrays_per_s(o.rays, e.typical), e.ratio, e.cpu_ratio, e.verdict.max_error_m,
+                          mrays_per_s(o.rays, e.typical), e.ratio, e.cpu_ratio, e.accuracy.max_error_m,
                           base::hash_hex(e.hash));
   return text;
 }
@@ -39,7 +39,7 @@ struct Stages {
   double move, place, lists, device, collect, decide, doubts, cells;
 };
 
-Stages stages_of(const DriveResult& d) {
+Stages stages_of(const TickResult& d) {
   const auto n = static_cast<double>(d.ticks.size());
   const auto rays = static_cast<double>(d.stages.work.rays);
   return {1e3 * d.move_s,
@@ -52,25 +52,25 @@ Stages stages_of(const DriveResult& d) {
           static_cast<double>(d.stages.work.cells_built) / n};
 }
 
-std::string ticks_csv(const std::vector<DriveResult>& drives) {
+std::string ticks_csv(const std::vector<TickResult>& drives) {
   std::string text =
       "scene,what,robots,rays,range_m,wall_ms_median,cpu_ms_median,mrays_per_s,real_time_factor,move_ms,place_ms,"
       "lists_ms,device_ms,collect_ms,decide_ms,beams_in_doubt,cells_built_per_tick,max_error_m,hash\n";
-  for (const DriveResult& d : drives) {
+  for (const TickResult& d : drives) {
     const Stages s = stages_of(d);
     text += fmt::format(
         "{},{},{},{},{},{:.3f},{:.3f},{:.2f},{:.1f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.4f},"
         "{:.1f},{:.3g},{}\n",
         quoted(d.scene), d.what, d.robots, d.rays, d.range_m, 1e3 * d.typical.wall_s, 1e3 * d.typical.cpu_s,
         mrays_per_s(d.rays, d.typical), d.interval_s / d.typical.wall_s, s.move, s.place, s.lists, s.device, s.collect,
-        s.decide, s.doubts, s.cells, d.verdict.max_error_m, base::hash_hex(d.hash));
+        s.decide, s.doubts, s.cells, d.accuracy.max_error_m, base::hash_hex(d.hash));
   }
   return text;
 }
 
-std::string facts_csv(const std::vector<Fact>& facts) {
+std::string facts_csv(const std::vector<Measurement>& facts) {
   std::string text = "what,value,unit\n";
-  for (const Fact& f : facts) text += fmt::format("{},{:.4g},{}\n", quoted(f.what), f.value, f.unit);
+  for (const Measurement& f : facts) text += fmt::format("{},{:.4g},{}\n", quoted(f.what), f.value, f.unit);
   return text;
 }
 
@@ -85,33 +85,33 @@ void write_csv(const Book& book, const std::string& folder) {
 
 std::string tables(const Book& book) {
   std::string text;
-  for (const Outcome& o : book.contests) {
+  for (const Comparison& o : book.contests) {
     text += fmt::format("\n{}: {} robots, {} rays, {} m\n{:<32} {:>9} {:>9} {:>8} {:>7} {:>7} {:>10}  {}\n", o.scene,
                         o.robots, o.rays, o.range_m, "method", "wall ms", "cpu ms", "Mrays/s", "ratio", "(cpu)",
                         "max err m", "hash");
-    for (const Entrant& e : o.entrants)
+    for (const MethodResult& e : o.method_results)
       text += fmt::format("{:<32} {:>9.2f} {:>9.2f} {:>8.1f} {:>7.2f} {:>7.2f} {:>10.1e}  {}\n", e.method,
                           1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, mrays_per_s(o.rays, e.typical), e.ratio,
-                          e.cpu_ratio, e.verdict.max_error_m, base::hash_hex(e.hash));
+                          e.cpu_ratio, e.accuracy.max_error_m, base::hash_hex(e.hash));
   }
   if (!book.drives.empty())
     text += fmt::format(
         "\nwhole ticks\n{:<34} {:>8} {:>8} {:>8} {:>6} | {:>6} {:>6} {:>7} {:>7} {:>7} {:>6} | {:>6} {:>7} {:>8}\n", "",
         "wall ms", "cpu ms", "Mrays/s", "x real", "move", "place", "lists", "device", "collect", "decide", "doubts",
         "cells/t", "max err");
-  for (const DriveResult& d : book.drives) {
+  for (const TickResult& d : book.drives) {
     const Stages s = stages_of(d);
     text += fmt::format(
         "{:<34} {:>8.2f} {:>8.2f} {:>8.1f} {:>6.1f} | {:>6.2f} {:>6.2f} {:>7.2f} {:>7.2f} {:>7.2f} {:>6.2f} | "
         "{:>5.2f}% {:>7.1f} {:>8.1e}\n",
         fmt::format("{} {} {}, {} m", d.scene, d.robots, d.what, d.range_m), 1e3 * d.typical.wall_s,
         1e3 * d.typical.cpu_s, mrays_per_s(d.rays, d.typical), d.interval_s / d.typical.wall_s, s.move, s.place,
-        s.lists, s.device, s.collect, s.decide, 100.0 * s.doubts, s.cells, d.verdict.max_error_m);
+        s.lists, s.device, s.collect, s.decide, 100.0 * s.doubts, s.cells, d.accuracy.max_error_m);
   }
   if (!book.facts.empty()) text += "\nsingle figures\n";
-  for (const Fact& f : book.facts) text += fmt::format("{:<60} {:>10.4g} {}\n", f.what, f.value, f.unit);
+  for (const Measurement& f : book.facts) text += fmt::format("{:<60} {:>10.4g} {}\n", f.what, f.value, f.unit);
   if (!book.prices.empty()) text += "\nwhat a world pays for\n";
-  for (const Fact& f : book.prices) text += fmt::format("{:<88} {:>10.4g} {}\n", f.what, f.value, f.unit);
+  for (const Measurement& f : book.prices) text += fmt::format("{:<88} {:>10.4g} {}\n", f.what, f.value, f.unit);
   return text;
 }
 

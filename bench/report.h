@@ -4,18 +4,18 @@
 #include <string>
 #include <vector>
 
-#include "bench/contest.h"
-#include "bench/drive.h"
-#include "bench/facts.h"
+#include "bench/comparison.h"
+#include "bench/measurements.h"
+#include "bench/tick_benchmark.h"
 
 namespace sf::bench {
 
 /// All that was measured.
 struct Book {
-  std::vector<Outcome> contests;
-  std::vector<DriveResult> drives;
-  std::vector<Fact> facts;
-  std::vector<Fact> prices;
+  std::vector<Comparison> contests;
+  std::vector<TickResult> drives;
+  std::vector<Measurement> facts;
+  std::vector<Measurement> prices;
 };
 
 /// Writes `text` to `file`, in place of what it held. @throws base::InputError when it cannot be written.

@@ -82,9 +82,9 @@ double run_farm(const world::World& world, gpu::Device& device, double seconds) 
 
 }  // namespace
 
-std::vector<Fact> measure_beside_stage(gpu::Device& device) {
+std::vector<Measurement> measure_beside_stage(gpu::Device& device) {
   const char* const program = std::getenv("STAGE");
-  std::vector<Fact> facts;
+  std::vector<Measurement> facts;
   if (program == nullptr) return facts;
   const std::string file = std::filesystem::temp_directory_path() / fmt::format("beside_stage_{}.world", ::getpid());
   for (const Crowd& crowd : kCrowds) {

@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "bench/facts.h"
+#include "bench/measurements.h"
 
 namespace sf::bench {
 
 /// Runs Stage without its window in turns with the farm, for 100, 300 and 1 000 robots. The environment's STAGE is its
 /// program (4.3); without it there are no facts. Loading is left out of both.
-std::vector<Fact> measure_beside_stage(gpu::Device& device);
+std::vector<Measurement> measure_beside_stage(gpu::Device& device);
 
 }  // namespace sf::bench

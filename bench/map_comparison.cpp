@@ -1,4 +1,4 @@
-#include "bench/map_contest.h"
+#include "bench/map_comparison.h"
 
 #include <fmt/format.h>
 
@@ -128,66 +128,66 @@ class PlainMapper : public Mapper {
   std::vector<std::vector<std::uint32_t>> ends_;  ///< per thread
 };
 
-void judge(const Mapper& mapper, const Mapper& plain, std::size_t robots, MapEntrant& entrant) {
+void check_accuracy(const Mapper& mapper, const Mapper& plain, std::size_t robots, MapMethodResult& method_result) {
   for (std::uint32_t i = 0; i < robots; ++i) {
     const auto words = mapper.words(i);
     const auto right = plain.words(i);
-    for (std::size_t w = 0; w < right.size(); ++w) entrant.different += words[w] != right[w];
-    entrant.hash = base::hash_bytes(words.data(), 4 * words.size(), entrant.hash);
+    for (std::size_t w = 0; w < right.size(); ++w) method_result.different += words[w] != right[w];
+    method_result.hash = base::hash_bytes(words.data(), 4 * words.size(), method_result.hash);
   }
 }
 
 }  // namespace
 
-MapOutcome compete_maps(gpu::Device& device, std::uint32_t robots, double range, bool weighs, std::size_t turns) {
+MapComparison compare_maps(gpu::Device& device, std::uint32_t robots, double range, bool weighs, std::size_t repeats) {
   const Scans scans = make_scans("cave", load_cave(), robots, scenes::laser(361, M_PI, range));
   const std::vector<Round> rounds = rounds_of(scans, device);
   const std::vector<sensors::MapPlan> plans = plans_of(scans, weighs);
   std::vector<std::unique_ptr<Mapper>> mappers;
   mappers.push_back(std::make_unique<FarmMapper>(device, plans));
   mappers.push_back(std::make_unique<PlainMapper>(plans, weighs));
-  MapOutcome outcome{robots, scans.rays(), range, weighs, {}};
+  MapComparison comparison{robots, scans.rays(), range, weighs, {}};
   for (const auto& mapper : mappers) {
     mapper->update(rounds[0]);
-    outcome.entrants.push_back({mapper->name(), {}, {}, 0.0, 0.0, 0, 0});
+    comparison.method_results.push_back({mapper->name(), {}, {}, 0.0, 0.0, 0, 0});
   }
-  for (std::size_t turn = 0; turn < turns; ++turn)
+  for (std::size_t repeat = 0; repeat < repeats; ++repeat)
     for (std::size_t k = 0; k < mappers.size(); ++k) {
-      const std::size_t who = (turn + k) % mappers.size();
+      const std::size_t who = (repeat + k) % mappers.size();
       const Cost start = now();
-      mappers[who]->update(rounds[turn % rounds.size()]);
-      outcome.entrants[who].turns.push_back(now() - start);
+      mappers[who]->update(rounds[repeat % rounds.size()]);
+      comparison.method_results[who].repeats.push_back(now() - start);
     }
   for (std::size_t k = 0; k < mappers.size(); ++k) {
-    MapEntrant& entrant = outcome.entrants[k];
-    judge(*mappers[k], *mappers.back(), robots, entrant);
-    const Cost times = ratio(outcome.entrants.back().turns, entrant.turns);
-    entrant.ratio = times.wall_s;
-    entrant.cpu_ratio = times.cpu_s;
-    entrant.typical = median(entrant.turns);
+    MapMethodResult& method_result = comparison.method_results[k];
+    check_accuracy(*mappers[k], *mappers.back(), robots, method_result);
+    const Cost times = ratio(comparison.method_results.back().repeats, method_result.repeats);
+    method_result.ratio = times.wall_s;
+    method_result.cpu_ratio = times.cpu_s;
+    method_result.typical = median(method_result.repeats);
   }
-  return outcome;
+  return comparison;
 }
 
-void write_maps(const std::vector<MapOutcome>& outcomes, const std::string& folder) {
-  if (outcomes.empty()) return;
+void write_maps(const std::vector<MapComparison>& comparisons, const std::string& folder) {
+  if (comparisons.empty()) return;
   std::string text =
       "robots,beams,range_m,log_odds,method,wall_ms_median,cpu_ms_median,ratio_to_plain,cpu_ratio_to_plain,"
       "words_different,hash\n";
-  for (const MapOutcome& o : outcomes)
-    for (const MapEntrant& e : o.entrants)
+  for (const MapComparison& o : comparisons)
+    for (const MapMethodResult& e : o.method_results)
       text += fmt::format("{},{},{:g},{},\"{}\",{:.3f},{:.3f},{:.3f},{:.3f},{},{}\n", o.robots, o.beams, o.range_m,
                           o.weighs ? 1 : 0, e.method, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio,
                           e.cpu_ratio, e.different, base::hash_hex(e.hash));
   write(folder + "/maps.csv", text);
 }
 
-std::string map_table(const std::vector<MapOutcome>& outcomes) {
+std::string map_table(const std::vector<MapComparison>& comparisons) {
   std::string text;
-  for (const MapOutcome& o : outcomes) {
+  for (const MapComparison& o : comparisons) {
     text += fmt::format("\n{} maps of 3 cm cells, {} beams up to {:g} m{}\n", o.robots, o.beams, o.range_m,
                         o.weighs ? ", log odds" : "");
-    for (const MapEntrant& e : o.entrants)
+    for (const MapMethodResult& e : o.method_results)
       text += fmt::format("  {:26} {:8.2f} ms  {:8.2f} cpu ms  {:5.2f} x  {:5.2f} x cpu  {} words differ\n", e.method,
                           1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio, e.cpu_ratio, e.different);
   }

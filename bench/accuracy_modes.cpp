@@ -1,4 +1,4 @@
-#include "bench/dial.h"
+#include "bench/accuracy_modes.h"
 
 #include <fmt/format.h>
 
@@ -18,9 +18,12 @@ namespace {
 
 constexpr double kCells[] = {0.03, 0.1};  // [m] of distance fields
 
-DialEntry entry_of(const Entrant& entrant, const Caster& caster, const Caster& exact, const Scans& scans) {
-  DialEntry entry{
-      .method = entrant.method, .typical = entrant.typical, .ratio = entrant.ratio, .cpu_ratio = entrant.cpu_ratio};
+AccuracyModeResult entry_of(const MethodResult& method_result, const Caster& caster, const Caster& exact,
+                            const Scans& scans) {
+  AccuracyModeResult entry{.method = method_result.method,
+                           .typical = method_result.typical,
+                           .ratio = method_result.ratio,
+                           .cpu_ratio = method_result.cpu_ratio};
   std::vector<double> errors;
   for (std::size_t i = 0; i < scans.robots(); ++i)
     for (std::size_t k = 0; k < scans.beams.size(); ++k)
@@ -34,7 +37,8 @@ DialEntry entry_of(const Entrant& entrant, const Caster& caster, const Caster& e
 
 }  // namespace
 
-DialOutcome compete_dial(gpu::Device& device, std::uint32_t robots, double range, std::size_t turns) {
+AccuracyModeComparison compare_accuracy_modes(gpu::Device& device, std::uint32_t robots, double range,
+                                              std::size_t repeats) {
   std::deque<Scans> scans;
   std::vector<std::unique_ptr<Caster>> casters;
   for (const sensors::AccuracyMode& mode : sensors::kLaserModes) {
@@ -43,39 +47,39 @@ DialOutcome compete_dial(gpu::Device& device, std::uint32_t robots, double range
     casters.push_back(make_farm_caster(scans.back(), device, std::string(mode.word)));
   }
   for (const double cell : kCells) casters.push_back(make_march_caster(scans.front(), cell));
-  const std::size_t last = (turns - 1) % scans.front().rounds.size();
+  const std::size_t last = (repeats - 1) % scans.front().rounds.size();
   const auto before = make_farm_caster(scans.front(), device, "before");
   before->cast((last + scans.front().rounds.size() - 1) % scans.front().rounds.size());
   casters.push_back(make_predicting_caster(scans.front(), *before,
                                            (last + scans.front().rounds.size() - 1) % scans.front().rounds.size()));
 
-  const Outcome outcome = compete(scans.front(), casters, "exact", turns);
-  DialOutcome dial{robots, range, {}};
+  const Comparison comparison = compare(scans.front(), casters, "exact", repeats);
+  AccuracyModeComparison dial{robots, range, {}};
   for (std::size_t i = 0; i < casters.size(); ++i)
-    dial.entries.push_back(entry_of(outcome.entrants[i], *casters[i], *casters.front(), scans.front()));
+    dial.entries.push_back(entry_of(comparison.method_results[i], *casters[i], *casters.front(), scans.front()));
   return dial;
 }
 
-std::string dial_table(const std::vector<DialOutcome>& outcomes) {
+std::string accuracy_mode_table(const std::vector<AccuracyModeComparison>& comparisons) {
   std::string text;
-  for (const DialOutcome& o : outcomes) {
+  for (const AccuracyModeComparison& o : comparisons) {
     text += fmt::format(
         "\n{} robots, {:g} m\n\n| | cpu ms | clock ms | exact / it, by cpu and clock | median error | 99 % | "
         "largest |\n|---|---|---|---|---|---|---|\n",
         o.robots, o.range_m);
-    for (const DialEntry& e : o.entries)
+    for (const AccuracyModeResult& e : o.entries)
       text += fmt::format("| {} | {:.1f} | {:.1f} | {:.2f}, {:.2f} | {:.2g} m | {:.2g} m | {:.2g} m |\n", e.method,
                           1e3 * e.typical.cpu_s, 1e3 * e.typical.wall_s, e.cpu_ratio, e.ratio, e.median, e.p99, e.max);
   }
   return text;
 }
 
-void write_dial(const std::vector<DialOutcome>& outcomes, const std::string& folder) {
-  if (outcomes.empty()) return;
+void write_accuracy_modes(const std::vector<AccuracyModeComparison>& comparisons, const std::string& folder) {
+  if (comparisons.empty()) return;
   std::ofstream file(folder + "/dial.csv");
   file << "robots,range_m,method,cpu_ms,wall_ms,cpu_ratio,ratio,median_error_m,p99_error_m,max_error_m\n";
-  for (const DialOutcome& o : outcomes)
-    for (const DialEntry& e : o.entries)
+  for (const AccuracyModeComparison& o : comparisons)
+    for (const AccuracyModeResult& e : o.entries)
       file << fmt::format("{},{:g},\"{}\",{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{:.3g},{:.3g}\n", o.robots, o.range_m,
                           e.method, 1e3 * e.typical.cpu_s, 1e3 * e.typical.wall_s, e.cpu_ratio, e.ratio, e.median,
                           e.p99, e.max);

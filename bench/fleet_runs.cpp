@@ -1,4 +1,4 @@
-#include "bench/fleet.h"
+#include "bench/fleet_runs.h"
 
 #include <filesystem>
 
@@ -14,10 +14,10 @@ namespace {
 constexpr std::uint32_t kHospitalRobots = 1'000;
 constexpr int kHospitalTicks = 200;
 
-Fact simville(gpu::Device& device) {
+Measurement simville(gpu::Device& device) {
   const auto scenario = scenarios::read_scenario(std::string(SF_SOURCE_DIR) + "/experiments/simville.toml");
   const auto result = scenarios::run_scenario(scenario, device);
-  SF_CHECK(result.verdict() == scenarios::Verdict::passed, "SimVille's traffic did not do what it should");
+  SF_CHECK(result.accuracy() == scenarios::AccuracyCheck::passed, "SimVille's traffic did not do what it should");
   return {"SimVille's traffic, 52 robots", result.simulated / result.wall, "x real time"};
 }
 
@@ -31,8 +31,8 @@ std::pair<double, std::uint64_t> wander_in(const world::World& world, gpu::Devic
 
 }  // namespace
 
-std::vector<Fact> measure_fleets(gpu::Device& device) {
-  std::vector<Fact> facts{simville(device)};
+std::vector<Measurement> measure_fleets(gpu::Device& device) {
+  std::vector<Measurement> facts{simville(device)};
   const std::string hospital = std::string(SF_SOURCE_DIR) + "/../shared/data/stage/benchmark/hospital.world";
   if (!std::filesystem::exists(hospital)) return facts;
   world::World world = world::load_world(hospital, {.sensors = sensors::world_file_words()});

@@ -1,4 +1,4 @@
-#include "bench/lane_contest.h"
+#include "bench/lane_comparison.h"
 
 #include <fmt/format.h>
 
@@ -47,35 +47,35 @@ sensors::EdgeReading brute_force(const LaneScene& scene, const LaneKnowledge& kn
   return mirror::read_edge(known.rows[i], points, known.job.grains);
 }
 
-void judge(const LaneReader& reader, const std::vector<sensors::EdgeReading>& right, std::size_t every,
-           LaneEntrant& entrant) {
+void check_accuracy(const LaneReader& reader, const std::vector<sensors::EdgeReading>& right, std::size_t every,
+                    LaneMethodResult& method_result) {
   for (std::size_t k = 0; k < right.size(); ++k) {
     const sensors::EdgeReading r = reader.reading(k * every);
     const bool none = std::isnan(r.distance);
     if (none != std::isnan(right[k].distance))
-      ++entrant.alone;
+      ++method_result.alone;
     else if (!none)
-      entrant.worst = std::max(entrant.worst, std::fabs(r.distance - right[k].distance));
+      method_result.worst = std::max(method_result.worst, std::fabs(r.distance - right[k].distance));
   }
 }
 
-void rate(LaneEntrant& entrant, const LaneEntrant& plain) {
-  const Cost times = ratio(plain.turns, entrant.turns);
-  entrant.ratio = times.wall_s;
-  entrant.cpu_ratio = times.cpu_s;
-  entrant.typical = median(entrant.turns);
+void rate(LaneMethodResult& method_result, const LaneMethodResult& plain) {
+  const Cost times = ratio(plain.repeats, method_result.repeats);
+  method_result.ratio = times.wall_s;
+  method_result.cpu_ratio = times.cpu_s;
+  method_result.typical = median(method_result.repeats);
 }
 
 }  // namespace
 
-LaneOutcome compete_lanes(gpu::Device& device, const LaneScene& scene, std::size_t turns) {
+LaneComparison compare_lanes(gpu::Device& device, const LaneScene& scene, std::size_t repeats) {
   const auto known = know(scene);
   std::vector<std::unique_ptr<LaneReader>> readers;
   readers.push_back(make_farm_lanes(scene, device));
   readers.push_back(make_plain_lanes(scene, *known, false));
   readers.push_back(make_plain_lanes(scene, *known, true));
   const std::size_t sensors = known->rows.size();
-  LaneOutcome outcome{sensors, sensors * known->job.beams.size(), scene.world.road_resolution, 0, {}};
+  LaneComparison comparison{sensors, sensors * known->job.beams.size(), scene.world.road_resolution, 0, {}};
 
   for (const auto& reader : readers)
     for (std::size_t round = scene.rounds.size(); round-- > 0;) read_once(*reader, round, sensors);
@@ -84,33 +84,33 @@ LaneOutcome compete_lanes(gpu::Device& device, const LaneScene& scene, std::size
   for (std::size_t i = 0; i < sensors; i += every)
     right.push_back(known->raster ? readers[kPlain]->reading(i) : brute_force(scene, *known, i));
   for (const auto& reader : readers) {
-    LaneEntrant entrant;
-    entrant.method = reader->name();
-    judge(*reader, right, every, entrant);
+    LaneMethodResult method_result;
+    method_result.method = reader->name();
+    check_accuracy(*reader, right, every, method_result);
     for (std::size_t i = 0; i < sensors; ++i) {
       const sensors::EdgeReading r = reader->reading(i);
-      entrant.hash = base::hash_bytes(&r, sizeof r, entrant.hash);
-      if (outcome.entrants.empty()) outcome.seen += std::isnan(r.distance) ? 0 : 1;
+      method_result.hash = base::hash_bytes(&r, sizeof r, method_result.hash);
+      if (comparison.method_results.empty()) comparison.seen += std::isnan(r.distance) ? 0 : 1;
     }
-    outcome.entrants.push_back(std::move(entrant));
+    comparison.method_results.push_back(std::move(method_result));
   }
-  for (std::size_t turn = 0; turn < turns; ++turn)
+  for (std::size_t repeat = 0; repeat < repeats; ++repeat)
     for (std::size_t k = 0; k < readers.size(); ++k) {
-      const std::size_t who = (turn + k) % readers.size();
-      outcome.entrants[who].turns.push_back(read_once(*readers[who], turn % scene.rounds.size(), sensors));
+      const std::size_t who = (repeat + k) % readers.size();
+      comparison.method_results[who].repeats.push_back(read_once(*readers[who], repeat % scene.rounds.size(), sensors));
     }
-  const LaneEntrant plain = outcome.entrants[kPlain];
-  for (LaneEntrant& entrant : outcome.entrants) rate(entrant, plain);
-  return outcome;
+  const LaneMethodResult plain = comparison.method_results[kPlain];
+  for (LaneMethodResult& method_result : comparison.method_results) rate(method_result, plain);
+  return comparison;
 }
 
-void write_lanes(const std::vector<LaneOutcome>& outcomes, const std::string& folder) {
-  if (outcomes.empty()) return;
+void write_lanes(const std::vector<LaneComparison>& comparisons, const std::string& folder) {
+  if (comparisons.empty()) return;
   std::string text =
       "paint,method,sensors,rays,seen,wall_ms_median,cpu_ms_median,ratio_to_plain,cpu_ratio_to_plain,"
       "max_difference_m,readings_alone,hash\n";
-  for (const LaneOutcome& o : outcomes)
-    for (const LaneEntrant& e : o.entrants)
+  for (const LaneComparison& o : comparisons)
+    for (const LaneMethodResult& e : o.method_results)
       text += fmt::format("\"{}\",\"{}\",{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3g},{},{}\n",
                           o.resolution > 0.0 ? fmt::format("raster of {:g} m", o.resolution) : "exact", e.method,
                           o.sensors, o.rays, o.seen, 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio,
@@ -118,12 +118,12 @@ void write_lanes(const std::vector<LaneOutcome>& outcomes, const std::string& fo
   write(folder + "/lanes.csv", text);
 }
 
-std::string lane_table(const std::vector<LaneOutcome>& outcomes) {
+std::string lane_table(const std::vector<LaneComparison>& comparisons) {
   std::string text;
-  for (const LaneOutcome& o : outcomes) {
+  for (const LaneComparison& o : comparisons) {
     text += fmt::format("\n{} lane edge sensors, {} rays, {}: {} see an edge\n", o.sensors, o.rays,
                         o.resolution > 0.0 ? fmt::format("raster of {:g} m", o.resolution) : "exact paint", o.seen);
-    for (const LaneEntrant& e : o.entrants)
+    for (const LaneMethodResult& e : o.method_results)
       text +=
           fmt::format("  {:26} {:8.2f} ms  {:8.2f} cpu ms  {:5.2f} x  {:5.2f} x cpu  {:.2g} m  {} alone\n", e.method,
                       1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s, e.ratio, e.cpu_ratio, e.worst, e.alone);

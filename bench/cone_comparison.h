@@ -18,9 +18,9 @@ struct ConeScene {
 };
 
 /// One method's part.
-struct ConeEntrant {
+struct ConeMethodResult {
   std::string method;
-  std::vector<Cost> turns;
+  std::vector<Cost> repeats;
   Cost typical;            ///< medians
   double ratio = 0.0;      ///< [-] median over turns of plain C++'s time / its own
   double cpu_ratio = 0.0;  ///< [-] the same of time on all cores
@@ -28,23 +28,23 @@ struct ConeEntrant {
   std::uint64_t hash = 0;  ///< of all ranges of round 0
 };
 
-struct ConeOutcome {
+struct ConeComparison {
   std::size_t robots = 0;
   std::size_t cones = 0;
-  std::size_t rays = 0;    ///< per turn
-  std::size_t judged = 0;  ///< cones of each entrant
-  std::vector<ConeEntrant> entrants;
+  std::size_t rays = 0;     ///< per turn
+  std::size_t checked = 0;  ///< cones of each entrant
+  std::vector<ConeMethodResult> method_results;
 };
 
 ConeScene make_cone_scene(std::uint32_t robots);
 
 /// Every turn asks every method once for the same round, in an order that rotates; results are spoilt before and looked
 /// at after.
-ConeOutcome compete_cones(gpu::Device& device, const ConeScene& scene, std::size_t turns);
+ConeComparison compare_cones(gpu::Device& device, const ConeScene& scene, std::size_t repeats);
 
 /// Writes cones.csv into `folder`; keeps the old one where nothing was measured.
 /// @throws base::InputError when it cannot be written.
-void write_cones(const std::vector<ConeOutcome>& outcomes, const std::string& folder);
-std::string cone_table(const std::vector<ConeOutcome>& outcomes);
+void write_cones(const std::vector<ConeComparison>& comparisons, const std::string& folder);
+std::string cone_table(const std::vector<ConeComparison>& comparisons);
 
 }  // namespace sf::bench

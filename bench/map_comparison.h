@@ -11,32 +11,32 @@
 namespace sf::bench {
 
 /// One method's part.
-struct MapEntrant {
+struct MapMethodResult {
   std::string method;
-  std::vector<Cost> turns;    ///< one per turn
-  Cost typical;               ///< medians of `turns`
+  std::vector<Cost> repeats;  ///< one per turn
+  Cost typical;               ///< medians of `repeats`
   double ratio = 0.0;         ///< [-] median over turns of the plain mapper's time / its own
   double cpu_ratio = 0.0;     ///< [-] the same of time on all cores
   std::size_t different = 0;  ///< words of all maps that differ from the plain mapper's
   std::uint64_t hash = 0;     ///< of all maps after the last turn
 };
 
-struct MapOutcome {
+struct MapComparison {
   std::size_t robots = 0;
   std::size_t beams = 0;  ///< per turn
   double range_m = 0.0;
   bool weighs = false;  ///< log odds
-  std::vector<MapEntrant> entrants;
+  std::vector<MapMethodResult> method_results;
 };
 
 /// Every turn gives every method the same scans once, in an order that rotates: robots in the cave, each with a map of
 /// its own of 3 cm cells that holds all it may see.
-MapOutcome compete_maps(gpu::Device& device, std::uint32_t robots, double range, bool weighs, std::size_t turns);
+MapComparison compare_maps(gpu::Device& device, std::uint32_t robots, double range, bool weighs, std::size_t repeats);
 
 /// Writes maps.csv into `folder`; keeps the old one where nothing was measured. @throws base::InputError when it
 /// cannot be written.
-void write_maps(const std::vector<MapOutcome>& outcomes, const std::string& folder);
+void write_maps(const std::vector<MapComparison>& comparisons, const std::string& folder);
 /// The same as text for people.
-std::string map_table(const std::vector<MapOutcome>& outcomes);
+std::string map_table(const std::vector<MapComparison>& comparisons);
 
 }  // namespace sf::bench

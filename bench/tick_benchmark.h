@@ -7,15 +7,15 @@
 
 #include "base/reading.h"
 #include "base/thread_pool.h"
+#include "bench/accuracy_check.h"
 #include "bench/cost.h"
-#include "bench/judge.h"
 #include "control/controller.h"
 #include "farm/farm.h"
 #include "robots/fleet.h"
 
 namespace sf::bench {
 
-struct DriveResult {
+struct TickResult {
   std::string scene;
   std::string what;
   std::size_t robots = 0;
@@ -27,14 +27,14 @@ struct DriveResult {
   double move_s = 0.0;      ///< [s] mean per tick, as are all below
   double decide_s = 0.0;
   farm::FarmStats stages;  ///< of the measured ticks together
-  Verdict verdict;
+  AccuracyCheck accuracy;
   std::uint64_t hash = 0;  ///< of the last tick's ranges
 };
 
 /// A world with robots at work. `world` and `device` must outlive it.
-class Drive {
+class TickBenchmark {
  public:
-  Drive(const world::World& world, gpu::Device& device);
+  TickBenchmark(const world::World& world, gpu::Device& device);
 
   /// One tick. Robots wander when `wander`, else stand where they are.
   void tick(bool wander);
@@ -62,7 +62,7 @@ class Drive {
 };
 
 /// Drives `ticks` ticks after `warm_up` unmeasured ones.
-DriveResult drive(const std::string& scene, const world::World& world, gpu::Device& device, bool wander,
-                  std::size_t warm_up, std::size_t ticks);
+TickResult run_ticks(const std::string& scene, const world::World& world, gpu::Device& device, bool wander,
+                     std::size_t warm_up, std::size_t ticks);
 
 }  // namespace sf::bench

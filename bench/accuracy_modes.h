@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "bench/contest.h"
+#include "bench/comparison.h"
 #include "gpu/device.h"
 
 namespace sf::bench {
 
-struct DialEntry {
+struct AccuracyModeResult {
   std::string method;
   Cost typical;
   double ratio = 0.0;                         ///< [-] clock, of mode exact's time to its own
@@ -18,16 +18,17 @@ struct DialEntry {
   double median = 0.0, p99 = 0.0, max = 0.0;  ///< [m] errors against mode exact, all beams of the last turn's round
 };
 
-struct DialOutcome {
+struct AccuracyModeComparison {
   std::size_t robots = 0;
   double range_m = 0.0;
-  std::vector<DialEntry> entries;
+  std::vector<AccuracyModeResult> entries;
 };
 
-DialOutcome compete_dial(gpu::Device& device, std::uint32_t robots, double range, std::size_t turns);
+AccuracyModeComparison compare_accuracy_modes(gpu::Device& device, std::uint32_t robots, double range,
+                                              std::size_t repeats);
 
 /// A Markdown table, and dial.csv.
-std::string dial_table(const std::vector<DialOutcome>& outcomes);
-void write_dial(const std::vector<DialOutcome>& outcomes, const std::string& folder);
+std::string accuracy_mode_table(const std::vector<AccuracyModeComparison>& comparisons);
+void write_accuracy_modes(const std::vector<AccuracyModeComparison>& comparisons, const std::string& folder);
 
 }  // namespace sf::bench

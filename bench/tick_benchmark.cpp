@@ -1,4 +1,4 @@
-#include "bench/drive.h"
+#include "bench/tick_benchmark.h"
 
 #include "base/error.h"
 #include "bench/poison.h"
@@ -25,7 +25,7 @@ farm::FarmStats operator-(const farm::FarmStats& p, const farm::FarmStats& q) {
 
 }  // namespace
 
-Drive::Drive(const world::World& world, gpu::Device& device)
+TickBenchmark::TickBenchmark(const world::World& world, gpu::Device& device)
     : world_(world),
       farm_(world, device, {.reuse_unchanged = false}),
       fleet_(world, &thread_pool_),
@@ -36,7 +36,7 @@ Drive::Drive(const world::World& world, gpu::Device& device)
     controllers_.push_back(std::make_unique<control::Wander>(world.movers[row], row, kSeed));
 }
 
-void Drive::tick(bool wander) {
+void TickBenchmark::tick(bool wander) {
   const double start = now().wall_s;
   if (wander) {
     decide();
@@ -50,7 +50,7 @@ void Drive::tick(bool wander) {
 }
 
 /// Every robot has one laser here, so that its reading is the row of its number.
-void Drive::decide() {
+void TickBenchmark::decide() {
   thread_pool_.parallel_for(readings_.size(), 16, [this](std::size_t first, std::size_t end, unsigned) {
     for (const base::ReadingBlock& reading : readings_.subspan(first, end - first)) {
       const std::uint32_t row = reading.mover;
@@ -60,18 +60,18 @@ void Drive::decide() {
   });
 }
 
-std::vector<base::Pose> Drive::poses() const {
+std::vector<base::Pose> TickBenchmark::poses() const {
   std::vector<base::Pose> poses;
   for (const base::Report& report : fleet_.reports()) poses.push_back(report.X_WM);
   return poses;
 }
 
-DriveResult drive(const std::string& scene, const world::World& world, gpu::Device& device, bool wander,
-                  std::size_t warm_up, std::size_t ticks) {
-  Drive fleet(world, device);
+TickResult run_ticks(const std::string& scene, const world::World& world, gpu::Device& device, bool wander,
+                     std::size_t warm_up, std::size_t ticks) {
+  TickBenchmark fleet(world, device);
   const world::Laser& laser = world.movers[0].lasers[0];
-  DriveResult result{scene, wander ? "wandering" : "standing", world.movers.size(), world.movers.size() * laser.samples,
-                     laser.range_max};
+  TickResult result{scene, wander ? "wandering" : "standing", world.movers.size(), world.movers.size() * laser.samples,
+                    laser.range_max};
   result.interval_s = 1e-9 * static_cast<double>(fleet.interval());
   for (std::size_t k = 0; k < warm_up; ++k) fleet.tick(wander);
   const farm::FarmStats before = fleet.farm().stats();
@@ -92,7 +92,7 @@ DriveResult drive(const std::string& scene, const world::World& world, gpu::Devi
   result.move_s = (fleet.move_s() - move_before) / n;
   result.decide_s = (fleet.decide_s() - decide_before) / n;
   result.hash = hash_ranges(fleet.readings());
-  result.verdict = judge(fleet.readings(), world, fleet.poses(), kJudgedRobots);
+  result.accuracy = check_accuracy(fleet.readings(), world, fleet.poses(), kJudgedRobots);
   return result;
 }
 

@@ -8,7 +8,7 @@
 
 namespace sf::bench {
 
-struct Fact {
+struct Measurement {
   std::string what;
   double value = 0.0;
   std::string unit;
@@ -16,12 +16,12 @@ struct Fact {
 
 /// From no device to the first reading, with and without the driver's cache of compiled kernels.
 /// Changes the environment of this process while it runs.
-std::vector<Fact> measure_start();
+std::vector<Measurement> measure_start();
 
 /// Ticks that hardly do anything, and one sensor that does much.
-std::vector<Fact> measure_ticks(gpu::Device& device);
+std::vector<Measurement> measure_ticks(gpu::Device& device);
 
 /// What it costs to make the lists of a cell that nobody has been in.
-std::vector<Fact> measure_lists(gpu::Device& device);
+std::vector<Measurement> measure_lists(gpu::Device& device);
 
 }  // namespace sf::bench

@@ -1,9 +1,9 @@
-#include "bench/facts.h"
+#include "bench/measurements.h"
 
 #include <cstdlib>
 
 #include "base/error.h"
-#include "bench/contest.h"
+#include "bench/comparison.h"
 #include "bench/farm_caster.h"
 #include "bench/poison.h"
 #include "farm/farm.h"
@@ -40,10 +40,10 @@ double first_tick(const world::World& world, gpu::Device& device) {
 
 }  // namespace
 
-std::vector<Fact> measure_start() {
+std::vector<Measurement> measure_start() {
   world::World world = load_cave();
   scenes::add_robots(world, 1, scenes::laser(), 1);
-  std::vector<Fact> facts;
+  std::vector<Measurement> facts;
   setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
   {
     const double start = now().wall_s;
@@ -63,8 +63,8 @@ std::vector<Fact> measure_start() {
   return facts;
 }
 
-std::vector<Fact> measure_ticks(gpu::Device& device) {
-  std::vector<Fact> facts;
+std::vector<Measurement> measure_ticks(gpu::Device& device) {
+  std::vector<Measurement> facts;
   const world::World thousand = make_scans("cave", load_cave(), 1000, scenes::laser()).world;
   farm::Farm unheard(thousand, device);
   facts.push_back({"tick of 1000 robots, none heard", 1e6 * tick_cost(unheard).wall_s, "us"});
@@ -77,15 +77,15 @@ std::vector<Fact> measure_ticks(gpu::Device& device) {
   const Scans many = make_scans("cave", load_cave(), 1, scenes::laser(100'000));
   std::vector<std::unique_ptr<Caster>> casters;
   casters.push_back(make_farm_caster(many, device));
-  const Entrant farm = compete(many, casters, "", kRepeats).entrants[0];
-  SF_CHECK(farm.verdict.max_error_m < 1e-6, "100 000 beams of one sensor are wrong");
+  const MethodResult farm = compare(many, casters, "", kRepeats).method_results[0];
+  SF_CHECK(farm.accuracy.max_error_m < 1e-6, "100 000 beams of one sensor are wrong");
   facts.push_back({"scan of 1 robot with 100 000 beams, 8 m", 1e3 * farm.typical.wall_s, "ms"});
   facts.push_back({"rays of 1 robot with 100 000 beams, 8 m", mrays_per_s(many.rays(), farm.typical), "M/s"});
   return facts;
 }
 
-std::vector<Fact> measure_lists(gpu::Device& device) {
-  std::vector<Fact> facts;
+std::vector<Measurement> measure_lists(gpu::Device& device) {
+  std::vector<Measurement> facts;
   for (const double range : {8.0, 0.75}) {
     const Scans scans = make_scans("cave", load_cave(), 1000, scenes::laser(361, M_PI, range));
     farm::Farm farm(scans.world, device, kAnew);

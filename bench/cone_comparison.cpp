@@ -1,4 +1,4 @@
-#include "bench/cone_contest.h"
+#include "bench/cone_comparison.h"
 
 #include <fmt/format.h>
 
@@ -32,13 +32,13 @@ world::Sensor pioneers_ring() {
   return ring;
 }
 
-Cost hear_once(ConeMethod& method, std::size_t round, const ConeOutcome& outcome) {
+Cost hear_once(ConeMethod& method, std::size_t round, const ConeComparison& comparison) {
   method.poison();
   const Cost start = now();
-  method.hear(round);
+  method.measure(round);
   const Cost cost = now() - start;
-  for (std::size_t i = 0; i < outcome.cones; ++i)
-    SF_CHECK(!std::isnan(method.range(i % outcome.robots, i / outcome.robots)),
+  for (std::size_t i = 0; i < comparison.cones; ++i)
+    SF_CHECK(!std::isnan(method.range(i % comparison.robots, i / comparison.robots)),
              method.name() + " left cones unanswered");
   return cost;
 }
@@ -51,8 +51,8 @@ std::uint64_t hash_of(const ConeMethod& method, std::size_t robots, std::size_t 
 }
 
 /// A sample of one round against every segment, ray by ray.
-void judge(const ConeScene& scene, const std::vector<sensors::ConeArray>& arrays, const ConeMethod& method,
-           std::size_t round, ConeEntrant& entrant) {
+void check_accuracy(const ConeScene& scene, const std::vector<sensors::ConeArray>& arrays, const ConeMethod& method,
+                    std::size_t round, ConeMethodResult& method_result) {
   const sensors::ConeArray& array = arrays[0];
   const double z = scene.world.movers[0].X_WM.z + array.row.X_MS.z;
   const auto all = oracle::surfaces(scene.world, scene.rounds[round], 0, z);
@@ -63,17 +63,17 @@ void judge(const ConeScene& scene, const std::vector<sensors::ConeArray>& arrays
       const trial::ConeTruth truth =
           trial::cone_truth(all, base::compose(scene.rounds[round][robot], X_MC), arrays[robot]);
       const double said = method.range(robot, i);
-      entrant.worst = std::max({entrant.worst, truth.low - said, said - truth.high});
+      method_result.worst = std::max({method_result.worst, truth.low - said, said - truth.high});
     }
   }
 }
 
-void rate(std::vector<ConeEntrant>& entrants) {
-  for (ConeEntrant& entrant : entrants) {
-    entrant.typical = median(entrant.turns);
-    const Cost times = ratio(entrants[kPlain].turns, entrant.turns);
-    entrant.ratio = times.wall_s;
-    entrant.cpu_ratio = times.cpu_s;
+void rate(std::vector<ConeMethodResult>& method_results) {
+  for (ConeMethodResult& method_result : method_results) {
+    method_result.typical = median(method_result.repeats);
+    const Cost times = ratio(method_results[kPlain].repeats, method_result.repeats);
+    method_result.ratio = times.wall_s;
+    method_result.cpu_ratio = times.cpu_s;
   }
 }
 
@@ -98,53 +98,53 @@ ConeScene make_cone_scene(std::uint32_t robots) {
   return scene;
 }
 
-ConeOutcome compete_cones(gpu::Device& device, const ConeScene& scene, std::size_t turns) {
+ConeComparison compare_cones(gpu::Device& device, const ConeScene& scene, std::size_t repeats) {
   const auto arrays = sensors::cone_arrays_of(scene.world, "sonar", sensors::read_sonar);
   std::vector<std::unique_ptr<ConeMethod>> methods;
   methods.push_back(make_farm_cones(scene, device));
   methods.push_back(make_plain_cones(scene, arrays, "plain C++ grid, -O3", walk_portable));
   methods.push_back(make_plain_cones(scene, arrays, "plain C++ grid, -O3 -march=native", walk_native));
   const std::size_t cones = arrays.size() * arrays[0].X_SC.size();
-  ConeOutcome outcome{
+  ConeComparison comparison{
       arrays.size(), cones, cones * arrays[0].rays, kRounds * kJudgedRobots * arrays[0].X_SC.size(), {}};
   for (const auto& method : methods) {
-    outcome.entrants.push_back({method->name(), {}, {}});
+    comparison.method_results.push_back({method->name(), {}, {}});
     for (std::size_t round = kRounds; round-- > 0;) {
-      hear_once(*method, round, outcome);
-      judge(scene, arrays, *method, round, outcome.entrants.back());
+      hear_once(*method, round, comparison);
+      check_accuracy(scene, arrays, *method, round, comparison.method_results.back());
     }
-    outcome.entrants.back().hash = hash_of(*method, arrays.size(), arrays[0].X_SC.size());
+    comparison.method_results.back().hash = hash_of(*method, arrays.size(), arrays[0].X_SC.size());
   }
-  for (std::size_t turn = 0; turn < turns; ++turn)
+  for (std::size_t repeat = 0; repeat < repeats; ++repeat)
     for (std::size_t k = 0; k < methods.size(); ++k) {
-      const std::size_t who = (turn + k) % methods.size();
-      outcome.entrants[who].turns.push_back(hear_once(*methods[who], turn % kRounds, outcome));
+      const std::size_t who = (repeat + k) % methods.size();
+      comparison.method_results[who].repeats.push_back(hear_once(*methods[who], repeat % kRounds, comparison));
     }
-  rate(outcome.entrants);
-  return outcome;
+  rate(comparison.method_results);
+  return comparison;
 }
 
-void write_cones(const std::vector<ConeOutcome>& outcomes, const std::string& folder) {
-  if (outcomes.empty()) return;
+void write_cones(const std::vector<ConeComparison>& comparisons, const std::string& folder) {
+  if (comparisons.empty()) return;
   std::string text =
       "method,robots,cones,rays,turns,wall_ms_median,cpu_ms_median,mrays_per_s,ratio_to_plain,cpu_ratio_to_plain,"
       "max_error_m,judged,hash\n";
-  for (const ConeOutcome& o : outcomes)
-    for (const ConeEntrant& e : o.entrants)
+  for (const ConeComparison& o : comparisons)
+    for (const ConeMethodResult& e : o.method_results)
       text += fmt::format("\"{}\",{},{},{},{},{:.3f},{:.3f},{:.2f},{:.3f},{:.3f},{:.3g},{},{}\n", e.method, o.robots,
-                          o.cones, o.rays, e.turns.size(), 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
+                          o.cones, o.rays, e.repeats.size(), 1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
                           1e-6 * static_cast<double>(o.rays) / e.typical.wall_s, e.ratio, e.cpu_ratio, e.worst,
-                          o.judged, base::hash_hex(e.hash));
+                          o.checked, base::hash_hex(e.hash));
   write(folder + "/cones.csv", text);
 }
 
-std::string cone_table(const std::vector<ConeOutcome>& outcomes) {
+std::string cone_table(const std::vector<ConeComparison>& comparisons) {
   std::string text;
-  for (const ConeOutcome& o : outcomes) {
+  for (const ConeComparison& o : comparisons) {
     text += fmt::format("\nsonar rings: {} robots, {} cones, {} rays\n", o.robots, o.cones, o.rays);
     text += fmt::format("{:<36} {:>9} {:>9} {:>9} {:>7} {:>7} {:>10}\n", "method", "wall ms", "cpu ms", "Mrays/s",
                         "ratio", "cpu", "max err m");
-    for (const ConeEntrant& e : o.entrants)
+    for (const ConeMethodResult& e : o.method_results)
       text += fmt::format("{:<36} {:>9.2f} {:>9.2f} {:>9.2f} {:>7.2f} {:>7.2f} {:>10.1e}\n", e.method,
                           1e3 * e.typical.wall_s, 1e3 * e.typical.cpu_s,
                           1e-6 * static_cast<double>(o.rays) / e.typical.wall_s, e.ratio, e.cpu_ratio, e.worst);

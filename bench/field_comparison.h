@@ -16,40 +16,40 @@ namespace sf::bench {
 struct FieldScene {
   std::string name;
   world::World world;
-  std::size_t turns = 0;
+  std::size_t repeats = 0;
   std::vector<std::vector<base::Pose>> rounds;  ///< X_WM per turn and robot
 };
 
 /// One method's part.
-struct FieldEntrant {
+struct FieldMethodResult {
   std::string method;
-  std::vector<Cost> turns;
-  Cost typical;            ///< medians
-  double ratio = 0.0;      ///< [-] median over turns of plain C++'s time / its own
-  double cpu_ratio = 0.0;  ///< [-] the same of time on all cores
-  double max_error = 0.0;  ///< of the largest field met, over a sample of all turns
-  std::size_t judged = 0;  ///< elements
+  std::vector<Cost> repeats;
+  Cost typical;             ///< medians
+  double ratio = 0.0;       ///< [-] median over turns of plain C++'s time / its own
+  double cpu_ratio = 0.0;   ///< [-] the same of time on all cores
+  double max_error = 0.0;   ///< of the largest field met, over a sample of all turns
+  std::size_t checked = 0;  ///< elements
 };
 
-struct FieldOutcome {
+struct FieldComparison {
   std::string scene;
   std::size_t arrays = 0;
   std::size_t magnets = 0;
   double cutoff_m = 0.0;
   double pairs = 0.0;  ///< of a magnet and an element, per turn, that were summed by the farm
-  std::vector<FieldEntrant> entrants;
+  std::vector<FieldMethodResult> method_results;
 };
 
 /// `arrays` over SimVille's magnets, without a cut-off.
-FieldScene simville_scene(std::uint32_t arrays, std::size_t turns);
+FieldScene simville_scene(std::uint32_t arrays, std::size_t repeats);
 /// `arrays` over `magnets` at random, one a square metre.
-FieldScene sheet_scene(std::uint32_t arrays, std::uint32_t magnets, double cutoff, std::size_t turns);
+FieldScene sheet_scene(std::uint32_t arrays, std::uint32_t magnets, double cutoff, std::size_t repeats);
 
-FieldOutcome compete(const FieldScene& scene, gpu::Device& device);
+FieldComparison compare(const FieldScene& scene, gpu::Device& device);
 
 /// Writes field.csv into `folder`; keeps the old one where nothing was measured.
 /// @throws base::InputError when it cannot be written.
-void write_csv(const std::vector<FieldOutcome>& outcomes, const std::string& folder);
-std::string table(const std::vector<FieldOutcome>& outcomes);
+void write_csv(const std::vector<FieldComparison>& comparisons, const std::string& folder);
+std::string table(const std::vector<FieldComparison>& comparisons);
 
 }  // namespace sf::bench

@@ -1,4 +1,4 @@
-#include "bench/judge.h"
+#include "bench/accuracy_check.h"
 
 #include <algorithm>
 
@@ -14,41 +14,41 @@ std::size_t stride(std::size_t all, std::size_t wanted) { return std::max<std::s
 
 template <class RangeOf>
 void judge_robot(std::span<const world::Segment> surfaces, const base::Pose& X_WS, const world::Laser& laser,
-                 RangeOf range_of, Verdict& verdict) {
+                 RangeOf range_of, AccuracyCheck& accuracy) {
   for (std::uint32_t i = 0; i < laser.samples; ++i) {
     const double direction = X_WS.yaw + world::bearing_of(laser, i);
     const oracle::Answer answer = oracle::cast(surfaces, {X_WS.x, X_WS.y}, direction, laser.range_max);
-    ++verdict.beams;
+    ++accuracy.beams;
     if (answer.silhouette < kAtVertex)
-      ++verdict.at_vertex;
+      ++accuracy.at_vertex;
     else
-      verdict.max_error_m = std::max(verdict.max_error_m, std::fabs(answer.range - range_of(i)));
+      accuracy.max_error_m = std::max(accuracy.max_error_m, std::fabs(answer.range - range_of(i)));
   }
 }
 
 }  // namespace
 
-Verdict judge(const Caster& caster, const Scans& scans, std::size_t round, std::size_t robots) {
+AccuracyCheck check_accuracy(const Caster& caster, const Scans& scans, std::size_t round, std::size_t robots) {
   const double z = scans.world.movers[0].X_WM.z + scans.laser.X_MS.z;
   const auto walls = oracle::surfaces(scans.world, scans.rounds[round], world::kNone, z);
-  Verdict verdict;
+  AccuracyCheck accuracy;
   for (std::size_t robot = 0; robot < scans.robots(); robot += stride(scans.robots(), robots))
     judge_robot(
-        walls, scans.X_WS(round, robot), scans.laser, [&](std::size_t i) { return caster.range(robot, i); }, verdict);
-  return verdict;
+        walls, scans.X_WS(round, robot), scans.laser, [&](std::size_t i) { return caster.range(robot, i); }, accuracy);
+  return accuracy;
 }
 
-Verdict judge(std::span<const base::ReadingBlock> readings, const world::World& world,
-              std::span<const base::Pose> poses, std::size_t robots) {
-  Verdict verdict;
+AccuracyCheck check_accuracy(std::span<const base::ReadingBlock> readings, const world::World& world,
+                             std::span<const base::Pose> poses, std::size_t robots) {
+  AccuracyCheck accuracy;
   for (std::size_t k = 0; k < readings.size(); k += stride(readings.size(), robots)) {
     const base::ReadingBlock& r = readings[k];
     const world::Laser& laser = world.movers[r.mover].lasers[r.sensor];
     const auto seen = oracle::surfaces(world, poses, r.mover, r.X_WS.z);
     judge_robot(
-        seen, r.X_WS, laser, [&](std::size_t i) { return r.values[i]; }, verdict);
+        seen, r.X_WS, laser, [&](std::size_t i) { return r.values[i]; }, accuracy);
   }
-  return verdict;
+  return accuracy;
 }
 
 }  // namespace sf::bench
