@@ -10,8 +10,8 @@
 #include "farm/farm.h"
 #include "gpu/device.h"
 #include "netio/inbox.h"
-#include "netio/listener.h"
 #include "netio/relay.h"
+#include "netio/stream_monitor.h"
 #include "scenarios/explanation.h"
 #include "scenarios/tradeoff.h"
 #include "scenarios/verification.h"
@@ -40,7 +40,7 @@ struct RunFacts {
   bool sent = false;  ///< `post` counts
   PostCounts post;
   bool received = false;  ///< `inbox` counts
-  netio::Counts inbox;
+  netio::PacketCounts inbox;
   std::uint64_t kernel_drops = 0;    ///< datagrams that came while the inbox' buffer was full
   netio::RelayCounts relayed;        ///< to robots, of others' states and start signals
   std::uint64_t lines_left_out = 0;  ///< of the log
@@ -77,7 +77,7 @@ std::size_t count_docks(const world::World& world);
 std::string json_of(const gpu::DeviceList& survey);
 std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set);
 std::string json_of(const RunFacts& facts);
-std::string json_of(const netio::Summary& summary);
+std::string json_of(const netio::StreamSummary& summary);
 /// One reading; what is infinite or missing is null.
 std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading);
 
@@ -86,7 +86,7 @@ std::string text_of(const world::World& world, const sensors::SensorSet& sensor_
 std::string text_of(const RunFacts& facts);
 /// "5 lasers exact, within 1.03 nm: beams that graze nothing".
 std::string text_of(const sensors::AccuracyStatement& statement);
-std::string text_of(const netio::Summary& summary);
+std::string text_of(const netio::StreamSummary& summary);
 /// Comma-separated: a heading, then one line per element; what is missing is left out between its commas.
 std::string text_of(const world::World& world, const base::ReadingBlock& reading);
 /// @param recorded the run kept its readings

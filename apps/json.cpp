@@ -27,16 +27,16 @@ std::string metres(double value) { return std::isfinite(value) ? fmt::format("{:
 
 Json pose_json(const base::Pose& X) { return {X.x, X.y, base::wrap_angle(X.yaw)}; }
 
-Json reasons(const netio::Counts& counts) {
+Json reasons(const netio::PacketCounts& counts) {
   Json json = Json::object();
-  for (std::size_t i = 0; i < netio::kReasons; ++i) {
-    const auto reason = static_cast<netio::Reason>(i);
+  for (std::size_t i = 0; i < netio::kPacketStatuses; ++i) {
+    const auto reason = static_cast<netio::PacketStatus>(i);
     if (counts[reason] > 0) json[std::string(name(reason))] = counts[reason];
   }
   return json;
 }
 
-std::uint64_t count_rays(const netio::Summary& summary) {
+std::uint64_t count_rays(const netio::StreamSummary& summary) {
   const auto lasers = summary.of.find(std::string(sensors::find_sensor_type(base::kLaser)->name));
   return lasers == summary.of.end() ? 0 : lasers->second.elements;
 }
@@ -116,11 +116,11 @@ Json link_json(const LinkCounts& link) {
   return {{"sent", {{"packets", link.sent.sent}, {"failed", link.sent.failed}, {"dropped", link.sent.dropped}}},
           {"readings", link.whole},
           {"sensor_packets",
-           {{"packets", in.reasons.total()},
-            {"by_reason", reasons(in.reasons)},
+           {{"packets", in.packets.total()},
+            {"by_reason", reasons(in.packets)},
             {"late", in.late},
             {"duplicates", in.duplicates},
-            {"leaps", in.leaps},
+            {"leaps", in.jumps},
             {"lost", in.lost},
             {"restarts", in.restarts}}},
           {"relayed", {{"packets", link.words.total()}, {"by_reason", reasons(link.words)}}},
@@ -243,7 +243,7 @@ std::string json_of(const RunFacts& f) {
   return print(json);
 }
 
-std::string json_of(const netio::Summary& s) {
+std::string json_of(const netio::StreamSummary& s) {
   Json sensors = Json::object();
   for (const auto& [kind, share] : s.of) sensors[kind] = {{"good", share.good}, {"elements", share.elements}};
   return print({{"packets", s.datagrams},

@@ -19,23 +19,23 @@ int listen(const Options& options) {
   const sensors::SensorSet sensor_set(world);
   const SendPlan sent = send_plan(world, sensor_set, options);
   const std::vector<Source> sources = sources_of(sensor_set, sent);
-  netio::ListenerOptions plan;
+  netio::StreamMonitorOptions plan;
   plan.address = netio::resolve(options.bind);
   if (!options.from.empty()) plan.farm = netio::resolve(options.from);
   plan.headerless = options.wire == sensors::WireFormat::thesis;
-  plan.judge = [&](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
-    return judge_payload(sources[i], options.wire, header, payload);
+  plan.inspect = [&](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
+    return inspect_payload(sources[i], options.wire, header, payload);
   };
   for (const Source& source : sources)
     plan.streams.push_back({world.movers[source.row->mover].id, source.row->sensor, sent.ports(*source.kind),
                             std::string(source.kind->name)});
-  netio::Listener listener(plan);
+  netio::StreamMonitor monitor(plan);
   warn_of_reach(plan.address, "send readings");
   catch_stop_signals();
   std::fprintf(stderr, "sensorfarm: listening on %s of %s\n", counted(plan.streams.size(), "port").c_str(),
                options.bind.c_str());
-  listener.run(stop_requested(), static_cast<int>(1000.0 * options.silence), std::llround(1000.0 * options.duration));
-  const netio::Summary summary = listener.summary();
+  monitor.run(stop_requested(), static_cast<int>(1000.0 * options.silence), std::llround(1000.0 * options.duration));
+  const netio::StreamSummary summary = monitor.summary();
   std::fputs((options.json ? with_warnings(json_of(summary), world.warnings) : text_of(summary)).c_str(), stdout);
   return summary.good > 0 ? 0 : 1;
 }

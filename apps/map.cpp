@@ -16,12 +16,12 @@
 #include "maps/map_assembler.h"
 #include "maps/map_text.h"
 #include "maps/merge.h"
-#include "netio/assembler.h"
-#include "netio/ears.h"
 #include "netio/endpoint.h"
-#include "netio/leaps.h"
-#include "netio/one_farm.h"
 #include "netio/packets.h"
+#include "netio/port_listener.h"
+#include "netio/reading_assembler.h"
+#include "netio/sequence_guard.h"
+#include "netio/source_lock.h"
 #include "sensors/occupancy.h"
 #include "viz/map_figure.h"
 
@@ -37,9 +37,9 @@ constexpr std::size_t kReceiveBuffer = 1u << 22;  ///< [byte] asked of the kerne
 /// One port: a robot's map.
 struct Source {
   std::uint16_t port = 0;
-  netio::OneFarm farm;
+  netio::SourceLock farm;
   std::uint64_t farms = 0;  ///< changes of it so far
-  netio::Leaps sequences{netio::Assembler::kMostAhead};
+  netio::SequenceGuard sequences{netio::ReadingAssembler::kMaxDropout};
   maps::MapAssembler assembler;
   std::uint16_t robot = 0;
   std::uint64_t used = 0;      ///< datagrams
@@ -53,9 +53,9 @@ bool follow(Source& source, const netio::Endpoint& from, const netio::Header& he
   if (!source.farm.admit(from, header.session, now)) return false;
   if (source.farms != source.farm.changes()) {
     source.farms = source.farm.changes();
-    source.sequences = netio::Leaps(netio::Assembler::kMostAhead);
+    source.sequences = netio::SequenceGuard(netio::ReadingAssembler::kMaxDropout);
   }
-  return !source.sequences.leaps(header.sequence);
+  return !source.sequences.rejects(header.sequence);
 }
 
 std::string name_of(const Source& source, sensors::WireFormat wire) {
@@ -66,14 +66,14 @@ std::string name_of(const Source& source, sensors::WireFormat wire) {
 /// The datagram `bytes` that came from `from` at `now` [ns].
 maps::PartStatus take(Source& source, sensors::WireFormat wire, std::span<const std::uint8_t> bytes,
                       const netio::Endpoint& from, std::int64_t now) {
-  if (!source.farm.may(from)) return maps::PartStatus::faulty;
+  if (!source.farm.allows(from)) return maps::PartStatus::faulty;
   if (wire == sensors::WireFormat::thesis) {
     maps::PlainPart part;
     const bool sound = maps::read_plain(bytes, part) == maps::PartFault::none;
     return sound && source.farm.admit(from, 0, now) ? source.assembler.add_plain_part(bytes) : maps::PartStatus::faulty;
   }
   netio::Packet packet;
-  if (netio::decode(bytes, packet) != netio::Reason::accepted) return maps::PartStatus::faulty;
+  if (netio::decode(bytes, packet) != netio::PacketStatus::accepted) return maps::PartStatus::faulty;
   const auto* reading = std::get_if<netio::Reading>(&packet.body);
   if (reading == nullptr || static_cast<std::uint8_t>(packet.header.type) != sensors::kOccupancy)
     return maps::PartStatus::faulty;
@@ -85,13 +85,13 @@ maps::PartStatus take(Source& source, sensors::WireFormat wire, std::span<const 
 }
 
 /// One per port, in their order. @throws base::InputError for one that is given twice.
-std::vector<netio::StreamPlan> plans_of(const std::vector<std::uint16_t>& ports) {
+std::vector<netio::StreamSpec> plans_of(const std::vector<std::uint16_t>& ports) {
   std::vector<std::uint16_t> sorted = ports;
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
   if (twice != sorted.end())
     throw base::InputError("--listen: port " + std::to_string(*twice) + " is given twice; give each port once");
-  std::vector<netio::StreamPlan> plans;
+  std::vector<netio::StreamSpec> plans;
   for (const std::uint16_t port : ports) plans.push_back({0, 0, netio::PortRule{port, 1}, "map"});
   return plans;
 }
@@ -101,7 +101,7 @@ class Display {
  public:
   explicit Display(const Options& options)
       : options_(options),
-        ears_(netio::resolve(options.bind), kReceiveBuffer, plans_of(options.map_ports)),
+        port_listener_(netio::resolve(options.bind), kReceiveBuffer, plans_of(options.map_ports)),
         on_terminal_(isatty(STDOUT_FILENO) != 0) {
     const std::uint32_t host = options.from.empty() ? 0 : netio::resolve(options.from);
     for (const std::uint16_t port : options.map_ports) sources_.emplace_back(port, host);
@@ -120,7 +120,7 @@ class Display {
   std::vector<maps::OccupancyGrid> pictures() const;
 
   const Options& options_;
-  netio::Ears ears_;
+  netio::PortListener port_listener_;
   std::vector<Source> sources_;
   bool on_terminal_;
   bool changed_ = false;
@@ -131,11 +131,11 @@ bool Display::drain() {
   const auto hear = [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& from) {
     Source& source = sources_[i];
     const maps::PartStatus taken = take(source, options_.wire, bytes, from, now);
-    const bool used = taken == maps::PartStatus::part || taken == maps::PartStatus::whole;
+    const bool used = taken == maps::PartStatus::part || taken == maps::PartStatus::complete;
     ++(used ? source.used : source.left_out);
-    changed_ = changed_ || taken == maps::PartStatus::whole;
+    changed_ = changed_ || taken == maps::PartStatus::complete;
   };
-  return ears_.drain(kPatience, hear) > 0;
+  return port_listener_.drain(kPatience, hear) > 0;
 }
 
 bool Display::all_whole() const {
@@ -209,7 +209,7 @@ void Display::tell() const {
                  static_cast<unsigned long long>(source.assembler.incomplete_maps()),
                  static_cast<unsigned long long>(source.used), static_cast<unsigned long long>(source.left_out),
                  source.assembler.map() != nullptr && source.assembler.true_poses() ? ", made from true poses" : "");
-  if (const std::uint64_t drops = ears_.kernel_drops(); drops > 0)
+  if (const std::uint64_t drops = port_listener_.kernel_drops(); drops > 0)
     std::fprintf(stderr, "sensorfarm: %s dropped by the kernel: they came faster than they were taken\n",
                  counted(drops, "datagram").c_str());
 }

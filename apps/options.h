@@ -99,11 +99,11 @@ struct Options {
   double jitter = 0.0;               ///< [s]
   double loss = 0.0;                 ///< [-] in [0, 1]
   bool wait_for_start = false;
-  double radio = netio::kRadioRange;  ///< [m] farther away, `serve` passes no states on; 0: it passes none on
-  double forget = 10.0;               ///< [s] of silence after which a robot is nobody's obstacle any more; 0: never
-  double stop_after = 0.5;            ///< [s] without a reading after which `robot` stands; 0: never
-  std::uint32_t start_id = netio::kEveryone;  ///< robot to be started
-  double silence = 3.0;                       ///< [s] after which `listen` and `map` end
+  double radio = netio::kV2vRange;  ///< [m] farther away, `serve` passes no states on; 0: it passes none on
+  double forget = 10.0;             ///< [s] of silence after which a robot is nobody's obstacle any more; 0: never
+  double stop_after = 0.5;          ///< [s] without a reading after which `robot` stands; 0: never
+  std::uint32_t start_id = netio::kBroadcastId;  ///< robot to be started
+  double silence = 3.0;                          ///< [s] after which `listen` and `map` end
 
   std::vector<std::uint16_t> map_ports;  ///< that `map` listens on
   bool merge = false;                    ///< of all of them one map

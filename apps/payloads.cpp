@@ -4,18 +4,18 @@ namespace sf::apps {
 
 namespace {
 
-netio::Reason reason_of(sensors::PayloadError fault) {
+netio::PacketStatus reason_of(sensors::PayloadError fault) {
   switch (fault) {
     case sensors::PayloadError::none:
-      return netio::Reason::accepted;
+      return netio::PacketStatus::accepted;
     case sensors::PayloadError::too_short:
-      return netio::Reason::too_short;
+      return netio::PacketStatus::too_short;
     case sensors::PayloadError::too_long:
-      return netio::Reason::too_long;
+      return netio::PacketStatus::too_long;
     case sensors::PayloadError::out_of_range:
       break;
   }
-  return netio::Reason::out_of_range;
+  return netio::PacketStatus::out_of_range;
 }
 
 /// The thesis' datagrams do not tell their type: the port does.
@@ -41,16 +41,16 @@ std::vector<Source> sources_of(const sensors::SensorSet& sensor_set, const SendP
   return sources;
 }
 
-netio::Verdict judge_payload(const Source& source, sensors::WireFormat wire, const netio::Header& header,
-                             std::span<const std::uint8_t> payload) {
+netio::PayloadInfo inspect_payload(const Source& source, sensors::WireFormat wire, const netio::Header& header,
+                                   std::span<const std::uint8_t> payload) {
   if (wire == sensors::WireFormat::farm && netio::kind_of(header.type) != source.kind->id)
-    return {netio::Reason::wrong_source};
+    return {netio::PacketStatus::wrong_source};
   const sensors::PayloadPart part = source.kind->decode(*source.row, payload, type_of(source, wire, header), wire);
   return {reason_of(part.fault), part.elements, part.part, part.parts};
 }
 
-void read_payload(const Source& source, sensors::WireFormat wire, const netio::Header& header,
-                  std::span<const std::uint8_t> payload, std::span<double> values) {
+void decode_payload(const Source& source, sensors::WireFormat wire, const netio::Header& header,
+                    std::span<const std::uint8_t> payload, std::span<double> values) {
   source.kind->read(*source.row, payload, type_of(source, wire, header), wire, values);
 }
 

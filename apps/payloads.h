@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/send_plan.h"
-#include "netio/listener.h"
+#include "netio/stream_monitor.h"
 #include "sensors/sensor_set.h"
 
 namespace sf::apps {
@@ -23,11 +23,11 @@ std::vector<Source> sources_of(const sensors::SensorSet& sensor_set, const SendP
 std::vector<Source> sources_of(const sensors::SensorSet& sensor_set, const SendPlan& plan, std::uint32_t mover);
 
 /// Judges any bytes that came to the sensor's port behind a header of its robot and number.
-netio::Verdict judge_payload(const Source& source, sensors::WireFormat wire, const netio::Header& header,
-                             std::span<const std::uint8_t> payload);
+netio::PayloadInfo inspect_payload(const Source& source, sensors::WireFormat wire, const netio::Header& header,
+                                   std::span<const std::uint8_t> payload);
 
 /// Writes what an accepted payload says into its reading's values.
-void read_payload(const Source& source, sensors::WireFormat wire, const netio::Header& header,
-                  std::span<const std::uint8_t> payload, std::span<double> values);
+void decode_payload(const Source& source, sensors::WireFormat wire, const netio::Header& header,
+                    std::span<const std::uint8_t> payload, std::span<double> values);
 
 }  // namespace sf::apps

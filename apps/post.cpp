@@ -43,7 +43,7 @@ Post::Post(const world::World& world, const sensors::SensorSet& sensor_set, Send
     for (const sensors::SensorSpec& row : group.rows)
       streams_[group.kind->id].push_back({0, plan_.sends(*group.kind, row) ? group.kind->parts(row, plan_.wire) : 0});
   for (Memory& memory : memory_) {
-    memory.payload.reserve(netio::kMaxPlain);
+    memory.payload.reserve(netio::kMaxHeaderlessDatagram);
     memory.packet.reserve(netio::kMaxDatagram);
   }
 }
@@ -64,9 +64,9 @@ std::uint32_t Post::encode(const Job& job, Memory& memory, Put&& put) const {
   header.sensor = static_cast<std::uint16_t>(reading.sensor);
   header.sequence = job.sequence;
   header.time = reading.time;
-  header.accuracy = netio::accuracy_word({reading.mode, !reading.quality.empty(), reading.bound});
-  header.session = job.letter.stamp.session;
-  header.token = job.letter.stamp.token;
+  header.accuracy = netio::encode_accuracy({reading.mode, !reading.quality.empty(), reading.bound});
+  header.session = job.letter.session_token.session;
+  header.token = job.letter.session_token.token;
   const auto port = static_cast<std::uint16_t>(netio::port(plan_.ports(*job.kind), header.robot, reading.sensor));
 
   std::uint32_t failed = 0;
@@ -78,7 +78,7 @@ std::uint32_t Post::encode(const Job& job, Memory& memory, Put&& put) const {
     } else if (plan_.wire == sensors::WireFormat::thesis) {
       put(part, netio::Endpoint{job.letter.address, port}, memory.payload);
     } else {
-      netio::frame(header, type, memory.payload, memory.packet);
+      netio::encode_reading(header, type, memory.payload, memory.packet);
       put(part, netio::Endpoint{job.letter.address, port}, memory.packet);
     }
   }

@@ -39,7 +39,7 @@ struct PostCounts {
 struct Letter {
   const base::ReadingBlock* reading = nullptr;
   std::uint32_t address = 0;
-  netio::Stamp stamp;
+  netio::SessionToken session_token;
 };
 
 /// Fleets of more sensors than this are encoded on all cores, and sent by a thread of their own.

@@ -5,14 +5,14 @@
 
 #include <algorithm>
 
-#include "netio/log.h"
+#include "netio/rate_limited_log.h"
 
 namespace sf::apps {
 
 Progress::Progress(std::string what) : what_(std::move(what)), on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
-  if (drawn_) netio::write_at_once(STDERR_FILENO, "\r\033[K");
+  if (drawn_) netio::write_nonblocking(STDERR_FILENO, "\r\033[K");
 }
 
 void Progress::show(double part, const std::string& note) {
@@ -23,7 +23,7 @@ void Progress::show(double part, const std::string& note) {
   const int done = static_cast<int>(std::clamp(part, 0.0, 1.0) * kWidth);
   const std::string line =
       fmt::format("\r\033[K{} [{:#<{}}{:.<{}}] {:3.0f} % {}", what_, "", done, "", kWidth - done, 100.0 * part, note);
-  drawn_ = netio::write_at_once(STDERR_FILENO, line) || drawn_;
+  drawn_ = netio::write_nonblocking(STDERR_FILENO, line) || drawn_;
 }
 
 }  // namespace sf::apps

@@ -85,7 +85,7 @@ int start(const Options& options) {
   std::fprintf(
       stderr, "sensorfarm: start signal sent to %s for %s, %d times; nobody acknowledges it\n",
       netio::text(farm).c_str(),
-      options.start_id == netio::kEveryone ? "all robots" : ("robot " + std::to_string(options.start_id)).c_str(),
+      options.start_id == netio::kBroadcastId ? "all robots" : ("robot " + std::to_string(options.start_id)).c_str(),
       kTimes);
   return 0;
 }

@@ -27,9 +27,9 @@ std::string link_text(const LinkCounts& link) {
     text += row("packets not sent", fmt::format("{} failed ({}), {} dropped", link.sent.failed, link.sent.first_failure,
                                                 link.sent.dropped));
   text += row("readings", kinds_text(link));
-  text += row("sensor packets", netio::text(in.reasons));
+  text += row("sensor packets", netio::text(in.packets));
   text += row("", fmt::format("{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost));
-  if (in.leaps > 0) text += row("", counted(in.leaps, "packet") + " too far ahead to be believed");
+  if (in.jumps > 0) text += row("", counted(in.jumps, "packet") + " too far ahead to be believed");
   if (link.kernel_drops > 0) text += row("", counted(link.kernel_drops, "packet") + " dropped by the kernel");
   if (in.restarts > 0) text += row("", counted(in.restarts, "sensor") + " began anew");
   text += row("V2V and START", netio::text(link.words));

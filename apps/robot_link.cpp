@@ -19,7 +19,7 @@ std::uint32_t stream_number(netio::Type type, std::uint32_t low) {
   return static_cast<std::uint32_t>(type) << 16 | low;
 }
 
-netio::LinkPlan link_plan(const Options& options) {
+netio::LinkModel link_model(const Options& options) {
   return {.delay = options.delay, .jitter = options.jitter, .loss = options.loss, .seed = options.seed};
 }
 
@@ -40,13 +40,13 @@ RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor
       id_(world.movers[mover].id),
       streams_(streams_of(sensor_set, plan, mover)),
       farm_{netio::resolve(options.server), static_cast<std::uint16_t>(options.port)},
-      radio_({.farm = farm_, .robot = id_, .others = others_of(world, id_)}),
-      ears_(listening_address(farm_.address), std::size_t{1} << 20, plans(plan)),
+      v2v_socket_({.farm = farm_, .robot = id_, .others = others_of(world, id_)}),
+      port_listener_(listening_address(farm_.address), std::size_t{1} << 20, plans(plan)),
       receiver_(receiver_options(plan)),
-      out_(link_plan(options)),
-      in_(link_plan(options)),
+      out_(link_model(options)),
+      in_(link_model(options)),
       hear_(std::move(hear)) {
-  receiver_.bind(radio_.farm_stamp());
+  receiver_.set_session(v2v_socket_.farm_session_token());
 }
 
 std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& sensor_set, const SendPlan& plan,
@@ -57,8 +57,8 @@ std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& s
   return streams;
 }
 
-std::vector<netio::StreamPlan> RobotLink::plans(const SendPlan& plan) const {
-  std::vector<netio::StreamPlan> plans;
+std::vector<netio::StreamSpec> RobotLink::plans(const SendPlan& plan) const {
+  std::vector<netio::StreamSpec> plans;
   for (const Stream& stream : streams_) {
     const sensors::SensorType& kind = *stream.source.kind;
     plans.push_back({id_, stream.source.row->sensor, plan.ports(kind), std::string(kind.name)});
@@ -68,19 +68,19 @@ std::vector<netio::StreamPlan> RobotLink::plans(const SendPlan& plan) const {
 
 netio::ReceiverOptions RobotLink::receiver_options(const SendPlan& plan) const {
   netio::ReceiverOptions receiver;
-  const std::vector<netio::StreamPlan> all = plans(plan);
+  const std::vector<netio::StreamSpec> all = plans(plan);
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     const Source& source = streams_[i].source;
     receiver.streams.push_back({all[i], source.row->elements * element_width(*source.kind)});
   }
   receiver.headerless = plan.wire == sensors::WireFormat::thesis;
   const sensors::WireFormat wire = plan.wire;
-  receiver.judge = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
-    return judge_payload(streams_[i].source, wire, header, payload);
+  receiver.inspect = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
+    return inspect_payload(streams_[i].source, wire, header, payload);
   };
   receiver.read = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload,
                                std::span<double> values) {
-    read_payload(streams_[i].source, wire, header, payload, values);
+    decode_payload(streams_[i].source, wire, header, payload, values);
   };
   return receiver;
 }
@@ -90,7 +90,7 @@ void RobotLink::say(const netio::V2v& state, std::int64_t now) {
   header.robot = static_cast<std::uint16_t>(id_);
   header.time = now;
   if (now >= next_request_) {
-    netio::Subscribe request{netio::kOthers};
+    netio::Subscribe request{netio::kNeighboursBit};
     for (const Stream& stream : streams_) request.kinds |= 1u << stream.source.kind->id;
     header.sequence = requests_;
     netio::encode(header, request, packet_);
@@ -108,7 +108,7 @@ void RobotLink::send(netio::Type type, std::uint32_t sequence, std::int64_t now)
 }
 
 void RobotLink::let_go(std::int64_t until) {
-  out_.release(until, [&](std::size_t, std::span<const std::uint8_t> bytes) { radio_.send(bytes); });
+  out_.release(until, [&](std::size_t, std::span<const std::uint8_t> bytes) { v2v_socket_.send(bytes); });
 }
 
 void RobotLink::leave(std::int64_t now) {
@@ -124,23 +124,25 @@ void RobotLink::leave(std::int64_t now) {
 void RobotLink::wait(std::int64_t now, std::int64_t until) const {
   const std::int64_t next = std::min({until, out_.next(), in_.next(), now + kLongestSleep});
   if (next <= now) return;
-  netio::wait_readable(radio_.socket(), ears_.any(), static_cast<int>((next - now + kMilli - 1) / kMilli));
+  netio::wait_readable(v2v_socket_.socket(), port_listener_.epoll(),
+                       static_cast<int>((next - now + kMilli - 1) / kMilli));
 }
 
 void RobotLink::run(std::int64_t now) {
   let_go(now);
-  ears_.drain(0, [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& source) {
-    if (source != farm_) return receiver_.refuse_source();
+  port_listener_.drain(0, [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& source) {
+    if (source != farm_) return receiver_.reject_source();
     in_.send(name_reading(streams_[i], bytes), now, i, bytes);
   });
-  radio_.receive([&](std::span<const std::uint8_t> bytes) { in_.send(name_word(bytes), now, streams_.size(), bytes); });
+  v2v_socket_.receive(
+      [&](std::span<const std::uint8_t> bytes) { in_.send(name_word(bytes), now, streams_.size(), bytes); });
   in_.release(now, [&](std::size_t tag, std::span<const std::uint8_t> bytes) { take(tag, bytes, now); });
 }
 
 /// The first datagram of a reading has the fate that the reading has in a simulation with the same link.
-netio::Message RobotLink::name_reading(Stream& stream, std::span<const std::uint8_t> bytes) const {
+netio::MessageId RobotLink::name_reading(Stream& stream, std::span<const std::uint8_t> bytes) const {
   netio::Packet packet;
-  if (netio::decode(bytes, packet) == netio::Reason::accepted && packet.header.sequence != stream.sequence) {
+  if (netio::decode(bytes, packet) == netio::PacketStatus::accepted && packet.header.sequence != stream.sequence) {
     stream.sequence = packet.header.sequence;
     stream.piece = 0;
   }
@@ -148,9 +150,9 @@ netio::Message RobotLink::name_reading(Stream& stream, std::span<const std::uint
   return {id_, std::uint32_t{stream.source.kind->id} << 16 | low, stream.piece++ << 32 | stream.sequence};
 }
 
-netio::Message RobotLink::name_word(std::span<const std::uint8_t> bytes) {
+netio::MessageId RobotLink::name_word(std::span<const std::uint8_t> bytes) {
   netio::Packet packet;
-  if (netio::decode(bytes, packet) == netio::Reason::accepted && packet.header.type == netio::Type::v2v)
+  if (netio::decode(bytes, packet) == netio::PacketStatus::accepted && packet.header.type == netio::Type::v2v)
     return {id_, stream_number(netio::Type::v2v, kRelayed),
             std::uint64_t{packet.header.robot} << 32 | packet.header.sequence};
   return {id_, stream_number(netio::Type::start, kRelayed), words_++};
@@ -158,29 +160,29 @@ netio::Message RobotLink::name_word(std::span<const std::uint8_t> bytes) {
 
 void RobotLink::take(std::size_t tag, std::span<const std::uint8_t> bytes, std::int64_t now) {
   if (tag == streams_.size()) return take_word(bytes, now);
-  const netio::Taken taken = receiver_.accept(tag, bytes, now);
-  if (taken == netio::Taken::refused) return;
+  const netio::PartStatus part_status = receiver_.accept(tag, bytes, now);
+  if (part_status == netio::PartStatus::rejected) return;
   last_answer_ = now;
-  if (taken != netio::Taken::whole) return;
+  if (part_status != netio::PartStatus::complete) return;
   last_reading_ = now;
   ++streams_[tag].whole;
-  clock_.see(receiver_.newest(tag)->time, now);
+  clock_.update(receiver_.newest(tag)->time, now);
 }
 
 void RobotLink::take_word(std::span<const std::uint8_t> bytes, std::int64_t now) {
   netio::Packet packet;
-  const netio::Stamp before = radio_.farm_stamp();
-  if (radio_.accept(bytes, now, packet) != netio::Reason::accepted) return;
+  const netio::SessionToken before = v2v_socket_.farm_session_token();
+  if (v2v_socket_.accept(bytes, now, packet) != netio::PacketStatus::accepted) return;
   if (std::holds_alternative<netio::Challenge>(packet.body)) return answer_challenge(before);
   last_answer_ = now;
   hear_(packet, now);
 }
 
 /// The requests before it were dropped. A new session is a new farm, with a clock and sequences of its own.
-void RobotLink::answer_challenge(const netio::Stamp& before) {
+void RobotLink::answer_challenge(const netio::SessionToken& before) {
   next_request_ = 0;
-  if (radio_.farm_stamp().session == before.session) return;
-  receiver_.bind(radio_.farm_stamp());
+  if (v2v_socket_.farm_session_token().session == before.session) return;
+  receiver_.set_session(v2v_socket_.farm_session_token());
   clock_ = {};
 }
 
@@ -196,15 +198,15 @@ std::span<RobotLink::Newest> RobotLink::readings() {
     newest.block.sensor = source.row->sensor;
     newest.block.kind = source.kind->id;
     newest.block.sequence = whole->sequence;
-    newest.block.time = clock_.own(whole->time);
+    newest.block.time = clock_.to_own(whole->time);
     newest.block.values = whole->values;
   }
   return newest_;
 }
 
 LinkCounts RobotLink::counts() const {
-  LinkCounts counts{radio_.sent(), out_.counts(), in_.counts(), receiver_.counts(), radio_.counts(), 0, {}};
-  counts.kernel_drops = ears_.kernel_drops() + netio::kernel_drops(radio_.socket());
+  LinkCounts counts{v2v_socket_.sent(), out_.counts(), in_.counts(), receiver_.counts(), v2v_socket_.counts(), 0, {}};
+  counts.kernel_drops = port_listener_.kernel_drops() + netio::kernel_drops(v2v_socket_.socket());
   for (const Stream& stream : streams_) counts.whole[std::string(stream.source.kind->name)] += stream.whole;
   return counts;
 }

@@ -14,10 +14,10 @@
 #include "apps/send_plan.h"
 #include "base/reading.h"
 #include "netio/delay_line.h"
-#include "netio/ears.h"
 #include "netio/farm_clock.h"
-#include "netio/radio.h"
+#include "netio/port_listener.h"
 #include "netio/receiver.h"
+#include "netio/v2v_socket.h"
 #include "sensors/sensor_set.h"
 #include "world/world.h"
 
@@ -28,7 +28,7 @@ struct LinkCounts {
   netio::DelayCounts out;  ///< of the injected link
   netio::DelayCounts in;
   netio::ReceiverCounts readings;
-  netio::Counts words;                         ///< what came to the socket it speaks from
+  netio::PacketCounts words;                   ///< what came to the socket it speaks from
   std::uint64_t kernel_drops = 0;              ///< datagrams that came while a socket's buffer was full
   std::map<std::string, std::uint64_t> whole;  ///< readings, by kind
 };
@@ -62,7 +62,7 @@ class RobotLink {
   std::span<Newest> readings();
 
   /// A state of robot `id` came in the last two seconds.
-  bool heard(std::uint32_t id, std::int64_t now) const { return radio_.heard(id, now); }
+  bool is_active(std::uint32_t id, std::int64_t now) const { return v2v_socket_.is_active(id, now); }
   const netio::FarmClock& clock() const { return clock_; }
   /// [ns] when anything good came last; nothing where nothing did yet.
   std::optional<std::int64_t> last_answer() const { return last_answer_; }
@@ -82,23 +82,23 @@ class RobotLink {
   };
   static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const SendPlan& plan,
                                         std::uint32_t mover);
-  std::vector<netio::StreamPlan> plans(const SendPlan& plan) const;
+  std::vector<netio::StreamSpec> plans(const SendPlan& plan) const;
   netio::ReceiverOptions receiver_options(const SendPlan& plan) const;
   void send(netio::Type type, std::uint32_t sequence, std::int64_t now);
   /// Sends what is due by then.
   void let_go(std::int64_t until);
-  netio::Message name_reading(Stream& stream, std::span<const std::uint8_t> bytes) const;
-  netio::Message name_word(std::span<const std::uint8_t> bytes);
+  netio::MessageId name_reading(Stream& stream, std::span<const std::uint8_t> bytes) const;
+  netio::MessageId name_word(std::span<const std::uint8_t> bytes);
   void take(std::size_t tag, std::span<const std::uint8_t> bytes, std::int64_t now);
-  void answer_challenge(const netio::Stamp& before);
+  void answer_challenge(const netio::SessionToken& before);
   void take_word(std::span<const std::uint8_t> bytes, std::int64_t now);
 
   std::uint32_t mover_;
   std::uint32_t id_;
   std::vector<Stream> streams_;
   netio::Endpoint farm_;
-  netio::Radio radio_;
-  netio::Ears ears_;
+  netio::V2vSocket v2v_socket_;
+  netio::PortListener port_listener_;
   netio::Receiver receiver_;
   netio::DelayLine out_;
   netio::DelayLine in_;  ///< tags are streams, and one more for words

@@ -131,7 +131,7 @@ void RobotProcess::gather_others(std::int64_t now) {
   if (radio <= 0.0) return;
   const base::Pose& own = body_.state().X_WM;
   for (const auto& [id, row] : names_.robots) {
-    if (row == mover_ || !link_.heard(id, now)) continue;
+    if (row == mover_ || !link_.is_active(id, now)) continue;
     base::Report state = body_.state(row);
     state.time = now;
     if (std::hypot(state.X_WM.x - own.x, state.X_WM.y - own.y) <= radio) others_.push_back({id, state, intents_[row]});
@@ -140,7 +140,7 @@ void RobotProcess::gather_others(std::int64_t now) {
 
 /// Lights go by the farm's clock.
 void RobotProcess::gather_signals(std::int64_t now) {
-  const double time = 1e-9 * static_cast<double>(link_.clock().farm(now));
+  const double time = 1e-9 * static_cast<double>(link_.clock().to_farm(now));
   signals_.clear();
   for (const world::Light& light : world_.lights) signals_.push_back(world::signal_at(light, time));
 }
@@ -155,18 +155,18 @@ void RobotProcess::complain(std::int64_t now) {
   if (!complained_ && link_.listens() && now - link_.last_answer().value_or(0) >= kAnswerIn) {
     complained_ = true;
     stands_ = patience_ > 0;
-    log_.line(fmt::format("nothing came from the farm at {} for 3 s; is `sensorfarm serve` running there with this "
-                          "world and these ports? {}",
-                          farm, patience_ > 0 ? "Standing until readings come" : "Going on"),
-              now);
+    log_.write(fmt::format("nothing came from the farm at {} for 3 s; is `sensorfarm serve` running there with this "
+                           "world and these ports? {}",
+                           farm, patience_ > 0 ? "Standing until readings come" : "Going on"),
+               now);
   }
   if (stands_ == blind(now) || !link_.last_reading()) return;
   stands_ = !stands_;
   stops_ += stands_ ? 1 : 0;
-  log_.line(stands_ ? fmt::format("no reading came from the farm at {} for {:g} s: {} stands until one comes", farm,
-                                  1e-9 * static_cast<double>(patience_), world_.movers[mover_].name)
-                    : fmt::format("readings come: {} goes on", world_.movers[mover_].name),
-            now);
+  log_.write(stands_ ? fmt::format("no reading came from the farm at {} for {:g} s: {} stands until one comes", farm,
+                                   1e-9 * static_cast<double>(patience_), world_.movers[mover_].name)
+                     : fmt::format("readings come: {} goes on", world_.movers[mover_].name),
+             now);
 }
 
 }  // namespace sf::apps

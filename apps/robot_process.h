@@ -12,7 +12,7 @@
 #include "apps/wire_names.h"
 #include "base/contact_onset.h"
 #include "control/controllers.h"
-#include "netio/log.h"
+#include "netio/rate_limited_log.h"
 #include "scenarios/robot_body.h"
 #include "sensors/sensor_set.h"
 #include "world/lights.h"
@@ -78,7 +78,7 @@ class RobotProcess {
   bool complained_ = false;
   bool stands_ = false;      ///< for want of readings
   std::uint64_t stops_ = 0;  ///< times that it came to that
-  netio::Log log_;
+  netio::RateLimitedLog log_;
   std::uint64_t steps_ = 0;
   base::ContactOnset contact_;
   std::uint64_t contacts_ = 0;

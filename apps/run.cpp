@@ -23,7 +23,7 @@
 #include "base/contact_onset.h"
 #include "base/elapsed.h"
 #include "base/error.h"
-#include "netio/token.h"
+#include "netio/address_token.h"
 #include "raycast/caster_choice.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
@@ -67,7 +67,7 @@ class Outputs {
         wait(time);
         waited += base::seconds_since(before);
       }
-      letters_.push_back({&reading, address_, stamp_});
+      letters_.push_back({&reading, address_, session_token_});
     }
     if (post_) send();
     if (recorder_) recorder_->write(tick);
@@ -97,7 +97,7 @@ class Outputs {
   NoReturn no_return_;
   std::vector<Letter> letters_;  ///< that go at one time
   std::uint32_t address_ = 0;
-  netio::Stamp stamp_{netio::random_session(), 0};
+  netio::SessionToken session_token_{netio::random_session(), 0};
   std::optional<Post> post_;
   std::optional<record::Recorder> recorder_;
   double seconds_ = 0.0;

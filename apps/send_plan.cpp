@@ -39,9 +39,9 @@ void require_some(const sensors::SensorSet& sensor_set, const std::vector<std::s
   throw base::InputError(lines.front());
 }
 
-std::vector<netio::PortUse> uses_of(const world::World& world, const sensors::SensorSet& sensor_set,
-                                    const SendPlan& plan) {
-  std::vector<netio::PortUse> uses;
+std::vector<netio::SensorPorts> uses_of(const world::World& world, const sensors::SensorSet& sensor_set,
+                                        const SendPlan& plan) {
+  std::vector<netio::SensorPorts> uses;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
       const auto rows = sensor_set.of(group.kind->id, m);
@@ -62,7 +62,7 @@ bool SendPlan::sends_any(const sensors::SensorSet::Group& group) const {
 SendPlan send_plan(const world::World& world, const sensors::SensorSet& sensor_set, const Options& options) {
   SendPlan plan{options.base_ports, options.ports_per_robot, options.wire};
   const bool chosen = plan.stride != 0;
-  if (!chosen) plan.stride = netio::least_stride(uses_of(world, sensor_set, plan), kUsualStride);
+  if (!chosen) plan.stride = netio::smallest_stride(uses_of(world, sensor_set, plan), kUsualStride);
   require_some(sensor_set, left_out(world, sensor_set, plan), plan);
   std::string bases;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())

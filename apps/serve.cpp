@@ -24,7 +24,7 @@
 #include "apps/wording.h"
 #include "base/error.h"
 #include "netio/inbox.h"
-#include "netio/log.h"
+#include "netio/rate_limited_log.h"
 #include "netio/relay.h"
 #include "raycast/caster_choice.h"
 #include "robots/fleet.h"
@@ -39,7 +39,7 @@ netio::Inbox open_inbox(const WireNames& names, const Options& options) {
   const netio::Endpoint bind{netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)};
   try {
     return netio::Inbox({.bind = bind, .robots = ids_of(names.robots), .tags = ids_of(names.tags)});
-  } catch (const netio::PortTaken&) {
+  } catch (const netio::PortInUse&) {
     throw base::InputError(netio::text(bind) +
                            " is taken, by another `sensorfarm serve` perhaps: end that one, or serve on another port "
                            "(--port N, or --port 0 for any free one) and tell the robots (robot --port N)");
@@ -62,8 +62,9 @@ class Service {
               farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
         fleet_(world),
         no_return_(sensor_set, options.no_return_inf),
-        forget_(options.forget > 0.0 ? std::max<std::int64_t>(0, std::llround(1e9 * options.forget) - netio::kSilence)
-                                     : kNever),
+        forget_(options.forget > 0.0
+                    ? std::max<std::int64_t>(0, std::llround(1e9 * options.forget) - netio::kClientTimeout)
+                    : kNever),
         last_heard_(world.movers.size(), kNever),
         capped_(options.rate > 0.0) {
     reports_.reserve(netio::Inbox::kMaxPerReceive);
@@ -91,7 +92,7 @@ class Service {
   /// Everything that goes by ticks.
   void tick(std::int64_t now) {
     look(now, false);
-    relay_.pass_on(inbox_, now, answers_);
+    relay_.forward(inbox_, now, answers_);
     answers_.flush();
     ++ticks_;
   }
@@ -109,7 +110,7 @@ class Service {
       // A reading that was on its way when its robot fell silent has nobody to go to.
       const std::uint32_t id = world_.movers[reading.mover].id;
       const auto to = inbox_.address(id);
-      if (to) letters_.push_back({&reading, to->address, inbox_.stamp_for(id)});
+      if (to) letters_.push_back({&reading, to->address, inbox_.session_token_for(id)});
     }
     post_.queue(letters_);
     post_.flush();
@@ -133,8 +134,8 @@ class Service {
       // Senders' clocks are their own: a state is true when it arrives.
       reports_.back().time = now;
     };
-    const auto strange = [&](netio::Reason reason, const netio::Packet& packet, const netio::Endpoint& who) {
-      if (reason == netio::Reason::wrong_source) return complain(packet, who, now);
+    const auto strange = [&](netio::PacketStatus reason, const netio::Packet& packet, const netio::Endpoint& who) {
+      if (reason == netio::PacketStatus::wrong_source) return complain(packet, who, now);
       if (inbox_.challenge(packet, who, now, challenge_)) answers_.queue(who, challenge_);
     };
     inbox_.receive(now, take, strange);
@@ -173,14 +174,14 @@ class Service {
   std::uint32_t wanted(std::uint32_t id, std::int64_t now) const {
     std::uint32_t kinds = 0;
     for (const sensors::SensorSet::Group& group : sensor_set_.groups())
-      if (inbox_.wants(id, group.kind->id, now) && plan_.sends_any(group)) kinds |= 1u << group.kind->id;
+      if (inbox_.is_subscribed(id, group.kind->id, now) && plan_.sends_any(group)) kinds |= 1u << group.kind->id;
     return kinds;
   }
 
   /// A robot that spoke once and is silent now is taken out of the world until it speaks again.
   void forget_silent(std::uint32_t id, std::uint32_t row, std::int64_t now) {
     std::int64_t& last = last_heard_[row];
-    const bool heard = inbox_.heard(id, now);
+    const bool heard = inbox_.is_active(id, now);
     const bool gone = !heard && forget_ != kNever && last != kNever && now - last >= forget_;
     if (heard) last = now;
     farm_.set_absent(row, gone);
@@ -195,7 +196,7 @@ class Service {
     auto& said = (tag ? said_of_tags_ : said_of_robots_)[id];
     if (said == bound) return;
     said = bound;
-    log_.line(
+    log_.write(
         fmt::format("{} ({} {}) is heard from {}; what {} says as the same is dropped until that one leaves or is "
                     "silent for 2 s",
                     world_.movers[(tag ? names_.tags : names_.robots).at(id)].name, tag ? "tag" : "id", id,
@@ -221,7 +222,7 @@ class Service {
   base::Bytes challenge_;
   std::int64_t forget_;                   ///< [ns] since it was last heard, or kNever
   std::vector<std::int64_t> last_heard_;  ///< [ns] per mover
-  netio::Log log_;
+  netio::RateLimitedLog log_;
   // By id: the binding whose strangers were spoken of.
   std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_robots_;
   std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_tags_;

@@ -216,7 +216,7 @@ std::string text_of(const RunFacts& f) {
 namespace {
 
 /// " (laser 120 with 43320 beams, laneedge 30)".
-std::string shares_text(const netio::Summary& summary) {
+std::string shares_text(const netio::StreamSummary& summary) {
   std::string text;
   for (const sensors::SensorType* kind : sensors::sensor_types()) {
     const auto found = summary.of.find(std::string(kind->name));
@@ -229,7 +229,7 @@ std::string shares_text(const netio::Summary& summary) {
 
 }  // namespace
 
-std::string text_of(const netio::Summary& s) {
+std::string text_of(const netio::StreamSummary& s) {
   std::string text = row(
       "packets received",
       fmt::format("{} ({:.1f} MB) on {}", s.datagrams, static_cast<double>(s.bytes) * 1e-6, counted(s.ports, "port")));

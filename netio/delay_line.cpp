@@ -6,12 +6,12 @@
 
 namespace sf::netio {
 
-bool DelayLine::later(const Waiting& one, const Waiting& other) {
+bool DelayLine::later(const QueuedMessage& one, const QueuedMessage& other) {
   return std::tie(one.arrival, one.order) > std::tie(other.arrival, other.order);
 }
 
-void DelayLine::send(const Message& message, std::int64_t now, std::size_t tag, std::span<const std::uint8_t> bytes) {
-  const auto delay = fate(plan_, message);
+void DelayLine::send(const MessageId& message, std::int64_t now, std::size_t tag, std::span<const std::uint8_t> bytes) {
+  const auto delay = sample_delay(model_, message);
   if (!delay) {
     ++counts_.lost;
     return;
@@ -32,9 +32,9 @@ void DelayLine::send(const Message& message, std::int64_t now, std::size_t tag, 
 }
 
 /// Its memory is given to the next one sent, so it lives until then.
-DelayLine::Waiting DelayLine::pop() {
+DelayLine::QueuedMessage DelayLine::pop() {
   std::pop_heap(waiting_.begin(), waiting_.end(), later);
-  const Waiting next = waiting_.back();
+  const QueuedMessage next = waiting_.back();
   waiting_.pop_back();
   free_.push_back(next.slot);
   return next;

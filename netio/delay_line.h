@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/bytes.h"
-#include "netio/link.h"
+#include "netio/link_model.h"
 
 namespace sf::netio {
 
@@ -21,18 +21,18 @@ class DelayLine {
  public:
   static constexpr std::size_t kCapacity = 65'536;
 
-  explicit DelayLine(const LinkPlan& plan) : plan_(plan) {}
+  explicit DelayLine(const LinkModel& model) : model_(model) {}
 
   /// Takes a message that is sent at `now` [ns]; copies its bytes.
   /// @param tag comes back with it
-  void send(const Message& message, std::int64_t now, std::size_t tag, std::span<const std::uint8_t> bytes);
+  void send(const MessageId& message, std::int64_t now, std::size_t tag, std::span<const std::uint8_t> bytes);
 
   /// Gives `take(std::size_t tag, std::span<const std::uint8_t> bytes)` all that has come by `now` [ns], in order of
   /// arrival; of two that come at once the one that was sent first. `take` may not send.
   template <class Take>
   void release(std::int64_t now, Take&& take) {
     while (!waiting_.empty() && waiting_.front().arrival <= now) {
-      const Waiting next = pop();
+      const QueuedMessage next = pop();
       ++counts_.passed;
       take(next.tag, std::span<const std::uint8_t>(memory_[next.slot]));
     }
@@ -43,18 +43,18 @@ class DelayLine {
   const DelayCounts& counts() const { return counts_; }
 
  private:
-  struct Waiting {
+  struct QueuedMessage {
     std::int64_t arrival = 0;  ///< [ns]
     std::uint64_t order = 0;
     std::size_t tag = 0;
     std::size_t slot = 0;
   };
-  static bool later(const Waiting& one, const Waiting& other);
-  Waiting pop();
+  static bool later(const QueuedMessage& one, const QueuedMessage& other);
+  QueuedMessage pop();
 
-  LinkPlan plan_;
+  LinkModel model_;
   DelayCounts counts_;
-  std::vector<Waiting> waiting_;  ///< a heap, the next one in front
+  std::vector<QueuedMessage> waiting_;  ///< a heap, the next one in front
   std::vector<base::Bytes> memory_;
   std::vector<std::size_t> free_;  ///< slots of `memory_`
   std::uint64_t order_ = 0;

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "netio/bindings.h"
+#include "netio/client_registry.h"
 
 namespace sf::netio {
 
-void FarmClock::see(std::int64_t time, std::int64_t came) {
-  const bool anew = !last_ || came - *last_ >= kSilence;
-  ahead_ = anew ? time - came : std::max(ahead_, time - came);
-  last_ = came;
+void FarmClock::update(std::int64_t time, std::int64_t arrival) {
+  const bool restarted = !last_ || arrival - *last_ >= kClientTimeout;
+  offset_ = restarted ? time - arrival : std::max(offset_, time - arrival);
+  last_ = arrival;
 }
 
 }  // namespace sf::netio

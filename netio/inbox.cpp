@@ -12,10 +12,10 @@ namespace sf::netio {
 namespace {
 
 constexpr std::size_t kBatch = 64;
-constexpr std::size_t kSendBuffer = 1u << 20;         ///< [byte] of what is sent through a duplicate of the socket
-constexpr std::int64_t kChallengeSpan = 100'000'000;  ///< [ns]
-constexpr std::size_t kStateLine = 0;
-constexpr std::size_t kSubscribeLine = 1;
+constexpr std::size_t kSendBuffer = 1u << 20;           ///< [byte] of what is sent through a duplicate of the socket
+constexpr std::int64_t kChallengePeriod = 100'000'000;  ///< [ns]
+constexpr std::size_t kStateChannel = 0;
+constexpr std::size_t kSubscribeChannel = 1;
 
 void require_ids(std::span<const std::uint32_t> ids, std::uint32_t smallest, const std::string& what) {
   for (const std::uint32_t id : ids) {
@@ -45,59 +45,60 @@ void Inbox::wait(int timeout_ms) const {
   poll(&readable, 1, timeout_ms);
 }
 
-Reason Inbox::accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now, Packet& packet) {
-  Reason reason = decode(bytes, packet);
-  if (reason == Reason::accepted) reason = judge(packet, source, now);
-  counts_.add(reason);
-  return reason;
+PacketStatus Inbox::accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now,
+                           Packet& packet) {
+  PacketStatus status = decode(bytes, packet);
+  if (status == PacketStatus::accepted) status = check(packet, source, now);
+  counts_.add(status);
+  return status;
 }
 
-Reason Inbox::judge(const Packet& packet, const Endpoint& source, std::int64_t now) {
+PacketStatus Inbox::check(const Packet& packet, const Endpoint& source, std::int64_t now) {
   switch (packet.header.type) {
     case Type::v2v:
     case Type::subscribe:
-      return judge_robot(packet, source, now);
+      return check_robot(packet, source, now);
     case Type::leave:
-      if (!robots_.row(packet.header.robot)) return Reason::unknown_robot;
-      if (packet.header.token != tokens_.of(source)) return Reason::unproven;
+      if (!robots_.row(packet.header.robot)) return PacketStatus::unknown_robot;
+      if (packet.header.token != tokens_.of(source)) return PacketStatus::unproven;
       return robots_.leave(packet.header.robot, source, now);
     case Type::tag:
-      if (!tags_.row(packet.header.robot)) return Reason::unknown_tag;
-      return tags_.admit(packet.header.robot, kStateLine, packet.header.sequence, source, now);
+      if (!tags_.row(packet.header.robot)) return PacketStatus::unknown_tag;
+      return tags_.admit(packet.header.robot, kStateChannel, packet.header.sequence, source, now);
     case Type::start:
-      return packet.header.robot == kEveryone || robots_.row(packet.header.robot) ? Reason::accepted
-                                                                                  : Reason::unknown_robot;
+      return packet.header.robot == kBroadcastId || robots_.row(packet.header.robot) ? PacketStatus::accepted
+                                                                                     : PacketStatus::unknown_robot;
     case Type::challenge:
     case Type::neighbours:
       break;
   }
-  return Reason::wrong_direction;
+  return PacketStatus::wrong_direction;
 }
 
-Reason Inbox::judge_robot(const Packet& packet, const Endpoint& source, std::int64_t now) {
+PacketStatus Inbox::check_robot(const Packet& packet, const Endpoint& source, std::int64_t now) {
   const std::uint32_t id = packet.header.robot;
   const auto row = robots_.row(id);
-  if (!row) return Reason::unknown_robot;
-  if (packet.header.token != tokens_.of(source)) return Reason::unproven;
+  if (!row) return PacketStatus::unknown_robot;
+  if (packet.header.token != tokens_.of(source)) return PacketStatus::unproven;
 
-  const bool was_heard = robots_.heard(id, now);
+  const bool was_active = robots_.is_active(id, now);
   const auto* request = std::get_if<Subscribe>(&packet.body);
-  const Reason reason =
-      robots_.admit(id, request != nullptr ? kSubscribeLine : kStateLine, packet.header.sequence, source, now);
-  if (reason != Reason::accepted) return reason;
-  if (!was_heard) kinds_[*row] = 0;
+  const PacketStatus status =
+      robots_.admit(id, request != nullptr ? kSubscribeChannel : kStateChannel, packet.header.sequence, source, now);
+  if (status != PacketStatus::accepted) return status;
+  if (!was_active) kinds_[*row] = 0;
   if (request != nullptr) kinds_[*row] = request->kinds;
   sessions_[*row] = packet.header.session;
-  return Reason::accepted;
+  return PacketStatus::accepted;
 }
 
 bool Inbox::challenge(const Packet& packet, const Endpoint& who, std::int64_t now, base::Bytes& out) {
   if (packet.header.type == Type::leave) return false;
-  if (now - challenging_since_ >= kChallengeSpan) {
-    challenging_since_ = now;
+  if (now - challenge_period_start_ >= kChallengePeriod) {
+    challenge_period_start_ = now;
     challenges_ = 0;
   }
-  if (challenges_ == kMostChallenges) return false;
+  if (challenges_ == kMaxChallenges) return false;
   ++challenges_;
   Header header;
   header.robot = packet.header.robot;
@@ -107,18 +108,18 @@ bool Inbox::challenge(const Packet& packet, const Endpoint& who, std::int64_t no
   return true;
 }
 
-Stamp Inbox::stamp_for(std::uint32_t robot) const {
+SessionToken Inbox::session_token_for(std::uint32_t robot) const {
   const auto row = robots_.row(robot);
   return {session_, row ? sessions_[*row] : 0};
 }
 
-bool Inbox::asks_for_others(std::uint32_t robot, std::int64_t now) const {
-  return heard(robot, now) && (kinds_[*robots_.row(robot)] & kOthers) != 0;
+bool Inbox::wants_neighbours(std::uint32_t robot, std::int64_t now) const {
+  return is_active(robot, now) && (kinds_[*robots_.row(robot)] & kNeighboursBit) != 0;
 }
 
-bool Inbox::wants(std::uint32_t robot, std::uint32_t kind, std::int64_t now) const {
+bool Inbox::is_subscribed(std::uint32_t robot, std::uint32_t kind, std::int64_t now) const {
   SF_CHECK(kind < 32, "sensor kind " + std::to_string(kind));
-  if (!heard(robot, now)) return false;
+  if (!is_active(robot, now)) return false;
   const std::uint32_t kinds = kinds_[*robots_.row(robot)];
   return kinds == 0 || (kinds >> kind & 1u) != 0;
 }

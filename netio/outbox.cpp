@@ -31,9 +31,9 @@ struct Batch {
 };
 
 Batch::Batch(std::size_t capacity)
-    : slots(capacity * kMaxPlain), destinations(capacity), vectors(capacity), messages(capacity) {
+    : slots(capacity * kMaxHeaderlessDatagram), destinations(capacity), vectors(capacity), messages(capacity) {
   for (std::size_t i = 0; i < capacity; ++i) {
-    vectors[i].iov_base = slots.data() + i * kMaxPlain;
+    vectors[i].iov_base = slots.data() + i * kMaxHeaderlessDatagram;
     messages[i].msg_hdr.msg_name = &destinations[i];
     messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_in);
     messages[i].msg_hdr.msg_iov = &vectors[i];
@@ -42,7 +42,7 @@ Batch::Batch(std::size_t capacity)
 }
 
 void Batch::put(std::size_t place, const Endpoint& to, std::span<const std::uint8_t> bytes) {
-  SF_CHECK(bytes.size() <= kMaxPlain, std::to_string(bytes.size()) + " bytes in one datagram");
+  SF_CHECK(bytes.size() <= kMaxHeaderlessDatagram, std::to_string(bytes.size()) + " bytes in one datagram");
   destinations[place] = to_posix(to);
   vectors[place].iov_len = bytes.size();
   if (!bytes.empty()) std::memcpy(vectors[place].iov_base, bytes.data(), bytes.size());
@@ -179,10 +179,11 @@ void Outbox::give_back(std::size_t count) {
 
 void Outbox::queue(const Endpoint& to, std::span<const std::uint8_t> bytes) { put(claim(1), to, bytes); }
 
-void Outbox::queue(const Endpoint& to, std::span<const std::uint8_t> bytes, const Stamp& stamp) {
+void Outbox::queue(const Endpoint& to, std::span<const std::uint8_t> bytes, const SessionToken& session_token) {
   const std::size_t place = claim(1);
   put(place, to, bytes);
-  netio::stamp({static_cast<std::uint8_t*>(storage_->filling->vectors[place].iov_base), bytes.size()}, stamp);
+  netio::write_session_token({static_cast<std::uint8_t*>(storage_->filling->vectors[place].iov_base), bytes.size()},
+                             session_token);
 }
 
 void Outbox::flush() {

@@ -48,10 +48,10 @@ class Outbox {
   ~Outbox();
   Outbox(Outbox&&) noexcept;
 
-  /// Keeps a copy of at most kMaxPlain bytes for the next flush.
+  /// Keeps a copy of at most kMaxHeaderlessDatagram bytes for the next flush.
   void queue(const Endpoint& to, std::span<const std::uint8_t> bytes);
   /// The same with another stamp: `bytes` are an encoded packet.
-  void queue(const Endpoint& to, std::span<const std::uint8_t> bytes, const Stamp& stamp);
+  void queue(const Endpoint& to, std::span<const std::uint8_t> bytes, const SessionToken& session_token);
 
   /// Room for `count` <= capacity datagrams, in this order: flushes first where there is too little. Each is to be
   /// `put`, by any thread, before anything else is asked of the outbox; or all are given back.

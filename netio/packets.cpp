@@ -14,48 +14,48 @@ namespace {
 constexpr std::size_t kTagBytes = 104;
 constexpr std::size_t kSubscribeBytes = 4;
 constexpr std::size_t kChallengeBytes = 4;
-constexpr std::size_t kStampAt = 24;     ///< [byte] of session and token
-constexpr std::size_t kReservedAt = 32;  ///< [byte] of age and covariance
-constexpr std::size_t kTrailerAt = 60;   ///< [byte] of the trailer's length
+constexpr std::size_t kSessionTokenAt = 24;  ///< [byte] of session and token
+constexpr std::size_t kReservedAt = 32;      ///< [byte] of age and covariance
+constexpr std::size_t kTrailerAt = 60;       ///< [byte] of the trailer's length
 constexpr std::uint32_t kDockingBit = 1;
 
-Reason judge(std::span<const double> values, double limit) {
+PacketStatus check(std::span<const double> values, double limit) {
   for (const double value : values) {
-    if (!std::isfinite(value)) return Reason::not_finite;
+    if (!std::isfinite(value)) return PacketStatus::not_finite;
   }
   for (const double value : values) {
-    if (std::abs(value) > limit) return Reason::out_of_range;
+    if (std::abs(value) > limit) return PacketStatus::out_of_range;
   }
-  return Reason::accepted;
+  return PacketStatus::accepted;
 }
 
 /// The first reason of several that is not `accepted`; a NaN anywhere comes before a range anywhere.
-Reason worst(std::initializer_list<Reason> reasons) {
-  Reason found = Reason::accepted;
-  for (const Reason reason : reasons) {
-    if (reason == Reason::not_finite) return reason;
-    if (found == Reason::accepted) found = reason;
+PacketStatus first_fault(std::initializer_list<PacketStatus> reasons) {
+  PacketStatus found = PacketStatus::accepted;
+  for (const PacketStatus status : reasons) {
+    if (status == PacketStatus::not_finite) return status;
+    if (found == PacketStatus::accepted) found = status;
   }
   return found;
 }
 
-Reason judge(const V2v& state) {
+PacketStatus check(const V2v& state) {
   const base::Pose& pose = state.X_WR;
   const base::Twist& twist = state.velocity;
-  const Reason numbers =
-      worst({judge(std::array{pose.x, pose.y, pose.z}, kMaxPosition), judge(std::array{pose.yaw}, kMaxYaw),
-             judge(std::array{twist.forward, twist.left, twist.turn}, kMaxSpeed)});
-  if (numbers != Reason::accepted) return numbers;
-  return state.follows == kNone || state.follows <= kMaxId ? Reason::accepted : Reason::out_of_range;
+  const PacketStatus numbers =
+      first_fault({check(std::array{pose.x, pose.y, pose.z}, kMaxPosition), check(std::array{pose.yaw}, kMaxYaw),
+                   check(std::array{twist.forward, twist.left, twist.turn}, kMaxSpeed)});
+  if (numbers != PacketStatus::accepted) return numbers;
+  return state.follows == kNone || state.follows <= kMaxId ? PacketStatus::accepted : PacketStatus::out_of_range;
 }
 
-Reason judge(const Tag& state) {
+PacketStatus check(const Tag& state) {
   const auto& q = state.orientation;
-  const Reason numbers = worst({judge(state.position, kMaxPosition), judge(q, 2.0), judge(state.linear, kMaxSpeed),
-                                judge(state.angular, kMaxSpeed)});
-  if (numbers != Reason::accepted) return numbers;
+  const PacketStatus numbers = first_fault({check(state.position, kMaxPosition), check(q, 2.0),
+                                            check(state.linear, kMaxSpeed), check(state.angular, kMaxSpeed)});
+  if (numbers != PacketStatus::accepted) return numbers;
   const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  return std::abs(norm - 1.0) <= 1e-3 ? Reason::accepted : Reason::out_of_range;
+  return std::abs(norm - 1.0) <= 1e-3 ? PacketStatus::accepted : PacketStatus::out_of_range;
 }
 
 template <std::size_t n>
@@ -70,12 +70,12 @@ void put_doubles(const std::array<double, n>& values, base::ByteWriter& writer) 
   for (const double value : values) writer.put(value);
 }
 
-Reason check_size(std::size_t size, std::size_t expected) {
-  if (size == expected) return Reason::accepted;
-  return size < expected ? Reason::too_short : Reason::too_long;
+PacketStatus check_size(std::size_t size, std::size_t expected) {
+  if (size == expected) return PacketStatus::accepted;
+  return size < expected ? PacketStatus::too_short : PacketStatus::too_long;
 }
 
-Reason read_v2v(base::ByteReader& reader, Packet& packet) {
+PacketStatus read_v2v(base::ByteReader& reader, Packet& packet) {
   V2v state;
   const auto v = get_doubles<7>(reader);
   state.X_WR = {v[0], v[1], v[2], v[3]};
@@ -85,33 +85,33 @@ Reason read_v2v(base::ByteReader& reader, Packet& packet) {
   const auto flags = reader.get<std::uint32_t>();
   state.docking = flags == kDockingBit;
   packet.body = state;
-  const Reason reason = judge(state);
-  if (reason != Reason::accepted) return reason;
-  return flags <= kDockingBit ? Reason::accepted : Reason::out_of_range;
+  const PacketStatus status = check(state);
+  if (status != PacketStatus::accepted) return status;
+  return flags <= kDockingBit ? PacketStatus::accepted : PacketStatus::out_of_range;
 }
 
-Reason read_tag(base::ByteReader& reader, Packet& packet) {
+PacketStatus read_tag(base::ByteReader& reader, Packet& packet) {
   Tag state;
   state.position = get_doubles<3>(reader);
   state.orientation = get_doubles<4>(reader);
   state.linear = get_doubles<3>(reader);
   state.angular = get_doubles<3>(reader);
   packet.body = state;
-  const Reason reason = judge(state);
-  if (reason != Reason::accepted) return reason;
-  return packet.header.robot >= kMinTag ? Reason::accepted : Reason::out_of_range;
+  const PacketStatus status = check(state);
+  if (status != PacketStatus::accepted) return status;
+  return packet.header.robot >= kMinTag ? PacketStatus::accepted : PacketStatus::out_of_range;
 }
 
-Reason read_body(std::span<const std::uint8_t> payload, Packet& packet) {
+PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
   base::ByteReader reader(payload);
-  Reason reason = Reason::accepted;
+  PacketStatus status = PacketStatus::accepted;
   switch (packet.header.type) {
     case Type::v2v:
-      reason = check_size(payload.size(), kV2vBytes - kHeaderBytes);
-      return reason == Reason::accepted ? read_v2v(reader, packet) : reason;
+      status = check_size(payload.size(), kV2vBytes - kHeaderBytes);
+      return status == PacketStatus::accepted ? read_v2v(reader, packet) : status;
     case Type::tag:
-      reason = check_size(payload.size(), kTagBytes);
-      return reason == Reason::accepted ? read_tag(reader, packet) : reason;
+      status = check_size(payload.size(), kTagBytes);
+      return status == PacketStatus::accepted ? read_tag(reader, packet) : status;
     case Type::subscribe:
       packet.body = Subscribe{reader.get<std::uint32_t>()};
       return check_size(payload.size(), kSubscribeBytes);
@@ -126,20 +126,20 @@ Reason read_body(std::span<const std::uint8_t> payload, Packet& packet) {
       return check_size(payload.size(), kChallengeBytes);
     case Type::neighbours:
       packet.body = Neighbours{payload};
-      if (payload.size() > kMostNeighbours * kV2vBytes) return Reason::too_long;
-      return payload.empty() || payload.size() % kV2vBytes != 0 ? Reason::too_short : Reason::accepted;
+      if (payload.size() > kMaxNeighbours * kV2vBytes) return PacketStatus::too_long;
+      return payload.empty() || payload.size() % kV2vBytes != 0 ? PacketStatus::too_short : PacketStatus::accepted;
   }
-  if (kind_of(packet.header.type) == 0) return Reason::unknown_type;
+  if (kind_of(packet.header.type) == 0) return PacketStatus::unknown_type;
   packet.body = Reading{payload};
-  return payload.size() <= kMaxPayload ? Reason::accepted : Reason::too_long;
+  return payload.size() <= kMaxPayload ? PacketStatus::accepted : PacketStatus::too_long;
 }
 
 /// @param trailer [byte] behind the payload
-Reason read_header(base::ByteReader& reader, Header& header, std::size_t& trailer) {
+PacketStatus read_header(base::ByteReader& reader, Header& header, std::size_t& trailer) {
   for (const std::uint8_t letter : kMagic) {
-    if (reader.get<std::uint8_t>() != letter) return Reason::bad_magic;
+    if (reader.get<std::uint8_t>() != letter) return PacketStatus::bad_magic;
   }
-  if (reader.get<std::uint8_t>() != kVersion) return Reason::unknown_version;
+  if (reader.get<std::uint8_t>() != kVersion) return PacketStatus::unknown_version;
   header.type = static_cast<Type>(reader.get<std::uint8_t>());
   header.robot = reader.get<std::uint16_t>();
   header.sensor = reader.get<std::uint16_t>();
@@ -150,7 +150,7 @@ Reason read_header(base::ByteReader& reader, Header& header, std::size_t& traile
   header.token = reader.get<std::uint32_t>();
   reader.get_bytes(kTrailerAt - kReservedAt);
   trailer = reader.get<std::uint16_t>();
-  return Reason::accepted;
+  return PacketStatus::accepted;
 }
 
 void start(Header header, Type type, base::Bytes& out) {
@@ -162,23 +162,23 @@ void start(Header header, Type type, base::Bytes& out) {
 
 }  // namespace
 
-Reason decode(std::span<const std::uint8_t> bytes, Packet& packet) {
-  if (bytes.size() < kHeaderBytes) return Reason::too_short;
+PacketStatus decode(std::span<const std::uint8_t> bytes, Packet& packet) {
+  if (bytes.size() < kHeaderBytes) return PacketStatus::too_short;
   base::ByteReader reader(bytes);
   Packet read;
   std::size_t trailer = 0;
-  Reason reason = read_header(reader, read.header, trailer);
-  if (reason != Reason::accepted) return reason;
-  if (bytes.size() < kHeaderBytes + trailer) return Reason::too_short;
+  PacketStatus status = read_header(reader, read.header, trailer);
+  if (status != PacketStatus::accepted) return status;
+  if (bytes.size() < kHeaderBytes + trailer) return PacketStatus::too_short;
 
-  reason = read_body(bytes.subspan(kHeaderBytes, bytes.size() - kHeaderBytes - trailer), read);
-  if (reason != Reason::accepted) return reason;
-  if (read.header.time < 0 || read.header.time > kMaxTime || trailer > kMaxTrailer) return Reason::out_of_range;
+  status = read_body(bytes.subspan(kHeaderBytes, bytes.size() - kHeaderBytes - trailer), read);
+  if (status != PacketStatus::accepted) return status;
+  if (read.header.time < 0 || read.header.time > kMaxTime || trailer > kMaxTrailer) return PacketStatus::out_of_range;
   packet = read;
-  return Reason::accepted;
+  return PacketStatus::accepted;
 }
 
-std::uint16_t accuracy_word(const Accuracy& accuracy) {
+std::uint16_t encode_accuracy(const Accuracy& accuracy) {
   SF_CHECK(accuracy.mode < 16, "mode " + std::to_string(accuracy.mode) + " in a packet");
   const unsigned low = accuracy.mode | (accuracy.unsure ? 0x10u : 0u);
   if (!(accuracy.bound > 0.0) || std::isinf(accuracy.bound)) return static_cast<std::uint16_t>(low);
@@ -188,7 +188,7 @@ std::uint16_t accuracy_word(const Accuracy& accuracy) {
   return static_cast<std::uint16_t>(k << 5 | low);
 }
 
-Accuracy read_accuracy(std::uint16_t word) {
+Accuracy decode_accuracy(std::uint16_t word) {
   const int k = word >> 5;
   const double bound = k > 0 ? std::exp2((k - 1024) / 16.0) : HUGE_VAL;
   return {static_cast<std::uint8_t>(word & 0xFu), (word & 0x10u) != 0, bound};
@@ -210,15 +210,15 @@ void put_header(const Header& header, base::ByteWriter& writer) {
   writer.put_bytes(kReserved.data(), kReserved.size());
 }
 
-void stamp(std::span<std::uint8_t> packet, const Stamp& stamp) {
+void write_session_token(std::span<std::uint8_t> packet, const SessionToken& session_token) {
   SF_CHECK(packet.size() >= kHeaderBytes, std::to_string(packet.size()) + " bytes without a header");
-  const std::uint32_t words[] = {stamp.session, stamp.token};
-  std::memcpy(packet.data() + kStampAt, words, sizeof words);
+  const std::uint32_t words[] = {session_token.session, session_token.token};
+  std::memcpy(packet.data() + kSessionTokenAt, words, sizeof words);
 }
 
 void encode(const Header& header, const V2v& state, base::Bytes& out) {
-  SF_CHECK(judge(state) == Reason::accepted,
-           "V2V of robot " + std::to_string(header.robot) + ": " + std::string(name(judge(state))));
+  SF_CHECK(check(state) == PacketStatus::accepted,
+           "V2V of robot " + std::to_string(header.robot) + ": " + std::string(name(check(state))));
   start(header, Type::v2v, out);
   base::ByteWriter writer(out);
   put_doubles(std::array{state.X_WR.x, state.X_WR.y, state.X_WR.z, state.X_WR.yaw}, writer);
@@ -230,8 +230,8 @@ void encode(const Header& header, const V2v& state, base::Bytes& out) {
 
 void encode(const Header& header, const Tag& state, base::Bytes& out) {
   SF_CHECK(header.robot >= kMinTag, "tag id 0 in a packet");
-  SF_CHECK(judge(state) == Reason::accepted,
-           "TAG " + std::to_string(header.robot) + ": " + std::string(name(judge(state))));
+  SF_CHECK(check(state) == PacketStatus::accepted,
+           "TAG " + std::to_string(header.robot) + ": " + std::string(name(check(state))));
   start(header, Type::tag, out);
   base::ByteWriter writer(out);
   put_doubles(state.position, writer);
@@ -257,13 +257,13 @@ void encode(const Header& header, const Challenge& challenge, base::Bytes& out) 
 
 void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out) {
   const std::size_t size = neighbours.states.size();
-  SF_CHECK(size > 0 && size % kV2vBytes == 0 && size <= kMostNeighbours * kV2vBytes,
+  SF_CHECK(size > 0 && size % kV2vBytes == 0 && size <= kMaxNeighbours * kV2vBytes,
            std::to_string(size) + " bytes of V2V");
   start(header, Type::neighbours, out);
   out.insert(out.end(), neighbours.states.begin(), neighbours.states.end());
 }
 
-void frame(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out) {
+void encode_reading(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out) {
   SF_CHECK(kind_of(Type{type}) != 0, "type " + std::to_string(type) + " is no reading's");
   SF_CHECK(payload.size() <= kMaxPayload, std::to_string(payload.size()) + " bytes of payload");
   start(header, Type{type}, out);

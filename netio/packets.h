@@ -2,8 +2,8 @@
 // The farm's packets as values, and their bytes. docs/packets.md gives every byte and every limit; this is its code.
 //
 // What a reading's payload says is its sensor kind's business: here it is any bytes behind a header.
-// Decoding is total: any bytes give a packet or one Reason. Encoding is for those who keep the limits: a value that the
-// decoder would refuse is our bug and aborts.
+// Decoding is total: any bytes give a packet or one PacketStatus. Encoding is for those who keep the limits: a value
+// that the decoder would refuse is our bug and aborts.
 
 #include <array>
 #include <cstdint>
@@ -13,7 +13,7 @@
 #include "base/bytes.h"
 #include "base/pose.h"
 #include "base/report.h"
-#include "netio/reason.h"
+#include "netio/packet_status.h"
 
 namespace sf::netio {
 
@@ -23,9 +23,9 @@ inline constexpr std::size_t kHeaderBytes = 64;
 inline constexpr std::size_t kMaxDatagram = 1400;  ///< [byte] no packet of ours is longer, so none is fragmented
 inline constexpr std::size_t kMaxTrailer = 80;     ///< [byte] kept free for a signature behind the payload
 inline constexpr std::size_t kMaxPayload = kMaxDatagram - kHeaderBytes - kMaxTrailer;  ///< [byte]
-inline constexpr std::size_t kMaxPlain = 2046;                   ///< [byte] but for the thesis' halves of a map
+inline constexpr std::size_t kMaxHeaderlessDatagram = 2046;      ///< [byte] but for the thesis' halves of a map
 inline constexpr std::uint32_t kMaxId = 0xFFFFu;                 ///< of a robot, and of a sensor
-inline constexpr std::uint16_t kEveryone = 0xFFFFu;              ///< START: every robot, and not the one with this id
+inline constexpr std::uint16_t kBroadcastId = 0xFFFFu;           ///< START: every robot, and not the one with this id
 inline constexpr std::uint32_t kNone = 0xFFFFFFFFu;              ///< V2V: follows nobody, heads for no checkpoint
 inline constexpr std::uint32_t kMinTag = 1;                      ///< tags are 1 to kMaxId; the thesis has 1 to 32
 inline constexpr double kMaxPosition = 1e7;                      ///< [m] of each coordinate: every UTM coordinate fits
@@ -70,8 +70,8 @@ struct Accuracy {
   double bound = 0.0;   ///< [unit of the first column]; infinite: none is stated
 };
 /// Bounds of 0 and infinite ones are not stated; others saturate at 2^-63 and 2^63.
-std::uint16_t accuracy_word(const Accuracy& accuracy);
-Accuracy read_accuracy(std::uint16_t word);
+std::uint16_t encode_accuracy(const Accuracy& accuracy);
+Accuracy decode_accuracy(std::uint16_t word);
 
 /// A robot says where it is.
 struct V2v {
@@ -92,11 +92,12 @@ struct Tag {
 
 /// A robot asks for readings without moving anything.
 struct Subscribe {
-  std::uint32_t kinds = 0;  ///< bit k: sensor kind k; bit 0: others' states, see kOthers; 0: all kinds, but not these
+  std::uint32_t kinds =
+      0;  ///< bit k: sensor kind k; bit 0: others' states, see kNeighboursBit; 0: all kinds, but not these
 };
-inline constexpr std::uint32_t kOthers = 1;  ///< the bit of SUBSCRIBE that asks for what other robots say
+inline constexpr std::uint32_t kNeighboursBit = 1;  ///< the bit of SUBSCRIBE that asks for what other robots say
 
-/// The signal to begin, to the robot that the header names or to kEveryone.
+/// The signal to begin, to the robot that the header names or to kBroadcastId.
 struct Start {};
 
 /// A robot's last word: it will not be heard again, and its id is free.
@@ -107,13 +108,13 @@ struct Challenge {
   std::uint32_t token = 0;
 };
 
-inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;              ///< of a whole V2V
-inline constexpr std::size_t kMostNeighbours = kMaxPayload / kV2vBytes;  ///< V2V in one NEIGHBOURS
-inline constexpr double kRadioRange = 50.0;  ///< [m] how far the farm passes V2V on, unless told otherwise
+inline constexpr std::size_t kV2vBytes = kHeaderBytes + 68;             ///< of a whole V2V
+inline constexpr std::size_t kMaxNeighbours = kMaxPayload / kV2vBytes;  ///< V2V in one NEIGHBOURS
+inline constexpr double kV2vRange = 50.0;  ///< [m] how far the farm passes V2V on, unless told otherwise
 
 /// The farm passes on what other robots said: whole V2V datagrams, one after another.
 struct Neighbours {
-  std::span<const std::uint8_t> states;  ///< 1 to kMostNeighbours of kV2vBytes, not looked into; live like the datagram
+  std::span<const std::uint8_t> states;  ///< 1 to kMaxNeighbours of kV2vBytes, not looked into; live like the datagram
 };
 
 /// A sensor's reading, or a part of one; its kind reads it.
@@ -126,8 +127,8 @@ struct Packet {
   std::variant<V2v, Tag, Subscribe, Start, Leave, Challenge, Neighbours, Reading> body;
 };
 
-/// Reads any bytes. Fills `packet` only when the answer is Reason::accepted.
-Reason decode(std::span<const std::uint8_t> bytes, Packet& packet);
+/// Reads any bytes. Fills `packet` only when the answer is PacketStatus::accepted.
+PacketStatus decode(std::span<const std::uint8_t> bytes, Packet& packet);
 
 /// Replace what `out` holds; its capacity is kept. The header's type is set by the function.
 void encode(const Header& header, const V2v& state, base::Bytes& out);
@@ -140,18 +141,18 @@ void encode(const Header& header, const Neighbours& neighbours, base::Bytes& out
 
 /// A reading of type `type`, one of a sensor kind's two; replaces what `out` holds.
 /// Rule: the payload takes at most kMaxPayload.
-void frame(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out);
+void encode_reading(const Header& header, std::uint8_t type, std::span<const std::uint8_t> payload, base::Bytes& out);
 
 /// Appends the 64 bytes that every packet begins with. Age, covariance and trailer are reserved: 0.
 void put_header(const Header& header, base::ByteWriter& writer);
 
 /// The two fields of a header that differ by receiver.
-struct Stamp {
+struct SessionToken {
   std::uint32_t session = 0;
   std::uint32_t token = 0;
 };
 /// Writes both into an encoded packet.
-void stamp(std::span<std::uint8_t> packet, const Stamp& stamp);
+void write_session_token(std::span<std::uint8_t> packet, const SessionToken& session_token);
 
 /// The state of world mover `mover`, as the farm takes it in. A tag's tilt is left out; its velocity becomes that of
 /// the mover, in the mover's own frame. @param X_MT the tag in the mover's frame

@@ -21,7 +21,7 @@ inline std::uint64_t port(const PortRule& rule, std::uint32_t robot, std::uint32
 }
 
 /// The sensors of one kind on one robot.
-struct PortUse {
+struct SensorPorts {
   std::uint32_t robot = 0;
   std::uint32_t sensors = 0;  ///< numbered `first` to `first` + `sensors` - 1
   PortRule rule;
@@ -33,10 +33,10 @@ struct PortUse {
 
 /// @throws base::InputError, one line, when an id or a port is past 65535, a port is 0, or two sensors share one; it
 /// names both, and says which base or stride would do.
-void require_ports(std::span<const PortUse> uses);
+void require_ports(std::span<const SensorPorts> uses);
 
 /// `usual` where it keeps all ports apart and within 65535, else the least stride that does; `usual` where none does.
 /// The uses' own strides are not looked at.
-std::uint32_t least_stride(std::span<const PortUse> uses, std::uint32_t usual);
+std::uint32_t smallest_stride(std::span<const SensorPorts> uses, std::uint32_t usual);
 
 }  // namespace sf::netio

@@ -8,12 +8,12 @@
 namespace sf::netio {
 
 Relay::Relay(std::span<const std::uint32_t> robots, const RelayOptions& options)
-    : options_(options), robots_(robots.size()), nearby_(robots.size()) {
-  SF_CHECK(options.most >= kLeastShare && options.budget >= kLeastShare, "a relay that passes nothing on");
+    : options_(options), robots_(robots.size()), neighbour_tree_(robots.size()) {
+  SF_CHECK(options.most >= kMinShare && options.budget >= kMinShare, "a relay that passes nothing on");
   for (std::size_t i = 0; i < robots.size(); ++i) robots_[i].id = robots[i];
   std::sort(robots_.begin(), robots_.end(), [](const Robot& a, const Robot& b) { return a.id < b.id; });
-  spoke_.reserve(robots.size());
-  askers_.reserve(robots.size());
+  updated_.reserve(robots.size());
+  recipients_.reserve(robots.size());
   states_.reserve(kMaxDatagram);
   packet_.reserve(kMaxDatagram);
   encode({}, Start{}, start_);
@@ -37,17 +37,17 @@ void Relay::take(const Packet& packet) {
     robot->p = {state->X_WR.x, state->X_WR.y};
     encode(packet.header, *state, robot->state);
   } else if (std::holds_alternative<Start>(packet.body)) {
-    const bool all = packet.header.robot == kEveryone;
+    const bool all = packet.header.robot == kBroadcastId;
     if (!all && robot == nullptr) return;
-    (all ? all_started_ : robot->started) = true;
+    (all ? start_pending_ : robot->started) = true;
     encode(packet.header, Start{}, all ? start_ : robot->start);
   }
 }
 
-void Relay::pass_on(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
+void Relay::forward(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
   send_starts(inbox, now, outbox);
   if (options_.range > 0.0) {
-    find_askers(inbox, now);
+    find_recipients(inbox, now);
     send_states(inbox, now, outbox);
   }
   for (Robot& robot : robots_)
@@ -56,63 +56,64 @@ void Relay::pass_on(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
 
 void Relay::send_starts(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
   for (Robot& robot : robots_) {
-    if ((robot.started || all_started_) && inbox.heard(robot.id, now)) {
-      outbox.queue(*inbox.address(robot.id), robot.started ? robot.start : start_, inbox.stamp_for(robot.id));
+    if ((robot.started || start_pending_) && inbox.is_active(robot.id, now)) {
+      outbox.queue(*inbox.address(robot.id), robot.started ? robot.start : start_, inbox.session_token_for(robot.id));
       ++counts_.starts;
     }
     robot.started = false;
   }
-  all_started_ = false;
+  start_pending_ = false;
 }
 
 /// With the places of all that spoke since the turn of the one that waits longest.
-void Relay::find_askers(const Inbox& inbox, std::int64_t now) {
-  askers_.clear();
-  spoke_.clear();
+void Relay::find_recipients(const Inbox& inbox, std::int64_t now) {
+  recipients_.clear();
+  updated_.clear();
   std::uint32_t longest = 0;
   for (std::uint32_t row = 0; row < robots_.size(); ++row) {
     Robot& robot = robots_[row];
-    if (!inbox.asks_for_others(robot.id, now)) {
+    if (!inbox.wants_neighbours(robot.id, now)) {
       robot.waits = 0;
       continue;
     }
-    askers_.push_back(row);
+    recipients_.push_back(row);
     longest = std::max(longest, robot.waits);
   }
-  for (std::uint32_t row = 0; row < robots_.size() && !askers_.empty(); ++row)
-    if (robots_[row].age <= longest) spoke_.push_back({*robots_[row].p, row, robots_[row].age});
-  nearby_.build(spoke_);
+  for (std::uint32_t row = 0; row < robots_.size() && !recipients_.empty(); ++row)
+    if (robots_[row].age <= longest) updated_.push_back({*robots_[row].p, row, robots_[row].age});
+  neighbour_tree_.build(updated_);
 }
 
 /// From the robot on that was passed over first last time, as far as the budget goes.
 void Relay::send_states(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
-  if (spoke_.empty()) return;
-  const std::size_t share = std::clamp(options_.budget / askers_.size(), kLeastShare, options_.most);
-  const auto first = std::lower_bound(askers_.begin(), askers_.end(), turn_) - askers_.begin();
-  std::rotate(askers_.begin(), askers_.begin() + first, askers_.end());
+  if (updated_.empty()) return;
+  const std::size_t share = std::clamp(options_.budget / recipients_.size(), kMinShare, options_.most);
+  const auto first = std::lower_bound(recipients_.begin(), recipients_.end(), turn_) - recipients_.begin();
+  std::rotate(recipients_.begin(), recipients_.begin() + first, recipients_.end());
   std::size_t left = options_.budget, served = 0;
-  for (; served < askers_.size() && left >= share; ++served)
-    left -= send_others(robots_[askers_[served]], share, inbox, now, outbox);
-  if (served < askers_.size()) turn_ = askers_[served];
-  for (; served < askers_.size(); ++served) {
-    ++robots_[askers_[served]].waits;
+  for (; served < recipients_.size() && left >= share; ++served)
+    left -= send_others(robots_[recipients_[served]], share, inbox, now, outbox);
+  if (served < recipients_.size()) turn_ = recipients_[served];
+  for (; served < recipients_.size(); ++served) {
+    ++robots_[recipients_[served]].waits;
     ++counts_.waited;
   }
 }
 
 std::size_t Relay::send_others(Robot& to, std::size_t most, const Inbox& inbox, std::int64_t now, Outbox& outbox) {
-  const Stamp stamp = inbox.stamp_for(to.id);
+  const SessionToken session_token = inbox.session_token_for(to.id);
   const auto own = static_cast<std::uint32_t>(&to - robots_.data());
-  const auto rows = nearby_.find({.p = to.p, .own = own, .range = options_.range, .most = most, .oldest = to.waits});
-  for (std::size_t first = 0; first < rows.size(); first += kMostNeighbours) {
+  const auto rows =
+      neighbour_tree_.find({.p = to.p, .own = own, .range = options_.range, .max_count = most, .max_age = to.waits});
+  for (std::size_t first = 0; first < rows.size(); first += kMaxNeighbours) {
     states_.clear();
-    for (const std::uint32_t row : rows.subspan(first, std::min(kMostNeighbours, rows.size() - first))) {
+    for (const std::uint32_t row : rows.subspan(first, std::min(kMaxNeighbours, rows.size() - first))) {
       states_.insert(states_.end(), robots_[row].state.begin(), robots_[row].state.end());
-      netio::stamp(std::span(states_).last(kV2vBytes), stamp);
+      netio::write_session_token(std::span(states_).last(kV2vBytes), session_token);
     }
     encode({.robot = static_cast<std::uint16_t>(to.id), .sequence = to.sent++, .time = now}, Neighbours{states_},
            packet_);
-    outbox.queue(*inbox.address(to.id), packet_, stamp);
+    outbox.queue(*inbox.address(to.id), packet_, session_token);
     ++counts_.datagrams;
   }
   to.waits = 0;

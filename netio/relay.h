@@ -4,7 +4,7 @@
 // grow with traffic in.
 //
 //   relay.take(packet);                        // each packet that the inbox accepted
-//   relay.pass_on(inbox, now, outbox);         // each tick; then outbox.flush()
+//   relay.forward(inbox, now, outbox);         // each tick; then outbox.flush()
 
 #include <cstdint>
 #include <limits>
@@ -13,16 +13,16 @@
 #include <vector>
 
 #include "netio/inbox.h"
-#include "netio/nearby.h"
+#include "netio/neighbour_tree.h"
 #include "netio/outbox.h"
 #include "netio/packets.h"
 
 namespace sf::netio {
 
 struct RelayOptions {
-  double range = kRadioRange;   ///< [m] farther away, states are not passed on; 0: none is
+  double range = kV2vRange;     ///< [m] farther away, states are not passed on; 0: none is
   std::size_t most = 64;        ///< states to one robot per tick, of the nearest
-  std::size_t budget = 16'384;  ///< states to all robots per tick, shared alike; at least Relay::kLeastShare
+  std::size_t budget = 16'384;  ///< states to all robots per tick, shared alike; at least Relay::kMinShare
 };
 
 struct RelayCounts {
@@ -37,21 +37,21 @@ class Relay {
  public:
   /// States that a robot is passed in its turn, however many ask. Where the budget does not serve all in one tick they
   /// take turns, and each is passed what was said since its last one.
-  static constexpr std::size_t kLeastShare = 4;
+  static constexpr std::size_t kMinShare = 4;
 
   /// @param robots ids that the world has
   explicit Relay(std::span<const std::uint32_t> robots, const RelayOptions& options = {});
 
-  /// Keeps a V2V of one of the robots, or a START, until the next `pass_on`: the newest of each. Others are left out.
+  /// Keeps a V2V of one of the robots, or a START, until the next `forward`: the newest of each. Others are left out.
   void take(const Packet& packet);
 
   /// Queues what came since the last time, to where each robot that is heard at `now` [ns] sends from; a robot is not
   /// sent its own state. What nobody wanted is forgotten.
-  void pass_on(const Inbox& inbox, std::int64_t now, Outbox& outbox);
+  void forward(const Inbox& inbox, std::int64_t now, Outbox& outbox);
 
   const RelayCounts& counts() const { return counts_; }
   /// Places that the search for neighbours looked at.
-  std::uint64_t looks() const { return nearby_.looks(); }
+  std::uint64_t visits() const { return neighbour_tree_.visits(); }
 
  private:
   struct Robot {
@@ -66,18 +66,18 @@ class Relay {
   };
   Robot* find(std::uint32_t id);
   void send_starts(const Inbox& inbox, std::int64_t now, Outbox& outbox);
-  void find_askers(const Inbox& inbox, std::int64_t now);
+  void find_recipients(const Inbox& inbox, std::int64_t now);
   void send_states(const Inbox& inbox, std::int64_t now, Outbox& outbox);
   std::size_t send_others(Robot& to, std::size_t most, const Inbox& inbox, std::int64_t now, Outbox& outbox);
 
   RelayOptions options_;
-  std::vector<Robot> robots_;          ///< by id
-  std::vector<Nearby::Place> spoke_;   ///< of one pass
-  std::vector<std::uint32_t> askers_;  ///< rows, of one pass
-  Nearby nearby_;
-  std::uint32_t turn_ = 0;    ///< row that is served first
-  bool all_started_ = false;  ///< a START for everyone waits
-  base::Bytes start_;         ///< that one
+  std::vector<Robot> robots_;                  ///< by id
+  std::vector<NeighbourTree::Place> updated_;  ///< of one pass
+  std::vector<std::uint32_t> recipients_;      ///< rows, of one pass
+  NeighbourTree neighbour_tree_;
+  std::uint32_t turn_ = 0;      ///< row that is served first
+  bool start_pending_ = false;  ///< a START for everyone waits
+  base::Bytes start_;           ///< that one
   base::Bytes states_, packet_;
   RelayCounts counts_;
 };

@@ -53,7 +53,7 @@ Socket open_udp(const Endpoint& endpoint, const SocketBuffers& buffers) {
   if (bind(opened.descriptor(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     const int error = errno;
     const std::string what = "cannot bind UDP " + text(endpoint) + ": " + error_text(error) + "; " + remedy(error);
-    if (error == EADDRINUSE) throw PortTaken(what);
+    if (error == EADDRINUSE) throw PortInUse(what);
     throw base::InputError(what);
   }
   ask_buffer(opened.descriptor(), SO_RCVBUFFORCE, SO_RCVBUF, buffers.receive);
@@ -96,7 +96,7 @@ std::uint64_t kernel_drops(const Socket& socket) {
   return memory[SK_MEMINFO_DROPS];
 }
 
-void allow_open_files(std::size_t count) {
+void raise_open_file_limit(std::size_t count) {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= count) return;
   if (limit.rlim_max >= count) {

@@ -36,13 +36,13 @@ struct SocketBuffers {
 };
 
 /// Another socket is bound there.
-class PortTaken : public base::InputError {
+class PortInUse : public base::InputError {
  public:
   using base::InputError::InputError;
 };
 
 /// A bound, non-blocking UDP socket. The kernel may grant smaller buffers (net.core.rmem_max): see receive_buffer.
-/// @throws PortTaken, or base::InputError when the address is not this machine's or there are no descriptors left.
+/// @throws PortInUse, or base::InputError when the address is not this machine's or there are no descriptors left.
 Socket open_udp(const Endpoint& bind, const SocketBuffers& buffers = {});
 
 /// The same socket under a second descriptor.
@@ -64,7 +64,7 @@ std::uint64_t kernel_drops(const Socket& socket);
 
 /// Raises this process' soft limit of open files to at least `count` (never lowers it).
 /// @throws base::InputError when the hard limit is lower.
-void allow_open_files(std::size_t count);
+void raise_open_file_limit(std::size_t count);
 
 /// Datagrams taken from a socket many at a time, into storage made once.
 class ReceiveBatch {

@@ -95,7 +95,7 @@ std::string counted(std::uint64_t count, std::string_view one) {
 
 namespace {
 
-std::string readings_of(const netio::LinkPlan& link) {
+std::string readings_of(const netio::LinkModel& link) {
   std::string text = "Readings come at once";
   if (link.jitter > 0.0)
     text = fmt::format("Readings come {:g} to {:g} s late", link.delay, link.delay + link.jitter);

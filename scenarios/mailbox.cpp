@@ -17,7 +17,7 @@ Mailbox::Slot& Mailbox::slot_of(const base::ReadingBlock& reading) {
 
 void Mailbox::post(const base::ReadingBlock& reading, std::int64_t now) {
   const std::uint32_t stream = std::uint32_t{reading.kind} << 16 | reading.sensor;
-  const auto later = netio::fate(link_, {robot_, stream, reading.sequence});
+  const auto later = netio::sample_delay(link_, {robot_, stream, reading.sequence});
   if (!later) return;
   Slot& slot = slot_of(reading);
   auto place = std::find_if(slot.coming.begin(), slot.coming.end(), [](const Kept& kept) { return !kept.used; });

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/reading.h"
-#include "netio/link.h"
+#include "netio/link_model.h"
 
 namespace sf::scenarios {
 
@@ -14,7 +14,7 @@ namespace sf::scenarios {
 class Mailbox {
  public:
   /// @param robot names the robot's messages among all that have the link's seed
-  Mailbox(const netio::LinkPlan& link, std::uint32_t robot) : link_(link), robot_(robot) {}
+  Mailbox(const netio::LinkModel& link, std::uint32_t robot) : link_(link), robot_(robot) {}
 
   /// A reading leaves the farm at `now` [ns]; it is copied, or lost.
   void post(const base::ReadingBlock& reading, std::int64_t now);
@@ -45,7 +45,7 @@ class Mailbox {
   Slot& slot_of(const base::ReadingBlock& reading);
   static void show(Slot& slot, std::int64_t now);
 
-  netio::LinkPlan link_;
+  netio::LinkModel link_;
   std::uint32_t robot_;
   std::vector<Slot> slots_;
   std::vector<base::ReadingBlock> open_;

@@ -10,7 +10,7 @@
 
 #include "base/pose.h"
 #include "control/controllers.h"
-#include "netio/link.h"
+#include "netio/link_model.h"
 #include "scenarios/plant.h"
 #include "scenarios/simulation.h"
 #include "world/world.h"

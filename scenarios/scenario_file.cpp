@@ -138,7 +138,7 @@ control::Plan plan_of(const Reader& reader, const TomlNode& table, const control
   return plan;
 }
 
-netio::LinkPlan link_of(const Reader& reader, const TomlNode* table, const netio::LinkPlan& fallback) {
+netio::LinkModel link_of(const Reader& reader, const TomlNode* table, const netio::LinkModel& fallback) {
   if (table == nullptr) return fallback;
   reader.require_known(*table, kLinkKeys);
   return {reader.number(*table, "delay", 0.0, 0.0, kLongestDelay),

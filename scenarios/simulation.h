@@ -18,7 +18,7 @@
 #include "control/controllers.h"
 #include "farm/farm.h"
 #include "farm/stored_reading.h"
-#include "netio/link.h"
+#include "netio/link_model.h"
 #include "robots/fleet.h"
 #include "robots/neighbour_grid.h"
 #include "scenarios/mailbox.h"
@@ -31,7 +31,7 @@ namespace sf::scenarios {
 /// Who drives one robot, and how its readings come to it.
 struct Actor {
   control::Plan plan{.controller = "wander"};  ///< no name: the robot stands
-  netio::LinkPlan link;                        ///< of its readings; V2V and its own state are not delayed
+  netio::LinkModel link;                       ///< of its readings; V2V and its own state are not delayed
 };
 
 struct SimulationOptions {

@@ -12,7 +12,7 @@ namespace sf::selftest {
 
 namespace {
 
-using netio::Reason;
+using netio::PacketStatus;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

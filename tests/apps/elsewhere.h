@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "netio/packets.h"
-#include "netio/radio.h"
 #include "netio/socket.h"
+#include "netio/v2v_socket.h"
 #include "sensors/laser_packets.h"
 #include "tests/apps/json.h"
 #include "tests/apps/program.h"
@@ -31,10 +31,10 @@ class Robot {
  public:
   Robot(std::uint16_t id, unsigned service, unsigned hears)
       : id_(id),
-        radio_({.farm = {netio::kLoopback, static_cast<std::uint16_t>(service)},
-                .robot = id,
-                .others = {id == 1 ? 2u : 1u}}),
-        ears_(netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(hears)})),
+        v2v_socket_({.farm = {netio::kLoopback, static_cast<std::uint16_t>(service)},
+                     .robot = id,
+                     .others = {id == 1 ? 2u : 1u}}),
+        socket_(netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(hears)})),
         batch_(16) {}
 
   base::Bytes state(const base::Pose& X_WR) {
@@ -50,22 +50,23 @@ class Robot {
   void say(const base::Pose& X_WR) { send(state(X_WR)); }
   void send(const base::Bytes& bytes) {
     challenged();
-    radio_.send(bytes);
+    v2v_socket_.send(bytes);
   }
   /// Has the farm asked whether it is where it says? From then on what it sends is proven.
   bool challenged() {
-    radio_.receive([&](std::span<const std::uint8_t> bytes) {
+    v2v_socket_.receive([&](std::span<const std::uint8_t> bytes) {
       netio::Packet packet;
-      if (radio_.accept(bytes, 0, packet) == netio::Reason::accepted && packet.header.type == netio::Type::v2v)
+      if (v2v_socket_.accept(bytes, 0, packet) == netio::PacketStatus::accepted &&
+          packet.header.type == netio::Type::v2v)
         ++states_;
     });
-    return radio_.farm_stamp().session != 0;
+    return v2v_socket_.farm_session_token().session != 0;
   }
 
   /// For its laser, and the other's states.
   void ask() {
     base::Bytes bytes;
-    netio::encode({.robot = id_, .sequence = requests_++}, netio::Subscribe{netio::kOthers | 1u << 1}, bytes);
+    netio::encode({.robot = id_, .sequence = requests_++}, netio::Subscribe{netio::kNeighboursBit | 1u << 1}, bytes);
     send(bytes);
   }
   std::size_t states() const { return states_; }  ///< of the other, that came
@@ -79,11 +80,11 @@ class Robot {
   /// A reading for `other` waits where this one hears.
   bool overhears(const Robot& other) {
     bool found = false;
-    while (const std::size_t count = batch_.fill(ears_)) {
+    while (const std::size_t count = batch_.fill(socket_)) {
       for (std::size_t i = 0; i < count; ++i) {
         netio::Packet packet;
-        EXPECT_EQ(netio::decode(batch_.bytes(i), packet), netio::Reason::accepted);
-        found = found || packet.header.token == other.radio_.farm_stamp().token;
+        EXPECT_EQ(netio::decode(batch_.bytes(i), packet), netio::PacketStatus::accepted);
+        found = found || packet.header.token == other.v2v_socket_.farm_session_token().token;
       }
     }
     return found;
@@ -92,15 +93,15 @@ class Robot {
   /// Ranges of the newest scan that waits; empty when none does.
   std::vector<double> hear() {
     std::vector<double> ranges;
-    while (const std::size_t count = batch_.fill(ears_)) {
+    while (const std::size_t count = batch_.fill(socket_)) {
       for (std::size_t i = 0; i < count; ++i) {
         netio::Packet packet;
-        EXPECT_EQ(netio::decode(batch_.bytes(i), packet), netio::Reason::accepted);
+        EXPECT_EQ(netio::decode(batch_.bytes(i), packet), netio::PacketStatus::accepted);
         EXPECT_EQ(packet.header.robot, id_);
         EXPECT_EQ(packet.header.sensor, 0u);
         stamps_.push_back(packet.header.time);
-        EXPECT_EQ(packet.header.session, radio_.farm_stamp().session);
-        EXPECT_EQ(packet.header.token, radio_.farm_stamp().token);
+        EXPECT_EQ(packet.header.session, v2v_socket_.farm_session_token().session);
+        EXPECT_EQ(packet.header.token, v2v_socket_.farm_session_token().token);
         sensors::LaserPart scan;
         EXPECT_EQ(sensors::read_laser(std::get<netio::Reading>(packet.body).payload, false, scan),
                   sensors::PayloadError::none);
@@ -117,8 +118,8 @@ class Robot {
  private:
   std::vector<std::int64_t> stamps_;
   std::uint16_t id_;
-  netio::Radio radio_;
-  netio::Socket ears_;
+  netio::V2vSocket v2v_socket_;
+  netio::Socket socket_;
   netio::ReceiveBatch batch_;
   std::uint32_t sequence_ = 0;
   std::uint32_t requests_ = 0;

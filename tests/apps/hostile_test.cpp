@@ -59,7 +59,7 @@ base::Bytes anything(std::mt19937& generator) {
       netio::encode(header, netio::Leave{}, bytes);
       break;
     case 2:
-      header.robot = netio::kEveryone;
+      header.robot = netio::kBroadcastId;
       netio::encode(header, netio::Start{}, bytes);
       break;
     case 3:
@@ -70,7 +70,7 @@ base::Bytes anything(std::mt19937& generator) {
       netio::encode(header, netio::Tag{}, bytes);
       break;
     case 5:
-      netio::frame(header, 1, base::Bytes(netio::kMaxPayload, 1), bytes);
+      netio::encode_reading(header, 1, base::Bytes(netio::kMaxPayload, 1), bytes);
       break;
     default:
       netio::encode(header, state, bytes);

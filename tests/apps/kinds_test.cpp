@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "netio/packets.h"
-#include "netio/radio.h"
 #include "netio/socket.h"
+#include "netio/v2v_socket.h"
 #include "record/recording.h"
 #include "sensors/sensor_type.h"
 #include "tests/apps/json.h"
@@ -215,20 +215,20 @@ TEST_F(Kinds, ARobotGetsTheKindsItAsksFor) {
   const std::uint16_t id = 1;  // the first robot of the file
   const netio::Socket lasers = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + 8)});
   const netio::Socket arrays = netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(base + 48)});
-  netio::Radio radio({.farm = {netio::kLoopback, service}, .robot = id, .others = {}});
+  netio::V2vSocket v2v_socket({.farm = {netio::kLoopback, service}, .robot = id, .others = {}});
   netio::ReceiveBatch batch(16);
   std::size_t heard = 0;
   for (std::uint32_t sequence = 0; sequence < 3000 && heard < 3; ++sequence) {
     base::Bytes request;
     netio::encode({.robot = id, .sequence = sequence}, netio::Subscribe{1u << kMagnetometer}, request);
-    radio.send(request);
+    v2v_socket.send(request);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     netio::Packet said_back;
-    radio.receive([&](std::span<const std::uint8_t> bytes) { radio.accept(bytes, 0, said_back); });
+    v2v_socket.receive([&](std::span<const std::uint8_t> bytes) { v2v_socket.accept(bytes, 0, said_back); });
     const std::size_t count = batch.fill(arrays);
     for (std::size_t i = 0; i < count; ++i) {
       netio::Packet packet;
-      ASSERT_EQ(netio::decode(batch.bytes(i), packet), netio::Reason::accepted);
+      ASSERT_EQ(netio::decode(batch.bytes(i), packet), netio::PacketStatus::accepted);
       EXPECT_EQ(netio::kind_of(packet.header.type), kMagnetometer);
       EXPECT_EQ(batch.bytes(i).size(), 64u + 4u + 2u * 16u);
     }
@@ -324,7 +324,7 @@ TEST(WireFormat, MagnetometersSendTheDocumentedBytes) {
   base::Bytes payload, packet, plain;
   const std::uint8_t type =
       kind->encode(row, {.kind = kind->id, .values = values}, sensors::WireFormat::farm, 0, payload);
-  netio::frame({.robot = 7, .sequence = 30, .time = 3'000'000'000}, type, payload, packet);
+  netio::encode_reading({.robot = 7, .sequence = 30, .time = 3'000'000'000}, type, payload, packet);
   EXPECT_EQ(packet, test::documented("magnetometer"));
   EXPECT_NE(kind->encode(row, {.kind = kind->id, .values = values}, sensors::WireFormat::thesis, 0, plain), 0);
   EXPECT_EQ(plain, test::documented("thesis_magnetometer"));
@@ -337,7 +337,7 @@ TEST(WireFormat, LaneEdgesSendTheDocumentedBytes) {
   base::Bytes payload, packet, plain;
   const std::uint8_t type =
       kind->encode({}, {.kind = kind->id, .values = values}, sensors::WireFormat::farm, 0, payload);
-  netio::frame({.robot = 7, .sequence = 30, .time = 3'000'000'000}, type, payload, packet);
+  netio::encode_reading({.robot = 7, .sequence = 30, .time = 3'000'000'000}, type, payload, packet);
   EXPECT_EQ(packet, test::documented("lane_edge"));
   EXPECT_NE(kind->encode({}, {.kind = kind->id, .values = values}, sensors::WireFormat::thesis, 0, plain), 0);
   EXPECT_EQ(plain, test::documented("thesis_lane_edge"));

@@ -106,7 +106,7 @@ TEST(Map, PacketsAreAsDocumented) {
   const sensors::SensorType& kind = sensors::occupancy_type;
   base::Bytes payload, packet, first, second;
   kind.encode(row, reading, sensors::WireFormat::farm, 0, payload);
-  netio::frame({.robot = 7, .sequence = 30, .time = 3'000'000'000}, kind.id, payload, packet);
+  netio::encode_reading({.robot = 7, .sequence = 30, .time = 3'000'000'000}, kind.id, payload, packet);
   EXPECT_EQ(packet, test::documented("occupancy"));
   kind.encode(row, reading, sensors::WireFormat::thesis, 0, first);
   kind.encode(row, reading, sensors::WireFormat::thesis, 1, second);
@@ -120,7 +120,7 @@ void send_map(netio::Outbox& farm, unsigned port, std::uint32_t sequence, std::u
   maps::put_part(
       {.left = 0, .top = 0, .cell = 1, .word_columns = 1, .word_rows = 1}, 0, 0,
       [&](std::uint32_t) { return state * 0x55555555u; }, payload);
-  netio::frame({.robot = 7, .sequence = sequence}, sensors::kOccupancy, payload, packet);
+  netio::encode_reading({.robot = 7, .sequence = sequence}, sensors::kOccupancy, payload, packet);
   farm.queue({netio::kLoopback, static_cast<std::uint16_t>(port)}, packet);
   farm.flush();
 }

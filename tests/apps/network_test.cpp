@@ -87,7 +87,7 @@ TEST(SendAndListen, WhatTheNetworkDidIsTold) {
   const std::uint8_t scan[] = {2, 0, 0xe8, 3, 0xe8, 3};
   base::Bytes packet;
   const auto send = [&](netio::Outbox& from, std::uint32_t session, std::uint32_t sequence) {
-    netio::frame({.robot = 1, .sequence = sequence, .session = session}, 1, scan, packet);
+    netio::encode_reading({.robot = 1, .sequence = sequence, .session = session}, 1, scan, packet);
     from.queue({netio::kLoopback, static_cast<std::uint16_t>(base + 8)}, packet);
     from.flush();
   };

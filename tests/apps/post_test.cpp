@@ -87,10 +87,10 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
       header.robot = static_cast<std::uint16_t>(block.mover + 1);
       header.sequence = sent[block.mover]++;
       header.time = block.time;
-      header.accuracy = netio::accuracy_word({block.mode, false, block.bound});
+      header.accuracy = netio::encode_accuracy({block.mode, false, block.bound});
       header.session = 7;
       header.token = 9;
-      netio::frame(header, type, payload, packet);
+      netio::encode_reading(header, type, payload, packet);
       expected.push_back(packet);
     }
     lost += letters.size() - expected.size();

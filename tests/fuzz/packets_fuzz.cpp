@@ -15,10 +15,10 @@
 #include <cstdlib>
 
 #include "netio/inbox.h"
-#include "netio/listener.h"
-#include "netio/radio.h"
 #include "netio/receiver.h"
 #include "netio/relay.h"
+#include "netio/stream_monitor.h"
+#include "netio/v2v_socket.h"
 #include "sensors/laser_packets.h"
 
 namespace {
@@ -61,7 +61,7 @@ void challenge(netio::Inbox& inbox, const netio::Packet& packet, const netio::En
   if (!inbox.challenge(packet, source, now, answer)) return;
   require(answer.size() <= size);
   netio::Packet asked;
-  require(netio::decode(answer, asked) == netio::Reason::accepted);
+  require(netio::decode(answer, asked) == netio::PacketStatus::accepted);
   require(std::get<netio::Challenge>(asked.body).token == inbox.token(source));
 }
 
@@ -73,16 +73,17 @@ sensors::SensorSpec laser_of(std::size_t stream) {
   return row;
 }
 
-netio::Verdict judge_scan(std::size_t stream, const netio::Header& header, std::span<const std::uint8_t> payload) {
+netio::PayloadInfo inspect_scan(std::size_t stream, const netio::Header& header,
+                                std::span<const std::uint8_t> payload) {
   const auto type = static_cast<std::uint8_t>(header.type);
   const sensors::PayloadPart part = sensors::decode_laser(laser_of(stream), payload, type, sensors::WireFormat::farm);
-  if (part.fault != sensors::PayloadError::none) return {netio::Reason::out_of_range};
+  if (part.fault != sensors::PayloadError::none) return {netio::PacketStatus::out_of_range};
 
   sensors::LaserPart scan;
   require(sensors::read_laser(payload, type > sensors::kExtended, scan) == sensors::PayloadError::none);
   require(std::uint64_t{scan.first} + scan.count <= scan.total && scan.part < scan.parts);
   for (std::uint32_t i = 0; i < scan.count; ++i) require(sensors::range_of(scan, i) >= 0.0);
-  return {netio::Reason::accepted, part.elements, part.part, part.parts};
+  return {netio::PacketStatus::accepted, part.elements, part.part, part.parts};
 }
 
 const netio::V2v* state_of(const netio::Packet& packet) { return std::get_if<netio::V2v>(&packet.body); }
@@ -92,10 +93,10 @@ void receive(std::size_t stream, std::span<const std::uint8_t> bytes, std::int64
   static const auto read = [](std::size_t, const netio::Header&, std::span<const std::uint8_t> payload,
                               std::span<double> values) { values[0] = static_cast<double>(payload.size()); };
   static netio::Receiver receiver(
-      {.streams = {{{.robot = 7}, 1}, {{.robot = 7, .sensor = 1}, 1}}, .judge = judge_scan, .read = read});
-  const netio::Taken taken = receiver.accept(stream, bytes, now);
+      {.streams = {{{.robot = 7}, 1}, {{.robot = 7, .sensor = 1}, 1}}, .inspect = inspect_scan, .read = read});
+  const netio::PartStatus taken = receiver.accept(stream, bytes, now);
   const auto newest = receiver.newest(stream);
-  if (taken == netio::Taken::whole) require(newest && newest->came == now && newest->values[0] > 0.0);
+  if (taken == netio::PartStatus::complete) require(newest && newest->arrival == now && newest->values[0] > 0.0);
 }
 
 }  // namespace
@@ -104,12 +105,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static netio::Inbox inbox({.bind = {netio::kLoopback, 0}, .robots = {0, 7, 40'000}, .tags = {1, 12}});
   static const std::uint32_t free_base =
       20'000 + static_cast<std::uint32_t>(getpid()) % 5'000 * 2;  // for fuzzers side by side
-  static netio::Listener listener(
+  static netio::StreamMonitor monitor(
       {.streams = {{.robot = 7, .rule = {free_base, 8}}, {.robot = 7, .sensor = 1, .rule = {free_base, 8}}},
-       .judge = judge_scan});
+       .inspect = inspect_scan});
   static netio::Relay relay(std::vector<std::uint32_t>{0, 7, 40'000});
   static netio::Outbox nowhere({.patience_ms = 0});
-  static netio::Radio radio({.robot = 7, .others = {0, 40'000}, .session = 7});
+  static netio::V2vSocket v2v_socket({.robot = 7, .others = {0, 40'000}, .session = 7});
   static std::int64_t now = 0;
 
   base::ByteReader reader({data, size});
@@ -122,25 +123,25 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     netio::Packet packet;
     const netio::Endpoint source{netio::kLoopback, static_cast<std::uint16_t>(sender & 3)};
     base::Bytes bytes(given.begin(), given.end());
-    if (netio::decode(bytes, packet) == netio::Reason::accepted && packet.header.token == 0)
-      netio::stamp(bytes, {packet.header.session, inbox.token(source)});
-    const netio::Reason reason = inbox.accept(bytes, source, now, packet);
-    if (reason == netio::Reason::unproven) challenge(inbox, packet, source, bytes.size(), now);
-    if (reason == netio::Reason::accepted) {
+    if (netio::decode(bytes, packet) == netio::PacketStatus::accepted && packet.header.token == 0)
+      netio::write_session_token(bytes, {packet.header.session, inbox.token(source)});
+    const netio::PacketStatus reason = inbox.accept(bytes, source, now, packet);
+    if (reason == netio::PacketStatus::unproven) challenge(inbox, packet, source, bytes.size(), now);
+    if (reason == netio::PacketStatus::accepted) {
       examine(packet);
       round_trip(packet, bytes);
       const std::uint32_t id = packet.header.robot;
       const bool of_robot = packet.header.type == netio::Type::v2v || packet.header.type == netio::Type::subscribe;
-      if (of_robot) require(inbox.heard(id, now) && inbox.address(id) == source);
+      if (of_robot) require(inbox.is_active(id, now) && inbox.address(id) == source);
       relay.take(packet);
     }
-    listener.accept(sender & 1, given, source, now);
+    monitor.accept(sender & 1, given, source, now);
     receive(sender & 1, given, now);
-    netio::Radio::each(given, [&](std::span<const std::uint8_t> one) {
-      if (radio.accept(one, now, packet) == netio::Reason::accepted)
+    netio::V2vSocket::for_each_state(given, [&](std::span<const std::uint8_t> one) {
+      if (v2v_socket.accept(one, now, packet) == netio::PacketStatus::accepted)
         require(packet.header.robot != 7 || !state_of(packet));
     });
-    if (sender % 8 == 0) relay.pass_on(inbox, now, nowhere);
+    if (sender % 8 == 0) relay.forward(inbox, now, nowhere);
   }
   return 0;
 }

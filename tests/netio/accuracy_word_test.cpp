@@ -10,15 +10,15 @@ namespace sf::netio {
 namespace {
 
 TEST(AccuracyWord, NothingSaidIsZero) {
-  EXPECT_EQ(accuracy_word({}), 0u);
-  EXPECT_EQ(accuracy_word({0, false, HUGE_VAL}), 0u);
-  EXPECT_TRUE(std::isinf(read_accuracy(0).bound));
+  EXPECT_EQ(encode_accuracy({}), 0u);
+  EXPECT_EQ(encode_accuracy({0, false, HUGE_VAL}), 0u);
+  EXPECT_TRUE(std::isinf(decode_accuracy(0).bound));
 }
 
 TEST(AccuracyWord, ModesAndFlagsComeBack) {
   for (std::uint8_t mode = 0; mode < 16; ++mode)
     for (const bool unsure : {false, true}) {
-      const Accuracy back = read_accuracy(accuracy_word({mode, unsure, 1e-9}));
+      const Accuracy back = decode_accuracy(encode_accuracy({mode, unsure, 1e-9}));
       EXPECT_EQ(back.mode, mode);
       EXPECT_EQ(back.unsure, unsure);
     }
@@ -27,17 +27,17 @@ TEST(AccuracyWord, ModesAndFlagsComeBack) {
 /// A bound may grow by a sixteenth of an octave on the way, and never shrinks.
 TEST(AccuracyWord, BoundsAreRoundedUp) {
   for (double bound = 1e-18; bound < 1e18; bound *= 1.0137) {
-    const double back = read_accuracy(accuracy_word({0, false, bound})).bound;
+    const double back = decode_accuracy(encode_accuracy({0, false, bound})).bound;
     ASSERT_GE(back, bound);
     ASSERT_LE(back, 1.0443 * bound);
   }
-  EXPECT_EQ(read_accuracy(accuracy_word({0, false, 1.0})).bound, std::exp2(1.0 / 16.0)) << "never the bound itself";
+  EXPECT_EQ(decode_accuracy(encode_accuracy({0, false, 1.0})).bound, std::exp2(1.0 / 16.0)) << "never the bound itself";
 }
 
 TEST(AccuracyWord, Saturates) {
-  EXPECT_EQ(read_accuracy(accuracy_word({0, false, 1e300})).bound, std::exp2(1023.0 / 16.0));
-  EXPECT_EQ(read_accuracy(accuracy_word({0, false, 1e-300})).bound, std::exp2(-1023.0 / 16.0));
-  EXPECT_EQ(read_accuracy(accuracy_word({0, false, -1.0})).bound, HUGE_VAL) << "no bound";
+  EXPECT_EQ(decode_accuracy(encode_accuracy({0, false, 1e300})).bound, std::exp2(1023.0 / 16.0));
+  EXPECT_EQ(decode_accuracy(encode_accuracy({0, false, 1e-300})).bound, std::exp2(-1023.0 / 16.0));
+  EXPECT_EQ(decode_accuracy(encode_accuracy({0, false, -1.0})).bound, HUGE_VAL) << "no bound";
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ namespace {
 
 base::Bytes subscribe_to_others(std::uint32_t token) {
   base::Bytes bytes;
-  encode({.robot = 7, .sequence = 1, .session = 1, .token = token}, Subscribe{kOthers}, bytes);
+  encode({.robot = 7, .sequence = 1, .session = 1, .token = token}, Subscribe{kNeighboursBit}, bytes);
   return bytes;
 }
 
@@ -60,7 +60,7 @@ TEST(Allocation, NoneOnTheWayInOrOut) {
   framed.reserve(kMaxDatagram);
   std::vector<base::Bytes> packets = examples();
   const std::uint32_t token = inbox.token({kLoopback, outbox.endpoint().port});
-  for (base::Bytes& packet : packets) stamp(packet, {1, token});
+  for (base::Bytes& packet : packets) write_session_token(packet, {1, token});
   packets.resize(packets.size() - 2);        // the farm's own
   const base::Bytes leave = packets.back();  // after it nobody is sent anything
   packets.back() = subscribe_to_others(token);
@@ -74,18 +74,18 @@ TEST(Allocation, NoneOnTheWayInOrOut) {
   std::size_t taken = 0;
   for (int round = 0; round < 20; ++round) {
     for (const base::Bytes& packet : packets) outbox.queue(to, packet);
-    frame({.robot = 7}, 1, payload, framed);
+    encode_reading({.robot = 7}, 1, payload, framed);
     outbox.queue(to, framed);
     outbox.flush();
     taken += inbox.receive(round, [&](const Packet& packet) { relay.take(packet); });
-    relay.pass_on(inbox, round, answers);
+    relay.forward(inbox, round, answers);
     inbox.challenge(unproven, to, round, answer);
     answers.flush();
   }
   outbox.queue(to, leave);
   outbox.flush();
   taken += inbox.receive(20, [&](const Packet& packet) { relay.take(packet); });
-  relay.pass_on(inbox, 20, answers);
+  relay.forward(inbox, 20, answers);
   EXPECT_EQ(allocations - before, 0u);
   EXPECT_GT(taken, 0u);
   EXPECT_GT(relay.counts().starts, 0u);

@@ -13,8 +13,8 @@ namespace sf::netio {
 inline base::Bytes reading_example() {
   const std::uint8_t payload[] = {0x03, 0x00, 0xe8, 0x03, 0xfa, 0x00, 0x40, 0x1f};
   base::Bytes out;
-  frame({.robot = 7, .sequence = 258, .time = 1'500'000'000, .session = 0x11223344, .token = 0x55667788}, 1, payload,
-        out);
+  encode_reading({.robot = 7, .sequence = 258, .time = 1'500'000'000, .session = 0x11223344, .token = 0x55667788}, 1,
+                 payload, out);
   return out;
 }
 
@@ -23,7 +23,7 @@ inline base::Bytes extended_example() {
   const std::uint8_t payload[] = {0x38, 0x01, 0x00, 0x00, 0x36, 0x01, 0x00, 0x00, 0x01, 0x00, 0x02, 0x00,
                                   0x02, 0x00, 0x00, 0x00, 0xe7, 0x7f, 0x0c, 0x00, 0xff, 0xff, 0xff, 0xff};
   base::Bytes out;
-  frame({.robot = 7, .sensor = 1, .sequence = 4, .time = 2'000'000'000}, 65, payload, out);
+  encode_reading({.robot = 7, .sensor = 1, .sequence = 4, .time = 2'000'000'000}, 65, payload, out);
   return out;
 }
 
@@ -50,7 +50,7 @@ inline base::Bytes subscribe_example() {
 
 inline base::Bytes start_example() {
   base::Bytes out;
-  encode({.robot = kEveryone}, Start{}, out);
+  encode({.robot = kBroadcastId}, Start{}, out);
   return out;
 }
 
@@ -70,8 +70,8 @@ inline base::Bytes challenge_example() {
 inline base::Bytes neighbours_example() {
   base::Bytes first = v2v_example(), second, out;
   encode({.robot = 9, .sequence = 4, .time = 1'400'000'000}, V2v{.X_WR = {3, 0, 0, 0}}, second);
-  const Stamp receiver{0x11223344, 0x55667788};
-  for (base::Bytes* state : {&first, &second}) stamp(*state, receiver);
+  const SessionToken receiver{0x11223344, 0x55667788};
+  for (base::Bytes* state : {&first, &second}) write_session_token(*state, receiver);
   first.insert(first.end(), second.begin(), second.end());
   encode({.robot = 3, .sequence = 15, .time = 1'600'000'000, .session = receiver.session, .token = receiver.token},
          Neighbours{first}, out);

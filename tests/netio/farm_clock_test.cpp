@@ -9,39 +9,39 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 
 TEST(FarmClock, IsTheRobotsOwnUntilSomethingCame) {
   const FarmClock clock;
-  EXPECT_FALSE(clock.set());
-  EXPECT_EQ(clock.farm(123), 123);
+  EXPECT_FALSE(clock.synchronised());
+  EXPECT_EQ(clock.to_farm(123), 123);
 }
 
 TEST(FarmClock, FollowsTheTimestamps) {
   FarmClock clock;
-  clock.see(100 * kSecond, kSecond);
-  EXPECT_TRUE(clock.set());
-  EXPECT_EQ(clock.farm(3 * kSecond), 102 * kSecond);
-  EXPECT_EQ(clock.own(102 * kSecond), 3 * kSecond);
+  clock.update(100 * kSecond, kSecond);
+  EXPECT_TRUE(clock.synchronised());
+  EXPECT_EQ(clock.to_farm(3 * kSecond), 102 * kSecond);
+  EXPECT_EQ(clock.to_own(102 * kSecond), 3 * kSecond);
 }
 
 TEST(FarmClock, MayBeBehindTheRobots) {
   FarmClock clock;
-  clock.see(0, 5 * kSecond);
-  EXPECT_EQ(clock.farm(6 * kSecond), kSecond);
+  clock.update(0, 5 * kSecond);
+  EXPECT_EQ(clock.to_farm(6 * kSecond), kSecond);
 }
 
 TEST(FarmClock, TheQuickestSaysItBest) {
   FarmClock clock;
-  clock.see(10 * kSecond, 50);
-  clock.see(11 * kSecond, kSecond + 20);  // 30 ns less delay
-  clock.see(12 * kSecond, 2 * kSecond + 90);
-  EXPECT_EQ(clock.farm(2 * kSecond + 20), 12 * kSecond);
+  clock.update(10 * kSecond, 50);
+  clock.update(11 * kSecond, kSecond + 20);  // 30 ns less delay
+  clock.update(12 * kSecond, 2 * kSecond + 90);
+  EXPECT_EQ(clock.to_farm(2 * kSecond + 20), 12 * kSecond);
 }
 
 TEST(FarmClock, AFarmThatBeganAnewIsBelievedAfterSilence) {
   FarmClock clock;
-  clock.see(100 * kSecond, 0);
-  clock.see(0, 2 * kSecond - 1);  // may be very late
-  EXPECT_EQ(clock.farm(0), 100 * kSecond);
-  clock.see(0, 4 * kSecond - 1);  // two seconds of nothing
-  EXPECT_EQ(clock.farm(4 * kSecond), 1);
+  clock.update(100 * kSecond, 0);
+  clock.update(0, 2 * kSecond - 1);  // may be very late
+  EXPECT_EQ(clock.to_farm(0), 100 * kSecond);
+  clock.update(0, 4 * kSecond - 1);  // two seconds of nothing
+  EXPECT_EQ(clock.to_farm(4 * kSecond), 1);
 }
 
 }  // namespace

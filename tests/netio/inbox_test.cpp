@@ -36,8 +36,8 @@ struct InboxTest : testing::Test {
   Inbox inbox{options()};
   Packet packet;
   /// Says it with the token of where it comes from.
-  Reason say(base::Bytes bytes, std::int64_t now = 0, const Endpoint& who = kAlice) {
-    if (bytes.size() >= kHeaderBytes) stamp(bytes, {kSession, inbox.token(who)});
+  PacketStatus say(base::Bytes bytes, std::int64_t now = 0, const Endpoint& who = kAlice) {
+    if (bytes.size() >= kHeaderBytes) write_session_token(bytes, {kSession, inbox.token(who)});
     return inbox.accept(bytes, who, now, packet);
   }
 };
@@ -45,61 +45,62 @@ struct InboxTest : testing::Test {
 TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
   base::Bytes long_packet = v2v_example();
   long_packet.push_back(0);
-  EXPECT_EQ(say({}), Reason::too_short);
-  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 0, 'X')), Reason::bad_magic);
-  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 4, 1)), Reason::unknown_version);
-  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 5, 0)), Reason::unknown_type);
-  EXPECT_EQ(say(long_packet), Reason::too_long);
-  EXPECT_EQ(say(patched(v2v_example(), 64, std::numeric_limits<double>::quiet_NaN())), Reason::not_finite);
-  EXPECT_EQ(say(patched(v2v_example(), 64, 2e7)), Reason::out_of_range);
-  EXPECT_EQ(say(reading_example()), Reason::wrong_direction);
-  EXPECT_EQ(say(v2v(8, 0)), Reason::unknown_robot);
-  EXPECT_EQ(say(patched<std::uint16_t>(tag_example(), 6, 7)), Reason::unknown_tag);  // a robot's id is no tag's
-  EXPECT_EQ(inbox.accept(v2v_example(), kAlice, 0, packet), Reason::unproven);
-  EXPECT_EQ(say(v2v_example()), Reason::accepted);
-  EXPECT_EQ(say(v2v(7, 10), 0, kBob), Reason::wrong_source);
-  EXPECT_EQ(say(v2v_example()), Reason::stale);
-  for (std::size_t i = 0; i < kReasons; ++i) EXPECT_EQ(inbox.counts().of[i], 1u) << name(static_cast<Reason>(i));
-  EXPECT_EQ(inbox.counts().dropped(), kReasons - 1);
+  EXPECT_EQ(say({}), PacketStatus::too_short);
+  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 0, 'X')), PacketStatus::bad_magic);
+  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 4, 1)), PacketStatus::unknown_version);
+  EXPECT_EQ(say(patched<std::uint8_t>(v2v_example(), 5, 0)), PacketStatus::unknown_type);
+  EXPECT_EQ(say(long_packet), PacketStatus::too_long);
+  EXPECT_EQ(say(patched(v2v_example(), 64, std::numeric_limits<double>::quiet_NaN())), PacketStatus::not_finite);
+  EXPECT_EQ(say(patched(v2v_example(), 64, 2e7)), PacketStatus::out_of_range);
+  EXPECT_EQ(say(reading_example()), PacketStatus::wrong_direction);
+  EXPECT_EQ(say(v2v(8, 0)), PacketStatus::unknown_robot);
+  EXPECT_EQ(say(patched<std::uint16_t>(tag_example(), 6, 7)), PacketStatus::unknown_tag);  // a robot's id is no tag's
+  EXPECT_EQ(inbox.accept(v2v_example(), kAlice, 0, packet), PacketStatus::unproven);
+  EXPECT_EQ(say(v2v_example()), PacketStatus::accepted);
+  EXPECT_EQ(say(v2v(7, 10), 0, kBob), PacketStatus::wrong_source);
+  EXPECT_EQ(say(v2v_example()), PacketStatus::stale);
+  for (std::size_t i = 0; i < kPacketStatuses; ++i)
+    EXPECT_EQ(inbox.counts().of[i], 1u) << name(static_cast<PacketStatus>(i));
+  EXPECT_EQ(inbox.counts().dropped(), kPacketStatuses - 1);
 }
 
 TEST_F(InboxTest, DroppedPacketsAreNotHeard) {
   say(patched(v2v_example(), 64, 2e7));
   say(reading_example());
-  EXPECT_FALSE(inbox.heard(7, 0));
+  EXPECT_FALSE(inbox.is_active(7, 0));
   EXPECT_FALSE(inbox.address(7));
 }
 
 TEST_F(InboxTest, EitherPacketIsHeardForTwoSeconds) {
   say(v2v(7, 0), 0);
-  EXPECT_TRUE(inbox.heard(7, 2 * kSecond - 1));
-  EXPECT_FALSE(inbox.heard(7, 2 * kSecond));
+  EXPECT_TRUE(inbox.is_active(7, 2 * kSecond - 1));
+  EXPECT_FALSE(inbox.is_active(7, 2 * kSecond));
   say(subscribe(0, 0), 3 * kSecond);
-  EXPECT_TRUE(inbox.heard(7, 5 * kSecond - 1));
-  EXPECT_FALSE(inbox.heard(7, 5 * kSecond));
-  EXPECT_FALSE(inbox.heard(3, 0));
+  EXPECT_TRUE(inbox.is_active(7, 5 * kSecond - 1));
+  EXPECT_FALSE(inbox.is_active(7, 5 * kSecond));
+  EXPECT_FALSE(inbox.is_active(3, 0));
   EXPECT_EQ(inbox.address(7), kAlice);
 }
 
 TEST_F(InboxTest, ALeaveEndsTheBindingAndTheChoice) {
   const auto leave = [](std::uint16_t robot) { return patched<std::uint16_t>(leave_example(), 6, robot); };
-  EXPECT_EQ(say(leave(8)), Reason::unknown_robot);
-  EXPECT_EQ(say(leave(7)), Reason::stale);  // it never spoke
+  EXPECT_EQ(say(leave(8)), PacketStatus::unknown_robot);
+  EXPECT_EQ(say(leave(7)), PacketStatus::stale);  // it never spoke
   say(v2v(7, 5));
   say(subscribe(0, 1u << 2));
-  EXPECT_EQ(say(leave(7), 1, kBob), Reason::wrong_source);
-  EXPECT_TRUE(inbox.heard(7, 1));
-  EXPECT_EQ(say(leave(7), 1), Reason::accepted);
-  EXPECT_FALSE(inbox.heard(7, 1));
+  EXPECT_EQ(say(leave(7), 1, kBob), PacketStatus::wrong_source);
+  EXPECT_TRUE(inbox.is_active(7, 1));
+  EXPECT_EQ(say(leave(7), 1), PacketStatus::accepted);
+  EXPECT_FALSE(inbox.is_active(7, 1));
   EXPECT_FALSE(inbox.address(7));
-  EXPECT_EQ(say(v2v(7, 0), 2, kBob), Reason::accepted);
-  EXPECT_TRUE(inbox.wants(7, kLaser, 2));  // all kinds, not what the one before asked for
+  EXPECT_EQ(say(v2v(7, 0), 2, kBob), PacketStatus::accepted);
+  EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 2));  // all kinds, not what the one before asked for
   EXPECT_EQ(inbox.address(7), kBob);
 }
 
 TEST_F(InboxTest, StrangersPacketsSayWhoseIdTheyUse) {
   say(v2v(7, 0));
-  EXPECT_EQ(say(v2v(7, 1), 0, kBob), Reason::wrong_source);
+  EXPECT_EQ(say(v2v(7, 1), 0, kBob), PacketStatus::wrong_source);
   EXPECT_EQ(packet.header.robot, 7);
   EXPECT_EQ(packet.header.sequence, 1u);
 }
@@ -107,43 +108,44 @@ TEST_F(InboxTest, StrangersPacketsSayWhoseIdTheyUse) {
 TEST_F(InboxTest, AnAddressIsHeardOnceItSendsItsTokenBack) {
   base::Bytes answer;
   base::Bytes request = subscribe(0, 1u << kLaser);
-  stamp(request, {kSession, 0});
-  EXPECT_EQ(inbox.accept(request, kAlice, 0, packet), Reason::unproven);
-  EXPECT_FALSE(inbox.heard(7, 0) || inbox.address(7));  // nothing is sent there
+  write_session_token(request, {kSession, 0});
+  EXPECT_EQ(inbox.accept(request, kAlice, 0, packet), PacketStatus::unproven);
+  EXPECT_FALSE(inbox.is_active(7, 0) || inbox.address(7));  // nothing is sent there
   ASSERT_TRUE(inbox.challenge(packet, kAlice, 0, answer));
   EXPECT_LE(answer.size(), request.size());  // no more than what was sent in its name
   Packet challenge;
-  ASSERT_EQ(decode(answer, challenge), Reason::accepted);
+  ASSERT_EQ(decode(answer, challenge), PacketStatus::accepted);
   EXPECT_EQ(challenge.header.robot, 7);
   EXPECT_EQ(challenge.header.token, kSession);  // so that the robot knows that it is meant
   const std::uint32_t token = std::get<Challenge>(challenge.body).token;
-  stamp(request, {kSession, token});
-  EXPECT_EQ(inbox.accept(request, kBob, 0, packet), Reason::unproven);  // it is nobody else's
-  EXPECT_EQ(inbox.accept(request, {kLoopback + 1, kAlice.port}, 0, packet), Reason::unproven);
-  EXPECT_EQ(inbox.accept(request, kAlice, 0, packet), Reason::accepted);
-  EXPECT_EQ(inbox.stamp_for(7).token, kSession);
-  EXPECT_EQ(inbox.stamp_for(7).session, challenge.header.session);
-  EXPECT_EQ(Inbox(options()).accept(request, kAlice, 0, packet), Reason::unproven);  // a farm that was started again
+  write_session_token(request, {kSession, token});
+  EXPECT_EQ(inbox.accept(request, kBob, 0, packet), PacketStatus::unproven);  // it is nobody else's
+  EXPECT_EQ(inbox.accept(request, {kLoopback + 1, kAlice.port}, 0, packet), PacketStatus::unproven);
+  EXPECT_EQ(inbox.accept(request, kAlice, 0, packet), PacketStatus::accepted);
+  EXPECT_EQ(inbox.session_token_for(7).token, kSession);
+  EXPECT_EQ(inbox.session_token_for(7).session, challenge.header.session);
+  EXPECT_EQ(Inbox(options()).accept(request, kAlice, 0, packet),
+            PacketStatus::unproven);  // a farm that was started again
 }
 
 /// In the name of a victim nobody is bound, nobody is kept from its id, and nobody leaves.
 TEST_F(InboxTest, ForgedAddressesDoNothing) {
   base::Bytes forged = v2v(7, 5);
-  EXPECT_EQ(inbox.accept(forged, kBob, 0, packet), Reason::unproven);
-  EXPECT_EQ(say(v2v(7, 0)), Reason::accepted);
-  EXPECT_EQ(inbox.accept(forged, kAlice, 1, packet), Reason::unproven);  // where Alice is: no token, no state
+  EXPECT_EQ(inbox.accept(forged, kBob, 0, packet), PacketStatus::unproven);
+  EXPECT_EQ(say(v2v(7, 0)), PacketStatus::accepted);
+  EXPECT_EQ(inbox.accept(forged, kAlice, 1, packet), PacketStatus::unproven);  // where Alice is: no token, no state
   base::Bytes leave = leave_example();
-  stamp(leave, {kSession, inbox.token(kBob)});
-  EXPECT_EQ(inbox.accept(leave, kAlice, 1, packet), Reason::unproven);
+  write_session_token(leave, {kSession, inbox.token(kBob)});
+  EXPECT_EQ(inbox.accept(leave, kAlice, 1, packet), PacketStatus::unproven);
   base::Bytes none;
   EXPECT_FALSE(inbox.challenge(packet, kAlice, 1, none));  // a LEAVE asks for nothing
-  EXPECT_TRUE(inbox.heard(7, 1));
+  EXPECT_TRUE(inbox.is_active(7, 1));
   // After its LEAVE, and after two seconds, whoever takes over proves itself too.
   say(leave_example(), 2);
-  EXPECT_EQ(inbox.accept(v2v(7, 9), kBob, 3, packet), Reason::unproven);
-  EXPECT_EQ(inbox.accept(v2v(7, 9), kBob, 5 * kSecond, packet), Reason::unproven);
+  EXPECT_EQ(inbox.accept(v2v(7, 9), kBob, 3, packet), PacketStatus::unproven);
+  EXPECT_EQ(inbox.accept(v2v(7, 9), kBob, 5 * kSecond, packet), PacketStatus::unproven);
   EXPECT_FALSE(inbox.address(7));
-  EXPECT_EQ(say(v2v(7, 9), 5 * kSecond, kBob), Reason::accepted);
+  EXPECT_EQ(say(v2v(7, 9), 5 * kSecond, kBob), PacketStatus::accepted);
 }
 
 TEST_F(InboxTest, OnlySoManyChallengesInATenthOfASecond) {
@@ -151,69 +153,69 @@ TEST_F(InboxTest, OnlySoManyChallengesInATenthOfASecond) {
   inbox.accept(v2v(7, 0), kBob, 0, packet);
   std::size_t answered = 0;
   for (int i = 0; i < 3000; ++i) answered += inbox.challenge(packet, kBob, kSecond, out);
-  EXPECT_EQ(answered, Inbox::kMostChallenges);
+  EXPECT_EQ(answered, Inbox::kMaxChallenges);
   EXPECT_FALSE(inbox.challenge(packet, kBob, kSecond + kSecond / 10 - 1, out));
   EXPECT_TRUE(inbox.challenge(packet, kBob, kSecond + kSecond / 10, out));
 }
 
 TEST_F(InboxTest, TagsMakeNoRobotHeard) {
   Inbox both({.bind = {kLoopback, 0}, .robots = {12}, .tags = {12}});
-  EXPECT_EQ(both.accept(tag_example(), kAlice, 0, packet), Reason::accepted);
-  EXPECT_FALSE(both.heard(12, 0));
+  EXPECT_EQ(both.accept(tag_example(), kAlice, 0, packet), PacketStatus::accepted);
+  EXPECT_FALSE(both.is_active(12, 0));
   base::Bytes state = v2v(12, 0);
-  stamp(state, {0, both.token(kBob)});
-  EXPECT_EQ(both.accept(state, kBob, 0, packet), Reason::accepted);  // tags bind apart from robots
+  write_session_token(state, {0, both.token(kBob)});
+  EXPECT_EQ(both.accept(state, kBob, 0, packet), PacketStatus::accepted);  // tags bind apart from robots
 }
 
 TEST_F(InboxTest, ARobotWantsAllKindsUntilItChooses) {
-  EXPECT_FALSE(inbox.wants(7, kLaser, 0));   // not heard
-  EXPECT_FALSE(inbox.wants(99, kLaser, 0));  // unknown
+  EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));   // not heard
+  EXPECT_FALSE(inbox.is_subscribed(99, kLaser, 0));  // unknown
   say(v2v(7, 0), 0);
-  EXPECT_TRUE(inbox.wants(7, kLaser, 0));
+  EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 0));
   say(subscribe(0, 1u << 2), 0);
-  EXPECT_FALSE(inbox.wants(7, kLaser, 0));
-  EXPECT_TRUE(inbox.wants(7, 2, 0));
+  EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));
+  EXPECT_TRUE(inbox.is_subscribed(7, 2, 0));
   say(v2v(7, 1), kSecond);  // states do not undo the choice
-  EXPECT_FALSE(inbox.wants(7, kLaser, kSecond));
+  EXPECT_FALSE(inbox.is_subscribed(7, kLaser, kSecond));
   say(subscribe(1, 0), kSecond);  // 0 is all again
-  EXPECT_TRUE(inbox.wants(7, kLaser, kSecond));
-  EXPECT_TRUE(inbox.wants(7, 31, kSecond));
+  EXPECT_TRUE(inbox.is_subscribed(7, kLaser, kSecond));
+  EXPECT_TRUE(inbox.is_subscribed(7, 31, kSecond));
 }
 
 TEST_F(InboxTest, SilenceForgetsTheChoice) {
   say(subscribe(0, 1u << 2), 0);
   say(v2v(7, 0), 2 * kSecond);
-  EXPECT_TRUE(inbox.wants(7, kLaser, 2 * kSecond));
+  EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 2 * kSecond));
 }
 
 TEST_F(InboxTest, StrangersCannotChoose) {
   say(v2v(7, 0), 0);
-  EXPECT_EQ(say(subscribe(0, 1u << 2), 0, kBob), Reason::wrong_source);
-  EXPECT_TRUE(inbox.wants(7, kLaser, 0));
+  EXPECT_EQ(say(subscribe(0, 1u << 2), 0, kBob), PacketStatus::wrong_source);
+  EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 0));
 }
 
 TEST_F(InboxTest, OthersStatesMustBeAskedFor) {
   say(v2v(7, 0), 0);
-  EXPECT_FALSE(inbox.asks_for_others(7, 0));  // by name only: all kinds are not all there is
+  EXPECT_FALSE(inbox.wants_neighbours(7, 0));  // by name only: all kinds are not all there is
   say(subscribe(0, 0), 0);
-  EXPECT_FALSE(inbox.asks_for_others(7, 0));
-  say(subscribe(1, kOthers), 0);
-  EXPECT_TRUE(inbox.asks_for_others(7, 0));
-  EXPECT_FALSE(inbox.wants(7, kLaser, 0));  // nothing else was asked for
-  say(subscribe(2, kOthers | 1u << kLaser), 0);
-  EXPECT_TRUE(inbox.asks_for_others(7, 0) && inbox.wants(7, kLaser, 0));
-  EXPECT_FALSE(inbox.asks_for_others(7, 2 * kSecond));  // fell silent
-  EXPECT_FALSE(inbox.asks_for_others(3, 0));            // never spoke
-  EXPECT_FALSE(inbox.asks_for_others(99, 0));           // is nobody
+  EXPECT_FALSE(inbox.wants_neighbours(7, 0));
+  say(subscribe(1, kNeighboursBit), 0);
+  EXPECT_TRUE(inbox.wants_neighbours(7, 0));
+  EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));  // nothing else was asked for
+  say(subscribe(2, kNeighboursBit | 1u << kLaser), 0);
+  EXPECT_TRUE(inbox.wants_neighbours(7, 0) && inbox.is_subscribed(7, kLaser, 0));
+  EXPECT_FALSE(inbox.wants_neighbours(7, 2 * kSecond));  // fell silent
+  EXPECT_FALSE(inbox.wants_neighbours(3, 0));            // never spoke
+  EXPECT_FALSE(inbox.wants_neighbours(99, 0));           // is nobody
 }
 
 TEST_F(InboxTest, AnybodyMayStartRobots) {
   say(v2v(7, 0), 0);
-  EXPECT_EQ(say(start_example(), 0, kBob), Reason::accepted);  // not who is bound
-  EXPECT_EQ(say(start_example(), 0, kBob), Reason::accepted);  // and again
-  EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 3), 0, kBob), Reason::accepted);
-  EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 8), 0, kBob), Reason::unknown_robot);
-  EXPECT_FALSE(inbox.heard(3, 0));  // that says nothing of the robot
+  EXPECT_EQ(say(start_example(), 0, kBob), PacketStatus::accepted);  // not who is bound
+  EXPECT_EQ(say(start_example(), 0, kBob), PacketStatus::accepted);  // and again
+  EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 3), 0, kBob), PacketStatus::accepted);
+  EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 8), 0, kBob), PacketStatus::unknown_robot);
+  EXPECT_FALSE(inbox.is_active(3, 0));  // that says nothing of the robot
   EXPECT_EQ(inbox.address(7), kAlice);
 }
 
@@ -233,9 +235,9 @@ TEST_F(InboxTest, AMillionRandomAndMutatedDatagrams) {
       if (random() % 8 == 0) bytes.resize(random() % 200);
     }
     const Endpoint source{kLoopback, static_cast<std::uint16_t>(random() % 3)};
-    if (random() % 8 != 0 && bytes.size() >= kHeaderBytes) stamp(bytes, {kSession, inbox.token(source)});
+    if (random() % 8 != 0 && bytes.size() >= kHeaderBytes) write_session_token(bytes, {kSession, inbox.token(source)});
     const std::int64_t now = std::int64_t{i} * (kSecond / 100);
-    if (inbox.accept(bytes, source, now, packet) != Reason::accepted) continue;
+    if (inbox.accept(bytes, source, now, packet) != PacketStatus::accepted) continue;
     ++accepted;
     if (const auto* state = std::get_if<V2v>(&packet.body)) {
       ASSERT_LE(std::abs(state->X_WR.x), kMaxPosition);
@@ -243,8 +245,9 @@ TEST_F(InboxTest, AMillionRandomAndMutatedDatagrams) {
     }
   }
   EXPECT_EQ(inbox.counts().total(), 1'000'000u);
-  EXPECT_EQ(inbox.counts()[Reason::accepted], accepted);
-  for (std::size_t i = 0; i < kReasons; ++i) EXPECT_GT(inbox.counts().of[i], 0u) << name(static_cast<Reason>(i));
+  EXPECT_EQ(inbox.counts()[PacketStatus::accepted], accepted);
+  for (std::size_t i = 0; i < kPacketStatuses; ++i)
+    EXPECT_GT(inbox.counts().of[i], 0u) << name(static_cast<PacketStatus>(i));
 }
 
 struct LoopbackTest : testing::Test {
@@ -256,7 +259,7 @@ struct LoopbackTest : testing::Test {
   std::vector<Packet> receive(std::size_t count, std::int64_t now) {
     std::vector<Packet> packets;
     std::size_t taken = 0;
-    for (int looks = 0; taken < count && looks < 10'000'000; ++looks) {
+    for (int visits = 0; taken < count && visits < 10'000'000; ++visits) {
       taken += inbox.receive(now, [&](const Packet& packet) { packets.push_back(packet); });
     }
     EXPECT_EQ(taken, count);
@@ -274,7 +277,7 @@ TEST_F(LoopbackTest, StatesArriveWithTheirSender) {
   ASSERT_EQ(packets.size(), 2u);
   EXPECT_EQ(std::get<V2v>(packets[0].body).X_WR.x, 1.5);
   EXPECT_EQ(packets[1].header.robot, 12);
-  EXPECT_EQ(inbox.counts()[Reason::too_short], 1u);
+  EXPECT_EQ(inbox.counts()[PacketStatus::too_short], 1u);
   ASSERT_TRUE(inbox.address(7));
   EXPECT_EQ(*inbox.address(7), (Endpoint{kLoopback, outbox.endpoint().port}));
 }

@@ -16,7 +16,7 @@ using test::documented;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-Reason reason_of(const base::Bytes& bytes) {
+PacketStatus reason_of(const base::Bytes& bytes) {
   Packet packet;
   return decode(bytes, packet);
 }
@@ -24,7 +24,7 @@ Reason reason_of(const base::Bytes& bytes) {
 template <class Body>
 Body body_of(const base::Bytes& bytes) {
   Packet packet;
-  EXPECT_EQ(decode(bytes, packet), Reason::accepted);
+  EXPECT_EQ(decode(bytes, packet), PacketStatus::accepted);
   return std::get<Body>(packet.body);
 }
 
@@ -50,7 +50,7 @@ TEST(Packets, HeaderComesBack) {
           .token = 1},
          Subscribe{}, bytes);
   Packet packet;
-  ASSERT_EQ(decode(bytes, packet), Reason::accepted);
+  ASSERT_EQ(decode(bytes, packet), PacketStatus::accepted);
   EXPECT_EQ(packet.header.type, Type::subscribe);
   EXPECT_EQ(packet.header.robot, 0xFFFF);
   EXPECT_EQ(packet.header.sensor, 0xABCD);
@@ -102,7 +102,7 @@ TEST(Packets, StartIsItsHeaderAlone) {
   encode({.robot = 7, .sequence = 3}, Start{}, bytes);
   EXPECT_EQ(bytes.size(), kHeaderBytes);
   Packet packet;
-  ASSERT_EQ(decode(bytes, packet), Reason::accepted);
+  ASSERT_EQ(decode(bytes, packet), PacketStatus::accepted);
   EXPECT_TRUE(std::holds_alternative<Start>(packet.body));
   EXPECT_EQ(packet.header.type, Type::start);
   EXPECT_EQ(packet.header.robot, 7);
@@ -110,34 +110,34 @@ TEST(Packets, StartIsItsHeaderAlone) {
 
 TEST(Packets, LeaveIsItsHeaderAlone) {
   Packet packet;
-  ASSERT_EQ(decode(leave_example(), packet), Reason::accepted);
+  ASSERT_EQ(decode(leave_example(), packet), PacketStatus::accepted);
   EXPECT_TRUE(std::holds_alternative<Leave>(packet.body));
   EXPECT_EQ(packet.header.type, Type::leave);
   EXPECT_EQ(packet.header.robot, 7);
 }
 
 TEST(Packets, NeighboursAreWholeV2v) {
-  static_assert(kMostNeighbours == 9 && kV2vBytes == 132);
+  static_assert(kMaxNeighbours == 9 && kV2vBytes == 132);
   const base::Bytes whole = neighbours_example();
   const auto states = body_of<Neighbours>(whole).states;
   ASSERT_EQ(states.size(), 2 * kV2vBytes);
   Packet packet;
-  ASSERT_EQ(decode(states.subspan(kV2vBytes), packet), Reason::accepted);
+  ASSERT_EQ(decode(states.subspan(kV2vBytes), packet), PacketStatus::accepted);
   EXPECT_EQ(packet.header.robot, 9);
-  EXPECT_EQ(reason_of({whole.begin(), whole.end() - 1}), Reason::too_short) << "the last one is cut";
-  EXPECT_EQ(reason_of({whole.begin(), whole.begin() + kHeaderBytes}), Reason::too_short) << "none";
+  EXPECT_EQ(reason_of({whole.begin(), whole.end() - 1}), PacketStatus::too_short) << "the last one is cut";
+  EXPECT_EQ(reason_of({whole.begin(), whole.begin() + kHeaderBytes}), PacketStatus::too_short) << "none";
   base::Bytes longer = whole;
-  longer.resize(kHeaderBytes + kMostNeighbours * kV2vBytes);
-  EXPECT_EQ(reason_of(longer), Reason::accepted) << "what is in it is judged one by one";
+  longer.resize(kHeaderBytes + kMaxNeighbours * kV2vBytes);
+  EXPECT_EQ(reason_of(longer), PacketStatus::accepted) << "what is in it is judged one by one";
   longer.push_back(0);
-  EXPECT_EQ(reason_of(longer), Reason::too_long);
+  EXPECT_EQ(reason_of(longer), PacketStatus::too_long);
 }
 
 TEST(Packets, ReservedBytesOfTheHeaderAreIgnored) {
-  EXPECT_EQ(reason_of(patched<std::uint16_t>(v2v_example(), 10, 0xFFFF)), Reason::accepted);
+  EXPECT_EQ(reason_of(patched<std::uint16_t>(v2v_example(), 10, 0xFFFF)), PacketStatus::accepted);
   for (std::size_t at = 32; at < 60; ++at)  // age and covariance
-    EXPECT_EQ(reason_of(patched<std::uint8_t>(v2v_example(), at, 0xFF)), Reason::accepted) << at;
-  EXPECT_EQ(reason_of(patched<std::uint16_t>(v2v_example(), 62, 0xFFFF)), Reason::accepted);
+    EXPECT_EQ(reason_of(patched<std::uint8_t>(v2v_example(), at, 0xFF)), PacketStatus::accepted) << at;
+  EXPECT_EQ(reason_of(patched<std::uint16_t>(v2v_example(), 62, 0xFFFF)), PacketStatus::accepted);
 }
 
 TEST(Packets, WhatIsReservedIsSentAsZero) {
@@ -151,37 +151,40 @@ TEST(Packets, ATrailerIsLeftOut) {
     for (const base::Bytes& example : examples()) {
       base::Bytes bytes = patched<std::uint16_t>(example, 60, size);
       bytes.resize(bytes.size() + size, 0xAB);
-      EXPECT_EQ(reason_of(bytes), Reason::accepted) << size;
+      EXPECT_EQ(reason_of(bytes), PacketStatus::accepted) << size;
       bytes.push_back(0);
       const bool any_size = kind_of(Type{example[5]}) != 0;       // how long a reading is, its kind knows
       const bool several = Type{example[5]} == Type::neighbours;  // the byte begins one more V2V
-      EXPECT_EQ(reason_of(bytes), any_size ? Reason::accepted : several ? Reason::too_short : Reason::too_long) << size;
+      EXPECT_EQ(reason_of(bytes), any_size  ? PacketStatus::accepted
+                                  : several ? PacketStatus::too_short
+                                            : PacketStatus::too_long)
+          << size;
     }
   }
   base::Bytes reading = patched<std::uint16_t>(reading_example(), 60, 5);
   EXPECT_EQ(body_of<Reading>(reading).payload.size(), 3u);                                // of 8
   EXPECT_TRUE(body_of<Reading>(patched<std::uint16_t>(reading, 60, 8)).payload.empty());  // all of them
-  EXPECT_EQ(reason_of(patched<std::uint16_t>(reading, 60, 9)), Reason::too_short);        // more than there is
+  EXPECT_EQ(reason_of(patched<std::uint16_t>(reading, 60, 9)), PacketStatus::too_short);  // more than there is
   reading.resize(kMaxDatagram, 0);
-  EXPECT_EQ(reason_of(patched<std::uint16_t>(reading, 60, kMaxTrailer)), Reason::accepted);  // the longest of all
-  EXPECT_EQ(reason_of(patched<std::uint16_t>(reading, 60, kMaxTrailer + 1)), Reason::out_of_range);
+  EXPECT_EQ(reason_of(patched<std::uint16_t>(reading, 60, kMaxTrailer)), PacketStatus::accepted);  // the longest of all
+  EXPECT_EQ(reason_of(patched<std::uint16_t>(reading, 60, kMaxTrailer + 1)), PacketStatus::out_of_range);
 }
 
 TEST(Packets, AStampIsSessionAndTokenAlone) {
   base::Bytes bytes = v2v_example();
-  stamp(bytes, {0x11223344, 0x55667788});
+  write_session_token(bytes, {0x11223344, 0x55667788});
   Packet packet;
-  ASSERT_EQ(decode(bytes, packet), Reason::accepted);
+  ASSERT_EQ(decode(bytes, packet), PacketStatus::accepted);
   EXPECT_EQ(packet.header.session, 0x11223344u);
   EXPECT_EQ(packet.header.token, 0x55667788u);
-  stamp(bytes, {});
+  write_session_token(bytes, {});
   EXPECT_EQ(bytes, v2v_example());
 }
 
 TEST(Packets, EveryShorterPrefixIsTooShort) {
   const auto check = [](const base::Bytes& whole, std::size_t least) {
     for (std::size_t size = 0; size < least; ++size) {
-      EXPECT_EQ(reason_of({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}), Reason::too_short)
+      EXPECT_EQ(reason_of({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}), PacketStatus::too_short)
           << size;
     }
   };
@@ -192,19 +195,19 @@ TEST(Packets, EveryShorterPrefixIsTooShort) {
 TEST(Packets, OneByteMoreIsTooLong) {
   for (base::Bytes bytes : states()) {
     bytes.push_back(0);
-    EXPECT_EQ(reason_of(bytes), Reason::too_long);
+    EXPECT_EQ(reason_of(bytes), PacketStatus::too_long);
   }
   base::Bytes reading = reading_example();
   reading.resize(kHeaderBytes + kMaxPayload);
-  EXPECT_EQ(reason_of(reading), Reason::accepted);  // the longest datagram
+  EXPECT_EQ(reason_of(reading), PacketStatus::accepted);  // the longest datagram
   reading.push_back(0);
-  EXPECT_EQ(reason_of(reading), Reason::too_long);
+  EXPECT_EQ(reason_of(reading), PacketStatus::too_long);
 }
 
 TEST(Packets, AReadingsPayloadIsWhatLiesBehindItsHeader) {
   const base::Bytes bytes = reading_example();
   Packet packet;
-  ASSERT_EQ(decode(bytes, packet), Reason::accepted);
+  ASSERT_EQ(decode(bytes, packet), PacketStatus::accepted);
   EXPECT_EQ(kind_of(packet.header.type), 1);
   EXPECT_EQ(packet.header.robot, 7);
   EXPECT_EQ(packet.header.sequence, 258u);
@@ -216,7 +219,7 @@ TEST(Packets, AReadingsPayloadIsWhatLiesBehindItsHeader) {
 
 TEST(Packets, AReadingMayBeEmpty) {
   base::Bytes bytes;
-  frame({}, 31, {}, bytes);
+  encode_reading({}, 31, {}, bytes);
   EXPECT_EQ(bytes.size(), kHeaderBytes);
   EXPECT_TRUE(body_of<Reading>(bytes).payload.empty());
 }
@@ -228,32 +231,32 @@ TEST(Packets, TypesBelow128AreReadingsOfTheirKind) {
     const bool is_state = (type >= 128 && type <= 133) || type == 140;
     if (is_state) continue;
     EXPECT_EQ(reason_of(patched(reading_example(), 5, static_cast<std::uint8_t>(type))),
-              is_reading ? Reason::accepted : Reason::unknown_type)
+              is_reading ? PacketStatus::accepted : PacketStatus::unknown_type)
         << type;
   }
 }
 
 TEST(Packets, EachLetterOfTheMagicCounts) {
   for (std::size_t i = 0; i < kMagic.size(); ++i)
-    EXPECT_EQ(reason_of(patched<std::uint8_t>(v2v_example(), i, 0)), Reason::bad_magic);
+    EXPECT_EQ(reason_of(patched<std::uint8_t>(v2v_example(), i, 0)), PacketStatus::bad_magic);
 }
 
 TEST(Packets, OtherVersionsAreUnknown) {
   for (const int version : {0, 1, 3, 255})
-    EXPECT_EQ(reason_of(patched(v2v_example(), 4, static_cast<std::uint8_t>(version))), Reason::unknown_version);
+    EXPECT_EQ(reason_of(patched(v2v_example(), 4, static_cast<std::uint8_t>(version))), PacketStatus::unknown_version);
 }
 
 TEST(Packets, NoRealOfAStateMayBeNanOrInfinite) {
   for (const double bad : {kNan, kInf, -kInf}) {
     for (std::size_t i = 0; i < 7; ++i)
-      EXPECT_EQ(reason_of(patched(v2v_example(), 64 + 8 * i, bad)), Reason::not_finite) << i;
+      EXPECT_EQ(reason_of(patched(v2v_example(), 64 + 8 * i, bad)), PacketStatus::not_finite) << i;
     for (std::size_t i = 0; i < 13; ++i)
-      EXPECT_EQ(reason_of(patched(tag_example(), 64 + 8 * i, bad)), Reason::not_finite) << i;
+      EXPECT_EQ(reason_of(patched(tag_example(), 64 + 8 * i, bad)), PacketStatus::not_finite) << i;
   }
 }
 
 TEST(Packets, NanComesBeforeOutOfRange) {
-  EXPECT_EQ(reason_of(patched(patched(v2v_example(), 64, 1e300), 112, kNan)), Reason::not_finite);
+  EXPECT_EQ(reason_of(patched(patched(v2v_example(), 64, 1e300), 112, kNan)), PacketStatus::not_finite);
 }
 
 TEST(Packets, StatesEndAtTheirLimits) {
@@ -266,8 +269,8 @@ TEST(Packets, StatesEndAtTheirLimits) {
                        {136, 1e3}, {144, 1e3}, {152, 1e3}, {160, 1e3}};
   const auto check = [](const base::Bytes& bytes, const Limit& at) {
     for (const double sign : {1.0, -1.0}) {
-      EXPECT_EQ(reason_of(patched(bytes, at.offset, sign * at.limit)), Reason::accepted) << at.offset;
-      EXPECT_EQ(reason_of(patched(bytes, at.offset, sign * std::nextafter(at.limit, kInf))), Reason::out_of_range)
+      EXPECT_EQ(reason_of(patched(bytes, at.offset, sign * at.limit)), PacketStatus::accepted) << at.offset;
+      EXPECT_EQ(reason_of(patched(bytes, at.offset, sign * std::nextafter(at.limit, kInf))), PacketStatus::out_of_range)
           << at.offset;
     }
   };
@@ -276,26 +279,28 @@ TEST(Packets, StatesEndAtTheirLimits) {
 }
 
 TEST(Packets, WholeNumbersEndAtTheirLimits) {
-  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 120, 65535)), Reason::accepted);  // last robot id
+  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 120, 65535)), PacketStatus::accepted);  // last robot id
   EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 120, 65536)),
-            Reason::out_of_range);  // no robot, not "none"
-  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 120, 0xFFFFFFFE)), Reason::out_of_range);  // next to "none"
-  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 124, 0xFFFFFFFE)), Reason::accepted);      // any checkpoint
-  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 128, 2)), Reason::out_of_range);   // an unknown flag
-  EXPECT_EQ(reason_of(patched<std::uint16_t>(tag_example(), 6, 0)), Reason::out_of_range);     // tags begin at 1
-  EXPECT_EQ(reason_of(patched<std::uint16_t>(tag_example(), 6, 1)), Reason::accepted);         // the first tag
-  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, -1)), Reason::out_of_range);    // before time
-  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, 0)), Reason::accepted);         // the first moment
-  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, kMaxTime)), Reason::accepted);  // the last
-  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, kMaxTime + 1)), Reason::out_of_range);  // past it
+            PacketStatus::out_of_range);  // no robot, not "none"
+  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 120, 0xFFFFFFFE)),
+            PacketStatus::out_of_range);  // next to "none"
+  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 124, 0xFFFFFFFE)),
+            PacketStatus::accepted);                                                                 // any checkpoint
+  EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 128, 2)), PacketStatus::out_of_range);   // an unknown flag
+  EXPECT_EQ(reason_of(patched<std::uint16_t>(tag_example(), 6, 0)), PacketStatus::out_of_range);     // tags begin at 1
+  EXPECT_EQ(reason_of(patched<std::uint16_t>(tag_example(), 6, 1)), PacketStatus::accepted);         // the first tag
+  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, -1)), PacketStatus::out_of_range);    // before time
+  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, 0)), PacketStatus::accepted);         // the first moment
+  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, kMaxTime)), PacketStatus::accepted);  // the last
+  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, kMaxTime + 1)), PacketStatus::out_of_range);  // past it
 }
 
 TEST(Packets, OrientationsAreUnitQuaternions) {
-  EXPECT_EQ(reason_of(patched(tag_example(), 112, 0.0)), Reason::out_of_range);                    // norm 0.6
-  EXPECT_EQ(reason_of(patched(patched(tag_example(), 104, 0.0), 112, 1.0009)), Reason::accepted);  // within 0.001
-  EXPECT_EQ(reason_of(patched(patched(tag_example(), 104, 0.0), 112, 1.0011)), Reason::out_of_range);
-  EXPECT_EQ(reason_of(patched(patched(tag_example(), 104, 0.0), 112, 0.9989)), Reason::out_of_range);
-  EXPECT_EQ(reason_of(patched(tag_example(), 104, 1e200)), Reason::out_of_range);  // its square overflows
+  EXPECT_EQ(reason_of(patched(tag_example(), 112, 0.0)), PacketStatus::out_of_range);                    // norm 0.6
+  EXPECT_EQ(reason_of(patched(patched(tag_example(), 104, 0.0), 112, 1.0009)), PacketStatus::accepted);  // within 0.001
+  EXPECT_EQ(reason_of(patched(patched(tag_example(), 104, 0.0), 112, 1.0011)), PacketStatus::out_of_range);
+  EXPECT_EQ(reason_of(patched(patched(tag_example(), 104, 0.0), 112, 0.9989)), PacketStatus::out_of_range);
+  EXPECT_EQ(reason_of(patched(tag_example(), 104, 1e200)), PacketStatus::out_of_range);  // its square overflows
 }
 
 TEST(Packets, RefusedBytesLeaveThePacketAlone) {
@@ -310,15 +315,15 @@ TEST(Packets, OurOwnBadNumbersAbort) {
   EXPECT_DEATH(encode({}, V2v{.X_WR = {kNan, 0, 0, 0}}, out), "not finite");
   EXPECT_DEATH(encode({.time = -1}, Subscribe{}, out), "timestamp -1");
   EXPECT_DEATH(encode({.robot = 0}, Tag{}, out), "tag id 0");
-  EXPECT_DEATH(frame({}, 0, {}, out), "type 0 is no reading's");
-  EXPECT_DEATH(frame({}, 64, {}, out), "type 64 is no reading's");    // kind 0's second form
-  EXPECT_DEATH(frame({}, 128, {}, out), "type 128 is no reading's");  // a state's
-  EXPECT_DEATH(frame({}, 1, base::Bytes(kMaxPayload + 1), out), "1257 bytes of payload");
+  EXPECT_DEATH(encode_reading({}, 0, {}, out), "type 0 is no reading's");
+  EXPECT_DEATH(encode_reading({}, 64, {}, out), "type 64 is no reading's");    // kind 0's second form
+  EXPECT_DEATH(encode_reading({}, 128, {}, out), "type 128 is no reading's");  // a state's
+  EXPECT_DEATH(encode_reading({}, 1, base::Bytes(kMaxPayload + 1), out), "1257 bytes of payload");
 }
 
 TEST(Packets, AStateIsAReport) {
   Packet packet;
-  ASSERT_EQ(decode(v2v_example(), packet), Reason::accepted);
+  ASSERT_EQ(decode(v2v_example(), packet), PacketStatus::accepted);
   const base::Report got = report(packet.header, std::get<V2v>(packet.body), 5);
   EXPECT_EQ(got.mover, 5u);
   EXPECT_EQ(got.time, 1'500'000'000);
@@ -340,7 +345,7 @@ TEST(Packets, ATagsVelocityTurnsIntoItsOwnFrame) {
 /// Without an offset: the tag's own numbers, to the bit.
 TEST(Packets, ATagAtItsModelsOriginSaysTheModelsPose) {
   Packet packet;
-  ASSERT_EQ(decode(tag_example(), packet), Reason::accepted);
+  ASSERT_EQ(decode(tag_example(), packet), PacketStatus::accepted);
   const Tag& tag = std::get<Tag>(packet.body);
   const base::Report got = report(packet.header, tag, 3, {});
   const double yaw = std::atan2(2.0 * 0.8 * 0.6, 1.0 - 2.0 * 0.6 * 0.6);
@@ -376,20 +381,21 @@ TEST(Packets, ATagMayBeMountedAnywhereOnItsModel) {
   }
 }
 
-TEST(Reason, EachHasItsOwnName) {
-  for (std::size_t i = 0; i < kReasons; ++i) {
-    EXPECT_FALSE(name(static_cast<Reason>(i)).empty());
-    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(name(static_cast<Reason>(i)), name(static_cast<Reason>(j)));
+TEST(PacketStatus, EachHasItsOwnName) {
+  for (std::size_t i = 0; i < kPacketStatuses; ++i) {
+    EXPECT_FALSE(name(static_cast<PacketStatus>(i)).empty());
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_NE(name(static_cast<PacketStatus>(i)), name(static_cast<PacketStatus>(j)));
   }
-  EXPECT_EQ(name(Reason::stale), "stale");
+  EXPECT_EQ(name(PacketStatus::stale), "stale");
 }
 
-TEST(Reason, CountsSayWhatHappened) {
-  Counts counts;
+TEST(PacketStatus, CountsSayWhatHappened) {
+  PacketCounts counts;
   EXPECT_EQ(text(counts), "nothing received");
-  counts.add(Reason::accepted);
-  counts.add(Reason::stale);
-  counts.add(Reason::stale);
+  counts.add(PacketStatus::accepted);
+  counts.add(PacketStatus::stale);
+  counts.add(PacketStatus::stale);
   EXPECT_EQ(counts.total(), 3u);
   EXPECT_EQ(counts.dropped(), 2u);
   EXPECT_EQ(text(counts), "accepted 1, stale 2");

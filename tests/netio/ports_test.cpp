@@ -9,7 +9,7 @@
 namespace sf::netio {
 namespace {
 
-std::string refusal(const std::vector<PortUse>& uses) {
+std::string refusal(const std::vector<SensorPorts>& uses) {
   try {
     require_ports(uses);
   } catch (const base::InputError& error) {
@@ -18,7 +18,9 @@ std::string refusal(const std::vector<PortUse>& uses) {
   return "";
 }
 
-PortUse use(std::uint32_t robot, std::uint32_t sensors, PortRule rule = {}) { return {robot, sensors, rule, "roomba"}; }
+SensorPorts use(std::uint32_t robot, std::uint32_t sensors, PortRule rule = {}) {
+  return {robot, sensors, rule, "roomba"};
+}
 
 TEST(Ports, AreBasePlusRobotTimesStridePlusSensor) {
   EXPECT_EQ(port({}, 0, 0), 10000u);
@@ -29,7 +31,7 @@ TEST(Ports, AreBasePlusRobotTimesStridePlusSensor) {
 }
 
 TEST(Ports, AFleetWithinTheRuleIsAccepted) {
-  std::vector<PortUse> fleet;
+  std::vector<SensorPorts> fleet;
   for (std::uint32_t id = 0; id <= 6941; ++id) fleet.push_back(use(id, 8));  // the last port is 65535
   EXPECT_EQ(refusal(fleet), "");
   EXPECT_EQ(refusal({}), "");
@@ -52,26 +54,26 @@ TEST(Ports, TwoSensorsOnOnePortAreRefused) {
 }
 
 TEST(Ports, TheLeastStrideThatFits) {
-  EXPECT_EQ(least_stride({}, 8), 8u);
-  const std::vector<PortUse> few{use(1, 8), use(2, 3)};
-  EXPECT_EQ(least_stride(few, 8), 8u);
-  const std::vector<PortUse> many{use(1, 17), use(2, 17)};  // more than the usual
-  EXPECT_EQ(least_stride(many, 8), 17u);
-  const std::vector<PortUse> last{use(1, 17), use(2, 1), use(4, 1)};  // from 27 on nobody is met before robot 4
-  EXPECT_EQ(least_stride(last, 8), 17u);
-  const std::vector<PortUse> large{use(0, 1), use(8000, 2)};  // 8 times that is past the last port
-  EXPECT_EQ(least_stride(large, 8), 1u);
-  const PortUse other{1, 1, {10010, 8}, "tug", 0, "sonar"};
-  const std::vector<PortUse> kinds{use(1, 3), use(2, 3),
-                                   other};                // sonar at 10010 + stride, lasers at 10000 + stride ...
-  EXPECT_EQ(least_stride(kinds, 8), 3u);                  // 8: robot 2's third laser is where the sonar is
-  const std::vector<PortUse> none{use(4, 1), use(4, 1)};  // no stride helps
-  EXPECT_EQ(least_stride(none, 8), 8u);
+  EXPECT_EQ(smallest_stride({}, 8), 8u);
+  const std::vector<SensorPorts> few{use(1, 8), use(2, 3)};
+  EXPECT_EQ(smallest_stride(few, 8), 8u);
+  const std::vector<SensorPorts> many{use(1, 17), use(2, 17)};  // more than the usual
+  EXPECT_EQ(smallest_stride(many, 8), 17u);
+  const std::vector<SensorPorts> last{use(1, 17), use(2, 1), use(4, 1)};  // from 27 on nobody is met before robot 4
+  EXPECT_EQ(smallest_stride(last, 8), 17u);
+  const std::vector<SensorPorts> large{use(0, 1), use(8000, 2)};  // 8 times that is past the last port
+  EXPECT_EQ(smallest_stride(large, 8), 1u);
+  const SensorPorts other{1, 1, {10010, 8}, "tug", 0, "sonar"};
+  const std::vector<SensorPorts> kinds{use(1, 3), use(2, 3),
+                                       other};                // sonar at 10010 + stride, lasers at 10000 + stride ...
+  EXPECT_EQ(smallest_stride(kinds, 8), 3u);                   // 8: robot 2's third laser is where the sonar is
+  const std::vector<SensorPorts> none{use(4, 1), use(4, 1)};  // no stride helps
+  EXPECT_EQ(smallest_stride(none, 8), 8u);
 }
 
 TEST(Ports, TwoKindsAreToldApart) {
-  const PortUse lasers{1, 1, {10000, 8}, "roomba", 0, "laser"};
-  const PortUse others{0, 9, {10000, 8}, "tug", 0, "magnetometer"};
+  const SensorPorts lasers{1, 1, {10000, 8}, "roomba", 0, "laser"};
+  const SensorPorts others{0, 9, {10000, 8}, "tug", 0, "magnetometer"};
   EXPECT_EQ(refusal({lasers, {0, 9, {20000, 8}, "tug", 0, "magnetometer"}}), "");
   const std::string text = refusal({lasers, others});
   EXPECT_NE(text.find("'roomba' (id 1) laser 0 and robot 'tug' (id 0) magnetometer 8 share port 10008"),
@@ -79,8 +81,8 @@ TEST(Ports, TwoKindsAreToldApart) {
       << text;
   EXPECT_NE(text.find("change the base port of laser or the base port of magnetometer"), std::string::npos) << text;
   // One robot's two kinds on one base: its id is not to blame.
-  PortUse scan{1, 1, {52000, 8}, "roomba", 0, "laser", "--laser-port"};
-  const PortUse map{1, 1, {52000, 8}, "roomba", 0, "occupancy", "--occupancy-port"};
+  SensorPorts scan{1, 1, {52000, 8}, "roomba", 0, "laser", "--laser-port"};
+  const SensorPorts map{1, 1, {52000, 8}, "roomba", 0, "occupancy", "--occupancy-port"};
   const std::string both = refusal({scan, map});
   EXPECT_NE(both.find("change --laser-port or --occupancy-port"), std::string::npos) << both;
   scan.rule.base = 51999;

@@ -10,11 +10,11 @@ namespace sf::netio {
 namespace {
 
 /// A made-up kind's payloads: part, parts, then one byte that is the part's number; 255 is refused.
-Verdict judge(std::size_t, const Header&, std::span<const std::uint8_t> payload) {
-  if (payload.size() < 3) return {Reason::too_short};
-  if (payload.size() > 3) return {Reason::too_long};
-  if (payload[2] == 255 || payload[1] != 2 || payload[0] >= 2) return {Reason::out_of_range};
-  return {Reason::accepted, 1, payload[0], payload[1]};
+PayloadInfo inspect(std::size_t, const Header&, std::span<const std::uint8_t> payload) {
+  if (payload.size() < 3) return {PacketStatus::too_short};
+  if (payload.size() > 3) return {PacketStatus::too_long};
+  if (payload[2] == 255 || payload[1] != 2 || payload[0] >= 2) return {PacketStatus::out_of_range};
+  return {PacketStatus::accepted, 1, payload[0], payload[1]};
 }
 
 void read(std::size_t stream, const Header&, std::span<const std::uint8_t> payload, std::span<double> values) {
@@ -24,27 +24,28 @@ void read(std::size_t stream, const Header&, std::span<const std::uint8_t> paylo
 ReceiverOptions options(bool headerless = false) {
   return {.streams = {{{.robot = 7, .sensor = 0}, 2}, {{.robot = 7, .sensor = 1}, 2}},
           .headerless = headerless,
-          .judge = judge,
+          .inspect = inspect,
           .read = read};
 }
 
 base::Bytes part(std::uint16_t sensor, std::uint32_t sequence, std::uint8_t number, std::uint8_t value) {
   base::Bytes bytes;
   const std::uint8_t payload[] = {number, 2, value};
-  frame({.robot = 7, .sensor = sensor, .sequence = sequence, .time = 1000 + std::int64_t{sequence}}, 5, payload, bytes);
+  encode_reading({.robot = 7, .sensor = sensor, .sequence = sequence, .time = 1000 + std::int64_t{sequence}}, 5,
+                 payload, bytes);
   return bytes;
 }
 
 TEST(Receiver, GivesTheNewestWholeReadingOfEachSensor) {
   Receiver receiver(options());
   EXPECT_FALSE(receiver.newest(0));
-  EXPECT_EQ(receiver.accept(0, part(0, 4, 1, 11), 5), Taken::part);
-  EXPECT_EQ(receiver.accept(0, part(0, 4, 0, 10), 6), Taken::whole);
-  EXPECT_EQ(receiver.accept(1, part(1, 9, 0, 20), 7), Taken::part);
+  EXPECT_EQ(receiver.accept(0, part(0, 4, 1, 11), 5), PartStatus::incomplete);
+  EXPECT_EQ(receiver.accept(0, part(0, 4, 0, 10), 6), PartStatus::complete);
+  EXPECT_EQ(receiver.accept(1, part(1, 9, 0, 20), 7), PartStatus::incomplete);
   const auto whole = receiver.newest(0);
   ASSERT_TRUE(whole);
   EXPECT_EQ(whole->time, 1004);
-  EXPECT_EQ(whole->came, 6);
+  EXPECT_EQ(whole->arrival, 6);
   EXPECT_EQ(whole->values[0], 10.0);
   EXPECT_EQ(whole->values[1], 11.0);
   EXPECT_FALSE(receiver.newest(1));
@@ -52,19 +53,19 @@ TEST(Receiver, GivesTheNewestWholeReadingOfEachSensor) {
 
 TEST(Receiver, CountsWhatItDoesNotUse) {
   Receiver receiver(options());
-  EXPECT_EQ(receiver.accept(0, part(1, 4, 0, 1), 0), Taken::refused);  // another sensor's port
-  EXPECT_EQ(receiver.accept(0, v2v_example(), 0), Taken::refused);
-  EXPECT_EQ(receiver.accept(0, part(0, 4, 0, 255), 0), Taken::refused);
+  EXPECT_EQ(receiver.accept(0, part(1, 4, 0, 1), 0), PartStatus::rejected);  // another sensor's port
+  EXPECT_EQ(receiver.accept(0, v2v_example(), 0), PartStatus::rejected);
+  EXPECT_EQ(receiver.accept(0, part(0, 4, 0, 255), 0), PartStatus::rejected);
   receiver.accept(0, part(0, 4, 0, 1), 0);
-  EXPECT_EQ(receiver.accept(0, part(0, 4, 0, 1), 0), Taken::duplicate);
+  EXPECT_EQ(receiver.accept(0, part(0, 4, 0, 1), 0), PartStatus::duplicate);
   receiver.accept(0, part(0, 4, 1, 1), 0);
-  EXPECT_EQ(receiver.accept(0, part(0, 3, 1, 1), 0), Taken::late);
+  EXPECT_EQ(receiver.accept(0, part(0, 3, 1, 1), 0), PartStatus::late);
   receiver.accept(0, part(0, 6, 1, 1), 0);
   const ReceiverCounts counts = receiver.counts();
-  EXPECT_EQ(counts.reasons[Reason::wrong_source], 1u);
-  EXPECT_EQ(counts.reasons[Reason::wrong_direction], 1u);
-  EXPECT_EQ(counts.reasons[Reason::out_of_range], 1u);
-  EXPECT_EQ(counts.reasons[Reason::accepted], 5u);
+  EXPECT_EQ(counts.packets[PacketStatus::wrong_source], 1u);
+  EXPECT_EQ(counts.packets[PacketStatus::wrong_direction], 1u);
+  EXPECT_EQ(counts.packets[PacketStatus::out_of_range], 1u);
+  EXPECT_EQ(counts.packets[PacketStatus::accepted], 5u);
   EXPECT_EQ(counts.duplicates, 1u);
   EXPECT_EQ(counts.late, 1u);
   EXPECT_EQ(counts.lost, 3u);  // both parts of 5, one of 6
@@ -72,17 +73,17 @@ TEST(Receiver, CountsWhatItDoesNotUse) {
 
 TEST(Receiver, HeaderlessReadingsCountInOrderOfArrival) {
   ReceiverOptions plain = options(true);
-  plain.judge = [](std::size_t, const Header&, std::span<const std::uint8_t> payload) -> Verdict {
-    return {payload.size() == 1 ? Reason::accepted : Reason::too_short, 1, 0, 1};
+  plain.inspect = [](std::size_t, const Header&, std::span<const std::uint8_t> payload) -> PayloadInfo {
+    return {payload.size() == 1 ? PacketStatus::accepted : PacketStatus::too_short, 1, 0, 1};
   };
   plain.read = [](std::size_t, const Header&, std::span<const std::uint8_t> payload, std::span<double> values) {
     values[0] = payload[0];
   };
   Receiver receiver(plain);
-  EXPECT_EQ(receiver.accept(0, base::Bytes{}, 5), Taken::refused);
+  EXPECT_EQ(receiver.accept(0, base::Bytes{}, 5), PartStatus::rejected);
   std::int64_t now = 9;
   for (const std::uint8_t value : base::Bytes{3, 1, 2})
-    EXPECT_EQ(receiver.accept(0, base::Bytes{value}, ++now), Taken::whole);
+    EXPECT_EQ(receiver.accept(0, base::Bytes{value}, ++now), PartStatus::complete);
   EXPECT_EQ(receiver.newest(0)->values[0], 2.0);
   EXPECT_EQ(receiver.newest(0)->time, 12);  // they do not tell theirs
   EXPECT_EQ(receiver.newest(0)->sequence, 2u);
@@ -93,12 +94,12 @@ TEST(Receiver, HeaderlessPartsBelongToTheReadingThatTheyFollow) {
   const auto say = [&](std::uint8_t part, std::uint8_t value, std::int64_t now) {
     return receiver.accept(0, base::Bytes{part, 2, value}, now);
   };
-  EXPECT_EQ(say(0, 10, 5), Taken::part);
-  ASSERT_EQ(say(1, 11, 6), Taken::whole);
+  EXPECT_EQ(say(0, 10, 5), PartStatus::incomplete);
+  ASSERT_EQ(say(1, 11, 6), PartStatus::complete);
   EXPECT_EQ(receiver.newest(0)->time, 5);
-  EXPECT_EQ(say(0, 20, 7), Taken::part);  // its second part is lost
-  EXPECT_EQ(say(0, 30, 8), Taken::part);
-  ASSERT_EQ(say(1, 31, 9), Taken::whole);
+  EXPECT_EQ(say(0, 20, 7), PartStatus::incomplete);  // its second part is lost
+  EXPECT_EQ(say(0, 30, 8), PartStatus::incomplete);
+  ASSERT_EQ(say(1, 31, 9), PartStatus::complete);
   EXPECT_EQ(receiver.newest(0)->values[0], 30.0);
   EXPECT_EQ(receiver.newest(0)->values[1], 31.0);
 }
@@ -116,9 +117,9 @@ TEST(Receiver, AMillionRandomAndMutatedDatagrams) {
       bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
     if (random() % 16 == 0) bytes.resize(random() % 64);
     const auto now = std::int64_t{i} * 1'000'000;
-    wholes += receiver.accept(random() % 2, bytes, now) == Taken::whole;
+    wholes += receiver.accept(random() % 2, bytes, now) == PartStatus::complete;
   }
-  EXPECT_EQ(receiver.counts().reasons.total(), 1'000'000u);
+  EXPECT_EQ(receiver.counts().packets.total(), 1'000'000u);
   EXPECT_GT(wholes, 1000u);
   EXPECT_GT(receiver.counts().late, 0u);
   EXPECT_GT(receiver.counts().duplicates, 0u);
@@ -126,38 +127,38 @@ TEST(Receiver, AMillionRandomAndMutatedDatagrams) {
 
 /// A bound one takes what carries its farm's session and its own.
 TEST(Receiver, TakesPacketsOfItsFarmAlone) {
-  const auto from = [](const Stamp& farm, std::uint32_t sequence, std::uint8_t number) {
+  const auto from = [](const SessionToken& farm, std::uint32_t sequence, std::uint8_t number) {
     base::Bytes bytes = part(0, sequence, number, 1);
-    stamp(bytes, farm);
+    write_session_token(bytes, farm);
     return bytes;
   };
-  constexpr Stamp kFarm{0xFA23, 7}, kForged{0xFA23, 8}, kOther{0xFA24, 7};
+  constexpr SessionToken kFarm{0xFA23, 7}, kForged{0xFA23, 8}, kOther{0xFA24, 7};
   Receiver receiver(options());
-  receiver.bind({0, 7});  // before any challenge
-  receiver.bind(kFarm);
+  receiver.set_session({0, 7});  // before any challenge
+  receiver.set_session(kFarm);
   EXPECT_EQ(receiver.counts().restarts, 0u);
-  EXPECT_EQ(receiver.accept(0, from(kFarm, 100, 0), 0), Taken::part);
-  EXPECT_EQ(receiver.accept(0, from(kForged, 100, 1), 0), Taken::refused);
-  EXPECT_EQ(receiver.accept(0, from(kOther, 100, 1), 0), Taken::refused);
-  EXPECT_EQ(receiver.accept(0, from(kFarm, 100, 1), 0), Taken::whole);
-  receiver.refuse_source();
-  EXPECT_EQ(receiver.counts().reasons[Reason::wrong_source], 3u);
-  receiver.bind(kFarm);  // challenged once more: nothing is another
+  EXPECT_EQ(receiver.accept(0, from(kFarm, 100, 0), 0), PartStatus::incomplete);
+  EXPECT_EQ(receiver.accept(0, from(kForged, 100, 1), 0), PartStatus::rejected);
+  EXPECT_EQ(receiver.accept(0, from(kOther, 100, 1), 0), PartStatus::rejected);
+  EXPECT_EQ(receiver.accept(0, from(kFarm, 100, 1), 0), PartStatus::complete);
+  receiver.reject_source();
+  EXPECT_EQ(receiver.counts().packets[PacketStatus::wrong_source], 3u);
+  receiver.set_session(kFarm);  // challenged once more: nothing is another
   EXPECT_TRUE(receiver.newest(0));
   // Its farm was started again, and counts from 0.
-  receiver.bind(kOther);
+  receiver.set_session(kOther);
   EXPECT_FALSE(receiver.newest(0));
-  EXPECT_EQ(receiver.accept(0, from(kOther, 0, 0), 1), Taken::part);
-  EXPECT_EQ(receiver.accept(0, from(kOther, 0, 1), 1), Taken::whole);
-  EXPECT_EQ(receiver.accept(0, from(kFarm, 101, 0), 1), Taken::refused);
+  EXPECT_EQ(receiver.accept(0, from(kOther, 0, 0), 1), PartStatus::incomplete);
+  EXPECT_EQ(receiver.accept(0, from(kOther, 0, 1), 1), PartStatus::complete);
+  EXPECT_EQ(receiver.accept(0, from(kFarm, 101, 0), 1), PartStatus::rejected);
   EXPECT_EQ(receiver.counts().restarts, 2u);  // of two streams
 }
 
 TEST(Receiver, CountsLeaps) {
   Receiver receiver(options());
   for (const std::uint8_t number : {std::uint8_t{0}, std::uint8_t{1}}) receiver.accept(0, part(0, 5, number, 1), 0);
-  EXPECT_EQ(receiver.accept(0, part(0, 50'000, 0, 1), 0), Taken::leap);
-  EXPECT_EQ(receiver.counts().leaps, 1u);
+  EXPECT_EQ(receiver.accept(0, part(0, 50'000, 0, 1), 0), PartStatus::jump);
+  EXPECT_EQ(receiver.counts().jumps, 1u);
   EXPECT_EQ(receiver.counts().late, 0u);
 }
 

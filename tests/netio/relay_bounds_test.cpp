@@ -7,51 +7,51 @@
 #include <random>
 #include <set>
 
-#include "tests/netio/crowd.h"
+#include "tests/netio/relay_fixture.h"
 
 namespace sf::netio {
 namespace {
 
-using test::Crowd;
+using test::RelayFixture;
 using Rows = std::vector<std::uint32_t>;
 
 TEST(RelayBounds, StatesWithinTheRadiosRange) {
-  Crowd crowd(4, {.range = 10.0});
+  RelayFixture crowd(4, {.range = 10.0});
   crowd.all_ask();
   crowd.say(0, {0, 0});
   crowd.say(1, {6, 8});                         // exactly as far as the radio reaches
   crowd.say(2, {-6, -std::nextafter(8.0, 9)});  // the next place beyond
   crowd.say(3, {1000, 0});
   EXPECT_EQ(crowd.pass().states, 2u);
-  auto heard = crowd.heard();
+  auto heard = crowd.received();
   EXPECT_EQ(heard[0], Rows{1});
   EXPECT_EQ(heard[1], Rows{0});
   // One that says nothing now is still where it was, and is not passed on itself.
   crowd.say(1, {6, 8});
   crowd.pass();
-  heard = crowd.heard();
+  heard = crowd.received();
   EXPECT_EQ(heard.size(), 1u);
   EXPECT_EQ(heard[0], Rows{1});
 }
 
 TEST(RelayBounds, ARangeOfNothingPassesNothingOn) {
-  Crowd crowd(3, {.range = 0.0});
+  RelayFixture crowd(3, {.range = 0.0});
   crowd.all_ask();
   for (const std::uint32_t id : {1u, 2u}) crowd.say(id, {0, 0});  // not even at one place; robot 0 has none
-  crowd.take(kEveryone, Start{});
+  crowd.take(kBroadcastId, Start{});
   const RelayCounts counts = crowd.pass();
   EXPECT_EQ(counts.states + counts.waited, 0u);
   EXPECT_EQ(counts.starts, 3u) << "no V2V";
 }
 
 TEST(RelayBounds, WithoutAPlaceARobotHearsAllInTurn) {
-  Crowd crowd(13, {.range = 10.0, .most = Relay::kLeastShare});
+  RelayFixture crowd(13, {.range = 10.0, .most = Relay::kMinShare});
   crowd.ask(0);
   std::set<std::uint32_t> heard;
   for (int pass = 0; pass < 3; ++pass) {
     for (std::uint32_t id = 1; id < 13; ++id) crowd.say(id, {1000.0 * id, 0});
     EXPECT_EQ(crowd.pass().states, 4u);
-    const Rows states = crowd.heard()[0];
+    const Rows states = crowd.received()[0];
     heard.insert(states.begin(), states.end());
   }
   EXPECT_EQ(heard.size(), 12u);
@@ -59,7 +59,7 @@ TEST(RelayBounds, WithoutAPlaceARobotHearsAllInTurn) {
 
 TEST(RelayBounds, ManyStatesADatagramTheNearestFirst) {
   for (const std::uint32_t others : {1u, 9u, 10u, 80u}) {  // one, a full datagram, one more, more than are passed on
-    Crowd crowd(others + 1);
+    RelayFixture crowd(others + 1);
     crowd.ask(0);
     Rows nearest;
     for (std::uint32_t id = 0; id <= others; ++id) crowd.say(id, {0.1 * id, 0});
@@ -67,19 +67,19 @@ TEST(RelayBounds, ManyStatesADatagramTheNearestFirst) {
     const RelayCounts counts = crowd.pass();
     EXPECT_EQ(counts.states, nearest.size());
     EXPECT_EQ(counts.datagrams, (nearest.size() + 8) / 9);
-    EXPECT_EQ(crowd.heard()[0], nearest);
+    EXPECT_EQ(crowd.received()[0], nearest);
     for (const base::Bytes& bytes : crowd.datagrams) EXPECT_LE(bytes.size(), kMaxDatagram - kMaxTrailer);
   }
 }
 
 TEST(RelayBounds, AllThatIsPassedOnCarriesTheReceiversStamp) {
-  Crowd crowd(12);
+  RelayFixture crowd(12);
   crowd.ask(5);
   for (const std::uint32_t id : crowd.ids) crowd.say(id, {0, 0});
   for (std::uint32_t pass = 0, next = 0; pass < 2; ++pass) {
     crowd.say(0, {0, 0});
     crowd.pass();
-    crowd.heard();
+    crowd.received();
     for (const base::Bytes& bytes : crowd.datagrams) {
       Packet packet;
       decode(bytes, packet);
@@ -91,7 +91,7 @@ TEST(RelayBounds, AllThatIsPassedOnCarriesTheReceiversStamp) {
         EXPECT_EQ(packet.header.token, test::kRobots);
       };
       carries_it(bytes);
-      Radio::each(bytes, carries_it);
+      V2vSocket::for_each_state(bytes, carries_it);
     }
     EXPECT_EQ(next, 2u + pass);
   }
@@ -102,7 +102,7 @@ TEST(RelayBounds, AllThatIsPassedOnCarriesTheReceiversStamp) {
 TEST(RelayBounds, TheBudgetHoldsHoweverManyAsk) {
   for (const bool localised : {true, false}) {
     for (const std::uint32_t count : {500u, 1000u}) {
-      Crowd crowd(count);
+      RelayFixture crowd(count);
       crowd.all_ask();
       for (const std::uint32_t id : crowd.ids)
         crowd.say(id, localised ? glm::dvec2{0.3 * (id % 32), 0.3 * (id / 32)} : glm::dvec2{});
@@ -111,14 +111,14 @@ TEST(RelayBounds, TheBudgetHoldsHoweverManyAsk) {
       EXPECT_EQ(counts.states, count * share);
       EXPECT_EQ(counts.datagrams, count * ((share + 8) / 9));
       EXPECT_EQ(counts.waited, 0u);
-      EXPECT_LE(crowd.relay.looks(), 8 * count * share) << "of " << count * (count - 1);
+      EXPECT_LE(crowd.relay.visits(), 8 * count * share) << "of " << count * (count - 1);
     }
   }
 }
 
 /// A budget for ten of thirty: all get their turn within three ticks, in order, and nobody twice before all.
 TEST(RelayBounds, WhereTheBudgetIsSpentRobotsTakeTurns) {
-  Crowd crowd(30, {.budget = 10 * Relay::kLeastShare});
+  RelayFixture crowd(30, {.budget = 10 * Relay::kMinShare});
   crowd.all_ask();
   for (std::uint32_t pass = 0; pass < 6; ++pass) {
     for (const std::uint32_t id : crowd.ids) crowd.say(id, {0.1 * id, 0});
@@ -126,7 +126,7 @@ TEST(RelayBounds, WhereTheBudgetIsSpentRobotsTakeTurns) {
     EXPECT_EQ(counts.states, 40u);
     EXPECT_EQ(counts.waited, 20u);
     std::uint32_t next = pass % 3 * 10;
-    for (const auto& [id, states] : crowd.heard()) {
+    for (const auto& [id, states] : crowd.received()) {
       EXPECT_EQ(id, next++) << pass;
       EXPECT_EQ(states.size(), 4u);
     }
@@ -136,12 +136,12 @@ TEST(RelayBounds, WhereTheBudgetIsSpentRobotsTakeTurns) {
 
 /// The one whose turn it would be asks no more: the next is served.
 TEST(RelayBounds, ATurnNotTakenIsTheNextRobots) {
-  Crowd crowd(4, {.budget = Relay::kLeastShare});
+  RelayFixture crowd(4, {.budget = Relay::kMinShare});
   crowd.all_ask();
   const auto served = [&] {
     for (const std::uint32_t id : crowd.ids) crowd.say(id, {0.1 * id, 0});
     crowd.pass();
-    const auto heard = crowd.heard();
+    const auto heard = crowd.received();
     return heard.size() == 1 ? heard.begin()->first : kNone;
   };
   EXPECT_EQ(served(), 0u);
@@ -154,7 +154,7 @@ TEST(RelayBounds, ATurnNotTakenIsTheNextRobots) {
 /// Five robots that speak, ask and stop asking at random, and a budget for one or two: a robot is passed all that was
 /// said since its last turn, or since it asked, once, and waits for four others at most.
 TEST(RelayBounds, ATurnBringsAllThatWasSaidSinceTheLast) {
-  Crowd crowd(5, {.budget = Relay::kLeastShare});
+  RelayFixture crowd(5, {.budget = Relay::kMinShare});
   std::mt19937 random(3);  // NOLINT: the same every time
   std::vector<std::set<std::uint32_t>> due(5);
   std::vector<int> waits(5, 0);
@@ -164,13 +164,13 @@ TEST(RelayBounds, ATurnBringsAllThatWasSaidSinceTheLast) {
       if (random() % 3 == 0) crowd.say(id, {0, 0}), spoke.insert(id);
     for (const std::uint32_t id : crowd.ids) {
       const bool asks = random() % 8 != 0;
-      crowd.ask(id, asks ? kOthers : 1u << 1);
+      crowd.ask(id, asks ? kNeighboursBit : 1u << 1);
       if (asks) due[id].insert(spoke.begin(), spoke.end());
       if (!asks) due[id].clear();
       due[id].erase(id);
     }
     crowd.pass();
-    auto heard = crowd.heard();
+    auto heard = crowd.received();
     for (const std::uint32_t id : crowd.ids) {
       const Rows came = heard[id];
       waits[id] = came.empty() && !due[id].empty() ? waits[id] + 1 : 0;
@@ -184,7 +184,7 @@ TEST(RelayBounds, ATurnBringsAllThatWasSaidSinceTheLast) {
 
 /// Robots with few neighbours use little of the budget: more than two are served.
 TEST(RelayBounds, UnusedSharesAreLeftToOthers) {
-  Crowd crowd(8, {.range = 1.0, .budget = 2 * Relay::kLeastShare});
+  RelayFixture crowd(8, {.range = 1.0, .budget = 2 * Relay::kMinShare});
   crowd.all_ask();
   for (const std::uint32_t id : crowd.ids) crowd.say(id, {100.0 * (id / 2), 0});  // in pairs
   const RelayCounts counts = crowd.pass();

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "netio/radio.h"
+#include "netio/v2v_socket.h"
 #include "tests/netio/examples.h"
 
 namespace sf::netio {
@@ -15,69 +15,69 @@ struct RelayTest : testing::Test {
   Inbox inbox{{.bind = {kLoopback, 0}, .robots = {3, 7, 9}}};
   Relay relay{std::vector<std::uint32_t>{9, 3, 7}};
   Outbox outbox{inbox.socket()};
-  std::vector<std::unique_ptr<Radio>> radios;
+  std::vector<std::unique_ptr<V2vSocket>> radios;
   std::uint32_t sequence = 0;
 
   RelayTest() {
     for (const std::uint32_t id : {3u, 7u, 9u}) {
-      RadioOptions options{.farm = {kLoopback, inbox.port()}, .robot = id};
+      V2vSocketOptions options{.farm = {kLoopback, inbox.port()}, .robot = id};
       for (const std::uint32_t other : {3u, 7u, 9u})
         if (other != id) options.others.push_back(other);
-      radios.push_back(std::make_unique<Radio>(options));
+      radios.push_back(std::make_unique<V2vSocket>(options));
     }
     for (const std::uint32_t id : {3u, 7u, 9u}) prove(id);
   }
-  Radio& radio(std::uint32_t id) { return *radios[id == 3 ? 0 : id == 7 ? 1 : 2]; }
+  V2vSocket& v2v_socket(std::uint32_t id) { return *radios[id == 3 ? 0 : id == 7 ? 1 : 2]; }
 
   /// Challenge and answer.
   void prove(std::uint32_t id) {
     base::Bytes answer;
     Packet packet;
-    packet.header.session = radio(id).farm_stamp().token;
-    ASSERT_TRUE(inbox.challenge(packet, {kLoopback, bound_endpoint(radio(id).socket()).port}, 0, answer));
-    ASSERT_EQ(radio(id).accept(answer, 0, packet), Reason::accepted);
+    packet.header.session = v2v_socket(id).farm_session_token().token;
+    ASSERT_TRUE(inbox.challenge(packet, {kLoopback, bound_endpoint(v2v_socket(id).socket()).port}, 0, answer));
+    ASSERT_EQ(v2v_socket(id).accept(answer, 0, packet), PacketStatus::accepted);
   }
   void say(std::uint32_t id, double x) {
     base::Bytes bytes;
     encode({.robot = static_cast<std::uint16_t>(id), .sequence = sequence++}, V2v{.X_WR = {x, 0, 0, 0}}, bytes);
-    radio(id).send(bytes);
+    v2v_socket(id).send(bytes);
     take();
   }
   void ask(std::uint32_t id, std::uint32_t kinds) {
     base::Bytes bytes;
     encode({.robot = static_cast<std::uint16_t>(id), .sequence = sequence++}, Subscribe{kinds}, bytes);
-    radio(id).send(bytes);
+    v2v_socket(id).send(bytes);
     take();
   }
   void start(std::uint16_t id) {
     base::Bytes bytes;
     encode({.robot = id}, Start{}, bytes);
-    radio(3).send(bytes);
+    v2v_socket(3).send(bytes);
     take();
   }
   void take() {
     std::size_t taken = 0;
-    for (int looks = 0; taken == 0 && looks < 10'000'000; ++looks)
+    for (int visits = 0; taken == 0 && visits < 10'000'000; ++visits)
       taken = inbox.receive(0, [&](const Packet& packet) { relay.take(packet); });
   }
   void tick(std::int64_t now = 0) {
-    relay.pass_on(inbox, now, outbox);
+    relay.forward(inbox, now, outbox);
     outbox.flush();
   }
   /// What a robot hears: loopback gives at once what was sent.
   std::vector<Packet> heard(std::uint32_t id, std::int64_t now = 0) {
     std::vector<Packet> packets;
-    Radio& one = radio(id);
+    V2vSocket& one = v2v_socket(id);
     one.receive([&](std::span<const std::uint8_t> bytes) {
       Packet packet;
-      if (one.accept(bytes, now, packet) == Reason::accepted) packets.push_back(packet);
+      if (one.accept(bytes, now, packet) == PacketStatus::accepted) packets.push_back(packet);
     });
     return packets;
   }
 };
 
 TEST_F(RelayTest, OthersStatesGoToThoseThatAsked) {
-  ask(3, kOthers);
+  ask(3, kNeighboursBit);
   say(3, 1.0);
   say(7, 2.0);
   tick();
@@ -91,7 +91,7 @@ TEST_F(RelayTest, OthersStatesGoToThoseThatAsked) {
 }
 
 TEST_F(RelayTest, TheNewestOfEachOncePerTick) {
-  ask(3, kOthers);
+  ask(3, kNeighboursBit);
   for (const double x : {1.0, 2.0, 3.0}) say(7, x);
   say(9, 4.0);
   tick();
@@ -108,15 +108,15 @@ TEST_F(RelayTest, TheNewestOfEachOncePerTick) {
 TEST_F(RelayTest, WhatNobodyAskedForIsForgotten) {
   say(7, 2.0);
   tick();
-  ask(3, kOthers);
+  ask(3, kNeighboursBit);
   tick();
   EXPECT_TRUE(heard(3).empty());
 }
 
 TEST_F(RelayTest, SilentRobotsAreSentNothing) {
-  ask(3, kOthers);
+  ask(3, kNeighboursBit);
   say(7, 2.0);
-  start(kEveryone);
+  start(kBroadcastId);
   tick(2 * kSecond);
   EXPECT_EQ(relay.counts().states + relay.counts().starts, 0u);
 }
@@ -124,8 +124,8 @@ TEST_F(RelayTest, SilentRobotsAreSentNothing) {
 TEST_F(RelayTest, StartGoesToAllThatAreHeard) {
   say(3, 0.0);
   say(7, 0.0);
-  start(kEveryone);
-  start(kEveryone);  // before the tick: one will do
+  start(kBroadcastId);
+  start(kBroadcastId);  // before the tick: one will do
   tick();
   for (const std::uint32_t id : {3u, 7u}) {
     const auto packets = heard(id);
@@ -155,18 +155,18 @@ TEST_F(RelayTest, PassesOnTheBytesAsTheyCame) {
   encode({.robot = 7, .sequence = 77, .time = 1'500'000'000, .session = 5, .token = inbox.token({kLoopback, 1})}, state,
          bytes);
   Packet packet;
-  ask(3, kOthers);
-  ASSERT_EQ(inbox.accept(bytes, {kLoopback, 1}, 0, packet), Reason::accepted);
-  stamp(bytes, radio(3).farm_stamp());  // but for who speaks to whom
+  ask(3, kNeighboursBit);
+  ASSERT_EQ(inbox.accept(bytes, {kLoopback, 1}, 0, packet), PacketStatus::accepted);
+  write_session_token(bytes, v2v_socket(3).farm_session_token());  // but for who speaks to whom
   relay.take(packet);
   tick();
   base::Bytes came;
-  radio(3).receive([&](std::span<const std::uint8_t> got) { came.assign(got.begin(), got.end()); });
+  v2v_socket(3).receive([&](std::span<const std::uint8_t> got) { came.assign(got.begin(), got.end()); });
   EXPECT_EQ(came, bytes);
 }
 
 TEST_F(RelayTest, TagsAndRequestsAreNotPassedOn) {
-  ask(3, kOthers);
+  ask(3, kNeighboursBit);
   Packet packet;
   decode(tag_example(), packet);
   relay.take(packet);
@@ -179,16 +179,16 @@ TEST_F(RelayTest, TagsAndRequestsAreNotPassedOn) {
 constexpr std::uint32_t kFarm = 0xFA23;  ///< session
 constexpr std::uint32_t kOwn = 0x0707;   ///< session
 
-struct RadioTest : testing::Test {
+struct V2vSocketTest : testing::Test {
   Outbox farm{OutboxOptions{.bind = {kLoopback, 0}}};
-  Radio radio{{.farm = farm.endpoint(), .robot = 7, .others = {3, 9}, .session = kOwn}};
+  V2vSocket v2v_socket{{.farm = farm.endpoint(), .robot = 7, .others = {3, 9}, .session = kOwn}};
   Packet packet;
-  RadioTest() {
+  V2vSocketTest() {
     base::Bytes bytes;
     encode({.session = kFarm, .token = kOwn}, Challenge{3}, bytes);
-    radio.accept(bytes, 0, packet);
+    v2v_socket.accept(bytes, 0, packet);
   }
-  Endpoint to() const { return {kLoopback, bound_endpoint(radio.socket()).port}; }
+  Endpoint to() const { return {kLoopback, bound_endpoint(v2v_socket.socket()).port}; }
 };
 
 base::Bytes v2v_of(std::uint16_t robot, std::uint32_t sequence) {
@@ -197,28 +197,28 @@ base::Bytes v2v_of(std::uint16_t robot, std::uint32_t sequence) {
   return bytes;
 }
 
-base::Bytes stamped(base::Bytes bytes, const Stamp& stamp = {kFarm, kOwn}) {
-  netio::stamp(bytes, stamp);
+base::Bytes stamped(base::Bytes bytes, const SessionToken& stamp = {kFarm, kOwn}) {
+  netio::write_session_token(bytes, stamp);
   return bytes;
 }
 
-TEST_F(RadioTest, OnlyTheFarmsWordCounts) {
+TEST_F(V2vSocketTest, OnlyTheFarmsWordCounts) {
   Outbox stranger;
   stranger.queue(to(), v2v_of(3, 0));
   stranger.flush();
   farm.queue(to(), v2v_of(3, 0));
   farm.flush();
   int came = 0;
-  radio.receive([&](std::span<const std::uint8_t> bytes) {
+  v2v_socket.receive([&](std::span<const std::uint8_t> bytes) {
     ++came;
-    EXPECT_EQ(radio.accept(bytes, 0, packet), Reason::accepted);
+    EXPECT_EQ(v2v_socket.accept(bytes, 0, packet), PacketStatus::accepted);
   });
   EXPECT_EQ(came, 1);
-  EXPECT_EQ(radio.counts()[Reason::wrong_source], 1u);
+  EXPECT_EQ(v2v_socket.counts()[PacketStatus::wrong_source], 1u);
 }
 
 /// Each state in it is judged by itself.
-TEST_F(RadioTest, NeighboursAreTakenApart) {
+TEST_F(V2vSocketTest, NeighboursAreTakenApart) {
   base::Bytes states, bytes;
   for (const base::Bytes& state : {v2v_of(3, 5), v2v_of(9, 0), v2v_of(3, 4), stamped(v2v_of(9, 1), {})})
     states.insert(states.end(), state.begin(), state.end());
@@ -226,62 +226,64 @@ TEST_F(RadioTest, NeighboursAreTakenApart) {
   farm.queue(to(), bytes);
   farm.queue(to(), stamped(start_example()));
   farm.flush();
-  std::vector<Reason> reasons;
-  radio.receive([&](std::span<const std::uint8_t> one) { reasons.push_back(radio.accept(one, 0, packet)); });
-  EXPECT_EQ(reasons,
-            (std::vector{Reason::accepted, Reason::accepted, Reason::stale, Reason::wrong_source, Reason::accepted}));
-  EXPECT_EQ(radio.accept(bytes, 0, packet), Reason::wrong_direction) << "as a whole it says nothing";
+  std::vector<PacketStatus> reasons;
+  v2v_socket.receive([&](std::span<const std::uint8_t> one) { reasons.push_back(v2v_socket.accept(one, 0, packet)); });
+  EXPECT_EQ(reasons, (std::vector{PacketStatus::accepted, PacketStatus::accepted, PacketStatus::stale,
+                                  PacketStatus::wrong_source, PacketStatus::accepted}));
+  EXPECT_EQ(v2v_socket.accept(bytes, 0, packet), PacketStatus::wrong_direction) << "as a whole it says nothing";
 }
 
-TEST_F(RadioTest, JudgesWhatComes) {
-  EXPECT_EQ(radio.accept(v2v_of(3, 5), 0, packet), Reason::accepted);
-  EXPECT_EQ(radio.accept(v2v_of(3, 5), 0, packet), Reason::stale);
-  EXPECT_EQ(radio.accept(v2v_of(7, 0), 0, packet), Reason::unknown_robot);  // itself
-  EXPECT_EQ(radio.accept(v2v_of(8, 0), 0, packet), Reason::unknown_robot);
-  EXPECT_EQ(radio.accept(stamped(start_example()), 0, packet), Reason::accepted);
-  EXPECT_EQ(radio.accept(stamped(patched<std::uint16_t>(start_example(), 6, 7)), 0, packet), Reason::accepted);
-  EXPECT_EQ(radio.accept(stamped(patched<std::uint16_t>(start_example(), 6, 3)), 0, packet), Reason::unknown_robot);
-  EXPECT_EQ(radio.accept(stamped(reading_example()), 0, packet), Reason::wrong_direction);
-  EXPECT_EQ(radio.accept(stamped(subscribe_example()), 0, packet), Reason::wrong_direction);
-  EXPECT_EQ(radio.accept(base::Bytes(5), 0, packet), Reason::too_short);
-  EXPECT_TRUE(radio.heard(3, 2 * kSecond - 1));
-  EXPECT_FALSE(radio.heard(3, 2 * kSecond));
-  EXPECT_FALSE(radio.heard(9, 0));
-  EXPECT_EQ(radio.counts().total(), 11u);
+TEST_F(V2vSocketTest, JudgesWhatComes) {
+  EXPECT_EQ(v2v_socket.accept(v2v_of(3, 5), 0, packet), PacketStatus::accepted);
+  EXPECT_EQ(v2v_socket.accept(v2v_of(3, 5), 0, packet), PacketStatus::stale);
+  EXPECT_EQ(v2v_socket.accept(v2v_of(7, 0), 0, packet), PacketStatus::unknown_robot);  // itself
+  EXPECT_EQ(v2v_socket.accept(v2v_of(8, 0), 0, packet), PacketStatus::unknown_robot);
+  EXPECT_EQ(v2v_socket.accept(stamped(start_example()), 0, packet), PacketStatus::accepted);
+  EXPECT_EQ(v2v_socket.accept(stamped(patched<std::uint16_t>(start_example(), 6, 7)), 0, packet),
+            PacketStatus::accepted);
+  EXPECT_EQ(v2v_socket.accept(stamped(patched<std::uint16_t>(start_example(), 6, 3)), 0, packet),
+            PacketStatus::unknown_robot);
+  EXPECT_EQ(v2v_socket.accept(stamped(reading_example()), 0, packet), PacketStatus::wrong_direction);
+  EXPECT_EQ(v2v_socket.accept(stamped(subscribe_example()), 0, packet), PacketStatus::wrong_direction);
+  EXPECT_EQ(v2v_socket.accept(base::Bytes(5), 0, packet), PacketStatus::too_short);
+  EXPECT_TRUE(v2v_socket.is_active(3, 2 * kSecond - 1));
+  EXPECT_FALSE(v2v_socket.is_active(3, 2 * kSecond));
+  EXPECT_FALSE(v2v_socket.is_active(9, 0));
+  EXPECT_EQ(v2v_socket.counts().total(), 11u);
 }
 
 /// A forger of the farm's address has to guess the session.
-TEST_F(RadioTest, OnlyWhatCarriesItsSessionIsMeantForIt) {
-  const auto challenge = [](std::uint32_t token, const Stamp& stamp) {
+TEST_F(V2vSocketTest, OnlyWhatCarriesItsSessionIsMeantForIt) {
+  const auto challenge = [](std::uint32_t token, const SessionToken& stamp) {
     base::Bytes bytes;
     encode({.session = stamp.session, .token = stamp.token}, Challenge{token}, bytes);
     return bytes;
   };
-  EXPECT_EQ(radio.accept(stamped(v2v_of(3, 0), {kFarm, kOwn + 1}), 0, packet), Reason::wrong_source);
-  EXPECT_EQ(radio.accept(stamped(v2v_of(3, 0), {kFarm + 1, kOwn}), 0, packet), Reason::wrong_source);
-  EXPECT_EQ(radio.accept(stamped(start_example(), {}), 0, packet), Reason::wrong_source);
-  EXPECT_EQ(radio.accept(challenge(9, {kFarm + 1, 0}), 0, packet), Reason::wrong_source);
-  EXPECT_EQ(radio.farm_stamp().session, kFarm);
+  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kFarm, kOwn + 1}), 0, packet), PacketStatus::wrong_source);
+  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kFarm + 1, kOwn}), 0, packet), PacketStatus::wrong_source);
+  EXPECT_EQ(v2v_socket.accept(stamped(start_example(), {}), 0, packet), PacketStatus::wrong_source);
+  EXPECT_EQ(v2v_socket.accept(challenge(9, {kFarm + 1, 0}), 0, packet), PacketStatus::wrong_source);
+  EXPECT_EQ(v2v_socket.farm_session_token().session, kFarm);
   // The farm was started again: it says so with another session, and what the one before sent is old.
-  EXPECT_EQ(radio.accept(challenge(9, {kFarm + 1, kOwn}), 0, packet), Reason::accepted);
-  EXPECT_EQ(radio.farm_stamp().session, kFarm + 1);
-  EXPECT_EQ(radio.accept(v2v_of(3, 0), 0, packet), Reason::wrong_source);
-  EXPECT_EQ(radio.accept(stamped(v2v_of(3, 0), {kFarm + 1, kOwn}), 0, packet), Reason::accepted);
+  EXPECT_EQ(v2v_socket.accept(challenge(9, {kFarm + 1, kOwn}), 0, packet), PacketStatus::accepted);
+  EXPECT_EQ(v2v_socket.farm_session_token().session, kFarm + 1);
+  EXPECT_EQ(v2v_socket.accept(v2v_of(3, 0), 0, packet), PacketStatus::wrong_source);
+  EXPECT_EQ(v2v_socket.accept(stamped(v2v_of(3, 0), {kFarm + 1, kOwn}), 0, packet), PacketStatus::accepted);
 }
 
-TEST_F(RadioTest, SendsWithTheNewestToken) {
+TEST_F(V2vSocketTest, SendsWithTheNewestToken) {
   const Socket ears = open_udp({kLoopback, 0});
-  Radio speaker({.farm = {kLoopback, bound_endpoint(ears).port}, .robot = 7, .others = {}, .session = kOwn});
+  V2vSocket client({.farm = {kLoopback, bound_endpoint(ears).port}, .robot = 7, .others = {}, .session = kOwn});
   ReceiveBatch batch(1);
   for (const std::uint32_t token : {0u, 9u, 10u}) {
     base::Bytes bytes;
     encode({.session = kFarm, .token = kOwn}, Challenge{token}, bytes);
     if (token != 0) {
-      ASSERT_EQ(speaker.accept(bytes, 0, packet), Reason::accepted);
+      ASSERT_EQ(client.accept(bytes, 0, packet), PacketStatus::accepted);
     }
-    speaker.send(v2v_example());
+    client.send(v2v_example());
     while (batch.fill(ears) == 0) wait_readable(ears, ears, 1000);
-    ASSERT_EQ(decode(batch.bytes(0), packet), Reason::accepted);
+    ASSERT_EQ(decode(batch.bytes(0), packet), PacketStatus::accepted);
     EXPECT_EQ(packet.header.session, kOwn);
     EXPECT_EQ(packet.header.token, token);
   }

@@ -1,0 +1,36 @@
+#include "netio/rate_limited_log.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <limits.h>
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace sf::netio {
+
+bool write_nonblocking(int descriptor, std::string_view text) {
+  // A pipe that is writable takes PIPE_BUF bytes without waiting. Its mode is left alone: others may share it.
+  pollfd writable{descriptor, POLLOUT, 0};
+  if (poll(&writable, 1, 0) != 1 || (writable.revents & POLLOUT) == 0 || (writable.revents & POLLERR) != 0)
+    return false;
+  return ::write(descriptor, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF)) > 0;
+}
+
+void RateLimitedLog::write(std::string_view text, std::int64_t now) {
+  allowed_ = std::min(kBurst, allowed_ + kLinesPerSecond * 1e-9 * static_cast<double>(now - last_));
+  last_ = now;
+  const std::uint64_t silent = left_out_ - reported_;
+  const std::string line =
+      fmt::format("sensorfarm: {}{}\n", text,
+                  silent > 0 ? fmt::format(" ({} more lines were left out before this one)", silent) : "");
+  if (allowed_ < 1.0 || !write_nonblocking(descriptor_, line)) {
+    ++left_out_;
+    return;
+  }
+  allowed_ -= 1.0;
+  reported_ = left_out_;
+}
+
+}  // namespace sf::netio

@@ -1,0 +1,50 @@
+#include "netio/v2v_socket.h"
+
+#include <variant>
+
+namespace sf::netio {
+
+namespace {
+
+constexpr std::size_t kBatch = 64;
+constexpr std::size_t kStateChannel = 0;
+constexpr std::size_t kSendBuffer = 1u << 18;  ///< [byte]
+
+}  // namespace
+
+V2vSocket::V2vSocket(const V2vSocketOptions& options)
+    : options_(options),
+      socket_(open_udp({0, 0}, {.receive = options.receive_buffer, .send = kSendBuffer})),
+      outbox_(duplicate(socket_), {.capacity = 4}),
+      others_(options.others),
+      batch_(kBatch) {}
+
+void V2vSocket::send(std::span<const std::uint8_t> bytes) {
+  outbox_.queue(options_.farm, bytes, {options_.session, token_});
+  outbox_.flush();
+}
+
+PacketStatus V2vSocket::accept(std::span<const std::uint8_t> bytes, std::int64_t now, Packet& packet) {
+  PacketStatus status = decode(bytes, packet);
+  if (status == PacketStatus::accepted) status = check(packet, now);
+  counts_.add(status);
+  return status;
+}
+
+PacketStatus V2vSocket::check(const Packet& packet, std::int64_t now) {
+  const std::uint16_t id = packet.header.robot;
+  if (packet.header.token != options_.session) return PacketStatus::wrong_source;
+  if (const auto* challenge = std::get_if<Challenge>(&packet.body)) {
+    token_ = challenge->token;
+    farm_session_ = packet.header.session;
+    return PacketStatus::accepted;
+  }
+  if (packet.header.session != farm_session_) return PacketStatus::wrong_source;
+  const bool start = std::holds_alternative<Start>(packet.body);
+  if (!start && !std::holds_alternative<V2v>(packet.body)) return PacketStatus::wrong_direction;
+  if (start && id != kBroadcastId && id != options_.robot) return PacketStatus::unknown_robot;
+  if (!start && !others_.row(id)) return PacketStatus::unknown_robot;
+  return start ? PacketStatus::accepted : others_.admit(id, kStateChannel, packet.header.sequence, options_.farm, now);
+}
+
+}  // namespace sf::netio

@@ -1,0 +1,139 @@
+#include "netio/client_registry.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace sf::netio {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr Endpoint kAlice{kLoopback, 5001};
+constexpr Endpoint kBob{kLoopback, 5002};
+constexpr Endpoint kAliceElsewhere{kLoopback + 1, 5001};
+
+struct ClientRegistryTest : testing::Test {
+  ClientRegistry registry{std::array<std::uint32_t, 3>{7, 0, 40'000}};
+  PacketStatus say(const Endpoint& who, std::uint32_t sequence, std::int64_t now, std::size_t line = 0) {
+    return registry.admit(7, line, sequence, who, now);
+  }
+};
+
+TEST_F(ClientRegistryTest, KnowsItsIdsOnly) {
+  EXPECT_EQ(registry.row(0), 0u);
+  EXPECT_EQ(registry.row(7), 1u);
+  EXPECT_EQ(registry.row(40'000), 2u);
+  EXPECT_FALSE(registry.row(1));
+  EXPECT_FALSE(registry.row(0xFFFFFFFFu));
+  EXPECT_FALSE(registry.is_active(1, 0));
+  EXPECT_FALSE(registry.source(1));
+}
+
+TEST_F(ClientRegistryTest, NobodyIsActiveBeforeSending) {
+  EXPECT_FALSE(registry.is_active(7, 0));
+  EXPECT_FALSE(registry.source(7));
+}
+
+TEST_F(ClientRegistryTest, TheFirstSenderBinds) {
+  EXPECT_EQ(say(kAlice, 0, 0), PacketStatus::accepted);
+  EXPECT_EQ(say(kBob, 1, 1), PacketStatus::wrong_source);             // another port
+  EXPECT_EQ(say(kAliceElsewhere, 1, 1), PacketStatus::wrong_source);  // another address
+  EXPECT_EQ(registry.source(7), kAlice);
+  EXPECT_FALSE(registry.is_active(0, 1));  // other ids are unmoved
+}
+
+TEST_F(ClientRegistryTest, TwoSecondsOfSilenceFree) {
+  EXPECT_EQ(say(kAlice, 10, 5 * kSecond), PacketStatus::accepted);
+  EXPECT_TRUE(registry.is_active(7, 7 * kSecond - 1));
+  EXPECT_EQ(say(kBob, 0, 7 * kSecond - 1), PacketStatus::wrong_source);  // one nanosecond early
+  EXPECT_FALSE(registry.is_active(7, 7 * kSecond));
+  EXPECT_EQ(registry.source(7), kAlice);  // still known while silent
+  EXPECT_EQ(say(kBob, 0, 7 * kSecond), PacketStatus::accepted);
+  EXPECT_EQ(registry.source(7), kBob);
+  EXPECT_EQ(say(kAlice, 11, 7 * kSecond + 1), PacketStatus::wrong_source);
+}
+
+TEST_F(ClientRegistryTest, EachPacketRenews) {
+  for (int i = 0; i < 10; ++i)
+    EXPECT_EQ(say(kAlice, static_cast<std::uint32_t>(i), i * (2 * kSecond - 1)), PacketStatus::accepted);
+  EXPECT_EQ(say(kBob, 99, 9 * (2 * kSecond - 1) + kSecond), PacketStatus::wrong_source);
+}
+
+TEST_F(ClientRegistryTest, WrongSourcesDoNotRenew) {
+  say(kAlice, 0, 0);
+  say(kBob, 1, kSecond);
+  EXPECT_FALSE(registry.is_active(7, 2 * kSecond));
+}
+
+TEST_F(ClientRegistryTest, OldAndRepeatedSequencesAreStale) {
+  EXPECT_EQ(say(kAlice, 100, 0), PacketStatus::accepted);
+  EXPECT_EQ(say(kAlice, 100, 1), PacketStatus::stale);     // a duplicate
+  EXPECT_EQ(say(kAlice, 99, 2), PacketStatus::stale);      // came late
+  EXPECT_EQ(say(kAlice, 102, 3), PacketStatus::accepted);  // one lost
+  EXPECT_EQ(say(kAlice, 101, 4), PacketStatus::stale);     // the lost one after all
+}
+
+TEST_F(ClientRegistryTest, SequencesWrap) {
+  EXPECT_EQ(say(kAlice, 0xFFFFFFFFu, 0), PacketStatus::accepted);
+  EXPECT_EQ(say(kAlice, 0, 1), PacketStatus::accepted);
+  EXPECT_EQ(say(kAlice, 0x7FFFFFFFu, 2), PacketStatus::accepted);  // the farthest that is ahead
+  EXPECT_EQ(say(kAlice, 0xFFFFFFFFu, 3), PacketStatus::stale);     // exactly half way round is not
+}
+
+TEST_F(ClientRegistryTest, ARestartedSenderIsBackAfterTwoSeconds) {
+  EXPECT_EQ(say(kAlice, 5000, 0), PacketStatus::accepted);
+  for (int tick = 1; tick < 20; ++tick)
+    EXPECT_EQ(say(kAlice, static_cast<std::uint32_t>(tick), tick * kSecond / 10), PacketStatus::stale);
+  EXPECT_FALSE(registry.is_active(7, 2 * kSecond));
+  EXPECT_EQ(say(kAlice, 20, 2 * kSecond), PacketStatus::accepted);
+}
+
+TEST_F(ClientRegistryTest, ChannelsCountApart) {
+  EXPECT_EQ(say(kAlice, 5000, 0, 0), PacketStatus::accepted);
+  EXPECT_EQ(say(kAlice, 0, 1, 1), PacketStatus::accepted);    // subscribes have their own count
+  EXPECT_EQ(say(kBob, 1, 2, 1), PacketStatus::wrong_source);  // and the same binding
+  EXPECT_EQ(say(kAlice, 1, kSecond, 1), PacketStatus::accepted);
+  EXPECT_EQ(say(kAlice, 0, kSecond, 0), PacketStatus::stale);
+  EXPECT_EQ(say(kAlice, 2, 2 * kSecond, 1), PacketStatus::accepted);
+  EXPECT_EQ(say(kAlice, 0, 2 * kSecond, 0),
+            PacketStatus::accepted);  // this line was silent, the other kept the binding
+}
+
+TEST_F(ClientRegistryTest, WhoLeavesFreesItsIdAtOnce) {
+  say(kAlice, 10, 0);
+  EXPECT_EQ(registry.leave(7, kAlice, 1), PacketStatus::accepted);
+  EXPECT_FALSE(registry.is_active(7, 1));
+  EXPECT_FALSE(registry.source(7));
+  EXPECT_EQ(say(kBob, 0, 1), PacketStatus::accepted);  // in the same nanosecond, counting from 0
+  EXPECT_EQ(registry.source(7), kBob);
+  EXPECT_EQ(say(kAlice, 11, 2), PacketStatus::wrong_source);
+}
+
+TEST_F(ClientRegistryTest, WhatALeaveOvertookBindsNobody) {
+  say(kAlice, 10, 0);
+  registry.leave(7, kAlice, kSecond);
+  EXPECT_EQ(say(kAlice, 9, kSecond), PacketStatus::stale);
+  EXPECT_EQ(say(kAlice, 11, 3 * kSecond - 1), PacketStatus::stale);    // sent before, or it came back too soon
+  EXPECT_EQ(say(kAlice, 0, 3 * kSecond - 1, 1), PacketStatus::stale);  // of the other line too
+  EXPECT_FALSE(registry.is_active(7, 3 * kSecond - 1));
+  EXPECT_EQ(say(kAlice, 0, 3 * kSecond), PacketStatus::accepted);  // after two seconds it may be heard again
+}
+
+TEST_F(ClientRegistryTest, OnlyTheBoundOneLeaves) {
+  EXPECT_EQ(registry.leave(7, kAlice, 0), PacketStatus::stale);  // nobody was there
+  say(kAlice, 0, 0);
+  EXPECT_EQ(registry.leave(7, kBob, 1), PacketStatus::wrong_source);
+  EXPECT_TRUE(registry.is_active(7, 1));
+  EXPECT_EQ(registry.leave(7, kAlice, 2), PacketStatus::accepted);
+  EXPECT_EQ(registry.leave(7, kAlice, 3), PacketStatus::stale);  // said twice
+  say(kBob, 0, 4);
+  EXPECT_EQ(registry.leave(7, kBob, 4 + 2 * kSecond), PacketStatus::stale);  // silent already
+}
+
+TEST_F(ClientRegistryTest, AClockAtItsEndsDoesNotMatter) {
+  EXPECT_EQ(say(kAlice, 0, INT64_MAX - 1), PacketStatus::accepted);
+  EXPECT_TRUE(registry.is_active(7, INT64_MAX));
+}
+
+}  // namespace
+}  // namespace sf::netio

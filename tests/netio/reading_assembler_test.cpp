@@ -1,0 +1,225 @@
+#include "netio/reading_assembler.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+
+#include "netio/client_registry.h"
+
+namespace sf::netio {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+/// Readings of three parts with two numbers each: 10 * sequence + part, twice.
+struct Parts {
+  ReadingAssembler assembler{6};
+  std::int64_t now = 0;
+
+  PartStatus say(std::uint32_t sequence, std::uint32_t part, std::uint32_t parts = 3, std::int64_t time = 0) {
+    return assembler.take({sequence, part, parts, time}, now, [&](std::span<double> values) {
+      values[2 * part] = values[2 * part + 1] = 10.0 * sequence + part;
+    });
+  }
+  std::vector<double> values() const {
+    const auto whole = assembler.newest();
+    return whole ? std::vector<double>(whole->values.begin(), whole->values.end()) : std::vector<double>{};
+  }
+};
+
+/// Readings of one number in one part.
+struct Plain {
+  ReadingAssembler assembler{1};
+  PartStatus say(std::uint32_t sequence, std::int64_t now = 0) {
+    return assembler.take({sequence, 0, 1, now}, now, [&](std::span<double> values) { values[0] = sequence; });
+  }
+  double value() const { return assembler.newest() ? assembler.newest()->values[0] : NAN; }
+};
+
+TEST(ReadingAssembler, NothingIsNewestAtFirst) {
+  EXPECT_FALSE(ReadingAssembler(3).newest());
+  EXPECT_EQ(ReadingAssembler(3).lost(), 0u);
+}
+
+TEST(ReadingAssembler, TheLastPartMakesItWhole) {
+  Parts p;
+  EXPECT_EQ(p.say(4, 2), PartStatus::incomplete);  // in any order
+  EXPECT_EQ(p.say(4, 0), PartStatus::incomplete);
+  EXPECT_TRUE(p.values().empty());
+  p.now = 9;
+  EXPECT_EQ(p.say(4, 1), PartStatus::complete);
+  EXPECT_EQ(p.values(), (std::vector<double>{40, 40, 41, 41, 42, 42}));
+  EXPECT_EQ(p.assembler.newest()->sequence, 4u);
+  EXPECT_EQ(p.assembler.newest()->arrival, 9);
+  EXPECT_EQ(p.assembler.lost(), 0u);
+}
+
+TEST(ReadingAssembler, WhatNoPartSaysIsNotANumber) {
+  ReadingAssembler assembler(3);
+  assembler.take({0, 0, 1, 0}, 0, [](std::span<double> values) { values[1] = 5.0; });
+  EXPECT_TRUE(std::isnan(assembler.newest()->values[0]));
+  EXPECT_EQ(assembler.newest()->values[1], 5.0);
+  assembler.take({1, 0, 1, 0}, 0, [](std::span<double>) {});  // memory that was used before
+  EXPECT_TRUE(std::isnan(assembler.newest()->values[1]));
+}
+
+TEST(ReadingAssembler, PartsOfTwoReadingsMayInterleave) {
+  Parts p;
+  p.say(1, 0);
+  p.say(2, 0);
+  p.say(1, 1);
+  p.say(2, 2);
+  EXPECT_EQ(p.say(1, 2), PartStatus::complete);
+  EXPECT_EQ(p.values()[0], 10.0);
+  EXPECT_EQ(p.say(2, 1), PartStatus::complete);
+  EXPECT_EQ(p.values()[0], 20.0);
+}
+
+TEST(ReadingAssembler, ANewerWholeOneGivesUpTheOlder) {
+  Parts p;
+  p.say(1, 0);
+  for (const std::uint32_t part : {0u, 1u, 2u}) p.say(2, part);
+  EXPECT_EQ(p.say(1, 1), PartStatus::late);
+  EXPECT_EQ(p.say(1, 2), PartStatus::late);
+  EXPECT_EQ(p.values()[0], 20.0);
+}
+
+TEST(ReadingAssembler, RepetitionsAreDuplicates) {
+  Parts p;
+  p.say(1, 0);
+  EXPECT_EQ(p.say(1, 0), PartStatus::duplicate);  // while parts are missing
+  p.say(1, 1);
+  p.say(1, 2);
+  EXPECT_EQ(p.say(1, 2), PartStatus::duplicate);  // once it is whole
+}
+
+TEST(ReadingAssembler, OnlySoManyReadingsAreAwaited) {
+  Parts p;
+  for (std::uint32_t sequence = 0; sequence <= ReadingAssembler::kMaxPartial; ++sequence) p.say(sequence, 0);
+  EXPECT_EQ(p.say(0, 1), PartStatus::late);  // gave way to the last
+  p.say(1, 1);
+  EXPECT_EQ(p.say(1, 2), PartStatus::complete);  // the oldest that is left
+}
+
+TEST(ReadingAssembler, PartsThatDoNotFitTheirReadingAreLeftOut) {
+  Parts p;
+  p.say(1, 0);
+  EXPECT_EQ(p.say(1, 1, 2), PartStatus::late);     // of another number of parts
+  EXPECT_EQ(p.say(1, 1, 3, 7), PartStatus::late);  // measured at another time
+  EXPECT_EQ(p.say(1, 1, 3, 0), PartStatus::incomplete);
+}
+
+TEST(ReadingAssembler, OldReadingsNeverComeBack) {
+  Plain p;
+  EXPECT_EQ(p.say(5), PartStatus::complete);
+  EXPECT_EQ(p.say(4), PartStatus::late);
+  EXPECT_EQ(p.value(), 5.0);
+  EXPECT_EQ(p.say(9), PartStatus::complete);
+  EXPECT_EQ(p.assembler.lost(), 3u);  // 6, 7, 8; what came before the first is none of its business
+}
+
+TEST(ReadingAssembler, SequencesWrap) {
+  Plain p;
+  EXPECT_EQ(p.say(0xFFFFFFFEu), PartStatus::complete);
+  EXPECT_EQ(p.say(1), PartStatus::complete);
+  EXPECT_EQ(p.say(0xFFFFFFFFu), PartStatus::late);  // came after all
+  EXPECT_EQ(p.assembler.lost(), 1u);                // 0
+}
+
+TEST(ReadingAssembler, ASenderThatBeginsAnewIsBelievedAfterTwoSeconds) {
+  Plain p;
+  p.say(5000, 0);
+  EXPECT_EQ(p.say(0, 2 * kSecond - 1), PartStatus::late);
+  EXPECT_EQ(p.assembler.restarts(), 0u);
+  EXPECT_EQ(p.say(1, 2 * kSecond), PartStatus::complete);
+  EXPECT_EQ(p.value(), 1.0);
+  EXPECT_EQ(p.assembler.restarts(), 1u);
+  EXPECT_EQ(p.say(2, 2 * kSecond + 1), PartStatus::complete);
+}
+
+TEST(ReadingAssembler, AfterSilenceNewerOnesAreNoRestart) {
+  Plain p;
+  p.say(5, 0);
+  EXPECT_EQ(p.say(7, 10 * kSecond), PartStatus::complete);
+  EXPECT_EQ(p.assembler.restarts(), 0u);
+  EXPECT_EQ(p.assembler.lost(), 1u);
+}
+
+/// One datagram that somebody made up must not turn those that follow into late ones.
+TEST(ReadingAssembler, LeapsAreLeftOut) {
+  constexpr std::int64_t kTick = kSecond / 10;
+  Plain p;
+  std::uint64_t whole = 0;
+  for (std::uint32_t i = 0; i < 72; ++i) {
+    whole += p.say(1000 + i, i * kTick) == PartStatus::complete;
+    EXPECT_EQ(p.say(100'000 + i, i * kTick + 1), PartStatus::jump);
+    EXPECT_EQ(p.say(0x80000000u, i * kTick + 2), PartStatus::jump);
+  }
+  EXPECT_EQ(whole, 72u);
+  EXPECT_EQ(p.assembler.lost(), 0u);
+}
+
+TEST(ReadingAssembler, ALeapBeginsBehindTheLimits) {
+  const auto after = [](std::uint32_t ahead, std::int64_t time, std::int64_t now) {
+    ReadingAssembler assembler(1);
+    assembler.take({5, 0, 1, kSecond}, 0, [](std::span<double>) {});
+    return assembler.take({5 + ahead, 0, 1, kSecond + time}, now, [](std::span<double>) {});
+  };
+  EXPECT_EQ(after(ReadingAssembler::kMaxDropout, 0, 0), PartStatus::complete);
+  EXPECT_EQ(after(ReadingAssembler::kMaxDropout + 1, 0, 0), PartStatus::jump);
+  EXPECT_EQ(after(1, ReadingAssembler::kMaxTimeJump, 0), PartStatus::complete);
+  EXPECT_EQ(after(1, ReadingAssembler::kMaxTimeJump + 1, 0), PartStatus::jump);
+  EXPECT_EQ(after(1, ReadingAssembler::kMaxTimeJump + 1, 1), PartStatus::complete);  // so much later did it come
+  EXPECT_EQ(after(1, -1, 0), PartStatus::jump);                                      // newer, and measured before
+  EXPECT_EQ(after(ReadingAssembler::kMaxDropout + 1, 0, 2 * kSecond - 1), PartStatus::jump);
+  EXPECT_EQ(after(ReadingAssembler::kMaxDropout + 1, 0, 2 * kSecond),
+            PartStatus::complete);  // after silence all is believed
+}
+
+TEST(ReadingAssembler, AnotherSenderBeginsAtOnce) {
+  Plain p;
+  p.say(5000, 0);
+  p.assembler.restart();
+  EXPECT_FALSE(p.assembler.newest());
+  EXPECT_EQ(p.say(0, 1), PartStatus::complete);
+  EXPECT_EQ(p.assembler.restarts(), 1u);
+}
+
+// Any order, any repetition, any loss: what is newest is always whole, right, and never older than before.
+TEST(ReadingAssembler, AnyArrivalOrderKeepsThePromise) {
+  std::mt19937 random(7);  // NOLINT: the same every time
+  std::uint64_t whole = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pieces;
+    const std::uint32_t first = 0xFFFFFFF0u;  // across the wrap
+    for (std::uint32_t k = 0; k < 40; ++k)
+      for (std::uint32_t part = 0; part < 3; ++part)
+        for (std::uint32_t copies = random() % 4; copies > 0; --copies) pieces.emplace_back(first + k, part);
+    for (std::size_t i = 0; i + 1 < pieces.size(); ++i)
+      std::swap(pieces[i], pieces[i + random() % std::min<std::size_t>(12, pieces.size() - i)]);
+
+    Parts p;
+    std::map<std::uint32_t, std::set<std::uint32_t>> came;
+    std::optional<std::uint32_t> newest;
+    for (const auto& [sequence, part] : pieces) {
+      came[sequence].insert(part);
+      if (p.say(sequence, part) == PartStatus::complete) {
+        ++whole;
+        ASSERT_TRUE(!newest || newer(sequence, *newest));
+        ASSERT_EQ(came[sequence].size(), 3u) << "whole before its parts came";
+        newest = sequence;
+      }
+      if (!newest) continue;
+      ASSERT_EQ(p.assembler.newest()->sequence, *newest);
+      for (std::uint32_t i = 0; i < 6; ++i) ASSERT_EQ(p.values()[i], 10.0 * *newest + i / 2);
+    }
+  }
+  EXPECT_GT(whole, 1000u);
+}
+
+}  // namespace
+}  // namespace sf::netio

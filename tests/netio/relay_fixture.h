@@ -1,0 +1,84 @@
+#pragma once
+// A fleet behind a relay: all its robots speak from one socket, and hear there.
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numeric>
+#include <vector>
+
+#include "netio/relay.h"
+#include "netio/socket.h"
+#include "netio/v2v_socket.h"
+
+namespace sf::netio::test {
+
+constexpr std::uint32_t kFarm = 0xFA23;    ///< session
+constexpr std::uint32_t kRobots = 0x0707;  ///< session
+
+struct RelayFixture {
+  std::vector<std::uint32_t> ids;  ///< 0, 1, ...
+  Inbox inbox;
+  Relay relay;
+  Outbox outbox{OutboxOptions{.bind = {kLoopback, 0}}};
+  Socket socket = open_udp({kLoopback, 0});
+  Endpoint where{kLoopback, bound_endpoint(socket).port};
+  ReceiveBatch batch{64};
+  std::uint32_t sequence = 0;
+  std::vector<base::Bytes> datagrams;  ///< of the last `heard`
+
+  explicit RelayFixture(std::uint32_t count, const RelayOptions& options = {})
+      : ids(first(count)), inbox({.bind = {kLoopback, 0}, .robots = ids, .session = kFarm}), relay(ids, options) {}
+  static std::vector<std::uint32_t> first(std::uint32_t count) {
+    std::vector<std::uint32_t> all(count);
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
+  }
+
+  template <class Body>
+  void take(std::uint32_t id, const Body& body) {
+    base::Bytes bytes;
+    encode({.robot = static_cast<std::uint16_t>(id), .sequence = sequence++, .session = kRobots}, body, bytes);
+    write_session_token(bytes, {kRobots, inbox.token(where)});
+    Packet packet;
+    ASSERT_EQ(inbox.accept(bytes, where, 0, packet), PacketStatus::accepted);
+    relay.take(packet);
+  }
+  void say(std::uint32_t id, glm::dvec2 p) { take(id, V2v{.X_WR = {p.x, p.y, 0, 0}}); }
+  void ask(std::uint32_t id, std::uint32_t kinds = kNeighboursBit) { take(id, Subscribe{kinds}); }
+  void all_ask() {
+    for (const std::uint32_t id : ids) ask(id);
+  }
+
+  /// A tick: what it added to the counts.
+  RelayCounts pass() {
+    const RelayCounts before = relay.counts();
+    relay.forward(inbox, 0, outbox);
+    outbox.flush();
+    const RelayCounts& now = relay.counts();
+    return {now.states - before.states, now.datagrams - before.datagrams, now.waited - before.waited,
+            now.starts - before.starts};
+  }
+
+  /// By robot: whose states came for it, in order. Loopback gives at once what was sent.
+  std::map<std::uint32_t, std::vector<std::uint32_t>> received() {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> received;
+    datagrams.clear();
+    while (const std::size_t count = batch.fill(socket)) {
+      for (std::size_t i = 0; i < count; ++i) {
+        datagrams.emplace_back(batch.bytes(i).begin(), batch.bytes(i).end());
+        Packet whole;
+        EXPECT_EQ(decode(batch.bytes(i), whole), PacketStatus::accepted);
+        EXPECT_EQ(whole.header.type, Type::neighbours);
+        V2vSocket::for_each_state(batch.bytes(i), [&](std::span<const std::uint8_t> state) {
+          Packet packet;
+          EXPECT_EQ(decode(state, packet), PacketStatus::accepted);
+          received[whole.header.robot].push_back(packet.header.robot);
+        });
+      }
+    }
+    return received;
+  }
+};
+
+}  // namespace sf::netio::test
