@@ -269,7 +269,7 @@ void add_robots(CLI::App& app, Options& o) {
 
 void add_controller(CLI::App& app, Options& o) {
   std::vector<std::string> names;
-  for (const control::ControllerKind* kind : control::controllers()) names.emplace_back(kind->name);
+  for (const control::ControllerType* kind : control::controllers()) names.emplace_back(kind->name);
   app.add_option("--controller", o.controller, "Who drives: " + either(names))
       ->check(one_of(names))
       ->type_name("NAME")

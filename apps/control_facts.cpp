@@ -7,7 +7,7 @@
 #include <map>
 
 #include "apps/wording.h"
-#include "control/reason.h"
+#include "control/stop_reason.h"
 
 namespace sf::apps {
 
@@ -52,7 +52,7 @@ std::vector<Standing> ControlTally::standing(const world::World& world) const {
     const control::Controller* controller = simulation_.controller(m);
     const double seconds = 1e-9 * static_cast<double>(time_ - rests_[m].since);
     if (controller == nullptr || controller->done() || seconds < kStill) continue;
-    std::string reason = control::reason_of(*controller);
+    std::string reason = control::stop_reason_of(*controller);
     if (reason.empty()) reason = rests_[m].contact ? "something that it touches stops it" : "no reason stated";
     Standing& all = by_reason[reason];
     all.reason = reason;

@@ -17,7 +17,7 @@ control::Setting setting_of(const std::string& text) {
   return {key, control::RawText{text.substr(at + 1)}, fmt::format("--set {}: ", key)};
 }
 
-control::Plan plan_of(const Options& options) {
+control::ControllerConfig plan_of(const Options& options) {
   std::vector<control::Setting> settings;
   for (const std::string& text : options.set) settings.push_back(setting_of(text));
   return {options.controller, 0.0,
@@ -37,8 +37,8 @@ std::vector<scenarios::Actor> actors_of_world(const world::World& world, const O
                count == 1 ? "1 robot is" : fmt::format("{} robots are", count).c_str(), options.controller.c_str());
   std::vector<scenarios::Actor> actors;
   for (const world::Mover& mover : world.movers)
-    actors.push_back({.plan = mover.is_tag ? control::Plan{}
-                              : own(mover) ? control::Plan{.controller = mover.controller}
+    actors.push_back({.plan = mover.is_tag ? control::ControllerConfig{}
+                              : own(mover) ? control::ControllerConfig{.controller = mover.controller}
                                            : plan_of(options)});
   return actors;
 }

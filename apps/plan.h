@@ -15,7 +15,7 @@ namespace sf::apps {
 control::Setting setting_of(const std::string& text);
 
 /// `--controller` with its `--set`s.
-control::Plan plan_of(const Options& options);
+control::ControllerConfig plan_of(const Options& options);
 
 /// The plan for whom `--drive` names, all others stand. Where it names nobody every robot is driven, by what its world
 /// file says first (`ctrl`); empty where that is the same for all.

@@ -58,7 +58,7 @@ RobotProcess::RobotProcess(const world::World& world, const sensors::SensorSet& 
       intents_(world.movers.size()),
       started_(!waits_for_start(options)),
       patience_(patience_of(sensor_set, mover, options.stop_after)) {
-  control::Plan plan = plan_of(options);
+  control::ControllerConfig plan = plan_of(options);
   plan.rate = options.rate;
   made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, std::move(plan));
 }
@@ -108,7 +108,7 @@ void RobotProcess::decide(std::int64_t now) {
   gather_readings();
   gather_others(now);
   gather_signals(now);
-  control::Input input{now, body_.state(), readings_, body_.contact(), started_, others_, signals_};
+  control::ControllerInput input{now, body_.state(), readings_, body_.contact(), started_, others_, signals_};
   input.state.time = now;
   command_ = made_.controller->step(input);
   ++steps_;
@@ -127,7 +127,7 @@ void RobotProcess::gather_readings() {
 
 void RobotProcess::gather_others(std::int64_t now) {
   others_.clear();
-  const double radio = made_.controller->radio();
+  const double radio = made_.controller->v2v_range();
   if (radio <= 0.0) return;
   const base::Pose& own = body_.state().X_WM;
   for (const auto& [id, row] : names_.robots) {

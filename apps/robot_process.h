@@ -70,7 +70,7 @@ class RobotProcess {
   scenarios::RobotBody body_;
   RobotLink link_;
   std::optional<world::RoadNetwork> roads_;
-  control::Made made_;
+  control::ConfiguredController made_;
   std::vector<base::Intent> intents_;  ///< per mover, as told
   base::Twist command_;
   bool started_;

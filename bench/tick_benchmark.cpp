@@ -54,7 +54,7 @@ void TickBenchmark::decide() {
   thread_pool_.parallel_for(readings_.size(), 16, [this](std::size_t first, std::size_t end, unsigned) {
     for (const base::ReadingBlock& reading : readings_.subspan(first, end - first)) {
       const std::uint32_t row = reading.mover;
-      const control::Input input{time_, fleet_.reports()[row], {&reading, 1}, fleet_.contacts()[row] != 0};
+      const control::ControllerInput input{time_, fleet_.reports()[row], {&reading, 1}, fleet_.contacts()[row] != 0};
       commands_[row] = controllers_[row]->step(input);
     }
   });

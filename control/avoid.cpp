@@ -27,7 +27,7 @@ Thirds thirds_of(std::span<const double> ranges) {
   return {least(ranges.first(side)), least(ranges.subspan(side, ranges.size() - 2 * side)), least(ranges.last(side))};
 }
 
-base::Twist Avoid::step(const Input& input) {
+base::Twist Avoid::step(const ControllerInput& input) {
   const base::ReadingBlock* reading = newest(input, base::kLaser);
   if (reading == nullptr || reading->values.empty()) return {};
   const Thirds nearest = thirds_of(reading->values);
@@ -45,8 +45,8 @@ base::Twist Avoid::step(const Input& input) {
 
 namespace {
 
-std::unique_ptr<Controller> make_avoid(const Site& site, Settings& settings) {
-  const world::Mover& mover = site.world.movers[site.mover];
+std::unique_ptr<Controller> make_avoid(const ControllerContext& context, Settings& settings) {
+  const world::Mover& mover = context.world.movers[context.mover];
   if (mover.lasers.empty())
     throw base::InputError(
         fmt::format("controller 'avoid': '{}' has no laser; give it one in the world file", mover.name));
@@ -62,11 +62,11 @@ std::unique_ptr<Controller> make_avoid(const Site& site, Settings& settings) {
 
 }  // namespace
 
-constinit const ControllerKind avoid_controller{
+constinit const ControllerType avoid_controller{
     .name = "avoid",
     .summary = "the thesis' obstacle avoidance: straight on, slower near things, turns away before it meets them",
     .rate = 10.0,
-    .waits = true,
+    .stops_on_bumper = true,
     .make = make_avoid,
 };
 

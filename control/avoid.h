@@ -27,7 +27,7 @@ class Avoid final : public Controller {
   explicit Avoid(const AvoidSettings& settings) : settings_(settings) {}
 
   /// Stands until laser 0 has told something.
-  base::Twist step(const Input& input) override;
+  base::Twist step(const ControllerInput& input) override;
 
   enum class State { drive, slow, turn_left, turn_right };
   State state() const { return state_; }
@@ -43,6 +43,6 @@ struct Thirds {
 };
 Thirds thirds_of(std::span<const double> ranges);
 
-extern const ControllerKind avoid_controller;
+extern const ControllerType avoid_controller;
 
 }  // namespace sf::control

@@ -21,14 +21,14 @@ struct Neighbour {
 };
 
 /// All a robot knows at one time. Spans live for the call.
-struct Input {
+struct ControllerInput {
   std::int64_t time = 0;  ///< [ns] simulated, or the clock of the robot; never runs backwards
   base::Report state;     ///< its own state as it knows it
   std::span<const base::ReadingBlock>
       readings;          ///< the newest of each of its own sensors, new since the last call or not; may be empty
   bool contact = false;  ///< its bumper is pressed, or something refused its last motion
   bool started = true;   ///< the start signal was given
-  std::span<const Neighbour> others;         ///< robots within `Controller::radio`, by id
+  std::span<const Neighbour> others;         ///< robots within `Controller::v2v_range`, by id
   std::span<const world::Signal> signals{};  ///< one per row of `World::lights`
 };
 
@@ -37,12 +37,12 @@ class Controller {
  public:
   virtual ~Controller() = default;
   /// @return what the robot should do until the next call; finite
-  virtual base::Twist step(const Input& input) = 0;
+  virtual base::Twist step(const ControllerInput& input) = 0;
 
   /// What it tells others, after a step.
   virtual base::Intent intent() const { return {}; }
   /// How far it wants to hear others. [m] 0: not at all
-  virtual double radio() const { return 0.0; }
+  virtual double v2v_range() const { return 0.0; }
   /// It has done what it was made for, and stands.
   virtual bool done() const { return false; }
   /// The control error of the last step, in its own unit; not a number where there was none: for statistics.
@@ -50,7 +50,7 @@ class Controller {
 };
 
 /// The newest reading of one sensor; null where there is none.
-inline const base::ReadingBlock* newest(const Input& input, std::uint8_t kind, std::uint32_t sensor = 0) {
+inline const base::ReadingBlock* newest(const ControllerInput& input, std::uint8_t kind, std::uint32_t sensor = 0) {
   for (const base::ReadingBlock& reading : input.readings)
     if (reading.kind == kind && reading.sensor == sensor) return &reading;
   return nullptr;

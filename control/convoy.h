@@ -12,33 +12,33 @@
 
 #include "base/report.h"
 #include "control/controllers.h"
-#include "control/route_ahead.h"
+#include "control/robots_ahead.h"
 
 namespace sf::control {
 
 /// Whom a robot follows.
-struct Company {
+struct ConvoyState {
   std::uint32_t leader = base::kNoId;  ///< id; nobody: it goes its own way
   bool merges = false;                 ///< it still has to come in behind the leader
 };
 
-/// The row of a robot among the drivers; nothing when it is not in sight.
-std::optional<std::uint32_t> row_of(const std::vector<Driver>& drivers, std::uint32_t id);
+/// The row of a robot among the road_users; nothing when it is not in sight.
+std::optional<std::uint32_t> row_of(const std::vector<RoadUser>& road_users, std::uint32_t id);
 
 /// The point of the graph that a robot will come to next.
-std::optional<std::uint32_t> heading_for(const Corridors& corridors, const Driver& driver);
+std::optional<std::uint32_t> heading_for(const LaneCorridors& corridors, const RoadUser& driver);
 
 /// Keeps the company in order after a look around: who merges and is there has merged, who comes in between becomes the
 /// leader.
-void keep_company(Company& company, const Corridors& corridors, const std::vector<Driver>& drivers,
-                  const std::vector<Ahead>& ahead);
+void update_convoy(ConvoyState& convoy, const LaneCorridors& corridors, const std::vector<RoadUser>& road_users,
+                   const std::vector<LeadRobot>& ahead);
 
 /// The gap that a member opens for a newcomer. [m] beyond its own; 0: nobody wants to come in
-double opened_gap(const Company& company, const Corridors& corridors, const std::vector<Driver>& drivers);
+double opened_gap(const ConvoyState& convoy, const LaneCorridors& corridors, const std::vector<RoadUser>& road_users);
 
 /// Somebody follows this robot and has fallen behind: it is to be waited for.
-bool left_behind(const std::vector<Driver>& drivers);
+bool follower_lags(const std::vector<RoadUser>& road_users);
 
-extern const ControllerKind convoy_controller;
+extern const ControllerType convoy_controller;
 
 }  // namespace sf::control

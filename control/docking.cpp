@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "control/go.h"
+#include "control/drive_to_point.h"
 #include "robots/footprint.h"
 #include "sensors/irreceiver.h"
 
@@ -27,7 +27,7 @@ std::uint32_t light_in(const base::ReadingBlock* reading) {
 
 }  // namespace
 
-base::Twist Docking::step(const Input& input) {
+base::Twist Docking::step(const ControllerInput& input) {
   const base::Pose& X_WM = input.state.X_WM;
   const std::uint32_t light = light_in(newest(input, sensors::kIrReceiver));
   contact_ = input.contact;
@@ -67,7 +67,7 @@ base::Twist Docking::approach(const base::Pose& X_WM) {
   if (p.x < settings_.reach)
     goal = {std::abs(p.y) < 0.95 * wide ? p.x : 2.0 * settings_.reach, std::copysign(wide, p.y)};
   if (std::abs(p.x - goal.x) + std::abs(p.y - goal.y) < 0.02) retreats_ = false;
-  return go_to(X_WM, base::transform(settings_.X_WD, goal), {settings_.speed, settings_.turn});
+  return drive_to_point(X_WM, base::transform(settings_.X_WD, goal), {settings_.speed, settings_.turn});
 }
 
 // Seen from the dock the red buoy's beam is on the left, so for a robot that faces the dock on its right. The receiver
@@ -88,20 +88,20 @@ base::Twist Docking::follow_beams(const base::Pose& X_WM) {
   return {speed * std::max(std::cos(off), 0.0), 0.0, turn_to(off, {speed, settings_.turn})};
 }
 
-std::string Docking::reason() const {
+std::string Docking::stop_reason() const {
   return contact_ && !done_ ? "it touches something that is not the dock's face" : "";
 }
 
 namespace {
 
-const world::Emitter& find_dock(const Site& site, Settings& settings) {
+const world::Emitter& find_dock(const ControllerContext& context, Settings& settings) {
   const std::string name = settings.text("dock", "");
-  const base::Pose& X_WM = site.world.movers[site.mover].X_WM;
+  const base::Pose& X_WM = context.world.movers[context.mover].X_WM;
   const world::Emitter* found = nullptr;
   double least = HUGE_VAL;
-  for (const world::Emitter& emitter : site.world.emitters) {
+  for (const world::Emitter& emitter : context.world.emitters) {
     if (emitter.kind != world::Emitter::Kind::dock) continue;
-    if (!name.empty() && site.world.models[emitter.model].name != name) continue;
+    if (!name.empty() && context.world.models[emitter.model].name != name) continue;
     const double far = std::hypot(emitter.X_WE.x - X_WM.x, emitter.X_WE.y - X_WM.y);
     if (!(far < least)) continue;
     least = far;
@@ -113,13 +113,13 @@ const world::Emitter& find_dock(const Site& site, Settings& settings) {
   return *found;
 }
 
-std::unique_ptr<Controller> make_docking(const Site& site, Settings& settings) {
-  const world::Mover& mover = site.world.movers[site.mover];
+std::unique_ptr<Controller> make_docking(const ControllerContext& context, Settings& settings) {
+  const world::Mover& mover = context.world.movers[context.mover];
   if (std::none_of(mover.sensors.begin(), mover.sensors.end(),
                    [](const world::Sensor& sensor) { return sensor.type == "irreceiver"; }))
     throw base::InputError(fmt::format(
         "controller 'docking': '{}' has no infrared receiver; give it an irreceiver( ) in the world file", mover.name));
-  const world::Emitter& dock = find_dock(site, settings);
+  const world::Emitter& dock = find_dock(context, settings);
   DockingSettings docking;
   docking.X_WD = dock.X_WE;
   docking.stage = settings.number("stage", 0.7 * dock.range, 0.0, 1e3);
@@ -133,11 +133,11 @@ std::unique_ptr<Controller> make_docking(const Site& site, Settings& settings) {
 
 }  // namespace
 
-constinit const ControllerKind docking_controller{
+constinit const ControllerType docking_controller{
     .name = "docking",
     .summary = "onto a dock by its infrared beams",
     .rate = 10.0,
-    .waits = false,
+    .stops_on_bumper = false,
     .make = make_docking,
 };
 

@@ -7,7 +7,7 @@
 // before the dock, on its axis, by its own pose.
 
 #include "control/controllers.h"
-#include "control/reason.h"
+#include "control/stop_reason.h"
 
 namespace sf::control {
 
@@ -21,14 +21,14 @@ struct DockingSettings {
   double lean = 0.7;         ///< [rad] towards the axis with one buoy in sight
 };
 
-class Docking final : public Controller, public StatesReason {
+class Docking final : public Controller, public StatesStopReason {
  public:
   explicit Docking(const DockingSettings& settings) : settings_(settings) {}
 
-  base::Twist step(const Input& input) override;
+  base::Twist step(const ControllerInput& input) override;
   base::Intent intent() const override { return {.docking = true}; }
   bool done() const override { return done_; }
-  std::string reason() const override;
+  std::string stop_reason() const override;
 
  private:
   glm::dvec2 from_dock(const base::Pose& X_WM) const;
@@ -46,6 +46,6 @@ class Docking final : public Controller, public StatesReason {
   bool done_ = false;
 };
 
-extern const ControllerKind docking_controller;
+extern const ControllerType docking_controller;
 
 }  // namespace sf::control

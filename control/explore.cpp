@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "control/go.h"
+#include "control/drive_to_point.h"
 
 namespace sf::control {
 
@@ -43,58 +43,58 @@ double reach_of(const ExploreSettings& settings) {
 
 Explore::Explore(const ExploreSettings& settings)
     : settings_(settings),
-      terrain_(settings.plan, settings.body.radius, reach_of(settings)),
-      search_(terrain_, settings.body),
-      lookout_(terrain_, settings.eye) {}
+      map_(settings.plan, settings.body.radius, reach_of(settings)),
+      search_(map_, settings.body),
+      viewpoint_planner_(map_, settings.eye) {}
 
-Twist Explore::step(const Input& input) {
+Twist Explore::step(const ControllerInput& input) {
   const Pose& X_WM = input.state.X_WM;
-  const bool news = learn(input);
-  if (!begun_) {
-    terrain_.stand(origin(X_WM), reach_of(settings_) + kStart);
+  const bool news = update_map(input);
+  if (!started_) {
+    map_.mark_free(origin(X_WM), reach_of(settings_) + kStart);
     last_yaw_ = X_WM.yaw;
     last_time_ = input.time;
-    begun_ = true;
+    started_ = true;
   }
   if (done()) return {};
-  if (!looked_around_) return look_around(X_WM);
+  if (!turned_once_) return turn_once(X_WM);
   if (input.contact) {
     // Something that no beam met.
     const double ahead = legs_.empty() || !legs_.back().backwards ? 1.0 : -1.0;
-    terrain_.add_point(base::transform(X_WM, {ahead * settings_.body.radius, 0.0}));
-    way_.clear();
+    map_.add_point(base::transform(X_WM, {ahead * settings_.body.radius, 0.0}));
+    path_.clear();
   }
-  if (way_.empty() || seen_all() || (news && barred())) plan(X_WM);
+  if (path_.empty() || targets_seen() || (news && blocked())) plan(X_WM);
   const Twist twist = done() ? Twist{} : legs_.empty() ? wait(input) : drive(input);
   last_time_ = input.time;
   return twist;
 }
 
-bool Explore::learn(const Input& input) {
+bool Explore::update_map(const ControllerInput& input) {
   const base::ReadingBlock* reading = newest(input, base::kLaser);
   if (reading == nullptr || reading->values.size() != settings_.beams.size() || sequence_ == reading->sequence)
     return false;
   sequence_ = reading->sequence;
   X_WS_ = reading->X_WS;
-  return terrain_.add({reading->X_WS, reading->values, settings_.beams, settings_.range_min, settings_.eye.range});
+  return map_.add({reading->X_WS, reading->values, settings_.beams, settings_.range_min, settings_.eye.range});
 }
 
 // Once round in place before anything else.
-Twist Explore::look_around(const Pose& X_WM) {
+Twist Explore::turn_once(const Pose& X_WM) {
   turned_ += base::wrap_angle(X_WM.yaw - last_yaw_);
   last_yaw_ = X_WM.yaw;
-  looked_around_ = turned_ >= 2.0 * M_PI;
-  return {0.0, 0.0, looked_around_ ? 0.0 : settings_.turn};
+  turned_once_ = turned_ >= 2.0 * M_PI;
+  return {0.0, 0.0, turned_once_ ? 0.0 : settings_.turn};
 }
 
-bool Explore::seen_all() const {
+bool Explore::targets_seen() const {
   return std::none_of(targets_.begin(), targets_.end(),
                       [&](maps::CellAt cell) { return grid().at(cell) == maps::Cell::unexplored; });
 }
 
-bool Explore::barred() const {
+bool Explore::blocked() const {
   const double margin = kStage[stage_].roomy ? settings_.margin : settings_.least_margin;
-  return std::any_of(way_.begin() + 1, way_.end(), [&](const State& state) {
+  return std::any_of(path_.begin() + 1, path_.end(), [&](const LatticeState& state) {
     return !search_.allowed(state, margin) && !search_.allowed(state, 0.0);
   });
 }
@@ -104,23 +104,25 @@ void Explore::plan(const Pose& X_WM) {
   legs_.clear();
   int heading = 0;
   for (int k = 1; k < kHeadings; ++k)
-    if (std::abs(base::wrap_angle(angle_of(k) - X_WM.yaw)) < std::abs(base::wrap_angle(angle_of(heading) - X_WM.yaw)))
+    if (std::abs(base::wrap_angle(heading_angle(k) - X_WM.yaw)) <
+        std::abs(base::wrap_angle(heading_angle(heading) - X_WM.yaw)))
       heading = k;
-  const State from{terrain_.node_at(origin(X_WM)), heading};
+  const LatticeState from{map_.node_at(origin(X_WM)), heading};
   for (; stage_ < kStages; ++stage_) {
     const Stage& stage = kStage[stage_];
     if (stage.graze > 0 && !settings_.thorough) continue;
-    if (lookout_.look(stage.all, stage.range * settings_.eye.range, stage.graze) == 0) continue;
-    way_ = search_.find(from, stage.roomy ? settings_.margin : settings_.least_margin,
-                        [&](const State& state) { return lookout_.worth(search_.sensor_at(state), state.heading); });
-    if (!way_.empty()) return take(way_);
+    if (viewpoint_planner_.update(stage.all, stage.range * settings_.eye.range, stage.graze) == 0) continue;
+    path_ = search_.find(from, stage.roomy ? settings_.margin : settings_.least_margin, [&](const LatticeState& state) {
+      return viewpoint_planner_.sees_target(search_.sensor_at(state), state.heading);
+    });
+    if (!path_.empty()) return set_path(path_);
   }
-  way_.clear();
+  path_.clear();
 }
 
 // A way as turns and straight lines.
-void Explore::take(const std::vector<State>& way) {
-  targets_ = lookout_.targets(search_.sensor_at(way.back()), way.back().heading);
+void Explore::set_path(const std::vector<LatticeState>& way) {
+  targets_ = viewpoint_planner_.targets(search_.sensor_at(way.back()), way.back().heading);
   const auto is_turn = [&](std::size_t i) { return way[i].heading != way[i - 1].heading; };
   const auto step = [&](std::size_t i) {
     return is_turn(i) ? (way[i].heading - way[i - 1].heading + kHeadings) % kHeadings : way[i].node - way[i - 1].node;
@@ -129,17 +131,17 @@ void Explore::take(const std::vector<State>& way) {
   for (std::size_t i = 1; i < way.size();) {
     std::size_t last = i;
     while (last + 1 < way.size() && is_turn(last + 1) == is_turn(i) && step(last + 1) == step(i)) ++last;
-    Leg leg{!is_turn(i), terrain_.place(way[last].node), false, angle_of(way[last].heading), 1.0};
-    const glm::dvec2 along = terrain_.place(way[last].node) - terrain_.place(way[i - 1].node);
+    Leg leg{!is_turn(i), map_.place(way[last].node), false, heading_angle(way[last].heading), 1.0};
+    const glm::dvec2 along = map_.place(way[last].node) - map_.place(way[i - 1].node);
     leg.backwards = leg.straight && glm::dot(along, base::rotate(leg.heading, {1.0, 0.0})) < 0.0;
     leg.side = step(i) == 1 ? 1.0 : -1.0;
     legs.push_back(leg);
     i = last + 1;
   }
   // In the end it stands there and looks that way.
-  legs.push_back({true, terrain_.place(way.back().node), !legs.empty() && legs.back().backwards,
-                  angle_of(way.back().heading), 1.0});
-  legs.push_back({false, {}, false, angle_of(way.back().heading), 0.0});
+  legs.push_back({true, map_.place(way.back().node), !legs.empty() && legs.back().backwards,
+                  heading_angle(way.back().heading), 1.0});
+  legs.push_back({false, {}, false, heading_angle(way.back().heading), 0.0});
   legs_.assign(legs.rbegin(), legs.rend());
 }
 
@@ -150,7 +152,7 @@ bool Explore::finished(const Leg& leg, const Pose& X_WM) const {
   return glm::length(rest) < kHere || ahead < 0.5 * kHere;
 }
 
-Twist Explore::drive(const Input& input) {
+Twist Explore::drive(const ControllerInput& input) {
   const Pose& X_WM = input.state.X_WM;
   while (!legs_.empty() && finished(legs_.back(), X_WM)) legs_.pop_back();
   if (legs_.empty()) return wait(input);
@@ -162,7 +164,7 @@ Twist Explore::drive(const Input& input) {
 }
 
 Twist Explore::follow(const Leg& leg, const Pose& X_WM, double dt) const {
-  const Pace pace{settings_.speed, settings_.turn, 0.03, std::min(0.7 / dt, 5.0)};
+  const DriveLimits pace{settings_.speed, settings_.turn, 0.03, std::min(0.7 / dt, 5.0)};
   if (!leg.straight) {
     // The side matters only as long as it is far to turn.
     double off = base::wrap_angle(leg.heading - X_WM.yaw);
@@ -175,7 +177,7 @@ Twist Explore::follow(const Leg& leg, const Pose& X_WM, double dt) const {
   const double off = base::wrap_angle(bearing - X_WM.yaw);
   if (std::abs(off) > pace.aim) return {0.0, 0.0, turn_to(off, pace)};
   const glm::dvec2 front = base::transform(X_WM, {sign * settings_.slow, 0.0});
-  const bool near = terrain_.nearest(front, 1.0) < settings_.body.radius + settings_.slow;
+  const bool near = map_.nearest(front, 1.0) < settings_.body.radius + settings_.slow;
   const double speed = std::min(near ? settings_.slow_speed : settings_.speed, far / dt);
   return {sign * speed, 0.0, turn_to(off, pace)};
 }
@@ -183,15 +185,15 @@ Twist Explore::follow(const Leg& leg, const Pose& X_WM, double dt) const {
 // Not where the body would touch, by the time of the next two steps, unless it gets away from it.
 bool Explore::safe(const Pose& X_WM, const Twist& twist, double dt) const {
   if (twist.forward == 0.0) return true;
-  const double now = terrain_.nearest(origin(X_WM), 1.0);
+  const double now = map_.nearest(origin(X_WM), 1.0);
   const double rest = glm::length(legs_.back().end - origin(X_WM));
   const double ahead = std::copysign(std::min(2.0 * dt * std::abs(twist.forward), rest + kHere), twist.forward);
-  const double then = terrain_.nearest(base::transform(X_WM, {ahead, 0.0}), 1.0);
+  const double then = map_.nearest(base::transform(X_WM, {ahead, 0.0}), 1.0);
   return then >= settings_.body.radius + kTouch || then > now;
 }
 
 // Stands until a scan was taken from here.
-Twist Explore::wait(const Input& input) {
+Twist Explore::wait(const ControllerInput& input) {
   if (!arrived_) arrived_ = input.time;
   const Pose X_WS = base::compose(input.state.X_WM, settings_.eye.X_MS);
   const bool here = sequence_ && glm::length(origin(X_WS) - origin(X_WS_)) < kHere &&
@@ -205,8 +207,9 @@ Twist Explore::wait(const Input& input) {
 // What it wanted to see from the end of this way cannot be seen from there, or the end not be reached.
 void Explore::give_up() {
   for (const maps::CellAt cell : targets_)
-    if (grid().at(cell) == maps::Cell::unexplored) lookout_.in_vain(cell, search_.sensor_at(way_.back()));
-  way_.clear();
+    if (grid().at(cell) == maps::Cell::unexplored)
+      viewpoint_planner_.mark_unseen(cell, search_.sensor_at(path_.back()));
+  path_.clear();
 }
 
 }  // namespace sf::control

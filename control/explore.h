@@ -14,16 +14,16 @@
 #include <vector>
 
 #include "control/controllers.h"
-#include "control/lookout.h"
+#include "control/exploration_map.h"
 #include "control/pose_search.h"
-#include "control/terrain.h"
+#include "control/viewpoint_planner.h"
 
 namespace sf::control {
 
 struct ExploreSettings {
   maps::GridGeometry plan;
-  Body body;
-  Eye eye;
+  Footprint body;
+  ScannerModel eye;
   std::vector<glm::dvec2> beams;  ///< of the laser, in its frame
   double range_min = 0.0;         ///< [m] of the laser
   double speed = 0.1;             ///< [m/s]
@@ -38,16 +38,16 @@ struct ExploreSettings {
 
 /// A map of cells of 3 cm around all walls, at least the thesis' 30 x 30 words, the world's middle in its own.
 /// @throws base::InputError for an area that is too large
-maps::GridGeometry plan_around(const world::World& world, double cell = 0.03);
+maps::GridGeometry grid_around(const world::World& world, double cell = 0.03);
 
 class Explore final : public Controller {
  public:
   explicit Explore(const ExploreSettings& settings);
 
-  base::Twist step(const Input& input) override;
+  base::Twist step(const ControllerInput& input) override;
   bool done() const override { return stage_ == kStages; }
 
-  const maps::OccupancyGrid& grid() const { return terrain_.grid(); }
+  const maps::OccupancyGrid& grid() const { return map_.grid(); }
   int stage() const { return stage_; }  ///< in [0, kStages]
   static constexpr int kStages = 5;
 
@@ -60,35 +60,35 @@ class Explore final : public Controller {
     double heading = 0.0;  ///< [rad]
     double side = 1.0;     ///< +1: turns left
   };
-  bool learn(const Input& input);
-  base::Twist look_around(const base::Pose& X_WM);
-  bool seen_all() const;
-  bool barred() const;
+  bool update_map(const ControllerInput& input);
+  base::Twist turn_once(const base::Pose& X_WM);
+  bool targets_seen() const;
+  bool blocked() const;
   void plan(const base::Pose& X_WM);
-  void take(const std::vector<State>& way);
-  base::Twist drive(const Input& input);
-  base::Twist wait(const Input& input);
+  void set_path(const std::vector<LatticeState>& way);
+  base::Twist drive(const ControllerInput& input);
+  base::Twist wait(const ControllerInput& input);
   void give_up();
   base::Twist follow(const Leg& leg, const base::Pose& X_WM, double dt) const;
   bool finished(const Leg& leg, const base::Pose& X_WM) const;
   bool safe(const base::Pose& X_WM, const base::Twist& twist, double dt) const;
 
   ExploreSettings settings_;
-  Terrain terrain_;
+  ExplorationMap map_;
   PoseSearch search_;
-  Lookout lookout_;
+  ViewpointPlanner viewpoint_planner_;
   int stage_ = 0;
-  bool begun_ = false, looked_around_ = false;
+  bool started_ = false, turned_once_ = false;
   double turned_ = 0.0, last_yaw_ = 0.0;
   std::optional<std::uint32_t> sequence_;  ///< of the last scan
   base::Pose X_WS_;                        ///< of the last scan
   std::int64_t last_time_ = 0;
-  std::vector<State> way_;  ///< to the goal, its last state
-  std::vector<Leg> legs_;   ///< still to go, the next one last
+  std::vector<LatticeState> path_;  ///< to the goal, its last state
+  std::vector<Leg> legs_;           ///< still to go, the next one last
   std::vector<maps::CellAt> targets_;
   std::optional<std::int64_t> arrived_;  ///< [ns]
 };
 
-extern const ControllerKind explore_controller;
+extern const ControllerType explore_controller;
 
 }  // namespace sf::control

@@ -15,7 +15,7 @@ constexpr double kMostNodes = 2e6;  // of the lattice: 128 MB for ways
 
 }  // namespace
 
-maps::GridGeometry plan_around(const world::World& world, double cell) {
+maps::GridGeometry grid_around(const world::World& world, double cell) {
   world::Extent extent = world.extent;
   maps::GridGeometry plan{.cell = cell};
   const auto words = [&](double length) { return std::max(30.0, std::ceil(length / (4.0 * cell) + 2.0)); };
@@ -34,10 +34,10 @@ maps::GridGeometry plan_around(const world::World& world, double cell) {
 
 namespace {
 
-maps::GridGeometry read_plan(const Site& site, Settings& settings) {
+maps::GridGeometry read_plan(const ControllerContext& context, Settings& settings) {
   const double cell = settings.number("cell", 0.03, 0.005, 1.0);
   const bool given = settings.has("map_width") || settings.has("map_height");
-  if (!given) return plan_around(site.world, cell);
+  if (!given) return grid_around(context.world, cell);
   maps::GridGeometry plan{.cell = cell};
   plan.left = settings.number("map_left", 0.0, -1e6, 1e6);
   plan.top = settings.number("map_top", 0.0, -1e6, 1e6);
@@ -49,8 +49,8 @@ maps::GridGeometry read_plan(const Site& site, Settings& settings) {
   return plan;
 }
 
-std::unique_ptr<Controller> make_explore(const Site& site, Settings& settings) {
-  const world::Mover& mover = site.world.movers[site.mover];
+std::unique_ptr<Controller> make_explore(const ControllerContext& context, Settings& settings) {
+  const world::Mover& mover = context.world.movers[context.mover];
   if (mover.lasers.empty())
     throw base::InputError(
         fmt::format("controller 'explore': '{}' has no laser; give it one in the world file", mover.name));
@@ -59,7 +59,7 @@ std::unique_ptr<Controller> make_explore(const Site& site, Settings& settings) {
         fmt::format("controller 'explore': '{}' is a car; expected a drive that turns in place", mover.name));
   const world::Laser& laser = mover.lasers.front();
   ExploreSettings explore;
-  explore.plan = read_plan(site, settings);
+  explore.plan = read_plan(context, settings);
   explore.body = {robots::footprint_of(mover).radius, {laser.X_MS.x, laser.X_MS.y}};
   explore.eye = {laser.X_MS, laser.fov, laser.range_max};
   explore.beams = maps::beam_directions(laser.fov, laser.samples);
@@ -77,11 +77,11 @@ std::unique_ptr<Controller> make_explore(const Site& site, Settings& settings) {
 
 }  // namespace
 
-constinit const ControllerKind explore_controller{
+constinit const ControllerType explore_controller{
     .name = "explore",
     .summary = "maps an area by its laser, drives to what is unexplored and touches nothing",
     .rate = 10.0,
-    .waits = false,
+    .stops_on_bumper = false,
     .make = make_explore,
 };
 

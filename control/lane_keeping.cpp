@@ -43,14 +43,14 @@ double damped_gain(const world::Mover& mover, const LaneSettings& lane) {
   return mover.driver_model == world::DriverModel::player_create ? 0.5 * gain : gain;
 }
 
-std::unique_ptr<Controller> make_lane_keeping(const Site& site, Settings& settings) {
-  const world::Mover& mover = site.world.movers[site.mover];
+std::unique_ptr<Controller> make_lane_keeping(const ControllerContext& context, Settings& settings) {
+  const world::Mover& mover = context.world.movers[context.mover];
   const world::Sensor* sensor = find_sensor(mover);
   if (sensor == nullptr)
     throw base::InputError(
         fmt::format("controller 'lane-keeping': '{}' has no lane edge sensor; give it a laneedge( ) in the world file",
                     mover.name));
-  const PathTask task(site, settings);
+  const PathTask task(context, settings);
   LaneSettings lane;
   lane.speed = settings.number("speed", std::min(lane.speed, mover.max_forward), 0.0, mover.max_forward);
   lane.p_MS = {sensor->X_MS.x, sensor->X_MS.y};
@@ -69,11 +69,11 @@ std::unique_ptr<Controller> make_lane_keeping(const Site& site, Settings& settin
 
 }  // namespace
 
-constinit const ControllerKind lane_keeping_controller{
+constinit const ControllerType lane_keeping_controller{
     .name = "lane-keeping",
     .summary = "follows a lane by its painted edge, with P or PI steering",
     .rate = 10.0,
-    .waits = true,
+    .stops_on_bumper = true,
     .make = make_lane_keeping,
 };
 

@@ -28,6 +28,6 @@ class LaneKeeping final : public PathFollower {
   LaneSettings settings_;
 };
 
-extern const ControllerKind lane_keeping_controller;
+extern const ControllerType lane_keeping_controller;
 
 }  // namespace sf::control

@@ -35,22 +35,22 @@ void require_array(const world::Mover& mover) {
                     mover.name));
 }
 
-std::unique_ptr<Controller> make_magnet_keeping(const Site& site, Settings& settings) {
-  require_array(site.world.movers[site.mover]);
+std::unique_ptr<Controller> make_magnet_keeping(const ControllerContext& context, Settings& settings) {
+  require_array(context.world.movers[context.mover]);
   MagnetSettings magnet;
   magnet.gains = read_gains(settings, magnet.gains);
-  magnet.speed = settings.number("speed", magnet.speed, 0.0, site.world.movers[site.mover].max_forward);
+  magnet.speed = settings.number("speed", magnet.speed, 0.0, context.world.movers[context.mover].max_forward);
   magnet.hold = settings.number("hold", magnet.hold, 0.0, 1e6);
-  return std::make_unique<MagnetKeeping>(magnet, PathTask(site, settings));
+  return std::make_unique<MagnetKeeping>(magnet, PathTask(context, settings));
 }
 
 }  // namespace
 
-constinit const ControllerKind magnet_keeping_controller{
+constinit const ControllerType magnet_keeping_controller{
     .name = "magnet-keeping",
     .summary = "follows a line of magnets by an array of magnetometers, with P or PI steering",
     .rate = 10.0,
-    .waits = true,
+    .stops_on_bumper = true,
     .make = make_magnet_keeping,
 };
 

@@ -24,6 +24,6 @@ class MagnetKeeping final : public PathFollower {
   double error_of(const base::ReadingBlock& reading, const base::Pose& X_WM) const override;
 };
 
-extern const ControllerKind magnet_keeping_controller;
+extern const ControllerType magnet_keeping_controller;
 
 }  // namespace sf::control

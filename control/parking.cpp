@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "control/corridor.h"
+#include "control/lane_corridors.h"
 
 namespace sf::control {
 
@@ -16,7 +16,7 @@ world::Curve straight(glm::dvec2 a, glm::dvec2 b) { return world::smooth_curve(s
 
 }  // namespace
 
-Pose Corridors::parked(std::uint32_t row) const {
+Pose LaneCorridors::parked(std::uint32_t row) const {
   const world::RoadSpot& spot = roads_.spots[row];
   const glm::dvec2 d = spot.end - spot.entry;
   const glm::dvec2 along = length(d) > 0.0 ? (1.0 / length(d)) * d : glm::dvec2{1.0, 0.0};
@@ -25,7 +25,7 @@ Pose Corridors::parked(std::uint32_t row) const {
 }
 
 // Into a spot: along the aisle to where the robot stands before it, a turn in place, straight in; out again backwards.
-void Corridors::add_zones() {
+void LaneCorridors::add_zones() {
   const auto leads = [&](PointRef at, bool out) {
     return std::any_of(roads_.exits.begin(), roads_.exits.end(),
                        [&](const world::RoadExit& exit) { return (out ? exit.from : exit.to) == at; });
@@ -68,7 +68,7 @@ void Corridors::add_zones() {
   }
 }
 
-bool Corridors::inside(std::uint32_t zone, glm::dvec2 p) const {
+bool LaneCorridors::inside(std::uint32_t zone, glm::dvec2 p) const {
   const auto& perimeter = roads_.zones[zone].perimeter;
   bool in = false;
   for (std::size_t i = 0, j = perimeter.size() - 1; i < perimeter.size(); j = i++) {

@@ -6,8 +6,8 @@
 
 #include "base/reading.h"
 #include "control/controllers.h"
-#include "control/pi_law.h"
-#include "control/reason.h"
+#include "control/pi_controller.h"
+#include "control/stop_reason.h"
 #include "world/path_geometry.h"
 
 namespace sf::control {
@@ -17,7 +17,7 @@ class PathTask {
  public:
   /// The path is the world's nearest to the robot at load; there need not be one: then it never ends.
   /// @throws base::InputError
-  PathTask(const Site& site, Settings& settings);
+  PathTask(const ControllerContext& context, Settings& settings);
 
   bool known() const { return path_ != nullptr; }
   /// [m] lane width of the piece nearest to `p`. Rule: known().
@@ -32,21 +32,21 @@ class PathTask {
 
 /// The last reading of a sensor, and whether there still are new ones: for controllers that run at a rate of their own
 /// and meet readings twice, or late.
-class Hold {
+class SampleHold {
  public:
-  explicit Hold(double seconds) : hold_(static_cast<std::int64_t>(1e9 * seconds)) {}
+  explicit SampleHold(double seconds) : hold_(static_cast<std::int64_t>(1e9 * seconds)) {}
 
   /// @param reading null: none
   /// @return whether the sensor still speaks: nothing new for longer than `seconds` is silence
-  bool speaks(const base::ReadingBlock* reading, std::int64_t time);
+  bool is_fresh(const base::ReadingBlock* reading, std::int64_t time);
 
   /// @param now what the reading says; not a number: nothing
   /// @return `now`, or what it was last within `seconds`, or not a number
-  double keep(double now, std::int64_t time);
+  double update(double now, std::int64_t time);
 
  private:
   std::int64_t hold_;
-  std::int64_t heard_ = 0, said_ = 0;  ///< [ns] of the last new reading, of the last number
+  std::int64_t last_reading_ = 0, last_value_time_ = 0;  ///< [ns] of the last new reading, of the last number
   std::uint32_t sequence_ = 0;
   double last_ = std::numeric_limits<double>::quiet_NaN();
   bool any_ = false;
@@ -55,12 +55,12 @@ class Hold {
 /// Follows a path at constant speed by what one sensor says of the error, with P or PI steering: readings are taken at
 /// its own rate, new or not. Without an error it goes on with the last for `hold` seconds, then stands until there is
 /// one again; the integral rests meanwhile. (The thesis says nothing of it.)
-class PathFollower : public Controller, public StatesReason {
+class PathFollower : public Controller, public StatesStopReason {
  public:
-  base::Twist step(const Input& input) final;
+  base::Twist step(const ControllerInput& input) final;
   bool done() const final { return done_; }
   double error() const final { return error_; }
-  std::string reason() const final;
+  std::string stop_reason() const final;
 
  protected:
   /// @param kind of the sensor @param sensor its name, for people @param speed [m/s] @param hold [s]
@@ -76,10 +76,10 @@ class PathFollower : public Controller, public StatesReason {
   std::string_view sensor_;
   double speed_;
   PathTask task_;
-  PiLaw law_;
-  Hold hold_;
+  PiController pi_;
+  SampleHold hold_;
   double error_ = Controller::error();
-  bool speaks_ = false;  ///< the sensor, at the last step
+  bool fresh_ = false;  ///< the sensor, at the last step
   bool done_ = false;
 };
 

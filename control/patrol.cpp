@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "control/go.h"
+#include "control/drive_to_point.h"
 
 namespace sf::control {
 
@@ -13,21 +13,21 @@ Patrol::Patrol(PatrolSettings settings) : settings_(std::move(settings)) {
 }
 
 // Others' bodies are not told: what may stand in the way is looked for some way beyond.
-double Patrol::radio() const { return settings_.radius + settings_.keep + 1.0; }
+double Patrol::v2v_range() const { return settings_.radius + settings_.keep + 1.0; }
 
-base::Twist Patrol::step(const Input& input) {
+base::Twist Patrol::step(const ControllerInput& input) {
   const base::Pose& X_WM = input.state.X_WM;
   const auto there = [&] {
     return glm::length(settings_.points[target_] - glm::dvec2{X_WM.x, X_WM.y}) <= settings_.reach;
   };
   if (there()) next(input.time);
-  reason_ = input.time < until_ ? "it pauses at an end of its way"
-            : there()           ? "it is where its one point is"
-            : obstructed(input) ? "another robot stands in its way"
-                                : "";
-  if (*reason_ != '\0') return {};
-  return go_to(X_WM, settings_.points[target_],
-               {settings_.speed, settings_.turn_speed, settings_.turns_in_place ? 0.3 : M_PI});
+  stop_reason_ = input.time < until_ ? "it pauses at an end of its way"
+                 : there()           ? "it is where its one point is"
+                 : obstructed(input) ? "another robot stands in its way"
+                                     : "";
+  if (*stop_reason_ != '\0') return {};
+  return drive_to_point(X_WM, settings_.points[target_],
+                        {settings_.speed, settings_.turn_speed, settings_.turns_in_place ? 0.3 : M_PI});
 }
 
 void Patrol::next(std::int64_t time) {
@@ -40,8 +40,8 @@ void Patrol::next(std::int64_t time) {
   target_ = backwards_ ? target_ - 1 : target_ + 1;
 }
 
-// Ahead is the lane that its own body sweeps, widened by what others may be wide.
-bool Patrol::obstructed(const Input& input) const {
+// LeadRobot is the lane that its own body sweeps, widened by what others may be wide.
+bool Patrol::obstructed(const ControllerInput& input) const {
   return std::any_of(input.others.begin(), input.others.end(), [&](const Neighbour& other) {
     const base::Pose& X_WM = input.state.X_WM;
     const glm::dvec2 p = base::rotate(-X_WM.yaw, {other.state.X_WM.x - X_WM.x, other.state.X_WM.y - X_WM.y});
@@ -62,8 +62,8 @@ std::vector<glm::dvec2> read_points(Settings& settings) {
   return points;
 }
 
-std::unique_ptr<Controller> make_patrol(const Site& site, Settings& settings) {
-  const world::Mover& mover = site.world.movers[site.mover];
+std::unique_ptr<Controller> make_patrol(const ControllerContext& context, Settings& settings) {
+  const world::Mover& mover = context.world.movers[context.mover];
   PatrolSettings patrol;
   patrol.points = read_points(settings);
   patrol.speed = settings.number("speed", std::min(patrol.speed, mover.max_forward), 1e-4, mover.max_forward);
@@ -77,11 +77,11 @@ std::unique_ptr<Controller> make_patrol(const Site& site, Settings& settings) {
 
 }  // namespace
 
-constinit const ControllerKind patrol_controller{
+constinit const ControllerType patrol_controller{
     .name = "patrol",
     .summary = "drives through given points, back and forth; stands while another robot is in the way",
     .rate = 10.0,
-    .waits = true,
+    .stops_on_bumper = true,
     .make = make_patrol,
 };
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "control/controllers.h"
-#include "control/reason.h"
+#include "control/stop_reason.h"
 
 namespace sf::control {
 
@@ -20,27 +20,27 @@ struct PatrolSettings {
   bool turns_in_place = true;      ///< false: a car, which drives on while it turns
 };
 
-class Patrol final : public Controller, public StatesReason {
+class Patrol final : public Controller, public StatesStopReason {
  public:
   explicit Patrol(PatrolSettings settings);
 
-  base::Twist step(const Input& input) override;
-  double radio() const override;
-  std::string reason() const override { return reason_; }
+  base::Twist step(const ControllerInput& input) override;
+  double v2v_range() const override;
+  std::string stop_reason() const override { return stop_reason_; }
 
   std::size_t target() const { return target_; }  ///< index of the point it heads for
 
  private:
-  bool obstructed(const Input& input) const;
+  bool obstructed(const ControllerInput& input) const;
   void next(std::int64_t time);
 
   PatrolSettings settings_;
   std::size_t target_ = 0;
   bool backwards_ = false;
   std::int64_t until_ = INT64_MIN;  ///< [ns] it stands
-  const char* reason_ = "";
+  const char* stop_reason_ = "";
 };
 
-extern const ControllerKind patrol_controller;
+extern const ControllerType patrol_controller;
 
 }  // namespace sf::control

@@ -45,61 +45,61 @@ std::uint32_t length_cost(int heading) {
 
 }  // namespace
 
-double angle_of(int heading) {
+double heading_angle(int heading) {
   const auto& step = kSteps[static_cast<std::size_t>(heading)];
   return std::atan2(step[1], step[0]);
 }
 
-PoseSearch::PoseSearch(const Terrain& terrain, const Body& body)
-    : terrain_(terrain),
+PoseSearch::PoseSearch(const ExplorationMap& map, const Footprint& body)
+    : map_(map),
       body_(body),
-      cost_(static_cast<std::size_t>(terrain.nodes()) * kHeadings),
+      cost_(static_cast<std::size_t>(map.nodes()) * kHeadings),
       move_(cost_.size()),
       buckets_(kMostCost + 1) {
   const auto offset = [&](glm::dvec2 p) {
-    return static_cast<Node>(std::lround(p.x / terrain.cell())) -
-           terrain.columns() * static_cast<Node>(std::lround(p.y / terrain.cell()));
+    return static_cast<Node>(std::lround(p.x / map.cell())) -
+           map.columns() * static_cast<Node>(std::lround(p.y / map.cell()));
   };
   const double reach = glm::length(body.p_MS);
   for (int half = 0; half < 2 * kHeadings; ++half) {
     // Halfway headings are those that a turn passes.
-    const double to = half % 2 == 0 ? 0.0 : 0.5 * base::wrap_angle(angle_of(around(half / 2 + 1)) - angle_of(half / 2));
-    const double yaw = angle_of(half / 2) + to;
-    auto& arm = arm_[static_cast<std::size_t>(half)];
-    for (double far = body.radius - 0.01; reach > body.radius && far <= reach + kArm; far += 0.25 * terrain.cell())
+    const double to =
+        half % 2 == 0 ? 0.0 : 0.5 * base::wrap_angle(heading_angle(around(half / 2 + 1)) - heading_angle(half / 2));
+    const double yaw = heading_angle(half / 2) + to;
+    auto& arm = sensor_arm_[static_cast<std::size_t>(half)];
+    for (double far = body.radius - 0.01; reach > body.radius && far <= reach + kArm; far += 0.25 * map.cell())
       arm.push_back(offset(base::rotate(yaw, (far / reach) * body.p_MS)));
     arm.erase(std::unique(arm.begin(), arm.end()), arm.end());
     if (half % 2 != 0) continue;
     const auto k = static_cast<std::size_t>(half / 2);
     sensor_[k] = offset(base::rotate(yaw, body.p_MS));
-    ahead_[k] = kSteps[k][0] - terrain.columns() * kSteps[k][1];
+    ahead_[k] = kSteps[k][0] - map.columns() * kSteps[k][1];
   }
 }
 
-bool PoseSearch::arm_clear(Node node, int half_heading) const {
-  const auto& arm = arm_[static_cast<std::size_t>(half_heading)];
-  return std::none_of(arm.begin(), arm.end(), [&](Node by) { return terrain_.solid(node + by); });
+bool PoseSearch::sensor_arm_clear(Node node, int half_heading) const {
+  const auto& arm = sensor_arm_[static_cast<std::size_t>(half_heading)];
+  return std::none_of(arm.begin(), arm.end(), [&](Node by) { return map_.occupied(node + by); });
 }
 
-bool PoseSearch::allowed(const State& state, double margin) const {
-  return !terrain_.over_unknown(state.node) &&
-         terrain_.clearance(state.node) >= static_cast<float>(body_.radius + margin) &&
-         arm_clear(state.node, 2 * state.heading);
+bool PoseSearch::allowed(const LatticeState& state, double margin) const {
+  return !map_.covers_unknown(state.node) && map_.clearance(state.node) >= static_cast<float>(body_.radius + margin) &&
+         sensor_arm_clear(state.node, 2 * state.heading);
 }
 
 std::uint32_t PoseSearch::cost_at(Node node) const {
-  return terrain_.clearance(node) < static_cast<float>(body_.radius + kNearBody) ? kNear : 1;
+  return map_.clearance(node) < static_cast<float>(body_.radius + kNearBody) ? kNear : 1;
 }
 
 // `spare`: the margin that is enough near the start.
-void PoseSearch::relax(const State& from, std::uint32_t so_far, double margin, double spare) {
+void PoseSearch::relax(const LatticeState& from, std::uint32_t so_far, double margin, double spare) {
   const int h = from.heading;
   const Node step = ahead_[static_cast<std::size_t>(h)];
   const std::uint32_t length = length_cost(h) * cost_at(from.node);
-  const auto try_one = [&](const State& to, std::uint32_t cost, std::uint8_t move) {
+  const auto try_one = [&](const LatticeState& to, std::uint32_t cost, std::uint8_t move) {
     const std::size_t at = static_cast<std::size_t>(to.node) * kHeadings + static_cast<std::size_t>(to.heading);
     if (so_far + cost >= cost_[at]) return;
-    const Node columns = terrain_.columns();
+    const Node columns = map_.columns();
     const bool near_start = std::abs(to.node % columns - start_ % columns) <= kAround &&
                             std::abs(to.node / columns - start_ / columns) <= kAround;
     if (!allowed(to, near_start ? std::min(margin, spare) : margin)) return;
@@ -110,11 +110,12 @@ void PoseSearch::relax(const State& from, std::uint32_t so_far, double margin, d
   };
   try_one({from.node + step, h}, length, kForward);
   try_one({from.node - step, h}, kBackwards * length, kBack);
-  if (arm_clear(from.node, 2 * h + 1)) try_one({from.node, around(h + 1)}, kTurnCost, kLeft);
-  if (arm_clear(from.node, 2 * around(h - 1) + 1)) try_one({from.node, around(h - 1)}, kTurnCost, kRight);
+  if (sensor_arm_clear(from.node, 2 * h + 1)) try_one({from.node, around(h + 1)}, kTurnCost, kLeft);
+  if (sensor_arm_clear(from.node, 2 * around(h - 1) + 1)) try_one({from.node, around(h - 1)}, kTurnCost, kRight);
 }
 
-std::vector<State> PoseSearch::find(const State& from, double margin, const std::function<bool(const State&)>& goal) {
+std::vector<LatticeState> PoseSearch::find(const LatticeState& from, double margin,
+                                           const std::function<bool(const LatticeState&)>& goal) {
   std::fill(cost_.begin(), cost_.end(), kNever);
   for (auto& bucket : buckets_) bucket.clear();
   const std::size_t first = static_cast<std::size_t>(from.node) * kHeadings + static_cast<std::size_t>(from.heading);
@@ -123,15 +124,15 @@ std::vector<State> PoseSearch::find(const State& from, double margin, const std:
   move_[first] = kStart;
   buckets_[0].push_back(static_cast<std::uint32_t>(first));
   waiting_ = 1;
-  const double spare = static_cast<double>(terrain_.clearance(from.node)) - body_.radius - 5e-4;
+  const double spare = static_cast<double>(map_.clearance(from.node)) - body_.radius - 5e-4;
   for (std::uint32_t so_far = 0; waiting_ > 0; ++so_far) {
     auto& bucket = buckets_[so_far % buckets_.size()];
     for (std::size_t i = 0; i < bucket.size(); ++i) {
       const std::uint32_t at = bucket[i];
       --waiting_;
       if (cost_[at] != so_far) continue;
-      const State state{static_cast<Node>(at / kHeadings), static_cast<int>(at % kHeadings)};
-      if (goal(state)) return way_to(state, from);
+      const LatticeState state{static_cast<Node>(at / kHeadings), static_cast<int>(at % kHeadings)};
+      if (goal(state)) return path_to(state, from);
       relax(state, so_far, margin, spare);
     }
     bucket.clear();
@@ -139,9 +140,9 @@ std::vector<State> PoseSearch::find(const State& from, double margin, const std:
   return {};
 }
 
-std::vector<State> PoseSearch::way_to(const State& goal, const State& from) const {
-  std::vector<State> way{goal};
-  for (State state = goal; !(state == from);) {
+std::vector<LatticeState> PoseSearch::path_to(const LatticeState& goal, const LatticeState& from) const {
+  std::vector<LatticeState> way{goal};
+  for (LatticeState state = goal; !(state == from);) {
     const auto h = static_cast<std::size_t>(state.heading);
     switch (move_[static_cast<std::size_t>(state.node) * kHeadings + h]) {
       case kForward:

@@ -10,24 +10,24 @@
 #include <functional>
 #include <vector>
 
-#include "control/terrain.h"
+#include "control/exploration_map.h"
 
 namespace sf::control {
 
 inline constexpr int kHeadings = 16;
 
 /// A place and a heading.
-struct State {
+struct LatticeState {
   Node node = 0;
   int heading = 0;  ///< in [0, kHeadings)
-  bool operator==(const State&) const = default;
+  bool operator==(const LatticeState&) const = default;
 };
 
 /// [rad] of heading k: towards one of sixteen neighbours on the lattice, 21 to 27 degrees apart.
-double angle_of(int heading);
+double heading_angle(int heading);
 
 /// What moves.
-struct Body {
+struct Footprint {
   double radius = 0.165;  ///< [m]
   glm::dvec2 p_MS;        ///< [m] its sensor
 };
@@ -35,28 +35,31 @@ struct Body {
 class PoseSearch {
  public:
   /// `terrain` outlives it.
-  PoseSearch(const Terrain& terrain, const Body& body);
+  PoseSearch(const ExplorationMap& map, const Footprint& body);
 
   /// @param margin [m] the body keeps from every surface; from `from` on it may begin nearer
-  bool allowed(const State& state, double margin) const;
+  bool allowed(const LatticeState& state, double margin) const;
 
   /// The sensor's node in a state. Rule: the body is within the map.
-  Node sensor_at(const State& state) const { return state.node + sensor_[static_cast<std::size_t>(state.heading)]; }
+  Node sensor_at(const LatticeState& state) const {
+    return state.node + sensor_[static_cast<std::size_t>(state.heading)];
+  }
 
   /// The cheapest way to the first state that is a goal: `from` first, the goal last; empty: there is none.
-  std::vector<State> find(const State& from, double margin, const std::function<bool(const State&)>& goal);
+  std::vector<LatticeState> find(const LatticeState& from, double margin,
+                                 const std::function<bool(const LatticeState&)>& goal);
 
  private:
   std::uint32_t cost_at(Node node) const;
-  bool arm_clear(Node node, int half_heading) const;
-  void relax(const State& from, std::uint32_t so_far, double margin, double spare);
-  std::vector<State> way_to(const State& goal, const State& from) const;
+  bool sensor_arm_clear(Node node, int half_heading) const;
+  void relax(const LatticeState& from, std::uint32_t so_far, double margin, double spare);
+  std::vector<LatticeState> path_to(const LatticeState& goal, const LatticeState& from) const;
 
-  const Terrain& terrain_;
-  Body body_;
+  const ExplorationMap& map_;
+  Footprint body_;
   std::array<Node, kHeadings> ahead_{};  ///< one step forward
   std::array<Node, kHeadings> sensor_{};
-  std::array<std::vector<Node>, 2 * kHeadings> arm_;  ///< nodes between the body and its sensor
+  std::array<std::vector<Node>, 2 * kHeadings> sensor_arm_;  ///< nodes between the body and its sensor
   std::vector<std::uint32_t> cost_;
   std::vector<std::uint8_t> move_;  ///< that led there
   std::vector<std::vector<std::uint32_t>> buckets_;

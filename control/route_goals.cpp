@@ -33,15 +33,18 @@ std::string find_file(const world::World& world, const std::string& file) {
 
 }  // namespace
 
-RouteGoals::RouteGoals(const Site& site) : tour_(true), seed_(site.seed), robot_(site.mover) { draw_from(*site.roads); }
+RouteGoals::RouteGoals(const ControllerContext& context) : tour_(true), seed_(context.seed), robot_(context.mover) {
+  draw_from(*context.roads);
+}
 
 void RouteGoals::draw_from(const world::RoadNetwork& roads) {
   for (const auto& checkpoint : roads.checkpoints)
     if (checkpoint.at.kind == PointRef::Kind::lane) lots_.push_back(checkpoint);
 }
 
-RouteGoals::RouteGoals(const Site& site, Settings& settings) : seed_(site.seed), robot_(site.mover) {
-  const world::RoadNetwork& roads = *site.roads;
+RouteGoals::RouteGoals(const ControllerContext& context, Settings& settings)
+    : seed_(context.seed), robot_(context.mover) {
+  const world::RoadNetwork& roads = *context.roads;
   for (const double number : settings.numbers("checkpoints", {})) {
     const auto* checkpoint = find_checkpoint(roads, static_cast<int>(number));
     if (checkpoint == nullptr || checkpoint->id != number)
@@ -51,8 +54,8 @@ RouteGoals::RouteGoals(const Site& site, Settings& settings) : seed_(site.seed),
     goals_.push_back(*checkpoint);
   }
   const std::string mission = settings.text("mission", "");
-  if (!mission.empty()) read_mission(site, mission);
-  read_park(site, settings);
+  if (!mission.empty()) read_mission(context, mission);
+  read_park(context, settings);
   loop_ = settings.flag("loop", false);
   tour_ = settings.flag("tour", false);
   if (tour_) draw_from(roads);
@@ -64,10 +67,11 @@ RouteGoals::RouteGoals(const Site& site, Settings& settings) : seed_(site.seed),
                                 ids_of(roads)));
 }
 
-void RouteGoals::read_mission(const Site& site, const std::string& file) {
-  const world::RoadNetwork& roads = *site.roads;
-  const world::Mdf mdf = world::read_mdf(find_file(site.world, file));
-  if (site.warnings != nullptr) site.warnings->insert(site.warnings->end(), mdf.warnings.begin(), mdf.warnings.end());
+void RouteGoals::read_mission(const ControllerContext& context, const std::string& file) {
+  const world::RoadNetwork& roads = *context.roads;
+  const world::Mdf mdf = world::read_mdf(find_file(context.world, file));
+  if (context.warnings != nullptr)
+    context.warnings->insert(context.warnings->end(), mdf.warnings.begin(), mdf.warnings.end());
   for (const world::MdfCheckpoint& row : mdf.checkpoints) {
     const auto* checkpoint = find_checkpoint(roads, row.id);
     if (checkpoint == nullptr)
@@ -83,10 +87,10 @@ void RouteGoals::read_mission(const Site& site, const std::string& file) {
         limits_[i] = limit.most_mph * world::kMilePerHour * roads.scale;
 }
 
-void RouteGoals::read_park(const Site& site, Settings& settings) {
+void RouteGoals::read_park(const ControllerContext& context, Settings& settings) {
   const std::string name = settings.text("park", "");
   if (name.empty()) return;
-  const world::RoadNetwork& roads = *site.roads;
+  const world::RoadNetwork& roads = *context.roads;
   for (std::uint32_t row = 0; row < roads.spots.size(); ++row) {
     const world::RoadSpot& spot = roads.spots[row];
     if (fmt::format("{}.{}", roads.zones[spot.zone].id, spot.number) != name) continue;

@@ -12,9 +12,9 @@ class RouteGoals {
  public:
   /// Reads `checkpoints [1 2]`, `mission "file.mdf"`, `park "zone.spot"`, `tour true` (by lot), `loop true`.
   /// @throws base::InputError where they name what the network does not have, or nothing at all.
-  RouteGoals(const Site& site, Settings& settings);
+  RouteGoals(const ControllerContext& context, Settings& settings);
   /// By lot; none where the network has no checkpoints on lanes.
-  explicit RouteGoals(const Site& site);
+  explicit RouteGoals(const ControllerContext& context);
 
   /// Goal `k`, 0-based; null: there are no more.
   const world::RoadCheckpoint* at(std::uint64_t k) const;
@@ -26,8 +26,8 @@ class RouteGoals {
 
  private:
   void draw_from(const world::RoadNetwork& roads);
-  void read_mission(const Site& site, const std::string& file);
-  void read_park(const Site& site, Settings& settings);
+  void read_mission(const ControllerContext& context, const std::string& file);
+  void read_park(const ControllerContext& context, Settings& settings);
 
   std::vector<world::RoadCheckpoint> goals_;
   std::vector<world::RoadCheckpoint> lots_;  ///< those on lanes

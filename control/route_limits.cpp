@@ -25,7 +25,7 @@ void Route::Limit::stop_in(double distance, const char* reason) {
   who = base::kNoId;
 }
 
-void Route::limit_by_bends(Limit& limit) const {
+void Route::limit_by_curvature(Limit& limit) const {
   const double step = 0.5 * corridors_->body().radius;
   const double s = progress_.s();
   std::size_t leg = progress_.leg();
@@ -42,13 +42,13 @@ void Route::limit_by_bends(Limit& limit) const {
   if (way.kind == Way::Kind::zone) limit.speed = std::min(limit.speed, 0.5 * settings_.speed);
 }
 
-void Route::limit_by_lines(const Input& input, Limit& limit) {
+void Route::limit_by_lines(const ControllerInput& input, Limit& limit) {
   const double margin = 0.12 * corridors_->body().radius;
   const double speed = std::abs(input.state.velocity.forward);
   for (std::size_t i = progress_.leg(); i < plan_.legs.size(); ++i) {
     const RouteLeg& leg = plan_.legs[i];
     if (leg.start > progress_.s() + 1.5) return;
-    for (const StopMark& mark : corridors_->way(leg.way).stops) {
+    for (const LaneStop& mark : corridors_->way(leg.way).stops) {
       if (mark.s <= leg.from || mark.s > leg.to + 1e-9) continue;
       const double line = leg.start + mark.s - leg.from;
       const double ahead = line - corridors_->body().front - margin - progress_.s();
@@ -73,19 +73,19 @@ void Route::limit_by_lines(const Input& input, Limit& limit) {
   }
 }
 
-void Route::limit_by_gates(const Input& input, Limit& limit) {
+void Route::limit_by_conflict_zones(const ControllerInput& input, Limit& limit) {
   const double speed = std::abs(input.state.velocity.forward);
   bool full = false;
   for (std::size_t i = progress_.leg(); i < plan_.legs.size(); ++i) {
     const RouteLeg& leg = plan_.legs[i];
-    if (leg.start > progress_.s() + kApproach + 0.5) break;
-    for (const Gate& gate : corridors_->way(leg.way).gates) {
-      if (gate.end <= leg.from || gate.hold >= leg.to) continue;
-      const double ahead = leg.start + gate.hold - leg.from - progress_.s();
-      const double end = leg.start + gate.end - leg.from;
-      if (ahead > kApproach || end <= progress_.s() || right_of_way_.committed(ahead, speed)) continue;
+    if (leg.start > progress_.s() + kApproachDistance + 0.5) break;
+    for (const ConflictZone& conflict_zone : corridors_->way(leg.way).conflict_zones) {
+      if (conflict_zone.end <= leg.from || conflict_zone.hold >= leg.to) continue;
+      const double ahead = leg.start + conflict_zone.hold - leg.from - progress_.s();
+      const double end = leg.start + conflict_zone.end - leg.from;
+      if (ahead > kApproachDistance || end <= progress_.s() || right_of_way_.committed(ahead, speed)) continue;
       const bool room = room_beyond(end);
-      if (room && right_of_way_.may_enter(leg.way, gate)) continue;
+      if (room && right_of_way_.may_enter(leg.way, conflict_zone)) continue;
       limit.stop_in(std::max(ahead, 0.0),
                     room ? "others go first where their ways meet" : "the lane that it wants is full");
       if (!room && speed < 0.01 && ahead < 0.3) {
@@ -103,7 +103,7 @@ void Route::limit_by_gates(const Input& input, Limit& limit) {
 bool Route::room_beyond(double end) const {
   const double room = end - progress_.s();
   double between = 0.0;
-  for (const Ahead& other : ahead_) {
+  for (const LeadRobot& other : ahead_) {
     if (other.free < room) {
       if (other.speed < 0.02) return false;  // it stands, and may do so for long
       between += 2.2 * corridors_->body().radius + settings_.gap;
@@ -115,7 +115,7 @@ bool Route::room_beyond(double end) const {
 }
 
 // One robot at a time drives about in a zone; the others wait before it, or where they are parked.
-void Route::limit_by_zones(Limit& limit, const Input& input) {
+void Route::limit_by_zones(Limit& limit, const ControllerInput& input) {
   const double s = progress_.s();
   const double margin = 0.12 * corridors_->body().radius;
   for (std::size_t i = progress_.leg(); i < plan_.legs.size() && plan_.legs[i].start <= s + 1.0; ++i) {
@@ -134,7 +134,7 @@ void Route::limit_by_zones(Limit& limit, const Input& input) {
       if (!right_of_way_.committed(ahead, std::abs(input.state.velocity.forward)) && !right_of_way_.zone_free(way.zone))
         limit.stop_in(std::max(ahead, 0.0), "another robot drives about in the zone");
     }
-    if (kink_after(*corridors_, plan_, i)) {
+    if (cusp_after(*corridors_, plan_, i)) {
       limit.stop_in(std::max(end_of(leg) - s, 0.0), "its way ends");
       break;
     }
@@ -147,16 +147,16 @@ void Route::limit_by_zones(Limit& limit, const Input& input) {
 
 // Never nearer than the gap, and farther the faster.
 void Route::limit_by_others(Limit& limit) const {
-  if (left_behind(right_of_way_.drivers())) limit.speed = std::min(limit.speed, kWaiting * settings_.speed);
-  const double opened = opened_gap(company_, *corridors_, right_of_way_.drivers());
-  for (const Ahead& other : ahead_) {
-    const bool leads = right_of_way_.drivers()[other.row].id == company_.leader;
+  if (follower_lags(right_of_way_.road_users())) limit.speed = std::min(limit.speed, kWaiting * settings_.speed);
+  const double opened = opened_gap(convoy_, *corridors_, right_of_way_.road_users());
+  for (const LeadRobot& other : ahead_) {
+    const bool leads = right_of_way_.road_users()[other.row].id == convoy_.leader;
     const double free = other.free - settings_.gap - (leads ? opened : 0.0);
     const double most = free > 1e-3 ? free / settings_.headway : 0.0;
     if (most >= limit.speed) continue;
     limit.speed = most;
     limit.why = std::abs(other.speed) < kStanding ? "stands in its way" : "is in its way";
-    limit.who = right_of_way_.drivers()[other.row].id;
+    limit.who = right_of_way_.road_users()[other.row].id;
   }
 }
 

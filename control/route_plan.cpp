@@ -26,7 +26,7 @@ void append(RoutePlan& plan, std::uint32_t way, double from, double to) {
   plan.legs.push_back({way, from, to, plan.legs.empty() ? 0.0 : end_of(plan.legs.back())});
 }
 
-void append(const Corridors& corridors, RoutePlan& plan, const Edge& edge) {
+void append(const LaneCorridors& corridors, RoutePlan& plan, const Edge& edge) {
   const bool lane = corridors.way(edge.ways[0]).kind == Way::Kind::lane;
   append(plan, edge.ways[0], edge.from_s, lane ? edge.to_s : corridors.way(edge.ways[0]).length);
   if (edge.ways[1] != world::kNone) append(plan, edge.ways[1], 0.0, corridors.way(edge.ways[1]).length);
@@ -34,7 +34,7 @@ void append(const Corridors& corridors, RoutePlan& plan, const Edge& edge) {
 }
 
 /// The edges of the shortest way, at least one; empty: none.
-std::vector<Edge> shortest(const Corridors& corridors, std::uint32_t from, std::uint32_t to, std::uint32_t avoid) {
+std::vector<Edge> shortest(const LaneCorridors& corridors, std::uint32_t from, std::uint32_t to, std::uint32_t avoid) {
   const std::size_t count = corridors.roads().index.size();
   struct Reached {
     double cost = HUGE_VAL;
@@ -76,7 +76,7 @@ std::vector<Edge> shortest(const Corridors& corridors, std::uint32_t from, std::
 }
 
 /// The point of a lane where another way enters it.
-std::uint32_t entry_of(const Corridors& corridors, const Way& way) {
+std::uint32_t entry_of(const LaneCorridors& corridors, const Way& way) {
   return corridors.node_of({PointRef::Kind::lane, way.into, point_from(corridors.roads().lanes[way.into], way.enter)});
 }
 
@@ -94,20 +94,20 @@ std::size_t leg_at(const RoutePlan& plan, double s) {
   return next == plan.legs.begin() ? 0 : static_cast<std::size_t>(next - plan.legs.begin()) - 1;
 }
 
-std::optional<Place> place_on_lane(const Corridors& corridors, const Pose& X_WM) {
-  for (const Place& place : corridors.places(X_WM, corridors.clearance()))
+std::optional<RoadPosition> locate_on_lane(const LaneCorridors& corridors, const Pose& X_WM) {
+  for (const RoadPosition& place : corridors.positions(X_WM, corridors.clearance()))
     if (corridors.way(place.way).kind == Way::Kind::lane) return place;
   return std::nullopt;
 }
 
-std::optional<Place> place_on_road(const Corridors& corridors, const Pose& X_WM) {
-  if (const auto lane = place_on_lane(corridors, X_WM)) return lane;
-  for (const Place& place : corridors.places(X_WM, corridors.clearance()))
+std::optional<RoadPosition> locate_on_road(const LaneCorridors& corridors, const Pose& X_WM) {
+  if (const auto lane = locate_on_lane(corridors, X_WM)) return lane;
+  for (const RoadPosition& place : corridors.positions(X_WM, corridors.clearance()))
     if (corridors.way(place.way).into != world::kNone) return place;
   return std::nullopt;
 }
 
-std::optional<std::uint32_t> spot_at(const Corridors& corridors, const Pose& X_WM) {
+std::optional<std::uint32_t> spot_at(const LaneCorridors& corridors, const Pose& X_WM) {
   for (std::uint32_t spot = 0; spot < corridors.roads().spots.size(); ++spot) {
     const Pose at = corridors.parked(spot);
     if (std::hypot(at.x - X_WM.x, at.y - X_WM.y) < 0.5 * corridors.body().radius) return spot;
@@ -115,7 +115,7 @@ std::optional<std::uint32_t> spot_at(const Corridors& corridors, const Pose& X_W
   return std::nullopt;
 }
 
-RoutePlan plan_from(const Corridors& corridors, const Place& place) {
+RoutePlan plan_from(const LaneCorridors& corridors, const RoadPosition& place) {
   RoutePlan plan;
   const Way& way = corridors.way(place.way);
   if (way.kind != Way::Kind::lane) {
@@ -130,7 +130,7 @@ RoutePlan plan_from(const Corridors& corridors, const Place& place) {
   return plan;
 }
 
-RoutePlan plan_from_spot(const Corridors& corridors, std::uint32_t spot) {
+RoutePlan plan_from_spot(const LaneCorridors& corridors, std::uint32_t spot) {
   // The first leg is where it stands: the end of its way in, of no length.
   const Edge& in = corridors.edges(corridors.node_of({PointRef::Kind::spot, spot, 0})).front();
   RoutePlan plan;
@@ -140,14 +140,14 @@ RoutePlan plan_from_spot(const Corridors& corridors, std::uint32_t spot) {
   return plan;
 }
 
-bool extend(const Corridors& corridors, RoutePlan& plan, PointRef to, std::uint32_t avoid) {
+bool extend(const LaneCorridors& corridors, RoutePlan& plan, PointRef to, std::uint32_t avoid) {
   const std::uint32_t node = corridors.node_of(to);
   const auto edges = shortest(corridors, plan.node, node, avoid);
   for (const Edge& edge : edges) append(corridors, plan, edge);
   return !edges.empty();
 }
 
-bool extend(const Corridors& corridors, RoutePlan& plan, const world::RoadCheckpoint& to, std::uint32_t avoid) {
+bool extend(const LaneCorridors& corridors, RoutePlan& plan, const world::RoadCheckpoint& to, std::uint32_t avoid) {
   // A spot's checkpoint is reached at its end, wherever in the spot it is.
   PointRef at = to.at;
   const bool spot = at.kind == PointRef::Kind::spot;
@@ -159,7 +159,7 @@ bool extend(const Corridors& corridors, RoutePlan& plan, const world::RoadCheckp
   return true;
 }
 
-void cut_after(const Corridors& corridors, RoutePlan& plan, double s) {
+void cut_after(const LaneCorridors& corridors, RoutePlan& plan, double s) {
   std::erase_if(plan.goals, [&](const Goal& goal) { return goal.s > s; });
   const auto ends_on_lane = [&](const RouteLeg& leg) {
     const Way& way = corridors.way(leg.way);

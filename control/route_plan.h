@@ -2,14 +2,14 @@
 // The way through a list of checkpoints: shortest in metres over the graph of ways (E. W. Dijkstra, "A note on two
 // problems in connexion with graphs", Numer. Math. 1, 1959), changes of lanes a little dearer than they are long.
 //
-//   RoutePlan plan = plan_from(corridors, *place_on_road(corridors, X_WM));
+//   RoutePlan plan = plan_from(corridors, *locate_on_road(corridors, X_WM));
 //   if (extend(corridors, plan, checkpoint)) drive(plan.legs[leg_at(plan, s)]);
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "control/corridor.h"
+#include "control/lane_corridors.h"
 
 namespace sf::control {
 
@@ -44,27 +44,27 @@ std::uint32_t point_from(const world::RoadLane& lane, double s);
 std::size_t leg_at(const RoutePlan& plan, double s);
 
 /// The lane that a robot stands on, and how far along; nothing when there is none near in its direction.
-std::optional<Place> place_on_lane(const Corridors& corridors, const Pose& X_WM);
+std::optional<RoadPosition> locate_on_lane(const LaneCorridors& corridors, const Pose& X_WM);
 /// Likewise, between lanes the exit that leads to one.
-std::optional<Place> place_on_road(const Corridors& corridors, const Pose& X_WM);
+std::optional<RoadPosition> locate_on_road(const LaneCorridors& corridors, const Pose& X_WM);
 /// Likewise the parking spot.
-std::optional<std::uint32_t> spot_at(const Corridors& corridors, const Pose& X_WM);
+std::optional<std::uint32_t> spot_at(const LaneCorridors& corridors, const Pose& X_WM);
 
 /// A route of one leg: from the place to the next point of its lane, or the end of its exit.
-RoutePlan plan_from(const Corridors& corridors, const Place& place);
+RoutePlan plan_from(const LaneCorridors& corridors, const RoadPosition& place);
 /// A route that begins where a robot is parked.
-RoutePlan plan_from_spot(const Corridors& corridors, std::uint32_t spot);
+RoutePlan plan_from_spot(const LaneCorridors& corridors, std::uint32_t spot);
 
 /// Goes on to a checkpoint (to `at` where it has none), at least one edge far when it is there already.
 /// @param avoid a way that is not to be taken; kNone: none
 /// @return false, and nothing changed, when there is no way
-bool extend(const Corridors& corridors, RoutePlan& plan, const world::RoadCheckpoint& to,
+bool extend(const LaneCorridors& corridors, RoutePlan& plan, const world::RoadCheckpoint& to,
             std::uint32_t avoid = world::kNone);
-bool extend(const Corridors& corridors, RoutePlan& plan, world::PointRef to, std::uint32_t avoid = world::kNone);
+bool extend(const LaneCorridors& corridors, RoutePlan& plan, world::PointRef to, std::uint32_t avoid = world::kNone);
 
 /// Forgets all that comes after the point of a lane that is next after `s`, and the goals after `s`: the plan ends
 /// there. What leads through a zone is kept as far as the next lane, or whole where it ends in the zone.
-void cut_after(const Corridors& corridors, RoutePlan& plan, double s);
+void cut_after(const LaneCorridors& corridors, RoutePlan& plan, double s);
 
 /// Poses for `count` robots on lanes, along their lanes, at least `apart` [m] from each other and from the lanes' ends:
 /// for crowds. Drawn from the seed alone.

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "control/passing.h"
+#include "control/overtaking.h"
 #include "control/route.h"
 
 namespace sf::control {
@@ -17,12 +17,12 @@ constexpr std::size_t kOldLegs = 24;  // that are done are kept
 
 }  // namespace
 
-void Route::start(const Input& input) {
+void Route::start(const ControllerInput& input) {
   const Pose& X_WM = input.state.X_WM;
   if (const auto spot = spot_at(*corridors_, X_WM)) {
     plan_ = plan_from_spot(*corridors_, *spot);
   } else {
-    const auto place = place_on_road(*corridors_, X_WM);
+    const auto place = locate_on_road(*corridors_, X_WM);
     if (!place)
       throw base::InputError(
           fmt::format("robot '{}' stands at ({:.2f}, {:.2f}), where no lane of '{}' runs in its "
@@ -73,7 +73,7 @@ void Route::trim() {
   progress_.set(progress_.s(), progress_.leg() - gone);
 }
 
-void Route::pass_goals(const Input& input) {
+void Route::pass_goals(const ControllerInput& input) {
   if (!goals_) return;
   const double near = 0.06 * corridors_->body().radius;
   while (!plan_.goals.empty()) {
@@ -89,10 +89,10 @@ void Route::pass_goals(const Input& input) {
   }
 }
 
-void Route::chase() {
-  if (company_.leader == base::kNoId || (goals_ && company_.merges)) return;
-  const auto row = row_of(right_of_way_.drivers(), company_.leader);
-  const auto node = row ? heading_for(*corridors_, right_of_way_.drivers()[*row]) : std::nullopt;
+void Route::follow_leader() {
+  if (convoy_.leader == base::kNoId || (goals_ && convoy_.merges)) return;
+  const auto row = row_of(right_of_way_.road_users(), convoy_.leader);
+  const auto node = row ? heading_for(*corridors_, right_of_way_.road_users()[*row]) : std::nullopt;
   if (!node) return search();
   if (plan_.node == *node) return;
   goals_.reset();
@@ -105,12 +105,12 @@ void Route::chase() {
 
 // Who hears no leader drives on by lot, so that it stands in nobody's way, until it does.
 void Route::search() {
-  for (int tries = 0; tries < 10 && length_of(plan_) < progress_.s() + kLookAhead + 0.1; ++tries)
+  for (int tries = 0; tries < 10 && length_of(plan_) < progress_.s() + kLookaheadDistance + 0.1; ++tries)
     if (const world::RoadCheckpoint* goal = lots_.at(searched_++)) extend(*corridors_, plan_, goal->at);
 }
 
 // A lane that stays full is gone round.
-void Route::reroute(const Input& input) {
+void Route::reroute(const ControllerInput& input) {
   const std::uint32_t avoid = blocked_way_;
   const std::int64_t patience = (20 + 2 * (site_.mover % 5)) * kSecond;
   if (blocked_since_ < 0 || input.time - blocked_since_ < patience || !goals_) return;
@@ -132,21 +132,21 @@ bool Route::plan_goals(RoutePlan& plan, std::uint32_t avoid) const {
 }
 
 // Two that change lanes against each other would wait for ever: who has stood for long goes back into its lane.
-void Route::give_up_change(const Input& input) {
+void Route::give_up_change(const ControllerInput& input) {
   if (std::abs(input.state.velocity.forward) > 0.005 || still_since_ < 0) still_since_ = input.time;
   const std::int64_t patience = (8 + 2 * (site_.mover % 5)) * kSecond;
-  if (input.time - still_since_ < patience || company_.merges) return;
+  if (input.time - still_since_ < patience || convoy_.merges) return;
   const std::uint32_t row = plan_.legs[progress_.leg()].way;
   if (!changes_lanes(*corridors_, row)) return;
-  auto plan = plan_back(*corridors_, plan_, progress_.s(), input.state.X_WM);
+  auto plan = plan_return(*corridors_, plan_, progress_.s(), input.state.X_WM);
   if (!plan || !plan_goals(*plan, row)) return;
   plan_ = std::move(*plan);
   pass_until_ = -1.0;
   still_since_ = input.time;
 }
 
-void Route::consider_passing(const Input& input) {
-  if (!settings_.pass || company_.leader != base::kNoId || progress_.s() < pass_until_) return;
+void Route::consider_passing(const ControllerInput& input) {
+  if (!settings_.pass || convoy_.leader != base::kNoId || progress_.s() < pass_until_) return;
   const bool behind = !ahead_.empty() && ahead_.front().free < 0.5 && ahead_.front().speed > 0.02 &&
                       ahead_.front().speed < 0.8 * settings_.speed;
   if (!behind) {
@@ -156,7 +156,7 @@ void Route::consider_passing(const Input& input) {
   if (slow_since_ < 0) slow_since_ = input.time;
   if (input.time - slow_since_ < kSecond) return;
   auto passing =
-      plan_passing(*corridors_, plan_, progress_.s(), settings_.speed, ahead_.front(), right_of_way_.drivers());
+      plan_passing(*corridors_, plan_, progress_.s(), settings_.speed, ahead_.front(), right_of_way_.road_users());
   if (!passing) return;
   plan_ = std::move(passing->plan);
   pass_until_ = passing->until;

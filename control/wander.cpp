@@ -17,27 +17,30 @@ static_assert(base::kContactSectors == 32);
 
 }  // namespace
 
-WanderSettings wander_settings(const world::Mover& mover, double sight) {
+WanderSettings wander_settings(const world::Mover& mover, double range) {
   WanderSettings s;
   s.speed = 0.8 * mover.max_forward;
   s.turn = std::min(0.8 * mover.max_turn, 1.5);
   // What it can stop in comfortably, but well within what it sees.
-  s.stop = std::min(std::max(0.5 * mover.radius, 0.4 * mover.max_forward), 0.3 * sight);
-  s.resume = std::min(2.0 * s.stop, 0.6 * sight);
-  s.slow = std::min(5.0 * s.stop, 0.95 * sight);
+  s.stop = std::min(std::max(0.5 * mover.radius, 0.4 * mover.max_forward), 0.3 * range);
+  s.resume = std::min(2.0 * s.stop, 0.6 * range);
+  s.slow = std::min(5.0 * s.stop, 0.95 * range);
   s.turns_in_place = mover.drive != world::Drive::car;
   return s;
 }
 
 Wander::Wander(const world::Mover& mover, std::uint32_t robot, std::uint64_t seed)
-    : surroundings_(mover), settings_(wander_settings(mover, surroundings_.sight())), robot_(robot), seed_(seed) {}
+    : clearance_estimator_(mover),
+      settings_(wander_settings(mover, clearance_estimator_.range())),
+      robot_(robot),
+      seed_(seed) {}
 
 double Wander::random() {
   return base::random_uniform({.seed = seed_, .stream = base::RandomStream::wander, .a = robot_, .c = draws_++}, 0)[0];
 }
 
-base::Twist Wander::step(const Input& input) {
-  const Clearance clearance = surroundings_.look(input.readings);
+base::Twist Wander::step(const ControllerInput& input) {
+  const Clearance clearance = clearance_estimator_.estimate(input.readings);
   turned_ += std::abs(base::wrap_angle(input.state.X_WM.yaw - last_yaw_));
   last_yaw_ = input.state.X_WM.yaw;
   choose(input, clearance);
@@ -52,17 +55,17 @@ base::Twist Wander::step(const Input& input) {
   return cruise(clearance, input.time);
 }
 
-void Wander::choose(const Input& input, const Clearance& clearance) {
+void Wander::choose(const ControllerInput& input, const Clearance& clearance) {
   // Pressed from behind alone: backing off would go on pressing.
   const bool from_behind = input.state.contact_mask != 0 && (input.state.contact_mask & ~kRear) == 0;
-  if (input.contact && from_behind) return leave_behind(clearance);
+  if (input.contact && from_behind) return drive_away(clearance);
   // Met something: away from it first, then some random angle to the side.
   if (input.contact) {
     if (mode_ == Mode::back) return start_turn(clearance, 0.5 + 2.0 * random());
     start_turn(clearance, 0.5 + 2.0 * random());
     return start_back(input.time);
   }
-  const bool blocked = surroundings_.sight() > 0.0 && clearance.ahead < settings_.stop;
+  const bool blocked = clearance_estimator_.range() > 0.0 && clearance.ahead < settings_.stop;
   switch (mode_) {
     case Mode::cruise:
       if (blocked) start_turn(clearance, 0.0);
@@ -75,7 +78,7 @@ void Wander::choose(const Input& input, const Clearance& clearance) {
     case Mode::turn: {
       // After a whole round without a way out, less will do.
       const double enough = turned_ > 2.0 * M_PI ? settings_.stop : settings_.resume;
-      const bool free = surroundings_.sight() <= 0.0 || clearance.ahead >= enough;
+      const bool free = clearance_estimator_.range() <= 0.0 || clearance.ahead >= enough;
       if (turned_ >= least_ && free) mode_ = Mode::cruise;
       if (turned_ > 4.0 * M_PI) start_back(input.time);
       return;
@@ -84,8 +87,8 @@ void Wander::choose(const Input& input, const Clearance& clearance) {
 }
 
 /// On ahead where there is some room, else round where it stands.
-void Wander::leave_behind(const Clearance& clearance) {
-  const bool room = surroundings_.sight() <= 0.0 || clearance.ahead > 0.25 * settings_.stop;
+void Wander::drive_away(const Clearance& clearance) {
+  const bool room = clearance_estimator_.range() <= 0.0 || clearance.ahead > 0.25 * settings_.stop;
   if (room)
     mode_ = Mode::cruise;
   else if (mode_ != Mode::turn)
@@ -116,7 +119,7 @@ base::Twist Wander::cruise(const Clearance& clearance, std::int64_t time) {
     drift_ = 0.25 * settings_.turn * (2.0 * random() - 1.0);
     drift_until_ = time + static_cast<std::int64_t>((2.0 + 4.0 * random()) * kSecond);
   }
-  if (surroundings_.sight() <= 0.0) return {settings_.speed, 0.0, drift_};
+  if (clearance_estimator_.range() <= 0.0) return {settings_.speed, 0.0, drift_};
 
   // 1 at the stop distance, 0 where it is free: slower, and more towards the freer side.
   const double near =
@@ -129,17 +132,17 @@ base::Twist Wander::cruise(const Clearance& clearance, std::int64_t time) {
 
 namespace {
 
-std::unique_ptr<Controller> make_wander(const Site& site, Settings&) {
-  return std::make_unique<Wander>(site.world.movers[site.mover], site.mover, site.seed);
+std::unique_ptr<Controller> make_wander(const ControllerContext& context, Settings&) {
+  return std::make_unique<Wander>(context.world.movers[context.mover], context.mover, context.seed);
 }
 
 }  // namespace
 
-constinit const ControllerKind wander_controller{
+constinit const ControllerType wander_controller{
     .name = "wander",
     .summary = "explores without a map: drives where it is free, turns away from what is near",
     .rate = 10.0,
-    .waits = false,
+    .stops_on_bumper = false,
     .make = make_wander,
 };
 

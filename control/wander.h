@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
+#include "control/clearance_estimator.h"
 #include "control/controllers.h"
-#include "control/surroundings.h"
 #include "world/world.h"
 
 namespace sf::control {
@@ -21,7 +21,7 @@ struct WanderSettings {
   bool turns_in_place = true;
 };
 
-WanderSettings wander_settings(const world::Mover& mover, double sight);
+WanderSettings wander_settings(const world::Mover& mover, double range);
 
 class Wander final : public Controller {
  public:
@@ -29,19 +29,19 @@ class Wander final : public Controller {
   Wander(const world::Mover& mover, std::uint32_t robot, std::uint64_t seed);
 
   /// A function of all inputs so far and of (seed, robot) alone.
-  base::Twist step(const Input& input) override;
+  base::Twist step(const ControllerInput& input) override;
 
  private:
   enum class Mode { cruise, turn, back };
   double random();
-  void choose(const Input& input, const Clearance& clearance);
-  void leave_behind(const Clearance& clearance);
+  void choose(const ControllerInput& input, const Clearance& clearance);
+  void drive_away(const Clearance& clearance);
   void start_turn(const Clearance& clearance, double least);
   void start_back(std::int64_t time);
   base::Twist cruise(const Clearance& clearance, std::int64_t time);
   base::Twist turn() const;
 
-  Surroundings surroundings_;
+  ClearanceEstimator clearance_estimator_;
   WanderSettings settings_;
   std::uint32_t robot_;
   std::uint64_t seed_;
@@ -56,6 +56,6 @@ class Wander final : public Controller {
   double drift_ = 0.0;            ///< [rad/s] slow change of heading while it is free
 };
 
-extern const ControllerKind wander_controller;
+extern const ControllerType wander_controller;
 
 }  // namespace sf::control

@@ -25,7 +25,7 @@ constexpr std::uint32_t kBeams = 361;
 /// The explorer's own grid where there can be one: cells of another would be others than those it looks for.
 maps::GridGeometry plan_over(const world::World& world, double cell) {
   try {
-    return control::plan_around(world, cell);
+    return control::grid_around(world, cell);
   } catch (const base::InputError&) {
   }
   const world::Extent& e = world.extent;

@@ -20,7 +20,7 @@ constexpr SupervisorPlan kSupervisor{.patience = 5.0};
 /// One way to map the area.
 struct Entrant {
   std::string name;
-  control::Plan plan;
+  control::ControllerConfig plan;
   SupervisorPlan supervisor;
   bool looks_about = false;  ///< it turns to and fro to look: that is no dead end
 };
@@ -125,7 +125,7 @@ void run_with(const Bench& bench, const Entrant& entrant, std::vector<Mapped>& r
 }
 
 std::vector<Entrant> entrants_of(const Scenario& scenario) {
-  const control::Plan& plan = scenario.actor.plan;
+  const control::ControllerConfig& plan = scenario.actor.plan;
   return {{plan.controller, plan, {}},
           {plan.controller + "-supervised", plan, kSupervisor},
           {"explore", {"explore", 0.0, {}}, {}, true}};

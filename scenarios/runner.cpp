@@ -61,7 +61,8 @@ int line_of_driver(const Scenario& scenario, const world::Mover& mover) {
 }
 
 /// What a controller refuses without a place of its own is at the line of who named it.
-control::Made try_controller(const Scenario& scenario, const control::Site& site, const control::Plan& plan) {
+control::ConfiguredController try_controller(const Scenario& scenario, const control::ControllerContext& site,
+                                             const control::ControllerConfig& plan) {
   try {
     return control::make_controller(site, plan);
   } catch (const base::InputError& error) {
@@ -215,9 +216,9 @@ std::vector<world::Warning> check_scenario(const Scenario& scenario) {
   world::World world = world_of(scenario);
   const SimulationOptions options = simulation_of(scenario, world);
   const std::optional<world::RoadNetwork> roads = world::roads_of(world);
-  std::vector<control::Made> made;  // kept to the end: robots of one shape share their corridors
+  std::vector<control::ConfiguredController> made;  // kept to the end: robots of one shape share their corridors
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {
-    const control::Plan& plan = options.actors[m].plan;
+    const control::ControllerConfig& plan = options.actors[m].plan;
     if (!plan.controller.empty())
       made.push_back(try_controller(scenario, {world, m, options.seed, roads ? &*roads : nullptr}, plan));
   }

@@ -122,14 +122,15 @@ std::string controller_of(const Reader& reader, const TomlNode& table, const std
   if (name == "none" || name.empty()) return "";
   if (control::find_controller(name) != nullptr) return name;
   std::vector<std::string_view> names{"none"};
-  for (const control::ControllerKind* kind : control::controllers()) names.push_back(kind->name);
+  for (const control::ControllerType* kind : control::controllers()) names.push_back(kind->name);
   reader.fail(*world::find(table, "controller"), fmt::format("there is no controller '{}'{}; expected one of: {}", name,
                                                              world::suggest(name, names), fmt::join(names, ", ")));
 }
 
 /// Who names no controller has the fallback's; settings are taken whole, not one by one.
-control::Plan plan_of(const Reader& reader, const TomlNode& table, const control::Plan& fallback) {
-  control::Plan plan = fallback;
+control::ControllerConfig plan_of(const Reader& reader, const TomlNode& table,
+                                  const control::ControllerConfig& fallback) {
+  control::ControllerConfig plan = fallback;
   plan.controller = controller_of(reader, table, fallback.controller);
   plan.rate = reader.number(table, "rate", plan.controller == fallback.controller ? fallback.rate : 0.0, 0.01, 1e4);
   const TomlNode* settings = reader.table(table, "settings");

@@ -57,8 +57,8 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
   farm_.subscribe_all();
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) drivers_.push_back(make_driver(i, options));
   for (const Driver& driver : drivers_)
-    if (driver.controller) radio_ = std::max(radio_, driver.controller->radio());
-  for (auto& others : others_) others.reserve(radio_ > 0.0 ? world.movers.size() : 0);
+    if (driver.controller) v2v_range_ = std::max(v2v_range_, driver.controller->v2v_range());
+  for (auto& others : others_) others.reserve(v2v_range_ > 0.0 ? world.movers.size() : 0);
   sorted_.reserve(farm_.sensor_set().count());
   next_.reserve(first_.size());
 }
@@ -68,8 +68,8 @@ Simulation::Driver Simulation::make_driver(std::uint32_t mover, const Simulation
   const Actor& actor = options.actors.empty() ? options.actor : options.actors[mover];
   if (actor.plan.controller.empty() || (options.actors.empty() && world_.movers[mover].is_tag)) return driver;
   std::vector<world::Warning> warnings;
-  const control::Site site{world_, mover, options.seed, roads(), &warnings};
-  control::Made made = control::make_controller(site, actor.plan);
+  const control::ControllerContext site{world_, mover, options.seed, roads(), &warnings};
+  control::ConfiguredController made = control::make_controller(site, actor.plan);
   if (warnings_.empty()) warnings_ = std::move(warnings);  // robots with the same orders read the same files
   driver.controller = std::move(made.controller);
   driver.rate = made.rate;
@@ -148,7 +148,7 @@ void Simulation::sort_by_mover(std::span<const base::ReadingBlock> readings) {
 void Simulation::decide(std::int64_t time) {
   for (std::size_t i = 0; i < signals_.size(); ++i)
     signals_[i] = world::signal_at(world_.lights[i], 1e-9 * static_cast<double>(time));
-  if (radio_ > 0.0) neighbours_.build(fleet_.reports(), radio_);
+  if (v2v_range_ > 0.0) neighbours_.build(fleet_.reports(), v2v_range_);
   thread_pool_.parallel_for(drivers_.size(), 16, [&](std::size_t begin, std::size_t end, unsigned thread) {
     for (std::size_t m = begin; m < end; ++m) decide_one(static_cast<std::uint32_t>(m), time, thread);
   });
@@ -171,8 +171,8 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
 
   std::vector<control::Neighbour>& others = others_[thread];
   others.clear();
-  const double radio = driver.controller->radio();
-  if (radio > 0.0) find_others(mover, radio, others);
+  const double v2v_range = driver.controller->v2v_range();
+  if (v2v_range > 0.0) find_others(mover, v2v_range, others);
   const auto readings = driver.mailbox ? driver.mailbox->open(time) : fresh;
   commands_[mover] =
       driver.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_});
@@ -201,13 +201,13 @@ bool Simulation::due(Driver& driver, std::span<const base::ReadingBlock> fresh, 
   return true;
 }
 
-void Simulation::find_others(std::uint32_t mover, double radio, std::vector<control::Neighbour>& others) const {
+void Simulation::find_others(std::uint32_t mover, double v2v_range, std::vector<control::Neighbour>& others) const {
   const std::span<const base::Report> reports = fleet_.reports();
   const glm::dvec2 here{reports[mover].X_WM.x, reports[mover].X_WM.y};
-  neighbours_.any(here, radio, [&](std::uint32_t row) {
+  neighbours_.any(here, v2v_range, [&](std::uint32_t row) {
     if (row == mover || world_.movers[row].is_tag) return false;
     const base::Pose& X_WM = reports[row].X_WM;
-    if (glm::length(glm::dvec2{X_WM.x, X_WM.y} - here) > radio) return false;
+    if (glm::length(glm::dvec2{X_WM.x, X_WM.y} - here) > v2v_range) return false;
     others.push_back({world_.movers[row].id, reports[row], intents_[row]});
     return false;
   });

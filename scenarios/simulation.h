@@ -30,8 +30,8 @@ namespace sf::scenarios {
 
 /// Who drives one robot, and how its readings come to it.
 struct Actor {
-  control::Plan plan{.controller = "wander"};  ///< no name: the robot stands
-  netio::LinkModel link;                       ///< of its readings; V2V and its own state are not delayed
+  control::ControllerConfig plan{.controller = "wander"};  ///< no name: the robot stands
+  netio::LinkModel link;                                   ///< of its readings; V2V and its own state are not delayed
 };
 
 struct SimulationOptions {
@@ -86,7 +86,7 @@ class Simulation {
   void decide_one(std::uint32_t mover, std::int64_t time, unsigned thread);
   std::int64_t leaves_at(const base::ReadingBlock& reading) const;
   bool due(Driver& driver, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const;
-  void find_others(std::uint32_t mover, double radio, std::vector<control::Neighbour>& others) const;
+  void find_others(std::uint32_t mover, double v2v_range, std::vector<control::Neighbour>& others) const;
 
   const world::World& world_;
   std::optional<world::RoadNetwork> roads_;
@@ -110,7 +110,7 @@ class Simulation {
   std::vector<std::vector<control::Neighbour>> others_;  ///< per thread
   std::vector<world::Signal> signals_;
   std::vector<world::Warning> warnings_;
-  double radio_ = 0.0;  ///< [m] farthest that anyone wants to hear
+  double v2v_range_ = 0.0;  ///< [m] farthest that anyone wants to hear
   std::int64_t start_at_;
   std::int64_t interval_;  ///< [ns]
   std::uint64_t tick_ = 0;

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "control/passing.h"
+#include "control/overtaking.h"
 
 namespace sf::traffic {
 namespace {
@@ -39,7 +39,7 @@ TEST(Parking, stops_with_its_front_at_the_end_of_every_spot) {
 // Five leave their spots for the streets while a sixth comes in: one after another, whatever they all want at once.
 TEST(Parking, a_full_car_park_empties_while_another_comes_in) {
   Streets t;
-  const control::Corridors corridors(t.roads, t.world, {});
+  const control::LaneCorridors corridors(t.roads, t.world, {});
   for (std::uint32_t spot = 0; spot < 5; ++spot)
     t.add(corridors.parked(spot), "route", go({8, 9.0 + spot % 2}, {{"loop", true, ""}}));
   t.add(on_lane(t.roads, "10.2", 0.3), "route", {{"park", std::string("13.6"), ""}});
@@ -146,11 +146,11 @@ TEST(Passing, goes_round_a_slower_robot_and_comes_back) {
   t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
   t.add(on_lane(t.roads, "1.1", 1.2), "route", go({5}));
   t.begin();
-  const control::Corridors corridors(t.roads, t.world, {});
+  const control::LaneCorridors corridors(t.roads, t.world, {});
   bool beside = false, back = false;
   for (int i = 0; i < 400; ++i) {
     t.tick();
-    const auto place = place_on_lane(corridors, t.pose(1));
+    const auto place = locate_on_lane(corridors, t.pose(1));
     if (!place || place->offset > 0.02) continue;
     const std::string lane = name_of(t.roads, t.roads.lanes[place->way]);
     beside = beside || lane == "1.2";
@@ -168,10 +168,10 @@ TEST(Passing, waits_until_the_other_lane_is_free) {
   t.add(on_lane(t.roads, "1.1", 1.6), "route", go({5}));
   t.add(on_lane(t.roads, "1.2", 2.4), "route", go({5}, {{"speed", 0.03, ""}, {"pass", false, ""}}));
   t.begin();
-  const control::Corridors corridors(t.roads, t.world, {});
+  const control::LaneCorridors corridors(t.roads, t.world, {});
   for (int i = 0; i < 200; ++i) {
     t.tick();
-    const auto place = place_on_lane(corridors, t.pose(1));
+    const auto place = locate_on_lane(corridors, t.pose(1));
     ASSERT_TRUE(place.has_value());
     ASSERT_EQ(name_of(t.roads, t.roads.lanes[place->way]), "1.1") << 0.1 * i;
     ASSERT_LT(place->offset, 0.02) << 0.1 * i;
@@ -182,26 +182,26 @@ TEST(Passing, waits_until_the_other_lane_is_free) {
 // A robot on the other lane counts where it would be 3 s on. Boundary: a millimetre.
 TEST(Passing, waits_for_a_robot_that_comes_up_from_behind) {
   const Streets t;
-  const control::Corridors corridors(t.roads, t.world, {});
-  const auto lane = place_on_lane(corridors, on_lane(t.roads, "1.1", 1.2));
-  const auto beside = place_on_lane(corridors, on_lane(t.roads, "1.2", 1.2));
+  const control::LaneCorridors corridors(t.roads, t.world, {});
+  const auto lane = locate_on_lane(corridors, on_lane(t.roads, "1.1", 1.2));
+  const auto beside = locate_on_lane(corridors, on_lane(t.roads, "1.2", 1.2));
   ASSERT_TRUE(lane && beside);
   const double end = corridors.way(lane->way).length;
   const control::RoutePlan plan{.legs = {{lane->way, 0.0, end, 0.0}, {lane->way, end, end, end}}};
-  const control::Ahead slow{.free = 0.5, .speed = 0.03, .row = 1};
-  std::vector<control::Driver> drivers(1);
+  const control::LeadRobot slow{.free = 0.5, .speed = 0.03, .row = 1};
+  std::vector<control::RoadUser> road_users(1);
   const auto leaves = [&] {
-    const auto passing = plan_passing(corridors, plan, 1.2, 0.2, slow, drivers);
+    const auto passing = plan_passing(corridors, plan, 1.2, 0.2, slow, road_users);
     return passing ? passing->plan.legs[0].to : end;
   };
   const double free = leaves();
   ASSERT_LT(free, end);
   const double kept = free - 2.0 * corridors.body().radius - 0.3;  // [m] along the lane, clear before it changes
-  drivers.push_back({.speed = 0.2});
-  drivers[1].places.count = 1;
-  drivers[1].places.all[0] = {beside->way, kept - 0.6 - 0.001, 0.0};
+  road_users.push_back({.speed = 0.2});
+  road_users[1].positions.count = 1;
+  road_users[1].positions.all[0] = {beside->way, kept - 0.6 - 0.001, 0.0};
   EXPECT_EQ(leaves(), free);
-  drivers[1].places.all[0].s = kept - 0.6 + 0.001;
+  road_users[1].positions.all[0].s = kept - 0.6 + 0.001;
   EXPECT_GT(leaves(), free);
 }
 

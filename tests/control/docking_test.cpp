@@ -196,7 +196,7 @@ TEST(Docking, a_touch_of_anything_else_is_no_dock) {
     Docking docking({.X_WD = {}});
     docking.step({.state = {.X_WM = t.X}, .contact = true});
     EXPECT_EQ(docking.done(), t.docked) << t.why;
-    EXPECT_EQ(docking.reason().empty(), t.docked) << t.why;
+    EXPECT_EQ(docking.stop_reason().empty(), t.docked) << t.why;
   }
 }
 

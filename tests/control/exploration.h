@@ -66,7 +66,7 @@ class Reference {
     return false;
   }
 
-  // Places of the disc that are connected with the start.
+  // RoadPositions of the disc that are connected with the start.
   void reach(glm::dvec2 start) {
     reached_.resize(static_cast<std::size_t>(wide_ * high_));
     std::vector<int> open{static_cast<int>((plan_.top - start.y) / kStep) * wide_ +
@@ -86,7 +86,7 @@ class Reference {
     }
   }
 
-  // Places of the sensor, with the headings that have it there.
+  // RoadPositions of the sensor, with the headings that have it there.
   void look_from_everywhere() {
     headings_.resize(reached_.size());
     for (int at = 0; at < wide_ * high_; ++at) {

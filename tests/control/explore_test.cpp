@@ -163,8 +163,8 @@ TEST(Explore, odd_readings_do_no_harm) {
 
 // ---- Its parts.
 
-TEST(Terrain, clearance_is_the_distance_to_points) {
-  Terrain terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
+TEST(ExplorationMap, clearance_is_the_distance_to_points) {
+  ExplorationMap terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
   for (const glm::dvec2& p : {glm::dvec2{0.3, 0.1}, glm::dvec2{0.5, 0.1}, glm::dvec2{0.3, -0.9}})
     EXPECT_TRUE(terrain.add_point(p));
   EXPECT_FALSE(terrain.add_point({0.3, 0.1})) << "known";
@@ -176,38 +176,38 @@ TEST(Terrain, clearance_is_the_distance_to_points) {
     const double nearest = std::min({length(at - glm::dvec2{0.3, 0.1}), length(at - glm::dvec2{0.5, 0.1}), 0.225});
     EXPECT_NEAR(terrain.clearance(terrain.node_at(p)), nearest, 1e-6);
   }
-  EXPECT_TRUE(terrain.solid(terrain.node_at({0.3, 0.1})));
-  EXPECT_FALSE(terrain.solid(terrain.node_at({0.32, 0.1})));
+  EXPECT_TRUE(terrain.occupied(terrain.node_at({0.3, 0.1})));
+  EXPECT_FALSE(terrain.occupied(terrain.node_at({0.32, 0.1})));
 }
 
-TEST(Terrain, ground_is_known_once_it_is_seen_or_stood_on) {
-  Terrain terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
+TEST(ExplorationMap, ground_is_known_once_it_is_seen_or_stood_on) {
+  ExplorationMap terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
   const Node here = terrain.node_at({0, 0});
-  EXPECT_TRUE(terrain.over_unknown(here));
-  terrain.stand({0, 0}, 0.21);
-  EXPECT_FALSE(terrain.over_unknown(here));
-  EXPECT_TRUE(terrain.over_unknown(terrain.node_at({0.1, 0})));
+  EXPECT_TRUE(terrain.covers_unknown(here));
+  terrain.mark_free({0, 0}, 0.21);
+  EXPECT_FALSE(terrain.covers_unknown(here));
+  EXPECT_TRUE(terrain.covers_unknown(terrain.node_at({0.1, 0})));
   EXPECT_FALSE(terrain.explored(here)) << "stood on is not seen";
 
   const auto beams = maps::beam_directions(M_PI, 361);
   std::vector<double> ranges(361, 0.75);
   for (const double x : {0.0, -0.1, -0.2}) terrain.add({{x, 0, 0, 0}, ranges, beams, 0.0, 0.75});
-  EXPECT_FALSE(terrain.over_unknown(terrain.node_at({0.2, 0})));
+  EXPECT_FALSE(terrain.covers_unknown(terrain.node_at({0.2, 0})));
   EXPECT_TRUE(terrain.explored(terrain.node_at({0.5, 0.2})));
-  terrain.stand({1.75, 0}, 0.3);
-  EXPECT_TRUE(terrain.over_unknown(terrain.node_at({1.7, 0}))) << "it would leave the map";
+  terrain.mark_free({1.75, 0}, 0.3);
+  EXPECT_TRUE(terrain.covers_unknown(terrain.node_at({1.7, 0}))) << "it would leave the map";
 }
 
 // All of the map seen, and a wall of points at y = 0.
-Terrain beside_a_wall() {
-  Terrain terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
-  terrain.stand({0, 0}, 10.0);
+ExplorationMap beside_a_wall() {
+  ExplorationMap terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
+  terrain.mark_free({0, 0}, 10.0);
   for (double x = -1.0; x <= 1.0; x += 0.002) terrain.add_point({x, 0.0});
   return terrain;
 }
 
 TEST(PoseSearch, a_sensor_that_reaches_beyond_the_body_is_not_turned_into_a_wall) {
-  const Terrain terrain = beside_a_wall();
+  const ExplorationMap terrain = beside_a_wall();
   const PoseSearch search(terrain, {0.165, {0.19, 0.0}});
   const Node near = terrain.node_at({0.0, 0.175});
   EXPECT_TRUE(search.allowed({near, 0}, 0.003)) << "along the wall";
@@ -218,30 +218,30 @@ TEST(PoseSearch, a_sensor_that_reaches_beyond_the_body_is_not_turned_into_a_wall
 }
 
 TEST(PoseSearch, finds_the_cheapest_way) {
-  const Terrain terrain = beside_a_wall();
+  const ExplorationMap terrain = beside_a_wall();
   PoseSearch search(terrain, {0.165, {0.19, 0.0}});
-  const State from{terrain.node_at({-0.5, 0.5}), 0};
-  const auto ahead = search.find(from, 0.01, [&](const State& s) { return s.node == from.node + 30; });
+  const LatticeState from{terrain.node_at({-0.5, 0.5}), 0};
+  const auto ahead = search.find(from, 0.01, [&](const LatticeState& s) { return s.node == from.node + 30; });
   ASSERT_EQ(ahead.size(), 31u);
   EXPECT_EQ(ahead.front(), from);
-  for (const State& state : ahead) EXPECT_EQ(state.heading, 0);
+  for (const LatticeState& state : ahead) EXPECT_EQ(state.heading, 0);
   // Turned towards the wall and back out of it costs a way: round by the free side.
-  const State close{terrain.node_at({0.0, 0.175}), 0};
-  const auto turned = search.find(close, 0.003, [&](const State& s) { return s.heading == 8; });
+  const LatticeState close{terrain.node_at({0.0, 0.175}), 0};
+  const auto turned = search.find(close, 0.003, [&](const LatticeState& s) { return s.heading == 8; });
   ASSERT_FALSE(turned.empty());
-  for (const State& state : turned) EXPECT_NE(state.node == close.node && state.heading > 10, true);
-  EXPECT_TRUE(search.find(from, 0.01, [](const State&) { return false; }).empty()) << "no goal, no way";
+  for (const LatticeState& state : turned) EXPECT_NE(state.node == close.node && state.heading > 10, true);
+  EXPECT_TRUE(search.find(from, 0.01, [](const LatticeState&) { return false; }).empty()) << "no goal, no way";
 }
 
 TEST(PlanAround, holds_the_world_and_is_never_smaller_than_the_thesis) {
   world::World world = scenes::empty_world();
   world.extent = {-1.5, -1.5, 1.5, 1.5};
-  const maps::GridGeometry small = plan_around(world);
+  const maps::GridGeometry small = grid_around(world);
   EXPECT_EQ(small.word_columns, 30u);
   EXPECT_NEAR(small.left, -1.8, 1e-12);
   EXPECT_NEAR(small.top, 1.8, 1e-12);
   world.extent = {10.0, -1.5, 18.0, 1.5};
-  const maps::GridGeometry wide = plan_around(world);
+  const maps::GridGeometry wide = grid_around(world);
   for (const glm::dvec2& p : {glm::dvec2{10, -1.5}, glm::dvec2{18, 1.5}})
     EXPECT_TRUE(maps::contains(wide, maps::cell_at(wide, p)));
   EXPECT_GT(wide.word_columns, 60u);

@@ -8,7 +8,7 @@
 
 #include "control/lane_keeping.h"
 #include "control/magnet_keeping.h"
-#include "control/reason.h"
+#include "control/stop_reason.h"
 #include "robots/kinematics.h"
 #include "sensors/laneedge.h"
 #include "sensors/magnetometer.h"
@@ -36,7 +36,7 @@ world::World path_world(double yaw = M_PI / 2) {
   return world;
 }
 
-std::unique_ptr<Controller> make(const world::World& world, const ControllerKind& kind,
+std::unique_ptr<Controller> make(const world::World& world, const ControllerType& kind,
                                  std::vector<Setting> numbers = {}) {
   Settings settings("controller", std::move(numbers));
   return kind.make({world}, settings);
@@ -239,17 +239,17 @@ TEST(LaneKeeping, says_why_it_stands) {
   const world::World world = path_world();
   const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5)});
   controller->step({});
-  EXPECT_EQ(reason_of(*controller), "no new reading comes from its lane edge sensor");
+  EXPECT_EQ(stop_reason_of(*controller), "no new reading comes from its lane edge sensor");
   const std::vector<double> none{kNaN};
   const base::ReadingBlock blind{.kind = sensors::kLaneEdge, .values = none};
   controller->step({.readings = {&blind, 1}});
-  EXPECT_EQ(reason_of(*controller), "its lane edge sensor sees nothing to follow");
+  EXPECT_EQ(stop_reason_of(*controller), "its lane edge sensor sees nothing to follow");
   const std::vector<double> edge{0.3};
   const base::ReadingBlock seen{.kind = sensors::kLaneEdge, .sequence = 1, .values = edge};
   controller->step({.time = kTick, .readings = {&seen, 1}});
-  EXPECT_EQ(reason_of(*controller), "") << "it drives";
+  EXPECT_EQ(stop_reason_of(*controller), "") << "it drives";
   controller->step({.time = 10 * kTick, .readings = {&seen, 1}});
-  EXPECT_EQ(reason_of(*controller), "no new reading comes from its lane edge sensor") << "the same for too long";
+  EXPECT_EQ(stop_reason_of(*controller), "no new reading comes from its lane edge sensor") << "the same for too long";
 }
 
 TEST(LaneKeeping, takes_a_width_instead_of_the_paths) {

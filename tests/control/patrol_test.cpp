@@ -72,8 +72,8 @@ TEST(Patrol, stands_for_others_in_its_way) {
     Patrol patrol({.points = {{0, 0}, {5, 0}}});
     const std::vector<Neighbour> others{{.id = 2, .state = {.X_WM = {s.other.x, s.other.y, 0, 0}}}};
     EXPECT_EQ(walk(patrol, {}, 1, others).standing > 0.0, s.stands) << s.why;
-    EXPECT_EQ(patrol.reason(), s.stands ? "another robot stands in its way" : "") << s.why;
-    EXPECT_GE(patrol.radio(), length(s.other));
+    EXPECT_EQ(patrol.stop_reason(), s.stands ? "another robot stands in its way" : "") << s.why;
+    EXPECT_GE(patrol.v2v_range(), length(s.other));
   }
   Patrol patrol({.points = {{0, 0}, {5, 0}}});
   const Pose turned{1, 1, 0, M_PI / 2};

@@ -70,11 +70,11 @@ TEST(RightOfWay, lanes_that_cross_without_a_sign) {
 TEST(RightOfWay, lights_of_simville_stand_at_their_lines) {
   const world::World world = world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world");
   const world::RoadNetwork roads = simville();
-  const control::Corridors corridors(roads, world, {});
+  const control::LaneCorridors corridors(roads, world, {});
   std::set<std::uint32_t> lights;
   std::size_t marks = 0;
   for (const control::Way& way : corridors.ways())
-    for (const control::StopMark& mark : way.stops) {
+    for (const control::LaneStop& mark : way.stops) {
       lights.insert(mark.lights.begin(), mark.lights.end());
       ++marks;
     }

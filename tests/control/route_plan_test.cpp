@@ -15,9 +15,9 @@ namespace {
 
 struct Planner {
   Streets streets;
-  control::Corridors corridors{streets.roads, streets.world, {}};
+  control::LaneCorridors corridors{streets.roads, streets.world, {}};
   control::RoutePlan from(const std::string& lane, double s) const {
-    return plan_from(corridors, *place_on_lane(corridors, on_lane(streets.roads, lane, s)));
+    return plan_from(corridors, *locate_on_lane(corridors, on_lane(streets.roads, lane, s)));
   }
 };
 
@@ -99,7 +99,7 @@ TEST(StartPoses, stand_apart_on_lanes_and_come_from_the_seed) {
 
 // ---- Meetings of ways: any two points on two ways that do not meet are clear of each other.
 
-TEST(Corridors, ways_that_do_not_meet_are_clear_of_each_other) {
+TEST(LaneCorridors, ways_that_do_not_meet_are_clear_of_each_other) {
   const Planner p;
   const auto& ways = p.corridors.ways();
   using Kind = control::Way::Kind;
@@ -111,12 +111,16 @@ TEST(Corridors, ways_that_do_not_meet_are_clear_of_each_other) {
       for (std::size_t i = 0; i < ways[a].points.size(); ++i) {
         for (std::size_t k = 0; k < ways[b].points.size(); ++k) {
           if (length(ways[a].points[i] - ways[b].points[k]) >= 0.34) continue;
-          const bool known = std::any_of(ways[a].gates.begin(), ways[a].gates.end(), [&](const control::Gate& gate) {
-            return std::any_of(gate.meetings.begin(), gate.meetings.end(), [&](const control::Meeting& m) {
-              const double s = double(i) * ways[a].step, t = double(k) * ways[b].step;
-              return m.way == b && m.from <= s && s <= m.to + 1e-9 && m.other_from <= t && t <= m.other_to + 1e-9;
-            });
-          });
+          const bool known = std::any_of(
+              ways[a].conflict_zones.begin(), ways[a].conflict_zones.end(),
+              [&](const control::ConflictZone& conflict_zone) {
+                return std::any_of(conflict_zone.conflicts.begin(), conflict_zone.conflicts.end(),
+                                   [&](const control::Conflict& m) {
+                                     const double s = double(i) * ways[a].step, t = double(k) * ways[b].step;
+                                     return m.way == b && m.from <= s && s <= m.to + 1e-9 && m.other_from <= t &&
+                                            t <= m.other_to + 1e-9;
+                                   });
+              });
           // What follows the other way is a following, no meeting.
           if (ways[a].into == ways[b].from || ways[b].into == ways[a].from) continue;
           EXPECT_TRUE(known) << a << " " << b;

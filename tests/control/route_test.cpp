@@ -146,9 +146,9 @@ TEST(Route, obeys_every_state_of_a_light) {
     }
     EXPECT_EQ(crossed, c.crosses) << c.why;
     EXPECT_EQ(stood, c.stands) << c.why;
-    EXPECT_EQ(t.route(0).reason(), c.crosses           ? ""
-                                   : c.state == yellow ? "its light is yellow"
-                                                       : "its light is red")
+    EXPECT_EQ(t.route(0).stop_reason(), c.crosses           ? ""
+                                        : c.state == yellow ? "its light is yellow"
+                                                            : "its light is red")
         << c.why;
   }
 }
@@ -268,21 +268,21 @@ TEST(Route, stands_behind_who_stands) {
   EXPECT_GT(t.distance(0, 1), 0.37);
   EXPECT_LT(t.distance(0, 1), 0.5);
   EXPECT_EQ(t.contacts, 0);
-  EXPECT_EQ(t.route(1).reason(), "'robot1' stands in its way");
+  EXPECT_EQ(t.route(1).stop_reason(), "'robot1' stands in its way");
 }
 
 TEST(Route, says_why_it_stands_at_a_stop_sign) {
   Streets t;
   t.add(on_lane(t.roads, "1.3", 0.3), "route", go({8}));
   t.begin();
-  EXPECT_EQ(t.route(0).reason(), "the start signal was not given") << "before its first step";
+  EXPECT_EQ(t.route(0).stop_reason(), "the start signal was not given") << "before its first step";
   std::set<std::string> reasons;
   while (!t.controllers[0]->done() && t.time < 1'000'000'000'000) {
     t.tick();
-    if (t.fleet->reports()[0].velocity.forward == 0.0) reasons.insert(t.route(0).reason());
+    if (t.fleet->reports()[0].velocity.forward == 0.0) reasons.insert(t.route(0).stop_reason());
   }
   EXPECT_TRUE(reasons.contains("it stops at a stop line"));
-  EXPECT_EQ(t.route(0).reason(), "") << "done";
+  EXPECT_EQ(t.route(0).stop_reason(), "") << "done";
 }
 
 }  // namespace

@@ -73,8 +73,8 @@ Town town(std::uint64_t seed, double seconds) {
 // Cut anywhere on its way through the car park, a route goes on from where it was cut.
 TEST(Town, a_route_cut_in_the_car_park_stays_in_one_piece) {
   Streets t;
-  const control::Corridors corridors(t.roads, t.world, {});
-  const auto start = place_on_lane(corridors, on_lane(t.roads, "11.2", 0.1));
+  const control::LaneCorridors corridors(t.roads, t.world, {});
+  const auto start = locate_on_lane(corridors, on_lane(t.roads, "11.2", 0.1));
   ASSERT_TRUE(start.has_value());
   control::RoutePlan whole = plan_from(corridors, *start);
   ASSERT_TRUE(extend(corridors, whole, *find_checkpoint(t.roads, 8)));

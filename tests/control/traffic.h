@@ -70,8 +70,8 @@ class Streets {
     fleet = std::make_unique<robots::Fleet>(world);
     for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
       control::Settings settings("controller '" + plans_[row].controller + "'", plans_[row].settings);
-      const control::Site site{world, row, seed, &roads};
-      controllers.push_back(control::find_controller(plans_[row].controller)->make(site, settings));
+      const control::ControllerContext context{world, row, seed, &roads};
+      controllers.push_back(control::find_controller(plans_[row].controller)->make(context, settings));
       settings.require_all_read();
     }
     commands_.resize(world.movers.size());
@@ -87,7 +87,7 @@ class Streets {
       others.clear();
       for (std::uint32_t o = 0; o < controllers.size(); ++o) {
         const glm::dvec2 d{reports[o].X_WM.x - reports[row].X_WM.x, reports[o].X_WM.y - reports[row].X_WM.y};
-        if (o != row && length(d) <= controllers[row]->radio())
+        if (o != row && length(d) <= controllers[row]->v2v_range())
           others.push_back({world.movers[o].id, reports[o], intents[o]});
       }
       commands_[row] = controllers[row]->step({.time = time,
@@ -137,7 +137,7 @@ inline std::vector<Setting> go(Numbers checkpoints, std::vector<Setting> more = 
 
 /// Does nothing.
 struct Stands final : control::Controller {
-  Twist step(const control::Input&) override { return {}; }
+  Twist step(const control::ControllerInput&) override { return {}; }
 };
 
 }  // namespace sf::traffic

@@ -377,39 +377,39 @@ struct Look {
   const char* why;
 };
 
-TEST(Surroundings, ahead_is_measured_from_the_front_in_the_lane) {
+TEST(ClearanceEstimator, ahead_is_measured_from_the_front_in_the_lane) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
   mover.lasers.push_back(laser(0, 1, 2.0, {0.1, 0, 0, 0}));
-  const Surroundings surroundings(mover);
-  EXPECT_NEAR(surroundings.sight(), 1.9, 1e-12);
+  const ClearanceEstimator estimator(mover);
+  EXPECT_NEAR(estimator.range(), 1.9, 1e-12);
   for (const Look& look : {Look{1.1, 1.0, "0.1 on the body, 0.2 to its front"}, Look{2.0, 1.9, "nothing in range"},
                            Look{5.0, 1.9, "beyond range"}, Look{0.0, 0.0, "within the body"}}) {
     const std::vector<double> ranges{look.range};
     const std::vector<ReadingBlock> blocks{{.kind = 1, .values = ranges}};
-    EXPECT_NEAR(surroundings.look(blocks).ahead, look.ahead, 1e-6) << look.why;
+    EXPECT_NEAR(estimator.estimate(blocks).ahead, look.ahead, 1e-6) << look.why;
   }
 }
 
 // Its lane is 15 % and a centimetre wider than half its width, 0.2 m, to both sides.
-TEST(Surroundings, the_lane_is_a_little_wider_than_the_body) {
+TEST(ClearanceEstimator, the_lane_is_a_little_wider_than_the_body) {
   for (const auto& [aside, ahead] : {std::pair{0.0, 1.0}, {0.235, 1.0}, {-0.235, 1.0}, {0.245, 1.9}, {-0.245, 1.9}}) {
     world::World world = scenes::empty_world();
     world::Mover mover = scenes::add_square(world, {});
     mover.lasers.push_back(laser(0, 1, 2.0, {0.1, aside, 0, 0}));
     const std::vector<double> ranges{1.1};
     const std::vector<ReadingBlock> blocks{{.kind = 1, .values = ranges}};
-    EXPECT_NEAR(Surroundings(mover).look(blocks).ahead, ahead, 1e-6) << aside;
+    EXPECT_NEAR(ClearanceEstimator(mover).estimate(blocks).ahead, ahead, 1e-6) << aside;
   }
 }
 
-TEST(Surroundings, things_beside_the_lane_are_not_ahead) {
+TEST(ClearanceEstimator, things_beside_the_lane_are_not_ahead) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
   mover.lasers.push_back(laser(M_PI, 3, 4.0));
   const std::vector<double> ranges{0.5, 3.0, 1.5};  // right, ahead, left
   const std::vector<ReadingBlock> blocks{{.kind = 1, .values = ranges}};
-  const Clearance c = Surroundings(mover).look(blocks);
+  const Clearance c = ClearanceEstimator(mover).estimate(blocks);
   EXPECT_NEAR(c.ahead, 2.8, 1e-6);
   EXPECT_NEAR(c.left, 1.5, 1e-6);
   EXPECT_NEAR(c.right, 0.5, 1e-6);

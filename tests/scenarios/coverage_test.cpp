@@ -42,7 +42,7 @@ TEST(Coverage, IsNeverRoundedUpToAll) {
 /// Else cells would be asked for that the explorer does not know, a part of a cell aside from its own.
 TEST(Coverage, ItsCellsAreTheExplorers) {
   const world::World world = mapping_world();
-  EXPECT_EQ(OwnMap(world, 0).grid().plan, control::plan_around(world));
+  EXPECT_EQ(OwnMap(world, 0).grid().plan, control::grid_around(world));
 }
 
 /// A line's rounding may free a cell whose middle lies within a wall; it is not asked for.

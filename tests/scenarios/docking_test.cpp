@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "control/reason.h"
+#include "control/stop_reason.h"
 #include "scenarios/simulation.h"
 #include "sensors/sensor_type.h"
 #include "world/wall_grid.h"
@@ -64,7 +64,7 @@ Docked dock(world::World world, const base::Pose& from) {
     docked.off = base::wrap_angle(X_WM.yaw - X_WD.yaw - M_PI);
     return docked;
   }
-  docked.reason = control::reason_of(*simulation.controller(0));
+  docked.reason = control::stop_reason_of(*simulation.controller(0));
   return docked;
 }
 

@@ -107,7 +107,7 @@ name = "roomba0"
 settings = { kp = 0.9 }
 )");
   ASSERT_EQ(s.plans.size(), 1u);
-  control::Plan plan = s.plans[0].actor->plan;
+  control::ControllerConfig plan = s.plans[0].actor->plan;
   EXPECT_EQ(plan.controller, "lane-keeping");
   EXPECT_EQ(plan.rate, 20.0);
   EXPECT_EQ(plan.settings.number("kp", 0.0, 0.0, 10.0), 0.9);

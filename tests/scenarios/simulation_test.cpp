@@ -40,7 +40,7 @@ SimulationOptions nobody(const world::World& world) {
   return options;
 }
 
-control::Plan plan(const std::string& name, std::vector<control::Setting> settings = {}) {
+control::ControllerConfig plan(const std::string& name, std::vector<control::Setting> settings = {}) {
   return {name, 0.0, {"controller '" + name + "'", std::move(settings)}};
 }
 

@@ -4,50 +4,51 @@
 //   Start --(at once, or the start signal)--> Control <--(bumper released / pressed)--> Wait
 //                                             Control --(the controller is done)--> Stop
 //
-// Settings: `start` "at-once" or "signal"; `wait_on_bumper`, unless given what the kind says (`ControllerKind::waits`).
+// Settings: `start` "at-once" or "signal"; `wait_on_bumper`, unless given what the kind says
+// (`ControllerType::stops_on_bumper`).
 
 #include <memory>
 
 #include "control/controllers.h"
-#include "control/reason.h"
+#include "control/stop_reason.h"
 
 namespace sf::control {
 
-enum class ShellState { start, control, wait, stop };
+enum class ControlShellState { start, control, wait, stop };
 
 /// What the user said of the shell.
-struct ShellSettings {
+struct ControlShellSettings {
   bool on_signal = false;      ///< Start lasts until `Input::started`
   bool wait_on_bumper = true;  ///< Control becomes Wait while `Input::contact`
 };
 
 /// @throws base::InputError for a word that is no way to start.
-ShellSettings read_shell_settings(Settings& settings, bool waits);
+ControlShellSettings read_control_shell_settings(Settings& settings, bool stops_on_bumper);
 
-class Shell final : public Controller, public StatesReason {
+class ControlShell final : public Controller, public StatesStopReason {
  public:
   /// @param inner not null
-  Shell(std::unique_ptr<Controller> inner, const ShellSettings& settings);
+  ControlShell(std::unique_ptr<Controller> inner, const ControlShellSettings& settings);
 
   /// Stands in Start, Wait and Stop; the controller within is not called there, and so sees time jump over a Wait.
-  base::Twist step(const Input& input) override;
+  base::Twist step(const ControllerInput& input) override;
 
   base::Intent intent() const override { return inner_->intent(); }
-  double radio() const override { return inner_->radio(); }
-  bool done() const override { return state_ == ShellState::stop; }
+  double v2v_range() const override { return inner_->v2v_range(); }
+  bool done() const override { return state_ == ControlShellState::stop; }
   /// Not a number after steps in which the controller was not called.
   double error() const override;
-  std::string reason() const override;
+  std::string stop_reason() const override;
 
-  ShellState state() const { return state_; }
+  ControlShellState state() const { return state_; }
   const Controller& inner() const { return *inner_; }
 
  private:
-  void change(const Input& input);
+  void change(const ControllerInput& input);
 
   std::unique_ptr<Controller> inner_;
-  ShellSettings settings_;
-  ShellState state_ = ShellState::start;
+  ControlShellSettings settings_;
+  ControlShellState state_ = ControlShellState::start;
   bool stepped_ = false;  ///< by the last step
 };
 

@@ -8,7 +8,7 @@
 
 namespace sf::control {
 
-struct Pace {
+struct DriveLimits {
   double speed = 0.1;  ///< [m/s]
   double turn = 1.0;   ///< [rad/s] at most
   double aim = 0.3;    ///< [rad] farther off than this it only turns
@@ -16,11 +16,11 @@ struct Pace {
 };
 
 /// @return [rad/s]
-inline double turn_to(double heading_error, const Pace& pace) {
+inline double turn_to(double heading_error, const DriveLimits& pace) {
   return std::clamp(pace.gain * heading_error, -pace.turn, pace.turn);
 }
 
-inline base::Twist go_to(const base::Pose& X_WM, glm::dvec2 p, const Pace& pace) {
+inline base::Twist drive_to_point(const base::Pose& X_WM, glm::dvec2 p, const DriveLimits& pace) {
   const glm::dvec2 d{p.x - X_WM.x, p.y - X_WM.y};
   const double off = base::wrap_angle(std::atan2(d.y, d.x) - X_WM.yaw);
   return {std::abs(off) <= pace.aim ? pace.speed : 0.0, 0.0, turn_to(off, pace)};

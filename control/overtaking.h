@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "control/route_ahead.h"
+#include "control/robots_ahead.h"
 
 namespace sf::control {
 
@@ -14,15 +14,15 @@ struct Passing {
   RoutePlan plan;
   double until = 0.0;  ///< [m] along it: back in its lane
 };
-std::optional<Passing> plan_passing(const Corridors& corridors, const RoutePlan& plan, double s, double speed,
-                                    const Ahead& slow, const std::vector<Driver>& drivers);
+std::optional<Passing> plan_passing(const LaneCorridors& corridors, const RoutePlan& plan, double s, double speed,
+                                    const LeadRobot& slow, const std::vector<RoadUser>& road_users);
 
 /// The way leads from a lane to another one of the same segment in its course.
-bool changes_lanes(const Corridors& corridors, std::uint32_t way);
+bool changes_lanes(const LaneCorridors& corridors, std::uint32_t way);
 
 /// Gives up a change of lanes: a route from where the robot is back into the lane that it was to leave, to that lane's
 /// next point, without what was to come and without the goals after `s`. `plan` is on a way that changes lanes at `s`.
 /// Nothing where the lane to be entered is nearer already.
-std::optional<RoutePlan> plan_back(const Corridors& corridors, const RoutePlan& plan, double s, const Pose& X_WM);
+std::optional<RoutePlan> plan_return(const LaneCorridors& corridors, const RoutePlan& plan, double s, const Pose& X_WM);
 
 }  // namespace sf::control

@@ -1,4 +1,4 @@
-#include "control/pi_law.h"
+#include "control/pi_controller.h"
 
 #include <algorithm>
 
@@ -12,7 +12,7 @@ PiGains read_gains(Settings& settings, const PiGains& defaults) {
   return gains;
 }
 
-double PiLaw::steer(double error, std::int64_t time) {
+double PiController::steer(double error, std::int64_t time) {
   if (running_) {
     const double elapsed = 1e-9 * static_cast<double>(time - last_time_);
     integral_ += 0.5 * elapsed * (last_error_ + error);
@@ -24,7 +24,7 @@ double PiLaw::steer(double error, std::int64_t time) {
   return gains_.kp * error + gains_.ki * integral_;
 }
 
-double PiLaw::keep(double error) {
+double PiController::hold(double error) {
   running_ = false;
   return gains_.kp * error + gains_.ki * integral_;
 }

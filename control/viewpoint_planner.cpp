@@ -1,4 +1,4 @@
-#include "control/lookout.h"
+#include "control/viewpoint_planner.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,23 +18,25 @@ constexpr std::size_t kTries = 6;  // for one cell
 
 }  // namespace
 
-Lookout::Lookout(const Terrain& terrain, const Eye& eye)
-    : terrain_(terrain), headings_(static_cast<std::size_t>(terrain.nodes())) {
+ViewpointPlanner::ViewpointPlanner(const ExplorationMap& map, const ScannerModel& eye)
+    : map_(map), headings_(static_cast<std::size_t>(map.nodes())) {
   for (std::size_t i = 0; i < kRays; ++i) {
     const double bearing = 2.0 * M_PI * (static_cast<double>(i) + 0.5) / kRays;
     Ray ray{std::cos(bearing), std::sin(bearing), 0};
     for (int k = 0; k < kHeadings; ++k) {
-      const double off = base::wrap_angle(bearing + M_PI - angle_of(k) - eye.X_MS.yaw);
+      const double off = base::wrap_angle(bearing + M_PI - heading_angle(k) - eye.X_MS.yaw);
       if (std::abs(off) <= 0.5 * eye.fov - kEdge) ray.headings = static_cast<std::uint16_t>(ray.headings | 1u << k);
     }
     rays_.push_back(ray);
   }
 }
 
-std::int64_t Lookout::key(CellAt cell) const { return cell.row * maps::columns(terrain_.grid().plan) + cell.column; }
+std::int64_t ViewpointPlanner::key(CellAt cell) const {
+  return cell.row * maps::columns(map_.grid().plan) + cell.column;
+}
 
-bool Lookout::wanted(CellAt cell, bool all) const {
-  const maps::OccupancyGrid& grid = terrain_.grid();
+bool ViewpointPlanner::is_target(CellAt cell, bool all) const {
+  const maps::OccupancyGrid& grid = map_.grid();
   if (grid.at(cell) != Cell::unexplored) return false;
   if (!all) {
     bool beside = false;
@@ -44,25 +46,25 @@ bool Lookout::wanted(CellAt cell, bool all) const {
     }
     if (!beside) return false;
   }
-  const auto tried = tried_.find(key(cell));
-  return tried == tried_.end() || tried->second.size() < kTries;
+  const auto tried = unseen_from_.find(key(cell));
+  return tried == unseen_from_.end() || tried->second.size() < kTries;
 }
 
 // The nodes from the cell's middle outwards, square by square (Amanatides and Woo, "A fast voxel traversal algorithm
 // for ray tracing", 1987), until something known is in the way. Visits each.
 template <typename Visit>
-void Lookout::cast(CellAt cell, std::size_t ray, Visit visit) const {
+void ViewpointPlanner::cast(CellAt cell, std::size_t ray, Visit visit) const {
   const double ux = rays_[ray].x, uy = -rays_[ray].y;
-  const Node columns = terrain_.columns(), rows = terrain_.nodes() / columns;
+  const Node columns = map_.columns(), rows = map_.nodes() / columns;
   Node column = static_cast<Node>(3 * cell.column + 1), row = static_cast<Node>(3 * cell.row + 1);
   const double dx = 1.0 / std::abs(ux), dy = 1.0 / std::abs(uy);
   double next_x = 0.5 * dx, next_y = 0.5 * dy;
-  const double most = range_ / terrain_.cell();
+  const double most = range_ / map_.cell();
   int unknown = 0, surfaces = 0;
   for (double far = 0.0; far <= most;) {
     const Node node = row * columns + column;
-    if (terrain_.solid(node) && ++surfaces > graze_) return;
-    if (!terrain_.explored(node) && ++unknown > kUnknown) return;
+    if (map_.occupied(node) && ++surfaces > graze_) return;
+    if (!map_.explored(node) && ++unknown > kUnknown) return;
     visit(node);
     if (next_x < next_y) {
       far = next_x;
@@ -78,13 +80,13 @@ void Lookout::cast(CellAt cell, std::size_t ray, Visit visit) const {
   }
 }
 
-void Lookout::see(CellAt cell) {
-  const auto tried = tried_.find(key(cell));
-  const bool afresh = tried == tried_.end();
+void ViewpointPlanner::add_target(CellAt cell) {
+  const auto tried = unseen_from_.find(key(cell));
+  const bool afresh = tried == unseen_from_.end();
   for (std::size_t ray = 0; ray < kRays; ++ray) {
     cast(cell, ray, [&](Node node) {
       if (!afresh && std::any_of(tried->second.begin(), tried->second.end(), [&](Node other) {
-            return glm::length(terrain_.place(node) - terrain_.place(other)) < kOther;
+            return glm::length(map_.place(node) - map_.place(other)) < kOther;
           }))
         return;
       auto& headings = headings_[static_cast<std::size_t>(node)];
@@ -93,32 +95,32 @@ void Lookout::see(CellAt cell) {
   }
 }
 
-std::size_t Lookout::look(bool all, double range, int graze) {
+std::size_t ViewpointPlanner::update(bool all, double range, int graze) {
   range_ = range;
   graze_ = graze;
   std::fill(headings_.begin(), headings_.end(), std::uint16_t{0});
   cells_.clear();
-  const maps::GridGeometry& plan = terrain_.grid().plan;
+  const maps::GridGeometry& plan = map_.grid().plan;
   for (std::int64_t row = 0; row < maps::rows(plan); ++row) {
     for (std::int64_t column = 0; column < maps::columns(plan); ++column) {
-      if (!wanted({column, row}, all)) continue;
+      if (!is_target({column, row}, all)) continue;
       cells_.push_back({column, row});
-      see(cells_.back());
+      add_target(cells_.back());
     }
   }
   return cells_.size();
 }
 
-std::vector<CellAt> Lookout::targets(Node sensor, int heading) const {
+std::vector<CellAt> ViewpointPlanner::targets(Node sensor, int heading) const {
   std::vector<CellAt> seen;
   for (const CellAt cell : cells_) {
-    const glm::dvec2 d = terrain_.place(sensor) - maps::middle(terrain_.grid().plan, cell);
-    if (glm::length(d) > range_ + terrain_.cell()) continue;
+    const glm::dvec2 d = map_.place(sensor) - maps::middle(map_.grid().plan, cell);
+    if (glm::length(d) > range_ + map_.cell()) continue;
     bool found = false;
     for (std::size_t ray = 0; ray < kRays && !found; ++ray) {
       // Only rays that come near the sensor.
       const double aside = std::abs(base::cross({rays_[ray].x, rays_[ray].y}, d));
-      if (aside > 2.0 * terrain_.cell() || (rays_[ray].headings >> heading & 1u) == 0) continue;
+      if (aside > 2.0 * map_.cell() || (rays_[ray].headings >> heading & 1u) == 0) continue;
       cast(cell, ray, [&](Node node) { found = found || node == sensor; });
     }
     if (found) seen.push_back(cell);
@@ -126,6 +128,6 @@ std::vector<CellAt> Lookout::targets(Node sensor, int heading) const {
   return seen;
 }
 
-void Lookout::in_vain(CellAt cell, Node sensor) { tried_[key(cell)].push_back(sensor); }
+void ViewpointPlanner::mark_unseen(CellAt cell, Node sensor) { unseen_from_[key(cell)].push_back(sensor); }
 
 }  // namespace sf::control

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "control/corridor.h"
+#include "control/lane_corridors.h"
 
 namespace sf::control {
 
@@ -33,18 +33,18 @@ Relation relation(const Way& a, std::uint32_t row_a, const Way& b, std::uint32_t
 }  // namespace
 
 // Lanes of one segment run side by side; others may be one road.
-bool Corridors::joined(std::uint32_t a, std::uint32_t b) const {
+bool LaneCorridors::joined(std::uint32_t a, std::uint32_t b) const {
   if (roads_.lanes[a].segment == roads_.lanes[b].segment) return true;
   return std::any_of(ways_.begin(), ways_.end(), [&](const Way& way) {
     return (way.from == a && way.into == b) || (way.from == b && way.into == a);
   });
 }
 
-void Corridors::find_meetings() {
-  for (std::uint32_t way = 0; way < ways_.size(); ++way) find_meetings(way);
+void LaneCorridors::find_conflicts() {
+  for (std::uint32_t way = 0; way < ways_.size(); ++way) find_conflicts(way);
 }
 
-void Corridors::find_meetings(std::uint32_t row) {
+void LaneCorridors::find_conflicts(std::uint32_t row) {
   Way& way = ways_[row];
   struct Found {
     std::uint32_t way, from, to, other_from, other_to;
@@ -65,7 +65,7 @@ void Corridors::find_meetings(std::uint32_t row) {
       at->other_to = std::max(at->other_to, sample.index);
     });
   }
-  std::vector<Meeting> meetings;
+  std::vector<Conflict> conflicts;
   for (const Found& f : found) {
     const Way& other = ways_[f.way];
     const Relation kind = relation(way, row, other, f.way);
@@ -81,37 +81,37 @@ void Corridors::find_meetings(std::uint32_t row) {
     // Between samples the ways may be that near already.
     const auto low = [](const Way& w, std::uint32_t i) { return i > 0 ? (i - 1) * w.step : 0.0; };
     const auto high = [](const Way& w, std::uint32_t i) { return std::min((i + 1) * w.step, w.length); };
-    meetings.push_back({f.way, low(way, f.from), high(way, f.to), low(other, f.other_from), high(other, f.other_to),
-                        kind == Relation::yields});
+    conflicts.push_back({f.way, low(way, f.from), high(way, f.to), low(other, f.other_from), high(other, f.other_to),
+                         kind == Relation::yields});
   }
-  make_gates(way, std::move(meetings));
+  make_conflict_zones(way, std::move(conflicts));
 }
 
-void Corridors::make_gates(Way& way, std::vector<Meeting> meetings) const {
-  std::sort(meetings.begin(), meetings.end(),
-            [](const Meeting& a, const Meeting& b) { return a.from != b.from ? a.from < b.from : a.way < b.way; });
+void LaneCorridors::make_conflict_zones(Way& way, std::vector<Conflict> conflicts) const {
+  std::sort(conflicts.begin(), conflicts.end(),
+            [](const Conflict& a, const Conflict& b) { return a.from != b.from ? a.from < b.from : a.way < b.way; });
   const double margin = 0.12 * body_.radius;
   const bool whole = way.kind == Way::Kind::exit && way.at_end;
-  for (Meeting& meeting : meetings) {
+  for (Conflict& conflict : conflicts) {
     const double body = 2.0 * body_.radius + 3.0 * margin;
-    if (way.gates.empty() || (!whole && meeting.from > way.gates.back().end + body))
-      way.gates.push_back({whole ? -body_.front - margin : meeting.from - margin, meeting.to, {}});
-    Gate& gate = way.gates.back();
-    gate.end = std::max(gate.end, meeting.to);
-    gate.meetings.push_back(meeting);
+    if (way.conflict_zones.empty() || (!whole && conflict.from > way.conflict_zones.back().end + body))
+      way.conflict_zones.push_back({whole ? -body_.front - margin : conflict.from - margin, conflict.to, {}});
+    ConflictZone& conflict_zone = way.conflict_zones.back();
+    conflict_zone.end = std::max(conflict_zone.end, conflict.to);
+    conflict_zone.conflicts.push_back(conflict);
   }
 }
 
-void Corridors::make_lines() {
+void LaneCorridors::make_lines() {
   for (std::uint32_t row = 0; row < ways_.size(); ++row) {
     Way& way = ways_[row];
     if (way.kind == Way::Kind::lane)
-      for (const Gate& gate : way.gates) way.lines.push_back(gate.hold);
+      for (const ConflictZone& conflict_zone : way.conflict_zones) way.lines.push_back(conflict_zone.hold);
     if (way.from == world::kNone) continue;
     Way& lane = ways_[way.from];
     lane.out.push_back(row);
-    for (const Gate& gate : way.gates)
-      if (way.at_end && gate.hold < 0.0) lane.lines.push_back(way.leave + gate.hold);
+    for (const ConflictZone& conflict_zone : way.conflict_zones)
+      if (way.at_end && conflict_zone.hold < 0.0) lane.lines.push_back(way.leave + conflict_zone.hold);
   }
   for (Way& way : ways_) {
     std::sort(way.lines.begin(), way.lines.end());

@@ -1,4 +1,4 @@
-#include "control/surroundings.h"
+#include "control/clearance_estimator.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +12,13 @@ constexpr double kSideways = 1.8;      // [rad] beams farther from straight ahea
 
 }  // namespace
 
-struct Surroundings::Sum {
+struct ClearanceEstimator::Sum {
   double ahead = HUGE_VAL;
   double left = 0.0, right = 0.0;
   double lefts = 0.0, rights = 0.0;
 };
 
-Surroundings::Surroundings(const world::Mover& mover) {
+ClearanceEstimator::ClearanceEstimator(const world::Mover& mover) {
   double half_width = 0.0;
   for (const world::Segment& s : mover.body) {
     front_ = std::max({front_, s.a.x, s.b.x});
@@ -34,14 +34,14 @@ Surroundings::Surroundings(const world::Mover& mover) {
       const double bearing = base::wrap_angle(laser.X_MS.yaw + along * laser.fov);
       if (std::abs(bearing) > kSideways) continue;
       view.beams.push_back({i, static_cast<float>(std::cos(bearing)), static_cast<float>(std::sin(bearing))});
-      if (std::abs(bearing) < 0.6) sight_ = std::max(sight_, laser.X_MS.x + laser.range_max - front_);
+      if (std::abs(bearing) < 0.6) range_ = std::max(range_, laser.X_MS.x + laser.range_max - front_);
     }
     views_.push_back(std::move(view));
   }
-  if (!std::isfinite(sight_)) sight_ = 1e3;
+  if (!std::isfinite(range_)) range_ = 1e3;
 }
 
-void Surroundings::add(const View& view, std::span<const double> ranges, Sum& sum) const {
+void ClearanceEstimator::add(const View& view, std::span<const double> ranges, Sum& sum) const {
   for (const Beam& beam : view.beams) {
     if (beam.sample >= ranges.size() || std::isnan(ranges[beam.sample])) continue;
     const double range = std::max(ranges[beam.sample], 0.0);
@@ -52,7 +52,7 @@ void Surroundings::add(const View& view, std::span<const double> ranges, Sum& su
       const double y = view.p_MS.y + range * beam.y;
       if (x >= 0.0 && std::abs(y) < half_width_) sum.ahead = std::min(sum.ahead, x - front_);
     }
-    const double free = std::min({range, view.range_max, sight_});
+    const double free = std::min({range, view.range_max, range_});
     if (beam.y > 0.05f) {
       sum.left += free;
       sum.lefts += 1.0;
@@ -63,7 +63,7 @@ void Surroundings::add(const View& view, std::span<const double> ranges, Sum& su
   }
 }
 
-Clearance Surroundings::look(std::span<const base::ReadingBlock> readings) const {
+Clearance ClearanceEstimator::estimate(std::span<const base::ReadingBlock> readings) const {
   Sum sum;
   for (const base::ReadingBlock& block : readings) {
     if (block.kind == base::kLaser && block.sensor < views_.size()) add(views_[block.sensor], block.values, sum);
@@ -72,7 +72,7 @@ Clearance Surroundings::look(std::span<const base::ReadingBlock> readings) const
   const double right = sum.rights > 0.0 ? sum.right / sum.rights : 0.0;
   const bool both = sum.lefts > 0.0 && sum.rights > 0.0;
   const double ahead =
-      sum.ahead == HUGE_VAL ? std::max(sight_, 0.0) : std::clamp(sum.ahead, 0.0, std::max(sight_, 0.0));
+      sum.ahead == HUGE_VAL ? std::max(range_, 0.0) : std::clamp(sum.ahead, 0.0, std::max(range_, 0.0));
   return {ahead, both ? left : 0.0, both ? right : 0.0};
 }
 

@@ -9,19 +9,19 @@
 namespace sf::control {
 
 /// A robot in the way.
-struct Ahead {
+struct LeadRobot {
   double free = 0.0;      ///< [m] >= 0 that the robot's origin may still go along its route before it is too near
   double speed = 0.0;     ///< [m/s] of the other along the route there; negative: towards it
-  std::uint32_t row = 0;  ///< among the drivers
+  std::uint32_t row = 0;  ///< among the road_users
 };
 
 /// How far ahead is looked. [m]
-inline constexpr double kLookAhead = 2.4;
+inline constexpr double kLookaheadDistance = 2.4;
 
 /// The robots (but the first, itself) that are nearer to the route ahead of `s` than two robots are wide, nearest
 /// first. Robots that the route leads away from are none.
-void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, const std::vector<Driver>& drivers,
-                std::vector<Ahead>& out);
+void find_robots_ahead(const LaneCorridors& corridors, const RoutePlan& plan, double s,
+                       const std::vector<RoadUser>& road_users, std::vector<LeadRobot>& out);
 
 /// Where the route is at `s` [m].
 struct OnRoute {
@@ -30,10 +30,10 @@ struct OnRoute {
   double yaw = 0.0;        ///< [rad] of the route
   double curvature = 0.0;  ///< [1/m]
 };
-OnRoute on_route(const Corridors& corridors, const RoutePlan& plan, double s, std::size_t from_leg = 0);
+OnRoute on_route(const LaneCorridors& corridors, const RoutePlan& plan, double s, std::size_t from_leg = 0);
 
 /// The route turns on the spot, or back, from this leg to the next.
-bool kink_after(const Corridors& corridors, const RoutePlan& plan, std::size_t leg);
+bool cusp_after(const LaneCorridors& corridors, const RoutePlan& plan, std::size_t leg);
 
 /// Goes along with a robot: its place on a route. Never skips a kink that was not reached.
 class Progress {
@@ -41,7 +41,7 @@ class Progress {
   double s() const { return s_; }
   std::size_t leg() const { return leg_; }
   void set(double s, std::size_t leg) { s_ = s, leg_ = leg; }
-  void update(const Corridors& corridors, const RoutePlan& plan, glm::dvec2 p);
+  void update(const LaneCorridors& corridors, const RoutePlan& plan, glm::dvec2 p);
 
  private:
   double s_ = 0.0;

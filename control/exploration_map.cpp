@@ -1,4 +1,4 @@
-#include "control/terrain.h"
+#include "control/exploration_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ constexpr double kJoined = 0.03;  // [m] neighbouring beams that end this near m
 
 }  // namespace
 
-Terrain::Terrain(const maps::GridGeometry& plan, double radius, double reach)
+ExplorationMap::ExplorationMap(const maps::GridGeometry& plan, double radius, double reach)
     : grid_(plan),
       radius_(radius),
       cell_(plan.cell / kFiner),
@@ -21,11 +21,11 @@ Terrain::Terrain(const maps::GridGeometry& plan, double radius, double reach)
       rows_(static_cast<Node>(kFiner * maps::rows(plan))) {
   const auto count = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
   taken_.resize((count * kPointsFiner * kPointsFiner + 7) / 8);
-  clearance_.assign(count, static_cast<float>(radius + kFarFromBody));
-  solid_.resize(count);
+  clearance_.assign(count, static_cast<float>(radius + kMaxClearance));
+  occupied_.resize(count);
   explored_.resize(count);
   unknown_.resize(count);
-  stood_.resize(static_cast<std::size_t>(maps::columns(plan) * maps::rows(plan)));
+  driven_.resize(static_cast<std::size_t>(maps::columns(plan) * maps::rows(plan)));
 
   // Too near to the map's border counts as unknown for ever.
   const Node rim = static_cast<Node>(std::ceil(std::max(radius, reach) / cell_)) + 2;
@@ -41,21 +41,21 @@ Terrain::Terrain(const maps::GridGeometry& plan, double radius, double reach)
              [&](std::size_t node, double) { unknown_[node] = static_cast<std::uint16_t>(unknown_[node] + 1); });
 }
 
-bool Terrain::contains(glm::dvec2 p) const { return maps::contains(grid_.plan, maps::cell_at(grid_.plan, p)); }
+bool ExplorationMap::contains(glm::dvec2 p) const { return maps::contains(grid_.plan, maps::cell_at(grid_.plan, p)); }
 
-Node Terrain::node_at(glm::dvec2 p) const {
+Node ExplorationMap::node_at(glm::dvec2 p) const {
   const auto column = static_cast<Node>(std::floor((p.x - grid_.plan.left) / cell_));
   const auto row = static_cast<Node>(std::floor((grid_.plan.top - p.y) / cell_));
   return std::clamp(row, 0, rows_ - 1) * columns_ + std::clamp(column, 0, columns_ - 1);
 }
 
-glm::dvec2 Terrain::place(Node node) const {
+glm::dvec2 ExplorationMap::place(Node node) const {
   return {grid_.plan.left + (node % columns_ + 0.5) * cell_, grid_.plan.top - (node / columns_ + 0.5) * cell_};
 }
 
 // Every node whose place is nearer to p than the radius, with its distance.
 template <typename Visit>
-void Terrain::around(glm::dvec2 p, double radius, Visit visit) {
+void ExplorationMap::around(glm::dvec2 p, double radius, Visit visit) {
   const double column = (p.x - grid_.plan.left) / cell_ - 0.5, row = (grid_.plan.top - p.y) / cell_ - 0.5;
   const double reach = radius / cell_;
   const auto low = [](double v) { return static_cast<Node>(std::max(0.0, std::ceil(v))); };
@@ -68,21 +68,21 @@ void Terrain::around(glm::dvec2 p, double radius, Visit visit) {
   }
 }
 
-void Terrain::explore(maps::CellAt at) {
-  auto& stood = stood_[static_cast<std::size_t>(at.row * maps::columns(grid_.plan) + at.column)];
+void ExplorationMap::explore(maps::CellAt at) {
+  auto& stood = driven_[static_cast<std::size_t>(at.row * maps::columns(grid_.plan) + at.column)];
   if (stood != 0) return;
   stood = 1;
   around(maps::middle(grid_.plan, at), radius_,
          [&](std::size_t node, double) { unknown_[node] = static_cast<std::uint16_t>(unknown_[node] - 1); });
 }
 
-void Terrain::stand(glm::dvec2 p, double radius) {
+void ExplorationMap::mark_free(glm::dvec2 p, double radius) {
   for (std::int64_t row = 0; row < maps::rows(grid_.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(grid_.plan); ++column)
       if (glm::length(maps::middle(grid_.plan, {column, row}) - p) <= radius) explore({column, row});
 }
 
-bool Terrain::add_point(glm::dvec2 p) {
+bool ExplorationMap::add_point(glm::dvec2 p) {
   if (!contains(p)) return false;
   const double fine = cell_ / kPointsFiner;
   const auto column = static_cast<std::size_t>((p.x - grid_.plan.left) / fine);
@@ -92,21 +92,21 @@ bool Terrain::add_point(glm::dvec2 p) {
   if (bit / 8 >= taken_.size() || (taken_[bit / 8] & flag) != 0) return false;
   taken_[bit / 8] |= flag;
   points_.push_back(p);
-  solid_[static_cast<std::size_t>(node_at(p))] = 1;
-  around(p, radius_ + kFarFromBody,
+  occupied_[static_cast<std::size_t>(node_at(p))] = 1;
+  around(p, radius_ + kMaxClearance,
          [&](std::size_t node, double far) { clearance_[node] = std::min(clearance_[node], static_cast<float>(far)); });
   return true;
 }
 
-void Terrain::mark_line(glm::dvec2 a, glm::dvec2 b) {
+void ExplorationMap::mark_line(glm::dvec2 a, glm::dvec2 b) {
   const int steps = 1 + static_cast<int>(glm::length(b - a) / (0.25 * cell_));
   for (int i = 0; i <= steps; ++i) {
     const glm::dvec2 p = a + (static_cast<double>(i) / steps) * (b - a);
-    if (contains(p)) solid_[static_cast<std::size_t>(node_at(p))] = 1;
+    if (contains(p)) occupied_[static_cast<std::size_t>(node_at(p))] = 1;
   }
 }
 
-bool Terrain::add(const maps::ScanView& scan) {
+bool ExplorationMap::add(const maps::ScanView& scan) {
   const std::vector<std::uint32_t> before = grid_.words;
   maps::add_scan(grid_, scan);
   bool news = false;
@@ -139,7 +139,7 @@ bool Terrain::add(const maps::ScanView& scan) {
   return news;
 }
 
-double Terrain::nearest(glm::dvec2 p, double most) const {
+double ExplorationMap::nearest(glm::dvec2 p, double most) const {
   double least = most * most;
   for (const glm::dvec2& q : points_) least = std::min(least, glm::dot(q - p, q - p));
   return std::sqrt(least);

@@ -1,4 +1,4 @@
-#include "control/route_ahead.h"
+#include "control/robots_ahead.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 
 namespace sf::control {
 
-OnRoute on_route(const Corridors& corridors, const RoutePlan& plan, double s, std::size_t from_leg) {
+OnRoute on_route(const LaneCorridors& corridors, const RoutePlan& plan, double s, std::size_t from_leg) {
   std::size_t i = from_leg;
   while (i + 1 < plan.legs.size() && s >= end_of(plan.legs[i])) ++i;
   const RouteLeg& leg = plan.legs[i];
@@ -15,7 +15,7 @@ OnRoute on_route(const Corridors& corridors, const RoutePlan& plan, double s, st
   return {i, point_on(way, at), yaw_on(way, at), curvature_on(way, at)};
 }
 
-bool kink_after(const Corridors& corridors, const RoutePlan& plan, std::size_t leg) {
+bool cusp_after(const LaneCorridors& corridors, const RoutePlan& plan, std::size_t leg) {
   if (leg + 1 >= plan.legs.size()) return true;
   const Way& a = corridors.way(plan.legs[leg].way);
   const Way& b = corridors.way(plan.legs[leg + 1].way);
@@ -24,10 +24,10 @@ bool kink_after(const Corridors& corridors, const RoutePlan& plan, std::size_t l
   return a.backwards != b.backwards || std::abs(base::wrap_angle(turn)) > 0.3;
 }
 
-void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, const std::vector<Driver>& drivers,
-                std::vector<Ahead>& out) {
+void find_robots_ahead(const LaneCorridors& corridors, const RoutePlan& plan, double s,
+                       const std::vector<RoadUser>& road_users, std::vector<LeadRobot>& out) {
   out.clear();
-  if (drivers.size() < 2) return;
+  if (road_users.size() < 2) return;
   const double radius = corridors.body().radius;
   const double step = 0.25 * radius;
   struct Point {
@@ -37,7 +37,7 @@ void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, con
   std::array<Point, 128> points;
   std::size_t count = 0;
   std::size_t leg = leg_at(plan, s);
-  const double end = std::min(s + kLookAhead, length_of(plan));
+  const double end = std::min(s + kLookaheadDistance, length_of(plan));
   for (double at = s; count < points.size(); at += step) {
     const OnRoute here = on_route(corridors, plan, std::min(at, end), leg);
     leg = here.leg;
@@ -45,10 +45,10 @@ void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, con
     points[count++] = {here.p, here.yaw, std::min(at, end), radius * (zone ? 2.04 : 2.18)};
     if (at >= end) break;
   }
-  const glm::dvec2 self{drivers[0].X_WM.x, drivers[0].X_WM.y};
-  for (std::uint32_t row = 1; row < drivers.size(); ++row) {
-    const glm::dvec2 p{drivers[row].X_WM.x, drivers[row].X_WM.y};
-    if (length(p - self) > kLookAhead + 2.2 * radius) continue;
+  const glm::dvec2 self{road_users[0].X_WM.x, road_users[0].X_WM.y};
+  for (std::uint32_t row = 1; row < road_users.size(); ++row) {
+    const glm::dvec2 p{road_users[row].X_WM.x, road_users[row].X_WM.y};
+    if (length(p - self) > kLookaheadDistance + 2.2 * radius) continue;
     const auto away = [&](std::size_t i) { return length(points[i].p - p); };
     for (std::size_t i = 0; i < count;) {
       // Points are no farther apart than a step: the way can come no nearer sooner.
@@ -65,15 +65,15 @@ void look_ahead(const Corridors& corridors, const RoutePlan& plan, double s, con
         free -= (points[i].s - points[i - 1].s) * std::clamp((points[i].within - distance) / nearer, 0.0, 1.0);
       }
       const glm::dvec2 along{std::cos(points[i].yaw), std::sin(points[i].yaw)};
-      out.push_back({std::max(free, 0.0), dot(drivers[row].velocity, along), row});
+      out.push_back({std::max(free, 0.0), dot(road_users[row].velocity, along), row});
       break;
     }
   }
   std::sort(out.begin(), out.end(),
-            [](const Ahead& a, const Ahead& b) { return a.free != b.free ? a.free < b.free : a.row < b.row; });
+            [](const LeadRobot& a, const LeadRobot& b) { return a.free != b.free ? a.free < b.free : a.row < b.row; });
 }
 
-void Progress::update(const Corridors& corridors, const RoutePlan& plan, glm::dvec2 p) {
+void Progress::update(const LaneCorridors& corridors, const RoutePlan& plan, glm::dvec2 p) {
   const double reach = 2.5 * corridors.body().radius;
   for (;;) {
     const RouteLeg& leg = plan.legs[leg_];
@@ -96,11 +96,11 @@ void Progress::update(const Corridors& corridors, const RoutePlan& plan, glm::dv
       s_ = leg.start + std::clamp(foot, leg.from, leg.to) - leg.from;
       // At a kink it is enough to be there.
       const bool there = leg.to - foot < 0.03 * reach && leg_ + 1 < plan.legs.size();
-      if (!there || !kink_after(corridors, plan, leg_)) return;
+      if (!there || !cusp_after(corridors, plan, leg_)) return;
     }
     ++leg_;
     s_ = plan.legs[leg_].start;
-    if (kink_after(corridors, plan, leg_ - 1)) return;
+    if (cusp_after(corridors, plan, leg_ - 1)) return;
   }
 }
 

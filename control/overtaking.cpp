@@ -1,4 +1,4 @@
-#include "control/passing.h"
+#include "control/overtaking.h"
 
 #include <algorithm>
 
@@ -7,15 +7,15 @@ namespace sf::control {
 namespace {
 
 /// Nobody on the lane from `low` to `high` [m], nor anybody faster that will be there.
-bool lane_free(const std::vector<Driver>& drivers, std::uint32_t lane, double low, double high) {
-  for (std::size_t i = 1; i < drivers.size(); ++i)
-    for (const Place& place : drivers[i].places)
-      if (place.way == lane && place.s > low - 3.0 * drivers[i].speed && place.s < high) return false;
+bool lane_free(const std::vector<RoadUser>& road_users, std::uint32_t lane, double low, double high) {
+  for (std::size_t i = 1; i < road_users.size(); ++i)
+    for (const RoadPosition& place : road_users[i].positions)
+      if (place.way == lane && place.s > low - 3.0 * road_users[i].speed && place.s < high) return false;
   return true;
 }
 
 /// The first change between two lanes at or after `s` [m] along the first; null: none.
-const std::uint32_t* change_after(const Corridors& corridors, std::uint32_t from, std::uint32_t into, double s) {
+const std::uint32_t* change_after(const LaneCorridors& corridors, std::uint32_t from, std::uint32_t into, double s) {
   const std::uint32_t* best = nullptr;
   for (const std::uint32_t& row : corridors.way(from).out) {
     const Way& way = corridors.way(row);
@@ -31,20 +31,21 @@ void add(RoutePlan& plan, std::uint32_t way, double from, double to) {
 
 }  // namespace
 
-bool changes_lanes(const Corridors& corridors, std::uint32_t row) {
+bool changes_lanes(const LaneCorridors& corridors, std::uint32_t row) {
   const Way& way = corridors.way(row);
   if (way.kind == Way::Kind::change) return true;
   if (way.kind != Way::Kind::exit || way.at_end || way.from == world::kNone || way.into == world::kNone) return false;
   return corridors.roads().lanes[way.from].segment == corridors.roads().lanes[way.into].segment;
 }
 
-std::optional<RoutePlan> plan_back(const Corridors& corridors, const RoutePlan& plan, double s, const Pose& X_WM) {
+std::optional<RoutePlan> plan_return(const LaneCorridors& corridors, const RoutePlan& plan, double s,
+                                     const Pose& X_WM) {
   const std::size_t at = leg_at(plan, s);
   const Way& change = corridors.way(plan.legs[at].way);
   // Nearer to the lane that it leaves than to the other, or as near.
-  const Place *left = nullptr, *entered = nullptr;
-  const Places places = corridors.places(X_WM, 2.5 * corridors.body().radius);
-  for (const Place& place : places) {
+  const RoadPosition *left = nullptr, *entered = nullptr;
+  const RoadPositions positions = corridors.positions(X_WM, 2.5 * corridors.body().radius);
+  for (const RoadPosition& place : positions) {
     if (place.way == change.from) left = &place;
     if (place.way == change.into) entered = &place;
   }
@@ -61,8 +62,8 @@ std::optional<RoutePlan> plan_back(const Corridors& corridors, const RoutePlan& 
   return back;
 }
 
-std::optional<Passing> plan_passing(const Corridors& corridors, const RoutePlan& plan, double s, double speed,
-                                    const Ahead& slow, const std::vector<Driver>& drivers) {
+std::optional<Passing> plan_passing(const LaneCorridors& corridors, const RoutePlan& plan, double s, double speed,
+                                    const LeadRobot& slow, const std::vector<RoadUser>& road_users) {
   const std::size_t at = leg_at(plan, s);
   const RouteLeg& leg = plan.legs[at];
   const Way& lane = corridors.way(leg.way);
@@ -85,7 +86,7 @@ std::optional<Passing> plan_passing(const Corridors& corridors, const RoutePlan&
     if (back == nullptr) continue;
     const Way& home = corridors.way(*back);
     if (home.enter > leg.to) continue;
-    if (!lane_free(drivers, beside, change.leave - body - 0.3, home.leave + body)) continue;
+    if (!lane_free(road_users, beside, change.leave - body - 0.3, home.leave + body)) continue;
     Passing passing{plan, 0.0};
     RoutePlan& p = passing.plan;
     const std::vector<RouteLeg> rest(plan.legs.begin() + static_cast<std::ptrdiff_t>(at) + 1, plan.legs.end());

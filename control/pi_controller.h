@@ -18,16 +18,16 @@ struct PiGains {
 /// Reads `kp`, `ki`, `integral_limit`. @throws base::InputError
 PiGains read_gains(Settings& settings, const PiGains& defaults);
 
-class PiLaw {
+class PiController {
  public:
-  explicit PiLaw(const PiGains& gains) : gains_(gains) {}
+  explicit PiController(const PiGains& gains) : gains_(gains) {}
 
   /// @param time [ns] never runs backwards
   /// @return [rad/s]
   double steer(double error, std::int64_t time);
 
   /// The same for an error that is only remembered: the integral rests, and goes on from the next step that knows.
-  double keep(double error);
+  double hold(double error);
 
   double integral() const { return integral_; }  ///< [unit s]
 

@@ -1,4 +1,4 @@
-#include "control/corridor.h"
+#include "control/lane_corridors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -47,18 +47,18 @@ T between(const std::vector<T>& values, const Way& way, double s) {
 
 }  // namespace
 
-RoadBody body_of(const world::Mover& mover) {
+RoadFootprint footprint_of(const world::Mover& mover) {
   const robots::Footprint outline = robots::footprint_of(mover);
   double front = 0.0;
   for (const robots::FootprintEdge& edge : outline.edges) front = std::max({front, edge.a.x, edge.b.x});
-  return outline.edges.empty() ? RoadBody{} : RoadBody{outline.radius, front};
+  return outline.edges.empty() ? RoadFootprint{} : RoadFootprint{outline.radius, front};
 }
 
 glm::dvec2 point_on(const Way& way, double s) { return between(way.points, way, s); }
 double yaw_on(const Way& way, double s) { return between(way.yaw, way, s); }
 double curvature_on(const Way& way, double s) { return between(way.curvature, way, s); }
 
-Corridors::Corridors(const world::RoadNetwork& roads, const world::World& world, const RoadBody& body)
+LaneCorridors::LaneCorridors(const world::RoadNetwork& roads, const world::World& world, const RoadFootprint& body)
     : roads_(roads),
       body_(body),
       clearance_(2.0 * body.radius + 0.25 * body.radius),
@@ -69,11 +69,11 @@ Corridors::Corridors(const world::RoadNetwork& roads, const world::World& world,
   add_changes();
   add_zones();
   fill_grid();
-  find_meetings();
+  find_conflicts();
   make_lines();
 }
 
-std::uint32_t Corridors::node_of(PointRef at) const {
+std::uint32_t LaneCorridors::node_of(PointRef at) const {
   const world::PointId id = id_of(roads_, at);
   const auto found = std::lower_bound(roads_.index.begin(), roads_.index.end(), id,
                                       [](const auto& row, world::PointId wanted) { return row.first < wanted; });
@@ -81,17 +81,17 @@ std::uint32_t Corridors::node_of(PointRef at) const {
   return static_cast<std::uint32_t>(found - roads_.index.begin());
 }
 
-std::uint32_t Corridors::add_way(Way way, const world::Curve& line) {
+std::uint32_t LaneCorridors::add_way(Way way, const world::Curve& line) {
   sample(way, line, step_);
   ways_.push_back(std::move(way));
   return static_cast<std::uint32_t>(ways_.size() - 1);
 }
 
-void Corridors::add_edge(PointRef from, PointRef to, std::uint32_t way, double from_s, double to_s, double extra) {
+void LaneCorridors::add_edge(PointRef from, PointRef to, std::uint32_t way, double from_s, double to_s, double extra) {
   edges_[node_of(from)].push_back({node_of(to), {way, world::kNone}, from_s, to_s, to_s - from_s + extra});
 }
 
-void Corridors::add_lanes(const world::World& world) {
+void LaneCorridors::add_lanes(const world::World& world) {
   for (std::uint32_t row = 0; row < roads_.lanes.size(); ++row) {
     const world::RoadLane& lane = roads_.lanes[row];
     add_way({.kind = Way::Kind::lane}, lane.centre);
@@ -100,7 +100,7 @@ void Corridors::add_lanes(const world::World& world) {
                lane.points[i + 1].s, 0.0);
   }
   for (const world::StopLine& stop : roads_.stops) {
-    StopMark mark{roads_.lanes[stop.at.row].points[stop.at.index].s, {}};
+    LaneStop mark{roads_.lanes[stop.at.row].points[stop.at.index].s, {}};
     const std::string name = text_of(id_of(roads_, stop.at));
     for (std::uint32_t light = 0; light < world.lights.size(); ++light) {
       const auto& points = world.lights[light].points;
@@ -112,7 +112,7 @@ void Corridors::add_lanes(const world::World& world) {
     std::sort(way.stops.begin(), way.stops.end(), [](const auto& a, const auto& b) { return a.s < b.s; });
 }
 
-void Corridors::add_exits() {
+void LaneCorridors::add_exits() {
   for (const world::RoadExit& exit : roads_.exits) {
     Way way{.kind = Way::Kind::exit};
     if (exit.from.kind == PointRef::Kind::lane) {
@@ -136,7 +136,7 @@ void Corridors::add_exits() {
   }
 }
 
-void Corridors::add_changes() {
+void LaneCorridors::add_changes() {
   for (std::uint32_t row = 0; row < roads_.lanes.size(); ++row) {
     for (std::uint32_t i = 0; i < roads_.lanes[row].points.size(); ++i) {
       const PointRef from{PointRef::Kind::lane, row, i};
@@ -151,13 +151,13 @@ void Corridors::add_changes() {
   }
 }
 
-std::shared_ptr<const Corridors> shared_corridors(const world::RoadNetwork& roads, const world::World& world,
-                                                  const RoadBody& body) {
+std::shared_ptr<const LaneCorridors> shared_lane_corridors(const world::RoadNetwork& roads, const world::World& world,
+                                                           const RoadFootprint& body) {
   // Whoever holds corridors keeps their network, so that an address names it while they live.
   struct Shared {
     const world::World* world;
-    RoadBody body;
-    std::weak_ptr<const Corridors> corridors;
+    RoadFootprint body;
+    std::weak_ptr<const LaneCorridors> corridors;
   };
   static std::mutex mutex;
   static std::vector<Shared> all;
@@ -167,7 +167,7 @@ std::shared_ptr<const Corridors> shared_corridors(const world::RoadNetwork& road
     const auto corridors = shared.corridors.lock();
     if (corridors && &corridors->roads() == &roads && shared.world == &world && shared.body == body) return corridors;
   }
-  auto corridors = std::make_shared<const Corridors>(roads, world, body);
+  auto corridors = std::make_shared<const LaneCorridors>(roads, world, body);
   all.push_back({&world, body, corridors});
   return corridors;
 }

@@ -2,7 +2,7 @@
 // The ways of a road network as robots drive them: evenly sampled lines, and where they come so near to each other that
 // two robots cannot pass at once.
 //
-//   Corridors corridors(roads, world, body_of(mover));
+//   LaneCorridors corridors(roads, world, footprint_of(mover));
 //   for (const Place& place : corridors.places(X_WM)) ... place.way, place.s
 //
 // A way is a lane, the connection of an exit, a change of lanes, or a straight within a zone. Ways meet where their
@@ -26,17 +26,17 @@ namespace sf::control {
 using base::Pose;
 
 /// What of a robot's shape matters on a road. [m]
-struct RoadBody {
+struct RoadFootprint {
   double radius = 0.165;  ///< > 0
   double front = 0.165;   ///< from its origin
 
-  friend bool operator==(const RoadBody&, const RoadBody&) = default;
+  friend bool operator==(const RoadFootprint&, const RoadFootprint&) = default;
 };
 /// What of it stops at things: a virtual scanner does not.
-RoadBody body_of(const world::Mover& mover);
+RoadFootprint footprint_of(const world::Mover& mover);
 
 /// Stretches of two ways that two robots cannot be on at once. [m] along either way, of the robots' origins.
-struct Meeting {
+struct Conflict {
   std::uint32_t way = 0;  ///< the other
   double from = 0.0, to = 0.0;
   double other_from = 0.0, other_to = 0.0;
@@ -44,14 +44,14 @@ struct Meeting {
 };
 
 /// Meetings of one way that lie too close together to wait between them.
-struct Gate {
+struct ConflictZone {
   double hold = 0.0;  ///< [m] a robot's origin waits here; negative: on the way before
   double end = 0.0;   ///< [m] from here on it is out of the way of the others
-  std::vector<Meeting> meetings;
+  std::vector<Conflict> conflicts;
 };
 
 /// A stop line of a lane.
-struct StopMark {
+struct LaneStop {
   double s = 0.0;                     ///< [m] along the lane
   std::vector<std::uint32_t> lights;  ///< rows of `World::lights` that govern it; none: a stop sign
 };
@@ -68,15 +68,16 @@ struct Way {
   bool in_zone = false;               ///< it leads into, about, or out of a zone
   std::uint32_t zone = world::kNone;  ///< row of that zone
 
-  double length = 0.0;               ///< [m] > 0
-  double step = 0.0;                 ///< [m] from one point to the next
-  std::vector<glm::dvec2> points;    ///< at least two
-  std::vector<double> yaw;           ///< [rad] of the line at each point, not wrapped
-  std::vector<glm::dvec2> tangents;  ///< unit vectors
-  std::vector<double> curvature;     ///< [1/m] positive to the left
-  std::vector<Gate> gates;           ///< in order
-  std::vector<StopMark> stops;       ///< lanes: in order
-  std::vector<double> lines;       ///< lanes: where robots on it wait for gates of the lane and of its exits, in order
+  double length = 0.0;                       ///< [m] > 0
+  double step = 0.0;                         ///< [m] from one point to the next
+  std::vector<glm::dvec2> points;            ///< at least two
+  std::vector<double> yaw;                   ///< [rad] of the line at each point, not wrapped
+  std::vector<glm::dvec2> tangents;          ///< unit vectors
+  std::vector<double> curvature;             ///< [1/m] positive to the left
+  std::vector<ConflictZone> conflict_zones;  ///< in order
+  std::vector<LaneStop> stops;               ///< lanes: in order
+  std::vector<double>
+      lines;  ///< lanes: where robots on it wait for conflict_zones of the lane and of its exits, in order
   std::vector<std::uint32_t> out;  ///< lanes: ways that leave it
 };
 
@@ -85,18 +86,18 @@ double yaw_on(const Way& way, double s);
 double curvature_on(const Way& way, double s);
 
 /// Where a robot may be.
-struct Place {
+struct RoadPosition {
   std::uint32_t way = 0;
   double s = 0.0;       ///< [m] along the way
   double offset = 0.0;  ///< [m] >= 0 from its line
 };
 
 /// The likeliest ways of one robot, the nearest first; few.
-struct Places {
-  std::array<Place, 8> all;
+struct RoadPositions {
+  std::array<RoadPosition, 8> all;
   std::uint32_t count = 0;
-  const Place* begin() const { return all.data(); }
-  const Place* end() const { return all.data() + count; }
+  const RoadPosition* begin() const { return all.data(); }
+  const RoadPosition* end() const { return all.data() + count; }
 };
 
 /// A way on in the graph: nodes are rows of `RoadNetwork::index`.
@@ -108,12 +109,12 @@ struct Edge {
 };
 
 /// Immutable after construction; any number of threads. The network and the world must outlive it.
-class Corridors {
+class LaneCorridors {
  public:
-  Corridors(const world::RoadNetwork& roads, const world::World& world, const RoadBody& body);
+  LaneCorridors(const world::RoadNetwork& roads, const world::World& world, const RoadFootprint& body);
 
   const world::RoadNetwork& roads() const { return roads_; }
-  const RoadBody& body() const { return body_; }
+  const RoadFootprint& body() const { return body_; }
   const std::vector<Way>& ways() const { return ways_; }
   const Way& way(std::uint32_t row) const { return ways_[row]; }
   /// The way of a lane is the lane's own row.
@@ -121,7 +122,7 @@ class Corridors {
   std::uint32_t node_of(world::PointRef at) const;
 
   /// Ways within `reach` [m] of the robot that run in its direction (to 45 degrees), nearest first.
-  Places places(const Pose& X_WM, double reach) const;
+  RoadPositions positions(const Pose& X_WM, double reach) const;
   /// Within the perimeter of the zone, or half a radius beyond: spots may be entered from its very rim.
   bool inside(std::uint32_t zone, glm::dvec2 p) const;
   /// The origin of a robot that is parked in a spot.
@@ -137,16 +138,16 @@ class Corridors {
   std::uint32_t add_way(Way way, const world::Curve& line);
   void add_edge(world::PointRef from, world::PointRef to, std::uint32_t way, double from_s, double to_s, double extra);
   void fill_grid();
-  void find_meetings();
-  void find_meetings(std::uint32_t way);
+  void find_conflicts();
+  void find_conflicts(std::uint32_t way);
   bool joined(std::uint32_t a, std::uint32_t b) const;
-  void make_gates(Way& way, std::vector<Meeting> meetings) const;
+  void make_conflict_zones(Way& way, std::vector<Conflict> conflicts) const;
   void make_lines();
   template <class F>
   void near(glm::dvec2 p, double reach, F&& visit) const;
 
   const world::RoadNetwork& roads_;
-  RoadBody body_;
+  RoadFootprint body_;
   double clearance_;
   double step_;
   std::vector<Way> ways_;
@@ -165,7 +166,7 @@ class Corridors {
 };
 
 template <class F>
-void Corridors::near(glm::dvec2 p, double reach, F&& visit) const {
+void LaneCorridors::near(glm::dvec2 p, double reach, F&& visit) const {
   const auto cell = [&](double v, double low, std::int64_t most) {
     const double at = std::floor((v - low) / cell_);
     return at < 0.0 ? std::int64_t{-1} : at >= static_cast<double>(most) ? most : static_cast<std::int64_t>(at);
@@ -183,7 +184,7 @@ void Corridors::near(glm::dvec2 p, double reach, F&& visit) const {
 
 /// The same corridors for all robots of one shape on one network, as long as any of them has them: they are large, and
 /// one table in the processor's cache serves a crowd. Any thread.
-std::shared_ptr<const Corridors> shared_corridors(const world::RoadNetwork& roads, const world::World& world,
-                                                  const RoadBody& body);
+std::shared_ptr<const LaneCorridors> shared_lane_corridors(const world::RoadNetwork& roads, const world::World& world,
+                                                           const RoadFootprint& body);
 
 }  // namespace sf::control

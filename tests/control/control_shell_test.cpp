@@ -1,4 +1,4 @@
-#include "control/shell.h"
+#include "control/control_shell.h"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@ namespace {
 class Counting final : public Controller {
  public:
   explicit Counting(int steps, int& count) : steps_(steps), count_(count) {}
-  base::Twist step(const Input&) override { return {1.0 + ++count_, 0.0, 0.0}; }
+  base::Twist step(const ControllerInput&) override { return {1.0 + ++count_, 0.0, 0.0}; }
   base::Intent intent() const override { return {.follows = 7}; }
-  double radio() const override { return 3.0; }
+  double v2v_range() const override { return 3.0; }
   bool done() const override { return count_ >= steps_; }
   double error() const override { return 0.5; }
 
@@ -25,15 +25,15 @@ class Counting final : public Controller {
 
 struct Moment {
   bool contact, started;
-  ShellState state;
+  ControlShellState state;
   bool moves;
   const char* why;
 };
 
-void live(const ShellSettings& settings, std::initializer_list<Moment> moments, int steps = 100) {
+void live(const ControlShellSettings& settings, std::initializer_list<Moment> moments, int steps = 100) {
   int count = 0;
-  Shell shell(std::make_unique<Counting>(steps, count), settings);
-  EXPECT_EQ(shell.state(), ShellState::start);
+  ControlShell shell(std::make_unique<Counting>(steps, count), settings);
+  EXPECT_EQ(shell.state(), ControlShellState::start);
   std::int64_t time = 0;
   for (const Moment& m : moments) {
     const int before = count;
@@ -44,10 +44,10 @@ void live(const ShellSettings& settings, std::initializer_list<Moment> moments, 
   }
 }
 
-constexpr auto kStart = ShellState::start, kControl = ShellState::control, kWait = ShellState::wait,
-               kStop = ShellState::stop;
+constexpr auto kStart = ControlShellState::start, kControl = ControlShellState::control,
+               kWait = ControlShellState::wait, kStop = ControlShellState::stop;
 
-TEST(Shell, starts_at_once_or_on_the_signal) {
+TEST(ControlShell, starts_at_once_or_on_the_signal) {
   live({.on_signal = false}, {{false, false, kControl, true, "no signal is needed"}});
   live({.on_signal = true}, {{false, false, kStart, false, "no signal yet"},
                              {true, false, kStart, false, "a bumper is no signal"},
@@ -55,7 +55,7 @@ TEST(Shell, starts_at_once_or_on_the_signal) {
                              {false, false, kControl, true, "given once is enough"}});
 }
 
-TEST(Shell, waits_while_the_bumper_is_pressed) {
+TEST(ControlShell, waits_while_the_bumper_is_pressed) {
   live({}, {{false, true, kControl, true, "free"},
             {true, true, kWait, false, "pressed"},
             {true, true, kWait, false, "still pressed"},
@@ -65,7 +65,7 @@ TEST(Shell, waits_while_the_bumper_is_pressed) {
   live({.wait_on_bumper = false}, {{true, true, kControl, true, "it looks after itself"}});
 }
 
-TEST(Shell, stops_for_good_when_the_controller_is_done) {
+TEST(ControlShell, stops_for_good_when_the_controller_is_done) {
   live({},
        {{false, true, kControl, true, "first step"},
         {false, true, kStop, false, "done with the second"},
@@ -75,35 +75,35 @@ TEST(Shell, stops_for_good_when_the_controller_is_done) {
 }
 
 // A controller that can say why it stands.
-class Stating final : public Controller, public StatesReason {
+class Stating final : public Controller, public StatesStopReason {
  public:
-  base::Twist step(const Input&) override { return {}; }
-  std::string reason() const override { return "it has one"; }
+  base::Twist step(const ControllerInput&) override { return {}; }
+  std::string stop_reason() const override { return "it has one"; }
 };
 
-TEST(Shell, says_why_it_stands) {
-  Shell shell(std::make_unique<Stating>(), {.on_signal = true});
+TEST(ControlShell, says_why_it_stands) {
+  ControlShell shell(std::make_unique<Stating>(), {.on_signal = true});
   shell.step({.started = false});
-  EXPECT_EQ(reason_of(shell), "the start signal was not given");
+  EXPECT_EQ(stop_reason_of(shell), "the start signal was not given");
   shell.step({});
-  EXPECT_EQ(reason_of(shell), "it has one");
+  EXPECT_EQ(stop_reason_of(shell), "it has one");
   shell.step({.contact = true});
-  EXPECT_EQ(reason_of(shell), "its bumper is pressed, or something refused its last motion");
+  EXPECT_EQ(stop_reason_of(shell), "its bumper is pressed, or something refused its last motion");
   int count = 0;
-  EXPECT_EQ(reason_of(Counting(1, count)), "") << "not every controller can";
+  EXPECT_EQ(stop_reason_of(Counting(1, count)), "") << "not every controller can";
 }
 
-TEST(Shell, passes_on_what_the_controller_tells) {
+TEST(ControlShell, passes_on_what_the_controller_tells) {
   int count = 0;
-  const Shell shell(std::make_unique<Counting>(1, count), {});
+  const ControlShell shell(std::make_unique<Counting>(1, count), {});
   EXPECT_EQ(shell.intent().follows, 7u);
-  EXPECT_EQ(shell.radio(), 3.0);
+  EXPECT_EQ(shell.v2v_range(), 3.0);
   EXPECT_FALSE(shell.done());
 }
 
 // ---- By name.
 
-Plan plan_of(std::string name, std::vector<Setting> settings = {}) {
+ControllerConfig plan_of(std::string name, std::vector<Setting> settings = {}) {
   return {.controller = name, .rate = 0.0, .settings = Settings("controller '" + name + "'", std::move(settings))};
 }
 
@@ -117,13 +117,15 @@ world::World small_world() {
   return world;
 }
 
-const Shell& made_shell(const Made& made) { return dynamic_cast<const Shell&>(*made.controller); }
+const ControlShell& made_shell(const ConfiguredController& made) {
+  return dynamic_cast<const ControlShell&>(*made.controller);
+}
 
 TEST(MakeController, puts_every_kind_into_a_shell_with_its_own_defaults) {
   const world::World world = small_world();
-  Made wander = make_controller({world}, plan_of("wander"));
-  Made avoid = make_controller({world}, plan_of("avoid"));
-  const Input pressed{.state = {.X_WM = {2, 2, 0, 0}}, .contact = true};
+  ConfiguredController wander = make_controller({world}, plan_of("wander"));
+  ConfiguredController avoid = make_controller({world}, plan_of("avoid"));
+  const ControllerInput pressed{.state = {.X_WM = {2, 2, 0, 0}}, .contact = true};
   wander.controller->step(pressed);
   avoid.controller->step(pressed);
   EXPECT_EQ(made_shell(wander).state(), kControl) << "wander looks after itself";
@@ -132,7 +134,7 @@ TEST(MakeController, puts_every_kind_into_a_shell_with_its_own_defaults) {
 
 TEST(MakeController, takes_the_settings_of_the_shell) {
   const world::World world = small_world();
-  Made made =
+  ConfiguredController made =
       make_controller({world}, plan_of("wander", {{"start", std::string("signal"), ""}, {"wait_on_bumper", true, ""}}));
   made.controller->step({.started = false});
   EXPECT_EQ(made_shell(made).state(), kStart);
@@ -140,7 +142,7 @@ TEST(MakeController, takes_the_settings_of_the_shell) {
   EXPECT_EQ(made_shell(made).state(), kWait);
 }
 
-std::string refusal(const world::World& world, Plan plan) {
+std::string refusal(const world::World& world, ControllerConfig plan) {
   try {
     make_controller({world}, std::move(plan));
   } catch (const base::InputError& error) {

@@ -17,16 +17,16 @@ struct Clearance {
   double right = 0.0;  ///< [m] the same to the right
 };
 
-class Surroundings {
+class ClearanceEstimator {
  public:
-  explicit Surroundings(const world::Mover& mover);
+  explicit ClearanceEstimator(const world::Mover& mover);
 
   /// How far ahead of the body the sensors see. [m]; 0: there is none that looks forward
-  double sight() const { return sight_; }
+  double range() const { return range_; }
 
   /// Readings of other kinds or sensors are left out. A range that is not a number says nothing; one at or beyond
   /// range_max says that the beam is free. No readings: free ahead, as far left as right.
-  Clearance look(std::span<const base::ReadingBlock> readings) const;
+  Clearance estimate(std::span<const base::ReadingBlock> readings) const;
 
  private:
   struct Beam {
@@ -44,7 +44,7 @@ class Surroundings {
   std::vector<View> views_;  ///< one per laser
   double front_ = 0.0;       ///< [m] from the origin to the body's front
   double half_width_ = 0.0;  ///< [m] of the lane the body needs
-  double sight_ = 0.0;
+  double range_ = 0.0;
 };
 
 }  // namespace sf::control

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "control/corridor.h"
+#include "control/lane_corridors.h"
 
 namespace sf::control {
 
@@ -13,7 +13,7 @@ constexpr double kAlike = 0.7;  // cosine of the angle between a robot and its w
 
 }  // namespace
 
-void Corridors::fill_grid() {
+void LaneCorridors::fill_grid() {
   glm::dvec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
   for (const Way& way : ways_)
     for (const glm::dvec2& p : way.points) {
@@ -45,7 +45,7 @@ void Corridors::fill_grid() {
   }
 }
 
-Places Corridors::places(const Pose& X_WM, double reach) const {
+RoadPositions LaneCorridors::positions(const Pose& X_WM, double reach) const {
   const glm::dvec2 p{X_WM.x, X_WM.y};
   const glm::dvec2 facing{std::cos(X_WM.yaw), std::sin(X_WM.yaw)};
   // The nearest sample of each way, the nearest ways first.
@@ -69,26 +69,26 @@ Places Corridors::places(const Pose& X_WM, double reach) const {
     if (count < found.size()) found[count++] = {sample.way, sample.index, dd};
   });
 
-  Places places;
+  RoadPositions positions;
   for (std::size_t i = 0; i < count; ++i) {
     const Way& way = ways_[found[i].way];
     const glm::dvec2 along = way.tangents[found[i].index];
     const glm::dvec2 d = p - way.points[found[i].index];
     const double s = static_cast<double>(found[i].index) * way.step + dot(d, along);
     if (s < -1e-6 || s > way.length + 1e-6) continue;  // beyond its ends
-    const Place place{found[i].way, s, std::abs(base::cross(along, d))};
+    const RoadPosition place{found[i].way, s, std::abs(base::cross(along, d))};
     if (place.offset > reach) continue;
     // In order of offset, then of rows.
-    std::uint32_t at = places.count;
-    while (at > 0 && (places.all[at - 1].offset > place.offset ||
-                      (places.all[at - 1].offset == place.offset && places.all[at - 1].way > place.way)))
+    std::uint32_t at = positions.count;
+    while (at > 0 && (positions.all[at - 1].offset > place.offset ||
+                      (positions.all[at - 1].offset == place.offset && positions.all[at - 1].way > place.way)))
       --at;
-    if (at == places.all.size()) continue;
-    places.count = std::min(places.count + 1, static_cast<std::uint32_t>(places.all.size()));
-    for (std::uint32_t k = places.count - 1; k > at; --k) places.all[k] = places.all[k - 1];
-    places.all[at] = place;
+    if (at == positions.all.size()) continue;
+    positions.count = std::min(positions.count + 1, static_cast<std::uint32_t>(positions.all.size()));
+    for (std::uint32_t k = positions.count - 1; k > at; --k) positions.all[k] = positions.all[k - 1];
+    positions.all[at] = place;
   }
-  return places;
+  return positions;
 }
 
 }  // namespace sf::control

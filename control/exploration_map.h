@@ -17,13 +17,13 @@ namespace sf::control {
 /// Node of the lattice, row by row as the map's cells.
 using Node = std::int32_t;
 
-class Terrain {
+class ExplorationMap {
  public:
   /// @param radius [m] of the body @param reach [m] >= radius, of anything on it: it stays this far within the map
-  Terrain(const maps::GridGeometry& plan, double radius, double reach);
+  ExplorationMap(const maps::GridGeometry& plan, double radius, double reach);
 
   /// Ground that no laser has to look at first, since the robot stands there.
-  void stand(glm::dvec2 p, double radius);
+  void mark_free(glm::dvec2 p, double radius);
   /// @return whether it told anything new
   bool add(const maps::ScanView& scan);
   /// Something was met at `p`.
@@ -31,24 +31,24 @@ class Terrain {
 
   const maps::OccupancyGrid& grid() const { return grid_; }
   Node columns() const { return columns_; }
-  Node nodes() const { return static_cast<Node>(solid_.size()); }
+  Node nodes() const { return static_cast<Node>(occupied_.size()); }
   double cell() const { return cell_; }  ///< [m] of the lattice
   bool contains(glm::dvec2 p) const;
   Node node_at(glm::dvec2 p) const;  ///< Rule: contains(p)
   glm::dvec2 place(Node node) const;
 
-  /// [m] from a node to the nearest surface point; kFarFromBody beyond the body's radius: no nearer one
+  /// [m] from a node to the nearest surface point; kMaxClearance beyond the body's radius: no nearer one
   float clearance(Node node) const { return clearance_[static_cast<std::size_t>(node)]; }
   /// A body there would cover ground never seen, or leave the map.
-  bool over_unknown(Node node) const { return unknown_[static_cast<std::size_t>(node)] != 0; }
+  bool covers_unknown(Node node) const { return unknown_[static_cast<std::size_t>(node)] != 0; }
   /// A surface passes through the node's square.
-  bool solid(Node node) const { return solid_[static_cast<std::size_t>(node)] != 0; }
+  bool occupied(Node node) const { return occupied_[static_cast<std::size_t>(node)] != 0; }
   bool explored(Node node) const { return explored_[static_cast<std::size_t>(node)] != 0; }
 
   /// [m] from `p` to the nearest surface point, at most `most`.
   double nearest(glm::dvec2 p, double most) const;
 
-  static constexpr double kFarFromBody = 0.06;  ///< [m]
+  static constexpr double kMaxClearance = 0.06;  ///< [m]
 
  private:
   void mark_line(glm::dvec2 a, glm::dvec2 b);
@@ -64,8 +64,8 @@ class Terrain {
   std::vector<std::uint8_t> taken_;  ///< one bit per fine square that holds a point
   std::vector<float> clearance_;
   std::vector<std::uint16_t> unknown_;  ///< unexplored cells whose middle is under the body
-  std::vector<std::uint8_t> solid_, explored_;
-  std::vector<std::uint8_t> stood_;  ///< per cell of the map
+  std::vector<std::uint8_t> occupied_, explored_;
+  std::vector<std::uint8_t> driven_;  ///< per cell of the map
 };
 
 }  // namespace sf::control

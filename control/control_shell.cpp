@@ -1,0 +1,54 @@
+#include "control/control_shell.h"
+
+#include <utility>
+
+#include "base/error.h"
+
+namespace sf::control {
+
+ControlShellSettings read_control_shell_settings(Settings& settings, bool stops_on_bumper) {
+  ControlShellSettings read;
+  read.on_signal = settings.choice("start", "at-once", {"at-once", "signal"}) == "signal";
+  read.wait_on_bumper = settings.flag("wait_on_bumper", stops_on_bumper);
+  return read;
+}
+
+ControlShell::ControlShell(std::unique_ptr<Controller> inner, const ControlShellSettings& settings)
+    : inner_(std::move(inner)), settings_(settings) {
+  SF_CHECK(inner_ != nullptr, "a shell without a controller");
+}
+
+base::Twist ControlShell::step(const ControllerInput& input) {
+  change(input);
+  stepped_ = state_ == ControlShellState::control;
+  if (!stepped_) return {};
+  const base::Twist twist = inner_->step(input);
+  if (!inner_->done()) return twist;
+  state_ = ControlShellState::stop;
+  return {};
+}
+
+double ControlShell::error() const { return stepped_ ? inner_->error() : Controller::error(); }
+
+std::string ControlShell::stop_reason() const {
+  if (state_ == ControlShellState::start) return "the start signal was not given";
+  if (state_ == ControlShellState::wait) return "its bumper is pressed, or something refused its last motion";
+  return state_ == ControlShellState::control ? stop_reason_of(*inner_) : "";
+}
+
+std::string stop_reason_of(const Controller& controller) {
+  const auto* states = dynamic_cast<const StatesStopReason*>(&controller);
+  return states == nullptr ? std::string() : states->stop_reason();
+}
+
+void ControlShell::change(const ControllerInput& input) {
+  if (state_ == ControlShellState::start && (!settings_.on_signal || input.started))
+    state_ = ControlShellState::control;
+  const bool pressed = settings_.wait_on_bumper && input.contact;
+  if (state_ == ControlShellState::control && pressed)
+    state_ = ControlShellState::wait;
+  else if (state_ == ControlShellState::wait && !pressed)
+    state_ = ControlShellState::control;
+}
+
+}  // namespace sf::control
