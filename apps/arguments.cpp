@@ -123,13 +123,13 @@ void add_accuracy(CLI::App& app, Options& o) {
       ->type_name("WORDS");
 }
 
-void add_wish(CLI::App& app, Options& o) {
+void add_accuracy_target(CLI::App& app, Options& o) {
   app.add_option_function<std::vector<std::string>>(
          "--max-error",
          [&o](const std::vector<std::string>& texts) {
            for (const std::string& text : texts) {
              const Quantity q = *read_quantity(text);
-             (q.is_tesla ? o.wish.tesla : o.wish.metres) = q.value;
+             (q.is_tesla ? o.accuracy_target.tesla : o.accuracy_target.metres) = q.value;
            }
          },
          "Largest error wanted, with its unit: 5mm for what measures lengths, 2uT for fields (may be given for both)")
@@ -139,23 +139,23 @@ void add_wish(CLI::App& app, Options& o) {
   app.add_option_function<std::string>(
          "--by",
          [&o](const std::string& text) {
-           o.wish.by = text == "median" ? scenarios::Judged::median
-                       : text == "p99"  ? scenarios::Judged::p99
-                                        : scenarios::Judged::max;
+           o.accuracy_target.by = text == "median" ? scenarios::ErrorMeasure::median
+                                  : text == "p99"  ? scenarios::ErrorMeasure::p99
+                                                   : scenarios::ErrorMeasure::max;
          },
          "Which error is meant: the largest, that of 99 % of all readings, or the median")
       ->check(one_of({"max", "p99", "median"}))
       ->type_name("max|p99|median")
       ->default_str("max");
   app.add_option_function<std::string>(
-         "--min-rate", [&o](const std::string& text) { o.wish.least_rate = *read_rate(text); },
+         "--min-rate", [&o](const std::string& text) { o.accuracy_target.least_rate = *read_rate(text); },
          "Ticks per second wanted: the most accurate modes that allow it")
       ->check(rate())
       ->type_name("HZ");
 }
 
 void add_automatic(CLI::App& app, Options& o) {
-  add_wish(app, o);
+  add_accuracy_target(app, o);
   auto* automatic = app.add_flag(
       "--auto", o.automatic, "Measure the modes here first, and take those that --max-error or --min-rate comes to");
   for (const char* wish : {"--max-error", "--min-rate", "--by"}) app.get_option(wish)->needs(automatic);

@@ -38,7 +38,7 @@ void add_device(CLI::App& app, Options& o);
 void add_world(CLI::App& app, Options& o);
 void add_accuracy(CLI::App& app, Options& o);
 /// What errors are allowed, or which rate is wanted.
-void add_wish(CLI::App& app, Options& o);
+void add_accuracy_target(CLI::App& app, Options& o);
 /// `--auto`, with a wish.
 void add_automatic(CLI::App& app, Options& o);
 void add_no_return(CLI::App& app, Options& o);

@@ -30,7 +30,7 @@ ControlTally::ControlTally(const scenarios::Simulation& simulation, std::size_t 
   for (std::uint32_t m = 0; m < movers; ++m) facts_.robots += simulation.controller(m) != nullptr;
 }
 
-void ControlTally::look(const base::TickRecord& tick) {
+void ControlTally::update(const base::TickRecord& tick) {
   time_ = tick.time;
   for (std::uint32_t m = 0; m < goals_.size(); ++m) {
     const control::Controller* controller = simulation_.controller(m);
@@ -42,7 +42,7 @@ void ControlTally::look(const base::TickRecord& tick) {
     rest.contact = tick.contacts[m] != 0;
     if (!simulation_.stepped(m)) continue;
     add(facts_.error, controller->error());
-    goals_[m].look(controller->intent().checkpoint);
+    goals_[m].update(controller->intent().checkpoint);
   }
 }
 

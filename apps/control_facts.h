@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/run_metrics.h"
 #include "scenarios/simulation.h"
-#include "scenarios/watch.h"
 
 namespace sf::apps {
 
@@ -53,7 +53,7 @@ class ControlTally {
   ControlTally(const scenarios::Simulation& simulation, std::size_t movers, std::string controller);
 
   /// After every `Simulation::step`, with what it gave.
-  void look(const base::TickRecord& tick);
+  void update(const base::TickRecord& tick);
   ControlFacts facts(const world::World& world) const;
 
  private:
@@ -67,9 +67,9 @@ class ControlTally {
   };
   std::vector<Standing> standing(const world::World& world) const;
 
-  std::vector<scenarios::Goals> goals_;  ///< per mover
-  std::vector<Rest> rests_;              ///< per mover
-  std::int64_t time_ = 0;                ///< [ns] of the last tick
+  std::vector<scenarios::CheckpointProgress> goals_;  ///< per mover
+  std::vector<Rest> rests_;                           ///< per mover
+  std::int64_t time_ = 0;                             ///< [ns] of the last tick
 };
 
 }  // namespace sf::apps

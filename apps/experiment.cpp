@@ -35,7 +35,7 @@ std::string folder_of(const Options& options) {
 }
 
 int list_all() {
-  for (const scenarios::ExperimentKind* kind : scenarios::experiments())
+  for (const scenarios::ExperimentType* kind : scenarios::experiments())
     std::fputs(fmt::format("{:<14} {}; plant {}\n", kind->name, kind->summary, name_of(kind->plant)).c_str(), stdout);
   return 0;
 }

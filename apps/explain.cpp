@@ -21,15 +21,15 @@ std::string bytes_text(std::size_t bytes) {
                            : fmt::format("{} B", bytes);
 }
 
-std::string rates_of(const scenarios::ExplainedKind& k) {
+std::string rates_of(const scenarios::SensorTypeCost& k) {
   return k.least_rate == k.most_rate ? fmt::format("{:g} Hz", k.most_rate)
                                      : fmt::format("{:g} to {:g} Hz", k.least_rate, k.most_rate);
 }
 
-std::string work_of(const scenarios::ExplainedKind& k, double ticks) {
+std::string work_of(const scenarios::SensorTypeCost& k, double ticks) {
   const auto each = [&](std::uint64_t count) { return static_cast<double>(count) / ticks; };
   std::string text = fmt::format("{:.4g} readings", k.readings);
-  if (k.again > 0.0) text += fmt::format(", {:.4g} of them given again since nothing moved", k.again);
+  if (k.reused > 0.0) text += fmt::format(", {:.4g} of them given again since nothing moved", k.reused);
   if (k.work.rays > 0)
     text += fmt::format(", {:.4g} rays, {:.3g} lists built anew", each(k.work.rays), each(k.work.cells_built));
   if (k.work.uncertain > 0)
@@ -44,7 +44,7 @@ std::string work_of(const scenarios::ExplainedKind& k, double ticks) {
   return text;
 }
 
-std::string text_of(const scenarios::ExplainedKind& k, const scenarios::Explanation& e) {
+std::string text_of(const scenarios::SensorTypeCost& k, const scenarios::Explanation& e) {
   std::string text =
       fmt::format("{}: {} on {}, {}\n", k.kind, counted(k.sensors, "sensor"), counted(k.robots, "robot"), rates_of(k));
   text += row("a tick", fmt::format("{:.3f} ms heard {}, {:.3f} ms more than nobody heard", 1e3 * k.tick,
@@ -65,7 +65,7 @@ std::string text_of(const scenarios::ExplainedKind& k, const scenarios::Explanat
 
 std::string text_of(const scenarios::Explanation& e) {
   std::string text;
-  for (const scenarios::ExplainedKind& kind : e.kinds) text += text_of(kind, e);
+  for (const scenarios::SensorTypeCost& kind : e.kinds) text += text_of(kind, e);
   text += "together\n";
   text +=
       row("a tick", fmt::format("{:.3f} ms with all heard, {:.4f} ms with nobody heard", 1e3 * e.all, 1e3 * e.silent));
@@ -73,7 +73,7 @@ std::string text_of(const scenarios::Explanation& e) {
   text += row("to start", fmt::format("{:.0f} ms to build, {:.0f} ms the first tick", 1e3 * e.build, 1e3 * e.first));
   if (e.resident > 0)
     text += row("memory", bytes_text(e.resident) + " resident, the driver and this measurement included");
-  for (const scenarios::Slice& s : e.slices)
+  for (const scenarios::WallSlice& s : e.slices)
     text += row("slice", fmt::format("z = {:g} m: {} of {} wall segments can be met by {}", s.z, s.walls, e.walls,
                                      counted(s.sensors, "laser")));
   if (!e.absent.empty()) text += row("not built", fmt::format("{}: the world has none", fmt::join(e.absent, ", ")));

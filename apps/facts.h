@@ -94,8 +94,8 @@ std::string text_of(const scenarios::Verification& verification, bool recorded);
 std::string json_of(const scenarios::Verification& verification);
 std::string text_of(const scenarios::Explanation& explanation);
 std::string json_of(const scenarios::Explanation& explanation);
-std::string text_of(const std::vector<scenarios::Grade>& grades);
-std::string json_of(const std::vector<scenarios::Grade>& grades, const scenarios::Wish& wish);
+std::string text_of(const std::vector<scenarios::ModeResult>& results);
+std::string json_of(const std::vector<scenarios::ModeResult>& results, const scenarios::AccuracyTarget& target);
 std::string text_of(const SelfTest& test);
 std::string json_of(const SelfTest& test);
 /// Where robot and sensor stood, in one line for people.

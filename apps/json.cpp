@@ -303,7 +303,7 @@ std::string json_of(const RobotFacts& f) {
 }
 
 std::string json_of(const scenarios::Verification& verification) {
-  const auto compared = [](const scenarios::Compared& c) {
+  const auto compared = [](const scenarios::Comparison& c) {
     return Json{{"kind", c.kind},           {"readings", c.readings}, {"numbers", c.values},
                 {"different", c.different}, {"largest", c.largest},   {"first", c.first}};
   };
@@ -316,7 +316,7 @@ std::string json_of(const scenarios::Verification& verification) {
             {"skipped", verification.skipped},
             {"reference", compared(verification.reference)}};
   json["again"] = Json::array();
-  for (const scenarios::Compared& c : verification.again) json["again"].push_back(compared(c));
+  for (const scenarios::Comparison& c : verification.recomputed) json["again"].push_back(compared(c));
   return print(json);
 }
 
@@ -348,9 +348,9 @@ std::string json_of(const scenarios::Explanation& e) {
             {"walls", e.walls},        {"resident_bytes", e.resident},
             {"absent", e.absent},      {"kinds", Json::array()},
             {"slices", Json::array()}, {"accuracy", statements_json(e.statements)}};
-  for (const scenarios::Slice& s : e.slices)
+  for (const scenarios::WallSlice& s : e.slices)
     json["slices"].push_back({{"z_m", s.z}, {"sensors", s.sensors}, {"walls", s.walls}});
-  for (const scenarios::ExplainedKind& k : e.kinds) {
+  for (const scenarios::SensorTypeCost& k : e.kinds) {
     Json tables = Json::array();
     for (const gpu::DeviceAllocation& h : k.tables) tables.push_back({{"name", h.name}, {"bytes", h.bytes}});
     json["kinds"].push_back({{"kind", k.kind},
@@ -359,7 +359,7 @@ std::string json_of(const scenarios::Explanation& e) {
                              {"rate_hz", {k.least_rate, k.most_rate}},
                              {"tick_s", k.tick},
                              {"readings_per_tick", k.readings},
-                             {"given_again_per_tick", k.again},
+                             {"given_again_per_tick", k.reused},
                              {"rays", k.work.rays},
                              {"doubts", k.work.uncertain},
                              {"cells_built", k.work.cells_built},
@@ -374,9 +374,10 @@ std::string json_of(const scenarios::Explanation& e) {
   return print(json);
 }
 
-std::string json_of(const std::vector<scenarios::Grade>& grades, const scenarios::Wish& wish) {
-  Json json{{"modes", Json::array()}, {"advice", scenarios::words_of(grades, scenarios::advise(grades, wish))}};
-  for (const scenarios::Grade& g : grades)
+std::string json_of(const std::vector<scenarios::ModeResult>& results, const scenarios::AccuracyTarget& target) {
+  Json json{{"modes", Json::array()},
+            {"advice", scenarios::accuracy_words(results, scenarios::select_modes(results, target))}};
+  for (const scenarios::ModeResult& g : results)
     json["modes"].push_back({{"sensor", g.sensor},
                              {"mode", g.mode},
                              {"unit", g.unit},

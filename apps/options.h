@@ -68,8 +68,8 @@ struct Options {
   std::vector<std::string> scenarios;     ///< files, for `test`
   std::string junit;                      ///< file; empty: none
 
-  scenarios::Wish wish;    ///< for `tradeoff`'s advice, and for `automatic`
-  bool automatic = false;  ///< measure first, and take the modes that the wish comes to
+  scenarios::AccuracyTarget accuracy_target;  ///< for `tradeoff`'s advice, and for `automatic`
+  bool automatic = false;                     ///< measure first, and take the modes that the wish comes to
 
   std::vector<std::string> cases;  ///< of `selftest`, or groups of them; empty: all
 

@@ -101,7 +101,7 @@ void RobotProcess::hear(const netio::Packet& packet, std::int64_t now) {
   }
   const std::uint32_t row = names_.robots.at(packet.header.robot);
   intents_[row] = {state->follows, state->checkpoint, state->docking};
-  body_.hear(row, state->X_WR, state->velocity, now);
+  body_.update_other(row, state->X_WR, state->velocity, now);
 }
 
 void RobotProcess::decide(std::int64_t now) {

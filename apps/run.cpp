@@ -165,7 +165,7 @@ int run(const Options& options) {
     Progress progress("simulating");
     for (; facts.ticks < ticks && !stop_requested(); ++facts.ticks) {
       const base::TickRecord tick = advised(world, options, [&] { return simulation.step(); });
-      tally.look(tick);
+      tally.update(tick);
       // Motion and readings of a tick are worked out at its end, so what is due on the way is sent a tick later.
       outputs.write(tick, [&](std::int64_t time) {
         if (options.real_time) keep_pace(start, 1e-9 * static_cast<double>(time) + world.interval);

@@ -16,14 +16,16 @@ namespace sf::apps {
 
 namespace {
 
-const char* word_of(scenarios::Verdict verdict) {
-  return verdict == scenarios::Verdict::passed ? "pass" : verdict == scenarios::Verdict::failed ? "FAIL" : "none";
+const char* word_of(scenarios::ScenarioStatus status) {
+  return status == scenarios::ScenarioStatus::passed   ? "pass"
+         : status == scenarios::ScenarioStatus::failed ? "FAIL"
+                                                       : "none";
 }
 
 std::string text_of(const scenarios::ScenarioResult& result) {
-  std::string text = fmt::format("{} {}: {:.1f} s simulated in {:.2f} s, {}\n", word_of(result.verdict()), result.file,
+  std::string text = fmt::format("{} {}: {:.1f} s simulated in {:.2f} s, {}\n", word_of(result.status()), result.file,
                                  result.simulated, result.wall, result.name);
-  for (const scenarios::Outcome& o : result.outcomes)
+  for (const scenarios::ExpectationResult& o : result.outcomes)
     text +=
         fmt::format("  {} {:<28} expected {:<14} got {}\n", o.met ? "pass" : "FAIL", o.what, o.expected, o.measured);
   if (result.outcomes.empty()) text += "  nothing expected; see [expect] in docs/scenarios.md\n";
@@ -66,7 +68,7 @@ int test_scenarios(const Options& options) {
       results.push_back(scenarios::run_scenario(scenario, device, [&](double part) { progress.show(part); }));
     }
     std::fputs(text_of(results.back()).c_str(), stdout);
-    passed = passed && results.back().verdict() != scenarios::Verdict::failed;
+    passed = passed && results.back().status() != scenarios::ScenarioStatus::failed;
   }
   if (!options.junit.empty()) write_junit(options.junit, results);
   return passed ? 0 : 1;

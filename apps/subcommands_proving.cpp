@@ -18,7 +18,7 @@ void add_experiment(CLI::App& app, Options& o) {
       "experiment", "Run one of the experiments: trials, statistics beside the thesis', figures, in one folder");
   auto* list = sub->add_flag("--list", o.list, "Name them all");
   std::vector<std::string> names;
-  for (const scenarios::ExperimentKind* kind : scenarios::experiments()) names.emplace_back(kind->name);
+  for (const scenarios::ExperimentType* kind : scenarios::experiments()) names.emplace_back(kind->name);
   auto* name = sub->add_option("experiment", o.experiment, either(names))->check(one_of(names))->type_name("NAME");
   auto* out =
       sub->add_option("-o,--out", o.out, "Folder to write into")->check(not_empty("a folder"))->type_name("DIR");
@@ -80,7 +80,7 @@ void add_tradeoff(CLI::App& app, Options& o) {
   sub->add_option("-o,--out", o.out, "Folder for tradeoff.csv and tradeoff.png")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
-  add_wish(*sub, o);
+  add_accuracy_target(*sub, o);
   sub->add_flag("--auto", o.automatic, "Print only the words that --accuracy takes, for scripts");
   add_json(*sub, o);
   add_device(*sub, o);

@@ -28,12 +28,12 @@ constexpr double kUsualMetres = 0.01;
 constexpr double kUsualTesla = 1e-6;
 
 /// Where nothing was wished for, a centimetre and a microtesla.
-scenarios::Wish wish_of(const Options& options) {
-  scenarios::Wish wish = options.wish;
-  if (wish.least_rate > 0.0 || std::isfinite(wish.metres) || std::isfinite(wish.tesla)) return wish;
-  wish.metres = kUsualMetres;
-  wish.tesla = kUsualTesla;
-  return wish;
+scenarios::AccuracyTarget wish_of(const Options& options) {
+  scenarios::AccuracyTarget target = options.accuracy_target;
+  if (target.least_rate > 0.0 || std::isfinite(target.metres) || std::isfinite(target.tesla)) return target;
+  target.metres = kUsualMetres;
+  target.tesla = kUsualTesla;
+  return target;
 }
 
 /// What is counted by the second.
@@ -41,24 +41,24 @@ std::string_view counted_as(const std::string& sensor) {
   return sensor == "laser" ? "rays" : sensor == "laneedge" ? "edges" : sensor == "magnetometer" ? "fields" : "readings";
 }
 
-std::string wish_text(const scenarios::Wish& wish) {
-  if (wish.least_rate > 0.0) return fmt::format("at {:g} Hz or more", wish.least_rate);
+std::string wish_text(const scenarios::AccuracyTarget& target) {
+  if (target.least_rate > 0.0) return fmt::format("at {:g} Hz or more", target.least_rate);
   constexpr std::string_view kBy[] = {"a median error", "99 % of errors", "every error"};
   std::string text;
-  if (std::isfinite(wish.metres)) text += quantity_text(wish.metres, "m");
-  if (std::isfinite(wish.tesla)) text += (text.empty() ? "" : " and ") + quantity_text(wish.tesla, "T");
-  return fmt::format("with {} within {}", kBy[static_cast<int>(wish.by)], text);
+  if (std::isfinite(target.metres)) text += quantity_text(target.metres, "m");
+  if (std::isfinite(target.tesla)) text += (text.empty() ? "" : " and ") + quantity_text(target.tesla, "T");
+  return fmt::format("with {} within {}", kBy[static_cast<int>(target.by)], text);
 }
 
-std::string advice_text(const std::vector<scenarios::Grade>& grades, const scenarios::Wish& wish) {
-  return fmt::format("{} {}: --accuracy \"{}\"\n", wish.least_rate > 0.0 ? "most accurate" : "fastest", wish_text(wish),
-                     scenarios::words_of(grades, scenarios::advise(grades, wish)));
+std::string advice_text(const std::vector<scenarios::ModeResult>& results, const scenarios::AccuracyTarget& target) {
+  return fmt::format("{} {}: --accuracy \"{}\"\n", target.least_rate > 0.0 ? "most accurate" : "fastest",
+                     wish_text(target), scenarios::accuracy_words(results, scenarios::select_modes(results, target)));
 }
 
-void draw(const std::string& world, const std::string& device, const std::vector<scenarios::Grade>& grades,
+void draw(const std::string& world, const std::string& device, const std::vector<scenarios::ModeResult>& results,
           const std::string& file) {
   std::vector<viz::TradeoffPanel> panels;
-  for (const scenarios::Grade& g : grades) {
+  for (const scenarios::ModeResult& g : results) {
     if (panels.empty() || panels.back().title != g.sensor)
       panels.push_back(
           {g.sensor,
@@ -75,14 +75,14 @@ void draw(const std::string& world, const std::string& device, const std::vector
 }
 
 void write(const Options& options, const world::World& world, const gpu::Device& device,
-           const std::vector<scenarios::Grade>& grades) {
+           const std::vector<scenarios::ModeResult>& results) {
   scenarios::make_folder(options.out);
   const std::filesystem::path folder(options.out);
-  scenarios::write_text((folder / "tradeoff.csv").string(), scenarios::csv_of(grades));
-  draw(world.name, device.info().name, grades, (folder / "tradeoff.png").string());
+  scenarios::write_text((folder / "tradeoff.csv").string(), scenarios::csv_of(results));
+  draw(world.name, device.info().name, results, (folder / "tradeoff.png").string());
 }
 
-std::vector<scenarios::Grade> measure(const world::World& world, gpu::Device& device, const Options& options) {
+std::vector<scenarios::ModeResult> measure(const world::World& world, gpu::Device& device, const Options& options) {
   Progress progress("measuring");
   return scenarios::tradeoff(world, device, {options.seed, options.threads, [&](double part) {
                                                progress.show(part);
@@ -92,12 +92,12 @@ std::vector<scenarios::Grade> measure(const world::World& world, gpu::Device& de
 
 }  // namespace
 
-std::string text_of(const std::vector<scenarios::Grade>& grades) {
+std::string text_of(const std::vector<scenarios::ModeResult>& results) {
   std::string text =
       fmt::format("{:<36}{:<35}  {}\n", "", "--- covered by a stated bound ---", "--- errors of all ---");
   text += fmt::format("{:<13} {:<8} {:>12} {:>11} {:>11} {:>11} {:>10} {:>10} {:>10}\n", "sensor", "mode", "per second",
                       "covered", "largest", "bound", "median", "99 %", "largest");
-  for (const scenarios::Grade& g : grades)
+  for (const scenarios::ModeResult& g : results)
     text += fmt::format("{:<13} {:<8} {:>12} {:>9.2f} % {:>11} {:>11} {:>10} {:>10} {:>10} {}\n", g.sensor, g.mode,
                         fmt::format("{:.4g}", g.rate), 100.0 * g.covered,
                         g.covered > 0.0 ? quantity_text(g.covered_max, g.unit) : "-", quantity_text(g.bound, g.unit),
@@ -106,18 +106,18 @@ std::string text_of(const std::vector<scenarios::Grade>& grades) {
   text += "* no other mode of the kind is as fast with 99 % of errors as small\n";
   text +=
       "A bound holds for the part that it covers; the others are flagged, and may be off by as much as all are.\n\n";
-  for (const scenarios::Grade& g : grades) text += fmt::format("{:<13} {:<8} {}\n", g.sensor, g.mode, g.what);
+  for (const scenarios::ModeResult& g : results) text += fmt::format("{:<13} {:<8} {}\n", g.sensor, g.mode, g.what);
   return text + "\n";
 }
 
 void choose_accuracy(world::World& world, gpu::Device& device, const Options& options) {
   if (!options.automatic) return;
   catch_stop_signals();
-  const scenarios::Wish wish = wish_of(options);
-  const auto grades = measure(world, device, options);
+  const scenarios::AccuracyTarget target = wish_of(options);
+  const auto results = measure(world, device, options);
   if (stop_requested()) return;
-  const std::string words = scenarios::words_of(grades, scenarios::advise(grades, wish));
-  std::fprintf(stderr, "sensorfarm: measured; %s: --accuracy \"%s\"\n", wish_text(wish).c_str(), words.c_str());
+  const std::string words = scenarios::accuracy_words(results, scenarios::select_modes(results, target));
+  std::fprintf(stderr, "sensorfarm: measured; %s: --accuracy \"%s\"\n", wish_text(target).c_str(), words.c_str());
   sensors::set_accuracy(world, words);
 }
 
@@ -125,18 +125,18 @@ int tradeoff(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   gpu::Device device(options.device);
   catch_stop_signals();
-  const scenarios::Wish wish = wish_of(options);
-  const auto grades = measure(world, device, options);
+  const scenarios::AccuracyTarget target = wish_of(options);
+  const auto results = measure(world, device, options);
   if (stop_requested()) throw base::InputError("interrupted: nothing was written");
-  if (grades.empty())
+  if (results.empty())
     throw base::InputError(world.file, 0,
                            "has no sensor that can be measured in more than one way; give a robot a laser( ), a "
                            "laneedge( ) or a magnetometer( )");
-  if (!options.out.empty()) write(options, world, device, grades);
-  const std::string words = scenarios::words_of(grades, scenarios::advise(grades, wish));
-  const std::string text = options.json        ? with_warnings(json_of(grades, wish), world.warnings)
+  if (!options.out.empty()) write(options, world, device, results);
+  const std::string words = scenarios::accuracy_words(results, scenarios::select_modes(results, target));
+  const std::string text = options.json        ? with_warnings(json_of(results, target), world.warnings)
                            : options.automatic ? words + "\n"
-                                               : text_of(grades) + advice_text(grades, wish);
+                                               : text_of(results) + advice_text(results, target);
   std::fputs(text.c_str(), stdout);
   return 0;
 }

@@ -15,7 +15,7 @@ namespace sf::apps {
 
 namespace {
 
-std::string line_of(const scenarios::Compared& c, const std::string& by) {
+std::string line_of(const scenarios::Comparison& c, const std::string& by) {
   const std::string verdict =
       c.different > 0   ? fmt::format("{} of {} numbers DIFFER, by up to {:.3g}", c.different, c.values, c.largest)
       : c.largest > 0.0 ? fmt::format("within what their modes may be off by: up to {:.3g}", c.largest)
@@ -29,7 +29,7 @@ std::string line_of(const scenarios::Compared& c, const std::string& by) {
 
 std::string text_of(const scenarios::Verification& v, bool readings_recorded) {
   std::string text = row("ticks", std::to_string(v.ticks));
-  for (const scenarios::Compared& c : v.again) text += line_of(c, "this device beside the recording");
+  for (const scenarios::Comparison& c : v.recomputed) text += line_of(c, "this device beside the recording");
   text += line_of(v.reference, readings_recorded ? "plain C++ beside the recording" : "plain C++ beside this device");
   if (v.reference.readings < v.scans)
     text += row("", fmt::format("a sample: {} of {} scans, spread evenly over the run (--all: every one)",

@@ -50,24 +50,25 @@ const sensors::SensorType& kind_called(std::string_view name) {
   return **found;
 }
 
-void add_map(Reference& reference, const Trial& trial, double share, Outcome& outcome) {
+void add_map(VisibleArea& reference, const Trial& trial, double share, Outcome& outcome) {
   const maps::OccupancyGrid& map = trial.maps.front();
   const maps::OccupancyGrid& seeable = reference.of(trial.mapped.front(), map.plan);
-  outcome.missed += share * (1.0 - seen_of(map, seeable).coverage());
+  outcome.missed += share * (1.0 - coverage_of(map, seeable).coverage());
   outcome.wrong += share * disagreement(map, seeable);
 }
 
-Outcome measure(const Bench& bench, const Test& test, const Scenario& scenario, std::string_view mode,
-                Reference& reference) {
+Outcome measure(const ExperimentContext& context, const Test& test, const Scenario& scenario, std::string_view mode,
+                VisibleArea& reference) {
   Outcome outcome{.test = test.name, .sensor = test.sensor, .mode = std::string(mode)};
-  const double share = 1.0 / bench.options.trials;
-  for (std::uint32_t k = 0; k < bench.options.trials; ++k) {
+  const double share = 1.0 / context.options.trials;
+  for (std::uint32_t k = 0; k < context.options.trials; ++k) {
     Scenario own = scenario;
-    own.seed = bench.options.seed + k;
+    own.seed = context.options.seed + k;
     world::World world = disturbed_world(own, {});
     sensors::set_accuracy(world, fmt::format("{}:{}", test.sensor, mode));
-    const Trial trial = run_trial(own, world, bench.device,
-                                  {.maps = test.maps, .threads = bench.options.threads, .stop = bench.options.stop});
+    const Trial trial =
+        run_trial(own, world, context.device,
+                  {.maps = test.maps, .threads = context.options.threads, .stop = context.options.stop});
     if (test.maps) add_map(reference, trial, share, outcome);
     const ThesisRow row = row_of(trial.errors.front());
     outcome.abs_error += share * row[4];
@@ -87,8 +88,8 @@ std::string csv_of(const std::vector<Outcome>& outcomes) {
   return text;
 }
 
-std::string report_of(const Bench& bench, const std::vector<Outcome>& outcomes) {
-  std::string text = "# How accurate must sensors be?\n\n" + setup_of(bench, {}) +
+std::string report_of(const ExperimentContext& context, const std::vector<Outcome>& outcomes) {
+  std::string text = "# How accurate must sensors be?\n\n" + setup_of(context, {}) +
                      "\n\nEach test is run in every mode of the sensor that it lives by; all else is as in its own "
                      "experiment, its link too.\n";
   std::string last;
@@ -109,7 +110,7 @@ std::string report_of(const Bench& bench, const std::vector<Outcome>& outcomes) 
     text += maps ? fmt::format("| {} | {:.3f} % | {:.3f} % | {}", o.mode, 100.0 * o.missed, 100.0 * o.wrong, end)
                  : fmt::format("| {} | {:.4f} | {:.4f} | {}", o.mode, o.abs_error, o.max_error, end);
   }
-  return text + fmt::format("\n## What it shows\n\n{}\n", bench.kind.reasons);
+  return text + fmt::format("\n## What it shows\n\n{}\n", context.kind.reasons);
 }
 
 /// A panel of one test: modes along the axis, in their order.
@@ -128,42 +129,42 @@ viz::Panel panel_of(const std::vector<Outcome>& outcomes, const std::string& tes
   return panel;
 }
 
-std::string draw(const Bench& bench, const std::vector<Outcome>& outcomes) {
-  viz::SeriesOptions plan{
-      .title = "What controllers make of accuracy modes",
-      .subtitle = fmt::format("means of {} from seed {}", counted(bench.options.trials, "trial"), bench.options.seed),
-      .x_name = "mode, as numbered above each panel",
-      .from_zero = true};
+std::string draw(const ExperimentContext& context, const std::vector<Outcome>& outcomes) {
+  viz::SeriesOptions plan{.title = "What controllers make of accuracy modes",
+                          .subtitle = fmt::format("means of {} from seed {}", counted(context.options.trials, "trial"),
+                                                  context.options.seed),
+                          .x_name = "mode, as numbered above each panel",
+                          .from_zero = true};
   plan.panels = {panel_of(outcomes, "lane-edge-p", "mean |error| [m]", &Outcome::abs_error, 1.0),
                  panel_of(outcomes, "magnet-p", "mean |error| [Gauss]", &Outcome::abs_error, 1.0),
                  panel_of(outcomes, "explore", "cells wrong [%]", &Outcome::wrong, 100.0),
                  panel_of(outcomes, "explore", "time to map [s]", &Outcome::seconds, 1.0)};
-  const std::string file = in_folder(bench, "accuracy.png");
+  const std::string file = in_folder(context, "accuracy.png");
   viz::draw_series(plan, file);
   return file;
 }
 
-std::vector<std::string> run_accuracy(const Bench& bench) {
+std::vector<std::string> run_accuracy(const ExperimentContext& context) {
   std::vector<Outcome> outcomes;
   double done = 0.0;
   for (const Test& test : tests()) {
     Scenario scenario =
-        test.maps ? bench.scenario
-                  : read_scenario((std::filesystem::path(bench.options.folder) / (test.name + ".toml")).string());
-    scenario.plant = bench.scenario.plant;
+        test.maps ? context.scenario
+                  : read_scenario((std::filesystem::path(context.options.folder) / (test.name + ".toml")).string());
+    scenario.plant = context.scenario.plant;
     const world::World world = world_of(scenario);
-    Reference reference(world);
+    VisibleArea reference(world);
     const auto modes = kind_called(test.sensor).modes;
     for (const sensors::AccuracyMode& mode : modes) {
-      if (bench.progress) bench.progress(done, fmt::format("{}, {}", test.name, mode.word));
-      outcomes.push_back(measure(bench, test, scenario, mode.word, reference));
+      if (context.progress) context.progress(done, fmt::format("{}, {}", test.name, mode.word));
+      outcomes.push_back(measure(context, test, scenario, mode.word, reference));
       done += 1.0 / static_cast<double>(tests().size() * modes.size());
     }
   }
-  std::vector<std::string> files{in_folder(bench, "accuracy.csv"), in_folder(bench, "report.md")};
+  std::vector<std::string> files{in_folder(context, "accuracy.csv"), in_folder(context, "report.md")};
   write_text(files[0], csv_of(outcomes));
-  write_text(files[1], report_of(bench, outcomes));
-  files.push_back(draw(bench, outcomes));
+  write_text(files[1], report_of(context, outcomes));
+  files.push_back(draw(context, outcomes));
   return files;
 }
 
@@ -179,9 +180,9 @@ constexpr std::string_view kReasons =
 
 }  // namespace
 
-extern const ExperimentKind accuracy_experiment;
+extern const ExperimentType accuracy_experiment;
 
-constinit const ExperimentKind accuracy_experiment{
+constinit const ExperimentType accuracy_experiment{
     .name = "accuracy",
     .scenario = "explore",
     .summary = "lane keeping, magnet keeping and mapping in every accuracy mode of their sensors",

@@ -86,62 +86,63 @@ double cast(const std::vector<world::Segment>& walls, glm::dvec2 from, glm::dvec
 }
 
 /// A place of the robot, where its laser can be when it stands there, and the walls that it may see from it.
-struct Stand {
+struct Viewpoint {
   glm::dvec2 p;
   std::vector<Pose> eyes;
   std::vector<world::Segment> near;
 };
 
-std::vector<Stand> stands_of(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan) {
+std::vector<Viewpoint> stands_of(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan) {
   const world::Mover& robot = world.movers[mover];
   const world::Laser& laser = robot.lasers[0];
   const double z = robot.X_WM.z + laser.X_MS.z;
   const auto walls = walls_where(
       world, [](const world::Segment& w) { return w.seen_by_laser; }, z, z);
   const double ahead = std::hypot(laser.X_MS.x, laser.X_MS.y);
-  std::vector<Stand> stands;
+  std::vector<Viewpoint> viewpoints;
   for (const CellAt at : reachable(world, mover, plan)) {
-    Stand stand{.p = maps::middle(plan, at)};
+    Viewpoint viewpoint{.p = maps::middle(plan, at)};
     for (const world::Segment& wall : walls)
-      if (world::distance(stand.p, wall.a, wall.b) < laser.range_max + ahead) stand.near.push_back(wall);
+      if (world::distance(viewpoint.p, wall.a, wall.b) < laser.range_max + ahead) viewpoint.near.push_back(wall);
     for (int h = 0; h < kHeadings; ++h) {
-      const Pose X_WS = base::compose({stand.p.x, stand.p.y, 0.0, 2.0 * M_PI * h / kHeadings}, laser.X_MS);
-      const glm::dvec2 out = glm::dvec2{X_WS.x, X_WS.y} - stand.p;
+      const Pose X_WS = base::compose({viewpoint.p.x, viewpoint.p.y, 0.0, 2.0 * M_PI * h / kHeadings}, laser.X_MS);
+      const glm::dvec2 out = glm::dvec2{X_WS.x, X_WS.y} - viewpoint.p;
       // A sensor ahead of the body may stand within a wall, where it sees nothing of the room.
-      if (ahead == 0.0 || cast(stand.near, stand.p, 1.0 / ahead * out, ahead) >= ahead) stand.eyes.push_back(X_WS);
+      if (ahead == 0.0 || cast(viewpoint.near, viewpoint.p, 1.0 / ahead * out, ahead) >= ahead)
+        viewpoint.eyes.push_back(X_WS);
     }
-    stands.push_back(std::move(stand));
+    viewpoints.push_back(std::move(viewpoint));
   }
-  return stands;
+  return viewpoints;
 }
 
 maps::OccupancyGrid scans_from(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan,
-                               const std::vector<Stand>& stands) {
+                               const std::vector<Viewpoint>& viewpoints) {
   const world::Laser& laser = world.movers[mover].lasers[0];
   maps::OccupancyGrid grid(plan);
   std::vector<double> ranges(kBeams);
   const std::vector<glm::dvec2> beams = maps::beam_directions(laser.fov, kBeams);
-  for (const Stand& stand : stands)
-    for (const Pose& X_WS : stand.eyes) {
+  for (const Viewpoint& viewpoint : viewpoints)
+    for (const Pose& X_WS : viewpoint.eyes) {
       for (std::uint32_t i = 0; i < kBeams; ++i)
-        ranges[i] = cast(stand.near, {X_WS.x, X_WS.y}, base::rotate(X_WS.yaw, beams[i]), laser.range_max);
+        ranges[i] = cast(viewpoint.near, {X_WS.x, X_WS.y}, base::rotate(X_WS.yaw, beams[i]), laser.range_max);
       maps::add_scan(grid, {X_WS, ranges, beams, 0.0, laser.range_max});
     }
   return grid;
 }
 
 /// Nothing stands between the laser and the point, which is within its range and its field of view.
-bool sees(const Stand& stand, const Pose& X_WS, const world::Laser& laser, glm::dvec2 p) {
+bool sees(const Viewpoint& viewpoint, const Pose& X_WS, const world::Laser& laser, glm::dvec2 p) {
   const glm::dvec2 d = base::rotate(-X_WS.yaw, p - glm::dvec2{X_WS.x, X_WS.y});
   const double far = glm::length(d);
   if (far >= laser.range_max || std::abs(std::atan2(d.y, d.x)) > 0.5 * laser.fov) return false;
   if (far == 0.0) return true;
   const glm::dvec2 eye{X_WS.x, X_WS.y};
-  return cast(stand.near, eye, 1.0 / far * (p - eye), far) >= far;
+  return cast(viewpoint.near, eye, 1.0 / far * (p - eye), far) >= far;
 }
 
 /// Free cells whose middle is in view from nowhere: a line's rounding to cells went past a corner.
-void forget_hidden(const world::World& world, std::uint32_t mover, const std::vector<Stand>& stands,
+void forget_hidden(const world::World& world, std::uint32_t mover, const std::vector<Viewpoint>& viewpoints,
                    maps::OccupancyGrid& grid) {
   const world::Laser& laser = world.movers[mover].lasers[0];
   const double reach = laser.range_max + std::hypot(laser.X_MS.x, laser.X_MS.y);
@@ -149,55 +150,55 @@ void forget_hidden(const world::World& world, std::uint32_t mover, const std::ve
   for (std::int64_t row = 0; row < maps::rows(grid.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(grid.plan); ++column)
       if (grid.at({column, row}) == Cell::free) open.push_back({column, row});
-  for (const Stand& stand : stands)
+  for (const Viewpoint& viewpoint : viewpoints)
     std::erase_if(open, [&](CellAt at) {
       const glm::dvec2 p = maps::middle(grid.plan, at);
-      if (glm::length(p - stand.p) >= reach) return false;
-      return std::any_of(stand.eyes.begin(), stand.eyes.end(),
-                         [&](const Pose& X_WS) { return sees(stand, X_WS, laser, p); });
+      if (glm::length(p - viewpoint.p) >= reach) return false;
+      return std::any_of(viewpoint.eyes.begin(), viewpoint.eyes.end(),
+                         [&](const Pose& X_WS) { return sees(viewpoint, X_WS, laser, p); });
     });
   for (const CellAt at : open) grid.set(at, Cell::unexplored);
 }
 
 }  // namespace
 
-OwnMap::OwnMap(const world::World& world, std::uint32_t mover, double cell)
+RobotMap::RobotMap(const world::World& world, std::uint32_t mover, double cell)
     : world_(world), mover_(mover), grid_(plan_over(world, cell)) {
   SF_CHECK(!world.movers[mover].lasers.empty(), "a map needs a laser: " + world.movers[mover].name);
   const world::Laser& laser = world.movers[mover].lasers[0];
   beams_ = maps::beam_directions(laser.fov, laser.samples);
 }
 
-void OwnMap::add(const base::ReadingBlock& reading) {
+void RobotMap::add(const base::ReadingBlock& reading) {
   if (reading.mover != mover_ || reading.kind != base::kLaser || reading.sensor != 0) return;
   const world::Laser& laser = world_.movers[mover_].lasers[0];
   if (reading.values.size() != beams_.size()) return;
   maps::add_scan(grid_, {reading.X_WS, reading.values, beams_, laser.range_min, laser.range_max});
 }
 
-void enter(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t, OwnMap>& maps) {
+void add_scans(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t, RobotMap>& maps) {
   if (maps.empty()) return;
   for (const base::ReadingBlock& reading : readings)
     if (const auto at = maps.find(reading.mover); at != maps.end()) at->second.add(reading);
 }
 
-maps::OccupancyGrid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan) {
+maps::OccupancyGrid visible_area(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan) {
   SF_CHECK(!world.movers[mover].lasers.empty(), "nothing is seen without a laser: " + world.movers[mover].name);
-  const std::vector<Stand> stands = stands_of(world, mover, plan);
-  maps::OccupancyGrid grid = scans_from(world, mover, plan, stands);
-  forget_hidden(world, mover, stands, grid);
+  const std::vector<Viewpoint> viewpoints = stands_of(world, mover, plan);
+  maps::OccupancyGrid grid = scans_from(world, mover, plan, viewpoints);
+  forget_hidden(world, mover, viewpoints, grid);
   return grid;
 }
 
-const maps::OccupancyGrid& Reference::of(std::uint32_t mover, const maps::GridGeometry& plan) {
-  if (!grid_ || mover_ != mover || !(grid_->plan == plan)) grid_ = what_could_be_seen(world_, mover, plan);
+const maps::OccupancyGrid& VisibleArea::of(std::uint32_t mover, const maps::GridGeometry& plan) {
+  if (!grid_ || mover_ != mover || !(grid_->plan == plan)) grid_ = visible_area(world_, mover, plan);
   mover_ = mover;
   return *grid_;
 }
 
-Seen seen_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference) {
+Coverage coverage_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference) {
   SF_CHECK(map.plan == reference.plan, "maps of two plans cannot be compared");
-  Seen seen;
+  Coverage seen;
   for (std::int64_t row = 0; row < maps::rows(map.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(map.plan); ++column) {
       if (reference.at({column, row}) != Cell::free) continue;
@@ -207,7 +208,7 @@ Seen seen_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& referenc
   return seen;
 }
 
-std::string text_of(const Seen& seen) { return fmt::format("{} of {}", seen.missed, seen.wanted); }
+std::string text_of(const Coverage& seen) { return fmt::format("{} of {}", seen.missed, seen.wanted); }
 
 double disagreement(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference) {
   SF_CHECK(map.plan == reference.plan, "maps of two plans cannot be compared");

@@ -16,12 +16,12 @@
 namespace sf::scenarios {
 
 /// The map that one robot makes of its first laser's scans, from its own pose.
-class OwnMap {
+class RobotMap {
  public:
   /// @param cell [m]; the map has the plan of the explorer's own (control/explore.h), or is as large as the world where
   /// that is too large for one.
   /// Rule: the mover has a laser.
-  OwnMap(const world::World& world, std::uint32_t mover, double cell = 0.03);
+  RobotMap(const world::World& world, std::uint32_t mover, double cell = 0.03);
   /// Adds it when it is a scan of that laser.
   void add(const base::ReadingBlock& reading);
   const maps::OccupancyGrid& grid() const { return grid_; }
@@ -34,18 +34,18 @@ class OwnMap {
 };
 
 /// Adds each scan to the map of its own mover, where there is one. @param maps by row of their movers
-void enter(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t, OwnMap>& maps);
+void add_scans(std::span<const base::ReadingBlock> readings, std::map<std::uint32_t, RobotMap>& maps);
 
 /// All that the robot's first laser could see from wherever the robot can go without touching a wall: a map of scans
 /// from the middles of all cells of `plan` that are connected to its start, with sixteen headings. Cells whose middle
 /// is in view from none of these are left unexplored. Movers are not looked at.
-maps::OccupancyGrid what_could_be_seen(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan);
+maps::OccupancyGrid visible_area(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan);
 
-/// `what_could_be_seen` in one world, which must outlive it: kept while mover and plan stay the same, since it takes
+/// `visible_area` in one world, which must outlive it: kept while mover and plan stay the same, since it takes
 /// its time.
-class Reference {
+class VisibleArea {
  public:
-  explicit Reference(const world::World& world) : world_(world) {}
+  explicit VisibleArea(const world::World& world) : world_(world) {}
   /// Lives until the next call.
   const maps::OccupancyGrid& of(std::uint32_t mover, const maps::GridGeometry& plan);
 
@@ -56,7 +56,7 @@ class Reference {
 };
 
 /// The free cells of a reference, and those of them that a map does not know.
-struct Seen {
+struct Coverage {
   std::size_t wanted = 0;
   std::size_t missed = 0;  ///< <= wanted
   /// [-] 1 where nothing is missed, and only there.
@@ -65,9 +65,9 @@ struct Seen {
   }
 };
 /// Known is free, or occupied. Rule: both have the same plan.
-Seen seen_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference);
+Coverage coverage_of(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference);
 /// Cells missed: "3 of 9159".
-std::string text_of(const Seen& seen);
+std::string text_of(const Coverage& seen);
 
 /// Cells that are known in both and free in one and occupied in the other, as a part of those known in both.
 double disagreement(const maps::OccupancyGrid& map, const maps::OccupancyGrid& reference);

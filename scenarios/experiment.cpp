@@ -12,32 +12,32 @@
 namespace sf::scenarios {
 
 // Every experiment, in the order of help.
-extern const ExperimentKind lane_edge_p_experiment;
-extern const ExperimentKind lane_edge_pi_experiment;
-extern const ExperimentKind magnet_p_experiment;
-extern const ExperimentKind magnet_pi_experiment;
-extern const ExperimentKind mapping_experiment;
-extern const ExperimentKind minimagic_experiment;
-extern const ExperimentKind simville_experiment;
-extern const ExperimentKind simville_merge_experiment;
-extern const ExperimentKind sweeps_experiment;
-extern const ExperimentKind accuracy_experiment;
+extern const ExperimentType lane_edge_p_experiment;
+extern const ExperimentType lane_edge_pi_experiment;
+extern const ExperimentType magnet_p_experiment;
+extern const ExperimentType magnet_pi_experiment;
+extern const ExperimentType mapping_experiment;
+extern const ExperimentType minimagic_experiment;
+extern const ExperimentType simville_experiment;
+extern const ExperimentType simville_merge_experiment;
+extern const ExperimentType sweeps_experiment;
+extern const ExperimentType accuracy_experiment;
 
-std::span<const ExperimentKind* const> experiments() {
-  static constexpr const ExperimentKind* kKinds[] = {
+std::span<const ExperimentType* const> experiments() {
+  static constexpr const ExperimentType* kKinds[] = {
       &lane_edge_p_experiment, &lane_edge_pi_experiment, &magnet_p_experiment,       &magnet_pi_experiment,
       &mapping_experiment,     &simville_experiment,     &simville_merge_experiment, &minimagic_experiment,
       &sweeps_experiment,      &accuracy_experiment};
   return kKinds;
 }
 
-const ExperimentKind* find_experiment(std::string_view name) {
-  for (const ExperimentKind* kind : experiments())
+const ExperimentType* find_experiment(std::string_view name) {
+  for (const ExperimentType* kind : experiments())
     if (kind->name == name) return kind;
   return nullptr;
 }
 
-std::vector<std::string> run_experiment(const ExperimentKind& kind, const ExperimentOptions& options,
+std::vector<std::string> run_experiment(const ExperimentType& kind, const ExperimentOptions& options,
                                         gpu::Device& device,
                                         const std::function<void(double, const std::string&)>& progress) {
   Scenario scenario = read_scenario((std::filesystem::path(options.folder) /
@@ -50,18 +50,19 @@ std::vector<std::string> run_experiment(const ExperimentKind& kind, const Experi
   return kind.run({kind, scenario, options, device, progress});
 }
 
-std::vector<Trial> run_trials(const Bench& bench, const TrialOptions& options) {
+std::vector<Trial> run_trials(const ExperimentContext& context, const TrialOptions& options) {
   std::vector<Trial> trials;
-  for (std::uint32_t k = 0; k < bench.options.trials; ++k) {
-    if (bench.progress) bench.progress(static_cast<double>(k) / bench.options.trials, fmt::format("trial {}", k + 1));
-    Scenario scenario = bench.scenario;
-    scenario.seed = bench.options.seed + k;
+  for (std::uint32_t k = 0; k < context.options.trials; ++k) {
+    if (context.progress)
+      context.progress(static_cast<double>(k) / context.options.trials, fmt::format("trial {}", k + 1));
+    Scenario scenario = context.scenario;
+    scenario.seed = context.options.seed + k;
     TrialOptions own = options;
-    own.threads = bench.options.threads;
-    own.record = in_folder(bench, fmt::format("trial-{}", k + 1));
-    own.stop = bench.options.stop;
+    own.threads = context.options.threads;
+    own.record = in_folder(context, fmt::format("trial-{}", k + 1));
+    own.stop = context.options.stop;
     try {
-      trials.push_back(run_trial(scenario, disturbed_world(scenario, options.disturbance), bench.device, own));
+      trials.push_back(run_trial(scenario, disturbed_world(scenario, options.disturbance), context.device, own));
     } catch (const Interrupted&) {
       std::error_code ignored;
       std::filesystem::remove(std::filesystem::path(own.record) / "run.mcap", ignored);
@@ -72,8 +73,8 @@ std::vector<Trial> run_trials(const Bench& bench, const TrialOptions& options) {
   return trials;
 }
 
-std::string in_folder(const Bench& bench, const std::string& name) {
-  return (std::filesystem::path(bench.options.out) / name).string();
+std::string in_folder(const ExperimentContext& context, const std::string& name) {
+  return (std::filesystem::path(context.options.out) / name).string();
 }
 
 void make_folder(const std::string& path) {
@@ -106,16 +107,16 @@ std::string readings_of(const netio::LinkModel& link) {
 
 }  // namespace
 
-std::string setup_of(const Bench& bench, const Disturbance& d) {
-  const std::uint64_t first = bench.options.seed, last = first + bench.options.trials - 1;
+std::string setup_of(const ExperimentContext& context, const Disturbance& d) {
+  const std::uint64_t first = context.options.seed, last = first + context.options.trials - 1;
   return fmt::format(
       "Plant `{}`, {}, at most {:g} s simulated. {} "
       "The start is off by {:g} mm along and across and by {:.2g} degrees; noise (where the world has none): {:g} mm "
       "on each ray of a lane edge sensor, {:g} Gauss on each component of a magnetometer, {:g} mm on each beam of a "
       "laser (all standard deviations).",
-      name_of(bench.scenario.plant.value_or(Plant::ideal)),
+      name_of(context.scenario.plant.value_or(Plant::ideal)),
       first == last ? fmt::format("seed {}", first) : fmt::format("seeds {} to {}", first, last),
-      bench.scenario.duration, readings_of(bench.scenario.actor.link), 1e3 * d.place, d.heading * 180.0 / M_PI,
+      context.scenario.duration, readings_of(context.scenario.actor.link), 1e3 * d.place, d.heading * 180.0 / M_PI,
       1e3 * d.edge_noise, d.field_noise, 1e3 * d.scan_noise);
 }
 

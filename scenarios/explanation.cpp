@@ -12,8 +12,8 @@
 #include "base/elapsed.h"
 #include "farm/farm.h"
 #include "raycast/caster_choice.h"
+#include "scenarios/recorded_paths.h"
 #include "scenarios/sampling.h"
-#include "scenarios/ways.h"
 
 namespace sf::scenarios {
 
@@ -27,31 +27,31 @@ constexpr int kLaps = 4;         ///< measured, after one to warm up
 /// A farm that goes along ways again and again, further in time each time.
 class Drive {
  public:
-  Drive(const world::World& world, gpu::Device& device, const Ways& ways, const farm::FarmOptions& options)
-      : farm_(world, device, options), ways_(ways), interval_(std::llround(world.interval * 1e9)) {}
+  Drive(const world::World& world, gpu::Device& device, const RecordedPaths& paths, const farm::FarmOptions& options)
+      : farm_(world, device, options), paths_(paths), interval_(std::llround(world.interval * 1e9)) {}
 
   void subscribe(std::uint32_t kinds) {
-    for (std::uint32_t m = 0; m < ways_[0].size(); ++m) farm_.subscribe(m, kinds);
+    for (std::uint32_t m = 0; m < paths_[0].size(); ++m) farm_.subscribe(m, kinds);
   }
   void tick(std::size_t at) {
     if (farm_.next_due() < now_) {
-      copy(ways_[(at + ways_.size() - 1) % ways_.size()], now_ - interval_, before_);
-      copy(ways_[at], now_, after_);
+      copy(paths_[(at + paths_.size() - 1) % paths_.size()], now_ - interval_, before_);
+      copy(paths_[at], now_, after_);
       sample_between(farm_, before_, after_, on_the_way_, [](std::span<const base::ReadingBlock>) {});
     }
-    farm_.tick(now_, ways_[at]);
+    farm_.tick(now_, paths_[at]);
     now_ += interval_;
   }
   /// [s] a tick, mean over the laps after the first.
   double laps() {
-    for (std::size_t at = 0; at < ways_.size(); ++at) tick(at);
+    for (std::size_t at = 0; at < paths_.size(); ++at) tick(at);
     stats_before_ = farm_.stats();
     const auto start = Clock::now();
     for (int lap = 0; lap < kLaps; ++lap)
-      for (std::size_t at = 0; at < ways_.size(); ++at) tick(at);
+      for (std::size_t at = 0; at < paths_.size(); ++at) tick(at);
     return base::seconds_since(start) / static_cast<double>(ticks());
   }
-  std::uint64_t ticks() const { return kLaps * ways_.size(); }
+  std::uint64_t ticks() const { return kLaps * paths_.size(); }
   double readings() const { return a_tick(farm_.stats().readings - stats_before_.readings); }
   double again() const { return a_tick(farm_.stats().reused - stats_before_.reused); }
   sensors::SensorStats work() const { return farm_.stats().work - stats_before_.work; }
@@ -65,15 +65,15 @@ class Drive {
   double a_tick(std::uint64_t count) const { return static_cast<double>(count) / static_cast<double>(ticks()); }
 
   farm::Farm farm_;
-  const Ways& ways_;
+  const RecordedPaths& paths_;
   std::int64_t interval_;
   std::int64_t now_ = 0;
   std::vector<base::Report> before_, after_, on_the_way_;
   farm::FarmStats stats_before_;
 };
 
-ExplainedKind facts_of(const sensors::SensorSet::Group& group) {
-  ExplainedKind kind;
+SensorTypeCost facts_of(const sensors::SensorSet::Group& group) {
+  SensorTypeCost kind;
   kind.kind = group.kind->name;
   kind.sensors = static_cast<std::uint32_t>(group.rows.size());
   kind.least_rate = HUGE_VAL;
@@ -87,7 +87,7 @@ ExplainedKind facts_of(const sensors::SensorSet::Group& group) {
   return kind;
 }
 
-void add_held(const std::vector<gpu::DeviceAllocation>& held, ExplainedKind& kind) {
+void add_held(const std::vector<gpu::DeviceAllocation>& held, SensorTypeCost& kind) {
   for (const gpu::DeviceAllocation& h : held) {
     if (h.owner != kind.kind) continue;
     if (h.is_kernel) {
@@ -101,11 +101,11 @@ void add_held(const std::vector<gpu::DeviceAllocation>& held, ExplainedKind& kin
                    [](const gpu::DeviceAllocation& a, const gpu::DeviceAllocation& b) { return a.bytes > b.bytes; });
 }
 
-std::vector<Slice> slices_of(const world::World& world) {
+std::vector<WallSlice> slices_of(const world::World& world) {
   std::map<double, std::uint32_t> heights;
   for (const world::Mover& mover : world.movers)
     for (const world::Laser& laser : mover.lasers) ++heights[mover.X_WM.z + laser.X_MS.z];
-  std::vector<Slice> slices;
+  std::vector<WallSlice> slices;
   for (const auto& [z, sensors] : heights) {
     const auto seen = std::count_if(world.walls.begin(), world.walls.end(), [z = z](const world::Segment& s) {
       return s.seen_by_laser && s.z_min <= z && z < s.z_max;
@@ -131,9 +131,9 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   const auto step = [&](std::size_t kinds) {
     if (progress) progress(++done / static_cast<double>(kinds + 3));
   };
-  const Ways ways = drive_ways(world, device, kDriven, seed, threads);
+  const RecordedPaths paths = record_paths(world, device, kDriven, seed, threads);
   const auto start = Clock::now();
-  Drive farm(world, device, ways, {.seed = seed, .threads = threads});
+  Drive farm(world, device, paths, {.seed = seed, .threads = threads});
   e.build = base::seconds_since(start);
   farm.subscribe(farm::kAllSensorTypes);
   const auto first = Clock::now();
@@ -148,12 +148,12 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   std::set<std::string_view> present;
   for (const sensors::SensorSet::Group& group : farm.sensor_set().groups()) {
     present.insert(group.kind->name);
-    ExplainedKind kind = facts_of(group);
+    SensorTypeCost kind = facts_of(group);
     kind.derived = group.kind->derived;
     farm.subscribe(1u << group.kind->id | (kind.derived ? 1u << base::kLaser : 0u));
     kind.tick = farm.laps();
     kind.readings = farm.readings();
-    kind.again = farm.again();
+    kind.reused = farm.again();
     kind.work = farm.work();
     e.kinds.push_back(std::move(kind));
     step(kinds);
@@ -161,7 +161,7 @@ Explanation explain(const world::World& world, gpu::Device& device, std::uint64_
   farm.subscribe(farm::kAllSensorTypes);
   e.all = farm.laps();
   e.ticks = farm.ticks();
-  for (ExplainedKind& kind : e.kinds) add_held(device.allocations(), kind);
+  for (SensorTypeCost& kind : e.kinds) add_held(device.allocations(), kind);
   for (const sensors::SensorType* kind : sensors::sensor_types())
     if (!present.contains(kind->name)) e.absent.emplace_back(kind->name);
   e.slices = slices_of(world);

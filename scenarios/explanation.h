@@ -13,7 +13,7 @@
 namespace sf::scenarios {
 
 /// One kind of sensor that the world has.
-struct ExplainedKind {
+struct SensorTypeCost {
   std::string kind;
   std::uint32_t sensors = 0;
   std::uint32_t robots = 0;                  ///< that carry them
@@ -24,12 +24,12 @@ struct ExplainedKind {
   bool derived = false;                       ///< made of lasers' readings: heard with these
   double tick = 0.0;                          ///< [s] a tick on the clock with this kind heard alone, mean
   double readings = 0.0;                      ///< a tick, mean
-  double again = 0.0;                         ///< of these, given again since nothing they depend on had moved
+  double reused = 0.0;                        ///< of these, given again since nothing they depend on had moved
   sensors::SensorStats work;                  ///< of all measured ticks together
 };
 
 /// Walls that lasers and other rays at one height can meet.
-struct Slice {
+struct WallSlice {
   double z = 0.0;  ///< [m]
   std::uint32_t sensors = 0;
   std::size_t walls = 0;
@@ -37,9 +37,9 @@ struct Slice {
 
 struct Explanation {
   std::string caster;  ///< what casts rays
-  std::vector<ExplainedKind> kinds;
+  std::vector<SensorTypeCost> kinds;
   std::vector<std::string> absent;                     ///< kinds that are not built
-  std::vector<Slice> slices;                           ///< of lasers, by height
+  std::vector<WallSlice> slices;                       ///< of lasers, by height
   std::size_t walls = 0;                               ///< of the world
   std::vector<sensors::AccuracyStatement> statements;  ///< modes and bounds, kind by kind
   std::uint64_t ticks = 0;                             ///< measured, for each row

@@ -8,7 +8,7 @@ namespace sf::scenarios {
 
 namespace {
 
-std::string case_of(const ScenarioResult& result, const Outcome& outcome) {
+std::string case_of(const ScenarioResult& result, const ExpectationResult& outcome) {
   std::string text = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", escaped(result.name),
                                  escaped(outcome.what), result.wall);
   if (outcome.met) return text + "/>\n";
@@ -49,15 +49,15 @@ std::string escaped(std::string_view text) {
 std::string junit_of(std::span<const ScenarioResult> results) {
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
   for (const ScenarioResult& result : results) {
-    if (result.verdict() == Verdict::nothing_expected) {
+    if (result.status() == ScenarioStatus::no_expectations) {
       text += suite_of_nothing(result);
       continue;
     }
-    const auto failed =
-        std::count_if(result.outcomes.begin(), result.outcomes.end(), [](const Outcome& o) { return !o.met; });
+    const auto failed = std::count_if(result.outcomes.begin(), result.outcomes.end(),
+                                      [](const ExpectationResult& o) { return !o.met; });
     text += fmt::format("  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" time=\"{:.3f}\">\n",
                         escaped(result.name), result.outcomes.size(), failed, result.wall);
-    for (const Outcome& outcome : result.outcomes) text += case_of(result, outcome);
+    for (const ExpectationResult& outcome : result.outcomes) text += case_of(result, outcome);
     text += "  </testsuite>\n";
   }
   return text + "</testsuites>\n";

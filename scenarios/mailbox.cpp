@@ -15,7 +15,7 @@ Mailbox::Slot& Mailbox::slot_of(const base::ReadingBlock& reading) {
   return slot;
 }
 
-void Mailbox::post(const base::ReadingBlock& reading, std::int64_t now) {
+void Mailbox::send(const base::ReadingBlock& reading, std::int64_t now) {
   const std::uint32_t stream = std::uint32_t{reading.kind} << 16 | reading.sensor;
   const auto later = netio::sample_delay(link_, {robot_, stream, reading.sequence});
   if (!later) return;
@@ -42,7 +42,7 @@ void Mailbox::show(Slot& slot, std::int64_t now) {
   }
 }
 
-std::span<const base::ReadingBlock> Mailbox::open(std::int64_t now) {
+std::span<const base::ReadingBlock> Mailbox::receive(std::int64_t now) {
   open_.clear();
   for (Slot& slot : slots_) {
     show(slot, now);

@@ -17,13 +17,13 @@ class Mailbox {
   Mailbox(const netio::LinkModel& link, std::uint32_t robot) : link_(link), robot_(robot) {}
 
   /// A reading leaves the farm at `now` [ns]; it is copied, or lost.
-  void post(const base::ReadingBlock& reading, std::int64_t now);
+  void send(const base::ReadingBlock& reading, std::int64_t now);
 
   /// What has come by `now` [ns], the newest of each sensor in the order in which sensors were first heard. A reading
-  /// that was overtaken by a newer one is never seen. Lives until the next call of `post` or `open`.
-  std::span<const base::ReadingBlock> open(std::int64_t now);
+  /// that was overtaken by a newer one is never seen. Lives until the next call of `send` or `receive`.
+  std::span<const base::ReadingBlock> receive(std::int64_t now);
 
-  /// True when the last `open` found a reading of that kind that the one before had not.
+  /// True when the last `receive` found a reading of that kind that the one before had not.
   bool renewed(std::uint8_t kind) const;
 
  private:

@@ -15,13 +15,13 @@ namespace sf::scenarios {
 
 namespace {
 
-constexpr SupervisorPlan kSupervisor{.patience = 5.0};
+constexpr SupervisorSettings kSupervisor{.patience = 5.0};
 
 /// One way to map the area.
 struct Entrant {
   std::string name;
   control::ControllerConfig plan;
-  SupervisorPlan supervisor;
+  SupervisorSettings supervisor;
   bool looks_about = false;  ///< it turns to and fro to look: that is no dead end
 };
 
@@ -32,11 +32,11 @@ struct Mapped {
   double simulated = 0.0;  ///< [s]
   bool done = false;
   std::uint64_t contacts = 0;
-  std::uint32_t helped = 0;
+  std::uint32_t interventions = 0;
   std::optional<std::uint32_t> dead_ends;  ///< none: not counted
   double stuck = 0.0;                      ///< [s]
   double travelled = 0.0;                  ///< [m]
-  Seen seen;
+  Coverage seen;
   double wrong = 0.0;  ///< [-] of the known cells
 };
 
@@ -49,12 +49,12 @@ std::string csv_of(const std::vector<Mapped>& rows) {
       "controller,trial,seconds,done,contacts,helped,dead_ends,stuck_s,driven_m,cells,missed,coverage,disagreement\n";
   for (const Mapped& m : rows)
     text += fmt::format("{},{},{:.1f},{},{},{},{},{:.1f},{:.4g},{},{},{:.6f},{:.5f}\n", m.entrant, m.trial, m.simulated,
-                        m.done ? 1 : 0, m.contacts, m.helped, text_of(m.dead_ends, ""), m.stuck, m.travelled,
+                        m.done ? 1 : 0, m.contacts, m.interventions, text_of(m.dead_ends, ""), m.stuck, m.travelled,
                         m.seen.wanted, m.seen.missed, m.seen.coverage(), m.wrong);
   return text;
 }
 
-std::string report_of(const Bench& bench, const std::vector<Mapped>& rows) {
+std::string report_of(const ExperimentContext& context, const std::vector<Mapped>& rows) {
   std::string text = fmt::format(
       "# {}\n\n{}\n\nThe map is made by the robot of its own pose, 3 cm a cell. `cells missed` are those that could be "
       "seen free from some collision-free pose connected to the start, and are unexplored in the map. `wrong` is the "
@@ -69,43 +69,44 @@ std::string report_of(const Bench& bench, const std::vector<Mapped>& rows) {
       "| controller | trial | time [s] | done | scrapes | by hand | dead ends | stuck [s] | driven [m] | cells missed "
       "| "
       "wrong |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
-      bench.scenario.name, setup_of(bench, {}), kSupervisor.patience, kSupervisor.back, kSupervisor.turn * 180.0 / M_PI,
-      kReversals);
+      context.scenario.name, setup_of(context, {}), kSupervisor.patience, kSupervisor.back,
+      kSupervisor.turn * 180.0 / M_PI, kReversals);
   for (const Mapped& m : rows)
     text += fmt::format("| {} | {} | {:.0f} | {} | {} | {} | {} | {:.0f} | {:.1f} | {} | {:.2f} % |\n", m.entrant,
-                        m.trial, m.simulated, m.done ? "yes" : "no", m.contacts, m.helped, text_of(m.dead_ends, "-"),
-                        m.stuck, m.travelled, text_of(m.seen), 100.0 * m.wrong);
-  return text + fmt::format("\n## Beside the thesis\n\n{}\n", bench.kind.reasons);
+                        m.trial, m.simulated, m.done ? "yes" : "no", m.contacts, m.interventions,
+                        text_of(m.dead_ends, "-"), m.stuck, m.travelled, text_of(m.seen), 100.0 * m.wrong);
+  return text + fmt::format("\n## Beside the thesis\n\n{}\n", context.kind.reasons);
 }
 
 Mapped mapped_of(const Entrant& entrant, std::uint32_t number, const Trial& trial,
                  const maps::OccupancyGrid& reference) {
-  const RobotCounts& counts = trial.counts.front();
-  const DeadEnds& ends = trial.dead_ends.front();
+  const RobotMetrics& counts = trial.counts.front();
+  const DeadEndDetector& ends = trial.dead_ends.front();
   return {.entrant = entrant.name,
           .trial = number,
           .simulated = trial.simulated,
           .done = trial.done,
           .contacts = counts.contacts,
-          .helped = trial.helped.front(),
+          .interventions = trial.interventions.front(),
           .dead_ends = entrant.looks_about ? std::nullopt : std::optional(ends.count()),
           .stuck = entrant.looks_about ? ends.stood() : ends.stuck(),
           .travelled = counts.travelled,
-          .seen = seen_of(trial.maps.front(), reference),
+          .seen = coverage_of(trial.maps.front(), reference),
           .wrong = disagreement(trial.maps.front(), reference)};
 }
 
 /// Trials of one entrant: rows, tracks and maps.
-void run_with(const Bench& bench, const Entrant& entrant, std::vector<Mapped>& rows, std::vector<std::string>& files) {
-  Scenario scenario = bench.scenario;
+void run_with(const ExperimentContext& context, const Entrant& entrant, std::vector<Mapped>& rows,
+              std::vector<std::string>& files) {
+  Scenario scenario = context.scenario;
   scenario.actor.plan = entrant.plan;
-  ExperimentOptions options = bench.options;
-  options.out = in_folder(bench, entrant.name);
-  const Bench own{bench.kind, scenario, options, bench.device, bench.progress};
+  ExperimentOptions options = context.options;
+  options.out = in_folder(context, entrant.name);
+  const ExperimentContext own{context.kind, scenario, options, context.device, context.progress};
   const std::vector<Trial> trials = run_trials(own, {.maps = true, .supervisor = entrant.supervisor});
   const world::World world = world_of(scenario);
   std::vector<viz::Track> tracks;
-  Reference reference(world);
+  VisibleArea reference(world);
   for (std::size_t k = 0; k < trials.size(); ++k) {
     const Trial& trial = trials[k];
     const maps::OccupancyGrid& seeable = reference.of(trial.mapped.front(), trial.maps.front().plan);
@@ -113,11 +114,11 @@ void run_with(const Bench& bench, const Entrant& entrant, std::vector<Mapped>& r
     tracks.push_back(trial.tracks.front());
     tracks.back().name = fmt::format("trial {}", k + 1);
   }
-  files.push_back(in_folder(bench, entrant.name + "-trajectories.png"));
+  files.push_back(in_folder(context, entrant.name + "-trajectories.png"));
   viz::draw_trajectories(world, tracks, files.back(), "trial");
-  files.push_back(in_folder(bench, entrant.name + "-map.txt"));
+  files.push_back(in_folder(context, entrant.name + "-map.txt"));
   write_text(files.back(), maps::text_of(trials.front().maps.front()));
-  files.push_back(in_folder(bench, entrant.name + "-map.png"));
+  files.push_back(in_folder(context, entrant.name + "-map.png"));
   const viz::Track& track = trials.front().tracks.front();
   viz::draw_map(trials.front().maps.front(),
                 {.title = "Map of trial 1: " + entrant.name, .places = {{track.name, track.poses.back()}}},
@@ -131,12 +132,12 @@ std::vector<Entrant> entrants_of(const Scenario& scenario) {
           {"explore", {"explore", 0.0, {}}, {}, true}};
 }
 
-std::vector<std::string> run_mapping(const Bench& bench) {
+std::vector<std::string> run_mapping(const ExperimentContext& context) {
   std::vector<Mapped> rows;
-  std::vector<std::string> files{in_folder(bench, "statistics.csv"), in_folder(bench, "report.md")};
-  for (const Entrant& entrant : entrants_of(bench.scenario)) run_with(bench, entrant, rows, files);
+  std::vector<std::string> files{in_folder(context, "statistics.csv"), in_folder(context, "report.md")};
+  for (const Entrant& entrant : entrants_of(context.scenario)) run_with(context, entrant, rows, files);
   write_text(files[0], csv_of(rows));
-  write_text(files[1], report_of(bench, rows));
+  write_text(files[1], report_of(context, rows));
   return files;
 }
 
@@ -153,9 +154,9 @@ constexpr std::string_view kReasons =
 
 }  // namespace
 
-extern const ExperimentKind mapping_experiment;
+extern const ExperimentType mapping_experiment;
 
-constinit const ExperimentKind mapping_experiment{
+constinit const ExperimentType mapping_experiment{
     .name = "mapping",
     .summary = "mapping an area by laser, with the thesis' obstacle avoidance and with an explorer (figures 44, 45)",
     .plant = Plant::thesis,

@@ -6,7 +6,7 @@
 
 #include "scenarios/experiment.h"
 #include "scenarios/path_report.h"
-#include "scenarios/thesis.h"
+#include "scenarios/thesis_tables.h"
 #include "sensors/sensor_type.h"
 #include "viz/field_figure.h"
 #include "viz/path_figure.h"
@@ -18,41 +18,41 @@ namespace {
 
 constexpr double kTopToArray = 0.075;  // [m] of the magnetometers above the magnets' tops (thesis, figure 37)
 
-std::string draw_paths(const Bench& bench, const std::vector<Trial>& trials, const world::World& world) {
+std::string draw_paths(const ExperimentContext& context, const std::vector<Trial>& trials, const world::World& world) {
   std::vector<viz::Track> tracks;
   for (std::size_t k = 0; k < trials.size(); ++k) {
     viz::Track track = trials[k].tracks.front();
     track.name = fmt::format("trial {}", k + 1);
     tracks.push_back(std::move(track));
   }
-  const std::string file = in_folder(bench, "trajectories.png");
-  viz::draw_along_paths(world, tracks, "Trajectories: " + bench.scenario.name,
-                        fmt::format("plant {}, {} from seed {}", name_of(bench.scenario.plant.value_or(Plant::ideal)),
-                                    counted(trials.size(), "trial"), bench.options.seed),
+  const std::string file = in_folder(context, "trajectories.png");
+  viz::draw_along_paths(world, tracks, "Trajectories: " + context.scenario.name,
+                        fmt::format("plant {}, {} from seed {}", name_of(context.scenario.plant.value_or(Plant::ideal)),
+                                    counted(trials.size(), "trial"), context.options.seed),
                         file);
   return file;
 }
 
-std::string draw_errors(const Bench& bench, const std::vector<Trial>& trials, std::string_view unit) {
-  viz::SeriesOptions plan{.title = "Control error: " + bench.scenario.name};
+std::string draw_errors(const ExperimentContext& context, const std::vector<Trial>& trials, std::string_view unit) {
+  viz::SeriesOptions plan{.title = "Control error: " + context.scenario.name};
   viz::Panel panel{.y_name = fmt::format("error [{}]", unit)};
   for (std::size_t k = 0; k < trials.size(); ++k)
     panel.series.push_back({fmt::format("trial {}", k + 1), trials[k].times, trials[k].counts.front().errors});
   plan.panels.push_back(std::move(panel));
-  const std::string file = in_folder(bench, "errors.png");
+  const std::string file = in_folder(context, "errors.png");
   viz::draw_series(plan, file);
   return file;
 }
 
 /// Figure 37: six magnets in a line. Nothing where the world of them is not beside this one.
-std::vector<std::string> draw_field_line(const Bench& bench) {
-  const std::filesystem::path worlds = std::filesystem::path(bench.scenario.world).parent_path().parent_path();
+std::vector<std::string> draw_field_line(const ExperimentContext& context) {
+  const std::filesystem::path worlds = std::filesystem::path(context.scenario.world).parent_path().parent_path();
   const std::string six = (worlds / "six_magnets.world").string();
   if (!std::filesystem::exists(six)) return {};
   const world::World world = world::load_world(six, {.sensors = sensors::world_file_words()});
   const viz::FieldView view = viz::field_view(world, {.height = kTopToArray});
-  const viz::FieldSamples samples = viz::sample_field(world, bench.device, view, {});
-  const std::string file = in_folder(bench, "field.png");
+  const viz::FieldSamples samples = viz::sample_field(world, context.device, view, {});
+  const std::string file = in_folder(context, "field.png");
   viz::draw_field(world, view, samples, file);
   return {file};
 }
@@ -60,7 +60,7 @@ std::vector<std::string> draw_field_line(const Bench& bench) {
 /// Seconds from the first to the last error, of a trial.
 double driven(const Trial& trial) { return trial.times.empty() ? 0.0 : trial.times.back() - trial.times.front(); }
 
-std::string report_of(const Bench& bench, const std::vector<Trial>& trials, const ThesisTable& table) {
+std::string report_of(const ExperimentContext& context, const std::vector<Trial>& trials, const ThesisTable& table) {
   std::vector<ErrorStatistics> statistics;
   std::string ends;
   for (std::size_t k = 0; k < trials.size(); ++k) {
@@ -74,22 +74,23 @@ std::string report_of(const Bench& bench, const std::vector<Trial>& trials, cons
       "| trial | time on the path [s] | errors | contacts | end reached | driven [m] |\n|---|---|---|---|---|---|\n{}\n"
       "## Why ours and the thesis' differ\n\n{}\n\nMore in docs/experiments.md. `statistics.csv` has the numbers, "
       "`trial-<k>/` each run whole (`sensorfarm plot`).\n",
-      bench.scenario.name, setup_of(bench, {}), table.number, table_of(statistics, table), ends, bench.kind.reasons);
+      context.scenario.name, setup_of(context, {}), table.number, table_of(statistics, table), ends,
+      context.kind.reasons);
 }
 
-std::vector<std::string> run_path(const Bench& bench) {
-  const ThesisTable& table = *thesis_table(bench.scenario.name);
-  const std::vector<Trial> trials = run_trials(bench, {});
-  const world::World world = world_of(bench.scenario);
+std::vector<std::string> run_path(const ExperimentContext& context) {
+  const ThesisTable& table = *thesis_table(context.scenario.name);
+  const std::vector<Trial> trials = run_trials(context, {});
+  const world::World world = world_of(context.scenario);
   std::vector<ErrorStatistics> statistics;
   for (const Trial& trial : trials) statistics.push_back(trial.errors.front());
-  std::vector<std::string> files{in_folder(bench, "statistics.csv"), in_folder(bench, "report.md")};
+  std::vector<std::string> files{in_folder(context, "statistics.csv"), in_folder(context, "report.md")};
   write_text(files[0], csv_of(statistics));
-  write_text(files[1], report_of(bench, trials, table));
-  files.push_back(draw_paths(bench, trials, world));
-  files.push_back(draw_errors(bench, trials, table.unit));
+  write_text(files[1], report_of(context, trials, table));
+  files.push_back(draw_paths(context, trials, world));
+  files.push_back(draw_errors(context, trials, table.unit));
   if (table.unit == "Gauss")
-    for (const std::string& file : draw_field_line(bench)) files.push_back(file);
+    for (const std::string& file : draw_field_line(context)) files.push_back(file);
   return files;
 }
 
@@ -114,30 +115,30 @@ constexpr std::string_view kMagnetReasons =
 
 }  // namespace
 
-extern const ExperimentKind lane_edge_p_experiment, lane_edge_pi_experiment, magnet_p_experiment, magnet_pi_experiment;
+extern const ExperimentType lane_edge_p_experiment, lane_edge_pi_experiment, magnet_p_experiment, magnet_pi_experiment;
 
-constinit const ExperimentKind lane_edge_p_experiment{
+constinit const ExperimentType lane_edge_p_experiment{
     .name = "lane-edge-p",
     .summary = "path following by the painted edge, P (thesis: table 1, figure 33)",
     .plant = Plant::thesis,
     .reasons = kEdgeReasons,
     .run = run_path,
 };
-constinit const ExperimentKind lane_edge_pi_experiment{
+constinit const ExperimentType lane_edge_pi_experiment{
     .name = "lane-edge-pi",
     .summary = "the same, PI (table 2, figure 34)",
     .plant = Plant::thesis,
     .reasons = kEdgeReasons,
     .run = run_path,
 };
-constinit const ExperimentKind magnet_p_experiment{
+constinit const ExperimentType magnet_p_experiment{
     .name = "magnet-p",
     .summary = "path following by magnets in the road, P (table 3, figures 37 and 38)",
     .plant = Plant::thesis,
     .reasons = kMagnetReasons,
     .run = run_path,
 };
-constinit const ExperimentKind magnet_pi_experiment{
+constinit const ExperimentType magnet_pi_experiment{
     .name = "magnet-pi",
     .summary = "the same, PI (table 4, figure 39)",
     .plant = Plant::thesis,

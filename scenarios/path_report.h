@@ -5,7 +5,7 @@
 #include <string>
 
 #include "scenarios/statistics.h"
-#include "scenarios/thesis.h"
+#include "scenarios/thesis_tables.h"
 
 namespace sf::scenarios {
 

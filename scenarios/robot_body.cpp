@@ -28,26 +28,27 @@ RobotBody::RobotBody(const world::World& world, std::uint32_t mover, std::int64_
       fleet_(world_),
       mover_(mover),
       forget_(forget),
-      told_(world.movers.size()),
+      others_(world.movers.size()),
       commands_(world.movers.size()) {
   trail_[0].X_WM = state().X_WM;
 }
 
-void RobotBody::hear(std::uint32_t mover, const base::Pose& X_WM, const base::Twist& velocity, std::int64_t now) {
+void RobotBody::update_other(std::uint32_t mover, const base::Pose& X_WM, const base::Twist& velocity,
+                             std::int64_t now) {
   // The fleet's time is what its moves added up to, a little behind: as the newest word it has that time.
   const base::Report report{mover, fleet_.reports()[mover].time, X_WM, velocity};
   fleet_.apply({&report, 1});
   fleet_.set_absent(mover, false);
-  told_[mover] = {velocity, now + robots::kMaxExtrapolation, forget_ > 0 ? now + forget_ : kNever};
+  others_[mover] = {velocity, now + robots::kMaxExtrapolation, forget_ > 0 ? now + forget_ : kNever};
 }
 
 void RobotBody::move(const base::Twist& command, std::int64_t now) {
   const std::int64_t dt = std::min(now - time_, robots::kMaxExtrapolation);
   time_ = now;
   if (dt <= 0) return;
-  for (std::uint32_t m = 0; m < told_.size(); ++m) {
-    commands_[m] = now < told_[m].until ? told_[m].velocity : base::Twist{};
-    if (now >= told_[m].gone) fleet_.set_absent(m, true);
+  for (std::uint32_t m = 0; m < others_.size(); ++m) {
+    commands_[m] = now < others_[m].until ? others_[m].velocity : base::Twist{};
+    if (now >= others_[m].gone) fleet_.set_absent(m, true);
   }
   commands_[mover_] = command;
   const base::Pose before = state().X_WM;
@@ -59,15 +60,15 @@ void RobotBody::move(const base::Twist& command, std::int64_t now) {
 
 base::Pose RobotBody::pose_at(std::int64_t time) const {
   const std::size_t kept = std::min(moves_ + 1, trail_.size());
-  if (time >= been(0).time) return been(0).X_WM;
+  if (time >= trail_point(0).time) return trail_point(0).X_WM;
   for (std::size_t back = 1; back < kept; ++back) {
-    const Been& earlier = been(back);
-    const Been& later = been(back - 1);
+    const TrailPoint& earlier = trail_point(back);
+    const TrailPoint& later = trail_point(back - 1);
     if (earlier.time > time) continue;
     const auto part = static_cast<double>(time - earlier.time) / static_cast<double>(later.time - earlier.time);
     return between(earlier.X_WM, later.X_WM, part);
   }
-  return been(kept - 1).X_WM;
+  return trail_point(kept - 1).X_WM;
 }
 
 }  // namespace sf::scenarios

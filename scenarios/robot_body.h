@@ -20,7 +20,7 @@ class RobotBody {
   RobotBody(const world::World& world, std::uint32_t mover, std::int64_t forget = 0);
 
   /// Another robot says where it is; it came now.
-  void hear(std::uint32_t mover, const base::Pose& X_WM, const base::Twist& velocity, std::int64_t now);
+  void update_other(std::uint32_t mover, const base::Pose& X_WM, const base::Twist& velocity, std::int64_t now);
 
   /// Drives from where it was until `now`, half a second at most (a stopped process stood). Others go on as they said,
   /// for half a second; then they stand.
@@ -35,24 +35,24 @@ class RobotBody {
 
  private:
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-  struct Told {
+  struct OtherRobot {
     base::Twist velocity;
     std::int64_t until = 0;      ///< [ns]
     std::int64_t gone = kNever;  ///< [ns] when it is forgotten
   };
-  struct Been {
+  struct TrailPoint {
     std::int64_t time = 0;  ///< [ns]
     base::Pose X_WM;
   };
-  const Been& been(std::size_t back) const { return trail_[(moves_ - back) % trail_.size()]; }
+  const TrailPoint& trail_point(std::size_t back) const { return trail_[(moves_ - back) % trail_.size()]; }
 
   world::World world_;  ///< a copy: others move as they say they do, whatever stands between their commands and them
   robots::Fleet fleet_;
   std::uint32_t mover_;
   std::int64_t forget_;                ///< [ns]; 0: nobody is forgotten
-  std::vector<Told> told_;             ///< per mover
+  std::vector<OtherRobot> others_;     ///< per mover
   std::vector<base::Twist> commands_;  ///< per mover
-  std::array<Been, 256> trail_;
+  std::array<TrailPoint, 256> trail_;
   std::size_t moves_ = 0;  ///< the last one is at `moves_` % size
   std::int64_t time_ = 0;
   double distance_ = 0.0;

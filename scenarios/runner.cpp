@@ -11,8 +11,8 @@
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "scenarios/coverage.h"
+#include "scenarios/run_metrics.h"
 #include "scenarios/statistics.h"
-#include "scenarios/watch.h"
 #include "world/roads/roads.h"
 
 namespace sf::scenarios {
@@ -55,7 +55,7 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
 
 /// Where the file says who drives this mover.
 int line_of_driver(const Scenario& scenario, const world::Mover& mover) {
-  for (const RobotPlan& plan : scenario.plans)
+  for (const RobotSetup& plan : scenario.plans)
     if (plan.actor && plan.name == mover.name) return plan.driver_line;
   return scenario.default_line;
 }
@@ -79,7 +79,7 @@ class Run {
       : scenario_(scenario),
         world_(world_of(scenario)),
         simulation_(world_, device, simulation_of(scenario, world_)),
-        watch_(world_, simulation_) {
+        metrics_(world_, simulation_) {
     for (const Expectation& e : scenario.expect)
       if (e.kind == Kind::map_coverage)
         for (const std::uint32_t row : rows_of(scenario, world_, e))
@@ -94,8 +94,8 @@ class Run {
       const auto begin = Clock::now();
       const base::TickRecord tick = simulation_.step();
       tick_ms_.push_back(1e3 * base::seconds_since(begin));
-      watch_.look(tick);
-      enter(tick.readings, maps_);
+      metrics_.update(tick);
+      add_scans(tick.readings, maps_);
       if (progress && result.ticks % 16 == 0) progress(static_cast<double>(result.ticks) / static_cast<double>(ticks));
     }
     result.wall = base::seconds_since(start);
@@ -117,9 +117,9 @@ class Run {
     return value;
   }
 
-  Seen seen_by(std::uint32_t mover) const {
+  Coverage seen_by(std::uint32_t mover) const {
     const maps::OccupancyGrid& grid = maps_.at(mover).grid();
-    return seen_of(grid, what_could_be_seen(world_, mover, grid.plan));
+    return coverage_of(grid, visible_area(world_, mover, grid.plan));
   }
 
   /// In words: what a number would not say, or round away.
@@ -139,37 +139,38 @@ class Run {
     switch (e.kind) {
       case Kind::no_collision:
       case Kind::contacts:
-        return worst(e, false, [&](std::uint32_t r) { return static_cast<double>(watch_.of(r).contacts); });
+        return worst(e, false, [&](std::uint32_t r) { return static_cast<double>(metrics_.of(r).contacts); });
       case Kind::mean_error:
-        return worst(e, false, [&](std::uint32_t r) { return std::abs(statistics_of(watch_.of(r).errors).mean); });
+        return worst(e, false, [&](std::uint32_t r) { return std::abs(statistics_of(metrics_.of(r).errors).mean); });
       case Kind::mean_abs_error:
-        return worst(e, false, [&](std::uint32_t r) { return statistics_of(watch_.of(r).errors).abs_mean; });
+        return worst(e, false, [&](std::uint32_t r) { return statistics_of(metrics_.of(r).errors).abs_mean; });
       case Kind::map_coverage:
         return worst(e, true,
                      [&](std::uint32_t r) { return maps_.contains(r) ? seen_by(r).coverage() : std::nan(""); });
       case Kind::lights_obeyed:
-        return static_cast<double>(watch_.reds());
+        return static_cast<double>(metrics_.red_lights_passed());
       case Kind::done:
         return simulation_.all_done() ? 1.0 : 0.0;
       case Kind::distance:
-        return worst(e, true, [&](std::uint32_t r) { return watch_.of(r).travelled; });
+        return worst(e, true, [&](std::uint32_t r) { return metrics_.of(r).travelled; });
       case Kind::checkpoints:
         return worst(e, true, [&](std::uint32_t r) {
-          return watch_.of(r).goals.any ? static_cast<double>(watch_.of(r).goals.passed) : std::nan("");
+          return metrics_.of(r).goals.any ? static_cast<double>(metrics_.of(r).goals.passed) : std::nan("");
         });
       case Kind::all_checkpoints:
-        return static_cast<double>(watch_.checkpoints());
+        return static_cast<double>(metrics_.checkpoints());
       case Kind::tick_p99:
         return percentile(tick_ms_, 0.99);
     }
     return std::nan("");
   }
 
-  Outcome judge(const Expectation& e) const {
+  ExpectationResult judge(const Expectation& e) const {
     // Contacts are counted over all robots where none is named; all else is that of the worst.
     const bool sum = e.robot.empty() && (e.kind == Kind::contacts || e.kind == Kind::no_collision);
-    const double value = sum ? static_cast<double>(watch_.contacts()) : measure(e);
-    Outcome outcome{.what = std::string(name_of(e.kind)), .measured = text_of_measured(e, value), .line = e.line};
+    const double value = sum ? static_cast<double>(metrics_.contacts()) : measure(e);
+    ExpectationResult outcome{
+        .what = std::string(name_of(e.kind)), .measured = text_of_measured(e, value), .line = e.line};
     if (!e.robot.empty()) outcome.what += " of " + e.robot;
     switch (e.kind) {
       case Kind::no_collision:
@@ -199,17 +200,17 @@ class Run {
   const Scenario& scenario_;
   world::World world_;
   Simulation simulation_;
-  Watch watch_;
-  std::map<std::uint32_t, OwnMap> maps_;  ///< by mover
+  RunMetrics metrics_;
+  std::map<std::uint32_t, RobotMap> maps_;  ///< by mover
   std::vector<double> tick_ms_;
 };
 
 }  // namespace
 
-Verdict ScenarioResult::verdict() const {
-  if (outcomes.empty()) return Verdict::nothing_expected;
-  const bool met = std::all_of(outcomes.begin(), outcomes.end(), [](const Outcome& o) { return o.met; });
-  return met ? Verdict::passed : Verdict::failed;
+ScenarioStatus ScenarioResult::status() const {
+  if (outcomes.empty()) return ScenarioStatus::no_expectations;
+  const bool met = std::all_of(outcomes.begin(), outcomes.end(), [](const ExpectationResult& o) { return o.met; });
+  return met ? ScenarioStatus::passed : ScenarioStatus::failed;
 }
 
 std::vector<world::Warning> check_scenario(const Scenario& scenario) {

@@ -12,7 +12,7 @@
 namespace sf::scenarios {
 
 /// One expectation beside what was measured.
-struct Outcome {
+struct ExpectationResult {
   std::string what;      ///< "mean_abs_error of roomba0"
   std::string expected;  ///< "<= 0.05"
   std::string measured;  ///< "0.0412"
@@ -21,17 +21,17 @@ struct Outcome {
 };
 
 /// Nothing expected is neither a failure nor a success.
-enum class Verdict : std::uint8_t { passed, failed, nothing_expected };
+enum class ScenarioStatus : std::uint8_t { passed, failed, no_expectations };
 
 struct ScenarioResult {
   std::string name;
   std::string file;
-  std::vector<Outcome> outcomes;
+  std::vector<ExpectationResult> outcomes;
   double simulated = 0.0;  ///< [s]
   double wall = 0.0;       ///< [s]
   std::uint64_t ticks = 0;
   std::uint64_t hash = 0;  ///< of all readings
-  Verdict verdict() const;
+  ScenarioStatus status() const;
 };
 
 /// Everything that a run would refuse, without a device and before any has begun: its world, its robots, their

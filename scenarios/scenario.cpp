@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "scenarios/crowd.h"
+#include "scenarios/fleet_spawn.h"
 #include "sensors/sensor_type.h"
 #include "world/keys.h"
 
@@ -31,13 +31,13 @@ world::World world_of(const Scenario& scenario) {
         scenario.file, scenario.world_line,
         fmt::format("there is no world '{}'; expected a file, named from this one's folder", scenario.world));
   world::World world = world::load_world(scenario.world, load);
-  if (scenario.crowd.robots > 0) make_crowd(scenario, world);
+  if (scenario.fleet.robots > 0) spawn_fleet(scenario, world);
   if (scenario.tick > 0.0) world.interval = scenario.tick;
   if (scenario.plant)
     for (world::Mover& mover : world.movers)
       mover.driver_model =
           *scenario.plant == Plant::thesis ? world::DriverModel::player_create : world::DriverModel::direct;
-  for (const RobotPlan& plan : scenario.plans) {
+  for (const RobotSetup& plan : scenario.plans) {
     world::Mover& mover = world.movers[row_of(scenario, world, plan.name, plan.line)];
     if (plan.pose) mover.X_WM = {plan.pose->x, plan.pose->y, mover.X_WM.z, plan.pose->yaw};
   }
@@ -53,7 +53,7 @@ SimulationOptions simulation_of(const Scenario& scenario, const world::World& wo
     const bool own = !mover.is_tag && !mover.controller.empty() && mover.controller != actor.plan.controller;
     if (own) actor.plan = {.controller = mover.controller};
   }
-  for (const RobotPlan& plan : scenario.plans)
+  for (const RobotSetup& plan : scenario.plans)
     if (plan.actor) options.actors[row_of(scenario, world, plan.name, plan.line)] = *plan.actor;
   for (Actor& actor : options.actors) actor.link.seed = scenario.seed;
   return options;

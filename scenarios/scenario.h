@@ -18,7 +18,7 @@
 namespace sf::scenarios {
 
 /// What one robot is told apart from all others.
-struct RobotPlan {
+struct RobotSetup {
   std::string name;                ///< of its mover
   std::optional<Actor> actor;      ///< else the scenario's
   std::optional<base::Pose> pose;  ///< [m], [rad] where it starts; else where the world has it
@@ -49,14 +49,14 @@ struct Expectation {
 std::string_view name_of(Expectation::Kind kind);  ///< its key
 
 /// Copies of one robot of the world.
-struct Crowd {
-  enum class Place : std::uint8_t {
+struct FleetSpawn {
+  enum class Placement : std::uint8_t {
     free,  ///< wherever there is room: instead of all robots of the world
     lanes  ///< on lanes, along them: instead of those that no plan names
   };
   std::uint32_t robots = 0;  ///< how many; 0: the world's own robots
   std::string of;            ///< its name; empty: the first
-  Place place = Place::free;
+  Placement place = Placement::free;
   int line = 0;  ///< of `robots` in the file
 };
 
@@ -68,12 +68,12 @@ struct Scenario {
   double duration = 60.0;  ///< [s] simulated, at most: where `done` is expected it ends with it
   std::uint64_t seed = 1;
   double tick = 0.0;           ///< [s]; 0: the world's own
-  Crowd crowd;                 ///< in place of the world's own robots
+  FleetSpawn fleet;            ///< in place of the world's own robots
   std::optional<Plant> plant;  ///< of every robot; else as the world says
   double start_at = 0.0;       ///< [s]
   Actor actor;                 ///< of every robot
   int default_line = 0;        ///< of its controller; 0: the file names none
-  std::vector<RobotPlan> plans;
+  std::vector<RobotSetup> plans;
   std::vector<Expectation> expect;
 };
 

@@ -153,20 +153,20 @@ base::Pose pose_of(const Reader& reader, const TomlNode& node) {
   return {at(0, kMostPosition), at(1, kMostPosition), 0.0, at(2, 1e6) * M_PI / 180.0};
 }
 
-Crowd crowd_of(const Reader& reader, const TomlNode& root) {
-  Crowd crowd;
-  crowd.robots = static_cast<std::uint32_t>(reader.whole(root, "robots", 0, 65535.0));
-  crowd.of = reader.text(root, "of", "");
+FleetSpawn crowd_of(const Reader& reader, const TomlNode& root) {
+  FleetSpawn fleet;
+  fleet.robots = static_cast<std::uint32_t>(reader.whole(root, "robots", 0, 65535.0));
+  fleet.of = reader.text(root, "of", "");
   const std::string place = reader.text(root, "place", "free");
   if (place != "free" && place != "lanes")
     reader.fail(*world::find(root, "place"), "'place' expects \"free\" or \"lanes\"");
-  crowd.place = place == "lanes" ? Crowd::Place::lanes : Crowd::Place::free;
-  if (const TomlNode* robots = world::find(root, "robots")) crowd.line = robots->line;
+  fleet.place = place == "lanes" ? FleetSpawn::Placement::lanes : FleetSpawn::Placement::free;
+  if (const TomlNode* robots = world::find(root, "robots")) fleet.line = robots->line;
   for (const std::string_view key : {"of", "place"})
-    if (const TomlNode* node = world::find(root, key); node != nullptr && crowd.robots == 0)
+    if (const TomlNode* node = world::find(root, key); node != nullptr && fleet.robots == 0)
       reader.fail(*node,
                   fmt::format("'{}' says something of copies, and there are none; expected robots = N beside it", key));
-  return crowd;
+  return fleet;
 }
 
 void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario) {
@@ -177,7 +177,7 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
   for (const TomlNode& node : list->items) {
     if (node.kind != Kind::table) reader.fail(node, "'robot' expects [[robot]] tables");
     reader.require_known(node, kRobotKeys);
-    RobotPlan plan{.name = reader.text(node, "name", ""), .line = node.line};
+    RobotSetup plan{.name = reader.text(node, "name", ""), .line = node.line};
     if (plan.name.empty()) reader.fail(node, "a robot without a name; expected name = \"...\" of a robot of the world");
     const bool told = std::any_of(node.items.begin(), node.items.end(),
                                   [](const TomlNode& item) { return item.key != "name" && item.key != "pose"; });
@@ -282,7 +282,7 @@ Scenario parse_scenario(const std::string& file, std::string_view text) {
   scenario.duration = reader.number(root, "duration", scenario.duration, 0.0, kLongest);
   scenario.seed = reader.whole(root, "seed", scenario.seed, kMostWhole);
   if (world::find(root, "tick") != nullptr) scenario.tick = reader.number(root, "tick", 0.0, 1e-3, 10.0);
-  scenario.crowd = crowd_of(reader, root);
+  scenario.fleet = crowd_of(reader, root);
   scenario.start_at = reader.number(root, "start_at", 0.0, 0.0, kLongest);
   read_plant(reader, root, scenario);
   scenario.actor.link = link_of(reader, reader.table(root, "link"), {});

@@ -44,7 +44,7 @@ Simulation::Simulation(const world::World& world, gpu::Device& device, Simulatio
       farm_(world, device, farm_options(options)),
       fleet_(world, &thread_pool_),
       commands_(world.movers.size()),
-      obeyed_(world.movers.size()),
+      executed_commands_(world.movers.size()),
       first_(world.movers.size() + 1),
       intents_(world.movers.size()),
       next_intents_(world.movers.size()),
@@ -95,7 +95,7 @@ base::TickRecord Simulation::step() {
   sort_by_mover(readings);
   decide(time);
   move_s_ += base::seconds_since(start);
-  return {tick_++, time, fleet_.reports(), obeyed_, fleet_.contacts(), readings};
+  return {tick_++, time, fleet_.reports(), executed_commands_, fleet_.contacts(), readings};
 }
 
 std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
@@ -119,7 +119,7 @@ std::span<const base::ReadingBlock> Simulation::sense(std::int64_t time) {
 void Simulation::move() {
   const auto start = std::chrono::steady_clock::now();
   fleet_.move(commands_, interval_);
-  obeyed_ = commands_;
+  executed_commands_ = commands_;
   move_s_ += base::seconds_since(start);
 }
 
@@ -162,7 +162,7 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   const std::uint32_t first = first_[mover], count = first_[mover + 1] - first;
   std::span<const base::ReadingBlock> fresh = by_mover_.subspan(first, count);
   if (driver.mailbox) {
-    for (const base::ReadingBlock& reading : fresh) driver.mailbox->post(reading, std::min(time, leaves_at(reading)));
+    for (const base::ReadingBlock& reading : fresh) driver.mailbox->send(reading, std::min(time, leaves_at(reading)));
   } else if (!readings_.empty()) {
     fresh = newest_of(std::span(sorted_).subspan(first, count));
   }
@@ -173,7 +173,7 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   others.clear();
   const double v2v_range = driver.controller->v2v_range();
   if (v2v_range > 0.0) find_others(mover, v2v_range, others);
-  const auto readings = driver.mailbox ? driver.mailbox->open(time) : fresh;
+  const auto readings = driver.mailbox ? driver.mailbox->receive(time) : fresh;
   commands_[mover] =
       driver.controller->step({time, fleet_.reports()[mover], readings, contact, time >= start_at_, others, signals_});
   next_intents_[mover] = driver.controller->intent();
@@ -188,7 +188,7 @@ std::int64_t Simulation::leaves_at(const base::ReadingBlock& reading) const {
 /// Between its steps a controller's last command stands.
 bool Simulation::due(Driver& driver, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const {
   if (driver.by_lasers) {
-    if (driver.mailbox) driver.mailbox->open(time);
+    if (driver.mailbox) driver.mailbox->receive(time);
     const bool looked = driver.mailbox ? driver.mailbox->renewed(base::kLaser)
                                        : std::any_of(fresh.begin(), fresh.end(), [](const base::ReadingBlock& r) {
                                            return r.kind == base::kLaser;

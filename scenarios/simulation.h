@@ -96,7 +96,7 @@ class Simulation {
   robots::NeighbourGrid neighbours_;
   std::vector<Driver> drivers_;  ///< per mover
   std::vector<base::Twist> commands_;
-  std::vector<base::Twist> obeyed_;               ///< what the tick just recorded was told to do
+  std::vector<base::Twist> executed_commands_;    ///< what the tick just recorded was told to do
   std::span<const base::ReadingBlock> by_mover_;  ///< of this tick: those given, where they are in order, or `sorted_`
   std::vector<std::uint32_t> first_;              ///< per mover, and the end: its first of them
   std::vector<std::uint32_t> next_;               ///< scratch

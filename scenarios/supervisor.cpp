@@ -21,12 +21,12 @@ double side_of(std::uint32_t contact_mask) {
 
 }  // namespace
 
-Supervisor::Supervisor(const world::World& world, const SupervisorPlan& plan)
+Supervisor::Supervisor(const world::World& world, const SupervisorSettings& plan)
     : plan_(plan), interval_(world.interval), watched_(world.movers.size()) {}
 
-std::span<const Supervisor::Help> Supervisor::look(const base::TickRecord& tick) {
-  helps_.clear();
-  if (plan_.patience <= 0.0) return helps_;
+std::span<const Supervisor::Intervention> Supervisor::update(const base::TickRecord& tick) {
+  interventions_.clear();
+  if (plan_.patience <= 0.0) return interventions_;
   for (std::uint32_t m = 0; m < watched_.size(); ++m) {
     Watched& watched = watched_[m];
     const base::Report& report = tick.reports[m];
@@ -37,10 +37,10 @@ std::span<const Supervisor::Help> Supervisor::look(const base::TickRecord& tick)
       watched.way.push_back(report.X_WM);
     }
     if (watched.waited < plan_.patience) continue;
-    helps_.push_back({m, place_for(report, watched)});
+    interventions_.push_back({m, place_for(report, watched)});
     watched = {};
   }
-  return helps_;
+  return interventions_;
 }
 
 base::Pose Supervisor::place_for(const base::Report& report, const Watched& watched) const {

@@ -12,7 +12,7 @@
 
 namespace sf::scenarios {
 
-struct SupervisorPlan {
+struct SupervisorSettings {
   double patience = 0.0;     ///< [s] of standing in contact before the robot is taken; 0: nobody is there
   double back = 0.15;        ///< [m] along its own way
   double turn = M_PI / 4.0;  ///< [rad] from the side that is pressed
@@ -20,14 +20,14 @@ struct SupervisorPlan {
 
 class Supervisor {
  public:
-  struct Help {
+  struct Intervention {
     std::uint32_t mover = 0;
     base::Pose X_WM;  ///< where it is put
   };
-  Supervisor(const world::World& world, const SupervisorPlan& plan);
+  Supervisor(const world::World& world, const SupervisorSettings& plan);
 
   /// After every tick. @return who is to be put where before the next; lives until the next call
-  std::span<const Help> look(const base::TickRecord& tick);
+  std::span<const Intervention> update(const base::TickRecord& tick);
 
  private:
   struct Watched {
@@ -36,10 +36,10 @@ class Supervisor {
   };
   base::Pose place_for(const base::Report& report, const Watched& watched) const;
 
-  SupervisorPlan plan_;
+  SupervisorSettings plan_;
   double interval_;  ///< [s]
   std::vector<Watched> watched_;
-  std::vector<Help> helps_;
+  std::vector<Intervention> interventions_;
 };
 
 }  // namespace sf::scenarios

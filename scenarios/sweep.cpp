@@ -49,8 +49,8 @@ void set_number(world::Sensor& sensor, const std::string& key, double value) {
   sensor.settings.push_back({key, {value}, "", sensor.line, sensor.file});
 }
 
-Scenario scenario_of(const Bench& bench, const Setting& setting, std::uint64_t seed) {
-  Scenario scenario = bench.scenario;
+Scenario scenario_of(const ExperimentContext& context, const Setting& setting, std::uint64_t seed) {
+  Scenario scenario = context.scenario;
   scenario.seed = seed;
   scenario.plant = setting.plant;
   scenario.tick = std::min(0.1, 1.0 / setting.rate);
@@ -62,10 +62,10 @@ Scenario scenario_of(const Bench& bench, const Setting& setting, std::uint64_t s
   return scenario;
 }
 
-void measure(const Bench& bench, Point& point) {
+void measure(const ExperimentContext& context, Point& point) {
   std::vector<ThesisRow> rows;
-  for (std::uint32_t k = 0; k < bench.options.trials; ++k) {
-    const Scenario scenario = scenario_of(bench, point.setting, bench.options.seed + k);
+  for (std::uint32_t k = 0; k < context.options.trials; ++k) {
+    const Scenario scenario = scenario_of(context, point.setting, context.options.seed + k);
     world::World world = disturbed_world(scenario, {});
     for (world::Mover& mover : world.movers)
       for (world::Sensor& sensor : mover.sensors) {
@@ -75,9 +75,9 @@ void measure(const Bench& bench, Point& point) {
       }
     world::update_extent_and_hash(world);
     const Trial trial =
-        run_trial(scenario, world, bench.device, {.threads = bench.options.threads, .stop = bench.options.stop});
+        run_trial(scenario, world, context.device, {.threads = context.options.threads, .stop = context.options.stop});
     rows.push_back(row_of(trial.errors.front()));
-    point.seconds += trial.simulated / bench.options.trials;
+    point.seconds += trial.simulated / context.options.trials;
     point.all_done = point.all_done && trial.done;
   }
   point.mean = mean_of(rows);
@@ -130,13 +130,13 @@ std::string csv_of_points(const std::vector<Point>& points) {
   return text;
 }
 
-std::string draw(const Bench& bench, const std::vector<Point>& points, const std::string& sweep) {
+std::string draw(const ExperimentContext& context, const std::vector<Point>& points, const std::string& sweep) {
   constexpr std::array<std::pair<std::size_t, const char*>, 3> kShown{
       {{0, "mean error [m]"}, {4, "mean |error| [m]"}, {7, "largest |error| [m]"}}};
   viz::SeriesOptions plan{.title = "Lane edge loop: " + sweep,
-                          .subtitle = bench.options.trials == 1
-                                          ? fmt::format("seed {}", bench.options.seed)
-                                          : fmt::format("means of {} seeds", bench.options.trials),
+                          .subtitle = context.options.trials == 1
+                                          ? fmt::format("seed {}", context.options.seed)
+                                          : fmt::format("means of {} seeds", context.options.trials),
                           .x_name = kAxes.at(stem_of(sweep)),
                           .from_zero = true};
   for (const auto& [column, name] : kShown) {
@@ -152,14 +152,14 @@ std::string draw(const Bench& bench, const std::vector<Point>& points, const std
     }
     plan.panels.push_back(std::move(panel));
   }
-  const std::string file = in_folder(bench, "sweep-" + sweep + ".png");
+  const std::string file = in_folder(context, "sweep-" + sweep + ".png");
   viz::draw_series(plan, file);
   return file;
 }
 
-std::string report_of(const Bench& bench, const std::vector<Point>& points) {
+std::string report_of(const ExperimentContext& context, const std::vector<Point>& points) {
   std::string text =
-      "# Sweeps of the lane edge loop\n\n" + setup_of(bench, {}) +
+      "# Sweeps of the lane edge loop\n\n" + setup_of(context, {}) +
       "\n\nOne thing is varied at a time; all else is as in lane-edge-p and -pi, without delay, jitter "
       "or loss. `exact edge`: the exact distance across the robot (one ray) in place of the line through 61 "
       "rays. `owed` is the mean error that a P loop cannot but have on this bend: (pi/2) / (kp T), the gain "
@@ -175,21 +175,22 @@ std::string report_of(const Bench& bench, const std::vector<Point>& points) {
     text += fmt::format("| {:g} | {} | {:.4f} | {:.4f} | {:.4f} | {:.3f} | {:.1f} | {} |\n", p.x, p.law, p.mean[0],
                         p.owed(), p.mean[4], p.mean[7], p.seconds, p.all_done ? "yes" : "no");
   }
-  return text + fmt::format("\n## What it shows\n\n{}\n", bench.kind.reasons);
+  return text + fmt::format("\n## What it shows\n\n{}\n", context.kind.reasons);
 }
 
-std::vector<std::string> run_sweeps(const Bench& bench) {
+std::vector<std::string> run_sweeps(const ExperimentContext& context) {
   std::vector<Point> points = all_points();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (bench.progress) bench.progress(static_cast<double>(i) / static_cast<double>(points.size()), points[i].sweep);
-    measure(bench, points[i]);
+    if (context.progress)
+      context.progress(static_cast<double>(i) / static_cast<double>(points.size()), points[i].sweep);
+    measure(context, points[i]);
   }
-  std::vector<std::string> files{in_folder(bench, "sweeps.csv"), in_folder(bench, "report.md")};
+  std::vector<std::string> files{in_folder(context, "sweeps.csv"), in_folder(context, "report.md")};
   write_text(files[0], csv_of_points(points));
-  write_text(files[1], report_of(bench, points));
+  write_text(files[1], report_of(context, points));
   std::string last;
   for (const Point& p : points) {
-    if (p.sweep != last) files.push_back(draw(bench, points, p.sweep));
+    if (p.sweep != last) files.push_back(draw(context, points, p.sweep));
     last = p.sweep;
   }
   return files;
@@ -206,9 +207,9 @@ constexpr std::string_view kReasons =
 
 }  // namespace
 
-extern const ExperimentKind sweeps_experiment;
+extern const ExperimentType sweeps_experiment;
 
-constinit const ExperimentKind sweeps_experiment{
+constinit const ExperimentType sweeps_experiment{
     .name = "sweeps",
     .summary =
         "the lane edge loop over delay, loss, rate and gain, each also with an exact edge in place of the line fit",

@@ -14,17 +14,17 @@ std::string csv_of(const std::vector<Trial>& trials) {
   std::string text = "trial,robot,driven_m,contacts,checkpoints,full_stops,reds_passed,mean_abs_error_m\n";
   for (std::size_t k = 0; k < trials.size(); ++k)
     for (std::size_t i = 0; i < trials[k].tracks.size(); ++i) {
-      const RobotCounts& counts = trials[k].counts[i];
+      const RobotMetrics& counts = trials[k].counts[i];
       const bool has = trials[k].errors[i].count > 0;
       text += fmt::format("{},{},{:.6g},{},{},{},{},{}\n", k + 1, trials[k].tracks[i].name, counts.travelled,
-                          counts.contacts, counts.goals.passed, counts.stops, counts.reds,
+                          counts.contacts, counts.goals.passed, counts.stops, counts.red_lights_passed,
                           has ? fmt::format("{:.6g}", trials[k].errors[i].abs_mean) : "");
     }
   return text;
 }
 
-std::string report_of(const Bench& bench, const std::vector<Trial>& trials) {
-  std::string text = fmt::format("# {}\n\n{}\n", bench.scenario.name, setup_of(bench, {}));
+std::string report_of(const ExperimentContext& context, const std::vector<Trial>& trials) {
+  std::string text = fmt::format("# {}\n\n{}\n", context.scenario.name, setup_of(context, {}));
   for (std::size_t k = 0; k < trials.size(); ++k) {
     const Trial& trial = trials[k];
     text += fmt::format(
@@ -34,19 +34,19 @@ std::string report_of(const Bench& bench, const std::vector<Trial>& trials) {
     for (std::size_t i = 0; i < trial.tracks.size(); ++i)
       text += fmt::format("| {} | {:.2f} | {} | {} | {} | {} |\n", trial.tracks[i].name, trial.counts[i].travelled,
                           trial.counts[i].contacts, trial.counts[i].goals.passed, trial.counts[i].stops,
-                          trial.counts[i].reds);
+                          trial.counts[i].red_lights_passed);
   }
-  return text + fmt::format("\n## Beside the thesis\n\n{}\n", bench.kind.reasons);
+  return text + fmt::format("\n## Beside the thesis\n\n{}\n", context.kind.reasons);
 }
 
-std::vector<std::string> run_town(const Bench& bench) {
-  const std::vector<Trial> trials = run_trials(bench, {});
-  std::vector<std::string> files{in_folder(bench, "statistics.csv"), in_folder(bench, "report.md")};
+std::vector<std::string> run_town(const ExperimentContext& context) {
+  const std::vector<Trial> trials = run_trials(context, {});
+  std::vector<std::string> files{in_folder(context, "statistics.csv"), in_folder(context, "report.md")};
   write_text(files[0], csv_of(trials));
-  write_text(files[1], report_of(bench, trials));
-  const world::World world = world_of(bench.scenario);
+  write_text(files[1], report_of(context, trials));
+  const world::World world = world_of(context.scenario);
   for (std::size_t k = 0; k < trials.size(); ++k) {
-    files.push_back(in_folder(bench, fmt::format("trajectories-{}.png", k + 1)));
+    files.push_back(in_folder(context, fmt::format("trajectories-{}.png", k + 1)));
     if (world.road_files.empty())
       viz::draw_trajectories(world, trials[k].tracks, files.back());
     else
@@ -71,23 +71,23 @@ constexpr std::string_view kMagicReasons =
 
 }  // namespace
 
-extern const ExperimentKind simville_experiment, simville_merge_experiment, minimagic_experiment;
+extern const ExperimentType simville_experiment, simville_merge_experiment, minimagic_experiment;
 
-constinit const ExperimentKind simville_experiment{
+constinit const ExperimentType simville_experiment{
     .name = "simville",
     .summary = "town traffic: fifty robots on routes, lights, stop signs, a convoy",
     .plant = Plant::ideal,
     .reasons = kTownReasons,
     .run = run_town,
 };
-constinit const ExperimentKind simville_merge_experiment{
+constinit const ExperimentType simville_merge_experiment{
     .name = "simville-merge",
     .summary = "a robot comes into a convoy, another passes a slow one",
     .plant = Plant::ideal,
     .reasons = kTownReasons,
     .run = run_town,
 };
-constinit const ExperimentKind minimagic_experiment{
+constinit const ExperimentType minimagic_experiment{
     .name = "minimagic",
     .summary = "Pioneers between buildings and obstacles that move",
     .plant = Plant::ideal,

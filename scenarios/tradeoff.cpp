@@ -9,7 +9,7 @@
 
 #include "base/elapsed.h"
 #include "farm/farm.h"
-#include "scenarios/ways.h"
+#include "scenarios/recorded_paths.h"
 #include "sensors/accuracy.h"
 #include "sensors/laser_reference.h"
 
@@ -32,8 +32,8 @@ struct Read {
 class Entrant {
  public:
   Entrant(const world::World& world, gpu::Device& device, const sensors::SensorType& kind, std::uint8_t mode,
-          const Ways& ways, const TradeoffOptions& options)
-      : kind_(kind), mode_(mode), world_(world), ways_(ways) {
+          const RecordedPaths& paths, const TradeoffOptions& options)
+      : kind_(kind), mode_(mode), world_(world), paths_(paths) {
     sensors::set_accuracy(world_, std::string(sensors::word_of(kind, mode)));
     farm_ = std::make_unique<farm::Farm>(
         world_, device,
@@ -55,7 +55,7 @@ class Entrant {
     laps_.push_back(base::seconds_since(start));
     elements_ = elements;
   }
-  double tick() const { return median_lap() / static_cast<double>(ways_.size()); }
+  double tick() const { return median_lap() / static_cast<double>(paths_.size()); }
   double rate() const { return static_cast<double>(elements_) / median_lap(); }
   std::uint8_t mode() const { return mode_; }
   const world::World& world() const { return world_; }
@@ -66,7 +66,7 @@ class Entrant {
   template <class Look>
   void lap(Look look) {
     const std::int64_t interval = std::llround(world_.interval * 1e9);
-    for (const auto& reports : ways_) {
+    for (const auto& reports : paths_) {
       for (const base::ReadingBlock& block : farm_->tick(now_, reports)) look(block);
       now_ += interval;
     }
@@ -91,7 +91,7 @@ class Entrant {
   const sensors::SensorType& kind_;
   std::uint8_t mode_;
   world::World world_;
-  const Ways& ways_;
+  const RecordedPaths& paths_;
   std::unique_ptr<farm::Farm> farm_;
   std::int64_t now_ = 0;
   std::vector<double> laps_;  ///< [s]
@@ -105,14 +105,14 @@ double apart(double ours, double theirs) {
 }
 
 /// [m] of a sample of scans in 64 bits against plain C++, which knows nothing of the device.
-std::vector<double> laser_errors(const Entrant& exact, const Ways& ways, const Read& read,
+std::vector<double> laser_errors(const Entrant& exact, const RecordedPaths& paths, const Read& read,
                                  const sensors::SensorSet& sensor_set) {
   std::vector<double> errors;
   sensors::LaserReference reference(exact.world(), 0, false);
   const auto& rows = sensor_set.group(base::kLaser)->rows;
   // Scans of the first tick: every laser has its first reading there unless its phase is later.
   std::vector<base::Pose> poses;
-  for (const base::Report& report : ways.front()) poses.push_back(report.X_WM);
+  for (const base::Report& report : paths.front()) poses.push_back(report.X_WM);
   reference.place(poses);
   std::size_t at = 0;
   for (std::size_t i = 0; i < std::min(rows.size(), kReferenceScans); ++i) {
@@ -131,13 +131,13 @@ double part_of(std::vector<double>& errors, double part) {
   return *at;
 }
 
-void grade_errors(std::vector<double> errors, Grade& grade) {
+void grade_errors(std::vector<double> errors, ModeResult& grade) {
   grade.median = part_of(errors, 0.5);
   grade.p99 = part_of(errors, 0.99);
   grade.max = part_of(errors, 1.0);
 }
 
-void compare(const Read& read, const Read& exact, Grade& grade) {
+void compare(const Read& read, const Read& exact, ModeResult& grade) {
   std::vector<double> errors;
   std::size_t covered = 0;
   double bound = 0.0;
@@ -153,43 +153,44 @@ void compare(const Read& read, const Read& exact, Grade& grade) {
   grade_errors(std::move(errors), grade);
 }
 
-void find_front(std::vector<Grade>& grades, std::size_t first) {
-  for (std::size_t i = first; i < grades.size(); ++i) {
-    const auto better = [&](const Grade& other) {
-      return other.rate >= grades[i].rate && other.p99 <= grades[i].p99 &&
-             (other.rate > grades[i].rate || other.p99 < grades[i].p99);
+void find_front(std::vector<ModeResult>& results, std::size_t first) {
+  for (std::size_t i = first; i < results.size(); ++i) {
+    const auto better = [&](const ModeResult& other) {
+      return other.rate >= results[i].rate && other.p99 <= results[i].p99 &&
+             (other.rate > results[i].rate || other.p99 < results[i].p99);
     };
-    grades[i].front = std::none_of(grades.begin() + static_cast<std::ptrdiff_t>(first), grades.end(), better);
+    results[i].front = std::none_of(results.begin() + static_cast<std::ptrdiff_t>(first), results.end(), better);
   }
 }
 
 }  // namespace
 
-std::vector<Grade> tradeoff(const world::World& world, gpu::Device& device, const TradeoffOptions& options) {
+std::vector<ModeResult> tradeoff(const world::World& world, gpu::Device& device, const TradeoffOptions& options) {
   const sensors::SensorSet sensor_set(world);
-  const Ways ways = drive_ways(world, device, kDriven, options.seed, options.threads);
+  const RecordedPaths paths = record_paths(world, device, kDriven, options.seed, options.threads);
   double all = 0.0, done = 0.0;
   for (const auto& group : sensor_set.groups()) all += static_cast<double>(group.kind->modes.size() * (1 + kRounds));
   const auto go_on = [&] { return !options.progress || options.progress(++done / all); };
 
-  std::vector<Grade> grades;
+  std::vector<ModeResult> results;
   for (const auto& group : sensor_set.groups()) {
     const sensors::SensorType& kind = *group.kind;
     if (kind.modes.empty()) continue;
     std::vector<std::unique_ptr<Entrant>> entrants;
-    const std::size_t first = grades.size();
+    const std::size_t first = results.size();
     Read exact;
     for (std::uint8_t mode = 0; mode < kind.modes.size(); ++mode) {
-      entrants.push_back(std::make_unique<Entrant>(world, device, kind, mode, ways, options));
+      entrants.push_back(std::make_unique<Entrant>(world, device, kind, mode, paths, options));
       const Read read = entrants.back()->read();
-      Grade grade{.sensor = std::string(kind.name),
-                  .mode = std::string(kind.modes[mode].word),
-                  .what = std::string(kind.modes[mode].what),
-                  .unit = std::string(sensors::unit_of(kind))};
+      ModeResult grade{.sensor = std::string(kind.name),
+                       .mode = std::string(kind.modes[mode].word),
+                       .what = std::string(kind.modes[mode].what),
+                       .unit = std::string(sensors::unit_of(kind))};
       if (mode == 0) exact = read;
       compare(read, exact, grade);
-      if (mode == 0 && kind.id == base::kLaser) grade_errors(laser_errors(*entrants[0], ways, read, sensor_set), grade);
-      grades.push_back(grade);
+      if (mode == 0 && kind.id == base::kLaser)
+        grade_errors(laser_errors(*entrants[0], paths, read, sensor_set), grade);
+      results.push_back(grade);
       if (!go_on()) return {};
     }
     for (int round = 0; round < kRounds; ++round)
@@ -198,18 +199,18 @@ std::vector<Grade> tradeoff(const world::World& world, gpu::Device& device, cons
         if (!go_on()) return {};
       }
     for (std::size_t i = 0; i < entrants.size(); ++i) {
-      grades[first + i].rate = entrants[i]->rate();
-      grades[first + i].tick = entrants[i]->tick();
+      results[first + i].rate = entrants[i]->rate();
+      results[first + i].tick = entrants[i]->tick();
     }
-    find_front(grades, first);
+    find_front(results, first);
   }
-  return grades;
+  return results;
 }
 
-std::string csv_of(const std::vector<Grade>& grades) {
+std::string csv_of(const std::vector<ModeResult>& results) {
   std::string text =
       "sensor,mode,rate_per_s,covered,covered_max_error,covered_bound,all_median_error,all_p99_error,all_max_error\n";
-  for (const Grade& g : grades) {
+  for (const ModeResult& g : results) {
     const std::string covered = g.covered > 0.0 ? fmt::format("{:.6g},{:.6g}", g.covered_max, g.bound) : ",";
     text += fmt::format("{},{},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.6g}\n", g.sensor, g.mode, g.rate, g.covered, covered,
                         g.median, g.p99, g.max);

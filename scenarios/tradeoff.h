@@ -14,7 +14,7 @@ namespace sf::scenarios {
 
 /// One mode of one kind. Errors are those of a reading's first column against the same reading in mode `exact`, without
 /// noise; of `exact` itself against plain C++ for lasers (a sample of scans), else 0.
-struct Grade {
+struct ModeResult {
   std::string sensor;  ///< the kind
   std::string mode;
   std::string what;   ///< the mode does
@@ -38,27 +38,27 @@ struct TradeoffOptions {
 };
 
 /// @return modes of each kind that has some, `exact` first, in order of kinds; fewer when it was stopped
-std::vector<Grade> tradeoff(const world::World& world, gpu::Device& device, const TradeoffOptions& options);
+std::vector<ModeResult> tradeoff(const world::World& world, gpu::Device& device, const TradeoffOptions& options);
 
 /// Columns sensor, mode, rate_per_s, covered, covered_max_error, covered_bound, all_median_error, all_p99_error,
 /// all_max_error; metres or tesla. Where nothing is covered, its error and bound are empty.
-std::string csv_of(const std::vector<Grade>& grades);
+std::string csv_of(const std::vector<ModeResult>& results);
 
-enum class Judged { median, p99, max };
+enum class ErrorMeasure { median, p99, max };
 
 /// What a user asks of all sensors.
-struct Wish {
+struct AccuracyTarget {
   double metres = std::numeric_limits<double>::infinity();  ///< largest error of kinds that measure metres
   double tesla = std::numeric_limits<double>::infinity();   ///< likewise
-  Judged by = Judged::max;
+  ErrorMeasure by = ErrorMeasure::max;
   double least_rate = 0.0;  ///< [Hz] of whole ticks; 0: not asked
 };
 
-/// Rows of `grades`, one a kind: the fastest within the errors; or, where a rate is asked, the most accurate that allow
-/// it together, and the fastest where none do.
-std::vector<std::size_t> advise(const std::vector<Grade>& grades, const Wish& wish);
+/// Rows of `results`, one a kind: the fastest within the errors; or, where a rate is asked, the most accurate that
+/// allow it together, and the fastest where none do.
+std::vector<std::size_t> select_modes(const std::vector<ModeResult>& results, const AccuracyTarget& target);
 
 /// The words of these modes, as `accuracy` and `--accuracy` take them.
-std::string words_of(const std::vector<Grade>& grades, const std::vector<std::size_t>& rows);
+std::string accuracy_words(const std::vector<ModeResult>& results, const std::vector<std::size_t>& rows);
 
 }  // namespace sf::scenarios

@@ -43,43 +43,43 @@ class Keeper {
       if (world.movers[row].is_tag && simulation.controller(row) == nullptr) continue;
       rows_.push_back(row);
       tracks_.push_back({.name = world.movers[row].name});
-      dead_ends_.emplace_back(2.0 * world.movers[row].radius, world.interval);
+      dead_end_detectors_.emplace_back(2.0 * world.movers[row].radius, world.interval);
       helped_.push_back(0);
       if (maps && !world.movers[row].lasers.empty()) maps_.try_emplace(row, world, row);
     }
   }
 
-  void look(const base::TickRecord& tick, const Simulation& simulation) {
+  void update(const base::TickRecord& tick, const Simulation& simulation) {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       tracks_[i].poses.push_back(tick.reports[rows_[i]].X_WM);
       tracks_[i].contacts.push_back(tick.contacts[rows_[i]]);
-      dead_ends_[i].look(tick.reports[rows_[i]], tick.contacts[rows_[i]] != 0);
+      dead_end_detectors_[i].update(tick.reports[rows_[i]], tick.contacts[rows_[i]] != 0);
     }
-    enter(tick.readings, maps_);
+    add_scans(tick.readings, maps_);
     const control::Controller* first = rows_.empty() ? nullptr : simulation.controller(rows_[0]);
     if (first != nullptr && simulation.stepped(rows_[0]) && std::isfinite(first->error()))
       times_.push_back(1e-9 * static_cast<double>(tick.time));
   }
 
-  void help(const base::Report& before, const base::Pose& X_WM) {
+  void intervention(const base::Report& before, const base::Pose& X_WM) {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       if (rows_[i] != before.mover) continue;
       ++helped_[i];
-      dead_ends_[i].turned(before, base::wrap_angle(X_WM.yaw - before.X_WM.yaw));
+      dead_end_detectors_[i].turned_by_hand(before, base::wrap_angle(X_WM.yaw - before.X_WM.yaw));
     }
   }
 
-  void give(const Watch& watch, const world::World& world, const Simulation& simulation, Trial& trial) {
+  void give(const RunMetrics& metrics, const world::World& world, const Simulation& simulation, Trial& trial) {
     for (const std::uint32_t row : rows_) trial.follows.push_back(followed_by(row, world, simulation));
     trial.rows = rows_;
     trial.tracks = std::move(tracks_);
-    trial.dead_ends = std::move(dead_ends_);
-    trial.helped = std::move(helped_);
+    trial.dead_ends = std::move(dead_end_detectors_);
+    trial.interventions = std::move(helped_);
     trial.times = std::move(times_);
     for (viz::Track& track : trial.tracks) track.duration = trial.simulated;
     for (const std::uint32_t row : rows_) {
-      trial.counts.push_back(watch.of(row));
-      trial.errors.push_back(statistics_of(watch.of(row).errors));
+      trial.counts.push_back(metrics.of(row));
+      trial.errors.push_back(statistics_of(metrics.of(row).errors));
     }
     for (const auto& [row, map] : maps_) {
       trial.mapped.push_back(row);
@@ -99,10 +99,10 @@ class Keeper {
 
   std::vector<std::uint32_t> rows_;
   std::vector<viz::Track> tracks_;
-  std::vector<DeadEnds> dead_ends_;
+  std::vector<DeadEndDetector> dead_end_detectors_;
   std::vector<std::uint32_t> helped_;
   std::vector<double> times_;
-  std::map<std::uint32_t, OwnMap> maps_;
+  std::map<std::uint32_t, RobotMap> maps_;
 };
 
 }  // namespace
@@ -127,7 +127,7 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
   SimulationOptions plan = simulation_of(scenario, world);
   plan.threads = options.threads;
   Simulation simulation(world, device, plan);
-  Watch watch(world, simulation);
+  RunMetrics metrics(world, simulation);
   Keeper keeper(world, simulation, options.maps);
   Supervisor supervisor(world, options.supervisor);
   std::optional<record::Recorder> recorder;
@@ -144,13 +144,13 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
   for (; tick < ticks && !simulation.all_done(); ++tick) {
     if (options.stop && options.stop()) throw Interrupted();
     const base::TickRecord record = simulation.step();
-    watch.look(record);
-    keeper.look(record, simulation);
+    metrics.update(record);
+    keeper.update(record, simulation);
     if (recorder) recorder->write(record);
-    for (const Supervisor::Help& help : supervisor.look(record)) {
-      keeper.help(record.reports[help.mover], help.X_WM);
-      watch.put(help.mover, help.X_WM);
-      simulation.put(help.mover, help.X_WM);
+    for (const Supervisor::Intervention& intervention : supervisor.update(record)) {
+      keeper.intervention(record.reports[intervention.mover], intervention.X_WM);
+      metrics.put(intervention.mover, intervention.X_WM);
+      simulation.put(intervention.mover, intervention.X_WM);
     }
   }
   if (recorder) recorder->finish();
@@ -159,7 +159,7 @@ Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device
   trial.simulated = static_cast<double>(tick) * world.interval;
   trial.done = simulation.all_done();
   trial.hash = simulation.farm().hash();
-  keeper.give(watch, world, simulation, trial);
+  keeper.give(metrics, world, simulation, trial);
   return trial;
 }
 

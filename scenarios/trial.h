@@ -9,11 +9,11 @@
 
 #include "gpu/device.h"
 #include "maps/grid.h"
-#include "scenarios/dead_ends.h"
+#include "scenarios/dead_end_detector.h"
+#include "scenarios/run_metrics.h"
 #include "scenarios/scenario.h"
 #include "scenarios/statistics.h"
 #include "scenarios/supervisor.h"
-#include "scenarios/watch.h"
 #include "viz/trajectory_figure.h"
 
 namespace sf::scenarios {
@@ -30,28 +30,28 @@ struct Disturbance {
 
 /// What is kept of a run.
 struct Trial {
-  std::vector<viz::Track> tracks;         ///< per robot, and per tag that is driven
-  std::vector<std::uint32_t> rows;        ///< of their movers
-  std::vector<std::uint32_t> follows;     ///< per track, at the end: the track that it follows; world::kNone: nobody
-  std::vector<RobotCounts> counts;        ///< one per track
-  std::vector<ErrorStatistics> errors;    ///< one per track
-  std::vector<DeadEnds> dead_ends;        ///< one per track
-  std::vector<std::uint32_t> helped;      ///< one per track: how often the supervisor took it by hand
-  std::vector<double> times;              ///< [s] of the first robot's errors
-  std::vector<maps::OccupancyGrid> maps;  ///< of each robot with a laser, where asked for
-  std::vector<std::uint32_t> mapped;      ///< their rows
-  double simulated = 0.0;                 ///< [s]
-  double wall = 0.0;                      ///< [s]
-  double decided = 0.0;                   ///< [s] of it, spent on controllers and motion
-  bool done = false;                      ///< all controllers were
-  std::uint64_t hash = 0;                 ///< of all readings
+  std::vector<viz::Track> tracks;            ///< per robot, and per tag that is driven
+  std::vector<std::uint32_t> rows;           ///< of their movers
+  std::vector<std::uint32_t> follows;        ///< per track, at the end: the track that it follows; world::kNone: nobody
+  std::vector<RobotMetrics> counts;          ///< one per track
+  std::vector<ErrorStatistics> errors;       ///< one per track
+  std::vector<DeadEndDetector> dead_ends;    ///< one per track
+  std::vector<std::uint32_t> interventions;  ///< one per track: how often the supervisor took it by hand
+  std::vector<double> times;                 ///< [s] of the first robot's errors
+  std::vector<maps::OccupancyGrid> maps;     ///< of each robot with a laser, where asked for
+  std::vector<std::uint32_t> mapped;         ///< their rows
+  double simulated = 0.0;                    ///< [s]
+  double wall = 0.0;                         ///< [s]
+  double decided = 0.0;                      ///< [s] of it, spent on controllers and motion
+  bool done = false;                         ///< all controllers were
+  std::uint64_t hash = 0;                    ///< of all readings
 };
 
 struct TrialOptions {
   Disturbance disturbance;
   std::string record;  ///< folder; empty: none
   bool maps = false;
-  SupervisorPlan supervisor;  ///< unless told, nobody
+  SupervisorSettings supervisor;  ///< unless told, nobody
   unsigned threads = 0;
   std::function<bool()> stop;  ///< asked each tick; may be empty
 };

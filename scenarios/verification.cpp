@@ -30,7 +30,7 @@ constexpr std::size_t kBatch = 256;
 
 /// @param allowed difference of the two: 0 to the bit
 template <class Real>
-void compare(Real ours, Real theirs, double allowed, Compared& into) {
+void compare(Real ours, Real theirs, double allowed, Comparison& into) {
   ++into.values;
   if (std::memcmp(&ours, &theirs, sizeof ours) == 0 || (std::isnan(ours) && std::isnan(theirs))) return;
   const double apart = std::abs(static_cast<double>(ours) - static_cast<double>(theirs));
@@ -40,7 +40,7 @@ void compare(Real ours, Real theirs, double allowed, Compared& into) {
 
 /// One reading. @param where it is, for people
 template <class Real>
-void compare(std::span<const Real> ours, std::span<const Real> theirs, const std::string& where, Compared& into,
+void compare(std::span<const Real> ours, std::span<const Real> theirs, const std::string& where, Comparison& into,
              double allowed = 0.0) {
   ++into.readings;
   const std::uint64_t before = into.different;
@@ -98,7 +98,7 @@ class Verifier {
     result_.interrupted = result_.ticks < ticks;
     result_.scans = seen_;
     result_.missing = !result_.interrupted ? scans_.size() + readings_.size() : 0;
-    for (auto& [kind, compared] : again_) result_.again.push_back(std::move(compared));
+    for (auto& [kind, compared] : again_) result_.recomputed.push_back(std::move(compared));
     if (unfelt_ > 0)
       result_.skipped.push_back(
           fmt::format("{} readings of bumpers: where a robot was touched is not recorded", unfelt_));
@@ -118,7 +118,7 @@ class Verifier {
     reports_.swap(before_);
     reports_at(tick, reports_);
     const auto look_at = [this](std::span<const base::ReadingBlock> readings) {
-      for (const base::ReadingBlock& reading : readings) look(reading);
+      for (const base::ReadingBlock& reading : readings) compare(reading);
     };
     if (tick > 0) sample_between(farm_, before_, reports_, on_the_way_, look_at);
     look_at(farm_.tick(reports_[0].time, reports_));
@@ -158,7 +158,7 @@ class Verifier {
                        1e-9 * static_cast<double>(r.time));
   }
 
-  void look(const base::ReadingBlock& reading) {
+  void compare(const base::ReadingBlock& reading) {
     if (reading.kind == base::kLaser) return look_at_scan(reading);
     const auto at = readings_.find({reading.kind, reading.mover, reading.sensor, reading.sequence});
     if (at == readings_.end()) return;
@@ -234,8 +234,8 @@ class Verifier {
         result_.reference, asked.allowed);
   }
 
-  Compared& compared(std::uint8_t kind) {
-    Compared& into = again_[kind];
+  Comparison& compared(std::uint8_t kind) {
+    Comparison& into = again_[kind];
     if (into.kind.empty()) into.kind = sensors::find_sensor_type(kind)->name;
     return into;
   }
@@ -249,7 +249,7 @@ class Verifier {
   bool infinite_ = false;
   std::map<Name, std::size_t> scans_, readings_;  ///< recorded, not met yet
   std::vector<base::Report> reports_, before_, on_the_way_;
-  std::map<std::uint8_t, Compared> again_;
+  std::map<std::uint8_t, Comparison> again_;
   std::vector<Asked> asked_;
   std::size_t stride_ = 1, seen_ = 0;
   std::uint64_t unfelt_ = 0;
@@ -260,7 +260,7 @@ class Verifier {
 
 bool Verification::sound() const {
   std::uint64_t readings = reference.readings, different = reference.different;
-  for (const Compared& c : again) readings += c.readings, different += c.different;
+  for (const Comparison& c : recomputed) readings += c.readings, different += c.different;
   return (readings > 0 || ticks == 0) && different == 0 && missing == 0 && damage.empty();
 }
 

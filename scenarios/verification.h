@@ -13,7 +13,7 @@
 namespace sf::scenarios {
 
 /// Readings of one kind, compared bit by bit; scans measured in 32 bits within their bound beside plain C++.
-struct Compared {
+struct Comparison {
   std::string kind;
   std::uint64_t readings = 0;
   std::uint64_t values = 0;  ///< numbers in them
@@ -25,14 +25,14 @@ struct Compared {
 
 struct Verification {
   std::uint64_t ticks = 0;
-  std::vector<Compared> again;       ///< by kind: this device beside the recording
-  Compared reference;                ///< lasers: plain C++ beside the recording, or beside this device where no
-                                     ///< readings were recorded
-  std::uint64_t scans = 0;           ///< of which `reference` is a sample
-  std::uint64_t missing = 0;         ///< recorded readings that this device was not due to make
-  std::vector<std::string> skipped;  ///< kinds that cannot be computed again, and why
-  std::vector<std::string> damage;   ///< of the recording, as its reader says
-  bool interrupted = false;          ///< not all ticks were looked at
+  std::vector<Comparison> recomputed;  ///< by kind: this device beside the recording
+  Comparison reference;                ///< lasers: plain C++ beside the recording, or beside this device where no
+                                       ///< readings were recorded
+  std::uint64_t scans = 0;             ///< of which `reference` is a sample
+  std::uint64_t missing = 0;           ///< recorded readings that this device was not due to make
+  std::vector<std::string> skipped;    ///< kinds that cannot be computed again, and why
+  std::vector<std::string> damage;     ///< of the recording, as its reader says
+  bool interrupted = false;            ///< not all ticks were looked at
   bool sound() const;  ///< something was compared, or there are no ticks; nothing differs and nothing is damaged
 };
 

@@ -18,17 +18,17 @@ maps::GridGeometry small() { return {-0.12, 0.12, 0.03, 2, 2}; }
 
 TEST(Coverage, CountsOnlyWhatTheReferenceHasFree) {
   maps::OccupancyGrid reference(small()), map(small());
-  EXPECT_EQ(seen_of(map, reference).coverage(), 1.0);
+  EXPECT_EQ(coverage_of(map, reference).coverage(), 1.0);
   for (int i = 0; i < 4; ++i) reference.set({i, 0}, Cell::free);
   reference.set({4, 0}, Cell::occupied);
-  EXPECT_EQ(seen_of(map, reference).coverage(), 0.0);
+  EXPECT_EQ(coverage_of(map, reference).coverage(), 0.0);
   map.set({0, 0}, Cell::free);
   map.set({1, 0}, Cell::occupied);
   map.set({4, 0}, Cell::occupied);
   map.set({7, 7}, Cell::free);
-  EXPECT_EQ(seen_of(map, reference).missed, 2u);
-  EXPECT_EQ(seen_of(map, reference).wanted, 4u);
-  EXPECT_EQ(seen_of(map, reference).coverage(), 0.5);
+  EXPECT_EQ(coverage_of(map, reference).missed, 2u);
+  EXPECT_EQ(coverage_of(map, reference).wanted, 4u);
+  EXPECT_EQ(coverage_of(map, reference).coverage(), 0.5);
   // Known in both: (0,0), (1,0), (4,0); one of them apart.
   EXPECT_DOUBLE_EQ(disagreement(map, reference), 1.0 / 3.0);
 }
@@ -42,14 +42,14 @@ TEST(Coverage, IsNeverRoundedUpToAll) {
 /// Else cells would be asked for that the explorer does not know, a part of a cell aside from its own.
 TEST(Coverage, ItsCellsAreTheExplorers) {
   const world::World world = mapping_world();
-  EXPECT_EQ(OwnMap(world, 0).grid().plan, control::grid_around(world));
+  EXPECT_EQ(RobotMap(world, 0).grid().plan, control::grid_around(world));
 }
 
 /// A line's rounding may free a cell whose middle lies within a wall; it is not asked for.
 TEST(Coverage, CellsWithinObstaclesAreNotAskedFor) {
   const world::World world = mapping_world();
-  const OwnMap map(world, 0);
-  const maps::OccupancyGrid seen = what_could_be_seen(world, 0, map.grid().plan);
+  const RobotMap map(world, 0);
+  const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().plan);
   for (std::int64_t row = 0; row < maps::rows(seen.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
       const glm::dvec2 p = maps::middle(seen.plan, {column, row});
@@ -62,8 +62,8 @@ TEST(Coverage, CellsWithinObstaclesAreNotAskedFor) {
 /// 3 m x 3 m less three boxes of 0.25 m^2 and the tree; nothing beyond the walls.
 TEST(Coverage, WhatCouldBeSeenIsTheRoom) {
   const world::World world = mapping_world();
-  const OwnMap map(world, 0);
-  const maps::OccupancyGrid seen = what_could_be_seen(world, 0, map.grid().plan);
+  const RobotMap map(world, 0);
+  const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().plan);
   double area = 0.0;
   for (std::int64_t row = 0; row < maps::rows(seen.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
@@ -82,8 +82,8 @@ TEST(Coverage, StopsAtWalls) {
   world::Segment wall{.a = from, .b = to, .z_max = 0.5, .solid_left = false};
   world.walls.push_back(wall);
   world::update_extent_and_hash(world);
-  const OwnMap map(world, 0);
-  const maps::OccupancyGrid seen = what_could_be_seen(world, 0, map.grid().plan);
+  const RobotMap map(world, 0);
+  const maps::OccupancyGrid seen = visible_area(world, 0, map.grid().plan);
   for (std::int64_t column = 0; column < maps::columns(seen.plan); ++column) {
     const maps::CellAt north = maps::cell_at(seen.plan, {maps::middle(seen.plan, {column, 0}).x, 0.2});
     EXPECT_NE(seen.at(north), Cell::free) << column;

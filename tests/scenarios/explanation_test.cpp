@@ -32,14 +32,14 @@ TEST(Explanation, CountsWhatThereIs) {
   const world::World world = lasers(6);
   const Explanation e = explain(world, device(), 1, 1);
   ASSERT_EQ(e.kinds.size(), 1u);
-  const ExplainedKind& k = e.kinds[0];
+  const SensorTypeCost& k = e.kinds[0];
   EXPECT_EQ(k.kind, "laser");
   EXPECT_EQ(k.sensors, 6u);
   EXPECT_EQ(k.robots, 6u);
   EXPECT_EQ(k.most_rate, 10.0);
   EXPECT_DOUBLE_EQ(k.readings, 6.0) << "10 Hz in ticks of 0.1 s";
-  EXPECT_EQ(k.work.rays, std::llround((6.0 - k.again) * 61.0 * static_cast<double>(e.ticks)));
-  EXPECT_LT(k.again, 1.0) << "they drive";
+  EXPECT_EQ(k.work.rays, std::llround((6.0 - k.reused) * 61.0 * static_cast<double>(e.ticks)));
+  EXPECT_LT(k.reused, 1.0) << "they drive";
   EXPECT_EQ(e.caster.rfind("host, ", 0), 0u) << "on a device of software: " << e.caster;
   EXPECT_TRUE(k.kernels.empty()) << "nothing is left for the device";
   std::size_t sum = 0;

@@ -25,13 +25,13 @@ class Sender {
 };
 
 double newest(Mailbox& box, std::int64_t now) {
-  const auto open = box.open(now);
+  const auto open = box.receive(now);
   return open.empty() ? -1.0 : open[0].values[0];
 }
 
 TEST(Mailbox, IsEmptyBeforeAnythingCame) {
   Mailbox box({}, 0);
-  EXPECT_TRUE(box.open(0).empty());
+  EXPECT_TRUE(box.receive(0).empty());
   EXPECT_FALSE(box.renewed(1));
 }
 
@@ -39,13 +39,13 @@ TEST(Mailbox, IsEmptyBeforeAnythingCame) {
 TEST(Mailbox, KeepsACopyUntilANewerOneComes) {
   Mailbox box({}, 0);
   Sender sender;
-  box.post(sender.reading(0), 0);
+  box.send(sender.reading(0), 0);
   EXPECT_EQ(newest(box, 0), 0.0);
   EXPECT_TRUE(box.renewed(1));
   sender.reading(99);
   EXPECT_EQ(newest(box, 50 * kMs), 0.0);
   EXPECT_FALSE(box.renewed(1));
-  box.post(sender.reading(1), 100 * kMs);
+  box.send(sender.reading(1), 100 * kMs);
   EXPECT_EQ(newest(box, 100 * kMs), 1.0);
 }
 
@@ -54,7 +54,7 @@ TEST(Mailbox, ADelayOfDIsSeenDLater) {
   Sender sender;
   for (std::uint32_t k = 0; k < 10; ++k) {
     const std::int64_t now = k * 100 * kMs;
-    box.post(sender.reading(k), now);
+    box.send(sender.reading(k), now);
     // Sent at 100 k ms, seen from 100 k + 250 ms on: at tick k the newest is k - 3.
     EXPECT_EQ(newest(box, now), k < 3 ? -1.0 : k - 3.0) << k;
   }
@@ -65,8 +65,8 @@ TEST(Mailbox, ADelayOfDIsSeenDLater) {
 TEST(Mailbox, WhatIsLostNeverComes) {
   Mailbox box({.loss = 1.0}, 0);
   Sender sender;
-  for (std::uint32_t k = 0; k < 20; ++k) box.post(sender.reading(k), k * 100 * kMs);
-  EXPECT_TRUE(box.open(1'000'000 * kMs).empty());
+  for (std::uint32_t k = 0; k < 20; ++k) box.send(sender.reading(k), k * 100 * kMs);
+  EXPECT_TRUE(box.receive(1'000'000 * kMs).empty());
 }
 
 /// With much jitter readings overtake each other; what is seen never goes back.
@@ -77,7 +77,7 @@ TEST(Mailbox, NeverGoesBack) {
   int renewed = 0;
   for (std::uint32_t k = 0; k < 500; ++k) {
     const std::int64_t now = k * 100 * kMs;
-    box.post(sender.reading(k), now);
+    box.send(sender.reading(k), now);
     const double value = newest(box, now);
     EXPECT_GE(value, last);
     EXPECT_EQ(box.renewed(1), value > last);
@@ -92,16 +92,16 @@ TEST(Mailbox, NeverGoesBack) {
 TEST(Mailbox, SensorsAndKindsAreApart) {
   Mailbox box({}, 0);
   Sender a(1, 0), b(1, 1), c(3, 0);
-  box.post(a.reading(5), 0);
-  box.post(b.reading(6), 0);
-  box.post(c.reading(7), 0);
-  const auto open = box.open(0);
+  box.send(a.reading(5), 0);
+  box.send(b.reading(6), 0);
+  box.send(c.reading(7), 0);
+  const auto open = box.receive(0);
   ASSERT_EQ(open.size(), 3u);
   EXPECT_EQ(open[0].values[0], 5.0);
   EXPECT_EQ(open[1].values[0], 6.0);
   EXPECT_EQ(open[2].kind, 3);
-  box.post(c.reading(8), 1);
-  box.open(1);
+  box.send(c.reading(8), 1);
+  box.receive(1);
   EXPECT_TRUE(box.renewed(3));
   EXPECT_FALSE(box.renewed(1));
 }

@@ -64,16 +64,16 @@ TEST_F(BodyTest, WhoIsSilentForLongIsInNobodysWay) {
 
 TEST_F(BodyTest, OthersAreWhereTheySayAndGoOnForHalfASecond) {
   body.move({}, 100 * kMilli);
-  body.hear(1, {0.0, 1.0, 0.0, 0.0}, {0.4, 0.0, 0.0}, 100 * kMilli);
+  body.update_other(1, {0.0, 1.0, 0.0, 0.0}, {0.4, 0.0, 0.0}, 100 * kMilli);
   EXPECT_EQ(body.state(1).X_WM.x, 0.0);
   for (int i = 2; i <= 20; ++i) body.move({}, i * 100 * kMilli);
   EXPECT_NEAR(body.state(1).X_WM.x, 0.4 * 0.4, 0.041);  // moves that end before the half second is over
-  body.hear(1, {1.5, 1.0, 0.0, 0.0}, {}, 2000 * kMilli);
+  body.update_other(1, {1.5, 1.0, 0.0, 0.0}, {}, 2000 * kMilli);
   EXPECT_EQ(body.state(1).X_WM.x, 1.5);  // the newest word counts
 }
 
 TEST_F(BodyTest, OthersStopIt) {
-  body.hear(1, {-1.5, 0.0, 0.0, 0.0}, {}, 0);
+  body.update_other(1, {-1.5, 0.0, 0.0, 0.0}, {}, 0);
   for (int i = 1; i <= 20; ++i) body.move({0.5, 0.0, 0.0}, i * 100 * kMilli);
   EXPECT_TRUE(body.contact());
   EXPECT_LT(body.state().X_WM.x, -1.5 - 0.29);

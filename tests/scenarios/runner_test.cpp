@@ -52,13 +52,13 @@ TEST(CheckScenario, WhatCanRunPasses) {
   EXPECT_EQ(refusal(std::string(kPath) + "[default]\ncontroller = \"lane-keeping\"\n[expect]\nmean_error = 1\n"), "");
 }
 
-TEST(Verdict, NothingExpectedIsNeitherPassedNorFailed) {
+TEST(ScenarioStatus, NothingExpectedIsNeitherPassedNorFailed) {
   ScenarioResult result;
-  EXPECT_EQ(result.verdict(), Verdict::nothing_expected);
+  EXPECT_EQ(result.status(), ScenarioStatus::no_expectations);
   result.outcomes.push_back({.met = true});
-  EXPECT_EQ(result.verdict(), Verdict::passed);
+  EXPECT_EQ(result.status(), ScenarioStatus::passed);
   result.outcomes.push_back({.met = false});
-  EXPECT_EQ(result.verdict(), Verdict::failed);
+  EXPECT_EQ(result.status(), ScenarioStatus::failed);
 }
 
 /// A robot that wanders has no control error: that is said, and is no success.

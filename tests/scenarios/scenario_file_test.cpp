@@ -78,9 +78,9 @@ tick_p99_ms = 10
   EXPECT_EQ(s.duration, 12.5);
   EXPECT_EQ(s.seed, 77u);
   EXPECT_EQ(s.tick, 0.05);
-  EXPECT_EQ(s.crowd.robots, 3u);
-  EXPECT_EQ(s.crowd.of, "roomba0");
-  EXPECT_EQ(s.crowd.place, Crowd::Place::lanes);
+  EXPECT_EQ(s.fleet.robots, 3u);
+  EXPECT_EQ(s.fleet.of, "roomba0");
+  EXPECT_EQ(s.fleet.place, FleetSpawn::Placement::lanes);
   EXPECT_EQ(s.plant, Plant::thesis);
   EXPECT_EQ(s.start_at, 2.0);
   EXPECT_EQ(s.actor.plan.rate, 5.0);

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "farm/schedule.h"
 #include "robots/kinematics.h"
-#include "scenarios/watch.h"
+#include "scenarios/run_metrics.h"
 #include "sensors/sensor_type.h"
 #include "tests/counted_new.h"
 #include "tests/sensors/scenes.h"
@@ -282,14 +282,14 @@ TEST(Simulation, RobotsHearEachOther) {
   options.actors[rows[0]].plan = towards(3.0);
   options.actors[rows[1]].plan = towards(0.0);
   Simulation simulation(world, device(), options);
-  Watch watch(world, simulation);
+  RunMetrics metrics(world, simulation);
   double gap = 0.0;
   for (int i = 0; i < 150; ++i) {
     const auto tick = simulation.step();
-    watch.look(tick);
+    metrics.update(tick);
     gap = std::abs(tick.reports[rows[0]].X_WM.x - tick.reports[rows[1]].X_WM.x);
   }
-  EXPECT_EQ(watch.of(rows[0]).contacts + watch.of(rows[1]).contacts, 0u);
+  EXPECT_EQ(metrics.of(rows[0]).contacts + metrics.of(rows[1]).contacts, 0u);
   EXPECT_LT(gap, 1.2);
   EXPECT_GT(gap, 0.33);
 }

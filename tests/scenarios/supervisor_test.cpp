@@ -20,18 +20,18 @@ struct Ride {
   world::World world = one_mover();
   Supervisor supervisor;
   base::Report report;
-  explicit Ride(const SupervisorPlan& plan, double far = 1.0) : supervisor(world, plan) {
+  explicit Ride(const SupervisorSettings& plan, double far = 1.0) : supervisor(world, plan) {
     report.velocity.forward = 0.1;
     for (; report.X_WM.x < far; report.X_WM.x += 0.01) look(false);
     report.velocity = {};
   }
-  std::vector<Supervisor::Help> look(bool contact) {
+  std::vector<Supervisor::Intervention> look(bool contact) {
     const std::uint8_t contacts[] = {contact};
-    const auto helps = supervisor.look({.reports = {&report, 1}, .contacts = contacts});
+    const auto helps = supervisor.update({.reports = {&report, 1}, .contacts = contacts});
     return {helps.begin(), helps.end()};
   }
   /// Ticks in contact until it is helped; 1000: never.
-  int wait(Supervisor::Help& help) {
+  int wait(Supervisor::Intervention& help) {
     for (int i = 1; i < 1000; ++i)
       if (const auto helps = look(true); !helps.empty()) return help = helps[0], i;
     return 1000;
@@ -40,14 +40,14 @@ struct Ride {
 
 TEST(Supervisor, TakesWhoHasStoodForSoLong) {
   Ride ride({.patience = 5.0});
-  Supervisor::Help help;
+  Supervisor::Intervention help;
   EXPECT_NEAR(ride.wait(help), 50, 1);
   EXPECT_EQ(help.mover, 0u);
 }
 
 TEST(Supervisor, NobodyIsThereUnlessToldSo) {
   Ride ride({});
-  Supervisor::Help help;
+  Supervisor::Intervention help;
   EXPECT_EQ(ride.wait(help), 1000);
 }
 
@@ -65,7 +65,7 @@ TEST(Supervisor, LeavesAloneWhoDoesNotWait) {
 
 TEST(Supervisor, PutsItBackAlongItsWay) {
   Ride ride({.patience = 1.0, .back = 0.15});
-  Supervisor::Help help;
+  Supervisor::Intervention help;
   ride.wait(help);
   EXPECT_NEAR(ride.report.X_WM.x - help.X_WM.x, 0.15, 0.021);
   EXPECT_EQ(help.X_WM.y, 0.0);
@@ -79,7 +79,7 @@ TEST(Supervisor, TurnsItFromWhatItTouched) {
   for (const bool left : {true, false}) {
     Ride ride({.patience = 1.0, .turn = 0.5});
     ride.report.contact_mask = left ? 1u << 2 : 1u << (base::kContactSectors - 3);
-    Supervisor::Help help;
+    Supervisor::Intervention help;
     ride.wait(help);
     EXPECT_NEAR(help.X_WM.yaw, left ? -0.5 : 0.5, 1e-12);
   }
@@ -92,13 +92,13 @@ TEST(Supervisor, LetsTheThesisAvoidanceGoOn) {
   gpu::Device device;
   const world::World world = world_of(scenario);
   const Trial alone = run_trial(scenario, world, device, {});
-  const Trial helped = run_trial(scenario, world, device, {.supervisor = {.patience = 5.0}});
+  const Trial interventions = run_trial(scenario, world, device, {.supervisor = {.patience = 5.0}});
   ASSERT_GT(alone.counts[0].contacts, 0u) << "it did not scrape: this test needs another start";
-  EXPECT_EQ(alone.helped[0], 0u);
-  EXPECT_GT(helped.helped[0], 0u);
-  EXPECT_GT(helped.counts[0].travelled, 1.3 * alone.counts[0].travelled);
-  EXPECT_LT(helped.dead_ends[0].stuck(), alone.dead_ends[0].stuck());
-  EXPECT_LT(helped.counts[0].travelled, 0.1 * 120.0) << "being carried is not driving";
+  EXPECT_EQ(alone.interventions[0], 0u);
+  EXPECT_GT(interventions.interventions[0], 0u);
+  EXPECT_GT(interventions.counts[0].travelled, 1.3 * alone.counts[0].travelled);
+  EXPECT_LT(interventions.dead_ends[0].stuck(), alone.dead_ends[0].stuck());
+  EXPECT_LT(interventions.counts[0].travelled, 0.1 * 120.0) << "being carried is not driving";
 }
 
 }  // namespace

@@ -27,9 +27,9 @@ world::World small_world() {
 }
 
 TEST(Tradeoff, MeasuresEveryModeOfEveryKind) {
-  const auto grades = tradeoff(small_world(), device(), {});
+  const auto results = tradeoff(small_world(), device(), {});
   std::map<std::string, int> modes;
-  for (const Grade& g : grades) {
+  for (const ModeResult& g : results) {
     ++modes[g.sensor];
     EXPECT_GT(g.rate, 0.0) << g.mode;
     EXPECT_LE(g.median, g.p99);
@@ -39,12 +39,12 @@ TEST(Tradeoff, MeasuresEveryModeOfEveryKind) {
     EXPECT_TRUE(g.mode != "exact" || g.max == 0.0) << "lasers to the bit as plain C++ has them";
   }
   EXPECT_EQ(modes, (std::map<std::string, int>{{"laser", 5}, {"magnetometer", 4}}));
-  EXPECT_EQ(grades[0].unit, "m");
-  EXPECT_EQ(grades.back().unit, "T");
-  EXPECT_NEAR(grades[2].covered, 31.0 / 61.0, 0.01) << "every other beam of 61";
-  EXPECT_GT(grades[2].max, 1000.0 * grades[2].bound) << "of all: no bound covers what is left out";
-  EXPECT_EQ(grades[0].covered, 1.0);
-  EXPECT_GT(grades[1].max, 0.0) << "32 bits show";
+  EXPECT_EQ(results[0].unit, "m");
+  EXPECT_EQ(results.back().unit, "T");
+  EXPECT_NEAR(results[2].covered, 31.0 / 61.0, 0.01) << "every other beam of 61";
+  EXPECT_GT(results[2].max, 1000.0 * results[2].bound) << "of all: no bound covers what is left out";
+  EXPECT_EQ(results[0].covered, 1.0);
+  EXPECT_GT(results[1].max, 0.0) << "32 bits show";
 }
 
 TEST(Tradeoff, CanBeStopped) {
@@ -61,7 +61,7 @@ TEST(Tradeoff, WhatNoBoundCoversHasNone) {
   world.movers[0].lasers.clear();
   world.movers[0].sensors.push_back({"laneedge", "e", {}, 0.01, 1.0, M_PI / 180.0, {}, 0, ""});
   world::update_extent_and_hash(world);
-  for (const Grade& g : tradeoff(world, device(), {})) {
+  for (const ModeResult& g : tradeoff(world, device(), {})) {
     EXPECT_EQ(g.sensor, "laneedge");
     EXPECT_EQ(g.covered, 0.0) << g.mode;
     EXPECT_TRUE(std::isinf(g.bound)) << g.mode;
@@ -79,7 +79,7 @@ TEST(Tradeoff, IsAFileOfColumns) {
             "laneedge,skip2,1000,0,,,0,0,0.5\n");
 }
 
-std::vector<Grade> made_up() {
+std::vector<ModeResult> made_up() {
   return {{.sensor = "laser", .mode = "exact", .unit = "m", .rate = 10, .tick = 0.10},
           {.sensor = "laser", .mode = "single", .unit = "m", .rate = 20, .tick = 0.05, .p99 = 1e-4, .max = 1e-3},
           {.sensor = "laser", .mode = "skip2", .unit = "m", .rate = 40, .tick = 0.02, .p99 = 1e-3, .max = 1.0},
@@ -87,12 +87,12 @@ std::vector<Grade> made_up() {
           {.sensor = "magnetometer", .mode = "near3", .unit = "T", .rate = 50, .tick = 0.02, .p99 = 1e-8, .max = 2e-7}};
 }
 
-std::string advised(const Wish& wish) { return words_of(made_up(), advise(made_up(), wish)); }
+std::string advised(const AccuracyTarget& target) { return accuracy_words(made_up(), select_modes(made_up(), target)); }
 
 TEST(Advice, IsTheFastestWithinTheErrors) {
   EXPECT_EQ(advised({.metres = 5e-3, .tesla = 1e-9}), "laser:single");
   EXPECT_EQ(advised({.metres = 5e-3, .tesla = 1e-6}), "laser:single magnetometer:near3");
-  EXPECT_EQ(advised({.metres = 5e-3, .tesla = 1e-6, .by = Judged::p99}), "laser:skip2 magnetometer:near3");
+  EXPECT_EQ(advised({.metres = 5e-3, .tesla = 1e-6, .by = ErrorMeasure::p99}), "laser:skip2 magnetometer:near3");
   EXPECT_EQ(advised({.metres = 1e-9, .tesla = 1e-12}), "exact") << "which is always there";
   EXPECT_EQ(advised({.metres = 1e-3, .tesla = 1e-12}), "laser:single") << "the error itself is allowed";
 }

@@ -51,10 +51,10 @@ record::Recording recorded(bool readings, const std::string& mode = "exact", wor
 TEST(Verification, ASoundRun) {
   const Verification v = verify(recorded(true), device(), {});
   EXPECT_TRUE(v.sound()) << v.reference.first;
-  ASSERT_EQ(v.again.size(), 1u);
-  EXPECT_EQ(v.again[0].readings, recorded(true).scans.size());
-  EXPECT_EQ(v.again[0].values, 61 * v.again[0].readings);
-  EXPECT_EQ(v.reference.readings, v.again[0].readings) << "all of them by default";
+  ASSERT_EQ(v.recomputed.size(), 1u);
+  EXPECT_EQ(v.recomputed[0].readings, recorded(true).scans.size());
+  EXPECT_EQ(v.recomputed[0].values, 61 * v.recomputed[0].readings);
+  EXPECT_EQ(v.reference.readings, v.recomputed[0].readings) << "all of them by default";
   EXPECT_EQ(v.ticks, 20u);
   EXPECT_FALSE(v.interrupted);
 }
@@ -74,13 +74,14 @@ TEST(Verification, ReadingsFromBetweenTicks) {
   world::update_extent_and_hash(world);
   const record::Recording run = recorded(true, "exact", world);
   const Verification v = verify(run, device(), {});
-  ASSERT_EQ(v.again.size(), 3u);
-  EXPECT_TRUE(v.sound()) << v.reference.first << v.again[0].first << v.again[1].first << v.again[2].first;
+  ASSERT_EQ(v.recomputed.size(), 3u);
+  EXPECT_TRUE(v.sound()) << v.reference.first << v.recomputed[0].first << v.recomputed[1].first
+                         << v.recomputed[2].first;
   EXPECT_EQ(v.missing, 0u);
-  EXPECT_EQ(v.again[0].readings, run.scans.size());
+  EXPECT_EQ(v.recomputed[0].readings, run.scans.size());
   EXPECT_GT(run.scans.size(), 6u * 10u * 2u) << "more than one a tick";
   EXPECT_EQ(v.reference.readings, run.scans.size());
-  EXPECT_EQ(v.again[1].readings + v.again[2].readings, run.readings.size());
+  EXPECT_EQ(v.recomputed[1].readings + v.recomputed[2].readings, run.readings.size());
 
   record::Recording moved = run;
   moved.states[2][5].X_WM.x += 1e-6;
@@ -97,7 +98,7 @@ TEST(Verification, InOtherModes) {
 
   const Verification single = verify(recorded(true, "single"), device(), {});
   EXPECT_TRUE(single.sound()) << single.reference.first;
-  EXPECT_EQ(single.again[0].largest, 0.0) << "one device, one answer";
+  EXPECT_EQ(single.recomputed[0].largest, 0.0) << "one device, one answer";
   EXPECT_GT(single.reference.largest, 0.0) << "or it was not measured in 32 bits";
   EXPECT_LT(single.reference.largest, 1e-3);
 }
@@ -112,7 +113,7 @@ TEST(Verification, A32BitRangeBeyondItsBoundIsFound) {
 TEST(Verification, WithoutReadingsPlainCppIsBesideTheDevice) {
   const Verification v = verify(recorded(false), device(), {});
   EXPECT_TRUE(v.sound());
-  EXPECT_TRUE(v.again.empty()) << "there is nothing to compare with";
+  EXPECT_TRUE(v.recomputed.empty()) << "there is nothing to compare with";
   EXPECT_GT(v.reference.readings, 100u);
 }
 
@@ -122,7 +123,7 @@ TEST(Verification, ASampleIsSpreadOverTheRun) {
   EXPECT_TRUE(v.sound());
   EXPECT_GE(v.reference.readings, 10u);
   EXPECT_LE(v.reference.readings, 12u);
-  EXPECT_EQ(v.again[0].readings, run.scans.size()) << "the device looks at all";
+  EXPECT_EQ(v.recomputed[0].readings, run.scans.size()) << "the device looks at all";
 }
 
 TEST(Verification, OneBitOfOneBeam) {
@@ -131,10 +132,10 @@ TEST(Verification, OneBitOfOneBeam) {
   range = std::nextafter(range, 0.0F);
   const Verification v = verify(run, device(), {});
   EXPECT_FALSE(v.sound());
-  EXPECT_EQ(v.again[0].different, 1u);
+  EXPECT_EQ(v.recomputed[0].different, 1u);
   EXPECT_EQ(v.reference.different, 1u) << "by itself, not by the device's word";
-  EXPECT_LT(v.again[0].largest, 1e-6);
-  EXPECT_NE(v.again[0].first.find("sensor 0"), std::string::npos) << v.again[0].first;
+  EXPECT_LT(v.recomputed[0].largest, 1e-6);
+  EXPECT_NE(v.recomputed[0].first.find("sensor 0"), std::string::npos) << v.recomputed[0].first;
 }
 
 TEST(Verification, AnotherSeed) {
@@ -148,7 +149,7 @@ TEST(Verification, AMovedPose) {
   run.states[2][5].X_WM.x += 1e-6;
   const Verification v = verify(run, device(), {});
   EXPECT_FALSE(v.sound());
-  EXPECT_LT(v.again[0].different, v.again[0].values / 10) << "those who see it, and itself, at one tick";
+  EXPECT_LT(v.recomputed[0].different, v.recomputed[0].values / 10) << "those who see it, and itself, at one tick";
 }
 
 TEST(Verification, AReadingThatNobodyWasDueToMake) {

@@ -11,9 +11,10 @@
 namespace sf::scenarios {
 
 /// Everyone's states, tick by tick.
-using Ways = std::vector<std::vector<base::Report>>;
+using RecordedPaths = std::vector<std::vector<base::Report>>;
 
 /// Wandering robots, `seconds` of simulated time, 1 to 1000 ticks.
-Ways drive_ways(const world::World& world, gpu::Device& device, double seconds, std::uint64_t seed, unsigned threads);
+RecordedPaths record_paths(const world::World& world, gpu::Device& device, double seconds, std::uint64_t seed,
+                           unsigned threads);
 
 }  // namespace sf::scenarios

@@ -1,4 +1,4 @@
-#include "scenarios/thesis.h"
+#include "scenarios/thesis_tables.h"
 
 namespace sf::scenarios {
 

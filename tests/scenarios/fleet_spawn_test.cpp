@@ -1,4 +1,4 @@
-#include "scenarios/crowd.h"
+#include "scenarios/fleet_spawn.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "scenarios/watch.h"
+#include "scenarios/run_metrics.h"
 #include "world/roads/roads.h"
 
 namespace sf::scenarios {
@@ -29,7 +29,7 @@ name = "roomba3"
 pose = [10.25, 2.0, 90]
 )";
 
-TEST(Crowd, NamedRobotsStayAndCopiesFillTheLanes) {
+TEST(FleetSpawn, NamedRobotsStayAndCopiesFillTheLanes) {
   std::string crowded = kTen;
   crowded.replace(crowded.find("10"), 2, "45");  // so many that some would be drawn beside the one that stays
   const world::World world = town(crowded);
@@ -55,7 +55,7 @@ TEST(Crowd, NamedRobotsStayAndCopiesFillTheLanes) {
 }
 
 /// Numbers and names stay unique, and tables point where they should.
-TEST(Crowd, RowsOfModelsAndMoversMatch) {
+TEST(FleetSpawn, RowsOfModelsAndMoversMatch) {
   const world::World world = town(kTen);
   std::set<std::uint32_t> ids;
   std::set<std::string> names;
@@ -73,7 +73,7 @@ TEST(Crowd, RowsOfModelsAndMoversMatch) {
   for (const world::Light& light : world.lights) EXPECT_EQ(world.models.at(light.model).name, light.name);
 }
 
-TEST(Crowd, PlacesDependOnTheSeedAndNotOnTheCount) {
+TEST(FleetSpawn, PlacesDependOnTheSeedAndNotOnTheCount) {
   const world::World few = town("robots = 5\nplace = \"lanes\"\n");
   const world::World many = town("robots = 20\nplace = \"lanes\"\n");
   const world::World other = town("robots = 5\nplace = \"lanes\"\nseed = 2\n");
@@ -85,14 +85,14 @@ TEST(Crowd, PlacesDependOnTheSeedAndNotOnTheCount) {
   EXPECT_LT(same, 5);
 }
 
-TEST(Crowd, CopiesAreOfTheFirstOrTheNamedRobot) {
+TEST(FleetSpawn, CopiesAreOfTheFirstOrTheNamedRobot) {
   EXPECT_EQ(town("robots = 2\n").movers[1].sensors.size(), 2u) << "lane edge, magnetometer";
   EXPECT_EQ(town("robots = 2\nof = \"khepera6\"\n").movers[1].name, "khepera2");
   EXPECT_EQ(town("robots = 2\nplace = \"lanes\"\nof = \"khepera6\"\n").movers[1].name, "khepera2");
 }
 
 /// A plan may name a copy, whose number is the smallest that is free.
-TEST(Crowd, CopiesMayBeNamedByPlans) {
+TEST(FleetSpawn, CopiesMayBeNamedByPlans) {
   const world::World world = town(
       "robots = 3\nplace = \"lanes\"\n[[robot]]\nname = \"roomba1\"\n"
       "[[robot]]\nname = \"roomba6\"\npose = [0, 7, 0]\n[[robot]]\nname = \"roomba5\"\n"
@@ -102,7 +102,7 @@ TEST(Crowd, CopiesMayBeNamedByPlans) {
   EXPECT_EQ(world.movers[5].X_WM.y, 7.0);
 }
 
-TEST(Crowd, MistakesAreRefusedAtTheirLine) {
+TEST(FleetSpawn, MistakesAreRefusedAtTheirLine) {
   const std::string magic = "world = \"../worlds/minimagic/minimagic.world\"\n";
   const std::pair<std::string, std::string> kCorpus[] = {
       {kTown + "robots = 5\nplace = \"street\"\n", "test.toml:3: 'place' expects \"free\" or \"lanes\""},
@@ -127,23 +127,23 @@ TEST(Crowd, MistakesAreRefusedAtTheirLine) {
 }
 
 /// Ten cars for half a minute: nobody is touched, nobody passes a red light, and they get on.
-TEST(Crowd, TenInTrafficTouchNobodyAndMindLights) {
+TEST(FleetSpawn, TenInTrafficTouchNobodyAndMindLights) {
   gpu::Device device;
   for (const std::uint64_t seed : {1u, 2u}) {
     Scenario scenario = parse(kTown + kTen);
     scenario.seed = seed;
     const world::World world = world_of(scenario);
     Simulation simulation(world, device, simulation_of(scenario, world));
-    Watch watch(world, simulation);
-    for (int tick = 0; tick < 300; ++tick) watch.look(simulation.step());
-    EXPECT_EQ(watch.contacts(), 0u) << seed;
-    EXPECT_EQ(watch.reds(), 0u) << seed;
+    RunMetrics metrics(world, simulation);
+    for (int tick = 0; tick < 300; ++tick) metrics.update(simulation.step());
+    EXPECT_EQ(metrics.contacts(), 0u) << seed;
+    EXPECT_EQ(metrics.red_lights_passed(), 0u) << seed;
     double metres = 0.0;
     std::uint64_t stops = 0;
     for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
-      metres += watch.of(row).travelled;
-      stops += watch.of(row).stops;
-      EXPECT_TRUE(watch.of(row).goals.any) << world.movers[row].name;
+      metres += metrics.of(row).travelled;
+      stops += metrics.of(row).stops;
+      EXPECT_TRUE(metrics.of(row).goals.any) << world.movers[row].name;
     }
     EXPECT_GT(metres, 25.0) << seed;
     EXPECT_GT(stops, 5u) << seed;

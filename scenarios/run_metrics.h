@@ -11,40 +11,40 @@
 namespace sf::scenarios {
 
 /// Checkpoints that one mover heads for.
-struct Goals {
+struct CheckpointProgress {
   std::uint32_t now = base::kNoId;  ///< base::kNoId: none
   bool any = false;                 ///< there was one
   std::uint64_t passed = 0;         ///< that it no longer heads for, since the next or none is due
 
   /// @param next the one that it heads for from now on; base::kNoId: none
-  void look(std::uint32_t next);
+  void update(std::uint32_t next);
 };
 
 /// Of one mover.
-struct RobotCounts {
+struct RobotMetrics {
   std::uint64_t contacts = 0;  ///< that began
-  Goals goals;
-  std::uint64_t reds = 0;      ///< stop lines passed that showed red
-  std::uint64_t stops = 0;     ///< that it came to stand after it had driven
-  std::vector<double> errors;  ///< control error of every step that had one
-  double travelled = 0.0;      ///< [m]
+  CheckpointProgress goals;
+  std::uint64_t red_lights_passed = 0;  ///< stop lines passed that showed red
+  std::uint64_t stops = 0;              ///< that it came to stand after it had driven
+  std::vector<double> errors;           ///< control error of every step that had one
+  double travelled = 0.0;               ///< [m]
 };
 
 /// Follows one simulation, tick by tick. Simulation and world must outlive it.
-class Watch {
+class RunMetrics {
  public:
-  Watch(const world::World& world, const Simulation& simulation);
+  RunMetrics(const world::World& world, const Simulation& simulation);
 
   /// After every `Simulation::step`, with what it gave.
-  void look(const base::TickRecord& tick);
+  void update(const base::TickRecord& tick);
 
   /// Somebody put the mover there: it has not driven that way.
   void put(std::uint32_t mover, const base::Pose& X_WM) { before_[mover].X_WM = X_WM; }
 
-  const RobotCounts& of(std::uint32_t mover) const { return counts_[mover]; }
-  std::uint64_t contacts() const;     ///< of all
-  std::uint64_t reds() const;         ///< of all
-  std::uint64_t checkpoints() const;  ///< of all
+  const RobotMetrics& of(std::uint32_t mover) const { return counts_[mover]; }
+  std::uint64_t contacts() const;           ///< of all
+  std::uint64_t red_lights_passed() const;  ///< of all
+  std::uint64_t checkpoints() const;        ///< of all
 
  private:
   /// A stop line that a light governs.
@@ -53,22 +53,22 @@ class Watch {
     base::Pose X_WL;          ///< its middle, x in driving direction
     double half_width = 0.0;  ///< [m]
   };
-  struct Before {
+  struct PreviousTick {
     base::ContactOnset contact;
     bool moving = false;
     base::Pose X_WM;
     bool seen = false;
   };
   void add_lines();
-  void look_at_goals(std::uint32_t mover);
-  void look_at_lights(const base::TickRecord& tick, std::uint32_t mover);
+  void update_checkpoints(std::uint32_t mover);
+  void update_red_lights(const base::TickRecord& tick, std::uint32_t mover);
 
   const world::World& world_;
   const Simulation& simulation_;
   std::vector<Line> lines_;
   std::vector<double> fronts_;  ///< [m] per mover, from the origin to the foremost point of what can be stopped
-  std::vector<Before> before_;
-  std::vector<RobotCounts> counts_;
+  std::vector<PreviousTick> before_;
+  std::vector<RobotMetrics> counts_;
 };
 
 /// A robot has passed a stop line once its front is so far beyond it. [m]

@@ -1,10 +1,10 @@
-#include "scenarios/dead_ends.h"
+#include "scenarios/dead_end_detector.h"
 
 #include <algorithm>
 
 namespace sf::scenarios {
 
-void DeadEnds::look(const base::Report& report, bool contact) {
+void DeadEndDetector::update(const base::Report& report, bool contact) {
   const glm::dvec2 p{report.X_WM.x, report.X_WM.y};
   time_ += interval_;
   const bool stands = report.velocity.forward == 0.0;
@@ -19,15 +19,17 @@ void DeadEnds::look(const base::Report& report, bool contact) {
   if (stands) turn(p, report.velocity.turn);
 }
 
-void DeadEnds::turned(const base::Report& report, double angle) { turn({report.X_WM.x, report.X_WM.y}, angle); }
+void DeadEndDetector::turned_by_hand(const base::Report& report, double angle) {
+  turn({report.X_WM.x, report.X_WM.y}, angle);
+}
 
-void DeadEnds::turn(glm::dvec2 p, double side) {
+void DeadEndDetector::turn(glm::dvec2 p, double side) {
   if (side == 0.0) return;
   if (side * side_ < 0.0) reverse(p);
   side_ = side;
 }
 
-void DeadEnds::reverse(glm::dvec2 p) {
+void DeadEndDetector::reverse(glm::dvec2 p) {
   if (inside_) return;
   std::erase_if(reversals_, [&](const Reversal& r) { return glm::length(r.p - p) > length_; });
   if (reversals_.empty()) waited_ = 0.0;

@@ -1,4 +1,4 @@
-#include "scenarios/watch.h"
+#include "scenarios/run_metrics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,19 +21,19 @@ double front_of(const world::Mover& mover) {
 
 }  // namespace
 
-void Goals::look(std::uint32_t next) {
+void CheckpointProgress::update(std::uint32_t next) {
   any = any || next != base::kNoId;
   passed += now != base::kNoId && next != now;
   now = next;
 }
 
-Watch::Watch(const world::World& world, const Simulation& simulation)
+RunMetrics::RunMetrics(const world::World& world, const Simulation& simulation)
     : world_(world), simulation_(simulation), before_(world.movers.size()), counts_(world.movers.size()) {
   for (const world::Mover& mover : world.movers) fronts_.push_back(front_of(mover));
   add_lines();
 }
 
-void Watch::add_lines() {
+void RunMetrics::add_lines() {
   const world::RoadNetwork* roads = simulation_.roads();
   if (roads == nullptr) return;
   for (std::uint32_t light = 0; light < world_.lights.size(); ++light)
@@ -50,32 +50,32 @@ void Watch::add_lines() {
 namespace {
 
 template <class Count>
-std::uint64_t sum_of(const std::vector<RobotCounts>& counts, Count&& count) {
+std::uint64_t sum_of(const std::vector<RobotMetrics>& counts, Count&& count) {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0},
-                         [&](std::uint64_t sum, const RobotCounts& c) { return sum + count(c); });
+                         [&](std::uint64_t sum, const RobotMetrics& c) { return sum + count(c); });
 }
 
 }  // namespace
 
-std::uint64_t Watch::contacts() const {
-  return sum_of(counts_, [](const RobotCounts& c) { return c.contacts; });
+std::uint64_t RunMetrics::contacts() const {
+  return sum_of(counts_, [](const RobotMetrics& c) { return c.contacts; });
 }
-std::uint64_t Watch::reds() const {
-  return sum_of(counts_, [](const RobotCounts& c) { return c.reds; });
+std::uint64_t RunMetrics::red_lights_passed() const {
+  return sum_of(counts_, [](const RobotMetrics& c) { return c.red_lights_passed; });
 }
-std::uint64_t Watch::checkpoints() const {
-  return sum_of(counts_, [](const RobotCounts& c) { return c.goals.passed; });
+std::uint64_t RunMetrics::checkpoints() const {
+  return sum_of(counts_, [](const RobotMetrics& c) { return c.goals.passed; });
 }
 
-void Watch::look(const base::TickRecord& tick) {
+void RunMetrics::update(const base::TickRecord& tick) {
   for (std::uint32_t m = 0; m < counts_.size(); ++m) {
-    RobotCounts& counts = counts_[m];
-    Before& before = before_[m];
+    RobotMetrics& counts = counts_[m];
+    PreviousTick& before = before_[m];
     const base::Pose& X_WM = tick.reports[m].X_WM;
     counts.contacts += before.contact.begins(tick.contacts[m] != 0);
     if (before.seen) {
       counts.travelled += std::hypot(X_WM.x - before.X_WM.x, X_WM.y - before.X_WM.y);
-      look_at_lights(tick, m);
+      update_red_lights(tick, m);
     }
     before.X_WM = X_WM;
     before.seen = true;
@@ -83,20 +83,20 @@ void Watch::look(const base::TickRecord& tick) {
     const double speed = std::abs(tick.reports[m].velocity.forward);
     counts.stops += before.moving && speed <= kStanding;
     before.moving = speed >= kDriving || (before.moving && speed > kStanding);
-    look_at_goals(m);
+    update_checkpoints(m);
   }
 }
 
-void Watch::look_at_goals(std::uint32_t mover) {
+void RunMetrics::update_checkpoints(std::uint32_t mover) {
   const control::Controller* controller = simulation_.controller(mover);
   if (controller == nullptr || !simulation_.stepped(mover)) return;
-  RobotCounts& counts = counts_[mover];
+  RobotMetrics& counts = counts_[mover];
   if (const double error = controller->error(); std::isfinite(error)) counts.errors.push_back(error);
-  counts.goals.look(controller->intent().checkpoint);
+  counts.goals.update(controller->intent().checkpoint);
 }
 
 /// Its front came over a governed line, in the line's direction, while it showed red.
-void Watch::look_at_lights(const base::TickRecord& tick, std::uint32_t mover) {
+void RunMetrics::update_red_lights(const base::TickRecord& tick, std::uint32_t mover) {
   const base::Pose& X_WM = tick.reports[mover].X_WM;
   const double front = fronts_[mover];
   for (const Line& line : lines_) {
@@ -109,7 +109,7 @@ void Watch::look_at_lights(const base::TickRecord& tick, std::uint32_t mover) {
     if (then.x >= kPassed || now.x < kPassed || std::abs(now.y) > line.half_width) continue;
     if (std::cos(X_WM.yaw - line.X_WL.yaw) < 0.5) continue;
     const world::Signal shown = world::signal_at(world_.lights[line.light], 1e-9 * static_cast<double>(tick.time));
-    counts_[mover].reds += shown.state == world::LightState::red;
+    counts_[mover].red_lights_passed += shown.state == world::LightState::red;
   }
 }
 

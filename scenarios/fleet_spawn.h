@@ -10,6 +10,6 @@ namespace sf::scenarios {
 /// - lanes: robots that plans name stay; copies stand on the lanes of the world's road network, along them, far enough
 ///   from each other and from those that stay for each to turn in place.
 /// @throws base::InputError at the scenario's line when there is no such robot, no road network, or no room.
-void make_crowd(const Scenario& scenario, world::World& world);
+void spawn_fleet(const Scenario& scenario, world::World& world);
 
 }  // namespace sf::scenarios

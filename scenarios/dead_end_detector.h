@@ -14,20 +14,20 @@ namespace sf::scenarios {
 inline constexpr std::size_t kReversals = 6;
 
 /// Follows one robot, tick by tick.
-class DeadEnds {
+class DeadEndDetector {
  public:
   /// @param length [m] of the body @param interval [s] of a tick
-  DeadEnds(double length, double interval) : length_(length), interval_(interval) {}
+  DeadEndDetector(double length, double interval) : length_(length), interval_(interval) {}
 
-  void look(const base::Report& report, bool contact);
+  void update(const base::Report& report, bool contact);
   /// Somebody turned it by hand where it stood, to the left where `angle` [rad] is positive.
-  void turned(const base::Report& report, double angle);
+  void turned_by_hand(const base::Report& report, double angle);
 
   std::uint32_t count() const { return count_; }
   /// [s] in dead ends, or standing in contact.
   double stuck() const { return stuck_; }
   /// [s] of it standing in contact.
-  double stood() const { return stood_; }
+  double standing_in_contact() const { return stood_; }
 
  private:
   struct Reversal {

@@ -1,4 +1,4 @@
-#include "scenarios/ways.h"
+#include "scenarios/recorded_paths.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,15 +7,16 @@
 
 namespace sf::scenarios {
 
-Ways drive_ways(const world::World& world, gpu::Device& device, double seconds, std::uint64_t seed, unsigned threads) {
+RecordedPaths record_paths(const world::World& world, gpu::Device& device, double seconds, std::uint64_t seed,
+                           unsigned threads) {
   Simulation simulation(world, device, {.seed = seed, .threads = threads});
-  Ways ways;
+  RecordedPaths paths;
   const auto ticks = std::clamp<std::int64_t>(std::llround(seconds / world.interval), 1, 1000);
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     const base::TickRecord record = simulation.step();
-    ways.emplace_back(record.reports.begin(), record.reports.end());
+    paths.emplace_back(record.reports.begin(), record.reports.end());
   }
-  return ways;
+  return paths;
 }
 
 }  // namespace sf::scenarios

@@ -1,4 +1,4 @@
-#include "scenarios/crowd.h"
+#include "scenarios/fleet_spawn.h"
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ std::vector<Stays> who_stays(const Scenario& scenario, const world::World& world
   std::vector<Stays> stays;
   for (std::uint32_t row = 0; row < world.movers.size(); ++row) {
     const world::Mover& mover = world.movers[row];
-    for (const RobotPlan& plan : scenario.plans) {
+    for (const RobotSetup& plan : scenario.plans) {
       if (mover.is_tag || plan.name != mover.name) continue;
       stays.push_back({row, plan.pose.value_or(mover.X_WM)});
       break;
@@ -37,15 +37,15 @@ std::vector<Stays> who_stays(const Scenario& scenario, const world::World& world
 }
 
 std::uint32_t original_of(const Scenario& scenario, const world::World& world) {
-  const Crowd& crowd = scenario.crowd;
-  if (!crowd.of.empty()) {
-    const std::uint32_t row = row_of(scenario, world, crowd.of, crowd.line);
+  const FleetSpawn& fleet = scenario.fleet;
+  if (!fleet.of.empty()) {
+    const std::uint32_t row = row_of(scenario, world, fleet.of, fleet.line);
     if (!world.movers[row].is_tag) return row;
-    throw base::InputError(scenario.file, crowd.line,
-                           fmt::format("'{}' is a tag, not a robot; expected a robot to copy", crowd.of));
+    throw base::InputError(scenario.file, fleet.line,
+                           fmt::format("'{}' is a tag, not a robot; expected a robot to copy", fleet.of));
   }
   if (std::all_of(world.movers.begin(), world.movers.end(), [](const world::Mover& m) { return m.is_tag; }))
-    throw base::InputError(scenario.file, crowd.line,
+    throw base::InputError(scenario.file, fleet.line,
                            fmt::format("{} has no robot to copy; add one to it", scenario.world));
   return world::robot_to_copy(world);
 }
@@ -62,7 +62,7 @@ bool clear(const base::Pose& X_WM, double radius, const world::World& world, con
 std::vector<base::Pose> places_on_lanes(const Scenario& scenario, const world::World& world,
                                         const world::RoadNetwork& roads, const world::Mover& original,
                                         const std::vector<Stays>& stays) {
-  const std::size_t wanted = scenario.crowd.robots;
+  const std::size_t wanted = scenario.fleet.robots;
   const double radius = robots::footprint_of(original).radius;
   const double apart = 2.0 * radius + kBetween;
   std::vector<base::Pose> poses;
@@ -70,7 +70,7 @@ std::vector<base::Pose> places_on_lanes(const Scenario& scenario, const world::W
     try {
       poses = control::start_poses(roads, drawn, scenario.seed, apart);
     } catch (const base::InputError&) {
-      throw base::InputError(scenario.file, scenario.crowd.line,
+      throw base::InputError(scenario.file, scenario.fleet.line,
                              fmt::format("{} robots {:.2f} m apart find no room on the lanes of {} beside the {} that "
                                          "stay where they are; use fewer",
                                          wanted, apart, roads.file, stays.size()));
@@ -84,7 +84,7 @@ std::vector<base::Pose> places_on_lanes(const Scenario& scenario, const world::W
 
 void copy_onto_lanes(const Scenario& scenario, world::World& world, std::uint32_t original) {
   if (world.road_files.empty())
-    throw base::InputError(scenario.file, scenario.crowd.line,
+    throw base::InputError(scenario.file, scenario.fleet.line,
                            fmt::format("robots on lanes, and {} has no road network; expected a world with "
                                        "road( rndf \"FILE\" ), or place = \"free\"",
                                        scenario.world));
@@ -98,10 +98,10 @@ void copy_onto_lanes(const Scenario& scenario, world::World& world, std::uint32_
 
 }  // namespace
 
-void make_crowd(const Scenario& scenario, world::World& world) {
+void spawn_fleet(const Scenario& scenario, world::World& world) {
   const std::uint32_t original = original_of(scenario, world);
-  if (scenario.crowd.place == Crowd::Place::lanes) return copy_onto_lanes(scenario, world, original);
-  world::clone_robots(world, scenario.crowd.robots, scenario.seed, world.movers[original].name);
+  if (scenario.fleet.place == FleetSpawn::Placement::lanes) return copy_onto_lanes(scenario, world, original);
+  world::clone_robots(world, scenario.fleet.robots, scenario.seed, world.movers[original].name);
 }
 
 }  // namespace sf::scenarios

@@ -1,4 +1,4 @@
-#include "scenarios/watch.h"
+#include "scenarios/run_metrics.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ gpu::Device& device() {
 /// SimVille where everyone stands, and a record of it that tests fill by hand.
 class Town {
  public:
-  Town() : world_(load()), simulation_(world_, device(), nobody()), watch_(world_, simulation_) {
+  Town() : world_(load()), simulation_(world_, device(), nobody()), metrics_(world_, simulation_) {
     for (std::uint32_t m = 0; m < world_.movers.size(); ++m) reports_.push_back({m, 0, world_.movers[m].X_WM, {}});
     commands_.resize(reports_.size());
     contacts_.resize(reports_.size());
@@ -27,20 +27,20 @@ class Town {
 
   const world::World& world() const { return world_; }
   const Simulation& simulation() const { return simulation_; }
-  const Watch& watch() const { return watch_; }
+  const RunMetrics& metrics() const { return metrics_; }
 
   void look(double seconds, const base::Pose& first, bool contact = false, double speed = 0.0) {
     reports_[0].X_WM = first;
     reports_[0].velocity.forward = speed;
     contacts_[0] = contact;
-    watch_.look({tick_++, std::llround(1e9 * seconds), reports_, commands_, contacts_, {}});
+    metrics_.update({tick_++, std::llround(1e9 * seconds), reports_, commands_, contacts_, {}});
   }
 
   /// Robot 0 goes half a metre up to and half a metre past a line, at one time. @return how many reds it passed
   std::uint64_t pass(const base::Pose& X_WL, double seconds) {
-    const std::uint64_t before = watch_.reds();
+    const std::uint64_t before = metrics_.red_lights_passed();
     for (int i = -10; i <= 10; ++i) look(seconds, base::compose(X_WL, {0.05 * i, 0.0, 0.0, 0.0}));
-    return watch_.reds() - before;
+    return metrics_.red_lights_passed() - before;
   }
 
  private:
@@ -55,7 +55,7 @@ class Town {
 
   world::World world_;
   Simulation simulation_;
-  Watch watch_;
+  RunMetrics metrics_;
   std::uint64_t tick_ = 0;
   std::vector<base::Report> reports_;
   std::vector<base::Twist> commands_;
@@ -74,25 +74,25 @@ base::Pose line_of(const Town& town, const std::string& name) {
   return {p.x, p.y, 0.0, *world::yaw_of(roads, *at)};
 }
 
-TEST(Watch, WhoPassesAtRedIsCountedAndNobodyElse) {
+TEST(RunMetrics, WhoPassesAtRedIsCountedAndNobodyElse) {
   Town town;
   ASSERT_NE(town.simulation().roads(), nullptr);
   ASSERT_FALSE(town.world().lights.empty());
-  int reds = 0, others = 0;
+  int red_lights_passed = 0, others = 0;
   for (const world::Light& light : town.world().lights)
     for (const std::string& name : light.points) {
       const base::Pose X_WL = line_of(town, name);
       for (double t = 0.5; t < 30.0; t += 3.0) {
         const bool red = world::signal_at(light, t).state == world::LightState::red;
         EXPECT_EQ(town.pass(X_WL, t), red ? 1u : 0u) << name << " " << t;
-        (red ? reds : others) += 1;
+        (red ? red_lights_passed : others) += 1;
       }
     }
-  EXPECT_GT(reds, 0);
+  EXPECT_GT(red_lights_passed, 0);
   EXPECT_GT(others, 0);
 }
 
-TEST(Watch, OtherLanesAndTheOtherDirectionAreNotMeant) {
+TEST(RunMetrics, OtherLanesAndTheOtherDirectionAreNotMeant) {
   Town town;
   const world::Light& light = town.world().lights[0];
   double red = 0.0;
@@ -102,52 +102,52 @@ TEST(Watch, OtherLanesAndTheOtherDirectionAreNotMeant) {
   EXPECT_EQ(town.pass(base::compose(X_WL, {0.0, 0.4, 0.0, 0.0}), red), 0u);   // the lane beside
   EXPECT_EQ(town.pass(base::compose(X_WL, {0.0, 0.0, 0.0, M_PI}), red), 0u);  // back over it
   // Up to the line, and a little over, is not past it.
-  const std::uint64_t before = town.watch().reds();
+  const std::uint64_t before = town.metrics().red_lights_passed();
   double front = 0.0;
   for (const world::Segment& side : town.world().movers[0].body)
     if (side.stops_robots) front = std::max({front, side.a.x, side.b.x});
   for (const double x : {-0.5, -front, 0.9 * kPassed - front}) town.look(red, base::compose(X_WL, {x, 0.0, 0.0, 0.0}));
-  EXPECT_EQ(town.watch().reds(), before);
+  EXPECT_EQ(town.metrics().red_lights_passed(), before);
   town.look(red, base::compose(X_WL, {1.1 * kPassed - front, 0.0, 0.0, 0.0}));
-  EXPECT_EQ(town.watch().reds(), before + 1);
+  EXPECT_EQ(town.metrics().red_lights_passed(), before + 1);
 }
 
-TEST(Goals, OnesThatAreNoLongerHeadedForArePassed) {
-  Goals goals;
-  goals.look(base::kNoId);
+TEST(CheckpointProgress, OnesThatAreNoLongerHeadedForArePassed) {
+  CheckpointProgress goals;
+  goals.update(base::kNoId);
   EXPECT_FALSE(goals.any);
-  goals.look(3);  // the first is not passed yet
+  goals.update(3);  // the first is not passed yet
   EXPECT_TRUE(goals.any);
   EXPECT_EQ(goals.passed, 0u);
-  goals.look(3);
+  goals.update(3);
   EXPECT_EQ(goals.passed, 0u);
-  goals.look(5);
+  goals.update(5);
   EXPECT_EQ(goals.passed, 1u);
-  goals.look(base::kNoId);  // the last
-  goals.look(base::kNoId);
+  goals.update(base::kNoId);  // the last
+  goals.update(base::kNoId);
   EXPECT_EQ(goals.passed, 2u);
-  goals.look(0);  // an id like any other
-  goals.look(7);
+  goals.update(0);  // an id like any other
+  goals.update(7);
   EXPECT_EQ(goals.passed, 3u);
   EXPECT_EQ(goals.now, 7u);
 }
 
-TEST(Watch, ContactsAreCountedWhereTheyBegin) {
+TEST(RunMetrics, ContactsAreCountedWhereTheyBegin) {
   Town town;
   const base::Pose X = town.world().movers[0].X_WM;
   for (const bool contact : {false, true, true, false, true, true, true, false}) town.look(0.0, X, contact);
-  EXPECT_EQ(town.watch().of(0).contacts, 2u);
-  EXPECT_EQ(town.watch().contacts(), 2u);
+  EXPECT_EQ(town.metrics().of(0).contacts, 2u);
+  EXPECT_EQ(town.metrics().contacts(), 2u);
 }
 
 /// A full stop is a stand after a drive: creeping is neither, and standing on is no other one.
-TEST(Watch, FullStopsAreCounted) {
+TEST(RunMetrics, FullStopsAreCounted) {
   Town town;
   const base::Pose X = town.world().movers[0].X_WM;
   const auto stops = [&](std::initializer_list<double> speeds) {
-    const std::uint64_t before = town.watch().of(0).stops;
+    const std::uint64_t before = town.metrics().of(0).stops;
     for (const double speed : speeds) town.look(0.0, X, false, speed);
-    return town.watch().of(0).stops - before;
+    return town.metrics().of(0).stops - before;
   };
   EXPECT_EQ(stops({0.0, 0.0}), 0u) << "it never drove";
   EXPECT_EQ(stops({0.9 * kDriving, 0.0}), 0u) << "it only crept";
@@ -156,12 +156,12 @@ TEST(Watch, FullStopsAreCounted) {
   EXPECT_EQ(stops({0.0, -0.2, kStanding, 0.2, 0.0}), 3u) << "backwards, too";
 }
 
-TEST(Watch, MetresAddUp) {
+TEST(RunMetrics, MetresAddUp) {
   Town town;
   const base::Pose X = town.world().movers[0].X_WM;
   for (int i = 0; i <= 10; ++i) town.look(0.1 * i, base::compose(X, {0.1 * i, 0.0, 0.0, 0.0}));
-  EXPECT_NEAR(town.watch().of(0).travelled, 1.0, 1e-12);
-  EXPECT_EQ(town.watch().of(1).travelled, 0.0);
+  EXPECT_NEAR(town.metrics().of(0).travelled, 1.0, 1e-12);
+  EXPECT_EQ(town.metrics().of(1).travelled, 0.0);
 }
 
 }  // namespace
