@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "apps/arguments.h"
 #include "apps/examples.h"
+#include "apps/option_groups.h"
+#include "apps/option_parsers.h"
 #include "apps/subcommands.h"
-#include "apps/wording.h"
 
 namespace sf::apps {
 
@@ -78,9 +78,9 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   if (const char* device = std::getenv("SENSORFARM_DEVICE")) o.device = device;
   o.load.sensors = sensors::world_file_words();
   for (const sensors::SensorType* kind : sensors::sensor_types()) o.base_ports[kind->id] = kind->base_port;
-  add_looking(app, o);
-  add_running(app, o);
-  add_proving(app, o);
+  add_inspect_commands(app, o);
+  add_run_commands(app, o);
+  add_test_commands(app, o);
   std::string asked;
   const CLI::App* help = add_help(app, asked);
   for (CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "apps/facts.h"
+#include "apps/report.h"
 
 namespace sf::apps {
 

@@ -9,9 +9,9 @@
 #include <filesystem>
 
 #include "apps/commands.h"
-#include "apps/facts.h"
-#include "apps/progress.h"
-#include "apps/stop.h"
+#include "apps/progress_line.h"
+#include "apps/report.h"
+#include "apps/stop_signals.h"
 #include "base/error.h"
 #include "scenarios/trial.h"
 
@@ -50,10 +50,10 @@ int experiment(const Options& options) {
                                           .folder = folder_of(options),
                                           .out = options.out,
                                           .threads = options.threads,
-                                          .warn = tell_warnings,
+                                          .warn = print_warnings,
                                           .stop = [] { return stop_requested().load(); }};
   gpu::Device device(options.device);
-  catch_stop_signals();
+  install_stop_handlers();
   std::vector<std::string> files;
   try {
     Progress progress(options.experiment);

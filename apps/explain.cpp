@@ -5,10 +5,10 @@
 #include <cstdio>
 
 #include "apps/commands.h"
-#include "apps/facts.h"
-#include "apps/lend.h"
-#include "apps/progress.h"
-#include "apps/wording.h"
+#include "apps/default_robot.h"
+#include "apps/option_parsers.h"
+#include "apps/progress_line.h"
+#include "apps/report.h"
 #include "scenarios/explanation.h"
 
 namespace sf::apps {

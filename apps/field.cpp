@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "apps/commands.h"
-#include "apps/facts.h"
-#include "apps/progress.h"
+#include "apps/progress_line.h"
+#include "apps/report.h"
 #include "base/error.h"
 #include "viz/field_figure.h"
 
@@ -43,7 +43,7 @@ void write_csv(const std::string& path, const viz::FieldView& view, const viz::F
 
 int field(const Options& options) {
   const world::World world = world::load_world(options.world, options.load);
-  tell_warnings(options.world, world.warnings);
+  print_warnings(options.world, world.warnings);
   refuse_without_magnets(world);
   viz::FieldRequest wish{.height = options.height};
   if (options.line) wish.line = {{(*options.line)[0], (*options.line)[1]}, {(*options.line)[2], (*options.line)[3]}};

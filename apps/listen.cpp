@@ -4,21 +4,21 @@
 #include <cstdio>
 
 #include "apps/commands.h"
-#include "apps/facts.h"
-#include "apps/lend.h"
-#include "apps/payloads.h"
-#include "apps/reach.h"
-#include "apps/send_plan.h"
-#include "apps/stop.h"
-#include "apps/wording.h"
+#include "apps/default_robot.h"
+#include "apps/exposure_warning.h"
+#include "apps/option_parsers.h"
+#include "apps/report.h"
+#include "apps/sensor_streams.h"
+#include "apps/stop_signals.h"
+#include "apps/stream_layout.h"
 
 namespace sf::apps {
 
 int listen(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   const sensors::SensorSet sensor_set(world);
-  const SendPlan sent = send_plan(world, sensor_set, options);
-  const std::vector<Source> sources = sources_of(sensor_set, sent);
+  const StreamLayout sent = stream_layout(world, sensor_set, options);
+  const std::vector<SensorStream> sources = sensor_streams(sensor_set, sent);
   netio::StreamMonitorOptions plan;
   plan.address = netio::resolve(options.bind);
   if (!options.from.empty()) plan.farm = netio::resolve(options.from);
@@ -26,12 +26,12 @@ int listen(const Options& options) {
   plan.inspect = [&](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
     return inspect_payload(sources[i], options.wire, header, payload);
   };
-  for (const Source& source : sources)
+  for (const SensorStream& source : sources)
     plan.streams.push_back({world.movers[source.row->mover].id, source.row->sensor, sent.ports(*source.kind),
                             std::string(source.kind->name)});
   netio::StreamMonitor monitor(plan);
-  warn_of_reach(plan.address, "send readings");
-  catch_stop_signals();
+  warn_of_exposure(plan.address, "send readings");
+  install_stop_handlers();
   std::fprintf(stderr, "sensorfarm: listening on %s of %s\n", counted(plan.streams.size(), "port").c_str(),
                options.bind.c_str());
   monitor.run(stop_requested(), static_cast<int>(1000.0 * options.silence), std::llround(1000.0 * options.duration));

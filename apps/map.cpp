@@ -8,9 +8,9 @@
 #include <cstdio>
 
 #include "apps/commands.h"
-#include "apps/reach.h"
-#include "apps/stop.h"
-#include "apps/wording.h"
+#include "apps/exposure_warning.h"
+#include "apps/option_parsers.h"
+#include "apps/stop_signals.h"
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "maps/map_assembler.h"
@@ -114,7 +114,7 @@ class Display {
   void redraw();
   void print() const;
   void save(const std::string& file) const;
-  void tell() const;
+  void print_status() const;
 
  private:
   std::vector<maps::OccupancyGrid> pictures() const;
@@ -128,14 +128,14 @@ class Display {
 
 bool Display::drain() {
   const std::int64_t now = (Clock::now() - Clock::time_point{}).count();
-  const auto hear = [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& from) {
+  const auto on_datagram = [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& from) {
     Source& source = sources_[i];
     const maps::PartStatus taken = take(source, options_.wire, bytes, from, now);
     const bool used = taken == maps::PartStatus::part || taken == maps::PartStatus::complete;
     ++(used ? source.used : source.left_out);
     changed_ = changed_ || taken == maps::PartStatus::complete;
   };
-  return port_listener_.drain(kPatience, hear) > 0;
+  return port_listener_.drain(kPatience, on_datagram) > 0;
 }
 
 bool Display::all_whole() const {
@@ -202,7 +202,7 @@ void Display::save(const std::string& file) const {
   }
 }
 
-void Display::tell() const {
+void Display::print_status() const {
   for (const Source& source : sources_)
     std::fprintf(stderr, "sensorfarm: port %u: %llu whole maps, %llu torn, %llu datagrams used and %llu left out%s\n",
                  unsigned{source.port}, static_cast<unsigned long long>(source.assembler.complete_maps()),
@@ -218,8 +218,8 @@ void Display::tell() const {
 
 int map(const Options& options) {
   Display display(options);
-  warn_of_reach(netio::resolve(options.bind), "send maps");
-  catch_stop_signals();
+  warn_of_exposure(netio::resolve(options.bind), "send maps");
+  install_stop_handlers();
   std::fprintf(stderr, "sensorfarm: listening for maps on %s of %s\n",
                counted(options.map_ports.size(), "port").c_str(), options.bind.c_str());
   const auto start = Clock::now();
@@ -236,7 +236,7 @@ int map(const Options& options) {
     if (begun && base::seconds_since(last) >= options.silence) break;
   }
   display.print();
-  display.tell();
+  display.print_status();
   if (!display.any()) return 1;
   if (!options.out.empty()) {
     display.save(options.out);

@@ -6,11 +6,11 @@
 #include <filesystem>
 
 #include "apps/commands.h"
-#include "apps/facts.h"
 #include "apps/plot_maps.h"
 #include "apps/plot_readings.h"
-#include "apps/progress.h"
-#include "apps/stop.h"
+#include "apps/progress_line.h"
+#include "apps/report.h"
+#include "apps/stop_signals.h"
 #include "base/error.h"
 #include "farm/farm.h"
 #include "record/recording.h"
@@ -91,13 +91,13 @@ void map_scans(const record::Recording& recording, const world::World& world, gp
 
 int plot(const Options& options) {
   const record::Recording recording = record::open_recording(options.world);
-  tell_damage(recording);
+  print_damage(recording);
   const world::World world = world::from_snapshot(recording.info.snapshot);
   const std::filesystem::path folder =
       options.out.empty() ? std::filesystem::path(recording.file).parent_path() : std::filesystem::path(options.out);
   scenarios::make_folder(folder.string());
 
-  catch_stop_signals();
+  install_stop_handlers();
   const std::string trajectories = (folder / "trajectories.png").string();
   viz::draw_trajectories(world, tracks_of(recording, world), trajectories);
   std::fprintf(stderr, "sensorfarm: wrote %s\n", trajectories.c_str());

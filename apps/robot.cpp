@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "apps/commands.h"
-#include "apps/facts.h"
-#include "apps/lend.h"
-#include "apps/robot_facts.h"
-#include "apps/robot_process.h"
-#include "apps/send_plan.h"
-#include "apps/stop.h"
+#include "apps/default_robot.h"
+#include "apps/report.h"
+#include "apps/robot_client.h"
+#include "apps/robot_report.h"
+#include "apps/stop_signals.h"
+#include "apps/stream_layout.h"
 #include "base/error.h"
 #include "world/keys.h"
 
@@ -42,8 +42,8 @@ int robot(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
   const sensors::SensorSet sensor_set(world);
   const std::uint32_t mover = find_robot(world, options.robot);
-  RobotProcess process(world, sensor_set, mover, send_plan(world, sensor_set, options), options);
-  catch_stop_signals();
+  RobotClient process(world, sensor_set, mover, stream_layout(world, sensor_set, options), options);
+  install_stop_handlers();
   std::fprintf(stderr, "sensorfarm: %s (id %u) drives by '%s' at %g Hz beside the farm at %s%s; Ctrl-C ends it\n",
                world.movers[mover].name.c_str(), world.movers[mover].id, options.controller.c_str(), process.rate(),
                netio::text(process.link().farm()).c_str(),
@@ -56,11 +56,11 @@ int robot(const Options& options) {
   for (std::int64_t next = 0; !stop_requested() && !process.done(); next = std::max(next + period, now() - period)) {
     process.wait_until(std::min(next, end), now);
     if (stop_requested() || now() >= end) break;
-    process.turn(now());
+    process.step(now());
   }
 
   process.leave(now());
-  RobotFacts facts = process.facts(options);
+  RobotReport facts = process.facts(options);
   facts.wall_s = 1e-9 * static_cast<double>(now());
   std::fputs((options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts)).c_str(), stdout);
   return facts.answered || !facts.listens ? 0 : 1;

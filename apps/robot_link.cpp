@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "apps/facts.h"
-#include "apps/wire_names.h"
+#include "apps/report.h"
+#include "apps/wire_ids.h"
 
 namespace sf::apps {
 
@@ -35,7 +35,7 @@ std::uint32_t listening_address(std::uint32_t farm) { return netio::is_loopback(
 }  // namespace
 
 RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
-                     const SendPlan& plan, const Options& options, Hear hear)
+                     const StreamLayout& plan, const Options& options, PacketHandler handler)
     : mover_(mover),
       id_(world.movers[mover].id),
       streams_(streams_of(sensor_set, plan, mover)),
@@ -45,19 +45,19 @@ RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor
       receiver_(receiver_options(plan)),
       out_(link_model(options)),
       in_(link_model(options)),
-      hear_(std::move(hear)) {
+      handler_(std::move(handler)) {
   receiver_.set_session(v2v_socket_.farm_session_token());
 }
 
-std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& sensor_set, const SendPlan& plan,
+std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& plan,
                                                      std::uint32_t mover) {
   std::vector<Stream> streams;
-  for (const Source& source : sources_of(sensor_set, plan, mover))
+  for (const SensorStream& source : sensor_streams(sensor_set, plan, mover))
     if (source.kind->read != nullptr) streams.push_back({source});
   return streams;
 }
 
-std::vector<netio::StreamSpec> RobotLink::plans(const SendPlan& plan) const {
+std::vector<netio::StreamSpec> RobotLink::plans(const StreamLayout& plan) const {
   std::vector<netio::StreamSpec> plans;
   for (const Stream& stream : streams_) {
     const sensors::SensorType& kind = *stream.source.kind;
@@ -66,11 +66,11 @@ std::vector<netio::StreamSpec> RobotLink::plans(const SendPlan& plan) const {
   return plans;
 }
 
-netio::ReceiverOptions RobotLink::receiver_options(const SendPlan& plan) const {
+netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& plan) const {
   netio::ReceiverOptions receiver;
   const std::vector<netio::StreamSpec> all = plans(plan);
   for (std::size_t i = 0; i < streams_.size(); ++i) {
-    const Source& source = streams_[i].source;
+    const SensorStream& source = streams_[i].source;
     receiver.streams.push_back({all[i], source.row->elements * element_width(*source.kind)});
   }
   receiver.headerless = plan.wire == sensors::WireFormat::thesis;
@@ -85,7 +85,7 @@ netio::ReceiverOptions RobotLink::receiver_options(const SendPlan& plan) const {
   return receiver;
 }
 
-void RobotLink::say(const netio::V2v& state, std::int64_t now) {
+void RobotLink::send_state(const netio::V2v& state, std::int64_t now) {
   netio::Header header;
   header.robot = static_cast<std::uint16_t>(id_);
   header.time = now;
@@ -104,10 +104,10 @@ void RobotLink::say(const netio::V2v& state, std::int64_t now) {
 
 void RobotLink::send(netio::Type type, std::uint32_t sequence, std::int64_t now) {
   out_.send({id_, stream_number(type, 0), sequence}, now, 0, packet_);
-  let_go(now);
+  flush_due(now);
 }
 
-void RobotLink::let_go(std::int64_t until) {
+void RobotLink::flush_due(std::int64_t until) {
   out_.release(until, [&](std::size_t, std::span<const std::uint8_t> bytes) { v2v_socket_.send(bytes); });
 }
 
@@ -118,7 +118,7 @@ void RobotLink::leave(std::int64_t now) {
   header.time = now;
   netio::encode(header, netio::Leave{}, packet_);
   out_.send({id_, stream_number(netio::Type::leave, 0), 0}, now, 0, packet_);
-  let_go(std::numeric_limits<std::int64_t>::max());
+  flush_due(std::numeric_limits<std::int64_t>::max());
 }
 
 void RobotLink::wait(std::int64_t now, std::int64_t until) const {
@@ -129,18 +129,18 @@ void RobotLink::wait(std::int64_t now, std::int64_t until) const {
 }
 
 void RobotLink::run(std::int64_t now) {
-  let_go(now);
+  flush_due(now);
   port_listener_.drain(0, [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& source) {
     if (source != farm_) return receiver_.reject_source();
-    in_.send(name_reading(streams_[i], bytes), now, i, bytes);
+    in_.send(reading_id(streams_[i], bytes), now, i, bytes);
   });
   v2v_socket_.receive(
-      [&](std::span<const std::uint8_t> bytes) { in_.send(name_word(bytes), now, streams_.size(), bytes); });
+      [&](std::span<const std::uint8_t> bytes) { in_.send(packet_id(bytes), now, streams_.size(), bytes); });
   in_.release(now, [&](std::size_t tag, std::span<const std::uint8_t> bytes) { take(tag, bytes, now); });
 }
 
 /// The first datagram of a reading has the fate that the reading has in a simulation with the same link.
-netio::MessageId RobotLink::name_reading(Stream& stream, std::span<const std::uint8_t> bytes) const {
+netio::MessageId RobotLink::reading_id(Stream& stream, std::span<const std::uint8_t> bytes) const {
   netio::Packet packet;
   if (netio::decode(bytes, packet) == netio::PacketStatus::accepted && packet.header.sequence != stream.sequence) {
     stream.sequence = packet.header.sequence;
@@ -150,16 +150,16 @@ netio::MessageId RobotLink::name_reading(Stream& stream, std::span<const std::ui
   return {id_, std::uint32_t{stream.source.kind->id} << 16 | low, stream.piece++ << 32 | stream.sequence};
 }
 
-netio::MessageId RobotLink::name_word(std::span<const std::uint8_t> bytes) {
+netio::MessageId RobotLink::packet_id(std::span<const std::uint8_t> bytes) {
   netio::Packet packet;
   if (netio::decode(bytes, packet) == netio::PacketStatus::accepted && packet.header.type == netio::Type::v2v)
     return {id_, stream_number(netio::Type::v2v, kRelayed),
             std::uint64_t{packet.header.robot} << 32 | packet.header.sequence};
-  return {id_, stream_number(netio::Type::start, kRelayed), words_++};
+  return {id_, stream_number(netio::Type::start, kRelayed), other_packets_++};
 }
 
 void RobotLink::take(std::size_t tag, std::span<const std::uint8_t> bytes, std::int64_t now) {
-  if (tag == streams_.size()) return take_word(bytes, now);
+  if (tag == streams_.size()) return take_packet(bytes, now);
   const netio::PartStatus part_status = receiver_.accept(tag, bytes, now);
   if (part_status == netio::PartStatus::rejected) return;
   last_answer_ = now;
@@ -169,17 +169,17 @@ void RobotLink::take(std::size_t tag, std::span<const std::uint8_t> bytes, std::
   clock_.update(receiver_.newest(tag)->time, now);
 }
 
-void RobotLink::take_word(std::span<const std::uint8_t> bytes, std::int64_t now) {
+void RobotLink::take_packet(std::span<const std::uint8_t> bytes, std::int64_t now) {
   netio::Packet packet;
   const netio::SessionToken before = v2v_socket_.farm_session_token();
   if (v2v_socket_.accept(bytes, now, packet) != netio::PacketStatus::accepted) return;
-  if (std::holds_alternative<netio::Challenge>(packet.body)) return answer_challenge(before);
+  if (std::holds_alternative<netio::Challenge>(packet.body)) return handle_challenge(before);
   last_answer_ = now;
-  hear_(packet, now);
+  handler_(packet, now);
 }
 
 /// The requests before it were dropped. A new session is a new farm, with a clock and sequences of its own.
-void RobotLink::answer_challenge(const netio::SessionToken& before) {
+void RobotLink::handle_challenge(const netio::SessionToken& before) {
   next_request_ = 0;
   if (v2v_socket_.farm_session_token().session == before.session) return;
   receiver_.set_session(v2v_socket_.farm_session_token());
@@ -191,7 +191,7 @@ std::span<RobotLink::Newest> RobotLink::readings() {
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     const auto whole = receiver_.newest(i);
     if (!whole) continue;
-    const Source& source = streams_[i].source;
+    const SensorStream& source = streams_[i].source;
     Newest& newest = newest_.emplace_back();
     newest.row = source.row;
     newest.block.mover = mover_;

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "apps/options.h"
-#include "apps/payloads.h"
-#include "apps/send_plan.h"
+#include "apps/sensor_streams.h"
+#include "apps/stream_layout.h"
 #include "base/reading.h"
 #include "netio/delay_line.h"
 #include "netio/farm_clock.h"
@@ -28,7 +28,7 @@ struct LinkCounts {
   netio::DelayCounts out;  ///< of the injected link
   netio::DelayCounts in;
   netio::ReceiverCounts readings;
-  netio::PacketCounts words;                   ///< what came to the socket it speaks from
+  netio::PacketCounts packets;                 ///< what came to the socket it speaks from
   std::uint64_t kernel_drops = 0;              ///< datagrams that came while a socket's buffer was full
   std::map<std::string, std::uint64_t> whole;  ///< readings, by kind
 };
@@ -38,14 +38,14 @@ struct LinkCounts {
 class RobotLink {
  public:
   /// Is given each relayed state and start signal.
-  using Hear = std::function<void(const netio::Packet&, std::int64_t now)>;
+  using PacketHandler = std::function<void(const netio::Packet&, std::int64_t now)>;
 
   /// @throws base::InputError when a port is taken or the farm's host is unknown.
-  RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover, const SendPlan& plan,
-            const Options& options, Hear hear);
+  RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
+            const StreamLayout& plan, const Options& options, PacketHandler handler);
 
   /// Sends a state, and every half a second what it wants to be sent.
-  void say(const netio::V2v& state, std::int64_t now);
+  void send_state(const netio::V2v& state, std::int64_t now);
   /// Says that it said its last, unless it said nothing: at once, and what still waits in the injected link with it.
   void leave(std::int64_t now);
   /// Sleeps until something comes, is due, or it is `until`, but 100 ms at most.
@@ -75,23 +75,23 @@ class RobotLink {
  private:
   /// One sensor's packets, as the injected link names them.
   struct Stream {
-    Source source;
+    SensorStream source;
     std::uint32_t sequence = 0;  ///< of the reading that came last
     std::uint64_t piece = 0;     ///< datagrams of it that came before
     std::uint64_t whole = 0;     ///< readings
   };
-  static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const SendPlan& plan,
+  static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& plan,
                                         std::uint32_t mover);
-  std::vector<netio::StreamSpec> plans(const SendPlan& plan) const;
-  netio::ReceiverOptions receiver_options(const SendPlan& plan) const;
+  std::vector<netio::StreamSpec> plans(const StreamLayout& plan) const;
+  netio::ReceiverOptions receiver_options(const StreamLayout& plan) const;
   void send(netio::Type type, std::uint32_t sequence, std::int64_t now);
   /// Sends what is due by then.
-  void let_go(std::int64_t until);
-  netio::MessageId name_reading(Stream& stream, std::span<const std::uint8_t> bytes) const;
-  netio::MessageId name_word(std::span<const std::uint8_t> bytes);
+  void flush_due(std::int64_t until);
+  netio::MessageId reading_id(Stream& stream, std::span<const std::uint8_t> bytes) const;
+  netio::MessageId packet_id(std::span<const std::uint8_t> bytes);
   void take(std::size_t tag, std::span<const std::uint8_t> bytes, std::int64_t now);
-  void answer_challenge(const netio::SessionToken& before);
-  void take_word(std::span<const std::uint8_t> bytes, std::int64_t now);
+  void handle_challenge(const netio::SessionToken& before);
+  void take_packet(std::span<const std::uint8_t> bytes, std::int64_t now);
 
   std::uint32_t mover_;
   std::uint32_t id_;
@@ -103,11 +103,11 @@ class RobotLink {
   netio::DelayLine out_;
   netio::DelayLine in_;  ///< tags are streams, and one more for words
   netio::FarmClock clock_;
-  Hear hear_;
-  std::uint32_t states_ = 0;       ///< sent
-  std::uint32_t requests_ = 0;     ///< sent
-  std::int64_t next_request_ = 0;  ///< [ns]
-  std::uint64_t words_ = 0;        ///< that came and are no states
+  PacketHandler handler_;
+  std::uint32_t states_ = 0;         ///< sent
+  std::uint32_t requests_ = 0;       ///< sent
+  std::int64_t next_request_ = 0;    ///< [ns]
+  std::uint64_t other_packets_ = 0;  ///< that came and are no states
   std::optional<std::int64_t> last_answer_, last_reading_;
   std::vector<Newest> newest_;
   base::Bytes packet_;

@@ -11,15 +11,15 @@
 
 #include <fmt/format.h>
 
+#include "apps/automatic_accuracy.h"
 #include "apps/commands.h"
-#include "apps/facts.h"
-#include "apps/lend.h"
-#include "apps/plan.h"
-#include "apps/post.h"
-#include "apps/progress.h"
-#include "apps/rates.h"
-#include "apps/stop.h"
-#include "apps/tradeoff.h"
+#include "apps/default_robot.h"
+#include "apps/driver_options.h"
+#include "apps/progress_line.h"
+#include "apps/rate_warnings.h"
+#include "apps/reading_publisher.h"
+#include "apps/report.h"
+#include "apps/stop_signals.h"
 #include "base/contact_onset.h"
 #include "base/elapsed.h"
 #include "base/error.h"
@@ -37,12 +37,12 @@ using Clock = std::chrono::steady_clock;
 /// Where readings go: a recording, the network, both or neither.
 class Outputs {
  public:
-  Outputs(const world::World& world, const sensors::SensorSet& sensor_set, const std::optional<SendPlan>& plan,
+  Outputs(const world::World& world, const sensors::SensorSet& sensor_set, const std::optional<StreamLayout>& plan,
           const std::string& caster, const Options& options)
-      : sensor_set_(sensor_set), no_return_(sensor_set, options.no_return_inf) {
+      : sensor_set_(sensor_set), no_return_filter_(sensor_set, options.no_return_inf) {
     if (plan) {
       address_ = netio::resolve(options.send);
-      post_.emplace(world, sensor_set, *plan, netio::Outbox(outbox_options(sensor_set)));
+      publisher_.emplace(world, sensor_set, *plan, netio::Outbox(outbox_options(sensor_set)));
     }
     if (!options.record.empty())
       recorder_.emplace(options.record,
@@ -55,10 +55,10 @@ class Outputs {
   template <class Wait>
   void write(base::TickRecord tick, Wait&& wait) {
     const auto start = Clock::now();
-    tick.readings = no_return_.apply(tick.readings);
+    tick.readings = no_return_filter_.apply(tick.readings);
     double waited = 0.0;
     std::int64_t sent_at = tick.time;
-    for (const base::ReadingBlock& reading : post_ ? tick.readings : std::span<const base::ReadingBlock>{}) {
+    for (const base::ReadingBlock& reading : publisher_ ? tick.readings : std::span<const base::ReadingBlock>{}) {
       const std::int64_t time =
           std::min<std::int64_t>(tick.time, reading.time + std::llround(1e9 * sensor_set_.row(reading).latency));
       if (time != std::exchange(sent_at, time)) {
@@ -67,18 +67,18 @@ class Outputs {
         wait(time);
         waited += base::seconds_since(before);
       }
-      letters_.push_back({&reading, address_, session_token_});
+      addressed_readings_.push_back({&reading, address_, session_token_});
     }
-    if (post_) send();
+    if (publisher_) send();
     if (recorder_) recorder_->write(tick);
     seconds_ += base::seconds_since(start) - waited;
   }
 
-  void update_extent_and_hash(RunFacts& facts) {
+  void update_extent_and_hash(RunReport& facts) {
     facts.out_s = seconds_;
-    if (post_) {
+    if (publisher_) {
       facts.sent = true;
-      facts.post = post_->counts();
+      facts.publisher = publisher_->counts();
     }
     if (!recorder_) return;
     recorder_->finish();
@@ -88,17 +88,17 @@ class Outputs {
 
  private:
   void send() {
-    post_->queue(letters_);
-    post_->flush();
-    letters_.clear();
+    publisher_->queue(addressed_readings_);
+    publisher_->flush();
+    addressed_readings_.clear();
   }
 
   const sensors::SensorSet& sensor_set_;
-  NoReturn no_return_;
-  std::vector<Letter> letters_;  ///< that go at one time
+  NoReturnFilter no_return_filter_;
+  std::vector<AddressedReading> addressed_readings_;  ///< that go at one time
   std::uint32_t address_ = 0;
   netio::SessionToken session_token_{netio::random_session(), 0};
-  std::optional<Post> post_;
+  std::optional<ReadingPublisher> publisher_;
   std::optional<record::Recorder> recorder_;
   double seconds_ = 0.0;
 };
@@ -122,8 +122,8 @@ bool names_one_of_several(const std::string& refusal, const world::World& world,
 scenarios::SimulationOptions simulation_options(const world::World& world, const Options& options) {
   scenarios::SimulationOptions simulation{
       .seed = options.seed, .threads = options.threads, .no_return_inf = options.no_return_inf};
-  simulation.actor.plan = plan_of(options);
-  simulation.actors = actors_of(world, options);
+  simulation.actor.plan = controller_config_of(options);
+  simulation.actors = make_actors(world, options);
   return simulation;
 }
 
@@ -143,23 +143,23 @@ auto advised(const world::World& world, const Options& options, Act&& act) {
 
 int run(const Options& options) {
   world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
-  std::optional<SendPlan> plan;
-  if (!options.send.empty()) plan = send_plan(world, sensors::SensorSet(world), options);
+  std::optional<StreamLayout> plan;
+  if (!options.send.empty()) plan = stream_layout(world, sensors::SensorSet(world), options);
   gpu::Device device(options.device);
   choose_accuracy(world, device, options);
   const sensors::SensorSet sensor_set(world);
-  tell_many_times(sensor_set);
+  warn_of_many_times(sensor_set);
   scenarios::Simulation simulation =
       advised(world, options, [&] { return scenarios::Simulation(world, device, simulation_options(world, options)); });
-  if (!simulation.warnings().empty()) tell_warnings(simulation.warnings().front().file, simulation.warnings());
-  ControlTally tally(simulation, world.movers.size(), options.controller);
+  if (!simulation.warnings().empty()) print_warnings(simulation.warnings().front().file, simulation.warnings());
+  ControlMetrics tally(simulation, world.movers.size(), options.controller);
   std::vector<base::ContactOnset> contacts(world.movers.size());
   const std::string caster = raycast::describe_caster(device.info().software);
   Outputs outputs(world, sensor_set, plan, caster, options);
-  catch_stop_signals();
+  install_stop_handlers();
 
   const auto ticks = static_cast<std::uint64_t>(std::llround(options.duration / world.interval));
-  RunFacts facts;
+  RunReport facts;
   const auto start = Clock::now();
   {
     Progress progress("simulating");
@@ -192,7 +192,7 @@ int run(const Options& options) {
   std::vector<world::Warning> warnings = world.warnings;
   warnings.insert(warnings.end(), simulation.warnings().begin(), simulation.warnings().end());
   std::fputs((options.json ? with_warnings(json_of(facts), warnings) : text_of(facts)).c_str(), stdout);
-  const netio::OutboxCounts& packets = facts.post.packets;
+  const netio::OutboxCounts& packets = facts.publisher.packets;
   if (packets.failed == 0) return 0;
   std::fprintf(stderr, "sensorfarm: %llu of %llu packets were not sent: %s\n",
                static_cast<unsigned long long>(packets.failed), static_cast<unsigned long long>(packets.queued),

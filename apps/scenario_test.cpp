@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "apps/commands.h"
-#include "apps/facts.h"
-#include "apps/progress.h"
+#include "apps/progress_line.h"
+#include "apps/report.h"
 #include "base/error.h"
 #include "scenarios/junit.h"
 
@@ -57,7 +57,7 @@ int test_scenarios(const Options& options) {
   // All files are read, and what they ask for is tried, before any is run: a slip in the last is known at once.
   std::vector<scenarios::Scenario> all;
   for (const std::string& file : options.scenarios) all.push_back(scenarios::read_scenario(file));
-  for (const scenarios::Scenario& scenario : all) tell_warnings(scenario.world, scenarios::check_scenario(scenario));
+  for (const scenarios::Scenario& scenario : all) print_warnings(scenario.world, scenarios::check_scenario(scenario));
   if (!options.junit.empty()) check_junit(options.junit);
   gpu::Device device(options.device);
   std::vector<scenarios::ScenarioResult> results;

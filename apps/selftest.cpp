@@ -6,10 +6,10 @@
 #include <cstdio>
 
 #include "apps/commands.h"
-#include "apps/facts.h"
-#include "apps/progress.h"
-#include "apps/stop.h"
-#include "apps/wording.h"
+#include "apps/option_parsers.h"
+#include "apps/progress_line.h"
+#include "apps/report.h"
+#include "apps/stop_signals.h"
 #include "selftest/suite.h"
 
 namespace sf::apps {
@@ -53,12 +53,12 @@ std::string line_of(const Case& c, const Outcome& o) {
 
 }  // namespace
 
-std::size_t SelfTest::passed() const {
+std::size_t SelfTestReport::passed() const {
   return static_cast<std::size_t>(
       std::count_if(cases.begin(), cases.end(), [](const auto& c) { return c.second.passed(); }));
 }
 
-std::string text_of(const SelfTest& test) {
+std::string text_of(const SelfTestReport& test) {
   std::string text =
       fmt::format("{:<9} {:<27} {:>8}  {:<30}\n", "group", "case", "checks", "closest call: error of allowed");
   std::uint64_t checks = 0;
@@ -77,8 +77,8 @@ int selftest(const Options& options) {
   gpu::Device device(options.device);
   selftest::Fixture fixture(device);
   const std::vector<const Case*> some = chosen(options.cases);
-  SelfTest test{.device = device.info(), .asked = some.size()};
-  catch_stop_signals();
+  SelfTestReport test{.device = device.info(), .asked = some.size()};
+  install_stop_handlers();
   {
     Progress progress("selftest");
     for (std::size_t i = 0; i < some.size() && !stop_requested(); ++i) {

@@ -12,16 +12,16 @@
 
 #include <fmt/format.h>
 
+#include "apps/automatic_accuracy.h"
 #include "apps/commands.h"
-#include "apps/facts.h"
-#include "apps/lend.h"
-#include "apps/post.h"
-#include "apps/rates.h"
-#include "apps/reach.h"
-#include "apps/stop.h"
-#include "apps/tradeoff.h"
-#include "apps/wire_names.h"
-#include "apps/wording.h"
+#include "apps/default_robot.h"
+#include "apps/exposure_warning.h"
+#include "apps/option_parsers.h"
+#include "apps/rate_warnings.h"
+#include "apps/reading_publisher.h"
+#include "apps/report.h"
+#include "apps/stop_signals.h"
+#include "apps/wire_ids.h"
 #include "base/error.h"
 #include "netio/inbox.h"
 #include "netio/rate_limited_log.h"
@@ -48,8 +48,8 @@ netio::Inbox open_inbox(const WireNames& names, const Options& options) {
 
 class Service {
  public:
-  Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device, const SendPlan& plan,
-          const Options& options)
+  Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
+          const StreamLayout& plan, const Options& options)
       : world_(world),
         sensor_set_(sensor_set),
         names_(wire_names(world)),
@@ -57,15 +57,15 @@ class Service {
         answers_(inbox_.socket()),
         relay_(ids_of(names_.robots), {.range = options.radio}),
         plan_(plan),
-        post_(world, sensor_set, plan, netio::Outbox(inbox_.socket(), outbox_options(sensor_set))),
+        publisher_(world, sensor_set, plan, netio::Outbox(inbox_.socket(), outbox_options(sensor_set))),
         farm_(world, device,
               farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
         fleet_(world),
-        no_return_(sensor_set, options.no_return_inf),
+        no_return_filter_(sensor_set, options.no_return_inf),
         forget_(options.forget > 0.0
                     ? std::max<std::int64_t>(0, std::llround(1e9 * options.forget) - netio::kClientTimeout)
                     : kNever),
-        last_heard_(world.movers.size(), kNever),
+        last_active_(world.movers.size(), kNever),
         capped_(options.rate > 0.0) {
     reports_.reserve(netio::Inbox::kMaxPerReceive);
   }
@@ -85,41 +85,41 @@ class Service {
       const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(left).count();
       if (whole == 0) std::this_thread::sleep_for(left);
       if (whole > 0) inbox_.wait(static_cast<int>(std::min<long>(whole, 100)));
-      take_in((Clock::now() - start).count());
+      receive_pending((Clock::now() - start).count());
     }
   }
 
   /// Everything that goes by ticks.
   void tick(std::int64_t now) {
-    look(now, false);
+    sample(now, false);
     relay_.forward(inbox_, now, answers_);
     answers_.flush();
     ++ticks_;
   }
 
   /// Reads and delivers everything that is due. @param between two ticks
-  void look(std::int64_t now, bool between) {
-    take_in(now);
+  void sample(std::int64_t now, bool between) {
+    receive_pending(now);
     for (const auto& [id, row] : names_.robots) {
-      forget_silent(id, row, now);
-      farm_.subscribe(row, wanted(id, now));
+      remove_silent(id, row, now);
+      farm_.subscribe(row, subscribed_types(id, now));
     }
     const auto states = fleet_.predict(now);
-    const auto readings = no_return_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));
+    const auto readings = no_return_filter_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));
     for (const base::ReadingBlock& reading : readings) {
       // A reading that was on its way when its robot fell silent has nobody to go to.
       const std::uint32_t id = world_.movers[reading.mover].id;
       const auto to = inbox_.address(id);
-      if (to) letters_.push_back({&reading, to->address, inbox_.session_token_for(id)});
+      if (to) addressed_readings_.push_back({&reading, to->address, inbox_.session_token_for(id)});
     }
-    post_.queue(letters_);
-    post_.flush();
-    letters_.clear();
-    tell_missed();
+    publisher_.queue(addressed_readings_);
+    publisher_.flush();
+    addressed_readings_.clear();
+    warn_of_missed();
   }
 
   /// All that waits, at `now` [ns].
-  void take_in(std::int64_t now) {
+  void receive_pending(std::int64_t now) {
     reports_.clear();
     const auto take = [&](const netio::Packet& packet) {
       relay_.take(packet);
@@ -134,23 +134,23 @@ class Service {
       // Senders' clocks are their own: a state is true when it arrives.
       reports_.back().time = now;
     };
-    const auto strange = [&](netio::PacketStatus reason, const netio::Packet& packet, const netio::Endpoint& who) {
-      if (reason == netio::PacketStatus::wrong_source) return complain(packet, who, now);
+    const auto on_rejected = [&](netio::PacketStatus reason, const netio::Packet& packet, const netio::Endpoint& who) {
+      if (reason == netio::PacketStatus::wrong_source) return report_wrong_source(packet, who, now);
       if (inbox_.challenge(packet, who, now, challenge_)) answers_.queue(who, challenge_);
     };
-    inbox_.receive(now, take, strange);
+    inbox_.receive(now, take, on_rejected);
     answers_.flush();
     fleet_.apply(reports_);
   }
 
-  RunFacts facts() const {
-    RunFacts facts;
+  RunReport facts() const {
+    RunReport facts;
     facts.robots = static_cast<std::uint32_t>(names_.robots.size());
     facts.ticks = ticks_;
     facts.farm = farm_.stats();
     facts.hash = farm_.hash();
     facts.sent = facts.received = true;
-    facts.post = post_.counts();
+    facts.publisher = publisher_.counts();
     facts.inbox = inbox_.counts();
     facts.kernel_drops = inbox_.kernel_drops();
     facts.relayed = relay_.counts();
@@ -160,10 +160,10 @@ class Service {
 
  private:
   /// Once, when more than one reading in twenty is missed.
-  void tell_missed() {
+  void warn_of_missed() {
     const farm::FarmStats stats = farm_.stats();
-    if (told_missed_ || capped_ || stats.missed < 20 || 20 * stats.missed < stats.readings) return;
-    told_missed_ = true;
+    if (warned_of_missed_ || capped_ || stats.missed < 20 || 20 * stats.missed < stats.readings) return;
+    warned_of_missed_ = true;
     std::fprintf(
         stderr,
         "sensorfarm: this machine is too slow for the sensors' rates: readings are missed; lower the rates, or "
@@ -171,7 +171,7 @@ class Service {
   }
 
   /// Bit k: robot `id` is heard, and wants its sensors of kind k.
-  std::uint32_t wanted(std::uint32_t id, std::int64_t now) const {
+  std::uint32_t subscribed_types(std::uint32_t id, std::int64_t now) const {
     std::uint32_t kinds = 0;
     for (const sensors::SensorSet::Group& group : sensor_set_.groups())
       if (inbox_.is_subscribed(id, group.kind->id, now) && plan_.sends_any(group)) kinds |= 1u << group.kind->id;
@@ -179,23 +179,23 @@ class Service {
   }
 
   /// A robot that spoke once and is silent now is taken out of the world until it speaks again.
-  void forget_silent(std::uint32_t id, std::uint32_t row, std::int64_t now) {
-    std::int64_t& last = last_heard_[row];
-    const bool heard = inbox_.is_active(id, now);
-    const bool gone = !heard && forget_ != kNever && last != kNever && now - last >= forget_;
-    if (heard) last = now;
+  void remove_silent(std::uint32_t id, std::uint32_t row, std::int64_t now) {
+    std::int64_t& last = last_active_[row];
+    const bool active = inbox_.is_active(id, now);
+    const bool gone = !active && forget_ != kNever && last != kNever && now - last >= forget_;
+    if (active) last = now;
     farm_.set_absent(row, gone);
     fleet_.set_absent(row, gone);
   }
 
   /// Of each binding's strangers, once.
-  void complain(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now) {
+  void report_wrong_source(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now) {
     const bool tag = std::holds_alternative<netio::Tag>(packet.body);
     const std::uint32_t id = packet.header.robot;
     const netio::Endpoint bound = *(tag ? inbox_.tag_address(id) : inbox_.address(id));
-    auto& said = (tag ? said_of_tags_ : said_of_robots_)[id];
-    if (said == bound) return;
-    said = bound;
+    auto& reported = (tag ? reported_tags_ : reported_robots_)[id];
+    if (reported == bound) return;
+    reported = bound;
     log_.write(
         fmt::format("{} ({} {}) is heard from {}; what {} says as the same is dropped until that one leaves or is "
                     "silent for 2 s",
@@ -212,38 +212,38 @@ class Service {
   netio::Inbox inbox_;
   netio::Outbox answers_;  ///< from where the robots speak to
   netio::Relay relay_;
-  const SendPlan& plan_;
-  Post post_;
+  const StreamLayout& plan_;
+  ReadingPublisher publisher_;
   farm::Farm farm_;
   robots::Fleet fleet_;
-  NoReturn no_return_;
+  NoReturnFilter no_return_filter_;
   std::vector<base::Report> reports_;
-  std::vector<Letter> letters_;  ///< of one tick
+  std::vector<AddressedReading> addressed_readings_;  ///< of one tick
   base::Bytes challenge_;
-  std::int64_t forget_;                   ///< [ns] since it was last heard, or kNever
-  std::vector<std::int64_t> last_heard_;  ///< [ns] per mover
+  std::int64_t forget_;                    ///< [ns] since it was last heard, or kNever
+  std::vector<std::int64_t> last_active_;  ///< [ns] per mover
   netio::RateLimitedLog log_;
   // By id: the binding whose strangers were spoken of.
-  std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_robots_;
-  std::map<std::uint32_t, std::optional<netio::Endpoint>> said_of_tags_;
+  std::map<std::uint32_t, std::optional<netio::Endpoint>> reported_robots_;
+  std::map<std::uint32_t, std::optional<netio::Endpoint>> reported_tags_;
   std::uint64_t ticks_ = 0;
   bool capped_;  ///< sensors are read at ticks alone
-  bool told_missed_ = false;
+  bool warned_of_missed_ = false;
 };
 
 }  // namespace
 
 int serve(const Options& options) {
   world::World world = load_with_robots(options.world, options.load, 0, options.seed);
-  const SendPlan plan = send_plan(world, sensors::SensorSet(world), options);
+  const StreamLayout plan = stream_layout(world, sensors::SensorSet(world), options);
   gpu::Device device(options.device);
   choose_accuracy(world, device, options);
   const sensors::SensorSet sensor_set(world);
-  if (options.rate > 0.0) tell_fast_sensors(sensor_set, options.rate);
-  if (options.rate == 0.0) tell_many_times(sensor_set);
+  if (options.rate > 0.0) warn_of_fast_sensors(sensor_set, options.rate);
+  if (options.rate == 0.0) warn_of_many_times(sensor_set);
   Service service(world, sensor_set, device, plan, options);
-  warn_of_reach(netio::resolve(options.bind), "say where robots are, and be sent readings");
-  catch_stop_signals();
+  warn_of_exposure(netio::resolve(options.bind), "say where robots are, and be sent readings");
+  install_stop_handlers();
   const double interval = options.rate > 0.0 ? 1.0 / options.rate : world.interval;
   std::fprintf(stderr, "sensorfarm: serving %s of %s on %s:%u, %g ticks/s, on %s; Ctrl-C ends it\n",
                counted(service.robots(), "robot").c_str(), world.file.c_str(), options.bind.c_str(), service.port(),
@@ -258,15 +258,15 @@ int serve(const Options& options) {
     const std::int64_t now = (Clock::now() - start).count();
     if (options.duration > 0.0 && 1e-9 * static_cast<double>(now) >= options.duration) break;
     if (now < next) {
-      service.look(now, true);
+      service.sample(now, true);
       continue;
     }
     service.tick(now);
     next = std::max(next + step, (Clock::now() - start).count() - step);
   }
 
-  service.take_in((Clock::now() - start).count());  // what still waits is counted too
-  RunFacts facts = service.facts();
+  service.receive_pending((Clock::now() - start).count());  // what still waits is counted too
+  RunReport facts = service.facts();
   facts.device = device.info().name;
   facts.software = device.info().software;
   facts.caster = raycast::describe_caster(device.info().software);

@@ -9,8 +9,8 @@ class App;
 
 namespace sf::apps {
 
-void add_looking(CLI::App& app, Options& o);  ///< at worlds, devices and recordings
-void add_running(CLI::App& app, Options& o);  ///< the farm, robots, and who listens to them
-void add_proving(CLI::App& app, Options& o);  ///< experiments, and scenarios as tests
+void add_inspect_commands(CLI::App& app, Options& o);  ///< at worlds, devices and recordings
+void add_run_commands(CLI::App& app, Options& o);      ///< the farm, robots, and who listens to them
+void add_test_commands(CLI::App& app, Options& o);     ///< experiments, and scenarios as tests
 
 }  // namespace sf::apps

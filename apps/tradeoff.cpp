@@ -1,7 +1,7 @@
 // `tradeoff`: what each accuracy mode of a world's sensors gives and costs on this machine; and `--auto`, which goes by
 // it.
 
-#include "apps/tradeoff.h"
+#include "apps/automatic_accuracy.h"
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 #include <filesystem>
 
 #include "apps/commands.h"
-#include "apps/facts.h"
-#include "apps/lend.h"
-#include "apps/progress.h"
-#include "apps/stop.h"
-#include "apps/wording.h"
+#include "apps/default_robot.h"
+#include "apps/option_parsers.h"
+#include "apps/progress_line.h"
+#include "apps/report.h"
+#include "apps/stop_signals.h"
 #include "base/error.h"
 #include "scenarios/experiment.h"
 #include "sensors/accuracy.h"
@@ -41,7 +41,7 @@ std::string_view counted_as(const std::string& sensor) {
   return sensor == "laser" ? "rays" : sensor == "laneedge" ? "edges" : sensor == "magnetometer" ? "fields" : "readings";
 }
 
-std::string wish_text(const scenarios::AccuracyTarget& target) {
+std::string target_text(const scenarios::AccuracyTarget& target) {
   if (target.least_rate > 0.0) return fmt::format("at {:g} Hz or more", target.least_rate);
   constexpr std::string_view kBy[] = {"a median error", "99 % of errors", "every error"};
   std::string text;
@@ -52,7 +52,7 @@ std::string wish_text(const scenarios::AccuracyTarget& target) {
 
 std::string advice_text(const std::vector<scenarios::ModeResult>& results, const scenarios::AccuracyTarget& target) {
   return fmt::format("{} {}: --accuracy \"{}\"\n", target.least_rate > 0.0 ? "most accurate" : "fastest",
-                     wish_text(target), scenarios::accuracy_words(results, scenarios::select_modes(results, target)));
+                     target_text(target), scenarios::accuracy_words(results, scenarios::select_modes(results, target)));
 }
 
 void draw(const std::string& world, const std::string& device, const std::vector<scenarios::ModeResult>& results,
@@ -112,19 +112,19 @@ std::string text_of(const std::vector<scenarios::ModeResult>& results) {
 
 void choose_accuracy(world::World& world, gpu::Device& device, const Options& options) {
   if (!options.automatic) return;
-  catch_stop_signals();
+  install_stop_handlers();
   const scenarios::AccuracyTarget target = wish_of(options);
   const auto results = measure(world, device, options);
   if (stop_requested()) return;
   const std::string words = scenarios::accuracy_words(results, scenarios::select_modes(results, target));
-  std::fprintf(stderr, "sensorfarm: measured; %s: --accuracy \"%s\"\n", wish_text(target).c_str(), words.c_str());
+  std::fprintf(stderr, "sensorfarm: measured; %s: --accuracy \"%s\"\n", target_text(target).c_str(), words.c_str());
   sensors::set_accuracy(world, words);
 }
 
 int tradeoff(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   gpu::Device device(options.device);
-  catch_stop_signals();
+  install_stop_handlers();
   const scenarios::AccuracyTarget target = wish_of(options);
   const auto results = measure(world, device, options);
   if (stop_requested()) throw base::InputError("interrupted: nothing was written");

@@ -5,10 +5,10 @@
 #include <cstdio>
 
 #include "apps/commands.h"
-#include "apps/facts.h"
-#include "apps/progress.h"
-#include "apps/stop.h"
-#include "apps/wording.h"
+#include "apps/option_parsers.h"
+#include "apps/progress_line.h"
+#include "apps/report.h"
+#include "apps/stop_signals.h"
 #include "scenarios/verification.h"
 
 namespace sf::apps {
@@ -46,9 +46,9 @@ std::string text_of(const scenarios::Verification& v, bool readings_recorded) {
 
 int verify(const Options& options) {
   const record::Recording recording = record::open_recording(options.world);
-  tell_damage(recording);
+  print_damage(recording);
   gpu::Device device(options.device);
-  catch_stop_signals();
+  install_stop_handlers();
   scenarios::Verification verification;
   {
     Progress progress("verifying");

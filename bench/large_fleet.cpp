@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "apps/post.h"
+#include "apps/reading_publisher.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "bench/report.h"
@@ -37,8 +37,8 @@ class Sink {
 };
 
 /// Every packet to one port: a stride of none.
-apps::SendPlan plan_for(const sensors::SensorSet& sensor_set, std::uint16_t port) {
-  apps::SendPlan plan;
+apps::StreamLayout plan_for(const sensors::SensorSet& sensor_set, std::uint16_t port) {
+  apps::StreamLayout plan;
   plan.stride = 0;
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) plan.bases[group.kind->id] = port;
   return plan;
@@ -63,18 +63,19 @@ class LargeFleet {
       : world_(made(robots)),
         sensor_set_(world_),
         simulation_(world_, device, {.seed = 7}),
-        post_(world_, sensor_set_, plan_for(sensor_set_, sink_.port()),
-              netio::Outbox(apps::outbox_options(sensor_set_))) {}
+        publisher_(world_, sensor_set_, plan_for(sensor_set_, sink_.port()),
+                   netio::Outbox(apps::outbox_options(sensor_set_))) {}
 
   /// @return what it cost
   Cost tick() {
     const Cost start = now();
     const base::TickRecord record = simulation_.step();
     const double sensed = now().wall_s;
-    letters_.clear();
-    for (const base::ReadingBlock& reading : record.readings) letters_.push_back({&reading, netio::kLoopback, {1, 1}});
-    post_.queue(letters_);
-    post_.flush();
+    addressed_readings_.clear();
+    for (const base::ReadingBlock& reading : record.readings)
+      addressed_readings_.push_back({&reading, netio::kLoopback, {1, 1}});
+    publisher_.queue(addressed_readings_);
+    publisher_.flush();
     encode_s_ += now().wall_s - sensed;
     const Cost cost = now() - start;
     received_ += sink_.drain();
@@ -83,7 +84,7 @@ class LargeFleet {
 
   /// Waits for what is on its way.
   netio::OutboxCounts sent() {
-    const netio::OutboxCounts counts = post_.counts().packets;
+    const netio::OutboxCounts counts = publisher_.counts().packets;
     received_ += sink_.drain();
     return counts;
   }
@@ -102,8 +103,8 @@ class LargeFleet {
   sensors::SensorSet sensor_set_;
   scenarios::Simulation simulation_;
   Sink sink_;
-  apps::Post post_;
-  std::vector<apps::Letter> letters_;
+  apps::ReadingPublisher publisher_;
+  std::vector<apps::AddressedReading> addressed_readings_;
   double encode_s_ = 0.0;
   std::uint64_t received_ = 0;
 };

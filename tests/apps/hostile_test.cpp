@@ -8,7 +8,7 @@
 #include <random>
 
 #include "netio/outbox.h"
-#include "tests/apps/elsewhere.h"
+#include "tests/apps/remote_robot.h"
 
 namespace sf {
 

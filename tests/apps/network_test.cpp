@@ -7,7 +7,7 @@
 
 #include "netio/outbox.h"
 #include "netio/packets.h"
-#include "tests/apps/elsewhere.h"
+#include "tests/apps/remote_robot.h"
 
 namespace sf {
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <regex>
 
-#include "tests/apps/elsewhere.h"
+#include "tests/apps/remote_robot.h"
 #include "tests/netio/documented.h"
 
 namespace sf {

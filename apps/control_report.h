@@ -1,0 +1,75 @@
+#pragma once
+// How controllers fared: their error, whether they are done, the checkpoints they passed.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scenarios/run_metrics.h"
+#include "scenarios/simulation.h"
+
+namespace sf::apps {
+
+/// Means of what a controller called its error, in the controller's own unit.
+struct ErrorSummary {
+  std::uint64_t steps = 0;  ///< with an error
+  double mean = 0.0;
+  double abs_mean = 0.0;
+};
+
+/// One step's more; what is no number is no error.
+void add(ErrorSummary& facts, double error);
+/// For people.
+std::string text_of(const ErrorSummary& facts);
+
+/// Robots that stand at the end for one reason.
+struct Standing {
+  std::string reason;              ///< as their controllers state it
+  std::vector<std::string> names;  ///< at most kNamed of them
+  std::uint64_t robots = 0;
+  double seconds = 0.0;  ///< [s] the longest has stood
+  static constexpr std::size_t kNamed = 3;
+};
+/// "roomba0 for 598 s: 'roomba1' stands in its way".
+std::string text_of(const Standing& standing);
+
+/// Of a run's robots that have a controller, all together.
+struct ControlReport {
+  std::string controller;          ///< its name
+  std::uint64_t robots = 0;        ///< that it drives
+  std::uint64_t done = 0;          ///< of these, at the end
+  ErrorSummary error;              ///< of all steps of all of them
+  bool has_goals = false;          ///< one of them headed for a checkpoint
+  std::uint64_t checkpoints = 0;   ///< that they no longer head for, since the next or none is due
+  std::vector<Standing> standing;  ///< not done, and without motion for kStill or longer: most robots first
+};
+
+/// Robots that have not moved for so long stand. [s]
+inline constexpr double kStill = 3.0;
+
+/// Follows a simulation, which must outlive it, tick by tick.
+class ControlMetrics {
+ public:
+  ControlMetrics(const scenarios::Simulation& simulation, std::size_t movers, std::string controller);
+
+  /// After every `Simulation::step`, with what it gave.
+  void update(const base::TickRecord& tick);
+  ControlReport facts(const world::World& world) const;
+
+ private:
+  const scenarios::Simulation& simulation_;
+  ControlReport facts_;
+  /// A robot since it last moved.
+  struct Rest {
+    base::Pose X_WM;
+    std::int64_t since = 0;  ///< [ns]
+    bool contact = false;    ///< at the last tick
+  };
+  std::vector<Standing> standing(const world::World& world) const;
+
+  std::vector<scenarios::CheckpointProgress> goals_;  ///< per mover
+  std::vector<Rest> rests_;                           ///< per mover
+  std::int64_t time_ = 0;                             ///< [ns] of the last tick
+};
+
+}  // namespace sf::apps

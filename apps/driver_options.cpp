@@ -1,0 +1,64 @@
+#include "apps/driver_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+
+#include "base/error.h"
+#include "world/keys.h"
+
+namespace sf::apps {
+
+control::Setting setting_of(const std::string& text) {
+  const std::size_t at = text.find('=');
+  const std::string key = text.substr(0, at);
+  return {key, control::RawText{text.substr(at + 1)}, fmt::format("--set {}: ", key)};
+}
+
+control::ControllerConfig controller_config_of(const Options& options) {
+  std::vector<control::Setting> settings;
+  for (const std::string& text : options.set) settings.push_back(setting_of(text));
+  return {options.controller, 0.0,
+          control::Settings(fmt::format("controller '{}'", options.controller), std::move(settings))};
+}
+
+namespace {
+
+/// Robots that the world file gives a controller have that one, all others the command line's; empty where that is one.
+std::vector<scenarios::Actor> actors_of_world(const world::World& world, const Options& options) {
+  const auto own = [&](const world::Mover& mover) {
+    return !mover.is_tag && !mover.controller.empty() && mover.controller != options.controller;
+  };
+  const auto count = std::count_if(world.movers.begin(), world.movers.end(), own);
+  if (count == 0) return {};
+  std::fprintf(stderr, "sensorfarm: %s driven as the world file says (ctrl); --drive NAME drives a robot by '%s'\n",
+               count == 1 ? "1 robot is" : fmt::format("{} robots are", count).c_str(), options.controller.c_str());
+  std::vector<scenarios::Actor> actors;
+  for (const world::Mover& mover : world.movers)
+    actors.push_back({.plan = mover.is_tag ? control::ControllerConfig{}
+                              : own(mover) ? control::ControllerConfig{.controller = mover.controller}
+                                           : controller_config_of(options)});
+  return actors;
+}
+
+}  // namespace
+
+std::vector<scenarios::Actor> make_actors(const world::World& world, const Options& options) {
+  if (options.drive.empty()) return actors_of_world(world, options);
+  std::vector<std::string_view> names;
+  for (const world::Mover& mover : world.movers) names.emplace_back(mover.name);
+  std::vector<scenarios::Actor> actors(world.movers.size(), {.plan = {.controller = ""}});
+  for (const std::string& name : options.drive) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+      throw base::InputError(
+          world.file, 0,
+          fmt::format("has no robot '{}'{}; --drive expects one of its robots", name, world::suggest(name, names)));
+    actors[static_cast<std::size_t>(found - names.begin())].plan = controller_config_of(options);
+  }
+  return actors;
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,152 @@
+// Commands that look without running: devices, check, draw, sense.
+
+#include <algorithm>
+#include <cstdio>
+
+#include "apps/commands.h"
+#include "apps/default_robot.h"
+#include "apps/option_parsers.h"
+#include "apps/rate_warnings.h"
+#include "apps/report.h"
+#include "apps/road_commands.h"
+#include "base/error.h"
+#include "sensors/laser_shape.h"
+#include "viz/world_figure.h"
+#include "world/free_space.h"
+
+namespace sf::apps {
+
+namespace {
+
+void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
+
+/// Whether the mover has a sensor of that kind; 0: of any.
+bool has_kind(const sensors::SensorSet& sensor_set, std::uint8_t kind, std::uint32_t mover) {
+  return kind == 0 ? sensor_set.count_of(mover) > 0 : !sensor_set.of(kind, mover).empty();
+}
+
+[[noreturn]] void refuse_blind_world(const world::World& world, std::uint8_t kind) {
+  std::vector<std::string> words;
+  for (const sensors::SensorType* known : sensors::sensor_types())
+    if (kind == 0 || known->id == kind) words.push_back("a " + std::string(known->name) + "( )");
+  throw base::InputError(world.file, 0, "no robot has such a sensor; give one " + join_or(words));
+}
+
+std::uint32_t find_robot(const world::World& world, const sensors::SensorSet& sensor_set, const Options& options) {
+  std::string known;
+  std::size_t others = 0;
+  for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
+    const bool senses = has_kind(sensor_set, options.kind, i);
+    if (options.robot.empty() ? senses : world.movers[i].name == options.robot) return i;
+    if (senses && ++others <= 10) known += (known.empty() ? "" : ", ") + world.movers[i].name;
+  }
+  if (options.robot.empty()) refuse_blind_world(world, options.kind);
+  if (others > 10) known += ", ... (" + std::to_string(others) + " in all)";
+  throw base::InputError(
+      world.file, 0, "has no robot '" + options.robot + "'; with sensors it has " + (known.empty() ? "none" : known));
+}
+
+/// "laser 0 to 2, magnetometer 0".
+std::string all_sensors_of(const sensors::SensorSet& sensor_set, std::uint32_t mover) {
+  std::string text;
+  for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
+    const std::size_t count = sensor_set.of(group.kind->id, mover).size();
+    if (count == 0) continue;
+    text += (text.empty() ? "" : ", ") + std::string(group.kind->name) + " 0";
+    if (count > 1) text += " to " + std::to_string(count - 1);
+  }
+  return text;
+}
+
+/// A sensor by its kind and its number among the mover's sensors of that kind.
+struct Chosen {
+  const sensors::SensorType* kind = nullptr;
+  std::uint32_t sensor = 0;
+};
+
+/// Numbers count among one kind where it was named, else through all of the mover's sensors, kind after kind.
+Chosen find_sensor(const sensors::SensorSet& sensor_set, const Options& options, std::uint32_t mover) {
+  std::uint32_t number = options.sensor;
+  for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
+    if (options.kind != 0 && group.kind->id != options.kind) continue;
+    const auto count = static_cast<std::uint32_t>(sensor_set.of(group.kind->id, mover).size());
+    if (number < count) return {group.kind, number};
+    number -= count;
+  }
+  return {};
+}
+
+/// The sensor that was asked for, which is there.
+Chosen require_sensor(const world::World& world, const sensors::SensorSet& sensor_set, const Options& options,
+                      std::uint32_t mover) {
+  const Chosen chosen = find_sensor(sensor_set, options, mover);
+  if (chosen.kind != nullptr) return chosen;
+  const std::string has = all_sensors_of(sensor_set, mover);
+  const std::string& robot = world.movers[mover].name;
+  if (has.empty()) throw base::InputError(world.file, 0, robot + " has no sensor");
+  const sensors::SensorType* kind = sensors::find_sensor_type(options.kind);
+  throw base::InputError(world.file, 0,
+                         robot + " has no " + std::string(kind != nullptr ? kind->name : "sensor") + " " +
+                             std::to_string(options.sensor) + "; it has " + has + " (--kind, --sensor)");
+}
+
+void warn_of_pose(const world::World& world, const world::Mover& robot, const base::Pose& X_WM) {
+  const std::string where = world::placement_problem(world, robot, X_WM);
+  if (!where.empty())
+    std::fprintf(stderr, "sensorfarm: warning: at (%g, %g) '%s' is %s\n", X_WM.x, X_WM.y, robot.name.c_str(),
+                 where.c_str());
+}
+
+}  // namespace
+
+int devices(const Options& options) {
+  const gpu::DeviceList survey = gpu::list_devices(options.device);
+  const bool any = std::any_of(survey.devices.begin(), survey.devices.end(), [](const auto& d) { return d.chosen; });
+  print(options.json ? json_of(survey) : text_of(survey));
+  // Says in one line why there is none.
+  const gpu::Device device(options.device);
+  return any ? 0 : 3;
+}
+
+int check(const Options& options) {
+  if (const auto code = check_roads(options)) return *code;
+  const world::World world = world::load_world(options.world, options.load);
+  const sensors::SensorSet sensor_set(world);
+  warn_of_many_times(sensor_set);
+  if (options.rate > 0.0) warn_of_fast_sensors(sensor_set, options.rate);
+  print(options.json ? json_of(world, sensor_set) : text_of(world, sensor_set));
+  return 0;
+}
+
+int draw(const Options& options) {
+  if (const auto code = draw_roads(options)) return *code;
+  const world::World world = world::load_world(options.world, options.load);
+  print_warnings(options.world, world.warnings);
+  viz::draw_world(world, options.out);
+  std::fprintf(stderr, "sensorfarm: wrote %s\n", options.out.c_str());
+  return 0;
+}
+
+int sense(const Options& options) {
+  const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
+  const sensors::SensorSet sensor_set(world);
+  const std::uint32_t mover = find_robot(world, sensor_set, options);
+  const Chosen chosen = require_sensor(world, sensor_set, options, mover);
+  base::Pose X_WM = world.movers[mover].X_WM;
+  if (options.pose) X_WM = {options.pose->x, options.pose->y, X_WM.z, options.pose->yaw};
+  if (options.pose) warn_of_pose(world, world.movers[mover], X_WM);
+
+  gpu::Device device(options.device);
+  farm::FarmOptions quiet;
+  quiet.noise = false;
+  farm::Farm farm(world, device, quiet);
+  base::ReadingBlock reading = farm.sense(mover, chosen.kind->id, chosen.sensor, X_WM);
+  std::vector<double> values(reading.values.begin(), reading.values.end());
+  if (options.no_return_inf) sensors::mark_no_return(reading, sensor_set.row(reading).limit, values);
+  reading.values = values;
+  if (!options.json) std::fprintf(stderr, "sensorfarm: %s\n", place_of(world, sensor_set, reading).c_str());
+  print(options.json ? with_warnings(json_of(world, sensor_set, reading), world.warnings) : text_of(world, reading));
+  return 0;
+}
+
+}  // namespace sf::apps

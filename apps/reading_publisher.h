@@ -1,0 +1,99 @@
+#pragma once
+// Readings to robots: what leaves, in which form.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/stream_layout.h"
+#include "base/reading.h"
+#include "base/thread_pool.h"
+#include "netio/outbox.h"
+#include "sensors/sensor_set.h"
+#include "world/world.h"
+
+namespace sf::apps {
+
+/// Beams that met nothing read infinity from here on, where the user asked for it.
+class NoReturnFilter {
+ public:
+  /// `sensor_set` must outlive it.
+  NoReturnFilter(const sensors::SensorSet& sensor_set, bool infinite) : sensor_set_(sensor_set), infinite_(infinite) {}
+  /// The same readings, or copies that live until the next call.
+  std::span<const base::ReadingBlock> apply(std::span<const base::ReadingBlock> readings);
+
+ private:
+  const sensors::SensorSet& sensor_set_;
+  bool infinite_;
+  std::vector<base::ReadingBlock> blocks_;
+  std::vector<double> ranges_;
+};
+
+struct PublisherCounts {
+  netio::OutboxCounts packets;
+  std::uint64_t not_numbers = 0;  ///< packets never made, for a value that is not a number where none may be missing
+};
+
+/// A reading on its way to a robot.
+struct AddressedReading {
+  const base::ReadingBlock* reading = nullptr;
+  std::uint32_t address = 0;
+  netio::SessionToken session_token;
+};
+
+/// Fleets of more sensors than this are encoded on all cores, and sent by a thread of their own.
+inline constexpr std::size_t kLargeFleet = 256;
+
+/// How `sensor_set`'s readings are sent.
+netio::OutboxOptions outbox_options(const sensors::SensorSet& sensor_set);
+
+/// Readings as packets, numbered per sensor as they are sent: a reading that was due and never sent leaves no gap.
+/// World and roster must outlive it.
+class ReadingPublisher {
+ public:
+  ReadingPublisher(const world::World& world, const sensors::SensorSet& sensor_set, StreamLayout plan,
+                   netio::Outbox outbox);
+
+  /// Queues each reading's packets to its address, at its sensor's port; none where the plan has none of its sensor's.
+  void queue(std::span<const AddressedReading> readings);
+  void flush() { outbox_.flush(); }
+  PublisherCounts counts() const { return {outbox_.counts(), not_numbers_}; }
+
+ private:
+  /// One sensor's stream.
+  struct Stream {
+    std::uint32_t sent = 0;   ///< readings
+    std::uint32_t parts = 0;  ///< datagrams of a reading; 0: it is not sent
+  };
+  /// A reading that is being encoded.
+  struct Job {
+    AddressedReading addressed;
+    const sensors::SensorType* kind = nullptr;
+    const sensors::SensorSpec* row = nullptr;
+    Stream* stream = nullptr;
+    std::uint32_t sequence = 0;
+    std::size_t place = 0;  ///< of its first datagram
+    bool whole = true;      ///< every part is numbers
+  };
+  struct Memory {
+    base::Bytes payload, packet;
+  };
+  Job make_job(const AddressedReading& addressed);
+  void encode_all();
+  void encode_and_queue(Job& job);
+  template <class Put>
+  std::uint32_t encode(const Job& job, Memory& memory, Put&& put) const;
+
+  const world::World& world_;
+  const sensors::SensorSet& sensor_set_;
+  StreamLayout plan_;
+  netio::Outbox outbox_;
+  base::ThreadPool thread_pool_;
+  std::map<std::uint8_t, std::vector<Stream>> streams_;  ///< by kind, per row of its group
+  std::vector<Job> jobs_;
+  std::vector<Memory> memory_;  ///< per thread
+  std::uint64_t not_numbers_ = 0;
+};
+
+}  // namespace sf::apps

@@ -1,0 +1,105 @@
+#pragma once
+// What commands print: facts as rows of a table for people, or as JSON for programs. nlohmann/json lives in the source.
+
+#include <string>
+#include <vector>
+
+#include "apps/control_report.h"
+#include "apps/reading_publisher.h"
+#include "base/reading.h"
+#include "farm/farm.h"
+#include "gpu/device.h"
+#include "netio/inbox.h"
+#include "netio/relay.h"
+#include "netio/stream_monitor.h"
+#include "scenarios/explanation.h"
+#include "scenarios/tradeoff.h"
+#include "scenarios/verification.h"
+#include "selftest/case.h"
+#include "sensors/sensor_set.h"
+#include "world/world.h"
+
+namespace sf::apps {
+
+/// How a run or a service went.
+struct RunReport {
+  std::string device;
+  bool software = false;
+  std::string caster;  ///< what casts rays
+  std::uint32_t robots = 0;
+  std::uint64_t ticks = 0;
+  double simulated_s = 0.0;
+  double wall_s = 0.0;
+  std::uint64_t contacts = 0;  ///< of robots, that began
+  ControlReport control;       ///< no robots: others decide
+  double move_s = 0.0;         ///< [s] controllers and motion
+  double out_s = 0.0;          ///< [s] packets and recording
+  farm::FarmStats farm;
+  std::uint64_t hash = 0;
+  bool interrupted = false;
+  bool sent = false;  ///< `publisher` counts
+  PublisherCounts publisher;
+  bool received = false;  ///< `inbox` counts
+  netio::PacketCounts inbox;
+  std::uint64_t kernel_drops = 0;    ///< datagrams that came while the inbox' buffer was full
+  netio::RelayCounts relayed;        ///< to robots, of others' states and start signals
+  std::uint64_t lines_left_out = 0;  ///< of the log
+  std::string recording;             ///< file; empty: none
+  std::uint64_t recorded_bytes = 0;  ///< its size
+};
+
+/// What came of `selftest`.
+struct SelfTestReport {
+  gpu::DeviceInfo device;
+  std::vector<std::pair<const selftest::Case*, selftest::Outcome>> cases;  ///< that were run
+  std::size_t asked = 0;                                                   ///< to be run; more, where interrupted
+  double seconds = 0.0;                                                    ///< [s] of all of them
+
+  std::size_t passed() const;
+  bool sound() const { return !cases.empty() && passed() == cases.size(); }
+};
+
+/// Says on standard error how many warnings there are, and the first three of them. @param file that `check` lists all
+/// of
+void print_warnings(const std::string& file, const std::vector<world::Warning>& warnings);
+/// The JSON object with the list of all of them at its end.
+std::string with_warnings(std::string json, const std::vector<world::Warning>& warnings);
+
+/// Says on standard error what a recording lacks.
+void print_damage(const record::Recording& recording);
+
+std::size_t count_robots(const world::World& world);
+/// All that stand still or are carried.
+std::size_t count_magnets(const world::World& world);
+/// Of the infrared emitters; the others are virtual walls.
+std::size_t count_docks(const world::World& world);
+
+std::string json_of(const gpu::DeviceList& survey);
+std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set);
+std::string json_of(const RunReport& facts);
+std::string json_of(const netio::StreamSummary& summary);
+/// One reading; what is infinite or missing is null.
+std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading);
+
+std::string text_of(const gpu::DeviceList& survey);
+std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set);
+std::string text_of(const RunReport& facts);
+/// "5 lasers exact, within 1.03 nm: beams that graze nothing".
+std::string text_of(const sensors::AccuracyStatement& statement);
+std::string text_of(const netio::StreamSummary& summary);
+/// Comma-separated: a heading, then one line per element; what is missing is left out between its commas.
+std::string text_of(const world::World& world, const base::ReadingBlock& reading);
+/// @param recorded the run kept its readings
+std::string text_of(const scenarios::Verification& verification, bool recorded);
+std::string json_of(const scenarios::Verification& verification);
+std::string text_of(const scenarios::Explanation& explanation);
+std::string json_of(const scenarios::Explanation& explanation);
+std::string text_of(const std::vector<scenarios::ModeResult>& results);
+std::string json_of(const std::vector<scenarios::ModeResult>& results, const scenarios::AccuracyTarget& target);
+std::string text_of(const SelfTestReport& test);
+std::string json_of(const SelfTestReport& test);
+/// Where robot and sensor stood, in one line for people.
+std::string place_of(const world::World& world, const sensors::SensorSet& sensor_set,
+                     const base::ReadingBlock& reading);
+
+}  // namespace sf::apps

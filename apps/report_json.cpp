@@ -1,0 +1,396 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "apps/rate_warnings.h"
+#include "apps/report.h"
+#include "apps/robot_report.h"
+#include "base/hash.h"
+#include "sensors/accuracy.h"
+#include "sensors/magnetic_field/truncation.h"
+
+namespace sf::apps {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Names are whatever bytes a world file holds: what is no UTF-8 is replaced.
+std::string dump(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string print(const Json& json) { return dump(json, 2) + "\n"; }
+
+std::string metres(double value) { return std::isfinite(value) ? fmt::format("{:.9f}", value) : "null"; }
+
+Json pose_json(const base::Pose& X) { return {X.x, X.y, base::wrap_angle(X.yaw)}; }
+
+Json reasons(const netio::PacketCounts& counts) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < netio::kPacketStatuses; ++i) {
+    const auto reason = static_cast<netio::PacketStatus>(i);
+    if (counts[reason] > 0) json[std::string(name(reason))] = counts[reason];
+  }
+  return json;
+}
+
+std::uint64_t count_rays(const netio::StreamSummary& summary) {
+  const auto lasers = summary.of.find(std::string(sensors::find_sensor_type(base::kLaser)->name));
+  return lasers == summary.of.end() ? 0 : lasers->second.elements;
+}
+
+Json warnings_json(const std::vector<world::Warning>& warnings) {
+  Json json = Json::array();
+  for (const world::Warning& w : warnings) json.push_back({{"file", w.file}, {"line", w.line}, {"message", w.message}});
+  return json;
+}
+
+/// What is infinite has no number in JSON.
+Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json statements_json(const std::vector<sensors::AccuracyStatement>& statements) {
+  Json json = Json::array();
+  for (const sensors::AccuracyStatement& s : statements)
+    json.push_back({{"kind", s.kind->name},
+                    {"sensors", s.sensors},
+                    {"mode", sensors::word_of(*s.kind, s.mode)},
+                    {"bound", finite_json(s.bound.error)},
+                    {"unit", sensors::unit_of(*s.kind)},
+                    {"condition", s.bound.condition}});
+  return json;
+}
+
+Json number_json(double value, bool whole) {
+  if (whole && std::isfinite(value)) return static_cast<std::int64_t>(value);
+  return value;  // printed as null where it is not finite
+}
+
+/// One element's columns, by name.
+Json element_json(const sensors::SensorType& kind, std::span<const double> values) {
+  Json json = Json::object();
+  std::size_t at = 0;
+  for (const sensors::Column& column : kind.columns) {
+    Json numbers = Json::array();
+    for (std::uint32_t k = 0; k < column.width; ++k) numbers.push_back(number_json(values[at++], column.whole));
+    json[std::string(column.name)] = column.width == 1 ? numbers[0] : numbers;
+  }
+  return json;
+}
+
+std::string_view word_of(base::QualityFlag quality) {
+  constexpr std::string_view kWords[] = {"no", "not cast", "grazing", "not straight", "extrapolated"};
+  return kWords[static_cast<std::size_t>(quality)];
+}
+
+/// Beams have as many decimals as a ruler will ever need: nlohmann/json prints no fixed number.
+std::string beam_json(const world::World& world, const base::ReadingBlock& reading, std::uint32_t i) {
+  const world::Laser& laser = world.movers[reading.mover].lasers[reading.sensor];
+  const std::uint32_t hit = reading.hits[i];
+  const base::QualityFlag quality = reading.quality.empty() ? base::QualityFlag::none : reading.quality[i];
+  return fmt::format("{{\"bearing_rad\": {:.12f}, \"range_m\": {}, \"hit\": {}{}}}", world::bearing_of(laser, i),
+                     metres(reading.values[i]), hit == base::kNoHit ? "null" : dump(world.models[hit].name),
+                     quality == base::QualityFlag::none ? "" : fmt::format(", \"unsure\": \"{}\"", word_of(quality)));
+}
+
+Json error_json(const ErrorSummary& f) { return {{"steps", f.steps}, {"mean", f.mean}, {"abs_mean", f.abs_mean}}; }
+
+Json control_json(const ControlReport& f) {
+  Json json{{"controller", f.controller}, {"robots", f.robots}, {"done", f.done}};
+  if (f.error.steps > 0) json["error"] = error_json(f.error);
+  if (f.has_goals) json["checkpoints"] = f.checkpoints;
+  json["standing"] = Json::array();
+  for (const Standing& s : f.standing)
+    json["standing"].push_back(
+        {{"reason", s.reason}, {"robots", s.robots}, {"names", s.names}, {"longest_s", s.seconds}});
+  return json;
+}
+
+Json injected(const netio::DelayCounts& counts) {
+  return {{"passed", counts.passed}, {"lost", counts.lost}, {"full", counts.full}};
+}
+
+Json link_json(const LinkCounts& link) {
+  const netio::ReceiverCounts& in = link.readings;
+  return {{"sent", {{"packets", link.sent.sent}, {"failed", link.sent.failed}, {"dropped", link.sent.dropped}}},
+          {"readings", link.whole},
+          {"sensor_packets",
+           {{"packets", in.packets.total()},
+            {"by_reason", reasons(in.packets)},
+            {"late", in.late},
+            {"duplicates", in.duplicates},
+            {"leaps", in.jumps},
+            {"lost", in.lost},
+            {"restarts", in.restarts}}},
+          {"relayed", {{"packets", link.packets.total()}, {"by_reason", reasons(link.packets)}}},
+          {"kernel_drops", link.kernel_drops},
+          {"injected", {{"out", injected(link.out)}, {"in", injected(link.in)}}}};
+}
+
+}  // namespace
+
+std::string json_of(const gpu::DeviceList& survey) {
+  Json rows = Json::array();
+  for (const gpu::DeviceInfo& d : survey.devices)
+    rows.push_back({{"name", d.name},
+                    {"driver", d.driver},
+                    {"api", d.api},
+                    {"kind", d.kind},
+                    {"software", d.software},
+                    {"self_check", d.self_check},
+                    {"chosen", d.chosen},
+                    {"reason", d.reason}});
+  Json json{{"devices", rows}};
+  if (!survey.problem.empty()) json["problem"] = survey.problem;
+  return print(json);
+}
+
+std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set) {
+  Json sensors = Json::object(), rates = Json::object();
+  for (const sensors::SensorType* kind : sensors::sensor_types()) {
+    const auto* group = sensor_set.group(kind->id);
+    sensors[std::string(kind->name)] = group == nullptr ? 0 : group->rows.size();
+    if (group == nullptr) continue;
+    const auto [least, most] = rates_of(*group);
+    rates[std::string(kind->name)] = {least, most};
+  }
+  const sensors::MagnetSummary field = sensors::summarize_magnets(world);
+  const std::size_t docks = count_docks(world);
+  std::size_t segments = world.walls.size();
+  for (const world::Mover& mover : world.movers) segments += mover.body.size();
+  const world::Extent& e = world.extent;
+  return print({{"world", world.name},
+                {"models", world.models.size()},
+                {"robots", count_robots(world)},
+                {"tags", world.movers.size() - count_robots(world)},
+                {"sensors", sensors},
+                {"rates_hz", rates},
+                {"between_ticks", kinds_between_ticks(sensor_set, world.interval)},
+                {"segments", world.walls.size()},
+                {"segments_with_movers", segments},
+                {"magnets", count_magnets(world)},
+                {"magnet_cutoff_m", field.cutoff_m},
+                {"field_truncation_T", field.bound_T},
+                {"field_truncation_height_m", field.height_m},
+                {"paint", world.lane_markings.size()},
+                {"lights", world.lights.size()},
+                {"docks", docks},
+                {"virtual_walls", world.emitters.size() - docks},
+                {"drops", world.floor_holes.size()},
+                {"paths", world.paths.size()},
+                {"road_resolution_m", world.road_resolution},
+                {"extent", {e.x_min, e.y_min, e.x_max, e.y_max}},
+                {"interval_s", world.interval},
+                {"accuracy", statements_json(sensors::accuracy_statements(world, sensor_set))},
+                {"kept", world.unmodelled},
+                {"hash", base::hash_hex(world.hash)},
+                {"warnings", warnings_json(world.warnings)}});
+}
+
+std::string with_warnings(std::string json, const std::vector<world::Warning>& warnings) {
+  const std::size_t end = json.find_last_not_of(" \n", json.rfind('}') - 1) + 1;
+  return json.insert(end, ",\n  \"warnings\": " + dump(warnings_json(warnings)));
+}
+
+std::string json_of(const RunReport& f) {
+  Json json{{"device", f.device},
+            {"software_device", f.software},
+            {"caster", f.caster},
+            {"robots", f.robots},
+            {"ticks", f.ticks},
+            {"simulated_s", f.simulated_s},
+            {"wall_s", f.wall_s},
+            {"real_time_factor", f.wall_s > 0.0 ? f.simulated_s / f.wall_s : 0.0},
+            {"rays", f.farm.work.rays},
+            {"rays_per_s", f.wall_s > 0.0 ? static_cast<double>(f.farm.work.rays) / f.wall_s : 0.0},
+            {"readings", f.farm.readings},
+            {"given_again", f.farm.reused},
+            {"missed", f.farm.missed},
+            {"batches", f.farm.batches},
+            {"beams_in_doubt", f.farm.work.uncertain},
+            {"cells_built", f.farm.work.cells_built},
+            {"host_scans", f.farm.work.host_scans},
+            {"contacts", f.contacts},
+            {"hash", base::hash_hex(f.hash)},
+            {"interrupted", f.interrupted},
+            {"stages_s",
+             {{"move", f.move_s},
+              {"place", f.farm.place_s},
+              {"lists", f.farm.lists_s},
+              {"device", f.farm.device_s},
+              {"collect", f.farm.collect_s},
+              {"out", f.out_s}}}};
+  if (f.farm.work.dipoles > 0) json["dipoles"] = f.farm.work.dipoles;
+  if (f.control.robots > 0) json["control"] = control_json(f.control);
+  if (f.sent)
+    json["packets"] = {{"sent", f.publisher.packets.sent},       {"bytes", f.publisher.packets.sent_bytes},
+                       {"failed", f.publisher.packets.failed},   {"dropped", f.publisher.packets.dropped},
+                       {"not_numbers", f.publisher.not_numbers}, {"first_failure", f.publisher.packets.first_failure}};
+  if (f.received) {
+    json["received"] = reasons(f.inbox);
+    json["kernel_drops"] = f.kernel_drops;
+    json["relayed"] = {{"states", f.relayed.states},
+                       {"datagrams", f.relayed.datagrams},
+                       {"waited", f.relayed.waited},
+                       {"starts", f.relayed.starts}};
+    json["log_lines_left_out"] = f.lines_left_out;
+  }
+  if (!f.recording.empty()) {
+    json["recording"] = f.recording;
+    json["recording_bytes"] = f.recorded_bytes;
+  }
+  return print(json);
+}
+
+std::string json_of(const netio::StreamSummary& s) {
+  Json sensors = Json::object();
+  for (const auto& [kind, share] : s.of) sensors[kind] = {{"good", share.good}, {"elements", share.elements}};
+  return print({{"packets", s.datagrams},
+                {"bytes", s.bytes},
+                {"good", s.good},
+                {"rays", count_rays(s)},
+                {"sensors", sensors},
+                {"lost", s.lost},
+                {"duplicates", s.duplicates},
+                {"reordered", s.reordered},
+                {"ports", s.ports},
+                {"silent_ports", s.silent_ports},
+                {"kernel_drops", s.kernel_drops},
+                {"by_reason", reasons(s.counts)}});
+}
+
+std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set,
+                    const base::ReadingBlock& reading) {
+  const sensors::SensorType& kind = *sensors::find_sensor_type(reading.kind);
+  Json head{{"robot", world.movers[reading.mover].name},
+            {"sensor", reading.sensor},
+            {"sensor_name", sensor_set.row(reading).name},
+            {"kind", kind.name},
+            {"pose", pose_json(reading.X_WM)},
+            {"sensor_pose", pose_json(reading.X_WS)}};
+  if (kind.bound != nullptr) {
+    head["accuracy"] = sensors::word_of(kind, reading.mode);
+    head["bound"] = finite_json(reading.bound);
+  }
+  if (kind.list.empty() && !reading.quality.empty()) head["unsure"] = word_of(reading.quality.front());
+  if (kind.list.empty()) {
+    head.update(element_json(kind, reading.values));
+    return dump(head) + "\n";
+  }
+  // Elements are lines of their own.
+  std::string text = dump(head);
+  text.back() = ',';
+  text += fmt::format("\n\"{}\": [", kind.list);
+  const std::size_t width = element_width(kind);
+  for (std::size_t i = 0; i < reading.values.size() / width; ++i)
+    text += (i == 0 ? "\n  " : ",\n  ") + (kind.id == base::kLaser
+                                               ? beam_json(world, reading, static_cast<std::uint32_t>(i))
+                                               : dump(element_json(kind, reading.values.subspan(i * width, width))));
+  return text + "\n]}\n";
+}
+
+std::string json_of(const RobotReport& f) {
+  Json json{{"robot", f.robot},       {"id", f.id},         {"controller", f.controller},
+            {"farm", f.farm},         {"wall_s", f.wall_s}, {"steps", f.steps},
+            {"started", f.started},   {"done", f.done},     {"answered", f.answered},
+            {"contacts", f.contacts}, {"stops", f.stops},   {"log_lines_left_out", f.lines_left_out}};
+  json.update(link_json(f.link));
+  json["distance_m"] = f.distance_m;
+  json["pose"] = pose_json(f.pose);
+  if (f.error.steps > 0) json["error"] = error_json(f.error);
+  return print(json);
+}
+
+std::string json_of(const scenarios::Verification& verification) {
+  const auto compared = [](const scenarios::Comparison& c) {
+    return Json{{"kind", c.kind},           {"readings", c.readings}, {"numbers", c.values},
+                {"different", c.different}, {"largest", c.largest},   {"first", c.first}};
+  };
+  Json json{{"ticks", verification.ticks},
+            {"sound", verification.sound()},
+            {"interrupted", verification.interrupted},
+            {"missing", verification.missing},
+            {"damage", verification.damage},
+            {"scans", verification.scans},
+            {"skipped", verification.skipped},
+            {"reference", compared(verification.reference)}};
+  json["again"] = Json::array();
+  for (const scenarios::Comparison& c : verification.recomputed) json["again"].push_back(compared(c));
+  return print(json);
+}
+
+std::string json_of(const SelfTestReport& test) {
+  Json json{{"device", test.device.name}, {"software", test.device.software},
+            {"asked", test.asked},        {"run", test.cases.size()},
+            {"passed", test.passed()},    {"sound", test.sound()},
+            {"seconds", test.seconds},    {"cases", Json::array()}};
+  for (const auto& [c, o] : test.cases)
+    json["cases"].push_back({{"group", c->group},
+                             {"case", c->name},
+                             {"why", c->why},
+                             {"ok", o.passed()},
+                             {"checks", o.checks},
+                             {"failed", o.failed},
+                             {"error", o.error},
+                             {"allowed", o.allowed},
+                             {"unit", c->unit},
+                             {"failure", o.failure},
+                             {"notes", o.notes},
+                             {"seconds", o.seconds}});
+  return print(json);
+}
+
+std::string json_of(const scenarios::Explanation& e) {
+  Json json{{"ticks", e.ticks},        {"build_s", e.build},
+            {"first_tick_s", e.first}, {"silent_tick_s", e.silent},
+            {"tick_s", e.all},         {"caster", e.caster},
+            {"walls", e.walls},        {"resident_bytes", e.resident},
+            {"absent", e.absent},      {"kinds", Json::array()},
+            {"slices", Json::array()}, {"accuracy", statements_json(e.statements)}};
+  for (const scenarios::WallSlice& s : e.slices)
+    json["slices"].push_back({{"z_m", s.z}, {"sensors", s.sensors}, {"walls", s.walls}});
+  for (const scenarios::SensorTypeCost& k : e.kinds) {
+    Json tables = Json::array();
+    for (const gpu::DeviceAllocation& h : k.tables) tables.push_back({{"name", h.name}, {"bytes", h.bytes}});
+    json["kinds"].push_back({{"kind", k.kind},
+                             {"sensors", k.sensors},
+                             {"robots", k.robots},
+                             {"rate_hz", {k.least_rate, k.most_rate}},
+                             {"tick_s", k.tick},
+                             {"readings_per_tick", k.readings},
+                             {"given_again_per_tick", k.reused},
+                             {"rays", k.work.rays},
+                             {"doubts", k.work.uncertain},
+                             {"cells_built", k.work.cells_built},
+                             {"dipoles", k.work.dipoles},
+                             {"movers_near", k.work.movers_in_range},
+                             {"movers_met", k.work.movers_visible},
+                             {"host_scans", k.work.host_scans},
+                             {"kernels", k.kernels},
+                             {"bytes", k.bytes},
+                             {"tables", tables}});
+  }
+  return print(json);
+}
+
+std::string json_of(const std::vector<scenarios::ModeResult>& results, const scenarios::AccuracyTarget& target) {
+  Json json{{"modes", Json::array()},
+            {"advice", scenarios::accuracy_words(results, scenarios::select_modes(results, target))}};
+  for (const scenarios::ModeResult& g : results)
+    json["modes"].push_back({{"sensor", g.sensor},
+                             {"mode", g.mode},
+                             {"unit", g.unit},
+                             {"rate_per_s", g.rate},
+                             {"tick_s", g.tick},
+                             {"covered", g.covered},
+                             {"covered_max_error", g.covered > 0.0 ? finite_json(g.covered_max) : Json()},
+                             {"covered_bound", finite_json(g.bound)},
+                             {"all_median_error", finite_json(g.median)},
+                             {"all_p99_error", finite_json(g.p99)},
+                             {"all_max_error", finite_json(g.max)},
+                             {"pareto", g.front}});
+  return print(json);
+}
+
+}  // namespace sf::apps

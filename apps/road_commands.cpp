@@ -1,0 +1,115 @@
+#include "apps/road_commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/option_parsers.h"
+#include "apps/report.h"
+#include "base/error.h"
+#include "viz/road_figure.h"
+#include "world/roads/roads.h"
+
+namespace sf::apps {
+
+namespace {
+
+std::string ending_of(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+bool is_network(const std::string& file) { return ending_of(file) == ".rndf" || ending_of(file) == ".rdf"; }
+bool is_mission(const std::string& file) { return ending_of(file) == ".mdf"; }
+
+void append(std::vector<world::Warning>& all, const std::vector<world::Warning>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+int check_network(const Options& options) {
+  std::vector<world::Warning> warnings;
+  const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict_roads);
+  const RoadReport facts{network, world::lane_markings_of(network).size(), warnings};
+  std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
+  return 0;
+}
+
+int check_mission(const Options& options) {
+  const world::Mdf mission = world::read_mdf(options.world, options.load.strict_roads);
+  std::vector<world::Warning> warnings = mission.warnings;
+  if (!options.rndf.empty()) {
+    const world::Rndf rndf = world::read_rndf(options.rndf, options.load.strict_roads);
+    append(warnings, rndf.warnings);
+    append(warnings, world::check_against(mission, rndf));
+  }
+  const MissionReport facts{mission, options.rndf, warnings};
+  std::fputs((options.json ? json_of(facts) : text_of(facts)).c_str(), stdout);
+  return 0;
+}
+
+std::string text_of(const std::vector<world::Warning>& warnings) {
+  std::string text;
+  for (const world::Warning& w : warnings) text += fmt::format("{}:{}: warning: {}\n", w.file, w.line, w.message);
+  return text;
+}
+
+}  // namespace
+
+std::string text_of(const RoadReport& facts) {
+  const world::RoadNetwork& network = facts.network;
+  const world::RoadCounts& c = network.counts;
+  const world::Extent& e = network.extent;
+  double length = 0.0;
+  for (const world::RoadLane& lane : network.lanes) length += length_of(lane);
+  std::string text = text_of(facts.warnings);
+  text += fmt::format("{}\n", network.name.empty() ? network.file : network.name);
+  text += row("segments", fmt::format("{}", c.segments));
+  text += row("lanes", fmt::format("{} ({:.1f} m in all)", c.lanes, length));
+  text += row("zones", fmt::format("{}", c.zones));
+  text += row("spots", fmt::format("{}", c.spots));
+  text += row("points", fmt::format("{} ({} of lanes)", c.points, c.lane_waypoints));
+  text += row("exits", fmt::format("{}", c.exits));
+  text += row("stops", fmt::format("{}", c.stops));
+  text += row("checkpoints", fmt::format("{}", c.checkpoints));
+  text += row("painted lines", fmt::format("{}", facts.lane_markings));
+  text += row("scale", fmt::format("{:g}", network.scale));
+  text += row("extent", fmt::format("x {:.3f} to {:.3f} m, y {:.3f} to {:.3f} m", e.x_min, e.x_max, e.y_min, e.y_max));
+  return text + row("warnings", fmt::format("{}", facts.warnings.size()));
+}
+
+std::string text_of(const MissionReport& facts) {
+  const world::Mdf& mission = facts.mission;
+  std::string text = text_of(facts.warnings);
+  text += fmt::format("{}\n", mission.name.empty() ? mission.file : mission.name);
+  text += row("made for", mission.rndf_name.empty() ? "-" : mission.rndf_name);
+  text += row("checked against", facts.network.empty() ? "nothing (--rndf FILE)" : facts.network);
+  text += row("checkpoints", fmt::format("{}", mission.checkpoints.size()));
+  text += row("speed limits", fmt::format("{}", mission.speed_limits.size()));
+  return text + row("warnings", fmt::format("{}", facts.warnings.size()));
+}
+
+std::optional<int> check_roads(const Options& options) {
+  if (is_mission(options.world)) return check_mission(options);
+  if (!options.rndf.empty())
+    throw base::InputError(options.world, 0, "is no mission; --rndf goes with `check` of an .mdf file");
+  if (is_network(options.world)) return check_network(options);
+  return std::nullopt;
+}
+
+std::optional<int> draw_roads(const Options& options) {
+  if (is_mission(options.world))
+    throw base::InputError(options.world, 0, "a mission has no picture; draw the .rndf file that it was made for");
+  if (!is_network(options.world)) return std::nullopt;
+  std::vector<world::Warning> warnings;
+  const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict_roads);
+  print_warnings(options.world, warnings);
+  viz::draw_roads(network, options.out);
+  std::fprintf(stderr, "sensorfarm: wrote %s\n", options.out.c_str());
+  return 0;
+}
+
+}  // namespace sf::apps

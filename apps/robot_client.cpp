@@ -1,0 +1,172 @@
+#include "apps/robot_client.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "apps/driver_options.h"
+#include "world/roads/roads.h"
+
+namespace sf::apps {
+
+namespace {
+
+constexpr std::string_view kStart = "start=";
+constexpr std::int64_t kAnswerIn = 3'000'000'000;  ///< [ns] without one, the user is told
+
+/// Within what a packet may send_state, whatever the world file lets a robot do.
+netio::V2v state_of(const base::Report& report, const base::Intent& intent) {
+  const auto bound = [](double value, double most) { return std::clamp(value, -most, most); };
+  netio::V2v state;
+  state.X_WR = {bound(report.X_WM.x, netio::kMaxPosition), bound(report.X_WM.y, netio::kMaxPosition),
+                bound(report.X_WM.z, netio::kMaxPosition), base::wrap_angle(report.X_WM.yaw)};
+  state.velocity = {bound(report.velocity.forward, netio::kMaxSpeed), bound(report.velocity.left, netio::kMaxSpeed),
+                    bound(report.velocity.turn, netio::kMaxSpeed)};
+  state.follows = intent.follows <= netio::kMaxId ? intent.follows : netio::kNone;
+  state.checkpoint = intent.checkpoint;
+  state.docking = intent.docking;
+  return state;
+}
+
+/// [ns] Never shorter than two and a half periods of the fastest sensor, so that one lost reading stops nobody.
+std::int64_t patience_of(const sensors::SensorSet& sensor_set, std::uint32_t mover, double seconds) {
+  double fastest = 0.0;
+  for (const sensors::SensorSet::Group& group : sensor_set.groups())
+    for (const sensors::SensorSpec& row : sensor_set.of(group.kind->id, mover)) fastest = std::max(fastest, row.rate);
+  return seconds > 0.0 && fastest > 0.0 ? std::llround(1e9 * std::max(seconds, 2.5 / fastest)) : 0;
+}
+
+}  // namespace
+
+bool waits_for_start(const Options& options) {
+  return options.wait_for_start || std::any_of(options.set.begin(), options.set.end(), [](const std::string& text) {
+           return text.compare(0, kStart.size(), kStart) == 0 &&
+                  control::read_text(std::string_view(text).substr(kStart.size())) == "signal";
+         });
+}
+
+RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
+                         const StreamLayout& sent, const Options& options)
+    : world_(world),
+      names_(wire_names(world)),
+      mover_(mover),
+      body_(world, mover, std::llround(1e9 * options.forget)),
+      link_(world, sensor_set, mover, sent, options,
+            [this](const netio::Packet& packet, std::int64_t now) { on_packet(packet, now); }),
+      roads_(world::roads_of(world)),
+      intents_(world.movers.size()),
+      started_(!waits_for_start(options)),
+      reading_timeout_(patience_of(sensor_set, mover, options.stop_after)) {
+  control::ControllerConfig plan = controller_config_of(options);
+  plan.rate = options.rate;
+  made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, std::move(plan));
+}
+
+void RobotClient::step(std::int64_t now) {
+  body_.move(command_, now);
+  contacts_ += contact_.begins(body_.contact());
+  command_ = {};
+  if (started_ && !readings_timed_out(now)) decide(now);
+  link_.send_state(state_of(body_.state(), made_.controller->intent()), now);
+  log_problems(now);
+}
+
+RobotReport RobotClient::facts(const Options& options) const {
+  RobotReport facts;
+  facts.robot = world_.movers[mover_].name;
+  facts.id = world_.movers[mover_].id;
+  facts.controller = options.controller;
+  facts.farm = netio::text(link_.farm());
+  facts.steps = steps_;
+  facts.started = started_;
+  facts.done = done();
+  facts.answered = link_.last_answer().has_value();
+  facts.listens = link_.listens();
+  facts.link = link_.counts();
+  facts.contacts = contacts_;
+  facts.distance_m = body_.distance();
+  facts.pose = body_.state().X_WM;
+  facts.error = error_;
+  facts.stops = stops_;
+  facts.lines_left_out = log_.left_out();
+  return facts;
+}
+
+void RobotClient::on_packet(const netio::Packet& packet, std::int64_t now) {
+  const auto* state = std::get_if<netio::V2v>(&packet.body);
+  if (state == nullptr) {
+    started_ = true;
+    return;
+  }
+  const std::uint32_t row = names_.robots.at(packet.header.robot);
+  intents_[row] = {state->follows, state->checkpoint, state->docking};
+  body_.update_other(row, state->X_WR, state->velocity, now);
+}
+
+void RobotClient::decide(std::int64_t now) {
+  gather_readings();
+  gather_others(now);
+  gather_signals(now);
+  control::ControllerInput input{now, body_.state(), readings_, body_.contact(), started_, others_, signals_};
+  input.state.time = now;
+  command_ = made_.controller->step(input);
+  ++steps_;
+  add(error_, made_.controller->error());
+}
+
+/// Packets do not send_state where the farm took the robot to be: it goes by where it was itself.
+void RobotClient::gather_readings() {
+  readings_.clear();
+  for (RobotLink::Newest& newest : link_.readings()) {
+    base::ReadingBlock& block = readings_.emplace_back(newest.block);
+    block.X_WM = body_.pose_at(block.time);
+    block.X_WS = base::compose(block.X_WM, newest.row->X_MS);
+  }
+}
+
+void RobotClient::gather_others(std::int64_t now) {
+  others_.clear();
+  const double radio = made_.controller->v2v_range();
+  if (radio <= 0.0) return;
+  const base::Pose& own = body_.state().X_WM;
+  for (const auto& [id, row] : names_.robots) {
+    if (row == mover_ || !link_.is_active(id, now)) continue;
+    base::Report state = body_.state(row);
+    state.time = now;
+    if (std::hypot(state.X_WM.x - own.x, state.X_WM.y - own.y) <= radio) others_.push_back({id, state, intents_[row]});
+  }
+}
+
+/// Lights go by the farm's clock.
+void RobotClient::gather_signals(std::int64_t now) {
+  const double time = 1e-9 * static_cast<double>(link_.clock().to_farm(now));
+  signals_.clear();
+  for (const world::Light& light : world_.lights) signals_.push_back(world::signal_at(light, time));
+}
+
+bool RobotClient::readings_timed_out(std::int64_t now) const {
+  return reading_timeout_ > 0 && link_.listens() && now - link_.last_reading().value_or(0) > reading_timeout_;
+}
+
+/// Where nothing is heard any more, where something is again, and, once, where nothing ever was.
+void RobotClient::log_problems(std::int64_t now) {
+  const std::string farm = netio::text(link_.farm());
+  if (!problem_logged_ && link_.listens() && now - link_.last_answer().value_or(0) >= kAnswerIn) {
+    problem_logged_ = true;
+    stands_ = reading_timeout_ > 0;
+    log_.write(fmt::format("nothing came from the farm at {} for 3 s; is `sensorfarm serve` running there with this "
+                           "world and these ports? {}",
+                           farm, reading_timeout_ > 0 ? "Standing until readings come" : "Going on"),
+               now);
+  }
+  if (stands_ == readings_timed_out(now) || !link_.last_reading()) return;
+  stands_ = !stands_;
+  stops_ += stands_ ? 1 : 0;
+  log_.write(stands_ ? fmt::format("no reading came from the farm at {} for {:g} s: {} stands until one comes", farm,
+                                   1e-9 * static_cast<double>(reading_timeout_), world_.movers[mover_].name)
+                     : fmt::format("readings come: {} goes on", world_.movers[mover_].name),
+             now);
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,60 @@
+#include "apps/robot_report.h"
+
+#include <fmt/format.h>
+
+#include "apps/option_parsers.h"
+
+namespace sf::apps {
+
+namespace {
+
+/// "laser 120, laneedge 30".
+std::string kinds_text(const LinkCounts& link) {
+  std::string text;
+  for (const auto& [kind, count] : link.whole) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kind, count);
+  return text.empty() ? "it has no sensors" : text;
+}
+
+std::string injected_text(const netio::DelayCounts& counts) {
+  return fmt::format("{} passed, {} lost{}", counts.passed, counts.lost,
+                     counts.full > 0 ? fmt::format(", {} too many at once", counts.full) : "");
+}
+
+std::string link_text(const LinkCounts& link) {
+  const netio::ReceiverCounts& in = link.readings;
+  std::string text = row("packets sent", fmt::format("{}", link.sent.sent));
+  if (link.sent.failed + link.sent.dropped > 0)
+    text += row("packets not sent", fmt::format("{} failed ({}), {} dropped", link.sent.failed, link.sent.first_failure,
+                                                link.sent.dropped));
+  text += row("readings", kinds_text(link));
+  text += row("sensor packets", netio::text(in.packets));
+  text += row("", fmt::format("{} late, {}, {} lost", in.late, counted(in.duplicates, "duplicate"), in.lost));
+  if (in.jumps > 0) text += row("", counted(in.jumps, "packet") + " too far ahead to be believed");
+  if (link.kernel_drops > 0) text += row("", counted(link.kernel_drops, "packet") + " dropped by the kernel");
+  if (in.restarts > 0) text += row("", counted(in.restarts, "sensor") + " began anew");
+  text += row("V2V and START", netio::text(link.packets));
+  if (link.out.lost + link.in.lost > 0) {
+    text += row("injected link, out", injected_text(link.out));
+    text += row("  in", injected_text(link.in));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string text_of(const RobotReport& f) {
+  std::string text = f.answered ? "" : fmt::format("Nothing came from the farm at {}.\n", f.farm);
+  if (!f.started) text += "The start signal did not come.\n";
+  text += row("robot", fmt::format("{} (id {}), {}{}", f.robot, f.id, f.controller, f.done ? ": done" : ""));
+  text += row("ran", fmt::format("{:.2f} s, {}", f.wall_s, counted(f.steps, "step")));
+  text += link_text(f.link);
+  text += row("driven", fmt::format("{:.3f} m, to {:.3f}, {:.3f} m, {:.1f} degrees", f.distance_m, f.pose.x, f.pose.y,
+                                    f.pose.yaw * 180.0 / M_PI));
+  text += row("contacts", fmt::format("{} that began", f.contacts));
+  if (f.stops > 0) text += row("stood", counted(f.stops, "time") + " for want of readings");
+  if (f.lines_left_out > 0) text += row("log", counted(f.lines_left_out, "line") + " left out");
+  if (f.error.steps > 0) text += row("control error", text_of(f.error));
+  return text;
+}
+
+}  // namespace sf::apps

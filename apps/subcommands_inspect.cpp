@@ -1,0 +1,125 @@
+// Subcommands that look at worlds, devices and recordings.
+
+#include <CLI/CLI.hpp>
+
+#include "apps/option_groups.h"
+#include "apps/option_parsers.h"
+#include "apps/subcommands.h"
+
+namespace sf::apps {
+
+namespace {
+
+void add_devices(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand("devices",
+                                     "List the Vulkan devices: their self-check, which is chosen, and why others are "
+                                     "not (exit 3 when none is usable)");
+  add_json(*sub, o);
+  add_device(*sub, o);
+  sub->callback([&o] { o.command = Command::devices; });
+}
+
+void add_check(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand("check", "Say what was understood of a world, and every warning with its line");
+  add_world(*sub, o);
+  add_accuracy(*sub, o);
+  sub->add_option("--rndf", o.rndf, "Road network that a mission (.mdf) is checked against")
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
+  sub->add_option("--rate", o.rate, "Ticks per second that `serve --rate` is to have: name the sensors that are faster")
+      ->check(number(0.1, 10000.0))
+      ->type_name("HZ");
+  add_json(*sub, o);
+  sub->callback([&o] { o.command = Command::check; });
+}
+
+void add_draw(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand("draw", "Draw the world as understood, seen from above");
+  add_world(*sub, o);
+  sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(picture())->type_name("FILE");
+  sub->callback([&o] { o.command = Command::draw; });
+}
+
+void add_field(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand("field", "Draw the field of a world's magnets at one height, and along a line");
+  add_world(*sub, o);
+  add_device(*sub, o);
+  sub->add_option("--height", o.height, "Height in the world [m]")
+      ->required()
+      ->check(number(-1e6, 1e6))
+      ->type_name("Z");
+  sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(picture())->type_name("FILE");
+  sub->add_option_function<std::string>(
+         "--line", [&o](const std::string& text) { o.line = read_line(text); },
+         "Ends of the profile's line [m] (default: along the magnets)")
+      ->check(line())
+      ->type_name("X0,Y0,X1,Y1");
+  sub->add_option_function<std::string>(
+         "--extent", [&o](const std::string& text) { o.extent = read_line(text); },
+         "What the map must show [m] (default: all magnets)")
+      ->check(extent())
+      ->type_name("X0,Y0,X1,Y1");
+  sub->add_option("--csv", o.csv, "File to write the profile's numbers to")
+      ->check(not_empty("a file"))
+      ->type_name("FILE");
+  sub->callback([&o] { o.command = Command::field; });
+}
+
+void add_sense(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand("sense", "One reading of one sensor, noise off: check your world with a ruler");
+  add_world(*sub, o);
+  add_accuracy(*sub, o);
+  add_json(*sub, o);
+  add_device(*sub, o);
+  add_no_return(*sub, o);
+  sub->add_option_function<std::string>(
+         "--pose", [&o](const std::string& text) { o.pose = read_pose(text); },
+         "Where the robot stands: X,Y,YAW_DEG [m, degrees]")
+      ->check(pose())
+      ->type_name("POSE");
+  sub->add_option("--robot", o.robot, "Name of the robot (default: the first that has a sensor)")->type_name("NAME");
+  add_kind(*sub, o);
+  sub->add_option("--sensor", o.sensor,
+                  "Number of its sensor, from 0: of that kind, or through all its kinds where none is named")
+      ->check(whole(0, 65535))
+      ->type_name("N")
+      ->capture_default_str();
+  sub->callback([&o] { o.command = Command::sense; });
+}
+
+void add_plot(CLI::App& app, Options& o) {
+  CLI::App* sub =
+      app.add_subcommand("plot", "Draw trajectories, an occupancy map and recorded readings from a recorded run");
+  add_recording(*sub, o);
+  sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)")
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
+  add_device(*sub, o);
+  sub->callback([&o] { o.command = Command::plot; });
+}
+
+void add_explain(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand(
+      "explain", "Say what a world makes the farm build and do, and what each kind of sensor costs on this machine");
+  add_world(*sub, o);
+  add_accuracy(*sub, o);
+  add_json(*sub, o);
+  add_device(*sub, o);
+  add_robots(*sub, o);
+  add_threads(*sub, o);
+  sub->callback([&o] { o.command = Command::explain; });
+}
+
+}  // namespace
+
+void add_inspect_commands(CLI::App& app, Options& o) {
+  add_devices(app, o);
+  add_check(app, o);
+  add_draw(app, o);
+  add_field(app, o);
+  add_sense(app, o);
+  add_plot(app, o);
+  add_explain(app, o);
+}
+
+}  // namespace sf::apps

@@ -1,0 +1,193 @@
+// Subcommands that run: the farm, robots, and who listens to them.
+
+#include <CLI/CLI.hpp>
+
+#include "apps/option_groups.h"
+#include "apps/option_parsers.h"
+#include "apps/subcommands.h"
+
+namespace sf::apps {
+
+namespace {
+
+void add_run(CLI::App& app, Options& o) {
+  CLI::App* sub =
+      app.add_subcommand("run", "Simulate a fleet in the loop, with every robot's sensors, as fast as it goes");
+  add_world(*sub, o);
+  add_accuracy(*sub, o);
+  add_automatic(*sub, o);
+  add_json(*sub, o);
+  add_device(*sub, o);
+  add_robots(*sub, o);
+  add_controller(*sub, o);
+  sub->add_option("--drive", o.drive, "Drive this robot, and none that is not named so (may be repeated)")
+      ->check(not_empty("the name of a robot"))
+      ->allow_extra_args(false)
+      ->type_name("NAME");
+  add_no_return(*sub, o);
+  add_ports(*sub, o);
+  sub->add_option("--duration", o.duration, "Simulated time [s]")
+      ->check(number(0.0, 1e9))
+      ->type_name("S")
+      ->capture_default_str();
+  add_threads(*sub, o);
+  auto* record = sub->add_option("--record", o.record, "Folder to record the run into (run.mcap)")
+                     ->check(not_empty("a folder"))
+                     ->type_name("DIR");
+  sub->add_flag("--record-readings", o.record_readings,
+                "Record the readings too, not only what they can be computed from")
+      ->needs(record);
+  sub->add_flag("--real-time", o.real_time, "One simulated second per second");
+  sub->add_option("--send", o.send, "Send every reading as UDP packets to this host")
+      ->check(not_empty("a host"))
+      ->type_name("HOST");
+  sub->callback([&o] { o.command = Command::run; });
+}
+
+void add_forget(CLI::App& app, Options& o) {
+  app.add_option("--forget", o.forget,
+                 "A robot that is silent for so long, 2 s at least, is no obstacle any more [s] (0: it stays)")
+      ->check(number(0.0, 1e9))
+      ->type_name("S")
+      ->capture_default_str();
+}
+
+void add_serve(CLI::App& app, Options& o) {
+  CLI::App* sub =
+      app.add_subcommand("serve", "Virtual sensors for robots that live elsewhere: V2V packets in, sensor packets out");
+  add_world(*sub, o);
+  add_accuracy(*sub, o);
+  add_automatic(*sub, o);
+  add_json(*sub, o);
+  add_device(*sub, o);
+  add_no_return(*sub, o);
+  add_ports(*sub, o);
+  add_bind(*sub, o);
+  sub->add_option("--port", o.port, "UDP port to listen on (0: any free one)")
+      ->check(whole(0, 65535))
+      ->type_name("PORT")
+      ->capture_default_str();
+  sub->add_option("--rate", o.rate,
+                  "Ticks per second, and sensors are read at ticks alone (default: the world's interval_sim, and "
+                  "sensors at their own times)")
+      ->check(number(0.1, 10000.0))
+      ->type_name("HZ");
+  sub->add_option("--radio", o.radio,
+                  "How far robots' V2V reaches: states of others within it are passed on (0: none are) [m]")
+      ->check(number(0.0, 1e9))
+      ->type_name("M")
+      ->capture_default_str();
+  add_forget(*sub, o);
+  add_seed(*sub, o, "Seed of noise");
+  add_until(*sub, o, Command::serve, "Stop after this long [s] (0: when told to)");
+}
+
+void add_farm(CLI::App& app, Options& o) {
+  app.add_option("--server", o.server, "Host of the farm that serves")
+      ->check(not_empty("a host"))
+      ->type_name("HOST")
+      ->capture_default_str();
+  app.add_option("--port", o.port, "UDP port that it listens on")
+      ->check(whole(1, 65535))
+      ->type_name("PORT")
+      ->capture_default_str();
+}
+
+void add_link(CLI::App& app, Options& o) {
+  constexpr const char* kGroup = "Link, made worse than it is";
+  app.add_option("--delay", o.delay, "Injected delay of every packet, in each direction [s]")
+      ->check(number(0.0, 3600.0))
+      ->type_name("S")
+      ->group(kGroup);
+  app.add_option("--jitter", o.jitter, "More delay, evenly from 0 to this; packets overtake each other [s]")
+      ->check(number(0.0, 3600.0))
+      ->type_name("S")
+      ->group(kGroup);
+  app.add_option("--loss", o.loss, "Part of the packets that never come, in each direction, 0 to 1")
+      ->check(number(0.0, 1.0))
+      ->type_name("P")
+      ->group(kGroup);
+}
+
+void add_robot(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand(
+      "robot",
+      "One simulated robot, a process of its own beside a farm that serves (exit 1 when nothing came from it)");
+  add_world(*sub, o);
+  add_json(*sub, o);
+  add_controller(*sub, o);
+  add_farm(*sub, o);
+  add_link(*sub, o);
+  add_ports(*sub, o);
+  sub->add_option("--name", o.robot, "Name of the robot in the world")->required()->type_name("NAME");
+  sub->add_option("--rate", o.rate, "Decisions, and packets, per second (default: the controller's own)")
+      ->check(number(0.1, 1000.0))
+      ->type_name("HZ");
+  sub->add_option("--stop-after", o.stop_after, "Stand when no reading came for so long [s] (0: drive on)")
+      ->check(number(0.0, 1e9))
+      ->type_name("S")
+      ->capture_default_str();
+  add_forget(*sub, o);
+  sub->add_flag("--wait-for-start", o.wait_for_start, "Stand until the start signal comes (`sensorfarm start`)");
+  add_seed(*sub, o, "Seed of decisions and of the injected link");
+  add_until(*sub, o, Command::robot, "Stop after this long [s] (0: when done or told to)");
+}
+
+void add_start(CLI::App& app, Options& o) {
+  CLI::App* sub =
+      app.add_subcommand("start", "Give robots that wait for it the start signal, through the farm (not acknowledged)");
+  add_farm(*sub, o);
+  sub->add_option("--robot", o.start_id, "Id of the robot (default: all)")->check(whole(0, 65535))->type_name("ID");
+  sub->callback([&o] { o.command = Command::start; });
+}
+
+void add_listen(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand(
+      "listen", "Take a run's packets on every robot's ports, count and check them (exit 1 when none was good)");
+  add_world(*sub, o);
+  add_json(*sub, o);
+  add_robots(*sub, o);
+  add_ports(*sub, o);
+  add_bind(*sub, o);
+  add_from(*sub, o);
+  add_silence(*sub, o);
+  add_until(*sub, o, Command::listen, "Stop after this long [s] (0: when told to, or silent)");
+}
+
+void add_map(CLI::App& app, Options& o) {
+  CLI::App* sub =
+      app.add_subcommand("map", "Show the occupancy maps that robots send, live in a terminal, and draw them");
+  sub->add_option_function<std::vector<std::string>>(
+         "--listen",
+         [&o](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts)
+             for (const std::uint16_t port : read_ports(text)) o.map_ports.push_back(port);
+         },
+         "Port of a robot's map, or a range of ports A-B; may be given more than once")
+      ->required()
+      ->check(ports())
+      ->type_name("PORT");
+  add_bind(*sub, o);
+  add_from(*sub, o);
+  sub->add_flag("--merge", o.merge, "All maps as one: what any robot saw occupied is occupied");
+  sub->add_option("-o,--out", o.out, "PNG file to write at the end; of several maps that are not merged, one each")
+      ->check(picture())
+      ->type_name("FILE");
+  add_until(*sub, o, Command::map, "Stop after this long [s] (0: when told to, or silent)");
+  sub->add_flag("--once", o.once, "Stop when every port has brought a whole map");
+  add_silence(*sub, o);
+  add_wire(*sub, o);
+}
+
+}  // namespace
+
+void add_run_commands(CLI::App& app, Options& o) {
+  add_run(app, o);
+  add_serve(app, o);
+  add_robot(app, o);
+  add_start(app, o);
+  add_listen(app, o);
+  add_map(app, o);
+}
+
+}  // namespace sf::apps

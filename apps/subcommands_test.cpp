@@ -1,0 +1,128 @@
+// Subcommands that prove: experiments, scenarios, and the farm itself.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "apps/option_groups.h"
+#include "apps/option_parsers.h"
+#include "apps/subcommands.h"
+#include "scenarios/experiment.h"
+#include "selftest/suite.h"
+
+namespace sf::apps {
+
+namespace {
+
+void add_experiment(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand(
+      "experiment", "Run one of the experiments: trials, statistics beside the thesis', figures, in one folder");
+  auto* list = sub->add_flag("--list", o.list, "Name them all");
+  std::vector<std::string> names;
+  for (const scenarios::ExperimentType* kind : scenarios::experiments()) names.emplace_back(kind->name);
+  auto* name = sub->add_option("experiment", o.experiment, join_or(names))->check(one_of(names))->type_name("NAME");
+  auto* out =
+      sub->add_option("-o,--out", o.out, "Folder to write into")->check(not_empty("a folder"))->type_name("DIR");
+  name->needs(out)->excludes(list);
+  sub->add_option("--trials", o.trials, "How many, each with a seed of its own")
+      ->check(whole(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  add_seed(*sub, o, "Seed of the first trial");
+  sub->add_option_function<std::string>(
+         "--plant", [&o](const std::string& text) { o.plant = scenarios::plant_of(text); },
+         "What stands between commands and wheels: ideal (nothing) or thesis (Player's driver for the Create). "
+         "Default: "
+         "thesis for what it did with its Creates (paths, sweeps, mapping); ideal for towns and Pioneers")
+      ->check(one_of({"thesis", "ideal"}))
+      ->type_name("thesis|ideal");
+  sub->add_option("--files", o.experiments, "Folder with the experiments' scenario files (default: ours)")
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
+  add_device(*sub, o);
+  sub->callback([&o, list, name] {
+    o.command = Command::experiment;
+    if (list->count() + name->count() == 0) throw CLI::RequiredError("the name of an experiment, or --list");
+  });
+}
+
+void add_test(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand("test", "Run scenarios and hold them to what they expect (exit 1 when one fails)");
+  sub->add_option("scenario", o.scenarios, "Scenario files (.toml)")->required()->type_name("FILE");
+  sub->add_option("--junit", o.junit, "Write the results as JUnit XML")->check(not_empty("a file"))->type_name("FILE");
+  add_device(*sub, o);
+  sub->callback([&o] { o.command = Command::test; });
+}
+
+void add_verify(CLI::App& app, Options& o) {
+  CLI::App* sub =
+      app.add_subcommand("verify",
+                         "Compute a recorded run again, on this device and in plain C++, and compare bit by "
+                         "bit (exit 1 when something differs)");
+  add_recording(*sub, o);
+  auto* sample =
+      sub->add_option("--sample", o.sample, "Laser scans that plain C++ casts again: every k-th of the run's")
+          ->check(whole(0, UINT64_MAX))
+          ->type_name("N")
+          ->capture_default_str();
+  sub->add_flag_callback(
+         "--all", [&o] { o.sample = 0; }, "Cast every laser scan again, which may take long")
+      ->excludes(sample);
+  add_threads(*sub, o);
+  add_json(*sub, o);
+  add_device(*sub, o);
+  sub->callback([&o] { o.command = Command::verify; });
+}
+
+void add_tradeoff(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand(
+      "tradeoff", "Measure every accuracy mode of a world's sensors on this machine: speed against error");
+  add_world(*sub, o);
+  sub->add_option("-o,--out", o.out, "Folder for tradeoff.csv and tradeoff.png")
+      ->check(not_empty("a folder"))
+      ->type_name("DIR");
+  add_accuracy_target(*sub, o);
+  sub->add_flag("--auto", o.automatic, "Print only the words that --accuracy takes, for scripts");
+  add_json(*sub, o);
+  add_device(*sub, o);
+  add_robots(*sub, o);
+  add_threads(*sub, o);
+  sub->callback([&o] { o.command = Command::tradeoff; });
+}
+
+bool is_case_or_group(const std::string& name) {
+  const auto all = selftest::cases();
+  return name == selftest::failing_case().name || std::any_of(all.begin(), all.end(), [&](const selftest::Case& c) {
+           return c.name == name || c.group == name;
+         });
+}
+
+void add_selftest(CLI::App& app, Options& o) {
+  CLI::App* sub = app.add_subcommand(
+      "selftest",
+      "Try the farm at the ends of its range on this machine: worlds, beams, magnets, times, numbers (exit 1 when an "
+      "answer is wrong)");
+  auto* list = sub->add_flag("--list", o.list, "Name all cases, each with its answer");
+  sub->add_option("case", o.cases, "Cases or groups of them (default: all)")
+      ->check([](const std::string& name) {
+        return is_case_or_group(name)
+                   ? std::string()
+                   : "'" + name + "' is neither a case nor a group; `sensorfarm selftest --list` names them";
+      })
+      ->type_name("NAME")
+      ->excludes(list);
+  add_json(*sub, o);
+  add_device(*sub, o);
+  sub->callback([&o] { o.command = Command::selftest; });
+}
+
+}  // namespace
+
+void add_test_commands(CLI::App& app, Options& o) {
+  add_experiment(app, o);
+  add_test(app, o);
+  add_verify(app, o);
+  add_tradeoff(app, o);
+  add_selftest(app, o);
+}
+
+}  // namespace sf::apps

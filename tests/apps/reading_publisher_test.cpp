@@ -1,0 +1,117 @@
+// Readings as packets: the same bytes and numbers however many are encoded at once.
+
+#include "apps/reading_publisher.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "netio/packets.h"
+#include "netio/socket.h"
+
+namespace sf::apps {
+namespace {
+
+constexpr std::uint32_t kBeams = 31;
+
+/// Robots with one laser each, nothing else.
+world::World fleet(std::uint32_t robots) {
+  world::World world;
+  for (std::uint32_t i = 0; i < robots; ++i) {
+    world::Mover mover;
+    mover.name = "robot" + std::to_string(i + 1);
+    mover.id = i + 1;
+    mover.model = i;
+    mover.lasers.push_back({.name = "laser", .samples = kBeams});
+    world.models.push_back({mover.name, "position"});
+    world.movers.push_back(mover);
+  }
+  return world;
+}
+
+/// Readings of everyone for some ticks; a few have a beam that is not a number, and are not sent.
+struct Day {
+  std::vector<std::vector<double>> values;
+  std::vector<base::ReadingBlock> blocks;
+  std::vector<std::size_t> ticks;  ///< end of each in `blocks`
+
+  Day(std::uint32_t robots, int count) {
+    for (int tick = 0; tick < count; ++tick) {
+      for (std::uint32_t m = 0; m < robots; ++m) {
+        std::vector<double>& ranges = values.emplace_back(kBeams);
+        for (std::uint32_t k = 0; k < kBeams; ++k) ranges[k] = 0.001 * ((m * 131 + k * 17 + tick * 7) % 8000);
+        if (tick == 2 && m % 97 == 5) ranges[3] = std::numeric_limits<double>::quiet_NaN();
+        base::ReadingBlock block;
+        block.mover = m;
+        block.kind = base::kLaser;
+        block.time = tick * 100'000'000ll;
+        blocks.push_back(block);
+      }
+      ticks.push_back(blocks.size());
+    }
+    for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i].values = values[i];
+  }
+};
+
+class PostTest : public testing::TestWithParam<std::uint32_t> {};
+
+/// Boundary: few sensors are encoded by one thread, many by all cores and sent by a thread of their own.
+TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
+  const std::uint32_t robots = GetParam();
+  const world::World world = fleet(robots);
+  const sensors::SensorSet sensor_set(world);
+  const netio::Socket ears = netio::open_udp({netio::kLoopback, 0}, {.receive = 32u << 20});
+  if (netio::receive_buffer(ears) < 2'000 * robots) GTEST_SKIP() << "this user's receive buffers hold too little";
+  StreamLayout plan;
+  plan.stride = 0;  // all to one port
+  plan.bases[base::kLaser] = netio::bound_endpoint(ears).port;
+  ReadingPublisher post(world, sensor_set, plan, netio::Outbox(outbox_options(sensor_set)));
+
+  const Day day(robots, 5);
+  const sensors::SensorType& kind = *sensor_set.group(base::kLaser)->kind;
+  std::map<std::uint32_t, std::uint32_t> sent;
+  netio::ReceiveBatch batch(64);
+  std::size_t first = 0, lost = 0;
+  for (const std::size_t end : day.ticks) {
+    std::vector<AddressedReading> letters;
+    std::vector<base::Bytes> expected;
+    for (std::size_t i = first; i < end; ++i) {
+      const base::ReadingBlock& block = day.blocks[i];
+      letters.push_back({&block, netio::kLoopback, {7, 9}});
+      base::Bytes payload, packet;
+      const std::uint8_t type = kind.encode(sensor_set.row(block), block, sensors::WireFormat::farm, 0, payload);
+      if (type == 0) continue;
+      netio::Header header;
+      header.robot = static_cast<std::uint16_t>(block.mover + 1);
+      header.sequence = sent[block.mover]++;
+      header.time = block.time;
+      header.accuracy = netio::encode_accuracy({block.mode, false, block.bound});
+      header.session = 7;
+      header.token = 9;
+      netio::encode_reading(header, type, payload, packet);
+      expected.push_back(packet);
+    }
+    lost += letters.size() - expected.size();
+    post.queue(letters);
+    post.flush();
+    EXPECT_EQ(post.counts().packets.dropped, 0u);
+    EXPECT_EQ(post.counts().not_numbers, lost);
+    std::size_t next = 0;
+    while (const std::size_t taken = batch.fill(ears))
+      for (std::size_t i = 0; i < taken; ++i, ++next) {
+        ASSERT_LT(next, expected.size());
+        const auto bytes = batch.bytes(i);
+        ASSERT_TRUE(std::equal(bytes.begin(), bytes.end(), expected[next].begin(), expected[next].end())) << next;
+      }
+    EXPECT_EQ(next, expected.size());
+    first = end;
+  }
+  EXPECT_EQ(lost > 0, robots > 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Fleets, PostTest, testing::Values(3u, 256u, 257u, 2500u));
+
+}  // namespace
+}  // namespace sf::apps
