@@ -131,7 +131,7 @@ bool Display::drain() {
   const auto on_datagram = [&](std::size_t i, std::span<const std::uint8_t> bytes, const netio::Endpoint& from) {
     Source& source = sources_[i];
     const maps::PartStatus taken = take(source, options_.wire, bytes, from, now);
-    const bool used = taken == maps::PartStatus::part || taken == maps::PartStatus::complete;
+    const bool used = taken == maps::PartStatus::incomplete || taken == maps::PartStatus::complete;
     ++(used ? source.used : source.left_out);
     changed_ = changed_ || taken == maps::PartStatus::complete;
   };

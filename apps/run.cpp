@@ -74,7 +74,7 @@ class Outputs {
     seconds_ += base::seconds_since(start) - waited;
   }
 
-  void update_extent_and_hash(RunReport& facts) {
+  void finish(RunReport& facts) {
     facts.out_s = seconds_;
     if (publisher_) {
       facts.sent = true;

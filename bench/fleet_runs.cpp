@@ -17,7 +17,7 @@ constexpr int kHospitalTicks = 200;
 Measurement simville(gpu::Device& device) {
   const auto scenario = scenarios::read_scenario(std::string(SF_SOURCE_DIR) + "/experiments/simville.toml");
   const auto result = scenarios::run_scenario(scenario, device);
-  SF_CHECK(result.accuracy() == scenarios::AccuracyCheck::passed, "SimVille's traffic did not do what it should");
+  SF_CHECK(result.status() == scenarios::ScenarioStatus::passed, "SimVille's traffic did not do what it should");
   return {"SimVille's traffic, 52 robots", result.simulated / result.wall, "x real time"};
 }
 

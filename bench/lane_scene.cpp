@@ -28,7 +28,7 @@ void add_street(world::World& world, const Street& s) {
   const double from = kLane + kTurn;
   const double to = kBlock - kLane - kTurn;
   for (const double side : {-kLane, kLane})
-    world.lane_markings.push_back(trial::stripe(s.at(from, side), s.at(to, side), kPaint));
+    world.lane_markings.push_back(trial::marking(s.at(from, side), s.at(to, side), kPaint));
   trial::add_dashes(world, s.at(from, 0.0), s.at(to, 0.0), kPaint, 0.15, 0.15);
 }
 

@@ -52,8 +52,8 @@ void add_lanes_and_magnets(world::World& world) {
   for_each_tile(world.movers.size(), [&](glm::dvec2 shift) {
     for (int i = -3; i <= 3; ++i) {
       const double at = 2.0 * i;
-      world.lane_markings.push_back(trial::stripe(shift + glm::dvec2{-7.0, at}, shift + glm::dvec2{7.0, at}, 0.03));
-      world.lane_markings.push_back(trial::stripe(shift + glm::dvec2{at, -7.0}, shift + glm::dvec2{at, 7.0}, 0.03));
+      world.lane_markings.push_back(trial::marking(shift + glm::dvec2{-7.0, at}, shift + glm::dvec2{7.0, at}, 0.03));
+      world.lane_markings.push_back(trial::marking(shift + glm::dvec2{at, -7.0}, shift + glm::dvec2{at, 7.0}, 0.03));
       for (int j = -3; j <= 3; ++j)
         world.magnets.push_back(scenes::magnet(shift + glm::dvec2{at + 0.5, 2.0 * j + 0.5}));
     }

@@ -93,19 +93,19 @@ base::Twist Route::drive(const ControllerInput& input, double speed) {
   return twist;
 }
 
-std::unique_ptr<Controller> make_route_controller(const ControllerContext& context, Settings& settings, bool convoy) {
+std::unique_ptr<Controller> make_route_controller(const ControllerContext& context, Settings& settings, bool follows) {
   const world::Mover& mover = context.world.movers[context.mover];
   if (context.roads == nullptr)
     throw base::InputError(context.world.file, 0,
                            "it has no road network to drive on; expected road( rndf \"...\" ) in it");
   RouteSettings s;
-  s.speed = settings.number("speed", std::min(convoy ? 0.25 : 0.2, mover.max_forward), 0.01, mover.max_forward);
-  s.gap = settings.number("gap", convoy ? 0.2 : s.gap, 0.01, 100.0);
+  s.speed = settings.number("speed", std::min(follows ? 0.25 : 0.2, mover.max_forward), 0.01, mover.max_forward);
+  s.gap = settings.number("gap", follows ? 0.2 : s.gap, 0.01, 100.0);
   s.headway = settings.number("headway", s.headway, 0.3, 10.0);
   s.pass = settings.flag("pass", true);
-  s.v2v_range = settings.number("radio", convoy ? 12.0 : s.v2v_range, 0.5, 1e6);
+  s.v2v_range = settings.number("radio", follows ? 12.0 : s.v2v_range, 0.5, 1e6);
   ConvoyState convoy;
-  if (convoy) {
+  if (follows) {
     if (!settings.has("leader"))
       settings.refuse("leader", "a convoy needs 'leader', the number of the robot to follow");
     convoy.leader = static_cast<std::uint32_t>(settings.number("leader", 0, 0, 4294967294.0));
@@ -113,7 +113,7 @@ std::unique_ptr<Controller> make_route_controller(const ControllerContext& conte
     convoy = {static_cast<std::uint32_t>(settings.number("merge_behind", 0, 0, 4294967294.0)), true};
   }
   std::optional<RouteGoals> goals;
-  if (!convoy) goals.emplace(context, settings);
+  if (!follows) goals.emplace(context, settings);
   auto corridors = shared_lane_corridors(*context.roads, context.world, footprint_of(mover));
   return std::make_unique<Route>(std::move(corridors), context, s, std::move(goals), convoy);
 }

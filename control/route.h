@@ -109,6 +109,6 @@ extern const ControllerType route_controller;
 /// A controller from settings: `speed`, `gap`, `headway`, `pass`, `merge_behind`, those of RouteGoals; `leader` for
 /// convoys.
 /// @throws base::InputError
-std::unique_ptr<Controller> make_route_controller(const ControllerContext& context, Settings& settings, bool convoy);
+std::unique_ptr<Controller> make_route_controller(const ControllerContext& context, Settings& settings, bool follows);
 
 }  // namespace sf::control

@@ -38,9 +38,9 @@ std::optional<PartStatus> MapAssembler::place(std::uint32_t sequence, const Grid
 
 PartStatus MapAssembler::arrived(std::uint32_t part) {
   here_[part] = true;
-  if (--missing_ > 0) return PartStatus::part;
+  if (--missing_ > 0) return PartStatus::incomplete;
   ++complete_;
-  return PartStatus::whole;
+  return PartStatus::complete;
 }
 
 PartStatus MapAssembler::add_part(std::uint32_t sequence, std::span<const std::uint8_t> payload) {

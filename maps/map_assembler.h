@@ -18,8 +18,8 @@ namespace sf::maps {
 
 /// What became of a datagram.
 enum class PartStatus {
-  part,         ///< used
-  whole,        ///< used, and now every part of its map is here
+  incomplete,   ///< used
+  complete,     ///< used, and now every part of its map is here
   duplicate,    ///< was here already
   late,         ///< of an older map: left out
   contradicts,  ///< says it belongs to the current map, but has another plan: left out

@@ -35,8 +35,7 @@ bool ReadingAssembler::jumps(const ReadingPart& piece, std::int64_t now) const {
   return far || piece.time - newest_.piece.time > now - arrival_ + kMaxTimeJump || piece.time < newest_.piece.time;
 }
 
-PartStatus ReadingAssembler::update_extent_and_hash(const ReadingPart& piece, std::int64_t now,
-                                                    PartialReading& partial) {
+PartStatus ReadingAssembler::finish(const ReadingPart& piece, std::int64_t now, PartialReading& partial) {
   last_ = now;
   partial.seen[piece.part] = true;
   if (--partial.missing > 0) return PartStatus::incomplete;

@@ -60,7 +60,7 @@ class ReadingAssembler {
     const PartStatus status = find_partial(piece, now, partial);
     if (partial == nullptr) return status;
     decode(std::span<double>(partial->values));
-    return update_extent_and_hash(piece, now, *partial);
+    return finish(piece, now, *partial);
   }
 
   std::optional<CompleteReading> newest() const;
@@ -79,7 +79,7 @@ class ReadingAssembler {
     std::vector<double> values;
   };
   PartStatus find_partial(const ReadingPart& piece, std::int64_t now, PartialReading*& partial);
-  PartStatus update_extent_and_hash(const ReadingPart& piece, std::int64_t now, PartialReading& partial);
+  PartStatus finish(const ReadingPart& piece, std::int64_t now, PartialReading& partial);
   bool jumps(const ReadingPart& piece, std::int64_t now) const;
   void count(const ReadingPart& piece);
   PartialReading* find(std::uint32_t sequence);

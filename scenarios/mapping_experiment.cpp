@@ -89,7 +89,7 @@ Mapped mapped_of(const Entrant& entrant, std::uint32_t number, const Trial& tria
           .contacts = counts.contacts,
           .interventions = trial.interventions.front(),
           .dead_ends = entrant.looks_about ? std::nullopt : std::optional(ends.count()),
-          .stuck = entrant.looks_about ? ends.stood() : ends.stuck(),
+          .stuck = entrant.looks_about ? ends.standing_in_contact() : ends.stuck(),
           .travelled = counts.travelled,
           .seen = coverage_of(trial.maps.front(), reference),
           .wrong = disagreement(trial.maps.front(), reference)};

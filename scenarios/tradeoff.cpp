@@ -113,7 +113,7 @@ std::vector<double> laser_errors(const Entrant& exact, const RecordedPaths& path
   // Scans of the first tick: every laser has its first reading there unless its phase is later.
   std::vector<base::Pose> poses;
   for (const base::Report& report : paths.front()) poses.push_back(report.X_WM);
-  reference.place(poses);
+  reference.set_poses(poses);
   std::size_t at = 0;
   for (std::size_t i = 0; i < std::min(rows.size(), kReferenceScans); ++i) {
     if (rows[i].phase > 0.0 || rows[i].latency > 0.0) return {};

@@ -118,7 +118,7 @@ class Verifier {
     reports_.swap(before_);
     reports_at(tick, reports_);
     const auto look_at = [this](std::span<const base::ReadingBlock> readings) {
-      for (const base::ReadingBlock& reading : readings) compare(reading);
+      for (const base::ReadingBlock& reading : readings) check_reading(reading);
     };
     if (tick > 0) sample_between(farm_, before_, reports_, on_the_way_, look_at);
     look_at(farm_.tick(reports_[0].time, reports_));
@@ -158,7 +158,7 @@ class Verifier {
                        1e-9 * static_cast<double>(r.time));
   }
 
-  void compare(const base::ReadingBlock& reading) {
+  void check_reading(const base::ReadingBlock& reading) {
     if (reading.kind == base::kLaser) return look_at_scan(reading);
     const auto at = readings_.find({reading.kind, reading.mover, reading.sensor, reading.sequence});
     if (at == readings_.end()) return;
@@ -215,7 +215,7 @@ class Verifier {
       std::size_t last = first;
       while (last < asked_.size() && asked_[last].time == asked_[first].time) ++last;
       poses_of(asked_[first], poses);
-      reference_.place(poses);
+      reference_.set_poses(poses);
       thread_pool_.parallel_for(last - first, 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = first + begin; i < first + end; ++i)
           scans[i] = reference_.scan(asked_[i].mover, asked_[i].sensor, asked_[i].sequence);

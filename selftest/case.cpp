@@ -26,7 +26,7 @@ void Checks::count(bool good, double error, double allowed, const std::function<
     outcome_.allowed = allowed;
   }
   if (good) return;
-  if (outcome_.failed++ == 0) outcome_.failure = failing_case();
+  if (outcome_.failed++ == 0) outcome_.failure = failure();
 }
 
 void Checks::near(double got, Real exact, double allowed, std::string_view what, std::uint64_t index) {

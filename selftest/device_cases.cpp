@@ -58,7 +58,7 @@ void beside(Fixture& fixture, Checks& checks, const world::World& world, const s
       poses[m].yaw += 0.7;
       reports.push_back({m, 0, poses[m], {}});
     }
-    reference.place(poses);
+    reference.set_poses(poses);
     for (const base::ReadingBlock& r : test.farm->tick(tick * 100'000'000ll, reports)) {
       const auto scan = reference.scan(r.mover, r.sensor, r.sequence);
       for (std::size_t i = 0; i < r.values.size(); ++i, ++all.beams) {

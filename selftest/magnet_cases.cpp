@@ -22,7 +22,7 @@ struct Field {
 };
 
 /// A dipole along +z, its moment as the device has it; at its radius where the place is nearer.
-void add(const world::Magnet& m, const Place& p, Field& sum) {
+void add(const world::Magnet& m, const FieldPoint& p, Field& sum) {
   Real x = Real{p.x} - m.p.x, y = Real{p.y} - m.p.y, z = Real{p.z} - m.z;
   Real r = std::sqrt(x * x + y * y + z * z);
   if (r == 0) z = r = m.radius;
@@ -36,7 +36,7 @@ void add(const world::Magnet& m, const Place& p, Field& sum) {
 
 /// Errors as shares of the sum of magnitudes: 1e-13, three squared 32-bit errors of a root; and what tells a magnet's
 /// middle from nowhere, 1e-18 m of height, of which the field knows the third power.
-double allowed_at(const world::World& world, const Place& p) {
+double allowed_at(const world::World& world, const FieldPoint& p) {
   double nearest = HUGE_VAL;
   for (const world::Magnet& m : world.magnets) {
     const double r = std::hypot(p.x - m.p.x, p.y - m.p.y, p.z - m.z);
@@ -45,14 +45,14 @@ double allowed_at(const world::World& world, const Place& p) {
   return 1e-13 + 4e-18 / nearest;
 }
 
-void compare(Fixture& fixture, Checks& checks, const world::World& world, std::span<const Place> places,
+void compare(Fixture& fixture, Checks& checks, const world::World& world, std::span<const FieldPoint> points,
              const std::string& what) {
-  const auto sums = sensors::sample_field(world, fixture.device(), places, {.magnitudes = true});
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  const auto sums = sensors::sample_field(world, fixture.device(), points, {.magnitudes = true});
+  for (std::size_t i = 0; i < points.size(); ++i) {
     Field exact;
-    for (const world::Magnet& m : world.magnets) add(m, places[i], exact);
+    for (const world::Magnet& m : world.magnets) add(m, points[i], exact);
     const Real apart = std::hypot(sums[i].x - exact.x, sums[i].y - exact.y, sums[i].z - exact.z);
-    const double allowed = allowed_at(world, places[i]);
+    const double allowed = allowed_at(world, points[i]);
     checks.near(static_cast<double>(apart / exact.magnitudes), 0, allowed, what + ", vector", i);
     checks.near(static_cast<double>(sums[i].magnitudes / exact.magnitudes), 1, allowed, what + ", magnitudes", i);
   }
@@ -62,12 +62,12 @@ void one_magnet(Fixture& fixture, Checks& checks) {
   for (const double moment : kMoments) {
     world::World world;
     world.magnets.push_back({{}, 0.0, moment, 1e-9, 0});
-    std::vector<Place> places;
+    std::vector<FieldPoint> points;
     for (const double r : kDistances)
       for (const glm::dvec2& d : {glm::dvec2{1.0, 0.0}, glm::dvec2{0.6, 0.8}, glm::dvec2{0.0, 1.0},
                                   glm::dvec2{-0.8, -0.6}, glm::dvec2{0.0, -1.0}})
-        places.push_back({r * d.x, 0.0, r * d.y});
-    compare(fixture, checks, world, places, fmt::format("{:g} A m^2", moment));
+        points.push_back({r * d.x, 0.0, r * d.y});
+    compare(fixture, checks, world, points, fmt::format("{:g} A m^2", moment));
   }
 }
 
@@ -76,13 +76,13 @@ void within_it(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
     world.magnets.push_back({{far, -far}, 0.5, -2.0, 0.0125, 0});
-    const std::array<Place, 6> places{{{far, -far, 0.5},
-                                       {far + 0x1p-20, -far, 0.5},
-                                       {far, -far, 0.5 + 1e-6},
-                                       {far + 0x1p-10, -far + 0x1p-10, 0.5 - 0x1p-9},
-                                       {far, -far + 0x1p-20, 0.5},
-                                       {far, -far, 0.51}}};
-    compare(fixture, checks, world, places, fmt::format("{:g} m away", far));
+    const std::array<FieldPoint, 6> points{{{far, -far, 0.5},
+                                            {far + 0x1p-20, -far, 0.5},
+                                            {far, -far, 0.5 + 1e-6},
+                                            {far + 0x1p-10, -far + 0x1p-10, 0.5 - 0x1p-9},
+                                            {far, -far + 0x1p-20, 0.5},
+                                            {far, -far, 0.51}}};
+    compare(fixture, checks, world, points, fmt::format("{:g} m away", far));
   }
 }
 
@@ -90,9 +90,9 @@ void far_origins(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
     for (int i = 0; i < 200; ++i) world.magnets.push_back({{far + 0.071 * i, far}, 0.0, i % 3 ? 1.0 : -2.5, 0.0125, 0});
-    std::vector<Place> places;
-    for (int i = 0; i < 25; ++i) places.push_back({far + 0.6 * i, far + 0.01 * i, 0.075});
-    compare(fixture, checks, world, places, fmt::format("200 magnets {:g} m away", far));
+    std::vector<FieldPoint> points;
+    for (int i = 0; i < 25; ++i) points.push_back({far + 0.6 * i, far + 0.01 * i, 0.075});
+    compare(fixture, checks, world, points, fmt::format("200 magnets {:g} m away", far));
   }
 }
 
@@ -102,16 +102,16 @@ void cancelling_pairs(Fixture& fixture, Checks& checks) {
   for (int i = 0; i < 500; ++i)
     for (const double sign : {1.0, -1.0})
       world.magnets.push_back({{0.071 * i, 0.25}, 0.1, sign * (1.0 + 1e6 * (i % 2)), 0.0125, 0});
-  std::vector<Place> places;
-  for (int i = 0; i < 50; ++i) places.push_back({0.7 * i, -0.1, 0.3});
-  const auto sums = sensors::sample_field(world, fixture.device(), places, {.magnitudes = true});
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  std::vector<FieldPoint> points;
+  for (int i = 0; i < 50; ++i) points.push_back({0.7 * i, -0.1, 0.3});
+  const auto sums = sensors::sample_field(world, fixture.device(), points, {.magnitudes = true});
+  for (std::size_t i = 0; i < points.size(); ++i) {
     for (const double component : {sums[i].x, sums[i].y, sums[i].z})
       checks.same(component + 0.0, 0.0, "nothing is left", i);
     checks.holds(sums[i].magnitudes > 0.0, "their magnitudes are", i);
   }
   world.magnets.push_back({{3.0, 0.0}, 0.0, 1e-3, 0.0125, 0});
-  compare(fixture, checks, world, places, "one without a partner");
+  compare(fixture, checks, world, points, "one without a partner");
 }
 
 /// As readings: they saturate where the sensor does, and are numbers always.

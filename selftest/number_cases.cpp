@@ -27,16 +27,17 @@ base::Bytes with(base::Bytes bytes, std::size_t at, double value) {
 /// One number of a packet, `most` its limit to both sides.
 void try_field(Checks& checks, const base::Bytes& good, std::size_t at, double most, const std::string& what) {
   netio::Packet packet;
-  const auto expect = [&](double value, Reason reason) {
-    const Reason came = netio::decode(with(good, at, value), packet);
-    checks.holds(came == reason, fmt::format("{} = {:g}: {}, expected {}", what, value, name(came), name(reason)));
+  const auto expect = [&](double value, PacketStatus status) {
+    const PacketStatus decoded = netio::decode(with(good, at, value), packet);
+    checks.holds(decoded == status,
+                 fmt::format("{} = {:g}: {}, expected {}", what, value, name(decoded), name(status)));
   };
   for (const double value : {kNan, -kNan, std::numeric_limits<double>::signaling_NaN(), kInfinity, -kInfinity})
-    expect(value, Reason::not_finite);
+    expect(value, PacketStatus::not_finite);
   for (const double value : {0.0, -0.0, kDenormal, -kDenormal, std::numeric_limits<double>::min(), most, -most})
-    expect(value, Reason::accepted);
+    expect(value, PacketStatus::accepted);
   const double beyond = std::nextafter(most, kInfinity);
-  for (const double value : {beyond, -beyond, kHuge, -kHuge}) expect(value, Reason::out_of_range);
+  for (const double value : {beyond, -beyond, kHuge, -kHuge}) expect(value, PacketStatus::out_of_range);
 }
 
 void packets(Fixture&, Checks& checks) {
@@ -54,9 +55,10 @@ void packets(Fixture&, Checks& checks) {
   }
   Packet packet;
   for (const double value : {kNan, kInfinity})
-    checks.holds(decode(with(tag, kHeaderBytes + 48, value), packet) == Reason::not_finite, "orientation of TAG");
+    checks.holds(decode(with(tag, kHeaderBytes + 48, value), packet) == PacketStatus::not_finite, "orientation of TAG");
   for (const double value : {0.0, kDenormal, 2.0, kHuge})
-    checks.holds(decode(with(tag, kHeaderBytes + 48, value), packet) == Reason::out_of_range, "no unit quaternion");
+    checks.holds(decode(with(tag, kHeaderBytes + 48, value), packet) == PacketStatus::out_of_range,
+                 "no unit quaternion");
 }
 
 /// From the bytes of a packet to readings: the least and the largest numbers that a pose may have.
@@ -70,7 +72,7 @@ void poses(Fixture& fixture, Checks& checks) {
       base::Bytes bytes;
       netio::Packet packet;
       netio::encode({.robot = 0}, netio::V2v{.X_WR = {x, kDenormal, 0.0, yaw}}, bytes);
-      checks.holds(netio::decode(bytes, packet) == Reason::accepted, "taken");
+      checks.holds(netio::decode(bytes, packet) == PacketStatus::accepted, "taken");
       const base::Report report = netio::report(packet.header, std::get<netio::V2v>(packet.body), 0);
       const auto readings = test.farm->tick(1'000'000'000, {&report, 1});
       checks.same(readings[0].values[0], 2.0, fmt::format("x {:g}, yaw {:g}", x, yaw));

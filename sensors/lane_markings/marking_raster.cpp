@@ -39,26 +39,26 @@ std::int64_t first_centre(double at, double cell) { return static_cast<std::int6
 /// Faces that a rising row of cell centres may cross.
 class Sweep {
  public:
-  explicit Sweep(std::vector<Face> faces) : faces_(std::move(faces)) {
-    std::sort(faces_.begin(), faces_.end(), [](const Face& p, const Face& q) { return low(p) < low(q); });
+  explicit Sweep(std::vector<OutlineEdge> faces) : faces_(std::move(faces)) {
+    std::sort(faces_.begin(), faces_.end(), [](const OutlineEdge& p, const OutlineEdge& q) { return low(p) < low(q); });
   }
   /// In order of x. `y` does not go back.
   const std::vector<Crossing>& cross(double y);
 
  private:
-  static double low(const Face& f) { return std::min(f.a.y, f.b.y); }
+  static double low(const OutlineEdge& f) { return std::min(f.a.y, f.b.y); }
 
-  std::vector<Face> faces_;
+  std::vector<OutlineEdge> faces_;
   std::size_t next_ = 0;
-  std::vector<Face> active_;
+  std::vector<OutlineEdge> active_;
   std::vector<Crossing> crossings_;
 };
 
 const std::vector<Crossing>& Sweep::cross(double y) {
   for (; next_ < faces_.size() && low(faces_[next_]) <= y; ++next_) active_.push_back(faces_[next_]);
-  std::erase_if(active_, [y](const Face& f) { return std::max(f.a.y, f.b.y) < y; });
+  std::erase_if(active_, [y](const OutlineEdge& f) { return std::max(f.a.y, f.b.y) < y; });
   crossings_.clear();
-  for (const Face& f : active_) {
+  for (const OutlineEdge& f : active_) {
     const bool up = f.a.y <= y && f.b.y > y;
     const bool down = f.b.y <= y && f.a.y > y;
     if (up || down) crossings_.push_back({f.a.x + (y - f.a.y) / (f.b.y - f.a.y) * (f.b.x - f.a.x), up ? -1 : 1});
@@ -68,8 +68,8 @@ const std::vector<Crossing>& Sweep::cross(double y) {
 }
 
 /// Within one cell of an end face, on the paint's side of it.
-bool near_end(const std::vector<Face>& ends, glm::dvec2 p, double cell) {
-  return std::any_of(ends.begin(), ends.end(), [&](const Face& f) {
+bool near_end(const std::vector<OutlineEdge>& ends, glm::dvec2 p, double cell) {
+  return std::any_of(ends.begin(), ends.end(), [&](const OutlineEdge& f) {
     const glm::dvec2 e = f.b - f.a;
     const double width = length(e);
     const double behind = base::cross(e, p - f.a) / width;
@@ -134,19 +134,19 @@ void MarkingRaster::set(std::int64_t x, std::int64_t y, std::size_t plane) {
 }
 
 void MarkingRaster::paint(const world::LaneMarking& marking) {
-  std::vector<Face> faces;
+  std::vector<OutlineEdge> faces;
   add_outline(marking, faces);
   // Relative to the raster, so that it is as good far from the origin.
   const glm::dvec2 corner{static_cast<double>(column_) * cell_, static_cast<double>(row_) * cell_};
   Box box;
-  for (Face& f : faces) {
+  for (OutlineEdge& f : faces) {
     f.a = f.a - corner;
     f.b = f.b - corner;
     box.add(f.a);
     box.add(f.b);
   }
-  std::vector<Face> ends;
-  std::copy_if(faces.begin(), faces.end(), std::back_inserter(ends), [](const Face& f) { return f.is_end; });
+  std::vector<OutlineEdge> ends;
+  std::copy_if(faces.begin(), faces.end(), std::back_inserter(ends), [](const OutlineEdge& f) { return f.is_end; });
   Sweep sweep(std::move(faces));
   for (std::int64_t y = first_centre(box.y_min, cell_); (static_cast<double>(y) + 0.5) * cell_ <= box.y_max; ++y) {
     const double centre = (static_cast<double>(y) + 0.5) * cell_;

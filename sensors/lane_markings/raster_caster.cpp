@@ -78,7 +78,7 @@ RasterRow RasterCaster::row_of(std::size_t i) const {
   r.range_max = range_max;
   r.tag = tag_;
   r.columns = block_columns_;
-  r.specs = block_rows_;
+  r.rows = block_rows_;
   return r;
 }
 

@@ -84,10 +84,10 @@ TEST(MapAssembler, PartsInAnyOrderMakeTheMap) {
   EXPECT_EQ(assembler.map(), nullptr);
   const OccupancyGrid grid = numbered(1);
   const auto parts = parts_of(grid, kTruePoses);
-  EXPECT_EQ(assembler.add_part(7, parts[2]), PartStatus::part);
-  EXPECT_EQ(assembler.add_part(7, parts[0]), PartStatus::part);
+  EXPECT_EQ(assembler.add_part(7, parts[2]), PartStatus::incomplete);
+  EXPECT_EQ(assembler.add_part(7, parts[0]), PartStatus::incomplete);
   EXPECT_EQ(assembler.add_part(7, parts[0]), PartStatus::duplicate);
-  EXPECT_EQ(assembler.add_part(7, parts[1]), PartStatus::whole);
+  EXPECT_EQ(assembler.add_part(7, parts[1]), PartStatus::complete);
   EXPECT_EQ(assembler.add_part(7, parts[1]), PartStatus::duplicate);
   EXPECT_EQ(assembler.map()->words, grid.words);
   EXPECT_EQ(assembler.map()->plan, grid.plan);
@@ -102,7 +102,7 @@ TEST(MapAssembler, WhatWasLostIsAsBefore) {
   const auto next = parts_of(numbered(2));
   assembler.add_part(2, next[0]);
   assembler.add_part(2, next[2]);
-  EXPECT_EQ(assembler.add_part(3, parts_of(numbered(3))[0]), PartStatus::part) << "a newer map begins";
+  EXPECT_EQ(assembler.add_part(3, parts_of(numbered(3))[0]), PartStatus::incomplete) << "a newer map begins";
   EXPECT_EQ(assembler.incomplete_maps(), 1u);
   EXPECT_EQ(assembler.complete_maps(), 1u);
   EXPECT_EQ(assembler.map()->words[0], numbered(3).words[0]);
@@ -129,8 +129,8 @@ TEST(MapAssembler, ASenderThatStartsAgainIsBelieved) {
     return last;
   };
   EXPECT_EQ(again(0), PartStatus::late) << "it could be a late one";
-  EXPECT_EQ(again(1), PartStatus::whole);
-  EXPECT_EQ(again(2), PartStatus::whole);
+  EXPECT_EQ(again(1), PartStatus::complete);
+  EXPECT_EQ(again(2), PartStatus::complete);
   EXPECT_EQ(assembler.map()->words, numbered(52).words);
 }
 
@@ -139,7 +139,7 @@ TEST(MapAssembler, CountersWrap) {
   for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(0xFFFFFFFFu, part);
   PartStatus last = PartStatus::faulty;
   for (const base::Bytes& part : parts_of(numbered(2))) last = assembler.add_part(0, part);
-  EXPECT_EQ(last, PartStatus::whole);
+  EXPECT_EQ(last, PartStatus::complete);
 }
 
 /// Of two that are half way round apart neither is newer.
@@ -149,7 +149,7 @@ TEST(MapAssembler, HalfWayRoundIsNotNewer) {
     for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(first, part);
     return assembler.add_part(next, parts_of(numbered(2))[0]);
   };
-  EXPECT_EQ(after(5, 5 + 0x7FFFFFFFu), PartStatus::part);  // the farthest that is ahead
+  EXPECT_EQ(after(5, 5 + 0x7FFFFFFFu), PartStatus::incomplete);  // the farthest that is ahead
   EXPECT_EQ(after(5, 5 + 0x80000000u), PartStatus::late);
   EXPECT_EQ(after(5 + 0x80000000u, 5), PartStatus::late);
   EXPECT_EQ(after(5, 4), PartStatus::late);
@@ -161,7 +161,7 @@ TEST(MapAssembler, AMapThatChangesItsPlanBeginsAnew) {
   GridGeometry other = plan();
   other.word_rows = 2;
   EXPECT_EQ(assembler.add_part(1, parts_of(numbered(2, other))[0]), PartStatus::contradicts);
-  EXPECT_EQ(assembler.add_part(2, parts_of(numbered(2, other))[0]), PartStatus::whole);
+  EXPECT_EQ(assembler.add_part(2, parts_of(numbered(2, other))[0]), PartStatus::complete);
   EXPECT_EQ(assembler.map()->words.size(), 60u);
 }
 
@@ -170,8 +170,8 @@ TEST(MapAssembler, TheThesisFormInTwoDatagrams) {
   const OccupancyGrid grid = numbered(4);
   const auto parts = plain_parts(grid);
   EXPECT_EQ(assembler.add_plain_part(parts[1]), PartStatus::orphan) << "whose half is it?";
-  EXPECT_EQ(assembler.add_plain_part(parts[0]), PartStatus::part);
-  EXPECT_EQ(assembler.add_plain_part(parts[1]), PartStatus::whole);
+  EXPECT_EQ(assembler.add_plain_part(parts[0]), PartStatus::incomplete);
+  EXPECT_EQ(assembler.add_plain_part(parts[1]), PartStatus::complete);
   EXPECT_EQ(assembler.map()->words, grid.words);
   EXPECT_EQ(assembler.add_plain_part(parts[1]), PartStatus::duplicate);
   GridGeometry odd = plan();
@@ -181,7 +181,7 @@ TEST(MapAssembler, TheThesisFormInTwoDatagrams) {
   EXPECT_EQ(assembler.map()->words, numbered(5, odd).words) << "8 words and 7";
   GridGeometry one = plan();
   one.word_columns = one.word_rows = 1;
-  EXPECT_EQ(assembler.add_plain_part(plain_parts(numbered(6, one))[0]), PartStatus::whole)
+  EXPECT_EQ(assembler.add_plain_part(plain_parts(numbered(6, one))[0]), PartStatus::complete)
       << "one word is all in the first";
 }
 
@@ -200,7 +200,7 @@ TEST(MapAssembler, AnyBytesAndAnyNetwork) {
       for (int flips = 0; flips < 3; ++flips)
         bytes[chance.below(40)] ^= static_cast<std::uint8_t>(1u << chance.below(8));
     const PartStatus taken = assembler.add_part(chance.below(6), bytes);
-    used += taken == PartStatus::part || taken == PartStatus::whole;
+    used += taken == PartStatus::incomplete || taken == PartStatus::complete;
     plain.add_plain_part(bytes);
     for (const MapAssembler* a : {&assembler, &plain}) {
       if (a->map() == nullptr) continue;

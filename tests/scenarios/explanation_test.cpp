@@ -58,7 +58,7 @@ TEST(Explanation, WhatIsGivenAgainIsCounted) {
   const Explanation e = explain(world, device(), 1, 1);
   ASSERT_EQ(e.kinds.size(), 1u);
   EXPECT_EQ(e.kinds[0].readings, 1.0);
-  EXPECT_EQ(e.kinds[0].again, 1.0);
+  EXPECT_EQ(e.kinds[0].reused, 1.0);
   EXPECT_EQ(e.kinds[0].work.rays, 0u);
 }
 

@@ -112,8 +112,8 @@ TEST(Mailbox, RobotsLoseDifferentReadings) {
   Sender sender;
   int apart = 0;
   for (std::uint32_t k = 0; k < 100; ++k) {
-    one.post(sender.reading(k), k);
-    two.post(sender.reading(k), k);
+    one.send(sender.reading(k), k);
+    two.send(sender.reading(k), k);
     apart += newest(one, k) != newest(two, k);
   }
   EXPECT_GT(apart, 10);

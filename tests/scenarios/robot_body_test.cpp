@@ -50,13 +50,13 @@ TEST_F(BodyTest, WhoIsSilentForLongIsInNobodysWay) {
   for (const std::int64_t forget : {std::int64_t{0}, 2000 * kMilli}) {
     RobotBody one(world, 0, forget);
     one.move({}, 100 * kMilli);
-    one.hear(1, {-1.0, 0.0, 0.0, 0.0}, {}, 100 * kMilli);
+    one.update_other(1, {-1.0, 0.0, 0.0, 0.0}, {}, 100 * kMilli);
     for (int i = 2; i <= 20; ++i) one.move({0.5, 0.0, 0.0}, i * 100 * kMilli);
     EXPECT_TRUE(one.contact());
     for (int i = 21; i <= 60; ++i) one.move({0.5, 0.0, 0.0}, i * 100 * kMilli);
     EXPECT_EQ(one.contact(), forget == 0);
     EXPECT_EQ(one.state().X_WM.x > 0.0, forget > 0);
-    one.hear(1, {one.state().X_WM.x + 0.31, 0.0, 0.0, 0.0}, {}, 6000 * kMilli);
+    one.update_other(1, {one.state().X_WM.x + 0.31, 0.0, 0.0, 0.0}, {}, 6000 * kMilli);
     one.move({0.5, 0.0, 0.0}, 6100 * kMilli);
     EXPECT_TRUE(one.contact()) << "it is back";
   }

@@ -84,7 +84,7 @@ TEST(Oracle, LaserRangesInRandomScenes) {
     const double turn = chance.below(4) == 0 ? 1e6 : 4.0;
     const world::Laser eye = laser(1 + chance.below(40), chance.between(0.0, 2.0 * M_PI), std::min(size, 1e5));
     add_laser_mover(world, {at.x, at.y, 0.0, chance.between(-turn, turn)}, eye);
-    const TestFarm test = fixture().look(world);
+    const TestFarm test = fixture().measure(world);
     for (std::uint32_t i = 0; i < eye.samples; ++i, ++beams) {
       const Met met = nearest_hit(world, test.readings[0].X_WS, eye, i);
       if (met.ambiguous) {
@@ -168,7 +168,7 @@ TEST(Oracle, DistancesToRandomEdges) {
     world.lane_markings.push_back({{middle - 5.0 * distance * along, middle + 5.0 * distance * along}, 0.1 * distance});
     world.movers[add_mover(world, X)].sensors.push_back(
         sensor("laneedge", {{"perpendicular", {0.0}}, {"range_max", {3.0 * distance}}}, 0.1));
-    const TestFarm test = fixture().look(world);
+    const TestFarm test = fixture().measure(world);
     const glm::dvec2 a = world.lane_markings[0].line[0], b = world.lane_markings[0].line[1];
     const Digits50 tx = Digits50(b.x) - a.x, ty = Digits50(b.y) - a.y, size = sqrt(tx * tx + ty * ty);
     const Digits50 nx = ty / size, ny = -tx / size;
@@ -193,7 +193,7 @@ TEST(Oracle, SeesAWallThatIsElsewhere) {
   add_wall(world, {2.0, -1.0}, {2.5, 1.0});
   const world::Laser eye = laser(1, 0.0, 8.0);
   add_laser_mover(world, {0.0, 0.0, 0.0, 0.1}, eye);
-  const TestFarm test = fixture().look(world);
+  const TestFarm test = fixture().measure(world);
   const Met there = nearest_hit(world, test.readings[0].X_WS, eye, 0);
   EXPECT_LE(abs(Digits50(test.readings[0].values[0]) - there.range), 2e-14);
   world.walls[0].a.x += 1e-12;

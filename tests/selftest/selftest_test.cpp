@@ -58,7 +58,7 @@ TEST(Suite, AWrongAnswerFails) {
     world::World world;
     add_wall(world, {2.0, -1.0}, {2.0, 1.0});
     add_laser_mover(world, {}, laser(1, 0.0, 8.0));
-    const TestFarm test = l.look(world);
+    const TestFarm test = l.measure(world);
     checks.near(test.readings[0].values[0], 2.0, 1e-9, "right");
     checks.near(test.readings[0].values[0], 2.5, 1e-9, "wrong", 7);
   });
@@ -99,7 +99,7 @@ TEST(Suite, TheNearestToItsToleranceIsTold) {
 TEST(SuiteDeathTest, APoseThatIsNoNumberStopsTheFarm) {
   world::World world;
   add_laser_mover(world, {}, laser(1, 0.0, 8.0));
-  const TestFarm test = fixture().look(world);
+  const TestFarm test = fixture().measure(world);
   const base::Report report{.mover = 0, .X_WM = {std::numeric_limits<double>::quiet_NaN(), 0, 0, 0}};
   EXPECT_DEATH(test.farm->tick(1, {&report, 1}), "the pose of mover 0 is not finite");
 }

@@ -66,7 +66,7 @@ struct EdgeRig::State {
         context{world, on, thread_pool, seed, noise, {}},
         backend(sensors::laneedge_type.make(context)),
         batch(on),
-        rows(sensors::laneedge_type.rows(world).size()) {}
+        rows(sensors::laneedge_type.specs(world).size()) {}
 };
 
 EdgeRig::EdgeRig(const world::World& world, std::uint64_t seed, unsigned threads, bool noise, gpu::Device* on)

@@ -20,8 +20,8 @@ using sensors::FieldPoint;
 
 // --- Which magnets count.
 
-double field_z(const world::World& world, const Place& place) {
-  return sensors::sample_field(world, device(), {&place, 1})[0].z;
+double field_z(const world::World& world, const FieldPoint& point) {
+  return sensors::sample_field(world, device(), {&point, 1})[0].z;
 }
 
 /// Along the ground, whatever the height; at exactly the cut-off it counts, a unit in the last place farther it does
@@ -36,7 +36,7 @@ TEST(MagnetCutoff, IsSharpAndAlongTheGround) {
   EXPECT_EQ(field_z(world, {1.5, 1.5, 0.0}), 0.0);
 }
 
-/// Against a sum over exactly the magnets that are near enough, at places and cut-offs of all sizes.
+/// Against a sum over exactly the magnets that are near enough, at points and cut-offs of all sizes.
 TEST(MagnetCutoff, SumsTheMagnetsThatAreNearEnough) {
   Chance chance(5);
   for (const double cutoff : {0.05, 0.5, 3.0, 30.0})
@@ -44,14 +44,14 @@ TEST(MagnetCutoff, SumsTheMagnetsThatAreNearEnough) {
       world::World world = scenes::sheet(3000, 20.0, 6, true);
       for (world::Magnet& m : world.magnets) m.p = m.p + glm::dvec2{offset, offset};
       world.magnet_cutoff = cutoff;
-      std::vector<Place> places;
+      std::vector<FieldPoint> points;
       for (int i = 0; i < 250; ++i)
-        places.push_back({offset + chance.between(-12, 12), offset + chance.between(-12, 12), 0.1});
-      const auto sums = sensors::sample_field(world, device(), places);
-      for (std::size_t i = 0; i < places.size(); ++i) {
-        const scenes::Exact truth = scenes::exact(world, places[i], cutoff);
+        points.push_back({offset + chance.between(-12, 12), offset + chance.between(-12, 12), 0.1});
+      const auto sums = sensors::sample_field(world, device(), points);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const scenes::Exact truth = scenes::exact(world, points[i], cutoff);
         ASSERT_LE(scenes::apart(truth, sums[i]), 1e-7 * static_cast<double>(truth.magnitudes))
-            << cutoff << ", place " << i;
+            << cutoff << ", point " << i;
       }
     }
 }
@@ -80,20 +80,20 @@ struct Measured {
 /// Places all over the world, beside it, right at magnets' rims, and where the bound was largest.
 Measured measure(world::World world, double half, double height, std::uint32_t count) {
   Chance chance(9);
-  std::vector<Place> places;
+  std::vector<FieldPoint> points;
   const double cutoff = world.magnet_cutoff;
   for (std::uint32_t i = 0; i < count; ++i) {
     const glm::dvec2 p = chance.in_square(half + 1.2 * cutoff);
     const glm::dvec2 m = world.magnets[chance.below(static_cast<std::uint32_t>(world.magnets.size()))].p;
     const double a = chance.between(-M_PI, M_PI), r = cutoff * chance.between(0.999, 1.01);
     const bool at_rim = i % 2 == 0;
-    places.push_back({at_rim ? m.x + r * std::cos(a) : p.x, at_rim ? m.y + r * std::sin(a) : p.y, height});
+    points.push_back({at_rim ? m.x + r * std::cos(a) : p.x, at_rim ? m.y + r * std::sin(a) : p.y, height});
   }
-  const auto cut = sensors::sample_field(world, device(), places);
+  const auto cut = sensors::sample_field(world, device(), points);
   Measured result{sensors::truncation_bound(world, height), 0.0};
   world.magnet_cutoff = 0.0;
-  const auto all = sensors::sample_field(world, device(), places);
-  for (std::size_t i = 0; i < places.size(); ++i)
+  const auto all = sensors::sample_field(world, device(), points);
+  for (std::size_t i = 0; i < points.size(); ++i)
     result.worst = std::max(result.worst, std::hypot(all[i].x - cut[i].x, all[i].y - cut[i].y, all[i].z - cut[i].z));
   return result;
 }
@@ -178,14 +178,14 @@ TEST(MagnetBound, FactsAreOfTheWorstElement) {
   world.magnet_cutoff = 1.5;
   const sensors::MagnetSummary nobody = sensors::summarize_magnets(world);
   EXPECT_EQ(nobody.magnets, 100u);
-  EXPECT_EQ(nobody.moving, 0u);
+  EXPECT_EQ(nobody.moving_magnets, 0u);
   EXPECT_EQ(nobody.cutoff_m, 1.5);
   EXPECT_GE(nobody.bound_T, sensors::truncation_bound(world, 0.0));
 
   scenes::add_carrier(world, {0, 0, 0.1, 0}, scenes::array({{0, 0, 0.5, 0}, {0, 0, 0.2, 0}}, 0.1));
   world.movers[0].magnets = {magnet({0, 0}, -0.5, 1e-9)};
   const sensors::MagnetSummary facts = sensors::summarize_magnets(world);
-  EXPECT_EQ(facts.moving, 1u);
+  EXPECT_EQ(facts.moving_magnets, 1u);
   EXPECT_DOUBLE_EQ(facts.height_m, 0.1 + 0.1 + 0.2);
   EXPECT_EQ(facts.bound_T, sensors::truncation_bound(world, facts.height_m));
   EXPECT_LE(facts.bound_T, nobody.bound_T * 1.0001);

@@ -26,8 +26,8 @@ world::World one(const world::Magnet& m) {
   return world;
 }
 
-FieldSum field(const world::World& world, const Place& place) {
-  return sensors::sample_field(world, device(), {&place, 1}, {.magnitudes = true})[0];
+FieldSum field(const world::World& world, const FieldPoint& point) {
+  return sensors::sample_field(world, device(), {&point, 1}, {.magnitudes = true})[0];
 }
 
 TEST(MagnetField, AboveAndBelowItIsTwiceTheStrengthByTheCube) {
@@ -73,8 +73,9 @@ TEST(MagnetField, InTheMiddleItIsTheFieldAboveItAtTheRadius) {
 /// Where doubles end: no root of it may leave the numbers.
 TEST(MagnetField, NextToTheMiddleItIsANumber) {
   for (const double d : {1e-300, 1e-160, 1e-40, 1e-30, 1e-20, 1e-18, 1e-17, 1e-9}) {
-    for (const Place& place : {Place{d, 0, 0}, Place{0, -d, 0}, Place{0, 0, d}, Place{0, 0, -d}, Place{d, d, -d}}) {
-      const FieldSum b = field(one(magnet({0, 0})), place);
+    for (const FieldPoint& point :
+         {FieldPoint{d, 0, 0}, FieldPoint{0, -d, 0}, FieldPoint{0, 0, d}, FieldPoint{0, 0, -d}, FieldPoint{d, d, -d}}) {
+      const FieldSum b = field(one(magnet({0, 0})), point);
       const double most = 2e-7 / std::pow(0.0125, 3);
       ASSERT_TRUE(std::isfinite(b.x + b.y + b.z + b.magnitudes)) << d;
       EXPECT_LE(magnitude(b), most * 1.000001) << d;
@@ -133,9 +134,9 @@ TEST(MagnetField, NeitherOverflowsNorUnderflows) {
   for (const double moment : {1e-12, 1e-3, 1.0, 1e6, 1e12})
     for (const double r : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
       const world::World world = one(magnet({0, 0}, 0, moment, 1e-9));
-      const Place place{0.6 * r, 0, 0.8 * r};
-      const scenes::Exact truth = scenes::exact(world, place);
-      EXPECT_LE(scenes::apart(truth, field(world, place)), 1e-7 * magnitude(truth))
+      const FieldPoint point{0.6 * r, 0, 0.8 * r};
+      const scenes::Exact truth = scenes::exact(world, point);
+      EXPECT_LE(scenes::apart(truth, field(world, point)), 1e-7 * magnitude(truth))
           << moment << " A m^2, " << r << " m";
     }
 }

@@ -22,17 +22,17 @@ using sensors::FieldSum;
 
 constexpr double kGauss = 1e-4;
 
-FieldSum field(const world::World& world, const Place& place) {
-  return sensors::sample_field(world, device(), {&place, 1}, {.magnitudes = true})[0];
+FieldSum field(const world::World& world, const FieldPoint& point) {
+  return sensors::sample_field(world, device(), {&point, 1}, {.magnitudes = true})[0];
 }
 
 TEST(MagnetSum, TheSumOfMagnitudesIsThat) {
   const world::World world = scenes::sheet(300, 3.0, 4, true);
   Chance chance(5);
   for (int i = 0; i < 50; ++i) {
-    const Place place{chance.between(-2, 2), chance.between(-2, 2), chance.between(0.03, 0.5)};
-    const scenes::Exact truth = scenes::exact(world, place);
-    const FieldSum b = field(world, place);
+    const FieldPoint point{chance.between(-2, 2), chance.between(-2, 2), chance.between(0.03, 0.5)};
+    const scenes::Exact truth = scenes::exact(world, point);
+    const FieldSum b = field(world, point);
     EXPECT_NEAR(b.magnitudes, static_cast<double>(truth.magnitudes), 1e-7 * static_cast<double>(truth.magnitudes));
     EXPECT_LE(magnitude(b), b.magnitudes * (1 + 1e-12)) << "the vectors' sum is never longer";
   }
@@ -42,11 +42,11 @@ TEST(MagnetSum, TheSumOfMagnitudesIsThat) {
 TEST(MagnetSum, MagnitudesDoNotChangeVectors) {
   const world::World world = scenes::sheet(500, 3.0, 4, true);
   Chance chance(6);
-  std::vector<Place> places;
-  for (int i = 0; i < 203; ++i) places.push_back({chance.between(-2, 2), chance.between(-2, 2), 0.1});
-  const auto plain = sensors::sample_field(world, device(), places);
-  const auto both = sensors::sample_field(world, device(), places, {.magnitudes = true});
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  std::vector<FieldPoint> points;
+  for (int i = 0; i < 203; ++i) points.push_back({chance.between(-2, 2), chance.between(-2, 2), 0.1});
+  const auto plain = sensors::sample_field(world, device(), points);
+  const auto both = sensors::sample_field(world, device(), points, {.magnitudes = true});
+  for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(std::memcmp(&plain[i].x, &both[i].x, 3 * sizeof(double)), 0);
     EXPECT_EQ(plain[i].magnitudes, 0.0);
   }
@@ -54,14 +54,14 @@ TEST(MagnetSum, MagnitudesDoNotChangeVectors) {
 
 struct Errors {
   double worst = 0.0;    ///< [T]
-  double largest = 0.0;  ///< [T] |B| of the places
+  double largest = 0.0;  ///< [T] |B| of the points
 };
 
-Errors errors(const world::World& world, std::span<const Place> places) {
-  const auto sums = sensors::sample_field(world, device(), places, {.magnitudes = true});
+Errors errors(const world::World& world, std::span<const FieldPoint> points) {
+  const auto sums = sensors::sample_field(world, device(), points, {.magnitudes = true});
   Errors e;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const scenes::Exact truth = scenes::exact(world, places[i]);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const scenes::Exact truth = scenes::exact(world, points[i]);
     e.worst = std::max(e.worst, scenes::apart(truth, sums[i]));
     e.largest = std::max(e.largest, magnitude(truth));
     EXPECT_NEAR(sums[i].magnitudes, static_cast<double>(truth.magnitudes),
@@ -70,18 +70,18 @@ Errors errors(const world::World& world, std::span<const Place> places) {
   return e;
 }
 
-/// `count` places at `height` [m], some of them right above a magnet, where the largest fields are.
-std::vector<Place> places_over(const world::World& world, std::uint32_t count, double half, double height) {
+/// `count` points at `height` [m], some of them right above a magnet, where the largest fields are.
+std::vector<FieldPoint> places_over(const world::World& world, std::uint32_t count, double half, double height) {
   Chance chance(11);
-  std::vector<Place> places;
+  std::vector<FieldPoint> points;
   const glm::dvec2 middle = world.magnets[0].p;
   for (std::uint32_t i = 0; i < count; ++i) {
     const world::Magnet& m = world.magnets[chance.below(static_cast<std::uint32_t>(world.magnets.size()))];
     const bool above = i % 4 == 0;
-    places.push_back({above ? m.p.x + chance.between(-0.02, 0.02) : middle.x + chance.between(-half, half),
+    points.push_back({above ? m.p.x + chance.between(-0.02, 0.02) : middle.x + chance.between(-half, half),
                       above ? m.p.y + chance.between(-0.02, 0.02) : middle.y + chance.between(-half, half), height});
   }
-  return places;
+  return points;
 }
 
 #ifdef __SANITIZE_ADDRESS__
@@ -91,13 +91,13 @@ constexpr std::uint32_t kMany = 200'000, kPlaces = 500;
 #endif
 
 /// The thesis' components in plain doubles, on all cores.
-std::vector<FieldSum> direct_sums(const world::World& world, std::span<const Place> places) {
-  std::vector<FieldSum> sums(places.size());
+std::vector<FieldSum> direct_sums(const world::World& world, std::span<const FieldPoint> points) {
+  std::vector<FieldSum> sums(points.size());
   base::ThreadPool thread_pool;
-  thread_pool.parallel_for(places.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
+  thread_pool.parallel_for(points.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i)
       for (const world::Magnet& m : world.magnets) {
-        const double x = places[i].x - m.p.x, y = places[i].y - m.p.y, z = places[i].z - m.z;
+        const double x = points[i].x - m.p.x, y = points[i].y - m.p.y, z = points[i].z - m.z;
         const double squared = x * x + y * y + z * z;
         const double k = 1e-7 * m.moment / (squared * squared * std::sqrt(squared));
         sums[i].x += k * 3 * x * z;
@@ -108,17 +108,17 @@ std::vector<FieldSum> direct_sums(const world::World& world, std::span<const Pla
   return sums;
 }
 
-/// A sheet of them, at the origin and 100 km away, near to it and high above it: 2000 places in all.
+/// A sheet of them, at the origin and 100 km away, near to it and high above it: 2000 points in all.
 TEST(MagnetSum, TwoHundredThousandMagnetsAreRightAnywhere) {
   for (const double offset : {0.0, 1e5})
     for (const double height : {0.1, 1.0}) {
       world::World world = scenes::sheet(kMany, 400.0, 7);
       for (world::Magnet& m : world.magnets) m.p = m.p + glm::dvec2{offset, -offset};
-      const auto places = places_over(world, kPlaces, 100.0, height);
-      const auto sums = sensors::sample_field(world, device(), places);
-      const auto truths = direct_sums(world, places);
+      const auto points = places_over(world, kPlaces, 100.0, height);
+      const auto sums = sensors::sample_field(world, device(), points);
+      const auto truths = direct_sums(world, points);
       double worst = 0.0, largest = 0.0;
-      for (std::size_t i = 0; i < places.size(); ++i) {
+      for (std::size_t i = 0; i < points.size(); ++i) {
         const FieldSum &a = sums[i], &b = truths[i];
         worst = std::max(worst, std::hypot(a.x - b.x, a.y - b.y, a.z - b.z));
         largest = std::max(largest, magnitude(b));
@@ -144,7 +144,7 @@ TEST(MagnetSum, TwoHundredThousandMagnetsInOneSpot) {
   }
 }
 
-/// Numbers of magnets and of places round the sizes of turns, items and groups.
+/// Numbers of magnets and of points round the sizes of turns, items and groups.
 TEST(MagnetSum, EveryNumberOfMagnetsAndPlaces) {
   Chance chance(8);
   const auto most = sensors::kMostItemMagnets;
@@ -153,15 +153,15 @@ TEST(MagnetSum, EveryNumberOfMagnetsAndPlaces) {
     for (const std::uint32_t count : {1u, 4u, 5u, 6u, 159u, 160u, 161u}) {
       if (magnets > 5 && count > 6) continue;
       const Errors e = errors(world, places_over(world, count, 1.0, 0.1));
-      EXPECT_LE(e.worst, 1e-7 * e.largest) << magnets << " magnets, " << count << " places";
+      EXPECT_LE(e.worst, 1e-7 * e.largest) << magnets << " magnets, " << count << " points";
     }
   }
 }
 
 // --- To the bit.
 
-/// The kernel in C++, operation by operation: one magnet at one place.
-FieldSum mirrored(const sensors::DipoleRow& m, const Place& p) {
+/// The kernel in C++, operation by operation: one magnet at one point.
+FieldSum mirrored(const sensors::DipoleRow& m, const FieldPoint& p) {
   const double dx = p.x - m.x, dy = p.y - m.y, dz = (p.z - m.z) + 1e-18;
   const double along = dx * dx + dy * dy;
   const double squared = along + dz * dz;
@@ -182,16 +182,16 @@ FieldSum mirrored(const sensors::DipoleRow& m, const Place& p) {
 TEST(MagnetSum, TheKernelIsItsMirrorToTheBit) {
   if (!device().info().software) GTEST_SKIP() << "32-bit roots of GPUs need not be correctly rounded";
   const world::World world = scenes::sheet(50, 1.0, 9, true);
-  const auto places = places_over(world, 301, 0.6, 0.05);
-  const auto sums = sensors::sample_field(world, device(), places, {.magnitudes = true});
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  const auto points = places_over(world, 301, 0.6, 0.05);
+  const auto sums = sensors::sample_field(world, device(), points, {.magnitudes = true});
+  for (std::size_t i = 0; i < points.size(); ++i) {
     FieldSum sum;
     for (const world::Magnet& m : world.magnets) {
-      const FieldSum b = mirrored(sensors::dipole_row(m, m.p, m.z), places[i]);
+      const FieldSum b = mirrored(sensors::dipole_row(m, m.p, m.z), points[i]);
       sum = {sum.x + b.x, sum.y + b.y, sum.z + b.z, sum.magnitudes + b.magnitudes};
     }
     sum = {1e-7 * sum.x, 1e-7 * sum.y, 1e-7 * sum.z, 1e-7 * sum.magnitudes};
-    ASSERT_EQ(std::memcmp(&sum, &sums[i], sizeof sum), 0) << "place " << i;
+    ASSERT_EQ(std::memcmp(&sum, &sums[i], sizeof sum), 0) << "point " << i;
   }
 }
 
@@ -199,14 +199,14 @@ TEST(MagnetSum, ThreadsAndCompanyChangeNothing) {
   for (const double cutoff : {0.0, 1.0}) {
     world::World world = scenes::sheet(3000, 10.0, 10, true);
     world.magnet_cutoff = cutoff;
-    const auto places = places_over(world, 400, 5.0, 0.1);
-    const auto all = sensors::sample_field(world, device(), places, {.threads = 1});
-    const auto threaded = sensors::sample_field(world, device(), places, {.threads = 3});
+    const auto points = places_over(world, 400, 5.0, 0.1);
+    const auto all = sensors::sample_field(world, device(), points, {.threads = 1});
+    const auto threaded = sensors::sample_field(world, device(), points, {.threads = 3});
     EXPECT_EQ(std::memcmp(all.data(), threaded.data(), all.size() * sizeof all[0]), 0);
-    for (std::size_t i = 0; i < places.size(); i += 40) {
-      const auto group = std::span(places).subspan(i / 5 * 5, 5);
+    for (std::size_t i = 0; i < points.size(); i += 40) {
+      const auto group = std::span(points).subspan(i / 5 * 5, 5);
       const auto alone = sensors::sample_field(world, device(), group);
-      EXPECT_EQ(std::memcmp(&all[i / 5 * 5], alone.data(), 5 * sizeof alone[0]), 0) << cutoff << ", place " << i;
+      EXPECT_EQ(std::memcmp(&all[i / 5 * 5], alone.data(), 5 * sizeof alone[0]), 0) << cutoff << ", point " << i;
     }
   }
 }
@@ -220,8 +220,8 @@ TEST(MagnetSum, IsLinear) {
   world::World both = one_world;
   both.magnets.insert(both.magnets.end(), other.magnets.begin(), other.magnets.end());
   for (int i = 0; i < 30; ++i) {
-    const Place place{chance.between(-1, 1), chance.between(-1, 1), chance.between(0.05, 0.4)};
-    const FieldSum a = field(one_world, place), b = field(other, place), c = field(both, place);
+    const FieldPoint point{chance.between(-1, 1), chance.between(-1, 1), chance.between(0.05, 0.4)};
+    const FieldSum a = field(one_world, point), b = field(other, point), c = field(both, point);
     EXPECT_NEAR(a.x + b.x, c.x, 1e-14 * (a.magnitudes + b.magnitudes));
     EXPECT_NEAR(a.z + b.z, c.z, 1e-14 * (a.magnitudes + b.magnitudes));
   }
@@ -233,7 +233,7 @@ TEST(MagnetSum, TurnsAndMirrorsWithTheWorld) {
   const world::World world = scenes::sheet(60, 2.0, 22, true);
   for (int i = 0; i < 20; ++i) {
     const base::Pose X{chance.between(-50, 50), chance.between(-50, 50), 0.0, chance.between(-M_PI, M_PI)};
-    const Place p{chance.between(-1, 1), chance.between(-1, 1), 0.1};
+    const FieldPoint p{chance.between(-1, 1), chance.between(-1, 1), 0.1};
     world::World turned = world, mirrored_world = world;
     for (world::Magnet& m : turned.magnets) m.p = base::transform(X, m.p);
     for (world::Magnet& m : mirrored_world.magnets) m.p.x = -m.p.x;

@@ -93,8 +93,8 @@ TEST(PlainPackets, AsManyNumbersAsADatagramHolds) {
 }
 
 TEST(PlainPackets, TheThesisHasNoLayoutForThem) {
-  EXPECT_EQ(kTrial.refuse({}, WireFormat::farm), "");
-  const std::string why = kTrial.refuse({}, WireFormat::thesis);
+  EXPECT_EQ(kTrial.wire_problem({}, WireFormat::farm), "");
+  const std::string why = kTrial.wire_problem({}, WireFormat::thesis);
   EXPECT_NE(why.find("trial"), std::string::npos);
   EXPECT_NE(why.find("--wire farm"), std::string::npos);
   EXPECT_EQ(kTrial.parts({}, WireFormat::farm), 1u);

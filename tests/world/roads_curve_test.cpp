@@ -185,11 +185,11 @@ TEST(Curve, ConnectionsMakeArcs) {
 
 TEST(Parallel, OfAStraight) {
   const Curve line = smooth_curve(Points{{0, 0}, {10, 0}}, kFine);
-  const Points left = parallel(line, 2.0);
+  const Points left = offset_curve(line, 2.0);
   ASSERT_EQ(left.size(), 2u);
   EXPECT_EQ(left[1].x, 10.0);
   EXPECT_EQ(left[1].y, 2.0);
-  EXPECT_EQ(parallel(line, -2.0)[0].y, -2.0);
+  EXPECT_EQ(offset_curve(line, -2.0)[0].y, -2.0);
   EXPECT_TRUE(offset_curve(smooth_curve(Points{{0, 0}}, kFine), 1.0).empty());
 }
 
@@ -197,8 +197,8 @@ TEST(Parallel, OfACircle) {
   Points p;
   for (int i = 0; i <= 9; ++i) p.push_back(base::rotate(i * M_PI / 18, {5.0, 0.0}));
   const Curve arc = smooth_curve(p, kFine);
-  for (const glm::dvec2& at : parallel(arc, 1.8)) EXPECT_NEAR(length(at), 3.2, 2e-3);
-  for (const glm::dvec2& at : parallel(arc, -1.8)) EXPECT_NEAR(length(at), 6.8, 2e-3);
+  for (const glm::dvec2& at : offset_curve(arc, 1.8)) EXPECT_NEAR(length(at), 3.2, 2e-3);
+  for (const glm::dvec2& at : offset_curve(arc, -1.8)) EXPECT_NEAR(length(at), 6.8, 2e-3);
 }
 
 // A bend of 1 m radius with edges at 2 m: the loop inside of it is gone, and what is left keeps its distance.
@@ -207,7 +207,7 @@ TEST(Parallel, LoopsInsideTightBendsAreCutOff) {
   for (int i = 1; i <= 6; ++i) p.push_back(glm::dvec2{0, 1} + base::rotate(-M_PI / 2 + i * M_PI / 12, {1.0, 0.0}));
   p.push_back({1, 6}), p.push_back({1, 11});
   const Curve bend = smooth_curve(p, {1e-3, 2.0, 1u << 20});
-  const Points inside = parallel(bend, 2.0);
+  const Points inside = offset_curve(bend, 2.0);
   for (const glm::dvec2& at : inside) EXPECT_GE(distance(at, bend.points), 2.0 - 5e-3) << at.x << " " << at.y;
   for (std::size_t i = 1; i + 1 < inside.size(); ++i)
     EXPECT_GT(dot(inside[i] - inside[i - 1], inside[i + 1] - inside[i]), -1e-9) << "turned round at " << i;

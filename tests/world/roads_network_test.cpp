@@ -131,7 +131,7 @@ TEST(RoadNetwork, Successors) {
   EXPECT_EQ(onward(network, {3, 1, 2}), (Set{"3.0.3"}));
   const auto steps = successors(network, *find_point(network, {1, 1, 1}));
   EXPECT_NEAR(steps[0].length, 0.001 * kLongitude, 1e-3);
-  EXPECT_EQ(steps[0].way, Transition::Kind::lane);
+  EXPECT_EQ(steps[0].kind, Transition::Kind::lane);
 }
 
 TEST(RoadNetwork, ConnectionsLeaveAndArriveInDirection) {
