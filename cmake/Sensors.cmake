@@ -26,7 +26,7 @@ function(farm_sensor id name where)
   set_property(GLOBAL APPEND PROPERTY SENSOR_TYPES ${id}/${name})
 endfunction()
 
-# write_sensor_types(FILE): every kind by id, as a source that defines sensors::sensor_types().
+# write_sensor_types(FILE): every sensor type by id, as a source that defines sensors::sensor_types().
 function(write_sensor_types file)
   get_property(known GLOBAL PROPERTY SENSOR_TYPES)
   list(SORT known COMPARE NATURAL)

@@ -10,7 +10,7 @@ if(DEFINED CASE_DIR)
   if(TWICE)
     farm_sensor(${ID} x ${WHERE})
   endif()
-  write_kinds(${CASE_DIR}/kinds.cpp)
+  write_sensor_types(${CASE_DIR}/sensor_types.cpp)
   return()
 endif()
 
