@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-TEST(Thirds, of_the_field_of_view) {
+TEST(Thirds, OfTheFieldOfView) {
   std::vector<double> ranges(361, 0.75);
   ranges[0] = 0.3;
   ranges[119] = 0.31;
@@ -36,7 +36,7 @@ struct Moment {
   const char* why;
 };
 
-TEST(Avoid, goes_through_the_states_of_the_thesis) {
+TEST(Avoid, GoesThroughTheStatesOfTheThesis) {
   using enum Avoid::State;
   Avoid avoid({});
   for (const Moment& m :
@@ -59,7 +59,7 @@ TEST(Avoid, goes_through_the_states_of_the_thesis) {
   }
 }
 
-TEST(Avoid, turns_until_as_far_as_it_was_told) {
+TEST(Avoid, TurnsUntilAsFarAsItWasTold) {
   Avoid avoid({.clear = 0.4});
   for (const auto& [front, turns] : {std::pair{0.19, true}, {0.39, true}, {0.41, false}, {0.39, false}}) {
     const std::vector<double> ranges(9, front);
@@ -68,12 +68,12 @@ TEST(Avoid, turns_until_as_far_as_it_was_told) {
   }
 }
 
-TEST(Avoid, stands_until_the_laser_tells) {
+TEST(Avoid, StandsUntilTheLaserTells) {
   Avoid avoid({});
   EXPECT_EQ(avoid.step({}).forward, 0.0);
 }
 
-TEST(Avoid, drives_in_an_empty_area) {
+TEST(Avoid, DrivesInAnEmptyArea) {
   const world::World world = exploration::boxes(3, 0);
   Avoid avoid({});
   loop::LaserRun run(world, avoid);

@@ -47,7 +47,7 @@ void live(const ControlShellSettings& settings, std::initializer_list<Moment> mo
 constexpr auto kStart = ControlShellState::start, kControl = ControlShellState::control,
                kWait = ControlShellState::wait, kStop = ControlShellState::stop;
 
-TEST(ControlShell, starts_at_once_or_on_the_signal) {
+TEST(ControlShell, StartsAtOnceOrOnTheSignal) {
   live({.on_signal = false}, {{false, false, kControl, true, "no signal is needed"}});
   live({.on_signal = true}, {{false, false, kStart, false, "no signal yet"},
                              {true, false, kStart, false, "a bumper is no signal"},
@@ -55,7 +55,7 @@ TEST(ControlShell, starts_at_once_or_on_the_signal) {
                              {false, false, kControl, true, "given once is enough"}});
 }
 
-TEST(ControlShell, waits_while_the_bumper_is_pressed) {
+TEST(ControlShell, WaitsWhileTheBumperIsPressed) {
   live({}, {{false, true, kControl, true, "free"},
             {true, true, kWait, false, "pressed"},
             {true, true, kWait, false, "still pressed"},
@@ -65,7 +65,7 @@ TEST(ControlShell, waits_while_the_bumper_is_pressed) {
   live({.wait_on_bumper = false}, {{true, true, kControl, true, "it looks after itself"}});
 }
 
-TEST(ControlShell, stops_for_good_when_the_controller_is_done) {
+TEST(ControlShell, StopsForGoodWhenTheControllerIsDone) {
   live({},
        {{false, true, kControl, true, "first step"},
         {false, true, kStop, false, "done with the second"},
@@ -81,7 +81,7 @@ class Stating final : public Controller, public StatesStopReason {
   std::string stop_reason() const override { return "it has one"; }
 };
 
-TEST(ControlShell, says_why_it_stands) {
+TEST(ControlShell, SaysWhyItStands) {
   ControlShell shell(std::make_unique<Stating>(), {.on_signal = true});
   shell.step({.started = false});
   EXPECT_EQ(stop_reason_of(shell), "the start signal was not given");
@@ -93,7 +93,7 @@ TEST(ControlShell, says_why_it_stands) {
   EXPECT_EQ(stop_reason_of(Counting(1, count)), "") << "not every controller can";
 }
 
-TEST(ControlShell, passes_on_what_the_controller_tells) {
+TEST(ControlShell, PassesOnWhatTheControllerTells) {
   int count = 0;
   const ControlShell shell(std::make_unique<Counting>(1, count), {});
   EXPECT_EQ(shell.intent().follows, 7u);
@@ -121,7 +121,7 @@ const ControlShell& made_shell(const ConfiguredController& made) {
   return dynamic_cast<const ControlShell&>(*made.controller);
 }
 
-TEST(MakeController, puts_every_kind_into_a_shell_with_its_own_defaults) {
+TEST(MakeController, PutsEveryKindIntoAShellWithItsOwnDefaults) {
   const world::World world = small_world();
   ConfiguredController wander = make_controller({world}, plan_of("wander"));
   ConfiguredController avoid = make_controller({world}, plan_of("avoid"));
@@ -132,7 +132,7 @@ TEST(MakeController, puts_every_kind_into_a_shell_with_its_own_defaults) {
   EXPECT_EQ(made_shell(avoid).state(), kWait);
 }
 
-TEST(MakeController, takes_the_settings_of_the_shell) {
+TEST(MakeController, TakesTheSettingsOfTheShell) {
   const world::World world = small_world();
   ConfiguredController made =
       make_controller({world}, plan_of("wander", {{"start", std::string("signal"), ""}, {"wait_on_bumper", true, ""}}));
@@ -157,7 +157,7 @@ struct Refused {
   const char* says;
 };
 
-TEST(MakeController, refuses_by_name) {
+TEST(MakeController, RefusesByName) {
   const world::World world = small_world();
   const std::string at = "s.toml:3: ";
   const std::vector<Refused> cases = {

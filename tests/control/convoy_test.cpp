@@ -14,7 +14,7 @@ namespace {
 
 // ---- Parking.
 
-TEST(Parking, stops_with_its_front_at_the_end_of_every_spot) {
+TEST(Parking, StopsWithItsFrontAtTheEndOfEverySpot) {
   for (std::uint32_t spot = 0; spot < 6; ++spot) {
     Streets t;
     t.add(on_lane(t.roads, "10.2", 0.3), "route", {{"park", "13." + std::to_string(spot + 1), ""}});
@@ -37,7 +37,7 @@ TEST(Parking, stops_with_its_front_at_the_end_of_every_spot) {
 }
 
 // Five leave their spots for the streets while a sixth comes in: one after another, whatever they all want at once.
-TEST(Parking, a_full_car_park_empties_while_another_comes_in) {
+TEST(Parking, AFullCarParkEmptiesWhileAnotherComesIn) {
   Streets t;
   const control::LaneCorridors corridors(t.roads, t.world, {});
   for (std::uint32_t spot = 0; spot < 5; ++spot)
@@ -61,7 +61,7 @@ TEST(Parking, a_full_car_park_empties_while_another_comes_in) {
 
 // ---- Convoys.
 
-TEST(Convoy, a_chain_of_five_keeps_its_gaps) {
+TEST(Convoy, AChainOfFiveKeepsItsGaps) {
   Streets t;
   for (int k = 0; k < 5; ++k) {
     const Pose X_WM = on_lane(t.roads, "1.1", 4.0 - 0.6 * k);
@@ -99,7 +99,7 @@ struct Trail {
 };
 
 // Robot 4 waits at the stop sign of 12.2 and comes in behind robot 1, which robots 2 and 3 follow in a chain.
-TEST(Convoy, lets_a_robot_in_between) {
+TEST(Convoy, LetsARobotInBetween) {
   Streets t;
   t.add(on_lane(t.roads, "2.2", 2.2), "route", go({4, 8}));
   t.add(on_lane(t.roads, "2.2", 1.6), "convoy", {{"leader", 1.0, ""}});
@@ -120,7 +120,7 @@ TEST(Convoy, lets_a_robot_in_between) {
 }
 
 // The same from the lane beside: robot 4 drives on 1.2 and comes over to the convoy on 1.1.
-TEST(Convoy, lets_a_robot_in_from_the_lane_beside) {
+TEST(Convoy, LetsARobotInFromTheLaneBeside) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 2.0), "route", go({2, 5}, {{"speed", 0.15, ""}}));
   t.add(on_lane(t.roads, "1.1", 1.4), "convoy", {{"leader", 1.0, ""}});
@@ -141,7 +141,7 @@ TEST(Convoy, lets_a_robot_in_from_the_lane_beside) {
 
 // ---- Passing.
 
-TEST(Passing, goes_round_a_slower_robot_and_comes_back) {
+TEST(Passing, GoesRoundASlowerRobotAndComesBack) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
   t.add(on_lane(t.roads, "1.1", 1.2), "route", go({5}));
@@ -162,7 +162,7 @@ TEST(Passing, goes_round_a_slower_robot_and_comes_back) {
 }
 
 // Robots on the other lane, one beside and one coming up from behind as fast: it stays where it is.
-TEST(Passing, waits_until_the_other_lane_is_free) {
+TEST(Passing, WaitsUntilTheOtherLaneIsFree) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
   t.add(on_lane(t.roads, "1.1", 1.6), "route", go({5}));
@@ -180,7 +180,7 @@ TEST(Passing, waits_until_the_other_lane_is_free) {
 }
 
 // A robot on the other lane counts where it would be 3 s on. Boundary: a millimetre.
-TEST(Passing, waits_for_a_robot_that_comes_up_from_behind) {
+TEST(Passing, WaitsForARobotThatComesUpFromBehind) {
   const Streets t;
   const control::LaneCorridors corridors(t.roads, t.world, {});
   const auto lane = locate_on_lane(corridors, on_lane(t.roads, "1.1", 1.2));
@@ -206,7 +206,7 @@ TEST(Passing, waits_for_a_robot_that_comes_up_from_behind) {
 }
 
 // Boundary: `pass false` never changes lanes.
-TEST(Passing, does_not_where_it_must_not) {
+TEST(Passing, DoesNotWhereItMustNot) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
   t.add(on_lane(t.roads, "1.1", 1.2), "route", go({5}, {{"pass", false, ""}}));

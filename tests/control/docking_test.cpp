@@ -63,7 +63,7 @@ Docked dock(const Pose& X_WD, const Pose& from, bool solid) {
           result.seconds};
 }
 
-TEST(Docking, from_anywhere_before_the_dock) {
+TEST(Docking, FromAnywhereBeforeTheDock) {
   for (std::uint32_t i = 0; i < 40; ++i) {
     const auto u = base::random_uniform({.seed = 5, .a = i}, 0),
                v = base::random_uniform({.seed = 5, .a = i, .b = 1}, 0);
@@ -87,7 +87,7 @@ struct Seen {
   const char* why;
 };
 
-TEST(Docking, follows_the_line_between_the_buoys) {
+TEST(Docking, FollowsTheLineBetweenTheBuoys) {
   const Pose X_WD{};  // beams along x; the robot faces it
   for (const Seen& s : {Seen{252, 0, 0.1, "both"}, Seen{254, 0, 0.03, "both, in the force field: slowly"},
                         Seen{248, 1, 0.1 * std::cos(0.7), "red alone: to the left, driving"},
@@ -106,7 +106,7 @@ TEST(Docking, follows_the_line_between_the_buoys) {
   }
 }
 
-TEST(Docking, without_light_it_goes_to_a_place_before_the_dock) {
+TEST(Docking, WithoutLightItGoesToAPlaceBeforeTheDock) {
   for (const double byte : {255.0, 242.0, 240.0, 130.0, std::nan("")}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
     const std::vector<double> values{0.0, byte};
@@ -117,7 +117,7 @@ TEST(Docking, without_light_it_goes_to_a_place_before_the_dock) {
   }
 }
 
-TEST(Docking, the_nearest_dock_is_meant_or_the_one_that_is_named) {
+TEST(Docking, TheNearestDockIsMeantOrTheOneThatIsNamed) {
   world::World world = scenes::empty_world();
   scenes::add_create(world, {}).sensors.push_back({.type = "irreceiver"});
   for (const auto& [name, x] : {std::pair{"behind", -6.0}, {"near", 3.0}, {"far", 9.0}}) {
@@ -141,7 +141,7 @@ TEST(Docking, the_nearest_dock_is_meant_or_the_one_that_is_named) {
   EXPECT_TRUE(turns({})) << "now the one behind is nearest";
 }
 
-TEST(Docking, with_one_buoy_alone_it_goes_to_that_place_until_it_has_seen_both) {
+TEST(Docking, WithOneBuoyAloneItGoesToThatPlaceUntilItHasSeenBoth) {
   for (const double byte : {248.0, 250.0}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
     const std::vector<double> values{0.0, byte};
@@ -154,7 +154,7 @@ TEST(Docking, with_one_buoy_alone_it_goes_to_that_place_until_it_has_seen_both) 
 
 // A turn in place carries the receiver from beam to beam, and where the robot looks away from the dock the shorter way
 // round is another for each: it goes on the way that it began.
-TEST(Docking, a_turn_in_place_goes_on_the_same_way_round) {
+TEST(Docking, ATurnInPlaceGoesOnTheSameWayRound) {
   Docking docking({.X_WD = {}});
   const auto step = [&](double yaw, double byte) {
     const std::vector<double> values{0.0, byte};
@@ -168,7 +168,7 @@ TEST(Docking, a_turn_in_place_goes_on_the_same_way_round) {
   EXPECT_GT(step(0.3, 244.0).turn, 0.5);
 }
 
-TEST(Docking, blind_for_a_moment_it_goes_on_then_back_to_its_place) {
+TEST(Docking, BlindForAMomentItGoesOnThenBackToItsPlace) {
   Docking docking({.X_WD = {}, .stage = 1.0});
   const auto step = [&](double seconds, double byte) {
     const std::vector<double> values{0.0, byte};
@@ -182,7 +182,7 @@ TEST(Docking, blind_for_a_moment_it_goes_on_then_back_to_its_place) {
   EXPECT_EQ(step(2.1, 255.0).forward, 0.0) << "longer: it turns to the place behind it";
 }
 
-TEST(Docking, a_touch_of_anything_else_is_no_dock) {
+TEST(Docking, ATouchOfAnythingElseIsNoDock) {
   struct Touch {
     Pose X;
     bool docked;
@@ -200,7 +200,7 @@ TEST(Docking, a_touch_of_anything_else_is_no_dock) {
   }
 }
 
-TEST(Docking, after_such_a_touch_it_drives_out_of_the_force_field_first) {
+TEST(Docking, AfterSuchATouchItDrivesOutOfTheForceFieldFirst) {
   Docking docking({.X_WD = {}, .stage = 1.0});
   const auto step = [&](const Pose& X, double byte, bool contact) {
     const std::vector<double> values{0.0, byte};
@@ -212,7 +212,7 @@ TEST(Docking, after_such_a_touch_it_drives_out_of_the_force_field_first) {
   EXPECT_EQ(step({0.8, 0.0, 0, 0.0}, 252, false).forward, 0.0) << "beyond the field: it turns to the dock";
 }
 
-TEST(Docking, from_behind_it_goes_round_the_dock) {
+TEST(Docking, FromBehindItGoesRoundTheDock) {
   for (const double side : {1.0, -1.0}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
     const auto heading = [&](double x, double y) {

@@ -45,7 +45,7 @@ Explored explore(const world::World& world, const exploration::Looker& looker = 
   return result;
 }
 
-TEST(Explore, maps_all_of_the_mapping_area_and_touches_nothing) {
+TEST(Explore, MapsAllOfTheMappingAreaAndTouchesNothing) {
   const world::World world = world::load_world(SF_SOURCE_DIR "/worlds/mapping/mapping.world");
   const Explored e = explore(world);
   EXPECT_TRUE(e.done);
@@ -57,7 +57,7 @@ TEST(Explore, maps_all_of_the_mapping_area_and_touches_nothing) {
 }
 
 // Slivers beside surfaces are seen only along them, by some beams, from some places: a few cells in a thousand.
-TEST(Explore, maps_areas_of_boxes_at_any_angle_and_touches_nothing) {
+TEST(Explore, MapsAreasOfBoxesAtAnyAngleAndTouchesNothing) {
   for (const std::uint64_t seed : {3, 5}) {
     const world::World world = exploration::boxes(seed, 4 + static_cast<int>(seed));
     const Explored e = explore(world, {.spare = 0.003});
@@ -69,7 +69,7 @@ TEST(Explore, maps_areas_of_boxes_at_any_angle_and_touches_nothing) {
   }
 }
 
-TEST(Explore, misses_nothing_when_it_is_thorough) {
+TEST(Explore, MissesNothingWhenItIsThorough) {
   const Explored e = explore(exploration::boxes(1, 5), {.spare = 0.003}, true);
   EXPECT_TRUE(e.done);
   EXPECT_EQ(e.contacts, 0);
@@ -86,7 +86,7 @@ world::World two_rooms(double gap) {
   return world;
 }
 
-TEST(Explore, passes_a_passage_two_centimetres_wider_than_the_body) {
+TEST(Explore, PassesAPassageTwoCentimetresWiderThanTheBody) {
   const Explored e = explore(two_rooms(0.35), {.spare = 0.003});
   EXPECT_TRUE(e.done);
   EXPECT_EQ(e.contacts, 0);
@@ -95,7 +95,7 @@ TEST(Explore, passes_a_passage_two_centimetres_wider_than_the_body) {
 }
 
 // Before the passage, a pose that turns out to be so far aside that its corner would be met in the next two steps.
-TEST(Explore, stands_rather_than_drive_on_where_it_would_touch) {
+TEST(Explore, StandsRatherThanDriveOnWhereItWouldTouch) {
   const world::World world = two_rooms(0.35);
   const auto controller = make_explore(world);
   loop::LaserRun run(world, *controller);
@@ -111,7 +111,7 @@ TEST(Explore, stands_rather_than_drive_on_where_it_would_touch) {
   EXPECT_EQ(controller->step({.time = state.time, .state = state}).forward, 0.0);
 }
 
-TEST(Explore, does_not_try_a_passage_narrower_than_the_body) {
+TEST(Explore, DoesNotTryAPassageNarrowerThanTheBody) {
   const Explored e = explore(two_rooms(0.32), {.spare = 0.003});
   EXPECT_TRUE(e.done);
   EXPECT_EQ(e.contacts, 0);
@@ -119,7 +119,7 @@ TEST(Explore, does_not_try_a_passage_narrower_than_the_body) {
   EXPECT_LE(e.missed, e.must / 200);
 }
 
-TEST(Explore, stands_when_it_is_done) {
+TEST(Explore, StandsWhenItIsDone) {
   world::World world = scenes::boxed_world(0.8, 0.8);
   scenes::add_create(world, {0.4, 0.4, 0, 0})
       .lasers.push_back({.X_MS = {0.1, 0, 0.1, 0}, .fov = M_PI, .samples = 181, .range_max = 2.0});
@@ -134,7 +134,7 @@ TEST(Explore, stands_when_it_is_done) {
   EXPECT_EQ(run.contacts, 0);
 }
 
-TEST(Explore, the_same_way_again) {
+TEST(Explore, TheSameWayAgain) {
   const world::World world = exploration::boxes(2, 4);
   const auto a = make_explore(world), b = make_explore(world);
   loop::LaserRun first(world, *a), second(world, *b);
@@ -144,7 +144,7 @@ TEST(Explore, the_same_way_again) {
   EXPECT_EQ(a->grid().words, b->grid().words);
 }
 
-TEST(Explore, odd_readings_do_no_harm) {
+TEST(Explore, OddReadingsDoNoHarm) {
   const world::World world = exploration::boxes(2, 4);
   const double nan = std::nan("");
   for (const double range : {0.0, 0.75, HUGE_VAL, -1.0, nan}) {
@@ -163,7 +163,7 @@ TEST(Explore, odd_readings_do_no_harm) {
 
 // ---- Its parts.
 
-TEST(ExplorationMap, clearance_is_the_distance_to_points) {
+TEST(ExplorationMap, ClearanceIsTheDistanceToPoints) {
   ExplorationMap terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
   for (const glm::dvec2& p : {glm::dvec2{0.3, 0.1}, glm::dvec2{0.5, 0.1}, glm::dvec2{0.3, -0.9}})
     EXPECT_TRUE(terrain.add_point(p));
@@ -180,7 +180,7 @@ TEST(ExplorationMap, clearance_is_the_distance_to_points) {
   EXPECT_FALSE(terrain.occupied(terrain.node_at({0.32, 0.1})));
 }
 
-TEST(ExplorationMap, ground_is_known_once_it_is_seen_or_stood_on) {
+TEST(ExplorationMap, GroundIsKnownOnceItIsSeenOrStoodOn) {
   ExplorationMap terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
   const Node here = terrain.node_at({0, 0});
   EXPECT_TRUE(terrain.covers_unknown(here));
@@ -206,7 +206,7 @@ ExplorationMap beside_a_wall() {
   return terrain;
 }
 
-TEST(PoseSearch, a_sensor_that_reaches_beyond_the_body_is_not_turned_into_a_wall) {
+TEST(PoseSearch, ASensorThatReachesBeyondTheBodyIsNotTurnedIntoAWall) {
   const ExplorationMap terrain = beside_a_wall();
   const PoseSearch search(terrain, {0.165, {0.19, 0.0}});
   const Node near = terrain.node_at({0.0, 0.175});
@@ -217,7 +217,7 @@ TEST(PoseSearch, a_sensor_that_reaches_beyond_the_body_is_not_turned_into_a_wall
   EXPECT_TRUE(search.allowed({terrain.node_at({0.0, 0.3}), 12}, 0.01)) << "from farther away";
 }
 
-TEST(PoseSearch, finds_the_cheapest_way) {
+TEST(PoseSearch, FindsTheCheapestWay) {
   const ExplorationMap terrain = beside_a_wall();
   PoseSearch search(terrain, {0.165, {0.19, 0.0}});
   const LatticeState from{terrain.node_at({-0.5, 0.5}), 0};
@@ -233,7 +233,7 @@ TEST(PoseSearch, finds_the_cheapest_way) {
   EXPECT_TRUE(search.find(from, 0.01, [](const LatticeState&) { return false; }).empty()) << "no goal, no way";
 }
 
-TEST(PlanAround, holds_the_world_and_is_never_smaller_than_the_thesis) {
+TEST(PlanAround, HoldsTheWorldAndIsNeverSmallerThanTheThesis) {
   world::World world = scenes::empty_world();
   world.extent = {-1.5, -1.5, 1.5, 1.5};
   const maps::GridGeometry small = grid_around(world);

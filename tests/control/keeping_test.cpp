@@ -109,7 +109,7 @@ Drive drive_lane(std::vector<Setting> settings, Plant plant, Pose X_WM = {}) {
 }
 
 // All turning is kp times the error: over a path that turns by 90 degrees the mean error is known beforehand.
-TEST(LaneKeeping, p_on_a_unicycle_has_the_mean_error_that_the_turn_needs) {
+TEST(LaneKeeping, POnAUnicycleHasTheMeanErrorThatTheTurnNeeds) {
   for (const double kp : {0.5, 0.8, 1.2}) {
     const Drive d = drive_lane({set("kp", kp)}, ideal);
     EXPECT_NEAR(d.mean * kp * d.seconds / (M_PI / 2), 1.0, 0.1) << "kp " << kp;
@@ -118,7 +118,7 @@ TEST(LaneKeeping, p_on_a_unicycle_has_the_mean_error_that_the_turn_needs) {
   }
 }
 
-TEST(LaneKeeping, players_driver_about_halves_the_error) {
+TEST(LaneKeeping, PlayersDriverAboutHalvesTheError) {
   const Drive p = drive_lane({set("kp", 0.5)}, player_create);
   const Drive pi = drive_lane({set("kp", 0.5), set("ki", 0.015)}, player_create);
   EXPECT_NEAR(p.mean, 0.027, 0.005) << "thesis: 0.022 to 0.030";
@@ -126,20 +126,20 @@ TEST(LaneKeeping, players_driver_about_halves_the_error) {
   EXPECT_GT(pi.mean, 0.0);
 }
 
-TEST(LaneKeeping, the_integral_lessens_the_mean_error) {
+TEST(LaneKeeping, TheIntegralLessensTheMeanError) {
   const Drive p = drive_lane({set("kp", 0.5)}, ideal), pi = drive_lane({set("kp", 0.5), set("ki", 0.015)}, ideal);
   EXPECT_LT(std::abs(pi.mean), 0.7 * p.mean);
   const Drive limited = drive_lane({set("kp", 0.5), set("ki", 0.015), set("integral_limit", 1e-6)}, ideal);
   EXPECT_NEAR(limited.mean, p.mean, 1e-4) << "an integral of nothing is P";
 }
 
-TEST(LaneKeeping, ends_before_the_end) {
+TEST(LaneKeeping, EndsBeforeTheEnd) {
   const double length = 2.72 + 0.93 * M_PI / 2 + 1.349;
   EXPECT_NEAR(drive_lane({}, ideal).end, length - 0.25, 0.02);
   EXPECT_NEAR(drive_lane({set("stop_before", 1.0)}, ideal).end, length - 1.0, 0.02);
 }
 
-TEST(LaneKeeping, comes_back_to_the_middle) {
+TEST(LaneKeeping, ComesBackToTheMiddle) {
   const Drive d = drive_lane({set("stop_before", 3.2)}, ideal, {0, -0.15, 0, 0});
   EXPECT_NEAR(d.largest, 0.15, 1e-9);
   EXPECT_LT(d.farthest, 0.16);
@@ -173,7 +173,7 @@ void step_through(Controller& controller, const std::vector<Step>& steps) {
   }
 }
 
-TEST(LaneKeeping, error_and_trapezoid_by_hand) {
+TEST(LaneKeeping, ErrorAndTrapezoidByHand) {
   const world::World world = path_world();
   const auto controller = make(world, lane_keeping_controller, {set("kp", 2.0), set("ki", 10.0)});
   step_through(*controller, {{0.35, 0.1, 0.2, "right of the middle: to the left; no time has passed"},
@@ -181,14 +181,14 @@ TEST(LaneKeeping, error_and_trapezoid_by_hand) {
                              {0.15, -0.1, -0.2 + 10 * 0.02, "and of 0.2 to -0.1"}});
 }
 
-TEST(LaneKeeping, the_right_edge_mirrors) {
+TEST(LaneKeeping, TheRightEdgeMirrors) {
   const world::World world = path_world(-M_PI / 2);  // a sensor that looks to the right
   const auto controller = make(world, lane_keeping_controller, {set("kp", 0.5)});
   step_through(*controller, {{0.35, -0.1, -0.05, "far from the right edge: left of the middle, to the right"}});
 }
 
 // A sensor beside the robot's axis measures from where it is: what counts is the axis' own distance from the edge.
-TEST(LaneKeeping, a_sensor_beside_the_axis_counts_from_the_axis) {
+TEST(LaneKeeping, ASensorBesideTheAxisCountsFromTheAxis) {
   struct Mounted {
     double yaw, y, z, error;
     const char* why;
@@ -205,7 +205,7 @@ TEST(LaneKeeping, a_sensor_beside_the_axis_counts_from_the_axis) {
 }
 
 // By its own gain it stays within its lane, the whole body but for a finger's width where the lane narrows to 0.45 m.
-TEST(LaneKeeping, its_own_gain_keeps_the_lane) {
+TEST(LaneKeeping, ItsOwnGainKeepsTheLane) {
   for (const auto plant : {&ideal, &player_create})
     for (const double speed : {0.1, 0.2, 0.4}) {
       world::World world = path_world();
@@ -218,7 +218,7 @@ TEST(LaneKeeping, its_own_gain_keeps_the_lane) {
     }
 }
 
-TEST(LaneKeeping, its_own_gain_follows_from_speed_and_sensor) {
+TEST(LaneKeeping, ItsOwnGainFollowsFromSpeedAndSensor) {
   const auto gain = [](double speed, double ahead, world::DriverModel law = world::DriverModel::direct) {
     world::World world = path_world();
     world.movers[0].sensors[0].X_MS.x = ahead;
@@ -235,7 +235,7 @@ TEST(LaneKeeping, its_own_gain_follows_from_speed_and_sensor) {
   EXPECT_NEAR(gain(0.1, -0.1), 20.0, 1e-9) << "as if 0.1 m ahead";
 }
 
-TEST(LaneKeeping, says_why_it_stands) {
+TEST(LaneKeeping, SaysWhyItStands) {
   const world::World world = path_world();
   const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5)});
   controller->step({});
@@ -252,13 +252,13 @@ TEST(LaneKeeping, says_why_it_stands) {
   EXPECT_EQ(stop_reason_of(*controller), "no new reading comes from its lane edge sensor") << "the same for too long";
 }
 
-TEST(LaneKeeping, takes_a_width_instead_of_the_paths) {
+TEST(LaneKeeping, TakesAWidthInsteadOfThePaths) {
   const world::World world = path_world();
   const auto controller = make(world, lane_keeping_controller, {set("half_width", 0.3), set("kp", 0.5)});
   step_through(*controller, {{0.35, 0.05, 0.025, "half of 0.6 m"}});
 }
 
-TEST(LaneKeeping, without_an_edge_it_holds_then_stands_then_goes_on) {
+TEST(LaneKeeping, WithoutAnEdgeItHoldsThenStandsThenGoesOn) {
   const world::World world = path_world();
   const auto controller = make(world, lane_keeping_controller, {set("kp", 1.0), set("ki", 1.0), set("hold", 0.25)});
   step_through(*controller, {{0.35, 0.1, 0.1, "an edge"},
@@ -270,7 +270,7 @@ TEST(LaneKeeping, without_an_edge_it_holds_then_stands_then_goes_on) {
                              {0.35, 0.1, 0.12, "and on"}});
 }
 
-TEST(LaneKeeping, the_same_reading_again_counts_until_the_sensor_is_silent_for_long) {
+TEST(LaneKeeping, TheSameReadingAgainCountsUntilTheSensorIsSilentForLong) {
   const world::World world = path_world();
   const auto controller = make(world, lane_keeping_controller, {set("hold", 0.5), set("kp", 0.5), set("ki", 1.0)});
   const std::vector<double> values{0.35, 61, 0, 0};
@@ -287,7 +287,7 @@ TEST(LaneKeeping, the_same_reading_again_counts_until_the_sensor_is_silent_for_l
   EXPECT_LE(moving, 12) << "silence is no edge";
 }
 
-TEST(LaneKeeping, stands_without_any_reading) {
+TEST(LaneKeeping, StandsWithoutAnyReading) {
   const world::World world = path_world();
   const auto controller = make(world, lane_keeping_controller);
   EXPECT_EQ(controller->step({}).forward, 0.0);
@@ -305,7 +305,7 @@ Drive drive_magnets(std::vector<Setting> settings, Pose X_WM = {}) {
       world, *controller, sensors::kMagnetometer, [&](const Pose& X) { return field_over(world, X); }, ideal, X_WM);
 }
 
-TEST(MagnetKeeping, p_on_a_unicycle_has_the_mean_error_that_the_turn_needs) {
+TEST(MagnetKeeping, POnAUnicycleHasTheMeanErrorThatTheTurnNeeds) {
   for (const double kp : {0.15, 0.2, 0.4}) {
     const Drive d = drive_magnets({set("kp", kp)});
     EXPECT_NEAR(d.mean * kp * d.seconds / (M_PI / 2), 1.0, 0.1) << "kp " << kp;
@@ -316,7 +316,7 @@ TEST(MagnetKeeping, p_on_a_unicycle_has_the_mean_error_that_the_turn_needs) {
   EXPECT_LT(std::abs(pi.mean), 0.7 * p.mean);
 }
 
-TEST(MagnetKeeping, takes_the_outermost_elements_in_gauss) {
+TEST(MagnetKeeping, TakesTheOutermostElementsInGauss) {
   const world::World world = path_world();
   const auto controller = make(world, magnet_keeping_controller, {set("kp", 0.5)});
   const std::vector<double> values{0.2e-4, 9, 9, 9, 7, 9, 9, 9, 0.8e-4, 9, 9, 9};  // [T], three elements
@@ -325,7 +325,7 @@ TEST(MagnetKeeping, takes_the_outermost_elements_in_gauss) {
   EXPECT_NEAR(controller->error(), 0.6, 1e-12);
 }
 
-TEST(MagnetKeeping, one_element_or_none_is_no_array) {
+TEST(MagnetKeeping, OneElementOrNoneIsNoArray) {
   const world::World world = path_world();
   const std::vector<double> one{1e-4, 0, 0, 0};
   const base::ReadingBlock block{.kind = sensors::kMagnetometer, .values = one};

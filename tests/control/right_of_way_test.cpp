@@ -14,7 +14,7 @@ namespace {
 // ---- Right of way.
 
 // 12.2 has a stop sign, 2.2 has none: who comes along 2.2 goes first, though the other stood there before it came.
-TEST(RightOfWay, who_need_not_stop_goes_first) {
+TEST(RightOfWay, WhoNeedNotStopGoesFirst) {
   Streets t;
   t.add(on_lane(t.roads, "12.2", 3.4), "route", go({4, 8}));
   t.add(on_lane(t.roads, "2.2", 2.45), "route", go({4, 8}));
@@ -31,7 +31,7 @@ TEST(RightOfWay, who_need_not_stop_goes_first) {
 }
 
 // Two come to a crossing that a third still drives through: when it is free, the first that stood there goes first.
-TEST(RightOfWay, first_come_first_served) {
+TEST(RightOfWay, FirstComeFirstServed) {
   for (const bool other_first : {false, true}) {
     Streets t;
     t.world.lights = {light("a", {"6.1.3", "10.2.3"}, {{world::LightState::dark, 1.0}})};
@@ -53,7 +53,7 @@ TEST(RightOfWay, first_come_first_served) {
 }
 
 // The bridge is flat: of two that come to it at right angles one waits, and nobody waits for ever.
-TEST(RightOfWay, lanes_that_cross_without_a_sign) {
+TEST(RightOfWay, LanesThatCrossWithoutASign) {
   for (int k = 0; k < 10; ++k) {
     Streets t;
     t.add(on_lane(t.roads, "7.1", 1.0 + 0.1 * k), "route", go({11, 5}));
@@ -67,7 +67,7 @@ TEST(RightOfWay, lanes_that_cross_without_a_sign) {
 }
 
 // Every light of the shipped world is found by its stop line, and every stop line that has none is a stop sign.
-TEST(RightOfWay, lights_of_simville_stand_at_their_lines) {
+TEST(RightOfWay, LightsOfSimvilleStandAtTheirLines) {
   const world::World world = world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world");
   const world::RoadNetwork roads = simville();
   const control::LaneCorridors corridors(roads, world, {});
@@ -84,7 +84,7 @@ TEST(RightOfWay, lights_of_simville_stand_at_their_lines) {
 }
 
 // A lane full of standing robots beyond a crossing: who comes stops before the crossing, not within.
-TEST(RightOfWay, does_not_block_the_box) {
+TEST(RightOfWay, DoesNotBlockTheBox) {
   Streets t;
   t.add(on_lane(t.roads, "5.1", 0.2), "route", go({8}));
   t.add(on_lane(t.roads, "4.1", 1.0), "route", go({8}));
@@ -130,7 +130,7 @@ Crowd crowd(std::size_t count, double seconds, std::uint64_t seed, bool lights) 
   return c;
 }
 
-TEST(Crowd, fifty_touch_nobody_and_all_get_on) {
+TEST(Crowd, FiftyTouchNobodyAndAllGetOn) {
   for (const std::uint64_t seed : {1u, 2u}) {
     const Crowd c = crowd(50, 600, seed, seed == 2);
     EXPECT_EQ(c.contacts, 0) << seed;
@@ -139,7 +139,7 @@ TEST(Crowd, fifty_touch_nobody_and_all_get_on) {
   }
 }
 
-TEST(Crowd, twenty_all_reach_checkpoints) {
+TEST(Crowd, TwentyAllReachCheckpoints) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Crowd c = crowd(20, 400, seed, seed % 2 == 0);
     EXPECT_EQ(c.contacts, 0) << seed;
@@ -148,7 +148,7 @@ TEST(Crowd, twenty_all_reach_checkpoints) {
   }
 }
 
-TEST(Crowd, goes_the_same_way_again_and_another_with_another_seed) {
+TEST(Crowd, GoesTheSameWayAgainAndAnotherWithAnotherSeed) {
   EXPECT_EQ(crowd(20, 60, 1, true).x, crowd(20, 60, 1, true).x);
   EXPECT_NE(crowd(20, 60, 1, true).x, crowd(20, 60, 3, true).x);
 }

@@ -21,7 +21,7 @@ struct Planner {
   }
 };
 
-TEST(RoutePlan, every_leg_begins_where_the_one_before_ends) {
+TEST(RoutePlan, EveryLegBeginsWhereTheOneBeforeEnds) {
   const Planner p;
   for (const auto& checkpoint : p.streets.roads.checkpoints) {
     control::RoutePlan plan = p.from("7.2", 0.4);
@@ -41,7 +41,7 @@ TEST(RoutePlan, every_leg_begins_where_the_one_before_ends) {
   }
 }
 
-TEST(RoutePlan, takes_the_shortest_way) {
+TEST(RoutePlan, TakesTheShortestWay) {
   const Planner p;
   control::RoutePlan plan = p.from("4.1", 2.0);
   ASSERT_TRUE(extend(p.corridors, plan, *find_checkpoint(p.streets.roads, 8)));
@@ -51,7 +51,7 @@ TEST(RoutePlan, takes_the_shortest_way) {
   EXPECT_NEAR(length_of(plan), 0.6 + 1.2 + lane.points[5].s, 0.01);
 }
 
-TEST(RoutePlan, round_again_to_the_same_checkpoint) {
+TEST(RoutePlan, RoundAgainToTheSameCheckpoint) {
   const Planner p;
   control::RoutePlan plan = p.from("4.1", 0.1);
   const auto& checkpoint = *find_checkpoint(p.streets.roads, 7);
@@ -61,7 +61,7 @@ TEST(RoutePlan, round_again_to_the_same_checkpoint) {
   EXPECT_GT(length_of(plan), once + 5.0);
 }
 
-TEST(RoutePlan, avoids_what_it_is_told_to) {
+TEST(RoutePlan, AvoidsWhatItIsToldTo) {
   const Planner p;
   control::RoutePlan straight = p.from("4.1", 2.0);
   ASSERT_TRUE(extend(p.corridors, straight, *find_checkpoint(p.streets.roads, 8)));
@@ -71,7 +71,7 @@ TEST(RoutePlan, avoids_what_it_is_told_to) {
 }
 
 // Boundary: a cut in a lane ends at its next point, on an exit at that exit's end.
-TEST(RoutePlan, is_cut_at_the_next_point) {
+TEST(RoutePlan, IsCutAtTheNextPoint) {
   const Planner p;
   control::RoutePlan plan = p.from("4.1", 0.1);
   ASSERT_TRUE(extend(p.corridors, plan, *find_checkpoint(p.streets.roads, 9)));
@@ -86,7 +86,7 @@ TEST(RoutePlan, is_cut_at_the_next_point) {
   }
 }
 
-TEST(StartPoses, stand_apart_on_lanes_and_come_from_the_seed) {
+TEST(StartPoses, StandApartOnLanesAndComeFromTheSeed) {
   const world::RoadNetwork roads = simville();
   const auto poses = control::start_poses(roads, 50, 1, 0.5);
   ASSERT_EQ(poses.size(), 50u);
@@ -99,7 +99,7 @@ TEST(StartPoses, stand_apart_on_lanes_and_come_from_the_seed) {
 
 // ---- Meetings of ways: any two points on two ways that do not meet are clear of each other.
 
-TEST(LaneCorridors, ways_that_do_not_meet_are_clear_of_each_other) {
+TEST(LaneCorridors, WaysThatDoNotMeetAreClearOfEachOther) {
   const Planner p;
   const auto& ways = p.corridors.ways();
   using Kind = control::Way::Kind;

@@ -14,7 +14,7 @@ namespace {
 
 // ---- One robot alone.
 
-TEST(Route, drives_every_checkpoint_of_simville) {
+TEST(Route, DrivesEveryCheckpointOfSimville) {
   Streets t;
   Numbers all;
   for (const auto& checkpoint : t.roads.checkpoints) all.push_back(checkpoint.id);
@@ -34,7 +34,7 @@ TEST(Route, drives_every_checkpoint_of_simville) {
   EXPECT_EQ(t.contacts, 0);
 }
 
-TEST(Route, drives_a_mission_round_and_round) {
+TEST(Route, DrivesAMissionRoundAndRound) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 0.3), "route",
         {{"mission", std::string(SF_SOURCE_DIR "/worlds/simville/simville.mdf"), ""}, {"loop", true, ""}});
@@ -45,7 +45,7 @@ TEST(Route, drives_a_mission_round_and_round) {
 }
 
 // 5 mph are 0.319 m/s at 1/7 of the size, 8 mph 0.511 m/s, more than it is asked to drive.
-TEST(Route, keeps_the_missions_speed_limits_and_slows_down_in_bends) {
+TEST(Route, KeepsTheMissionsSpeedLimitsAndSlowsDownInBends) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 0.3), "route",
         {{"mission", std::string(SF_SOURCE_DIR "/worlds/simville/simville.mdf"), ""}, {"speed", 0.45, ""}});
@@ -69,7 +69,7 @@ TEST(Route, keeps_the_missions_speed_limits_and_slows_down_in_bends) {
   EXPECT_GT(sideways, 0.08);
 }
 
-TEST(Route, parks_at_half_its_speed) {
+TEST(Route, ParksAtHalfItsSpeed) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 0.3), "route", {{"park", std::string("13.4"), ""}});
   t.begin();
@@ -88,7 +88,7 @@ TEST(Route, parks_at_half_its_speed) {
 }
 
 // 6.2.3 is a stop sign; 1.3.17 too. Every time it comes to one it stands, its front within 5 cm of the line.
-TEST(Route, stops_fully_at_every_stop_sign) {
+TEST(Route, StopsFullyAtEveryStopSign) {
   Streets t;
   t.add(on_lane(t.roads, "1.3", 0.3), "route", go({8, 4, 8, 4, 9, 8}));
   t.begin();
@@ -127,7 +127,7 @@ struct LightCase {
   const char* why;
 };
 
-TEST(Route, obeys_every_state_of_a_light) {
+TEST(Route, ObeysEveryStateOfALight) {
   using enum world::LightState;
   for (const LightCase& c :
        {LightCase{red, false, true, "red is shut"}, LightCase{green, true, false, "green is open"},
@@ -153,7 +153,7 @@ TEST(Route, obeys_every_state_of_a_light) {
   }
 }
 
-TEST(Route, never_crosses_a_red_light) {
+TEST(Route, NeverCrossesARedLight) {
   using enum world::LightState;
   int crossings = 0;
   for (int k = 0; k < 24; ++k) {
@@ -186,7 +186,7 @@ std::string refusal(const std::vector<Setting>& settings, const Pose& X_WM) {
   return "";
 }
 
-TEST(Route, refuses_what_cannot_be_driven) {
+TEST(Route, RefusesWhatCannotBeDriven) {
   const Pose lane = on_lane(simville(), "1.1", 1.0);
   EXPECT_NE(refusal(go({99}), lane).find("'checkpoints' names 99"), std::string::npos);
   EXPECT_NE(refusal(go({1.5}), lane).find("names 1.5"), std::string::npos);
@@ -200,7 +200,7 @@ TEST(Route, refuses_what_cannot_be_driven) {
 }
 
 // A network of one lane that goes nowhere: the second time round there is no way.
-TEST(Route, says_where_no_way_leads) {
+TEST(Route, SaysWhereNoWayLeads) {
   Streets t;
   t.roads.exits.clear();
   t.add(on_lane(t.roads, "1.1", 1.0), "route", go({4}));
@@ -215,7 +215,7 @@ TEST(Route, says_where_no_way_leads) {
 }
 
 // Nobody sets out who would be stranded later: the third of three cannot be reached.
-TEST(Route, looks_at_the_whole_list_before_it_starts) {
+TEST(Route, LooksAtTheWholeListBeforeItStarts) {
   Streets t;
   const auto row = find_checkpoint(t.roads, 12)->at.row;
   std::erase_if(t.roads.exits, [&](const world::RoadExit& exit) {
@@ -227,7 +227,7 @@ TEST(Route, looks_at_the_whole_list_before_it_starts) {
 }
 
 // Boundary: it stands in a crossing, on the way from 2.1 to 3.1.
-TEST(Route, starts_between_lanes) {
+TEST(Route, StartsBetweenLanes) {
   Streets t;
   t.add({10.25, 3.3, 0.0, M_PI / 2}, "route", go({6}));
   t.begin();
@@ -237,7 +237,7 @@ TEST(Route, starts_between_lanes) {
 
 // ---- Two and more.
 
-TEST(Route, follows_a_slower_robot_without_touching_it) {
+TEST(Route, FollowsASlowerRobotWithoutTouchingIt) {
   for (const double slow : {0.02, 0.1, 0.19}) {
     Streets t;
     t.add(on_lane(t.roads, "1.3", 2.0), "route", go({8}, {{"speed", slow, ""}}));
@@ -257,7 +257,7 @@ TEST(Route, follows_a_slower_robot_without_touching_it) {
 }
 
 // Behind somebody who stands for ever it stands too, near but not touching.
-TEST(Route, stands_behind_who_stands) {
+TEST(Route, StandsBehindWhoStands) {
   Streets t;
   t.add(on_lane(t.roads, "4.1", 2.0), "route", go({7}, {{"speed", 0.01, ""}}));
   t.add(on_lane(t.roads, "4.1", 0.5), "route", go({8}));
@@ -271,7 +271,7 @@ TEST(Route, stands_behind_who_stands) {
   EXPECT_EQ(t.route(1).stop_reason(), "'robot1' stands in its way");
 }
 
-TEST(Route, says_why_it_stands_at_a_stop_sign) {
+TEST(Route, SaysWhyItStandsAtAStopSign) {
   Streets t;
   t.add(on_lane(t.roads, "1.3", 0.3), "route", go({8}));
   t.begin();

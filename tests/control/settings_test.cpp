@@ -30,7 +30,7 @@ std::string text_of(Settings settings) { return settings.text("key", "fallback")
 Numbers numbers_of(Settings settings) { return settings.numbers("key", {}); }
 Texts texts_of(Settings settings) { return settings.texts("key", {}); }
 
-TEST(Settings, raw_values_become_what_they_are_read_as) {
+TEST(Settings, RawValuesBecomeWhatTheyAreReadAs) {
   EXPECT_EQ(number_of(raw("1")), 1.0);
   EXPECT_EQ(numbers_of(raw("1")), Numbers{1.0});  // a list of one
   EXPECT_EQ(text_of(raw("1")), "1");
@@ -41,7 +41,7 @@ TEST(Settings, raw_values_become_what_they_are_read_as) {
   EXPECT_FALSE(raw(" false ").flag("key", true));
 }
 
-TEST(Settings, raw_lists_are_written_in_any_of_the_usual_ways) {
+TEST(Settings, RawListsAreWrittenInAnyOfTheUsualWays) {
   for (const char* text : {"1,2", "1, 2", "1 2", "[1,2]", "[1, 2]", "[1 2]", " [ 1  2 ] ", "1 , 2"})
     EXPECT_EQ(numbers_of(raw(text)), (Numbers{1, 2})) << text;
   EXPECT_EQ(numbers_of(raw("[-0.5 1e3]")), (Numbers{-0.5, 1000}));
@@ -53,7 +53,7 @@ TEST(Settings, raw_lists_are_written_in_any_of_the_usual_ways) {
   EXPECT_EQ(texts_of(raw(R"(["a, b" 'c d'])")), (Texts{"a, b", "c d"}));
 }
 
-TEST(Settings, raw_texts_may_have_quotes_around_them) {
+TEST(Settings, RawTextsMayHaveQuotesAroundThem) {
   EXPECT_EQ(text_of(raw(R"("13.4")")), "13.4");
   EXPECT_EQ(text_of(raw("'13.4'")), "13.4");
   EXPECT_EQ(text_of(raw(R"("13.4')")), R"("13.4')");  // not a pair
@@ -63,7 +63,7 @@ TEST(Settings, raw_texts_may_have_quotes_around_them) {
   EXPECT_EQ(text_of(raw("a b")), "a b");
 }
 
-TEST(Settings, what_a_raw_value_cannot_be_is_refused_with_what_came) {
+TEST(Settings, WhatARawValueCannotBeIsRefusedWithWhatCame) {
   const char* const no_lists[] = {"",      "a",   "1,",  ",1",    "1,,2", "[1", "1]",
                                   "1 2,3", "1;2", "nan", "1,inf", "0x10", "]["};
   for (const char* text : no_lists)
@@ -79,7 +79,7 @@ TEST(Settings, what_a_raw_value_cannot_be_is_refused_with_what_came) {
   EXPECT_NE(refusal(raw("a,,b"), texts_of).find("such as a,b; got 'a,,b'"), std::string::npos);
 }
 
-TEST(Settings, values_of_a_file_keep_their_types) {
+TEST(Settings, ValuesOfAFileKeepTheirTypes) {
   EXPECT_EQ(number_of(given(10.0)), 10.0);  // the largest
   EXPECT_EQ(numbers_of(given(Numbers{1, 2})), (Numbers{1, 2}));
   EXPECT_NE(refusal(given(10.5), number_of).find("from -10 to 10; got 10.5"), std::string::npos);
@@ -91,7 +91,7 @@ TEST(Settings, values_of_a_file_keep_their_types) {
   EXPECT_NE(refusal(given(true), text_of).find("got true"), std::string::npos);
 }
 
-TEST(Settings, without_the_key_the_fallback_counts) {
+TEST(Settings, WithoutTheKeyTheFallbackCounts) {
   Settings none("controller 'c'", {});
   EXPECT_EQ(none.number("key", 3.0, 0.0, 1.0), 3.0);
   EXPECT_EQ(none.text("key", "fallback"), "fallback");

@@ -71,7 +71,7 @@ Town town(std::uint64_t seed, double seconds) {
 }
 
 // Cut anywhere on its way through the car park, a route goes on from where it was cut.
-TEST(Town, a_route_cut_in_the_car_park_stays_in_one_piece) {
+TEST(Town, ARouteCutInTheCarParkStaysInOnePiece) {
   Streets t;
   const control::LaneCorridors corridors(t.roads, t.world, {});
   const auto start = locate_on_lane(corridors, on_lane(t.roads, "11.2", 0.1));
@@ -93,7 +93,7 @@ TEST(Town, a_route_cut_in_the_car_park_stays_in_one_piece) {
   EXPECT_GT(in_zone, 3);
 }
 
-TEST(Town, nobody_stands_for_good_and_the_convoy_drives_on) {
+TEST(Town, NobodyStandsForGoodAndTheConvoyDrivesOn) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Town t = town(seed, 500.0);
     EXPECT_EQ(t.contacts, 0) << seed;
@@ -104,7 +104,7 @@ TEST(Town, nobody_stands_for_good_and_the_convoy_drives_on) {
 }
 
 // Half an hour of it; half a minute of computing, so it runs when asked for.
-TEST(Town, DISABLED_half_an_hour) {
+TEST(Town, DISABLED_HalfAnHour) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Town t = town(seed, 1800.0);
     EXPECT_EQ(t.contacts, 0) << seed;

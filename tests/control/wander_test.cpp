@@ -115,7 +115,7 @@ world::World arena() {
   return world;
 }
 
-TEST(Wander, with_a_scanner_covers_ground_and_meets_nothing) {
+TEST(Wander, WithAScannerCoversGroundAndMeetsNothing) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     world::World world = arena();
     scenes::add_create(world, {2, 2, 0, 0.3}).lasers.push_back(laser(M_PI, 181, 8.0, {0.1, 0, 0, 0}));
@@ -129,7 +129,7 @@ TEST(Wander, with_a_scanner_covers_ground_and_meets_nothing) {
 
 // What presses from behind alone is left behind: ahead where there is room, else by turning; what presses elsewhere is
 // backed off from.
-TEST(Wander, leaves_what_presses_from_behind) {
+TEST(Wander, LeavesWhatPressesFromBehind) {
   world::World world = arena();
   scenes::add_create(world, {2, 2, 0, 0.3}).lasers.push_back(laser(M_PI, 181, 8.0));
   const auto first_twist = [&](double range, std::uint32_t contact_mask) {
@@ -150,7 +150,7 @@ TEST(Wander, leaves_what_presses_from_behind) {
   EXPECT_LT(first_twist(8.0, 0u).forward, 0.0) << "nobody says where";
 }
 
-TEST(Wander, with_twelve_single_beams_keeps_moving) {
+TEST(Wander, WithTwelveSingleBeamsKeepsMoving) {
   world::World world = arena();
   world::Mover& mover = scenes::add_create(world, {2, 2, 0, 0.3});
   for (int i = 0; i < 12; ++i) {
@@ -163,7 +163,7 @@ TEST(Wander, with_twelve_single_beams_keeps_moving) {
   EXPECT_LT(w.longest_stay, 10.0);
 }
 
-TEST(Wander, without_a_laser_walks_by_touch) {
+TEST(Wander, WithoutALaserWalksByTouch) {
   world::World world = arena();
   scenes::add_create(world, {2, 2, 0, 0.3});
   const Walked w = walk(world, 120);
@@ -173,7 +173,7 @@ TEST(Wander, without_a_laser_walks_by_touch) {
   EXPECT_GT(w.contacts, 0);
 }
 
-TEST(Wander, a_tiny_robot_with_short_sight) {
+TEST(Wander, ATinyRobotWithShortSight) {
   world::World world = scenes::boxed_world(1, 1);
   std::vector<glm::dvec2> corners;
   for (int i = 0; i < 12; ++i) corners.push_back(0.035 * glm::dvec2{std::cos(M_PI * i / 6), std::sin(M_PI * i / 6)});
@@ -183,7 +183,7 @@ TEST(Wander, a_tiny_robot_with_short_sight) {
   EXPECT_GT(walk(world, 60).distance, 3.0);
 }
 
-TEST(Wander, a_car_keeps_moving) {
+TEST(Wander, ACarKeepsMoving) {
   world::World world = arena();
   world::Mover& mover = scenes::add_square(world, {2, 2, 0, 0.3});
   mover.drive = world::Drive::car;
@@ -194,7 +194,7 @@ TEST(Wander, a_car_keeps_moving) {
   EXPECT_GT(w.cells, 6u);
 }
 
-TEST(Wander, a_crowd_keeps_moving) {
+TEST(Wander, ACrowdKeepsMoving) {
   world::World world = arena();
   for (int i = 0; i < 12; ++i) {
     scenes::add_create(world, {1.0 + i % 4, 1.0 + i / 4, 0, 0.5 * i}).lasers.push_back(laser(M_PI, 61, 8.0));
@@ -208,7 +208,7 @@ TEST(Wander, a_crowd_keeps_moving) {
   for (const double d : distance) EXPECT_GT(d, 5.0);
 }
 
-TEST(Wander, the_same_walk_again_and_another_with_another_seed) {
+TEST(Wander, TheSameWalkAgainAndAnotherWithAnotherSeed) {
   world::World world = arena();
   scenes::add_create(world, {2, 2, 0, 0.3}).lasers.push_back(laser(M_PI, 61, 8.0));
   Walk a(world, 1), b(world, 1), c(world, 2);
@@ -219,7 +219,7 @@ TEST(Wander, the_same_walk_again_and_another_with_another_seed) {
 
 // ---- What it makes of odd readings.
 
-TEST(Wander, stays_finite_whatever_it_reads) {
+TEST(Wander, StaysFiniteWhateverItReads) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_create(world, {});
   mover.lasers.push_back(laser(M_PI, 37, 8.0));
@@ -237,7 +237,7 @@ TEST(Wander, stays_finite_whatever_it_reads) {
   }
 }
 
-TEST(Wander, ignores_readings_that_are_not_its_own_lasers) {
+TEST(Wander, IgnoresReadingsThatAreNotItsOwnLasers) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_create(world, {});
   mover.lasers.push_back(laser(M_PI, 3, 8.0));
@@ -248,7 +248,7 @@ TEST(Wander, ignores_readings_that_are_not_its_own_lasers) {
   EXPECT_GT(wander.step({0, {}, blocks, false}).forward, 0.3);
 }
 
-TEST(Wander, backs_off_from_what_it_met_then_turns) {
+TEST(Wander, BacksOffFromWhatItMetThenTurns) {
   world::World world = scenes::empty_world();
   Wander wander(scenes::add_create(world, {}), 0, 1);
   EXPECT_GT(wander.step({0, {}, {}, false}).forward, 0.0);
@@ -260,7 +260,7 @@ TEST(Wander, backs_off_from_what_it_met_then_turns) {
 
 // ---- One decision at a time: a Create whose laser of 181 beams over 180 degrees looks 8 m far from its middle.
 
-TEST(Wander, its_distances_follow_from_the_body_its_speed_and_its_sight) {
+TEST(Wander, ItsDistancesFollowFromTheBodyItsSpeedAndItsSight) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_create(world, {});
   struct Sized {
@@ -302,7 +302,7 @@ struct Eyes {
   std::optional<Wander> wander;
 };
 
-TEST(Wander, slows_down_in_proportion_and_turns_where_it_is_blocked) {
+TEST(Wander, SlowsDownInProportionAndTurnsWhereItIsBlocked) {
   // 0.4 m/s from 1 m on, a quarter of it at 0.2 m; nearer than that it turns.
   for (const auto& [ahead, speed] : {std::pair{5.0, 0.4}, {1.01, 0.4}, {0.6, 0.4 * 0.625}, {0.201, 0.1}})
     EXPECT_NEAR(Eyes().look(0.0, ahead + 0.165).forward, speed, 1e-3) << ahead;
@@ -312,7 +312,7 @@ TEST(Wander, slows_down_in_proportion_and_turns_where_it_is_blocked) {
 }
 
 // In the open three tenths of its turn by how much freer a side is, near something all of it; and a drift of a quarter.
-TEST(Wander, steers_towards_the_freer_side) {
+TEST(Wander, SteersTowardsTheFreerSide) {
   const double most = 0.8 * M_PI / 2, drift = 0.25 * most;
   EXPECT_NEAR(Eyes().look(0.0, 8.0, 4.0, 8.0).turn, 0.3 * most * 2.0 / 3.0, 1.1 * drift) << "left";
   EXPECT_NEAR(Eyes().look(0.0, 8.0, 8.0, 4.0).turn, -0.3 * most * 2.0 / 3.0, 1.1 * drift) << "right";
@@ -322,7 +322,7 @@ TEST(Wander, steers_towards_the_freer_side) {
   EXPECT_NEAR(left - right, 2.0 * 0.3 * most, 0.05) << "the drift of one seed is one";
 }
 
-TEST(Wander, blocked_it_turns_to_the_freer_side_until_it_may_resume) {
+TEST(Wander, BlockedItTurnsToTheFreerSideUntilItMayResume) {
   for (const double side : {1.0, -1.0}) {
     Eyes eyes;
     const double right = side > 0.0 ? 1.0 : 3.0, left = 4.0 - right;
@@ -333,7 +333,7 @@ TEST(Wander, blocked_it_turns_to_the_freer_side_until_it_may_resume) {
   }
 }
 
-TEST(Wander, after_a_whole_round_less_room_will_do_and_after_two_it_backs_off) {
+TEST(Wander, AfterAWholeRoundLessRoomWillDoAndAfterTwoItBacksOff) {
   Eyes eyes;
   eyes.look(0.0, 0.3);
   double turned = 0.0, seconds = 0.0;
@@ -349,7 +349,7 @@ TEST(Wander, after_a_whole_round_less_room_will_do_and_after_two_it_backs_off) {
 }
 
 // Half its speed for 0.3 to 0.8 s, then a turn of 0.5 to 2.5 rad, though it is free ahead.
-TEST(Wander, backs_off_for_a_moment_and_turns_by_some_angle) {
+TEST(Wander, BacksOffForAMomentAndTurnsBySomeAngle) {
   std::set<double> backs, turns;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     Eyes eyes;
@@ -377,7 +377,7 @@ struct Look {
   const char* why;
 };
 
-TEST(ClearanceEstimator, ahead_is_measured_from_the_front_in_the_lane) {
+TEST(ClearanceEstimator, AheadIsMeasuredFromTheFrontInTheLane) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
   mover.lasers.push_back(laser(0, 1, 2.0, {0.1, 0, 0, 0}));
@@ -392,7 +392,7 @@ TEST(ClearanceEstimator, ahead_is_measured_from_the_front_in_the_lane) {
 }
 
 // Its lane is 15 % and a centimetre wider than half its width, 0.2 m, to both sides.
-TEST(ClearanceEstimator, the_lane_is_a_little_wider_than_the_body) {
+TEST(ClearanceEstimator, TheLaneIsALittleWiderThanTheBody) {
   for (const auto& [aside, ahead] : {std::pair{0.0, 1.0}, {0.235, 1.0}, {-0.235, 1.0}, {0.245, 1.9}, {-0.245, 1.9}}) {
     world::World world = scenes::empty_world();
     world::Mover mover = scenes::add_square(world, {});
@@ -403,7 +403,7 @@ TEST(ClearanceEstimator, the_lane_is_a_little_wider_than_the_body) {
   }
 }
 
-TEST(ClearanceEstimator, things_beside_the_lane_are_not_ahead) {
+TEST(ClearanceEstimator, ThingsBesideTheLaneAreNotAhead) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
   mover.lasers.push_back(laser(M_PI, 3, 4.0));

@@ -9,13 +9,13 @@ namespace {
 
 using base::Bytes;
 
-TEST(Cdr, starts_with_the_little_endian_encapsulation) {
+TEST(Cdr, StartsWithTheLittleEndianEncapsulation) {
   Bytes out;
   const CdrWriter cdr(out);
   EXPECT_EQ(out, (Bytes{0, 1, 0, 0}));
 }
 
-TEST(Cdr, every_size_is_aligned_to_itself) {
+TEST(Cdr, EverySizeIsAlignedToItself) {
   Bytes out;
   CdrWriter cdr(out);
   cdr.put(true);
@@ -30,7 +30,7 @@ TEST(Cdr, every_size_is_aligned_to_itself) {
                         0, 0, 0, 0, 0, 0, 0xF0, 0x3F}));
 }
 
-TEST(Cdr, alignment_counts_from_behind_the_encapsulation_wherever_the_message_starts) {
+TEST(Cdr, AlignmentCountsFromBehindTheEncapsulationWhereverTheMessageStarts) {
   Bytes out = {77};
   CdrWriter cdr(out);
   cdr.put(std::uint8_t{9});
@@ -38,7 +38,7 @@ TEST(Cdr, alignment_counts_from_behind_the_encapsulation_wherever_the_message_st
   EXPECT_EQ(out, (Bytes{77, 0, 1, 0, 0, 9, 0, 0, 0, 5, 0, 0, 0}));
 }
 
-TEST(Cdr, no_padding_before_what_is_already_aligned) {
+TEST(Cdr, NoPaddingBeforeWhatIsAlreadyAligned) {
   Bytes out;
   CdrWriter cdr(out);
   cdr.put(1.0);
@@ -48,7 +48,7 @@ TEST(Cdr, no_padding_before_what_is_already_aligned) {
   EXPECT_EQ(out.size(), 4u + 8u + 4u + 4u + 8u);
 }
 
-TEST(Cdr, strings_count_their_terminator) {
+TEST(Cdr, StringsCountTheirTerminator) {
   Bytes out;
   CdrWriter cdr(out);
   cdr.put("ab");
@@ -56,7 +56,7 @@ TEST(Cdr, strings_count_their_terminator) {
   EXPECT_EQ(out, (Bytes{0, 1, 0, 0, 3, 0, 0, 0, 'a', 'b', 0, 0, 1, 0, 0, 0, 0}));
 }
 
-TEST(Cdr, reads_back_what_it_wrote) {
+TEST(Cdr, ReadsBackWhatItWrote) {
   Bytes out;
   CdrWriter cdr(out);
   cdr.put(true);
@@ -80,7 +80,7 @@ TEST(Cdr, reads_back_what_it_wrote) {
 }
 
 /// Each a reason to turn bad, and what was asked for.
-TEST(Cdr, malformed_messages_turn_the_reader_bad) {
+TEST(Cdr, MalformedMessagesTurnTheReaderBad) {
   EXPECT_FALSE(CdrReader(Bytes{}).good());            // nothing at all
   EXPECT_FALSE(CdrReader(Bytes{0, 1, 0}).good());     // cut in the encapsulation
   EXPECT_FALSE(CdrReader(Bytes{0, 0, 0, 0}).good());  // big endian
@@ -96,7 +96,7 @@ TEST(Cdr, malformed_messages_turn_the_reader_bad) {
   EXPECT_TRUE(string_is_good({0, 1, 0, 0, 1, 0, 0, 0, 0}));                    // empty, and right
 }
 
-TEST(Cdr, a_count_beyond_the_message_is_refused_before_anything_is_allocated) {
+TEST(Cdr, ACountBeyondTheMessageIsRefusedBeforeAnythingIsAllocated) {
   const Bytes bytes = {0, 1, 0, 0, 3, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
   EXPECT_EQ(CdrReader(bytes).get_count(4), 0u);  // 11 bytes hold no three numbers of four
   EXPECT_EQ(CdrReader(bytes).get_count(3), 3u);
@@ -104,7 +104,7 @@ TEST(Cdr, a_count_beyond_the_message_is_refused_before_anything_is_allocated) {
   EXPECT_EQ(CdrReader(absurd).get_count(1), 0u);
 }
 
-TEST(Cdr, padding_past_the_end_turns_the_reader_bad) {
+TEST(Cdr, PaddingPastTheEndTurnsTheReaderBad) {
   const Bytes bytes = {0, 1, 0, 0, 1};
   CdrReader in(bytes);
   in.get<bool>();

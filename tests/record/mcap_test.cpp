@@ -139,7 +139,7 @@ Hand opening() {
   return file;
 }
 
-TEST(Crc, agrees_with_the_definition) {
+TEST(Crc, AgreesWithTheDefinition) {
   const std::string digits = "123456789";
   const Bytes bytes(digits.begin(), digits.end());
   EXPECT_EQ(crc32_of(bytes), 0xCBF43926u);  // the check value of CRC-32/ISO-HDLC
@@ -150,11 +150,9 @@ TEST(Crc, agrees_with_the_definition) {
   EXPECT_EQ(crc32_of({}), 0u);
 }
 
-TEST(McapWriter, a_tiny_file_is_what_the_specification_says_byte_by_byte) {
-  EXPECT_EQ(tiny_file(), tiny_file_by_hand());
-}
+TEST(McapWriter, ATinyFileIsWhatTheSpecificationSaysByteByByte) { EXPECT_EQ(tiny_file(), tiny_file_by_hand()); }
 
-TEST(McapWriter, draining_at_any_time_makes_no_difference) {
+TEST(McapWriter, DrainingAtAnyTimeMakesNoDifference) {
   const Bytes data = {1, 2, 3};
   const auto write = [&](bool drain) {
     McapWriter writer("p", "lib");
@@ -178,14 +176,14 @@ TEST(McapWriter, draining_at_any_time_makes_no_difference) {
   EXPECT_EQ(write(true), write(false));
 }
 
-TEST(McapWriter, an_empty_chunk_is_not_written) {
+TEST(McapWriter, AnEmptyChunkIsNotWritten) {
   McapWriter writer("", "");
   const std::size_t before = writer.pending().size();
   writer.end_chunk();
   EXPECT_EQ(writer.pending().size(), before);
 }
 
-TEST(McapWriter, messages_that_go_back_in_time_are_indexed_by_their_extremes) {
+TEST(McapWriter, MessagesThatGoBackInTimeAreIndexedByTheirExtremes) {
   McapWriter writer("", "");
   const auto channel = writer.add_channel(writer.add_schema("S", "", ""), "/t", "cdr");
   for (const std::uint64_t time : {50u, 20u, 70u}) writer.add_message({channel, 0, time, time, {}});
@@ -198,7 +196,7 @@ TEST(McapWriter, messages_that_go_back_in_time_are_indexed_by_their_extremes) {
   EXPECT_EQ(last, 70u);
 }
 
-TEST(McapReader, reads_the_tiny_file) {
+TEST(McapReader, ReadsTheTinyFile) {
   const Bytes file = tiny_file_by_hand();
   const McapContents contents = read(file);
   EXPECT_FALSE(contents.truncated);
@@ -218,7 +216,7 @@ TEST(McapReader, reads_the_tiny_file) {
   EXPECT_EQ(contents.metadata.at(0).pairs, (TextPairs{{"a", "b"}}));
 }
 
-TEST(McapReader, messages_outside_chunks_are_read_too) {
+TEST(McapReader, MessagesOutsideChunksAreReadToo) {
   Hand file = opening();
   file.record(0x05, 22 + 1).u16(1).u32(9).u64(1).u64(1).u8({5});
   const McapContents contents = read(file.bytes);
@@ -227,14 +225,14 @@ TEST(McapReader, messages_outside_chunks_are_read_too) {
   EXPECT_TRUE(contents.truncated);  // no footer
 }
 
-TEST(McapReader, opcodes_of_later_versions_are_passed_over) {
+TEST(McapReader, OpcodesOfLaterVersionsArePassedOver) {
   Hand file = opening();
   file.record(0x10, 3).u8({1, 2, 3}).record(0x80, 0);
   file.record(0x05, 22).u16(1).u32(9).u64(1).u64(1);
   EXPECT_EQ(read(file.bytes).messages.size(), 1u);
 }
 
-TEST(McapReader, what_is_no_MCAP_file_is_refused) {
+TEST(McapReader, WhatIsNoMCAPFileIsRefused) {
   const std::vector<Bytes> corpus = {
       {}, {0x89}, Bytes(8, 0), {'#', 'R', 'O', 'S', 'B', 'A', 'G', ' ', 'V', '2', '.', '0'}};
   for (const Bytes& bytes : corpus) EXPECT_THROW(read(bytes), base::InputError);
@@ -242,7 +240,7 @@ TEST(McapReader, what_is_no_MCAP_file_is_refused) {
 }
 
 /// Bad records, each with the reason it is bad. All must be left out, and all but cuts must be told.
-TEST(McapReader, bad_records_are_left_out_and_told) {
+TEST(McapReader, BadRecordsAreLeftOutAndTold) {
   const std::vector<std::pair<const char*, Bytes>> corpus = {
       {"schema shorter than its fields", Hand().record(0x03, 1).u8({1}).bytes},
       {"schema with the reserved id 0", Hand().record(0x03, 14).u16(0).text("").text("").text("").bytes},
@@ -285,7 +283,7 @@ TEST(McapReader, bad_records_are_left_out_and_told) {
   }
 }
 
-TEST(McapReader, a_length_beyond_the_file_ends_it) {
+TEST(McapReader, ALengthBeyondTheFileEndsIt) {
   for (const std::uint64_t length : {std::uint64_t{1}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
     const McapContents contents = read(opening().record(0x05, length).bytes);
     EXPECT_TRUE(contents.truncated);
@@ -293,7 +291,7 @@ TEST(McapReader, a_length_beyond_the_file_ends_it) {
   }
 }
 
-TEST(McapReader, whole_messages_of_a_cut_chunk_are_kept) {
+TEST(McapReader, WholeMessagesOfACutChunkAreKept) {
   Hand file = opening();
   file.record(0x06, 40 + 2 * 31).u64(0).u64(0).u64(62).u32(1).text("").u64(62);
   file.record(0x05, 22).u16(1).u32(7).u64(0).u64(0);
@@ -305,13 +303,13 @@ TEST(McapReader, whole_messages_of_a_cut_chunk_are_kept) {
   EXPECT_EQ(contents.messages[0].sequence, 7u);
 }
 
-TEST(McapReader, damage_is_told_a_hundred_times_and_no_more) {
+TEST(McapReader, DamageIsToldAHundredTimesAndNoMore) {
   Hand file = opening();
   for (int i = 0; i < 1000; ++i) file.record(0x05, 0);
   EXPECT_EQ(read(file.bytes).damage.size(), 100u);
 }
 
-TEST(McapReader, a_cut_at_any_byte_gives_what_was_whole_before_it) {
+TEST(McapReader, ACutAtAnyByteGivesWhatWasWholeBeforeIt) {
   const Bytes file = tiny_file();
   for (std::size_t size = kMagic.size(); size < file.size(); ++size) {
     const McapContents contents = read(Bytes(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)));

@@ -24,7 +24,7 @@ Bytes encoded(const SensorTypeInfo& kind, const std::vector<double>& values) {
   return out;
 }
 
-TEST(Readings, a_kind_is_a_message_type_of_its_own) {
+TEST(Readings, AKindIsAMessageTypeOfItsOwn) {
   EXPECT_EQ(type_of(edge_kind()), "sensorfarm_msgs/msg/Edge");
   const std::string text = schema_text(edge_kind());
   EXPECT_EQ(text.rfind("std_msgs/Header header\nfloat64 distance_m\nuint32 points\nfloat64[3] normal_w\n=", 0), 0u)
@@ -32,13 +32,13 @@ TEST(Readings, a_kind_is_a_message_type_of_its_own) {
   EXPECT_NE(text.find("MSG: builtin_interfaces/Time\n"), std::string::npos);
 }
 
-TEST(Readings, a_kind_with_a_list_has_an_array_per_column) {
+TEST(Readings, AKindWithAListHasAnArrayPerColumn) {
   const std::string text = schema_text(array_kind());
   EXPECT_EQ(text.rfind("std_msgs/Header header\nfloat64[] field_t\nfloat64[] vector_t\nuint32[] hits\n=", 0), 0u)
       << text;
 }
 
-TEST(Readings, one_row_lies_where_its_definition_says) {
+TEST(Readings, OneRowLiesWhereItsDefinitionSays) {
   const Bytes out = encoded(edge_kind(), {0.25, 61.0, 1.0, 2.0, 3.0});
   EXPECT_EQ(at<std::int32_t>(out, 4), 12);
   EXPECT_EQ(at<std::uint32_t>(out, 8), 34u);
@@ -50,7 +50,7 @@ TEST(Readings, one_row_lies_where_its_definition_says) {
   EXPECT_EQ(out.size(), 60u);
 }
 
-TEST(Readings, a_list_lies_column_by_column) {
+TEST(Readings, AListLiesColumnByColumn) {
   const Bytes out = encoded(array_kind(), {1.5, 1, 2, 3, 7, 2.5, 4, 5, 6, 8});
   EXPECT_EQ(at<std::uint32_t>(out, 20), 2u);  // field_t: 16 behind the encapsulation, then 4 of padding
   EXPECT_EQ(at<double>(out, 28), 1.5);
@@ -64,7 +64,7 @@ TEST(Readings, a_list_lies_column_by_column) {
   EXPECT_EQ(out.size(), 112u);
 }
 
-TEST(Readings, readings_of_any_shape_come_back_to_the_bit) {
+TEST(Readings, ReadingsOfAnyShapeComeBackToTheBit) {
   std::mt19937 random(3);  // NOLINT: the same shapes every time
   for (int i = 0; i < 2000; ++i) {
     SensorTypeInfo kind{.id = 9, .name = "any", .list = random() % 2 == 0 ? "rows" : ""};
@@ -85,14 +85,14 @@ TEST(Readings, readings_of_any_shape_come_back_to_the_bit) {
   }
 }
 
-TEST(Readings, what_is_not_there_stays_not_a_number) {
+TEST(Readings, WhatIsNotThereStaysNotANumber) {
   std::vector<double> got;
   std::int64_t time = 0;
   ASSERT_TRUE(decode_reading(edge_kind(), encoded(edge_kind(), {std::nan(""), 0, 0, 0, 0}), time, got));
   EXPECT_TRUE(std::isnan(got[0]));
 }
 
-TEST(Readings, counts_saturate) {
+TEST(Readings, CountsSaturate) {
   const auto count = [](double value) { return at<std::uint32_t>(encoded(edge_kind(), {0, value, 0, 0, 0}), 28); };
   EXPECT_EQ(count(-1.0), 0u);
   EXPECT_EQ(count(std::nan("")), 0u);
@@ -101,7 +101,7 @@ TEST(Readings, counts_saturate) {
   EXPECT_EQ(count(std::numeric_limits<double>::infinity()), 4294967295u);
 }
 
-TEST(Readings, no_cut_of_a_message_is_taken_for_one) {
+TEST(Readings, NoCutOfAMessageIsTakenForOne) {
   std::vector<double> values;
   std::int64_t time = 0;
   for (const auto& [kind, sent] : {std::pair{edge_kind(), std::vector<double>{1, 2, 3, 4, 5}},
@@ -112,7 +112,7 @@ TEST(Readings, no_cut_of_a_message_is_taken_for_one) {
   }
 }
 
-TEST(Readings, arrays_of_different_lengths_are_no_reading) {
+TEST(Readings, ArraysOfDifferentLengthsAreNoReading) {
   std::vector<double> values;
   std::int64_t time = 0;
   Bytes bytes = encoded(array_kind(), {1.5, 1, 2, 3, 7, 2.5, 4, 5, 6, 8});
@@ -123,7 +123,7 @@ TEST(Readings, arrays_of_different_lengths_are_no_reading) {
   EXPECT_FALSE(decode_reading(array_kind(), bytes, time, values));
 }
 
-TEST(Readings, kinds_that_make_no_sense_are_not_read) {
+TEST(Readings, KindsThatMakeNoSenseAreNotRead) {
   std::vector<double> values;
   std::int64_t time = 0;
   const Bytes bytes = encoded(edge_kind(), {1, 2, 3, 4, 5});
@@ -138,7 +138,7 @@ TEST(Readings, kinds_that_make_no_sense_are_not_read) {
   EXPECT_FALSE(decode_reading(kind, encoded(array_kind(), {1, 2, 3, 4, 5}), time, values));
 }
 
-TEST(Readings, broken_contracts_abort_with_the_values) {
+TEST(Readings, BrokenContractsAbortWithTheValues) {
   EXPECT_DEATH(encoded(edge_kind(), {1, 2, 3, 4}), "4 values in a reading of kind edge");
   EXPECT_DEATH(encoded(edge_kind(), std::vector<double>(10)), "10 values");  // two rows, where there is no list
   EXPECT_DEATH(encoded(array_kind(), std::vector<double>(6)), "6 values in a reading of kind array");

@@ -44,7 +44,7 @@ std::map<std::string, std::size_t> topics_of(const base::Bytes& file) {
 }
 
 /// Logged when they are delivered, published when they were measured.
-TEST(Recorder, readings_have_both_of_their_times) {
+TEST(Recorder, ReadingsHaveBothOfTheirTimes) {
   const std::string directory = fresh_directory("times");
   Recorder recorder(directory, sample_info(true));
   write_ticks(recorder, 4, 1);
@@ -56,7 +56,7 @@ TEST(Recorder, readings_have_both_of_their_times) {
     EXPECT_EQ(times[scan_and_array], (std::pair<std::uint64_t, std::uint64_t>{400'000'000, 200'000'000}));
 }
 
-TEST(Recorder, the_world_is_in_the_file_before_the_first_tick) {
+TEST(Recorder, TheWorldIsInTheFileBeforeTheFirstTick) {
   const std::string directory = fresh_directory("first");
   const Recorder recorder(directory, sample_info(false));
   const Recording recording = open_recording(directory);
@@ -66,7 +66,7 @@ TEST(Recorder, the_world_is_in_the_file_before_the_first_tick) {
   EXPECT_FALSE(fs::exists(directory + "/run.mcap.new"));
 }
 
-TEST(Recorder, every_tick_is_readable_as_soon_as_write_returns) {
+TEST(Recorder, EveryTickIsReadableAsSoonAsWriteReturns) {
   const std::string directory = fresh_directory("live");
   Recorder recorder(directory, sample_info(false));
   for (std::uint64_t tick = 0; tick < 4; ++tick) {
@@ -77,7 +77,7 @@ TEST(Recorder, every_tick_is_readable_as_soon_as_write_returns) {
 }
 
 // Kept below the build directory: a sample for readers that are not ours.
-TEST(Recorder, topics_are_as_documented) {
+TEST(Recorder, TopicsAreAsDocumented) {
   const std::string directory = fresh_directory("sample");
   Recorder recorder(directory, sample_info(true));
   write_ticks(recorder, 0, 10);
@@ -102,7 +102,7 @@ TEST(Recorder, topics_are_as_documented) {
   EXPECT_EQ(topics, expected);
 }
 
-TEST(Recorder, without_readings_and_odometry_only_the_exact_states_and_frames_remain) {
+TEST(Recorder, WithoutReadingsAndOdometryOnlyTheExactStatesAndFramesRemain) {
   const std::string directory = fresh_directory("lean");
   RunInfo info = sample_info(false);
   info.odometry_rate = 0.0;
@@ -113,7 +113,7 @@ TEST(Recorder, without_readings_and_odometry_only_the_exact_states_and_frames_re
   EXPECT_EQ(topics_of(bytes_of(recorder.path())), expected);
 }
 
-TEST(Recorder, every_sensor_has_a_frame_whatever_its_kind) {
+TEST(Recorder, EverySensorHasAFrameWhateverItsKind) {
   Recorder recorder(fresh_directory("frames"), sample_info(false));
   recorder.finish();
   const base::Bytes file = bytes_of(recorder.path());
@@ -122,7 +122,7 @@ TEST(Recorder, every_sensor_has_a_frame_whatever_its_kind) {
     EXPECT_NE(text.find(std::string(frame) + '\0'), std::string::npos) << frame;
 }
 
-TEST(Recorder, the_same_run_gives_the_same_bytes) {
+TEST(Recorder, TheSameRunGivesTheSameBytes) {
   base::Bytes files[2];
   for (base::Bytes& file : files) {
     Recorder recorder(fresh_directory("same"), sample_info(true));
@@ -133,13 +133,13 @@ TEST(Recorder, the_same_run_gives_the_same_bytes) {
   EXPECT_EQ(files[0], files[1]);
 }
 
-TEST(Recorder, the_destructor_finishes) {
+TEST(Recorder, TheDestructorFinishes) {
   const std::string directory = fresh_directory("destructor");
   { Recorder(directory, sample_info(false)).write(SampleTick(0).record); }
   EXPECT_FALSE(open_recording(directory).truncated);
 }
 
-TEST(Recorder, finishing_twice_is_finishing_once) {
+TEST(Recorder, FinishingTwiceIsFinishingOnce) {
   Recorder recorder(fresh_directory("twice"), sample_info(false));
   recorder.finish();
   const auto size = recorder.size();
@@ -147,7 +147,7 @@ TEST(Recorder, finishing_twice_is_finishing_once) {
   EXPECT_EQ(recorder.size(), size);
 }
 
-TEST(Recorder, a_killed_process_leaves_every_tick_it_wrote) {
+TEST(Recorder, AKilledProcessLeavesEveryTickItWrote) {
   const std::string directory = fresh_directory("killed");
   const pid_t child = ::fork();
   if (child == 0) {
@@ -166,7 +166,7 @@ TEST(Recorder, a_killed_process_leaves_every_tick_it_wrote) {
   EXPECT_EQ(recording.readings.size(), 21u);
 }
 
-TEST(Recorder, an_older_recording_is_replaced_whole) {
+TEST(Recorder, AnOlderRecordingIsReplacedWhole) {
   const std::string directory = fresh_directory("replaced");
   {
     Recorder recorder(directory, sample_info(true));
@@ -178,7 +178,7 @@ TEST(Recorder, an_older_recording_is_replaced_whole) {
   EXPECT_EQ(bytes_of(recorder.path()).size(), recorder.size());  // nothing of the old ones behind the new
 }
 
-TEST(Recorder, a_recording_that_cannot_begin_leaves_the_older_one) {
+TEST(Recorder, ARecordingThatCannotBeginLeavesTheOlderOne) {
   const std::string directory = fresh_directory("kept");
   {
     Recorder recorder(directory, sample_info(true));
@@ -191,7 +191,7 @@ TEST(Recorder, a_recording_that_cannot_begin_leaves_the_older_one) {
   EXPECT_FALSE(fs::exists(directory + "/run.mcap.new"));
 }
 
-TEST(Recorder, a_second_recorder_in_the_same_place_is_refused_while_the_first_lives) {
+TEST(Recorder, ASecondRecorderInTheSamePlaceIsRefusedWhileTheFirstLives) {
   const std::string directory = fresh_directory("second");
   {
     Recorder first(directory, sample_info(false));
@@ -203,7 +203,7 @@ TEST(Recorder, a_second_recorder_in_the_same_place_is_refused_while_the_first_li
   EXPECT_NO_THROW(Recorder(directory, sample_info(false)));
 }
 
-TEST(Recorder, a_place_that_cannot_be_written_is_refused_with_the_reason) {
+TEST(Recorder, APlaceThatCannotBeWrittenIsRefusedWithTheReason) {
   EXPECT_NE(message_of([] { Recorder("/dev/null/run", sample_info(false)); }).find("cannot be made a directory"),
             std::string::npos);  // below a file
   const std::string directory = fresh_directory("occupied");
@@ -232,7 +232,7 @@ class FullDisk {
   void (*handler_)(int) = nullptr;
 };
 
-TEST(Recorder, a_full_disk_is_told_and_loses_no_tick_before_it) {
+TEST(Recorder, AFullDiskIsToldAndLosesNoTickBeforeIt) {
   const std::string directory = fresh_directory("full");
   std::uint64_t kept = 0;
   std::string told;
@@ -254,20 +254,20 @@ TEST(Recorder, a_full_disk_is_told_and_loses_no_tick_before_it) {
   EXPECT_LE(recording.ticks, kept + 1);  // of the cut chunk, what was whole
 }
 
-TEST(Recorder, a_full_disk_at_the_end_is_told) {
+TEST(Recorder, AFullDiskAtTheEndIsTold) {
   Recorder recorder(fresh_directory("full_end"), sample_info(false));
   const FullDisk disk(recorder.size());
   EXPECT_NE(message_of([&] { recorder.finish(); }).find("cannot take more than"), std::string::npos);
 }
 
-TEST(Recorder, a_full_disk_at_the_start_leaves_nothing) {
+TEST(Recorder, AFullDiskAtTheStartLeavesNothing) {
   const std::string directory = fresh_directory("full_start");
   const FullDisk disk(100);
   EXPECT_NE(message_of([&] { Recorder(directory, sample_info(false)); }).find("cannot take more"), std::string::npos);
   EXPECT_TRUE(fs::is_empty(directory));
 }
 
-TEST(Recorder, broken_contracts_abort_with_the_values) {
+TEST(Recorder, BrokenContractsAbortWithTheValues) {
   const std::string directory = fresh_directory("contracts");
   RunInfo worldless = sample_info(false);
   worldless.snapshot.clear();
@@ -294,7 +294,7 @@ TEST(Recorder, broken_contracts_abort_with_the_values) {
 }
 
 // A hundred robots must stay reasonable: the figures in docs/recordings.md.
-TEST(Recorder, bytes_per_tick_of_a_hundred_robots) {
+TEST(Recorder, BytesPerTickOfAHundredRobots) {
   RunInfo info = sample_info(false);
   info.odometry_rate = 1.0;
   info.movers.clear();

@@ -75,7 +75,7 @@ bool is_prefix(const Recording& part, const Recording& whole) {
          part.info.snapshot == whole.info.snapshot;
 }
 
-TEST(Recording, a_run_comes_back) {
+TEST(Recording, ARunComesBack) {
   const Recording recording = read_recording(sample().bytes, "run.mcap");
   EXPECT_FALSE(recording.truncated);
   EXPECT_TRUE(recording.damage.empty());
@@ -99,7 +99,7 @@ TEST(Recording, a_run_comes_back) {
   }
 }
 
-TEST(Recording, scans_come_back_as_float32) {
+TEST(Recording, ScansComeBackAsFloat32) {
   const Recording recording = read_recording(sample().bytes, "run.mcap");
   ASSERT_EQ(recording.scans.size(), 9u);
   for (std::size_t i = 0; i < 9; ++i) {
@@ -118,7 +118,7 @@ TEST(Recording, scans_come_back_as_float32) {
   }
 }
 
-TEST(Recording, readings_of_other_kinds_come_back_to_the_bit) {
+TEST(Recording, ReadingsOfOtherKindsComeBackToTheBit) {
   const Recording recording = read_recording(sample().bytes, "run.mcap");
   ASSERT_EQ(recording.readings.size(), 9u);
   for (std::size_t i = 0; i < 9; ++i) {
@@ -135,7 +135,7 @@ TEST(Recording, readings_of_other_kinds_come_back_to_the_bit) {
   }
 }
 
-TEST(Recording, a_cut_at_any_byte_gives_a_prefix_with_every_whole_tick) {
+TEST(Recording, ACutAtAnyByteGivesAPrefixWithEveryWholeTick) {
   const Recording whole = read_recording(sample().bytes, "run.mcap");
   const std::vector<std::size_t>& sizes = sample().sizes;
   for (std::size_t size = 0; size < sample().bytes.size(); ++size) {
@@ -156,7 +156,7 @@ TEST(Recording, a_cut_at_any_byte_gives_a_prefix_with_every_whole_tick) {
   }
 }
 
-TEST(Recording, no_flipped_bit_changes_a_number_silently) {
+TEST(Recording, NoFlippedBitChangesANumberSilently) {
   const Recording whole = read_recording(sample().bytes, "run.mcap");
   Bytes bytes = sample().bytes;
   std::mt19937 random(1);
@@ -181,7 +181,7 @@ TEST(Recording, no_flipped_bit_changes_a_number_silently) {
   EXPECT_GT(told, kFlips / 2);  // most of the file is data
 }
 
-TEST(Recording, torn_and_garbled_files_neither_crash_nor_hang) {
+TEST(Recording, TornAndGarbledFilesNeitherCrashNorHang) {
   std::mt19937 random(2);
   for (int i = 0; i < 3000; ++i) {
     Bytes bytes = sample().bytes;
@@ -217,7 +217,7 @@ void add_run_info(McapWriter& writer, const RunInfo& info) {
   writer.add_message({.channel = writer.add_channel(schema, "/run", "cdr"), .data = message});
 }
 
-TEST(Recording, what_is_no_recording_of_ours_is_refused_with_the_reason) {
+TEST(Recording, WhatIsNoRecordingOfOursIsRefusedWithTheReason) {
   EXPECT_NE(refusal({'P', 'K', 3, 4}).find("dir/run.mcap: not an MCAP file"), std::string::npos);
   EXPECT_NE(refusal({}).find("not an MCAP file"), std::string::npos);
 
@@ -229,7 +229,7 @@ TEST(Recording, what_is_no_recording_of_ours_is_refused_with_the_reason) {
   EXPECT_NE(refusal(finished(worldless)).find("no whole world inside"), std::string::npos);
 }
 
-TEST(Recording, a_state_of_a_mover_that_is_not_there_is_left_out_and_told) {
+TEST(Recording, AStateOfAMoverThatIsNotThereIsLeftOutAndTold) {
   McapWriter writer("ros2", "sensorfarm");
   const Bytes world = {1};
   writer.add_attachment({.name = "world.bin", .data = world});
@@ -243,7 +243,7 @@ TEST(Recording, a_state_of_a_mover_that_is_not_there_is_left_out_and_told) {
   EXPECT_EQ(recording.damage.size(), 1u);
 }
 
-TEST(Recording, a_reading_that_its_kind_does_not_explain_is_left_out_and_told) {
+TEST(Recording, AReadingThatItsKindDoesNotExplainIsLeftOutAndTold) {
   McapWriter writer("ros2", "sensorfarm");
   const Bytes world = {1};
   writer.add_attachment({.name = "world.bin", .data = world});
@@ -267,7 +267,7 @@ TEST(Recording, a_reading_that_its_kind_does_not_explain_is_left_out_and_told) {
   EXPECT_EQ(recording.damage.size(), 2u);  // what is not ours at all is no damage
 }
 
-TEST(Recording, damage_is_told_a_hundred_times_and_no_more) {
+TEST(Recording, DamageIsToldAHundredTimesAndNoMore) {
   McapWriter writer("ros2", "sensorfarm");
   const Bytes world = {1};
   writer.add_attachment({.name = "world.bin", .data = world});
@@ -282,7 +282,7 @@ TEST(Recording, damage_is_told_a_hundred_times_and_no_more) {
   EXPECT_NE(recording.damage.back().find("/fleet at 0 ns: not understood"), std::string::npos);
 }
 
-TEST(Recording, a_place_without_a_recording_is_refused_with_advice) {
+TEST(Recording, APlaceWithoutARecordingIsRefusedWithAdvice) {
   const auto refusal_of = [](const std::string& directory) -> std::string {
     try {
       open_recording(directory);
@@ -300,7 +300,7 @@ TEST(Recording, a_place_without_a_recording_is_refused_with_advice) {
   EXPECT_NE(refusal_of(directory).find("not an MCAP file"), std::string::npos);  // empty
 }
 
-TEST(Recording, the_file_itself_may_be_named) {
+TEST(Recording, TheFileItselfMayBeNamed) {
   Recorder recorder(test::fresh_directory("by_name"), test::sample_info(false));
   recorder.write(SampleTick(0).record);
   EXPECT_EQ(open_recording(recorder.path()).ticks, 1u);

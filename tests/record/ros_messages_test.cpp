@@ -23,7 +23,7 @@ Scan sample_scan() {
       .time = 12'000'000'034, .frame = "r/l", .fov = 2.0F, .scan_time = 0.1F, .range_min = 0.25F, .range_max = 8.0F};
 }
 
-TEST(Messages, a_scan_lies_where_ROS_expects_it) {
+TEST(Messages, AScanLiesWhereROSExpectsIt) {
   const double infinity = std::numeric_limits<double>::infinity();
   Bytes out;
   encode_scan(sample_scan(), std::vector<double>{1.0 / 3.0, 8.0, infinity}, out);
@@ -46,13 +46,13 @@ TEST(Messages, a_scan_lies_where_ROS_expects_it) {
   EXPECT_EQ(out.size(), 68u);
 }
 
-TEST(Messages, a_scan_of_one_beam_has_no_increment) {
+TEST(Messages, AScanOfOneBeamHasNoIncrement) {
   Bytes out;
   encode_scan(sample_scan(), std::vector<double>{1.0}, out);
   EXPECT_EQ(at<float>(out, 28), 0.0F);
 }
 
-TEST(Messages, a_scan_comes_back) {
+TEST(Messages, AScanComesBack) {
   Bytes out;
   encode_scan(sample_scan(), std::vector<double>{0.5, 8.0}, out);
   const auto scan = decode_scan(out);
@@ -63,7 +63,7 @@ TEST(Messages, a_scan_comes_back) {
   EXPECT_EQ(scan->ranges, (std::vector<float>{0.5F, 8.0F}));
 }
 
-TEST(Messages, no_cut_of_a_message_is_taken_for_one) {
+TEST(Messages, NoCutOfAMessageIsTakenForOne) {
   const test::SampleTick tick(3);
   RunInfo info = test::sample_info(true);
   name_frames(info);
@@ -78,7 +78,7 @@ TEST(Messages, no_cut_of_a_message_is_taken_for_one) {
   for (std::size_t size = 0; size < run.size(); ++size) EXPECT_FALSE(decode_run_info(std::span(run).first(size), info));
 }
 
-TEST(Messages, odometry_lies_where_ROS_expects_it) {
+TEST(Messages, OdometryLiesWhereROSExpectsIt) {
   Bytes out;
   encode_odometry({1'500'000'000, "world", "r", {1.0, 2.0, 3.0, M_PI / 2}}, {0.5, -0.25, 0.125}, out);
   // 4 + stamp 8 + "world" 4 + 6 | 22 -> 24: "r" 4 + 2 | 30 -> 36: the pose, 8-aligned behind the encapsulation
@@ -99,7 +99,7 @@ TEST(Messages, odometry_lies_where_ROS_expects_it) {
   EXPECT_EQ(out.size(), twist + 48 + 36 * 8);
 }
 
-TEST(Messages, commands_and_transforms_lie_where_ROS_expects_them) {
+TEST(Messages, CommandsAndTransformsLieWhereROSExpectsThem) {
   Bytes twist;
   encode_twist(0, "abc", {0.5, 0.0, 0.125}, twist);
   EXPECT_EQ(at<double>(twist, 20), 0.5);  // stamp 8, string 8: 16 behind the encapsulation
@@ -115,7 +115,7 @@ TEST(Messages, commands_and_transforms_lie_where_ROS_expects_them) {
   EXPECT_EQ(at<double>(transforms, 116), 4.0);  // 88 + stamp 8, strings 16: 112 behind the encapsulation
 }
 
-TEST(Messages, a_fleet_comes_back_to_the_bit) {
+TEST(Messages, AFleetComesBackToTheBit) {
   const test::SampleTick tick(3);
   Bytes out;
   encode_fleet(tick.record, out);
@@ -134,7 +134,7 @@ TEST(Messages, a_fleet_comes_back_to_the_bit) {
   }
 }
 
-TEST(Messages, a_fleet_without_commands_and_contacts_says_zero) {
+TEST(Messages, AFleetWithoutCommandsAndContactsSaysZero) {
   test::SampleTick tick(3);
   tick.record.commands = {};
   tick.record.contacts = {};
@@ -146,7 +146,7 @@ TEST(Messages, a_fleet_without_commands_and_contacts_says_zero) {
   EXPECT_EQ(fleet.states[1].command.forward, 0.0);
 }
 
-TEST(Messages, run_info_comes_back) {
+TEST(Messages, RunInfoComesBack) {
   RunInfo info = test::sample_info(true);
   name_frames(info);
   Bytes out;
@@ -187,7 +187,7 @@ TEST(Messages, run_info_comes_back) {
   EXPECT_TRUE(back.movers[1].sensors.empty());
 }
 
-TEST(RunInfo, names_become_unique_ROS_names) {
+TEST(RunInfo, NamesBecomeUniqueROSNames) {
   RunInfo info;
   const auto frame_of = [&](const std::string& name) {
     info.movers.push_back({.name = name});
@@ -203,7 +203,7 @@ TEST(RunInfo, names_become_unique_ROS_names) {
   EXPECT_EQ(frame_of("f\xC3\xBC"), "f__");        // bytes beyond ASCII
 }
 
-TEST(RunInfo, a_laser_does_not_take_the_topics_of_its_robot) {
+TEST(RunInfo, ALaserDoesNotTakeTheTopicsOfItsRobot) {
   RunInfo info;
   info.movers = {{.name = "r", .lasers = {{.name = "odom"}, {.name = "a b"}, {.name = "a b"}}}};
   name_frames(info);
@@ -212,7 +212,7 @@ TEST(RunInfo, a_laser_does_not_take_the_topics_of_its_robot) {
   EXPECT_EQ(info.movers[0].lasers[2].topic, "/r/a_b_2/scan");
 }
 
-TEST(Messages, a_time_before_zero_is_our_bug) {
+TEST(Messages, ATimeBeforeZeroIsOurBug) {
   Bytes out;
   EXPECT_DEATH(encode_twist(-1, "r", {}, out), "time -1 ns");
 }

@@ -14,7 +14,7 @@ std::size_t count(const std::string& text, const std::string& what) {
   return n;
 }
 
-TEST(Schemas, a_type_comes_with_every_type_it_needs_once) {
+TEST(Schemas, ATypeComesWithEveryTypeItNeedsOnce) {
   const std::string text = schema_text(kOdometry);
   EXPECT_EQ(text.rfind("std_msgs/Header header\nstring child_frame_id\n", 0), 0u);
   EXPECT_EQ(count(text, "\n" + std::string(80, '=') + "\nMSG: "), 9u);
@@ -25,7 +25,7 @@ TEST(Schemas, a_type_comes_with_every_type_it_needs_once) {
   }
 }
 
-TEST(Schemas, every_line_is_a_field_or_a_heading) {
+TEST(Schemas, EveryLineIsAFieldOrAHeading) {
   for (const auto type : {kOdometry, kLaserScan, kTwistStamped, kTransforms, kFleet, kRunInfo}) {
     std::istringstream lines(schema_text(type));
     for (std::string line; std::getline(lines, line);) {
@@ -35,7 +35,7 @@ TEST(Schemas, every_line_is_a_field_or_a_heading) {
   }
 }
 
-TEST(Schemas, a_type_nobody_defined_is_our_bug) {
+TEST(Schemas, ATypeNobodyDefinedIsOurBug) {
   EXPECT_DEATH(schema_text("std_msgs/msg/Strng"), "no message type std_msgs/Strng");
   EXPECT_DEATH(schema_text("Odometry"), "not a message type");
 }

@@ -26,13 +26,13 @@ namespace {
 
 constexpr std::int64_t kTick = 100'000'000;
 
-TEST(Allocation, counts_at_all) {
+TEST(Allocation, CountsAtAll) {
   const long before = allocations;
   ::operator delete(::operator new(100));  // called by name: cannot be optimised away
   EXPECT_EQ(allocations - before, 1);
 }
 
-TEST(Allocation, none_while_robots_move_and_collide) {
+TEST(Allocation, NoneWhileRobotsMoveAndCollide) {
   world::World world = scenes::boxed_world(6, 6);
   for (int i = 0; i < 36; ++i) scenes::add_create(world, {0.5 + i % 6, 0.5 + i / 6, 0, 0.7 * i});
   Fleet fleet(world);

@@ -30,7 +30,7 @@ world::Segment wall(glm::dvec2 a, glm::dvec2 b, double z_min = 0.0, double z_max
 
 std::uint32_t bit(int k) { return 1u << ((k + 32) % 32); }
 
-TEST(Sectors, a_post_is_one_sector) {
+TEST(Sectors, APostIsOneSector) {
   // Sector 0 begins at bearing 0; the square's right side is at x = 0.2.
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.2005, 0.01}, {0.2005, 0.012})), bit(0));
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.2005, -0.01}, {0.2005, -0.012})), bit(-1));
@@ -39,43 +39,43 @@ TEST(Sectors, a_post_is_one_sector) {
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.01, -0.2005}, {0.012, -0.2005})), bit(24));
 }
 
-TEST(Sectors, a_wall_along_a_side_is_all_sectors_of_the_side) {
+TEST(Sectors, AWallAlongASideIsAllSectorsOfTheSide) {
   const std::uint32_t side = bit(0) | bit(1) | bit(2) | bit(3) | bit(-1) | bit(-2) | bit(-3) | bit(-4);
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.2005, -0.2}, {0.2005, 0.2})), side) << "from -45 to 45 degrees";
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.2005, -5.0}, {0.2005, 5.0})), side | bit(4) | bit(-5))
       << "a longer wall is within a millimetre of the corners on their other side, too";
 }
 
-TEST(Sectors, a_disc_against_a_wall_is_touched_where_it_is_nearest) {
+TEST(Sectors, ADiscAgainstAWallIsTouchedWhereItIsNearest) {
   const std::uint32_t front = contact_sectors(disc(), {}, wall({0.1655, -5.0}, {0.1655, 5.0}));
   EXPECT_EQ(front, bit(0) | bit(-1)) << "its corner at bearing 0 is on the border of two";
 }
 
-TEST(Sectors, end_where_the_surface_is_a_millimetre_away) {
+TEST(Sectors, EndWhereTheSurfaceIsAMillimetreAway) {
   EXPECT_NE(contact_sectors(square(), {}, wall({0.20099, -1.0}, {0.20099, 1.0})), 0u);
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.20101, -1.0}, {0.20101, 1.0})), 0u);
 }
 
-TEST(Sectors, what_is_above_or_below_does_not_touch) {
+TEST(Sectors, WhatIsAboveOrBelowDoesNotTouch) {
   EXPECT_NE(contact_sectors(square(), {0, 0, 0.5, 0}, wall({0.2, -1.0}, {0.2, 1.0})), 0u);
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.2, -1.0}, {0.2, 1.0}, 0.1, 1.0)), 0u) << "the square is 0.1 m high";
   EXPECT_EQ(contact_sectors(square(), {0, 0, 1.0, 0}, wall({0.2, -1.0}, {0.2, 1.0})), 0u);
 }
 
-TEST(Sectors, a_wall_through_the_body_is_inside_it) {
+TEST(Sectors, AWallThroughTheBodyIsInsideIt) {
   const std::uint32_t through = contact_sectors(square(), {}, wall({0.1, -5.0}, {0.1, 5.0}));
   EXPECT_EQ(through & (bit(0) | bit(-1)), bit(0) | bit(-1)) << "ahead";
   EXPECT_EQ(through & (bit(15) | bit(16)), 0u) << "and not behind";
   EXPECT_EQ(contact_sectors(square(), {}, wall({0.1, 0.01}, {0.1, 0.011})), bit(0)) << "wholly inside";
 }
 
-TEST(Sectors, turn_with_the_mover) {
+TEST(Sectors, TurnWithTheMover) {
   const world::Segment post = wall({1.2005, 2.01}, {1.2005, 2.012});
   EXPECT_EQ(contact_sectors(square(), {1, 2, 0, 0}, post), bit(0));
   EXPECT_EQ(contact_sectors(square(), {1, 2, 0, M_PI / 2}, post), bit(24)) << "what was ahead is on the right";
 }
 
-TEST(Sectors, another_outline_is_what_its_edges_are) {
+TEST(Sectors, AnotherOutlineIsWhatItsEdgesAre) {
   const std::uint32_t beside = contact_sectors(square(), {}, square(), {0.4005, 0, 0, 0});
   EXPECT_EQ(beside, bit(0) | bit(1) | bit(2) | bit(3) | bit(-1) | bit(-2) | bit(-3) | bit(-4));
   EXPECT_EQ(contact_sectors(square(), {}, square(), {0.4011, 0, 0, 0}), 0u);
@@ -85,26 +85,26 @@ TEST(Sectors, another_outline_is_what_its_edges_are) {
       << "a corner";
 }
 
-TEST(Sectors, within_a_larger_solid_all_are_pressed) {
+TEST(Sectors, WithinALargerSolidAllArePressed) {
   world::World world = scenes::empty_world();
   const Footprint large = footprint_of(scenes::add_mover(world, {}, scenes::rectangle({}, 4.0, 4.0)));
   EXPECT_EQ(contact_sectors(square(), {0.5, 0.2, 0, 1}, large, {}), ~0u);
   EXPECT_EQ(contact_sectors(square(), {2.5, 0.2, 0, 0}, large, {}), 0u);
 }
 
-TEST(Sectors, of_nothing_are_none) {
+TEST(Sectors, OfNothingAreNone) {
   EXPECT_EQ(contact_sectors(Footprint{.step = 1.0}, {}, wall({0.0, -1.0}, {0.0, 1.0})), 0u);
   EXPECT_EQ(contact_sectors(Footprint{.step = 1.0}, {}, square(), {}), 0u);
 }
 
-TEST(Sectors, the_same_100_km_away) {
+TEST(Sectors, TheSame100KmAway) {
   const Pose X{1e5, -1e5, 0, 0.3};
   const auto moved = [&](glm::dvec2 p) { return transform(X, p); };
   EXPECT_EQ(contact_sectors(square(), X, wall(moved({0.2005, -0.01}), moved({0.2005, -0.012}))), bit(-1));
 }
 
 // A wall as many points: every point within reach of the outline or inside it, by distances in long double.
-TEST(Sectors, agree_with_points_along_the_wall) {
+TEST(Sectors, AgreeWithPointsAlongTheWall) {
   const Footprint outline = disc();
   int pressed = 0;
   for (std::uint32_t k = 0; k < 300; ++k) {

@@ -33,7 +33,7 @@ double gap_to(const world::World& world, const Pose& X_WM, const world::Mover& m
   return gap;
 }
 
-TEST(Contact, whatever_a_robot_runs_into_it_comes_within_half_a_millimetre) {
+TEST(Contact, WhateverARobotRunsIntoItComesWithinHalfAMillimetre) {
   for (std::uint32_t k = 0; k < 60; ++k) {
     const auto u = base::random_uniform({.seed = 31, .stream = base::RandomStream::placement, .a = k}, 0);
     world::World world = scenes::boxed_world(2, 2);
@@ -53,7 +53,7 @@ TEST(Contact, whatever_a_robot_runs_into_it_comes_within_half_a_millimetre) {
   }
 }
 
-TEST(Contact, is_felt_where_it_presses) {
+TEST(Contact, IsFeltWhereItPresses) {
   for (const auto& [yaw, sectors] : {std::pair{0.0, bit(0) | bit(-1)}, {M_PI / 2, bit(7) | bit(8)}}) {
     world::World world = scenes::empty_world();
     scenes::add_wall(world, {0.5, -1}, {0.5, 1});
@@ -68,7 +68,7 @@ TEST(Contact, is_felt_where_it_presses) {
   }
 }
 
-TEST(Contact, stays_while_it_touches_and_ends_when_it_leaves) {
+TEST(Contact, StaysWhileItTouchesAndEndsWhenItLeaves) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.5, -1}, {0.5, 1});
   scenes::add_create(world, {0, 0, 0, 0});
@@ -86,7 +86,7 @@ TEST(Contact, stays_while_it_touches_and_ends_when_it_leaves) {
   EXPECT_EQ(fleet.contacts()[0], 0);
 }
 
-TEST(Contact, passing_by_is_none) {
+TEST(Contact, PassingByIsNone) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {-5, 0.2005}, {5, 0.2005});
   scenes::add_square(world, {0, 0, 0, 0});
@@ -96,7 +96,7 @@ TEST(Contact, passing_by_is_none) {
   EXPECT_EQ(fleet.contacts()[0], 0);
 }
 
-TEST(Contact, who_is_run_into_feels_it_too) {
+TEST(Contact, WhoIsRunIntoFeelsItToo) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {0, 0, 0, M_PI});  // its back to the other
   scenes::add_square(world, {1, 0, 0, M_PI});
@@ -113,7 +113,7 @@ TEST(Contact, who_is_run_into_feels_it_too) {
   EXPECT_EQ(fleet.reports()[0].contact_mask & (bit(15) | bit(16)), 0u) << "released on that side";
 }
 
-TEST(Contact, a_round_robot_that_presses_can_turn_whatever_side_it_presses_with) {
+TEST(Contact, ARoundRobotThatPressesCanTurnWhateverSideItPressesWith) {
   for (int k = 0; k < 32; ++k) {
     world::World world = scenes::empty_world();
     scenes::add_wall(world, {0.5, -1}, {0.5, 1});
@@ -131,7 +131,7 @@ TEST(Contact, a_round_robot_that_presses_can_turn_whatever_side_it_presses_with)
   }
 }
 
-TEST(Contact, accelerations_limit_driving_but_not_being_stopped) {
+TEST(Contact, AccelerationsLimitDrivingButNotBeingStopped) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.5, -1}, {0.5, 1});
   scenes::add_create(world, {0, 0, 0, 0}).max_acceleration = 1.0;
@@ -149,7 +149,7 @@ TEST(Contact, accelerations_limit_driving_but_not_being_stopped) {
   EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.forward, -0.1) << "and leaves from standing";
 }
 
-TEST(Contact, the_driver_model_comes_first) {
+TEST(Contact, TheDriverModelComesFirst) {
   world::World world = scenes::empty_world();
   world::Mover& mover = scenes::add_create(world, {0, 0, 0, 0});
   mover.track = 0.258;
@@ -159,7 +159,7 @@ TEST(Contact, the_driver_model_comes_first) {
   EXPECT_DOUBLE_EQ(fleet.reports()[0].velocity.turn, 0.2);
 }
 
-TEST(Contact, a_robot_that_is_told_presses_on_virtual_things) {
+TEST(Contact, ARobotThatIsToldPressesOnVirtualThings) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.5, -1}, {0.5, 1});
   scenes::add_create(world, {0, 0, 0, 0});
@@ -179,7 +179,7 @@ TEST(Contact, a_robot_that_is_told_presses_on_virtual_things) {
   EXPECT_EQ(fleet.predict(5 * kTick)[1].contact_mask, 0u);
 }
 
-TEST(Contact, what_a_report_says_of_a_real_bumper_stays) {
+TEST(Contact, WhatAReportSaysOfARealBumperStays) {
   world::World world = scenes::empty_world();
   scenes::add_create(world, {0, 0, 0, 0});
   Fleet fleet(world);
@@ -192,7 +192,7 @@ TEST(Contact, what_a_report_says_of_a_real_bumper_stays) {
   EXPECT_EQ(beside.predict(kTick)[0].contact_mask, bit(3) | bit(0) | bit(-1)) << "beside what the virtual world adds";
 }
 
-TEST(Contact, robots_that_are_told_press_on_each_other) {
+TEST(Contact, RobotsThatAreToldPressOnEachOther) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {0, 0, 0, 0});
   scenes::add_square(world, {5, 0, 0, 0});

@@ -85,7 +85,7 @@ int crossings(const world::World& world, std::span<const Report> reports) {
   return count;
 }
 
-TEST(Crowd, nothing_ever_crosses_anything) {
+TEST(Crowd, NothingEverCrossesAnything) {
   const world::World world = crowd();
   ASSERT_GT(world.movers.size(), 60u);
   Fleet fleet(world);
@@ -116,12 +116,12 @@ std::uint64_t hash_of_run(const world::World& world, int ticks) {
   return hash;
 }
 
-TEST(Crowd, the_same_run_again) {
+TEST(Crowd, TheSameRunAgain) {
   const world::World world = crowd();
   EXPECT_EQ(hash_of_run(world, 300), hash_of_run(world, 300));
 }
 
-TEST(Crowd, a_fixed_run_has_a_fixed_hash) { EXPECT_EQ(base::hash_hex(hash_of_run(crowd(), 200)), "f8a66d0c2116e9ca"); }
+TEST(Crowd, AFixedRunHasAFixedHash) { EXPECT_EQ(base::hash_hex(hash_of_run(crowd(), 200)), "f8a66d0c2116e9ca"); }
 
 std::vector<Twist> commands_by_id(const world::World& world, int tick) {
   const std::vector<Twist> by_id = random_commands(world.movers.size() + 1, tick);
@@ -164,7 +164,7 @@ world::World throng(int side) {
   return world;
 }
 
-TEST(Crowd, the_order_of_rows_changes_nothing) {
+TEST(Crowd, TheOrderOfRowsChangesNothing) {
   for (const world::World& world : {crowd(), throng(6)}) {
     for (std::uint32_t k = 1; k <= 3; ++k) {
       world::World mixed = world;
@@ -180,7 +180,7 @@ TEST(Crowd, the_order_of_rows_changes_nothing) {
   }
 }
 
-TEST(Crowd, threads_change_nothing) {
+TEST(Crowd, ThreadsChangeNothing) {
   for (const world::World& world : {crowd(), throng(8)}) {
     for (const unsigned threads : {1u, 2u, 5u}) {
       base::ThreadPool thread_pool(threads);
@@ -192,7 +192,7 @@ TEST(Crowd, threads_change_nothing) {
 
 /// Wider and faster robots elsewhere change how neighbours are searched for, not what is found. As many small ones keep
 /// the cells of the walls' index, in whose order sums over walls are made.
-TEST(Crowd, a_crowd_far_away_changes_nothing) {
+TEST(Crowd, ACrowdFarAwayChangesNothing) {
   const world::World alone = throng(7);
   world::World together = alone;
   for (int i = 0; i < 9; ++i) {
@@ -203,7 +203,7 @@ TEST(Crowd, a_crowd_far_away_changes_nothing) {
   EXPECT_GT(expect_same(alone, one, together, two, 200), 100);
 }
 
-TEST(Crowd, nothing_crosses_anything_in_a_throng) {
+TEST(Crowd, NothingCrossesAnythingInAThrong) {
   const world::World world = throng(7);
   base::ThreadPool thread_pool(2);
   Fleet fleet(world, &thread_pool);
@@ -217,7 +217,7 @@ TEST(Crowd, nothing_crosses_anything_in_a_throng) {
 }
 
 /// Fast enough to pass through each other in one tick: 1 m a tick, 0.4 m wide.
-TEST(Crowd, fast_robots_do_not_pass_through_each_other) {
+TEST(Crowd, FastRobotsDoNotPassThroughEachOther) {
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
     world::World world = scenes::empty_world();
     const auto u = base::random_uniform({.seed = 77, .a = seed}, 0);
@@ -231,7 +231,7 @@ TEST(Crowd, fast_robots_do_not_pass_through_each_other) {
   }
 }
 
-TEST(Crowd, of_two_that_want_one_gap_the_smaller_id_goes_first) {
+TEST(Crowd, OfTwoThatWantOneGapTheSmallerIdGoesFirst) {
   for (const bool swapped : {false, true}) {
     world::World world = scenes::empty_world();
     scenes::add_wall(world, {0, 0.22}, {0, 3});
@@ -256,7 +256,7 @@ TEST(Crowd, of_two_that_want_one_gap_the_smaller_id_goes_first) {
 }
 
 /// A robot close behind another that drives on is not stopped by where that was, whichever has the smaller id.
-TEST(Crowd, who_follows_closely_is_not_stopped) {
+TEST(Crowd, WhoFollowsCloselyIsNotStopped) {
   for (const bool swapped : {false, true}) {
     world::World world = scenes::empty_world();
     for (int i = 0; i < 3; ++i) scenes::add_square(world, {-0.41 * i, 0, 0, 0});
@@ -271,7 +271,7 @@ TEST(Crowd, who_follows_closely_is_not_stopped) {
 }
 
 /// Many who push towards one place, and go anywhere when stopped: nobody waits for ever for others to move.
-TEST(Crowd, all_who_push_through_a_gap_get_through) {
+TEST(Crowd, AllWhoPushThroughAGapGetThrough) {
   world::World world = scenes::boxed_world(12, 6, {-6, -3});
   scenes::add_wall(world, {0, 0.4}, {0, 3});
   scenes::add_wall(world, {0, -0.4}, {0, -3});
@@ -296,7 +296,7 @@ TEST(Crowd, all_who_push_through_a_gap_get_through) {
   EXPECT_EQ(through, 20);
 }
 
-TEST(Crowd, what_is_far_away_changes_nothing) {
+TEST(Crowd, WhatIsFarAwayChangesNothing) {
   world::World alone = scenes::boxed_world(6, 6), together = alone;
   scenes::add_create(alone, {3, 3, 0, 0});
   scenes::add_create(together, {3, 3, 0, 0});

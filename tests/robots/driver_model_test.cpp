@@ -25,18 +25,18 @@ void expect_twist(const Twist& actual, const Twist& expected) {
   EXPECT_DOUBLE_EQ(actual.turn, expected.turn);
 }
 
-TEST(Obey, direct_is_the_command_itself) {
+TEST(Obey, DirectIsTheCommandItself) {
   expect_twist(apply_driver(world::Mover{}, {0.1234, 0.2, -3.3}), {0.1234, 0.2, -3.3});
 }
 
-TEST(Obey, what_is_not_finite_is_zero) {
+TEST(Obey, WhatIsNotFiniteIsZero) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   expect_twist(apply_driver(world::Mover{}, {nan, inf, 1.0}), {0.0, 0.0, 1.0});
   expect_twist(apply_driver(create(), {nan, inf, -inf}), {0.0, 0.0, 0.0});
 }
 
 // The cases of Player's driver one by one; radii worked out by hand.
-TEST(Obey, a_create_is_told_whole_millimetres) {
+TEST(Obey, ACreateIsToldWholeMillimetres) {
   expect_twist(apply_driver(create(), {0.1234, 0.0, 0.0}), {0.123, 0.0, 0.0});        // 123 mm/s, straight
   expect_twist(apply_driver(create(), {0.7, 0.0, 0.0}), {0.5, 0.0, 0.0});             // it drives no faster
   expect_twist(apply_driver(create(), {-0.7, 0.0, 0.0}), {-0.5, 0.0, 0.0});           // nor backwards
@@ -52,7 +52,7 @@ TEST(Obey, a_create_is_told_whole_millimetres) {
   expect_twist(apply_driver(create(), {0.0001, 0.0, 0.5}), {0.0, 0.0, 0.0});          // rounded to 0 mm/s: stands
 }
 
-TEST(Obey, a_create_spins_where_no_radius_is_left) {
+TEST(Obey, ACreateSpinsWhereNoRadiusIsLeft) {
   expect_twist(apply_driver(create(), {0.1, 0.0, 50.0}),
                {0.0, 0.0, 0.1 / 0.129});  // 2 mm halved is 1: its word for spinning
   expect_twist(apply_driver(create(), {0.1, 0.0, 100.0}), {0.0, 0.0, 0.1 / 0.129});  // 1 mm halved is 0: likewise
@@ -60,14 +60,14 @@ TEST(Obey, a_create_spins_where_no_radius_is_left) {
   expect_twist(apply_driver(create(), {-0.1, 0.0, 100.0}), {0.0, 0.0, 0.1 / 0.129});
 }
 
-TEST(Obey, a_create_spins_in_place_by_whole_millimetres_of_its_wheels) {
+TEST(Obey, ACreateSpinsInPlaceByWholeMillimetresOfItsWheels) {
   expect_twist(apply_driver(create(), {0.0, 0.0, 1.0}), {0.0, 0.0, 0.129 / 0.129});
   expect_twist(apply_driver(create(), {0.0, 0.0, -1.001}), {0.0, 0.0, -0.129 / 0.129});
   expect_twist(apply_driver(create(), {0.0, 0.0, 100.0}), {0.0, 0.0, 0.5 / 0.129});
   expect_twist(apply_driver(create(), {0.0, 0.0, 0.003}), {0.0, 0.0, 0.0});  // less than half a millimetre a second
 }
 
-TEST(Obey, a_create_turns_about_twice_as_much_as_it_is_told) {
+TEST(Obey, ACreateTurnsAboutTwiceAsMuchAsItIsTold) {
   for (std::uint32_t k = 0; k < 2000; ++k) {
     const auto u = base::random_uniform({.seed = 11, .stream = base::RandomStream::slip, .a = k}, 0);
     const double forward = 0.05 + 0.45 * u[0], turn = (u[1] < 0.5 ? -1.0 : 1.0) * (0.02 + std::abs(u[1] - 0.5));

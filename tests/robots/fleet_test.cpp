@@ -34,7 +34,7 @@ Driven run(const world::World& world, const Twist& command, int ticks, std::size
   return result;
 }
 
-TEST(Fleet, starts_at_rest_where_the_world_says) {
+TEST(Fleet, StartsAtRestWhereTheWorldSays) {
   world::World world = scenes::boxed_world(4, 4);
   scenes::add_square(world, {2, 2, 0, 1});
   const Fleet fleet(world);
@@ -44,7 +44,7 @@ TEST(Fleet, starts_at_rest_where_the_world_says) {
   EXPECT_EQ(fleet.reports()[0].time, 0);
 }
 
-TEST(Fleet, drives_freely) {
+TEST(Fleet, DrivesFreely) {
   world::World world = scenes::boxed_world(4, 4);
   scenes::add_square(world, {1, 2, 0, 0});
   const Driven r = run(world, {0.5, 0, 0}, 10);
@@ -54,7 +54,7 @@ TEST(Fleet, drives_freely) {
   EXPECT_EQ(r.contacts, 0);
 }
 
-TEST(Fleet, stops_at_a_wall_head_on) {
+TEST(Fleet, StopsAtAWallHeadOn) {
   world::World world = scenes::boxed_world(4, 4);
   scenes::add_square(world, {3, 2, 0, 0});
   const Driven r = run(world, {0.5, 0, 0}, 50);
@@ -64,7 +64,7 @@ TEST(Fleet, stops_at_a_wall_head_on) {
   EXPECT_EQ(r.report.velocity.forward, 0.0);
 }
 
-TEST(Fleet, slides_along_a_wall_without_contact) {
+TEST(Fleet, SlidesAlongAWallWithoutContact) {
   world::World world = scenes::boxed_world(4, 4);
   scenes::add_square(world, {1, 3.799, 0, 0});
   const Driven r = run(world, {0.5, 0, 0}, 20);
@@ -72,7 +72,7 @@ TEST(Fleet, slides_along_a_wall_without_contact) {
   EXPECT_NEAR(r.report.X_WM.x, 2.0, 1e-9);
 }
 
-TEST(Fleet, stops_in_a_corner) {
+TEST(Fleet, StopsInACorner) {
   world::World world = scenes::boxed_world(4, 4);
   scenes::add_create(world, {3, 3, 0, M_PI / 4});
   const Driven r = run(world, {0.5, 0, 0}, 100);
@@ -81,7 +81,7 @@ TEST(Fleet, stops_in_a_corner) {
   EXPECT_GT(r.report.X_WM.x, 3.75);
 }
 
-TEST(Fleet, meets_the_end_of_a_wall) {
+TEST(Fleet, MeetsTheEndOfAWall) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {1, 0}, {3, 0});  // its end points at the robot
   scenes::add_square(world, {0, 0, 0, 0});
@@ -90,21 +90,21 @@ TEST(Fleet, meets_the_end_of_a_wall) {
   EXPECT_GT(r.contacts, 0);
 }
 
-TEST(Fleet, passes_beside_the_end_of_a_wall) {
+TEST(Fleet, PassesBesideTheEndOfAWall) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {1, 0.201}, {1, 3});
   scenes::add_square(world, {0, 0, 0, 0});
   EXPECT_EQ(run(world, {0.5, 0, 0}, 50).contacts, 0);
 }
 
-TEST(Fleet, passes_under_a_bridge) {
+TEST(Fleet, PassesUnderABridge) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {1, -1}, {1, 1}, 1.0, 1.5);
   scenes::add_square(world, {0, 0, 0, 0});
   EXPECT_NEAR(run(world, {0.5, 0, 0}, 50).report.X_WM.x, 2.5, 1e-9);
 }
 
-TEST(Fleet, passes_what_does_not_stop_robots) {
+TEST(Fleet, PassesWhatDoesNotStopRobots) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {1, -1}, {1, 1});
   world.walls[0].stops_robots = false;
@@ -112,7 +112,7 @@ TEST(Fleet, passes_what_does_not_stop_robots) {
   EXPECT_NEAR(run(world, {0.5, 0, 0}, 50).report.X_WM.x, 2.5, 1e-9);
 }
 
-TEST(Fleet, does_not_slip_between_diagonal_cells) {
+TEST(Fleet, DoesNotSlipBetweenDiagonalCells) {
   // Two solid cells that share one corner: no gap, though neither has a wall across the way.
   world::World world = scenes::empty_world();
   scenes::add_bitmap(world, {{false, true}, {true, false}}, 1.0);
@@ -122,7 +122,7 @@ TEST(Fleet, does_not_slip_between_diagonal_cells) {
   EXPECT_GT(r.contacts, 0);
 }
 
-TEST(Fleet, does_not_jump_a_thin_wall_at_speed) {
+TEST(Fleet, DoesNotJumpAThinWallAtSpeed) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {1, -1}, {1, 1});
   scenes::add_square(world, {0, 0, 0, 0}).max_forward = 100.0;  // 10 m a tick
@@ -131,14 +131,14 @@ TEST(Fleet, does_not_jump_a_thin_wall_at_speed) {
   EXPECT_GT(r.report.X_WM.x, 0.7995);
 }
 
-TEST(Fleet, does_not_jump_a_post_at_speed) {
+TEST(Fleet, DoesNotJumpAPostAtSpeed) {
   world::World world = scenes::empty_world();
   scenes::add_outline(world.walls, scenes::rectangle({1, 0.03}, 0.01, 0.01));
   scenes::add_square(world, {0, 0, 0, 0}).max_forward = 100.0;
   EXPECT_LT(run(world, {100, 0, 0}, 5).report.X_WM.x, 0.8);
 }
 
-TEST(Fleet, two_robots_meet_head_on) {
+TEST(Fleet, TwoRobotsMeetHeadOn) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {0, 0, 0, 0});
   scenes::add_square(world, {2, 0, 0, M_PI});
@@ -151,7 +151,7 @@ TEST(Fleet, two_robots_meet_head_on) {
   EXPECT_EQ(fleet.contacts()[1], 1);
 }
 
-TEST(Fleet, fast_robots_do_not_jump_each_other) {
+TEST(Fleet, FastRobotsDoNotJumpEachOther) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {0, 0, 0, 0}).max_forward = 50.0;
   scenes::add_square(world, {3, 0, 0, M_PI}).max_forward = 50.0;
@@ -160,14 +160,14 @@ TEST(Fleet, fast_robots_do_not_jump_each_other) {
   EXPECT_GT(fleet.reports()[1].X_WM.x - fleet.reports()[0].X_WM.x, 0.4);
 }
 
-TEST(Fleet, a_standing_robot_reports_no_contact) {
+TEST(Fleet, AStandingRobotReportsNoContact) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {0, 0, 0, 0});
   scenes::add_square(world, {0.41, 0, 0, 0});
   EXPECT_EQ(run(world, {}, 3).contacts, 0);
 }
 
-TEST(Fleet, blocked_ahead_still_turns_where_it_can) {
+TEST(Fleet, BlockedAheadStillTurnsWhereItCan) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.30, -1}, {0.30, 1});
   scenes::add_create(world, {0, 0, 0, 0});
@@ -176,7 +176,7 @@ TEST(Fleet, blocked_ahead_still_turns_where_it_can) {
   EXPECT_GT(r.contacts, 0);
 }
 
-TEST(Fleet, a_square_wedged_in_a_slot_cannot_turn) {
+TEST(Fleet, ASquareWedgedInASlotCannotTurn) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {-3, 0.21}, {3, 0.21});
   scenes::add_wall(world, {-3, -0.21}, {3, -0.21});
@@ -186,7 +186,7 @@ TEST(Fleet, a_square_wedged_in_a_slot_cannot_turn) {
   EXPECT_GT(r.contacts, 10);
 }
 
-TEST(Fleet, a_car_does_not_turn_in_place) {
+TEST(Fleet, ACarDoesNotTurnInPlace) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.2001, -1}, {0.2001, 1});
   scenes::add_square(world, {0, 0, 0, 0}).drive = world::Drive::car;
@@ -195,7 +195,7 @@ TEST(Fleet, a_car_does_not_turn_in_place) {
   EXPECT_EQ(r.contacts, 10);
 }
 
-TEST(Fleet, overlapping_starts_come_apart) {
+TEST(Fleet, OverlappingStartsComeApart) {
   for (const double offset : {0.0, 0.1, 0.35}) {
     world::World world = scenes::empty_world();
     scenes::add_square(world, {0, 0, 0, 0});
@@ -208,7 +208,7 @@ TEST(Fleet, overlapping_starts_come_apart) {
   }
 }
 
-TEST(Fleet, a_start_across_a_wall_leaves_to_the_origin_side_only) {
+TEST(Fleet, AStartAcrossAWallLeavesToTheOriginSideOnly) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.1, -1}, {0.1, 1});
   scenes::add_square(world, {0, 0, 0, 0});
@@ -216,7 +216,7 @@ TEST(Fleet, a_start_across_a_wall_leaves_to_the_origin_side_only) {
   EXPECT_NEAR(run(world, {0.5, 0, 0}, 20).report.X_WM.x, 0.0, 1e-9) << "never through";
 }
 
-TEST(Fleet, a_robot_that_overlaps_one_wall_is_still_stopped_by_another) {
+TEST(Fleet, ARobotThatOverlapsOneWallIsStillStoppedByAnother) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.1, -1}, {0.1, 1});
   scenes::add_wall(world, {-0.6, -1}, {-0.6, 1});
@@ -224,7 +224,7 @@ TEST(Fleet, a_robot_that_overlaps_one_wall_is_still_stopped_by_another) {
   EXPECT_GT(run(world, {-0.5, 0, 0}, 20).report.X_WM.x, -0.4);
 }
 
-TEST(Fleet, the_same_100_km_away) {
+TEST(Fleet, TheSame100KmAway) {
   world::World near = scenes::boxed_world(4, 4), far = scenes::boxed_world(4, 4, {1e5, -1e5});
   scenes::add_create(near, {2, 2, 0, 0.7});
   scenes::add_create(far, {1e5 + 2, -1e5 + 2, 0, 0.7});
@@ -234,7 +234,7 @@ TEST(Fleet, the_same_100_km_away) {
   EXPECT_EQ(a.contacts, b.contacts);
 }
 
-TEST(Fleet, reports_newest_wins) {
+TEST(Fleet, ReportsNewestWins) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {});
   Fleet fleet(world);
@@ -246,7 +246,7 @@ TEST(Fleet, reports_newest_wins) {
 }
 
 /// A report says it is above a kerb, or beneath the floor: it stands on the world's floor, for contacts as for sensors.
-TEST(Fleet, heights_are_those_at_load_whatever_reports_say) {
+TEST(Fleet, HeightsAreThoseAtLoadWhateverReportsSay) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.9, -1}, {0.9, 1}, 0.0, 0.08);  // a kerb
   scenes::add_square(world, {});
@@ -262,7 +262,7 @@ TEST(Fleet, heights_are_those_at_load_whatever_reports_say) {
   }
 }
 
-TEST(Fleet, who_is_gone_is_in_nobodys_way) {
+TEST(Fleet, WhoIsGoneIsInNobodysWay) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {});
   scenes::add_square(world, {2, 0, 0, 0});
@@ -279,7 +279,7 @@ TEST(Fleet, who_is_gone_is_in_nobodys_way) {
 }
 
 /// It drives through where the other was.
-TEST(Fleet, who_is_gone_stops_nobody) {
+TEST(Fleet, WhoIsGoneStopsNobody) {
   for (const bool gone : {false, true}) {
     world::World world = scenes::empty_world();
     scenes::add_square(world, {});
@@ -292,7 +292,7 @@ TEST(Fleet, who_is_gone_stops_nobody) {
   }
 }
 
-TEST(Fleet, predicts_along_the_arc_for_a_while) {
+TEST(Fleet, PredictsAlongTheArcForAWhile) {
   world::World world = scenes::empty_world();
   scenes::add_square(world, {});
   Fleet fleet(world);

@@ -30,7 +30,7 @@ bool touches_wall(const Square& square, glm::dvec2 a, glm::dvec2 b, double z_min
   return touches(square.placed, {.a = a, .b = b, .z_min = z_min, .z_max = z_max});
 }
 
-TEST(Footprint, wall_case_by_case) {
+TEST(Footprint, WallCaseByCase) {
   const Square square({1, 1, 0, 0});
   EXPECT_TRUE(touches_wall(square, {1.1, 0}, {1.1, 3})) << "straight through";
   EXPECT_TRUE(touches_wall(square, {1.2, 0}, {1.2, 3})) << "along the front: touching counts";
@@ -40,7 +40,7 @@ TEST(Footprint, wall_case_by_case) {
   EXPECT_TRUE(touches_wall(square, {1.15, 1.15}, {3, 3})) << "a wall's end inside";
 }
 
-TEST(Footprint, heights) {
+TEST(Footprint, Heights) {
   const Square square({0, 0, 0.5, 0});  // stands at z = 0.5, 0.1 high
   EXPECT_FALSE(touches_wall(square, {0, -1}, {0, 1}, 0.6, 1)) << "a bridge exactly above";
   EXPECT_TRUE(touches_wall(square, {0, -1}, {0, 1}, 0.59, 1));
@@ -48,12 +48,12 @@ TEST(Footprint, heights) {
   EXPECT_TRUE(touches_wall(square, {0, -1}, {0, 1}, 0, 0.51));
 }
 
-TEST(Footprint, turns) {
+TEST(Footprint, Turns) {
   EXPECT_FALSE(touches_wall(Square({0, 0, 0, 0}), {0.25, -1}, {0.25, 1}));
   EXPECT_TRUE(touches_wall(Square({0, 0, 0, M_PI / 4}), {0.25, -1}, {0.25, 1})) << "the corner reaches 0.283 m";
 }
 
-TEST(Footprint, pairs_case_by_case) {
+TEST(Footprint, PairsCaseByCase) {
   const Square square({0, 0, 0, 0});
   EXPECT_TRUE(touches(square.placed, Square({0.3, 0.1, 0, 1}).placed)) << "crossing";
   EXPECT_FALSE(touches(square.placed, Square({0.41, 0, 0, 0}).placed)) << "side by side";
@@ -64,12 +64,12 @@ TEST(Footprint, pairs_case_by_case) {
   EXPECT_FALSE(touches(square.placed, Square({0, 0, 0.1, 0}).placed)) << "one on top of the other";
 }
 
-TEST(Footprint, the_same_100_km_away) {
+TEST(Footprint, TheSame100KmAway) {
   EXPECT_TRUE(touches_wall(Square({1e5, 1e5, 0, 0}), {1e5 + 0.2 - 1e-9, 1e5 - 1}, {1e5 + 0.2 - 1e-9, 1e5 + 1}));
   EXPECT_FALSE(touches_wall(Square({1e5, 1e5, 0, 0}), {1e5 + 0.2 + 1e-9, 1e5 - 1}, {1e5 + 0.2 + 1e-9, 1e5 + 1}));
 }
 
-TEST(Footprint, step_is_a_quarter_of_the_inradius) {
+TEST(Footprint, StepIsAQuarterOfTheInradius) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
   EXPECT_DOUBLE_EQ(footprint_of(mover).step, 0.05);
@@ -79,7 +79,7 @@ TEST(Footprint, step_is_a_quarter_of_the_inradius) {
   EXPECT_NEAR(footprint_of(mover).step, std::hypot(1.2, 0.2) / 16, 1e-12) << "the origin is outside";
 }
 
-TEST(Footprint, what_does_not_stop_is_left_out) {
+TEST(Footprint, WhatDoesNotStopIsLeftOut) {
   world::World world = scenes::empty_world();
   world::Mover mover = scenes::add_square(world, {});
   for (world::Segment& s : mover.body) s.stops_robots = false;

@@ -18,26 +18,26 @@ void expect_pose(const Pose& actual, const Pose& expected, double tolerance = 1e
   EXPECT_NEAR(base::wrap_angle(actual.yaw - expected.yaw), 0.0, tolerance);
 }
 
-TEST(Advance, straight) { expect_pose(advance({1, 2, 3, M_PI / 2}, {0.5, 0, 0}, 2.0), {1, 3, 3, M_PI / 2}); }
+TEST(Advance, Straight) { expect_pose(advance({1, 2, 3, M_PI / 2}, {0.5, 0, 0}, 2.0), {1, 3, 3, M_PI / 2}); }
 
-TEST(Advance, turn_in_place) { expect_pose(advance({1, 2, 0, 0}, {0, 0, 1}, 0.5), {1, 2, 0, 0.5}); }
+TEST(Advance, TurnInPlace) { expect_pose(advance({1, 2, 0, 0}, {0, 0, 1}, 0.5), {1, 2, 0, 0.5}); }
 
-TEST(Advance, sideways) { expect_pose(advance({0, 0, 0, 0}, {0, 0.5, 0}, 2.0), {0, 1, 0, 0}); }
+TEST(Advance, Sideways) { expect_pose(advance({0, 0, 0, 0}, {0, 0.5, 0}, 2.0), {0, 1, 0, 0}); }
 
-TEST(Advance, quarter_circle) {
+TEST(Advance, QuarterCircle) {
   // Radius v/w = 2 m: ends at (R sin, R (1 - cos)).
   expect_pose(advance({}, {1.0, 0, 0.5}, M_PI), {2, 2, 0, M_PI / 2});
 }
 
-TEST(Advance, full_circle_comes_back) { expect_pose(advance({5, 6, 0, 1}, {1, 0.3, 2}, M_PI), {5, 6, 0, 1}); }
+TEST(Advance, FullCircleComesBack) { expect_pose(advance({5, 6, 0, 1}, {1, 0.3, 2}, M_PI), {5, 6, 0, 1}); }
 
-TEST(Advance, many_small_steps_are_one_large) {
+TEST(Advance, ManySmallStepsAreOneLarge) {
   Pose X{0.3, -0.2, 0, 2};
   for (int i = 0; i < 1000; ++i) X = advance(X, {0.4, -0.1, 0.7}, 0.01);
   expect_pose(X, advance({0.3, -0.2, 0, 2}, {0.4, -0.1, 0.7}, 10.0), 1e-11);
 }
 
-TEST(Advance, tiny_turns_agree_with_the_straight_line) {
+TEST(Advance, TinyTurnsAgreeWithTheStraightLine) {
   // Around the place where the series takes over.
   for (const double turn : {1e-9, 1.9e-4, 2.1e-4}) {
     const Pose X = advance({}, {1, 0, turn}, 1.0);
@@ -46,7 +46,7 @@ TEST(Advance, tiny_turns_agree_with_the_straight_line) {
   }
 }
 
-TEST(Advance, yaw_is_wrapped) { EXPECT_LE(std::abs(advance({0, 0, 0, 3}, {0, 0, 1}, 20.0).yaw), M_PI); }
+TEST(Advance, YawIsWrapped) { EXPECT_LE(std::abs(advance({0, 0, 0, 3}, {0, 0, 1}, 20.0).yaw), M_PI); }
 
 // --- Between two ticks.
 
@@ -55,7 +55,7 @@ constexpr std::int64_t kTick = 100'000'000;
 base::Report at(std::int64_t time, const Pose& X_WM, const Twist& velocity) { return {0, time, X_WM, velocity, 0}; }
 
 /// What nothing stops is on the arc that it drives, whatever part of the tick.
-TEST(Between, unhindered_it_is_on_its_arc) {
+TEST(Between, UnhinderedItIsOnItsArc) {
   const Twist velocities[] = {{0.7, 0, 0}, {0.7, 0, 1.5}, {0.4, -0.3, -2}, {0, 0, 3}, {-0.2, 0, 1e-9}, {1.0, 0, 50.0}};
   for (const Twist& v : velocities) {
     const Pose start{3, -4, 0.25, 2.5};
@@ -70,7 +70,7 @@ TEST(Between, unhindered_it_is_on_its_arc) {
 }
 
 /// Stopped, or put elsewhere: from the one pose to the other by the lesser turn, at a steady pace.
-TEST(Between, hindered_it_is_on_the_arc_between_its_poses) {
+TEST(Between, HinderedItIsOnTheArcBetweenItsPoses) {
   const base::Report before = at(0, {1, 2, 0, 3.0}, {0.5, 0, 0}), after = at(kTick, {0.98, 2.01, 0, -3.0}, {});
   expect_pose(interpolate(before, after, 0).X_WM, before.X_WM);
   expect_pose(interpolate(before, after, kTick - 1).X_WM, after.X_WM, 1e-8);
@@ -81,7 +81,7 @@ TEST(Between, hindered_it_is_on_the_arc_between_its_poses) {
 }
 
 /// To the bit, whatever a report says of its speed, and however its yaw is written.
-TEST(Between, who_stands_stands) {
+TEST(Between, WhoStandsStands) {
   const base::Report before = at(0, {0.1, 0.2, 0.3, 7.0}, {}), after = at(kTick, before.X_WM, {0.3, 0, 0});
   const base::Report report = interpolate(before, after, kTick / 3);
   EXPECT_EQ(report.X_WM.x, 0.1);
@@ -91,7 +91,7 @@ TEST(Between, who_stands_stands) {
 }
 
 /// What touches it is felt at ticks.
-TEST(Between, touch_is_as_it_was_at_the_tick_before) {
+TEST(Between, TouchIsAsItWasAtTheTickBefore) {
   base::Report before = at(0, {}, {}), after = at(kTick, {0.01, 0, 0, 0}, {});
   before.contact_mask = 5;
   after.contact_mask = 6;
@@ -107,26 +107,26 @@ world::Mover mover(world::Drive drive) {
   return m;
 }
 
-TEST(Follow, differential_clamps_and_cannot_slide) {
+TEST(Follow, DifferentialClampsAndCannotSlide) {
   const Twist v = limit_kinematics(mover(world::Drive::differential), {-3, 0.4, 7});
   EXPECT_EQ(v.forward, -0.5);
   EXPECT_EQ(v.left, 0.0);
   EXPECT_EQ(v.turn, 1.0);
 }
 
-TEST(Follow, omni_keeps_its_direction) {
+TEST(Follow, OmniKeepsItsDirection) {
   const Twist v = limit_kinematics(mover(world::Drive::omni), {3, -4, -0.5});
   EXPECT_NEAR(v.forward, 0.3, 1e-15);
   EXPECT_NEAR(v.left, -0.4, 1e-15);
   EXPECT_EQ(v.turn, -0.5);
 }
 
-TEST(Follow, car_turns_no_sharper_than_it_steers) {
+TEST(Follow, CarTurnsNoSharperThanItSteers) {
   EXPECT_EQ(limit_kinematics(mover(world::Drive::car), {0, 0, 1}).turn, 0.0);
   EXPECT_NEAR(limit_kinematics(mover(world::Drive::car), {-0.1, 0, 1}).turn, 0.1 * std::tan(kMaxSteer) / 0.25, 1e-15);
 }
 
-TEST(Follow, a_skid_drive_goes_where_a_differential_one_goes) {
+TEST(Follow, ASkidDriveGoesWhereADifferentialOneGoes) {
   const Twist v = limit_kinematics(mover(world::Drive::skid), {-3, 0.4, 7});
   EXPECT_EQ(v.forward, -0.5);
   EXPECT_EQ(v.left, 0.0);
@@ -140,13 +140,13 @@ world::Mover lazy(world::Drive drive) {
   return m;
 }
 
-TEST(Approach, without_limits_what_is_wanted_is_had) {
+TEST(Approach, WithoutLimitsWhatIsWantedIsHad) {
   const Twist v = limit_acceleration(mover(world::Drive::differential), {0.1, 0, 0.3}, {0.37, 0, -0.9}, 0.1);
   EXPECT_EQ(v.forward, 0.37);
   EXPECT_EQ(v.turn, -0.9);
 }
 
-TEST(Approach, speeds_up_and_slows_down_by_no_more_than_it_may) {
+TEST(Approach, SpeedsUpAndSlowsDownByNoMoreThanItMay) {
   const world::Mover m = lazy(world::Drive::differential);
   EXPECT_DOUBLE_EQ(limit_acceleration(m, {}, {0.5, 0, 1.0}, 0.1).forward, 0.2);
   EXPECT_DOUBLE_EQ(limit_acceleration(m, {}, {0.5, 0, 1.0}, 0.1).turn, 0.4);
@@ -157,23 +157,23 @@ TEST(Approach, speeds_up_and_slows_down_by_no_more_than_it_may) {
   EXPECT_EQ(limit_acceleration(m, {0, 0, 0.9}, {0, 0, 0.55}, 0.1).turn, 0.55);
 }
 
-TEST(Approach, an_omni_changes_its_velocity_in_one_direction) {
+TEST(Approach, AnOmniChangesItsVelocityInOneDirection) {
   const Twist v = limit_acceleration(lazy(world::Drive::omni), {0.3, 0, 0}, {0, 0.4, 0}, 0.1);
   EXPECT_NEAR(v.forward, 0.3 - 0.2 * 0.6, 1e-15);
   EXPECT_NEAR(v.left, 0.2 * 0.8, 1e-15);
 }
 
-TEST(Approach, a_car_that_stands_does_not_turn) {
+TEST(Approach, ACarThatStandsDoesNotTurn) {
   const Twist v = limit_acceleration(lazy(world::Drive::car), {0.1, 0, 0.2}, {0, 0, 0}, 0.1);
   EXPECT_EQ(v.forward, 0.0);
   EXPECT_EQ(v.turn, 0.0) << "its steering allows no turn without speed";
 }
 
-TEST(Approach, reports_that_say_too_much_are_followed_back_at_once) {
+TEST(Approach, ReportsThatSayTooMuchAreFollowedBackAtOnce) {
   EXPECT_EQ(limit_acceleration(lazy(world::Drive::differential), {5.0, 0.3, 0}, {0.5, 0, 0}, 0.1).forward, 0.5);
 }
 
-TEST(Follow, what_is_not_finite_is_zero) {
+TEST(Follow, WhatIsNotFiniteIsZero) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const auto drive : {world::Drive::differential, world::Drive::omni, world::Drive::car}) {
     const Twist v = limit_kinematics(mover(drive), {nan, inf, -inf});

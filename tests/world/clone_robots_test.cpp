@@ -29,7 +29,7 @@ World two_rooms() {
   return world;
 }
 
-TEST(CloneRobots, all_stand_clear) {
+TEST(CloneRobots, AllStandClear) {
   World world = two_rooms();
   clone_robots(world, 40, 1);
   ASSERT_EQ(world.movers.size(), 40u);
@@ -44,7 +44,7 @@ TEST(CloneRobots, all_stand_clear) {
   }
 }
 
-TEST(CloneRobots, all_could_have_come_from_where_the_first_stood) {
+TEST(CloneRobots, AllCouldHaveComeFromWhereTheFirstStood) {
   World world = two_rooms();
   clone_robots(world, 60, 1);
   for (const Mover& mover : world.movers) {
@@ -54,7 +54,7 @@ TEST(CloneRobots, all_could_have_come_from_where_the_first_stood) {
   }
 }
 
-TEST(CloneRobots, a_door_leads_to_the_other_room) {
+TEST(CloneRobots, ADoorLeadsToTheOtherRoom) {
   World world = scenes::boxed_world(12, 6);
   scenes::add_wall(world, {6, 1}, {6, 6});
   scenes::add_create(world, {1, 1, 0, 0});
@@ -62,7 +62,7 @@ TEST(CloneRobots, a_door_leads_to_the_other_room) {
   EXPECT_TRUE(std::any_of(world.movers.begin(), world.movers.end(), [](const Mover& m) { return m.X_WM.x > 6; }));
 }
 
-TEST(CloneRobots, a_first_robot_in_a_solid_means_the_largest_free_region) {
+TEST(CloneRobots, AFirstRobotInASolidMeansTheLargestFreeRegion) {
   World world = two_rooms();
   world.movers[0].X_WM = {3, 3, 0, 0};
   scenes::add_wall(world, {-20, -20}, {-20, 20});
@@ -70,7 +70,7 @@ TEST(CloneRobots, a_first_robot_in_a_solid_means_the_largest_free_region) {
   for (const Mover& mover : world.movers) EXPECT_GE(nearest_wall(world, at(mover)), mover.radius);
 }
 
-TEST(CloneRobots, poses_do_not_depend_on_the_count) {
+TEST(CloneRobots, PosesDoNotDependOnTheCount) {
   World few = two_rooms(), many = two_rooms();
   clone_robots(few, 10, 7);
   clone_robots(many, 60, 7);
@@ -80,14 +80,14 @@ TEST(CloneRobots, poses_do_not_depend_on_the_count) {
   }
 }
 
-TEST(CloneRobots, another_seed_gives_other_poses) {
+TEST(CloneRobots, AnotherSeedGivesOtherPoses) {
   World a = two_rooms(), b = two_rooms();
   clone_robots(a, 1, 1);
   clone_robots(b, 1, 2);
   EXPECT_NE(a.movers[0].X_WM.x, b.movers[0].X_WM.x);
 }
 
-TEST(CloneRobots, the_same_100_km_away) {
+TEST(CloneRobots, TheSame100KmAway) {
   World world = scenes::boxed_world(6, 6, {1e5, 1e5});
   scenes::add_create(world, {1e5 + 3, 1e5 + 3, 0, 0});
   clone_robots(world, 30, 1);
@@ -97,14 +97,14 @@ TEST(CloneRobots, the_same_100_km_away) {
   }
 }
 
-TEST(CloneRobots, something_100_km_away_does_not_coarsen_the_room) {
+TEST(CloneRobots, Something100KmAwayDoesNotCoarsenTheRoom) {
   World world = two_rooms();
   scenes::add_wall(world, {1e5, 1e5}, {1e5, 1e5 + 1});
   clone_robots(world, 40, 1);
   for (const Mover& mover : world.movers) EXPECT_TRUE(mover.X_WM.x > 0 && mover.X_WM.x < 6);
 }
 
-TEST(CloneRobots, bridges_do_not_matter_to_low_robots) {
+TEST(CloneRobots, BridgesDoNotMatterToLowRobots) {
   World world = scenes::boxed_world(1, 1);
   for (double x = 0.1; x < 1.0; x += 0.1) scenes::add_wall(world, {x, 0}, {x, 1}, 1.0, 2.0);
   scenes::add_create(world, {0.5, 0.5, 0, 0});
@@ -121,7 +121,7 @@ World with_a_dummy() {
   return world;
 }
 
-TEST(CloneRobots, the_first_with_sensors_is_copied_or_who_is_named) {
+TEST(CloneRobots, TheFirstWithSensorsIsCopiedOrWhoIsNamed) {
   EXPECT_EQ(robot_to_copy(with_a_dummy()), 2u);
   EXPECT_EQ(robot_to_copy(with_a_dummy(), "dummy"), 1u);
   EXPECT_EQ(robot_to_copy(with_a_dummy(), "robot4"), 3u);
@@ -137,7 +137,7 @@ TEST(CloneRobots, the_first_with_sensors_is_copied_or_who_is_named) {
   for (std::size_t k = 0; k < 5; ++k) EXPECT_TRUE(copies.movers[k].sensors.empty());
 }
 
-TEST(CloneRobots, a_tag_keeps_where_it_is_mounted) {
+TEST(CloneRobots, ATagKeepsWhereItIsMounted) {
   for (const char* const of : {"", "dummy"}) {
     World world = with_a_dummy();
     world.movers[0].X_MT = {0.1, 0.2, 0.3, 0.4};
@@ -149,7 +149,7 @@ TEST(CloneRobots, a_tag_keeps_where_it_is_mounted) {
   }
 }
 
-TEST(CloneRobots, a_name_that_is_no_robots_is_refused) {
+TEST(CloneRobots, ANameThatIsNoRobotsIsRefused) {
   for (const auto& [name, said] : {std::pair{"robot44", "has no robot 'robot44' to copy; did you mean 'robot4'?"},
                                    std::pair{"robot1", "has no robot 'robot1' to copy"}}) {
     try {
@@ -161,7 +161,7 @@ TEST(CloneRobots, a_name_that_is_no_robots_is_refused) {
   }
 }
 
-TEST(CloneRobots, from_within_a_solid_they_go_inside_though_there_is_more_outside) {
+TEST(CloneRobots, FromWithinASolidTheyGoInsideThoughThereIsMoreOutside) {
   World world = scenes::boxed_world(4, 4);  // the floor around it is 24 m wide
   scenes::add_outline(world.walls, scenes::rectangle({2, 2}, 0.6, 0.6));
   scenes::add_create(world, {2, 2, 0, 0});
@@ -172,7 +172,7 @@ TEST(CloneRobots, from_within_a_solid_they_go_inside_though_there_is_more_outsid
   }
 }
 
-TEST(CloneRobots, no_room_is_said_with_numbers) {
+TEST(CloneRobots, NoRoomIsSaidWithNumbers) {
   World world = scenes::boxed_world(2, 2);
   scenes::add_create(world, {1, 1, 0, 0});
   try {
@@ -184,7 +184,7 @@ TEST(CloneRobots, no_room_is_said_with_numbers) {
   }
 }
 
-TEST(CloneRobots, no_robot_or_none_asked_for_is_refused) {
+TEST(CloneRobots, NoRobotOrNoneAskedForIsRefused) {
   World empty = scenes::boxed_world(2, 2);
   EXPECT_THROW(clone_robots(empty, 3, 1), base::InputError);
   World tags = two_rooms();
@@ -214,7 +214,7 @@ World mixed() {
   return world;
 }
 
-TEST(CloneRobots, rows_names_and_ids) {
+TEST(CloneRobots, RowsNamesAndIds) {
   World world = mixed();
   clone_robots(world, 3, 1);
   ASSERT_EQ(world.movers.size(), 4u);
@@ -233,7 +233,7 @@ TEST(CloneRobots, rows_names_and_ids) {
   EXPECT_EQ(world.models[world.walls.back().model].name, "post");
 }
 
-TEST(CloneRobots, models_stay_consistent) {
+TEST(CloneRobots, ModelsStayConsistent) {
   World world = mixed();
   clone_robots(world, 5, 1);
   std::set<std::string> names;
@@ -248,7 +248,7 @@ TEST(CloneRobots, models_stay_consistent) {
   EXPECT_EQ(names.size(), 3u + 5u * 3u) << "walls, post, tag; three models a robot";
 }
 
-TEST(CloneRobots, copies_keep_clear_of_tags) {
+TEST(CloneRobots, CopiesKeepClearOfTags) {
   World world = mixed();
   clone_robots(world, 60, 1);
   for (std::size_t k = 0; k < 60; ++k) EXPECT_GT(length(at(world.movers[k]) - at(world.movers[60])), 0.33 + 0.05);

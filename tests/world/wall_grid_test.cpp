@@ -12,7 +12,7 @@
 namespace sf::world {
 namespace {
 
-TEST(SegmentsMeet, case_by_case) {
+TEST(SegmentsMeet, CaseByCase) {
   EXPECT_TRUE(segments_meet({0, 0}, {2, 2}, {0, 2}, {2, 0})) << "a plain crossing";
   EXPECT_FALSE(segments_meet({0, 0}, {1, 1}, {0, 3}, {3, 0})) << "lines cross, segments do not";
   EXPECT_TRUE(segments_meet({0, 0}, {1, 1}, {1, 1}, {2, 0})) << "a shared end";
@@ -23,13 +23,13 @@ TEST(SegmentsMeet, case_by_case) {
   EXPECT_FALSE(segments_meet({0, 0}, {1, 0}, {0, 1}, {1, 1})) << "parallel";
 }
 
-TEST(Distance, ends_and_middle) {
+TEST(Distance, EndsAndMiddle) {
   EXPECT_EQ(distance({0, 1}, {-1, 0}, {1, 0}), 1.0);
   EXPECT_EQ(distance({4, 4}, {-1, 0}, {1, 0}), 5.0);
   EXPECT_EQ(distance({3, 4}, {0, 0}, {0, 0}), 5.0) << "a point";
 }
 
-TEST(FromSegment, ends_and_middle) {
+TEST(FromSegment, EndsAndMiddle) {
   const auto from = [](glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
     const glm::dvec2 d = from_segment(p, a, b);
     return std::pair(d.x, d.y);
@@ -39,7 +39,7 @@ TEST(FromSegment, ends_and_middle) {
   EXPECT_EQ(from({3, 4}, {0, 0}, {0, 0}), std::pair(3.0, 4.0)) << "from a point";
 }
 
-TEST(BoxOf, corners_in_any_order) {
+TEST(BoxOf, CornersInAnyOrder) {
   const Box box = box_of({3, -2}, {-1, 5});
   EXPECT_EQ(std::pair(box.min.x, box.min.y), std::pair(-1.0, -2.0));
   EXPECT_EQ(std::pair(box.max.x, box.max.y), std::pair(3.0, 5.0));
@@ -57,7 +57,7 @@ std::vector<Segment> square(double half, bool counter_clockwise, bool solid_left
   return edges;
 }
 
-TEST(Windings, case_by_case) {
+TEST(Windings, CaseByCase) {
   const std::vector<Segment> outer = square(2.0, true);
   EXPECT_EQ(winding_number(outer, {0, 0}), 1) << "within";
   EXPECT_EQ(winding_number(outer, {3, 0}), 0) << "to its right";
@@ -110,28 +110,28 @@ void expect_same_as_brute_force(const std::vector<Segment>& walls, glm::dvec2 ar
   }
 }
 
-TEST(WallGrid, finds_what_brute_force_finds) { expect_same_as_brute_force(random_walls(2000, {}, 40, 20), {}, 50); }
+TEST(WallGrid, FindsWhatBruteForceFinds) { expect_same_as_brute_force(random_walls(2000, {}, 40, 20), {}, 50); }
 
 /// More buckets than are filled together.
-TEST(WallGrid, finds_what_brute_force_finds_among_many) {
+TEST(WallGrid, FindsWhatBruteForceFindsAmongMany) {
   expect_same_as_brute_force(random_walls(60'000, {}, 300, 5), {}, 160);
 }
 
-TEST(WallGrid, finds_it_100_km_away) {
+TEST(WallGrid, FindsIt100KmAway) {
   const glm::dvec2 far{1e5, -1e5};
   expect_same_as_brute_force(random_walls(2000, far, 40, 20), far, 50);
 }
 
-TEST(WallGrid, finds_walls_of_100_km) { expect_same_as_brute_force(random_walls(500, {}, 40, 2e5), {}, 50); }
+TEST(WallGrid, FindsWallsOf100Km) { expect_same_as_brute_force(random_walls(500, {}, 40, 2e5), {}, 50); }
 
-TEST(WallGrid, stops_at_the_first_yes) {
+TEST(WallGrid, StopsAtTheFirstYes) {
   const WallGrid grid(random_walls(100, {}, 1, 1), 0.5);
   int asked = 0;
   EXPECT_TRUE(grid.any(box_around({}, 1), [&](const Segment&) { return ++asked == 3; }));
   EXPECT_EQ(asked, 3);
 }
 
-TEST(WallGrid, empty_and_enormous_queries) {
+TEST(WallGrid, EmptyAndEnormousQueries) {
   EXPECT_FALSE(WallGrid({}, 0.5).any(box_around({}, 1e12), [](const Segment&) { return true; }));
   const WallGrid one({{.a = {0, 0}, .b = {1, 0}}}, 0.5);
   EXPECT_TRUE(one.any(box_around({}, 1e12), [](const Segment&) { return true; })) << "more cells than walls";
