@@ -6,27 +6,27 @@
 #include "apps/commands.h"
 #include "apps/default_robot.h"
 #include "apps/exposure_warning.h"
+#include "apps/layout_options.h"
 #include "apps/option_parsers.h"
 #include "apps/report.h"
-#include "apps/sensor_streams.h"
 #include "apps/stop_signals.h"
-#include "apps/stream_layout.h"
+#include "netio/server/sensor_streams.h"
 
 namespace sf::apps {
 
 int listen(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   const sensors::SensorSet sensor_set(world);
-  const StreamLayout sent = stream_layout(world, sensor_set, options);
-  const std::vector<SensorStream> sources = sensor_streams(sensor_set, sent);
+  const server::StreamLayout sent = stream_layout_of(world, sensor_set, options);
+  const std::vector<server::SensorStream> sources = server::sensor_streams(sensor_set, sent);
   netio::StreamMonitorOptions plan;
   plan.address = netio::resolve(options.bind);
   if (!options.from.empty()) plan.farm = netio::resolve(options.from);
   plan.headerless = options.wire == sensors::WireFormat::thesis;
   plan.inspect = [&](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
-    return inspect_payload(sources[i], options.wire, header, payload);
+    return server::inspect_payload(sources[i], options.wire, header, payload);
   };
-  for (const SensorStream& source : sources)
+  for (const server::SensorStream& source : sources)
     plan.streams.push_back({world.movers[source.row->mover].id, source.row->sensor, sent.ports(*source.kind),
                             std::string(source.kind->name)});
   netio::StreamMonitor monitor(plan);

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "apps/control_report.h"
-#include "apps/reading_publisher.h"
 #include "base/reading.h"
 #include "farm/farm.h"
 #include "gpu/device.h"
 #include "netio/inbox.h"
 #include "netio/relay.h"
+#include "netio/server/reading_publisher.h"
 #include "netio/stream_monitor.h"
 #include "scenarios/explanation.h"
 #include "scenarios/tradeoff.h"
@@ -38,7 +38,7 @@ struct RunReport {
   std::uint64_t hash = 0;
   bool interrupted = false;
   bool sent = false;  ///< `publisher` counts
-  PublisherCounts publisher;
+  server::PublisherCounts publisher;
   bool received = false;  ///< `inbox` counts
   netio::PacketCounts inbox;
   std::uint64_t kernel_drops = 0;    ///< datagrams that came while the inbox' buffer was full

@@ -168,7 +168,7 @@ std::string drops_text(std::uint64_t drops) {
   return row("dropped by the kernel", fmt::format("{}: they came faster than they were taken", drops));
 }
 
-std::string packets_text(const PublisherCounts& publisher) {
+std::string packets_text(const server::PublisherCounts& publisher) {
   const netio::OutboxCounts& packets = publisher.packets;
   std::string text =
       row("packets sent", fmt::format("{} ({:.1f} MB)", packets.sent, static_cast<double>(packets.sent_bytes) * 1e-6));

@@ -9,11 +9,11 @@
 
 #include "apps/commands.h"
 #include "apps/default_robot.h"
+#include "apps/layout_options.h"
 #include "apps/report.h"
 #include "apps/robot_client.h"
 #include "apps/robot_report.h"
 #include "apps/stop_signals.h"
-#include "apps/stream_layout.h"
 #include "base/error.h"
 #include "world/keys.h"
 
@@ -42,7 +42,7 @@ int robot(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
   const sensors::SensorSet sensor_set(world);
   const std::uint32_t mover = find_robot(world, options.robot);
-  RobotClient process(world, sensor_set, mover, stream_layout(world, sensor_set, options), options);
+  RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options), options);
   install_stop_handlers();
   std::fprintf(stderr, "sensorfarm: %s (id %u) drives by '%s' at %g Hz beside the farm at %s%s; Ctrl-C ends it\n",
                world.movers[mover].name.c_str(), world.movers[mover].id, options.controller.c_str(), process.rate(),

@@ -47,9 +47,9 @@ bool waits_for_start(const Options& options) {
 }
 
 RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
-                         const StreamLayout& sent, const Options& options)
+                         const server::StreamLayout& sent, const Options& options)
     : world_(world),
-      names_(wire_names(world)),
+      names_(server::wire_names(world)),
       mover_(mover),
       body_(world, mover, std::llround(1e9 * options.forget)),
       link_(world, sensor_set, mover, sent, options,

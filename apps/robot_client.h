@@ -9,10 +9,10 @@
 #include "apps/robot_link.h"
 #include "apps/robot_report.h"
 #include "apps/stop_signals.h"
-#include "apps/wire_ids.h"
 #include "base/contact_onset.h"
 #include "control/controllers.h"
 #include "netio/rate_limited_log.h"
+#include "netio/server/wire_ids.h"
 #include "scenarios/robot_body.h"
 #include "sensors/sensor_set.h"
 #include "world/lights.h"
@@ -30,7 +30,7 @@ class RobotClient {
  public:
   /// @throws base::InputError for a controller that cannot be had, a port that is taken, a farm's host that is unknown.
   RobotClient(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
-              const StreamLayout& plan, const Options& options);
+              const server::StreamLayout& plan, const Options& options);
 
   /// Takes in and lets out what comes and is due until `until`, or until a stop is asked for. @param now the clock
   template <class Now>
@@ -65,7 +65,7 @@ class RobotClient {
   void log_problems(std::int64_t now);
 
   const world::World& world_;
-  WireNames names_;
+  server::WireNames names_;
   std::uint32_t mover_;
   scenarios::RobotBody body_;
   RobotLink link_;

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "apps/report.h"
-#include "apps/wire_ids.h"
+#include "netio/server/wire_ids.h"
 
 namespace sf::apps {
 
@@ -24,7 +24,7 @@ netio::LinkModel link_model(const Options& options) {
 }
 
 std::vector<std::uint32_t> others_of(const world::World& world, std::uint32_t id) {
-  std::vector<std::uint32_t> ids = ids_of(wire_names(world).robots);
+  std::vector<std::uint32_t> ids = server::ids_of(server::wire_names(world).robots);
   ids.erase(std::remove(ids.begin(), ids.end(), id), ids.end());
   return ids;
 }
@@ -35,7 +35,7 @@ std::uint32_t listening_address(std::uint32_t farm) { return netio::is_loopback(
 }  // namespace
 
 RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
-                     const StreamLayout& plan, const Options& options, PacketHandler handler)
+                     const server::StreamLayout& plan, const Options& options, PacketHandler handler)
     : mover_(mover),
       id_(world.movers[mover].id),
       streams_(streams_of(sensor_set, plan, mover)),
@@ -49,15 +49,15 @@ RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor
   receiver_.set_session(v2v_socket_.farm_session_token());
 }
 
-std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& plan,
-                                                     std::uint32_t mover) {
+std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& sensor_set,
+                                                     const server::StreamLayout& plan, std::uint32_t mover) {
   std::vector<Stream> streams;
-  for (const SensorStream& source : sensor_streams(sensor_set, plan, mover))
+  for (const server::SensorStream& source : server::sensor_streams(sensor_set, plan, mover))
     if (source.kind->read != nullptr) streams.push_back({source});
   return streams;
 }
 
-std::vector<netio::StreamSpec> RobotLink::plans(const StreamLayout& plan) const {
+std::vector<netio::StreamSpec> RobotLink::plans(const server::StreamLayout& plan) const {
   std::vector<netio::StreamSpec> plans;
   for (const Stream& stream : streams_) {
     const sensors::SensorType& kind = *stream.source.kind;
@@ -66,21 +66,21 @@ std::vector<netio::StreamSpec> RobotLink::plans(const StreamLayout& plan) const 
   return plans;
 }
 
-netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& plan) const {
+netio::ReceiverOptions RobotLink::receiver_options(const server::StreamLayout& plan) const {
   netio::ReceiverOptions receiver;
   const std::vector<netio::StreamSpec> all = plans(plan);
   for (std::size_t i = 0; i < streams_.size(); ++i) {
-    const SensorStream& source = streams_[i].source;
+    const server::SensorStream& source = streams_[i].source;
     receiver.streams.push_back({all[i], source.row->elements * element_width(*source.kind)});
   }
   receiver.headerless = plan.wire == sensors::WireFormat::thesis;
   const sensors::WireFormat wire = plan.wire;
   receiver.inspect = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
-    return inspect_payload(streams_[i].source, wire, header, payload);
+    return server::inspect_payload(streams_[i].source, wire, header, payload);
   };
   receiver.read = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload,
                                std::span<double> values) {
-    decode_payload(streams_[i].source, wire, header, payload, values);
+    server::decode_payload(streams_[i].source, wire, header, payload, values);
   };
   return receiver;
 }
@@ -191,7 +191,7 @@ std::span<RobotLink::Newest> RobotLink::readings() {
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     const auto whole = receiver_.newest(i);
     if (!whole) continue;
-    const SensorStream& source = streams_[i].source;
+    const server::SensorStream& source = streams_[i].source;
     Newest& newest = newest_.emplace_back();
     newest.row = source.row;
     newest.block.mover = mover_;

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "apps/options.h"
-#include "apps/sensor_streams.h"
-#include "apps/stream_layout.h"
 #include "base/reading.h"
 #include "netio/delay_line.h"
 #include "netio/farm_clock.h"
 #include "netio/port_listener.h"
 #include "netio/receiver.h"
+#include "netio/server/sensor_streams.h"
+#include "netio/server/stream_layout.h"
 #include "netio/v2v_socket.h"
 #include "sensors/sensor_set.h"
 #include "world/world.h"
@@ -42,7 +42,7 @@ class RobotLink {
 
   /// @throws base::InputError when a port is taken or the farm's host is unknown.
   RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
-            const StreamLayout& plan, const Options& options, PacketHandler handler);
+            const server::StreamLayout& plan, const Options& options, PacketHandler handler);
 
   /// Sends a state, and every half a second what it wants to be sent.
   void send_state(const netio::V2v& state, std::int64_t now);
@@ -75,15 +75,15 @@ class RobotLink {
  private:
   /// One sensor's packets, as the injected link names them.
   struct Stream {
-    SensorStream source;
+    server::SensorStream source;
     std::uint32_t sequence = 0;  ///< of the reading that came last
     std::uint64_t piece = 0;     ///< datagrams of it that came before
     std::uint64_t whole = 0;     ///< readings
   };
-  static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& plan,
+  static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const server::StreamLayout& plan,
                                         std::uint32_t mover);
-  std::vector<netio::StreamSpec> plans(const StreamLayout& plan) const;
-  netio::ReceiverOptions receiver_options(const StreamLayout& plan) const;
+  std::vector<netio::StreamSpec> plans(const server::StreamLayout& plan) const;
+  netio::ReceiverOptions receiver_options(const server::StreamLayout& plan) const;
   void send(netio::Type type, std::uint32_t sequence, std::int64_t now);
   /// Sends what is due by then.
   void flush_due(std::int64_t until);

@@ -15,15 +15,17 @@
 #include "apps/commands.h"
 #include "apps/default_robot.h"
 #include "apps/driver_options.h"
+#include "apps/layout_options.h"
 #include "apps/progress_line.h"
 #include "apps/rate_warnings.h"
-#include "apps/reading_publisher.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
 #include "base/contact_onset.h"
 #include "base/elapsed.h"
 #include "base/error.h"
 #include "netio/address_token.h"
+#include "netio/server/no_return_filter.h"
+#include "netio/server/reading_publisher.h"
 #include "raycast/caster_choice.h"
 #include "scenarios/run_info.h"
 #include "scenarios/simulation.h"
@@ -37,12 +39,12 @@ using Clock = std::chrono::steady_clock;
 /// Where readings go: a recording, the network, both or neither.
 class Outputs {
  public:
-  Outputs(const world::World& world, const sensors::SensorSet& sensor_set, const std::optional<StreamLayout>& plan,
-          const std::string& caster, const Options& options)
+  Outputs(const world::World& world, const sensors::SensorSet& sensor_set,
+          const std::optional<server::StreamLayout>& plan, const std::string& caster, const Options& options)
       : sensor_set_(sensor_set), no_return_filter_(sensor_set, options.no_return_inf) {
     if (plan) {
       address_ = netio::resolve(options.send);
-      publisher_.emplace(world, sensor_set, *plan, netio::Outbox(outbox_options(sensor_set)));
+      publisher_.emplace(world, sensor_set, *plan, netio::Outbox(server::outbox_options(sensor_set)));
     }
     if (!options.record.empty())
       recorder_.emplace(options.record,
@@ -94,11 +96,11 @@ class Outputs {
   }
 
   const sensors::SensorSet& sensor_set_;
-  NoReturnFilter no_return_filter_;
-  std::vector<AddressedReading> addressed_readings_;  ///< that go at one time
+  server::NoReturnFilter no_return_filter_;
+  std::vector<server::AddressedReading> addressed_readings_;  ///< that go at one time
   std::uint32_t address_ = 0;
   netio::SessionToken session_token_{netio::random_session(), 0};
-  std::optional<ReadingPublisher> publisher_;
+  std::optional<server::ReadingPublisher> publisher_;
   std::optional<record::Recorder> recorder_;
   double seconds_ = 0.0;
 };
@@ -143,8 +145,8 @@ auto advised(const world::World& world, const Options& options, Act&& act) {
 
 int run(const Options& options) {
   world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
-  std::optional<StreamLayout> plan;
-  if (!options.send.empty()) plan = stream_layout(world, sensors::SensorSet(world), options);
+  std::optional<server::StreamLayout> plan;
+  if (!options.send.empty()) plan = stream_layout_of(world, sensors::SensorSet(world), options);
   gpu::Device device(options.device);
   choose_accuracy(world, device, options);
   const sensors::SensorSet sensor_set(world);

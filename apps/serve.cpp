@@ -16,16 +16,18 @@
 #include "apps/commands.h"
 #include "apps/default_robot.h"
 #include "apps/exposure_warning.h"
+#include "apps/layout_options.h"
 #include "apps/option_parsers.h"
 #include "apps/rate_warnings.h"
-#include "apps/reading_publisher.h"
 #include "apps/report.h"
 #include "apps/stop_signals.h"
-#include "apps/wire_ids.h"
 #include "base/error.h"
 #include "netio/inbox.h"
 #include "netio/rate_limited_log.h"
 #include "netio/relay.h"
+#include "netio/server/no_return_filter.h"
+#include "netio/server/reading_publisher.h"
+#include "netio/server/wire_ids.h"
 #include "raycast/caster_choice.h"
 #include "robots/fleet.h"
 
@@ -35,10 +37,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-netio::Inbox open_inbox(const WireNames& names, const Options& options) {
+netio::Inbox open_inbox(const server::WireNames& names, const Options& options) {
   const netio::Endpoint bind{netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)};
   try {
-    return netio::Inbox({.bind = bind, .robots = ids_of(names.robots), .tags = ids_of(names.tags)});
+    return netio::Inbox({.bind = bind, .robots = server::ids_of(names.robots), .tags = server::ids_of(names.tags)});
   } catch (const netio::PortInUse&) {
     throw base::InputError(netio::text(bind) +
                            " is taken, by another `sensorfarm serve` perhaps: end that one, or serve on another port "
@@ -49,15 +51,15 @@ netio::Inbox open_inbox(const WireNames& names, const Options& options) {
 class Service {
  public:
   Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
-          const StreamLayout& plan, const Options& options)
+          const server::StreamLayout& plan, const Options& options)
       : world_(world),
         sensor_set_(sensor_set),
-        names_(wire_names(world)),
+        names_(server::wire_names(world)),
         inbox_(open_inbox(names_, options)),
         answers_(inbox_.socket()),
-        relay_(ids_of(names_.robots), {.range = options.radio}),
+        relay_(server::ids_of(names_.robots), {.range = options.radio}),
         plan_(plan),
-        publisher_(world, sensor_set, plan, netio::Outbox(inbox_.socket(), outbox_options(sensor_set))),
+        publisher_(world, sensor_set, plan, netio::Outbox(inbox_.socket(), server::outbox_options(sensor_set))),
         farm_(world, device,
               farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
         fleet_(world),
@@ -208,17 +210,17 @@ class Service {
 
   const world::World& world_;
   const sensors::SensorSet& sensor_set_;
-  WireNames names_;
+  server::WireNames names_;
   netio::Inbox inbox_;
   netio::Outbox answers_;  ///< from where the robots speak to
   netio::Relay relay_;
-  const StreamLayout& plan_;
-  ReadingPublisher publisher_;
+  const server::StreamLayout& plan_;
+  server::ReadingPublisher publisher_;
   farm::Farm farm_;
   robots::Fleet fleet_;
-  NoReturnFilter no_return_filter_;
+  server::NoReturnFilter no_return_filter_;
   std::vector<base::Report> reports_;
-  std::vector<AddressedReading> addressed_readings_;  ///< of one tick
+  std::vector<server::AddressedReading> addressed_readings_;  ///< of one tick
   base::Bytes challenge_;
   std::int64_t forget_;                    ///< [ns] since it was last heard, or kNever
   std::vector<std::int64_t> last_active_;  ///< [ns] per mover
@@ -235,7 +237,7 @@ class Service {
 
 int serve(const Options& options) {
   world::World world = load_with_robots(options.world, options.load, 0, options.seed);
-  const StreamLayout plan = stream_layout(world, sensors::SensorSet(world), options);
+  const server::StreamLayout plan = stream_layout_of(world, sensors::SensorSet(world), options);
   gpu::Device device(options.device);
   choose_accuracy(world, device, options);
   const sensors::SensorSet sensor_set(world);

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "apps/reading_publisher.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "bench/report.h"
 #include "bench/tiles.h"
+#include "netio/server/reading_publisher.h"
 #include "scenarios/simulation.h"
 #include "tests/sensors/scenes.h"
 
@@ -37,8 +37,8 @@ class Sink {
 };
 
 /// Every packet to one port: a stride of none.
-apps::StreamLayout plan_for(const sensors::SensorSet& sensor_set, std::uint16_t port) {
-  apps::StreamLayout plan;
+server::StreamLayout plan_for(const sensors::SensorSet& sensor_set, std::uint16_t port) {
+  server::StreamLayout plan;
   plan.stride = 0;
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) plan.bases[group.kind->id] = port;
   return plan;
@@ -64,7 +64,7 @@ class LargeFleet {
         sensor_set_(world_),
         simulation_(world_, device, {.seed = 7}),
         publisher_(world_, sensor_set_, plan_for(sensor_set_, sink_.port()),
-                   netio::Outbox(apps::outbox_options(sensor_set_))) {}
+                   netio::Outbox(server::outbox_options(sensor_set_))) {}
 
   /// @return what it cost
   Cost tick() {
@@ -103,8 +103,8 @@ class LargeFleet {
   sensors::SensorSet sensor_set_;
   scenarios::Simulation simulation_;
   Sink sink_;
-  apps::ReadingPublisher publisher_;
-  std::vector<apps::AddressedReading> addressed_readings_;
+  server::ReadingPublisher publisher_;
+  std::vector<server::AddressedReading> addressed_readings_;
   double encode_s_ = 0.0;
   std::uint64_t received_ = 0;
 };

@@ -65,12 +65,18 @@ if(SENSORFARM_PCH)
   endif()
 endif()
 
-# add_module(NAME [PUBLIC targets...] [PRIVATE targets...] [SOURCES sources...] [PLUGINS names...])
-# SOURCES: written at configure time, beside those of the folder. PLUGINS: sources NAME/<name>.cpp that are loaded when they
+# add_module(NAME [FOLDER folder] [PUBLIC targets...] [PRIVATE targets...] [SOURCES sources...] [PLUGINS names...])
+# FOLDER: of its sources, where that is not NAME; a folder below another module's belongs to this module alone. SOURCES: written at configure time, beside those of the folder. PLUGINS: sources NAME/<name>.cpp that are loaded when they
 # are first needed, as sensorfarm_<name>.so beside the program.
 function(add_module name)
-  cmake_parse_arguments(MODULE "" "" "PUBLIC;PRIVATE;SOURCES;PLUGINS" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${name}/*.cpp)
+  cmake_parse_arguments(MODULE "" "FOLDER" "PUBLIC;PRIVATE;SOURCES;PLUGINS" ${ARGN})
+  if(NOT MODULE_FOLDER)
+    set(MODULE_FOLDER ${name})
+  endif()
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${MODULE_FOLDER}/*.cpp)
+  if(NOT MODULE_FOLDER MATCHES "/")
+    list(FILTER sources EXCLUDE REGEX "/netio/server/")
+  endif()
   foreach(plugin ${MODULE_PLUGINS})
     list(REMOVE_ITEM sources ${CMAKE_SOURCE_DIR}/${name}/${plugin}.cpp)
     add_library(sensorfarm_${plugin} MODULE ${name}/${plugin}.cpp)

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "apps/reading_publisher.h"
 #include "base/hash.h"
 #include "gpu/device.h"
+#include "netio/server/reading_publisher.h"
 #include "netio/socket.h"
 #include "record/mcap_reader.h"
 #include "scenarios/simulation.h"
@@ -87,17 +87,17 @@ TEST_F(HeldBytes, Packets) {
   gpu::Device device;
   scenarios::Simulation simulation(world, device, {.seed = 1});
   const netio::Socket sink = netio::open_udp({netio::kLoopback, 0}, {.receive = 4u << 20});
-  apps::StreamLayout plan;
+  server::StreamLayout plan;
   plan.stride = 0;  // all to one port
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     plan.bases[group.kind->id] = netio::bound_endpoint(sink).port;
-  apps::ReadingPublisher post(world, sensor_set, plan, netio::Outbox(apps::outbox_options(sensor_set)));
+  server::ReadingPublisher post(world, sensor_set, plan, netio::Outbox(server::outbox_options(sensor_set)));
 
   netio::ReceiveBatch batch(64);
   std::uint64_t hash = 0;
   std::size_t count = 0;
   for (int tick = 0; tick < 20; ++tick) {
-    std::vector<apps::AddressedReading> letters;
+    std::vector<server::AddressedReading> letters;
     for (const base::ReadingBlock& reading : simulation.step().readings)
       letters.push_back({&reading, netio::kLoopback, {7, 9}});
     post.queue(letters);

@@ -7,7 +7,7 @@
 
 #include "world/world.h"
 
-namespace sf::apps {
+namespace sf::server {
 
 /// Rows in `World::movers` by id on the wire.
 struct WireNames {
@@ -19,4 +19,4 @@ WireNames wire_names(const world::World& world);
 
 std::vector<std::uint32_t> ids_of(const std::map<std::uint32_t, std::uint32_t>& rows);
 
-}  // namespace sf::apps
+}  // namespace sf::server

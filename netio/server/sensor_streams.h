@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "apps/stream_layout.h"
+#include "netio/server/stream_layout.h"
 #include "netio/stream_monitor.h"
 #include "sensors/sensor_set.h"
 
-namespace sf::apps {
+namespace sf::server {
 
 /// The sensor behind one port.
 struct SensorStream {
@@ -31,4 +31,4 @@ netio::PayloadInfo inspect_payload(const SensorStream& source, sensors::WireForm
 void decode_payload(const SensorStream& source, sensors::WireFormat wire, const netio::Header& header,
                     std::span<const std::uint8_t> payload, std::span<double> values);
 
-}  // namespace sf::apps
+}  // namespace sf::server

@@ -1,6 +1,6 @@
-#include "apps/wire_ids.h"
+#include "netio/server/wire_ids.h"
 
-namespace sf::apps {
+namespace sf::server {
 
 WireNames wire_names(const world::World& world) {
   WireNames names;
@@ -15,4 +15,4 @@ std::vector<std::uint32_t> ids_of(const std::map<std::uint32_t, std::uint32_t>& 
   return ids;
 }
 
-}  // namespace sf::apps
+}  // namespace sf::server

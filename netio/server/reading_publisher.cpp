@@ -1,28 +1,11 @@
-#include "apps/reading_publisher.h"
+#include "netio/server/reading_publisher.h"
 
 #include <algorithm>
 #include <limits>
 
 #include "netio/packets.h"
-#include "sensors/laser_shape.h"
 
-namespace sf::apps {
-
-std::span<const base::ReadingBlock> NoReturnFilter::apply(std::span<const base::ReadingBlock> readings) {
-  if (!infinite_) return readings;
-  std::size_t count = 0;
-  for (const base::ReadingBlock& r : readings) count += r.hits.size();
-  ranges_.resize(count);
-  blocks_.assign(readings.begin(), readings.end());
-  double* at = ranges_.data();
-  for (base::ReadingBlock& r : blocks_) {
-    if (r.hits.empty()) continue;  // no beams
-    sensors::mark_no_return(r, sensor_set_.row(r).limit, {at, r.values.size()});
-    r.values = {at, r.values.size()};
-    at += r.values.size();
-  }
-  return blocks_;
-}
+namespace sf::server {
 
 netio::OutboxOptions outbox_options(const sensors::SensorSet& sensor_set) {
   netio::OutboxOptions options;
@@ -133,4 +116,4 @@ void ReadingPublisher::encode_and_queue(Job& job) {
   job.stream->sent += failed < job.stream->parts ? 1 : 0;
 }
 
-}  // namespace sf::apps
+}  // namespace sf::server

@@ -1,19 +1,19 @@
-#include "apps/stream_layout.h"
+#include "netio/server/stream_layout.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 #include <vector>
 
-#include "apps/option_parsers.h"
+#include <fmt/format.h>
+
 #include "base/error.h"
 
-namespace sf::apps {
+namespace sf::server {
 
 namespace {
 
 constexpr std::uint32_t kUsualStride = 8;
-constexpr std::size_t kMostLines = 20;  ///< about sensors that are left out
+constexpr std::size_t kMostNotes = 20;  ///< about sensors that are left out
 
 std::string port_option(const sensors::SensorType& kind) { return "--" + std::string(kind.name) + "-port"; }
 
@@ -28,16 +28,15 @@ std::vector<std::string> left_out(const world::World& world, const sensors::Sens
   return lines;
 }
 
-void require_some(const sensors::SensorSet& sensor_set, const std::vector<std::string>& lines,
-                  const StreamLayout& plan) {
-  if (lines.empty() || (plan.wire == sensors::WireFormat::thesis && lines.size() < sensor_set.count())) {
-    for (std::size_t i = 0; i < std::min(lines.size(), kMostLines); ++i)
-      std::fprintf(stderr, "sensorfarm: left out: %s\n", lines[i].c_str());
-    if (lines.size() > kMostLines)
-      std::fprintf(stderr, "sensorfarm: left out: %zu more sensors\n", lines.size() - kMostLines);
-    return;
-  }
-  throw base::InputError(lines.front());
+/// Notes the sensors that are left out.
+/// @throws base::InputError when no sensor is sent, or one is left out of the farm's own format.
+void note_left_out(const sensors::SensorSet& sensor_set, const std::vector<std::string>& lines, StreamLayout& plan) {
+  if (lines.empty()) return;
+  if (plan.wire != sensors::WireFormat::thesis || lines.size() >= sensor_set.count())
+    throw base::InputError(lines.front());
+  for (std::size_t i = 0; i < std::min(lines.size(), kMostNotes); ++i) plan.notes.push_back("left out: " + lines[i]);
+  if (lines.size() > kMostNotes)
+    plan.notes.push_back(fmt::format("left out: {} more sensors", lines.size() - kMostNotes));
 }
 
 std::vector<netio::SensorPorts> uses_of(const world::World& world, const sensors::SensorSet& sensor_set,
@@ -60,11 +59,12 @@ bool StreamLayout::sends_any(const sensors::SensorSet::Group& group) const {
                      [&](const sensors::SensorSpec& row) { return sends(*group.kind, row); });
 }
 
-StreamLayout stream_layout(const world::World& world, const sensors::SensorSet& sensor_set, const Options& options) {
-  StreamLayout plan{options.base_ports, options.ports_per_robot, options.wire};
+StreamLayout stream_layout(const world::World& world, const sensors::SensorSet& sensor_set,
+                           const LayoutOptions& options) {
+  StreamLayout plan{options.base_ports, options.ports_per_robot, options.wire, {}};
   const bool chosen = plan.stride != 0;
   if (!chosen) plan.stride = netio::smallest_stride(uses_of(world, sensor_set, plan), kUsualStride);
-  require_some(sensor_set, left_out(world, sensor_set, plan), plan);
+  note_left_out(sensor_set, left_out(world, sensor_set, plan), plan);
   std::string bases;
   for (const sensors::SensorSet::Group& group : sensor_set.groups())
     bases += (bases.empty() ? "" : ", ") + port_option(*group.kind);
@@ -74,9 +74,9 @@ StreamLayout stream_layout(const world::World& world, const sensors::SensorSet& 
     throw base::InputError(std::string(error.what()) + " (base: " + bases + "; stride: --ports-per-robot)");
   }
   if (!chosen && plan.stride != kUsualStride)
-    std::fprintf(stderr, "sensorfarm: %s per robot, the least that keeps this world's sensors apart\n",
-                 counted(plan.stride, "port").c_str());
+    plan.notes.push_back(
+        fmt::format("{} ports per robot, the least that keeps this world's sensors apart", plan.stride));
   return plan;
 }
 
-}  // namespace sf::apps
+}  // namespace sf::server

@@ -6,29 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "apps/stream_layout.h"
 #include "base/reading.h"
 #include "base/thread_pool.h"
 #include "netio/outbox.h"
+#include "netio/server/stream_layout.h"
 #include "sensors/sensor_set.h"
 #include "world/world.h"
 
-namespace sf::apps {
-
-/// Beams that met nothing read infinity from here on, where the user asked for it.
-class NoReturnFilter {
- public:
-  /// `sensor_set` must outlive it.
-  NoReturnFilter(const sensors::SensorSet& sensor_set, bool infinite) : sensor_set_(sensor_set), infinite_(infinite) {}
-  /// The same readings, or copies that live until the next call.
-  std::span<const base::ReadingBlock> apply(std::span<const base::ReadingBlock> readings);
-
- private:
-  const sensors::SensorSet& sensor_set_;
-  bool infinite_;
-  std::vector<base::ReadingBlock> blocks_;
-  std::vector<double> ranges_;
-};
+namespace sf::server {
 
 struct PublisherCounts {
   netio::OutboxCounts packets;
@@ -96,4 +81,4 @@ class ReadingPublisher {
   std::uint64_t not_numbers_ = 0;
 };
 
-}  // namespace sf::apps
+}  // namespace sf::server

@@ -1,23 +1,31 @@
 #pragma once
-// Which sensors of a world are sent, and to which ports: one plan for those who send and those who receive.
+// The sensors of a world that are sent, and their ports: one layout for senders and receivers.
 
 #include <cstdint>
 #include <map>
+#include <string>
+#include <vector>
 
-#include "apps/options.h"
 #include "netio/ports.h"
 #include "sensors/sensor_set.h"
 #include "world/world.h"
 
-namespace sf::apps {
+namespace sf::server {
+
+struct LayoutOptions {
+  std::map<std::uint8_t, std::uint32_t> base_ports;  ///< by sensor kind; every kind of the world is in it
+  std::uint32_t ports_per_robot = 0;                 ///< 0: 8, or the least that fits
+  sensors::WireFormat wire = sensors::WireFormat::farm;
+};
 
 struct StreamLayout {
   std::map<std::uint8_t, std::uint32_t> bases;  ///< by sensor kind
   std::uint32_t stride = 8;                     ///< ports per robot
   sensors::WireFormat wire = sensors::WireFormat::farm;
+  std::vector<std::string> notes;  ///< for the user: sensors left out, and another stride than 8
 
   netio::PortRule ports(const sensors::SensorType& kind) const { return {bases.at(kind.id), stride}; }
-  /// The thesis' wire has no layout for some sensors: these are neither sent nor awaited.
+  /// False for sensors without a layout in the thesis' wire format: they are neither sent nor awaited.
   bool sends(const sensors::SensorType& kind, const sensors::SensorSpec& sensor) const {
     return kind.wire_problem(sensor, wire).empty();
   }
@@ -25,9 +33,9 @@ struct StreamLayout {
 };
 
 /// A function of world and options alone, so that `serve`, `robot`, `run` and `listen` agree. The stride is the user's,
-/// else 8, else the least that keeps all ports apart. Says on standard error what is left out, and another stride
-/// than 8.
+/// else 8, else the least that keeps all ports apart.
 /// @throws base::InputError when two sensors would share a port, one is past 65535, or the wire carries no sensor.
-StreamLayout stream_layout(const world::World& world, const sensors::SensorSet& sensor_set, const Options& options);
+StreamLayout stream_layout(const world::World& world, const sensors::SensorSet& sensor_set,
+                           const LayoutOptions& options);
 
-}  // namespace sf::apps
+}  // namespace sf::server

@@ -1,6 +1,6 @@
 // Readings as packets: the same bytes and numbers however many are encoded at once.
 
-#include "apps/reading_publisher.h"
+#include "netio/server/reading_publisher.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "netio/packets.h"
 #include "netio/socket.h"
 
-namespace sf::apps {
+namespace sf::server {
 namespace {
 
 constexpr std::uint32_t kBeams = 31;
@@ -114,4 +114,4 @@ TEST_P(PostTest, ReadingsAreEncodedAndNumberedAsOneByOne) {
 INSTANTIATE_TEST_SUITE_P(Fleets, PostTest, testing::Values(3u, 256u, 257u, 2500u));
 
 }  // namespace
-}  // namespace sf::apps
+}  // namespace sf::server

@@ -1,6 +1,6 @@
-#include "apps/sensor_streams.h"
+#include "netio/server/sensor_streams.h"
 
-namespace sf::apps {
+namespace sf::server {
 
 namespace {
 
@@ -55,4 +55,4 @@ void decode_payload(const SensorStream& source, sensors::WireFormat wire, const 
   source.kind->read(*source.row, payload, type_of(source, wire, header), wire, values);
 }
 
-}  // namespace sf::apps
+}  // namespace sf::server

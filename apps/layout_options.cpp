@@ -1,0 +1,15 @@
+#include "apps/layout_options.h"
+
+#include <cstdio>
+
+namespace sf::apps {
+
+server::StreamLayout stream_layout_of(const world::World& world, const sensors::SensorSet& sensor_set,
+                                      const Options& options) {
+  server::StreamLayout layout =
+      server::stream_layout(world, sensor_set, {options.base_ports, options.ports_per_robot, options.wire});
+  for (const std::string& note : layout.notes) std::fprintf(stderr, "sensorfarm: %s\n", note.c_str());
+  return layout;
+}
+
+}  // namespace sf::apps
