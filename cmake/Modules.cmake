@@ -11,7 +11,7 @@ find_path(TOMLPLUSPLUS toml++/toml.h REQUIRED)  # headers only (libtomlplusplus-
 
 # Debian's VTK 9.1 asks for MPI while it is being found; nothing of ours uses it.
 find_package(MPI QUIET COMPONENTS C)
-find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOImage RenderingFreeType)
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel RenderingFreeType)
 
 # Flags every target of ours is built with. Contraction is off so that host and device round alike; g++ 12 warns of
 # overlapping strings (-Wrestrict) and, once headers are precompiled, of their bounds where nothing is wrong.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "viz/png.h"
 #include "viz/text_renderer.h"
 
 namespace sf::viz {
@@ -213,8 +214,8 @@ std::uint32_t Canvas::pixel(int x, int y) const {
 }
 
 void Canvas::save_png(const std::string& path) const {
-  std::vector<std::uint8_t> png;
-  SF_CHECK(text_renderer().encode_png(surface_->pixels.data(), width(), height(), png), "VTK made no PNG");
+  const std::vector<std::uint8_t> png = encode_png(surface_->pixels.data(), width(), height());
+  SF_CHECK(!png.empty(), "spng made no PNG");
 
   errno = 0;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);

@@ -5,11 +5,8 @@
 #include <vtkFreeTypeTools.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
-#include <vtkPNGWriter.h>
+#include <vtkStdString.h>
 #include <vtkTextProperty.h>
-#include <vtkUnsignedCharArray.h>
-
-#include <algorithm>
 
 namespace sf::viz {
 namespace {
@@ -44,31 +41,10 @@ bool render(const TextRun& letters, GlyphBitmap& out) {
   return true;
 }
 
-bool encode_png(const std::uint8_t* rgb, int width, int height, std::vector<std::uint8_t>& out) {
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(width, height, 1);
-  image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  const std::size_t row = 3 * static_cast<std::size_t>(width);
-  for (int y = 0; y < height; ++y)
-    std::copy_n(rgb + row * static_cast<std::size_t>(y), row,
-                static_cast<std::uint8_t*>(image->GetScalarPointer(0, height - 1 - y, 0)));
-  // VTK's writer prints its own errors, so it writes to memory and the file is the canvas's.
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetInputData(image);
-  writer->WriteToMemoryOn();
-  writer->SetCompressionLevel(6);
-  writer->Write();
-  vtkUnsignedCharArray* png = writer->GetResult();
-  if (png == nullptr || png->GetNumberOfValues() <= 0) return false;
-  const unsigned char* first = png->GetPointer(0);
-  out.assign(first, first + png->GetNumberOfValues());
-  return true;
-}
-
 }  // namespace
 }  // namespace sf::viz
 
 extern "C" {
 extern const sf::viz::TextRenderer sensorfarm_text_renderer;
-const sf::viz::TextRenderer sensorfarm_text_renderer{sf::viz::render, sf::viz::encode_png};
+const sf::viz::TextRenderer sensorfarm_text_renderer{sf::viz::render};
 }

@@ -1,6 +1,6 @@
 #pragma once
-// What VTK does for a canvas: text, and PNG files. VTK's libraries take longer to load than a robot takes to look, so
-// they belong to a module (pen.cpp, `sensorfarm_text_renderer.so`) that is loaded when something is first drawn.
+// Text of figures, rendered by VTK. VTK loads slowly, so it lives in a plug-in (text_renderer.cpp,
+// `sensorfarm_text_renderer.so`) that is loaded with the first figure.
 
 #include <cstdint>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace sf::viz {
 
-/// TextRun to be printed: how far each pixel is covered.
+/// Rendered text: coverage of each pixel.
 struct GlyphBitmap {
   int width = 0, height = 0;
   std::vector<std::uint8_t> coverage;  ///< row by row, the top row first; 255: wholly
@@ -26,8 +26,6 @@ struct TextRun {
 struct TextRenderer {
   /// @return false when the letters cannot be rendered.
   bool (*render)(const TextRun& letters, GlyphBitmap& out);
-  /// @param rgb three bytes a pixel, row by row, the top row first. @return false when there is no picture.
-  bool (*encode_png)(const std::uint8_t* rgb, int width, int height, std::vector<std::uint8_t>& out);
 };
 
 /// The name of the module's one symbol: `extern "C" const TextRenderer sensorfarm_text_renderer`.

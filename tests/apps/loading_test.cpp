@@ -29,7 +29,7 @@ TEST(Loading, WhoDrawsDoes) {
   const Folder folder;
   const std::string said = loaded_by({"draw", our_world("rooms.world"), "-o", folder.path("rooms.png")});
   EXPECT_NE(said.find("sensorfarm_text_renderer.so"), std::string::npos);
-  EXPECT_NE(said.find("libvtkIOImage"), std::string::npos);
+  EXPECT_NE(said.find("libvtkRenderingFreeType"), std::string::npos);
 }
 
 }  // namespace
