@@ -100,9 +100,9 @@ void warn_of_pose(const world::World& world, const world::Mover& robot, const ba
 }  // namespace
 
 int devices(const Options& options) {
-  const gpu::DeviceList survey = gpu::list_devices(options.device);
-  const bool any = std::any_of(survey.devices.begin(), survey.devices.end(), [](const auto& d) { return d.chosen; });
-  print(options.json ? json_of(survey) : text_of(survey));
+  const gpu::DeviceList list = gpu::list_devices(options.device);
+  const bool any = std::any_of(list.devices.begin(), list.devices.end(), [](const auto& d) { return d.chosen; });
+  print(options.json ? json_of(list) : text_of(list));
   // Says in one line why there is none.
   const gpu::Device device(options.device);
   return any ? 0 : 3;

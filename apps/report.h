@@ -74,14 +74,14 @@ std::size_t count_magnets(const world::World& world);
 /// Of the infrared emitters; the others are virtual walls.
 std::size_t count_docks(const world::World& world);
 
-std::string json_of(const gpu::DeviceList& survey);
+std::string json_of(const gpu::DeviceList& list);
 std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set);
 std::string json_of(const RunReport& facts);
 std::string json_of(const netio::StreamSummary& summary);
 /// One reading; what is infinite or missing is null.
 std::string json_of(const world::World& world, const sensors::SensorSet& sensor_set, const base::ReadingBlock& reading);
 
-std::string text_of(const gpu::DeviceList& survey);
+std::string text_of(const gpu::DeviceList& list);
 std::string text_of(const world::World& world, const sensors::SensorSet& sensor_set);
 std::string text_of(const RunReport& facts);
 /// "5 lasers exact, within 1.03 nm: beams that graze nothing".

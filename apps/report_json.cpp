@@ -130,9 +130,9 @@ Json link_json(const LinkCounts& link) {
 
 }  // namespace
 
-std::string json_of(const gpu::DeviceList& survey) {
+std::string json_of(const gpu::DeviceList& list) {
   Json rows = Json::array();
-  for (const gpu::DeviceInfo& d : survey.devices)
+  for (const gpu::DeviceInfo& d : list.devices)
     rows.push_back({{"name", d.name},
                     {"driver", d.driver},
                     {"api", d.api},
@@ -142,7 +142,7 @@ std::string json_of(const gpu::DeviceList& survey) {
                     {"chosen", d.chosen},
                     {"reason", d.reason}});
   Json json{{"devices", rows}};
-  if (!survey.problem.empty()) json["problem"] = survey.problem;
+  if (!list.problem.empty()) json["problem"] = list.problem;
   return print(json);
 }
 

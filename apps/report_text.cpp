@@ -88,10 +88,10 @@ std::string text_of(const sensors::AccuracyStatement& s) {
                      s.bound.condition.empty() ? "" : ": ", s.bound.condition);
 }
 
-std::string text_of(const gpu::DeviceList& survey) {
+std::string text_of(const gpu::DeviceList& list) {
   std::string text;
-  for (std::size_t i = 0; i < survey.devices.size(); ++i) {
-    const gpu::DeviceInfo& d = survey.devices[i];
+  for (std::size_t i = 0; i < list.devices.size(); ++i) {
+    const gpu::DeviceInfo& d = list.devices[i];
     text += fmt::format("{} {}  {}\n", d.chosen ? "*" : " ", i, d.name);
     text += fmt::format("     {}, Vulkan {}, {}{}\n", d.kind, d.api, d.driver,
                         d.software ? " (software: computed on the CPU)" : "");

@@ -1,50 +1,16 @@
-// Degrees to metres, against distances over the ellipsoid computed another way.
+// Degrees to metres, against GeographicLib's geodesics on the same ellipsoid (GRS 80).
 
 #include "world/roads/geodesy.h"
 
 #include <gtest/gtest.h>
 
+#include <GeographicLib/Geodesic.hpp>
 #include <cmath>
 
 #include "base/random.h"
 
 namespace sf::world {
 namespace {
-
-/// Vincenty's inverse formula ("Direct and inverse solutions of geodesics on the ellipsoid", DeviceList Review 23,
-/// 1975) in long double: the length of the geodesic and its azimuth at `a`, clockwise from north.
-struct Geodesic {
-  long double length, azimuth;
-};
-Geodesic geodesic(Geodetic a, Geodetic b) {
-  const long double radius = 6378137.0L, f = 1.0L / 298.257222101L, minor = radius * (1 - f), deg = M_PIl / 180;
-  const long double u1 = std::atan((1 - f) * std::tan(a.latitude * deg)),
-                    u2 = std::atan((1 - f) * std::tan(b.latitude * deg));
-  const long double dl = (static_cast<long double>(b.longitude) - a.longitude) * deg;
-  long double lambda = dl, sin_s = 0, cos_s = 1, s = 0, cos2a = 1, cos2m = 0;
-  for (int i = 0; i < 100; ++i) {
-    const long double x = std::cos(u2) * std::sin(lambda);
-    const long double y = std::cos(u1) * std::sin(u2) - std::sin(u1) * std::cos(u2) * std::cos(lambda);
-    sin_s = std::sqrt(x * x + y * y);
-    cos_s = std::sin(u1) * std::sin(u2) + std::cos(u1) * std::cos(u2) * std::cos(lambda);
-    s = std::atan2(sin_s, cos_s);
-    const long double sin_a = sin_s == 0 ? 0 : std::cos(u1) * std::cos(u2) * std::sin(lambda) / sin_s;
-    cos2a = 1 - sin_a * sin_a;
-    cos2m = cos2a == 0 ? 0 : cos_s - 2 * std::sin(u1) * std::sin(u2) / cos2a;
-    const long double c = f / 16 * cos2a * (4 + f * (4 - 3 * cos2a));
-    lambda = dl + (1 - c) * f * sin_a * (s + c * sin_s * (cos2m + c * cos_s * (2 * cos2m * cos2m - 1)));
-  }
-  const long double uu = cos2a * (radius * radius - minor * minor) / (minor * minor);
-  const long double big_a = 1 + uu / 16384 * (4096 + uu * (-768 + uu * (320 - 175 * uu)));
-  const long double big_b = uu / 1024 * (256 + uu * (-128 + uu * (74 - 47 * uu)));
-  const long double ds = big_b * sin_s *
-                         (cos2m + big_b / 4 *
-                                      (cos_s * (2 * cos2m * cos2m - 1) -
-                                       big_b / 6 * cos2m * (4 * sin_s * sin_s - 3) * (4 * cos2m * cos2m - 3)));
-  return {minor * big_a * (s - ds),
-          std::atan2(std::cos(u2) * std::sin(lambda),
-                     std::cos(u1) * std::sin(u2) - std::sin(u1) * std::cos(u2) * std::cos(lambda))};
-}
 
 TEST(LocalPlane, OriginIsNought) {
   const glm::dvec2 p = LocalPlane({34.5, -117.4}).east_north({34.5, -117.4});
@@ -72,6 +38,7 @@ TEST(LocalPlane, SignsAndPoles) {
 
 // Distance and direction agree with the geodesic within the flattening the header states.
 TEST(LocalPlane, AgreesWithGeodesics) {
+  const GeographicLib::Geodesic ellipsoid(6378137.0, 1.0 / 298.257222101);
   double worst = 0.0;
   for (std::uint32_t k = 0; k < 500; ++k) {
     const auto u = base::random_uniform({1, base::RandomStream::placement, k, 0, 0}, 0);
@@ -81,12 +48,11 @@ TEST(LocalPlane, AgreesWithGeodesics) {
     const Geodetic at{origin.latitude + reach * std::sin(40.0 * v[1]),
                       origin.longitude + reach * std::cos(40.0 * v[1])};
     const glm::dvec2 flat = LocalPlane(origin).east_north(at);
-    const Geodesic over = geodesic(origin, at);
-    const double d = static_cast<double>(over.length);
-    const double east = d * static_cast<double>(std::sin(over.azimuth));
-    const double north = d * static_cast<double>(std::cos(over.azimuth));
-    // Azimuths of geodesics and of straight lines differ in d^2 e^2 / R^2; Vincenty itself is good to 0.1 mm.
-    const double allowed = 1.2 * d * d * d / (6.0 * 6371e3 * 6371e3) + 2e-4;
+    double d = 0.0, azimuth = 0.0, arriving = 0.0;  // [m], [degrees] clockwise from north
+    ellipsoid.Inverse(origin.latitude, origin.longitude, at.latitude, at.longitude, d, azimuth, arriving);
+    const double east = d * std::sin(azimuth * M_PI / 180.0), north = d * std::cos(azimuth * M_PI / 180.0);
+    // Azimuths of geodesics and of straight lines differ in d^2 e^2 / R^2; degrees are rounded to 10 nm.
+    const double allowed = 1.2 * d * d * d / (6.0 * 6371e3 * 6371e3) + 1e-7;
     EXPECT_NEAR(flat.x, east, allowed) << d;
     EXPECT_NEAR(flat.y, north, allowed) << d;
     worst = std::max(worst, length(flat - glm::dvec2{east, north}) / d);
