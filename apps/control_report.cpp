@@ -11,15 +11,7 @@
 
 namespace sf::apps {
 
-void add(ErrorSummary& facts, double error) {
-  if (!std::isfinite(error)) return;
-  ++facts.steps;
-  const auto steps = static_cast<double>(facts.steps);
-  facts.mean += (error - facts.mean) / steps;
-  facts.abs_mean += (std::abs(error) - facts.abs_mean) / steps;
-}
-
-std::string text_of(const ErrorSummary& facts) {
+std::string text_of(const control::ErrorSummary& facts) {
   return fmt::format("mean {:.4f}, mean of its size {:.4f}, of {}", facts.mean, facts.abs_mean,
                      counted(facts.steps, "step"));
 }
@@ -41,7 +33,7 @@ void ControlMetrics::update(const base::TickRecord& tick) {
       rest = {X_WM, tick.time, false};
     rest.contact = tick.contacts[m] != 0;
     if (!simulation_.stepped(m)) continue;
-    add(facts_.error, controller->error());
+    control::add(facts_.error, controller->error());
     goals_[m].update(controller->intent().checkpoint);
   }
 }

@@ -5,22 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "control/error_summary.h"
 #include "scenarios/run_metrics.h"
 #include "scenarios/simulation.h"
 
 namespace sf::apps {
 
-/// Means of what a controller called its error, in the controller's own unit.
-struct ErrorSummary {
-  std::uint64_t steps = 0;  ///< with an error
-  double mean = 0.0;
-  double abs_mean = 0.0;
-};
-
-/// One step's more; what is no number is no error.
-void add(ErrorSummary& facts, double error);
 /// For people.
-std::string text_of(const ErrorSummary& facts);
+std::string text_of(const control::ErrorSummary& facts);
 
 /// Robots that stand at the end for one reason.
 struct Standing {
@@ -38,7 +30,7 @@ struct ControlReport {
   std::string controller;          ///< its name
   std::uint64_t robots = 0;        ///< that it drives
   std::uint64_t done = 0;          ///< of these, at the end
-  ErrorSummary error;              ///< of all steps of all of them
+  control::ErrorSummary error;     ///< of all steps of all of them
   bool has_goals = false;          ///< one of them headed for a checkpoint
   std::uint64_t checkpoints = 0;   ///< that they no longer head for, since the next or none is due
   std::vector<Standing> standing;  ///< not done, and without motion for kStill or longer: most robots first

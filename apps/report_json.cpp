@@ -94,7 +94,9 @@ std::string beam_json(const world::World& world, const base::ReadingBlock& readi
                      quality == base::QualityFlag::none ? "" : fmt::format(", \"unsure\": \"{}\"", word_of(quality)));
 }
 
-Json error_json(const ErrorSummary& f) { return {{"steps", f.steps}, {"mean", f.mean}, {"abs_mean", f.abs_mean}}; }
+Json error_json(const control::ErrorSummary& f) {
+  return {{"steps", f.steps}, {"mean", f.mean}, {"abs_mean", f.abs_mean}};
+}
 
 Json control_json(const ControlReport& f) {
   Json json{{"controller", f.controller}, {"robots", f.robots}, {"done", f.done}};
@@ -111,7 +113,7 @@ Json injected(const netio::DelayCounts& counts) {
   return {{"passed", counts.passed}, {"lost", counts.lost}, {"full", counts.full}};
 }
 
-Json link_json(const LinkCounts& link) {
+Json link_json(const server::LinkCounts& link) {
   const netio::ReceiverCounts& in = link.readings;
   return {{"sent", {{"packets", link.sent.sent}, {"failed", link.sent.failed}, {"dropped", link.sent.dropped}}},
           {"readings", link.whole},
@@ -290,7 +292,7 @@ std::string json_of(const world::World& world, const sensors::SensorSet& sensor_
   return text + "\n]}\n";
 }
 
-std::string json_of(const RobotReport& f) {
+std::string json_of(const server::RobotClientStats& f) {
   Json json{{"robot", f.robot},       {"id", f.id},         {"controller", f.controller},
             {"farm", f.farm},         {"wall_s", f.wall_s}, {"steps", f.steps},
             {"started", f.started},   {"done", f.done},     {"answered", f.answered},

@@ -2,26 +2,53 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "apps/commands.h"
 #include "apps/default_robot.h"
+#include "apps/driver_options.h"
 #include "apps/layout_options.h"
 #include "apps/report.h"
-#include "apps/robot_client.h"
 #include "apps/robot_report.h"
 #include "apps/stop_signals.h"
 #include "base/error.h"
+#include "netio/outbox.h"
+#include "netio/server/robot_client.h"
 #include "world/keys.h"
 
 namespace sf::apps {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+constexpr std::string_view kStart = "start=";
+
+/// By its own option, or by the control shell's setting.
+bool waits_for_start(const Options& options) {
+  return options.wait_for_start || std::any_of(options.set.begin(), options.set.end(), [](const std::string& text) {
+           return text.compare(0, kStart.size(), kStart) == 0 &&
+                  control::read_text(std::string_view(text).substr(kStart.size())) == "signal";
+         });
+}
+
+netio::Endpoint farm_of(const Options& options) {
+  return {netio::resolve(options.server), static_cast<std::uint16_t>(options.port)};
+}
+
+server::RobotClientOptions client_options(const Options& options) {
+  server::RobotClientOptions client;
+  client.link.farm = farm_of(options);
+  client.link.model = {.delay = options.delay, .jitter = options.jitter, .loss = options.loss, .seed = options.seed};
+  client.controller = controller_config_of(options);
+  client.controller.rate = options.rate;
+  client.seed = options.seed;
+  client.forget = options.forget;
+  client.stop_after = options.stop_after;
+  client.wait_for_start = waits_for_start(options);
+  return client;
+}
 
 std::uint32_t find_robot(const world::World& world, const std::string& name) {
   std::vector<std::string_view> names;
@@ -42,33 +69,22 @@ int robot(const Options& options) {
   const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
   const sensors::SensorSet sensor_set(world);
   const std::uint32_t mover = find_robot(world, options.robot);
-  RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options), options);
+  server::RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options),
+                              client_options(options));
   install_stop_handlers();
   std::fprintf(stderr, "sensorfarm: %s (id %u) drives by '%s' at %g Hz beside the farm at %s%s; Ctrl-C ends it\n",
                world.movers[mover].name.c_str(), world.movers[mover].id, options.controller.c_str(), process.rate(),
                netio::text(process.link().farm()).c_str(),
                waits_for_start(options) ? ", once it is given the start signal" : "");
-
-  const auto start = Clock::now();
-  const auto now = [&] { return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count(); };
-  const std::int64_t period = std::llround(1e9 / process.rate());
-  const std::int64_t end = options.duration > 0.0 ? std::llround(1e9 * options.duration) : INT64_MAX;
-  for (std::int64_t next = 0; !stop_requested() && !process.done(); next = std::max(next + period, now() - period)) {
-    process.wait_until(std::min(next, end), now);
-    if (stop_requested() || now() >= end) break;
-    process.step(now());
-  }
-
-  process.leave(now());
-  RobotReport facts = process.facts(options);
-  facts.wall_s = 1e-9 * static_cast<double>(now());
+  process.run(stop_requested(), options.duration);
+  const server::RobotClientStats facts = process.stats();
   std::fputs((options.json ? with_warnings(json_of(facts), world.warnings) : text_of(facts)).c_str(), stdout);
   return facts.answered || !facts.listens ? 0 : 1;
 }
 
 int start(const Options& options) {
   constexpr int kTimes = 3;  // one may be lost on the way
-  const netio::Endpoint farm{netio::resolve(options.server), static_cast<std::uint16_t>(options.port)};
+  const netio::Endpoint farm = farm_of(options);
   netio::Header header;
   header.robot = static_cast<std::uint16_t>(options.start_id);
   netio::Outbox outbox;

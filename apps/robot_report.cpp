@@ -1,7 +1,10 @@
 #include "apps/robot_report.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
+#include "apps/control_report.h"
 #include "apps/option_parsers.h"
 
 namespace sf::apps {
@@ -9,7 +12,7 @@ namespace sf::apps {
 namespace {
 
 /// "laser 120, laneedge 30".
-std::string kinds_text(const LinkCounts& link) {
+std::string kinds_text(const server::LinkCounts& link) {
   std::string text;
   for (const auto& [kind, count] : link.whole) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", kind, count);
   return text.empty() ? "it has no sensors" : text;
@@ -20,7 +23,7 @@ std::string injected_text(const netio::DelayCounts& counts) {
                      counts.full > 0 ? fmt::format(", {} too many at once", counts.full) : "");
 }
 
-std::string link_text(const LinkCounts& link) {
+std::string link_text(const server::LinkCounts& link) {
   const netio::ReceiverCounts& in = link.readings;
   std::string text = row("packets sent", fmt::format("{}", link.sent.sent));
   if (link.sent.failed + link.sent.dropped > 0)
@@ -42,7 +45,7 @@ std::string link_text(const LinkCounts& link) {
 
 }  // namespace
 
-std::string text_of(const RobotReport& f) {
+std::string text_of(const server::RobotClientStats& f) {
   std::string text = f.answered ? "" : fmt::format("Nothing came from the farm at {}.\n", f.farm);
   if (!f.started) text += "The start signal did not come.\n";
   text += row("robot", fmt::format("{} (id {}), {}{}", f.robot, f.id, f.controller, f.done ? ": done" : ""));

@@ -1,12 +1,11 @@
-#include "apps/robot_link.h"
+#include "netio/server/robot_link.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "apps/report.h"
 #include "netio/server/wire_ids.h"
 
-namespace sf::apps {
+namespace sf::server {
 
 namespace {
 
@@ -19,12 +18,8 @@ std::uint32_t stream_number(netio::Type type, std::uint32_t low) {
   return static_cast<std::uint32_t>(type) << 16 | low;
 }
 
-netio::LinkModel link_model(const Options& options) {
-  return {.delay = options.delay, .jitter = options.jitter, .loss = options.loss, .seed = options.seed};
-}
-
 std::vector<std::uint32_t> others_of(const world::World& world, std::uint32_t id) {
-  std::vector<std::uint32_t> ids = server::ids_of(server::wire_names(world).robots);
+  std::vector<std::uint32_t> ids = ids_of(wire_names(world).robots);
   ids.erase(std::remove(ids.begin(), ids.end(), id), ids.end());
   return ids;
 }
@@ -35,29 +30,29 @@ std::uint32_t listening_address(std::uint32_t farm) { return netio::is_loopback(
 }  // namespace
 
 RobotLink::RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
-                     const server::StreamLayout& plan, const Options& options, PacketHandler handler)
+                     const StreamLayout& plan, const LinkOptions& options, PacketHandler handler)
     : mover_(mover),
       id_(world.movers[mover].id),
       streams_(streams_of(sensor_set, plan, mover)),
-      farm_{netio::resolve(options.server), static_cast<std::uint16_t>(options.port)},
+      farm_(options.farm),
       v2v_socket_({.farm = farm_, .robot = id_, .others = others_of(world, id_)}),
       port_listener_(listening_address(farm_.address), std::size_t{1} << 20, plans(plan)),
       receiver_(receiver_options(plan)),
-      out_(link_model(options)),
-      in_(link_model(options)),
+      out_(options.model),
+      in_(options.model),
       handler_(std::move(handler)) {
   receiver_.set_session(v2v_socket_.farm_session_token());
 }
 
-std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& sensor_set,
-                                                     const server::StreamLayout& plan, std::uint32_t mover) {
+std::vector<RobotLink::Stream> RobotLink::streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& plan,
+                                                     std::uint32_t mover) {
   std::vector<Stream> streams;
-  for (const server::SensorStream& source : server::sensor_streams(sensor_set, plan, mover))
+  for (const SensorStream& source : sensor_streams(sensor_set, plan, mover))
     if (source.kind->read != nullptr) streams.push_back({source});
   return streams;
 }
 
-std::vector<netio::StreamSpec> RobotLink::plans(const server::StreamLayout& plan) const {
+std::vector<netio::StreamSpec> RobotLink::plans(const StreamLayout& plan) const {
   std::vector<netio::StreamSpec> plans;
   for (const Stream& stream : streams_) {
     const sensors::SensorType& kind = *stream.source.kind;
@@ -66,21 +61,21 @@ std::vector<netio::StreamSpec> RobotLink::plans(const server::StreamLayout& plan
   return plans;
 }
 
-netio::ReceiverOptions RobotLink::receiver_options(const server::StreamLayout& plan) const {
+netio::ReceiverOptions RobotLink::receiver_options(const StreamLayout& plan) const {
   netio::ReceiverOptions receiver;
   const std::vector<netio::StreamSpec> all = plans(plan);
   for (std::size_t i = 0; i < streams_.size(); ++i) {
-    const server::SensorStream& source = streams_[i].source;
+    const SensorStream& source = streams_[i].source;
     receiver.streams.push_back({all[i], source.row->elements * element_width(*source.kind)});
   }
   receiver.headerless = plan.wire == sensors::WireFormat::thesis;
   const sensors::WireFormat wire = plan.wire;
   receiver.inspect = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload) {
-    return server::inspect_payload(streams_[i].source, wire, header, payload);
+    return inspect_payload(streams_[i].source, wire, header, payload);
   };
   receiver.read = [this, wire](std::size_t i, const netio::Header& header, std::span<const std::uint8_t> payload,
                                std::span<double> values) {
-    server::decode_payload(streams_[i].source, wire, header, payload, values);
+    decode_payload(streams_[i].source, wire, header, payload, values);
   };
   return receiver;
 }
@@ -191,7 +186,7 @@ std::span<RobotLink::Newest> RobotLink::readings() {
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     const auto whole = receiver_.newest(i);
     if (!whole) continue;
-    const server::SensorStream& source = streams_[i].source;
+    const SensorStream& source = streams_[i].source;
     Newest& newest = newest_.emplace_back();
     newest.row = source.row;
     newest.block.mover = mover_;
@@ -211,4 +206,4 @@ LinkCounts RobotLink::counts() const {
   return counts;
 }
 
-}  // namespace sf::apps
+}  // namespace sf::server

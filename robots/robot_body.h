@@ -1,5 +1,5 @@
 #pragma once
-// A simulated robot by itself: its body among the world's walls and the others that it was told of.
+// One simulated robot in a process of its own: it moves among the world's walls and the robots that it was told of.
 
 #include <array>
 #include <cstdint>
@@ -10,7 +10,7 @@
 #include "robots/fleet.h"
 #include "world/world.h"
 
-namespace sf::scenarios {
+namespace sf::robots {
 
 /// Times are of the robot's own clock [ns], which does not go back.
 class RobotBody {
@@ -47,7 +47,7 @@ class RobotBody {
   const TrailPoint& trail_point(std::size_t back) const { return trail_[(moves_ - back) % trail_.size()]; }
 
   world::World world_;  ///< a copy: others move as they say they do, whatever stands between their commands and them
-  robots::Fleet fleet_;
+  Fleet fleet_;
   std::uint32_t mover_;
   std::int64_t forget_;                ///< [ns]; 0: nobody is forgotten
   std::vector<OtherRobot> others_;     ///< per mover
@@ -58,4 +58,4 @@ class RobotBody {
   double distance_ = 0.0;
 };
 
-}  // namespace sf::scenarios
+}  // namespace sf::robots

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/options.h"
 #include "base/reading.h"
 #include "netio/delay_line.h"
 #include "netio/farm_clock.h"
@@ -21,7 +20,12 @@
 #include "sensors/sensor_set.h"
 #include "world/world.h"
 
-namespace sf::apps {
+namespace sf::server {
+
+struct LinkOptions {
+  netio::Endpoint farm;
+  netio::LinkModel model;  ///< injected, in each direction
+};
 
 struct LinkCounts {
   netio::OutboxCounts sent;
@@ -33,8 +37,7 @@ struct LinkCounts {
   std::map<std::string, std::uint64_t> whole;  ///< readings, by kind
 };
 
-/// Times are of the robot's own clock [ns], which does not go back. World, roster and options must outlive it. One
-/// thread.
+/// Times are of the robot's own clock [ns], which does not go back. World and sensor set must outlive it. One thread.
 class RobotLink {
  public:
   /// Is given each relayed state and start signal.
@@ -42,7 +45,7 @@ class RobotLink {
 
   /// @throws base::InputError when a port is taken or the farm's host is unknown.
   RobotLink(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
-            const server::StreamLayout& plan, const Options& options, PacketHandler handler);
+            const StreamLayout& plan, const LinkOptions& options, PacketHandler handler);
 
   /// Sends a state, and every half a second what it wants to be sent.
   void send_state(const netio::V2v& state, std::int64_t now);
@@ -75,15 +78,15 @@ class RobotLink {
  private:
   /// One sensor's packets, as the injected link names them.
   struct Stream {
-    server::SensorStream source;
+    SensorStream source;
     std::uint32_t sequence = 0;  ///< of the reading that came last
     std::uint64_t piece = 0;     ///< datagrams of it that came before
     std::uint64_t whole = 0;     ///< readings
   };
-  static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const server::StreamLayout& plan,
+  static std::vector<Stream> streams_of(const sensors::SensorSet& sensor_set, const StreamLayout& plan,
                                         std::uint32_t mover);
-  std::vector<netio::StreamSpec> plans(const server::StreamLayout& plan) const;
-  netio::ReceiverOptions receiver_options(const server::StreamLayout& plan) const;
+  std::vector<netio::StreamSpec> plans(const StreamLayout& plan) const;
+  netio::ReceiverOptions receiver_options(const StreamLayout& plan) const;
   void send(netio::Type type, std::uint32_t sequence, std::int64_t now);
   /// Sends what is due by then.
   void flush_due(std::int64_t until);
@@ -113,4 +116,4 @@ class RobotLink {
   base::Bytes packet_;
 };
 
-}  // namespace sf::apps
+}  // namespace sf::server

@@ -1,9 +1,9 @@
-#include "scenarios/robot_body.h"
+#include "robots/robot_body.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sf::scenarios {
+namespace sf::robots {
 
 namespace {
 
@@ -39,11 +39,11 @@ void RobotBody::update_other(std::uint32_t mover, const base::Pose& X_WM, const 
   const base::Report report{mover, fleet_.reports()[mover].time, X_WM, velocity};
   fleet_.apply({&report, 1});
   fleet_.set_absent(mover, false);
-  others_[mover] = {velocity, now + robots::kMaxExtrapolation, forget_ > 0 ? now + forget_ : kNever};
+  others_[mover] = {velocity, now + kMaxExtrapolation, forget_ > 0 ? now + forget_ : kNever};
 }
 
 void RobotBody::move(const base::Twist& command, std::int64_t now) {
-  const std::int64_t dt = std::min(now - time_, robots::kMaxExtrapolation);
+  const std::int64_t dt = std::min(now - time_, kMaxExtrapolation);
   time_ = now;
   if (dt <= 0) return;
   for (std::uint32_t m = 0; m < others_.size(); ++m) {
@@ -71,4 +71,4 @@ base::Pose RobotBody::pose_at(std::int64_t time) const {
   return trail_point(kept - 1).X_WM;
 }
 
-}  // namespace sf::scenarios
+}  // namespace sf::robots

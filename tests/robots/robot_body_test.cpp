@@ -1,4 +1,4 @@
-#include "scenarios/robot_body.h"
+#include "robots/robot_body.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "tests/robots/scenes.h"
 
-namespace sf::scenarios {
+namespace sf::robots {
 namespace {
 
 constexpr std::int64_t kMilli = 1'000'000;
@@ -101,4 +101,4 @@ TEST_F(BodyTest, HeadingsAreBetweenAcrossHalfATurn) {
 }
 
 }  // namespace
-}  // namespace sf::scenarios
+}  // namespace sf::robots

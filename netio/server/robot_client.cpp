@@ -1,21 +1,20 @@
-#include "apps/robot_client.h"
+#include "netio/server/robot_client.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "apps/driver_options.h"
 #include "world/roads/roads.h"
 
-namespace sf::apps {
+namespace sf::server {
 
 namespace {
 
-constexpr std::string_view kStart = "start=";
 constexpr std::int64_t kAnswerIn = 3'000'000'000;  ///< [ns] without one, the user is told
 
-/// Within what a packet may send_state, whatever the world file lets a robot do.
+/// Bounded by what a packet may hold, whatever the world file lets a robot do.
 netio::V2v state_of(const base::Report& report, const base::Intent& intent) {
   const auto bound = [](double value, double most) { return std::clamp(value, -most, most); };
   netio::V2v state;
@@ -39,28 +38,21 @@ std::int64_t patience_of(const sensors::SensorSet& sensor_set, std::uint32_t mov
 
 }  // namespace
 
-bool waits_for_start(const Options& options) {
-  return options.wait_for_start || std::any_of(options.set.begin(), options.set.end(), [](const std::string& text) {
-           return text.compare(0, kStart.size(), kStart) == 0 &&
-                  control::read_text(std::string_view(text).substr(kStart.size())) == "signal";
-         });
-}
-
 RobotClient::RobotClient(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
-                         const server::StreamLayout& sent, const Options& options)
+                         const StreamLayout& sent, const RobotClientOptions& options)
     : world_(world),
-      names_(server::wire_names(world)),
+      names_(wire_names(world)),
       mover_(mover),
       body_(world, mover, std::llround(1e9 * options.forget)),
-      link_(world, sensor_set, mover, sent, options,
+      link_(world, sensor_set, mover, sent, options.link,
             [this](const netio::Packet& packet, std::int64_t now) { on_packet(packet, now); }),
       roads_(world::roads_of(world)),
       intents_(world.movers.size()),
-      started_(!waits_for_start(options)),
-      reading_timeout_(patience_of(sensor_set, mover, options.stop_after)) {
-  control::ControllerConfig plan = controller_config_of(options);
-  plan.rate = options.rate;
-  made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, std::move(plan));
+      started_(!options.wait_for_start),
+      reading_timeout_(patience_of(sensor_set, mover, options.stop_after)),
+      log_(options.log_descriptor),
+      controller_(options.controller.controller) {
+  made_ = control::make_controller({world, mover, options.seed, roads_ ? &*roads_ : nullptr}, options.controller);
 }
 
 void RobotClient::step(std::int64_t now) {
@@ -72,25 +64,50 @@ void RobotClient::step(std::int64_t now) {
   log_problems(now);
 }
 
-RobotReport RobotClient::facts(const Options& options) const {
-  RobotReport facts;
-  facts.robot = world_.movers[mover_].name;
-  facts.id = world_.movers[mover_].id;
-  facts.controller = options.controller;
-  facts.farm = netio::text(link_.farm());
-  facts.steps = steps_;
-  facts.started = started_;
-  facts.done = done();
-  facts.answered = link_.last_answer().has_value();
-  facts.listens = link_.listens();
-  facts.link = link_.counts();
-  facts.contacts = contacts_;
-  facts.distance_m = body_.distance();
-  facts.pose = body_.state().X_WM;
-  facts.error = error_;
-  facts.stops = stops_;
-  facts.lines_left_out = log_.left_out();
-  return facts;
+void RobotClient::wait_until(std::int64_t until, const std::atomic<bool>& stop, const Clock& clock) {
+  link_.run(clock());
+  for (std::int64_t time = clock(); time < until && !stop; time = clock()) {
+    link_.wait(time, until);
+    link_.run(clock());
+  }
+}
+
+void RobotClient::run(const std::atomic<bool>& stop, double duration) {
+  const auto start = std::chrono::steady_clock::now();
+  const Clock clock = [start] {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count();
+  };
+  const std::int64_t period = std::llround(1e9 / rate());
+  const std::int64_t end = duration > 0.0 ? std::llround(1e9 * duration) : INT64_MAX;
+  for (std::int64_t next = 0; !stop && !done(); next = std::max(next + period, clock() - period)) {
+    wait_until(std::min(next, end), stop, clock);
+    if (stop || clock() >= end) break;
+    step(clock());
+  }
+  leave(clock());
+  wall_s_ = 1e-9 * static_cast<double>(clock());
+}
+
+RobotClientStats RobotClient::stats() const {
+  RobotClientStats stats;
+  stats.robot = world_.movers[mover_].name;
+  stats.id = world_.movers[mover_].id;
+  stats.controller = controller_;
+  stats.farm = netio::text(link_.farm());
+  stats.wall_s = wall_s_;
+  stats.steps = steps_;
+  stats.started = started_;
+  stats.done = done();
+  stats.answered = link_.last_answer().has_value();
+  stats.listens = link_.listens();
+  stats.link = link_.counts();
+  stats.contacts = contacts_;
+  stats.distance_m = body_.distance();
+  stats.pose = body_.state().X_WM;
+  stats.error = error_;
+  stats.stops = stops_;
+  stats.lines_left_out = log_.left_out();
+  return stats;
 }
 
 void RobotClient::on_packet(const netio::Packet& packet, std::int64_t now) {
@@ -112,10 +129,10 @@ void RobotClient::decide(std::int64_t now) {
   input.state.time = now;
   command_ = made_.controller->step(input);
   ++steps_;
-  add(error_, made_.controller->error());
+  control::add(error_, made_.controller->error());
 }
 
-/// Packets do not send_state where the farm took the robot to be: it goes by where it was itself.
+/// Packets do not state the pose that the farm read from: the robot takes its own at that time.
 void RobotClient::gather_readings() {
   readings_.clear();
   for (RobotLink::Newest& newest : link_.readings()) {
@@ -169,4 +186,4 @@ void RobotClient::log_problems(std::int64_t now) {
              now);
 }
 
-}  // namespace sf::apps
+}  // namespace sf::server

@@ -1,0 +1,18 @@
+#pragma once
+// The error that a controller states of each step, over a run.
+
+#include <cstdint>
+
+namespace sf::control {
+
+/// Means, in the controller's own unit.
+struct ErrorSummary {
+  std::uint64_t steps = 0;  ///< with an error
+  double mean = 0.0;
+  double abs_mean = 0.0;
+};
+
+/// Adds one step. NaN and infinity state no error.
+void add(ErrorSummary& summary, double error);
+
+}  // namespace sf::control

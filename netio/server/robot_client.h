@@ -1,0 +1,118 @@
+#pragma once
+// A robot's process without its command line: the controller, its inputs, and the loop around both.
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/contact_onset.h"
+#include "base/pose.h"
+#include "control/controllers.h"
+#include "control/error_summary.h"
+#include "netio/rate_limited_log.h"
+#include "netio/server/robot_link.h"
+#include "netio/server/wire_ids.h"
+#include "robots/robot_body.h"
+#include "sensors/sensor_set.h"
+#include "world/lights.h"
+#include "world/roads/network.h"
+#include "world/world.h"
+
+namespace sf::server {
+
+struct RobotClientOptions {
+  LinkOptions link;
+  control::ControllerConfig controller;
+  std::uint64_t seed = 1;
+  double forget = 10.0;         ///< [s] of silence after which another robot is no obstacle any more; 0: never
+  double stop_after = 0.5;      ///< [s] without a reading after which it stands; 0: never
+  bool wait_for_start = false;  ///< it stands until the start signal comes
+  int log_descriptor = 2;       ///< of its log's lines; -1: none
+};
+
+/// How a robot's process went.
+struct RobotClientStats {
+  std::string robot;  ///< name in the world
+  std::uint32_t id = 0;
+  std::string controller;
+  std::string farm;  ///< "127.0.0.1:9000"
+  double wall_s = 0.0;
+  std::uint64_t steps = 0;  ///< of the controller
+  bool started = true;      ///< it did not wait for a start signal, or it came
+  bool done = false;        ///< as the controller says
+  bool answered = false;    ///< anything came from the farm
+  bool listens = true;      ///< it has sensors, so that something should have come
+  LinkCounts link;
+  std::uint64_t contacts = 0;        ///< that began
+  std::uint64_t stops = 0;           ///< times that it stood for want of readings
+  std::uint64_t lines_left_out = 0;  ///< of its log
+  double distance_m = 0.0;           ///< driven
+  base::Pose pose;                   ///< at the end
+  control::ErrorSummary error;
+};
+
+/// Times are of the robot's own clock [ns], which begins at 0 and does not go back. World and sensor set must outlive
+/// it. One thread.
+class RobotClient {
+ public:
+  /// @throws base::InputError for a controller that cannot be had, a port that is taken, a farm's host that is unknown.
+  RobotClient(const world::World& world, const sensors::SensorSet& sensor_set, std::uint32_t mover,
+              const StreamLayout& plan, const RobotClientOptions& options);
+
+  /// Steps at its rate by the machine's clock until `stop` is set, the controller is done, or `duration` [s] have
+  /// passed (0: without end); then leaves.
+  void run(const std::atomic<bool>& stop, double duration);
+
+  /// Moves as it decided last, decides anew, and says where it is.
+  void step(std::int64_t now);
+
+  /// The last packet, after which the farm accepts another process with this id at once.
+  void leave(std::int64_t now) { link_.leave(now); }
+
+  double rate() const { return made_.rate; }  ///< [Hz] of turns
+  bool done() const { return started_ && made_.controller->done(); }
+  const RobotLink& link() const { return link_; }
+  RobotClientStats stats() const;
+
+ private:
+  using Clock = std::function<std::int64_t()>;
+  void wait_until(std::int64_t until, const std::atomic<bool>& stop, const Clock& clock);
+  void on_packet(const netio::Packet& packet, std::int64_t now);
+  void decide(std::int64_t now);
+  void gather_readings();
+  void gather_others(std::int64_t now);
+  void gather_signals(std::int64_t now);
+  /// No reading came for so long that the last one is no ground to drive by.
+  bool readings_timed_out(std::int64_t now) const;
+  void log_problems(std::int64_t now);
+
+  const world::World& world_;
+  WireNames names_;
+  std::uint32_t mover_;
+  robots::RobotBody body_;
+  RobotLink link_;
+  std::optional<world::RoadNetwork> roads_;
+  control::ConfiguredController made_;
+  std::vector<base::Intent> intents_;  ///< per mover, as told
+  base::Twist command_;
+  bool started_;
+  std::int64_t reading_timeout_;  ///< [ns] without a reading; 0: for ever
+  bool problem_logged_ = false;
+  bool stands_ = false;      ///< for want of readings
+  std::uint64_t stops_ = 0;  ///< times that it came to that
+  netio::RateLimitedLog log_;
+  std::uint64_t steps_ = 0;
+  base::ContactOnset contact_;
+  std::uint64_t contacts_ = 0;
+  control::ErrorSummary error_;
+  std::string controller_;  ///< its name
+  double wall_s_ = 0.0;
+  std::vector<base::ReadingBlock> readings_;
+  std::vector<control::Neighbour> others_;
+  std::vector<world::Signal> signals_;
+};
+
+}  // namespace sf::server
