@@ -7,13 +7,11 @@
 #include <utility>
 
 #include "viz/color.h"
+#include "viz/theme.h"
 #include "viz/ticks.h"
 
 namespace sf::viz {
 namespace {
-
-constexpr std::uint32_t kFrame = 0xFF404040u;
-constexpr std::uint32_t kGrid = 0x28808080u;
 
 Ticks ticks_x(const FigureLayout& at) { return make_ticks(at.shown.x_min, at.shown.x_max, at.tick_spacing / at.scale); }
 Ticks ticks_y(const FigureLayout& at) { return make_ticks(at.shown.y_min, at.shown.y_max, at.tick_spacing / at.scale); }
@@ -31,7 +29,7 @@ void draw_grid(Canvas& canvas, const FigureLayout& at) {
     const double py = crisp(at.plot.y_max - (y - at.shown.y_min) * at.scale);
     lines.push_back({{at.plot.x_min + 0.0, py}, {at.plot.x_max + 0.0, py}});
   }
-  canvas.lines(lines, 1.0, kGrid);
+  canvas.lines(lines, theme::kHairline, theme::kGridLine);
 }
 
 void draw_ticks(Canvas& canvas, const FigureLayout& at) {
@@ -41,7 +39,7 @@ void draw_ticks(Canvas& canvas, const FigureLayout& at) {
   const Ticks xs = ticks_x(at);
   for (const double x : xs.at) {
     const double px = crisp(at.plot.x_min + (x - at.shown.x_min) * at.scale);
-    canvas.line({px, at.plot.y_max + 1.0}, {px, at.plot.y_max + 6.0}, 1.0, kFrame);
+    canvas.line({px, at.plot.y_max + 1.0}, {px, at.plot.y_max + 6.0}, theme::kHairline, theme::kFrame);
     canvas.text({px, at.plot.y_max + 11.0}, tick_text(x, xs.decimals), style);
   }
   style.across = Anchor::end;
@@ -49,7 +47,7 @@ void draw_ticks(Canvas& canvas, const FigureLayout& at) {
   const Ticks ys = ticks_y(at);
   for (const double y : ys.at) {
     const double py = crisp(at.plot.y_max - (y - at.shown.y_min) * at.scale);
-    canvas.line({at.plot.x_min - 6.0, py}, {at.plot.x_min - 1.0, py}, 1.0, kFrame);
+    canvas.line({at.plot.x_min - 6.0, py}, {at.plot.x_min - 1.0, py}, theme::kHairline, theme::kFrame);
     canvas.text({at.plot.x_min - 11.0, py}, tick_text(y, ys.decimals), style);
   }
 }
@@ -60,7 +58,7 @@ void draw_frame(Canvas& canvas, const PixelBox& plot) {
   const double x1 = plot.x_max + 0.5;
   const double y1 = plot.y_max + 0.5;
   const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
-  canvas.polyline(corners, 1.0, kFrame);
+  canvas.polyline(corners, theme::kHairline, theme::kFrame);
 }
 
 /// `text` shortened until it is at most `width` [px] wide.
@@ -78,7 +76,7 @@ void draw_names(Canvas& canvas, const FigureLayout& at, const FigureOptions& pla
   canvas.text({at.plot.x_min + 0.0, 42.0}, fitted(plan.title, style, room), style);
   style = small_text();
   style.size = 19;
-  style.color = 0xFF505050u;
+  style.color = theme::kLabel;
   canvas.text({at.plot.x_min + 0.0, 77.0}, fitted(plan.subtitle, style, room), style);
 
   style = small_text();
@@ -94,7 +92,7 @@ void draw_scale_bar(Canvas& canvas, const FigureLayout& at) {
   const double left = crisp(right - metres * at.scale);
   const double y = at.plot.y_max + 52.5;
   const Line strokes[] = {{{left, y}, {right, y}}, {{left, y - 6}, {left, y + 6}}, {{right, y - 6}, {right, y + 6}}};
-  canvas.lines(strokes, 2.0, kFrame);
+  canvas.lines(strokes, theme::kCurve, theme::kFrame);
   TextStyle style = small_text();
   style.across = Anchor::end;
   canvas.text({left - 10.0, y},
@@ -110,7 +108,7 @@ void draw_bar(Canvas& canvas, const FigureLayout& at, const ColorBar& bar) {
   std::vector<std::uint32_t> colors(bar.colors.rbegin(), bar.colors.rend());
   canvas.image({x0, y0}, {x1, y1}, {1, static_cast<int>(colors.size()), colors});
   const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
-  canvas.polyline(corners, 1.0, kFrame);
+  canvas.polyline(corners, theme::kHairline, theme::kFrame);
   TextStyle style = small_text();
   style.down = Anchor::start;
   canvas.text({x1 + 9.0, y0}, bar.high, style);
@@ -125,7 +123,7 @@ void draw_bar(Canvas& canvas, const FigureLayout& at, const ColorBar& bar) {
 }  // namespace
 
 Axes::Axes(FigureOptions plan)
-    : plan_(std::move(plan)), layout_(lay_out(plan_)), canvas_(layout_.width, layout_.height, 0xFFFFFFFFu) {
+    : plan_(std::move(plan)), layout_(lay_out(plan_)), canvas_(layout_.width, layout_.height, theme::kWhite) {
   canvas_.clip(layout_.plot);
   const PixelBox& p = layout_.plot;
   const glm::dvec2 corners[] = {{p.x_min + 0.0, p.y_min + 0.0},

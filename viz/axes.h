@@ -13,6 +13,7 @@
 
 #include "viz/canvas.h"
 #include "viz/legend.h"
+#include "viz/theme.h"
 #include "world/world.h"
 
 namespace sf::viz {
@@ -28,9 +29,9 @@ struct ColorBar {
 struct FigureOptions {
   std::string title;
   std::string subtitle;
-  world::Extent extent;                    ///< [m] what must be shown; finite; a figure of no size is given some
-  double margin = 0.03;                    ///< [-] part of the longer side left free around `extent`
-  std::uint32_t background = 0xFFFFFFFFu;  ///< of the plot
+  world::Extent extent;                      ///< [m] what must be shown; finite; a figure of no size is given some
+  double margin = 0.03;                      ///< [-] part of the longer side left free around `extent`
+  std::uint32_t background = theme::kWhite;  ///< of the plot
   std::vector<LegendItem> legend;
   std::optional<ColorBar> bar;
   int long_side = 1600;  ///< [px] of the whole picture, in [600, 8000]

@@ -14,6 +14,7 @@
 #include "base/pose.h"
 #include "viz/coverage.h"
 #include "viz/resample.h"
+#include "viz/theme.h"
 
 namespace sf::viz {
 
@@ -28,12 +29,12 @@ enum class Anchor { start, middle, end };
 
 struct TextStyle {
   int size = 18;  ///< [px] em height, > 0
-  std::uint32_t color = 0xFF202020u;
+  std::uint32_t color = theme::kInk;
   bool bold = false;
-  bool upwards = false;              ///< turned by 90 degrees, read from below
-  Anchor across = Anchor::start;     ///< start: the point is at the left of the text's box
-  Anchor down = Anchor::middle;      ///< start: the point is at the top of the text's box
-  std::uint32_t halo = 0x00000000u;  ///< colour of a soft border that keeps text readable over lines; alpha 0: none
+  bool upwards = false;               ///< turned by 90 degrees, read from below
+  Anchor across = Anchor::start;      ///< start: the point is at the left of the text's box
+  Anchor down = Anchor::middle;       ///< start: the point is at the top of the text's box
+  std::uint32_t halo = theme::kNone;  ///< colour of a soft border that keeps text readable over lines; alpha 0: none
 };
 
 /// [px] width and height of the box that `text` (UTF-8, one line) takes on the picture.

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "viz/theme.h"
+
 namespace sf::viz {
 namespace {
 
@@ -67,9 +69,7 @@ std::uint32_t ramp(double t) {
 }
 
 std::uint32_t row_color(std::size_t i, std::size_t count) {
-  constexpr std::array<std::uint32_t, 7> okabe_ito{0xFF0072B2u, 0xFFD55E00u, 0xFF009E73u, 0xFFCC79A7u,
-                                                   0xFFE69F00u, 0xFF56B4E9u, 0xFF000000u};
-  if (count <= okabe_ito.size()) return okabe_ito[i % okabe_ito.size()];
+  if (count <= theme::kSeries.size()) return theme::kSeries[i % theme::kSeries.size()];
   return ramp(static_cast<double>(i) / static_cast<double>(count - 1));
 }
 

@@ -9,6 +9,7 @@
 
 #include "viz/color.h"
 #include "viz/legend.h"
+#include "viz/theme.h"
 #include "viz/ticks.h"
 
 namespace sf::viz {
@@ -16,12 +17,6 @@ namespace sf::viz {
 namespace {
 
 constexpr double kGauss = 1e-4;  // [T]
-constexpr std::uint32_t kFrame = 0xFF404040u;
-constexpr std::uint32_t kGrid = 0x28808080u;
-constexpr std::uint32_t kVectors = 0xFF0072B2u;
-constexpr std::uint32_t kMagnitudes = 0xFFD55E00u;
-constexpr std::uint32_t kInk = 0xFF15181Cu;   ///< marks on the map, with a
-constexpr std::uint32_t kHalo = 0x90FFFFFFu;  ///< border that is seen where it is dark
 constexpr std::size_t kShades = 160;
 
 // [px]
@@ -49,7 +44,7 @@ double crisp(double pixel) { return std::floor(pixel) + 0.5; }
 void draw_box(Canvas& canvas, const PixelBox& b) {
   const double x0 = b.x_min - 0.5, y0 = b.y_min - 0.5, x1 = b.x_max + 0.5, y1 = b.y_max + 0.5;
   const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
-  canvas.polyline(corners, 1.0, kFrame);
+  canvas.polyline(corners, theme::kHairline, theme::kFrame);
 }
 
 void draw_axes(Canvas& canvas, const Plot& plot, const std::string& x_name, const std::string& y_name, bool grid) {
@@ -60,8 +55,8 @@ void draw_axes(Canvas& canvas, const Plot& plot, const std::string& x_name, cons
   const Ticks xs = make_ticks(plot.x0, plot.x1, 110.0 * (plot.x1 - plot.x0) / (b.x_max - b.x_min));
   for (const double x : xs.at) {
     const double px = crisp(plot.pixel({x, plot.y0}).x);
-    if (grid) canvas.line({px, b.y_min + 0.0}, {px, b.y_max + 0.0}, 1.0, kGrid);
-    canvas.line({px, b.y_max + 1.0}, {px, b.y_max + 6.0}, 1.0, kFrame);
+    if (grid) canvas.line({px, b.y_min + 0.0}, {px, b.y_max + 0.0}, theme::kHairline, theme::kGridLine);
+    canvas.line({px, b.y_max + 1.0}, {px, b.y_max + 6.0}, theme::kHairline, theme::kFrame);
     canvas.text({px, b.y_max + 11.0}, tick_text(x, xs.decimals), style);
   }
   canvas.text({0.5 * (b.x_min + b.x_max), b.y_max + 40.0}, x_name, style);
@@ -70,8 +65,8 @@ void draw_axes(Canvas& canvas, const Plot& plot, const std::string& x_name, cons
   const Ticks ys = make_ticks(plot.y0, plot.y1, 44.0 * (plot.y1 - plot.y0) / (b.y_max - b.y_min));
   for (const double y : ys.at) {
     const double py = crisp(plot.pixel({plot.x0, y}).y);
-    if (grid) canvas.line({b.x_min + 0.0, py}, {b.x_max + 0.0, py}, 1.0, kGrid);
-    canvas.line({b.x_min - 6.0, py}, {b.x_min - 1.0, py}, 1.0, kFrame);
+    if (grid) canvas.line({b.x_min + 0.0, py}, {b.x_max + 0.0, py}, theme::kHairline, theme::kGridLine);
+    canvas.line({b.x_min - 6.0, py}, {b.x_min - 1.0, py}, theme::kHairline, theme::kFrame);
     canvas.text({b.x_min - 11.0, py}, tick_text(y, ys.decimals), style);
   }
   style.across = Anchor::middle;
@@ -115,7 +110,7 @@ void draw_bar(Canvas& canvas, const Plot& map, double top) {
   const Ticks ticks = make_ticks(0.0, top, 44.0 * top / (bar.box.y_max - bar.box.y_min));
   for (const double value : ticks.at) {
     const double y = crisp(bar.pixel({0.0, value}).y);
-    canvas.line({bar.box.x_max + 1.0, y}, {bar.box.x_max + 6.0, y}, 1.0, kFrame);
+    canvas.line({bar.box.x_max + 1.0, y}, {bar.box.x_max + 6.0, y}, theme::kHairline, theme::kFrame);
     canvas.text({bar.box.x_max + 11.0, y}, tick_text(value, ticks.decimals), small_text());
     widest = std::max(widest, text_size(tick_text(value, ticks.decimals), small_text()).x);
   }
@@ -154,9 +149,9 @@ void draw_marks(Canvas& canvas, const world::World& world, const Plot& map) {
   for (const world::Magnet& m : shown) {
     const double radius = std::clamp(m.radius * scale, 1.5, std::min(7.0, 0.2 * room));
     const double pen = std::min(1.6, 0.6 * radius);
-    canvas.ring(map.pixel(m.p), radius, 2.5 * pen, kHalo);
-    canvas.ring(map.pixel(m.p), radius, pen, kInk);
-    if (m.moment < 0.0) canvas.disc(map.pixel(m.p), radius, kInk);
+    canvas.ring(map.pixel(m.p), radius, 2.5 * pen, theme::kMapHalo);
+    canvas.ring(map.pixel(m.p), radius, pen, theme::kMapInk);
+    if (m.moment < 0.0) canvas.disc(map.pixel(m.p), radius, theme::kMapInk);
   }
 }
 
@@ -173,8 +168,8 @@ void draw_map(Canvas& canvas, const world::World& world, const FieldView& view, 
   canvas.clip(map.box);
   draw_marks(canvas, world, map);
   const Line across[] = {{map.pixel(view.line.a), map.pixel(view.line.b)}};
-  canvas.lines(across, 3.0, with_opacity(kHalo, 0.35));
-  draw_dashes(canvas, across, 1.4, 9.0, 6.0, with_opacity(kInk, 0.8));
+  canvas.lines(across, 3.0, with_opacity(theme::kMapHalo, 0.35));
+  draw_dashes(canvas, across, 1.4, 9.0, 6.0, with_opacity(theme::kMapInk, 0.8));
   canvas.unclip();
   draw_axes(canvas, map, "x [m]", "y [m]", false);
   draw_bar(canvas, map, top);
@@ -190,8 +185,8 @@ void draw_curve(Canvas& canvas, const Plot& plot, const std::vector<ProfilePoint
 double vectors(const ProfilePoint& p) { return std::hypot(p.field.x, p.field.y, p.field.z) / kGauss; }
 double magnitudes(const ProfilePoint& p) { return p.field.magnitudes / kGauss; }
 
-const std::array<LegendItem, 2> kCurves{{{LegendMark::line, kVectors, "magnets summed as vectors, as on the map"},
-                                         {LegendMark::line, kMagnitudes, "their magnitudes summed"}}};
+const std::array<LegendItem, 2> kCurves{{{LegendMark::line, theme::kBlue, "magnets summed as vectors, as on the map"},
+                                         {LegendMark::line, theme::kVermillion, "their magnitudes summed"}}};
 
 void draw_profile(Canvas& canvas, const FieldView& view, const FieldSamples& samples, Plot plot) {
   double top = 0.0;
@@ -203,8 +198,8 @@ void draw_profile(Canvas& canvas, const FieldView& view, const FieldSamples& sam
                         view.line.b.x, view.line.b.y),
             "|B| [Gauss]", true);
   canvas.clip(plot.box);
-  draw_curve(canvas, plot, samples.profile, kMagnitudes, magnitudes);
-  draw_curve(canvas, plot, samples.profile, kVectors, vectors);
+  draw_curve(canvas, plot, samples.profile, theme::kVermillion, magnitudes);
+  draw_curve(canvas, plot, samples.profile, theme::kBlue, vectors);
   canvas.unclip();
   const auto places = place_legend(kCurves, plot.box.x_max - plot.box.x_min);
   draw_legend(canvas, {plot.box.x_min + 0.0, plot.box.y_max + kLegendBelow}, kCurves, places);
@@ -223,7 +218,7 @@ void draw_names(Canvas& canvas, const world::World& world, const FieldView& view
   if (world.magnet_cutoff > 0.0) text += fmt::format(", cut off at {:g} m", world.magnet_cutoff);
   style = small_text();
   style.size = 19;
-  style.color = 0xFF505050u;
+  style.color = theme::kLabel;
   canvas.text({view.map.x_min + 0.0, 74.0}, text, style);
 }
 
@@ -237,7 +232,7 @@ void draw_field(const world::World& world, const FieldView& view, const FieldSam
       {view.map.x_min, static_cast<int>(top), view.map.x_max, static_cast<int>(top + kProfileHeight)}, 0, 1, 0, 1};
   const int rows = place_legend(kCurves, view.map.x_max - view.map.x_min).back().row + 1;
   const double high = top + kProfileHeight + kLegendBelow + rows * kLegendRow + kEdge;
-  Canvas canvas(view.map.x_max + static_cast<int>(kRight), static_cast<int>(high), 0xFFFFFFFFu);
+  Canvas canvas(view.map.x_max + static_cast<int>(kRight), static_cast<int>(high), theme::kWhite);
   draw_names(canvas, world, view, samples);
   draw_map(canvas, world, view, samples, map);
   draw_profile(canvas, view, samples, profile);

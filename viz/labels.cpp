@@ -1,5 +1,7 @@
 #include "viz/labels.h"
 
+#include "viz/theme.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,7 +12,6 @@ namespace {
 constexpr double kCell = 4.0;  // [px]
 constexpr int kDirections = 16;
 constexpr double kRing = 9.0;  // [px] from one distance tried to the next
-constexpr std::uint32_t kLeader = 0xB0606060u;
 
 /// The box of `size` whose side or corner towards `mark` is `away` from it in direction `angle`.
 LabelBox box_beside(glm::dvec2 mark, double angle, double away, glm::dvec2 size) {
@@ -107,7 +108,7 @@ bool Labels::place(Canvas& canvas, std::span<const glm::dvec2> marks, const std:
   if (!best) return false;
 
   const LabelBox& box = best->box;
-  if (best->away > rules.leader) canvas.line(best->mark, nearest_in(box, best->mark), 1.0, kLeader);
+  if (best->away > rules.leader) canvas.line(best->mark, nearest_in(box, best->mark), theme::kHairline, theme::kLeader);
   TextStyle centred = style;
   centred.across = Anchor::middle;
   centred.down = Anchor::middle;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "viz/color.h"
+#include "viz/theme.h"
 
 namespace sf::viz {
 namespace {
@@ -21,26 +22,26 @@ void draw_sample(Canvas& canvas, glm::dvec2 left, const LegendItem& item) {
       const std::array<glm::dvec2, 5> box{left + glm::dvec2{0, -9}, right + glm::dvec2{0, -9}, right + glm::dvec2{0, 9},
                                           left + glm::dvec2{0, 9}, left + glm::dvec2{0, -9}};
       canvas.polygon(std::span(box).first(4), item.color);
-      if (item.edge >> 24) canvas.polyline(box, 1.5, item.edge);
+      if (item.edge >> 24) canvas.polyline(box, theme::kOutline, item.edge);
       return;
     }
     case LegendMark::line:
-      return canvas.line(left, right, 2.5, item.color);
+      return canvas.line(left, right, theme::kBold, item.color);
     case LegendMark::dashed:
       return draw_dashes(canvas, {&line, 1}, 2.0, 9.0, 3.5, item.color);
     case LegendMark::dotted:
       return draw_dashes(canvas, {&line, 1}, 2.0, 2.0, 4.0, item.color);
     case LegendMark::dot:
-      canvas.disc(middle, 7.5, 0xFFFFFFFFu);
+      canvas.disc(middle, 7.5, theme::kWhite);
       return canvas.disc(middle, 6.0, item.color);
     case LegendMark::ring:
-      return canvas.ring(middle, 5.5, 2.0, item.color);
+      return canvas.ring(middle, 5.5, theme::kCurve, item.color);
     case LegendMark::cross:
-      return draw_cross(canvas, middle, 5.0, 2.0, item.color);
+      return draw_cross(canvas, middle, 5.0, theme::kCurve, item.color);
     case LegendMark::robot:
       canvas.disc(middle, 9.0, with_opacity(item.color, 0.45));
-      canvas.ring(middle, 9.0, 1.5, item.color);
-      return canvas.line(middle, middle + glm::dvec2{9.0, 0.0}, 2.0, item.color);
+      canvas.ring(middle, 9.0, theme::kOutline, item.color);
+      return canvas.line(middle, middle + glm::dvec2{9.0, 0.0}, theme::kCurve, item.color);
   }
 }
 
@@ -49,7 +50,7 @@ void draw_sample(Canvas& canvas, glm::dvec2 left, const LegendItem& item) {
 TextStyle small_text() {
   TextStyle style;
   style.size = 18;
-  style.color = 0xFF303030u;
+  style.color = theme::kLegendText;
   return style;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "viz/canvas.h"
+#include "viz/theme.h"
 
 namespace sf::viz {
 
@@ -14,9 +15,9 @@ enum class LegendMark { block, line, dashed, dotted, dot, ring, cross, robot };
 
 struct LegendItem {
   LegendMark sample = LegendMark::line;
-  std::uint32_t color = 0xFF000000u;
+  std::uint32_t color = theme::kBlack;
   std::string text;
-  std::uint32_t edge = 0x00000000u;  ///< outline of a block; alpha 0: none
+  std::uint32_t edge = theme::kNone;  ///< outline of a block; alpha 0: none
 };
 
 /// The style of all small text beside a figure.

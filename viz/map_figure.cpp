@@ -10,15 +10,13 @@
 #include "viz/canvas.h"
 #include "viz/color.h"
 #include "viz/legend.h"
+#include "viz/theme.h"
 #include "viz/ticks.h"
 
 namespace sf::viz {
 
 namespace {
 
-constexpr std::array<std::uint32_t, 4> kStates{0xFF474B50u, 0xFF1748D1u, 0xFFFFFFFFu, 0xFFFF00FFu};
-constexpr std::uint32_t kGrid = 0xFFA9AEB5u;
-constexpr std::uint32_t kFrame = 0xFF404040u;
 constexpr std::size_t kNamedPlaces = 7;
 
 // [px]
@@ -61,8 +59,8 @@ Layout lay_out(const maps::GridGeometry& plan, std::span<const LegendItem> legen
 std::vector<LegendItem> legend_of(const maps::CellCounts& census, const MapFigure& figure) {
   const auto all = static_cast<double>(census.all());
   const auto item = [&](std::uint32_t state, const char* name, std::uint64_t cells) {
-    return LegendItem{LegendMark::block, kStates[state],
-                      fmt::format("{} {:.1f} %", name, 100.0 * static_cast<double>(cells) / all), kFrame};
+    return LegendItem{LegendMark::block, theme::kMapStates[state],
+                      fmt::format("{} {:.1f} %", name, 100.0 * static_cast<double>(cells) / all), theme::kFrame};
   };
   std::vector<LegendItem> items{item(SF_CELL_FREE, "free", census.free),
                                 item(SF_CELL_OCCUPIED, "occupied", census.occupied),
@@ -77,13 +75,13 @@ void draw_cells(Canvas& canvas, const maps::OccupancyGrid& grid, const Layout& l
   std::vector<std::uint32_t> pixels;
   for (std::int64_t row = 0; row < maps::rows(grid.plan); ++row)
     for (std::int64_t column = 0; column < maps::columns(grid.plan); ++column)
-      pixels.push_back(kStates[static_cast<std::size_t>(grid.at({column, row}))]);
+      pixels.push_back(theme::kMapStates[static_cast<std::size_t>(grid.at({column, row}))]);
   const glm::dvec2 line = l.grid ? glm::dvec2{1.0, 1.0} : glm::dvec2{};
   canvas.image(l.low + line, l.high,
                {static_cast<int>(maps::columns(grid.plan)), static_cast<int>(maps::rows(grid.plan)), pixels});
   if (!l.grid) return;
   // Whole pixels, each of them: lines would be smoothed.
-  const std::vector<std::uint32_t> line_color{kGrid};
+  const std::vector<std::uint32_t> line_color{theme::kMapGrid};
   for (std::int64_t i = 0; i <= maps::columns(grid.plan); ++i) {
     const double x = l.low.x + kPitch * static_cast<double>(i);
     canvas.image({x, l.low.y}, {x + 1.0, l.high.y}, {1, 1, line_color});
@@ -110,7 +108,7 @@ void draw_axes(Canvas& canvas, const maps::GridGeometry& plan, const Layout& l) 
   const Ticks xs = make_ticks(plan.left, right, 110.0 / metre);
   for (const double x : xs.at) {
     const double px = std::floor(pixel(plan, l, {x, 0.0}).x) + 0.5;
-    canvas.line({px, l.high.y + 1.0}, {px, l.high.y + 6.0}, 1.0, kFrame);
+    canvas.line({px, l.high.y + 1.0}, {px, l.high.y + 6.0}, theme::kHairline, theme::kFrame);
     canvas.text({px, l.high.y + 10.0}, tick_text(x, xs.decimals), style);
   }
   canvas.text({0.5 * (l.low.x + l.high.x), l.high.y + 36.0}, "x [m]", style);
@@ -119,7 +117,7 @@ void draw_axes(Canvas& canvas, const maps::GridGeometry& plan, const Layout& l) 
   const Ticks ys = make_ticks(bottom, plan.top, 70.0 / metre);
   for (const double y : ys.at) {
     const double py = std::floor(pixel(plan, l, {0.0, y}).y) + 0.5;
-    canvas.line({l.low.x - 6.0, py}, {l.low.x - 1.0, py}, 1.0, kFrame);
+    canvas.line({l.low.x - 6.0, py}, {l.low.x - 1.0, py}, theme::kHairline, theme::kFrame);
     canvas.text({l.low.x - 10.0, py}, tick_text(y, ys.decimals), style);
   }
   style.across = Anchor::middle;
@@ -137,8 +135,8 @@ void draw_places(Canvas& canvas, const maps::GridGeometry& plan, const Layout& l
     const glm::dvec2 p = pixel(plan, l, {X.x, X.y});
     const glm::dvec2 ahead{std::cos(X.yaw), -std::sin(X.yaw)};
     canvas.disc(p, 9.0, with_opacity(color, 0.55));
-    canvas.ring(p, 9.0, 2.0, color);
-    canvas.line(p, p + 14.0 * ahead, 2.5, color);
+    canvas.ring(p, 9.0, theme::kCurve, color);
+    canvas.line(p, p + 14.0 * ahead, theme::kBold, color);
   }
   canvas.unclip();
 }
@@ -149,7 +147,7 @@ void draw_map(const maps::OccupancyGrid& grid, const MapFigure& figure, const st
   const maps::CellCounts census = maps::count(grid);
   const std::vector<LegendItem> legend = legend_of(census, figure);
   const Layout l = lay_out(grid.plan, legend);
-  Canvas canvas(static_cast<int>(std::ceil(l.width)), static_cast<int>(std::ceil(l.height)), 0xFFFFFFFFu);
+  Canvas canvas(static_cast<int>(std::ceil(l.width)), static_cast<int>(std::ceil(l.height)), theme::kWhite);
   TextStyle title;
   title.size = 26;
   title.bold = true;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "viz/color.h"
+#include "viz/theme.h"
 
 namespace sf::viz {
 
@@ -19,7 +20,7 @@ void draw_heading(Axes& axes, const Mover& mover, double reach, double line_widt
 }  // namespace
 
 void draw_body(Axes& axes, const Mover& mover, std::uint32_t color) {
-  const std::uint32_t edge = mix(color, 0xFF000000u, 0.45);
+  const std::uint32_t edge = mix(color, theme::kBlack, 0.45);
   const double radius = mover.radius * axes.scale();
   Canvas& canvas = axes.canvas();
   if (radius < kSmallestMark || mover.body.empty()) {

@@ -4,20 +4,19 @@
 
 #include "viz/axes.h"
 #include "viz/scan_hit_grid.h"
+#include "viz/theme.h"
 
 namespace sf::viz {
 namespace {
 
-constexpr std::array<std::uint32_t, 3> kStateColors{0xFF474B50u, 0xFF1748D1u, 0xFFFFFFFFu};
 constexpr double kGridLinesFrom = 5.0;  // [px] side of a cell from which its border is drawn
-constexpr std::uint32_t kCellBorder = 0xFF8A8F96u;
 
 std::vector<std::uint32_t> pixels_of(const ScanHitGrid& grid) {
   std::vector<std::uint32_t> pixels;
   pixels.reserve(static_cast<std::size_t>(grid.columns()) * static_cast<std::size_t>(grid.rows()));
   for (int row = grid.rows() - 1; row >= 0; --row)
     for (int column = 0; column < grid.columns(); ++column)
-      pixels.push_back(kStateColors[static_cast<std::size_t>(grid.state(column, row))]);
+      pixels.push_back(theme::kCellStates[static_cast<std::size_t>(grid.state(column, row))]);
   return pixels;
 }
 
@@ -31,14 +30,14 @@ void draw_cell_borders(Axes& axes, const ScanHitGrid& grid) {
   for (int j = 0; j <= grid.rows(); ++j)
     lines.push_back(
         {axes.pixel({e.x_min, e.y_min + j * grid.cell()}), axes.pixel({e.x_max, e.y_min + j * grid.cell()})});
-  axes.canvas().lines(lines, 1.0, kCellBorder);
+  axes.canvas().lines(lines, theme::kHairline, theme::kCellBorder);
 }
 
 FigureOptions plan_of(const world::World& world, const ScanHitGrid& grid) {
   const AreaShares part = shares(grid);
   const auto item = [&](CellState state, const char* name, double share) {
-    return LegendItem{LegendMark::block, kStateColors[static_cast<std::size_t>(state)],
-                      fmt::format("{} {:.1f} %", name, 100.0 * share), 0xFF404040u};
+    return LegendItem{LegendMark::block, theme::kCellStates[static_cast<std::size_t>(state)],
+                      fmt::format("{} {:.1f} %", name, 100.0 * share), theme::kFrame};
   };
   FigureOptions plan;
   plan.title = "Occupancy";
@@ -47,7 +46,7 @@ FigureOptions plan_of(const world::World& world, const ScanHitGrid& grid) {
                   100.0 * (1.0 - part.unexplored), grid.columns(), grid.rows(), grid.cell());
   plan.extent = grid.extent();
   plan.margin = 0.0;
-  plan.background = kStateColors[0];
+  plan.background = theme::kCellStates[0];
   plan.legend = {item(CellState::free, "free", part.free), item(CellState::occupied, "occupied", part.occupied),
                  item(CellState::unexplored, "unexplored", part.unexplored)};
   return plan;

@@ -6,13 +6,13 @@
 #include "viz/axes.h"
 #include "viz/color.h"
 #include "viz/road_layer.h"
+#include "viz/theme.h"
 #include "viz/wall_layer.h"
 #include "world/path_geometry.h"
 
 namespace sf::viz {
 namespace {
 
-constexpr std::uint32_t kMiddle = 0xFF808080u;
 constexpr double kStep = 0.02;  // [m] along the middle
 
 void draw_middle(Axes& axes, const world::Path& path) {
@@ -26,7 +26,7 @@ void draw_middle(Axes& axes, const world::Path& path) {
     if (i > 0) lines.push_back({last, at});
     last = at;
   }
-  draw_dashes(axes.canvas(), lines, 1.4, 9.0, 7.0, kMiddle);
+  draw_dashes(axes.canvas(), lines, 1.4, 9.0, 7.0, theme::kReferencePath);
 }
 
 void draw_track(Axes& axes, const Track& track, std::uint32_t color) {
@@ -35,7 +35,7 @@ void draw_track(Axes& axes, const Track& track, std::uint32_t color) {
     if (is_finite(pose)) points.push_back(axes.pixel({pose.x, pose.y}));
   if (points.empty()) return;
   axes.canvas().polyline(points, 2.4, color);
-  axes.canvas().disc(points.front(), 5.0, 0xFFFFFFFFu);
+  axes.canvas().disc(points.front(), 5.0, theme::kWhite);
   axes.canvas().ring(points.front(), 4.2, 1.6, color);
   axes.canvas().disc(points.back(), 5.0, color);
 }
@@ -46,7 +46,7 @@ void draw_along_paths(const world::World& world, std::span<const Track> tracks, 
                       const std::string& subtitle, const std::string& png_path) {
   FigureOptions plan{
       .title = title, .subtitle = subtitle, .extent = extent_of(world, tracks), .legend = road_legend(world)};
-  if (!world.paths.empty()) plan.legend.push_back({LegendMark::dashed, kMiddle, "middle of the lane"});
+  if (!world.paths.empty()) plan.legend.push_back({LegendMark::dashed, theme::kReferencePath, "middle of the lane"});
   const auto color = [&](std::size_t i) { return tracks[i].color.value_or(row_color(i, tracks.size())); };
   for (std::size_t i = 0; i < std::min<std::size_t>(tracks.size(), 7); ++i)
     plan.legend.push_back({LegendMark::line, color(i), tracks[i].name});

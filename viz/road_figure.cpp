@@ -10,6 +10,7 @@
 
 #include "viz/axes.h"
 #include "viz/road_view.h"
+#include "viz/theme.h"
 #include "world/roads/lane_markings.h"
 
 namespace sf::viz {
@@ -23,7 +24,6 @@ using world::RoadZone;
 constexpr double kLanePixels = 9.0;    // width that a lane should have
 constexpr double kSpotPixels = 17.0;   // width that a parking spot needs for its checkpoint's id
 constexpr std::uint32_t kCrowded = 6;  // spots of a zone that is shown larger
-constexpr std::uint32_t kInsetFrame = 0xFF404040u;
 
 /// [px] so that the middle one of the lanes is as wide as it should be.
 int picture_size(const RoadNetwork& network) {
@@ -124,7 +124,7 @@ std::vector<Inset> place_insets(const RoadView& view, const RoadNetwork& network
 
 void draw_frame(Canvas& canvas, glm::dvec2 low, glm::dvec2 high, double width) {
   const glm::dvec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}, low};
-  canvas.polyline(corners, width, kInsetFrame);
+  canvas.polyline(corners, width, theme::kFrame);
 }
 
 void draw_inset(const RoadView& view, const RoadNetwork& network, const Inset& inset) {
@@ -136,11 +136,11 @@ void draw_inset(const RoadView& view, const RoadNetwork& network, const Inset& i
   const bool above = high.y < part_low.y;
   const Line ties[] = {{{low.x, above ? high.y : low.y}, {part_low.x, above ? part_low.y : part_high.y}},
                        {{high.x, above ? high.y : low.y}, {part_high.x, above ? part_low.y : part_high.y}}};
-  view.canvas.lines(ties, 1.0, 0x90404040u);
+  view.canvas.lines(ties, theme::kHairline, theme::kInsetTie);
 
   view.canvas.clip(inset.box);
   const glm::dvec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}};
-  view.canvas.polygon(corners, kRoadGround);
+  view.canvas.polygon(corners, theme::kRoadGround);
   const RoadView larger{view.canvas, inset.box, {inset.part.x_min, inset.part.y_min}, inset.scale};
   draw_network(larger, network);
   Labels labels(inset.box);
@@ -153,18 +153,19 @@ void draw_inset(const RoadView& view, const RoadNetwork& network, const Inset& i
 // ------------------------------------------------------------------------------------------------- figure
 
 std::vector<LegendItem> legend_of(const RoadNetwork& network) {
-  std::vector<LegendItem> items{{LegendMark::block, kAsphalt, "lane", kLaneEdge}};
+  std::vector<LegendItem> items{{LegendMark::block, theme::kAsphalt, "lane", theme::kLaneEdge}};
   const auto paint = world::lane_markings_of(network);
   const auto painted = [&](std::uint32_t color) {
     return std::any_of(paint.begin(), paint.end(), [&](const world::LaneMarking& s) { return s.color == color; });
   };
   if (painted(world::kYellowPaint)) items.push_back({LegendMark::line, world::kYellowPaint, "yellow lines"});
-  if (painted(world::kWhitePaint)) items.push_back({LegendMark::block, world::kWhitePaint, "white lines", kLaneEdge});
-  if (!network.exits.empty()) items.push_back({LegendMark::line, kExit, "exit"});
-  if (!network.stops.empty()) items.push_back({LegendMark::line, kStop, "stop line"});
-  if (!network.checkpoints.empty()) items.push_back({LegendMark::dot, kCheckpoint, "checkpoint and its id"});
-  if (!network.zones.empty()) items.push_back({LegendMark::block, kZone, "zone", kZoneEdge});
-  if (!network.spots.empty()) items.push_back({LegendMark::block, kSpot, "parking spot"});
+  if (painted(world::kWhitePaint))
+    items.push_back({LegendMark::block, world::kWhitePaint, "white lines", theme::kLaneEdge});
+  if (!network.exits.empty()) items.push_back({LegendMark::line, theme::kExit, "exit"});
+  if (!network.stops.empty()) items.push_back({LegendMark::line, theme::kStop, "stop line"});
+  if (!network.checkpoints.empty()) items.push_back({LegendMark::dot, theme::kCheckpoint, "checkpoint and its id"});
+  if (!network.zones.empty()) items.push_back({LegendMark::block, theme::kZone, "zone", theme::kZoneEdge});
+  if (!network.spots.empty()) items.push_back({LegendMark::block, theme::kSpot, "parking spot"});
   return items;
 }
 
@@ -187,7 +188,7 @@ void draw_roads(const RoadNetwork& network, const std::string& png_path) {
       printable(network.name.empty() ? std::filesystem::path(network.file).filename().string() : network.name, 120);
   plan.subtitle = subtitle_of(network);
   plan.extent = network.extent;
-  plan.background = kRoadGround;
+  plan.background = theme::kRoadGround;
   plan.legend = legend_of(network);
   plan.long_side = picture_size(network);
   Axes axes(std::move(plan));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "viz/theme.h"
 #include "world/path_geometry.h"
 
 namespace sf::viz {
@@ -11,8 +12,6 @@ namespace {
 
 using world::LaneMarking;
 
-constexpr std::uint32_t kNorth = 0xFFC62828u;
-constexpr std::uint32_t kSouth = 0xFF1565C0u;
 constexpr double kShoulder = 7.0;   // [px] of asphalt on either side of a stripe
 constexpr double kThinnest = 1.3;   // [px] of a stripe
 constexpr double kLaneStep = 0.02;  // [m] along a lane
@@ -44,7 +43,7 @@ void draw_lanes(Axes& axes, const world::World& world) {
         for (int k = 0; k < 4; ++k) edges.push_back({corners[k], corners[(k + 1) % 4]});
       }
     }
-  if (!edges.empty()) axes.canvas().area(edges, kAsphaltBand);
+  if (!edges.empty()) axes.canvas().area(edges, theme::kAsphaltBand);
 }
 
 }  // namespace
@@ -58,7 +57,7 @@ void draw_paint(Axes& axes, const world::World& world) {
     for (std::size_t i = 0; i + 1 < marking.line.size(); ++i)
       asphalt.push_back({axes.pixel(marking.line[i]), axes.pixel(marking.line[i + 1])});
   }
-  axes.canvas().lines(asphalt, widest + 2.0 * kShoulder, kAsphaltBand);
+  axes.canvas().lines(asphalt, widest + 2.0 * kShoulder, theme::kAsphaltBand);
   draw_lanes(axes, world);
 
   std::vector<std::uint32_t> colors;
@@ -77,7 +76,7 @@ void draw_streets(Axes& axes, const world::RoadNetwork& roads) {
   for (const world::RoadZone& zone : roads.zones) {
     std::vector<glm::dvec2> outline;
     for (const world::PerimeterPoint& point : zone.perimeter) outline.push_back(axes.pixel(point.p));
-    axes.canvas().polygon(outline, kAsphaltBand);
+    axes.canvas().polygon(outline, theme::kAsphaltBand);
   }
   std::vector<Line> bands;
   double widest = 0.0;
@@ -89,25 +88,25 @@ void draw_streets(Axes& axes, const world::RoadNetwork& roads) {
     widest = std::max(widest, lane.width);
   }
   for (const world::RoadExit& exit : roads.exits) add(exit_curve(roads, exit).points);
-  if (widest > 0.0) axes.canvas().lines(bands, widest * axes.scale(), kAsphaltBand);
+  if (widest > 0.0) axes.canvas().lines(bands, widest * axes.scale(), theme::kAsphaltBand);
 }
 
 void draw_magnets(Axes& axes, const world::World& world) {
   for (const world::Magnet& magnet : world.magnets) {
     const double radius = std::clamp(magnet.radius * axes.scale(), 0.8, 6.0);
-    axes.canvas().disc(axes.pixel(magnet.p), radius, magnet.moment > 0.0 ? kNorth : kSouth);
+    axes.canvas().disc(axes.pixel(magnet.p), radius, magnet.moment > 0.0 ? theme::kMagnetUp : theme::kMagnetDown);
   }
 }
 
 std::vector<LegendItem> road_legend(const world::World& world) {
   std::vector<LegendItem> items;
-  if (!world.lane_markings.empty()) items.push_back({LegendMark::block, kAsphaltBand, "road, with its paint"});
+  if (!world.lane_markings.empty()) items.push_back({LegendMark::block, theme::kAsphaltBand, "road, with its paint"});
   const auto has = [&](bool north) {
     return std::any_of(world.magnets.begin(), world.magnets.end(),
                        [&](const world::Magnet& m) { return (m.moment > 0.0) == north; });
   };
-  if (has(true)) items.push_back({LegendMark::dot, kNorth, "magnet, north pole up"});
-  if (has(false)) items.push_back({LegendMark::dot, kSouth, "magnet, south pole up"});
+  if (has(true)) items.push_back({LegendMark::dot, theme::kMagnetUp, "magnet, north pole up"});
+  if (has(false)) items.push_back({LegendMark::dot, theme::kMagnetDown, "magnet, south pole up"});
   return items;
 }
 

@@ -10,8 +10,6 @@
 
 namespace sf::viz {
 
-inline constexpr std::uint32_t kAsphaltBand = 0xFFC3C8CEu;  ///< asphalt under paint
-
 /// Stripes in their colours on a band of asphalt, so that white ones are seen; at least a pixel wide. Lanes that the
 /// world has as paths are asphalt from edge to edge.
 void draw_paint(Axes& axes, const world::World& world);

@@ -7,6 +7,7 @@
 
 #include "viz/legend.h"
 #include "viz/road_view.h"
+#include "viz/theme.h"
 
 namespace sf::viz {
 namespace {
@@ -33,13 +34,13 @@ TextStyle label_style(int size, std::uint32_t color, bool bold) {
   style.size = size;
   style.color = color;
   style.bold = bold;
-  style.halo = 0xFFFFFFFFu;
+  style.halo = theme::kWhite;
   return style;
 }
 
 /// Beside one of several places along the segment.
 void label_segments(const RoadView& view, const RoadNetwork& network, Labels& labels, const DetailViews& elsewhere) {
-  const TextStyle style = label_style(15, 0xFF202020u, true);
+  const TextStyle style = label_style(15, theme::kInk, true);
   for (const world::RoadSegment& segment : network.segments) {
     std::vector<glm::dvec2> marks;
     for (std::uint32_t i = 0; i < std::min(segment.lanes, kMaxLanes); ++i) {
@@ -58,7 +59,7 @@ void label_segments(const RoadView& view, const RoadNetwork& network, Labels& la
 }
 
 void label_zones(const RoadView& view, const RoadNetwork& network, Labels& labels, const DetailViews& elsewhere) {
-  const TextStyle style = label_style(17, 0xFF36522Au, true);
+  const TextStyle style = label_style(17, theme::kZoneText, true);
   for (const RoadZone& zone : network.zones) {
     glm::dvec2 middle;
     for (const world::PerimeterPoint& point : zone.perimeter)
@@ -74,7 +75,7 @@ void label_zones(const RoadView& view, const RoadNetwork& network, Labels& label
 }
 
 void label_checkpoints(const RoadView& view, const RoadNetwork& network, Labels& labels, const DetailViews& elsewhere) {
-  const TextStyle style = label_style(12, kCheckpoint, true);
+  const TextStyle style = label_style(12, theme::kCheckpoint, true);
   for (const bool on_lanes : {true, false})
     for (const world::RoadCheckpoint& checkpoint : network.checkpoints) {
       if ((checkpoint.at.kind == world::PointRef::Kind::lane) != on_lanes || is_in(elsewhere, checkpoint.p)) continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "viz/color.h"
+#include "viz/theme.h"
 #include "world/roads/lane_markings.h"
 
 namespace sf::viz {
@@ -13,16 +14,15 @@ using world::RoadLane;
 using world::RoadNetwork;
 using world::RoadZone;
 
-constexpr std::uint32_t kArrow = 0xFFFFFFFFu;
 constexpr double kArrowEvery = 70.0;    // [px] along a lane
 constexpr double kThinnestPaint = 1.3;  // [px]
 
 void draw_zone(const RoadView& view, const RoadNetwork& network, const RoadZone& zone) {
   std::vector<glm::dvec2> outline;
   for (const world::PerimeterPoint& point : zone.perimeter) outline.push_back(view.pixel(point.p));
-  view.canvas.polygon(outline, kZone);
+  view.canvas.polygon(outline, theme::kZone);
   outline.push_back(outline.front());
-  view.canvas.polyline(outline, 1.5, kZoneEdge);
+  view.canvas.polyline(outline, theme::kOutline, theme::kZoneEdge);
   for (std::uint32_t i = 0; i < zone.spots; ++i) {
     const world::RoadSpot& spot = network.spots[zone.first_spot + i];
     const glm::dvec2 along = spot.end - spot.entry;
@@ -31,7 +31,7 @@ void draw_zone(const RoadView& view, const RoadNetwork& network, const RoadZone&
     const glm::dvec2 half = (0.5 * spot.width / depth) * glm::dvec2{-along.y, along.x};
     const glm::dvec2 corners[] = {view.pixel(spot.entry + half), view.pixel(spot.end + half),
                                   view.pixel(spot.end - half), view.pixel(spot.entry - half)};
-    view.canvas.polygon(corners, kSpot);
+    view.canvas.polygon(corners, theme::kSpot);
   }
 }
 
@@ -40,12 +40,12 @@ void draw_asphalt(const RoadView& view, const RoadLane& lane) {
   std::vector<glm::dvec2> outline = pixels(view, lane.left_edge);
   const std::vector<glm::dvec2> back = pixels(view, lane.right_edge);
   outline.insert(outline.end(), back.rbegin(), back.rend());
-  view.canvas.polygon(outline, kAsphalt);
+  view.canvas.polygon(outline, theme::kAsphalt);
 }
 
 void draw_edges(const RoadView& view, const RoadLane& lane) {
-  view.canvas.polyline(pixels(view, lane.left_edge), 1.0, kLaneEdge);
-  view.canvas.polyline(pixels(view, lane.right_edge), 1.0, kLaneEdge);
+  view.canvas.polyline(pixels(view, lane.left_edge), theme::kHairline, theme::kLaneEdge);
+  view.canvas.polyline(pixels(view, lane.right_edge), theme::kHairline, theme::kLaneEdge);
 }
 
 // Stop lines are among the stripes; here they get a colour of their own later.
@@ -74,7 +74,7 @@ void draw_directions(const RoadView& view, const RoadLane& lane) {
     const double step = std::min(0.25 * total, size / view.scale);
     const glm::dvec2 d = view.pixel(point_at(lane.centre, s + step)) - view.pixel(point_at(lane.centre, s - step));
     if (length(d) > 0.0)
-      draw_arrow(view.canvas, view.pixel(point_at(lane.centre, s)), (1.0 / length(d)) * d, size, kArrow);
+      draw_arrow(view.canvas, view.pixel(point_at(lane.centre, s)), (1.0 / length(d)) * d, size, theme::kWhite);
   }
 }
 
@@ -82,24 +82,24 @@ void draw_exits(const RoadView& view, const RoadNetwork& network) {
   for (const world::RoadExit& exit : network.exits) {
     const auto line = pixels(view, exit_curve(network, exit).points);
     if (line.size() < 2) continue;
-    view.canvas.polyline(line, 1.6, kExit);
+    view.canvas.polyline(line, 1.6, theme::kExit);
     const glm::dvec2 d = line.back() - line[line.size() - 2];
     if (length(d) > 0.0 && length(line.back() - line.front()) > 12.0)
       draw_arrow(view.canvas, line.back() - (4.0 / length(d)) * d, (1.0 / length(d)) * d, 4.0,
-                 with_opacity(kExit, 0.9));
+                 with_opacity(theme::kExit, 0.9));
   }
 }
 
 void draw_stops(const RoadView& view, const RoadNetwork& network) {
   for (const world::StopLine& stop : network.stops)
     view.canvas.line(view.pixel(stop.left), view.pixel(stop.right),
-                     std::max(network.paint.stop_width * view.scale, 3.0), kStop);
+                     std::max(network.paint.stop_width * view.scale, 3.0), theme::kStop);
 }
 
 void draw_checkpoints(const RoadView& view, const RoadNetwork& network) {
   for (const world::RoadCheckpoint& checkpoint : network.checkpoints) {
-    view.canvas.disc(view.pixel(checkpoint.p), 4.2, 0xFFFFFFFFu);
-    view.canvas.disc(view.pixel(checkpoint.p), 3.2, kCheckpoint);
+    view.canvas.disc(view.pixel(checkpoint.p), 4.2, theme::kWhite);
+    view.canvas.disc(view.pixel(checkpoint.p), 3.2, theme::kCheckpoint);
   }
 }
 

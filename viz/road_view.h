@@ -11,16 +11,6 @@
 
 namespace sf::viz {
 
-inline constexpr std::uint32_t kRoadGround = 0xFFF3F1EAu;
-inline constexpr std::uint32_t kAsphalt = 0xFF7C8188u;
-inline constexpr std::uint32_t kLaneEdge = 0xFFB4B8BDu;
-inline constexpr std::uint32_t kZone = 0xFFDDE6D5u;
-inline constexpr std::uint32_t kZoneEdge = 0xFF6E8B5Au;
-inline constexpr std::uint32_t kSpot = 0xFFC3CFB8u;
-inline constexpr std::uint32_t kExit = 0x9A1F6FB4u;
-inline constexpr std::uint32_t kStop = 0xFFD7191Cu;
-inline constexpr std::uint32_t kCheckpoint = 0xFF7A1FA2u;
-
 /// Which part of the world stands where on the canvas, north up.
 struct RoadView {
   Canvas& canvas;      ///< clipped to `box` by whoever draws

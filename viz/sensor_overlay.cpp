@@ -3,14 +3,14 @@
 #include "sensors/laneedge_settings.h"
 #include "sensors/magnetometer.h"
 #include "viz/color.h"
+#include "viz/theme.h"
 #include "viz/view_sector.h"
 
 namespace sf::viz {
 
 namespace {
 
-constexpr SectorStyle kSectorStyle{0xFFEF6C00u, 0.16, 0.7, 24};
-constexpr std::uint32_t kElement = 0xFF6A1B9Au;
+constexpr SectorStyle kSectorStyle{theme::kFieldOfView, 0.16, 0.7, 24};
 
 bool has(const world::World& world, std::string_view type) {
   for (const world::Mover& mover : world.movers)
@@ -30,7 +30,7 @@ void draw_sensors(Axes& axes, const world::World& world) {
       if (sensor.type != sensors::magnetometer_type.word.type) continue;
       for (const base::Pose& X_SE : sensors::read_magnetometer(sensor).X_SE) {
         const base::Pose X_WE = compose(compose(mover.X_WM, sensor.X_MS), X_SE);
-        axes.canvas().disc(axes.pixel({X_WE.x, X_WE.y}), 2.4, kElement);
+        axes.canvas().disc(axes.pixel({X_WE.x, X_WE.y}), 2.4, theme::kMagnetometer);
       }
     }
 }
@@ -40,7 +40,8 @@ std::vector<LegendItem> sensor_legend(const world::World& world) {
   if (has(world, sensors::laneedge_type.word.type))
     items.push_back({LegendMark::block, with_opacity(kSectorStyle.color, kSectorStyle.inside), "lane edge sensor",
                      with_opacity(kSectorStyle.color, kSectorStyle.border)});
-  if (has(world, sensors::magnetometer_type.word.type)) items.push_back({LegendMark::dot, kElement, "magnetometer"});
+  if (has(world, sensors::magnetometer_type.word.type))
+    items.push_back({LegendMark::dot, theme::kMagnetometer, "magnetometer"});
   return items;
 }
 

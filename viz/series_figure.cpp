@@ -8,13 +8,12 @@
 #include "viz/canvas.h"
 #include "viz/color.h"
 #include "viz/legend.h"
+#include "viz/theme.h"
 #include "viz/ticks.h"
 
 namespace sf::viz {
 namespace {
 
-constexpr std::uint32_t kFrame = 0xFF404040u;
-constexpr std::uint32_t kGrid = 0x28808080u;
 constexpr std::size_t kNamed = 7;
 
 // [px]
@@ -139,7 +138,7 @@ void draw_scales(Canvas& canvas, const PlotArea& at, const std::string& x_name) 
   const Ticks values = ticks_of(at.shown, p.y_max - p.y_min, kSmallestStep);
   for (const double value : values.at) {
     const double y = crisp(at.pixel(at.time.from, value).y);
-    canvas.line({p.x_min + 0.0, y}, {p.x_max + 0.0, y}, 1.0, kGrid);
+    canvas.line({p.x_min + 0.0, y}, {p.x_max + 0.0, y}, theme::kHairline, theme::kGridLine);
     canvas.text({p.x_min - 11.0, y}, tick_text(value, values.decimals), style);
   }
   style.across = Anchor::middle;
@@ -147,7 +146,7 @@ void draw_scales(Canvas& canvas, const PlotArea& at, const std::string& x_name) 
   const Ticks times = ticks_of(at.time, p.x_max - p.x_min, 110.0);
   for (const double time : times.at) {
     const double x = crisp(at.pixel(time, at.shown.from).x);
-    canvas.line({x, p.y_min + 0.0}, {x, p.y_max + 0.0}, 1.0, kGrid);
+    canvas.line({x, p.y_min + 0.0}, {x, p.y_max + 0.0}, theme::kHairline, theme::kGridLine);
     if (!x_name.empty()) canvas.text({x, p.y_max + 11.0}, tick_text(time, times.decimals), style);
   }
   if (!x_name.empty()) canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, x_name, style);
@@ -165,7 +164,7 @@ void draw_curve(Canvas& canvas, const PlotArea& at, const Series& series, std::u
     lines.push_back({last.value_or(here), here});
     last = here;
   }
-  canvas.lines(lines, 2.0, color);
+  canvas.lines(lines, theme::kCurve, color);
 }
 
 void draw_panel(Canvas& canvas, const Panel& panel, const PlotArea& at, const std::string& x_name) {
@@ -177,7 +176,7 @@ void draw_panel(Canvas& canvas, const Panel& panel, const PlotArea& at, const st
 
   const double x0 = at.plot.x_min - 0.5, y0 = at.plot.y_min - 0.5, x1 = at.plot.x_max + 0.5, y1 = at.plot.y_max + 0.5;
   const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
-  canvas.polyline(corners, 1.0, kFrame);
+  canvas.polyline(corners, theme::kHairline, theme::kFrame);
   TextStyle style = small_text();
   style.bold = true;
   canvas.text({x0, y0 - 0.5 * kPanelTitle}, panel.title, style);
@@ -202,14 +201,14 @@ void draw_series(const SeriesOptions& plan, const std::string& png_path) {
   const std::vector<PlotArea> places = lay_out(plan);
   const PlotArea& last = places.back();
   const int rows = last.legend_at.empty() ? 0 : last.legend_at.back().row + 1;
-  Canvas canvas(plan.width, static_cast<int>(last.legend_top + rows * kLegendRow + kEdge), 0xFFFFFFFFu);
+  Canvas canvas(plan.width, static_cast<int>(last.legend_top + rows * kLegendRow + kEdge), theme::kWhite);
   TextStyle style;
   style.size = 28;
   style.bold = true;
   canvas.text({last.plot.x_min + 0.0, 42.0}, plan.title, style);
   style = small_text();
   style.size = 19;
-  style.color = 0xFF505050u;
+  style.color = theme::kLabel;
   canvas.text({last.plot.x_min + 0.0, 77.0}, plan.subtitle, style);
   for (std::size_t i = 0; i < places.size(); ++i)
     draw_panel(canvas, plan.panels[i], places[i], i + 1 == places.size() ? plan.x_name : "");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "viz/color.h"
+#include "viz/theme.h"
 #include "viz/view_sector.h"
 #include "world/lights.h"
 
@@ -14,28 +15,26 @@ namespace {
 using world::Emitter;
 using world::LightState;
 
-constexpr std::uint32_t kHole = 0xFF2B2B33u;
-constexpr SectorStyle kWallBeam{0xFF8E24AAu, 0.14, 0.55};
-constexpr SectorStyle kRedBuoy{0xFFD32F2Fu, 0.14, 0.55};
-constexpr SectorStyle kGreenBuoy{0xFF2E7D32u, 0.14, 0.55};
-constexpr SectorStyle kField{0xFF455A64u, 0.14, 0.55};
-constexpr std::uint32_t kCase = 0xFF202020u;
+constexpr SectorStyle kWallBeam{theme::kVirtualWall, 0.14, 0.55};
+constexpr SectorStyle kRedBuoy{theme::kRedBuoy, 0.14, 0.55};
+constexpr SectorStyle kGreenBuoy{theme::kGreenBuoy, 0.14, 0.55};
+constexpr SectorStyle kField{theme::kForceField, 0.14, 0.55};
 constexpr double kLightRadius = 6.0;  // [px]
 
 std::uint32_t color_of(LightState state) {
   switch (state) {
     case LightState::red:
     case LightState::flashing_red:
-      return 0xFFE53935u;
+      return theme::kLightRed;
     case LightState::yellow:
     case LightState::flashing_yellow:
-      return 0xFFFDD835u;
+      return theme::kLightYellow;
     case LightState::green:
-      return 0xFF43A047u;
+      return theme::kLightGreen;
     case LightState::dark:
       break;
   }
-  return 0xFF616161u;
+  return theme::kLightOff;
 }
 
 void draw_emitter(Axes& axes, const Emitter& emitter) {
@@ -60,7 +59,7 @@ void draw_floor_holes(Axes& axes, const world::World& world) {
   for (const world::FloorHole& drop : world.floor_holes) {
     std::vector<glm::dvec2> outline;
     for (const glm::dvec2& p : drop.outline) outline.push_back(axes.pixel(p));
-    axes.canvas().polygon(outline, with_opacity(kHole, 0.85));
+    axes.canvas().polygon(outline, with_opacity(theme::kFloorHole, 0.85));
   }
 }
 
@@ -71,8 +70,8 @@ void draw_emitters(Axes& axes, const world::World& world) {
 void draw_lights(Axes& axes, const world::World& world, double time) {
   for (const world::Light& light : world.lights) {
     const glm::dvec2 at = axes.pixel({light.X_WL.x, light.X_WL.y});
-    axes.canvas().line(at, at + base::rotate(-light.X_WL.yaw, {2.2 * kLightRadius, 0.0}), 2.5, kCase);
-    axes.canvas().disc(at, kLightRadius + 1.5, kCase);
+    axes.canvas().line(at, at + base::rotate(-light.X_WL.yaw, {2.2 * kLightRadius, 0.0}), theme::kBold, theme::kInk);
+    axes.canvas().disc(at, kLightRadius + 1.5, theme::kInk);
     axes.canvas().disc(at, kLightRadius, color_of(signal_at(light, time).state));
   }
 }
@@ -102,7 +101,8 @@ std::vector<LegendItem> signals_legend(const world::World& world) {
   if (has(world, Emitter::Kind::dock))
     items.push_back({LegendMark::block, with_opacity(kRedBuoy.color, kRedBuoy.inside),
                      "dock: red and green buoy, force field", with_opacity(kRedBuoy.color, kRedBuoy.border)});
-  if (!world.floor_holes.empty()) items.push_back({LegendMark::block, with_opacity(kHole, 0.85), "hole in the floor"});
+  if (!world.floor_holes.empty())
+    items.push_back({LegendMark::block, with_opacity(theme::kFloorHole, 0.85), "hole in the floor"});
   return items;
 }
 

@@ -12,6 +12,7 @@
 #include "viz/mover_layer.h"
 #include "viz/road_layer.h"
 #include "viz/signal_layer.h"
+#include "viz/theme.h"
 #include "viz/wall_layer.h"
 #include "world/roads/roads.h"
 
@@ -20,17 +21,14 @@ namespace {
 
 using world::World;
 
-constexpr std::uint32_t kCar = 0xFF1F6FB4u;
-constexpr std::uint32_t kConvoy = 0xFFD55E00u;
-constexpr std::uint32_t kOther = 0xFFC2187Bu;
-constexpr std::uint32_t kTie = 0xFF202020u;
-
 /// Up to so many ways are as thick as those of convoys.
 constexpr std::size_t kFew = 12;
 
 enum class Group { car, convoy, other };
 
-std::uint32_t color_of(Group group) { return group == Group::car ? kCar : group == Group::convoy ? kConvoy : kOther; }
+std::uint32_t color_of(Group group) {
+  return group == Group::car ? theme::kCar : group == Group::convoy ? theme::kVermillion : theme::kOtherRobot;
+}
 
 /// In a convoy is who follows, and who is followed. Others are those of another size than most.
 std::vector<Group> groups_of(const World& world, const TownFinalState& end) {
@@ -64,7 +62,7 @@ FigureOptions plan_of(const World& world, std::span<const Track> tracks, const T
   plan.subtitle = subtitle_of(world, tracks, end);
   plan.extent = world.extent;
   plan.legend = wall_legend(world, WallColors::of_models);
-  plan.legend.push_back({LegendMark::block, kAsphaltBand, "street, with its paint"});
+  plan.legend.push_back({LegendMark::block, theme::kAsphaltBand, "street, with its paint"});
   const auto has = [&](Group group) { return std::find(groups.begin(), groups.end(), group) != groups.end(); };
   const auto add = [&](Group group, const char* body, const char* way) {
     if (!has(group)) return;
@@ -73,11 +71,11 @@ FigureOptions plan_of(const World& world, std::span<const Track> tracks, const T
   };
   add(Group::car, "car", "its way");
   add(Group::convoy, "in a convoy", "its way");
-  if (has(Group::convoy)) plan.legend.push_back({LegendMark::line, kTie, "follows"});
-  if (has(Group::other)) plan.legend.push_back({LegendMark::dot, kOther, "pedestrian"});
+  if (has(Group::convoy)) plan.legend.push_back({LegendMark::line, theme::kInk, "follows"});
+  if (has(Group::other)) plan.legend.push_back({LegendMark::dot, theme::kOtherRobot, "pedestrian"});
   for (const LegendItem& item : lights_legend(world, end.time)) plan.legend.push_back(item);
   if (std::any_of(tracks.begin(), tracks.end(), [](const Track& t) { return contact_count(t) > 0; }))
-    plan.legend.push_back({LegendMark::cross, kContact, "contact"});
+    plan.legend.push_back({LegendMark::cross, theme::kContact, "contact"});
   return plan;
 }
 
@@ -90,15 +88,15 @@ void draw_tie(Axes& axes, const base::Pose& from, const base::Pose& to, double r
   const glm::dvec2 along = (1.0 / far) * d;
   const glm::dvec2 across{-along.y, along.x};
   const glm::dvec2 tip = a + (far - radius * axes.scale()) * along;
-  axes.canvas().line(a, tip - 6.0 * along, 3.0, kTie);
+  axes.canvas().line(a, tip - 6.0 * along, 3.0, theme::kInk);
   const glm::dvec2 head[] = {tip, tip - 12.0 * along + 7.0 * across, tip - 12.0 * along - 7.0 * across};
-  axes.canvas().polygon(head, kTie);
+  axes.canvas().polygon(head, theme::kInk);
 }
 
 void draw_leader(Axes& axes, const base::Pose& X_WM, double radius) {
   TextStyle style = small_text();
   style.bold = true;
-  style.halo = 0xFFFFFFFFu;
+  style.halo = theme::kWhite;
   style.across = Anchor::middle;
   style.down = Anchor::end;
   axes.canvas().text(axes.pixel({X_WM.x, X_WM.y}) - glm::dvec2{0.0, radius * axes.scale() + 4.0}, "leads", style);

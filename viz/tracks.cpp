@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/contact_onset.h"
+#include "viz/theme.h"
 
 namespace sf::viz {
 
@@ -52,8 +53,8 @@ void draw_contacts(Axes& axes, const Track& track, double reach, double line_wid
     const glm::dvec2 at = axes.pixel({track.poses[i].x, track.poses[i].y});
     if (length(at - last) < reach) continue;
     // On a pale border, large ones are seen on a dot of any colour.
-    if (reach >= kBordered) draw_cross(axes.canvas(), at, reach, line_width + 2.4, 0xFFFFFFFFu);
-    draw_cross(axes.canvas(), at, reach, line_width, kContact);
+    if (reach >= kBordered) draw_cross(axes.canvas(), at, reach, line_width + 2.4, theme::kWhite);
+    draw_cross(axes.canvas(), at, reach, line_width, theme::kContact);
     last = at;
   }
 }

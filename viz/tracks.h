@@ -23,8 +23,6 @@ struct Track {
   double duration = 0.0;               ///< [s] from the first to the last pose; 0 where unknown
 };
 
-inline constexpr std::uint32_t kContact = 0xFFD4351Cu;
-
 bool is_finite(const base::Pose& X_WM);
 /// [m] of the whole path.
 double path_length(const Track& track);

@@ -9,16 +9,11 @@
 #include "viz/color.h"
 #include "viz/labels.h"
 #include "viz/legend.h"
+#include "viz/theme.h"
 #include "viz/ticks.h"
 
 namespace sf::viz {
 namespace {
-
-constexpr std::uint32_t kFrame = 0xFF404040u;
-constexpr std::uint32_t kGrid = 0x28808080u;
-constexpr std::uint32_t kFront = 0xFF0072B2u;
-constexpr std::uint32_t kBeaten = 0xFF909090u;
-constexpr std::uint32_t kCovered = 0xFFD55E00u;
 
 // [px]
 constexpr int kWidth = 1400;
@@ -80,7 +75,7 @@ void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
   const Ticks rates = make_ticks(0.0, at.fastest, at.fastest * 60.0 / kPlot);
   for (const double rate : rates.at) {
     const double y = std::floor(at.y(rate)) + 0.5;
-    canvas.line({p.x_min + 0.0, y}, {p.x_max + 0.0, y}, 1.0, kGrid);
+    canvas.line({p.x_min + 0.0, y}, {p.x_max + 0.0, y}, theme::kHairline, theme::kGridLine);
     canvas.text({p.x_min - 11.0, y}, rate_text(rate), style);
   }
   style.across = Anchor::middle;
@@ -88,11 +83,12 @@ void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
   const int step = std::max(1, (at.error.to - at.error.from + 11) / 12);
   for (int decade = at.error.from; decade <= at.error.to; decade += step) {
     const double x = std::floor(at.x(std::pow(10.0, decade))) + 0.5;
-    canvas.line({x, p.y_min + 0.0}, {x, p.y_max + 0.0}, 1.0, kGrid);
+    canvas.line({x, p.y_min + 0.0}, {x, p.y_max + 0.0}, theme::kHairline, theme::kGridLine);
     canvas.text({x, p.y_max + 11.0}, power(decade), style);
   }
   canvas.text({at.x(0.0), p.y_max + 11.0}, "none", style);
-  canvas.line({p.x_min + kNothing, p.y_min + 0.0}, {p.x_min + kNothing, p.y_max + 0.0}, 1.0, 0x60808080u);
+  canvas.line({p.x_min + kNothing, p.y_min + 0.0}, {p.x_min + kNothing, p.y_max + 0.0}, theme::kHairline,
+              theme::kZeroLine);
   canvas.text({0.5 * (p.x_min + p.x_max), p.y_max + 42.0}, panel.error_name, style);
   style.upwards = true;
   style.down = Anchor::middle;
@@ -107,7 +103,7 @@ void draw_front(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) 
   std::sort(front.begin(), front.end(), [](const auto& a, const auto& b) { return a.rate < b.rate; });
   std::vector<glm::dvec2> line;
   for (const TradeoffPoint& point : front) line.push_back({at.x(point.middle), at.y(point.rate)});
-  if (line.size() > 1) canvas.polyline(line, 2.0, with_opacity(kFront, 0.4));
+  if (line.size() > 1) canvas.polyline(line, theme::kCurve, with_opacity(theme::kBlue, 0.4));
 }
 
 /// "skip4, 25 % covered".
@@ -120,15 +116,15 @@ void draw_points(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
   Labels labels(at.plot);
   const auto keep_free = [&](double x, double y) { labels.forbid({{x - 8.0, y - 8.0}, {x + 8.0, y + 8.0}}); };
   for (const TradeoffPoint& point : panel.points) {
-    const std::uint32_t color = point.front ? kFront : kBeaten;
+    const std::uint32_t color = point.front ? theme::kBlue : theme::kDominated;
     const glm::dvec2 mark{at.x(point.middle), at.y(point.rate)};
     const Line whisker{{at.x(point.low), mark.y}, {at.x(point.high), mark.y}};
-    canvas.line(whisker.a, whisker.b, 1.5, with_opacity(color, 0.6));
+    canvas.line(whisker.a, whisker.b, theme::kOutline, with_opacity(color, 0.6));
     for (const glm::dvec2& end : {whisker.a, whisker.b})
-      canvas.line({end.x, end.y - 5.0}, {end.x, end.y + 5.0}, 1.5, color);
+      canvas.line({end.x, end.y - 5.0}, {end.x, end.y + 5.0}, theme::kOutline, color);
     if (point.covered.part > 0.0) {
-      draw_cross(canvas, {at.x(point.covered.high), mark.y}, 5.0, 1.5, kCovered);
-      canvas.ring({at.x(point.covered.bound), mark.y}, 7.0, 1.5, kCovered);
+      draw_cross(canvas, {at.x(point.covered.high), mark.y}, 5.0, theme::kOutline, theme::kVermillion);
+      canvas.ring({at.x(point.covered.bound), mark.y}, 7.0, theme::kOutline, theme::kVermillion);
       keep_free(at.x(point.covered.high), mark.y);
       keep_free(at.x(point.covered.bound), mark.y);
     }
@@ -138,8 +134,8 @@ void draw_points(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
   for (const TradeoffPoint& point : panel.points) {
     TextStyle style = small_text();
     style.bold = point.front;
-    style.color = point.front ? 0xFF202020u : 0xFF707070u;
-    style.halo = 0xFFFFFFFFu;
+    style.color = point.front ? theme::kInk : theme::kMinorLabel;
+    style.halo = theme::kWhite;
     const glm::dvec2 mark[] = {{at.x(point.middle), at.y(point.rate)}};
     labels.place(canvas, mark, label_of(point), style, {.nearest = 10.0});
   }
@@ -154,7 +150,7 @@ void draw_panel(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) 
   canvas.unclip();
   const double x0 = p.x_min - 0.5, y0 = p.y_min - 0.5, x1 = p.x_max + 0.5, y1 = p.y_max + 0.5;
   const glm::dvec2 corners[] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
-  canvas.polyline(corners, 1.0, kFrame);
+  canvas.polyline(corners, theme::kHairline, theme::kFrame);
   TextStyle style = small_text();
   style.bold = true;
   canvas.text({x0, y0 - 20.0}, panel.title, style);
@@ -165,14 +161,14 @@ void draw_panel(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) 
 void draw_tradeoff(const std::string& title, const std::string& subtitle, std::span<const TradeoffPanel> panels,
                    const std::string& png_path) {
   const int height = kHeader + static_cast<int>(panels.size()) * (kPlot + kBetween);
-  Canvas canvas(kWidth, height, 0xFFFFFFFFu);
+  Canvas canvas(kWidth, height, theme::kWhite);
   TextStyle style;
   style.size = 28;
   style.bold = true;
   canvas.text({kLeft + 0.0, 42.0}, title, style);
   style = small_text();
   style.size = 19;
-  style.color = 0xFF505050u;
+  style.color = theme::kLabel;
   canvas.text({kLeft + 0.0, 77.0}, subtitle, style);
   int top = kHeader + 50;
   for (const TradeoffPanel& panel : panels) {

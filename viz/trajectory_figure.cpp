@@ -10,6 +10,7 @@
 #include "viz/axes.h"
 #include "viz/color.h"
 #include "viz/road_layer.h"
+#include "viz/theme.h"
 #include "viz/wall_layer.h"
 
 namespace sf::viz {
@@ -42,9 +43,9 @@ void draw_ends(Axes& axes, const Track& track, double mark, std::uint32_t color)
   const Pose& last = *std::find_if(track.poses.rbegin(), track.poses.rend(), is_finite);
   const glm::dvec2 start = axes.pixel({first->x, first->y});
   const glm::dvec2 end = axes.pixel({last.x, last.y});
-  axes.canvas().disc(start, mark, 0xFFFFFFFFu);
+  axes.canvas().disc(start, mark, theme::kWhite);
   axes.canvas().ring(start, mark - 0.8, 1.6, color);
-  axes.canvas().disc(end, mark + 1.4, 0xFFFFFFFFu);
+  axes.canvas().disc(end, mark + 1.4, theme::kWhite);
   axes.canvas().disc(end, mark, color);
 }
 
@@ -70,10 +71,12 @@ FigureOptions plan_of(const World& world, std::span<const Track> tracks, std::st
   plan.extent = extent_of(world, tracks);
   plan.legend = wall_legend(world, WallColors::quiet);
   for (const LegendItem& item : road_legend(world)) plan.legend.push_back(item);
-  const std::uint32_t sample = tracks.empty() ? 0xFF404040u : tracks.size() <= kNamedTracks ? 0xFF404040u : ramp(0.3);
+  const std::uint32_t sample = tracks.empty()                  ? theme::kFrame
+                               : tracks.size() <= kNamedTracks ? theme::kFrame
+                                                               : ramp(0.3);
   plan.legend.push_back({LegendMark::ring, sample, "start"});
   plan.legend.push_back({LegendMark::dot, sample, "end"});
-  plan.legend.push_back({LegendMark::cross, kContact, "contact"});
+  plan.legend.push_back({LegendMark::cross, theme::kContact, "contact"});
   if (tracks.size() <= kNamedTracks) {
     for (std::size_t i = 0; i < tracks.size(); ++i)
       plan.legend.push_back({LegendMark::line, color_of(tracks, i), tracks[i].name});

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "viz/color.h"
+#include "viz/theme.h"
 
 namespace sf::viz {
 
@@ -17,7 +18,7 @@ void draw_view_sector(Axes& axes, const base::Pose& X_WF, double from, double to
   }
   axes.canvas().polygon(outline, with_opacity(look.color, look.inside));
   outline.push_back(outline.front());
-  axes.canvas().polyline(outline, 1.0, with_opacity(look.color, look.border));
+  axes.canvas().polyline(outline, theme::kHairline, with_opacity(look.color, look.border));
 }
 
 }  // namespace sf::viz

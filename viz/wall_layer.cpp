@@ -7,13 +7,10 @@
 #include <tuple>
 
 #include "viz/color.h"
+#include "viz/theme.h"
 
 namespace sf::viz {
 namespace {
-
-constexpr std::uint32_t kSlate = 0xFF64707Du;
-constexpr std::uint32_t kQuiet = 0xFFB4BAC2u;
-constexpr std::uint32_t kUnseen = 0xFF9A9A9Au;
 
 enum class Kind { solid, passable, unseen, overhead };
 
@@ -39,13 +36,13 @@ struct Paint {
 };
 
 Paint paint_of(const world::World& world, std::uint32_t model, Kind kind, WallColors colors) {
-  std::uint32_t base = kSlate;
+  std::uint32_t base = theme::kWall;
   if (colors == WallColors::quiet)
-    base = kQuiet;
+    base = theme::kQuietWall;
   else if (model < world.models.size() && !world.models[model].is_bitmap)
     base = world.models[model].color;
-  if (kind == Kind::unseen) return {0x00000000u, kUnseen};
-  const std::uint32_t edge = mix(base, 0xFF000000u, colors == WallColors::quiet ? 0.25 : 0.4);
+  if (kind == Kind::unseen) return {theme::kNone, theme::kUnseenWall};
+  const std::uint32_t edge = mix(base, theme::kBlack, colors == WallColors::quiet ? 0.25 : 0.4);
   if (kind == Kind::overhead) return {with_opacity(base, 0.15), with_opacity(edge, 0.7)};
   return {with_opacity(base, kind == Kind::solid ? 0.75 : 0.3), edge};
 }

@@ -15,6 +15,7 @@
 #include "viz/road_layer.h"
 #include "viz/sensor_overlay.h"
 #include "viz/signal_layer.h"
+#include "viz/theme.h"
 #include "viz/visibility_layer.h"
 #include "viz/wall_layer.h"
 
@@ -28,12 +29,11 @@ using world::World;
 
 constexpr std::size_t kNamedMovers = 20;
 constexpr std::size_t kOutlinedViews = 300;
-constexpr std::uint32_t kTagColor = 0xFFC2187Bu;
 
 bool crowded(const World& world) { return world.movers.size() > kNamedMovers; }
 
 std::uint32_t color_of(const World& world, const Mover& mover) {
-  return mover.model < world.models.size() ? world.models[mover.model].color | 0xFF000000u : 0xFF808080u;
+  return mover.model < world.models.size() ? world.models[mover.model].color | theme::kBlack : theme::kNeutral;
 }
 
 /// The outline of what a laser covers, counter-clockwise in the world; a full turn has no corner at the sensor. [px]
@@ -55,11 +55,11 @@ void draw_views(Axes& axes, const World& world) {
   for (const Mover& mover : world.movers) {
     for (const Laser& laser : mover.lasers) {
       std::vector<glm::dvec2> outline = view_outline(axes, world, compose(mover.X_WM, laser.X_MS), laser);
-      const std::uint32_t edge = mix(laser.color, 0xFF404040u, 0.3);
+      const std::uint32_t edge = mix(laser.color, theme::kFrame, 0.3);
       if (!many) axes.canvas().polygon(outline, with_opacity(laser.color, 0.13));
       outline.push_back(outline.front());
-      if (!many) axes.canvas().polyline(outline, 1.0, with_opacity(edge, 0.55));
-      auto& edges = unions[laser.color | 0xFF000000u];
+      if (!many) axes.canvas().polyline(outline, theme::kHairline, with_opacity(edge, 0.55));
+      auto& edges = unions[laser.color | theme::kBlack];
       for (std::size_t i = 0; many && i + 1 < outline.size(); ++i) edges.push_back({outline[i], outline[i + 1]});
     }
   }
@@ -67,7 +67,7 @@ void draw_views(Axes& axes, const World& world) {
     if (!many) continue;
     axes.canvas().area(edges, with_opacity(color, 0.12));
     if (world.movers.size() <= kOutlinedViews)
-      axes.canvas().lines(edges, 0.5, with_opacity(mix(color, 0xFF404040u, 0.3), 0.22));
+      axes.canvas().lines(edges, 0.5, with_opacity(mix(color, theme::kFrame, 0.3), 0.22));
   }
 }
 
@@ -79,12 +79,12 @@ void draw_tag(Axes& axes, const Mover& mover) {
   for (int i = 0; i < 64; ++i)
     circle.push_back({middle + base::rotate(i * M_PI / 32, {radius, 0.0}),
                       middle + base::rotate((i + 1) * M_PI / 32, {radius, 0.0})});
-  draw_dashes(axes.canvas(), circle, 2.0, 6.0, 3.0, kTagColor);
+  draw_dashes(axes.canvas(), circle, 2.0, 6.0, 3.0, theme::kTag);
 }
 
 void draw_name(Axes& axes, const Mover& mover) {
   TextStyle style = small_text();
-  style.halo = 0xFFFFFFFFu;
+  style.halo = theme::kWhite;
   style.across = Anchor::middle;
   style.down = Anchor::start;
   const glm::dvec2 at = axes.pixel({mover.X_WM.x, mover.X_WM.y});
@@ -100,7 +100,7 @@ std::vector<LegendItem> view_legend(const World& world) {
   std::map<std::uint32_t, Seen> by_color;
   for (const Mover& mover : world.movers)
     for (const Laser& laser : mover.lasers) {
-      Seen& seen = by_color[laser.color | 0xFF000000u];
+      Seen& seen = by_color[laser.color | theme::kBlack];
       seen.fovs.insert(std::round(laser.fov * 1800.0 / M_PI) / 10.0);
       seen.ranges.insert(laser.range_max);
     }
@@ -112,7 +112,7 @@ std::vector<LegendItem> view_legend(const World& world) {
   for (const auto& [color, seen] : by_color)
     items.push_back({LegendMark::block, with_opacity(color, 0.13),
                      fmt::format("laser, {} deg, {} m", span(seen.fovs), span(seen.ranges)),
-                     with_opacity(mix(color, 0xFF404040u, 0.3), 0.55)});
+                     with_opacity(mix(color, theme::kFrame, 0.3), 0.55)});
   return items;
 }
 
@@ -127,7 +127,7 @@ std::vector<LegendItem> legend_of(const World& world) {
   };
   if (const auto robot = first(false); robot != world.movers.end())
     items.push_back({LegendMark::robot, color_of(world, *robot), "robot and heading"});
-  if (first(true) != world.movers.end()) items.push_back({LegendMark::dashed, kTagColor, "follows a tag"});
+  if (first(true) != world.movers.end()) items.push_back({LegendMark::dashed, theme::kTag, "follows a tag"});
   const auto views = view_legend(world);
   items.insert(items.end(), views.begin(), views.end());
   const auto carried = sensor_legend(world);

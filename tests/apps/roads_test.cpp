@@ -117,7 +117,7 @@ TEST(Roads, IsDrawn) {
   const Folder folder;
   const Outcome outcome = run_program({"draw", folder.write("two.rndf", kRoads), "-o", folder.path("two.png")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  scenes::expect_painted(folder.path("two.png"), {{viz::kAsphalt, 1000}});
+  scenes::expect_painted(folder.path("two.png"), {{viz::theme::kAsphalt, 1000}});
 }
 
 TEST(Missions, AloneForTheirForm) {

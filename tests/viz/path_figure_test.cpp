@@ -70,12 +70,12 @@ TEST(PathFigure, ALaneIsFilledFromEdgeToEdge) {
   world::World world = lane();
   for (const double y : {0.25, -0.25}) world.lane_markings.push_back({{{0.0, y}, {4.0, y}}, 0.02});
   draw_along_paths(world, {}, "Title", "subtitle", file("lane.png"));
-  const int filled = colored(scenes::read_png(file("lane.png")), kAsphaltBand);
+  const int filled = colored(scenes::read_png(file("lane.png")), theme::kAsphaltBand);
   world.paths.clear();
   draw_along_paths(world, {}, "Title", "subtitle", file("bands.png"));
   const scenes::Picture bands = scenes::read_png(file("bands.png"));
   // The lane is half as high as the plot, and nearly as wide as the picture.
-  EXPECT_GT(filled, 3 * colored(bands, kAsphaltBand));
+  EXPECT_GT(filled, 3 * colored(bands, theme::kAsphaltBand));
   EXPECT_GT(filled, bands.width * bands.width / 4 / 4);
 }
 

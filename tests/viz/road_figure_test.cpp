@@ -90,11 +90,11 @@ TEST(RoadFigure, ShowsWhatThereIs) {
   const Picture picture = scenes::read_png(file("roads.png"));
   EXPECT_GE(picture.width, 1000);
   // About 15 px/m: 2 lanes of 60 m x 3 m are 80 000 pixels, less what is painted on them.
-  EXPECT_GT(count(picture, kAsphalt), 20000u);
-  EXPECT_GT(count(picture, kZone), 20000u);
-  EXPECT_GT(count(picture, kSpot), 1000u);
-  EXPECT_GT(count(picture, kStop), 50u);
-  EXPECT_GT(count(picture, kCheckpoint), 20u);
+  EXPECT_GT(count(picture, theme::kAsphalt), 20000u);
+  EXPECT_GT(count(picture, theme::kZone), 20000u);
+  EXPECT_GT(count(picture, theme::kSpot), 1000u);
+  EXPECT_GT(count(picture, theme::kStop), 50u);
+  EXPECT_GT(count(picture, theme::kCheckpoint), 20u);
   EXPECT_GT(count(picture, world::kYellowPaint), 50u);  // the rest of its edge is mixed
 }
 
@@ -108,15 +108,15 @@ TEST(RoadView, EverythingIsWhereItShouldBe) {
     const glm::dvec2 p = view.pixel({x, y});
     return canvas.pixel(static_cast<int>(p.x), static_cast<int>(p.y));
   };
-  EXPECT_EQ(at(10, 0.8), kAsphalt);
-  EXPECT_EQ(at(10, 3.8), kAsphalt);
+  EXPECT_EQ(at(10, 0.8), theme::kAsphalt);
+  EXPECT_EQ(at(10, 3.8), theme::kAsphalt);
   EXPECT_EQ(at(10, -1.5), world::kWhitePaint);  // the right edge of lane 1.1
   EXPECT_EQ(at(10, 1.5), world::kYellowPaint);  // its left edge, between the lanes
   EXPECT_EQ(at(10, -2.2), 0xFFFFFFFFu);         // beside the road
-  EXPECT_EQ(at(60, 0.7), kStop);
-  EXPECT_EQ(at(0, 0), kCheckpoint);
-  EXPECT_EQ(at(72, 8), kZone);
-  EXPECT_EQ(at(79, 1.0), kSpot);
+  EXPECT_EQ(at(60, 0.7), theme::kStop);
+  EXPECT_EQ(at(0, 0), theme::kCheckpoint);
+  EXPECT_EQ(at(72, 8), theme::kZone);
+  EXPECT_EQ(at(79, 1.0), theme::kSpot);
   EXPECT_EQ(at(95, 8), 0xFFFFFFFFu);
 }
 
@@ -151,8 +151,8 @@ TEST(RoadFigure, NamesOfAnyBytes) {
   draw_roads(network, file("bytes.png"));
   draw_roads(small(), file("plain.png"));
   const Picture bytes = scenes::read_png(file("bytes.png")), plain = scenes::read_png(file("plain.png"));
-  EXPECT_NEAR(bytes.count(kStop), plain.count(kStop), 2) << "the same roads under other names";
-  EXPECT_NEAR(bytes.count(kSpot), plain.count(kSpot), plain.count(kSpot) / 4);
+  EXPECT_NEAR(bytes.count(theme::kStop), plain.count(theme::kStop), 2) << "the same roads under other names";
+  EXPECT_NEAR(bytes.count(theme::kSpot), plain.count(theme::kSpot), plain.count(theme::kSpot) / 4);
   EXPECT_EQ(printable("a\xDFz\n", 10), "a?z?");
   EXPECT_EQ(printable("abcdef", 3), "abc...");
 }
@@ -169,7 +169,8 @@ TEST(RoadFigure, OnePointIsEnough) {
   network.extent = {0, 0, 0, 0};
   draw_roads(network, file("point.png"));
   const Picture picture = scenes::read_png(file("point.png"));
-  EXPECT_EQ(picture.count(kZone) + picture.count(kSpot) + picture.count(kStop), 0) << "none of what was taken away";
+  EXPECT_EQ(picture.count(theme::kZone) + picture.count(theme::kSpot) + picture.count(theme::kStop), 0)
+      << "none of what was taken away";
   EXPECT_GT(picture.count(0xFFFFFFFFu), picture.width * picture.height / 10);
 }
 
@@ -220,8 +221,8 @@ TEST(RoadFigureFiles, TheFinalIsDrawn) {
   draw_roads(world::load_roads(rndf, warnings), file("final.png"));
   const Picture picture = scenes::read_png(file("final.png"));
   EXPECT_EQ(std::max(picture.width, picture.height), 4000);
-  EXPECT_GT(count(picture, kAsphalt), 100000u);
-  EXPECT_GT(count(picture, kCheckpoint), 170u * 20u);
+  EXPECT_GT(count(picture, theme::kAsphalt), 100000u);
+  EXPECT_GT(count(picture, theme::kCheckpoint), 170u * 20u);
 }
 
 }  // namespace
