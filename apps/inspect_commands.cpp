@@ -10,7 +10,7 @@
 #include "apps/report.h"
 #include "apps/road_commands.h"
 #include "base/error.h"
-#include "sensors/laser_shape.h"
+#include "sensors/laser_noise.h"
 #include "viz/world_figure.h"
 #include "world/free_space.h"
 

@@ -14,7 +14,7 @@
 #include "farm/pose_changes.h"
 #include "farm/sensor_pipeline.h"
 #include "gpu/batch.h"
-#include "sensors/laser_shape.h"
+#include "sensors/laser_noise.h"
 
 namespace sf::farm {
 

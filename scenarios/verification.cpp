@@ -15,8 +15,8 @@
 #include "scenarios/sampling.h"
 #include "sensors/bumper.h"
 #include "sensors/laser_modes.h"
+#include "sensors/laser_noise.h"
 #include "sensors/laser_reference.h"
-#include "sensors/laser_shape.h"
 
 namespace sf::scenarios {
 

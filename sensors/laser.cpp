@@ -5,8 +5,8 @@
 
 #include "raycast/ray_caster.h"
 #include "sensors/laser_modes.h"
+#include "sensors/laser_noise.h"
 #include "sensors/laser_packets.h"
-#include "sensors/laser_shape.h"
 
 namespace sf::sensors {
 
@@ -105,8 +105,8 @@ void Lasers::shape(std::size_t i) {
   const std::uint32_t* const cast_hits = caster_.hits().host<std::uint32_t>().data() + first;
   double* const out = values_.data() + row.samples;
   std::uint32_t* const out_hits = met_.data() + row.samples;
-  shape_scan(row.cast, plan, {seed_, base::RandomStream::range_noise, fan.mover, fan.sensor, due.sequence}, noise_,
-             {cast, cast_hits}, {out, fan.laser.samples}, {out_hits, fan.laser.samples});
+  finish_scan(row.cast, plan, {seed_, base::RandomStream::range_noise, fan.mover, fan.sensor, due.sequence}, noise_,
+              {cast, cast_hits}, {out, fan.laser.samples}, {out_hits, fan.laser.samples});
 }
 
 /// Samples that were not cast are marked since the beginning; those that graze come and go.

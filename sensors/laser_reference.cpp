@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sensors/laser_shape.h"
+#include "sensors/laser_noise.h"
 
 namespace sf::sensors {
 
@@ -69,8 +69,8 @@ LaserReference::Scan LaserReference::scan(std::uint32_t mover, std::uint32_t las
     ranges[plan.place(k)] = std::max(nearest.range, l.range_min);
     hits[plan.place(k)] = model;
   }
-  shape_scan(cast, plan, {seed_, base::RandomStream::range_noise, mover, laser, sequence}, noise_,
-             {ranges.data(), hits.data()}, scan.ranges, scan.hits);
+  finish_scan(cast, plan, {seed_, base::RandomStream::range_noise, mover, laser, sequence}, noise_,
+              {ranges.data(), hits.data()}, scan.ranges, scan.hits);
   return scan;
 }
 

@@ -4,7 +4,7 @@
 // Its arithmetic is that of shaders/lib/intersect.glsl, operation by operation, so its scans are the device's to the
 // bit, noise and `resolution` included: what devices are held to, and what recordings are checked against. A laser in
 // mode `single` is cast as an exact one. It shares with the farm how beams are laid out and noise is drawn
-// (raycast/beams.h, sensors/laser_shape.h), nothing of how surfaces are found. Some microseconds a beam in a world of a
+// (raycast/beams.h, sensors/laser_noise.h), nothing of how surfaces are found. Some microseconds a beam in a world of a
 // thousand walls.
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "netio/server/no_return_filter.h"
 
-#include "sensors/laser_shape.h"
+#include "sensors/laser_noise.h"
 
 namespace sf::server {
 

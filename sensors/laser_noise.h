@@ -25,8 +25,8 @@ struct CastScan {
 /// is the nearer neighbour's where they met different models.
 /// @param draw of `base::RandomStream::range_noise` @param noise false: none, whatever the laser has
 /// @param ranges, hits one per sample
-void shape_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const base::RandomKey& draw, bool noise,
-                const CastScan& cast, std::span<double> ranges, std::span<std::uint32_t> hits);
+void finish_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const base::RandomKey& draw, bool noise,
+                 const CastScan& cast, std::span<double> ranges, std::span<std::uint32_t> hits);
 
 /// A range as users who want infinity for "nothing met" are told it. @param range [m] of a beam that met `hit`
 inline double or_infinite(double range, std::uint32_t hit, double range_max) {

@@ -1,4 +1,4 @@
-#include "sensors/laser_shape.h"
+#include "sensors/laser_noise.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,8 +38,8 @@ void fill_lines(const Cast& a, const Cast& b, std::span<double> ranges) {
 
 }  // namespace
 
-void shape_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const base::RandomKey& draw, bool noise,
-                const CastScan& cast, std::span<double> ranges, std::span<std::uint32_t> hits) {
+void finish_scan(const CastLaser& shape, const raycast::BeamPlan& plan, const base::RandomKey& draw, bool noise,
+                 const CastScan& cast, std::span<double> ranges, std::span<std::uint32_t> hits) {
   const world::Laser& laser = shape.laser;
   const bool noisy = noise && laser.noise.has_range();
   Cast before{};
