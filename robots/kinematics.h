@@ -1,5 +1,6 @@
 #pragma once
-// How drives move: the twist a drive can follow, and where a constant twist leads.
+// Kinematics of drives: the nearest twist that a drive can follow, and the pose after a constant twist. Limits are the
+// robot type's: `velocity_bounds` in its world file (worlds/robots.inc, world/stage/mover_entities.cpp).
 
 #include <cstdint>
 

@@ -1,5 +1,6 @@
 #pragma once
-// The dial: which of its kind's modes each sensor measures in.
+// Choice of each sensor's accuracy mode. The modes themselves are tables of the sensor types: sensors/laser_modes.cpp,
+// sensors/magnetometer_modes.cpp.
 //
 // A world file says `accuracy "word"` for all sensors, or inside one of them; the command line's word comes before
 // both. Several words, with spaces between, are for several kinds: a sensor takes the first that its kind knows, and is

@@ -71,9 +71,7 @@ FigureOptions plan_of(const World& world, std::span<const Track> tracks, std::st
   plan.extent = extent_of(world, tracks);
   plan.legend = wall_legend(world, WallColors::quiet);
   for (const LegendItem& item : road_legend(world)) plan.legend.push_back(item);
-  const std::uint32_t sample = tracks.empty()                  ? theme::kFrame
-                               : tracks.size() <= kNamedTracks ? theme::kFrame
-                                                               : ramp(0.3);
+  const std::uint32_t sample = tracks.size() <= kNamedTracks ? theme::kFrame : ramp(0.3);
   plan.legend.push_back({LegendMark::ring, sample, "start"});
   plan.legend.push_back({LegendMark::dot, sample, "end"});
   plan.legend.push_back({LegendMark::cross, theme::kContact, "contact"});
@@ -82,7 +80,7 @@ FigureOptions plan_of(const World& world, std::span<const Track> tracks, std::st
       plan.legend.push_back({LegendMark::line, color_of(tracks, i), tracks[i].name});
     return plan;
   }
-  ColorBar bar{"robot", tracks.front().name, tracks.back().name, {}};
+  ColorBar bar{std::string(what), tracks.front().name, tracks.back().name, {}};
   const std::size_t steps = std::min<std::size_t>(tracks.size(), 512);
   for (std::size_t k = 0; k < steps; ++k) bar.colors.push_back(color_of(tracks, k * (tracks.size() - 1) / (steps - 1)));
   plan.bar = std::move(bar);
