@@ -66,6 +66,9 @@ class RobotClient {
   /// passed (0: without end); then leaves.
   void run(const std::atomic<bool>& stop, double duration);
 
+  /// Takes what came, and lets go what is due in both directions.
+  void receive(std::int64_t now) { link_.run(now); }
+
   /// Moves as it decided last, decides anew, and says where it is.
   void step(std::int64_t now);
 

@@ -154,29 +154,6 @@ TEST_F(RobotsTest, ReadTheThesisLayoutToo) {
   EXPECT_GT(facts.number("/distance_m"), 0.0);
 }
 
-/// The farm dies: the robot does not drive on by its last scan, two and a half periods of its sensor later. Neither
-/// does it drive before the first.
-TEST_F(RobotsTest, StandsWhenNoReadingComes) {
-  const Folder folder;
-  std::string slow = kSmallRoom;
-  slow.replace(slow.find("samples 91"), 10, "samples 91 rate 4");
-  const std::string world = folder.write("room.world", slow), lasers = std::to_string(free_ports(48));
-  const std::string port = std::to_string(free_ports(1));
-  const auto serve = [&] {
-    return std::make_unique<Program>(Words{"serve", world, "--port", port, "--laser-port", lasers});
-  };
-  Program robot({"robot", world, "--name", "roomba2", "--port", port, "--laser-port", lasers, "--json"});
-  ASSERT_TRUE(robot.says("Standing until readings come")) << robot.err();
-  auto farm = serve();
-  ASSERT_TRUE(robot.says("readings come: roomba2 goes on")) << robot.err() << farm->err();
-  farm->signal(SIGKILL);
-  ASSERT_TRUE(robot.says(" for 0.625 s: roomba2 stands until one comes")) << robot.err();
-  robot.signal(SIGINT);
-  const Outcome outcome = robot.wait();
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_GE(Json(outcome.out).number("/stops"), 1);
-}
-
 /// One process after another with one name: each is heard from its first packet on.
 TEST_F(RobotsTest, OneAfterAnotherIsHeardAtOnce) {
   Service service;

@@ -1,0 +1,132 @@
+#include "netio/server/service.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+namespace sf::server {
+
+class Service::Clock {
+ public:
+  std::int64_t now() const {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Service::Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
+                 const StreamLayout& layout, const ServiceOptions& options)
+    : world_(world),
+      sensor_set_(sensor_set),
+      layout_(layout),
+      receiver_(world, options.receiver),
+      publisher_(world, sensor_set, layout, netio::Outbox(receiver_.inbox().socket(), outbox_options(sensor_set))),
+      farm_(world, device,
+            farm::FarmOptions{.seed = options.seed, .true_poses = false, .no_return_inf = options.no_return_inf}),
+      no_return_filter_(sensor_set, options.no_return_inf),
+      interval_(options.rate > 0.0 ? 1.0 / options.rate : world.interval),
+      capped_(options.rate > 0.0) {}
+
+void Service::run(const std::atomic<bool>& stop, double duration) {
+  const Clock clock;
+  const std::int64_t step = std::llround(interval_ * 1e9);
+  std::int64_t next = 0;  // [ns] of the tick
+  while (!stop) {
+    wait_until(clock, std::min(next, next_due()), stop);
+    if (stop) break;
+    const std::int64_t now = clock.now();
+    if (duration > 0.0 && 1e-9 * static_cast<double>(now) >= duration) break;
+    if (now < next) {
+      sample(now);
+      continue;
+    }
+    tick(now);
+    next = std::max(next + step, clock.now() - step);
+  }
+  receive_pending(clock.now());  // datagrams that wait are counted too
+  wall_s_ = 1e-9 * static_cast<double>(clock.now());
+}
+
+/// Sleeps until `when`, taking in what comes meanwhile. Never less: at a tick that is early, a sensor of the same rate
+/// would not be due yet.
+void Service::wait_until(const Clock& clock, std::int64_t when, const std::atomic<bool>& stop) {
+  for (;;) {
+    const std::int64_t left = when - clock.now();
+    if (left <= 0 || stop) return;
+    const std::int64_t whole = left / 1'000'000;  // [ms]
+    if (whole == 0) std::this_thread::sleep_for(std::chrono::nanoseconds(left));
+    if (whole > 0) receiver_.inbox().wait(static_cast<int>(std::min<std::int64_t>(whole, 100)));
+    receive_pending(clock.now());
+  }
+}
+
+std::int64_t Service::next_due() const {
+  return capped_ ? farm::kNever : std::min(farm_.next_due(), farm_.next_delivery());
+}
+
+void Service::tick(std::int64_t now) {
+  publish_due(now, false);
+  receiver_.relay(now);
+  ++ticks_;
+}
+
+void Service::publish_due(std::int64_t now, bool between) {
+  receive_pending(now);
+  for (const auto& [id, row] : receiver_.robots()) {
+    farm_.set_absent(row, receiver_.update_absent(id, now));
+    farm_.subscribe(row, subscribed_types(id, now));
+  }
+  const auto states = receiver_.states(now);
+  const auto readings = no_return_filter_.apply(between ? farm_.sample(now, states) : farm_.tick(now, states));
+  for (const base::ReadingBlock& reading : readings) {
+    // A delayed reading of a robot that left meanwhile has no address.
+    const std::uint32_t id = world_.movers[reading.mover].id;
+    const auto to = receiver_.inbox().address(id);
+    if (to) addressed_readings_.push_back({&reading, to->address, receiver_.inbox().session_token_for(id)});
+  }
+  publisher_.queue(addressed_readings_);
+  publisher_.flush();
+  addressed_readings_.clear();
+  warn_of_missed(now);
+}
+
+/// Bit k: robot `id` is active, and wants its sensors of type k.
+std::uint32_t Service::subscribed_types(std::uint32_t id, std::int64_t now) const {
+  std::uint32_t types = 0;
+  for (const sensors::SensorSet::Group& group : sensor_set_.groups())
+    if (receiver_.inbox().is_subscribed(id, group.kind->id, now) && layout_.sends_any(group))
+      types |= 1u << group.kind->id;
+  return types;
+}
+
+/// Once, when more than one reading in twenty is missed.
+void Service::warn_of_missed(std::int64_t now) {
+  const farm::FarmStats stats = farm_.stats();
+  if (warned_of_missed_ || capped_ || stats.missed < 20 || 20 * stats.missed < stats.readings) return;
+  warned_of_missed_ = true;
+  receiver_.log().write(
+      "this machine is too slow for the sensors' rates: readings are missed; lower the rates, or let fewer robots ask "
+      "for them",
+      now);
+}
+
+ServiceStats Service::stats() const {
+  ServiceStats stats;
+  stats.robots = static_cast<std::uint32_t>(robots());
+  stats.ticks = ticks_;
+  stats.wall_s = wall_s_;
+  stats.farm = farm_.stats();
+  stats.hash = farm_.hash();
+  stats.publisher = publisher_.counts();
+  stats.inbox = receiver_.inbox().counts();
+  stats.kernel_drops = receiver_.inbox().kernel_drops();
+  stats.relayed = receiver_.relayed();
+  stats.answers = receiver_.answered();
+  stats.lines_left_out = receiver_.log().left_out();
+  return stats;
+}
+
+}  // namespace sf::server

@@ -1,0 +1,91 @@
+#pragma once
+// `serve` without its command line: robots' states come in, readings go back to them.
+//
+//   Service service(world, sensor_set, device, layout, {});
+//   service.run(stop, 0.0);        // by the machine's clock, or, by any clock:
+//   service.receive_pending(now);
+//   service.tick(now);
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "farm/farm.h"
+#include "gpu/device.h"
+#include "netio/server/no_return_filter.h"
+#include "netio/server/reading_publisher.h"
+#include "netio/server/state_receiver.h"
+#include "netio/server/stream_layout.h"
+#include "sensors/sensor_set.h"
+#include "world/world.h"
+
+namespace sf::server {
+
+struct ServiceOptions {
+  StateReceiverOptions receiver;
+  double rate = 0.0;  ///< [Hz] of ticks, which all sensors are then read at; 0: the world's ticks, sensors at their own
+  std::uint64_t seed = 1;
+  bool no_return_inf = false;
+};
+
+struct ServiceStats {
+  std::uint32_t robots = 0;
+  std::uint64_t ticks = 0;
+  double wall_s = 0.0;
+  farm::FarmStats farm;
+  std::uint64_t hash = 0;
+  PublisherCounts publisher;
+  netio::PacketCounts inbox;
+  std::uint64_t kernel_drops = 0;  ///< datagrams that came while the inbox' buffer was full
+  netio::RelayCounts relayed;
+  netio::OutboxCounts answers;       ///< challenges, and datagrams of the relay
+  std::uint64_t lines_left_out = 0;  ///< of the log
+};
+
+/// Times are of one clock [ns] that begins at 0 and does not go back. What it is given must outlive it. One thread.
+class Service {
+ public:
+  /// @throws netio::PortInUse, base::InputError when the address cannot be bound, and as `farm::Farm`.
+  Service(const world::World& world, const sensors::SensorSet& sensor_set, gpu::Device& device,
+          const StreamLayout& layout, const ServiceOptions& options);
+
+  /// Serves by the machine's clock until `stop` is set or `duration` [s] have passed (0: without end).
+  void run(const std::atomic<bool>& stop, double duration);
+
+  /// Everything that goes by ticks: reads and sends what is due, and relays.
+  void tick(std::int64_t now);
+  /// Reads and sends what is due between two ticks.
+  void sample(std::int64_t now) { publish_due(now, true); }
+  void receive_pending(std::int64_t now) { receiver_.receive_pending(now); }
+  /// [ns] of the next reading or delivery; farm::kNever: none, or ticks alone count.
+  std::int64_t next_due() const;
+
+  double interval() const { return interval_; }  ///< [s] of a tick
+  std::uint16_t port() const { return receiver_.inbox().port(); }
+  std::size_t robots() const { return receiver_.robots().size(); }
+  StateReceiver& receiver() { return receiver_; }
+  ServiceStats stats() const;
+
+ private:
+  class Clock;
+  void wait_until(const Clock& clock, std::int64_t when, const std::atomic<bool>& stop);
+  void publish_due(std::int64_t now, bool between);
+  std::uint32_t subscribed_types(std::uint32_t id, std::int64_t now) const;
+  void warn_of_missed(std::int64_t now);
+
+  const world::World& world_;
+  const sensors::SensorSet& sensor_set_;
+  const StreamLayout& layout_;
+  StateReceiver receiver_;
+  ReadingPublisher publisher_;
+  farm::Farm farm_;
+  NoReturnFilter no_return_filter_;
+  std::vector<AddressedReading> addressed_readings_;  ///< of one tick
+  double interval_;
+  bool capped_;  ///< sensors are read at ticks alone
+  bool warned_of_missed_ = false;
+  std::uint64_t ticks_ = 0;
+  double wall_s_ = 0.0;
+};
+
+}  // namespace sf::server

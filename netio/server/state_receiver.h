@@ -1,0 +1,73 @@
+#pragma once
+// The incoming side of `serve`: states for the fleet, packets for the relay, challenges for unproven addresses.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/report.h"
+#include "netio/inbox.h"
+#include "netio/outbox.h"
+#include "netio/rate_limited_log.h"
+#include "netio/relay.h"
+#include "netio/server/wire_ids.h"
+#include "robots/fleet.h"
+#include "world/world.h"
+
+namespace sf::server {
+
+struct StateReceiverOptions {
+  netio::Endpoint bind = {netio::kLoopback, netio::kInboxPort};
+  double radio = netio::kV2vRange;  ///< [m] farther away, states are not relayed; 0: none is
+  double forget = 10.0;             ///< [s] of silence after which a robot is no obstacle any more; 0: never
+  int log_descriptor = 2;           ///< -1: no log
+};
+
+/// Times are of one clock [ns] that does not go back. The world must outlive it. One thread.
+class StateReceiver {
+ public:
+  /// @throws netio::PortInUse, or base::InputError when the address cannot be bound.
+  StateReceiver(const world::World& world, const StateReceiverOptions& options);
+
+  /// Takes every datagram that waits.
+  void receive_pending(std::int64_t now);
+  /// Passes on what came since the last time, to robots that asked for it.
+  void relay(std::int64_t now);
+  /// Whether a robot spoke once and has been silent since for as long as `forget`: it is out of the world until it
+  /// speaks again. To be asked at each tick.
+  bool update_absent(std::uint32_t id, std::int64_t now);
+  /// The newest states, predicted to `now`. They live until the next call.
+  std::span<const base::Report> states(std::int64_t now) { return fleet_.predict(now); }
+
+  const std::map<std::uint32_t, std::uint32_t>& robots() const { return names_.robots; }  ///< rows by id
+  const netio::Inbox& inbox() const { return inbox_; }
+  const netio::RelayCounts& relayed() const { return relay_.counts(); }
+  netio::OutboxCounts answered() const { return answers_.counts(); }  ///< challenges, and relayed packets
+  netio::RateLimitedLog& log() { return log_; }
+  const netio::RateLimitedLog& log() const { return log_; }
+
+ private:
+  void take(const netio::Packet& packet, std::int64_t now);
+  void log_wrong_source(const netio::Packet& packet, const netio::Endpoint& who, std::int64_t now);
+
+  static constexpr std::int64_t kNever = -1;
+
+  const world::World& world_;
+  WireNames names_;
+  netio::Inbox inbox_;
+  netio::Outbox answers_;  ///< from the port that the robots send to
+  netio::Relay relay_;
+  robots::Fleet fleet_;
+  std::vector<base::Report> reports_;
+  base::Bytes challenge_;
+  std::int64_t forget_;                    ///< [ns] since it was last active, or kNever
+  std::vector<std::int64_t> last_active_;  ///< [ns] per mover
+  netio::RateLimitedLog log_;
+  // By id: the bound address whose other senders are in the log already.
+  std::map<std::uint32_t, std::optional<netio::Endpoint>> logged_robots_;
+  std::map<std::uint32_t, std::optional<netio::Endpoint>> logged_tags_;
+};
+
+}  // namespace sf::server

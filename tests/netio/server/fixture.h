@@ -1,0 +1,107 @@
+#pragma once
+// A service and a robot beside it in one process, by a clock of the test's own.
+
+#include <gtest/gtest.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "base/error.h"
+#include "netio/server/robot_client.h"
+#include "netio/server/service.h"
+#include "tests/robots/scenes.h"
+
+namespace sf::server {
+
+constexpr std::int64_t kTick = 100'000'000;  ///< [ns]
+
+/// Lines of a log.
+struct LogPipe {
+  std::array<int, 2> ends{};
+  LogPipe() { EXPECT_EQ(pipe2(ends.data(), O_NONBLOCK), 0); }
+  ~LogPipe() { close(ends[0]), close(ends[1]); }
+  int descriptor() const { return ends[1]; }
+  std::string read_all() const {
+    std::string text;
+    char bytes[4096];
+    for (ssize_t n = 0; (n = read(ends[0], bytes, sizeof bytes)) > 0;) text.append(bytes, static_cast<std::size_t>(n));
+    return text;
+  }
+};
+
+/// A room of 6 m by 4 m with robots of 0.3 m by 0.3 m that have a laser of 91 beams each, at the world's 10 Hz.
+inline world::World room(double rate = 10.0) {
+  world::World world = scenes::boxed_world(6.0, 4.0, {-3.0, -2.0});
+  for (const base::Pose& X_WM : {base::Pose{-2.0, 0.0, 0.0, 0.0}, base::Pose{2.0, 1.0, 0.0, 0.0}})
+    scenes::add_mover(world, X_WM, scenes::rectangle({0.0, 0.0}, 0.3, 0.3))
+        .lasers.push_back({.name = "laser", .X_MS = {0.1, 0.0, 0.04, 0.0}, .samples = 91, .rate = rate});
+  return world;
+}
+
+struct Settings {
+  double sensor_rate = 10.0;  ///< [Hz]
+  double loss = 0.0;          ///< [-] of the injected link
+  bool wait_for_start = false;
+  double radio = netio::kV2vRange;  ///< [m]
+};
+
+struct Fixture {
+  explicit Fixture(const Settings& chosen = {}) : settings(chosen), world(room(chosen.sensor_rate)), sensor_set(world) {
+    // Reading ports have no option for "any free one": tests that run at once start to look at different places.
+    layout.stride = 8;
+    for (unsigned attempt = 0; client == nullptr && attempt < 1000; ++attempt) {
+      layout.bases[base::kLaser] = 11'000 + (static_cast<unsigned>(getpid()) + 17 * attempt) * 8 % 20'000;
+      try {
+        const netio::Socket free = netio::open_udp({netio::kLoopback, reading_port(1)}),
+                            other = netio::open_udp({netio::kLoopback, reading_port(2)});
+      } catch (const base::InputError&) {
+        continue;
+      }
+      make_service();
+      client = make_client(0);
+    }
+  }
+  std::uint16_t reading_port(std::uint32_t robot) const {
+    return static_cast<std::uint16_t>(layout.bases.at(base::kLaser) + 8 * robot);
+  }
+  void make_service() {
+    service = std::make_unique<Service>(
+        world, sensor_set, device(), layout,
+        ServiceOptions{
+            .receiver = {.bind = {netio::kLoopback, 0}, .radio = settings.radio, .log_descriptor = log.descriptor()}});
+  }
+  std::unique_ptr<RobotClient> make_client(std::uint32_t mover) {
+    RobotClientOptions options{.wait_for_start = settings.wait_for_start, .log_descriptor = log.descriptor()};
+    options.link = {.farm = {netio::kLoopback, service->port()}, .model = {.loss = settings.loss}};
+    options.controller.controller = "wander";
+    return std::make_unique<RobotClient>(world, sensor_set, mover, layout, options);
+  }
+  /// Both for some ticks, or the robot alone.
+  void run(int ticks, bool served = true) {
+    for (int i = 0; i < ticks; ++i, now += kTick) {
+      client->receive(now);
+      client->step(now);
+      if (served) service->tick(now);
+    }
+    client->receive(now);
+  }
+  static gpu::Device& device() {
+    static gpu::Device device;
+    return device;
+  }
+
+  Settings settings;
+  world::World world;
+  sensors::SensorSet sensor_set;
+  StreamLayout layout;
+  LogPipe log;
+  std::unique_ptr<Service> service;
+  std::unique_ptr<RobotClient> client;
+  std::int64_t now = 0;
+};
+
+}  // namespace sf::server

@@ -1,0 +1,128 @@
+#include "netio/server/service.h"
+
+#include "tests/netio/server/fixture.h"
+
+namespace sf::server {
+namespace {
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(Service, ARobotDrivesByItsReadings) {
+  Fixture f;
+  f.run(40);
+  const RobotClientStats robot = f.client->stats();
+  const ServiceStats service = f.service->stats();
+  EXPECT_TRUE(robot.answered);
+  EXPECT_GT(robot.distance_m, 0.05);
+  EXPECT_EQ(robot.stops, 0u);
+  EXPECT_EQ(service.ticks, 40u);
+  EXPECT_GE(robot.link.whole.at("laser"), 38u) << "the first state is unproven";
+  EXPECT_EQ(robot.link.whole.at("laser"), service.publisher.packets.sent);
+  EXPECT_EQ(service.inbox.total(), robot.link.sent.sent);
+  EXPECT_EQ(robot.link.sent.sent, 40u + 9u) << "a request each half second, and one at once after the challenge";
+  EXPECT_EQ(service.farm.readings, service.publisher.packets.sent) << "the other robot is not active: not computed";
+  EXPECT_EQ(f.log.read_all(), "");
+}
+
+/// Boundary: every datagram is lost.
+TEST(Service, ARobotWithoutALinkStands) {
+  Fixture f({.loss = 1.0});
+  f.run(40);
+  const RobotClientStats robot = f.client->stats();
+  EXPECT_FALSE(robot.answered);
+  EXPECT_EQ(robot.steps, 6u) << "the time before the first reading counts as silence from 0.5 s on";
+  EXPECT_EQ(f.service->stats().inbox.total(), 0u);
+  EXPECT_EQ(count_of(f.log.read_all(), "Standing until readings come"), 1u);
+}
+
+/// A service that stops: the robot does not drive on by its last scan, two and a half periods of its sensor later, and
+/// goes on with the next.
+TEST(Service, ARobotStandsWhileNoReadingComes) {
+  Fixture f({.sensor_rate = 4.0});
+  f.run(10);
+  f.run(20, false);
+  const std::uint64_t steps = f.client->stats().steps;
+  EXPECT_EQ(f.client->stats().stops, 1u);
+  EXPECT_NE(f.log.read_all().find("for 0.625 s: robot1 stands until one comes"), std::string::npos);
+  f.run(10);
+  EXPECT_GT(f.client->stats().steps, steps + 5);
+  EXPECT_NE(f.log.read_all().find("readings come: robot1 goes on"), std::string::npos);
+}
+
+TEST(Service, AStartSignalReachesTheRobot) {
+  Fixture f({.wait_for_start = true});
+  f.run(10);
+  EXPECT_FALSE(f.client->stats().started);
+  EXPECT_EQ(f.client->stats().steps, 0u);
+  netio::Outbox user;
+  base::Bytes packet;
+  netio::encode({.robot = 1}, netio::Start{}, packet);
+  user.queue({netio::kLoopback, f.service->port()}, packet);
+  user.flush();
+  f.run(5);
+  EXPECT_TRUE(f.client->stats().started);
+  EXPECT_GT(f.client->stats().steps, 0u);
+  EXPECT_EQ(f.service->stats().relayed.starts, 1u);
+}
+
+/// The robots are about 4 m apart.
+TEST(Service, StatesAreRelayedWithinTheRadiosRange) {
+  for (const double radio : {3.0, 6.0}) {
+    Fixture f({.radio = radio});
+    const auto other = f.make_client(1);
+    for (int i = 0; i < 5; ++i) {
+      other->step(f.now);
+      f.run(1);
+      other->receive(f.now);
+    }
+    EXPECT_EQ(f.service->stats().relayed.states > 0, radio > 4.0) << radio;
+    EXPECT_EQ(other->link().is_active(1, f.now), radio > 4.0) << radio;
+  }
+}
+
+/// Boundary: sensors of 100 Hz at ticks of 10 Hz, without samples between them.
+TEST(Service, MissedReadingsAreLoggedOnce) {
+  Fixture f({.sensor_rate = 100.0});
+  f.run(20);
+  EXPECT_GT(f.service->stats().farm.missed, 20u);
+  EXPECT_EQ(count_of(f.log.read_all(), "too slow for the sensors' rates"), 1u);
+}
+
+TEST(Service, ReadsBetweenTicksWhatIsDueThere) {
+  Fixture f({.sensor_rate = 50.0});
+  f.run(10);
+  const std::int64_t due = f.service->next_due();
+  ASSERT_LT(due, f.now) << "the next tick";
+  const std::uint64_t before = f.service->stats().farm.readings;
+  f.service->sample(due);
+  EXPECT_EQ(f.service->stats().farm.readings, before + 1);
+  EXPECT_EQ(f.service->stats().ticks, 10u);
+}
+
+TEST(Service, RunEndsByItsDurationAndByAStop) {
+  Fixture f;
+  std::atomic<bool> stop = false;
+  f.service->run(stop, 0.25);
+  EXPECT_GE(f.service->stats().wall_s, 0.25);
+  EXPECT_GE(f.service->stats().ticks, 1u);
+  stop = true;
+  const std::uint64_t ticks = f.service->stats().ticks;
+  f.service->run(stop, 0.0);
+  EXPECT_EQ(f.service->stats().ticks, ticks);
+  f.client->run(stop, 0.0);
+  EXPECT_EQ(f.client->stats().steps, 0u);
+}
+
+TEST(Service, ATakenPortIsRefused) {
+  Fixture f;
+  ServiceOptions options;
+  options.receiver.bind = {netio::kLoopback, f.service->port()};
+  EXPECT_THROW(Service(f.world, f.sensor_set, Fixture::device(), f.layout, options), netio::PortInUse);
+}
+
+}  // namespace
+}  // namespace sf::server
