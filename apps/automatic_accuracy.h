@@ -7,7 +7,9 @@
 
 namespace sf::apps {
 
-/// Where the user asked for it, measures every mode here and gives `world` the words that the wish comes to; says so.
-void choose_accuracy(world::World& world, gpu::Device& device, const Options& options);
+/// With `--auto`, measures every mode on this machine and gives `world` the words that reach the target; says so.
+/// @param threads of the farm's part on the host; 0: all
+void choose_accuracy(world::World& world, gpu::Device& device, const AccuracyTargetOptions& options, std::uint64_t seed,
+                     unsigned threads);
 
 }  // namespace sf::apps

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 
 #include "apps/examples.h"
 #include "apps/option_groups.h"
@@ -74,13 +73,9 @@ Parsed parse_command_line(int argc, const char* const* argv) {
   app.set_version_flag("--version", std::string("sensorfarm ") + SF_VERSION);
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
-  Options& o = parsed.options;
-  if (const char* device = std::getenv("SENSORFARM_DEVICE")) o.device = device;
-  o.load.sensors = sensors::world_file_words();
-  for (const sensors::SensorType* kind : sensors::sensor_types()) o.base_ports[kind->id] = kind->base_port;
-  add_inspect_commands(app, o);
-  add_run_commands(app, o);
-  add_test_commands(app, o);
+  add_inspect_commands(app, parsed.call);
+  add_run_commands(app, parsed.call);
+  add_test_commands(app, parsed.call);
   std::string asked;
   const CLI::App* help = add_help(app, asked);
   for (CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
@@ -93,8 +88,6 @@ Parsed parse_command_line(int argc, const char* const* argv) {
       std::fputs(text.c_str(), stdout);
       parsed.exit_code = 0;
     }
-    // Farms look it up where they are made (raycast/caster_choice.h).
-    if (!o.caster.empty()) setenv("SENSORFARM_CASTER", o.caster.c_str(), 1);
   } catch (const CLI::ParseError& error) {
     // CLI11 has a code for each mistake; ours is 2 for all of them.
     const bool fine = error.get_exit_code() == 0;

@@ -6,23 +6,23 @@
 
 namespace sf::apps {
 
-int devices(const Options& options);
-int check(const Options& options);
-int draw(const Options& options);
-int field(const Options& options);
-int sense(const Options& options);
-int run(const Options& options);
-int serve(const Options& options);
-int robot(const Options& options);
-int start(const Options& options);
-int plot(const Options& options);
-int listen(const Options& options);
-int experiment(const Options& options);
-int test_scenarios(const Options& options);
-int map(const Options& options);
-int verify(const Options& options);
-int explain(const Options& options);
-int tradeoff(const Options& options);
-int selftest(const Options& options);
+int devices(const DevicesOptions& options);
+int check(const CheckOptions& options);
+int draw(const DrawOptions& options);
+int field(const FieldOptions& options);
+int sense(const SenseOptions& options);
+int run(const RunOptions& options);
+int serve(const ServeOptions& options);
+int robot(const RobotOptions& options);
+int start(const StartOptions& options);
+int plot(const PlotOptions& options);
+int listen(const ListenOptions& options);
+int experiment(const ExperimentOptions& options);
+int test_scenarios(const TestOptions& options);
+int map(const MapOptions& options);
+int verify(const VerifyOptions& options);
+int explain(const ExplainOptions& options);
+int tradeoff(const TradeoffOptions& options);
+int selftest(const SelfTestOptions& options);
 
 }  // namespace sf::apps

@@ -10,7 +10,7 @@ namespace sf::apps {
 bool add_default_robot(world::World& world);
 
 /// Loads the world, lends it a robot where it has none, clones robots when `count` > 0, and tells of its warnings.
-world::World load_with_robots(const std::string& file, const world::LoadOptions& options, std::uint32_t count,
-                              std::uint64_t seed, const std::string& of = "");
+world::World load_with_robots(const std::string& file, const world::LoadOptions& options, std::uint32_t count = 0,
+                              std::uint64_t seed = 1, const std::string& of = "");
 
 }  // namespace sf::apps

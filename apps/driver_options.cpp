@@ -17,7 +17,7 @@ control::Setting setting_of(const std::string& text) {
   return {key, control::RawText{text.substr(at + 1)}, fmt::format("--set {}: ", key)};
 }
 
-control::ControllerConfig controller_config_of(const Options& options) {
+control::ControllerConfig controller_config_of(const ControllerOptions& options) {
   std::vector<control::Setting> settings;
   for (const std::string& text : options.set) settings.push_back(setting_of(text));
   return {options.controller, 0.0,
@@ -27,7 +27,7 @@ control::ControllerConfig controller_config_of(const Options& options) {
 namespace {
 
 /// Robots that the world file gives a controller have that one, all others the command line's; empty where that is one.
-std::vector<scenarios::Actor> actors_of_world(const world::World& world, const Options& options) {
+std::vector<scenarios::Actor> actors_of_world(const world::World& world, const RunOptions& options) {
   const auto own = [&](const world::Mover& mover) {
     return !mover.is_tag && !mover.controller.empty() && mover.controller != options.controller;
   };
@@ -45,7 +45,7 @@ std::vector<scenarios::Actor> actors_of_world(const world::World& world, const O
 
 }  // namespace
 
-std::vector<scenarios::Actor> make_actors(const world::World& world, const Options& options) {
+std::vector<scenarios::Actor> make_actors(const world::World& world, const RunOptions& options) {
   if (options.drive.empty()) return actors_of_world(world, options);
   std::vector<std::string_view> names;
   for (const world::Mover& mover : world.movers) names.emplace_back(mover.name);

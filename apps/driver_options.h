@@ -15,11 +15,11 @@ namespace sf::apps {
 control::Setting setting_of(const std::string& text);
 
 /// `--controller` with its `--set`s.
-control::ControllerConfig controller_config_of(const Options& options);
+control::ControllerConfig controller_config_of(const ControllerOptions& options);
 
 /// The plan for whom `--drive` names, all others stand. Where it names nobody every robot is driven, by what its world
 /// file says first (`ctrl`); empty where that is the same for all.
 /// @throws base::InputError for a name that the world lacks.
-std::vector<scenarios::Actor> make_actors(const world::World& world, const Options& options);
+std::vector<scenarios::Actor> make_actors(const world::World& world, const RunOptions& options);
 
 }  // namespace sf::apps

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The folder asked for, or `experiments` here, or above the program.
-std::string folder_of(const Options& options) {
+std::string folder_of(const ExperimentOptions& options) {
   if (!options.experiments.empty()) return options.experiments;
   std::error_code error;
   std::vector<fs::path> folders{fs::current_path(error)};
@@ -42,14 +42,13 @@ int list_all() {
 
 }  // namespace
 
-int experiment(const Options& options) {
+int experiment(const ExperimentOptions& options) {
   if (options.list) return list_all();
   const scenarios::ExperimentOptions plan{.trials = options.trials,
                                           .seed = options.seed,
                                           .plant = options.plant,
                                           .folder = folder_of(options),
                                           .out = options.out,
-                                          .threads = options.threads,
                                           .warn = print_warnings,
                                           .stop = [] { return stop_requested().load(); }};
   gpu::Device device(options.device);

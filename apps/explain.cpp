@@ -80,7 +80,7 @@ std::string text_of(const scenarios::Explanation& e) {
   return text;
 }
 
-int explain(const Options& options) {
+int explain(const ExplainOptions& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   gpu::Device device(options.device);
   scenarios::Explanation explanation;

@@ -41,7 +41,7 @@ void write_csv(const std::string& path, const viz::FieldView& view, const viz::F
 
 }  // namespace
 
-int field(const Options& options) {
+int field(const FieldOptions& options) {
   const world::World world = world::load_world(options.world, options.load);
   print_warnings(options.world, world.warnings);
   refuse_without_magnets(world);

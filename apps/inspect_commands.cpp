@@ -32,7 +32,7 @@ bool has_kind(const sensors::SensorSet& sensor_set, std::uint8_t kind, std::uint
   throw base::InputError(world.file, 0, "no robot has such a sensor; give one " + join_or(words));
 }
 
-std::uint32_t find_robot(const world::World& world, const sensors::SensorSet& sensor_set, const Options& options) {
+std::uint32_t find_robot(const world::World& world, const sensors::SensorSet& sensor_set, const SenseOptions& options) {
   std::string known;
   std::size_t others = 0;
   for (std::uint32_t i = 0; i < world.movers.size(); ++i) {
@@ -65,7 +65,7 @@ struct Chosen {
 };
 
 /// Numbers count among one kind where it was named, else through all of the mover's sensors, kind after kind.
-Chosen find_sensor(const sensors::SensorSet& sensor_set, const Options& options, std::uint32_t mover) {
+Chosen find_sensor(const sensors::SensorSet& sensor_set, const SenseOptions& options, std::uint32_t mover) {
   std::uint32_t number = options.sensor;
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
     if (options.kind != 0 && group.kind->id != options.kind) continue;
@@ -77,7 +77,7 @@ Chosen find_sensor(const sensors::SensorSet& sensor_set, const Options& options,
 }
 
 /// The sensor that was asked for, which is there.
-Chosen require_sensor(const world::World& world, const sensors::SensorSet& sensor_set, const Options& options,
+Chosen require_sensor(const world::World& world, const sensors::SensorSet& sensor_set, const SenseOptions& options,
                       std::uint32_t mover) {
   const Chosen chosen = find_sensor(sensor_set, options, mover);
   if (chosen.kind != nullptr) return chosen;
@@ -99,7 +99,7 @@ void warn_of_pose(const world::World& world, const world::Mover& robot, const ba
 
 }  // namespace
 
-int devices(const Options& options) {
+int devices(const DevicesOptions& options) {
   const gpu::DeviceList list = gpu::list_devices(options.device);
   const bool any = std::any_of(list.devices.begin(), list.devices.end(), [](const auto& d) { return d.chosen; });
   print(options.json ? json_of(list) : text_of(list));
@@ -108,7 +108,7 @@ int devices(const Options& options) {
   return any ? 0 : 3;
 }
 
-int check(const Options& options) {
+int check(const CheckOptions& options) {
   if (const auto code = check_roads(options)) return *code;
   const world::World world = world::load_world(options.world, options.load);
   const sensors::SensorSet sensor_set(world);
@@ -118,7 +118,7 @@ int check(const Options& options) {
   return 0;
 }
 
-int draw(const Options& options) {
+int draw(const DrawOptions& options) {
   if (const auto code = draw_roads(options)) return *code;
   const world::World world = world::load_world(options.world, options.load);
   print_warnings(options.world, world.warnings);
@@ -127,8 +127,8 @@ int draw(const Options& options) {
   return 0;
 }
 
-int sense(const Options& options) {
-  const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
+int sense(const SenseOptions& options) {
+  const world::World world = load_with_robots(options.world, options.load);
   const sensors::SensorSet sensor_set(world);
   const std::uint32_t mover = find_robot(world, sensor_set, options);
   const Chosen chosen = require_sensor(world, sensor_set, options, mover);

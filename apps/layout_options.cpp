@@ -5,7 +5,7 @@
 namespace sf::apps {
 
 server::StreamLayout stream_layout_of(const world::World& world, const sensors::SensorSet& sensor_set,
-                                      const Options& options) {
+                                      const PortOptions& options) {
   server::StreamLayout layout =
       server::stream_layout(world, sensor_set, {options.base_ports, options.ports_per_robot, options.wire});
   for (const std::string& note : layout.notes) std::fprintf(stderr, "sensorfarm: %s\n", note.c_str());

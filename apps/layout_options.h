@@ -8,6 +8,6 @@ namespace sf::apps {
 
 /// `server::stream_layout`, with its notes printed on standard error.
 server::StreamLayout stream_layout_of(const world::World& world, const sensors::SensorSet& sensor_set,
-                                      const Options& options);
+                                      const PortOptions& options);
 
 }  // namespace sf::apps

@@ -14,7 +14,7 @@
 
 namespace sf::apps {
 
-int listen(const Options& options) {
+int listen(const ListenOptions& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   const sensors::SensorSet sensor_set(world);
   const server::StreamLayout sent = stream_layout_of(world, sensor_set, options);

@@ -99,7 +99,7 @@ std::vector<netio::StreamSpec> plans_of(const std::vector<std::uint16_t>& ports)
 /// The ports' maps as they come in.
 class Display {
  public:
-  explicit Display(const Options& options)
+  explicit Display(const MapOptions& options)
       : options_(options),
         port_listener_(netio::resolve(options.bind), kReceiveBuffer, plans_of(options.map_ports)),
         on_terminal_(isatty(STDOUT_FILENO) != 0) {
@@ -119,7 +119,7 @@ class Display {
  private:
   std::vector<maps::OccupancyGrid> pictures() const;
 
-  const Options& options_;
+  const MapOptions& options_;
   netio::PortListener port_listener_;
   std::vector<Source> sources_;
   bool on_terminal_;
@@ -216,7 +216,7 @@ void Display::print_status() const {
 
 }  // namespace
 
-int map(const Options& options) {
+int map(const MapOptions& options) {
   Display display(options);
   warn_of_exposure(netio::resolve(options.bind), "send maps");
   install_stop_handlers();

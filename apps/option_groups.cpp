@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <filesystem>
 
 #include "apps/option_parsers.h"
@@ -86,21 +87,33 @@ Validator rate() {
                   [](const std::string& text) { return read_rate(text).has_value(); });
 }
 
-void add_json(CLI::App& app, Options& o) { app.add_flag("--json", o.json, "Print facts as JSON on standard output"); }
+void on_parsed(CLI::App& sub, std::function<void()> set, std::function<void()> check) {
+  sub.callback([set = std::move(set), check = std::move(check)] {
+    if (check) check();
+    set();
+  });
+}
 
-void add_device(CLI::App& app, Options& o) {
+void add_json(CLI::App& app, JsonOption& o) {
+  app.add_flag("--json", o.json, "Print facts as JSON on standard output");
+}
+
+void add_device(CLI::App& app, DeviceOption& o) {
+  if (const char* device = std::getenv("SENSORFARM_DEVICE")) o.device = device;
   app.add_option("--device", o.device,
                  "Vulkan device: its row in `devices`, or part of its name (else $SENSORFARM_DEVICE, else the best)")
       ->type_name("NAME");
-  app.add_option(
-         "--caster", o.caster,
+  // Farms look it up where they are made (raycast/caster_choice.h).
+  app.add_option_function<std::string>(
+         "--caster", [](const std::string& word) { setenv("SENSORFARM_CASTER", word.c_str(), 1); },
          "Casts rays by the device's kernels or the host's vectors, to the same bytes (else $SENSORFARM_CASTER, "
          "else auto: host where the device is software)")
       ->type_name("auto|vulkan|host")
       ->check(CLI::IsMember({"auto", "vulkan", "host"}));
 }
 
-void add_world(CLI::App& app, Options& o) {
+void add_world(CLI::App& app, WorldOptions& o) {
+  o.load.sensors = sensors::world_file_words();
   app.add_option("world", o.world,
                  "World file: Stage .world (3.x or 4.x), or ROS map .yaml; check and draw also take .rndf, check .mdf")
       ->required()
@@ -113,7 +126,7 @@ void add_world(CLI::App& app, Options& o) {
                "Refuse road networks and missions at the first slip, even where its meaning is clear");
 }
 
-void add_accuracy(CLI::App& app, Options& o) {
+void add_accuracy(CLI::App& app, WorldOptions& o) {
   std::vector<std::string> words;
   for (const std::string_view word : sensors::accuracy_words()) words.emplace_back(word);
   app.add_option("--accuracy", o.load.accuracy,
@@ -123,7 +136,7 @@ void add_accuracy(CLI::App& app, Options& o) {
       ->type_name("WORDS");
 }
 
-void add_accuracy_target(CLI::App& app, Options& o) {
+void add_accuracy_target(CLI::App& app, AccuracyTargetOptions& o) {
   app.add_option_function<std::vector<std::string>>(
          "--max-error",
          [&o](const std::vector<std::string>& texts) {
@@ -154,7 +167,7 @@ void add_accuracy_target(CLI::App& app, Options& o) {
       ->type_name("HZ");
 }
 
-void add_automatic(CLI::App& app, Options& o) {
+void add_automatic(CLI::App& app, AccuracyTargetOptions& o) {
   add_accuracy_target(app, o);
   auto* automatic = app.add_flag(
       "--auto", o.automatic, "Measure the modes here first, and take those that --max-error or --min-rate comes to");
@@ -162,7 +175,7 @@ void add_automatic(CLI::App& app, Options& o) {
   app.get_option("--accuracy")->excludes(automatic);
 }
 
-void add_no_return(CLI::App& app, Options& o) {
+void add_no_return(CLI::App& app, NoReturnOption& o) {
   app.add_option_function<std::string>(
          "--no-return", [&o](const std::string& text) { o.no_return_inf = text == "inf"; },
          "What a beam reads that meets nothing: max (range_max) or inf (null in JSON)")
@@ -171,7 +184,7 @@ void add_no_return(CLI::App& app, Options& o) {
       ->default_str("max");
 }
 
-void add_wire(CLI::App& app, Options& o) {
+void add_wire(CLI::App& app, WireOption& o) {
   app.add_option_function<std::string>(
          "--wire",
          [&o](const std::string& text) {
@@ -183,20 +196,20 @@ void add_wire(CLI::App& app, Options& o) {
       ->default_str("farm");
 }
 
-void add_bind(CLI::App& app, Options& o) {
+void add_bind(CLI::App& app, BindOption& o) {
   app.add_option("--bind", o.bind, "Address to listen on (0.0.0.0: every interface)")
       ->check(not_empty("an address"))
       ->type_name("ADDR")
       ->capture_default_str();
 }
 
-void add_from(CLI::App& app, Options& o) {
+void add_from(CLI::App& app, ReceiveOptions& o) {
   app.add_option("--from", o.from, "Take packets from this host alone (default: from the first farm that sends)")
       ->check(not_empty("a host"))
       ->type_name("HOST");
 }
 
-void add_silence(CLI::App& app, Options& o) {
+void add_silence(CLI::App& app, ReceiveOptions& o) {
   app.add_option("--silence", o.silence,
                  "End when nothing came for this long [s]; counts from the first packet on, until then it waits")
       ->check(number(0.1, 1e6))
@@ -204,23 +217,21 @@ void add_silence(CLI::App& app, Options& o) {
       ->capture_default_str();
 }
 
-void add_until(CLI::App& sub, Options& o, Command command, const std::string& help) {
-  const auto* duration = sub.add_option("--duration", o.duration, help)->check(number(0.0, 1e9))->type_name("S");
-  sub.callback([&o, duration, command] {
-    o.command = command;
-    if (duration->count() == 0) o.duration = 0.0;
-  });
+void add_until(CLI::App& app, DurationOption& o, const std::string& help) {
+  app.add_option("--duration", o.duration, help)->check(number(0.0, 1e9))->type_name("S");
 }
 
-void add_ports(CLI::App& app, Options& o) {
+void add_ports(CLI::App& app, PortOptions& o) {
   constexpr const char* kPorts = "Ports of sensor packets: first + robot id * ports per robot + sensor";
-  for (const sensors::SensorType* kind : sensors::sensor_types())
+  for (const sensors::SensorType* kind : sensors::sensor_types()) {
+    o.base_ports[kind->id] = kind->base_port;
     app.add_option(fmt::format("--{}-port", kind->name), o.base_ports[kind->id],
                    fmt::format("First of the {} ports", kind->name))
         ->check(whole(1, 65535))
         ->type_name("PORT")
         ->capture_default_str()
         ->group(kPorts);
+  }
   app.add_option("--ports-per-robot", o.ports_per_robot, "Ports per robot (default: 8, or the least that fits)")
       ->check(whole(1, 65535))
       ->type_name("N")
@@ -228,17 +239,17 @@ void add_ports(CLI::App& app, Options& o) {
   add_wire(app, o);
 }
 
-void add_threads(CLI::App& app, Options& o) {
+void add_threads(CLI::App& app, ThreadsOption& o) {
   app.add_option("--threads", o.threads, "Threads of the host's part (0: all); never changes a reading")
       ->check(whole(0, 256))
       ->type_name("N");
 }
 
-void add_recording(CLI::App& app, Options& o) {
-  app.add_option("recording", o.world, "Folder of the recording")->required()->type_name("DIR");
+void add_recording(CLI::App& app, RecordingOption& o) {
+  app.add_option("recording", o.recording, "Folder of the recording")->required()->type_name("DIR");
 }
 
-void add_kind(CLI::App& app, Options& o) {
+void add_kind(CLI::App& app, SenseOptions& o) {
   std::vector<std::string> names;
   for (const sensors::SensorType* kind : sensors::sensor_types()) names.emplace_back(kind->name);
   app.add_option_function<std::string>(
@@ -252,11 +263,11 @@ void add_kind(CLI::App& app, Options& o) {
       ->type_name("KIND");
 }
 
-void add_seed(CLI::App& app, Options& o, const std::string& what) {
+void add_seed(CLI::App& app, SeedOption& o, const std::string& what) {
   app.add_option("--seed", o.seed, what)->check(whole(0, UINT64_MAX))->type_name("K")->capture_default_str();
 }
 
-void add_robots(CLI::App& app, Options& o) {
+void add_robots(CLI::App& app, CloneOptions& o) {
   auto* robots = app.add_option("--robots", o.robots, "Clone one robot of the world to this many free poses")
                      ->check(whole(1, 65535))
                      ->type_name("N");
@@ -267,7 +278,7 @@ void add_robots(CLI::App& app, Options& o) {
   add_seed(app, o, "Seed of poses, decisions and noise");
 }
 
-void add_controller(CLI::App& app, Options& o) {
+void add_controller(CLI::App& app, ControllerOptions& o) {
   std::vector<std::string> names;
   for (const control::ControllerType* kind : control::controllers()) names.emplace_back(kind->name);
   app.add_option("--controller", o.controller, "Who drives: " + join_or(names))

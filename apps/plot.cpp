@@ -89,8 +89,8 @@ void map_scans(const record::Recording& recording, const world::World& world, gp
 
 }  // namespace
 
-int plot(const Options& options) {
-  const record::Recording recording = record::open_recording(options.world);
+int plot(const PlotOptions& options) {
+  const record::Recording recording = record::open_recording(options.recording);
   print_damage(recording);
   const world::World world = world::from_snapshot(recording.info.snapshot);
   const std::filesystem::path folder =

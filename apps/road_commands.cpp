@@ -30,7 +30,7 @@ void append(std::vector<world::Warning>& all, const std::vector<world::Warning>&
   all.insert(all.end(), more.begin(), more.end());
 }
 
-int check_network(const Options& options) {
+int check_network(const CheckOptions& options) {
   std::vector<world::Warning> warnings;
   const world::RoadNetwork network = world::load_roads(options.world, warnings, options.load.strict_roads);
   const RoadReport facts{network, world::lane_markings_of(network).size(), warnings};
@@ -38,7 +38,7 @@ int check_network(const Options& options) {
   return 0;
 }
 
-int check_mission(const Options& options) {
+int check_mission(const CheckOptions& options) {
   const world::Mdf mission = world::read_mdf(options.world, options.load.strict_roads);
   std::vector<world::Warning> warnings = mission.warnings;
   if (!options.rndf.empty()) {
@@ -92,7 +92,7 @@ std::string text_of(const MissionReport& facts) {
   return text + row("warnings", fmt::format("{}", facts.warnings.size()));
 }
 
-std::optional<int> check_roads(const Options& options) {
+std::optional<int> check_roads(const CheckOptions& options) {
   if (is_mission(options.world)) return check_mission(options);
   if (!options.rndf.empty())
     throw base::InputError(options.world, 0, "is no mission; --rndf goes with `check` of an .mdf file");
@@ -100,7 +100,7 @@ std::optional<int> check_roads(const Options& options) {
   return std::nullopt;
 }
 
-std::optional<int> draw_roads(const Options& options) {
+std::optional<int> draw_roads(const DrawOptions& options) {
   if (is_mission(options.world))
     throw base::InputError(options.world, 0, "a mission has no picture; draw the .rndf file that it was made for");
   if (!is_network(options.world)) return std::nullopt;

@@ -32,9 +32,9 @@ std::string text_of(const MissionReport& facts);
 
 /// `check` of a .rndf (or .rdf) or .mdf file; nothing for other files.
 /// @throws base::InputError for what is wrong in it, and for --rndf without a mission.
-std::optional<int> check_roads(const Options& options);
+std::optional<int> check_roads(const CheckOptions& options);
 
 /// `draw` of a .rndf (or .rdf) file; nothing for other files. @throws base::InputError likewise, and for a mission.
-std::optional<int> draw_roads(const Options& options);
+std::optional<int> draw_roads(const DrawOptions& options);
 
 }  // namespace sf::apps

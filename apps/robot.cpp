@@ -26,18 +26,18 @@ namespace {
 constexpr std::string_view kStart = "start=";
 
 /// By its own option, or by the control shell's setting.
-bool waits_for_start(const Options& options) {
+bool waits_for_start(const RobotOptions& options) {
   return options.wait_for_start || std::any_of(options.set.begin(), options.set.end(), [](const std::string& text) {
            return text.compare(0, kStart.size(), kStart) == 0 &&
                   control::read_text(std::string_view(text).substr(kStart.size())) == "signal";
          });
 }
 
-netio::Endpoint farm_of(const Options& options) {
+netio::Endpoint farm_of(const FarmOptions& options) {
   return {netio::resolve(options.server), static_cast<std::uint16_t>(options.port)};
 }
 
-server::RobotClientOptions client_options(const Options& options) {
+server::RobotClientOptions client_options(const RobotOptions& options) {
   server::RobotClientOptions client;
   client.link.farm = farm_of(options);
   client.link.model = {.delay = options.delay, .jitter = options.jitter, .loss = options.loss, .seed = options.seed};
@@ -65,8 +65,8 @@ std::uint32_t find_robot(const world::World& world, const std::string& name) {
 
 }  // namespace
 
-int robot(const Options& options) {
-  const world::World world = load_with_robots(options.world, options.load, 0, options.seed);
+int robot(const RobotOptions& options) {
+  const world::World world = load_with_robots(options.world, options.load);
   const sensors::SensorSet sensor_set(world);
   const std::uint32_t mover = find_robot(world, options.robot);
   server::RobotClient process(world, sensor_set, mover, stream_layout_of(world, sensor_set, options),
@@ -82,7 +82,7 @@ int robot(const Options& options) {
   return facts.answered || !facts.listens ? 0 : 1;
 }
 
-int start(const Options& options) {
+int start(const StartOptions& options) {
   constexpr int kTimes = 3;  // one may be lost on the way
   const netio::Endpoint farm = farm_of(options);
   netio::Header header;

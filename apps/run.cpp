@@ -40,7 +40,7 @@ using Clock = std::chrono::steady_clock;
 class Outputs {
  public:
   Outputs(const world::World& world, const sensors::SensorSet& sensor_set,
-          const std::optional<server::StreamLayout>& plan, const std::string& caster, const Options& options)
+          const std::optional<server::StreamLayout>& plan, const std::string& caster, const RunOptions& options)
       : sensor_set_(sensor_set), no_return_filter_(sensor_set, options.no_return_inf) {
     if (plan) {
       address_ = netio::resolve(options.send);
@@ -114,14 +114,14 @@ void keep_pace(Clock::time_point start, double simulated) {
 }
 
 /// `refusal` of a controller names one of several robots that are driven.
-bool names_one_of_several(const std::string& refusal, const world::World& world, const Options& options) {
+bool names_one_of_several(const std::string& refusal, const world::World& world, const RunOptions& options) {
   const std::size_t driven = options.drive.empty() ? count_robots(world) : options.drive.size();
   return driven > 1 && std::any_of(world.movers.begin(), world.movers.end(), [&](const world::Mover& mover) {
            return refusal.find("'" + mover.name + "'") != std::string::npos;
          });
 }
 
-scenarios::SimulationOptions simulation_options(const world::World& world, const Options& options) {
+scenarios::SimulationOptions simulation_options(const world::World& world, const RunOptions& options) {
   scenarios::SimulationOptions simulation{
       .seed = options.seed, .threads = options.threads, .no_return_inf = options.no_return_inf};
   simulation.actor.plan = controller_config_of(options);
@@ -132,7 +132,7 @@ scenarios::SimulationOptions simulation_options(const world::World& world, const
 /// `act()`; where a controller refuses one of several robots, with a remedy. Some do when they are made, some when they
 /// start.
 template <class Act>
-auto advised(const world::World& world, const Options& options, Act&& act) {
+auto advised(const world::World& world, const RunOptions& options, Act&& act) {
   try {
     return act();
   } catch (const base::InputError& error) {
@@ -143,12 +143,12 @@ auto advised(const world::World& world, const Options& options, Act&& act) {
 
 }  // namespace
 
-int run(const Options& options) {
+int run(const RunOptions& options) {
   world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   std::optional<server::StreamLayout> plan;
   if (!options.send.empty()) plan = stream_layout_of(world, sensors::SensorSet(world), options);
   gpu::Device device(options.device);
-  choose_accuracy(world, device, options);
+  choose_accuracy(world, device, options, options.seed, options.threads);
   const sensors::SensorSet sensor_set(world);
   warn_of_many_times(sensor_set);
   scenarios::Simulation simulation =

@@ -53,7 +53,7 @@ void write_junit(const std::string& path, const std::vector<scenarios::ScenarioR
 
 }  // namespace
 
-int test_scenarios(const Options& options) {
+int test_scenarios(const TestOptions& options) {
   // All files are read, and what they ask for is tried, before any is run: a slip in the last is known at once.
   std::vector<scenarios::Scenario> all;
   for (const std::string& file : options.scenarios) all.push_back(scenarios::read_scenario(file));

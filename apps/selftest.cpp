@@ -72,7 +72,7 @@ std::string text_of(const SelfTestReport& test) {
                             counted(test.cases.size(), "case"), test.device.name, checks, test.seconds, rest);
 }
 
-int selftest(const Options& options) {
+int selftest(const SelfTestOptions& options) {
   if (options.list) return list_all();
   gpu::Device device(options.device);
   selftest::Fixture fixture(device);

@@ -19,7 +19,7 @@ namespace sf::apps {
 
 namespace {
 
-server::ServiceOptions service_options(const Options& options) {
+server::ServiceOptions service_options(const ServeOptions& options) {
   server::ServiceOptions service{.rate = options.rate, .seed = options.seed, .no_return_inf = options.no_return_inf};
   service.receiver = {.bind = {netio::resolve(options.bind), static_cast<std::uint16_t>(options.port)},
                       .radio = options.radio,
@@ -55,11 +55,11 @@ RunReport report_of(const server::ServiceStats& stats, const gpu::DeviceInfo& de
 
 }  // namespace
 
-int serve(const Options& options) {
-  world::World world = load_with_robots(options.world, options.load, 0, options.seed);
+int serve(const ServeOptions& options) {
+  world::World world = load_with_robots(options.world, options.load);
   const server::StreamLayout layout = stream_layout_of(world, sensors::SensorSet(world), options);
   gpu::Device device(options.device);
-  choose_accuracy(world, device, options);
+  choose_accuracy(world, device, options, options.seed, 0);
   const sensors::SensorSet sensor_set(world);
   if (options.rate > 0.0) warn_of_fast_sensors(sensor_set, options.rate);
   if (options.rate == 0.0) warn_of_many_times(sensor_set);

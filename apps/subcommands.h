@@ -1,7 +1,7 @@
 #pragma once
-// The subcommands and their options, each beside its kin.
+// The subcommands and their options, by topic.
 
-#include "apps/options.h"
+#include "apps/option_groups.h"
 
 namespace CLI {
 class App;
@@ -9,8 +9,8 @@ class App;
 
 namespace sf::apps {
 
-void add_inspect_commands(CLI::App& app, Options& o);  ///< at worlds, devices and recordings
-void add_run_commands(CLI::App& app, Options& o);      ///< the farm, robots, and who listens to them
-void add_test_commands(CLI::App& app, Options& o);     ///< experiments, and scenarios as tests
+void add_inspect_commands(CLI::App& app, Call& call);  ///< worlds, devices, recordings
+void add_run_commands(CLI::App& app, Call& call);      ///< the farm, robots, receivers
+void add_test_commands(CLI::App& app, Call& call);     ///< experiments, scenarios, self-tests
 
 }  // namespace sf::apps

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/commands.h"
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
 #include "apps/subcommands.h"
@@ -10,17 +11,18 @@ namespace sf::apps {
 
 namespace {
 
-void add_devices(CLI::App& app, Options& o) {
+void add_devices(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("devices",
                                      "List the Vulkan devices: their self-check, which is chosen, and why others are "
                                      "not (exit 3 when none is usable)");
+  auto& o = add_command(*sub, call, devices);
   add_json(*sub, o);
   add_device(*sub, o);
-  sub->callback([&o] { o.command = Command::devices; });
 }
 
-void add_check(CLI::App& app, Options& o) {
+void add_check(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("check", "Say what was understood of a world, and every warning with its line");
+  auto& o = add_command(*sub, call, check);
   add_world(*sub, o);
   add_accuracy(*sub, o);
   sub->add_option("--rndf", o.rndf, "Road network that a mission (.mdf) is checked against")
@@ -30,18 +32,18 @@ void add_check(CLI::App& app, Options& o) {
       ->check(number(0.1, 10000.0))
       ->type_name("HZ");
   add_json(*sub, o);
-  sub->callback([&o] { o.command = Command::check; });
 }
 
-void add_draw(CLI::App& app, Options& o) {
+void add_draw(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("draw", "Draw the world as understood, seen from above");
+  auto& o = add_command(*sub, call, draw);
   add_world(*sub, o);
   sub->add_option("-o,--out", o.out, "PNG file to write")->required()->check(picture())->type_name("FILE");
-  sub->callback([&o] { o.command = Command::draw; });
 }
 
-void add_field(CLI::App& app, Options& o) {
+void add_field(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("field", "Draw the field of a world's magnets at one height, and along a line");
+  auto& o = add_command(*sub, call, field);
   add_world(*sub, o);
   add_device(*sub, o);
   sub->add_option("--height", o.height, "Height in the world [m]")
@@ -62,11 +64,11 @@ void add_field(CLI::App& app, Options& o) {
   sub->add_option("--csv", o.csv, "File to write the profile's numbers to")
       ->check(not_empty("a file"))
       ->type_name("FILE");
-  sub->callback([&o] { o.command = Command::field; });
 }
 
-void add_sense(CLI::App& app, Options& o) {
+void add_sense(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("sense", "One reading of one sensor, noise off: check your world with a ruler");
+  auto& o = add_command(*sub, call, sense);
   add_world(*sub, o);
   add_accuracy(*sub, o);
   add_json(*sub, o);
@@ -84,42 +86,41 @@ void add_sense(CLI::App& app, Options& o) {
       ->check(whole(0, 65535))
       ->type_name("N")
       ->capture_default_str();
-  sub->callback([&o] { o.command = Command::sense; });
 }
 
-void add_plot(CLI::App& app, Options& o) {
+void add_plot(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("plot", "Draw trajectories, an occupancy map and recorded readings from a recorded run");
+  auto& o = add_command(*sub, call, plot);
   add_recording(*sub, o);
   sub->add_option("-o,--out", o.out, "Folder for the pictures (default: the recording's own)")
       ->check(not_empty("a folder"))
       ->type_name("DIR");
   add_device(*sub, o);
-  sub->callback([&o] { o.command = Command::plot; });
 }
 
-void add_explain(CLI::App& app, Options& o) {
+void add_explain(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "explain", "Say what a world makes the farm build and do, and what each kind of sensor costs on this machine");
+  auto& o = add_command(*sub, call, explain);
   add_world(*sub, o);
   add_accuracy(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
   add_robots(*sub, o);
   add_threads(*sub, o);
-  sub->callback([&o] { o.command = Command::explain; });
 }
 
 }  // namespace
 
-void add_inspect_commands(CLI::App& app, Options& o) {
-  add_devices(app, o);
-  add_check(app, o);
-  add_draw(app, o);
-  add_field(app, o);
-  add_sense(app, o);
-  add_plot(app, o);
-  add_explain(app, o);
+void add_inspect_commands(CLI::App& app, Call& call) {
+  add_devices(app, call);
+  add_check(app, call);
+  add_draw(app, call);
+  add_field(app, call);
+  add_sense(app, call);
+  add_plot(app, call);
+  add_explain(app, call);
 }
 
 }  // namespace sf::apps

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/commands.h"
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
 #include "apps/subcommands.h"
@@ -10,9 +11,10 @@ namespace sf::apps {
 
 namespace {
 
-void add_run(CLI::App& app, Options& o) {
+void add_run(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("run", "Simulate a fleet in the loop, with every robot's sensors, as fast as it goes");
+  auto& o = add_command(*sub, call, run);
   add_world(*sub, o);
   add_accuracy(*sub, o);
   add_automatic(*sub, o);
@@ -41,10 +43,9 @@ void add_run(CLI::App& app, Options& o) {
   sub->add_option("--send", o.send, "Send every reading as UDP packets to this host")
       ->check(not_empty("a host"))
       ->type_name("HOST");
-  sub->callback([&o] { o.command = Command::run; });
 }
 
-void add_forget(CLI::App& app, Options& o) {
+void add_forget(CLI::App& app, ForgetOption& o) {
   app.add_option("--forget", o.forget,
                  "A robot that is silent for so long, 2 s at least, is no obstacle any more [s] (0: it stays)")
       ->check(number(0.0, 1e9))
@@ -52,9 +53,10 @@ void add_forget(CLI::App& app, Options& o) {
       ->capture_default_str();
 }
 
-void add_serve(CLI::App& app, Options& o) {
+void add_serve(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("serve", "Virtual sensors for robots that live elsewhere: V2V packets in, sensor packets out");
+  auto& o = add_command(*sub, call, serve);
   add_world(*sub, o);
   add_accuracy(*sub, o);
   add_automatic(*sub, o);
@@ -79,10 +81,10 @@ void add_serve(CLI::App& app, Options& o) {
       ->capture_default_str();
   add_forget(*sub, o);
   add_seed(*sub, o, "Seed of noise");
-  add_until(*sub, o, Command::serve, "Stop after this long [s] (0: when told to)");
+  add_until(*sub, o, "Stop after this long [s] (0: when told to)");
 }
 
-void add_farm(CLI::App& app, Options& o) {
+void add_farm(CLI::App& app, FarmOptions& o) {
   app.add_option("--server", o.server, "Host of the farm that serves")
       ->check(not_empty("a host"))
       ->type_name("HOST")
@@ -93,7 +95,7 @@ void add_farm(CLI::App& app, Options& o) {
       ->capture_default_str();
 }
 
-void add_link(CLI::App& app, Options& o) {
+void add_link(CLI::App& app, LinkOptions& o) {
   constexpr const char* kGroup = "Link, made worse than it is";
   app.add_option("--delay", o.delay, "Injected delay of every packet, in each direction [s]")
       ->check(number(0.0, 3600.0))
@@ -109,10 +111,11 @@ void add_link(CLI::App& app, Options& o) {
       ->group(kGroup);
 }
 
-void add_robot(CLI::App& app, Options& o) {
+void add_robot(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "robot",
       "One simulated robot, a process of its own beside a farm that serves (exit 1 when nothing came from it)");
+  auto& o = add_command(*sub, call, robot);
   add_world(*sub, o);
   add_json(*sub, o);
   add_controller(*sub, o);
@@ -130,20 +133,21 @@ void add_robot(CLI::App& app, Options& o) {
   add_forget(*sub, o);
   sub->add_flag("--wait-for-start", o.wait_for_start, "Stand until the start signal comes (`sensorfarm start`)");
   add_seed(*sub, o, "Seed of decisions and of the injected link");
-  add_until(*sub, o, Command::robot, "Stop after this long [s] (0: when done or told to)");
+  add_until(*sub, o, "Stop after this long [s] (0: when done or told to)");
 }
 
-void add_start(CLI::App& app, Options& o) {
+void add_start(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("start", "Give robots that wait for it the start signal, through the farm (not acknowledged)");
+  auto& o = add_command(*sub, call, start);
   add_farm(*sub, o);
   sub->add_option("--robot", o.start_id, "Id of the robot (default: all)")->check(whole(0, 65535))->type_name("ID");
-  sub->callback([&o] { o.command = Command::start; });
 }
 
-void add_listen(CLI::App& app, Options& o) {
+void add_listen(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "listen", "Take a run's packets on every robot's ports, count and check them (exit 1 when none was good)");
+  auto& o = add_command(*sub, call, listen);
   add_world(*sub, o);
   add_json(*sub, o);
   add_robots(*sub, o);
@@ -151,12 +155,13 @@ void add_listen(CLI::App& app, Options& o) {
   add_bind(*sub, o);
   add_from(*sub, o);
   add_silence(*sub, o);
-  add_until(*sub, o, Command::listen, "Stop after this long [s] (0: when told to, or silent)");
+  add_until(*sub, o, "Stop after this long [s] (0: when told to, or silent)");
 }
 
-void add_map(CLI::App& app, Options& o) {
+void add_map(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("map", "Show the occupancy maps that robots send, live in a terminal, and draw them");
+  auto& o = add_command(*sub, call, map);
   sub->add_option_function<std::vector<std::string>>(
          "--listen",
          [&o](const std::vector<std::string>& texts) {
@@ -173,7 +178,7 @@ void add_map(CLI::App& app, Options& o) {
   sub->add_option("-o,--out", o.out, "PNG file to write at the end; of several maps that are not merged, one each")
       ->check(picture())
       ->type_name("FILE");
-  add_until(*sub, o, Command::map, "Stop after this long [s] (0: when told to, or silent)");
+  add_until(*sub, o, "Stop after this long [s] (0: when told to, or silent)");
   sub->add_flag("--once", o.once, "Stop when every port has brought a whole map");
   add_silence(*sub, o);
   add_wire(*sub, o);
@@ -181,13 +186,13 @@ void add_map(CLI::App& app, Options& o) {
 
 }  // namespace
 
-void add_run_commands(CLI::App& app, Options& o) {
-  add_run(app, o);
-  add_serve(app, o);
-  add_robot(app, o);
-  add_start(app, o);
-  add_listen(app, o);
-  add_map(app, o);
+void add_run_commands(CLI::App& app, Call& call) {
+  add_run(app, call);
+  add_serve(app, call);
+  add_robot(app, call);
+  add_start(app, call);
+  add_listen(app, call);
+  add_map(app, call);
 }
 
 }  // namespace sf::apps

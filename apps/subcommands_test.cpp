@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "apps/commands.h"
 #include "apps/option_groups.h"
 #include "apps/option_parsers.h"
 #include "apps/subcommands.h"
@@ -13,9 +14,13 @@ namespace sf::apps {
 
 namespace {
 
-void add_experiment(CLI::App& app, Options& o) {
+void add_experiment(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "experiment", "Run one of the experiments: trials, statistics beside the thesis', figures, in one folder");
+  auto& o = add_command(*sub, call, experiment, [sub] {
+    if (sub->count("--list") + sub->count("experiment") == 0)
+      throw CLI::RequiredError("the name of an experiment, or --list");
+  });
   auto* list = sub->add_flag("--list", o.list, "Name them all");
   std::vector<std::string> names;
   for (const scenarios::ExperimentType* kind : scenarios::experiments()) names.emplace_back(kind->name);
@@ -39,25 +44,22 @@ void add_experiment(CLI::App& app, Options& o) {
       ->check(not_empty("a folder"))
       ->type_name("DIR");
   add_device(*sub, o);
-  sub->callback([&o, list, name] {
-    o.command = Command::experiment;
-    if (list->count() + name->count() == 0) throw CLI::RequiredError("the name of an experiment, or --list");
-  });
 }
 
-void add_test(CLI::App& app, Options& o) {
+void add_test(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand("test", "Run scenarios and hold them to what they expect (exit 1 when one fails)");
+  auto& o = add_command(*sub, call, test_scenarios);
   sub->add_option("scenario", o.scenarios, "Scenario files (.toml)")->required()->type_name("FILE");
   sub->add_option("--junit", o.junit, "Write the results as JUnit XML")->check(not_empty("a file"))->type_name("FILE");
   add_device(*sub, o);
-  sub->callback([&o] { o.command = Command::test; });
 }
 
-void add_verify(CLI::App& app, Options& o) {
+void add_verify(CLI::App& app, Call& call) {
   CLI::App* sub =
       app.add_subcommand("verify",
                          "Compute a recorded run again, on this device and in plain C++, and compare bit by "
                          "bit (exit 1 when something differs)");
+  auto& o = add_command(*sub, call, verify);
   add_recording(*sub, o);
   auto* sample =
       sub->add_option("--sample", o.sample, "Laser scans that plain C++ casts again: every k-th of the run's")
@@ -70,12 +72,12 @@ void add_verify(CLI::App& app, Options& o) {
   add_threads(*sub, o);
   add_json(*sub, o);
   add_device(*sub, o);
-  sub->callback([&o] { o.command = Command::verify; });
 }
 
-void add_tradeoff(CLI::App& app, Options& o) {
+void add_tradeoff(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "tradeoff", "Measure every accuracy mode of a world's sensors on this machine: speed against error");
+  auto& o = add_command(*sub, call, tradeoff);
   add_world(*sub, o);
   sub->add_option("-o,--out", o.out, "Folder for tradeoff.csv and tradeoff.png")
       ->check(not_empty("a folder"))
@@ -86,7 +88,6 @@ void add_tradeoff(CLI::App& app, Options& o) {
   add_device(*sub, o);
   add_robots(*sub, o);
   add_threads(*sub, o);
-  sub->callback([&o] { o.command = Command::tradeoff; });
 }
 
 bool is_case_or_group(const std::string& name) {
@@ -96,11 +97,12 @@ bool is_case_or_group(const std::string& name) {
          });
 }
 
-void add_selftest(CLI::App& app, Options& o) {
+void add_selftest(CLI::App& app, Call& call) {
   CLI::App* sub = app.add_subcommand(
       "selftest",
       "Try the farm at the ends of its range on this machine: worlds, beams, magnets, times, numbers (exit 1 when an "
       "answer is wrong)");
+  auto& o = add_command(*sub, call, selftest);
   auto* list = sub->add_flag("--list", o.list, "Name all cases, each with its answer");
   sub->add_option("case", o.cases, "Cases or groups of them (default: all)")
       ->check([](const std::string& name) {
@@ -112,17 +114,16 @@ void add_selftest(CLI::App& app, Options& o) {
       ->excludes(list);
   add_json(*sub, o);
   add_device(*sub, o);
-  sub->callback([&o] { o.command = Command::selftest; });
 }
 
 }  // namespace
 
-void add_test_commands(CLI::App& app, Options& o) {
-  add_experiment(app, o);
-  add_test(app, o);
-  add_verify(app, o);
-  add_tradeoff(app, o);
-  add_selftest(app, o);
+void add_test_commands(CLI::App& app, Call& call) {
+  add_experiment(app, call);
+  add_test(app, call);
+  add_verify(app, call);
+  add_tradeoff(app, call);
+  add_selftest(app, call);
 }
 
 }  // namespace sf::apps

@@ -28,7 +28,7 @@ constexpr double kUsualMetres = 0.01;
 constexpr double kUsualTesla = 1e-6;
 
 /// Where nothing was wished for, a centimetre and a microtesla.
-scenarios::AccuracyTarget wish_of(const Options& options) {
+scenarios::AccuracyTarget wish_of(const AccuracyTargetOptions& options) {
   scenarios::AccuracyTarget target = options.accuracy_target;
   if (target.least_rate > 0.0 || std::isfinite(target.metres) || std::isfinite(target.tesla)) return target;
   target.metres = kUsualMetres;
@@ -74,7 +74,7 @@ void draw(const std::string& world, const std::string& device, const std::vector
                      "whole ticks on " + device + "; blue: none is as fast with 99 % of errors as small", panels, file);
 }
 
-void write(const Options& options, const world::World& world, const gpu::Device& device,
+void write(const TradeoffOptions& options, const world::World& world, const gpu::Device& device,
            const std::vector<scenarios::ModeResult>& results) {
   scenarios::make_folder(options.out);
   const std::filesystem::path folder(options.out);
@@ -82,9 +82,10 @@ void write(const Options& options, const world::World& world, const gpu::Device&
   draw(world.name, device.info().name, results, (folder / "tradeoff.png").string());
 }
 
-std::vector<scenarios::ModeResult> measure(const world::World& world, gpu::Device& device, const Options& options) {
+std::vector<scenarios::ModeResult> measure(const world::World& world, gpu::Device& device, std::uint64_t seed,
+                                           unsigned threads) {
   Progress progress("measuring");
-  return scenarios::tradeoff(world, device, {options.seed, options.threads, [&](double part) {
+  return scenarios::tradeoff(world, device, {seed, threads, [&](double part) {
                                                progress.show(part);
                                                return !stop_requested();
                                              }});
@@ -110,23 +111,24 @@ std::string text_of(const std::vector<scenarios::ModeResult>& results) {
   return text + "\n";
 }
 
-void choose_accuracy(world::World& world, gpu::Device& device, const Options& options) {
+void choose_accuracy(world::World& world, gpu::Device& device, const AccuracyTargetOptions& options, std::uint64_t seed,
+                     unsigned threads) {
   if (!options.automatic) return;
   install_stop_handlers();
   const scenarios::AccuracyTarget target = wish_of(options);
-  const auto results = measure(world, device, options);
+  const auto results = measure(world, device, seed, threads);
   if (stop_requested()) return;
   const std::string words = scenarios::accuracy_words(results, scenarios::select_modes(results, target));
   std::fprintf(stderr, "sensorfarm: measured; %s: --accuracy \"%s\"\n", target_text(target).c_str(), words.c_str());
   sensors::set_accuracy(world, words);
 }
 
-int tradeoff(const Options& options) {
+int tradeoff(const TradeoffOptions& options) {
   const world::World world = load_with_robots(options.world, options.load, options.robots, options.seed, options.of);
   gpu::Device device(options.device);
   install_stop_handlers();
   const scenarios::AccuracyTarget target = wish_of(options);
-  const auto results = measure(world, device, options);
+  const auto results = measure(world, device, options.seed, options.threads);
   if (stop_requested()) throw base::InputError("interrupted: nothing was written");
   if (results.empty())
     throw base::InputError(world.file, 0,

@@ -44,8 +44,8 @@ std::string text_of(const scenarios::Verification& v, bool readings_recorded) {
                                                : "sound");
 }
 
-int verify(const Options& options) {
-  const record::Recording recording = record::open_recording(options.world);
+int verify(const VerifyOptions& options) {
+  const record::Recording recording = record::open_recording(options.recording);
   print_damage(recording);
   gpu::Device device(options.device);
   install_stop_handlers();
