@@ -67,6 +67,11 @@ TEST(Experiment, WritesItsFolder) {
     EXPECT_NE(report.find(text), std::string::npos) << text << "\n" << report;
   EXPECT_NE(report.find(std::to_string(mean).substr(0, 5)), std::string::npos) << "the mean of " << csv << report;
 
+  // Time on the path begins with the first error, a second after the start; ten errors are a second of it.
+  double seconds = 0.0, errors = 0.0;
+  ASSERT_EQ(std::sscanf(report.c_str() + report.find("\n| 1 | "), "\n| 1 | %lf | %lf", &seconds, &errors), 2) << report;
+  EXPECT_NEAR(seconds, 0.1 * (errors - 1.0), 0.06) << report;
+
   // Nobody's name is in its track's colour; 5 m of it and a minute of errors are.
   constexpr std::uint32_t kFirst = 0xFF0072B2u;
   for (const char* name : {"trajectories.png", "errors.png"}) {
@@ -77,6 +82,26 @@ TEST(Experiment, WritesItsFolder) {
     EXPECT_GT(columns, picture.width / 2) << name << ": from end to end";
   }
   EXPECT_EQ(run_program({"plot", folder.path("out/trial-1"), "-o", folder.path("pictures")}).code, 0);
+}
+
+/// `wrong` is a part of the known cells: per cent in the report, of one in the file.
+TEST(Experiment, TheMappingReportSaysWhatItsFileDoes) {
+  const Folder folder;
+  folder.write("small.world",
+               "model( size [0.8 0.8 0.5] boundary 1 noblocks 0 )\n"
+               "position( name \"a\" size [0.2 0.2 0.1] laser( samples 91 fov 180 range_max 2 ) )\n");
+  folder.write("mapping.toml", "world = \"small.world\"\nduration = 2\n[default]\ncontroller = \"avoid\"\n");
+  const Outcome outcome =
+      run_program({"experiment", "mapping", "--trials", "1", "-o", folder.path("out"), "--files", folder.path()});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string csv = read_file(folder.path("out/statistics.csv"));
+  const std::string report = read_file(folder.path("out/report.md"));
+  const std::size_t row = csv.find('\n', csv.find('\n') + 1), end = report.find(" % |\n");
+  ASSERT_NE(row, std::string::npos) << csv;
+  ASSERT_NE(end, std::string::npos) << report;
+  const double wrong = std::stod(csv.substr(csv.rfind(',', row) + 1));
+  EXPECT_GT(wrong, 5e-4) << csv;
+  EXPECT_NEAR(std::stod(report.substr(report.rfind('|', end) + 1)), 100.0 * wrong, 0.006) << report;
 }
 
 TEST(Experiment, StoppedLeavesNoHalfTrial) {

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
+
 #include "tests/apps/program.h"
 
 namespace sf {
@@ -30,6 +33,19 @@ TEST(Loading, WhoDrawsDoes) {
   const std::string said = loaded_by({"draw", our_world("rooms.world"), "-o", folder.path("rooms.png")});
   EXPECT_NE(said.find("sensorfarm_text_renderer.so"), std::string::npos);
   EXPECT_NE(said.find("libvtkRenderingFreeType"), std::string::npos);
+}
+
+/// A program without the drawing module beside it takes the one that the dynamic linker finds.
+TEST(Loading, TheDrawingModuleMayBeWhereTheLinkerLooks) {
+  const Folder folder;
+  const char* const other = std::getenv("SENSORFARM_PROGRAM");
+  const std::filesystem::path program = other != nullptr ? other : SF_PROGRAM;
+  std::filesystem::copy_file(program, folder.path("moved"));
+  setenv("SENSORFARM_PROGRAM", folder.path("moved").c_str(), 1);
+  const Outcome outcome = run_program({"draw", our_world("rooms.world"), "-o", folder.path("rooms.png")},
+                                      {{"LD_LIBRARY_PATH", program.parent_path().string()}});
+  setenv("SENSORFARM_PROGRAM", program.c_str(), 1);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
 }  // namespace

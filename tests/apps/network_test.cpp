@@ -314,6 +314,25 @@ TEST(Serve, StatesArePassedOnWithinTheRadiosRange) {
   EXPECT_EQ(facts.number("/relayed/waited"), 0);
 }
 
+/// A robot hears whom others follow: for one that follows it and has fallen behind it drives at half its speed.
+TEST(Serve, WhoIsFollowedWaits) {
+  const std::string car = "position( size [0.33 0.33 0.1] name \"roomba";
+  Service service("road( rndf \"" + our_world("simville/simville.rndf") + "\" )\n" + car +
+                  "1\" pose [3.9 0.75 0 0] )\n" + car + "2\" pose [2.4 0.75 0 0] )\n");
+  ASSERT_NE(service.port, 0u) << service.program.err();
+  const std::string port = std::to_string(service.port);
+  Robot two(2, service.port, service.hears(2));
+  Program one({"robot", service.world, "--name", "roomba1", "--port", port, "--json", "--controller", "route", "--set",
+               "tour=true", "--wait-for-start", "--duration", "3"});
+  const auto turn = [&] { two.ask(), two.say({2.4, 0.75, 0.0, 0.0}, 1); };
+  ASSERT_TRUE(until([&] { return turn(), two.states() >= 3; })) << "from then on each hears the other";
+  EXPECT_EQ(run_program({"start", "--port", port, "--robot", "1"}).code, 0);
+  ASSERT_TRUE(until([&] { return turn(), !one.running(); }));
+  const Json facts(one.wait().out);
+  EXPECT_GT(facts.number("/distance_m"), 0.05);
+  EXPECT_LT(facts.number("/distance_m"), 0.6 * 0.2 * facts.number("/wall_s")) << "0.2 m/s is its speed";
+}
+
 TEST(Serve, StrangersAreCountedAndDropped) {
   Service service;
   ASSERT_NE(service.port, 0u) << service.program.err();

@@ -37,17 +37,18 @@ class Robot {
         socket_(netio::open_udp({netio::kLoopback, static_cast<std::uint16_t>(hears)})),
         batch_(16) {}
 
-  base::Bytes state(const base::Pose& X_WR) {
+  base::Bytes state(const base::Pose& X_WR, std::uint32_t follows = netio::kNone) {
     netio::Header header;
     header.robot = id_;
     header.sequence = sequence_++;
     netio::V2v state;
     state.X_WR = X_WR;
+    state.follows = follows;
     base::Bytes bytes;
     netio::encode(header, state, bytes);
     return bytes;
   }
-  void say(const base::Pose& X_WR) { send(state(X_WR)); }
+  void say(const base::Pose& X_WR, std::uint32_t follows = netio::kNone) { send(state(X_WR, follows)); }
   void send(const base::Bytes& bytes) {
     challenged();
     v2v_socket_.send(bytes);

@@ -67,6 +67,28 @@ TEST(Run, TheSummaryHasItsFacts) {
   EXPECT_FALSE(facts.flag("/interrupted"));
 }
 
+/// Rays a second while sensing: of the four stages of sensing together, as the stages' own rows have them.
+TEST(Run, RatesWhileSensingAreOfItsFourStages) {
+  const Folder folder;
+  const std::string world = folder.write("w.world", "position( name \"a\" laser( samples 361 noise [0.01 0 0] ) )\n");
+  const Outcome outcome = run_program({"run", world, "--robots", "20", "--duration", "5"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string& text = outcome.out;
+  double seconds = 0.0;
+  for (const std::string stage : {"\n    place movers ", "\n    lists, scans ", "\n    device ", "\n    collect "}) {
+    const std::size_t at = text.find(stage);
+    ASSERT_NE(at, std::string::npos) << stage << text;
+    seconds += 50 * 1e-3 * std::stod(text.substr(at + stage.size()));
+  }
+  const std::size_t end = text.find("/s while sensing");
+  ASSERT_NE(end, std::string::npos) << text;
+  const std::string rate = text.substr(text.rfind('\n', end), end - text.rfind('\n', end));
+  const double unit = rate.find("million") == std::string::npos ? 1.0 : 1e6;
+  const double wanted = 50 * 20 * 361 / seconds;
+  // As rounded: the rate to 0.1 million, each stage to a microsecond a tick.
+  EXPECT_NEAR(unit * std::stod(rate), wanted, 0.051 * unit + 1.1e-4 / seconds * wanted) << text;
+}
+
 TEST(Run, ControllersSayHowTheyFared) {
   const Words words{"--controller", "lane-keeping", "--duration", "60"};
   const Json facts = run("testpath/testpath.world", words);
@@ -117,6 +139,23 @@ TEST(Run, WhoStandsForOneReasonIsOneLine) {
                              "sensor sees nothing to follow\n"),
             std::string::npos)
       << outcome.out;
+}
+
+/// The reason that stops most robots comes first, though the other one is before it in the alphabet.
+TEST(Run, TheReasonOfMostRobotsIsFirst) {
+  const Folder folder;
+  const std::string world = folder.write("w.world",
+                                         "position( name \"a\" pose [0 0 0 0] laneedge( ) )\n"
+                                         "position( name \"b\" pose [0 2 0 0] laneedge( phase 100 ) )\n"
+                                         "position( name \"c\" pose [0 4 0 0] laneedge( phase 100 ) )\n");
+  const Outcome outcome = run_program(
+      {"run", world, "--json", "--duration", "5", "--controller", "lane-keeping", "--set", "half_width=0.2"});
+  const Json facts(outcome.out);
+  ASSERT_EQ(facts.size("/control/standing"), 2u) << outcome.out << outcome.err;
+  EXPECT_EQ(facts.text("/control/standing/0/reason"), "no new reading comes from its lane edge sensor");
+  EXPECT_EQ(facts.number("/control/standing/0/robots"), 2);
+  EXPECT_EQ(facts.text("/control/standing/1/reason"), "its lane edge sensor sees nothing to follow");
+  EXPECT_EQ(facts.number("/control/standing/1/robots"), 1);
 }
 
 TEST(Run, CopiesAreOfTheFirstWithSensorsOrWhoIsNamed) {
@@ -325,6 +364,19 @@ TEST(Run, ItsPictureIsOfItsRobots) {
   viz::draw_trajectories(world, tracks, folder.path("expected.png"));
   EXPECT_TRUE(read_file(folder.path("r/trajectories.png")) == read_file(folder.path("expected.png")));
   scenes::expect_painted(folder.path("r/occupancy.png"), {{0xFF1748D1u, 4000}});  // what stands still is occupied
+}
+
+/// A scan a simulated second: at a tick of 0.1 s, of the first tick and of the eleventh.
+TEST(Run, ItsMapIsOfOneScanASecond) {
+  const auto map_of = [](const std::string& duration) {
+    const Folder folder;
+    run("rooms.world", {"--duration", duration, "--record", folder.path("r")});
+    EXPECT_EQ(run_program({"plot", folder.path("r")}).code, 0);
+    return read_file(folder.path("r/occupancy.png"));
+  };
+  const std::string first = map_of("0.1");
+  EXPECT_TRUE(map_of("1") == first) << "ten ticks are less than a second";
+  EXPECT_FALSE(map_of("1.1") == first) << "the eleventh is scanned from where the robots are then";
 }
 
 /// Contacts are counted when they begin, by `run` as by `plot`.

@@ -104,6 +104,11 @@ TEST_F(Kinds, WithoutAWordNumbersCountThroughAllKinds) {
   const Json second(run("sense", world, {"--sensor", "1", "--json"}).out);
   EXPECT_EQ(second.text("/kind"), "magnetometer");
   EXPECT_EQ(second.number("/sensor"), 0) << "the first of its kind";
+  const std::string twice =
+      folder.write("twice.world", "position( name \"a\" laser( ) laser( ) magnetometer( ) magnetometer( ) )\n");
+  const Json last(run("sense", twice, {"--sensor", "3", "--json"}).out);
+  EXPECT_EQ(last.text("/kind"), "magnetometer") << "behind all lasers, not one";
+  EXPECT_EQ(last.number("/sensor"), 1);
 }
 
 TEST_F(Kinds, WhoIsAskedForWhatItHasNotSaysWhatItHas) {

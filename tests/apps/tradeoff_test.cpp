@@ -142,9 +142,11 @@ TEST(AccuracyOption, WrongWords) {
   const Outcome unknown = run_program({"check", our_world("rooms.world"), "--accuracy", "fast"});
   EXPECT_EQ(unknown.code, 2);
   expect_says(unknown, "there is no accuracy \"fast\"; expected one of \"exact\", \"single\"");
-  const Outcome alone = run_program({"run", our_world("rooms.world"), "--max-error", "5mm"});
-  EXPECT_EQ(alone.code, 2);
-  expect_says(alone, "--auto");
+  for (const auto& [wish, value] : {std::pair("--max-error", "5mm"), {"--min-rate", "1"}, {"--by", "p99"}}) {
+    const Outcome alone = run_program({"run", our_world("rooms.world"), "--duration", "0", wish, value});
+    EXPECT_EQ(alone.code, 2) << wish;
+    expect_says(alone, "--auto");
+  }
   EXPECT_EQ(run_program({"run", our_world("rooms.world"), "--auto", "--accuracy", "skip2"}).code, 2);
 }
 
@@ -160,7 +162,7 @@ TEST(AccuracyOption, AutoSaysWhatItGoesBy) {
   const std::vector<std::pair<Words, std::string>> wishes{
       {{}, "with every error within 10 mm and 1 uT: "},
       {{"--max-error", "2uT"}, "with every error within 2 uT: "},
-      {{"--max-error", "5mm", "--by", "median"}, "with a median error within 5 mm: "},
+      {{"--max-error", "999.7um", "--by", "median"}, "with a median error within 1 mm: "},  // not 1e+03 um
       {{"--max-error", "5mm", "--by", "p99"}, "with 99 % of errors within 5 mm: "},
       {{"--min-rate", "1"}, "at 1 Hz or more: "},
   };

@@ -128,6 +128,7 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
            {{"run", world, "--threads", "257"}, "from 0 to 256"},        // most threads
            {{"run", world, "--send", ""}, "expected a host"},            // an unset variable in a script
            {{"run", world, "--record", ""}, "expected a folder"},        // the same
+           {{"test", "x.toml", "--junit", ""}, "expected a file"},       // the same
            {{"run", world, "--record-readings"}, "requires --record"},   // nowhere to record to
            {{"run", world, "--wire", "telegraph"}, "expected farm or thesis"},
            {{"sense", world, "--no-return", "0"}, "expected max or inf"},
@@ -136,8 +137,9 @@ TEST(Usage, WrongArgumentsAreRefusedInOneLine) {
            {{"sense", world, "--pose", "1,2,nan"}, "expected X,Y,YAW_DEG"},                 // not a number
            {{"sense", world, "--sensor", "-1"}, "got '-1'"},                                // must not wrap
            {{"sense", world, "--sensor", "1"}, "roomba1 has no sensor 1; it has laser 0"},  // past the last
-           {{"sense", world, "--robot", "tag3"}, "tag3 has no sensor"},                     // there, but blind
-           {{"sense", world, "--kind", "lidar"}, "--kind: expected laser"},                 // somebody else's word
+           {{"sense", world, "--sensor", "65535"}, "roomba1 has no sensor 65535"},  // the last that may be asked
+           {{"sense", world, "--robot", "tag3"}, "tag3 has no sensor"},             // there, but blind
+           {{"sense", world, "--kind", "lidar"}, "--kind: expected laser"},         // somebody else's word
            {{"sense", world, "--robot", "bob"}, "no robot 'bob'; with sensors it has roomba1, roomba2"},
            {{"serve", world, "--rate", "0"}, "from 0.1 to 10000"},  // would never tick
            {{"serve", world, "--port", "65536"}, "from 0 to 65535"},

@@ -92,12 +92,37 @@ TEST(StartPoses, StandApartOnLanesAndComeFromTheSeed) {
   ASSERT_EQ(poses.size(), 50u);
   for (std::size_t i = 0; i < poses.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) EXPECT_GE(std::hypot(poses[i].x - poses[j].x, poses[i].y - poses[j].y), 0.5);
+  // Half that distance from the ends of a lane: who stands at its very end stands in what it leads to.
+  for (const Pose& pose : poses) {
+    double off = HUGE_VAL;
+    for (const world::RoadLane& lane : roads.lanes)
+      for (double s = 0.25; s <= world::length_of(lane) - 0.25; s += 0.005) {
+        const glm::dvec2 p = world::point_at(lane.centre, s);
+        off = std::min(off, std::hypot(p.x - pose.x, p.y - pose.y));
+      }
+    EXPECT_LT(off, 0.006) << pose.x << " " << pose.y;
+  }
   EXPECT_EQ(poses[7].x, control::start_poses(roads, 50, 1, 0.5)[7].x);
   EXPECT_NE(poses[7].x, control::start_poses(roads, 50, 2, 0.5)[7].x);
   EXPECT_THROW(control::start_poses(roads, 500, 1, 0.5), base::InputError);
 }
 
 // ---- Meetings of ways: any two points on two ways that do not meet are clear of each other.
+
+/// A gate is held before the first of its conflicts and ends behind the last: for wide robots that one need not begin
+/// last.
+TEST(LaneCorridors, ConflictZonesSpanTheirConflicts) {
+  const Streets streets;
+  for (const double radius : {0.165, 0.25}) {
+    const control::LaneCorridors corridors(streets.roads, streets.world, {radius, radius});
+    for (const control::Way& way : corridors.ways())
+      for (const control::ConflictZone& conflict_zone : way.conflict_zones)
+        for (const control::Conflict& conflict : conflict_zone.conflicts) {
+          EXPECT_LT(conflict_zone.hold, conflict.from);
+          EXPECT_GE(conflict_zone.end, conflict.to);
+        }
+  }
+}
 
 TEST(LaneCorridors, WaysThatDoNotMeetAreClearOfEachOther) {
   const Planner p;

@@ -217,15 +217,16 @@ TEST(Accuracy, ModesOfOneWorldDoNotDisturbEachOther) {
 TEST(Accuracy, GrazingBeamsAreFlagged) {
   world::World world;
   scenes::add_outline(world, {{0.0, -1.0}, {10.0, -1.0}, {10.0, -1e-4}, {0.0, -1e-4}}, "floor");
-  const world::Laser laser = eye(3, 4e-4, 8.0);  // bearings -2e-4, 0, 2e-4
+  const world::Laser laser = eye(5, 8e-4, 8.0);  // bearings -4e-4, -2e-4, 0, 2e-4, 4e-4
   add_eye(world, {0.0, 0.0, 0.0, -0.0}, laser);
   add_eye(world, {0.0, 0.0, 0.0, -0.1}, laser);
   world::update_extent_and_hash(world);
   const Glance glance(world);
-  ASSERT_EQ(glance.readings[0].quality.size(), 3u);
-  EXPECT_EQ(glance.readings[0].quality[0], QualityFlag::grazing) << "2e-4 rad";
-  EXPECT_EQ(glance.readings[0].quality[1], QualityFlag::none) << "parallel: it meets nothing";
-  EXPECT_EQ(glance.readings[0].quality[2], QualityFlag::none);
+  ASSERT_EQ(glance.readings[0].quality.size(), 5u);
+  EXPECT_EQ(glance.readings[0].quality[0], QualityFlag::grazing) << "4e-4 rad";
+  EXPECT_EQ(glance.readings[0].quality[1], QualityFlag::grazing) << "2e-4 rad, cast in one go with the one before";
+  EXPECT_EQ(glance.readings[0].quality[2], QualityFlag::none) << "parallel: it meets nothing";
+  EXPECT_EQ(glance.readings[0].quality[3], QualityFlag::none);
   EXPECT_TRUE(glance.readings[1].quality.empty()) << "at 0.1 rad";
 }
 

@@ -155,6 +155,14 @@ TEST(MagnetBound, OfOneMagnetIsItsFieldAtTheCutoff) {
   }
 }
 
+/// Magnets that are summed as one are taken to be as high as the nearest of them.
+TEST(MagnetBound, OfTwoHeightsIsOfTheNearer) {
+  world::World world;
+  world.magnets = {magnet({0, 0}), magnet({0.01, 0}, -5.0)};
+  world.magnet_cutoff = 2.0;
+  EXPECT_GE(sensors::truncation_bound(world, 0.1), sensors::field_beyond(1e-7, 2.0, 0.1));
+}
+
 TEST(MagnetBound, IsNothingWithoutACutoffOrWithoutMagnets) {
   world::World world = scenes::line(10, 0.1);
   EXPECT_EQ(sensors::truncation_bound(world, 0.1), 0.0);

@@ -207,6 +207,24 @@ TEST(WorldFigure, WhatAllWallsAreNotIsDrawnToo) {  // every mixture of flags: no
   }
 }
 
+/// Two walls in one place: the one that lasers see hides the dots of the other, whichever was made first.
+TEST(WorldFigure, WallsThatLasersSeeLieOnTop) {
+  const auto lightest = [](const world::World& world) {
+    draw_world(world, file("top.png"));
+    const Seen seen = see(file("top.png"), 0.03);
+    double most = 0.0;
+    for (double x = 0.5; x < 5.5; x += 0.01) most = std::max(most, to_oklab(seen.at(x, 0.0)).lightness);
+    return most;
+  };
+  const world::World plain = room();
+  world::World both = plain;
+  for (std::size_t i = 0; i < plain.walls.size(); ++i) {
+    both.walls.push_back(plain.walls[i]);
+    both.walls.back().seen_by_laser = both.walls.back().solid_left = false;
+  }
+  EXPECT_LT(lightest(both), lightest(plain) + 0.05);
+}
+
 TEST(WorldFigure, OddWorldsCanBeDrawn) {  // nothing at all; no model rows; a name from the file; a robot without a body
   world::World empty;
   empty.extent = {0, 0, 0, 0};

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "tests/viz/png.h"
+#include "viz/color.h"
 
 namespace sf::viz {
 namespace {
@@ -58,6 +59,12 @@ TEST(MapFigure, RobotsAreMarkedWhereTheyAre) {
     }
   EXPECT_GT(changed, 150);
   EXPECT_EQ(elsewhere, 0);
+  // In the colour that its name has below the map; the second is named there alone.
+  const auto of = [&](std::size_t i, int y0, int y1) { return robot.count(row_color(i, 3), 0, y0, robot.width, y1); };
+  EXPECT_GT(of(1, top, top + 201), 10);
+  EXPECT_GT(of(1, top + 201, robot.height), 10);
+  EXPECT_EQ(of(2, top, top + 201), 0);
+  EXPECT_GT(of(2, top + 201, robot.height), 10);
 }
 
 TEST(MapFigure, LargeMapsAreDrawnSmaller) {

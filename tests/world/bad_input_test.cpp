@@ -26,6 +26,7 @@ const std::vector<Bad>& corpus() {
       {"parenthesis that closes nothing", "model()\n)", 2, "closes nothing"},
       {"tuple without end", "model(\n size [1 2", 2, "never closed"},
       {"tuple that holds a parenthesis", "model(\n size [1 2 )", 2, "tuple of 'size'"},
+      {"tuple with a wrong line", "model(\n size [1 2\n ) ]", 3, "tuple of 'size'"},
       {"commas in a tuple", "model( size [1, 2] )", 1, "blanks"},
       {"stray character", "model( size ; )", 1, "unexpected ';'"},
       {"zero byte", std::string("model(\n\0)", 9), 2, "\\x00"},

@@ -33,15 +33,18 @@ TEST(CloneRobots, AllStandClear) {
   World world = two_rooms();
   clone_robots(world, 40, 1);
   ASSERT_EQ(world.movers.size(), 40u);
+  int to_the_right = 0;
   for (const Mover& mover : world.movers) {
     EXPECT_GE(nearest_wall(world, at(mover)), mover.radius + 0.05 - 1e-12);
     EXPECT_LE(std::abs(mover.X_WM.yaw), M_PI);
+    to_the_right += mover.X_WM.yaw < 0.0;
     EXPECT_EQ(mover.X_WM.z, 0.2) << "at the first robot's height";
     for (const Mover& other : world.movers) {
       if (&other == &mover) continue;
       EXPECT_GE(length(at(other) - at(mover)), 2 * mover.radius + 0.05);
     }
   }
+  EXPECT_NEAR(to_the_right, 20, 10) << "headings are of the whole turn";
 }
 
 TEST(CloneRobots, AllCouldHaveComeFromWhereTheFirstStood) {

@@ -51,6 +51,7 @@ TEST(Service, ARobotStandsWhileNoReadingComes) {
   f.run(10);
   EXPECT_GT(f.client->stats().steps, steps + 5);
   EXPECT_NE(f.log.read_all().find("readings come: robot1 goes on"), std::string::npos);
+  EXPECT_EQ(f.client->stats().stops, 1u) << "going on is no stop";
 }
 
 TEST(Service, AStartSignalReachesTheRobot) {
