@@ -34,7 +34,7 @@ void write_beams(const world::Laser& laser, const BeamPlan& plan, const std::vec
     double low = 0.0;
     double high = 0.0;
     for (std::size_t i = 0; i < SF_BEAMS_PER_LANE; ++i) {
-      // Places without a beam repeat the last one.
+      // Unused places repeat the last beam.
       const std::size_t k = plan.packed ? std::min(SF_BEAMS_PER_LANE * lane + i, count - 1) : lane;
       const double bearing = world::bearing_of(laser, plan.samples[k]) + (angle_noise.empty() ? 0.0 : angle_noise[k]);
       low = i == 0 ? bearing : std::min(low, bearing);

@@ -7,13 +7,14 @@ namespace sf::raycast {
 
 namespace {
 
-/// Rings in which distances double: segments of one are listed by bearing, so that blocks are narrow and can be hidden.
+/// Distance rings per doubling. Segments of one ring are sorted by bearing, so that blocks are narrow and can be
+/// occluded.
 constexpr int kRings = 2;
 
-/// [rad] what the bearings below may be wrong by.
+/// [rad] error bound of the bearings below.
 constexpr double kSlack = 1e-5;
 
-/// [rad] of p, wrong by less than 2e-6: its arc tangent after Abramowitz and Stegun 4.4.49.
+/// Bearing [rad] of p with error below 2e-6: arc tangent after Abramowitz and Stegun 4.4.49.
 double fast_bearing(glm::dvec2 p) {
   const double along = std::abs(p.x), across = std::abs(p.y);
   const double q = std::min(along, across) / std::max(along, across), z = q * q;
@@ -27,14 +28,14 @@ double fast_bearing(glm::dvec2 p) {
   return std::copysign(t, p.y);
 }
 
-/// [rad] at least the arc sine of v in [0, 1), but for rounding.
+/// [rad] upper bound, but for rounding, of the arc sine of v in [0, 1).
 double asin_bound(double v) {
   if (v > 0.8) return std::asin(v);
   const double vv = v * v;
   return v * (1.0 + vv * (1.0 / 6.0 + vv * (0.075 + vv * 0.2)));
 }
 
-/// Steps of distance, of which kRings double it. @param times at least 1
+/// Index of the logarithmic distance ring. @param times ratio of distances, at least 1
 int distance_ring_of(double times) {
   int exponent = 0;
   const double part = std::frexp(times, &exponent);  // in [0.5, 1)
@@ -85,7 +86,7 @@ void find_candidate_walls(const WallIndex& wall_index, const CellShape& shape, g
     const IndexedWall& s = wall_index.segments()[i];
     glm::dvec2 a = s.a - centre, b = s.b - centre;
     if (!clip(a, b, shape.reach())) continue;
-    // The cell's signed distance from the segment's line: positive on its left.
+    // Signed distance of the cell from the segment's line: positive on its left.
     const glm::dvec2 e = s.b - s.a;
     const double side = base::cross(e, centre - s.a) / length(e);
     const bool both = both_sides || !s.solid_left;

@@ -1,5 +1,5 @@
 #pragma once
-// The two ways to cast rays: kernels of the device, and vectors of this machine. Both give the same bytes.
+// The two ray casters: Vulkan kernels on the device, and vector instructions on the host. Both return the same bytes.
 
 #include <cstdint>
 #include <string>
@@ -7,18 +7,17 @@
 namespace sf::raycast {
 
 enum class CasterChoice : std::uint8_t {
-  automatic,  ///< as `choose_caster` says
+  automatic,  ///< decided by `choose_caster`
   vulkan,     ///< kernels on the device
   host,       ///< scan conversion on this machine
 };
 
-/// The caster where `asked` is automatic: the environment's SENSORFARM_CASTER ("vulkan" or "host"), else the host where
-/// the device is software, which is slower at it, else Vulkan.
-/// @throws base::InputError where the environment names another caster.
+/// Resolves `asked`. For `automatic`: the environment variable SENSORFARM_CASTER ("vulkan" or "host"); if unset, the
+/// host on a software device (faster there), else Vulkan.
+/// @throws base::InputError where SENSORFARM_CASTER has another value
 CasterChoice choose_caster(bool software, CasterChoice asked = CasterChoice::automatic);
 
-/// The caster of farms on such a device as reports name it: "Vulkan kernels", or the host with its vectors, as in
-/// "host, AVX2".
+/// Name of the chosen caster for reports: "Vulkan kernels", or the host with its instruction set, such as "host, AVX2".
 std::string describe_caster(bool software);
 
 }  // namespace sf::raycast

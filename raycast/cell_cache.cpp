@@ -69,7 +69,7 @@ std::uint32_t CellCache::free_pages(std::uint32_t pages) {
       ++end;
       continue;
     }
-    // This tick needs what is here: go on behind it.
+    // This tick uses the owner's pages: continue behind them.
     const std::uint32_t behind = slots_[owner].first_page + slots_[owner].pages;
     tried += behind - start;
     start = behind + pages <= all ? behind : 0;
@@ -99,7 +99,7 @@ void CellCache::evict(std::uint32_t number) {
   slot.used = false;
   --used_;
 
-  // Open addressing without tombstones: what was displaced by the removed one moves back.
+  // Open addressing without tombstones: entries displaced by the removed one move back.
   const std::size_t mask = table_.size() - 1;
   std::size_t hole = bucket_of(slot.key);
   while (table_[hole] != number) hole = (hole + 1) & mask;

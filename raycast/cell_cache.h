@@ -1,56 +1,56 @@
 #pragma once
-// Which cells have their lists on the device: a pool of fixed size, built where robots are, oldest out first.
+// Cache of cells: a pool of fixed size. Cells are built where sensors are and evicted oldest first.
 
 #include <cstdint>
 #include <vector>
 
 namespace sf::raycast {
 
-/// Names one cell of one family of sensors.
+/// Key of one cell of one list config.
 struct CellKey {
-  std::int64_t config = 0;  ///< which sensors share it, and whether viewpoints may lie inside solids
+  std::int64_t config = 0;  ///< 2 * list config, plus 1 where viewpoints lie inside solids
   std::int64_t x = 0;
   std::int64_t y = 0;
   bool operator==(const CellKey&) const = default;
 };
 
-/// Bookkeeping of the pool: which key owns which slot and which chunks. Knows nothing of what is in them.
+/// Bookkeeping of the pool: the slot and the chunks that each key owns. The contents are the caller's.
 ///
-/// Chunks are handed out in pages, round and round; what was there is forgotten, unless this tick needs it. Allocates
-/// only to grow.
+/// Chunks are handed out in pages from a ring. Pages that this tick does not use are evicted. Allocates only to grow.
 class CellCache {
  public:
-  /// @param slots how many cells at most. @param chunks how many chunks of entries at most.
-  /// @param page [chunks] that are handed out together
+  /// @param slots largest number of cells  @param chunks largest number of chunks of entries
+  /// @param page [chunks] unit of allocation
   CellCache(std::uint32_t slots, std::uint32_t chunks, std::uint32_t page = kPage);
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
-  static constexpr std::uint32_t kPage = 32;  ///< [chunks] unless told otherwise
+  static constexpr std::uint32_t kPage = 32;  ///< [chunks] default page
 
-  /// More room; never less. Keeps what is in it.
+  /// Enlarges the pool, never shrinks it. Keeps its cells.
   void grow(std::uint32_t slots, std::uint32_t chunks);
 
   void begin_tick() { ++tick_; }
-  /// The slot of `key`, kept for this tick, or kNone.
+  /// The slot of `key`, marked as used in this tick; kNone when absent.
   std::uint32_t find(const CellKey& key);
-  /// The slot of `key`, or kNone; may be asked by several threads at once.
+  /// The slot of `key`; kNone when absent. Thread-safe among readers.
   std::uint32_t slot_of(const CellKey& key) const;
-  /// Keeps what is in `slot` for this tick.
+  /// Marks `slot` as used in this tick.
   void touch(std::uint32_t slot) { slots_[slot].tick = tick_; }
-  /// Room for `key` (not in the pool) with `chunks` chunks: its slot, or kNone when this tick's cells fill the pool.
+  /// Allocates `chunks` chunks for `key`, which must be absent.
+  /// @return its slot; kNone when this tick's cells fill the pool
   std::uint32_t insert(const CellKey& key, std::uint32_t chunks);
 
   std::uint32_t first_chunk(std::uint32_t slot) const { return slots_[slot].first_page * page_; }
   std::uint32_t slots() const { return static_cast<std::uint32_t>(slots_.size()); }
-  std::uint32_t cells() const { return used_; }   ///< now in the pool
-  std::uint64_t built() const { return built_; }  ///< ever inserted
+  std::uint32_t cells() const { return used_; }   ///< in the pool now
+  std::uint64_t built() const { return built_; }  ///< inserted since construction
 
  private:
   struct Slot {
     CellKey key;
     std::uint32_t first_page = 0;
     std::uint32_t pages = 0;
-    std::uint64_t tick = 0;  ///< last tick that needed it
+    std::uint64_t tick = 0;  ///< last tick that used it
     bool used = false;
   };
   std::size_t bucket_of(const CellKey& key) const;
@@ -61,10 +61,10 @@ class CellCache {
 
   std::uint32_t page_;
   std::vector<Slot> slots_;
-  std::vector<std::uint32_t> table_;        ///< open addressing by key: a slot or kNone
-  std::vector<std::uint32_t> page_owners_;  ///< by page: a slot or kNone
-  std::uint32_t next_page_ = 0;             ///< page where the search for room goes on
-  std::uint32_t clock_hand_ = 0;            ///< slot where the search for a free one goes on
+  std::vector<std::uint32_t> table_;        ///< open addressing by key: slot or kNone
+  std::vector<std::uint32_t> page_owners_;  ///< slot or kNone per page
+  std::uint32_t next_page_ = 0;             ///< page at which the search for free pages resumes
+  std::uint32_t clock_hand_ = 0;            ///< slot at which the search for a free slot resumes
   std::uint32_t used_ = 0;
   std::uint64_t built_ = 0;
   std::uint64_t tick_ = 1;

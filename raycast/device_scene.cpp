@@ -11,13 +11,13 @@ namespace sf::raycast {
 
 namespace {
 
-/// Robots drive on: of the cells that each of them left lately, so many are kept, and of few robots more.
+/// Capacity per robot for cells that it left recently, and a minimum for few robots.
 constexpr SceneOptions kPerRobot{.pool_chunks = 1u << 12, .pool_cells = 1u << 6};
 constexpr SceneOptions kMinimum{.pool_chunks = 1u << 15, .pool_cells = 1u << 10};
 constexpr std::uint32_t kPageChunks = 8;
 
-/// Lists for small cells are short, but each cell costs: a 32nd of the range suits a scanner of some hundred beams, few
-/// beams are not worth so many (docs/performance.md).
+/// Side of a cell [m]. Small cells have short lists, but each costs memory and building time. A 32nd of the range suits
+/// a scanner of some hundred beams; few beams use larger cells (docs/performance.md).
 double cell_size(double range, std::uint32_t beams) {
   const double fewer = std::clamp(std::sqrt(361.0 / std::max(1u, beams)), 1.0, 6.0);
   return std::clamp(fewer * range / 32.0, 1e-3, 4.0);
@@ -67,7 +67,7 @@ DeviceScene::~DeviceScene() = default;
 void DeviceScene::write_outlines() {
   const auto entries = lists_->host<ListEntry>();
   const auto segment_ids = segment_ids_->host<std::uint32_t>();
-  std::memset(entries.data(), 0, SF_SECTORS * sizeof(ListHead));  // lists of nobody
+  std::memset(entries.data(), 0, SF_SECTORS * sizeof(ListHead));  // empty lists
   for (std::uint32_t h = 0; h < movers_.heights(); ++h) {
     std::uint32_t at = outlines_[h];
     for (const SegmentBlock& block : movers_.outlines(h).blocks) {
@@ -151,7 +151,7 @@ void DeviceScene::make_room(std::uint32_t sensing_movers) {
        room(kPerRobot.pool_chunks, kMinimum.pool_chunks, limits_.pool_chunks), has_movers() ? 1u << 14 : 1);
 }
 
-/// @return false when the device has no room for more
+/// @return false when the device lacks memory
 bool DeviceScene::try_to_grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std::uint32_t mover_texels) {
   try {
     grow(pool_cells, pool_chunks, mover_texels);
@@ -175,7 +175,7 @@ void DeviceScene::grow(std::uint32_t pool_cells, std::uint32_t pool_chunks, std:
     tables_replaced_ = upload_all_ = true;
   };
   const std::size_t end = pool_begin_ + std::size_t{kChunkTexels} * pool_chunks;
-  // A search looks one chunk ahead.
+  // The search prefetches one chunk.
   replace(lists_, "sector lists", gpu::Texel::u32x4, end + mover_texels + 1);
   replace(segment_ids_, "names in sector lists", gpu::Texel::u32, end);
   cells_.grow(pool_cells, pool_chunks);

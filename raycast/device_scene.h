@@ -1,8 +1,8 @@
 #pragma once
-// What rays can meet, on the device: walls and movers as exact segments, and sector lists where sensors are.
+// The scene on the device: walls and movers as exact segments, and sector lists round the sensors.
 //
-// One table holds all lists, in texels of 16 bytes: empty lists, outlines of movers, cells from a pool (list heads,
-// entries, chunks of entries), and lists of the movers near each view, made each tick.
+// One table holds all lists, in texels of 16 bytes: empty lists, outlines of movers, the pool of cells (list heads,
+// entries, chunks of entries), and lists of the movers near each view, rebuilt each tick.
 
 #include <cstdint>
 #include <memory>
@@ -24,22 +24,22 @@ namespace sf::raycast {
 /// Not thread-safe. `world` need not outlive it.
 class DeviceScene {
  public:
-  /// @param families complete, of `world`; to outlive it  @param carriers movers with sensors that look: the lists get
-  /// room accordingly
+  /// @param configs complete, of `world`; must outlive this object
+  /// @param sensing_movers number of movers that carry scanners: sizes the first allocation
   DeviceScene(const world::World& world, const ListConfigs& configs, gpu::Device& device, base::ThreadPool& thread_pool,
               const SceneOptions& options, std::uint32_t sensing_movers);
   ~DeviceScene();
 
-  /// Takes this tick's poses, one per mover.
+  /// Sets this tick's poses, one per mover.
   void set_poses(std::span<const Pose> poses);
 
-  /// Makes lists for all `views` and fills what `rows` says of them (all but beams, out and range_min), row by row.
-  /// @return true when tables were replaced, so that kernels must be bound again.
+  /// Builds the lists for all `views` and fills `rows`, one per view: all fields but beams, out and range_min.
+  /// @return true when tables were replaced, so that kernels must be bound again
   bool prepare(std::span<const Viewpoint> views, std::span<RayRow> rows);
 
-  /// Whether the i-th view of the last `prepare` has more surfaces than lists hold: its row names empty lists.
+  /// True when the lists of view `i` of the last `prepare` would be too long. Its row then names empty lists.
   bool needs_host(std::size_t i) const { return needs_host_[i] != 0; }
-  /// Names what changed since the last call for copying to the device.
+  /// Adds copies of all tables that changed since the last call.
   void upload(gpu::Batch& batch);
 
   bool has_movers() const { return movers_.segments() > 0; }
@@ -50,23 +50,23 @@ class DeviceScene {
   gpu::Buffer& models() { return *models_; }
 
   struct Counts {
-    std::uint64_t cells_built = 0;      ///< ever
-    std::uint64_t movers_in_range = 0;  ///< ever: pairs of a view and a mover within its range
-    std::uint64_t movers_visible = 0;   ///< of these, in view
+    std::uint64_t cells_built = 0;      ///< since construction
+    std::uint64_t movers_in_range = 0;  ///< since construction: pairs of a view and a mover within its range
+    std::uint64_t movers_visible = 0;   ///< of these, in the field of view
   };
   Counts counts() const;
 
  private:
-  /// Cells and tables of one family.
+  /// Cells and tables of one list config.
   struct ConfigTables {
     CellShape shape;
-    double spread = 0.0;  ///< [rad] from the middle of a lane's beams to its outermost, and the search's own error
+    double spread = 0.0;  ///< [rad] from the middle of a lane's beams to its outermost, plus the search's own error
     std::uint32_t height = 0;
   };
   /// Texels of one cell.
   struct Cell {
     std::uint32_t first = 0, count = 0;
-    bool too_long = false;  ///< its lists are, so that they are empty
+    bool too_long = false;  ///< its lists exceed the limit and are empty
   };
   struct NearbyMover;
   struct Scratch;
@@ -88,20 +88,20 @@ class DeviceScene {
   base::ThreadPool& thread_pool_;
   gpu::Device& device_;
   const SceneOptions limits_;
-  SceneOptions options_;  ///< room now
+  SceneOptions options_;  ///< current capacity
   const ListConfigs& configs_;
-  std::vector<ConfigTables> config_tables_;  ///< per family
+  std::vector<ConfigTables> config_tables_;  ///< per list config
   MoverGeometry movers_;
   ViewCells cells_;
   std::vector<Cell> cell_tables_;                  ///< per slot
-  std::vector<std::uint32_t> outlines_;            ///< per height: texel of its first block
+  std::vector<std::uint32_t> outlines_;            ///< per height: texel of the first block
   std::uint32_t pool_begin_ = SF_SECTORS;          ///< texel
   std::vector<std::uint8_t> needs_host_;           ///< per view of this tick: its lists would be too long
   std::vector<std::unique_ptr<Scratch>> scratch_;  ///< per thread
   std::vector<std::uint32_t> new_slots_;           ///< cells built since the last upload
   std::uint32_t mover_texels_ = 0;                 ///< capacity for lists of movers, behind the pool
-  std::uint32_t mover_texels_used_ = 0;            ///< may exceed the capacity while a tick is being retried
-  bool tables_replaced_ = false;                   ///< tables were, since `prepare` began
+  std::uint32_t mover_texels_used_ = 0;            ///< may exceed the capacity while a tick is retried
+  bool tables_replaced_ = false;                   ///< since `prepare` began
   bool upload_all_ = true;
 
   std::unique_ptr<gpu::Buffer> lists_, segment_ids_, mover_rows_, segments_, models_;

@@ -1,4 +1,4 @@
-// The device's lists: of walls, where a cell has none yet, and of movers, each tick.
+// The device's lists: of walls, for cells without lists, and of movers, each tick.
 
 #include <algorithm>
 #include <atomic>
@@ -13,7 +13,7 @@
 
 namespace sf::raycast {
 
-/// Takes in `found`: an entry each, and the sectors in which it may be seen, near to far.
+/// Adds `found`: one entry each, and the sectors in which it may be visible, near to far.
 void DeviceScene::Scratch::add(std::vector<CandidateWall>& found, double spread, SectorLists& sectors) {
   std::sort(found.begin(), found.end(), [](const CandidateWall& p, const CandidateWall& q) {
     return std::tie(p.nearest, p.row, p.a.x, p.a.y) < std::tie(q.nearest, q.row, q.a.x, q.a.y);
@@ -30,7 +30,7 @@ void DeviceScene::Scratch::add(std::vector<CandidateWall>& found, double spread,
   sectors.sort();
 }
 
-/// Appends chunks of entries `items`, padded with the one behind all. @return how many
+/// Appends chunks of the entries `items`, padded with the entry behind all. @return number of chunks
 std::uint32_t DeviceScene::Scratch::append(std::span<const std::uint32_t> items) {
   for (std::size_t at = 0; at < items.size(); at += SF_CHUNK) {
     ListChunk& chunk = chunks.emplace_back(ListChunk{nearest[items[at]], 0, {}});
@@ -40,7 +40,7 @@ std::uint32_t DeviceScene::Scratch::append(std::span<const std::uint32_t> items)
   return chunks_of(items.size());
 }
 
-/// Makes the lists of a cell in `s`, but for where they lie.
+/// Builds the lists of a cell in `s`, with offsets relative to the cell.
 DeviceScene::Cell DeviceScene::make_cell(const CellKey& key, Scratch& s) {
   const std::size_t number = ViewCells::config_of(key);
   const ConfigTables& config = config_tables_[number];
@@ -71,7 +71,7 @@ void DeviceScene::build_missing_cells() {
   std::mutex lock;
   ListEntry* const lists = lists_->host<ListEntry>().data();
   std::uint32_t* const segment_ids = segment_ids_->host<std::uint32_t>().data();
-  std::atomic<bool> no_room{false};  // the others wait for the pool to grow
+  std::atomic<bool> no_room{false};  // the other threads stop; the pool must grow first
   thread_pool_.parallel_for(cells_.missing().size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
     Scratch& s = *scratch_[thread];
     for (std::size_t i = first; i < last && !no_room; ++i) {
@@ -102,7 +102,7 @@ void DeviceScene::build_missing_cells() {
   cells_.drop_cached();
 }
 
-/// Lists the movers in reach and in view, near to far.
+/// Lists the movers in range and in view, near to far.
 void DeviceScene::find_nearby_movers(const Viewpoint& view, Scratch& s) const {
   const MoverGrid& grid = movers_.grid();
   const ListConfig& config = configs_[view.config];
@@ -146,7 +146,7 @@ void DeviceScene::find_nearby_movers(const Viewpoint& view, Scratch& s) const {
   s.front_facing.sort();
 }
 
-/// Lists the edges of a mover's outline that face the view, all of them where it may stand inside.
+/// Lists the edges of a mover's outline that face the view; all edges when the view may be inside.
 void DeviceScene::find_front_edges(const Viewpoint& view, NearbyMover& near, Scratch& s) const {
   const std::uint32_t height = config_tables_[view.config].height;
   const OutlineTable& outlines = movers_.outlines(height);
@@ -159,7 +159,7 @@ void DeviceScene::find_front_edges(const Viewpoint& view, NearbyMover& near, Scr
                           (std::abs(x) + std::abs(y) + 2.0f * static_cast<float>(movers_.largest_radius()));
   near.first = static_cast<std::uint32_t>(s.mover_entries.size());
   const std::uint32_t blocks = near.nearest > 1e-4f ? outline.outward : outline.all;
-  near.count = SF_CHUNK * kMaxMoverChunks + 1;  // more than a list holds
+  near.count = SF_CHUNK * kMaxMoverChunks + 1;  // more than the limit of a list
   if (blocks > kMaxOutlineBlocks) return;
   for (std::uint32_t i = 0; i < blocks; ++i) {
     const SegmentBlock& block = outlines.blocks[outline.first + i];
@@ -176,7 +176,7 @@ void DeviceScene::find_front_edges(const Viewpoint& view, NearbyMover& near, Scr
   near.count = static_cast<std::uint32_t>(s.mover_entries.size()) - near.first;
 }
 
-/// Writes the lists of the scratch's movers for one view, from texel `at` on.
+/// Writes the lists of the scratch's movers for one view, starting at texel `at`.
 void DeviceScene::write_mover_lists(const Viewpoint& view, std::uint32_t at, const Scratch& s) {
   const auto first_mover_row =
       static_cast<std::uint32_t>(config_tables_[view.config].height * movers_.poses().size()) + 1;
@@ -199,7 +199,7 @@ void DeviceScene::write_mover_lists(const Viewpoint& view, std::uint32_t at, con
   std::memcpy(lists + 16 * std::size_t{at}, heads, sizeof heads);
 }
 
-/// @return [texels] that the lists of the scratch's movers need; 0: none does; kNone: they would be too long
+/// @return [texels] needed by the lists of the scratch's movers; 0: no lists; kNone: a list would exceed the limit
 std::uint32_t DeviceScene::mover_lists_size(const Scratch& s, std::size_t most) const {
   std::size_t all = 0;
   for (std::uint32_t sector = 0; sector < SF_SECTORS; ++sector) {
@@ -211,8 +211,8 @@ std::uint32_t DeviceScene::mover_lists_size(const Scratch& s, std::size_t most) 
   return all == 0 ? 0 : all > most ? CellCache::kNone : static_cast<std::uint32_t>(SF_SECTORS + all);
 }
 
-/// @param more_room whether the tables may grow: else what does not fit is left to the host
-/// @return false when they should
+/// @param more_room tables may grow; if false, views without room go to the host
+/// @return false when the tables must grow first
 bool DeviceScene::build_mover_lists(std::span<const Viewpoint> views, std::span<RayRow> rows, bool more_room) {
   std::atomic<std::uint32_t> next{0};
   const std::size_t most =
@@ -220,7 +220,7 @@ bool DeviceScene::build_mover_lists(std::span<const Viewpoint> views, std::span<
   thread_pool_.parallel_for(views.size(), 16, [&](std::size_t first, std::size_t last, unsigned thread) {
     Scratch& s = *scratch_[thread];
     for (std::size_t i = first; i < last; ++i) {
-      rows[i].movers = 0;  // of nobody
+      rows[i].movers = 0;  // empty lists
       if (!has_movers()) continue;
       find_nearby_movers(views[i], s);
       const std::uint32_t size = s.near.empty() ? 0 : mover_lists_size(s, most);

@@ -1,5 +1,5 @@
 #pragma once
-// Parts that the sources of raycast::Scene share.
+// Parts that the sources of raycast::DeviceScene share.
 
 #include <cstdint>
 #include <span>
@@ -10,32 +10,33 @@
 
 namespace sf::raycast {
 
-/// Loops of one lane together stay below the 65 535 turns after which older Mesa ends them silently: a search visits
-/// each chunk once, a decision each entry once for each of a lane's beams. Longer lists are cast on the host.
+/// Older Mesa silently ends a loop after 65 535 iterations. All loops of one lane together stay below: a search visits
+/// each chunk once, the 64-bit decision visits each entry once per beam of the lane. Scans with longer lists run on the
+/// host.
 inline constexpr std::uint32_t kMaxWallChunks = 2'800;  ///< per sector
 inline constexpr std::uint32_t kMaxMoverChunks = 1'000;
 static_assert((kMaxWallChunks + kMaxMoverChunks) * (1 + SF_BEAMS_PER_LANE * SF_CHUNK) + 16 < 65'535);
 
-/// Memory of all lists together, 80 bytes a chunk of the pool: what does not fit is cast on the host.
+/// Memory limit of all lists: 80 bytes per chunk of the pool. Scans that exceed it run on the host.
 inline constexpr std::uint32_t kMaxPoolChunks = 1u << 24;
 inline constexpr std::uint32_t kChunkTexels = 4;
 inline constexpr std::uint32_t kMaxMoverTexels = 1u << 25;
-inline constexpr std::uint32_t kMinMoverTexels = 1u << 10;  ///< that a view may have, however many there are
+inline constexpr std::uint32_t kMinMoverTexels = 1u << 10;  ///< guaranteed to each view
 
-/// Entries of a block of an outline, and one that faces nobody.
+/// Texels of one outline block, and the padding entry, which faces away from every viewer.
 inline constexpr std::uint32_t kBlockTexels = kBlock + 1;
 inline constexpr std::uint32_t kMaxOutlineBlocks = 0xFFFFu / kBlockTexels;
 inline constexpr ListEntry kPaddingEntry{0.0f, -1e15f, 0.5f, 0.0f};
 
-/// A mover that a view may see.
+/// A mover that may be visible from a view.
 struct DeviceScene::NearbyMover {
   float nearest;  ///< [m]
   std::uint32_t mover;
-  float bearing, half;                 ///< [rad] of its disc, in the world
-  std::uint32_t first = 0, count = 0;  ///< entries that face the view, among the scratch's
+  float bearing, half;                 ///< [rad] of its disc, in the world frame
+  std::uint32_t first = 0, count = 0;  ///< entries that face the view, in the scratch's `mover_entries`
 };
 
-/// What one thread needs to make lists.
+/// Scratch of one thread that builds lists.
 struct DeviceScene::Scratch {
   CandidateWalls walls;
   SectorLists front_facing, back_facing;

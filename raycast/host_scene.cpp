@@ -14,21 +14,21 @@ namespace {
 
 constexpr std::uint32_t kPageBlocks = 4;
 constexpr std::uint32_t kFirstCells = 256, kFirstBlocks = 1u << 11;
-/// [blocks] A quarter of the machine's memory, between 0.7 and 2.7 GiB (100 000 robots need 1.4): a cell for which
-/// there is no room is listed anew by each scan.
+/// [blocks] Limit of the cache: a quarter of the machine's memory, between 0.7 and 2.7 GiB (100 000 robots need 1.4). A
+/// cell without room in the cache is rebuilt by each scan.
 std::uint32_t most_blocks() {
   const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   return static_cast<std::uint32_t>(std::clamp(0.25 * memory / sizeof(SegmentBlock), 0x1p21, 0x1p23));
 }
 
-/// [m] An eighth of the range for a scanner of some hundred beams, more for fewer, and not less than 0.25 m or the
-/// range: smaller cells cost more to make than they save where robots drive.
+/// Side of a cell [m]: an eighth of the range for a scanner of some hundred beams, more for fewer beams, and at least
+/// min(0.25 m, range). Smaller cells cost more to build than they save for moving robots.
 double cell_size(double range, std::uint32_t beams) {
   const double fewer = std::clamp(std::sqrt(361.0 / std::max(1u, beams)), 1.0, 4.0);
   return std::clamp(fewer * range / 8.0, std::clamp(range, 1e-3, 0.25), 4.0);
 }
 
-/// Blocks of a cell for which directions are known.
+/// Largest number of blocks of a cell with masks per sector.
 constexpr std::size_t kMaxMaskedBlocks = 64;
 
 SectorBlockMasks sector_block_masks(std::span<const SegmentBlock> blocks) {
@@ -83,7 +83,7 @@ void HostScene::set_poses(std::span<const Pose> poses) {
   movers_.set_poses(poses, thread_pool_, std::span(exact_).subspan(configs_.walls().size()));
 }
 
-/// Appends `found` in order of rings and bearings, with what all of a block have in common.
+/// Appends `found` in order of rings and bearings, with the bounds of each block.
 void HostScene::add_blocks(std::vector<CandidateWall>& found, std::vector<SegmentBlock>& blocks) {
   std::sort(found.begin(), found.end(), [](const CandidateWall& p, const CandidateWall& q) {
     return std::tie(p.distance_ring, p.bearing, p.row, p.a.x, p.a.y) <
@@ -107,7 +107,7 @@ void HostScene::add_blocks(std::vector<CandidateWall>& found, std::vector<Segmen
   }
 }
 
-/// Lists what may be met from a cell, into the thread's blocks.
+/// Collects the blocks of a cell into the thread's scratch.
 HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
   const std::size_t config = ViewCells::config_of(key);
   find_candidate_walls(configs_.wall_index(config), config_tables_[config].shape, cells_.centre_of(key),
@@ -123,7 +123,7 @@ HostScene::Cell HostScene::collect(const CellKey& key, Thread& t) const {
 
 void HostScene::build_missing_cells() {
   std::mutex lock;
-  std::atomic<bool> no_room{false};  // the others wait for the pool to grow
+  std::atomic<bool> no_room{false};  // the other threads stop; the pool must grow first
   thread_pool_.parallel_for(cells_.missing().size(), 1, [&](std::size_t first, std::size_t last, unsigned thread) {
     Thread& t = *threads_[thread];
     for (std::size_t i = first; i < last && !no_room; ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// The scene of host scans: walls in lists by cell, made where sensors are, and movers.
+// The scene of host scans: movers, and walls in lists per cell, built round the sensors.
 
 #include <cstdint>
 #include <memory>
@@ -15,20 +15,21 @@
 
 namespace sf::raycast {
 
-/// Not thread-safe, but for `scan`. `world` need not outlive it.
+/// Not thread-safe, except for `scan`. `world` need not outlive it.
 class HostScene {
  public:
-  /// @param families complete, of `world`; to outlive it
+  /// @param configs complete, of `world`; must outlive this object
   HostScene(const world::World& world, const ListConfigs& configs, base::ThreadPool& thread_pool);
   ~HostScene();
 
-  /// Takes this tick's poses, one per mover.
+  /// Sets this tick's poses, one per mover.
   void set_poses(std::span<const Pose> poses);
-  /// Makes the lists that `views` need.
+  /// Builds the lists of `views`.
   void prepare(std::span<const Viewpoint> views);
-  /// Scans from the i-th view of the last `prepare`. @param from all but origin, offset, range_max and band, which are
-  /// the view's  @param thread of the workers
-  /// @return whether any beam grazes: `out.grazes` is filled in only then
+  /// Scans from view `i` of the last `prepare`.
+  /// @param from overwritten here: origin, offset, range_max and band
+  /// @param thread index of the calling pool thread
+  /// @return true when any beam grazes; only then `out.grazes` is filled in
   bool scan(std::size_t i, ScanView from, const ScanPattern& pattern, unsigned thread, const ScanOutput& out);
 
   std::uint64_t cells_built() const { return cells_.cache().built(); }
@@ -37,7 +38,7 @@ class HostScene {
  private:
   struct ConfigTables;
   struct Thread;
-  /// Blocks of one cell: those that face it, then those that do not, which only decide ties at corners.
+  /// Blocks of one cell: first the front-facing ones, then the back-facing ones, which decide only ties at corners.
   struct Cell {
     std::uint32_t first = 0, front_facing = 0, all = 0;
   };
@@ -47,7 +48,7 @@ class HostScene {
 
   base::ThreadPool& thread_pool_;
   const ListConfigs& configs_;
-  std::vector<ConfigTables> config_tables_;  ///< per family
+  std::vector<ConfigTables> config_tables_;  ///< per list config
   MoverGeometry movers_;
   std::vector<ExactSegment> exact_;  ///< walls, then movers
   std::vector<std::uint32_t> models_;

@@ -1,6 +1,6 @@
 #pragma once
-// The 64-bit decision of one beam and one segment on the host: shaders/lib/intersect.glsl, operation by operation, so
-// that both agree to the bit.
+// The 64-bit intersection of one beam and one segment on the host. Same operations in the same order as
+// shaders/lib/intersect.glsl, so that both results are equal bit by bit.
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,8 @@
 
 namespace sf::raycast {
 
-/// The segment from `a` to `b` of a mover's frame, in the world. @param p of the mover  @param heading unit vector
+/// Transforms the segment ab from a mover's frame to the world. @param p position of the mover  @param heading unit
+/// vector
 inline ExactSegment to_world(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p, glm::dvec2 heading) {
   const double c = heading.x, s = heading.y;
   return {p.x + (c * a.x - s * a.y), p.y + (s * a.x + c * a.y), p.x + (c * b.x - s * b.y), p.y + (s * b.x + c * b.y)};
@@ -20,23 +21,23 @@ inline ExactSegment to_world(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p, glm::dvec
 /// A segment that a beam may meet.
 struct CandidateSegment {
   ExactSegment at;
-  std::uint32_t id;  ///< walls first, then movers' edges: the smaller wins a tie
+  std::uint32_t id;  ///< row: walls first, then movers' edges. The smaller id wins a tie.
 };
 
-/// The nearest so far along one beam.
+/// The nearest intersection so far along one beam.
 struct ClosestHit {
   double range;                  ///< [m]
-  std::uint32_t id = SF_NO_HIT;  ///< of the surface
-  float incidence[3] = {};       ///< cross product of the segment and the beam; the segment [m]
+  std::uint32_t id = SF_NO_HIT;  ///< row of the segment
+  float incidence[3] = {};       ///< cross product of segment and direction [m]; x and y of the segment [m]
 
-  /// True where the sine of the angle between beam and surface is below `least`.
+  /// True when the sine of the angle between beam and surface is below `least`.
   bool grazes(float least) const {
     return id != SF_NO_HIT &&
            incidence[0] * incidence[0] < least * least * (incidence[1] * incidence[1] + incidence[2] * incidence[2]);
   }
 };
 
-/// @param d unit vector
+/// Updates `best` when the beam from `origin` along `d` (unit vector) meets `surface` nearer.
 inline void intersect(const CandidateSegment& surface, glm::dvec2 origin, glm::dvec2 d, ClosestHit& best) {
   const ExactSegment& s = surface.at;
   const double wax = s.ax - origin.x, way = s.ay - origin.y;
@@ -56,9 +57,9 @@ inline void intersect(const CandidateSegment& surface, glm::dvec2 origin, glm::d
     best = {range, surface.id, {static_cast<float>(denominator), static_cast<float>(ex), static_cast<float>(ey)}};
 }
 
-/// [m] the range of a beam that meets `s`, in 32 bits; less than 0 where these are not close enough. The error is at
-/// most 16 u |e| (|w| + range_max) / |e x d|, u = 2^-24, held below half of SF_SINGLE_SHARE range_max.
-/// shaders/lib/intersect.glsl, operation by operation.
+/// Range [m] of a beam that meets `s`, in 32 bits; negative when 32 bits are not accurate enough. The error is at most
+/// 16 u |e| (|w| + range_max) / |e x d|, u = 2^-24, and is kept below half of SF_SINGLE_TOLERANCE range_max.
+/// Same operations in the same order as shaders/lib/intersect.glsl.
 inline float range_single(const ExactSegment& s, glm::dvec2 origin, glm::dvec2 d, float range_max) {
   const auto wx = static_cast<float>(s.ax - origin.x), wy = static_cast<float>(s.ay - origin.y);
   const auto ex = static_cast<float>(s.bx - s.ax), ey = static_cast<float>(s.by - s.ay);

@@ -1,5 +1,5 @@
 #pragma once
-// Sensors that can share lists, and the walls that each of them sees: indexed once, for both casters.
+// List configs: sensors that can share lists, with the index of the walls visible to them. Shared by both casters.
 
 #include <cstdint>
 #include <map>
@@ -11,13 +11,13 @@
 
 namespace sf::raycast {
 
-/// Sensors that can share lists: one height, one range.
+/// Sensors that can share lists: equal height and range. The other fields are maxima over these sensors.
 struct ListConfig {
   double z = 0.0;             ///< [m] world height of the sensors
   double range = 0.0;         ///< [m]
-  double spread = 0.0;        ///< [rad] from the middle of a lane's beams to its outermost: largest of its sensors
-  double fov = 0.0;           ///< [rad] largest of its sensors, with all that noise may add
-  std::uint32_t beams = 361;  ///< that one robot casts in a tick: many are worth small cells
+  double spread = 0.0;        ///< [rad] from the middle of a lane's beams to its outermost
+  double fov = 0.0;           ///< [rad] including the largest angular noise
+  std::uint32_t beams = 361;  ///< beams per robot and tick; more beams make smaller cells worthwhile
 };
 
 /// `world` need not outlive it.
@@ -25,14 +25,14 @@ class ListConfigs {
  public:
   explicit ListConfigs(const world::World& world);
 
-  /// Equal height and range give the same number.
+  /// Returns the index of the config. Configs of equal height and range are merged.
   std::uint32_t add(const ListConfig& config);
 
   std::size_t size() const { return rows_.size(); }
   const ListConfig& operator[](std::size_t i) const { return rows_[i].config; }
-  /// The walls that family `i` sees; families between the same two breaks of height share them.
+  /// The walls visible to config `i`. Configs between the same two height breaks share one index.
   const WallIndex& wall_index(std::size_t i) const { return *rows_[i].wall_index; }
-  /// Of the world, row by row.
+  /// Walls of the world; same rows as `World::walls`.
   const std::vector<world::Segment>& walls() const { return walls_; }
 
  private:
@@ -41,7 +41,7 @@ class ListConfigs {
     const WallIndex* wall_index;
   };
   std::vector<world::Segment> walls_;
-  std::vector<double> breaks_;  ///< [m] heights at which the set of visible walls changes
+  std::vector<double> breaks_;  ///< [m] ascending heights at which the set of visible walls changes
   std::map<std::size_t, std::unique_ptr<WallIndex>> wall_indices_;  ///< by the interval between breaks
   std::vector<Row> rows_;
 };

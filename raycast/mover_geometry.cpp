@@ -44,7 +44,7 @@ std::uint32_t MoverGeometry::add_height(double z) {
   return static_cast<std::uint32_t>(heights_.size() - 1);
 }
 
-/// Movers of one shape share its blocks.
+/// Movers of equal shape share blocks.
 OutlineTable MoverGeometry::outlines_at(double z) const {
   OutlineTable table;
   std::map<std::vector<double>, OutlineTable::Outline> known;
@@ -102,7 +102,7 @@ void MoverGeometry::build_grid() {
   grid_.cell = std::max({4.0 * grid_.largest_radius, extent / (kMaxCells - 1), 1e-6});
   grid_.columns = static_cast<int>((high.x - low.x) / grid_.cell) + 1;
   grid_.rows = static_cast<int>((high.y - low.y) / grid_.cell) + 1;
-  // Of a mover's place, and of a viewer's, which may be outside by as much as it sees.
+  // Covers the position of a mover, and of a viewer, which may lie outside the grid by its range.
   grid_.error = static_cast<float>(0x1p-21 * (extent + grid_.cell));
   grid_.first.assign(static_cast<std::size_t>(grid_.columns) * static_cast<std::size_t>(grid_.rows) + 1, 0);
   for (std::size_t i = 0; i < poses_.size(); ++i) {

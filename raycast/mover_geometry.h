@@ -1,5 +1,5 @@
 #pragma once
-// Movers as host scans meet them: where their outlines are this tick, and who is where.
+// Movers in host scans: outlines at this tick's poses, and a grid of mover positions.
 
 #include <map>
 #include <span>
@@ -13,19 +13,20 @@ namespace sf::raycast {
 
 using base::Pose;
 
-/// All movers' outlines. Exact segments follow those of the walls: row = walls + the mover's first + number.
+/// Outlines of all movers. Row of an exact segment: number of walls + `first_rows()` of the mover + edge.
 class MoverGeometry {
  public:
   explicit MoverGeometry(const world::World& world);
 
-  /// Prepares for scans at world height `z` [m]: to be called for each before the first `place`. Gives its number.
+  /// Registers scans at world height `z` [m]; call before the first `set_poses`. @return index of the height
   std::uint32_t add_height(double z);
 
-  /// Moves every outline. One pose per mover; a mover whose x is not a number is nowhere. @param exact of movers' rows
+  /// Moves every outline. One pose per mover; a mover whose x is NaN is absent. @param exact out: rows of the movers'
+  /// edges
   void set_poses(std::span<const Pose> poses, base::ThreadPool& thread_pool, std::span<ExactSegment> exact);
 
   std::size_t segments() const { return local_.size(); }
-  /// Models that beams report, row by row.
+  /// `Segment::model` of each edge.
   const std::vector<std::uint32_t>& models() const { return models_; }
   double largest_radius() const { return grid_.largest_radius; }  ///< [m]
 
@@ -34,7 +35,7 @@ class MoverGeometry {
   const OutlineTable& outlines(std::uint32_t height) const { return heights_[height].outlines; }
   std::span<const Pose> poses() const { return poses_; }
   std::span<const glm::dvec2> headings() const { return headings_; }
-  /// Of each mover's exact segments among all of the scene's, and the end.
+  /// First exact segment of each mover, followed by the end.
   std::span<const std::uint32_t> first_rows() const { return first_rows_; }
 
  private:
@@ -48,8 +49,8 @@ class MoverGeometry {
   std::vector<world::Segment> local_;  ///< mover frame
   std::vector<std::uint32_t> models_;
   std::vector<std::uint32_t> first_rows_;
-  std::vector<double> radii_;   ///< [m] 0: nothing to meet
-  std::vector<double> load_z_;  ///< [m] heights are those at load, the world is 2.5-D
+  std::vector<double> radii_;   ///< [m] 0: no outline
+  std::vector<double> load_z_;  ///< [m] heights at load; they do not change (2.5-D world)
   std::uint32_t walls_;
   std::vector<Height> heights_;
   std::vector<Pose> poses_;

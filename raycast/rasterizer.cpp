@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raycast/rasterizer.cpp"
 #include <hwy/foreach_target.h>
-// Behind it: what is compiled for each.
+// After foreach_target.h: the code that is compiled per instruction set.
 #include "raycast/rasterizer/exact-inl.h"
 #include "raycast/rasterizer/movers-inl.h"
 #include "raycast/rasterizer/ranges-inl.h"
@@ -30,7 +30,7 @@ void scan(Scratch& s, const ScanView& view, const ScanPattern& pattern, const Sc
   if (scene.movers != nullptr) rasterize_movers(s, p, view, pattern, scene);
 }
 
-/// @return whether any beam grazes
+/// @return true when any beam grazes
 bool scan_all(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
               const ScanOutput& out) {
   if (pattern.beams <= kMaxExactBeams) return intersect_all_beams(s, view, pattern, scene, out);

@@ -1,20 +1,22 @@
 #pragma once
-// One scan by conversion: each segment is projected once to the beams that it covers, the nearest stays.
+// A scan by scan conversion: each segment is projected once to the beams that it covers, and each beam keeps the
+// nearest.
 //
-// Needs: blocks that hold every segment that could be met. Gives: the answers of `decide` over all of them, bit by bit.
+// Needs: blocks with every segment that a beam could meet. Result: equal, bit by bit, to `intersect` over all of them.
 //
 // In the sensor's frame a segment a + u e, seen from its right, has along bearing b the inverse range
 //   1 / t = (ex sin b - ey cos b) / (e x a): two products a beam, no division.
-// Each beam keeps the largest lower bound of 1 / t among segments that surely cover it, with that one's upper bound,
-// and the largest upper bound among all others. Where the first exceeds the last, the nearest segment is proven, and
-// its range is evaluated in 64 bits as `decide` does; else the beam meets every segment in 64 bits.
+// Each beam keeps the largest lower bound of 1 / t among segments that certainly cover it, with the upper bound of that
+// segment, and the largest upper bound among all others. Where the first exceeds the last, the nearest segment is
+// certified and its range is evaluated in 64 bits as `intersect` does. Otherwise the beam is uncertain and is
+// intersected with every segment in 64 bits.
 //
-// Errors, with coordinates up to A, u = 2^-24, band = 16 u A: (e x a) is wrong by less than 0.63 band |e|, so that of 1
-// / t is less than h (2 band h + 17 u), h = |e| / (e x a), where e x a exceeds band |e|: others are edge-on and prove
-// nothing. Bearings are wrong by less than 2 band / |a| and 1.3e-6 rad of rounding.
+// Errors, with coordinates up to A, u = 2^-24, band = 16 u A: the error of (e x a) is below 0.63 band |e|. The error of
+// 1 / t is then below h (2 band h + 17 u), h = |e| / (e x a), where e x a exceeds band |e|. Other segments are edge-on
+// and certify nothing. The error of bearings is below 2 band / |a| plus 1.3e-6 rad of rounding.
 //
-// A proven beam does not graze: its lower bound exceeds 0, so h^2 < 1 / (2 band t), and its sine, 1 / (h t), is above
-// sqrt(2 band / t) >= sqrt(2 SF_BAND) = 1.4e-3.
+// A certified beam does not graze: its lower bound exceeds 0, so h^2 < 1 / (2 band t), and its sine, 1 / (h t), exceeds
+// sqrt(2 band / t) >= sqrt(2 SF_COORDINATE_ERROR) = 1.4e-3.
 
 #include <memory>
 
@@ -22,17 +24,17 @@
 
 namespace sf::raycast {
 
-/// So few beams are not worth drawing everything around: each is decided alone.
+/// Up to this number of beams, a scan intersects each beam in 64 bits instead of projecting all segments.
 inline constexpr std::uint32_t kMaxExactBeams = 3;
 
-/// Scratch of one thread.
+/// Scans of one thread, with their scratch memory. Not thread-safe.
 class Rasterizer {
  public:
   Rasterizer();
   ~Rasterizer();
   Rasterizer(Rasterizer&&) noexcept;
 
-  /// @return whether any beam grazes: `out.grazes` is filled in only then
+  /// @return true when any beam grazes; only then `out.grazes` is filled in
   bool scan(const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, const ScanOutput& out);
   const ScanCounts& counts() const;
 
@@ -42,7 +44,7 @@ class Rasterizer {
   std::unique_ptr<Scratch> scratch_;
 };
 
-/// Which instructions this machine's scans use, as Highway names them, e.g. "AVX2".
+/// The instruction set of this machine's scans in Highway's naming, such as "AVX2".
 const char* vector_instructions();
 
 }  // namespace sf::raycast

@@ -13,10 +13,10 @@ namespace sf::raycast {
 
 namespace {
 
-/// Groups along x of a dispatch; more rows of groups follow along y. Devices promise 65 535.
+/// Groups along x of a dispatch; further groups follow along y. Vulkan guarantees 65 535.
 constexpr std::uint32_t kGroupsAcross = 32'768;
 
-/// Fans are in order of their movers.
+/// Scanners are sorted by mover.
 std::uint32_t count_sensing_movers(const std::vector<Scanner>& scanners) {
   std::uint32_t sensing_movers = 0;
   for (std::size_t i = 0; i < scanners.size(); ++i)
@@ -34,7 +34,7 @@ ScanView scan_view_of(const Scanner& scanner, const Viewpoint& from) {
   return view;
 }
 
-/// Fans with the same beams share their tables.
+/// Scanners with equal beams share beam tables.
 using BeamTableKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 
 }  // namespace
@@ -75,7 +75,7 @@ RayCaster::Tables::Tables(const SensorContext& context, const world::World& worl
   }
   make_tables(context.device, context.scene.largest_buffer, beam_lanes);
   write_all_beams();
-  // Patterns were numbered in order of rows, as tables of beams were.
+  // Patterns were numbered in order of rows, like beam tables.
   for (const ScannerRow& row : scanner_rows)
     if (!row.angle_noise && row.pattern == patterns.size())
       make_pattern(static_cast<std::size_t>(&row - scanner_rows.data()), {}, scratch[0], patterns.emplace_back());
@@ -125,7 +125,7 @@ void RayCaster::Tables::make_tables(gpu::Device& device, std::size_t largest_buf
 void RayCaster::Tables::make_pass(gpu::Device& device, CastDispatch& pass, bool is_single) {
   using gpu::Role;
   using gpu::Texel;
-  // Lanes are padded to whole groups, and groups to whole rows of groups where there are many.
+  // Lanes are padded to whole groups, and large numbers of groups to whole rows of groups.
   const std::size_t most_groups = out_lanes / kLanesPerGroup + 1;
   const std::size_t padded = (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * kLanesPerGroup;
   pass.lanes = std::make_unique<gpu::Buffer>(device, "whose beams", Role::upload, Texel::u32, 2 * padded);
@@ -138,7 +138,7 @@ void RayCaster::Tables::make_pass(gpu::Device& device, CastDispatch& pass, bool 
 }
 
 void RayCaster::Tables::write_all_beams() {
-  // Tables were given out in order of rows: one that lies behind all written so far is new, others are shared.
+  // Tables were allocated in order of rows: a table behind all written ones is new, others are shared.
   std::uint32_t written = 0;
   for (std::size_t i = 0; i < scanners.size(); ++i) {
     const ScannerRow& row = scanner_rows[i];
@@ -159,7 +159,7 @@ void RayCaster::Tables::apply_angle_noise(const DueSample& d, unsigned thread) {
 }
 
 void RayCaster::Tables::write_lanes() {
-  // Tables are born with anything in them: the first tick writes them, even when nothing is due.
+  // New tables hold undefined values: the first tick writes them even when nothing is due.
   const bool same = bound && lanes_written.size() == due.size() &&
                     std::equal(due.begin(), due.end(), lanes_written.begin(),
                                [](const DueSample& d, std::uint32_t row) { return d.row == row; });
@@ -182,7 +182,7 @@ void RayCaster::Tables::write_lanes(CastDispatch& pass, bool is_single) {
   const std::uint32_t needed = (due_lanes + group - 1) / group;
   const std::uint32_t across = std::min(needed, kGroupsAcross);
   const std::uint32_t down = across > 0 ? (needed + across - 1) / across : 0;
-  // Padding repeats the last lane, which then is written more than once with the same values.
+  // Padding repeats the last lane; its results are written repeatedly with equal values.
   const Lane last = at > 0 ? table[at - 1] : Lane{0, 0};
   std::fill(table.begin() + static_cast<std::ptrdiff_t>(at), table.begin() + std::ptrdiff_t{across} * down * group,
             last);
@@ -192,7 +192,7 @@ void RayCaster::Tables::write_lanes(CastDispatch& pass, bool is_single) {
   counts[2] = across > 0 ? 1 : 0;
 }
 
-/// Of the beams in the fan's tables. @param turns [rad] of each cast beam, or none
+/// Makes the pattern of scanner `i` from its beam tables. @param angle_noise [rad] of each cast beam; empty: none
 void RayCaster::Tables::make_pattern(std::size_t i, std::span<const double> angle_noise, Scratch& own,
                                      ScanPattern& pattern) {
   const world::Laser& laser = scanners[i].laser;
@@ -206,7 +206,7 @@ void RayCaster::Tables::make_pattern(std::size_t i, std::span<const double> angl
                  row.plan.place(1));
 }
 
-/// Where the due fans [first, last) look from: base::compose, with the sine and cosine of each mover once.
+/// Poses of the due scanners [first, last): as base::compose, with one sine and cosine per mover.
 void RayCaster::Tables::compute_viewpoints(std::size_t first, std::size_t last, std::span<const Pose> movers) {
   std::uint32_t mover = kNotShared;
   glm::dvec2 turn;
@@ -224,7 +224,7 @@ void RayCaster::Tables::compute_viewpoints(std::size_t first, std::size_t last, 
   }
 }
 
-/// Makes the device's lists for what is due, and its rows. @return whether tables were replaced
+/// Builds the device's lists and rows of all due scanners. @return true when tables were replaced
 bool RayCaster::Tables::prepare() {
   const auto ray_rows = rows->host<RayRow>().first(due.size());
   const bool replaced = scene->prepare(views, ray_rows);
@@ -239,7 +239,7 @@ bool RayCaster::Tables::prepare() {
   return replaced;
 }
 
-/// Fans of one mover that look from one point.
+/// Finds runs of scanners of one mover at one point.
 void RayCaster::Tables::find_shared_views() {
   std::vector<const BeamPlan*> plans;
   for (const ScannerRow& row : scanner_rows) plans.push_back(&row.plan);
@@ -267,7 +267,7 @@ void RayCaster::Tables::scan_on_host() {
   });
 }
 
-/// Views are shared where all of their fans are due.
+/// Lists this tick's host scans. A view is shared when all of its scanners are due.
 void RayCaster::Tables::list_scans() {
   scans.clear();
   host_views.clear();
@@ -283,7 +283,7 @@ void RayCaster::Tables::list_scans() {
   }
 }
 
-/// Writes a fan's results where kernels look for them. @param grazes null where none does
+/// Writes a scanner's results in the layout of the kernels. @param grazes null when no beam grazes
 void RayCaster::Tables::write_results(const ScannerRow& row, const double* own_ranges, const std::uint32_t* own_models,
                                       const std::uint8_t* grazes) {
   const std::size_t beams = row.plan.samples.size(), lanes = row.plan.lanes(), places = SF_BEAMS_PER_LANE * lanes;
@@ -294,7 +294,7 @@ void RayCaster::Tables::write_results(const ScannerRow& row, const double* own_r
   if (row.plan.packed) {
     if (own_ranges != out) std::copy_n(own_ranges, beams, out);
     if (own_models != hit_models) std::copy_n(own_models, beams, hit_models);
-    // Places without a beam repeat the last one.
+    // Unused places repeat the last beam.
     std::fill(out + beams, out + places, out[beams - 1]);
     std::fill(hit_models + beams, hit_models + places, hit_models[beams - 1]);
     for (std::size_t b = 0; grazes != nullptr && b < beams; ++b)
@@ -328,7 +328,7 @@ void RayCaster::Tables::scan_one(std::size_t k, unsigned thread) {
   write_results(row, to, hit_models, grazes ? own.grazes.data() : nullptr);
 }
 
-/// Scans all beams of a shared view and gives each fan its own.
+/// Scans all beams of a shared view and distributes the results to its scanners.
 void RayCaster::Tables::scan_shared(std::size_t k, unsigned thread) {
   const SharedView& shared = shared_views.views()[scans[k].shared];
   const SharedPattern& all = shared_views.pattern(shared);
@@ -357,7 +357,7 @@ void RayCaster::Tables::scan_shared(std::size_t k, unsigned thread) {
   }
 }
 
-/// Fans that the host casts: all, or those around which more is than the device's lists hold.
+/// Lists the scanners of host scans: all, or those whose lists exceed the device's limits.
 void RayCaster::Tables::find_host_due() {
   host_due.clear();
   for (std::uint32_t i = 0; !scene && i < due.size(); ++i) host_due.push_back(i);

@@ -1,5 +1,5 @@
 #pragma once
-// What the sources of sensors::Casts share: one row per fan, and the device's tables.
+// Tables that the sources of raycast::RayCaster share: one row per scanner, and the device's buffers.
 
 #include <cstdint>
 #include <memory>
@@ -14,31 +14,31 @@
 
 namespace sf::raycast {
 
-/// Of each dispatch over lanes.
+/// Work-group size of all dispatches over lanes.
 inline constexpr std::uint32_t kLanesPerGroup = 64;
 
-/// Of fans that share no view.
+/// Value of `shared` for scanners without a shared view.
 inline constexpr std::uint32_t kNotShared = 0xFFFFFFFFu;
 
-/// One scan of the host, for one fan or a shared view.
+/// One host scan, for one scanner or a shared view.
 struct HostScan {
-  std::uint32_t due = 0;              ///< its first fan
-  std::uint32_t shared = kNotShared;  ///< view
+  std::uint32_t due = 0;              ///< its first due scanner
+  std::uint32_t shared = kNotShared;  ///< index of the shared view
 };
 
-/// One fan, planned at load.
+/// One scanner, planned at load.
 struct ScannerRow {
   BeamPlan plan;
-  double height = 0.0;  ///< [m] of the beams in the world, fixed at load: the world is 2.5-D
+  double height = 0.0;  ///< [m] world height of the beams; fixed at load (2.5-D world)
   std::uint32_t config = 0;
   std::uint32_t beams = 0;  ///< first lane of its beam tables
   std::uint32_t pattern = 0;
   std::uint32_t out = 0;              ///< first lane of its results
-  bool angle_noise = false;           ///< has angular noise: beams are its own and change
+  bool angle_noise = false;           ///< has angular noise: its beam tables are its own and change
   std::uint32_t shared = kNotShared;  ///< the shared view that begins with it
 };
 
-/// One kernel over the lanes of its due fans.
+/// One kernel over the lanes of its due scanners.
 struct CastDispatch {
   std::unique_ptr<gpu::Kernel> kernel;
   std::unique_ptr<gpu::Buffer> lanes, groups;
@@ -49,27 +49,27 @@ struct RayCaster::Tables {
   std::uint64_t seed;
   bool noise;
   ListConfigs configs;
-  std::unique_ptr<DeviceScene> scene;  ///< where the device casts
-  std::unique_ptr<HostScene> host;     ///< where it does not, or has no room for all that a fan may meet
-  bool host_has_poses = false;         ///< this tick
+  std::unique_ptr<DeviceScene> scene;  ///< null where the host computes all scans
+  std::unique_ptr<HostScene> host;     ///< for all scans, or for scans that exceed the device's lists
+  bool host_has_poses = false;         ///< in this tick
   std::vector<Scanner> scanners;
   std::vector<ScannerRow> scanner_rows;
   CastDispatch exact;
-  std::optional<CastDispatch> single;  ///< where a fan asks for it
+  std::optional<CastDispatch> single;  ///< present where a scanner is `single`
   std::unique_ptr<gpu::Buffer> rows, mid_bearings, directions64, ranges, hits, beam_flags;
   std::vector<DueSample> due;
-  std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, that the passes' lanes hold
+  std::vector<std::uint32_t> lanes_written;  ///< due rows, in order, in the current lane tables
   std::vector<Viewpoint> views, host_views;
   std::vector<Pose> poses;                         ///< of all movers
   std::vector<std::vector<double>> angle_offsets;  ///< scratch per thread
-  std::vector<ScanPattern> patterns;               ///< of fans whose beams do not change, on the host
+  std::vector<ScanPattern> patterns;               ///< of scanners without angular noise, on the host
   struct Scratch {
     ScanPattern pattern;
     std::vector<double> bearings, ranges, x, y;
     std::vector<std::uint32_t> models;
     std::vector<std::uint8_t> grazes;
 
-    /// Room for results and directions of so many beams.
+    /// Room for the results and directions of `beams` beams.
     void make_room(std::size_t beams) {
       if (grazes.size() >= beams) return;
       grazes.resize(beams), models.resize(beams), ranges.resize(beams);
@@ -77,18 +77,18 @@ struct RayCaster::Tables {
     }
   };
   std::vector<Scratch> scratch;         ///< per thread
-  std::vector<std::uint32_t> host_due;  ///< due fans that the host casts
-  SharedViews shared_views;             ///< where the device casts nothing
+  std::vector<std::uint32_t> host_due;  ///< due scanners of host scans
+  SharedViews shared_views;             ///< used only where the device casts nothing
   std::vector<HostScan> scans;          ///< of this tick
   std::uint32_t out_lanes = 0;
-  std::uint32_t spare_lanes = 0;  ///< behind all results: where the device writes what the host casts
+  std::uint32_t spare_lanes = 0;  ///< behind all results: device output of host scans
   std::uint64_t host_scans = 0;
   std::uint64_t rays = 0;
   std::uint64_t uncertain_beams = 0;
   bool bound = false;
   bool beams_changed = true;
   bool any_angle_noise = false;
-  bool texel_results = false;  ///< too large for buffers
+  bool texel_results = false;  ///< the tables exceed the limit of storage buffers
 
   Tables(const SensorContext& context, const world::World& world, std::vector<Scanner> f);
   void plan(const world::World& world);

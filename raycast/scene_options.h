@@ -1,5 +1,5 @@
 #pragma once
-// How much room a scene's lists are given.
+// Memory limits of a scene's lists.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace sf::raycast {
 
-/// How much room the lists may have before the oldest make way; a few robots get less. When one tick alone needs more,
-/// the room doubles.
+/// Limits beyond which the oldest lists are evicted. A few robots start with less. When one tick alone needs more, the
+/// capacity doubles.
 struct SceneOptions {
   CasterChoice caster = CasterChoice::automatic;
-  std::uint32_t pool_chunks = 1u << 20;  ///< 80 bytes each; memory is touched only as far as used
+  std::uint32_t pool_chunks = 1u << 20;  ///< 80 bytes each; memory is committed only as far as used
   std::uint32_t pool_cells = 1u << 14;
-  /// [chunks] of one sector: what has longer lists is cast on the host, where this is not above what the device bears.
+  /// [chunks] per sector; the device's own limit also applies. Scans with longer lists run on the host.
   std::uint32_t longest_list = 0xFFFFFFFFu;
-  /// [bytes] of results: larger tables are written as texels, where this is not above what the device's buffers bear.
+  /// [bytes] of results; the device's own limit also applies. Larger tables are written as texels.
   std::size_t largest_buffer = 0xFFFFFFFFu;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Items by the sectors of directions in which they may be seen: what the device's lists are made of.
+// Items sorted by the sectors of directions in which they may be visible: the source of the device's lists.
 
 #include <cstdint>
 #include <span>
@@ -13,11 +13,11 @@ namespace sf::raycast {
 class SectorLists {
  public:
   void clear() { items_.clear(); }
-  /// Puts `item` into every sector within `half` of `bearing` [rad]; to all where `half` is beyond pi.
+  /// Adds `item` to every sector within `half` of `bearing` [rad]; to all sectors where `half` > pi.
   void add(double bearing, double half, std::uint32_t item);
-  /// To be called after the last `add`.
+  /// Call after the last `add`.
   void sort();
-  /// Items of one sector, in the order in which they were added.
+  /// Items of one sector, in the order of `add`.
   std::span<const std::uint32_t> of(std::uint32_t sector) const {
     return std::span(order_).subspan(first_[sector], first_[sector + 1] - first_[sector]);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// What a caster is given, what it is asked for, and what it did.
+// Inputs of casters and sensor backends: context, due samples, and counters of their work.
 
 #include <cstdint>
 
@@ -14,30 +14,30 @@ using base::Pose;
 
 /// One sensor that is due.
 struct DueSample {
-  std::uint32_t row = 0;       ///< in the kind's rows of this world
-  std::uint64_t sequence = 0;  ///< counts this sensor's readings; names its noise
+  std::uint32_t row = 0;       ///< index among the world's sensors of one type
+  std::uint64_t sequence = 0;  ///< number of the sensor's reading; key of its noise
 };
 
-/// What instruments of all kinds are given. All of it outlives them.
+/// Context of sensor backends of all types. All references must outlive them.
 struct SensorContext {
   const world::World& world;
   gpu::Device& device;
   base::ThreadPool& thread_pool;
   std::uint64_t seed = 0;  ///< of all noise
-  bool noise = true;       ///< false: none, whatever the world says
-  bool true_poses = true;  ///< movers are where their reports say: a simulation; false: these are estimates
+  bool noise = true;       ///< false: no noise, whatever the world file says
+  bool true_poses = true;  ///< true: simulation, reported poses are true; false: reported poses are estimates
   SceneOptions scene;
 };
 
-/// What instruments did since they were made.
+/// Counters of a backend since its construction.
 struct SensorStats {
   std::uint64_t rays = 0;             ///< beams cast
-  std::uint64_t uncertain = 0;        ///< beams that 32 bits could not prove
-  std::uint64_t cells_built = 0;      ///< sector lists made
-  std::uint64_t dipoles = 0;          ///< magnet and element pairs summed
-  std::uint64_t movers_in_range = 0;  ///< pairs of a robot that looks and a mover within its range
-  std::uint64_t movers_visible = 0;   ///< of these, in view; on the host, not hidden by nearer movers or walls either
-  std::uint64_t host_scans = 0;       ///< fans of beams cast on the host: too many surfaces for the device's lists
+  std::uint64_t uncertain = 0;        ///< beams that 32 bits could not certify
+  std::uint64_t cells_built = 0;      ///< cells whose lists were built
+  std::uint64_t dipoles = 0;          ///< pairs of magnet and element summed
+  std::uint64_t movers_in_range = 0;  ///< pairs of a sensing robot and a mover within its range
+  std::uint64_t movers_visible = 0;   ///< of these, in view; on the host also not hidden by nearer movers or walls
+  std::uint64_t host_scans = 0;       ///< scans on the host because the device's lists would be too long
 
   SensorStats& operator+=(const SensorStats& more);
   SensorStats operator-(const SensorStats& before) const;

@@ -1,5 +1,5 @@
 #pragma once
-// Fans of one mover that look from one point are scanned at once: their beams, by bearing, are one pattern.
+// Scanners of one mover at one point are scanned together: their beams, sorted by bearing, form one pattern.
 
 #include <cstdint>
 #include <map>
@@ -11,28 +11,28 @@
 
 namespace sf::raycast {
 
-/// The beams of several fans in the frame of the first.
+/// The beams of several scanners in the frame of the first.
 struct SharedPattern {
   struct Source {
-    std::uint32_t scanner;  ///< from the view's first
-    std::uint32_t beam;     ///< of that fan's pattern
-    std::uint32_t place;    ///< of it where fans' beams follow one another
+    std::uint32_t scanner;  ///< relative to the first of the view
+    std::uint32_t beam;     ///< of that scanner's pattern
+    std::uint32_t place;    ///< index among all beams, scanner after scanner
   };
   ScanPattern beams;
   std::vector<Source> sources;  ///< of each beam
 };
 
-/// A run of fans, by row.
+/// A run of scanner rows.
 struct SharedView {
   std::uint32_t first = 0, scanners = 0;
   std::uint32_t pattern = 0;
 };
 
-/// Built once. One thread.
+/// Built once. Not thread-safe.
 class SharedViews {
  public:
-  /// Adds fans [first, first + fans.size()), of which each could be scanned with the first.
-  /// @param plans of each fan  @return false where one pattern would serve them badly: their bearings are too uneven
+  /// Adds scanners [first, first + scanners.size()), which all satisfy `same_viewpoint` with the first.
+  /// @param plans of each scanner  @return false when their bearings are too uneven for one pattern
   bool add(std::uint32_t first, std::span<const Scanner> scanners, std::span<const BeamPlan* const> plans);
 
   std::span<const SharedView> views() const { return views_; }
@@ -41,10 +41,10 @@ class SharedViews {
  private:
   std::vector<SharedView> views_;
   std::vector<SharedPattern> patterns_;
-  std::map<std::vector<double>, std::uint32_t> known_;  ///< patterns by their fans' settings
+  std::map<std::vector<double>, std::uint32_t> known_;  ///< patterns by the settings of their scanners
 };
 
-/// Whether two fans of a world, without angular noise, look from one point in one way.
+/// True when two scanners without angular noise share position, height, range and mover.
 bool same_viewpoint(const Scanner& p, const Scanner& q);
 
 }  // namespace sf::raycast

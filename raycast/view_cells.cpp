@@ -20,7 +20,7 @@ CellKey ViewCells::key_of(const Viewpoint& view) const {
   const double size = sizes_[view.config];
   CellKey key{2 * std::int64_t{view.config}, static_cast<std::int64_t>(std::floor(view.X_WS.x / size)),
               static_cast<std::int64_t>(std::floor(view.X_WS.y / size))};
-  // A cell without a surface is on one side as a whole: that was found out for the first viewpoint in it.
+  // A cell without a surface lies on one side as a whole: the result for its first viewpoint holds for all.
   const auto known = [&] {
     const std::uint32_t slot = cache_.slot_of(key);
     return slot != CellCache::kNone && one_sided_[slot] != 0;

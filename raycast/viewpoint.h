@@ -1,5 +1,5 @@
 #pragma once
-// Where sensors look from.
+// Poses of sensors that are due.
 
 #include <cstdint>
 
@@ -7,7 +7,7 @@
 
 namespace sf::raycast {
 
-/// A sensor about to look.
+/// A sensor that is due.
 struct Viewpoint {
   std::uint32_t config = 0;
   std::uint32_t self = 0;  ///< mover that carries it

@@ -10,7 +10,7 @@ namespace {
 constexpr int kMaxCells = 512;  ///< along an axis
 constexpr int kMaxBands = 1024;
 
-/// Counting sort of (bucket, item) pairs, given by a function that calls back with each pair.
+/// Counting sort of (bucket, item) pairs. `each_pair` calls its argument with each pair.
 template <class EachPair>
 void fill_buckets(std::size_t buckets, std::vector<std::uint32_t>& first, std::vector<std::uint32_t>& items,
                   EachPair each_pair) {
@@ -118,8 +118,8 @@ void WallIndex::near(glm::dvec2 p, double radius, Query& query) const {
 bool WallIndex::inside_solid(glm::dvec2 p) const {
   if (segments_.empty() || p.x < low_.x || p.x > high_.x || p.y < low_.y || p.y > high_.y) return false;
   const std::size_t band = static_cast<std::size_t>(clamp_index((p.y - low_.y) / band_, bands_));
-  // A horizontal line crosses closed outlines as often up as down: what lies to one side of p counts, and the side that
-  // has less of the world is looked at.
+  // A horizontal line crosses closed outlines upward as often as downward. The crossings on one side of p suffice: the
+  // side with less of the world.
   const bool left = p.x - low_.x < high_.x - p.x;
   const std::vector<std::uint32_t>& items = left ? from_left_ : from_right_;
   int winding = 0;

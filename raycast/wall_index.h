@@ -1,5 +1,5 @@
 #pragma once
-// The walls that beams of one height can meet, with the questions a caster asks of them.
+// Spatial index of the walls that beams at one height can meet.
 
 #include <cstdint>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace sf::raycast {
 
-/// A segment in sight; `row` is its row in `World::walls`.
+/// A visible segment; `row` is its row in `World::walls`.
 struct IndexedWall {
   glm::dvec2 a;
   glm::dvec2 b;
@@ -17,27 +17,27 @@ struct IndexedWall {
   bool solid_left;
 };
 
-/// Immutable after construction; may be asked by several threads, each with its own `Query`.
+/// Immutable after construction. Several threads may query it, each with its own `Query`.
 class WallIndex {
  public:
-  /// The walls that a beam at height `z` [m] sees. `world` need not outlive it.
+  /// Indexes the walls visible at height `z` [m]. `world` need not outlive it. @param typical_range [m]
   WallIndex(const world::World& world, double z, double typical_range);
 
   const std::vector<IndexedWall>& segments() const { return segments_; }
-  glm::dvec2 low() const { return low_; }  ///< [m] corner of their bounding box
+  glm::dvec2 low() const { return low_; }  ///< [m] corner of the bounding box
   glm::dvec2 high() const { return high_; }
 
   /// Scratch of one thread.
   struct Query {
-    std::vector<std::uint32_t> found;  ///< rows in `segments()`, each once, in no order that matters
+    std::vector<std::uint32_t> found;  ///< indices into `segments()`, each once, in unspecified order
     std::vector<std::uint32_t> stamps;
     std::uint32_t stamp = 0;
   };
-  /// Every segment within `radius` [m] of `p`, and perhaps some more.
+  /// Finds every segment within `radius` [m] of `p`, and possibly more.
   void near(glm::dvec2 p, double radius, Query& query) const;
 
-  /// True when `p` lies in a solid: the winding number of all outlines with a known solid side is not 0. Points within
-  /// rounding of a surface may get either answer.
+  /// True when `p` lies in a solid: the winding number of all outlines with a known solid side is not 0. Within
+  /// rounding of a surface either result is possible.
   bool inside_solid(glm::dvec2 p) const;
 
  private:
@@ -55,8 +55,8 @@ class WallIndex {
   std::vector<std::uint32_t> cell_first_, cell_items_;  ///< segments by cell
   double band_ = 1.0;
   int bands_ = 1;
-  std::vector<std::uint32_t> band_first_;              ///< segments by range of y, for winding numbers:
-  std::vector<std::uint32_t> from_left_, from_right_;  ///< each band by least x rising, and by largest x falling
+  std::vector<std::uint32_t> band_first_;              ///< segments by interval of y, for winding numbers:
+  std::vector<std::uint32_t> from_left_, from_right_;  ///< each band by ascending least x, and by descending largest x
 };
 
 }  // namespace sf::raycast

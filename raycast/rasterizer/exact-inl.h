@@ -1,5 +1,5 @@
-// One beam against all that it may cross, in 64 bits.
-// Compiled once for each set of instructions (hwy/foreach_target.h).
+// 64-bit intersection of one beam with all segments that it may cross.
+// Compiled once per instruction set (hwy/foreach_target.h).
 
 #if defined(SF_RAYCAST_EXACT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SF_RAYCAST_EXACT_INL_H
@@ -16,8 +16,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace sf::raycast::HWY_NAMESPACE {
 
-/// Segments of a block that direction `d` may cross, those behind the viewer too: a bit each. Start and extent are
-/// turned by `heading` and moved by `from`.
+/// Bit mask of the segments of a block that direction `d` may cross, including segments behind the viewer. Start and
+/// extent are rotated by `heading` and translated by `from`.
 inline std::uint32_t segments_crossing(const SegmentBlock& block, glm::dvec2 from, glm::dvec2 heading, glm::dvec2 d,
                                        float band) {
   const VF c = constant(static_cast<float>(heading.x)), sn = constant(static_cast<float>(heading.y));
@@ -35,7 +35,7 @@ inline std::uint32_t segments_crossing(const SegmentBlock& block, glm::dvec2 fro
   return found;
 }
 
-/// Decides those of a block that beam `d` may cross.
+/// Intersects beam `d` with the segments of a block that it may cross.
 void intersect_block(const ScanView& view, const ScanScene& scene, const SegmentBlock& block, glm::dvec2 from,
                      glm::dvec2 heading, std::uint32_t first_row, glm::dvec2 d, ClosestHit& best) {
   for (std::uint32_t pending = segments_crossing(block, from, heading, d, view.band); pending != 0;
@@ -65,7 +65,7 @@ void intersect_walls(const ScanView& view, const ScanScene& scene, glm::dvec2 d,
     visit_block(scene.walls[static_cast<std::size_t>(__builtin_ctzll(pending))]);
 }
 
-/// Lists movers of one row of cells whose discs beam `d` may cross within `range`.
+/// Lists the movers in grid entries [from, end) whose discs beam `d` may cross within `range`.
 void find_movers_on_beam(Scratch& s, const ScanView& view, const ScanScene& scene, glm::dvec2 d, double range,
                          std::uint32_t from, std::uint32_t end) {
   const MoverGrid& grid = *scene.movers;
@@ -105,7 +105,7 @@ void intersect_movers(Scratch& s, const ScanView& view, const ScanScene& scene, 
   }
 }
 
-/// Answers beam `i` by all that lies across it, in 64 bits. @return whether it grazes
+/// Writes the result of beam `i` from all segments that it may cross, in 64 bits. @return true when it grazes
 bool intersect_beam(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene, std::size_t i,
                     const ScanOutput& out) {
   const glm::dvec2 d = direction_of(view, pattern, i);
@@ -123,7 +123,7 @@ bool intersect_beam(Scratch& s, const ScanView& view, const ScanPattern& pattern
   return grazes;
 }
 
-/// Answers every beam alone. @return whether any grazes
+/// Intersects every beam in 64 bits. @return true when any grazes
 bool intersect_all_beams(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
                          const ScanOutput& out) {
   bool grazes = false;
@@ -131,7 +131,7 @@ bool intersect_all_beams(Scratch& s, const ScanView& view, const ScanPattern& pa
   return grazes;
 }
 
-/// Answers the beams that are in doubt. @return whether any grazes
+/// Intersects the uncertain beams in 64 bits. @return true when any grazes
 bool intersect_uncertain_beams(Scratch& s, const ScanView& view, const ScanPattern& pattern, const ScanScene& scene,
                                const ScanOutput& out) {
   std::fill_n(out.grazes, pattern.beams, std::uint8_t{0});

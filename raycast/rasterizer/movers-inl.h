@@ -1,5 +1,5 @@
-// Drawing movers, near to far, without lists.
-// Compiled once for each set of instructions (hwy/foreach_target.h).
+// Rasterizes movers, near to far, without lists.
+// Compiled once per instruction set (hwy/foreach_target.h).
 
 #if defined(SF_RAYCAST_MOVERS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SF_RAYCAST_MOVERS_INL_H
@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sf::raycast::HWY_NAMESPACE {
 
-/// Lists the movers of one row of cells that are in reach, in view and not behind walls.
+/// Lists the movers in grid entries [from, end) that are in range, in view and not behind walls.
 void find_movers_in_row(Scratch& s, const Projection& p, const ScanView& view, const ScanPattern& pattern,
                         const ScanScene& scene, std::uint32_t from, std::uint32_t end) {
   const MoverGrid& grid = *scene.movers;

@@ -1,5 +1,5 @@
-// Segments become intervals of beams: raycast/rasterizer.h derives the errors.
-// Compiled once for each set of instructions (hwy/foreach_target.h).
+// Projects segments to intervals of beams. raycast/rasterizer.h derives the errors.
+// Compiled once per instruction set (hwy/foreach_target.h).
 
 #if defined(SF_RAYCAST_PROJECTION_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SF_RAYCAST_PROJECTION_INL_H
@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sf::raycast::HWY_NAMESPACE {
 
-/// The values that all segments of one scan are projected with.
+/// Constants of one scan's projection.
 struct Projection {
   VF heading_cos, heading_sin;
   VF per_radian, middle, slack, turn;
@@ -42,7 +42,7 @@ Projection projection_of(const ScanView& view, const ScanPattern& pattern) {
           constant(pattern.edge_sin)};
 }
 
-/// Puts the intervals of `mask` that touch beams at the scratch's end.
+/// Appends the intervals of `mask` that contain beams.
 inline void append_interval(Scratch& s, const Projection& p, MF mask, VF low_possible, VF high_possible, VF low_certain,
                             VF high_certain, VF a, VF b, VF error, const std::uint32_t* rows, std::uint32_t first_row) {
   const VF first = hn::Max(hn::Floor(low_possible - p.slack), constant(0.0f));
@@ -53,7 +53,7 @@ inline void append_interval(Scratch& s, const Projection& p, MF mask, VF low_pos
   store(a, &s.a[at]), store(b, &s.b[at]), store(error, &s.error[at]);
   store(low_possible, &s.low_possible[at]), store(high_possible, &s.high_possible[at]);
   store(low_certain, &s.low_certain[at]), store(high_certain, &s.high_certain[at]);
-  // Beyond 2^31 there is no beam.
+  // The conversion needs values below 2^31; no beam has so large an index.
   hn::StoreU(hn::ConvertTo(kI, hn::Min(first, constant(1e9f))), kI, &s.first[at]);
   hn::StoreU(hn::ConvertTo(kI, hn::Max(last, constant(-1.0f))), kI, &s.last[at]);
   hn::StoreU(hn::LoadU(kU, rows) + hn::Set(kU, first_row), kU, &s.row[at]);
@@ -62,7 +62,7 @@ inline void append_interval(Scratch& s, const Projection& p, MF mask, VF low_pos
   s.used += lanes();
 }
 
-/// Projects segments that start at (wx, wy) from the viewer and extend by (gx, gy), in the world's directions.
+/// Projects segments that start at (wx, wy) from the viewer and extend by (gx, gy), in world directions.
 inline void project(Scratch& s, const Projection& p, VF wx, VF wy, VF gx, VF gy, const std::uint32_t* rows,
                     std::uint32_t first_row) {
   const VF length = hn::Abs(gx) + hn::Abs(gy);
@@ -73,7 +73,7 @@ inline void project(Scratch& s, const Projection& p, VF wx, VF wy, VF gx, VF gy,
   const VF ex = p.heading_cos * gx + p.heading_sin * gy, ey = p.heading_cos * gy - p.heading_sin * gx;
   const VF bx = ax + ex, by = ay + ey;
   if (p.narrow) {
-    // Both ends beyond the left edge of the view, or both beyond the right one.
+    // Cull segments with both ends beyond the left edge of the view, or both beyond the right one.
     const VF tolerance = constant(-8.0f) * p.band;
     const VF left_a = p.edge_sin * ax - p.edge_cos * ay, left_b = p.edge_sin * bx - p.edge_cos * by;
     const VF right_a = p.edge_sin * ax + p.edge_cos * ay, right_b = p.edge_sin * bx + p.edge_cos * by;
@@ -87,7 +87,7 @@ inline void project(Scratch& s, const Projection& p, VF wx, VF wy, VF gx, VF gy,
   const VF rounding = constant(2e-6f);
   const VF margin_a = p.per_radian * (two_bands * inverse_a + rounding);
   const VF margin_b = p.per_radian * (two_bands * inverse_b + rounding);
-  // Seen from the right, bearings fall from a to b, unless the rear is crossed between them.
+  // Seen from the right, bearings decrease from a to b, except where the segment crosses the rear.
   const VF half = constant(0.5f) * p.turn;
   const VF wide = at_a - at_b;
   const MF wraps = wide < hn::Neg(half);
@@ -96,7 +96,7 @@ inline void project(Scratch& s, const Projection& p, VF wx, VF wy, VF gx, VF gy,
   const VF margin_low = hn::IfThenElse(hn::Or(wraps, at_b <= at_a), margin_b, margin_a);
   const VF margin_high = hn::IfThenElse(hn::Or(wraps, at_b <= at_a), margin_a, margin_b);
   const MF edge_on = hn::Abs(ahead) <= error_margin;
-  // An end too near to have a bearing, or a viewer between the ends of a segment that it stands on: anywhere.
+  // An end too near for a bearing, or a viewer on the segment between its ends: the segment may cover every beam.
   const VF span = high - low;
   const MF anywhere = hn::Or(hn::Or(hn::Max(margin_a, margin_b) > constant(0.1f) * p.per_radian,
                                     hn::Abs(span - half) < constant(1e-5f) * p.turn),
@@ -113,7 +113,7 @@ inline void project(Scratch& s, const Projection& p, VF wx, VF wy, VF gx, VF gy,
   const VF high_certain = high - margin_high;
   s.reserve(3 * lanes());
   append_interval(s, p, seen, low_possible, high_possible, low_certain, high_certain, a, b, error, rows, first_row);
-  // A segment across the rear is met at the other end of the view too.
+  // A segment across the rear also covers beams at the other end of the view.
   const MF wrapped = hn::And(seen, hn::AndNot(anywhere, high_possible + p.slack >= p.turn));
   if (!hn::AllFalse(kF, wrapped))
     append_interval(s, p, wrapped, low_possible - p.turn, high_possible - p.turn, low_certain - p.turn,

@@ -1,5 +1,5 @@
-// Which segment each beam meets first, where that is proven, and its range in 64 bits.
-// Compiled once for each set of instructions (hwy/foreach_target.h).
+// The certified nearest segment of each beam, and its range in 64 bits.
+// Compiled once per instruction set (hwy/foreach_target.h).
 
 #if defined(SF_RAYCAST_RANGES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SF_RAYCAST_RANGES_INL_H
@@ -15,7 +15,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace sf::raycast::HWY_NAMESPACE {
 
-/// Bits of beams after which another segment is the nearest, and of those in doubt.
+/// Fills the bit masks of the last beam of each run of one nearest segment, and of the uncertain beams.
+/// @return true when any beam is uncertain
 bool find_runs(Scratch& s, std::uint32_t beams) {
   std::fill(s.ends.begin(), s.ends.end(), 0);
   std::fill(s.uncertain.begin(), s.uncertain.end(), 0);
@@ -36,7 +37,7 @@ bool find_runs(Scratch& s, std::uint32_t beams) {
   return any_uncertain;
 }
 
-/// Ranges of beams [first, end) that meet `g`, as `decide` has them.
+/// Ranges of beams [first, end) that meet `g`, by the operations of `intersect`.
 inline void exact_ranges(const ScanView& view, const ScanPattern& pattern, const ExactSegment& g, std::uint32_t first,
                          std::uint32_t end, double* ranges) {
   const double wx = g.ax - view.origin.x, wy = g.ay - view.origin.y;
@@ -55,7 +56,7 @@ inline void exact_ranges(const ScanView& view, const ScanPattern& pattern, const
     }
     const VD range = hn::Max(numerator / (dx * y - dy * x), least);
     if (j + step <= pattern.beams) {
-      hn::StoreU(range, kD, &ranges[j]);  // behind `end` the next run follows
+      hn::StoreU(range, kD, &ranges[j]);  // the next run overwrites places behind `end`
     } else {
       HWY_ALIGN double last[kBlock];
       hn::Store(range, kD, last);
@@ -64,7 +65,7 @@ inline void exact_ranges(const ScanView& view, const ScanPattern& pattern, const
   }
 }
 
-/// The same ranges in 32 bits.
+/// The same ranges in 32 bits, where these are accurate enough.
 void measure_in_32_bits(const ScanView& view, const ScanPattern& pattern, const ExactSegment& g, std::uint32_t first,
                         std::uint32_t end, double* ranges) {
   for (std::uint32_t j = first; j < end; ++j) {
@@ -73,7 +74,7 @@ void measure_in_32_bits(const ScanView& view, const ScanPattern& pattern, const 
   }
 }
 
-/// Calls `visit(first, end, nearest_segment)` for the beams [first, end) of one winner each.
+/// Calls `visit(first, end, nearest_segment)` for each run of beams [first, end) with one nearest segment.
 template <class Visit>
 HWY_INLINE void each_run(const Scratch& s, Visit visit) {
   std::uint32_t first = 0;

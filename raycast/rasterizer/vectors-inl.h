@@ -1,5 +1,5 @@
-// Vectors of a scan: as wide as the machine has them, at most a block of segments.
-// Compiled once for each set of instructions (hwy/foreach_target.h).
+// Vector types of a scan: as wide as the machine's, at most one block of segments.
+// Compiled once per instruction set (hwy/foreach_target.h).
 
 #if defined(SF_RAYCAST_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SF_RAYCAST_VECTORS_INL_H
@@ -38,7 +38,7 @@ inline std::uint32_t bits_of(MF mask) {
   return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8;
 }
 
-/// [rad] of (x, y), to 1e-6, and the inverse of the larger of |x| and |y|. Abramowitz and Stegun 4.4.49.
+/// Bearing [rad] of (x, y), to 1e-6, and the inverse of max(|x|, |y|). Abramowitz and Stegun 4.4.49.
 inline VF bearing_of(VF y, VF x, VF& inverse) {
   const VF across = hn::Abs(y), along = hn::Abs(x);
   const VF larger = hn::Max(hn::Max(along, across), constant(1e-30f));

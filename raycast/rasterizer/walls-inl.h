@@ -1,5 +1,5 @@
-// Drawing intervals, and the walls of a cell, near to far.
-// Compiled once for each set of instructions (hwy/foreach_target.h).
+// Rasterizes intervals, and the walls of a cell, near to far.
+// Compiled once per instruction set (hwy/foreach_target.h).
 
 #if defined(SF_RAYCAST_WALLS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SF_RAYCAST_WALLS_INL_H
@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sf::raycast::HWY_NAMESPACE {
 
-/// Enters segment `k` into the beams that it may cover.
+/// Updates the bounds of the beams that segment `k` may cover.
 inline void rasterize(Scratch& s, const ScanPattern& pattern, std::uint32_t k) {
   const VF a = constant(s.a[k]), b = constant(s.b[k]), error = constant(s.error[k]);
   const VF low_possible = constant(s.low_possible[k]), high_possible = constant(s.high_possible[k]);
@@ -52,7 +52,7 @@ void rasterize_from(Scratch& s, const ScanPattern& pattern, std::size_t first_li
   for (std::size_t q = first_live; q < s.live.size(); ++q) rasterize(s, pattern, s.live[q]);
 }
 
-/// Whether some beam of [low, high] may see something nearer than `distance`.
+/// False when every beam in [low, high] certainly meets something nearer than `distance`.
 bool may_be_visible(const Scratch& s, const ScanPattern& pattern, float low, float high, float distance) {
   const auto last = static_cast<float>(pattern.beams - 1);
   if (high < 0.0f || low > last) return false;
@@ -69,14 +69,14 @@ bool may_be_visible(const Scratch& s, const ScanPattern& pattern, float low, flo
   return false;
 }
 
-/// Whether some beam that the mover's disc touches may see it.
+/// False when the mover is hidden from every beam that its disc covers.
 bool may_be_visible(const Scratch& s, const Projection& p, const ScanPattern& pattern, const NearMover& near) {
   return may_be_visible(s, pattern, near.low, near.high, near.distance) ||
          may_be_visible(s, pattern, near.low - p.full, near.high - p.full, near.distance) ||
          may_be_visible(s, pattern, near.low + p.full, near.high + p.full, near.distance);
 }
 
-/// Whether all of a block's segments are out of view or behind what is drawn.
+/// True when all segments of a block are out of view or hidden by segments rasterized before.
 bool is_occluded(const Scratch& s, const Projection& p, const ScanPattern& pattern, const SegmentBlock& block) {
   if (block.half > 3.0f) return false;
   const float turned = block.bearing - p.yaw;  // within two turns
@@ -85,7 +85,7 @@ bool is_occluded(const Scratch& s, const Projection& p, const ScanPattern& patte
   return !may_be_visible(s, p, pattern, {block.nearest, 0, place - wide, place + wide});
 }
 
-/// Blocks that some beam may look at, a bit each.
+/// Bit mask of the blocks in the directions of the pattern's beams.
 std::uint64_t blocks_in_view(const Projection& p, const ScanPattern& pattern, const SectorBlockMasks& ahead) {
   constexpr float kPerRadian = kSectors / 6.2831853f;
   const float middle = p.yaw * kPerRadian, wide = pattern.half_view * kPerRadian + 1e-3f;
