@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view kExact = "exact";
 
-/// What `word`, with or without its kind before a colon, is to a kind; null: nothing.
+/// The mode of the sensor type `kind` called `word`, which may have a prefix "type:"; null: none.
 const AccuracyMode* find_mode(std::string_view kind, std::span<const AccuracyMode> modes, std::string_view word) {
   const std::size_t colon = word.find(':');
   if (colon != std::string_view::npos && word.substr(0, colon) != kind) return nullptr;
@@ -39,7 +39,7 @@ std::string listed(const std::vector<std::string_view>& words) {
   return text;
 }
 
-/// Of a file's line, or of the command line.
+/// Error at a line of the file, or of the command line.
 [[noreturn]] void refuse(const world::World& world, const world::Accuracy& at, const std::string& message) {
   throw base::InputError(at.file.empty() ? world.file : at.file, at.line, message);
 }
@@ -83,7 +83,7 @@ void check_word(const world::World& world, std::span<const SensorType* const> pr
          fmt::format("accuracy \"{}\" is for {}, and the world has no such sensor; leave it out", word, who));
 }
 
-/// Kinds with modes judge what their own sensors say; for the others only one word is right.
+/// Types with modes check their sensors' words in `mode_of`; the other types accept only `exact`.
 void check_sensor(const world::World& world, const world::Sensor& sensor) {
   const auto all = sensor_types();
   const auto kind = std::find_if(all.begin(), all.end(), [&](const auto* k) { return k->word.type == sensor.type; });
@@ -118,10 +118,10 @@ std::vector<std::string_view> accuracy_words() {
 
 namespace {
 
-/// Sensors that are set up alike state the same.
+/// Settings by which sensors have equal bounds.
 using Alike = std::tuple<std::uint8_t, bool, double, double, std::uint32_t>;
 
-/// @param known bounds of those that were looked at
+/// @param known bounds computed before
 const ErrorBound& bound_of(const world::World& world, const SensorType& kind, const SensorSpec& row,
                            std::map<Alike, ErrorBound>& known) {
   const auto [at, is_new] = known.try_emplace(

@@ -1,10 +1,10 @@
 #pragma once
-// Choice of each sensor's accuracy mode. The modes themselves are tables of the sensor types: sensors/laser_modes.cpp,
-// sensors/magnetometer_modes.cpp.
+// Choice of each sensor's accuracy mode. The modes themselves are tables of the sensor types: sensors/laser_modes.h,
+// sensors/laneedge_settings.h, sensors/magnetometer_modes.h.
 //
-// A world file says `accuracy "word"` for all sensors, or inside one of them; the command line's word comes before
-// both. Several words, with spaces between, are for several kinds: a sensor takes the first that its kind knows, and is
-// exact when there is none. `laser:skip2` is for that kind alone.
+// A world file sets `accuracy "word"` for all sensors or inside one of them; the word of the command line overrides
+// both. Several words, separated by spaces, serve several sensor types: a sensor takes the first word that its type
+// has, and is exact when it has none. `laser:skip2` applies to that type only.
 
 #include <string>
 #include <string_view>
@@ -15,40 +15,42 @@
 
 namespace sf::sensors {
 
-/// Row of `modes`, those of the kind called `kind`, that a sensor measures in.
-/// @param own what its place in the world file says  @throws base::InputError, there, for a word that is not among them
+/// Row of `modes`, the modes of the sensor type `kind`, for one sensor.
+/// @param own the sensor's own setting in the world file
+/// @throws base::InputError at that setting for an unknown word
 std::uint8_t mode_of(std::string_view kind, std::span<const AccuracyMode> modes, const world::Accuracy& own,
                      const world::World& world);
 
-/// `accuracy "word"` among a sensor's settings.
+/// The `accuracy "word"` setting of a sensor.
 world::Accuracy accuracy_of(const world::Sensor& sensor);
 
-/// @throws base::InputError when no kind knows the world's word, or none that the world has sensors of; and where a
-/// sensor of a kind without modes asks for one.
+/// @throws base::InputError when no sensor type, or none of the types `present`, has the world's word, or when a sensor
+/// without modes sets one
 void check_accuracy(const world::World& world, std::span<const SensorType* const> present);
 
-/// Makes `words` the world's, and takes back what its sensors say of their own.
+/// Sets the world's words and clears the settings of its sensors.
 void set_accuracy(world::World& world, const std::string& words);
 
-/// Every word that some kind knows, `exact` first, in order of the kinds.
+/// All words of all sensor types: `exact` first, then in order of the types.
 std::vector<std::string_view> accuracy_words();
 
-/// What a world's sensors state before they measure: one row a kind, mode and bound.
+/// The bounds that a world's sensors state before a run: one row per type, mode and bound.
 struct AccuracyStatement {
   const SensorType* kind = nullptr;
   std::uint8_t mode = 0;
-  std::uint32_t sensors = 0;  ///< of which this is true
+  std::uint32_t sensors = 0;  ///< number of sensors with this bound
   ErrorBound bound;
 };
 std::vector<AccuracyStatement> accuracy_statements(const world::World& world, const SensorSet& sensor_set);
 
-/// "laser:single magnetometer:near3": the modes that are not exact, each once; "exact" where there are none.
+/// The modes in use other than exact, each once, such as "laser:single magnetometer:near3"; "exact" when there are
+/// none.
 std::string modes_of(const SensorSet& sensor_set);
 
-/// "m" or "T" of a kind's first column, as its name says; else "".
+/// Unit of a type's first column, "m" or "T", from the suffix of its name; otherwise "".
 std::string_view unit_of(const SensorType& kind);
 
-/// The word of a mode: `exact` for kinds without modes.
+/// The word of a mode; `exact` for types without modes.
 std::string_view word_of(const SensorType& kind, std::uint8_t mode);
 
 }  // namespace sf::sensors

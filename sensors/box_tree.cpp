@@ -27,7 +27,7 @@ std::uint32_t BoxTree::build(std::span<const Box> boxes, std::span<std::uint32_t
   nodes_.push_back({all, 0, numbers[0]});
   if (numbers.size() == 1) return at;
 
-  // Halves along the longer side, by middles; ties by number, so that the tree is one tree.
+  // Split at the median of the longer side. Ties break by index, so that the tree is unique.
   const bool wide = all.max.x - all.min.x >= all.max.y - all.min.y;
   const auto middle = [&](std::uint32_t n) {
     return wide ? boxes[n].min.x + boxes[n].max.x : boxes[n].min.y + boxes[n].max.y;

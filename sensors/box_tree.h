@@ -1,6 +1,6 @@
 #pragma once
-// Boxes in the plane, many of them: which meet a box? A balanced tree of bounding boxes, built once; queries allocate
-// nothing and may run on any thread.
+// A balanced tree of axis-aligned boxes in the plane, for intersection queries. Built once; queries do not allocate and
+// are thread-safe.
 
 #include <algorithm>
 #include <cstdint>
@@ -20,11 +20,11 @@ inline bool meet(const Box& a, const Box& b) {
 
 class BoxTree {
  public:
-  /// @param boxes finite; their numbers are what queries are told
+  /// @param boxes finite; their indices are passed to the predicates of queries
   explicit BoxTree(std::span<const Box> boxes = {});
 
-  /// True as soon as `predicate(std::uint32_t number)` is true for a box that meets `box`. Each is asked about at most
-  /// once; the order is fixed.
+  /// True as soon as `predicate(std::uint32_t index)` is true for a box that meets `box`. Calls it at most once per
+  /// box, in a fixed order.
   template <class Predicate>
   bool any(const Box& box, Predicate&& predicate) const {
     return !nodes_.empty() && any_below(0, box, predicate);
@@ -33,8 +33,8 @@ class BoxTree {
  private:
   struct Node {
     Box box;
-    std::uint32_t left = 0;   ///< of its children; 0: a leaf
-    std::uint32_t right = 0;  ///< of a leaf: its box's number
+    std::uint32_t left = 0;   ///< child; 0: this node is a leaf
+    std::uint32_t right = 0;  ///< child; in a leaf, the index of its box
   };
   std::uint32_t build(std::span<const Box> boxes, std::span<std::uint32_t> numbers);
 

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kTurn = 2.0 * M_PI;
 constexpr double kSector = kTurn / base::kContactSectors;
-constexpr double kRounding = 1e-9;  // [rad] of degrees made radians
+constexpr double kRounding = 1e-9;  // [rad] rounding of degrees converted to radians
 
-/// Bearings from `from` counter-clockwise to `from` + `sweep` [rad].
+/// Sectors whose middles have bearings from `from` counter-clockwise to `from` + `sweep` [rad].
 std::uint32_t sectors_of(double from, double sweep) {
   std::uint32_t sectors = 0;
   for (std::uint32_t k = 0; k < base::kContactSectors; ++k) {
@@ -46,7 +46,7 @@ std::uint32_t read_zone(const world::Sensor& sensor, const world::Setting& setti
                      setting.key, degrees[0], degrees[1], base::kContactSectors));
 }
 
-/// Stage's way: bars [x y z angle] of `blength`, square to `angle`. A bar is the arc of bearings between its ends.
+/// Stage's bars: [x y z angle] and `blength`, perpendicular to `angle`. A bar is the arc of bearings between its ends.
 std::vector<std::uint32_t> read_bars(const world::Sensor& sensor) {
   const std::uint32_t count = whole(sensor, "bcount", 1, 1, kMostBumperZones);
   std::vector<std::uint32_t> switches;
@@ -81,7 +81,7 @@ class Bumpers : public HostBackend {
  private:
   void measure(std::span<const HostSample> samples) const override;
 
-  std::vector<std::vector<std::uint32_t>> switches_;  ///< per row: the sectors of each
+  std::vector<std::vector<std::uint32_t>> switches_;  ///< per row: the sectors of each switch
   std::vector<std::uint32_t> contact_masks_;          ///< per mover
 };
 

@@ -17,7 +17,7 @@ class Cliffs : public HostBackend {
   void measure(std::span<const HostSample> samples) const override;
 
   DropOffIndex drop_offs_;
-  std::vector<std::vector<Pose>> points_;  ///< per row, in the sensor's frame
+  std::vector<std::vector<Pose>> points_;  ///< per row, in the sensor frame
 };
 
 std::vector<SensorSpec> specs_of(const world::World& world) {

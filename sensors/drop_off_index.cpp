@@ -21,8 +21,8 @@ std::vector<Box> boxes_of(std::span<const world::FloorHole> drops) {
   return boxes;
 }
 
-/// Whether the edge from `a` to `b` passes `p` on its right, along +x. Both ends are seen from `p` and in one order, so
-/// that neighbours that share the edge decide alike.
+/// True when the edge ab passes `p` on the right, along +x. Both ends are taken relative to `p` and in one order, so
+/// that polygons that share the edge decide alike.
 bool passes(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) {
   if ((a.y <= p.y) == (b.y <= p.y)) return false;
   if (a.y > b.y) std::swap(a, b);

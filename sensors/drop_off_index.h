@@ -1,5 +1,5 @@
 #pragma once
-// Where there is no floor.
+// Spatial index of floor holes.
 
 #include <span>
 #include <vector>
@@ -9,15 +9,15 @@
 
 namespace sf::sensors {
 
-/// Whether `p` is within the closed polygon `outline`, either winding. Decided by the sign of one product for each
-/// edge: of polygons that share edges, exactly one holds a point on these.
+/// True when `p` is inside the closed polygon `outline`, of either winding. Each edge is decided by the sign of one
+/// product: among polygons that share edges, exactly one contains a point on them.
 bool holds(std::span<const glm::dvec2> outline, glm::dvec2 p);
 
-/// The drops of a world, which must outlive it. Any thread.
+/// The holes of a world, which must outlive this object. Thread-safe.
 class DropOffIndex {
  public:
   explicit DropOffIndex(std::span<const world::FloorHole> drops);
-  /// True where one of them holds `p`.
+  /// True when a hole contains `p`.
   bool hold(glm::dvec2 p) const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Where the elements of an array are, as Stage's rangers say it: `scount N`, then `spose[i] [x y yaw]` or, lifted,
-// `spose3[i] [x y z yaw]` for each.
+// Positions of an array's elements in Stage's syntax: `scount N`, then for each `spose[i] [x y yaw]` or, with a height,
+// `spose3[i] [x y z yaw]`.
 
 #include <cstdint>
 #include <vector>
@@ -9,8 +9,9 @@
 
 namespace sf::sensors {
 
-/// Each element in the sensor's frame [m, rad], in order of its number; one in the middle where nothing is said.
-/// @throws base::InputError where one is missing, given twice, beyond `scount` or too far away, or more than `most`.
+/// Poses of the elements in the sensor frame [m, rad], in order; one element at the origin when nothing is set.
+/// @throws base::InputError where an element is missing, given twice, beyond `scount` or too far away, or for more than
+/// `most`
 std::vector<Pose> read_elements(const world::Sensor& sensor, std::uint32_t most);
 
 }  // namespace sf::sensors

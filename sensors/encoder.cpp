@@ -14,16 +14,16 @@ namespace sf::sensors {
 namespace {
 
 constexpr double kSkidScrub = 1.5;     // of a Pioneer 3-AT: docs/sensors.md
-constexpr double kAlwaysRolled = 0.5;  // [m] no way so short is a jump
+constexpr double kAlwaysRolled = 0.5;  // [m] a shorter displacement is never a relocation
 
-/// Where a mover is and was, for all that rolls under it.
+/// Last pose of a mover.
 struct Track {
   Pose X_WM;
-  std::int64_t since = 0;  ///< [ns] when it got there
-  bool moved = false;      ///< ever
+  std::int64_t since = 0;  ///< [ns] time of that pose
+  bool moved = false;      ///< since the start
 };
 
-/// One robot's encoders at work.
+/// State of one robot's encoders.
 struct Wheels {
   Encoder settings;
   Rolled rolled;  ///< [m] since the start
@@ -42,8 +42,8 @@ class Encoders : public HostBackend {
   bool drove(const Track& track, const Pose& X_WM, double max_forward, std::int64_t now) const;
 
   std::vector<Wheels> wheels_;  ///< per row, at the last tick
-  std::vector<Wheels> ahead_;   ///< per row, where they are read between two ticks
-  bool between_ = false;        ///< they are
+  std::vector<Wheels> ahead_;   ///< per row, in a sample between two ticks
+  bool between_ = false;        ///< `ahead_` is current
   std::vector<Track> tracks_;   ///< per row
   std::int64_t last_ = 0;       ///< [ns] of the last tick
 };
@@ -68,8 +68,8 @@ Encoders::Encoders(const SensorContext& context) : HostBackend(context, encoder_
   });
 }
 
-/// A robot that was told of late may have gone on for as long as it was not; the first word of where it is may be of
-/// anywhere.
+/// False for a relocation. The time since the last pose may exceed a tick when reports are late; before the first
+/// movement it counts from the last tick.
 bool Encoders::drove(const Track& track, const Pose& X_WM, double max_forward, std::int64_t now) const {
   const double seconds = 1e-9 * static_cast<double>(now - (track.moved ? track.since : last_));
   const double way = std::hypot(X_WM.x - track.X_WM.x, X_WM.y - track.X_WM.y);
@@ -113,7 +113,7 @@ void Encoders::measure(std::span<const HostSample> samples) const {
 }
 
 constexpr std::string_view kKeys[] = {"per_count", "slip", "scale", "track", "scrub"};
-// Counts have signs, which whole columns of recordings have not.
+// Counts are signed; integer columns of recordings are not.
 constexpr Column kColumns[] = {{"left_m"}, {"right_m"}, {"left_counts"}, {"right_counts"}};
 constexpr PlainNumber kNumbers[] = {{1e-5}, {1e-5}, {1.0}, {1.0}};
 constexpr PlainForm kForm{kEncoder, "encoder", kNumbers};

@@ -1,15 +1,16 @@
 #pragma once
-// Wheel encoders of a robot with a left and a right wheel, or a left and a right row of them (docs/sensors.md).
+// Wheel encoders of a robot with left and right wheels (docs/sensors.md).
 //
 // In a world file, inside a robot:
 //   encoder( per_count length  slip 0.005  scale [left right]  track length  scrub 1.5 )
-// `per_count` is how far a wheel rolls from one count to the next; `slip` the standard deviation of the miscounted way
-// after one metre, which grows with its root; `scale` what each wheel's counts are too large by, as a factor; `track`
-// between the wheels (else the robot's); `scrub` how much wider it seems where wheels scrub sideways in turns (1.5
-// where the robot skids, else 1).
+// `per_count`: distance that a wheel rolls per count. `slip`: standard deviation of the error after one metre; it grows
+// with the square root of the distance. `scale`: factor on each wheel's counts. `track`: distance between the wheels
+// (default: the robot's). `scrub`: factor on the track where wheels scrub sideways in turns (default: 1.5 for skid
+// steering, else 1).
 //
-// A reading is one row: what the left and the right wheel rolled since the start, in metres and in counts, forwards
-// positive. What moves a robot farther in a tick than it can drive puts it elsewhere, and is not counted.
+// A reading is one row: distance rolled by the left and the right wheel since the start, in metres and in counts,
+// forward positive. A displacement of more than 0.5 m plus twice the distance possible at the robot's top speed is a
+// relocation and is not counted.
 
 #include <cstdint>
 
@@ -19,13 +20,13 @@ namespace sf::sensors {
 
 inline constexpr std::uint8_t kEncoder = 8;  ///< wire id
 
-/// What a world file says of one robot's encoders.
+/// Encoder settings of one robot.
 struct Encoder {
   double per_count = 1e-3;   ///< [m] > 0
   double slip = 0.0;         ///< [m^(1/2)] >= 0
   double scale_left = 1.0;   ///< [-] > 0
   double scale_right = 1.0;  ///< [-] > 0
-  double track = 0.3;        ///< [m] > 0, as the wheels see it: scrub included
+  double track = 0.3;        ///< [m] > 0, effective: including scrub
 };
 
 /// @throws base::InputError with file and line.

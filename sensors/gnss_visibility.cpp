@@ -14,8 +14,8 @@ namespace {
 
 using world::Segment;
 
-constexpr double kMask = 15.0 * M_PI / 180.0;  // [rad] no satellite stands lower
-constexpr double kMostPieces = 64.0;           // that a line of sight is looked along in
+constexpr double kMask = 15.0 * M_PI / 180.0;  // [rad] least elevation
+constexpr double kMostPieces = 64.0;           // most steps along a line of sight
 constexpr double kSingular = 1e-9;             // of the satellites' normal matrix
 
 std::vector<Segment> blocking(const world::World& world) {
@@ -31,7 +31,7 @@ double top_of(std::span<const Segment> walls) {
   return top;
 }
 
-/// Cells that a line to the lowest satellite crosses about ten of.
+/// Cell size [m] at which a line to the lowest satellite crosses about ten cells.
 double cell_of(std::span<const Segment> walls) {
   double bottom = HUGE_VAL;
   for (const Segment& wall : walls) bottom = std::min(bottom, wall.z_min);
@@ -67,14 +67,14 @@ std::optional<Dilution> dilution(std::span<const Satellite> satellites, std::uin
   }
   if (count < 4) return std::nullopt;
 
-  // Its Cholesky factor; the inverse of the last 2 x 2 block's product is the covariance of (x, y).
+  // Its Cholesky factor. The inverse of the product of its last 2 x 2 block is the covariance of (x, y).
   for (std::size_t r = 0; r < 4; ++r)
     for (std::size_t c = 0; c <= r; ++c) {
       for (std::size_t k = 0; k < c; ++k) m[r][c] -= m[r][k] * m[c][k];
       if (r == c && m[r][r] < kSingular) return std::nullopt;
       m[r][c] = r == c ? std::sqrt(m[r][r]) : m[r][c] / m[c][c];
     }
-  // Written with x first: of Q = [a b; b d], the factor is [sqrt(a) 0; b / sqrt(a), sqrt(d - b^2 / a)].
+  // Cholesky factor with x first: for Q = [a b; b d] it is [sqrt(a) 0; b / sqrt(a), sqrt(d - b^2 / a)].
   const double l = m[2][2], k = m[3][2], n = m[3][3];
   const double a = 1.0 / (l * l) + k * k / (l * l * n * n), b = -k / (l * n * n), d = 1.0 / (n * n);
   return Dilution{std::sqrt(a), b / std::sqrt(a), std::sqrt(std::max(0.0, d - b * b / a)), std::sqrt(a + d)};
@@ -87,7 +87,7 @@ GnssVisibility::GnssVisibility(std::vector<Segment> walls)
   add_solids(walls_.walls());
 }
 
-/// One solid for each model and range of heights: overlapping parts of it wind twice.
+/// One solid per model and range of heights: overlapping parts add to the winding number.
 void GnssVisibility::add_solids(std::span<const Segment> walls) {
   std::map<std::tuple<std::uint32_t, double, double>, std::vector<Segment>> outlines;
   for (const Segment& wall : walls)

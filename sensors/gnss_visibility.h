@@ -1,13 +1,13 @@
 #pragma once
-// Which satellites a place sees, and what their geometry makes of their errors.
+// Satellite visibility and dilution of precision.
 //
-// The constellation stands still: satellite i of N is at the azimuth (from x towards y) of i times the golden angle,
-// and sin(elevation) goes up from sin(15 degrees) in equal steps, half a step at both ends: even over the sky above the
-// mask (Swinbank and Purser, "Fibonacci grids", Q. J. R. Meteorol. Soc. 132, 2006).
+// The constellation is fixed: satellite i of N has the azimuth (from x towards y) of i times the golden angle, and
+// sin(elevation) rises from sin(15 degrees) to 1 in equal steps, with half a step at both ends. The distribution is
+// uniform over the sky above the mask (Swinbank and Purser, "Fibonacci grids", Q. J. R. Meteorol. Soc. 132, 2006).
 //
-// A line of sight is straight. What stands still in the world, and lasers see or robots bump into, blocks it: a surface
-// where the line crosses it in its range of heights, and a solid overhead (a bridge, a roof) where the line reaches its
-// underside within its outline. Movers block nothing.
+// A line of sight is straight. Static geometry that lasers see or robots collide with blocks it: a surface where the
+// line crosses its range of heights, and a solid overhead (a bridge, a roof) where the line meets its underside within
+// its outline. Movers block nothing.
 
 #include <cstdint>
 #include <optional>
@@ -20,29 +20,29 @@
 
 namespace sf::sensors {
 
-/// Where one satellite stands, as seen from anywhere.
+/// Direction of one satellite, equal for all positions.
 struct Satellite {
-  glm::dvec2 horizontal;       ///< [-] unit vector along the ground
-  double tan_elevation = 1.0;  ///< [-] > 0: tangent of its elevation
+  glm::dvec2 horizontal;       ///< [-] unit vector of the azimuth
+  double tan_elevation = 1.0;  ///< [-] > 0
 };
 
 /// @param count in [1, 64]
 std::vector<Satellite> constellation(std::uint32_t count);
 
-/// What position errors come of independent range errors of standard deviation 1 to each satellite, when the position
-/// in three dimensions and the clock are unknown: (x, y) = (xx n, yx n + yy m), n and m standard normal.
+/// Position errors from independent range errors of standard deviation 1, with unknown 3-D position and clock: (x, y) =
+/// (xx n, yx n + yy m), with standard normal n and m.
 struct Dilution {
   double xx = 0.0;
   double yx = 0.0;
   double yy = 0.0;
-  double hdop = 0.0;  ///< horizontal dilution of precision: root of the sum of both variances
+  double hdop = 0.0;  ///< horizontal dilution of precision: square root of the sum of both variances
 };
 
-/// Nothing where fewer than four are seen, or all on one cone.
-/// @param seen one bit for each satellite
+/// Empty when fewer than four satellites are visible, or when all lie on one cone.
+/// @param seen one bit per satellite
 std::optional<Dilution> dilution(std::span<const Satellite> satellites, std::uint64_t seen);
 
-/// What stands between places and the sky. Immutable; any thread.
+/// Obstacles to lines of sight. Immutable and thread-safe.
 class GnssVisibility {
  public:
   explicit GnssVisibility(const world::World& world);
@@ -53,7 +53,7 @@ class GnssVisibility {
   explicit GnssVisibility(std::vector<world::Segment> walls);
 
   struct Solid {
-    std::uint32_t first = 0, last = 0;  ///< edges of its outline, in solid_edges_
+    std::uint32_t first = 0, last = 0;  ///< edges of its outline in solid_edges_
     double z_min = 0.0;
   };
   void add_solids(std::span<const world::Segment> walls);
@@ -61,7 +61,7 @@ class GnssVisibility {
   bool under(glm::dvec2 p, double z, const Satellite& satellite, const Solid& solid) const;
 
   double cell_ = 1.0;
-  double z_top_ = 0.0;  ///< [m] nothing reaches higher
+  double z_top_ = 0.0;  ///< [m] largest height of any obstacle
   world::WallGrid walls_;
   std::vector<world::Segment> solid_edges_;
   std::vector<Solid> solids_;

@@ -1,15 +1,15 @@
 #pragma once
-// Satellite positioning that loses its fix under bridges and between walls (docs/sensors.md; sensors/gnss_visibility.h
-// has the constellation and what blocks a line of sight).
+// Satellite positioning with loss of fix under bridges and between walls (docs/sensors.md). sensors/gnss_visibility.h
+// describes the constellation and visibility.
 //
 // In a world file, inside a robot:
 //   gps( satellites 8  noise 2  rate 1  latency 0.1 )
-// `noise` is the standard deviation of the range to each satellite. The antenna is on top of its model. Once a second,
-// unless `rate` says otherwise.
+// `noise`: standard deviation of the range to each satellite. The antenna is at the top of its model. The default rate
+// is 1 Hz.
 //
-// A reading is one row: x and y of the antenna in the world frame with errors of noise times the dilution of precision
-// of the satellites in sight, the horizontal dilution, and how many are in sight. Without a fix (fewer than four) x, y
-// and hdop are NaN. Readings' errors are independent of each other.
+// A reading is one row: x and y of the antenna in the world frame, HDOP, and the number of visible satellites. Position
+// errors are `noise` times the dilution of precision, independent between readings. Without a fix (fewer than four
+// satellites) x, y and HDOP are NaN.
 
 #include <cstdint>
 
@@ -18,9 +18,9 @@
 namespace sf::sensors {
 
 inline constexpr std::uint8_t kGps = 10;              ///< wire id
-inline constexpr std::uint32_t kMostSatellites = 64;  ///< of the sky
+inline constexpr std::uint32_t kMostSatellites = 64;  ///< in the constellation
 
-/// What a world file says of one receiver.
+/// Settings of one receiver.
 struct Gps {
   std::uint32_t satellites = 8;  ///< in [4, kMostSatellites]
   double noise = 0.0;            ///< [m] standard deviation of a range

@@ -11,11 +11,11 @@ namespace sf::sensors {
 
 namespace {
 
-// Draws of one gyro: its run's own, and each reading's.
+// Draw numbers of one gyro: per reading, and per run.
 constexpr std::uint32_t kReading = 0;
 constexpr std::uint32_t kRun = 1;
 
-/// One gyro of a run.
+/// Constants of one gyro in a run.
 struct Fixed {
   double range = 0.0;
   double scale = 1.0;

@@ -1,13 +1,13 @@
 #pragma once
-// Gyroscopes: how fast a robot turns about the vertical (docs/sensors.md).
+// Gyroscopes: yaw rate of a robot (docs/sensors.md).
 //
 // In a world file, inside a robot:
 //   gyro( bias 0.5  noise 0.1  scale_error 0.01  range 300 )
-// `bias` is the standard deviation of an offset that is drawn once for each run, `noise` that of each reading by
-// itself, both in angles per second; `scale_error` that of a relative error drawn once for each run; `range` what it
-// saturates at, either way. Nothing said: a perfect one.
+// `bias`: standard deviation of an offset drawn once per run. `noise`: standard deviation of each reading. Both are in
+// angles per second. `scale_error`: standard deviation of a relative error drawn once per run. `range`: saturation in
+// both directions. The default has no error.
 //
-// A reading is one number: the turn rate that the robot reports, and these.
+// A reading is one number: the yaw rate of the robot's report with these errors.
 
 #include <cstdint>
 
@@ -17,7 +17,7 @@ namespace sf::sensors {
 
 inline constexpr std::uint8_t kGyro = 9;  ///< wire id
 
-/// What a world file says of one gyro.
+/// Settings of one gyro.
 struct Gyro {
   double bias = 0.0;         ///< [rad/s] standard deviation
   double noise = 0.0;        ///< [rad/s] standard deviation

@@ -8,7 +8,7 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr std::size_t kPiece = 64;  // readings that a worker takes at once
+constexpr std::size_t kPiece = 64;  // readings per piece of work
 
 }  // namespace
 
@@ -33,7 +33,7 @@ bool HostBackend::prepare(std::span<const DueSample> due, std::span<const Pose> 
     const auto values = std::span(values_).subspan(first_[d.row], first_[d.row + 1] - first_[d.row]);
     samples_.push_back({d.row, d.sequence, X_WS, values});
   }
-  // A world of such kinds alone needs its empty batch recorded once.
+  // A world without device work needs its empty batch recorded once.
   return !std::exchange(recorded_, true);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Instruments of kinds that need no device: whatever is due is read on the host, by all workers.
+// Base of sensor backends without device work: readings are computed on the host by all pool threads.
 
 #include <cstdint>
 #include <functional>
@@ -12,13 +12,13 @@ namespace sf::sensors {
 
 /// One reading to be taken.
 struct HostSample {
-  std::uint32_t row = 0;       ///< in the kind's rows of this world
-  std::uint64_t sequence = 0;  ///< names its noise
-  Pose X_WS;                   ///< the sensor's; z: its height in the world as it was at load, the world being 2.5-D
-  std::span<double> values;    ///< of all rows and columns, to be filled
+  std::uint32_t row = 0;       ///< row of the sensor type's sensors in this world
+  std::uint64_t sequence = 0;  ///< key of the reading's noise
+  Pose X_WS;                   ///< pose of the sensor; z: its world height at load (2.5-D world)
+  std::span<double> values;    ///< all rows and columns, to be filled
 };
 
-/// All sensors of one kind that needs no device. One thread.
+/// All sensors of one type without device work. Not thread-safe.
 class HostBackend : public SensorBackend {
  public:
   bool prepare(std::span<const DueSample> due, std::span<const Pose> poses) override;
@@ -29,10 +29,10 @@ class HostBackend : public SensorBackend {
   bool on_device() const override { return false; }
 
  protected:
-  /// @param rows the kind's, as its `rows` gives them
+  /// @param rows the specs of the type's sensors
   HostBackend(const SensorContext& context, const SensorType& kind, std::vector<SensorSpec> rows);
 
-  /// Fills in readings. On any worker, each reading once and by itself.
+  /// Fills in readings. Called by several pool threads at once, each reading exactly once.
   virtual void measure(std::span<const HostSample> samples) const = 0;
 
   std::span<const SensorSpec> rows() const { return rows_; }
@@ -45,20 +45,20 @@ class HostBackend : public SensorBackend {
   std::uint64_t seed_;
   std::uint8_t kind_;
   std::vector<SensorSpec> rows_;
-  std::vector<std::size_t> first_;  ///< per row and one more: where its values begin
+  std::vector<std::size_t> first_;  ///< per row and one more: index of its first value
   std::vector<double> values_;
   std::vector<HostSample> samples_;
   bool recorded_ = false;
 };
 
-/// A sensor of a world, and whose it is.
+/// A sensor of a world, with its spec.
 struct MountedSensor {
   const world::Sensor& settings;
-  SensorSpec row;  ///< as every sensor has it
+  SensorSpec row;  ///< the settings common to all types
 };
 
 /// Calls `body` for every sensor of `kind`, by mover and in file order.
-/// @throws base::InputError for settings that no sensor can have, and what `body` throws.
+/// @throws base::InputError for invalid common settings, and exceptions of `body`
 void for_each_sensor(const world::World& world, const SensorType& kind, const std::function<void(MountedSensor)>& body);
 
 }  // namespace sf::sensors

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDegrees = M_PI / 180.0;
 
-/// Webots' table for the Khepera II: the response falls in a straight line, and its relative noise grows in one.
+/// Webots' table for the Khepera II: the response falls linearly with the range, and its relative noise grows linearly.
 void tell_response(const ConeArray& array, double range, bool met, double deviate, std::span<double> out) {
   const double away = (std::max(range, array.range_min) - array.range_min) / (array.range_max - array.range_min);
   const double quiet = met ? kMostResponse * (1.0 - away) : 0.0;

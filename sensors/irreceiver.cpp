@@ -17,9 +17,9 @@ using world::Emitter;
 using world::Segment;
 
 constexpr double kCell = 1.0;      // [m] of the grid of walls
-constexpr double kOverlap = 0.25;  // of each buoy's beam, with the other's
+constexpr double kOverlap = 0.25;  // fraction of each buoy's beam that overlaps the other's
 
-/// Whether a bearing from the emitter is in a beam of `fov` about `axis` [rad].
+/// True when a bearing from the emitter is in a beam of width `fov` about `axis` [rad].
 bool within(double bearing, double axis, double fov) { return std::abs(base::wrap_angle(bearing - axis)) <= 0.5 * fov; }
 
 Box reach_of(const Emitter& emitter) {

@@ -22,19 +22,20 @@ std::vector<raycast::Scanner> scanners_of(const std::vector<LaneEdge>& edges) {
   return scanners;
 }
 
-/// Whether beams can meet anything but paint.
+/// True when beams can meet anything but paint.
 bool anything_else(const world::World& world) {
   const auto bodies = std::count_if(world.movers.begin(), world.movers.end(),
                                     [](const world::Mover& mover) { return !mover.body.empty(); });
   return !world.walls.empty() || (bodies > 0 && world.movers.size() > 1);
 }
 
-/// The flags of a reading with one element: a span of them outlives the tick.
+/// Constants for the quality of readings with one element: a span of them outlives the tick.
 constexpr base::QualityFlag kReasons[] = {base::QualityFlag::none, base::QualityFlag::not_cast,
                                           base::QualityFlag::grazing, base::QualityFlag::not_straight,
                                           base::QualityFlag::extrapolated};
 
-/// Rays against the excerpt, exactly; where the road is a raster, into that as well; then lines through what they met.
+/// Casts beams against the filtered scene, exactly, and through the raster where the road is one; then fits lines to
+/// the hits.
 class LaneEdges : public SensorBackend {
  public:
   explicit LaneEdges(const SensorContext& context);
@@ -54,15 +55,15 @@ class LaneEdges : public SensorBackend {
 
   std::vector<LaneEdge> edges_;
   bool noise_;
-  bool exact_;  ///< paint is seen as it is, not in pixels
+  bool exact_;  ///< markings are exact outlines, not pixels
   FilteredScene scene_;
-  double longest_;  ///< [m] face in it
+  double longest_;  ///< [m] longest surface in it
   raycast::RayCaster caster_;
-  bool casting_;  ///< there is something for `caster_` to meet
+  bool casting_;  ///< `caster_` has surfaces to meet
   std::optional<RasterCaster> raster_caster_;
   EdgeFit fit_;
   std::vector<DueSample> due_;
-  std::vector<std::uint32_t> lanes_;  ///< first of each due fan's results
+  std::vector<std::uint32_t> lanes_;  ///< first result lane of each due sensor
   bool bound_ = false;
 };
 
@@ -119,7 +120,7 @@ void LaneEdges::add_copies(gpu::Batch& batch) {
   fit_.add_copies(batch);
 }
 
-/// How wrong a reading may be, or why it does not say.
+/// Sets the error bound of a reading, or the reason for which it may not hold.
 void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
   const LaneEdge& edge = edges_[due_[i].row];
   const bool noisy = noise_ && edge.row.noisy;
@@ -127,7 +128,7 @@ void LaneEdges::state(std::size_t i, base::ReadingBlock& block) {
   if (exact_ && !noisy) block.bound = lane_edge_bound(edge, longest_, away);
   base::QualityFlag why = base::QualityFlag::none;
   if (edge.row.mode > 0)
-    why = base::QualityFlag::not_cast;  // rays that were left out may have met another edge
+    why = base::QualityFlag::not_cast;  // a skipped beam may have met another edge
   else if (edge.single)
     why = (caster_.beam_flags().host<std::uint32_t>()[lanes_[i]] & SF_GRAZING) != 0 ? base::QualityFlag::grazing : why;
   else if (std::isfinite(block.bound))

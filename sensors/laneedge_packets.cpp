@@ -14,14 +14,14 @@ namespace {
 constexpr std::size_t kFarmBytes = 12;
 constexpr std::size_t kThesisBytes = 2;
 
-/// Nearest whole number of `unit`, in [0, most]; `most` where it is not a number.
+/// Nearest integer multiple of `unit`, in [0, most]; `most` for NaN.
 template <class Word>
 Word in_units(double value, double unit, Word most) {
   if (std::isnan(value)) return most;
   return static_cast<Word>(std::clamp(std::floor(value / unit + 0.5), 0.0, static_cast<double>(most)));
 }
 
-/// The inverse, where all bits set say that there is none.
+/// The inverse of `in_units`; all bits set gives NaN.
 template <class Word>
 double from_units(Word word, double unit) {
   return word == std::numeric_limits<Word>::max() ? std::numeric_limits<double>::quiet_NaN() : word * unit;

@@ -1,6 +1,6 @@
 #pragma once
-// Lane edge readings as payloads, little-endian; docs/packets.md gives every byte. Metres here, whole wire units there,
-// rounded to nearest; they saturate and never wrap.
+// Lane edge readings as payloads, little-endian; docs/packets.md gives every byte. Readings are in metres, payloads in
+// integer wire units, rounded to nearest; values saturate and never wrap.
 //
 //   farm    u16 distance [mm] in [0, 65534], 65535 no edge in sight; u16 points; u32 residual [um]; u32 sigma [um]
 //   thesis  u16 distance [mm], 65535 no edge in sight
@@ -15,15 +15,15 @@ namespace sf::sensors {
 
 inline constexpr std::uint16_t kNoEdge = 65'535;  ///< on the wire: no edge in sight
 
-std::string lane_edge_wire_problem(const SensorSpec& sensor, WireFormat wire);  ///< never refuses
-std::uint32_t lane_edge_parts(const SensorSpec& sensor, WireFormat wire);       ///< one
-/// @return its type. A sensor that sees no edge says so: no reading is withheld.
+std::string lane_edge_wire_problem(const SensorSpec& sensor, WireFormat wire);  ///< always empty
+std::uint32_t lane_edge_parts(const SensorSpec& sensor, WireFormat wire);       ///< always 1
+/// @return the payload's type. A reading without an edge is sent as well.
 std::uint8_t encode_lane_edge(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
                               std::uint32_t part, base::Bytes& out);
 PayloadPart decode_lane_edge(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                              WireFormat wire);
-/// Fills in the four columns from a payload that `decode_lane_edge` took; the thesis' gives the first alone. NaN where
-/// the wire says none.
+/// Fills in the four columns from a payload that `decode_lane_edge` accepted; the thesis format has only the first. NaN
+/// for reserved wire values.
 void read_lane_edge(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, WireFormat wire,
                     std::span<double> values);
 

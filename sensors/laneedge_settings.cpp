@@ -30,20 +30,20 @@ world::LaserNoise noise_of(const world::Sensor& sensor) {
   return noise;
 }
 
-/// The robot's axis nearest to where the fan's middle looks; its sides before its front and back.
+/// The robot's axis nearest to the middle bearing of the beams; ties prefer the sides to front and back.
 double nearest_axis(double yaw) {
   const glm::dvec2 d = base::rotate(yaw, {1.0, 0.0});
   if (std::fabs(d.y) >= std::fabs(d.x) * (1.0 - 1e-9)) return d.y >= 0.0 ? 0.5 * M_PI : -0.5 * M_PI;
   return d.x >= 0.0 ? 0.0 : M_PI;
 }
 
-constexpr double kStraightError = 1e-8;  // [m] of a distance, near the origin
+constexpr double kStraightError = 1e-8;  // [m] error of a distance near the origin
 
-/// Of so many rays one is cast, in each mode.
+/// Per mode: one of this many beams is cast.
 constexpr std::uint32_t kEveryRay[] = {1, 2, 4};
 static_assert(std::size(kEveryRay) == std::size(kLaneEdgeModes));
 
-/// The same fan with fewer rays, three at least: with less there is no telling a line.
+/// The same field of view with fewer beams, but at least three: fewer do not determine a line.
 void thin_out(LaneEdge& edge, std::uint32_t every) {
   if (edge.fan.samples > 3) edge.fan.samples = std::max(3u, (edge.fan.samples - 1 + every - 1) / every + 1);
 }
@@ -89,8 +89,9 @@ std::vector<LaneEdge> lane_edges_of(const world::World& world) {
 
 bool uses_raster(const world::World& world) { return world.road_resolution > 0.0 && !world.lane_markings.empty(); }
 
-/// A range is off by 2^-53 of the arms of its products over the sine of incidence, so its point by that across the
-/// face; a face's corners are rounded where they are; and a point's x has 44 bits (SF_GRAIN_MASK).
+/// A range's error is 2^-53 times the terms of its products over the sine of incidence, so its point's error across the
+/// edge is 2^-53 times these terms. The edge's corners are rounded at their coordinates, and a point's x has 44 bits
+/// (SF_GRAIN_MASK).
 double point_error(const LaneEdge& edge, double longest, double farthest) {
   return 0x1p-44 * edge.fan.range_max + 0x1p-53 * 16.0 * (edge.fan.range_max + longest + farthest);
 }
@@ -100,10 +101,10 @@ double lane_edge_bound(const LaneEdge& edge, double longest, double farthest) {
 }
 
 base::QualityFlag quality_of(const EdgeReading& reading, double error, double bound) {
-  if (std::isnan(reading.distance)) return base::QualityFlag::none;  // no distance is given
+  if (std::isnan(reading.distance)) return base::QualityFlag::none;  // no distance
   const double gain = std::max(reading.gain, 1.0);
-  if (reading.distance < bound) error += SF_CONTACT_DISTANCE;            // a ray that short may read 0
-  error = 2.0 * (error + std::sqrt(reading.points) * reading.residual);  // no point is farther from the line
+  if (reading.distance < bound) error += SF_CONTACT_DISTANCE;            // a shorter beam may read 0
+  error = 2.0 * (error + std::sqrt(reading.points) * reading.residual);  // bound of a point's distance from the line
   const bool straight = reading.points > 2.5 && reading.others == 0.0 && error <= bound;
   if (!straight) return base::QualityFlag::not_straight;
   if (gain >= SF_NO_GAIN) return base::QualityFlag::extrapolated;

@@ -12,12 +12,12 @@ namespace sf::sensors {
 
 namespace {
 
-/// One laser at work.
+/// State of one laser.
 struct Row {
   CastLaser cast;
-  bool reworked = false;    ///< results are shaped on the host
-  std::size_t samples = 0;  ///< first of its own among all
-  bool grazing = false;     ///< some beam of its last scan does
+  bool reworked = false;    ///< results are post-processed on the host
+  std::size_t samples = 0;  ///< index of its first sample among all
+  bool grazing = false;     ///< some beam of its last scan grazes
 };
 
 std::vector<CastLaser> lasers_of(const world::World& world) {
@@ -62,12 +62,12 @@ class Lasers : public SensorBackend {
   base::ThreadPool& thread_pool_;
   std::uint64_t seed_;
   bool noise_;
-  double longest_;  ///< [m] surface that there is
+  double longest_;  ///< [m] longest surface
   raycast::RayCaster caster_;
   std::vector<Row> rows_;  ///< per laser
   std::vector<DueSample> due_;
   std::vector<double> values_;              ///< [m] of all lasers' samples, when any is reworked
-  std::vector<std::uint32_t> met_;          ///< likewise
+  std::vector<std::uint32_t> met_;          ///< models of all lasers' samples, when any is reworked
   std::vector<base::QualityFlag> quality_;  ///< of all lasers' samples
 };
 
@@ -109,7 +109,7 @@ void Lasers::shape(std::size_t i) {
               {cast, cast_hits}, {out, fan.laser.samples}, {out_hits, fan.laser.samples});
 }
 
-/// Samples that were not cast are marked since the beginning; those that graze come and go.
+/// Sets the quality flags of a scan. Flags of samples that are never cast were set at construction; grazing changes.
 void Lasers::mark(std::size_t i) {
   Row& row = rows_[due_[i].row];
   const raycast::ScanResult results = caster_.results(i);
@@ -182,7 +182,7 @@ constexpr Column kColumns[] = {{"range_m"}};
 constinit const SensorType laser_type{
     .id = base::kLaser,
     .name = "laser",
-    .word = {},  // world reads `laser` and `ranger` itself: Stage knows them
+    .word = {},  // the module world reads Stage's `laser` and `ranger` itself
     .base_port = 10000,
     .list = "beams",
     .columns = kColumns,

@@ -1,6 +1,6 @@
 #pragma once
-// The laser range finder: fans of beams (raycast/ray_caster.h says how exact), their noise, and what `resolution`
-// leaves out.
+// The laser range finder: scans of beams (raycast/ray_caster.h states their accuracy), noise, and interpolation for
+// `resolution`.
 
 #include "sensors/sensor_type.h"
 

@@ -11,9 +11,9 @@ namespace sf::sensors {
 
 namespace {
 
-/// What each of kLaserModes makes of a laser.
+/// Settings of each mode.
 struct Making {
-  std::uint32_t skip = 1;  ///< of so many beams one is cast
+  std::uint32_t skip = 1;  ///< one of this many beams is cast
   bool single = false;
 };
 constexpr Making kMakings[] = {{1}, {1, true}, {2}, {4}, {8}};

@@ -1,5 +1,5 @@
 #pragma once
-// The laser's modes: what each casts, and what it may be wrong by.
+// The laser's accuracy modes and their error bounds.
 
 #include <vector>
 
@@ -15,24 +15,25 @@ inline constexpr AccuracyMode kLaserModes[] = {
     {"skip8", "every 8th beam"},
 };
 
-/// A laser as it is cast.
+/// A laser with the settings that are cast.
 struct CastLaser {
-  world::Laser laser;         ///< its `resolution` is that of its mode as well
-  bool single = false;        ///< raycast::Fan::single
+  world::Laser laser;         ///< `resolution` includes that of its mode
+  bool single = false;        ///< raycast::Scanner::single
   std::uint8_t mode = 0;      ///< row of `kLaserModes`
-  std::vector<double> sines;  ///< of 0, 1, ... `resolution` steps between samples, where those between two beams lie on
-                              ///< the straight line between what these met; empty: on that between their ranges
+  std::vector<double> sines;  ///< of 0, 1, ... `resolution` sample steps, to interpolate along straight lines between
+                              ///< hits; empty: ranges are interpolated linearly
 };
 CastLaser cast_laser(const world::World& world, const world::Laser& laser);
 
-/// What is met may be so large and so far away, all movers included.
+/// Largest dimensions of a world, movers included.
 struct Reaches {
   double longest = 0.0;   ///< [m] surface
   double farthest = 0.0;  ///< [m] coordinate
 };
 Reaches reaches_of(const world::World& world);
 
-/// [m] base::ReadingBlock::bound of a laser. @param farthest [m] coordinate of anything in range
+/// [m] base::ReadingBlock::bound of a laser. @param longest [m] longest surface  @param farthest [m] largest coordinate
+/// of anything in range
 double laser_bound(const CastLaser& laser, double longest, double farthest);
 
 ErrorBound bound_of_laser(const world::World& world, const SensorSpec& sensor);

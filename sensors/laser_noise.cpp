@@ -7,14 +7,14 @@ namespace sf::sensors {
 
 namespace {
 
-/// A beam that was cast.
+/// A cast beam.
 struct Cast {
   std::uint32_t sample;
   double range;  ///< [m]
   std::uint32_t hit;
 };
 
-/// Fills in the samples between two beams.
+/// Interpolates the samples between two cast beams.
 void fill_chords(const CastLaser& shape, const Cast& a, const Cast& b, std::span<double> ranges) {
   const world::Laser& laser = shape.laser;
   const std::vector<double>& sines = shape.sines;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kPlainPerMetre = 1e3;
 constexpr double kExtendedPerMetre = 1e4;
-constexpr double kRangeSlack = 1e-3;                 ///< [m] one count of the coarser wire
-constexpr std::size_t kMaxPayload = 1400 - 64 - 80;  ///< [byte] between the header and the room for a signature
+constexpr double kRangeSlack = 1e-3;                 ///< [m] one unit of the coarser wire form
+constexpr std::size_t kMaxPayload = 1400 - 64 - 80;  ///< [byte] between the header and the signature
 constexpr std::size_t kPartHeaderBytes = 16;
 static_assert(kPartHeaderBytes + 4 * kPartRays <= kMaxPayload);
 
@@ -23,7 +23,7 @@ std::uint32_t parts_of(std::uint32_t rays) { return (rays + kPartRays - 1) / kPa
 
 template <class Word>
 Word to_word(double metres, double per_metre, Word largest) {
-  const double units = metres * per_metre + 0.5;  // conversion cuts off what is beyond the point
+  const double units = metres * per_metre + 0.5;  // the conversion truncates
   if (!(units >= 1.0)) return 0;
   return units >= static_cast<double>(largest) ? largest : static_cast<Word>(units);
 }
@@ -82,14 +82,15 @@ PayloadError read_extended(std::span<const std::uint8_t> payload, LaserPart& sca
   const PayloadError size = take_words(payload.subspan(reader.position()), 4, scan);
   if (size != PayloadError::none) return size;
 
-  // The split is fixed, so each field follows from the total and the part: nothing a receiver adds up can surprise it.
+  // The split is fixed: each field follows from the total and the part number, so that a receiver's sums cannot
+  // overflow.
   if (scan.total < 1 || scan.total > kExtendedRays) return PayloadError::out_of_range;
   if (scan.parts != parts_of(scan.total) || scan.part >= scan.parts) return PayloadError::out_of_range;
   if (scan.first != scan.part * kPartRays) return PayloadError::out_of_range;
   return scan.count == std::min(kPartRays, scan.total - scan.first) ? PayloadError::none : PayloadError::out_of_range;
 }
 
-/// The plain form saturates, so its largest word says "this or more".
+/// The plain form saturates: its largest word means "this or more".
 bool plausible(const LaserPart& scan, double range_max) {
   if (range_max <= 0.0) return true;
   for (std::uint32_t i = 0; i < scan.count; ++i) {

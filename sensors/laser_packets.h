@@ -1,9 +1,9 @@
 #pragma once
-// Laser scans as payloads, in three forms; docs/packets.md gives every byte. Ranges are metres here and whole wire
-// units there, rounded to nearest (half up); they saturate at both ends and never wrap.
+// Laser scans as payloads, in three forms; docs/packets.md gives every byte. Readings are in metres, payloads in
+// integer wire units, rounded to nearest (half up); values saturate at both ends and never wrap.
 //
-// The first five are the wire part of the laser's SensorKind. Of its rows they read `elements` (samples) and `limit`
-// (range_max).
+// The first five functions are the wire part of the laser's SensorType. Of a spec they read `elements` (samples) and
+// `limit` (range_max).
 
 #include <cstdint>
 #include <span>
@@ -15,49 +15,49 @@
 
 namespace sf::sensors {
 
-inline constexpr std::uint32_t kPlainRays = 361;           ///< most rays of the plain and of the thesis' form
-inline constexpr double kPlainRange = 65.535;              ///< [m] largest range of these two
-inline constexpr std::uint32_t kPartRays = 310;            ///< rays of every extended part but the last
+inline constexpr std::uint32_t kPlainRays = 361;           ///< most rays of the plain and the thesis form
+inline constexpr double kPlainRange = 65.535;              ///< [m] largest range of these two forms
+inline constexpr std::uint32_t kPartRays = 310;            ///< rays of each extended part except the last
 inline constexpr std::uint32_t kExtendedRays = 1'000'000;  ///< most rays of a scan
-inline constexpr std::uint32_t kNoReturn = 0xFFFFFFFFu;    ///< extended word of an infinite range
+inline constexpr std::uint32_t kNoReturn = 0xFFFFFFFFu;    ///< extended word for an infinite range
 
-/// Why `wire` cannot carry this laser's scans and what to do; empty when it can.
+/// The reason for which `wire` cannot carry this laser's scans, with a remedy; empty when it can.
 std::string laser_wire_problem(const SensorSpec& sensor, WireFormat wire);
 
-/// Datagrams that one scan takes. At most 361 rays of at most 65.535 m are sent plain, in one.
+/// Datagrams per scan. Up to 361 rays of up to 65.535 m are sent plain, in one datagram.
 std::uint32_t laser_parts(const SensorSpec& sensor, WireFormat wire);
 
-/// Appends payload `part` in [0, laser_parts) of a scan. @return its type, or 0, with nothing appended, when a range of
-/// this part is NaN.
-/// @param scan its values are ranges [m]: negative ones become 0, infinity is no return
+/// Appends payload `part` in [0, laser_parts) of a scan.
+/// @param scan its values are ranges [m]: negative ones become 0, infinity means no return
+/// @return the payload's type; 0, with nothing appended, when a range of this part is NaN
 std::uint8_t encode_laser(const SensorSpec& sensor, const base::ReadingBlock& scan, WireFormat wire, std::uint32_t part,
                           base::Bytes& out);
 
-/// Takes a payload for what this laser may have sent: as many rays, none farther than range_max by more than 1 mm
-/// (saturated words and no return aside). A row of no elements, or of no limit, leaves that unchecked.
+/// Validates a payload against this laser: equal number of rays, none beyond range_max by more than 1 mm (except
+/// saturated words and no return). A spec with 0 elements or limit 0 disables the respective check.
 PayloadPart decode_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                          WireFormat wire);
 
-/// Fills in this part's ranges of a scan's `values`, from a payload that `decode_laser` took. A saturated plain word is
-/// infinite where the laser cannot see as far as it says.
+/// Fills in this part's ranges of a scan's `values`, from a payload that `decode_laser` accepted. A saturated plain
+/// word becomes infinity for a laser of smaller range.
 void fill_laser(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type, WireFormat wire,
                 std::span<double> values);
 
-/// A receiver's view of a payload: a whole scan, or one part of an extended one.
+/// A decoded payload: a whole scan, or one part of an extended one.
 struct LaserPart {
   std::uint32_t total = 0;  ///< rays of the whole scan, in [1, kExtendedRays]
-  std::uint32_t first = 0;  ///< ray that this part begins with
+  std::uint32_t first = 0;  ///< index of this part's first ray
   std::uint32_t count = 0;  ///< rays in this part
   std::uint16_t part = 0;
   std::uint16_t parts = 1;
   bool extended = false;
-  std::span<const std::uint8_t> words;  ///< `count` words, 2 bytes each, or 4 when extended; alive with the payload
+  std::span<const std::uint8_t> words;  ///< `count` words of 2 bytes, 4 when extended; views the payload
 };
 
-/// Any bytes give a part or a fault. The thesis' datagram is a plain payload.
+/// Accepts any bytes. A payload of the thesis format is a plain payload.
 PayloadError read_laser(std::span<const std::uint8_t> payload, bool extended, LaserPart& scan);
 
-/// [m] of ray `i` of [0, scan.count); infinity for no return.
+/// [m] range of ray `i` in [0, scan.count); infinity for no return.
 double range_of(const LaserPart& scan, std::uint32_t i);
 
 }  // namespace sf::sensors

@@ -1,11 +1,10 @@
 #pragma once
-// The laser range finder by the plainest means: every beam against every segment, one after another, on the host.
+// Reference implementation of the laser: every beam against every segment, in sequence, on the host.
 //
-// Its arithmetic is that of shaders/lib/intersect.glsl, operation by operation, so its scans are the device's to the
-// bit, noise and `resolution` included: what devices are held to, and what recordings are checked against. A laser in
-// mode `single` is cast as an exact one. It shares with the farm how beams are laid out and noise is drawn
-// (raycast/beams.h, sensors/laser_noise.h), nothing of how surfaces are found. Some microseconds a beam in a world of a
-// thousand walls.
+// Its arithmetic is that of shaders/lib/intersect.glsl, operation by operation, so that its scans equal the device's
+// bit by bit, including noise and `resolution`. Devices are tested and recordings are verified against it. A laser in
+// mode `single` is cast as an exact one. Beam layout and noise are shared with the farm (raycast/beams.h,
+// sensors/laser_noise.h); the search for surfaces is not. Some microseconds per beam in a world of a thousand walls.
 
 #include <cstdint>
 #include <span>
@@ -16,21 +15,21 @@
 
 namespace sf::sensors {
 
-/// Immutable between two calls of `place`: several threads may scan. `world` must outlive it.
+/// Immutable between two calls of `set_poses`: several threads may scan. `world` must outlive it.
 class LaserReference {
  public:
-  /// @param noise false: none, whatever the world says
+  /// @param noise false: no noise, whatever the world file says
   LaserReference(const world::World& world, std::uint64_t seed, bool noise = true);
 
-  /// Moves every mover to its pose: one a mover. Until then they stand where they were loaded.
+  /// Sets the pose of every mover. Initially movers are at their poses at load.
   void set_poses(std::span<const Pose> poses);
 
   struct Scan {
     Pose X_WS;
     std::vector<double> ranges;       ///< [m] one per sample, as in base::ReadingBlock
-    std::vector<std::uint32_t> hits;  ///< likewise
+    std::vector<std::uint32_t> hits;  ///< model per sample, as in base::ReadingBlock
   };
-  /// One reading of a mover's laser. @param sequence names its noise
+  /// One reading of a mover's laser. @param sequence key of its noise
   Scan scan(std::uint32_t mover, std::uint32_t laser, std::uint64_t sequence) const;
 
  private:

@@ -21,10 +21,10 @@ namespace {
 struct Array {
   Magnetometer settings;
   SensorSpec row;
-  FieldBound bound;                ///< the largest of its elements'
-  double height = 0.0;             ///< [m] of its origin in the world, fixed at load: the world is 2.5-D
-  std::size_t values = 0;          ///< first of its results
-  std::vector<glm::dvec2> facing;  ///< of each element: its x axis in the sensor's frame
+  FieldBound bound;                ///< largest of its elements'
+  double height = 0.0;             ///< [m] world height of its origin; fixed at load (2.5-D world)
+  std::size_t values = 0;          ///< index of its first value
+  std::vector<glm::dvec2> facing;  ///< per element: its x axis in the sensor frame
 };
 
 std::vector<Array> arrays_of(const world::World& world) {
@@ -38,7 +38,7 @@ std::vector<Array> arrays_of(const world::World& world) {
     array.row.elements = static_cast<std::uint32_t>(array.settings.X_SE.size());
     array.row.limit = std::max(std::abs(array.settings.least), std::abs(array.settings.most));
     array.row.dependency_radius =
-        HUGE_VAL;  // in which order magnets that move are summed depends on where all of them are
+        HUGE_VAL;  // the order in which moving magnets are summed depends on all of their positions
     array.row.depends_on_magnets = true;
     array.row.noisy = array.settings.sigma > 0.0;
     array.height = world.movers[mover].X_WM.z + array.row.X_MS.z;
@@ -56,7 +56,7 @@ bool any_magnitudes(const std::vector<Array>& arrays) {
   return std::any_of(arrays.begin(), arrays.end(), [](const Array& a) { return a.settings.magnitudes; });
 }
 
-/// The places of all arrays that measure in one mode.
+/// The points of all arrays in one mode.
 struct Wave {
   MagneticField field;
   std::vector<FieldPoint> places;

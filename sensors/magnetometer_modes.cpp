@@ -14,14 +14,14 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr double kCutoffs[] = {0.0, 10.0, 3.0, 1.0};  // [m] of each mode
+constexpr double kCutoffs[] = {0.0, 10.0, 3.0, 1.0};  // [m] per mode; 0: none
 static_assert(std::size(kCutoffs) == std::size(kMagnetometerModes));
 
-constexpr double kArithmetic = 1e-12;  // of a magnet's field
-constexpr double kTooNear = 4e-6;      // [m] to a magnet's middle: directions are lost (magnetic_field.h)
+constexpr double kArithmetic = 1e-12;  // relative to a magnet's field
+constexpr double kTooNear = 4e-6;      // [m] from a magnet's centre: nearer, rounding dominates (magnetic_field.h)
 
-/// Part of a magnet's field that is lost as the device has its moment, and where `height` [m] above it is within its
-/// radius that too, in 32 bits.
+/// Relative error of a magnet's field from the 32-bit rounding of its moment and, where `height` [m] is within its
+/// radius, of the inverse radius.
 double lost_part(const world::Magnet& magnet, double height) {
   const double moment = std::abs(magnet.moment);
   const DipoleRow row = dipole_row(magnet, magnet.p, magnet.z);
@@ -30,8 +30,9 @@ double lost_part(const world::Magnet& magnet, double height) {
   return part;
 }
 
-/// What one magnet adds, `height` [m] over or under the sensor. Its field is at most 2 k / r^3, where r is the height
-/// or the radius; it changes by at most 12 k / r^3 over the height a metre, and a place is off by 16 roundings.
+/// Adds the bound of one magnet, `height` [m] above or below the sensor. Its field is at most 2 k / r^3, where r is the
+/// larger of height and radius. The field changes by at most 12 k / (r^3 height) per metre, and a point is off by 16
+/// roundings.
 void add(const world::Magnet& magnet, double height, FieldBound& bound) {
   const double nearest = std::max(height, magnet.radius);
   const double largest = 2.0 * strength_of(magnet) / (nearest * nearest * nearest);

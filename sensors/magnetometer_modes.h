@@ -1,5 +1,5 @@
 #pragma once
-// The magnetometer's modes: how far each looks for magnets, and what that may leave out.
+// The magnetometer's accuracy modes: cut-off distances and error bounds.
 
 #include "sensors/sensor_type.h"
 
@@ -12,20 +12,20 @@ inline constexpr AccuracyMode kMagnetometerModes[] = {
     {"near1", "within 1 m"},
 };
 
-/// [m] a mode's cut-off, or the world's where that is nearer; 0: none.
+/// [m] cut-off of a mode: the smaller of the mode's and the world's; 0: none.
 double cutoff_of(const world::World& world, std::uint8_t mode);
 
-/// Largest error of a field, and of a magnitude, at one height, wherever movers are.
+/// Largest error of a field, and of a magnitude, at one height, for all poses of movers.
 struct FieldBound {
-  double fixed = 0.0;      ///< [T] what the cut-off leaves out, and arithmetic
-  double per_metre = 0.0;  ///< [T/m] times the farthest coordinate: places far from the origin are rounded
+  double fixed = 0.0;      ///< [T] cut-off and arithmetic
+  double per_metre = 0.0;  ///< [T/m] times the largest coordinate: rounding of points far from the origin
   double at(double farthest) const { return fixed + per_metre * farthest; }
 };
-/// Of a mode at `height` [m]; infinite where a magnet is as high as the sensor, which may then stand in its very
-/// middle.
+/// Bound of a mode at `height` [m]; infinite where a magnet has the sensor's height, so that the sensor may reach its
+/// centre.
 FieldBound field_bound(const world::World& world, std::uint8_t mode, double height);
 
-/// [m] heights of its elements in the world, each once, ascending.
+/// [m] world heights of the elements, each once, ascending.
 std::vector<double> element_heights(const world::Mover& mover, const world::Sensor& sensor);
 
 ErrorBound bound_of_magnetometer(const world::World& world, const SensorSpec& sensor);

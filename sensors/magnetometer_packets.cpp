@@ -26,7 +26,7 @@ Word to_word(double tesla) {
 std::size_t words_of(WireFormat wire) { return wire == WireFormat::farm ? kMagnetometerColumns : 1; }
 std::size_t header_of(WireFormat wire) { return wire == WireFormat::farm ? kHeader : 0; }
 
-/// A saturated word says "this or more".
+/// A saturated word means "this or more".
 bool plausible(std::span<const std::uint8_t> payload, WireFormat wire, std::size_t words, double limit) {
   base::ByteReader reader(payload.subspan(header_of(wire)));
   for (std::size_t i = 0; i < words; ++i) {

@@ -1,11 +1,11 @@
 #pragma once
-// Readings of magnetometer arrays as payloads, little-endian; docs/packets.md gives every byte. Tesla here and 1e-4
-// Gauss (1e-8 T) there, rounded to nearest (half away from zero); words saturate and never wrap.
+// Readings of magnetometer arrays as payloads, little-endian; docs/packets.md gives every byte. Readings are in tesla,
+// payloads in 1e-4 Gauss (1e-8 T), rounded to nearest (half away from zero); words saturate and never wrap.
 //
 //   farm:   u16 count, u16 0, then for each element i32 field, x, y, z
-//   thesis: for each element i32 field; the count is what is left of the datagram
+//   thesis: for each element i32 field; the count follows from the payload's length
 //
-// Of a row they read `elements` and `limit`.
+// Of a spec they read `elements` and `limit`.
 
 #include <cstdint>
 #include <span>
@@ -17,26 +17,27 @@
 
 namespace sf::sensors {
 
-/// Always empty: every array fits both forms.
+/// Always empty: every array fits both formats.
 std::string magnetometer_wire_problem(const SensorSpec& sensor, WireFormat wire);
 
 /// Always 1.
 std::uint32_t magnetometer_parts(const SensorSpec& sensor, WireFormat wire);
 
-/// Appends the payload of a reading. @return its type, or 0, with nothing appended, when a value is NaN.
+/// Appends the payload of a reading. @return its type; 0, with nothing appended, when a value is NaN
 std::uint8_t encode_magnetometer(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
                                  std::uint32_t part, base::Bytes& out);
 
-/// Takes a payload for what this array may have sent: as many elements, none beyond its limit by more than a unit. A
-/// row of no elements, or of no limit, leaves that unchecked.
+/// Validates a payload against this array: equal number of elements, none beyond its limit by more than a unit. A spec
+/// with 0 elements or limit 0 disables the respective check.
 PayloadPart decode_magnetometer(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                                 WireFormat wire);
 
-/// Fills in all columns from a payload that `decode_magnetometer` took; the thesis' gives each element's field alone.
+/// Fills in all columns from a payload that `decode_magnetometer` accepted; the thesis format has only each element's
+/// field.
 void read_magnetometer_payload(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                                WireFormat wire, std::span<double> values);
 
-/// [T] word `i` of a payload that `decode_magnetometer` took: four an element, or one in the thesis' form.
+/// [T] word `i` of a payload that `decode_magnetometer` accepted: four per element, or one in the thesis format.
 double magnetometer_word(std::span<const std::uint8_t> payload, WireFormat wire, std::uint32_t i);
 
 }  // namespace sf::sensors

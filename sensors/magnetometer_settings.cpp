@@ -12,7 +12,7 @@ namespace sf::sensors {
 namespace {
 
 constexpr double kMostGauss = 1e9;
-constexpr double kSensitivity = 214748.3647;  // [Gauss] what 32 bits of 1e-4 hold, both ways
+constexpr double kSensitivity = 214748.3647;  // [Gauss] range of a 32-bit word in 1e-4 Gauss
 
 }  // namespace
 

@@ -25,7 +25,7 @@ class Occupancies : public SensorBackend {
   void observe(std::span<const base::ReadingBlock> readings) override;
   void collect(std::vector<base::ReadingBlock>& out) override;
   SensorStats stats() const override { return {}; }
-  bool on_device() const override { return false; }  // it runs a batch of its own
+  bool on_device() const override { return false; }  // has a batch of its own
 
  private:
   std::vector<Occupancy> maps_;
@@ -35,7 +35,7 @@ class Occupancies : public SensorBackend {
   std::vector<DueSample> due_;
   std::vector<MapScan> scans_;
   std::vector<std::uint32_t> wanted_;
-  std::vector<std::size_t> first_;  ///< per map: its values
+  std::vector<std::size_t> first_;  ///< per map: index of its first value
   std::vector<double> values_;      ///< of all maps
 };
 
@@ -45,7 +45,7 @@ std::vector<MapPlan> plans_of(const std::vector<Occupancy>& all) {
   return plans;
 }
 
-/// [cells] range of scans that the device enters.
+/// [cells] largest range of scans on the device.
 double farthest_on(const SensorContext& context) {
   const bool host =
       raycast::choose_caster(context.device.info().software, context.scene.caster) == raycast::CasterChoice::host;

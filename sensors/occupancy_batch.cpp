@@ -10,7 +10,7 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr float kBearingSlack = 1e-3f;  ///< [rad] many times what 32 bits and a polynomial are wrong by
+constexpr float kBearingSlack = 1e-3f;  ///< [rad] many times the error of 32 bits and of the polynomial
 
 BeamLine line_of(std::uint32_t end) {
   const std::int32_t columns = maps::columns_of(end);
@@ -22,7 +22,7 @@ BeamLine line_of(std::uint32_t end) {
   return {aside / along, along + (steep ? std::copysign(static_cast<float>(SF_STEEP_REACH), along) : 0.0f)};
 }
 
-/// What the device needs of a scan, but for where its strips lie.
+/// The device's row of a scan, without the place of its strips.
 MapRow row_of(const PoseMarker& map, const maps::TracedScan& scan, const base::Pose& X_WS) {
   MapRow row{};
   row.words = map.words;
@@ -35,7 +35,7 @@ MapRow row_of(const PoseMarker& map, const maps::TracedScan& scan, const base::P
   row.within_y = static_cast<float>(scan.within.y);
   row.heading = static_cast<float>(base::wrap_angle(X_WS.yaw));
   const double step = map.plan.samples > 1 ? map.plan.fov / (map.plan.samples - 1) : 0.0;
-  const bool spread = step > 1e-6;  // beams that all look one way are all asked
+  const bool spread = step > 1e-6;  // parallel beams are all tested
   row.half_fov = static_cast<float>(0.5 * map.plan.fov);
   row.per_radian = spread ? static_cast<float>(0.5 / step) : 1.0f;
   row.slack = spread ? kBearingSlack : 1e6f;
@@ -48,7 +48,7 @@ MapRow row_of(const PoseMarker& map, const maps::TracedScan& scan, const base::P
   return row;
 }
 
-/// Whole words that hold `box`, in cells.
+/// The smallest box of whole words that contains `box`, in cells.
 maps::CellBox in_whole_words(const maps::CellBox& box) {
   return {{box.low.column / 4 * 4, box.low.row / 4 * 4}, {(box.high.column + 3) / 4 * 4, (box.high.row + 3) / 4 * 4}};
 }
@@ -113,7 +113,7 @@ void MapBatch::Tables::assign_blocks() {
     if (dispatch->kernel) close(*dispatch);
 }
 
-/// Marks the cells that beams ended in.
+/// Marks the cells in which beams ended.
 void MapBatch::Tables::mark_hits() {
   thread_pool.parallel_for(scans.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
@@ -158,7 +158,7 @@ void MapBatch::Tables::close(MapDispatch& dispatch) {
   counts[2] = across > 0 ? 1 : 0;
 }
 
-/// All of rows and lines once, nobody's row among them; then what these scans have written.
+/// Uploads rows and lines: all of them at first, with the row for lanes without work; then those of this update.
 void MapBatch::Tables::send_scans() {
   if (blank) {
     batch.upload(*rows, 0, rows->bytes());

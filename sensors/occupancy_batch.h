@@ -1,9 +1,9 @@
 #pragma once
-// Many occupancy maps, on the device or the host: a tick's scans entered into all of them in one batch, word by word,
-// with exactly the cells that maps::add_scan would set.
+// Many occupancy maps, on the device or the host. One batch enters a tick's scans into all of them, with exactly the
+// cells that maps::add_scan would set.
 //
-// The host turns ranges into end cells, in double, on all cores (maps/traced_scan.h); the device owns the maps and
-// covers cells in whole numbers. So it needs no 64-bit floats, and how it rounds changes nothing.
+// The host converts ranges to end cells in double, on all cores (maps/traced_scan.h). The device holds the maps and
+// covers cells in integer arithmetic: it needs no 64-bit floats, and its rounding has no effect.
 
 #include <cstdint>
 #include <memory>
@@ -17,12 +17,12 @@
 
 namespace sf::sensors {
 
-inline constexpr std::uint32_t kMostMapBeams = 20'000;  ///< three runs of candidates stay below 65 535 turns of a loop
+inline constexpr std::uint32_t kMostMapBeams = 20'000;  ///< three loops over them stay below 65 535 iterations
 
-/// One map and the laser that fills it.
+/// One map with the settings of its laser.
 struct MapPlan {
-  maps::GridGeometry grid;                  ///< is_valid
-  std::optional<maps::LogOddsUpdate> odds;  ///< cells are weighed; else the last scan is right
+  maps::GridGeometry grid;                  ///< must satisfy is_valid
+  std::optional<maps::LogOddsUpdate> odds;  ///< log-odds update; empty: the last scan overwrites
   double fov = 0.0;                         ///< [rad] in [0, 2 pi]
   std::uint32_t samples = 1;                ///< in [1, kMostMapBeams]
   double range_min = 0.0;                   ///< [m]
@@ -32,23 +32,24 @@ struct MapPlan {
 /// A scan for one map.
 struct MapScan {
   std::uint32_t map = 0;
-  base::Pose X_WS;                 ///< of the sensor
-  std::span<const double> ranges;  ///< [m] `samples` of them
+  base::Pose X_WS;                 ///< pose of the sensor
+  std::span<const double> ranges;  ///< [m] `samples` values
 };
 
 /// Not thread-safe. `device` and `thread_pool` must outlive it.
 class MapBatch {
  public:
-  /// All maps unexplored. @param farthest [cells] range of scans that the device enters; the host enters the others
-  /// @throws base::DeviceError when the device cannot hold them.
+  /// All maps start unexplored.
+  /// @param farthest [cells] largest range of scans on the device; the host enters the others
+  /// @throws base::DeviceError when the device cannot hold the maps
   MapBatch(gpu::Device& device, base::ThreadPool& thread_pool, std::vector<MapPlan> plans,
            double farthest = maps::kMaxRangeCells);
   ~MapBatch();
 
-  /// Enters scans, at most one into each map. @param wanted maps whose words are looked at afterwards
+  /// Enters scans, at most one per map. @param wanted maps whose words will be read
   void update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted);
 
-  /// Of a map that was wanted last: packed as in maps/grid.h. Lives until the next update.
+  /// Words of a map in the last `wanted`, packed as in maps/grid.h. Valid until the next update.
   std::span<const std::uint32_t> words(std::uint32_t map) const;
 
  private:

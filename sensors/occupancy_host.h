@@ -1,5 +1,5 @@
 #pragma once
-// Occupancy maps on the host: scans that reach far are entered faster line by line than strip by strip.
+// Occupancy maps on the host. Long scans are entered faster line by line than strip by strip.
 
 #include <span>
 #include <vector>
@@ -10,21 +10,21 @@
 
 namespace sf::sensors {
 
-/// [cells] scans that reach farther are entered by the host where the device is software, which is slower at it.
+/// [cells] On a software device, which is slower at them, scans of longer range are entered by the host.
 inline constexpr double kFarScan = 60.0;
 
 /// Not thread-safe.
 class HostMaps {
  public:
-  /// @param plans of all maps  @param farthest [cells] range of scans that the device enters
+  /// @param plans of all maps  @param farthest [cells] largest range of scans on the device
   HostMaps(std::span<const MapPlan> plans, double farthest);
 
   bool has(std::uint32_t map) const { return rows_[map] != kNone; }
   bool empty() const { return maps_.empty(); }
 
-  /// Enters those of `scans` that are for maps of its own, at most one into each.
+  /// Enters the scans of maps on the host, at most one per map; ignores the others.
   void update(std::span<const MapScan> scans, std::span<const std::uint32_t> wanted, base::ThreadPool& thread_pool);
-  /// Of a map that was wanted last. Lives until the next update.
+  /// Words of a map in the last `wanted`. Valid until the next update.
   std::span<const std::uint32_t> words(std::uint32_t map) const { return maps_[rows_[map]].grid.words; }
 
  private:
@@ -32,7 +32,7 @@ class HostMaps {
   struct Map {
     MapPlan plan;
     std::vector<glm::dvec2> beams;
-    maps::OccupancyGrid grid;  ///< its words; with log odds, what they come to
+    maps::OccupancyGrid grid;  ///< its words; with log odds, their classification
     std::optional<maps::LogOddsGrid> odds;
     maps::OccupancyGrid covered;  ///< scratch, with log odds
   };

@@ -1,5 +1,5 @@
 #pragma once
-// Occupancy maps as payloads: maps/map_packets.h as the wire part of a SensorKind. Of a row they read `elements`
+// Occupancy maps as payloads: maps/map_packets.h as the wire part of a SensorType. Of a spec they read `elements`
 // (words), `across` (words in a row) and `pitch` (side of a cell).
 
 #include <cstdint>
@@ -10,17 +10,17 @@
 
 namespace sf::sensors {
 
-/// The thesis' form holds at most 1 022 words, and 255 rows or columns of them.
+/// The thesis format holds at most 1 022 words, and 255 rows or columns of them.
 std::string occupancy_wire_problem(const SensorSpec& sensor, WireFormat wire);
 
 std::uint32_t occupancy_parts(const SensorSpec& sensor, WireFormat wire);
 
-/// @param reading its X_WS is the map's upper left corner. @return kOccupancy
+/// @param reading its X_WS is the map's upper left corner  @return kOccupancy
 std::uint8_t encode_occupancy(const SensorSpec& sensor, const base::ReadingBlock& reading, WireFormat wire,
                               std::uint32_t part, base::Bytes& out);
 
-/// Takes a payload for what this sensor may have sent: a map of its size and of its cells, wherever it lies. A row of
-/// no elements leaves that unchecked.
+/// Validates a payload against this sensor: equal size and cells, any position. A spec with 0 elements disables the
+/// check.
 PayloadPart decode_occupancy(const SensorSpec& sensor, std::span<const std::uint8_t> payload, std::uint8_t type,
                              WireFormat wire);
 

@@ -24,8 +24,7 @@ std::uint32_t words_along(const world::Sensor& sensor, double count) {
                      maps::kMaxWordColumns));
 }
 
-/// Left and top of a map of that size around `place`, on the lattice of all such maps, so that they can be merged
-/// exactly.
+/// Places a map of this size around `place`, aligned to multiples of the cell size, so that maps can be merged exactly.
 void centre(maps::GridGeometry& plan, const Pose& place) {
   plan.left = plan.cell * std::round(place.x / plan.cell - 0.5 * static_cast<double>(maps::columns(plan)));
   plan.top = plan.cell * std::round(place.y / plan.cell + 0.5 * static_cast<double>(maps::rows(plan)));

@@ -16,7 +16,7 @@ using gpu::Texel;
 
 constexpr std::size_t kMostOfAll = 1u << 27;  ///< words of all maps; pairs of beams of all their lasers
 
-/// Blocks that a map's words take, and its strips, when a scan speaks of all of it.
+/// Blocks of a map's words, and of its strips, for a scan that covers the whole map.
 std::size_t word_blocks(const maps::GridGeometry& plan) {
   return std::size_t{units_of(plan.word_columns, SF_MAP_BLOCK)} * plan.word_rows;
 }
@@ -36,7 +36,7 @@ MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<M
   rows = std::make_unique<gpu::Buffer>(device, "due maps", Role::upload, Texel::u32x4,
                                        SF_MAP_ROW_TEXELS * (all.size() + 1));
   lines = std::make_unique<gpu::Buffer>(device, "lines of beams", Role::upload, Texel::f32x4, all_lines + 1);
-  rows->host<MapRow>()[all.size()] = MapRow{};  // nobody's
+  rows->host<MapRow>()[all.size()] = MapRow{};  // for lanes without work
   ends.resize(2 * all_lines);
   std::fill_n(lines->host<BeamLine>().data(), 2 * (all_lines + 1), BeamLine{});
   words = std::make_unique<gpu::Buffer>(device, "maps", Role::download, Texel::u32, all_words + 1);
@@ -81,7 +81,7 @@ void MapBatch::Tables::assign_layout() {
   }
 }
 
-/// @return lanes, whole groups of them.
+/// @return lanes, in whole groups
 std::size_t MapBatch::Tables::make_dispatch(gpu::Device& device, const char* name, MapDispatch& dispatch,
                                             std::span<const std::uint32_t> spirv, std::uint32_t tables,
                                             std::size_t most_blocks) {

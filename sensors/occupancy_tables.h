@@ -1,5 +1,5 @@
 #pragma once
-// What the sources of sensors::MapBatch share: where each map lies, and the device's tables.
+// Tables that the sources of sensors::MapBatch share: layout of the maps, and the device's buffers.
 
 #include <cstdint>
 #include <map>
@@ -18,38 +18,38 @@
 
 namespace sf::sensors {
 
-inline constexpr std::uint32_t kMapGroupsAcross = 32'768;  ///< along x of a dispatch; devices promise 65 535
+inline constexpr std::uint32_t kMapGroupsAcross = 32'768;  ///< along x of a dispatch; Vulkan guarantees 65 535
 
-/// One map as it lies in the tables.
+/// Layout of one map in the tables.
 struct PoseMarker {
   MapPlan plan;
-  std::uint32_t words = 0;                         ///< its first
-  std::uint32_t lines = 0;                         ///< its first pair of beams
-  const std::vector<glm::dvec2>* beams = nullptr;  ///< lasers with the same fan share them
+  std::uint32_t words = 0;                         ///< index of its first word
+  std::uint32_t lines = 0;                         ///< index of its first pair of beams
+  const std::vector<glm::dvec2>* beams = nullptr;  ///< shared by lasers with equal beams
 };
 
-/// One dispatch: blocks of eight lanes.
+/// One dispatch over blocks of eight lanes.
 struct MapDispatch {
   std::unique_ptr<gpu::Kernel> kernel;
   std::unique_ptr<gpu::Buffer> blocks;
-  std::unique_ptr<gpu::Buffer> groups;  ///< counts of the dispatch
-  std::size_t count = 0;                ///< blocks this time, padding included
+  std::unique_ptr<gpu::Buffer> groups;  ///< group counts
+  std::size_t count = 0;                ///< blocks of this update, padding included
 };
 
-/// Words of the maps of one kind: with log odds, or without.
+/// Words of the maps of one update rule: log odds or overwriting.
 struct MapWords {
   MapDispatch dispatch;
-  std::unique_ptr<gpu::Buffer> hit_words;  ///< a word a lane: where beams ended
+  std::unique_ptr<gpu::Buffer> hit_words;  ///< one word per lane: cells where beams ended
 };
 
-/// What one scan is about.
+/// Work of one scan.
 struct ScanWork {
   maps::TracedScan scan;
-  maps::CellBox cells;          ///< of the map, whole words
-  std::size_t first_block = 0;  ///< of its words
+  maps::CellBox cells;          ///< of the map, in whole words
+  std::size_t first_block = 0;  ///< index of its words' first block
 };
 
-/// Units that hold so many cells, rounded up.
+/// Number of units that hold `cells` cells, rounded up.
 inline std::uint32_t units_of(std::int64_t cells, std::int64_t unit) {
   return static_cast<std::uint32_t>((cells + unit - 1) / unit);
 }
@@ -62,21 +62,21 @@ struct MapBatch::Tables {
   bool unified;
   std::vector<PoseMarker> all;
   std::size_t all_words = 0, all_lines = 0;  ///< on the device
-  std::vector<MapScan> scans;                ///< of this time, likewise
-  std::vector<std::uint32_t> wanted;         ///< likewise
+  std::vector<MapScan> scans;                ///< of this update, on the device
+  std::vector<std::uint32_t> wanted;         ///< of this update, on the device
   std::map<std::pair<double, std::uint32_t>, std::vector<glm::dvec2>> fans;
   MapDispatch strips;
   MapWords plain;
   MapWords log_odds_words;
   std::unique_ptr<gpu::Buffer> rows;
   std::unique_ptr<gpu::Buffer> lines;
-  std::vector<std::uint32_t> ends;       ///< of all maps: two for each pair of lines
-  std::unique_ptr<gpu::Buffer> covered;  ///< a word a strip
+  std::vector<std::uint32_t> ends;       ///< of all maps: two per pair of lines
+  std::unique_ptr<gpu::Buffer> covered;  ///< one word per strip
   std::unique_ptr<gpu::Buffer> words;
   std::unique_ptr<gpu::Buffer> odds;
   std::vector<ScanWork> scan_works;  ///< per scan
   gpu::Batch batch;
-  bool blank = true;  ///< maps are still to be sent
+  bool blank = true;  ///< maps are not yet on the device
 
   Tables(gpu::Device& device, base::ThreadPool& w, std::vector<MapPlan> plans, double farthest);
   void plan(std::vector<MapPlan> plans);

@@ -1,5 +1,5 @@
 #pragma once
-// How far wheels roll while a robot moves, and how that is miscounted.
+// Distance rolled by a robot's wheels, and its measurement error.
 
 #include <cstdint>
 
@@ -8,26 +8,25 @@
 
 namespace sf::sensors {
 
-/// [m] that the left and the right wheel roll, forwards positive.
+/// [m] distance rolled by the left and the right wheel, forward positive.
 struct Rolled {
   double left = 0.0;
   double right = 0.0;
 };
 
-/// From `before` to `after` along the one arc of constant curvature whose chord that is, turning by at most half a
-/// turn; of a chord that is no such arc's (a push to the side) the part along the heading half way counts.
-/// @param track [m] between the wheels, as they see it
+/// Rolled distances between two poses along the arc of constant curvature with this chord, turning by at most half a
+/// turn. If the chord belongs to no such arc (a push to the side), its component along the mean heading counts.
+/// @param track [m] effective distance between the wheels
 Rolled roll(const base::Pose& before, const base::Pose& after, double track);
 
-/// What one wheel's counter adds to the way it rolled: a random walk over distance, whose variance is slip^2 times the
-/// metres rolled either way. Its steps are fixed along that distance, a centimetre each, so it is one walk however the
-/// way is cut into ticks.
+/// Error of one wheel's counter: a random walk over distance with variance slip^2 per metre rolled in either direction.
+/// Its steps are fixed, one per centimetre, so that the walk does not depend on the length of ticks.
 class Slippage {
  public:
-  /// @param walk names it: its `c` counts steps; @param slip [m^(1/2)] >= 0; 0: none
+  /// @param walk key of the walk; its `c` counts steps  @param slip [m^(1/2)] >= 0; 0: none
   Slippage(const base::RandomKey& walk, std::uint32_t wheel, double slip) : walk_(walk), wheel_(wheel), slip_(slip) {}
 
-  /// @param distance [m] >= 0, rolled on
+  /// @param distance [m] >= 0, to add
   void advance(double distance);
   /// [m]
   double error() const { return error_; }
@@ -38,9 +37,9 @@ class Slippage {
   base::RandomKey walk_;
   std::uint32_t wheel_;
   double slip_;
-  double rolled_ = 0.0;      ///< [steps] either way
-  std::uint64_t steps_ = 0;  ///< of them, whole ones
-  double whole_ = 0.0;       ///< [m] of these
+  double rolled_ = 0.0;      ///< [steps] in either direction
+  std::uint64_t steps_ = 0;  ///< whole steps
+  double whole_ = 0.0;       ///< [m] error after the whole steps
   double error_ = 0.0;
 };
 

@@ -26,7 +26,7 @@ double from_word(Word word, const PlainNumber& number) {
   return word == kNoNumber ? std::numeric_limits<double>::quiet_NaN() : word * number.unit;
 }
 
-/// A saturated word says "this or more"; one unit is rounding.
+/// A saturated word means "this or more". The tolerance is one unit of rounding.
 bool plausible(Word word, const PlainNumber& number) {
   if (word == kNoNumber) return true;
   const double value = word * number.unit;

@@ -1,11 +1,10 @@
 #pragma once
-// Readings as payloads for kinds whose rows are a few plain numbers: one form, little-endian; docs/packets.md gives
-// every byte.
+// Readings of a few plain numbers as payloads: one layout, little-endian; docs/packets.md gives every byte.
 //
-//   u16 count, u16 0, then for each row i32 for each of the kind's numbers
+//   u16 count, u16 0, then for each row i32 for each of the type's numbers
 //
-// Each number is counted in its own unit, rounded to nearest (half away from zero); words saturate and never wrap. The
-// least word says that there is no number. The thesis has no layout for such kinds.
+// Each number has its own unit and is rounded to nearest (half away from zero); words saturate and never wrap. The
+// least word means NaN. The thesis format has no layout for these types.
 
 #include <cstdint>
 #include <limits>
@@ -19,36 +18,36 @@
 
 namespace sf::sensors {
 
-inline constexpr std::int32_t kNoNumber = std::numeric_limits<std::int32_t>::min();  ///< on the wire: not a number
+inline constexpr std::int32_t kNoNumber = std::numeric_limits<std::int32_t>::min();  ///< on the wire: NaN
 inline constexpr std::uint32_t kMaxPlainWords =
-    313;  ///< numbers in one datagram of 1400 bytes, header and signature and all
+    313;  ///< numbers in one datagram of 1400 bytes, including header and signature
 
 /// One number of a row on the wire.
 struct PlainNumber {
-  double unit = 1.0;  ///< > 0, of the column's own unit
+  double unit = 1.0;  ///< > 0, in units of the column
   double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();  ///< in the column's own unit: beyond is no such reading
+  double most = std::numeric_limits<double>::infinity();  ///< in units of the column; beyond: invalid
 };
 
-/// How one kind is sent.
+/// Wire form of one sensor type.
 struct PlainForm {
-  std::uint8_t id = 0;                   ///< wire id, and the type of its packets
-  std::string_view name;                 ///< of the kind, for messages
-  std::span<const PlainNumber> numbers;  ///< of one row: as many as its columns have; alive for good
+  std::uint8_t id = 0;                   ///< wire id and packet type
+  std::string_view name;                 ///< of the sensor type, for messages
+  std::span<const PlainNumber> numbers;  ///< of one row: one per column number; static lifetime
 };
 
-// What SensorKind asks of a kind, for `form`. Rows have at most kMaxPlainWords numbers in all: one datagram.
+// Wire part of SensorType for `form`. Rows have at most kMaxPlainWords numbers in all: one datagram.
 
-/// The thesis' wire is refused.
+/// Refuses the thesis format.
 std::string plain_wire_problem(const PlainForm& form, WireFormat wire);
 std::uint8_t encode_plain(const PlainForm& form, const SensorSpec& sensor, const base::ReadingBlock& reading,
                           base::Bytes& out);
-/// Any bytes are judged. A row of no elements leaves their number unchecked.
+/// Accepts any bytes. A spec with 0 elements disables the check of their number.
 PayloadPart decode_plain(const PlainForm& form, const SensorSpec& sensor, std::span<const std::uint8_t> payload,
                          std::uint8_t type, WireFormat wire);
 void read_plain(const PlainForm& form, std::span<const std::uint8_t> payload, std::span<double> values);
 
-/// `kind`, sent in the form kForm, whose id and name it has.
+/// `kind` with the id, name and wire part of kForm.
 template <const PlainForm& kForm>
 consteval SensorType plain(SensorType kind) {
   kind.id = kForm.id;

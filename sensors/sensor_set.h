@@ -1,5 +1,5 @@
 #pragma once
-// Every sensor of a world, of every kind: who has which, under which number.
+// All sensors of a world, grouped by type and numbered per mover.
 
 #include <cstdint>
 #include <span>
@@ -11,29 +11,29 @@
 
 namespace sf::sensors {
 
-/// Immutable. The world need not outlive it.
+/// Immutable and thread-safe. The world need not outlive it.
 class SensorSet {
  public:
-  /// @throws base::InputError with file and line for a sensor whose settings make no sense.
+  /// @throws base::InputError with file and line for a sensor with invalid settings
   explicit SensorSet(const world::World& world);
 
-  /// All sensors of one kind, by mover and in file order; at least one.
+  /// All sensors of one type, by mover and in file order; at least one.
   struct Group {
     const SensorType* kind = nullptr;
     std::vector<SensorSpec> rows;
-    std::vector<std::uint32_t> first;  ///< per mover and one more: where its rows begin
+    std::vector<std::uint32_t> first;  ///< per mover and one more: index of its first row
   };
-  /// The kinds this world has sensors of, by id.
+  /// The sensor types of this world, by id.
   std::span<const Group> groups() const { return groups_; }
-  /// @return null when the world has none of that kind.
+  /// @return null when the world has no sensor of that type
   const Group* group(std::uint8_t kind) const;
 
-  /// One mover's sensors of one kind; may be empty.
+  /// One mover's sensors of one type; may be empty.
   std::span<const SensorSpec> of(std::uint8_t kind, std::uint32_t mover) const;
-  /// The sensor that a reading came from.
+  /// The spec of the sensor that made a reading.
   const SensorSpec& row(const base::ReadingBlock& reading) const;
-  std::size_t count() const;                        ///< of all kinds
-  std::size_t count_of(std::uint32_t mover) const;  ///< of all kinds
+  std::size_t count() const;                        ///< of all types
+  std::size_t count_of(std::uint32_t mover) const;  ///< of all types
 
  private:
   std::vector<Group> groups_;

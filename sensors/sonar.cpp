@@ -18,7 +18,7 @@ constexpr double kDegrees = M_PI / 180.0;
 constexpr double kLongest = 1e4;    // [m] of noise and ranges
 constexpr double kMostShare = 1e3;  // of noise
 
-/// ARIA's firing order: one transducer of each array every reading.
+/// ARIA's firing order: one transducer of each array per reading.
 std::uint32_t read_turns(const world::Sensor& sensor, std::uint32_t transducers) {
   constexpr std::string_view kFirings[] = {"sequential", "all"};
   const bool all = choice(sensor, "firing", 0, kFirings) == 1;

@@ -1,13 +1,13 @@
 #pragma once
-// Sonar: transducers that hear the nearest echo out of a cone (docs/sensors.md).
+// Sonar: transducers that measure the nearest echo in a cone (docs/sensors.md).
 //
 // In a world file, inside a robot:
 //   sonar( scount 16  spose[0] [x y yaw] ...  fov 25  range [0.10 4]  rays 11  firing "sequential"  arrays 2
 //          incidence 90  noise [constant proportional] )
 // Lengths and angles are in the file's units.
 //
-// A reading has one column for each transducer: the range [m] of the nearest surface that one of the cone's rays meets;
-// range_max when there is none, range_min when it is nearer.
+// A reading has one column per transducer: the range [m] of the nearest surface met by one of the cone's rays, clamped
+// to [range_min, range_max]; range_max without an echo.
 
 #include <cstdint>
 

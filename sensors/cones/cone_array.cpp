@@ -15,7 +15,7 @@ constexpr double kLongest = 1e4;          // [m] of range_max
 constexpr double kShortest = 1e-6;        // [m] of range_max
 constexpr std::uint32_t kUsualRays = 11;  // three lanes of four beams
 
-/// `range [min max]`, or the first two of `sview [min max fov]` as Stage has it.
+/// Reads `range [min max]`, or the first two numbers of Stage's `sview [min max fov]`.
 void read_range(const world::Sensor& sensor, const ConeDefaults& defaults, ConeArray& array) {
   const bool staged = find(sensor, "range") == nullptr && find(sensor, "sview") != nullptr;
   const char* const key = staged ? "sview" : "range";

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kGroup = 64;
 constexpr std::size_t kMostCones = std::size_t{32'768} * kGroup;
 
-/// A unit vector, or nearly.
+/// Approximately a unit vector.
 struct Direction {
   float x, y;
 };
@@ -100,7 +100,7 @@ bool ConeCaster::prepare(std::span<const DueSample> due, std::span<const Pose> p
   thread_pool_.parallel_for(count_, 512, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) rows[i] = row_of(i);
   });
-  // Padding repeats one cone; its echoes lie behind all others.
+  // Padding repeats one cone; its echoes are written behind all others.
   if (count_ > 0)
     std::fill_n(rows.begin() + static_cast<std::ptrdiff_t>(count_), padded(count_) - count_, rows[count_ - 1]);
   const auto counts = groups_.host<std::uint32_t>();

@@ -35,14 +35,14 @@ class Rangers : public SensorBackend {
   std::vector<ConeArray> arrays_;
   RangerType kind_;
   ConeCaster cones_;
-  std::vector<std::uint64_t> last_;  ///< per array: its last reading, or kNever
-  std::vector<double> heights_;      ///< [m] per array, of its origin in the world
+  std::vector<std::uint64_t> last_;  ///< per array: sequence number of its last reading, or kNever
+  std::vector<double> heights_;      ///< [m] per array: world height of its origin
   std::vector<std::size_t> values_first_;
-  std::vector<double> values_;  ///< of all arrays; those of transducers that do not fire stand
+  std::vector<double> values_;  ///< of all arrays; transducers that do not fire keep theirs
   std::vector<DueSample> due_;
   std::vector<Pose> X_WS_;               ///< per due array
   std::vector<DueSample> due_cones_;     ///< transducers that fire
-  std::vector<std::size_t> cones_ends_;  ///< per due array: behind the last of its own
+  std::vector<std::size_t> cones_ends_;  ///< per due array: end of its cones
 };
 
 Rangers::Rangers(const SensorContext& context, std::vector<ConeArray> arrays, const RangerType& kind)
@@ -88,7 +88,7 @@ void Rangers::fire(const DueSample& due) {
 void Rangers::write_reading(std::size_t i) {
   const DueSample& due = due_[i];
   const ConeArray& array = arrays_[due.row];
-  // Kinds share a stream, and sensors of two kinds share numbers; a draw keeps 24 bits of this name.
+  // Sonar and infrared share a stream and sensor numbers; a draw keeps 24 bits of this name.
   const std::uint32_t name = (std::uint32_t{kind_.id} << 16) | array.row.sensor;
   const base::RandomKey draw{seed_, base::RandomStream::range_cone, array.row.mover, name, due.sequence};
   const bool noisy = noise_ && (array.sigma > 0.0 || array.proportional > 0.0);
@@ -126,7 +126,7 @@ std::vector<SensorSpec> ranger_specs(const std::vector<ConeArray>& arrays) {
   for (const ConeArray& array : arrays) {
     rows.push_back(array.row);
     rows.back().noisy = array.sigma > 0.0 || array.proportional > 0.0;
-    // Where transducers take turns, a reading holds what was heard before.
+    // With a firing cycle, a reading contains echoes of earlier readings: no reuse.
     if (array.turns > 1) continue;
     for (const Pose& X_SC : array.X_SC)
       rows.back().dependency_radius =

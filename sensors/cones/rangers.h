@@ -1,5 +1,5 @@
 #pragma once
-// Sonar and infrared at work: which transducers fire, and what their echoes become.
+// The common backend of sonar and infrared: firing order, and readings from echoes.
 
 #include <memory>
 #include <span>
@@ -9,26 +9,27 @@
 
 namespace sf::sensors {
 
-/// What one kind of ranger makes of echoes.
+/// One type of ranger.
 struct RangerType {
   std::uint8_t id = 0;        ///< on the wire
-  std::uint32_t columns = 1;  ///< numbers of one transducer
+  std::uint32_t columns = 1;  ///< numbers per transducer
   ConeKernel kernel;
-  /// Writes a transducer's columns. @param range [m] of the nearest echo; range_max when `met` is false. @param deviate
-  /// standard normal; 0 when there is no noise.
+  /// Writes a transducer's columns.
+  /// @param range [m] of the nearest echo; range_max when `met` is false
+  /// @param deviate standard normal; 0 without noise
   void (*write_reading)(const ConeArray& array, double range, bool met, double deviate, std::span<double> out);
 };
 
-/// Rows as the farm knows them.
+/// Specs of the arrays for `SensorType::specs`.
 std::vector<SensorSpec> ranger_specs(const std::vector<ConeArray>& arrays);
 
-/// A reading renews the transducers whose turn has come since its sensor's last one, all of them when that was a round
-/// ago or there was none; the others stand.
+/// A reading updates the transducers that fired since its sensor's last reading: all of them after a whole cycle or for
+/// the first reading. The others keep their values.
 std::unique_ptr<SensorBackend> make_ranger_backend(const SensorContext& context, std::vector<ConeArray> arrays,
                                                    const RangerType& kind);
 
-/// Whether transducer `number` fires in reading `sequence` when the last one that was taken is `last`; both count all
-/// readings, taken or not. @param turns readings of a round.
+/// True when transducer `number` fires in a reading after `last`, up to and including `sequence`. Both are sequence
+/// numbers, which also count skipped readings. @param turns readings per cycle
 bool has_fired(std::uint32_t number, std::uint32_t turns, std::uint64_t sequence, std::uint64_t last);
 
 }  // namespace sf::sensors

@@ -1,6 +1,6 @@
 #pragma once
-// What sonar may hear of a world, as a world of its own whose segments say which way they run: how flatly a beam meets
-// a surface decides whether its echo comes back.
+// The subset of a world that reflects sound, with the direction of each segment: the angle of incidence decides whether
+// an echo returns.
 
 #include <vector>
 
@@ -10,7 +10,7 @@
 namespace sf::sensors {
 
 struct Reflectors {
-  world::World world;                    ///< walls and movers that echo; `Segment::model` is a row of `rows`
+  world::World world;                    ///< walls and movers that echo; `Segment::model` is an index into `rows`
   std::vector<ReflectorDirection> rows;  ///< one per segment
 };
 

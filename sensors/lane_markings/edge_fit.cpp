@@ -20,7 +20,7 @@ constexpr std::size_t kMostSensors = std::size_t{32'768} * kGroup;
 
 std::size_t padded(std::size_t sensors) { return (sensors + kGroup - 1) / kGroup * kGroup; }
 
-/// What the fit needs of one sensor; the tables it shares are filled in later.
+/// The constant part of a sensor's row. The places in shared tables are filled in later.
 EdgeRow row_of(const LaneEdge& edge, const raycast::BeamPlan& plan, const world::LaserNoise& noise) {
   EdgeRow row{};
   row.beams = edge.fan.samples;
@@ -48,7 +48,7 @@ EdgeFit::Plan EdgeFit::plan(const SensorContext& context, const std::vector<Lane
                                std::to_string(kMostSensors) + " are supported");
   Plan plan;
   std::map<std::tuple<double, std::uint32_t, bool>, std::uint32_t> shared;
-  // Sensors without noise read deviates that stay 0, in front of all others.
+  // Sensors without noise share the first deviates, which stay 0.
   plan.noise_lanes = kMostEdgeSamples;
   for (const LaneEdge& edge : edges) {
     const raycast::BeamPlan beams = raycast::plan_beams(edge.fan, context.noise);
@@ -147,9 +147,9 @@ bool EdgeFit::write_rows(std::span<const std::uint32_t> lanes) {
   return false;
 }
 
-/// Lanes of the device that work side by side wait for each other: those that told edges apart last time, which takes
-/// longest, go together, in every other group, since lavapipe halves the groups among its threads. No reading depends
-/// on it.
+/// Order of sensors in the dispatch. Lanes of one group wait for the slowest: sensors that separated several edges last
+/// time, the slowest case, share groups. These are every other group, because lavapipe splits the groups in halves
+/// between its threads. Readings do not depend on the order.
 void EdgeFit::write_order(bool same_due) {
   if (due_.empty()) return;
   const auto order = order_.host<std::uint32_t>();
@@ -165,7 +165,7 @@ void EdgeFit::write_order(bool same_due) {
   for (const std::uint32_t mixed : {1u, 0u})
     for (std::uint32_t i = 0; i < due_.size(); ++i)
       if ((same_due ? mixtures[i] & 1u : 0u) == mixed) put(last = i);
-  // Padding repeats one row, which then is written more than once with the same values.
+  // Padding repeats one row; its results are written repeatedly with equal values.
   while (at < groups * kGroup) put(last);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The fit of lane edges on the device: from the points of every fan that is due to its reading, in one dispatch.
+// Fits lane edges on the device: one dispatch for the points of all due sensors.
 
 #include <cstdint>
 #include <span>
@@ -14,28 +14,28 @@
 
 namespace sf::sensors {
 
-/// What turns a ray into a point: read and written by whoever knows what rays met.
+/// Tables for the kernels that turn ray hits into points.
 struct PointTables {
   gpu::Buffer& rows;        ///< EdgeRow of each due sensor
-  gpu::Buffer& directions;  ///< a texel a beam: cosine, sine of its nominal bearing
-  gpu::Buffer& normals;     ///< a texel a lane: normal deviates
-  gpu::Buffer& points;      ///< a texel a beam: x, y [m], its grain in x
+  gpu::Buffer& directions;  ///< one texel per beam: cosine and sine of its nominal bearing
+  gpu::Buffer& normals;     ///< one texel per lane: normal deviates
+  gpu::Buffer& points;      ///< one texel per beam: x, y [m], with its pixel size in the last bits of x
 };
 
-/// One thread. `context` without its world must outlive it.
+/// Not thread-safe. `context` must outlive it, except for `context.world`.
 class EdgeFit {
  public:
-  /// @param grains [m] pixel sizes by the rows that tags name.
+  /// @param grains [m] pixel sizes; tags hold indices into them
   /// @throws base::DeviceError when the device cannot hold the tables, base::InputError for more sensors than one
   /// dispatch takes.
   EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edges, const std::vector<double>& grains);
 
-  /// @param lanes first lane of each due fan's results.
+  /// @param lanes first result lane of each due sensor
   void prepare(std::span<const DueSample> due, std::span<const std::uint32_t> lanes);
-  /// What makes points of the results of a cast: `lanes` (Lane), `ranges` (a lane's four doubles [m]) and `hits` (its
-  /// four tags) as raycast::Casts has them. To be called when these were replaced, and once before `record_points`.
+  /// Binds the results of a raycast::RayCaster, the input of `record_points`: `lanes` (Lane), `ranges` (four doubles
+  /// per lane [m]) and `hits` (four tags per lane). Call once before `record_points`, and after these were replaced.
   void bind(gpu::Buffer& lanes, gpu::Buffer& ranges, gpu::Buffer& hits);
-  /// @param lane_groups group counts of the cast over `lanes`.
+  /// @param lane_groups group counts of the cast over `lanes`
   void record_points(gpu::Batch& batch, const gpu::Buffer& lane_groups) const {
     batch.dispatch(maker_, lane_groups, 0);
   }
@@ -43,7 +43,7 @@ class EdgeFit {
   void record(gpu::Batch& batch) const { batch.dispatch(kernel_, groups_, 0); }
   void add_copies(gpu::Batch& batch);
 
-  /// Of the i-th due sensor: its columns, and all of it. Both live until the next `prepare`.
+  /// Columns and full record of the i-th due sensor. Both are valid until the next `prepare`.
   std::span<const double> values(std::size_t i) {
     return readings_.host<double>().subspan(sizeof(EdgeReading) / sizeof(double) * i, 4);
   }
@@ -51,9 +51,9 @@ class EdgeFit {
 
   PointTables tables() { return {rows_, directions_, normals_, points_}; }
 
-  /// What never changes of each sensor, in order of `edges`.
+  /// The constant fields of each sensor's row, in order of `edges`.
   const std::vector<EdgeRow>& rows() const { return plan_.rows; }
-  /// Cosine and sine of the beams of one sensor, as the device has them, SF_BEAMS_PER_LANE a lane.
+  /// Cosine and sine of one sensor's beams as uploaded, SF_BEAMS_PER_LANE per lane.
   std::span<const double> directions(std::uint32_t edge);
 
  private:
@@ -76,13 +76,13 @@ class EdgeFit {
   const std::vector<LaneEdge>& edges_;
   Plan plan_;
   std::vector<DueSample> due_;
-  std::vector<std::uint32_t> written_;  ///< due rows, in order, that `rows_` holds
-  bool fresh_ = true;                   ///< tables that never change are not on the device yet
+  std::vector<std::uint32_t> written_;  ///< due rows, in order, in the current `rows_`
+  bool fresh_ = true;                   ///< constant tables are not yet on the device
   gpu::Kernel kernel_, maker_;
   gpu::Buffer rows_, directions_, normals_, grains_, readings_, groups_, points_, order_, mixtures_;
 };
 
-/// Names the noise of a sensor that is a mover's `sensor`-th lane edge: not that of a laser with the same number.
+/// Random-number id of a mover's `sensor`-th lane edge sensor, distinct from that of a laser with the same number.
 std::uint32_t edge_noise_id(std::uint32_t sensor);
 
 }  // namespace sf::sensors

@@ -9,10 +9,10 @@ namespace sf::sensors {
 
 namespace {
 
-/// Paint has no height of its own: every lane edge sensor sees it.
+/// Markings have no height of their own: every lane edge sensor sees them.
 constexpr double kAllHeights = 1e6;  // [m]
 
-/// Pixel size that a wall's outline is made of [m]; 0: none.
+/// [m] pixel size of a wall's outline; 0: none.
 double pixel_of(const world::World& world, const world::Segment& wall) {
   return wall.model < world.models.size() && world.models[wall.model].is_bitmap ? world.models[wall.model].pixel : 0.0;
 }

@@ -1,6 +1,5 @@
 #pragma once
-// What lane edge sensors may see of a world, as a world of its own whose segments say what a ray met in the words of
-// sensors/laneedge.h.
+// The subset of a world that lane edge sensors see. Segments carry the tags of sensors/laneedge.h.
 
 #include <vector>
 
@@ -9,17 +8,17 @@
 
 namespace sf::sensors {
 
-/// Stripes exactly, or none of them; static walls that lasers and lane edge sensors see; movers, which hide what is
-/// behind them.
+/// Lane markings as exact outlines or not at all; static walls that lasers and lane edge sensors see; movers, as
+/// occluders.
 struct FilteredScene {
   world::World world;                     ///< walls and movers; `Segment::model` is a tag
-  std::vector<double> grains;             ///< [m] pixel sizes by row, rising; the first is 0
-  std::uint32_t paint_tag = 0;            ///< of a raster of road_resolution
-  std::vector<world::LaneMarking> paint;  ///< the distinct stripes of the road
+  std::vector<double> grains;             ///< [m] pixel sizes, ascending; the first is 0
+  std::uint32_t paint_tag = 0;            ///< tag of markings in a raster of road_resolution
+  std::vector<world::LaneMarking> paint;  ///< the distinct markings of the road
 };
 
-/// @throws base::InputError where bitmaps have more sizes of pixels than a point's grain can say.
-/// @param exact whether stripes become walls, at every height; else they are left to the raster.
+/// @param exact true: markings become walls, at every height; false: they are left to the raster
+/// @throws base::InputError where bitmaps have more pixel sizes than a point's tag can encode
 FilteredScene filter_scene(const world::World& world, bool exact);
 
 }  // namespace sf::sensors

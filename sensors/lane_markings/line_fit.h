@@ -1,10 +1,10 @@
 #ifndef SENSORS_LANE_MARKINGS_LINE_FIT_H
 #define SENSORS_LANE_MARKINGS_LINE_FIT_H
-// The line through a fan's points: total least squares, which holds for any direction, with a parabola beside it that
-// says how straight the points are. Read by both compilers, so that host and device compute the same.
+// Fits a line to a scan's points by total least squares, which is valid for any direction, and a parabola that measures
+// how straight the points are. Read by both compilers, so that host and device compute equal results.
 //
-// After K. Pearson, "On lines and planes of closest fit to systems of points in space", Phil. Mag. 2 (1901): the line
-// through the centroid along the larger principal axis. Constants are exact in 32 bits, since GLSL reads them so.
+// K. Pearson, "On lines and planes of closest fit to systems of points in space", Phil. Mag. 2 (1901): the line through
+// the centroid along the larger principal axis. Constants are exact in 32 bits because GLSL parses them as such.
 
 #ifdef __cplusplus
 #include <cmath>
@@ -23,7 +23,7 @@ using uint = std::uint32_t;
 #define SF_INLINE
 #endif
 
-/// Sums over points; w is 1 for a point that counts and 0 for one that does not.
+/// Sums over points. The weight w is 1 for a point in the set and 0 for others.
 struct Moments {
   double n, x, y, xx, xy, yy;
 };
@@ -42,10 +42,10 @@ SF_INLINE void add_point(SF_INOUT(Moments) m, double w, double x, double y) {
   m.yy = yy;
 }
 
-/// Point p, unit direction t; the normal (-ty, tx) or its opposite, whichever leads away from the sensor, is n.
+/// Point p, unit direction t, and the normal n: (-ty, tx) or its opposite, whichever points away from the sensor.
 struct Line {
   double px, py, tx, ty, nx, ny;
-  double spread;  // [m^2] variance of the points along the line; 0: there is no line
+  double spread;  // [m^2] variance of the points along the line; 0: no line
 };
 
 SF_INLINE Line facing(double px, double py, double tx, double ty, double spread) {
@@ -54,7 +54,7 @@ SF_INLINE Line facing(double px, double py, double tx, double ty, double spread)
   return Line(px, py, tx, ty, -side * ty, side * tx, spread);
 }
 
-/// Points closer together than about 1e-7 of their distance make no line.
+/// Points closer together than about 1e-7 of their distance define no line.
 SF_INLINE Line line_through(Moments m) {
   const double n = m.n > 0.0 ? m.n : 1.0;
   SF_REAL px = m.x / n;
@@ -88,7 +88,7 @@ SF_INLINE double along(Line line, double x, double y) {
   return u;
 }
 
-/// Sums in the frame of a line: u along it, v across.
+/// Sums in the frame of a line: u along it, v across it.
 struct LineMoments {
   double n, u, v, uu, uv, vv, uuu, uuuu, uuv;
   double widest;           // [m] largest |v|
@@ -122,11 +122,11 @@ SF_INLINE void add_to_moments(SF_INOUT(LineMoments) s, double w, double u, doubl
   s.highest = wu > s.highest ? wu : s.highest;
 }
 
-/// The parabola v = bend * (u^2 - lean * u - base) that is left beside the line.
+/// The parabola v = curvature * (u^2 - skew * u - base), fitted to the residuals of the line.
 struct Parabola {
   double curvature;   // [1/m]
   double skew, base;  // [m], [m^2]
-  double left;        // [m^2] sum of squares beside line and parabola
+  double left;        // [m^2] sum of squared residuals after line and parabola
 };
 
 SF_INLINE Parabola parabola_of(LineMoments s) {
@@ -143,14 +143,15 @@ SF_INLINE Parabola parabola_of(LineMoments s) {
   return Parabola(is_curved ? curvature : 0.0, skew, base, rest > 0.0 ? rest : 0.0);
 }
 
-/// How far points of one edge may lie from a line or a parabola for their source's sake [m]: a grain is a pixel.
+/// [m] largest distance of an edge's points from a line or parabola that their source explains. A grain is a pixel
+/// size.
 SF_INLINE double tolerance(double grain, double noise) {
   SF_REAL t = 9.5367431640625e-07 + 1.25 * grain + 4.0 * noise;
   return t;
 }
 
-/// One edge: straight within its source's tolerance, or a gentle bend (its rise at most a sixteenth of its chord) with
-/// little beside it.
+/// True for one edge: straight within its source's tolerance, or gently curved (rise at most a sixteenth of the chord)
+/// with small residuals.
 SF_INLINE bool is_one_edge(LineMoments s, Parabola b, double allowed) {
   SF_REAL chord = s.highest - s.lowest;
   const double curvature = b.curvature < 0.0 ? -b.curvature : b.curvature;
@@ -159,7 +160,7 @@ SF_INLINE bool is_one_edge(LineMoments s, Parabola b, double allowed) {
   return s.widest <= allowed || (gentle && b.left <= s.n * (slack * slack));
 }
 
-/// A candidate edge as its voters see it, in 32 bits: they judge what is near, not how near. n p = c, by `allowed`.
+/// A candidate edge in consensus, n p = c within `allowed`. 32 bits suffice to count inliers.
 struct Hypothesis {
   float nx, ny, c, allowed;
 };
@@ -169,41 +170,42 @@ SF_INLINE Hypothesis hypothesis_of(Line line, double allowed) {
   return Hypothesis(float(line.nx), float(line.ny), float(c), float(allowed));
 }
 
-/// What a point is worth to a candidate edge: an inlier speaks for it, one in front of it against it, three times as
-/// loud. The nearest edge wins that has more than a quarter as many points as those behind it.
+/// The vote of a point: 1 for an inlier, -3 in front of the edge, 0 behind it. The nearest candidate wins whose inliers
+/// exceed a quarter of the points behind it.
 SF_INLINE float vote(Hypothesis b, float w, float x, float y) {
   SF_REAL32 v = b.nx * x + b.ny * y - b.c;
   return w * (v < -b.allowed ? -3.0f : (v <= b.allowed ? 1.0f : 0.0f));
 }
 
-/// What the points' source may be wrong by.
+/// Errors of the points' source.
 struct PointError {
-  double grain;  // [m] pixel that outlines are made of; 0: none
+  double grain;  // [m] pixel size of outlines; 0: none
   double noise;  // [m] standard deviation of a point across the line
 };
 
-// [-] gain of what no ray met: 2^100.
+// [-] gain of an extrapolated edge: 2^100.
 #define SF_NO_GAIN 1.2676506002282294e30
 
 struct LineFit {
   double distance, points, residual, sigma;
-  double gain;  // [-] the distance is off by at most so many times what the points are, across the line
+  double gain;  // [-] error of the distance per error of the points across the line, at most
   bool seen;
 };
 
-/// Extrapolates to the perpendicular e and says how uncertain that is.
+/// Extrapolates the line to the perpendicular e and estimates the error.
 ///
-/// The variance of the line at u0 from the centroid is sigma^2 / n (1 + u0^2 / spread) (ordinary least squares), and of
-/// its direction sigma^2 / (n spread). Pixels do not err independently: a face along the pixels is off by one amount
-/// for all of its points, which the residual does not show; what it shows is the change from one row of pixels to the
-/// next, of which few are seen. So sigma^2 / n is a pixel's variance less the residual's, and a sixth of that. Of an
-/// edge seen askew only the pixels' corners are seen: up to three times the variance. What is left of a bend at u0 is
-/// model error and counts whole. A line parallel to e within a standard deviation of its direction meets it nowhere.
+/// The variance of the line at u0 from the centroid is sigma^2 / n (1 + u0^2 / spread) (ordinary least squares), that
+/// of its direction sigma^2 / (n spread). Pixel errors are not independent: an edge along the pixels has one offset for
+/// all of its points, which the residual does not show. The residual shows only the changes between rows of pixels, of
+/// which there are few. So sigma^2 / n is a pixel's variance less the residual's, plus a sixth of the residual's. Of an
+/// edge seen at an angle only the pixels' corners are visible: up to three times the variance. The remaining curvature
+/// at u0 is model error and counts in full. A line parallel to e within a standard deviation of its direction has no
+/// intersection.
 SF_INLINE LineFit fit_at(Line line, LineMoments s, Parabola b, PointError point_error, double ex, double ey,
                          double distance_max) {
   const double n = s.n > 0.0 ? s.n : 1.0;
   const double uu = s.uu > 0.0 ? s.uu : 1.0;
-  // What rounding left of the first moments.
+  // Residual first moments from rounding.
   SF_REAL lift = s.v / n;
   SF_REAL slope = s.uv / uu;
   SF_REAL nx = line.nx - slope * line.tx;
@@ -238,10 +240,10 @@ SF_INLINE LineFit fit_at(Line line, LineMoments s, Parabola b, PointError point_
   const double sure = facing_size - turn > least ? facing_size - turn : least;
   SF_REAL sigma = sqrt(variance) / (crosses ? sure : 1.0);
   SF_REAL residual = sqrt((s.vv > 0.0 ? s.vv : 0.0) / n);
-  // All points are the sensor itself: it touches the edge, whatever the edge's direction.
+  // All points coincide with the sensor: it touches the edge, whatever the edge's direction.
   const bool here = line.spread == 0.0 && s.n > 1.5 && line.px * line.px + line.py * line.py < 8.673617379884035e-19;
-  // The value of a line of least squares at u0 is a mean of its points with weights 1/n (1 + u u0 / spread). Beyond its
-  // points an edge may end or bend, and two points are a line whatever they met.
+  // The least-squares line at u0 is a mean of its points with weights 1/n (1 + u u0 / spread). Beyond its points an
+  // edge may end or bend, and two points always define a line.
   const bool between = s.n > 2.5 && s.uu > 0.0 && u0 >= s.lowest && u0 <= s.highest;
   const double u0_size = u0 < 0.0 ? -u0 : u0;
   SF_REAL gain = (1.0 + u0_size / sqrt(spread)) / (ahead ? facing_size : 1.0);

@@ -26,23 +26,23 @@ struct Box {
   }
 };
 
-/// A face crosses a row of cell centres: where, and which way round the paint.
+/// The crossing of an edge and a row of cell centres: place and winding direction.
 struct Crossing {
   double x;
   int turn;
   bool operator<(const Crossing& other) const { return x < other.x; }
 };
 
-/// First whole number k with (k + 1/2) cell >= at.
+/// Least integer k with (k + 1/2) cell >= at.
 std::int64_t first_centre(double at, double cell) { return static_cast<std::int64_t>(std::ceil(at / cell - 0.5)); }
 
-/// Faces that a rising row of cell centres may cross.
+/// Edges that an ascending row of cell centres may cross.
 class Sweep {
  public:
   explicit Sweep(std::vector<OutlineEdge> faces) : faces_(std::move(faces)) {
     std::sort(faces_.begin(), faces_.end(), [](const OutlineEdge& p, const OutlineEdge& q) { return low(p) < low(q); });
   }
-  /// In order of x. `y` does not go back.
+  /// Crossings in order of x. `y` must not decrease between calls.
   const std::vector<Crossing>& cross(double y);
 
  private:
@@ -67,7 +67,7 @@ const std::vector<Crossing>& Sweep::cross(double y) {
   return crossings_;
 }
 
-/// Within one cell of an end face, on the paint's side of it.
+/// True within one cell of an end edge, on its painted side.
 bool near_end(const std::vector<OutlineEdge>& ends, glm::dvec2 p, double cell) {
   return std::any_of(ends.begin(), ends.end(), [&](const OutlineEdge& f) {
     const glm::dvec2 e = f.b - f.a;
@@ -136,7 +136,7 @@ void MarkingRaster::set(std::int64_t x, std::int64_t y, std::size_t plane) {
 void MarkingRaster::paint(const world::LaneMarking& marking) {
   std::vector<OutlineEdge> faces;
   add_outline(marking, faces);
-  // Relative to the raster, so that it is as good far from the origin.
+  // Relative to the raster, for equal precision far from the origin.
   const glm::dvec2 corner{static_cast<double>(column_) * cell_, static_cast<double>(row_) * cell_};
   Box box;
   for (OutlineEdge& f : faces) {
@@ -164,8 +164,8 @@ void MarkingRaster::paint(const world::LaneMarking& marking) {
   }
 }
 
-/// Two sweeps, each from the neighbours that it has passed: exact for the chessboard distance (A. Rosenfeld,
-/// J. Pfaltz, "Distance functions on digital pictures", Pattern Recognition 1 (1968)).
+/// Two passes, each over the neighbours already visited: exact for the chessboard distance (A. Rosenfeld, J. Pfaltz,
+/// "Distance functions on digital pictures", Pattern Recognition 1 (1968)).
 void MarkingRaster::measure_distances() {
   const auto far = std::numeric_limits<std::uint32_t>::max() >> 1;
   const auto w = static_cast<std::int64_t>(columns_);

@@ -1,7 +1,7 @@
 #pragma once
-// Road paint in pixels: cell (i, j) covers [i h, (i + 1) h) x [j h, (j + 1) h) of the world and is painted when its
-// centre lies in a stripe. Two levels: blocks of 8 x 8 cells, and a directory that says of every block where its cells
-// are, or how far it is to a block that has some.
+// Road markings as pixels: cell (i, j) covers [i h, (i + 1) h) x [j h, (j + 1) h) of the world and is painted when its
+// centre lies in a marking. Two levels: blocks of 8 x 8 cells, and a directory with the cells of each block or its
+// distance to the nearest block with paint.
 
 #include <cstdint>
 #include <vector>
@@ -10,30 +10,31 @@
 
 namespace sf::sensors {
 
-/// Immutable once made.
+/// Immutable after construction, thread-safe.
 class MarkingRaster {
  public:
-  static constexpr int kBlock = 8;                    ///< [cells] a block's side
-  static constexpr std::uint32_t kFull = 0x80000000;  ///< of a directory word: the rest is a row of `blocks`
+  static constexpr int kBlock = 8;                    ///< [cells] side of a block
+  static constexpr std::uint32_t kFull = 0x80000000;  ///< flag of a directory word; other bits: row of `blocks`
 
-  /// @param cell [m] > 0. @param margin [m] empty space kept round all paint, at least.
-  /// @throws base::InputError naming road_resolution, with `file`, when the raster would take more than `most_bytes`.
+  /// @param cell [m] > 0  @param margin [m] least empty border round all paint
+  /// @throws base::InputError that names road_resolution and `file` when the raster would exceed `most_bytes`
   MarkingRaster(const std::vector<world::LaneMarking>& lane_markings, double cell, double margin,
                 const std::string& file, std::size_t most_bytes = std::size_t{1} << 29);
 
   double cell() const { return cell_; }                  ///< [m]
-  std::int64_t first_column() const { return column_; }  ///< of the world's cells, the raster's first
+  std::int64_t first_column() const { return column_; }  ///< of the raster's first cell, in the world's cells
   std::int64_t first_row() const { return row_; }
   std::uint32_t columns() const { return columns_; }  ///< [blocks]
   std::uint32_t rows() const { return rows_; }        ///< [blocks]
 
-  /// A word per block, row by row: kFull and a row of `blocks`, or the chessboard distance to the nearest full block.
+  /// One word per block, row by row: kFull and a row of `blocks`, or the chessboard distance [blocks] to the nearest
+  /// full block.
   const std::vector<std::uint32_t>& directory() const { return directory_; }
-  /// Four words per full block: cells (x, y) in [0, 8) as bit x + 8 (y mod 4) of word y / 4; then those at dashes'
-  /// ends.
+  /// Four words per full block. Words 0 and 1: cells (x, y) in [0, 8) as bit x + 8 (y mod 4) of word y / 4. Words 2 and
+  /// 3: cells at the ends of dashes, in the same layout.
   const std::vector<std::uint32_t>& blocks() const { return blocks_; }
 
-  /// Of the raster's own cells, counted from its first.
+  /// Cells of the raster, counted from its first.
   bool painted(std::int64_t x, std::int64_t y) const { return bit(x, y, 0); }
   bool at_end(std::int64_t x, std::int64_t y) const { return bit(x, y, 2); }
 

@@ -13,8 +13,8 @@ namespace sf::sensors {
 
 namespace {
 
-/// [cells] of a ray: 32-bit reals name a place that far away within a thousandth of a cell, and a ray's steps stay
-/// below the turns that older Mesa allows.
+/// [cells] longest ray. At this distance the rounding of 32-bit floats is a thousandth of a cell, and the steps stay
+/// below the limit of older Mesa.
 constexpr double kLongestRay = 8192.0;
 
 void refuse_long_rays(const SensorContext& context, const raycast::RayCaster& caster, double cell) {
@@ -88,7 +88,7 @@ void RasterCaster::prepare(std::size_t due) {
   thread_pool_.parallel_for(due, 256, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) rows[i] = row_of(i);
   });
-  // One invocation a beam where the cast has one a lane.
+  // One invocation per beam, where the cast has one per lane.
   const auto lanes = caster_.groups().host<std::uint32_t>();
   const auto groups = groups_.host<std::uint32_t>();
   groups[0] = lanes[0];

@@ -1,5 +1,5 @@
 #pragma once
-// The raster of the road on the device, and the rays that lane edge sensors cast into it.
+// The road raster on the device, and the rays of lane edge sensors through it.
 
 #include <cstdint>
 #include <memory>
@@ -16,18 +16,17 @@
 
 namespace sf::sensors {
 
-/// Casts the fans of a `raycast::RayCaster` into a raster, after that has cast them into the rest of the world. One
-/// thread.
+/// Casts the beams of a `raycast::RayCaster` through a raster, after that caster's own dispatch. Not thread-safe.
 class RasterCaster {
  public:
-  /// @param tag of paint. @param with_casts whether what `caster` met counts.
-  /// @throws base::DeviceError when the device cannot hold the tables.
+  /// @param tag tag of paint  @param with_casts whether hits of `caster` count
+  /// @throws base::DeviceError when the device cannot hold the tables
   RasterCaster(const SensorContext& context, const MarkingRaster& raster, raycast::RayCaster& caster, std::uint32_t tag,
                bool with_casts);
 
-  /// Where the fans due look from, after `caster` was prepared for as many.
+  /// Computes the poses of the due scanners; call after `caster.prepare` with the same number.
   void prepare(std::size_t due);
-  /// To be called when the tables of `caster` were replaced, and once before `record`.
+  /// Call once before `record`, and after the tables of `caster` were replaced.
   void bind(const PointTables& out);
   void record(gpu::Batch& batch);
   void add_copies(gpu::Batch& batch);
@@ -39,12 +38,12 @@ class RasterCaster {
   raycast::RayCaster& caster_;
   double cell_;
   double columns_, rows_;            ///< [cells]
-  double first_column_, first_row_;  ///< of the world's cells
+  double first_column_, first_row_;  ///< of the raster's first cell, in the world's cells
   std::uint32_t block_columns_, block_rows_;
   std::uint32_t tag_;
   bool with_casts_;
   std::size_t due_ = 0;
-  bool fresh_ = true;  ///< the raster is not on the device yet
+  bool fresh_ = true;  ///< the raster is not yet on the device
   gpu::Kernel kernel_;
   gpu::Buffer place_, groups_, directory_, blocks_;
 };

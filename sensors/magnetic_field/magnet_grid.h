@@ -1,6 +1,6 @@
 #pragma once
-// Which magnets lie near a place: square cells in rows, and magnets in the order of their cells, so that what is near
-// in one row of cells is one span of them.
+// Grid of magnets: square cells in rows, and magnets sorted by cell, so that the magnets near a point are one span per
+// row of cells.
 
 #include <cstdint>
 #include <span>
@@ -13,16 +13,16 @@ namespace sf::sensors {
 
 class MagnetGrid {
  public:
-  /// Sorts `magnets` [m] into cells of a quarter of `cutoff` [m], larger ones where that would make more than
-  /// `most_cells`. Allocates nothing when it has seen as many before.
-  /// @param cutoff 0: none, one span holds them all.
+  /// Sorts `magnets` [m] into cells of a quarter of `cutoff` [m], or larger to stay within `most_cells`. Does not
+  /// allocate for a number of magnets that it had before.
+  /// @param cutoff [m] 0: none, one span holds all magnets
   void build(std::span<const glm::dvec2> magnets, double cutoff, std::size_t most_cells);
 
-  /// The magnet at each place of the order.
+  /// Index of the magnet at each place of the order.
   std::span<const std::uint32_t> order() const { return order_; }
 
-  /// Spans of the order that together hold each magnet within `reach` [m] of `centre`, and few others.
-  /// @param out has room for `most_spans(reach)`. @return how many were written.
+  /// Finds spans of the order that contain each magnet within `reach` [m] of `centre`, and few others.
+  /// @param out room for `most_spans(reach)`  @return number of spans written
   std::uint32_t find(glm::dvec2 centre, double reach, std::span<MagnetSpan> out) const;
   std::uint32_t most_spans(double reach) const;
 
@@ -37,7 +37,7 @@ class MagnetGrid {
   double depth_ = 1.0;  ///< [m] of a cell
   std::uint32_t across_ = 1;
   std::uint32_t rows_ = 1;
-  std::vector<std::uint32_t> cells_;   ///< scratch: of each magnet
+  std::vector<std::uint32_t> cells_;   ///< scratch: cell of each magnet
   std::vector<std::uint32_t> starts_;  ///< per cell and one more: its first place in the order
   std::vector<std::uint32_t> order_;
 };

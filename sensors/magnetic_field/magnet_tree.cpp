@@ -7,8 +7,8 @@ namespace sf::sensors {
 
 namespace {
 
-/// A node stands for its magnets where it is this much smaller than its distance, or than the box it is seen from: too
-/// much by some per cent, or by less than the box itself makes it.
+/// A node stands for its magnets when it is smaller than this fraction of its distance or of the query box. The bound
+/// is then too large by some per cent, or by less than the box itself adds.
 constexpr double kOpening = 0.25;
 constexpr double kOpeningToBox = 0.5;
 

@@ -1,5 +1,5 @@
 #pragma once
-// A tree of magnets that bounds what those beyond a distance add, for all places of a box at once.
+// A tree of magnets that bounds the field of all magnets beyond a distance, for all points of a box.
 
 #include <cstdint>
 #include <span>
@@ -16,28 +16,28 @@ struct Box {
   glm::dvec2 low, high;  ///< [m]
 };
 
-/// [T m^3] mu0 / 4 pi times its moment, as a magnitude.
+/// [T m^3] mu0 / 4 pi times the magnitude of the magnet's moment.
 double strength_of(const world::Magnet& magnet);
 
-/// [T] largest field of a magnet of strength `k` [T m^3] at `along` [m] or farther on the ground and `above` [m] or
-/// farther over it. @param along > 0.
+/// [T] largest field of a magnet of strength `k` [T m^3] at a distance of at least `along` [m] on the ground and
+/// `above` [m] in height. @param along > 0
 double field_beyond(double k, double along, double above);
 
 class MagnetTree {
  public:
-  /// @param height [m] of all places.
+  /// @param height [m] of all points
   MagnetTree(std::span<const world::Magnet> magnets, double height);
 
-  /// [T] at least the sum, at any place in `box`, of the magnitudes of all magnets farther than `cutoff` [m] > 0.
+  /// [T] upper bound, at any point in `box`, of the sum of the magnitudes of all magnets farther than `cutoff` [m] > 0.
   double bound(const Box& box, double cutoff) const;
-  Box extent() const;  ///< of the magnets; of the origin where there are none
+  Box extent() const;  ///< of the magnets; the origin when there are none
 
  private:
   struct Node {
     Box box;
     double strength = 0.0;   ///< [T m^3] sum of magnitudes
     double above = 0.0;      ///< [m] least vertical distance
-    std::uint32_t skip = 0;  ///< node behind this one and all below it
+    std::uint32_t skip = 0;  ///< node behind this one's subtree
     bool leaf = false;       ///< one magnet
   };
   struct Item {

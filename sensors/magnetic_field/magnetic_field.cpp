@@ -12,11 +12,11 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr double kLeastRadius = 1e-9;  // [m] whose inverse cubed is still a number in 32 bits
+constexpr double kLeastRadius = 1e-9;  // [m] least radius whose inverse cubed is finite in 32 bits
 constexpr std::size_t kLeastCells = 1u << 20;
 constexpr std::size_t kLeastMovingCells = 1u << 12;
 
-/// Cells of a list: few enough to be filled each tick where magnets move.
+/// Cells of a grid: few enough to be filled each tick where magnets move.
 std::size_t most_cells(std::size_t magnets, std::size_t least) { return std::max(least, 8 * magnets); }
 
 template <class Rows>
@@ -51,7 +51,7 @@ MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::Threa
   const auto code = magnitudes ? std::span<const std::uint32_t>(magnetometer_magnitudes_comp_spv)
                                : std::span<const std::uint32_t>(magnetometer_comp_spv);
   kernel = std::make_unique<gpu::Kernel>(device, magnitudes ? "magnetometer with magnitudes" : "magnetometer", code, 5);
-  // A turn may load magnets behind the last one, and counts them as nothing.
+  // An unrolled iteration may load rows behind the last magnet; they have moment 0.
   const std::size_t rows = std::size_t{fixed_magnets} + moving_magnets + SF_FIELD_UNROLL;
   dipoles = std::make_unique<gpu::Buffer>(device, "magnets", Role::upload, Texel::u32x4, 2 * rows);
   groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
@@ -83,7 +83,7 @@ void MagneticField::set_poses(std::span<const Pose> poses) {
   t.moving_rows.clear();
   for (std::size_t m = 0; m < t.world.movers.size(); ++m) {
     const world::Mover& mover = t.world.movers[m];
-    if (std::isnan(poses[m].x)) continue;  // gone
+    if (std::isnan(poses[m].x)) continue;  // absent
     for (const world::Magnet& magnet : mover.magnets) {
       const glm::dvec2 p = base::transform(poses[m], magnet.p);
       t.moving_points.push_back(p);

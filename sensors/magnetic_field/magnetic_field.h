@@ -1,13 +1,13 @@
 #pragma once
-// The field of all magnets of a world at many places, on the device.
+// The field of all magnets of a world at many points, on the device.
 //
-// Sums are right to 1e-12 of the sum of magnitudes, of places and moments as they are here: places in 64 bits, nearer
-// than 4 um to a magnet's middle to 4e-18 m over the distance; moments in 32 bits: 1 A m^2 is itself there, any other
-// within 6e-8 (`field_bound` has it all). With a
-// cut-off, a magnet counts when its distance along the ground is at most the cut-off, decided magnet by magnet in 64
-// bits; what is left out is bounded by `truncation_bound`. Nearer to a magnet than its radius, the field is the one at
-// the radius in the same direction; exactly in its middle, the one above. A place's sum depends on the place and the
-// magnets alone, not on what else is asked.
+// Sums are accurate to 1e-12 of the sum of magnitudes, for points and moments in device precision (`field_bound`
+// includes all errors): points in 64 bits, with an error of 4e-18 m over the distance when nearer than 4 um to a
+// magnet's centre; moments in 32 bits, where 1 A m^2 is exact and any other is within 6e-8. With a cut-off, a magnet
+// counts when its distance along the ground is at most the cut-off, decided per magnet in 64 bits; `truncation_bound`
+// bounds the rest. Nearer to a magnet than its radius, the field is that at the radius in the same direction; at its
+// exact centre, that straight above. The sum at a point depends only on the point and the magnets, not on the other
+// points of a batch.
 
 #include <cstdint>
 #include <memory>
@@ -24,41 +24,41 @@ namespace sf::sensors {
 
 using base::Pose;
 
-inline constexpr double kPermeability = 1e-7;  ///< [T m / A] mu0 / 4 pi, to 5e-10 of itself
+inline constexpr double kPermeability = 1e-7;  ///< [T m / A] mu0 / 4 pi, to a relative 5e-10
 
-/// A point [m] in the world.
+/// A point [m] in the world frame.
 struct FieldPoint {
   double x = 0.0, y = 0.0, z = 0.0;
 };
 
-/// What the kernel takes: row of the world's magnet, or of a mover's at its place in the world.
+/// The device's row of a world's magnet, or of a mover's magnet at its world position.
 DipoleRow dipole_row(const world::Magnet& magnet, glm::dvec2 p, double z);
 
-/// One thread. World, device and workers must outlive it.
+/// Not thread-safe. World, device and thread pool must outlive it.
 class MagneticField {
  public:
-  /// Magnets stand where the world has them at load.
-  /// @param magnitudes also add up the magnets' own magnitudes.
-  /// @param cutoff [m] instead of the world's; 0: none
-  /// @throws base::DeviceError when the device cannot hold them.
+  /// Magnets are at their poses at load.
+  /// @param magnitudes also sums the magnitudes of the magnets' fields
+  /// @param cutoff [m] replaces the world's; 0: none
+  /// @throws base::DeviceError when the device cannot hold the magnets
   MagneticField(const world::World& world, gpu::Device& device, base::ThreadPool& thread_pool, bool magnitudes,
                 double cutoff);
   MagneticField(MagneticField&&) noexcept;
   ~MagneticField();
 
-  /// Moves what movers carry: one pose a mover, whose z is not looked at (the world is 2.5-D).
+  /// Moves the movers' magnets: one pose per mover; z is ignored (2.5-D world).
   void set_poses(std::span<const Pose> poses);
 
-  /// Names the places of the next batch, in groups of up to SF_FIELD_PLACES neighbours.
-  /// @param ends of each group: one past its last place; ascending.
-  /// @return true when the batch must be recorded again.
+  /// Sets the points of the next batch, in groups of up to SF_FIELD_POINTS neighbours.
+  /// @param ends index behind the last point of each group, ascending
+  /// @return true when the batch must be recorded again
   bool prepare(std::span<const FieldPoint> points, std::span<const std::uint32_t> ends);
   void record(gpu::Batch& batch);
   void add_copies(gpu::Batch& batch);
-  /// After the batch: the field at place `i` of group `group`.
+  /// Field at point `i` of group `group`, after the batch.
   FieldSum at(std::size_t group, std::size_t i) const;
 
-  std::uint64_t dipoles() const;  ///< pairs of a magnet and a place that were summed since the start
+  std::uint64_t dipoles() const;  ///< pairs of a magnet and a point summed since construction
 
  private:
   struct Tables;

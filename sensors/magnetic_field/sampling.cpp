@@ -6,7 +6,7 @@ namespace sf::sensors {
 
 namespace {
 
-/// Places of one batch: half a second or so with 200 000 magnets and no cut-off.
+/// Points per batch: about half a second with 200 000 magnets and no cut-off.
 constexpr std::size_t kBatch = std::size_t{SF_FIELD_POINTS} * 1024;
 
 }  // namespace

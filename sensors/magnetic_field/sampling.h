@@ -1,5 +1,5 @@
 #pragma once
-// The field of a world as it was loaded at any number of places: for pictures and measurements.
+// The field of a world at load at any number of points, for images and measurements.
 
 #include <functional>
 #include <span>
@@ -10,13 +10,14 @@
 namespace sf::sensors {
 
 struct FieldSampleOptions {
-  bool magnitudes = false;  ///< also add up the magnets' own magnitudes
-  unsigned threads = 0;     ///< for the host's part; 0: as many as the machine has. Never changes a sum
-  std::function<void(double done)> progress;  ///< called now and then with the part in (0, 1] that is done
+  bool magnitudes = false;                    ///< also sums the magnitudes of the magnets' fields
+  unsigned threads = 0;                       ///< host threads; 0: all of the machine. The result does not depend on it
+  std::function<void(double done)> progress;  ///< called occasionally with the finished part in (0, 1]
 };
 
-/// By the kernel of the magnetometers, in batches. Quick where each five places in a row are neighbours.
-/// @return one sum a place. @throws base::DeviceError when the device cannot hold the magnets.
+/// Computes the field with the magnetometers' kernel, in batches. Fastest when each five consecutive points are
+/// neighbours.
+/// @return one sum per point  @throws base::DeviceError when the device cannot hold the magnets
 std::vector<FieldSum> sample_field(const world::World& world, gpu::Device& device, std::span<const FieldPoint> points,
                                    const FieldSampleOptions& options = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the sources of sensors::MagneticField share: the device's tables and how work is dealt out.
+// Tables that the sources of sensors::MagneticField share, and the partition of work into items.
 
 #include <array>
 #include <cstdint>
@@ -14,23 +14,23 @@
 
 namespace sf::sensors {
 
-/// Most magnets of one item: its turns stay far below the 65 535 of all loops of an invocation, after which Mesa before
-/// 25.0 ends them silently; and a few sensors among very many magnets still keep all lanes busy.
+/// Most magnets of one work item. Mesa before 25.0 silently ends loops after 65 535 iterations per invocation; items
+/// stay far below. Small items also keep all lanes busy when few sensors meet very many magnets.
 inline constexpr std::uint32_t kMostItemMagnets = 8192;
 inline constexpr std::uint32_t kMostTurns = 60'000;
 
-/// Neighbouring places, which share their lists of magnets.
+/// Neighbouring points that share their lists of magnets.
 struct PointGroup {
   glm::dvec2 centre;   ///< [m]
-  double reach = 0.0;  ///< [m] from the centre: every magnet that counts for one of its places is nearer
+  double reach = 0.0;  ///< [m] from the centre: all magnets that count for one of its points are nearer
   std::uint32_t points = 0;
-  std::uint32_t spans = 0;    ///< found, first of them at its number times `stride`
-  std::uint32_t magnets = 0;  ///< in these
-  std::uint32_t item = 0;     ///< its first one
+  std::uint32_t spans = 0;    ///< number of spans found; the first is at the group's index times `stride`
+  std::uint32_t magnets = 0;  ///< in these spans
+  std::uint32_t item = 0;     ///< index of its first item
   std::uint32_t items = 0;
 };
 
-/// An item and how long it takes.
+/// An item with its loop iterations.
 struct PlannedItem {
   FieldItem item;
   std::uint32_t loop_turns = 0;
@@ -41,7 +41,7 @@ struct MagneticField::Tables {
   gpu::Device& device;
   base::ThreadPool& thread_pool;
   double cutoff;
-  std::uint32_t fixed_magnets = 0;  ///< magnets of the world; the movers' come behind them
+  std::uint32_t fixed_magnets = 0;  ///< magnets of the world; those of movers follow
   std::uint32_t moving_magnets = 0;
   MagnetGrid fixed_grid, moving_grid;
   std::vector<glm::dvec2> moving_points;  ///< [m] this tick
@@ -49,14 +49,14 @@ struct MagneticField::Tables {
 
   std::unique_ptr<gpu::Kernel> kernel;
   std::unique_ptr<gpu::Buffer> items, spans, dipoles, points, results, groups;
-  bool bound = false;       ///< to the tables of now
+  bool bound = false;       ///< to the current tables
   bool fixed_sent = false;  ///< the world's magnets are on the device
 
   std::vector<PointGroup> point_groups;
   std::vector<PlannedItem> planned;
   std::vector<std::uint32_t> sorted;          ///< planned items, longest first
   std::array<std::uint32_t, 1025> lengths{};  ///< scratch of the sort
-  std::uint32_t stride = 1;                   ///< spans a group has room for
+  std::uint32_t stride = 1;                   ///< capacity of a group, in spans
   std::uint64_t dipoles_summed = 0;
 
   Tables(const world::World& w, gpu::Device& d, base::ThreadPool& k, bool magnitudes, double c);

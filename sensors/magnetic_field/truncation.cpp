@@ -14,9 +14,9 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr double kRounding = 1.0 + 1e-6;        // of sums, of 32-bit moments, and of decisions at the rim
-constexpr double kFinest = 0.25;                // of the cut-off: squares of places this small are not halved
-constexpr std::size_t kMostSquares = 1u << 15;  // then the bound stays as coarse as it is
+constexpr double kRounding = 1.0 + 1e-6;        // rounding of sums, 32-bit moments and decisions at the cut-off
+constexpr double kFinest = 0.25;                // fraction of the cut-off: smaller squares are not halved
+constexpr std::size_t kMostSquares = 1u << 15;  // limit of the refinement
 
 struct Square {
   Box box;
@@ -24,8 +24,7 @@ struct Square {
   bool operator<(const Square& other) const { return bound < other.bound; }
 };
 
-/// Places farther out than this see every magnet from farther away than some place at its edge, and from beyond the
-/// cut-off.
+/// A box outside of which every magnet is beyond the cut-off, and farther away than from some point on the box's edge.
 Box around(const Box& magnets, double cutoff) {
   const double margin = 1.01 * cutoff;
   const glm::dvec2 middle = 0.5 * (magnets.low + magnets.high);
@@ -34,7 +33,7 @@ Box around(const Box& magnets, double cutoff) {
   return {middle - glm::dvec2{half, half}, middle + glm::dvec2{half, half}};
 }
 
-/// The largest bound over all squares of places: the one on top is halved until it is small enough.
+/// The largest bound over all squares: the square with the largest bound is refined until it is small enough.
 double largest(const MagnetTree& tree, double cutoff) {
   const Box all = around(tree.extent(), cutoff);
   std::priority_queue<Square> squares;
@@ -66,7 +65,7 @@ std::vector<double> heights_of(const world::World& world) {
   return heights;
 }
 
-/// The world with all magnets at one height: the worst for all.
+/// The world with all magnets at one height, the worst case.
 world::World flattened(const world::World& world) {
   world::World flat;
   flat.magnet_cutoff = world.magnet_cutoff;
@@ -93,7 +92,7 @@ double truncation_bound(const world::World& world, double height, double nominal
   const MagnetTree fixed_magnets(world.magnets, height);
   double bound = largest(fixed_magnets, cutoff);
   for (const world::Mover& mover : world.movers) {
-    // Wherever they are, they are at the cut-off at the nearest.
+    // A mover's magnet contributes most at the cut-off distance.
     for (const world::Magnet& magnet : mover.magnets)
       bound += field_beyond(strength_of(magnet), cutoff, std::abs(height - mover.X_WM.z - magnet.z));
   }

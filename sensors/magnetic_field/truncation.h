@@ -1,5 +1,5 @@
 #pragma once
-// What a cut-off leaves out, bounded for every place a sensor may be.
+// Error bound of the magnet cut-off, for every point a sensor may reach.
 
 #include <cstdint>
 
@@ -7,26 +7,26 @@
 
 namespace sf::sensors {
 
-/// [T] least upper bound we can prove of |B - B_cut| over all places at `height` [m], wherever movers are: with the
-/// world's own cut-off, or 0 where it has none. Covers magnets at the rim that rounding decides, too.
+/// [T] upper bound of |B - B_cut| over all points at `height` [m] and all poses of movers, with the world's cut-off; 0
+/// without one. Covers magnets at the cut-off distance whose inclusion depends on rounding.
 ///
-/// A magnet beyond the cut-off R adds at most |B| = k sqrt(rho^2 + 4 h^2) / (rho^2 + h^2)^2 at rho along the ground and
-/// h above it, which falls with rho and with |h|. So a tree of magnets bounds the sum for all places of a square at
-/// once, and squares are halved where that sum is largest, down to a quarter of R. Movers' magnets count in full at R.
+/// A magnet beyond the cut-off R contributes at most |B| = k sqrt(rho^2 + 4 h^2) / (rho^2 + h^2)^2 at the horizontal
+/// distance rho and height h, which decreases with rho and |h|. So a tree of magnets bounds the sum for all points of a
+/// square, and squares are halved where the sum is largest, down to a quarter of R. Movers' magnets count in full at R.
 double truncation_bound(const world::World& world, double height);
 /// With another cut-off [m]; 0: none.
 double truncation_bound(const world::World& world, double height, double cutoff);
 
-/// What `check` says of a world's magnets.
+/// Summary of a world's magnets for the command `check`.
 struct MagnetSummary {
-  std::uint32_t magnets = 0;         ///< that stand still
-  std::uint32_t moving_magnets = 0;  ///< that movers carry
-  double cutoff_m = 0.0;             ///< 0: all count
-  double bound_T = 0.0;              ///< what the cut-off may leave out at most
-  double height_m = 0.0;  ///< where that bound holds: the worst of the magnetometers' elements; none: of all heights
+  std::uint32_t magnets = 0;         ///< static
+  std::uint32_t moving_magnets = 0;  ///< carried by movers
+  double cutoff_m = 0.0;             ///< 0: none
+  double bound_T = 0.0;              ///< bound of the cut-off's error
+  double height_m = 0.0;  ///< height of the bound: the worst of all elements; without magnetometers, of all heights
 };
 
-/// @throws base::InputError for a magnetometer whose settings make no sense.
+/// @throws base::InputError for a magnetometer with invalid settings
 MagnetSummary summarize_magnets(const world::World& world);
 
 }  // namespace sf::sensors

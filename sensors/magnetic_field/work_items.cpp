@@ -1,4 +1,5 @@
-// From places to items: who loads which magnets, cut into pieces, longest first, dealt out evenly.
+// Partition of the points into work items: spans of magnets per group, cut to a size, longest first, evenly
+// distributed.
 
 #include <algorithm>
 #include <cmath>
@@ -16,15 +17,15 @@ using gpu::Texel;
 
 constexpr double kNoCutoff = 1e300;  // [m^2]
 
-/// Groups of lanes along x of a dispatch; more rows of groups follow along y. Devices promise 65 535.
+/// Groups along x of a dispatch; further groups follow along y. Vulkan guarantees 65 535.
 constexpr std::uint32_t kGroupsAcross = 32'768;
 
-/// Turns of one bucket of the sort.
+/// Loop iterations per bucket of the sort.
 constexpr std::uint32_t kTurnsApart = kMostItemMagnets / 1024;
 
 std::uint32_t ceiling(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
 
-/// Makes `table` hold `texels`, or twice as many as it did. @return true when it is a new one, with nothing in it.
+/// Makes `table` hold `texels`, growing at least twofold. @return true for a new table, whose contents are undefined
 bool hold(std::unique_ptr<gpu::Buffer>& table, gpu::Device& device, const char* name, Role role, Texel texel,
           std::size_t texels) {
   if (table != nullptr && table->texels() >= texels) return false;
@@ -34,7 +35,7 @@ bool hold(std::unique_ptr<gpu::Buffer>& table, gpu::Device& device, const char* 
   return true;
 }
 
-/// Cuts spans longer than an item, in place, from the back: there is room behind them. @return how many there are then.
+/// Cuts spans longer than an item, in place, from the back. The array has room for it. @return the new number of spans
 std::uint32_t cut(std::span<MagnetSpan> spans, std::uint32_t count) {
   std::uint32_t pieces = 0;
   for (std::uint32_t i = 0; i < count; ++i) pieces += ceiling(spans[i].end - spans[i].first, kMostItemMagnets);
@@ -63,7 +64,7 @@ void MagneticField::Tables::gather(std::span<const FieldPoint> at, std::span<con
       group.centre = group.centre + (1.0 / group.points) * glm::dvec2{at[i].x, at[i].y};
     for (std::uint32_t i = first; i < end; ++i)
       group.reach = std::max(group.reach, glm::length(glm::dvec2{at[i].x, at[i].y} - group.centre));
-    // What rounding does to a centre far from the origin.
+    // Rounding of a centre far from the origin.
     const double slack = 1e-9 * cutoff + 1e-15 * (std::abs(group.centre.x) + std::abs(group.centre.y));
     group.reach += cutoff + slack;
     farthest = std::max(farthest, group.reach);
@@ -74,7 +75,7 @@ void MagneticField::Tables::gather(std::span<const FieldPoint> at, std::span<con
                             (fixed_magnets + moving_magnets) / kMostItemMagnets);
   bound &= !hold(points, device, "places", Role::upload, Texel::u32x4,
                  2 * SF_FIELD_POINTS * std::max<std::size_t>(1, ends.size()));
-  // A lane that has summed its last span still reads the one behind it.
+  // A lane that has summed its last span still reads the next one.
   bound &= !hold(spans, device, "spans of magnets", Role::upload, Texel::u32, 2 * (ends.size() * stride + 1));
 }
 
@@ -124,7 +125,7 @@ void MagneticField::Tables::plan_items() {
   }
 }
 
-/// Lanes that run together wait for the longest of them: so neighbours in the order are alike.
+/// Lanes of one group wait for the longest of them, so neighbours in the order have similar lengths.
 void MagneticField::Tables::sort_items() {
   const auto bucket = [](const PlannedItem& p) { return 1023 - std::min(1023u, p.loop_turns / kTurnsApart); };
   lengths.fill(0);
@@ -134,8 +135,8 @@ void MagneticField::Tables::sort_items() {
   for (std::uint32_t i = 0; i < planned.size(); ++i) sorted[lengths[bucket(planned[i])]++] = i;
 }
 
-/// Devices give threads fixed shares of the groups: so long and short ones are spread over all of them, one in about
-/// 1.6 apart.
+/// Devices give each thread a fixed share of the groups, so long and short groups are interleaved over all of them by a
+/// step of 0.618 of their number.
 void MagneticField::Tables::write_items() {
   const auto count = static_cast<std::uint32_t>(planned.size());
   const std::uint32_t size = kernel->group_size();
@@ -148,7 +149,7 @@ void MagneticField::Tables::write_items() {
       !hold(results, device, "fields", Role::download, Texel::u32x4, 2 * SF_FIELD_POINTS * (std::size_t{count} + 1));
 
   const auto table = items->host<FieldItem>();
-  // Lanes without work sum nothing, into a place of their own.
+  // Lanes without work sum nothing into a result of their own.
   std::fill(table.begin(), table.begin() + static_cast<std::ptrdiff_t>(lanes), FieldItem{0, 0, 0, count});
   std::uint32_t step = static_cast<std::uint32_t>(0.618 * needed) + 1;
   while (std::gcd(step, needed) > 1) ++step;
