@@ -23,7 +23,7 @@ VkFormat format_of(Texel texel) {
   }
 }
 
-/// Allocates with the first of `wishes` the device has.
+/// Allocates in the first memory type of `wishes` that the device has.
 Storage allocate(const Device::Vk& vk, VkDeviceSize size, VkBufferUsageFlags usage,
                  std::initializer_list<VkMemoryPropertyFlags> wishes) {
   Storage storage;

@@ -17,8 +17,8 @@ struct Buffer::Vk {
   Role role = Role::upload;
   Texel texel = Texel::u32;
   std::size_t texels = 0;
-  Storage table;    ///< what kernels see
-  Storage staging;  ///< what the host sees, where that is not the table itself
+  Storage table;    ///< bound to kernels
+  Storage staging;  ///< mapped by the host, where that is not the table itself
   VkBufferView view = VK_NULL_HANDLE;
   void* mapped = nullptr;
 };

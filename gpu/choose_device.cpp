@@ -1,4 +1,4 @@
-// Which device is used. A device is refused for what it lacks, then the user's wish decides, then the kind of device.
+// Choice of the device. Unsuitable devices are refused first; then the user's choice decides, then the device type.
 
 #include <algorithm>
 #include <cctype>

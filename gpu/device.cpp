@@ -19,7 +19,7 @@ std::string no_device_message(const Instance& instance, const DeviceCandidates& 
   return line + " name another with --device or SENSORFARM_DEVICE, or install a driver";
 }
 
-/// The device behind `vk.physical`; returns "" or why it does not open.
+/// Opens the device `vk.physical`. @return "" or the reason for the failure
 std::string open(Device::Vk& vk) {
   vkGetPhysicalDeviceProperties(vk.physical, &vk.properties);
   vkGetPhysicalDeviceMemoryProperties(vk.physical, &vk.memory);
@@ -54,7 +54,7 @@ void close(Device::Vk& vk) {
   vk.device = VK_NULL_HANDLE;
 }
 
-/// Opens row `row` in `device` and keeps it open if it computes as the host does. Returns "" or its fault.
+/// Opens row `row` in `device` and keeps it open when it passes the self-check. @return "" or the fault
 std::string start(Device& device, DeviceCandidates& candidates, std::size_t row) {
   Device::Vk& vk = device.vk();
   DeviceInfo& info = candidates.info[row];

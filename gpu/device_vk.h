@@ -15,10 +15,10 @@
 
 namespace sf::gpu {
 
-/// An environment variable that is neither empty nor 0.
+/// True when an environment variable is neither empty nor "0".
 bool is_set(const char* variable);
 
-/// Aborts with the call's name: a Vulkan call that fails after start-up is our bug or a lost device.
+/// Aborts with the call's name: a Vulkan call that fails after start-up is a bug of the program or a lost device.
 void check_vk(VkResult result, const char* call);
 
 struct Instance {
@@ -43,7 +43,7 @@ struct Device::Vk {
   bool unified = false;
   DeviceInfo info;
   std::string owner;
-  std::vector<std::pair<const void*, DeviceAllocation>> allocations;  ///< in the order in which they were made
+  std::vector<std::pair<const void*, DeviceAllocation>> allocations;  ///< in order of construction
 
   void add_allocation(const void* what, std::string_view name, std::size_t bytes, bool is_kernel);
   void remove_allocation(const void* what);
@@ -51,8 +51,8 @@ struct Device::Vk {
   int memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
 };
 
-/// All physical devices of `instance`, considered but none chosen yet: row i of `info` belongs to row i of `handles`.
-/// A non-empty `reason` says what the device lacks.
+/// All physical devices of `instance`; none is chosen yet. Row i of `info` belongs to row i of `handles`. A non-empty
+/// `reason` names a missing feature.
 struct DeviceCandidates {
   std::vector<VkPhysicalDevice> handles;
   std::vector<DeviceInfo> info;
@@ -62,14 +62,15 @@ DeviceCandidates find_candidates(const Instance& instance);
 /// As in `DeviceInfo::kind`.
 const char* device_type_text(VkPhysicalDeviceType type);
 
-/// Marks the chosen row, gives the others a reason, and returns the chosen row or -1.
+/// Marks the chosen row and gives the others a reason. @return the chosen row, or -1
 int choose_device(DeviceCandidates& candidates, const std::string& wanted);
 
-/// As above, but a row for which `start` gives a fault has that for its reason, and the next best is chosen.
+/// As above, but with `start`: a row that it returns a fault for gets the fault as its reason, and the next best is
+/// tried.
 using TryDevice = std::function<std::string(DeviceCandidates&, std::size_t row)>;
 int choose_device(DeviceCandidates& candidates, const std::string& wanted, const TryDevice& start);
 
-/// The features that a device must have.
+/// Features that a device must have.
 struct DeviceFeatures {
   std::uint32_t api = 0;  ///< as VK_MAKE_API_VERSION
   bool doubles = false;
@@ -77,10 +78,10 @@ struct DeviceFeatures {
   std::vector<VkFormat> missing;  ///< formats without storage texel buffers
 };
 
-/// The first of its lacks, or "".
+/// The first missing feature, or "".
 std::string missing_feature(const DeviceFeatures& supported);
 
-/// Compute queue family, one without graphics if there is one, or -1.
+/// Index of a compute queue family, preferably without graphics, or -1.
 int compute_queue_family(std::span<const VkQueueFamilyProperties> families);
 int compute_queue_family(VkPhysicalDevice physical);
 

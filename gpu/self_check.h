@@ -1,5 +1,5 @@
 #pragma once
-// Does a device compute as the host does? Asked of every device before it is used.
+// Comparison of a device's arithmetic with the host's. Run on every device before it is used.
 
 #include <cstdint>
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace sf::gpu {
 
-/// Runs the operations of gpu/self_check_arithmetic.h, in the form in which kernels use them, on the device and on the
+/// Runs the operations of gpu/self_check_arithmetic.h on the device, in the form in which kernels use them, and on the
 /// host.
-/// @return "" when they agree, else one line with the first difference: operation, operands, found and expected.
+/// @return "" when they agree, else one line with the first difference: operation, operands, found and expected
 std::string self_check(Device& device);
 
 /// The same with another kernel in place of shaders/self_check.comp.

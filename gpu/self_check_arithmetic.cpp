@@ -50,7 +50,8 @@ std::uint64_t refined_root(Operands o) {
   return bits(s + (square - s * s) * static_cast<double>(0.5f / root32(o)));
 }
 
-/// Vulkan lets 32-bit roots and quotients be wrong by a few last places: after a step of Newton's method by 1e-12.
+/// Vulkan allows 32-bit roots and quotients an error of a few last places; after a step of Newton's method it is below
+/// 1e-12.
 constexpr double kNewton = 1e-12;
 
 constexpr Operation kOperations[] = {
