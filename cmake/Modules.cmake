@@ -9,12 +9,12 @@ find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_path(TOMLPLUSPLUS toml++/toml.h REQUIRED)  # headers only (libtomlplusplus-dev)
 
-# Debian's VTK 9.1 asks for MPI while it is being found; nothing of ours uses it.
+# Debian's VTK 9.1 looks for MPI; this project does not use it.
 find_package(MPI QUIET COMPONENTS C)
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel RenderingFreeType)
 
-# Flags every target of ours is built with. Contraction is off so that host and device round alike; g++ 12 warns of
-# overlapping strings (-Wrestrict) and, once headers are precompiled, of their bounds where nothing is wrong.
+# Build flags of all targets. Contraction is off so that host and device round alike. g++ 12 warns falsely of
+# overlapping strings (-Wrestrict) and, with precompiled headers, of array bounds.
 add_library(project_options INTERFACE)
 target_include_directories(project_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_link_libraries(project_options INTERFACE glm::glm)
@@ -28,14 +28,15 @@ if(SENSORFARM_SANITIZE)
   target_sources(project_options INTERFACE ${CMAKE_SOURCE_DIR}/tests/keep_loaded.cpp)
 endif()
 
-# Standard headers that most sources include are compiled once: a third of the build's time. Sources still name what they
-# use; -DSENSORFARM_PCH=OFF proves it.
+# Precompiled standard headers save a third of the build time. Sources still include all headers that they use;
+# -DSENSORFARM_PCH=OFF proves it.
 option(SENSORFARM_PCH "Precompile the headers that most sources include" ON)
 set(SENSORFARM_COMMON_HEADERS <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <random>
                               <set> <span> <string> <string_view> <variant> <vector> <fmt/format.h>
                               <glm/ext/vector_double2.hpp> <glm/ext/vector_double3.hpp> <glm/geometric.hpp>)
 
-# add_precompiled(NAME [links...] HEADERS headers...): a target whose headers others reuse by precompiled(TARGET NAME).
+# add_precompiled(NAME [links...] HEADERS headers...): a target whose precompiled headers other targets reuse by
+# precompiled(TARGET NAME).
 function(add_precompiled name)
   cmake_parse_arguments(PCH "" "" "HEADERS" ${ARGN})
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/${name}.cpp CONTENT "")
@@ -49,8 +50,9 @@ function(precompiled target name)
   endif()
 endfunction()
 
-# With SENSORFARM_CHECKED every module is built a second time, as NAME_checked, under AddressSanitizer and UBSan, and the test
-# programs' objects are linked with that too (tests/CMakeLists.txt): instrumented tests would cost three times as much.
+# With SENSORFARM_CHECKED every module is built a second time, as NAME_checked, under AddressSanitizer and UBSan, and
+# the objects of the test programs are linked with these as well (tests/CMakeLists.txt). Instrumented tests would cost
+# three times as much.
 option(SENSORFARM_CHECKED "Build every module a second time, with sanitizers, and its tests with it" OFF)
 if(SENSORFARM_CHECKED)
   add_library(checked INTERFACE)
@@ -66,8 +68,9 @@ if(SENSORFARM_PCH)
 endif()
 
 # add_module(NAME [FOLDER folder] [PUBLIC targets...] [PRIVATE targets...] [SOURCES sources...] [PLUGINS names...])
-# FOLDER: of its sources, where that is not NAME; a folder below another module's belongs to this module alone. SOURCES: written at configure time, beside those of the folder. PLUGINS: sources NAME/<name>.cpp that are loaded when they
-# are first needed, as sensorfarm_<name>.so beside the program.
+# FOLDER: folder of the sources, default NAME; a folder below another module's belongs to this module only. SOURCES:
+# files generated at configure time, in addition to the folder's. PLUGINS: sources NAME/<name>.cpp that are loaded at
+# first use, as sensorfarm_<name>.so beside the program.
 function(add_module name)
   cmake_parse_arguments(MODULE "" "FOLDER" "PUBLIC;PRIVATE;SOURCES;PLUGINS" ${ARGN})
   if(NOT MODULE_FOLDER)
@@ -97,8 +100,9 @@ function(add_module name)
   endif()
 endfunction()
 
-# add_checked_program(NAME OBJECTS targets... MODULES modules... [LIBRARIES targets...]): NAME of the objects of targets and of
-# all instrumented modules below `modules`. The linker keeps the first copy of an inline function: the instrumented one.
+# add_checked_program(NAME OBJECTS targets... MODULES modules... [LIBRARIES targets...]): program NAME from the objects
+# of targets and all instrumented modules that `modules` depend on. The linker keeps the first copy of an inline
+# function, the instrumented one.
 function(add_checked_program name)
   cmake_parse_arguments(PROGRAM "" "" "OBJECTS;MODULES;LIBRARIES" ${ARGN})
   set(modules "")

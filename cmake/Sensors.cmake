@@ -1,7 +1,7 @@
 # The list of sensor types: one line each in sensors/CMakeLists.txt.
 
-# farm_sensor(WIRE_ID NAME DEVICE|HOST): sensors/NAME.h, sensors/NAME.cpp (which defines `NAME_type`), its kernel
-# shaders/NAME.comp where it has one, and its proof tests/sensors/NAME_test.cpp.
+# farm_sensor(WIRE_ID NAME DEVICE|HOST): sensors/NAME.h, sensors/NAME.cpp (which defines `NAME_type`), the kernel
+# shaders/NAME.comp for DEVICE, and the tests tests/sensors/NAME_test.cpp.
 function(farm_sensor id name where)
   set(files sensors/${name}.h sensors/${name}.cpp tests/sensors/${name}_test.cpp)
   if(where STREQUAL DEVICE)
@@ -26,7 +26,7 @@ function(farm_sensor id name where)
   set_property(GLOBAL APPEND PROPERTY SENSOR_TYPES ${id}/${name})
 endfunction()
 
-# write_sensor_types(FILE): every sensor type by id, as a source that defines sensors::sensor_types().
+# write_sensor_types(FILE): writes a source that defines sensors::sensor_types(), all sensor types by id.
 function(write_sensor_types file)
   get_property(known GLOBAL PROPERTY SENSOR_TYPES)
   list(SORT known COMPARE NATURAL)
