@@ -12,8 +12,8 @@ enum class CasterChoice : std::uint8_t {
   host,       ///< scan conversion on this machine
 };
 
-/// Resolves `asked`. For `automatic`: the environment variable SENSORFARM_CASTER ("vulkan" or "host"); if unset, the
-/// host on a software device (faster there), else Vulkan.
+/// Resolves `asked`. For `automatic`: the environment variable SENSORFARM_CASTER ("vulkan" or "host"); if unset or
+/// "auto", the host on a software device (faster there), else Vulkan.
 /// @throws base::InputError where SENSORFARM_CASTER has another value
 CasterChoice choose_caster(bool software, CasterChoice asked = CasterChoice::automatic);
 

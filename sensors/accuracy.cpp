@@ -56,7 +56,7 @@ std::uint8_t mode_of(std::string_view kind, std::span<const AccuracyMode> modes,
   std::vector<std::string_view> words;
   for (const AccuracyMode& known : modes) words.push_back(known.word);
   if (words.empty()) words.push_back(kExact);
-  refuse(world, own, fmt::format("'accuracy' is \"{}\"; this sensor knows {}", own.word, listed(words)));
+  refuse(world, own, fmt::format("'accuracy' is \"{}\"; this sensor supports {}", own.word, listed(words)));
 }
 
 world::Accuracy accuracy_of(const world::Sensor& sensor) {

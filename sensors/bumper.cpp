@@ -41,7 +41,7 @@ std::uint32_t read_zone(const world::Sensor& sensor, const world::Setting& setti
   const std::uint32_t sectors = sectors_of(from + sensor.X_MS.yaw, sweep);
   if (sectors != 0) return sectors;
   refuse(sensor, setting.key,
-         fmt::format("'{}' is [{:g} {:g}], which holds the middle of none of the {} sectors that contacts are told in; "
+         fmt::format("'{}' is [{:g} {:g}], which contains the middle of none of the {} contact sectors; "
                      "widen it",
                      setting.key, degrees[0], degrees[1], base::kContactSectors));
 }
@@ -127,7 +127,7 @@ std::vector<std::uint32_t> read_bumper(const world::Sensor& sensor) {
     const world::Setting* zone = find(sensor, fmt::format("zone[{}]", i));
     if (zone == nullptr)
       refuse(sensor, "zones",
-             fmt::format("'zone[{}]' is missing: 'zones {}' promises zone[0] to zone[{}], each once; number them, or "
+             fmt::format("'zone[{}]' is missing: 'zones {}' requires zone[0] to zone[{}], each once; number them, or "
                          "lower 'zones'",
                          i, zones, zones - 1));
     switches.push_back(read_zone(sensor, *zone));

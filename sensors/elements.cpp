@@ -31,7 +31,7 @@ Pose element(const world::Sensor& sensor, std::uint32_t i, std::uint32_t count) 
   if (flat != nullptr) return element_pose(sensor, *flat, false);
   if (lifted != nullptr) return element_pose(sensor, *lifted, true);
   refuse(sensor, "scount",
-         fmt::format("'spose[{}]' is missing: 'scount {}' promises spose[0] to spose[{}], each once; number them, or "
+         fmt::format("'spose[{}]' is missing: 'scount {}' requires spose[0] to spose[{}], each once; number them, or "
                      "lower 'scount'",
                      i, count, count - 1));
 }

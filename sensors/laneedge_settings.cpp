@@ -26,7 +26,7 @@ world::LaserNoise noise_of(const world::Sensor& sensor) {
     refuse(sensor, "noise", "'noise' expects numbers that are not negative");
   const world::LaserNoise noise{sensor.metres_per_unit * v[0], v[1], sensor.radians_per_unit * v[2]};
   if (!(noise.range_sigma <= kLongest && noise.range_proportional <= 1e3 && noise.angle_sigma <= 2.0 * M_PI))
-    refuse(sensor, "noise", "'noise' is out of reach; expected [metres, metres per metre, angle]");
+    refuse(sensor, "noise", "'noise' is out of range; expected [metres, metres per metre, angle]");
   return noise;
 }
 
@@ -60,7 +60,8 @@ LaneEdge lane_edge_of(const world::Sensor& sensor, std::uint32_t mover, std::uin
   fan.range_min = length(sensor, "range_min", 0.0, 0.0, fan.range_max);
   edge.single = fan.samples <= 2;
   if (!edge.single && !(fan.fov > 0.0))
-    refuse(sensor, "fov", "a line needs rays that spread; expected a 'fov' above 0, or 'samples 1' for one ray");
+    refuse(sensor, "fov",
+           "a line needs rays of different bearings; expected a 'fov' above 0, or 'samples 1' for one ray");
   fan.name = sensor.name;
   fan.X_MS = sensor.X_MS;
   fan.X_MS.z += 0.5 * sensor.height;

@@ -9,8 +9,8 @@ namespace sf::sensors {
 
 inline constexpr AccuracyMode kLaserModes[] = {
     {"exact", "every beam, decided and measured in 64 bits"},
-    {"single", "every beam, decided exactly, measured in 32 bits where these are close enough"},
-    {"skip2", "every 2nd beam; the others on straight lines between what these met"},
+    {"single", "every beam, decided in 64 bits, measured in 32 bits where these are accurate enough"},
+    {"skip2", "every 2nd beam; the others interpolated between the hits"},
     {"skip4", "every 4th beam"},
     {"skip8", "every 8th beam"},
 };

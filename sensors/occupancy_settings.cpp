@@ -70,7 +70,7 @@ std::optional<maps::LogOddsUpdate> odds_of(const world::Sensor& sensor) {
 
 std::uint32_t laser_of(const world::Sensor& sensor, const world::Mover& mover) {
   if (mover.lasers.empty())
-    refuse(sensor, "laser", "a map needs a laser on the same robot; give it a laser( ) or take the map away");
+    refuse(sensor, "laser", "a map needs a laser on the same robot; give it a laser( ) or remove the map");
   const world::Setting* named = find(sensor, "laser");
   if (named == nullptr) return 0;
   const auto found = std::find_if(mover.lasers.begin(), mover.lasers.end(),
@@ -92,8 +92,8 @@ void fill_from(const world::Sensor& sensor, const world::Laser& laser, MapPlan& 
         fmt::format("laser '{}' has {} samples; maps are made of at most {}", laser.name, plan.samples, kMostMapBeams));
   if (!(plan.range_max <= maps::kMaxRangeCells * plan.grid.cell))
     refuse(sensor, "cell",
-           fmt::format("laser '{}' looks {:g} m far, which is more than {:g} cells of {:g} m; raise 'cell'", laser.name,
-                       plan.range_max, maps::kMaxRangeCells, plan.grid.cell));
+           fmt::format("laser '{}' has a range of {:g} m, which is more than {:g} cells of {:g} m; raise 'cell'",
+                       laser.name, plan.range_max, maps::kMaxRangeCells, plan.grid.cell));
 }
 
 Occupancy occupancy_of(const world::Sensor& sensor, const world::Mover& mover, std::uint32_t m, std::uint32_t number) {

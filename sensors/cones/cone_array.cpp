@@ -42,7 +42,7 @@ std::uint32_t read_rays(const world::Sensor& sensor, double fov) {
   const std::uint32_t rays = whole(sensor, "rays", fov > 0.0 ? kUsualRays : 1, 1, kMostConeRays);
   if (rays % 2 == 1) return rays;
   refuse(sensor, "rays",
-         fmt::format("'rays' is {}; expected an odd number, so that one ray looks along the axis of the cone", rays));
+         fmt::format("'rays' is {}; expected an odd number, so that one ray lies on the axis of the cone", rays));
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ ConeCaster::Plan ConeCaster::plan(const world::World& world, const std::vector<C
   if (plan.scanners.size() > kMostCones)
     throw base::InputError(world.file, 0,
                            "the world has " + std::to_string(plan.scanners.size()) +
-                               " transducers of one kind; at most " + std::to_string(kMostCones) + " are supported");
+                               " transducers of one type; at most " + std::to_string(kMostCones) + " are supported");
   return plan;
 }
 
@@ -71,7 +71,7 @@ ConeCaster::ConeCaster(const SensorContext& context, const Plan& plan, const Ref
       headings_(context.device, "headings", gpu::Role::upload, gpu::Texel::f32x4, context.world.movers.size() + 1),
       incidence_(plan.incidence) {
   SF_CHECK(kernel_.group_size() == kGroup, "groups of cones are counted as of 64");
-  SF_CHECK(kernel.uses_incidence || !incidence_, "this kernel hears all angles");
+  SF_CHECK(kernel.uses_incidence || !incidence_, "this kernel ignores the angle of incidence");
   gpu::Buffer* const tables[] = {&rows_,       &caster_.ranges(), &caster_.hits(), &echoes_, &caster_.directions64(),
                                  &reflectors_, &headings_};
   kernel_.bind(std::span(tables).first(kernel.uses_incidence ? 7 : 4));

@@ -36,8 +36,8 @@ FilteredScene filter_scene(const world::World& world, bool exact) {
   e.grains.erase(std::unique(e.grains.begin(), e.grains.end()), e.grains.end());
   if (e.grains.size() > SF_GRAIN_MASK)
     throw base::InputError(world.file, 0,
-                           "the world's pictures have " + std::to_string(e.grains.size()) +
-                               " different sizes of pixels; lane edge sensors tell at most 254 apart");
+                           "the world's bitmaps have " + std::to_string(e.grains.size()) +
+                               " different sizes of pixels; lane edge sensors distinguish at most 254");
   e.paint_tag = exact ? 0 : grain_tag(e.grains, world.road_resolution);
   e.paint = distinct_markings(world.lane_markings);
 

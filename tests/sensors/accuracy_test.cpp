@@ -1,4 +1,4 @@
-// The dial: who measures in which mode, what modes leave out, and what they say of it.
+// Accuracy modes: choice per sensor, error, and stated bound.
 
 #include "sensors/accuracy.h"
 
@@ -23,7 +23,7 @@ namespace {
 
 using base::QualityFlag;
 
-/// A robot with a laser, a magnetometer and a bumper, each with what is put in.
+/// A robot with a laser, a magnetometer and a bumper, each with the given settings.
 world::World load(const std::string& of_all, const std::string& laser = "", const std::string& magnetometer = "",
                   const std::string& order = "", const std::string& bumper = "") {
   const auto file = std::filesystem::temp_directory_path() / "sf_accuracy.world";
@@ -71,7 +71,7 @@ TEST(Accuracy, WhatNobodyKnowsIsRefusedWhereItStands) {
             std::string::npos)
       << refusal(load("\naccuracy \"skip3\""));
   EXPECT_NE(refusal(load("", "accuracy \"near3\""))
-                .find(":3: 'accuracy' is \"near3\"; this sensor knows \"exact\", "
+                .find(":3: 'accuracy' is \"near3\"; this sensor supports \"exact\", "
                       "\"single\""),
             std::string::npos);
   EXPECT_NE(refusal(load("", "", "", "nonsense")).find("there is no accuracy \"nonsense\""), std::string::npos);
@@ -82,7 +82,7 @@ TEST(Accuracy, WhatNobodyKnowsIsRefusedWhereItStands) {
 TEST(Accuracy, KindsWithoutModesAreExact) {
   EXPECT_EQ(modes(load("", "", "", "", "accuracy \"exact\"")), "exact");
   const std::string text = refusal(load("", "", "", "", "accuracy \"skip2\""));
-  EXPECT_NE(text.find(":5: 'accuracy' is \"skip2\"; this sensor knows \"exact\""), std::string::npos) << text;
+  EXPECT_NE(text.find(":5: 'accuracy' is \"skip2\"; this sensor supports \"exact\""), std::string::npos) << text;
 }
 
 TEST(Accuracy, AWordForSensorsThatAreNotThereIsRefused) {
@@ -106,7 +106,7 @@ TEST(Accuracy, ChangesTheWorldsHashAndSurvivesASnapshot) {
 
 // --- Lasers.
 
-/// What all lasers of a world read in a mode, robots where they were loaded.
+/// Readings of all lasers of a world in a mode, robots at their poses at load.
 struct Read {
   std::vector<double> values;
   std::vector<std::uint32_t> hits;
@@ -138,7 +138,7 @@ world::World crowd(std::uint32_t samples, double fov = M_PI) {
   return world;
 }
 
-/// Every n-th sample from the first, and the last one.
+/// Samples cast: every n-th from the first, and the last one.
 TEST(Accuracy, SkippingCastsTheSameBeamsToTheBit) {
   for (const std::uint32_t samples : {361u, 360u, 3u, 2u, 1u})
     for (const auto& [mode, skip] : {std::pair{"skip2", 2u}, std::pair{"skip4", 4u}, std::pair{"skip8", 8u}}) {
@@ -157,7 +157,7 @@ TEST(Accuracy, SkippingCastsTheSameBeamsToTheBit) {
     }
 }
 
-/// A square room and nothing else: between two beams that meet the same wall the others are on the chord.
+/// In an empty square room, interpolated samples between two hits on one wall lie on it.
 TEST(Accuracy, SkippingIsRightOnFlatWalls) {
   world::World world;
   scenes::add_module(world, {0.0, 0.0}, 4.0);
@@ -213,7 +213,7 @@ TEST(Accuracy, ModesOfOneWorldDoNotDisturbEachOther) {
   }
 }
 
-/// A wall seen at less than a milliradian: rounding is magnified a thousandfold, and the reading says so.
+/// A wall seen at less than a milliradian magnifies rounding a thousandfold; the reading is flagged.
 TEST(Accuracy, GrazingBeamsAreFlagged) {
   world::World world;
   scenes::add_outline(world, {{0.0, -1.0}, {10.0, -1.0}, {10.0, -1e-4}, {0.0, -1e-4}}, "floor");
@@ -274,7 +274,7 @@ TEST(Accuracy, NearMagnetsAloneStayWithinTheBound) {
   }
 }
 
-/// [T] |B| at an element of a robot's array, from the poses as they were given, in `long double`.
+/// [T] |B| at an element of a robot's array at the given poses, in `long double`.
 long double field_at(const world::World& world, const base::Pose& X_WM, const base::Pose& X_ME) {
   using Wide = long double;
   const Wide c = std::cos(static_cast<Wide>(X_WM.yaw)), s = std::sin(static_cast<Wide>(X_WM.yaw));
@@ -290,8 +290,8 @@ long double field_at(const world::World& world, const base::Pose& X_WM, const ba
   return std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
 }
 
-/// Moments that 32 bits do not hold, elements beside the middle, sensors above magnets and within their radius, near
-/// the origin and so far away that places are rounded.
+/// Moments that 32 bits cannot represent, elements off the middle, sensors above magnets and within their radius, near
+/// the origin and at coordinates where positions are rounded.
 TEST(Accuracy, FieldsAreWithinTheirBoundAnywhere) {
   for (const double height : {0.05, 0.012})
     for (const double far : {0.0, 1e5, 1e7}) {
@@ -323,7 +323,7 @@ TEST(Accuracy, FieldsAreWithinTheirBoundAnywhere) {
     }
 }
 
-/// A sensor that may stand in a magnet's very middle has no bound.
+/// A sensor that may reach a magnet's centre has no bound.
 TEST(Accuracy, AMagnetAsHighAsTheSensorHasNoBound) {
   world::World world;
   world.magnets.push_back({{0.0, 0.0}, 0.05, 1.0, 0.01, 0});
@@ -333,7 +333,7 @@ TEST(Accuracy, AMagnetAsHighAsTheSensorHasNoBound) {
   EXPECT_TRUE(std::isinf(sensors::accuracy_statements(world, sensors::SensorSet(world)).at(0).bound.error));
 }
 
-/// Who states nothing says so: kinds without bounds.
+/// Sensor types without a bound report none.
 TEST(Accuracy, KindsWithoutABoundStateNone) {
   world::World world;
   scenes::add_module(world, {0.0, 0.0}, 4.0);

@@ -1,4 +1,4 @@
-// What world files may say of magnetometers, and every way to say it wrong.
+// World-file settings of magnetometers, valid and invalid.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ world::Sensor bare() {
   return sensor;
 }
 
-/// A sensor of `count` with the poses of the thesis' listing, numbered as they should be.
+/// A sensor of `count` with the poses of the thesis' listing, correctly numbered.
 world::Sensor listed(std::uint32_t count) {
   world::Sensor sensor = bare();
   sensor.settings.push_back(setting("scount", {static_cast<double>(count)}));
@@ -80,7 +80,7 @@ TEST(MagnetometerSettings, ElementsStandAtHalfTheModelsHeight) {
   EXPECT_EQ(rows[0].sensor, 0u);
 }
 
-/// One wrong file: what is changed, and what the message must say beside file and line.
+/// One invalid file: the change, and the expected message beside file and line.
 struct Wrong {
   std::string name;
   std::function<void(world::Sensor&)> spoil;
@@ -102,7 +102,7 @@ TEST(MagnetometerSettings, WhatIsWrongIsRefusedWithFileAndLine) {
        [](auto& s) {
          std::erase_if(s.settings, [](const auto& x) { return x.key != "scount" && x.key != "spose[0]"; });
        },
-       "'spose[1]' is missing: 'scount 5' promises spose[0] to spose[4]"},
+       "'spose[1]' is missing: 'scount 5' requires spose[0] to spose[4]"},
       {"the last one missing", [](auto& s) { s.settings.pop_back(); }, "'spose[4]' is missing"},
       {"one more than counted",
        [](auto& s) {
