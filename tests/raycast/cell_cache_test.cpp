@@ -1,4 +1,4 @@
-// Bookkeeping of the pool of cells: nothing needed is lost, nothing lost is found.
+// Bookkeeping of the cell cache: no cell in use is lost, and no evicted cell is found.
 
 #include "raycast/cell_cache.h"
 
@@ -48,7 +48,7 @@ TEST(CellCache, CellsDoNotShareChunks) {
   }
 }
 
-/// This tick's cells are never evicted; when they fill the pool, the answer is kNone.
+/// This tick's cells are never evicted; when they fill the pool, `insert` returns kNone.
 TEST(CellCache, RefusesRatherThanForgetWhatThisTickNeeds) {
   CellCache cache(64, 4 * kPage);
   for (int i = 0; i < 4; ++i) ASSERT_NE(cache.insert({0, i, 0}, kPage), CellCache::kNone);
@@ -68,7 +68,7 @@ TEST(CellCache, TheOldestMakesWay) {
     ASSERT_NE(cache.insert({0, i, 0}, kPage), CellCache::kNone);
   }
   cache.begin_tick();
-  ASSERT_NE(cache.find({0, 1, 0}), CellCache::kNone);  // needed again now
+  ASSERT_NE(cache.find({0, 1, 0}), CellCache::kNone);  // used again in this tick
   ASSERT_NE(cache.insert({0, 4, 0}, kPage), CellCache::kNone);
   ASSERT_NE(cache.insert({0, 5, 0}, kPage), CellCache::kNone);
   EXPECT_NE(cache.find({0, 1, 0}), CellCache::kNone) << "this tick needs it, though it came after the first";
@@ -92,7 +92,8 @@ TEST(CellCache, GrowingKeepsWhatIsThere) {
   for (int i = 4; i < 60; ++i) EXPECT_NE(cache.insert({3, i, -i}, kPage), CellCache::kNone) << i;
 }
 
-/// A million finds, inserts and evictions against a model. With few slots, chains of the table collide and are mended.
+/// 200 000 finds, inserts and evictions against a model. With few slots, chains of the hash table collide and are
+/// repaired.
 TEST(CellCache, AgreesWithAModelUnderChurn) {
   constexpr std::uint32_t kSlots = 13;
   constexpr std::uint32_t kPages = 40;

@@ -1,4 +1,4 @@
-// Scans on the host, against the 64-bit decision of everything: patterns, instruction sets, lists that have no room.
+// Host scans against 64-bit intersection with all segments: patterns, instruction sets, lists without room.
 
 #include "raycast/host_scene.h"
 
@@ -13,7 +13,7 @@
 namespace sf::raycast {
 namespace {
 
-/// A scan's answers.
+/// Results of a scan.
 struct Scan {
   std::vector<double> ranges;
   std::vector<std::uint32_t> models;
@@ -55,7 +55,7 @@ Scan scan(const world::World& world, const Pose& X, std::uint32_t self, const Sc
   return scan;
 }
 
-/// The same by `intersect` alone: every wall and every edge of other movers.
+/// The reference by `intersect` alone: every wall and every edge of other movers.
 Scan intersect_everything(const world::World& world, const Pose& X, std::uint32_t self, const ScanPattern& pattern,
                           double range) {
   std::vector<ExactSegment> exact;
@@ -107,7 +107,7 @@ TEST(HostScene, FansOfEveryWidth) {
       expect_decided(world, pattern_of(even_bearings(beams, fov)), 8.0);
 }
 
-/// Beams out of step: the last one nearer than the others, each turned by noise, many in one direction, out of order.
+/// Irregular beams: a closer last one, angular noise, many in one direction, unordered.
 TEST(HostScene, BeamsOutOfStep) {
   const world::World world = crowd();
   trial::Chance chance(3);
@@ -138,7 +138,7 @@ TEST(HostScene, EveryInstructionSetGivesTheSameBits) {
   int tried = 0;
   for (std::int64_t left = all; left != 0; left &= left - 1) {
     hwy::SetSupportedTargetsForTest(left & -left);
-    hwy::GetChosenTarget().DeInit();  // looked up again by the next call
+    hwy::GetChosenTarget().DeInit();  // reselected by the next call
     EXPECT_EQ(scan(world, X, 0, pattern, 8.0), expected) << vector_instructions();
     ++tried;
   }
@@ -175,7 +175,7 @@ TEST(MoverGeometry, MoversOfOneShapeShareItsBlocks) {
   EXPECT_EQ(above.of_mover[0].all, 0u) << "nothing so high";
 }
 
-/// A mover that is gone is in no cell; what is left is found where it is.
+/// An absent mover is in no cell; the others are found in theirs.
 TEST(MoverGeometry, MoversThatAreGoneAreNowhere) {
   world::World world;
   for (int i = 0; i < 3; ++i) scenes::add_robot(world, {5.0 * i, 0.0, 0.0, 0.0}, scenes::laser());

@@ -16,7 +16,7 @@
 namespace sf::raycast {
 namespace {
 
-/// The row of the first wall along a beam, by the oracle: every wall is its own model here.
+/// Row of the first wall along a beam, by the brute-force reference: every wall is its own model here.
 std::uint32_t first_wall(const std::vector<world::Segment>& walls, glm::dvec2 p, double direction, double range) {
   return oracle::cast(oracle::within(walls, p, range), p, direction, range).model;
 }
@@ -61,7 +61,7 @@ TEST(Sectors, EveryWallABeamMeetsIsListed) {
   every_hit_is_listed(scenes::boxes(60, 16.0, 6), 30.0, 0.003, 4);
 }
 
-/// Far fewer than all walls: the point of the lists.
+/// Lists must be far shorter than the set of all walls.
 TEST(Sectors, ListsAreShort) {
   const world::World world = scenes::cave(300, 16.0, 3);
   const WallIndex wall_index(world, 0.1, 8.0);

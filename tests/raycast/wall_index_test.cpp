@@ -1,4 +1,4 @@
-// The index of walls: small questions with known answers.
+// Queries of the wall index with known results.
 
 #include "raycast/wall_index.h"
 
