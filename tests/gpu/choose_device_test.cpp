@@ -1,4 +1,4 @@
-// Which of several devices is taken, with devices that are made up.
+// Choice among several synthetic devices.
 
 #include <gtest/gtest.h>
 
@@ -89,7 +89,7 @@ TEST(Choose, EveryOtherDeviceHasItsReason) {
   EXPECT_EQ(candidates.info[2].reason, "is not the wanted one ('iris')");
 }
 
-/// A device that does not compute as the host does makes way for the next best, and is told why.
+/// A device that fails its self-check gets the fault as its reason, and the next best is chosen.
 TEST(Choose, WhatFailsItsSelfCheckMakesWay) {
   DeviceCandidates candidates = five();
   std::vector<std::size_t> tried;

@@ -1,5 +1,5 @@
 #version 450
-// Counts to n in one loop, and in two loops of n / 2: what a driver that limits loops gets wrong, and how.
+// Counts to n in one loop, and in two loops of n / 2, to detect a driver's limit on loops.
 
 layout(local_size_x = 64) in;
 layout(binding = 0, r32ui) uniform readonly uimageBuffer counts;

@@ -1,4 +1,4 @@
-// Mesa before 25 ends a shader's loops after 65 535 turns in all, silently. Hosts must know.
+// Mesa before 25 silently ends a shader's loops after 65 535 iterations in total.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kLimit = 65'535;
 
-/// What the device makes of counting to `n`: in one loop, and in two loops of n / 2 turns.
+/// The device's results of counting to `n`: in one loop, and in two loops of n / 2 iterations.
 struct Counted {
   std::uint32_t one;
   std::uint32_t two;
@@ -45,14 +45,14 @@ Counted count_to(std::uint32_t n) {
   return {words[0], words[1]};
 }
 
-/// The farm's bounds keep all loops of an invocation below this together.
+/// The farm keeps the sum of all loops of an invocation below this number.
 TEST(Loops, FortyFiveThousandTurnsAreCountedByEveryDriver) {
   const Counted counted = count_to(22'500);
   EXPECT_EQ(counted.one, 22'500u);
   EXPECT_EQ(counted.two, 22'500u) << "45 000 turns in all";
 }
 
-/// Documents the driver at hand. Neither answer is a failure; any other is.
+/// Records the behaviour of the installed driver. Both results pass; any other fails.
 TEST(Loops, SeventyThousandTurnsMayBeCutOff) {
   const Counted counted = count_to(70'000);
   std::cout << "[ measured ] 70 000 turns of one loop: " << counted.one << " on " << Device().info().driver << "\n";

@@ -1,4 +1,4 @@
-// The self-check's comparison: on made-up results, since no driver at hand is wrong.
+// The self-check's comparison, on synthetic results: no installed driver is wrong.
 
 #include "gpu/self_check_arithmetic.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 using Form = Operation::Form;
 
-/// Row of the first pair with an ordinary quotient: the four before it are borders.
+/// First pair with an ordinary quotient; the four pairs before it are border cases.
 constexpr std::size_t kOrdinary = 4;
 
 std::size_t place(std::size_t row, std::string_view name) {
@@ -48,7 +48,7 @@ TEST(Arithmetic, ARefusalNamesOperationOperandsFoundAndExpected) {
             "0x28, not 0x38");
 }
 
-/// One count in the last place, in any row: where the bits decide, it is found under its own name.
+/// An error in the last place, in any row, is detected and named wherever bits must agree.
 TEST(Arithmetic, ALastBitIsFoundInEveryOperation) {
   const std::vector<std::uint64_t> right = expected_results();
   for (std::size_t at = 0; at < right.size(); ++at) {
@@ -61,7 +61,7 @@ TEST(Arithmetic, ALastBitIsFoundInEveryOperation) {
   }
 }
 
-/// What Vulkan leaves open, and no reading depends on.
+/// Vulkan leaves these open, and no reading depends on them.
 TEST(Arithmetic, SignsOfZeroAndBitsOfNaNAreFree) {
   const std::size_t zero = place(0, "a + b");
   EXPECT_EQ(expected_results()[zero], 0u);
@@ -73,7 +73,7 @@ TEST(Arithmetic, SignsOfZeroAndBitsOfNaNAreFree) {
   EXPECT_NE(difference_with(zero, std::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN())), "");
 }
 
-/// 32-bit roots may be wrong by some last places, which a step of Newton's method squares.
+/// 32-bit roots may be wrong in the last places; a step of Newton's method squares the relative error.
 TEST(Arithmetic, NewtonsRootsHaveATolerance) {
   for (const char* name :
        {"1 / sqrt(1 + a * a) to 1e-12, by Newton's method", "sqrt(1 + a * a) to 1e-12, by Newton's method"}) {
@@ -86,8 +86,7 @@ TEST(Arithmetic, NewtonsRootsHaveATolerance) {
   }
 }
 
-/// The mistakes that drivers make: fused products, a float's quotient, a narrow root, a flushed or truncated
-/// conversion.
+/// Typical driver mistakes: fused products, a 32-bit quotient, a 32-bit root, a flushed or truncated conversion.
 TEST(Arithmetic, MistakesOfDriversAreFound) {
   const auto found_in = [](const char* name, auto wrong) {
     std::vector<std::uint64_t> found = expected_results();

@@ -1,4 +1,4 @@
-// Tables that the host does not see: copies up and down, forced here where host and device share memory.
+// Tables without shared memory: copies in both directions, forced on devices with shared memory.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ std::vector<std::uint32_t> words(Buffer& table) {
   return {host.begin(), host.end()};
 }
 
-/// A batch without kernels: its copies alone.
+/// A batch of copies without kernels.
 void run_copies(Batch& batch) {
   batch.begin();
   batch.end();
@@ -50,7 +50,7 @@ TEST_F(Staging, IsForcedByTheEnvironmentWhenADeviceOpens) {
   EXPECT_TRUE(shared || Device().info().driver.find("llvmpipe") == std::string::npos);
 }
 
-/// Only the bytes that are named travel, to the same place, once.
+/// Only the named bytes are copied, to the same offset, once.
 TEST_F(Staging, PiecesTravelToTheirPlaces) {
   Device device;
   Batch batch(device);
@@ -82,7 +82,7 @@ TEST_F(Staging, PiecesTravelToTheirPlaces) {
   }
 }
 
-/// Group counts not at the table's beginning, and of more dimensions than one.
+/// Group counts at an offset, in more than one dimension.
 TEST_F(Staging, AKernelReadsWhatWasCopiedUpAndIsCopiedDown) {
   Device device;
   Kernel kernel(device, "loop", loop_comp_spv, 2);
@@ -109,7 +109,7 @@ TEST_F(Staging, AKernelReadsWhatWasCopiedUpAndIsCopiedDown) {
     EXPECT_EQ(sums.host<std::uint32_t>()[4 * i + 1], i < 64 ? i : 77);
   }
 
-  // Recorded once, run again with other counts.
+  // Recorded once, run again with other group counts.
   groups.host<std::uint32_t>()[4] = 2;
   batch.upload(groups, 16, 4);
   batch.download(sums, 0, sums.bytes());

@@ -1,4 +1,4 @@
-// Buffers, kernels and what the device must be able to do.
+// Buffers, kernels and required device features.
 
 #include <gtest/gtest.h>
 
@@ -60,7 +60,7 @@ TEST(Device, NamesWhatItHolds) {
   EXPECT_TRUE(device.allocations().empty());
 }
 
-/// More than the device's limit is refused with the limit and what to do, not with a crash.
+/// A table above the device's limit is refused with the limit and a remedy.
 TEST(Buffer, MoreThanTheDeviceHoldsIsRefused) {
   Device device;
   try {
@@ -72,7 +72,7 @@ TEST(Buffer, MoreThanTheDeviceHoldsIsRefused) {
   }
 }
 
-/// No memory of any wanted type: the same refusal as a full device's.
+/// Without memory of any wanted type the refusal equals that of a full device.
 TEST(Buffer, NoRoomIsRefusedWithTheSize) {
   Device device;
   const std::uint32_t types = std::exchange(device.vk().memory.memoryTypeCount, 0);
@@ -148,7 +148,7 @@ TEST(SelfCheck, TheSurveyHasItOfEveryDeviceThatLacksNothing) {
   }
 }
 
-/// The first type that has all that is wanted, among those that are allowed.
+/// The first allowed type with all wanted properties.
 TEST(Device, MemoryTypesAreFoundByWhatTheyHave) {
   Device device;
   Device::Vk& vk = device.vk();
@@ -181,7 +181,7 @@ TEST(Environment, EmptyAndZeroAreNotSet) {
   unsetenv("SENSORFARM_TEST");
 }
 
-/// The layer speaks when something is wrong: so its silence elsewhere means something.
+/// The layer reports an error, so that its silence in other tests is meaningful.
 TEST(Validation, TheLayerReportsAMistake) {
   setenv("SENSORFARM_VALIDATE", "1", 1);
   {

@@ -1,5 +1,5 @@
 #version 450
-// A wrong answer to the self-check: the sum in 32 bits, and nothing else.
+// A wrong self-check kernel: writes only the sum, computed in 32 bits.
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer operands;
