@@ -1,5 +1,5 @@
-// A tick allocates nothing once it has seen its world. This program's `new` is counted, of the calling thread alone:
-// the Vulkan driver's own threads do as they like.
+// A warm tick allocates nothing. The test replaces `operator new` and counts calls of the calling thread only: the
+// Vulkan driver's threads may allocate.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 using counted::allocations;
 using counted::counting;
 
-/// A lap: the same cells, the same neighbours.
+/// One lap returns to the same cells and neighbours.
 std::uint64_t allocations_per_lap(const world::World& world, const FarmOptions& options) {
   Farm farm(world, device(), options);
   farm.subscribe_all();
@@ -45,7 +45,7 @@ TEST(Allocation, NoneWithNoiseAndLatencyEither) {
   EXPECT_EQ(allocations_per_lap(world, {.threads = 2}), 0u);
 }
 
-/// Magnets that stand and magnets that move, with and without a cut-off.
+/// Static and moving magnets, with and without a cut-off.
 TEST(Allocation, NoneWithMagnetometersEither) {
   world::World world = scenes::sheet(300, 6.0, 1);
   for (int i = 0; i < 12; ++i) {
@@ -72,7 +72,7 @@ TEST(Allocation, NoneWithMapsEither) {
   EXPECT_EQ(allocations_per_lap(world, {.threads = 2}), 0u);
 }
 
-/// Sensors that need no device: a roof overhead, a hole in the floor, a dock and a virtual wall.
+/// Sensors without device work: a roof overhead, a hole in the floor, a dock and a virtual wall.
 TEST(Allocation, NoneWithSensorsOfTheHostEither) {
   world::World world;
   for (int i = 0; i < 12; ++i) {
@@ -91,7 +91,7 @@ TEST(Allocation, NoneWithSensorsOfTheHostEither) {
   for (const unsigned threads : {1u, 2u}) EXPECT_EQ(allocations_per_lap(world, {.threads = threads}), 0u) << threads;
 }
 
-/// Transducers in turn and at once, with noise, among walls and each other.
+/// Transducers in sequence and all at once, with noise, among walls and each other.
 TEST(Allocation, NoneWithSonarAndInfraredEither) {
   world::World world = small_world(20);
   for (world::Mover& mover : world.movers) {

@@ -1,4 +1,4 @@
-// Latency: measured now, delivered later, unchanged.
+// Latency: readings are delivered later, unchanged.
 
 #include "farm/delivery.h"
 
@@ -13,7 +13,7 @@ constexpr std::int64_t kTick = 20'000'000;
 
 TEST(Latency, AReadingComesLaterAndUnchanged) {
   world::World prompt = small_world(2);
-  prompt.movers[1].lasers[0].accuracy.word = "skip2";  // with flags of beams that were not cast
+  prompt.movers[1].lasers[0].accuracy.word = "skip2";  // with quality flags of skipped beams
   world::World late = prompt;
   late.movers[1].lasers[0].latency = 0.05;
   Farm now(prompt, device());
@@ -40,8 +40,8 @@ TEST(Latency, AReadingComesLaterAndUnchanged) {
   EXPECT_EQ(delivered, expected);
 }
 
-/// A latency of whole ticks: at that tick, not one later. Of less than one: at the next. Boundary: 1 ns more is one
-/// more.
+/// A latency of whole ticks delivers at exactly that tick, a latency below one tick at the next. Boundary: 1 ns more
+/// adds a tick.
 TEST(Latency, OfWholeTicks) {
   const std::int64_t tick = 100'000'000;
   for (const auto& [latency, ticks] : {std::pair{0.1, 1}, {0.2, 2}, {0.100000001, 2}, {0.099999999, 1}, {1e-9, 1}}) {
@@ -57,7 +57,7 @@ TEST(Latency, OfWholeTicks) {
   }
 }
 
-/// The sensors after it have none.
+/// The other sensors have no latency.
 TEST(Latency, OfTheFirstSensorAlone) {
   world::World world = small_world(2);
   world.movers[0].lasers[0].latency = 0.05;
@@ -68,7 +68,7 @@ TEST(Latency, OfTheFirstSensorAlone) {
   EXPECT_EQ(readings[0].mover, 1u);
 }
 
-/// The farm says when the next one is to be delivered; asked for it then, it is on time between two ticks too.
+/// The farm reports the time of the next delivery. A sample at that time, between two ticks, is punctual.
 TEST(Latency, DeliveredBetweenTicks) {
   world::World world = small_world(2);
   world.movers[1].lasers[0].latency = 0.03;
@@ -87,7 +87,7 @@ TEST(Latency, DeliveredBetweenTicks) {
   EXPECT_EQ(farm.next_delivery(), 80'000'000);
 }
 
-/// Longer than the period: several wait at once, and come in order.
+/// Latency above the period: several readings wait at once and are delivered in order.
 TEST(Latency, LongerThanThePeriod) {
   world::World world = small_world(3);
   for (world::Mover& mover : world.movers) mover.lasers[0].latency = 0.35;
@@ -102,7 +102,7 @@ TEST(Latency, LongerThanThePeriod) {
   for (const std::uint32_t count : next) EXPECT_EQ(count, 17u);
 }
 
-/// Readings that become due in one tick come oldest first, those without latency last.
+/// Readings delivered in one tick are ordered by age, oldest first; those without latency come last.
 TEST(Latency, OldestFirst) {
   world::World world = small_world(2);
   world.movers[0].lasers[0].latency = 0.0;
@@ -119,7 +119,7 @@ TEST(Latency, OldestFirst) {
   EXPECT_EQ(readings[2].time, 300'000'000);
 }
 
-/// What is due at one time comes robot by robot, though the second robot's was measured before the first's.
+/// Readings of one delivery are ordered by robot, not by time of measurement.
 TEST(Latency, RobotByRobot) {
   world::World world = small_world(2);
   world.movers[0].lasers[0].latency = 0.1;

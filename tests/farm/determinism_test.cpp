@@ -1,4 +1,4 @@
-// The same calls give the same bytes, whatever the threads, the pool and the company.
+// Equal calls give equal bytes, independent of threads, cache size and other robots.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ TEST(Determinism, WhateverTheThreads) {
   for (const unsigned threads : {2u, 3u, 7u}) EXPECT_EQ(run(world, {.seed = 1, .threads = threads}), one) << threads;
 }
 
-/// What leaves has infinity where a beam met nothing: so the hash is of that.
+/// Sent ranges are infinite without a return; the hash covers the sent values.
 TEST(Determinism, TheHashIsOfWhatIsSent) {
   const world::World world = small_world(30);
   Farm farm(world, device(), {.no_return_inf = true});
@@ -60,7 +60,7 @@ TEST(Determinism, TheHashIsOfWhatIsSent) {
   EXPECT_NE(farm.hash(), plain.hash());
 }
 
-/// So small that cells are evicted every tick, and that the pool must grow within one.
+/// The cache is so small that cells are evicted every tick and that it must grow within a tick.
 TEST(Determinism, WhateverThePool) {
   const world::World world = small_world(30, kNoise);
   const std::uint64_t large = run(world, {.seed = 1});
@@ -86,7 +86,7 @@ TEST(Determinism, EvictedCellsAreBuiltAgain) {
   EXPECT_EQ(farm.hash(), roomy.hash());
 }
 
-/// Readings of robot 0 with `others` about.
+/// Readings of robot 0; `hear_others` subscribes the other robots too.
 std::vector<Kept> of_first(const world::World& world, bool hear_others) {
   Farm farm(world, device(), {.seed = 3});
   farm.subscribe(0, kAllSensorTypes);
@@ -99,7 +99,7 @@ std::vector<Kept> of_first(const world::World& world, bool hear_others) {
   return kept;
 }
 
-/// Robots that a robot cannot sense change none of its readings: they are far, or behind walls, or do not echo.
+/// Invisible robots change no reading: far away, behind walls, or not seen by lasers.
 TEST(Determinism, RobotsThatCannotBeSensedChangeNothing) {
   world::World alone;
   scenes::add_module(alone, {}, 6.0);
@@ -111,16 +111,16 @@ TEST(Determinism, RobotsThatCannotBeSensedChangeNothing) {
 
   world::World company = alone;
   for (int i = 0; i < 20; ++i) {
-    scenes::add_robot(company, {100.0 + i, 3.0 * i, 0, 0}, laser);              // far
+    scenes::add_robot(company, {100.0 + i, 3.0 * i, 0, 0}, laser);              // far away
     scenes::add_robot(company, {4.0 + 0.5 * i, 0.3 * i - 3.0, 0, 0.1}, laser);  // behind the room's wall
-    scenes::add_robot(company, {-1.0 + 0.05 * i, 0.4, 0, 0.1}, laser);          // among it, but not echoing
+    scenes::add_robot(company, {-1.0 + 0.05 * i, 0.4, 0, 0.1}, laser);          // in the room, invisible to lasers
     for (world::Segment& s : company.movers.back().body) s.seen_by_laser = false;
   }
   EXPECT_EQ(of_first(company, true), expected);
   EXPECT_EQ(of_first(company, false), expected);
 }
 
-/// A robot's readings do not depend on who else is due in its tick.
+/// A robot's readings do not depend on the other sensors due in its tick.
 TEST(Determinism, WhateverTheBatch) {
   world::World world = small_world(12, kNoise);
   const std::vector<Kept> alone = of_first(world, false);
@@ -130,7 +130,7 @@ TEST(Determinism, WhateverTheBatch) {
   EXPECT_EQ(of_first(world, true), alone);
 }
 
-/// What a tool asks for in between changes nothing that follows.
+/// A sense request between ticks does not change later readings.
 TEST(Determinism, SenseLeavesNoTrace) {
   const world::World world = small_world(5, kNoise);
   Farm asked(world, device(), {.seed = 1});
@@ -148,8 +148,8 @@ TEST(Determinism, SenseLeavesNoTrace) {
   EXPECT_EQ(asked.hash(), plain.hash());
 }
 
-/// A fixed scene has a fixed hash. Beams at multiples of 22.5 degrees, poses on a lattice, no noise: of the C library
-/// it depends on sin and cos of multiples of pi/8 and of 1/4 alone.
+/// A fixed scene has a fixed hash. Beams at multiples of 22.5 degrees, poses on a lattice, no noise: the hash depends
+/// only on the C library's sin and cos of multiples of pi/8 and of 1/4.
 TEST(Determinism, GoldenHash) {
   if (device().info().name.find("llvmpipe") == std::string::npos)
     GTEST_SKIP() << "the hash is lavapipe's; this is " << device().info().name;

@@ -1,5 +1,5 @@
-// States that are legal on the wire and that no robot would have: the tick goes on, and every scan is that of plain
-// means, beam by beam, whatever casts it and on however many threads.
+// Reports that are valid on the wire but impossible for a robot: the tick continues, and every scan equals the
+// brute-force reference, beam by beam, for both casters and any number of threads.
 
 #include <gtest/gtest.h>
 
@@ -14,10 +14,10 @@
 namespace sf::farm {
 namespace {
 
-constexpr double kFarthest = 1e7;  // [m] as packets have it
+constexpr double kFarthest = 1e7;  // [m] limit of packets
 constexpr double kFastest = 1e3;   // [m/s], [rad/s]
 
-/// A coordinate that hurts: beside, on and between what there is, to the last bit, or as far as packets go.
+/// An awkward coordinate: beside, exactly on or between known ones, to the last bit, or at the limit of packets.
 double odd_coordinate(trial::Chance& chance, double known) {
   switch (chance.below(8)) {
     case 0:
@@ -41,7 +41,7 @@ double odd_coordinate(trial::Chance& chance, double known) {
 
 base::Report odd_report(trial::Chance& chance, const world::World& world, std::int64_t now) {
   const auto mover = chance.below(static_cast<std::uint32_t>(world.movers.size()));
-  // Around a corner of a wall, another mover, or the mover's own place at load.
+  // Round a corner of a wall, another mover, or the mover's own position at load.
   const base::Pose& other = world.movers[chance.below(static_cast<std::uint32_t>(world.movers.size()))].X_WM;
   glm::dvec2 known{other.x, other.y};
   if (!world.walls.empty() && chance.below(2) == 0)
@@ -80,7 +80,7 @@ std::uint64_t under_siege(const world::World& world, std::uint64_t seed, unsigne
     reports.clear();
     const std::uint32_t count = chance.below(2 * static_cast<std::uint32_t>(world.movers.size()));
     for (std::uint32_t i = 0; i < count; ++i) reports.push_back(odd_report(chance, world, now));
-    // All of them at one place, now and then.
+    // Occasionally all reports have one position.
     if (tick % 7 == 3)
       for (base::Report& report : reports) report.X_WM = reports[0].X_WM;
     fleet.apply(reports);
@@ -110,7 +110,7 @@ TEST(HostileStates, AmongBoxes) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) expect_the_same_from_all(small_world(30), seed);
 }
 
-/// Every kind of sensor, road, lights and magnets.
+/// All sensor types, road, lights and magnets.
 TEST(HostileStates, InSimVille) {
   const world::World world =
       world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});

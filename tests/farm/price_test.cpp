@@ -1,4 +1,4 @@
-// A world pays for what it has, without a clock: what lies on the device, what is submitted, what is cast.
+// Cost of a world's contents, without a clock: device memory, submissions, casts.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace sf::farm {
 namespace {
 
-/// Names and sizes of all that lives on the device for `world`, by kind of sensor.
+/// Names and sizes of all device allocations for `world`, by sensor type.
 std::map<std::string, std::vector<std::pair<std::string, std::size_t>>> held_for(const world::World& world) {
   gpu::Device own;
   Farm farm(world, own);
@@ -48,7 +48,7 @@ TEST(Price, KindsThatAreAbsentHoldNothing) {
   EXPECT_FALSE(both.contains("laneedge"));
 }
 
-/// Lists get room by how many robots look, up to what the options allow.
+/// The lists' initial size depends on the number of sensing robots, up to the limits in the options.
 TEST(Price, FewRobotsHoldLittle) {
   constexpr std::size_t kMiB = 1u << 20;
   EXPECT_LT(bytes_of(small_world(6)), 8 * kMiB);
@@ -56,7 +56,7 @@ TEST(Price, FewRobotsHoldLittle) {
   EXPECT_GT(bytes_of(small_world(50)), bytes_of(small_world(6)));
 }
 
-/// Kernels join the batch when someone first needs them: nothing that is read depends on when.
+/// Kernels join the batch at the first subscription; readings do not depend on that time.
 TEST(Price, KindsThatAreHeardLaterReadTheSame) {
   world::World world = small_world(6);
   world.magnets.push_back(scenes::magnet({0.5, 0.5}));
@@ -90,7 +90,7 @@ TEST(Price, TheUnheardCastAndSubmitNothing) {
   EXPECT_EQ(farm.stats().work.cells_built, 0u);
 }
 
-/// 10 Hz in ticks of a millisecond: one batch in a hundred.
+/// 10 Hz with ticks of a millisecond: one batch per hundred ticks.
 TEST(Price, WhoIsNotDueSubmitsNothing) {
   const world::World world = small_world(20);
   Farm farm(world, device(), kOnDevice);
@@ -110,7 +110,7 @@ TEST(Price, WhoStandsCastsAndSubmitsNothing) {
   EXPECT_LE(farm.stats().work.rays, 3u * 20u * kBeams);
 }
 
-/// Lasers that the host casts need no batch: the same bytes without one.
+/// Host scans need no batch and give the same bytes.
 TEST(Price, WhatTheHostCastsSubmitsNothing) {
   const world::World world = small_world(20);
   Farm by_host(world, device(), {.scene = {.caster = raycast::CasterChoice::host}});
@@ -124,7 +124,7 @@ TEST(Price, WhatTheHostCastsSubmitsNothing) {
   EXPECT_EQ(by_host.hash(), by_device.hash());
 }
 
-/// Some stand, one drives: they alone who may see it look.
+/// One robot drives, the others stand: only robots that may see it measure anew.
 TEST(Price, OneThatDrivesIsSeenByThoseInReach) {
   world::World world;
   scenes::add_module(world, {}, 60.0);

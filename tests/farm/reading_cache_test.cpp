@@ -1,4 +1,4 @@
-// Readings given again: the same bytes as if everyone had looked, and nothing paid where nothing moved.
+// Reused readings: the same bytes as measured ones, and no work where nothing moves.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int64_t kTick = 100'000'000;  // [ns]
 
-/// Everything that depends on poses alone, and some that depends on more, at different rates.
+/// All sensors that depend on poses only, and some with further dependencies, at different rates.
 void equip(world::Mover& mover, trial::Chance& chance) {
   const double rates[] = {10.0, 5.0, 13.0};
   const auto with_rate = [&](world::Sensor sensor) {
@@ -55,7 +55,7 @@ world::World varied_world(std::uint64_t seed) {
   return world;
 }
 
-/// A world's days: every robot now stands, now drives, now jumps; some never move.
+/// A sequence of states: robots stand, drive and jump in turn; some never move.
 class Day {
  public:
   Day(const world::World& world, std::uint64_t seed) : chance_(seed), stir_(world.movers.size()) {
@@ -67,7 +67,7 @@ class Day {
     for (std::uint32_t m = 0; m < poses_.size(); ++m) {
       if (chance_.below(6) == 0) stir_[m] = m % 3 != 0 && chance_.below(3) == 0;
       if (stir_[m] && !quiet) step(poses_[m]);
-      if (chance_.below(5) != 0) reports.push_back({m, 0, poses_[m], {}});  // who says nothing stays
+      if (chance_.below(5) != 0) reports.push_back({m, 0, poses_[m], {}});  // a mover without a report stays in place
     }
     return reports;
   }
@@ -108,7 +108,7 @@ void expect_same(std::span<const base::ReadingBlock> p, std::span<const base::Re
   for (std::size_t i = 0; i < p.size() && !testing::Test::HasFatalFailure(); ++i) expect_same(p[i], q[i]);
 }
 
-/// @return readings given again.
+/// @return number of reused readings
 std::uint64_t compare(const world::World& world, std::uint64_t seed, int ticks) {
   Farm again(world, device(), {.seed = seed});
   Farm anew(world, device(), {.seed = seed, .reuse_unchanged = false});
@@ -142,7 +142,7 @@ TEST(ReadingCache, TheSameBytesAsIfEveryoneHadLooked) {
   EXPECT_GT(again, 2500u) << "the test is meant to give readings again";
 }
 
-/// One robot that stands at the origin, and a disc of 0.165 m that goes where it is told.
+/// One robot at rest at the origin, and a disc of 0.165 m radius at given positions.
 struct Pair {
   world::World world;
   Farm farm;
@@ -161,7 +161,7 @@ struct Pair {
       : world(made(change)), farm(world, device(), kOnDevice) {
     farm.subscribe(0, kAllSensorTypes);
   }
-  /// Whether what is due is given again when the other one stands at `X`.
+  /// True when the due reading is reused with the disc at `X`.
   bool again_with(const base::Pose& X, const base::Pose& own = {}) {
     const FarmStats before = farm.stats();
     const std::vector<base::Report> reports{{0, 0, own, {}}, {1, 0, X, {}}};
@@ -172,7 +172,7 @@ struct Pair {
     EXPECT_EQ(farm.stats().batches - before.batches, again == 0 ? 1u : 0u);
     return again > 0;
   }
-  /// Until what it sees is kept.
+  /// Ticks until the reading is cached.
   void settle(const base::Pose& X, const base::Pose& own = {}) {
     for (int k = 0; k < 3; ++k) again_with(X, own);
     EXPECT_TRUE(again_with(X, own));
@@ -188,7 +188,7 @@ TEST(ReadingCache, WhoStandsLooksTwiceAndNeverAgain) {
   EXPECT_EQ(pair.farm.stats().work.rays, 2u * kBeams);
 }
 
-/// Any bit of its own pose counts, the sign of a zero too.
+/// Any change of its own pose counts, even the sign of a zero.
 TEST(ReadingCache, WhoMovesLooks) {
   const base::Pose far{5.0, 0.0, 0.0, 0.0};
   for (const base::Pose& own : {base::Pose{1e-300, 0, 0, 0}, base::Pose{0, -1e-9, 0, 0}, base::Pose{0, 0, 0, 1e-16},
@@ -221,14 +221,14 @@ TEST(ReadingCache, OthersCountWhereTheyWereAndWhereTheyAre) {
   EXPECT_TRUE(pair.again_with({0.0, 2.66, 0.0, 0.0})) << "passes outside of it, and is near nobody who is not";
 }
 
-/// The range counts from the sensor, which may stand off its robot's middle.
+/// The range counts from the sensor, which may be off its robot's centre.
 TEST(ReadingCache, RangesCountFromTheSensor) {
   Pair pair([](world::World& world) { world.movers[0].lasers[0].X_MS = {-1.0, 0.0, 0.1, 0.0}; });
   pair.settle({5.0, 0.0, 0.0, 0.0});
   EXPECT_FALSE(pair.again_with({-2.9, 0.0, 0.0, 0.0}));
 }
 
-/// Of several sensors of a kind the farthest counts, whichever it is: they are disturbed together.
+/// Sensors of one type on a robot share the largest radius: they are invalidated together.
 TEST(ReadingCache, TheFarthestOfARobotsSensorsCounts) {
   for (const std::size_t farthest : {0u, 1u}) {
     Pair pair([&](world::World& world) {
@@ -242,7 +242,7 @@ TEST(ReadingCache, TheFarthestOfARobotsSensorsCounts) {
   }
 }
 
-/// A mover that comes and goes between two readings has changed nothing, but it was seen to move.
+/// A mover that comes and goes between two readings leaves no trace, but its motion still invalidates.
 TEST(ReadingCache, BetweenReadingsToo) {
   Pair pair([](world::World& world) { world.movers[0].lasers[0].rate = 5.0; });
   const std::vector<base::Report> far{{1, 0, {5.0, 0.0, 0.0, 0.0}, {}}}, near{{1, 0, {1.0, 0.0, 0.0, 0.0}, {}}};
@@ -271,7 +271,7 @@ TEST(ReadingCache, UnlessNoiseIsOff) {
   EXPECT_EQ(farm.stats().reused, 2u * 3u);
 }
 
-/// Magnets that move count wherever they are; bodies without magnets do not.
+/// Moving magnets invalidate from any distance; bodies without magnets do not.
 TEST(ReadingCache, MagnetometersMindMagnetsAlone) {
   for (const bool carries : {false, true}) {
     Pair pair([&](world::World& world) {
@@ -286,14 +286,14 @@ TEST(ReadingCache, MagnetometersMindMagnetsAlone) {
   }
 }
 
-/// A robot without an outline is seen by nobody.
+/// A robot without an outline is invisible.
 TEST(ReadingCache, WhatHasNoOutlineDisturbsNobody) {
   Pair pair([](world::World& world) { world.movers[1].body.clear(); });
   pair.settle({5.0, 0.0, 0.0, 0.0});
   EXPECT_TRUE(pair.again_with({1.0, 0.0, 0.0, 0.0}));
 }
 
-/// What is asked for elsewhere in between is neither given again nor kept.
+/// A sense request neither reuses nor stores readings.
 TEST(ReadingCache, SenseNeitherTakesNorLeaves) {
   const world::World world = small_world(5);
   Farm asked(world, device()), plain(world, device());
@@ -311,7 +311,7 @@ TEST(ReadingCache, SenseNeitherTakesNorLeaves) {
   EXPECT_EQ(asked.stats().reused, plain.stats().reused);
 }
 
-/// Nobody who drives is copied, and who stands allocates once.
+/// Moving robots store nothing; robots at rest allocate once.
 TEST(ReadingCache, AFleetThatDrivesKeepsNothing) {
   const world::World world = small_world(10);
   Farm farm(world, device());

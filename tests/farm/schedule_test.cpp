@@ -1,4 +1,4 @@
-// When sensors are due, and what that costs.
+// Due times of sensors, and their cost.
 
 #include "farm/schedule.h"
 
@@ -24,7 +24,7 @@ TEST(Schedule, DueAtPhasePlusWholePeriods) {
   EXPECT_EQ(readings_started(100 * kSecond, 0.01, 0.0), 2u) << "slower than a tick a second";
 }
 
-/// phase + k / rate, rounded to a nanosecond, begins reading k: for odd rates too, and after a year.
+/// Reading k starts at phase + k / rate, rounded to a nanosecond: also for odd rates and after a year.
 TEST(Schedule, ExactToANanosecondAfterAYear) {
   for (const double rate : {1.0, 10.0, 13.37, 30.0, 37.5, 1.0 / 3.0, 333.3, 1000.0})
     for (const double years : {0.0, 0.1, 1.0, 10.0})
@@ -49,7 +49,7 @@ TEST(Schedule, CountsEveryReadingOnceWhateverTheTick) {
   }
 }
 
-/// A sensor is due when `due_time` says, to the nanosecond: not before, and never asked for before it has begun.
+/// A sensor is due at exactly `due_time`, to the nanosecond, and never before its phase.
 TEST(Schedule, DueTimesAreWhenReadingsBegin) {
   EXPECT_EQ(due_time(0, 10.0, 0.0), 0);
   EXPECT_EQ(due_time(0, 10.0, 0.25), kSecond / 4) << "its phase";
@@ -93,7 +93,8 @@ TEST(Schedule, TheNextOneDueIsTheSoonestThatIsHeard) {
   EXPECT_EQ(farm.stats().ticks, 1u) << "samples are no ticks";
 }
 
-/// Sensors faster than the ticks have all their readings where the farm is asked when they are due, and each says when.
+/// Sensors faster than the ticks deliver all readings when the farm samples at their due times; each reading has its
+/// own time.
 TEST(Schedule, FasterThanTheTicks) {
   world::World world = small_world(3);
   const double rates[] = {13.0, 25.0, 50.0};
@@ -115,7 +116,7 @@ TEST(Schedule, FasterThanTheTicks) {
   EXPECT_EQ(farm.stats().missed, 0u);
 }
 
-/// A tick of a third of a second is short of it by a rounding: who is due within a nanosecond is read.
+/// A tick of a third of a second is early by rounding: sensors due within a nanosecond are read.
 TEST(Schedule, ATickThatIsANanosecondEarly) {
   world::World world = small_world(1);
   world.movers[0].lasers[0].rate = 3.0;
@@ -130,7 +131,7 @@ TEST(Schedule, ATickThatIsANanosecondEarly) {
   EXPECT_TRUE(farm.tick(kSecond - 2, {}).empty()) << "two nanoseconds";
 }
 
-/// Without that they give one reading a tick, and the farm counts the others.
+/// Without samples between ticks they give one reading per tick, and the farm counts the missed ones.
 TEST(Schedule, MissedReadingsAreCounted) {
   world::World world = small_world(2);
   world.movers[0].lasers[0].rate = 50.0;
@@ -152,7 +153,7 @@ TEST(Schedule, RatesAndPhasesInAFarm) {
   Farm farm(world, device());
   farm.subscribe_all();
   std::vector<int> counts(3, 0);
-  for (int k = 0; k < 100; ++k)  // 2 s of 20 ms
+  for (int k = 0; k < 100; ++k)  // 2 s in ticks of 20 ms
     for (const auto& r : farm.tick(k * 20'000'000ll, {})) {
       EXPECT_EQ(r.sequence, static_cast<std::uint32_t>(counts[r.mover]++));
       EXPECT_EQ(r.time, k * 20'000'000ll);
@@ -164,7 +165,7 @@ TEST(Schedule, RatesAndPhasesInAFarm) {
   EXPECT_EQ(counts, (std::vector<int>{20, 4, 20}));
 }
 
-/// A tick longer than the period: one reading a tick, numbered by when the latest was due.
+/// A tick longer than the period: one reading per tick, with the number of the latest due time.
 TEST(Schedule, TenSecondTicksAndMicrosecondTicks) {
   const world::World world = small_world(1);
   Farm slow(world, device());

@@ -1,5 +1,5 @@
 #pragma once
-// A small world for tests of the tick.
+// A small world for tests of the farm.
 
 #include <vector>
 
@@ -15,10 +15,10 @@ inline gpu::Device& device() {
   return device;
 }
 
-/// Lasers are cast by the device's kernels, also where it is software.
+/// Lasers on the device's kernels, even on a software device.
 inline constexpr FarmOptions kOnDevice{.scene = {.caster = raycast::CasterChoice::vulkan}};
 
-/// `robots` among boxes, each with one laser at 10 Hz.
+/// `robots` robots among boxes, each with one laser at 10 Hz.
 inline world::World small_world(std::uint32_t robots, const world::LaserNoise& noise = {}) {
   world::World world = scenes::boxes(20, 12.0, 3);
   world::Laser laser = scenes::laser(kBeams, M_PI, 8.0);
@@ -27,7 +27,7 @@ inline world::World small_world(std::uint32_t robots, const world::LaserNoise& n
   return world;
 }
 
-/// What a reading says, kept.
+/// A copy of a reading.
 struct Kept {
   std::uint32_t mover = 0, sensor = 0, sequence = 0;
   std::int64_t time = 0;
@@ -51,7 +51,7 @@ inline Kept keep(const base::ReadingBlock& r) {
           r.mode};
 }
 
-/// Everyone drives a small circle from where it was loaded.
+/// Reports of all robots, each driving a small circle from its pose at load.
 inline std::vector<base::Report> reports_at(const world::World& world, int tick) {
   std::vector<base::Report> reports;
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) {

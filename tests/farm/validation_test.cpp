@@ -1,4 +1,4 @@
-// The validation layer has nothing to say: a message of its is an error of ours.
+// Any message of the Vulkan validation layer is an error.
 
 #include <gtest/gtest.h>
 
