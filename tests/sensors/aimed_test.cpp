@@ -1,4 +1,4 @@
-// Beams that look for trouble: at vertices, along walls, through the corners where bitmap cells meet.
+// Beams in degenerate positions: at vertices, along walls, through corners where bitmap cells meet.
 
 #include <gtest/gtest.h>
 
@@ -10,19 +10,20 @@ namespace sf::trial {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr int kEyes = 100;  ///< the oracle is slow with ASan
+constexpr int kEyes = 100;  ///< the brute-force reference is slow under ASan
 #else
 constexpr int kEyes = 400;
 #endif
 
-/// Eyes anywhere, in solids too, whose middle beam runs at a vertex: nine beams around it, or four within a nanometre.
+/// Eyes at random points, also inside solids, whose middle beam hits a vertex: nine beams round it, or four within a
+/// nanometre.
 void aim_at_vertices(world::World& world, double half, double range, std::uint64_t seed) {
   Chance chance(seed);
   for (int i = 0; i < kEyes; ++i) {
     const world::Segment& s = world.walls[chance.below(static_cast<std::uint32_t>(world.walls.size()))];
     const world::Laser laser = i % 2 ? eye(9, 1e-6, range) : eye(5, 4e-10, range);
     glm::dvec2 from = chance.in_square(half);
-    if (i % 3) from = s.a + (0.1 * range / half) * from;  // most of them near by, so that the beam arrives
+    if (i % 3) from = s.a + (0.1 * range / half) * from;  // most of them close by, so that the beam reaches the vertex
     aim(world, from, chance.below(2) ? s.a : s.b, laser);
   }
 }
@@ -46,7 +47,7 @@ TEST(Aimed, AtTheVerticesOfBoxes) {
   expect_exact("aimed at vertices of boxes", sweep(world));
 }
 
-/// Unit squares on the black fields of a board: free fields touch at corners only.
+/// Unit squares on the black fields of a checkerboard: free fields touch only at corners.
 world::World checkerboard(int n) {
   world::World world;
   for (int y = 0; y < n; ++y)
@@ -59,13 +60,13 @@ world::World checkerboard(int n) {
   return world;
 }
 
-/// From a free field every beam ends at its border, however exactly it is aimed at a corner.
+/// From a free field every beam ends at the field's border, even when aimed exactly at a corner.
 TEST(Aimed, NothingSlipsThroughDiagonalCorners) {
   world::World world = checkerboard(8);
   Chance chance(4);
   for (int i = 0; i < kEyes; ++i) {
     const glm::dvec2 field{3.0, 4.0};
-    // On lattices of eighths and thirds, and anywhere.
+    // On lattices of eighths and thirds, and at random.
     const double grid = i % 3 == 0 ? 8.0 : 3.0;
     glm::dvec2 p{(1.0 + chance.below(static_cast<std::uint32_t>(grid) - 1)) / grid,
                  (1.0 + chance.below(static_cast<std::uint32_t>(grid) - 1)) / grid};
@@ -97,7 +98,7 @@ TEST(Aimed, AlongTheLattice) {
   expect_exact("along the lattice", sweep(world));
 }
 
-/// A long wall seen at `grazing` [rad], straight and askew, thin and thick.
+/// A long wall seen at `grazing` [rad], axis-aligned and rotated, thin and thick.
 world::World long_wall(double yaw, double grazing, bool thick) {
   world::World world;
   const auto at = [yaw](double x, double y) { return base::rotate(yaw, {x, y}); };
@@ -131,7 +132,7 @@ TEST(Aimed, GrazingALongWall) {
     }
 }
 
-/// A sensor on the line of a wall, before, within and behind it.
+/// A sensor collinear with a wall: before it, within it and behind it.
 TEST(Aimed, CollinearWithAWall) {
   for (const double yaw : {0.0, 0.5 * M_PI, 0.3}) {
     world::World world;

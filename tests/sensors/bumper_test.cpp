@@ -1,4 +1,4 @@
-// Bumpers: which switch is pressed by what presses on the body, and every way to describe them wrongly.
+// Bumpers: switches pressed by contacts, and invalid settings.
 
 #include "sensors/bumper.h"
 
@@ -62,7 +62,7 @@ TEST(Bumper, StagesBarsAreTheArcsBetweenTheirEnds) {
   EXPECT_THROW(read_bumper(fitted("bumper", bars)), base::InputError) << "the second bar is missing";
 }
 
-/// Behind, where bearings wrap; turned and moved with the sensor; of Stage's own length where none is said.
+/// At the rear, where bearings wrap; rotated and moved with the sensor; with Stage's default length.
 TEST(Bumper, StagesBarsBehindAndOnATurnedSensor) {
   const auto bar = [](std::vector<double> pose, const base::Pose& X_MS, std::vector<world::Setting> more = {}) {
     std::vector<world::Setting> settings{setting("bcount", {1}), setting("bpose[0]", std::move(pose))};
@@ -79,7 +79,7 @@ TEST(Bumper, StagesBarsBehindAndOnATurnedSensor) {
   EXPECT_EQ(bar({0.05, 0, 0, 0}, {}), 0xF000000Fu) << "10 cm long, 45 degrees to either side";
 }
 
-/// Each sector by itself, and what the reading says of it, robot by robot.
+/// Each sector alone, and its reading, robot by robot.
 TEST(Bumper, ReadsWhatPressesNow) {
   const world::World world = carriers(zones({{0, 90}, {-90, 0}}), {{0, 0, 0, 0}, {1, 0, 0, 2}});
   farm::Farm farm(world, device());

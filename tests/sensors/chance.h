@@ -1,5 +1,5 @@
 #pragma once
-// Chance for tests: the same on every machine.
+// Random numbers for tests, equal on every machine.
 
 #include <cstdint>
 
@@ -8,7 +8,7 @@
 
 namespace sf::trial {
 
-/// Numbers drawn one after the other from `seed`.
+/// Numbers drawn in sequence from `seed`.
 class Chance {
  public:
   explicit Chance(std::uint64_t seed) : seed_(seed) {}

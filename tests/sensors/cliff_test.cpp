@@ -1,4 +1,4 @@
-// Cliff sensors: points over drops, decided exactly.
+// Cliff sensors: points over floor holes, decided exactly.
 
 #include "sensors/cliff.h"
 
@@ -61,7 +61,7 @@ TEST(Cliff, EitherWindingAndAnyShape) {
   EXPECT_FALSE(holds(std::vector<glm::dvec2>{{0, 0}, {1, 1}}, {0.5, 0.5})) << "two points hold nothing";
 }
 
-/// A square cut into a fan of triangles: every point of it, those on shared edges too, is in exactly one of them.
+/// A square cut into a fan of triangles: every point, also on shared edges, is in exactly one of them.
 TEST(Cliff, PointsOnSharedEdgesAreInExactlyOneDrop) {
   Chance chance(1);
   for (int round = 0; round < 50; ++round) {
@@ -81,7 +81,7 @@ TEST(Cliff, PointsOnSharedEdgesAreInExactlyOneDrop) {
   }
 }
 
-/// The tree of boxes against asking every drop.
+/// The tree of boxes against a test of every hole.
 TEST(Cliff, ManyDropsAnswerAsEachOneDoes) {
   Chance chance(2);
   std::vector<world::FloorHole> drops;

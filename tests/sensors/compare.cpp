@@ -41,14 +41,14 @@ std::string text(const Tally& t) {
 
 namespace {
 
-/// Bearings as the contract has them: both ends exactly at the ends of the field of view.
+/// Bearings by definition: both ends are exactly at the ends of the field of view.
 long double bearing(const world::Laser& laser, std::size_t i) {
   if (laser.samples < 2) return 0.0L;
   return static_cast<long double>(laser.fov) *
          (static_cast<long double>(i) / static_cast<long double>(laser.samples - 1) - 0.5L);
 }
 
-/// A beam of a reading and what the farm said of it.
+/// A beam of a reading, and its flags and bound.
 struct Said {
   const base::ReadingBlock& reading;
   std::size_t beam;
@@ -98,7 +98,7 @@ Tally compare(const world::World& world, std::span<const Pose> poses, std::span<
     const glm::dvec2 origin{r.X_WS.x, r.X_WS.y};
     const auto all = oracle::surfaces(world, poses, r.mover, r.X_WS.z);
     const auto near = oracle::within(all, origin, laser.range_max);
-    // The oracle is slow: of a fan with very many beams, some thousand all over it.
+    // The reference is slow: of a scan with very many beams, it checks some thousand.
     const std::size_t stride = r.values.size() / 5000 + 1;
     for (std::size_t i = 0; i < r.values.size(); i += stride) {
       const auto truth = oracle::judge(near, origin, r.X_WS.yaw + bearing(laser, i), laser.range_max);

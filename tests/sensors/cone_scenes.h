@@ -1,5 +1,5 @@
 #pragma once
-// Sonar and infrared made by hand, for tests and benchmarks.
+// Hand-made sonar and infrared sensors for tests and benchmarks.
 
 #include <cmath>
 #include <string>
@@ -15,7 +15,7 @@ inline world::Setting cone_setting(const std::string& key, std::vector<double> n
   return {key, std::move(numbers), text, 42, "made.world"};
 }
 
-/// A sensor of `type` whose transducers stand at `poses` [m, rad], 0.1 m above its mover's foot.
+/// A sensor of `type` with transducers at `poses` [m, rad], 0.1 m above its mover's base.
 inline world::Sensor cones(const std::string& type, const std::vector<base::Pose>& poses,
                            std::vector<world::Setting> more = {}) {
   world::Sensor sensor;
@@ -32,7 +32,7 @@ inline world::Sensor cones(const std::string& type, const std::vector<base::Pose
   return sensor;
 }
 
-/// `count` transducers round a robot, `radius` [m] from its middle, looking away from it.
+/// `count` transducers in a ring round a robot, at `radius` [m], facing outward.
 inline std::vector<base::Pose> ring(std::uint32_t count, double radius) {
   std::vector<base::Pose> poses;
   for (std::uint32_t i = 0; i < count; ++i) {

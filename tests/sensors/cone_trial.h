@@ -1,6 +1,5 @@
 #pragma once
-// Sonar and infrared made by hand, and the independent answer: the nearest of a cone's rays, each against every
-// segment.
+// Hand-made sonar and infrared sensors, and the reference: the nearest of a cone's rays, each against every segment.
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +16,7 @@
 
 namespace sf::trial {
 
-/// Adds a robot that carries `sensor`; with a body where `radius` [m] of a 12-sided disc is given.
+/// Adds a robot that carries `sensor`; with a 12-sided disc of `radius` [m] as its body, if given.
 inline std::uint32_t add_ranger(world::World& world, const base::Pose& pose, const world::Sensor& sensor,
                                 double radius = 0.0) {
   const std::uint32_t mover = add_eye(world, pose, {});
@@ -36,14 +35,14 @@ inline std::uint32_t add_ranger(world::World& world, const base::Pose& pose, con
   return mover;
 }
 
-/// What one cone may read.
+/// Valid readings of one cone.
 struct ConeTruth {
-  double low = 0.0, high = 0.0;  ///< [m] the same but where a ray passes a silhouette
+  double low = 0.0, high = 0.0;  ///< [m] equal except where a ray passes a silhouette
   bool met = false;
-  bool delicate = false;  ///< some ray's incidence is too near the limit to be told
+  bool delicate = false;  ///< some ray's incidence is too close to the limit to decide
 };
 
-/// In `long double`, ray by ray. @param X_WC the transducer in the world.
+/// In `long double`, ray by ray. @param X_WC pose of the transducer in the world
 inline ConeTruth cone_truth(std::span<const world::Segment> all, const base::Pose& X_WC,
                             const sensors::ConeArray& array) {
   using Wide = long double;
@@ -75,11 +74,11 @@ inline ConeTruth cone_truth(std::span<const world::Segment> all, const base::Pos
 
 struct ConeTally {
   std::size_t cones = 0, met = 0, wide = 0, delicate = 0, wrong = 0;
-  double worst = 0.0;  ///< [m] of those whose truth is one number
+  double worst = 0.0;  ///< [m] of cones with a single valid range
   std::string example;
 };
 
-/// First columns of `readings`, `columns` numbers a transducer, against the truth at `poses`.
+/// First columns of `readings`, with `columns` numbers per transducer, against the reference at `poses`.
 inline ConeTally compare_cones(const world::World& world, std::span<const base::Pose> poses,
                                std::span<const base::ReadingBlock> readings, std::span<const sensors::ConeArray> arrays,
                                std::size_t columns = 1) {

@@ -1,4 +1,4 @@
-// Wheel encoders: exact along arcs, quantised, slipping as a random walk over distance.
+// Wheel encoders: exact along arcs, quantised, with slip as a random walk over distance.
 
 #include "sensors/encoder.h"
 
@@ -19,7 +19,7 @@ using sensors::roll;
 using sensors::Rolled;
 using sensors::Slippage;
 
-/// Where a wheel pair that rolls `left` and `right` from `from` ends: the textbook's arc, about its centre.
+/// Pose of a wheel pair after rolling `left` and `right` from `from`: the textbook arc about its centre.
 Pose driven(const Pose& from, double left, double right, double track) {
   const long double turn = (static_cast<long double>(right) - left) / track,
                     arc = (static_cast<long double>(left) + right) / 2;
@@ -124,7 +124,7 @@ world::World one_robot(std::vector<world::Setting> settings = {}, double max_for
   return world;
 }
 
-/// Drives robot 0 by what its wheels roll each tick of 0.1 s: the last reading.
+/// Drives robot 0 by its wheels' distances in ticks of 0.1 s. @return the last reading
 std::vector<double> drive(const world::World& world, const std::vector<Rolled>& wheels,
                           farm::FarmOptions options = {}) {
   farm::Farm farm(world, device(), options);
@@ -184,7 +184,7 @@ TEST(Encoder, WheelsOfAnotherSizeThanTheyCountFor) {
   EXPECT_EQ(r[3], 198.0);
 }
 
-/// Slip in readings, as a distribution: of whole counts, so a fine resolution.
+/// Slip in readings as a distribution; the fine resolution avoids quantisation.
 TEST(Encoder, SlipsByTheFilesStandardDeviationAfterAMetre) {
   world::World world;
   for (int i = 0; i < 500; ++i)
@@ -212,7 +212,7 @@ TEST(Encoder, SlipsByTheFilesStandardDeviationAfterAMetre) {
   }
 }
 
-/// Each wheel slips over the way that it rolls itself, either way.
+/// Each wheel slips over its own distance, in either direction.
 TEST(Encoder, WheelsSlipOverTheirOwnWay) {
   const auto world = one_robot({setting("slip", {0.05}), setting("per_count", {1e-6})});
   for (const double way : {0.05, -0.05}) {
@@ -225,7 +225,7 @@ TEST(Encoder, WheelsSlipOverTheirOwnWay) {
   }
 }
 
-/// Read between two ticks as they are then; the next tick goes on from the last one, to the bit.
+/// A reading between two ticks is current; the next tick continues from the last one, to the bit.
 TEST(Encoder, AreReadBetweenTicksAndGoOnFromTheLast) {
   const world::World world = one_robot({setting("per_count", {1e-6}), setting("slip", {0.02}), setting("rate", {50})});
   farm::Farm often(world, device(), {.seed = 2}), seldom(world, device(), {.seed = 2});
@@ -249,7 +249,7 @@ TEST(Encoder, AreReadBetweenTicksAndGoOnFromTheLast) {
   }
 }
 
-/// Without slip, the way to the point: a jump between ticks is none of it, and what is driven is.
+/// Distances between ticks without slip: relocations do not count, driven distances do.
 TEST(Encoder, BetweenTicksJumpsAreNotRolledEither) {
   const world::World world = one_robot({setting("rate", {50})}, 1.0);
   farm::Farm farm(world, device());
@@ -268,7 +268,8 @@ TEST(Encoder, BetweenTicksJumpsAreNotRolledEither) {
   EXPECT_EQ(counts(120, 0.1), 100.0) << "at rest";
 }
 
-/// How far it may have driven counts from the tick, whoever was read since: a first move too.
+/// The largest possible displacement counts from the last tick, independent of samples in between; also at the first
+/// move.
 TEST(Encoder, ReadingsBetweenTicksMakeNoMoveAJump) {
   const world::World world = one_robot({setting("rate", {50})}, 1.0);
   farm::Farm farm(world, device());
@@ -280,7 +281,7 @@ TEST(Encoder, ReadingsBetweenTicksMakeNoMoveAJump) {
   EXPECT_EQ(farm.tick(100'000'000, states)[0].values[2], 600.0) << "half a metre, and twice its speed";
 }
 
-/// Fast robots go farther in a tick than the half metre that is never a jump: as far as their speed takes them, twice.
+/// Fast robots exceed half a metre per tick: twice the distance at their top speed is still driven.
 TEST(Encoder, DrivingFastIsNoJump) {
   for (const double max_forward : {1.0, 10.0, 30.0}) {
     const world::World world = one_robot({}, max_forward);
@@ -316,7 +317,7 @@ TEST(Encoder, WhoIsPutElsewhereHasNotRolled) {
   EXPECT_EQ(counts(10'400, 10.6), 10'700.0) << "silent for ten seconds, so it may have driven";
 }
 
-/// Readings that nobody heard do not stop the count.
+/// Unsubscribed readings do not stop the count.
 TEST(Encoder, CountsWhetherHeardOrNot) {
   const world::World world = one_robot();
   farm::Farm farm(world, device());

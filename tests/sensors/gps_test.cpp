@@ -1,4 +1,4 @@
-// Satellite positioning: what is in sight, what its geometry makes of errors, and where the fix is lost.
+// Satellite positioning: visibility, dilution of precision, and loss of fix.
 
 #include "sensors/gps.h"
 
@@ -46,7 +46,7 @@ TEST(Gps, SatellitesStandAboveTheMaskAllRound) {
   }
 }
 
-/// The inverse of the normal matrix by Gauss and Jordan, in long double.
+/// Inverse of the normal matrix by Gauss-Jordan elimination, in long double.
 std::array<std::array<long double, 4>, 4> covariance(const std::vector<Satellite>& satellites, std::uint64_t seen) {
   long double m[4][8]{};
   for (std::size_t i = 0; i < satellites.size(); ++i) {
@@ -103,7 +103,7 @@ TEST(Gps, FewSatellitesOrAllOnOneConeGiveNoFix) {
   EXPECT_FALSE(dilution(cone, 0b111111)) << "height and clock are one unknown";
 }
 
-// --- What blocks.
+// --- Obstacles.
 
 TEST(Gps, AWallBlocksWhereTheLineCrossesItsHeights) {
   world::World world;
@@ -170,7 +170,7 @@ TEST(Gps, ADeckWithAHoleAndDecksThatOverlap) {
   EXPECT_FALSE(is_visible(twice, {0.5, 0}, 0, kEast)) << "where both parts lie";
 }
 
-/// Random boxes, some of them overhead: the line is walked in small steps.
+/// Random boxes, some of them overhead, against small steps along the line of sight.
 TEST(Gps, SightAgreesWithWalkingAlongTheLine) {
   Chance chance(2);
   const auto satellites = constellation(8);
@@ -235,7 +235,7 @@ TEST(Gps, UnderABridgeThereIsNoFix) {
   EXPECT_EQ(fixed[0], 50.0);
 }
 
-/// In a street between tall walls only what stands along it is in sight, and errors across it grow.
+/// In a street between tall walls only satellites along it are visible, and errors across it grow.
 TEST(Gps, InAStreetErrorsGrow) {
   world::World world = carriers(fitted("gps", {setting("satellites", {32})}), {{0, 0, 0, 0}, {0, 500, 0, 0}});
   add_solid(world, {{-50, 1}, {50, 1}, {50, 2}, {-50, 2}}, 0, 3);
@@ -256,12 +256,12 @@ TEST(Gps, ComesOnceASecondUnlessToldOtherwise) {
   EXPECT_EQ(rate({setting("update_interval", {100})}), 10.0);
 }
 
-/// Errors are normal, with the covariance of the satellites in sight, and each reading's own.
+/// Errors are normal, with the covariance of the visible satellites, independent per reading.
 TEST(Gps, ErrorsAreNoiseTimesTheDilution) {
   std::vector<base::Pose> poses;
   for (int i = 0; i < 100; ++i) poses.push_back({0.0, 0.0, 0.0, 0.0});
   world::World world = carriers(fitted("gps", {setting("noise", {2.0}), setting("rate", {10})}), poses);
-  add_solid(world, {{-50, 1}, {50, 1}, {50, 2}, {-50, 2}}, 0, 2);  // to one side: errors are no circle
+  add_solid(world, {{-50, 1}, {50, 1}, {50, 2}, {-50, 2}}, 0, 2);  // on one side: anisotropic errors
   farm::Farm farm(world, device(), {.seed = 12});
   farm.subscribe_all();
   std::vector<double> n, m;
@@ -305,7 +305,7 @@ TEST(Gps, SettingsThatMakeNoSense) {
   expect_refused("gps", {setting("latency", {-1})}, 8, "'latency' is -1");
 }
 
-/// The town that comes with the program has a bridge over Second Street.
+/// SimVille has a bridge over Second Street.
 TEST(Gps, UnderSimVillesBridge) {
   world::World world =
       world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});

@@ -1,4 +1,4 @@
-// Gyros: the reported turn rate, with errors of the run and of each reading.
+// Gyros: the reported yaw rate, with errors per run and per reading.
 
 #include "sensors/gyro.h"
 

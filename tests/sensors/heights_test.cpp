@@ -1,4 +1,4 @@
-// The world is 2.5-D: what a beam sees depends on its height and on what echoes.
+// Visibility depends on heights and on `seen_by_laser` (2.5-D world).
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ void add_box(world::World& world, double z_min, double z_max, bool seen = true) 
   }
 }
 
-/// What a beam straight ahead at height `z` reads.
+/// Range of a beam straight ahead at height `z` [m].
 double look(world::World world, double z) {
   world::Laser laser = eye(1, 0.0, 8.0);
   laser.X_MS.z = z;
@@ -53,7 +53,7 @@ TEST(Heights, WhatDoesNotEchoIsNotSeen) {
   EXPECT_EQ(look(world, 0.2), 8.0);
 }
 
-/// A sensor is within a solid only at the solid's heights: over a low box it looks freely.
+/// A sensor is inside a solid only at the solid's heights: over a low box its view is free.
 TEST(Heights, OverALowBoxASensorIsNotInside) {
   world::World world;
   add_box(world, 0.0, 0.05);
@@ -77,7 +77,7 @@ TEST(Heights, SensorsOfManyHeightsAndRangesShareAWorld) {
   expect_exact("heights and ranges", sweep(world));
 }
 
-/// The pose of a sensor: turned, off the robot's centre, above it.
+/// The pose of a sensor: rotated, off the robot's centre, above it.
 TEST(Heights, TheSensorsPoseIsComposedWithTheMovers) {
   world::World world;
   add_box(world, 0.4, 0.6);

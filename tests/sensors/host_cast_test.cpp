@@ -1,4 +1,4 @@
-// Where surfaces are more than the device's lists hold, the host casts: the same bytes, whatever the kind of sensor.
+// Scans whose lists exceed the device's limits run on the host, with equal bytes for every sensor type.
 
 #include <gtest/gtest.h>
 
@@ -18,9 +18,9 @@ using base::Pose;
 using base::ReadingBlock;
 
 const farm::FarmOptions kOnDevice{.scene = {.caster = raycast::CasterChoice::vulkan}};
-/// Nothing fits into such lists.
+/// No list fits.
 const farm::FarmOptions kOnHost{.scene = {.caster = raycast::CasterChoice::vulkan, .longest_list = 0}};
-/// Results that no storage buffer holds.
+/// No storage buffer holds the results.
 const farm::FarmOptions kInTexels{.scene = {.caster = raycast::CasterChoice::vulkan, .largest_buffer = 0}};
 
 bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
@@ -31,7 +31,7 @@ bool same_bits(const ReadingBlock& p, const ReadingBlock& q) {
          same(p.hits, q.hits) && same(p.quality, q.quality);
 }
 
-/// Two ticks of all farms, everyone moved in between.
+/// Two ticks of all farms; all robots move in between.
 void expect_same_bytes(const world::World& world) {
   farm::Farm on_device(world, device(), kOnDevice);
   farm::Farm on_host(world, device(), kOnHost);
@@ -71,7 +71,7 @@ TEST(DeviceCast, ResultsThatNoBufferHoldsAreTheSame) {
   expect_same_bits(in_buffers.readings, in_texels.readings);
 }
 
-/// Angular noise turns beams, `resolution` leaves some out, a minimum lifts ranges.
+/// Angular noise turns beams, `resolution` skips some, range_min raises ranges.
 TEST(HostCast, LasersWithNoiseAndResolution) {
   world::World world = scenes::boxes(60, 16.0, 4);
   world::Laser laser = scenes::laser(91, 2.0 * M_PI, 5.0);
@@ -83,7 +83,7 @@ TEST(HostCast, LasersWithNoiseAndResolution) {
   expect_same_bytes(world);
 }
 
-/// Beams that graze are flagged alike. (On the wall itself either side may be the sensor's.)
+/// Grazing beams are flagged alike. (Exactly on the wall, either side may be the sensor's.)
 TEST(HostCast, AlongWalls) {
   world::World world;
   scenes::add_module(world, {}, 6.0);
@@ -105,7 +105,7 @@ TEST(HostCast, SonarAndInfraredRings) {
   expect_same_bytes(world);
 }
 
-/// @param resolution [m] of the road's pixels; 0: exact paint
+/// @param resolution [m] of the road's pixels; 0: exact markings
 world::World road(double resolution) {
   world::World world;
   world.road_resolution = resolution;
@@ -121,7 +121,7 @@ world::World road(double resolution) {
 TEST(HostCast, LaneEdgesOnExactPaint) { expect_same_bytes(road(0.0)); }
 TEST(HostCast, LaneEdgesOnARaster) { expect_same_bytes(road(0.01)); }
 
-/// Every robot at one place, turned by its number. Three are heard.
+/// All robots at one place, turned by their index. Three are subscribed.
 void crowd_at_one_place(std::uint32_t count) {
   world::World world;
   scenes::add_module(world, {}, 10.0);
@@ -142,7 +142,7 @@ void crowd_at_one_place(std::uint32_t count) {
 TEST(HostCast, ACrowdOfAThousandAtOnePlace) { crowd_at_one_place(1'000); }
 TEST(HostCast, ACrowdOfThousandsAtOnePlace) { crowd_at_one_place(6'000); }
 
-/// Cones and lane edges in a crowd: what all of it comes to, against the device in parts that it bears is above.
+/// Cones and lane edges in a crowd; comparisons with the device are in the tests above.
 TEST(HostCast, RangersAndLaneEdgesInACrowdAtOnePlace) {
   world::World world = road(0.0);
   const auto array = cones("sonar", ring(4, 0.1));
@@ -159,8 +159,8 @@ TEST(HostCast, RangersAndLaneEdgesInACrowdAtOnePlace) {
   EXPECT_EQ(farm.hash(), again.hash());
 }
 
-/// The lasers of one robot share a list, made for a disc that holds them both: what is hidden from its middle may be
-/// seen from its rim.
+/// The lasers of one robot share a list, made for a disc that contains both: walls hidden from its middle may be
+/// visible from its rim.
 TEST(SharedLists, WhatOneOfTwoLasersSeesPastANeighbourIsSeen) {
   for (const double y : {0.3, -0.3}) {
     world::World world;
@@ -177,7 +177,7 @@ TEST(SharedLists, WhatOneOfTwoLasersSeesPastANeighbourIsSeen) {
   }
 }
 
-/// Robots with two lasers each, near to each other and to walls: nothing that either sees is left out.
+/// Robots with two lasers each, close to each other and to walls: no surface visible to either is missing.
 TEST(SharedLists, CrowdsOfRobotsWithTwoLasers) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     world::World world = scenes::boxes(12, 6.0, seed);

@@ -1,5 +1,5 @@
 #pragma once
-// Sensors that need no device, made by hand, and what every kind of them must do.
+// Hand-made sensors without device work, and tests common to all their types.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace sf::trial {
 using scenes::setting;
 using scenes::text;
 
-/// A sensor of kind `type` as line 7 of park.world has it, in metres and degrees; its settings on lines 8, 9, ...
+/// A sensor of type `type` at line 7 of park.world, in metres and degrees; its settings are on lines 8, 9, ...
 inline world::Sensor fitted(const std::string& type, std::vector<world::Setting> settings = {}) {
   world::Sensor sensor;
   sensor.type = type;
@@ -38,7 +38,7 @@ inline world::World carriers(const world::Sensor& sensor, const std::vector<base
   return world;
 }
 
-/// Everyone's states: at rest where they were loaded.
+/// States of all robots: at rest at their poses at load.
 inline std::vector<base::Report> to_occupancy(const world::World& world) {
   std::vector<base::Report> states;
   for (std::uint32_t m = 0; m < world.movers.size(); ++m) states.push_back({.mover = m, .X_WM = world.movers[m].X_WM});
@@ -49,7 +49,7 @@ inline std::vector<double> values_of(const base::ReadingBlock& reading) {
   return {reading.values.begin(), reading.values.end()};
 }
 
-/// Adds a static box-like outline, solid within, from `z_min` to `z_max`; corners counter-clockwise.
+/// Adds a static outline, solid inside, from `z_min` to `z_max` [m]; corners counter-clockwise.
 inline void add_solid(world::World& world, const std::vector<glm::dvec2>& corners, double z_min, double z_max) {
   const auto model = static_cast<std::uint32_t>(world.models.size());
   world.models.push_back({"solid" + std::to_string(model), "model"});
@@ -66,7 +66,7 @@ inline std::vector<glm::dvec2> square(glm::dvec2 middle, double side) {
           {middle.x - h, middle.y + h}};
 }
 
-/// Expects that settings are refused at park.world:`line`, saying `words`.
+/// Expects that settings are refused at park.world:`line` with a message that contains `words`.
 inline void expect_refused(const std::string& type, std::vector<world::Setting> settings, int line,
                            const std::string& words) {
   try {

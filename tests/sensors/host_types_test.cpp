@@ -1,4 +1,4 @@
-// What every kind that needs no device does: the same bytes for any threads, no allocation once warm.
+// Common tests of sensor types without device work: equal bytes for any number of threads, no allocation when warm.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace sf::trial {
 namespace {
 
-/// Robots with one of each, a roof, walls, a hole and a dock.
+/// Robots with one sensor of each type, a roof, walls, a hole and a dock.
 world::World everything(int robots) {
   world::World world;
   for (int i = 0; i < robots; ++i) {
@@ -60,7 +60,7 @@ TEST(HostKinds, TheSameBytesForAnyThreads) {
   EXPECT_NE(hash_of(world, {.seed = 2}), one);
 }
 
-/// A robot's readings do not depend on who else is there.
+/// A robot's readings do not depend on other robots.
 TEST(HostKinds, OthersChangeNothing) {
   const world::World few = everything(3), many = everything(50);
   farm::Farm a(few, device(), {.seed = 1}), b(many, device(), {.seed = 1});
@@ -89,7 +89,7 @@ TEST(HostKinds, AreSensedByHandAnywhere) {
   EXPECT_EQ(sense(sensors::kGps).X_WS.x, 100.0);
 }
 
-/// Readings of robot `mover` of one kind, by sensor.
+/// Readings of robot `mover` of one sensor type, by sensor.
 std::vector<std::vector<double>> of(std::span<const base::ReadingBlock> readings, std::uint8_t kind,
                                     std::uint32_t mover) {
   std::vector<std::vector<double>> all;
@@ -98,7 +98,7 @@ std::vector<std::vector<double>> of(std::span<const base::ReadingBlock> readings
   return all;
 }
 
-/// Every sensor has its own settings and its own robot's state: the first robot has none, the third two of each.
+/// Every sensor has its own settings and its own robot's state: the first robot has none, the third two of each type.
 TEST(HostKinds, EachIsItsOwn) {
   world::World world = carriers(fitted("bumper"), {{0, 0, 0, 0}, {10, 0, 0.5, 0}, {20, 0, 0, 0}});
   const auto fit = [&](std::size_t m, const char* type, std::vector<world::Setting> settings) {
@@ -150,7 +150,7 @@ TEST(HostKinds, EachIsItsOwn) {
   EXPECT_TRUE(of(readings, sensors::kGps, 0).empty());
 }
 
-/// Errors of two sensors of a kind on one robot have nothing in common.
+/// Errors of two sensors of one type on a robot are independent.
 TEST(HostKinds, TwoOfAKindDrawByThemselves) {
   world::World world = carriers(fitted("gyro", {setting("bias", {1.0})}));
   const auto fit = [&](const char* type, const char* key) {
@@ -176,7 +176,7 @@ TEST(HostKinds, TwoOfAKindDrawByThemselves) {
   }
 }
 
-/// Phase, latency and names are every sensor's.
+/// Phase, latency and names apply to all sensors.
 TEST(HostKinds, LatencyHoldsReadingsBack) {
   const world::World world = carriers(fitted("gyro", {setting("latency", {0.15})}));
   farm::Farm farm(world, device());
@@ -188,7 +188,7 @@ TEST(HostKinds, LatencyHoldsReadingsBack) {
   }
 }
 
-/// A world file with a robot of `sensors`, as robots.inc defines them.
+/// A world file with a robot of `sensors` from robots.inc.
 world::World ready_made(const std::string& sensors) {
   const std::string file = testing::TempDir() + "ready_made.world";
   std::ofstream(file) << "include \"" SF_SOURCE_DIR "/worlds/robots.inc\"\ncreate( name \"one\" " << sensors << ")\n";

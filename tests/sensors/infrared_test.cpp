@@ -1,4 +1,4 @@
-// Infrared proximity: responses and what they stand for, by a ruler and ray by ray.
+// Infrared proximity: responses and ranges, analytically and ray by ray.
 
 #include "sensors/infrared.h"
 
@@ -16,7 +16,7 @@ struct Response {
   double range, value;
 };
 
-/// A wall's face `gap` [m] ahead of one element.
+/// A wall `gap` [m] ahead of one element.
 Response see(double gap, std::vector<world::Setting> more = {}) {
   world::World world;
   scenes::add_outline(world, {{gap, -1}, {gap + 1, -1}, {gap + 1, 1}, {gap, 1}}, "wall");
@@ -51,7 +51,7 @@ TEST(Infrared, NearerThanRangeMinItSaturates) {
   EXPECT_EQ(see(0.04, range).value, 0.0);
 }
 
-/// Light comes back from any angle: the nearest of eleven rays in 30 degrees, however flatly it meets the wall.
+/// Light returns from any angle: the reading is the nearest of eleven rays in 30 degrees, at any incidence.
 TEST(Infrared, AWallIsSeenFromTheSide) {
   for (int degrees = -60; degrees <= 60; degrees += 5) {
     world::World world;
@@ -63,7 +63,7 @@ TEST(Infrared, AWallIsSeenFromTheSide) {
   }
 }
 
-/// Two Kheperas side by side: each sees the other and never itself.
+/// Two Kheperas side by side: each detects the other and never itself.
 TEST(Infrared, SeesOtherRobotsAndNeverItsOwn) {
   world::World world;
   add_ranger(world, {}, cones("infrared", ring(8, 0.03)), 0.035);

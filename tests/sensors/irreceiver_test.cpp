@@ -1,4 +1,4 @@
-// The Create's infrared receiver: beams, halos, buoys and force fields, and what hides them.
+// The Create's infrared receiver: beams, halos, buoys, force fields and obstacles.
 
 #include "sensors/irreceiver.h"
 
@@ -20,7 +20,7 @@ constexpr double kDegree = M_PI / 180.0;
 Emitter virtual_wall(const Pose& X_WE = {}) {
   return {Emitter::Kind::virtual_wall, world::kNone, X_WE, 2.0, 20 * kDegree, 0.4};
 }
-/// Buoys of 40 degrees: 15 to each side alone, 5 + 5 in the middle together.
+/// Buoy beams of 40 degrees: 15 on each side alone, and an overlap of 5 + 5 in the middle.
 Emitter dock(const Pose& X_WE = {}) { return {Emitter::Kind::dock, world::kNone, X_WE, 2.0, 40 * kDegree, 0.5}; }
 
 glm::dvec2 at(double distance, double degrees) { return base::rotate(degrees * kDegree, {distance, 0.0}); }
@@ -58,7 +58,7 @@ TEST(IrReceiver, ADockHasABuoyToEachSide) {
   EXPECT_EQ(light_of(dock(), at(0.4, 0)), 8u | 4u | 2u);
 }
 
-/// A halo may reach farther than the beam, and without one there is none, on top of the emitter either.
+/// A halo may reach farther than the beam; without a halo nothing is received, even on top of the emitter.
 TEST(IrReceiver, HalosOfAnySize) {
   Emitter wide = virtual_wall(), none = dock();
   wide.halo = 3.0;
@@ -68,7 +68,7 @@ TEST(IrReceiver, HalosOfAnySize) {
   EXPECT_EQ(light_of(none, {0, 0}) & 2u, 0u);
 }
 
-/// Turned and moved with the emitter, whatever its heading's whole turns.
+/// Light rotates and moves with the emitter, for headings beyond a whole turn too.
 TEST(IrReceiver, LightTurnsWithItsEmitter) {
   Chance chance(1);
   for (int i = 0; i < 500; ++i) {
@@ -122,7 +122,7 @@ TEST(IrReceiver, LightIsHiddenByWallsAtItsHeight) {
   EXPECT_EQ(read(world)[0], 1.0) << "a wall behind the receiver";
 }
 
-/// Many emitters, each asked, against the tree.
+/// Many emitters: the tree against a test of each.
 TEST(IrReceiver, ManyEmittersAnswerAsEachOneDoes) {
   Chance chance(2);
   world::World world = carriers(fitted("irreceiver"), {});

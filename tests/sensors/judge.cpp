@@ -14,15 +14,15 @@ constexpr std::uint32_t kNothing = 0xFFFFFFFFu;
 /// A segment on the line of a beam, in the beam's frame.
 struct Crossing {
   Meeting meeting;
-  Wide aside_a = 0.0L;  ///< [m] of its ends, positive on the left of the beam
+  Wide aside_a = 0.0L;  ///< [m] lateral distance of its ends, positive on the left of the beam
   Wide aside_b = 0.0L;
   glm::dvec2 a, b;
-  bool strict = false;     ///< met in real arithmetic
+  bool strict = false;     ///< hit in real arithmetic
   bool firm = false;       ///< and by more than kEitherWay
-  bool uncertain = false;  ///< rounding decides whether it touches the sensor
+  bool uncertain = false;  ///< contact with the sensor depends on rounding
 };
 
-/// False when the beam's line passes the segment by more than kEitherWay, or never comes near.
+/// False when the segment is farther than kEitherWay from the beam's line.
 bool meet(const world::Segment& s, glm::dvec2 origin, Wide dx, Wide dy, Crossing& out) {
   const Wide wx = static_cast<Wide>(s.a.x) - origin.x;
   const Wide wy = static_cast<Wide>(s.a.y) - origin.y;
@@ -49,7 +49,7 @@ bool meet(const world::Segment& s, glm::dvec2 origin, Wide dx, Wide dy, Crossing
   return true;
 }
 
-/// The ends of two crossings that are one point near the beam, with the other ends on both sides of it.
+/// True when two crossings share an end near the beam, and their other ends lie on both sides of it.
 bool closes(const Crossing& p, const Crossing& q) {
   const auto same = [](glm::dvec2 v, glm::dvec2 w) { return v.x == w.x && v.y == w.y; };
   const auto apart = [](Wide shared, Wide other_p, Wide other_q) {
@@ -62,7 +62,7 @@ bool closes(const Crossing& p, const Crossing& q) {
          (same(p.b, q.b) && apart(p.aside_b, p.aside_a, q.aside_a));
 }
 
-/// Nothing behind this is seen.
+/// Range beyond which nothing is visible.
 Wide firm_range(const std::vector<Crossing>& crossings, Wide range_max) {
   Wide firm = range_max;
   for (const Crossing& c : crossings)
@@ -101,7 +101,7 @@ Truth judge(std::span<const world::Segment> surfaces, glm::dvec2 origin, Wide di
     if (c.strict && !c.uncertain && c.meeting.range < truth.first.range) truth.first = c.meeting;
     if (c.meeting.range <= firm + slack && c.meeting.range < range_max + slack) truth.right.push_back(c.meeting);
   }
-  // What rounding may bring before the firm answer's own rounding stays a right answer.
+  // Crossings within rounding of the firm answer are valid answers too.
   truth.right.push_back(truth.first);
   for (const Meeting& m : truth.right)
     truth.ambiguous = truth.ambiguous || std::fabs(m.range - truth.first.range) > 1e-5L;

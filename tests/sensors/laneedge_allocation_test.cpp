@@ -1,5 +1,5 @@
-// A tick of lane edge sensors allocates nothing once it has seen its world. This program's `new` is counted, of the
-// calling thread alone: the Vulkan driver's own threads do as they like.
+// A warm tick of lane edge sensors allocates nothing. The test replaces `operator new` and counts calls of the calling
+// thread only: the Vulkan driver's threads may allocate.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ std::uint64_t allocations_per_lap(const world::World& world) {
   });
 }
 
-/// Exact and in pixels, with noise, dashes that are told apart, and a robot in the way.
+/// Exact and in pixels, with noise, distinguishable dashes, and a robot in the way.
 TEST(LaneEdgeAllocation, NoneOnceWarm) {
   for (const double h : {0.0, 0.01}) {
     world::World world;

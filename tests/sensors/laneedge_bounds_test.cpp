@@ -1,5 +1,4 @@
-// A lane edge's bound is true of the very reading that states it, or the reading is flagged: against the faces' own
-// formulas in `long double`.
+// Every lane edge reading keeps its stated bound or is flagged, against the edges' formulas in `long double`.
 
 #include <gtest/gtest.h>
 
@@ -19,10 +18,10 @@ using Wide = long double;
 
 constexpr double kWidth = 0.1;  // [m]
 
-/// A straight face, from `a` to `b`: one side of a stripe whose middle runs between these.
+/// A straight edge: one side of a marking whose centre line runs from `a` to `b`.
 struct Face {
   glm::dvec2 a, b;
-  Wide side = 0.0;  ///< [m] to the left of the line
+  Wide side = 0.0;  ///< [m] offset to the left of the centre line
 };
 
 void add_sides(std::vector<Face>& faces, glm::dvec2 a, glm::dvec2 b) {
@@ -34,8 +33,8 @@ void add_straight(world::World& world, std::vector<Face>& faces, glm::dvec2 a, g
   add_sides(faces, a, b);
 }
 
-/// [m] how far `read` is, along `bearing` from `p`, from a face that really runs there; infinite: none does. Which of
-/// several edges is read is the fit's choice, not an error.
+/// [m] Distance of `read`, along `bearing` from `p`, from the nearest true edge; infinite without one. The choice among
+/// several edges is not an error.
 Wide error_of(Wide read, const std::vector<Face>& faces, const Pose& p, Wide bearing) {
   Wide least = HUGE_VALL;
   for (const Face& f : faces) {
@@ -45,7 +44,7 @@ Wide error_of(Wide read, const std::vector<Face>& faces, const Pose& p, Wide bea
     const Wide ex = std::cos(bearing), ey = std::sin(bearing);
     const Wide t = (f.side - (tx * py - ty * px)) / (tx * ey - ty * ex);
     const Wide along = tx * (px + t * ex) + ty * (py + t * ey);
-    // Where a stripe turns, its outer face goes on for 0.1 mm.
+    // At the vertices of a marking, its outer edge continues for 0.1 mm.
     if (t > -1e-9L && along >= -1e-4L && along <= size + 1e-4L) least = std::min(least, std::abs(t - read));
   }
   return least;
@@ -53,11 +52,11 @@ Wide error_of(Wide read, const std::vector<Face>& faces, const Pose& p, Wide bea
 
 struct Seen {
   int read = 0, stated = 0, beyond = 0;
-  double worst = 0.0;  ///< of the bound
+  double worst = 0.0;  ///< as a fraction of the bound
   std::string example;
 };
 
-/// Reads once from all poses and judges what states a bound.
+/// Reads once from all poses and checks the readings that state a bound.
 Seen judge(world::World world, const std::vector<Face>& faces, const std::vector<Pose>& poses,
            const Settings& settings = {{"perpendicular", {0}}}) {
   for (const Pose& pose : poses) add_edge_eye(world, pose, settings);
@@ -83,7 +82,7 @@ Seen judge(world::World world, const std::vector<Face>& faces, const std::vector
   return seen;
 }
 
-/// Somewhere in a square round `middle`, looking anywhere.
+/// Random poses in a square round `middle`.
 std::vector<Pose> anywhere(int count, glm::dvec2 middle, double half, std::uint64_t seed) {
   Chance chance(seed);
   std::vector<Pose> poses;
@@ -130,7 +129,7 @@ TEST(LaneEdgeBounds, HoldIntoABendAndOutOfIt) {
   whole.line.insert(whole.line.begin(), {-1.0, 0.0});
   whole.line.push_back({0.68, 1.68});
   world.lane_markings = {whole};
-  // A bend is chords: within one of them, 2 mm long, an edge is straight.
+  // A bend is made of chords: within one of them, 2 mm long, an edge is straight.
   for (std::size_t i = 0; i + 1 < whole.line.size(); ++i) add_sides(faces, whole.line[i], whole.line[i + 1]);
   const Seen seen = judge(world, faces, anywhere(8000, {0.0, 0.5}, 1.0, 9));
   EXPECT_EQ(seen.beyond, 0) << seen.example;
@@ -140,7 +139,7 @@ TEST(LaneEdgeBounds, HoldIntoABendAndOutOfIt) {
   EXPECT_GT(ahead.read, 500);
 }
 
-/// Between two dashes the edge goes on; before the first and after the last it does not.
+/// Edges continue between two dashes, but not before the first and after the last.
 TEST(LaneEdgeBounds, HoldOnDashes) {
   world::World world;
   std::vector<Face> faces;
@@ -152,7 +151,7 @@ TEST(LaneEdgeBounds, HoldOnDashes) {
   EXPECT_GT(seen.stated, 300);
 }
 
-/// Wide fans near a corner see two edges at once; narrow ones of few rays see little of any.
+/// Wide scans near a corner see two edges at once; narrow ones with few rays see little of any.
 TEST(LaneEdgeBounds, HoldForAnyFan) {
   world::World world;
   std::vector<Face> faces;
@@ -167,7 +166,7 @@ TEST(LaneEdgeBounds, HoldForAnyFan) {
     }
 }
 
-/// The range of one ray is the reading: right on bends too, unless the ray grazes.
+/// The range of a single ray is the reading: valid on bends too, unless the ray grazes.
 TEST(LaneEdgeBounds, OfASingleRayIsThatOfItsRange) {
   world::World world;
   std::vector<Face> faces;
@@ -177,14 +176,14 @@ TEST(LaneEdgeBounds, OfASingleRayIsThatOfItsRange) {
   const Seen seen = judge(world, faces, anywhere(2000, {}, 0.9, 13), one);
   EXPECT_EQ(seen.beyond, 0) << seen.example;
   EXPECT_GT(seen.stated, 300);
-  add_edge_eye(world, {-0.9, 0.05 + 1e-5, 0.0, -1e-4}, one);  // meets the face 0.1 m ahead, at 1e-4 rad
+  add_edge_eye(world, {-0.9, 0.05 + 1e-5, 0.0, -1e-4}, one);  // meets the edge 0.1 m ahead, at 1e-4 rad
   EdgeRig rig(world);
   const auto& blocks = rig.tick({{0, 0}}, {world.movers[0].X_WM});
   ASSERT_EQ(blocks[0].quality.size(), 1u);
   EXPECT_EQ(blocks[0].quality[0], QualityFlag::grazing);
 }
 
-/// What one sensor at `pose` says of its reading.
+/// The quality flag of one sensor at `pose`.
 QualityFlag said(world::World world, const Pose& pose, const Settings& settings = {{"perpendicular", {0}}}) {
   add_edge_eye(world, pose, settings);
   EdgeRig rig(world);
@@ -208,7 +207,7 @@ TEST(LaneEdgeBounds, AFlagSaysWhy) {
   EXPECT_EQ(said(two, {0.0, -0.3, 0.0, 0.5 * M_PI}), QualityFlag::not_straight) << "another edge behind its end";
 }
 
-/// Noise is in the line, and pixels are: then no bound is stated, and sigma counts.
+/// With noise or pixels no bound is stated, and sigma applies.
 TEST(LaneEdgeBounds, AreNotStatedOfNoiseAndPixels) {
   world::World world;
   world.lane_markings.push_back(marking({-1.0, 0.0}, {1.0, 0.0}, kWidth));

@@ -1,4 +1,4 @@
-// The fit on the device: against the same steps on the host, to the bit, and fans whose points are made by hand.
+// The fit on the device: against the same steps on the host, to the bit, and on hand-made points.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 using sensors::EdgeReading;
 
-/// What the rays of one fan met.
+/// The hits of one scan.
 struct Shot {
   std::vector<double> ranges;
   std::vector<std::uint32_t> tags;
@@ -26,7 +26,7 @@ struct Shot {
 
 const std::vector<double> kGrains{0.0, 0.005, 0.02};
 
-/// Fans with results made by hand: no world, no rays.
+/// Scans with hand-made results: no world, no rays.
 class FitRig {
  public:
   explicit FitRig(const std::vector<Settings>& settings)
@@ -113,7 +113,7 @@ class FitRig {
   sensors::EdgeFit fit_;
 };
 
-/// Every beam met the line x = `x` of the sensor's frame.
+/// Every beam meets the line x = `x` of the sensor frame.
 Shot wall_ahead(const world::Laser& fan, double x) {
   Shot shot;
   for (std::uint32_t k = 0; k < fan.samples; ++k) {
@@ -123,7 +123,7 @@ Shot wall_ahead(const world::Laser& fan, double x) {
   return shot;
 }
 
-/// Nothing was met.
+/// No hits.
 Shot nothing(const world::Laser& fan) {
   return {std::vector<double>(fan.samples, fan.range_max), std::vector<std::uint32_t>(fan.samples, SF_NO_HIT)};
 }
@@ -137,7 +137,7 @@ const Settings kAhead{{"perpendicular", {0}}};
 
 world::Laser fan_of(const Settings& settings) { return sensors::lane_edge_of(edge_sensor(settings), 0, 0).fan; }
 
-/// No edge: nothing to divide by, nothing to see.
+/// No edge, with defined values in all columns.
 void expect_none(const EdgeReading& r, double points) {
   EXPECT_TRUE(std::isnan(r.distance)) << r.distance;
   EXPECT_TRUE(std::isnan(r.sigma));
@@ -166,7 +166,7 @@ TEST(LaneEdgeFit, TwoPointsAreALine) {
   EXPECT_LT(r.residual, 1e-15);
 }
 
-/// Equal points make no line, but where they are the sensor itself, every line through them is at distance 0.
+/// Equal points define no line; at the sensor itself, every line through them is at distance 0.
 TEST(LaneEdgeFit, EqualPoints) {
   Shot shot = nothing(fan_of(kAhead));
   shot.ranges.assign(shot.ranges.size(), 0.0);
@@ -177,13 +177,13 @@ TEST(LaneEdgeFit, EqualPoints) {
   EXPECT_LT(r.sigma, 1e-8);
 }
 
-/// Beams a millionth of a degree apart: points within a 1e-8 of their range are one point.
+/// Beams a millionth of a degree apart: points within 1e-8 of their range count as one point.
 TEST(LaneEdgeFit, PointsTooCloseForALine) {
   const Settings narrow{{"perpendicular", {0}}, {"fov", {1e-7}}};
   expect_none(read_one(narrow, wall_ahead(fan_of(narrow), 0.5)), 61);
 }
 
-/// A line along one ray goes through the sensor: the distance is 0, whatever that ray's bearing.
+/// A line along one ray passes through the sensor: the distance is 0, for any bearing of the ray.
 TEST(LaneEdgeFit, PointsOnOneRay) {
   const Settings narrow{{"perpendicular", {90}}, {"fov", {1e-9}}};
   Shot shot = nothing(fan_of(narrow));
@@ -193,7 +193,7 @@ TEST(LaneEdgeFit, PointsOnOneRay) {
   }
   const EdgeReading r = read_one(narrow, shot);
   EXPECT_NEAR(r.distance, 0.0, 1e-9);
-  // And along that ray it is parallel: nowhere.
+  // Along that ray it is parallel: no distance.
   const Settings along{{"perpendicular", {0}}, {"fov", {1e-9}}};
   expect_none(read_one(along, shot), 61);
 }
@@ -225,13 +225,13 @@ TEST(LaneEdgeFit, EndFacesAndMoversAreNoPoints) {
   EXPECT_NEAR(r.distance, 0.5, 1e-12);
 }
 
-/// A line behind the sensor, along the perpendicular: nothing on the side that is asked for.
+/// A line behind the sensor along the perpendicular is on the wrong side.
 TEST(LaneEdgeFit, AnEdgeOnTheOtherSideIsOutOfSight) {
   const Settings back{{"perpendicular", {180}}};
   expect_none(read_one(back, wall_ahead(fan_of(back), 0.5)), 61);
 }
 
-/// Extrapolated to ten times the largest range and no farther.
+/// Extrapolation reaches ten times the largest range and no farther.
 TEST(LaneEdgeFit, FartherThanTenTimesTheRangeIsOutOfSight) {
   for (const double degrees : {86.0, 88.0}) {
     const Settings askew{{"perpendicular", {degrees}}};
@@ -244,7 +244,7 @@ TEST(LaneEdgeFit, FartherThanTenTimesTheRangeIsOutOfSight) {
   }
 }
 
-/// A few points anywhere in front of a line of many do not carry it off.
+/// A few points in front of a line of many do not change it.
 TEST(LaneEdgeFit, FewOutliersDoNotCount) {
   for (const std::size_t outliers : {1u, 5u, 8u}) {
     Shot shot = wall_ahead(fan_of(kAhead), 0.5);
@@ -273,7 +273,7 @@ TEST(LaneEdgeFit, ASingleRayIsItsOwnReading) {
     Shot shot = nothing(fan_of(single));
     expect_none(read_one(single, shot), 0);
     shot.ranges[0] = 0.25;
-    shot.tags[0] = SF_TAG_END;  // paint is paint
+    shot.tags[0] = SF_TAG_END;  // ends of markings count for a single ray
     EdgeReading r = read_one(single, shot);
     EXPECT_NEAR(r.distance, 0.25, 1e-13);
     EXPECT_EQ(r.points, 1);
@@ -282,7 +282,7 @@ TEST(LaneEdgeFit, ASingleRayIsItsOwnReading) {
     shot.tags[0] = SF_TAG_MOVER;
     expect_none(read_one(single, shot), 0);
     if (samples < 2.0) continue;
-    // The second ray says nothing.
+    // The second ray is ignored.
     shot = nothing(fan_of(single));
     shot.ranges[1] = 0.25;
     shot.tags[1] = 0;
@@ -290,7 +290,7 @@ TEST(LaneEdgeFit, ASingleRayIsItsOwnReading) {
   }
 }
 
-/// Anything at all: edges, corners, arcs, noise, nothing, in fans of any size.
+/// Random input: edges, corners, arcs, noise, no hits, in scans of any size.
 Shot anything(const world::Laser& fan, Chance& chance) {
   Shot shot = nothing(fan);
   const std::uint32_t what = chance.below(5);

@@ -1,6 +1,6 @@
 #pragma once
-// The lane edge sensor's fit on the host, operation by operation as shaders/lib/edge_fit.glsl has it: what the device
-// must agree with to the bit, and what benchmarks run as plain C++.
+// The lane edge sensor's fit on the host, with the same operations in the same order as shaders/lib/edge_fit.glsl: the
+// bit-exact reference of the device, and the plain C++ of benchmarks.
 
 #include <algorithm>
 #include <bit>
@@ -19,15 +19,15 @@ using sensors::EdgeReading;
 using sensors::EdgeRow;
 using namespace sensors::fit;
 
-/// Points of one fan, beam by beam; places of the device's lanes without a beam are left out.
+/// Points of one scan, beam by beam; unused places of the device's lanes are left out.
 struct Points {
   double w[sensors::kMostEdgeSamples], x[sensors::kMostEdgeSamples], y[sensors::kMostEdgeSamples];
   std::uint32_t count = 0;                 ///< beams
-  std::uint32_t lane = SF_BEAMS_PER_LANE;  ///< beams a lane
+  std::uint32_t lane = SF_BEAMS_PER_LANE;  ///< beams per lane
   std::uint32_t grain = 0;
 };
 
-/// @param directions cosine and sine of each beam. @param normals one per beam; empty where nothing is disturbed.
+/// @param directions cosine and sine of each beam  @param normals one per beam; empty without noise
 static inline void make_points(const EdgeRow& row, std::span<const double> ranges, std::span<const std::uint32_t> tags,
                                std::span<const double> directions, std::span<const float> normals, Points& p) {
   p.count = row.beams;
@@ -108,7 +108,7 @@ static inline Candidate elect(const Points& p, double source) {
     c.allowed = 0.625 * source + 0.015625 * wide;
     c.votes = 0.0F;
     const Hypothesis paper = hypothesis_of(c.line, c.allowed);
-    // Of a wide fan every other lane votes.
+    // In wide scans every other lane votes.
     for (std::uint32_t i = 0; i < p.count; ++i) {
       if (lanes >= 12 && i / p.lane % 2 == 1) continue;
       c.votes =

@@ -1,4 +1,4 @@
-// Noise of lane edge sensors: a distribution that sigma describes, and a function of names alone.
+// Noise of lane edge sensors: a distribution described by sigma, and a pure function of its keys.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using sensors::EdgeReading;
 
 constexpr double kDegrees = M_PI / 180.0;
 
-/// `count` sensors before one straight edge, 0.4 m ahead, seen askew by up to 40 degrees.
+/// `count` sensors before one straight edge, 0.4 m ahead, at angles of up to 40 degrees.
 world::World noisy_world(std::size_t count, const std::vector<double>& noise) {
   world::World world;
   world.lane_markings.push_back(marking({30.0, 0.45}, {-30.0, 0.45}, 0.1));
@@ -32,7 +32,7 @@ struct Spread {
   std::size_t count = 0;
 };
 
-/// Of errors in units of the sensors' own sigmas.
+/// Statistics of errors in units of the sensors' own sigmas.
 Spread spread_of(const world::World& world, int rounds) {
   EdgeRig rig(world, 5);
   std::vector<double> z;
@@ -60,9 +60,9 @@ Spread spread_of(const world::World& world, int rounds) {
   return s;
 }
 
-/// Constant, proportional and angular noise alone, and together: sigma is the error's standard deviation within a
-/// third (it is estimated from 61 points, and a bend that is not there is estimated with it, so it is on the safe
-/// side), and errors have no bias.
+/// Constant, proportional and angular noise separately and together: sigma is the error's standard deviation within a
+/// third, and errors have no bias. Sigma is estimated from 61 points, together with a curvature that is 0 here, so that
+/// it is conservative.
 TEST(LaneEdgeNoise, SigmaIsTheErrorsDeviation) {
   for (const std::vector<double>& noise :
        {std::vector{0.005, 0.0, 0.0}, {0.0, 0.01, 0.0}, {0.0, 0.0, 0.3}, {0.003, 0.005, 0.2}}) {
@@ -78,7 +78,7 @@ TEST(LaneEdgeNoise, SigmaIsTheErrorsDeviation) {
   }
 }
 
-/// A single ray's noise is the normal distribution that the world asks for.
+/// The noise of a single ray is the normal distribution of the world file.
 TEST(LaneEdgeNoise, ASingleRayIsNormal) {
   world::World world = noisy_world(500, {0.004, 0.005, 0.0});
   for (world::Mover& mover : world.movers) {
@@ -87,7 +87,7 @@ TEST(LaneEdgeNoise, ASingleRayIsNormal) {
   }
   const Spread s = spread_of(world, 6);
   EXPECT_NEAR(s.deviation, 1.0, 0.05);
-  // Kolmogorov and Smirnov's statistic of 3000 draws exceeds 0.03 once in a hundred times.
+  // The Kolmogorov-Smirnov statistic of 3000 draws exceeds 0.03 once in a hundred times.
   EXPECT_LT(s.kolmogorov, 0.03);
 }
 
@@ -106,7 +106,7 @@ bool same(const EdgeReading& p, const EdgeReading& q) {
          bits(p.sigma) == bits(q.sigma);
 }
 
-/// Threads, company and order change no bit; seed and sequence do.
+/// Threads, other sensors and order change no bit; seed and sequence do.
 TEST(LaneEdgeNoise, IsAFunctionOfNames) {
   const world::World exact = noisy_world(150, {0.003, 0.005, 0.2});
   world::World pixels = exact;
@@ -134,7 +134,7 @@ TEST(LaneEdgeNoise, IsAFunctionOfNames) {
   }
 }
 
-/// Nobody due, then all, then one: tables follow.
+/// No sensor due, then all, then one: the tables follow.
 TEST(LaneEdgeNoise, WhoeverIsDue) {
   const world::World world = noisy_world(70, {0.0, 0.0, 0.0});
   EdgeRig rig(world);
@@ -147,7 +147,7 @@ TEST(LaneEdgeNoise, WhoeverIsDue) {
   EXPECT_TRUE(same(rig.read_some({{69, 0}}, poses)[0], all[69]));
 }
 
-/// The validation layer has nothing to say, of both ways to see paint.
+/// No messages of the validation layer, with exact markings and with the raster.
 TEST(LaneEdgeNoise, TheValidationLayerIsSilent) {
   setenv("SENSORFARM_VALIDATE", "1", 1);
   {

@@ -1,4 +1,4 @@
-// The lane edge sensor on paint in pixels: the walk ray by ray, the promised bound, and whether sigma is honest.
+// The lane edge sensor on markings in pixels: the walk ray by ray, the stated bound, and the calibration of sigma.
 
 #include <gtest/gtest.h>
 
@@ -29,10 +29,10 @@ constexpr double kPixels[] = {0.002, 0.005, 0.01, 0.02};
 
 struct Entry {
   double range = 1e300;   ///< [m]
-  bool doubtful = false;  ///< some painted cell's corner is that near to the ray
+  bool doubtful = false;  ///< a painted cell's corner is very close to the ray
 };
 
-/// Where origin + t d enters the box of one cell, corner by corner in long double.
+/// Range at which origin + t d enters the box of one cell, corner by corner in long double.
 void meet_cell(glm::dvec2 low, double cell, glm::dvec2 o, glm::dvec2 d, Entry& best) {
   const long double x0 = (static_cast<long double>(low.x) - o.x) / d.x;
   const long double x1 = (static_cast<long double>(low.x) + cell - o.x) / d.x;
@@ -61,7 +61,7 @@ TEST(LaneEdgeRaster, EveryRayEntersTheFirstPaintedCell) {
     std::vector<Pose> poses;
     for (int i = 0; i < 400; ++i) {
       const glm::dvec2 p = chance.in_square(1.2);
-      // Every eighth along an axis, where a ray runs on the pixels' own lines.
+      // Every eighth along an axis, where a ray runs along pixel borders.
       const double yaw = i % 8 == 0 ? 0.5 * M_PI * (i / 8 % 4) : chance.between(-M_PI, M_PI);
       add_edge_eye(world, {p.x, p.y, 0.0, yaw}, {{"samples", {1}}});
       poses.push_back({p.x, p.y, 0.0, yaw});
@@ -92,7 +92,7 @@ TEST(LaneEdgeRaster, EveryRayEntersTheFirstPaintedCell) {
   }
 }
 
-/// From paint: the way off it.
+/// Inside paint a ray reads the distance to its border.
 TEST(LaneEdgeRaster, OnPaintARayReadsTheWayOff) {
   world::World world;
   world.road_resolution = 0.01;
@@ -104,7 +104,7 @@ TEST(LaneEdgeRaster, OnPaintARayReadsTheWayOff) {
   EXPECT_TRUE(std::isnan(readings[1].distance)) << "0.997 m is near the maximum";
 }
 
-/// Nothing to see where no paint is near, and no way to lose oneself.
+/// Far from all paint there is no edge, and the walk ends.
 TEST(LaneEdgeRaster, FarFromAllPaint) {
   world::World world;
   world.road_resolution = 0.01;
@@ -116,7 +116,7 @@ TEST(LaneEdgeRaster, FarFromAllPaint) {
   }
 }
 
-/// Outlines and movers are seen beside the pixels: the nearer wins.
+/// Outlines and movers count beside the pixels; the nearest surface wins.
 TEST(LaneEdgeRaster, WallsAndMoversBesidePixels) {
   world::World world;
   world.road_resolution = 0.005;
@@ -160,8 +160,7 @@ struct Outcome {
   double worst = 0.0, worst_ratio = 0.0;
 };
 
-/// `beyond`: of those that rest on ten points or more, farther off than 0.75 h + 1 mm. `surprised`: by more than two
-/// sigmas.
+/// `beyond`: readings of ten points or more with an error above 0.75 h + 1 mm. `surprised`: errors above two sigmas.
 Outcome judge(const char* name, const Trial& trial) {
   const double h = trial.world.road_resolution;
   const auto readings = read_edges(trial.world);
@@ -192,7 +191,7 @@ Outcome judge(const char* name, const Trial& trial) {
   return o;
 }
 
-/// Sensors round straight stripes that lie at every angle to the pixels; `paint` and `gap` [m] of dashes, or solid.
+/// Sensors round straight markings at every angle to the pixels; `paint` and `gap` [m] of dashes, or solid.
 Trial straight(double h, std::size_t count, double from_degrees, double to_degrees, double nearest, double farthest,
                double paint = 0.0, double gap = 0.0) {
   Trial trial;
@@ -218,7 +217,7 @@ Trial straight(double h, std::size_t count, double from_degrees, double to_degre
   return trial;
 }
 
-/// The promise: solid paint within 45 degrees, at least ten points.
+/// The documented bound: solid paint within 45 degrees, at least ten points.
 TEST(LaneEdgeRaster, SolidPaintWithin45DegreesKeepsItsBound) {
   for (const double h : kPixels) {
     const Outcome o = judge("solid, to 45 degrees", straight(h, 6000, 0.0, 45.0, 0.04, 0.65));
@@ -230,7 +229,7 @@ TEST(LaneEdgeRaster, SolidPaintWithin45DegreesKeepsItsBound) {
   }
 }
 
-/// Elsewhere sigma is what is promised: 95 % within two of it, none absurd.
+/// Elsewhere sigma is documented: 95 % within two sigmas, no outlier far beyond.
 TEST(LaneEdgeRaster, ElsewhereSigmaIsHonest) {
   for (const double h : kPixels) {
     for (const Outcome& o : {judge("solid, 45 to 60", straight(h, 1000, 45.0, 60.0, 0.04, 0.4)),
@@ -286,7 +285,7 @@ TEST(LaneEdgeRaster, ArcsAreOffByTheirBendAndSaySo) {
 
 // --- A bitmap as a road -------------------------------------------------------------------------------------------
 
-/// The thesis' way: a picture as a Stage model, whose outlines the sensor meets. The same pixels, the same readings.
+/// As in the thesis, a bitmap as a Stage model, with outlines as edges: equal pixels give equal readings.
 TEST(LaneEdgeRaster, AStageBitmapReadsAsTheRasterDoes) {
   constexpr double kPixel = 1.0 / 128.0;
   Trial trial = straight(kPixel, 10, 0.0, 30.0, 0.05, 0.4);

@@ -1,4 +1,4 @@
-// The lane edge sensor on paint as it is: definitions one by one, exact geometry, and what must not matter.
+// The lane edge sensor on exact markings: definitions one by one, exact geometry, and invariances.
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,7 @@ using sensors::EdgeReading;
 constexpr double kDegrees = M_PI / 180.0;
 constexpr double kWidth = 0.1;
 
-/// Distance from `X_WS` along `bearing` [rad, sensor frame] to the left face of a straight stripe, from its formula
-/// alone.
+/// Distance from `X_WS` along `bearing` [rad, sensor frame] to the left edge of a straight marking, by its formula.
 long double face_distance(const world::LaneMarking& s, const Pose& X_WS, double bearing) {
   const long double tx = static_cast<long double>(s.line[1].x) - s.line[0].x;
   const long double ty = static_cast<long double>(s.line[1].y) - s.line[0].y;
@@ -33,11 +32,11 @@ long double face_distance(const world::LaneMarking& s, const Pose& X_WS, double 
   return -off / (nx * std::cos(a) + ny * std::sin(a));
 }
 
-/// A stripe along +x, its near face `d` metres ahead of a sensor at the origin that sees it askew by `degrees`.
+/// A marking along +x with its near edge `d` [m] ahead of a sensor at the origin, at an angle of `degrees`.
 EdgeReading askew(double d, double degrees, const Settings& settings = {{"perpendicular", {0}}}) {
   world::World world;
   world.lane_markings.push_back(marking({20.0, 0.0}, {-20.0, 0.0}, kWidth));
-  // The stripe's left side is -y.
+  // The marking's left side is -y.
   add_edge_eye(world, {0.0, -d - 0.5 * kWidth, 0.0, (90.0 + degrees) * kDegrees}, settings);
   return read_edges(world)[0];
 }
@@ -53,14 +52,15 @@ TEST(LaneEdge, ReadsTheDistanceToTheFaceAtAnyAngle) {
   }
 }
 
-/// A robot that drives across the edge: its side never meets the line.
+/// A robot that drives across the edge: its perpendicular never meets the line.
 TEST(LaneEdge, AnEdgeParallelToThePerpendicularIsOutOfSight) {
   const EdgeReading r = askew(0.25, 0.0, {{"perpendicular", {90}}});
   EXPECT_TRUE(std::isnan(r.distance));
   EXPECT_EQ(r.points, 61);
 }
 
-/// 1 nm is what touches a surface; farther inside, a sensor stands on paint and reads the way off it.
+/// Within 1 nm of the edge a sensor touches it; farther inside, it stands on paint and reads the distance to its
+/// border.
 TEST(LaneEdge, OnTheEdgeItselfAndOnPaint) {
   EXPECT_NEAR(askew(0.0, 10.0).distance, 0.0, 1e-9);
   EXPECT_NEAR(askew(1e-6, 10.0).distance, 1e-6 / std::cos(10.0 * kDegrees), 1e-12);
@@ -91,7 +91,7 @@ TEST(LaneEdge, TheEndOfADashIsNoEdge) {
   EXPECT_NEAR(readings[1].distance, 0.2, 1e-12);
 }
 
-/// A gap wider than the fan, one that is not, and one seen from far enough.
+/// A gap wider than the field of view, a narrower one, and one seen from far enough.
 TEST(LaneEdge, DashesAreOneEdge) {
   world::World world;
   add_dashes(world, {0.0, 0.0}, {20.0, 0.0}, 0.05, 0.3, 0.3);
@@ -105,7 +105,7 @@ TEST(LaneEdge, DashesAreOneEdge) {
   EXPECT_LT(readings[2].points, 30);
 }
 
-/// The thesis: samples 2, of which the first ray is the reading, not its projection.
+/// As in the thesis: of two samples the first ray's range is the reading, not its projection.
 TEST(LaneEdge, ASingleRayReadsItsRange) {
   EXPECT_NEAR(askew(0.25, 0.0, {{"samples", {2}}, {"fov", {60}}}).distance, 0.25 / std::cos(30.0 * kDegrees), 1e-12);
   EXPECT_NEAR(askew(0.25, 0.0, {{"samples", {1}}}).distance, 0.25, 1e-12);
@@ -113,8 +113,8 @@ TEST(LaneEdge, ASingleRayReadsItsRange) {
   EXPECT_TRUE(std::isnan(askew(1.5, 0.0, {{"samples", {1}}}).distance));
 }
 
-/// The thesis' robot looks along -y with its sensor along its own +x, which is its left; ours along +x with the sensor
-/// along +y. Both see the same edge, by default perpendicular to the robot.
+/// The thesis' robot faces -y and its sensor its own +x, which is its left; this project's faces +x and its sensor +y.
+/// Both see the same edge, by default perpendicular to the robot.
 TEST(LaneEdge, TheThesisFrameAndOurs) {
   world::World world;
   world.lane_markings.push_back(marking({5.0, 0.5}, {-5.0, 0.5}, kWidth));
@@ -138,7 +138,7 @@ TEST(LaneEdge, TheThesisFrameAndOurs) {
 
 TEST(LaneEdge, ThePerpendicularIsTheRobotsAxisNearestToTheView) {
   struct Case {
-    double yaw, expected;  ///< [deg] where the sensor looks, where the distance is meant, in the robot's frame
+    double yaw, expected;  ///< [deg] yaw of the sensor, and direction of the distance, in the robot's frame
   };
   for (const Case c : {Case{0, 0}, Case{44, 0}, Case{45, 90}, Case{46, 90}, Case{90, 90}, Case{135, 90}, Case{136, 180},
                        Case{180, 180}, Case{-135, -90}, Case{-90, -90}, Case{-45, -90}, Case{-44, 0}}) {
@@ -183,7 +183,7 @@ TEST(LaneEdge, DefaultsAreThoseOfTheThesis) {
   EXPECT_EQ(edge.row.limit, 10.0);
 }
 
-/// Movers hide paint and are none; what only the sensor's own robot carries hides nothing.
+/// Movers hide markings and are no edges; the sensor's own robot hides nothing.
 TEST(LaneEdge, AMoverInTheWayIsNoEdge) {
   world::World world;
   world.lane_markings.push_back(marking({5.0, 0.0}, {-5.0, 0.0}, kWidth));
@@ -199,7 +199,7 @@ TEST(LaneEdge, AMoverInTheWayIsNoEdge) {
   EXPECT_TRUE(std::isnan(hidden.distance) || hidden.points < 20);
 }
 
-/// Static outlines are edges as well: the thesis' roads were such. One that asks not to be is not.
+/// Static outlines are edges as well, as in the thesis' roads, unless the model disables it.
 TEST(LaneEdge, WallsAtItsHeightAreEdges) {
   world::World world;
   scenes::add_outline(world, {{0.4, -2}, {0.5, -2}, {0.5, 2}, {0.4, 2}}, "kerb");
@@ -216,7 +216,7 @@ TEST(LaneEdge, WallsAtItsHeightAreEdges) {
   EXPECT_TRUE(std::isnan(read_edges(world)[0].distance));
 }
 
-/// Straight stripes at any angle and place, robots round them; `offset` moves all of it.
+/// Straight markings at any angle and position, with robots round them; `offset` moves everything.
 struct Scene {
   world::World world;
   std::vector<long double> truth;
@@ -259,7 +259,7 @@ Errors errors(const Scene& scene) {
   return e;
 }
 
-/// 1 mm is promised; rounding is what there is.
+/// The documented bound is 1 mm; the actual error is rounding.
 TEST(LaneEdge, ExactPaintAgreesWithItsFormula) {
   const Errors e = errors(straight_scene(4000, 85.0, 3));
   EXPECT_GE(e.seen, 3990u);
@@ -267,7 +267,7 @@ TEST(LaneEdge, ExactPaintAgreesWithItsFormula) {
   RecordProperty("worst_nm", std::to_string(e.worst * 1e9));
 }
 
-/// World coordinates are doubles: 1e-11 m at 100 km, 2e-9 m at 10 000 km, seen through points half a metre apart.
+/// World coordinates are doubles: 1e-11 m at 100 km, 2e-9 m at 10 000 km, magnified by points half a metre apart.
 TEST(LaneEdge, FarFromTheOrigin) {
   const Errors near = errors(straight_scene(1000, 45.0, 5, {1e5, -1e5}));
   EXPECT_EQ(near.seen, 1000u);
@@ -281,7 +281,7 @@ TEST(LaneEdge, FarFromTheOrigin) {
 
 glm::dvec2 mirrored(glm::dvec2 p) { return {p.x, -p.y}; }
 
-/// Turned, moved and mirrored, with a robot added that hides nothing: the same reading.
+/// Rotated, translated and mirrored, with a robot added that hides nothing: the reading is the same.
 TEST(LaneEdge, WhatMustNotMatter) {
   world::World world;
   Chance chance(8);
@@ -314,7 +314,7 @@ TEST(LaneEdge, WhatMustNotMatter) {
     for (std::size_t i = 0; i < before.size(); ++i) {
       const bool none = std::isnan(before[i].distance);
       seen += none ? 0 : 1;
-      // A ray on a corner may go either way, and take a point with it.
+      // A ray on a corner may hit or miss it, and add or remove a point.
       if (before[i].points != after[i].points || none != std::isnan(after[i].distance)) {
         ++differ;
         continue;
@@ -327,7 +327,7 @@ TEST(LaneEdge, WhatMustNotMatter) {
   EXPECT_LE(differ, 3u);
 }
 
-/// Two lanes paint the edge that they share: seen once, and the same.
+/// Two lanes paint their shared edge: it counts once.
 TEST(LaneEdge, PaintOnPaintIsOnePaint) {
   world::World world;
   world.lane_markings.push_back(marking({-2, 0}, {2, 0}));
@@ -340,7 +340,7 @@ TEST(LaneEdge, PaintOnPaintIsOnePaint) {
   EXPECT_EQ(once.points, twice.points);
 }
 
-/// An arc has no line: the reading is off by the bend, and its sigma says so.
+/// An arc is not a line: the curvature shifts the reading, and sigma covers it.
 TEST(LaneEdge, AnArcIsOffByItsBendAndSaysSo) {
   world::World world;
   std::vector<double> truth;

@@ -1,5 +1,5 @@
 #pragma once
-// Lane edge sensors on roads made by hand, read once from where they stand.
+// Lane edge sensors on hand-made roads, read once at their poses.
 
 #include <string>
 #include <utility>
@@ -11,26 +11,26 @@
 
 namespace sf::trial {
 
-/// Settings of a sensor as a world file would have them: metres and degrees.
+/// Settings of a sensor as in a world file: metres and degrees.
 using Settings = std::vector<std::pair<std::string, std::vector<double>>>;
 
 /// A sensor of type `laneedge`.
 world::Sensor edge_sensor(const Settings& settings, const base::Pose& X_MS = {});
 
-/// Adds a robot without a body that carries one at its origin, looking along the robot's +x. `perpendicular` follows:
-/// 0 degrees unless the settings say otherwise.
+/// Adds a robot without a body with a sensor at its origin, facing the robot's +x. `perpendicular` defaults to 0
+/// degrees.
 std::uint32_t add_edge_eye(world::World& world, const base::Pose& X_WM, Settings settings = {});
 
-/// A straight stripe.
+/// A straight marking.
 world::LaneMarking marking(glm::dvec2 from, glm::dvec2 to, double width = 0.1);
 
-/// Dashes along a straight line: `paint` metres of it, then `gap` without, from `from` on.
+/// Dashes along a straight line: `paint` [m] of it, then `gap` [m] without, starting at `from`.
 void add_dashes(world::World& world, glm::dvec2 from, glm::dvec2 to, double width, double paint, double gap);
 
-/// A stripe along an arc about `centre`, in chords that stay within `sagitta` of it [m].
+/// A marking along an arc about `centre`, in chords that stay within `sagitta` [m] of it.
 world::LaneMarking arc(glm::dvec2 centre, double radius, double from, double to, double width, double sagitta = 1e-6);
 
-/// The instruments of one world, driven without a farm.
+/// The sensor backend of one world, driven without a farm.
 class EdgeRig {
  public:
   explicit EdgeRig(const world::World& world, std::uint64_t seed = 0, unsigned threads = 0, bool noise = true,
@@ -38,12 +38,12 @@ class EdgeRig {
   ~EdgeRig();
   EdgeRig(const EdgeRig&) = delete;
   EdgeRig& operator=(const EdgeRig&) = delete;
-  /// One reading of each sensor, in order of rows; poses are those of the load unless given.
+  /// One reading of each sensor, in order of rows; poses default to those at load.
   std::vector<sensors::EdgeReading> read(std::uint64_t sequence = 0, std::vector<base::Pose> poses = {});
-  /// Of the rows given.
+  /// Readings of the given rows.
   std::vector<sensors::EdgeReading> read_some(const std::vector<sensors::DueSample>& due,
                                               const std::vector<base::Pose>& poses);
-  /// The same without a copy, for counting allocations: spans live until the next call.
+  /// The same without a copy, for counting allocations: spans are valid until the next call.
   const std::vector<base::ReadingBlock>& tick(const std::vector<sensors::DueSample>& due,
                                               const std::vector<base::Pose>& poses);
 

@@ -1,4 +1,4 @@
-// No range is off by more than its reading states: a million random beams in each of ten worlds, in 64 and in 32 bits,
+// No range exceeds the bound of its reading: a million random beams in each of ten worlds, in 64 and in 32 bits,
 // against `long double`.
 
 #include <fmt/format.h>
@@ -27,24 +27,24 @@ constexpr int kTicks = 28;
 #endif
 constexpr std::uint32_t kRobots = 100;  // of 361 beams
 
-/// A world and where in it robots are put.
+/// A world with the square in which robots are placed.
 struct Scene {
   std::string name;
   world::World world;
   glm::dvec2 middle;
-  double half = 1.0;  ///< [m] of the square that they are drawn from
+  double half = 1.0;  ///< [m] half the side of that square
 };
 
 struct Seen {
   std::size_t beams = 0, flagged = 0, beyond = 0;
-  double worst = 0.0;        ///< [m] of beams that are not flagged
-  double worst_share = 0.0;  ///< of the bound
+  double worst = 0.0;        ///< [m] of beams without a flag
+  double worst_share = 0.0;  ///< as a fraction of the bound
   double flagged_worst = 0.0;
   double bound = 0.0;
   std::string example;
 };
 
-/// Segments by their ends, relative to the sensor: what needs no division is not divided.
+/// Segments by their end points, relative to the sensor, with as few divisions as possible.
 Wide cast(std::span<const world::Segment> surfaces, glm::dvec2 o, Wide direction, Wide range_max) {
   const Wide dx = std::cos(direction), dy = std::sin(direction);
   Wide best = range_max;
@@ -129,7 +129,7 @@ Scene with_robots(std::string name, world::World world, double half, double rang
   return {std::move(name), std::move(world), middle, half};
 }
 
-/// Without bodies: what is there is walls alone.
+/// Robots without bodies: only walls are visible.
 Scene with_eyes(std::string name, world::World world, double half, double range, glm::dvec2 middle = {}) {
   for (std::uint32_t i = 0; i < kRobots; ++i)
     add_eye(world, {middle.x, middle.y, 0.0, 0.0}, eye(361, 2.0 * M_PI, range));
@@ -150,7 +150,7 @@ world::World corridor() {
   return world;
 }
 
-/// Triangles `length` long and a thousandth of that wide, at any angle.
+/// Triangles `length` [m] long and a thousandth as wide, at any angle.
 world::World slivers(double length, double half) {
   world::World world;
   Chance chance(5);
@@ -176,14 +176,14 @@ world::World forest(double half) {
   return world;
 }
 
-/// Thin walls across each other, which belong to no solid.
+/// Thin walls that cross each other and belong to no solid.
 world::World crossing(double half) {
   world::World world = slivers(1.0, half);
   for (world::Segment& wall : world.walls) wall.solid_left = false;
   return world;
 }
 
-/// Everything a ten thousandth as large.
+/// Everything scaled by `by`.
 world::World shrunk(world::World world, double by) {
   for (world::Segment& wall : world.walls) wall.a = by * wall.a, wall.b = by * wall.b;
   return world;

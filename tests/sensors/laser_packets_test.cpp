@@ -19,7 +19,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::uint8_t kPlain = 1;
 constexpr std::uint8_t kSecond = 65;
 constexpr std::size_t kHeader = 64;     ///< [byte] before every payload on the wire
-constexpr std::size_t kSignature = 80;  ///< [byte] of room behind it
+constexpr std::size_t kSignature = 80;  ///< [byte] behind it
 
 SensorSpec laser(std::uint32_t samples, double range_max) {
   SensorSpec row;
@@ -45,7 +45,7 @@ base::Bytes patched(base::Bytes bytes, std::size_t offset, T value) {
   return bytes;
 }
 
-/// What a receiver reads where the farm had `metres`.
+/// The value that a receiver decodes for `metres`.
 double through_wire(double metres, double range_max) {
   const base::Bytes bytes = encoded({metres}, range_max);
   LaserPart scan;
@@ -67,14 +67,14 @@ TEST(LaserPackets, PayloadsAreTheDocumentedOnes) {
 TEST(LaserPackets, PlainRangesRoundAndSaturate) {
   const auto plain = [](double metres) { return through_wire(metres, 8.0); };
   EXPECT_EQ(plain(0.0), 0.0);
-  EXPECT_EQ(plain(0.000499), 0.0);  // just below half a count
-  EXPECT_EQ(plain(0.0005), 0.001);  // half a count rounds up
+  EXPECT_EQ(plain(0.000499), 0.0);  // just below half a unit
+  EXPECT_EQ(plain(0.0005), 0.001);  // half a unit rounds up
   EXPECT_EQ(plain(1.2344), 1.234);
-  EXPECT_EQ(plain(65.534), 65.534);   // last count but one
-  EXPECT_EQ(plain(65.535), 65.535);   // last count
+  EXPECT_EQ(plain(65.534), 65.534);   // last unit but one
+  EXPECT_EQ(plain(65.535), 65.535);   // last unit
   EXPECT_EQ(plain(65.536), 65.535);   // one past it: u16 would wrap to 0
-  EXPECT_EQ(plain(131.072), 65.535);  // twice round
-  EXPECT_EQ(plain(1e300), 65.535);    // past any integer
+  EXPECT_EQ(plain(131.072), 65.535);  // would wrap twice
+  EXPECT_EQ(plain(1e300), 65.535);    // beyond any integer
   EXPECT_EQ(plain(kInf), 65.535);     // no return
   EXPECT_EQ(plain(-0.001), 0.0);      // noise below zero
   EXPECT_EQ(plain(-1e300), 0.0);
@@ -87,11 +87,11 @@ TEST(LaserPackets, ExtendedRangesRoundAndSaturate) {
   EXPECT_EQ(extended(0.00004), 0.0);
   EXPECT_EQ(extended(0.00006), 0.0001);
   EXPECT_EQ(extended(65.5361), 65.5361);          // past the plain form
-  EXPECT_EQ(extended(429496.7294), 429496.7294);  // last count
+  EXPECT_EQ(extended(429496.7294), 429496.7294);  // last unit
   EXPECT_EQ(extended(429496.7295), 429496.7294);  // the reserved word is never a range
   EXPECT_EQ(extended(429496.7296), 429496.7294);  // u32 would wrap to 0
   EXPECT_EQ(extended(1e300), 429496.7294);
-  EXPECT_EQ(extended(kInf), kInf);  // no return stays one
+  EXPECT_EQ(extended(kInf), kInf);  // stays no return
   EXPECT_EQ(extended(-kInf), 0.0);
 }
 
@@ -185,8 +185,8 @@ TEST(LaserPackets, CountsThatDoNotFitAreRefused) {
   base::Bytes many = patched<std::uint16_t>(three, 0, 362);
   many.resize(2 + 2 * 362);
   EXPECT_EQ(plain(many), PayloadError::out_of_range);                              // one ray too many
-  EXPECT_EQ(plain(patched<std::uint16_t>(three, 0, 4)), PayloadError::too_short);  // says more than it has
-  EXPECT_EQ(plain(patched<std::uint16_t>(three, 0, 2)), PayloadError::too_long);   // says less
+  EXPECT_EQ(plain(patched<std::uint16_t>(three, 0, 4)), PayloadError::too_short);  // count above the payload
+  EXPECT_EQ(plain(patched<std::uint16_t>(three, 0, 2)), PayloadError::too_long);   // count below the payload
   EXPECT_EQ(plain(patched<std::uint16_t>(three, 0, 65535)), PayloadError::too_short);
 
   const auto extended = [](const base::Bytes& payload) {
@@ -199,12 +199,12 @@ TEST(LaserPackets, CountsThatDoNotFitAreRefused) {
   EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, kExtendedRays + 1)), PayloadError::out_of_range);  // too many
   EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 0xFFFFFFFF)), PayloadError::out_of_range);  // their sum would wrap
   EXPECT_EQ(extended(patched<std::uint32_t>(part, 0, 313)), PayloadError::out_of_range);         // one ray missing
-  EXPECT_EQ(extended(patched<std::uint32_t>(part, 4, 311)), PayloadError::out_of_range);         // begins elsewhere
+  EXPECT_EQ(extended(patched<std::uint32_t>(part, 4, 311)), PayloadError::out_of_range);         // wrong first ray
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 8, 2)), PayloadError::out_of_range);           // part 2 of 2
   base::Bytes behind =
       patched<std::uint32_t>(patched<std::uint16_t>(patched<std::uint16_t>(part, 8, 2), 12, 310), 4, 620);
   behind.resize(16 + 4 * 310);
-  EXPECT_EQ(extended(behind), PayloadError::out_of_range);  // the same with all else in order: what is left would wrap
+  EXPECT_EQ(extended(behind), PayloadError::out_of_range);  // otherwise consistent: the remainder would wrap
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 10, 3)), PayloadError::out_of_range);  // 3 parts for 312 rays
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 12, 1)), PayloadError::too_long);
   EXPECT_EQ(extended(patched<std::uint16_t>(part, 12, 3)), PayloadError::too_short);
@@ -228,13 +228,13 @@ TEST(LaserPackets, AScanIsWhatItsSensorMayHaveSent) {
     const std::uint8_t type = said > kPlainRange ? kSecond : kPlain;
     return decode_laser(row, bytes, type, WireFormat::farm).fault;
   };
-  EXPECT_EQ(judged({0, 8, 8.001}, 8.0, laser(3, 8.0)), PayloadError::none);          // rounding may add one count
+  EXPECT_EQ(judged({0, 8, 8.001}, 8.0, laser(3, 8.0)), PayloadError::none);          // rounding may add one unit
   EXPECT_EQ(judged({0, 8, kInf}, 8.0, laser(3, 8.0)), PayloadError::none);           // saturated: no return
-  EXPECT_EQ(judged({0, 8, 8.002}, 8.0, laser(3, 8.0)), PayloadError::out_of_range);  // farther than the sensor sees
+  EXPECT_EQ(judged({0, 8, 8.002}, 8.0, laser(3, 8.0)), PayloadError::out_of_range);  // beyond range_max
   EXPECT_EQ(judged({0, 8}, 8.0, laser(3, 8.0)), PayloadError::out_of_range);         // a ray is missing
   EXPECT_EQ(judged({99, kInf, 100.001}, 100.0, laser(3, 100.0)), PayloadError::none);
   EXPECT_EQ(judged({99, kInf, 100.002}, 100.0, laser(3, 100.0)), PayloadError::out_of_range);
-  EXPECT_EQ(judged({429'496}, 100.0, laser(0, 0.0)), PayloadError::none);  // nothing is known of the sensor
+  EXPECT_EQ(judged({429'496}, 100.0, laser(0, 0.0)), PayloadError::none);  // no checks for this spec
 }
 
 TEST(LaserPackets, OtherTypesAreNoScans) {
@@ -262,7 +262,7 @@ TEST(LaserPackets, OurOwnBadScansAbort) {
 }
 
 TEST(LaserPackets, AnyBytesAreJudged) {
-  std::mt19937 random(20260102);  // NOLINT: the same payloads every time
+  std::mt19937 random(20260102);  // NOLINT: the same payloads in every run
   const SensorSpec rows[] = {laser(3, 8.0), laser(312, 100.0), laser(0, 0.0)};
   const base::Bytes seeds[] = {payload_of(documented("laser")), payload_of(documented("laser_extended"))};
   std::uint64_t good = 0;

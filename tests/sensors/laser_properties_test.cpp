@@ -1,5 +1,5 @@
-// What must hold of any scan in any world: moved, turned, mirrored, filled up, sampled more densely. Worlds that break
-// a property are shrunk to small ones before they are shown.
+// Properties of any scan in any world: translated, rotated, mirrored, with objects added, sampled more densely.
+// Counterexamples are shrunk to small worlds.
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -16,11 +16,11 @@ namespace sf::trial {
 
 using base::Pose;
 
-/// A box on a lattice of 1/64 m, turned in steps of 1/64 turn.
+/// A box on a lattice of 1/64 m, rotated in steps of 1/64 turn.
 struct Block {
   int x, y, w, h, turn;
 };
-/// Where a sensor stands, on the same lattice; `turn` in 1/1000 turn.
+/// Pose of a sensor on the same lattice; `turn` in 1/1000 turn.
 struct Stand {
   int x, y, turn;
 };
@@ -65,12 +65,12 @@ constexpr double kRange = 6.0;          ///< [m]
 constexpr std::uint32_t kSamples = 73;  ///< 72 = 2 x 2 x 2 x 3 x 3 steps
 constexpr double kFov = 1.5 * M_PI;
 
-/// To a lattice fine enough for any box, coarse enough that 1e6 m can be added without rounding.
+/// Rounds to a lattice that is fine enough for any box and coarse enough to add 1e6 m without rounding.
 double snap(double x) { return std::round(x * 1048576.0) / 1048576.0; }
 
 using Map = glm::dvec2 (*)(glm::dvec2);
 glm::dvec2 same(glm::dvec2 p) { return p; }
-/// Keeps the solid on the left: the order of corners is turned round.
+/// Keeps the solid on the left by reversing the order of corners.
 glm::dvec2 mirrored(glm::dvec2 p) { return {p.x, -p.y}; }
 
 world::World build(const Blocks& blocks, Map map = same, bool reverse = false) {
@@ -103,8 +103,8 @@ std::vector<Pose> poses_of(const Stands& stands) {
   return poses;
 }
 
-/// What the beam's range may change by where its world is rounded anew: [m]; infinite for a beam that passes a
-/// silhouette so near that it may go either way.
+/// [m] Largest change of the beam's range from rounding the world anew; infinite for a beam so close to a silhouette
+/// that it may hit or miss it.
 double slack(const world::World& world, const Pose& pose, std::uint32_t sample) {
   const auto walls = oracle::surfaces(world, {}, 0, 0.1);
   const long double direction = pose.yaw + (-0.5 + static_cast<double>(sample) / (kSamples - 1)) * kFov;
@@ -125,7 +125,7 @@ void expect_alike(const world::World& world, const std::vector<Pose>& poses, con
 Stands some_stands() { return *rc::gen::nonEmpty<Stands>(); }
 
 RC_GTEST_PROP(LaserProperties, MovingTheWholeSceneChangesNoBit, (const Blocks& blocks)) {
-  // Sums of lattice points are exact, so nothing may change at all.
+  // Sums of lattice points are exact, so no bit may change.
   const Stands stands = some_stands();
   static glm::dvec2 by;
   by = {1.0 * *rc::gen::inRange(-1'000'000, 1'000'001), 1.0 * *rc::gen::inRange(-1'000'000, 1'000'001)};
@@ -174,7 +174,7 @@ RC_GTEST_PROP(LaserProperties, MoreSamplesContainFewer, (const Blocks& blocks)) 
     }
 }
 
-/// The properties above would hold of a farm that sees nothing.
+/// Guards against a farm that sees nothing, which would satisfy the properties above.
 TEST(LaserProperties, ThereIsSomethingToSee) {
   const Scans scans = look(build({{0, 0, 64, 64, 3}}), {pose_of({128, 0, 500})});
   EXPECT_GT(std::count_if(scans[0].begin(), scans[0].end(), [](double r) { return r < kRange; }), 5);

@@ -1,4 +1,4 @@
-// The device and the plain C++ caster give the same bits.
+// The device and the plain C++ caster give equal bits.
 
 #include "sensors/laser_reference.h"
 
@@ -19,13 +19,13 @@ constexpr std::uint32_t kRobots = 200;
 
 struct Disagreement {
   std::size_t beams = 0;
-  std::size_t ranges = 0;  ///< whose bits differ
+  std::size_t ranges = 0;  ///< with different bits
   std::size_t hits = 0;
   double largest = 0.0;  ///< [m]
   std::string example;
 };
 
-/// Three ticks of a farm, everyone moved a little from tick to tick, every beam of every laser beside the reference.
+/// Three ticks of a farm with small motions of all robots; every beam of every laser against the reference.
 Disagreement disagreement(const world::World& world, std::uint64_t seed, bool noise = true) {
   farm::Farm farm(world, device(), {.seed = seed, .noise = noise});
   farm.subscribe_all();
@@ -101,7 +101,7 @@ TEST(LaserReference, WithBeamsLeftOut) {
 }
 
 TEST(LaserReference, WideApart) {
-  // Lanes of one beam: four neighbours would not fit a sector.
+  // Lanes of one beam: four neighbours would not fit into a sector.
   expect_same_bits("12 beams", disagreement(crowd(scenes::laser(12, 2.0 * M_PI, 5.0), 5), 1));
   expect_same_bits("1 beam", disagreement(crowd(scenes::laser(1, 0.0, 5.0), 6), 1));
 }
@@ -115,7 +115,7 @@ TEST(LaserReference, FarFromTheOrigin) {
   expect_same_bits("far away", disagreement(world, 1));
 }
 
-/// A test that cannot fail proves nothing: another seed is another noise.
+/// The comparison detects differences: another seed gives other noise.
 TEST(LaserReference, SeesAnotherSeed) {
   world::Laser laser = scenes::laser(61);
   laser.noise.range_sigma = 0.01;

@@ -1,4 +1,4 @@
-// Every range against the independent answer: real floor plans and made ones, near and far from the origin.
+// Every range against the brute-force reference: real and artificial floor plans, near the origin and far from it.
 
 #include <gtest/gtest.h>
 
@@ -12,13 +12,13 @@ namespace sf::trial {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr std::uint32_t kRobots = 6;  ///< each beam is checked against every segment in long double: slow with ASan
+constexpr std::uint32_t kRobots = 6;  ///< each beam is checked against every segment in long double: slow under ASan
 #else
 constexpr std::uint32_t kRobots = 24;
 #endif
 constexpr double kRanges[] = {0.75, 8.0, 30.0, 100.0};
 
-/// Robots with bodies at random free poses, two of four ranges each time so that families mix.
+/// Robots with bodies at random free poses, with two of four ranges each time, so that list configs mix.
 world::World with_robots(world::World world, double range, std::uint64_t seed) {
   scenes::add_robots(world, kRobots, scenes::laser(181, M_PI, range), seed);
   return world;
@@ -40,7 +40,7 @@ TEST(Exact, ClosedCaveAHundredKilometresAway) {
   }
 }
 
-/// Coordinates there are multiples of 2 nm: the moved world is another one, but it is measured as exactly.
+/// Coordinates there are multiples of 2 nm: the translated world differs, but its ranges are as exact.
 TEST(Exact, ClosedCaveTenThousandKilometresAway) {
   for (const double range : {0.75, 30.0}) {
     world::World world = with_robots(scenes::cave(500, 16.0, 3), range, 2);
@@ -58,7 +58,7 @@ TEST(Exact, OverlappingBoxesAtAnyAngle) {
   expect_exact("wide boxes at 100 km, 100 m", sweep(world));
 }
 
-/// World files: robots of the file's first kind at random free poses.
+/// World files: robots with the file's first laser at random free poses.
 void file_test(const std::string& file) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not here";
   world::World world = world::load_world(file);

@@ -1,4 +1,4 @@
-// Where the farm refuses, and what still works just before.
+// Limits of the farm: refusals, and success just below the limit.
 
 #include <gtest/gtest.h>
 
@@ -21,8 +21,8 @@ void add_thin(std::vector<world::Segment>& out, glm::dvec2 a, glm::dvec2 b, std:
   out.push_back(s);
 }
 
-/// `count` rails beside the x axis, 4 um from it, all within one direction sector; a wall behind them.
-/// A beam along the axis passes between all of them, and each looks edge-on.
+/// `count` rails beside the x axis, 4 um from it, all within one direction sector, with a wall behind them. A beam
+/// along the axis passes between all of them, and each is edge-on.
 world::World rails(int count) {
   world::World world;
   world.models.push_back({"rails", "model"});
@@ -37,7 +37,7 @@ world::World rails(int count) {
   return world;
 }
 
-/// Thin rails are listed twice, once for each side that a point of the cell may see: 5 500 of them are 11 000 entries.
+/// Thin rails are listed twice, once per side visible from the cell: 5 500 of them are 11 000 entries.
 TEST(Limits, ListsNearlyAsLongAsTheBoundAreReadToTheEnd) {
   const world::World world = rails(5'500);
   const Glance glance(world, kOnDevice);
@@ -47,7 +47,7 @@ TEST(Limits, ListsNearlyAsLongAsTheBoundAreReadToTheEnd) {
   expect_exact("5 500 rails", sweep(world));
 }
 
-/// A mover with nearly as many segments as its bound, beside walls with nearly as many as theirs.
+/// A mover with nearly as many segments as its limit, beside walls with nearly as many as theirs.
 TEST(Limits, WallsAndMoversTogetherStayWithinTheLoopsBudget) {
   world::World world = rails(5'500);
   const std::uint32_t m = add_eye(world, {6.0, 0.0, 0.0, 0.0}, eye(1, 0.0, 8.0));
@@ -64,7 +64,7 @@ TEST(Limits, WallsAndMoversTogetherStayWithinTheLoopsBudget) {
   EXPECT_EQ(glance.readings[0].hits[0], mover.model);
 }
 
-/// One more than fits, and many more: the host casts, and says so.
+/// One more than the limit, and many more: scans run on the host and are counted.
 TEST(Limits, MoreWallsInOneSectorThanTheBoundAreCastOnTheHost) {
   for (const int count : {5'601, 12'500}) {
     const world::World world = rails(count);
@@ -89,14 +89,14 @@ TEST(Limits, MoreOfMoversInOneSectorThanTheBoundAreCastOnTheHost) {
   EXPECT_EQ(glance.farm.stats().work.host_scans, 1u);
 }
 
-/// Some more numbers of the device: a dispatch of several rows of groups, and one whose last lanes are padding.
+/// Further device limits: a dispatch of several rows of groups, and one whose last lanes are padding.
 TEST(Limits, AMillionBeamsOfOneSensor) {
   world::World world = scenes::boxes(10, 8.0, 1);
   add_eye(world, {0.3, 0.2, 0, 0}, eye(1'000'000, 2.0 * M_PI, 12.0));
   expect_exact("a million beams", sweep(world));
 }
 
-/// Far away, cells are counted in more than 32 bits: a short range makes small cells.
+/// Far away, cell indices exceed 32 bits: a short range makes small cells.
 TEST(Limits, ShortRangesFarAway) {
   for (const double far : {1e5, 1e7}) {
     world::World world;

@@ -1,4 +1,4 @@
-// Cut-offs: which magnets count, what they leave out, and that the stated bound holds.
+// Cut-offs: magnets included, error, and its stated bound.
 
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ double field_z(const world::World& world, const FieldPoint& point) {
   return sensors::sample_field(world, device(), {&point, 1})[0].z;
 }
 
-/// Along the ground, whatever the height; at exactly the cut-off it counts, a unit in the last place farther it does
-/// not.
+/// The distance is along the ground, at any height. A magnet at exactly the cut-off counts; a unit in the last place
+/// farther it does not.
 TEST(MagnetCutoff, IsSharpAndAlongTheGround) {
   world::World world;
   world.magnets.push_back(magnet({0, 0}));
@@ -36,7 +36,7 @@ TEST(MagnetCutoff, IsSharpAndAlongTheGround) {
   EXPECT_EQ(field_z(world, {1.5, 1.5, 0.0}), 0.0);
 }
 
-/// Against a sum over exactly the magnets that are near enough, at points and cut-offs of all sizes.
+/// Against a sum over exactly the magnets within the cut-off, at points and cut-offs of all sizes.
 TEST(MagnetCutoff, SumsTheMagnetsThatAreNearEnough) {
   Chance chance(5);
   for (const double cutoff : {0.05, 0.5, 3.0, 30.0})
@@ -58,7 +58,8 @@ TEST(MagnetCutoff, SumsTheMagnetsThatAreNearEnough) {
 
 // --- The bound.
 
-/// What one magnet beyond the cut-off may add: the formula against the field itself, and that it falls both ways.
+/// Contribution of one magnet beyond the cut-off: the formula against the field, and its decrease with distance and
+/// height.
 TEST(MagnetBound, OneMagnet) {
   Chance chance(7);
   for (int i = 0; i < 500; ++i) {
@@ -77,7 +78,7 @@ struct Measured {
   double worst = 0.0;  ///< [T] |B - B_cut|
 };
 
-/// Places all over the world, beside it, right at magnets' rims, and where the bound was largest.
+/// Points all over the world, outside it, at the cut-off distance of magnets, and where the bound was largest.
 Measured measure(world::World world, double half, double height, std::uint32_t count) {
   Chance chance(9);
   std::vector<FieldPoint> points;
@@ -104,7 +105,7 @@ constexpr std::uint32_t kPlaces = 2'000;
 constexpr std::uint32_t kPlaces = 25'000;
 #endif
 
-/// @param most how many times the largest error that was met the bound may be.
+/// @param most largest permitted ratio of the bound to the largest error found
 void expect_bounded(const std::string& name, const world::World& world, double half, double height, double most) {
   const Measured m = measure(world, half, height, kPlaces);
   std::cout << "[ measured ] " << name << ": the cut-off leaves out up to " << m.worst << " T, the bound is " << m.bound
@@ -134,7 +135,7 @@ TEST(MagnetBound, HoldsWhereMagnetsLieAtRandomEitherWayUp) {
   expect_bounded("1500 at random, either way up, 3 m", world, 15.0, 0.3, 100.0);
 }
 
-/// Two clusters far apart, and one magnet alone: most of the world is empty.
+/// Two clusters far apart, and one single magnet: most of the world is empty.
 TEST(MagnetBound, HoldsWhereMostIsEmpty) {
   world::World world = scenes::sheet(50, 0.5, 11);
   for (int i = 0; i < 20; ++i) world.magnets.push_back(magnet({3000.0 + 0.01 * i, 4000.0}, 0.0, 5.0));
@@ -143,7 +144,7 @@ TEST(MagnetBound, HoldsWhereMostIsEmpty) {
   expect_bounded("two clusters 5 km apart, 0.7 m", world, 1.0, 0.0, 20.0);
 }
 
-/// A sensor just outside of the cut-off of a lone magnet misses all of it.
+/// A sensor just outside the cut-off of a single magnet misses all of its field.
 TEST(MagnetBound, OfOneMagnetIsItsFieldAtTheCutoff) {
   world::World world;
   world.magnets.push_back(magnet({5, 5}));
@@ -171,7 +172,7 @@ TEST(MagnetBound, IsNothingWithoutACutoffOrWithoutMagnets) {
   EXPECT_EQ(sensors::truncation_bound(world, 0.1), 0.0);
 }
 
-/// Movers' magnets may be anywhere: all of them at the cut-off at once.
+/// Movers' magnets may be anywhere: all of them at the cut-off distance at once.
 TEST(MagnetBound, CountsMovingMagnetsAtTheCutoff) {
   world::World world;
   scenes::add_carrier(world, {0, 0, 0.5, 0}, scenes::five());

@@ -45,7 +45,7 @@ TEST(MagnetField, BesideItPointsDownWithTheStrengthByTheCube) {
   EXPECT_NEAR(b.x, 0.0, 1e-7 / 0.125 * 1e-15) << "up to what tells the middle from nowhere";
 }
 
-/// At 45 degrees the vector leans as a dipole's does: B = k / r^3 (1.5, 0, 0.5).
+/// At 45 degrees the dipole field has the direction of (1.5, 0, 0.5) k / r^3.
 TEST(MagnetField, AtFortyFiveDegreesItLeans) {
   const FieldSum b = field(one(magnet({0, 0})), {1, 0, 1});
   const double k = 1e-7 / std::pow(2.0, 1.5);
@@ -70,7 +70,7 @@ TEST(MagnetField, InTheMiddleItIsTheFieldAboveItAtTheRadius) {
   EXPECT_EQ(std::hypot(b.x, b.y), 0.0);
 }
 
-/// Where doubles end: no root of it may leave the numbers.
+/// At the limits of doubles no root overflows or underflows.
 TEST(MagnetField, NextToTheMiddleItIsANumber) {
   for (const double d : {1e-300, 1e-160, 1e-40, 1e-30, 1e-20, 1e-18, 1e-17, 1e-9}) {
     for (const FieldPoint& point :
@@ -84,7 +84,7 @@ TEST(MagnetField, NextToTheMiddleItIsANumber) {
   }
 }
 
-/// Across the radius, in any direction, the field goes on where it was.
+/// The field is continuous across the radius, in any direction.
 TEST(MagnetField, AtItsRadiusItIsContinuousAndConstantInside) {
   Chance chance(1);
   for (int i = 0; i < 40; ++i) {
@@ -113,7 +113,7 @@ TEST(MagnetField, OppositePairsCancelExactly) {
   EXPECT_GT(b.magnitudes, 0.0) << "their magnitudes do not";
 }
 
-/// The number that fixes the unit of the world file's moments.
+/// The unit of the world file's moments.
 TEST(MagnetField, OneAmpereSquareMetreAtAnEighthOfAMetreIsAGauss) {
   EXPECT_NEAR(field(one(magnet({0, 0})), {0, 0, 0.125}).z / kGauss, 1.024, 1e-6);
 }

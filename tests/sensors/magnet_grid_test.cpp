@@ -1,4 +1,4 @@
-// The lists of magnets behind a cut-off.
+// The grid of magnets behind a cut-off.
 
 #include "sensors/magnetic_field/magnet_grid.h"
 
@@ -11,7 +11,7 @@
 namespace sf::trial {
 namespace {
 
-/// Every magnet within reach is in some span; spans are in order and do not overlap.
+/// Every magnet within reach is in some span; spans are ordered and do not overlap.
 void expect_found(std::span<const glm::dvec2> magnets, const sensors::MagnetGrid& grid, glm::dvec2 centre,
                   double reach) {
   std::vector<sensors::MagnetSpan> spans(grid.most_spans(reach));
@@ -50,7 +50,7 @@ TEST(MagnetGrid, FindsAllThatAreNear) {
   }
 }
 
-/// A magnet exactly at the reach, in each direction; cells' edges fall on places too.
+/// A magnet at exactly the reach, in each direction; points lie on cell borders too.
 TEST(MagnetGrid, FindsMagnetsAtTheRim) {
   for (const double offset : {0.0, 1e5}) {
     std::vector<glm::dvec2> magnets;

@@ -1,5 +1,5 @@
 #pragma once
-// Magnets and magnetometers made by hand, for tests and benchmarks, and what physics says of them.
+// Hand-made magnets and magnetometers for tests and benchmarks, with analytic fields.
 
 #include <cmath>
 #include <span>
@@ -23,7 +23,7 @@ inline world::World line(std::uint32_t count, double spacing) {
   return world;
 }
 
-/// `count` magnets at random in a square of `side` [m] round the origin, all of them north up, or either way.
+/// `count` magnets at random in a square of `side` [m] round the origin, all with north up, or in both directions.
 inline world::World sheet(std::uint32_t count, double side, std::uint64_t seed, bool both_ways = false) {
   world::World world;
   trial::Chance chance(seed);
@@ -43,7 +43,7 @@ inline world::Setting text(const std::string& key, const std::string& value) {
   return {key, {}, value, 1, "made.world"};
 }
 
-/// An array with its elements where they are said to be, at `height` [m] above its mover's foot, without noise.
+/// An array with the given elements, at `height` [m] above its mover's base, without noise.
 inline world::Sensor array(const std::vector<base::Pose>& elements, double height = 0.2) {
   world::Sensor sensor;
   sensor.type = "magnetometer";
@@ -59,7 +59,7 @@ inline world::Sensor array(const std::vector<base::Pose>& elements, double heigh
   return sensor;
 }
 
-/// The thesis' array of five across the robot, 0.20 m ahead, the first one on its right, for a robot that faces +x.
+/// The thesis' array of five across the robot, 0.20 m ahead, the first one on the right, for a robot that faces +x.
 inline world::Sensor five(double height = 0.2) {
   std::vector<base::Pose> elements;
   for (int i = 0; i < 5; ++i) elements.push_back({0.20, 0.075 * (i - 2), 0.0, 0.0});
@@ -96,8 +96,8 @@ struct Exact {
   Real x = 0, y = 0, z = 0, magnitudes = 0;
 };
 
-/// The thesis' equation 1, component by component, as it stands there: |B| has these components' squares under its
-/// root. Inside of a magnet's radius, at the radius.
+/// The thesis' equation 1, component by component as printed there; |B| is the root of the sum of these components'
+/// squares. Inside a magnet's radius, the field at the radius.
 inline void add_exact(const world::Magnet& m, const sensors::FieldPoint& place, Exact& sum) {
   Real x = Real{place.x} - m.p.x, y = Real{place.y} - m.p.y, z = Real{place.z} - m.z;
   Real r = std::sqrt(x * x + y * y + z * z);
@@ -110,7 +110,7 @@ inline void add_exact(const world::Magnet& m, const sensors::FieldPoint& place, 
   sum.magnitudes += std::sqrt(bx * bx + by * by + bz * bz);
 }
 
-/// Of all magnets that stand still, or of those within `cutoff` [m] along the ground.
+/// Sum over all static magnets, or over those within `cutoff` [m] along the ground.
 inline Exact exact(const world::World& world, const sensors::FieldPoint& place, double cutoff = 0.0) {
   Exact sum;
   for (const world::Magnet& m : world.magnets) {

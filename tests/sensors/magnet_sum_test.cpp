@@ -38,7 +38,7 @@ TEST(MagnetSum, TheSumOfMagnitudesIsThat) {
   }
 }
 
-/// Asking for magnitudes runs another kernel, which sums vectors to the same bits.
+/// The kernel for magnitudes sums vectors to the same bits.
 TEST(MagnetSum, MagnitudesDoNotChangeVectors) {
   const world::World world = scenes::sheet(500, 3.0, 4, true);
   Chance chance(6);
@@ -70,7 +70,7 @@ Errors errors(const world::World& world, std::span<const FieldPoint> points) {
   return e;
 }
 
-/// `count` points at `height` [m], some of them right above a magnet, where the largest fields are.
+/// `count` points at `height` [m], some of them directly above a magnet, where the field is largest.
 std::vector<FieldPoint> places_over(const world::World& world, std::uint32_t count, double half, double height) {
   Chance chance(11);
   std::vector<FieldPoint> points;
@@ -108,7 +108,7 @@ std::vector<FieldSum> direct_sums(const world::World& world, std::span<const Fie
   return sums;
 }
 
-/// A sheet of them, at the origin and 100 km away, near to it and high above it: 2000 points in all.
+/// A sheet of magnets at the origin and 100 km away, near it and high above it: 2000 points in all.
 TEST(MagnetSum, TwoHundredThousandMagnetsAreRightAnywhere) {
   for (const double offset : {0.0, 1e5})
     for (const double height : {0.1, 1.0}) {
@@ -130,8 +130,8 @@ TEST(MagnetSum, TwoHundredThousandMagnetsAreRightAnywhere) {
     }
 }
 
-/// All in one spot, so that no list makes them fewer: the loop limit of drivers must not bite, with or without a
-/// cut-off.
+/// All magnets in one spot, so that no grid reduces their number: items stay below the loop limit of drivers, with and
+/// without a cut-off.
 TEST(MagnetSum, TwoHundredThousandMagnetsInOneSpot) {
   for (const double cutoff : {0.0, 0.5, 1e6}) {
     world::World world;
@@ -144,7 +144,7 @@ TEST(MagnetSum, TwoHundredThousandMagnetsInOneSpot) {
   }
 }
 
-/// Numbers of magnets and of points round the sizes of turns, items and groups.
+/// Numbers of magnets and points round the sizes of iterations, items and groups.
 TEST(MagnetSum, EveryNumberOfMagnetsAndPlaces) {
   Chance chance(8);
   const auto most = sensors::kMostItemMagnets;
@@ -213,7 +213,7 @@ TEST(MagnetSum, ThreadsAndCompanyChangeNothing) {
 
 // --- Properties.
 
-/// Two worlds together are the sum of both.
+/// The field of two worlds together is the sum of both.
 TEST(MagnetSum, IsLinear) {
   Chance chance(12);
   const world::World one_world = scenes::sheet(40, 2.0, 20, true), other = scenes::sheet(30, 2.0, 21, true);
@@ -227,7 +227,7 @@ TEST(MagnetSum, IsLinear) {
   }
 }
 
-/// Turned and moved, the world has the same field, turned; mirrored in the plane x = 0, the mirrored one.
+/// A rotated and translated world has the rotated field; mirrored in the plane x = 0, the mirrored field.
 TEST(MagnetSum, TurnsAndMirrorsWithTheWorld) {
   Chance chance(13);
   const world::World world = scenes::sheet(60, 2.0, 22, true);

@@ -1,4 +1,4 @@
-// A tick with magnetometers is silent to the validation layer, also when its tables are replaced.
+// A tick with magnetometers causes no messages of the validation layer, even when its tables are replaced.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace sf::trial {
 namespace {
 
-/// Robots with arrays and magnets of their own, among magnets that stand still.
+/// Robots with arrays and magnets of their own, among static magnets.
 world::World park(double cutoff) {
   world::World world = scenes::sheet(400, 6.0, 1, true);
   world.magnet_cutoff = cutoff;
@@ -36,7 +36,7 @@ std::vector<base::Report> reports_at(const world::World& world, int tick) {
   return reports;
 }
 
-/// Magnets of a robot that is gone go with it: as in a world without them.
+/// Magnets of an absent robot are absent too, as in a world without them.
 TEST(MagnetTick, WhoIsGoneTakesItsMagnetsAlong) {
   for (const double cutoff : {0.0, 1.5}) {
     const world::World world = park(cutoff);
@@ -64,7 +64,7 @@ TEST(MagnetTick, TheValidationLayerIsSilent) {
       const world::World world = park(cutoff);
       farm::Farm farm(world, device);
       for (int k = 0; k < 4; ++k) {
-        // More and more robots are heard, so that tables are replaced.
+        // More and more robots are subscribed, so that tables are replaced.
         for (std::uint32_t m = 0; m < 30; ++m)
           farm.subscribe(m, static_cast<int>(m) < 10 * k ? farm::kAllSensorTypes : 0u);
         farm.tick(k * 100'000'000ll, reports_at(world, k));

@@ -1,4 +1,4 @@
-// The magnetometers' noise is a distribution, and each draw is its own.
+// The magnetometers' noise is a distribution of independent draws.
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ double correlation(const std::vector<double>& p, const std::vector<double>& q, s
   return sum / static_cast<double>(p.size() - lag);
 }
 
-/// Each component is normal with the sigma of the file; components, elements, robots and ticks have nothing in common.
+/// Each component is normal with the file's sigma; components, elements, robots and ticks are uncorrelated.
 TEST(MagnetometerNoise, IsNormalAndIndependentOnEachComponent) {
   const NoiseDraws draws = draw_noise(true);
   const double some = 4.0 / std::sqrt(4000.0);  // four standard deviations

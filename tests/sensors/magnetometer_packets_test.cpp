@@ -29,7 +29,7 @@ base::Bytes bytes_of(std::vector<double> values, WireFormat wire, std::uint8_t e
 }
 
 TEST(MagnetometerPackets, EveryByteOfTheFarmsForm) {
-  // 1 Gauss, -1e-4 Gauss, 0x01020304 units and nothing.
+  // 1 Gauss, -1e-4 Gauss, 0x01020304 units and 0.
   const base::Bytes bytes = bytes_of({1e-4, -1e-8, 0x01020304 * 1e-8, 0.0}, WireFormat::farm);
   EXPECT_EQ(bytes, (base::Bytes{1, 0, 0, 0, 0x10, 0x27, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 4, 3, 2, 1, 0, 0, 0, 0}));
 }
@@ -109,13 +109,13 @@ TEST(MagnetometerPackets, JudgesWhatCannotBe) {
   EXPECT_EQ(fault(longer, row(2)), PayloadError::too_long);
 }
 
-/// A saturated word stands for more than it says.
+/// A saturated word stands for any larger value.
 TEST(MagnetometerPackets, ASaturatedWordIsBelieved) {
   const base::Bytes bytes = bytes_of({100.0, -100.0, 0, 0}, WireFormat::farm);
   EXPECT_EQ(decode_magnetometer(row(1, 50.0), bytes, kMagnetometer, WireFormat::farm).fault, PayloadError::none);
 }
 
-/// No bytes bring it down.
+/// Arbitrary bytes are validated without a crash.
 TEST(MagnetometerPackets, AnyBytesAreJudged) {
   trial::Chance chance(2);
   for (int i = 0; i < 5000; ++i) {

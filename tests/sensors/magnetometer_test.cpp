@@ -20,7 +20,7 @@ using scenes::element;
 using scenes::magnet;
 
 constexpr double kGauss = sensors::kGauss;
-constexpr double kHigh = 0.125;  // [m] the thesis' magnets' middles below its sensors
+constexpr double kHigh = 0.125;  // [m] height of the thesis' sensors above the magnets' centres
 
 /// A robot at `X_WM` with `sensor` over one magnet of 1 A m^2 at (1, 0).
 Glance over_one(const Pose& X_WM, const world::Sensor& sensor, world::World& world) {
@@ -42,7 +42,7 @@ TEST(Magnetometer, ReadsOneGaussRightAboveAMagnet) {
   EXPECT_NEAR(std::hypot(middle.x, middle.y), 0.0, 1e-17);
 }
 
-/// Elements keep the order of the file; left and right see the same field, mirrored.
+/// Elements keep the order of the file; left and right elements measure the same field, mirrored.
 TEST(Magnetometer, ElementsStandWhereTheFileSaysInItsOrder) {
   world::World world;
   const Glance run = over_one({0.8, 0, 0, 0}, scenes::five(kHigh), world);
@@ -56,7 +56,7 @@ TEST(Magnetometer, ElementsStandWhereTheFileSaysInItsOrder) {
   EXPECT_GT(element(run.readings[0], 4).y, 1e-5) << "left of the magnet the field leans to the left";
 }
 
-/// The vector is in the element's frame: turned back by mover, model and element.
+/// The vector is in the element's frame: rotated back by mover, model and element.
 TEST(Magnetometer, VectorsAreInTheElementsOwnFrame) {
   Chance chance(1);
   for (int i = 0; i < 10; ++i) {
@@ -80,8 +80,8 @@ TEST(Magnetometer, VectorsAreInTheElementsOwnFrame) {
   }
 }
 
-/// The thesis' robot faces -y and its array runs along x from its right to its left: the same readings as the version
-/// that faces +x, on a world turned with it.
+/// The thesis' robot faces -y and its array runs along x from its right to its left. The readings equal those of the
+/// version that faces +x in a world rotated with it.
 TEST(Magnetometer, TheThesisMinusYFrameReadsTheSame) {
   std::vector<Pose> thesis, ours;
   for (int i = 0; i < 5; ++i) {
@@ -154,7 +154,7 @@ TEST(Magnetometer, TheSensitivitysDefaultIsWhatTheWireHolds) {
 
 // --- Sums.
 
-/// Arrays of both modes in one world: each its own.
+/// Arrays of both kinds of sum in one world.
 TEST(Magnetometer, AddsMagnitudesWhereItIsTold) {
   world::World world = scenes::sheet(200, 1.0, 5, true);
   world::Sensor told = scenes::five(), untold = scenes::five();
@@ -176,10 +176,10 @@ TEST(Magnetometer, AddsMagnitudesWhereItIsTold) {
 
 // --- Moving magnets.
 
-/// Robots with magnets and arrays that drive: each tick against the sum over all magnets where they are then. A robot's
+/// Moving robots with magnets and arrays: each tick against the sum over all magnets at their current poses. A robot's
 /// own magnets count.
 void expect_moving_magnets(double cutoff) {
-  // An odd number, so that a turn's last magnet is a mover's first one, which counts once.
+  // An odd number, so that the last magnet of an iteration is a mover's first one, which must count once.
   world::World world = scenes::sheet(41, 4.0, 6, true);
   world.magnet_cutoff = cutoff;
   Chance chance(7);
@@ -219,7 +219,8 @@ TEST(Magnetometer, MoversMagnetsGoWithThemBehindACutoff) { expect_moving_magnets
 
 // --- Properties.
 
-/// World and robot turned and moved together: the same reading, vectors and all, for they are the robot's own.
+/// World and robot rotated and translated together: the reading is the same, including vectors, which are in the
+/// robot's frame.
 TEST(Magnetometer, ReadingsTurnWithTheRobot) {
   Chance chance(8);
   world::World world = scenes::sheet(80, 1.5, 9, true);
@@ -236,7 +237,7 @@ TEST(Magnetometer, ReadingsTurnWithTheRobot) {
   }
 }
 
-/// The same bits for any number of threads, with noise and a cut-off.
+/// Equal bits for any number of threads, with noise and a cut-off.
 TEST(Magnetometer, ThreadsChangeNothing) {
   world::World world = scenes::sheet(500, 5.0, 10, true);
   world.magnet_cutoff = 1.0;
@@ -256,7 +257,7 @@ TEST(Magnetometer, ThreadsChangeNothing) {
   }
 }
 
-/// A sensor reads the same whoever else is heard.
+/// A sensor's reading does not depend on other subscriptions.
 TEST(Magnetometer, CompanyChangesNothing) {
   world::World world = scenes::sheet(500, 5.0, 12);
   world.magnet_cutoff = 0.8;

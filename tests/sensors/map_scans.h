@@ -1,5 +1,5 @@
 #pragma once
-// Scans for tests of occupancy maps: of no world, so that every range may occur.
+// Synthetic scans for tests of occupancy maps, with any range.
 
 #include <cmath>
 #include <limits>
@@ -11,7 +11,7 @@
 
 namespace sf::trial {
 
-/// Ranges as lasers have them and as they should not: walls that come and go, nothing in sight, zero, beyond, none.
+/// Valid and invalid ranges: irregular walls, no return, zero, beyond range_max, NaN.
 inline std::vector<double> odd_ranges(Chance& chance, const sensors::MapPlan& plan) {
   std::vector<double> ranges;
   double wall = chance.between(0.0, 1.2 * plan.range_max);
@@ -29,21 +29,21 @@ inline std::vector<double> odd_ranges(Chance& chance, const sensors::MapPlan& pl
   return ranges;
 }
 
-/// A robot's place: anywhere on the map, or up to a range beside it.
+/// A robot's pose: anywhere on the map, or up to a range beside it.
 inline base::Pose odd_pose(Chance& chance, const sensors::MapPlan& plan) {
   const double wide = plan.grid.cell * static_cast<double>(maps::columns(plan.grid));
   const double high = plan.grid.cell * static_cast<double>(maps::rows(plan.grid));
   const double reach = chance.below(3) == 0 ? plan.range_max : 0.0;
   base::Pose X{plan.grid.left + chance.between(-reach, wide + reach),
                plan.grid.top - chance.between(-reach, high + reach), 0.0, chance.between(-10.0, 10.0)};
-  // On a cell's corner, and looking along its sides, now and then.
+  // Occasionally on a cell's corner, facing along its sides.
   if (chance.below(8) == 0) X.x = plan.grid.left + plan.grid.cell * chance.below(100);
   if (chance.below(8) == 0) X.y = plan.grid.top - plan.grid.cell * chance.below(100);
   if (chance.below(8) == 0) X.yaw = 0.25 * M_PI * chance.below(8);
   return X;
 }
 
-/// The rule's own answer.
+/// The reference: the update rule itself.
 class PlainMaps {
  public:
   explicit PlainMaps(const std::vector<sensors::MapPlan>& plans) : plans_(plans) {

@@ -1,4 +1,4 @@
-// The outline of a stripe, from its definition: the band within half the width of its line.
+// The outline of a marking, from its definition: the band within half the width of its line.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ double area(const std::vector<OutlineEdge>& outline) {
   return 0.5 * twice;
 }
 
-/// Every face's end is another's beginning, the same doubles.
+/// Every edge's end is another edge's start, in equal doubles.
 void expect_closed(const std::vector<OutlineEdge>& outline) {
   for (const OutlineEdge& f : outline) {
     const auto follows = [&](const OutlineEdge& g) { return g.a.x == f.b.x && g.a.y == f.b.y; };
@@ -57,7 +57,7 @@ TEST(PaintFaces, AStraightStripeIsARectangle) {
   }
 }
 
-/// At a right-angled bend's limit a mitre is 1.41 half widths long; the faces beside it keep half a width off the line.
+/// At the limit of a right angle a mitre is 1.41 half widths long; the edges beside it stay half a width off the line.
 TEST(PaintFaces, BendsAreMitred) {
   Chance chance(4);
   for (int round = 0; round < 200; ++round) {
@@ -78,7 +78,7 @@ TEST(PaintFaces, BendsAreMitred) {
         EXPECT_NEAR(length(f.b - f.a), s.width, 1e-12);
         continue;
       }
-      // Between the mitres of its two ends, half a width off a straight piece: at its middle third for certain.
+      // Between the mitres of its ends an edge is half a width off a straight piece: certainly at its middle third.
       bool parallel = false;
       for (std::size_t i = 0; i + 1 < s.line.size(); ++i) {
         const glm::dvec2 e = s.line[i + 1] - s.line[i];
@@ -117,7 +117,7 @@ TEST(PaintFaces, ALineThatClosesHasNoEnds) {
   EXPECT_NEAR(area(outline), 2.0 * M_PI * 2.0 * 0.1, 0.005);
 }
 
-/// A band wider than the bend it follows: its inner side runs back, and nothing is claimed of sides.
+/// A band wider than its bend: the inner side runs backward, and the painted side is undefined.
 TEST(PaintFaces, ABandWiderThanItsBendIsThin) {
   const auto outline = reflectors_of(arc({0, 0}, 0.1, 0.0, 2.0, 0.3, 1e-3));
   for (const OutlineEdge& f : outline) EXPECT_FALSE(f.is_solid);

@@ -1,4 +1,4 @@
-// Paint in pixels, against its definition: a cell is painted when its centre lies in a stripe.
+// Markings in pixels against the definition: a cell is painted when its centre lies in a marking.
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@ namespace {
 
 using sensors::MarkingRaster;
 
-/// Whether `p` is within half the width of a piece, between its ends: exact for straight stripes. `doubt`: within 1e-9
-/// m of the outline.
+/// True when `p` is within half the width of a piece, between its ends: exact for straight markings. @param doubt
+/// within 1e-9 m of the outline
 bool in_straight(const world::LaneMarking& s, glm::dvec2 p, bool& doubt) {
   const glm::dvec2 e = s.line[1] - s.line[0];
   const double size = length(e);
@@ -112,7 +112,7 @@ TEST(MarkingRaster, NoPaintIsOneEmptyBlock) {
   EXPECT_FALSE(raster.painted(0, 0));
 }
 
-/// The same pixels 10 000 km away, where the road is moved by whole pixels.
+/// The same pixels 10 000 km away, with the road translated by whole pixels.
 TEST(MarkingRaster, FarFromTheOrigin) {
   constexpr double kCell = 1.0 / 128.0;
   const world::LaneMarking s = arc({0.3, 0.2}, 1.0, 0.1, 2.0, 0.1, 1e-5);

@@ -1,4 +1,4 @@
-// Robots and linked objects see each other where they were reported, and never themselves.
+// Robots and linked objects are visible at their reported poses, and never to themselves.
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST(Movers, AnotherIsSeenWhereItWasReported) {
   EXPECT_NEAR(farm.tick(500'000'000, {})[0].values[0], 3.0 - 0.165, 1e-12);
 }
 
-/// A robot that fell silent, until it speaks again; the reading is not one that is given again.
+/// A silent robot is invisible until its next report; the reading is not reused.
 TEST(Movers, WhoIsGoneIsNotSeenUntilItIsBack) {
   world::World world;
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
@@ -68,7 +68,7 @@ TEST(Movers, WhoIsGoneIsNotSeenUntilItIsBack) {
   EXPECT_NEAR(range({{other, 0, {3, 0, 0, 0}, {}}}), 2.835, 1e-12);
 }
 
-/// Alone in the world, and all others gone.
+/// A single robot, and all others absent.
 TEST(Movers, AllOthersMayBeGone) {
   world::World world;
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
@@ -81,7 +81,7 @@ TEST(Movers, AllOthersMayBeGone) {
   EXPECT_TRUE(farm.tick(100'000'000, {}).empty());
 }
 
-/// The world is 2.5-D: a height that is reported says nothing.
+/// The world is 2.5-D: reported heights have no effect.
 TEST(Movers, AreSeenAtTheirHeightAtLoadWhateverReportsSay) {
   world::World world;
   scenes::add_robot(world, {}, eye(1, 0.0, 8.0));
@@ -106,7 +106,7 @@ TEST(Movers, OnlyTheirEchoingPartsAtTheBeamsHeightAreSeen) {
   EXPECT_EQ(Glance(world).readings[0].values[0], 8.0) << "it does not echo";
 }
 
-/// From nearly apart to one inside the other, and with sensors inside each other's bodies.
+/// From nearly apart to one inside the other, with sensors inside other robots' bodies.
 TEST(Movers, OverlappingRobots) {
   world::World world;
   for (int i = 0; i < 12; ++i)
@@ -114,7 +114,7 @@ TEST(Movers, OverlappingRobots) {
   expect_exact("overlapping robots", sweep(world));
 }
 
-/// A sensor inside a robot, whose way out is blocked by a third robot that reaches into the same body.
+/// A sensor inside a robot, with a third robot that extends into the same body.
 TEST(Movers, InsideARobotAThirdThatReachesInIsSeen) {
   world::World world;
   add_eye(world, {-0.05, 0, 0, 0}, eye(61, 1.0, 8.0));
@@ -125,7 +125,7 @@ TEST(Movers, InsideARobotAThirdThatReachesInIsSeen) {
   expect_exact("a third robot inside", sweep(world));
 }
 
-/// Robots against a wall: apart by nothing, a picometre, ... and pressed into it.
+/// Robots against a wall: touching, a picometre apart, ... and overlapping it.
 TEST(Movers, RobotsTouchingAWall) {
   for (const double gap : {0.0, 1e-12, 1e-9, 1e-7, 1e-5, 1e-3, -1e-9, -1e-3}) {
     world::World world;
@@ -137,7 +137,7 @@ TEST(Movers, RobotsTouchingAWall) {
   }
 }
 
-/// A crowd so dense that robots hide robots and many overlap, near and far from the origin.
+/// A dense crowd with occlusion and overlaps, near the origin and far from it.
 TEST(Movers, ADenseCrowd) {
   for (const double far : {0.0, 1e5}) {
     world::World world = scenes::boxes(8, 7.0, 6);
@@ -152,7 +152,7 @@ TEST(Movers, ADenseCrowd) {
   }
 }
 
-/// A crowd that moves: every tick is right, not only the first.
+/// A moving crowd: every tick is exact, not only the first.
 TEST(Movers, EveryTickOfAMovingCrowd) {
   world::World world = scenes::boxes(8, 12.0, 6);
   scenes::add_robots(world, 20, scenes::laser(61, 4.0, 8.0), 3);
@@ -175,7 +175,7 @@ TEST(Movers, EveryTickOfAMovingCrowd) {
   expect_exact("a moving crowd", tally);
 }
 
-/// Long and thin movers that are wider than several direction sectors, with open outlines.
+/// Long and thin movers that span several direction sectors, with open outlines.
 TEST(Movers, LongThinMovers) {
   world::World world;
   Chance chance(11);

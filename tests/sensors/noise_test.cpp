@@ -1,4 +1,4 @@
-// Noise is a distribution, and each draw is its own.
+// Noise is a distribution of independent draws.
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ world::World slanted(const world::LaserNoise& noise, double range_max = 30.0) {
   return world;
 }
 
-/// Draws by tick, then sensor, then beam, as `of(reading, beam, quiet range)` finds them.
+/// Draws by tick, then sensor, then beam, extracted by `of(reading, beam, quiet range)`.
 template <class Of>
 std::vector<double> draws(const world::World& world, std::uint64_t seed, Of of) {
   farm::Farm noisy(world, device(), {.seed = seed});
@@ -70,7 +70,7 @@ void expect_standard_normal(const std::vector<double>& all) {
   EXPECT_LT(chi_square(all), 72.0);
 }
 
-/// Beams, sensors, robots and ticks next to each other have nothing in common: 4 standard deviations of a correlation.
+/// Neighbouring beams, sensors, robots and ticks are uncorrelated, within 4 standard deviations.
 void expect_independent(const std::vector<double>& all) {
   const std::size_t per_tick = static_cast<std::size_t>(kRobots) * 2 * kBeams;
   for (const std::size_t lag :
@@ -104,14 +104,14 @@ TEST(Noise, BothPartsAddAsVariances) {
   expect_standard_normal(all);
 }
 
-/// The bearing at which the slanted wall is `range` away: r (sin b - cos b / 2) = 2 + x / 2 - y.
+/// Bearing at which the slanted wall is at `range`: r (sin b - cos b / 2) = 2 + x / 2 - y.
 double bearing_at(const base::Pose& X_WS, double range) {
   const double gap = (2.0 + 0.5 * X_WS.x - X_WS.y) / std::hypot(1.0, 0.5);
   const double normal = std::atan2(1.0, -0.5);
   return normal + std::acos(gap / range) - X_WS.yaw;  // the scan lies on the left of the wall's normal
 }
 
-/// Noise of the angle turns the beam before it is cast, so that the range is that of the turned beam on the wall.
+/// Angular noise turns the beam before the cast: the range is that of the turned beam on the wall.
 TEST(Noise, AngularNoiseTurnsTheBeamBeforeItIsCast) {
   world::World world = slanted({.angle_sigma = 0.002});
   for (world::Mover& mover : world.movers)
@@ -127,7 +127,7 @@ TEST(Noise, AngularNoiseTurnsTheBeamBeforeItIsCast) {
   expect_independent(all);
 }
 
-/// Turned so much that a lane's beams no longer lie together: still the same distribution, still exact on the wall.
+/// Angles so large that a lane's beams no longer lie together: the distribution holds, and ranges are exact.
 TEST(Noise, LargeAngularNoise) {
   world::World world = slanted({.angle_sigma = 0.03});
   for (world::Mover& mover : world.movers)

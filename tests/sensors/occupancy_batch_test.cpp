@@ -1,4 +1,4 @@
-// Maps on the device agree with the rule, cell by cell: 0 differences, whatever the scan.
+// Maps on the device equal the update rule cell by cell, for any scan.
 
 #include "sensors/occupancy_batch.h"
 
@@ -30,12 +30,12 @@ struct Tally {
   std::size_t scans = 0;
   std::size_t cells = 0;      ///< compared
   std::size_t occupied = 0;   ///< of these
-  std::size_t free = 0;       ///< likewise
+  std::size_t free = 0;       ///< of these
   std::size_t different = 0;  ///< words
 };
 
-/// `rounds` scans into every map, or each time into `some` of them, forwards and backwards; all maps compared after
-/// each `every`-th.
+/// `rounds` scans into every map, or each time into `some` of them, in both orders; all maps are compared after each
+/// `every`-th scan.
 Tally contest(const std::vector<sensors::MapPlan>& plans, std::size_t rounds, std::size_t every, std::uint64_t seed,
               bool some = false, double farthest = maps::kMaxRangeCells) {
   base::ThreadPool thread_pool;
@@ -73,7 +73,7 @@ Tally contest(const std::vector<sensors::MapPlan>& plans, std::size_t rounds, st
   return tally;
 }
 
-/// Many maps of one plan's kind, here and 100 km away.
+/// Many maps of one plan, here and 100 km away.
 std::vector<sensors::MapPlan> spread(const sensors::MapPlan& kind, std::size_t count) {
   std::vector<sensors::MapPlan> plans;
   Chance chance(count);
@@ -98,15 +98,15 @@ TEST(OccupancyBatch, AgreesWithTheRuleOnTheThesisLaser) {
 
 TEST(OccupancyBatch, AgreesWithTheRuleOnOtherLasers) {
   const std::vector<sensors::MapPlan> kinds{
-      plan(2.0 * M_PI, 720, 2.0),         // all round: candidates go round the back
+      plan(2.0 * M_PI, 720, 2.0),         // all round: candidates wrap at the rear
       plan(2.0 * M_PI, 7, 3.0),           // few beams, far apart
-      plan(1.9 * M_PI, 100, 1.5),         // a gap behind
+      plan(1.9 * M_PI, 100, 1.5),         // a gap at the rear
       plan(M_PI / 6, 61, 4.0),            // longer than the map
       plan(0.0, 1, 3.0),                  // one beam
-      plan(0.0, 5, 3.0),                  // five that look one way
-      plan(1e-9, 9, 3.0),                 // nearly
+      plan(0.0, 5, 3.0),                  // five parallel beams
+      plan(1e-9, 9, 3.0),                 // nearly parallel
       plan(M_PI, 181, 8.0, 0.5),          // coarse cells
-      plan(1.5 * M_PI, 2000, 30.0, 0.1),  // dense and far: everything outside of the map as well
+      plan(1.5 * M_PI, 2000, 30.0, 0.1),  // dense and far, beyond the map
       plan(M_PI, 361, 0.02),              // within one cell
   };
   std::uint64_t seed = 10;
@@ -129,7 +129,7 @@ TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
   for (std::size_t i = 0; i < plans.size(); i += 2) plans[i].odds = maps::LogOddsUpdate{};
   plans[0].odds = maps::LogOddsUpdate{32767, 32767, 32767};  // the largest
   plans[2].odds = maps::LogOddsUpdate{1, 1, 1};              // the smallest
-  plans[4].odds = maps::LogOddsUpdate{0, 3, 20};             // nothing is ever occupied
+  plans[4].odds = maps::LogOddsUpdate{0, 3, 20};             // never occupied
   for (const double farthest : {0.0, 1e3}) {
     const Tally tally = contest(plans, 25, 1, 40, false, farthest);
     EXPECT_EQ(tally.different, 0u) << (farthest > 0.0 ? "on the device" : "on the host");
@@ -138,7 +138,7 @@ TEST(OccupancyBatch, LogOddsAgreeAmongPlainMaps) {
 }
 
 TEST(OccupancyBatch, TheFarthestEndsAreStillRight) {
-  // 1022 cells: the longest lines, whose cells are told apart by the smallest differences.
+  // 1022 cells: the longest lines, with the smallest differences between cells.
   sensors::MapPlan kind = plan(2.0 * M_PI, 97, 1'022 * 0.01, 0.01);
   kind.grid.word_columns = kind.grid.word_rows = 300;
   EXPECT_EQ(contest(spread(kind, 4), 8, 2, 50).different, 0u);
@@ -175,8 +175,8 @@ TEST(OccupancyBatch, ScansThatSayNothingChangeNothing) {
   const std::vector<double> silent{nan, -1.0, nan};
   const std::vector<double> loud{1.0, 0.5, 1.0};
   const std::uint32_t all[] = {0, 1};
-  const sensors::MapScan scans[] = {{0, {1.8, -1.8, 0, 0}, silent},  // nothing told
-                                    {1, {1e9, 1e300, 0, 0}, loud}};  // nowhere near
+  const sensors::MapScan scans[] = {{0, {1.8, -1.8, 0, 0}, silent},  // no valid range
+                                    {1, {1e9, 1e300, 0, 0}, loud}};  // far outside
   batch.update(scans, all);
   for (const std::uint32_t map : all)
     for (const std::uint32_t word : batch.words(map)) ASSERT_EQ(word, 0u);
@@ -186,8 +186,8 @@ TEST(OccupancyBatch, ScansThatSayNothingChangeNothing) {
 }
 
 TEST(OccupancyBatch, OneScanCellByCell) {
-  // Cells of 1 m; the sensor in the middle of cell (10, 10); a beam ahead that hits at 3 m, one to each side that
-  // meets nothing within 4.
+  // Cells of 1 m, the sensor in the middle of cell (10, 10). The beam ahead hits at 3 m; one beam to each side has no
+  // return within 4 m.
   sensors::MapPlan p = plan(M_PI, 3, 4.0, 1.0, {0.0, 40.0});
   p.grid.word_columns = p.grid.word_rows = 10;
   base::ThreadPool thread_pool(1);

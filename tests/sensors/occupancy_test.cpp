@@ -1,4 +1,4 @@
-// Occupancy maps as a kind of sensor: settings, ticks, packets.
+// Occupancy maps as a sensor type: settings, ticks, packets.
 
 #include "sensors/occupancy.h"
 
@@ -118,7 +118,7 @@ std::vector<base::Report> reports_at(const world::World& world, int tick) {
   return reports;
 }
 
-/// Runs `ticks` tenths of seconds; every map that is delivered must be what the delivered scans say.
+/// Runs `ticks` tenths of seconds; every delivered map must equal the map of the delivered scans.
 std::size_t compare_run(const world::World& world, int ticks) {
   farm::Farm farm(world, device());
   farm.subscribe_all();

@@ -1,4 +1,4 @@
-// Worlds that no architect would draw.
+// Degenerate worlds.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ void add_wall(world::World& world, glm::dvec2 a, glm::dvec2 b) {
   world.walls.back().solid_left = false;
 }
 
-/// Eyes all around, each at random and aimed at every end of every segment.
+/// Eyes everywhere, at random and aimed at every end of every segment.
 void look_at_everything(world::World& world, double half, double range, std::uint64_t seed) {
   Chance chance(seed);
   const std::vector<world::Segment> walls = world.walls;
@@ -67,7 +67,7 @@ TEST(OddWorlds, JunctionsAndCrossings) {
   }
 }
 
-/// Two boxes share a wall; a third has the very same outline as the first; a fourth overlaps it by part of a wall.
+/// Two boxes share a wall; a third has the outline of the first; a fourth overlaps it along part of a wall.
 TEST(OddWorlds, CoincidentSegments) {
   world::World world;
   scenes::add_outline(world, {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, "first");
@@ -79,7 +79,7 @@ TEST(OddWorlds, CoincidentSegments) {
   expect_exact("coincident segments", sweep(world));
 }
 
-/// Of two surfaces in one place the first in the world's table is named, whichever list is read first.
+/// Of coincident surfaces the first in the world's table is reported, in any order of lists.
 TEST(OddWorlds, OfCoincidentSurfacesTheFirstIsNamed) {
   world::World world;
   scenes::add_outline(world, {{1, -1}, {2, -1}, {2, 1}, {1, 1}}, "first");
@@ -107,7 +107,7 @@ TEST(OddWorlds, TinyAndHugeSegments) {
   }
 }
 
-/// A curve of a thousand chords, each shorter than a millimetre: neighbours leave at less than 15 degrees.
+/// A curve of a thousand chords, each shorter than a millimetre: neighbours differ by less than 15 degrees.
 TEST(OddWorlds, ARoundPillarOfManyChords) {
   world::World world;
   std::vector<glm::dvec2> corners;
@@ -122,7 +122,7 @@ TEST(OddWorlds, ARoundPillarOfManyChords) {
   expect_exact("a pillar of 1000 chords", sweep(world));
 }
 
-/// The widest gap a beam of a 32-bit search could close by mistake: two walls with a slit between them.
+/// The widest gap that a 32-bit search could wrongly close: two walls with a slit between them.
 TEST(OddWorlds, BeamsPassASlitOfTwentyMicrometres) {
   world::World world;
   add_wall(world, {5, -2}, {5, -1e-5});

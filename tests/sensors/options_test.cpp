@@ -1,4 +1,4 @@
-// What a laser's settings do to its reading.
+// Effects of a laser's settings on its readings.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace sf::trial {
 namespace {
 
-/// A wall 2 m ahead, and nothing else.
+/// A single wall 2 m ahead.
 world::World one_wall() {
   world::World world;
   scenes::add_outline(world, {{2, -50}, {3, -50}, {3, 50}, {2, 50}}, "wall");
@@ -41,7 +41,7 @@ TEST(Options, RangeMaxIsWhereEchoesEnd) {
   EXPECT_EQ(glance.readings[0].hits[0], world.walls[0].model);
 }
 
-/// Every n-th sample and the last are cast; the others lie on straight lines between them.
+/// Every n-th sample and the last are cast; the others are interpolated linearly.
 TEST(Options, ResolutionCastsEveryNthBeam) {
   world::World world = one_wall();
   const world::Laser fine = eye(10, 1.2, 8.0);
@@ -81,7 +81,7 @@ TEST(Options, AResolutionBeyondTheSamplesCastsBothEnds) {
   for (const double range : ranges) EXPECT_NEAR(range, 2.0 / std::cos(0.6), 1e-12);
 }
 
-/// Bearings: both ends exact, the middle 0, mirrored to the bit; the plan packs four beams a lane until they spread.
+/// Bearings: both ends exact, the middle 0, mirrored to the bit. Four beams share a lane until they spread too far.
 TEST(Options, BearingsAndLanes) {
   const world::Laser fan = eye(361, M_PI, 8.0);
   EXPECT_EQ(world::bearing_of(fan, 0), -M_PI / 2);
@@ -101,7 +101,7 @@ TEST(Options, BearingsAndLanes) {
   EXPECT_TRUE(raycast::plan_beams(noisy, false).packed);
 }
 
-/// Tables of a lane whose beams do not fill it repeat the last one.
+/// Unused places of a lane repeat its last beam.
 TEST(Options, TheLastLaneIsFilledUp) {
   const world::Laser laser = eye(5, 0.2, 8.0);
   const raycast::BeamPlan plan = raycast::plan_beams(laser, false);

@@ -1,4 +1,4 @@
-// The one payload of simple kinds.
+// The payload of sensor types with a few plain numbers.
 
 #include "sensors/plain_packets.h"
 
@@ -100,7 +100,7 @@ TEST(PlainPackets, TheThesisHasNoLayoutForThem) {
   EXPECT_EQ(kTrial.parts({}, WireFormat::farm), 1u);
 }
 
-/// No bytes bring it down; what is taken can be read.
+/// Arbitrary bytes are validated without a crash; accepted ones can be read.
 TEST(PlainPackets, AnyBytesAreJudged) {
   trial::Chance chance(4);
   std::size_t taken = 0;
@@ -124,7 +124,7 @@ TEST(PlainPackets, AnyBytesAreJudged) {
   EXPECT_GT(taken, 50u);
 }
 
-/// What the documents say of each kind, and what they print.
+/// Payloads of each type as documented and printed.
 TEST(PlainPackets, PayloadsAreTheDocumentedOnes) {
   const struct {
     const char* example;

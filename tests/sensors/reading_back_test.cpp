@@ -1,4 +1,4 @@
-// Payloads read back: what was encoded, to the wire's rounding.
+// Decoded payloads equal the encoded values, to the wire's rounding.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ SensorSpec row_of(std::uint32_t elements, double limit = 0.0) {
   return row;
 }
 
-/// What a receiver has of `values` after every part of them.
+/// A receiver's values after every part of `values`.
 std::vector<double> back(std::uint8_t id, const SensorSpec& row, const std::vector<double>& values, WireFormat wire) {
   const SensorType& kind = *find_sensor_type(id);
   base::ReadingBlock block;

@@ -1,4 +1,4 @@
-// Every width of fan and number of samples.
+// Fields of view and numbers of samples of all sizes.
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ TEST(Fans, EveryHeading) {
   expect_exact("headings", sweep(world));
 }
 
-/// A robot whose lasers look from one point, as spots of infrared do in Stage: `fans` of (samples, fov, heading).
+/// A robot whose lasers share one point, like infrared spots in Stage. @param fans (samples, fov, heading) of each
 void add_spots(world::World& world, const base::Pose& pose, const std::vector<std::array<double, 3>>& fans) {
   const std::uint32_t mover = scenes::add_robot(world, pose, eye(1, 0.0, 4.0));
   std::vector<world::Laser>& lasers = world.movers[mover].lasers;
@@ -68,7 +68,7 @@ world::World spots() {
   for (int i = 0; i < 40; ++i) {
     const glm::dvec2 p = chance.in_square(3.5);
     const base::Pose X{p.x, p.y, 0.0, chance.between(-10.0, 10.0)};
-    // Alike all round; several at one bearing; of different width, the whole turn among them; too uneven to share.
+    // Evenly all round; several at one bearing; of different width, including a whole turn; too uneven to share.
     if (i % 4 == 0) add_spots(world, X, ring);
     if (i % 4 == 1) add_spots(world, X, {{1, 0, 0.5}, {1, 0, 0.5}, {1, 0, -0.5}, {1, 0, 7.0}});
     if (i % 4 == 2) add_spots(world, X, {{9, 1.0, 0.0}, {5, 2 * M_PI, 0.3}, {2, M_PI, 2.0}, {361, 2 * M_PI, 0.0}});
@@ -85,7 +85,7 @@ TEST(Fans, OfOneRobotInThirtyTwoBits) {
   sweep(world);
 }
 
-/// Fans of one point are scanned together where all are due, and alone where some are not.
+/// Scanners at one point are cast together when all are due, and separately otherwise.
 TEST(Fans, OfOneRobotWithRatesOfTheirOwn) {
   world::World world = spots();
   for (world::Mover& mover : world.movers) {

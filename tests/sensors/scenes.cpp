@@ -17,7 +17,7 @@ struct Cells {
   }
 };
 
-/// Smooth blobs: a sum of a few waves decides, the border is solid.
+/// Smooth blobs: the sign of a sum of a few waves; the border is solid.
 Cells grow(std::uint32_t n, std::uint64_t seed) {
   Cells cells{n, std::vector<char>(static_cast<std::size_t>(n) * n)};
   for (std::uint32_t y = 0; y < n; ++y)
@@ -44,7 +44,7 @@ void add_segment(world::World& world, glm::dvec2 a, glm::dvec2 b) {
   world.walls.push_back(s);
 }
 
-/// Runs of boundary along x (or, transposed, along y), as long as they stay straight with the solid on one side.
+/// Runs of boundary along x (or, transposed, along y), straight with the solid on one side.
 void add_runs(world::World& world, const Cells& cells, double cell, bool transposed) {
   const auto solid = [&](std::int64_t x, std::int64_t y) { return transposed ? cells.at(y, x) : cells.at(x, y); };
   const double half = 0.5 * cells.n * cell;

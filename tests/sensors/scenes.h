@@ -1,5 +1,5 @@
 #pragma once
-// Worlds made by hand, for tests and benchmarks: the same scene for both.
+// Hand-made worlds, shared by tests and benchmarks.
 
 #include <cstdint>
 
@@ -17,10 +17,10 @@ world::World boxes(std::uint32_t count, double size, std::uint64_t seed);
 /// A laser like the SICK LMS-200 in its 361-ray mode.
 world::Laser laser(std::uint32_t samples = 361, double fov = M_PI, double range_max = 8.0);
 
-/// Adds a robot: a 16-sided disc of 0.165 m carrying `laser`.
+/// Adds a robot: a 16-sided disc of 0.165 m radius with `laser`. @return its row
 std::uint32_t add_robot(world::World& world, const base::Pose& pose, const world::Laser& laser);
 
-/// Adds `count` such robots at free places, no two nearer than half a metre where there is room.
+/// Adds `count` such robots at free positions, at least half a metre apart where there is room.
 void add_robots(world::World& world, std::uint32_t count, const world::Laser& laser, std::uint64_t seed);
 
 /// Adds a square ring of walls round `centre`, `size` [m] on the inside: an outline round a hole.

@@ -1,4 +1,4 @@
-// Noise of sonar and infrared as a distribution; what readings do not depend on; what a tick allocates.
+// Noise of sonar and infrared as a distribution; invariances of readings; allocations of a tick.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ constexpr int kRobots = 8;
 constexpr std::size_t kTransducers = 16;
 constexpr int kTicks = 40;
 
-/// Robots in the open before a long slanted wall y = 2 + x / 2, each with two equal rings that look at it.
+/// Robots before a long slanted wall y = 2 + x / 2, each with two equal rings that face it.
 world::World slanted(const world::Sensor& sensor) {
   world::World world;
   scenes::add_outline(world, {{-100, -48}, {100, 52}, {100, 60}, {-100, -40}}, "wall");
@@ -36,7 +36,7 @@ world::Sensor noisy_sonar(double sigma, double proportional) {
                 cone_setting("noise", {sigma, proportional})});
 }
 
-/// Draws by tick, then sensor, then transducer, as `of(noisy, quiet)` finds them in first columns.
+/// Draws by tick, then sensor, then transducer, extracted by `of(noisy, quiet)` from first columns.
 template <class Of>
 std::vector<double> draws(const world::World& world, std::size_t columns, std::int64_t interval, Of of) {
   farm::Farm noisy(world, device(), {.seed = 5});
@@ -55,8 +55,7 @@ std::vector<double> draws(const world::World& world, std::size_t columns, std::i
   return all;
 }
 
-/// Transducers, sensors, robots and ticks next to each other have nothing in common: 4 standard deviations of a
-/// correlation.
+/// Neighbouring transducers, sensors, robots and ticks are uncorrelated, within 4 standard deviations.
 void expect_independent(const std::vector<double>& all) {
   for (const std::size_t lag :
        {std::size_t{1}, std::size_t{2}, kTransducers, 2 * kTransducers, kRobots * 2 * kTransducers}) {
@@ -80,7 +79,7 @@ TEST(SonarNoise, BothPartsAddAsVariances) {
   EXPECT_LT(ks(all), 1.95);
 }
 
-/// The noise is taken after the nearest ray is chosen, so that it does not shorten ranges.
+/// Noise is added after the choice of the nearest ray, so that it does not shorten ranges.
 TEST(SonarNoise, IsNotBiased) {
   const auto all =
       draws(slanted(noisy_sonar(0.02, 0.0)), 1, 40'000'000, [](double noisy, double quiet) { return noisy - quiet; });
@@ -114,7 +113,7 @@ TEST(SonarNoise, StaysWithinRangeAndLeavesAloneWhatHeardNothing) {
   EXPECT_GT(high, 10u);
 }
 
-/// Transducers that stand keep their draw as well: their last reading stands to the bit.
+/// Transducers that do not fire keep their draw too: their last reading stays the same to the bit.
 TEST(SonarNoise, WhatDoesNotFireStands) {
   world::World world;
   scenes::add_outline(world, {{1, -50}, {2, -50}, {2, 50}, {1, 50}}, "wall");
@@ -130,7 +129,7 @@ TEST(SonarNoise, WhatDoesNotFireStands) {
   }
 }
 
-/// Webots' table: relative noise of the response grows from 0 at no distance to the setting at range_max.
+/// Webots' table: relative noise of the response grows from 0 at range_min to the setting at range_max.
 TEST(InfraredNoise, IsRelativeToTheResponseAndGrowsWithTheRange) {
   world::World world;
   scenes::add_outline(world, {{-100, 0.03}, {100, 0.03}, {100, 1}, {-100, 1}}, "wall");
@@ -167,7 +166,7 @@ TEST(InfraredNoise, TheValueIsTheDisturbedResponse) {
   EXPECT_GT(seen.back() - seen.front(), 20.0);
 }
 
-/// A sonar and an infrared with the same number on one robot draw from different places.
+/// A sonar and an infrared sensor with the same number on one robot draw independently.
 TEST(InfraredNoise, IsNotTheSonars) {
   world::World world;
   scenes::add_outline(world, {{1, -50}, {2, -50}, {2, 50}, {1, 50}}, "wall");
@@ -186,7 +185,7 @@ TEST(InfraredNoise, IsNotTheSonars) {
   }
 }
 
-// --- What readings do not depend on.
+// --- Invariances of readings.
 
 world::World busy_world(int robots) {
   world::World world = scenes::boxes(40, 16.0, 3);
@@ -236,7 +235,7 @@ TEST(SonarHash, NoThreadCountNoRoomAndNoRunChangesAReading) {
   EXPECT_NE(hash_of(world, {.seed = 5, .threads = 2}), one);
 }
 
-/// Robots too far away to be heard change nothing.
+/// Robots out of range change nothing.
 TEST(SonarHash, StrangersChangeNothing) {
   const world::World few = busy_world(6);
   world::World more = few;

@@ -1,4 +1,4 @@
-// What world files may say of sonar and infrared, and every way to say it wrong; the rings that ship; payloads.
+// World-file settings of sonar and infrared, valid and invalid; the predefined rings; payloads.
 
 #include <gtest/gtest.h>
 
@@ -80,7 +80,7 @@ TEST(SonarSettings, UnitsAreTheFiles) {
   EXPECT_EQ(s.proportional, 0.01);
 }
 
-/// Stage's older words for the same things.
+/// Stage's older settings with the same meaning.
 TEST(SonarSettings, StagesViewIsUnderstood) {
   const ConeArray old = read_sonar(with({cone_setting("sview", {0.2, 5, 0.25})}), 0, 0);
   EXPECT_EQ(old.range_min, 0.2);
@@ -191,7 +191,7 @@ TEST(SonarSettings, ThePioneersRings) {
   ASSERT_EQ(ring.X_SC.size(), 16u);
   EXPECT_NEAR(ring.row.X_MS.z, 0.24, 1e-12);
   EXPECT_EQ(ring.turns, 8u);
-  // The robot is the same from left and right: k in front and 7 - k are each other's mirror images, and so behind.
+  // The robot is symmetric: front transducers k and 7 - k are mirror images, and likewise at the rear.
   for (std::size_t k = 0; k < 8; ++k)
     for (const std::size_t first : {0u, 8u}) {
       const Pose& left = ring.X_SC[first + k];
@@ -200,7 +200,7 @@ TEST(SonarSettings, ThePioneersRings) {
       EXPECT_EQ(left.y, -right.y) << k;
       EXPECT_NEAR(std::remainder(left.yaw + right.yaw, 2.0 * M_PI), 0.0, 1e-12) << k;
     }
-  // All of them look away from the robot.
+  // All transducers face outward.
   for (const Pose& p : ring.X_SC) EXPECT_GT(p.x * std::cos(p.yaw) + p.y * std::sin(p.yaw), 0.1);
   for (const world::Segment& side : world.movers[0].body) EXPECT_LT(side.z_max, 0.281) << "no body of its own";
 }
@@ -222,7 +222,7 @@ TEST(SonarSettings, TheKheperasEight) {
 
 // --- Payloads.
 
-/// What was read is what was sent, to the wire's unit.
+/// A decoded reading equals the encoded one, to the wire's unit.
 void expect_there_and_back(const SensorType& kind, const std::vector<double>& values, std::uint32_t elements,
                            double unit) {
   SensorSpec row;

@@ -1,5 +1,4 @@
-// Sonar: walls, corners and robots with a ruler; every cone against the nearest of its rays, one by one; who fires
-// when.
+// Sonar: analytic walls, corners and robots; every cone against the nearest of its rays, one by one; firing order.
 
 #include "sensors/sonar.h"
 
@@ -24,7 +23,7 @@ world::Sensor sonar(const std::vector<Pose>& poses, std::vector<world::Setting> 
   return cones("sonar", poses, std::move(more));
 }
 
-/// What one transducer at `X_WM` reads.
+/// Range of one transducer at `X_WM`.
 double hear(world::World world, const Pose& X_WM, std::vector<world::Setting> more = {}) {
   add_ranger(world, X_WM, sonar({Pose{}}, std::move(more)));
   const Glance run(world);
@@ -32,7 +31,7 @@ double hear(world::World world, const Pose& X_WM, std::vector<world::Setting> mo
   return run.readings.back().values[0];
 }
 
-/// A long wall whose face is at x = `x`, from y = `low` to 50; its end slopes away.
+/// A long wall with its surface at x = `x`, from y = `low` to 50; its end slopes away.
 world::World wall_at(double x, double low = -50.0) {
   world::World world;
   scenes::add_outline(world, {{x, low}, {x + 1.0, low + 10.0}, {x + 1.0, 50.0}, {x, 50.0}}, "wall");
@@ -43,7 +42,7 @@ world::World wall_at(double x, double low = -50.0) {
 
 TEST(Sonar, AWallAheadIsAsFarAsItIs) { EXPECT_NEAR(hear(wall_at(2.0), {}), 2.0, 1e-12); }
 
-/// Turned within half a cone of the wall's normal one ray or another is near it: rays are 2.5 degrees apart.
+/// Within half a cone of the wall's normal some ray is close to it: rays are 2.5 degrees apart.
 TEST(Sonar, AWallIsHeardByTheRayNearestToItsNormal) {
   for (int k = -40; k <= 40; ++k) {
     const double yaw = k * kDegree;
@@ -58,11 +57,11 @@ TEST(Sonar, ACornerIsAsFarAsItsNearerWall) {
   scenes::add_outline(world, {{-50, 0.5}, {50, 0.5}, {50, 1.5}, {-50, 1.5}}, "side");
   EXPECT_NEAR(hear(world, {0, 0, 0, 0}), 1.0, 1e-12) << "along the side wall it is ahead";
   EXPECT_NEAR(hear(world, {0, 0, 0, M_PI / 2}), 0.5, 1e-12);
-  const double edge = 0.25 * M_PI + 0.5 * kFov;  // the outermost ray, of a look into the corner, on the left
+  const double edge = 0.25 * M_PI + 0.5 * kFov;  // the outermost ray on the left, facing into the corner
   EXPECT_NEAR(hear(world, {0, 0, 0, 0.25 * M_PI}), 0.5 / std::sin(edge), 1e-12);
 }
 
-/// A wall that begins just within the outermost ray is heard, one that begins just outside of it is not.
+/// A wall that begins just within the outermost ray returns an echo, one just outside does not.
 TEST(Sonar, TheConeEndsWhereItsFieldOfViewDoes) {
   for (const double fov : {5.0 * kDegree, kFov, 60.0 * kDegree})
     for (const double sign : {-1.0, 1.0}) {
@@ -101,7 +100,7 @@ TEST(Sonar, HearsWhatSpansItsHeight) {
   EXPECT_EQ(hear(world, {}), 4.0) << "what returns nothing";
 }
 
-/// A ring inside of its robot's own body hears the other robot and never its own.
+/// A ring inside its robot's own body detects the other robot and never its own.
 TEST(Sonar, HearsOtherRobotsAndNeverItsOwn) {
   world::World world;
   add_ranger(world, {}, sonar(ring(16, 0.1)), 0.2);
@@ -134,7 +133,7 @@ TEST(Sonar, TransducersAreWhereTheFileSays) {
 
 // --- Ray by ray.
 
-/// Everyone's readings against the truth.
+/// Readings of all robots against the reference.
 ConeTally check(const world::World& world, const std::string& name) {
   const Glance run(world);
   const auto arrays = sensors::cone_arrays_of(world, "sonar", sensors::read_sonar);
@@ -150,7 +149,7 @@ ConeTally check(const world::World& world, const std::string& name) {
   return tally;
 }
 
-/// Robots among boxes, no two cones alike.
+/// Robots among boxes with different cones.
 world::World fleet(world::World world, std::uint64_t seed, double incidence = 0.0) {
   Chance chance(seed);
   for (int m = 0; m < 24; ++m) {
@@ -158,7 +157,7 @@ world::World fleet(world::World world, std::uint64_t seed, double incidence = 0.
     std::vector<Pose> poses;
     for (int i = 0; i < 1 + m % 16; ++i)
       poses.push_back({chance.between(-0.3, 0.3), chance.between(-0.3, 0.3), 0.01 * (i % 3), chance.between(-9, 9)});
-    // Up to 30 degrees of 11 rays four of them share a lane; wider, each has its own.
+    // Up to 30 degrees of 11 rays, four rays share a lane; wider cones have one ray per lane.
     const double rays = m % 5 == 0 ? 1.0 : 2.0 * chance.below(12) + 1.0;
     std::vector<world::Setting> more{cone_setting("fov", {chance.between(0.0, m % 3 == 0 ? 6.0 : 0.6)}),
                                      cone_setting("rays", {rays}),
@@ -194,7 +193,7 @@ TEST(Sonar, ASmoothWallIsNotHeardFlatly) {
   }
 }
 
-/// A smooth wall is heard while some ray is near its normal, and then as far as that ray says.
+/// A smooth wall returns an echo while some ray is near its normal; the range is that ray's.
 TEST(Sonar, AConeHearsASmoothWallWhileItsNormalIsWithin) {
   const auto look = [](double degrees) {
     return hear(wall_at(2.0), {0, 0, 0, degrees * kDegree}, {cone_setting("incidence", {5.0 * kDegree})});
@@ -203,8 +202,8 @@ TEST(Sonar, AConeHearsASmoothWallWhileItsNormalIsWithin) {
   EXPECT_EQ(look(18.0), 4.0) << "its outermost ray meets the wall at 5.5 degrees";
 }
 
-/// What is not heard does not hide: sound that goes on from a smooth wall is lost, the ray does not reach what is
-/// behind.
+/// A surface without an echo still occludes: sound reflected off a smooth wall is lost, and the ray does not continue
+/// behind it.
 TEST(Sonar, BehindASmoothWallNothingIsHeard) {
   world::World world = wall_at(3.0);
   scenes::add_outline(world, {{1.0, 0.9}, {1.0, -1.1}, {2.0, 0.0}, {2.0, 0.4}}, "wedge");
@@ -243,7 +242,7 @@ TEST(Sonar, EveryConeHearsWhatItsRaysMeetSteeply) {
   check(fleet(scenes::cave(500, 16.0, 3), 5, 1.2), "smooth cave");
 }
 
-/// What one sensor does not hear, another of the same world may.
+/// Surfaces without an echo for one sensor may echo for another in the same world.
 TEST(Sonar, OneThatIsDeafToFlatWallsBesideOneThatIsNot) {
   world::World world = wall_at(2.0);
   const auto one_ray = [](double incidence) {
@@ -260,7 +259,8 @@ TEST(Sonar, OneThatIsDeafToFlatWallsBesideOneThatIsNot) {
   EXPECT_NEAR(run.readings[3].values[0], heard, 1e-12);
 }
 
-/// A robot passes by rings that stand, some of them firing in turns, and stops: given again or not, the same bytes.
+/// A robot passes rings at rest, some of them with a firing cycle, and stops: reused and measured readings have equal
+/// bytes.
 TEST(Sonar, ReadingsThatAreGivenAgainAreThoseThatWouldBeTaken) {
   world::World world = scenes::boxes(20, 8.0, 2);
   const auto passer = add_ranger(world, {}, cones("sonar", ring(4, 0.15)), 0.2);
@@ -280,7 +280,7 @@ TEST(Sonar, ReadingsThatAreGivenAgainAreThoseThatWouldBeTaken) {
   EXPECT_GT(again.stats().reused, 0u);
 }
 
-// --- Who fires when.
+// --- Firing order.
 
 TEST(Sonar, TurnsGoRound) {
   using sensors::has_fired;
@@ -302,7 +302,7 @@ TEST(Sonar, TurnsGoRound) {
 
 std::vector<base::Report> standing_at(double x) { return {{0, 0, Pose{x, 0, 0, 0}, {}}}; }
 
-/// Two arrays of four round a robot that moves a centimetre each reading: a transducer says where it was when it fired.
+/// Two arrays of four round a robot that moves a centimetre per reading: a transducer's range is that of its firing.
 TEST(Sonar, OneTransducerOfEachArrayFiresAtATime) {
   world::World world = wall_at(3.0);
   add_ranger(world, {}, cones("sonar", std::vector<Pose>(8), {cone_setting("arrays", {2.0})}));
@@ -322,7 +322,7 @@ TEST(Sonar, OneTransducerOfEachArrayFiresAtATime) {
   EXPECT_EQ(farm.stats().work.rays, (8u + 29u * 2u) * 11u);
 }
 
-/// A farm that ticks more slowly than transducers fire renews in each tick those whose turn has come since.
+/// A farm with ticks slower than the firing renews in each tick all transducers that have fired since.
 TEST(Sonar, SlowTicksLoseNoTurn) {
   world::World world = wall_at(3.0);
   add_ranger(world, {}, cones("sonar", std::vector<Pose>(8)));
@@ -356,7 +356,7 @@ TEST(Sonar, AfterAPauseAllAreRenewed) {
   for (const double range : farm.sense(0, sensors::kSonar, 0, {1.5, 0, 0, 0}).values) EXPECT_NEAR(range, 1.5, 1e-12);
 }
 
-/// Due or not, a tick writes its tables: nothing is due in the first, and then not all.
+/// Tables are written even when nothing is due: in the first tick nothing is, later some are.
 TEST(Sonar, SomeAreDueAndSomeAreNot) {
   world::World world = wall_at(3.0);
   for (int m = 0; m < 200; ++m) {

@@ -1,4 +1,4 @@
-// Random polygon soups from random viewpoints: outlines overlap, touch, share vertices and edges.
+// Random polygon soups from random viewpoints: outlines overlap, touch, and share vertices and edges.
 
 #include <gtest/gtest.h>
 
@@ -10,13 +10,13 @@ namespace sf::trial {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr int kBowls = 4;  ///< the oracle is slow with ASan
+constexpr int kBowls = 4;  ///< the brute-force reference is slow under ASan
 #else
 constexpr int kBowls = 24;
 #endif
 constexpr double kBowl = 6.0;    ///< [m] half the side of the room round each soup
 constexpr double kRange = 18.0;  ///< [m] more than its diagonal
-constexpr double kApart = 64.0;  ///< [m] so that no soup sees another
+constexpr double kApart = 64.0;  ///< [m] so that soups are invisible to each other
 
 std::vector<glm::dvec2> star(Chance& chance) {
   const std::uint32_t corners = 3 + chance.below(7);
@@ -26,7 +26,7 @@ std::vector<glm::dvec2> star(Chance& chance) {
   return outline;
 }
 
-/// Rounds to a coarse lattice, where things meet exactly.
+/// Rounds to a coarse lattice, so that outlines meet exactly.
 glm::dvec2 snap(glm::dvec2 p) { return {std::round(4.0 * p.x) / 4.0, std::round(4.0 * p.y) / 4.0}; }
 
 std::vector<glm::dvec2> ingredient(const std::vector<std::vector<glm::dvec2>>& soup, Chance& chance) {
@@ -41,17 +41,17 @@ std::vector<glm::dvec2> ingredient(const std::vector<std::vector<glm::dvec2>>& s
   }
   const std::vector<glm::dvec2>& other =
       soup.empty() ? outline : soup[chance.below(static_cast<std::uint32_t>(soup.size()))];
-  if (what == 2) return other;                                         // the same again
+  if (what == 2) return other;                                         // a duplicate
   if (what == 3) return {other[0], other[0] + chance.in_square(1.0)};  // a thin wall from a corner
   const std::uint32_t corner = chance.below(static_cast<std::uint32_t>(outline.size()));
   const glm::dvec2 target = what == 4 ? other[chance.below(static_cast<std::uint32_t>(other.size()))] : at;
   const glm::dvec2 shift = target - outline[corner];
   for (glm::dvec2& p : outline) p = p + shift;
-  outline[corner] = target;  // to the bit, where they share a vertex
+  outline[corner] = target;  // exactly, where they share a vertex
   return outline;
 }
 
-/// One soup in its room around `centre`, and eyes in it: at random and aimed at vertices.
+/// One soup in its room round `centre`, with eyes in it: at random and aimed at vertices.
 void cook(world::World& world, glm::dvec2 centre, std::uint64_t seed) {
   Chance chance(seed);
   std::vector<std::vector<glm::dvec2>> soup;

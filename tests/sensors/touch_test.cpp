@@ -1,4 +1,4 @@
-// Sensors where they should not be: on walls, at corners, in solids.
+// Sensors on walls, at corners and in solids.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ constexpr double kUp = 0.5 * M_PI;
 constexpr double kDown = -0.5 * M_PI;
 
 TEST(Touch, ASensorOnASurfaceReadsZeroIntoItAndLooksFreelyOffIt) {
-  // On it, and half a nanometre on either side: less than the touch of 1 nm.
+  // On the surface, and half a nanometre on either side: less than the contact distance of 1 nm.
   for (const double above : {0.0, 0.5e-9, -0.5e-9}) {
     EXPECT_EQ(look(above, kUp), kFar) << above;
     EXPECT_LE(look(above, kDown), 1e-9) << above;
@@ -40,17 +40,17 @@ TEST(Touch, ASensorOnASurfaceReadsZeroIntoItAndLooksFreelyOffIt) {
   EXPECT_EQ(look(0.0, kDown), 0.0);
 }
 
-/// The nanometre counts along the beam: askew, half of one is more.
+/// The contact distance is measured along the beam: at an angle, half a nanometre of depth may be more.
 TEST(Touch, ABeamAskewHasFartherToGo) {
   EXPECT_NEAR(look(-0.5e-9, kUp - 1.5), 0.5e-9 / std::sin(M_PI / 2 - 1.5), 1e-14);
   EXPECT_NEAR(look(0.5e-9, kDown + 1.5), 0.5e-9 / std::sin(M_PI / 2 - 1.5), 1e-14);
 }
 
 TEST(Touch, BeyondTheTouchASensorIsOnOneSide) {
-  // Outside: the gap, and the open.
+  // Outside: the gap, and no hit.
   EXPECT_NEAR(look(2e-9, kDown), 2e-9, 1e-15);
   EXPECT_EQ(look(2e-9, kUp), kFar);
-  // Inside: the way out, both ways.
+  // Inside: the distance out, in both directions.
   EXPECT_NEAR(look(-2e-9, kUp), 2e-9, 1e-15);
   EXPECT_NEAR(look(-2e-9, kDown), 1.0 - 2e-9, 1e-12);
 }
@@ -61,7 +61,7 @@ TEST(Touch, InsideASolidASensorReadsTheWayOut) {
   EXPECT_NEAR(look(-0.25, 0.0), 0.5, 1e-12);
 }
 
-/// A thin wall has no inside: it stops beams from either side, and touches as a solid on the left of a -> b would.
+/// A thin wall has no inside: it stops beams from either side, and contact acts as for a solid on the left of a -> b.
 TEST(Touch, AThinWallIsSeenFromBothSides) {
   world::World world;
   scenes::add_outline(world, {{-1, 0}, {1, 0}}, "wall");
@@ -78,7 +78,7 @@ TEST(Touch, AThinWallIsSeenFromBothSides) {
   EXPECT_EQ(run.readings[3].values[0], kFar);
 }
 
-/// On walls and within nanometres of them, on corners, at odd angles: the rule of the touch holds beam by beam.
+/// On walls and within nanometres of them, on corners, at odd angles: the contact rule holds for every beam.
 TEST(Touch, EverywhereOnTheWallsOfBoxesAndACave) {
   for (const bool bitmap : {false, true}) {
     world::World world = bitmap ? scenes::cave(60, 8.0, 2) : scenes::boxes(20, 10.0, 8);
@@ -95,7 +95,7 @@ TEST(Touch, EverywhereOnTheWallsOfBoxesAndACave) {
   }
 }
 
-/// Boxes overlap: from inside of several, the first surface in any direction is the answer.
+/// Boxes overlap: from inside several of them, the first surface in any direction counts.
 TEST(Touch, InsideOverlappingSolids) {
   world::World world = scenes::boxes(120, 10.0, 9);
   Chance chance(5);
