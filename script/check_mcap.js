@@ -1,5 +1,5 @@
 // Reads a recording with @mcap/core, by its index and front to back, and decodes every message by its schema.
-// Ends with an error at the first thing that does not hold.
+// Ends with an error at the first violation.
 
 const fs = require("fs");
 const { McapIndexedReader, McapStreamReader } = require("@mcap/core");
