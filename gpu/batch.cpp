@@ -22,7 +22,7 @@ struct Copy {
 struct Batch::Vk {
   Device::Vk* device = nullptr;
   VkCommandPool pool = VK_NULL_HANDLE;
-  std::array<VkCommandBuffer, 3> commands{};  ///< up, run, down
+  std::array<VkCommandBuffer, 3> commands{};  ///< upload, run, download
   VkFence done = VK_NULL_HANDLE;
   std::vector<Copy> ups;
   std::vector<Copy> downs;

@@ -1,5 +1,5 @@
 #pragma once
-// One submit and one wait per tick: copies up, kernels, copies down.
+// One submission and one wait per tick: uploads, kernels, downloads.
 
 #include <cstddef>
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace sf::gpu {
 
-/// Kernels are recorded once, copies are named each tick (and cost nothing where memory is unified).
+/// Kernels are recorded once, copies are named each tick (and cost nothing on unified devices). Not thread-safe.
 class Batch {
  public:
   explicit Batch(Device& device);
@@ -18,19 +18,19 @@ class Batch {
   Batch(const Batch&) = delete;
   Batch& operator=(const Batch&) = delete;
 
-  /// Starts a new recording: to be called again only when kernels or tables were replaced.
+  /// Starts a new recording. Call it only when kernels or tables were replaced.
   void begin();
-  /// Runs `kernel` with the group counts (x, y, z as u32) found in `counts` at `offset` [bytes] when the batch runs.
+  /// Runs `kernel` with the group counts (x, y, z as u32) that `counts` holds at `offset` [bytes] at the time of `run`.
   void dispatch(const Kernel& kernel, const Buffer& counts, std::size_t offset);
-  /// What is dispatched from here on sees what the dispatches before wrote.
+  /// Makes the results of earlier dispatches visible to later ones.
   void barrier();
   void end();
 
-  /// This tick's bytes to copy, from the host view up or from the device down.
+  /// Copies [offset, offset + size) [bytes] of `table` at the next `run`: from the host view to the device, or back.
   void upload(const Buffer& table, std::size_t offset, std::size_t size);
   void download(const Buffer& table, std::size_t offset, std::size_t size);
 
-  /// Submits all of it once and waits.
+  /// Submits all copies and kernels once and waits for their end.
   void run();
 
   struct Vk;

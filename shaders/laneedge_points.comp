@@ -1,19 +1,18 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// What the cast met, as points: every lane of four rays of every lane edge sensor that is due, in one
-// dispatch.
+// Points from the hits of the cast: every lane of four beams of all due lane edge sensors, in one dispatch.
 
 #include "sensors/laneedge.h"
 #include "raycast/records.h"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer edges;       // SF_EDGE_TEXELS a sensor: EdgeRow
-layout(binding = 1, rgba32ui) uniform readonly uimageBuffer directions;  // a texel a beam: cosine, sine of its bearing
-layout(binding = 2, rgba32f) uniform readonly imageBuffer normals;       // a texel a lane: normal deviates
-layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer points;     // a texel a beam: x, y [m], its grain in x
-layout(binding = 4, r32ui) uniform readonly uimageBuffer lanes;          // two words a lane: Lane
-layout(binding = 5, rgba32ui) uniform readonly uimageBuffer ranges;      // two texels a lane: four doubles [m]
-layout(binding = 6, rgba32ui) uniform readonly uimageBuffer hits;        // a texel a lane: four tags
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer edges;       // SF_EDGE_TEXELS per sensor: EdgeRow
+layout(binding = 1, rgba32ui) uniform readonly uimageBuffer directions;  // one texel per beam: cosine and sine of its bearing
+layout(binding = 2, rgba32f) uniform readonly imageBuffer normals;       // one texel per lane: normal deviates
+layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer points;     // one texel per beam: x, y [m], pixel size in the last bits of x
+layout(binding = 4, r32ui) uniform readonly uimageBuffer lanes;          // two words per lane: Lane
+layout(binding = 5, rgba32ui) uniform readonly uimageBuffer ranges;      // two texels per lane: four doubles [m]
+layout(binding = 6, rgba32ui) uniform readonly uimageBuffer hits;        // one texel per lane: four tags
 
 #include "shaders/lib/edge_point.glsl"
 

@@ -1,25 +1,25 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Casting every beam of every sensor that is due.
+// Casts every beam of all due sensors.
 
 #include "raycast/records.h"
 
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const bool kMovers = true;   // there are some
-layout(constant_id = 1) const bool kSinglePrecision = false;  // ranges are measured in 32 bits where these are close enough
-layout(constant_id = 2) const bool kTexels = false;  // results are too large for storage buffers, which are faster
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;            // SF_ROW_TEXELS a sensor: RayRow
-layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;              // two words a lane: Lane
-layout(binding = 2, r32f) uniform readonly imageBuffer bearings;             // a lane's middle bearing [sectors]
-layout(binding = 3, rgba32ui) uniform readonly uimageBuffer directions;      // a texel a beam: cosine, sine
+layout(constant_id = 0) const bool kMovers = true;   // the world has movers
+layout(constant_id = 1) const bool kSinglePrecision = false;  // ranges in 32 bits where these are accurate enough
+layout(constant_id = 2) const bool kTexels = false;  // results exceed the limit of storage buffers, which are faster
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;            // SF_ROW_TEXELS per sensor: RayRow
+layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;              // two words per lane: Lane
+layout(binding = 2, r32f) uniform readonly imageBuffer bearings;             // middle bearing of each lane [sectors]
+layout(binding = 3, rgba32ui) uniform readonly uimageBuffer directions;      // one texel per beam: cosine, sine
 layout(binding = 4, rgba32ui) uniform readonly uimageBuffer lists;           // ListHead, ListEntry, ListChunk
 layout(binding = 5, r32ui) uniform readonly uimageBuffer segment_ids;              // exact segment of each entry
-layout(binding = 6, rgba32ui) uniform readonly uimageBuffer mover_rows;          // two texels a mover and height: MoverPlace
-layout(binding = 7, rgba32ui) uniform readonly uimageBuffer segments;        // two texels a segment: ExactSegment
-layout(binding = 8, r32ui) uniform readonly uimageBuffer models;             // what a beam reports that meets the segment
-layout(binding = 9, rgba32ui) uniform writeonly uimageBuffer range_texels;   // two texels a lane: four doubles [m]
-layout(binding = 10, rgba32ui) uniform writeonly uimageBuffer hit_texels;    // a texel a lane: four models
-layout(binding = 11, r32ui) uniform writeonly uimageBuffer flag_texels;   // a word a lane: SF_DOUBT, SF_GRAZES
+layout(binding = 6, rgba32ui) uniform readonly uimageBuffer mover_rows;          // two texels per mover and height: MoverRow
+layout(binding = 7, rgba32ui) uniform readonly uimageBuffer segments;        // two texels per segment: ExactSegment
+layout(binding = 8, r32ui) uniform readonly uimageBuffer models;             // `Segment::model` of each segment
+layout(binding = 9, rgba32ui) uniform writeonly uimageBuffer range_texels;   // two texels per lane: four doubles [m]
+layout(binding = 10, rgba32ui) uniform writeonly uimageBuffer hit_texels;    // one texel per lane: four models
+layout(binding = 11, r32ui) uniform writeonly uimageBuffer flag_texels;   // one word per lane: SF_UNCERTAIN, SF_GRAZING
 layout(binding = 12) writeonly buffer Ranges { uvec4 ranges[]; };            // the same tables
 layout(binding = 13) writeonly buffer Hits { uvec4 hits[]; };
 layout(binding = 14) writeonly buffer BeamFlags { uint beam_flags[]; };
@@ -71,7 +71,7 @@ void main() {
   Beam64 beams[SF_BEAMS_PER_LANE];
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) beams[i] = exact_beam(SF_BEAMS_PER_LANE * lane_beams + i, origin, heading);
 
-  // Search in 32 bits. At first the end of the range is the nearest.
+  // Search in 32 bits. Initially the end of the range is the nearest.
   const int sector = int(floor(view.z + imageLoad(bearings, lane_beams).x)) & (SF_SECTORS - 1);
   const uvec4 walls = imageLoad(lists, int(tables.x) + sector);
   const uvec4 movers = kMovers ? imageLoad(lists, int(tables.y) + sector) : uvec4(0u);
@@ -87,7 +87,7 @@ void main() {
   search_lists(walls, movers, view.xy, origin, band, s);
 
   ClosestHit closest[SF_BEAMS_PER_LANE];
-  uint pending = 0u;  // beams in doubt
+  uint pending = 0u;  // uncertain beams
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
     pending |= s.low[i] > s.others[i] ? 0u : 1u << i;
     const uint id = s.entry[i] < 0 ? SF_NO_HIT : imageLoad(segment_ids, max(s.entry[i], 0)).x + uint(s.first_row[i]);
@@ -95,7 +95,7 @@ void main() {
   }
   uint flags = SF_UNCERTAIN * pending;
 
-  // A beam in doubt meets every entry that is not farther than what 64 bits have found; one beam after another.
+  // An uncertain beam is intersected with every entry up to the range found so far in 64 bits, beam by beam.
   int at = int(walls.x);
   int facing_end = at + int(walls.y);
   int end = facing_end + int(walls.z);

@@ -1,22 +1,23 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Road paint in pixels: every ray of every lane edge sensor that is due, in one dispatch. What the cast met nearer wins.
+// Road markings in pixels: every ray of all due lane edge sensors, in one dispatch. The nearer of the raster's hit and
+// the cast's hit counts.
 
 #include "sensors/laneedge.h"
 #include "raycast/records.h"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;          // SF_ROAD_TEXELS a sensor: RoadRow
-layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;            // two words a lane: Lane
-layout(binding = 2, rgba32ui) uniform readonly uimageBuffer directions64;  // a texel a beam: cosine, sine as it looks
-layout(binding = 3, r32ui) uniform readonly uimageBuffer directory;        // a word a block
-layout(binding = 4, r32ui) uniform readonly uimageBuffer blocks;           // four words a block that has paint
-layout(binding = 5, rgba32ui) uniform readonly uimageBuffer ranges;        // two texels a lane: four doubles [m]
-layout(binding = 6, rgba32ui) uniform readonly uimageBuffer hits;          // a texel a lane: four tags
-layout(binding = 7, rgba32ui) uniform readonly uimageBuffer edges;         // SF_EDGE_TEXELS a sensor: EdgeRow
-layout(binding = 8, rgba32ui) uniform readonly uimageBuffer directions;    // a texel a beam: cosine, sine as it is told
-layout(binding = 9, rgba32f) uniform readonly imageBuffer normals;         // a texel a lane: normal deviates
-layout(binding = 10, rgba32ui) uniform writeonly uimageBuffer points;      // a texel a beam: x, y [m], its grain in x
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;          // SF_RASTER_TEXELS per sensor: RasterRow
+layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;            // two words per lane: Lane
+layout(binding = 2, rgba32ui) uniform readonly uimageBuffer directions64;  // one texel per beam: cosine and sine of its actual bearing
+layout(binding = 3, r32ui) uniform readonly uimageBuffer directory;        // one word per block
+layout(binding = 4, r32ui) uniform readonly uimageBuffer blocks;           // four words per block with paint
+layout(binding = 5, rgba32ui) uniform readonly uimageBuffer ranges;        // two texels per lane: four doubles [m]
+layout(binding = 6, rgba32ui) uniform readonly uimageBuffer hits;          // one texel per lane: four tags
+layout(binding = 7, rgba32ui) uniform readonly uimageBuffer edges;         // SF_EDGE_TEXELS per sensor: EdgeRow
+layout(binding = 8, rgba32ui) uniform readonly uimageBuffer directions;    // one texel per beam: cosine and sine of its nominal bearing
+layout(binding = 9, rgba32f) uniform readonly imageBuffer normals;         // one texel per lane: normal deviates
+layout(binding = 10, rgba32ui) uniform writeonly uimageBuffer points;      // one texel per beam: x, y [m], pixel size in the last bits of x
 
 #include "shaders/lib/edge_point.glsl"
 #include "shaders/lib/raster_walk.glsl"
@@ -44,7 +45,7 @@ void main() {
   const ivec2 size = ivec2(rest.yz);
   const Walk w = walk(start, from, vec2(float(dx), float(dy)), uintBitsToFloat(tables.w), size, start.x >= 0);
 
-  // The face that was met, in 64 bits.
+  // The range of the hit, in 64 bits.
   const double span = w.across_x ? double(w.face) - double(from.x) : double(w.face) - double(from.y);
   const double along = w.across_x ? dx : dy;
   precise double t = span / (along == 0.0 ? 1.0 : along);

@@ -1,16 +1,16 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Occupancy maps: one scan into each map, word by word. No two lanes write the same word.
+// Occupancy maps: one scan per map, word by word. No two lanes write the same word.
 
 #include "maps/grid.h"
 #include "sensors/occupancy_records.h"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;   // SF_MAP_ROW_TEXELS a map: MapRow
-layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;    // two words for eight lanes: MapBlock
-layout(binding = 2, r32ui) uniform readonly uimageBuffer strips;    // what occupancy_strips.comp wrote
-layout(binding = 3, r32ui) uniform readonly uimageBuffer hit_words;    // a word a lane: bit 2 k where a beam ended in cell k
-layout(binding = 4, r32ui) uniform uimageBuffer words;              // of all maps, and a last one that is nobody's
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;   // SF_MAP_ROW_TEXELS per map: MapRow
+layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;    // two words per eight lanes: MapBlock
+layout(binding = 2, r32ui) uniform readonly uimageBuffer strips;    // written by occupancy_strips.comp
+layout(binding = 3, r32ui) uniform readonly uimageBuffer hit_words;    // one word per lane: bit 2 k where a beam ended in cell k
+layout(binding = 4, r32ui) uniform uimageBuffer words;              // of all maps, and a last one for lanes without work
 
 #include "shaders/lib/cover.glsl"
 

@@ -1,30 +1,30 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Occupancy maps that weigh: log odds per cell, and the states that follow from them (maps/grid_update.h).
+// Occupancy maps with log odds: log odds per cell, and the states that follow from them (maps/grid_update.h).
 
 #include "maps/grid.h"
 #include "sensors/occupancy_records.h"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;   // SF_MAP_ROW_TEXELS a map: MapRow
-layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;    // two words for eight lanes: MapBlock
-layout(binding = 2, r32ui) uniform readonly uimageBuffer strips;    // what occupancy_strips.comp wrote
-layout(binding = 3, r32ui) uniform readonly uimageBuffer hit_words;    // a word a lane: bit 2 k where a beam ended in cell k
-layout(binding = 4, r32ui) uniform writeonly uimageBuffer words;    // of all maps, and a last one that is nobody's
-layout(binding = 5, rgba32ui) uniform uimageBuffer odds;            // SF_ODDS_TEXELS for each of these words
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;   // SF_MAP_ROW_TEXELS per map: MapRow
+layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;    // two words per eight lanes: MapBlock
+layout(binding = 2, r32ui) uniform readonly uimageBuffer strips;    // written by occupancy_strips.comp
+layout(binding = 3, r32ui) uniform readonly uimageBuffer hit_words;    // one word per lane: bit 2 k where a beam ended in cell k
+layout(binding = 4, r32ui) uniform writeonly uimageBuffer words;    // of all maps, and a last one for lanes without work
+layout(binding = 5, rgba32ui) uniform uimageBuffer odds;            // SF_ODDS_TEXELS per word
 
 #include "shaders/lib/cover.glsl"
 
 struct Weighed {
   uint pair;    // two log odds
-  uint states;  // bits 0 and 1 of the first, 2 and 3 of the second
+  uint states;  // bits 0 and 1 of the first cell, 2 and 3 of the second
 };
 
 uint state_of(int odds_of_cell) {
   return odds_of_cell > 0 ? SF_CELL_OCCUPIED : odds_of_cell < 0 ? SF_CELL_FREE : SF_CELL_UNEXPLORED;
 }
 
-// `freed` and `occupied` have bit 0 for the first of the two, bit 2 for the second.
+// `freed` and `occupied` have bit 0 for the first cell, bit 2 for the second.
 Weighed weigh(uint pair, uint freed, uint occupied, ivec3 rule) {
   const ivec2 old = ivec2(bitfieldExtract(int(pair), 0, 16), bitfieldExtract(int(pair), 16, 16));
   const ivec2 up = ivec2(int(occupied) & 1, int(occupied >> 2) & 1);

@@ -1,19 +1,20 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Which cells of a strip the lines of a scan's beams cover, to the cell as maps/grid_update.h has the rule.
+// The cells of a strip that the lines of a scan's beams cover, by the rule of maps/grid_update.h, exactly.
 //
-// A strip is 32 cells of one column (flat lines cross it in one cell each) or of one row (steep lines). At step i a line to an end n
-// cells along and a to the side is floor(i a / n + 1/2) cells to the side. That sum is a multiple of 1 / (2 n), so a bias that is right
-// of 0 by more than rounding and left of 1 / (2 n) by more than rounding gives the same floor: with n <= 1023, rounding of the slope and
-// of the product are below 1.3e-4 together, 1 / (2 n) above 4.8e-4.
+// A strip is 32 cells of one column (flat lines cross it in one cell each) or of one row (steep lines). At step i a
+// line to an end n cells along and a to the side is floor(i a / n + 1/2) cells to the side. That sum is a multiple of 1
+// / (2 n). A bias that exceeds 0 by more than rounding, and stays below 1 / (2 n) by more than rounding, gives the same
+// floor: with n <= 1023, rounding of the slope and of the product are below 1.3e-4 together, and 1 / (2 n) is above
+// 4.8e-4.
 
 #include "sensors/occupancy_records.h"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;     // SF_MAP_ROW_TEXELS a scan: MapRow
-layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;      // two words for eight lanes: MapBlock
-layout(binding = 2, rgba32f) uniform readonly imageBuffer lines;      // a texel for two beams: slope, reach; slope, reach (LinePair)
-layout(binding = 3, r32ui) uniform writeonly uimageBuffer strips;     // a word a lane: bit k for its k-th cell
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;     // SF_MAP_ROW_TEXELS per scan: MapRow
+layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;      // two words per eight lanes: MapBlock
+layout(binding = 2, rgba32f) uniform readonly imageBuffer lines;      // one texel per two beams: slope, reach; slope, reach (BeamLine)
+layout(binding = 3, r32ui) uniform writeonly uimageBuffer strips;     // one word per lane: bit k for its k-th cell
 
 #include "shaders/lib/candidates.glsl"
 
@@ -28,7 +29,7 @@ void main() {
   const vec4 look = uintBitsToFloat(imageLoad(rows, row + 2));
   const vec4 fan = uintBitsToFloat(imageLoad(rows, row + 3));
 
-  // The strip from the sensor's cell: `offset` along the lines, cells [side, side + 32) across.
+  // The strip relative to the sensor's cell: `offset` along the lines, cells [side, side + 32) across.
   const int at = int(place & 0xFFFFu) + lane % SF_MAP_BLOCK;
   const int across = SF_STRIP * int(place >> 16);
   const int offset = at - int(flat_strip ? scan.y : scan.z);
@@ -38,7 +39,8 @@ void main() {
   const int low = max(side, -i);  // no line is farther to the side than along
   const int high = min(side + SF_STRIP - 1, i);
 
-  // A covered cell's middle lies within half a cell along and one across from the beam itself: half for the end's cell, half for rounding.
+  // A covered cell's middle lies within half a cell along and one across from the beam itself: half for the end's cell,
+  // half for rounding.
   const vec2 within = flat_strip ? look.xy : look.yx;
   const float along = float(i) - (back ? -within.x : within.x);
   const float y_low = float(low) - 1.01 - within.y;

@@ -1,10 +1,10 @@
 #version 450
-// The arithmetic that decides readings, each operation in the form in which kernels have it: what the host computes for the same operands
-// is in gpu/self_check_arithmetic.cpp, in this order.
+// The arithmetic that decides readings, each operation in the form used by kernels. gpu/self_check_arithmetic.cpp has
+// the host's results for the same operands, in this order.
 
 layout(local_size_x = 64) in;
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer operands;  // a, b as two words each
-layout(binding = 1, rgba32ui) uniform writeonly uimageBuffer results;  // nine texels a row: eighteen results
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer operands;  // a and b, two words each
+layout(binding = 1, rgba32ui) uniform writeonly uimageBuffer results;  // nine texels per row: eighteen results
 
 void store(int row, int texel, uvec2 first, uvec2 second) { imageStore(results, 9 * row + texel, uvec4(first, second)); }
 
@@ -45,20 +45,22 @@ void main() {
   const double clamped = min(max(a, b), 3.0LF);
   store(row, 4, unpackDouble2x32(total), unpackDouble2x32(clamped));
 
-  // Decisions, and a reading that is no number.
+  // Comparisons, and NaN.
   const uint compared = (a < b ? 1u : 0u) | (a <= b ? 2u : 0u) | (a == b ? 4u : 0u) | (a > b ? 8u : 0u) | (a >= b ? 16u : 0u) |
                         (a != b ? 32u : 0u);
   const double nan = packDouble2x32(uvec2(0u, 0x7ff80000u));
   store(row, 5, uvec2(compared, 0u), unpackDouble2x32(a > b ? a : nan));
 
-  // Between 64 bits and 32. No kernel widens what it has just narrowed, which compilers may leave out.
+  // Conversions between 64 and 32 bits. No kernel widens a value that it has just narrowed, which compilers may
+  // optimize away.
   const float narrow = float(a);
   const float other = float(b);
   precise float turned = narrow * other - other * (0.9 * narrow);
   store(row, 6, unpackDouble2x32(double(uintBitsToFloat(words.y))), unpackDouble2x32(double(int(words.x))));
   store(row, 7, word_of(narrow), word_of(turned));
 
-  // A 32-bit root or quotient is only where a search or one step of Newton's method in 64 bits begins (lib/dipoles.glsl).
+  // 32-bit roots and quotients are only start values of a search or of one step of Newton's method in 64 bits
+  // (lib/dipoles.glsl).
   precise double square = 1.0LF + a * a;
   precise float root = sqrt(max(float(square), 1e-37));
   precise float rough32 = 1.0 / root;

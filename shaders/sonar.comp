@@ -1,18 +1,18 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Sonar: the nearest surface in each cone that throws its echo back, for every transducer that fires, in one dispatch.
+// Sonar: the nearest surface that returns an echo in each cone, for all firing transducers, in one dispatch.
 
 #include "sensors/cones/records.h"
 #include "raycast/records.h"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer cones;       // SF_CONE_TEXELS a cone: ConeRow
-layout(binding = 1, rgba32ui) uniform readonly uimageBuffer ranges;      // two texels a lane: four doubles [m]
-layout(binding = 2, rgba32ui) uniform readonly uimageBuffer hits;        // a texel a lane: rows of faces, or models
-layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer echoes;     // a texel a cone: ConeEcho
-layout(binding = 4, rgba32ui) uniform readonly uimageBuffer directions;  // a texel a beam: cosine, sine of its bearing
-layout(binding = 5, rgba32ui) uniform readonly uimageBuffer reflectors;       // a texel a surface: ConeFace
-layout(binding = 6, rgba32f) uniform readonly imageBuffer headings;      // a texel a mover, the first stands still: cosine, sine
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer cones;       // SF_CONE_TEXELS per cone: ConeRow
+layout(binding = 1, rgba32ui) uniform readonly uimageBuffer ranges;      // two texels per lane: four doubles [m]
+layout(binding = 2, rgba32ui) uniform readonly uimageBuffer hits;        // one texel per lane: rows of reflectors, or models
+layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer echoes;     // one texel per cone: ConeEcho
+layout(binding = 4, rgba32ui) uniform readonly uimageBuffer directions;  // one texel per beam: cosine and sine of its bearing
+layout(binding = 5, rgba32ui) uniform readonly uimageBuffer reflectors;       // one texel per surface: ReflectorDirection
+layout(binding = 6, rgba32f) uniform readonly imageBuffer headings;      // one texel per mover, the first for static surfaces: cosine, sine
 
 vec2 turned(vec2 by, vec2 v) {
   precise float x = by.x * v.x - by.y * v.y;
@@ -20,7 +20,7 @@ vec2 turned(vec2 by, vec2 v) {
   return vec2(x, y);
 }
 
-// Sound that meets a smooth surface flatly is thrown away from the sonar.
+// At a flat angle of incidence a smooth surface reflects sound away from the sonar.
 bool returns_echo(int beam, uint hit, vec2 heading, float min_cosine) {
   const bool any = min_cosine <= 0.0;
   const uvec4 bearing = imageLoad(directions, beam);

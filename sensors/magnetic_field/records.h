@@ -1,12 +1,12 @@
 #ifndef SENSORS_MAGNETIC_FIELD_RECORDS_H
 #define SENSORS_MAGNETIC_FIELD_RECORDS_H
-// What host and device agree on about summing the fields of magnets. Read by both compilers.
+// Records shared by host and device for sums of magnetic fields. Read by both compilers.
 //
-// An item is one lane's work: up to SF_FIELD_PLACES places that lie together, and a run of spans of magnets. Each
-// magnet that is loaded serves all of its places.
+// An item is the work of one lane: a group of up to SF_FIELD_POINTS neighbouring points, and a run of spans of magnets.
+// Each magnet is loaded once for all points of the group.
 
-#define SF_FIELD_POINTS 5  // as many as the thesis' array has elements
-#define SF_FIELD_UNROLL 2  // magnets per turn of the loop
+#define SF_FIELD_POINTS 5  // the number of elements of the thesis' array
+#define SF_FIELD_UNROLL 2  // magnets per loop iteration
 
 #ifdef __cplusplus
 
@@ -14,42 +14,43 @@
 
 namespace sf::sensors {
 
-/// A magnet as the kernel sees it: two texels.
+/// A magnet for the kernel: two texels.
 struct DipoleRow {
   double x, y, z;        ///< [m] world
-  float moment;          ///< [A m^2]; 0: nothing
-  float inverse_radius;  ///< [1/m] nearer than the radius the field is what it is there
+  float moment;          ///< [A m^2]; 0: no field
+  float inverse_radius;  ///< [1/m] inside the radius the field is that at the radius
 };
 static_assert(sizeof(DipoleRow) == 32);
 
-/// Where the field is wanted: two texels.
+/// A point of a group: two texels.
 struct FieldPointRow {
   double x, y, z;         ///< [m] world
-  double cutoff_squared;  ///< [m^2] magnets farther away along the ground are left out; of an item's first place
+  double cutoff_squared;  ///< [m^2] magnets farther away along the ground are ignored; read from the group's first
+                          ///< point
 };
 static_assert(sizeof(FieldPointRow) == 32);
 
-/// What a lane sums: one texel.
+/// Work of one lane: one texel.
 struct FieldItem {
-  std::uint32_t first;  ///< span
-  std::uint32_t end;    ///< span behind the last one
-  std::uint32_t group;  ///< of SF_FIELD_PLACES places
-  std::uint32_t out;    ///< of SF_FIELD_PLACES results
+  std::uint32_t first;  ///< first span
+  std::uint32_t end;    ///< behind the last span
+  std::uint32_t group;  ///< index of the group of SF_FIELD_POINTS points
+  std::uint32_t out;    ///< index of the group of SF_FIELD_POINTS results
 };
 static_assert(sizeof(FieldItem) == 16);
 
-/// Magnets that lie together in their table: two words.
+/// A contiguous range of magnets in their table: two words.
 struct MagnetSpan {
   std::uint32_t first;
   std::uint32_t end;  ///< behind the last one; > first
 };
 static_assert(sizeof(MagnetSpan) == 8);
 
-/// The field of an item's magnets at one of its places, world frame: two texels. The device leaves out the factor
-/// mu0 / 4 pi.
+/// The field of an item's magnets at one of its points, world frame: two texels. The device omits the factor mu0 / 4
+/// pi.
 struct FieldSum {
   double x = 0.0, y = 0.0, z = 0.0;  ///< [T]
-  double magnitudes = 0.0;           ///< [T] sum of the magnets' own magnitudes; 0 unless asked for
+  double magnitudes = 0.0;           ///< [T] sum of the magnitudes of the magnets' fields; 0 unless requested
 };
 static_assert(sizeof(FieldSum) == 32);
 

@@ -1,8 +1,9 @@
-// Which pairs of beams of a fan may look at a range of bearings. Bearings only choose which beams are asked: too many cost time, never a cell.
+// The pairs of beams that may have a range of bearings. Bearings only select the beams to test: too many cost time,
+// never a cell.
 
 const float PI = 3.14159265;
 
-// Bearing [rad] of a direction, wrong by at most 2e-5 (Abramowitz and Stegun 4.4.49).
+// Bearing [rad] of a direction with error up to 2e-5 (Abramowitz and Stegun 4.4.49).
 float bearing_of(vec2 d) {
   const vec2 a = abs(d);
   const float q = min(a.x, a.y) / max(max(a.x, a.y), 1e-9);
@@ -13,23 +14,23 @@ float bearing_of(vec2 d) {
   return d.y < 0.0 ? -half_turn : half_turn;
 }
 
-// Up to three runs of pairs, since a field of view may go round.
+// Up to three runs of pairs, because a field of view may wrap round.
 struct Candidates {
-  int first;   // of the run that lies there
+  int first;   // of the main run
   int count;
-  int low;     // as many from the first pair on
-  int high;    // first of those at the other end
+  int low;     // length of the run that begins at pair 0
+  int high;    // first pair of the run that ends at the last pair
 };
 
 int count_of(Candidates c, int pairs) { return c.count + c.low + max(pairs - c.high, 0); }
 
-// The j-th of them.
+// The j-th candidate.
 int candidate(Candidates c, int j) {
   return j < c.count ? c.first + j : j < c.count + c.low ? j - c.count : c.high + (j - c.count - c.low);
 }
 
-// Within `wide` of `bearing` (in [-pi, pi], in the sensor's frame), or all. `fan` is half_fov, per_radian, slack, round of a MapRow, in
-// pairs: pair p holds beams 2 p and 2 p + 1, half a pair apart.
+// Candidates within `wide` of `bearing` (in [-pi, pi], sensor frame), or all pairs. `fan` holds half_fov, per_radian,
+// slack and round of a MapRow, in pairs: pair p holds beams 2 p and 2 p + 1, half a pair apart.
 Candidates candidates(float bearing, float wide, bool all, vec4 fan, int pairs) {
   const float last = float(pairs);
   const float reach = wide + fan.z;

@@ -1,5 +1,5 @@
-// The nearest echo of every cone of beams that is due. Who includes this gives the tables cones (SF_CONE_TEXELS a cone:
-// ConeRow), ranges, hits, and echoes to write to; and `returns_echo`, which says whether what a beam met sends its echo back.
+// The nearest echo of every due cone of beams. The including shader declares the tables cones (SF_CONE_TEXELS per cone:
+// ConeRow), ranges, hits and echoes, and the function `returns_echo`, which decides whether a hit returns its echo.
 
 void main() {
   const int at = int(gl_GlobalInvocationID.x);
@@ -8,7 +8,7 @@ void main() {
   const vec2 heading = uintBitsToFloat(rest.xy);
   const float min_cosine = uintBitsToFloat(where.w);
 
-  // Places of a lane without a beam repeat one.
+  // Unused places of a lane repeat a beam.
   double nearest = packDouble2x32(rest.zw);
   uint met = SF_NO_HIT;
   const int lanes = int(where.y);

@@ -1,14 +1,15 @@
-// What a scan says of one word's cells: from the strips that cross it, and the ends that the host has marked.
+// Effect of a scan on one word's cells, from the strips that cross it and the ends that the host has marked.
 //
-// The caller declares: rows (MapRow), blocks (MapBlock), strips, struck.
+// The including shader declares the tables rows (MapRow), blocks (MapBlock), strips and hit_words.
 
 struct WordUpdate {
-  int word;        // in the table of all maps; -1: this lane has none
+  int word;        // in the table of all maps; -1: no work for this lane
   uint freed;      // bit 2 k of cell k
-  uint occupied;   // likewise
+  uint occupied;   // bit 2 k of cell k
 };
 
-// Strips of which four cross a word one after the other, from `at` on; the word's cells begin at `across` in them. Four bits of each.
+// Four bits of each of the four consecutive strips that cross a word, starting at `at`; the word's cells begin at
+// `across` in them.
 uvec4 nibbles(uvec4 table, int at, int across, bool inside) {
   const int first = int(table.x) + (across / SF_STRIP - int(table.w)) * int(table.y) + at - int(table.z);
   const int safe = inside ? first : 0;
@@ -23,7 +24,8 @@ WordUpdate cover_word(int lane, int row) {
   const ivec2 at = ivec2(int(place & 0xFFFFu) + lane % SF_MAP_BLOCK, int(place >> 16));
   const bool inside = at.x < int(map.z);
 
-  // Flat strips are columns: bit k is row k, which lies at 8 k. Steep ones are rows: bit k is column k, at 2 k.
+  // Flat strips are columns: bit k is row k, at bit 8 k of the word. Steep ones are rows: bit k is column k, at bit 2
+  // k.
   const uvec4 columns = nibbles(imageLoad(rows, row + 5), 4 * at.x, 4 * at.y, inside);
   const uvec4 lines = nibbles(imageLoad(rows, row + 6), 4 * at.y, 4 * at.x, inside);
   const uvec4 down = (columns & 1u) | (columns & 2u) << 7 | (columns & 4u) << 14 | (columns & 8u) << 21;

@@ -1,10 +1,11 @@
-// Fields of magnets at the places of an item: the whole kernel. With SF_MAGNITUDES also the sum of their magnitudes.
+// Fields of magnets at the points of an item: the whole kernel. With SF_MAGNITUDES also the sum of their magnitudes.
 //
-// A point dipole of moment m along +z, r from it, u = r / |r|; here without the factor mu0 / 4 pi, which the host applies:
+// A point dipole of moment m along +z, with r from dipole to point and u = r / |r|, without the factor mu0 / 4 pi,
+// which the host applies:
 //   B = m / |r|^3 (3 u_z u - e_z),  |B| = m / |r|^3 sqrt(1 + 3 u_z^2)   (the thesis' equation 1, without its differences)
-// Differences of positions are 64 bits wide. 1 / |r| is a 32-bit root and one step of Newton in 64 bits, which doubles
-// its 23 bits: a 64-bit root and division cost four times as much. Every operation is `precise` and in one order: host
-// and device agree to the bit.
+// Differences of positions have 64 bits. 1 / |r| is a 32-bit root and one step of Newton's method in 64 bits, which
+// doubles its 23 bits: a 64-bit root and division cost four times as much. Every operation is `precise` and in a fixed
+// order: host and device results are equal bit by bit.
 
 #include "sensors/magnetic_field/records.h"
 
@@ -12,12 +13,12 @@ layout(local_size_x = 32) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer items;     // FieldItem
 layout(binding = 1, r32ui) uniform readonly uimageBuffer spans;        // MagnetSpan
 layout(binding = 2, rgba32ui) uniform readonly uimageBuffer dipoles;   // DipoleRow
-layout(binding = 3, rgba32ui) uniform readonly uimageBuffer places;    // PlaceRow
+layout(binding = 3, rgba32ui) uniform readonly uimageBuffer places;    // FieldPointRow
 layout(binding = 4, rgba32ui) uniform writeonly uimageBuffer results;  // FieldSum
 
-// Exactly in the middle of a magnet, the field is the one above it.
+// At the exact centre of a magnet, the field is that straight above it.
 #define SF_ABOVE 1e-18LF
-// Least [m^2] whose 32-bit root is a number.
+// [m^2] least square with a finite 32-bit inverse root.
 #define SF_LEAST 1e-37
 
 struct Place {
@@ -89,7 +90,7 @@ void main() {
     sums[i] = Sum(0.0LF, 0.0LF, 0.0LF, 0.0LF);
   }
 
-  // One loop over all spans, so that lanes with short ones do not wait for others at each.
+  // One loop over all spans, so that lanes with short spans do not wait for others at each of them.
   int span = int(item.x);
   const int end = int(item.y);
   int magnet = int(imageLoad(spans, 2 * span).x);

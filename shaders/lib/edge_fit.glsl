@@ -1,18 +1,19 @@
-// From the points of a fan to the distance of a lane edge. Who includes this gives the tables rows, points, grains,
+// Distance of a lane edge from the points of a scan. The including shader declares the tables rows, points, grains,
 // order, readings and mixtures.
 //
-// 1. A line through all points, and a parabola beside it. If they lie on it as well as their source allows, that is it.
-// 2. Otherwise candidates: lines through every window of the fan of an eighth, a third and two thirds of its width. All
-//    points vote (line_fit.h, `vote`); the best candidate's inliers make a line, and that line's inliers the last one.
-// All loops leave at the top: lavapipe asks for it.
+// 1. A line through all points, and a parabola for its residuals. If the points lie on it within their source's
+//    tolerance, it is the edge.
+// 2. Otherwise candidates: lines through windows of an eighth, a third and two thirds of the scan's width. All
+//    points vote (line_fit.h, `vote`). The best candidate's inliers give a second line, and its inliers the final one.
+// All loops exit at the top, as lavapipe requires.
 
 #include "sensors/lane_markings/line_fit.h"
 
 #define SF_WINDOWS 16
 
-// One sensor's fan.
+// Points of one sensor.
 struct EdgeFan {
-  int first;  // of its points
+  int first;  // its first point
   int lanes;
   bool packed;
 };
@@ -49,7 +50,7 @@ Moments moments_of_all(EdgeFan fan, out uint grain) {
   return m;
 }
 
-// Of the points of lanes [first, end) that lie within `allowed` of `line`.
+// Moments of the points of lanes [first, end) within `allowed` of `line`.
 Moments moments_near(EdgeFan fan, int first, int end, Line line, double allowed) {
   Moments m = Moments(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
   int own = first;
@@ -80,7 +81,7 @@ LineMoments trend_near(EdgeFan fan, int end, Line line, double allowed) {
   return s;
 }
 
-// Lanes of the k-th window: an eighth of the fan, nine times; a third, five times; two thirds, twice.
+// Lanes of the k-th window: nine of an eighth of the scan, five of a third, two of two thirds.
 ivec2 window(EdgeFan fan, int k) {
   const int least = min(fan.lanes, fan.packed ? 1 : 2);
   const int width = max(least, k < 9 ? fan.lanes / 8 : k < 14 ? fan.lanes / 3 : 2 * fan.lanes / 3);
@@ -102,7 +103,7 @@ Candidate candidate(EdgeFan fan, int k, bool wanted, double source) {
   Line anywhere = Line(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0);
   const Moments m = moments_near(fan, wanted ? lanes.x : 0, wanted ? lanes.y : 0, anywhere, 1e30);
   const Line line = line_through(m);
-  // A bend within the fan may take points this far off: a part of how wide the fan is on the edge.
+  // A bend within the scan may move points by this distance: a fraction of the scan's width on the edge.
   precise double wide = sqrt(line.spread * 12.0) * double(fan.lanes) / double(lanes.y - lanes.x);
   precise double allowed = 0.625 * source + 0.015625 * wide;
   return Candidate(line, allowed, hypothesis_of(line, allowed), 0.0);
@@ -111,7 +112,7 @@ Candidate candidate(EdgeFan fan, int k, bool wanted, double source) {
 Candidate elect(EdgeFan fan, bool wanted, double source) {
   const Line none = Line(0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0);
   Candidate best = Candidate(none, 0.0, hypothesis_of(none, 0.0), -1e30);
-  // Of a wide fan every other lane votes.
+  // In wide scans every other lane votes.
   const int stride = fan.lanes >= 12 ? 2 : 1;
   int k = wanted ? 0 : SF_WINDOWS;
   while (k < SF_WINDOWS) {
@@ -134,7 +135,7 @@ Candidate elect(EdgeFan fan, bool wanted, double source) {
   return best;
 }
 
-// [m^2] what range and bearing noise do to a point across the line, at its middle.
+// [m^2] variance of a point across the line from range and bearing noise, at the line's middle.
 double noise_across(Line line, double range_sigma, double range_proportional, double angle_sigma) {
   precise double r2 = line.px * line.px + line.py * line.py;
   const double safe = r2 > 0.0 ? r2 : 1.0;
@@ -172,7 +173,7 @@ void main() {
   LineMoments trend = trend_near(fan, lanes, line, 1e30);
   Parabola curvature = parabola_of(trend);
 
-  // Those of one edge among several.
+  // The points of one edge among several.
   const bool mixed = !single && trend.n > 2.5 && !is_one_edge(trend, curvature, source);
   const Candidate best = elect(fan, mixed, source);
   const int again = mixed ? lanes : 0;
@@ -192,7 +193,7 @@ void main() {
   const PointError point_error = PointError(grain, noise > floor_of_noise ? noise : floor_of_noise);
   const LineFit fitted = fit_at(line, trend, curvature, point_error, ex, ey, distance_max);
 
-  // A single ray is its own reading.
+  // The range of a single beam is the reading.
   const Points start = points_of(fan, 0);
   precise double first = sqrt(start.x[0] * start.x[0] + start.y[0] * start.y[0]);
   precise double spread = range_proportional * first;

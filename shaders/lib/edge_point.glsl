@@ -1,9 +1,10 @@
-// From what a ray met to a point in the sensor's frame. Who includes this gives the tables edges (SF_EDGE_TEXELS a
-// sensor: EdgeRow), directions, normals, and points to write to.
+// From a hit to a point in the sensor frame. The including shader declares the tables edges (SF_EDGE_TEXELS per sensor:
+// EdgeRow), directions, normals and points.
 //
-// A point's grain is in the last bits of its x. A ray that is no point lies at SF_NOWHERE: nothing near the maximum or up to the minimum, no mover, no dash's end.
+// The last bits of a point's x hold the row of its pixel size. A beam that is no point lies at SF_NOWHERE: ranges near
+// the maximum or up to the minimum, hits of movers and of the ends of dashes.
 
-// What the point of any ray of one sensor needs.
+// Constants of one sensor for its points.
 struct PointRow {
   uvec4 where;  // as in EdgeRow: lane, directions, beams, flags
   double limit, range_min, range_max;

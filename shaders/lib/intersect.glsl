@@ -1,4 +1,5 @@
-// The 64-bit word on one beam and one segment. Every operation is `precise` and in one order: host and device agree to the bit.
+// The 64-bit intersection of one beam and one segment. Every operation is `precise` and in a fixed order: host and
+// device results are equal bit by bit.
 
 struct Beam64 {
   dvec2 origin;
@@ -8,7 +9,7 @@ struct Beam64 {
 struct ClosestHit {
   double range;  // [m]
   uint id;       // exact segment, or SF_NO_HIT
-  vec3 incidence;    // cross product of the segment and the beam; the segment [m]
+  vec3 incidence;    // cross product of segment and direction [m]; x and y of the segment [m]
 };
 
 // True where the sine of the angle between beam and surface is below `least`.
@@ -16,7 +17,7 @@ bool grazes(ClosestHit d, float least) {
   return d.id != SF_NO_HIT && d.incidence.x * d.incidence.x < least * least * dot(d.incidence.yz, d.incidence.yz);
 }
 
-// Where a segment lies [m]; of SF_NO_HIT, where any does.
+// End points of a segment [m]; any values for SF_NO_HIT.
 struct Ends {
   double ax, ay, bx, by;
 };
@@ -27,7 +28,7 @@ Ends ends_of(uint id) {
   return Ends(packDouble2x32(a.xy), packDouble2x32(a.zw), packDouble2x32(b.xy), packDouble2x32(b.zw));
 }
 
-// Both ends use the same doubles for every segment that shares them, so no beam slips between two neighbours.
+// Every segment that shares an end uses the same doubles for it, so no beam passes between two neighbours.
 void intersect(uint id, Beam64 beam, inout ClosestHit best) {
   const Ends s = ends_of(id);
 
@@ -55,7 +56,7 @@ void intersect(uint id, Beam64 beam, inout ClosestHit best) {
   }
 }
 
-// [m] the range of a beam that is known to meet segment `id`, as `intersect` has it; `range_max` where it meets none.
+// [m] range of a beam that certainly meets segment `id`, as in `intersect`; `range_max` for SF_NO_HIT.
 double exact_range(uint id, Beam64 beam, double range_max) {
   const Ends s = ends_of(id);
   precise double wax = s.ax - beam.origin.x;
@@ -68,7 +69,8 @@ double exact_range(uint id, Beam64 beam, double range_max) {
   return id == SF_NO_HIT ? range_max : t;
 }
 
-// [m] the range of a beam that meets segment `id`, in 32 bits; less than 0 where these are not close enough. raycast/intersect.h has the bound.
+// [m] range of a beam that meets segment `id`, in 32 bits; negative where these are not accurate enough.
+// raycast/intersect.h has the bound.
 float range_single(uint id, Beam64 beam, float range_max) {
   const Ends s = ends_of(id);
   precise float wx = float(s.ax - beam.origin.x), wy = float(s.ay - beam.origin.y);

@@ -1,18 +1,18 @@
-// Casting the four beams of a lane against lists: a 32-bit search that proves its nearest.
+// Casts the four beams of a lane against lists: a 32-bit search that certifies the nearest segment.
 //
-// Assumes lists that hold every segment that could be met, near to far, and directions of unit length. A segment is
-// m + u e, u in [-1, 1], seen from its right; with w = m - o and a beam o + t d:
+// Assumes lists with every segment that a beam could meet, near to far, and directions of unit length. A segment is m +
+// u e, u in [-1, 1], seen from its right; with w = m - o and a beam o + t d:
 //   1 / t = (e x d) / (e x w),  u = -(d x w) / (e x d).
-// As on the host (raycast/rasterizer.h derives the errors) a beam keeps bounds of 1 / t: the most of all segments that
-// may cover it, with the lower bound of that one where it surely does, and the most of all others. Where the second
-// exceeds the last, the segment is the first surface for certain.
+// As on the host (raycast/rasterizer.h derives the errors) a beam keeps bounds of 1 / t: the largest upper bound of all
+// segments that may cover it, with the lower bound of the same segment if that certainly covers it, and the largest
+// upper bound of all others. Where the second exceeds the last, the segment is certified as the nearest.
 
-// Four beams, and what is nearest so far.
+// Four beams, and their nearest segments so far.
 struct Search {
   vec4 dx, dy;
   vec4 most, low, others;  // [1/m]
   ivec4 entry;             // texel, or -1
-  ivec4 first_row;         // of its mover's exact segments
+  ivec4 first_row;         // first exact segment of the entry's mover
 };
 
 // A chunk of a list, and the frame of its entries: offset and heading.
@@ -54,7 +54,7 @@ void search_chunk(Chunk chunk, float band, inout Search s) {
     const bool edge_on = abs(ahead) <= error_margin;
     const float inverse = ahead > error_margin ? 1.0 / ahead : 0.0;
     const float h = len * inverse;
-    // Seen edge-on it may cover every beam of the sector, at any range.
+    // An edge-on segment may cover every beam of the sector, at any range.
     const float error = edge_on ? 1e20 : h * (2.0 * band * h + 1.4e-6);
     const float twice = 2.0 * error;
     const float tolerance = edge_on ? 1e30 : 2.0 * band;
@@ -73,11 +73,11 @@ void search_chunk(Chunk chunk, float band, inout Search s) {
   }
 }
 
-// True where nothing from `nearest` [m] on can be nearer to any of the beams.
+// True where every beam has a certain hit nearer than `nearest` [m].
 bool all_nearer(Search s, float nearest) { return all(greaterThan(nearest * s.low, vec4(1.0001))); }
 
-// Searches the walls, then the movers, until nothing that is left can be nearer. One loop for both: lavapipe runs a
-// loop's body once more, in vain, after the last lane has left.
+// Searches the walls, then the movers, until no remaining entry can be nearer. One loop for both: lavapipe runs the
+// body of a loop once more after the last lane has left it.
 void search_lists(uvec4 walls, uvec4 movers, vec2 offset, dvec2 origin, float band, inout Search s) {
   bool at_walls = walls.y > 0u;
   int at = int(at_walls ? walls.x : movers.x);

@@ -1,15 +1,16 @@
-// Walking a ray through the raster of the road (sensors/lane_markings/marking_raster.h): from cell to cell where paint is near, by whole
-// empty squares where it is not.
+// Walks a ray through the road raster (sensors/lane_markings/marking_raster.h): cell by cell near paint, by whole empty
+// squares elsewhere.
 //
-// After J. Amanatides and A. Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics 1987; squares are those
-// of the chessboard distance between blocks, and aligned ones of 2 or 4 cells within a block. Cells are counted exactly, in integers; 32-bit reals only say which face comes
-// first, in cells from the sensor's own. Where a ray passes a cell's corner within 1e-7 of its length it may go either way.
+// After J. Amanatides and A. Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics 1987. The squares
+// are those of the chessboard distance between blocks, and aligned ones of 2 or 4 cells within a block. Cell indices
+// are exact integers; 32-bit floats, relative to the sensor's cell, only decide the order of crossings. A ray that
+// passes a cell's corner within 1e-7 of its length may take either side.
 
-// Which words hold a cell, and what they say.
+// The words of a cell, and their contents.
 struct Cell {
-  bool inside;   // of the raster
+  bool inside;   // inside the raster
   bool full;     // its block has paint
-  uint word;     // of the directory
+  uint word;     // directory word
   int bits;      // row of its word of paint in `blocks`
   uint painted;  // 0 or 1
   int clear;     // [cells] side of the empty square round a free cell of a full block: 1, 2 or 4
@@ -32,12 +33,12 @@ Cell cell_at(ivec2 at, ivec2 size) {
 
 struct Walk {
   bool met;
-  bool across_x;  // the face that was met is at constant x
-  int face;       // its coordinate, from the sensor's cell [cells]
-  ivec2 paint;    // the painted cell at that face
+  bool across_x;  // the edge that was hit is at constant x
+  int face;       // its coordinate, relative to the sensor's cell [cells]
+  ivec2 paint;    // the painted cell at that edge
 };
 
-// From `from` in cell `start` along `d`, until paint begins (or ends, where the sensor stands on it) or `reach` [cells].
+// From `from` in cell `start` along `d`, until paint begins (or ends, when the sensor stands on it) or `reach` [cells].
 Walk walk(ivec2 start, vec2 from, vec2 d, float reach, ivec2 size, bool going) {
   const vec2 inverse = vec2(d.x == 0.0 ? 1e30 : 1.0 / d.x, d.y == 0.0 ? 1e30 : 1.0 / d.y);
   const uint wanted = 1u - cell_at(start, size).painted;
