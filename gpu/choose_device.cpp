@@ -127,7 +127,7 @@ int choose_device(DeviceCandidates& candidates, const std::string& wanted) {
     DeviceInfo& info = candidates.info[row];
     if (!info.reason.empty()) continue;
     if (!is_wanted(info, row, wanted)) {
-      info.reason = "is not the wanted one ('" + wanted + "')";
+      info.reason = "does not match '" + wanted + "'";
       continue;
     }
     if (best < 0 || rank(info) > rank(candidates.info[static_cast<std::size_t>(best)])) best = static_cast<int>(row);

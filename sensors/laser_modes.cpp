@@ -51,7 +51,7 @@ ErrorBound bound_of_laser(const world::World& world, const SensorSpec& sensor) {
   const CastLaser cast = cast_laser(world, world.movers[sensor.mover].lasers[sensor.sensor]);
   const Reaches reaches = reaches_of(world);
   return {laser_bound(cast, reaches.longest, reaches.farthest + cast.laser.range_max),
-          "beams that are cast and graze nothing; the others are flagged"};
+          "cast beams that do not graze; the others are flagged"};
 }
 
 }  // namespace sf::sensors

@@ -74,7 +74,8 @@ ErrorBound bound_of_magnetometer(const world::World& world, const SensorSpec& ro
                 for (const double height : element_heights(world.movers[mover], sensor))
                   bound.error = std::max(bound.error, field_bound(world, row.mode, height).at(farthest));
               });
-  if (std::isinf(bound.error)) bound.condition = "a magnet is as high as the sensor, which may stand in its middle";
+  if (std::isinf(bound.error))
+    bound.condition = "a magnet has the sensor's height, so that the sensor may reach its centre";
   return bound;
 }
 

@@ -408,7 +408,7 @@ TEST(LaneEdge, ABoundIsTrueOfItsReadingOrFlagged) {
   EXPECT_FALSE(straight.has("/unsure"));
   EXPECT_LT(straight.number("/bound"), 1.1e-8);
   EXPECT_EQ(sense("1,0,100").has("/unsure"), !sense("1,0,100").is_null("/distance_m")) << "looks along the lane";
-  EXPECT_NE(run("check", lane, {}).out.find("laneedge exact, within 10.1 nm: where one straight edge is seen"),
+  EXPECT_NE(run("check", lane, {}).out.find("laneedge exact, within 10.1 nm: one straight edge, visible"),
             std::string::npos)
       << run("check", lane, {}).out;
 }

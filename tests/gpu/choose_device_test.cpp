@@ -86,7 +86,7 @@ TEST(Choose, EveryOtherDeviceHasItsReason) {
   EXPECT_EQ(candidates.info[4].reason, "has no compute queue");
   candidates = five();
   EXPECT_EQ(choose_device(candidates, "iris"), 1);
-  EXPECT_EQ(candidates.info[2].reason, "is not the wanted one ('iris')");
+  EXPECT_EQ(candidates.info[2].reason, "does not match 'iris'");
 }
 
 /// A device that fails its self-check gets the fault as its reason, and the next best is chosen.
