@@ -1,6 +1,6 @@
 #pragma once
-// Little-endian bytes in and out, for packets, recordings and snapshots. Nothing here throws or allocates by surprise:
-// a reader that runs past its end turns bad and yields zeros.
+// Little-endian bytes in and out, for packets, recordings and snapshots. No exceptions: a read beyond the end sets the
+// reader's state to bad and returns zeros.
 
 #include <bit>
 #include <cstddef>
@@ -59,7 +59,7 @@ class ByteReader {
     std::memcpy(&value, in_.data() + at_ - sizeof(T), sizeof(T));
     return value;
   }
-  /// The next `size` bytes, or nothing (and bad) when fewer are left.
+  /// The next `size` bytes. Fewer left: an empty span, and the reader is bad.
   std::span<const std::uint8_t> get_bytes(std::size_t size) {
     if (!take(size)) return {};
     return in_.subspan(at_ - size, size);
@@ -68,7 +68,7 @@ class ByteReader {
     const auto text = get_bytes(get<std::uint32_t>());
     return {reinterpret_cast<const char*>(text.data()), text.size()};
   }
-  /// False once anything was read past the end.
+  /// False after the first read beyond the end.
   bool good() const { return good_; }
   std::size_t left() const { return in_.size() - at_; }
   std::size_t position() const { return at_; }

@@ -1,13 +1,15 @@
 #pragma once
-// How contacts are counted, everywhere: one begins when something stops a mover that nothing stopped the tick before.
+// The rule by which all modules count contacts: a contact begins at a tick in which something stops a mover that
+// nothing stopped in the tick before.
 
 namespace sf::base {
 
-/// Follows one mover, tick by tick.
+/// State of one mover, tick by tick.
 struct ContactOnset {
   bool previous = false;
 
-  /// @return whether a contact begins now.
+  /// @param now whether something stops the mover in this tick
+  /// @return whether a contact begins in this tick
   bool begins(bool now) {
     const bool began = now && !previous;
     previous = now;

@@ -1,5 +1,5 @@
 #pragma once
-// Time on the clock: for what people are told, never for results.
+// Wall-clock time, for messages and timing reports. Results never depend on it.
 
 #include <chrono>
 

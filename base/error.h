@@ -1,14 +1,14 @@
 #pragma once
-// Two families of errors. A broken contract inside the farm is a `check` that aborts with the values.
-// What the user gave us (a file, an option, a machine) is an `InputError` that says where, what was expected and what
-// to do.
+// Two families of errors. A broken contract inside the farm is a `check` that aborts with the values. A fault in the
+// user's input (a file, an option, a machine) is an `InputError` that names the place, the expected value and the
+// remedy.
 
 #include <stdexcept>
 #include <string>
 
 namespace sf::base {
 
-/// Something the user can mend. `what()` is one complete line: `file:line: message` where a file is known.
+/// A fault that the user can correct. `what()` is one complete line: `file:line: message` where a file is known.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
@@ -18,13 +18,13 @@ class InputError : public std::runtime_error {
                            message) {}
 };
 
-/// No usable device: its own type, since programs end with exit code 3.
+/// No usable device. A type of its own, since programs then end with exit code 3.
 class DeviceError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Aborts with file, line and `message` when `condition` is false: our bug, never the user's.
+/// Aborts with file, line and `message` when `condition` is false. For errors of the program, never of the user.
 void check(bool condition, const char* file, int line, const std::string& message);
 
 }  // namespace sf::base

@@ -1,5 +1,5 @@
 #pragma once
-// 64-bit content hashes (XXH3): for worlds, runs and readings. Not a defence against an attacker.
+// 64-bit content hashes (XXH3) of worlds, runs and readings. Not cryptographic.
 
 #include <cstddef>
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace sf::base {
 
-/// Hash of `size` bytes, chained from `seed`: hash(b, hash(a)) names the sequence a, b.
+/// Hash of `size` bytes, chained from `seed`: hash(b, hash(a)) is the hash of the sequence a, b.
 std::uint64_t hash_bytes(const void* data, std::size_t size, std::uint64_t seed = 0);
 
 /// 16 lower-case hexadecimal digits.

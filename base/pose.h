@@ -50,7 +50,7 @@ inline glm::dvec2 transform(const Pose& X_AB, glm::dvec2 p_B) {
 /// The same heading in [-pi, pi].
 inline double wrap_angle(double angle) {
   if (std::abs(angle) <= M_PI) return angle;
-  // For a million radians and more, 2 pi in 64 bits is too far from 2 pi.
+  // Beyond 1e6 rad, the rounding error of 2 pi times the number of turns is too large.
   return std::abs(angle) < 1e6 ? std::remainder(angle, 2.0 * M_PI) : std::atan2(std::sin(angle), std::cos(angle));
 }
 

@@ -8,7 +8,7 @@
 
 namespace sf::base {
 
-/// Which question is asked. Two streams with one key never share a number.
+/// Purpose of a draw. Two streams with one key never share a number.
 enum class RandomStream : std::uint32_t {
   placement = 1,
   wander = 2,
@@ -20,10 +20,10 @@ enum class RandomStream : std::uint32_t {
   gyro = 8,
   satellites = 9,
   link = 10,     ///< delay and loss between a robot and the farm
-  decision = 11  ///< controllers' own choices
+  decision = 11  ///< random decisions of controllers
 };
 
-/// Names one draw: all five fields matter.
+/// Identifies one draw. All five fields matter.
 struct RandomKey {
   std::uint64_t seed = 0;
   RandomStream stream = RandomStream::placement;

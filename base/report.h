@@ -1,5 +1,5 @@
 #pragma once
-// What a mover says of itself, whoever says it: a simulated robot, a V2V packet, an overhead camera's tag.
+// The state of movers, from any source: a simulated robot, a V2V packet or a TAG packet of an overhead camera.
 
 #include <cstdint>
 
@@ -12,16 +12,17 @@ struct Report {
   std::uint32_t mover = 0;         ///< row in `world::World::movers`
   std::int64_t time = 0;           ///< [ns] simulated time (or the sender's clock) at which the state was true
   Pose X_WM;                       ///< the mover's frame in the world; finite
-  Twist velocity;                  ///< in the mover's own frame; zero where unknown
-  std::uint32_t contact_mask = 0;  ///< bit k: something presses on the body in sector k, see kContactSectors
+  Twist velocity;                  ///< in the mover's frame; zero where unknown
+  std::uint32_t contact_mask = 0;  ///< bit k: something touches the body in sector k, see kContactSectors
 };
 
-/// Sector k of a body are the bearings from k to k + 1 times 2 pi / kContactSectors, counter-clockwise from its x axis.
+/// Sector k of a body covers the bearings from k to k + 1 times 2 pi / kContactSectors, counter-clockwise from the
+/// body's x axis.
 inline constexpr std::uint32_t kContactSectors = 32;
 
 inline constexpr std::uint32_t kNoId = 0xFFFFFFFFu;
 
-/// What a robot tells others beside its state.
+/// The part of a V2V packet beside the state: the robot's intent.
 struct Intent {
   std::uint32_t follows = kNoId;     ///< id of the robot it follows
   std::uint32_t checkpoint = kNoId;  ///< id of the checkpoint it heads for

@@ -1,5 +1,5 @@
 #pragma once
-// Where a run is kept: the farm and the simulation know only this.
+// Interface of recorders. The farm and the simulation depend on this interface alone.
 
 #include <span>
 
@@ -8,13 +8,13 @@
 
 namespace sf::base {
 
-/// What one tick did. Spans live for the call.
+/// Results of one tick. The spans are valid during the call.
 struct TickRecord {
   std::uint64_t tick = 0;
   std::int64_t time = 0;                   ///< [ns] simulated
   std::span<const Report> reports;         ///< every mover's true state
-  std::span<const Twist> commands;         ///< one per report, what its controller asked for
-  std::span<const std::uint8_t> contacts;  ///< one per report, 1 where a wall or a robot stopped it
+  std::span<const Twist> commands;         ///< one per report: the twist that the controller commanded
+  std::span<const std::uint8_t> contacts;  ///< one per report: 1 where a wall or a robot stopped the mover
   std::span<const ReadingBlock> readings;  ///< delivered this tick
 };
 

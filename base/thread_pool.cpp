@@ -31,8 +31,8 @@ struct ThreadPool::State {
   std::size_t piece = 1;
   std::atomic<std::size_t> next{0};
   std::atomic<unsigned> round{0};
-  unsigned busy = 0;  ///< threads at the job, the caller not among them
-  bool open = false;  ///< whoever wakes may still join the job
+  unsigned busy = 0;  ///< threads that work on the job, without the caller
+  bool open = false;  ///< true: a thread that wakes may still join the job
   bool stop = false;
 
   void work(unsigned thread) {
@@ -43,7 +43,7 @@ struct ThreadPool::State {
     }
   }
 
-  /// The next job of a tick follows at once, sooner than a sleeping thread wakes.
+  /// Spins before it sleeps: the next job of a tick usually follows sooner than a sleeping thread wakes.
   void wait_awake(unsigned seen) const {
     for (int turn = 0; turn < kTurnsAwake && round.load(std::memory_order_relaxed) == seen; ++turn) pause();
   }
@@ -99,7 +99,7 @@ void ThreadPool::run_job(std::size_t count, std::size_t piece, Job job) {
   }
   s.wake.notify_all();
   s.work(0);
-  // Nothing is left: threads that have not woken are not waited for.
+  // All pieces are taken. Threads that have not woken yet are not waited for.
   std::unique_lock guard(s.lock);
   s.open = false;
   s.done.wait(guard, [&] { return s.busy == 0; });

@@ -1,5 +1,5 @@
 #pragma once
-// Two cores are two cores: the same loop on all of them, with results that do not depend on how it was split.
+// Fixed-size thread pool. Results of a loop must not depend on its partition.
 
 #include <cstddef>
 #include <memory>
@@ -7,10 +7,10 @@
 
 namespace sf::base {
 
-/// A few threads that wait for loops to run. One caller at a time.
+/// Threads that run the pieces of a loop. One caller at a time.
 class ThreadPool {
  public:
-  /// @param threads how many run a loop together, the caller among them; 0: as many as the machine has.
+  /// @param threads number of threads in a loop, including the caller; 0: one per core of the machine.
   explicit ThreadPool(unsigned threads = 0);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -18,8 +18,8 @@ class ThreadPool {
 
   unsigned threads() const;
 
-  /// Calls `body(first, last, thread)` on pieces of [0, count) until all are done; `thread` < threads(). Pieces go to
-  /// whoever is free, so `body` must not care. Does not allocate.
+  /// Calls `body(first, last, thread)` on pieces of [0, count) and returns when all are done; `thread` < threads(). The
+  /// assignment of pieces to threads varies, so results of `body` must not depend on it. Allocates nothing.
   template <class Body>
   void parallel_for(std::size_t count, std::size_t piece, Body&& body) {
     using Plain = std::remove_reference_t<Body>;
