@@ -1,5 +1,5 @@
 #pragma once
-// Outlines of a grid of cells: exact boundary segments, as few as there are straight runs.
+// Outlines of a grid of cells: exact boundary segments, one per straight run.
 
 #include <cstdint>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace sf::world {
 
-/// Cells from the lower left, row by row upwards.
+/// Cells row by row, from the lower left upwards.
 struct Bitmap {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -27,14 +27,14 @@ struct BoundaryRun {
   Corner b;
 };
 
-/// Every boundary between solid and free, each maximal straight run once. Runs end where the boundary turns, so also
-/// where two solid cells meet only in a corner: four runs end in that very corner and nothing slips between them. The
-/// order is fixed: horizontal runs from the bottom, then vertical runs from the left.
-/// @param most runs; where there are more it ends early, with more than that.
+/// All boundaries between solid and free, each maximal straight run once. A run ends at each corner of the boundary,
+/// also where two solid cells touch in one corner only: four runs end in that corner, so no beam passes between the
+/// cells. The order is fixed: horizontal runs from the bottom, then vertical runs from the left.
+/// @param most largest number of runs; beyond it the trace ends early, and the result is larger than `most`.
 std::vector<BoundaryRun> trace_boundary(const Bitmap& grid, std::size_t most = SIZE_MAX);
 
-/// Where a corner lies in the frame of a model that shows the grid on `size_x` x `size_y`, centred. Equal corners give
-/// the very same doubles.
+/// Position of a corner in the frame of a model that shows the grid on `size_x` x `size_y`, centred. Equal corners give
+/// bitwise equal positions.
 glm::dvec2 corner_position(const Bitmap& grid, Corner corner, double size_x, double size_y);
 
 }  // namespace sf::world

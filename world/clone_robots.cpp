@@ -28,11 +28,11 @@ std::uint32_t renamed(const std::vector<std::uint32_t>& rows, std::uint32_t row)
   return row == kNone ? kNone : rows[row];
 }
 
-// Takes robots away: `models` keeps what stands still, the tags and those in `robots`; gives new rows of old models and
+// Removes robots: `models` keeps static models, tags and the robots in `robots`. Gives new rows for old models and
 // movers.
 struct Kept {
   std::vector<Model> models;
-  std::vector<std::uint32_t> model_rows;  // kNone: gone
+  std::vector<std::uint32_t> model_rows;  // kNone: removed
   std::vector<std::uint32_t> mover_rows;
   std::set<std::string> names;
 };
@@ -67,8 +67,8 @@ void retarget(std::vector<Row>& table, const std::vector<std::uint32_t>& rows) {
   for (Row& row : table) row.model = rows[row.model];
 }
 
-// A copy of the robot in row `original` of the world's movers, numbered `id`, for row `mover`; its models are appended
-// to `models`.
+// A copy of the robot in row `original` of the world's movers with id `id`, for row `mover`. Its models are appended to
+// `models`.
 Mover copy_of(const World& world, std::uint32_t original, std::uint32_t id, std::uint32_t mover, const Pose& X_WM,
               const Kept& kept, std::vector<Model>& models) {
   Mover copy = world.movers[original];

@@ -61,7 +61,7 @@ std::string find_file(const Document& document, SourceLocation from, const std::
 }
 
 std::string read_bytes(const std::string& file, std::size_t most) {
-  // Without O_NONBLOCK a pipe that nobody writes to would be waited for.
+  // O_NONBLOCK: opening a pipe without a writer would block.
   const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (in.number < 0 && (errno == ENOENT || errno == ENOTDIR))
     throw base::InputError(file, 0, "no such file; give the path of a file that is there");
@@ -83,7 +83,7 @@ std::string read_bytes(const std::string& file, std::size_t most) {
     if (got == 0) break;
     have += static_cast<std::size_t>(got);
     if (have > most) refuse_size(file, most);
-    if (have == bytes.size()) bytes.resize(std::min(2 * have, most + 1));  // it grew meanwhile
+    if (have == bytes.size()) bytes.resize(std::min(2 * have, most + 1));  // the file grew meanwhile
   }
   bytes.resize(have);
   if (bytes.empty()) throw base::InputError(file, 0, "is empty; was it saved, or copied whole?");

@@ -14,8 +14,8 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kMaxCells = 2000.0;       // of the coarse grid, each way
-constexpr double kOpenWorld = 10.0;        // [m] around the first robot that are used at least
+constexpr double kMaxCells = 2000.0;       // of the coarse grid, per axis
+constexpr double kOpenWorld = 10.0;        // [m] smallest searched distance around the first robot
 constexpr std::uint32_t kAttempts = 4000;  // draws per copy; a random packing is full long before
 
 double clear_radius(const Mover& robot) { return robot.radius + kPlaceMargin; }
@@ -32,7 +32,7 @@ Heights heights_of(const Mover& robot, double z) {
   return heights;
 }
 
-// Where a map's knowledge ends is a wall to those that are placed, with no sides to it.
+// The border of a map's known area is a wall for placement, without `solid_left`.
 std::vector<Segment> walls_at_height(const World& world, const Mover& robot, std::span<const Segment> known) {
   const Heights heights = heights_of(robot, robot.X_WM.z);
   std::vector<Segment> walls;
@@ -66,16 +66,15 @@ struct Region {
   double cell = 0.0;  // [m]
   std::uint32_t columns = 0;
   std::uint32_t rows = 0;
-  std::vector<std::uint32_t> cells;  // reachable ones, in a fixed order
+  std::vector<std::uint32_t> cells;  // reachable cells, in a fixed order
 
   glm::dvec2 centre(std::uint32_t at) const {
     return {corner.x + (at % columns + 0.5) * cell, corner.y + (at / columns + 0.5) * cell};
   }
 };
 
-// Cells of half the robot's circle, larger in large worlds, but never wider than the circle: two neighbouring centres
-// that are both clear have no wall between them, since every point between is nearer to one of them than its circle
-// reaches.
+// Cells of half the robot's circle, larger in large worlds, but never wider than the circle. Two neighbouring clear
+// centres then have no wall between them: each point between is within the circle's radius of one of them.
 Region grid_over(const WallGrid& walls, const Mover& robot) {
   const glm::dvec2 p{robot.X_WM.x, robot.X_WM.y};
   Box box = box_around(p, kOpenWorld);
@@ -98,7 +97,7 @@ Region grid_over(const WallGrid& walls, const Mover& robot) {
 
 enum class Cell : std::uint8_t { unknown, blocked, reached };
 
-// Reached cells from `first`, appended to region.cells. Cells are looked at only when the flood comes to them.
+// Appends the cells reachable from `first` to region.cells. Cells are tested when the flood fill reaches them.
 void flood(Region& region, std::vector<Cell>& state, const WallGrid& walls, double radius, std::uint32_t first) {
   std::size_t next = region.cells.size();
   const auto visit = [&](std::uint32_t to) {
@@ -119,7 +118,7 @@ void flood(Region& region, std::vector<Cell>& state, const WallGrid& walls, doub
   }
 }
 
-// The nearest clear cell within sight of p, or kNone.
+// The nearest clear cell without a wall between its centre and p, or kNone.
 std::uint32_t cell_near(const Region& region, const WallGrid& walls, double radius, glm::dvec2 p) {
   const double reach = 2.0 * radius + region.cell;
   const auto index = [&](double v, std::uint32_t count) {
@@ -151,7 +150,7 @@ Box box_around_all(std::span<const Segment> edges) {
   return box;
 }
 
-// Not walled in: it comes to the edge of what is looked at, or of all that a map knows.
+// True for a region that is not enclosed: it reaches the border of the searched area or of a map's known area.
 bool is_open(const Region& region, const Box& known, double radius) {
   const double reach = radius + 1.5 * region.cell;
   return std::any_of(region.cells.begin(), region.cells.end(), [&](std::uint32_t at) {
@@ -163,7 +162,7 @@ bool is_open(const Region& region, const Box& known, double radius) {
   });
 }
 
-// The largest that is walled in, unless one that is not is a hundred times as large.
+// Takes the largest enclosed region, unless an open region is a hundred times as large.
 void take_largest(std::span<const Segment> known, Region& region, std::vector<Cell>& state, const WallGrid& walls,
                   double radius) {
   const Box all_known = box_around_all(known);
@@ -195,9 +194,9 @@ Region reachable(std::span<const Segment> known, const WallGrid& walls, const Mo
   return region;
 }
 
-// ---- Poses drawn one after another.
+// ---- Random placement, one pose after another.
 
-// Points kept in lists per bucket of a hash, so that the memory follows the copies and not the world.
+// Points in hash buckets, so that the memory depends on the number of copies and not on the extent of the world.
 class PlacedRobots {
  public:
   PlacedRobots(std::size_t count, double apart) : apart_(apart), heads_(2 * count + 1, kNone) {}
@@ -225,7 +224,7 @@ class PlacedRobots {
     const auto y = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(p.y / apart_)) + dy);
     return static_cast<std::size_t>(((x * 0x9E3779B97F4A7C15u + y) * 0xBF58476D1CE4E5B9u >> 20) % heads_.size());
   }
-  double apart_;  // [m] between any two
+  double apart_;  // [m] smallest distance between two copies
   std::vector<std::uint32_t> heads_;
   std::vector<std::uint32_t> next_;
   std::vector<glm::dvec2> points_;
@@ -237,7 +236,7 @@ bool clear_of_tags(const World& world, glm::dvec2 p, double radius) {
   });
 }
 
-// The floor plan or map: a picture that lies under half of the walls' extent or more. Null: there is none.
+// The floor plan or map: a picture whose area is at least half of the walls' extent. Null: none.
 const Model* plan_of(const World& world) {
   const Box box = box_around_all(world.walls);
   const glm::dvec2 size = box.max - box.min;
@@ -246,7 +245,8 @@ const Model* plan_of(const World& world) {
   return nullptr;
 }
 
-// The wall that the robot's outline, a little smaller so that touching is none, would cross there.
+// The wall that the robot's outline would cross at that pose. The outline is shrunk a little, so that contact does not
+// count.
 const Segment* wall_in(const World& world, const Mover& robot, const Pose& X_WM) {
   const Heights heights = heights_of(robot, X_WM.z);
   const glm::dvec2 p{X_WM.x, X_WM.y};

@@ -33,7 +33,7 @@ constexpr auto kPosition = std::to_array<std::string_view>({"drive", "wheelbase"
 constexpr auto kSensing = std::to_array<std::string_view>({"noise", "resolution", "rate", "phase", "latency", "update_interval", "accuracy"});
 
 constexpr auto kLaser = std::to_array<std::string_view>({"fov", "samples", "range_min", "range_max", "laser_color",
-  // known, not modelled: Stage's older name of `resolution` is read as such
+  // Stage's older name of `resolution`, of the same meaning
   "laser_sample_skip"});
 
 constexpr auto kRanger = std::to_array<std::string_view>({"scount", "sview", "spose[]", "spose3[]",
@@ -62,7 +62,7 @@ constexpr auto kIgnoredTypes = std::to_array<std::string_view>({"window", "gui",
 
 bool has(Words words, std::string_view word) { return std::find(words.begin(), words.end(), word) != words.end(); }
 
-// `block[2].point[13]` is a `block[].point[]`.
+// `block[2].point[13]` becomes `block[].point[]`.
 std::string without_indices(std::string_view key) {
   std::string plain;
   bool inside = false;
@@ -142,7 +142,7 @@ std::string suggest_key(KeyScope where, std::string_view key, std::span<const st
 }
 
 std::string suggest(std::string_view word, std::span<const std::string_view> candidates) {
-  std::uint32_t best = word.size() <= 4 ? 2 : 3;  // one more than we accept
+  std::uint32_t best = word.size() <= 4 ? 2 : 3;  // one more than accepted
   std::string_view nearest;
   for (const std::string_view candidate : candidates) {
     const std::uint32_t distance = edit_distance(word, candidate);
@@ -154,7 +154,7 @@ std::string suggest(std::string_view word, std::span<const std::string_view> can
 }
 
 std::uint32_t edit_distance(std::string_view a, std::string_view b) {
-  constexpr std::size_t kLongest = 64;  // no key is longer, and rows stay on the stack
+  constexpr std::size_t kLongest = 64;  // longer than any key; rows stay on the stack
   if (a.size() > kLongest || b.size() > kLongest) return a == b ? 0 : kLongest;
   std::array<std::array<std::uint32_t, kLongest + 1>, 3> rows{};
   for (std::uint32_t j = 0; j <= b.size(); ++j) rows[0][j] = j;

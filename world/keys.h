@@ -1,6 +1,5 @@
 #pragma once
-// The words a world file may use: which we read, which we know but do not model, and what a misspelt one may have
-// meant.
+// Words of world files: modelled words, words known but not modelled, and suggestions for misspelt words.
 
 #include <cstdint>
 #include <span>
@@ -10,7 +9,7 @@
 
 namespace sf::world {
 
-/// Where a property stands.
+/// The entity in which a property stands.
 enum class KeyScope {
   world,
   model,
@@ -27,7 +26,7 @@ enum class KeyScope {
   unmodelled
 };
 
-/// How a type of the world file is understood.
+/// Treatment of a type of the world file.
 enum class EntityKind { model, position, laser, ranger, light, road, path, unmodelled, ignored, unknown };
 
 EntityKind entity_kind(std::string_view type);
@@ -35,18 +34,18 @@ EntityKind entity_kind(std::string_view type);
 /// True for types that Stage gives no body of their own (rangers, bumpers, ...): without blocks they are invisible.
 bool has_no_body(std::string_view type);
 
-/// All types we know by name, for suggestions.
+/// All known types, for suggestions.
 std::vector<std::string_view> known_types();
 
-/// True for keys that are read there, and for Stage's own keys that are not modelled. Indices do not matter.
+/// True for keys that are read in `where`, and for Stage's own keys that are not modelled. Indices do not matter.
 /// @param own further keys valid there, with empty indices.
 bool is_known_key(KeyScope where, std::string_view key, std::span<const std::string_view> own = {});
 
-/// `; did you mean 'x'?` or nothing: the nearest of the keys valid there.
+/// `; did you mean 'x'?` with the nearest of the keys valid there, or an empty text.
 std::string suggest_key(KeyScope where, std::string_view key, std::span<const std::string_view> own = {});
 
-/// `; did you mean 'x'?` for the nearest candidate within two slips (one, for words of up to four letters), else
-/// nothing.
+/// `; did you mean 'x'?` with the nearest candidate at an edit distance of at most 2 (at most 1 for words of up to four
+/// letters), else an empty text.
 std::string suggest(std::string_view word, std::span<const std::string_view> candidates);
 
 /// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours.

@@ -15,7 +15,7 @@ Signal signal_at(const Light& light, double time) {
     if (into < phase.duration) return {phase.state, phase.duration - into};
     into -= phase.duration;
   }
-  // The sum of all phases and the remainder of its division may differ in the last bit.
+  // The sum of all durations and the remainder of the division can differ in the last bit.
   return {light.phases.front().state, light.phases.front().duration};
 }
 

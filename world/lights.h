@@ -1,5 +1,5 @@
 #pragma once
-// What a traffic light shows at some time.
+// The state of a traffic light at a given time.
 
 #include <string_view>
 
@@ -10,7 +10,7 @@ namespace sf::world {
 /// One light at one time.
 struct Signal {
   LightState state = LightState::dark;
-  double left = 0.0;  ///< [s] until it changes; infinity: it never does
+  double left = 0.0;  ///< [s] until the next change; infinity: the state never changes
 };
 
 /// @param time [s] simulated

@@ -1,4 +1,4 @@
-// Rows of movers, and of what they carry.
+// Bytes of movers, and of their lasers, sensors and magnets.
 
 #include "world/serialization.h"
 
@@ -42,7 +42,7 @@ Laser get_laser(ByteReader& in) {
   return laser;
 }
 
-// Where it was written says nothing about what is measured.
+// Readings do not depend on the place in the file.
 void put_setting(ByteWriter& out, const Setting& setting, RowFields fields) {
   out.put_string(setting.key);
   out.put(static_cast<std::uint32_t>(setting.numbers.size()));

@@ -13,10 +13,11 @@ namespace sf::world {
 
 namespace {
 
-constexpr std::uint32_t kMaxPixels = 16384;       // along one side
-constexpr std::size_t kMaxBytes = 300u << 20;     // of a file; the largest PGM of 8 bits has 256 MiB
-constexpr std::size_t kMaxInterlaced = 1u << 26;  // pixels: they need a second copy of four times the size
-constexpr std::size_t kMaxExtras = 4u << 20;      // bytes of a PNG's texts and profiles, unpacked
+constexpr std::uint32_t kMaxPixels = 16384;    // per side
+constexpr std::size_t kMaxBytes = 300u << 20;  // of a file; the largest 8-bit PGM has 256 MiB
+constexpr std::size_t kMaxInterlaced = 1u
+                                       << 26;  // pixels; interlaced pictures need a second copy of four times the size
+constexpr std::size_t kMaxExtras = 4u << 20;   // bytes of a PNG's text and profile chunks, uncompressed
 
 void check_size(const std::string& file, std::uint64_t width, std::uint64_t height) {
   if (width >= 1 && height >= 1 && width <= kMaxPixels && height <= kMaxPixels) return;
@@ -45,7 +46,7 @@ void take_row(Picture& picture, std::uint32_t row, const std::uint8_t* rgba, Cha
   }
 }
 
-// Row by row where the file allows it, so that a large plan needs no second copy in memory.
+// Row by row unless interlaced, so that a large plan needs no second copy in memory.
 void decode_rows(spng_ctx* png, const std::string& file, Picture& picture, Channel channel) {
   std::vector<std::uint8_t> row(std::size_t{picture.width} * 4);
   check_png(file, spng_decode_image(png, nullptr, 0, SPNG_FMT_RGBA8, SPNG_DECODE_TRNS | SPNG_DECODE_PROGRESSIVE));
@@ -139,7 +140,7 @@ Picture read_pgm(const std::string& file, const std::string& bytes) {
   const std::uint32_t white = next_number(c);
   if (white < 1 || white > 65535) fail(c, fmt::format("a largest value of {}; expected 1 to 65535", white));
   const bool binary = bytes[1] == '5';
-  if (binary) ++c.at;  // the one blank between header and pixels
+  if (binary) ++c.at;  // the single blank between header and pixels
 
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
   if (bytes.size() - std::min(c.at, bytes.size()) < pixels) fail(c, "fewer pixels than its header says");

@@ -18,14 +18,14 @@ namespace sf::world {
 
 namespace {
 
-constexpr std::size_t kMaxYaml = 1u << 20;  // bytes; a map's file has a few lines
+constexpr std::size_t kMaxYaml = 1u << 20;  // bytes; a map's YAML file has a few lines
 
 struct Map {
   std::string image;        ///< path
   double resolution = 0.0;  ///< [m] per pixel
   Pose X_WL;                ///< lower left corner of the picture in the map frame
-  bool negate = false;      ///< true: bright is occupied
-  double occupied = 0.65;   ///< [-] above: a wall
+  bool negate = false;      ///< true: bright pixels are occupied
+  double occupied = 0.65;   ///< [-] above: wall
   double free = 0.196;      ///< [-] below: free; between: unknown
 };
 
@@ -80,8 +80,8 @@ bool negate_of(const Yaml& yaml) {
   fail(yaml, node, "'negate' expects 0 or 1");
 }
 
-// Scale maps have the same walls; their grades between free and occupied are of no use here. Raw values mean nothing
-// known.
+// Mode `scale` has the same walls; its grades between free and occupied are not used. In mode `raw` no value has a
+// known meaning.
 void check_mode(const Yaml& yaml, std::vector<Warning>& warnings) {
   const YAML::Node node = yaml.root["mode"];
   if (!node) return;
@@ -120,11 +120,11 @@ Map read_map(const Yaml& yaml, std::vector<Warning>& warnings) {
   return map;
 }
 
-// map_server's trinary rule: occ = (255 - p) / 255 (p / 255 when negated); above `occupied` a wall, below `free` free,
-// between them unknown. Transparent pixels are unknown.
+// map_server's trinary rule: occ = (255 - p) / 255 (p / 255 when negated); above `occupied` wall, below `free` free,
+// otherwise unknown. Transparent pixels are unknown.
 enum class Ground : std::uint8_t { wall, unknown, free };
 
-/// @param counts whether ground of that kind is solid in the grid
+/// @param counts whether this kind of ground is solid in the grid
 template <class Counts>
 Bitmap grid_of(const Map& map, const Picture& picture, Counts&& counts) {
   Bitmap grid{picture.width, picture.height, std::vector<std::uint8_t>(picture.value.size())};

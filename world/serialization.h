@@ -1,5 +1,5 @@
 #pragma once
-// A world's tables as bytes, row by row: what the hash and the snapshot share.
+// A world's tables as bytes, row by row. Shared by the hash and the snapshot.
 
 #include <string>
 
@@ -10,14 +10,14 @@
 namespace sf::world {
 
 inline constexpr std::size_t kMagnetBytes = 44;
-inline constexpr std::size_t kLaneMarkingBytes = 16;  ///< at least, here and below
+inline constexpr std::size_t kLaneMarkingBytes = 16;  ///< minimum, here and below
 inline constexpr std::size_t kMoverBytes = 119;
 inline constexpr std::size_t kPathBytes = 8;
 inline constexpr std::size_t kLightBytes = 57;
 inline constexpr std::size_t kEmitterBytes = 61;
 inline constexpr std::size_t kFloorHoleBytes = 8;
 
-/// How much of a row is written: all of it, or what a reading depends on (no colours).
+/// The fields of a row to write: all of them, or those that a reading depends on (no colours).
 enum class RowFields { all, physics };
 
 void put(base::ByteWriter& out, const Pose& pose);
@@ -26,7 +26,8 @@ void put(base::ByteWriter& out, const LaneMarking& marking, RowFields fields);
 void put(base::ByteWriter& out, const Magnet& magnet);
 void put(base::ByteWriter& out, const Model& model, RowFields fields);
 void put(base::ByteWriter& out, const Mover& mover, RowFields fields);
-/// Of physics nothing where no word is said: what nobody asked for leaves hashes as they were.
+/// With RowFields::physics an empty word writes nothing, so that the hashes of worlds without an accuracy stay the
+/// same.
 void put(base::ByteWriter& out, const Accuracy& accuracy, RowFields fields);
 void put(base::ByteWriter& out, const Path& path);
 void put(base::ByteWriter& out, const Light& light);
@@ -38,9 +39,9 @@ Accuracy get_accuracy(base::ByteReader& in);
 Segment get_segment(base::ByteReader& in);
 Magnet get_magnet(base::ByteReader& in);
 Model get_model(base::ByteReader& in);
-/// @throws base::InputError when it promises more points than bytes are left for.
+/// @throws base::InputError when its count of points exceeds the bytes left.
 LaneMarking get_lane_marking(base::ByteReader& in);
-/// @throws base::InputError when it promises more rows than bytes are left for.
+/// @throws base::InputError when one of its counts of rows exceeds the bytes left.
 Mover get_mover(base::ByteReader& in);
 
 Path get_path(base::ByteReader& in);
@@ -48,7 +49,7 @@ Light get_light(base::ByteReader& in);
 Emitter get_emitter(base::ByteReader& in);
 FloorHole get_floor_hole(base::ByteReader& in);
 
-/// One word of an enumeration. @throws base::InputError beyond its last one.
+/// A value of an enumeration. @throws base::InputError for a value above `last`.
 template <class Word>
 Word get_enum(base::ByteReader& in, Word last, const char* what) {
   const auto word = in.get<std::uint8_t>();

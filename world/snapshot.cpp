@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x57574653u;  // "SFWW"
 constexpr std::uint16_t kVersion = 4;
-constexpr std::uint32_t kMaxSamples = 1'000'000;  // of a laser: what a recording's world says is as much an input
+constexpr std::uint32_t kMaxSamples = 1'000'000;  // of a laser; the world of a recording is untrusted input
 
 template <class Row>
 void put_rows(base::ByteWriter& out, const std::vector<Row>& rows) {
@@ -30,7 +30,7 @@ void get_rows(base::ByteReader& in, std::vector<Row>& rows, std::size_t row_size
 
 [[noreturn]] void refuse(const std::string& reason) { throw base::InputError("broken world snapshot: " + reason); }
 
-// Rows that name other rows must name rows that exist: what reads a world relies on it.
+// Checks that row numbers refer to existing rows. Users of a world rely on it.
 void check_links(const World& world) {
   const auto models = world.models.size();
   const auto movers = world.movers.size();
@@ -83,14 +83,15 @@ bool finite(const Mover& m) {
          all_finite(m.magnets);
 }
 
-// What is measured must be numbers: world files are read so, and a recording's world may come from anywhere.
+// Checks that the numbers behind readings are finite. World files are checked when they are read, but a recording's
+// world is untrusted.
 void check_numbers(const World& world) {
   const bool good = all_finite(world.walls) && all_finite(world.lane_markings) && all_finite(world.magnets) &&
                     all_finite(world.movers) && finite({world.road_resolution, world.magnet_cutoff, world.interval});
-  if (!good) refuse("a number in it is infinite, or none");
+  if (!good) refuse("a number in it is infinite or NaN");
 }
 
-// What world.h promises of every row, and what reads a world does not look at again.
+// Checks the rules of world.h for rows; users of a world do not check them again.
 void check_rows(const World& world) {
   bool good = true;
   for (const Path& path : world.paths) {
@@ -130,7 +131,7 @@ void get_extras(base::ByteReader& in, World& world) {
 
 namespace {
 
-/// Files are named from the world file's folder: how its path was spelt says nothing about the world.
+/// Paths relative to the world file's folder: the spelling of the world file's path is not part of the world.
 struct Spelling {
   std::filesystem::path folder;
 

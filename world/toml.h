@@ -1,5 +1,6 @@
 #pragma once
-// TOML as plain values with their lines: for sidecars of road networks and for scenario files. toml++ is in the source.
+// TOML as plain values with their lines, for sidecars of road networks and for scenario files. toml++ is confined to
+// the source file.
 
 #include <string>
 #include <string_view>
@@ -11,8 +12,8 @@ namespace sf::world {
 struct TomlNode {
   enum class Kind { flag, number, text, list, table, other };  ///< other: dates and times
   Kind kind = Kind::table;
-  std::string key;              ///< where it stands in a table
-  int line = 0;                 ///< 1-based, of its key, or of itself where it has none
+  std::string key;              ///< its key in a table
+  int line = 0;                 ///< 1-based, of its key, or of the value where it has no key
   bool flag = false;            ///< value of a flag
   double number = 0.0;          ///< value of a number, whole or not; may be infinite or not a number
   std::string text;             ///< value of a text
@@ -22,10 +23,10 @@ struct TomlNode {
 /// Null where the table has no such key. Lives as long as the table.
 const TomlNode* find(const TomlNode& table, std::string_view key);
 
-/// The table that the text is.
-/// @param file its name, for messages
-/// @throws base::InputError with file and line where it is no TOML, has characters beyond ASCII outside comments of
-/// their own line, nests deeper than 32 levels (a key of many parts does, too), or is larger than 4 MiB.
+/// Parses `text` as one table.
+/// @param file name for errors
+/// @throws base::InputError with file and line for a text that is not TOML, for characters beyond ASCII outside
+/// comments on their own line, for more than 32 levels (a key of many parts counts as many levels), and above 4 MiB.
 TomlNode parse_toml(const std::string& file, std::string_view text);
 
 }  // namespace sf::world

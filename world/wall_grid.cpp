@@ -11,9 +11,9 @@ namespace sf::world {
 namespace {
 
 constexpr double kGrowth = 8.0;          // cell edge from one level to the next
-constexpr double kLongest = 64.0;        // cells a wall may span on its level
-constexpr std::uint32_t kLevels = 12;    // 8^11 finest cells: 8.6e9 of them in a row
-constexpr std::size_t kPart = 1u << 18;  // buckets that are filled together
+constexpr double kLongest = 64.0;        // cells that a wall may span on its level
+constexpr std::uint32_t kLevels = 12;    // largest cell edge: 8^11 = 8.6e9 finest cells
+constexpr std::size_t kPart = 1u << 18;  // buckets filled together
 constexpr double kFarthest = 4.0e15;     // cell numbers stay exact integers
 
 double side(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) { return base::cross(b - a, p - a); }
@@ -33,7 +33,7 @@ bool segments_meet(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   if ((sa > 0.0 && sb > 0.0) || (sa < 0.0 && sb < 0.0)) return false;
   if (sa != 0.0 || sb != 0.0 || sc != 0.0 || sd != 0.0) return true;
 
-  // All four on one line: the segments meet where their ranges do.
+  // All four points on one line: the segments meet when their ranges overlap.
   const auto on = [](glm::dvec2 p, glm::dvec2 q, glm::dvec2 r) {
     return within(p.x, q.x, r.x) && within(p.y, q.y, r.y);
   };
@@ -56,7 +56,7 @@ WallGrid::WallGrid(std::vector<Segment> walls, double cell) : walls_(std::move(w
   SF_CHECK(cell > 0.0 && std::isfinite(cell), "cell edge " + std::to_string(cell));
   for (std::uint32_t level = 0; level < kLevels; ++level) cells_.push_back(cell * std::pow(kGrowth, level));
 
-  // Count, then fill: buckets lie one after another.
+  // Count, then fill: buckets are contiguous.
   std::size_t count = 0;
   std::vector<bool> used(kLevels, false);
   starts_.assign(2, 0);
@@ -72,7 +72,8 @@ WallGrid::WallGrid(std::vector<Segment> walls, double cell) : walls_(std::move(w
   fill();
 }
 
-// Buckets are random places. So entries are first sorted into parts of buckets that the cache holds, then within each.
+// Writes to buckets are random accesses. So entries are first sorted into parts of buckets that fit into the cache,
+// then within each part.
 void WallGrid::fill() {
   struct Entry {
     std::uint32_t bucket, row;
@@ -126,11 +127,11 @@ template <class Visit>
 void WallGrid::for_each_bucket(const Segment& wall, Visit&& visit) const {
   const std::uint32_t level = level_of(wall);
   const double cell = cells_[level];
-  const double slack = 1e-6 * cell;  // far above rounding at 100 km, far below a cell
+  const double slack = 1e-6 * cell;  // far above rounding errors at 100 km, far below a cell
   const glm::dvec2 p = wall.a.x <= wall.b.x ? wall.a : wall.b;
   const glm::dvec2 q = wall.a.x <= wall.b.x ? wall.b : wall.a;
 
-  // Column by column: the cells the wall crosses there.
+  // Column by column: the cells that the wall crosses in the column.
   const std::int64_t last = cell_of(q.x, cell);
   for (std::int64_t x = cell_of(p.x, cell); x <= last; ++x) {
     const auto y_at = [&](double at) {

@@ -1,9 +1,9 @@
 #pragma once
-// Which walls are near? A hashed uniform grid with coarser levels for long walls.
+// Index of walls near a position: a hashed uniform grid with coarser levels for long walls.
 //
-// Memory is bounded by the number of walls, never by the extent of the world: a wall lies on the finest level on which
-// it crosses few cells, and cells are buckets of one hash table. Built once; queries allocate nothing and may run on
-// any thread.
+// Memory is bounded by the number of walls, not by the extent of the world: a wall lies on the finest level on which it
+// crosses few cells, and cells are buckets of one hash table. Built once; queries allocate nothing and may run on any
+// thread.
 
 #include <algorithm>
 #include <cstdint>
@@ -25,12 +25,12 @@ inline Box box_around(glm::dvec2 centre, double reach) {
   return {{centre.x - reach, centre.y - reach}, {centre.x + reach, centre.y + reach}};
 }
 
-/// Around two corners, in any order.
+/// Box of two corners, in any order.
 inline Box box_of(glm::dvec2 p, glm::dvec2 q) {
   return {{std::min(p.x, q.x), std::min(p.y, q.y)}, {std::max(p.x, q.x), std::max(p.y, q.y)}};
 }
 
-/// From the segment's nearest point to `p`. [m]
+/// Vector from the segment's nearest point to `p`. [m]
 inline glm::dvec2 from_segment(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
   const glm::dvec2 along = b - a;
   const double size = dot(along, along);
@@ -41,21 +41,21 @@ inline glm::dvec2 from_segment(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
 /// Distance from `p` to the nearest point of the segment. [m] >= 0
 double distance(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b);
 
-/// Whether two closed segments share a point. Touching counts.
+/// Whether two closed segments share a point; touching counts.
 bool segments_meet(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d);
 
-/// How often outlines, counter-clockwise around what is solid, go round `p`. Edges that are not solid to their left
+/// Number of turns of the outlines round `p`; outlines run counter-clockwise around solids. Edges without `solid_left`
 /// are skipped.
 int winding_number(std::span<const Segment> edges, glm::dvec2 p);
 
 class WallGrid {
  public:
-  /// @param walls copied; those the caller wants to meet
+  /// @param walls copied; the walls that queries return
   /// @param cell [m] > 0, edge of the finest cells: about the size of a typical query
   WallGrid(std::vector<Segment> walls, double cell);
 
-  /// True as soon as `predicate(const Segment&)` is true for a wall whose bounding box meets `box`. A wall may be asked
-  /// about more than once; the order is fixed.
+  /// True as soon as `predicate(const Segment&)` is true for a wall whose bounding box meets `box`. The predicate may
+  /// be called more than once for a wall; the order is fixed.
   template <class Predicate>
   bool any(const Box& box, Predicate&& predicate) const;
 
@@ -76,7 +76,7 @@ class WallGrid {
 
   std::vector<Segment> walls_;
   std::vector<double> cells_;           ///< [m] cell edge per level
-  std::vector<std::uint32_t> used_;     ///< levels that hold any wall
+  std::vector<std::uint32_t> used_;     ///< levels with at least one wall
   std::vector<std::uint32_t> starts_;   ///< per bucket, into entries_; one more at the end
   std::vector<std::uint32_t> entries_;  ///< rows of walls_
 };

@@ -50,9 +50,9 @@ void add_point(Curve& curve, glm::dvec2 p, glm::dvec2 tangent) {
   curve.tangents.push_back(tangent);
 }
 
-// The curve lies in the hull of its control points, and distance to a segment is convex: no point of it is farther
-// from the chord than the control points are. An arc that turns by phi deviates by (radius) phi^2 / 8, so its offset at
-// h deviates by h phi^2 / 8 more.
+// The curve lies in the hull of its control points, and distance to a segment is convex: no point of it is farther from
+// the chord than the control points are. An arc of angle phi deviates by (radius) phi^2 / 8, so its offset at h
+// deviates by h phi^2 / 8 more.
 void flatten(Curve& curve, const Bezier& b, const Sampling& sampling, int depth) {
   const double flat = std::max(distance_to_segment(b.p1, b.p0, b.p3), distance_to_segment(b.p2, b.p0, b.p3));
   const double turn = std::abs(turn_between(start_of(b), end_of(b)));
@@ -67,7 +67,7 @@ void flatten(Curve& curve, const Bezier& b, const Sampling& sampling, int depth)
   flatten(curve, {half, p123, p23, b.p3}, sampling, depth + 1);
 }
 
-/// A Hermite span whose tangents reach `reach_a` and `reach_b` [m] before the factor that makes circles of circles.
+/// A Hermite span with tangents of lengths `reach_a` and `reach_b` [m], before the factor that reproduces circles.
 Bezier span_of(glm::dvec2 a, glm::dvec2 tangent_a, double reach_a, glm::dvec2 b, glm::dvec2 tangent_b, double reach_b) {
   const double c = std::cos(turn_between(tangent_a, tangent_b) / 4.0);
   const double factor = 1.0 / (3.0 * c * c);
@@ -78,7 +78,7 @@ Bezier span_of(glm::dvec2 a, glm::dvec2 tangent_a, double reach_a, glm::dvec2 b,
 struct Chords {
   std::vector<glm::dvec2> along;
   std::vector<double> length;
-  std::vector<double> turn;  ///< [rad] at every way-point, 0 at the ends
+  std::vector<double> turn;  ///< [rad] at each way-point, 0 at the ends
 };
 
 Chords chords_of(const std::vector<glm::dvec2>& p) {
@@ -92,21 +92,21 @@ Chords chords_of(const std::vector<glm::dvec2>& p) {
   return chords;
 }
 
-/// Curvature [1/m] of chord `of` at way-point `at`, one of its ends that has another chord: a turn is shared out
-/// between its two chords, the shorter one taking more.
+/// Curvature [1/m] of chord `of` at way-point `at`, an end that has another chord: the turn is divided between the two
+/// chords, with the larger part for the shorter one.
 double bend(const Chords& chords, std::size_t of, std::size_t at) {
   const double here = chords.length[of];
   const double other = chords.length[of == at ? at - 1 : at];
   return 2.0 * std::abs(chords.turn[at]) * other / ((here + other) * here);
 }
 
-/// Direction at every way-point of a line without coincident ones, at least two.
+/// Direction at each way-point of a line of at least two, none of them coincident.
 std::vector<glm::dvec2> directions(const std::vector<glm::dvec2>& p) {
   const std::size_t n = p.size();
   const Chords chords = chords_of(p);
   std::vector<glm::dvec2> tangents(n);
   for (std::size_t i = 1; i + 1 < n; ++i) {
-    // How a chord bends shows at its far end; where the line ends there, at this one.
+    // The curvature of a chord is taken at its far end, or at this end where the line ends there.
     const double before = bend(chords, i - 1, i > 1 ? i - 1 : i);
     const double after = bend(chords, i, i + 2 < n ? i + 1 : i);
     const double share = before + after > 1e-12 ? before / (before + after) : 0.5;
@@ -115,7 +115,7 @@ std::vector<glm::dvec2> directions(const std::vector<glm::dvec2>& p) {
     const double angle = std::clamp(share * turn, turn - most, most);
     tangents[i] = base::rotate(std::copysign(angle, chords.turn[i]), chords.along[i - 1]);
   }
-  // An end mirrors its neighbour about their chord, as an arc does.
+  // The tangent at an end mirrors its neighbour about their chord, as on an arc.
   const auto mirrored = [](glm::dvec2 tangent, glm::dvec2 axis) { return 2.0 * dot(tangent, axis) * axis - tangent; };
   tangents[0] = n > 2 ? mirrored(tangents[1], chords.along[0]) : chords.along[0];
   tangents[n - 1] = n > 2 ? mirrored(tangents[n - 2], chords.along[n - 2]) : chords.along[0];
@@ -141,7 +141,7 @@ Curve smooth_curve(std::span<const glm::dvec2> waypoints, const Sampling& sampli
     const double here = length(p[i + 1] - p[i]);
     const double start = i > 0 ? std::min(here, length(p[i] - p[i - 1])) : here;
     const double end = i + 2 < p.size() ? std::min(here, length(p[i + 2] - p[i + 1])) : here;
-    // The first and the last span are arcs: either end reaches as far as the other.
+    // The first and the last span are arcs: both tangents have the same length.
     const Bezier span =
         span_of(p[i], tangents[i], i > 0 ? start : end, p[i + 1], tangents[i + 1], i + 2 < p.size() ? end : start);
     flatten(curve, span, sampling, 0);

@@ -1,9 +1,9 @@
 #pragma once
-// What is wrong in a road network or a mission: files that were written by hand have slips in them whose meaning is
-// clear, and others that have none.
+// Collected problems of a road network or a mission. Hand-written files have slips with a clear meaning, and slips
+// without one.
 //
-// Read strictly, the first problem is thrown. Otherwise a problem of clear meaning becomes a warning that says how it
-// is read, and the others are gathered, so that one reading names them all.
+// In strict mode the first problem is thrown. Otherwise a problem with a clear meaning becomes a warning that states
+// the interpretation, and the others are collected, so that one error lists them all.
 
 #include <string>
 #include <vector>
@@ -13,26 +13,27 @@
 
 namespace sf::world {
 
-/// A file of another kind: nothing else in it is worth a word.
+/// A file of another format. It ends the diagnosis: other problems of the file are not reported.
 struct WrongFormatError : base::InputError {
   using base::InputError::InputError;
 };
 
 class Diagnostics {
  public:
-  /// @param warnings gets what is tolerated; must outlive this
+  /// @param warnings receives the tolerated problems; must outlive this object
   Diagnostics(std::string file, bool strict, std::vector<Warning>& warnings)
       : file_(std::move(file)), strict_(strict), warnings_(&warnings) {}
 
   bool strict() const { return strict_; }
 
-  /// Something of clear meaning. @param remedy what to do, @param taken how it is read meanwhile
-  /// @throws base::InputError where this is strict
+  /// A problem with a clear meaning. @param remedy advice for the user, @param taken the interpretation used
+  /// @throws base::InputError in strict mode
   void add_warning(int line, const std::string& what, const std::string& remedy, const std::string& taken);
-  /// Something without a meaning. @throws base::InputError where this is strict, and beyond a hundred of them
+  /// A problem without a clear meaning. @throws base::InputError in strict mode, and beyond a hundred such problems
   void add_error(int line, const std::string& what);
 
-  /// `act()`; false where it threw, which is one problem of `line` then. @throws base::InputError where this is strict
+  /// Calls `act()`. An exception counts as one problem of `line`, and the result is false. @throws base::InputError in
+  /// strict mode
   template <class Act>
   bool attempt(const int& line, Act&& act) {
     if (strict_) return act(), true;
@@ -47,7 +48,7 @@ class Diagnostics {
     }
   }
 
-  /// @throws base::InputError with all that was refused, line by line, where anything was.
+  /// @throws base::InputError with all collected errors in order of lines, when there are any.
   void throw_errors();
 
  private:

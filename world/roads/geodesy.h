@@ -2,10 +2,10 @@
 // Degrees to metres: a plane that touches the ellipsoid at an origin, x east, y north.
 //
 // A position goes from the ellipsoid (GRS80, height 0) to Earth-centred coordinates and from there into the plane,
-// exactly, in double (B. Hofmann-Wellenhof et al., "GNSS", 2008, ch. 8). Looking down on the plane flattens the Earth:
-// a distance d from the origin comes out short by d^3 / (6 R^2), R = 6371 km: 4 um at 1 km, 4 mm at 10 km, 3 cm at 20
-// km, 4 m at 100 km. Heights are not in these files; ground at height H is larger than what is drawn by H / R (16 parts
-// in 100 000 at 1 km). WGS84 in place of GRS80 moves nothing by more than 1e-10 of its distance.
+// exactly, in double (B. Hofmann-Wellenhof et al., "GNSS", 2008, ch. 8). The vertical projection onto the plane
+// flattens the Earth: a distance d from the origin is too short by d^3 / (6 R^2), R = 6371 km: 4 um at 1 km, 4 mm at 10
+// km, 3 cm at 20 km, 4 m at 100 km. These files have no heights; distances on ground at height H are larger than here
+// by H / R (1.6e-4 at 1 km). WGS84 in place of GRS80 changes positions by less than 1e-10 of their distance.
 
 #include "base/pose.h"
 
@@ -26,7 +26,7 @@ class LocalPlane {
 
  private:
   struct Earth {
-    double x = 0.0, y = 0.0, z = 0.0;  ///< [m] Earth-centred, z to the north pole
+    double x = 0.0, y = 0.0, z = 0.0;  ///< [m] Earth-centred, z towards the north pole
   };
   static Earth earth(Geodetic at);
 

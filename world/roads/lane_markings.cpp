@@ -18,7 +18,7 @@ struct Painter {
   const RoadNetwork& network;
   std::vector<LaneMarking> lane_markings;
 
-  // A stripe turns by less than 90 degrees at each point: sharper ones become two.
+  // A marking turns by less than 90 degrees at each point: a sharper line becomes two markings.
   void add(std::vector<glm::dvec2> line, double width, std::uint32_t color) {
     if (lane_markings.size() >= kMaxLaneMarkings)
       throw base::InputError(network.file, 0,

@@ -77,7 +77,7 @@ class MdfReader {
     if (word.starts_with("end_")) return end();
   }
 
-  /// True for what was said before, in the same words or as a count, which is not relied on.
+  /// True for a repeated keyword with the same text, and for a repeated count, which is not relied on.
   bool repeats(std::string_view word) {
     const auto [before, fresh] = seen_.emplace(word == "RNDF_name" ? "RNDF" : word, now().rest);
     if (fresh) return false;
@@ -129,7 +129,7 @@ class MdfReader {
     return block == Block::checkpoints ? "checkpoints" : block == Block::speed_limits ? "speed_limits" : "file";
   }
 
-  // A block may lack its end.
+  // Ends the open block, also one without its own end.
   void end_block(const std::string& because) {
     if (block_ == Block::file) return;
     warn(begun_, fmt::format("'{0}' has no 'end_{0}'; it ends {1}", name_of(block_), because));
@@ -149,7 +149,7 @@ class MdfReader {
     promises_[std::string(now().keyword)] = said;
   }
 
-  // A number is there to be checked: what there is counts more, unless the file breaks off before as many came.
+  // Checks a declared count. The actual number takes precedence, unless the file ends before that number was reached.
   void check_count(const std::string& keyword, std::size_t have) {
     const std::string taken = have == 1 ? "1 is taken" : fmt::format("{} are taken", have);
     const auto said = promises_.find(keyword);
@@ -202,7 +202,7 @@ class MdfReader {
   StatementReader statements_;
   Block block_ = Block::file;
   int begun_ = 0;                                         ///< line where the block began
-  std::map<std::string, std::string, std::less<>> seen_;  ///< keywords, and what they say
+  std::map<std::string, std::string, std::less<>> seen_;  ///< keywords and their text
   std::set<std::string, std::less<>> unknown_;
   std::map<std::string, std::pair<int, int>> promises_;  ///< count (negative: unread) and line, by keyword
   std::map<int, SpeedLimit> limited_;                    ///< by segment or zone

@@ -1,5 +1,5 @@
 #pragma once
-// Mission data files: which checkpoints to visit in which order, and how fast to drive where.
+// Mission data files: the checkpoints to visit, in order, and the speed limits of segments and zones.
 
 #include <string>
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace sf::world {
 
-/// [m/s] of a mile per hour.
+/// [m/s] one mile per hour
 inline constexpr double kMilePerHour = 0.44704;
 
 struct MdfCheckpoint {
-  int id = 0;    ///< in [1, 32768]; may come more than once
+  int id = 0;    ///< in [1, 32768]; may occur more than once
   int line = 0;  ///< 1-based
 };
 
@@ -27,25 +27,25 @@ struct SpeedLimit {
 struct Mdf {
   std::string file;  ///< as given by the user
   std::string name;
-  std::string rndf_name;  ///< of the network it was made for, as written; a name or a file's name
+  std::string rndf_name;  ///< the network of the mission, as written: a network's name or a file's name
   std::string format_version;
   std::string creation_date;
-  std::vector<MdfCheckpoint> checkpoints;  ///< in the order to visit
+  std::vector<MdfCheckpoint> checkpoints;  ///< in order of visits
   std::vector<SpeedLimit> speed_limits;
   std::vector<Warning> warnings;
 };
 
-/// Reads a mission and checks its form. What is wrong but clear becomes a warning; all that has no clear meaning is
-/// thrown at once.
-/// @param strict the first thing that is wrong is thrown.
+/// Reads a mission and checks its syntax. Problems with a clear meaning become warnings; all others are thrown
+/// together.
+/// @param strict the first problem is thrown.
 /// @throws base::InputError with file, line, what was expected and what to do.
 Mdf read_mdf(const std::string& file, bool strict = false);
 
-/// Likewise from memory; `file` names errors.
+/// Likewise from memory. @param file name for errors
 Mdf parse_mdf(const std::string& file, std::string_view text, bool strict = false);
 
-/// Checks that the mission can be driven on `rndf`. Speed limits for segments or zones that it has not are warnings.
-/// @throws base::InputError for all checkpoints that do not exist.
+/// Checks that the mission can be driven on `rndf`. Speed limits of missing segments or zones are warnings.
+/// @throws base::InputError for all missing checkpoints.
 std::vector<Warning> check_against(const Mdf& mdf, const Rndf& rndf);
 
 }  // namespace sf::world

@@ -28,7 +28,7 @@ Transition across(const RoadNetwork& network, PointRef from, PointRef to) {
   return {Transition::Kind::zone, to, length(position_of(network, to) - position_of(network, from))};
 }
 
-/// Across a zone to all of its perimeter points that lead out of it.
+/// Adds transitions across a zone to all of its perimeter points with exits.
 void add_ways_out(const RoadNetwork& network, std::uint32_t zone, PointRef from, std::vector<Transition>& steps) {
   const auto points = static_cast<std::uint32_t>(network.zones[zone].perimeter.size());
   for (std::uint32_t i = 0; i < points; ++i) {

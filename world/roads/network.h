@@ -1,6 +1,6 @@
 #pragma once
-// A road network in the metres of the world: lanes as smooth lines with edges and paint, and how one gets from one to
-// the next. Tables of rows in file order, joined by row number; immutable after it is built.
+// A road network in metres of the world: lanes as smooth lines with edges and markings, and the transitions between
+// lanes. Tables of rows in file order, joined by row number; immutable after it is built.
 //
 //   RoadNetwork roads = load_roads("site.rndf", warnings);         // world/roads/roads.h
 //   for (const Step& step : successors(roads, *find_point(roads, {1, 2, 3}))) ... step.to, step.length
@@ -17,12 +17,12 @@
 
 namespace sf::world {
 
-/// A point by its place in the tables.
+/// A point by its row in the tables.
 struct PointRef {
   enum class Kind : std::uint8_t { lane, perimeter, spot };
   Kind kind = Kind::lane;
   std::uint32_t row = 0;    ///< in `lanes`, `zones` or `spots`
-  std::uint32_t index = 0;  ///< among the points of that row; spot: 0 where it is entered, 1 where it ends
+  std::uint32_t index = 0;  ///< among the points of that row; spot: 0 its entry, 1 its end
 
   friend bool operator==(const PointRef&, const PointRef&) = default;
 };
@@ -30,11 +30,11 @@ struct PointRef {
 struct LanePoint {
   PointId id;
   glm::dvec2 p;      ///< [m] world frame
-  double s = 0.0;    ///< [m] along the lane's centre line, from 0 to the lane's length, never falling
-  double yaw = 0.0;  ///< [rad] driving direction here; 0 where the lane has one point only
+  double s = 0.0;    ///< [m] along the lane's centre line, from 0 to the lane's length, non-decreasing
+  double yaw = 0.0;  ///< [rad] driving direction; 0 for a lane of one point
 };
 
-/// Rule: where the lane has one way-point (or all coincide), the centre line has one point and there are no edges.
+/// Rule: a lane with one way-point (or only coincident ones) has a centre line of one point and no edges.
 struct RoadLane {
   std::uint32_t segment = 0;  ///< row in `segments`
   int number = 0;             ///< in the file
@@ -63,7 +63,7 @@ struct PerimeterPoint {
 struct RoadZone {
   int id = 0;
   std::string name;
-  std::vector<PerimeterPoint> perimeter;  ///< closed: the last is joined to the first
+  std::vector<PerimeterPoint> perimeter;  ///< closed: the last point is joined to the first
   std::uint32_t first_spot = 0;           ///< rows [first_spot, first_spot + spots) of `spots`
   std::uint32_t spots = 0;
 };
@@ -73,7 +73,7 @@ struct RoadSpot {
   int number = 0;
   double width = 0.0;  ///< [m] > 0
   glm::dvec2 entry;    ///< [m] world frame
-  glm::dvec2 end;      ///< [m] where a car's front comes to stand
+  glm::dvec2 end;      ///< [m] position of a parked car's front
 };
 
 struct RoadExit {
@@ -82,10 +82,10 @@ struct RoadExit {
   double length = 0.0;  ///< [m] of `exit_curve`
 };
 
-/// Across the lane, as wide as the lane. None on lanes without a direction.
+/// A line across the full width of the lane. Lanes without a direction have none.
 struct StopLine {
   PointRef at;
-  glm::dvec2 left;   ///< [m] its end on the lane's left edge
+  glm::dvec2 left;   ///< [m] end on the lane's left edge
   glm::dvec2 right;  ///< [m]
 };
 
@@ -95,7 +95,7 @@ struct RoadCheckpoint {
   glm::dvec2 p;  ///< [m] world frame
 };
 
-/// Sizes of paint, scaled. [m] > 0
+/// Sizes of markings, scaled. [m] > 0
 struct MarkingSizes {
   double line_width = 0.0;
   double dash_length = 0.0;
@@ -106,8 +106,8 @@ struct MarkingSizes {
 struct RoadNetwork {
   std::string name;
   std::string file;
-  double scale = 1.0;       ///< [-] metres here per metre of the RNDF
-  double tolerance = 1e-3;  ///< [m] of all polylines against their curves
+  double scale = 1.0;       ///< [-] metres of the world per metre of the RNDF
+  double tolerance = 1e-3;  ///< [m] largest distance of polylines from their curves
   std::vector<RoadSegment> segments;
   std::vector<RoadLane> lanes;
   std::vector<RoadZone> zones;
@@ -121,43 +121,43 @@ struct RoadNetwork {
   std::vector<std::pair<PointId, PointRef>> index;  ///< sorted: see `find_point`
 };
 
-/// Builds the network. @throws base::InputError where the sidecar names what is not there, or the network is too large.
+/// Builds the network. @throws base::InputError when the sidecar names a missing lane or point, or the network is too
+/// large.
 RoadNetwork build_network(const Rndf& rndf, const RoadSidecar& sidecar, std::vector<Warning>& warnings);
 
-/// Nothing where the network has no such point.
+/// nullopt when the network has no such point.
 std::optional<PointRef> find_point(const RoadNetwork& network, PointId id);
-/// Null where the network has no such checkpoint. Lives as long as the network.
+/// Null when the network has no such checkpoint. Lives as long as the network.
 const RoadCheckpoint* find_checkpoint(const RoadNetwork& network, int id);
 
 PointId id_of(const RoadNetwork& network, PointRef at);
 glm::dvec2 position_of(const RoadNetwork& network, PointRef at);
-/// Driving direction [rad]; nothing for perimeter points, and for lanes without one.
+/// Driving direction [rad]; nullopt for perimeter points, and for lanes without a direction.
 std::optional<double> yaw_of(const RoadNetwork& network, PointRef at);
-/// "1.2": as the file has it.
+/// "1.2", as written in the file.
 std::string name_of(const RoadNetwork& network, const RoadLane& lane);
 
-/// One way on from a point.
+/// One transition from a point to another.
 struct Transition {
   enum class Kind : std::uint8_t { lane, exit, zone, change };
-  Kind kind = Kind::lane;  ///< along the lane, over an exit, freely across a zone, or over to the lane beside
+  Kind kind = Kind::lane;  ///< along the lane, by an exit, freely across a zone, or to the adjacent lane
   PointRef to;
   double length = 0.0;  ///< [m] along the lane; of the connection of an exit or change; straight across a zone
 };
 
-/// Where one can go from `at`: on along the lane, over its exits; from a perimeter point also to every spot of the zone
-/// and to every perimeter point that has exits; within a spot to its end, and from its end to every perimeter point
-/// that has exits.
+/// Transitions from `at`: along the lane and by its exits; from a perimeter point also to each spot of the zone and to
+/// each perimeter point with exits; within a spot to its end, and from its end to each perimeter point with exits.
 std::vector<Transition> successors(const RoadNetwork& network, PointRef at);
 
-/// The lanes that one may change to from `at`, of the same segment, side by side with it in the same direction, where
-/// the paint between them is broken or the file says nothing of it. Each step ends at the first point of the other lane
-/// that is at least three lane widths farther on. Nothing from points of zones and spots. Not among `successors`.
+/// Lane changes from `at`: to lanes of the same segment that run beside it in the same direction, with a broken line or
+/// no known marking between them. Each change ends at the first point of the other lane at least three lane widths
+/// farther on. Empty for points of zones and spots. Not part of `successors`.
 std::vector<Transition> lane_changes(const RoadNetwork& network, PointRef at);
 
-/// The way of a change of lanes, from one lane's direction into the other's.
+/// The curve of a lane change, from one lane's direction into the other's.
 Curve lane_change_curve(const RoadNetwork& network, PointRef from, PointRef to);
 
-/// The way an exit takes: from the lane's direction into that of the entry; straight where a direction is not known.
+/// The curve of an exit, from the lane's direction into that of the entry; straight when a direction is not known.
 Curve exit_curve(const RoadNetwork& network, const RoadExit& exit);
 
 }  // namespace sf::world

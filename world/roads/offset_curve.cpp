@@ -1,6 +1,6 @@
-// Parallels of a curve, without the loops that tight bends make of them: where the curve bends tighter than the
-// distance, points of the parallel that come nearer to the curve than the distance are left out, and the two ends are
-// joined where they cross.
+// Parallels of a curve, without the loops at tight bends: where the curve bends tighter than the distance, points of
+// the parallel that are closer to the curve than the distance are left out, and the two ends are joined at their
+// intersection.
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +12,13 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kAround = 4.0;      // [distances] along the curve from a tight bend in which points may be left out
-constexpr std::size_t kReach = 400;  // pieces of the curve on either side that a point is compared with
-constexpr std::size_t kEnds = 8;     // pieces at either end of what is left out in which the crossing is looked for
-constexpr double kNearer = 2e-3;     // [distances] that a point may come nearer: rounding of the polyline
+constexpr double kAround =
+    4.0;  // [distances] length along the curve around a tight bend in which points may be left out
+constexpr std::size_t kReach = 400;  // pieces of the curve on each side that are compared with a point
+constexpr std::size_t kEnds = 8;     // pieces at each end of a gap that are searched for the intersection
+constexpr double kNearer = 2e-3;     // [distances] tolerance of the distance: rounding of the polyline
 
-/// Where the pieces a-b and c-d cross.
+/// Intersection of the pieces a-b and c-d.
 std::optional<glm::dvec2> crossing(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   const glm::dvec2 ab = b - a;
   const glm::dvec2 cd = d - c;
@@ -34,13 +35,13 @@ double distance(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
   return length(p - (a + std::clamp(dot(p - a, d) / dot(d, d), 0.0, 1.0) * d));
 }
 
-/// The parallel before anything is left out, and which of its points stay.
+/// The complete parallel, and which of its points are kept.
 struct Raw {
   std::vector<glm::dvec2> points;
   std::vector<bool> kept;
 };
 
-// True where no piece of the curve within reach is nearer to the raw point than it should be.
+// True when no piece of the curve within reach is closer to the raw point than `distance_to_keep`.
 bool is_clear(const Curve& curve, glm::dvec2 p, std::size_t i, double distance_to_keep) {
   const double around = kAround * distance_to_keep;
   const double least = (1.0 - kNearer) * distance_to_keep;
@@ -59,8 +60,8 @@ Raw raw_parallel(const Curve& curve, double distance) {
     raw.points.push_back(curve.points[i] + distance * glm::dvec2{-curve.tangents[i].y, curve.tangents[i].x});
   raw.kept.assign(n, true);
 
-  // Pieces that run backwards are bends too tight; only points around them are looked at.
-  double last = -INFINITY;  // [m] along the curve, of the last such piece
+  // Pieces in reverse direction mark bends that are too tight; only points around them are tested.
+  double last = -INFINITY;  // [m] along the curve, of the last reversed piece
   const double around = kAround * std::abs(distance);
   std::vector<double> back(n, INFINITY);
   for (std::size_t i = 0; i < n; ++i) {
@@ -82,7 +83,7 @@ void add_distinct(std::vector<glm::dvec2>& line, glm::dvec2 p) {
   if (line.empty() || length(p - line.back()) > 1e-9) line.push_back(p);
 }
 
-/// Where the run of kept points [begin, end) goes on: the crossing with the next run [from, to), if they cross.
+/// The continuation of the run of kept points [begin, end): its intersection with the next run [from, to), if any.
 struct Join {
   std::size_t leave = 0;  ///< last point of the run before it
   std::size_t enter = 0;  ///< first point of the run after it

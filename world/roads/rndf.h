@@ -1,6 +1,6 @@
 #pragma once
-// Route network definition files as they are written: ids, degrees, feet, each with its line. What they mean in metres
-// is world/roads/network.h.
+// Route network definition files as written: ids, degrees and feet, each with its line. world/roads/network.h has the
+// network in metres.
 //
 //   Rndf roads = read_rndf("site.rndf");   // throws base::InputError with file:line
 //   count(roads).lanes;
@@ -14,14 +14,14 @@
 
 namespace sf::world {
 
-/// What is painted along one side of a lane. `none`: the file says nothing.
+/// Marking along one side of a lane. `none`: the file specifies nothing.
 enum class Boundary : std::uint8_t { none, double_yellow, solid_yellow, solid_white, broken_white };
 
 /// The file's word for it; "none" for none.
 std::string_view word_of(Boundary boundary);
-/// Nothing for a word that is no boundary; "none" is not one of the file's words.
+/// nullopt for a word that is not a boundary; "none" is not a word of the format.
 std::optional<Boundary> boundary_of(std::string_view word);
-/// `double_yellow, solid_yellow, ...`: for errors.
+/// `double_yellow, solid_yellow, ...`, for errors.
 std::string boundary_words();
 
 struct RndfPoint {
@@ -31,8 +31,8 @@ struct RndfPoint {
   int line = 0;            ///< 1-based, here and below
 };
 
-/// A way out of a lane or a zone, and not always the one that it is listed under. Both points are way-points of lanes
-/// or perimeter points of zones that exist.
+/// An exit of a lane or a zone; it may stand in the block of another one. Both points are existing way-points of lanes
+/// or perimeter points of zones.
 struct RndfExit {
   PointId from;
   PointId to;
@@ -72,7 +72,7 @@ struct RndfSegment {
 struct RndfSpot {
   int number = 0;                  ///< in [1, 32768]
   std::optional<double> width_ft;  ///< [ft] > 0; nothing where the file says nothing or 0
-  std::vector<RndfPoint> points;   ///< two: where it is entered, where it ends
+  std::vector<RndfPoint> points;   ///< two: entry and end
   std::vector<RndfCheckpoint> checkpoints;
   int line = 0;
 };
@@ -91,7 +91,7 @@ struct Rndf {
   std::string name;
   std::string format_version;
   std::string creation_date;
-  std::vector<RndfSegment> segments;  ///< in file order, as everything else
+  std::vector<RndfSegment> segments;  ///< in file order, as all lists here
   std::vector<RndfZone> zones;
   std::vector<Warning> warnings;
 };
@@ -109,13 +109,13 @@ struct RoadCounts {
 };
 RoadCounts count(const Rndf& rndf);
 
-/// Reads a file, checks its form and every reference in it. What is wrong but clear becomes a warning; all that has no
-/// clear meaning is thrown at once.
-/// @param strict the first thing that is wrong is thrown.
+/// Reads a file and checks its syntax and all its references. Problems with a clear meaning become warnings; all others
+/// are thrown together.
+/// @param strict the first problem is thrown.
 /// @throws base::InputError with file, line, what was expected and what to do.
 Rndf read_rndf(const std::string& file, bool strict = false);
 
-/// Likewise from memory; `file` names errors.
+/// Likewise from memory. @param file name for errors
 Rndf parse_rndf(const std::string& file, std::string_view text, bool strict = false);
 
 }  // namespace sf::world

@@ -12,8 +12,8 @@ namespace sf::world {
 
 namespace {
 
-// Keywords of the format's extension for traffic lights and crosswalks ("RNDF 1.1", Stanford VLR). Nothing of theirs is
-// modelled here, and none of them changes what the other lines mean.
+// Keywords of the format's extension for traffic lights and crosswalks ("RNDF 1.1", Stanford VLR). They are not
+// modelled, and they do not change the meaning of other lines.
 constexpr std::array<std::string_view, 20> kExtension{"num_intersections",
                                                       "num_crosswalks",
                                                       "speed_limit",
@@ -35,7 +35,7 @@ constexpr std::array<std::string_view, 20> kExtension{"num_intersections",
                                                       "end_trafficlight",
                                                       "end_intersection"};
 
-// A text that uses more unknown words than this is something else.
+// A text with more unknown keywords than this is not an RNDF.
 constexpr std::size_t kMaxUnknown = 50;
 
 bool is_extension(std::string_view keyword) {
@@ -50,7 +50,7 @@ bool is_word(std::string_view keyword) {
 
 constexpr int kInner = 2;
 
-/// How far inside a keyword stands that begins or ends a block: 0 in the file, 1 in a segment or zone; else `kInner`.
+/// Nesting level of a keyword that begins or ends a block: 0 in the file, 1 in a segment or zone; else `kInner`.
 int level_of(std::string_view keyword) {
   if (keyword == "segment" || keyword == "zone" || keyword == "end_file") return 0;
   constexpr std::array<std::string_view, 5> kSecond{"lane", "perimeter", "spot", "end_segment", "end_zone"};
@@ -66,8 +66,8 @@ std::string_view name_of(RndfBlock block) {
 
 }  // namespace
 
-/// Where a keyword may stand, whether once, and what it does. Keywords that begin or end a block end what is still open
-/// inside of its parent.
+/// The blocks in which a keyword may stand, whether it may repeat, and its effect. Keywords that begin or end a block
+/// close the open blocks inside of its parent.
 struct RndfReader::Rule {
   std::vector<RndfBlock> blocks;
   bool once = false;
@@ -129,7 +129,7 @@ void RndfReader::warn_once(std::string_view keyword, std::string message) {
                            fmt::format("{} keywords that no RNDF has; is this one?", unknown_.size()));
 }
 
-/// The next statement; false at the end, and where no text follows.
+/// Reads the next statement; false at the end, and when no text follows.
 bool RndfReader::next() {
   bool more = false;
   diagnostics_.attempt(statements_.line(), [&] { more = statements_.next(); });
@@ -153,8 +153,8 @@ Rndf RndfReader::read() {
   return std::move(rndf_);
 }
 
-/// After a statement that was refused: passes over what stands in a block that it could not begin, up to the block's
-/// end or to what its neighbours begin with.
+/// Skips the content of a block whose first statement was refused, up to the block's end or to the begin of a sibling
+/// block.
 void RndfReader::skip(std::string_view keyword) {
   const int level = level_of(keyword);
   if (is_number(keyword)) ++open_.back().skipped;
@@ -192,7 +192,7 @@ void RndfReader::unknown() {
   warn_once(keyword, fmt::format("unknown keyword '{}' is ignored{}", keyword, suggest(keyword, known)));
 }
 
-/// True for what was said here before, in the same words or as a count, which is not relied on.
+/// True for a repeated keyword with the same text, and for a repeated count, which is not relied on.
 bool RndfReader::repeats(std::string_view keyword) {
   const auto [before, fresh] = open_.back().seen.emplace(keyword, now().rest);
   if (fresh) return false;
@@ -223,8 +223,8 @@ void RndfReader::apply(std::string_view keyword, const Rule& rule) {
 
 void RndfReader::open(RndfBlock block, std::string name) { open_.push_back({block, now().line, std::move(name)}); }
 
-// Only zones and spots may be none, and then nothing need be said of them. A number is there to be checked: what there
-// is counts more, unless the file breaks off before as many came.
+// Checks a declared count. Only the counts of zones and spots may be zero, and then may be missing. The actual number
+// takes precedence, unless the file ends before that number was reached.
 void RndfReader::check_declared(const Open& open, std::string_view keyword, std::size_t have) {
   have += open.skipped;
   const bool may_be_none = keyword == "num_zones" || keyword == "num_spots";
@@ -253,7 +253,7 @@ void RndfReader::check_name() {
   diagnostics_.add_warning(0, what, remedy, "it has no name");
 }
 
-// Ends the innermost block.
+// Closes the innermost block.
 void RndfReader::close() {
   const Open& last = open_.back();
   switch (last.block) {

@@ -1,5 +1,5 @@
 #pragma once
-// An RNDF while its statements are being read: which blocks are open, and what each keyword does in them.
+// Parser state of an RNDF: the open blocks, and the effect of each keyword in them.
 //
 //   file > segment > lane
 //   file > zone > perimeter
@@ -26,23 +26,23 @@ class RndfReader {
 
  private:
   struct DeclaredCount {
-    int count = 0;  ///< negative: it cannot be read
+    int count = 0;  ///< negative: unreadable
     int line = 0;
     std::string text;  ///< as written
   };
-  /// A block that has begun and not ended, with what its header promised.
+  /// An open block, with the declarations of its header.
   struct Open {
     RndfBlock block = RndfBlock::file;
     int line = 0;
     std::string name;                                            ///< `lane 1.2`
     std::map<std::string, DeclaredCount, std::less<>> declared;  ///< by keyword, e.g. `num_lanes`
-    std::map<std::string, std::string, std::less<>> seen;  ///< keywords that may stand here once, and what they say
-    std::size_t skipped = 0;                               ///< blocks and points in it that were refused
+    std::map<std::string, std::string, std::less<>> seen;  ///< keywords allowed once in the block, with their text
+    std::size_t skipped = 0;                               ///< refused blocks and points in this block
   };
   struct Rule;
   static const std::map<std::string_view, Rule>& rules();
 
-  // StatementReader
+  // Statements
   bool next();
   void statement();
   bool repeats(std::string_view keyword);
@@ -60,7 +60,7 @@ class RndfReader {
   void check_declared(const Open& open, std::string_view keyword, std::size_t have);
   void check_name();
 
-  // What keywords do
+  // Effects of keywords
   void read_declared_count(int least, std::string_view what);
   void begin_segment();
   void begin_lane();
@@ -88,18 +88,19 @@ class RndfReader {
   Rndf rndf_;
   Diagnostics diagnostics_;
   StatementReader statements_;
-  std::vector<Open> open_;                     ///< from the file down to the innermost block
-  std::map<PointId, int> claimed_;             ///< line of every id in use: {segment, 0, 0}, {segment, lane, 0}, points
+  std::vector<Open> open_;                     ///< from the file to the innermost block
+  std::map<PointId, int> claimed_;             ///< line of each id in use: {segment, 0, 0}, {segment, lane, 0}, points
   std::map<int, RndfCheckpoint> checkpoints_;  ///< by id
   std::map<std::pair<PointId, PointId>, int> exits_;
   std::set<PointId> stops_;
-  std::set<std::string, std::less<>> unknown_;  ///< keywords warned about
-  std::set<PointId> unread_;                    ///< of points that are named, and were refused
+  std::set<std::string, std::less<>> unknown_;  ///< unknown keywords with a warning so far
+  std::set<PointId> unread_;                    ///< refused points, which references may still name
   bool ended_ = false;
-  bool cut_ = false;  ///< the file has no end of its own: it may be a part of one
+  bool cut_ = false;  ///< the file has no end_file: it may be truncated
 };
 
-/// Whether all that exits, stops and checkpoints name is there. @param unread points that are no problem of theirs
+/// Checks that all points named by exits, stops and checkpoints exist. @param unread refused points: references to them
+/// are not reported
 void check_references(const Rndf& rndf, const std::set<PointId>& unread, Diagnostics& diagnostics);
 
 }  // namespace sf::world

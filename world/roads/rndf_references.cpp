@@ -1,4 +1,4 @@
-// What exits, stops and checkpoints of an RNDF lead to.
+// Checks of the points that exits, stops and checkpoints of an RNDF name.
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ class Places {
     }
   }
 
-  /// @param what the statement says of `id`, as "the exit leads to"
+  /// @param what the statement's text about `id`, as "the exit leads to"
   void require(PointId id, int line, std::string_view what, PlaceKind no) const {
     const auto found = places_.find(packed(id));
     if (found == places_.end())

@@ -21,7 +21,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Cuts the first field off `text`.
+/// Removes the first field from `text`.
 std::string_view take_field(std::string_view& text) {
   text = trimmed(text);
   const auto* const end = std::find_if(text.begin(), text.end(), is_blank);
@@ -68,7 +68,7 @@ StatementReader::StatementReader(std::string file, std::string_view text, Diagno
 
 void StatementReader::fail(const std::string& message) const { throw base::InputError(file_, now_.line, message); }
 
-// Copies one line without its comments, which count as a blank.
+// Copies one line without its comments; a comment counts as a blank.
 bool StatementReader::read_line() {
   current_.clear();
   if (at_ >= text_.size()) return false;

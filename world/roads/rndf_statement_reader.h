@@ -2,8 +2,8 @@
 // The lines of RNDF and MDF files (DARPA, "Route Network Definition File (RNDF) and Mission Data File (MDF) Formats",
 // 14 March 2007): one statement a line, fields separated by blanks and tabs, comments between /* and */.
 //
-// Read as real files are: LF, CR and CRLF end lines, blanks may trail, comments may stand alone or run over several
-// lines, a byte order mark is skipped.
+// Tolerates the variants of real files: line ends LF, CR and CRLF, trailing blanks, comments on lines of their own or
+// over several lines, a byte order mark.
 
 #include <cstdint>
 #include <optional>
@@ -28,37 +28,37 @@ struct PointId {
   friend auto operator<=>(PointId, PointId) = default;
 };
 std::string text_of(PointId id);
-/// "3.1.5", or "3.1" where two parts are expected; nothing where it is none.
+/// "3.1.5", or "3.1" when two parts are expected; nullopt for any other text.
 std::optional<PointId> read_point_id(std::string_view text, int parts = 3);
 
-/// One line that says something. All views live until the next call of `StatementReader::next`.
+/// One statement. All views live until the next call of `StatementReader::next`.
 struct AccuracyStatement {
   std::string_view keyword;              ///< its first field
-  std::vector<std::string_view> fields;  ///< those after it
-  std::string_view rest;                 ///< all of the line after the keyword, without the blanks around it
+  std::vector<std::string_view> fields;  ///< the fields after the keyword
+  std::string_view rest;                 ///< the line after the keyword, without surrounding blanks
   int line = 0;                          ///< 1-based
 };
 
-/// Cuts a file into statements.
+/// Splits a file into statements.
 class StatementReader {
  public:
-  /// @param text must outlive this, as `diagnostics` must
+  /// @param text must outlive the reader, as must `diagnostics`
   StatementReader(std::string file, std::string_view text, Diagnostics& diagnostics);
 
-  /// Moves on to the next line that is not empty; false at the end of the file.
-  /// @throws base::InputError for a comment that is never closed, or a byte that no text has.
+  /// Advances to the next non-empty line; false at the end of the file.
+  /// @throws base::InputError for an unterminated comment, or a byte that is not text.
   bool next();
   const AccuracyStatement& now() const { return now_; }
   const std::string& file() const { return file_; }
-  /// Lines read so far: at the end, the file's last line.
+  /// Number of the last line read; at the end, the file's last line.
   int line() const { return line_; }
 
-  /// @throws base::InputError, always, at the current statement.
+  /// @throws base::InputError, always, with the line of the current statement.
   [[noreturn]] void fail(const std::string& message) const;
 
   /// Field `i` of the current statement as a whole number in [least, 32768], as decimal number, as way-point.
-  /// @param what the field is, e.g. "the number of lanes"
-  /// @throws base::InputError where it is missing or something else.
+  /// @param what name of the field for errors, e.g. "the number of lanes"
+  /// @throws base::InputError when the field is missing or malformed.
   int whole(std::size_t i, int least, std::string_view what) const;
   double decimal(std::size_t i, std::string_view what) const;
   PointId point(std::size_t i, std::string_view what) const;
@@ -68,9 +68,9 @@ class StatementReader {
   int keyword_whole(int least, std::string_view what) const { return whole(now_.keyword, least, what); }
   /// `M.L` as {M, L, 0}.
   PointId pair(std::size_t i, std::string_view what) const;
-  /// Tolerates more than `count` fields after the keyword: what they say is left out.
+  /// Tolerates more than `count` fields after the keyword, with a warning; the additional ones are ignored.
   void expect_fields(std::size_t count) const;
-  /// @throws base::InputError for them.
+  /// @throws base::InputError when there are more than `count` fields after the keyword.
   void require_fields(std::size_t count) const;
 
  private:
@@ -86,15 +86,15 @@ class StatementReader {
   Diagnostics& diagnostics_;
   std::size_t at_ = 0;
   int line_ = 0;
-  int comment_ = 0;  ///< line where the open comment began; 0: none is open
+  int comment_ = 0;  ///< line where the open comment began; 0: no open comment
   std::string current_;
   AccuracyStatement now_;
 };
 
-/// The keyword of a way-point line is its number: true when `keyword` starts with a digit.
+/// True when `keyword` starts with a digit: the keyword of a way-point line is its number.
 bool is_number(std::string_view keyword);
 
-/// Field as an error quotes it: shortened, without control characters.
+/// A field as quoted in errors: shortened, without control characters.
 std::string quoted(std::string_view text);
 
 }  // namespace sf::world

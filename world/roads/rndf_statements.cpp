@@ -1,4 +1,4 @@
-// What the statements of an RNDF put into it.
+// Effects of the statements of an RNDF.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ PointId key(int segment, int lane = 0) {
   return {static_cast<std::uint16_t>(segment), static_cast<std::uint16_t>(lane), 0};
 }
 
-/// Segments and zones are {id, 0, 0}, lanes and spots {id, lane, 0}.
+/// Text of an id; segments and zones are {id, 0, 0}, lanes and spots {id, lane, 0}.
 std::string shown(PointId id) {
   if (id.point > 0) return text_of(id);
   return id.lane > 0 ? fmt::format("{}.{}", id.segment, id.lane) : fmt::format("{}", id.segment);
@@ -119,14 +119,14 @@ std::vector<RndfPoint>& RndfReader::points() {
                                quoted(now().keyword), open_.back().name));
 }
 
-/// What ids of the innermost block begin with.
+/// The common first parts of ids in the innermost block.
 PointId RndfReader::key_of_block() const {
   const RndfBlock block = open_.back().block;
   if (block == RndfBlock::lane) return key(rndf_.segments.back().id, rndf_.segments.back().lanes.back().number);
   return key(rndf_.zones.back().id, block == RndfBlock::spot ? rndf_.zones.back().spots.back().number : 0);
 }
 
-// The id that a line names must be of the block it stands in.
+// Checks that an id belongs to the block of its line.
 PointId RndfReader::own(PointId id, std::string_view what) const {
   const PointId here = key_of_block();
   if (id.segment == here.segment && id.lane == here.lane && id.point > 0) return id;
@@ -134,7 +134,8 @@ PointId RndfReader::own(PointId id, std::string_view what) const {
                                open_.back().name, here.segment, here.lane, here.segment, here.lane));
 }
 
-// Likewise, but one of a neighbour is clear: it says which point it means. Whether that is there is seen at the end.
+// Likewise, but tolerates an id of a neighbouring block, since its meaning is clear. check_references tests at the end
+// whether the point exists.
 PointId RndfReader::own_or_known(PointId id, std::string_view what) {
   const PointId here = key_of_block();
   if (diagnostics_.strict() || id.point == 0 || (id.segment == here.segment && id.lane == here.lane))
@@ -177,7 +178,7 @@ void RndfReader::read_boundary(Boundary& boundary) {
   boundary = *read;
 }
 
-// 0 is how some files say that nothing is known.
+// Some files write 0 for an unknown width.
 void RndfReader::read_width(std::optional<double>& width_ft) {
   if (now().fields.empty()) return;
   const double feet = statements_.decimal(0, "the width");

@@ -1,5 +1,5 @@
 #pragma once
-// Road networks as the rest of the house sees them: a file in, lanes and paint out.
+// Entry point of road networks for other modules: a file in, lanes and markings out.
 
 #include <optional>
 #include <string>
@@ -11,12 +11,14 @@
 
 namespace sf::world {
 
-/// Reads an RNDF and the sidecar beside it. Whatever is not an error joins `warnings`. @param strict as of `read_rndf`
+/// Reads an RNDF and the sidecar beside it. Problems other than errors are added to `warnings`. @param strict as for
+/// `read_rndf`
 /// @throws base::InputError with file and line.
 RoadNetwork load_roads(const std::string& rndf_file, std::vector<Warning>& warnings, bool strict = false);
 
-/// The network of a world that was read, its first where it has several; nothing where it has none. What there was to
-/// warn of was said when the world was read. @throws base::InputError when its file is no longer as it was.
+/// The network of a loaded world, the first one when there are several; nullopt when there is none. Warnings are
+/// dropped, since load_world reported them. @throws base::InputError when the file has changed and can no longer be
+/// read.
 std::optional<RoadNetwork> roads_of(const World& world);
 
 }  // namespace sf::world

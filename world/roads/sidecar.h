@@ -1,6 +1,6 @@
 #pragma once
-// What an RNDF cannot say: where it lies in the world, at which scale, and widths finer than feet. A TOML file beside
-// it, `site.toml` for `site.rndf`; keys in docs/roads.md.
+// The sidecar of an RNDF: its place and scale in the world, and widths finer than feet. A TOML file beside the RNDF,
+// `site.toml` for `site.rndf`; keys in docs/roads.md.
 
 #include <map>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace sf::world {
 
-/// Lengths are metres of the world, after scaling. Nothing: not said.
+/// Lengths are metres of the world, after scaling. nullopt: not specified.
 struct RoadSidecar {
   struct Lane {
     std::optional<double> width;  ///< [m] in (0, 10 000]
@@ -25,12 +25,12 @@ struct RoadSidecar {
     int line = 0;
   };
 
-  std::string file;                  ///< empty: there is none
-  std::optional<Geodetic> origin;    ///< else the network's first point
+  std::string file;                  ///< empty: no sidecar
+  std::optional<Geodetic> origin;    ///< nullopt: the network's first point
   double scale = 1.0;                ///< [-] metres of the world per metre of the RNDF, in (0, 1000]
   glm::dvec2 position;               ///< [m] of the origin in the world
   double heading = 0.0;              ///< [rad] of the RNDF's east in the world, counter-clockwise from +x
-  std::optional<double> lane_width;  ///< [m] of every lane that has no width of its own below
+  std::optional<double> lane_width;  ///< [m] of each lane without a width of its own in `lanes`
   std::optional<double> paint_width;
   std::optional<double> dash_length;
   std::optional<double> dash_gap;
@@ -40,14 +40,14 @@ struct RoadSidecar {
   std::map<PointId, Point> points;
 };
 
-/// The sidecar of `rndf_file`: defaults where there is no such file. Unknown keys are warnings.
+/// The sidecar of `rndf_file`, or the defaults when there is no such file. Unknown keys are warnings.
 /// @throws base::InputError with file and line.
 RoadSidecar read_sidecar(const std::string& rndf_file, std::vector<Warning>& warnings);
 
-/// Likewise from memory; `file` names errors.
+/// Likewise from memory. @param file name for errors
 RoadSidecar parse_sidecar(const std::string& file, std::string_view text, std::vector<Warning>& warnings);
 
-/// Checks that every lane and point the sidecar names is in `rndf`. @throws base::InputError
+/// Checks that all lanes and points of the sidecar exist in `rndf`. @throws base::InputError
 void check_against(const RoadSidecar& sidecar, const Rndf& rndf);
 
 }  // namespace sf::world

@@ -33,7 +33,7 @@ void add_sensor(BuildState& b, const Entity& entity, const Model& model, const S
                 entity.at.line,
                 files[entity.at.file]};
   for (const Property& property : entity.properties) {
-    // What every model may say is understood already, and changes nothing that is measured.
+    // General properties of models are handled elsewhere and do not affect the measurement.
     if (!is_known_key(KeyScope::sensing, property.key, word.keys)) continue;
     if (property.key == "accuracy" && !b.options.accuracy.empty()) continue;
     Setting setting{property.key, {}, "", property.at.line, files[property.at.file]};

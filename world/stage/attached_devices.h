@@ -1,5 +1,5 @@
 #pragma once
-// What models do beside having a body: sensors of kinds that are not read here, and magnets.
+// Devices attached to models: sensors of types that are not read here, and magnets.
 
 #include <string>
 #include <string_view>
@@ -8,23 +8,23 @@
 
 namespace sf::world {
 
-/// The unit of the world file's moments: only then do the thesis' moments and its readings agree.
+/// Unit of moments in world files, the unit with which the thesis' moments agree with its readings.
 inline constexpr double kMomentUnit = 1e-4;  ///< [A m^2]
-inline constexpr double kMaxMoment = 1e16;   ///< as written: 1e12 A m^2
+inline constexpr double kMaxMoment = 1e16;   ///< as written; equals 1e12 A m^2
 
-/// The kind of sensor that claims `type`, or null. Lives as long as the options' list.
+/// The keyword of the sensor type with the word `type`, or null. Lives as long as the options' list.
 const SensorKeyword* find_sensor_keyword(const BuildState& b, std::string_view type);
 
-/// Gives the mover of `model` a sensor with the settings of `entity`; warns where nobody carries it.
+/// Adds a sensor with the settings of `entity` to the mover of `model`; warns when no mover carries the model.
 /// @param X_MB the model's body frame (its origin included) in the mover's frame.
-/// @param name of the model without its mover's.
+/// @param name of the model without its mover's name.
 void add_sensor(BuildState& b, const Entity& entity, const Model& model, const SensorKeyword& word, const Pose& X_MB,
                 double height, const std::string& name);
 
-/// Adds a magnet where `entity` has a moment: to the mover of `model`, which becomes the next row of the models, or to
+/// Adds a magnet when `entity` has a moment: to the mover of `model`, which becomes the next row of the models, or to
 /// the world.
-/// @param X_B the body frame, in the mover's frame for a mover's model, else in the world.
-/// @throws base::InputError for a moment out of reach or a model without a width.
+/// @param X_B the body frame: in the mover's frame for a mover's model, else in the world.
+/// @throws base::InputError for a moment out of range or a model without a width.
 void add_magnet(BuildState& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B);
 
 }  // namespace sf::world

@@ -12,7 +12,7 @@ namespace sf::world {
 
 namespace {
 
-// What no honest world needs, and a hostile or broken one would use to exhaust stack or memory.
+// Limits far above any real world, so that hostile or broken files exhaust neither stack nor memory.
 constexpr std::uint32_t kMaxDepth = 64;
 constexpr std::uint32_t kMaxWeight = 4'000'000;
 constexpr int kMaxIncludes = 256;
@@ -49,7 +49,7 @@ void add_child(ParseState& r, Entity& entity, Entity child, int line) {
   entity.children.push_back(std::move(child));
 }
 
-// From the opening to the closing parenthesis.
+// Reads from the opening to the closing parenthesis.
 void read_body(ParseState& r, Entity& entity, std::uint32_t level) {
   const int line = now(r).line;
   if (level > kMaxDepth) fail(r, line, fmt::format("nested deeper than {} levels", kMaxDepth));
@@ -128,7 +128,7 @@ void read_include(ParseState& r) {
   if (std::find(r.open_files.begin(), r.open_files.end(), found) != r.open_files.end()) refuse_cycle(r, line, found);
   if (++r.includes > kMaxIncludes) fail(r, line, fmt::format("more than {} includes", kMaxIncludes));
 
-  // The including file is put aside, and taken up again where it was left.
+  // The state of the including file is saved, and restored after the include.
   const std::uint32_t outer_file = r.file;
   const std::size_t outer_at = r.at;
   std::vector<Token> outer_tokens = std::move(r.tokens);

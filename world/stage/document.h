@@ -1,5 +1,5 @@
 #pragma once
-// A Stage world file as a tree: includes read, macros expanded, every property with the place it was written at.
+// A Stage world file as a tree: includes read, macros expanded, each property with its place in the file.
 
 #include <cstdint>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace sf::world {
 
-/// Where something was written.
+/// A place in a file.
 struct SourceLocation {
   std::uint32_t file = 0;  ///< row in `Document::files`
   int line = 0;            ///< 1-based
@@ -24,43 +24,44 @@ struct Value {
 
 struct Property {
   std::string key;            ///< with its index, e.g. `point[3]`
-  std::vector<Value> values;  ///< one, or as many as the tuple has
+  std::vector<Value> values;  ///< one, or one per element of the tuple
   bool is_tuple = false;
   SourceLocation at;
 };
 
-/// `type( properties and children )` after macro expansion. Keys are unique: the last one written won.
+/// `type( properties and children )` after macro expansion. Keys are unique: the last one written counts.
 struct Entity {
-  std::string word;  ///< what the file says, e.g. `pioneer2dx`
-  std::string type;  ///< what its macros come down to, e.g. `position`
+  std::string word;  ///< as written, e.g. `pioneer2dx`
+  std::string type;  ///< the type after macro expansion, e.g. `position`
   SourceLocation at;
   std::vector<Property> properties;
   std::vector<Entity> children;
-  std::vector<std::uint32_t> by_key;  ///< rows of `properties` in the order of their keys, where they are many
+  std::vector<std::uint32_t> by_key;  ///< rows of `properties` in order of keys, for entities with many properties
   std::uint32_t depth = 1;            ///< levels of this tree, itself included; at most 64
-  std::uint32_t weight = 1;  ///< entities, properties, values and stretches of text in this tree, itself included
+  std::uint32_t weight =
+      1;  ///< number of entities, properties, values and pieces of text in this tree, itself included
 };
 
 struct Document {
   std::vector<std::string> files;   ///< [0] is the world file
   Entity root;                      ///< the world's own properties and top-level entities
-  std::vector<std::string> macros;  ///< names that were defined, sorted: to suggest from
+  std::vector<std::string> macros;  ///< defined names, sorted, for suggestions
   std::vector<Warning> warnings;
 };
 
-/// Parses `text`, the content of the world file `file` (which need not exist: it names errors, and includes are looked
-/// for beside the including file, beside `file`, then along $STAGEPATH).
+/// Parses `text`, the content of the world file `file`. The file need not exist: its name is used for errors, and its
+/// folder for the search of includes (beside the including file, beside `file`, then along $STAGEPATH).
 /// @throws base::InputError with file and line.
 Document parse(const std::string& file, const std::string& text);
 
-/// `name` as a path: itself when absolute, else the first that exists beside `from`, beside the world file, along
-/// $STAGEPATH. Empty when there is none.
+/// Path of `name`: itself when absolute, else the first existing file beside `from`, beside the world file, along
+/// $STAGEPATH. Empty when none exists.
 std::string find_file(const Document& document, SourceLocation from, const std::string& name);
 
-/// The whole of a file. @throws base::InputError when it is not there, no regular file (a folder, a device, a pipe),
-/// empty, larger than `most` bytes, or cannot be read to its end.
+/// The whole content of a file. @throws base::InputError when the file is missing, not a regular file (a folder, a
+/// device, a pipe), empty, larger than `most` bytes, or not readable to its end.
 std::string read_bytes(const std::string& file, std::size_t most);
-/// Likewise of a text, which says something.
+/// Likewise for a text. @throws base::InputError also for a text without content.
 std::string read_text(const std::string& file, std::size_t most = 64u << 20);
 
 /// The property of that exact key, or null. Lives as long as the entity.

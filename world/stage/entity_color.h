@@ -5,8 +5,8 @@
 
 namespace sf::world {
 
-/// The colour that `key` names, or that `color_rgba` gives when there is none; the fallback when there is neither or
-/// the name is unknown (with a warning). `random` is a fixed function of `seed`.
+/// The colour of the property `key`, else that of `color_rgba`, else the fallback. An unknown name gives the fallback
+/// and a warning. `random` is a fixed function of `seed`.
 std::uint32_t entity_color(StageContext& context, const Entity& entity, std::string_view key, std::uint32_t fallback,
                            std::uint32_t seed);
 

@@ -9,8 +9,8 @@ namespace sf::world {
 
 namespace {
 
-// A virtual wall reaches 2.4 m (8 feet: the accessory's own range) and is felt all around within 0.45 m (18 inches);
-// the width of its beam, and all three of the dock, are assumptions.
+// The beam of a virtual wall reaches 2.4 m (8 feet, the accessory's specification), its halo 0.45 m (18 inches). The
+// width of its beam and all three values of the dock are assumptions.
 constexpr double kWallRange = 2.4, kWallFov = 0.4, kWallHalo = 0.45;  // [m], [rad], [m]
 constexpr double kDockRange = 1.8, kDockFov = 0.7, kDockHalo = 0.6;   // [m], [rad], [m]
 

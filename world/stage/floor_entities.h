@@ -1,6 +1,6 @@
 #pragma once
-// What models are to the sensors under and beside a robot: infrared emitters (`ir_emitter`), and holes in the floor
-// (`cliff_return 1`).
+// Properties of models for a robot's infrared receivers and cliff sensors: infrared emitters (`ir_emitter`) and holes
+// in the floor (`cliff_return 1`).
 
 #include <vector>
 
@@ -8,18 +8,18 @@
 
 namespace sf::world {
 
-/// True where `entity` is a hole in the floor.
+/// True when `entity` is a hole in the floor.
 bool is_floor_hole(const StageContext& context, const Entity& entity);
 
 /// Adds each closed outline of `shape` as a hole. `model` becomes the next row of the models.
 /// @param shape in the body's frame
 /// @param X_B the body frame in the world
-/// @throws base::InputError for a hole that a mover would carry, a bitmap, or an outline that crosses itself.
+/// @throws base::InputError for a hole on a mover, a bitmap, or a self-crossing outline.
 void add_floor_holes(BuildState& b, const Entity& entity, const Model& model, const std::vector<Segment>& shape,
                      const Pose& X_B);
 
-/// Adds an emitter where `entity` is one. `model` becomes the next row of the models.
-/// @throws base::InputError for an unknown kind, lengths and angles out of reach, or one that a mover would carry.
+/// Adds an emitter when `entity` has one. `model` becomes the next row of the models.
+/// @throws base::InputError for an unknown kind, lengths or angles out of range, or an emitter on a mover.
 void add_emitter(BuildState& b, const Entity& entity, const Model& model, const Size& size, const Pose& X_B);
 
 }  // namespace sf::world

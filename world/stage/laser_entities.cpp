@@ -35,7 +35,7 @@ double rate_of(const StageContext& context, const Entity& entity, double fallbac
   return fallback;
 }
 
-// Our contract is a standard deviation; Stage passes the first number on as a variance.
+// LaserNoise holds standard deviations; Stage uses the first number as a variance.
 LaserNoise noise_of(const StageContext& context, const LoadOptions& options, const Entity& entity,
                     const LaserNoise& fallback) {
   const auto values = tuple(context, entity, "noise", 3, "[constant proportional angular]");
@@ -53,7 +53,7 @@ LaserNoise noise_of(const StageContext& context, const LoadOptions& options, con
   return noise;
 }
 
-/// What a model says once for all of its transducers, and a transducer may say again.
+/// Reads properties that a model sets for all of its transducers and that each transducer may override.
 void read_common(const StageContext& context, const LoadOptions& options, const Entity& entity, Laser& laser) {
   laser.resolution = whole(context, entity, "laser_sample_skip", laser.resolution, 1, kMaxSamples);
   laser.resolution = whole(context, entity, "resolution", laser.resolution, 1, kMaxSamples);

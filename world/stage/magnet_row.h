@@ -1,5 +1,5 @@
 #pragma once
-// Magnets in a row under a lane: as few words as a road needs for thousands of them.
+// Magnets in a row under a lane: four properties for thousands of magnets.
 
 #include <functional>
 #include <optional>
@@ -12,12 +12,12 @@ namespace sf::world {
 struct MagnetRow {
   double moment = 0.0;   ///< [A m^2] not 0
   double spacing = 0.0;  ///< [m] > 0
-  double width = 0.0;    ///< [m] > 0, of each
-  double length = 0.0;   ///< [m] of each, upright
-  double top = 0.0;      ///< [m] above the ground
+  double width = 0.0;    ///< [m] > 0, of one magnet
+  double length = 0.0;   ///< [m] of one magnet, upright
+  double top = 0.0;      ///< [m] upper end above the ground
 };
 
-/// `magnetic_moment`, `magnet_spacing`, `magnet_size [width length]` and `magnet_top`; nothing where the first two are
+/// `magnetic_moment`, `magnet_spacing`, `magnet_size [width length]` and `magnet_top`; nullopt when the first two are
 /// absent. @throws base::InputError with file and line.
 std::optional<MagnetRow> read_magnet_row(const StageContext& context, const Entity& entity);
 

@@ -42,13 +42,13 @@ KeyScope key_scope(EntityKind kind) {
   }
 }
 
-// A slip has few neighbours to be meant; of many unknown words none is one.
+// Suggestions only while there are few unknown types: a file with many of them has no slips of spelling.
 std::string suggested(const BuildState& b, const std::string& type) {
   constexpr std::size_t kMaxSlips = 100;
   return b.warned_types.size() > kMaxSlips ? "" : suggest(type, b.types);
 }
 
-// A type that we do not model is a body all the same, counted and mentioned once.
+// Types without a model become plain bodies, counted and mentioned once per type.
 void count_unmodelled(BuildState& b, const Entity& entity, const std::string& type, bool is_known) {
   ++b.world.unmodelled[type];
   if (!b.warned_types.insert(type).second) return;
@@ -68,7 +68,7 @@ std::string unique_name(BuildState& b, const Entity& entity, const std::string& 
   return name;
 }
 
-// "parent.child" within a parent; a leading / says that the name is meant for the whole world.
+// "parent.child" within a parent; a leading / marks a name in the scope of the whole world.
 std::string own_name(BuildState& b, const Entity& entity, Parent& parent) {
   const std::string given = text(b.context, entity, "name", "");
   return given.empty() ? fmt::format("{}:{}", entity.word, parent.unnamed[entity.word]++) : given;
@@ -133,13 +133,13 @@ void add_lasers(BuildState& b, const Entity& entity, const Model& model, const P
   std::move(added.begin(), added.end(), std::back_inserter(lasers));
 }
 
-/// What the file says of a model before anything is derived from it.
+/// Properties of a model as written, before anything is derived from them.
 struct ModelProperties {
   EntityKind kind = EntityKind::model;
-  bool is_lane_edge = false;              ///< a laser of that name measures the edge of the lane, no ranges
-  const SensorKeyword* sensor = nullptr;  ///< the kind that measures with it; null: none, or one that is read here
-  std::string name;                       ///< as written, or made up
-  Pose X_PB;                              ///< children stand on top of their parent, unless it says otherwise
+  bool is_lane_edge = false;  ///< a laser with a lane edge sensor's name: measures the edge of the lane, no ranges
+  const SensorKeyword* sensor = nullptr;  ///< the sensor type of the model; null: no sensor, or one that is read here
+  std::string name;                       ///< as written, or generated
+  Pose X_PB;                              ///< default: on top of the parent
   Size size;
 };
 
@@ -188,7 +188,8 @@ Model model_of(BuildState& b, const Entity& entity, const Parent& parent, const 
   return model;
 }
 
-// A robot or a linked object becomes a mover; what a mover carries belongs to it, whatever its type or name.
+// True when the model becomes a mover: a robot or a linked object. A model carried by a mover belongs to that mover,
+// whatever its type or name.
 bool becomes_mover(BuildState& b, const Entity& entity, const Parent& parent, const ModelProperties& said) {
   if (said.kind != EntityKind::position && !packet_id_of(said.name)) return false;
   if (parent.mover == kNone) return true;
@@ -201,7 +202,7 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
   const ModelProperties said = read_model_properties(b, entity, parent);
   Model model = model_of(b, entity, parent, said);
 
-  Parent own;  // of the model's own children
+  Parent own;  // for the children of this model
   own.X_MP = compose(parent.X_MP, said.X_PB);
   own.name_in_mover = parent.mover == kNone ? "" : joined(parent.name_in_mover, said.name);
   const std::string controller = controller_of(b, entity);

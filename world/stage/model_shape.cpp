@@ -15,7 +15,7 @@ namespace sf::world {
 namespace {
 
 constexpr std::uint32_t kMaxPoints = 2'000;
-constexpr double kMaxCornerPairs = 1e8;  // of all blocks: checking a polygon against itself is quadratic
+constexpr double kMaxCornerPairs = 1e8;  // of all blocks; the self-intersection check of a polygon is quadratic
 constexpr std::size_t kMaxRuns = 2'000'000;
 constexpr double kMaxSegments = kMaxRuns;
 constexpr double kBoundary = 0.01;  // [m] thickness of the walls that `boundary 1` adds
@@ -67,7 +67,7 @@ std::vector<Block> read_blocks(StageContext& context, const Entity& entity) {
   return blocks;
 }
 
-/// What all blocks of a model span.
+/// The bounding box of all blocks of a model.
 struct Span {
   glm::dvec2 low{HUGE_VAL, HUGE_VAL};
   glm::dvec2 high{-HUGE_VAL, -HUGE_VAL};
@@ -103,7 +103,7 @@ void scale_to(std::vector<Block>& blocks, const Span& span, const Size& size) {
   }
 }
 
-/// Blocks are written in metres as if they were taken so; without a size they become a box of 10 cm.
+/// Warns about blocks that seem to be in metres: without a size they become a box of 10 cm.
 void warn_unsized(StageContext& context, const Entity& entity, const Span& span, const Size& size) {
   const Size written = span.size();
   const auto near = [](double a, double b) { return std::abs(a - b) <= 1e-3 * b; };
@@ -133,7 +133,7 @@ std::vector<glm::dvec2> rectangle(double x, double y) {
   return {{-x / 2, -y / 2}, {x / 2, -y / 2}, {x / 2, y / 2}, {-x / 2, y / 2}};
 }
 
-// A frame around the model: the outer faces of four walls, and the inner ones, which look the other way.
+// A frame around the model: the outer faces of four walls and the inner faces, which point inwards.
 void append_boundary(std::vector<Segment>& segments, const Size& size) {
   append(segments, rectangle(size.x, size.y), 0.0, size.z);
   if (size.x <= 2 * kBoundary || size.y <= 2 * kBoundary) return;
@@ -142,8 +142,8 @@ void append_boundary(std::vector<Segment>& segments, const Size& size) {
   for (std::size_t i = inner; i < segments.size(); ++i) std::swap(segments[i].a, segments[i].b);
 }
 
-// Stage: dark is solid. Transparent is free. The picture's top row is the plan's far (+y) edge. In place: plans are
-// large.
+// Stage's rule: dark is solid. Transparent is free. The picture's top row is the plan's far (+y) edge. Converted in
+// place, since plans are large.
 Bitmap grid_of(Picture picture) {
   std::vector<std::uint8_t>& cells = picture.value;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -206,7 +206,7 @@ std::vector<Segment> bitmap_segments(const TracedBitmap& traced, const Size& siz
 
 namespace {
 
-/// Counts what the body will be made of before it is made.
+/// Charges the body's segments before they are created.
 void count_segments(StageContext& context, const Entity& entity, std::size_t runs, const std::vector<Block>& blocks) {
   double segments = static_cast<double>(runs) + 8.0;  // a boundary, or a box
   double pairs = 0.0;

@@ -17,15 +17,15 @@ struct Size {
   double z = 0.1;  ///< [m] each, in [0, 1e7]
 };
 
-/// A bitmap and its outline, traced once however many models show it.
+/// A bitmap and its outline, traced once for all models that show it.
 struct TracedBitmap {
-  Bitmap grid;  ///< its cells are dropped after tracing
+  Bitmap grid;  ///< cells are released after tracing
   std::vector<BoundaryRun> runs;
 };
 using BitmapCache = std::map<std::string, std::shared_ptr<const TracedBitmap>>;
 
-/// Segments in the body's own frame: centred in x and y, z from 0 to size.z. `Segment::model` and the flags are left
-/// alone.
+/// Segments in the body's frame: centred in x and y, z from 0 to size.z. `Segment::model` and the flags keep their
+/// defaults.
 /// @param is_box whether a model without blocks, bitmap and boundary is a box.
 /// @throws base::InputError for a block or bitmap that cannot be read.
 std::vector<Segment> shape_of(StageContext& context, BitmapCache& bitmaps, const Entity& entity, const Size& size,
@@ -37,7 +37,7 @@ double pixel_of(StageContext& context, BitmapCache& bitmaps, const Entity& entit
 /// Segments of a traced grid shown on size.x by size.y, from 0 to size.z.
 std::vector<Segment> bitmap_segments(const TracedBitmap& traced, const Size& size);
 
-/// @throws base::InputError when the outline is absurd (more than 2 000 000 runs).
+/// @throws base::InputError when the outline has more than 2 000 000 runs.
 std::shared_ptr<const TracedBitmap> trace_bitmap(Bitmap grid, const std::string& file);
 
 /// The `size` property, or the fallback; two numbers keep the fallback's height.

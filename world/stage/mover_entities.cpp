@@ -11,7 +11,7 @@ namespace sf::world {
 
 namespace {
 
-constexpr double kMaxTagReach = 100.0;  // [m] a tag that turns fast says no speed that its model cannot have
+constexpr double kMaxTagReach = 100.0;  // [m] keeps the speed of a model plausible when its tag turns fast
 
 std::optional<std::uint32_t> number_of(std::string_view digits) {
   if (digits.empty() || digits.size() > 9) return std::nullopt;
@@ -24,7 +24,7 @@ std::optional<std::uint32_t> number_of(std::string_view digits) {
 // -------------------------------------------------------------------------------------------------------------
 
 void read_bounds(const StageContext& context, const Entity& entity, Mover& mover) {
-  mover.max_forward = 1.0;  // Stage's own
+  mover.max_forward = 1.0;  // Stage's default
   const auto bounds = tuple(context, entity, "velocity_bounds", 2, "[xmin xmax ymin ymax zmin zmax yawmin yawmax]");
   if (!bounds) return;
   const SourceLocation at = find(entity, "velocity_bounds")->at;

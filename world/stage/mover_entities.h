@@ -1,5 +1,5 @@
 #pragma once
-// Which models move, and by which number packets know them.
+// Movers among the models, and their ids in packets.
 
 #include <cstdint>
 #include <optional>
@@ -15,23 +15,23 @@ struct PacketId {
   bool is_tag = false;
 };
 
-/// What a model's own name links it to. Tags count from 1, robots from 0; more than nine digits are no number.
+/// The packet id in a model's own name. Tags count from 1, robots from 0; more than nine digits give none.
 std::optional<PacketId> packet_id_of(std::string_view name);
 
-/// The controller of ours that `ctrl` names (Stage's `wander`); empty where it names none, with a warning.
+/// The known controller that `ctrl` names (also Stage's `wander`); empty, with a warning, for other names.
 std::string controller_of(BuildState& b, const Entity& entity);
 
-/// `tag_pose`: where the tag is mounted on a model that follows its packets. On any other it is ignored, with a
-/// warning.
-/// @throws base::InputError as any pose, and for one 100 m from the origin.
+/// `tag_pose`: the pose of the tag on a model that follows TAG packets. Other models ignore it, with a warning.
+/// @throws base::InputError as any pose, and for a pose 100 m from the origin.
 Pose tag_pose_of(StageContext& context, const Entity& entity, bool is_tag);
 
 /// Adds a mover for `model`, which becomes the next row of the models, and returns its row.
-/// @throws base::InputError for bounds, a drive, a command law or lengths that no robot can have.
+/// @throws base::InputError for bounds, a drive, a driver model or lengths out of range.
 std::uint32_t add_mover(BuildState& b, const Entity& entity, const Model& model, std::optional<PacketId> packet_id);
 
-/// Gives every mover its number: from names first; every other robot gets the smallest one left, from 0, in file order.
-/// @throws base::InputError when two robots, or two tags, have the same number.
+/// Gives each mover its id: first the ids in names; then each other robot gets the smallest free id from 0, in file
+/// order.
+/// @throws base::InputError when two robots, or two tags, have the same id.
 void number_movers(BuildState& b);
 
 }  // namespace sf::world

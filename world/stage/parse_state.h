@@ -1,5 +1,5 @@
 #pragma once
-// A world file while its tokens are being read into a tree.
+// State of the parser that turns tokens into a tree.
 
 #include <algorithm>
 #include <map>
@@ -20,11 +20,11 @@ struct ParseState {
   Document document;
   KeyRows root_rows;
   std::map<std::string, Entity, std::less<>> macros;
-  std::vector<std::string> open_files;  ///< the chain of includes being read
+  std::vector<std::string> open_files;  ///< the chain of open includes
   std::uint32_t file = 0;               ///< row of the file being read
   std::vector<Token> tokens;
   std::size_t at = 0;
-  std::uint32_t weight = 0;  ///< of everything read so far
+  std::uint32_t weight = 0;  ///< total weight so far (see Entity::weight)
   int includes = 0;
 };
 
@@ -32,24 +32,24 @@ inline const Token& now(const ParseState& r) { return r.tokens[r.at]; }
 inline const Token& next(const ParseState& r) { return r.tokens[std::min(r.at + 1, r.tokens.size() - 1)]; }
 inline SourceLocation location(const ParseState& r, const Token& token) { return {r.file, token.line}; }
 
-/// @throws base::InputError, always, with the file being read.
+/// @throws base::InputError, always, with the name of the current file.
 [[noreturn]] void fail(const ParseState& r, int line, const std::string& message);
 void warn(ParseState& r, int line, std::string message);
 
-/// A token as an error quotes it.
+/// A token as quoted in errors.
 std::string shown(const Token& token);
 
-/// Reads `key value` and moves on. @throws base::InputError when there is no value.
+/// Reads `key value` and advances. @throws base::InputError when there is no value.
 Property read_property(ParseState& r);
 
-/// Of two equal properties the last wins, with a warning when both stand in the same parentheses.
-/// @param rows of all that the entity has
-/// @param written the keys of these parentheses so far.
-/// @throws base::InputError for two equal indices: an element would be lost.
+/// Adds a property. The last of two equal ones counts, with a warning when both stand in the same parentheses.
+/// @param rows rows of all properties of the entity
+/// @param written keys of these parentheses so far
+/// @throws base::InputError for two equal indices, since an element would be lost.
 void add_property(ParseState& r, Entity& entity, KeyRows& rows, std::unordered_set<std::string>& written,
                   Property property);
 
-/// Makes `find` quick where there are many properties.
+/// Sorts the keys of an entity with many properties, for a fast `find`.
 void sort_keys(Entity& entity);
 
 }  // namespace sf::world

@@ -16,7 +16,7 @@ namespace {
 constexpr double kArcError = 1e-6;  // [m] between an arc and its chords
 constexpr std::uint32_t kMaxPieces = 10'000;
 constexpr int kMaxDashes = 1'000'000;
-constexpr double kMaxPaintPoints = 4e6;  // of the paint of all paths
+constexpr double kMaxPaintPoints = 4e6;  // of the lane markings of all paths
 
 PathPiece read_straight(const StageContext& context, const Property& property) {
   const auto& v = property.values;
@@ -62,13 +62,13 @@ std::vector<PathPiece> read_pieces(BuildState& b, const Entity& entity) {
   return pieces;
 }
 
-/// How one side of the lane is painted.
+/// The lane marking on one side of the lane.
 struct Paint {
   std::uint32_t color = 0xFFFFFFFFu;
   double width = 0.0;  ///< [m]
-  double dash = 0.0;   ///< [m] along the middle; 0: solid
+  double dash = 0.0;   ///< [m] along the centre line; 0: solid
   double gap = 0.0;    ///< [m]
-  bool twice = false;  ///< two lines, one width apart
+  bool twice = false;  ///< two lines, one line width apart
   bool none = true;
 };
 
@@ -97,7 +97,7 @@ Paint read_paint(const StageContext& context, const Entity& entity, const char* 
   return paint;
 }
 
-/// How many chords keep within `kArcError` of an arc's edge, `offset` to the left of its middle.
+/// Number of chords within `kArcError` of an arc at `offset` to the left of its centre line.
 double chords_of(const PathPiece& piece, double length, double offset, const Paint& paint) {
   if (piece.curvature == 0.0) return 1.0;
   const double outer = 1.0 / std::abs(piece.curvature) + std::abs(offset) + paint.width;
@@ -105,7 +105,7 @@ double chords_of(const PathPiece& piece, double length, double offset, const Pai
   return std::max(1.0, std::ceil(length * std::abs(piece.curvature) / step));
 }
 
-/// The stripe between `from` and `to` along the middle [m], `offset` to its left.
+/// The marking between `from` and `to` along the centre line [m], `offset` to its left.
 LaneMarking marking_of(const PathPiece& piece, double from, double to, double offset, const Paint& paint) {
   LaneMarking marking{{}, paint.width, paint.color};
   const auto chords = static_cast<std::uint32_t>(chords_of(piece, to - from, offset, paint));
@@ -114,7 +114,7 @@ LaneMarking marking_of(const PathPiece& piece, double from, double to, double of
   return marking;
 }
 
-/// Dashes go on from piece to piece: `start` is how far along the path the piece begins.
+/// Dashes continue from piece to piece: `start` is the distance of the piece's start along the path.
 void paint_edge(World& world, const PathPiece& piece, double start, double offset, const Paint& paint) {
   if (paint.dash == 0.0) {
     world.lane_markings.push_back(marking_of(piece, 0.0, piece.length, offset, paint));
@@ -139,7 +139,7 @@ void check_dashes(const StageContext& context, const Entity& entity, const char*
                    said ? "" : ": dash [length gap]"));
 }
 
-/// Counts the points of one side's paint before any is made. An arc's share is what its chords are.
+/// Charges the points of one side's markings before they are created. An arc is counted by its chords.
 void count_paint(StageContext& context, const Entity& entity, const Path& path, const Paint& paint) {
   if (paint.none) return;
   for (std::size_t i = 0; i < path.pieces.size(); ++i) {

@@ -17,7 +17,7 @@ void drop_repeated(std::vector<glm::dvec2>& points) {
 }
 
 double twice_area(const std::vector<glm::dvec2>& points) {
-  double sum = 0.0;  // relative to the first corner, so that it does not depend on where the polygon lies
+  double sum = 0.0;  // relative to the first corner, for a result independent of the polygon's position
   for (std::size_t i = 1; i + 1 < points.size(); ++i) sum += cross(points[i] - points[0], points[i + 1] - points[0]);
   return sum;
 }

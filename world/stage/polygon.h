@@ -1,5 +1,5 @@
 #pragma once
-// Polygons as the world file gives them, made into outlines whose sides are known.
+// Polygons of the world file as outlines with known sides.
 
 #include <vector>
 
@@ -18,9 +18,9 @@ struct Polygon {
   bool solid_left = true;
 };
 
-/// Closes the polygon through `points` (either winding; repeated neighbours are dropped). Two points make one thin
-/// wall; fewer make nothing; a polygon that crosses or touches itself, or has no area, keeps its edges but not its
-/// sides.
+/// Closes the polygon through `points` (either winding; repeated neighbours are dropped). Two points give one thin
+/// wall; fewer points give nothing. A polygon that crosses or touches itself, or has no area, keeps its edges without
+/// `solid_left`.
 Polygon make_polygon(std::vector<glm::dvec2> points);
 
 }  // namespace sf::world

@@ -5,23 +5,23 @@
 
 namespace sf::world {
 
-/// The paint of a road network, where its sidecar says that it lies, and magnets under its lanes:
+/// Adds the lane markings of a road network at the place given by its sidecar, and magnets under its lanes:
 ///
 ///   road( rndf "FILE" magnetic_moment 10000 magnet_spacing 0.071 magnet_lanes "1.1 1.2" )
 ///
 /// @throws base::InputError with file and line.
 void add_road(BuildState& b, const Entity& entity);
 
-/// One lane made of exact straights and arcs, with its paint and its magnets.
+/// One lane of exact straight lines and arcs, with its lane markings and magnets.
 ///
 ///   path( pose [x y z yaw] pieces 3
 ///     straight[0] [length width] arc[1] [radius turn width] straight[2] [length width]
 ///     left "solid_white" right "broken_white" paint_width 0.02 dash [length gap]
 ///     magnetic_moment 10000 magnet_spacing 0.071 magnet_size [width length] magnet_top 0 )
 ///
-/// The pose is that of the middle of the lane at its start; a turn above zero is to the left. Paint lies outside the
-/// lane: its inner face is half the width from the middle. An arc is drawn by chords within 1 um of it.
-/// Magnets stand upright under the middle, the first at the start, `magnet_top` above the ground.
+/// The pose is the lane's centre line at its start; a positive turn is to the left. The paint lies outside the lane:
+/// its inner edge is half the width from the centre line. An arc becomes chords within 1 um of it. Magnets stand
+/// upright under the centre line, the first at the start, `magnet_top` above the ground.
 /// @throws base::InputError with file and line.
 void add_path(BuildState& b, const Entity& entity);
 

@@ -7,8 +7,8 @@
 
 namespace sf::world {
 
-/// Builds the world that `text` describes. `file` names errors and is where includes and bitmaps are looked for; it is
-/// not read.
+/// Builds the world that `text` describes. `file` is the name for errors, and its folder the place of includes and
+/// bitmaps; the file itself is not read.
 /// @throws base::InputError with file and line.
 World build_world(const std::string& file, const std::string& text, const LoadOptions& options = {});
 

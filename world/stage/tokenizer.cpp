@@ -11,7 +11,7 @@ namespace sf::world {
 
 namespace {
 
-// What no honest world needs, and a broken one would fill the memory with.
+// Far above any real world: a broken file must not fill the memory.
 constexpr std::size_t kMaxTokens = 8'000'000;
 constexpr std::size_t kLongestToken = 10'000;
 
@@ -28,7 +28,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 bool starts_number(char c) { return is_digit(c) || c == '+' || c == '-' || c == '.'; }
 
-/// Adds what was read from `begin` on; @param value of a number
+/// Adds the token from `begin` to the current position; @param value of a number
 void add(Scanner& s, TokenKind kind, std::size_t begin, double value = 0.0) {
   const std::size_t length = s.at - begin;
   if (length > kLongestToken)
@@ -44,7 +44,7 @@ char peek(const Scanner& s, std::size_t ahead = 0) {
   return s.at + ahead < s.text.size() ? s.text[s.at + ahead] : '\0';
 }
 
-// `[12]` right behind a word is its index; any other bracket opens a tuple.
+// `[12]` directly behind a word is its index; any other bracket opens a tuple.
 std::size_t index_length(const Scanner& s) {
   std::size_t n = 1;
   while (is_digit(peek(s, n))) ++n;
@@ -91,7 +91,7 @@ void scan_string(Scanner& s) {
   ++s.at;
 }
 
-// Blanks, line ends and comments. False when something else is next.
+// Skips blanks, line ends and comments. False at any other character.
 bool skip_blank(Scanner& s) {
   const char c = s.text[s.at];
   if (is_line_end(c)) {
@@ -148,7 +148,7 @@ bool scan_bracket(Scanner& s) {
 
 std::vector<Token> tokenize(const std::string& file, std::string_view text) {
   Scanner s{file, text, 0, 1, {}};
-  if (text.starts_with("\xEF\xBB\xBF")) s.at = 3;  // a byte order mark says nothing here
+  if (text.starts_with("\xEF\xBB\xBF")) s.at = 3;  // skips a byte order mark
   while (s.at < s.text.size()) {
     if (skip_blank(s) || scan_bracket(s)) continue;
     const char c = s.text[s.at];

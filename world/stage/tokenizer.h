@@ -1,5 +1,5 @@
 #pragma once
-// Words of a Stage world file: the flat stream of tokens, each with its line.
+// Tokens of a Stage world file, each with its line.
 
 #include <string>
 #include <string_view>
@@ -11,15 +11,15 @@ enum class TokenKind { word, number, text, open, close, open_tuple, close_tuple,
 
 struct Token {
   TokenKind kind = TokenKind::end;
-  std::string text;     ///< as written; a string without its quotes
-  double number = 0.0;  ///< finite; of a number only
+  std::string text;     ///< as written; a string without quotes
+  double number = 0.0;  ///< finite; for numbers only
   int line = 0;         ///< 1-based
 };
 
-/// Cuts `text` into tokens; the last one is `end`. Comments run from `#` to the end of the line; LF, CR and CRLF end
-/// lines.
-/// @param file named in errors.
-/// @throws base::InputError for a string without end, a number that is none, a character that no world file has.
+/// Splits `text` into tokens; the last one is `end`. Comments run from `#` to the end of the line; lines end with LF,
+/// CR or CRLF.
+/// @param file name for errors
+/// @throws base::InputError for an unterminated string, a malformed number, or a character outside the format.
 std::vector<Token> tokenize(const std::string& file, std::string_view text);
 
 }  // namespace sf::world
