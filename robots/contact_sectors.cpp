@@ -32,12 +32,12 @@ const std::array<glm::dvec2, kContactSectors + 1>& borders() {
   return table;
 }
 
-/// The part of 0..1 along a surface. Empty unless `from` < `to`.
+/// An interval of the parameter 0..1 along a surface. Empty unless `from` < `to`.
 struct Part {
   double from = 0.0, to = 1.0;
 };
 
-/// Keeps where side(t) = at_a + t (at_b - at_a) >= 0.
+/// Restricts the part to side(t) = at_a + t (at_b - at_a) >= 0.
 void keep_positive(Part& part, double at_a, double at_b) {
   if (at_a >= 0.0 && at_b >= 0.0) return;
   if (at_a < 0.0 && at_b < 0.0) {
@@ -70,7 +70,7 @@ bool near(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
          world::distance(d, a, b) <= kContactDistance;
 }
 
-/// The edges from the first to the last one that a surface comes near to; none: an empty span.
+/// The edges from the first to the last one that are near the surface; an empty span when there are none.
 std::span<const FootprintEdge> edges_near(const Footprint& outline, const Surface& s) {
   std::size_t first = 0, end = 0;
   for (std::size_t i = 0; i < outline.edges.size(); ++i) {
@@ -82,7 +82,7 @@ std::span<const FootprintEdge> edges_near(const Footprint& outline, const Surfac
   return {outline.edges.data() + first, end - first};
 }
 
-// A part is near an edge, or else wholly inside or outside, as its middle is.
+// A part is near an edge, or else wholly inside or wholly outside, as its middle is.
 bool presses(const Footprint& outline, std::span<const FootprintEdge> edges, const Surface& s, const Part& part) {
   const glm::dvec2 a = s.a + part.from * (s.b - s.a), b = s.a + part.to * (s.b - s.a);
   for (const FootprintEdge& e : edges)

@@ -1,6 +1,6 @@
 #pragma once
-// Where something presses on a body: which of its sectors (base::kContactSectors) have a surface within
-// kContactDistance of its outline, or inside it.
+// Contact sectors: the sectors (base::kContactSectors) of a body that have a surface within kContactDistance of the
+// body's outline, or inside it.
 
 #include <cstdint>
 
@@ -9,15 +9,15 @@
 
 namespace sf::robots {
 
-/// Nearer than this is touching. [m]
+/// [m] surfaces closer than this touch.
 inline constexpr double kContactDistance = 1e-3;
 
-/// Bits of the sectors in which the wall is within kContactDistance of the outline, or inside it; by the bearings of
-/// the wall's points from the mover's origin. 0 where their heights do not overlap.
+/// Bits of the sectors in which the wall is within kContactDistance of the outline, or inside it, by the bearings of
+/// the wall's points from the mover's origin. 0 when their heights do not overlap.
 /// @param X_WM of the mover
 std::uint32_t contact_sectors(const Footprint& outline, const base::Pose& X_WM, const world::Segment& wall);
 
-/// Likewise by another mover's outline. All bits where the mover is within the other's solid and near none of its
+/// Likewise for another mover's outline. All bits when the mover is inside the other's solid and near none of its
 /// edges.
 std::uint32_t contact_sectors(const Footprint& outline, const base::Pose& X_WM, const Footprint& other,
                               const base::Pose& X_WO);

@@ -13,13 +13,13 @@ constexpr int kMaxRadius = 2000;     // [mm]
 
 double finite(double v) { return std::isfinite(v) ? v : 0.0; }
 
-/// [mm/s] whole, within what the robot takes
+/// Whole [mm/s], within the robot's limits.
 double whole_speed(double metres_per_second) {
   return std::clamp(std::rint(1e3 * metres_per_second), -kMaxSpeed, kMaxSpeed);
 }
 
-/// [mm] as Player 3's driver of the Create computes it (create_comms.c, `rad_mm /= 2`); in its integers, the half is
-/// cut towards zero. 0 is no radius of the robot's: the sharpest turn is meant.
+/// [mm] as computed by Player 3's driver of the Create (create_comms.c, `rad_mm /= 2`); its integer division truncates
+/// towards zero. The robot has no radius 0: 0 stands for the sharpest turn.
 int radius_mm(double speed_mm, double turn) {
   const double asked = std::clamp(std::rint(speed_mm / turn), -1e9, 1e9);
   const int radius = std::clamp(static_cast<int>(asked) / 2, -kMaxRadius, kMaxRadius);

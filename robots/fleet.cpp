@@ -30,7 +30,7 @@ std::vector<Segment> stopping(const world::World& world) {
   return walls;
 }
 
-/// Robots before tags, each in order of ids: the place of every row in that order.
+/// The place of each row in the order of robots before tags, each in order of ids.
 std::vector<std::uint32_t> ranks_of(const world::World& world) {
   std::vector<std::uint32_t> order(world.movers.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -115,8 +115,8 @@ void Fleet::move(std::span<const Twist> commands, std::int64_t dt) {
   update_contacts();
 }
 
-// What was refused a step touches something, and what touched may still: nobody else is looked at, but whom these
-// were refused by.
+// Contacts exist only for movers with a refused step, for movers in contact before, and for the movers that refused a
+// step. Only these are tested.
 void Fleet::update_contacts() {
   for_rows(reports_.size(), [&](std::uint32_t row, Scratch&) {
     contacts_[row] = refused_[row] != 0 || reports_[row].contact_mask != 0;

@@ -1,21 +1,22 @@
 #pragma once
-// Everything that moves, and where it is.
+// The states of all movers, and their motion.
 //
 //   Fleet fleet(world);
 //   fleet.move(commands, interval);            // simulated, or
-//   fleet.apply(reports);                      // told by someone else
+//   fleet.apply(reports);                      // from outside
 //   farm.tick(fleet.reports()); ... fleet.contacts();
 //
-// The rule of `move` has two phases, in at most Fleet::kRounds rounds:
+// `move` resolves conflicts in at most Fleet::kRounds rounds of two phases:
 //
-//   1 propose  Every mover goes as far as the walls and the others allow, these standing where they are when the round
-//              begins. In front of one that may still go on it waits with the rest of its way.
-//   2 resolve  A mover whose proposed way meets the place that a mover of smaller id proposes stays where it was.
+//   1 propose  Each mover goes as far as the walls and the other movers allow; the others stand where they are at the
+//              begin of the round. In front of a mover that may still go on it waits with the rest of its way.
+//   2 resolve  A mover whose proposed way meets the proposed place of a mover with a smaller id stays where it was.
 //
-// The next round is for movers that wait or stayed, where one near them moved or stayed. In the last round nothing is
-// waited for: a mover that is still refused a step stands, turning where it can. So each round is what movers that go
-// one after another would do, in order of ids, and none overlaps another that did not before. A mover's result depends
-// on the movers near it alone (within kRounds times the ways of both), not on rows, threads or the rest of the fleet.
+// The next round is for movers that wait or stayed and have a mover near them that moved or stayed. In the last round
+// no mover waits: a mover whose step is still refused stands, and turns where it can. Each round thus has the result of
+// movers that go one after another in order of ids, and no mover overlaps another that it did not overlap before. A
+// mover's result depends only on the movers near it (within kRounds times the ways of both), not on rows, threads or
+// the rest of the fleet.
 
 #include <cstdint>
 #include <span>
@@ -32,82 +33,80 @@
 
 namespace sf::robots {
 
-/// How long a report is carried on with its velocity. [ns]
+/// [ns] longest extrapolation of a report with its velocity.
 inline constexpr std::int64_t kMaxExtrapolation = 500'000'000;
 
-/// One caller at a time. Nothing is allocated after construction, but where more than a thousand walls are near one
-/// mover.
+/// One caller at a time. Allocates nothing after construction, unless more than a thousand walls are near one mover.
 class Fleet {
  public:
-  static constexpr int kRounds = 4;  ///< of a tick, at most
+  static constexpr int kRounds = 4;  ///< per tick, at most
 
-  /// All movers at their places at load, at rest, at time 0. `world` must outlive the fleet, and so must `thread_pool`.
-  /// @param workers share the work of `move` and `predict`, with the same results; null: the caller does it alone
+  /// All movers at rest at their poses at load, at time 0. `world` and `thread_pool` must outlive the fleet.
+  /// @param thread_pool shares the work of `move` and `predict`, with the same results; null: the caller's thread alone
   explicit Fleet(const world::World& world, base::ThreadPool* thread_pool = nullptr);
 
-  /// Simulates `dt` [ns] > 0. A command passes the mover's command law, is reduced to what the drive can follow and to
-  /// what its accelerations allow from the velocity it has, then tried in substeps no longer than `Footprint::step`; a
-  /// substep that would make the outline touch a wall or another mover is refused, and done only as far as the last
-  /// 0.5 mm before that. From there on the mover stands at once, only turning in place while it still can (a car
-  /// stands): for that it may push itself off by up to 4 mm a substep. What a mover touched already (overlapping
-  /// starts, reports) stops it only where its origin would come nearer to it. Other movers stop it by the rule above.
+  /// Simulates `dt` [ns] > 0. A command passes the mover's driver model, then the limits of its drive and of its
+  /// accelerations from its current velocity. Motion is tested in substeps no longer than `Footprint::step`. A substep
+  /// that would make the outline touch a wall or another mover is refused: the mover goes only to within 0.5 mm of the
+  /// contact and then stops. A stopped mover may still turn in place (a car may not), and for that may push itself off
+  /// by up to 4 mm a substep. A contact that exists already (overlapping starts, reports) stops a mover only when its
+  /// origin would come closer to the touched wall or mover. Conflicts between movers follow the rule above.
   ///
-  /// `Report::contact_mask` then says what presses where (robots/contact_sectors.h): for movers that were refused a
-  /// step, for those that they were refused by, and for as long as anything touches them afterwards, also while they
-  /// stand. Passing by without being stopped is no touch.
-  /// @param commands one per mover; not finite means 0
+  /// Afterwards `Report::contact_mask` has the touched sectors (robots/contact_sectors.h): of movers with a refused
+  /// step, of the movers that refused it, and for as long as the contact lasts, also at rest. Passing by without a
+  /// refused step does not count.
+  /// @param commands one per mover; NaN and infinity count as 0
   void move(std::span<const base::Twist> commands, std::int64_t dt);
 
-  /// Takes the states of movers that live elsewhere; what they touch is looked at in `predict`. A report older than
-  /// what is known of the mover is left out; one of the same time replaces it. Heights are those at load, whatever
-  /// reports say: the world is 2.5-D, for contacts as for sensors.
-  /// @param reports finite, rows of movers that exist
-  /// @return how many were taken
+  /// Takes the states of movers from outside; `predict` computes their contacts. A report older than the mover's state
+  /// is ignored; one of the same time replaces it. Heights stay those at load, whatever the report has: the world is
+  /// 2.5-D, for contacts as for sensors.
+  /// @param reports finite, rows of existing movers
+  /// @return number of accepted reports
   std::size_t apply(std::span<const base::Report> reports);
 
-  /// A mover that is gone touches nobody, until it is back.
+  /// An absent mover touches no other mover until it is set present again.
   void set_absent(std::uint32_t row, bool gone) { absent_[row] = gone ? 1 : 0; }
 
-  /// One per mover, in order of rows: the newest state. Yaw is in [-pi, pi] after `move`, as told after `apply`.
-  /// A simulated mover's velocity is what it does at the end of the tick: 0 once stopped. Valid until the fleet is
-  /// gone.
+  /// One per mover, in order of rows: the newest state. Yaw is in [-pi, pi] after `move`, as reported after `apply`.
+  /// The velocity of a simulated mover is the one at the end of the tick, 0 after a stop. Valid as long as the fleet.
   std::span<const base::Report> reports() const { return reports_; }
 
-  /// `reports()` carried on to `time` [ns] with constant twists, by kMaxExtrapolation at most; never backwards. What
-  /// touches movers that were told by reports, there, is added to what the reports themselves say. Valid until the next
-  /// call.
+  /// `reports()` extrapolated to `time` [ns] with constant twists, by kMaxExtrapolation at most, never backwards.
+  /// Contacts of movers with reports from outside are computed at these poses and added to the contacts in the reports.
+  /// Valid until the next call.
   std::span<const base::Report> predict(std::int64_t time);
 
-  /// One per mover: 1 where the last `move` refused it a step, or where something touches it (`Report::contact_mask`).
+  /// One per mover: 1 when the last `move` refused it a step, or when it touches something (`Report::contact_mask`).
   std::span<const std::uint8_t> contacts() const { return contacts_; }
 
  private:
-  static constexpr double kMaxYield = 4e-3;  ///< [m] that a turning body pushes itself off by, a substep
+  static constexpr double kMaxYield = 4e-3;  ///< [m] largest push-off of a turning body per substep
 
-  /// How far a mover has come in this tick.
+  /// Progress of a mover in this tick.
   struct Progress {
     base::Pose X_WM;
-    base::Twist velocity;  ///< that it goes on with
-    double left = 0.0;     ///< [s] of the tick; 0: it goes no farther
-    bool refused = false;  ///< a step, in this tick
-    bool free = false;     ///< nothing stood near it
-    bool exposed = false;  ///< others' ways are near it
+    base::Twist velocity;  ///< velocity for the rest of the tick
+    double left = 0.0;     ///< [s] left of the tick; 0: finished
+    bool refused = false;  ///< a step was refused in this tick
+    bool free = false;     ///< no obstacle is near
+    bool exposed = false;  ///< ways of other movers are near
   };
   /// Outcome of one step: free, held for another round, or not allowed.
   enum class Stop : std::uint8_t { none, waiting, refused };
   struct BodyContact {
     std::uint32_t sectors = 0;
-    glm::dvec2 away;  ///< world frame: the sum of unit vectors from what touches to the mover's origin
+    glm::dvec2 away;  ///< world frame: the sum of unit vectors from the touching surfaces to the mover's origin
   };
-  /// One thread's memory.
+  /// Buffers of one thread.
   struct Scratch {
-    std::vector<FootprintEdge> next, now, other;  ///< of `place`
-    std::vector<std::uint32_t> near;              ///< movers that this one's way may meet
+    std::vector<FootprintEdge> next, now, other;  ///< for place_footprint
+    std::vector<std::uint32_t> near;              ///< movers near this one's way
     std::vector<const world::Segment*> walls;     ///< likewise
     std::vector<std::uint32_t>
-        priority_movers;    ///< of these: with a smaller id, and another place to be after this round
-    bool yields = false;    ///< its way meets such a place
-    double farthest = 0.0;  ///< [m] that an origin may travel this tick, of all movers seen
+        priority_movers;    ///< of these: movers with a smaller id and a different place after this round
+    bool yields = false;    ///< its way meets the place of a priority mover
+    double farthest = 0.0;  ///< [m] largest travel of an origin in this tick, of all movers so far
   };
 
   void start(std::uint32_t row, const base::Twist& command, double seconds, Scratch& scratch);
@@ -133,7 +132,7 @@ class Fleet {
   bool turn_in_contact(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const;
   bool push_off(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const;
 
-  // Obstacles of a mover on its way from one pose to another.
+  // Obstacles on a mover's way from one pose to another.
   Stop stop_at(std::uint32_t row, const base::Pose& from, const base::Pose& to, bool last, Scratch& scratch) const;
   bool meets_priority_mover(std::uint32_t row, const base::Pose& from, const PlacedFootprint& next,
                             Scratch& scratch) const;
@@ -142,7 +141,7 @@ class Fleet {
   bool leaves(std::uint32_t row, const base::Pose& from, glm::dvec2 to, const world::Segment& wall,
               Scratch& scratch) const;
 
-  /// @param struck others that touch it are marked there, where not empty
+  /// @param struck if not empty: set to 1 for other movers that touch it
   BodyContact body_contact(std::uint32_t row, const base::Pose& X_WM, std::span<const base::Report> reports,
                            std::span<std::uint8_t> struck = {}) const;
   void update_contacts();
@@ -156,25 +155,26 @@ class Fleet {
   world::WallGrid walls_;
   NeighbourGrid neighbours_;
   double widest_ = 0.0;    ///< [m] largest outline radius
-  double farthest_ = 0.0;  ///< [m] that an origin may be from where `neighbours_` has it
+  double farthest_ = 0.0;  ///< [m] largest distance of an origin from its position in `neighbours_`
   std::vector<base::Report> reports_;
   std::vector<base::Report> predicted_;
-  std::vector<std::uint32_t> rank_;  ///< in order of ids, robots before tags
-  std::vector<double> travels_;      ///< [m] farthest that its origin travels this tick
-  std::vector<Progress> progress_;   ///< when the round begins; where others see it is in `reports_`
+  std::vector<std::uint32_t> rank_;  ///< place in the order of ids, robots before tags
+  std::vector<double> travels_;      ///< [m] largest travel of its origin in this tick
+  std::vector<Progress>
+      progress_;  ///< at the begin of the round; `reports_` has the poses that other movers test against
   std::vector<Progress> proposed_;
-  std::vector<std::uint8_t> waiting_;      ///< 1: its tick is not over
-  std::vector<std::uint8_t> yielded_;      ///< 1: in this round
-  std::vector<std::uint8_t> changed_;      ///< 1: it moved or was beaten in this round
-  std::vector<std::uint8_t> continues_;    ///< 1: in the next round
-  std::vector<std::uint32_t> unfinished_;  ///< rows whose tick is not over
-  std::vector<std::uint32_t> round_rows_;  ///< of these: rows of this round
+  std::vector<std::uint8_t> waiting_;      ///< 1: its tick is not finished
+  std::vector<std::uint8_t> yielded_;      ///< 1: yielded in this round
+  std::vector<std::uint8_t> changed_;      ///< 1: it moved or yielded in this round
+  std::vector<std::uint8_t> continues_;    ///< 1: takes part in the next round
+  std::vector<std::uint32_t> unfinished_;  ///< rows with an unfinished tick
+  std::vector<std::uint32_t> round_rows_;  ///< of these: rows in this round
   std::vector<Scratch> scratch_;           ///< per thread
   std::vector<std::uint8_t> contacts_;
-  std::vector<std::uint8_t> refused_;   ///< 1: a step in the last `move`
-  std::vector<std::uint8_t> struck_;    ///< 1: someone was refused a step and touches it; 0 between calls
-  std::vector<std::uint8_t> reported_;  ///< 1: by a report, since the last `move`
-  std::vector<std::uint8_t> absent_;    ///< 1: nobody meets it
+  std::vector<std::uint8_t> refused_;   ///< 1: the last `move` refused it a step
+  std::vector<std::uint8_t> struck_;    ///< 1: it touches a mover with a refused step; 0 between calls
+  std::vector<std::uint8_t> reported_;  ///< 1: set by a report since the last `move`
+  std::vector<std::uint8_t> absent_;    ///< 1: absent
 };
 
 template <class Body>

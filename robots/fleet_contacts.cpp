@@ -1,4 +1,4 @@
-// The way of one mover of a fleet: how it comes up to things, and what it then touches.
+// The motion of one mover of a fleet: its approach to obstacles, and its contacts.
 
 #include <algorithm>
 #include <atomic>
@@ -15,14 +15,14 @@ using base::Pose;
 using base::Twist;
 using world::Segment;
 
-constexpr double kGap = 4e-4;      // [m] a refused mover stops no farther away than this
-constexpr double kWhole = 0x1p40;  // sums of integers do not depend on their order
+constexpr double kGap = 4e-4;      // [m] largest gap between a stopped mover and the obstacle
+constexpr double kWhole = 0x1p40;  // fixed point: sums of integers do not depend on their order
 constexpr std::uint32_t kEverywhere = 0xFFFFFFFFu;
 static_assert(base::kContactSectors == 32);
 
 glm::dvec2 origin(const Pose& X_WM) { return {X_WM.x, X_WM.y}; }
 
-// Not nearer to what was touched already; rounding at 100 km is 1.5e-11.
+// Not closer to a surface touched before; rounding at 100 km is 1.5e-11.
 bool no_nearer(double after, double before) { return after >= before - 1e-10; }
 
 glm::dvec2 unit(glm::dvec2 v) {
@@ -53,7 +53,7 @@ bool Fleet::clear(std::uint32_t row, std::span<const base::Report> reports, doub
          });
 }
 
-/// Whether a mover that stands at `from`, and travels by `sweep` [m], and another one have circles that meet.
+/// Whether the circle of a mover that stands at `from` and travels by `sweep` [m] can meet the circle of another mover.
 bool Fleet::comes_near(std::uint32_t row, const Pose& from, double sweep, std::uint32_t other, const Pose& X_WO) const {
   if (footprints_[row].edges.empty() || footprints_[other].edges.empty()) return false;
   const glm::dvec2 d = origin(X_WO) - origin(from);
@@ -61,13 +61,13 @@ bool Fleet::comes_near(std::uint32_t row, const Pose& from, double sweep, std::u
   return dot(d, d) <= apart * apart;
 }
 
-/// [m] Farthest that any point of the mover travels, on what is left of its way.
+/// [m] Largest travel of any point of the mover in the rest of the tick.
 double Fleet::sweep_of(std::uint32_t row) const {
   const Twist& v = progress_[row].velocity;
   return (std::hypot(v.forward, v.left) + std::abs(v.turn) * footprints_[row].radius) * progress_[row].left;
 }
 
-/// [m] The same with what it may push itself off by.
+/// [m] The same plus the largest push-off.
 double Fleet::reach_of(std::uint32_t row) const {
   return travels_[row] + std::abs(progress_[row].velocity.turn) * footprints_[row].radius * progress_[row].left;
 }
@@ -115,7 +115,7 @@ Fleet::Progress Fleet::advance_in_steps(std::uint32_t row, double steps, bool la
       }
     } else {
       advance_to_contact(row, progress, dt, last, scratch);
-      // The same step again, turning.
+      // Repeats the step as a turn in place.
       if (progress.velocity.turn != 0.0 && world_.movers[row].drive != world::Drive::car) {
         progress.velocity = {0.0, 0.0, progress.velocity.turn};
         continue;
@@ -128,8 +128,8 @@ Fleet::Progress Fleet::advance_in_steps(std::uint32_t row, double steps, bool la
   return progress;
 }
 
-// As far along a refused step as there is nothing in the way; how long that takes [s]. The least part is tried first:
-// who presses already stays.
+// Advances along a refused step up to the obstacle. Returns the time taken [s]. The smallest part is tried first: a
+// mover in contact stays.
 double Fleet::advance_to_contact(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const {
   const Pose X_start = progress.X_WM;
   const auto refused = [&](double part) {
@@ -146,14 +146,14 @@ double Fleet::advance_to_contact(std::uint32_t row, Progress& progress, double d
   return free * dt;
 }
 
-// Who is not near enough yet to push itself off turns until it is.
+// A mover not close enough for a push-off turns until it is.
 bool Fleet::turn_in_contact(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const {
   if (push_off(row, progress, dt, last, scratch)) return true;
   const double done = advance_to_contact(row, progress, dt, last, scratch);
   return done > 0.0 && push_off(row, progress, dt - done, last, scratch);
 }
 
-// A body that is not quite round (a disc of sixteen sides) pushes itself off what it presses on when it turns.
+// A body that is not quite round (a disc of sixteen sides) pushes itself off the touched surface in a turn.
 bool Fleet::push_off(std::uint32_t row, Progress& progress, double dt, bool last, Scratch& scratch) const {
   const glm::dvec2 away = unit(body_contact(row, progress.X_WM, reports_).away);
   if (away.x == 0.0 && away.y == 0.0) return false;
@@ -183,7 +183,7 @@ Fleet::Stop Fleet::stop_at(std::uint32_t row, const Pose& from, const Pose& to, 
   return stop;
 }
 
-/// On a way that nothing else stops.
+/// Tests priority movers on a way without other obstacles.
 bool Fleet::meets_priority_mover(std::uint32_t row, const Pose& from, const PlacedFootprint& next,
                                  Scratch& scratch) const {
   for (const std::uint32_t rival : scratch.priority_movers)
@@ -202,7 +202,7 @@ bool Fleet::is_stopped(std::uint32_t row, const Pose& from, const PlacedFootprin
   return !touches(now, placed) || !no_nearer(length(next.origin - placed.origin), length(now.origin - placed.origin));
 }
 
-/// It touches the wall already, and its origin comes no nearer to it.
+/// True when the mover touches the wall already and its origin comes no closer to it.
 bool Fleet::leaves(std::uint32_t row, const Pose& from, glm::dvec2 to, const Segment& wall, Scratch& scratch) const {
   const PlacedFootprint now = place_footprint(footprints_[row], from, scratch.now);
   return touches(now, wall) &&
@@ -231,7 +231,7 @@ Fleet::BodyContact Fleet::body_contact(std::uint32_t row, const Pose& X_WM, std:
     x += std::llround(away.x), y += std::llround(away.y);
     touch.sectors |= sectors;
     if (!struck.empty()) std::atomic_ref(struck[other]).store(1, std::memory_order_relaxed);
-    // A mover placed from outside needs its contact sectors alone: in a crowd at one place, all are found soon.
+    // A mover placed from outside needs its contact sectors alone; in a crowd at one place all sectors are soon found.
     return reported_[row] != 0 && touch.sectors == kEverywhere;
   });
   touch.away = touch.away + 1.0 / kWhole * glm::dvec2{static_cast<double>(x), static_cast<double>(y)};

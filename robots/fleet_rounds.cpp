@@ -1,4 +1,4 @@
-// The rounds of a fleet's tick: which way each mover proposes, and which of these ways are gone.
+// The rounds of a fleet's tick: the proposed ways of movers, and the rejection of some of them.
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ void Fleet::start(std::uint32_t row, const Twist& command, double seconds, Scrat
 
   const double rim = std::abs(v.turn) * outline.radius * seconds;
   double travel = std::hypot(v.forward, v.left) * seconds;
-  // A mover that turns may push itself off, once a substep.
+  // A turning mover may push itself off once per substep.
   if (v.turn != 0.0 && !outline.edges.empty())
     travel += kMaxYield * (std::ceil((travel + rim) / outline.step) + kRounds);
   travels_[row] = travel;
@@ -51,7 +51,7 @@ void Fleet::propose(std::uint32_t row, bool last, Scratch& scratch) {
       std::any_of(scratch.near.begin(), scratch.near.end(), [&](std::uint32_t other) { return waiting_[other] != 0; });
 }
 
-/// The same way again, with the places of priority_movers in it.
+/// Tests the same way again with the new places of priority_movers.
 bool Fleet::yields(std::uint32_t row, bool last, Scratch& scratch) {
   if (!proposed_[row].exposed || !moved(row)) return false;
   find_near(row, scratch);
@@ -94,7 +94,7 @@ void Fleet::commit(std::uint32_t row) {
   waiting_[row] = progress_[row].left > 0.0 ? 1 : 0;
 }
 
-/// Movers whose tick is not over, and near whom something changed.
+/// Finds the movers with an unfinished tick and a change near them.
 void Fleet::find_next() {
   std::erase_if(unfinished_, [&](std::uint32_t row) { return waiting_[row] == 0; });
   for_rows(unfinished_.size(), [&](std::uint32_t i, Scratch& scratch) {

@@ -26,7 +26,7 @@ double inradius(std::span<const FootprintEdge> loop) {
   return nearest;
 }
 
-// The largest inradius among the chains of edges that follow one another.
+// The largest inradius among the chains of consecutive edges.
 double largest_inradius(std::span<const FootprintEdge> edges) {
   double largest = 0.0;
   std::size_t first = 0;
@@ -38,8 +38,8 @@ double largest_inradius(std::span<const FootprintEdge> edges) {
   return largest;
 }
 
-// For outlines whose edges do not meet: then a chain of edges is inside as a whole or not at all, and its first corner
-// tells.
+// For outlines whose edges do not meet: a chain of edges is then inside as a whole or not at all, so its first corner
+// decides.
 bool any_inside(std::span<const FootprintEdge> chains, glm::dvec2 shift, const PlacedFootprint& outer) {
   for (std::size_t i = 0; i < chains.size(); ++i) {
     const FootprintEdge& e = chains[i];
@@ -50,8 +50,8 @@ bool any_inside(std::span<const FootprintEdge> chains, glm::dvec2 shift, const P
   return false;
 }
 
-/// Whether all edges of q lie beyond all of p along one of a few directions: then they share no point. Quick, and says
-/// yes for most pairs that do not touch.
+/// Whether one of a few directions separates all edges of q from those of p: then they share no point. A fast test that
+/// succeeds for most pairs that do not touch.
 bool apart(const PlacedFootprint& p, const PlacedFootprint& q, glm::dvec2 d) {
   const auto beyond = [&](glm::dvec2 axis) {
     double p_most = -HUGE_VAL, q_least = HUGE_VAL;
@@ -60,7 +60,7 @@ bool apart(const PlacedFootprint& p, const PlacedFootprint& q, glm::dvec2 d) {
     return dot(axis, d) + q_least - p_most > 1e-9 * (p.radius + q.radius) * (std::abs(axis.x) + std::abs(axis.y));
   };
   if (beyond(d)) return true;
-  // Outward of the edges that face the other: on the right of a -> b.
+  // Outward normals of the edges that face the other outline; outward is on the right of a -> b.
   const auto normal = [](std::span<const FootprintEdge> edges, glm::dvec2 towards) {
     glm::dvec2 best{};
     double most = 0.0;

@@ -9,17 +9,17 @@ namespace {
 
 double finite(double v) { return std::isfinite(v) ? v : 0.0; }
 
-// sin(x)/x; below the threshold the next term of the series is under half an ulp.
+// sin(x)/x. Below the threshold the next term of the series is under half an ulp.
 double sinc(double x) { return std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x; }
 
-constexpr double kSame = 1e-7;  // [m], [rad] farther apart are no two roundings of one pose
+constexpr double kSame = 1e-7;  // [m], [rad] poses within this distance are equal up to rounding
 
 bool near(const base::Pose& p, const base::Pose& q) {
   return std::abs(p.x - q.x) <= kSame && std::abs(p.y - q.y) <= kSame &&
          std::abs(base::wrap_angle(p.yaw - q.yaw)) <= kSame;
 }
 
-/// The constant twist from one pose to another in `seconds`, by the lesser turn: the inverse of `advance`.
+/// The constant twist from one pose to another in `seconds`, by the smaller turn: the inverse of `advance`.
 base::Twist twist_between(const base::Pose& from, const base::Pose& to, double seconds) {
   const double turn = base::wrap_angle(to.yaw - from.yaw);
   const glm::dvec2 chord = base::rotate(-(from.yaw + 0.5 * turn), {to.x - from.x, to.y - from.y});
@@ -77,7 +77,7 @@ base::Report interpolate(const base::Report& before, const base::Report& after, 
   const base::Pose &from = before.X_WM, &to = after.X_WM;
   base::Report report = before;
   report.time = time;
-  // To the bit: the readings of a mover that stands may be given again.
+  // Bitwise equal poses allow the reuse of readings of a mover at rest.
   if (from.x == to.x && from.y == to.y && from.yaw == to.yaw) {
     report.velocity = after.velocity;
     return report;
