@@ -1,9 +1,9 @@
 #ifndef MAPS_GRID_H
 #define MAPS_GRID_H
-// An occupancy grid as the thesis packs it (figure 42): two bits a cell, 4 x 4 cells in 32 bits.
+// An occupancy grid in the layout of the thesis (figure 42): two bits a cell, 4 x 4 cells in 32 bits.
 //
-// Cell (column, row) of word (C, R) is at bits 2 * (4 * (row % 4) + column % 4); words lie row by row. Columns grow
-// along +x, rows along -y: a map reads like a page. Read by both compilers.
+// Cell (column, row) of word (C, R) is at bits 2 * (4 * (row % 4) + column % 4); words are stored row by row. Columns
+// grow along +x, rows along -y, as on a page. Included by C++ and GLSL.
 
 #define SF_CELL_UNEXPLORED 0u
 #define SF_CELL_OCCUPIED 1u
@@ -23,10 +23,10 @@ namespace sf::maps {
 inline constexpr std::uint32_t kMaxWordColumns = 4096;  ///< and rows
 inline constexpr std::uint32_t kMaxWords = 1u << 20;    ///< of one map: 4 MiB, 4096 x 4096 cells
 
-/// Two bits hold one more state, which no map has.
+/// State of a cell. The fourth value of two bits is not used.
 enum class Cell : std::uint8_t { unexplored = SF_CELL_UNEXPLORED, occupied = SF_CELL_OCCUPIED, free = SF_CELL_FREE };
 
-/// Where a map lies and how large it is.
+/// Position and size of a map.
 /// The thesis' offset (O_x, O_y) (equations 9 and 10) is left = -O_x, top = -O_y.
 struct GridGeometry {
   double left = 0.0;                ///< [m] x of the first column's left side
@@ -41,7 +41,7 @@ inline std::int64_t columns(const GridGeometry& plan) { return 4 * std::int64_t{
 inline std::int64_t rows(const GridGeometry& plan) { return 4 * std::int64_t{plan.word_rows}; }
 inline std::uint32_t words(const GridGeometry& plan) { return plan.word_columns * plan.word_rows; }
 
-/// Finite, and within the limits above and those of packets: nothing that is worked out from it can overflow.
+/// True for a finite geometry within the limits above and those of packets. Nothing derived from it can overflow.
 inline bool is_valid(const GridGeometry& plan) {
   constexpr double kFarthest = 1e7;  // [m]
   const bool placed = std::abs(plan.left) <= kFarthest && std::abs(plan.top) <= kFarthest;
@@ -50,23 +50,23 @@ inline bool is_valid(const GridGeometry& plan) {
   return placed && sized && plan.cell >= 1e-4 && plan.cell <= 1e3;
 }
 
-/// True when every cell is in one of the three states.
+/// True when each cell has one of the three states.
 inline bool is_valid(std::uint32_t word) { return (word & (word >> 1) & 0x55555555u) == 0; }
 
-/// A cell by its place, within the map or not.
+/// Indices of a cell, inside the map or outside.
 struct CellAt {
   std::int64_t column = 0;
   std::int64_t row = 0;
   bool operator==(const CellAt&) const = default;
 };
 
-/// The whole number at or below `value`, which must be within 2^62.
+/// The largest integer not above `value`; |value| <= 2^62.
 inline std::int64_t whole_below(double value) {
   const auto cut = static_cast<std::int64_t>(value);
   return cut - (static_cast<double>(cut) > value ? 1 : 0);
 }
 
-/// The cell that holds `p` (within 1e15 cells), by one rule for everyone: floor((x - left) / cell), floor((top - y) /
+/// The cell that holds `p` (within 1e15 cells). The one rule for all code: floor((x - left) / cell), floor((top - y) /
 /// cell), in double.
 inline CellAt cell_at(const GridGeometry& plan, glm::dvec2 p) {
   return {whole_below((p.x - plan.left) / plan.cell), whole_below((plan.top - p.y) / plan.cell)};

@@ -7,7 +7,7 @@ namespace sf::maps {
 
 namespace {
 
-/// Frees every cell of one beam's line. `inside`: none of them needs to be looked for outside of the map.
+/// Frees all cells of one beam's line. `inside`: the whole line is inside the map.
 void free_line(OccupancyGrid& grid, CellAt sensor, std::int32_t columns, std::int32_t rows, bool inside) {
   const bool flat = std::abs(columns) >= std::abs(rows);
   const std::int32_t steps = std::abs(flat ? columns : rows);
@@ -15,7 +15,7 @@ void free_line(OccupancyGrid& grid, CellAt sensor, std::int32_t columns, std::in
   const CellAt along = flat ? CellAt{columns < 0 ? -1 : 1, 0} : CellAt{0, rows < 0 ? -1 : 1};
   const CellAt across = flat ? CellAt{0, rows < 0 ? -1 : 1} : CellAt{columns < 0 ? -1 : 1, 0};
   CellAt at = sensor;
-  // (2 i aside + steps) / (2 steps), rounded down, kept as quotient (where `at` is) and remainder.
+  // floor((2 i aside + steps) / (2 steps)), kept as quotient (in `at`) and remainder.
   std::int32_t rest = steps;
   for (std::int32_t i = 0; i <= steps; ++i) {
     if (inside || contains(grid.plan, at)) grid.set(at, Cell::free);

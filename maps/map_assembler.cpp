@@ -4,7 +4,7 @@ namespace sf::maps {
 
 namespace {
 
-/// Counters wrap: newer is less than half way round ahead.
+/// Counters wrap: a newer number is less than half of the range ahead.
 bool is_newer(std::uint32_t sequence, std::uint32_t than) { return sequence != than && sequence - than < 0x80000000u; }
 
 }  // namespace

@@ -21,7 +21,7 @@ bool all_sound(std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-/// The split is fixed, so each field follows from the plan and the part: nothing a receiver adds up can surprise it.
+/// Checks a part against the fixed split of its map: sums of its fields cannot overflow.
 bool fits(const MapPart& part) {
   if (!is_valid(part.plan) || part.parts != parts_of(part.plan) || part.part >= part.parts) return false;
   return part.count == std::min(kPartWords, words(part.plan) - part.first) && part.flags <= kTruePoses;

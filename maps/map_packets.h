@@ -3,7 +3,7 @@
 //
 //   farm:   f64 left, top, cell; u16 part, parts, word columns, word rows, flags, count; u32 words, at most 305 a part
 //   thesis: two datagrams: u8 word rows, u8 word columns and the first half of the words (half a word more where they
-//           are odd), then the others. Nothing but their lengths tells them apart.
+//           are odd), then the others. Only their lengths distinguish them.
 
 #include <cstdint>
 #include <span>
@@ -13,10 +13,10 @@
 
 namespace sf::maps {
 
-inline constexpr std::uint32_t kPartWords = 305;       ///< of every part but the last
+inline constexpr std::uint32_t kPartWords = 305;       ///< of each part but the last
 inline constexpr std::uint32_t kMaxPlainWords = 1022;  ///< of a map in the thesis' form: datagrams below 2048 bytes
 inline constexpr std::uint32_t kMaxPlainSide = 255;    ///< word rows and columns of such a map
-inline constexpr std::uint32_t kTruePoses = 1;         ///< flag: made from where the robot was, not from an estimate
+inline constexpr std::uint32_t kTruePoses = 1;         ///< flag: made from true poses, not from an estimate
 
 inline std::uint32_t parts_of(std::uint32_t words) { return (words + kPartWords - 1) / kPartWords; }
 inline std::uint32_t parts_of(const GridGeometry& plan) { return parts_of(words(plan)); }
@@ -30,9 +30,9 @@ struct MapPart {
   std::uint32_t part = 0;
   std::uint32_t parts = 1;
   std::uint32_t flags = 0;
-  std::uint32_t first = 0;              ///< word it begins with
+  std::uint32_t first = 0;              ///< first word in it
   std::uint32_t count = 0;              ///< words in it
-  std::span<const std::uint8_t> bytes;  ///< 4 * count; alive with the payload
+  std::span<const std::uint8_t> bytes;  ///< 4 * count; lives as long as the payload
 };
 
 /// Word `i` in [0, part.count).
@@ -40,7 +40,7 @@ std::uint32_t word_of(const MapPart& part, std::uint32_t i);
 
 enum class PartFault { none, too_short, too_long, out_of_range };
 
-/// Any bytes give a part or a fault. Words with a state that no cell has are out of range.
+/// Reads a part from any bytes. Words with the unused cell state are out of range.
 PartFault read_part(std::span<const std::uint8_t> payload, MapPart& part);
 
 /// Appends part `part` of a map. `word_at(i)` gives word i. @param flags see kTruePoses
@@ -59,14 +59,14 @@ void put_part(const GridGeometry& plan, std::uint32_t part, std::uint32_t flags,
 
 /// A receiver's view of one of the thesis' two datagrams.
 struct PlainPart {
-  bool second = false;  ///< it has no rows and columns: whose words these are, the datagram before must have said
+  bool second = false;  ///< true: without rows and columns, which the previous datagram has
   std::uint32_t word_rows = 0;
   std::uint32_t word_columns = 0;
   std::uint32_t count = 0;
   std::span<const std::uint8_t> bytes;  ///< 4 * count
 };
 
-/// Any bytes give a part or a fault.
+/// Reads a datagram of the thesis' form from any bytes.
 PartFault read_plain(std::span<const std::uint8_t> datagram, PlainPart& part);
 
 /// Word `i` in [0, part.count).

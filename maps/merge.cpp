@@ -9,7 +9,7 @@ namespace sf::maps {
 
 namespace {
 
-/// [cells] of `other`'s corner from that of `plan`.
+/// [cells] offset of the corner of `other` from that of `plan`.
 CellAt corner_in(const GridGeometry& plan, const GridGeometry& other) {
   return {static_cast<std::int64_t>(std::llround((other.left - plan.left) / plan.cell)),
           static_cast<std::int64_t>(std::llround((plan.top - other.top) / plan.cell))};
@@ -17,7 +17,7 @@ CellAt corner_in(const GridGeometry& plan, const GridGeometry& other) {
 
 std::int64_t words_below(std::int64_t cells) { return cells >= 0 ? cells / 4 : -((3 - cells) / 4); }
 
-/// Words from the first map's corner: the smallest box that holds all.
+/// A box of words, relative to the first map's corner.
 struct WordBox {
   std::int64_t left = 0, top = 0, right = 0, bottom = 0;
 };

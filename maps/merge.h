@@ -1,5 +1,5 @@
 #pragma once
-// Several maps as one.
+// Merges several maps into one.
 
 #include <span>
 #include <string>
@@ -8,19 +8,19 @@
 
 namespace sf::maps {
 
-/// What a cell is where maps differ.
+/// State of a cell in which maps differ.
 enum class MergePolicy {
-  occupied,  ///< occupied beats free beats unexplored: nobody drives into what anybody saw
-  newest,    ///< the last map that explored it is right: what moved away is gone
+  occupied,  ///< occupied before free before unexplored: the safe choice for navigation
+  newest,    ///< the state in the last map that explored the cell, so that moved obstacles disappear
 };
 
-/// Why these maps cannot be merged (their cells differ in size, or they lie too far apart) and what to do; empty when
-/// they can.
+/// The reason for which the maps cannot be merged (cells of different size, or too large a distance) and the remedy;
+/// empty when they can.
 std::string merge_problem(std::span<const OccupancyGrid* const> grids);
 
-/// One map that covers them all, on the lattice of the first: the middle of another's cell tells which of its cells it
-/// is, which is exact where lattices agree, and within half a cell elsewhere.
-/// Rule: at least one, and none refused.
+/// One map that covers all maps, on the lattice of the first. A cell of another map is assigned by its middle: exact
+/// for aligned lattices, within half a cell otherwise.
+/// Rule: at least one map, and an empty merge_problem.
 OccupancyGrid merge(std::span<const OccupancyGrid* const> grids, MergePolicy precedence = MergePolicy::occupied);
 
 }  // namespace sf::maps

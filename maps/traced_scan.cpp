@@ -9,7 +9,8 @@ namespace sf::maps {
 
 namespace {
 
-constexpr double kFarthestCell = 1e9;  // [cells] of a sensor from the map's corner: beyond, it is nowhere near
+constexpr double kFarthestCell =
+    1e9;  // [cells] largest distance of a sensor from the map's corner; a scan beyond it is ignored
 
 void grow(CellBox& box, CellAt at) {
   box.low = {std::min(box.low.column, at.column), std::min(box.low.row, at.row)};
@@ -44,15 +45,15 @@ TracedScan trace_scan(const GridGeometry& plan, const ScanView& scan, std::span<
   const glm::dvec2 place{(X.x - plan.left) / plan.cell, (plan.top - X.y) / plan.cell};
   const double c = std::cos(X.yaw);
   const double s = std::sin(X.yaw);
-  // Also false for what is not a number.
+  // The negation also covers NaN.
   if (!(std::abs(place.x) <= kFarthestCell && std::abs(place.y) <= kFarthestCell && std::abs(c + s) <= 2.0)) return out;
   out.sensor = cell_at(plan, {X.x, X.y});
   out.within = {place.x - static_cast<double>(out.sensor.column) - 0.5,
                 place.y - static_cast<double>(out.sensor.row) - 0.5};
 
-  std::size_t silent = 0;  // beams from the first on that said nothing
+  std::size_t silent = 0;  // leading beams without a valid range
   std::uint32_t said = 0;
-  CellBox box{{0, 0}, {1, 1}};  // from the sensor's cell
+  CellBox box{{0, 0}, {1, 1}};  // relative to the sensor's cell
   for (std::size_t k = 0; k < ends.size(); ++k) {
     const double range = scan.ranges[k];
     const bool tells = range > scan.range_min || (scan.range_min == 0.0 && range == 0.0);
