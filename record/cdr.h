@@ -37,7 +37,7 @@ class CdrWriter {
     bytes_.put(std::uint8_t{0});
   }
   void put(const char* text) { put(std::string_view(text)); }
-  /// Number of elements, ahead of a sequence.
+  /// Number of elements, before a sequence.
   void put_count(std::size_t count) { put(static_cast<std::uint32_t>(count)); }
 
  private:
@@ -51,7 +51,8 @@ class CdrWriter {
   std::size_t origin_ = 0;
 };
 
-/// Reads one message from a caller's bytes. Past its end, or at a malformed field, it turns bad and yields zeros.
+/// Reads one message from a caller's bytes. A read past the end, or a malformed field, sets the state to bad and gives
+/// zeros.
 class CdrReader {
  public:
   explicit CdrReader(std::span<const std::uint8_t> in) : bytes_(in) {
@@ -77,7 +78,8 @@ class CdrReader {
     }
     return {reinterpret_cast<const char*>(text.data()), text.size() - 1};
   }
-  /// Length of a sequence whose elements take at least `least` bytes each: bad, and 0, when that many cannot follow.
+  /// Length of a sequence whose elements take at least `least` bytes each. Bad, and 0, when the bytes left cannot hold
+  /// them.
   std::uint32_t get_count(std::size_t least) {
     const auto count = get<std::uint32_t>();
     if (good() && count <= bytes_.left() / least) return count;

@@ -10,7 +10,7 @@ namespace sf::record {
 
 namespace {
 
-// rosbag2 asks for these: "" means the reader's own choice; latched topics must say that they are.
+// Metadata required by rosbag2: "" selects the reader's defaults; latched topics need an explicit profile.
 const TextPairs kPlain = {{"offered_qos_profiles", ""}};
 const TextPairs kLatched = {
     {"offered_qos_profiles",
@@ -37,7 +37,7 @@ void add_motion(McapWriter& mcap, const RunInfo& info, Channels& channels) {
 
 void add_readings(McapWriter& mcap, const RunInfo& info, Channels& channels) {
   const std::uint16_t scan = add_schema(mcap, kLaserScan);
-  std::map<std::uint8_t, std::uint16_t> schemas;  // by kind
+  std::map<std::uint8_t, std::uint16_t> schemas;  // by sensor type
   for (const SensorTypeInfo& kind : info.sensor_types)
     schemas[kind.id] = mcap.add_schema(type_of(kind), "ros2msg", schema_text(kind));
   for (std::size_t row = 0; row < info.movers.size(); ++row) {

@@ -1,5 +1,5 @@
 #pragma once
-// The topics of a recording, and which channel of its file each is.
+// The topics of a recording, and their channels in the file.
 
 #include <cstdint>
 #include <string>
@@ -10,19 +10,19 @@
 
 namespace sf::record {
 
-/// A sensor of any kind but laser.
+/// A sensor of any type but laser.
 struct SensorChannel {
-  std::uint16_t channel = 0;  ///< 0: readings are not kept
+  std::uint16_t channel = 0;  ///< 0: readings are not recorded
   std::string frame;
-  const SensorTypeInfo* kind = nullptr;  ///< row of the run info that the channels were made of
+  const SensorTypeInfo* kind = nullptr;  ///< row of `RunInfo::sensor_types`
 };
 
 struct MoverChannels {
-  std::uint16_t odometry = 0;  ///< 0: not kept, nor are commands
+  std::uint16_t odometry = 0;  ///< 0: neither odometry nor commands are recorded
   std::uint16_t command = 0;
-  std::vector<std::uint16_t> scans;     ///< one per laser when readings are kept
+  std::vector<std::uint16_t> scans;     ///< one per laser when readings are recorded
   std::vector<std::string> frames;      ///< one per laser
-  std::vector<SensorChannel> readings;  ///< one per sensor of another kind
+  std::vector<SensorChannel> readings;  ///< one per sensor of another type
 };
 
 struct Channels {
@@ -32,7 +32,7 @@ struct Channels {
 
 std::size_t count_channels(const RunInfo& info);
 
-/// Adds every schema and channel. Rule: frames and topics are named. @param info outlives the channels
+/// Adds all schemas and channels. Rule: frames and topics are named. @param info outlives the channels
 Channels add_channels(McapWriter& mcap, const RunInfo& info);
 
 }  // namespace sf::record

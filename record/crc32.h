@@ -6,7 +6,7 @@
 
 namespace sf::record {
 
-/// Of `bytes`, continued from `before`: crc(ab) == crc(b, crc(a)). 0 of nothing.
+/// CRC of `bytes`, continued from `before`: crc(ab) == crc(b, crc(a)). Empty input: `before`; 0 by default.
 std::uint32_t crc32_of(std::span<const std::uint8_t> bytes, std::uint32_t before = 0);
 
 }  // namespace sf::record

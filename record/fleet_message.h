@@ -1,5 +1,5 @@
 #pragma once
-// What every mover was, wanted and met at one tick, to the bit: `sensorfarm_msgs/msg/Fleet`.
+// State, command and contact of all movers at one tick, bitwise: `sensorfarm_msgs/msg/Fleet`.
 
 #include <cstdint>
 #include <span>
@@ -16,7 +16,7 @@ struct MoverState {
   bool contact = false;     ///< a wall or a robot stopped it
   base::Pose X_WM;
   base::Twist velocity;  ///< in the mover's frame
-  base::Twist command;   ///< what its controller asked for; zero where there is none
+  base::Twist command;   ///< the twist that its controller commanded; zero without a controller
 };
 
 struct FleetState {
@@ -28,7 +28,7 @@ struct FleetState {
 /// Appends one message. Rule: `commands` and `contacts` are empty, or one per report.
 void encode_fleet(const base::TickRecord& record, base::Bytes& out);
 
-/// @returns false when the bytes are no Fleet; `fleet` is then half filled. Its capacity is reused.
+/// @returns false when the bytes are not a Fleet message; `fleet` is then partly filled. Its capacity is reused.
 bool decode_fleet(std::span<const std::uint8_t> message, FleetState& fleet);
 
 }  // namespace sf::record

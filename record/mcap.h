@@ -51,9 +51,9 @@ struct McapChannel {
 struct McapMessage {
   std::uint16_t channel = 0;
   std::uint32_t sequence = 0;
-  std::uint64_t log_time = 0;          ///< [ns] when it was delivered
-  std::uint64_t publish_time = 0;      ///< [ns] when it was true
-  std::span<const std::uint8_t> data;  ///< the caller's, or a view into the file
+  std::uint64_t log_time = 0;          ///< [ns] time of delivery
+  std::uint64_t publish_time = 0;      ///< [ns] time of validity
+  std::span<const std::uint8_t> data;  ///< the caller's bytes, or a view into the file
 };
 
 struct McapAttachment {
@@ -61,7 +61,7 @@ struct McapAttachment {
   std::uint64_t create_time = 0;  ///< [ns] 0: not known
   std::string name;
   std::string media_type;
-  std::span<const std::uint8_t> data;  ///< the caller's, or a view into the file
+  std::span<const std::uint8_t> data;  ///< the caller's bytes, or a view into the file
 };
 
 struct McapMetadata {

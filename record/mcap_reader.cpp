@@ -21,14 +21,14 @@ struct Record {
   Opcode opcode = Opcode::header;
   std::size_t at = 0;  ///< [byte] of the opcode
   View body;
-  bool whole = false;  ///< false: `body` is what is left before the cut
+  bool whole = false;  ///< false: `body` is the rest before the cut
 };
 
 void note(McapContents& contents, std::size_t at, const std::string& what) {
   if (contents.damage.size() < kMaxDamage) contents.damage.push_back("byte " + std::to_string(at) + ": " + what);
 }
 
-/// @returns false at the end, or where not even a head is left.
+/// @returns false at the end, and when the rest is shorter than a head.
 bool next_record(View bytes, std::size_t offset, std::size_t at, Record& record) {
   if (bytes.size() - at < kRecordHead) return false;
   ByteReader in(bytes.subspan(at, kRecordHead));
@@ -108,12 +108,12 @@ void read_chunk_records(View records, std::size_t offset, McapContents& contents
   }
 }
 
-/// A cut chunk gives the messages that are whole; a CRC over all of it cannot be asked then.
+/// A truncated chunk gives its whole messages; its CRC cannot be checked then.
 void read_chunk(const Record& record, McapContents& contents) {
   ByteReader in(record.body);
   in.get<std::uint64_t>();  // first time
   in.get<std::uint64_t>();  // last time
-  in.get<std::uint64_t>();  // size when unpacked
+  in.get<std::uint64_t>();  // uncompressed size
   const auto crc = in.get<std::uint32_t>();
   const std::string compression = in.get_string();
   const auto size = in.get<std::uint64_t>();
@@ -183,7 +183,7 @@ void read_record(const Record& record, View file, McapContents& contents) {
     case Opcode::data_end:
       return check_data_end(record, file, contents);
     default:
-      return;  // indexes, and opcodes of later versions
+      return;  // indexes, and opcodes of later versions, are skipped
   }
 }
 

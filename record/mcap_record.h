@@ -1,5 +1,5 @@
 #pragma once
-// How a record of an MCAP file is put together.
+// Writing of single MCAP records.
 
 #include <cstdint>
 #include <cstring>
@@ -10,7 +10,7 @@
 
 namespace sf::record {
 
-/// Writes a record's opcode and, when it goes out of scope, its length.
+/// Writes a record's opcode, and its length in the destructor.
 class OpenRecord {
  public:
   OpenRecord(base::Bytes& out, Opcode opcode) : out_(out) {

@@ -1,4 +1,4 @@
-// The tail of an MCAP file: what lets a reader find things without reading it all.
+// The summary of an MCAP file, for random access.
 
 #include <array>
 
@@ -60,7 +60,7 @@ void McapWriter::write_summary() {
   const std::uint64_t offsets_start = position();
   append(pending_, offsets);
 
-  // The footer's CRC covers its own first fields, opcode and length (20 bytes of content) included.
+  // The footer's CRC covers its own first fields, including opcode and length (20 bytes of content).
   ByteWriter out(pending_);
   out.put(static_cast<std::uint8_t>(Opcode::footer));
   out.put(std::uint64_t{20});

@@ -1,8 +1,8 @@
 #pragma once
-// Writes MCAP, uncompressed, into memory: whoever holds the file drains `pending` into it.
+// Writes MCAP, uncompressed, into memory. The owner of the file drains `pending` into it.
 //
-// Messages gather in a chunk; `end_chunk` seals it with its CRC and its message indexes. A caller that ends a chunk and
-// drains once per tick has a file that every reader can follow up to the last whole tick, wherever it was cut.
+// Messages are collected in a chunk; `end_chunk` seals it with its CRC and its message indexes. When the caller ends a
+// chunk and drains once per tick, the file is readable up to the last whole tick, wherever it is cut.
 
 #include <cstdint>
 #include <span>
@@ -27,16 +27,16 @@ class McapWriter {
   void add_attachment(const McapAttachment& attachment);
   void add_metadata(const McapMetadata& metadata);
 
-  /// Into the open chunk. The data is copied.
+  /// Adds to the open chunk. The data is copied.
   void add_message(const McapMessage& message);
   /// Seals the open chunk; does nothing when it is empty.
   void end_chunk();
   /// Seals the file: DataEnd, summary, footer.
   void finish();
 
-  /// Whole records not yet in the file. Valid until the next call of anything else.
+  /// Whole records not yet drained. Valid until the next call of another function.
   std::span<const std::uint8_t> pending() const { return pending_; }
-  /// The caller has `pending` in the file.
+  /// To be called when `pending` is in the file.
   void drained();
 
  private:
@@ -54,14 +54,14 @@ class McapWriter {
   void write_summary();
 
   base::Bytes pending_;
-  std::uint64_t drained_ = 0;      ///< [byte] handed over so far
-  std::uint32_t drained_crc_ = 0;  ///< of the bytes handed over
+  std::uint64_t drained_ = 0;      ///< [byte] drained so far
+  std::uint32_t drained_crc_ = 0;  ///< of the drained bytes
 
   base::Bytes chunk_;                                                   ///< the open chunk's records
   std::vector<IndexEntry> index_;                                       ///< the open chunk's messages
   std::vector<std::pair<std::uint16_t, std::uint64_t>> index_offsets_;  ///< of the sealed chunk: channel, file offset
 
-  // What the summary repeats, as finished records.
+  // Records that the summary repeats, complete.
   base::Bytes schemas_, channels_, chunk_indexes_, attachment_indexes_, metadata_indexes_;
   std::uint16_t schema_count_ = 0;
   std::uint32_t attachment_count_ = 0, metadata_count_ = 0, chunk_count_ = 0;

@@ -28,7 +28,7 @@ std::string field_of(const SensorTypeInfo& kind, const ColumnInfo& column) {
 }
 
 std::uint32_t whole_number(double value) {
-  return value > 0.0 ? static_cast<std::uint32_t>(std::min(value, 4294967295.0)) : 0u;  // a NaN counts nothing
+  return value > 0.0 ? static_cast<std::uint32_t>(std::min(value, 4294967295.0)) : 0u;  // NaN becomes 0
 }
 
 void put_number(CdrWriter& cdr, const ColumnInfo& column, double value) {
@@ -39,7 +39,7 @@ void put_number(CdrWriter& cdr, const ColumnInfo& column, double value) {
   }
 }
 
-/// Whether a message can hold that many elements: a number takes at least four bytes of it.
+/// Whether a message can hold that many elements: a number takes at least four bytes.
 bool fits(const SensorTypeInfo& kind, std::size_t elements, std::size_t message) {
   return elements <= message && element_width(kind) * elements <= message / 4;
 }
@@ -94,7 +94,7 @@ bool decode_reading(const SensorTypeInfo& kind, std::span<const std::uint8_t> me
   cdr.get_string();  // frame
 
   const std::size_t width = element_width(kind);
-  std::size_t elements = 1;  // unless there is a list: then as many as its first array has
+  std::size_t elements = 1;  // with a list: the length of its first array
   std::size_t first = 0;
   for (const ColumnInfo& column : kind.columns) {
     const std::size_t numbers = kind.list.empty() ? column.width : cdr.get_count(sizeof(std::uint32_t));

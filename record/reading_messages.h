@@ -1,9 +1,10 @@
 #pragma once
-// Readings of any kind but laser as messages of their own types: `sensorfarm_msgs/msg/Magnetometer` and so on, made
-// from the kind's columns.
+// Readings of all types but laser as messages of their own types: `sensorfarm_msgs/msg/Magnetometer` and so on, derived
+// from the sensor type's columns.
 //
-// A type has a header and one field per column: float64, float64[width], or uint32 for whole numbers; where the kind
-// has a list, one array of all elements' numbers. ROS writes field names in lower case: `vector_T` is `vector_t`.
+// A message type has a header and one field per column: float64, float64[width], or uint32 for whole numbers; for a
+// sensor type with a list, one array with the numbers of all elements. ROS field names are in lower case: `vector_T`
+// becomes `vector_t`.
 
 #include <cstdint>
 #include <span>
@@ -18,19 +19,19 @@ namespace sf::record {
 
 /// "sensorfarm_msgs/msg/Magnetometer".
 std::string type_of(const SensorTypeInfo& kind);
-/// Its definition, with every type it needs, for a file's schema.
+/// Its definition, with all types that it needs, for a file's schema.
 std::string schema_text(const SensorTypeInfo& kind);
 
-/// Numbers in one element of a reading; at least 1 in a kind that can be read.
+/// Numbers in one element of a reading; at least 1 in a valid sensor type.
 std::size_t element_width(const SensorTypeInfo& kind);
 
-/// Appends one message. Rule: `values` are whole elements, and exactly one where the kind has no list.
+/// Appends one message. Rule: `values` are whole elements, and exactly one element for a sensor type without a list.
 /// @param time [ns] of the measurement
 void encode_reading(const SensorTypeInfo& kind, std::int64_t time, std::string_view frame,
                     std::span<const double> values, base::Bytes& out);
 
-/// @param values as they were, element by element; reused for its capacity
-/// @returns false when the bytes are no reading of that kind; the outputs are then half filled.
+/// @param values element by element, as in the reading; its capacity is reused
+/// @returns false when the bytes are not a reading of that type; the outputs are then partly filled.
 bool decode_reading(const SensorTypeInfo& kind, std::span<const std::uint8_t> message, std::int64_t& time,
                     std::vector<double>& values);
 

@@ -57,7 +57,7 @@ Recorder::~Recorder() {
   try {
     finish();
   } catch (const base::InputError&) {
-    // Every tick whose `write` returned is in the file; only the summary is not.
+    // All ticks whose `write` returned are in the file; only the summary is missing.
   }
 }
 
@@ -146,7 +146,7 @@ void Recorder::write_scan(const base::ReadingBlock& reading, std::int64_t time) 
 
 void Recorder::write_reading(const base::ReadingBlock& reading, std::int64_t time) {
   SF_CHECK(reading.mover < channels_.movers.size(), "mover " + std::to_string(reading.mover));
-  std::uint32_t before = 0;  // of the same kind
+  std::uint32_t before = 0;  // sensors of the same type before this one
   for (const SensorChannel& sensor : channels_.movers[reading.mover].readings) {
     if (sensor.kind->id != reading.kind || before++ < reading.sensor) continue;
     message_.clear();
@@ -169,7 +169,7 @@ void Recorder::add(std::uint16_t channel, std::uint32_t sequence, std::int64_t l
 
 void Recorder::flush() {
   mcap_.end_chunk();
-  finished_ = true;  // until the bytes are in the file: after a failure there is nothing to go on with
+  finished_ = true;  // reset when the bytes are in the file: a failure is final
   file_.append(mcap_.pending());
   finished_ = false;
   mcap_.drained();

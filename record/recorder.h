@@ -1,11 +1,11 @@
 #pragma once
-// Keeps a run in DIR/run.mcap as it happens:
+// Records a run in DIR/run.mcap while it runs:
 //
-//   Recorder recorder(dir, info);           // world and run info are in the file, under its name
+//   Recorder recorder(dir, info);           // world and run info are in the file, which has its final name
 //   for (...) recorder.write(tick_record);  // one chunk, one write(2)
-//   recorder.finish();                      // summary and indexes; says so when the disk did not keep up
+//   recorder.finish();                      // summary and indexes; throws when the disk failed
 //
-// A process killed at any time leaves a file that holds every tick whose `write` returned.
+// A process killed at any time leaves a file with all ticks whose `write` returned.
 
 #include <cstdint>
 #include <string>
@@ -20,22 +20,22 @@
 
 namespace sf::record {
 
-/// One thread. A recording already in the directory is replaced in one step, once the new one holds its world.
+/// One thread. A recording already in the directory is replaced in one step, once the new one contains its world.
 class Recorder : public base::Sink {
  public:
-  /// Makes the directory. Rule: `info.snapshot` is not empty; rates and interval are positive.
+  /// Creates the directory. Rule: `info.snapshot` is not empty; rates and interval are positive.
   /// @throws base::InputError when the directory cannot be written, another run is being recorded there, or the fleet
   /// has more topics than a file can hold.
   Recorder(const std::string& directory, RunInfo info);
-  /// Finishes, if nobody did, and keeps silent when that fails: call `finish` to know.
+  /// Calls `finish` if needed and ignores its errors; call `finish` to get them.
   ~Recorder() override;
 
-  /// Rule: every report's mover is a row of `info.movers`, every reading's sensor one of its lasers or sensors; time
-  /// does not go back.
-  /// @throws base::InputError when the tick could not be kept whole (a full disk). All ticks before it are; the
-  /// recorder takes no more.
+  /// Rule: every report's mover is a row of `info.movers`, every reading's sensor one of its lasers or sensors; time is
+  /// non-decreasing.
+  /// @throws base::InputError when the tick could not be written whole (a full disk). All earlier ticks are in the
+  /// file; the recorder accepts no more.
   void write(const base::TickRecord& record) override;
-  /// Seals the file. Further calls do nothing. @throws base::InputError when it could not be.
+  /// Seals the file. Further calls do nothing. @throws base::InputError when that fails.
   void finish();
 
   const std::string& path() const { return file_.path(); }
@@ -56,11 +56,11 @@ class Recorder : public base::Sink {
   McapWriter mcap_;
   Channels channels_;
   std::int64_t next_odometry_ = 0;  ///< [ns]
-  std::uint32_t ticks_ = 0;         ///< written so far
+  std::uint32_t ticks_ = 0;         ///< number of ticks written
   std::uint32_t odometries_ = 0;
   bool finished_ = false;
 
-  // Kept from tick to tick for their capacity.
+  // Members for their capacity only.
   base::Bytes message_;
   std::vector<Transform> transforms_;
   Scan scan_;

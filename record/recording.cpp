@@ -15,11 +15,11 @@ namespace sf::record {
 
 namespace {
 
-/// Which sensor a topic belongs to.
+/// The sensor of a topic.
 struct SensorTopic {
   std::uint32_t mover = 0;
   const SensorTypeInfo* kind = nullptr;  ///< null: a laser
-  std::uint32_t sensor = 0;              ///< among the mover's of its kind
+  std::uint32_t sensor = 0;              ///< 0-based among the mover's sensors of its type
 };
 using Topics = std::map<std::string, SensorTopic>;
 
@@ -61,7 +61,7 @@ Topics sensor_topics(const RunInfo& info) {
   for (std::uint32_t mover = 0; mover < info.movers.size(); ++mover) {
     const auto& lasers = info.movers[mover].lasers;
     for (std::uint32_t i = 0; i < lasers.size(); ++i) topics[lasers[i].topic] = {mover, nullptr, i};
-    std::map<std::uint8_t, std::uint32_t> before;  // by kind
+    std::map<std::uint8_t, std::uint32_t> before;  // by sensor type
     for (const SensorInfo& sensor : info.movers[mover].sensors) {
       const SensorTypeInfo* kind = find_sensor_type(info, sensor.kind);
       if (kind != nullptr) topics[sensor.topic] = {mover, kind, before[sensor.kind]++};
@@ -99,7 +99,7 @@ bool read_reading(const McapMessage& message, const SensorTopic& topic, Recordin
   return true;
 }
 
-/// @return false when it should have been understood and was not; a type that we do not read is no damage.
+/// @return false when a message of a known type is malformed; unknown types are not damage.
 bool read_message(const McapMessage& message, std::string_view type, const std::string& name, const Topics& topics,
                   FleetState& fleet, Recording& recording) {
   if (type == kFleet) return read_fleet(message, fleet, recording);

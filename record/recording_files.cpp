@@ -54,7 +54,7 @@ GrowingFile::GrowingFile(const std::string& path) : path_(path), fresh_(path + "
 void GrowingFile::refuse_second_writer() {
   struct stat mine = {};
   struct stat named = {};
-  // A file system without locks refuses nobody.
+  // File systems without locks refuse no writer.
   const bool held = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   // Between opening and locking, another writer may have renamed the file to `path_`.
   const bool still_named =

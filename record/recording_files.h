@@ -1,5 +1,5 @@
 #pragma once
-// Files as recordings need them: one that grows behind a name which always holds something whole, and one to look at.
+// Files for recordings: one to write, which appears under its name only when it is usable, and one to read.
 
 #include <cstdint>
 #include <span>
@@ -7,23 +7,22 @@
 
 namespace sf::record {
 
-/// A file that takes over `path` only when told to. Bytes go to the kernel at once (no buffer of ours), so a killed
-/// process loses nothing that was appended. One writer at a time: a second one on the same path is refused while the
-/// first lives.
+/// A file that replaces `path` only in `publish`. Bytes are passed to the kernel without a buffer, so a killed process
+/// loses no appended bytes. One writer at a time: a second one on the same path is refused while the first lives.
 class GrowingFile {
  public:
   /// Creates the directories above `path`, and `path`.new.
-  /// @throws base::InputError when that cannot be, or when another process is writing here.
+  /// @throws base::InputError when that fails, or when another process writes this recording.
   explicit GrowingFile(const std::string& path);
   ~GrowingFile();
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
 
-  /// @throws base::InputError when not everything could be written (a full disk); what was appended before stays.
+  /// @throws base::InputError when not all bytes could be written (a full disk); bytes appended before remain.
   void append(std::span<const std::uint8_t> bytes);
-  /// Puts the file in the place of whatever `path` was, in one step.
+  /// Replaces `path` by this file, in one step.
   void publish();
-  /// Waits until the bytes are on the disk. @throws base::InputError when they cannot be.
+  /// Waits until the bytes are on the disk. @throws base::InputError when that fails.
   void sync();
 
   const std::string& path() const { return path_; }
@@ -40,10 +39,10 @@ class GrowingFile {
   bool published_ = false;
 };
 
-/// A whole file as read-only memory. It must not shrink meanwhile; growing does no harm.
+/// A whole file as read-only memory. It must not shrink while it is mapped; it may grow.
 class MappedFile {
  public:
-  /// @throws base::InputError when it is not a file that can be read.
+  /// @throws base::InputError when it is not a readable file.
   explicit MappedFile(const std::string& path);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;

@@ -1,6 +1,6 @@
 #pragma once
-// The ROS messages of a recording as CDR. Every `encode` appends one whole message to `out`.
-// REP-103 units and frames, REP-105 names. Time is simulated, [ns] >= 0.
+// The ROS messages of a recording as CDR. Every `encode` appends one whole message to `out`. Units and frames after REP
+// 103, names after REP 105. Time is simulated, [ns] >= 0.
 
 #include <cstdint>
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace sf::record {
 
-/// One frame in another.
+/// Pose of one frame in another.
 struct Transform {
   std::int64_t time = 0;  ///< [ns]
   std::string_view parent;
@@ -30,10 +30,10 @@ struct Scan {
   float scan_time = 0.0F;     ///< [s] from one scan to the next
   float range_min = 0.0F;     ///< [m]
   float range_max = 0.0F;     ///< [m]
-  std::vector<float> ranges;  ///< [m] one per sample; range_max or infinity where nothing echoed
+  std::vector<float> ranges;  ///< [m] one per sample; range_max or infinity without an echo
 };
 
-/// Truth, not wheel odometry: the covariances are zero.
+/// True state, not wheel odometry: the covariances are zero.
 /// @param velocity in the child frame.
 void encode_odometry(const Transform& transform, const base::Twist& velocity, base::Bytes& out);
 
@@ -41,10 +41,10 @@ void encode_twist(std::int64_t time, std::string_view frame, const base::Twist& 
 
 void encode_transforms(std::span<const Transform> transforms, base::Bytes& out);
 
-/// @param ranges [m] rounded to float32 on the way; `scan.ranges` is not looked at.
+/// @param ranges [m] rounded to float32; `scan.ranges` is not used.
 void encode_scan(const Scan& scan, std::span<const double> ranges, base::Bytes& out);
 
-/// @returns nothing when the bytes are no LaserScan.
+/// @returns nullopt when the bytes are not a LaserScan.
 std::optional<Scan> decode_scan(std::span<const std::uint8_t> message);
 
 }  // namespace sf::record

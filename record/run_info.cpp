@@ -18,7 +18,7 @@ std::string ros_name(const std::string& name, const std::string& otherwise) {
   return std::isdigit(static_cast<unsigned char>(text[0])) != 0 ? "_" + text : text;
 }
 
-/// Names given so far, each with the number to try next should it come again.
+/// Names in use, each with the next number for a duplicate.
 using Taken = std::map<std::string, int>;
 
 std::string unique(const std::string& name, Taken& taken) {

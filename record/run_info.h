@@ -1,5 +1,5 @@
 #pragma once
-// What a run was made of: with the world and the states, enough to compute every scan again.
+// Description of a run. With the world and the states, it suffices to recompute all scans.
 
 #include <cstdint>
 #include <span>
@@ -23,22 +23,22 @@ struct LaserInfo {
   double rate = 10.0;      ///< [Hz] > 0
 };
 
-/// One column of a kind's readings.
+/// One column of a sensor type's readings.
 struct ColumnInfo {
   std::string name;         ///< with its unit, e.g. `distance_m`
-  std::uint32_t width = 1;  ///< numbers: 3 for a vector
-  bool whole = false;       ///< counts things, in [0, 2^32 - 1]
+  std::uint32_t width = 1;  ///< numbers per element: 3 for a vector
+  bool whole = false;       ///< counts, in [0, 2^32 - 1]
 };
 
-/// A kind of sensor, lasers aside: what its readings' numbers are.
+/// A sensor type other than laser: the format of its readings.
 struct SensorTypeInfo {
   std::uint8_t id = 0;              ///< `base::ReadingBlock::kind`
   std::string name;                 ///< one word of lower-case letters and digits
-  std::string list;                 ///< what its elements are called; empty: a reading is one row
-  std::vector<ColumnInfo> columns;  ///< a reading's values lie element by element, column after column
+  std::string list;                 ///< name of its elements; empty: a reading is one row
+  std::vector<ColumnInfo> columns;  ///< the values of a reading are element by element, in each in order of columns
 };
 
-/// A sensor of such a kind.
+/// A sensor of such a type.
 struct SensorInfo {
   std::uint8_t kind = 0;  ///< id of a row of `RunInfo::sensor_types`
   std::string name;
@@ -48,11 +48,12 @@ struct SensorInfo {
 };
 
 struct MoverInfo {
-  std::string name;                 ///< as in the world
-  std::string frame;                ///< its name as ROS allows it, unique in the run; set by the recorder
-  std::uint32_t id = 0;             ///< number on the wire
-  std::vector<LaserInfo> lasers;    ///< in the order of `base::ReadingBlock::sensor`
-  std::vector<SensorInfo> sensors;  ///< of all other kinds, those of one kind in that order
+  std::string name;               ///< as in the world
+  std::string frame;              ///< its name as ROS allows it, unique in the run; set by the recorder
+  std::uint32_t id = 0;           ///< id in packets
+  std::vector<LaserInfo> lasers;  ///< in the order of `base::ReadingBlock::sensor`
+  std::vector<SensorInfo>
+      sensors;  ///< of all other types; those of one type in the order of `base::ReadingBlock::sensor`
 };
 
 struct RunInfo {
@@ -63,21 +64,22 @@ struct RunInfo {
   double interval = 0.1;  ///< [s] simulated time per tick
   bool record_readings = false;
   double odometry_rate = 1.0;  ///< [Hz] of the Odometry and TwistStamped messages; 0: none; states come every tick
-  std::vector<SensorTypeInfo> sensor_types;                  ///< that movers have sensors of
+  std::vector<SensorTypeInfo> sensor_types;                  ///< types of the movers' sensors
   std::vector<MoverInfo> movers;                             ///< in the rows of `base::Report::mover`
-  std::vector<std::pair<std::string, std::string>> options;  ///< whatever else a run was told
+  std::vector<std::pair<std::string, std::string>> options;  ///< further options of the run
   base::Bytes snapshot;                                      ///< the world, not empty
 };
 
-/// @return null when the run has no sensors of that kind.
+/// @return null when the run has no sensors of that type.
 const SensorTypeInfo* find_sensor_type(const RunInfo& info, std::uint8_t id);
 
-/// Gives every mover a frame and every sensor a topic: names with all but [A-Za-z0-9_] turned to '_', made unique.
+/// Gives every mover a frame and every sensor a topic: names with all characters but [A-Za-z0-9_] replaced by '_', made
+/// unique.
 void name_frames(RunInfo& info);
 
-/// `sensorfarm_msgs/msg/RunInfo`, all but the snapshot.
+/// `sensorfarm_msgs/msg/RunInfo`, without the snapshot.
 void encode_run_info(const RunInfo& info, base::Bytes& out);
-/// @returns false when the bytes are no RunInfo; `info` is then half filled.
+/// @returns false when the bytes are not a RunInfo message; `info` is then partly filled.
 bool decode_run_info(std::span<const std::uint8_t> message, RunInfo& info);
 
 }  // namespace sf::record

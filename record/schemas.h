@@ -1,5 +1,5 @@
 #pragma once
-// The message types of a recording, as ROS 2 names and defines them.
+// The message types of a recording, with their names and definitions in ROS 2.
 
 #include <string>
 #include <string_view>
@@ -13,10 +13,10 @@ inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
 inline constexpr std::string_view kFleet = "sensorfarm_msgs/msg/Fleet";
 inline constexpr std::string_view kRunInfo = "sensorfarm_msgs/msg/RunInfo";
 
-/// The `ros2msg` text of one of the types above: its fields, then every type it needs, each once, behind a line of 80
-/// '=' and a line `MSG: package/Name`.
+/// The `ros2msg` text of one of the types above: its fields, then all types that it needs, each once, behind a line of
+/// 80 '=' and a line `MSG: package/Name`.
 std::string schema_text(std::string_view type);
-/// The same for a type of its own, given its fields, a line each.
+/// Likewise for a type of the caller, given its fields, one per line.
 std::string with_dependencies(std::string_view fields);
 
 }  // namespace sf::record
