@@ -29,22 +29,22 @@ struct ColorBar {
 struct FigureOptions {
   std::string title;
   std::string subtitle;
-  world::Extent extent;                      ///< [m] what must be shown; finite; a figure of no size is given some
-  double margin = 0.03;                      ///< [-] part of the longer side left free around `extent`
+  world::Extent extent;                      ///< [m] smallest area to show; finite; a zero size is enlarged
+  double margin = 0.03;                      ///< [-] free margin around `extent`, relative to its longer side
   std::uint32_t background = theme::kWhite;  ///< of the plot
   std::vector<LegendItem> legend;
   std::optional<ColorBar> bar;
   int long_side = 1600;  ///< [px] of the whole picture, in [600, 8000]
 };
 
-/// Where everything is. All [px] but `shown`.
+/// Positions of the parts of a figure. All [px] but `shown`.
 struct FigureLayout {
   int width = 0;
   int height = 0;
   PixelBox plot;
-  world::Extent shown;         ///< [m] the corners of the plot; holds the plan's extent
+  world::Extent shown;         ///< [m] area of the plot; contains the requested extent
   double scale = 1.0;          ///< [px/m] the same along x and y
-  double tick_spacing = 90.0;  ///< at least; room for the widest label along x
+  double tick_spacing = 90.0;  ///< at least; wide enough for the widest label along x
   std::vector<LegendPlace> legend;
   double legend_top = 0.0;
 };
@@ -52,7 +52,7 @@ FigureLayout lay_out(const FigureOptions& plan);
 
 class Axes {
  public:
-  /// Paints background and grid. What is drawn on the canvas until `save` stays inside the plot.
+  /// Paints background and grid. Until `save`, drawing on the canvas is clipped to the plot.
   explicit Axes(FigureOptions plan);
 
   Canvas& canvas() { return canvas_; }

@@ -8,7 +8,7 @@
 namespace sf::viz {
 namespace {
 
-constexpr double kEdge = 26.0;        // around everything
+constexpr double kEdge = 26.0;        // around the whole figure
 constexpr double kTitle = 74.0;       // title and subtitle
 constexpr double kTicksBelow = 68.0;  // tick labels and the axis' name
 constexpr double kAxisName = 34.0;    // left of the tick labels
@@ -62,7 +62,7 @@ FigureLayout lay_out(const FigureOptions& plan) {
   const double right = kEdge + bar_width(plan);
   const double header = plan.title.empty() ? kEdge : kEdge + kTitle;
 
-  // Labels, legend and scale depend on each other; two rounds settle them.
+  // Labels, legend and scale depend on each other; two iterations suffice.
   FigureLayout layout;
   double left = kEdge + kAxisName + 40.0;
   double footer = kTicksBelow + kLegendRow + kEdge;
@@ -77,7 +77,7 @@ FigureLayout lay_out(const FigureOptions& plan) {
     layout.plot.x_max = layout.plot.x_min + static_cast<int>(plot.x);
     layout.plot.y_max = layout.plot.y_min + static_cast<int>(plot.y);
 
-    // The scale bar stands in the row of the axis' name, so the legend has the whole width.
+    // The scale bar is in the row of the axis' name, so the legend has the whole width.
     layout.legend = place_legend(plan.legend, plot.x);
     const int rows = layout.legend.empty() ? 0 : layout.legend.back().row + 1;
     const double x_label = widest_label(layout.shown.x_min, layout.shown.x_max, layout.tick_spacing / layout.scale);

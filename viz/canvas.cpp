@@ -33,7 +33,7 @@ void blend(std::uint8_t* pixel, const Channels& color, float amount) {
   }
 }
 
-/// VTK's built-in face has Latin letters only and draws square brackets round, so a whole one is used where it is
+/// VTK's built-in font has Latin letters only and rounds square brackets, so a complete font is used when one is
 /// installed.
 const std::string& font_file(bool bold) {
   static const auto installed = [](const char* path) { return std::filesystem::exists(path) ? path : ""; };
@@ -42,7 +42,7 @@ const std::string& font_file(bool bold) {
   return bold ? heavy : regular;
 }
 
-/// The letters of `text`, tightly boxed.
+/// The glyphs of `text` in a tight box.
 GlyphBitmap glyph_bitmap(const std::string& text, const TextStyle& style) {
   GlyphBitmap stencil;
   SF_CHECK(text_renderer().render({text, style.size, style.bold, style.upwards, font_file(style.bold)}, stencil),

@@ -1,10 +1,10 @@
 #pragma once
-// A picture in memory: VTK renders the text and writes the PNG; lines and areas are our own coverage.
-// Nothing here opens a window or asks for OpenGL, so it works on a machine without a display.
+// A picture in memory. VTK renders the text (viz/text_renderer.h), libspng writes the file (viz/png.h), and lines and
+// areas are drawn with analytic coverage (viz/coverage.h). Needs neither a display nor OpenGL.
 //
 // Coordinates are pixels, x right, y down, (0, 0) the upper left corner of the picture. Colours are 0xAARRGGBB; alpha
-// is the opacity of the whole shape, however often it overlaps itself. Points that are not finite are left out. One
-// thread at a time may draw, whichever canvas it draws on: VTK's font cache is shared.
+// is the opacity of the whole shape, however often it overlaps itself. Points that are not finite are skipped. One
+// thread at a time may draw, on any canvas: VTK's font cache is shared.
 
 #include <cstdint>
 #include <memory>
@@ -18,13 +18,13 @@
 
 namespace sf::viz {
 
-/// A straight line between two points, in pixels or in metres as the user of it says.
+/// A straight line between two points, in pixels or in metres.
 struct Line {
   glm::dvec2 a;
   glm::dvec2 b;
 };
 
-/// Where the given point lies on the text's box.
+/// Position of the given point on the text's box.
 enum class Anchor { start, middle, end };
 
 struct TextStyle {
@@ -34,10 +34,10 @@ struct TextStyle {
   bool upwards = false;               ///< turned by 90 degrees, read from below
   Anchor across = Anchor::start;      ///< start: the point is at the left of the text's box
   Anchor down = Anchor::middle;       ///< start: the point is at the top of the text's box
-  std::uint32_t halo = theme::kNone;  ///< colour of a soft border that keeps text readable over lines; alpha 0: none
+  std::uint32_t halo = theme::kNone;  ///< colour of a soft border for texts over lines; alpha 0: none
 };
 
-/// [px] width and height of the box that `text` (UTF-8, one line) takes on the picture.
+/// [px] width and height of the box of `text` (UTF-8, one line) on the picture.
 glm::dvec2 text_size(const std::string& text, const TextStyle& style);
 
 class Canvas {
@@ -51,7 +51,7 @@ class Canvas {
   int width() const;
   int height() const;
 
-  /// Keeps what is drawn from now on inside `box`. The whole picture at first.
+  /// Clips subsequent drawing to `box`; initially to the whole picture.
   void clip(const PixelBox& box);
   void unclip();
 
@@ -63,15 +63,15 @@ class Canvas {
 
   /// A closed polygon, first point not repeated.
   void polygon(std::span<const glm::dvec2> points, std::uint32_t color);
-  /// Areas given by the directed edges of closed outlines in any order; outlines of one direction make their union.
+  /// Areas given by the directed edges of closed outlines in any order; outlines of the same orientation are united.
   void area(std::span<const Line> edges, std::uint32_t color);
   void disc(glm::dvec2 center, double radius, std::uint32_t color);
   void ring(glm::dvec2 center, double radius, double line_width, std::uint32_t color);
 
   void text(glm::dvec2 at, const std::string& text, const TextStyle& style);
 
-  /// Spreads `cells`, the top row first, over [from, to): repeated where a cell is larger than a pixel, averaged where
-  /// smaller.
+  /// Draws `cells`, the top row first, over [from, to): repeated when a cell is larger than a pixel, averaged when it
+  /// is smaller.
   void image(glm::dvec2 from, glm::dvec2 to, const ColorGrid& cells);
 
   /// 0xFFRRGGBB of a pixel inside the picture.

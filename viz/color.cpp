@@ -20,7 +20,7 @@ std::uint32_t pack(double r, double g, double b) { return 0xFF000000u | byte(r) 
 
 double cube(double v) { return v * v * v; }
 
-/// Linear light of an OKLab colour; outside [0, 1] where a screen cannot show it.
+/// Linear RGB of an OKLab colour; outside [0, 1] for colours beyond sRGB.
 std::array<double, 3> light(const OklabColor& c) {
   const double l = cube(c.lightness + 0.3963377774 * c.a + 0.2158037573 * c.b);
   const double m = cube(c.lightness - 0.1055613458 * c.a - 0.0638541728 * c.b);

@@ -12,7 +12,7 @@ std::uint32_t with_opacity(std::uint32_t color, double opacity);
 /// The opaque colour `t` of the way from `a` to `b`, t in [0, 1], evenly in sRGB.
 std::uint32_t mix(std::uint32_t a, std::uint32_t b, double t);
 
-/// Coordinates of an opaque colour in OKLab, where equal distances look equally different (Ottosson, "A perceptual
+/// Coordinates of an opaque colour in OKLab, in which equal distances look equally different (Ottosson, "A perceptual
 /// color space for image processing", 2020).
 struct OklabColor {
   double lightness = 0.0;  ///< in [0, 1]
@@ -21,12 +21,12 @@ struct OklabColor {
 };
 OklabColor to_oklab(std::uint32_t color);
 
-/// Violet over blue and green to amber, t in [0, 1]. Lightness rises evenly with t, from 0.30 to 0.80, so the order
-/// shows in grey and to colour-blind eyes as well; all of it stands out from white.
+/// Colour ramp from violet through blue and green to amber, t in [0, 1]. Lightness rises linearly with t, from 0.30 to
+/// 0.80, so the order is visible in grey and with colour blindness; all colours contrast with white.
 std::uint32_t ramp(double t);
 
-/// The colour of row `i` of `count`: up to seven, the palette of Okabe and Ito ("Color Universal Design", 2002) without
-/// its yellow, which is lost on white; more, equal steps along `ramp`.
+/// The colour of row `i` of `count`. Up to seven rows: the palette of Okabe and Ito ("Color Universal Design", 2002)
+/// without its yellow, which has no contrast with white. More rows: equal steps along `ramp`.
 std::uint32_t row_color(std::size_t i, std::size_t count);
 
 }  // namespace sf::viz

@@ -9,7 +9,7 @@ bool finite(glm::dvec2 p) { return std::isfinite(p.x) && std::isfinite(p.y); }
 
 int to_int(double value) { return static_cast<int>(std::clamp(value, -1e9, 1e9)); }
 
-/// The x range of the part of a -> b whose y lies in [y_min, y_max]; false when there is none.
+/// The x range of the part of a -> b with y in [y_min, y_max]; false when there is none.
 bool x_range(glm::dvec2 a, glm::dvec2 b, double y_min, double y_max, double& x_min, double& x_max) {
   if (a.y > b.y) std::swap(a, b);
   if (b.y < y_min || a.y > y_max) return false;

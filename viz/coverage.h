@@ -1,6 +1,6 @@
 #pragma once
-// How much of each pixel a shape covers, in pixel coordinates: x right, y down, pixel (i, j) is the square [i, i+1) x
-// [j, j+1). Coverage is computed analytically, so edges are smooth without drawing at several times the size.
+// The part of each pixel that a shape covers, in pixel coordinates: x right, y down, pixel (i, j) is the square [i,
+// i+1) x [j, j+1). Coverage is computed analytically, so edges are smooth without supersampling.
 
 #include <algorithm>
 #include <cstddef>
@@ -16,7 +16,7 @@ struct PixelBox {
   int x_min = 0, y_min = 0, x_max = 0, y_max = 0;
 };
 
-/// One float per pixel of a canvas, and which part of each row holds something. All zero between shapes.
+/// One float per pixel of a canvas, and the touched part of each row. All zero between shapes.
 class CoverageBuffer {
  public:
   CoverageBuffer(int width, int height);
@@ -27,7 +27,7 @@ class CoverageBuffer {
     y_min_ = std::min(y_min_, y);
     y_max_ = std::max(y_max_, y + 1);
   }
-  /// Calls `visit(y, x_min, coverage)` for each touched row, `coverage` starting at x_min, then clears it.
+  /// Calls `visit(y, x_min, coverage)` for each touched row, with `coverage` from x_min on, then clears the row.
   template <class Visit>
   void drain(Visit&& visit) {
     for (int y = y_min_; y < y_max_; ++y) {
@@ -54,13 +54,12 @@ class CoverageBuffer {
   std::vector<Touched> touched_;
 };
 
-/// Adds a line with round ends to `rows`, which holds the coverage of the union of all lines added since it was
-/// drained.
-/// @param width [px] > 0; a line thinner than a pixel is a paler line of one pixel.
+/// Adds a line with round ends to `rows`, which holds the coverage of the union of all lines since the last drain.
+/// @param width [px] > 0; a line thinner than a pixel becomes a paler line of one pixel.
 void add_line(CoverageBuffer& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b, double width);
 
 /// Adds one directed edge of a closed outline. `rows` then holds signed area differences: the coverage of a pixel is
-/// the absolute sum of its row from the left up to it, at most 1. Outlines in one direction therefore make their union.
+/// the absolute sum of its row from the left up to it, at most 1. Outlines of the same orientation are united.
 void add_edge(CoverageBuffer& rows, const PixelBox& clip, glm::dvec2 a, glm::dvec2 b);
 
 /// Turns the area differences of a row part into coverage in place.

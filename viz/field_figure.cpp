@@ -20,14 +20,14 @@ constexpr double kGauss = 1e-4;  // [T]
 constexpr std::size_t kShades = 160;
 
 // [px]
-constexpr double kRoomForMarks = 9.0;  // a magnet; where they are denser, marks would hide the field
+constexpr double kRoomForMarks = 9.0;  // per magnet; in denser places marks would hide the field
 constexpr double kGap = 96.0;          // from the map to the profile
 constexpr double kProfileHeight = 300.0;
-constexpr double kLegendBelow = 72.0;  // the profile: its labels
+constexpr double kLegendBelow = 72.0;  // the profile's labels
 constexpr double kEdge = 18.0;
 constexpr double kRight = 150.0;  // the colour bar
 
-/// A plot: a box of pixels, and what its edges stand for.
+/// A plot: its box of pixels and the values at its edges.
 struct Plot {
   PixelBox box;
   double x0 = 0.0, x1 = 1.0, y0 = 0.0, y1 = 1.0;
@@ -38,7 +38,7 @@ struct Plot {
   }
 };
 
-/// The middle of a one-pixel line.
+/// [px] coordinate of the middle of the nearest pixel, for crisp one-pixel lines.
 double crisp(double pixel) { return std::floor(pixel) + 0.5; }
 
 void draw_box(Canvas& canvas, const PixelBox& b) {
@@ -75,9 +75,8 @@ void draw_axes(Canvas& canvas, const Plot& plot, const std::string& x_name, cons
   draw_box(canvas, b);
 }
 
-/// Colours of |B| from nothing to the most: points of a curve in OKLab (viz/color.h) whose lightness rises evenly from
-/// 0.22 to 0.91 while its hue turns from violet over blue and green to yellow, as saturated as screens can show without
-/// a kink.
+/// Colours of |B| from zero to the maximum: a curve in OKLab (viz/color.h) whose lightness rises linearly from 0.22 to
+/// 0.91 while its hue turns from violet through blue and green to yellow, as saturated as sRGB allows without a kink.
 constexpr std::array<std::uint32_t, 21> kAnchors{
     0xFF250146u, 0xFF250F55u, 0xFF241E62u, 0xFF202C6Bu, 0xFF1C3A71u, 0xFF184776u, 0xFF13547Cu,
     0xFF0C6082u, 0xFF076D87u, 0xFF0D798Au, 0xFF1B858Du, 0xFF29918Fu, 0xFF379D90u, 0xFF44A98Fu,
@@ -93,7 +92,7 @@ std::vector<std::uint32_t> shades() {
   return colors;
 }
 
-/// [Gauss] upper end of the colours: the largest on the map, or something where there is no field.
+/// [Gauss] upper end of the colours: the maximum on the map, or a default for a zero field.
 double top_of(const FieldSamples& samples) {
   const double most = *std::max_element(samples.map.begin(), samples.map.end()) / kGauss;
   return most > 0.0 ? most : 1.0;
@@ -130,7 +129,7 @@ std::vector<world::Magnet> all_magnets(const world::World& world) {
   return all;
 }
 
-/// A circle each, filled where the south pole is up.
+/// One circle per magnet, filled when the south pole is up.
 void draw_marks(Canvas& canvas, const world::World& world, const Plot& map) {
   const double scale = (map.box.x_max - map.box.x_min) / (map.x1 - map.x0);
   std::vector<world::Magnet> shown;

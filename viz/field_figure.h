@@ -16,29 +16,30 @@
 
 namespace sf::viz {
 
-/// What is asked for.
+/// The requested view.
 struct FieldRequest {
   double height = 0.0;                  ///< [m] in the world
   std::optional<Line> line;             ///< [m] of the profile; ends distinct
-  std::optional<world::Extent> extent;  ///< [m] of the map; of some size both ways
+  std::optional<world::Extent> extent;  ///< [m] of the map; not empty
 };
 
-/// What is shown.
+/// The view to draw.
 struct FieldView {
   double height = 0.0;   ///< [m] in the world
   Line line;             ///< [m] of the profile
   world::Extent extent;  ///< [m] of the map
-  PixelBox map;          ///< where the map is on the picture
+  PixelBox map;          ///< the map's place on the picture
 };
 
-/// Fills in what was not asked for: the map holds all magnets, as they were loaded, and where their field fades at this
-/// height; the line runs along the longer side of their bounding box through its middle, as far as the map does.
+/// Completes a request. The default map contains all magnets at load and the area around them in which the field decays
+/// at this height; the default line runs along the longer side of their bounding box, through its middle, over the
+/// whole map.
 /// Rule: the world has a magnet.
 FieldView field_view(const world::World& world, const FieldRequest& wish);
 
 /// The field along the profile's line.
 struct ProfilePoint {
-  double along = 0.0;       ///< [m] from the line's start
+  double along = 0.0;       ///< [m] distance from the line's start
   glm::dvec2 p;             ///< [m]
   sensors::FieldSum field;  ///< [T], the sum of magnitudes too
 };
@@ -50,8 +51,8 @@ struct FieldSamples {
   std::vector<ProfilePoint> profile;
 };
 
-/// Sums the magnets on the device: a cell for each two by two pixels, larger ones where there are very many magnets.
-/// @param progress called now and then with the part in (0, 1] that is done; may be empty.
+/// Sums the magnets on the device, in cells of two by two pixels, or larger ones for very many magnets.
+/// @param progress called repeatedly with the finished part in (0, 1]; may be empty.
 FieldSamples sample_field(const world::World& world, gpu::Device& device, const FieldView& view,
                           const std::function<void(double)>& progress);
 

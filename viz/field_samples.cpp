@@ -1,4 +1,4 @@
-// What the field's figure shows, and the numbers in it.
+// The view of the field figure, and its samples.
 
 #include <algorithm>
 #include <cmath>
@@ -23,10 +23,10 @@ constexpr double kHighest = 900.0;
 
 constexpr int kFinestCell = 2;        // [px]
 constexpr int kCoarsestCell = 10;     // [px]
-constexpr double kMaxPairs = 1.5e10;  // of a magnet and a cell: some ten seconds on two cores
+constexpr double kMaxPairs = 1.5e10;  // pairs of magnet and cell: about ten seconds on two cores
 constexpr int kProfilePoints = 1201;
 
-/// Where all magnets are at load, and the height of the highest and of the lowest.
+/// Bounding box of all magnets at load, with the largest and the smallest height.
 struct MagnetBox {
   Extent flat{1e300, 1e300, -1e300, -1e300};
   double low = 1e300, high = -1e300;
@@ -47,7 +47,8 @@ MagnetBox box_of(const world::World& world) {
   return box;
 }
 
-/// A field falls to a tenth within one and a half times its height; from magnets at that height, within some radii.
+/// The field decays to a tenth within 1.5 times the height above the magnets; at the magnets' own height, within a few
+/// radii.
 Extent default_extent(const MagnetBox& box, double height) {
   const double above = std::max(std::abs(height - box.low), std::abs(height - box.high));
   const Extent& b = box.flat;
@@ -63,7 +64,7 @@ Line default_line(const MagnetBox& box, const Extent& shown) {
   return {{shown.x_min, middle.y}, {shown.x_max, middle.y}};
 }
 
-/// Grows the shorter side so that the map is neither a thread nor a tower.
+/// Extends the shorter side, for a limited aspect ratio of the map.
 PixelBox place_map(Extent& shown) {
   const double wide = shown.x_max - shown.x_min;
   const double high = shown.y_max - shown.y_min;
@@ -76,7 +77,7 @@ PixelBox place_map(Extent& shown) {
   return {kLeft, kTop, kLeft + static_cast<int>(width), kTop + static_cast<int>(height)};
 }
 
-/// How many magnets a cell sums, about.
+/// Approximate number of magnets summed per cell.
 double magnets_counted(const world::World& world, const FieldView& view) {
   const double all = static_cast<double>(world.magnets.size());
   const double area = (view.extent.x_max - view.extent.x_min) * (view.extent.y_max - view.extent.y_min);

@@ -1,6 +1,6 @@
 #pragma once
-// Where texts of a crowded figure may stand: beside what they name, never over each other, and rather not over what is
-// drawn. All [px], y down.
+// Placement of texts in a crowded figure: beside their marks, never over each other, and preferably over free space.
+// All [px], y down.
 
 #include <cstdint>
 #include <span>
@@ -16,29 +16,29 @@ struct LabelBox {
   glm::dvec2 high;  ///< lower right corner
 };
 
-/// How far from its mark a label may be moved.
+/// Limits of a label's distance from its mark.
 struct LabelRules {
   double nearest = 4.0;    ///< between the mark and the box
-  double farthest = 60.0;  ///< likewise; beyond `leader` a thin line leads back to the mark
+  double farthest = 60.0;  ///< likewise; beyond `leader` a thin line joins label and mark
   double leader = 14.0;
-  double clear_cost = 1.0;  ///< how much free ground counts against distance: 0 not at all
+  double clear_cost = 1.0;  ///< weight of free space against distance: 0 ignores free space
 };
 
 class Labels {
  public:
-  /// @param plot labels stay inside of it
+  /// @param plot labels stay inside it
   explicit Labels(const PixelBox& plot);
 
-  /// Ground that labels should rather not cover: a line of `width`, or the inside of a closed outline.
+  /// Area that labels should preferably not cover: a line of `width`, or the inside of a closed outline.
   void avoid(std::span<const glm::dvec2> line, double width);
   /// A box that no label may cover.
   void forbid(const LabelBox& box);
 
-  /// True where nothing is drawn, no label stands, and the plot goes on.
+  /// True when the box is inside the plot and covers neither a drawing nor a label.
   bool is_bare(const LabelBox& box) const { return is_without(box, drawn | taken); }
 
-  /// Finds a place for `text` beside one of `marks` (the first that does best), draws it and keeps others off it.
-  /// False, and nothing drawn, where there is no room.
+  /// Finds a place for `text` beside one of `marks` (the first of the best), draws it and reserves its box. False,
+  /// without a drawing, when there is no room.
   bool place(Canvas& canvas, std::span<const glm::dvec2> marks, const std::string& text, const TextStyle& style,
              const LabelRules& rules = {});
 
@@ -55,7 +55,7 @@ class Labels {
   std::uint8_t at(int i, int j) const {
     return cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)];
   }
-  /// Inside the plot, and no cell of it has one of `bits`.
+  /// True when the box is inside the plot and none of its cells has one of `bits`.
   bool is_without(const LabelBox& box, int bits) const;
   double covered(const LabelBox& box) const;
   void mark(const LabelBox& box, Cell as);

@@ -1,5 +1,5 @@
 #pragma once
-// What the marks of a figure mean: rows of samples with a text beside each.
+// The legend of a figure: rows of samples with a text beside each.
 
 #include <cstdint>
 #include <span>
@@ -26,7 +26,7 @@ TextStyle small_text();
 /// [px]
 inline constexpr double kLegendRow = 30.0;
 
-/// Where each item stands when rows are at most `width` [px] wide: its left end and its row.
+/// Place of each item in rows of at most `width` [px]: its left end and its row.
 struct LegendPlace {
   double x = 0.0;
   int row = 0;
@@ -36,7 +36,7 @@ std::vector<LegendPlace> place_legend(std::span<const LegendItem> items, double 
 /// @param at [px] left end and top of the first row
 void draw_legend(Canvas& canvas, glm::dvec2 at, std::span<const LegendItem> items, std::span<const LegendPlace> places);
 
-/// An x of two strokes: where something stopped. @param reach [px] from its middle to its ends, along x and y
+/// A cross of two strokes, the mark of a contact. @param reach [px] from its middle to its ends, along x and y
 void draw_cross(Canvas& canvas, glm::dvec2 at, double reach, double line_width, std::uint32_t color);
 
 /// A polyline in dashes. @param on, off [px] lengths of dash and gap

@@ -29,7 +29,7 @@ constexpr double kTop = 92.0;
 constexpr double kLabels = 70.0;  // below the map
 constexpr double kNarrowest = 640.0;
 
-/// Where the map lies in the picture.
+/// The map's place in the picture.
 struct Layout {
   double scale = kPitch;  ///< [px/cell]
   bool grid = true;
@@ -80,7 +80,7 @@ void draw_cells(Canvas& canvas, const maps::OccupancyGrid& grid, const Layout& l
   canvas.image(l.low + line, l.high,
                {static_cast<int>(maps::columns(grid.plan)), static_cast<int>(maps::rows(grid.plan)), pixels});
   if (!l.grid) return;
-  // Whole pixels, each of them: lines would be smoothed.
+  // Single pixels, since lines would be anti-aliased.
   const std::vector<std::uint32_t> line_color{theme::kMapGrid};
   for (std::int64_t i = 0; i <= maps::columns(grid.plan); ++i) {
     const double x = l.low.x + kPitch * static_cast<double>(i);

@@ -9,7 +9,7 @@
 namespace sf::viz {
 namespace {
 
-constexpr double kGridLinesFrom = 5.0;  // [px] side of a cell from which its border is drawn
+constexpr double kGridLinesFrom = 5.0;  // [px] smallest side of a cell with a drawn border
 
 std::vector<std::uint32_t> pixels_of(const ScanHitGrid& grid) {
   std::vector<std::uint32_t> pixels;

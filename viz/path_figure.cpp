@@ -13,7 +13,7 @@
 namespace sf::viz {
 namespace {
 
-constexpr double kStep = 0.02;  // [m] along the middle
+constexpr double kStep = 0.02;  // [m] along the centre line
 
 void draw_middle(Axes& axes, const world::Path& path) {
   const double length = world::length_of(path);

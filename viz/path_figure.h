@@ -9,7 +9,7 @@
 
 namespace sf::viz {
 
-/// Draws paint, magnets and walls, the middle of every lane that the world has as a path (dashed), and each track.
+/// Draws lane markings, magnets and walls, the centre line of each path of the world (dashed), and each track.
 /// @throws base::InputError naming the path when it cannot be written.
 void draw_along_paths(const world::World& world, std::span<const Track> tracks, const std::string& title,
                       const std::string& subtitle, const std::string& png_path);

@@ -7,7 +7,7 @@
 namespace sf::viz {
 
 /// @param rgb 3 bytes a pixel, row by row, the top row first
-/// @return the file; empty where it could not be encoded
+/// @return the file; empty when the encoding failed not be encoded
 std::vector<std::uint8_t> encode_png(const std::uint8_t* rgb, int width, int height);
 
 }  // namespace sf::viz

@@ -21,11 +21,11 @@ using world::RoadLane;
 using world::RoadNetwork;
 using world::RoadZone;
 
-constexpr double kLanePixels = 9.0;    // width that a lane should have
-constexpr double kSpotPixels = 17.0;   // width that a parking spot needs for its checkpoint's id
-constexpr std::uint32_t kCrowded = 6;  // spots of a zone that is shown larger
+constexpr double kLanePixels = 9.0;    // desired width of a lane
+constexpr double kSpotPixels = 17.0;   // width of a parking spot with room for its checkpoint's id
+constexpr std::uint32_t kCrowded = 6;  // smallest number of spots of an enlarged zone
 
-/// [px] so that the middle one of the lanes is as wide as it should be.
+/// [px] for which the median lane has the desired width.
 int picture_size(const RoadNetwork& network) {
   std::vector<double> widths;
   for (const RoadLane& lane : network.lanes) widths.push_back(lane.width);
@@ -38,7 +38,7 @@ int picture_size(const RoadNetwork& network) {
 
 // ------------------------------------------------------------------------------------------------- insets
 
-/// A part of the network shown larger in a free corner.
+/// A part of the network enlarged in a free corner.
 struct Inset {
   Extent part;  ///< [m]
   PixelBox box;
@@ -54,7 +54,7 @@ Extent joined(const Extent& a, const Extent& b) {
           std::max(a.y_max, b.y_max)};
 }
 
-/// Zones whose spots are too small for their ids, neighbours together.
+/// Zones whose spots are too small for their ids, adjacent ones merged.
 std::vector<Extent> crowded_parts(const RoadView& view, const RoadNetwork& network) {
   std::vector<Extent> parts;
   for (const RoadZone& zone : network.zones) {
@@ -77,7 +77,7 @@ std::vector<Extent> crowded_parts(const RoadView& view, const RoadNetwork& netwo
   return parts;
 }
 
-/// The free box of this size that is nearest to `from`.
+/// The nearest free box of this size to `from`.
 std::optional<PixelBox> free_box(const RoadView& view, const Labels& labels, glm::dvec2 from, int width, int height) {
   std::optional<PixelBox> best;
   double nearest = INFINITY;
@@ -91,7 +91,7 @@ std::optional<PixelBox> free_box(const RoadView& view, const Labels& labels, glm
   return best;
 }
 
-/// Larger is better, and so is nearer: a quarter more is worth 750 pixels.
+/// The best inset by size and distance: a quarter of additional size is worth 750 pixels of distance.
 std::optional<Inset> best_inset(const RoadView& view, const Labels& labels, const Extent& part) {
   const glm::dvec2 middle = view.pixel({0.5 * (part.x_min + part.x_max), 0.5 * (part.y_min + part.y_max)});
   std::optional<Inset> best;

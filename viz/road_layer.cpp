@@ -12,11 +12,11 @@ namespace {
 
 using world::LaneMarking;
 
-constexpr double kShoulder = 7.0;   // [px] of asphalt on either side of a stripe
-constexpr double kThinnest = 1.3;   // [px] of a stripe
+constexpr double kShoulder = 7.0;   // [px] asphalt on each side of a marking
+constexpr double kThinnest = 1.3;   // [px] smallest width of a marking
 constexpr double kLaneStep = 0.02;  // [m] along a lane
 
-/// Stripes have square ends, lines of a canvas round ones: each piece is a quadrilateral.
+/// Markings have square ends, canvas lines round ones: each piece becomes a quadrilateral.
 void add_band(Axes& axes, const LaneMarking& marking, std::vector<Line>& edges) {
   const double half = 0.5 * std::max(marking.width, kThinnest / axes.scale());
   for (std::size_t i = 0; i + 1 < marking.line.size(); ++i) {
@@ -28,7 +28,7 @@ void add_band(Axes& axes, const LaneMarking& marking, std::vector<Line>& edges) 
   }
 }
 
-/// Every lane that the world has as a path, from edge to edge.
+/// All lanes of the world's paths, from edge to edge.
 void draw_lanes(Axes& axes, const world::World& world) {
   std::vector<Line> edges;
   for (const world::Path& path : world.paths)

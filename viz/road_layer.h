@@ -1,5 +1,5 @@
 #pragma once
-// What lies on and in the ground: road paint and magnets.
+// Lane markings and magnets: the layer of the ground.
 
 #include <vector>
 
@@ -10,17 +10,17 @@
 
 namespace sf::viz {
 
-/// Stripes in their colours on a band of asphalt, so that white ones are seen; at least a pixel wide. Lanes that the
-/// world has as paths are asphalt from edge to edge.
+/// Lane markings in their colours on a band of asphalt, so that white ones are visible; at least a pixel wide. Lanes of
+/// the world's paths are asphalt from edge to edge.
 void draw_paint(Axes& axes, const world::World& world);
 
-/// Lanes, and the ways over crossings, as bands as wide as the lanes; zones with their parking spots.
+/// Lanes and exits as bands as wide as the lanes; zones with their parking spots.
 void draw_streets(Axes& axes, const world::RoadNetwork& roads);
 
-/// A dot each, red where the north pole is up, blue where the south pole is.
+/// One dot per magnet: red with the north pole up, blue with the south pole up.
 void draw_magnets(Axes& axes, const world::World& world);
 
-/// What of these the world has.
+/// Items for the parts of this layer in the world.
 std::vector<LegendItem> road_legend(const world::World& world);
 
 }  // namespace sf::viz

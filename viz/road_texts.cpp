@@ -1,4 +1,4 @@
-// Texts of a road network: names beside what they name, ids beside their checkpoints.
+// Texts of a road network: names, and ids of checkpoints.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ using world::RoadNetwork;
 using world::RoadZone;
 
 constexpr std::size_t kLongestName = 32;
-constexpr std::uint32_t kMaxLanes = 8;  // of a segment, beside which its name may stand
+constexpr std::uint32_t kMaxLanes = 8;  // lanes of a segment that are tried for its name
 
 bool is_in(const DetailViews& places, glm::dvec2 p) {
   return std::any_of(places.begin(), places.end(), [&](const world::Extent& e) {
@@ -38,7 +38,7 @@ TextStyle label_style(int size, std::uint32_t color, bool bold) {
   return style;
 }
 
-/// Beside one of several places along the segment.
+/// Places a name beside one of several points along the segment.
 void label_segments(const RoadView& view, const RoadNetwork& network, Labels& labels, const DetailViews& elsewhere) {
   const TextStyle style = label_style(15, theme::kInk, true);
   for (const world::RoadSegment& segment : network.segments) {

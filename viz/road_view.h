@@ -1,5 +1,5 @@
 #pragma once
-// A piece of a road network on a piece of a picture.
+// A part of a road network on a part of a picture.
 
 #include <cstdint>
 #include <string>
@@ -11,9 +11,9 @@
 
 namespace sf::viz {
 
-/// Which part of the world stands where on the canvas, north up.
+/// The part of the world on the canvas, north up.
 struct RoadView {
-  Canvas& canvas;      ///< clipped to `box` by whoever draws
+  Canvas& canvas;      ///< the caller clips it to `box`
   PixelBox box;        ///< [px]
   glm::dvec2 corner;   ///< [m] world point at the lower left corner of the box
   double scale = 1.0;  ///< [px/m]
@@ -25,19 +25,19 @@ struct RoadView {
 
 std::vector<glm::dvec2> pixels(const RoadView& view, const std::vector<glm::dvec2>& line);
 
-/// Lanes, paint, directions, zones, spots, exits, stop lines and checkpoints, without texts.
+/// Lanes, lane markings, directions, zones, spots, exits, stop lines and checkpoints, without texts.
 void draw_network(const RoadView& view, const world::RoadNetwork& network);
 
-/// At most `most` characters of a name, which may hold any bytes, for a figure.
+/// At most `most` characters of a name for a figure; the name may hold any bytes.
 std::string printable(const std::string& name, std::size_t most);
 
-/// What texts should rather not cover.
+/// Marks the areas that texts should preferably not cover.
 void avoid_network(const RoadView& view, const world::RoadNetwork& network, Labels& labels);
 
-/// A piece of the world [m] that another view shows larger; empty: none.
+/// Areas of the world [m] that another view shows enlarged; empty: none.
 using DetailViews = std::vector<world::Extent>;
 
-/// Names of zones and segments and ids of checkpoints; none of what lies within `elsewhere`.
+/// Names of zones and segments and ids of checkpoints, except those within `elsewhere`.
 void draw_texts(const RoadView& view, const world::RoadNetwork& network, Labels& labels, const DetailViews& elsewhere);
 
 }  // namespace sf::viz

@@ -10,15 +10,15 @@ namespace {
 
 constexpr double kMaxCells = 1 << 27;
 
-/// An echo is counted this much behind the surface, so that a wall on the border of two cells always lies in the one
-/// behind it and not, by the rounding of each range, in either. [cells]
+/// [cells] offset of an echo behind its range: a wall on the border of two cells is then always in the cell behind its
+/// surface, whatever the rounding of each range.
 constexpr double kBehindSurface = 0.01;
 
 int cells_along(double from, double to, double cell) {
   return static_cast<int>(std::min(std::max(1.0, std::ceil((to - from) / cell - 1e-6)), kMaxCells + 1.0));
 }
 
-/// Narrows [t0, t1] to where a + t * d lies in [0, end] (Liang and Barsky, 1984).
+/// Clips [t0, t1] to a + t * d in [0, end] (Liang and Barsky, 1984).
 void narrow(double a, double d, double end, double& t0, double& t1) {
   if (d == 0.0) {
     if (a < 0.0 || a > end) t1 = -1.0;
@@ -126,8 +126,8 @@ void ScanHitGrid::add_beam(glm::dvec2 from, glm::dvec2 along, End end) {
   const int j_b = cell_index(b.y, rows_);
   const bool ends_inside = t1 == 1.0 && b.x < columns_ && b.y < rows_;
 
-  // Cells in order along the beam, from wall to wall (Amanatides and Woo, "A fast voxel traversal algorithm", 1987).
-  // The counts of steps left along x and y keep it inside the box of both end cells, whatever the rounding.
+  // Visits the cells along the beam in order (Amanatides and Woo, "A fast voxel traversal algorithm", 1987). The counts
+  // of steps left along x and y keep it inside the box of both end cells, whatever the rounding.
   int left_x = std::abs(i_b - i_a);
   int left_y = std::abs(j_b - j_a);
   const std::ptrdiff_t step_x = i_b >= i_a ? 1 : -1;

@@ -1,6 +1,5 @@
 #pragma once
-// Sensors that robots carry beside lasers, where they are at load: fans of lane edge sensors, elements of
-// magnetometers.
+// Sensors of robots other than lasers, at their poses at load: fans of lane edge sensors, elements of magnetometers.
 
 #include <vector>
 
@@ -10,10 +9,10 @@
 
 namespace sf::viz {
 
-/// @throws base::InputError with file and line for a sensor whose settings make no sense.
+/// @throws base::InputError with file and line for a sensor with invalid settings.
 void draw_sensors(Axes& axes, const world::World& world);
 
-/// What of these the world has.
+/// Items for the sensors of this layer in the world.
 std::vector<LegendItem> sensor_legend(const world::World& world);
 
 }  // namespace sf::viz

@@ -51,7 +51,7 @@ void widen(std::optional<Span>& span, const std::vector<double>& numbers, Take&&
   }
 }
 
-/// From 0 on, where that leaves at least half of the axis to what is shown.
+/// Extends the span to 0 unless more than half of the axis would be empty.
 Span with_zero(Span span) {
   if (span.from > 0.0 && span.from <= 0.5 * span.to) span.from = 0.0;
   return span;
@@ -66,7 +66,7 @@ Span time_span(const SeriesOptions& plan) {
   return plan.from_zero ? with_zero(*span) : *span;
 }
 
-/// With some air above and below, and never empty.
+/// The span of a panel's values with a margin, never empty.
 Span value_span(const Panel& panel, bool from_zero) {
   std::optional<Span> span;
   for (const Series& series : panel.series) widen(span, series.values, [](double v) { return std::isfinite(v); });
@@ -79,7 +79,7 @@ Span value_span(const Panel& panel, bool from_zero) {
   return {span->from - pad, span->to + pad};
 }
 
-/// Rows of the series that are named: all, or seven from the first to the last.
+/// Rows of the named series: all, or seven from the first to the last.
 std::vector<std::size_t> named_rows(std::size_t count) {
   std::vector<std::size_t> rows;
   for (std::size_t k = 0; k < std::min(count, kNamed); ++k)
@@ -123,14 +123,14 @@ std::vector<PlotArea> lay_out(const SeriesOptions& plan) {
   return places;
 }
 
-/// The middle of a one-pixel line.
+/// [px] coordinate of the middle of the nearest pixel, for crisp one-pixel lines.
 double crisp(double pixel) { return std::floor(pixel) + 0.5; }
 
 Ticks ticks_of(const Span& span, double pixels, double smallest) {
   return make_ticks(span.from, span.to, smallest / pixels * (span.to - span.from));
 }
 
-/// @param x_name of the axis; empty: neither name nor labels
+/// @param x_name name of the axis; empty: neither name nor labels
 void draw_scales(Canvas& canvas, const PlotArea& at, const std::string& x_name) {
   const PixelBox& p = at.plot;
   TextStyle style = small_text();

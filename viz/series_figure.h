@@ -1,5 +1,5 @@
 #pragma once
-// Numbers over time: panels one below another, over one axis of seconds (or of what else was varied).
+// Values over time: panels one below another, over one axis of seconds (or of another quantity).
 
 #include <cstdint>
 #include <span>
@@ -8,18 +8,18 @@
 
 namespace sf::viz {
 
-/// One quantity, in order of time. Rule: as many times as values.
+/// One quantity, in order of time. Rule: equal numbers of times and values.
 struct Series {
   std::string name;
-  std::vector<double> times;   ///< [s], or what the plan's x axis says; finite
-  std::vector<double> values;  ///< in the panel's unit; the line is broken where one is not finite
+  std::vector<double> times;   ///< [s], or in the unit of the x axis; finite
+  std::vector<double> values;  ///< in the panel's unit; the line is broken at values that are not finite
 };
 
 struct Panel {
   std::string title;   ///< above its plot; may be empty
-  std::string y_name;  ///< of its axis, with the unit: `distance [m]`
+  std::string y_name;  ///< name of its axis with the unit: `distance [m]`
   std::vector<Series> series;
-  bool from_zero = false;  ///< its axis begins at 0 whatever is shown: what differs little then looks so
+  bool from_zero = false;  ///< its axis begins at 0 in any case, so that small differences look small
 };
 
 struct SeriesOptions {
@@ -27,12 +27,12 @@ struct SeriesOptions {
   std::string subtitle;
   std::vector<Panel> panels;  ///< at least one, at most 16
   std::string x_name = "time [s]";
-  bool from_zero = false;  ///< axes begin at 0 where that takes no more than half of their length
+  bool from_zero = false;  ///< axes begin at 0 unless more than half of their length would be empty
   int width = 1600;        ///< [px] of the picture, in [600, 8000]
 };
 
-/// Draws every series in a colour of its own, told by its row. Up to seven are named below their panel; of more, seven
-/// from the first to the last.
+/// Draws each series in the colour of its row. Up to seven are named below their panel; of more, seven from the first
+/// to the last.
 /// @throws base::InputError naming the path when it cannot be written.
 void draw_series(const SeriesOptions& plan, const std::string& png_path);
 

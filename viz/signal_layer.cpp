@@ -44,7 +44,7 @@ void draw_emitter(Axes& axes, const Emitter& emitter) {
     return draw_view_sector(axes, emitter.X_WE, -0.5 * fov, 0.5 * fov, emitter.range, kWallBeam);
   }
   if (emitter.halo > 0.0) draw_view_sector(axes, emitter.X_WE, 0.0, 2.0 * M_PI, emitter.halo, kField);
-  // A quarter of each buoy's beam is the other's, too (sensors/irreceiver.h).
+  // The beams of the two buoys overlap by a quarter (sensors/irreceiver.h).
   draw_view_sector(axes, emitter.X_WE, -0.125 * fov, 0.875 * fov, emitter.range, kRedBuoy);
   draw_view_sector(axes, emitter.X_WE, -0.875 * fov, 0.125 * fov, emitter.range, kGreenBuoy);
 }

@@ -1,6 +1,5 @@
 #pragma once
-// What tells robots something: traffic lights, infrared emitters; and the holes in the floor that cliff sensors tell
-// of.
+// Traffic lights, infrared emitters and holes in the floor.
 
 #include <vector>
 
@@ -10,18 +9,18 @@
 
 namespace sf::viz {
 
-/// Dark areas, beneath everything that stands.
+/// Dark areas, drawn beneath walls and movers.
 void draw_floor_holes(Axes& axes, const world::World& world);
 
-/// The beams and halos of virtual walls and docks, faint: without regard to what stands in their way.
+/// The beams and halos of virtual walls and docks, faint, without occlusion by walls.
 void draw_emitters(Axes& axes, const world::World& world);
 
-/// A disc each, in the colour it shows at `time` [s], and a short line towards those who see it.
+/// One disc per light, in its colour at `time` [s], with a short line in the direction of its lamps.
 void draw_lights(Axes& axes, const world::World& world, double time = 0.0);
 
-/// What of these the world has.
+/// Items for the parts of this layer in the world.
 std::vector<LegendItem> signals_legend(const world::World& world);
-/// Lights alone, one item for each colour that one shows at `time` [s].
+/// Items for lights alone, one per colour shown at `time` [s].
 std::vector<LegendItem> lights_legend(const world::World& world, double time);
 
 }  // namespace sf::viz

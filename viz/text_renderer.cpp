@@ -1,4 +1,4 @@
-// The module: the one source that knows VTK. Nothing here opens a window or asks for OpenGL.
+// The plug-in, the only source that includes VTK. Needs neither a display nor OpenGL.
 
 #include "viz/text_renderer.h"
 
@@ -11,9 +11,9 @@
 namespace sf::viz {
 namespace {
 
-constexpr int kDotsPerInch = 72;  // so that a point of VTK's font size is a pixel
+constexpr int kDotsPerInch = 72;  // makes one point of VTK's font size one pixel
 
-/// VTK's first row is the lowest one, and its last component the alpha.
+/// VTK's first row is the bottom row, and its last component is alpha.
 bool render(const TextRun& letters, GlyphBitmap& out) {
   vtkNew<vtkTextProperty> property;
   property->SetFontFamilyToArial();

@@ -1,5 +1,5 @@
 #pragma once
-// Text of figures, rendered by VTK. VTK loads slowly, so it lives in a plug-in (text_renderer.cpp,
+// Text of figures, rendered by VTK. VTK loads slowly, so it is in a plug-in (text_renderer.cpp,
 // `sensorfarm_text_renderer.so`) that is loaded with the first figure.
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace sf::viz {
 /// Rendered text: coverage of each pixel.
 struct GlyphBitmap {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> coverage;  ///< row by row, the top row first; 255: wholly
+  std::vector<std::uint8_t> coverage;  ///< row by row, the top row first; 255: full coverage
 };
 
 struct TextRun {
@@ -24,14 +24,14 @@ struct TextRun {
 
 /// Does not throw. One thread at a time: VTK's font cache is shared.
 struct TextRenderer {
-  /// @return false when the letters cannot be rendered.
+  /// @return false when the text cannot be rendered.
   bool (*render)(const TextRun& letters, GlyphBitmap& out);
 };
 
-/// The name of the module's one symbol: `extern "C" const TextRenderer sensorfarm_text_renderer`.
+/// The name of the plug-in's only symbol: `extern "C" const TextRenderer sensorfarm_text_renderer`.
 inline constexpr const char* kTextRendererSymbol = "sensorfarm_text_renderer";
 
-/// Loads the module, once, from the folder of the running program or wherever the system finds libraries.
+/// Loads the plug-in, once, from the folder of the running program or the system's library path.
 /// @throws base::InputError naming the file when it cannot be loaded.
 const TextRenderer& text_renderer();
 

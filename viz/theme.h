@@ -27,15 +27,15 @@ inline constexpr std::uint32_t kBlue = 0xFF0072B2u;
 inline constexpr std::uint32_t kVermillion = 0xFFD55E00u;
 inline constexpr std::array<std::uint32_t, 7> kSeries{kBlue,       kVermillion, 0xFF009E73u, 0xFFCC79A7u,
                                                       0xFFE69F00u, 0xFF56B4E9u, kBlack};
-inline constexpr std::uint32_t kDominated = 0xFF909090u;  ///< accuracy modes that another one beats
+inline constexpr std::uint32_t kDominated = 0xFF909090u;  ///< modes that are not Pareto-optimal
 inline constexpr std::uint32_t kReferencePath = 0xFF808080u;
-inline constexpr std::uint32_t kMapInk = 0xFF15181Cu;   ///< marks on a colour map, with
-inline constexpr std::uint32_t kMapHalo = 0x90FFFFFFu;  ///< a border that is visible on dark colours
+inline constexpr std::uint32_t kMapInk = 0xFF15181Cu;   ///< marks on a colour map
+inline constexpr std::uint32_t kMapHalo = 0x90FFFFFFu;  ///< their border, visible on dark colours
 
 // World
 inline constexpr std::uint32_t kWall = 0xFF64707Du;
 inline constexpr std::uint32_t kQuietWall = 0xFFB4BAC2u;   ///< behind trajectories
-inline constexpr std::uint32_t kUnseenWall = 0xFF9A9A9Au;  ///< no laser sees it
+inline constexpr std::uint32_t kUnseenWall = 0xFF9A9A9Au;  ///< invisible to lasers
 inline constexpr std::uint32_t kFloorHole = 0xFF2B2B33u;
 inline constexpr std::uint32_t kMagnetUp = 0xFFC62828u;
 inline constexpr std::uint32_t kMagnetDown = 0xFF1565C0u;
@@ -69,7 +69,7 @@ inline constexpr std::uint32_t kExit = 0x9A1F6FB4u;
 inline constexpr std::uint32_t kStop = 0xFFD7191Cu;
 inline constexpr std::uint32_t kCheckpoint = 0xFF7A1FA2u;
 
-// Occupancy maps: unknown, occupied, free and, where maps contradict each other, conflict
+// Occupancy maps: unknown, occupied, free, and conflict where maps contradict each other
 inline constexpr std::array<std::uint32_t, 4> kMapStates{0xFF474B50u, 0xFF1748D1u, 0xFFFFFFFFu, 0xFFFF00FFu};
 inline constexpr std::array<std::uint32_t, 3> kCellStates{kMapStates[0], kMapStates[1], kMapStates[2]};
 inline constexpr std::uint32_t kMapGrid = 0xFFA9AEB5u;

@@ -1,6 +1,5 @@
 #pragma once
-// What a fleet did in a town: its streets, everyone's way, where they are at the end, who follows whom, what lights
-// show.
+// A fleet's run in a town: streets, tracks, final poses, convoys and the state of traffic lights.
 
 #include <cstdint>
 #include <span>
@@ -12,16 +11,16 @@
 
 namespace sf::viz {
 
-/// What is to be told beside the tracks, at their end.
+/// The final state beside the tracks.
 struct TownFinalState {
-  double time = 0.0;                   ///< [s] lights show what they show then
+  double time = 0.0;                   ///< [s] time of the final state; lights are drawn as at this time
   std::vector<std::uint32_t> movers;   ///< row in `World::movers` of each track
-  std::vector<std::uint32_t> follows;  ///< per track: the track that it follows; world::kNone: nobody
+  std::vector<std::uint32_t> follows;  ///< per track: the followed track; world::kNone: none
 };
 
-/// Draws everyone's way thin and its body at its end; who is in a convoy, and its way, in a colour of its own, each
-/// joined to whom it follows; robots of other shapes than most in a third colour.
-/// @throws base::InputError naming the path when it cannot be written, or for roads that cannot be read any more.
+/// Draws each track as a thin line with the robot's body at its end. Robots in convoys and their tracks have a colour
+/// of their own, and each follower is joined to the robot ahead; robots of an uncommon shape have a third colour.
+/// @throws base::InputError naming the path when it cannot be written, or when roads can no longer be read.
 void draw_town(const world::World& world, std::span<const Track> tracks, const TownFinalState& end,
                const std::string& png_path);
 

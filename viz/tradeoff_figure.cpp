@@ -21,13 +21,13 @@ constexpr int kLeft = 150;
 constexpr int kRight = 40;
 constexpr int kHeader = 100;
 constexpr int kPlot = 400;
-constexpr int kBetween = 150;       ///< title of a panel, and the labels below its plot
+constexpr int kBetween = 150;       ///< title of a panel, and labels below its plot
 constexpr double kNothing = 120.0;  ///< column of errors that are 0
 
-/// Errors below this are as good as none: rounding.
+/// Errors below this are rounding errors and count as 0.
 constexpr double kLeast = 1e-12;
 
-/// Whole powers of ten that hold what is shown.
+/// The range of powers of ten that contains the values.
 struct Decades {
   int from = 0, to = 1;
 };
@@ -95,7 +95,7 @@ void draw_scales(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at)
   canvas.text({46.0, 0.5 * (p.y_min + p.y_max)}, panel.rate_name, style);
 }
 
-/// The best from fast to exact, joined.
+/// The line through the Pareto-optimal modes.
 void draw_front(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) {
   std::vector<TradeoffPoint> front;
   for (const TradeoffPoint& point : panel.points)
@@ -108,7 +108,7 @@ void draw_front(Canvas& canvas, const TradeoffPanel& panel, const PlotArea& at) 
 
 /// "skip4, 25 % covered".
 std::string label_of(const TradeoffPoint& point) {
-  const double percent = std::floor(100.0 * point.covered.part);  // never 100 where some are not
+  const double percent = std::floor(100.0 * point.covered.part);  // never 100 when an element is not covered
   return fmt::format("{}, {:.0f} % covered", point.name, percent);
 }
 

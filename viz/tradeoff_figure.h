@@ -1,5 +1,5 @@
 #pragma once
-// Speed over error, a panel a kind of sensor: what is up and to the left is better.
+// Speed over error, one panel per sensor type. Points further up and to the left are better.
 
 #include <span>
 #include <string>
@@ -7,32 +7,33 @@
 
 namespace sf::viz {
 
-/// What a stated bound says of a part of all.
+/// The elements for which an error bound is stated.
 struct BoundedShare {
-  double part = 0.0;   ///< [-] in [0, 1]
-  double high = 0.0;   ///< its largest error
-  double bound = 0.0;  ///< not looked at where the part is 0
+  double part = 0.0;   ///< [-] share of all elements, in [0, 1]
+  double high = 0.0;   ///< their largest error
+  double bound = 0.0;  ///< not used when the share is 0
 };
 
-/// One way to measure. Rule: rates and errors are not negative.
+/// One accuracy mode. Rule: rates and errors are not negative.
 struct TradeoffPoint {
   std::string name;
   double rate = 0.0;  ///< [1/s] > 0
   double low = 0.0, middle = 0.0,
-         high = 0.0;   ///< errors of all, ascending; below 1e-12 they are none; infinite: beyond the plot
-  bool front = false;  ///< on the line of those that nothing beats
+         high = 0.0;   ///< errors of all elements, ascending; below 1e-12 they count as 0; infinite: beyond the plot
+  bool front = false;  ///< Pareto-optimal: no other mode is both faster and more accurate
   BoundedShare covered;
 };
 
 struct TradeoffPanel {
   std::string title;
-  std::string rate_name;   ///< of what is counted: `rays`
+  std::string rate_name;   ///< name of the counted items: `rays`
   std::string error_name;  ///< with the unit
   std::vector<TradeoffPoint> points;
 };
 
-/// Errors are logarithmic, rates begin at 0. A point is at its `middle` error, a whisker goes from `low` to `high`. A
-/// ring stands at the bound of what is covered, a cross at the largest error there; names say how much is covered.
+/// Errors are on a logarithmic axis, rates begin at 0. A point is at its `middle` error, with a whisker from `low` to
+/// `high`. A ring marks the bound of the covered elements, a cross their largest error; names include the covered
+/// share.
 /// @throws base::InputError naming the path when it cannot be written.
 void draw_tradeoff(const std::string& title, const std::string& subtitle, std::span<const TradeoffPanel> panels,
                    const std::string& png_path);

@@ -25,9 +25,9 @@ std::uint32_t color_of(std::span<const Track> tracks, std::size_t i) {
   return tracks[i].color.value_or(row_color(i, tracks.size()));
 }
 
-/// How thick lines and marks are: thinner where there are many.
+/// Widths of lines and marks, thinner for many tracks.
 struct Weight {
-  double line = 2.4, mark = 6.0, cross = 7.5, cross_line = 2.0;  // a cross is seen on the dot at the end
+  double line = 2.4, mark = 6.0, cross = 7.5, cross_line = 2.0;  // a cross is visible on the dot at the end
   double opacity = 1.0;
 };
 Weight weight_for(std::size_t tracks) {

@@ -1,5 +1,5 @@
 #pragma once
-// Where everyone went.
+// The tracks of all movers.
 
 #include <span>
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace sf::viz {
 
-/// Draws the walls, each track in its own colour with its start, its end and the places where it was stopped (once per
-/// contact), later tracks over earlier ones. Up to seven tracks are named in the legend, more are told by a colour bar.
-/// @param what one track is, for the subtitle: robots of one run, or trials of one robot
+/// Draws the walls, each track in its own colour with its start, its end and its contacts (one mark per contact), later
+/// tracks over earlier ones. Up to seven tracks are named in the legend, more have a colour bar.
+/// @param what meaning of one track, for the subtitle: robots of one run, or trials of one robot
 /// @throws base::InputError naming the path when it cannot be written.
 void draw_trajectories(const world::World& world, std::span<const Track> tracks, const std::string& png_path,
                        std::string_view what = "robot");

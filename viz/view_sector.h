@@ -1,5 +1,5 @@
 #pragma once
-// What lies within two bearings and a reach: sensors' views, emitters' beams.
+// A sector between two bearings with a reach: fields of view of sensors, beams of emitters.
 
 #include <cstdint>
 
@@ -12,7 +12,7 @@ struct SectorStyle {
   std::uint32_t color = 0;  ///< 0xAARRGGBB
   double inside = 0.0;      ///< opacity, 0 to 1
   double border = 0.0;      ///< opacity, 0 to 1
-  int sides = 32;           ///< of the arc
+  int sides = 32;           ///< segments of the arc
 };
 
 /// @param from, to [rad] bearings in the frame F; a whole turn is a circle

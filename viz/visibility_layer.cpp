@@ -8,7 +8,7 @@ namespace {
 
 using world::Segment;
 
-/// Relative to the sensor.
+/// A wall relative to the sensor.
 struct Wall {
   glm::dvec2 a;
   glm::dvec2 along;

@@ -1,6 +1,5 @@
 #pragma once
-// What a laser covers, for the eye only: a picture's worth of beams against the walls near it, none of the farm's
-// exactness.
+// The area that a laser covers, for display only: a few beams against the walls nearby, without the farm's accuracy.
 
 #include <vector>
 
@@ -8,8 +7,8 @@
 
 namespace sf::viz {
 
-/// The ends of `beams` >= 2 beams spread over the field of view, in order of bearing, each at the first wall that spans
-/// the sensor's height or at range_max. Movers are looked through. [m] world frame
+/// The ends of `beams` >= 2 beams spread over the field of view, in order of bearing, each at the first wall at the
+/// sensor's height or at range_max. Movers are ignored. [m] world frame
 std::vector<glm::dvec2> visible_points(const world::World& world, const base::Pose& X_WS, const world::Laser& laser,
                                        int beams);
 

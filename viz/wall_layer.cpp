@@ -14,7 +14,7 @@ namespace {
 
 enum class Kind { solid, passable, unseen, overhead };
 
-/// [m] what begins above it is over the heads of all movers and what they carry; infinite where there are none.
+/// [m] height above all movers and their loads; infinite without movers.
 double headroom(const world::World& world) {
   double top = world.movers.empty() ? std::numeric_limits<double>::infinity() : 0.0;
   for (const world::Mover& mover : world.movers) {
@@ -47,7 +47,7 @@ Paint paint_of(const world::World& world, std::uint32_t model, Kind kind, WallCo
   return {with_opacity(base, kind == Kind::solid ? 0.75 : 0.3), edge};
 }
 
-/// The walls of one model and kind, on the canvas.
+/// The walls of one model and kind, in canvas coordinates.
 struct Group {
   std::vector<Line> all;
   std::vector<Line> closed;
@@ -63,7 +63,7 @@ void draw_group(Canvas& canvas, const Group& group, Kind kind, const Paint& pain
 }  // namespace
 
 void draw_walls(Axes& axes, const world::World& world, WallColors colors) {
-  // What a laser does not see lies beneath what it sees.
+  // Walls invisible to lasers are drawn beneath visible ones.
   std::map<std::tuple<bool, std::uint32_t, Kind>, Group> groups;
   const double room = headroom(world);
   for (const world::Segment& s : world.walls) {

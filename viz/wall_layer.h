@@ -10,14 +10,14 @@ namespace sf::viz {
 
 enum class WallColors {
   of_models,  ///< blocks in their own colours, floor plans in slate
-  quiet       ///< all in light grey, behind something that matters more
+  quiet       ///< all in light grey, behind more important layers
 };
 
-/// Solids filled, outlines drawn: full where they stop robots, dashed where they do not, dotted grey where a laser does
-/// not see them; faint and dashed what is above every mover's head (bridges, crowns of trees).
+/// Fills solids and draws outlines: solid lines for walls that stop robots, dashed ones for walls that do not, dotted
+/// grey ones for walls invisible to lasers; faint and dashed for walls above all movers (bridges, crowns of trees).
 void draw_walls(Axes& axes, const world::World& world, WallColors colors);
 
-/// One item per kind of wall that the world has.
+/// One item per kind of wall in the world.
 std::vector<LegendItem> wall_legend(const world::World& world, WallColors colors);
 
 }  // namespace sf::viz

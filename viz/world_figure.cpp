@@ -36,7 +36,7 @@ std::uint32_t color_of(const World& world, const Mover& mover) {
   return mover.model < world.models.size() ? world.models[mover.model].color | theme::kBlack : theme::kNeutral;
 }
 
-/// The outline of what a laser covers, counter-clockwise in the world; a full turn has no corner at the sensor. [px]
+/// [px] The outline of a laser's visible area, counter-clockwise in the world; a full turn has no corner at the sensor.
 std::vector<glm::dvec2> view_outline(const Axes& axes, const World& world, const Pose& X_WS, const Laser& laser) {
   std::vector<glm::dvec2> points;
   const bool whole_turn = laser.fov > 2.0 * M_PI - 1e-3;
@@ -47,8 +47,8 @@ std::vector<glm::dvec2> view_outline(const Axes& axes, const World& world, const
   return points;
 }
 
-/// Few views one by one, so that overlaps show; many as one translucent union with thin outlines while these can be
-/// told apart.
+/// A few fields of view are drawn one by one, so that overlaps are visible; many as one translucent union, with thin
+/// outlines up to a limit.
 void draw_views(Axes& axes, const World& world) {
   const bool many = crowded(world);
   std::map<std::uint32_t, std::vector<Line>> unions;
@@ -71,7 +71,7 @@ void draw_views(Axes& axes, const World& world) {
   }
 }
 
-/// A dashed circle around what follows a tag.
+/// A dashed circle around a mover that follows TAG packets.
 void draw_tag(Axes& axes, const Mover& mover) {
   const glm::dvec2 middle = axes.pixel({mover.X_WM.x, mover.X_WM.y});
   const double radius = std::max(mover.radius * axes.scale(), kSmallestMark) + 4.0;
@@ -92,7 +92,7 @@ void draw_name(Axes& axes, const Mover& mover) {
                      style);
 }
 
-/// "laser 270 deg, 8 m": what all lasers of one colour share, or a range of it.
+/// "laser 270 deg, 8 m": the common value of all lasers of one colour, or their range.
 std::vector<LegendItem> view_legend(const World& world) {
   struct Seen {
     std::set<double> fovs, ranges;

@@ -1,5 +1,5 @@
 #pragma once
-// The world as it was understood, seen from above.
+// The world as loaded, seen from above.
 
 #include <string>
 
@@ -7,9 +7,9 @@
 
 namespace sf::viz {
 
-/// Draws walls, movers with their headings and the fields of view of their lasers at the poses they were loaded with.
-/// Names stand beside the movers while there are at most twenty.
-/// @param world needs a true `extent` (see world::update_extent_and_hash)
+/// Draws walls, movers with their headings and the fields of view of their lasers, at their poses at load. Movers are
+/// named when there are at most twenty.
+/// @param world with an up-to-date `extent` (see world::update_extent_and_hash)
 /// @throws base::InputError naming the path when it cannot be written.
 void draw_world(const world::World& world, const std::string& png_path);
 
