@@ -1,4 +1,4 @@
-// Frames, headings and bytes: the vocabulary everything else is said in.
+// Poses, angles, byte readers and writers.
 
 #include "base/pose.h"
 
@@ -55,7 +55,7 @@ TEST(Bytes, WhatWasWrittenIsRead) {
   EXPECT_EQ(reader.left(), 0u);
 }
 
-/// A reader past its end yields zeros, says so, and stays bad.
+/// A read past the end gives zeros and leaves the reader bad.
 TEST(Bytes, ReadingPastTheEndIsBadForGood) {
   const Bytes bytes{1, 2, 3};
   ByteReader reader(bytes);

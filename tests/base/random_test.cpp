@@ -1,4 +1,4 @@
-// Chance that depends on nothing but its name.
+// Random numbers as a pure function of their key.
 
 #include "base/random.h"
 
@@ -18,7 +18,7 @@ TEST(Random, IsAPureFunction) {
   EXPECT_EQ(random_words(kKey, 7), first);
 }
 
-/// Every field of a draw, and the index, gives other numbers.
+/// A change of any field of the key, or of the index, changes the numbers.
 TEST(Random, EveryFieldMatters) {
   std::set<std::array<std::uint32_t, 4>> seen{random_words(kKey, 0), random_words(kKey, 1)};
   for (int field = 0; field < 7; ++field) {

@@ -1,4 +1,4 @@
-// Every piece of a loop is done once, by whoever is free.
+// Each piece of a loop runs exactly once.
 
 #include "base/thread_pool.h"
 
@@ -27,7 +27,7 @@ TEST(ThreadPool, EveryItemOnceWhateverThePiecesAndThreads) {
   }
 }
 
-/// Many short loops one after the other: none is missed, none overtakes.
+/// Many short loops in sequence: no loop is lost, and none starts before the previous one has ended.
 TEST(ThreadPool, ManyShortLoops) {
   ThreadPool thread_pool(3);
   std::atomic<std::uint64_t> sum{0};

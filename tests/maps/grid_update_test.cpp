@@ -1,4 +1,4 @@
-// The rule by which scans are entered, against cells worked out by hand and against a second way of telling a line.
+// The update rule of maps, against cells computed by hand and against an independent definition of lines.
 
 #include <gtest/gtest.h>
 
@@ -60,7 +60,7 @@ TEST(MapRule, HalvesGoAwayFromTheSensor) {
 }
 
 TEST(MapRule, WithinAScanOccupiedBeatsFree) {
-  // The first beam's end lies on the second's line, and would be wiped out if they were set in turn.
+  // The end of the first beam lies on the second's line; setting the beams in turn would overwrite it.
   OccupancyGrid grid(plan());
   const std::vector<glm::dvec2> beams{{1, 0}, {1, 0}};
   const std::vector<double> ranges{3.0, 5.0};
@@ -88,7 +88,7 @@ TEST(MapRule, BesideTheMap) {
 }
 
 TEST(MapRule, FarFromTheOriginTheSameCells) {
-  // 2^17 m away, places in 1/64 m: sums are exact, so the map must not change at all.
+  // 2^17 m away, positions in multiples of 1/64 m: sums are exact, so the map must be equal.
   trial::Chance chance(3);
   const std::vector<glm::dvec2> beams = beam_directions(M_PI, 91);
   for (int k = 0; k < 50; ++k) {
@@ -105,7 +105,7 @@ TEST(MapRule, FarFromTheOriginTheSameCells) {
   }
 }
 
-/// The cells of one line as the rule words it, without its arithmetic: nearest cell to the point at step i of n.
+/// The cells of one line by the definition of the rule: the nearest cell to the point at step i of n.
 TEST(MapRule, LinesAreAsWorded) {
   trial::Chance chance(4);
   for (int k = 0; k < 3000; ++k) {
@@ -151,7 +151,7 @@ TEST(MapRule, BearingsEndExactlyAtTheFieldOfView) {
 
 TEST(LogOdds, EachScanWeighsOnceAndStaysWithinLimits) {
   LogOddsGrid grid(plan(), {85, 40, 200});
-  // Two beams through the same cells: still one miss each.
+  // Two beams through the same cells: one miss each.
   const std::vector<glm::dvec2> beams{{1, 0}, {1, 0}};
   const std::vector<double> ranges{3.0, 3.0};
   const auto add = [&](double range) {

@@ -1,4 +1,4 @@
-// Maps over a network that loses, repeats and reorders, from senders that start again; and any bytes at all.
+// Maps over a network with loss, duplicates and reordering, from restarted senders, and from arbitrary bytes.
 
 #include "maps/map_assembler.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 GridGeometry plan() { return {-1.8, 1.8, 0.03, 30, 30}; }
 
-/// A map whose words tell the map and the word.
+/// A map whose words encode the number of the map and of the word.
 OccupancyGrid numbered(std::uint32_t map, const GridGeometry& p = plan()) {
   OccupancyGrid grid(p);
   for (std::uint32_t i = 0; i < grid.words.size(); ++i) grid.words[i] = (map * 2654435761u + i) & 0x55555555u;
@@ -142,14 +142,14 @@ TEST(MapAssembler, CountersWrap) {
   EXPECT_EQ(last, PartStatus::complete);
 }
 
-/// Of two that are half way round apart neither is newer.
+/// Of two numbers half of the range apart, neither is newer.
 TEST(MapAssembler, HalfWayRoundIsNotNewer) {
   const auto after = [](std::uint32_t first, std::uint32_t next) {
     MapAssembler assembler;
     for (const base::Bytes& part : parts_of(numbered(1))) assembler.add_part(first, part);
     return assembler.add_part(next, parts_of(numbered(2))[0]);
   };
-  EXPECT_EQ(after(5, 5 + 0x7FFFFFFFu), PartStatus::incomplete);  // the farthest that is ahead
+  EXPECT_EQ(after(5, 5 + 0x7FFFFFFFu), PartStatus::incomplete);  // the largest lead
   EXPECT_EQ(after(5, 5 + 0x80000000u), PartStatus::late);
   EXPECT_EQ(after(5 + 0x80000000u, 5), PartStatus::late);
   EXPECT_EQ(after(5, 4), PartStatus::late);
@@ -186,7 +186,7 @@ TEST(MapAssembler, TheThesisFormInTwoDatagrams) {
 }
 
 TEST(MapAssembler, AnyBytesAndAnyNetwork) {
-  // Parts of a few maps, cut, flipped, repeated and shuffled: nothing breaks, and what is shown was sent by somebody.
+  // Parts of a few maps, cut, flipped, repeated and shuffled: no crash, and all content was sent before.
   trial::Chance chance(9);
   MapAssembler assembler, plain;
   std::uint64_t used = 0;

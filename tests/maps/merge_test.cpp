@@ -1,4 +1,4 @@
-// Maps as one, and as text.
+// Merged maps, and maps as text.
 
 #include "maps/merge.h"
 
@@ -32,7 +32,7 @@ TEST(Merge, OneMapStaysWhatItIs) {
 }
 
 TEST(Merge, EveryCellIsThatOfItsMaps) {
-  // Shifts by any number of whole cells, so that words do not fall on words.
+  // Shifts by any number of whole cells, so that words are not aligned.
   trial::Chance chance(2);
   for (std::uint64_t k = 0; k < 40; ++k) {
     const auto shifted = [&](std::uint64_t seed) {
@@ -77,7 +77,7 @@ TEST(Merge, WhatCannotBeOneIsRefused) {
   EXPECT_NE(merge_problem(places).find("far apart"), std::string::npos);
   const OccupancyGrid* const fine[] = {&a, &a};
   EXPECT_EQ(merge_problem(fine), "");
-  // The largest coordinates that a sound plan may have.
+  // The largest valid coordinates.
   const OccupancyGrid one(GridGeometry{-1e7, 1e7, 1e-4, 1, 1}), other(GridGeometry{1e7, -1e7, 1e-4, 1, 1});
   const OccupancyGrid* const ends[] = {&one, &other};
   EXPECT_NE(merge_problem(ends), "");

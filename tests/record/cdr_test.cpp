@@ -79,7 +79,7 @@ TEST(Cdr, ReadsBackWhatItWrote) {
   EXPECT_FALSE(in.good());  // one byte past the end
 }
 
-/// Each a reason to turn bad, and what was asked for.
+/// Malformed messages, one reason each.
 TEST(Cdr, MalformedMessagesTurnTheReaderBad) {
   EXPECT_FALSE(CdrReader(Bytes{}).good());            // nothing at all
   EXPECT_FALSE(CdrReader(Bytes{0, 1, 0}).good());     // cut in the encapsulation

@@ -13,7 +13,7 @@ namespace {
 
 using base::Bytes;
 
-/// The CRC bit by bit, to check the one in use.
+/// The CRC bit by bit, as a reference.
 std::uint32_t slow_crc(std::span<const std::uint8_t> bytes) {
   std::uint32_t crc = 0xFFFFFFFFu;
   for (const std::uint8_t byte : bytes) {
@@ -23,7 +23,7 @@ std::uint32_t slow_crc(std::span<const std::uint8_t> bytes) {
   return ~crc;
 }
 
-/// A file put together by hand, in the order of the specification.
+/// A file written by hand, in the order of the specification.
 struct Hand {
   Bytes bytes;
   Hand& u8(std::initializer_list<int> values) {
@@ -130,7 +130,7 @@ Bytes tiny_file_by_hand() {
 
 McapContents read(const Bytes& bytes) { return read_mcap(bytes, "f.mcap"); }
 
-/// Magic, header, a schema and a channel 1, then whatever the case adds.
+/// Magic, header, a schema and a channel 1, before the records of a case.
 Hand opening() {
   Hand file;
   file.raw(kMagic).record(0x01, 8).text("").text("");
@@ -236,10 +236,10 @@ TEST(McapReader, WhatIsNoMCAPFileIsRefused) {
   const std::vector<Bytes> corpus = {
       {}, {0x89}, Bytes(8, 0), {'#', 'R', 'O', 'S', 'B', 'A', 'G', ' ', 'V', '2', '.', '0'}};
   for (const Bytes& bytes : corpus) EXPECT_THROW(read(bytes), base::InputError);
-  EXPECT_TRUE(read(kMagic).truncated);  // the magic alone is a file cut early
+  EXPECT_TRUE(read(kMagic).truncated);  // the magic alone is a truncated file
 }
 
-/// Bad records, each with the reason it is bad. All must be left out, and all but cuts must be told.
+/// Bad records with the reason of each. All must be skipped, and all but truncations reported.
 TEST(McapReader, BadRecordsAreLeftOutAndTold) {
   const std::vector<std::pair<const char*, Bytes>> corpus = {
       {"schema shorter than its fields", Hand().record(0x03, 1).u8({1}).bytes},
@@ -277,7 +277,7 @@ TEST(McapReader, BadRecordsAreLeftOutAndTold) {
     const Bytes file = opening().raw(bytes).record(0x05, 22).u16(1).u32(77).u64(0).u64(0).bytes;
     const McapContents contents = read(file);
     EXPECT_EQ(contents.damage.size(), 1u) << reason;
-    ASSERT_EQ(contents.messages.size(), 1u) << reason;  // and what follows is still read
+    ASSERT_EQ(contents.messages.size(), 1u) << reason;  // and the next records are still read
     EXPECT_EQ(contents.messages[0].sequence, 77u) << reason;
     EXPECT_TRUE(contents.attachments.empty()) << reason;
   }
@@ -295,7 +295,7 @@ TEST(McapReader, WholeMessagesOfACutChunkAreKept) {
   Hand file = opening();
   file.record(0x06, 40 + 2 * 31).u64(0).u64(0).u64(62).u32(1).text("").u64(62);
   file.record(0x05, 22).u16(1).u32(7).u64(0).u64(0);
-  file.record(0x05, 22).u16(1).u32(8);  // cut here, so the CRC covers more than is left
+  file.record(0x05, 22).u16(1).u32(8);  // truncated here, so the CRC covers more than the rest
   const McapContents contents = read(file.bytes);
   EXPECT_TRUE(contents.truncated);
   EXPECT_TRUE(contents.damage.empty());

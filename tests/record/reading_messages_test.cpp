@@ -97,7 +97,7 @@ TEST(Readings, CountsSaturate) {
   EXPECT_EQ(count(-1.0), 0u);
   EXPECT_EQ(count(std::nan("")), 0u);
   EXPECT_EQ(count(4294967295.0), 4294967295u);  // the last
-  EXPECT_EQ(count(4294967296.0), 4294967295u);  // one past it: u32 would wrap to 0
+  EXPECT_EQ(count(4294967296.0), 4294967295u);  // one more: u32 would wrap to 0
   EXPECT_EQ(count(std::numeric_limits<double>::infinity()), 4294967295u);
 }
 
@@ -128,11 +128,11 @@ TEST(Readings, KindsThatMakeNoSenseAreNotRead) {
   std::int64_t time = 0;
   const Bytes bytes = encoded(edge_kind(), {1, 2, 3, 4, 5});
   SensorTypeInfo kind{.id = 2, .name = "edge"};
-  EXPECT_FALSE(decode_reading(kind, bytes, time, values));  // nothing in it
+  EXPECT_FALSE(decode_reading(kind, bytes, time, values));  // empty
   kind.columns = {{"a", 0}};
-  EXPECT_FALSE(decode_reading(kind, bytes, time, values));  // a column of nothing
+  EXPECT_FALSE(decode_reading(kind, bytes, time, values));  // a column of width 0
   kind.columns = {{"a", 0xFFFFFFFF}};
-  EXPECT_FALSE(decode_reading(kind, bytes, time, values));  // more than there is memory for
+  EXPECT_FALSE(decode_reading(kind, bytes, time, values));  // more than the memory
   kind.columns = {{"a", 1}, {"b", 0xFFFFFFFF}};
   kind.list = "rows";
   EXPECT_FALSE(decode_reading(kind, encoded(array_kind(), {1, 2, 3, 4, 5}), time, values));
@@ -140,7 +140,7 @@ TEST(Readings, KindsThatMakeNoSenseAreNotRead) {
 
 TEST(Readings, BrokenContractsAbortWithTheValues) {
   EXPECT_DEATH(encoded(edge_kind(), {1, 2, 3, 4}), "4 values in a reading of kind edge");
-  EXPECT_DEATH(encoded(edge_kind(), std::vector<double>(10)), "10 values");  // two rows, where there is no list
+  EXPECT_DEATH(encoded(edge_kind(), std::vector<double>(10)), "10 values");  // two rows without a list
   EXPECT_DEATH(encoded(array_kind(), std::vector<double>(6)), "6 values in a reading of kind array");
   EXPECT_DEATH(encoded({.id = 4, .name = "none"}, {}), "0 values");
 }

@@ -43,7 +43,7 @@ std::map<std::string, std::size_t> topics_of(const base::Bytes& file) {
   return topics;
 }
 
-/// Logged when they are delivered, published when they were measured.
+/// log_time is the time of delivery, publish_time that of the measurement.
 TEST(Recorder, ReadingsHaveBothOfTheirTimes) {
   const std::string directory = fresh_directory("times");
   Recorder recorder(directory, sample_info(true));
@@ -76,7 +76,7 @@ TEST(Recorder, EveryTickIsReadableAsSoonAsWriteReturns) {
   }
 }
 
-// Kept below the build directory: a sample for readers that are not ours.
+// Stays below the build directory, as a sample for other readers of MCAP.
 TEST(Recorder, TopicsAreAsDocumented) {
   const std::string directory = fresh_directory("sample");
   Recorder recorder(directory, sample_info(true));
@@ -175,7 +175,7 @@ TEST(Recorder, AnOlderRecordingIsReplacedWhole) {
   std::ofstream(directory + "/run.mcap.new") << "left by a process that was killed before it began";
   Recorder recorder(directory, sample_info(false));
   EXPECT_EQ(open_recording(directory).ticks, 0u);
-  EXPECT_EQ(bytes_of(recorder.path()).size(), recorder.size());  // nothing of the old ones behind the new
+  EXPECT_EQ(bytes_of(recorder.path()).size(), recorder.size());  // no bytes of the old file after the new ones
 }
 
 TEST(Recorder, ARecordingThatCannotBeginLeavesTheOlderOne) {
@@ -211,7 +211,7 @@ TEST(Recorder, APlaceThatCannotBeWrittenIsRefusedWithTheReason) {
   EXPECT_NE(message_of([&] { Recorder(directory, sample_info(false)); }).find("Is a directory"), std::string::npos);
 }
 
-/// Bounds the size of every file of this process, as a full disk would.
+/// Limits the size of all files of this process, as a full disk does.
 class FullDisk {
  public:
   explicit FullDisk(std::uint64_t bytes) {
@@ -244,14 +244,14 @@ TEST(Recorder, AFullDiskIsToldAndLosesNoTickBeforeIt) {
     told = message_of([&] {
       for (kept = 2; kept < 100; ++kept) write_ticks(recorder, kept, 1);
     });
-    EXPECT_NO_THROW(recorder.finish());  // nothing more to lose
+    EXPECT_NO_THROW(recorder.finish());  // no more data to lose
   }
   EXPECT_NE(told.find("run.mcap: cannot take more than"), std::string::npos) << told;
   EXPECT_LT(kept, 100u);
   const Recording recording = open_recording(directory);
   EXPECT_TRUE(recording.truncated);
   EXPECT_GE(recording.ticks, kept);
-  EXPECT_LE(recording.ticks, kept + 1);  // of the cut chunk, what was whole
+  EXPECT_LE(recording.ticks, kept + 1);  // the whole messages of the truncated chunk
 }
 
 TEST(Recorder, AFullDiskAtTheEndIsTold) {
@@ -285,15 +285,15 @@ TEST(Recorder, BrokenContractsAbortWithTheValues) {
     tick.readings[3].sensor = sensor;
     Recorder(directory, sample_info(true)).write(tick.record);
   };
-  EXPECT_DEATH(wrong_kind(4, 0), "mover 0 kind 4 sensor 0");  // no such kind
-  EXPECT_DEATH(wrong_kind(3, 2), "mover 0 kind 3 sensor 2");  // two of them only
+  EXPECT_DEATH(wrong_kind(4, 0), "mover 0 kind 4 sensor 0");  // no such sensor type
+  EXPECT_DEATH(wrong_kind(3, 2), "mover 0 kind 3 sensor 2");  // only two of them
   EXPECT_DEATH(wrong_kind(2, 0), "10 values in a reading of kind edge");
   RunInfo kindless = sample_info(true);
   kindless.sensor_types.pop_back();
   EXPECT_DEATH(Recorder(directory, kindless), "sensor kind 3");
 }
 
-// A hundred robots must stay reasonable: the figures in docs/recordings.md.
+// The size for a hundred robots: the figures in docs/recordings.md.
 TEST(Recorder, BytesPerTickOfAHundredRobots) {
   RunInfo info = sample_info(false);
   info.odometry_rate = 1.0;

@@ -19,7 +19,7 @@ namespace {
 using base::Bytes;
 using test::SampleTick;
 
-/// A finished recording, and how long it was after the start and after every tick.
+/// A finished recording, with its size after the start and after each tick.
 struct Sample {
   Bytes bytes;
   std::vector<std::size_t> sizes;
@@ -28,7 +28,7 @@ struct Sample {
 const Sample& sample() {
   static const Sample kept = [] {
     Sample sample;
-    // Tests may run side by side, each in a process of its own.
+    // Tests may run in parallel, each in its own process.
     const std::string directory = test::fresh_directory("to_read_" + std::to_string(::getpid()));
     Recorder recorder(directory, test::sample_info(true));
     sample.sizes.push_back(recorder.size());
@@ -61,7 +61,7 @@ bool same(const ReadingSample& a, const ReadingSample& b) {
          a.delivered == b.delivered && a.time == b.time && a.values == b.values;
 }
 
-/// Whether all of `part` is the beginning of `whole`.
+/// Whether `part` is a prefix of `whole`.
 bool is_prefix(const Recording& part, const Recording& whole) {
   const auto begins = [](const auto& a, const auto& b) {
     return a.size() <= b.size() &&
@@ -139,7 +139,7 @@ TEST(Recording, ACutAtAnyByteGivesAPrefixWithEveryWholeTick) {
   const Recording whole = read_recording(sample().bytes, "run.mcap");
   const std::vector<std::size_t>& sizes = sample().sizes;
   for (std::size_t size = 0; size < sample().bytes.size(); ++size) {
-    // In a buffer of exactly this size, so that a read past the cut is seen.
+    // A buffer of exactly this size, so that the sanitizer detects reads past the cut.
     const Bytes cut(sample().bytes.begin(), sample().bytes.begin() + static_cast<std::ptrdiff_t>(size));
     Recording part;
     try {
@@ -255,7 +255,7 @@ TEST(Recording, AReadingThatItsKindDoesNotExplainIsLeftOutAndTold) {
   encode_reading(edge, 0, "f", std::vector<double>{1, 2, 3, 4, 5}, message);
   const auto schema = writer.add_schema(type_of(edge), "ros2msg", schema_text(edge));
   const auto own = writer.add_channel(schema, info.movers[0].sensors[1].topic, "cdr");
-  const auto other = writer.add_channel(schema, info.movers[0].sensors[0].topic, "cdr");  // an array's
+  const auto other = writer.add_channel(schema, info.movers[0].sensors[0].topic, "cdr");  // of the array type
   const auto foreign = writer.add_channel(schema, "/somebody/else", "cdr");
   writer.add_message({.channel = own, .data = message});
   writer.add_message({.channel = own, .data = std::span(message).first(message.size() - 1)});
@@ -264,7 +264,7 @@ TEST(Recording, AReadingThatItsKindDoesNotExplainIsLeftOutAndTold) {
   writer.end_chunk();
   const Recording recording = read_recording(finished(writer), "run.mcap");
   EXPECT_EQ(recording.readings.size(), 1u);
-  EXPECT_EQ(recording.damage.size(), 2u);  // what is not ours at all is no damage
+  EXPECT_EQ(recording.damage.size(), 2u);  // topics of other programs are no damage
 }
 
 TEST(Recording, DamageIsToldAHundredTimesAndNoMore) {

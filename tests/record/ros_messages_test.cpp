@@ -196,9 +196,9 @@ TEST(RunInfo, NamesBecomeUniqueROSNames) {
   };
   EXPECT_EQ(frame_of("roomba1"), "roomba1");
   EXPECT_EQ(frame_of("roomba:1"), "roomba_1");    // a colon is no ROS character
-  EXPECT_EQ(frame_of("roomba.1"), "roomba_1_2");  // and the result must not meet another
+  EXPECT_EQ(frame_of("roomba.1"), "roomba_1_2");  // and the result must be unique
   EXPECT_EQ(frame_of("3at"), "_3at");             // no digit first
-  EXPECT_EQ(frame_of(""), "robot");               // no name at all
+  EXPECT_EQ(frame_of(""), "robot");               // empty name
   EXPECT_EQ(frame_of("world"), "world_2");        // the root's name is taken
   EXPECT_EQ(frame_of("f\xC3\xBC"), "f__");        // bytes beyond ASCII
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A small made-up run: two robots, three lasers, three sensors of two other kinds, numbers that do not round.
+// A small synthetic run: two robots, three lasers, three sensors of two other types, with numbers that are not round.
 
 #include <filesystem>
 #include <fstream>
@@ -45,7 +45,7 @@ inline RunInfo sample_info(bool readings) {
   return info;
 }
 
-/// Owns what a tick record points to.
+/// Owns the data of a tick record.
 struct SampleTick {
   std::vector<base::Report> reports;
   std::vector<base::Twist> commands;
@@ -80,7 +80,7 @@ struct SampleTick {
   SampleTick& operator=(const SampleTick&) = delete;
 };
 
-/// An empty directory of this test's own, below the build directory.
+/// An empty directory for one test, below the build directory.
 inline std::string fresh_directory(const std::string& name) {
   const std::string directory = std::string(SF_BINARY_DIR) + "/recordings/" + name;
   std::filesystem::remove_all(directory);

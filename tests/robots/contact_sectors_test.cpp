@@ -103,7 +103,7 @@ TEST(Sectors, TheSame100KmAway) {
   EXPECT_EQ(contact_sectors(square(), X, wall(moved({0.2005, -0.01}), moved({0.2005, -0.012}))), bit(-1));
 }
 
-// A wall as many points: every point within reach of the outline or inside it, by distances in long double.
+// Reference: many points along the wall, within reach of the outline or inside it, by distances in long double.
 TEST(Sectors, AgreeWithPointsAlongTheWall) {
   const Footprint outline = disc();
   int pressed = 0;
@@ -120,11 +120,11 @@ TEST(Sectors, AgreeWithPointsAlongTheWall) {
     std::uint32_t expected = 0, border = 0;
     for (int i = 0; i <= 4000; ++i) {
       const glm::dvec2 p = base::rotate(-X.yaw, w.a + i / 4000.0 * (w.b - w.a) - glm::dvec2{X.x, X.y});
-      double depth = HUGE_VAL;  // [m] least distance inside all sides: negative outside
+      double depth = HUGE_VAL;  // [m] smallest distance inside all sides: negative outside
       for (const FootprintEdge& e : outline.edges)
         depth = std::min(depth, base::cross(e.b - e.a, p - e.a) / length(e.b - e.a));
       const double sector = (base::wrap_angle(std::atan2(p.y, p.x)) + (p.y < 0.0 ? 2.0 * M_PI : 0.0)) * 16.0 / M_PI;
-      // Points that are hardly within reach, or hardly within the sector, decide nothing.
+      // Points at the limit of the reach or of the sector are skipped.
       const bool doubtful = std::abs(depth + kContactDistance) < 1e-4 || std::abs(sector - std::round(sector)) < 0.01;
       if (depth > -kContactDistance - 1e-4) (doubtful ? border : expected) |= bit(static_cast<int>(sector));
       if (doubtful) border |= bit(static_cast<int>(std::round(sector))) | bit(static_cast<int>(std::round(sector)) - 1);

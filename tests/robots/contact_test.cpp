@@ -1,4 +1,4 @@
-// How close movers of a fleet come to things, and what they then feel.
+// The distance at which movers stop, and their contact sectors.
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ TEST(Contact, IsFeltWhereItPresses) {
     scenes::add_wall(world, {0.5, -1}, {0.5, 1});
     scenes::add_create(world, {0, 0, 0, 0}).drive = world::Drive::omni;
     Fleet fleet(world);
-    // Towards the wall with the side that faces it; what is felt is in the robot's own frame.
+    // Drives with the facing side towards the wall; contact sectors are in the robot's frame.
     const_cast<world::Mover&>(world.movers[0]).X_WM.yaw = -yaw;
     Fleet turned(world);
     drive(turned, {{0.5 * std::cos(yaw), 0.5 * std::sin(yaw), 0}}, 20);
@@ -79,7 +79,7 @@ TEST(Contact, StaysWhileItTouchesAndEndsWhenItLeaves) {
   drive(fleet, {{0, 0, 0}}, 10);
   EXPECT_EQ(fleet.reports()[0].contact_mask, pressed) << "a bumper stays pressed while its robot stands";
   EXPECT_EQ(fleet.contacts()[0], 1);
-  drive(fleet, {{-0.005, 0, 0}});  // 0.5 mm: still near enough
+  drive(fleet, {{-0.005, 0, 0}});  // 0.5 mm: still in contact
   EXPECT_EQ(fleet.contacts()[0], 1);
   drive(fleet, {{-0.02, 0, 0}});
   EXPECT_EQ(fleet.reports()[0].contact_mask, 0u);
@@ -98,9 +98,9 @@ TEST(Contact, PassingByIsNone) {
 
 TEST(Contact, WhoIsRunIntoFeelsItToo) {
   world::World world = scenes::empty_world();
-  scenes::add_square(world, {0, 0, 0, M_PI});  // its back to the other
+  scenes::add_square(world, {0, 0, 0, M_PI});  // with its back to the other
   scenes::add_square(world, {1, 0, 0, M_PI});
-  scenes::add_square(world, {-0.4005, 0, 0, 0});  // stands by
+  scenes::add_square(world, {-0.4005, 0, 0, 0});  // at rest
   Fleet fleet(world);
   drive(fleet, {{}, {0.5, 0, 0}, {}}, 20);
   EXPECT_EQ(fleet.contacts()[0], 1);

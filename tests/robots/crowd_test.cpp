@@ -1,4 +1,4 @@
-// Many robots driven at random: what must hold whatever they do.
+// Many robots with random commands: invariants of their motion.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ world::World crowd() {
   world::World world = scenes::empty_world();
   scenes::add_bitmap(world, scenes::cave(60, 60, 3), 0.2);
   scenes::add_wall(world, {3, 3}, {9, 8.5});
-  // On a lattice, where nothing is touched.
+  // On a lattice without contacts.
   for (int i = 0; i < 22 * 22; ++i) {
     const Pose X{0.6 + 0.5 * (i % 22), 0.6 + 0.5 * (i / 22), 0, 0.1 * i};
     world::World trial = world;
@@ -51,7 +51,7 @@ world::World crowd() {
 std::vector<Twist> random_commands(std::size_t count, int tick) {
   std::vector<Twist> commands(count);
   for (std::size_t row = 0; row < count; ++row) {
-    // Held for a second, so that robots get somewhere.
+    // Commands last a second, so that robots cover some distance.
     const base::RandomKey draw{
         .seed = 5, .stream = base::RandomStream::slip, .a = std::uint32_t(row), .c = std::uint64_t(tick / 10)};
     const auto u = base::random_uniform(draw, 0), v = base::random_uniform(draw, 1);
@@ -60,7 +60,7 @@ std::vector<Twist> random_commands(std::size_t count, int tick) {
   return commands;
 }
 
-// By signed areas in long double, of everything against everything: not the code under test.
+// By signed areas in long double, all pairs: independent of the code under test.
 bool strictly_cross(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 d) {
   const auto side = [](glm::dvec2 p, glm::dvec2 q, glm::dvec2 r) {
     return (static_cast<long double>(q.x) - p.x) * (static_cast<long double>(r.y) - p.y) -
@@ -130,7 +130,7 @@ std::vector<Twist> commands_by_id(const world::World& world, int tick) {
   return commands;
 }
 
-/// Both fleets are told the same for `ticks`; whatever is known of a robot is the same to the bit, by ids.
+/// Both fleets get the same commands for `ticks`; the states of each robot, by id, must be bitwise equal.
 /// @return ticks with contact of all robots
 int expect_same(const world::World& world, Fleet& fleet, const world::World& other_world, Fleet& other, int ticks) {
   std::map<std::uint32_t, std::uint32_t> other_row;
@@ -152,7 +152,7 @@ int expect_same(const world::World& world, Fleet& fleet, const world::World& oth
   return contacts;
 }
 
-/// Too many for their room: they press on each other from all sides.
+/// Too many robots for the room: they press on each other from all sides.
 world::World throng(int side) {
   world::World world = scenes::boxed_world(0.45 * side, 0.45 * side);
   for (int i = 0; i < side * side; ++i) {
@@ -190,8 +190,8 @@ TEST(Crowd, ThreadsChangeNothing) {
   }
 }
 
-/// Wider and faster robots elsewhere change how neighbours are searched for, not what is found. As many small ones keep
-/// the cells of the walls' index, in whose order sums over walls are made.
+/// Wider and faster robots elsewhere change the search for neighbours, not its result. An equal number of small ones
+/// keeps the cells of the walls' index, and thus the order of sums over walls.
 TEST(Crowd, ACrowdFarAwayChangesNothing) {
   const world::World alone = throng(7);
   world::World together = alone;
@@ -240,7 +240,7 @@ TEST(Crowd, OfTwoThatWantOneGapTheSmallerIdGoesFirst) {
     scenes::add_square(world, {-0.30, 0.45, 0, 0});
     for (world::Mover& mover : world.movers) mover.drive = world::Drive::omni, mover.max_forward = 5.0;
     if (swapped) std::swap(world.movers[0].id, world.movers[1].id);
-    // Both would be at its mouth after this tick, one straight on, one from the side.
+    // Both would be at the same place after this tick, one straight on, one from the side.
     Fleet fleet(world);
     fleet.move(std::vector<Twist>{{4.5, 0, 0}, {0.0, -2.0, 0}}, kTick);
     const double straight = fleet.reports()[0].X_WM.x, side = fleet.reports()[1].X_WM.y;
@@ -255,7 +255,7 @@ TEST(Crowd, OfTwoThatWantOneGapTheSmallerIdGoesFirst) {
   }
 }
 
-/// A robot close behind another that drives on is not stopped by where that was, whichever has the smaller id.
+/// A robot close behind a moving one is not stopped by the other's previous place, whichever has the smaller id.
 TEST(Crowd, WhoFollowsCloselyIsNotStopped) {
   for (const bool swapped : {false, true}) {
     world::World world = scenes::empty_world();
@@ -270,7 +270,7 @@ TEST(Crowd, WhoFollowsCloselyIsNotStopped) {
   }
 }
 
-/// Many who push towards one place, and go anywhere when stopped: nobody waits for ever for others to move.
+/// Many robots that push towards one place and go anywhere when stopped: no robot waits for ever.
 TEST(Crowd, AllWhoPushThroughAGapGetThrough) {
   world::World world = scenes::boxed_world(12, 6, {-6, -3});
   scenes::add_wall(world, {0, 0.4}, {0, 3});

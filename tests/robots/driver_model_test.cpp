@@ -35,26 +35,26 @@ TEST(Obey, WhatIsNotFiniteIsZero) {
   expect_twist(apply_driver(create(), {nan, inf, -inf}), {0.0, 0.0, 0.0});
 }
 
-// The cases of Player's driver one by one; radii worked out by hand.
+// The cases of Player's driver one by one; radii computed by hand.
 TEST(Obey, ACreateIsToldWholeMillimetres) {
-  expect_twist(apply_driver(create(), {0.1234, 0.0, 0.0}), {0.123, 0.0, 0.0});        // 123 mm/s, straight
-  expect_twist(apply_driver(create(), {0.7, 0.0, 0.0}), {0.5, 0.0, 0.0});             // it drives no faster
-  expect_twist(apply_driver(create(), {-0.7, 0.0, 0.0}), {-0.5, 0.0, 0.0});           // nor backwards
-  expect_twist(apply_driver(create(), {0.1, 0.3, 0.0}), {0.1, 0.0, 0.0});             // it cannot slide
-  expect_twist(apply_driver(create(), {0.1, 0.0, 0.1}), {0.1, 0.0, 0.1 / 0.5});       // 1000 mm, halved
-  expect_twist(apply_driver(create(), {0.1, 0.0, -0.1}), {0.1, 0.0, -0.1 / 0.5});     // to the right
-  expect_twist(apply_driver(create(), {-0.1, 0.0, 0.1}), {-0.1, 0.0, 0.1 / 0.5});     // backwards: radius -500
-  expect_twist(apply_driver(create(), {0.1, 0.0, 0.03}), {0.1, 0.0, 0.1 / 1.666});    // 3333 / 2: cut, not rounded
+  expect_twist(apply_driver(create(), {0.1234, 0.0, 0.0}), {0.123, 0.0, 0.0});      // 123 mm/s, straight
+  expect_twist(apply_driver(create(), {0.7, 0.0, 0.0}), {0.5, 0.0, 0.0});           // largest speed
+  expect_twist(apply_driver(create(), {-0.7, 0.0, 0.0}), {-0.5, 0.0, 0.0});         // largest reverse speed
+  expect_twist(apply_driver(create(), {0.1, 0.3, 0.0}), {0.1, 0.0, 0.0});           // no lateral motion
+  expect_twist(apply_driver(create(), {0.1, 0.0, 0.1}), {0.1, 0.0, 0.1 / 0.5});     // 1000 mm, halved
+  expect_twist(apply_driver(create(), {0.1, 0.0, -0.1}), {0.1, 0.0, -0.1 / 0.5});   // to the right
+  expect_twist(apply_driver(create(), {-0.1, 0.0, 0.1}), {-0.1, 0.0, 0.1 / 0.5});   // backwards: radius -500
+  expect_twist(apply_driver(create(), {0.1, 0.0, 0.03}), {0.1, 0.0, 0.1 / 1.666});  // 3333 / 2: truncated, not rounded
   expect_twist(apply_driver(create(), {0.1, 0.0, -0.03}), {0.1, 0.0, -0.1 / 1.666});  // towards zero
   expect_twist(apply_driver(create(), {0.1, 0.0, 0.001}), {0.1, 0.0, 0.1 / 2.0});     // clamped to 2 m
-  expect_twist(apply_driver(create(), {0.1, 0.0, -1e-300}), {0.1, 0.0, -0.1 / 2.0});  // however little is asked
+  expect_twist(apply_driver(create(), {0.1, 0.0, -1e-300}), {0.1, 0.0, -0.1 / 2.0});  // for any small turn
   expect_twist(apply_driver(create(), {0.1, 0.0, 25.0}), {0.1, 0.0, 0.1 / 0.002});    // 4 mm, halved
-  expect_twist(apply_driver(create(), {0.0001, 0.0, 0.5}), {0.0, 0.0, 0.0});          // rounded to 0 mm/s: stands
+  expect_twist(apply_driver(create(), {0.0001, 0.0, 0.5}), {0.0, 0.0, 0.0});          // rounded to 0 mm/s: at rest
 }
 
 TEST(Obey, ACreateSpinsWhereNoRadiusIsLeft) {
   expect_twist(apply_driver(create(), {0.1, 0.0, 50.0}),
-               {0.0, 0.0, 0.1 / 0.129});  // 2 mm halved is 1: its word for spinning
+               {0.0, 0.0, 0.1 / 0.129});  // 2 mm halved is 1: the code for a spin
   expect_twist(apply_driver(create(), {0.1, 0.0, 100.0}), {0.0, 0.0, 0.1 / 0.129});  // 1 mm halved is 0: likewise
   expect_twist(apply_driver(create(), {0.1, 0.0, -100.0}), {0.0, 0.0, -0.1 / 0.129});
   expect_twist(apply_driver(create(), {-0.1, 0.0, 100.0}), {0.0, 0.0, 0.1 / 0.129});

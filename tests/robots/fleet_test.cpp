@@ -15,7 +15,7 @@ using base::Twist;
 
 constexpr std::int64_t kTick = 100'000'000;
 
-// The one robot of a world after `ticks` of one command.
+// State of a world's only robot after `ticks` of one command.
 struct Driven {
   Report report;
   int contacts = 0;  // ticks with contact
@@ -245,7 +245,7 @@ TEST(Fleet, ReportsNewestWins) {
   EXPECT_EQ(fleet.reports()[0].X_WM.x, 3.0);
 }
 
-/// A report says it is above a kerb, or beneath the floor: it stands on the world's floor, for contacts as for sensors.
+/// A report has the robot above a kerb, or below the floor: its height stays that at load, for contacts as for sensors.
 TEST(Fleet, HeightsAreThoseAtLoadWhateverReportsSay) {
   world::World world = scenes::empty_world();
   scenes::add_wall(world, {0.9, -1}, {0.9, 1}, 0.0, 0.08);  // a kerb
@@ -278,7 +278,7 @@ TEST(Fleet, WhoIsGoneIsInNobodysWay) {
   EXPECT_EQ(fleet.contacts()[0], 1);
 }
 
-/// It drives through where the other was.
+/// A robot drives through the place of an absent one.
 TEST(Fleet, WhoIsGoneStopsNobody) {
   for (const bool gone : {false, true}) {
     world::World world = scenes::empty_world();

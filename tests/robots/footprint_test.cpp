@@ -11,7 +11,7 @@ namespace {
 
 using base::Pose;
 
-// Outlines of squares of edge 0.4 m, put where asked.
+// Outlines of squares of edge 0.4 m at given poses.
 struct Square {
   explicit Square(const Pose& X_WM, double edge = 0.4, double height = 0.1) {
     world::World world = scenes::empty_world();
@@ -41,7 +41,7 @@ TEST(Footprint, WallCaseByCase) {
 }
 
 TEST(Footprint, Heights) {
-  const Square square({0, 0, 0.5, 0});  // stands at z = 0.5, 0.1 high
+  const Square square({0, 0, 0.5, 0});  // at z = 0.5, 0.1 high
   EXPECT_FALSE(touches_wall(square, {0, -1}, {0, 1}, 0.6, 1)) << "a bridge exactly above";
   EXPECT_TRUE(touches_wall(square, {0, -1}, {0, 1}, 0.59, 1));
   EXPECT_FALSE(touches_wall(square, {0, -1}, {0, 1}, 0, 0.5)) << "a kerb exactly below";

@@ -38,7 +38,7 @@ TEST(Advance, ManySmallStepsAreOneLarge) {
 }
 
 TEST(Advance, TinyTurnsAgreeWithTheStraightLine) {
-  // Around the place where the series takes over.
+  // Around the threshold of the series.
   for (const double turn : {1e-9, 1.9e-4, 2.1e-4}) {
     const Pose X = advance({}, {1, 0, turn}, 1.0);
     EXPECT_NEAR(X.x, std::sin(turn) / turn, 1e-15) << turn;
@@ -54,7 +54,7 @@ constexpr std::int64_t kTick = 100'000'000;
 
 base::Report at(std::int64_t time, const Pose& X_WM, const Twist& velocity) { return {0, time, X_WM, velocity, 0}; }
 
-/// What nothing stops is on the arc that it drives, whatever part of the tick.
+/// A mover that nothing stops is on its arc at any part of the tick.
 TEST(Between, UnhinderedItIsOnItsArc) {
   const Twist velocities[] = {{0.7, 0, 0}, {0.7, 0, 1.5}, {0.4, -0.3, -2}, {0, 0, 3}, {-0.2, 0, 1e-9}, {1.0, 0, 50.0}};
   for (const Twist& v : velocities) {
@@ -69,7 +69,7 @@ TEST(Between, UnhinderedItIsOnItsArc) {
   }
 }
 
-/// Stopped, or put elsewhere: from the one pose to the other by the lesser turn, at a steady pace.
+/// Stopped or displaced: from the one pose to the other by the smaller turn, at constant speed.
 TEST(Between, HinderedItIsOnTheArcBetweenItsPoses) {
   const base::Report before = at(0, {1, 2, 0, 3.0}, {0.5, 0, 0}), after = at(kTick, {0.98, 2.01, 0, -3.0}, {});
   expect_pose(interpolate(before, after, 0).X_WM, before.X_WM);
@@ -80,7 +80,7 @@ TEST(Between, HinderedItIsOnTheArcBetweenItsPoses) {
   EXPECT_NEAR(half.velocity.turn, (2 * M_PI - 6.0) / 0.1, 1e-9);
 }
 
-/// To the bit, whatever a report says of its speed, and however its yaw is written.
+/// Bitwise, whatever the reported velocity, and for any representation of the yaw.
 TEST(Between, WhoStandsStands) {
   const base::Report before = at(0, {0.1, 0.2, 0.3, 7.0}, {}), after = at(kTick, before.X_WM, {0.3, 0, 0});
   const base::Report report = interpolate(before, after, kTick / 3);
@@ -90,7 +90,7 @@ TEST(Between, WhoStandsStands) {
   EXPECT_EQ(report.X_WM.z, 0.3);
 }
 
-/// What touches it is felt at ticks.
+/// Contacts change at ticks only.
 TEST(Between, TouchIsAsItWasAtTheTickBefore) {
   base::Report before = at(0, {}, {}), after = at(kTick, {0.01, 0, 0, 0}, {});
   before.contact_mask = 5;

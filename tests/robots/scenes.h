@@ -18,7 +18,7 @@ inline void add_wall(world::World& world, glm::dvec2 a, glm::dvec2 b, double z_m
   world.walls.push_back({.a = a, .b = b, .z_min = z_min, .z_max = z_max, .model = 0, .solid_left = false});
 }
 
-/// A closed outline in `corners`' order; counter-clockwise has its solid inside.
+/// A closed outline in the order of `corners`; counter-clockwise has its solid inside.
 inline void add_outline(std::vector<world::Segment>& to, const std::vector<glm::dvec2>& corners, double z_min = 0.0,
                         double z_max = 1.0) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -72,7 +72,7 @@ inline world::Mover& add_mover(world::World& world, const Pose& X_WM, const std:
   return world.movers.back();
 }
 
-/// A 16-sided disc of radius 0.165 m that does at most 0.5 m/s and 90 degrees a second.
+/// A 16-sided disc of radius 0.165 m with at most 0.5 m/s and 90 degrees a second.
 inline world::Mover& add_create(world::World& world, const Pose& X_WM) {
   std::vector<glm::dvec2> corners;
   for (int i = 0; i < 16; ++i) corners.push_back(0.165 * glm::dvec2{std::cos(M_PI * i / 8), std::sin(M_PI * i / 8)});
@@ -139,7 +139,7 @@ inline std::vector<std::vector<bool>> cave(int columns, int rows, std::uint64_t 
   return solid;
 }
 
-/// An array across the front of a robot, element 0 in its middle.
+/// A row of magnetometers across the front of a robot, element 0 in its middle.
 inline world::Sensor magnetometers(int count) {
   world::Sensor sensor{.type = "magnetometer"};
   sensor.settings.push_back({.key = "scount", .numbers = {1.0 * count}});

@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, LayoutOf,
                            return name;
                          });
 
-TEST(Layout, LabelsDoNotRunIntoEachOther) {  // long numbers stand further apart
+TEST(Layout, LabelsDoNotRunIntoEachOther) {  // long numbers are further apart
   for (const double offset : {0.0, 1e5, 1e7}) {
     FigureOptions plan;
     plan.extent = {offset, 0, offset + 1.3, 0.7};
@@ -107,7 +107,7 @@ TEST(Axes, PixelsAndMetresAgree) {
   EXPECT_NEAR(axes.pixel({20, 10}).y, plot.y_min, 1.0);
 }
 
-TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // nothing is cut off
+TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // no text is cut off
   FigureOptions plan;
   plan.title = std::string(200, 'W');
   plan.subtitle = std::string(300, 'w');
@@ -125,7 +125,7 @@ TEST(Axes, NothingTouchesTheBorderOfThePicture) {  // nothing is cut off
   EXPECT_EQ(p.count(white, p.width - 8, 0, p.width, p.height), 8 * p.height);
 }
 
-/// Above the bar's middle only its upper label tells pictures apart, below it only the lower one.
+/// Above the bar's middle only the upper label differs between the pictures, below it only the lower one.
 TEST(Axes, TheBarsLabelsAreAtTheirEnds) {
   const auto draw = [](const char* low, const char* high, const char* name) {
     FigureOptions plan;

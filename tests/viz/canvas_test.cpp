@@ -25,7 +25,7 @@ int darkness(const Canvas& canvas) {
   return sum;
 }
 
-/// How much of the picture is black, in pixels.
+/// Black area of the picture, in pixels.
 double area_of(const Canvas& canvas) { return darkness(canvas) / 255.0; }
 
 TEST(Canvas, StartsAsBackground) {
@@ -74,7 +74,7 @@ TEST(Canvas, OverlapOfOneShapeIsPaintedOnce) {  // the middle of two overlapping
   EXPECT_NE(canvas.pixel(5, 5), kWhite);
 }
 
-TEST(Canvas, HoleStaysEmpty) {  // an outline the other way round takes away
+TEST(Canvas, HoleStaysEmpty) {  // an outline of the opposite orientation is subtracted
   Canvas canvas(12, 12, kWhite);
   const glm::dvec2 outer[] = {{1, 1}, {11, 1}, {11, 11}, {1, 11}};
   const glm::dvec2 inner[] = {{4, 4}, {4, 8}, {8, 8}, {8, 4}};
@@ -86,14 +86,14 @@ TEST(Canvas, HoleStaysEmpty) {  // an outline the other way round takes away
   EXPECT_EQ(canvas.pixel(2, 5), kBlack);
 }
 
-TEST(Canvas, AreaMayReachFarOutside) {  // clipped on all sides: everything inside is covered
+TEST(Canvas, AreaMayReachFarOutside) {  // clipped on all sides: the whole inside is covered
   Canvas canvas(10, 6, kWhite);
   const glm::dvec2 huge[] = {{-1e7, -1e7}, {1e7, -1e7}, {1e7, 1e7}, {-1e7, 1e7}};
   canvas.polygon(huge, kBlack);
   EXPECT_NEAR(area_of(canvas), 60.0, 1e-9);
 }
 
-TEST(Canvas, AreaAcrossOneSideIsCut) {  // each side in turn: half of the square remains
+TEST(Canvas, AreaAcrossOneSideIsCut) {  // for each side half of the square remains
   for (const glm::dvec2& shift : {glm::dvec2{-5, 0}, glm::dvec2{5, 0}, glm::dvec2{0, -5}, glm::dvec2{0, 5}}) {
     Canvas canvas(10, 10, kWhite);
     std::vector<glm::dvec2> box{{0, 0}, {10, 0}, {10, 10}, {0, 10}};

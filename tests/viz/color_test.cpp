@@ -24,7 +24,7 @@ TEST(Color, LabOfKnownColours) {  // from the definition's own table: white, and
   EXPECT_NEAR(red.b, 0.126, 1e-3);
 }
 
-TEST(Color, RampLightensEvenly) {  // what a colour-blind eye or a grey printer is left with
+TEST(Color, RampLightensEvenly) {  // the lightness, as seen in grey or with colour blindness
   for (int i = 0; i < 100; ++i) {
     const double from = to_oklab(ramp(i / 100.0)).lightness;
     const double to = to_oklab(ramp((i + 1) / 100.0)).lightness;
@@ -60,7 +60,7 @@ TEST(Color, RowsDiffer) {
   }
 }
 
-/// Up to seven rows have colours that are told apart by name, more have the ramp from end to end.
+/// Up to seven rows have distinct named colours, more have the ramp from end to end.
 TEST(Color, SevenRowsHaveAPaletteAndMoreARamp) {
   for (const std::size_t count : {1u, 6u, 7u})
     for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(row_color(i, count), row_color(i, 1 + i)) << i << " of " << count;

@@ -1,4 +1,4 @@
-// The field's figure: what it shows by default, and that the picture says what the numbers say.
+// The field figure: its default view, and the agreement of picture and numbers.
 
 #include "viz/field_figure.h"
 
@@ -24,7 +24,7 @@ world::World six() {
 
 std::string file(const char* name) { return scenes::own_file(name); }
 
-/// A field made up: |B| rises from nothing on the left to 2 Gauss on the right.
+/// A synthetic field: |B| rises from zero on the left to 2 Gauss on the right.
 FieldSamples slope(const FieldView& view) {
   FieldSamples samples{100, 50, {}, {}};
   for (int i = 0; i < 5000; ++i) samples.map.push_back(2e-4 * (i % 100) / 99.0);
@@ -35,7 +35,7 @@ FieldSamples slope(const FieldView& view) {
   return samples;
 }
 
-/// How many there are along the upper side of the map, where nothing is drawn on it.
+/// Number of colours along the upper side of the map, which has no marks.
 std::size_t colours_of_the_map(const FieldView& view, const std::string& path) {
   const scenes::Picture picture = scenes::read_png(path);
   std::set<std::uint32_t> colours;
@@ -73,7 +73,7 @@ TEST(FieldFigure, WhatIsAskedForIsShown) {
   EXPECT_GE(view.extent.y_max, 7.0 - 1e-9);
 }
 
-/// One magnet, all in one place, one carried by a robot: boxes of no size.
+/// One magnet, several at one place, one on a robot: boxes of zero size.
 TEST(FieldFigure, OddWorldsHaveAView) {
   world::World world;
   world.movers.emplace_back();

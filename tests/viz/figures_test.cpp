@@ -24,10 +24,10 @@ constexpr std::uint32_t kWhite = 0xFFFFFFFFu;
 
 std::string file(const char* name) { return scenes::own_file(name); }
 
-/// A room of 6 m x 4 m in walls of 0.5 m, nothing in it.
+/// An empty room of 6 m x 4 m in walls of 0.5 m.
 world::World room() { return scenes::make_world(6, 4, 0, 0); }
 
-/// The picture of a room, and where points of the world are on it. The plot's place is found by its frame.
+/// The picture of a room, and the pixels of points of the world. The plot is located by its frame.
 struct Seen {
   scenes::Picture picture;
   int left = 0, top = 0, right = 0, bottom = 0;
@@ -66,7 +66,7 @@ TEST(WorldFigure, LightsShowWhatTheyShowAtTheStart) {
                             .offset = offset});
   };
   add(1.0, 0.0);
-  add(3.0, 1.0);  // one second before its plan begins
+  add(3.0, 1.0);  // one second before the start of its plan
   draw_world(world, file("lights.png"));
   const Seen seen = see(file("lights.png"), 0.03);
   EXPECT_EQ(seen.at(1.0, 2.0), 0xFF43A047u);
@@ -83,7 +83,7 @@ TEST(WorldFigure, LightsPointWhereTheyFace) {
   EXPECT_GT(to_oklab(seen.at(3.0, 1.945)).lightness, 0.9) << "and none to the south";
 }
 
-/// The beginning of the subtitle, in both pictures at the same place, is the same.
+/// The begin of the subtitle is at the same place and equal in both pictures.
 TEST(WorldFigure, TagsAreNoRobotsInItsSubtitle) {
   world::World world = room();
   world.movers.push_back(scenes::make_robot(world, 1, {2.0, 2.0, 0, 0}, 0xFF2E7D32u, 1.0));
@@ -116,7 +116,7 @@ TEST(WorldFigure, HolesAreDarkAndBeamsAreFaint) {
   EXPECT_NE(seen.at(3.02, 2.53), kWhite);
   EXPECT_NE(seen.at(3.02, 0.83), kWhite) << "in the halo behind it";
   EXPECT_EQ(seen.at(3.02, 0.53), kWhite) << "and beyond";
-  // The dock looks west: its red buoy's beam is to its left, that is south.
+  // The dock faces west: its red buoy's beam is to its left, that is south.
   const std::uint32_t south = seen.at(4.82, 2.63), north = seen.at(4.82, 3.37);
   EXPECT_GT(south >> 16 & 0xFF, south >> 8 & 0xFF) << "red";
   EXPECT_GT(north >> 8 & 0xFF, north >> 16 & 0xFF) << "green";
@@ -191,7 +191,7 @@ TEST(WorldFigure, ViewStopsAtWalls) {
   EXPECT_EQ(seen.at(6.62, 2.27), kWhite);
 }
 
-TEST(WorldFigure, WhatAllWallsAreNotIsDrawnToo) {  // every mixture of flags: none disappears
+TEST(WorldFigure, WhatAllWallsAreNotIsDrawnToo) {  // all combinations of flags: no wall disappears
   for (int flags = 0; flags < 8; ++flags) {
     world::World world = room();
     for (world::Segment& s : world.walls) {
@@ -278,10 +278,10 @@ TEST(Sight, BeamsEndAtTheFirstWallOrAtRangeMax) {
   EXPECT_NEAR(ends[1].x, 6.0, 1e-9);  // ahead: the wall
   EXPECT_NEAR(ends[2].y, 4.0, 1e-9);  // left: the wall
   const auto back = visible_points(world, {5.0, 2.0, 0.5, M_PI}, laser, 3);
-  EXPECT_NEAR(back[1].x, 2.0, 1e-9);  // nothing within range_max
+  EXPECT_NEAR(back[1].x, 2.0, 1e-9);  // no wall within range_max
 }
 
-TEST(Sight, SeesOnlyWhatSpansItsHeight) {  // z_min <= z < z_max, as the segment's contract says
+TEST(Sight, SeesOnlyWhatSpansItsHeight) {  // z_min <= z < z_max, the rule of world::Segment
   const world::World world = room();
   world::Laser laser;
   laser.fov = 0.1;
@@ -323,10 +323,10 @@ TEST(TrajectoryFigure, ContactIsMarked) {
   EXPECT_EQ(before.at(3.3, 2.0), after.at(3.3, 2.0)) << "the line beside it";
 }
 
-/// Its arms reach beyond the dot, and have a pale border on it.
+/// Its arms extend beyond the dot and have a pale border on it.
 TEST(TrajectoryFigure, ContactAtTheEndIsSeenOnItsDot) {
   Track track = straight();
-  track.color = 0xFFD4351Cu;  // the cross' own
+  track.color = 0xFFD4351Cu;  // the colour of the cross
   track.contacts.assign(track.poses.size(), 0);
   track.contacts.back() = 1;
   draw_trajectories(room(), {&track, 1}, file("at_the_end.png"));
@@ -350,7 +350,7 @@ TEST(TrajectoryFigure, PoseThatIsNotFiniteBreaksTheLine) {
   EXPECT_EQ(seen.at(2.33, 2.0), 0xFFFF00FFu);
 }
 
-/// A path is as long as its whole steps; a contact lasts until nothing stops the mover.
+/// A path's length is the sum of its unbroken steps; a contact lasts until nothing stops the mover.
 TEST(Track, LengthAndContactsOfABrokenPath) {
   Track track;
   track.poses = {

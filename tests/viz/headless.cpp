@@ -1,4 +1,4 @@
-// No figure may need a display: whatever the machine has, the tests run without one.
+// Figures need no display: the tests unset it, whatever the machine has.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Dashes and samples: what is drawn where.
+// Dashes, crosses and legend samples, by their pixels.
 
 #include "viz/legend.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kWhite = 0xFFFFFFFFu, kBlack = 0xFF000000u;
 
-/// Pixels of one row, left to right: '#' where a line 2 px thick covers them wholly.
+/// Pixels of one row, left to right: '#' where a line 2 px thick covers them fully.
 std::string row_of(const Canvas& canvas, int y) {
   std::string row;
   for (int x = 0; x < canvas.width(); ++x)
@@ -49,7 +49,7 @@ TEST(Dashes, StopWhereTheirLineStops) {
   EXPECT_EQ(short_of_it.substr(15).find_first_not_of('.'), std::string::npos) << "in the gap: no second dash";
 }
 
-/// A path in pieces has the dashes of the whole; pieces that do not hang together begin again.
+/// A path in pieces has the dashes of the whole path; unconnected pieces begin with a new dash.
 TEST(Dashes, GoOnOverTheCornersOfAPath) {
   const std::string whole = dashes({{{5, 4}, {55, 4}}}, 8.0, 12.0);
   EXPECT_EQ(dashes({{{5, 4}, {11, 4}}, {{11, 4}, {27, 4}}, {{27, 4}, {55, 4}}}, 8.0, 12.0), whole);

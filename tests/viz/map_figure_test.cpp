@@ -28,7 +28,7 @@ TEST(MapFigure, CellsAreFourPixelsWithALineBetween) {
   const maps::OccupancyGrid grid = striped(30, 30);
   draw_map(grid, {"Title", "", {}}, out("cells.png"));
   const scenes::Picture picture = scenes::read_png(out("cells.png"));
-  // The map's left side: the first column that is one colour, of the grid's lines, for a map's height.
+  // The map's left side: the first column in the colour of grid lines over a map's height.
   const int left = 86, top = 92, pitch = 5;
   for (int row = 0; row < 120; ++row)
     for (int column = 0; column < 120; ++column) {
@@ -49,7 +49,7 @@ TEST(MapFigure, RobotsAreMarkedWhereTheyAre) {
   const scenes::Picture robot = scenes::read_png(out("robot.png"));
   EXPECT_EQ(robot.width, bare.width);
   int changed = 0, elsewhere = 0;
-  // The map is centred in a picture of the least width.
+  // The map is centred in a picture of the smallest width.
   const int left = 86 + (bare.width - 86 - 40 - 201) / 2, top = 92;
   for (int y = top; y < top + 201; ++y)
     for (int x = left; x < left + 201; ++x) {
@@ -72,7 +72,7 @@ TEST(MapFigure, LargeMapsAreDrawnSmaller) {
   const scenes::Picture picture = scenes::read_png(out("large.png"));
   EXPECT_LE(picture.width, 8200);
   EXPECT_GT(picture.width, 7000) << "as large as it may be";
-  // A third of the cells each, less the lines between them and the mixtures at their sides.
+  // A third of the cells each, less the lines between them and the mixed pixels at their sides.
   const int cells = picture.count(kDark) + picture.count(kBlue);
   EXPECT_NEAR(picture.count(kDark), 0.5 * cells, 0.02 * cells);
   EXPECT_GT(cells, 2 * 500 * 9) << "nine pixels a cell at least";

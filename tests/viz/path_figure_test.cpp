@@ -57,7 +57,7 @@ TEST(PathFigure, LeftIsAboveRight) {
   EXPECT_LT(highest(row_color(0, 2)), highest(row_color(1, 2)));
 }
 
-/// Its dashes are thin: few pixels have the whole colour.
+/// Its dashes are thin: few pixels have the full colour.
 TEST(PathFigure, TheMiddleIsDrawnWhereThereIsAPath) {
   world::World without = lane();
   without.paths.clear();
@@ -65,7 +65,7 @@ TEST(PathFigure, TheMiddleIsDrawnWhereThereIsAPath) {
   EXPECT_GT(colored(drawn({}), 0xFF808080u), 30 + colored(scenes::read_png(file("no_path.png")), 0xFF808080u));
 }
 
-/// Between its painted edges a lane is asphalt, not two bands with ground between.
+/// Between its markings a lane is asphalt, not two separate bands.
 TEST(PathFigure, ALaneIsFilledFromEdgeToEdge) {
   world::World world = lane();
   for (const double y : {0.25, -0.25}) world.lane_markings.push_back({{{0.0, y}, {4.0, y}}, 0.02});
@@ -79,7 +79,7 @@ TEST(PathFigure, ALaneIsFilledFromEdgeToEdge) {
   EXPECT_GT(filled, bands.width * bands.width / 4 / 4);
 }
 
-/// A track beyond the world is on the picture all the same.
+/// A track beyond the world is inside the picture.
 TEST(PathFigure, GrowsWithItsTracks) {
   const scenes::Picture p = drawn({track(3.0)});
   EXPECT_GT(colored(p, row_color(0, 1)), 1000);

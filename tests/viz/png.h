@@ -1,5 +1,5 @@
 #pragma once
-// A written picture read back by the other PNG library the farm links, for checks of what a user gets.
+// Reads written pictures with the PNG library, for checks of the file that a user gets.
 
 #include <cstddef>
 #include <cstdint>
@@ -27,22 +27,22 @@ struct Picture {
       for (int x = x0; x < x1; ++x) n += at(x, y) == color ? 1 : 0;
     return n;
   }
-  /// In all of it.
+  /// In the whole picture.
   int count(std::uint32_t color) const { return count(color, 0, 0, width, height); }
 };
 
-/// Fails the test where the file is no PNG.
+/// Fails the test when the file is not a PNG.
 Picture read_png(const std::string& path);
 
-/// A colour, and the fewest pixels of it.
+/// A colour, and the smallest number of its pixels.
 struct Painted {
   std::uint32_t color;
   int least;
 };
-/// What a picture must show.
+/// Checks that a picture has the given colours.
 void expect_painted(const std::string& path, std::initializer_list<Painted> expected);
 
-/// A file in the temporary folder that is this test's alone: others run beside it.
+/// A file in the temporary folder for this test alone, since tests run in parallel.
 std::string own_file(const std::string& name);
 
 }  // namespace sf::scenes

@@ -1,4 +1,4 @@
-// Pictures of road networks: what is where, in which colour, and that texts keep off each other.
+// Pictures of road networks: positions, colours, and texts without overlap.
 
 #include "viz/road_figure.h"
 
@@ -89,7 +89,7 @@ TEST(RoadFigure, ShowsWhatThereIs) {
   draw_roads(small(), file("roads.png"));
   const Picture picture = scenes::read_png(file("roads.png"));
   EXPECT_GE(picture.width, 1000);
-  // About 15 px/m: 2 lanes of 60 m x 3 m are 80 000 pixels, less what is painted on them.
+  // About 15 px/m: 2 lanes of 60 m x 3 m are 80 000 pixels, less the markings on them.
   EXPECT_GT(count(picture, theme::kAsphalt), 20000u);
   EXPECT_GT(count(picture, theme::kZone), 20000u);
   EXPECT_GT(count(picture, theme::kSpot), 1000u);
@@ -98,8 +98,7 @@ TEST(RoadFigure, ShowsWhatThereIs) {
   EXPECT_GT(count(picture, world::kYellowPaint), 50u);  // the rest of its edge is mixed
 }
 
-// In a view of its own everything is at its pixel: 10 px/m, the lower left corner at (-2.05, -12.05), so that
-// lines run along the middles of pixels.
+// In a view with 10 px/m and the lower left corner at (-2.05, -12.05), lines run along the middles of pixels.
 TEST(RoadView, EverythingIsWhereItShouldBe) {
   Canvas canvas(1000, 300, 0xFFFFFFFFu);
   const RoadView view{canvas, {0, 0, 1000, 300}, {-2.05, -12.05}, 10.0};
@@ -120,14 +119,14 @@ TEST(RoadView, EverythingIsWhereItShouldBe) {
   EXPECT_EQ(at(95, 8), 0xFFFFFFFFu);
 }
 
-// Arrows point the way one drives: their tips are ahead.
+// Arrows point in the driving direction: their tips are ahead.
 TEST(RoadView, ArrowsPointInDrivingDirection) {
   Canvas canvas(1000, 300, 0xFFFFFFFFu);
   const RoadView view{canvas, {0, 0, 1000, 300}, {-2.05, -12.05}, 10.0};
   world::RoadNetwork network = small();
   for (world::RoadLane& lane : network.lanes) lane.left = lane.right = world::Boundary::none;
   draw_network(view, network);
-  // Columns of white on the first lane's axis band: an arrow to the right is widest at its left.
+  // Columns of white along the first lane's centre line: an arrow to the right is widest at its left.
   const auto white = [&](double x, double y_low, double y_high) {
     int n = 0;
     for (double y = y_low; y < y_high; y += 0.1) {
@@ -190,7 +189,7 @@ TEST(Labels, KeepOffEachOther) {
   int placed = 0;
   for (int i = 0; i < 100; ++i) placed += labels.place(canvas, mark, "label", small_text(), {4.0, 60.0, 100.0, 1.0});
   EXPECT_GT(placed, 3);
-  EXPECT_LT(placed, 20);  // then there is no room left within 60 pixels
+  EXPECT_LT(placed, 20);  // no more room within 60 pixels
 }
 
 TEST(Labels, PreferBareGround) {

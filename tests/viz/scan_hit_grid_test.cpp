@@ -17,7 +17,7 @@ using base::Pose;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kBehind = 0.01;  // cells, as the header says
+constexpr double kBehind = 0.01;  // cells, as stated in scan_hit_grid.h
 
 /// One beam along +x from the middle of cell (0, 2) of a 10 x 5 grid of 1 m cells.
 ScanHitGrid one_beam(double range, double range_max, double range_min = 0.0) {
@@ -58,7 +58,7 @@ TEST(Occupancy, EndIsOccupiedPathIsFree) {
   EXPECT_EQ(known_cells(grid), 5);
 }
 
-TEST(Occupancy, RangeMaxMarksNothing) {  // met nothing: the cell at the end is free as well
+TEST(Occupancy, RangeMaxMarksNothing) {  // no echo: the cell at the end is free as well
   const ScanHitGrid grid = one_beam(4.2, 4.2);
   EXPECT_EQ(grid.state(4, 2), CellState::free);
   EXPECT_EQ(known_cells(grid), 5);
@@ -74,7 +74,7 @@ TEST(Occupancy, WhatSaysNothingIsLeftOut) {
   EXPECT_EQ(known_cells(one_beam(kNaN, 8.0)), 0);
   EXPECT_EQ(known_cells(one_beam(-1.0, 8.0)), 0);
   EXPECT_EQ(known_cells(one_beam(-kInfinity, 8.0)), 0);
-  EXPECT_EQ(known_cells(one_beam(0.1, 8.0, 0.1)), 0);  // range_min: at most that far
+  EXPECT_EQ(known_cells(one_beam(0.1, 8.0, 0.1)), 0);  // range_min: ranges up to it are skipped
   EXPECT_EQ(known_cells(one_beam(0.05, 8.0, 0.1)), 0);
 }
 
@@ -82,7 +82,7 @@ TEST(Occupancy, ZeroIsAnEchoWithoutRangeMin) {  // a sensor on a surface
   EXPECT_EQ(one_beam(0.0, 8.0).state(0, 2), CellState::occupied);
 }
 
-TEST(Occupancy, WallOnABorderLiesBehindIt) {  // seen from either side, and with a nanometre of rounding
+TEST(Occupancy, WallOnABorderLiesBehindIt) {  // from both sides, and with a rounding error of a nanometre
   for (const double error : {-1e-9, 0.0, 1e-9}) {
     EXPECT_EQ(one_beam(3.5 + error, 8.0).state(4, 2), CellState::occupied);
     ScanHitGrid back({0, 0, 10, 5}, 1.0);
@@ -98,7 +98,7 @@ TEST(Occupancy, EchoOutsideTheGridIsNoEcho) {
   for (int i = 0; i < 10; ++i) EXPECT_EQ(grid.state(i, 2), CellState::free);
 }
 
-TEST(Occupancy, SensorOutsideTheGrid) {  // what crosses the grid counts
+TEST(Occupancy, SensorOutsideTheGrid) {  // beams that cross the grid count
   ScanHitGrid grid({0, 0, 10, 5}, 1.0);
   const double range = 9.7;
   grid.add_scan({-5.0, 2.5, 0, 0}, {&range, 1}, 0.0, 0.0, 80.0);
@@ -146,7 +146,7 @@ TEST(Occupancy, PassesOutvoteHits) {  // one hit: occupied up to kPassesPerHit p
   EXPECT_EQ(grid.state(4, 2), CellState::free);
 }
 
-TEST(Occupancy, CountersDoNotOverflow) {  // beyond 65535 scans the balance stays
+TEST(Occupancy, CountersDoNotOverflow) {  // beyond 65535 scans the ratio stays
   ScanHitGrid grid({0, 0, 10, 5}, 1.0);
   const double echo = 4.2;
   for (int k = 0; k < 70000; ++k) grid.add_scan({0.5, 2.5, 0, 0}, {&echo, 1}, 0.0, 0.0, 8.0);
@@ -164,7 +164,7 @@ TEST(Occupancy, WhatMovesLeavesNoMark) {
   EXPECT_EQ(grid.state(4, 2), CellState::unexplored);
 }
 
-/// The length that a segment from `a` to `b` has within [x, x + 1] x [y, y + 1], or less than 0 when it misses.
+/// The length of the segment from `a` to `b` within [x, x + 1] x [y, y + 1], or less than 0 when it misses.
 double length_within(glm::dvec2 a, glm::dvec2 b, double x, double y) {
   double t0 = 0.0;
   double t1 = 1.0;

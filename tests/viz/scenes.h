@@ -1,5 +1,5 @@
 #pragma once
-// Worlds, paths and scans made up for the figures' tests: nothing here needs a file or a device.
+// Synthetic worlds, paths and scans for the figures' tests, without files or devices.
 
 #include <fmt/format.h>
 
@@ -103,7 +103,7 @@ inline world::World make_world(double width, double height, int blocks, std::uin
   return world;
 }
 
-/// Robots that wander from where they stand and turn away from what they meet, 10 poses a second.
+/// Robots that wander from their poses and turn away from obstacles, 10 poses a second.
 inline std::vector<viz::Track> wander(const world::World& world, int poses, double speed = 0.4) {
   std::mt19937 draw(7);
   std::normal_distribution<double> normal;
@@ -136,7 +136,7 @@ inline std::vector<viz::Track> wander(const world::World& world, int poses, doub
   return tracks;
 }
 
-/// The range along `bearing` to the first wall, at most range_max. [m]
+/// [m] The range along `bearing` to the first wall, at most range_max.
 inline double cast(const world::World& world, glm::dvec2 p, double bearing, double range_max) {
   const glm::dvec2 d = base::rotate(bearing, {1.0, 0.0});
   double best = range_max;

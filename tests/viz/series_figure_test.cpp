@@ -48,11 +48,11 @@ TEST(SeriesFigure, WhatIsMissingIsAGap) {
   const std::uint32_t color = row_color(0, 1);
   EXPECT_GT(colored(p, color, 0.1, 0.2), 20);
   EXPECT_GT(colored(p, color, 0.85, 0.95), 20);
-  // Between the second and the fifth of six values: nothing but the grid.
+  // Between the second and the fifth of six values there is only the grid.
   for (double part = 0.3; part < 0.75; part += 0.05) EXPECT_EQ(colored(p, color, part, part + 0.05), 0) << part;
 }
 
-/// Columns before the first x, and rows below the least value, are there only where they do not squash the rest.
+/// The axes begin at 0 only where that does not compress the values too much.
 TEST(SeriesFigure, FromZeroWhereThatDoesNotSquash) {
   const std::uint32_t color = row_color(0, 1);
   const auto first_column = [&](double from, bool zero) {
@@ -93,7 +93,7 @@ TEST(SeriesFigure, PanelsStandBelowEachOther) {
     EXPECT_GT(three.count(color, 0, third * three.height / 3, three.width, (third + 1) * three.height / 3), 100);
 }
 
-/// Pixels that are the first series' blue, or half of it: lines are thin and lie between pixels.
+/// Pixels in the first series' blue, or half of it: lines are thin and lie between pixels.
 int blue(const scenes::Picture& p) {
   int n = 0;
   for (std::size_t i = 0; i < p.rgb.size(); i += 3) n += p.rgb[i + 2] > p.rgb[i] + 60 ? 1 : 0;
@@ -103,17 +103,17 @@ int blue(const scenes::Picture& p) {
 TEST(SeriesFigure, OddDataIsDrawnAllTheSame) {
   struct Case {
     Series series;
-    int least, most;  ///< blue pixels, beside the legend's
+    int least, most;  ///< blue pixels without the legend's
   };
   EXPECT_EQ(blue(drawn(one_panel({}), "nobody.png")), 0);
   const int legend = blue(drawn(one_panel({Series{"a", {}, {}}}), "silent.png"));
   EXPECT_GT(drawn(one_panel({per_second("a", {1e300, -1e300})}), "labels.png").height, 600) << "no room but for labels";
-  for (const Case& c : {Case{per_second("a", {7}), 2, 20},                  // once: a dot
-                        Case{per_second("a", {kNan, kNan}), 0, 0},          // saw nothing
-                        Case{per_second("a", {0, 0, 0}), 1000, 10000},      // the same all along, at zero
+  for (const Case& c : {Case{per_second("a", {7}), 2, 20},                  // one value: a dot
+                        Case{per_second("a", {kNan, kNan}), 0, 0},          // no finite value
+                        Case{per_second("a", {0, 0, 0}), 1000, 10000},      // constant zero
                         Case{per_second("a", {-1e-7, 1e-7}), 1000, 10000},  // tiny
                         Case{per_second("a", {1e15, -1e15}), 1000, 10000},  // huge
-                        Case{Series{"a", {0, kNan, 2}, {1, 2, 3}}, 2, 20},  // at no time: two dots
+                        Case{Series{"a", {0, kNan, 2}, {1, 2, 3}}, 2, 20},  // a time that is not finite: two dots
                         Case{Series{"a", {1e9, 1e9 + 1}, {1e9, 1e9 + 1}}, 1000, 10000}}) {  // far from zero
     const scenes::Picture p = drawn(one_panel({c.series}), "odd.png");
     EXPECT_GT(p.height, 600);

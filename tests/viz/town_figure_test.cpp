@@ -18,7 +18,7 @@ const world::World& town() {
   return world;
 }
 
-/// Two cars that drive east along the south straight, and a pedestrian.
+/// Two cars that drive east along the south straight road, and a pedestrian.
 struct Scene {
   Scene() {
     for (const std::uint32_t row : {0u, 1u, 6u}) {
@@ -54,7 +54,7 @@ TEST(TownFigure, LightsShowWhatTheyShowAtTheEnd) {
   EXPECT_GT(pixels(before, kRed), 50);
 }
 
-/// Ties are dark and stand out from a picture without a convoy.
+/// Connections of followers are dark and absent in a picture without a convoy.
 TEST(TownFigure, FollowersAreJoinedToWhomTheyFollow) {
   Scene scene;
   scene.end.time = 5.0;

@@ -52,8 +52,8 @@ TEST(TradeoffFigure, InfiniteErrorsStayOnThePicture) {
   EXPECT_GT(p.count(kFront, 0, 0, p.width, p.height), 50);
 }
 
-/// A bound is never drawn beside errors that it does not hold for: it has its own mark, where it is, and none where
-/// nothing is covered.
+/// A bound has its own mark at its value, and no mark when no element is covered, so it is never shown for errors to
+/// which it does not apply.
 TEST(TradeoffFigure, ABoundHasAMarkOfItsOwn) {
   TradeoffPoint skip = point("skip", 2e6, 0.1, true);
   skip.covered = {0.25, 1e-9, 1e-8};
@@ -64,7 +64,7 @@ TEST(TradeoffFigure, ABoundHasAMarkOfItsOwn) {
   EXPECT_EQ(drawn({point("skip", 2e6, 0.1, true)}).count(kCovered), 0);
 }
 
-/// The bound of `exact` is a decade to the right of its error, where its name would be.
+/// The bound of `exact` is a decade to the right of its error, at the default place of its name.
 TEST(TradeoffFigure, NamesLeaveTheMarksFree) {
   TradeoffPoint exact = point("exact", 2e6, 1e-9, true), far = exact;
   exact.covered = {0.5, 1e-10, 1e-8};

@@ -17,7 +17,7 @@ struct Bad {
   const char* says;
 };
 
-// One reason each; the line is the one a user must look at.
+// One error each, with the line that the user has to correct.
 const std::vector<Bad>& corpus() {
   static const std::vector<Bad> cases = {
       {"string without end", "name \"x\nmodel()", 1, "closing quote"},
@@ -137,7 +137,7 @@ TEST(BadInput, IsRefusedWithItsLineAndWhatWasExpected) {
   }
 }
 
-// The printed listing of a five-element array numbers every element 0: four of them would be lost.
+// The printed listing of a five-element array numbers all elements 0: four of them would be lost.
 TEST(BadInput, AnArrayThatRepeatsItsFirstElementIsRefused) {
   const std::string error = error_of(
       "define array magnetometer\n(\n scount 5\n spose[0] [ -0.15 0 0 ]\n spose[0] [ -0.075 0 0 ]\n spose[0] [ 0 0 0 "

@@ -13,7 +13,7 @@ namespace {
 
 using Key = std::tuple<int, int, int, int>;
 
-/// Rows as one sees them, the top one first; `#` is solid.
+/// Rows from the top; `#` is solid.
 Bitmap grid_of(const std::vector<std::string>& rows) {
   Bitmap grid{static_cast<std::uint32_t>(rows[0].size()), static_cast<std::uint32_t>(rows.size()), {}};
   for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
@@ -27,7 +27,7 @@ bool solid(const Bitmap& grid, int i, int j) {
   return i >= 0 && j >= 0 && i < width && j < height && grid.solid[static_cast<std::size_t>(j * width + i)] != 0;
 }
 
-/// Every boundary between two cells by itself, solid on the left: found cell by cell, independently of the runs.
+/// All unit boundaries between two cells, solid on the left, found cell by cell without the code under test.
 std::set<Key> unit_edges(const Bitmap& grid) {
   std::set<Key> edges;
   for (int j = 0; j < static_cast<int>(grid.height); ++j) {
@@ -56,7 +56,7 @@ std::set<Key> cut(const std::vector<BoundaryRun>& runs) {
   return edges;
 }
 
-/// The least number of runs: one for each unit edge that does not go on straight from another.
+/// The smallest number of runs: one for each unit edge that does not continue another one in a straight line.
 std::size_t fewest(const std::set<Key>& edges) {
   std::size_t count = 0;
   for (const auto& [ai, aj, bi, bj] : edges) count += edges.contains({2 * ai - bi, 2 * aj - bj, ai, aj}) ? 0 : 1;
@@ -64,7 +64,7 @@ std::size_t fewest(const std::set<Key>& edges) {
 }
 
 int winding(const std::vector<BoundaryRun>& runs, int i, int j) {
-  int number = 0;  // of the centre of cell (i, j): signed crossings of a beam to the right
+  int number = 0;  // winding number of the centre of cell (i, j): signed crossings of a ray to the right
   for (const BoundaryRun& run : runs) {
     if (run.a.i != run.b.i || static_cast<int>(run.a.i) <= i) continue;
     const int low = static_cast<int>(std::min(run.a.j, run.b.j)), high = static_cast<int>(std::max(run.a.j, run.b.j));
@@ -76,8 +76,8 @@ int winding(const std::vector<BoundaryRun>& runs, int i, int j) {
 void check(const Bitmap& grid) {
   const auto runs = trace_boundary(grid);
   const auto edges = unit_edges(grid);
-  EXPECT_EQ(cut(runs), edges);            // every boundary, once, solid on its left: so also the total length
-  EXPECT_EQ(runs.size(), fewest(edges));  // and in as few runs as there are
+  EXPECT_EQ(cut(runs), edges);  // each boundary once, solid on its left; so the total length is correct as well
+  EXPECT_EQ(runs.size(), fewest(edges));  // and with the smallest number of runs
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
   for (const BoundaryRun& run : runs) {
     ++balance[{run.a.i, run.a.j}];

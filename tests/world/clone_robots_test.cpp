@@ -114,7 +114,7 @@ TEST(CloneRobots, BridgesDoNotMatterToLowRobots) {
   EXPECT_NO_THROW(clone_robots(world, 1, 1));
 }
 
-// A dummy without sensors before two that have some, and a tag before all.
+// A robot without sensors before two robots with sensors, and a tag before all.
 World with_a_dummy() {
   World world = scenes::boxed_world(8, 8);
   scenes::add_create(world, {1, 1, 0, 0}).is_tag = true;
@@ -197,7 +197,7 @@ TEST(CloneRobots, NoRobotOrNoneAskedForIsRefused) {
   EXPECT_THROW(clone_robots(world, 0, 1), base::InputError);
 }
 
-// A tag, two robots with a carried model each, and a post, in an order that mixes them.
+// A tag, two robots with a carried model each, and a post, in mixed order.
 World mixed() {
   World world = scenes::boxed_world(8, 8);
   scenes::add_create(world, {6, 6, 0, 0}).is_tag = true;
@@ -213,7 +213,7 @@ World mixed() {
   scenes::add_outline(world.walls, scenes::rectangle({4, 4}, 0.1, 0.1));
   for (auto s = world.walls.end() - 4; s != world.walls.end(); ++s)
     s->model = static_cast<std::uint32_t>(world.models.size() - 1);
-  world.movers[1].body[0].model = 4;  // a piece of the hat
+  world.movers[1].body[0].model = 4;  // a segment of the carried model
   return world;
 }
 

@@ -1,4 +1,4 @@
-// The worlds and maps that came with Stage and ROS, where they are at hand, and our own.
+// The worlds and maps of Stage and ROS, if present, and those of this project.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ std::size_t count_lasers(const World& world) {
   return count;
 }
 
-/// Every laser must look at a height where there are walls, or its world is of no use.
+/// Each laser must be at a height at which there are walls, or the world is of no use.
 void expect_lasers_see_walls(const World& world) {
   for (const Mover& mover : world.movers) {
     for (const Laser& laser : mover.lasers) {
@@ -33,7 +33,7 @@ void expect_lasers_see_walls(const World& world) {
   }
 }
 
-/// Closed outlines: as many segments begin in a point as end there.
+/// Closed outlines: equal numbers of segments begin and end in each point.
 void expect_closed(const World& world) {
   std::map<std::pair<double, double>, int> balance;
   for (const Segment& wall : world.walls) {
@@ -102,7 +102,7 @@ TEST(WorldFiles, CaveHasAHundredRobots) {
   EXPECT_EQ(world.movers.size(), 100u);
   EXPECT_EQ(count_lasers(world), 100u * 17u);
   EXPECT_EQ(world.models.size(), 1u + 100u * 3u);
-  // A robot that is defined twice, and Stage's plug-in that drives them all.
+  // One robot defined twice, and Stage's plug-in as the controller of all robots.
   EXPECT_EQ(world.warnings.size(), 2u) << warnings_of(world);
   expect_lasers_see_walls(world);
 }
@@ -110,7 +110,7 @@ TEST(WorldFiles, CaveHasAHundredRobots) {
 TEST(WorldFiles, HospitalHasAThousandRobotsOfTwelveSensors) {
   NEED_SHARED();
   const World world = load_world(kShared + "/stage/benchmark/hospital.world");
-  EXPECT_EQ(world.warnings.size(), 1u) << warnings_of(world);  // Stage's plug-in that drives them
+  EXPECT_EQ(world.warnings.size(), 1u) << warnings_of(world);  // Stage's plug-in as the controller
   EXPECT_EQ(world.movers.size(), 1000u);
   EXPECT_EQ(count_lasers(world), 12'000u);
   EXPECT_EQ(world.extent.x_max, 70.0);

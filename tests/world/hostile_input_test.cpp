@@ -1,4 +1,4 @@
-// Files that ask for more than any honest one: refused before the work is done, with what the bound is.
+// Files that request excessive resources: refused before the work is done, with the limit in the message.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ class HostileFiles : public ::testing::Test {
 
 const std::string kMap = "resolution: 0.05\norigin: [0, 0, 0]\n";
 
-// A device never ends, and a pipe that nobody writes to is waited for: neither is read.
+// Reading a device never ends, and opening a pipe without a writer blocks: both are refused.
 TEST_F(HostileFiles, OnlyRegularFilesAreRead) {
   const std::string pipe = path("pipe");
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
@@ -84,7 +84,7 @@ TEST_F(HostileFiles, ACheckerboardIsNoFloorPlan) {
   expect_error(write("m.yaml", kMap + "image: board.pgm\n"), "m.yaml:3: 'image': ");
 }
 
-// The same plan again costs nothing to read, and as much to hold.
+// A repeated plan costs no reading time, and as much memory as the first.
 TEST_F(HostileFiles, ManyPlansAreBoundedTogether) {
   std::string pixels = "P5 300 300 255\n";
   for (int y = 0; y < 300; ++y)
@@ -103,7 +103,7 @@ TEST(HostileWorlds, ArcsOfTenThousandKilometres) {
   EXPECT_NE(said.find("points of paint along paths of the world; expected at most 4000000"), std::string::npos) << said;
 }
 
-// A mile of motorway ramp is honest.
+// A mile of motorway ramp is a valid world.
 TEST(HostileWorlds, ArcsOfRoadsAreFine) {
   EXPECT_EQ(error_of("path( pieces 1 arc[0] [1600 90 3.5] left \"solid_white\" right \"broken_white\" dash [3 9] )"),
             "");
@@ -138,7 +138,7 @@ TEST(HostileWorlds, LongWords) {
             std::string::npos);
 }
 
-// Looked up one by one, as many keys of one model took minutes.
+// With a linear search, this number of keys of one model took minutes.
 TEST(HostileWorlds, ManyKeysOfOneModelAreReadOnce) {
   std::string text = "path( pieces 10000\n";
   for (int i = 0; i < 10'000; ++i) text += fmt::format("straight[{}] [1 1]\n", i);
@@ -172,7 +172,7 @@ std::string repeated(const std::string& piece, int times) {
   return text;
 }
 
-// Each part of a key is a table in a table: deep ones were left by as many calls in calls, beyond the stack.
+// Each part of a key is a table in a table; the recursive destruction of deep ones overflowed the stack.
 TEST(HostileToml, KeysOfManyParts) {
   const std::string deep = repeated("a.", 150'000) + "a";
   const std::string says = "f.toml:2: nested too deep: a key of more than 32 parts";

@@ -12,10 +12,10 @@ TEST(Keys, EditDistanceCountsSlips) {
   EXPECT_EQ(edit_distance("", ""), 0u);
   EXPECT_EQ(edit_distance("", "abc"), 3u);
   EXPECT_EQ(edit_distance("pose", "pose"), 0u);
-  EXPECT_EQ(edit_distance("pose", "posee"), 1u);       // put in
-  EXPECT_EQ(edit_distance("pose", "pse"), 1u);         // left out
-  EXPECT_EQ(edit_distance("pose", "pise"), 1u);        // mistaken
-  EXPECT_EQ(edit_distance("samples", "smaples"), 1u);  // swapped
+  EXPECT_EQ(edit_distance("pose", "posee"), 1u);       // insertion
+  EXPECT_EQ(edit_distance("pose", "pse"), 1u);         // deletion
+  EXPECT_EQ(edit_distance("pose", "pise"), 1u);        // substitution
+  EXPECT_EQ(edit_distance("samples", "smaples"), 1u);  // swap
   EXPECT_EQ(edit_distance("range_max", "range_min"), 2u);
 }
 

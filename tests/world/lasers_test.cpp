@@ -30,7 +30,7 @@ TEST(Lasers, TheOlderDialect) {
   EXPECT_EQ(laser.color, 0xFF00FF00u);
   EXPECT_EQ(laser.X_MS.x, 0.1);
   EXPECT_DOUBLE_EQ(laser.X_MS.yaw, 30 * kDegree);
-  EXPECT_NEAR(laser.X_MS.z, 0.1 - 0.025 + 0.095, 1e-15);  // on the robot, half way up the laser
+  EXPECT_NEAR(laser.X_MS.z, 0.1 - 0.025 + 0.095, 1e-15);  // on the robot, at half the height of the laser
   EXPECT_EQ(laser.name, "laser:0");
 }
 

@@ -1,4 +1,4 @@
-// Missions: their form, and whether a network has what they ask for.
+// Missions: their syntax, and their checks against a network.
 
 #include "world/roads/mdf.h"
 
@@ -122,12 +122,12 @@ TEST(MdfFiles, OfTexas) {
   EXPECT_TRUE(swri.warnings.empty());
   EXPECT_TRUE(check_against(swri, read_rndf(folder + "swri_site_visit.rndf")).empty());
 
-  // It lacks two ends, and limits the speed in a zone 8 that its network has not.
+  // Two ends are missing, and a speed limit is for a zone 8 that its network lacks.
   const Mdf large = read_mdf(folder + "prc_large.mdf");
   EXPECT_EQ(large.warnings.size(), 2u) << lines_of(large.warnings);
   EXPECT_EQ(check_against(large, read_rndf(folder + "prc_large.rndf")).size(), 1u);
 
-  // The same mission on another network: no checkpoint of it exists there.
+  // The same mission on another network, which has none of its checkpoints.
   const Mdf osm = read_mdf(folder + "prc_osm.mdf");
   EXPECT_THROW(check_against(osm, read_rndf(folder + "prc_osm.rndf")), base::InputError);
 }

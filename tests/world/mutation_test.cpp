@@ -1,4 +1,4 @@
-// Whatever the text, the reader ends in a world or in an InputError with a file and a line.
+// For any text the result is a world or an InputError with a file and a line.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 16> kPieces{"(",
                                                    "spose[0] [0 0 0] ",
                                                    "name \"tag1\" "};
 
-/// One to three changes: a piece put in, a stretch left out, a stretch doubled, a byte turned.
+/// One to three changes: an insertion, a deletion, a duplication, or a flipped byte.
 std::string mutated(std::string text, std::uint32_t k) {
   const auto count = 1 + base::random_words({3, base::RandomStream::placement, k, 0, 0}, 1000)[0] % 3;
   for (std::uint32_t change = 0; change < count; ++change) {
@@ -55,7 +55,7 @@ std::string mutated(std::string text, std::uint32_t k) {
   return text;
 }
 
-/// Rules of world.h that nobody who reads a world checks again.
+/// The rules of world.h that users of a world do not check.
 void expect_sound(const World& world) {
   for (const Segment& wall : world.walls) {
     ASSERT_TRUE(wall.a.x != wall.b.x || wall.a.y != wall.b.y);

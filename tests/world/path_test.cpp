@@ -1,4 +1,4 @@
-// Lanes of exact straights and arcs.
+// Lanes of exact straight lines and arcs.
 
 #include <gtest/gtest.h>
 

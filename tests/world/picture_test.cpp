@@ -11,7 +11,7 @@
 namespace sf::world {
 namespace {
 
-// Pictures of a few pixels, one kind of PNG each.
+// Pictures of a few pixels, one for each PNG type.
 const std::vector<std::uint8_t> kRgba{
     0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00,
     0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00, 0x00, 0xf4, 0x22, 0x7f, 0x8a, 0x00, 0x00, 0x00,
@@ -73,7 +73,7 @@ TEST_F(Pictures, PalettesAreLookedUp) { EXPECT_EQ(read(kPalette).value, (Values{
 TEST_F(Pictures, InterlacedPicturesAreTheSame) { EXPECT_EQ(read(kInterlaced).value, (Values{10, 20, 30, 40})); }
 
 TEST_F(Pictures, EveryCutOfAPngIsRefused) {
-  const std::size_t after_pixels = kRgba.size() - 16;  // what follows: a checksum and the chunk that says "the end"
+  const std::size_t after_pixels = kRgba.size() - 16;  // then a checksum and the chunk IEND
   for (std::size_t size = 1; size < after_pixels; ++size) {
     EXPECT_THROW(read(Values(kRgba.begin(), kRgba.begin() + static_cast<std::ptrdiff_t>(size))), base::InputError)
         << size;

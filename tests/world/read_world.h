@@ -1,5 +1,5 @@
 #pragma once
-// Worlds written inside tests.
+// Worlds from text inside tests.
 
 #include <string>
 
@@ -12,7 +12,7 @@ inline World read_world(const std::string& text, const LoadOptions& options = {}
   return build_world(SF_SOURCE_DIR "/worlds/test.world", text, options);
 }
 
-/// What the error says, without the path: "test.world:3: ...". Empty when the world loads.
+/// The error without the path: "test.world:3: ...". Empty when the world loads.
 inline std::string error_of(const std::string& text) {
   try {
     read_world(text);
@@ -24,7 +24,7 @@ inline std::string error_of(const std::string& text) {
   return {};
 }
 
-/// All warnings, one a line: "3: ...".
+/// All warnings, one per line: "3: ...".
 inline std::string warnings_of(const World& world) {
   std::string all;
   for (const Warning& warning : world.warnings) all += std::to_string(warning.line) + ": " + warning.message + "\n";

@@ -1,4 +1,4 @@
-// Whatever the bytes, a network, a mission or a sidecar ends as a value or in an InputError.
+// For any bytes the result is a network, a mission or a sidecar, or an InputError.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ std::vector<std::string> lines_of_text(const std::string& text) {
   return lines;
 }
 
-/// One to three changes: a byte turned, a line dropped, doubled, swapped with another, or a number turned.
+/// One to three changes: a flipped byte, a line dropped, doubled or swapped with another, or a changed number.
 std::string mutated(const std::string& text, std::uint32_t k) {
   constexpr std::array<std::string_view, 10> kPieces{"/*",    "*/",  "1.1.1",      "32769", "-0",
                                                      "1e308", "nan", "end_lane\n", "\r",    "\xFF"};
@@ -55,7 +55,7 @@ std::string mutated(const std::string& text, std::uint32_t k) {
   return changed;
 }
 
-/// What readers of a network do not check again.
+/// The rules that users of a network do not check.
 void expect_sound(const RoadNetwork& network) {
   for (const RoadLane& lane : network.lanes) {
     ASSERT_GT(lane.width, 0.0);
@@ -116,7 +116,7 @@ TEST(RndfMutation, OfASidecar) {
       });
 }
 
-// Coordinates all over the Earth make lanes of thousands of kilometres: refused, within a bounded time and memory.
+// Coordinates all over the Earth make lanes of thousands of kilometres: refused, within bounded time and memory.
 TEST(RndfMutation, OfPlacesAllOverTheEarth) {
   for (const std::string boundary : {"", "left_boundary broken_white\n"})
     for (std::uint32_t k = 0; k < 5; ++k) {

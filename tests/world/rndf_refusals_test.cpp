@@ -1,4 +1,4 @@
-// What is wrong is refused with the line it stands in and what was expected: strictly, each slip is.
+// Errors are refused with their line and the expected text; in strict mode, all slips are.
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@ namespace sf::world {
 namespace {
 
 struct Wrong {
-  std::string from, to;  ///< first `from` of the small network turned into `to`
-  std::string error;     ///< what the refusal begins with
+  std::string from, to;  ///< the first `from` of the small network is replaced by `to`
+  std::string error;     ///< the begin of the error
 };
 
 void expect_refused(const std::vector<Wrong>& corpus) {
@@ -78,7 +78,7 @@ TEST(RndfRefusals, Counts) {
   });
 }
 
-// Nothing may be empty but zones and spots, whether its number is left out or not.
+// Only the lists of zones and spots may be empty, with or without a declared count.
 TEST(RndfRefusals, NothingIsEmpty) {
   const std::string head = "RNDF_name x\nnum_segments 1\nnum_zones 0\n";
   EXPECT_NE(refusal_of("RNDF_name x\nend_file\n").find("'num_segments' is missing"), std::string::npos);

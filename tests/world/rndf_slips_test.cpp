@@ -1,4 +1,4 @@
-// Slips of files that were written by hand: what is clear is taken with a warning, all else is refused at once.
+// Slips in hand-written files: those with a clear meaning are accepted with a warning, all others are refused together.
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@ namespace sf::world {
 namespace {
 
 struct Slip {
-  std::string from, to;  ///< first `from` of the small network turned into `to`
-  std::string warning;   ///< the only one, in full
+  std::string from, to;  ///< the first `from` of the small network is replaced by `to`
+  std::string warning;   ///< the only warning, in full
 };
 
-// Each is refused strictly, and changes no number of the network.
+// Each slip is refused in strict mode, and changes no number of the network otherwise.
 TEST(RndfSlips, WhatIsClearIsTaken) {
   const RoadCounts fine = count(small_rndf());
   const std::vector<Slip> corpus{
@@ -100,13 +100,13 @@ TEST(RndfSlips, WhatHasNoMeaningIsRefused) {
        "small.rndf:22: 'num_waypoints' says none, but lane 1.2 has 0"},
   };
   for (const auto& [change, error] : corpus) {
-    // A point with a wrong number is missing elsewhere: more may be told.
+    // A point with a wrong number is missing elsewhere: more errors may follow.
     const std::string said = "\n" + refusal_of(small_with(change.first, change.second), false);
     EXPECT_NE(said.find("\n" + error), std::string::npos) << change.second << said;
   }
 }
 
-// A file that ends in the middle is not whole, whatever its numbers: no slip of a pen.
+// A file that ends in the middle is truncated, whatever its counts: not a slip.
 TEST(RndfSlips, AFileThatIsCutShortIsRefused) {
   const std::string whole(kSmallRndf);
   const std::string cut = refusal_of(whole.substr(0, whole.find("1.1.3 40")), false);
@@ -134,7 +134,7 @@ TEST(RndfSlips, AllProblemsAreToldInOneRun) {
       << "strictly the first one ends it";
 }
 
-// A lane that cannot be begun is passed over as a whole: its lines are no problems of their own.
+// A lane whose begin is refused is skipped as a whole: its lines cause no errors of their own.
 TEST(RndfSlips, OneSlipIsOneProblem) {
   for (const std::string lane : {"lane x.2\n", "lane 1.1\n", "lane 7.2\n"}) {
     const std::string said = refusal_of(small_with("lane 1.2\n", lane), false);

@@ -1,4 +1,4 @@
-// What a route network says, and what real files do with its rules.
+// Route networks, and the variants of the format in real files.
 
 #include "world/roads/rndf.h"
 
@@ -71,7 +71,7 @@ TEST(Rndf, Counts) {
   EXPECT_EQ(c.checkpoints, 2u);
 }
 
-// Each with one thing that real files do.
+// Each text has one variant of real files.
 TEST(Rndf, RealHabitsChangeNothing) {
   const std::string small(kSmallRndf);
   const std::vector<std::string> habits{
@@ -126,7 +126,7 @@ TEST(Rndf, WidthOfNoughtIsNotKnown) {
   EXPECT_FALSE(parse_rndf("x", small_with("lane_width 12", "lane_width")).segments[0].lanes[0].width_ft.has_value());
 }
 
-// Every end may be missing: one warning, the same network.
+// Each end may be missing: one warning, the same network.
 TEST(Rndf, MissingEndsAreWarnings) {
   for (const std::string end :
        {"end_lane\n", "end_segment\n", "end_perimeter\n", "end_spot\n", "end_zone\n", "end_file\n"}) {
@@ -142,7 +142,7 @@ TEST(Rndf, MissingEndsAreWarnings) {
   EXPECT_EQ(count(parse_rndf("x", none)).exits, 3u);
 }
 
-// What the extension for traffic lights adds is named once each; nothing else changes.
+// Keywords of the extension for traffic lights cause one warning each; the network is unchanged.
 TEST(Rndf, ExtensionIsReadOver) {
   const std::string text =
       with(with(std::string(kSmallRndf), "segment 1\n", "num_intersections 1\nsegment 1\nspeed_limit 25\n"), "end_file",
@@ -195,7 +195,7 @@ void expect_counts(const std::string& name, const RoadCounts& expected) {
   EXPECT_EQ(c.checkpoints, expected.checkpoints) << name;
 }
 
-// Counted from the files with grep: lines that begin with each keyword.
+// Counted in the files with grep: lines that begin with each keyword.
 TEST(RndfFiles, Counts) {
   if (!std::filesystem::exists(shared(""))) GTEST_SKIP() << "no shared data beside the sources";
   expect_counts("darpa_sample/Sample_RNDF_Rev_1.5.rndf", {13, 21, 1, 6, 146, 164, 49, 21, 17});
@@ -207,8 +207,8 @@ TEST(RndfFiles, Counts) {
   expect_counts("terminus_negative/mcity_generated.rndf", {33, 33, 0, 0, 572, 572, 67, 0, 0});
 }
 
-// The same exit twice says what it says once. An id that two lanes, segments or way-points have has no meaning: nobody
-// knows which of them is meant, or what the other should be called.
+// A repeated exit has the meaning of one. An id of two lanes, segments or way-points has no clear meaning: either of
+// them could be meant.
 TEST(RndfFiles, InvalidOnesAreRefusedForTheirReason) {
   if (!std::filesystem::exists(shared(""))) GTEST_SKIP() << "no shared data beside the sources";
   const std::vector<std::pair<std::string, std::string>> wrong{

@@ -1,5 +1,5 @@
 #pragma once
-// A small route network with everything in it, to be broken line by line.
+// A small route network with all elements, as a base for broken variants.
 
 #include <string>
 #include <string_view>
@@ -68,21 +68,21 @@ end_zone
 end_file
 )";
 
-/// `text` with its first `from` turned into `to`; the test's own mistake where there is none.
+/// `text` with its first `from` replaced by `to`; fails the test when there is none.
 inline std::string with(std::string text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);
   SF_CHECK(at != std::string::npos, "nothing to replace: " + from);
   return text.replace(at, from.size(), to);
 }
 
-/// The small network with its first `from` turned into `to`.
+/// The small network with its first `from` replaced by `to`.
 inline std::string small_with(const std::string& from, const std::string& to) {
   return with(std::string(kSmallRndf), from, to);
 }
 
 inline Rndf small_rndf() { return parse_rndf("small.rndf", kSmallRndf); }
 
-/// What the error says, of strict reading unless told otherwise; empty when it is read.
+/// The error, in strict mode by default; empty when the file is read.
 inline std::string refusal_of(const std::string& text, bool strict = true) {
   try {
     parse_rndf("small.rndf", text, strict);
@@ -92,7 +92,7 @@ inline std::string refusal_of(const std::string& text, bool strict = true) {
   return {};
 }
 
-/// One a line: "3: ...".
+/// One warning per line: "3: ...".
 inline std::string lines_of(const std::vector<Warning>& warnings) {
   std::string all;
   for (const Warning& warning : warnings) all += std::to_string(warning.line) + ": " + warning.message + "\n";

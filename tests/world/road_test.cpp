@@ -11,7 +11,7 @@
 namespace sf::world {
 namespace {
 
-/// Beside `worlds/`, where tests' worlds stand.
+/// A road entity, with paths relative to `worlds/`.
 std::string road(const std::string& more) { return "road( rndf \"simville/simville.rndf\"\n" + more + ")"; }
 
 TEST(Road, ItsPaintIsTheNetworks) {

@@ -1,4 +1,4 @@
-// Smooth lines: what the header of the curve promises, on chosen and on random way-points.
+// Smooth lines: the properties stated in curve.h, on chosen and on random way-points.
 
 #include "world/roads/curve.h"
 
@@ -17,7 +17,7 @@ using Points = std::vector<glm::dvec2>;
 
 constexpr Sampling kFine{1e-3, 1.8, 1u << 20};
 
-/// Random way-points; about one in five repeats the last one, and turns may be as sharp as they like.
+/// Random way-points; about one in five repeats the previous one, and turns may be arbitrarily sharp.
 Points wild(std::uint32_t k) {
   Points p{{0, 0}};
   const auto n = 1 + base::random_words({7, base::RandomStream::placement, k, 0, 0}, 999)[0] % 12;
@@ -55,10 +55,10 @@ TEST(Curve, PassesThroughEveryWayPointExactly) {
   }
 }
 
-// Direction is continuous: finer sampling makes every turn of the polyline smaller, even at sharp corners.
+// Direction is continuous: finer sampling makes each turn of the polyline smaller, also at sharp corners.
 TEST(Curve, DirectionIsContinuous) {
   for (std::uint32_t k = 0; k < 100; ++k) {
-    const Curve curve = smooth_curve(wild(k), {1e-3, 100.0, 1u << 20});  // 100 m aside: turns of 9 mrad
+    const Curve curve = smooth_curve(wild(k), {1e-3, 100.0, 1u << 20});  // offset 100 m: turns of 9 mrad
     for (std::size_t i = 1; i + 1 < curve.points.size(); ++i)
       ASSERT_LT(std::abs(angle(curve.points[i] - curve.points[i - 1], curve.points[i + 1] - curve.points[i])), 0.06)
           << k;
@@ -96,7 +96,7 @@ TEST(Curve, NeighboursAreDistinctAndLengthsAddUp) {
   }
 }
 
-// The same curve sampled a hundred times finer lies within the tolerance, and its parallel too.
+// The same curve sampled a hundred times finer is within the tolerance, and so is its parallel.
 TEST(Curve, PolylineIsWithinTolerance) {
   for (std::uint32_t k = 0; k < 60; ++k) {
     const Points p = wild(k);
@@ -114,7 +114,7 @@ TEST(Curve, StraightsStayStraight) {
   EXPECT_DOUBLE_EQ(line.s.back(), 20.0);
 }
 
-// A corner between straights of three points each bends in the two spans beside it only.
+// A corner between straight lines of three points each bends only the two spans beside it.
 TEST(Curve, ACornerBendsItsOwnSpansOnly) {
   const Curve curve = smooth_curve(Points{{0, 0}, {5, 0}, {10, 0}, {10, 5}, {10, 10}}, kFine);
   for (std::size_t j = 0; j <= curve.knots[1]; ++j) EXPECT_EQ(curve.points[j].y, 0.0);
@@ -123,8 +123,9 @@ TEST(Curve, ACornerBendsItsOwnSpansOnly) {
   EXPECT_NEAR(std::atan2(corner.y, corner.x), M_PI / 4, 1e-12);
 }
 
-// A long chord beside a short one that goes on straight takes up the whole kink of 45 degrees, but no farther aside
-// than a quarter of the short chord times its sine, times 1 / cos^2(90 / 4): also where it is the first or the last.
+// A long chord beside a short one that goes on straight takes up the whole kink of 45 degrees, but its lateral distance
+// is at most a quarter of the short chord times its sine, times 1 / cos^2(90 / 4); also for the first and the last
+// chord.
 TEST(Curve, ShortChordsHoldLongOnes) {
   for (Points p : {Points{{0, 0}, {100, 0}, {100.7, 0.7}, {101.4, 1.4}},
                    Points{{-0.7, 0.7}, {0, 0}, {100, 0}, {100.7, 0.7}, {101.4, 1.4}}})
@@ -136,7 +137,7 @@ TEST(Curve, ShortChordsHoldLongOnes) {
     }
 }
 
-// Even points of a circle make that circle: the figure stated in the header.
+// Equally spaced points of a circle give that circle, to the precision stated in curve.h.
 TEST(Curve, CirclesOfCircles) {
   const double radius = 0.93;
   Points p;
@@ -147,7 +148,7 @@ TEST(Curve, CirclesOfCircles) {
   EXPECT_LT(worst, 1e-6);
 }
 
-// Straight, quarter circle, straight, given by few points: the thesis' test path. A lane is found within millimetres.
+// Straight line, quarter circle, straight line from few points: the thesis' test path, reproduced within millimetres.
 TEST(Curve, StraightAndBend) {
   Points p{{0, 0}, {2.72, 0}};
   for (int i = 1; i <= 6; ++i)
@@ -165,12 +166,12 @@ TEST(Curve, StraightAndBend) {
 
 TEST(Curve, OddWayPoints) {
   EXPECT_EQ(smooth_curve(Points{{3, 4}}, kFine).points.size(), 1u);                  // one
-  EXPECT_EQ(smooth_curve(Points{{3, 4}, {3, 4}, {3, 4}}, kFine).points.size(), 1u);  // one, thrice
+  EXPECT_EQ(smooth_curve(Points{{3, 4}, {3, 4}, {3, 4}}, kFine).points.size(), 1u);  // one, three times
   EXPECT_EQ(smooth_curve(Points{{0, 0}, {1, 0}}, kFine).points.size(), 2u);          // two
   EXPECT_EQ(smooth_curve(Points{{0, 0}, {1, 0}, {1, 0}}, kFine).knots[2], 1u);       // the last repeated
   const Curve back = smooth_curve(Points{{0, 0}, {10, 0}, {0, 0}}, kFine);           // there and back
   EXPECT_EQ(back.points[back.knots[1]].x, 10.0);
-  EXPECT_LE(smooth_curve(wild(3), {1e-12, 1e6, 500}).points.size(), 600u);  // kept bounded
+  EXPECT_LE(smooth_curve(wild(3), {1e-12, 1e6, 500}).points.size(), 600u);  // bounded
 }
 
 TEST(Curve, ConnectionsMakeArcs) {
@@ -201,7 +202,7 @@ TEST(Parallel, OfACircle) {
   for (const glm::dvec2& at : offset_curve(arc, -1.8)) EXPECT_NEAR(length(at), 6.8, 2e-3);
 }
 
-// A bend of 1 m radius with edges at 2 m: the loop inside of it is gone, and what is left keeps its distance.
+// A bend of 1 m radius with edges at 2 m: the loop inside is removed, and the rest keeps its distance.
 TEST(Parallel, LoopsInsideTightBendsAreCutOff) {
   Points p{{-10, 0}, {-5, 0}, {0, 0}};
   for (int i = 1; i <= 6; ++i) p.push_back(glm::dvec2{0, 1} + base::rotate(-M_PI / 2 + i * M_PI / 12, {1.0, 0.0}));

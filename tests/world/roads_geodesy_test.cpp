@@ -32,11 +32,12 @@ TEST(LocalPlane, DegreesOfKnownLength) {
 TEST(LocalPlane, SignsAndPoles) {
   EXPECT_GT(LocalPlane({-38, 145}).east_north({-38, 145.001}).x, 0.0);
   EXPECT_GT(LocalPlane({-38, 145}).east_north({-37.999, 145}).y, 0.0);
-  EXPECT_NEAR(LocalPlane({0, 180}).east_north({0, -179.999}).x, 111.319491, 1e-6);      // over the date line
-  EXPECT_NEAR(length(LocalPlane({90, 0}).east_north({89.999, 77})), 111.693980, 1e-4);  // a pole has all longitudes
+  EXPECT_NEAR(LocalPlane({0, 180}).east_north({0, -179.999}).x, 111.319491, 1e-6);  // over the date line
+  EXPECT_NEAR(length(LocalPlane({90, 0}).east_north({89.999, 77})), 111.693980,
+              1e-4);  // all longitudes are equal at a pole
 }
 
-// Distance and direction agree with the geodesic within the flattening the header states.
+// Distance and direction agree with the geodesic within the flattening stated in geodesy.h.
 TEST(LocalPlane, AgreesWithGeodesics) {
   const GeographicLib::Geodesic ellipsoid(6378137.0, 1.0 / 298.257222101);
   double worst = 0.0;
@@ -60,7 +61,7 @@ TEST(LocalPlane, AgreesWithGeodesics) {
   EXPECT_LT(worst, 3e-5);
 }
 
-// Nine decimals of a degree are a tenth of a millimetre: nothing of them may be lost.
+// Nine decimals of a degree are a tenth of a millimetre, which must be preserved.
 TEST(LocalPlane, SmallStepsAreNotRounded) {
   const LocalPlane plane({40.0, -83.0});
   const double step = 1.1103463e-4;  // [m] of 1e-9 degrees there: radius of curvature of the meridian, 6 361 815.8 m

@@ -1,4 +1,4 @@
-// Paint: which lines there are, where they lie, and how long their dashes are.
+// Lane markings: number, position and length of dashes.
 
 #include "world/roads/lane_markings.h"
 
@@ -140,7 +140,7 @@ TEST(LaneMarkings, TooManyDashesAreRefused) {
   }
 }
 
-// The rules of world::LaneMarking, on everything public.
+// The rules of world::LaneMarking, on all public networks.
 TEST(LaneMarkingFiles, StripesAreSound) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/rndf/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";

@@ -1,4 +1,4 @@
-// Networks in metres: positions, widths, edges, and how one gets about.
+// Networks in metres: positions, widths, edges and transitions.
 
 #include "world/roads/network.h"
 
@@ -42,7 +42,7 @@ TEST(RoadNetwork, SidecarPlacesScalesAndTurns) {
   const RoadNetwork network = small("scale = 0.5\nposition = [100, 200]\nheading_deg = 90");
   EXPECT_EQ(at(network, {1, 1, 1}).x, 100.0);
   EXPECT_EQ(at(network, {1, 1, 1}).y, 200.0);
-  EXPECT_NEAR(at(network, {1, 1, 3}).x, 100.0, 1e-3);  // east has become north
+  EXPECT_NEAR(at(network, {1, 1, 3}).x, 100.0, 1e-3);  // east became north
   EXPECT_NEAR(at(network, {1, 1, 3}).y, 200.0 + 0.001 * kLongitude, 1e-3);
   EXPECT_NEAR(at(network, {2, 1, 2}).x, 100.0 - 0.0005 * kLatitude, 5e-3);
   EXPECT_NEAR(network.lanes[0].width, 12 * 0.3048 * 0.5, 1e-12);  // feet are scaled
@@ -51,7 +51,7 @@ TEST(RoadNetwork, SidecarPlacesScalesAndTurns) {
   EXPECT_NEAR(at(moved, {1, 1, 1}).y, -0.001 * kLatitude, 1e-3);
 }
 
-// Which width counts: the lane's own, the sidecar's for all lanes, the file's feet, 12 ft with a warning.
+// Precedence of widths: the lane's own, the sidecar's for all lanes, the file's feet, 12 ft with a warning.
 TEST(RoadNetwork, Widths) {
   std::vector<Warning> warnings;
   const Rndf rndf =
@@ -125,7 +125,7 @@ TEST(RoadNetwork, Successors) {
   EXPECT_EQ(onward(network, {1, 1, 3}), (Set{"2.1.1"}));           // an exit at the lane's end
   EXPECT_EQ(onward(network, {1, 2, 2}), Set{});                    // a dead end
   EXPECT_EQ(onward(network, {2, 1, 2}), (Set{"3.0.1"}));           // into a zone
-  EXPECT_EQ(onward(network, {3, 0, 1}), (Set{"3.1.1", "3.0.3"}));  // to its spot and to its way out
+  EXPECT_EQ(onward(network, {3, 0, 1}), (Set{"3.1.1", "3.0.3"}));  // to its spot and to its exit
   EXPECT_EQ(onward(network, {3, 0, 3}), (Set{"3.1.1", "1.2.1"}));  // out, or to the spot
   EXPECT_EQ(onward(network, {3, 1, 1}), (Set{"3.1.2"}));
   EXPECT_EQ(onward(network, {3, 1, 2}), (Set{"3.0.3"}));
@@ -175,7 +175,7 @@ TEST(RoadNetwork, FarPointsAreNamedOnce) {
             1);
 }
 
-// A lane of half a metre: what six decimals cost is seen, and what nine save.
+// A lane of half a metre: six decimals cause visible errors, nine do not.
 TEST(RoadNetwork, MoreDecimalsAreKept) {
   const RoadNetwork network =
       build(small_with("1.1.2 40.000000 -82.999000", "1.1.2 40.000000123 -82.999000"), "scale = 0.142857142857");
@@ -183,7 +183,7 @@ TEST(RoadNetwork, MoreDecimalsAreKept) {
               1e-6);
 }
 
-// Edges of real lanes: half a width from the centre line, never nearer than the tolerance allows.
+// Edges of real lanes: half a width from the centre line, within the tolerance.
 TEST(RoadNetworkFiles, EdgesKeepTheirDistance) {
   const std::string folder = SF_SOURCE_DIR "/../shared/data/rndf/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the sources";
@@ -197,7 +197,7 @@ TEST(RoadNetworkFiles, EdgesKeepTheirDistance) {
         for (std::size_t i = 0; i < edge->size(); i += 3) {
           double nearest = INFINITY;
           for (const glm::dvec2& p : lane.centre.points) nearest = std::min(nearest, length(p - (*edge)[i]));
-          // Points of the centre line, not its pieces: a little farther at most.
+          // Distances to points of the centre line, not to its pieces: slightly larger at most.
           EXPECT_GE(nearest, half - 0.01) << name_of(network, lane);
           EXPECT_LE(nearest, half + 3.0) << name_of(network, lane);
         }
@@ -225,8 +225,8 @@ std::set<int> missed_from(const RoadNetwork& network, PointId start, bool with_c
   return missed;
 }
 
-// From a start chute of the final every checkpoint can be reached, but for three that need a change of lanes on George
-// Blvd (segment 6), which no exit tells of.
+// From a start chute of the final all checkpoints can be reached, except three that need a lane change on George Blvd
+// (segment 6), for which the file has no exit.
 TEST(RoadNetworkFiles, CheckpointsOfTheFinalAreReached) {
   const std::string file = SF_SOURCE_DIR "/../shared/data/rndf/darpa_sample/uce_rndf_1_final_event.rndf";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared data beside the sources";
@@ -237,7 +237,7 @@ TEST(RoadNetworkFiles, CheckpointsOfTheFinalAreReached) {
   EXPECT_EQ(missed_from(network, chute, true), std::set<int>{});
 }
 
-// SimVille's only lanes side by side in one direction are 1.1 and 1.2.
+// 1.1 and 1.2 are the only adjacent lanes of the same direction in SimVille.
 TEST(RoadNetwork, LaneChanges) {
   std::vector<Warning> warnings;
   const RoadNetwork network = load_roads(SF_SOURCE_DIR "/worlds/simville/simville.rndf", warnings);
@@ -256,7 +256,7 @@ TEST(RoadNetwork, LaneChanges) {
       EXPECT_LE(step.length, 2.6) << text_of(id);
     }
   }
-  // On the straight: 1.5 m on is the third of points that are 0.575 m apart, and the last points have nowhere to go.
+  // On the straight line: 1.5 m ahead is the third of points 0.575 m apart, and the last points have no change.
   const auto change = lane_changes(network, *find_point(network, {1, 1, 10}));
   ASSERT_EQ(change.size(), 1u);
   EXPECT_EQ(text_of(id_of(network, change[0].to)), "1.2.13");

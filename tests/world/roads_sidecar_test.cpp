@@ -1,4 +1,4 @@
-// What stands beside a network: its place, its scale, its finer widths.
+// Sidecars: position, scale and finer widths.
 
 #include "world/roads/sidecar.h"
 
@@ -108,7 +108,7 @@ TEST(Sidecar, WhatIsWrongIsRefused) {
   for (const auto& [text, error] : corpus) EXPECT_EQ(refusal(text).substr(0, error.size()), error) << text;
 }
 
-// Characters beyond ASCII: in comments, and after a byte order mark, never where they would mean something.
+// Characters beyond ASCII: accepted in comments and after a byte order mark, refused elsewhere.
 TEST(Sidecar, CommentsMayBeInAnyLanguage) {
   std::vector<Warning> warnings;
   EXPECT_EQ(parse_sidecar("a.toml", "\xEF\xBB\xBF# Maßstab\nscale = 0.5  # ein Halb, ½\n", warnings).scale, 0.5);
@@ -127,7 +127,7 @@ TEST(Sidecar, CommentsMayBeInAnyLanguage) {
   EXPECT_EQ(refused("\"a#\" = 1 # ƒ\n"), "a.toml:1" + expected) << "a quote may hide what looks like a comment";
 }
 
-// What is no TOML is the file's fault, whatever the parser takes for granted.
+// A text that is not TOML is an error of the file, also where toml++ has assumptions.
 TEST(Sidecar, NonsenseIsRefused) {
   std::vector<Warning> warnings;
   for (const char* text : {"=", ".", "[", "[.]", "[[", "a..b = 1", "a. = 1", "a = {,}", "a = {.}", "a = {=1}",
@@ -135,7 +135,7 @@ TEST(Sidecar, NonsenseIsRefused) {
     EXPECT_THROW(parse_sidecar("a.toml", text, warnings), base::InputError) << text;
 }
 
-// load_roads takes the file of the same name with .toml for .rndf.
+// load_roads reads the file of the same name with .toml for .rndf.
 TEST(Sidecar, StandsBesideItsNetwork) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "sf_sidecar_test";
   std::filesystem::create_directories(folder);

@@ -76,7 +76,7 @@ TEST_F(RosMap, UnknownIsAWallOnlyWhenAskedFor) {
   EXPECT_NEAR(area(load(kGood, options)), 0.5, 1e-12);
 }
 
-/// Grey 205 is (255 - 205) / 255 = 0.19608 occupied: just not below 0.196, map_server's threshold; 206 is.
+/// Grey 205 is (255 - 205) / 255 = 0.19608 occupied: just above map_server's threshold of 0.196; 206 is below.
 TEST_F(RosMap, Grey205IsUnknownAnd206IsFree) {
   const std::string yaml = "image: m.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n";
   const auto known = [&](const std::string& greys, const std::string& more = "") {
@@ -91,8 +91,7 @@ TEST_F(RosMap, Grey205IsUnknownAnd206IsFree) {
   EXPECT_NEAR(known("205 254", "free_thresh: 0.25\n"), 0.5, 1e-12) << "as the file says";
 }
 
-/// The form of Nav2's sandbox: an arena of 5 m with a pillar where the map's origin is, in a field of 20 m that nobody
-/// has seen.
+/// The layout of Nav2's sandbox: an arena of 5 m with a pillar at the map's origin, in an unexplored area of 20 m.
 void write_sandbox(const std::filesystem::path& folder) {
   std::string pixels(400 * 400, static_cast<char>(205));
   for (int row = 0; row < 400; ++row)
@@ -109,9 +108,9 @@ constexpr const char* kSandbox =
 
 TEST_F(RosMap, CopiesStartInsideTheArenaAmidTheUnknown) {
   write_sandbox(folder_);
-  for (const char* threshold : {"0.196", "0.25"})  // with the latter the field counts as free
+  for (const char* threshold : {"0.196", "0.25"})  // with the latter the unexplored area counts as free
     for (const Pose& start : {Pose{}, Pose{-7.0, 3.0, 0.0, 0.0}, Pose{1.0, 1.0, 0.0, 0.0}}) {
-      if (threshold[3] == '5' && start.x < -5.0) continue;  // it stands in what the file calls free
+      if (threshold[3] == '5' && start.x < -5.0) continue;  // it stands in an area that the file declares free
       World world = load(std::string(kSandbox) + threshold + "\n");
       scenes::add_create(world, start);
       update_extent_and_hash(world);
@@ -161,7 +160,7 @@ TEST_F(RosMap, TheYawTurnsAboutTheOrigin) {
 }
 
 TEST_F(RosMap, ThresholdsAreStrict) {
-  write("m.pgm", "P2 2 1 255\n51 50\n");  // occupied by 0.8, which is not above 0.8, and by a little more
+  write("m.pgm", "P2 2 1 255\n51 50\n");  // 0.8 occupied, which is not above 0.8, and slightly more
   std::string yaml = kGood;
   yaml.replace(yaml.find("0.65"), 4, "0.8");
   EXPECT_NEAR(area(load(yaml)), 0.25, 1e-12);

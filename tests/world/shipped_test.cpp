@@ -1,4 +1,4 @@
-// The worlds that come with the program load without a word, and hold what they promise.
+// The shipped worlds load without a warning and have their documented content.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace sf::world {
 namespace {
 
-/// As programs ask for it; sensors that are not read here are kept as they are written.
+/// Loads like the programs; sensors that are not read here are kept as written.
 World shipped(const std::string& name) {
   static constexpr std::string_view kAny[] = {"fov",     "samples",      "range_max", "range_min",    "scount",
                                               "spose[]", "ssensitivity", "sum",       "perpendicular"};
@@ -71,7 +71,7 @@ TEST(Shipped, SimVilleHasABridgeAndMagnets) {
   EXPECT_EQ(world.emitters[1].kind, Emitter::Kind::virtual_wall);
 }
 
-/// Those whose stop lines the pairs of lights govern must never both be told to go, or to clear the crossing.
+/// Of each pair of lights on crossing arms, at most one may be green or yellow at a time.
 TEST(Shipped, SimVillesLightsNeverLetCrossingArmsGo) {
   const World world = shipped("simville/simville.world");
   ASSERT_EQ(world.lights.size(), 7u);

@@ -12,7 +12,7 @@ namespace {
 
 World rooms() { return load_world(SF_SOURCE_DIR "/worlds/rooms.world"); }
 
-/// One row of each table that rooms.world has none of.
+/// One row of each table that is empty in rooms.world.
 void add_street(World& world) {
   world.paths.push_back({"lane", {{{1.0, 2.0, 0.0, 0.5}, 2.72, 0.0, 0.5}, {{3.0, 2.0, 0.0, 0.5}, 1.46, 1.07, 0.6}}});
   world.lights.push_back({"light",
@@ -57,7 +57,7 @@ TEST(Snapshot, ARoundTripKeepsEverything) {
   const auto bytes = snapshot(world);
   const World again = from_snapshot(bytes);
   EXPECT_EQ(again.hash, world.hash);
-  EXPECT_EQ(snapshot(again), bytes);  // so also names, colours, warnings and counts
+  EXPECT_EQ(snapshot(again), bytes);  // so names, colours, warnings and counts are equal as well
   EXPECT_EQ(again.extent.x_max, world.extent.x_max);
   EXPECT_EQ(again.movers.at(0).sensors.at(0).settings.at(1).text, "vector");
   EXPECT_EQ(again.lane_markings.at(0).line.at(1).y, 0.5);
@@ -74,7 +74,7 @@ TEST(Snapshot, ARoundTripKeepsEverything) {
   EXPECT_EQ(again.movers.at(1).lasers.at(0).color, world.movers.at(1).lasers.at(0).color);
 }
 
-/// Whatever is measured is a number, wherever a recording comes from; what may be without bound stays so.
+/// Measured quantities are finite, whatever the origin of a recording; quantities that may be unbounded stay so.
 TEST(Snapshot, NumbersThatAreNoneAreRefused) {
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     World world = rooms();
@@ -134,7 +134,7 @@ TEST(Snapshot, RowsThatBreakTheirRulesAreRefused) {
   EXPECT_TRUE(refused([](World& w) { w.lights[0].phases[0].state = static_cast<LightState>(6); }));
 }
 
-/// Each link of each table, one row past the end of what it names, and far past; kNone where that is no row.
+/// Each link of each table, one row past the end of its target, and far past; kNone where the row is required.
 TEST(Snapshot, LinksPastTheEndAreRefused) {
   World world = street();
   world.magnets.push_back({{1.0, 2.0}, -0.04, 0.5, 0.01, 1});
@@ -240,7 +240,7 @@ TEST(Translate, MovesEverythingThatHasAPlace) {
   EXPECT_EQ(after.walls[3].a.x, before.walls[3].a.x + 100'000.0);
   EXPECT_EQ(after.movers[1].X_WM.y, before.movers[1].X_WM.y - 50'000.0);
   EXPECT_EQ(after.models[2].X_WM.x, before.models[2].X_WM.x + 100'000.0);
-  EXPECT_EQ(after.movers[1].body[0].a.x, before.movers[1].body[0].a.x);  // bodies have frames of their own
+  EXPECT_EQ(after.movers[1].body[0].a.x, before.movers[1].body[0].a.x);  // bodies are in the mover's frame
   EXPECT_EQ(after.paths[0].pieces[1].X_WP.x, before.paths[0].pieces[1].X_WP.x + 100'000.0);
   EXPECT_EQ(after.lights[0].X_WL.y, before.lights[0].X_WL.y - 50'000.0);
   EXPECT_EQ(after.emitters[0].X_WE.x, before.emitters[0].X_WE.x + 100'000.0);

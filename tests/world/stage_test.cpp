@@ -120,7 +120,7 @@ TEST(Stage, ABoundaryIsAFrameOfFourWalls) {
   ASSERT_EQ(world.walls.size(), 8u);
   double area = 0.0;
   for (const Segment& wall : world.walls) area += base::cross(wall.a, wall.b) / 2;
-  EXPECT_NEAR(area, 4 * 2 - 3.98 * 1.98, 1e-12);  // the frame is solid, what it encloses is not
+  EXPECT_NEAR(area, 4 * 2 - 3.98 * 1.98, 1e-12);  // the frame is solid, its inside is not
 }
 
 TEST(Stage, AnOriginShiftsTheBodyNotThePose) {
@@ -142,7 +142,7 @@ TEST(Stage, BitmapWallsStopRobotsUnlessStagesRuleIsAskedFor) {
       "model( size [16 16 1] bitmap \"bitmaps/cave.png\" obstacle_return 0 ) model( obstacle_return 0 )";
   const World ours = read_world(text);
   EXPECT_TRUE(ours.walls.front().stops_robots);
-  EXPECT_FALSE(ours.walls.back().stops_robots);  // only floor plans are made solid
+  EXPECT_FALSE(ours.walls.back().stops_robots);  // only floor plans become solid
   LoadOptions options;
   options.stage_obstacles = true;
   EXPECT_FALSE(read_world(text, options).walls.front().stops_robots);
@@ -198,7 +198,7 @@ TEST(Stage, BoundsDriveAndWheelbaseAreRead) {
   EXPECT_DOUBLE_EQ(world.movers[0].max_turn, 45 * kDegree);
   EXPECT_EQ(world.movers[1].drive, Drive::omni);
   EXPECT_EQ(world.movers[2].drive, Drive::differential);
-  EXPECT_EQ(world.movers[2].max_forward, 1.0);  // Stage's own default
+  EXPECT_EQ(world.movers[2].max_forward, 1.0);  // Stage's default
   EXPECT_DOUBLE_EQ(world.movers[2].max_turn, 90 * kDegree);
 }
 
@@ -226,7 +226,7 @@ TEST(Stage, ATagMayBeMountedAnywhereOnItsModel) {
   EXPECT_EQ(warnings_of(world), "");
 }
 
-/// Robots say their own pose, and what is carried follows nothing.
+/// Robots report their own pose, and carried models follow no packets.
 TEST(Stage, ATagPoseOfWhatFollowsNoTagIsIgnoredWithAWarning) {
   const World world = read_world(
       "position( name \"roomba1\" tag_pose [1 0 0 0]\n model( name \"tag3\" tag_pose [1 0 0 0] ) )\n"
@@ -277,14 +277,14 @@ TEST(Stage, NamesAreUnique) {
   EXPECT_NE(warnings_of(world).find("a second model named 'a'"), std::string::npos);
 }
 
-// --- What is kept, ignored, suggested ---
+// --- Kept, ignored and suggested entities ---
 
 TEST(Stage, TypesThatAreNotModelledAreKeptCountedAndMentionedOnce) {
   const World world =
       read_world("position( fiducial() camera() )\nposition( fiducial( fov 60 ) bumper( size [.1 .1 .1 0] ) )");
   EXPECT_EQ(world.unmodelled, (std::map<std::string, int>{{"bumper", 1}, {"camera", 1}, {"fiducial", 2}}));
   EXPECT_EQ(world.warnings.size(), 3u) << warnings_of(world);
-  EXPECT_EQ(world.movers[0].body.size(), 8u);  // the camera is a box; a fiducial finder is nothing to run into
+  EXPECT_EQ(world.movers[0].body.size(), 8u);  // the camera is a box; a fiducial finder has no body
 }
 
 TEST(Stage, AnUnknownTypeIsKeptWithASuggestion) {
@@ -330,7 +330,7 @@ TEST(Stage, BlocksWithoutASizeSayWhatToWrite) {
   EXPECT_NE(warnings_of(millimetres).find("write size [12 8 3]"), std::string::npos) << "in the file's own unit";
   EXPECT_NE(warnings_of(read_world("model( bitmap \"bitmaps/cave.png\" )")).find("has no 'size': it is 0.1 x 0.1 m"),
             std::string::npos);
-  // As large as the size that it gets: nothing is misread.
+  // As large as the resulting size: no misunderstanding.
   EXPECT_EQ(warnings_of(read_world("model( block( points 3 point[0] [0 0] point[1] [0.1 0] point[2] [0 0.1] ) )")), "");
 }
 
@@ -440,7 +440,7 @@ TEST(Stage, AnEmptyWorldIsAWorld) {
   EXPECT_EQ(world.name, "test");
 }
 
-/// A room of 4 m with walls 0.2 m thick, as a floor plan would be; robots are discs of 0.2 m or points without a body.
+/// A room of 4 m with walls of 0.2 m, like a floor plan; robots are discs of 0.2 m or points without a body.
 TEST(Stage, ARobotThatCannotStandWhereItStartsIsAWarning) {
   const std::string room =
       "define wall model( size [4.4 0.2 1] )\n"

@@ -1,4 +1,4 @@
-// Lights, infrared emitters, holes in the floor, and what positions say of how they move.
+// Lights, infrared emitters, holes in the floor, and the motion properties of positions.
 
 #include <gtest/gtest.h>
 

@@ -90,7 +90,7 @@ std::vector<Segment> random_walls(std::uint32_t count, glm::dvec2 around, double
   return walls;
 }
 
-// Every wall that really passes through the box is asked about, none outside it.
+// Visits each wall that passes through the box, and no wall outside it.
 void expect_same_as_brute_force(const std::vector<Segment>& walls, glm::dvec2 around, double spread) {
   const WallGrid grid(walls, 0.5);
   for (std::uint32_t i = 0; i < 300; ++i) {
@@ -112,7 +112,7 @@ void expect_same_as_brute_force(const std::vector<Segment>& walls, glm::dvec2 ar
 
 TEST(WallGrid, FindsWhatBruteForceFinds) { expect_same_as_brute_force(random_walls(2000, {}, 40, 20), {}, 50); }
 
-/// More buckets than are filled together.
+/// More buckets than one part.
 TEST(WallGrid, FindsWhatBruteForceFindsAmongMany) {
   expect_same_as_brute_force(random_walls(60'000, {}, 300, 5), {}, 160);
 }
