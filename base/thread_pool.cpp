@@ -11,7 +11,7 @@ namespace sf::base {
 
 namespace {
 
-constexpr int kTurnsAwake = 1000;  ///< some 20 us
+constexpr int kTurnsAwake = 1000;  ///< about 20 us
 
 void pause() {
 #if defined(__x86_64__) || defined(__i386__)

@@ -9,8 +9,7 @@
 // end at range_max is free. Within one scan occupied takes precedence over free; a later scan overwrites the cells that
 // it covers. Cells outside the map are skipped; beams that leave the map are not.
 //
-// Where we deviate from the thesis: there each beam's cells are set in turn, so a later beam may overwrite the end of
-// an earlier one.
+// Deviation: the thesis sets each beam's cells in turn, so a later beam may overwrite the end of an earlier one.
 
 #include <cstdint>
 #include <span>

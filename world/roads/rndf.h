@@ -52,7 +52,7 @@ struct RndfCheckpoint {
 
 struct RndfLane {
   int number = 0;                  ///< in [1, 32768]
-  std::optional<double> width_ft;  ///< [ft] > 0; nothing where the file says nothing or 0
+  std::optional<double> width_ft;  ///< [ft] > 0; nullopt when the file has no width or 0
   Boundary left = Boundary::none;
   Boundary right = Boundary::none;
   std::vector<RndfPoint> points;  ///< at least one, in driving direction
@@ -71,7 +71,7 @@ struct RndfSegment {
 
 struct RndfSpot {
   int number = 0;                  ///< in [1, 32768]
-  std::optional<double> width_ft;  ///< [ft] > 0; nothing where the file says nothing or 0
+  std::optional<double> width_ft;  ///< [ft] > 0; nullopt when the file has no width or 0
   std::vector<RndfPoint> points;   ///< two: entry and end
   std::vector<RndfCheckpoint> checkpoints;
   int line = 0;
