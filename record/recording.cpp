@@ -46,12 +46,12 @@ void read_info(const McapContents& contents, Recording& recording) {
                                   [&](const McapMessage& message) { return type_of(contents, message) == kRunInfo; });
   if (found == contents.messages.end() || !decode_run_info(found->data, recording.info)) {
     throw base::InputError(recording.file, 0,
-                           "not a run of ours: expected a readable " + std::string(kRunInfo) + " message");
+                           "not a sensorfarm recording: expected a readable " + std::string(kRunInfo) + " message");
   }
   const auto world = std::find_if(contents.attachments.begin(), contents.attachments.end(),
                                   [](const McapAttachment& attachment) { return attachment.name == "world.bin"; });
   if (world == contents.attachments.end() || world->data.empty()) {
-    throw base::InputError(recording.file, 0, "no whole world inside: expected an attachment world.bin");
+    throw base::InputError(recording.file, 0, "no complete world inside: expected an attachment world.bin");
   }
   recording.info.snapshot.assign(world->data.begin(), world->data.end());
 }

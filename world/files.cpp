@@ -37,7 +37,7 @@ struct Descriptor {
 }
 
 [[noreturn]] void refuse_size(const std::string& file, std::size_t most) {
-  throw base::InputError(file, 0, fmt::format("larger than {} MiB, the most that is read of such a file", most >> 20));
+  throw base::InputError(file, 0, fmt::format("larger than {} MiB, the limit for such files", most >> 20));
 }
 
 }  // namespace
@@ -64,13 +64,12 @@ std::string read_bytes(const std::string& file, std::size_t most) {
   // O_NONBLOCK: opening a pipe without a writer would block.
   const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (in.number < 0 && (errno == ENOENT || errno == ENOTDIR))
-    throw base::InputError(file, 0, "no such file; give the path of a file that is there");
+    throw base::InputError(file, 0, "no such file; give the path of an existing file");
   if (in.number < 0) fail_to_read(file);
   struct stat status = {};
   if (::fstat(in.number, &status) != 0) fail_to_read(file);
   if (!S_ISREG(status.st_mode))
-    throw base::InputError(file, 0,
-                           "not a file but a folder, a device or a pipe; give the path of a file that is there");
+    throw base::InputError(file, 0, "not a file but a folder, a device or a pipe; give the path of an existing file");
   const auto promised = static_cast<std::size_t>(status.st_size);
   if (promised > most) refuse_size(file, most);
 

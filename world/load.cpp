@@ -15,7 +15,7 @@ World load_world(const std::string& file, const LoadOptions& options) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (is_ros_map(file)) return load_ros_map(file, options);
   if (ending == ".rndf" || ending == ".rdf" || ending == ".mdf")
-    throw base::InputError(file, 0, "is no world, but can be part of one: a world file with road( rndf \"FILE\" )");
+    throw base::InputError(file, 0, "is not a world, but can be part of one: a world file with road( rndf \"FILE\" )");
   return build_world(file, read_text(file), options);
 }
 

@@ -125,7 +125,7 @@ std::uint32_t next_number(Cursor& c) {
 std::uint32_t next_sample(Cursor& c, bool binary, std::uint32_t depth) {
   if (!binary) return next_number(c);
   const std::size_t size = depth > 255 ? 2 : 1;
-  if (c.at + size > c.bytes.size()) fail(c, "fewer pixels than its header says");
+  if (c.at + size > c.bytes.size()) fail(c, "fewer pixels than in its header");
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < size; ++i) value = value * 256 + static_cast<std::uint8_t>(c.bytes[c.at++]);
   return value;
@@ -143,7 +143,7 @@ Picture read_pgm(const std::string& file, const std::string& bytes) {
   if (binary) ++c.at;  // the single blank between header and pixels
 
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
-  if (bytes.size() - std::min(c.at, bytes.size()) < pixels) fail(c, "fewer pixels than its header says");
+  if (bytes.size() - std::min(c.at, bytes.size()) < pixels) fail(c, "fewer pixels than in its header");
   picture.value.resize(pixels);
   for (std::uint8_t& value : picture.value) {
     const std::uint32_t sample = next_sample(c, binary, white);

@@ -66,7 +66,7 @@ Pose origin_of(const Yaml& yaml) {
   X_WL.y = finite(yaml, node[1], "y of 'origin'");
   X_WL.yaw = finite(yaml, node[2], "yaw of 'origin'");
   if (std::abs(X_WL.x) > kMaxLength || std::abs(X_WL.y) > kMaxLength || std::abs(X_WL.yaw) > 1e6) {
-    fail(yaml, node, "'origin' is out of reach");
+    fail(yaml, node, "'origin' is out of range");
   }
   return X_WL;
 }

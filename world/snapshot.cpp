@@ -220,7 +220,7 @@ World from_snapshot(const std::vector<std::uint8_t>& bytes) {
   get_rows(in, world.road_files, 4, [](base::ByteReader& from) { return from.get_string(); });
   get_extras(in, world);
   const auto hash = in.get<std::uint64_t>();
-  if (!in.good() || in.left() != 0) refuse("cut short, or longer than it says");
+  if (!in.good() || in.left() != 0) refuse("truncated, or longer than declared");
   check_links(world);
   check_rows(world);
   check_numbers(world);

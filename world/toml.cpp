@@ -135,7 +135,7 @@ const TomlNode* find(const TomlNode& table, std::string_view key) {
 
 TomlNode parse_toml(const std::string& file, std::string_view text) {
   if (text.size() > kMaxBytes)
-    throw base::InputError(file, 0, fmt::format("larger than {} MiB, the most that is read of TOML", kMaxBytes >> 20));
+    throw base::InputError(file, 0, fmt::format("larger than {} MiB, the limit for TOML files", kMaxBytes >> 20));
   try {
     const std::string ascii = in_ascii(file, text);
     check_keys(file, ascii);

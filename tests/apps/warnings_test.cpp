@@ -158,8 +158,9 @@ TEST(Warnings, RoadsWithSlipsAreTakenAndStrictlyRefused) {
       << draw.err;
   const Outcome strict = run_program({"check", rndf, "--strict"});
   EXPECT_EQ(strict.code, 2);
-  EXPECT_EQ(strict.err, "sensorfarm: " + rndf +
-                            ":6: 'num_waypoints' says 7, but lane 1.1 has 2; mend the number or what it counts\n");
+  EXPECT_EQ(strict.err,
+            "sensorfarm: " + rndf +
+                ":6: 'num_waypoints' says 7, but lane 1.1 has 2; correct the number, or add or remove entries\n");
   const std::string world = folder.write("slips.world", "road( rndf \"slips.rndf\" )\n");
   EXPECT_EQ(Json(run_program({"check", world, "--json"}).out).size("/warnings"), 2u);
   EXPECT_EQ(run_program({"check", world, "--strict"}).code, 2);

@@ -222,11 +222,11 @@ TEST(Recording, WhatIsNoRecordingOfOursIsRefusedWithTheReason) {
   EXPECT_NE(refusal({}).find("not an MCAP file"), std::string::npos);
 
   McapWriter foreign("ros2", "somebody else");
-  EXPECT_NE(refusal(finished(foreign)).find("not a run of ours"), std::string::npos);
+  EXPECT_NE(refusal(finished(foreign)).find("not a sensorfarm recording"), std::string::npos);
 
   McapWriter worldless("ros2", "sensorfarm");
   add_run_info(worldless, {});
-  EXPECT_NE(refusal(finished(worldless)).find("no whole world inside"), std::string::npos);
+  EXPECT_NE(refusal(finished(worldless)).find("no complete world inside"), std::string::npos);
 }
 
 TEST(Recording, AStateOfAMoverThatIsNotThereIsLeftOutAndTold) {

@@ -157,13 +157,13 @@ TEST(RndfRefusals, OtherFiles) {
   EXPECT_NE(refusal_of("hello world\n").find("'RNDF_name' is missing"), std::string::npos);
   EXPECT_NE(refusal_of("{\"json\": 1}\n").find(":1: '{\"json\":' is no statement"), std::string::npos);
   EXPECT_NE(refusal_of("\x89PNG\r\n\x1a\n").find(":1: "), std::string::npos);
-  EXPECT_NE(refusal_of(std::string("RNDF_name x\nnum\0segments", 24)).find(":2: byte 0x00 is no text"),
+  EXPECT_NE(refusal_of(std::string("RNDF_name x\nnum\0segments", 24)).find(":2: byte 0x00 is not text"),
             std::string::npos);
   EXPECT_NE(refusal_of(std::string(5'000'000, 'a')).find("is no statement"), std::string::npos);
   std::string words;
   for (char a = 'a'; a <= 'z'; ++a)
     for (char b = 'a'; b <= 'z'; ++b) words += std::string{a, b, '\n'};
-  EXPECT_NE(refusal_of(words).find("keywords that no RNDF has"), std::string::npos);
+  EXPECT_NE(refusal_of(words).find("unknown keywords; is this an RNDF?"), std::string::npos);
 }
 
 TEST(RndfRefusals, MissingFile) {

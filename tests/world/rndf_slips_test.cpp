@@ -18,36 +18,35 @@ struct Slip {
 TEST(RndfSlips, WhatIsClearIsTaken) {
   const RoadCounts fine = count(small_rndf());
   const std::vector<Slip> corpus{
-      {"num_waypoints 3", "num_waypoints 122", "10: 'num_waypoints' says 122, but lane 1.1 has 3; 3 are taken"},
-      {"num_waypoints 3", "num_waypoints 2", "10: 'num_waypoints' says 2, but lane 1.1 has 3; 3 are taken"},
-      {"num_waypoints 3\n", "", "9: 'num_waypoints' is missing in lane 1.1; 3 are taken"},
+      {"num_waypoints 3", "num_waypoints 122", "10: 'num_waypoints' says 122, but lane 1.1 has 3; 3 are used"},
+      {"num_waypoints 3", "num_waypoints 2", "10: 'num_waypoints' says 2, but lane 1.1 has 3; 3 are used"},
+      {"num_waypoints 3\n", "", "9: 'num_waypoints' is missing in lane 1.1; 3 are used"},
       {"num_waypoints 3", "num_waypoints many",
-       "10: 'num_waypoints' is 'many', no number above zero; what is there is counted"},
-      {"num_lanes 2\n", "", "6: 'num_lanes' is missing in segment 1; 2 are taken"},
+       "10: 'num_waypoints' is 'many', not a number above zero; the actual entries are counted"},
+      {"num_lanes 2\n", "", "6: 'num_lanes' is missing in segment 1; 2 are used"},
       {"num_lanes 2\n", "num_lanes 2\nnum_lanes 3\n", "8: 'num_lanes' is given twice in segment 1; the first counts"},
-      {"num_segments 2", "num_segments 3", "2: 'num_segments' says 3, but the file has 2; 2 are taken"},
-      {"num_zones 1", "num_zones 0", "3: 'num_zones' says 0, but the file has 1; 1 is taken"},
-      {"num_spots 1", "num_spots 9", "40: 'num_spots' says 9, but zone 3 has 1; 1 is taken"},
+      {"num_segments 2", "num_segments 3", "2: 'num_segments' says 3, but the file has 2; 2 are used"},
+      {"num_zones 1", "num_zones 0", "3: 'num_zones' says 0, but the file has 1; 1 is used"},
+      {"num_spots 1", "num_spots 9", "40: 'num_spots' says 9, but zone 3 has 1; 1 is used"},
       {"num_perimeterpoints 4", "num_perimeterpoints 5",
-       "43: 'num_perimeterpoints' says 5, but perimeter 3.0 has 4; 4 are taken"},
+       "43: 'num_perimeterpoints' says 5, but perimeter 3.0 has 4; 4 are used"},
       {"RNDF_name small\n", "", "0: 'RNDF_name' is missing; it has no name"},
-      {"exit 3.0.3 1.2.1", "exit 1.2.2 3.0.1", "44: exit 1.2.2 stands in perimeter 3.0; it is taken as one of 1.2"},
-      {"exit 1.1.3 2.1.1", "exit 1.2.2 2.1.1", "16: exit 1.2.2 stands in lane 1.1; it is taken as one of 1.2"},
-      {"stop 1.1.3", "stop 1.2.2", "15: stop 1.2.2 stands in lane 1.1; it is taken as one of 1.2"},
-      {"checkpoint 1.1.2 1", "checkpoint 1.2.2 1",
-       "14: checkpoint 1.2.2 stands in lane 1.1; it is taken as one of 1.2"},
+      {"exit 3.0.3 1.2.1", "exit 1.2.2 3.0.1", "44: exit 1.2.2 stands in perimeter 3.0; it is assigned to 1.2"},
+      {"exit 1.1.3 2.1.1", "exit 1.2.2 2.1.1", "16: exit 1.2.2 stands in lane 1.1; it is assigned to 1.2"},
+      {"stop 1.1.3", "stop 1.2.2", "15: stop 1.2.2 stands in lane 1.1; it is assigned to 1.2"},
+      {"checkpoint 1.1.2 1", "checkpoint 1.2.2 1", "14: checkpoint 1.2.2 stands in lane 1.1; it is assigned to 1.2"},
       {"exit 1.1.3 2.1.1\n", "exit 1.1.3 2.1.1\nexit 1.1.3 2.1.1\n",
-       "17: exit 1.1.3 to 2.1.1 is already in line 16; it is taken once"},
-      {"stop 1.1.3\n", "stop 1.1.3\nstop 1.1.3\n", "16: stop 1.1.3 is given twice; it is taken once"},
+       "17: exit 1.1.3 to 2.1.1 is already in line 16; it counts once"},
+      {"stop 1.1.3\n", "stop 1.1.3\nstop 1.1.3\n", "16: stop 1.1.3 is given twice; it counts once"},
       {"checkpoint 1.1.2 1\n", "checkpoint 1.1.2 1\ncheckpoint 1.1.2 1\n",
-       "15: checkpoint 1 is already in line 14; it is taken once"},
+       "15: checkpoint 1 is already in line 14; it counts once"},
       {"lane_width 12\n", "lane_width 12\nlane_width 12\n",
        "12: 'lane_width' is given twice in lane 1.1; the first counts"},
       {"lane_width 12", "lane_width 12 feet",
-       "11: 'feet' was not expected after '12'; it and what follows it is left out"},
+       "11: 'feet' was not expected after '12'; it and the rest of the line are ignored"},
       {"1.1.1 40.000000 -83.000000", "1.1.1 40.000000 -83.000000 (corner)",
-       "17: '(corner)' was not expected after '-83.000000'; it and what follows it is left out"},
-      {"left_boundary double_yellow", "left_boundary", "12: 'left_boundary' is ''; no paint is taken"},
+       "17: '(corner)' was not expected after '-83.000000'; it and the rest of the line are ignored"},
+      {"left_boundary double_yellow", "left_boundary", "12: 'left_boundary' is ''; no marking is assumed"},
   };
   for (const Slip& slip : corpus) {
     const std::string text = small_with(slip.from, slip.to);
@@ -127,10 +126,10 @@ TEST(RndfSlips, AllProblemsAreToldInOneRun) {
             "small.rndf:16: the exit leads to way-point 9.1.1, which does not exist; expected one of this file\n"
             "small.rndf:36: the latitude is '41,001000'; expected a number such as -77.205045\n"
             "small.rndf:51: the width is 'wide'; expected a number such as -77.205045\n"
-            "small.rndf:7: warning: 'num_lanes' says 7, but segment 1 has 2; 2 are taken\n"
-            "small.rndf: 3 problems without a clear meaning: nothing is taken of it");
+            "small.rndf:7: warning: 'num_lanes' says 7, but segment 1 has 2; 2 are used\n"
+            "small.rndf: 3 problems without a clear meaning: the file is not used");
   EXPECT_EQ(refusal_of(text),
-            "small.rndf:7: 'num_lanes' says 7, but segment 1 has 2; mend the number or what it counts")
+            "small.rndf:7: 'num_lanes' says 7, but segment 1 has 2; correct the number, or add or remove entries")
       << "strictly the first one ends it";
 }
 
@@ -157,14 +156,15 @@ const std::string kMission =
 
 TEST(MdfSlips, WhatIsClearIsTaken) {
   const std::vector<Slip> corpus{
-      {"num_speed_limits 2", "num_speed_limits 68", "9: 'num_speed_limits' says 68, but there are 2; 2 are taken"},
-      {"num_speed_limits 2\n", "", "0: 'num_speed_limits' is missing; 2 are taken"},
-      {"num_checkpoints 2", "num_checkpoints 1", "4: 'num_checkpoints' says 1, but there are 2; 2 are taken"},
-      {"num_checkpoints 2", "num_checkpoints", "4: 'num_checkpoints' is '', no number; what is there is counted"},
+      {"num_speed_limits 2", "num_speed_limits 68", "9: 'num_speed_limits' says 68, but there are 2; 2 are used"},
+      {"num_speed_limits 2\n", "", "0: 'num_speed_limits' is missing; 2 are used"},
+      {"num_checkpoints 2", "num_checkpoints 1", "4: 'num_checkpoints' says 1, but there are 2; 2 are used"},
+      {"num_checkpoints 2", "num_checkpoints",
+       "4: 'num_checkpoints' is '', not a number; the actual entries are counted"},
       {"MDF_name go\n", "", "0: 'MDF_name' is missing; it has no name"},
       {"RNDF small\n", "RNDF small\nRNDF_name small\n", "3: 'RNDF_name' is given twice; the first counts"},
-      {"1 0 15\n", "1 0 15 mph\n", "10: 'mph' was not expected after '15'; it and what follows it is left out"},
-      {"1 0 15\n", "1 0 15\n1 0 15\n", "11: 1 has a speed limit in line 10 already; it is taken once"},
+      {"1 0 15\n", "1 0 15 mph\n", "10: 'mph' was not expected after '15'; it and the rest of the line are ignored"},
+      {"1 0 15\n", "1 0 15\n1 0 15\n", "11: 1 has a speed limit in line 10 already; it counts once"},
   };
   for (const Slip& slip : corpus) {
     const std::string text = with(kMission, slip.from, slip.to);

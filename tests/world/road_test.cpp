@@ -63,7 +63,8 @@ TEST(Road, ANetworkAloneIsNoWorld) {
     load_world(SF_SOURCE_DIR "/worlds/simville/simville.rndf");
     FAIL();
   } catch (const base::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("is no world, but can be part of one"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("is not a world, but can be part of one"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -99,10 +99,10 @@ TEST(Sidecar, WhatIsWrongIsRefused) {
       {"lane_width_m = 0", "small.toml:1: 'lane_width_m' is 0"},
       {"dash_length_m = -1", "small.toml:1: 'dash_length_m' expects"},
       {"lanes = 3", "small.toml:1: 'lanes' expects a table"},
-      {"[lanes.\"1\"]", "small.toml:1: '1' is no lane"},
+      {"[lanes.\"1\"]", "small.toml:1: '1' is not a lane"},
       {"[lanes.\"1.9\"]", "small.toml:1: small.rndf has no lane 1.9"},
       {"[lanes.\"1.1\"]\nleft = \"dotted\"", "small.toml:2: 'left' expects one of double_yellow"},
-      {"[points.\"1.1\"]", "small.toml:1: '1.1' is no way-point"},
+      {"[points.\"1.1\"]", "small.toml:1: '1.1' is not a way-point"},
       {"[points.\"1.1.1\"]", "small.toml:1: 'position' is missing"},
       {"[points.\"1.1.9\"]\nposition = [0, 0]", "small.toml:1: small.rndf has no point 1.1.9"}};
   for (const auto& [text, error] : corpus) EXPECT_EQ(refusal(text).substr(0, error.size()), error) << text;

@@ -323,7 +323,7 @@ TEST(Stage, BlocksWithoutASizeSayWhatToWrite) {
   EXPECT_EQ(
       warnings_of(world),
       "2: 'house' has blocks of 12 x 8 m but no 'size': they are scaled to 0.1 x 0.1 x 0.1 m; write size [12 8 3] "
-      "for what the blocks say\n");
+      "for the size of the blocks\n");
   EXPECT_NEAR(world.extent.x_max, 0.05, 1e-12) << "it is Stage's rule all the same";
   EXPECT_EQ(warnings_of(read_world(fmt::format("model( size [12 8 3] {} )", blocks))), "");
   const World millimetres = read_world(fmt::format("unit_length \"mm\"\nmodel( {} )", blocks));
@@ -352,9 +352,9 @@ TEST(Stage, OfStagesPluginsWanderIsOneOfOurs) {
   EXPECT_EQ(world.movers.at(4).controller, "wander") << "what else it says is the plug-in's";
   EXPECT_EQ(
       warnings_of(world),
-      "3: ctrl \"fasr\" names a plug-in of Stage, which is not run; choose one of ours with --controller NAME, or "
+      "3: ctrl \"fasr\" names a plug-in of Stage, which is not run; choose a controller with --controller NAME, or "
       "write ctrl \"wander\"\n"
-      "6: 'ctrl' drives robots, and 'e' is none: write it into the robot's own parentheses\n");
+      "6: 'ctrl' is for robots, and 'e' is not a robot: write it into the robot's own parentheses\n");
 }
 
 TEST(Stage, BlocksAndSensorsOutsideTheirPlaceAreMentioned) {

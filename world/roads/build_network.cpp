@@ -36,7 +36,7 @@ struct Builder {
     if (!warned_far && length(flat) > kFar) {
       warned_far = true;
       warn(point.line,
-           fmt::format("{} is {:.0f} km from the origin; flat metres are short there (check the degrees, or "
+           fmt::format("{} is {:.0f} km from the origin; distances are too short there (check the degrees, or "
                        "set 'origin' in the sidecar)",
                        text_of(point.id), length(flat) / 1000.0));
     }
@@ -96,8 +96,8 @@ void add_lane(Builder& b, const RndfSegment& segment, const RndfLane& from) {
   lane.left_edge = offset_curve(lane.centre, 0.5 * lane.width);
   lane.right_edge = offset_curve(lane.centre, -0.5 * lane.width);
   if (lane.centre.points.size() < 2)
-    b.warn(from.line,
-           fmt::format("lane {}.{} has one point only: no direction, no edges and no paint", segment.id, from.number));
+    b.warn(from.line, fmt::format("lane {}.{} has one point only: no direction, no edges and no markings", segment.id,
+                                  from.number));
   b.network.lanes.push_back(std::move(lane));
 }
 

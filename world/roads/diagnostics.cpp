@@ -16,8 +16,7 @@ constexpr std::size_t kMaxSlips = 10'000;
 void Diagnostics::add_warning(int line, const std::string& what, const std::string& remedy, const std::string& taken) {
   if (strict_) throw base::InputError(file_, line, fmt::format("{}; {}", what, remedy));
   if (warnings_->size() >= kMaxSlips)
-    return add_error(
-        line, fmt::format("{}, and there were {} slips before; is this file what it should be?", what, kMaxSlips));
+    return add_error(line, fmt::format("{}, after {} warnings; is this the right file?", what, kMaxSlips));
   warnings_->push_back({file_, line, fmt::format("{}; {}", what, taken)});
 }
 
@@ -42,7 +41,7 @@ void Diagnostics::throw_errors() {
   for (std::size_t i = 0; i < shown; ++i)
     text += fmt::format("\n{}:{}: warning: {}", file_, (*warnings_)[i].line, (*warnings_)[i].message);
   if (refused_.size() + shown > 1)
-    text += fmt::format("\n{}: {}{} without a clear meaning: nothing is taken of it", file_, refused_.size(),
+    text += fmt::format("\n{}: {}{} without a clear meaning: the file is not used", file_, refused_.size(),
                         refused_.size() >= kMaxProblems ? " problems and more"
                         : refused_.size() == 1          ? " problem"
                                                         : " problems");

@@ -38,7 +38,8 @@ class MdfReader {
     check_name();
     if (!ended_) warn(statements_.line(), "'end_file' is missing at the end of the file");
     if (ended_ && next())
-      warn(now().line, fmt::format("{} comes after 'end_file'; it and what follows is ignored", quoted(now().keyword)));
+      warn(now().line,
+           fmt::format("{} comes after 'end_file'; it and all later lines are ignored", quoted(now().keyword)));
     check_count("num_checkpoints", mdf_.checkpoints.size());
     check_count("num_speed_limits", mdf_.speed_limits.size());
     diagnostics_.throw_errors();
@@ -121,7 +122,7 @@ class MdfReader {
       return;
     }
     if (word.substr(4) != name_of(block_))
-      statements_.fail(fmt::format("'{}' ends what is not open; expected '{}' before it", word, word.substr(4)));
+      statements_.fail(fmt::format("'{}' has no matching start; expected '{}' before it", word, word.substr(4)));
     block_ = Block::file;
   }
 
@@ -144,14 +145,14 @@ class MdfReader {
     } catch (const base::InputError&) {
       if (diagnostics_.strict()) throw;
       warn(now().line,
-           fmt::format("'{}' is {}, no number; what is there is counted", now().keyword, quoted(now().rest)));
+           fmt::format("'{}' is {}, not a number; the actual entries are counted", now().keyword, quoted(now().rest)));
     }
     promises_[std::string(now().keyword)] = said;
   }
 
   // Checks a declared count. The actual number takes precedence, unless the file ends before that number was reached.
   void check_count(const std::string& keyword, std::size_t have) {
-    const std::string taken = have == 1 ? "1 is taken" : fmt::format("{} are taken", have);
+    const std::string taken = have == 1 ? "1 is used" : fmt::format("{} are used", have);
     const auto said = promises_.find(keyword);
     if (said == promises_.end())
       return diagnostics_.add_warning(0, fmt::format("'{}' is missing", keyword),
@@ -161,7 +162,7 @@ class MdfReader {
     const std::string what = fmt::format("'{}' says {}, but there are {}", keyword, count, have);
     if (!ended_ && static_cast<std::size_t>(count) > have)
       return diagnostics_.add_error(line, what + ": the file is cut short");
-    diagnostics_.add_warning(line, what, "mend the number or what it counts", taken);
+    diagnostics_.add_warning(line, what, "correct the number, or add or remove entries", taken);
   }
 
   void row() {
@@ -192,7 +193,7 @@ class MdfReader {
       const std::string what = fmt::format("{} has a speed limit in line {} already", limit.id, old->second.line);
       const bool same = old->second.least_mph == limit.least_mph && old->second.most_mph == limit.most_mph;
       if (!same) statements_.fail(what + "; expected one for each segment or zone");
-      return diagnostics_.add_warning(limit.line, what, "expected one for each segment or zone", "it is taken once");
+      return diagnostics_.add_warning(limit.line, what, "expected one for each segment or zone", "it counts once");
     }
     mdf_.speed_limits.push_back(limit);
   }

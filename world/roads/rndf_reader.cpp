@@ -126,7 +126,7 @@ void RndfReader::warn_once(std::string_view keyword, std::string message) {
   if (unknown_.emplace(keyword).second) warn(now().line, std::move(message));
   if (unknown_.size() > kMaxUnknown)
     throw WrongFormatError(statements_.file(), now().line,
-                           fmt::format("{} keywords that no RNDF has; is this one?", unknown_.size()));
+                           fmt::format("{} unknown keywords; is this an RNDF?", unknown_.size()));
 }
 
 /// Reads the next statement; false at the end, and when no text follows.
@@ -146,7 +146,8 @@ Rndf RndfReader::read() {
     warn(statements_.line(), "'end_file' is missing at the end of the file");
     close();
   } else if (next()) {
-    warn(now().line, fmt::format("{} comes after 'end_file'; it and what follows is ignored", quoted(now().keyword)));
+    warn(now().line,
+         fmt::format("{} comes after 'end_file'; it and all later lines are ignored", quoted(now().keyword)));
   }
   check_references(rndf_, unread_, diagnostics_);
   diagnostics_.throw_errors();
@@ -232,18 +233,18 @@ void RndfReader::check_declared(const Open& open, std::string_view keyword, std:
   if (said == open.declared.end()) {
     const std::string what = fmt::format("'{}' is missing in {}", keyword, open.name);
     const std::string remedy = fmt::format("expected '{} {}'", keyword, have);
-    if (have > 0) return diagnostics_.add_warning(open.line, what, remedy, fmt::format("{} taken", counted(have)));
+    if (have > 0) return diagnostics_.add_warning(open.line, what, remedy, fmt::format("{} used", counted(have)));
     return may_be_none ? warn(open.line, what + "; " + remedy)
                        : diagnostics_.add_error(open.line, what + "; " + remedy);
   }
   const int count = said->second.count, line = said->second.line;
   if (static_cast<std::size_t>(count) == have || (count < 0 && have > 0)) return;
   const std::string what = fmt::format("'{}' says {}, but {} has {}", keyword, said->second.text, open.name, have);
-  const char* remedy = "mend the number or what it counts";
+  const char* remedy = "correct the number, or add or remove entries";
   if (have == 0 && !may_be_none) return diagnostics_.add_error(line, fmt::format("{}; {}", what, remedy));
   if (cut_ && static_cast<std::size_t>(std::max(count, 0)) > have)
     return diagnostics_.add_error(line, what + ": the file is cut short");
-  diagnostics_.add_warning(line, what, remedy, fmt::format("{} taken", counted(have)));
+  diagnostics_.add_warning(line, what, remedy, fmt::format("{} used", counted(have)));
 }
 
 void RndfReader::check_name() {
@@ -280,9 +281,8 @@ void RndfReader::close() {
       break;
     case RndfBlock::spot:
       if (spot().points.size() + last.skipped != 2)
-        diagnostics_.add_error(
-            last.line, fmt::format("{} has {} points; expected two, where it is entered and where it ends", last.name,
-                                   spot().points.size()));
+        diagnostics_.add_error(last.line, fmt::format("{} has {} points; expected two: its entry and its end",
+                                                      last.name, spot().points.size()));
       break;
   }
   open_.pop_back();

@@ -88,7 +88,8 @@ bool StatementReader::read_line() {
       current_ += ' ';
     } else if (is_control(c)) {
       throw base::InputError(
-          file_, line_, fmt::format("byte {:#04x} is no text; expected an RNDF or MDF", static_cast<unsigned char>(c)));
+          file_, line_,
+          fmt::format("byte {:#04x} is not text; expected an RNDF or MDF", static_cast<unsigned char>(c)));
     } else {
       current_ += c;
     }
@@ -123,12 +124,12 @@ std::string StatementReader::extra(std::size_t count) const {
 
 void StatementReader::expect_fields(std::size_t count) const {
   if (now_.fields.size() > count)
-    diagnostics_.add_warning(now_.line, extra(count), "put remarks between /* and */",
-                             "it and what follows it is left out");
+    diagnostics_.add_warning(now_.line, extra(count), "put comments between /* and */",
+                             "it and the rest of the line are ignored");
 }
 
 void StatementReader::require_fields(std::size_t count) const {
-  if (now_.fields.size() > count) fail(extra(count) + "; put remarks between /* and */");
+  if (now_.fields.size() > count) fail(extra(count) + "; put comments between /* and */");
 }
 
 int StatementReader::whole(std::size_t i, int least, std::string_view what) const {

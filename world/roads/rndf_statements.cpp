@@ -30,8 +30,8 @@ void RndfReader::read_declared_count(int least, std::string_view what) {
     statements_.expect_fields(1);
   } catch (const base::InputError&) {
     if (diagnostics_.strict()) throw;
-    warn(now().line,
-         fmt::format("'{}' is {}, no number above zero; what is there is counted", now().keyword, quoted(now().rest)));
+    warn(now().line, fmt::format("'{}' is {}, not a number above zero; the actual entries are counted", now().keyword,
+                                 quoted(now().rest)));
   }
   open_.back().declared.emplace(now().keyword, promise);
 }
@@ -141,7 +141,7 @@ PointId RndfReader::own_or_known(PointId id, std::string_view what) {
   if (diagnostics_.strict() || id.point == 0 || (id.segment == here.segment && id.lane == here.lane))
     return own(id, what);
   diagnostics_.add_warning(now().line, fmt::format("{} {} stands in {}", what, text_of(id), open_.back().name), "",
-                           fmt::format("it is taken as one of {}.{}", id.segment, id.lane));
+                           fmt::format("it is assigned to {}.{}", id.segment, id.lane));
   return id;
 }
 
@@ -163,7 +163,7 @@ void RndfReader::waypoint() {
                                  text_of(point.id), text_of(row.back().id)));
   if (point.id.point > expected && open_.back().seen.emplace("gap", "").second)
     warn(now().line,
-         fmt::format("way-point {} follows where {} was expected; numbers are left out", text_of(point.id), expected));
+         fmt::format("way-point {} follows where {} was expected; numbers are missing", text_of(point.id), expected));
   row.push_back(point);
   unread_.erase(id);
 }
@@ -172,7 +172,7 @@ void RndfReader::read_boundary(Boundary& boundary) {
   const auto read = now().fields.empty() ? std::nullopt : boundary_of(now().fields[0]);
   const std::string what = fmt::format("'{}' is {}", now().keyword, quoted(now().rest));
   const std::string remedy = fmt::format("expected one of {}", boundary_words());
-  if (now().fields.empty()) return diagnostics_.add_warning(now().line, what, remedy, "no paint is taken");
+  if (now().fields.empty()) return diagnostics_.add_warning(now().line, what, remedy, "no marking is assumed");
   if (!read) statements_.fail(what + "; " + remedy);
   statements_.expect_fields(1);
   boundary = *read;
@@ -198,7 +198,7 @@ void RndfReader::read_exit() {
     return diagnostics_.add_warning(
         now().line,
         fmt::format("exit {} to {} is already in line {}", text_of(exit.from), text_of(exit.to), old->second),
-        "expected it once", "it is taken once");
+        "expected it once", "it counts once");
   (open_.back().block == RndfBlock::lane ? lane().exits : zone().exits).push_back(exit);
 }
 
@@ -207,7 +207,7 @@ void RndfReader::read_stop() {
   statements_.expect_fields(1);
   if (!stops_.insert(stop.at).second)
     return diagnostics_.add_warning(now().line, fmt::format("stop {} is given twice", text_of(stop.at)),
-                                    "expected it once", "it is taken once");
+                                    "expected it once", "it counts once");
   lane().stops.push_back(stop);
 }
 
@@ -219,7 +219,7 @@ void RndfReader::read_checkpoint() {
   if (!fresh) {
     const std::string what = fmt::format("checkpoint {} is already in line {}", checkpoint.id, old->second.line);
     if (old->second.at != at) statements_.fail(what + "; expected an id of its own");
-    return diagnostics_.add_warning(now().line, what, "expected an id of its own", "it is taken once");
+    return diagnostics_.add_warning(now().line, what, "expected an id of its own", "it counts once");
   }
   (open_.back().block == RndfBlock::lane ? lane().checkpoints : spot().checkpoints).push_back(checkpoint);
 }

@@ -81,7 +81,7 @@ std::optional<Boundary> boundary(const Reader& reader, const TomlNode& table, st
 void read_lanes(const Reader& reader, const TomlNode& lanes, RoadSidecar& into) {
   for (const TomlNode& node : lanes.items) {
     const auto id = read_point_id(node.key, 2);
-    if (!id) reader.fail(node, fmt::format("{} is no lane; expected [lanes.\"1.2\"]", sf::world::quoted(node.key)));
+    if (!id) reader.fail(node, fmt::format("{} is not a lane; expected [lanes.\"1.2\"]", sf::world::quoted(node.key)));
     const TomlNode& table = reader.table(node, node.key);
     reader.warn_unknown(table, kLaneKeys);
     into.lanes[*id] = {reader.width(table, "width_m"), boundary(reader, table, "left"),
@@ -93,7 +93,7 @@ void read_points(const Reader& reader, const TomlNode& points, RoadSidecar& into
   for (const TomlNode& node : points.items) {
     const auto id = read_point_id(node.key);
     if (!id)
-      reader.fail(node, fmt::format("{} is no way-point; expected [points.\"1.2.3\"]", sf::world::quoted(node.key)));
+      reader.fail(node, fmt::format("{} is not a way-point; expected [points.\"1.2.3\"]", sf::world::quoted(node.key)));
     const TomlNode& table = reader.table(node, node.key);
     reader.warn_unknown(table, kPointKeys);
     const TomlNode* position = find(table, "position");

@@ -85,7 +85,7 @@ void read_define(ParseState& r) {
     fail(r, line, "expected: define NEW-NAME BASE-TYPE ( ... )");
   }
   if (name.text == base.text)
-    fail(r, line, fmt::format("'{}' is defined by itself; name what it is made of", name.text));
+    fail(r, line, fmt::format("'{}' is defined by itself; name another base type", name.text));
   ++r.at;
   if (next(r).kind != TokenKind::open) {
     fail(r, line, fmt::format("expected '(' after 'define {} {}', found {}", name.text, base.text, shown(next(r))));
@@ -109,7 +109,7 @@ void read_file(ParseState& r, const std::string& file, const std::string& text);
 [[noreturn]] void refuse_cycle(const ParseState& r, int line, const std::string& file) {
   std::string chain;
   for (const std::string& open : r.open_files) chain += open + " -> ";
-  fail(r, line, "this include closes a circle: " + chain + file);
+  fail(r, line, "this include is circular: " + chain + file);
 }
 
 void read_include(ParseState& r) {

@@ -48,7 +48,7 @@ LaserNoise noise_of(const StageContext& context, const LoadOptions& options, con
   noise.range_proportional = v[1];
   noise.angle_sigma = context.radians_per_unit * v[2];
   if (!(noise.range_proportional <= 1e3) || !(noise.angle_sigma <= 2 * M_PI)) {
-    fail(context, at, "'noise' is out of reach; expected [metres, metres per metre, angle]");
+    fail(context, at, "'noise' is out of range; expected [metres, metres per metre, angle]");
   }
   return noise;
 }
@@ -147,7 +147,7 @@ Laser read_transducer(StageContext& context, const Entity& entity, const Pose& X
     if (!p) fail(context, location_of(entity, "scount"), fmt::format("'{}' is missing: 'scount' promises it", key));
     const SourceLocation at = find(entity, key)->at;
     X_BS = {to_metres(context, at, (*p)[0]), to_metres(context, at, (*p)[1]), 0.0, context.radians_per_unit * (*p)[2]};
-    if (!(std::abs(X_BS.yaw) <= 1e6)) fail(context, at, fmt::format("the yaw of '{}' is out of reach", key));
+    if (!(std::abs(X_BS.yaw) <= 1e6)) fail(context, at, fmt::format("the yaw of '{}' is out of range", key));
   }
   X_BS.z += kTransducerHeight / 2.0;
   laser.X_MS = compose(X_MB, X_BS);

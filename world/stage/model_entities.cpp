@@ -216,7 +216,8 @@ void add_model(BuildState& b, const Entity& entity, Parent& parent) {
     own.X_MP = {};
   } else if (!controller.empty()) {
     warn(b.context, location_of(entity, "ctrl"),
-         fmt::format("'ctrl' drives robots, and '{}' is none: write it into the robot's own parentheses", said.name));
+         fmt::format("'ctrl' is for robots, and '{}' is not a robot: write it into the robot's own parentheses",
+                     said.name));
   }
 
   const Pose X_B = compose(model.mover == kNone ? model.X_WM : own.X_MP, pose(b.context, entity, "origin"));

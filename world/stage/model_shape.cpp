@@ -111,7 +111,7 @@ void warn_unsized(StageContext& context, const Entity& entity, const Span& span,
   const double unit = context.metres_per_unit;
   warn(context, entity.at,
        fmt::format("'{}' has blocks of {:.4g} x {:.4g} m but no 'size': they are scaled to {:g} x {:g} x {:g} m; write "
-                   "size [{:.6g} {:.6g} {:.6g}] for what the blocks say",
+                   "size [{:.6g} {:.6g} {:.6g}] for the size of the blocks",
                    entity.word, written.x, written.y, size.x, size.y, size.z, written.x / unit, written.y / unit,
                    written.z / unit));
 }

@@ -76,7 +76,7 @@ std::string controller_of(BuildState& b, const Entity& entity) {
   if (word == "wander") return word;
   if (!word.empty() && b.warned_types.insert("ctrl " + word).second)
     warn(b.context, property->at,
-         fmt::format("ctrl \"{}\" names a plug-in of Stage, which is not run; choose one of ours with --controller "
+         fmt::format("ctrl \"{}\" names a plug-in of Stage, which is not run; choose a controller with --controller "
                      "NAME, or write ctrl \"wander\"",
                      word));
   return {};

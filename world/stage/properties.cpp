@@ -145,7 +145,7 @@ Pose pose(StageContext& context, const Entity& entity, std::string_view key) {
                      "[{2:g} {3:g} 0 {1:g}] where the third is an angle",
                      key, v[2], v[0], v[1]));
   const double yaw = v.size() > 3 ? context.radians_per_unit * v[3] : 0.0;
-  if (!(std::abs(yaw) <= 1e6)) fail(context, at, fmt::format("the yaw of '{}' is out of reach", key));
+  if (!(std::abs(yaw) <= 1e6)) fail(context, at, fmt::format("the yaw of '{}' is out of range", key));
   return {to_metres(context, at, v[0]), to_metres(context, at, v[1]), to_metres(context, at, v[2]), yaw};
 }
 
