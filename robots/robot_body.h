@@ -1,5 +1,6 @@
 #pragma once
-// One simulated robot in a process of its own: it moves among the world's walls and the robots that it was told of.
+// One simulated robot in a process of its own. It moves among the world's walls and the other robots, as far as their
+// states are known from packets.
 
 #include <array>
 #include <cstdint>
@@ -12,25 +13,25 @@
 
 namespace sf::robots {
 
-/// Times are of the robot's own clock [ns], which does not go back.
+/// Times are those of the robot's own clock [ns], which is non-decreasing.
 class RobotBody {
  public:
-  /// @param mover its row; all begin where they are at load
-  /// @param forget [ns] a robot that spoke, and was silent for so long, is in nobody's way any more; 0: it stays
+  /// @param mover row of this robot; all robots start at their poses at load
+  /// @param forget [ns] time without a state after which another robot becomes absent; 0: never
   RobotBody(const world::World& world, std::uint32_t mover, std::int64_t forget = 0);
 
-  /// Another robot says where it is; it came now.
+  /// State of another robot, received at `now`.
   void update_other(std::uint32_t mover, const base::Pose& X_WM, const base::Twist& velocity, std::int64_t now);
 
-  /// Drives from where it was until `now`, half a second at most (a stopped process stood). Others go on as they said,
-  /// for half a second; then they stand.
+  /// Moves until `now`, by half a second at most (a suspended process did not move). Other robots continue with their
+  /// last velocity for half a second, then stop.
   void move(const base::Twist& command, std::int64_t now);
 
   const base::Report& state() const { return fleet_.reports()[mover_]; }
   const base::Report& state(std::uint32_t mover) const { return fleet_.reports()[mover]; }
   bool contact() const { return fleet_.contacts()[mover_] != 0; }
   double distance() const { return distance_; }  ///< [m] driven
-  /// Where it was at `time`, between the moves it remembers (the last 256); before these, at the first of them.
+  /// Pose at `time`, interpolated between the last 256 moves; before these, the oldest pose.
   base::Pose pose_at(std::int64_t time) const;
 
  private:
@@ -38,7 +39,7 @@ class RobotBody {
   struct OtherRobot {
     base::Twist velocity;
     std::int64_t until = 0;      ///< [ns]
-    std::int64_t gone = kNever;  ///< [ns] when it is forgotten
+    std::int64_t gone = kNever;  ///< [ns] time at which it becomes absent
   };
   struct TrailPoint {
     std::int64_t time = 0;  ///< [ns]
@@ -46,14 +47,15 @@ class RobotBody {
   };
   const TrailPoint& trail_point(std::size_t back) const { return trail_[(moves_ - back) % trail_.size()]; }
 
-  world::World world_;  ///< a copy: others move as they say they do, whatever stands between their commands and them
+  world::World world_;  ///< a copy: other robots move with their reported velocities, without driver model or limits of
+                        ///< acceleration
   Fleet fleet_;
   std::uint32_t mover_;
-  std::int64_t forget_;                ///< [ns]; 0: nobody is forgotten
+  std::int64_t forget_;                ///< [ns]; 0: never
   std::vector<OtherRobot> others_;     ///< per mover
   std::vector<base::Twist> commands_;  ///< per mover
   std::array<TrailPoint, 256> trail_;
-  std::size_t moves_ = 0;  ///< the last one is at `moves_` % size
+  std::size_t moves_ = 0;  ///< index of the last one, modulo the size
   std::int64_t time_ = 0;
   double distance_ = 0.0;
 };

@@ -41,7 +41,7 @@ FieldView field_view(const world::World& world, const FieldRequest& wish);
 struct ProfilePoint {
   double along = 0.0;       ///< [m] distance from the line's start
   glm::dvec2 p;             ///< [m]
-  sensors::FieldSum field;  ///< [T], the sum of magnitudes too
+  sensors::FieldSum field;  ///< [T] the vector sum, and the sum of magnitudes
 };
 
 struct FieldSamples {

@@ -15,7 +15,7 @@ struct SectorStyle {
   int sides = 32;           ///< segments of the arc
 };
 
-/// @param from, to [rad] bearings in the frame F; a whole turn is a circle
+/// @param from, to [rad] bearings in the frame F; a full turn is a circle
 /// @param reach [m]
 void draw_view_sector(Axes& axes, const base::Pose& X_WF, double from, double to, double reach,
                       const SectorStyle& look);

@@ -113,7 +113,7 @@ TEST(Fleet, PassesWhatDoesNotStopRobots) {
 }
 
 TEST(Fleet, DoesNotSlipBetweenDiagonalCells) {
-  // Two solid cells that share one corner: no gap, though neither has a wall across the way.
+  // Two solid cells that share one corner: no gap, although neither has a wall across the way.
   world::World world = scenes::empty_world();
   scenes::add_bitmap(world, {{false, true}, {true, false}}, 1.0);
   scenes::add_create(world, {0.4, 0.4, 0, M_PI / 4});

@@ -29,7 +29,7 @@ TEST_F(BodyTest, DrivesForTheTimeThatPassed) {
   body.move({0.2, 0.0, 0.0}, 250 * kMilli);
   EXPECT_NEAR(body.state().X_WM.x, -2.0 + 0.2 * 0.25, 1e-12);
   EXPECT_NEAR(body.distance(), 0.05, 1e-12);
-  body.move({0.2, 0.0, 0.0}, 250 * kMilli);  // no time passed
+  body.move({0.2, 0.0, 0.0}, 250 * kMilli);  // zero time
   EXPECT_NEAR(body.distance(), 0.05, 1e-12);
 }
 
@@ -45,7 +45,7 @@ TEST_F(BodyTest, WallsStopIt) {
   EXPECT_LT(body.distance(), 1.0);
 }
 
-/// The other says that it stands in the way, and then nothing.
+/// The other robot reports a pose in the way, and then is silent.
 TEST_F(BodyTest, WhoIsSilentForLongIsInNobodysWay) {
   for (const std::int64_t forget : {std::int64_t{0}, 2000 * kMilli}) {
     RobotBody one(world, 0, forget);
@@ -67,9 +67,9 @@ TEST_F(BodyTest, OthersAreWhereTheySayAndGoOnForHalfASecond) {
   body.update_other(1, {0.0, 1.0, 0.0, 0.0}, {0.4, 0.0, 0.0}, 100 * kMilli);
   EXPECT_EQ(body.state(1).X_WM.x, 0.0);
   for (int i = 2; i <= 20; ++i) body.move({}, i * 100 * kMilli);
-  EXPECT_NEAR(body.state(1).X_WM.x, 0.4 * 0.4, 0.041);  // moves that end before the half second is over
+  EXPECT_NEAR(body.state(1).X_WM.x, 0.4 * 0.4, 0.041);  // moves that end within the half second
   body.update_other(1, {1.5, 1.0, 0.0, 0.0}, {}, 2000 * kMilli);
-  EXPECT_EQ(body.state(1).X_WM.x, 1.5);  // the newest word counts
+  EXPECT_EQ(body.state(1).X_WM.x, 1.5);  // the newest state counts
 }
 
 TEST_F(BodyTest, OthersStopIt) {

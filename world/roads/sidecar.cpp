@@ -48,7 +48,7 @@ struct Reader {
     fail(node, fmt::format("'{}' expects a number from {} to {}", key, least, most));
   }
 
-  /// A length above 0. [m]
+  /// [m] A length of at least 1e-6.
   std::optional<double> width(const TomlNode& table, std::string_view key) const {
     const TomlNode* node = find(table, key);
     if (node == nullptr) return std::nullopt;

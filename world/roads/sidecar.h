@@ -15,7 +15,7 @@ namespace sf::world {
 /// Lengths are metres of the world, after scaling. nullopt: not specified.
 struct RoadSidecar {
   struct Lane {
-    std::optional<double> width;  ///< [m] in (0, 10 000]
+    std::optional<double> width;  ///< [m] in [1e-6, 10 000]
     std::optional<Boundary> left;
     std::optional<Boundary> right;
     int line = 0;
@@ -27,7 +27,7 @@ struct RoadSidecar {
 
   std::string file;                  ///< empty: no sidecar
   std::optional<Geodetic> origin;    ///< nullopt: the network's first point
-  double scale = 1.0;                ///< [-] metres of the world per metre of the RNDF, in (0, 1000]
+  double scale = 1.0;                ///< [-] metres of the world per metre of the RNDF, in [1e-6, 1000]
   glm::dvec2 position;               ///< [m] of the origin in the world
   double heading = 0.0;              ///< [rad] of the RNDF's east in the world, counter-clockwise from +x
   std::optional<double> lane_width;  ///< [m] of each lane without a width of its own in `lanes`
