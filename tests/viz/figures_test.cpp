@@ -207,7 +207,7 @@ TEST(WorldFigure, WhatAllWallsAreNotIsDrawnToo) {  // all combinations of flags:
   }
 }
 
-/// Two walls in one place: the one that lasers see hides the dots of the other, whichever was made first.
+/// Two walls at one place: the one visible to lasers covers the dots of the other, in either order.
 TEST(WorldFigure, WallsThatLasersSeeLieOnTop) {
   const auto lightest = [](const world::World& world) {
     draw_world(world, file("top.png"));
@@ -225,7 +225,7 @@ TEST(WorldFigure, WallsThatLasersSeeLieOnTop) {
   EXPECT_LT(lightest(both), lightest(plain) + 0.05);
 }
 
-TEST(WorldFigure, OddWorldsCanBeDrawn) {  // nothing at all; no model rows; a name from the file; a robot without a body
+TEST(WorldFigure, OddWorldsCanBeDrawn) {  // an empty world; no model rows; a name from the file; a robot without a body
   world::World empty;
   empty.extent = {0, 0, 0, 0};
   draw_world(empty, file("empty.png"));
