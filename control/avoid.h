@@ -1,11 +1,12 @@
 #pragma once
-// The thesis' obstacle avoidance (4.4.5, figure 46), as described: straight on at 0.1 m/s; at 0.05 m/s while something
-// in front is nearer than 0.4 m; when it is nearer than 0.2 m, a turn to the side whose third of the field of view has
-// the larger minimum, until it is no longer in the front third.
+// Obstacle avoidance of the thesis (4.4.5, figure 46): forward at 0.1 m/s; at 0.05 m/s while an obstacle in front is
+// nearer than 0.4 m; below 0.2 m a turn to the side whose third of the field of view has the larger minimum, until the
+// front third is clear.
 //
-// Distances are ranges, from the sensor. The thesis gives no turning speed; and "no longer in the front third" is read
-// as: nothing nearer than `clear` there, unless given the distance at which it turned. As described it scrapes: a point
-// 0.10 to 0.165 m off the axis leaves the front third before the disc of the Create has passed.
+// Distances are ranges, measured from the sensor. The thesis states no turning speed. "Until the front third is clear"
+// is implemented as: no range in the front third is below `clear` (default: `turn`). With the default the robot may
+// scrape an obstacle: a point 0.10 to 0.165 m off the axis leaves the front third before the disc of the Create has
+// passed it.
 
 #include <span>
 
@@ -15,10 +16,10 @@ namespace sf::control {
 
 struct AvoidSettings {
   double speed = 0.1;        ///< [m/s]
-  double slow_speed = 0.05;  ///< [m/s] nearer than `slow`
+  double slow_speed = 0.05;  ///< [m/s] with an obstacle in front nearer than `slow`
   double slow = 0.4;         ///< [m]
-  double turn = 0.2;         ///< [m] nearer than this it turns
-  double clear = 0.2;        ///< [m] until nothing in front is nearer than this; >= turn
+  double turn = 0.2;         ///< [m] an obstacle in front nearer than this starts a turn
+  double clear = 0.2;        ///< [m] a turn ends when the front third is free to this range; >= turn
   double turn_speed = 0.5;   ///< [rad/s]
 };
 
@@ -26,7 +27,7 @@ class Avoid final : public Controller {
  public:
   explicit Avoid(const AvoidSettings& settings) : settings_(settings) {}
 
-  /// Stands until laser 0 has told something.
+  /// Returns a zero twist until laser 0 has delivered a reading.
   base::Twist step(const ControllerInput& input) override;
 
   enum class State { drive, slow, turn_left, turn_right };
@@ -37,7 +38,7 @@ class Avoid final : public Controller {
   State state_ = State::drive;
 };
 
-/// [m] smallest range in each third of the field of view; infinity: none. What is not a number says nothing.
+/// [m] Smallest range in each third of the field of view; infinity without ranges. NaN is ignored.
 struct Thirds {
   double right, front, left;
 };

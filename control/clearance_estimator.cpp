@@ -7,8 +7,8 @@ namespace sf::control {
 
 namespace {
 
-constexpr std::uint32_t kBeams = 512;  // of one laser are looked at
-constexpr double kSideways = 1.8;      // [rad] beams farther from straight ahead say nothing about where to go
+constexpr std::uint32_t kBeams = 512;  // beams used of one laser, at most
+constexpr double kSideways = 1.8;      // [rad] beams farther from straight ahead are not used
 
 }  // namespace
 
@@ -46,7 +46,7 @@ void ClearanceEstimator::add(const View& view, std::span<const double> ranges, S
     if (beam.sample >= ranges.size() || std::isnan(ranges[beam.sample])) continue;
     const double range = std::max(ranges[beam.sample], 0.0);
 
-    // Something is in the way when it is in the lane that the body sweeps.
+    // A hit is an obstacle when it lies in the lane that the body sweeps.
     if (range < view.range_max) {
       const double x = view.p_MS.x + range * beam.x;
       const double y = view.p_MS.y + range * beam.y;

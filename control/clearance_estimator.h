@@ -1,5 +1,5 @@
 #pragma once
-// What a robot's lasers say about the way ahead, whatever their number, fields of view and ranges.
+// Free space around a robot from the scans of its lasers. Any number of lasers, fields of view and ranges.
 
 #include <cstdint>
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace sf::control {
 
-/// Free space as far as the sensors tell.
+/// Free space within sensor range.
 struct Clearance {
-  double ahead = 0.0;  ///< [m] from the body's front to the first thing in the robot's way; >= 0
-  double left = 0.0;   ///< [m] mean free length over the beams to the left, in [0, sight]
+  double ahead = 0.0;  ///< [m] from the body's front to the first obstacle in the swept lane; >= 0
+  double left = 0.0;   ///< [m] mean free length of the beams to the left, in [0, range()]
   double right = 0.0;  ///< [m] the same to the right
 };
 
@@ -21,11 +21,11 @@ class ClearanceEstimator {
  public:
   explicit ClearanceEstimator(const world::Mover& mover);
 
-  /// How far ahead of the body the sensors see. [m]; 0: there is none that looks forward
+  /// [m] Sensor range ahead of the body; 0 without a laser that covers the forward direction.
   double range() const { return range_; }
 
-  /// Readings of other kinds or sensors are left out. A range that is not a number says nothing; one at or beyond
-  /// range_max says that the beam is free. No readings: free ahead, as far left as right.
+  /// Readings of other types or sensors are ignored, and NaN ranges too. A range at or beyond range_max counts as free.
+  /// Without readings the result is free ahead, and left equals right.
   Clearance estimate(std::span<const base::ReadingBlock> readings) const;
 
  private:
@@ -43,7 +43,7 @@ class ClearanceEstimator {
 
   std::vector<View> views_;  ///< one per laser
   double front_ = 0.0;       ///< [m] from the origin to the body's front
-  double half_width_ = 0.0;  ///< [m] of the lane the body needs
+  double half_width_ = 0.0;  ///< [m] half the width of the lane that the body needs
   double range_ = 0.0;
 };
 

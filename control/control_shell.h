@@ -4,8 +4,7 @@
 //   Start --(at once, or the start signal)--> Control <--(bumper released / pressed)--> Wait
 //                                             Control --(the controller is done)--> Stop
 //
-// Settings: `start` "at-once" or "signal"; `wait_on_bumper`, unless given what the kind says
-// (`ControllerType::stops_on_bumper`).
+// Settings: `start`, "at-once" or "signal"; `wait_on_bumper`, default `ControllerType::stops_on_bumper`.
 
 #include <memory>
 
@@ -16,13 +15,13 @@ namespace sf::control {
 
 enum class ControlShellState { start, control, wait, stop };
 
-/// What the user said of the shell.
+/// Settings of the shell.
 struct ControlShellSettings {
-  bool on_signal = false;      ///< Start lasts until `Input::started`
-  bool wait_on_bumper = true;  ///< Control becomes Wait while `Input::contact`
+  bool on_signal = false;      ///< Start lasts until `ControllerInput::started`
+  bool wait_on_bumper = true;  ///< Control becomes Wait while `ControllerInput::contact`
 };
 
-/// @throws base::InputError for a word that is no way to start.
+/// @throws base::InputError for an unknown value of `start`.
 ControlShellSettings read_control_shell_settings(Settings& settings, bool stops_on_bumper);
 
 class ControlShell final : public Controller, public StatesStopReason {
@@ -30,13 +29,14 @@ class ControlShell final : public Controller, public StatesStopReason {
   /// @param inner not null
   ControlShell(std::unique_ptr<Controller> inner, const ControlShellSettings& settings);
 
-  /// Stands in Start, Wait and Stop; the controller within is not called there, and so sees time jump over a Wait.
+  /// Returns a zero twist in Start, Wait and Stop. The inner controller is not called in these states, so its time
+  /// jumps over a Wait.
   base::Twist step(const ControllerInput& input) override;
 
   base::Intent intent() const override { return inner_->intent(); }
   double v2v_range() const override { return inner_->v2v_range(); }
   bool done() const override { return state_ == ControlShellState::stop; }
-  /// Not a number after steps in which the controller was not called.
+  /// NaN after steps in which the inner controller was not called.
   double error() const override;
   std::string stop_reason() const override;
 
@@ -49,7 +49,7 @@ class ControlShell final : public Controller, public StatesStopReason {
   std::unique_ptr<Controller> inner_;
   ControlShellSettings settings_;
   ControlShellState state_ = ControlShellState::start;
-  bool stepped_ = false;  ///< by the last step
+  bool stepped_ = false;  ///< the last step called the inner controller
 };
 
 }  // namespace sf::control

@@ -1,6 +1,6 @@
 #pragma once
-// What a robot decides: readings in, twist out. The simulation calls it in process, a robot of its own over UDP calls
-// the same code.
+// Interface of robot controllers: readings in, twist out. The simulation calls a controller in process; `sensorfarm
+// robot` runs the same code over UDP.
 
 #include <cstdint>
 #include <limits>
@@ -13,43 +13,43 @@
 
 namespace sf::control {
 
-/// Another robot, as it tells of itself (V2V).
+/// Another robot's state from its V2V packet.
 struct Neighbour {
-  std::uint32_t id = 0;  ///< on the wire
-  base::Report state;    ///< `mover` is not to be relied on
+  std::uint32_t id = 0;  ///< id in packets
+  base::Report state;    ///< `mover` is not valid
   base::Intent intent;
 };
 
-/// All a robot knows at one time. Spans live for the call.
+/// Inputs of one control step. Spans live for the call.
 struct ControllerInput {
-  std::int64_t time = 0;  ///< [ns] simulated, or the clock of the robot; never runs backwards
-  base::Report state;     ///< its own state as it knows it
+  std::int64_t time = 0;  ///< [ns] simulated time, or the robot's clock; does not decrease
+  base::Report state;     ///< the robot's own estimate of its state
   std::span<const base::ReadingBlock>
-      readings;          ///< the newest of each of its own sensors, new since the last call or not; may be empty
-  bool contact = false;  ///< its bumper is pressed, or something refused its last motion
-  bool started = true;   ///< the start signal was given
-  std::span<const Neighbour> others;         ///< robots within `Controller::v2v_range`, by id
+      readings;  ///< the newest reading of each of its sensors, whether new since the last call or not; may be empty
+  bool contact = false;                      ///< the bumper is pressed, or an obstacle blocked the last motion
+  bool started = true;                       ///< the start signal was given
+  std::span<const Neighbour> others;         ///< robots within `Controller::v2v_range`, in order of id
   std::span<const world::Signal> signals{};  ///< one per row of `World::lights`
 };
 
-/// One per robot. One thread at a time for each; different robots' controllers may run side by side.
+/// One object per robot. Calls on one object come from one thread at a time; different objects may run in parallel.
 class Controller {
  public:
   virtual ~Controller() = default;
-  /// @return what the robot should do until the next call; finite
+  /// @return the twist to drive until the next call; finite
   virtual base::Twist step(const ControllerInput& input) = 0;
 
-  /// What it tells others, after a step.
+  /// Intent to broadcast (V2V), after a step.
   virtual base::Intent intent() const { return {}; }
-  /// How far it wants to hear others. [m] 0: not at all
+  /// [m] Radius within which states of other robots are needed; 0: none.
   virtual double v2v_range() const { return 0.0; }
-  /// It has done what it was made for, and stands.
+  /// The task is finished and the robot stands.
   virtual bool done() const { return false; }
-  /// The control error of the last step, in its own unit; not a number where there was none: for statistics.
+  /// Control error of the last step, in the controller's own unit, for statistics. NaN without an error.
   virtual double error() const { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
-/// The newest reading of one sensor; null where there is none.
+/// The newest reading of one sensor; null without one.
 inline const base::ReadingBlock* newest(const ControllerInput& input, std::uint8_t kind, std::uint32_t sensor = 0) {
   for (const base::ReadingBlock& reading : input.readings)
     if (reading.kind == kind && reading.sensor == sensor) return &reading;

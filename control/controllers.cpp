@@ -9,7 +9,7 @@
 
 namespace sf::control {
 
-// Every kind, in the order of help.
+// All controllers, in the order of the help text.
 extern const ControllerType avoid_controller;
 extern const ControllerType convoy_controller;
 extern const ControllerType docking_controller;

@@ -1,5 +1,5 @@
 #pragma once
-// Every controller there is, by name.
+// List of all controllers, by name.
 
 #include <memory>
 #include <span>
@@ -14,35 +14,36 @@
 
 namespace sf::control {
 
-/// What a controller may know before it starts. All of it outlives it.
+/// Inputs for the construction of a controller. Everything it refers to must outlive the controller.
 struct ControllerContext {
   const world::World& world;
-  std::uint32_t mover = 0;                          ///< row of the robot
-  std::uint64_t seed = 0;                           ///< of its own choices
-  const world::RoadNetwork* roads = nullptr;        ///< null: the world has none
-  std::vector<world::Warning>* warnings = nullptr;  ///< gets what there is to warn of in files that it reads
+  std::uint32_t mover = 0;                    ///< row of the robot
+  std::uint64_t seed = 0;                     ///< of the controller's random choices
+  const world::RoadNetwork* roads = nullptr;  ///< null: the world has no road network
+  std::vector<world::Warning>* warnings =
+      nullptr;  ///< receives warnings about files that the controller reads; may be null
 };
 
-/// One kind of controller. Defined as `constinit const ControllerType x_controller` beside its class, listed in
+/// Description of one controller. Defined as `constinit const ControllerType x_controller` beside its class, listed in
 /// control/controllers.cpp.
 struct ControllerType {
   std::string_view name;        ///< "lane-keeping"
   std::string_view summary;     ///< one line for help
-  double rate = 10.0;           ///< [Hz] unless the user says otherwise
-  bool stops_on_bumper = true;  ///< its shell stops it while the bumper is pressed, unless the user says otherwise
-  /// @throws base::InputError for settings it cannot have, or a world or robot that lacks what it needs.
+  double rate = 10.0;           ///< [Hz] default
+  bool stops_on_bumper = true;  ///< default of the shell's `wait_on_bumper`
+  /// @throws base::InputError for invalid settings, or when the world or the robot lacks something required.
   std::unique_ptr<Controller> (*make)(const ControllerContext& context, Settings& settings);
 };
 
 std::span<const ControllerType* const> controllers();
-/// @return null when there is none of that name.
+/// @return null for an unknown name.
 const ControllerType* find_controller(std::string_view name);
 
-/// What the user asked for: a controller within the control shell.
+/// A controller as configured by the user, run within the control shell.
 struct ControllerConfig {
   std::string controller;
-  double rate = 0.0;  ///< [Hz]; 0: its own
-  Settings settings;  ///< with the shell's own: `start`, `wait_on_bumper`
+  double rate = 0.0;  ///< [Hz]; 0: the controller's default
+  Settings settings;  ///< including the shell's: `start`, `wait_on_bumper`
 };
 
 struct ConfiguredController {
@@ -50,7 +51,7 @@ struct ConfiguredController {
   double rate = 10.0;  ///< [Hz]
 };
 
-/// @throws base::InputError for a name that is no controller, with the nearest; for settings that nobody reads.
+/// @throws base::InputError for an unknown name (the message lists all names) and for settings that no code has read.
 ConfiguredController make_controller(const ControllerContext& context, ControllerConfig plan);
 
 }  // namespace sf::control

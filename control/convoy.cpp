@@ -9,10 +9,10 @@ namespace sf::control {
 
 namespace {
 
-constexpr double kNear = 2.5;    // [m] a newcomer is let in from here on
-constexpr double kBehind = 1.2;  // [m] who is farther off has fallen behind
+constexpr double kNear = 2.5;    // [m] distance of a newcomer at which the gap is opened
+constexpr double kBehind = 1.2;  // [m] distance at which a follower has fallen behind
 
-/// Another follower of the same leader.
+/// Row of another follower of the same leader.
 std::optional<std::uint32_t> newcomer(const ConvoyState& convoy, const std::vector<RoadUser>& road_users) {
   if (convoy.leader == base::kNoId || convoy.merges) return std::nullopt;
   for (std::uint32_t row = 1; row < road_users.size(); ++row)
@@ -36,7 +36,7 @@ std::optional<std::uint32_t> row_of(const std::vector<RoadUser>& road_users, std
 }
 
 std::optional<std::uint32_t> heading_for(const LaneCorridors& corridors, const RoadUser& driver) {
-  // Where ways part from a lane it is on them all: it stays on the lane until it has left it.
+  // Near a branch the robot is on several ways. It counts as on the lane until it has left the lane.
   for (const bool lane : {true, false})
     for (const RoadPosition& place : driver.positions) {
       const Way& way = corridors.way(place.way);

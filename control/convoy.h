@@ -1,10 +1,10 @@
 #pragma once
-// Who drives together: a convoy is a chain of robots, each following the one ahead of it wherever that one goes. Whom a
-// robot follows it tells all (V2V), and no more is needed:
+// Convoys. A convoy is a chain of robots in which each follows the robot ahead of it. Each robot broadcasts the id of
+// its leader (V2V); no other communication is needed:
 //
-//   - A follower plans its way to where its leader is, again whenever that is somewhere else, and keeps its gap.
-//   - Who wants to come into the convoy behind X says so: it follows X as well. The member that followed X falls back
-//     until there is room for it, and once it is there follows the newcomer instead.
+//   - A follower plans its route to the leader's position, again whenever that changes, and keeps its gap.
+//   - A newcomer that is to merge behind robot X announces X as its leader. The member that followed X falls back until
+//     there is room, and follows the newcomer once that has merged.
 
 #include <cstdint>
 #include <optional>
@@ -16,27 +16,27 @@
 
 namespace sf::control {
 
-/// Whom a robot follows.
+/// Leader of a robot.
 struct ConvoyState {
-  std::uint32_t leader = base::kNoId;  ///< id; nobody: it goes its own way
-  bool merges = false;                 ///< it still has to come in behind the leader
+  std::uint32_t leader = base::kNoId;  ///< id; kNoId: the robot follows no other
+  bool merges = false;                 ///< the robot has yet to merge behind the leader
 };
 
-/// The row of a robot among the road_users; nothing when it is not in sight.
+/// Row of a robot among the road users; nullopt when it is not in range.
 std::optional<std::uint32_t> row_of(const std::vector<RoadUser>& road_users, std::uint32_t id);
 
-/// The point of the graph that a robot will come to next.
+/// The next node of the graph on a robot's way.
 std::optional<std::uint32_t> heading_for(const LaneCorridors& corridors, const RoadUser& driver);
 
-/// Keeps the company in order after a look around: who merges and is there has merged, who comes in between becomes the
-/// leader.
+/// Updates the leader after an observation. A merge is complete when the leader is the next robot ahead on the same
+/// lane. A newcomer that drives between this robot and its leader becomes the leader.
 void update_convoy(ConvoyState& convoy, const LaneCorridors& corridors, const std::vector<RoadUser>& road_users,
                    const std::vector<LeadRobot>& ahead);
 
-/// The gap that a member opens for a newcomer. [m] beyond its own; 0: nobody wants to come in
+/// [m] Gap to open for a newcomer, in addition to the convoy's own; 0 without a newcomer.
 double opened_gap(const ConvoyState& convoy, const LaneCorridors& corridors, const std::vector<RoadUser>& road_users);
 
-/// Somebody follows this robot and has fallen behind: it is to be waited for.
+/// A follower of this robot has fallen behind, so that this robot has to wait for it.
 bool follower_lags(const std::vector<RoadUser>& road_users);
 
 extern const ControllerType convoy_controller;

@@ -16,8 +16,8 @@ namespace {
 
 using sensors::kDockByte, sensors::kNoIrByte, sensors::kRedBuoy, sensors::kGreenBuoy, sensors::kForceField;
 
-constexpr double kFaces = 0.6;                  // [rad] a touch with the dock farther off than this is none of its face
-constexpr std::int64_t kBlind = 2'000'000'000;  // [ns] it goes on by the beams that it saw last
+constexpr double kFaces = 0.6;  // [rad] largest heading error towards the dock for a contact with its face
+constexpr std::int64_t kBlind = 2'000'000'000;  // [ns] duration for which the last received beams are used
 
 std::uint32_t light_in(const base::ReadingBlock* reading) {
   if (reading == nullptr || reading->values.size() < 2) return 0;
@@ -40,7 +40,7 @@ base::Twist Docking::step(const ControllerInput& input) {
     seen_ = input.time;
   }
   const bool both = buoys == (kRedBuoy | kGreenBuoy);
-  // Something else than the dock's face, or the dock's corner: out again, and on a new approach.
+  // Contact with an obstacle or with the dock's corner: retreat and approach anew.
   if (contact_) retreats_ = true;
   if (both && (light & kForceField) == 0) retreats_ = false;
   follows_ = !retreats_ && (both || (follows_ && input.time - seen_ <= kBlind));
@@ -59,7 +59,7 @@ bool Docking::docked(const base::Pose& X_WM) const {
          std::abs(off) < kFaces;
 }
 
-// To a place on the axis, round the dock where it is in between.
+// Drives to the staging point on the axis; the route leads round the dock where that is in between.
 base::Twist Docking::approach(const base::Pose& X_WM) {
   const glm::dvec2 p = from_dock(X_WM);
   const double wide = 1.6 * settings_.reach;
@@ -70,9 +70,9 @@ base::Twist Docking::approach(const base::Pose& X_WM) {
   return drive_to_point(X_WM, base::transform(settings_.X_WD, goal), {settings_.speed, settings_.turn});
 }
 
-// Seen from the dock the red buoy's beam is on the left, so for a robot that faces the dock on its right. The receiver
-// is not at the robot's middle: a turn in place carries it from one beam into the other. So the robot drives while it
-// turns, and one turn in place, once begun, goes on the same way round.
+// The red buoy's beam is on the left of the dock's x axis, so on the right of a robot that faces the dock. The receiver
+// is off the robot's centre, and a turn in place carries it from one beam into the other. The robot therefore drives
+// while it turns, and keeps the direction of a turn in place once begun.
 base::Twist Docking::follow_beams(const base::Pose& X_WM) {
   const bool red = (light_ & kRedBuoy) != 0, green = (light_ & kGreenBuoy) != 0;
   const double lean = red && green ? 0.0 : red ? settings_.lean : -settings_.lean;

@@ -1,10 +1,10 @@
 #pragma once
-// Takes an iRobot Create onto its dock by its infrared receiver: along the line between the red and the green buoy's
-// beams, slowly within the force field, until the bumper touches or the dock is reached.
+// Drives an iRobot Create onto its dock by the infrared receiver: along the line between the beams of the red and the
+// green buoy, slowly within the force field, until the bumper is pressed at the dock or the dock is reached.
 //
-// The receiver sees all round and so tells no direction: headings are the robot's own, against the dock's as the world
-// has it. Until it sees both buoys, and after it has touched anything but the dock's face, the robot drives to a place
-// before the dock, on its axis, by its own pose.
+// The omnidirectional receiver measures no direction. Headings are therefore the robot's own, relative to the dock's
+// pose in the world file. Before both buoys are received, and after contact with anything but the dock's face, the
+// robot drives to a staging point on the dock's axis by its own pose.
 
 #include "control/controllers.h"
 #include "control/stop_reason.h"
@@ -12,13 +12,13 @@
 namespace sf::control {
 
 struct DockingSettings {
-  base::Pose X_WD;           ///< the dock, its beams along x
-  double stage = 1.0;        ///< [m] before the dock where its beams are looked for
-  double reach = 0.2;        ///< [m] the robot's origin this near: docked
+  base::Pose X_WD;           ///< the dock, beams along +x
+  double stage = 1.0;        ///< [m] distance of the staging point before the dock
+  double reach = 0.2;        ///< [m] distance between the robot's origin and the dock at which it is docked
   double speed = 0.1;        ///< [m/s]
   double slow_speed = 0.03;  ///< [m/s] within the force field
-  double turn = 1.0;         ///< [rad/s] at most
-  double lean = 0.7;         ///< [rad] towards the axis with one buoy in sight
+  double turn = 1.0;         ///< [rad/s] maximum
+  double lean = 0.7;         ///< [rad] heading towards the axis while only one buoy is received
 };
 
 class Docking final : public Controller, public StatesStopReason {
@@ -37,12 +37,12 @@ class Docking final : public Controller, public StatesStopReason {
   base::Twist follow_beams(const base::Pose& X_WM);
 
   DockingSettings settings_;
-  bool follows_ = false;     ///< both buoys were in sight, and one has been since
-  bool retreats_ = false;    ///< from a touch, until it sees both buoys from beyond the force field
+  bool follows_ = false;     ///< both buoys were received, and at least one has been since
+  bool retreats_ = false;    ///< after a contact, until both buoys are received from outside the force field
   bool contact_ = false;     ///< at the last step
-  std::uint32_t light_ = 0;  ///< the last with a buoy in it
-  std::int64_t seen_ = 0;    ///< [ns] when that was
-  double side_ = 0.0;        ///< of the turn in place that it is in: +1 left, -1 right; 0: it is in none
+  std::uint32_t light_ = 0;  ///< flags of the last reading with a buoy
+  std::int64_t seen_ = 0;    ///< [ns] time of that reading
+  double side_ = 0.0;        ///< direction of the current turn in place: +1 left, -1 right; 0: none
   bool done_ = false;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Towards a point: the twist of a robot that turns first and drives then.
+// Drives to a point: turn in place first, then forward.
 
 #include <algorithm>
 #include <cmath>
@@ -10,12 +10,12 @@ namespace sf::control {
 
 struct DriveLimits {
   double speed = 0.1;  ///< [m/s]
-  double turn = 1.0;   ///< [rad/s] at most
-  double aim = 0.3;    ///< [rad] farther off than this it only turns
-  double gain = 3.0;   ///< [1/s] turn per heading error
+  double turn = 1.0;   ///< [rad/s] maximum
+  double aim = 0.3;    ///< [rad] a larger heading error allows only a turn
+  double gain = 3.0;   ///< [1/s] turn rate per heading error
 };
 
-/// @return [rad/s]
+/// @return turn rate [rad/s]
 inline double turn_to(double heading_error, const DriveLimits& pace) {
   return std::clamp(pace.gain * heading_error, -pace.turn, pace.turn);
 }

@@ -7,9 +7,9 @@ namespace sf::control {
 
 namespace {
 
-constexpr int kFiner = 3;         // nodes along a cell of the map
-constexpr int kPointsFiner = 5;   // squares along a node's square; each keeps one point
-constexpr double kJoined = 0.03;  // [m] neighbouring beams that end this near met one surface
+constexpr int kFiner = 3;         // nodes per side of a map cell
+constexpr int kPointsFiner = 5;   // squares per side of a node's square; each keeps one point
+constexpr double kJoined = 0.03;  // [m] endpoints of neighbouring beams within this distance lie on one surface
 
 }  // namespace
 
@@ -27,7 +27,7 @@ ExplorationMap::ExplorationMap(const maps::GridGeometry& plan, double radius, do
   unknown_.resize(count);
   driven_.resize(static_cast<std::size_t>(maps::columns(plan) * maps::rows(plan)));
 
-  // Too near to the map's border counts as unknown for ever.
+  // Nodes too near to the map's border always count as unknown.
   const Node rim = static_cast<Node>(std::ceil(std::max(radius, reach) / cell_)) + 2;
   for (Node row = 0; row < rows_; ++row) {
     for (Node column = 0; column < columns_; ++column) {
@@ -53,7 +53,7 @@ glm::dvec2 ExplorationMap::place(Node node) const {
   return {grid_.plan.left + (node % columns_ + 0.5) * cell_, grid_.plan.top - (node / columns_ + 0.5) * cell_};
 }
 
-// Every node whose place is nearer to p than the radius, with its distance.
+// Visits every node within `radius` of p, with its distance.
 template <typename Visit>
 void ExplorationMap::around(glm::dvec2 p, double radius, Visit visit) {
   const double column = (p.x - grid_.plan.left) / cell_ - 0.5, row = (grid_.plan.top - p.y) / cell_ - 0.5;

@@ -1,10 +1,10 @@
 #pragma once
-// What an explorer knows of its surroundings: the map (maps/grid_update.h's rule), every surface point its laser met,
-// and, on a lattice three times as fine as the map, how near the next surface is and whether unexplored ground is under
-// a body that stands there.
+// Map of an explorer: the occupancy grid (rule of maps/grid_update.h), all surface points that its laser has measured,
+// and on a lattice three times as fine as the grid the clearance and whether a body there would cover unexplored
+// ground.
 //
-// Clearances are to points, not to cells: exact at the lattice's nodes, but for the gaps between the beams that met a
-// surface (0.1 mm for a flat one seen from near).
+// Clearances are distances to points, not to cells. They are exact at the nodes of the lattice except for the gaps
+// between the beams that hit a surface (0.1 mm for a flat surface nearby).
 
 #include <cstdint>
 #include <vector>
@@ -14,38 +14,39 @@
 
 namespace sf::control {
 
-/// Node of the lattice, row by row as the map's cells.
+/// Index of a lattice node, row-major as the cells of the map.
 using Node = std::int32_t;
 
 class ExplorationMap {
  public:
-  /// @param radius [m] of the body @param reach [m] >= radius, of anything on it: it stays this far within the map
+  /// @param radius [m] of the body
+  /// @param reach [m] >= radius, to the farthest point on the body; the whole body stays within the map
   ExplorationMap(const maps::GridGeometry& plan, double radius, double reach);
 
-  /// Ground that no laser has to look at first, since the robot stands there.
+  /// Marks a disc as explored and free without a scan, since the robot stands there.
   void mark_free(glm::dvec2 p, double radius);
-  /// @return whether it told anything new
+  /// @return true when the scan changed the map
   bool add(const maps::ScanView& scan);
-  /// Something was met at `p`.
+  /// Adds an obstacle point at `p`, such as a contact. @return true when it changed the map
   bool add_point(glm::dvec2 p);
 
   const maps::OccupancyGrid& grid() const { return grid_; }
   Node columns() const { return columns_; }
   Node nodes() const { return static_cast<Node>(occupied_.size()); }
-  double cell() const { return cell_; }  ///< [m] of the lattice
+  double cell() const { return cell_; }  ///< [m] spacing of the lattice
   bool contains(glm::dvec2 p) const;
-  Node node_at(glm::dvec2 p) const;  ///< Rule: contains(p)
+  Node node_at(glm::dvec2 p) const;  ///< @pre contains(p)
   glm::dvec2 place(Node node) const;
 
-  /// [m] from a node to the nearest surface point; kMaxClearance beyond the body's radius: no nearer one
+  /// [m] From a node to the nearest surface point. Limited to the body's radius plus kMaxClearance.
   float clearance(Node node) const { return clearance_[static_cast<std::size_t>(node)]; }
-  /// A body there would cover ground never seen, or leave the map.
+  /// A body at the node would cover unexplored ground or leave the map.
   bool covers_unknown(Node node) const { return unknown_[static_cast<std::size_t>(node)] != 0; }
   /// A surface passes through the node's square.
   bool occupied(Node node) const { return occupied_[static_cast<std::size_t>(node)] != 0; }
   bool explored(Node node) const { return explored_[static_cast<std::size_t>(node)] != 0; }
 
-  /// [m] from `p` to the nearest surface point, at most `most`.
+  /// [m] From `p` to the nearest surface point, at most `most`.
   double nearest(glm::dvec2 p, double most) const;
 
   static constexpr double kMaxClearance = 0.06;  ///< [m]
@@ -61,11 +62,11 @@ class ExplorationMap {
   double cell_;
   Node columns_, rows_;
   std::vector<glm::dvec2> points_;
-  std::vector<std::uint8_t> taken_;  ///< one bit per fine square that holds a point
+  std::vector<std::uint8_t> taken_;  ///< one bit per fine square, set when the square holds a point
   std::vector<float> clearance_;
-  std::vector<std::uint16_t> unknown_;  ///< unexplored cells whose middle is under the body
+  std::vector<std::uint16_t> unknown_;  ///< unexplored cells whose centre is under the body
   std::vector<std::uint8_t> occupied_, explored_;
-  std::vector<std::uint8_t> driven_;  ///< per cell of the map
+  std::vector<std::uint8_t> driven_;  ///< per cell of the map: explored
 };
 
 }  // namespace sf::control

@@ -12,15 +12,15 @@ namespace {
 using base::Pose;
 using base::Twist;
 
-constexpr double kStart = 0.02;      // [m] beyond all that is on it the ground is taken as free where it begins
-constexpr double kHere = 0.002;      // [m] a place is reached
-constexpr double kAligned = 0.01;    // [rad] a heading is reached
-constexpr double kTouch = 5e-4;      // [m] it never comes nearer to a surface
-constexpr double kNearRange = 0.85;  // of the range, from which it looks at first
+constexpr double kStart = 0.02;      // [m] initially free ground beyond the body and the parts on it
+constexpr double kHere = 0.002;      // [m] tolerance at which a place is reached
+constexpr double kAligned = 0.01;    // [rad] tolerance at which a heading is reached
+constexpr double kTouch = 5e-4;      // [m] minimum distance to a surface
+constexpr double kNearRange = 0.85;  // part of the laser's range used in the first stage
 constexpr double kFarRange = 1.0;
 constexpr int kGraze = 2;  // nodes
 
-/// What is wanted, and how near to surfaces, one stage after another.
+/// Targets, margin and range of one stage of the exploration.
 struct Stage {
   bool roomy;
   bool all;
@@ -59,7 +59,7 @@ Twist Explore::step(const ControllerInput& input) {
   if (done()) return {};
   if (!turned_once_) return turn_once(X_WM);
   if (input.contact) {
-    // Something that no beam met.
+    // A contact with an obstacle that no beam hit.
     const double ahead = legs_.empty() || !legs_.back().backwards ? 1.0 : -1.0;
     map_.add_point(base::transform(X_WM, {ahead * settings_.body.radius, 0.0}));
     path_.clear();
@@ -79,7 +79,7 @@ bool Explore::update_map(const ControllerInput& input) {
   return map_.add({reading->X_WS, reading->values, settings_.beams, settings_.range_min, settings_.eye.range});
 }
 
-// Once round in place before anything else.
+// One full turn in place at the start.
 Twist Explore::turn_once(const Pose& X_WM) {
   turned_ += base::wrap_angle(X_WM.yaw - last_yaw_);
   last_yaw_ = X_WM.yaw;
@@ -120,7 +120,7 @@ void Explore::plan(const Pose& X_WM) {
   path_.clear();
 }
 
-// A way as turns and straight lines.
+// Splits a path into turns and straight lines.
 void Explore::set_path(const std::vector<LatticeState>& way) {
   targets_ = viewpoint_planner_.targets(search_.sensor_at(way.back()), way.back().heading);
   const auto is_turn = [&](std::size_t i) { return way[i].heading != way[i - 1].heading; };
@@ -138,7 +138,7 @@ void Explore::set_path(const std::vector<LatticeState>& way) {
     legs.push_back(leg);
     i = last + 1;
   }
-  // In the end it stands there and looks that way.
+  // The last leg ends at the goal's place and heading.
   legs.push_back({true, map_.place(way.back().node), !legs.empty() && legs.back().backwards,
                   heading_angle(way.back().heading), 1.0});
   legs.push_back({false, {}, false, heading_angle(way.back().heading), 0.0});
@@ -166,7 +166,7 @@ Twist Explore::drive(const ControllerInput& input) {
 Twist Explore::follow(const Leg& leg, const Pose& X_WM, double dt) const {
   const DriveLimits pace{settings_.speed, settings_.turn, 0.03, std::min(0.7 / dt, 5.0)};
   if (!leg.straight) {
-    // The side matters only as long as it is far to turn.
+    // The direction of the turn is kept only for large heading errors.
     double off = base::wrap_angle(leg.heading - X_WM.yaw);
     if (leg.side * off < 0.0 && std::abs(off) > 0.3) off += leg.side * 2.0 * M_PI;
     return {0.0, 0.0, turn_to(off, pace)};
@@ -182,7 +182,7 @@ Twist Explore::follow(const Leg& leg, const Pose& X_WM, double dt) const {
   return {sign * speed, 0.0, turn_to(off, pace)};
 }
 
-// Not where the body would touch, by the time of the next two steps, unless it gets away from it.
+// Rejects a twist with which the body would touch a surface within two steps, unless the distance grows.
 bool Explore::safe(const Pose& X_WM, const Twist& twist, double dt) const {
   if (twist.forward == 0.0) return true;
   const double now = map_.nearest(origin(X_WM), 1.0);
@@ -192,7 +192,7 @@ bool Explore::safe(const Pose& X_WM, const Twist& twist, double dt) const {
   return then >= settings_.body.radius + kTouch || then > now;
 }
 
-// Stands until a scan was taken from here.
+// Waits at the goal for a scan.
 Twist Explore::wait(const ControllerInput& input) {
   if (!arrived_) arrived_ = input.time;
   const Pose X_WS = base::compose(input.state.X_WM, settings_.eye.X_MS);
@@ -204,7 +204,7 @@ Twist Explore::wait(const ControllerInput& input) {
   return {};
 }
 
-// What it wanted to see from the end of this way cannot be seen from there, or the end not be reached.
+// Gives up the targets of this goal: they are not visible from there, or the goal is not reachable.
 void Explore::give_up() {
   for (const maps::CellAt cell : targets_)
     if (grid().at(cell) == maps::Cell::unexplored)

@@ -1,14 +1,15 @@
 #pragma once
-// Maps an area and touches nothing: what the thesis' avoidance (control/avoid.h) lacks. It drives by a map of its own,
-// to the nearest pose from which its laser would see something unexplored, until there is no such pose.
+// Autonomous exploration without contacts, which the thesis' avoidance (control/avoid.h) cannot guarantee. The robot
+// keeps its own map and drives to the nearest pose from which its laser would see unexplored cells, until no such pose
+// is left.
 //
-// Ways are searched over places and headings (control/pose_search.h): the laser looks one way, and may reach beyond the
-// body. It keeps a goal until everything it wanted to see there is seen, or the way is barred. First it takes what is
-// easy to reach, with some margin, then the rest with hardly any: a passage is one when it is `least_margin` wider on
-// both sides than the body.
+// Paths are searched over places and headings (control/pose_search.h), since the laser's field of view is limited and
+// the laser may reach beyond the body. A goal is kept until all its target cells are seen or the path is blocked. Goals
+// that allow `margin` come first, then goals with `least_margin`: the robot drives through a passage that is
+// `least_margin` wider than the body on both sides.
 //
-// For a world that stands still, a body that turns in place (it is taken as the disc about it) and a pose that is known
-// well: margins are in millimetres. Readings of laser 0 are taken at the pose they were measured at.
+// Assumptions: a static world, a body that turns in place (modelled as its circumscribed disc), and a precise pose,
+// since margins are in millimetres. Readings of laser 0 are added at the pose of their measurement.
 
 #include <optional>
 #include <vector>
@@ -24,19 +25,20 @@ struct ExploreSettings {
   maps::GridGeometry plan;
   Footprint body;
   ScannerModel eye;
-  std::vector<glm::dvec2> beams;  ///< of the laser, in its frame
+  std::vector<glm::dvec2> beams;  ///< directions in the laser's frame
   double range_min = 0.0;         ///< [m] of the laser
   double speed = 0.1;             ///< [m/s]
-  double slow_speed = 0.05;       ///< [m/s] with something nearer than `slow` to the body ahead
+  double slow_speed = 0.05;       ///< [m/s] with an obstacle nearer than `slow` ahead of the body
   double slow = 0.05;             ///< [m]
-  double turn = 1.0;              ///< [rad/s] at most
-  double margin = 0.01;           ///< [m] between body and surfaces, at first
-  double least_margin = 0.003;    ///< [m] when nothing else is left; <= margin
-  bool thorough = false;          ///< at last, looks along surfaces for what may be hidden behind them
-  double patience = 2.0;          ///< [s] for a reading after it stands where it wanted to look
+  double turn = 1.0;              ///< [rad/s] maximum
+  double margin = 0.01;           ///< [m] between body and surfaces, first stages
+  double least_margin = 0.003;    ///< [m] the same in the last stages; <= margin
+  bool thorough = false;          ///< adds a last stage that looks along surfaces for hidden cells
+  double patience = 2.0;          ///< [s] wait for a reading at a goal
 };
 
-/// A map of cells of 3 cm around all walls, at least the thesis' 30 x 30 words, the world's middle in its own.
+/// Grid with cells of 3 cm (default) around all walls, at least the thesis' 30 x 30 words, with the world's centre at
+/// its own centre.
 /// @throws base::InputError for an area that is too large
 maps::GridGeometry grid_around(const world::World& world, double cell = 0.03);
 
@@ -52,13 +54,13 @@ class Explore final : public Controller {
   static constexpr int kStages = 5;
 
  private:
-  /// Part of a way: a turn in place, or a straight line.
+  /// Part of a path: a turn in place, or a straight line.
   struct Leg {
     bool straight = false;
-    glm::dvec2 end;  ///< [m] of a straight line
+    glm::dvec2 end;  ///< [m] end point of a straight line
     bool backwards = false;
     double heading = 0.0;  ///< [rad]
-    double side = 1.0;     ///< +1: turns left
+    double side = 1.0;     ///< +1: turn to the left; -1: to the right
   };
   bool update_map(const ControllerInput& input);
   base::Twist turn_once(const base::Pose& X_WM);
@@ -83,10 +85,10 @@ class Explore final : public Controller {
   std::optional<std::uint32_t> sequence_;  ///< of the last scan
   base::Pose X_WS_;                        ///< of the last scan
   std::int64_t last_time_ = 0;
-  std::vector<LatticeState> path_;  ///< to the goal, its last state
-  std::vector<Leg> legs_;           ///< still to go, the next one last
+  std::vector<LatticeState> path_;  ///< to the goal, which is its last state
+  std::vector<Leg> legs_;           ///< remaining legs, the next one last
   std::vector<maps::CellAt> targets_;
-  std::optional<std::int64_t> arrived_;  ///< [ns]
+  std::optional<std::int64_t> arrived_;  ///< [ns] arrival at the goal
 };
 
 extern const ControllerType explore_controller;

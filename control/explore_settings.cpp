@@ -11,7 +11,7 @@ namespace sf::control {
 
 namespace {
 
-constexpr double kMostNodes = 2e6;  // of the lattice: 128 MB for ways
+constexpr double kMostNodes = 2e6;  // nodes of the lattice: 128 MB for the path search
 
 }  // namespace
 

@@ -13,9 +13,9 @@ namespace {
 
 using world::PointRef;
 
-constexpr double kChangeCost = 1.0;  // [m] more than its length: lanes are changed where it helps only
+constexpr double kChangeCost = 1.0;  // [m] added to the length, so that routes change lanes only where that helps
 
-/// Even samples of a line.
+/// Samples a line evenly.
 void sample(Way& way, const world::Curve& line, double step) {
   way.length = std::max(line.s.back(), 1e-6);
   const auto spans = static_cast<std::size_t>(std::max(1.0, std::ceil(way.length / step)));
@@ -153,7 +153,7 @@ void LaneCorridors::add_changes() {
 
 std::shared_ptr<const LaneCorridors> shared_lane_corridors(const world::RoadNetwork& roads, const world::World& world,
                                                            const RoadFootprint& body) {
-  // Whoever holds corridors keeps their network, so that an address names it while they live.
+  // Corridors refer to their network, so its address identifies it for as long as they exist.
   struct Shared {
     const world::World* world;
     RoadFootprint body;

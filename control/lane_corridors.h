@@ -1,14 +1,14 @@
 #pragma once
-// The ways of a road network as robots drive them: evenly sampled lines, and where they come so near to each other that
-// two robots cannot pass at once.
+// The ways of a road network: evenly sampled lines, with the stretches on which two ways come too near to each other
+// for two robots to pass at once.
 //
 //   LaneCorridors corridors(roads, world, footprint_of(mover));
-//   for (const Place& place : corridors.places(X_WM)) ... place.way, place.s
+//   for (const RoadPosition& place : corridors.positions(X_WM, reach)) ... place.way, place.s
 //
-// A way is a lane, the connection of an exit, a change of lanes, or a straight within a zone. Ways meet where their
-// lines are nearer than two robots and a margin: at crossings of exits, where exits enter the same lane, and where
-// lanes cross (a bridge is flat here: robots have no height to cross at). Leaving the same point is no meeting, nor is
-// going on from one way to the next: there one robot follows the other.
+// A way is a lane, the connection of an exit, a lane change, or a straight line within a zone. Two ways conflict where
+// their lines are nearer than the width of two robots and a margin: at crossings of exits, where exits enter the same
+// lane, and where lanes cross (bridges count as crossings, since the road network is flat). Two ways that leave the
+// same point do not conflict, nor do two consecutive ways: there one robot follows the other.
 
 #include <algorithm>
 #include <array>
@@ -25,51 +25,51 @@ namespace sf::control {
 
 using base::Pose;
 
-/// What of a robot's shape matters on a road. [m]
+/// Dimensions of a robot that matter on a road. [m]
 struct RoadFootprint {
   double radius = 0.165;  ///< > 0
-  double front = 0.165;   ///< from its origin
+  double front = 0.165;   ///< from the origin to the front
 
   friend bool operator==(const RoadFootprint&, const RoadFootprint&) = default;
 };
-/// What of it stops at things: a virtual scanner does not.
+/// Dimensions of the parts of a mover that collide; virtual scanners do not.
 RoadFootprint footprint_of(const world::Mover& mover);
 
-/// Stretches of two ways that two robots cannot be on at once. [m] along either way, of the robots' origins.
+/// Stretches of two ways that two robots cannot occupy at once. [m] along either way, of the robots' origins.
 struct Conflict {
-  std::uint32_t way = 0;  ///< the other
+  std::uint32_t way = 0;  ///< row of the other way
   double from = 0.0, to = 0.0;
   double other_from = 0.0, other_to = 0.0;
-  bool yields = false;  ///< this way enters the other one in its course: who is on that goes first
+  bool yields = false;  ///< this way enters the other one in its course, and robots on the other way go first
 };
 
-/// Meetings of one way that lie too close together to wait between them.
+/// Conflicts of one way that are too close together to wait between them.
 struct ConflictZone {
-  double hold = 0.0;  ///< [m] a robot's origin waits here; negative: on the way before
-  double end = 0.0;   ///< [m] from here on it is out of the way of the others
+  double hold = 0.0;  ///< [m] a robot's origin waits here; negative: on the preceding way
+  double end = 0.0;   ///< [m] from here on the robot is clear of the other ways
   std::vector<Conflict> conflicts;
 };
 
 /// A stop line of a lane.
 struct LaneStop {
   double s = 0.0;                     ///< [m] along the lane
-  std::vector<std::uint32_t> lights;  ///< rows of `World::lights` that govern it; none: a stop sign
+  std::vector<std::uint32_t> lights;  ///< rows of `World::lights` that govern it; empty: a stop sign
 };
 
 struct Way {
   enum class Kind : std::uint8_t { lane, exit, change, zone };
   Kind kind = Kind::lane;
-  std::uint32_t from = world::kNone;  ///< the lane's way that it leaves; kNone: none
-  std::uint32_t into = world::kNone;  ///< the lane's way that it enters
+  std::uint32_t from = world::kNone;  ///< row of the lane that it leaves; kNone: none
+  std::uint32_t into = world::kNone;  ///< row of the lane that it enters; kNone: none
   double leave = 0.0;                 ///< [m] along `from`
   double enter = 0.0;                 ///< [m] along `into`
-  bool at_end = false;                ///< exits: it leaves where its lane ends
-  bool backwards = false;             ///< robots drive it backwards
-  bool in_zone = false;               ///< it leads into, about, or out of a zone
+  bool at_end = false;                ///< exits: it leaves at the end of its lane
+  bool backwards = false;             ///< robots drive it in reverse
+  bool in_zone = false;               ///< it leads into, through, or out of a zone
   std::uint32_t zone = world::kNone;  ///< row of that zone
 
   double length = 0.0;                       ///< [m] > 0
-  double step = 0.0;                         ///< [m] from one point to the next
+  double step = 0.0;                         ///< [m] between neighbouring points
   std::vector<glm::dvec2> points;            ///< at least two
   std::vector<double> yaw;                   ///< [rad] of the line at each point, not wrapped
   std::vector<glm::dvec2> tangents;          ///< unit vectors
@@ -77,22 +77,22 @@ struct Way {
   std::vector<ConflictZone> conflict_zones;  ///< in order
   std::vector<LaneStop> stops;               ///< lanes: in order
   std::vector<double>
-      lines;  ///< lanes: where robots on it wait for conflict_zones of the lane and of its exits, in order
-  std::vector<std::uint32_t> out;  ///< lanes: ways that leave it
+      lines;  ///< lanes: places where robots wait for the conflict zones of the lane and of its exits, in order
+  std::vector<std::uint32_t> out;  ///< lanes: rows of the ways that leave it
 };
 
 glm::dvec2 point_on(const Way& way, double s);
 double yaw_on(const Way& way, double s);
 double curvature_on(const Way& way, double s);
 
-/// Where a robot may be.
+/// A possible position of a robot on the roads.
 struct RoadPosition {
   std::uint32_t way = 0;
   double s = 0.0;       ///< [m] along the way
-  double offset = 0.0;  ///< [m] >= 0 from its line
+  double offset = 0.0;  ///< [m] >= 0 from the way's line
 };
 
-/// The likeliest ways of one robot, the nearest first; few.
+/// The positions of one robot, nearest way first.
 struct RoadPositions {
   std::array<RoadPosition, 8> all;
   std::uint32_t count = 0;
@@ -100,15 +100,16 @@ struct RoadPositions {
   const RoadPosition* end() const { return all.data() + count; }
 };
 
-/// A way on in the graph: nodes are rows of `RoadNetwork::index`.
+/// An edge of the route graph. Nodes are rows of `RoadNetwork::index`.
 struct Edge {
   std::uint32_t to = 0;
-  std::array<std::uint32_t, 2> ways{world::kNone, world::kNone};  ///< driven one after the other, second may be none
-  double from_s = 0.0, to_s = 0.0;                                ///< [m] along the first; the second is driven whole
-  double cost = 0.0;                                              ///< [m]
+  std::array<std::uint32_t, 2> ways{world::kNone,
+                                    world::kNone};  ///< driven one after the other; the second may be kNone
+  double from_s = 0.0, to_s = 0.0;                  ///< [m] along the first; the second is driven whole
+  double cost = 0.0;                                ///< [m]
 };
 
-/// Immutable after construction; any number of threads. The network and the world must outlive it.
+/// Immutable after construction; callable from any number of threads. The network and the world must outlive it.
 class LaneCorridors {
  public:
   LaneCorridors(const world::RoadNetwork& roads, const world::World& world, const RoadFootprint& body);
@@ -117,17 +118,17 @@ class LaneCorridors {
   const RoadFootprint& body() const { return body_; }
   const std::vector<Way>& ways() const { return ways_; }
   const Way& way(std::uint32_t row) const { return ways_[row]; }
-  /// The way of a lane is the lane's own row.
+  /// Edges that start at a node.
   const std::vector<Edge>& edges(std::uint32_t node) const { return edges_[node]; }
   std::uint32_t node_of(world::PointRef at) const;
 
-  /// Ways within `reach` [m] of the robot that run in its direction (to 45 degrees), nearest first.
+  /// Ways within `reach` [m] of the robot that run in its direction (within 45 degrees), nearest first.
   RoadPositions positions(const Pose& X_WM, double reach) const;
-  /// Within the perimeter of the zone, or half a radius beyond: spots may be entered from its very rim.
+  /// Within the perimeter of the zone or half a radius outside it, since spots may be entered from the perimeter.
   bool inside(std::uint32_t zone, glm::dvec2 p) const;
-  /// The origin of a robot that is parked in a spot.
+  /// Pose of a robot's origin when parked in a spot.
   Pose parked(std::uint32_t spot) const;
-  /// How near lines come before they meet. [m]
+  /// [m] Distance of two lines below which they conflict.
   double clearance() const { return clearance_; }
 
  private:
@@ -153,9 +154,9 @@ class LaneCorridors {
   std::vector<Way> ways_;
   std::vector<std::vector<Edge>> edges_;
 
-  // Samples of all ways by square cells of the plane, each half as wide as the clearance.
+  // Samples of all ways in square grid cells, each half as wide as the clearance, or wider on large networks.
   struct Sample {
-    glm::dvec2 p, along;  ///< where, and which way a robot looks that drives there
+    glm::dvec2 p, along;  ///< position, and unit vector of the driving direction
     std::uint32_t way, index;
   };
   glm::dvec2 corner_;
@@ -182,8 +183,8 @@ void LaneCorridors::near(glm::dvec2 p, double reach, F&& visit) const {
     }
 }
 
-/// The same corridors for all robots of one shape on one network, as long as any of them has them: they are large, and
-/// one table in the processor's cache serves a crowd. Any thread.
+/// Returns the same corridors for all robots of one shape on one network while any robot holds them: the tables are
+/// large, and a shared table stays in the processor's cache. Callable from any thread.
 std::shared_ptr<const LaneCorridors> shared_lane_corridors(const world::RoadNetwork& roads, const world::World& world,
                                                            const RoadFootprint& body);
 

@@ -20,14 +20,14 @@ double LaneKeeping::error_of(const base::ReadingBlock& reading, const base::Pose
   if (reading.values.empty() || !std::isfinite(reading.values[0])) return Controller::error();
   const glm::dvec2 p_WS = base::transform(X_WM, settings_.p_MS);
   const double half = settings_.half_width ? *settings_.half_width : 0.5 * task().width_at(p_WS);
-  const double edge = reading.values[0] + settings_.side * settings_.p_MS.y;  // from the robot's axis
+  const double edge = reading.values[0] + settings_.side * settings_.p_MS.y;  // measured from the robot's axis
   return settings_.side * (edge - half);
 }
 
 namespace {
 
-constexpr double kLeastAhead = 0.1;  // [m] as if a sensor were so far ahead that is nearer, or behind
-constexpr double kMostAhead = 2.0;   // [rad/s] of gain times distance ahead: slower than steps at 10 Hz
+constexpr double kLeastAhead = 0.1;  // [m] lower bound of the sensor's distance ahead
+constexpr double kMostAhead = 2.0;   // [rad/s] upper bound of gain times distance ahead, for stability at 10 Hz
 
 const world::Sensor* find_sensor(const world::Mover& mover) {
   const auto found = std::find_if(mover.sensors.begin(), mover.sensors.end(),
@@ -35,8 +35,8 @@ const world::Sensor* find_sensor(const world::Mover& mover) {
   return found == mover.sensors.end() ? nullptr : &*found;
 }
 
-// A unicycle at speed v whose error is measured l ahead of it obeys e'' + kp l e' + kp v e = 0: damped by 1 / sqrt(2)
-// where kp = 2 v / l^2. Player's driver for the Create turns twice as much as it is told.
+// A unicycle at speed v whose error is measured l ahead of it obeys e'' + kp l e' + kp v e = 0. The damping ratio is 1
+// / sqrt(2) for kp = 2 v / l^2. Player's driver for the Create turns twice as much as commanded.
 double damped_gain(const world::Mover& mover, const LaneSettings& lane) {
   const double ahead = std::max(lane.p_MS.x, kLeastAhead);
   const double gain = std::min(2.0 * lane.speed / (ahead * ahead), kMostAhead / ahead);

@@ -1,5 +1,5 @@
 #pragma once
-// Follows a lane by its painted edge (thesis, 4.3.2): e = z - half the lane's width, u = kp e + ki (integral of e), at
+// Lane keeping by the painted edge (thesis, 4.3.2): e = z - half the lane's width, u = kp e + ki (integral of e), at
 // constant speed (control/path_task.h).
 
 #include <optional>
@@ -9,15 +9,16 @@
 namespace sf::control {
 
 struct LaneSettings {
-  PiGains gains{.kp = 0.5};          ///< per metre; of the controller by name: as its sensor's place asks for
-  double speed = 0.1;                ///< [m/s]
-  std::optional<double> half_width;  ///< [m] of the lane; none: of the path's piece under the sensor
-  double side = 1.0;                 ///< +1: the sensor looks at the lane's left edge; -1: right
+  PiGains gains{.kp =
+                    0.5};  ///< per metre; the controller `lane-keeping` derives its default from the sensor's position
+  double speed = 0.1;      ///< [m/s]
+  std::optional<double> half_width;  ///< [m] half the lane's width; none: that of the path's piece under the sensor
+  double side = 1.0;                 ///< edge that the sensor measures: +1 left, -1 right
   double hold = 1.0;                 ///< [s]
-  glm::dvec2 p_MS;                   ///< [m] the sensor's place in the robot's frame
+  glm::dvec2 p_MS;                   ///< [m] position of the sensor in the robot's frame
 };
 
-/// Its error is [m] how far the robot is to the right of the lane's middle, by the edge.
+/// Its error is the robot's offset to the right of the lane's centre, measured from the edge. [m]
 class LaneKeeping final : public PathFollower {
  public:
   LaneKeeping(const LaneSettings& settings, const PathTask& task);

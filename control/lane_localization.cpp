@@ -1,4 +1,4 @@
-// Where robots are on the ways: samples in a grid.
+// Localization of robots on the ways, by a grid of samples.
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace sf::control {
 
 namespace {
 
-constexpr double kAlike = 0.7;  // cosine of the angle between a robot and its way, at least
+constexpr double kAlike = 0.7;  // least cosine of the angle between a robot and its way
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void LaneCorridors::fill_grid() {
     }
   if (ways_.empty()) low = high = {};
   corner_ = low;
-  // A few million cells at most, however long the roads.
+  // At most a few million cells, whatever the length of the roads.
   const double area = std::max((high.x - low.x) * (high.y - low.y), 1e-12);
   cell_ = std::max(0.5 * clearance_, std::sqrt(area / 4e6));
   columns_ = static_cast<std::int64_t>((high.x - low.x) / cell_) + 1;
@@ -78,7 +78,7 @@ RoadPositions LaneCorridors::positions(const Pose& X_WM, double reach) const {
     if (s < -1e-6 || s > way.length + 1e-6) continue;  // beyond its ends
     const RoadPosition place{found[i].way, s, std::abs(base::cross(along, d))};
     if (place.offset > reach) continue;
-    // In order of offset, then of rows.
+    // Insertion in order of offset, then of row.
     std::uint32_t at = positions.count;
     while (at > 0 && (positions.all[at - 1].offset > place.offset ||
                       (positions.all[at - 1].offset == place.offset && positions.all[at - 1].way > place.way)))

@@ -1,9 +1,9 @@
 #pragma once
 // Follows a line of magnets by an array of magnetometers across the robot (thesis, 4.3.3): e = z of the last element -
-// z of the first, in Gauss, u = kp e + ki (integral of e), at constant speed. Element 0 is the rightmost, so a line to
-// the left of the robot's middle makes e positive, and it turns left.
+// z of the first, in Gauss, u = kp e + ki (integral of e), at constant speed. Element 0 is the rightmost: a line to the
+// left of the robot's centre makes e positive, and the robot turns left.
 //
-// The thesis prints gains (0.01, 0.006) without a unit; here they are in rad/s per Gauss.
+// The thesis prints the gains (0.01, 0.006) without a unit. Here gains are in rad/s per Gauss.
 
 #include "control/path_task.h"
 
@@ -15,7 +15,7 @@ struct MagnetSettings {
   double hold = 1.0;         ///< [s]
 };
 
-/// Its error is in Gauss, not a number where there are not two elements.
+/// Its error is in Gauss; NaN with fewer than two elements.
 class MagnetKeeping final : public PathFollower {
  public:
   MagnetKeeping(const MagnetSettings& settings, const PathTask& task);

@@ -1,5 +1,5 @@
 #pragma once
-// Passing a slower robot: over to the lane beside, past it, and back.
+// Overtaking: change to the adjacent lane, pass the slower robot, change back.
 
 #include <optional>
 
@@ -7,22 +7,22 @@
 
 namespace sf::control {
 
-/// A route that passes the robot ahead and comes back to the lane, or nothing where the lane beside is taken, or too
-/// short. `plan` is on a lane at `s`.
-/// @param speed [m/s] of the passing robot
+/// A route that overtakes the robot ahead and returns to the lane; nullopt when the adjacent lane is occupied or too
+/// short. @pre `plan` is on a lane at `s`.
+/// @param speed [m/s] of the overtaking robot
 struct Passing {
   RoutePlan plan;
-  double until = 0.0;  ///< [m] along it: back in its lane
+  double until = 0.0;  ///< [m] along the plan, where the robot is back in its lane
 };
 std::optional<Passing> plan_passing(const LaneCorridors& corridors, const RoutePlan& plan, double s, double speed,
                                     const LeadRobot& slow, const std::vector<RoadUser>& road_users);
 
-/// The way leads from a lane to another one of the same segment in its course.
+/// The way leads from a lane to another lane of the same segment, in the course of the first.
 bool changes_lanes(const LaneCorridors& corridors, std::uint32_t way);
 
-/// Gives up a change of lanes: a route from where the robot is back into the lane that it was to leave, to that lane's
-/// next point, without what was to come and without the goals after `s`. `plan` is on a way that changes lanes at `s`.
-/// Nothing where the lane to be entered is nearer already.
+/// Aborts a lane change: returns a route from the robot's position back to the lane that it was leaving, to that lane's
+/// next point. The remaining legs and the goals after `s` are dropped. @pre `plan` is on a lane change at `s`. Returns
+/// nullopt when the lane to be entered is already nearer.
 std::optional<RoutePlan> plan_return(const LaneCorridors& corridors, const RoutePlan& plan, double s, const Pose& X_WM);
 
 }  // namespace sf::control

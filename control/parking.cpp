@@ -24,7 +24,7 @@ Pose LaneCorridors::parked(std::uint32_t row) const {
   return {p.x, p.y, 0.0, std::atan2(along.y, along.x)};
 }
 
-// Into a spot: along the aisle to where the robot stands before it, a turn in place, straight in; out again backwards.
+// Into a spot: along the aisle to the place before it, a turn in place, straight in. Out of it: in reverse.
 void LaneCorridors::add_zones() {
   const auto leads = [&](PointRef at, bool out) {
     return std::any_of(roads_.exits.begin(), roads_.exits.end(),

@@ -1,5 +1,5 @@
 #pragma once
-// Following a path of the world: which piece one is on, when one is through, and the loop that all who follow share.
+// Following a path of the world file: progress, end of the path, and the control loop shared by all followers.
 
 #include <cstdint>
 #include <string_view>
@@ -15,14 +15,13 @@ namespace sf::control {
 /// Settings: `stop_before` [m].
 class PathTask {
  public:
-  /// The path is the world's nearest to the robot at load; there need not be one: then it never ends.
-  /// @throws base::InputError
+  /// Selects the path nearest to the robot at load. Without a path the task never ends. @throws base::InputError
   PathTask(const ControllerContext& context, Settings& settings);
 
   bool known() const { return path_ != nullptr; }
-  /// [m] lane width of the piece nearest to `p`. Rule: known().
+  /// [m] Lane width of the piece nearest to `p`. @pre known()
   double width_at(glm::dvec2 p) const;
-  /// The robot's origin has come as far along the path as `stop_before` its end.
+  /// The robot's origin is within `stop_before` of the path's end, measured along the path.
   bool ended(const base::Pose& X_WM) const;
 
  private:
@@ -30,31 +29,30 @@ class PathTask {
   double stop_before_ = 0.25;  ///< [m]
 };
 
-/// The last reading of a sensor, and whether there still are new ones: for controllers that run at a rate of their own
-/// and meet readings twice, or late.
+/// Sample-and-hold for a sensor whose readings arrive at another rate than the controller's, so that the controller may
+/// get one reading twice, or late.
 class SampleHold {
  public:
   explicit SampleHold(double seconds) : hold_(static_cast<std::int64_t>(1e9 * seconds)) {}
 
-  /// @param reading null: none
-  /// @return whether the sensor still speaks: nothing new for longer than `seconds` is silence
+  /// @param reading null: none @return true when the newest reading is at most `seconds` old, counted from its arrival
   bool is_fresh(const base::ReadingBlock* reading, std::int64_t time);
 
-  /// @param now what the reading says; not a number: nothing
-  /// @return `now`, or what it was last within `seconds`, or not a number
+  /// @param now value of the reading; NaN: none
+  /// @return `now`, or the last value if that is at most `seconds` old, else NaN
   double update(double now, std::int64_t time);
 
  private:
   std::int64_t hold_;
-  std::int64_t last_reading_ = 0, last_value_time_ = 0;  ///< [ns] of the last new reading, of the last number
+  std::int64_t last_reading_ = 0, last_value_time_ = 0;  ///< [ns] time of the last new reading, of the last value
   std::uint32_t sequence_ = 0;
   double last_ = std::numeric_limits<double>::quiet_NaN();
   bool any_ = false;
 };
 
-/// Follows a path at constant speed by what one sensor says of the error, with P or PI steering: readings are taken at
-/// its own rate, new or not. Without an error it goes on with the last for `hold` seconds, then stands until there is
-/// one again; the integral rests meanwhile. (The thesis says nothing of it.)
+/// Follows a path at constant speed by an error measured with one sensor, with P or PI steering. Each step uses the
+/// newest reading, whether new or not. Without an error the last one holds for `hold` seconds; after that the robot
+/// stands until there is one again. The integral is frozen meanwhile. (The thesis does not specify this.)
 class PathFollower : public Controller, public StatesStopReason {
  public:
   base::Twist step(const ControllerInput& input) final;
@@ -63,13 +61,13 @@ class PathFollower : public Controller, public StatesStopReason {
   std::string stop_reason() const final;
 
  protected:
-  /// @param kind of the sensor @param sensor its name, for people @param speed [m/s] @param hold [s]
+  /// @param kind wire id of the sensor type @param sensor name for messages @param speed [m/s] @param hold [s]
   PathFollower(std::uint8_t kind, std::string_view sensor, const PiGains& gains, double speed, double hold,
                const PathTask& task);
   const PathTask& task() const { return task_; }
 
  private:
-  /// Not a number: the reading says nothing.
+  /// Control error from a reading; NaN when the reading gives none.
   virtual double error_of(const base::ReadingBlock& reading, const base::Pose& X_WM) const = 0;
 
   std::uint8_t kind_;
@@ -79,7 +77,7 @@ class PathFollower : public Controller, public StatesStopReason {
   PiController pi_;
   SampleHold hold_;
   double error_ = Controller::error();
-  bool fresh_ = false;  ///< the sensor, at the last step
+  bool fresh_ = false;  ///< `SampleHold::is_fresh` at the last step
   bool done_ = false;
 };
 

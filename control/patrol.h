@@ -1,5 +1,5 @@
 #pragma once
-// Drives through given points to the last and back to the first, over and over: pedestrians, Kheperas. Stands while
+// Drives through given points to the last and back to the first, repeatedly; for pedestrians and Kheperas. Stands while
 // another robot (V2V) is within its stopping distance ahead.
 
 #include <vector>
@@ -14,10 +14,10 @@ struct PatrolSettings {
   double speed = 0.1;              ///< [m/s]
   double turn_speed = 1.0;         ///< [rad/s]
   double pause = 0.0;              ///< [s] at each end
-  double reach = 0.03;             ///< [m] a point this near is reached
-  double keep = 0.3;               ///< [m] between its own body and others' origins
+  double reach = 0.03;             ///< [m] distance at which a point is reached
+  double keep = 0.3;               ///< [m] between its own body and the origins of other robots
   double radius = 0.165;           ///< [m] of its own body
-  bool turns_in_place = true;      ///< false: a car, which drives on while it turns
+  bool turns_in_place = true;      ///< false: a car, which drives while it turns
 };
 
 class Patrol final : public Controller, public StatesStopReason {
@@ -28,7 +28,7 @@ class Patrol final : public Controller, public StatesStopReason {
   double v2v_range() const override;
   std::string stop_reason() const override { return stop_reason_; }
 
-  std::size_t target() const { return target_; }  ///< index of the point it heads for
+  std::size_t target() const { return target_; }  ///< index of the point to reach next
 
  private:
   bool obstructed(const ControllerInput& input) const;
@@ -37,7 +37,7 @@ class Patrol final : public Controller, public StatesStopReason {
   PatrolSettings settings_;
   std::size_t target_ = 0;
   bool backwards_ = false;
-  std::int64_t until_ = INT64_MIN;  ///< [ns] it stands
+  std::int64_t until_ = INT64_MIN;  ///< [ns] end of the pause
   const char* stop_reason_ = "";
 };
 

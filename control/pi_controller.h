@@ -1,6 +1,6 @@
 #pragma once
-// u = kp e + ki (integral of e), the integral by the trapezoid rule over the time between steps (thesis, equations 4
-// to 6).
+// PI control, u = kp e + ki (integral of e). The integral uses the trapezoid rule over the time between steps (thesis,
+// equations 4 to 6).
 
 #include <cmath>
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace sf::control {
 struct PiGains {
   double kp = 0.5;                   ///< [rad/s per unit of the error]
   double ki = 0.0;                   ///< [rad/s^2 per unit of the error]
-  double integral_limit = HUGE_VAL;  ///< [unit s] the integral stays within +- this; > 0
+  double integral_limit = HUGE_VAL;  ///< [unit s] bound of the integral's magnitude; > 0
 };
 
 /// Reads `kp`, `ki`, `integral_limit`. @throws base::InputError
@@ -22,11 +22,11 @@ class PiController {
  public:
   explicit PiController(const PiGains& gains) : gains_(gains) {}
 
-  /// @param time [ns] never runs backwards
+  /// @param time [ns] does not decrease
   /// @return [rad/s]
   double steer(double error, std::int64_t time);
 
-  /// The same for an error that is only remembered: the integral rests, and goes on from the next step that knows.
+  /// Control with a held error: the integral is frozen and continues from the next call of `steer`.
   double hold(double error);
 
   double integral() const { return integral_; }  ///< [unit s]

@@ -25,14 +25,14 @@ constexpr std::array<std::array<int, 2>, kHeadings> kSteps = {{{1, 0},
                                                                {2, -1}}};
 
 // Costs: 10 is a step of one node at full speed.
-constexpr std::uint32_t kTurnCost = 40;  // one heading
-constexpr std::uint32_t kBackwards = 2;  // times as dear
-constexpr std::uint32_t kNear = 2;       // times as dear
-constexpr double kNearBody = 0.03;       // [m] of a surface
+constexpr std::uint32_t kTurnCost = 40;  // per heading
+constexpr std::uint32_t kBackwards = 2;  // factor in reverse
+constexpr std::uint32_t kNear = 2;       // factor near a surface
+constexpr double kNearBody = 0.03;       // [m] distance to a surface that counts as near
 constexpr std::uint32_t kMostCost = 23 * kBackwards * kNear + 1;
 constexpr std::uint32_t kNever = 0xFFFFFFFFu;
-constexpr Node kAround = 3;     // nodes about the start where it may begin too near
-constexpr double kArm = 0.005;  // [m] beyond the sensor that is clear as well
+constexpr Node kAround = 3;     // nodes around the start within which the smaller margin is allowed
+constexpr double kArm = 0.005;  // [m] required clearance beyond the sensor
 
 enum : std::uint8_t { kForward, kBack, kLeft, kRight, kStart };
 
@@ -62,7 +62,7 @@ PoseSearch::PoseSearch(const ExplorationMap& map, const Footprint& body)
   };
   const double reach = glm::length(body.p_MS);
   for (int half = 0; half < 2 * kHeadings; ++half) {
-    // Halfway headings are those that a turn passes.
+    // Odd entries are the headings halfway between two neighbours, passed in a turn.
     const double to =
         half % 2 == 0 ? 0.0 : 0.5 * base::wrap_angle(heading_angle(around(half / 2 + 1)) - heading_angle(half / 2));
     const double yaw = heading_angle(half / 2) + to;
@@ -91,7 +91,7 @@ std::uint32_t PoseSearch::cost_at(Node node) const {
   return map_.clearance(node) < static_cast<float>(body_.radius + kNearBody) ? kNear : 1;
 }
 
-// `spare`: the margin that is enough near the start.
+// `spare`: the margin that suffices near the start.
 void PoseSearch::relax(const LatticeState& from, std::uint32_t so_far, double margin, double spare) {
   const int h = from.heading;
   const Node step = ahead_[static_cast<std::size_t>(h)];

@@ -1,9 +1,9 @@
 #pragma once
-// Ways for a body with a sensor on it: a lattice of places and sixteen headings, searched by cost from where it is
-// (Dijkstra, "A note on two problems in connexion with graphs", 1959).
+// Path search for a body with a sensor on it, on a lattice of places and sixteen headings: cheapest path from the
+// current state (Dijkstra, "A note on two problems in connexion with graphs", 1959).
 //
-// A state is allowed where the body keeps its distance from every surface and covers no unexplored ground, and nothing
-// stands between it and its sensor, which may reach beyond the body: it is never turned into a wall.
+// A state is allowed when the body keeps its margin to all surfaces, covers no unexplored ground, and no surface lies
+// between the body and its sensor, which may reach beyond the body.
 
 #include <array>
 #include <cstdint>
@@ -16,36 +16,37 @@ namespace sf::control {
 
 inline constexpr int kHeadings = 16;
 
-/// A place and a heading.
+/// Lattice node and heading.
 struct LatticeState {
   Node node = 0;
   int heading = 0;  ///< in [0, kHeadings)
   bool operator==(const LatticeState&) const = default;
 };
 
-/// [rad] of heading k: towards one of sixteen neighbours on the lattice, 21 to 27 degrees apart.
+/// [rad] Angle of heading k. Headings point to sixteen neighbouring nodes and are 18 to 27 degrees apart.
 double heading_angle(int heading);
 
-/// What moves.
+/// The moving body.
 struct Footprint {
   double radius = 0.165;  ///< [m]
-  glm::dvec2 p_MS;        ///< [m] its sensor
+  glm::dvec2 p_MS;        ///< [m] position of its sensor in the robot's frame
 };
 
 class PoseSearch {
  public:
-  /// `terrain` outlives it.
+  /// `map` must outlive it.
   PoseSearch(const ExplorationMap& map, const Footprint& body);
 
-  /// @param margin [m] the body keeps from every surface; from `from` on it may begin nearer
+  /// @param margin [m] between the body and all surfaces
   bool allowed(const LatticeState& state, double margin) const;
 
-  /// The sensor's node in a state. Rule: the body is within the map.
+  /// The sensor's node in a state. @pre the body is within the map
   Node sensor_at(const LatticeState& state) const {
     return state.node + sensor_[static_cast<std::size_t>(state.heading)];
   }
 
-  /// The cheapest way to the first state that is a goal: `from` first, the goal last; empty: there is none.
+  /// The cheapest path to the first state for which `goal` returns true, from `from` to that state. Empty without a
+  /// path. Near `from` a smaller margin is allowed when the start has no more.
   std::vector<LatticeState> find(const LatticeState& from, double margin,
                                  const std::function<bool(const LatticeState&)>& goal);
 
@@ -57,11 +58,11 @@ class PoseSearch {
 
   const ExplorationMap& map_;
   Footprint body_;
-  std::array<Node, kHeadings> ahead_{};  ///< one step forward
+  std::array<Node, kHeadings> ahead_{};  ///< node offset of one step forward
   std::array<Node, kHeadings> sensor_{};
-  std::array<std::vector<Node>, 2 * kHeadings> sensor_arm_;  ///< nodes between the body and its sensor
+  std::array<std::vector<Node>, 2 * kHeadings> sensor_arm_;  ///< offsets of the nodes between the body and its sensor
   std::vector<std::uint32_t> cost_;
-  std::vector<std::uint8_t> move_;  ///< that led there
+  std::vector<std::uint8_t> move_;  ///< move that led to the state
   std::vector<std::vector<std::uint32_t>> buckets_;
   std::size_t waiting_ = 0;
   Node start_ = 0;

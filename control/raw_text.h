@@ -1,6 +1,6 @@
 #pragma once
-// A setting as a command line has it: characters that become a number, a flag, a text or a list when a controller reads
-// it, since only the reader knows which it should be: `13.4` is a parking spot's name, `1` a list of one checkpoint.
+// A setting as given on the command line: text without a type. The controller that reads it determines the type: `13.4`
+// may be the name of a parking spot, `1` a list of one checkpoint.
 
 #include <optional>
 #include <string>
@@ -13,17 +13,17 @@ struct RawText {
   std::string text;
 };
 
-// Each takes blanks around the value. Nothing where it is no such value.
+// Each allows blanks around the value, and returns nullopt for text of another form.
 
-/// Finite, in decimal digits.
+/// A finite number in decimal digits.
 std::optional<double> read_number(std::string_view raw);
 /// "true" or "false".
 std::optional<bool> read_flag(std::string_view raw);
-/// Without the quotes around it ("..." or '...'), where there are some.
+/// Strips one pair of quotes ("..." or '...') around the text, if any.
 std::string read_text(std::string_view raw);
 /// "1,2", "1 2", "[1, 2]", "[1 2]", "1", or "[]" for none.
 std::optional<std::vector<double>> read_numbers(std::string_view raw);
-/// Likewise; each with quotes or without. Blanks within quotes, and commas there, belong to a text.
+/// The same for texts, each with or without quotes. Blanks and commas within quotes belong to the text.
 std::optional<std::vector<std::string>> read_texts(std::string_view raw);
 
 }  // namespace sf::control

@@ -1,18 +1,20 @@
 #pragma once
-// Who goes first where ways meet: one rule that every robot computes from what all robots tell of themselves (V2V) and
-// from the lights, so that no two robots that meet both think that it is their turn.
+// Right of way at conflict zones. Every robot computes the same rule from the V2V states of all robots and from the
+// traffic lights, so that two conflicting robots never both take the right of way.
 //
-// A robot that has passed the place where it should have waited, or could not stop before it any more, is in the
-// crossing: all others that meet any way it may take wait. Of those that approach or stand (the first of each lane),
-//   1. who need not stop (no stop line, or a green light) goes before who must; a red light keeps its lane out of this;
-//   2. then who came first: came within kApproachDistance, or stood at its stop line;
+// A robot that has passed its waiting line, or can no longer stop before it, occupies the crossing: all robots whose
+// ways conflict with any way it may take wait. Among the other robots near a line (the first of each lane),
+//   1. a robot that need not stop (no stop line, or a green light) precedes one that must; robots at a red light do not
+//      take part;
+//   2. then the earlier arrival precedes: the time of coming within kApproachDistance or of standing at the stop line;
 //   3. then the smaller id.
-// Who merges behind a robot goes before the robot that followed it until then. Who has waited for kMaxWait takes part
-// in a lottery instead, drawn anew every kLotteryPeriod from (id, time) and so the same for all: a robot that cannot
-// use its turn, since the lane it wants is full, does not keep the others waiting.
+// A robot that merges behind a leader precedes the robot that followed this leader until then. Once either of two
+// robots has waited longer than kMaxWait, a lottery decides between them. It is drawn every kLotteryPeriod from (id,
+// time), equal for all robots. Without it, a robot that cannot use its turn because its lane is full would block the
+// others.
 //
-// Two robots that decide at one time see the same poses and so agree on the order; what either has begun the other sees
-// at its next decision. Which exit another takes is not told: all that its lane has are counted.
+// Robots that decide at the same time see the same poses and agree on the order; a robot sees at its next decision what
+// the other has begun. V2V packets do not state the chosen exit, so all exits of a robot's lane count.
 
 #include <cstdint>
 #include <vector>
@@ -22,23 +24,23 @@
 
 namespace sf::control {
 
-inline constexpr double kApproachDistance = 0.5;               ///< [m] before where one waits
+inline constexpr double kApproachDistance = 0.5;               ///< [m] before the waiting line
 inline constexpr std::int64_t kMaxWait = 3'000'000'000;        ///< [ns]
 inline constexpr std::int64_t kLotteryPeriod = 1'000'000'000;  ///< [ns]
-inline constexpr double kHardBraking = 0.6;                    ///< [m/s^2] that every robot can do
+inline constexpr double kHardBraking = 0.6;                    ///< [m/s^2] deceleration that every robot can achieve
 
-/// What a stop line asks for.
+/// Rule at a stop line.
 enum class Rule : std::uint8_t { free, stop, closed };
 Rule rule_of(const LaneStop& mark, std::span<const world::Signal> signals);
 
-/// A robot before a place where it may have to wait.
+/// A robot's approach to a waiting line.
 struct Approach {
-  std::uint32_t lane = world::kNone;  ///< way; kNone: nowhere
-  double line = 0.0;                  ///< [m] along the lane, where its origin waits
-  double ahead = 0.0;                 ///< [m] still to go; negative: beyond it
+  std::uint32_t lane = world::kNone;  ///< row of the way; kNone: no approach
+  double line = 0.0;                  ///< [m] along the lane, where the robot's origin waits
+  double ahead = 0.0;                 ///< [m] remaining distance; negative: beyond the line
   Rule rule = Rule::free;
-  bool first = false;      ///< nobody is between it and the line
-  bool contends = false;   ///< it would go if it were alone
+  bool first = false;      ///< no robot is between it and the line
+  bool contends = false;   ///< it takes part in the order of precedence
   std::int64_t since = 0;  ///< [ns] when it began to contend
 };
 
@@ -57,20 +59,19 @@ class RightOfWay {
  public:
   RightOfWay(const LaneCorridors& corridors, std::uint32_t own_id);
 
-  /// Takes in one moment. Robots beyond `kSensingRange` are left out, but not whom it follows and who
-  /// follows it.
-  /// @param follows whom it follows itself
-  /// @param merges it is the one who comes in between
+  /// Takes the states of one time. Robots beyond `kSensingRange` are left out, except its leader and its followers.
+  /// @param follows id of its own leader; kNoId: none
+  /// @param merges it has yet to merge behind the leader
   void observe(const ControllerInput& input, std::uint32_t follows, bool merges);
 
-  /// Everyone in sight; the first is the robot itself. Lives until the next `observe`.
+  /// All observed robots; the first is the robot itself. Lives until the next `observe`.
   const std::vector<RoadUser>& road_users() const { return road_users_; }
 
-  /// Nobody is in the way within the gate, and nobody goes first.
+  /// No robot occupies the conflict zone or precedes this one.
   bool may_enter(std::uint32_t way, const ConflictZone& conflict_zone) const;
-  /// It can no longer stop `ahead` [m] before it.
+  /// A robot can no longer stop within `ahead` [m].
   bool committed(double ahead, double speed) const;
-  /// Nobody drives about in the zone, or is on its way in.
+  /// No robot drives in the zone or is entering it.
   bool zone_free(std::uint32_t zone) const;
 
  private:
@@ -100,7 +101,7 @@ class RightOfWay {
   std::int64_t time_ = 0;
   std::vector<RoadUser> road_users_;
   std::vector<Arrival> arrivals_;
-  std::vector<Known> known_;  ///< where everyone was seen last
+  std::vector<Known> known_;  ///< last poses and positions of all observed robots
 };
 
 }  // namespace sf::control

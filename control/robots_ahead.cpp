@@ -51,7 +51,7 @@ void find_robots_ahead(const LaneCorridors& corridors, const RoutePlan& plan, do
     if (length(p - self) > kLookaheadDistance + 2.2 * radius) continue;
     const auto away = [&](std::size_t i) { return length(points[i].p - p); };
     for (std::size_t i = 0; i < count;) {
-      // Points are no farther apart than a step: the way can come no nearer sooner.
+      // Neighbouring points are at most one step apart, which bounds the decrease of the distance per point.
       const double distance = away(i);
       if (distance >= points[i].within) {
         i += std::max<std::size_t>(1, static_cast<std::size_t>((distance - points[i].within) / step));
@@ -78,7 +78,7 @@ void Progress::update(const LaneCorridors& corridors, const RoutePlan& plan, glm
   for (;;) {
     const RouteLeg& leg = plan.legs[leg_];
     const Way& way = corridors.way(leg.way);
-    // The nearest sample about where it was, then the foot of the perpendicular.
+    // The nearest sample around the last position, then the foot of the perpendicular.
     const double was = leg.from + s_ - leg.start;
     double best = HUGE_VAL, at = was;
     const auto consider = [&](double s) {
@@ -94,7 +94,7 @@ void Progress::update(const LaneCorridors& corridors, const RoutePlan& plan, glm
     const double foot = at + dot(p - point_on(way, at), {std::cos(yaw), std::sin(yaw)});
     if (foot < leg.to || leg_ + 1 >= plan.legs.size()) {
       s_ = leg.start + std::clamp(foot, leg.from, leg.to) - leg.from;
-      // At a kink it is enough to be there.
+      // A cusp counts as reached within a tolerance.
       const bool there = leg.to - foot < 0.03 * reach && leg_ + 1 < plan.legs.size();
       if (!there || !cusp_after(corridors, plan, leg_)) return;
     }
@@ -109,7 +109,7 @@ base::Twist steer(double speed, double offset, double heading, double curvature,
   if (std::abs(heading) > turn_on_spot) return {0.0, 0.0, std::clamp(-2.0 * heading, -max_turn, max_turn)};
   const double sine = std::abs(heading) > 1e-6 ? std::sin(heading) / heading : 1.0;
   const double along = std::max(1.0 - curvature * offset, 0.3);
-  // Far from the line it comes back at 45 degrees at most.
+  // Far from the line the robot returns at 45 degrees at most.
   const double off = std::clamp(offset, -1.2 * reach, 1.2 * reach);
   const double bend = curvature * std::cos(heading) / along - off * sine / (reach * reach) - 1.6 * heading / reach;
   const double v = std::abs(bend) * speed > max_turn ? max_turn / std::abs(bend) : speed;

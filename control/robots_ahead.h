@@ -1,5 +1,5 @@
 #pragma once
-// Who is ahead on a route, and how far one may go because of them.
+// Robots ahead on a route, progress along it, and path tracking.
 
 #include <vector>
 
@@ -8,22 +8,22 @@
 
 namespace sf::control {
 
-/// A robot in the way.
+/// A robot ahead on the route.
 struct LeadRobot {
-  double free = 0.0;      ///< [m] >= 0 that the robot's origin may still go along its route before it is too near
-  double speed = 0.0;     ///< [m/s] of the other along the route there; negative: towards it
-  std::uint32_t row = 0;  ///< among the road_users
+  double free = 0.0;      ///< [m] >= 0 free distance of the robot's origin along its route to the other robot
+  double speed = 0.0;     ///< [m/s] of the other robot along the route there; negative: oncoming
+  std::uint32_t row = 0;  ///< of `RightOfWay::road_users()`
 };
 
-/// How far ahead is looked. [m]
+/// [m] Length of route that is checked.
 inline constexpr double kLookaheadDistance = 2.4;
 
-/// The robots (but the first, itself) that are nearer to the route ahead of `s` than two robots are wide, nearest
-/// first. Robots that the route leads away from are none.
+/// The robots (other than the first, itself) that are nearer to the route ahead of `s` than about two radii, nearest
+/// first. Robots that the route leads away from are left out.
 void find_robots_ahead(const LaneCorridors& corridors, const RoutePlan& plan, double s,
                        const std::vector<RoadUser>& road_users, std::vector<LeadRobot>& out);
 
-/// Where the route is at `s` [m].
+/// The route at one place.
 struct OnRoute {
   std::size_t leg = 0;
   glm::dvec2 p;
@@ -32,10 +32,10 @@ struct OnRoute {
 };
 OnRoute on_route(const LaneCorridors& corridors, const RoutePlan& plan, double s, std::size_t from_leg = 0);
 
-/// The route turns on the spot, or back, from this leg to the next.
+/// Between this leg and the next the route turns in place or reverses.
 bool cusp_after(const LaneCorridors& corridors, const RoutePlan& plan, std::size_t leg);
 
-/// Goes along with a robot: its place on a route. Never skips a kink that was not reached.
+/// Progress of a robot along a route. Never skips a cusp that was not reached.
 class Progress {
  public:
   double s() const { return s_; }
@@ -48,10 +48,12 @@ class Progress {
   std::size_t leg_ = 0;
 };
 
-/// Drives a robot along a line: feedback of offset and heading about the line's own curvature (C. Samson, "Path
-/// following and time-varying feedback stabilization of a wheeled mobile robot", 1992).
-/// @param offset [m] of the robot to the left of the line; heading [rad] of its motion against the line
-/// @param reach [m] along which it comes back to the line
+/// Path tracking by feedback of offset and heading, with the curvature of the line (C. Samson, "Path following and
+/// time-varying feedback stabilization of a wheeled mobile robot", 1992).
+/// @param offset [m] of the robot to the left of the line
+/// @param heading [rad] of its motion relative to the line
+/// @param reach [m] length within which it returns to the line
+/// @param turn_on_spot [rad] a larger heading error gives a turn in place
 base::Twist steer(double speed, double offset, double heading, double curvature, double reach, double max_turn,
                   double turn_on_spot);
 

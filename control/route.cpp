@@ -11,7 +11,7 @@ namespace sf::control {
 
 namespace {
 
-constexpr double kStands = 0.005;  // [m/s] a limit below this keeps it where it is
+constexpr double kStands = 0.005;  // [m/s] speed limits below this count as a standstill
 
 }  // namespace
 
@@ -82,12 +82,12 @@ base::Twist Route::drive(const ControllerInput& input, double speed) {
   const double yaw = yaw_on(way, at);
   offset_ = base::cross({std::cos(yaw), std::sin(yaw)}, glm::dvec2{X_WM.x, X_WM.y} - point_on(way, at));
   const double heading = base::wrap_angle(X_WM.yaw + (way.backwards ? M_PI : 0.0) - yaw);
-  // Behind a kink it turns on the spot until it looks along its way.
+  // After a cusp the robot turns in place until it faces along its way.
   const bool kink = progress_.leg() > 0 && cusp_after(*corridors_, plan_, progress_.leg() - 1);
   const bool fresh = kink && at - leg.from < 0.25 * corridors_->body().radius;
   const double on_spot = !turns_in_place_ ? 10.0 : fresh ? 0.02 : 1.0;
   const double reach = 0.9 * corridors_->body().radius;
-  // The bend half a step ahead is what the step will be driven in.
+  // The curvature half a step ahead is the mean over the step.
   base::Twist twist = steer(speed, offset_, heading, curvature_on(way, at + 0.05 * speed), reach, max_turn_, on_spot);
   if (way.backwards) twist.forward = -twist.forward;
   return twist;

@@ -1,11 +1,11 @@
 #pragma once
-// Drives on a road network from checkpoint to checkpoint as traffic demands: keeps to its lane, stops at stop lines and
-// red lights, keeps its distance, waits where others go first, never enters a crossing that it cannot leave.
+// Drives on a road network from checkpoint to checkpoint in traffic: keeps to its lane, stops at stop lines and red
+// lights, keeps its distance, yields the right of way, and never enters a crossing that it cannot leave.
 //
-// All speeds are limits; the lowest counts. In a tick a robot
-//   1. finds its place on its route, passes checkpoints, plans on;
-//   2. takes in who else is on the road (control/right_of_way.h) and who is ahead (control/robots_ahead.h);
-//   3. limits its speed by bends, stop lines, conflict_zones, robots ahead, the route's end;
+// Each rule gives a speed limit, and the lowest applies. One step
+//   1. updates the position on the route, passes checkpoints, extends the plan;
+//   2. observes the road users (control/right_of_way.h) and the robots ahead (control/robots_ahead.h);
+//   3. limits the speed by curvature, stop lines, conflict zones, robots ahead and the end of the route;
 //   4. steers along the line.
 
 #include <memory>
@@ -20,10 +20,10 @@
 namespace sf::control {
 
 struct RouteSettings {
-  double speed = 0.2;      ///< [m/s] > 0 where nothing is in the way
-  double gap = 0.06;       ///< [m] > 0 to the robot ahead when standing, beyond what two robots need
-  double headway = 0.8;    ///< [s] > 0 more of it per speed
-  bool pass = true;        ///< passes slower robots where there is a lane to
+  double speed = 0.2;      ///< [m/s] > 0 on a free road
+  double gap = 0.06;       ///< [m] > 0 to the robot ahead when standing, in addition to the size of both robots
+  double headway = 0.8;    ///< [s] > 0 additional gap per speed
+  bool pass = true;        ///< overtakes slower robots where there is an adjacent lane
   double v2v_range = 4.0;  ///< [m]
 };
 
@@ -36,22 +36,22 @@ class Route : public Controller, public StatesStopReason {
   base::Intent intent() const override;
   double v2v_range() const override { return settings_.v2v_range; }
   bool done() const override { return done_; }
-  /// Offset to the left of its line. [m]
+  /// Offset to the left of the line. [m]
   double error() const override { return offset_; }
   std::string stop_reason() const override;
 
   const RoutePlan& plan() const { return plan_; }
   double s() const { return progress_.s(); }            ///< [m] along the plan
-  std::uint64_t reached() const { return next_goal_; }  ///< checkpoints so far
+  std::uint64_t reached() const { return next_goal_; }  ///< checkpoints passed
 
  private:
-  // The speed limit so far, and its cause.
+  // Speed limit so far, and its cause.
   struct Limit {
     double speed;
     double dt;
     const char* why = "";
-    std::uint32_t who = base::kNoId;                 ///< id of the robot that does
-    void stop_in(double distance, const char* why);  ///< [m] before something that it must not pass
+    std::uint32_t who = base::kNoId;                 ///< id of the robot that causes it; kNoId: none
+    void stop_in(double distance, const char* why);  ///< @param distance [m] to the place to stop at
   };
   void start(const ControllerInput& input);
   void check_goals() const;
@@ -79,7 +79,7 @@ class Route : public Controller, public StatesStopReason {
   RouteSettings settings_;
   std::optional<RouteGoals> goals_;
   ConvoyState convoy_;
-  RouteGoals lots_;  ///< where to go while no leader is heard
+  RouteGoals lots_;  ///< random goals while no leader is in range
   RightOfWay right_of_way_;
   double max_turn_;
   bool turns_in_place_;
@@ -87,27 +87,28 @@ class Route : public Controller, public StatesStopReason {
   RoutePlan plan_;
   bool started_ = false, done_ = false;
   Progress progress_;
-  std::uint64_t next_goal_ = 0;  ///< the one it heads for
-  std::uint64_t planned_ = 0;    ///< goals that are in the plan or behind
-  std::uint64_t searched_ = 0;   ///< lots drawn
+  std::uint64_t next_goal_ = 0;  ///< index of the current goal
+  std::uint64_t planned_ = 0;    ///< goals in the plan or passed
+  std::uint64_t searched_ = 0;   ///< random goals drawn
   std::vector<LeadRobot> ahead_;
   std::int64_t last_ = -1;  ///< [ns] time of the last step
   double offset_ = 0.0;     ///< [m]
-  const char* why_ = "";    ///< it stands, by the last step's limits
+  const char* why_ = "";    ///< cause of a standstill at the last step; empty: the robot drives
   std::uint32_t who_ = base::kNoId;
-  double stopped_at_ = -HUGE_VAL;     ///< [m] along the route: the stop line that it stopped at
-  std::int64_t standing_since_ = -1;  ///< [ns] at a stop line; -1: it is not
-  std::int64_t blocked_since_ = -1;   ///< [ns] that a full lane keeps it waiting; -1: it does not
+  double stopped_at_ = -HUGE_VAL;     ///< [m] along the route: last stop line at which the robot has stopped
+  std::int64_t standing_since_ = -1;  ///< [ns] at a stop line; -1: not standing at one
+  std::int64_t blocked_since_ = -1;   ///< [ns] waiting for room on a full lane; -1: not waiting
   std::uint32_t blocked_way_ = world::kNone;
-  std::int64_t still_since_ = -1;  ///< [ns] it has stood; -1: it has not begun
-  std::int64_t slow_since_ = -1;   ///< [ns] behind a slower one; -1: not
-  double pass_until_ = -1.0;       ///< [m] along the route: until there it passes
+  std::int64_t still_since_ = -1;  ///< [ns] start of the standstill; -1: before the first step
+  std::int64_t slow_since_ = -1;   ///< [ns] behind a slower robot; -1: not behind one
+  double pass_until_ = -1.0;       ///< [m] along the route: end of the current overtaking
 };
 
 extern const ControllerType route_controller;
 
-/// A controller from settings: `speed`, `gap`, `headway`, `pass`, `merge_behind`, those of RouteGoals; `leader` for
-/// convoys.
+/// Makes a route or convoy controller from the settings `speed`, `gap`, `headway`, `pass`, `radio`, and `merge_behind`
+/// and those of RouteGoals, or for convoys `leader`.
+/// @param follows true: convoy
 /// @throws base::InputError
 std::unique_ptr<Controller> make_route_controller(const ControllerContext& context, Settings& settings, bool follows);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where a robot is to go: a list of checkpoints, once or round and round, or checkpoints drawn by lot for ever.
+// Goals of a route: a list of checkpoints, once or repeated, or checkpoints drawn at random without end.
 
 #include <vector>
 
@@ -10,18 +10,18 @@ namespace sf::control {
 
 class RouteGoals {
  public:
-  /// Reads `checkpoints [1 2]`, `mission "file.mdf"`, `park "zone.spot"`, `tour true` (by lot), `loop true`.
-  /// @throws base::InputError where they name what the network does not have, or nothing at all.
+  /// Reads `checkpoints [1 2]`, `mission "file.mdf"`, `park "zone.spot"`, `tour true` (random), `loop true`.
+  /// @throws base::InputError for a name that the network does not have, or when the settings give no goal.
   RouteGoals(const ControllerContext& context, Settings& settings);
-  /// By lot; none where the network has no checkpoints on lanes.
+  /// Random goals; none where the network has no checkpoints on lanes.
   explicit RouteGoals(const ControllerContext& context);
 
-  /// Goal `k`, 0-based; null: there are no more.
+  /// Goal `k`, 0-based; null after the last.
   const world::RoadCheckpoint* at(std::uint64_t k) const;
   bool by_lot() const { return tour_; }
-  /// Goals that come before all repeats; 0 by lot.
+  /// Goals of one repetition; 0 for random goals.
   std::size_t count() const { return goals_.size(); }
-  /// The highest speed on a lane of this segment, or a zone. [m/s]
+  /// [m/s] Speed limit of the mission on a lane of this segment, or in a zone; infinity without a limit.
   double limit(std::uint32_t segment) const { return segment < limits_.size() ? limits_[segment] : HUGE_VAL; }
 
  private:
@@ -30,8 +30,8 @@ class RouteGoals {
   void read_park(const ControllerContext& context, Settings& settings);
 
   std::vector<world::RoadCheckpoint> goals_;
-  std::vector<world::RoadCheckpoint> lots_;  ///< those on lanes
-  std::vector<double> limits_;               ///< by row of `RoadNetwork::segments`
+  std::vector<world::RoadCheckpoint> lots_;  ///< candidates for random goals: checkpoints on lanes
+  std::vector<double> limits_;               ///< [m/s] by row of `RoadNetwork::segments`
   bool loop_ = false, tour_ = false;
   std::uint64_t seed_ = 0;
   std::uint32_t robot_ = 0;

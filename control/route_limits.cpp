@@ -1,4 +1,4 @@
-// What limits the speed of a robot on its route.
+// Speed limits of a robot on its route.
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@ namespace sf::control {
 
 namespace {
 
-constexpr double kBraking = 0.3;             // [m/s^2] comfortable
-constexpr double kSideways = 0.1;            // [m/s^2] in bends
-constexpr double kWaiting = 0.5;             // of its speed, for a follower that is left behind
-constexpr double kStanding = 0.02;           // [m/s] slower than this a robot stands
-constexpr std::int64_t kStop = 300'000'000;  // [ns] a full stop lasts
+constexpr double kBraking = 0.3;             // [m/s^2] comfortable deceleration
+constexpr double kSideways = 0.1;            // [m/s^2] lateral acceleration in curves
+constexpr double kWaiting = 0.5;             // factor of the speed while a follower has fallen behind
+constexpr double kStanding = 0.02;           // [m/s] below this a robot counts as standing
+constexpr std::int64_t kStop = 300'000'000;  // [ns] duration of a full stop
 
 }  // namespace
 
@@ -52,7 +52,7 @@ void Route::limit_by_lines(const ControllerInput& input, Limit& limit) {
       if (mark.s <= leg.from || mark.s > leg.to + 1e-9) continue;
       const double line = leg.start + mark.s - leg.from;
       const double ahead = line - corridors_->body().front - margin - progress_.s();
-      if (ahead < -margin) continue;  // it is over the line
+      if (ahead < -margin) continue;  // the robot is beyond the line
       const Rule rule = rule_of(mark, input.signals);
       const bool yellow = rule == Rule::closed && input.signals[mark.lights.front()].state == world::LightState::yellow;
       if (rule == Rule::closed && (!yellow || !right_of_way_.committed(ahead, speed)))
@@ -99,13 +99,13 @@ void Route::limit_by_conflict_zones(const ControllerInput& input, Limit& limit) 
   if (full && blocked_since_ < 0) blocked_since_ = input.time;
 }
 
-// As many robots as are ahead before `end`, and this one, find room between there and the first that is beyond.
+/// Robots ahead of `end` and this robot all find room between `end` and the first robot beyond it.
 bool Route::room_beyond(double end) const {
   const double room = end - progress_.s();
   double between = 0.0;
   for (const LeadRobot& other : ahead_) {
     if (other.free < room) {
-      if (other.speed < 0.02) return false;  // it stands, and may do so for long
+      if (other.speed < 0.02) return false;  // it stands, possibly for long
       between += 2.2 * corridors_->body().radius + settings_.gap;
       continue;
     }
@@ -114,7 +114,7 @@ bool Route::room_beyond(double end) const {
   return true;
 }
 
-// One robot at a time drives about in a zone; the others wait before it, or where they are parked.
+// One robot at a time drives in a zone. The others wait before the zone or in their spots.
 void Route::limit_by_zones(Limit& limit, const ControllerInput& input) {
   const double s = progress_.s();
   const double margin = 0.12 * corridors_->body().radius;
@@ -122,7 +122,7 @@ void Route::limit_by_zones(Limit& limit, const ControllerInput& input) {
     const RouteLeg& leg = plan_.legs[i];
     const Way& way = corridors_->way(leg.way);
     if (way.backwards && s - leg.start < margin) {
-      // Who is parked sets out in a turn of its own.
+      // Parked robots leave in turns.
       const std::uint32_t spots = site_.roads->zones[way.zone].spots;
       const auto turn = static_cast<std::uint64_t>(input.time / 2'000'000'000) % spots;
       const auto own = spot_at(*corridors_, input.state.X_WM).value_or(0) - site_.roads->zones[way.zone].first_spot;
@@ -145,7 +145,7 @@ void Route::limit_by_zones(Limit& limit, const ControllerInput& input) {
   }
 }
 
-// Never nearer than the gap, and farther the faster.
+// Keeps the gap, plus a distance proportional to the speed.
 void Route::limit_by_others(Limit& limit) const {
   if (follower_lags(right_of_way_.road_users())) limit.speed = std::min(limit.speed, kWaiting * settings_.speed);
   const double opened = opened_gap(convoy_, *corridors_, right_of_way_.road_users());

@@ -33,7 +33,7 @@ void append(const LaneCorridors& corridors, RoutePlan& plan, const Edge& edge) {
   plan.node = edge.to;
 }
 
-/// The edges of the shortest way, at least one; empty: none.
+/// Edges of the shortest path, at least one; empty without a path.
 std::vector<Edge> shortest(const LaneCorridors& corridors, std::uint32_t from, std::uint32_t to, std::uint32_t avoid) {
   const std::size_t count = corridors.roads().index.size();
   struct Reached {
@@ -131,7 +131,7 @@ RoutePlan plan_from(const LaneCorridors& corridors, const RoadPosition& place) {
 }
 
 RoutePlan plan_from_spot(const LaneCorridors& corridors, std::uint32_t spot) {
-  // The first leg is where it stands: the end of its way in, of no length.
+  // The first leg has no length: it is the end of the way into the spot.
   const Edge& in = corridors.edges(corridors.node_of({PointRef::Kind::spot, spot, 0})).front();
   RoutePlan plan;
   const double end = corridors.way(in.ways[0]).length;
@@ -148,7 +148,7 @@ bool extend(const LaneCorridors& corridors, RoutePlan& plan, PointRef to, std::u
 }
 
 bool extend(const LaneCorridors& corridors, RoutePlan& plan, const world::RoadCheckpoint& to, std::uint32_t avoid) {
-  // A spot's checkpoint is reached at its end, wherever in the spot it is.
+  // A checkpoint anywhere in a spot is reached at the spot's end.
   PointRef at = to.at;
   const bool spot = at.kind == PointRef::Kind::spot;
   if (spot) at.index = 1;

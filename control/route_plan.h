@@ -1,6 +1,6 @@
 #pragma once
-// The way through a list of checkpoints: shortest in metres over the graph of ways (E. W. Dijkstra, "A note on two
-// problems in connexion with graphs", Numer. Math. 1, 1959), changes of lanes a little dearer than they are long.
+// Routes through a list of checkpoints: shortest paths in metres on the graph of ways (E. W. Dijkstra, "A note on two
+// problems in connexion with graphs", Numer. Math. 1, 1959). A lane change costs a little more than its length.
 //
 //   RoutePlan plan = plan_from(corridors, *locate_on_road(corridors, X_WM));
 //   if (extend(corridors, plan, checkpoint)) drive(plan.legs[leg_at(plan, s)]);
@@ -17,7 +17,7 @@ namespace sf::control {
 struct RouteLeg {
   std::uint32_t way = 0;
   double from = 0.0, to = 0.0;  ///< [m] along the way; to >= from
-  double start = 0.0;           ///< [m] along the route where it begins
+  double start = 0.0;           ///< [m] along the route
 };
 inline double end_of(const RouteLeg& leg) { return leg.start + leg.to - leg.from; }
 
@@ -28,47 +28,48 @@ struct Goal {
   bool park = false;  ///< it is the end of a parking spot
 };
 
-/// A route: legs one after another, each beginning where the one before ends. Positions along it are metres from where
-/// it was first planned; legs that are done may have been dropped.
+/// A route: consecutive legs. Positions along it are in metres from the start of the first plan; legs that the robot
+/// has passed may have been dropped.
 struct RoutePlan {
   std::vector<RouteLeg> legs;  ///< at least one
   std::vector<Goal> goals;
-  std::uint32_t node = 0;  ///< where it ends
+  std::uint32_t node = 0;  ///< node of the graph at its end
 };
 inline double length_of(const RoutePlan& plan) { return end_of(plan.legs.back()); }
 
-/// The first point of a lane at `s` [m] or after it, else its last.
+/// Index of the first point of a lane at or after `s` [m], else of the last.
 std::uint32_t point_from(const world::RoadLane& lane, double s);
 
-/// The leg at `s` [m] along the route; the first or last beyond its ends.
+/// Index of the leg at `s` [m] along the route; the first or last beyond its ends.
 std::size_t leg_at(const RoutePlan& plan, double s);
 
-/// The lane that a robot stands on, and how far along; nothing when there is none near in its direction.
+/// The lane at a robot's pose, in its direction, and the position along it; nullopt when there is none near.
 std::optional<RoadPosition> locate_on_lane(const LaneCorridors& corridors, const Pose& X_WM);
-/// Likewise, between lanes the exit that leads to one.
+/// The same, including exits between lanes.
 std::optional<RoadPosition> locate_on_road(const LaneCorridors& corridors, const Pose& X_WM);
-/// Likewise the parking spot.
+/// The parking spot at a robot's pose.
 std::optional<std::uint32_t> spot_at(const LaneCorridors& corridors, const Pose& X_WM);
 
-/// A route of one leg: from the place to the next point of its lane, or the end of its exit.
+/// A route of one leg: from the position to the next point of its lane, or to the end of its exit.
 RoutePlan plan_from(const LaneCorridors& corridors, const RoadPosition& place);
 /// A route that begins where a robot is parked.
 RoutePlan plan_from_spot(const LaneCorridors& corridors, std::uint32_t spot);
 
-/// Goes on to a checkpoint (to `at` where it has none), at least one edge far when it is there already.
-/// @param avoid a way that is not to be taken; kNone: none
-/// @return false, and nothing changed, when there is no way
+/// Extends the plan to a checkpoint (second form: to a point of the network). A robot that is already there drives at
+/// least one edge.
+/// @param avoid row of a way to leave out; kNone: none
+/// @return false without a path; the plan is then unchanged
 bool extend(const LaneCorridors& corridors, RoutePlan& plan, const world::RoadCheckpoint& to,
             std::uint32_t avoid = world::kNone);
 bool extend(const LaneCorridors& corridors, RoutePlan& plan, world::PointRef to, std::uint32_t avoid = world::kNone);
 
-/// Forgets all that comes after the point of a lane that is next after `s`, and the goals after `s`: the plan ends
-/// there. What leads through a zone is kept as far as the next lane, or whole where it ends in the zone.
+/// Truncates the plan at the first point of a lane after `s` and drops the goals after `s`. Legs through a zone are
+/// kept up to the next lane, or all of them where the plan ends in the zone.
 void cut_after(const LaneCorridors& corridors, RoutePlan& plan, double s);
 
-/// Poses for `count` robots on lanes, along their lanes, at least `apart` [m] from each other and from the lanes' ends:
-/// for crowds. Drawn from the seed alone.
-/// @throws base::InputError when so many find no room.
+/// Random start poses for `count` robots on lanes, in driving direction, at least `apart` [m] from each other and from
+/// the lanes' ends. A function of the arguments alone.
+/// @throws base::InputError when there is no room for that many
 std::vector<Pose> start_poses(const world::RoadNetwork& roads, std::size_t count, std::uint64_t seed, double apart);
 
 }  // namespace sf::control

@@ -1,4 +1,4 @@
-// Where a robot on its route goes next: to its goals, after its leader, round what is full, past what is slow.
+// Planning of a route: to its goals, behind a leader, around full lanes, past slower robots.
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@ namespace sf::control {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::size_t kOldLegs = 24;  // that are done are kept
+constexpr std::size_t kOldLegs = 24;  // passed legs that are kept
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void Route::start(const ControllerInput& input) {
   fill();
 }
 
-// A list is tried out once, to its end and back to its beginning, so that nobody is stranded on the way.
+// Plans a list of goals once to its end and back to its start, to detect unreachable goals before driving.
 void Route::check_goals() const {
   if (!goals_) return;
   RoutePlan plan = plan_;
@@ -52,7 +52,7 @@ void Route::refuse(const world::RoadCheckpoint& goal) const {
       site_.world.movers[site_.mover].name, goal.id, text_of(id_of(*site_.roads, goal.at)), site_.roads->file));
 }
 
-// Two goals ahead are planned, so that there is always some way on from the next one.
+// Two goals are planned ahead, so that the route continues beyond the next goal.
 void Route::fill() {
   if (!goals_) return;
   int refused = 0;
@@ -61,7 +61,7 @@ void Route::fill() {
     if (goal == nullptr) return;
     ++planned_;
     if (extend(*corridors_, plan_, *goal)) continue;
-    // By lot another one will do.
+    // A random goal without a path is skipped.
     if (!goals_->by_lot() || ++refused > 100) refuse(*goal);
   }
 }
@@ -103,13 +103,13 @@ void Route::follow_leader() {
   if (plan.node == *node || extend(*corridors_, plan, to)) plan_ = std::move(plan);
 }
 
-// Who hears no leader drives on by lot, so that it stands in nobody's way, until it does.
+// Without a leader in range the robot drives to random goals, so that it does not block others.
 void Route::search() {
   for (int tries = 0; tries < 10 && length_of(plan_) < progress_.s() + kLookaheadDistance + 0.1; ++tries)
     if (const world::RoadCheckpoint* goal = lots_.at(searched_++)) extend(*corridors_, plan_, goal->at);
 }
 
-// A lane that stays full is gone round.
+// A lane that stays full is avoided.
 void Route::reroute(const ControllerInput& input) {
   const std::uint32_t avoid = blocked_way_;
   const std::int64_t patience = (20 + 2 * (site_.mover % 5)) * kSecond;
@@ -121,7 +121,7 @@ void Route::reroute(const ControllerInput& input) {
   if (plan_goals(plan, avoid)) plan_ = std::move(plan);
 }
 
-// On from the end of `plan` to what is still to come.
+// Extends `plan` to the remaining goals.
 bool Route::plan_goals(RoutePlan& plan, std::uint32_t avoid) const {
   for (const Goal& goal : plan_.goals) {
     if (goal.s <= progress_.s()) continue;
@@ -131,7 +131,7 @@ bool Route::plan_goals(RoutePlan& plan, std::uint32_t avoid) const {
   return true;
 }
 
-// Two that change lanes against each other would wait for ever: who has stood for long goes back into its lane.
+// Two robots that swap lanes could block each other for ever. After a long standstill one returns to its lane.
 void Route::give_up_change(const ControllerInput& input) {
   if (std::abs(input.state.velocity.forward) > 0.005 || still_since_ < 0) still_since_ = input.time;
   const std::int64_t patience = (8 + 2 * (site_.mover % 5)) * kSecond;

@@ -13,7 +13,7 @@ namespace {
 
 bool is_raw(const Value& value) { return std::holds_alternative<RawText>(value); }
 
-/// As it would be written.
+/// The value as text for messages.
 std::string text_of(const Value& value) {
   if (const auto* raw = std::get_if<RawText>(&value)) return fmt::format("'{}'", raw->text);
   if (const auto* text = std::get_if<std::string>(&value)) return fmt::format("'{}'", *text);
@@ -24,7 +24,7 @@ std::string text_of(const Value& value) {
   return fmt::format("['{}']", fmt::join(std::get<std::vector<std::string>>(value), "', '"));
 }
 
-/// The value as a T: it is one, or `read(raw)` makes it one.
+/// The value as a T, if it is one or `read` converts it.
 template <class T, class Read>
 std::optional<T> value_as(const Value& value, Read&& read) {
   if (const auto* raw = std::get_if<RawText>(&value)) return read(raw->text);

@@ -1,6 +1,6 @@
 #pragma once
-// What a user tells a controller: words with values, from a scenario file or the command line, judged by the controller
-// that reads them.
+// Settings of a controller: keys with values from a scenario file or the command line, validated by the controller that
+// reads them.
 
 #include <string>
 #include <string_view>
@@ -11,24 +11,24 @@
 
 namespace sf::control {
 
-/// As a file says it, which knows its types; or raw, and then of whatever type it is read as.
+/// A typed value from a file, or untyped text from the command line.
 using Value = std::variant<bool, double, std::string, std::vector<double>, std::vector<std::string>, RawText>;
 
 struct Setting {
   std::string key;
   Value value;
-  std::string where;  ///< "file:line: " or "--set kp: ", before every complaint
+  std::string where;  ///< "file:line: " or "--set kp: ", prefix of error messages
 };
 
-/// Settings by name. Reading marks them as known; what nobody read is an error at the end.
+/// Settings by key. Reading a setting marks it as known; settings that remain unread are errors.
 class Settings {
  public:
   Settings() = default;
-  /// @param owner "controller 'lane-keeping'": for messages
+  /// @param owner for messages, such as "controller 'lane-keeping'"
   Settings(std::string owner, std::vector<Setting> settings);
 
-  // Each gives the fallback where there is no such key.
-  // @throws base::InputError when it is of another type or outside [least, most].
+  // Each returns the fallback when the key is absent.
+  // @throws base::InputError for a value of another type or outside [least, most].
   double number(std::string_view key, double fallback, double least, double most);
   bool flag(std::string_view key, bool fallback);
   std::string text(std::string_view key, const std::string& fallback);
@@ -38,9 +38,9 @@ class Settings {
   std::vector<std::string> texts(std::string_view key, const std::vector<std::string>& fallback);
   bool has(std::string_view key) const;
 
-  /// @throws base::InputError naming the first setting that nobody read, and those that would be.
+  /// @throws base::InputError naming the first unread setting, and the keys that were asked for.
   void require_all_read() const;
-  /// @throws base::InputError, always, at the setting `key`.
+  /// Always throws. @throws base::InputError with the location of the setting `key`.
   [[noreturn]] void refuse(std::string_view key, const std::string& message) const;
 
  private:
@@ -49,7 +49,7 @@ class Settings {
   std::string owner_;
   std::vector<Setting> settings_;
   std::vector<bool> read_;
-  std::vector<std::string> asked_;  ///< keys, for suggestions
+  std::vector<std::string> asked_;  ///< keys that were asked for, for suggestions
 };
 
 }  // namespace sf::control

@@ -1,5 +1,5 @@
 #pragma once
-// Why a robot stands.
+// Reason for a robot's standstill.
 
 #include <string>
 
@@ -7,18 +7,18 @@ namespace sf::control {
 
 class Controller;
 
-/// Of a controller that can state it.
+/// Interface of controllers that state why they stand.
 class StatesStopReason {
  public:
-  /// After its last step, such as "its lane edge sensor sees nothing to follow"; empty: it drives, or has none to
-  /// state.
+  /// Reason at the last step, such as "its lane edge sensor sees nothing to follow"; empty while the robot drives or
+  /// without a known reason.
   virtual std::string stop_reason() const = 0;
 
  protected:
   ~StatesStopReason() = default;
 };
 
-/// The reason that the controller states; empty where it cannot.
+/// The controller's stop reason; empty for controllers without this interface.
 std::string stop_reason_of(const Controller& controller);
 
 }  // namespace sf::control

@@ -11,10 +11,10 @@ using maps::Cell;
 using maps::CellAt;
 
 constexpr std::size_t kRays = 240;
-constexpr double kEdge = 0.02;     // [rad] the field of view is taken smaller by this on both sides
+constexpr double kEdge = 0.02;     // [rad] margin at both ends of the field of view
 constexpr int kUnknown = 9;        // nodes of unexplored ground that a line of sight may cross
-constexpr double kOther = 0.04;    // [m] between places that are tried for the same cell
-constexpr std::size_t kTries = 6;  // for one cell
+constexpr double kOther = 0.04;    // [m] between viewpoints tried for one cell
+constexpr std::size_t kTries = 6;  // failed viewpoints per cell
 
 }  // namespace
 
@@ -50,8 +50,8 @@ bool ViewpointPlanner::is_target(CellAt cell, bool all) const {
   return tried == unseen_from_.end() || tried->second.size() < kTries;
 }
 
-// The nodes from the cell's middle outwards, square by square (Amanatides and Woo, "A fast voxel traversal algorithm
-// for ray tracing", 1987), until something known is in the way. Visits each.
+// Visits the lattice nodes along a ray from the cell's centre (Amanatides and Woo, "A fast voxel traversal algorithm
+// for ray tracing", 1987), until the line of sight is blocked.
 template <typename Visit>
 void ViewpointPlanner::cast(CellAt cell, std::size_t ray, Visit visit) const {
   const double ux = rays_[ray].x, uy = -rays_[ray].y;
@@ -118,7 +118,7 @@ std::vector<CellAt> ViewpointPlanner::targets(Node sensor, int heading) const {
     if (glm::length(d) > range_ + map_.cell()) continue;
     bool found = false;
     for (std::size_t ray = 0; ray < kRays && !found; ++ray) {
-      // Only rays that come near the sensor.
+      // Only rays that pass near the sensor.
       const double aside = std::abs(base::cross({rays_[ray].x, rays_[ray].y}, d));
       if (aside > 2.0 * map_.cell() || (rays_[ray].headings >> heading & 1u) == 0) continue;
       cast(cell, ray, [&](Node node) { found = found || node == sensor; });

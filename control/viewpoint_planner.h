@@ -1,6 +1,6 @@
 #pragma once
-// From where a laser would see what is still unexplored: for every node of the lattice, the headings that have a wanted
-// cell in their field of view, in range, with nothing known in between.
+// Viewpoints for exploration: for every lattice node, the robot headings with which a laser at that node would see an
+// unexplored target cell, in field of view and range, without an obstacle or much unexplored ground in between.
 
 #include <cstdint>
 #include <unordered_map>
@@ -11,9 +11,9 @@
 
 namespace sf::control {
 
-/// The laser, as far as it matters here.
+/// Parameters of the laser.
 struct ScannerModel {
-  base::Pose X_MS;      ///< in the robot's frame
+  base::Pose X_MS;      ///< sensor pose in the robot's frame
   double fov = M_PI;    ///< [rad]
   double range = 0.75;  ///< [m]
 };
@@ -22,21 +22,22 @@ class ViewpointPlanner {
  public:
   ViewpointPlanner(const ExplorationMap& map, const ScannerModel& eye);
 
-  /// Looks anew. @param all every unexplored cell is wanted; else only those beside free ones @param range [m] from
-  /// which they are to be seen
-  /// @param graze squares with a surface in them that a line of sight may cross, since it may pass it by
-  /// @return how many cells are wanted
+  /// Computes all viewpoints anew.
+  /// @param all true: all unexplored cells are targets; false: only those adjacent to free cells
+  /// @param range [m] maximum viewing distance
+  /// @param graze occupied nodes that a line of sight may cross, since it may pass beside the surface
+  /// @return number of target cells
   std::size_t update(bool all, double range, int graze = 0);
 
-  /// Whether a sensor at `sensor` of a robot with this heading would see a wanted cell.
+  /// A laser at node `sensor` of a robot with this heading would see a target cell.
   bool sees_target(Node sensor, int heading) const {
     return (headings_[static_cast<std::size_t>(sensor)] >> heading & 1u) != 0;
   }
-  /// The wanted cells it would see.
+  /// The target cells that it would see.
   std::vector<maps::CellAt> targets(Node sensor, int heading) const;
 
-  /// It has looked from there and still does not know the cell: not from near there again, and after some such looks
-  /// not at all.
+  /// Records that a cell was not seen from a viewpoint. Viewpoints near it are no longer used for this cell, and after
+  /// several such records the cell is no longer a target.
   void mark_unseen(maps::CellAt cell, Node sensor);
 
  private:
@@ -47,13 +48,13 @@ class ViewpointPlanner {
   std::int64_t key(maps::CellAt cell) const;
 
   struct Ray {
-    double x, y;             ///< from the cell to the eye
-    std::uint16_t headings;  ///< of the robot that have the cell in view
+    double x, y;             ///< direction from the cell to the sensor
+    std::uint16_t headings;  ///< bits of the robot headings that have the cell in view
   };
   const ExplorationMap& map_;
   std::vector<Ray> rays_;
   std::vector<std::uint16_t> headings_;  ///< per node
-  std::vector<maps::CellAt> cells_;      ///< wanted
+  std::vector<maps::CellAt> cells_;      ///< targets
   double range_ = 0.0;
   int graze_ = 0;
   std::unordered_map<std::int64_t, std::vector<Node>> unseen_from_;

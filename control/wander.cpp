@@ -21,7 +21,7 @@ WanderSettings wander_settings(const world::Mover& mover, double range) {
   WanderSettings s;
   s.speed = 0.8 * mover.max_forward;
   s.turn = std::min(0.8 * mover.max_turn, 1.5);
-  // What it can stop in comfortably, but well within what it sees.
+  // A comfortable stopping distance, but well within sensor range.
   s.stop = std::min(std::max(0.5 * mover.radius, 0.4 * mover.max_forward), 0.3 * range);
   s.resume = std::min(2.0 * s.stop, 0.6 * range);
   s.slow = std::min(5.0 * s.stop, 0.95 * range);
@@ -56,10 +56,10 @@ base::Twist Wander::step(const ControllerInput& input) {
 }
 
 void Wander::choose(const ControllerInput& input, const Clearance& clearance) {
-  // Pressed from behind alone: backing off would go on pressing.
+  // Touched only from behind: backing off would keep the contact.
   const bool from_behind = input.state.contact_mask != 0 && (input.state.contact_mask & ~kRear) == 0;
   if (input.contact && from_behind) return drive_away(clearance);
-  // Met something: away from it first, then some random angle to the side.
+  // After another contact: back off, then turn by a random angle.
   if (input.contact) {
     if (mode_ == Mode::back) return start_turn(clearance, 0.5 + 2.0 * random());
     start_turn(clearance, 0.5 + 2.0 * random());
@@ -76,7 +76,7 @@ void Wander::choose(const ControllerInput& input, const Clearance& clearance) {
       turned_ = 0.0;
       return;
     case Mode::turn: {
-      // After a whole round without a way out, less will do.
+      // After a full turn without a gap a smaller free distance suffices.
       const double enough = turned_ > 2.0 * M_PI ? settings_.stop : settings_.resume;
       const bool free = clearance_estimator_.range() <= 0.0 || clearance.ahead >= enough;
       if (turned_ >= least_ && free) mode_ = Mode::cruise;
@@ -86,7 +86,7 @@ void Wander::choose(const ControllerInput& input, const Clearance& clearance) {
   }
 }
 
-/// On ahead where there is some room, else round where it stands.
+/// Forward where there is some room, else a turn in place.
 void Wander::drive_away(const Clearance& clearance) {
   const bool room = clearance_estimator_.range() <= 0.0 || clearance.ahead > 0.25 * settings_.stop;
   if (room)
@@ -110,7 +110,7 @@ void Wander::start_back(std::int64_t time) {
 }
 
 base::Twist Wander::turn() const {
-  // A car goes round in a tight bend, as far as it is let.
+  // A car turns in a tight curve as far as contacts allow.
   return {settings_.turns_in_place ? 0.0 : 0.3 * settings_.speed, 0.0, side_ * settings_.turn};
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// Explores without a map: drives where it is free, slows down near things, turns to the freer side before it meets
-// them, backs off and turns some random angle when it has met one all the same; what presses from behind it leaves
-// there. Works with any laser, several, or none.
+// Wandering without a map: drives where there is room, slows down near obstacles, turns to the freer side before
+// contact, and after a contact backs off and turns by a random angle. Drives forward when touched only from behind.
+// Works with any laser, several, or none.
 
 #include <cstdint>
 
@@ -11,13 +11,13 @@
 
 namespace sf::control {
 
-/// Distances are from the body's front, made from the mover's facts. [m]
+/// Distances from the body's front, derived from the mover's dimensions and limits. [m]
 struct WanderSettings {
-  double speed = 0.4;   ///< [m/s] where it is free
-  double turn = 1.0;    ///< [rad/s] where it is blocked
-  double stop = 0.15;   ///< nearer than this it turns
-  double resume = 0.3;  ///< farther than this it drives on; > stop
-  double slow = 0.8;    ///< nearer than this it slows down; > resume
+  double speed = 0.4;   ///< [m/s] on free ground
+  double turn = 1.0;    ///< [rad/s] when blocked
+  double stop = 0.15;   ///< a nearer obstacle starts a turn
+  double resume = 0.3;  ///< a turn ends at this free distance; > stop
+  double slow = 0.8;    ///< a nearer obstacle reduces the speed; > resume
   bool turns_in_place = true;
 };
 
@@ -25,10 +25,10 @@ WanderSettings wander_settings(const world::Mover& mover, double range);
 
 class Wander final : public Controller {
  public:
-  /// @param robot names the robot's own random numbers: the row of the mover
+  /// @param robot row of the mover; selects the robot's random numbers
   Wander(const world::Mover& mover, std::uint32_t robot, std::uint64_t seed);
 
-  /// A function of all inputs so far and of (seed, robot) alone.
+  /// Depends on the inputs so far and on (seed, robot) alone.
   base::Twist step(const ControllerInput& input) override;
 
  private:
@@ -48,12 +48,12 @@ class Wander final : public Controller {
   std::uint64_t draws_ = 0;
   Mode mode_ = Mode::cruise;
   double side_ = 1.0;             ///< +1 turns left, -1 right
-  double least_ = 0.0;            ///< [rad] still to turn before driving on
-  double turned_ = 0.0;           ///< [rad] since this turn began
+  double least_ = 0.0;            ///< [rad] minimum angle of the current turn
+  double turned_ = 0.0;           ///< [rad] since the turn began
   double last_yaw_ = 0.0;         ///< [rad]
   std::int64_t until_ = 0;        ///< [ns] end of backing off
   std::int64_t drift_until_ = 0;  ///< [ns]
-  double drift_ = 0.0;            ///< [rad/s] slow change of heading while it is free
+  double drift_ = 0.0;            ///< [rad/s] slow random turn while cruising
 };
 
 extern const ControllerType wander_controller;
