@@ -1,5 +1,5 @@
 #pragma once
-// Latency: a reading is measured now and delivered later.
+// Latency: readings are measured at one time and delivered later.
 
 #include <cstdint>
 #include <span>
@@ -12,17 +12,17 @@
 
 namespace sf::farm {
 
-/// Holds back the readings of sensors with a latency. Sensors without one cost nothing here.
+/// Holds back the readings of sensors with a latency. Without such sensors `deliver` returns its argument.
 class Delivery {
  public:
   /// `sensor_set` must outlive it.
   explicit Delivery(const sensors::SensorSet& sensor_set);
 
-  /// Takes what was measured at `now` [ns] and gives what is delivered at `now`: first what waited, oldest first, then
-  /// what has no latency. Blocks live until the next call.
+  /// Takes the readings measured at `now` [ns] and returns those delivered at `now`: first the delayed ones, in order
+  /// of their delivery times, then those without latency. Blocks live until the next call.
   std::span<const base::ReadingBlock> deliver(std::int64_t now, std::span<const base::ReadingBlock> measured);
 
-  /// [ns] When the next of those that wait is due; kNever: none does.
+  /// [ns] Delivery time of the next delayed reading; kNever: none waits.
   std::int64_t next() const { return next_; }
 
  private:
@@ -37,9 +37,9 @@ class Delivery {
   const sensors::SensorSet& sensor_set_;
   bool any_ = false;
   std::int64_t next_ = kNever;
-  std::vector<Waiting> waiting_;  ///< places are reused, with their memory
+  std::vector<Waiting> waiting_;  ///< slots are reused with their memory
   std::vector<Waiting*> ready_;
-  std::vector<Waiting*> last_delivered_;  ///< delivered last time, free from now on
+  std::vector<Waiting*> last_delivered_;  ///< their slots are free at the next call
   std::vector<base::ReadingBlock> delivered_;
 };
 

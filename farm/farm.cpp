@@ -22,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Adds the time since the last mark to a counter: for statistics only, never for results.
+/// Adds the time since the last lap to a counter. For statistics only; results do not depend on it.
 class Stopwatch {
  public:
   void lap(double& total) {
@@ -44,14 +44,14 @@ struct Farm::State {
   sensors::SensorSet sensor_set;
   bool reuse_unchanged;
   bool no_return_inf;
-  std::vector<std::vector<double>> marked;  ///< per thread: ranges as they are sent
+  std::vector<std::vector<double>> marked;  ///< per thread: ranges as sent
   std::vector<SensorPipeline> pipelines;
   gpu::Batch batch;
   Delivery delivery;
   PoseChanges pose_changes;               ///< of this tick
   std::vector<base::Pose> poses;          ///< per mover
   std::vector<base::Report> states;       ///< per mover
-  std::vector<std::uint32_t> subscribed;  ///< per mover: bits of kinds
+  std::vector<std::uint32_t> subscribed;  ///< per mover: bits of sensor types
   std::vector<std::uint8_t> gone;         ///< per mover
   std::vector<base::ReadingBlock> blocks;
   std::vector<std::uint64_t> hashes;  ///< of the readings of one tick
@@ -91,7 +91,7 @@ struct Farm::State {
   void prepare();
   void run();
   void collect(SensorPipeline& pipeline, std::int64_t now, bool reuse);
-  /// @param again whether readings may be given again.
+  /// @param reuse whether cached readings may be used
   void measure(std::int64_t now, bool reuse);
   void add_to_hash(std::span<const base::ReadingBlock> readings);
   std::span<const double> sent(const base::ReadingBlock& reading, unsigned thread);
@@ -127,7 +127,7 @@ void Farm::State::prepare() {
     rerecord |= pipeline.prepare(poses);
   }
   if (!rerecord) return;
-  // A kernel is compiled when it first runs, if only for nothing: those that nobody has needed yet stay out.
+  // A kernel is compiled when it is first recorded, so kernels that were never needed are left out.
   batch.begin();
   for (SensorPipeline& pipeline : pipelines)
     if (pipeline.active) pipeline.backend->record_measure(batch);
@@ -172,7 +172,7 @@ void Farm::State::collect(SensorPipeline& pipeline, std::int64_t now, bool reuse
   if (reuse) pipeline.store(blocks);
 }
 
-/// A reading's values as they leave: what a hash is of.
+/// The values of a reading as sent, from which the hash is computed.
 std::span<const double> Farm::State::sent(const base::ReadingBlock& reading, unsigned thread) {
   if (!no_return_inf || reading.hits.empty()) return reading.values;
   std::vector<double>& values = marked[thread];

@@ -8,7 +8,7 @@ namespace sf::farm {
 
 namespace {
 
-/// To the bit: the sign of a zero may show in a reading.
+/// Bitwise, since the sign of a zero may affect a reading.
 bool same(const base::Pose& p, const base::Pose& q) {
   using Bits = std::array<std::uint64_t, 4>;
   static_assert(sizeof(base::Pose) == sizeof(Bits));

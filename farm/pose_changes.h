@@ -1,5 +1,5 @@
 #pragma once
-// Whose poses changed in a tick, and who may notice.
+// Pose changes of a tick, and the regions affected.
 
 #include <cmath>
 #include <cstdint>
@@ -10,26 +10,27 @@
 
 namespace sf::farm {
 
-/// Poses of movers that are gone are not numbers.
+/// The poses of absent movers are NaN.
 inline bool is_gone(const base::Pose& X_WM) { return std::isnan(X_WM.x); }
 inline constexpr base::Pose kGone{NAN, NAN, NAN, NAN};
 
-/// Where movers that moved were, and where they are now. Allocates only to grow.
+/// Old and new positions of the movers that moved. Allocates only to grow.
 class PoseChanges {
  public:
   /// `world` must outlive it.
   explicit PoseChanges(const world::World& world);
 
-  /// A tick begins: nobody has moved yet.
+  /// Starts a tick, without moved movers.
   void begin();
-  /// `mover` went from one pose to another; nothing when both are the same to the bit.
+  /// Records the motion of `mover`. Ignored when both poses are bitwise equal.
   void add(std::uint32_t mover, const base::Pose& from, const base::Pose& to);
 
   bool any() const { return !moved_.empty(); }
   bool moved(std::uint32_t mover) const { return flags_[mover]; }
-  /// Whether anyone who moved carries magnets.
+  /// A mover that moved carries magnets.
   bool magnets() const { return magnets_; }
-  /// Whether some part of anyone who moved was or is within `reach` [m] of `p`. What has no outline is nowhere.
+  /// True when a mover that moved was or is, with any part, within `reach` [m] of `p`. Movers without a body are
+  /// ignored.
   bool within(glm::dvec2 p, double reach);
 
  private:
@@ -41,9 +42,9 @@ class PoseChanges {
   std::vector<std::uint32_t> moved_;
   std::vector<bool> flags_;  ///< per mover
   std::vector<Place> places_;
-  double largest_ = 0.0;  ///< [m] radius of all movers
+  double largest_ = 0.0;  ///< [m] largest radius of all movers
   bool magnets_ = false;
-  bool sorted_ = true;  ///< places are in order of x
+  bool sorted_ = true;  ///< `places_` is in order of x
 };
 
 }  // namespace sf::farm

@@ -1,10 +1,10 @@
 #pragma once
-// Sensors that stand where nothing moves: their last reading is given again instead of being taken.
+// Cached readings of sensors near which nothing moves. A cached reading is reused instead of measured again.
 //
-// A reading without noise is a function of where its sensor stands and of where those are that come within its reach
-// (`SensorSpec::dependency_radius`). A sensor is calm while none of these has moved since its last reading. The first
-// reading that is taken in calm is kept, so fleets that drive copy nothing; those after it are given again, the same
-// bytes.
+// A reading without noise is a function of its sensor's pose and of the poses of the movers within
+// `SensorSpec::dependency_radius`. A cached reading is valid until one of these changes. Only the second reading
+// without a change in between is stored, so sensors of driving robots copy nothing. Later readings reuse it, byte for
+// byte.
 
 #include <cstdint>
 #include <memory>
@@ -17,42 +17,42 @@
 
 namespace sf::farm {
 
-/// The sensors of one kind.
+/// Cache for the sensors of one type.
 class ReadingCache {
  public:
-  /// @param rows the kind's. @param noise whether readings have their noise.
+  /// @param rows of the type @param noise whether readings carry noise
   ReadingCache(std::span<const sensors::SensorSpec> rows, bool noise);
 
-  /// Takes the moves of a tick and everyone's poses after them, before its readings.
+  /// Invalidates readings affected by the moves of a tick. Called with the poses after the moves, before the readings.
   void invalidate(PoseChanges& pose_changes, std::span<const base::Pose> poses);
-  /// Whether the reading of sensor `row` is kept and would come out the same.
+  /// A valid reading of sensor `row` is stored.
   bool has(std::uint32_t row) const { return validity_[row] == Validity::stored; }
-  /// @pre keeps(row)
+  /// @pre has(row)
   const base::ReadingBlock& reading(std::uint32_t row) const { return stored_[row]->block(); }
-  /// Sensor `row` has looked, where its mover stands in this tick.
+  /// Offers a new reading of sensor `row`, measured at its mover's current pose.
   void store(std::uint32_t row, const base::ReadingBlock& block);
 
  private:
   enum class Validity : std::uint8_t {
-    never,      ///< its readings depend on more than poses
-    changed,    ///< something moved since its last reading, or there was none
-    unchanged,  ///< nothing did
-    stored,     ///< nothing did since the one before, and it is kept
+    never,      ///< not cacheable: its readings depend on more than poses
+    changed,    ///< a dependency moved since its last reading, or there was none
+    unchanged,  ///< no dependency moved since its last reading, which is not stored
+    stored,     ///< no dependency moved since its last reading, which is stored
   };
   /// The sensors of one mover.
   struct Carrier {
     std::uint32_t mover;
     std::uint32_t first, end;  ///< rows
-    double reach;              ///< [m] from the mover's origin, of all of them
-    bool depends_on_magnets;   ///< magnets count, bodies do not
-    bool unchanged;            ///< some sensor is
+    double reach;              ///< [m] from the mover's origin, largest of all of them
+    bool depends_on_magnets;   ///< they depend on magnets, not on bodies
+    bool unchanged;            ///< some sensor is `unchanged` or `stored`
   };
   void invalidate_all(Carrier& carrier);
 
   std::vector<Carrier> carriers_;
   std::vector<std::uint32_t> carrier_of_;               ///< per row
   std::vector<Validity> validity_;                      ///< per row
-  std::vector<std::unique_ptr<StoredReading>> stored_;  ///< per row, where there was one to keep
+  std::vector<std::unique_ptr<StoredReading>> stored_;  ///< per row; null without a reading
   std::size_t unchanged_carriers_ = 0;
 };
 

@@ -7,7 +7,7 @@ namespace sf::farm {
 
 namespace {
 
-// A year in nanoseconds times a rate does not fit a double's significand.
+// A year in nanoseconds times a rate exceeds a double's significand.
 using Wide = long double;
 static_assert(std::numeric_limits<Wide>::digits >= 64);
 

@@ -17,7 +17,7 @@ std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::ui
   due.clear();
   std::uint64_t missed = 0;
   const std::uint32_t kind = 1u << group->kind->id;
-  // Sensors in a row mostly have one rate and phase.
+  // Consecutive sensors mostly have the same rate and phase.
   double rate = -1.0, phase = 0.0;
   std::uint64_t ready = 0, counted = 0;
   std::int64_t then = 0;
@@ -36,8 +36,8 @@ std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::ui
     if (should != counted) then = due_time(should, rate, phase);
     counted = should;
     next[i] = then;
-    // A sensor's readings are numbered by when they are due: one that nobody heard leaves a gap, and its noise to
-    // itself.
+    // Sequence numbers follow due times: a reading without subscription leaves a gap, and its random numbers stay
+    // unused.
     if ((subscribed[row.mover] & kind) == 0) continue;
     due.push_back({i, should - 1});
     missed += skipped;
@@ -78,7 +78,7 @@ std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Pose
                                     std::vector<base::ReadingBlock>& blocks) {
   const std::size_t first = blocks.size();
   backend->collect(blocks);
-  // Readings that are given again take their places among those just taken, from the last one on.
+  // Reused readings are inserted among the measured ones, from the last one backwards.
   const std::size_t again = due.size() - to_measure.size();
   blocks.resize(first + due.size());
   std::size_t fresh = to_measure.size();

@@ -1,5 +1,5 @@
 #pragma once
-// One kind of sensor at work: its instruments, which of its sensors are due, and which of these must look.
+// State of one sensor type: its backend, its due sensors, and the sensors to measure.
 
 #include <cstdint>
 #include <memory>
@@ -16,33 +16,34 @@ struct SensorPipeline {
   const sensors::SensorSet::Group* group = nullptr;
   std::unique_ptr<sensors::SensorBackend> backend;
   ReadingCache cache;
-  std::vector<std::uint64_t> started;  ///< per row: readings begun
-  std::vector<std::int64_t> next;      ///< [ns] per row: when the one after these is due
+  std::vector<std::uint64_t> started;  ///< per row: readings started
+  std::vector<std::int64_t> next;      ///< [ns] per row: due time of the next one
   std::vector<sensors::DueSample> due;
-  std::vector<sensors::DueSample> to_measure;  ///< of those due: whose reading cannot be given again
-  bool active = false;                         ///< someone has looked: its kernels belong to the batch
-  bool idle = true;                            ///< the instruments know that nothing is due
-  bool uploaded = true;                        ///< so do the tables on the device, as far as kernels are in use
+  std::vector<sensors::DueSample> to_measure;  ///< due sensors without a reusable reading
+  bool active = false;                         ///< its kernels are recorded in the batch, from its first measurement on
+  bool idle = true;                            ///< the backend was last prepared without due sensors
+  bool uploaded = true;  ///< the device's tables are up to date with that, as far as the kernels are recorded
 
-  /// @param site of all kinds. @param group of the farm's roster.
+  /// @param group must outlive it
   SensorPipeline(const sensors::SensorContext& context, const sensors::SensorSet::Group& group);
 
   bool derived() const { return group->kind->derived; }
-  /// What of this kind is due at `now` [ns]. @param heard per mover: bits of kinds.
-  /// @return how many readings were due before, are newer ones' now and were never taken.
+  /// Finds the sensors of this type due at `now` [ns].
+  /// @param subscribed per mover: bits of sensor types
+  /// @return readings of subscribed sensors that were due before, are superseded at `now` and were never measured
   std::uint64_t find_due(std::int64_t now, std::span<const std::uint32_t> subscribed);
-  /// [ns] When the next heard sensor is due; kNever: none is heard.
+  /// [ns] Due time of the next subscribed sensor; kNever: none.
   std::int64_t next_due(std::span<const std::uint32_t> subscribed) const;
-  /// Splits what is due. @param again whether readings may be given again.
+  /// Splits the due sensors. @param reuse whether cached readings may be used
   void split(bool reuse);
   /// @return true when the batch must be recorded again.
   bool prepare(std::span<const base::Pose> poses);
-  /// Whether the batch has something to do for this kind.
+  /// The batch has work for this sensor type.
   bool needs_device() const { return !to_measure.empty() && backend->on_device(); }
   void add_copies(gpu::Batch& batch);
-  /// Appends the readings of all that are due, in order. @return how many are given again.
+  /// Appends the readings of all due sensors, in order. @return number of reused ones
   std::size_t collect(std::int64_t now, std::span<const base::Pose> poses, std::vector<base::ReadingBlock>& blocks);
-  /// Takes note of what `collect` appended last: those that looked may be given again later.
+  /// Offers the measured readings that `collect` appended last to the cache.
   void store(std::span<const base::ReadingBlock> blocks);
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// A reading that outlives the tick in which it was taken.
+// A copy of a reading that outlives its tick.
 
 #include <cstdint>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace sf::farm {
 
-/// Keeps what a block's spans point to. Taking another reuses the memory.
+/// Owns the data behind a block's spans. Storing another reading reuses the memory.
 class StoredReading {
  public:
   StoredReading() = default;
@@ -24,7 +24,7 @@ class StoredReading {
     block_.hits = hits_;
     block_.quality = quality_;
   }
-  /// Its spans live until another one is taken.
+  /// Its spans live until the next `take`.
   const base::ReadingBlock& block() const { return block_; }
 
  private:
