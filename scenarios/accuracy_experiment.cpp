@@ -1,4 +1,4 @@
-// How accurate must sensors be? What controllers make of every mode: lane keeping, magnet keeping and mapping.
+// Effect of sensor accuracy on control: lane keeping, magnet keeping and mapping in every accuracy mode.
 
 #include <fmt/format.h>
 
@@ -16,21 +16,21 @@ namespace sf::scenarios {
 
 namespace {
 
-/// What came of one mode, means over trials.
+/// Results of one mode, means over trials.
 struct Outcome {
   std::string test;
-  std::string sensor;  ///< kind
+  std::string sensor;  ///< sensor type
   std::string mode;
-  double abs_error = 0.0;  ///< [m] or [T] of the controller; 0 where it has none
+  double abs_error = 0.0;  ///< [m] or [T] of the controller; 0 without one
   double max_error = 0.0;
-  double missed = 0.0;  ///< [-] part of the cells that could be seen
+  double missed = 0.0;  ///< [-] part of the visible cells that is not mapped
   double wrong = 0.0;   ///< [-] part of the known cells
   double contacts = 0.0;
   double seconds = 0.0;  ///< simulated
   bool all_done = true;
 };
 
-/// One of the tests, and the kind of sensor it lives by.
+/// One test and the sensor type that it depends on.
 struct Test {
   std::string name;  ///< its scenario is `<folder>/<name>.toml`
   std::string sensor;
@@ -113,7 +113,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Outcom
   return text + fmt::format("\n## What it shows\n\n{}\n", context.kind.reasons);
 }
 
-/// A panel of one test: modes along the axis, in their order.
+/// A panel of one test, with the modes along the axis in their order.
 viz::Panel panel_of(const std::vector<Outcome>& outcomes, const std::string& test, const std::string& y_name,
                     double Outcome::*value, double scale) {
   viz::Panel panel{.y_name = y_name, .from_zero = true};

@@ -22,7 +22,7 @@ using maps::CellAt;
 constexpr int kHeadings = 16;
 constexpr std::uint32_t kBeams = 361;
 
-/// The explorer's own grid where there can be one: cells of another would be others than those it looks for.
+/// The explorer's grid where possible, so that both maps have the same cells.
 maps::GridGeometry plan_over(const world::World& world, double cell) {
   try {
     return control::grid_around(world, cell);
@@ -43,7 +43,7 @@ std::vector<world::Segment> walls_where(const world::World& world, bool (*take)(
   return walls;
 }
 
-/// Cells whose middles the robot's origin can come to: clear of walls by its radius, connected to its start.
+/// Cells whose centres the robot's origin can reach: clear of walls by its radius and connected to its start.
 std::vector<CellAt> reachable(const world::World& world, std::uint32_t mover, const maps::GridGeometry& plan) {
   const world::Mover& robot = world.movers[mover];
   double top = 0.0;
@@ -71,7 +71,7 @@ std::vector<CellAt> reachable(const world::World& world, std::uint32_t mover, co
   return found;
 }
 
-/// Range along a direction, at most `most` [m]: every wall in turn.
+/// Range along a direction, at most `most` [m], by testing every wall.
 double cast(const std::vector<world::Segment>& walls, glm::dvec2 from, glm::dvec2 along, double most) {
   double least = most;
   for (const world::Segment& wall : walls) {
@@ -85,7 +85,7 @@ double cast(const std::vector<world::Segment>& walls, glm::dvec2 from, glm::dvec
   return least;
 }
 
-/// A place of the robot, where its laser can be when it stands there, and the walls that it may see from it.
+/// A position of the robot, the laser's poses there for all headings, and the walls in range.
 struct Viewpoint {
   glm::dvec2 p;
   std::vector<Pose> eyes;
@@ -107,7 +107,7 @@ std::vector<Viewpoint> stands_of(const world::World& world, std::uint32_t mover,
     for (int h = 0; h < kHeadings; ++h) {
       const Pose X_WS = base::compose({viewpoint.p.x, viewpoint.p.y, 0.0, 2.0 * M_PI * h / kHeadings}, laser.X_MS);
       const glm::dvec2 out = glm::dvec2{X_WS.x, X_WS.y} - viewpoint.p;
-      // A sensor ahead of the body may stand within a wall, where it sees nothing of the room.
+      // A sensor that reaches beyond the body may be within a wall. Such poses are left out.
       if (ahead == 0.0 || cast(viewpoint.near, viewpoint.p, 1.0 / ahead * out, ahead) >= ahead)
         viewpoint.eyes.push_back(X_WS);
     }
@@ -131,7 +131,7 @@ maps::OccupancyGrid scans_from(const world::World& world, std::uint32_t mover, c
   return grid;
 }
 
-/// Nothing stands between the laser and the point, which is within its range and its field of view.
+/// The point is in range and field of view of the laser and not occluded.
 bool sees(const Viewpoint& viewpoint, const Pose& X_WS, const world::Laser& laser, glm::dvec2 p) {
   const glm::dvec2 d = base::rotate(-X_WS.yaw, p - glm::dvec2{X_WS.x, X_WS.y});
   const double far = glm::length(d);
@@ -141,7 +141,7 @@ bool sees(const Viewpoint& viewpoint, const Pose& X_WS, const world::Laser& lase
   return cast(viewpoint.near, eye, 1.0 / far * (p - eye), far) >= far;
 }
 
-/// Free cells whose middle is in view from nowhere: a line's rounding to cells went past a corner.
+/// Free cells whose centre is visible from no pose become unexplored: their line was rounded past a corner.
 void forget_hidden(const world::World& world, std::uint32_t mover, const std::vector<Viewpoint>& viewpoints,
                    maps::OccupancyGrid& grid) {
   const world::Laser& laser = world.movers[mover].lasers[0];

@@ -11,7 +11,7 @@
 
 namespace sf::scenarios {
 
-// Every experiment, in the order of help.
+// All experiments, in the order of the help text.
 extern const ExperimentType lane_edge_p_experiment;
 extern const ExperimentType lane_edge_pi_experiment;
 extern const ExperimentType magnet_p_experiment;
@@ -66,7 +66,7 @@ std::vector<Trial> run_trials(const ExperimentContext& context, const TrialOptio
     } catch (const Interrupted&) {
       std::error_code ignored;
       std::filesystem::remove(std::filesystem::path(own.record) / "run.mcap", ignored);
-      std::filesystem::remove(own.record, ignored);  // unless the user has something there
+      std::filesystem::remove(own.record, ignored);  // fails and keeps the folder when it holds other files
       throw;
     }
   }

@@ -22,9 +22,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kDriven = 2.0;  ///< [s] simulated
-constexpr int kLaps = 4;         ///< measured, after one to warm up
+constexpr int kLaps = 4;         ///< measured, after one for warm-up
 
-/// A farm that goes along ways again and again, further in time each time.
+/// A farm driven along recorded paths repeatedly, with time going on from lap to lap.
 class Drive {
  public:
   Drive(const world::World& world, gpu::Device& device, const RecordedPaths& paths, const farm::FarmOptions& options)
@@ -42,7 +42,7 @@ class Drive {
     farm_.tick(now_, paths_[at]);
     now_ += interval_;
   }
-  /// [s] a tick, mean over the laps after the first.
+  /// [s] Mean time of a tick over all laps but the first.
   double laps() {
     for (std::size_t at = 0; at < paths_.size(); ++at) tick(at);
     stats_before_ = farm_.stats();

@@ -1,5 +1,5 @@
 #pragma once
-// What a world makes the farm build and do, and what each part of it costs: kinds of sensors are heard one by one.
+// Cost of a world in the farm: tables, kernels and time, measured with one sensor type subscribed at a time.
 
 #include <cstdint>
 #include <functional>
@@ -12,23 +12,23 @@
 
 namespace sf::scenarios {
 
-/// One kind of sensor that the world has.
+/// Cost of one sensor type of the world.
 struct SensorTypeCost {
   std::string kind;
   std::uint32_t sensors = 0;
-  std::uint32_t robots = 0;                  ///< that carry them
+  std::uint32_t robots = 0;                  ///< number of robots with such sensors
   double least_rate = 0.0, most_rate = 0.0;  ///< [Hz]
   std::vector<std::string> kernels;
   std::vector<gpu::DeviceAllocation> tables;  ///< largest first
   std::size_t bytes = 0;                      ///< of all tables
-  bool derived = false;                       ///< made of lasers' readings: heard with these
-  double tick = 0.0;                          ///< [s] a tick on the clock with this kind heard alone, mean
-  double readings = 0.0;                      ///< a tick, mean
-  double reused = 0.0;                        ///< of these, given again since nothing they depend on had moved
-  sensors::SensorStats work;                  ///< of all measured ticks together
+  bool derived = false;       ///< computed from the readings of lasers, and subscribed together with them
+  double tick = 0.0;          ///< [s] mean wall time of a tick with this type alone
+  double readings = 0.0;      ///< mean number per tick
+  double reused = 0.0;        ///< mean number of reused readings per tick
+  sensors::SensorStats work;  ///< sum over all measured ticks
 };
 
-/// Walls that lasers and other rays at one height can meet.
+/// Number of walls in view of lasers at one height.
 struct WallSlice {
   double z = 0.0;  ///< [m]
   std::uint32_t sensors = 0;
@@ -36,23 +36,24 @@ struct WallSlice {
 };
 
 struct Explanation {
-  std::string caster;  ///< what casts rays
+  std::string caster;  ///< description of the ray caster
   std::vector<SensorTypeCost> kinds;
-  std::vector<std::string> absent;                     ///< kinds that are not built
-  std::vector<WallSlice> slices;                       ///< of lasers, by height
+  std::vector<std::string> absent;                     ///< sensor types that the world does not have
+  std::vector<WallSlice> slices;                       ///< by height of the lasers
   std::size_t walls = 0;                               ///< of the world
-  std::vector<sensors::AccuracyStatement> statements;  ///< modes and bounds, kind by kind
-  std::uint64_t ticks = 0;                             ///< measured, for each row
-  double build = 0.0;                                  ///< [s] tables and kernels
-  double first = 0.0;                                  ///< [s] the first tick with all heard
-  double silent = 0.0;                                 ///< [s] a tick with nobody heard, mean
-  double all = 0.0;                                    ///< [s] a tick with all heard, mean
-  std::size_t resident = 0;                            ///< [bytes] of this process, driver included; 0: not known
+  std::vector<sensors::AccuracyStatement> statements;  ///< modes and bounds by sensor type
+  std::uint64_t ticks = 0;                             ///< measured ticks per row
+  double build = 0.0;                                  ///< [s] time to make tables and kernels
+  double first = 0.0;                                  ///< [s] first tick with all sensors subscribed
+  double silent = 0.0;                                 ///< [s] mean time of a tick without subscription
+  double all = 0.0;                                    ///< [s] mean time of a tick with all sensors subscribed
+  std::size_t resident = 0;  ///< [bytes] resident memory of the process, driver included; 0: unknown
 };
 
-/// Drives the robots about for two seconds (`wander`), then ticks a farm along their ways: once with nobody heard, once
-/// for each kind alone, once with all. @throws base::InputError as farm::Farm does
-/// @param progress called now and then with the part in (0, 1] that is done; may be empty
+/// Drives the robots with `wander` for two seconds of simulated time. Then ticks a farm along the recorded paths:
+/// without subscription, with each sensor type alone, and with all.
+/// @param progress called with the completed part in (0, 1]; may be empty
+/// @throws base::InputError as farm::Farm
 Explanation explain(const world::World& world, gpu::Device& device, std::uint64_t seed, unsigned threads,
                     const std::function<void(double)>& progress = {});
 

@@ -15,9 +15,9 @@ namespace sf::scenarios {
 
 namespace {
 
-constexpr double kBetween = 0.17;  // [m] between two bodies at the start
+constexpr double kBetween = 0.17;  // [m] least gap between two bodies at the start
 
-/// A robot that stays where it is, or where its plan has it.
+/// A robot that stays, at its pose in the world or in the scenario.
 struct Stays {
   std::uint32_t row = 0;
   base::Pose X_WM;
@@ -57,8 +57,8 @@ bool clear(const base::Pose& X_WM, double radius, const world::World& world, con
   });
 }
 
-/// More than are needed are drawn where some are too near to those that stay: which those are does not depend on how
-/// many are drawn.
+/// Draws more poses than needed when some are too near to the robots that stay. Extra draws do not change the poses
+/// drawn before.
 std::vector<base::Pose> places_on_lanes(const Scenario& scenario, const world::World& world,
                                         const world::RoadNetwork& roads, const world::Mover& original,
                                         const std::vector<Stays>& stays) {

@@ -1,15 +1,16 @@
 #pragma once
-// Copies of one robot in place of a world's own.
+// Fleets of copies of one robot.
 
 #include "scenarios/scenario.h"
 
 namespace sf::scenarios {
 
-/// Puts the scenario's crowd into its world. Drawn from the scenario's seed alone.
-/// - free: `world::clone_robots` of the robot.
-/// - lanes: robots that plans name stay; copies stand on the lanes of the world's road network, along them, far enough
-///   from each other and from those that stay for each to turn in place.
-/// @throws base::InputError at the scenario's line when there is no such robot, no road network, or no room.
+/// Replaces robots of the world by copies as the scenario's FleetSpawn demands. Depends on the scenario's seed alone.
+/// - free: copies made by `world::clone_robots` replace all robots.
+/// - lanes: robots named by [[robot]] entries stay. Copies are placed on lanes of the road network, in driving
+/// direction,
+///   far enough from each other and from the robots that stay for each to turn in place.
+/// @throws base::InputError at the scenario's line for an unknown robot, no road network, or lack of room.
 void spawn_fleet(const Scenario& scenario, world::World& world);
 
 }  // namespace sf::scenarios

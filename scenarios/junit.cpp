@@ -16,7 +16,7 @@ std::string case_of(const ScenarioResult& result, const ExpectationResult& outco
                             escaped(outcome.expected), escaped(outcome.measured), escaped(result.file), outcome.line);
 }
 
-/// A case that is skipped, so that the scenario is seen.
+/// A skipped case, so that a scenario without expectations appears in the results.
 std::string suite_of_nothing(const ScenarioResult& result) {
   return fmt::format(
       "  <testsuite name=\"{0}\" tests=\"1\" failures=\"0\" skipped=\"1\" time=\"{1:.3f}\">\n"

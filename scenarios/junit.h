@@ -1,5 +1,5 @@
 #pragma once
-// Results for continuous integration: JUnit's XML, a suite per scenario, a case per expectation.
+// Results as JUnit XML for continuous integration: one suite per scenario, one test case per expectation.
 
 #include <span>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace sf::scenarios {
 
-/// With what XML reserves replaced, and what it forbids (control characters) left out.
+/// Escapes XML's reserved characters and removes forbidden control characters.
 std::string escaped(std::string_view text);
 
 std::string junit_of(std::span<const ScenarioResult> results);

@@ -29,7 +29,7 @@ void Mailbox::send(const base::ReadingBlock& reading, std::int64_t now) {
   place->hits.assign(reading.hits.begin(), reading.hits.end());
 }
 
-/// The newest that is due takes the place of what is shown; all that is due is then done with.
+/// Shows the newest reading that is due and discards the other due ones.
 void Mailbox::show(Slot& slot, std::int64_t now) {
   slot.renewed = false;
   for (Kept& kept : slot.coming) {

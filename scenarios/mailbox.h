@@ -1,5 +1,5 @@
 #pragma once
-// What has come to one robot: the newest reading of each of its sensors, through a link that delays and loses.
+// Readings on their way to one robot: the newest of each sensor, after a link with delay and loss.
 
 #include <cstdint>
 #include <span>
@@ -10,20 +10,20 @@
 
 namespace sf::scenarios {
 
-/// One thread at a time. Allocates until it has held as many readings at once as it ever will.
+/// One thread at a time. Allocates only to grow.
 class Mailbox {
  public:
-  /// @param robot names the robot's messages among all that have the link's seed
+  /// @param robot selects the robot's random numbers under the link's seed
   Mailbox(const netio::LinkModel& link, std::uint32_t robot) : link_(link), robot_(robot) {}
 
-  /// A reading leaves the farm at `now` [ns]; it is copied, or lost.
+  /// Sends a reading at `now` [ns]: it is copied and delayed, or lost.
   void send(const base::ReadingBlock& reading, std::int64_t now);
 
-  /// What has come by `now` [ns], the newest of each sensor in the order in which sensors were first heard. A reading
-  /// that was overtaken by a newer one is never seen. Lives until the next call of `send` or `receive`.
+  /// The newest reading of each sensor that has arrived by `now` [ns], ordered by the sensors' first arrival. Readings
+  /// overtaken by newer ones are dropped. Lives until the next call of `send` or `receive`.
   std::span<const base::ReadingBlock> receive(std::int64_t now);
 
-  /// True when the last `receive` found a reading of that kind that the one before had not.
+  /// True when the last `receive` delivered a reading of this kind that the previous call had not.
   bool renewed(std::uint8_t kind) const;
 
  private:
@@ -38,9 +38,9 @@ class Mailbox {
     std::uint8_t kind = 0;
     std::uint32_t sensor = 0;
     bool renewed = false;
-    bool has = false;  ///< `shown` is a reading
+    bool has = false;  ///< `shown` holds a reading
     Kept shown;
-    std::vector<Kept> coming;  ///< places are reused, with their memory
+    std::vector<Kept> coming;  ///< slots are reused with their memory
   };
   Slot& slot_of(const base::ReadingBlock& reading);
   static void show(Slot& slot, std::int64_t now);

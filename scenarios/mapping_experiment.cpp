@@ -1,4 +1,4 @@
-// The thesis' area mapping: its obstacle avoidance as it describes it, and the explorer that we would use instead.
+// Area mapping of the thesis: its obstacle avoidance as described, and the explorer for comparison.
 
 #include <fmt/format.h>
 
@@ -17,15 +17,15 @@ namespace {
 
 constexpr SupervisorSettings kSupervisor{.patience = 5.0};
 
-/// One way to map the area.
+/// One method to map the area.
 struct Entrant {
   std::string name;
   control::ControllerConfig plan;
   SupervisorSettings supervisor;
-  bool looks_about = false;  ///< it turns to and fro to look: that is no dead end
+  bool looks_about = false;  ///< it turns back and forth to look around, which is not a dead end
 };
 
-/// What came of one trial.
+/// Result of one trial.
 struct Mapped {
   std::string entrant;
   std::uint32_t trial = 0;
@@ -95,7 +95,7 @@ Mapped mapped_of(const Entrant& entrant, std::uint32_t number, const Trial& tria
           .wrong = disagreement(trial.maps.front(), reference)};
 }
 
-/// Trials of one entrant: rows, tracks and maps.
+/// Runs the trials of one method and appends their rows; writes tracks and maps.
 void run_with(const ExperimentContext& context, const Entrant& entrant, std::vector<Mapped>& rows,
               std::vector<std::string>& files) {
   Scenario scenario = context.scenario;

@@ -1,4 +1,4 @@
-// Which modes a user's wish comes to.
+// Selection of accuracy modes for a user's target.
 
 #include <algorithm>
 #include <utility>
@@ -17,7 +17,7 @@ double allowed(const ModeResult& grade, const AccuracyTarget& target) {
   return grade.unit == "T" ? target.tesla : target.metres;
 }
 
-/// Rows of each kind, in order.
+/// Rows of `results` by sensor type, in order.
 std::vector<std::vector<std::size_t>> by_kind(const std::vector<ModeResult>& results) {
   std::vector<std::vector<std::size_t>> kinds;
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -27,7 +27,7 @@ std::vector<std::vector<std::size_t>> by_kind(const std::vector<ModeResult>& res
   return kinds;
 }
 
-/// The fastest whose error is allowed; `exact`, which is first, always is.
+/// The fastest mode within the error limit; `exact`, the first row, always qualifies.
 std::size_t fastest_within(const std::vector<ModeResult>& results, const std::vector<std::size_t>& rows,
                            const AccuracyTarget& target) {
   std::size_t best = rows.front();
@@ -38,7 +38,7 @@ std::size_t fastest_within(const std::vector<ModeResult>& results, const std::ve
   return best;
 }
 
-/// How many modes of its kind err less.
+/// Number of modes of its sensor type with smaller errors.
 std::size_t rank_of(const std::vector<ModeResult>& results, const std::vector<std::size_t>& rows, std::size_t row,
                     ErrorMeasure by) {
   return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](std::size_t other) {
@@ -46,14 +46,15 @@ std::size_t rank_of(const std::vector<ModeResult>& results, const std::vector<st
   }));
 }
 
-/// A way to choose: what its ticks take, all kinds in turn, and how far down it goes.
+/// A combination of modes: total duration of its ticks over all sensor types, and sum of its ranks.
 struct Choice {
   std::vector<std::size_t> rows;
   double tick = 0.0;      ///< [s]
   std::size_t ranks = 0;  ///< sum over kinds
 };
 
-/// Of all choices, a few hundred at most: the most accurate that is fast enough, else the fastest.
+/// The most accurate combination that is fast enough, else the fastest one. Searches all combinations, at most a few
+/// hundred.
 std::vector<std::size_t> most_accurate(const std::vector<ModeResult>& results,
                                        const std::vector<std::vector<std::size_t>>& kinds,
                                        const AccuracyTarget& target) {

@@ -1,4 +1,4 @@
-// The thesis' path following: one robot, one lane, by its painted edge or by its magnets, P or PI.
+// Path following of the thesis: one robot on one lane, by the painted edge or by magnets, with P or PI control.
 
 #include <fmt/format.h>
 
@@ -16,7 +16,8 @@ namespace sf::scenarios {
 
 namespace {
 
-constexpr double kTopToArray = 0.075;  // [m] of the magnetometers above the magnets' tops (thesis, figure 37)
+constexpr double kTopToArray =
+    0.075;  // [m] height of the magnetometers above the tops of the magnets (thesis, figure 37)
 
 std::string draw_paths(const ExperimentContext& context, const std::vector<Trial>& trials, const world::World& world) {
   std::vector<viz::Track> tracks;
@@ -57,7 +58,7 @@ std::vector<std::string> draw_field_line(const ExperimentContext& context) {
   return {file};
 }
 
-/// Seconds from the first to the last error, of a trial.
+/// [s] From the first to the last control error of a trial.
 double driven(const Trial& trial) { return trial.times.empty() ? 0.0 : trial.times.back() - trial.times.front(); }
 
 std::string report_of(const ExperimentContext& context, const std::vector<Trial>& trials, const ThesisTable& table) {

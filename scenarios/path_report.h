@@ -1,5 +1,5 @@
 #pragma once
-// Trials as tables: statistics.csv, and rows beside the thesis' in report.md.
+// Trials as tables: statistics.csv, and rows compared with the thesis in report.md.
 
 #include <span>
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace sf::scenarios {
 
-/// `trial,mean,std,min,max,abs_mean,abs_std,abs_min,abs_max`, one line a trial from 1 on. [m] or [Gauss]
+/// `trial,mean,std,min,max,abs_mean,abs_std,abs_min,abs_max`, one line per trial, numbered from 1. [m] or [Gauss]
 std::string csv_of(std::span<const ErrorStatistics> trials);
 
-/// A Markdown table: every trial of ours, every one of the thesis', and the ratio of both means.
+/// A Markdown table: all trials, all trials of the thesis, and the ratio of the means of both.
 std::string table_of(std::span<const ErrorStatistics> trials, const ThesisTable& table);
 
 /// The eight columns, in the order of `kColumns`.
 ThesisRow row_of(const ErrorStatistics& statistics);
 
-/// Of each column over trials.
+/// Mean of each column.
 ThesisRow mean_of(std::span<const ThesisRow> rows);
 
 }  // namespace sf::scenarios

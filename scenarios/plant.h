@@ -1,5 +1,5 @@
 #pragma once
-// Two plants to control.
+// Driver models of an experiment.
 
 #include <cstdint>
 #include <optional>
@@ -7,10 +7,10 @@
 
 namespace sf::scenarios {
 
-/// What stands between a command and the wheels. See docs/experiments.md.
+/// Driver model between commands and wheels. See docs/experiments.md.
 enum class Plant : std::uint8_t {
-  ideal,  ///< robots do what they are told (world::DriverModel::direct)
-  thesis  ///< Player's driver for the Create stands between (world::DriverModel::player_create)
+  ideal,  ///< commands are executed unchanged (world::DriverModel::direct)
+  thesis  ///< Player's driver for the Create (world::DriverModel::player_create)
 };
 std::string_view name_of(Plant plant);
 std::optional<Plant> plant_of(std::string_view name);

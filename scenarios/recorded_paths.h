@@ -1,5 +1,5 @@
 #pragma once
-// The ways of a world's robots, driven once and gone again: the same poses for whatever is measured along them.
+// Recorded paths of a world's robots, so that several measurements use the same poses.
 
 #include <cstdint>
 #include <vector>
@@ -10,10 +10,10 @@
 
 namespace sf::scenarios {
 
-/// Everyone's states, tick by tick.
+/// Reports of all movers, tick by tick.
 using RecordedPaths = std::vector<std::vector<base::Report>>;
 
-/// Wandering robots, `seconds` of simulated time, 1 to 1000 ticks.
+/// Paths of robots that wander for `seconds` of simulated time; 1 to 1000 ticks.
 RecordedPaths record_paths(const world::World& world, gpu::Device& device, double seconds, std::uint64_t seed,
                            unsigned threads);
 

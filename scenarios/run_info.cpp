@@ -14,7 +14,7 @@ record::SensorTypeInfo kind_info(const sensors::SensorType& kind) {
   return info;
 }
 
-/// Every kind but the laser, which has a message type of the world's own and a row of its own facts.
+/// All sensor types except the laser, which has its own message type and its own entry.
 void add_kinds(const sensors::SensorSet& sensor_set, record::RunInfo& info) {
   for (const sensors::SensorSet::Group& group : sensor_set.groups()) {
     if (group.kind->id == base::kLaser) continue;

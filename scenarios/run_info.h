@@ -1,5 +1,5 @@
 #pragma once
-// What a recording says of its run.
+// Description of a run for its recording.
 
 #include <cstdint>
 
@@ -9,12 +9,12 @@
 
 namespace sf::scenarios {
 
-/// What the world does not say of a run.
+/// Properties of a run that are not in the world file.
 struct RunSettings {
   std::uint64_t seed = 0;
   bool record_readings = false;
-  bool no_return_inf = false;  ///< beams that met nothing read infinity
-  std::string caster;          ///< what casts rays, as `raycast::describe_caster` has it
+  bool no_return_inf = false;  ///< beams without a return read infinity
+  std::string caster;          ///< description of the ray caster, from `raycast::describe_caster`
 };
 
 record::RunInfo run_info(const world::World& world, const sensors::SensorSet& sensor_set, const RunSettings& settings);

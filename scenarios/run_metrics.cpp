@@ -11,7 +11,7 @@ namespace sf::scenarios {
 
 namespace {
 
-/// [m] from the origin to the foremost point of what can be stopped: carried sensors reach farther.
+/// [m] From the origin to the foremost point that collides; carried sensors may reach farther.
 double front_of(const world::Mover& mover) {
   double front = 0.0;
   for (const world::Segment& side : mover.body)
@@ -95,7 +95,7 @@ void RunMetrics::update_checkpoints(std::uint32_t mover) {
   counts.goals.update(controller->intent().checkpoint);
 }
 
-/// Its front came over a governed line, in the line's direction, while it showed red.
+/// Counts stop lines that the robot's front crosses in driving direction at red.
 void RunMetrics::update_red_lights(const base::TickRecord& tick, std::uint32_t mover) {
   const base::Pose& X_WM = tick.reports[mover].X_WM;
   const double front = fronts_[mover];

@@ -1,5 +1,5 @@
 #pragma once
-// What came of a run, counted as it goes: contacts, control errors, checkpoints, lights, stops.
+// Metrics of a run, updated every tick: contacts, control errors, checkpoints, lights, stops.
 
 #include <cstdint>
 #include <vector>
@@ -10,35 +10,35 @@
 
 namespace sf::scenarios {
 
-/// Checkpoints that one mover heads for.
+/// Progress of one mover along its checkpoints.
 struct CheckpointProgress {
-  std::uint32_t now = base::kNoId;  ///< base::kNoId: none
-  bool any = false;                 ///< there was one
-  std::uint64_t passed = 0;         ///< that it no longer heads for, since the next or none is due
+  std::uint32_t now = base::kNoId;  ///< id of the current checkpoint; base::kNoId: none
+  bool any = false;                 ///< there was a current checkpoint before
+  std::uint64_t passed = 0;         ///< number of passed checkpoints, counted when the next one is due or none is
 
-  /// @param next the one that it heads for from now on; base::kNoId: none
+  /// @param next id of the current checkpoint from now on; base::kNoId: none
   void update(std::uint32_t next);
 };
 
-/// Of one mover.
+/// Metrics of one mover.
 struct RobotMetrics {
-  std::uint64_t contacts = 0;  ///< that began
+  std::uint64_t contacts = 0;  ///< number of contacts, counted at their start
   CheckpointProgress goals;
-  std::uint64_t red_lights_passed = 0;  ///< stop lines passed that showed red
-  std::uint64_t stops = 0;              ///< that it came to stand after it had driven
-  std::vector<double> errors;           ///< control error of every step that had one
+  std::uint64_t red_lights_passed = 0;  ///< stop lines passed at red
+  std::uint64_t stops = 0;              ///< number of halts after driving
+  std::vector<double> errors;           ///< control errors of all steps that had one
   double travelled = 0.0;               ///< [m]
 };
 
-/// Follows one simulation, tick by tick. Simulation and world must outlive it.
+/// Metrics of one simulation. Simulation and world must outlive it.
 class RunMetrics {
  public:
   RunMetrics(const world::World& world, const Simulation& simulation);
 
-  /// After every `Simulation::step`, with what it gave.
+  /// Called after every `Simulation::step` with its result.
   void update(const base::TickRecord& tick);
 
-  /// Somebody put the mover there: it has not driven that way.
+  /// Records that a mover was placed there, so that this does not count as driving.
   void put(std::uint32_t mover, const base::Pose& X_WM) { before_[mover].X_WM = X_WM; }
 
   const RobotMetrics& of(std::uint32_t mover) const { return counts_[mover]; }
@@ -47,10 +47,10 @@ class RunMetrics {
   std::uint64_t checkpoints() const;        ///< of all
 
  private:
-  /// A stop line that a light governs.
+  /// A stop line governed by a light.
   struct Line {
     std::uint32_t light = 0;
-    base::Pose X_WL;          ///< its middle, x in driving direction
+    base::Pose X_WL;          ///< its centre, x in driving direction
     double half_width = 0.0;  ///< [m]
   };
   struct PreviousTick {
@@ -66,14 +66,14 @@ class RunMetrics {
   const world::World& world_;
   const Simulation& simulation_;
   std::vector<Line> lines_;
-  std::vector<double> fronts_;  ///< [m] per mover, from the origin to the foremost point of what can be stopped
+  std::vector<double> fronts_;  ///< [m] per mover, from the origin to the foremost point that collides
   std::vector<PreviousTick> before_;
   std::vector<RobotMetrics> counts_;
 };
 
-/// A robot has passed a stop line once its front is so far beyond it. [m]
+/// [m] Distance of the front beyond a stop line at which the line counts as passed.
 inline constexpr double kPassed = 0.05;
-/// A robot drives from the one speed on, and stands below the other. [m/s]
+/// [m/s] A robot drives from the first speed on, and stands below the second.
 inline constexpr double kDriving = 0.03;
 inline constexpr double kStanding = 0.002;
 

@@ -27,7 +27,7 @@ bool expects(const Scenario& scenario, Kind kind) {
                      [&](const Expectation& e) { return e.kind == kind; });
 }
 
-/// The robots that an expectation is about.
+/// Rows of the robots to which an expectation applies.
 std::vector<std::uint32_t> rows_of(const Scenario& scenario, const world::World& world, const Expectation& e) {
   if (!e.robot.empty()) return {row_of(scenario, world, e.robot, e.line)};
   std::vector<std::uint32_t> rows;
@@ -36,7 +36,7 @@ std::vector<std::uint32_t> rows_of(const Scenario& scenario, const world::World&
   return rows;
 }
 
-/// What an expectation needs that the world or its robots do not have.
+/// @throws base::InputError when the world or its robots lack something that the expectation needs.
 void check_expectation(const Scenario& scenario, const world::World& world, const SimulationOptions& options,
                        const Expectation& e) {
   const auto refuse = [&](const std::string& message) { throw base::InputError(scenario.file, e.line, message); };
@@ -53,14 +53,14 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
     refuse(world.file + " has no lights to be obeyed; leave this out");
 }
 
-/// Where the file says who drives this mover.
+/// Line of the file that sets the mover's controller.
 int line_of_driver(const Scenario& scenario, const world::Mover& mover) {
   for (const RobotSetup& plan : scenario.plans)
     if (plan.actor && plan.name == mover.name) return plan.driver_line;
   return scenario.default_line;
 }
 
-/// What a controller refuses without a place of its own is at the line of who named it.
+/// Errors of controllers without a location get the line that names the controller.
 control::ConfiguredController try_controller(const Scenario& scenario, const control::ControllerContext& site,
                                              const control::ControllerConfig& plan) {
   try {
@@ -72,7 +72,7 @@ control::ConfiguredController try_controller(const Scenario& scenario, const con
   }
 }
 
-/// One run with all that is counted of it.
+/// One run with its metrics.
 class Run {
  public:
   Run(const Scenario& scenario, gpu::Device& device)
@@ -105,7 +105,7 @@ class Run {
   }
 
  private:
-  /// The worst of some robots by a measure; not a number where none has one.
+  /// Worst value of a measure over the expectation's robots, ignoring NaN; NaN without a value.
   template <class Measure>
   double worst(const Expectation& e, bool least, Measure&& measure) const {
     double value = std::nan("");
@@ -122,10 +122,10 @@ class Run {
     return coverage_of(grid, visible_area(world_, mover, grid.plan));
   }
 
-  /// In words: what a number would not say, or round away.
+  /// The measured value as text, with words for missing values.
   std::string text_of_measured(const Expectation& e, double value) const {
     if (!std::isnan(value)) {
-      // Cut, not rounded: 1 is all of it.
+      // Truncated, so that only complete coverage reads 1.
       if (e.kind == Kind::map_coverage) return fmt::format("{:g}", std::floor(1e5 * value) / 1e5);
       return fmt::format("{:.4g}", value);
     }
@@ -166,7 +166,7 @@ class Run {
   }
 
   ExpectationResult judge(const Expectation& e) const {
-    // Contacts are counted over all robots where none is named; all else is that of the worst.
+    // Contacts are summed over all robots unless a robot is named. Other values are those of the worst robot.
     const bool sum = e.robot.empty() && (e.kind == Kind::contacts || e.kind == Kind::no_collision);
     const double value = sum ? static_cast<double>(metrics_.contacts()) : measure(e);
     ExpectationResult outcome{
@@ -201,7 +201,7 @@ class Run {
   world::World world_;
   Simulation simulation_;
   RunMetrics metrics_;
-  std::map<std::uint32_t, RobotMap> maps_;  ///< by mover
+  std::map<std::uint32_t, RobotMap> maps_;  ///< by row of the mover
   std::vector<double> tick_ms_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Runs a scenario and says what came of it, expectation by expectation.
+// Runs scenarios and evaluates their expectations.
 
 #include <cstdint>
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace sf::scenarios {
 
-/// One expectation beside what was measured.
+/// An expectation and its measured value.
 struct ExpectationResult {
   std::string what;      ///< "mean_abs_error of roomba0"
   std::string expected;  ///< "<= 0.05"
@@ -20,7 +20,7 @@ struct ExpectationResult {
   int line = 0;  ///< in the scenario's file
 };
 
-/// Nothing expected is neither a failure nor a success.
+/// A scenario without expectations neither passes nor fails.
 enum class ScenarioStatus : std::uint8_t { passed, failed, no_expectations };
 
 struct ScenarioResult {
@@ -34,13 +34,13 @@ struct ScenarioResult {
   ScenarioStatus status() const;
 };
 
-/// Everything that a run would refuse, without a device and before any has begun: its world, its robots, their
-/// controllers and settings, what is expected of whom. @return what there is to warn of
-/// @throws base::InputError at the scenario's line, or at that of a file that it names.
+/// Validates a scenario without a device: world, robots, controllers with their settings, and expectations.
+/// @return warnings
+/// @throws base::InputError at the scenario's line, or at that of a file named in it
 std::vector<world::Warning> check_scenario(const Scenario& scenario);
 
-/// @param progress called now and then with the part in [0, 1] that is done; may be empty
-/// @throws base::InputError for what the world or a robot lacks.
+/// @param progress called with the completed part in [0, 1]; may be empty
+/// @throws base::InputError when the world or a robot lacks something required
 ScenarioResult run_scenario(const Scenario& scenario, gpu::Device& device,
                             const std::function<void(double)>& progress = {});
 

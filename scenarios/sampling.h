@@ -1,5 +1,5 @@
 #pragma once
-// Sensors that are due between two ticks: each is read at its own time, with everyone on the way.
+// Sensors that are due between two ticks are sampled at their own times, with interpolated reports.
 
 #include <cstdint>
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace sf::scenarios {
 
-/// Lets the farm sample at every time before that of `after` at which a heard sensor is due, and gives `take` what is
-/// delivered at each: spans that live for the call.
-/// @param before, after one per mover: at the last tick, where the farm has looked, and at the next
-/// @param memory kept from tick to tick for its capacity
+/// Samples the farm at every due time before that of `after`, and passes the readings delivered at each to `take`.
+/// Spans live for the call.
+/// @param before, after one report per mover: at the last tick, which the farm has computed, and at the next
+/// @param memory reused between calls for its capacity
 template <class Take>
 void sample_between(farm::Farm& farm, std::span<const base::Report> before, std::span<const base::Report> after,
                     std::vector<base::Report>& memory, Take&& take) {

@@ -47,7 +47,7 @@ world::World world_of(const Scenario& scenario) {
 
 SimulationOptions simulation_of(const Scenario& scenario, const world::World& world) {
   SimulationOptions options{.seed = scenario.seed, .start_at = scenario.start_at};
-  // Tags stand unless they are named. What the world file says of one robot counts more than what is said of all.
+  // Tags stand unless a [[robot]] names them. A robot's controller in the world file overrides the scenario's default.
   for (const world::Mover& mover : world.movers) {
     Actor& actor = options.actors.emplace_back(mover.is_tag ? Actor{.plan = {.controller = ""}} : scenario.actor);
     const bool own = !mover.is_tag && !mover.controller.empty() && mover.controller != actor.plan.controller;

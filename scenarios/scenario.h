@@ -1,6 +1,5 @@
 #pragma once
-// A scenario: a world, who drives in it, and what must come of it. A TOML file of a few lines; keys in
-// docs/scenarios.md.
+// A scenario: a world, the controllers of its robots, and expectations. A short TOML file; keys in docs/scenarios.md.
 
 #include <cstdint>
 #include <optional>
@@ -17,79 +16,81 @@
 
 namespace sf::scenarios {
 
-/// What one robot is told apart from all others.
+/// Settings of one robot that differ from the scenario's.
 struct RobotSetup {
-  std::string name;                ///< of its mover
-  std::optional<Actor> actor;      ///< else the scenario's
-  std::optional<base::Pose> pose;  ///< [m], [rad] where it starts; else where the world has it
+  std::string name;                ///< of the mover
+  std::optional<Actor> actor;      ///< controller and link; none: the scenario's
+  std::optional<base::Pose> pose;  ///< [m], [rad] start pose; none: the world's
   int line = 0;                    ///< in the file
-  int driver_line = 0;             ///< of its controller, or of the robot
+  int driver_line = 0;             ///< line of its controller, or of the robot
 };
 
-/// One thing that must come of it.
+/// One expectation.
 struct Expectation {
   enum class Kind : std::uint8_t {
-    no_collision,     ///< nothing stops anyone, ever
-    contacts,         ///< contacts that begin, at most
+    no_collision,     ///< no contact of any robot
+    contacts,         ///< number of contacts, at most
     mean_error,       ///< |mean control error|, at most
     mean_abs_error,   ///< mean |control error|, at most
-    map_coverage,     ///< part of what could be seen that was, at least
-    lights_obeyed,    ///< nobody passes a stop line while it shows red
-    done,             ///< all controllers have done what they were made for
-    distance,         ///< driven by each robot, at least [m]
-    checkpoints,      ///< that each robot which heads for some has passed, at least
-    all_checkpoints,  ///< that all robots together have passed, at least
-    tick_p99          ///< 99 of 100 ticks take at most so long [ms]: says something of the machine, too
+    map_coverage,     ///< part of the visible cells that the robot has mapped, at least
+    lights_obeyed,    ///< no robot passes a stop line at red
+    done,             ///< all controllers have finished
+    distance,         ///< [m] driven by each robot, at least
+    checkpoints,      ///< passed by each robot that has checkpoints, at least
+    all_checkpoints,  ///< passed by all robots together, at least
+    tick_p99          ///< [ms] 99th percentile of the duration of ticks, at most; depends on the machine
   };
   Kind kind = Kind::no_collision;
-  std::string robot;   ///< empty: the worst of all
-  double limit = 0.0;  ///< in the unit of what is measured
+  std::string robot;   ///< empty: the worst of all robots
+  double limit = 0.0;  ///< in the unit of the measured value
   int line = 0;
 };
 std::string_view name_of(Expectation::Kind kind);  ///< its key
 
-/// Copies of one robot of the world.
+/// Copies of one robot that replace robots of the world.
 struct FleetSpawn {
   enum class Placement : std::uint8_t {
-    free,  ///< wherever there is room: instead of all robots of the world
-    lanes  ///< on lanes, along them: instead of those that no plan names
+    free,  ///< wherever there is room, replacing all robots
+    lanes  ///< on lanes, replacing the robots without a [[robot]] entry
   };
-  std::uint32_t robots = 0;  ///< how many; 0: the world's own robots
-  std::string of;            ///< its name; empty: the first
+  std::uint32_t robots = 0;  ///< number of copies; 0: the world's own robots
+  std::string of;            ///< name of the robot to copy; empty: the first
   Placement place = Placement::free;
   int line = 0;  ///< of `robots` in the file
 };
 
 struct Scenario {
-  std::string name;        ///< else the file's, without its ending
-  std::string file;        ///< empty: made by hand
-  std::string world;       ///< file, as it can be opened
-  int world_line = 0;      ///< where the file names it
-  double duration = 60.0;  ///< [s] simulated, at most: where `done` is expected it ends with it
+  std::string name;    ///< default: the file's name without extension
+  std::string file;    ///< empty: made in memory
+  std::string world;   ///< path of the world file
+  int world_line = 0;  ///< line that names it
+  double duration =
+      60.0;  ///< [s] simulated, at most; with the expectation `done` the run ends when all controllers have finished
   std::uint64_t seed = 1;
-  double tick = 0.0;           ///< [s]; 0: the world's own
-  FleetSpawn fleet;            ///< in place of the world's own robots
-  std::optional<Plant> plant;  ///< of every robot; else as the world says
-  double start_at = 0.0;       ///< [s]
-  Actor actor;                 ///< of every robot
-  int default_line = 0;        ///< of its controller; 0: the file names none
+  double tick = 0.0;           ///< [s]; 0: the world's
+  FleetSpawn fleet;            ///< replaces the world's robots
+  std::optional<Plant> plant;  ///< of every robot; none: as the world file says
+  double start_at = 0.0;       ///< [s] time of the start signal
+  Actor actor;                 ///< default of all robots
+  int default_line = 0;        ///< line of its controller; 0: not in the file
   std::vector<RobotSetup> plans;
   std::vector<Expectation> expect;
 };
 
-/// The world's path is relative to the file's folder.
-/// @throws base::InputError with file and line; keys that nobody reads are refused.
+/// The path of the world is relative to the scenario's folder.
+/// @throws base::InputError with file and line, also for unknown keys
 Scenario parse_scenario(const std::string& file, std::string_view text);
 Scenario read_scenario(const std::string& file);
 
-/// The world as the scenario has it. @throws base::InputError for robots that the world does not have, or no room.
+/// The world with the scenario's changes. @throws base::InputError for unknown robots or lack of room.
 world::World world_of(const Scenario& scenario);
 
-/// Who drives, one per mover of `world_of`; links have the scenario's seed. @throws base::InputError likewise.
+/// One actor per mover of `world_of`, with links seeded by the scenario's seed.
+/// @throws base::InputError for unknown robots.
 SimulationOptions simulation_of(const Scenario& scenario, const world::World& world);
 
-/// Row of the robot, or of the tag. @throws base::InputError with the nearest name, at file and line, where there is
-/// none.
+/// Row of a robot or tag.
+/// @throws base::InputError at file and line for an unknown name, with the nearest known one
 std::uint32_t row_of(const Scenario& scenario, const world::World& world, const std::string& robot, int line);
 
 }  // namespace sf::scenarios

@@ -1,4 +1,4 @@
-// A scenario's file, key by key.
+// Reader of scenario files.
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ using Kind = TomlNode::Kind;
 using Keys = std::span<const std::string_view>;
 
 constexpr double kLongest = 1e9;          // [s]
-constexpr double kMostWhole = 9.0e15;     // whole numbers of a TOML file that a double holds
+constexpr double kMostWhole = 9.0e15;     // whole numbers that a double represents exactly
 constexpr double kMostPosition = 1e7;     // [m]
 constexpr double kLongestDelay = 3600.0;  // [s]
 
@@ -42,7 +42,7 @@ class Reader {
     throw base::InputError(file_, node.line, message);
   }
 
-  /// Refuses keys beyond `known`.
+  /// Rejects keys that are not in `known`.
   void require_known(const TomlNode& table, Keys known) const {
     for (const TomlNode& item : table.items)
       if (std::find(known.begin(), known.end(), item.key) == known.end())
@@ -116,7 +116,7 @@ control::Settings settings_of(const Reader& reader, const TomlNode* table, const
   return {fmt::format("controller '{}'", controller), std::move(settings)};
 }
 
-/// The controller, or "none".
+/// Name of the controller; empty for "none".
 std::string controller_of(const Reader& reader, const TomlNode& table, const std::string& fallback) {
   const std::string name = reader.text(table, "controller", fallback);
   if (name == "none" || name.empty()) return "";
@@ -127,7 +127,7 @@ std::string controller_of(const Reader& reader, const TomlNode& table, const std
                                                              world::suggest(name, names), fmt::join(names, ", ")));
 }
 
-/// Who names no controller has the fallback's; settings are taken whole, not one by one.
+/// Without a controller in the table the fallback's applies. Settings are replaced as a whole, not key by key.
 control::ControllerConfig plan_of(const Reader& reader, const TomlNode& table,
                                   const control::ControllerConfig& fallback) {
   control::ControllerConfig plan = fallback;
@@ -173,7 +173,7 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
   const TomlNode* list = world::find(root, "robot");
   if (list == nullptr) return;
   if (list->kind != Kind::list) reader.fail(*list, "'robot' expects [[robot]] tables");
-  std::map<std::string, int> lines;  // by robot
+  std::map<std::string, int> lines;  // line by robot
   for (const TomlNode& node : list->items) {
     if (node.kind != Kind::table) reader.fail(node, "'robot' expects [[robot]] tables");
     reader.require_known(node, kRobotKeys);
@@ -195,7 +195,7 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
   }
 }
 
-/// What an expectation's key expects.
+/// Key and value range of an expectation.
 struct Rule {
   Expectation::Kind kind;
   bool is_flag;
@@ -213,7 +213,7 @@ constexpr std::array<Rule, 11> kRules{{{Expectation::Kind::no_collision, true, 0
                                        {Expectation::Kind::all_checkpoints, false, 1e9},
                                        {Expectation::Kind::tick_p99, false, 1e9}}};
 
-/// `key = value` for the worst of all robots, or `key = { robot = value, ... }`.
+/// Reads `key = value`, for the worst of all robots, or `key = { robot = value, ... }`.
 void read_expectation(const Reader& reader, const TomlNode& node, const Rule& rule, Scenario& scenario) {
   if (rule.is_flag) {
     if (node.kind != Kind::flag || !node.flag) reader.fail(node, fmt::format("'{}' expects true", node.key));

@@ -22,7 +22,7 @@ farm::FarmOptions farm_options(const SimulationOptions& options) {
   return farm;
 }
 
-/// The newest of each sensor, in front of the others: between two ticks it may have looked more than once.
+/// Moves the newest reading of each sensor to the front: a sensor may have several between two ticks.
 std::span<base::ReadingBlock> newest_of(std::span<base::ReadingBlock> readings) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < readings.size(); ++i) {
@@ -70,10 +70,10 @@ Simulation::Driver Simulation::make_driver(std::uint32_t mover, const Simulation
   std::vector<world::Warning> warnings;
   const control::ControllerContext site{world_, mover, options.seed, roads(), &warnings};
   control::ConfiguredController made = control::make_controller(site, actor.plan);
-  if (warnings_.empty()) warnings_ = std::move(warnings);  // robots with the same orders read the same files
+  if (warnings_.empty()) warnings_ = std::move(warnings);  // robots with the same settings read the same files
   driver.controller = std::move(made.controller);
   driver.rate = made.rate;
-  // Who wanders goes by its eyes unless told a rate: one decision for each scan.
+  // `wander` without a configured rate decides once per scan.
   driver.by_lasers =
       actor.plan.controller == "wander" && actor.plan.rate == 0.0 && !world_.movers[mover].lasers.empty();
   if (!(driver.by_lasers && actor.link.perfect())) driver.mailbox.emplace(actor.link, world_.movers[mover].id);
@@ -180,12 +180,12 @@ void Simulation::decide_one(std::uint32_t mover, std::int64_t time, unsigned thr
   driver.stepped = true;
 }
 
-/// [ns] When a reading is delivered, which may be between two ticks.
+/// [ns] Delivery time of a reading, possibly between two ticks.
 std::int64_t Simulation::leaves_at(const base::ReadingBlock& reading) const {
   return reading.time + std::llround(farm_.sensor_set().row(reading).latency * 1e9);
 }
 
-/// Between its steps a controller's last command stands.
+/// The controller steps at this tick. Otherwise its last command remains in effect.
 bool Simulation::due(Driver& driver, std::span<const base::ReadingBlock> fresh, std::int64_t time, bool contact) const {
   if (driver.by_lasers) {
     if (driver.mailbox) driver.mailbox->receive(time);

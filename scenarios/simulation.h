@@ -1,11 +1,11 @@
 #pragma once
-// A simulated fleet in the loop: controllers decide, movers move, the farm senses.
+// Simulation of a fleet in closed loop: controllers, motion and sensors.
 //
-//   Simulation simulation(world, device, {.seed = 7, .plan = {.controller = "wander"}});
+//   Simulation simulation(world, device, {.seed = 7, .actor = {.plan = {.controller = "wander"}}});
 //   while (running) recorder.write(simulation.step());
 //
-// One tick: motion since the last one, readings, decisions. What is decided at a tick is driven until the next. Sensors
-// look at their own times, between ticks too.
+// One tick: motion since the last one, readings, decisions. A command decided at a tick is executed until the next.
+// Sensors measure at their own due times, also between ticks.
 
 #include <cstdint>
 #include <memory>
@@ -28,42 +28,42 @@
 
 namespace sf::scenarios {
 
-/// Who drives one robot, and how its readings come to it.
+/// Controller of one robot, and the link by which its readings arrive.
 struct Actor {
-  control::ControllerConfig plan{.controller = "wander"};  ///< no name: the robot stands
-  netio::LinkModel link;                                   ///< of its readings; V2V and its own state are not delayed
+  control::ControllerConfig plan{.controller = "wander"};  ///< empty name: the robot stands
+  netio::LinkModel link;  ///< of the readings; V2V states and the robot's own state are not delayed
 };
 
 struct SimulationOptions {
-  std::uint64_t seed = 1;      ///< of noise and of controllers' choices
-  unsigned threads = 0;        ///< of the host's part; 0: all. Never changes a result
-  Actor actor;                 ///< of every robot
-  std::vector<Actor> actors;   ///< of each mover by row, tags too, where not empty; else tags stand
-  double start_at = 0.0;       ///< [s] the start signal is given from here on
+  std::uint64_t seed = 1;      ///< of noise and of the controllers' random choices
+  unsigned threads = 0;        ///< of the host's part; 0: all. Does not affect results
+  Actor actor;                 ///< default of all robots
+  std::vector<Actor> actors;   ///< per mover by row, tags included; empty: `actor` for all robots, and tags stand
+  double start_at = 0.0;       ///< [s] time of the start signal
   bool no_return_inf = false;  ///< see farm::FarmOptions
 };
 
-/// `world` and `device` must outlive it. One thread at a time. Nothing is allocated by a tick after warm-up.
+/// `world` and `device` must outlive it. One thread at a time. Ticks allocate nothing after warm-up.
 class Simulation {
  public:
-  /// @throws base::InputError for a controller that does not exist, cannot have its settings or lacks what it needs.
+  /// @throws base::InputError for an unknown controller, invalid settings, or a missing requirement of a controller.
   Simulation(const world::World& world, gpu::Device& device, SimulationOptions options);
 
-  /// One tick of `world.interval`; the first looks at time 0, before anything moved. Its readings are those since the
-  /// last one, by the time of their delivery. Spans live until the next.
+  /// Performs one tick of `world.interval`; the first one measures at time 0 without motion. Returns the readings
+  /// delivered since the last tick, in order of delivery. Spans live until the next call.
   base::TickRecord step();
 
-  /// Takes the mover by hand and puts it there, at rest. Between two steps.
+  /// Places the mover at a pose, at rest. Called between two steps.
   void put(std::uint32_t mover, const base::Pose& X_WM);
 
   const farm::Farm& farm() const { return farm_; }
-  double move_seconds() const { return move_s_; }  ///< [s] spent on controllers and motion
+  double move_seconds() const { return move_s_; }  ///< [s] wall time of controllers and motion
 
-  /// Of one mover; null for those that stand.
+  /// The mover's controller; null for movers that stand.
   const control::Controller* controller(std::uint32_t mover) const { return drivers_[mover].controller.get(); }
-  /// The last tick asked it what to do.
+  /// The last tick called the mover's controller.
   bool stepped(std::uint32_t mover) const { return drivers_[mover].stepped; }
-  /// All controllers are done; false where there are none.
+  /// All controllers are done; false without controllers.
   bool all_done() const;
   const world::RoadNetwork* roads() const { return roads_ ? &*roads_ : nullptr; }
   /// Warnings of the first files that a controller has read (a mission).
@@ -71,12 +71,12 @@ class Simulation {
 
  private:
   struct Driver {
-    std::unique_ptr<control::Controller> controller;  ///< none: stands
+    std::unique_ptr<control::Controller> controller;  ///< null: the mover stands
     double rate = 10.0;                               ///< [Hz]
-    bool by_lasers = false;                           ///< steps when a scan comes or its bumper speaks, not by rate
+    bool by_lasers = false;                           ///< steps on new scans and on contacts instead of at its rate
     bool stepped = false;
-    std::uint64_t begun = 0;         ///< steps so far, by rate
-    std::optional<Mailbox> mailbox;  ///< none: readings are looked at as they come
+    std::uint64_t begun = 0;         ///< number of steps at its rate
+    std::optional<Mailbox> mailbox;  ///< none: readings arrive immediately
   };
   Driver make_driver(std::uint32_t mover, const SimulationOptions& options);
   void move();
@@ -96,21 +96,23 @@ class Simulation {
   robots::NeighbourGrid neighbours_;
   std::vector<Driver> drivers_;  ///< per mover
   std::vector<base::Twist> commands_;
-  std::vector<base::Twist> executed_commands_;    ///< what the tick just recorded was told to do
-  std::span<const base::ReadingBlock> by_mover_;  ///< of this tick: those given, where they are in order, or `sorted_`
-  std::vector<std::uint32_t> first_;              ///< per mover, and the end: its first of them
-  std::vector<std::uint32_t> next_;               ///< scratch
+  std::vector<base::Twist> executed_commands_;  ///< executed in the interval before the recorded tick
+  std::span<const base::ReadingBlock>
+      by_mover_;                      ///< readings of this tick: as returned where already in order, else `sorted_`
+  std::vector<std::uint32_t> first_;  ///< per mover: index of its first reading; the last entry is the end
+  std::vector<std::uint32_t> next_;   ///< scratch
   std::vector<base::ReadingBlock> sorted_;
-  std::vector<base::Report> before_;          ///< at the last tick, where a sensor is due before the next; else empty
-  std::vector<base::Report> on_the_way_;      ///< between them
-  std::vector<farm::StoredReading> early_;    ///< readings from between them: places are reused, with their memory
-  std::vector<base::ReadingBlock> readings_;  ///< these, and the tick's; empty where there are none of these
-  std::vector<base::Intent> intents_;         ///< per mover, as others hear them now
-  std::vector<base::Intent> next_intents_;    ///< as they will from the next tick on
+  std::vector<base::Report>
+      before_;  ///< reports of the last tick, kept when a sensor is due before the next; else empty
+  std::vector<base::Report> on_the_way_;      ///< interpolated reports
+  std::vector<farm::StoredReading> early_;    ///< readings delivered between ticks; slots are reused with their memory
+  std::vector<base::ReadingBlock> readings_;  ///< these and the tick's; empty without readings between ticks
+  std::vector<base::Intent> intents_;         ///< per mover, as broadcast in this tick
+  std::vector<base::Intent> next_intents_;    ///< as broadcast from the next tick on
   std::vector<std::vector<control::Neighbour>> others_;  ///< per thread
   std::vector<world::Signal> signals_;
   std::vector<world::Warning> warnings_;
-  double v2v_range_ = 0.0;  ///< [m] farthest that anyone wants to hear
+  double v2v_range_ = 0.0;  ///< [m] largest of all controllers
   std::int64_t start_at_;
   std::int64_t interval_;  ///< [ns]
   std::uint64_t tick_ = 0;

@@ -1,22 +1,22 @@
 #pragma once
-// Numbers about a control error, as the tables of the thesis have them.
+// Statistics of a control error, as in the tables of the thesis.
 
 #include <cstddef>
 #include <span>
 
 namespace sf::scenarios {
 
-/// In the unit of the error. Not a number where there is nothing to say: no value, or one for the deviations.
+/// In the unit of the error. NaN without values; deviations are NaN for a single value.
 struct ErrorStatistics {
   std::size_t count = 0;
   double mean = 0.0, deviation = 0.0, least = 0.0, most = 0.0;
   double abs_mean = 0.0, abs_deviation = 0.0, abs_least = 0.0, abs_most = 0.0;  ///< of the errors' absolute values
 };
 
-/// Deviations are those of a sample (count - 1). Values that are not finite are left out.
+/// Sample deviations (divisor count - 1). Non-finite values are ignored.
 ErrorStatistics statistics_of(std::span<const double> errors);
 
-/// The value that `part` in [0, 1] of all are not above (nearest rank); not a number where there is none.
+/// Percentile by nearest rank, `part` in [0, 1]; NaN without values.
 double percentile(std::span<const double> values, double part);
 
 }  // namespace sf::scenarios

@@ -1,6 +1,6 @@
 #pragma once
-// Who stands by in the lab: a robot that is stopped and waits for its bumper to be released is taken by hand, put back
-// along its own way and turned from what it touched.
+// Model of a laboratory supervisor: a robot that has stopped in contact and waits for its bumper to be released is put
+// back along its path and turned away from the contact.
 
 #include <cmath>
 #include <cstdint>
@@ -13,26 +13,26 @@
 namespace sf::scenarios {
 
 struct SupervisorSettings {
-  double patience = 0.0;     ///< [s] of standing in contact before the robot is taken; 0: nobody is there
-  double back = 0.15;        ///< [m] along its own way
-  double turn = M_PI / 4.0;  ///< [rad] from the side that is pressed
+  double patience = 0.0;     ///< [s] of standing in contact before the intervention; 0: no supervisor
+  double back = 0.15;        ///< [m] back along its path
+  double turn = M_PI / 4.0;  ///< [rad] away from the side in contact
 };
 
 class Supervisor {
  public:
   struct Intervention {
     std::uint32_t mover = 0;
-    base::Pose X_WM;  ///< where it is put
+    base::Pose X_WM;  ///< new pose
   };
   Supervisor(const world::World& world, const SupervisorSettings& plan);
 
-  /// After every tick. @return who is to be put where before the next; lives until the next call
+  /// Called after every tick. @return interventions to apply before the next tick; lives until the next call
   std::span<const Intervention> update(const base::TickRecord& tick);
 
  private:
   struct Watched {
-    std::vector<base::Pose> way;  ///< where it was, a centimetre apart, the newest last
-    double waited = 0.0;          ///< [s]
+    std::vector<base::Pose> way;  ///< past poses at least 1 cm apart, the newest last
+    double waited = 0.0;          ///< [s] standing in contact
   };
   base::Pose place_for(const base::Report& report, const Watched& watched) const;
 

@@ -1,4 +1,5 @@
-// What makes the lane edge loop swing? Delay, loss, rate, gain and the line fit, one at a time, P and PI, both plants.
+// Oscillation of the lane edge loop: sweeps of delay, loss, rate and gain, with and without line fit, for P and PI and
+// both plants.
 
 #include <fmt/format.h>
 
@@ -13,14 +14,14 @@ namespace sf::scenarios {
 
 namespace {
 
-/// The thesis' gains, and what a sweep varies. One at a time is not as here.
+/// Parameters of a point; the defaults are the thesis' gains on an ideal link.
 struct Setting {
   double kp = 0.5;       ///< [1/(m s)]
   double ki = 0.0;       ///< [1/(m s^2)]
   double delay = 0.0;    ///< [s]
   double loss = 0.0;     ///< [-]
   double rate = 10.0;    ///< [Hz] of sensor and controller
-  bool one_ray = false;  ///< the edge's exact distance across the robot, no line fitted
+  bool one_ray = false;  ///< exact distance to the edge across the robot instead of a fitted line
   Plant plant = Plant::thesis;
 };
 
@@ -30,10 +31,10 @@ struct Point {
   double x = 0.0;
   std::string law;  ///< one of kLaws
   Setting setting;
-  ThesisRow mean{};      ///< of the eight columns over seeds
+  ThesisRow mean{};      ///< mean over seeds, for each of the eight columns
   double seconds = 0.0;  ///< on the path
   bool all_done = true;
-  /// Mean error that a P loop cannot but have: the bend's angle over gain and time. [m]
+  /// [m] Mean error inherent in a P loop: the bend's angle divided by gain and time.
   double owed() const {
     const double gain = setting.plant == Plant::thesis ? 2.0 * setting.kp : setting.kp;
     return 0.5 * M_PI / (gain * seconds);
@@ -83,7 +84,7 @@ void measure(const ExperimentContext& context, Point& point) {
   point.mean = mean_of(rows);
 }
 
-/// The laws that are compared: with and without the integral, on the fitted line and on the exact distance.
+/// Control laws: with and without integral, on the fitted line and on the exact distance.
 struct Law {
   const char* name;
   double ki;
@@ -92,7 +93,7 @@ struct Law {
 constexpr Law kLaws[] = {
     {"P", 0.0, false}, {"PI", 0.015, false}, {"P, exact edge", 0.0, true}, {"PI, exact edge", 0.015, true}};
 
-/// Adds the sweep's points, for every law.
+/// Adds a sweep's points for every law.
 template <class Change>
 void add(std::vector<Point>& points, const std::string& sweep, Plant plant, const std::vector<double>& xs,
          Change&& change) {

@@ -1,5 +1,5 @@
 #pragma once
-// What the thesis measured: tables 1 to 4 (M. Vernier, "Virtual Sensor System", Ohio State, 2010).
+// Measurements of the thesis: tables 1 to 4 (M. Vernier, "Virtual Sensor System", Ohio State, 2010).
 
 #include <array>
 #include <span>
@@ -7,17 +7,17 @@
 
 namespace sf::scenarios {
 
-/// One row: mean, deviation, least, most of the error, and of its absolute value.
+/// One row: mean, deviation, minimum and maximum of the error, then of its absolute value.
 using ThesisRow = std::array<double, 8>;
 
 struct ThesisTable {
-  std::string_view experiment;  ///< its name here
-  int number = 0;               ///< in the thesis
+  std::string_view experiment;  ///< name of the experiment in this project
+  int number = 0;               ///< number of the table in the thesis
   std::string_view unit;        ///< "m" or "Gauss"
   std::array<ThesisRow, 3> trials;
 };
 
-/// Null for experiments that have none.
+/// Null for experiments without a table.
 const ThesisTable* thesis_table(std::string_view experiment);
 
 /// The headings of the eight columns.

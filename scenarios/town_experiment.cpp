@@ -1,4 +1,4 @@
-// Whole testbeds: everyone drives, and what they did is counted.
+// Experiments on whole testbeds: all robots drive, and contacts, checkpoints and stops are counted.
 
 #include <fmt/format.h>
 

@@ -18,17 +18,17 @@ namespace sf::scenarios {
 namespace {
 
 constexpr double kDriven = 2.0;                 // [s] simulated
-constexpr std::size_t kMostValues = 4'000'000;  // elements of one mode whose errors are looked at
-constexpr int kRounds = 5;                      // laps that are timed: modes take turns
+constexpr std::size_t kMostValues = 4'000'000;  // elements of one mode whose errors are evaluated
+constexpr int kRounds = 5;                      // timed laps; modes take turns
 constexpr std::size_t kReferenceScans = 64;
 
-/// What one mode read along the ways, first columns only.
+/// Readings of one mode along the paths, first columns only.
 struct Read {
   std::vector<double> values;
-  std::vector<double> bounds;  ///< that cover them; infinite: none does
+  std::vector<double> bounds;  ///< bounds that cover them; infinite: none
 };
 
-/// A farm of its own, in which one kind is heard, and measures in one mode.
+/// A farm with one subscribed sensor type in one mode.
 class Entrant {
  public:
   Entrant(const world::World& world, gpu::Device& device, const sensors::SensorType& kind, std::uint8_t mode,
@@ -41,13 +41,13 @@ class Entrant {
     for (std::uint32_t m = 0; m < world_.movers.size(); ++m) farm_->subscribe(m, 1u << kind.id);
   }
 
-  /// The first lap: what it reads, and warm afterwards.
+  /// First lap: collects the readings and warms up.
   Read read() {
     Read read;
     lap([&](const base::ReadingBlock& block) { take(block, read); });
     return read;
   }
-  /// A lap on the clock.
+  /// One timed lap.
   void time() {
     std::size_t elements = 0;
     const auto start = std::chrono::steady_clock::now();
@@ -77,7 +77,7 @@ class Entrant {
     for (std::size_t i = 0; i < block.values.size(); i += width()) {
       read.values.push_back(block.values[i]);
       const bool flagged = !block.quality.empty() && block.quality[i / width()] != base::QualityFlag::none;
-      // A sensor that saw nothing has no error to bound.
+      // A NaN value has no error to bound.
       read.bounds.push_back(flagged || std::isnan(block.values[i]) ? HUGE_VAL : block.bound);
     }
   }
@@ -95,7 +95,7 @@ class Entrant {
   std::unique_ptr<farm::Farm> farm_;
   std::int64_t now_ = 0;
   std::vector<double> laps_;  ///< [s]
-  std::size_t elements_ = 0;  ///< of one lap
+  std::size_t elements_ = 0;  ///< per lap
 };
 
 double apart(double ours, double theirs) {
@@ -104,13 +104,13 @@ double apart(double ours, double theirs) {
   return std::isnan(error) ? HUGE_VAL : error;
 }
 
-/// [m] of a sample of scans in 64 bits against plain C++, which knows nothing of the device.
+/// [m] Errors of a sample of scans in mode `exact` against the plain C++ reference, which is independent of the device.
 std::vector<double> laser_errors(const Entrant& exact, const RecordedPaths& paths, const Read& read,
                                  const sensors::SensorSet& sensor_set) {
   std::vector<double> errors;
   sensors::LaserReference reference(exact.world(), 0, false);
   const auto& rows = sensor_set.group(base::kLaser)->rows;
-  // Scans of the first tick: every laser has its first reading there unless its phase is later.
+  // Scans of the first tick: every laser has its first reading there unless it has a phase.
   std::vector<base::Pose> poses;
   for (const base::Report& report : paths.front()) poses.push_back(report.X_WM);
   reference.set_poses(poses);
@@ -123,7 +123,7 @@ std::vector<double> laser_errors(const Entrant& exact, const RecordedPaths& path
   return errors;
 }
 
-/// The k-th smallest part of all.
+/// Quantile of the errors: the value at the fraction `part` of their ascending order.
 double part_of(std::vector<double>& errors, double part) {
   if (errors.empty()) return 0.0;
   const auto at = errors.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(errors.size() - 1));

@@ -1,5 +1,5 @@
 #pragma once
-// Speed against accuracy, of one world on one device: every mode of every kind of sensor it has, measured.
+// Speed and accuracy of all accuracy modes of a world's sensor types, measured on one device.
 
 #include <cstdint>
 #include <functional>
@@ -12,53 +12,54 @@
 
 namespace sf::scenarios {
 
-/// One mode of one kind. Errors are those of a reading's first column against the same reading in mode `exact`, without
-/// noise; of `exact` itself against plain C++ for lasers (a sample of scans), else 0.
+/// Result of one mode. Errors are those of a reading's first column compared with mode `exact`, without noise. For
+/// `exact` itself: compared with the plain C++ reference for lasers (a sample of scans), else 0.
 struct ModeResult {
-  std::string sensor;  ///< the kind
+  std::string sensor;  ///< sensor type
   std::string mode;
-  std::string what;   ///< the mode does
-  std::string unit;   ///< of errors and bounds: m or T; empty: none
-  double rate = 0.0;  ///< [1/s] elements (rays, fields, edges) of whole ticks in which only this kind is heard
-  double tick = 0.0;  ///< [s] of such a tick, median
-  // Of all elements, whether a bound covers them or not.
+  std::string what;   ///< description of the mode
+  std::string unit;   ///< of errors and bounds: m or T; empty: no unit
+  double rate = 0.0;  ///< [1/s] elements (rays, fields, edges) in whole ticks with this sensor type alone
+  double tick = 0.0;  ///< [s] median duration of such a tick
+  // Errors of all elements, covered by a bound or not.
   double median = 0.0, p99 = 0.0;
-  double max = 0.0;  ///< infinite: one of the two saw nothing
-  // Of those that a stated bound covers: it is finite, they are numbers, and not flagged.
-  double covered = 0.0;                                    ///< [-] their part of all
-  double covered_max = 0.0;                                ///< their largest error
-  double bound = std::numeric_limits<double>::infinity();  ///< the largest stated of them; infinite: none is covered
-  bool front = false;  ///< no other mode of the kind is as fast and errs less, by `p99`
+  double max = 0.0;  ///< infinite: only one of the two readings is finite
+  // Elements covered by a stated bound: the bound is finite, both values are numbers, and no quality flag is set.
+  double covered = 0.0;      ///< [-] part of all elements
+  double covered_max = 0.0;  ///< their largest error
+  double bound =
+      std::numeric_limits<double>::infinity();  ///< their largest stated bound; infinite: no element is covered
+  bool front = false;  ///< Pareto-optimal: no other mode is both faster and more accurate (99th percentile)
 };
 
 struct TradeoffOptions {
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  std::function<bool(double part)> progress;  ///< false: stop
+  std::function<bool(double part)> progress;  ///< called with the completed part; returns false to stop
 };
 
-/// @return modes of each kind that has some, `exact` first, in order of kinds; fewer when it was stopped
+/// @return the modes of each sensor type that has several, `exact` first, in order of types; fewer when stopped
 std::vector<ModeResult> tradeoff(const world::World& world, gpu::Device& device, const TradeoffOptions& options);
 
 /// Columns sensor, mode, rate_per_s, covered, covered_max_error, covered_bound, all_median_error, all_p99_error,
-/// all_max_error; metres or tesla. Where nothing is covered, its error and bound are empty.
+/// all_max_error, in metres or tesla. Error and bound are empty when no element is covered.
 std::string csv_of(const std::vector<ModeResult>& results);
 
 enum class ErrorMeasure { median, p99, max };
 
-/// What a user asks of all sensors.
+/// Accuracy or rate requested by the user.
 struct AccuracyTarget {
-  double metres = std::numeric_limits<double>::infinity();  ///< largest error of kinds that measure metres
-  double tesla = std::numeric_limits<double>::infinity();   ///< likewise
+  double metres = std::numeric_limits<double>::infinity();  ///< largest error of sensor types that measure metres
+  double tesla = std::numeric_limits<double>::infinity();   ///< largest error of sensor types that measure tesla
   ErrorMeasure by = ErrorMeasure::max;
-  double least_rate = 0.0;  ///< [Hz] of whole ticks; 0: not asked
+  double least_rate = 0.0;  ///< [Hz] of whole ticks; 0: no requirement
 };
 
-/// Rows of `results`, one a kind: the fastest within the errors; or, where a rate is asked, the most accurate that
-/// allow it together, and the fastest where none do.
+/// Rows of `results`, one per sensor type: the fastest mode within the error limits. With a required rate: the most
+/// accurate combination that reaches it, or the fastest one when none does.
 std::vector<std::size_t> select_modes(const std::vector<ModeResult>& results, const AccuracyTarget& target);
 
-/// The words of these modes, as `accuracy` and `--accuracy` take them.
+/// These modes in the syntax of the key `accuracy` and the option `--accuracy`.
 std::string accuracy_words(const std::vector<ModeResult>& results, const std::vector<std::size_t>& rows);
 
 }  // namespace sf::scenarios

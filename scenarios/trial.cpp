@@ -17,7 +17,7 @@ namespace sf::scenarios {
 
 namespace {
 
-/// Draws of `place` keyed so, beside those of cloned fleets.
+/// Key of the draws of `place`, distinct from those of cloned fleets.
 constexpr std::uint32_t kStart = 0x57A27u;
 
 void add_noise(world::Mover& mover, const Disturbance& d) {
@@ -35,7 +35,7 @@ void add_noise(world::Mover& mover, const Disturbance& d) {
     if (laser.noise.range_sigma == 0.0) laser.noise.range_sigma = d.scan_noise;
 }
 
-/// The tracks of those who drive.
+/// Collects the tracks of all movers with a controller.
 class Keeper {
  public:
   Keeper(const world::World& world, const Simulation& simulation, bool maps) {
@@ -88,7 +88,7 @@ class Keeper {
   }
 
  private:
-  /// The track of the robot that this one says it follows.
+  /// Track of the robot's leader.
   std::uint32_t followed_by(std::uint32_t row, const world::World& world, const Simulation& simulation) const {
     const control::Controller* controller = simulation.controller(row);
     const std::uint32_t id = controller == nullptr ? base::kNoId : controller->intent().follows;

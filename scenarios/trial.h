@@ -1,5 +1,5 @@
 #pragma once
-// One run of an experiment: a scenario, disturbed a little by its seed, kept whole.
+// One trial of an experiment: a scenario with a random disturbance from its seed, and its complete results.
 
 #include <cstdint>
 #include <functional>
@@ -18,54 +18,54 @@
 
 namespace sf::scenarios {
 
-/// What differs from trial to trial: normal, drawn from the trial's seed. The thesis' runs had several
-/// nondeterministic factors that it does not number; these are ours.
+/// Random differences between trials: normally distributed, drawn from the trial's seed. The thesis mentions several
+/// nondeterministic factors without numbers; these values are our choice.
 struct Disturbance {
-  double place = 0.01;         ///< [m] standard deviation of the start, along and across
-  double heading = 0.02;       ///< [rad] of the heading at the start
-  double edge_noise = 0.002;   ///< [m] of each ray of a lane edge sensor that has no noise of its own
-  double field_noise = 0.002;  ///< [Gauss] of each component of a magnetometer likewise
-  double scan_noise = 0.003;   ///< [m] of each beam of a laser likewise
+  double place = 0.01;         ///< [m] standard deviation of the start position, along and across
+  double heading = 0.02;       ///< [rad] standard deviation of the start heading
+  double edge_noise = 0.002;   ///< [m] per ray of a lane edge sensor, if the world gives it no noise
+  double field_noise = 0.002;  ///< [Gauss] per component of a magnetometer, likewise
+  double scan_noise = 0.003;   ///< [m] per beam of a laser, likewise
 };
 
-/// What is kept of a run.
+/// Results of one run.
 struct Trial {
-  std::vector<viz::Track> tracks;            ///< per robot, and per tag that is driven
-  std::vector<std::uint32_t> rows;           ///< of their movers
-  std::vector<std::uint32_t> follows;        ///< per track, at the end: the track that it follows; world::kNone: nobody
+  std::vector<viz::Track> tracks;            ///< per robot, and per tag with a controller
+  std::vector<std::uint32_t> rows;           ///< rows of their movers
+  std::vector<std::uint32_t> follows;        ///< per track: track of the leader at the end; world::kNone: none
   std::vector<RobotMetrics> counts;          ///< one per track
   std::vector<ErrorStatistics> errors;       ///< one per track
   std::vector<DeadEndDetector> dead_ends;    ///< one per track
-  std::vector<std::uint32_t> interventions;  ///< one per track: how often the supervisor took it by hand
+  std::vector<std::uint32_t> interventions;  ///< one per track: number of the supervisor's interventions
   std::vector<double> times;                 ///< [s] of the first robot's errors
-  std::vector<maps::OccupancyGrid> maps;     ///< of each robot with a laser, where asked for
-  std::vector<std::uint32_t> mapped;         ///< their rows
+  std::vector<maps::OccupancyGrid> maps;     ///< of each robot with a laser, if requested
+  std::vector<std::uint32_t> mapped;         ///< rows of the movers of `maps`
   double simulated = 0.0;                    ///< [s]
   double wall = 0.0;                         ///< [s]
-  double decided = 0.0;                      ///< [s] of it, spent on controllers and motion
-  bool done = false;                         ///< all controllers were
+  double decided = 0.0;                      ///< [s] of `wall`, spent on controllers and motion
+  bool done = false;                         ///< all controllers have finished
   std::uint64_t hash = 0;                    ///< of all readings
 };
 
 struct TrialOptions {
   Disturbance disturbance;
-  std::string record;  ///< folder; empty: none
+  std::string record;  ///< folder of the recording; empty: none
   bool maps = false;
-  SupervisorSettings supervisor;  ///< unless told, nobody
+  SupervisorSettings supervisor;  ///< default: no supervisor
   unsigned threads = 0;
-  std::function<bool()> stop;  ///< asked each tick; may be empty
+  std::function<bool()> stop;  ///< polled each tick; true stops the trial; may be empty
 };
 
-/// Somebody stopped it.
+/// The trial was stopped by `TrialOptions::stop`.
 struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// The scenario's world with the disturbance that belongs to its seed.
+/// The scenario's world with the disturbance drawn from its seed.
 world::World disturbed_world(const Scenario& scenario, const Disturbance& disturbance);
 
-/// Until all are done, or the scenario's duration.
-/// @throws Interrupted when `options.stop` says so; the recording then ends with the last whole tick.
+/// Runs until all controllers are done or the scenario's duration is over.
+/// @throws Interrupted when `options.stop` returns true; the recording then ends with the last complete tick
 Trial run_trial(const Scenario& scenario, const world::World& world, gpu::Device& device, const TrialOptions& options);
 
 }  // namespace sf::scenarios

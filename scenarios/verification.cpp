@@ -22,13 +22,13 @@ namespace sf::scenarios {
 
 namespace {
 
-/// kind, mover, sensor, sequence: a reading's name.
+/// Identity of a reading: kind, mover, sensor, sequence.
 using Name = std::tuple<std::uint8_t, std::uint32_t, std::uint32_t, std::uint32_t>;
 
-/// Scans that are cast again at once, on all cores.
+/// Scans recomputed in parallel at a time.
 constexpr std::size_t kBatch = 256;
 
-/// @param allowed difference of the two: 0 to the bit
+/// @param allowed largest allowed difference; 0: bitwise equality
 template <class Real>
 void compare(Real ours, Real theirs, double allowed, Comparison& into) {
   ++into.values;
@@ -38,7 +38,7 @@ void compare(Real ours, Real theirs, double allowed, Comparison& into) {
   if (!(apart <= allowed)) ++into.different;
 }
 
-/// One reading. @param where it is, for people
+/// Compares one reading. @param where its location for messages
 template <class Real>
 void compare(std::span<const Real> ours, std::span<const Real> theirs, const std::string& where, Comparison& into,
              double allowed = 0.0) {
@@ -52,13 +52,13 @@ void compare(std::span<const Real> ours, std::span<const Real> theirs, const std
   if (before == 0 && into.different > 0) into.first = where;
 }
 
-/// A scan that plain C++ is to cast again.
+/// A scan to be recomputed by plain C++.
 struct Asked {
   std::uint32_t mover, sensor, sequence;
-  std::size_t tick;           ///< at which it was measured, or the next one
+  std::size_t tick;           ///< of its measurement, or the next one
   std::int64_t time;          ///< [ns] of the measurement
-  std::vector<float> ranges;  ///< [m] as recorded, or as this device says
-  double allowed;             ///< [m] what its mode may be off by; 0: to the bit
+  std::vector<float> ranges;  ///< [m] as recorded, or as computed by this device
+  double allowed;             ///< [m] largest allowed difference; 0: bitwise equality
 };
 
 class Verifier {
@@ -124,7 +124,7 @@ class Verifier {
     look_at(farm_.tick(reports_[0].time, reports_));
   }
 
-  /// Where everyone was when `asked` was measured.
+  /// Poses of all movers at the time of `asked`.
   void poses_of(const Asked& asked, std::vector<base::Pose>& poses) const {
     poses.clear();
     for (const auto& states : recording_.states) {
@@ -136,7 +136,7 @@ class Verifier {
     }
   }
 
-  /// How many scans there are, so that a sample is spread over all.
+  /// Counts all scans, so that a sample is spread evenly.
   void count_scans() {
     std::size_t all = recording_.scans.size();
     if (all == 0 && !recording_.states.empty())
@@ -171,16 +171,16 @@ class Verifier {
     compare(reading.values, std::span<const double>(theirs), place_of(reading), compared(reading.kind));
   }
 
-  /// What 32 bits may make of a scan, and a recording's own. Other modes are cast again as they are.
+  /// Allowed difference: the bound of 32-bit modes and the precision of recordings. Other modes are recomputed bitwise.
   double allowed_of(const base::ReadingBlock& reading) const {
     const auto& laser = world_.movers[reading.mover].lasers[reading.sensor];
     const bool single = sensors::cast_laser(world_, laser).single;
-    // Noise in proportion to the range moves with it.
+    // Noise proportional to the range scales with the error of the range.
     const double stretch = 1.0 + 8.0 * laser.noise.range_proportional;
     return single ? stretch * reading.bound + laser.range_max * 0x1p-24 : 0.0;
   }
 
-  /// As scans are recorded.
+  /// Ranges with the precision of recorded scans.
   std::vector<float> told(std::uint32_t mover, std::uint32_t sensor, std::span<const double> ranges,
                           std::span<const std::uint32_t> hits) const {
     const double range_max = world_.movers[mover].lasers[sensor].range_max;
@@ -206,7 +206,7 @@ class Verifier {
                         std::move(ours), allowed_of(reading)});
   }
 
-  /// Casts what was asked for in plain C++, time by time, since all see the movers of their time.
+  /// Recomputes the collected scans in plain C++, grouped by time, since scans of one time share the movers' poses.
   void cast_again() {
     std::stable_sort(asked_.begin(), asked_.end(), [](const Asked& a, const Asked& b) { return a.time < b.time; });
     std::vector<sensors::LaserReference::Scan> scans(asked_.size());
@@ -247,7 +247,7 @@ class Verifier {
   sensors::LaserReference reference_;
   base::ThreadPool thread_pool_;
   bool infinite_ = false;
-  std::map<Name, std::size_t> scans_, readings_;  ///< recorded, not met yet
+  std::map<Name, std::size_t> scans_, readings_;  ///< recorded readings not compared yet
   std::vector<base::Report> reports_, before_, on_the_way_;
   std::map<std::uint8_t, Comparison> again_;
   std::vector<Asked> asked_;

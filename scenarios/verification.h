@@ -1,6 +1,6 @@
 #pragma once
-// A recorded run, computed again from its world, poses and seed: on this device beside what was recorded, and lasers by
-// plain C++ (sensors/laser_reference.h) beside that.
+// Verification of a recording: readings are recomputed from world, poses and seed. This device is compared with the
+// recorded readings, and plain C++ (sensors/laser_reference.h) with the recorded scans.
 
 #include <cstdint>
 #include <functional>
@@ -12,37 +12,37 @@
 
 namespace sf::scenarios {
 
-/// Readings of one kind, compared bit by bit; scans measured in 32 bits within their bound beside plain C++.
+/// Readings of one sensor type, compared bit by bit. Scans of a 32-bit mode are compared with plain C++ within their
+/// bound.
 struct Comparison {
   std::string kind;
   std::uint64_t readings = 0;
-  std::uint64_t values = 0;  ///< numbers in them
-  std::uint64_t different =
-      0;  ///< of these, not the same bits, or beyond the bound; what is not a number is the same as any other such
-  double largest = 0.0;  ///< largest difference, in the kind's own unit; infinite where one side is no number
-  std::string first;     ///< where the first difference is
+  std::uint64_t values = 0;     ///< number of compared values
+  std::uint64_t different = 0;  ///< of these, bitwise unequal or beyond the bound; any NaN equals any other
+  double largest = 0.0;         ///< largest difference, in the sensor type's unit; infinite when only one side is NaN
+  std::string first;            ///< location of the first difference
 };
 
 struct Verification {
   std::uint64_t ticks = 0;
-  std::vector<Comparison> recomputed;  ///< by kind: this device beside the recording
-  Comparison reference;                ///< lasers: plain C++ beside the recording, or beside this device where no
-                                       ///< readings were recorded
-  std::uint64_t scans = 0;             ///< of which `reference` is a sample
-  std::uint64_t missing = 0;           ///< recorded readings that this device was not due to make
-  std::vector<std::string> skipped;    ///< kinds that cannot be computed again, and why
-  std::vector<std::string> damage;     ///< of the recording, as its reader says
-  bool interrupted = false;            ///< not all ticks were looked at
-  bool sound() const;  ///< something was compared, or there are no ticks; nothing differs and nothing is damaged
+  std::vector<Comparison> recomputed;  ///< by sensor type: this device against the recording
+  Comparison reference;  ///< lasers: plain C++ against the recording, or against this device without recorded readings
+  std::uint64_t scans = 0;           ///< total number, of which `reference` is a sample
+  std::uint64_t missing = 0;         ///< recorded readings that were not due in the recomputation
+  std::vector<std::string> skipped;  ///< sensor types that cannot be recomputed, and why
+  std::vector<std::string> damage;   ///< of the recording, as reported by its reader
+  bool interrupted = false;          ///< not all ticks were compared
+  bool sound() const;  ///< no difference, no damage, and something was compared unless the recording has no ticks
 };
 
 struct VerifyOptions {
-  std::uint64_t sample = 0;              ///< scans that plain C++ casts again, spread over the run; 0: all
-  unsigned threads = 0;                  ///< 0: all
-  std::function<bool(double)> progress;  ///< part in [0, 1]; false ends it where it is. May be empty
+  std::uint64_t sample = 0;  ///< scans recomputed by plain C++, spread over the run; 0: all
+  unsigned threads = 0;      ///< 0: all
+  std::function<bool(double)>
+      progress;  ///< called with the completed part in [0, 1]; returns false to stop; may be empty
 };
 
-/// @throws base::InputError for a recording whose world cannot be read.
+/// @throws base::InputError for a recording whose world cannot be read
 Verification verify(const record::Recording& recording, gpu::Device& device, const VerifyOptions& options);
 
 }  // namespace sf::scenarios
