@@ -64,7 +64,7 @@ std::unique_ptr<Controller> make_avoid(const ControllerContext& context, Setting
 
 constinit const ControllerType avoid_controller{
     .name = "avoid",
-    .summary = "the thesis' obstacle avoidance: straight on, slower near things, turns away before it meets them",
+    .summary = "the thesis' obstacle avoidance: straight on, slower near obstacles, turns away before contact",
     .rate = 10.0,
     .stops_on_bumper = true,
     .make = make_avoid,

@@ -135,7 +135,7 @@ std::unique_ptr<Controller> make_docking(const ControllerContext& context, Setti
 
 constinit const ControllerType docking_controller{
     .name = "docking",
-    .summary = "onto a dock by its infrared beams",
+    .summary = "drives onto a dock by its infrared beams",
     .rate = 10.0,
     .stops_on_bumper = false,
     .make = make_docking,

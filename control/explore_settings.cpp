@@ -79,7 +79,7 @@ std::unique_ptr<Controller> make_explore(const ControllerContext& context, Setti
 
 constinit const ControllerType explore_controller{
     .name = "explore",
-    .summary = "maps an area by its laser, drives to what is unexplored and touches nothing",
+    .summary = "maps an area by laser: drives to unexplored cells and avoids all contacts",
     .rate = 10.0,
     .stops_on_bumper = false,
     .make = make_explore,

@@ -22,7 +22,7 @@ base::Twist Patrol::step(const ControllerInput& input) {
   };
   if (there()) next(input.time);
   stop_reason_ = input.time < until_ ? "it pauses at an end of its way"
-                 : there()           ? "it is where its one point is"
+                 : there()           ? "it is at its only point"
                  : obstructed(input) ? "another robot stands in its way"
                                      : "";
   if (*stop_reason_ != '\0') return {};

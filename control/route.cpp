@@ -128,7 +128,7 @@ std::unique_ptr<Controller> make_route(const ControllerContext& context, Setting
 
 constinit const ControllerType route_controller{
     .name = "route",
-    .summary = "drives over the roads from checkpoint to checkpoint, minding stop lines, lights and others",
+    .summary = "drives over the roads from checkpoint to checkpoint, obeying stop lines, lights and the right of way",
     .rate = 10.0,
     .stops_on_bumper = true,
     .make = make_route,

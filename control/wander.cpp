@@ -140,7 +140,7 @@ std::unique_ptr<Controller> make_wander(const ControllerContext& context, Settin
 
 constinit const ControllerType wander_controller{
     .name = "wander",
-    .summary = "explores without a map: drives where it is free, turns away from what is near",
+    .summary = "wanders without a map: drives where there is room, turns away from obstacles",
     .rate = 10.0,
     .stops_on_bumper = false,
     .make = make_wander,

@@ -90,7 +90,7 @@ std::string csv_of(const std::vector<Outcome>& outcomes) {
 
 std::string report_of(const ExperimentContext& context, const std::vector<Outcome>& outcomes) {
   std::string text = "# How accurate must sensors be?\n\n" + setup_of(context, {}) +
-                     "\n\nEach test is run in every mode of the sensor that it lives by; all else is as in its own "
+                     "\n\nEach test is run in every mode of the sensor that it depends on; all else is as in its own "
                      "experiment, its link too.\n";
   std::string last;
   for (const Outcome& o : outcomes) {
@@ -130,7 +130,7 @@ viz::Panel panel_of(const std::vector<Outcome>& outcomes, const std::string& tes
 }
 
 std::string draw(const ExperimentContext& context, const std::vector<Outcome>& outcomes) {
-  viz::SeriesOptions plan{.title = "What controllers make of accuracy modes",
+  viz::SeriesOptions plan{.title = "Effect of accuracy modes on controllers",
                           .subtitle = fmt::format("means of {} from seed {}", counted(context.options.trials, "trial"),
                                                   context.options.seed),
                           .x_name = "mode, as numbered above each panel",

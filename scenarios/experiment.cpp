@@ -80,14 +80,15 @@ std::string in_folder(const ExperimentContext& context, const std::string& name)
 void make_folder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) throw base::InputError(path, 0, "cannot be made a folder: " + error.message() + "; name another with -o");
+  if (error)
+    throw base::InputError(path, 0, "cannot be created as a folder: " + error.message() + "; name another with -o");
 }
 
 void write_text(const std::string& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   file << text;
   file.close();
-  if (!file) throw base::InputError(path, 0, "cannot be written; name a folder that can be");
+  if (!file) throw base::InputError(path, 0, "cannot be written; name a writable folder");
 }
 
 std::string counted(std::uint64_t count, std::string_view one) {

@@ -45,7 +45,7 @@ std::string draw_errors(const ExperimentContext& context, const std::vector<Tria
   return file;
 }
 
-/// Figure 37: six magnets in a line. Nothing where the world of them is not beside this one.
+/// Draws figure 37: six magnets in a line. Empty when their world file is missing.
 std::vector<std::string> draw_field_line(const ExperimentContext& context) {
   const std::filesystem::path worlds = std::filesystem::path(context.scenario.world).parent_path().parent_path();
   const std::string six = (worlds / "six_magnets.world").string();

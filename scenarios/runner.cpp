@@ -44,7 +44,7 @@ void check_expectation(const Scenario& scenario, const world::World& world, cons
   const bool of_driven = e.kind == Kind::checkpoints || e.kind == Kind::mean_error || e.kind == Kind::mean_abs_error;
   if (of_driven && std::all_of(rows.begin(), rows.end(),
                                [&](std::uint32_t row) { return options.actors[row].plan.controller.empty(); }))
-    refuse(fmt::format("'{}' of a robot that nobody drives; give it a controller", name_of(e.kind)));
+    refuse(fmt::format("'{}' of a robot without a controller; give it one", name_of(e.kind)));
   if (e.kind == Kind::map_coverage &&
       std::all_of(rows.begin(), rows.end(), [&](std::uint32_t row) { return world.movers[row].lasers.empty(); }))
     refuse(e.robot.empty() ? "no robot has a laser to make a map with; give one a laser"
@@ -131,7 +131,7 @@ class Run {
     }
     if (e.kind == Kind::mean_error || e.kind == Kind::mean_abs_error)
       return e.robot.empty() ? "no robot with a control error" : "no control error";
-    if (e.kind == Kind::checkpoints) return "nobody who heads for checkpoints";
+    if (e.kind == Kind::checkpoints) return "no robot with checkpoints";
     return "nothing to measure";
   }
 

@@ -164,8 +164,7 @@ FleetSpawn crowd_of(const Reader& reader, const TomlNode& root) {
   if (const TomlNode* robots = world::find(root, "robots")) fleet.line = robots->line;
   for (const std::string_view key : {"of", "place"})
     if (const TomlNode* node = world::find(root, key); node != nullptr && fleet.robots == 0)
-      reader.fail(*node,
-                  fmt::format("'{}' says something of copies, and there are none; expected robots = N beside it", key));
+      reader.fail(*node, fmt::format("'{}' applies to copies, and there are none; expected robots = N beside it", key));
   return fleet;
 }
 
@@ -189,7 +188,7 @@ void read_robots(const Reader& reader, const TomlNode& root, Scenario& scenario)
     plan.driver_line = driver == nullptr ? node.line : driver->line;
     const auto [other, fresh] = lines.emplace(plan.name, plan.line);
     if (!fresh)
-      reader.fail(node, fmt::format("the robot '{}' is told at line {} already; expected one [[robot]] for each",
+      reader.fail(node, fmt::format("the robot '{}' is configured at line {} already; expected one [[robot]] for each",
                                     plan.name, other->second));
     scenario.plans.push_back(std::move(plan));
   }

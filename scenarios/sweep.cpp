@@ -163,7 +163,7 @@ std::string report_of(const ExperimentContext& context, const std::vector<Point>
       "# Sweeps of the lane edge loop\n\n" + setup_of(context, {}) +
       "\n\nOne thing is varied at a time; all else is as in lane-edge-p and -pi, without delay, jitter "
       "or loss. `exact edge`: the exact distance across the robot (one ray) in place of the line through 61 "
-      "rays. `owed` is the mean error that a P loop cannot but have on this bend: (pi/2) / (kp T), the gain "
+      "rays. `owed` is the mean error inherent in a P loop on this bend: (pi/2) / (kp T), the gain "
       "doubled by the plant `thesis`.\n";
   std::string sweep;
   for (const Point& p : points) {

@@ -58,14 +58,14 @@ std::vector<std::string> run_town(const ExperimentContext& context) {
 constexpr std::string_view kTownReasons =
     "The thesis names SimVille as the testbed and gives no numbers of traffic in it, so nothing here is compared. "
     "Contacts and red lights passed are what must be zero; metres and checkpoints say how well traffic flows, and "
-    "depend on who gets in whose way first. "
+    "depend on the order in which robots meet. "
     "The plant is `ideal` unless told otherwise: there are no numbers of the thesis' that its driver would explain. "
     "The mean error of a robot on a route is its distance from the middle of its lane; convoys and pedestrians have "
     "none.";
 constexpr std::string_view kMagicReasons =
     "The thesis names MiniMAGIC as the testbed and gives no numbers, so nothing here is compared. "
-    "Contacts are those of three Pioneers that wander without a map, hear nobody and do not see behind them, and of "
-    "obstacles that patrol among them and wait for nobody; where two meet, it counts for both that were stopped. "
+    "Contacts are those of three Pioneers that wander without a map or V2V and do not see behind them, and of "
+    "obstacles that patrol among them without yielding; where two meet, it counts for both that were stopped. "
     "The plant is `ideal` unless told otherwise: Player's driver of the Create is not a Pioneer's. "
     "Trials differ by where robots start and by what they draw when they turn away.";
 
@@ -82,7 +82,7 @@ constinit const ExperimentType simville_experiment{
 };
 constinit const ExperimentType simville_merge_experiment{
     .name = "simville-merge",
-    .summary = "a robot comes into a convoy, another passes a slow one",
+    .summary = "a robot merges into a convoy, another overtakes a slow one",
     .plant = Plant::ideal,
     .reasons = kTownReasons,
     .run = run_town,

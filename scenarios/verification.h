@@ -32,7 +32,8 @@ struct Verification {
   std::vector<std::string> skipped;  ///< sensor types that cannot be recomputed, and why
   std::vector<std::string> damage;   ///< of the recording, as reported by its reader
   bool interrupted = false;          ///< not all ticks were compared
-  bool sound() const;  ///< no difference, no damage, and something was compared unless the recording has no ticks
+  bool sound() const;  ///< no difference, missing reading or damage, and something was compared unless the recording
+                       ///< has no ticks
 };
 
 struct VerifyOptions {

@@ -106,8 +106,8 @@ TEST(FleetSpawn, MistakesAreRefusedAtTheirLine) {
   const std::string magic = "world = \"../worlds/minimagic/minimagic.world\"\n";
   const std::pair<std::string, std::string> kCorpus[] = {
       {kTown + "robots = 5\nplace = \"street\"\n", "test.toml:3: 'place' expects \"free\" or \"lanes\""},
-      {kTown + "place = \"lanes\"\n", "test.toml:2: 'place' says something of copies, and there are none"},
-      {kTown + "of = \"roomba1\"\nrobots = 0\n", "test.toml:2: 'of' says something of copies"},
+      {kTown + "place = \"lanes\"\n", "test.toml:2: 'place' applies to copies, and there are none"},
+      {kTown + "of = \"roomba1\"\nrobots = 0\n", "test.toml:2: 'of' applies to copies"},
       {kTown + "of = \"roomba9\"\nrobots = 2\n", "test.toml:3: "},
       {kTown + "robots = 2\nof = 3\n", "test.toml:3: 'of' expects a text in quotes"},
       {magic + "robots = 2\nof = \"tag1\"\n", "test.toml:2: 'tag1' is a tag, not a robot"},

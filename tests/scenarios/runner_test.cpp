@@ -42,7 +42,7 @@ TEST(CheckScenario, WhatARunWouldRefuseIsRefusedAtItsLine) {
       {path + "[[robot]]\nname = \"roomba7\"\n", "test.toml:2: "},
       {path + "[expect]\nlights_obeyed = true\n", "test.toml:3: "},
       {path + "[default]\ncontroller = \"none\"\n[expect]\nmean_error = 1\n",
-       "test.toml:5: 'mean_error' of a robot that nobody drives"},
+       "test.toml:5: 'mean_error' of a robot without a controller"},
   };
   for (const auto& [text, said] : kCorpus) EXPECT_EQ(refusal(text).substr(0, said.size()), said) << text;
 }
