@@ -1,5 +1,5 @@
 #pragma once
-// Proof of an address: it sends back the token that was sent there. Nothing is kept per address.
+// Proof of address ownership by tokens. No state is kept per address.
 
 #include <array>
 #include <cstdint>
@@ -11,14 +11,14 @@ namespace sf::netio {
 
 using SipHashKey = std::array<std::uint64_t, 2>;
 
-/// SipHash-2-4 (Aumasson and Bernstein, 2012): without the key its values cannot be told.
+/// SipHash-2-4 (Aumasson and Bernstein, 2012). Its values cannot be predicted without the key.
 std::uint64_t siphash(const SipHashKey& key, std::span<const std::uint8_t> bytes);
 
-/// From the kernel's random numbers.
+/// From the kernel's random number generator.
 SipHashKey random_key();
 std::uint32_t random_session();  ///< never 0
 
-/// The token of each address and port.
+/// Computes the token of an address and port. A sender proves its address by returning the token sent there.
 class AddressTokens {
  public:
   explicit AddressTokens(const SipHashKey& key = random_key()) : key_(key) {}

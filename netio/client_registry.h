@@ -1,5 +1,5 @@
 #pragma once
-// Who may speak for which id, and since when they have been silent. No clock is read here: time is always passed in.
+// Bindings of ids to the addresses that may send for them. No clock is read: time is always an argument.
 
 #include <cstdint>
 #include <optional>
@@ -11,36 +11,40 @@
 
 namespace sf::netio {
 
-inline constexpr std::int64_t kClientTimeout = 2'000'000'000;  ///< [ns] after exactly this long a sender is silent
+inline constexpr std::int64_t kClientTimeout =
+    2'000'000'000;  ///< [ns] a sender is silent from exactly this duration on
 
-/// Less than 2^31 ahead: the counter may wrap (serial number arithmetic, RFC 1982, section 3.2).
+/// `sequence` is less than 2^31 ahead of `than`. The counter may wrap (serial number arithmetic, RFC 1982, section
+/// 3.2).
 inline bool newer(std::uint32_t sequence, std::uint32_t than) { return static_cast<std::int32_t>(sequence - than) > 0; }
 
-/// The rule, for one space of ids (robots, or tags): the first sender of an id binds it until two seconds of silence.
-/// A packet whose sequence is not newer than the last of its line is stale; it neither keeps the binding nor is used,
-/// so a sender that starts its count again is taken after two seconds. Lines (one per packet type) count apart.
+/// Bindings for one space of ids (robots, or tags). The first sender of an id binds it until two seconds of silence. A
+/// packet whose sequence is not newer than the last of its channel is stale: it neither extends the binding nor is
+/// used, so a sender that restarts its count is accepted after two seconds. Channels (one per packet type) are counted
+/// separately.
 class ClientRegistry {
  public:
   static constexpr std::size_t kChannels = 2;
 
-  /// @param ids that exist, in any order.
+  /// @param ids known ids, in any order
   explicit ClientRegistry(std::span<const std::uint32_t> ids);
 
-  /// Position of `id` among the ids in ascending order; nothing for an id that does not exist.
+  /// Row of `id` in ascending order of ids; nullopt for an unknown id.
   std::optional<std::size_t> row(std::uint32_t id) const;
 
-  /// accepted, wrong_source or stale; of a known id only. `now` [ns] on any clock that does not go back.
+  /// Returns accepted, wrong_source or stale. @pre `id` is known. `now` [ns] on any clock that does not decrease.
   PacketStatus admit(std::uint32_t id, std::size_t channel, std::uint32_t sequence, const Endpoint& source,
                      std::int64_t now);
 
-  /// `source` speaks for `id` no longer: accepted where it did (the id is free at once), wrong_source where another
-  /// does, else stale. What comes from `source` for two seconds then is stale: it was overtaken.
+  /// Ends the binding of `id` to `source`. Returns accepted if it existed (the id is free at once), wrong_source if
+  /// `id` is bound to another sender, else stale. Packets from `source` in the next two seconds are stale, since they
+  /// were sent before.
   PacketStatus leave(std::uint32_t id, const Endpoint& source, std::int64_t now);
 
   /// A packet of `id` was accepted less than two seconds before `now`. False for unknown ids.
   bool is_active(std::uint32_t id, std::int64_t now) const;
 
-  /// Who spoke last for `id`, be it silent since; nothing when it was never heard, or left.
+  /// The last sender for `id`, even if silent since; nullopt if there was none or it has left.
   std::optional<Endpoint> source(std::uint32_t id) const;
 
  private:
@@ -53,8 +57,8 @@ class ClientRegistry {
     Endpoint source;
     std::optional<std::int64_t> last;
     Channel channels[kChannels];
-    Endpoint departed;                        ///< who left last
-    std::optional<std::int64_t> departed_at;  ///< [ns] when
+    Endpoint departed;                        ///< the last sender that left
+    std::optional<std::int64_t> departed_at;  ///< [ns] time of its leaving
   };
   std::vector<Client> clients_;  ///< by id
 };

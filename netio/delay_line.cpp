@@ -31,7 +31,7 @@ void DelayLine::send(const MessageId& message, std::int64_t now, std::size_t tag
   std::push_heap(waiting_.begin(), waiting_.end(), later);
 }
 
-/// Its memory is given to the next one sent, so it lives until then.
+/// The message's memory is reused by the next `send` and lives until then.
 DelayLine::QueuedMessage DelayLine::pop() {
   std::pop_heap(waiting_.begin(), waiting_.end(), later);
   const QueuedMessage next = waiting_.back();

@@ -1,5 +1,5 @@
 #pragma once
-// A worse network than the one there is: messages wait here until they would have come, or never do.
+// Simulated network delay and loss: messages are queued until their arrival, or dropped.
 
 #include <cstdint>
 #include <span>
@@ -12,23 +12,23 @@ namespace sf::netio {
 
 struct DelayCounts {
   std::uint64_t passed = 0;  ///< released
-  std::uint64_t lost = 0;    ///< as the plan has it
-  std::uint64_t full = 0;    ///< more than kCapacity waited; never where loss is counted alone
+  std::uint64_t lost = 0;    ///< lost according to the model
+  std::uint64_t full = 0;    ///< dropped because kCapacity messages waited
 };
 
-/// One thread. Memory of messages is used again.
+/// One thread. The memory of messages is reused.
 class DelayLine {
  public:
   static constexpr std::size_t kCapacity = 65'536;
 
   explicit DelayLine(const LinkModel& model) : model_(model) {}
 
-  /// Takes a message that is sent at `now` [ns]; copies its bytes.
-  /// @param tag comes back with it
+  /// Queues a copy of a message sent at `now` [ns], or drops it.
+  /// @param tag passed on to `take`
   void send(const MessageId& message, std::int64_t now, std::size_t tag, std::span<const std::uint8_t> bytes);
 
-  /// Gives `take(std::size_t tag, std::span<const std::uint8_t> bytes)` all that has come by `now` [ns], in order of
-  /// arrival; of two that come at once the one that was sent first. `take` may not send.
+  /// Passes all messages that have arrived by `now` [ns] to `take(std::size_t tag, std::span<const std::uint8_t>
+  /// bytes)`, in order of arrival, at equal times in order of sending. `take` must not send.
   template <class Take>
   void release(std::int64_t now, Take&& take) {
     while (!waiting_.empty() && waiting_.front().arrival <= now) {
@@ -38,7 +38,7 @@ class DelayLine {
     }
   }
 
-  std::int64_t next() const;  ///< [ns] when the next one comes; the largest there is while none is on its way
+  std::int64_t next() const;  ///< [ns] next arrival; the largest value without messages
   std::size_t waiting() const { return waiting_.size(); }
   const DelayCounts& counts() const { return counts_; }
 
@@ -54,7 +54,7 @@ class DelayLine {
 
   LinkModel model_;
   DelayCounts counts_;
-  std::vector<QueuedMessage> waiting_;  ///< a heap, the next one in front
+  std::vector<QueuedMessage> waiting_;  ///< a heap, the next message at the front
   std::vector<base::Bytes> memory_;
   std::vector<std::size_t> free_;  ///< slots of `memory_`
   std::uint64_t order_ = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Where a datagram comes from or goes to. IPv4 only: the testbed's robots, loopback and every container have it.
+// Source or destination of datagrams. IPv4 only, which the testbed's robots, loopback and containers all support.
 
 #include <cstdint>
 #include <string>
@@ -12,16 +12,17 @@ inline constexpr std::uint32_t kLoopback = 0x7F000001u;  ///< 127.0.0.1
 /// An IPv4 address and a UDP port, both in host byte order.
 struct Endpoint {
   std::uint32_t address = kLoopback;
-  std::uint16_t port = 0;  ///< 0: any free port when binding; never a destination
+  std::uint16_t port = 0;  ///< 0: any free port when binding; invalid as a destination
   bool operator==(const Endpoint&) const = default;
 };
 
-/// The IPv4 address of a dotted quad or of a host name (asks the machine's resolver; nothing leaves it for dotted
-/// quads).
+/// IPv4 address of a dotted quad or a host name. Host names are looked up by the machine's resolver; dotted quads need
+/// no network.
+/// @throws base::InputError naming `host` on failure
 /// @throws base::InputError naming `host` when there is none.
 std::uint32_t resolve(const std::string& host);
 
-/// 127.0.0.0/8: nobody else reaches it.
+/// 127.0.0.0/8, reachable only from this machine.
 inline bool is_loopback(std::uint32_t address) { return address >> 24 == 127; }
 /// Of this machine's interfaces that are up, loopback aside.
 std::vector<std::uint32_t> own_addresses();

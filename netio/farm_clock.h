@@ -1,29 +1,28 @@
 #pragma once
-// The farm's clock, as far as a robot can tell it from the timestamps of what comes.
+// Estimate of the farm's clock from the timestamps of readings.
 
 #include <cstdint>
 #include <optional>
 
 namespace sf::netio {
 
-/// The newest timestamp says how late the farm's clock is at the least; what came with the least delay says it best. So
-/// the clock is behind by the delay of the quickest reading that came, and never ahead. After two seconds without
-/// readings (kClientTimeout) the farm may have begun anew: the next reading sets the clock again. No clock is read
-/// here.
+/// The estimate is the largest difference between a reading's timestamp and its arrival. It lags the farm's clock by
+/// the delay of the fastest reading and is never ahead. After two seconds without readings (kClientTimeout) the farm
+/// may have restarted, and the next reading sets the clock anew. No clock is read here.
 class FarmClock {
  public:
-  /// A reading that was measured at `time` [ns] by the farm's clock came at `came` [ns] by the robot's own.
+  /// Takes a reading measured at `time` [ns] on the farm's clock that arrived at `arrival` [ns] on the robot's clock.
   void update(std::int64_t time, std::int64_t arrival);
 
-  /// [ns] of the farm when the robot's own clock says `own`; the same, before anything came.
+  /// [ns] The farm's time at the robot's time `own`; equal to it before the first reading.
   std::int64_t to_farm(std::int64_t own) const { return own + offset_; }
-  /// The other way round.
+  /// The inverse of `to_farm`.
   std::int64_t to_own(std::int64_t farm) const { return farm - offset_; }
   bool synchronised() const { return last_.has_value(); }
 
  private:
-  std::int64_t offset_ = 0;           ///< [ns] farm's less own
-  std::optional<std::int64_t> last_;  ///< [ns] when something came
+  std::int64_t offset_ = 0;           ///< [ns] farm's time minus robot's time
+  std::optional<std::int64_t> last_;  ///< [ns] last arrival
 };
 
 }  // namespace sf::netio

@@ -12,7 +12,7 @@ namespace sf::netio {
 namespace {
 
 constexpr std::size_t kBatch = 64;
-constexpr std::size_t kSendBuffer = 1u << 20;           ///< [byte] of what is sent through a duplicate of the socket
+constexpr std::size_t kSendBuffer = 1u << 20;           ///< [byte] for packets sent through a duplicate of the socket
 constexpr std::int64_t kChallengePeriod = 100'000'000;  ///< [ns]
 constexpr std::size_t kStateChannel = 0;
 constexpr std::size_t kSubscribeChannel = 1;

@@ -1,14 +1,15 @@
 #pragma once
-// Datagrams in, states out. Nothing a stranger sends stops it, and nothing is allocated after construction.
+// Receives and validates datagrams with states and requests. No datagram can stop it, and it allocates nothing after
+// construction.
 //
 //   Inbox inbox({.robots = ids});
-//   inbox.receive(now, [&](const Packet& packet) { ... });        // each accepted one
+//   inbox.receive(now, [&](const Packet& packet) { ... });                     // each accepted one
 //   if (inbox.is_active(7, now) && inbox.is_subscribed(7, kind, now)) ...      // send to *inbox.address(7)
 //
-// A robot is heard from an address that sends back what it was sent there (netio/address_token.h): until then it is
-// answered by a CHALLENGE, which is no larger than what it sent.
+// Packets of a robot are accepted only with the token that was sent to their source address (netio/address_token.h).
+// Before that the answer is a CHALLENGE, which is no larger than the packet.
 //
-// One thread. No clock is read: `now` is any clock in ns that does not go back.
+// One thread. No clock is read: `now` is any clock in ns that does not decrease.
 
 #include <cstdint>
 #include <optional>
@@ -26,26 +27,27 @@
 namespace sf::netio {
 
 struct InboxOptions {
-  Endpoint bind = {kLoopback, kInboxPort};   ///< address 0 (0.0.0.0): every interface of the machine
-  std::size_t receive_buffer = 4u << 20;     ///< [byte] asked of the kernel
-  std::vector<std::uint32_t> robots;         ///< ids that the world has, each in [0, kMaxId], no two equal
-  std::vector<std::uint32_t> tags;           ///< each in [kMinTag, kMaxId]
-  std::uint32_t session = random_session();  ///< the farm's
+  Endpoint bind = {kLoopback, kInboxPort};   ///< address 0 (0.0.0.0): all interfaces of the machine
+  std::size_t receive_buffer = 4u << 20;     ///< [byte] requested from the kernel
+  std::vector<std::uint32_t> robots;         ///< ids of the world's robots, distinct, each in [0, kMaxId]
+  std::vector<std::uint32_t> tags;           ///< ids of the world's tags, distinct, each in [kMinTag, kMaxId]
+  std::uint32_t session = random_session();  ///< session of the farm
 };
 
 class Inbox {
  public:
-  /// Datagrams taken by one receive at most: a flood may not hold the tick.
+  /// Maximum number of datagrams per `receive`, which bounds its duration under a flood.
   static constexpr std::size_t kMaxPerReceive = 65'536;
-  /// CHALLENGEs in a tenth of a second at most: the rest are not answered.
+  /// Maximum number of CHALLENGE packets in 0.1 s. Further requests are not answered.
   static constexpr std::size_t kMaxChallenges = 1000;
 
-  /// @throws base::InputError when the address cannot be bound, or an id does not fit a packet.
+  /// @throws base::InputError when the address cannot be bound or an id does not fit a packet
   explicit Inbox(const InboxOptions& options);
 
-  /// Takes every datagram that waits and gives `take(const Packet&)` each accepted one, in order of arrival, and
-  /// `on_rejected(PacketStatus, const Packet&, const Endpoint& who)` each that was well but unproven or from the wrong
-  /// source. Returns how many were taken from the socket.
+  /// Reads all waiting datagrams. Calls `take(const Packet&)` for each accepted one, in order of arrival, and
+  /// `on_rejected(PacketStatus, const Packet&, const Endpoint& source)` for each valid one that is unproven or from the
+  /// wrong source.
+  /// @return number of datagrams read
   template <class Take, class OnRejected>
   std::size_t receive(std::int64_t now, Take&& take, OnRejected&& on_rejected) {
     std::size_t taken = 0;
@@ -69,39 +71,41 @@ class Inbox {
     return receive(now, take, [](PacketStatus, const Packet&, const Endpoint&) {});
   }
 
-  /// One datagram, from wherever: decides, counts, and fills `packet` when accepted, unproven or from the wrong source
-  /// (else it holds nothing of use). receive() is this for a socket.
+  /// Validates and counts one datagram from `source`. Fills `packet` when the status is accepted, unproven or
+  /// wrong_source (undefined otherwise). `receive` calls this for each datagram of the socket.
   PacketStatus accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now, Packet& packet);
 
-  /// The answer to an unproven V2V or SUBSCRIBE that came from `who`. @return false where none is due, or too many
-  /// were.
+  /// The answer to an unproven V2V or SUBSCRIBE that came from `who`.
+  /// @return false where none is due, or too many Encodes the CHALLENGE for an unproven V2V or SUBSCRIBE from `who`.
+  /// @return false if none is due or the limit of challenges is reached
   bool challenge(const Packet& packet, const Endpoint& who, std::int64_t now, base::Bytes& out);
 
   /// A V2V or SUBSCRIBE of `robot` was accepted less than two seconds before `now`, and no LEAVE since.
   bool is_active(std::uint32_t robot, std::int64_t now) const { return robots_.is_active(robot, now); }
 
-  /// heard, and its last SUBSCRIBE since it is heard asked for sensor kind `kind` in [1, 31] (none: it wants all).
+  /// is_active, and the robot's last SUBSCRIBE since then includes sensor kind `kind` in [1, 31]. Without SUBSCRIBE it
+  /// has all kinds.
   bool is_subscribed(std::uint32_t robot, std::uint32_t kind, std::int64_t now) const;
 
-  /// heard, and its last SUBSCRIBE since it is heard asked for other robots' states.
+  /// is_active, and the robot's last SUBSCRIBE since then requests the states of other robots.
   bool wants_neighbours(std::uint32_t robot, std::int64_t now) const;
 
-  /// Where `robot` sends from; nothing when it was never heard, or left. Its readings go to this address, at each
-  /// sensor's own port.
+  /// Address of `robot`; nullopt if it never sent or has left. Its readings go to this address, to each sensor's own
+  /// port.
   std::optional<Endpoint> address(std::uint32_t robot) const { return robots_.source(robot); }
 
   /// The token that packets from `who` must carry.
   std::uint32_t token(const Endpoint& who) const { return tokens_.of(who); }
-  /// For packets to `robot`: the farm's session, and the one that the robot gave last.
+  /// For packets to `robot`: the farm's session, and the robot's last session.
   SessionToken session_token_for(std::uint32_t robot) const;
 
-  /// Where tag `tag` is sent from.
+  /// Address from which the states of tag `tag` come.
   std::optional<Endpoint> tag_address(std::uint32_t tag) const { return tags_.source(tag); }
 
   std::uint16_t port() const { return bound_endpoint(socket_).port; }
   const PacketCounts& counts() const { return counts_; }
   std::uint64_t kernel_drops() const { return netio::kernel_drops(socket_); }
-  /// The same socket once more: for answers that come from where the robots speak to.
+  /// The same socket under a second descriptor, so that answers come from the port that the robots send to.
   Socket socket() const { return duplicate(socket_); }
   /// Sleeps until a datagram waits, a signal comes, or `timeout_ms` >= 0 has passed.
   void wait(int timeout_ms) const;
@@ -117,7 +121,7 @@ class Inbox {
   std::uint32_t session_;
   AddressTokens tokens_;
   std::int64_t challenge_period_start_ = 0;  ///< [ns]
-  std::size_t challenges_ = 0;               ///< since then
+  std::size_t challenges_ = 0;               ///< in that period
   PacketCounts counts_;
   Socket socket_;
   ReceiveBatch batch_;

@@ -11,12 +11,13 @@ namespace {
 
 double along(glm::dvec2 p, std::uint8_t by_y) { return by_y ? p.y : p.x; }
 
-/// Rows order equal coordinates: a crowd at one place is a tree too, and its robots find different neighbours.
+/// Equal coordinates are ordered by row, so that a crowd at one place is split too and its robots find different
+/// neighbours.
 bool before(glm::dvec2 p, std::uint32_t row, const NeighbourTree::Place& place, std::uint8_t by_y) {
   return std::tuple(along(p, by_y), row) < std::tuple(along(place.p, by_y), place.row);
 }
 
-/// The axis that parts the places better: on a street northwards x parts nothing.
+/// The axis with the larger extent.
 bool wider_along_y(std::span<const NeighbourTree::Place> places) {
   const auto width = [&](std::uint8_t by_y) {
     const auto [low, high] = std::minmax_element(places.begin(), places.end(), [&](const auto& a, const auto& b) {
@@ -67,7 +68,7 @@ std::span<const std::uint32_t> NeighbourTree::find(const Query& query) {
   return rows_;
 }
 
-/// First the side of `p`; the other side only where a nearer place may lie.
+/// Searches the side of `p` first, the other side only where it may hold a nearer place.
 void NeighbourTree::search(std::size_t first, std::size_t last) {
   if (first == last || visits_left_ == 0) return;
   const std::size_t middle = first + (last - first) / 2;

@@ -1,5 +1,5 @@
 #pragma once
-// The robots nearest to a place, from a k-d tree of points that is built each tick.
+// Nearest-neighbour search among robots with a k-d tree of points that is built each tick.
 //
 //   tree.build(places);
 //   for (const std::uint32_t row : tree.find({.p = p, .own = row, .range = 50.0, .max_count = 64})) ...
@@ -17,38 +17,38 @@ namespace sf::netio {
 /// One thread. Nothing is allocated after construction.
 class NeighbourTree {
  public:
-  /// Places looked at for one query at most: a crowd at one place, or on a circle, costs no more than another.
+  /// Maximum number of places visited per query, which bounds its cost for crowds at one place or on a circle.
   static constexpr std::size_t kMaxVisits = 512;
 
   struct Place {
     glm::dvec2 p;           ///< [m]
-    std::uint32_t row = 0;  ///< whose
-    std::uint32_t age = 0;  ///< [passes] since it was said
+    std::uint32_t row = 0;  ///< row of the robot
+    std::uint32_t age = 0;  ///< [passes] since its state was received
   };
   struct Query {
-    std::optional<glm::dvec2> p;  ///< [m]; nothing: anywhere
-    std::uint32_t own = 0;        ///< row that is left out
-    double range = 0.0;           ///< [m] >= 0, its end included
-    std::size_t max_count = 0;    ///< rows, in [1, kMaxVisits]
-    std::uint32_t max_age = 0;    ///< [passes]
+    std::optional<glm::dvec2> p;  ///< [m] centre; nullopt: no centre
+    std::uint32_t own = 0;        ///< row to leave out
+    double range = 0.0;           ///< [m] >= 0, inclusive
+    std::size_t max_count = 0;    ///< of rows, in [1, kMaxVisits]
+    std::uint32_t max_age = 0;    ///< [passes], inclusive
   };
 
-  /// @param capacity places at most
+  /// @param capacity maximum number of places
   explicit NeighbourTree(std::size_t capacity);
 
-  /// All places of a tick, each row once.
+  /// Builds the tree of a tick. Each row occurs once.
   void build(std::span<const Place> places);
 
-  /// Rows of the places nearest to `p`, the nearest first: exactly these unless kMaxVisits were looked at before.
-  /// Without `p`, of any places, others each time. Lives until the next call.
+  /// Rows of the places nearest to `p`, nearest first. Exact unless kMaxVisits is reached. Without `p` the rows are
+  /// arbitrary and change from call to call. Lives until the next call.
   std::span<const std::uint32_t> find(const Query& query);
 
-  /// Places that were looked at since construction.
+  /// Number of places visited since construction.
   std::uint64_t visits() const { return visits_; }
 
  private:
   struct Found {
-    double square;  ///< [m^2] of its distance
+    double square;  ///< [m^2] distance squared
     std::uint32_t row;
     bool operator<(const Found& other) const { return std::tie(square, row) < std::tie(other.square, other.row); }
   };
@@ -58,13 +58,13 @@ class NeighbourTree {
   void find_any();
   bool is_near(double square) const;
 
-  std::vector<Place> places_;       ///< a tree: the middle one of each range parts the others
-  std::vector<std::uint8_t> by_y_;  ///< per place: it parts by y; else by x
+  std::vector<Place> places_;       ///< a tree: the median of each range splits the others
+  std::vector<std::uint8_t> by_y_;  ///< per place: 1 splits by y, 0 by x
   Query query_;
-  std::size_t visits_left_ = 0;  ///< looks of this query
-  std::vector<Found> found_;     ///< a heap, the farthest first
+  std::size_t visits_left_ = 0;  ///< of this query
+  std::vector<Found> found_;     ///< a heap, the farthest at the front
   std::vector<std::uint32_t> rows_;
-  std::size_t next_ = 0;  ///< place that is next where any will do
+  std::size_t next_ = 0;  ///< next place of queries without a centre
   std::uint64_t visits_ = 0;
 };
 

@@ -17,7 +17,7 @@ namespace sf::netio {
 
 namespace {
 
-/// The packets of one flush.
+/// The datagrams of one flush.
 struct Batch {
   explicit Batch(std::size_t capacity);
   void put(std::size_t place, const Endpoint& to, std::span<const std::uint8_t> bytes);
@@ -63,7 +63,7 @@ void Batch::send(const Socket& socket, int patience_ms, OutboxCounts& counts) {
     const int error = errno;
     if (error == EINTR) continue;
     if (error != EAGAIN && error != ENOBUFS) {
-      // It names the first message; those behind it may still go.
+      // The error concerns the first message; the others are tried again.
       ++counts.failed;
       if (counts.first_failure.empty())
         counts.first_failure = text(from_posix(destinations[i])) + ": " + error_text(error);
@@ -86,9 +86,9 @@ struct Outbox::Storage {
   Socket socket;
   std::unique_ptr<Batch> filling;
   std::uint64_t queued = 0;
-  OutboxCounts counts;  ///< but for `queued`; with a thread, the thread's while it sends
+  OutboxCounts counts;  ///< without `queued`; with a thread, written by the thread while it sends
 
-  // With a thread.
+  // For the sending thread.
   std::mutex lock;
   std::condition_variable wake, idle;
   std::vector<std::unique_ptr<Batch>> full;

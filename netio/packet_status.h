@@ -1,5 +1,5 @@
 #pragma once
-// Why a stranger's datagram was dropped, and how often.
+// Result of checking a datagram, and counts of the results.
 
 #include <array>
 #include <cstddef>
@@ -9,30 +9,30 @@
 
 namespace sf::netio {
 
-/// Every datagram ends in exactly one of these. The first that applies, in this order, is the one counted.
+/// Each datagram gets exactly one status: the first that applies, in this order.
 enum class PacketStatus : std::uint8_t {
   accepted,         ///< not dropped
-  too_short,        ///< fewer bytes than its header or its type asks for
-  bad_magic,        ///< does not begin with "SFPK"
-  unknown_version,  ///< not version 2
-  unknown_type,     ///< a type number that this version does not have
-  too_long,         ///< more bytes than its type has
-  not_finite,       ///< a NaN or an infinity among its numbers
-  out_of_range,     ///< a number outside the range that docs/packets.md gives
-  wrong_direction,  ///< a reading sent to the farm, or a state to a listener
+  too_short,        ///< shorter than its header or its type requires
+  bad_magic,        ///< does not start with "SFPK"
+  unknown_version,  ///< other than version 2
+  unknown_type,     ///< a type number unknown to this version
+  too_long,         ///< longer than its type
+  not_finite,       ///< contains NaN or infinity
+  out_of_range,     ///< contains a number outside the range in docs/packets.md
+  wrong_direction,  ///< a reading sent to the farm, or a state sent to a receiver of readings
   unknown_robot,    ///< a robot id that the world does not have
   unknown_tag,      ///< a tag id that the world does not have
-  unproven,         ///< it does not carry its address' token: a CHALLENGE was due
-  wrong_source,  ///< the id is bound to another sender, it came to another sensor's port, or not from the farm that is
-                 ///< listened to
-  stale,         ///< its sequence is not newer than one already taken
+  unproven,         ///< without the token of its address; answered by a CHALLENGE
+  wrong_source,  ///< the id is bound to another sender, the packet came to another sensor's port, or it is not from the
+                 ///< selected farm
+  stale,         ///< its sequence is not newer than the last accepted one
 };
 inline constexpr std::size_t kPacketStatuses = 14;
 
-/// "too short", "bad magic", ...: words for a table or a summary.
+/// Text for tables and summaries: "too short", "bad magic", ...
 std::string_view name(PacketStatus status);
 
-/// How many datagrams ended in each reason.
+/// Number of datagrams per status.
 struct PacketCounts {
   std::array<std::uint64_t, kPacketStatuses> of{};
 
@@ -42,7 +42,7 @@ struct PacketCounts {
   std::uint64_t dropped() const { return total() - (*this)[PacketStatus::accepted]; }
 };
 
-/// "accepted 12, too short 1, stale 3": those that happened; "nothing received" where none did.
+/// Non-zero counts, such as "accepted 12, too short 1, stale 3"; "nothing received" without datagrams.
 std::string text(const PacketCounts& counts);
 
 }  // namespace sf::netio

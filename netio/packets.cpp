@@ -29,7 +29,7 @@ PacketStatus check(std::span<const double> values, double limit) {
   return PacketStatus::accepted;
 }
 
-/// The first reason of several that is not `accepted`; a NaN anywhere comes before a range anywhere.
+/// The first status that is not `accepted`, except that not_finite precedes out_of_range.
 PacketStatus first_fault(std::initializer_list<PacketStatus> reasons) {
   PacketStatus found = PacketStatus::accepted;
   for (const PacketStatus status : reasons) {
@@ -134,7 +134,7 @@ PacketStatus read_body(std::span<const std::uint8_t> payload, Packet& packet) {
   return payload.size() <= kMaxPayload ? PacketStatus::accepted : PacketStatus::too_long;
 }
 
-/// @param trailer [byte] behind the payload
+/// @param trailer [byte] size behind the payload
 PacketStatus read_header(base::ByteReader& reader, Header& header, std::size_t& trailer) {
   for (const std::uint8_t letter : kMagic) {
     if (reader.get<std::uint8_t>() != letter) return PacketStatus::bad_magic;
@@ -182,7 +182,7 @@ std::uint16_t encode_accuracy(const Accuracy& accuracy) {
   SF_CHECK(accuracy.mode < 16, "mode " + std::to_string(accuracy.mode) + " in a packet");
   const unsigned low = accuracy.mode | (accuracy.unsure ? 0x10u : 0u);
   if (!(accuracy.bound > 0.0) || std::isinf(accuracy.bound)) return static_cast<std::uint16_t>(low);
-  // A little more, so that rounding of the logarithm never states less.
+  // The tolerance keeps rounding of the logarithm from stating a smaller bound.
   const double code = std::ceil(16.0 * std::log2(accuracy.bound) + 1e-9) + 1024.0;
   const auto k = static_cast<unsigned>(std::clamp(code, 1.0, 2047.0));
   return static_cast<std::uint16_t>(k << 5 | low);
@@ -278,7 +278,7 @@ base::Report report(const Header& header, const Tag& state, std::uint32_t mover,
   const auto& [x, y, z, w] = state.orientation;
   const double yaw = std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)) - X_MT.yaw;
   const double turn = state.angular[2];
-  const glm::dvec2 arm = base::rotate(yaw, {X_MT.x, X_MT.y});  // from the mover's origin to the tag, in the world
+  const glm::dvec2 arm = base::rotate(yaw, {X_MT.x, X_MT.y});  // from the mover's origin to the tag, in the world frame
   const glm::dvec2 velocity = base::rotate(-yaw, {state.linear[0] + turn * arm.y, state.linear[1] - turn * arm.x});
   return {mover,
           header.time,

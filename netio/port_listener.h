@@ -1,8 +1,8 @@
 #pragma once
-// The ports that sensors' packets come to.
+// The ports on which sensors' packets arrive.
 //
-// One socket per port, since Linux has no way for an ordinary user to take a range of ports with one; one epoll set
-// over all, so that a thousand quiet ports cost nothing, and recvmmsg on each that has something.
+// One socket per port, since Linux allows no unprivileged socket for a range of ports. One epoll set over all sockets,
+// so that idle ports cost nothing, and recvmmsg on each ready socket.
 
 #include <cstdint>
 #include <span>
@@ -14,25 +14,25 @@
 
 namespace sf::netio {
 
-/// What to expect on one port.
+/// The stream of readings expected on one port.
 struct StreamSpec {
   std::uint32_t robot = 0;
   std::uint32_t sensor = 0;
   PortRule rule;
-  std::string kind = "sensor";  ///< for the error where ports collide
+  std::string kind = "sensor";  ///< for messages about colliding ports
 };
 
 /// One thread.
 class PortListener {
  public:
-  /// Binds all ports of `address` (0: of every interface), raising the limit of open files as needed.
-  /// @param receive_buffer [byte] per port, asked of the kernel
-  /// @throws base::InputError when ports collide, are taken, or are more than the machine allows.
+  /// Binds all ports at `address` (0: all interfaces) and raises the limit of open files as needed.
+  /// @param receive_buffer [byte] per port, requested from the kernel
+  /// @throws base::InputError when ports collide, are in use, or exceed the machine's limits
   PortListener(std::uint32_t address, std::size_t receive_buffer, std::span<const StreamSpec> streams);
 
-  /// Waits at most `timeout_ms` (0: not at all) for something to come, then gives `take(std::size_t stream,
-  /// std::span<const std::uint8_t> bytes, const Endpoint& source)` all that waits, as far as it is not a flood. Returns
-  /// datagrams taken.
+  /// Waits at most `timeout_ms` (0: no wait) for a datagram, then passes all waiting ones, up to a limit, to
+  /// `take(std::size_t stream, std::span<const std::uint8_t> bytes, const Endpoint& source)`.
+  /// @return number of datagrams
   template <class Take>
   std::size_t drain(int timeout_ms, Take&& take) {
     std::size_t taken = 0;
@@ -46,14 +46,14 @@ class PortListener {
     return taken;
   }
 
-  /// Readable while anything waits on any port: for wait_readable.
+  /// Readable while a datagram waits on any port; for wait_readable.
   const Socket& epoll() const { return epoll_; }
-  std::size_t receive_buffer_size() const;  ///< [byte] receive buffer of the first port; 0 without ports
-  std::uint64_t kernel_drops() const;       ///< datagrams that came while a port's buffer was full
+  std::size_t receive_buffer_size() const;  ///< [byte] of the first port; 0 without ports
+  std::uint64_t kernel_drops() const;       ///< datagrams lost to full receive buffers
 
  private:
-  static constexpr std::size_t kMaxPerDrain = 65'536;  ///< so that a flood cannot keep others from being served
-  /// Fills `ready_` with the streams that have something.
+  static constexpr std::size_t kMaxPerDrain = 65'536;  ///< bounds the duration under a flood
+  /// Fills `ready_` with the streams that have datagrams.
   void wait(int timeout_ms);
 
   Socket epoll_;

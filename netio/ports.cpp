@@ -32,7 +32,7 @@ std::string describe(const PortRule& rule) {
                          "), but ports are 1 to 65535 and ids at most 65535: use a lower base port, or lower ids");
 }
 
-/// Which port to move: the option where it is known.
+/// Name of the base port for messages: its option, if known.
 std::string base_of(const SensorPorts& use) { return use.option.empty() ? "the base port of " + use.kind : use.option; }
 
 std::string advice_for(const SensorPorts& a, const SensorPorts& b) {
@@ -50,7 +50,7 @@ std::string advice_for(const SensorPorts& a, const SensorPorts& b) {
                          "): " + advice_for(a, b));
 }
 
-/// Whether the uses' ports are apart with another stride; `ports` is memory.
+/// The ports are distinct and valid with this stride; `ports` is scratch memory.
 bool fits(std::span<const SensorPorts> uses, std::uint32_t stride, std::vector<std::uint64_t>& ports) {
   ports.clear();
   for (const SensorPorts& use : uses) {

@@ -1,5 +1,5 @@
 #pragma once
-// Ours and POSIX's words for one thing. Included by .cpp files only.
+// Conversions between netio and POSIX types. Included by .cpp files only.
 
 #include <arpa/inet.h>
 #include <netinet/in.h>

@@ -11,7 +11,8 @@
 namespace sf::netio {
 
 bool write_nonblocking(int descriptor, std::string_view text) {
-  // A pipe that is writable takes PIPE_BUF bytes without waiting. Its mode is left alone: others may share it.
+  // A writable pipe accepts PIPE_BUF bytes without waiting. O_NONBLOCK is not set, since other processes may share the
+  // pipe.
   pollfd writable{descriptor, POLLOUT, 0};
   if (poll(&writable, 1, 0) != 1 || (writable.revents & POLLOUT) == 0 || (writable.revents & POLLERR) != 0)
     return false;

@@ -22,7 +22,7 @@ PartStatus ReadingAssembler::find_partial(const ReadingPart& piece, std::int64_t
   PartialReading* found = find(piece.sequence);
   if (found == nullptr) found = begin(piece);
   if (found == nullptr) return PartStatus::late;
-  // What does not fit is of another sender, or of one that began anew.
+  // Different parts or time: another sender, or one that has restarted.
   if (found->piece.parts != piece.parts || found->piece.time != piece.time) return PartStatus::late;
   if (found->seen[piece.part]) return PartStatus::duplicate;
   partial = found;
@@ -50,7 +50,7 @@ std::optional<CompleteReading> ReadingAssembler::newest() const {
   return CompleteReading{newest_.piece.sequence, newest_.piece.time, arrival_, newest_.values};
 }
 
-/// Sequences wrap; the track counts on.
+/// Counts a part in the tracker, with unwrapped sequences.
 void ReadingAssembler::count(const ReadingPart& piece) {
   if (!base_) {
     extended_ = std::uint64_t{1} << 32 | piece.sequence;

@@ -1,6 +1,6 @@
 #pragma once
-// One sensor's readings, put together from parts that may come late, twice, in any order or never. The newest whole
-// reading is the one that counts.
+// Assembles the readings of one sensor from parts that may arrive late, repeatedly, reordered or never. The newest
+// complete reading is kept.
 
 #include <array>
 #include <cstdint>
@@ -13,47 +13,47 @@
 
 namespace sf::netio {
 
-/// Which part of which reading.
+/// Identity of a part of a reading.
 struct ReadingPart {
   std::uint32_t sequence = 0;
   std::uint32_t part = 0;   ///< below `parts`
-  std::uint32_t parts = 1;  ///< >= 1, the same for all of a reading
-  std::int64_t time = 0;    ///< [ns] when it was measured
+  std::uint32_t parts = 1;  ///< >= 1, equal for all parts of a reading
+  std::int64_t time = 0;    ///< [ns] time of measurement
 };
 
-/// A whole reading.
+/// A complete reading.
 struct CompleteReading {
   std::uint32_t sequence = 0;
-  std::int64_t time = 0;           ///< [ns] when it was measured, by its sender's clock
-  std::int64_t arrival = 0;        ///< [ns] when its last part came, by the receiver's
-  std::span<const double> values;  ///< live until the next piece; not a number where no part said anything
+  std::int64_t time = 0;           ///< [ns] time of measurement by the sender's clock
+  std::int64_t arrival = 0;        ///< [ns] arrival of its last part by the receiver's clock
+  std::span<const double> values;  ///< live until the next part; NaN for elements that no part contained
 };
 
-/// What became of a piece.
+/// Result of receiving a part.
 enum class PartStatus : std::uint8_t {
-  incomplete,  ///< others are missing yet
-  complete,    ///< the last one: this reading is the newest now
-  late,        ///< its reading is not newer than the newest whole one, or was given up for newer ones
-  duplicate,   ///< it was there
-  jump,        ///< its sequence or its time is too far ahead of the newest to be believed
-  rejected,    ///< (of Receiver) no piece of such a reading: counted by its PacketStatus
+  incomplete,  ///< other parts are missing
+  complete,    ///< the last missing part: its reading is now the newest
+  late,        ///< its reading is not newer than the newest complete one, or was abandoned for newer ones
+  duplicate,   ///< the part was received before
+  jump,        ///< its sequence or time is implausibly far ahead of the newest
+  rejected,    ///< not a valid part (Receiver only); counted by its PacketStatus
 };
 
-/// Readings are numbered 0, 1, 2, ... by their sender and may wrap. One that is more than kMaxDropout readings ahead of
-/// the newest, or kMaxTimeJump ahead of the time that it should have, is left out. Once nothing was wanted for two
-/// seconds (kClientTimeout) whatever comes is believed: a sender may have started its count again. One thread; nothing
-/// is allocated after each of kMaxPartial readings was begun once.
+/// The sender numbers readings 0, 1, 2, ...; the number may wrap. A part more than kMaxDropout readings ahead of the
+/// newest, or kMaxTimeJump ahead of its expected time, is dropped. After two seconds (kClientTimeout) without an
+/// accepted part any part is accepted, since the sender may have restarted its count. One thread; allocates nothing
+/// once kMaxPartial readings have been in progress.
 class ReadingAssembler {
  public:
-  static constexpr std::size_t kMaxPartial = 8;  ///< readings that parts are awaited of at once; the oldest gives way
-  static constexpr std::uint32_t kMaxDropout = 256;             ///< readings that may be lost in a row
+  static constexpr std::size_t kMaxPartial = 8;      ///< readings in progress; the oldest is abandoned for a new one
+  static constexpr std::uint32_t kMaxDropout = 256;  ///< readings that may be lost in a row
   static constexpr std::int64_t kMaxTimeJump = 10'000'000'000;  ///< [ns]
 
-  /// @param value_count values in a whole reading
+  /// @param value_count values in a complete reading
   explicit ReadingAssembler(std::size_t value_count) : value_count_(value_count) {}
 
-  /// Takes a piece that came at `now` [ns], of a clock that does not go back. Where it is wanted, `decode(values)` is
-  /// called to put its numbers into the whole reading's (std::span<double>).
+  /// Receives a part at `now` [ns], of a clock that does not decrease. If it is wanted, `decode(std::span<double>
+  /// values)` is called to write its elements into the values of the complete reading.
   template <class Decode>
   PartStatus take(const ReadingPart& piece, std::int64_t now, Decode&& decode) {
     PartialReading* partial = nullptr;
@@ -64,10 +64,10 @@ class ReadingAssembler {
   }
 
   std::optional<CompleteReading> newest() const;
-  /// Of pieces, numbered through all readings from the first that came on (after a restart, again).
+  /// Number of lost parts, counted from the first received one (again after a restart).
   std::uint64_t lost() const { return lost_before_ + netio::lost(tracker_); }
   std::uint64_t restarts() const { return restarts_; }
-  /// Forgets the newest reading: the sender is another.
+  /// Drops the newest reading and those in progress, for a new sender.
   void restart();
 
  private:
@@ -87,11 +87,11 @@ class ReadingAssembler {
 
   std::size_t value_count_;
   std::array<PartialReading, kMaxPartial> partial_;
-  PartialReading newest_;  ///< used: there is one
+  PartialReading newest_;  ///< `used`: valid
   std::int64_t arrival_ = 0;
-  std::optional<std::int64_t> last_;   ///< [ns] when something wanted came
-  std::uint32_t highest_ = 0;          ///< sequence seen, once the track has begun
-  std::optional<std::uint64_t> base_;  ///< index that the track calls 0; none before it begins
+  std::optional<std::int64_t> last_;   ///< [ns] arrival of the last accepted part
+  std::uint32_t highest_ = 0;          ///< highest sequence, once the tracker has begun
+  std::optional<std::uint64_t> base_;  ///< index that the tracker counts as 0; none before it begins
   std::uint64_t extended_ = 0;         ///< `highest_`, unwrapped
   SequenceTracker tracker_;
   std::uint64_t lost_before_ = 0;

@@ -1,9 +1,9 @@
 #pragma once
-// A robot's sensors as they come to it: datagrams in, the newest whole reading of each sensor out. What a payload says
-// is for a judge and a reader to tell, who know the sensors.
+// Receives a robot's readings: datagrams in, the newest complete reading of each sensor out. Payloads are checked and
+// decoded by two functions that know the sensor types.
 //
 //   Receiver receiver({.streams = streams, .inspect = inspect, .read = read});
-//   port_listener.drain(0, [&](std::size_t i, auto bytes) { receiver.accept(i, bytes, now); });
+//   port_listener.drain(0, [&](std::size_t i, auto bytes, const Endpoint&) { receiver.accept(i, bytes, now); });
 //   if (const auto scan = receiver.newest(0)) use(scan->values);
 //
 // One thread.
@@ -21,28 +21,28 @@
 
 namespace sf::netio {
 
-/// Writes what a payload that the judge accepted says into its whole reading's numbers.
+/// Decodes a payload that the inspector has accepted into the values of its complete reading.
 using PayloadReader = std::function<void(std::size_t stream, const Header&, std::span<const std::uint8_t> payload,
                                          std::span<double> values)>;
 
 struct ReceiverStream {
   StreamSpec plan;
-  std::size_t value_count = 1;  ///< of a whole reading
+  std::size_t value_count = 1;  ///< of a complete reading
 };
 
 struct ReceiverOptions {
   std::vector<ReceiverStream> streams;  ///< one per sensor
-  bool headerless = false;   ///< datagrams are payloads; a part that is not after the one before begins a new reading
-  PayloadInspector inspect;  ///< not empty; judges payloads only, of the stream's own robot and sensor
-  PayloadReader read;        ///< not empty
+  bool headerless = false;              ///< datagrams are payloads only; a part out of order begins a new reading
+  PayloadInspector inspect;             ///< not empty; receives payloads of the stream's robot and sensor only
+  PayloadReader read;                   ///< not empty
 };
 
 struct ReceiverCounts {
   PacketCounts packets;          ///< datagrams
-  std::uint64_t late = 0;        ///< datagrams of readings that newer ones had overtaken
+  std::uint64_t late = 0;        ///< datagrams of readings superseded by newer ones
   std::uint64_t duplicates = 0;  ///< datagrams
-  std::uint64_t jumps = 0;       ///< datagrams too far ahead to be believed
-  std::uint64_t lost = 0;        ///< datagrams that never came, by gaps; see ReadingAssembler
+  std::uint64_t jumps = 0;       ///< datagrams implausibly far ahead
+  std::uint64_t lost = 0;        ///< missing datagrams by gaps; see ReadingAssembler
   std::uint64_t restarts = 0;    ///< of streams
 };
 
@@ -50,13 +50,13 @@ class Receiver {
  public:
   explicit Receiver(const ReceiverOptions& options);
 
-  /// Takes what carries this stamp, and from now on nothing else; where the session is another than one before, all
-  /// streams begin anew. Without headers there is no stamp.
+  /// From now on accepts only packets with this session and token. A change of session restarts all streams. Without
+  /// headers it has no effect on packets.
   void set_session(const SessionToken& farm);
-  /// A datagram that does not come from the farm's address is counted, and not looked at.
+  /// Counts a datagram from another address than the farm's.
   void reject_source() { counts_.packets.add(PacketStatus::wrong_source); }
 
-  /// Any bytes for stream `i`, which came at `now` [ns] of a clock that does not go back.
+  /// Receives any bytes for stream `i` at `now` [ns], of a clock that does not decrease.
   PartStatus accept(std::size_t i, std::span<const std::uint8_t> bytes, std::int64_t now);
 
   /// Lives until the stream's next datagram.
@@ -67,12 +67,12 @@ class Receiver {
   struct Stream {
     StreamSpec plan;
     ReadingAssembler assembler;
-    // Without headers, of the reading that came last:
-    std::uint32_t readings = 0;  ///< begun, it included
+    // Without headers, of the last reading:
+    std::uint32_t readings = 0;  ///< readings begun, including it
     std::uint32_t part = 0;
     std::int64_t started = 0;  ///< [ns]
   };
-  /// Makes up what a header would say.
+  /// Makes a header for a datagram without one.
   static void synthesise_header(Stream& stream, std::uint32_t part, std::int64_t now, Header& header);
 
   std::vector<Stream> streams_;

@@ -65,7 +65,7 @@ void Relay::send_starts(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
   start_pending_ = false;
 }
 
-/// With the places of all that spoke since the turn of the one that waits longest.
+/// Finds the subscribers, and the places of all robots with a state since the turn of the longest-waiting one.
 void Relay::find_recipients(const Inbox& inbox, std::int64_t now) {
   recipients_.clear();
   updated_.clear();
@@ -84,7 +84,7 @@ void Relay::find_recipients(const Inbox& inbox, std::int64_t now) {
   neighbour_tree_.build(updated_);
 }
 
-/// From the robot on that was passed over first last time, as far as the budget goes.
+/// Serves subscribers from the first one passed over last time, as far as the budget allows.
 void Relay::send_states(const Inbox& inbox, std::int64_t now, Outbox& outbox) {
   if (updated_.empty()) return;
   const std::size_t share = std::clamp(options_.budget / recipients_.size(), kMinShare, options_.most);

@@ -1,7 +1,7 @@
 #pragma once
-// The farm passes on states and signals: to robots that asked for others' states the newest V2V of the robots near
-// them, START to the robots that it names. Once per tick, many states a datagram, within a budget: traffic out does not
-// grow with traffic in.
+// Forwards states and signals from the farm to robots: the newest V2V states of nearby robots to robots that subscribe
+// to them, and START to the robots named in it. Once per tick, several states per datagram, within a budget, so that
+// outgoing traffic does not grow with incoming traffic.
 //
 //   relay.take(packet);                        // each packet that the inbox accepted
 //   relay.forward(inbox, now, outbox);         // each tick; then outbox.flush()
@@ -20,47 +20,47 @@
 namespace sf::netio {
 
 struct RelayOptions {
-  double range = kV2vRange;     ///< [m] farther away, states are not passed on; 0: none is
-  std::size_t most = 64;        ///< states to one robot per tick, of the nearest
-  std::size_t budget = 16'384;  ///< states to all robots per tick, shared alike; at least Relay::kMinShare
+  double range = kV2vRange;     ///< [m] radius within which states are forwarded; 0: none are
+  std::size_t most = 64;        ///< states of the nearest robots to one robot per tick
+  std::size_t budget = 16'384;  ///< states to all robots per tick, divided evenly; at least Relay::kMinShare
 };
 
 struct RelayCounts {
-  std::uint64_t states = 0;     ///< V2V queued
-  std::uint64_t datagrams = 0;  ///< NEIGHBOURS that they were queued in
-  std::uint64_t waited = 0;     ///< robot and tick: it asked, and the budget was spent
+  std::uint64_t states = 0;     ///< V2V states queued
+  std::uint64_t datagrams = 0;  ///< NEIGHBOURS packets that contain them
+  std::uint64_t waited = 0;     ///< pairs of robot and tick in which a subscriber was passed over for lack of budget
   std::uint64_t starts = 0;     ///< START datagrams queued
 };
 
 /// One thread. Nothing is allocated after construction.
 class Relay {
  public:
-  /// States that a robot is passed in its turn, however many ask. Where the budget does not serve all in one tick they
-  /// take turns, and each is passed what was said since its last one.
+  /// Minimum number of states per turn of a robot. When the budget does not suffice for all subscribers in one tick
+  /// they take turns, and each gets the states since its last turn.
   static constexpr std::size_t kMinShare = 4;
 
-  /// @param robots ids that the world has
+  /// @param robots ids of the world's robots
   explicit Relay(std::span<const std::uint32_t> robots, const RelayOptions& options = {});
 
-  /// Keeps a V2V of one of the robots, or a START, until the next `forward`: the newest of each. Others are left out.
+  /// Keeps the newest V2V of each robot, or a START, until the next `forward`. Other packets are ignored.
   void take(const Packet& packet);
 
-  /// Queues what came since the last time, to where each robot that is heard at `now` [ns] sends from; a robot is not
-  /// sent its own state. What nobody wanted is forgotten.
+  /// Queues the new states for each active robot at `now` [ns], to the address that it sends from. A robot does not get
+  /// its own state. Unused states are dropped.
   void forward(const Inbox& inbox, std::int64_t now, Outbox& outbox);
 
   const RelayCounts& counts() const { return counts_; }
-  /// Places that the search for neighbours looked at.
+  /// Number of places visited by the neighbour search.
   std::uint64_t visits() const { return neighbour_tree_.visits(); }
 
  private:
   struct Robot {
     std::uint32_t id = 0;
-    std::uint32_t age = std::numeric_limits<std::uint32_t>::max();  ///< [passes] since it spoke
-    std::uint32_t waits = 0;                                        ///< [passes] since its turn, while it asks
-    std::uint32_t sent = 0;                                         ///< NEIGHBOURS to it
-    bool started = false;                                           ///< a START for it alone waits
-    std::optional<glm::dvec2> p;                                    ///< [m] where it said it is
+    std::uint32_t age = std::numeric_limits<std::uint32_t>::max();  ///< [passes] since its last state
+    std::uint32_t waits = 0;                                        ///< [passes] since its turn, while it subscribes
+    std::uint32_t sent = 0;                                         ///< NEIGHBOURS packets sent to it
+    bool started = false;                                           ///< a START for this robot waits
+    std::optional<glm::dvec2> p;                                    ///< [m] its reported position
     base::Bytes state;
     base::Bytes start;
   };
@@ -71,13 +71,13 @@ class Relay {
   std::size_t send_others(Robot& to, std::size_t most, const Inbox& inbox, std::int64_t now, Outbox& outbox);
 
   RelayOptions options_;
-  std::vector<Robot> robots_;                  ///< by id
-  std::vector<NeighbourTree::Place> updated_;  ///< of one pass
-  std::vector<std::uint32_t> recipients_;      ///< rows, of one pass
+  std::vector<Robot> robots_;                  ///< sorted by id
+  std::vector<NeighbourTree::Place> updated_;  ///< in one pass
+  std::vector<std::uint32_t> recipients_;      ///< rows, in one pass
   NeighbourTree neighbour_tree_;
-  std::uint32_t turn_ = 0;      ///< row that is served first
-  bool start_pending_ = false;  ///< a START for everyone waits
-  base::Bytes start_;           ///< that one
+  std::uint32_t turn_ = 0;      ///< row served first
+  bool start_pending_ = false;  ///< a START for all robots waits
+  base::Bytes start_;           ///< START for all robots
   base::Bytes states_, packet_;
   RelayCounts counts_;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Sequences of one stream as a receiver believes them (RFC 3550, appendix A.1): a forged one does not make all genuine
-// ones after it late.
+// Plausibility check of a stream's sequence numbers (RFC 3550, appendix A.1), so that a forged number does not make all
+// genuine later packets stale.
 
 #include <cstdint>
 #include <optional>
@@ -12,10 +12,10 @@ namespace sf::netio {
 /// One stream of one sender. One thread.
 class SequenceGuard {
  public:
-  /// @param max_dropout a sequence that is farther ahead of the highest before it is believed when the next one follows
+  /// @param max_dropout a larger gap is accepted only when the next sequence follows it
   explicit SequenceGuard(std::uint32_t max_dropout) : max_dropout_(max_dropout) {}
 
-  /// Takes in the next sequence. True: it is too far ahead to be believed, and not the second in a row that is.
+  /// Checks the next sequence. @return true when it is implausibly far ahead and does not follow such a one
   bool rejects(std::uint32_t sequence) {
     const bool ahead = highest_ && newer(sequence, *highest_);
     const bool far = ahead && sequence - *highest_ > max_dropout_ && expected_ != sequence;
@@ -27,7 +27,7 @@ class SequenceGuard {
  private:
   std::uint32_t max_dropout_;
   std::optional<std::uint32_t> highest_;
-  std::optional<std::uint32_t> expected_;  ///< the sequence that would make a leap believed
+  std::optional<std::uint32_t> expected_;  ///< sequence that would confirm the last jump
 };
 
 }  // namespace sf::netio

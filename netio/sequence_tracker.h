@@ -1,24 +1,23 @@
 #pragma once
-// What a stream of numbered datagrams says about the network: loss, duplicates, reordering.
+// Loss, duplicates and reordering of a stream of numbered datagrams.
 
 #include <cstdint>
 
 namespace sf::netio {
 
-/// PacketCounts of one stream that was numbered 0, 1, 2, ... by its sender.
+/// Counts of one stream, numbered 0, 1, 2, ... by its sender.
 struct SequenceTracker {
-  std::uint64_t next = 0;        ///< one more than the largest index seen
-  std::uint64_t unique = 0;      ///< different indices seen
-  std::uint64_t duplicates = 0;  ///< seen before
-  std::uint64_t reordered = 0;   ///< came after a larger one
-  std::uint64_t recent = 0;      ///< bit k: index next - 1 - k was seen
+  std::uint64_t next = 0;        ///< largest received index + 1
+  std::uint64_t unique = 0;      ///< number of distinct indices received
+  std::uint64_t duplicates = 0;  ///< received before
+  std::uint64_t reordered = 0;   ///< received after a larger index
+  std::uint64_t recent = 0;      ///< bit k: index next - 1 - k was received
 };
 
-/// Tells the track that `index` came. One that is 64 or more behind the largest counts as reordered, not as a
-/// duplicate.
+/// Counts the arrival of `index`. An index 64 or more behind the largest counts as reordered, not as a duplicate.
 void count_arrival(SequenceTracker& tracker, std::uint64_t index);
 
-/// Indices below the largest that never came. What was lost after the last arrival, only the sender's count can tell.
+/// Missing indices below the largest. Losses after the last arrival are not detectable here.
 inline std::uint64_t lost(const SequenceTracker& tracker) {
   return tracker.next > tracker.unique ? tracker.next - tracker.unique : 0;
 }

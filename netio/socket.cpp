@@ -29,7 +29,7 @@ std::string remedy(int error) {
   }
 }
 
-/// The kernel's ceiling holds for ordinary users only; root may pass it.
+/// The kernel's limit applies to ordinary users; root may exceed it.
 void ask_buffer(int descriptor, int force_option, int option, std::size_t size) {
   if (size == 0) return;
   const int bytes = static_cast<int>(size);

@@ -1,5 +1,5 @@
 #pragma once
-// UDP sockets over plain POSIX (Linux), never blocking.
+// Non-blocking UDP sockets on POSIX (Linux).
 
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace sf::netio {
 
-/// An open file descriptor, closed when it goes.
+/// Owner of a file descriptor.
 class Socket {
  public:
   Socket() = default;
@@ -29,57 +29,59 @@ class Socket {
   int descriptor_ = -1;
 };
 
-/// Buffers that the kernel is asked for. [byte] 0 leaves its default (about 92 laser datagrams).
+/// Buffer sizes to request from the kernel. [byte] 0: the kernel's default (about 92 laser datagrams).
 struct SocketBuffers {
   std::size_t receive = 0;
   std::size_t send = 0;
 };
 
-/// Another socket is bound there.
+/// The port is in use by another socket.
 class PortInUse : public base::InputError {
  public:
   using base::InputError::InputError;
 };
 
-/// A bound, non-blocking UDP socket. The kernel may grant smaller buffers (net.core.rmem_max): see receive_buffer.
-/// @throws PortInUse, or base::InputError when the address is not this machine's or there are no descriptors left.
+/// Opens a bound, non-blocking UDP socket. The kernel may grant smaller buffers (net.core.rmem_max), see
+/// receive_buffer.
+/// @throws PortInUse
+/// @throws base::InputError when the address is not this machine's or no descriptors are left
 Socket open_udp(const Endpoint& bind, const SocketBuffers& buffers = {});
 
 /// The same socket under a second descriptor.
-/// @throws base::InputError when there are no descriptors left.
+/// @throws base::InputError when no descriptors are left
 Socket duplicate(const Socket& socket);
 
-/// Sleeps until there is something to take from either, a signal comes, or `timeout_ms` >= 0 has passed.
+/// Sleeps until one of the sockets is readable, a signal arrives, or `timeout_ms` >= 0 has passed.
 void wait_readable(const Socket& one, const Socket& other, int timeout_ms);
 
-/// What `socket` is bound to: tells the port that was picked for port 0.
+/// Address and port to which `socket` is bound; for port 0 the chosen one.
 Endpoint bound_endpoint(const Socket& socket);
 
-/// [byte] that the kernel granted; it counts about 2.3 kB for a laser datagram of 748 B.
+/// [byte] granted by the kernel, which counts about 2.3 kB for a laser datagram of 748 B.
 std::size_t receive_buffer(const Socket& socket);
 
-/// Datagrams that the kernel threw away since the socket is open, mostly because its buffer was full; 0 where it does
-/// not tell.
+/// Datagrams dropped by the kernel since the socket was opened, mostly for a full buffer; 0 where this is unknown.
 std::uint64_t kernel_drops(const Socket& socket);
 
-/// Raises this process' soft limit of open files to at least `count` (never lowers it).
-/// @throws base::InputError when the hard limit is lower.
+/// Raises this process' soft limit of open files to at least `count`; never lowers it.
+/// @throws base::InputError when the hard limit is lower
 void raise_open_file_limit(std::size_t count);
 
-/// Datagrams taken from a socket many at a time, into storage made once.
+/// Receives datagrams in batches into preallocated storage.
 class ReceiveBatch {
  public:
-  static constexpr std::size_t kSlotBytes = 2048;  ///< more than any packet of ours: what is cut off here was too long
+  static constexpr std::size_t kSlotBytes =
+      2048;  ///< longer than any packet of the farm; longer datagrams are cut off and then too long
 
   explicit ReceiveBatch(std::size_t capacity);
   ~ReceiveBatch();
   ReceiveBatch(const ReceiveBatch&) = delete;
   ReceiveBatch& operator=(const ReceiveBatch&) = delete;
 
-  /// Takes what waits, at most `capacity`; 0 when nothing does.
+  /// Receives at most `capacity` waiting datagrams. @return their number
   std::size_t fill(const Socket& socket);
 
-  /// Of the last fill; lives until the next.
+  /// A datagram of the last `fill`; lives until the next.
   std::span<const std::uint8_t> bytes(std::size_t i) const;
   Endpoint source(std::size_t i) const;
 

@@ -1,5 +1,5 @@
 #pragma once
-// The farm of a receiver that sends nothing itself, and so is never challenged by one.
+// Selection of one farm by a receiver that sends nothing and therefore has no session with the farm.
 
 #include <cstdint>
 #include <optional>
@@ -9,16 +9,17 @@
 
 namespace sf::netio {
 
-/// The first sender of a good packet, until it is silent for two seconds (kClientTimeout): two farms, or a farm and its
-/// forger, are never mixed. No clock is read.
+/// Selects the first sender of a valid packet until it is silent for two seconds (kClientTimeout), so that packets of
+/// two farms, or of a farm and a forger, are not mixed. No clock is read.
 class SourceLock {
  public:
-  /// @param host the only address that counts; 0: any
+  /// @param host the only accepted address; 0: any
   explicit SourceLock(std::uint32_t host = 0) : host_(host) {}
 
-  /// False: packets from there never count.
+  /// False: packets from this address are never accepted.
   bool allows(const Endpoint& source) const { return host_ == 0 || source.address == host_; }
-  /// Whether something good counts that came from `source` at `now` [ns], with its session (0 where packets have none).
+  /// True when a valid packet from `source` at `now` [ns] with this session is accepted.
+  /// @param session 0 for packets without one
   bool admit(const Endpoint& source, std::uint32_t session, std::int64_t now) {
     const bool same = source_ == source && session_ == session;
     if (!allows(source) || (last_ && now - *last_ < kClientTimeout && !same)) return false;
@@ -28,7 +29,7 @@ class SourceLock {
     last_ = now;
     return true;
   }
-  std::uint64_t changes() const { return changes_; }  ///< from one farm to another
+  std::uint64_t changes() const { return changes_; }  ///< number of changes from one farm to another
 
  private:
   std::uint32_t host_;

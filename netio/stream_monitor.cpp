@@ -13,9 +13,9 @@ namespace sf::netio {
 namespace {
 
 constexpr int kMaxLastDrains = 100;
-constexpr int kPollMs = 50;  ///< how often `stop` is looked at while nothing comes
+constexpr int kPollMs = 50;  ///< [ms] interval of polling `stop` while no datagram arrives
 
-/// Sums over tracks.
+/// Sums over sequence trackers.
 struct SequenceCounts {
   std::uint64_t lost = 0;
   std::uint64_t duplicates = 0;
@@ -31,7 +31,7 @@ void add(SequenceCounts& gaps, const SequenceTracker& tracker) {
 struct Stream {
   StreamSpec plan;
   SequenceTracker tracker;
-  std::uint64_t farm = 0;  ///< which one the track is of
+  std::uint64_t farm = 0;  ///< index of the farm to which the tracker belongs
   SequenceGuard sequences{StreamMonitor::kMaxDropout};
   std::uint64_t good = 0;
   std::uint64_t elements = 0;
@@ -68,13 +68,13 @@ struct StreamMonitor::Streams {
 
   PortListener port_listener;
   bool headerless;
-  /// Whether a good packet is of the one farm, and near those before it.
+  /// Checks that a good packet is from the selected farm and plausible in its sequence.
   PacketStatus check_source(Stream& stream, const Header& header, const Endpoint& source, std::int64_t now);
 
   SourceLock farm;
   PayloadInspector inspect;
   std::vector<Stream> rows;
-  SequenceCounts before;  ///< of farms that were listened to before
+  SequenceCounts before;  ///< of the farms selected before
   PacketCounts counts;
   std::uint64_t bytes = 0;
 };

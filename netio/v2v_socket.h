@@ -1,8 +1,8 @@
 #pragma once
-// A robot's own end of V2V: one socket that it speaks to the farm from, and hears others on.
+// The robot's side of V2V: one socket that sends to the farm and receives the states of other robots.
 //
 //   V2vSocket radio({.farm = farm, .robot = 7, .others = ids});
-//   radio.send(bytes);                                             // what encode() made, stamped
+//   radio.send(bytes);                                             // an encoded packet
 //   radio.receive([&](std::span<const std::uint8_t> bytes) { ... radio.accept(bytes, now, packet); });
 //
 // One thread. No clock is read.
@@ -23,9 +23,9 @@
 namespace sf::netio {
 
 struct V2vSocketOptions {
-  Endpoint farm;                      ///< that it speaks to, and whose word alone counts
+  Endpoint farm;                      ///< destination, and the only accepted source
   std::uint32_t robot = 0;            ///< its own id
-  std::vector<std::uint32_t> others;  ///< ids of the other robots that the world has
+  std::vector<std::uint32_t> others;  ///< ids of the world's other robots
   std::uint32_t session = random_session();
   std::size_t receive_buffer = 1u << 20;
 };
@@ -35,10 +35,10 @@ class V2vSocket {
   /// @throws base::InputError when no socket can be opened.
   explicit V2vSocket(const V2vSocketOptions& options);
 
-  /// To the farm, at once, with the newest token.
+  /// Sends a packet to the farm immediately, with the newest token.
   void send(std::span<const std::uint8_t> bytes);
 
-  /// Gives `take` each V2V of a NEIGHBOURS, and any other datagram as it is.
+  /// Passes each V2V of a NEIGHBOURS packet to `take`, and any other datagram unchanged.
   template <class Take>
   static void for_each_state(std::span<const std::uint8_t> bytes, Take&& take) {
     Packet packet;
@@ -47,8 +47,8 @@ class V2vSocket {
     for (std::size_t at = 0; at < states.size(); at += kV2vBytes) take(states.subspan(at, kV2vBytes));
   }
 
-  /// Gives `take(std::span<const std::uint8_t> bytes)` all that waits and comes from the farm, as far as it is no
-  /// flood, by `for_each_state`. The rest is counted as PacketStatus::wrong_source.
+  /// Passes all waiting datagrams from the farm, up to a limit, through `for_each_state` to `take(std::span<const
+  /// std::uint8_t> bytes)`. Others are counted as PacketStatus::wrong_source.
   template <class Take>
   void receive(Take&& take) {
     constexpr std::size_t kMost = 65'536;
@@ -63,16 +63,15 @@ class V2vSocket {
     }
   }
 
-  /// Any bytes that come from the farm at `now` [ns]: V2V of others, START and CHALLENGE for this robot are accepted
-  /// and fill `packet`. What does not carry this robot's session is of the wrong source, as is another session of the
-  /// farm than the one that challenged last. What is meant for others is PacketStatus::unknown_robot; old states are
-  /// stale.
+  /// Checks any bytes from the farm, received at `now` [ns]. V2V of other robots, and START and CHALLENGE for this
+  /// robot are accepted and fill `packet`. Packets without this robot's session, or with another session of the farm
+  /// than the last challenge's, are wrong_source. Packets for other robots are unknown_robot; old states are stale.
   PacketStatus accept(std::span<const std::uint8_t> bytes, std::int64_t now, Packet& packet);
 
   /// A state of `robot` was accepted less than two seconds before `now`.
   bool is_active(std::uint32_t robot, std::int64_t now) const { return others_.is_active(robot, now); }
 
-  /// The stamp of all packets from the farm. Its session is 0 before the first CHALLENGE.
+  /// Session and token of all packets from the farm. The session is 0 before the first CHALLENGE.
   SessionToken farm_session_token() const { return {farm_session_, options_.session}; }
 
   const PacketCounts& counts() const { return counts_; }
