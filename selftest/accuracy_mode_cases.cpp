@@ -1,4 +1,4 @@
-// Accuracy modes: no reading is off by more than it states, and what was not cast is flagged.
+// Accuracy modes: errors stay within the stated bounds, and beams that are not cast are flagged.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ double random(std::uint32_t index) {
   return base::random_uniform({17, base::RandomStream::placement, 0, 0, index}, 0)[0];
 }
 
-/// A room with blocks, and eyes somewhere in it, of some width somewhere.
+/// A room of a given width with blocks, and lasers inside it, `far` from the origin.
 world::World room(double far, double width, std::uint32_t samples) {
   world::World world;
   add_module(world, {far - 0.5 * width, far - 0.5 * width}, width);

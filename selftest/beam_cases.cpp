@@ -1,4 +1,4 @@
-// Beams along walls, through corners, from on a wall and from inside of blocks.
+// Beams along walls, through corners, from a wall's face and from inside blocks.
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTurn = 2.0 * M_PI;
 
-/// An eye beside the start of a wall of 100 m looks along it so that it meets it half way; a wall stands behind.
+/// A laser beside the start of a 100 m wall hits it half way at a grazing angle; another wall stands behind.
 void grazing(Fixture& fixture, Checks& checks) {
   const world::Laser eye = laser(1, 0.0, 1000.0);
   for (double angle = 1e-1; angle > 0.5e-9; angle *= 0.1) {
@@ -35,7 +35,7 @@ void grazing(Fixture& fixture, Checks& checks) {
   }
 }
 
-/// Along x beside a wall, or in its very line: what stands across is met.
+/// Beams along x, parallel to a wall or in its line: they hit the wall across their end.
 void parallel(Fixture& fixture, Checks& checks) {
   for (const double beside : {1.0, 1e-3, 1e-6, 1e-8, 1e-300, 0.0, -1e-8, -1.0})
     for (const double from : {-2.0, 0.0, 3.0}) {
@@ -49,7 +49,7 @@ void parallel(Fixture& fixture, Checks& checks) {
     }
 }
 
-/// From inside a polygon at each of its corners: the range is the corner's distance, whichever of its walls is met.
+/// From inside a polygon at each corner: the range is the distance of the corner, whichever wall is hit.
 void corners(Fixture& fixture, Checks& checks) {
   for (const int count : {3, 7, 64, 1000})
     for (const double far : {0.0, 1e7}) {
@@ -70,13 +70,13 @@ void corners(Fixture& fixture, Checks& checks) {
       for (const base::ReadingBlock& r : test.readings) {
         check_scan(*test.world, r, checks, fmt::format("{} corners, {:g} m away", count, far));
         const Real dx = Real{ring[r.mover].x} - eye.x, dy = Real{ring[r.mover].y} - eye.y;
-        // Walls of a ring of 1 000 are met at a right angle or nearly so; a triangle's at 20 degrees at least.
+        // Walls of a ring of 1 000 are hit at nearly a right angle, those of a triangle at 20 degrees or more.
         checks.near(r.values[1], std::hypot(dx, dy), 5e-14, "the middle beam ends in the corner", r.mover);
       }
     }
 }
 
-/// Two blocks that touch in a corner alone: a beam along the diagonal between them ends there.
+/// Two blocks that touch in one corner: a beam along the diagonal between them ends there.
 void touching_corners(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
@@ -88,7 +88,7 @@ void touching_corners(Fixture& fixture, Checks& checks) {
   }
 }
 
-/// On a wall's inner side: 0 into it, the room's other side away from it.
+/// From a wall's inner face: 0 towards the wall, the opposite wall's distance away from it.
 void from_on_a_wall(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
@@ -109,7 +109,7 @@ void from_on_a_wall(Fixture& fixture, Checks& checks) {
   }
 }
 
-/// Inside of three overlapping blocks: the first surface, whosever it is.
+/// From inside three overlapping blocks: the range is that of the nearest surface of any block.
 void from_inside(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;

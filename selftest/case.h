@@ -1,5 +1,5 @@
 #pragma once
-// One question to the farm at an end of its range, and what came of it.
+// Cases of the self-test and their results. A case compares the farm with a known result at a limit of its range.
 
 #include <cmath>
 #include <concepts>
@@ -13,31 +13,31 @@
 
 namespace sf::selftest {
 
-/// More than 64 bits, where the machine has them: x86's 64-bit significand.
+/// Type of reference results: more than 64 bits where the machine has them (x86: 64-bit significand).
 using Real = long double;
 
-/// What came of a case.
+/// Result of a case.
 struct Outcome {
   std::uint64_t checks = 0;
   std::uint64_t failed = 0;
-  double error = 0.0;              ///< in the case's unit, of the check that came nearest to what it is allowed
-  double allowed = 0.0;            ///< what that check was allowed; 0: the same to the bit
-  std::string failure;             ///< the first check that failed
-  std::vector<std::string> notes;  ///< what else was measured
-  double seconds = 0.0;            ///< [s] it took
+  double error = 0.0;              ///< in the case's unit, of the check with the largest share of its allowed error
+  double allowed = 0.0;            ///< allowed error of that check; 0: bitwise equality
+  std::string failure;             ///< description of the first failed check
+  std::vector<std::string> notes;  ///< further measurements
+  double seconds = 0.0;            ///< [s] duration
 
-  /// A case that checked nothing has proved nothing.
+  /// A case without checks does not pass.
   bool passed() const { return checks > 0 && failed == 0; }
 };
 
-/// What a case tells its checks to. One thread.
+/// Collects the checks of a case. One thread.
 class Checks {
  public:
-  /// |got - exact| <= allowed. @param what and @param index name the check where it fails
+  /// Checks |got - exact| <= allowed. @param what and @param index identify the check in messages
   void near(double got, Real exact, double allowed, std::string_view what, std::uint64_t index = 0);
-  /// Equal to the bit, or neither a number.
+  /// Bitwise equal, or both NaN.
   void same(double got, double expected, std::string_view what, std::uint64_t index = 0);
-  /// Equal whole numbers.
+  /// Equal integers.
   template <std::integral A, std::integral B>
   void equal(A got, B expected, std::string_view what, std::uint64_t index = 0) {
     holds(std::cmp_equal(got, expected),
@@ -49,7 +49,7 @@ class Checks {
           index);
   }
   void holds(bool it, std::string_view what, std::uint64_t index = 0);
-  /// `call` is refused as a user's mistake, in words that hold `word`.
+  /// `call` throws base::InputError with a message that contains `word`.
   void refused(const std::function<void()>& call, std::string_view word, std::string_view what);
   void note(std::string text);
 
@@ -59,7 +59,7 @@ class Checks {
   void count(bool good, double error, double allowed, const std::function<std::string()>& failure);
 
   Outcome outcome_;
-  double nearest_ = -1.0;  ///< largest error as a share of what was allowed
+  double nearest_ = -1.0;  ///< largest error divided by its allowed error
 };
 
 class Fixture;
@@ -67,8 +67,8 @@ class Fixture;
 struct Case {
   std::string_view group;
   std::string_view name;  ///< unique: words with dashes
-  std::string_view unit;  ///< of its errors; empty: nothing in it is near, it is right or wrong
-  std::string_view why;   ///< the answer, and the reason for what is allowed
+  std::string_view unit;  ///< of its errors; empty: all checks are exact
+  std::string_view why;   ///< expected result and reason for the allowed error
   void (*run)(Fixture& fixture, Checks& checks);
 };
 

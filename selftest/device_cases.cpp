@@ -1,4 +1,4 @@
-// This device beside plain C++, and 32 bits beside the farm.
+// This device compared with plain C++, and 32-bit arithmetic compared with the farm.
 
 #include <fmt/format.h>
 
@@ -11,14 +11,14 @@ namespace sf::selftest {
 
 namespace {
 
-constexpr double kCount = 1e-4;  ///< [m] of the laser's wire
+constexpr double kCount = 1e-4;  ///< [m] resolution of the laser's wire format
 constexpr std::uint64_t kSeed = 11;
 
 double random(std::uint32_t index) {
   return base::random_uniform({kSeed, base::RandomStream::placement, 0, 0, index}, 0)[0];
 }
 
-/// Blocks at any angle and robots between and upon them, `far` from the origin.
+/// Blocks at any angle with robots between and upon them, `far` from the origin.
 world::World crowd(double far, const world::Laser& laser) {
   world::World world;
   const glm::dvec2 away{far, -far};
@@ -91,7 +91,7 @@ void plain_cpp(Fixture& fixture, Checks& checks) {
   checks.note(fmt::format("{} of {} beams are not the same to the bit", all.found, all.beams));
 }
 
-/// The same beam by the same formula in 32 bits: what a caster in world coordinates would say.
+/// The same beam by the same formula in 32 bits, as a caster in world coordinates would compute it.
 double in_32_bits(glm::dvec2 eye, double yaw, const world::Segment& s) {
   const auto f = [](double x) { return static_cast<float>(x); };
   const float dx = std::cos(f(yaw)), dy = std::sin(f(yaw));
@@ -100,7 +100,7 @@ double in_32_bits(glm::dvec2 eye, double yaw, const world::Segment& s) {
   return static_cast<double>((ex * wy - ey * wx) / (ex * dy - ey * dx));
 }
 
-/// Robots 2 m in front of a slanted wall: the farm's answer is held to rounding of 64 bits, that of 32 is noted.
+/// Robots 2 m in front of a slanted wall: the farm is checked against 64-bit rounding; errors of 32 bits are noted.
 void where_32_bits_break(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e3, 1e5, 1e7}) {
     world::World world;

@@ -8,7 +8,7 @@ namespace sf::selftest {
 
 namespace {
 
-/// A wall's ends that another wall shares, on the other side of the beam, close the gap between them.
+/// An end is closed when another wall shares it and lies on the other side of the beam.
 bool is_closed(std::span<const world::Segment> surfaces, const Beam& beam, glm::dvec2 end, Real other_side) {
   return std::any_of(surfaces.begin(), surfaces.end(), [&](const world::Segment& s) {
     for (const auto& [near, far] : {std::pair{s.a, s.b}, std::pair{s.b, s.a}}) {

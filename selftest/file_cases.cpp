@@ -1,4 +1,4 @@
-// Numbers that are none in world files, road networks and recordings.
+// NaN, infinity and denormals in world files, road networks and recordings.
 
 #include <fmt/format.h>
 
@@ -59,7 +59,7 @@ void road_files(Fixture&, Checks& checks) {
     checks.equal(count(world::parse_rndf("good.rndf", roads_with(word))).lanes, 1, word);
 }
 
-/// What a recording carries its world as; the hash in it is as its bytes are, so only the numbers can be wrong.
+/// World snapshots in recordings. The hash is computed from the bytes, so only the numbers are wrong.
 void snapshots(Fixture&, Checks& checks) {
   world::World good;
   add_wall(good, {1.0, -1.0}, {1.0, 1.0});

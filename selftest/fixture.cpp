@@ -6,7 +6,7 @@
 namespace sf::selftest {
 
 TestFarm Fixture::measure(world::World world, farm::FarmOptions options) const {
-  // Room for little: it grows where a case needs more, and never changes a reading.
+  // Small pools are fast to make. They grow where a case needs more and do not affect readings.
   options.scene = {.pool_chunks = 1u << 12, .pool_cells = 1u << 7};
   TestFarm test;
   test.world = std::make_unique<world::World>(std::move(world));

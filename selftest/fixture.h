@@ -1,5 +1,5 @@
 #pragma once
-// Where cases are tried: a device, worlds made by hand, and farms that look at them once.
+// Helpers of the cases: worlds made in memory, and farms that are ticked once.
 
 #include <memory>
 #include <span>
@@ -15,11 +15,11 @@ namespace sf::selftest {
 
 using base::Pose;
 
-/// A farm on a world of its own, everyone heard.
+/// A farm on its own world, with all sensors subscribed.
 struct TestFarm {
   std::unique_ptr<world::World> world;
   std::unique_ptr<farm::Farm> farm;
-  std::span<const base::ReadingBlock> readings;  ///< of the tick at time 0; until the next one
+  std::span<const base::ReadingBlock> readings;  ///< of the tick at time 0; live until the next one
 };
 
 /// One thread. The device must outlive it.
@@ -28,28 +28,28 @@ class Fixture {
   explicit Fixture(gpu::Device& device) : device_(device) {}
 
   gpu::Device& device() const { return device_; }
-  /// A farm of small pools, ticked once at time 0.
+  /// Makes a farm with small pools and ticks it once at time 0.
   TestFarm measure(world::World world, farm::FarmOptions options = {}) const;
 
  private:
   gpu::Device& device_;
 };
 
-/// A thin wall, seen from both sides, 1 m high.
+/// Adds a thin wall, visible from both sides, 1 m high.
 void add_wall(world::World& world, glm::dvec2 a, glm::dvec2 b);
-/// A closed outline, solid on the left of its edges: counter-clockwise a block, clockwise a room.
+/// Adds a closed outline, solid on the left of its edges: counter-clockwise a block, clockwise a room.
 void add_outline(world::World& world, const std::vector<glm::dvec2>& corners);
-/// The inside of a square of `width` [m], low corner at `low`: a hole in a block half as wide again.
+/// Adds the inside of a square of `width` [m] with lower corner `low`, as a hole in a block half as wide again.
 void add_module(world::World& world, glm::dvec2 low, double width);
-/// A solid block from `low` to `high`.
+/// Adds a solid block from `low` to `high`.
 void add_block(world::World& world, glm::dvec2 low, glm::dvec2 high);
 
-/// A laser at its mover's origin, 0.1 m high. Every heading is in its pose.
+/// A laser at its mover's origin, 0.1 m high, with yaw 0.
 world::Laser laser(std::uint32_t samples, double fov, double range_max);
-/// A mover without a body. @return its row
+/// Adds a mover without a body. @return its row
 std::uint32_t add_laser_mover(world::World& world, const Pose& X_WM, const world::Laser& laser);
 std::uint32_t add_mover(world::World& world, const Pose& X_WM);
-/// Gives a mover a square body of `half` [m].
+/// Gives a mover a square body with half side length `half` [m].
 void add_body(world::World& world, std::uint32_t mover, double half);
 
 using Settings = std::vector<std::pair<std::string, std::vector<double>>>;  ///< in metres and degrees

@@ -1,4 +1,4 @@
-// Nobody, everybody in one place, a hundred thousand.
+// Fleets: no robots, all in one place, a hundred thousand.
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ void nobody(Fixture& fixture, Checks& checks) {
   }
 }
 
-/// Robots in one place see each other's outline from inside, at its own distance, and all the same.
+/// Robots in one place see each other's outlines from inside, all with the same ranges.
 void coincident(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kRobots = 100;
   world::World world;
@@ -39,7 +39,7 @@ void coincident(Fixture& fixture, Checks& checks) {
     }
 }
 
-/// A square of robots a metre apart, each looking at the next one's back: 0.75 m to the bit, the last row at nobody.
+/// A grid of robots 1 m apart, each facing the back of the next: 0.75 m to the bit; the last row sees none.
 void a_hundred_thousand(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kSide = 320, kRobots = 100'000;
   world::World world;

@@ -1,4 +1,4 @@
-// Lane edges at every angle, and points that make none.
+// Lane edges at every angle, and points that form no edge.
 
 #include <fmt/format.h>
 
@@ -25,10 +25,10 @@ LaneEdgeReading read(Fixture& fixture, world::World world, const Pose& X_WM, Set
   return {test.readings[0].values[0], test.readings[0].values[1]};
 }
 
-/// [m] between neighbouring doubles at `x`.
+/// [m] Distance between neighbouring doubles at `x`.
 double grain(double x) { return std::nextafter(std::fabs(x), HUGE_VAL) - std::fabs(x); }
 
-/// A stripe 10 cm wide and 4 m long whose near face crosses the sensor's axis `distance` ahead at `tilt` from square.
+/// A marking 10 cm wide and 4 m long whose near face crosses the sensor's axis at `distance`, rotated by `tilt`.
 world::World marking_ahead(const Pose& X_WM, double distance, double tilt) {
   const glm::dvec2 ahead = base::rotate(X_WM.yaw, {1.0, 0.0}), normal = base::rotate(X_WM.yaw + tilt, {1.0, 0.0});
   const glm::dvec2 middle = glm::dvec2{X_WM.x, X_WM.y} + distance * ahead + 0.05 * normal;
@@ -38,7 +38,7 @@ world::World marking_ahead(const Pose& X_WM, double distance, double tilt) {
   return world;
 }
 
-/// [m] along the sensor's axis to the near face of the stripe as its doubles are.
+/// [m] Exact distance along the sensor's axis to the near face of the marking with its rounded corners.
 Real face_ahead(const world::LaneMarking& marking, const Pose& X_WM) {
   const glm::dvec2 a = marking.line[0], b = marking.line[1];
   const Real tx = Real{b.x} - a.x, ty = Real{b.y} - a.y, size = std::hypot(tx, ty);
@@ -48,8 +48,8 @@ Real face_ahead(const world::LaneMarking& marking, const Pose& X_WM) {
   return (height - Real{0.05}) / (nx * ex + ny * ey);
 }
 
-/// Faces are made of corners that are rounded to doubles, four roundings of half a grain; a point's pixel size rides in
-/// the last bits of its x, 6e-14 of it; a tilt lengthens both.
+/// The corners of faces are rounded to doubles: four roundings of half a grain. The pixel size of a point is stored in
+/// the last bits of its x, 6e-14 of it. A tilt increases both errors.
 void angles(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
@@ -78,7 +78,7 @@ void through_the_sensor(Fixture& fixture, Checks& checks) {
       world::World world = marking_ahead(X_WM, 0.0, tilt);
       checks.near(read(fixture, world, X_WM).distance, 0, 1e-9, fmt::format("{:g} m away, tilt {:g}", far, tilt));
     }
-  // On the paint, the way off it.
+  // From on the paint: the distance to its end.
   checks.near(read(fixture, marking_ahead({}, -0.025, 0.0), {}).distance, 0.075L, 1e-13, "on the paint");
 }
 
@@ -97,7 +97,7 @@ void ranges(Fixture& fixture, Checks& checks) {
         "range_max", fmt::format("range_max {:g}", range));
 }
 
-/// One ray of three meets a dash 2 cm long; then two rays of two, which give the first one's range.
+/// One ray of three hits a dash 2 cm long. Then both of two rays hit, and the reading is the first one's range.
 void one_point(Fixture& fixture, Checks& checks) {
   world::World world;
   world.lane_markings.push_back({{{0.5, -0.01}, {0.5, 0.01}}, 0.1});
@@ -110,7 +110,7 @@ void one_point(Fixture& fixture, Checks& checks) {
   checks.same(read(fixture, {}, {}).points, 0.0, "none is counted");
 }
 
-/// Rays so close together that their points are one.
+/// Rays so close together that their points coincide.
 void equal_points(Fixture& fixture, Checks& checks) {
   world::World world;
   world.lane_markings.push_back({{{0.5, -1.0}, {0.5, 1.0}}, 0.1});
@@ -123,7 +123,7 @@ void equal_points(Fixture& fixture, Checks& checks) {
               "a degree apart they are one");
 }
 
-/// Ahead and behind, three points on one line with the sensor between them.
+/// Points ahead and behind on one line through the sensor.
 void collinear_with_the_sensor(Fixture& fixture, Checks& checks) {
   world::World world;
   world.lane_markings.push_back({{{0.5, -1.0}, {0.5, 1.0}}, 0.1});

@@ -1,4 +1,4 @@
-// Magnets at every distance, of every moment, and pairs that cancel.
+// Magnets at all distances and of all moments, and cancelling pairs.
 
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ struct Field {
   Real x = 0, y = 0, z = 0, magnitudes = 0;
 };
 
-/// A dipole along +z, its moment as the device has it; at its radius where the place is nearer.
+/// Adds the field of a dipole along +z with the device's 32-bit moment. Within its radius: the field at the radius.
 void add(const world::Magnet& m, const FieldPoint& p, Field& sum) {
   Real x = Real{p.x} - m.p.x, y = Real{p.y} - m.p.y, z = Real{p.z} - m.z;
   Real r = std::sqrt(x * x + y * y + z * z);
@@ -34,8 +34,8 @@ void add(const world::Magnet& m, const FieldPoint& p, Field& sum) {
   sum.magnitudes += std::sqrt(bx * bx + by * by + bz * bz);
 }
 
-/// Errors as shares of the sum of magnitudes: 1e-13, three squared 32-bit errors of a root; and what tells a magnet's
-/// middle from nowhere, 1e-18 m of height, of which the field knows the third power.
+/// Allowed errors relative to the sum of magnitudes: 1e-13, from three squared 32-bit errors of a root, and the height
+/// of 1e-18 m that avoids a division by zero at a magnet's centre, which enters with the third power.
 double allowed_at(const world::World& world, const FieldPoint& p) {
   double nearest = HUGE_VAL;
   for (const world::Magnet& m : world.magnets) {
@@ -71,7 +71,8 @@ void one_magnet(Fixture& fixture, Checks& checks) {
   }
 }
 
-/// In its very middle and around it: what it is at its radius, in the same direction; in the middle, above it.
+/// At a magnet's centre and within its radius: the field at the radius in the same direction; at the centre, the field
+/// above it.
 void within_it(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
@@ -96,7 +97,7 @@ void far_origins(Fixture& fixture, Checks& checks) {
   }
 }
 
-/// Pairs in one place, and a million times as strong ones: what is left is nothing, or the one that has no partner.
+/// Opposite pairs in one place, also a million times stronger: nothing is left, or the magnet without a partner.
 void cancelling_pairs(Fixture& fixture, Checks& checks) {
   world::World world;
   for (int i = 0; i < 500; ++i)
@@ -114,7 +115,7 @@ void cancelling_pairs(Fixture& fixture, Checks& checks) {
   compare(fixture, checks, world, points, "one without a partner");
 }
 
-/// As readings: they saturate where the sensor does, and are numbers always.
+/// Readings saturate at the sensor's limit and are always finite.
 void saturated(Fixture& fixture, Checks& checks) {
   for (const double moment : {1e12, -1e12, 1e-12}) {
     world::World world;

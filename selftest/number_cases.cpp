@@ -1,4 +1,4 @@
-// Not-a-number, infinity, denormals and limits in packets, poses and commands.
+// NaN, infinity, denormals and limits in packets, poses and commands.
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ base::Bytes with(base::Bytes bytes, std::size_t at, double value) {
   return bytes;
 }
 
-/// One number of a packet, `most` its limit to both sides.
+/// Tests one field of a packet; `most` is the limit of its magnitude.
 void try_field(Checks& checks, const base::Bytes& good, std::size_t at, double most, const std::string& what) {
   netio::Packet packet;
   const auto expect = [&](double value, PacketStatus status) {
@@ -61,7 +61,7 @@ void packets(Fixture&, Checks& checks) {
                  "no unit quaternion");
 }
 
-/// From the bytes of a packet to readings: the least and the largest numbers that a pose may have.
+/// From the bytes of a packet to readings: the smallest and largest values of a pose.
 void poses(Fixture& fixture, Checks& checks) {
   for (const double x : {kDenormal, -kDenormal, 1e-310, std::numeric_limits<double>::min(), 1e7, -1e7})
     for (const double yaw : {0.0, kDenormal, -1e-310}) {
@@ -79,7 +79,7 @@ void poses(Fixture& fixture, Checks& checks) {
     }
 }
 
-/// Commands are whatever a controller says.
+/// Commands of a controller may be any numbers.
 void commands(Fixture&, Checks& checks) {
   world::World world;
   add_mover(world, {1.0, 2.0, 0.0, 0.5});

@@ -44,7 +44,7 @@ void a_hundred_thousand(Fixture& fixture, Checks& checks) {
   check_scans(fixture, checks, kCounts, 7);
 }
 
-/// A whole turn: its first and last beams look backwards, both along one line.
+/// A full turn: the first and the last beam point backwards along the same line.
 void whole_turn(Fixture& fixture, Checks& checks) {
   world::World world = room_with_blocks();
   for (const std::uint32_t count : {2u, 3u, 361u, 100'000u})
@@ -54,7 +54,7 @@ void whole_turn(Fixture& fixture, Checks& checks) {
     checks.near(r.values.front(), static_cast<Real>(r.values.back()), 2e-15 * (5.21 + 5.0), "first and last", r.mover);
 }
 
-/// The same beam at the same heading, given as one of many turns: the cosine of the double that was given counts.
+/// The same heading plus many turns: the reference uses the cosine of the rounded double.
 void headings(Fixture& fixture, Checks& checks) {
   world::World world = room_with_blocks();
   for (const double yaw : {0.0, -0.0, 0.5 * M_PI, M_PI, -M_PI, 100.0, -1234.5, 1e6, -1e6, 999'999.9, 1e-300, 5e-324})

@@ -1,4 +1,4 @@
-// Walls without length, slivers, and a million of them in one cell.
+// Walls of zero length, slivers, and a million walls in one cell.
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTurn = 2.0 * M_PI;
 
-/// Corners given twice and three times, as drawing programs write them.
+/// Corners repeated two and three times, as drawing programs write them.
 void points_given_twice(Fixture& fixture, Checks& checks) {
   const world::World read =
       world::build_world("twice.world",
@@ -27,7 +27,7 @@ void points_given_twice(Fixture& fixture, Checks& checks) {
   checks.same(test.readings[0].values[30], 1.0, "the face in front");
 }
 
-/// A wall without length among others, put there past the reader: it is never met, and hides nothing.
+/// A wall of zero length among others, added without the reader: it is never hit and hides nothing.
 void zero_length(Fixture& fixture, Checks& checks) {
   world::World world;
   add_module(world, {-2.0, -2.0}, 4.0);
@@ -39,11 +39,11 @@ void zero_length(Fixture& fixture, Checks& checks) {
   checks.same(test.readings[0].values[180], 2.0, "straight through them");
 }
 
-/// Blocks 1 m long and down to an atom thin, seen from their sides and from their ends.
+/// Blocks 1 m long and down to 1e-12 m thin, seen from their sides and from their ends.
 void slivers(Fixture& fixture, Checks& checks) {
   for (const double thick : {1e-3, 1e-6, 1e-9, 1e-12})
     for (const double far : {0.0, 1e5}) {
-      // Far away doubles are 1.5e-11 m apart: thinner is nothing.
+      // Far away doubles are 1.5e-11 m apart, so thinner blocks collapse.
       if (far + 1.0 + thick == far + 1.0) continue;
       world::World world;
       add_block(world, {far + 1.0, far - 0.5}, {far + 1.0 + thick, far + 0.5});
@@ -56,7 +56,7 @@ void slivers(Fixture& fixture, Checks& checks) {
     }
 }
 
-/// Nanometres beside 200 km.
+/// Walls of nanometres beside walls of 200 km.
 void tiny_beside_huge(Fixture& fixture, Checks& checks) {
   world::World world;
   add_wall(world, {-1e5, 3.0}, {1e5, 3.5});
@@ -92,7 +92,7 @@ world::World posts(std::uint32_t side) {
   return world;
 }
 
-/// Cells of an eye of few beams are wider than the square: all walls lie in one.
+/// The cells of a laser with few beams are larger than the square, so all walls are in one cell.
 void a_million(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kSide = 500;
   world::World world = posts(kSide);

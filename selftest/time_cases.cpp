@@ -26,7 +26,7 @@ world::World noisy_room() {
   return world;
 }
 
-/// A reading at `now` [ns] beside plain C++ and its number.
+/// Compares a reading at `now` [ns] and its number with plain C++.
 void read_at(TestFarm& test, Checks& checks, std::int64_t now, std::uint64_t number, const std::string& what) {
   const auto readings = test.farm->tick(now, {});
   checks.equal(readings.size(), 1u, what + ": readings");
@@ -44,7 +44,7 @@ void tick_1e9(Fixture& fixture, Checks& checks) {
   read_at(test, checks, 1'000'000'001ll * (kSecond / 10), 1'000'000'001u, "the one after");
 }
 
-/// Whole periods in whole nanoseconds: counted in integers.
+/// Periods of whole nanoseconds, checked with integers.
 void due_for_a_year(Fixture&, Checks& checks) {
   for (const std::int64_t rate : {1, 10, 50, 1000, 1'000'000}) {
     const std::int64_t period = kSecond / rate;
@@ -75,8 +75,8 @@ void ten_second_ticks(Fixture& fixture, Checks& checks) {
     read_at(test, checks, tick * 10 * kSecond, static_cast<std::uint64_t>(100 * tick), "every 10 s");
 }
 
-/// A circle of 1 m at 0.3 m/s, in steps of 1 us for a second and in one of 10 s. A step rounds a pose three times, by
-/// half a grain of 2 m each, and steps add up.
+/// A circle of 1 m radius at 0.3 m/s, in steps of 1 us for a second and in one step of 10 s. A step rounds a pose three
+/// times by half a grain of 2 m each, and the errors of the steps add up.
 void motion(Fixture&, Checks& checks) {
   const base::Twist twist{0.3, 0.0, 0.3};
   const auto expect = [&](const base::Pose& X, Real seconds, double allowed, const std::string& what) {
@@ -101,7 +101,7 @@ void motion(Fixture&, Checks& checks) {
   }
 }
 
-/// Plans of whole seconds, asked half a second into each: counted in integers.
+/// Plans of whole seconds, sampled half a second into each, checked with integers.
 void lights(Fixture&, Checks& checks) {
   using State = world::LightState;
   const world::Light light{.phases = {{State::green, 8.0}, {State::yellow, 2.0}, {State::red, 10.0}}, .offset = 3.0};

@@ -1,4 +1,4 @@
-// Words of the wire at and past their ends.
+// Values at and beyond the limits of the wire formats.
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHuge = std::numeric_limits<double>::max();
 
-/// What a receiver is told of `values`; empty where nothing is sent.
+/// The received values after encoding and decoding; empty when nothing is sent.
 std::vector<double> decoded(const SensorType& kind, const SensorSpec& row, const std::vector<double>& values,
                             Checks& checks) {
   base::ReadingBlock reading;
@@ -39,7 +39,7 @@ struct Sent {
   double value, told;
 };
 
-/// Of one number beside others.
+/// Checks one number of a reading; the other numbers stay fixed.
 void expect(Checks& checks, const SensorType& kind, const SensorSpec& row, std::span<const Sent> sent, std::size_t at,
             std::size_t width) {
   for (const Sent& s : sent) {
@@ -120,7 +120,7 @@ void fields(Fixture&, Checks& checks) {
   for (const std::size_t at : {0, 1, 2, 3}) expect(checks, sensors::magnetometer_type, row_of(1, 0.0), kField, at, 4);
 }
 
-/// Every kind's numbers, whatever they count: told in order, the sign kept, from -1e300 to 1e300.
+/// Numbers of every sensor type from -1e300 to 1e300: order and sign are preserved.
 void all_kinds(Fixture&, Checks& checks) {
   expect(checks, sensors::gyro_type, row_of(1, 0.0), kTurn, 0, 1);
   for (const SensorType* kind : sensors::sensor_types()) {

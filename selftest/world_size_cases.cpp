@@ -1,4 +1,4 @@
-// Worlds from 1 mm to 1 000 km, here and far away; ranges from 1 um to 100 km.
+// Worlds from 1 mm to 1 000 km, near the origin and far away; ranges from 1 um to 100 km.
 
 #include <fmt/format.h>
 
@@ -9,11 +9,11 @@ namespace sf::selftest {
 
 namespace {
 
-constexpr double kFar[] = {0.0, 1e5, 1e7};           ///< [m] of the origin, along both axes
+constexpr double kFar[] = {0.0, 1e5, 1e7};           ///< [m] offset from the origin, along both axes
 constexpr double kWidths[] = {1e-3, 1.0, 1e3, 1e6};  ///< [m]
 constexpr double kTurn = 2.0 * M_PI;
 
-/// A square room, and an eye somewhere in it that sees all of its walls.
+/// A square room and a laser inside it that sees all of its walls.
 void check_full_turn(Fixture& fixture, Checks& checks, double far, double width, std::uint32_t samples) {
   world::World world;
   add_module(world, {far - 0.4 * width, far - 0.3 * width}, width);
@@ -31,7 +31,7 @@ void distances(Fixture& fixture, Checks& checks) {
     for (const double width : kWidths) check_full_turn(fixture, checks, far, width, 61);
 }
 
-/// Corners, eyes and shifts on a lattice of 2^-20 m: every sum is exact, so no bit may change.
+/// Corners, lasers and shifts on a lattice of 2^-20 m: sums are exact, so ranges are bitwise equal.
 void moved(Fixture& fixture, Checks& checks) {
   std::vector<std::vector<double>> scans;
   for (const double far : kFar) {
@@ -47,7 +47,7 @@ void moved(Fixture& fixture, Checks& checks) {
       checks.same(scans[f][i], scans[0][i], fmt::format("{:g} m away", kFar[f]), i);
 }
 
-/// A wall `distance` in front of an eye that sees `range`.
+/// A wall at `distance` in front of a laser with range `range`.
 double straight(Fixture& fixture, double range, double distance, double across) {
   world::World world;
   add_wall(world, {distance, -across}, {distance, across});
@@ -66,7 +66,7 @@ void ranges(Fixture& fixture, Checks& checks) {
   }
 }
 
-/// From the middle of a world of 1 000 km, at most 100 km are seen: towers 10 m wide, 99.9 km away.
+/// From the middle of a world of 1 000 km with a range of 100 km: towers 10 m wide at 99.9 km.
 void far_and_small(Fixture& fixture, Checks& checks) {
   world::World world;
   add_module(world, {-5e5, -5e5}, 1e6);
