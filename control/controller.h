@@ -24,8 +24,8 @@ struct Neighbour {
 struct ControllerInput {
   std::int64_t time = 0;  ///< [ns] simulated time, or the robot's clock; does not decrease
   base::Report state;     ///< the robot's own estimate of its state
-  std::span<const base::ReadingBlock>
-      readings;  ///< the newest reading of each of its sensors, whether new since the last call or not; may be empty
+  /// The newest reading of each of its sensors, whether new since the last call or not; may be empty.
+  std::span<const base::ReadingBlock> readings;
   bool contact = false;                      ///< the bumper is pressed, or an obstacle blocked the last motion
   bool started = true;                       ///< the start signal was given
   std::span<const Neighbour> others;         ///< robots within `Controller::v2v_range`, in order of id

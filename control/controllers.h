@@ -17,11 +17,10 @@ namespace sf::control {
 /// Inputs for the construction of a controller. Everything it refers to must outlive the controller.
 struct ControllerContext {
   const world::World& world;
-  std::uint32_t mover = 0;                    ///< row of the robot
-  std::uint64_t seed = 0;                     ///< of the controller's random choices
-  const world::RoadNetwork* roads = nullptr;  ///< null: the world has no road network
-  std::vector<world::Warning>* warnings =
-      nullptr;  ///< receives warnings about files that the controller reads; may be null
+  std::uint32_t mover = 0;                          ///< row of the robot
+  std::uint64_t seed = 0;                           ///< of the controller's random choices
+  const world::RoadNetwork* roads = nullptr;        ///< null: the world has no road network
+  std::vector<world::Warning>* warnings = nullptr;  ///< receives warnings of the files that it reads; or null
 };
 
 /// Description of one controller. Defined as `constinit const ControllerType x_controller` beside its class, listed in

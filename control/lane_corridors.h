@@ -76,8 +76,8 @@ struct Way {
   std::vector<double> curvature;             ///< [1/m] positive to the left
   std::vector<ConflictZone> conflict_zones;  ///< in order
   std::vector<LaneStop> stops;               ///< lanes: in order
-  std::vector<double>
-      lines;  ///< lanes: places where robots wait for the conflict zones of the lane and of its exits, in order
+  /// Lanes: places where robots wait for the conflict zones of the lane and of its exits, in order.
+  std::vector<double> lines;
   std::vector<std::uint32_t> out;  ///< lanes: rows of the ways that leave it
 };
 
@@ -103,10 +103,10 @@ struct RoadPositions {
 /// An edge of the route graph. Nodes are rows of `RoadNetwork::index`.
 struct Edge {
   std::uint32_t to = 0;
-  std::array<std::uint32_t, 2> ways{world::kNone,
-                                    world::kNone};  ///< driven one after the other; the second may be kNone
-  double from_s = 0.0, to_s = 0.0;                  ///< [m] along the first; the second is driven whole
-  double cost = 0.0;                                ///< [m]
+  /// Driven one after the other; the second may be kNone.
+  std::array<std::uint32_t, 2> ways{world::kNone, world::kNone};
+  double from_s = 0.0, to_s = 0.0;  ///< [m] along the first; the second is driven whole
+  double cost = 0.0;                ///< [m]
 };
 
 /// Immutable after construction; callable from any number of threads. The network and the world must outlive it.

@@ -9,9 +9,8 @@
 namespace sf::control {
 
 struct LaneSettings {
-  PiGains gains{.kp =
-                    0.5};  ///< per metre; the controller `lane-keeping` derives its default from the sensor's position
-  double speed = 0.1;      ///< [m/s]
+  PiGains gains{.kp = 0.5};          ///< per metre; `lane-keeping` derives its default from the sensor's position
+  double speed = 0.1;                ///< [m/s]
   std::optional<double> half_width;  ///< [m] half the lane's width; none: that of the path's piece under the sensor
   double side = 1.0;                 ///< edge that the sensor measures: +1 left, -1 right
   double hold = 1.0;                 ///< [s]

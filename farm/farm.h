@@ -30,8 +30,8 @@ namespace sf::farm {
 struct FarmOptions {
   std::uint64_t seed = 0;  ///< of all noise
   bool noise = true;       ///< false: no noise, whatever the world file says
-  bool reuse_unchanged =
-      true;  ///< reuses readings for which nothing has changed; false: measures all due sensors. The bytes are the same
+  /// Reuses readings for which nothing has changed; false: measures all due sensors. The bytes are the same.
+  bool reuse_unchanged = true;
   bool true_poses = true;      ///< reports contain true poses; false: estimated poses
   bool no_return_inf = false;  ///< beams without a return read infinity in packets and in `hash`
   unsigned threads = 0;        ///< of the host's part; 0: all of the machine. Does not affect readings
@@ -42,8 +42,7 @@ struct FarmOptions {
 struct FarmStats {
   std::uint64_t ticks = 0;
   std::uint64_t readings = 0;
-  std::uint64_t missed =
-      0;  ///< readings of subscribed sensors never measured, since newer ones were due at the same tick
+  std::uint64_t missed = 0;   ///< subscribed readings not measured, as newer ones were due at the same tick
   std::uint64_t reused = 0;   ///< cached readings delivered again
   std::uint64_t batches = 0;  ///< submitted to the device
   sensors::SensorStats work;  ///< of all sensor types

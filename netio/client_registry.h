@@ -11,8 +11,7 @@
 
 namespace sf::netio {
 
-inline constexpr std::int64_t kClientTimeout =
-    2'000'000'000;  ///< [ns] a sender is silent from exactly this duration on
+inline constexpr std::int64_t kClientTimeout = 2'000'000'000;  ///< [ns] from this duration on a sender is silent
 
 /// `sequence` is less than 2^31 ahead of `than`. The counter may wrap (serial number arithmetic, RFC 1982, section
 /// 3.2).

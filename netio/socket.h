@@ -70,8 +70,7 @@ void raise_open_file_limit(std::size_t count);
 /// Receives datagrams in batches into preallocated storage.
 class ReceiveBatch {
  public:
-  static constexpr std::size_t kSlotBytes =
-      2048;  ///< longer than any packet of the farm; longer datagrams are cut off and then too long
+  static constexpr std::size_t kSlotBytes = 2048;  ///< longer datagrams are cut off; no packet of the farm is
 
   explicit ReceiveBatch(std::size_t capacity);
   ~ReceiveBatch();

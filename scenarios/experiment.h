@@ -21,8 +21,8 @@ struct ExperimentOptions {
   std::string folder;          ///< contains the scenario files
   std::string out;             ///< output folder
   unsigned threads = 0;
-  std::function<void(const std::string& world, const std::vector<world::Warning>&)>
-      warn;                    ///< warnings of the world file
+  /// Receives warnings of the world file.
+  std::function<void(const std::string& world, const std::vector<world::Warning>&)> warn;
   std::function<bool()> stop;  ///< polled; true ends the experiment; may be empty
 };
 

@@ -64,8 +64,8 @@ struct Scenario {
   std::string file;    ///< empty: made in memory
   std::string world;   ///< path of the world file
   int world_line = 0;  ///< line that names it
-  double duration =
-      60.0;  ///< [s] simulated, at most; with the expectation `done` the run ends when all controllers have finished
+  /// [s] simulated, at most; with the expectation `done` the run ends when all controllers have finished.
+  double duration = 60.0;
   std::uint64_t seed = 1;
   double tick = 0.0;           ///< [s]; 0: the world's
   FleetSpawn fleet;            ///< replaces the world's robots

@@ -97,13 +97,13 @@ class Simulation {
   std::vector<Driver> drivers_;  ///< per mover
   std::vector<base::Twist> commands_;
   std::vector<base::Twist> executed_commands_;  ///< executed in the interval before the recorded tick
-  std::span<const base::ReadingBlock>
-      by_mover_;                      ///< readings of this tick: as returned where already in order, else `sorted_`
+  /// Readings of this tick: as returned where already in order, else `sorted_`.
+  std::span<const base::ReadingBlock> by_mover_;
   std::vector<std::uint32_t> first_;  ///< per mover: index of its first reading; the last entry is the end
   std::vector<std::uint32_t> next_;   ///< scratch
   std::vector<base::ReadingBlock> sorted_;
-  std::vector<base::Report>
-      before_;  ///< reports of the last tick, kept when a sensor is due before the next; else empty
+  /// Reports of the last tick, kept when a sensor is due before the next; else empty.
+  std::vector<base::Report> before_;
   std::vector<base::Report> on_the_way_;      ///< interpolated reports
   std::vector<farm::StoredReading> early_;    ///< readings delivered between ticks; slots are reused with their memory
   std::vector<base::ReadingBlock> readings_;  ///< these and the tick's; empty without readings between ticks

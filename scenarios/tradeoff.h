@@ -27,8 +27,8 @@ struct ModeResult {
   // Elements covered by a stated bound: the bound is finite, both values are numbers, and no quality flag is set.
   double covered = 0.0;      ///< [-] part of all elements
   double covered_max = 0.0;  ///< their largest error
-  double bound =
-      std::numeric_limits<double>::infinity();  ///< their largest stated bound; infinite: no element is covered
+  /// Their largest stated bound; infinite: no element is covered.
+  double bound = std::numeric_limits<double>::infinity();
   bool front = false;  ///< Pareto-optimal: no other mode is both faster and more accurate (99th percentile)
 };
 

@@ -39,8 +39,8 @@ struct Verification {
 struct VerifyOptions {
   std::uint64_t sample = 0;  ///< scans recomputed by plain C++, spread over the run; 0: all
   unsigned threads = 0;      ///< 0: all
-  std::function<bool(double)>
-      progress;  ///< called with the completed part in [0, 1]; returns false to stop; may be empty
+  /// Called with the completed part in [0, 1]; returns false to stop; may be empty.
+  std::function<bool(double)> progress;
 };
 
 /// @throws base::InputError for a recording whose world cannot be read
