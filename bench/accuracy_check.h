@@ -1,5 +1,5 @@
 #pragma once
-// How wrong a caster is: a sample of its beams against the tests' brute force.
+// Errors of a caster: a sample of its beams compared with the tests' brute force.
 
 #include "base/reading.h"
 #include "bench/caster.h"
@@ -7,15 +7,16 @@
 namespace sf::bench {
 
 struct AccuracyCheck {
-  double max_error_m = 0.0;   ///< [m] over the beams that count
+  double max_error_m = 0.0;   ///< [m] over the compared beams
   std::size_t beams = 0;      ///< compared
-  std::size_t at_vertex = 0;  ///< left out: they pass an end of a segment within 10 um, where 32 bits may go either way
+  std::size_t at_vertex = 0;  ///< left out: within 10 um of a segment's end, where 32 bits may hit or miss
 };
 
-/// Compares what `caster` answered to `round` for `robots` robots, spread over the fleet, with all their beams.
+/// Compares all beams of `robots` robots, spread over the fleet, after `caster` has cast `round`.
 AccuracyCheck check_accuracy(const Caster& caster, const Scans& scans, std::size_t round, std::size_t robots);
 
-/// The same for readings of lasers among moving bodies. `poses`: one per mover, as of the readings.
+/// The same for readings of lasers among moving bodies.
+/// @param poses one per mover, at the time of the readings
 AccuracyCheck check_accuracy(std::span<const base::ReadingBlock> readings, const world::World& world,
                              std::span<const base::Pose> poses, std::size_t robots);
 

@@ -16,7 +16,7 @@ namespace sf::bench {
 
 namespace {
 
-constexpr double kCells[] = {0.03, 0.1};  // [m] of distance fields
+constexpr double kCells[] = {0.03, 0.1};  // [m] of distance grids
 
 AccuracyModeResult entry_of(const MethodResult& method_result, const Caster& caster, const Caster& exact,
                             const Scans& scans) {

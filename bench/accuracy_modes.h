@@ -1,6 +1,6 @@
 #pragma once
-// The laser's accuracy modes, and cheaper ways that did not become modes: speed against error, in turn, on standing
-// walls.
+// Speed and error of the laser's accuracy modes, and of cheaper methods that did not become modes. Methods take turns;
+// walls stand still.
 
 #include <string>
 #include <vector>
@@ -13,9 +13,9 @@ namespace sf::bench {
 struct AccuracyModeResult {
   std::string method;
   Cost typical;
-  double ratio = 0.0;                         ///< [-] clock, of mode exact's time to its own
-  double cpu_ratio = 0.0;                     ///< [-] of time on all cores
-  double median = 0.0, p99 = 0.0, max = 0.0;  ///< [m] errors against mode exact, all beams of the last turn's round
+  double ratio = 0.0;                         ///< [-] wall time of mode exact divided by that of the method
+  double cpu_ratio = 0.0;                     ///< [-] the same of CPU time on all cores
+  double median = 0.0, p99 = 0.0, max = 0.0;  ///< [m] errors against mode exact, over all beams of the last turn
 };
 
 struct AccuracyModeComparison {
@@ -27,7 +27,7 @@ struct AccuracyModeComparison {
 AccuracyModeComparison compare_accuracy_modes(gpu::Device& device, std::uint32_t robots, double range,
                                               std::size_t repeats);
 
-/// A Markdown table, and dial.csv.
+/// Returns a Markdown table.
 std::string accuracy_mode_table(const std::vector<AccuracyModeComparison>& comparisons);
 void write_accuracy_modes(const std::vector<AccuracyModeComparison>& comparisons, const std::string& folder);
 

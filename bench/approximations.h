@@ -1,5 +1,5 @@
 #pragma once
-// Cheaper ways to a scan that the farm does not have, to be measured beside its modes.
+// Cheaper scan methods that are not part of the farm, for comparison with its modes.
 
 #include "bench/caster.h"
 
@@ -10,8 +10,8 @@ namespace sf::bench {
 /// @param cell [m]
 std::unique_ptr<Caster> make_march_caster(const Scans& scans, double cell);
 
-/// Prediction: the scan before, exactly as it was, seen from where the robot is now; what falls between its points lies
-/// on straight lines. Casts nothing. `before` gives that scan and must outlive it.
+/// Prediction without casting: the previous scan, without error, seen from the robot's new pose, with straight lines
+/// between its points. `before` provides that scan and must outlive it.
 std::unique_ptr<Caster> make_predicting_caster(const Scans& scans, const Caster& before, std::size_t round_before);
 
 }  // namespace sf::bench

@@ -1,8 +1,8 @@
 // Runs all measurements as Google benchmarks: `sensorfarm_bench [--results=FOLDER] [--pictures=FOLDER]
 // [--benchmark_filter=...]`.
 //
-// Contests are run whole when the first of their entrants is asked for, since what counts is that methods take turns;
-// the benchmarks then tell each method's turns one by one.
+// A comparison runs as a whole when the first of its methods is benchmarked, since methods have to take turns. The
+// benchmarks then report each method's turns one by one.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -36,7 +36,7 @@ namespace {
 
 constexpr const char* kReference = "embree, 8-ray packets";
 
-/// What is measured once and told many times.
+/// Results that are measured once and reported several times.
 struct Session {
   gpu::Device device;
   Book book;
@@ -108,7 +108,7 @@ constexpr DriveCase kDriveCases[] = {{100, 8.0, false, 101},  {100, 8.0, true, 2
 constexpr std::size_t kWarmUp = 20;
 
 void tell_drive(benchmark::State& state, Session& session, const DriveCase& c) {
-  // A thousand bodies need more room than the cave has: three times as long, as many caverns.
+  // A thousand bodies need more room: a cave of three times the side length, with as many caverns in proportion.
   const bool large = c.robots > 100;
   world::World world = large ? scenes::cave(1500, 48.0, 3) : load_cave();
   scenes::add_robots(world, c.robots, scenes::laser(361, M_PI, c.range), 1);
@@ -135,7 +135,7 @@ void tell_field(benchmark::State& state, Session& session, const FieldCase& c) {
 
 struct LaneCase {
   const char* name;
-  double resolution;  ///< [m] 0: exact
+  double resolution;  ///< [m] 0: exact markings
 };
 constexpr LaneCase kLaneCases[] = {
     {"laneedge/exact/10000", 0.0}, {"laneedge/raster_5mm/10000", 0.005}, {"laneedge/raster_20mm/10000", 0.02}};
@@ -225,7 +225,7 @@ void register_all(Session& session) {
   const auto once = [](benchmark::internal::Benchmark* b) { b->Unit(benchmark::kMillisecond)->Iterations(1); };
   std::vector<Measurement>& facts = session.book.facts;
   std::vector<Measurement>& prices = session.book.prices;
-  // First: a process that is started counts as resident at least what this one was.
+  // Runs first: a child process counts at least its parent's resident memory.
   once(benchmark::RegisterBenchmark("price/program",
                                     [&prices](benchmark::State& s) { tell_facts(s, prices, measure_program); }));
   for (const ScanCase& c : kScanCases)

@@ -1,5 +1,5 @@
 #pragma once
-// Something that casts rays: the farm, and those it is measured against.
+// Interface of ray casters: the farm and the methods that it is compared with.
 
 #include <cmath>
 #include <cstdint>
@@ -14,15 +14,15 @@
 
 namespace sf::bench {
 
-/// Answers one set of `Scans`, round by round. One virtual call per round.
+/// Casts one set of `Scans`, round by round. One virtual call per round.
 class Caster {
  public:
   virtual ~Caster() = default;
   virtual std::string name() const = 0;
-  /// Spoils all results, so that one that is not written cannot pass for one that is.
+  /// Overwrites all results, so that unwritten ones are detected.
   virtual void poison() = 0;
   virtual void cast(std::size_t round) = 0;
-  /// Results still spoilt.
+  /// Number of results that are still overwritten.
   virtual std::size_t unwritten() const = 0;
   virtual double range(std::size_t robot, std::size_t beam) const = 0;  ///< [m]
   virtual std::uint64_t hash() const = 0;                               ///< of all ranges
@@ -30,7 +30,7 @@ class Caster {
 
 inline constexpr std::uint32_t kPoisonHit = 0xDEADBEEFu;
 
-/// Results of a caster that runs on the host: range and what was met, ray by ray.
+/// Results of a caster on the host: range and hit model per ray.
 template <class Real>
 class Results {
  public:
@@ -59,7 +59,7 @@ class Results {
   std::vector<std::uint32_t> hits_;
 };
 
-/// Robots a thread takes at a time.
+/// Robots per chunk of a thread.
 inline constexpr std::size_t kRobotsPerPiece = 8;
 
 }  // namespace sf::bench

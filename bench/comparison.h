@@ -1,5 +1,5 @@
 #pragma once
-// Several casters on the same scans, in turn: what the machine does to one it does to all.
+// Comparison of casters on the same scans. Casters take turns, so that changes in machine load affect all alike.
 
 #include <memory>
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace sf::bench {
 
-/// One caster's part in a contest.
+/// Result of one caster.
 struct MethodResult {
   std::string method;
   std::vector<Cost> repeats;  ///< one per turn
   Cost typical;               ///< medians of `repeats`
-  double ratio = 0.0;         ///< [-] median over turns of reference's time / its own; 0 without a reference
-  double cpu_ratio = 0.0;     ///< [-] the same of time on all cores
+  double ratio = 0.0;         ///< [-] median over turns of reference time / its own; 0 without a reference
+  double cpu_ratio = 0.0;     ///< [-] the same of CPU time on all cores
   AccuracyCheck accuracy;
   std::uint64_t hash = 0;  ///< of all ranges of round 0
 };
@@ -30,9 +30,9 @@ struct Comparison {
   std::vector<MethodResult> method_results;
 };
 
-/// Every turn asks every caster once for the same round, in an order that rotates. Results are spoilt before and looked
-/// at after; what is measured is the cast alone. All rounds are cast once before.
-/// @param reference which method ratios refer to
+/// In every turn each caster casts the same round once, in rotating order. Only the cast is timed; results are poisoned
+/// before and checked after it. All rounds are cast once for warm-up.
+/// @param reference name of the caster that ratios refer to
 Comparison compare(const Scans& scans, const std::vector<std::unique_ptr<Caster>>& casters,
                    const std::string& reference, std::size_t repeats);
 

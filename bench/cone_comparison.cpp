@@ -19,10 +19,10 @@ namespace sf::bench {
 namespace {
 
 constexpr std::size_t kRounds = 4;
-constexpr std::size_t kJudgedRobots = 25;  // of each round
-constexpr std::size_t kPlain = 1;          // the entrant that ratios refer to
+constexpr std::size_t kJudgedRobots = 25;  // per round
+constexpr std::size_t kPlain = 1;          // index of the method that ratios refer to
 
-/// The Pioneer's ring as worlds/robots.inc has it, but for its firing.
+/// The Pioneer's ring from worlds/robots.inc without its firing order.
 world::Sensor pioneers_ring() {
   const world::World pioneer =
       world::load_world(SF_SOURCE_DIR "/bench/pioneer.world", {.sensors = sensors::world_file_words()});
@@ -50,7 +50,7 @@ std::uint64_t hash_of(const ConeMethod& method, std::size_t robots, std::size_t 
   return base::hash_bytes(all.data(), all.size() * sizeof all[0]);
 }
 
-/// A sample of one round against every segment, ray by ray.
+/// Checks a sample of one round by testing every ray against every segment.
 void check_accuracy(const ConeScene& scene, const std::vector<sensors::ConeArray>& arrays, const ConeMethod& method,
                     std::size_t round, ConeMethodResult& method_result) {
   const sensors::ConeArray& array = arrays[0];

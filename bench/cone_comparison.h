@@ -1,5 +1,5 @@
 #pragma once
-// Rings of sonar: the farm beside plain C++ that casts the same rays through a grid and keeps the nearest, in turn.
+// Sonar rings: the farm compared with plain C++ that casts the same rays through a grid and keeps the nearest hit.
 
 #include <cstdint>
 #include <string>
@@ -11,20 +11,21 @@
 
 namespace sf::bench {
 
-/// Pioneers' rings in the cave, all transducers at once, seen by nobody. Robots turn and shift from round to round.
+/// Sonar rings of Pioneers in the cave, all transducers firing at once, robots invisible to each other. Poses change by
+/// round.
 struct ConeScene {
   world::World world;
   std::vector<std::vector<base::Pose>> rounds;  ///< X_WM per round and robot
 };
 
-/// One method's part.
+/// Result of one method.
 struct ConeMethodResult {
   std::string method;
   std::vector<Cost> repeats;
   Cost typical;            ///< medians
-  double ratio = 0.0;      ///< [-] median over turns of plain C++'s time / its own
-  double cpu_ratio = 0.0;  ///< [-] the same of time on all cores
-  double worst = 0.0;      ///< [m] farthest from what the nearest of its rays may read, of a sample of all rounds
+  double ratio = 0.0;      ///< [-] median over turns of plain C++'s wall time divided by the method's
+  double cpu_ratio = 0.0;  ///< [-] the same of CPU time on all cores
+  double worst = 0.0;      ///< [m] largest error against the nearest ray, over a sample of all rounds
   std::uint64_t hash = 0;  ///< of all ranges of round 0
 };
 
@@ -32,18 +33,18 @@ struct ConeComparison {
   std::size_t robots = 0;
   std::size_t cones = 0;
   std::size_t rays = 0;     ///< per turn
-  std::size_t checked = 0;  ///< cones of each entrant
+  std::size_t checked = 0;  ///< cones per method
   std::vector<ConeMethodResult> method_results;
 };
 
 ConeScene make_cone_scene(std::uint32_t robots);
 
-/// Every turn asks every method once for the same round, in an order that rotates; results are spoilt before and looked
-/// at after.
+/// In every turn each method measures the same round once, in rotating order; results are poisoned before and checked
+/// after.
 ConeComparison compare_cones(gpu::Device& device, const ConeScene& scene, std::size_t repeats);
 
-/// Writes cones.csv into `folder`; keeps the old one where nothing was measured.
-/// @throws base::InputError when it cannot be written.
+/// Writes cones.csv into `folder`; without measurements the old file is kept.
+/// @throws base::InputError when it cannot be written
 void write_cones(const std::vector<ConeComparison>& comparisons, const std::string& folder);
 std::string cone_table(const std::vector<ConeComparison>& comparisons);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Who hears in the contest of cones.
+// Methods of the cone comparison.
 
 #include <memory>
 #include <string>
@@ -14,15 +14,15 @@ class ConeMethod {
  public:
   virtual ~ConeMethod() = default;
   virtual std::string name() const = 0;
-  /// Spoils what the last turn gave.
+  /// Overwrites the results of the last turn.
   virtual void poison() = 0;
-  /// What is measured: from poses to ranges.
+  /// The timed part: from poses to ranges.
   virtual void measure(std::size_t round) = 0;
-  /// [m] not a number when it was not written.
+  /// [m] Not a number when it was not written.
   virtual double range(std::size_t robot, std::size_t transducer) const = 0;
 };
 
-/// `scene`, `arrays` and `device` must outlive them. @param arrays one per robot.
+/// `scene`, `arrays` and `device` must outlive the methods. @param arrays one per robot
 std::unique_ptr<ConeMethod> make_farm_cones(const ConeScene& scene, gpu::Device& device);
 std::unique_ptr<ConeMethod> make_plain_cones(const ConeScene& scene, const std::vector<sensors::ConeArray>& arrays,
                                              const std::string& name, Walk walk);

@@ -1,7 +1,6 @@
 #pragma once
-// What a piece of work costs: time on the clock, and time on all cores of this process.
-//
-// On a busy machine the clock counts what others did too; the cores' time does not.
+// Cost of a computation: wall time, and CPU time on all cores of this process. On a busy machine wall time includes
+// delays by other processes; CPU time does not.
 
 #include <vector>
 
@@ -12,19 +11,19 @@ struct Cost {
   double cpu_s = 0.0;   ///< [s] user and system time of all threads
 };
 
-/// Since some fixed point in the past.
+/// Time since a fixed point in the past.
 Cost now();
 
 inline Cost operator-(const Cost& p, const Cost& q) { return {p.wall_s - q.wall_s, p.cpu_s - q.cpu_s}; }
 
-/// Middle value; the mean of the two middle ones when their number is even. `values` must not be empty.
+/// Median; the mean of the two middle values for an even count. @pre `values` is not empty
 double median(std::vector<double> values);
 
-/// Medians of both parts, taken apart.
+/// Medians of both parts, computed separately.
 Cost median(const std::vector<Cost>& costs);
 
-/// [-] How many times as long `reference` took: medians over turns of its time / the other's, of both parts. As many
-/// turns of each.
+/// [-] Medians over turns of the reference's cost divided by the other's, separately for both parts. @pre equal numbers
+/// of turns
 Cost ratio(const std::vector<Cost>& reference, const std::vector<Cost>& repeats);
 
 }  // namespace sf::bench

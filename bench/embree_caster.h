@@ -1,17 +1,17 @@
 #pragma once
-// Embree (version 3) as a caster: walls stand upright across the plane of the scan.
+// Embree (version 3) as a caster: walls are upright surfaces that the scan plane intersects.
 
 #include "bench/caster.h"
 
 namespace sf::bench {
 
-/// How Embree is asked.
+/// Options of Embree.
 struct EmbreeUse {
-  bool packets = true;  ///< eight adjacent beams together, said to be coherent; false: one by one
-  bool robust = false;  ///< its slower test, which lets nothing slip through shared edges
+  bool packets = true;  ///< packets of eight adjacent beams, declared coherent; false: single beams
+  bool robust = false;  ///< slower intersection test without gaps at shared edges
 };
 
-/// `scans` must outlive it. Null where the benchmarks were built without Embree.
+/// `scans` must outlive it. Null when the benchmarks are built without Embree.
 std::unique_ptr<Caster> make_embree_caster(const Scans& scans, const EmbreeUse& use);
 
 }  // namespace sf::bench

@@ -1,5 +1,5 @@
 #pragma once
-// The farm's side of a contest: rounds of poses, ticked one at a time, with results that can be spoilt in between.
+// The farm in a comparison: rounds of poses, ticked one at a time, with results that can be poisoned in between.
 
 #include <cstdint>
 #include <span>
@@ -13,7 +13,7 @@ namespace sf::bench {
 
 class FarmRounds {
  public:
-  /// Every sensor is heard. @param rounds poses, one per mover @param interval [ns] of simulated time between ticks
+  /// Subscribes all sensors. @param rounds poses, one per mover @param interval [ns] of simulated time between ticks
   FarmRounds(const world::World& world, gpu::Device& device, const std::vector<std::vector<base::Pose>>& rounds,
              std::int64_t interval)
       : farm_(world, device, {.reuse_unchanged = false}), interval_(interval) {

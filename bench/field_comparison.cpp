@@ -15,10 +15,10 @@ namespace sf::bench {
 
 namespace {
 
-constexpr std::size_t kJudgedRobots = 7;  // of each turn
+constexpr std::size_t kJudgedRobots = 7;  // per turn
 constexpr const char* kReference = "plain C++, -O3";
 
-/// Arrays of the thesis on robots anywhere in the extent, 8.5 cm up.
+/// Arrays of the thesis on robots at random places in the extent, 8.5 cm high.
 FieldScene fleet_on(std::string name, world::World world, std::uint32_t arrays, std::size_t repeats) {
   double x0 = 1e300, x1 = -1e300, y0 = 1e300, y1 = -1e300;
   for (const world::Magnet& m : world.magnets) {
@@ -39,7 +39,7 @@ FieldScene fleet_on(std::string name, world::World world, std::uint32_t arrays, 
   return scene;
 }
 
-/// Compares a sample of a turn with direct sums.
+/// Compares a sample of one turn with direct sums.
 void check_accuracy(const FieldScene& scene, const FieldMethod& method, std::size_t repeat,
                     FieldMethodResult& method_result, double& largest) {
   const std::size_t robots = scene.world.movers.size();

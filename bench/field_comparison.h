@@ -1,5 +1,5 @@
 #pragma once
-// Magnetometer arrays over many magnets: the farm beside plain C++, in turn, each judged against direct sums.
+// Magnetometer arrays over many magnets: the farm compared with plain C++, both checked against direct sums.
 
 #include <cstdint>
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace sf::bench {
 
-/// Arrays of five elements on robots at random places, which are others in each turn: no old answer is a right one.
+/// Arrays of five elements on robots at random poses that differ in each turn, so that old results are wrong.
 struct FieldScene {
   std::string name;
   world::World world;
@@ -20,14 +20,14 @@ struct FieldScene {
   std::vector<std::vector<base::Pose>> rounds;  ///< X_WM per turn and robot
 };
 
-/// One method's part.
+/// Result of one method.
 struct FieldMethodResult {
   std::string method;
   std::vector<Cost> repeats;
   Cost typical;             ///< medians
-  double ratio = 0.0;       ///< [-] median over turns of plain C++'s time / its own
-  double cpu_ratio = 0.0;   ///< [-] the same of time on all cores
-  double max_error = 0.0;   ///< of the largest field met, over a sample of all turns
+  double ratio = 0.0;       ///< [-] median over turns of plain C++'s wall time divided by the method's
+  double cpu_ratio = 0.0;   ///< [-] the same of CPU time on all cores
+  double max_error = 0.0;   ///< relative to the largest field, over a sample of all turns
   std::size_t checked = 0;  ///< elements
 };
 
@@ -36,19 +36,19 @@ struct FieldComparison {
   std::size_t arrays = 0;
   std::size_t magnets = 0;
   double cutoff_m = 0.0;
-  double pairs = 0.0;  ///< of a magnet and an element, per turn, that were summed by the farm
+  double pairs = 0.0;  ///< of a magnet and an element, summed by the farm per turn
   std::vector<FieldMethodResult> method_results;
 };
 
 /// `arrays` over SimVille's magnets, without a cut-off.
 FieldScene simville_scene(std::uint32_t arrays, std::size_t repeats);
-/// `arrays` over `magnets` at random, one a square metre.
+/// `arrays` over `magnets` at random positions, one per square metre.
 FieldScene sheet_scene(std::uint32_t arrays, std::uint32_t magnets, double cutoff, std::size_t repeats);
 
 FieldComparison compare(const FieldScene& scene, gpu::Device& device);
 
-/// Writes field.csv into `folder`; keeps the old one where nothing was measured.
-/// @throws base::InputError when it cannot be written.
+/// Writes field.csv into `folder`; without measurements the old file is kept.
+/// @throws base::InputError when it cannot be written
 void write_csv(const std::vector<FieldComparison>& comparisons, const std::string& folder);
 std::string table(const std::vector<FieldComparison>& comparisons);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Who sums magnets in the contest.
+// Methods of the field comparison.
 
 #include <memory>
 #include <string>
@@ -9,24 +9,24 @@
 
 namespace sf::bench {
 
-/// Elements of every array.
+/// Elements per array.
 inline constexpr std::size_t kArrayElements = 5;
 
 class FieldMethod {
  public:
   virtual ~FieldMethod() = default;
   virtual std::string name() const = 0;
-  /// Spoils what the last turn gave.
+  /// Overwrites the results of the last turn.
   virtual void poison() = 0;
-  /// What is measured: from poses to readings.
+  /// The timed part: from poses to readings.
   virtual void sum(std::size_t repeat) = 0;
-  /// [T] element `e` of robot `robot`, in the element's frame; not a number when it was not written.
+  /// [T] Field at element `e` of robot `robot`, in the element's frame; not a number when it was not written.
   virtual FieldVector value(std::size_t robot, std::size_t e) const = 0;
-  /// Pairs of a magnet and an element summed so far; 0 where nobody counts.
+  /// Pairs of a magnet and an element summed so far; 0 for methods that do not count.
   virtual double pairs() const { return 0.0; }
 };
 
-/// `scene` and `device` must outlive them.
+/// `scene` and `device` must outlive the methods.
 std::unique_ptr<FieldMethod> make_farm_method(const FieldScene& scene, gpu::Device& device);
 std::unique_ptr<FieldMethod> make_plain_method(const FieldScene& scene, const std::string& name, SumField sum);
 

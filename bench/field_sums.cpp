@@ -1,4 +1,4 @@
-// Built twice, as SF_SUM says: see field_sums.h.
+// Compiled twice with different SF_SUM, see field_sums.h.
 
 #include "bench/field_sums.h"
 
@@ -8,7 +8,7 @@ namespace sf::bench {
 
 namespace {
 
-/// Sums side by side, so that a compiler may use vectors without changing the order of any of them.
+/// Independent sums, so that the compiler can vectorize without reordering additions.
 constexpr std::size_t kLanes = 8;
 constexpr double kSteps[kLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
 
@@ -22,7 +22,7 @@ double total(const double (&lanes)[kLanes]) {
   return sum;
 }
 
-/// As shaders/lib/dipoles.glsl has it. Everything is loaded before anything is chosen: then no choice is a branch.
+/// The arithmetic of shaders/lib/dipoles.glsl. All loads precede all selections, so that selections are not branches.
 inline void add(const MagnetColumns& m, std::size_t at, double last, double px, double py, double pz,
                 double cutoff_squared, Sums& sums) {
   const double* const mx = m.x.data() + at;

@@ -1,5 +1,5 @@
 #pragma once
-// The magnetometers' sums in plain C++: the kernel's arithmetic on tables laid out for a compiler's vectors.
+// Sums of magnetic fields in plain C++: the kernel's arithmetic on tables laid out for vectorization.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace sf::bench {
 
-/// Magnets in the order of their grid's cells, a column each, padded with some that are nothing.
+/// Magnets in the order of their grid's cells, one array per quantity, padded with magnets of zero moment.
 struct MagnetColumns {
   sensors::MagnetGrid grid;
   double cutoff = 0.0;                 ///< [m] 0: none
@@ -30,8 +30,8 @@ struct FieldVector {
 using SumField = FieldVector (*)(const MagnetColumns& magnets, std::span<const sensors::MagnetSpan> spans, double x,
                                  double y, double z);
 
-/// The same source built twice: for any x86-64, and with every vector instruction of the very processor it was built
-/// on, fused and as wide as they come.
+/// One source compiled twice: for any x86-64, and for the build machine with all its vector instructions, fused and at
+/// full width.
 FieldVector sum_portable(const MagnetColumns& magnets, std::span<const sensors::MagnetSpan> spans, double x, double y,
                          double z);
 FieldVector sum_native(const MagnetColumns& magnets, std::span<const sensors::MagnetSpan> spans, double x, double y,

@@ -21,7 +21,7 @@ Measurement simville(gpu::Device& device) {
   return {"SimVille's traffic, 52 robots", result.simulated / result.wall, "x real time"};
 }
 
-/// @return times real time, and the hash of all readings.
+/// @return real-time factor, and the hash of all readings
 std::pair<double, std::uint64_t> wander_in(const world::World& world, gpu::Device& device) {
   scenarios::Simulation simulation(world, device, {});
   const double start = now().wall_s;

@@ -1,5 +1,5 @@
 #pragma once
-// Whole fleets in the loop: controllers, motion and every sensor, against simulated time.
+// Whole fleets in closed loop, with controllers, motion and all sensors, relative to simulated time.
 
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace sf::bench {
 
-/// SimVille's traffic (experiments/simville.toml, which must meet what it expects) and, where the file is there, 1 000
-/// robots that wander in Stage's hospital (two runs, which must give the same readings).
+/// Runs SimVille's traffic (experiments/simville.toml, whose expectations must be met) and, where the file exists, 1
+/// 000 wandering robots in Stage's hospital (two runs with equal readings).
 std::vector<Measurement> measure_fleets(gpu::Device& device);
 
 }  // namespace sf::bench

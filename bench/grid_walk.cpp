@@ -1,4 +1,4 @@
-// Built twice, as SF_WALK says: see grid.h.
+// Compiled twice with different SF_WALK, see grid.h.
 
 #include "base/reading.h"
 #include "bench/grid.h"
@@ -20,7 +20,7 @@ void test(const SegmentGrid& grid, std::size_t cell, glm::dvec2 o, glm::dvec2 d,
     const double below = s.ex * d.y - s.ey * d.x;
     const double across = d.x * wy - d.y * wx;
     const double above = s.ex * wy - s.ey * wx;
-    // u = across / below in [0, 1] and t = above / below >= 0, without a division for those that miss.
+    // u = across / below in [0, 1] and t = above / below >= 0, tested without a division.
     const bool misses = below > 0.0 ? across < 0.0 || across > below || above < 0.0
                                     : across > 0.0 || across < below || above > 0.0 || below == 0.0;
     if (misses) continue;
@@ -29,7 +29,7 @@ void test(const SegmentGrid& grid, std::size_t cell, glm::dvec2 o, glm::dvec2 d,
   }
 }
 
-/// Along one axis: which way the cells go, and where along the beam the next one begins.
+/// Traversal along one axis: direction of the cells, and distance to the next cell.
 struct Axis {
   int step;
   double next;   ///< [m] along the beam

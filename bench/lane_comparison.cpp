@@ -17,7 +17,7 @@ namespace sf::bench {
 namespace {
 
 constexpr std::size_t kJudged = 60;
-constexpr std::size_t kPlain = 1;  ///< the entrant that ratios refer to
+constexpr std::size_t kPlain = 1;  ///< index of the method that ratios refer to
 
 Cost read_once(LaneReader& reader, std::size_t round, std::size_t sensors) {
   reader.poison();
@@ -29,7 +29,7 @@ Cost read_once(LaneReader& reader, std::size_t round, std::size_t sensors) {
   return cost;
 }
 
-/// Every ray against every face in long double, then the fit on the host.
+/// Tests every ray against every face in long double, then fits on the host.
 sensors::EdgeReading brute_force(const LaneScene& scene, const LaneKnowledge& known, std::size_t i) {
   const base::Pose X_WS = base::compose(scene.rounds[0][i], known.X_MS[i]);
   const auto near = oracle::within(known.faces, {X_WS.x, X_WS.y}, known.job.range_max);

@@ -1,5 +1,5 @@
 #pragma once
-// Whole ticks of lane edge sensors beside the same algorithm in plain C++ on all cores.
+// Whole ticks of lane edge sensors compared with the same algorithm in plain C++ on all cores.
 
 #include <cstdint>
 #include <string>
@@ -11,14 +11,14 @@
 
 namespace sf::bench {
 
-/// One method's part.
+/// Result of one method.
 struct LaneMethodResult {
   std::string method;
   std::vector<Cost> repeats;  ///< one per turn
   Cost typical;               ///< medians of `repeats`
-  double ratio = 0.0;         ///< [-] median over turns of the plain peer's time / its own
-  double cpu_ratio = 0.0;     ///< [-] the same of time on all cores
-  double worst = 0.0;         ///< [m] largest difference to what the judge says, of readings that both have
+  double ratio = 0.0;         ///< [-] median over turns of the wall time of plain C++ divided by the method's
+  double cpu_ratio = 0.0;     ///< [-] the same of CPU time on all cores
+  double worst = 0.0;         ///< [m] largest difference from the reference, over readings that both have
   std::size_t alone = 0;      ///< readings that only one of the two has
   std::uint64_t hash = 0;     ///< of all readings of round 0
 };
@@ -26,20 +26,20 @@ struct LaneMethodResult {
 struct LaneComparison {
   std::size_t sensors = 0;
   std::size_t rays = 0;     ///< per turn
-  double resolution = 0.0;  ///< [m] of the raster; 0: exact paint
-  std::size_t seen = 0;     ///< sensors with an edge in sight in round 0
+  double resolution = 0.0;  ///< [m] of the raster; 0: exact markings
+  std::size_t seen = 0;     ///< sensors that see an edge in round 0
   std::vector<LaneMethodResult> method_results;
 };
 
-/// Every turn asks every method once for the same round, in an order that rotates; results are spoilt before. Exact
-/// paint is judged by the tests' brute force and the fit on the host, for a sample of sensors; a raster by the plain
-/// peer, which walks it in 64 bits.
+/// In every turn each method reads the same round once, in rotating order; results are poisoned before. The reference
+/// for exact markings is the tests' brute force with the fit on the host, for a sample of sensors; for a raster it is
+/// plain C++, which traverses it in 64 bits.
 LaneComparison compare_lanes(gpu::Device& device, const LaneScene& scene, std::size_t repeats);
 
-/// Writes lanes.csv into `folder`; keeps the old one where nothing was measured. @throws base::InputError when it
-/// cannot be written.
+/// Writes lanes.csv into `folder`; without measurements the old file is kept.
+/// @throws base::InputError when it cannot be written
 void write_lanes(const std::vector<LaneComparison>& comparisons, const std::string& folder);
-/// The same as text for people.
+/// The same as text.
 std::string lane_table(const std::vector<LaneComparison>& comparisons);
 
 }  // namespace sf::bench

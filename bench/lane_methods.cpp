@@ -7,7 +7,7 @@ namespace sf::bench {
 
 namespace {
 
-/// The farm's instruments and all that a tick does for them.
+/// The farm's backend and the steps of a tick that concern it.
 class FarmLanes final : public LaneReader {
  public:
   FarmLanes(const LaneScene& scene, gpu::Device& device)

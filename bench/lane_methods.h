@@ -1,5 +1,5 @@
 #pragma once
-// Who reads lane edges: the farm's instruments, and plain C++.
+// Methods of the lane edge comparison: the farm's backend, and plain C++.
 
 #include <memory>
 #include <string>
@@ -13,28 +13,28 @@
 
 namespace sf::bench {
 
-/// Answers one scene, round by round.
+/// Reads one scene, round by round.
 class LaneReader {
  public:
   virtual ~LaneReader() = default;
   virtual std::string name() const = 0;
-  /// Spoils all results, so that one that is not written cannot pass for one that is.
+  /// Overwrites all results, so that unwritten ones are detected.
   virtual void poison() = 0;
   virtual void read(std::size_t round) = 0;
   virtual sensors::EdgeReading reading(std::size_t sensor) const = 0;
 };
 
-/// A distance that nobody reads.
+/// A distance that no sensor reads.
 inline constexpr double kPoisonDistance = -7.0;
 
-/// What plain C++ knows of a scene: which rows, which faces.
+/// Tables of a scene for plain C++.
 struct LaneKnowledge {
   LaneJob job;
   SegmentGrid grid;
   std::unique_ptr<sensors::MarkingRaster> raster;
   std::vector<sensors::EdgeRow> rows;
   std::vector<base::Pose> X_MS;
-  std::vector<world::Segment> faces;  ///< exact ones; none of a raster
+  std::vector<world::Segment> faces;  ///< exact faces; empty for a raster
 };
 std::unique_ptr<LaneKnowledge> know(const LaneScene& scene);
 

@@ -15,7 +15,7 @@ constexpr double kTurn = 0.68;   // [m]
 constexpr double kPaint = 0.03;  // [m]
 constexpr std::size_t kRounds = 8;
 
-/// Moves points of a street along +x from the origin to where it lies.
+/// Transforms points of a street along +x from the origin to its place.
 struct Street {
   double x, y;
   bool up;
@@ -32,7 +32,7 @@ void add_street(world::World& world, const Street& s) {
   trial::add_dashes(world, s.at(from, 0.0), s.at(to, 0.0), kPaint, 0.15, 0.15);
 }
 
-/// The four corners of a crossing.
+/// Adds the four turns of a crossing.
 void add_turns(world::World& world, double x, double y) {
   const double c = kLane + kTurn;
   for (int quarter = 0; quarter < 4; ++quarter) {
@@ -65,7 +65,7 @@ LaneScene make_lane_scene(std::uint32_t blocks, std::uint32_t robots, double res
     const double yaw = (s.up ? 0.5 * M_PI : 0.0) + chance.between(-0.35, 0.35);
     poses.push_back({p.x, p.y, 0.0, yaw});
     trial::add_edge_eye(scene.world, poses.back(), {});
-    // Every other robot looks to its left, at the middle of the road; the others at the edge.
+    // Half of the sensors look left to the centre line, the others right to the edge line.
     scene.world.movers.back().sensors[0].X_MS.yaw = k % 2 == 0 ? 0.5 * M_PI : -0.5 * M_PI;
   }
   for (std::size_t round = 0; round < kRounds; ++round) {

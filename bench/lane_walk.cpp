@@ -1,4 +1,4 @@
-// Built twice, as SF_READ_LANE says: see lane_walk.h.
+// Compiled twice with different SF_READ_LANE, see lane_walk.h.
 
 #include "bench/lane_walk.h"
 
@@ -20,7 +20,7 @@ struct Met {
 struct Cell {
   std::uint32_t word;
   bool painted;
-  int side;  ///< [cells] of the empty square round a free cell of a full block
+  int side;  ///< [cells] side of the empty square around a free cell of a full block
 };
 
 Cell cell_at(const MarkingRaster& raster, int x, int y, std::size_t plane) {
@@ -35,7 +35,7 @@ Cell cell_at(const MarkingRaster& raster, int x, int y, std::size_t plane) {
   return {word, ((half >> ((y & 3) * kBlock + (x & 7))) & 1u) != 0, quarter_free ? 4 : pair_free ? 2 : 1};
 }
 
-/// From `p` [cells of the raster] along `d`, until paint begins (or ends, where it starts on paint).
+/// Distance from `p` [cells of the raster] along `d` to the start of paint, or to its end when `p` is on paint.
 Met walk_paint(const LaneJob& job, glm::dvec2 p, glm::dvec2 d, double reach) {
   const MarkingRaster& raster = *job.raster;
   const glm::dvec2 inverse{d.x == 0.0 ? 1e300 : 1.0 / d.x, d.y == 0.0 ? 1e300 : 1.0 / d.y};

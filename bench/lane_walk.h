@@ -1,6 +1,6 @@
 #pragma once
-// Lane edge sensors in plain C++: the same walk over the same raster, or a uniform grid of exact faces, and the same
-// fit, one sensor after another.
+// Lane edge sensors in plain C++: traversal of the same raster, or of a uniform grid of exact faces, and the same fit,
+// one sensor after another.
 
 #include "base/pose.h"
 #include "bench/grid.h"
@@ -9,23 +9,23 @@
 
 namespace sf::bench {
 
-/// What all sensors of a scene share.
+/// Data shared by all sensors of a scene.
 struct LaneJob {
-  const SegmentGrid* grid = nullptr;               ///< of exact faces, or
-  const sensors::MarkingRaster* raster = nullptr;  ///< of paint
+  const SegmentGrid* grid = nullptr;               ///< of exact faces; else `raster`
+  const sensors::MarkingRaster* raster = nullptr;  ///< of the markings
   std::uint32_t paint_tag = 0;                     ///< of the raster
-  Walk walk = nullptr;                             ///< of the grid, of the same build
-  std::vector<glm::dvec2> beams;                   ///< unit, in the sensor's frame
-  std::vector<double> directions;                  ///< the same, number by number
+  Walk walk = nullptr;                             ///< of the grid, from the same build
+  std::vector<glm::dvec2> beams;                   ///< unit vectors in the sensor's frame
+  std::vector<double> directions;                  ///< the same as a flat array
   std::vector<double> grains;
   double range_max = 1.0;  ///< [m]
 };
 
-/// @param row what the fit needs of this sensor
+/// @param row the sensor's data for the fit
 using LaneRead = void (*)(const LaneJob& job, const sensors::EdgeRow& row, const base::Pose& X_WS,
                           sensors::EdgeReading& out);
 
-/// The same source built twice: for any x86-64, and for the very processor it was built on.
+/// One source compiled twice: for any x86-64, and for the build machine.
 void read_lane_portable(const LaneJob& job, const sensors::EdgeRow& row, const base::Pose& X_WS,
                         sensors::EdgeReading& out);
 void read_lane_native(const LaneJob& job, const sensors::EdgeRow& row, const base::Pose& X_WS,

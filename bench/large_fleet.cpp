@@ -17,9 +17,9 @@ namespace sf::bench {
 namespace {
 
 constexpr std::size_t kWarmUp = 10;
-constexpr std::size_t kReceiveBuffer = 256u << 20;  // [byte] more than two ticks
+constexpr std::size_t kReceiveBuffer = 256u << 20;  // [byte] more than two ticks of packets
 
-/// Where all packets go: taken out between ticks, outside of what is measured.
+/// Destination of all packets. Emptied between ticks, outside the measurement.
 class Sink {
  public:
   Sink() : socket_(netio::open_udp({netio::kLoopback, 0}, {.receive = kReceiveBuffer})), batch_(1024) {}
@@ -36,7 +36,7 @@ class Sink {
   netio::ReceiveBatch batch_;
 };
 
-/// Every packet to one port: a stride of none.
+/// All packets go to one port: stride 0.
 server::StreamLayout plan_for(const sensors::SensorSet& sensor_set, std::uint16_t port) {
   server::StreamLayout plan;
   plan.stride = 0;
@@ -66,7 +66,7 @@ class LargeFleet {
         publisher_(world_, sensor_set_, plan_for(sensor_set_, sink_.port()),
                    netio::Outbox(server::outbox_options(sensor_set_))) {}
 
-  /// @return what it cost
+  /// @return its cost
   Cost tick() {
     const Cost start = now();
     const base::TickRecord record = simulation_.step();
@@ -82,7 +82,7 @@ class LargeFleet {
     return cost;
   }
 
-  /// Waits for what is on its way.
+  /// Waits until all packets are sent.
   netio::OutboxCounts sent() {
     const netio::OutboxCounts counts = publisher_.counts().packets;
     received_ += sink_.drain();

@@ -1,5 +1,5 @@
 #pragma once
-// The whole tick of a large fleet: motion, contacts, decisions, three kinds of sensors, packets to a socket.
+// The whole tick of a large fleet: motion, contacts, decisions, three sensor types, packets to a socket.
 
 #include <cstdint>
 #include <string>
@@ -12,26 +12,26 @@ namespace sf::bench {
 
 struct LargeFleetResult {
   std::size_t robots = 0;
-  std::vector<Cost> ticks;  ///< from motion until every packet is encoded; sending goes on beside the next one
+  std::vector<Cost> ticks;  ///< from motion until all packets are encoded; sending overlaps with the next tick
   double p50_s = 0.0;
   double p99_s = 0.0;
-  double move_s = 0.0;  ///< [s] mean per tick, as are all below: decisions, motion, contacts
+  double move_s = 0.0;  ///< [s] mean per tick of decisions, motion and contacts; the times below are means, too
   double encode_s = 0.0;
-  double send_s = 0.0;          ///< of the thread that sends
-  farm::FarmStats stages;       ///< of the measured ticks together
-  std::uint64_t datagrams = 0;  ///< of the measured ticks together, as are all below
+  double send_s = 0.0;          ///< by the sending thread
+  farm::FarmStats stages;       ///< sums over the measured ticks
+  std::uint64_t datagrams = 0;  ///< in the measured ticks, as the counts below
   std::uint64_t bytes = 0;
   std::uint64_t received = 0;
   std::uint64_t dropped = 0;  ///< never sent
   std::uint64_t hash = 0;     ///< of all readings since the start
 };
 
-/// `robots` robots that wander and see each other, each with a laser of 361 beams up to 8 m, a lane edge sensor of 61
+/// Runs `robots` wandering robots that see each other, each with a laser of 361 beams to 8 m, a lane edge sensor of 61
 /// rays and five magnetometers, all at 10 Hz, for `ticks` ticks.
 LargeFleetResult drive_large_fleet(gpu::Device& device, std::uint32_t robots, std::size_t ticks);
 
 std::string large_fleet_table(const std::vector<LargeFleetResult>& results);
-/// Writes large_fleet.csv; nothing where there are no results.
+/// Writes large_fleet.csv; without results nothing.
 void write_large_fleet(const std::vector<LargeFleetResult>& results, const std::string& folder);
 
 }  // namespace sf::bench

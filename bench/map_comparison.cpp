@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kCell = 0.03;  // [m]
 
-/// What one round tells every map.
+/// Scans of one round.
 struct Round {
   std::vector<base::Pose> X_WS;
   std::vector<std::vector<double>> ranges;
@@ -90,7 +90,7 @@ class FarmMapper : public Mapper {
   std::vector<sensors::MapScan> scans_;
 };
 
-/// Pushes each beam's cells, on all cores.
+/// Marks the cells of each beam, on all cores.
 class PlainMapper : public Mapper {
  public:
   PlainMapper(const std::vector<sensors::MapPlan>& plans, bool weighs) : plans_(plans), weighs_(weighs) {
@@ -100,7 +100,7 @@ class PlainMapper : public Mapper {
     }
     beams_ = maps::beam_directions(plans[0].fov, plans[0].samples);
     ends_.resize(thread_pool_.threads(), std::vector<std::uint32_t>(beams_.size()));
-    covered_.resize(thread_pool_.threads(), maps::OccupancyGrid(plans[0].grid));  // of one size with all
+    covered_.resize(thread_pool_.threads(), maps::OccupancyGrid(plans[0].grid));  // the same size for all
   }
   std::string name() const override { return "plain C++ mapper, -O3"; }
   void update(const Round& round) override {

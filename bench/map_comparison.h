@@ -1,5 +1,5 @@
 #pragma once
-// Scans into the maps of a fleet: the farm's batch beside the plain mapper on all cores.
+// Integration of scans into the maps of a fleet: the farm's batch compared with the plain mapper on all cores.
 
 #include <cstdint>
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace sf::bench {
 
-/// One method's part.
+/// Result of one method.
 struct MapMethodResult {
   std::string method;
   std::vector<Cost> repeats;  ///< one per turn
   Cost typical;               ///< medians of `repeats`
-  double ratio = 0.0;         ///< [-] median over turns of the plain mapper's time / its own
-  double cpu_ratio = 0.0;     ///< [-] the same of time on all cores
+  double ratio = 0.0;         ///< [-] median over turns of the plain mapper's wall time divided by the method's
+  double cpu_ratio = 0.0;     ///< [-] the same of CPU time on all cores
   std::size_t different = 0;  ///< words of all maps that differ from the plain mapper's
   std::uint64_t hash = 0;     ///< of all maps after the last turn
 };
@@ -25,18 +25,18 @@ struct MapComparison {
   std::size_t robots = 0;
   std::size_t beams = 0;  ///< per turn
   double range_m = 0.0;
-  bool weighs = false;  ///< log odds
+  bool weighs = false;  ///< log odds instead of three states
   std::vector<MapMethodResult> method_results;
 };
 
-/// Every turn gives every method the same scans once, in an order that rotates: robots in the cave, each with a map of
-/// its own of 3 cm cells that holds all it may see.
+/// In every turn each method gets the same scans once, in rotating order: robots in the cave, each with its own map of
+/// 3 cm cells that covers its range.
 MapComparison compare_maps(gpu::Device& device, std::uint32_t robots, double range, bool weighs, std::size_t repeats);
 
-/// Writes maps.csv into `folder`; keeps the old one where nothing was measured. @throws base::InputError when it
-/// cannot be written.
+/// Writes maps.csv into `folder`; without measurements the old file is kept.
+/// @throws base::InputError when it cannot be written
 void write_maps(const std::vector<MapComparison>& comparisons, const std::string& folder);
-/// The same as text for people.
+/// The same as text.
 std::string map_table(const std::vector<MapComparison>& comparisons);
 
 }  // namespace sf::bench

@@ -15,10 +15,10 @@ namespace {
 
 constexpr int kRepeats = 21;
 
-/// Everyone who is due looks, though nobody moves.
+/// Measures all due sensors, although the robots stand.
 constexpr farm::FarmOptions kAnew{.reuse_unchanged = false};
 
-/// Median of what one tick costs, every sensor due in each.
+/// Median cost of a tick in which every sensor is due.
 Cost tick_cost(farm::Farm& farm) {
   std::vector<Cost> costs;
   std::int64_t time = 0;

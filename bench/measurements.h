@@ -1,5 +1,5 @@
 #pragma once
-// Single figures: what a start costs, what nothing costs.
+// Single measurements: start-up, empty ticks, lists.
 
 #include <string>
 #include <vector>
@@ -14,14 +14,14 @@ struct Measurement {
   std::string unit;
 };
 
-/// From no device to the first reading, with and without the driver's cache of compiled kernels.
-/// Changes the environment of this process while it runs.
+/// Time from opening the device to the first reading, with and without the driver's cache of compiled kernels. Changes
+/// environment variables of this process meanwhile.
 std::vector<Measurement> measure_start();
 
-/// Ticks that hardly do anything, and one sensor that does much.
+/// Ticks with almost no work, and one sensor with much.
 std::vector<Measurement> measure_ticks(gpu::Device& device);
 
-/// What it costs to make the lists of a cell that nobody has been in.
+/// Cost of making the lists of a new cell.
 std::vector<Measurement> measure_lists(gpu::Device& device);
 
 }  // namespace sf::bench

@@ -1,5 +1,5 @@
 #pragma once
-// Spoiling the farm's results between ticks.
+// Overwrites the farm's results between ticks, so that unwritten ones are detected.
 
 #include <cstdint>
 #include <span>
@@ -8,13 +8,13 @@
 
 namespace sf::bench {
 
-/// Overwrites what the last tick returned, in place: its spans look into the very tables that the next tick writes.
+/// Overwrites the results of the last tick in place: the spans refer to the tables that the next tick writes.
 void poison(std::span<const base::ReadingBlock> readings);
 
-/// Values that are still spoilt.
+/// Number of values that are still overwritten.
 std::size_t unwritten(std::span<const base::ReadingBlock> readings);
 
-/// Of all ranges, in order.
+/// Hash of all ranges, in order.
 std::uint64_t hash_ranges(std::span<const base::ReadingBlock> readings);
 
 }  // namespace sf::bench

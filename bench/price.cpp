@@ -30,10 +30,10 @@ constexpr int kTurns = 41;
 
 struct Process {
   double seconds = 0.0;  ///< from before exec to after exit
-  double mib = 0.0;      ///< most that was resident
+  double mib = 0.0;      ///< peak resident memory
 };
 
-/// Runs the program to its end; what it prints is thrown away.
+/// Runs the program to its end and discards its output.
 Process run_program(Words words) {
   words.insert(words.begin(), SF_PROGRAM);
   std::vector<char*> arguments;
@@ -86,7 +86,7 @@ class Turn {
   std::vector<double> costs_;
 };
 
-/// The same hundred lasers in a cave, under what makes them pay or not.
+/// The same hundred lasers in a cave under several conditions.
 void measure_lasers(gpu::Device& device, std::vector<Measurement>& facts) {
   const world::World plain = make_scans("cave", load_cave(), 100, scenes::laser()).world;
   world::World magnets = plain;
@@ -101,7 +101,7 @@ void measure_lasers(gpu::Device& device, std::vector<Measurement>& facts) {
   facts.push_back({"the same, nobody hears them", unheard.ms(), "ms"});
   facts.push_back({"the same, not due", idle.ms(), "ms"});
   facts.push_back({"the same, standing without noise", stands.ms(), "ms"});
-  // A tick of half a millisecond varies by as much as that where the machine is shared.
+  // On a shared machine a tick of half a millisecond varies by as much.
   SF_CHECK(beside.ms() < 1.5 * looks.ms() + 0.5, "magnets that nobody measures cost something");
   SF_CHECK(unheard.ms() < 0.1 * looks.ms(), "sensors that nobody hears cost something");
   SF_CHECK(idle.ms() < 0.1 * looks.ms(), "sensors that are not due cost something");

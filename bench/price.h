@@ -1,5 +1,5 @@
 #pragma once
-// What a world pays for: memory, the start of the program, and the world's features one by one.
+// Cost of a world: memory, start of the program, and single features of the world.
 
 #include <vector>
 
@@ -7,11 +7,12 @@
 
 namespace sf::bench {
 
-/// The program itself, as a process: most resident memory and seconds to the first reading. Fails where SimVille with
-/// 50 robots takes 200 MiB or a cold start to the first reading 1 s.
+/// Runs the program as a process and measures its peak resident memory and the time to the first reading. Fails when
+/// SimVille with 50 robots takes 200 MiB, or a cold start to the first reading 1 s.
 std::vector<Measurement> measure_program();
 
-/// SimVille with each kind of sensor heard alone; magnets that nobody measures; who is not due; who stands.
+/// Ticks of SimVille with one sensor type subscribed at a time; also with magnets but no magnetometer, with sensors
+/// that are not due, and with standing robots.
 std::vector<Measurement> measure_features(gpu::Device& device);
 
 }  // namespace sf::bench

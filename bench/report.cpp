@@ -18,7 +18,7 @@ void write(const std::string& file, const std::string& text) {
 
 namespace {
 
-/// A field that may hold a comma.
+/// Quotes a CSV field that may contain a comma.
 std::string quoted(const std::string& text) { return "\"" + text + "\""; }
 
 std::string scans_csv(const std::vector<Comparison>& contests) {
@@ -34,7 +34,7 @@ std::string scans_csv(const std::vector<Comparison>& contests) {
   return text;
 }
 
-/// What a tick's stages take on average [ms], and what was special.
+/// Mean durations of a tick's stages [ms], and shares of special cases.
 struct Stages {
   double move, place, lists, device, collect, decide, doubts, cells;
 };

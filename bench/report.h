@@ -1,5 +1,5 @@
 #pragma once
-// Results as files for later and as tables for now.
+// Results as CSV files and as text tables.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace sf::bench {
 
-/// All that was measured.
+/// All results.
 struct Book {
   std::vector<Comparison> contests;
   std::vector<TickResult> drives;
@@ -18,15 +18,14 @@ struct Book {
   std::vector<Measurement> prices;
 };
 
-/// Writes `text` to `file`, in place of what it held. @throws base::InputError when it cannot be written.
+/// Replaces the content of `file` by `text`. @throws base::InputError when it cannot be written
 void write(const std::string& file, const std::string& text);
 
-/// Writes scans.csv, ticks.csv, facts.csv and prices.csv into `folder`; a part of which nothing was measured keeps its
-/// old file.
-/// @throws base::InputError when a file cannot be written.
+/// Writes scans.csv, ticks.csv, facts.csv and prices.csv into `folder`. Files of parts without measurements are kept.
+/// @throws base::InputError when a file cannot be written
 void write_csv(const Book& book, const std::string& folder);
 
-/// The same as text for people.
+/// The same as text.
 std::string tables(const Book& book);
 
 }  // namespace sf::bench

@@ -1,5 +1,5 @@
 #pragma once
-// The question that every caster is asked: the same walls, the same robots, the same beams.
+// Input of every caster: the same walls, robots and beams.
 
 #include <cstdint>
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace sf::bench {
 
-/// Scans of a fleet whose robots are seen by nobody: what all casters can do.
+/// Scans of a fleet with robots invisible to each other, as all casters support.
 struct Scans {
   std::string scene;
   world::World world;                           ///< movers carry `laser` and have no bodies
   world::Laser laser;                           ///< of every robot
-  std::vector<std::vector<base::Pose>> rounds;  ///< X_WM per round and robot; round k is asked at turns k, k + n, ...
-  std::vector<glm::dvec2> beams;                ///< unit, in the sensor's frame, from -fov/2 to +fov/2
+  std::vector<std::vector<base::Pose>> rounds;  ///< X_WM per round and robot; round k is used in turns k, k + n, ...
+  std::vector<glm::dvec2> beams;                ///< unit vectors in the sensor's frame, from -fov/2 to +fov/2
 
   std::size_t robots() const { return world.movers.size(); }
   std::size_t rays() const { return robots() * beams.size(); }  ///< per round
@@ -24,11 +24,11 @@ struct Scans {
   }
 };
 
-/// `count` robots at random free places of `world`, whose own movers are left out. They turn and shift by a few
-/// millimetres from round to round, so that nothing can be answered from memory but what stands still.
+/// `count` robots at random free places of `world`, whose own movers are removed. The robots turn and shift by a few
+/// millimetres from round to round, so that results cannot be reused.
 Scans make_scans(const std::string& scene, world::World world, std::uint32_t count, const world::Laser& laser);
 
-/// The cave that the demo and the tests run in, `worlds/cave.world`, without its robot.
+/// The cave of the demo and the tests, `worlds/cave.world`, without its robot.
 world::World load_cave();
 
 }  // namespace sf::bench

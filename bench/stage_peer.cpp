@@ -21,14 +21,14 @@ namespace {
 constexpr double kLoadOnly = 0.1;  // [s] simulated
 constexpr int kRounds = 3;
 
-/// Robots in the cave, which has no room for a thousand at its usual size.
+/// Size of a fleet and its cave, which at its usual size has no room for a thousand robots.
 struct Crowd {
   std::uint32_t robots;
   double side;  ///< [m] of the cave
 };
 constexpr Crowd kCrowds[] = {{100, 16.0}, {300, 16.0}, {1'000, 48.0}};
 
-/// worlds/cave.world with the floor plan drawn at another size.
+/// worlds/cave.world with the floor plan scaled to another size.
 world::World load_cave(const Crowd& crowd, const std::string& file) {
   std::ifstream in(SF_SOURCE_DIR "/worlds/cave.world");
   std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -45,7 +45,7 @@ world::World load_cave(const Crowd& crowd, const std::string& file) {
   return world;
 }
 
-/// Its robots as Stage has them, Stage's wander at the wheel.
+/// Writes the same robots as a Stage world, driven by Stage's wander controller.
 void write_stage_world(const world::World& world, const Crowd& crowd, double seconds, const std::string& file) {
   std::ofstream out(file);
   out << "interval_sim 100\nspeedup -1\nresolution 0.02\nquit_time " << seconds << "\n"
@@ -64,7 +64,7 @@ void write_stage_world(const world::World& world, const Crowd& crowd, double sec
   }
 }
 
-/// [s] on the clock.
+/// [s] Wall time.
 double run_stage(const std::string& program, const std::string& file) {
   const double start = now().wall_s;
   const std::string command = fmt::format("'{}' -g '{}' >/dev/null 2>&1", program, file);

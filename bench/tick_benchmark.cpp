@@ -49,7 +49,7 @@ void TickBenchmark::tick(bool wander) {
   time_ += interval_;
 }
 
-/// Every robot has one laser here, so that its reading is the row of its number.
+/// Every robot has one laser, so that the index of its reading is its row.
 void TickBenchmark::decide() {
   thread_pool_.parallel_for(readings_.size(), 16, [this](std::size_t first, std::size_t end, unsigned) {
     for (const base::ReadingBlock& reading : readings_.subspan(first, end - first)) {

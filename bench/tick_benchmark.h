@@ -1,5 +1,5 @@
 #pragma once
-// Whole ticks: a simulated fleet with bodies, moved, sensed and decided for.
+// Whole ticks of a simulated fleet with bodies: motion, sensors, decisions.
 
 #include <memory>
 #include <string>
@@ -22,23 +22,23 @@ struct TickResult {
   std::size_t rays = 0;  ///< per tick
   double range_m = 0.0;
   double interval_s = 0.0;  ///< [s] simulated time per tick
-  std::vector<Cost> ticks;  ///< whole ticks: move, sense, decide
+  std::vector<Cost> ticks;  ///< whole ticks: motion, sensors, decisions
   Cost typical;             ///< medians of `ticks`
-  double move_s = 0.0;      ///< [s] mean per tick, as are all below
+  double move_s = 0.0;      ///< [s] mean per tick, as the times below
   double decide_s = 0.0;
-  farm::FarmStats stages;  ///< of the measured ticks together
+  farm::FarmStats stages;  ///< sums over the measured ticks
   AccuracyCheck accuracy;
   std::uint64_t hash = 0;  ///< of the last tick's ranges
 };
 
-/// A world with robots at work. `world` and `device` must outlive it.
+/// A world with driving robots. `world` and `device` must outlive it.
 class TickBenchmark {
  public:
   TickBenchmark(const world::World& world, gpu::Device& device);
 
-  /// One tick. Robots wander when `wander`, else stand where they are.
+  /// One tick. @param wander false: robots stand
   void tick(bool wander);
-  double move_s() const { return move_s_; }  ///< [s] so far
+  double move_s() const { return move_s_; }  ///< [s] total
   double decide_s() const { return decide_s_; }
   farm::Farm& farm() { return farm_; }
   std::span<const base::ReadingBlock> readings() const { return readings_; }
@@ -61,7 +61,7 @@ class TickBenchmark {
   double decide_s_ = 0.0;
 };
 
-/// Drives `ticks` ticks after `warm_up` unmeasured ones.
+/// Runs `ticks` measured ticks after `warm_up` unmeasured ones.
 TickResult run_ticks(const std::string& scene, const world::World& world, gpu::Device& device, bool wander,
                      std::size_t warm_up, std::size_t ticks);
 

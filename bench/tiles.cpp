@@ -12,10 +12,10 @@ namespace sf::bench {
 namespace {
 
 constexpr double kTile = 16.0;         // [m]
-constexpr std::uint32_t kCells = 100;  // of a side of a tile: some 1 050 walls
+constexpr std::uint32_t kCells = 100;  // per side of a tile: about 1 050 walls
 constexpr std::uint64_t kSeed = 3;
 
-/// Where the tiles lie: `visit(shift)` for as many as `robots` need.
+/// Calls `visit(shift)` for as many tiles as `robots` need.
 template <class Visit>
 void for_each_tile(std::size_t robots, Visit&& visit) {
   const std::size_t tiles = (robots + kRobotsPerTile - 1) / kRobotsPerTile;
