@@ -79,7 +79,7 @@ TickResult run_ticks(const std::string& scene, const world::World& world, gpu::D
   const double decide_before = fleet.decide_s();
 
   for (std::size_t k = 0; k < ticks; ++k) {
-    // Robots decide on what they read; standing ones do not read, so that their results can be spoilt every time.
+    // Wandering robots need their readings; those of standing robots are poisoned every time.
     if (!wander) poison(fleet.readings());
     const Cost start = now();
     fleet.tick(wander);

@@ -8,8 +8,7 @@ namespace sf::scenarios {
 /// Replaces robots of the world by copies as the scenario's FleetSpawn demands. Depends on the scenario's seed alone.
 /// - free: copies made by `world::clone_robots` replace all robots.
 /// - lanes: robots named by [[robot]] entries stay. Copies are placed on lanes of the road network, in driving
-/// direction,
-///   far enough from each other and from the robots that stay for each to turn in place.
+///   direction, far enough from each other and from the robots that stay for each to turn in place.
 /// @throws base::InputError at the scenario's line for an unknown robot, no road network, or lack of room.
 void spawn_fleet(const Scenario& scenario, world::World& world);
 

@@ -38,7 +38,7 @@ struct TradeoffOptions {
   std::function<bool(double part)> progress;  ///< called with the completed part; returns false to stop
 };
 
-/// @return the modes of each sensor type that has several, `exact` first, in order of types; fewer when stopped
+/// @return the modes of each sensor type that has accuracy modes, `exact` first, in order of types; fewer when stopped
 std::vector<ModeResult> tradeoff(const world::World& world, gpu::Device& device, const TradeoffOptions& options);
 
 /// Columns sensor, mode, rate_per_s, covered, covered_max_error, covered_bound, all_median_error, all_p99_error,

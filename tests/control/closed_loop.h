@@ -1,5 +1,5 @@
 #pragma once
-// A robot, its controller and sensors worked out by brute force, tick by tick.
+// Closed loop of one robot, its controller and brute-force sensors, tick by tick.
 
 #include <cmath>
 #include <functional>
@@ -17,9 +17,9 @@ using base::Twist;
 
 inline constexpr std::int64_t kSecond = 1'000'000'000;
 
-/// The ranges of a laser on walls alone.
+/// Ranges of a laser on walls only.
 inline std::vector<double> scan(const world::World& world, const world::Laser& laser, const Pose& X_WS) {
-  // Walls out of range are left out once for all beams.
+  // Walls out of range are excluded once for all beams.
   std::vector<const world::Segment*> near;
   for (const auto& wall : world.walls)
     if (wall.seen_by_laser && wall.z_min <= X_WS.z && X_WS.z < wall.z_max &&

@@ -8,7 +8,7 @@
 namespace sf::control {
 namespace {
 
-// Counts its steps, and is done after some.
+// Counts its steps, and is done after a number of them.
 class Counting final : public Controller {
  public:
   explicit Counting(int steps, int& count) : steps_(steps), count_(count) {}
@@ -74,7 +74,7 @@ TEST(ControlShell, StopsForGoodWhenTheControllerIsDone) {
        2);
 }
 
-// A controller that can say why it stands.
+// A controller that states a stop reason.
 class Stating final : public Controller, public StatesStopReason {
  public:
   base::Twist step(const ControllerInput&) override { return {}; }

@@ -1,4 +1,4 @@
-// Convoys, who comes into them, passing, parking.
+// Convoys, merging, overtaking, parking.
 
 #include "tests/control/traffic.h"
 
@@ -36,7 +36,7 @@ TEST(Parking, StopsWithItsFrontAtTheEndOfEverySpot) {
   }
 }
 
-// Five leave their spots for the streets while a sixth comes in: one after another, whatever they all want at once.
+// Five robots leave their spots while a sixth arrives. They take turns, although all start at once.
 TEST(Parking, AFullCarParkEmptiesWhileAnotherComesIn) {
   Streets t;
   const control::LaneCorridors corridors(t.roads, t.world, {});
@@ -82,11 +82,11 @@ TEST(Convoy, AChainOfFiveKeepsItsGaps) {
   EXPECT_EQ(t.contacts, 0);
   EXPECT_GT(t.route(0).reached(), 6u);
   EXPECT_GT(least, 0.4);
-  // One may have to stop at a stop sign where the one ahead has just gone.
+  // a stop sign may hold a follower when its leader has just gone
   EXPECT_LT(farthest, 2.5);
 }
 
-// Where a robot is along the way that the leader of all has driven: the order of a convoy.
+// Positions along the path of the first leader, which give the order of a convoy.
 struct Trail {
   std::vector<glm::dvec2> points;
   void add(const Pose& X) { points.push_back({X.x, X.y}); }
@@ -98,7 +98,7 @@ struct Trail {
   }
 };
 
-// Robot 4 waits at the stop sign of 12.2 and comes in behind robot 1, which robots 2 and 3 follow in a chain.
+// Robot 4 waits at the stop sign of 12.2 and merges behind robot 1, which robots 2 and 3 follow in a chain.
 TEST(Convoy, LetsARobotInBetween) {
   Streets t;
   t.add(on_lane(t.roads, "2.2", 2.2), "route", go({4, 8}));
@@ -113,13 +113,13 @@ TEST(Convoy, LetsARobotInBetween) {
   }
   EXPECT_EQ(t.contacts, 0);
   EXPECT_EQ(t.intents[3].follows, 1u);
-  EXPECT_EQ(t.intents[1].follows, 4u);  // it followed 1 until 4 was there
+  EXPECT_EQ(t.intents[1].follows, 4u);  // it followed 1 until 4 had merged
   EXPECT_EQ(t.intents[2].follows, 2u);
   EXPECT_GT(trail.nearest(t.pose(3)), trail.nearest(t.pose(1)));
   EXPECT_GT(trail.nearest(t.pose(1)), trail.nearest(t.pose(2)));
 }
 
-// The same from the lane beside: robot 4 drives on 1.2 and comes over to the convoy on 1.1.
+// The same from the adjacent lane: robot 4 drives on 1.2 and merges into the convoy on 1.1.
 TEST(Convoy, LetsARobotInFromTheLaneBeside) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 2.0), "route", go({2, 5}, {{"speed", 0.15, ""}}));
@@ -161,7 +161,7 @@ TEST(Passing, GoesRoundASlowerRobotAndComesBack) {
   EXPECT_EQ(t.contacts, 0);
 }
 
-// Robots on the other lane, one beside and one coming up from behind as fast: it stays where it is.
+// With robots on the other lane, one beside and one approaching from behind at the same speed, it keeps its lane.
 TEST(Passing, WaitsUntilTheOtherLaneIsFree) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 2.4), "route", go({5}, {{"speed", 0.03, ""}}));
@@ -179,7 +179,7 @@ TEST(Passing, WaitsUntilTheOtherLaneIsFree) {
   EXPECT_EQ(t.contacts, 0);
 }
 
-// A robot on the other lane counts where it would be 3 s on. Boundary: a millimetre.
+// A robot on the other lane counts at its position in 3 s. Boundary: a millimetre.
 TEST(Passing, WaitsForARobotThatComesUpFromBehind) {
   const Streets t;
   const control::LaneCorridors corridors(t.roads, t.world, {});
@@ -196,7 +196,7 @@ TEST(Passing, WaitsForARobotThatComesUpFromBehind) {
   };
   const double free = leaves();
   ASSERT_LT(free, end);
-  const double kept = free - 2.0 * corridors.body().radius - 0.3;  // [m] along the lane, clear before it changes
+  const double kept = free - 2.0 * corridors.body().radius - 0.3;  // [m] along the lane, to be free before the change
   road_users.push_back({.speed = 0.2});
   road_users[1].positions.count = 1;
   road_users[1].positions.all[0] = {beside->way, kept - 0.6 - 0.001, 0.0};

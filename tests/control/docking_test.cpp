@@ -16,8 +16,8 @@ using base::Pose;
 constexpr std::int64_t kTick = 100'000'000;
 constexpr double kRange = 1.8, kFov = 0.7, kHalo = 0.6;
 
-// The dock's light by formula, at a receiver in the robot's middle: the red buoy's beam on the left, the green one's on
-// the right, a quarter of each in common. (tests/scenarios/docking_test.cpp has the shipped receiver and dock.)
+// The dock's light by formula, at a receiver in the robot's centre: the red buoy's beam on the left, the green one's on
+// the right, with a quarter of each overlapping. (tests/scenarios/docking_test.cpp has the shipped receiver and dock.)
 double byte_at(const Pose& X_WD, glm::dvec2 p) {
   const glm::dvec2 from = base::rotate(-X_WD.yaw, p - glm::dvec2{X_WD.x, X_WD.y});
   const double bearing = std::atan2(from.y, from.x), far = glm::length(from);
@@ -40,7 +40,7 @@ Docked dock(const Pose& X_WD, const Pose& from, bool solid) {
   scenes::add_create(world, from).sensors.push_back({.type = "irreceiver"});
   world.emitters.push_back(
       {.kind = world::Emitter::Kind::dock, .X_WE = X_WD, .range = kRange, .fov = kFov, .halo = kHalo});
-  if (solid) {  // a face across the axis that the bumper meets
+  if (solid) {  // a face across the axis, which the bumper hits
     scenes::add_wall(world, base::transform(X_WD, {0.08, -0.15}), base::transform(X_WD, {0.08, 0.15}));
   }
   Settings settings("controller 'docking'", {});
@@ -152,8 +152,8 @@ TEST(Docking, WithOneBuoyAloneItGoesToThatPlaceUntilItHasSeenBoth) {
   }
 }
 
-// A turn in place carries the receiver from beam to beam, and where the robot looks away from the dock the shorter way
-// round is another for each: it goes on the way that it began.
+// A turn in place moves the receiver from beam to beam, and facing away from the dock the shorter direction differs
+// between beams. The robot keeps the direction in which it began.
 TEST(Docking, ATurnInPlaceGoesOnTheSameWayRound) {
   Docking docking({.X_WD = {}});
   const auto step = [&](double yaw, double byte) {
@@ -216,7 +216,7 @@ TEST(Docking, FromBehindItGoesRoundTheDock) {
   for (const double side : {1.0, -1.0}) {
     Docking docking({.X_WD = {}, .stage = 1.0});
     const auto heading = [&](double x, double y) {
-      // Facing where it wants to go it does not turn.
+      // Without a turn when it faces its goal.
       for (double yaw = -M_PI; yaw < M_PI; yaw += 0.01) {
         const base::Twist twist = docking.step({.state = {.X_WM = {x, y, 0, yaw}}});
         if (twist.forward > 0.0 && std::abs(twist.turn) < 0.016) return yaw;

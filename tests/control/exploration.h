@@ -1,7 +1,6 @@
 #pragma once
-// What an explorer must have seen, worked out from the world itself: every free cell whose middle is in range and in
-// view from some pose that a disc reaches without touching anything. Nothing here is shared with the explorer but the
-// rule of cells.
+// Reference for exploration, computed from the world: every free cell whose centre is in range and in view from a pose
+// that a disc reaches without contact. Independent of the explorer except for the grid rule.
 
 #include <cmath>
 #include <cstdint>
@@ -17,18 +16,18 @@ namespace sf::exploration {
 
 using base::Pose;
 
-/// How the reference sees the robot.
+/// Dimensions of the reference's robot.
 struct Looker {
   double radius = 0.165;  ///< [m] of the disc
   double ahead = 0.19;    ///< [m] of the sensor
   double range = 0.75;    ///< [m], half a turn to both sides
-  double spare = 0.0;     ///< [m] that the disc keeps from everything
+  double spare = 0.0;     ///< [m] clearance of the disc
 };
 
-inline constexpr double kStep = 0.01;  ///< [m] between the poses that are tried
+inline constexpr double kStep = 0.01;  ///< [m] between tested poses
 inline constexpr int kTurns = 48;      ///< headings of each
 
-/// Everything within the map's rectangle, on a lattice of kStep.
+/// All poses in the map's rectangle, on a lattice of kStep.
 class Reference {
  public:
   Reference(const world::World& world, const maps::GridGeometry& plan, glm::dvec2 start, const Looker& looker)
@@ -40,7 +39,7 @@ class Reference {
     flood(start);
   }
 
-  /// One per cell, row by row: 1 where it must have been seen.
+  /// One value per cell, row by row: 1 where the cell is visible.
   std::vector<std::uint8_t> seen() const {
     std::vector<std::uint8_t> seen(connected_.size());
     for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -66,7 +65,7 @@ class Reference {
     return false;
   }
 
-  // RoadPositions of the disc that are connected with the start.
+  // Positions of the disc that are connected to the start.
   void reach(glm::dvec2 start) {
     reached_.resize(static_cast<std::size_t>(wide_ * high_));
     std::vector<int> open{static_cast<int>((plan_.top - start.y) / kStep) * wide_ +
@@ -86,7 +85,7 @@ class Reference {
     }
   }
 
-  // RoadPositions of the sensor, with the headings that have it there.
+  // Positions of the sensor, with the headings that lead to them.
   void look_from_everywhere() {
     headings_.resize(reached_.size());
     for (int at = 0; at < wide_ * high_; ++at) {
@@ -153,7 +152,7 @@ class Reference {
   std::vector<std::uint8_t> connected_;
 };
 
-/// Three metres square with boxes of 0.2 to 0.6 m at any angle, a Create with the thesis' laser in a free place.
+/// A square of 3 m with boxes of 0.2 to 0.6 m at any angle, and a Create with the thesis' laser at a free place.
 inline world::World boxes(std::uint64_t seed, int count) {
   world::World world = scenes::boxed_world(3.0, 3.0, {-1.5, -1.5});
   const auto draw = [&](std::uint32_t i, std::uint32_t k) {

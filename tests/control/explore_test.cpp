@@ -56,7 +56,7 @@ TEST(Explore, MapsAllOfTheMappingAreaAndTouchesNothing) {
   EXPECT_LT(e.seconds, 400);
 }
 
-// Slivers beside surfaces are seen only along them, by some beams, from some places: a few cells in a thousand.
+// Slivers along surfaces are visible only by some beams from some places: a few cells in a thousand.
 TEST(Explore, MapsAreasOfBoxesAtAnyAngleAndTouchesNothing) {
   for (const std::uint64_t seed : {3, 5}) {
     const world::World world = exploration::boxes(seed, 4 + static_cast<int>(seed));
@@ -77,7 +77,7 @@ TEST(Explore, MissesNothingWhenItIsThorough) {
   EXPECT_EQ(e.missed, 0);
 }
 
-// A room behind a passage, seen neither from before it nor by a body a little wider.
+// A room behind a passage, not visible from before it and not accessible to a slightly wider body.
 world::World two_rooms(double gap) {
   world::World world = exploration::boxes(1, 0);
   scenes::add_outline(world.walls, scenes::rectangle({0.0, -0.75 - gap / 4.0}, 0.3, 1.5 - gap / 2.0));
@@ -94,7 +94,7 @@ TEST(Explore, PassesAPassageTwoCentimetresWiderThanTheBody) {
   EXPECT_LE(e.missed, e.must / 200);
 }
 
-// Before the passage, a pose that turns out to be so far aside that its corner would be met in the next two steps.
+// A pose before the passage, so far aside that the body would touch its corner within two steps.
 TEST(Explore, StandsRatherThanDriveOnWhereItWouldTouch) {
   const world::World world = two_rooms(0.35);
   const auto controller = make_explore(world);
@@ -107,7 +107,7 @@ TEST(Explore, StandsRatherThanDriveOnWhereItWouldTouch) {
   for (int i = 0; i < 10'000 && !enters(); ++i) run.tick();
   ASSERT_TRUE(enters()) << "it never came to the passage";
   base::Report state = run.fleet.reports()[0];
-  state.X_WM.y = 0.175 - 0.1652;  // the disc of 0.165 m would pass the corner 0.2 mm from it; 0.5 mm are asked for
+  state.X_WM.y = 0.175 - 0.1652;  // the disc of 0.165 m would pass the corner at 0.2 mm; 0.5 mm are required
   EXPECT_EQ(controller->step({.time = state.time, .state = state}).forward, 0.0);
 }
 
@@ -198,7 +198,7 @@ TEST(ExplorationMap, GroundIsKnownOnceItIsSeenOrStoodOn) {
   EXPECT_TRUE(terrain.covers_unknown(terrain.node_at({1.7, 0}))) << "it would leave the map";
 }
 
-// All of the map seen, and a wall of points at y = 0.
+// A map that is seen completely, with a wall of points at y = 0.
 ExplorationMap beside_a_wall() {
   ExplorationMap terrain({.left = -1.8, .top = 1.8}, 0.165, 0.19);
   terrain.mark_free({0, 0}, 10.0);
@@ -225,7 +225,7 @@ TEST(PoseSearch, FindsTheCheapestWay) {
   ASSERT_EQ(ahead.size(), 31u);
   EXPECT_EQ(ahead.front(), from);
   for (const LatticeState& state : ahead) EXPECT_EQ(state.heading, 0);
-  // Turned towards the wall and back out of it costs a way: round by the free side.
+  // The robot cannot turn towards the wall, so the path turns by the free side.
   const LatticeState close{terrain.node_at({0.0, 0.175}), 0};
   const auto turned = search.find(close, 0.003, [&](const LatticeState& s) { return s.heading == 8; });
   ASSERT_FALSE(turned.empty());

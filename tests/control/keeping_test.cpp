@@ -44,13 +44,13 @@ std::unique_ptr<Controller> make(const world::World& world, const ControllerType
 
 Setting set(const char* key, double value) { return {key, value, ""}; }
 
-/// To the left edge, by formula: what a perfect lane edge sensor reads, but for its perpendicular.
+/// Distance to the left edge by formula, as an ideal lane edge sensor reads it on a straight lane.
 std::vector<double> edge_from(const world::World& world, const Pose& X_WM) {
   const world::PathProjection at = world::project_onto(world.paths[0], transform(X_WM, {0.225, 0.0}));
   return {0.5 * world.paths[0].pieces[at.piece].width - at.offset, 61, 0, 0};
 }
 
-/// Five elements over a line that is strongest above, columns as the magnetometer has them.
+/// Five elements over a line whose field is largest above it, with the columns of the magnetometer.
 std::vector<double> field_over(const world::World& world, const Pose& X_WM) {
   std::vector<double> values;
   for (int i = 0; i < 5; ++i) {
@@ -63,7 +63,7 @@ std::vector<double> field_over(const world::World& world, const Pose& X_WM) {
 
 using Plant = Twist (*)(const Twist&);
 Twist ideal(const Twist& twist) { return twist; }
-// Player's driver for the Create: half the radius it was asked for, at most 2 m, in whole millimetres.
+// Player's driver for the Create: half the requested radius, at most 2 m, in whole millimetres.
 Twist player_create(const Twist& twist) {
   if (twist.turn == 0.0) return twist;
   const double radius = std::clamp(std::trunc(std::trunc(1e3 * twist.forward / twist.turn) / 2.0), -2000.0, 2000.0);
@@ -73,7 +73,7 @@ Twist player_create(const Twist& twist) {
 struct Drive {
   double seconds = 0.0;
   double mean = 0.0, mean_abs = 0.0, largest = 0.0;  // of the error
-  double farthest = 0.0;                             // [m] from the middle of the lane
+  double farthest = 0.0;                             // [m] from the lane's centre
   double end = 0.0;                                  // [m] along the path
 };
 
@@ -108,7 +108,7 @@ Drive drive_lane(std::vector<Setting> settings, Plant plant, Pose X_WM = {}) {
       world, *controller, sensors::kLaneEdge, [&](const Pose& X) { return edge_from(world, X); }, plant, X_WM);
 }
 
-// All turning is kp times the error: over a path that turns by 90 degrees the mean error is known beforehand.
+// All turning is kp times the error, so that a path that turns by 90 degrees determines the mean error.
 TEST(LaneKeeping, POnAUnicycleHasTheMeanErrorThatTheTurnNeeds) {
   for (const double kp : {0.5, 0.8, 1.2}) {
     const Drive d = drive_lane({set("kp", kp)}, ideal);
@@ -187,7 +187,7 @@ TEST(LaneKeeping, TheRightEdgeMirrors) {
   step_through(*controller, {{0.35, -0.1, -0.05, "far from the right edge: left of the middle, to the right"}});
 }
 
-// A sensor beside the robot's axis measures from where it is: what counts is the axis' own distance from the edge.
+// A sensor beside the robot's axis: the error is that of the axis.
 TEST(LaneKeeping, ASensorBesideTheAxisCountsFromTheAxis) {
   struct Mounted {
     double yaw, y, z, error;
@@ -204,7 +204,7 @@ TEST(LaneKeeping, ASensorBesideTheAxisCountsFromTheAxis) {
   }
 }
 
-// By its own gain it stays within its lane, the whole body but for a finger's width where the lane narrows to 0.45 m.
+// With its default gain the whole body stays in the lane, except for a finger's width where the lane narrows to 0.45 m.
 TEST(LaneKeeping, ItsOwnGainKeepsTheLane) {
   for (const auto plant : {&ideal, &player_create})
     for (const double speed : {0.1, 0.2, 0.4}) {

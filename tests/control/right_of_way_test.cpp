@@ -1,4 +1,4 @@
-// Who goes first, and crowds that nobody directs.
+// Right of way, and crowds without traffic control.
 
 #include "tests/control/traffic.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 // ---- Right of way.
 
-// 12.2 has a stop sign, 2.2 has none: who comes along 2.2 goes first, though the other stood there before it came.
+// 12.2 has a stop sign, 2.2 has none: a robot on 2.2 goes first, though the other has stopped there before it arrived.
 TEST(RightOfWay, WhoNeedNotStopGoesFirst) {
   Streets t;
   t.add(on_lane(t.roads, "12.2", 3.4), "route", go({4, 8}));
@@ -30,7 +30,7 @@ TEST(RightOfWay, WhoNeedNotStopGoesFirst) {
   EXPECT_EQ(t.contacts, 0);
 }
 
-// Two come to a crossing that a third still drives through: when it is free, the first that stood there goes first.
+// Two robots arrive while a third drives through the crossing. Afterwards the first that stood there goes first.
 TEST(RightOfWay, FirstComeFirstServed) {
   for (const bool other_first : {false, true}) {
     Streets t;
@@ -52,7 +52,7 @@ TEST(RightOfWay, FirstComeFirstServed) {
   }
 }
 
-// The bridge is flat: of two that come to it at right angles one waits, and nobody waits for ever.
+// The network is flat, so the bridge is a crossing: one of two robots waits, and none waits for ever.
 TEST(RightOfWay, LanesThatCrossWithoutASign) {
   for (int k = 0; k < 10; ++k) {
     Streets t;
@@ -66,7 +66,7 @@ TEST(RightOfWay, LanesThatCrossWithoutASign) {
   }
 }
 
-// Every light of the shipped world is found by its stop line, and every stop line that has none is a stop sign.
+// Every light of the shipped world belongs to a stop line, and every stop line without a light is a stop sign.
 TEST(RightOfWay, LightsOfSimvilleStandAtTheirLines) {
   const world::World world = world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world");
   const world::RoadNetwork roads = simville();
@@ -83,7 +83,7 @@ TEST(RightOfWay, LightsOfSimvilleStandAtTheirLines) {
   EXPECT_EQ(lights.size(), 7u);
 }
 
-// A lane full of standing robots beyond a crossing: who comes stops before the crossing, not within.
+// With a full lane beyond the crossing a robot stops before the crossing, not within.
 TEST(RightOfWay, DoesNotBlockTheBox) {
   Streets t;
   t.add(on_lane(t.roads, "5.1", 0.2), "route", go({8}));
@@ -91,7 +91,7 @@ TEST(RightOfWay, DoesNotBlockTheBox) {
   t.begin();
   t.controllers[0] = std::make_unique<Stands>();
   for (int i = 0; i < 200; ++i) t.tick();
-  const double line = 4.0;  // [m] where 4.1 ends
+  const double line = 4.0;  // [m] end of 4.1
   EXPECT_GT(t.pose(1).x - 0.165, line);
   EXPECT_LT(t.pose(1).x - 0.165, line + 0.05);
 }

@@ -1,4 +1,4 @@
-// Plans over SimVille's streets, and where ways meet.
+// Plans over SimVille's streets, and conflicts of ways.
 
 #include "tests/control/traffic.h"
 
@@ -35,7 +35,7 @@ TEST(RoutePlan, EveryLegBeginsWhereTheOneBeforeEnds) {
     }
     const auto& last = plan.legs.back();
     const glm::dvec2 end = point_on(p.corridors.way(last.way), last.to);
-    // A spot's way ends where the robot's origin stands, its front at the checkpoint.
+    // The way into a spot ends at the robot's origin, its front at the checkpoint.
     const double off = checkpoint.at.kind == world::PointRef::Kind::spot ? 0.165 : 0.0;
     EXPECT_NEAR(length(end - checkpoint.p), off, 2e-4) << checkpoint.id;  // chords of 4 cm in bends
   }
@@ -45,7 +45,7 @@ TEST(RoutePlan, TakesTheShortestWay) {
   const Planner p;
   control::RoutePlan plan = p.from("4.1", 2.0);
   ASSERT_TRUE(extend(p.corridors, plan, *find_checkpoint(p.streets.roads, 8)));
-  // Straight over the crossing: the rest of 4.1, 1.2 m, 5.1 to its sixth point.
+  // Straight across the crossing: the rest of 4.1, 1.2 m, then 5.1 to its sixth point.
   const auto& lane = p.streets.roads.lanes[plan.legs.back().way];
   EXPECT_EQ(plan.legs.size(), 3u);
   EXPECT_NEAR(length_of(plan), 0.6 + 1.2 + lane.points[5].s, 0.01);
@@ -107,7 +107,7 @@ TEST(StartPoses, StandApartOnLanesAndComeFromTheSeed) {
   EXPECT_THROW(control::start_poses(roads, 500, 1, 0.5), base::InputError);
 }
 
-// ---- Meetings of ways: any two points on two ways that do not meet are clear of each other.
+// ---- Conflicts: any two points on two ways without a conflict are clear of each other.
 
 /// A gate is held before the first of its conflicts and ends behind the last: for wide robots that one need not begin
 /// last.
@@ -146,7 +146,7 @@ TEST(LaneCorridors, WaysThatDoNotMeetAreClearOfEachOther) {
                                             t <= m.other_to + 1e-9;
                                    });
               });
-          // What follows the other way is a following, no meeting.
+          // Consecutive ways do not conflict.
           if (ways[a].into == ways[b].from || ways[b].into == ways[a].from) continue;
           EXPECT_TRUE(known) << a << " " << b;
           ++meets;

@@ -44,7 +44,7 @@ TEST(Route, DrivesAMissionRoundAndRound) {
   EXPECT_FALSE(t.controllers[0]->done());
 }
 
-// 5 mph are 0.319 m/s at 1/7 of the size, 8 mph 0.511 m/s, more than it is asked to drive.
+// 5 mph are 0.319 m/s at scale 1/7; 8 mph are 0.511 m/s, above the robot's own speed.
 TEST(Route, KeepsTheMissionsSpeedLimitsAndSlowsDownInBends) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 0.3), "route",
@@ -73,7 +73,7 @@ TEST(Route, ParksAtHalfItsSpeed) {
   Streets t;
   t.add(on_lane(t.roads, "1.1", 0.3), "route", {{"park", std::string("13.4"), ""}});
   t.begin();
-  double fastest = 0.0, near = 0.0;  // [m/s], at all and within 0.6 m of where it parks
+  double fastest = 0.0, near = 0.0;  // [m/s], overall and within 0.6 m of the spot
   while (!t.controllers[0]->done() && t.time < 600'000'000'000) {
     t.tick();
     const double speed = std::abs(t.fleet->reports()[0].velocity.forward);
@@ -87,7 +87,7 @@ TEST(Route, ParksAtHalfItsSpeed) {
   EXPECT_NEAR(near, 0.1, 0.01);
 }
 
-// 6.2.3 is a stop sign; 1.3.17 too. Every time it comes to one it stands, its front within 5 cm of the line.
+// 6.2.3 and 1.3.17 are stop signs. The robot stops at each, with its front within 5 cm of the line.
 TEST(Route, StopsFullyAtEveryStopSign) {
   Streets t;
   t.add(on_lane(t.roads, "1.3", 0.3), "route", go({8, 4, 8, 4, 9, 8}));
@@ -118,7 +118,7 @@ TEST(Route, StopsFullyAtEveryStopSign) {
   EXPECT_GE(crossed, 5);
 }
 
-// ---- Lights: all states, the front against the line on every tick.
+// ---- Lights: all states, with the front checked against the line on every tick.
 
 struct LightCase {
   world::LightState state;
@@ -172,7 +172,7 @@ TEST(Route, NeverCrossesARedLight) {
   EXPECT_EQ(crossings, 24);
 }
 
-// ---- What it refuses.
+// ---- Refusals.
 
 std::string refusal(const std::vector<Setting>& settings, const Pose& X_WM) {
   Streets t;
@@ -199,7 +199,7 @@ TEST(Route, RefusesWhatCannotBeDriven) {
   EXPECT_EQ(refusal(go({1}), lane), "");
 }
 
-// A network of one lane that goes nowhere: the second time round there is no way.
+// A network of one lane with a dead end: the second round has no path.
 TEST(Route, SaysWhereNoWayLeads) {
   Streets t;
   t.roads.exits.clear();
@@ -214,7 +214,7 @@ TEST(Route, SaysWhereNoWayLeads) {
   }
 }
 
-// Nobody sets out who would be stranded later: the third of three cannot be reached.
+// The route is refused at the start when the third of three checkpoints cannot be reached.
 TEST(Route, LooksAtTheWholeListBeforeItStarts) {
   Streets t;
   const auto row = find_checkpoint(t.roads, 12)->at.row;
@@ -226,7 +226,7 @@ TEST(Route, LooksAtTheWholeListBeforeItStarts) {
   EXPECT_THROW(t.tick(), base::InputError);
 }
 
-// Boundary: it stands in a crossing, on the way from 2.1 to 3.1.
+// Boundary: the robot starts in a crossing, on the way from 2.1 to 3.1.
 TEST(Route, StartsBetweenLanes) {
   Streets t;
   t.add({10.25, 3.3, 0.0, M_PI / 2}, "route", go({6}));
@@ -256,7 +256,7 @@ TEST(Route, FollowsASlowerRobotWithoutTouchingIt) {
   }
 }
 
-// Behind somebody who stands for ever it stands too, near but not touching.
+// Behind a robot that stands for ever it stops near it, without contact.
 TEST(Route, StandsBehindWhoStands) {
   Streets t;
   t.add(on_lane(t.roads, "4.1", 2.0), "route", go({7}, {{"speed", 0.01, ""}}));

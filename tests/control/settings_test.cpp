@@ -1,4 +1,4 @@
-// Values from files, which have a type, and from a command line, which are given one by who reads them.
+// Values from files, which have a type, and from the command line, whose type is that of the reader.
 
 #include "control/settings.h"
 
@@ -35,7 +35,7 @@ TEST(Settings, RawValuesBecomeWhatTheyAreReadAs) {
   EXPECT_EQ(numbers_of(raw("1")), Numbers{1.0});  // a list of one
   EXPECT_EQ(text_of(raw("1")), "1");
   EXPECT_EQ(texts_of(raw("1")), Texts{"1"});
-  EXPECT_EQ(text_of(raw("13.10")), "13.10");  // a spot's name keeps its last nought
+  EXPECT_EQ(text_of(raw("13.10")), "13.10");  // the trailing zero of a spot's name is kept
   EXPECT_EQ(text_of(raw("true")), "true");
   EXPECT_TRUE(raw("true").flag("key", false));
   EXPECT_FALSE(raw(" false ").flag("key", true));
@@ -49,7 +49,7 @@ TEST(Settings, RawListsAreWrittenInAnyOfTheUsualWays) {
   EXPECT_EQ(numbers_of(raw("[7]")), Numbers{7});
   EXPECT_EQ(texts_of(raw("a,b")), (Texts{"a", "b"}));
   EXPECT_EQ(texts_of(raw("[a b]")), (Texts{"a", "b"}));
-  EXPECT_EQ(texts_of(raw("a b,c")), (Texts{"a b", "c"}));  // commas go before blanks
+  EXPECT_EQ(texts_of(raw("a b,c")), (Texts{"a b", "c"}));  // commas take precedence over blanks
   EXPECT_EQ(texts_of(raw(R"(["a, b" 'c d'])")), (Texts{"a, b", "c d"}));
 }
 
@@ -57,7 +57,7 @@ TEST(Settings, RawTextsMayHaveQuotesAroundThem) {
   EXPECT_EQ(text_of(raw(R"("13.4")")), "13.4");
   EXPECT_EQ(text_of(raw("'13.4'")), "13.4");
   EXPECT_EQ(text_of(raw(R"("13.4')")), R"("13.4')");  // not a pair
-  EXPECT_EQ(text_of(raw("\"")), "\"");                // one alone is none
+  EXPECT_EQ(text_of(raw("\"")), "\"");                // a single quote mark is no pair
   EXPECT_EQ(text_of(raw(R"("")")), "");
   EXPECT_EQ(text_of(raw("")), "");
   EXPECT_EQ(text_of(raw("a b")), "a b");

@@ -1,4 +1,4 @@
-// SimVille's own experiment, without sensors: a convoy of five, 43 that tour, one that parks.
+// SimVille's experiment without sensors: a convoy of five, 43 robots on tours, one that parks.
 
 #include "tests/control/traffic.h"
 
@@ -33,9 +33,9 @@ void add_cast(Streets& t, std::uint64_t seed) {
 
 struct Town {
   int contacts = 0;
-  double longest_stand = 0.0;              // [s] of those that do not park
-  std::uint64_t goals = 0, least = ~0ull;  // of those that have some
-  std::array<double, 5> driven{};          // [m] by members of the convoy
+  double longest_stand = 0.0;              // [s] of the robots that do not park
+  std::uint64_t goals = 0, least = ~0ull;  // of the robots with goals
+  std::array<double, 5> driven{};          // [m] by the members of the convoy
   std::vector<double> gaps;                // [m] from each member to the one ahead of it, every second
   double gap(double quantile) {
     const auto at = static_cast<std::size_t>(quantile * static_cast<double>(gaps.size() - 1));
@@ -70,7 +70,7 @@ Town town(std::uint64_t seed, double seconds) {
   return town;
 }
 
-// Cut anywhere on its way through the car park, a route goes on from where it was cut.
+// A route that is cut anywhere in the car park continues from the cut.
 TEST(Town, ARouteCutInTheCarParkStaysInOnePiece) {
   Streets t;
   const control::LaneCorridors corridors(t.roads, t.world, {});
@@ -103,7 +103,7 @@ TEST(Town, NobodyStandsForGoodAndTheConvoyDrivesOn) {
   }
 }
 
-// Half an hour of it; half a minute of computing, so it runs when asked for.
+// Half an hour of simulated time takes half a minute, so it runs on request only.
 TEST(Town, DISABLED_HalfAnHour) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Town t = town(seed, 1800.0);

@@ -1,5 +1,5 @@
 #pragma once
-// A fleet on SimVille's streets, host only: everyone drives by V2V, contacts are what Fleet says.
+// A fleet on SimVille's streets, on the host: all robots drive by V2V, contacts are those of Fleet.
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ inline Pose on_lane(const world::RoadNetwork& roads, const std::string& name, do
   return {};
 }
 
-/// The lights of SimVille as a test has them: one phase plan for some stop lines.
+/// A light of SimVille with one phase plan for some stop lines.
 inline world::Light light(const std::string& name, std::vector<std::string> points,
                           std::vector<world::LightPhase> phases, double offset = 0.0) {
   world::Light light;

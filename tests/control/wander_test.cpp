@@ -28,7 +28,7 @@ world::Laser laser(double fov, std::uint32_t samples, double range_max, const Po
   return l;
 }
 
-// The range along a bearing: walls and the bodies of other movers, brute force.
+// Range along a bearing to walls and the bodies of other movers, by brute force.
 double cast(const world::World& world, std::span<const base::Report> reports, std::size_t own, glm::dvec2 p,
             double bearing, double range_max) {
   const glm::dvec2 u{std::cos(bearing), std::sin(bearing)};
@@ -47,7 +47,7 @@ double cast(const world::World& world, std::span<const base::Report> reports, st
   return range;
 }
 
-// A fleet of wanderers with ideal lasers.
+// A fleet with `wander` and ideal lasers.
 struct Walk {
   explicit Walk(const world::World& w, std::uint64_t seed = 1) : world(w), fleet(world) {
     for (std::uint32_t row = 0; row < world.movers.size(); ++row) wanderers.emplace_back(world.movers[row], row, seed);
@@ -79,7 +79,7 @@ struct Walk {
   int contacts = 0;
 };
 
-// What one robot has seen of a boxed world after a while.
+// Results of one robot in a closed world.
 struct Walked {
   double distance = 0.0;      // [m]
   std::size_t cells = 0;      // of 1 m visited
@@ -127,8 +127,7 @@ TEST(Wander, WithAScannerCoversGroundAndMeetsNothing) {
   }
 }
 
-// What presses from behind alone is left behind: ahead where there is room, else by turning; what presses elsewhere is
-// backed off from.
+// Touched only from behind the robot drives forward where there is room, else turns. Touched elsewhere it backs off.
 TEST(Wander, LeavesWhatPressesFromBehind) {
   world::World world = arena();
   scenes::add_create(world, {2, 2, 0, 0.3}).lasers.push_back(laser(M_PI, 181, 8.0));
@@ -217,7 +216,7 @@ TEST(Wander, TheSameWalkAgainAndAnotherWithAnotherSeed) {
   EXPECT_NE(a.fleet.reports()[0].X_WM.x, c.fleet.reports()[0].X_WM.x);
 }
 
-// ---- What it makes of odd readings.
+// ---- Odd readings.
 
 TEST(Wander, StaysFiniteWhateverItReads) {
   world::World world = scenes::empty_world();
@@ -258,7 +257,7 @@ TEST(Wander, BacksOffFromWhatItMetThenTurns) {
   EXPECT_NE(later.turn, 0.0);
 }
 
-// ---- One decision at a time: a Create whose laser of 181 beams over 180 degrees looks 8 m far from its middle.
+// ---- Single decisions: a Create with a laser of 181 beams over 180 degrees, 8 m range, at its centre.
 
 TEST(Wander, ItsDistancesFollowFromTheBodyItsSpeedAndItsSight) {
   world::World world = scenes::empty_world();
@@ -289,7 +288,7 @@ struct Eyes {
     scenes::add_create(world, {}).lasers.push_back(laser(M_PI, 181, 8.0));
     wander.emplace(world.movers[0], 0, 1);
   }
-  /// @param front [m] of the 3 middle beams; from them to the body's front are 0.165 m
+  /// @param front [m] range of the 3 middle beams, 0.165 m of it to the body's front
   Twist look(double seconds, double front, double right = 8.0, double left = 8.0, double yaw = 0.0,
              bool contact = false) {
     std::vector<double> ranges(181, right);
@@ -303,7 +302,7 @@ struct Eyes {
 };
 
 TEST(Wander, SlowsDownInProportionAndTurnsWhereItIsBlocked) {
-  // 0.4 m/s from 1 m on, a quarter of it at 0.2 m; nearer than that it turns.
+  // 0.4 m/s from 1 m on, a quarter of it at 0.2 m; below that the robot turns.
   for (const auto& [ahead, speed] : {std::pair{5.0, 0.4}, {1.01, 0.4}, {0.6, 0.4 * 0.625}, {0.201, 0.1}})
     EXPECT_NEAR(Eyes().look(0.0, ahead + 0.165).forward, speed, 1e-3) << ahead;
   const Twist blocked = Eyes().look(0.0, 0.199 + 0.165);
@@ -311,7 +310,8 @@ TEST(Wander, SlowsDownInProportionAndTurnsWhereItIsBlocked) {
   EXPECT_NEAR(std::abs(blocked.turn), 0.8 * M_PI / 2, 1e-12);
 }
 
-// In the open three tenths of its turn by how much freer a side is, near something all of it; and a drift of a quarter.
+// On free ground 0.3 of the turn rate times the difference of both sides, near an obstacle all of it; plus a drift of
+// 0.25.
 TEST(Wander, SteersTowardsTheFreerSide) {
   const double most = 0.8 * M_PI / 2, drift = 0.25 * most;
   EXPECT_NEAR(Eyes().look(0.0, 8.0, 4.0, 8.0).turn, 0.3 * most * 2.0 / 3.0, 1.1 * drift) << "left";
@@ -348,7 +348,7 @@ TEST(Wander, AfterAWholeRoundLessRoomWillDoAndAfterTwoItBacksOff) {
   EXPECT_LT(stuck.look(seconds += 0.1, 0.3, 8.0, 8.0, turned += 0.5).forward, 0.0) << "two rounds: backwards";
 }
 
-// Half its speed for 0.3 to 0.8 s, then a turn of 0.5 to 2.5 rad, though it is free ahead.
+// Half its speed for 0.3 to 0.8 s, then a turn of 0.5 to 2.5 rad, even when it is free ahead.
 TEST(Wander, BacksOffForAMomentAndTurnsBySomeAngle) {
   std::set<double> backs, turns;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
@@ -369,7 +369,7 @@ TEST(Wander, BacksOffForAMomentAndTurnsBySomeAngle) {
   EXPECT_GT(*turns.rbegin(), 2.2);
 }
 
-// ---- What is ahead.
+// ---- Clearance ahead.
 
 struct Look {
   double range;
@@ -391,7 +391,7 @@ TEST(ClearanceEstimator, AheadIsMeasuredFromTheFrontInTheLane) {
   }
 }
 
-// Its lane is 15 % and a centimetre wider than half its width, 0.2 m, to both sides.
+// The lane is 15 % and a centimetre wider than the half width of 0.2 m, on both sides.
 TEST(ClearanceEstimator, TheLaneIsALittleWiderThanTheBody) {
   for (const auto& [aside, ahead] : {std::pair{0.0, 1.0}, {0.235, 1.0}, {-0.235, 1.0}, {0.245, 1.9}, {-0.245, 1.9}}) {
     world::World world = scenes::empty_world();
