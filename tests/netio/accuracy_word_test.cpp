@@ -1,4 +1,4 @@
-// How a reading was measured, in the header's sixteen bits.
+// The accuracy word of the header.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ TEST(AccuracyWord, ModesAndFlagsComeBack) {
     }
 }
 
-/// A bound may grow by a sixteenth of an octave on the way, and never shrinks.
+/// Encoding may enlarge a bound by a sixteenth of an octave, and never reduces it.
 TEST(AccuracyWord, BoundsAreRoundedUp) {
   for (double bound = 1e-18; bound < 1e18; bound *= 1.0137) {
     const double back = decode_accuracy(encode_accuracy({0, false, bound})).bound;

@@ -7,7 +7,7 @@
 namespace sf::netio {
 namespace {
 
-/// The authors' own values (appendix A of the paper, and vectors.h beside it): key 00 .. 0f, input 00 01 02 ...
+/// Published test values (appendix A of the paper, and vectors.h beside it): key 00 .. 0f, input 00 01 02 ...
 TEST(Token, SipHashIsTheAuthors) {
   const SipHashKey key{0x0706050403020100u, 0x0f0e0d0c0b0a0908u};
   std::array<std::uint8_t, 15> bytes{};
@@ -24,7 +24,7 @@ TEST(Token, EachAddressAndPortHasItsOwn) {
   EXPECT_EQ(tokens.of(one), AddressTokens(SipHashKey{1, 2}).of(one));
   EXPECT_NE(tokens.of(one), tokens.of({kLoopback, 5002}));
   EXPECT_NE(tokens.of(one), tokens.of({kLoopback + 1, 5001}));
-  EXPECT_NE(tokens.of(one), AddressTokens(SipHashKey{1, 3}).of(one));  // a farm that was started again
+  EXPECT_NE(tokens.of(one), AddressTokens(SipHashKey{1, 3}).of(one));  // a restarted farm
 }
 
 TEST(Token, NoSessionAndNoKeyTwice) {

@@ -1,4 +1,4 @@
-// Nothing is allocated on the way in or out once the boxes stand. This program's `new` is counted.
+// Receiving and sending allocate nothing after construction. This program counts `new`.
 
 #include <gtest/gtest.h>
 
@@ -61,8 +61,8 @@ TEST(Allocation, NoneOnTheWayInOrOut) {
   std::vector<base::Bytes> packets = examples();
   const std::uint32_t token = inbox.token({kLoopback, outbox.endpoint().port});
   for (base::Bytes& packet : packets) write_session_token(packet, {1, token});
-  packets.resize(packets.size() - 2);        // the farm's own
-  const base::Bytes leave = packets.back();  // after it nobody is sent anything
+  packets.resize(packets.size() - 2);        // packets from the farm
+  const base::Bytes leave = packets.back();  // after it the robot gets no packets
   packets.back() = subscribe_to_others(token);
   packets.push_back(state_of_another(token));
   base::Bytes answer;

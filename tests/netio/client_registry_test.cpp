@@ -39,7 +39,7 @@ TEST_F(ClientRegistryTest, TheFirstSenderBinds) {
   EXPECT_EQ(say(kBob, 1, 1), PacketStatus::wrong_source);             // another port
   EXPECT_EQ(say(kAliceElsewhere, 1, 1), PacketStatus::wrong_source);  // another address
   EXPECT_EQ(registry.source(7), kAlice);
-  EXPECT_FALSE(registry.is_active(0, 1));  // other ids are unmoved
+  EXPECT_FALSE(registry.is_active(0, 1));  // other ids are unaffected
 }
 
 TEST_F(ClientRegistryTest, TwoSecondsOfSilenceFree) {
@@ -68,16 +68,16 @@ TEST_F(ClientRegistryTest, WrongSourcesDoNotRenew) {
 TEST_F(ClientRegistryTest, OldAndRepeatedSequencesAreStale) {
   EXPECT_EQ(say(kAlice, 100, 0), PacketStatus::accepted);
   EXPECT_EQ(say(kAlice, 100, 1), PacketStatus::stale);     // a duplicate
-  EXPECT_EQ(say(kAlice, 99, 2), PacketStatus::stale);      // came late
+  EXPECT_EQ(say(kAlice, 99, 2), PacketStatus::stale);      // late
   EXPECT_EQ(say(kAlice, 102, 3), PacketStatus::accepted);  // one lost
-  EXPECT_EQ(say(kAlice, 101, 4), PacketStatus::stale);     // the lost one after all
+  EXPECT_EQ(say(kAlice, 101, 4), PacketStatus::stale);     // the lost one arrives
 }
 
 TEST_F(ClientRegistryTest, SequencesWrap) {
   EXPECT_EQ(say(kAlice, 0xFFFFFFFFu, 0), PacketStatus::accepted);
   EXPECT_EQ(say(kAlice, 0, 1), PacketStatus::accepted);
-  EXPECT_EQ(say(kAlice, 0x7FFFFFFFu, 2), PacketStatus::accepted);  // the farthest that is ahead
-  EXPECT_EQ(say(kAlice, 0xFFFFFFFFu, 3), PacketStatus::stale);     // exactly half way round is not
+  EXPECT_EQ(say(kAlice, 0x7FFFFFFFu, 2), PacketStatus::accepted);  // the largest distance ahead
+  EXPECT_EQ(say(kAlice, 0xFFFFFFFFu, 3), PacketStatus::stale);     // half the range is not ahead
 }
 
 TEST_F(ClientRegistryTest, ARestartedSenderIsBackAfterTwoSeconds) {
@@ -90,13 +90,13 @@ TEST_F(ClientRegistryTest, ARestartedSenderIsBackAfterTwoSeconds) {
 
 TEST_F(ClientRegistryTest, ChannelsCountApart) {
   EXPECT_EQ(say(kAlice, 5000, 0, 0), PacketStatus::accepted);
-  EXPECT_EQ(say(kAlice, 0, 1, 1), PacketStatus::accepted);    // subscribes have their own count
+  EXPECT_EQ(say(kAlice, 0, 1, 1), PacketStatus::accepted);    // SUBSCRIBE has its own count
   EXPECT_EQ(say(kBob, 1, 2, 1), PacketStatus::wrong_source);  // and the same binding
   EXPECT_EQ(say(kAlice, 1, kSecond, 1), PacketStatus::accepted);
   EXPECT_EQ(say(kAlice, 0, kSecond, 0), PacketStatus::stale);
   EXPECT_EQ(say(kAlice, 2, 2 * kSecond, 1), PacketStatus::accepted);
   EXPECT_EQ(say(kAlice, 0, 2 * kSecond, 0),
-            PacketStatus::accepted);  // this line was silent, the other kept the binding
+            PacketStatus::accepted);  // this channel was silent, the other one kept the binding
 }
 
 TEST_F(ClientRegistryTest, WhoLeavesFreesItsIdAtOnce) {
@@ -104,7 +104,7 @@ TEST_F(ClientRegistryTest, WhoLeavesFreesItsIdAtOnce) {
   EXPECT_EQ(registry.leave(7, kAlice, 1), PacketStatus::accepted);
   EXPECT_FALSE(registry.is_active(7, 1));
   EXPECT_FALSE(registry.source(7));
-  EXPECT_EQ(say(kBob, 0, 1), PacketStatus::accepted);  // in the same nanosecond, counting from 0
+  EXPECT_EQ(say(kBob, 0, 1), PacketStatus::accepted);  // in the same nanosecond, with a new count
   EXPECT_EQ(registry.source(7), kBob);
   EXPECT_EQ(say(kAlice, 11, 2), PacketStatus::wrong_source);
 }
@@ -113,19 +113,19 @@ TEST_F(ClientRegistryTest, WhatALeaveOvertookBindsNobody) {
   say(kAlice, 10, 0);
   registry.leave(7, kAlice, kSecond);
   EXPECT_EQ(say(kAlice, 9, kSecond), PacketStatus::stale);
-  EXPECT_EQ(say(kAlice, 11, 3 * kSecond - 1), PacketStatus::stale);    // sent before, or it came back too soon
-  EXPECT_EQ(say(kAlice, 0, 3 * kSecond - 1, 1), PacketStatus::stale);  // of the other line too
+  EXPECT_EQ(say(kAlice, 11, 3 * kSecond - 1), PacketStatus::stale);    // sent before LEAVE, or a return too soon
+  EXPECT_EQ(say(kAlice, 0, 3 * kSecond - 1, 1), PacketStatus::stale);  // on the other channel, too
   EXPECT_FALSE(registry.is_active(7, 3 * kSecond - 1));
-  EXPECT_EQ(say(kAlice, 0, 3 * kSecond), PacketStatus::accepted);  // after two seconds it may be heard again
+  EXPECT_EQ(say(kAlice, 0, 3 * kSecond), PacketStatus::accepted);  // accepted again after two seconds
 }
 
 TEST_F(ClientRegistryTest, OnlyTheBoundOneLeaves) {
-  EXPECT_EQ(registry.leave(7, kAlice, 0), PacketStatus::stale);  // nobody was there
+  EXPECT_EQ(registry.leave(7, kAlice, 0), PacketStatus::stale);  // no binding
   say(kAlice, 0, 0);
   EXPECT_EQ(registry.leave(7, kBob, 1), PacketStatus::wrong_source);
   EXPECT_TRUE(registry.is_active(7, 1));
   EXPECT_EQ(registry.leave(7, kAlice, 2), PacketStatus::accepted);
-  EXPECT_EQ(registry.leave(7, kAlice, 3), PacketStatus::stale);  // said twice
+  EXPECT_EQ(registry.leave(7, kAlice, 3), PacketStatus::stale);  // repeated
   say(kBob, 0, 4);
   EXPECT_EQ(registry.leave(7, kBob, 4 + 2 * kSecond), PacketStatus::stale);  // silent already
 }

@@ -16,7 +16,7 @@ base::Bytes bytes_of(std::uint32_t n) {
   return bytes;
 }
 
-/// What is released by `now`, as numbers.
+/// Messages released by `now`, as numbers.
 std::vector<std::uint32_t> released(DelayLine& line, std::int64_t now) {
   std::vector<std::uint32_t> numbers;
   line.release(now, [&](std::size_t, std::span<const std::uint8_t> bytes) {
@@ -65,7 +65,7 @@ TEST(DelayLine, AllIsLostAtLossOne) {
   EXPECT_EQ(line.counts().lost, 100u);
 }
 
-// With jitter, messages come when `fate` says, in order of arrival, each once, whenever one looks.
+// With jitter messages arrive at the times of `sample_delay`, in order and once each, whenever they are released.
 TEST(DelayLine, ReleasesInOrderOfArrival) {
   const LinkModel plan{.delay = 0.01, .jitter = 0.2, .loss = 0.1, .seed = 5};
   std::mt19937 random(3);  // NOLINT: the same every time

@@ -10,7 +10,7 @@
 
 namespace sf::test {
 
-/// The bytes below `<!-- example: NAME -->`; none where there is no such example.
+/// The bytes below `<!-- example: NAME -->`; empty without such an example.
 inline base::Bytes documented(const std::string& example) {
   std::ifstream file(SF_SOURCE_DIR "/docs/packets.md");
   std::string line;

@@ -9,7 +9,7 @@
 
 namespace sf::netio {
 
-/// A reading of kind 1 in its plain form. What its payload says is of no concern here: a count and three words.
+/// A reading of kind 1 in its first form. Its payload is arbitrary here: a count and three words.
 inline base::Bytes reading_example() {
   const std::uint8_t payload[] = {0x03, 0x00, 0xe8, 0x03, 0xfa, 0x00, 0x40, 0x1f};
   base::Bytes out;
@@ -18,7 +18,7 @@ inline base::Bytes reading_example() {
   return out;
 }
 
-/// The same kind's second form.
+/// The second form of the same kind.
 inline base::Bytes extended_example() {
   const std::uint8_t payload[] = {0x38, 0x01, 0x00, 0x00, 0x36, 0x01, 0x00, 0x00, 0x01, 0x00, 0x02, 0x00,
                                   0x02, 0x00, 0x00, 0x00, 0xe7, 0x7f, 0x0c, 0x00, 0xff, 0xff, 0xff, 0xff};
@@ -66,7 +66,7 @@ inline base::Bytes challenge_example() {
   return out;
 }
 
-/// What the farm passes on of two others.
+/// Forwarded states of two other robots.
 inline base::Bytes neighbours_example() {
   base::Bytes first = v2v_example(), second, out;
   encode({.robot = 9, .sequence = 4, .time = 1'400'000'000}, V2v{.X_WR = {3, 0, 0, 0}}, second);
@@ -83,7 +83,7 @@ inline std::vector<base::Bytes> states() {
   return {v2v_example(), tag_example(), subscribe_example(), start_example(), leave_example()};
 }
 
-/// The farm's own packets, in order of type number.
+/// Packets from the farm, in order of type number.
 inline std::vector<base::Bytes> examples() {
   return {reading_example(), extended_example(), v2v_example(),       tag_example(),       subscribe_example(),
           start_example(),   leave_example(),    challenge_example(), neighbours_example()};

@@ -30,7 +30,7 @@ TEST(FarmClock, MayBeBehindTheRobots) {
 TEST(FarmClock, TheQuickestSaysItBest) {
   FarmClock clock;
   clock.update(10 * kSecond, 50);
-  clock.update(11 * kSecond, kSecond + 20);  // 30 ns less delay
+  clock.update(11 * kSecond, kSecond + 20);  // delay smaller by 30 ns
   clock.update(12 * kSecond, 2 * kSecond + 90);
   EXPECT_EQ(clock.to_farm(2 * kSecond + 20), 12 * kSecond);
 }
@@ -40,7 +40,7 @@ TEST(FarmClock, AFarmThatBeganAnewIsBelievedAfterSilence) {
   clock.update(100 * kSecond, 0);
   clock.update(0, 2 * kSecond - 1);  // may be very late
   EXPECT_EQ(clock.to_farm(0), 100 * kSecond);
-  clock.update(0, 4 * kSecond - 1);  // two seconds of nothing
+  clock.update(0, 4 * kSecond - 1);  // two seconds without readings
   EXPECT_EQ(clock.to_farm(4 * kSecond), 1);
 }
 

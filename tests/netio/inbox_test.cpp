@@ -35,7 +35,7 @@ base::Bytes subscribe(std::uint32_t sequence, std::uint32_t kinds) {
 struct InboxTest : testing::Test {
   Inbox inbox{options()};
   Packet packet;
-  /// Says it with the token of where it comes from.
+  /// Receives a packet with the token of its source.
   PacketStatus say(base::Bytes bytes, std::int64_t now = 0, const Endpoint& who = kAlice) {
     if (bytes.size() >= kHeaderBytes) write_session_token(bytes, {kSession, inbox.token(who)});
     return inbox.accept(bytes, who, now, packet);
@@ -54,7 +54,8 @@ TEST_F(InboxTest, EveryReasonIsReachedAndCounted) {
   EXPECT_EQ(say(patched(v2v_example(), 64, 2e7)), PacketStatus::out_of_range);
   EXPECT_EQ(say(reading_example()), PacketStatus::wrong_direction);
   EXPECT_EQ(say(v2v(8, 0)), PacketStatus::unknown_robot);
-  EXPECT_EQ(say(patched<std::uint16_t>(tag_example(), 6, 7)), PacketStatus::unknown_tag);  // a robot's id is no tag's
+  EXPECT_EQ(say(patched<std::uint16_t>(tag_example(), 6, 7)),
+            PacketStatus::unknown_tag);  // robots and tags have separate ids
   EXPECT_EQ(inbox.accept(v2v_example(), kAlice, 0, packet), PacketStatus::unproven);
   EXPECT_EQ(say(v2v_example()), PacketStatus::accepted);
   EXPECT_EQ(say(v2v(7, 10), 0, kBob), PacketStatus::wrong_source);
@@ -85,7 +86,7 @@ TEST_F(InboxTest, EitherPacketIsHeardForTwoSeconds) {
 TEST_F(InboxTest, ALeaveEndsTheBindingAndTheChoice) {
   const auto leave = [](std::uint16_t robot) { return patched<std::uint16_t>(leave_example(), 6, robot); };
   EXPECT_EQ(say(leave(8)), PacketStatus::unknown_robot);
-  EXPECT_EQ(say(leave(7)), PacketStatus::stale);  // it never spoke
+  EXPECT_EQ(say(leave(7)), PacketStatus::stale);  // without a state before
   say(v2v(7, 5));
   say(subscribe(0, 1u << 2));
   EXPECT_EQ(say(leave(7), 1, kBob), PacketStatus::wrong_source);
@@ -94,7 +95,7 @@ TEST_F(InboxTest, ALeaveEndsTheBindingAndTheChoice) {
   EXPECT_FALSE(inbox.is_active(7, 1));
   EXPECT_FALSE(inbox.address(7));
   EXPECT_EQ(say(v2v(7, 0), 2, kBob), PacketStatus::accepted);
-  EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 2));  // all kinds, not what the one before asked for
+  EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 2));  // all kinds, not the subscription of the sender before
   EXPECT_EQ(inbox.address(7), kBob);
 }
 
@@ -110,37 +111,38 @@ TEST_F(InboxTest, AnAddressIsHeardOnceItSendsItsTokenBack) {
   base::Bytes request = subscribe(0, 1u << kLaser);
   write_session_token(request, {kSession, 0});
   EXPECT_EQ(inbox.accept(request, kAlice, 0, packet), PacketStatus::unproven);
-  EXPECT_FALSE(inbox.is_active(7, 0) || inbox.address(7));  // nothing is sent there
+  EXPECT_FALSE(inbox.is_active(7, 0) || inbox.address(7));  // no packets are sent there
   ASSERT_TRUE(inbox.challenge(packet, kAlice, 0, answer));
-  EXPECT_LE(answer.size(), request.size());  // no more than what was sent in its name
+  EXPECT_LE(answer.size(), request.size());  // not larger than the request
   Packet challenge;
   ASSERT_EQ(decode(answer, challenge), PacketStatus::accepted);
   EXPECT_EQ(challenge.header.robot, 7);
-  EXPECT_EQ(challenge.header.token, kSession);  // so that the robot knows that it is meant
+  EXPECT_EQ(challenge.header.token, kSession);  // identifies the challenged robot
   const std::uint32_t token = std::get<Challenge>(challenge.body).token;
   write_session_token(request, {kSession, token});
-  EXPECT_EQ(inbox.accept(request, kBob, 0, packet), PacketStatus::unproven);  // it is nobody else's
+  EXPECT_EQ(inbox.accept(request, kBob, 0, packet), PacketStatus::unproven);  // valid for one address only
   EXPECT_EQ(inbox.accept(request, {kLoopback + 1, kAlice.port}, 0, packet), PacketStatus::unproven);
   EXPECT_EQ(inbox.accept(request, kAlice, 0, packet), PacketStatus::accepted);
   EXPECT_EQ(inbox.session_token_for(7).token, kSession);
   EXPECT_EQ(inbox.session_token_for(7).session, challenge.header.session);
   EXPECT_EQ(Inbox(options()).accept(request, kAlice, 0, packet),
-            PacketStatus::unproven);  // a farm that was started again
+            PacketStatus::unproven);  // a restarted farm
 }
 
-/// In the name of a victim nobody is bound, nobody is kept from its id, and nobody leaves.
+/// Forged sources bind no id, block no id and end no binding.
 TEST_F(InboxTest, ForgedAddressesDoNothing) {
   base::Bytes forged = v2v(7, 5);
   EXPECT_EQ(inbox.accept(forged, kBob, 0, packet), PacketStatus::unproven);
   EXPECT_EQ(say(v2v(7, 0)), PacketStatus::accepted);
-  EXPECT_EQ(inbox.accept(forged, kAlice, 1, packet), PacketStatus::unproven);  // where Alice is: no token, no state
+  EXPECT_EQ(inbox.accept(forged, kAlice, 1, packet),
+            PacketStatus::unproven);  // without a token Alice's id gets no state
   base::Bytes leave = leave_example();
   write_session_token(leave, {kSession, inbox.token(kBob)});
   EXPECT_EQ(inbox.accept(leave, kAlice, 1, packet), PacketStatus::unproven);
   base::Bytes none;
-  EXPECT_FALSE(inbox.challenge(packet, kAlice, 1, none));  // a LEAVE asks for nothing
+  EXPECT_FALSE(inbox.challenge(packet, kAlice, 1, none));  // a LEAVE gets no challenge
   EXPECT_TRUE(inbox.is_active(7, 1));
-  // After its LEAVE, and after two seconds, whoever takes over proves itself too.
+  // After LEAVE, and after two seconds, the next sender has to prove its address, too.
   say(leave_example(), 2);
   EXPECT_EQ(inbox.accept(v2v(7, 9), kBob, 3, packet), PacketStatus::unproven);
   EXPECT_EQ(inbox.accept(v2v(7, 9), kBob, 5 * kSecond, packet), PacketStatus::unproven);
@@ -164,18 +166,19 @@ TEST_F(InboxTest, TagsMakeNoRobotHeard) {
   EXPECT_FALSE(both.is_active(12, 0));
   base::Bytes state = v2v(12, 0);
   write_session_token(state, {0, both.token(kBob)});
-  EXPECT_EQ(both.accept(state, kBob, 0, packet), PacketStatus::accepted);  // tags bind apart from robots
+  EXPECT_EQ(both.accept(state, kBob, 0, packet),
+            PacketStatus::accepted);  // ids of tags are bound separately from those of robots
 }
 
 TEST_F(InboxTest, ARobotWantsAllKindsUntilItChooses) {
-  EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));   // not heard
+  EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));   // not active
   EXPECT_FALSE(inbox.is_subscribed(99, kLaser, 0));  // unknown
   say(v2v(7, 0), 0);
   EXPECT_TRUE(inbox.is_subscribed(7, kLaser, 0));
   say(subscribe(0, 1u << 2), 0);
   EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));
   EXPECT_TRUE(inbox.is_subscribed(7, 2, 0));
-  say(v2v(7, 1), kSecond);  // states do not undo the choice
+  say(v2v(7, 1), kSecond);  // states do not change the subscription
   EXPECT_FALSE(inbox.is_subscribed(7, kLaser, kSecond));
   say(subscribe(1, 0), kSecond);  // 0 is all again
   EXPECT_TRUE(inbox.is_subscribed(7, kLaser, kSecond));
@@ -196,26 +199,26 @@ TEST_F(InboxTest, StrangersCannotChoose) {
 
 TEST_F(InboxTest, OthersStatesMustBeAskedFor) {
   say(v2v(7, 0), 0);
-  EXPECT_FALSE(inbox.wants_neighbours(7, 0));  // by name only: all kinds are not all there is
+  EXPECT_FALSE(inbox.wants_neighbours(7, 0));  // states of robots are not included in "all kinds"
   say(subscribe(0, 0), 0);
   EXPECT_FALSE(inbox.wants_neighbours(7, 0));
   say(subscribe(1, kNeighboursBit), 0);
   EXPECT_TRUE(inbox.wants_neighbours(7, 0));
-  EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));  // nothing else was asked for
+  EXPECT_FALSE(inbox.is_subscribed(7, kLaser, 0));  // no other kind was requested
   say(subscribe(2, kNeighboursBit | 1u << kLaser), 0);
   EXPECT_TRUE(inbox.wants_neighbours(7, 0) && inbox.is_subscribed(7, kLaser, 0));
-  EXPECT_FALSE(inbox.wants_neighbours(7, 2 * kSecond));  // fell silent
-  EXPECT_FALSE(inbox.wants_neighbours(3, 0));            // never spoke
-  EXPECT_FALSE(inbox.wants_neighbours(99, 0));           // is nobody
+  EXPECT_FALSE(inbox.wants_neighbours(7, 2 * kSecond));  // silent
+  EXPECT_FALSE(inbox.wants_neighbours(3, 0));            // no packet yet
+  EXPECT_FALSE(inbox.wants_neighbours(99, 0));           // unknown
 }
 
 TEST_F(InboxTest, AnybodyMayStartRobots) {
   say(v2v(7, 0), 0);
-  EXPECT_EQ(say(start_example(), 0, kBob), PacketStatus::accepted);  // not who is bound
+  EXPECT_EQ(say(start_example(), 0, kBob), PacketStatus::accepted);  // from any source
   EXPECT_EQ(say(start_example(), 0, kBob), PacketStatus::accepted);  // and again
   EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 3), 0, kBob), PacketStatus::accepted);
   EXPECT_EQ(say(patched<std::uint16_t>(start_example(), 6, 8), 0, kBob), PacketStatus::unknown_robot);
-  EXPECT_FALSE(inbox.is_active(3, 0));  // that says nothing of the robot
+  EXPECT_FALSE(inbox.is_active(3, 0));  // START does not activate the robot
   EXPECT_EQ(inbox.address(7), kAlice);
 }
 
@@ -255,7 +258,7 @@ struct LoopbackTest : testing::Test {
   Outbox outbox;
   Endpoint to{kLoopback, inbox.port()};
 
-  /// Receives until `count` datagrams came; gives up, failing, after ten million empty looks.
+  /// Receives until `count` datagrams have arrived; fails after ten million empty polls.
   std::vector<Packet> receive(std::size_t count, std::int64_t now) {
     std::vector<Packet> packets;
     std::size_t taken = 0;

@@ -15,7 +15,7 @@ using Places = std::vector<NeighbourTree::Place>;
 
 Rows rows_of(std::span<const std::uint32_t> rows) { return {rows.begin(), rows.end()}; }
 
-/// By all distances.
+/// Reference: all distances.
 Rows nearest(const Places& places, const NeighbourTree::Query& query) {
   Places all = places;
   const auto square = [&](const NeighbourTree::Place& q) { return dot(q.p - *query.p, q.p - *query.p); };
@@ -29,7 +29,7 @@ Rows nearest(const Places& places, const NeighbourTree::Query& query) {
   return rows;
 }
 
-/// Everywhere; along a street northwards, where x says nothing; and along one eastwards.
+/// In a square, along a street to the north (equal x), and along one to the east.
 TEST(NeighbourTree, FindsTheNearest) {
   std::mt19937 random(5);  // NOLINT: the same every time
   std::uniform_real_distribution<double> anywhere(-50.0, 50.0);
@@ -49,7 +49,7 @@ TEST(NeighbourTree, FindsTheNearest) {
   }
 }
 
-/// At one place nobody is nearer than others: each has some, never itself, and not all the same ones.
+/// At one place all robots are equally near: each has neighbours, never itself, and not all the same ones.
 TEST(NeighbourTree, ACrowdAtOnePlace) {
   Places places;
   for (std::uint32_t row = 0; row < 5000; ++row) places.push_back({{1.0, 2.0}, row});
@@ -66,7 +66,7 @@ TEST(NeighbourTree, ACrowdAtOnePlace) {
   EXPECT_LE(tree.visits(), 50u * 40u);
 }
 
-/// The worst that a crowd can do: all about as far away as each other.
+/// The worst case for the tree: all places at about the same distance.
 TEST(NeighbourTree, ACrowdOnACircleCostsNoMoreThanItsBound) {
   Places places;
   for (std::uint32_t row = 0; row < 5000; ++row) places.push_back({{std::cos(row), std::sin(row)}, row});

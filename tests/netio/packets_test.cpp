@@ -145,7 +145,7 @@ TEST(Packets, WhatIsReservedIsSentAsZero) {
     for (std::size_t at = 32; at < kHeaderBytes; ++at) EXPECT_EQ(bytes[at], 0) << at;
 }
 
-/// A later release signs packets: this one reads them, and looks at no signature.
+/// A later release may sign packets: this one accepts them and ignores the signature.
 TEST(Packets, ATrailerIsLeftOut) {
   for (const std::uint16_t size : {std::uint16_t{1}, std::uint16_t{kMaxTrailer}}) {
     for (const base::Bytes& example : examples()) {
@@ -153,8 +153,8 @@ TEST(Packets, ATrailerIsLeftOut) {
       bytes.resize(bytes.size() + size, 0xAB);
       EXPECT_EQ(reason_of(bytes), PacketStatus::accepted) << size;
       bytes.push_back(0);
-      const bool any_size = kind_of(Type{example[5]}) != 0;       // how long a reading is, its kind knows
-      const bool several = Type{example[5]} == Type::neighbours;  // the byte begins one more V2V
+      const bool any_size = kind_of(Type{example[5]}) != 0;       // the length of a reading is defined by its kind
+      const bool several = Type{example[5]} == Type::neighbours;  // further bytes begin another V2V
       EXPECT_EQ(reason_of(bytes), any_size  ? PacketStatus::accepted
                                   : several ? PacketStatus::too_short
                                             : PacketStatus::too_long)
@@ -164,9 +164,9 @@ TEST(Packets, ATrailerIsLeftOut) {
   base::Bytes reading = patched<std::uint16_t>(reading_example(), 60, 5);
   EXPECT_EQ(body_of<Reading>(reading).payload.size(), 3u);                                // of 8
   EXPECT_TRUE(body_of<Reading>(patched<std::uint16_t>(reading, 60, 8)).payload.empty());  // all of them
-  EXPECT_EQ(reason_of(patched<std::uint16_t>(reading, 60, 9)), PacketStatus::too_short);  // more than there is
+  EXPECT_EQ(reason_of(patched<std::uint16_t>(reading, 60, 9)), PacketStatus::too_short);  // more than the datagram has
   reading.resize(kMaxDatagram, 0);
-  EXPECT_EQ(reason_of(patched<std::uint16_t>(reading, 60, kMaxTrailer)), PacketStatus::accepted);  // the longest of all
+  EXPECT_EQ(reason_of(patched<std::uint16_t>(reading, 60, kMaxTrailer)), PacketStatus::accepted);  // the maximum
   EXPECT_EQ(reason_of(patched<std::uint16_t>(reading, 60, kMaxTrailer + 1)), PacketStatus::out_of_range);
 }
 
@@ -189,7 +189,7 @@ TEST(Packets, EveryShorterPrefixIsTooShort) {
     }
   };
   for (const base::Bytes& state : states()) check(state, state.size());
-  check(reading_example(), kHeaderBytes);  // how long a reading is, its kind knows
+  check(reading_example(), kHeaderBytes);  // the length of a reading is defined by its kind
 }
 
 TEST(Packets, OneByteMoreIsTooLong) {
@@ -226,7 +226,7 @@ TEST(Packets, AReadingMayBeEmpty) {
 
 TEST(Packets, TypesBelow128AreReadingsOfTheirKind) {
   for (int type = 0; type < 256; ++type) {
-    const bool is_reading = type < 128 && type % 64 != 0;  // kind 0 is nobody's
+    const bool is_reading = type < 128 && type % 64 != 0;  // kind 0 does not exist
     EXPECT_EQ(kind_of(Type(type)), is_reading ? type % 64 : 0) << type;
     const bool is_state = (type >= 128 && type <= 133) || type == 140;
     if (is_state) continue;
@@ -281,18 +281,19 @@ TEST(Packets, StatesEndAtTheirLimits) {
 TEST(Packets, WholeNumbersEndAtTheirLimits) {
   EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 120, 65535)), PacketStatus::accepted);  // last robot id
   EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 120, 65536)),
-            PacketStatus::out_of_range);  // no robot, not "none"
+            PacketStatus::out_of_range);  // neither a robot nor kNone
   EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 120, 0xFFFFFFFE)),
-            PacketStatus::out_of_range);  // next to "none"
+            PacketStatus::out_of_range);  // next to kNone
   EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 124, 0xFFFFFFFE)),
             PacketStatus::accepted);                                                                 // any checkpoint
   EXPECT_EQ(reason_of(patched<std::uint32_t>(v2v_example(), 128, 2)), PacketStatus::out_of_range);   // an unknown flag
   EXPECT_EQ(reason_of(patched<std::uint16_t>(tag_example(), 6, 0)), PacketStatus::out_of_range);     // tags begin at 1
   EXPECT_EQ(reason_of(patched<std::uint16_t>(tag_example(), 6, 1)), PacketStatus::accepted);         // the first tag
-  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, -1)), PacketStatus::out_of_range);    // before time
-  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, 0)), PacketStatus::accepted);         // the first moment
+  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, -1)), PacketStatus::out_of_range);    // before the epoch
+  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, 0)), PacketStatus::accepted);         // the first time
   EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, kMaxTime)), PacketStatus::accepted);  // the last
-  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, kMaxTime + 1)), PacketStatus::out_of_range);  // past it
+  EXPECT_EQ(reason_of(patched<std::int64_t>(v2v_example(), 16, kMaxTime + 1)),
+            PacketStatus::out_of_range);  // beyond it
 }
 
 TEST(Packets, OrientationsAreUnitQuaternions) {
@@ -332,7 +333,7 @@ TEST(Packets, AStateIsAReport) {
 }
 
 TEST(Packets, ATagsVelocityTurnsIntoItsOwnFrame) {
-  // Turned by +90 degrees and moving along world x: that is to its right.
+  // Rotated by +90 degrees and moving along world x, which is to its right.
   const double half = std::sqrt(0.5);
   const base::Report got =
       report({.robot = 1}, Tag{.orientation = {0, 0, half, half}, .linear = {2, 0, 0}, .angular = {9, 9, 0.5}}, 3);
@@ -342,7 +343,7 @@ TEST(Packets, ATagsVelocityTurnsIntoItsOwnFrame) {
   EXPECT_EQ(got.velocity.turn, 0.5);
 }
 
-/// Without an offset: the tag's own numbers, to the bit.
+/// Without an offset the tag's own numbers, bitwise.
 TEST(Packets, ATagAtItsModelsOriginSaysTheModelsPose) {
   Packet packet;
   ASSERT_EQ(decode(tag_example(), packet), PacketStatus::accepted);
@@ -358,8 +359,8 @@ TEST(Packets, ATagAtItsModelsOriginSaysTheModelsPose) {
   EXPECT_EQ(got.velocity.left, velocity.y);
 }
 
-/// A tag ahead of its model's origin, to its left and above it, turned by 90 degrees. The model turns in place: its tag
-/// moves, its origin does not.
+/// A tag ahead of its model's origin, to its left and above it, rotated by 90 degrees. The model turns in place: its
+/// tag moves, its origin does not.
 TEST(Packets, ATagMayBeMountedAnywhereOnItsModel) {
   const base::Pose X_MT{0.2, 0.1, 0.3, M_PI / 2};
   for (const double yaw : {0.0, M_PI / 2, -2.5}) {

@@ -47,7 +47,7 @@ TEST(Ports, PastTheLastPortIsRefused) {
 }
 
 TEST(Ports, TwoSensorsOnOnePortAreRefused) {
-  EXPECT_EQ(refusal({use(1, 9), use(3, 1)}), "");  // runs past its stride, into nobody
+  EXPECT_EQ(refusal({use(1, 9), use(3, 1)}), "");  // beyond its stride, on free ports
   EXPECT_NE(refusal({use(1, 9), use(2, 1)}).find("raise the stride to at least 9"), std::string::npos);
   EXPECT_NE(refusal({use(4, 1), use(4, 1)}).find("share port 10032"), std::string::npos);
   EXPECT_NE(refusal({use(4, 1), use(4, 1)}).find("its own id"), std::string::npos);
@@ -59,9 +59,9 @@ TEST(Ports, TheLeastStrideThatFits) {
   EXPECT_EQ(smallest_stride(few, 8), 8u);
   const std::vector<SensorPorts> many{use(1, 17), use(2, 17)};  // more than the usual
   EXPECT_EQ(smallest_stride(many, 8), 17u);
-  const std::vector<SensorPorts> last{use(1, 17), use(2, 1), use(4, 1)};  // from 27 on nobody is met before robot 4
+  const std::vector<SensorPorts> last{use(1, 17), use(2, 1), use(4, 1)};  // from 27 on the ports are free up to robot 4
   EXPECT_EQ(smallest_stride(last, 8), 17u);
-  const std::vector<SensorPorts> large{use(0, 1), use(8000, 2)};  // 8 times that is past the last port
+  const std::vector<SensorPorts> large{use(0, 1), use(8000, 2)};  // with stride 8 the port exceeds 65535
   EXPECT_EQ(smallest_stride(large, 8), 1u);
   const SensorPorts other{1, 1, {10010, 8}, "tug", 0, "sonar"};
   const std::vector<SensorPorts> kinds{use(1, 3), use(2, 3),
@@ -80,7 +80,7 @@ TEST(Ports, TwoKindsAreToldApart) {
             std::string::npos)
       << text;
   EXPECT_NE(text.find("change the base port of laser or the base port of magnetometer"), std::string::npos) << text;
-  // One robot's two kinds on one base: its id is not to blame.
+  // Two kinds of one robot on one base port: the message does not blame its id.
   SensorPorts scan{1, 1, {52000, 8}, "roomba", 0, "laser", "--laser-port"};
   const SensorPorts map{1, 1, {52000, 8}, "roomba", 0, "occupancy", "--occupancy-port"};
   const std::string both = refusal({scan, map});

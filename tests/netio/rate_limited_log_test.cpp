@@ -1,4 +1,4 @@
-// What a service says while it runs: it is never kept waiting, and never says too much.
+// Log lines of a running service: never blocking, limited in rate.
 
 #include "netio/rate_limited_log.h"
 
@@ -22,7 +22,7 @@ struct Pipe {
     for (const int end : ends)
       if (end >= 0) close(end);
   }
-  /// All that waits in it.
+  /// All data in the pipe.
   std::string read_all() const {
     fcntl(ends[0], F_SETFL, O_NONBLOCK);
     std::string text;
@@ -41,7 +41,7 @@ TEST(RateLimitedLog, LinesAreWritten) {
   EXPECT_EQ(log.left_out(), 0u);
 }
 
-/// A burst, then so many a second; the first line after a gap says how many are missing.
+/// A burst, then a limited rate; the first line after a gap states the number of missing lines.
 TEST(RateLimitedLog, AFloodIsThinnedAndCounted) {
   const Pipe pipe;
   RateLimitedLog log(pipe.ends[1]);
@@ -54,7 +54,7 @@ TEST(RateLimitedLog, AFloodIsThinnedAndCounted) {
   EXPECT_EQ(pipe.read_all(), "sensorfarm: at once\n");
 }
 
-/// Slowly enough for any rate, into a pipe that is full: it returns, and goes on once somebody reads.
+/// A full pipe, at any rate: `write` returns, and continues once the pipe is read.
 TEST(RateLimitedLog, AnUnreadPipeKeepsNobodyWaiting) {
   const Pipe pipe;
   RateLimitedLog log(pipe.ends[1]);
@@ -66,7 +66,7 @@ TEST(RateLimitedLog, AnUnreadPipeKeepsNobodyWaiting) {
   EXPECT_NE(pipe.read_all().find("sensorfarm: read ("), std::string::npos);
 }
 
-/// Nobody will ever read: no signal ends the program.
+/// A pipe without a reader: no signal ends the program.
 TEST(RateLimitedLog, AClosedPipeIsNoEnd) {
   Pipe pipe;
   close(pipe.ends[0]);

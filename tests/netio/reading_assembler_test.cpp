@@ -94,22 +94,22 @@ TEST(ReadingAssembler, RepetitionsAreDuplicates) {
   EXPECT_EQ(p.say(1, 0), PartStatus::duplicate);  // while parts are missing
   p.say(1, 1);
   p.say(1, 2);
-  EXPECT_EQ(p.say(1, 2), PartStatus::duplicate);  // once it is whole
+  EXPECT_EQ(p.say(1, 2), PartStatus::duplicate);  // once it is complete
 }
 
 TEST(ReadingAssembler, OnlySoManyReadingsAreAwaited) {
   Parts p;
   for (std::uint32_t sequence = 0; sequence <= ReadingAssembler::kMaxPartial; ++sequence) p.say(sequence, 0);
-  EXPECT_EQ(p.say(0, 1), PartStatus::late);  // gave way to the last
+  EXPECT_EQ(p.say(0, 1), PartStatus::late);  // abandoned for the last one
   p.say(1, 1);
-  EXPECT_EQ(p.say(1, 2), PartStatus::complete);  // the oldest that is left
+  EXPECT_EQ(p.say(1, 2), PartStatus::complete);  // the oldest in progress
 }
 
 TEST(ReadingAssembler, PartsThatDoNotFitTheirReadingAreLeftOut) {
   Parts p;
   p.say(1, 0);
-  EXPECT_EQ(p.say(1, 1, 2), PartStatus::late);     // of another number of parts
-  EXPECT_EQ(p.say(1, 1, 3, 7), PartStatus::late);  // measured at another time
+  EXPECT_EQ(p.say(1, 1, 2), PartStatus::late);     // different number of parts
+  EXPECT_EQ(p.say(1, 1, 3, 7), PartStatus::late);  // different time of measurement
   EXPECT_EQ(p.say(1, 1, 3, 0), PartStatus::incomplete);
 }
 
@@ -119,14 +119,14 @@ TEST(ReadingAssembler, OldReadingsNeverComeBack) {
   EXPECT_EQ(p.say(4), PartStatus::late);
   EXPECT_EQ(p.value(), 5.0);
   EXPECT_EQ(p.say(9), PartStatus::complete);
-  EXPECT_EQ(p.assembler.lost(), 3u);  // 6, 7, 8; what came before the first is none of its business
+  EXPECT_EQ(p.assembler.lost(), 3u);  // 6, 7, 8; losses before the first reading do not count
 }
 
 TEST(ReadingAssembler, SequencesWrap) {
   Plain p;
   EXPECT_EQ(p.say(0xFFFFFFFEu), PartStatus::complete);
   EXPECT_EQ(p.say(1), PartStatus::complete);
-  EXPECT_EQ(p.say(0xFFFFFFFFu), PartStatus::late);  // came after all
+  EXPECT_EQ(p.say(0xFFFFFFFFu), PartStatus::late);  // arrives late
   EXPECT_EQ(p.assembler.lost(), 1u);                // 0
 }
 
@@ -149,7 +149,7 @@ TEST(ReadingAssembler, AfterSilenceNewerOnesAreNoRestart) {
   EXPECT_EQ(p.assembler.lost(), 1u);
 }
 
-/// One datagram that somebody made up must not turn those that follow into late ones.
+/// A forged datagram must not make the following ones late.
 TEST(ReadingAssembler, LeapsAreLeftOut) {
   constexpr std::int64_t kTick = kSecond / 10;
   Plain p;
@@ -173,11 +173,11 @@ TEST(ReadingAssembler, ALeapBeginsBehindTheLimits) {
   EXPECT_EQ(after(ReadingAssembler::kMaxDropout + 1, 0, 0), PartStatus::jump);
   EXPECT_EQ(after(1, ReadingAssembler::kMaxTimeJump, 0), PartStatus::complete);
   EXPECT_EQ(after(1, ReadingAssembler::kMaxTimeJump + 1, 0), PartStatus::jump);
-  EXPECT_EQ(after(1, ReadingAssembler::kMaxTimeJump + 1, 1), PartStatus::complete);  // so much later did it come
-  EXPECT_EQ(after(1, -1, 0), PartStatus::jump);                                      // newer, and measured before
+  EXPECT_EQ(after(1, ReadingAssembler::kMaxTimeJump + 1, 1), PartStatus::complete);  // it arrived as much later
+  EXPECT_EQ(after(1, -1, 0), PartStatus::jump);                                      // newer, but measured before
   EXPECT_EQ(after(ReadingAssembler::kMaxDropout + 1, 0, 2 * kSecond - 1), PartStatus::jump);
   EXPECT_EQ(after(ReadingAssembler::kMaxDropout + 1, 0, 2 * kSecond),
-            PartStatus::complete);  // after silence all is believed
+            PartStatus::complete);  // after silence any part is accepted
 }
 
 TEST(ReadingAssembler, AnotherSenderBeginsAtOnce) {
@@ -189,13 +189,13 @@ TEST(ReadingAssembler, AnotherSenderBeginsAtOnce) {
   EXPECT_EQ(p.assembler.restarts(), 1u);
 }
 
-// Any order, any repetition, any loss: what is newest is always whole, right, and never older than before.
+// Any order, repetition and loss: the newest reading is complete, correct, and never older than before.
 TEST(ReadingAssembler, AnyArrivalOrderKeepsThePromise) {
   std::mt19937 random(7);  // NOLINT: the same every time
   std::uint64_t whole = 0;
   for (int trial = 0; trial < 300; ++trial) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pieces;
-    const std::uint32_t first = 0xFFFFFFF0u;  // across the wrap
+    const std::uint32_t first = 0xFFFFFFF0u;  // across the wrap-around
     for (std::uint32_t k = 0; k < 40; ++k)
       for (std::uint32_t part = 0; part < 3; ++part)
         for (std::uint32_t copies = random() % 4; copies > 0; --copies) pieces.emplace_back(first + k, part);

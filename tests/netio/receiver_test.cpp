@@ -9,7 +9,7 @@
 namespace sf::netio {
 namespace {
 
-/// A made-up kind's payloads: part, parts, then one byte that is the part's number; 255 is refused.
+/// Payloads of a test sensor type: part, parts, then one byte with the part's number; 255 is invalid.
 PayloadInfo inspect(std::size_t, const Header&, std::span<const std::uint8_t> payload) {
   if (payload.size() < 3) return {PacketStatus::too_short};
   if (payload.size() > 3) return {PacketStatus::too_long};
@@ -85,7 +85,7 @@ TEST(Receiver, HeaderlessReadingsCountInOrderOfArrival) {
   for (const std::uint8_t value : base::Bytes{3, 1, 2})
     EXPECT_EQ(receiver.accept(0, base::Bytes{value}, ++now), PartStatus::complete);
   EXPECT_EQ(receiver.newest(0)->values[0], 2.0);
-  EXPECT_EQ(receiver.newest(0)->time, 12);  // they do not tell theirs
+  EXPECT_EQ(receiver.newest(0)->time, 12);  // headerless payloads have no time
   EXPECT_EQ(receiver.newest(0)->sequence, 2u);
 }
 
@@ -125,7 +125,7 @@ TEST(Receiver, AMillionRandomAndMutatedDatagrams) {
   EXPECT_GT(receiver.counts().duplicates, 0u);
 }
 
-/// A bound one takes what carries its farm's session and its own.
+/// A bound receiver accepts packets with its farm's session and its own.
 TEST(Receiver, TakesPacketsOfItsFarmAlone) {
   const auto from = [](const SessionToken& farm, std::uint32_t sequence, std::uint8_t number) {
     base::Bytes bytes = part(0, sequence, number, 1);
@@ -143,9 +143,9 @@ TEST(Receiver, TakesPacketsOfItsFarmAlone) {
   EXPECT_EQ(receiver.accept(0, from(kFarm, 100, 1), 0), PartStatus::complete);
   receiver.reject_source();
   EXPECT_EQ(receiver.counts().packets[PacketStatus::wrong_source], 3u);
-  receiver.set_session(kFarm);  // challenged once more: nothing is another
+  receiver.set_session(kFarm);  // a repeated challenge changes nothing
   EXPECT_TRUE(receiver.newest(0));
-  // Its farm was started again, and counts from 0.
+  // The farm has restarted and counts from 0.
   receiver.set_session(kOther);
   EXPECT_FALSE(receiver.newest(0));
   EXPECT_EQ(receiver.accept(0, from(kOther, 0, 0), 1), PartStatus::incomplete);

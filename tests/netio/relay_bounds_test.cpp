@@ -1,4 +1,5 @@
-// Others' states are passed on within the radio's range and a budget, however many ask. Work is counted, no clock read.
+// States are forwarded within the V2V range and a budget for any number of subscribers. Work is counted, without a
+// clock.
 
 #include <gtest/gtest.h>
 
@@ -19,14 +20,14 @@ TEST(RelayBounds, StatesWithinTheRadiosRange) {
   RelayFixture crowd(4, {.range = 10.0});
   crowd.all_ask();
   crowd.say(0, {0, 0});
-  crowd.say(1, {6, 8});                         // exactly as far as the radio reaches
-  crowd.say(2, {-6, -std::nextafter(8.0, 9)});  // the next place beyond
+  crowd.say(1, {6, 8});                         // exactly at the range
+  crowd.say(2, {-6, -std::nextafter(8.0, 9)});  // the next double beyond
   crowd.say(3, {1000, 0});
   EXPECT_EQ(crowd.pass().states, 2u);
   auto heard = crowd.received();
   EXPECT_EQ(heard[0], Rows{1});
   EXPECT_EQ(heard[1], Rows{0});
-  // One that says nothing now is still where it was, and is not passed on itself.
+  // A robot without a new state keeps its position; its old state is not forwarded.
   crowd.say(1, {6, 8});
   crowd.pass();
   heard = crowd.received();
@@ -37,7 +38,7 @@ TEST(RelayBounds, StatesWithinTheRadiosRange) {
 TEST(RelayBounds, ARangeOfNothingPassesNothingOn) {
   RelayFixture crowd(3, {.range = 0.0});
   crowd.all_ask();
-  for (const std::uint32_t id : {1u, 2u}) crowd.say(id, {0, 0});  // not even at one place; robot 0 has none
+  for (const std::uint32_t id : {1u, 2u}) crowd.say(id, {0, 0});  // at one place; robot 0 without one
   crowd.take(kBroadcastId, Start{});
   const RelayCounts counts = crowd.pass();
   EXPECT_EQ(counts.states + counts.waited, 0u);
@@ -58,7 +59,7 @@ TEST(RelayBounds, WithoutAPlaceARobotHearsAllInTurn) {
 }
 
 TEST(RelayBounds, ManyStatesADatagramTheNearestFirst) {
-  for (const std::uint32_t others : {1u, 9u, 10u, 80u}) {  // one, a full datagram, one more, more than are passed on
+  for (const std::uint32_t others : {1u, 9u, 10u, 80u}) {  // one, a full datagram, one more, more than the maximum
     RelayFixture crowd(others + 1);
     crowd.ask(0);
     Rows nearest;
@@ -97,8 +98,8 @@ TEST(RelayBounds, AllThatIsPassedOnCarriesTheReceiversStamp) {
   }
 }
 
-/// One socket that claims 500 ids; 1000 robots that ask, side by side and all where a robot is that does not know its
-/// place: what is sent and looked at grows with their number, not with its square.
+/// 500 and 1000 subscribers behind one socket, side by side or all at the origin for lack of a position: sent states
+/// and visits grow with their number, not with its square.
 TEST(RelayBounds, TheBudgetHoldsHoweverManyAsk) {
   for (const bool localised : {true, false}) {
     for (const std::uint32_t count : {500u, 1000u}) {
@@ -116,7 +117,7 @@ TEST(RelayBounds, TheBudgetHoldsHoweverManyAsk) {
   }
 }
 
-/// A budget for ten of thirty: all get their turn within three ticks, in order, and nobody twice before all.
+/// A budget for ten of thirty: all get a turn within three ticks, in order, and none twice before all.
 TEST(RelayBounds, WhereTheBudgetIsSpentRobotsTakeTurns) {
   RelayFixture crowd(30, {.budget = 10 * Relay::kMinShare});
   crowd.all_ask();
@@ -134,7 +135,7 @@ TEST(RelayBounds, WhereTheBudgetIsSpentRobotsTakeTurns) {
   }
 }
 
-/// The one whose turn it would be asks no more: the next is served.
+/// A robot that unsubscribes before its turn is passed over for the next one.
 TEST(RelayBounds, ATurnNotTakenIsTheNextRobots) {
   RelayFixture crowd(4, {.budget = Relay::kMinShare});
   crowd.all_ask();
@@ -151,8 +152,8 @@ TEST(RelayBounds, ATurnNotTakenIsTheNextRobots) {
   EXPECT_EQ(served(), 0u);
 }
 
-/// Five robots that speak, ask and stop asking at random, and a budget for one or two: a robot is passed all that was
-/// said since its last turn, or since it asked, once, and waits for four others at most.
+/// Five robots that send, subscribe and unsubscribe at random, with a budget for one or two: each robot gets all states
+/// since its last turn or subscription, once, and waits for at most four others.
 TEST(RelayBounds, ATurnBringsAllThatWasSaidSinceTheLast) {
   RelayFixture crowd(5, {.budget = Relay::kMinShare});
   std::mt19937 random(3);  // NOLINT: the same every time
@@ -182,7 +183,7 @@ TEST(RelayBounds, ATurnBringsAllThatWasSaidSinceTheLast) {
   }
 }
 
-/// Robots with few neighbours use little of the budget: more than two are served.
+/// Robots with few neighbours use little of the budget, so that more than two are served.
 TEST(RelayBounds, UnusedSharesAreLeftToOthers) {
   RelayFixture crowd(8, {.range = 1.0, .budget = 2 * Relay::kMinShare});
   crowd.all_ask();

@@ -1,5 +1,5 @@
 #pragma once
-// A fleet behind a relay: all its robots speak from one socket, and hear there.
+// A fleet behind a relay: all its robots send and receive on one socket.
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ struct RelayFixture {
     for (const std::uint32_t id : ids) ask(id);
   }
 
-  /// A tick: what it added to the counts.
+  /// One tick. @return its additions to the counts
   RelayCounts pass() {
     const RelayCounts before = relay.counts();
     relay.forward(inbox, 0, outbox);
@@ -60,7 +60,7 @@ struct RelayFixture {
             now.starts - before.starts};
   }
 
-  /// By robot: whose states came for it, in order. Loopback gives at once what was sent.
+  /// By robot: ids of the received states, in order. Loopback delivers immediately.
   std::map<std::uint32_t, std::vector<std::uint32_t>> received() {
     std::map<std::uint32_t, std::vector<std::uint32_t>> received;
     datagrams.clear();

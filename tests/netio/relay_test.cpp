@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-/// A farm with three robots; each test speaks for them.
+/// A farm with three robots; each test sends for them.
 struct RelayTest : testing::Test {
   Inbox inbox{{.bind = {kLoopback, 0}, .robots = {3, 7, 9}}};
   Relay relay{std::vector<std::uint32_t>{9, 3, 7}};
@@ -64,7 +64,7 @@ struct RelayTest : testing::Test {
     relay.forward(inbox, now, outbox);
     outbox.flush();
   }
-  /// What a robot hears: loopback gives at once what was sent.
+  /// Packets received by a robot. Loopback delivers immediately.
   std::vector<Packet> heard(std::uint32_t id, std::int64_t now = 0) {
     std::vector<Packet> packets;
     V2vSocket& one = v2v_socket(id);
@@ -85,8 +85,8 @@ TEST_F(RelayTest, OthersStatesGoToThoseThatAsked) {
   ASSERT_EQ(packets.size(), 1u);  // not its own
   EXPECT_EQ(packets[0].header.robot, 7);
   EXPECT_EQ(std::get<V2v>(packets[0].body).X_WR.x, 2.0);
-  EXPECT_TRUE(heard(7).empty());  // did not ask
-  EXPECT_TRUE(heard(9).empty());  // never spoke
+  EXPECT_TRUE(heard(7).empty());  // not subscribed
+  EXPECT_TRUE(heard(9).empty());  // not active
   EXPECT_EQ(relay.counts().states, 1u);
 }
 
@@ -98,7 +98,7 @@ TEST_F(RelayTest, TheNewestOfEachOncePerTick) {
   auto packets = heard(3);
   ASSERT_EQ(packets.size(), 2u);
   EXPECT_EQ(std::get<V2v>(packets[0].body).X_WR.x, 3.0);
-  tick();  // nothing new: nothing sent
+  tick();  // no new states
   EXPECT_TRUE(heard(3).empty());
   say(7, 5.0);
   tick();
@@ -125,7 +125,7 @@ TEST_F(RelayTest, StartGoesToAllThatAreHeard) {
   say(3, 0.0);
   say(7, 0.0);
   start(kBroadcastId);
-  start(kBroadcastId);  // before the tick: one will do
+  start(kBroadcastId);  // before the tick, sent once
   tick();
   for (const std::uint32_t id : {3u, 7u}) {
     const auto packets = heard(id);
@@ -217,7 +217,7 @@ TEST_F(V2vSocketTest, OnlyTheFarmsWordCounts) {
   EXPECT_EQ(v2v_socket.counts()[PacketStatus::wrong_source], 1u);
 }
 
-/// Each state in it is judged by itself.
+/// Each of its states is checked separately.
 TEST_F(V2vSocketTest, NeighboursAreTakenApart) {
   base::Bytes states, bytes;
   for (const base::Bytes& state : {v2v_of(3, 5), v2v_of(9, 0), v2v_of(3, 4), stamped(v2v_of(9, 1), {})})
@@ -264,7 +264,7 @@ TEST_F(V2vSocketTest, OnlyWhatCarriesItsSessionIsMeantForIt) {
   EXPECT_EQ(v2v_socket.accept(stamped(start_example(), {}), 0, packet), PacketStatus::wrong_source);
   EXPECT_EQ(v2v_socket.accept(challenge(9, {kFarm + 1, 0}), 0, packet), PacketStatus::wrong_source);
   EXPECT_EQ(v2v_socket.farm_session_token().session, kFarm);
-  // The farm was started again: it says so with another session, and what the one before sent is old.
+  // A restarted farm has another session, and packets of the old session are stale.
   EXPECT_EQ(v2v_socket.accept(challenge(9, {kFarm + 1, kOwn}), 0, packet), PacketStatus::accepted);
   EXPECT_EQ(v2v_socket.farm_session_token().session, kFarm + 1);
   EXPECT_EQ(v2v_socket.accept(v2v_of(3, 0), 0, packet), PacketStatus::wrong_source);

@@ -19,7 +19,7 @@
 namespace sf::netio {
 namespace {
 
-constexpr int kPatience = 5000;  ///< [ms] longest wait for what loopback has already been given
+constexpr int kPatience = 5000;  ///< [ms] longest wait for datagrams that loopback already has
 
 constexpr Endpoint kFarm{kLoopback, 9000};
 
@@ -30,15 +30,15 @@ std::vector<StreamSpec> plans(std::uint32_t robots) {
   return streams;
 }
 
-/// A made-up kind's payloads: how many elements, which part, of how many; 255 elements are too many.
+/// Payloads of a test sensor type: number of elements, part, parts; 255 elements are invalid.
 PayloadInfo inspect(std::size_t, const Header&, std::span<const std::uint8_t> payload) {
   if (payload.size() < 3) return {PacketStatus::too_short};
   if (payload[0] == 255) return {PacketStatus::out_of_range};
   return {PacketStatus::accepted, payload[0], payload[1], payload[2]};
 }
 
-/// A listener at the first base port that is free, below the ports Linux lends out: other tests may run beside this
-/// one. Moves `streams` there.
+/// A monitor at the first free base port below Linux's ephemeral ports, since other tests run in parallel. Moves
+/// `streams` there.
 std::unique_ptr<StreamMonitor> listen(std::vector<StreamSpec>& streams, bool headerless = false,
                                       const PayloadInspector& judging = inspect) {
   for (std::uint32_t base = 12'000; base < 32'000; base += 200) {
@@ -123,7 +123,7 @@ TEST(StreamMonitor, RunsNoLongerThanItMay) {
   auto streams = plans(1);
   const auto monitor = listen(streams);
   const std::atomic<bool> stop = false;
-  monitor->run(stop, 1'000'000, 1);  // nothing ever comes, and nobody stops it
+  monitor->run(stop, 1'000'000, 1);  // no datagrams, and no stop
   EXPECT_EQ(monitor->summary().good, 0u);
 }
 
@@ -131,7 +131,7 @@ TEST(StreamMonitor, ReadingsInSeveralPartsAreCountedByPart) {
   auto streams = plans(1);
   const auto monitor = listen(streams);
   Outbox outbox;
-  for (const std::uint32_t sequence : {0u, 2u})  // reading 1 never came: three parts
+  for (const std::uint32_t sequence : {0u, 2u})  // reading 1 is lost: three parts
     for (std::uint8_t part = 0; part < 3; ++part) send(outbox, streams[0], sequence, {100, part, 3});
   outbox.flush();
   drain(*monitor, 6);
@@ -149,7 +149,7 @@ TEST(StreamMonitor, WithoutHeadersDatagramsArePayloads) {
   drain(*monitor, 4);
   const StreamSummary sum = monitor->summary();
   EXPECT_EQ(sum.good, 2u);
-  EXPECT_EQ(sum.duplicates, 0u);  // nothing tells them apart
+  EXPECT_EQ(sum.duplicates, 0u);  // indistinguishable
   EXPECT_EQ(sum.counts[PacketStatus::too_short], 1u);
   EXPECT_EQ(sum.counts[PacketStatus::out_of_range], 1u);
 }
@@ -197,7 +197,7 @@ struct OnePort : testing::Test {
 
 TEST_F(OnePort, ChecksWhatItCarries) {
   EXPECT_EQ(say(1, 0, 0, {3, 0, 1}), PacketStatus::accepted);
-  EXPECT_EQ(say(1, 0, 1, {255, 0, 1}), PacketStatus::out_of_range);  // the judge's word
+  EXPECT_EQ(say(1, 0, 1, {255, 0, 1}), PacketStatus::out_of_range);  // from the inspector
   EXPECT_EQ(say(1, 0, 2, {}), PacketStatus::too_short);              // likewise
   EXPECT_EQ(say(0, 0, 4, {3, 0, 1}), PacketStatus::wrong_source);    // another robot's
   EXPECT_EQ(say(1, 1, 5, {3, 0, 1}), PacketStatus::wrong_source);    // another sensor's
@@ -219,7 +219,7 @@ TEST_F(OnePort, SeesLossDuplicatesAndReordering) {
   EXPECT_EQ(sum.lost, 2u);
 }
 
-/// Two farms on one host, or one and who pretends to be it.
+/// Two farms on one host, or a farm and a forger.
 TEST_F(OnePort, ListensToOneFarmAtATime) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const auto from = [&](std::uint32_t session, const Endpoint& who, std::uint32_t sequence, std::int64_t now) {
@@ -230,8 +230,8 @@ TEST_F(OnePort, ListensToOneFarmAtATime) {
   constexpr Endpoint kElsewhere{kLoopback, 9001};
   EXPECT_EQ(from(1, kFarm, 0, 0), PacketStatus::accepted);
   EXPECT_EQ(from(2, kElsewhere, 0, 1), PacketStatus::wrong_source);
-  EXPECT_EQ(from(2, kFarm, 9, 1), PacketStatus::wrong_source);       // another session from where the farm is
-  EXPECT_EQ(from(1, kElsewhere, 9, 1), PacketStatus::wrong_source);  // its session from elsewhere
+  EXPECT_EQ(from(2, kFarm, 9, 1), PacketStatus::wrong_source);       // another session from the farm's address
+  EXPECT_EQ(from(1, kElsewhere, 9, 1), PacketStatus::wrong_source);  // the farm's session from another address
   EXPECT_EQ(from(1, kFarm, 2, 1), PacketStatus::accepted);
   EXPECT_EQ(from(2, kElsewhere, 5, 2 * kSecond), PacketStatus::wrong_source);  // one nanosecond early
   EXPECT_EQ(from(2, kElsewhere, 1, 1 + 2 * kSecond), PacketStatus::accepted);
@@ -264,14 +264,14 @@ TEST(StreamMonitor, MayTakePacketsOfOneHostAlone) {
   EXPECT_EQ(monitor->accept(0, bytes, {resolve("192.0.2.1"), 1}, 0), PacketStatus::accepted);
 }
 
-/// RFC 3550, appendix A.1: the second in a row makes a leap believed.
+/// RFC 3550, appendix A.1: a jump is accepted at the second datagram in sequence.
 TEST_F(OnePort, LeapsAreNotBelievedAlone) {
   const auto at = [&](std::uint32_t sequence) { return say(1, 0, sequence, {3, 0, 1}); };
   EXPECT_EQ(at(0), PacketStatus::accepted);
   EXPECT_EQ(at(StreamMonitor::kMaxDropout), PacketStatus::accepted);
   EXPECT_EQ(at(2 * StreamMonitor::kMaxDropout + 1), PacketStatus::out_of_range);
-  EXPECT_EQ(at(2 * StreamMonitor::kMaxDropout + 1), PacketStatus::out_of_range);  // the network says things twice
-  EXPECT_EQ(at(StreamMonitor::kMaxDropout + 1), PacketStatus::accepted);          // nothing has happened
+  EXPECT_EQ(at(2 * StreamMonitor::kMaxDropout + 1), PacketStatus::out_of_range);  // duplicated by the network
+  EXPECT_EQ(at(StreamMonitor::kMaxDropout + 1), PacketStatus::accepted);          // the old sequence continues
   EXPECT_EQ(monitor->summary().lost, StreamMonitor::kMaxDropout - 1u);
   EXPECT_EQ(at(1'000'000), PacketStatus::out_of_range);
   EXPECT_EQ(at(1'000'001), PacketStatus::accepted);
@@ -279,7 +279,7 @@ TEST_F(OnePort, LeapsAreNotBelievedAlone) {
 
 TEST(StreamMonitor, CollidingPortsAreRefused) {
   std::vector<StreamSpec> streams = plans(2);
-  streams.push_back({0, 2, {12'000, 2}});  // sensor 2 runs into robot 1
+  streams.push_back({0, 2, {12'000, 2}});  // sensor 2 uses a port of robot 1
   EXPECT_THROW(StreamMonitor({.streams = streams, .inspect = inspect}), base::InputError);
 }
 
@@ -291,9 +291,9 @@ TEST(StreamMonitor, ATakenPortIsRefused) {
 
 TEST(Outbox, RefusedDatagramsAreCountedWithTheFirstReason) {
   Outbox outbox;
-  outbox.queue({kLoopback, 0}, base::Bytes{1});  // port 0 is nowhere
+  outbox.queue({kLoopback, 0}, base::Bytes{1});  // invalid port
   outbox.queue({kLoopback + 1, 0}, base::Bytes{1});
-  outbox.queue({kLoopback, 9}, base::Bytes{1});  // nobody listens: that is not an error
+  outbox.queue({kLoopback, 9}, base::Bytes{1});  // no receiver: not an error
   outbox.flush();
   EXPECT_EQ(outbox.counts().queued, 3u);
   EXPECT_EQ(outbox.counts().failed, 2u);
@@ -302,7 +302,7 @@ TEST(Outbox, RefusedDatagramsAreCountedWithTheFirstReason) {
   EXPECT_EQ(outbox.counts().first_failure.rfind("127.0.0.1:0: ", 0), 0u) << outbox.counts().first_failure;
 }
 
-/// A socket that takes no more after a while: a stream whose other end reads nothing.
+/// A socket that becomes full: a stream whose other end does not read.
 class Full : public testing::Test {
  protected:
   Full()
@@ -327,13 +327,13 @@ TEST_F(FullOutbox, WhatIsNotTakenIsDroppedAndCounted) {
   EXPECT_GT(sent, 0u);
   EXPECT_LT(sent, 20'000u);
   EXPECT_EQ(outbox.counts().dropped, 20'000u - sent);
-  outbox.flush();  // what was dropped does not wait
+  outbox.flush();  // dropped datagrams do not wait
   EXPECT_EQ(outbox.counts().sent, sent);
   EXPECT_EQ(outbox.counts().dropped, 20'000u - sent);
   EXPECT_EQ(outbox.counts().failed, 0u);
 }
 
-/// Sent by a thread of its own: the same datagrams in the same order, put by several threads.
+/// Sent by a separate thread: the same datagrams in the same order, put by several threads.
 TEST(Outbox, AThreadOfItsOwnSendsAllInOrder) {
   const Socket ears = open_udp({kLoopback, 0}, {.receive = 8u << 20});
   constexpr std::uint32_t kBatches = 40, kEach = 16;
@@ -364,7 +364,7 @@ TEST(Outbox, AThreadOfItsOwnSendsAllInOrder) {
   EXPECT_EQ(next, kBatches * kEach);
 }
 
-/// It holds up the thread that sends, and nobody else: what the backlog has no room for is dropped and counted.
+/// Only the sending thread is blocked. Flushes beyond the backlog are dropped and counted.
 TEST_F(FullOutbox, ABacklogHasABound) {
   Outbox outbox(std::move(full_), {.capacity = 100, .patience_ms = 2, .backlog = 2});
   for (int i = 0; i < 20'000; ++i) outbox.queue({kLoopback, 9}, base::Bytes(kMaxHeaderlessDatagram));
@@ -376,7 +376,7 @@ TEST_F(FullOutbox, ABacklogHasABound) {
   EXPECT_EQ(counts.sent + counts.dropped, 20'000u);
 }
 
-/// Claimed and given back: neither sent nor counted.
+/// Claimed and returned slots are neither sent nor counted.
 TEST(Outbox, WhatIsGivenBackIsForgotten) {
   const Socket ears = open_udp({kLoopback, 0});
   Outbox outbox;
@@ -390,7 +390,7 @@ TEST(Outbox, WhatIsGivenBackIsForgotten) {
 }
 
 TEST(Socket, TellsWhatTheKernelDropped) {
-  const Socket ears = open_udp({kLoopback, 0}, {.receive = 1});  // the least that the kernel grants
+  const Socket ears = open_udp({kLoopback, 0}, {.receive = 1});  // the minimum of the kernel
   const Endpoint to{kLoopback, bound_endpoint(ears).port};
   EXPECT_EQ(kernel_drops(ears), 0u);
   Outbox outbox;
@@ -432,7 +432,7 @@ TEST(Endpoint, LoopbackIsItsWholeNetwork) {
   for (const std::uint32_t address : own_addresses()) EXPECT_FALSE(is_loopback(address)) << text_of(address);
 }
 
-/// In a process of its own: the limit is the whole process'.
+/// In a separate process, since the limit applies to the whole process.
 TEST(Socket, OpenFilesAreAllowedButNeverFewer) {
   const auto try_limits = [] {
     rlimit before{}, after{};
@@ -446,7 +446,7 @@ TEST(Socket, OpenFilesAreAllowedButNeverFewer) {
     getrlimit(RLIMIT_NOFILE, &after);
     fine = fine && after.rlim_cur == 65 && after.rlim_max == before.rlim_max;
     before.rlim_max = after.rlim_cur;
-    setrlimit(RLIMIT_NOFILE, &before);  // hard, too
+    setrlimit(RLIMIT_NOFILE, &before);  // hard limit, too
     try {
       raise_open_file_limit(66);
       fine = false;

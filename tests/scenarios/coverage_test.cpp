@@ -29,23 +29,23 @@ TEST(Coverage, CountsOnlyWhatTheReferenceHasFree) {
   EXPECT_EQ(coverage_of(map, reference).missed, 2u);
   EXPECT_EQ(coverage_of(map, reference).wanted, 4u);
   EXPECT_EQ(coverage_of(map, reference).coverage(), 0.5);
-  // Known in both: (0,0), (1,0), (4,0); one of them apart.
+  // Known in both: (0,0), (1,0), (4,0); one of them differs.
   EXPECT_DOUBLE_EQ(disagreement(map, reference), 1.0 / 3.0);
 }
 
-/// However few are missed.
+/// One missed cell suffices.
 TEST(Coverage, IsNeverRoundedUpToAll) {
   EXPECT_EQ(text_of({9159, 3}), "3 of 9159") << "missed, not seen";
   EXPECT_EQ(text_of({9159, 0}), "0 of 9159");
 }
 
-/// Else cells would be asked for that the explorer does not know, a part of a cell aside from its own.
+/// Other cells would be offset from the explorer's by part of a cell, and could be unknown to it.
 TEST(Coverage, ItsCellsAreTheExplorers) {
   const world::World world = mapping_world();
   EXPECT_EQ(RobotMap(world, 0).grid().plan, control::grid_around(world));
 }
 
-/// A line's rounding may free a cell whose middle lies within a wall; it is not asked for.
+/// Rounding of a line may free a cell whose centre is within a wall; such cells are not required.
 TEST(Coverage, CellsWithinObstaclesAreNotAskedFor) {
   const world::World world = mapping_world();
   const RobotMap map(world, 0);
@@ -59,7 +59,7 @@ TEST(Coverage, CellsWithinObstaclesAreNotAskedFor) {
     }
 }
 
-/// 3 m x 3 m less three boxes of 0.25 m^2 and the tree; nothing beyond the walls.
+/// 3 m x 3 m without three boxes of 0.25 m^2 and the tree; no cell beyond the walls.
 TEST(Coverage, WhatCouldBeSeenIsTheRoom) {
   const world::World world = mapping_world();
   const RobotMap map(world, 0);
@@ -75,7 +75,7 @@ TEST(Coverage, WhatCouldBeSeenIsTheRoom) {
   EXPECT_NEAR(area, 9.0 - 3 * 0.25 - 0.013, 0.25);
 }
 
-/// Behind a wall without a door nothing is seen.
+/// No cell behind a closed wall is visible.
 TEST(Coverage, StopsAtWalls) {
   world::World world = mapping_world();
   const glm::dvec2 from{-1.5, 0.0}, to{1.5, 0.0};

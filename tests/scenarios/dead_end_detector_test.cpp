@@ -12,7 +12,7 @@ base::Report at(double x, double forward, double turn) {
   return {.X_WM = {x, 0.0, 0.0, 0.0}, .velocity = {forward, 0.0, turn}};
 }
 
-/// Turns to alternate sides, one second each, at x, x + step, ...
+/// Turns to alternating sides, one second each, at x, x + step, ...
 DeadEndDetector after_turns(int turns, double step) {
   DeadEndDetector ends(kLength, kTick);
   for (int k = 0; k < turns; ++k)
@@ -27,12 +27,12 @@ TEST(DeadEndDetector, BeginsWithTheSixthReversal) {
   EXPECT_EQ(after_turns(7, 0.0).count(), 1u);
 }
 
-/// From the first reversal, at 1.1 s, to the end: 60 ticks, and the rest of the last turn.
+/// From the first reversal at 1.1 s to the end: 60 ticks, and the rest of the last turn.
 TEST(DeadEndDetector, LastsFromTheFirstReversalOn) { EXPECT_NEAR(after_turns(7, 0.0).stuck(), 5.9, 0.05); }
 
 TEST(DeadEndDetector, StayingInItIsOneDeadEnd) { EXPECT_EQ(after_turns(60, 0.0).count(), 1u); }
 
-/// With a body's length between turns no two are in the same place.
+/// With a body's length between turns no two turns are at the same place.
 TEST(DeadEndDetector, ZigzagsThatGetSomewhereAreNone) {
   EXPECT_EQ(after_turns(60, 0.34).count(), 0u);
   EXPECT_EQ(after_turns(60, 0.34).stuck(), 0.0);
@@ -49,7 +49,7 @@ TEST(DeadEndDetector, EndsABodysLengthAway) {
   EXPECT_NEAR(ends.stuck(), stuck + kTick, 1e-9);
 }
 
-/// A supervisor who turns it to and fro in the same passage does not help it.
+/// Turns by a supervisor in the same passage do not end a dead end.
 TEST(DeadEndDetector, TurnsByHandCount) {
   DeadEndDetector ends(kLength, kTick);
   for (int k = 0; k < 7; ++k) {
@@ -61,7 +61,7 @@ TEST(DeadEndDetector, TurnsByHandCount) {
   EXPECT_NEAR(ends.stuck(), 7.0, 1e-9);
 }
 
-/// Round and round to one side is not to and fro; nor are bends while it drives.
+/// Turns to one side do not count, nor do curves.
 TEST(DeadEndDetector, OnlyReversalsOfTurnsInPlaceCount) {
   DeadEndDetector ends(kLength, kTick);
   for (int i = 0; i < 500; ++i) ends.update(at(0.0, 0.0, 0.5), false);
@@ -78,7 +78,7 @@ TEST(DeadEndDetector, StandingInContactIsStuckButNoDeadEnd) {
   EXPECT_NEAR(ends.stuck(), 5.0, 1e-9);
 }
 
-/// Waiting among the reversals is counted once.
+/// Waiting between reversals is counted once.
 TEST(DeadEndDetector, NothingIsCountedTwice) {
   DeadEndDetector ends(kLength, kTick);
   int ticks = 0;

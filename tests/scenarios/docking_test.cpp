@@ -1,5 +1,5 @@
-// Docking in SimVille as shipped: its dock, its Create with the receiver where a Create has it, from all over the car
-// park.
+// Docking in SimVille as shipped: its dock, and a Create with the receiver at its real position, from places all over
+// the car park.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ gpu::Device& device() {
   return device;
 }
 
-/// SimVille with roomba5 alone, which carries nothing but its receiver.
+/// SimVille with roomba5 only, which carries nothing but its receiver.
 world::World car_park() {
   world::World world =
       world::load_world(SF_SOURCE_DIR "/worlds/simville/simville.world", {.sensors = sensors::world_file_words()});

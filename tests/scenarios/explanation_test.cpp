@@ -1,4 +1,4 @@
-// What a world makes the farm build and do.
+// Cost of a world in the farm.
 
 #include "scenarios/explanation.h"
 
@@ -49,7 +49,7 @@ TEST(Explanation, CountsWhatThereIs) {
   EXPECT_GT(e.resident, 1u << 20);
 }
 
-/// A tag that nobody carries about: its laser has the room to itself.
+/// A tag that stands: its laser has the room to itself.
 TEST(Explanation, WhatIsGivenAgainIsCounted) {
   world::World world;
   scenes::add_module(world, {}, 20.0);
@@ -62,7 +62,7 @@ TEST(Explanation, WhatIsGivenAgainIsCounted) {
   EXPECT_EQ(e.kinds[0].work.rays, 0u);
 }
 
-/// Six in a row look along it: each sees its neighbours, who hide the others.
+/// Six robots in a row look along it: each sees its neighbours, which hide the others.
 TEST(Explanation, HiddenMoversAreCounted) {
   world::World world;
   for (int i = 0; i < 6; ++i) scenes::add_robot(world, {0.5 * i, 0.0, 0.0, 0.1}, scenes::laser(61, 2.0 * M_PI, 4.0));

@@ -31,7 +31,7 @@ pose = [10.25, 2.0, 90]
 
 TEST(FleetSpawn, NamedRobotsStayAndCopiesFillTheLanes) {
   std::string crowded = kTen;
-  crowded.replace(crowded.find("10"), 2, "45");  // so many that some would be drawn beside the one that stays
+  crowded.replace(crowded.find("10"), 2, "45");  // so many that some would be drawn beside the robot that stays
   const world::World world = town(crowded);
   ASSERT_EQ(world.movers.size(), 46u);
   EXPECT_EQ(world.movers[0].name, "roomba3");
@@ -54,7 +54,7 @@ TEST(FleetSpawn, NamedRobotsStayAndCopiesFillTheLanes) {
   }
 }
 
-/// Numbers and names stay unique, and tables point where they should.
+/// Numbers and names are unique, and rows in tables are valid.
 TEST(FleetSpawn, RowsOfModelsAndMoversMatch) {
   const world::World world = town(kTen);
   std::set<std::uint32_t> ids;
@@ -91,7 +91,7 @@ TEST(FleetSpawn, CopiesAreOfTheFirstOrTheNamedRobot) {
   EXPECT_EQ(town("robots = 2\nplace = \"lanes\"\nof = \"khepera6\"\n").movers[1].name, "khepera2");
 }
 
-/// A plan may name a copy, whose number is the smallest that is free.
+/// A [[robot]] entry may name a copy, whose number is the smallest free one.
 TEST(FleetSpawn, CopiesMayBeNamedByPlans) {
   const world::World world = town(
       "robots = 3\nplace = \"lanes\"\n[[robot]]\nname = \"roomba1\"\n"
@@ -126,7 +126,7 @@ TEST(FleetSpawn, MistakesAreRefusedAtTheirLine) {
   }
 }
 
-/// Ten cars for half a minute: nobody is touched, nobody passes a red light, and they get on.
+/// Ten cars for half a minute: no contacts, no red lights passed, and progress.
 TEST(FleetSpawn, TenInTrafficTouchNobodyAndMindLights) {
   gpu::Device device;
   for (const std::uint64_t seed : {1u, 2u}) {

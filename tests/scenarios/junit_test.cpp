@@ -7,7 +7,7 @@
 namespace sf::scenarios {
 namespace {
 
-/// A reader of just enough XML to tell whether it is well formed: elements by path with their attributes.
+/// A reader for a subset of XML that checks well-formedness: elements by path with their attributes.
 class Xml {
  public:
   explicit Xml(const std::string& text) : text_(text) { read(); }
@@ -128,7 +128,7 @@ TEST(Junit, NothingExpectedIsASkippedCase) {
 /// XML 1.0 forbids them even escaped.
 TEST(Junit, ControlCharactersAreLeftOut) { EXPECT_EQ(escaped(std::string("a\x01\x1b\tb\n", 6)), "a\tb"); }
 
-/// The reader above can fail.
+/// The reader above detects errors.
 TEST(Junit, TheReaderSeesWhatIsNotWellFormed) {
   EXPECT_FALSE(Xml("<a><b></a></b>").fine());
   EXPECT_FALSE(Xml("<a x=\"&bad;\"/>").fine());

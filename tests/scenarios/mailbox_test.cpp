@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// Reading `sequence` of a sensor, whose only number is its sequence.
+/// Reading `sequence` of a sensor; its only value is its sequence.
 class Sender {
  public:
   explicit Sender(std::uint8_t kind = 1, std::uint32_t sensor = 0) : kind_(kind), sensor_(sensor) {}
@@ -35,7 +35,7 @@ TEST(Mailbox, IsEmptyBeforeAnythingCame) {
   EXPECT_FALSE(box.renewed(1));
 }
 
-/// The farm's memory is gone by the next tick: what is kept are copies.
+/// The farm reuses its memory in the next tick, so the mailbox has to copy.
 TEST(Mailbox, KeepsACopyUntilANewerOneComes) {
   Mailbox box({}, 0);
   Sender sender;
@@ -55,7 +55,7 @@ TEST(Mailbox, ADelayOfDIsSeenDLater) {
   for (std::uint32_t k = 0; k < 10; ++k) {
     const std::int64_t now = k * 100 * kMs;
     box.send(sender.reading(k), now);
-    // Sent at 100 k ms, seen from 100 k + 250 ms on: at tick k the newest is k - 3.
+    // Sent at 100 k ms, received from 100 k + 250 ms on: at tick k the newest is k - 3.
     EXPECT_EQ(newest(box, now), k < 3 ? -1.0 : k - 3.0) << k;
   }
   EXPECT_EQ(newest(box, 1149 * kMs), 8.0);  // 9 was sent at 900 ms
@@ -69,7 +69,7 @@ TEST(Mailbox, WhatIsLostNeverComes) {
   EXPECT_TRUE(box.receive(1'000'000 * kMs).empty());
 }
 
-/// With much jitter readings overtake each other; what is seen never goes back.
+/// With much jitter readings overtake each other; the received sequence never decreases.
 TEST(Mailbox, NeverGoesBack) {
   Mailbox box({.jitter = 1.0, .loss = 0.2, .seed = 3}, 7);
   Sender sender;
@@ -106,7 +106,7 @@ TEST(Mailbox, SensorsAndKindsAreApart) {
   EXPECT_FALSE(box.renewed(1));
 }
 
-/// The fate of a message is its robot's own.
+/// The loss of a message depends on its robot.
 TEST(Mailbox, RobotsLoseDifferentReadings) {
   Mailbox one({.loss = 0.5, .seed = 1}, 1), two({.loss = 0.5, .seed = 1}, 2);
   Sender sender;

@@ -1,4 +1,4 @@
-// The thesis' path following, closed over the farm: our runs beside its tables, and what must hold of any P loop.
+// The thesis' path following in closed loop: runs compared with its tables, and properties of any P loop.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ Trial run(Scenario scenario, std::uint64_t seed, const Disturbance& disturbance 
   return run_trial(scenario, disturbed_world(scenario, disturbance), device(), {.disturbance = disturbance});
 }
 
-/// Means of the eight columns over seeds 1 to 3, all of which must reach the end and touch nothing.
+/// Means of the eight columns over seeds 1 to 3, all of which must reach the end without contact.
 ThesisRow mean_row(const std::string& name) {
   std::vector<ThesisRow> rows;
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
@@ -42,7 +42,7 @@ ThesisRow mean_row(const std::string& name) {
   return mean_of(rows);
 }
 
-/// Within 1.5 times of the thesis' trials, either way.
+/// Within a factor of 1.5 of the thesis' trials.
 void expect_near_table(const std::string& name, const ThesisRow& ours) {
   const ThesisTable& table = *thesis_table(name);
   double least = HUGE_VAL, most = 0.0;
@@ -71,8 +71,8 @@ TEST(PathFollowing, MagnetsLandInTheTablesRange) {
   EXPECT_LT(pi[0], p[0]);
 }
 
-/// The heading changes by kp times the integral of the error: on a path that turns by a right angle the mean error is
-/// (pi / 2) / (kp T), whatever the sensor, the delay or the lane's width.
+/// The heading changes by kp times the integral of the error. On a path with a right-angle turn the mean error is
+/// therefore (pi / 2) / (kp T), whatever the sensor, the delay or the lane's width.
 TEST(PathFollowing, TheMeanErrorOfAPLoopIsOwedToTheBend) {
   for (const double delay : {0.0, 0.5}) {
     Scenario scenario = experiment("lane-edge-p", Plant::ideal);
@@ -82,7 +82,7 @@ TEST(PathFollowing, TheMeanErrorOfAPLoopIsOwedToTheBend) {
     const double seconds = trial.times.back() - trial.times.front();
     EXPECT_NEAR(trial.errors[0].mean, 0.5 * M_PI / (0.5 * seconds), 0.1 * trial.errors[0].mean) << delay;
 
-    // To the last digit: every error but the last was driven for 0.1 s.
+    // To the last digit: every error but the last was in effect for 0.1 s.
     const std::vector<double>& errors = trial.counts[0].errors;
     const double sum = std::accumulate(errors.begin(), errors.end() - 1, 0.0);
     const double turned = base::wrap_angle(trial.tracks[0].poses.back().yaw - trial.tracks[0].poses.front().yaw);
@@ -98,7 +98,8 @@ TEST(PathFollowing, TheThesisPlantDoublesTheGain) {
   EXPECT_NEAR(thesis / ideal, 0.5, 0.08);
 }
 
-/// With the shipped robot, its own sensor and no settings at all, its body stays within the lane, bend and narrow end.
+/// With the shipped robot, its own sensor and default settings, its body stays in the lane, including the bend and the
+/// narrow end.
 TEST(PathFollowing, ByItsOwnDefaultsTheShippedRobotKeepsTheLane) {
   const world::World world =
       world::load_world(SF_SOURCE_DIR "/worlds/testpath/testpath.world", {.sensors = sensors::world_file_words()});

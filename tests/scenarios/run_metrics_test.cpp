@@ -16,7 +16,7 @@ gpu::Device& device() {
   return device;
 }
 
-/// SimVille where everyone stands, and a record of it that tests fill by hand.
+/// SimVille with standing robots, and a record of it that tests fill by hand.
 class Town {
  public:
   Town() : world_(load()), simulation_(world_, device(), nobody()), metrics_(world_, simulation_) {
@@ -36,7 +36,7 @@ class Town {
     metrics_.update({tick_++, std::llround(1e9 * seconds), reports_, commands_, contacts_, {}});
   }
 
-  /// Robot 0 goes half a metre up to and half a metre past a line, at one time. @return how many reds it passed
+  /// Moves robot 0 from half a metre before to half a metre past a line at one time. @return red lights passed
   std::uint64_t pass(const base::Pose& X_WL, double seconds) {
     const std::uint64_t before = metrics_.red_lights_passed();
     for (int i = -10; i <= 10; ++i) look(seconds, base::compose(X_WL, {0.05 * i, 0.0, 0.0, 0.0}));
@@ -62,7 +62,7 @@ class Town {
   std::vector<std::uint8_t> contacts_;
 };
 
-/// A governed way-point, driving direction along x.
+/// A governed way-point, x in driving direction.
 base::Pose line_of(const Town& town, const std::string& name) {
   unsigned a = 0, b = 0, c = 0;
   EXPECT_EQ(std::sscanf(name.c_str(), "%u.%u.%u", &a, &b, &c), 3);
@@ -99,9 +99,9 @@ TEST(RunMetrics, OtherLanesAndTheOtherDirectionAreNotMeant) {
   while (world::signal_at(light, red).state != world::LightState::red) red += 0.25;
   const base::Pose X_WL = line_of(town, light.points.at(0));
   EXPECT_EQ(town.pass(X_WL, red), 1u);
-  EXPECT_EQ(town.pass(base::compose(X_WL, {0.0, 0.4, 0.0, 0.0}), red), 0u);   // the lane beside
+  EXPECT_EQ(town.pass(base::compose(X_WL, {0.0, 0.4, 0.0, 0.0}), red), 0u);   // the adjacent lane
   EXPECT_EQ(town.pass(base::compose(X_WL, {0.0, 0.0, 0.0, M_PI}), red), 0u);  // back over it
-  // Up to the line, and a little over, is not past it.
+  // At the line, and a little beyond, is not past it.
   const std::uint64_t before = town.metrics().red_lights_passed();
   double front = 0.0;
   for (const world::Segment& side : town.world().movers[0].body)
@@ -140,7 +140,7 @@ TEST(RunMetrics, ContactsAreCountedWhereTheyBegin) {
   EXPECT_EQ(town.metrics().contacts(), 2u);
 }
 
-/// A full stop is a stand after a drive: creeping is neither, and standing on is no other one.
+/// A full stop is a halt after driving. Creeping is neither, and standing longer is no second stop.
 TEST(RunMetrics, FullStopsAreCounted) {
   Town town;
   const base::Pose X = town.world().movers[0].X_WM;

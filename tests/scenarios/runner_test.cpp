@@ -16,7 +16,7 @@ constexpr const char* kFile = SF_SOURCE_DIR "/experiments/test.toml";
 constexpr const char* kRooms = "world = \"../worlds/rooms.world\"\n";
 constexpr const char* kPath = "world = \"../worlds/testpath/testpath.world\"\n";
 
-/// What the check says from the file's name on; empty: nothing to complain of.
+/// Message of the check from the file's name on; empty without an error.
 std::string refusal(const std::string& text) {
   try {
     check_scenario(parse_scenario(kFile, text));
@@ -28,14 +28,14 @@ std::string refusal(const std::string& text) {
   return {};
 }
 
-/// One each, and what is said of it without anything having run.
+/// One error each, with the message before any run.
 TEST(CheckScenario, WhatARunWouldRefuseIsRefusedAtItsLine) {
   const std::string rooms = kRooms, path = kPath;
   const std::string robots = "robots = 2\n";
   const std::pair<std::string, std::string> kCorpus[] = {
       {"# a comment\nworld = \"nowhere.world\"\n", "test.toml:2: there is no world '"},
       {"world = \"..\"\n", "test.toml:1: there is no world '"},
-      // Only the controller knows that it needs a lane edge sensor.
+      // Known only by the controller: it needs a lane edge sensor.
       {rooms + "[default]\nrate = 5\ncontroller = \"lane-keeping\"\n", "test.toml:4: controller 'lane-keeping'"},
       {path + "[[robot]]\nname = \"roomba0\"\ncontroller = \"route\"\n", "test.toml:4: "},
       {path + "[default]\ncontroller = \"lane-keeping\"\nsettings = { kp = \"much\" }\n", "test.toml:4: 'kp'"},
@@ -61,7 +61,7 @@ TEST(ScenarioStatus, NothingExpectedIsNeitherPassedNorFailed) {
   EXPECT_EQ(result.status(), ScenarioStatus::failed);
 }
 
-/// A robot that wanders has no control error: that is said, and is no success.
+/// A wandering robot has no control error: the result states this, and is a failure.
 TEST(RunScenario, SaysWhatCannotBeMeasured) {
   gpu::Device device;
   const ScenarioResult result = run_scenario(
@@ -71,7 +71,7 @@ TEST(RunScenario, SaysWhatCannotBeMeasured) {
   EXPECT_EQ(result.outcomes[0].measured, "no robot with a control error");
 }
 
-/// Of several robots the one that drove least counts: the second stands.
+/// The smallest distance of several robots counts: the second one stands.
 TEST(RunScenario, DistanceIsThatOfTheLeast) {
   gpu::Device device;
   const ScenarioResult result = run_scenario(
@@ -83,7 +83,7 @@ TEST(RunScenario, DistanceIsThatOfTheLeast) {
   EXPECT_FALSE(result.outcomes[0].met);
 }
 
-/// Of several robots the worst counts, one that starts beside its lane; and both signs of an error do, where they would
+/// The worst of several robots counts, one that starts beside its lane. Errors of both signs count, though they would
 /// cancel in a mean.
 TEST(RunScenario, TheControlErrorIsTheWorstOnes) {
   const std::string world = testing::TempDir() + fmt::format("two_in_a_lane_{}.world", getpid());

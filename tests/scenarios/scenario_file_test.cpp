@@ -13,7 +13,7 @@ constexpr const char* kWorld = "world = \"../worlds/testpath/testpath.world\"\n"
 
 Scenario parse(const std::string& text) { return parse_scenario(kFile, kWorld + text); }
 
-/// What the error says from the file's name on; empty when there is none.
+/// Message of the error from the file's name on; empty without an error.
 std::string refusal(const std::string& text, bool make = false) {
   try {
     const Scenario scenario = parse_scenario(kFile, text);
@@ -95,7 +95,7 @@ tick_p99_ms = 10
     EXPECT_EQ(e.robot, e.kind == Expectation::Kind::mean_abs_error ? "roomba0" : "");
 }
 
-/// Who gives only settings keeps the default's controller; who names another starts without settings.
+/// A robot with settings only keeps the default's controller; one with another controller starts without settings.
 TEST(ScenarioFile, RobotsInheritWhatTheyDoNotSay) {
   const Scenario s = parse(R"(
 [default]
@@ -133,7 +133,7 @@ TEST(ScenarioFile, LinksHaveTheScenariosSeed) {
   EXPECT_EQ(simulation_of(s, world_of(s)).actors[0].link.seed, 9u);
 }
 
-/// One mistake each, and what is said of it.
+/// One mistake each, with its message.
 TEST(ScenarioFile, MistakesAreRefusedAtTheirLine) {
   const std::string w = kWorld;
   const std::pair<std::string, std::string> kCorpus[] = {
@@ -182,7 +182,7 @@ TEST(ScenarioFile, MistakesAreRefusedAtTheirLine) {
   }
 }
 
-/// Mistakes that only the world or a controller can tell.
+/// Mistakes that only the world or a controller can detect.
 TEST(ScenarioFile, MistakesAgainstTheWorldAreRefusedAtTheirLine) {
   const std::string w = kWorld;
   const std::pair<std::string, std::string> kCorpus[] = {
@@ -204,7 +204,7 @@ TEST(ScenarioFile, MistakesAgainstTheWorldAreRefusedAtTheirLine) {
   }
 }
 
-/// Bytes taken out, doubled and turned: an answer or a refusal, never an end.
+/// Bytes removed, repeated and changed: a result or an error, never a crash.
 TEST(ScenarioFile, MutantsAreReadOrRefused) {
   const std::string whole = read_scenario(SF_SOURCE_DIR "/experiments/lane-edge-pi.toml").file.empty() ? "" : R"(
 world = "../worlds/testpath/testpath.world"

@@ -24,7 +24,7 @@ world::World our_world(const std::string& name, std::uint32_t robots = 0) {
   return world;
 }
 
-/// Rows of all that are not tags.
+/// Rows of all movers except tags.
 std::vector<std::uint32_t> robots_of(const world::World& world) {
   std::vector<std::uint32_t> rows;
   for (std::uint32_t i = 0; i < world.movers.size(); ++i)
@@ -32,7 +32,7 @@ std::vector<std::uint32_t> robots_of(const world::World& world) {
   return rows;
 }
 
-/// Everyone stands.
+/// All robots stand.
 SimulationOptions nobody(const world::World& world) {
   SimulationOptions options;
   options.actor.plan.controller.clear();
@@ -69,12 +69,12 @@ TEST(Simulation, ThreadsChangeNothingBehindABadLinkEither) {
   EXPECT_NE(hash_after(world, options, 40), first);
 }
 
-/// Without a link the readings come as they are made: a link that does nothing is no link.
+/// A link without delay and loss gives the same readings as no link.
 TEST(Simulation, AMailboxThatKeepsNothingBackChangesNothing) {
   const world::World world = our_world("rooms.world", 10);
   SimulationOptions options{.seed = 7};
   const std::uint64_t direct = hash_after(world, options, 30);
-  options.actor.link = {.jitter = 1e-12, .seed = 7};  // not perfect by its own word, and yet nothing is late
+  options.actor.link = {.jitter = 1e-12, .seed = 7};  // formally not perfect, but nothing is late
   EXPECT_EQ(hash_after(world, options, 30), direct);
 }
 
@@ -103,7 +103,7 @@ TEST(Simulation, RobotsStartWithTheSignal) {
     const base::Pose& X = tick.reports[0].X_WM;
     if (X.x != world.movers[0].X_WM.x || X.yaw != world.movers[0].X_WM.yaw) moved_at = 1e-9 * double(tick.time);
   }
-  // Decided at 1.0 s, seen a tick later.
+  // Decided at 1.0 s, visible a tick later.
   EXPECT_NEAR(moved_at, 1.1, 0.11);
   EXPECT_GT(moved_at, 1.0);
 }
@@ -123,7 +123,7 @@ TEST(Simulation, ControllersRunAtTheirOwnRate) {
   EXPECT_EQ(steps, (std::vector<int>{0, 5, 10, 15, 20}));
 }
 
-// --- Rates that do not divide the tick's.
+// --- Rates that are no divisors of the tick's.
 
 world::Sensor sensor(const std::string& type, double rate) {
   world::Sensor sensor;
@@ -133,7 +133,7 @@ world::Sensor sensor(const std::string& type, double rate) {
   return sensor;
 }
 
-/// Robots among boxes with one laser each, which see no robot.
+/// Robots among boxes with one laser each, invisible to each other.
 world::World fast_world(const std::vector<double>& rates, const world::LaserNoise& noise = {}) {
   world::World world = scenes::boxes(15, 12.0, 3);
   world::Laser laser = scenes::laser(31, M_PI, 6.0);
@@ -147,7 +147,7 @@ world::World fast_world(const std::vector<double>& rates, const world::LaserNois
   return world;
 }
 
-/// Every reading is there, says when it was measured, and is that of where its robot was then: as it drove.
+/// Every reading has its time of measurement, and is measured at the robot's interpolated pose at that time.
 TEST(Simulation, SensorsLookAtTheirOwnTimes) {
   const std::vector<double> rates{13.0, 25.0, 50.0, 10.0, 4.0, 333.0};
   const world::World world = fast_world(rates);
@@ -179,7 +179,7 @@ TEST(Simulation, SensorsLookAtTheirOwnTimes) {
   EXPECT_GT(driven, 200u) << "the test is meant to drive";
 }
 
-/// What one robot reads, to the bit.
+/// Readings of the first robot, bitwise.
 std::vector<std::vector<double>> read_by_first(const world::World& world, std::uint8_t but = 0) {
   Simulation simulation(world, device(), {.seed = 7});
   std::vector<std::vector<double>> all;
@@ -192,7 +192,7 @@ std::vector<std::vector<double>> read_by_first(const world::World& world, std::u
   return all;
 }
 
-/// Who else looks between ticks, and when, changes nothing: neither what robots see nor what wheels add up.
+/// Other sensors' samples between ticks affect neither readings nor accumulated wheel rotations.
 TEST(Simulation, OthersRatesChangeNothing) {
   const world::LaserNoise noise{.range_sigma = 0.01, .range_proportional = 0.0, .angle_sigma = 0.002};
   for (const double rate : {10.0, 13.0}) {
@@ -215,12 +215,12 @@ TEST(Simulation, OthersRatesChangeNothing) {
   }
 }
 
-/// A controller is given the newest of each sensor, however many there were since it was asked last.
+/// A controller gets the newest reading of each sensor, however many there were since its last step.
 TEST(Simulation, ControllersAreGivenTheNewestScan) {
   const world::World world = fast_world({25.0, 35.0, 50.0});
   SimulationOptions options{.seed = 7};
   const std::uint64_t direct = hash_after(world, options, 60);
-  options.actor.link = {.jitter = 1e-12, .seed = 7};  // a mailbox, which keeps the newest alone
+  options.actor.link = {.jitter = 1e-12, .seed = 7};  // a mailbox, which keeps the newest only
   EXPECT_EQ(hash_after(world, options, 60), direct);
 }
 
@@ -230,7 +230,8 @@ TEST(Simulation, ThreadsChangeNothingBetweenTicksEither) {
   EXPECT_EQ(hash_after(world, {.seed = 7, .threads = 3}, 30), first);
 }
 
-/// A reading leaves when it was measured, not with the tick after: first at 77 ms, and seen at the tick after it came.
+/// The delay counts from the time of measurement, not from the next tick: first at 77 ms, received at the tick after
+/// arrival.
 TEST(Simulation, LinksDelayFromWhenAReadingWasMeasured) {
   for (const auto& [delay, tick] : {std::pair{0.02, 1}, {0.022, 1}, {0.024, 2}, {0.12, 2}}) {
     world::World world = our_world("testpath/testpath.world");
@@ -248,7 +249,7 @@ TEST(Simulation, LinksDelayFromWhenAReadingWasMeasured) {
   }
 }
 
-/// The wheel turns towards the lane only once the first reading has come.
+/// The robot steers towards the lane only after the first reading.
 TEST(Simulation, ADelayedReadingIsSeenThatMuchLater) {
   const world::World world = our_world("testpath/testpath.world");
   for (const double delay : {0.0, 0.5, 1.0}) {
@@ -265,7 +266,7 @@ TEST(Simulation, ADelayedReadingIsSeenThatMuchLater) {
   }
 }
 
-/// Two robots that patrol towards each other hear of each other, and stop; deaf ones would meet.
+/// Two robots that patrol towards each other stop by V2V; without it they would collide.
 TEST(Simulation, RobotsHearEachOther) {
   world::World world = our_world("rooms.world", 2);
   const auto rows = robots_of(world);
@@ -313,7 +314,7 @@ TEST(Simulation, ATickAllocatesNothingAfterWarmUp) {
     options.actors[i].plan =
         i % 2 == 0 ? plan("patrol", {{"points", std::vector<double>{0.0, 0.0}, ""}}) : plan("wander");
   }
-  // Nobody drives: where robots are, cells are built, and that is the farm's business.
+  // No robot moves: new places would build cells, which allocates in the farm.
   for (world::Mover& mover : world.movers) mover.max_forward = mover.max_turn = 1e-12;
   Simulation simulation(world, device(), options);
   for (int i = 0; i < 200; ++i) simulation.step();

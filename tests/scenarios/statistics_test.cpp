@@ -45,7 +45,7 @@ TEST(Statistics, ByHand) {
   EXPECT_EQ(s.abs_most, 4.0);
 }
 
-/// mean^2 + variance is the same for errors and their sizes: the tables of the thesis hold to it, and so must ours.
+/// mean^2 + variance is the same for errors and their absolute values, in the thesis' tables, too.
 TEST(Statistics, SquaresAgree) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     std::vector<double> errors;
@@ -68,7 +68,7 @@ TEST(Statistics, PercentilesAreRanks) {
   EXPECT_EQ(percentile(values, 1.0), 100.0);
   EXPECT_EQ(percentile(values, 0.5), 50.0);
   EXPECT_TRUE(std::isnan(percentile({}, 0.5)));
-  // Between ranks the next higher one: the least value that so many are not above.
+  // Between ranks the next higher value.
   const double five[] = {30.0, 10.0, 50.0, 20.0, 40.0};
   for (const auto& [part, value] : {std::pair{0.2, 10.0}, {0.21, 20.0}, {0.5, 30.0}, {0.81, 50.0}, {0.99, 50.0}})
     EXPECT_EQ(percentile(five, part), value) << part;
@@ -88,7 +88,7 @@ TEST(Thesis, TablesAreThoseOfTheThesis) {
     const ThesisTable* table = thesis_table(name);
     ASSERT_NE(table, nullptr) << name;
     for (const ThesisRow& row : table->trials) {
-      // The largest size is one of the extremes, to what is printed.
+      // The largest absolute value is one of the extremes, to the printed precision.
       EXPECT_EQ(row[7], std::max(-row[2], row[3])) << name;
       EXPECT_LE(row[0], row[4]);
     }

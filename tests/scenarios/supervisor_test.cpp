@@ -7,7 +7,7 @@
 namespace sf::scenarios {
 namespace {
 
-/// A world of one mover that nothing is asked of but its number and its tick.
+/// A world of one mover, with only a number and a tick.
 world::World one_mover() {
   world::World world;
   world.movers.resize(1);
@@ -15,7 +15,7 @@ world::World one_mover() {
   return world;
 }
 
-/// Drives along x to `far`, and then stands in contact with these sectors.
+/// Drives along x to `far`, then stands in contact with these sectors.
 struct Ride {
   world::World world = one_mover();
   Supervisor supervisor;
@@ -30,7 +30,7 @@ struct Ride {
     const auto helps = supervisor.update({.reports = {&report, 1}, .contacts = contacts});
     return {helps.begin(), helps.end()};
   }
-  /// Ticks in contact until it is helped; 1000: never.
+  /// Ticks in contact until the intervention; 1000: none.
   int wait(Supervisor::Intervention& help) {
     for (int i = 1; i < 1000; ++i)
       if (const auto helps = look(true); !helps.empty()) return help = helps[0], i;
@@ -51,7 +51,7 @@ TEST(Supervisor, NobodyIsThereUnlessToldSo) {
   EXPECT_EQ(ride.wait(help), 1000);
 }
 
-/// Contact while it still moves, or standing free, is no waiting.
+/// Contact while moving, or standing without contact, is not waiting.
 TEST(Supervisor, LeavesAloneWhoDoesNotWait) {
   Ride ride({.patience = 1.0});
   for (int i = 0; i < 100; ++i) EXPECT_TRUE(ride.look(false).empty());
@@ -69,7 +69,7 @@ TEST(Supervisor, PutsItBackAlongItsWay) {
   ride.wait(help);
   EXPECT_NEAR(ride.report.X_WM.x - help.X_WM.x, 0.15, 0.021);
   EXPECT_EQ(help.X_WM.y, 0.0);
-  // Nowhere farther back than it has been.
+  // Not farther back than its path.
   Ride brief({.patience = 1.0, .back = 0.15}, 0.05);
   brief.wait(help);
   EXPECT_EQ(help.X_WM.x, 0.0);
@@ -85,7 +85,7 @@ TEST(Supervisor, TurnsItFromWhatItTouched) {
   }
 }
 
-/// The thesis' avoidance scrapes and waits for ever; with a supervisor it goes on.
+/// The thesis' avoidance scrapes and waits for ever; with a supervisor it continues.
 TEST(Supervisor, LetsTheThesisAvoidanceGoOn) {
   Scenario scenario = read_scenario(SF_SOURCE_DIR "/experiments/mapping.toml");
   scenario.duration = 120.0;

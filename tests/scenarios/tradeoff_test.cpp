@@ -1,4 +1,4 @@
-// Every mode measured, and what is advised.
+// Measurement of all modes, and selection of modes.
 
 #include "scenarios/tradeoff.h"
 
@@ -51,7 +51,7 @@ TEST(Tradeoff, CanBeStopped) {
   EXPECT_TRUE(tradeoff(small_world(), device(), {.progress = [](double) { return false; }}).empty());
 }
 
-/// A lane edge sensor on a bend: what it reads is covered by no bound, and none is shown beside its errors.
+/// A lane edge sensor in a bend: no bound covers its readings, and none is shown.
 TEST(Tradeoff, WhatNoBoundCoversHasNone) {
   world::World world;
   world::LaneMarking bend{{}, 0.1};
@@ -97,7 +97,7 @@ TEST(Advice, IsTheFastestWithinTheErrors) {
   EXPECT_EQ(advised({.metres = 1e-3, .tesla = 1e-12}), "laser:single") << "the error itself is allowed";
 }
 
-/// Ticks are what their kinds take together.
+/// Ticks add up over sensor types.
 TEST(Advice, IsTheMostAccurateThatIsFastEnough) {
   EXPECT_EQ(advised({.least_rate = 4.0}), "exact") << "0.2 s";
   EXPECT_EQ(advised({.least_rate = 6.0}), "magnetometer:near3") << "one step like laser:single, and faster";

@@ -1,4 +1,4 @@
-// A recorded run computed again: what is sound passes, what was touched is found.
+// Verification of recordings: sound ones pass, changes are detected.
 
 #include "scenarios/verification.h"
 
@@ -59,7 +59,7 @@ TEST(Verification, ASoundRun) {
   EXPECT_FALSE(v.interrupted);
 }
 
-/// Sensors that look between ticks: their poses are worked out again from those of the ticks, to the bit.
+/// Readings between ticks: their poses are recomputed bitwise from those of the ticks.
 TEST(Verification, ReadingsFromBetweenTicks) {
   world::World world = small_world();
   for (std::size_t m = 0; m < world.movers.size(); ++m) {
@@ -88,7 +88,7 @@ TEST(Verification, ReadingsFromBetweenTicks) {
   EXPECT_FALSE(verify(moved, device(), {}).sound());
 }
 
-/// Skipped beams are computed again to the bit, 32 bits on the device to the bit and beside plain C++ within the bound.
+/// Skipped beams are recomputed bitwise; 32-bit scans bitwise on the device and within the bound by plain C++.
 TEST(Verification, InOtherModes) {
   const record::Recording skipped = recorded(true, "skip4");
   EXPECT_EQ(skipped.info.mode, "laser:skip4");

@@ -1,5 +1,5 @@
-// Random scenes at the ends of the range beside 50 and 100 decimal digits (Boost.Multiprecision): lasers, magnetometers
-// and lane edge sensors as farms read them.
+// Random scenes at the limits of the range compared with 50 and 100 decimal digits (Boost.Multiprecision): lasers,
+// magnetometers and lane edge sensors, read by farms.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ Fixture& fixture() {
   return fixture;
 }
 
-/// Evenly in the exponent.
+/// Uniform in the exponent.
 double magnitude(Chance& chance, double low, double high) {
   return std::pow(10.0, chance.between(std::log10(low), std::log10(high)));
 }
@@ -30,10 +30,10 @@ double magnitude(Chance& chance, double low, double high) {
 struct Met {
   Digits50 range;
   double sine = 1.0, arm = 0.0;
-  bool ambiguous = false;  ///< a free end is so near that 64 bits decide
+  bool ambiguous = false;  ///< a free end is so near that 64-bit rounding decides
 };
 
-/// Every wall one after another: signs and quotients in 50 digits.
+/// Tests every wall, with signs and quotients in 50 digits.
 Met nearest_hit(const world::World& world, const Pose& eye, const world::Laser& laser, std::uint32_t sample) {
   Digits50 part = laser.samples < 2 ? Digits50(0) : Digits50(sample) / Digits50(laser.samples - 1) - Digits50(0.5);
   const Digits50 angle = Digits50(eye.yaw) + Digits50(laser.fov) * part;
@@ -47,7 +47,7 @@ Met nearest_hit(const world::World& world, const Pose& eye, const world::Laser& 
     if (below == 0) continue;
     const Digits50 t = (ex * way - ey * wax) / below, u = (dx * way - dy * wax) / below;
     if (t < 0) continue;
-    // Rounding moves the place on a wall by 1e-14 of what is near it, divided by the sine.
+    // Rounding moves a hit on a wall by 1e-14 of the nearby lengths, divided by the sine.
     const double length = std::hypot(s.b.x - s.a.x, s.b.y - s.a.y);
     const double sine = static_cast<double>(abs(below)) / length;
     const double arm = std::hypot(s.a.x - eye.x, s.a.y - eye.y);
@@ -60,7 +60,7 @@ Met nearest_hit(const world::World& world, const Pose& eye, const world::Laser& 
   return met;
 }
 
-/// Blocks and thin walls from 1e-3 to 10 times `size` [m], about an eye at `at`.
+/// Blocks and thin walls of 1e-3 to 10 times `size` [m] around `at`.
 world::World scene(Chance& chance, glm::dvec2 at, double size) {
   world::World world;
   for (int i = 0; i < 12; ++i) {
@@ -71,8 +71,8 @@ world::World scene(Chance& chance, glm::dvec2 at, double size) {
   return world;
 }
 
-/// Scenes of a millimetre to 100 km, to 1e7 m away, headings to 1e6 rad. Allowed: 64 bits' rounding of a direction
-/// (15 u) and of the products, (18 range + 4 arm) u / sine; u = 1.1e-16.
+/// Scenes of a millimetre to 100 km, up to 1e7 m away, headings to 1e6 rad. Allowed: 64-bit rounding of a direction (15
+/// u) and of the products, (18 range + 4 arm) u / sine; u = 1.1e-16.
 TEST(Oracle, LaserRangesInRandomScenes) {
   Chance chance(21);
   std::size_t beams = 0, met_something = 0, hairs = 0;
@@ -109,8 +109,9 @@ TEST(Oracle, LaserRangesInRandomScenes) {
   EXPECT_LT(hairs, beams / 50);
 }
 
-/// Moments of 1e-12 to 1e12, distances of 1e-6 to 1e6 m, both ways up. Allowed: 1e-13 of the sum of magnitudes (a
-/// 32-bit root squared by Newton's step), and what tells a magnet's middle from nowhere, 4e-18 m over the distance.
+/// Moments of 1e-12 to 1e12, distances of 1e-6 to 1e6 m, above and below. Allowed: 1e-13 of the sum of magnitudes (a
+/// 32-bit root improved by Newton's step), and 4e-18 m over the distance for the height that avoids a division by zero
+/// at a magnet's centre.
 TEST(Oracle, FieldsOfRandomMagnets) {
   Chance chance(22);
   double worst = 0.0;
@@ -120,7 +121,7 @@ TEST(Oracle, FieldsOfRandomMagnets) {
     for (std::uint32_t i = 0; i < 1 + chance.below(30); ++i) {
       const glm::dvec2 p = magnitude(chance, 1e-6, 1e6) * chance.in_square(1.0);
       const double sign = chance.below(2) == 0 ? -1.0 : 1.0;
-      // As the device has it: a moment in 32 bits.
+      // The device's moment has 32 bits.
       const auto moment = static_cast<float>(sign * magnitude(chance, 1e-12, 1e12));
       world.magnets.push_back({{far + p.x, p.y}, chance.between(-1e-3, 1e-3), moment, 1e-9, 0});
     }
@@ -147,9 +148,9 @@ TEST(Oracle, FieldsOfRandomMagnets) {
   std::printf("[ measured ] fields: worst %.2g of what is allowed\n", worst);
 }
 
-/// Straight stripes at any heading and tilt, 1e-5 to 1e3 m away, to 1e7 m from the origin. Allowed: four roundings of
-/// the paint's corners, 1e-13 of the distance for a pixel size that rides in a point's last bits, over cos^2 of the
-/// tilt.
+/// Straight markings at any heading and tilt, 1e-5 to 1e3 m away, up to 1e7 m from the origin. Allowed: four roundings
+/// of the marking's corners, and 1e-13 of the distance for a pixel size stored in a point's last bits, over cos^2 of
+/// the tilt.
 TEST(Oracle, DistancesToRandomEdges) {
   Chance chance(23);
   double worst = 0.0;
@@ -157,7 +158,7 @@ TEST(Oracle, DistancesToRandomEdges) {
   for (int trial = 0; trial < 40; ++trial) {
     const double far = chance.below(2) == 0 ? 0.0 : magnitude(chance, 1.0, 1e7);
     const double grain = std::nextafter(2.0 * far, HUGE_VAL) - 2.0 * far;
-    // Nearer than a few thousand grains the paint itself is not straight.
+    // Nearer than a few thousand grains the marking is not straight.
     const double distance = magnitude(chance, std::max(1e-5, 1e4 * grain), 1e3);
     const double tilt = chance.between(-1.2, 1.2), yaw = chance.between(-4.0, 4.0);
     const Pose X{far, -far, 0.0, yaw};
@@ -187,7 +188,7 @@ TEST(Oracle, DistancesToRandomEdges) {
   EXPECT_EQ(seen, 40);
 }
 
-/// The judge itself: a wall moved by what no rounding explains is told.
+/// The reference detects a wall that is displaced by more than rounding.
 TEST(Oracle, SeesAWallThatIsElsewhere) {
   world::World world;
   add_wall(world, {2.0, -1.0}, {2.5, 1.0});

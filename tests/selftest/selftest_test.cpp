@@ -1,4 +1,4 @@
-// Every case that `sensorfarm selftest` runs, and that the suite can fail.
+// All cases of `sensorfarm selftest`, and a failing one.
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ TEST(Suite, NamesAreUniqueAndReasonsAreGiven) {
 
 Outcome outcome_of(void (*body)(Fixture&, Checks&)) { return run({"made", "made", "m", "made", body}, fixture()); }
 
-/// A case whose answer is wrong is told, with the check that failed and by how much.
+/// A wrong result is reported with the failed check and its error.
 TEST(Suite, AWrongAnswerFails) {
   const Outcome o = outcome_of([](Fixture& l, Checks& checks) {
     world::World world;
@@ -95,7 +95,7 @@ TEST(Suite, TheNearestToItsToleranceIsTold) {
   EXPECT_EQ(o.allowed, 2e-6);
 }
 
-/// A pose that is not finite is the caller's broken promise: packets and files are judged before.
+/// A non-finite pose is a programming error: packets and files are validated before.
 TEST(SuiteDeathTest, APoseThatIsNoNumberStopsTheFarm) {
   world::World world;
   add_laser_mover(world, {}, laser(1, 0.0, 8.0));
