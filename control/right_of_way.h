@@ -13,8 +13,8 @@
 // time), equal for all robots. Without it, a robot that cannot use its turn because its lane is full would block the
 // others.
 //
-// Robots that decide at the same time see the same poses and agree on the order; a robot sees at its next decision what
-// the other has begun. V2V packets do not state the chosen exit, so all exits of a robot's lane count.
+// Robots that decide at the same time see the same poses and agree on the order; a robot observes at its next decision
+// the motion that the other has begun. V2V packets do not state the chosen exit, so all exits of a robot's lane count.
 
 #include <cstdint>
 #include <vector>

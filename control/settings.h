@@ -38,7 +38,7 @@ class Settings {
   std::vector<std::string> texts(std::string_view key, const std::vector<std::string>& fallback);
   bool has(std::string_view key) const;
 
-  /// @throws base::InputError naming the first unread setting, and the keys that were asked for.
+  /// @throws base::InputError naming the first unread setting, and the keys that were requested.
   void require_all_read() const;
   /// Always throws. @throws base::InputError with the location of the setting `key`.
   [[noreturn]] void refuse(std::string_view key, const std::string& message) const;
@@ -49,7 +49,7 @@ class Settings {
   std::string owner_;
   std::vector<Setting> settings_;
   std::vector<bool> read_;
-  std::vector<std::string> asked_;  ///< keys that were asked for, for suggestions
+  std::vector<std::string> asked_;  ///< requested keys, for suggestions
 };
 
 }  // namespace sf::control

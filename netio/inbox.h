@@ -75,8 +75,7 @@ class Inbox {
   /// wrong_source (undefined otherwise). `receive` calls this for each datagram of the socket.
   PacketStatus accept(std::span<const std::uint8_t> bytes, const Endpoint& source, std::int64_t now, Packet& packet);
 
-  /// The answer to an unproven V2V or SUBSCRIBE that came from `who`.
-  /// @return false where none is due, or too many Encodes the CHALLENGE for an unproven V2V or SUBSCRIBE from `who`.
+  /// Encodes the CHALLENGE for an unproven V2V or SUBSCRIBE from `who`.
   /// @return false if none is due or the limit of challenges is reached
   bool challenge(const Packet& packet, const Endpoint& who, std::int64_t now, base::Bytes& out);
 
@@ -94,7 +93,7 @@ class Inbox {
   /// port.
   std::optional<Endpoint> address(std::uint32_t robot) const { return robots_.source(robot); }
 
-  /// The token that packets from `who` must carry.
+  /// The token that packets from `who` have to carry.
   std::uint32_t token(const Endpoint& who) const { return tokens_.of(who); }
   /// For packets to `robot`: the farm's session, and the robot's last session.
   SessionToken session_token_for(std::uint32_t robot) const;

@@ -1,6 +1,6 @@
 #pragma once
 // Receives a robot's readings: datagrams in, the newest complete reading of each sensor out. Payloads are checked and
-// decoded by two functions that know the sensor types.
+// decoded by two functions of the sensor types.
 //
 //   Receiver receiver({.streams = streams, .inspect = inspect, .read = read});
 //   port_listener.drain(0, [&](std::size_t i, auto bytes, const Endpoint&) { receiver.accept(i, bytes, now); });

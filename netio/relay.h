@@ -45,8 +45,8 @@ class Relay {
   /// Keeps the newest V2V of each robot, or a START, until the next `forward`. Other packets are ignored.
   void take(const Packet& packet);
 
-  /// Queues the new states for each active robot at `now` [ns], to the address that it sends from. A robot does not get
-  /// its own state. Unused states are dropped.
+  /// Queues the new states for each subscriber that is active at `now` [ns], to the address that it sends from. A robot
+  /// does not get its own state. Unused states are dropped.
   void forward(const Inbox& inbox, std::int64_t now, Outbox& outbox);
 
   const RelayCounts& counts() const { return counts_; }

@@ -1,6 +1,6 @@
 #pragma once
-// Receives, checks and counts the packets of all sensors, each on its own port. Payloads are checked by a function that
-// knows the sensor types.
+// Receives, checks and counts the packets of all sensors, each on its own port. Payloads are checked by a function of
+// their sensor types.
 //
 //   StreamMonitor monitor({.streams = streams, .inspect = inspect});  // ports are bound: start the sender now
 //   monitor.run(stop, 500);                                  // or drain(), between other work
