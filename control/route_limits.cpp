@@ -86,8 +86,7 @@ void Route::limit_by_conflict_zones(const ControllerInput& input, Limit& limit) 
       if (ahead > kApproachDistance || end <= progress_.s() || right_of_way_.committed(ahead, speed)) continue;
       const bool room = room_beyond(end);
       if (room && right_of_way_.may_enter(leg.way, conflict_zone)) continue;
-      limit.stop_in(std::max(ahead, 0.0),
-                    room ? "others go first where their ways meet" : "the lane that it wants is full");
+      limit.stop_in(std::max(ahead, 0.0), room ? "others go first where their ways meet" : "the lane ahead is full");
       if (!room && speed < 0.01 && ahead < 0.3) {
         full = true;
         if (blocked_way_ != leg.way) blocked_since_ = -1;

@@ -169,14 +169,14 @@ std::vector<std::string> run_accuracy(const ExperimentContext& context) {
 }
 
 constexpr std::string_view kReasons =
-    "Every mode has the same seeds, so what differs between its rows is the mode. "
+    "All modes have the same seeds, so that rows differ by the mode only. "
     "On the thesis' path a quarter of the rays keeps the lane as well as all of them: 2 mm of noise on each ray, the "
-    "bend and the delay of a second are far larger than what fewer points change. "
+    "bend and the delay of a second have a far larger effect than fewer points. "
     "Magnets beyond 3 m are not missed; without those beyond 1 m, the mean error grows by 3 %. "
     "For a map of 3 cm a cell, ranges in 32 bits change no cell, and one beam of eight (every 4 degrees) is enough: "
-    "the robot passes everything closely, and what lies between two beams is seen from elsewhere. "
-    "Cells that are wrong are those on walls' faces, where the noise of 3 mm decides, not the mode. "
-    "It is not so where things are thin and passed once: docs/accuracy.md says what each mode may miss.";
+    "the robot passes all obstacles closely, and gaps between two beams are seen from other poses. "
+    "Wrong cells are on walls' faces, where the noise of 3 mm decides, not the mode. "
+    "Thin obstacles that are passed once may be missed: docs/accuracy.md lists the limits of each mode.";
 
 }  // namespace
 

@@ -97,7 +97,8 @@ std::vector<std::string> run_path(const ExperimentContext& context) {
 
 constexpr std::string_view kEdgeReasons =
     "The plant: for any P loop the mean error is the bend's angle over gain and time, (pi/2) / (kp T), so a robot that "
-    "does what it is told has twice the thesis' mean; the thesis drove through Player's driver of the Create, which "
+    "executes commands unchanged has twice the thesis' mean; the thesis drove through Player's driver of the Create, "
+    "which "
     "halves radii and so doubles the gain, and with it (plant `thesis`) means and deviations agree. "
     "The extremes do not: the thesis' robot was off to the left by twice as much, and once by 0.871 m, which a lane of "
     "half a metre cannot give. "
@@ -109,9 +110,9 @@ constexpr std::string_view kMagnetReasons =
     "The gains: the thesis prints kp = 0.01 and ki = 0.006 without a unit; ours (0.09 and 0.0055 rad/s per Gauss, "
     "doubled by the driver) follow from its means, which for any P loop are (pi/2) / (kp T). "
     "The printed ratio of the two cannot be: whatever their unit, such a loop has a mean near 0 and is unstable with "
-    "the delay it speaks of. "
+    "the delay that the thesis mentions. "
     "The delay of about one second is our choice, made to give these tables their swing. "
-    "What is left is in the extremes, up to half of the thesis' to the left: its pattern of magnets and the "
+    "Differences remain in the extremes, up to half of the thesis' to the left: its pattern of magnets and the "
     "disturbances of its laboratory are known by a figure alone, and ours are a plain row with 2 mGauss of noise.";
 
 }  // namespace

@@ -161,7 +161,7 @@ std::string draw(const ExperimentContext& context, const std::vector<Point>& poi
 std::string report_of(const ExperimentContext& context, const std::vector<Point>& points) {
   std::string text =
       "# Sweeps of the lane edge loop\n\n" + setup_of(context, {}) +
-      "\n\nOne thing is varied at a time; all else is as in lane-edge-p and -pi, without delay, jitter "
+      "\n\nOne parameter is varied at a time; all else is as in lane-edge-p and -pi, without delay, jitter "
       "or loss. `exact edge`: the exact distance across the robot (one ray) in place of the line through 61 "
       "rays. `owed` is the mean error inherent in a P loop on this bend: (pi/2) / (kp T), the gain "
       "doubled by the plant `thesis`.\n";
@@ -203,7 +203,7 @@ constexpr std::string_view kReasons =
     "Here the overshoot stays without delay and with the exact edge: to turn at v / R a P law must have an error of "
     "v / (R k), and it shrinks as the gain k grows. "
     "The line fit has a small part of the largest error, where the bend begins and ends. "
-    "Delay, loss and rate make the loop swing, but less than is said, since it is slow (about 1 rad/s). "
+    "Delay, loss and rate make the loop swing, but less than the thesis states, since it is slow (about 1 rad/s). "
     "With the plant `ideal` the gain is half, and every error about twice as large.";
 
 }  // namespace

@@ -95,12 +95,11 @@ void near_magnets(Fixture& fixture, Checks& checks) {
 }
 
 constexpr Case kCases[] = {
-    {"modes", "stated-bounds", "m",
-     "scans in 64 and in 32 bits, 1 mm to 1 000 km wide: within what each reading states", stated_bounds},
-    {"modes", "skipped-beams", "", "beams that are cast are those of exact scans to the bit, the others are flagged",
+    {"modes", "stated-bounds", "m", "scans in 64 and in 32 bits, 1 mm to 1 000 km wide: within the stated bounds",
+     stated_bounds},
+    {"modes", "skipped-beams", "", "cast beams equal those of exact scans to the bit, the others are flagged",
      skipped_beams},
-    {"modes", "near-magnets", "T", "magnets of 1e-3 to 1e3 A m^2 left out: within what each reading states",
-     near_magnets},
+    {"modes", "near-magnets", "T", "magnets of 1e-3 to 1e3 A m^2 left out: within the stated bounds", near_magnets},
 };
 
 }  // namespace

@@ -98,7 +98,7 @@ void from_on_a_wall(Fixture& fixture, Checks& checks) {
     const TestFarm test = fixture.measure(world);
     for (std::size_t i = 0; i < 180; ++i) {
       checks.same(test.readings[0].values[i], 0.0, fmt::format("into it, {:g} m away", far), i);
-      checks.holds(test.readings[0].hits[i] != base::kNoHit, "what is touched is named", i);
+      checks.holds(test.readings[0].hits[i] != base::kNoHit, "the touched wall is named", i);
       world::World rest = *test.world;
       std::erase_if(rest.walls, [&](const world::Segment& s) { return s.a.x == far && s.b.x == far; });
       const Hit met = nearest_hit(
@@ -126,15 +126,14 @@ constexpr Case kCases[] = {
     {"beams", "grazing", "m", "walls met at 0.1 to 1e-9 rad: rounding of 64 bits divided by the sine, 2e-4 m at 1e-9",
      grazing},
     {"beams", "parallel", "m",
-     "beams along a wall, 1 m to 1e-300 m beside it and in its line: what stands across, to the bit", parallel},
+     "beams along a wall, 1 m to 1e-300 m beside it and in its line: the wall across, to the bit", parallel},
     {"beams", "shared-corners", "m",
      "beams into the corners of polygons: the corner's distance, rounding over the walls' sine", corners},
     {"beams", "touching-corners", "m",
      "between two blocks that touch in one corner: its distance, rounding at 45 degrees", touching_corners},
     {"beams", "from-on-a-wall", "m", "0 into the wall to the bit, the other walls off it within rounding",
      from_on_a_wall},
-    {"beams", "from-inside", "m", "inside of overlapping blocks: the first surface on the way out, within rounding",
-     from_inside},
+    {"beams", "from-inside", "m", "inside overlapping blocks: the nearest surface, within rounding", from_inside},
 };
 
 }  // namespace

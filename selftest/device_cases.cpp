@@ -124,10 +124,9 @@ void where_32_bits_break(Fixture& fixture, Checks& checks) {
 
 constexpr Case kCases[] = {
     {"devices", "plain-c++", "m",
-     "scans of seven crowds beside plain C++: to the bit in software, one count of the wire elsewhere", plain_cpp},
+     "scans of seven fleets compared with plain C++: bitwise in software, one count of the wire elsewhere", plain_cpp},
     {"devices", "where-32-bits-break", "m",
-     "the same rays in 32-bit world coordinates beside the farm: noted; the farm's within rounding",
-     where_32_bits_break},
+     "the same rays in 32-bit world coordinates: errors noted; the farm within rounding", where_32_bits_break},
 };
 
 }  // namespace

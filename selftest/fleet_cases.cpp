@@ -58,7 +58,7 @@ void a_hundred_thousand(Fixture& fixture, Checks& checks) {
 
 constexpr Case kCases[] = {
     {"fleets", "nobody", "", "a world without robots, with walls and without: no readings, no error", nobody},
-    {"fleets", "coincident", "m", "100 robots in one place: each other's outline within rounding, all alike to the bit",
+    {"fleets", "coincident", "m", "100 robots in one place: each other's outlines within rounding, equal to the bit",
      coincident},
     {"fleets", "a-hundred-thousand", "m", "100 000 robots in rows: each the back of the next, 0.75 m to the bit",
      a_hundred_thousand},

@@ -153,7 +153,7 @@ constexpr Case kCases[] = {
     {"edges", "edge-ranges", "of range",
      "range_max 1 um to 10 km: half of it, rounding of 64 bits; beyond both ends refused by name", ranges},
     {"edges", "one-point", "m", "one point, or none, is no edge; a single ray is its own reading", one_point},
-    {"edges", "equal-points", "m", "points that are one within 1e-7 are no edge", equal_points},
+    {"edges", "equal-points", "m", "points that coincide within 1e-7 are no edge", equal_points},
     {"edges", "collinear-points", "m",
      "points in one line with the sensor: no edge along the perpendicular, 0 across it", collinear_with_the_sensor},
     {"edges", "out-of-sight", "m", "edges along the perpendicular, behind, and at the end of the range: none",

@@ -142,7 +142,7 @@ constexpr Case kCases[] = {
      "1e-12 to 1e12 A m^2 at 1e-6 to 1e6 m: a root of 32 bits squared by Newton, 1e-13, and 4e-18 m over r",
      one_magnet},
     {"magnets", "at-distance-0", "of |B|",
-     "in a magnet's middle and within its radius, 0, 1e5, 1e7 m away: the field at its radius", within_it},
+     "at a magnet's centre and within its radius, 0, 1e5, 1e7 m away: the field at its radius", within_it},
     {"magnets", "far-fields", "of |B|",
      "200 magnets in a line 0, 1e5, 1e7 m away: differences are taken in 64 bits, 1e-13", far_origins},
     {"magnets", "cancelling-pairs", "of |B|",

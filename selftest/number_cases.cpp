@@ -98,11 +98,11 @@ void commands(Fixture&, Checks& checks) {
 }
 
 constexpr Case kCases[] = {
-    {"numbers", "in-packets", "",
-     "each number of V2V and TAG: NaN and infinity dropped as such, limits kept to the last bit", packets},
+    {"numbers", "in-packets", "", "each number of V2V and TAG: NaN and infinity dropped, limits exact to the last bit",
+     packets},
     {"numbers", "in-poses", "m", "denormal and largest poses from bytes to readings: sums are exact, so no bit is off",
      poses},
-    {"numbers", "in-commands", "", "NaN and infinity are no command; the largest number is no faster than the robot",
+    {"numbers", "in-commands", "", "NaN and infinity are rejected; the largest number drives at the robot's limit",
      commands},
 };
 

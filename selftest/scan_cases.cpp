@@ -69,9 +69,9 @@ constexpr Case kCases[] = {
      few_and_many},
     {"fans", "a-hundred-thousand-samples", "m",
      "100 000 samples in 0, 1e-6 to 360 degrees: every 7th beam within rounding", a_hundred_thousand},
-    {"fans", "whole-turn", "m", "360 degrees: the first and the last beam are one line, within rounding", whole_turn},
-    {"fans", "headings", "m", "headings to 1e6 rad, 0 of both signs and denormal: of the double given, within rounding",
-     headings},
+    {"fans", "whole-turn", "m", "360 degrees: the first and the last beam coincide, within rounding", whole_turn},
+    {"fans", "headings", "m",
+     "headings to 1e6 rad, 0 of both signs and denormal, as rounded to double: within rounding", headings},
 };
 
 }  // namespace

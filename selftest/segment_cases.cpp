@@ -110,14 +110,13 @@ void a_million(Fixture& fixture, Checks& checks) {
 
 constexpr Case kCases[] = {
     {"segments", "points-given-twice", "m",
-     "outlines with repeated corners: no wall without length is made, the rest is exact", points_given_twice},
-    {"segments", "zero-length", "m", "walls without length are met by nothing: the others, within rounding",
-     zero_length},
+     "outlines with repeated corners: no wall of zero length is made, the rest is exact", points_given_twice},
+    {"segments", "zero-length", "m", "walls of zero length are never hit: the others, within rounding", zero_length},
     {"segments", "slivers", "m", "blocks 1 mm to 1e-12 m thick: their faces, within rounding", slivers},
     {"segments", "tiny-beside-huge", "m", "walls of nanometres beside walls of 200 km, aimed at: within rounding",
      tiny_beside_huge},
     {"segments", "a-million-in-one-cell", "m",
-     "a million walls on a square metre: exact, on the device where lists hold them, else on the host", a_million},
+     "a million walls on a square metre: exact, on the device or, beyond its lists, on the host", a_million},
 };
 
 }  // namespace

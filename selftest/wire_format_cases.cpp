@@ -29,7 +29,7 @@ std::vector<double> decoded(const SensorType& kind, const SensorSpec& row, const
   const std::uint8_t type = kind.encode(row, reading, WireFormat::farm, 0, payload);
   if (type == 0) return {};
   const sensors::PayloadPart part = kind.decode(row, payload, type, WireFormat::farm);
-  checks.holds(part.fault == sensors::PayloadError::none, fmt::format("{}: what was sent is taken", kind.name));
+  checks.holds(part.fault == sensors::PayloadError::none, fmt::format("{}: the sent payload is accepted", kind.name));
   std::vector<double> got(values.size());
   if (part.fault == sensors::PayloadError::none) kind.read(row, payload, type, WireFormat::farm, got);
   return got;
@@ -136,7 +136,7 @@ void all_kinds(Fixture&, Checks& checks) {
       std::vector<double> got(values.size());
       kind->read(row_of(1, 0.0), payload, type, WireFormat::farm, got);
       checks.holds(got[0] >= before && (value <= 0.0 ? got[0] <= 0.0 : got[0] >= 0.0),
-                   fmt::format("{}: {:g} is told as {:g}", kind->name, value, got[0]));
+                   fmt::format("{}: {:g} is decoded as {:g}", kind->name, value, got[0]));
       before = got[0];
     }
   }
@@ -147,7 +147,7 @@ constexpr Case kCases[] = {
      "u16 millimetres and u32 tenths at and past their ends: saturated, no return flagged, NaN not sent", lasers},
     {"wires", "lane-edge-words", "m", "u16 and u32 of lane edges: saturated below the flag, none flagged", lane_edges},
     {"wires", "field-words", "T", "i32 of 1e-8 T at and past both ends: saturated, NaN not sent", fields},
-    {"wires", "all-kinds", "", "numbers of every kind from -infinity to infinity: told in order, no sign turned",
+    {"wires", "all-kinds", "", "numbers of every sensor type from -infinity to infinity: order and sign preserved",
      all_kinds},
 };
 
