@@ -1,5 +1,5 @@
 #pragma once
-// The error that a controller states of each step, over a run.
+// Statistics of a controller's error over a run.
 
 #include <cstdint>
 
@@ -12,7 +12,7 @@ struct ErrorSummary {
   double abs_mean = 0.0;
 };
 
-/// Adds one step. NaN and infinity state no error.
+/// Adds one step. NaN and infinity are ignored.
 void add(ErrorSummary& summary, double error);
 
 }  // namespace sf::control

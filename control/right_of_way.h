@@ -59,7 +59,7 @@ class RightOfWay {
  public:
   RightOfWay(const LaneCorridors& corridors, std::uint32_t own_id);
 
-  /// Takes the states of one time. Robots beyond `kSensingRange` are left out, except its leader and its followers.
+  /// Takes the states of one time. Robots farther than 3.5 m away are left out, except its leader and its followers.
   /// @param follows id of its own leader; kNoId: none
   /// @param merges it has yet to merge behind the leader
   void observe(const ControllerInput& input, std::uint32_t follows, bool merges);

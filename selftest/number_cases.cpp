@@ -102,7 +102,7 @@ constexpr Case kCases[] = {
      packets},
     {"numbers", "in-poses", "m", "denormal and largest poses from bytes to readings: sums are exact, so no bit is off",
      poses},
-    {"numbers", "in-commands", "", "NaN and infinity are rejected; the largest number drives at the robot's limit",
+    {"numbers", "in-commands", "", "NaN and infinity are ignored; the largest number stays within the robot's limits",
      commands},
 };
 
