@@ -20,7 +20,7 @@ double random(std::uint32_t index) {
 /// A room of a given width with blocks, and lasers inside it, `far` from the origin.
 world::World room(double far, double width, std::uint32_t samples) {
   world::World world;
-  add_module(world, {far - 0.5 * width, far - 0.5 * width}, width);
+  add_room(world, {far - 0.5 * width, far - 0.5 * width}, width);
   for (std::uint32_t i = 0; i < 20; ++i) {
     const glm::dvec2 p{far + width * (0.9 * random(2 * i) - 0.5), far + width * (0.9 * random(2 * i + 1) - 0.5)};
     add_block(world, p, p + glm::dvec2{0.03 * width, 0.05 * width});

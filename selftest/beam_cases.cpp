@@ -92,7 +92,7 @@ void touching_corners(Fixture& fixture, Checks& checks) {
 void from_on_a_wall(Fixture& fixture, Checks& checks) {
   for (const double far : {0.0, 1e5, 1e7}) {
     world::World world;
-    add_module(world, {far, far}, 4.0);
+    add_room(world, {far, far}, 4.0);
     add_laser_mover(world, {far, far + 1.5, 0.0, M_PI}, laser(180, M_PI - 0.01, 20.0));
     add_laser_mover(world, {far, far + 1.5, 0.0, 0.0}, laser(180, M_PI - 0.01, 20.0));
     const TestFarm test = fixture.measure(world);

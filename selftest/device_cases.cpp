@@ -22,7 +22,7 @@ double random(std::uint32_t index) {
 world::World crowd(double far, const world::Laser& laser) {
   world::World world;
   const glm::dvec2 away{far, -far};
-  add_module(world, away - glm::dvec2{8.0, 8.0}, 16.0);
+  add_room(world, away - glm::dvec2{8.0, 8.0}, 16.0);
   std::uint32_t draw = 0;
   const auto next = [&] { return random(draw++); };
   for (int i = 0; i < 60; ++i) {

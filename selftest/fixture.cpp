@@ -46,7 +46,7 @@ void add_outline(world::World& world, const std::vector<glm::dvec2>& corners) {
     world.walls.push_back(segment(corners[i], corners[(i + 1) % corners.size()], model));
 }
 
-void add_module(world::World& world, glm::dvec2 low, double width) {
+void add_room(world::World& world, glm::dvec2 low, double width) {
   const glm::dvec2 high = low + glm::dvec2{width, width};
   const glm::dvec2 thick{0.25 * width, 0.25 * width};
   add_block(world, low - thick, high + thick);

@@ -40,7 +40,7 @@ void add_wall(world::World& world, glm::dvec2 a, glm::dvec2 b);
 /// Adds a closed outline, solid on the left of its edges: counter-clockwise a block, clockwise a room.
 void add_outline(world::World& world, const std::vector<glm::dvec2>& corners);
 /// Adds the inside of a square of `width` [m] with lower corner `low`, as a hole in a block half as wide again.
-void add_module(world::World& world, glm::dvec2 low, double width);
+void add_room(world::World& world, glm::dvec2 low, double width);
 /// Adds a solid block from `low` to `high`.
 void add_block(world::World& world, glm::dvec2 low, glm::dvec2 high);
 

@@ -11,7 +11,7 @@ namespace {
 
 void nobody(Fixture& fixture, Checks& checks) {
   world::World world;
-  add_module(world, {-1.0, -1.0}, 2.0);
+  add_room(world, {-1.0, -1.0}, 2.0);
   for (const world::World& w : {world::World{}, world}) {
     const TestFarm test = fixture.measure(w);
     checks.holds(test.readings.empty(), "no robots, no readings");
@@ -24,7 +24,7 @@ void nobody(Fixture& fixture, Checks& checks) {
 void coincident(Fixture& fixture, Checks& checks) {
   constexpr std::uint32_t kRobots = 100;
   world::World world;
-  add_module(world, {-4.0, -4.0}, 8.0);
+  add_room(world, {-4.0, -4.0}, 8.0);
   for (std::uint32_t i = 0; i < kRobots; ++i)
     add_body(world, add_laser_mover(world, {0.5, 0.25, 0.0, 0.0}, laser(45, 2.0 * M_PI, 8.0)), 0.25);
   const TestFarm test = fixture.measure(world);

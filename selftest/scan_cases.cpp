@@ -13,7 +13,7 @@ constexpr double kDegree = M_PI / 180.0;
 
 world::World room_with_blocks() {
   world::World world;
-  add_module(world, {-5.0, -4.0}, 9.0);
+  add_room(world, {-5.0, -4.0}, 9.0);
   add_block(world, {1.0, 1.0}, {1.5, 3.0});
   add_outline(world, {{-2.0, -1.0}, {-1.0, -2.5}, {-1.5, -0.5}});
   return world;

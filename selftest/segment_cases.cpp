@@ -30,7 +30,7 @@ void points_given_twice(Fixture& fixture, Checks& checks) {
 /// A wall of zero length among others, added without the reader: it is never hit and hides nothing.
 void zero_length(Fixture& fixture, Checks& checks) {
   world::World world;
-  add_module(world, {-2.0, -2.0}, 4.0);
+  add_room(world, {-2.0, -2.0}, 4.0);
   for (const glm::dvec2& p : {glm::dvec2{1.0, 0.0}, glm::dvec2{0.0, 0.0}, glm::dvec2{2.0, 0.0}, glm::dvec2{-2.0, -2.0}})
     add_wall(world, p, p);
   add_laser_mover(world, {0.0, 0.0, 0.0, 0.0}, laser(361, kTurn, 8.0));

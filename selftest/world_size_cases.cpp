@@ -16,7 +16,7 @@ constexpr double kTurn = 2.0 * M_PI;
 /// A square room and a laser inside it that sees all of its walls.
 void check_full_turn(Fixture& fixture, Checks& checks, double far, double width, std::uint32_t samples) {
   world::World world;
-  add_module(world, {far - 0.4 * width, far - 0.3 * width}, width);
+  add_room(world, {far - 0.4 * width, far - 0.3 * width}, width);
   add_laser_mover(world, {far + 0.137 * width, far - 0.0211 * width, 0.0, 0.3}, laser(samples, kTurn, 2.0 * width));
   const TestFarm test = fixture.measure(world);
   check_scan(*test.world, test.readings[0], checks, fmt::format("{:g} m wide, {:g} m away", width, far));
@@ -36,7 +36,7 @@ void moved(Fixture& fixture, Checks& checks) {
   std::vector<std::vector<double>> scans;
   for (const double far : kFar) {
     world::World world;
-    add_module(world, {far - 3.0, far - 2.5}, 6.0);
+    add_room(world, {far - 3.0, far - 2.5}, 6.0);
     add_block(world, {far + 0.5 + 0x1p-20, far + 0.25}, {far + 1.5, far + 1.0 - 0x1p-19});
     add_laser_mover(world, {far - 1.25, far - 0.5 + 0x1p-20, 0.0, 1.0}, laser(361, kTurn, 8.0));
     const TestFarm test = fixture.measure(world);
@@ -69,7 +69,7 @@ void ranges(Fixture& fixture, Checks& checks) {
 /// From the middle of a world of 1 000 km with a range of 100 km: towers 10 m wide at 99.9 km.
 void far_and_small(Fixture& fixture, Checks& checks) {
   world::World world;
-  add_module(world, {-5e5, -5e5}, 1e6);
+  add_room(world, {-5e5, -5e5}, 1e6);
   constexpr double kAway = 99'900.0;
   for (int i = 0; i < 16; ++i) {
     const glm::dvec2 p = base::rotate(i * kTurn / 16, {kAway, 0.0});

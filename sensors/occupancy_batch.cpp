@@ -23,7 +23,7 @@ BeamLine line_of(std::uint32_t end) {
 }
 
 /// The device's row of a scan, without the place of its strips.
-MapRow row_of(const PoseMarker& map, const maps::TracedScan& scan, const base::Pose& X_WS) {
+MapRow row_of(const MapLayout& map, const maps::TracedScan& scan, const base::Pose& X_WS) {
   MapRow row{};
   row.words = map.words;
   row.word_columns = map.plan.grid.word_columns;
@@ -59,7 +59,7 @@ void MapBatch::Tables::trace() {
   scan_works.resize(scans.size());
   thread_pool.parallel_for(scans.size(), 8, [&](std::size_t first, std::size_t last, unsigned) {
     for (std::size_t i = first; i < last; ++i) {
-      const PoseMarker& map = all[scans[i].map];
+      const MapLayout& map = all[scans[i].map];
       const maps::ScanView view{scans[i].X_WS, scans[i].ranges, *map.beams, map.plan.range_min, map.plan.range_max};
       ScanWork& share = scan_works[i];
       const std::span<std::uint32_t> own = ends_of(map);
@@ -100,7 +100,7 @@ void MapBatch::Tables::assign_blocks() {
   strips.count = plain.dispatch.count = log_odds_words.dispatch.count = 0;
   const auto table = rows->host<MapRow>();
   for (std::uint32_t i = 0; i < scans.size(); ++i) {
-    const PoseMarker& map = all[scans[i].map];
+    const MapLayout& map = all[scans[i].map];
     ScanWork& share = scan_works[i];
     if (maps::is_empty(share.cells)) continue;
     table[i] = row_of(map, share.scan, scans[i].X_WS);
@@ -119,7 +119,7 @@ void MapBatch::Tables::mark_hits() {
     for (std::size_t i = first; i < last; ++i) {
       const ScanWork& share = scan_works[i];
       if (maps::is_empty(share.cells)) continue;
-      const PoseMarker& map = all[scans[i].map];
+      const MapLayout& map = all[scans[i].map];
       const std::int64_t across =
           SF_MAP_BLOCK * units_of(share.cells.high.column - share.cells.low.column, 4 * SF_MAP_BLOCK);
       const std::int64_t down = (share.cells.high.row - share.cells.low.row) / 4;

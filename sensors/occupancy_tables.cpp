@@ -47,7 +47,7 @@ MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<M
   const std::size_t lanes = make_dispatch(device, "strips of a map", strips, occupancy_strips_comp_spv, 4, most);
   covered = std::make_unique<gpu::Buffer>(device, "covered cells", Role::download, Texel::u32, lanes);
   make_words(device, "map", plain, occupancy_comp_spv, false);
-  if (std::any_of(all.begin(), all.end(), [](const PoseMarker& map) { return map.plan.odds.has_value(); })) {
+  if (std::any_of(all.begin(), all.end(), [](const MapLayout& map) { return map.plan.odds.has_value(); })) {
     odds = std::make_unique<gpu::Buffer>(device, "log odds", Role::download, Texel::u32x4,
                                          SF_ODDS_TEXELS * (all_words + 1));
     std::fill_n(odds->host<std::uint32_t>().data(), 4 * SF_ODDS_TEXELS * (all_words + 1), 0u);
@@ -70,7 +70,7 @@ void MapBatch::Tables::plan(std::vector<MapPlan> plans) {
 void MapBatch::Tables::assign_layout() {
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     if (on_host.has(i)) continue;
-    PoseMarker& map = all[i];
+    MapLayout& map = all[i];
     map.words = static_cast<std::uint32_t>(all_words);
     map.lines = static_cast<std::uint32_t>(all_lines);
     all_words += maps::words(map.plan.grid);

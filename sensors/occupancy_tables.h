@@ -21,7 +21,7 @@ namespace sf::sensors {
 inline constexpr std::uint32_t kMapGroupsAcross = 32'768;  ///< along x of a dispatch; Vulkan guarantees 65 535
 
 /// Layout of one map in the tables.
-struct PoseMarker {
+struct MapLayout {
   MapPlan plan;
   std::uint32_t words = 0;                         ///< index of its first word
   std::uint32_t lines = 0;                         ///< index of its first pair of beams
@@ -60,7 +60,7 @@ struct MapBatch::Tables {
   base::ThreadPool& thread_pool;
   HostMaps on_host;
   bool unified;
-  std::vector<PoseMarker> all;
+  std::vector<MapLayout> all;
   std::size_t all_words = 0, all_lines = 0;  ///< on the device
   std::vector<MapScan> scans;                ///< of this update, on the device
   std::vector<std::uint32_t> wanted;         ///< of this update, on the device
@@ -86,7 +86,7 @@ struct MapBatch::Tables {
   void make_words(gpu::Device& device, const char* name, MapWords& part, std::span<const std::uint32_t> spirv,
                   bool has_log_odds);
   void record();
-  std::span<std::uint32_t> ends_of(const PoseMarker& map) {
+  std::span<std::uint32_t> ends_of(const MapLayout& map) {
     return std::span(ends).subspan(2 * std::size_t{map.lines}, map.plan.samples);
   }
   void trace();

@@ -51,7 +51,7 @@ void draw_along_paths(const world::World& world, std::span<const Track> tracks, 
   for (std::size_t i = 0; i < std::min<std::size_t>(tracks.size(), 7); ++i)
     plan.legend.push_back({LegendMark::line, color(i), tracks[i].name});
   Axes axes(std::move(plan));
-  draw_paint(axes, world);
+  draw_lane_markings(axes, world);
   draw_magnets(axes, world);
   draw_walls(axes, world, WallColors::quiet);
   for (const world::Path& path : world.paths) draw_middle(axes, path);

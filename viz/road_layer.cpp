@@ -48,7 +48,7 @@ void draw_lanes(Axes& axes, const world::World& world) {
 
 }  // namespace
 
-void draw_paint(Axes& axes, const world::World& world) {
+void draw_lane_markings(Axes& axes, const world::World& world) {
   if (world.lane_markings.empty()) return;
   std::vector<Line> asphalt;
   double widest = 0.0;

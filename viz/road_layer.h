@@ -12,7 +12,7 @@ namespace sf::viz {
 
 /// Lane markings in their colours on a band of asphalt, so that white ones are visible; at least a pixel wide. Lanes of
 /// the world's paths are asphalt from edge to edge.
-void draw_paint(Axes& axes, const world::World& world);
+void draw_lane_markings(Axes& axes, const world::World& world);
 
 /// Lanes and exits as bands as wide as the lanes; zones with their parking spots.
 void draw_streets(Axes& axes, const world::RoadNetwork& roads);

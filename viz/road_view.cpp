@@ -49,7 +49,7 @@ void draw_edges(const RoadView& view, const RoadLane& lane) {
 }
 
 // Stop lines are among the markings; they are drawn over with their own colour later.
-void draw_paint(const RoadView& view, const RoadNetwork& network) {
+void draw_lane_markings(const RoadView& view, const RoadNetwork& network) {
   for (const world::LaneMarking& marking : world::lane_markings_of(network))
     view.canvas.polyline(pixels(view, marking.line), std::max(marking.width * view.scale, kThinnestPaint),
                          marking.color);
@@ -116,7 +116,7 @@ void draw_network(const RoadView& view, const RoadNetwork& network) {
   for (const RoadZone& zone : network.zones) draw_zone(view, network, zone);
   for (const RoadLane& lane : network.lanes) draw_asphalt(view, lane);
   for (const RoadLane& lane : network.lanes) draw_edges(view, lane);
-  draw_paint(view, network);
+  draw_lane_markings(view, network);
   for (const RoadLane& lane : network.lanes) draw_directions(view, lane);
   draw_exits(view, network);
   draw_stops(view, network);

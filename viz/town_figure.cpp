@@ -123,7 +123,7 @@ void draw_town(const World& world, std::span<const Track> tracks, const TownFina
   Axes axes(plan_of(world, tracks, end, groups));
   std::vector<world::Warning> heard_at_load;
   for (const std::string& file : world.road_files) draw_streets(axes, world::load_roads(file, heard_at_load));
-  draw_paint(axes, world);
+  draw_lane_markings(axes, world);
   draw_walls(axes, world, WallColors::of_models);
   const bool few = tracks.size() <= kFew;
   for (const Group group : {Group::car, Group::other, Group::convoy})

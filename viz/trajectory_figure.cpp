@@ -97,7 +97,7 @@ void draw_trajectories(const World& world, std::span<const Track> tracks, const 
                  std::to_string(track.poses.size()) + " poses");
   const Weight weight = weight_for(tracks.size());
   Axes axes(plan_of(world, tracks, what));
-  draw_paint(axes, world);
+  draw_lane_markings(axes, world);
   draw_magnets(axes, world);
   draw_walls(axes, world, WallColors::quiet);
   for (std::size_t i = 0; i < tracks.size(); ++i)

@@ -162,7 +162,7 @@ void draw_world(const World& world, const std::string& png_path) {
   plan.extent = world.extent;
   plan.legend = legend_of(world);
   Axes axes(std::move(plan));
-  draw_paint(axes, world);
+  draw_lane_markings(axes, world);
   draw_floor_holes(axes, world);
   draw_magnets(axes, world);
   draw_emitters(axes, world);

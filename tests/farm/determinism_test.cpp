@@ -102,7 +102,7 @@ std::vector<Kept> of_first(const world::World& world, bool hear_others) {
 /// Invisible robots change no reading: far away, behind walls, or not seen by lasers.
 TEST(Determinism, RobotsThatCannotBeSensedChangeNothing) {
   world::World alone;
-  scenes::add_module(alone, {}, 6.0);
+  scenes::add_room(alone, {}, 6.0);
   scenes::add_outline(alone, {{1, -1}, {2, -1}, {2, 1}, {1, 1}}, "box");
   world::Laser laser = scenes::laser(kBeams, 2.0 * M_PI, 8.0);
   laser.noise = kNoise;
@@ -154,7 +154,7 @@ TEST(Determinism, GoldenHash) {
   if (device().info().name.find("llvmpipe") == std::string::npos)
     GTEST_SKIP() << "the hash is lavapipe's; this is " << device().info().name;
   world::World world;
-  scenes::add_module(world, {}, 12.0);
+  scenes::add_room(world, {}, 12.0);
   for (int i = 0; i < 12; ++i) {
     const glm::dvec2 p{static_cast<double>(i % 4) * 2.5 - 4.0, static_cast<double>(i / 4) * 3.0 - 3.5};
     scenes::add_outline(world, {p, p + glm::dvec2{0.75, 0.25}, p + glm::dvec2{0.5, 1.0}}, "wedge");

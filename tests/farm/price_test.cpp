@@ -127,7 +127,7 @@ TEST(Price, WhatTheHostCastsSubmitsNothing) {
 /// One robot drives, the others stand: only robots that may see it measure anew.
 TEST(Price, OneThatDrivesIsSeenByThoseInReach) {
   world::World world;
-  scenes::add_module(world, {}, 60.0);
+  scenes::add_room(world, {}, 60.0);
   for (int i = 0; i < 10; ++i)
     scenes::add_robot(world, {5.0 * i - 25.0, 0.0, 0.0, 0.0}, scenes::laser(kBeams, M_PI, 4.0));
   Farm farm(world, device());

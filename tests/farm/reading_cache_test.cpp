@@ -150,7 +150,7 @@ struct Pair {
 
   static world::World made(const std::function<void(world::World&)>& change) {
     world::World world;
-    scenes::add_module(world, {}, 20.0);
+    scenes::add_room(world, {}, 20.0);
     scenes::add_robot(world, {}, scenes::laser(kBeams, 2.0 * M_PI, 2.0));
     scenes::add_robot(world, {5.0, 0.0, 0.0, 0.0}, scenes::laser(1));
     world.movers[1].lasers.clear();

@@ -31,7 +31,7 @@ TEST(WallIndex, FindsEverythingNear) {
 
 TEST(WallIndex, KnowsInsideFromOutside) {
   world::World world;
-  scenes::add_module(world, {}, 10.0);
+  scenes::add_room(world, {}, 10.0);
   scenes::add_outline(world, {{0, 0}, {2, 0}, {2, 2}, {0, 2}}, "box");
   scenes::add_outline(world, {{1, 1}, {3, 1}, {3, 3}, {1, 3}}, "overlapping");
   const WallIndex wall_index(world, 0.1, 8.0);

@@ -25,18 +25,18 @@ void expect_twist(const Twist& actual, const Twist& expected) {
   EXPECT_DOUBLE_EQ(actual.turn, expected.turn);
 }
 
-TEST(Obey, DirectIsTheCommandItself) {
+TEST(DriverModel, DirectIsTheCommandItself) {
   expect_twist(apply_driver(world::Mover{}, {0.1234, 0.2, -3.3}), {0.1234, 0.2, -3.3});
 }
 
-TEST(Obey, WhatIsNotFiniteIsZero) {
+TEST(DriverModel, WhatIsNotFiniteIsZero) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   expect_twist(apply_driver(world::Mover{}, {nan, inf, 1.0}), {0.0, 0.0, 1.0});
   expect_twist(apply_driver(create(), {nan, inf, -inf}), {0.0, 0.0, 0.0});
 }
 
 // The cases of Player's driver one by one; radii computed by hand.
-TEST(Obey, ACreateIsToldWholeMillimetres) {
+TEST(DriverModel, ACreateIsToldWholeMillimetres) {
   expect_twist(apply_driver(create(), {0.1234, 0.0, 0.0}), {0.123, 0.0, 0.0});      // 123 mm/s, straight
   expect_twist(apply_driver(create(), {0.7, 0.0, 0.0}), {0.5, 0.0, 0.0});           // largest speed
   expect_twist(apply_driver(create(), {-0.7, 0.0, 0.0}), {-0.5, 0.0, 0.0});         // largest reverse speed
@@ -52,7 +52,7 @@ TEST(Obey, ACreateIsToldWholeMillimetres) {
   expect_twist(apply_driver(create(), {0.0001, 0.0, 0.5}), {0.0, 0.0, 0.0});          // rounded to 0 mm/s: at rest
 }
 
-TEST(Obey, ACreateSpinsWhereNoRadiusIsLeft) {
+TEST(DriverModel, ACreateSpinsWhereNoRadiusIsLeft) {
   expect_twist(apply_driver(create(), {0.1, 0.0, 50.0}),
                {0.0, 0.0, 0.1 / 0.129});  // 2 mm halved is 1: the code for a spin
   expect_twist(apply_driver(create(), {0.1, 0.0, 100.0}), {0.0, 0.0, 0.1 / 0.129});  // 1 mm halved is 0: likewise
@@ -60,14 +60,14 @@ TEST(Obey, ACreateSpinsWhereNoRadiusIsLeft) {
   expect_twist(apply_driver(create(), {-0.1, 0.0, 100.0}), {0.0, 0.0, 0.1 / 0.129});
 }
 
-TEST(Obey, ACreateSpinsInPlaceByWholeMillimetresOfItsWheels) {
+TEST(DriverModel, ACreateSpinsInPlaceByWholeMillimetresOfItsWheels) {
   expect_twist(apply_driver(create(), {0.0, 0.0, 1.0}), {0.0, 0.0, 0.129 / 0.129});
   expect_twist(apply_driver(create(), {0.0, 0.0, -1.001}), {0.0, 0.0, -0.129 / 0.129});
   expect_twist(apply_driver(create(), {0.0, 0.0, 100.0}), {0.0, 0.0, 0.5 / 0.129});
   expect_twist(apply_driver(create(), {0.0, 0.0, 0.003}), {0.0, 0.0, 0.0});  // less than half a millimetre a second
 }
 
-TEST(Obey, ACreateTurnsAboutTwiceAsMuchAsItIsTold) {
+TEST(DriverModel, ACreateTurnsAboutTwiceAsMuchAsItIsTold) {
   for (std::uint32_t k = 0; k < 2000; ++k) {
     const auto u = base::random_uniform({.seed = 11, .stream = base::RandomStream::slip, .a = k}, 0);
     const double forward = 0.05 + 0.45 * u[0], turn = (u[1] < 0.5 ? -1.0 : 1.0) * (0.02 + std::abs(u[1] - 0.5));

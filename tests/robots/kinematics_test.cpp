@@ -55,7 +55,7 @@ constexpr std::int64_t kTick = 100'000'000;
 base::Report at(std::int64_t time, const Pose& X_WM, const Twist& velocity) { return {0, time, X_WM, velocity, 0}; }
 
 /// A mover that nothing stops is on its arc at any part of the tick.
-TEST(Between, UnhinderedItIsOnItsArc) {
+TEST(Interpolate, UnhinderedItIsOnItsArc) {
   const Twist velocities[] = {{0.7, 0, 0}, {0.7, 0, 1.5}, {0.4, -0.3, -2}, {0, 0, 3}, {-0.2, 0, 1e-9}, {1.0, 0, 50.0}};
   for (const Twist& v : velocities) {
     const Pose start{3, -4, 0.25, 2.5};
@@ -70,7 +70,7 @@ TEST(Between, UnhinderedItIsOnItsArc) {
 }
 
 /// Stopped or displaced: from the one pose to the other by the smaller turn, at constant speed.
-TEST(Between, HinderedItIsOnTheArcBetweenItsPoses) {
+TEST(Interpolate, HinderedItIsOnTheArcBetweenItsPoses) {
   const base::Report before = at(0, {1, 2, 0, 3.0}, {0.5, 0, 0}), after = at(kTick, {0.98, 2.01, 0, -3.0}, {});
   expect_pose(interpolate(before, after, 0).X_WM, before.X_WM);
   expect_pose(interpolate(before, after, kTick - 1).X_WM, after.X_WM, 1e-8);
@@ -81,7 +81,7 @@ TEST(Between, HinderedItIsOnTheArcBetweenItsPoses) {
 }
 
 /// Bitwise, whatever the reported velocity, and for any representation of the yaw.
-TEST(Between, WhoStandsStands) {
+TEST(Interpolate, WhoStandsStands) {
   const base::Report before = at(0, {0.1, 0.2, 0.3, 7.0}, {}), after = at(kTick, before.X_WM, {0.3, 0, 0});
   const base::Report report = interpolate(before, after, kTick / 3);
   EXPECT_EQ(report.X_WM.x, 0.1);
@@ -91,7 +91,7 @@ TEST(Between, WhoStandsStands) {
 }
 
 /// Contacts change at ticks only.
-TEST(Between, TouchIsAsItWasAtTheTickBefore) {
+TEST(Interpolate, TouchIsAsItWasAtTheTickBefore) {
   base::Report before = at(0, {}, {}), after = at(kTick, {0.01, 0, 0, 0}, {});
   before.contact_mask = 5;
   after.contact_mask = 6;
@@ -107,26 +107,26 @@ world::Mover mover(world::Drive drive) {
   return m;
 }
 
-TEST(Follow, DifferentialClampsAndCannotSlide) {
+TEST(LimitKinematics, DifferentialClampsAndCannotSlide) {
   const Twist v = limit_kinematics(mover(world::Drive::differential), {-3, 0.4, 7});
   EXPECT_EQ(v.forward, -0.5);
   EXPECT_EQ(v.left, 0.0);
   EXPECT_EQ(v.turn, 1.0);
 }
 
-TEST(Follow, OmniKeepsItsDirection) {
+TEST(LimitKinematics, OmniKeepsItsDirection) {
   const Twist v = limit_kinematics(mover(world::Drive::omni), {3, -4, -0.5});
   EXPECT_NEAR(v.forward, 0.3, 1e-15);
   EXPECT_NEAR(v.left, -0.4, 1e-15);
   EXPECT_EQ(v.turn, -0.5);
 }
 
-TEST(Follow, CarTurnsNoSharperThanItSteers) {
+TEST(LimitKinematics, CarTurnsNoSharperThanItSteers) {
   EXPECT_EQ(limit_kinematics(mover(world::Drive::car), {0, 0, 1}).turn, 0.0);
   EXPECT_NEAR(limit_kinematics(mover(world::Drive::car), {-0.1, 0, 1}).turn, 0.1 * std::tan(kMaxSteer) / 0.25, 1e-15);
 }
 
-TEST(Follow, ASkidDriveGoesWhereADifferentialOneGoes) {
+TEST(LimitKinematics, ASkidDriveGoesWhereADifferentialOneGoes) {
   const Twist v = limit_kinematics(mover(world::Drive::skid), {-3, 0.4, 7});
   EXPECT_EQ(v.forward, -0.5);
   EXPECT_EQ(v.left, 0.0);
@@ -140,13 +140,13 @@ world::Mover lazy(world::Drive drive) {
   return m;
 }
 
-TEST(Approach, WithoutLimitsWhatIsWantedIsHad) {
+TEST(LimitAcceleration, WithoutLimitsWhatIsWantedIsHad) {
   const Twist v = limit_acceleration(mover(world::Drive::differential), {0.1, 0, 0.3}, {0.37, 0, -0.9}, 0.1);
   EXPECT_EQ(v.forward, 0.37);
   EXPECT_EQ(v.turn, -0.9);
 }
 
-TEST(Approach, SpeedsUpAndSlowsDownByNoMoreThanItMay) {
+TEST(LimitAcceleration, SpeedsUpAndSlowsDownByNoMoreThanItMay) {
   const world::Mover m = lazy(world::Drive::differential);
   EXPECT_DOUBLE_EQ(limit_acceleration(m, {}, {0.5, 0, 1.0}, 0.1).forward, 0.2);
   EXPECT_DOUBLE_EQ(limit_acceleration(m, {}, {0.5, 0, 1.0}, 0.1).turn, 0.4);
@@ -157,23 +157,23 @@ TEST(Approach, SpeedsUpAndSlowsDownByNoMoreThanItMay) {
   EXPECT_EQ(limit_acceleration(m, {0, 0, 0.9}, {0, 0, 0.55}, 0.1).turn, 0.55);
 }
 
-TEST(Approach, AnOmniChangesItsVelocityInOneDirection) {
+TEST(LimitAcceleration, AnOmniChangesItsVelocityInOneDirection) {
   const Twist v = limit_acceleration(lazy(world::Drive::omni), {0.3, 0, 0}, {0, 0.4, 0}, 0.1);
   EXPECT_NEAR(v.forward, 0.3 - 0.2 * 0.6, 1e-15);
   EXPECT_NEAR(v.left, 0.2 * 0.8, 1e-15);
 }
 
-TEST(Approach, ACarThatStandsDoesNotTurn) {
+TEST(LimitAcceleration, ACarThatStandsDoesNotTurn) {
   const Twist v = limit_acceleration(lazy(world::Drive::car), {0.1, 0, 0.2}, {0, 0, 0}, 0.1);
   EXPECT_EQ(v.forward, 0.0);
   EXPECT_EQ(v.turn, 0.0) << "its steering allows no turn without speed";
 }
 
-TEST(Approach, ReportsThatSayTooMuchAreFollowedBackAtOnce) {
+TEST(LimitAcceleration, ReportsThatSayTooMuchAreFollowedBackAtOnce) {
   EXPECT_EQ(limit_acceleration(lazy(world::Drive::differential), {5.0, 0.3, 0}, {0.5, 0, 0}, 0.1).forward, 0.5);
 }
 
-TEST(Follow, WhatIsNotFiniteIsZero) {
+TEST(LimitKinematics, WhatIsNotFiniteIsZero) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const auto drive : {world::Drive::differential, world::Drive::omni, world::Drive::car}) {
     const Twist v = limit_kinematics(mover(drive), {nan, inf, -inf});

@@ -52,7 +52,7 @@ TEST(Explanation, CountsWhatThereIs) {
 /// A tag that stands: its laser has the room to itself.
 TEST(Explanation, WhatIsGivenAgainIsCounted) {
   world::World world;
-  scenes::add_module(world, {}, 20.0);
+  scenes::add_room(world, {}, 20.0);
   scenes::add_robot(world, {}, scenes::laser(61, M_PI, 4.0));
   world.movers[0].is_tag = true;
   const Explanation e = explain(world, device(), 1, 1);

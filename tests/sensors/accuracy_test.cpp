@@ -160,7 +160,7 @@ TEST(Accuracy, SkippingCastsTheSameBeamsToTheBit) {
 /// In an empty square room, interpolated samples between two hits on one wall lie on it.
 TEST(Accuracy, SkippingIsRightOnFlatWalls) {
   world::World world;
-  scenes::add_module(world, {0.0, 0.0}, 4.0);
+  scenes::add_room(world, {0.0, 0.0}, 4.0);
   scenes::add_robot(world, {0.3, -0.7, 0.0, 0.4}, scenes::laser(361, 2.0 * M_PI, 8.0));
   world::update_extent_and_hash(world);
   const Read exact = read_in(world, "exact"), some = read_in(world, "skip4");
@@ -175,7 +175,7 @@ TEST(Accuracy, SkippingIsRightOnFlatWalls) {
 
 TEST(Accuracy, BetweenTwoThingsTheNearerBeamIsTaken) {
   world::World world;
-  scenes::add_module(world, {0.0, 0.0}, 8.0);
+  scenes::add_room(world, {0.0, 0.0}, 8.0);
   scenes::add_outline(world, {{1.0, 0.02}, {1.2, 0.02}, {1.2, 1.0}, {1.0, 1.0}}, "box");
   scenes::add_robot(world, {0.0, 0.0, 0.0, 0.0}, scenes::laser(5, 0.08, 9.0));  // bearings -0.04, -0.02, 0, 0.02, 0.04
   world::update_extent_and_hash(world);
@@ -336,7 +336,7 @@ TEST(Accuracy, AMagnetAsHighAsTheSensorHasNoBound) {
 /// Sensor types without a bound report none.
 TEST(Accuracy, KindsWithoutABoundStateNone) {
   world::World world;
-  scenes::add_module(world, {0.0, 0.0}, 4.0);
+  scenes::add_room(world, {0.0, 0.0}, 4.0);
   const std::uint32_t m = scenes::add_robot(world, {}, scenes::laser(3));
   for (const char* type : {"sonar", "infrared", "bumper", "cliff", "encoder", "gyro", "gps", "irreceiver"})
     world.movers[m].sensors.push_back({type, type, {}, 0.1, 1.0, 1.0, {}, 0, ""});

@@ -138,7 +138,7 @@ TEST(Aimed, CollinearWithAWall) {
     world::World world;
     const auto at = [yaw](double x, double y) { return base::rotate(yaw, {x, y}); };
     scenes::add_outline(world, {at(1, 0), at(2, 0), at(2, 1), at(1, 1)}, "box");
-    scenes::add_module(world, {1, 0}, 14.0);
+    scenes::add_room(world, {1, 0}, 14.0);
     for (const double x : {-2.0, 0.0, 1.0, 1.5, 2.0, 3.0})
       for (const double turn : {0.0, M_PI}) {
         const glm::dvec2 p = at(x, 0.0);

@@ -86,7 +86,7 @@ TEST(HostCast, LasersWithNoiseAndResolution) {
 /// Grazing beams are flagged alike. (Exactly on the wall, either side may be the sensor's.)
 TEST(HostCast, AlongWalls) {
   world::World world;
-  scenes::add_module(world, {}, 6.0);
+  scenes::add_room(world, {}, 6.0);
   for (const double y : {1e-3, 1e-4, 1e-6}) add_eye(world, {-2.9, -3.0 + y, 0.0, 0.0}, eye(721, M_PI, 8.0));
   expect_same_bytes(world);
 }
@@ -124,7 +124,7 @@ TEST(HostCast, LaneEdgesOnARaster) { expect_same_bytes(road(0.01)); }
 /// All robots at one place, turned by their index. Three are subscribed.
 void crowd_at_one_place(std::uint32_t count) {
   world::World world;
-  scenes::add_module(world, {}, 10.0);
+  scenes::add_room(world, {}, 10.0);
   for (std::uint32_t i = 0; i < count; ++i)
     scenes::add_robot(world, {0.0, 0.0, 0.0, 1e-3 * i}, scenes::laser(61, 2.0 * M_PI));
   farm::Farm farm(world, device(), kOnDevice);

@@ -90,7 +90,7 @@ void add_outline(world::World& world, const std::vector<glm::dvec2>& corners, co
   }
 }
 
-void add_module(world::World& world, glm::dvec2 centre, double size) {
+void add_room(world::World& world, glm::dvec2 centre, double size) {
   const double h = 0.5 * size;
   const double g = h + 0.1;
   const auto at = [centre](double x, double y) { return centre + glm::dvec2{x, y}; };
@@ -101,7 +101,7 @@ void add_module(world::World& world, glm::dvec2 centre, double size) {
 world::World boxes(std::uint32_t count, double size, std::uint64_t seed) {
   world::World world;
   const double h = 0.5 * size;
-  add_module(world, {}, size);
+  add_room(world, {}, size);
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto p = base::random_uniform({seed, base::RandomStream::placement, i, 2, 0}, 0);
     const auto q = base::random_uniform({seed, base::RandomStream::placement, i, 3, 0}, 0);

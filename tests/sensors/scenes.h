@@ -24,7 +24,7 @@ std::uint32_t add_robot(world::World& world, const base::Pose& pose, const world
 void add_robots(world::World& world, std::uint32_t count, const world::Laser& laser, std::uint64_t seed);
 
 /// Adds a square ring of walls round `centre`, `size` [m] on the inside: an outline round a hole.
-void add_module(world::World& world, glm::dvec2 centre, double size);
+void add_room(world::World& world, glm::dvec2 centre, double size);
 
 /// Adds a closed outline, solid on the left of its edges.
 void add_outline(world::World& world, const std::vector<glm::dvec2>& corners, const std::string& name);

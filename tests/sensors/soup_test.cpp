@@ -67,7 +67,7 @@ void cook(world::World& world, glm::dvec2 centre, std::uint64_t seed) {
     for (std::size_t i = first; i < world.walls.size() && moved.size() == 2; ++i) world.walls[i].solid_left = false;
     corners.insert(corners.end(), moved.begin(), moved.end());
   }
-  scenes::add_module(world, centre, 2.0 * kBowl);
+  scenes::add_room(world, centre, 2.0 * kBowl);
   for (int i = 0; i < 20; ++i) {
     const glm::dvec2 p = centre + chance.in_square(0.99 * kBowl);
     add_eye(world, {p.x, p.y, 0.0, chance.between(-M_PI, M_PI)}, eye(91, 2.0 * M_PI, kRange));

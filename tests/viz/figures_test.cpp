@@ -268,7 +268,7 @@ TEST(WorldFigure, FarFromTheOriginIsTheSamePlot) {  // 100 km away: the labels d
     EXPECT_EQ(a.at(x, y), b.at(x, y)) << x << ", " << y;
 }
 
-TEST(Sight, BeamsEndAtTheFirstWallOrAtRangeMax) {
+TEST(VisiblePoints, BeamsEndAtTheFirstWallOrAtRangeMax) {
   const world::World world = room();
   world::Laser laser;
   laser.fov = M_PI;
@@ -281,7 +281,7 @@ TEST(Sight, BeamsEndAtTheFirstWallOrAtRangeMax) {
   EXPECT_NEAR(back[1].x, 2.0, 1e-9);  // no wall within range_max
 }
 
-TEST(Sight, SeesOnlyWhatSpansItsHeight) {  // z_min <= z < z_max, the rule of world::Segment
+TEST(VisiblePoints, SeesOnlyWhatSpansItsHeight) {  // z_min <= z < z_max, the rule of world::Segment
   const world::World world = room();
   world::Laser laser;
   laser.fov = 0.1;

@@ -47,7 +47,7 @@ class MdfReader {
   }
 
  private:
-  const AccuracyStatement& now() const { return statements_.now(); }
+  const RoadStatement& now() const { return statements_.now(); }
   void warn(int line, std::string message) { mdf_.warnings.push_back({mdf_.file, line, std::move(message)}); }
 
   bool next() {
@@ -147,14 +147,14 @@ class MdfReader {
       warn(now().line,
            fmt::format("'{}' is {}, not a number; the actual entries are counted", now().keyword, quoted(now().rest)));
     }
-    promises_[std::string(now().keyword)] = said;
+    declared_[std::string(now().keyword)] = said;
   }
 
   // Checks a declared count. The actual number takes precedence, unless the file ends before that number was reached.
   void check_count(const std::string& keyword, std::size_t have) {
     const std::string taken = have == 1 ? "1 is used" : fmt::format("{} are used", have);
-    const auto said = promises_.find(keyword);
-    if (said == promises_.end())
+    const auto said = declared_.find(keyword);
+    if (said == declared_.end())
       return diagnostics_.add_warning(0, fmt::format("'{}' is missing", keyword),
                                       fmt::format("expected '{} {}'", keyword, have), taken);
     const auto [count, line] = said->second;
@@ -205,7 +205,7 @@ class MdfReader {
   int begun_ = 0;                                         ///< line where the block began
   std::map<std::string, std::string, std::less<>> seen_;  ///< keywords and their text
   std::set<std::string, std::less<>> unknown_;
-  std::map<std::string, std::pair<int, int>> promises_;  ///< count (negative: unread) and line, by keyword
+  std::map<std::string, std::pair<int, int>> declared_;  ///< count (negative: unread) and line, by keyword
   std::map<int, SpeedLimit> limited_;                    ///< by segment or zone
   bool ended_ = false;
 };

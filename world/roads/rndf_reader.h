@@ -73,7 +73,7 @@ class RndfReader {
   void read_stop();
   void read_checkpoint();
 
-  const AccuracyStatement& now() const { return statements_.now(); }
+  const RoadStatement& now() const { return statements_.now(); }
   RndfLane& lane() { return rndf_.segments.back().lanes.back(); }
   RndfZone& zone() { return rndf_.zones.back(); }
   RndfSpot& spot() { return zone().spots.back(); }

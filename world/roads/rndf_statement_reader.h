@@ -32,7 +32,7 @@ std::string text_of(PointId id);
 std::optional<PointId> read_point_id(std::string_view text, int parts = 3);
 
 /// One statement. All views live until the next call of `StatementReader::next`.
-struct AccuracyStatement {
+struct RoadStatement {
   std::string_view keyword;              ///< its first field
   std::vector<std::string_view> fields;  ///< the fields after the keyword
   std::string_view rest;                 ///< the line after the keyword, without surrounding blanks
@@ -48,7 +48,7 @@ class StatementReader {
   /// Advances to the next non-empty line; false at the end of the file.
   /// @throws base::InputError for an unterminated comment, or a byte that is not text.
   bool next();
-  const AccuracyStatement& now() const { return now_; }
+  const RoadStatement& now() const { return now_; }
   const std::string& file() const { return file_; }
   /// Number of the last line read; at the end, the file's last line.
   int line() const { return line_; }
@@ -88,7 +88,7 @@ class StatementReader {
   int line_ = 0;
   int comment_ = 0;  ///< line where the open comment began; 0: no open comment
   std::string current_;
-  AccuracyStatement now_;
+  RoadStatement now_;
 };
 
 /// True when `keyword` starts with a digit: the keyword of a way-point line is its number.

@@ -11,8 +11,8 @@ RoadNetwork load_roads(const std::string& rndf_file, std::vector<Warning>& warni
 
 std::optional<RoadNetwork> roads_of(const World& world) {
   if (world.road_files.empty()) return std::nullopt;
-  std::vector<Warning> heard_at_load;
-  return load_roads(world.road_files.front(), heard_at_load);
+  std::vector<Warning> ignored_warnings;
+  return load_roads(world.road_files.front(), ignored_warnings);
 }
 
 }  // namespace sf::world
