@@ -56,7 +56,7 @@ endfunction()
 option(SENSORFARM_CHECKED "Build every module a second time, with sanitizers, and its tests with it" OFF)
 if(SENSORFARM_CHECKED)
   add_library(checked INTERFACE)
-  target_compile_options(checked INTERFACE -Og -g1 -UNDEBUG -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined
+  target_compile_options(checked INTERFACE -O1 -g1 -UNDEBUG -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined
                                            -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(checked INTERFACE -fsanitize=address,undefined)
 endif()
