@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (picture.value.size() > kMost) return 0;
     world::Bitmap grid{picture.width, picture.height, picture.value};
     for (std::uint8_t& cell : grid.solid) cell = cell <= 127 ? 1 : 0;
-    const auto traced = world::trace(std::move(grid), "fuzz.png");
+    const auto traced = world::trace_bitmap(std::move(grid), "fuzz.png");
     for (const world::BoundaryRun& run : traced->runs) require(run.a.i <= picture.width && run.b.j <= picture.height);
   } catch (const base::InputError& error) {
     require(std::string_view(error.what()).starts_with("fuzz.png"));
