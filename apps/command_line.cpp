@@ -49,7 +49,7 @@ const CLI::App* add_help(CLI::App& app, std::string& asked) {
   return sub;
 }
 
-/// What was wrong with the arguments, in one line that ends with where help is.
+/// The error in the arguments, as one line that ends with the help command.
 std::string explain(const CLI::App& app, const CLI::ParseError& error, int argc, const char* const* argv) {
   const std::vector<CLI::App*> used = app.get_subcommands();
   if (used.empty()) {

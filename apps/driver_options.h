@@ -1,5 +1,5 @@
 #pragma once
-// Who drives, as the command line says it.
+// Controllers and their settings from the command line.
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// What arguments may be, and how a wrong one is refused: the words of the command line, without CLI11.
+// Parsers of command-line arguments and the messages for wrong ones. No CLI11 here.
 
 #include <array>
 #include <cstdint>
@@ -54,7 +54,7 @@ std::string quantity_text(double value, std::string_view unit);
 /// "10" or "10Hz", above 0.
 std::optional<double> read_rate(const std::string& text);
 
-/// What the unexpected argument `word` may have been meant to be: `; did you mean '--x'?` or nothing.
+/// Suggestion for the unexpected argument `word`: `; did you mean '--x'?`, or empty.
 /// @param names of the subcommand's options, without dashes.
 std::string suggest_option(const std::string& word, const std::vector<std::string>& names);
 

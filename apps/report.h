@@ -1,5 +1,5 @@
 #pragma once
-// What commands print: facts as rows of a table for people, or as JSON for programs. nlohmann/json lives in the source.
+// Reports of commands, as rows of a table or as JSON. nlohmann/json stays in the source.
 
 #include <string>
 #include <vector>
@@ -48,7 +48,7 @@ struct RunReport {
   std::uint64_t recorded_bytes = 0;  ///< its size
 };
 
-/// What came of `selftest`.
+/// Results of `selftest`.
 struct SelfTestReport {
   gpu::DeviceInfo device;
   std::vector<std::pair<const selftest::Case*, selftest::Outcome>> cases;  ///< that were run

@@ -47,7 +47,7 @@ Json warnings_json(const std::vector<world::Warning>& warnings) {
   return json;
 }
 
-/// What is infinite has no number in JSON.
+/// JSON has no infinite numbers: these become null.
 Json finite_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json statements_json(const std::vector<sensors::AccuracyStatement>& statements) {

@@ -126,7 +126,7 @@ std::string text_of(const world::World& world, const sensors::SensorSet& sensor_
 
 namespace {
 
-/// What was computed, and how fast: of the whole run, and while it sensed.
+/// Readings and rays with their rates, over the whole run and while sensing.
 std::string work_text(const RunReport& f) {
   const double sensing = f.farm.place_s + f.farm.lists_s + f.farm.device_s + f.farm.collect_s;
   const auto rows = [&](const char* what, std::uint64_t count) {
@@ -148,7 +148,7 @@ std::string work_text(const RunReport& f) {
   return text;
 }
 
-/// What came of the controllers.
+/// Results of the controllers.
 std::string control_text(const ControlReport& f) {
   if (f.robots == 0) return "";
   std::string text =

@@ -11,14 +11,14 @@
 
 namespace sf::apps {
 
-/// What a network is, for programs and people.
+/// Facts of a road network, printed as JSON or text.
 struct RoadReport {
   const world::RoadNetwork& network;
   std::size_t lane_markings = 0;  ///< painted lines and dashes
   const std::vector<world::Warning>& warnings;
 };
 
-/// What a mission is.
+/// Facts of a mission, printed as JSON or text.
 struct MissionReport {
   const world::Mdf& mission;
   std::string network;  ///< file it was checked against; empty: none

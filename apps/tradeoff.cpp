@@ -36,7 +36,7 @@ scenarios::AccuracyTarget wish_of(const AccuracyTargetOptions& options) {
   return target;
 }
 
-/// What is counted by the second.
+/// The word for readings of a sensor type that are counted per second.
 std::string_view counted_as(const std::string& sensor) {
   return sensor == "laser" ? "rays" : sensor == "laneedge" ? "edges" : sensor == "magnetometer" ? "fields" : "readings";
 }

@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using Modules = std::set<std::string>;
 
-// What each module may include beside itself. `shaders` stands for the compiled kernels, which only their hosts may
-// name.
+// Modules that each module may include beside itself. `shaders` stands for the compiled kernels, which only their hosts
+// may name.
 const std::map<std::string, Modules> kMayInclude{
     {"base", {}},
     {"gpu", {"base", "shaders"}},

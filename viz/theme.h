@@ -28,7 +28,7 @@ inline constexpr std::uint32_t kVermillion = 0xFFD55E00u;
 inline constexpr std::array<std::uint32_t, 7> kSeries{kBlue,       kVermillion, 0xFF009E73u, 0xFFCC79A7u,
                                                       0xFFE69F00u, 0xFF56B4E9u, kBlack};
 inline constexpr std::uint32_t kDominated = 0xFF909090u;  ///< modes that are not Pareto-optimal
-inline constexpr std::uint32_t kReferencePath = 0xFF808080u;
+inline constexpr std::uint32_t kReferencePath = kNeutral;
 inline constexpr std::uint32_t kMapInk = 0xFF15181Cu;   ///< marks on a colour map
 inline constexpr std::uint32_t kMapHalo = 0x90FFFFFFu;  ///< their border, visible on dark colours
 
@@ -53,7 +53,7 @@ inline constexpr std::uint32_t kLightOff = 0xFF616161u;
 // Robots
 inline constexpr std::uint32_t kTag = 0xFFC2187Bu;
 inline constexpr std::uint32_t kCar = 0xFF1F6FB4u;
-inline constexpr std::uint32_t kOtherRobot = 0xFFC2187Bu;
+inline constexpr std::uint32_t kOtherRobot = kTag;
 inline constexpr std::uint32_t kContact = 0xFFD4351Cu;
 
 // Roads

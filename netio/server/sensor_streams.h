@@ -1,5 +1,5 @@
 #pragma once
-// What a reading's payload says, judged by its sensor's kind: for those who receive.
+// Received payloads: inspection and decoding by the tables of the sensor types.
 
 #include <cstdint>
 #include <span>
@@ -17,17 +17,17 @@ struct SensorStream {
   const sensors::SensorSpec* row = nullptr;
 };
 
-/// All sensors of a world that are sent, kind after kind. They live as long as the roster.
+/// All sensors of a world with ports in the layout, ordered by sensor type. Pointers live as long as the sensor set.
 std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& plan);
-/// One mover's.
+/// The same for one mover.
 std::vector<SensorStream> sensor_streams(const sensors::SensorSet& sensor_set, const StreamLayout& plan,
                                          std::uint32_t mover);
 
-/// Judges any bytes that came to the sensor's port behind a header of its robot and number.
+/// Checks the bytes of a payload, which may be any, whose header has the stream's robot and sensor number.
 netio::PayloadInfo inspect_payload(const SensorStream& source, sensors::WireFormat wire, const netio::Header& header,
                                    std::span<const std::uint8_t> payload);
 
-/// Writes what an accepted payload says into its reading's values.
+/// Writes the values of an accepted payload into those of its reading.
 void decode_payload(const SensorStream& source, sensors::WireFormat wire, const netio::Header& header,
                     std::span<const std::uint8_t> payload, std::span<double> values);
 

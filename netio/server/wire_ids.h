@@ -1,5 +1,5 @@
 #pragma once
-// Who on the wire is which mover of a world.
+// Robot ids of packets and the movers of a world.
 
 #include <cstdint>
 #include <map>

@@ -72,7 +72,7 @@ TEST(Experiment, WritesItsFolder) {
   ASSERT_EQ(std::sscanf(report.c_str() + report.find("\n| 1 | "), "\n| 1 | %lf | %lf", &seconds, &errors), 2) << report;
   EXPECT_NEAR(seconds, 0.1 * (errors - 1.0), 0.06) << report;
 
-  // Nobody's name is in its track's colour; 5 m of it and a minute of errors are.
+  // Names have no track's colour; 5 m of track and a minute of errors have.
   constexpr std::uint32_t kFirst = 0xFF0072B2u;
   for (const char* name : {"trajectories.png", "errors.png"}) {
     const scenes::Picture picture = scenes::read_png(folder.path(std::string("out/") + name));

@@ -1,5 +1,5 @@
 #pragma once
-// What the program prints with --json, by JSON pointers such as "/beams/0/range_m".
+// Access to output of --json by JSON pointers such as "/beams/0/range_m".
 
 #include <memory>
 #include <string>

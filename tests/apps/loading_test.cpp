@@ -1,4 +1,4 @@
-// What the program loads: drawing libraries only where something is drawn.
+// Libraries of the program: those for drawing are loaded by drawing commands alone.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace sf {
 namespace {
 
-/// What the dynamic linker says of every library it loads, at the start and later.
+/// The dynamic linker's log of libraries loaded at start and later.
 std::string loaded_by(const Words& arguments) {
   const Outcome outcome = run_program(arguments, {{"LD_DEBUG", "files"}});
   EXPECT_EQ(outcome.code, 0) << outcome.err.substr(0, 2000);

@@ -47,7 +47,7 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
-  /// What it wrote to standard error so far.
+  /// Standard error so far.
   std::string err() const;
   bool running();
   /// Until `text` stands on standard error; false when it ended before, or after a minute.
@@ -67,13 +67,13 @@ class Program {
 /// Runs it to its end.
 Outcome run_program(const Words& arguments, const Environment& environment = {});
 
-/// Nobody's drivers: Vulkan finds no device.
+/// Environment without drivers: Vulkan finds no device.
 Environment no_device();
 
 /// A world in the sources, e.g. "rooms.world".
 std::string our_world(const std::string& name);
 
-/// What a file holds; empty when there is none.
+/// Contents of a file; empty when it does not exist.
 std::string read_file(const std::string& path);
 
 /// Lines of `text` that are not empty.

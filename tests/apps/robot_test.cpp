@@ -62,7 +62,7 @@ Json facts_of(const std::unique_ptr<Program>& robot, int code = 0) {
   return Json(outcome.out);
 }
 
-/// What a robot took in is what its link let pass, and what it sent too.
+/// Counts of received and sent packets agree with those that the injected link let pass.
 void expect_sums(const Json& facts) {
   EXPECT_EQ(facts.number("/injected/in/passed"),
             facts.number("/sensor_packets/packets") + facts.number("/relayed/packets"));

@@ -157,7 +157,7 @@ TEST(AccuracyOption, AutoMeasuresFirst) {
   expect_says(outcome, "measured; with every error within 1 nm: --accuracy \"exact\"");
 }
 
-/// What is not wished for has no bound of its own; where nothing is, both have their usual one.
+/// A sensor type without a target has no bound of its own; without any target both have the usual one.
 TEST(AccuracyOption, AutoSaysWhatItGoesBy) {
   const std::vector<std::pair<Words, std::string>> wishes{
       {{}, "with every error within 10 mm and 1 uT: "},

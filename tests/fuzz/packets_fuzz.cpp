@@ -39,7 +39,7 @@ void examine(const netio::Packet& packet) {
   }
 }
 
-/// What was accepted must say the same when it is written and read again.
+/// Accepted packets keep their meaning when encoded and decoded again.
 void round_trip(const netio::Packet& packet, std::span<const std::uint8_t> bytes) {
   base::Bytes again;
   if (const auto* state = std::get_if<netio::V2v>(&packet.body)) netio::encode(packet.header, *state, again);

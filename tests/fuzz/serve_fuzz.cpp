@@ -52,7 +52,7 @@ world::World make_world() {
   return world;
 }
 
-/// What every input shares: none of it remembers traffic.
+/// Parts shared by all inputs. Traffic leaves no state in them.
 struct Scene {
   world::World world = make_world();
   sensors::SensorSet sensor_set{world};
