@@ -33,16 +33,17 @@ struct CompleteReading {
 enum class PartStatus : std::uint8_t {
   incomplete,  ///< other parts are missing
   complete,    ///< the last missing part: its reading is now the newest
-  late,        ///< its reading is not newer than the newest complete one, or was abandoned for newer ones
+  late,        ///< its reading is not newer than the newest complete one, was abandoned for newer ones, or has other
+               ///< `parts` or another `time` in the parts received so far
   duplicate,   ///< the part was received before
-  jump,        ///< its sequence or time is implausibly far ahead of the newest
+  jump,        ///< its sequence or time is implausibly far ahead of the newest, or its time lies before the newest's
   rejected,    ///< not a valid part (Receiver only); counted by its PacketStatus
 };
 
 /// The sender numbers readings 0, 1, 2, ...; the number may wrap. A part more than kMaxDropout readings ahead of the
 /// newest, or kMaxTimeJump ahead of its expected time, is dropped. After two seconds (kClientTimeout) without an
 /// accepted part any part is accepted, since the sender may have restarted its count. One thread; allocates nothing
-/// once kMaxPartial readings have been in progress.
+/// once kMaxPartial + 1 readings have been received.
 class ReadingAssembler {
  public:
   static constexpr std::size_t kMaxPartial = 8;      ///< readings in progress; the oldest is abandoned for a new one

@@ -1,5 +1,6 @@
 #pragma once
-// The world: static geometry and the descriptions of movers. The content of one world file, immutable after load.
+// The world: static geometry and the descriptions of movers, from one world file. After load it is changed only by the
+// functions at the end of this header and by sensors::set_accuracy.
 //
 // A world is 2.5-D: flat outlines with a range of heights. The static part is a list of wall segments; movers (robots
 // and linked objects) carry their outlines. Tables of rows, joined by row number.
@@ -228,7 +229,7 @@ struct Warning {
 };
 
 struct Extent {
-  double x_min = 0.0, y_min = 0.0, x_max = 0.0, y_max = 0.0;  ///< [m] bounding box of walls and movers at load
+  double x_min = 0.0, y_min = 0.0, x_max = 0.0, y_max = 0.0;  ///< [m] bounds of all geometry and movers
 };
 
 struct World {
@@ -271,8 +272,9 @@ World load_world(const std::string& file, const LoadOptions& options = {});
 /// Moves all geometry by (dx, dy), except the networks of `road_files`. For tests far from the origin.
 void translate(World& world, double dx, double dy);
 
-/// Grows or shrinks `movers` to `count` copies of the first robot (a mover that is not a tag) at free poses: copy k is
-/// clear of walls and of copies 0..k-1, drawn from (seed, k) alone. Copy 0 gets a new pose as well.
+/// Grows or shrinks `movers` to `count` copies of one robot (a mover that is not a tag) at free poses: the first with
+/// sensors, else the first (robot_to_copy, world/free_space.h). Copy k is clear of walls and of copies 0..k-1, drawn
+/// from (seed, k) alone. Copy 0 gets a new pose as well.
 /// @throws base::InputError when there is no robot, or no room.
 void clone_robots(World& world, std::uint32_t count, std::uint64_t seed);
 
@@ -286,7 +288,7 @@ void copy_robots(World& world, std::uint32_t original, std::span<const Pose> pos
 std::vector<std::uint8_t> snapshot(const World& world);
 World from_snapshot(const std::vector<std::uint8_t>& bytes);
 
-/// Recomputes `extent` and `hash` from the tables.
+/// Recomputes every mover's `radius`, then `extent` and `hash`, from the tables.
 void update_extent_and_hash(World& world);
 
 }  // namespace sf::world

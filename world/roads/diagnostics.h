@@ -27,9 +27,9 @@ class Diagnostics {
   bool strict() const { return strict_; }
 
   /// A problem with a clear meaning. @param remedy advice for the user, @param taken the interpretation used
-  /// @throws base::InputError in strict mode
+  /// @throws base::InputError in strict mode. Past 10 000 warnings it adds an error
   void add_warning(int line, const std::string& what, const std::string& remedy, const std::string& taken);
-  /// A problem without a clear meaning. @throws base::InputError in strict mode, and beyond a hundred such problems
+  /// A problem without a clear meaning. @throws base::InputError in strict mode, and at the hundredth such problem
   void add_error(int line, const std::string& what);
 
   /// Calls `act()`. An exception counts as one problem of `line`, and the result is false. @throws base::InputError in
