@@ -23,7 +23,14 @@ enum class Role {
 
 std::size_t texel_size(Texel texel);  ///< [bytes] 4 or 16
 
-/// A table of texels with a host view. On a unified device the host view is the table itself; on others a Batch copies.
+/// Texels of 16 bytes of a table of records.
+template <class Record>
+constexpr std::size_t texels_of(std::size_t records) {
+  static_assert(sizeof(Record) % 16 == 0);
+  return sizeof(Record) / 16 * records;
+}
+
+/// A table of texels with a host view. On a unified device the host view is the table itself; elsewhere a Batch copies.
 class Buffer {
  public:
   /// @param name description of the contents, for Device::allocations

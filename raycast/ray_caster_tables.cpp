@@ -107,7 +107,8 @@ void RayCaster::Tables::make_tables(gpu::Device& device, std::size_t largest_buf
   using gpu::Texel;
   const std::size_t count = std::max<std::size_t>(1, scanners.size());
   if (scene)
-    rows = std::make_unique<gpu::Buffer>(device, "due sensors", Role::upload, Texel::u32x4, SF_ROW_TEXELS * count);
+    rows =
+        std::make_unique<gpu::Buffer>(device, "due sensors", Role::upload, Texel::u32x4, gpu::texels_of<RayRow>(count));
   mid_bearings =
       std::make_unique<gpu::Buffer>(device, "middles of lanes", Role::upload, Texel::f32, std::size_t{beam_lanes} + 1);
   directions64 = std::make_unique<gpu::Buffer>(device, "beams in 64 bits", Role::upload, Texel::u32x4,
@@ -232,7 +233,7 @@ bool RayCaster::Tables::prepare() {
     for (std::size_t i = first; i < last; ++i) {
       const ScannerRow& row = scanner_rows[due[i].row];
       ray_rows[i].beams = row.beams;
-      ray_rows[i].out = row.out;
+      ray_rows[i].results = row.out;
       ray_rows[i].range_min = scanners[due[i].row].laser.range_min;
     }
   });
@@ -366,7 +367,7 @@ void RayCaster::Tables::find_host_due() {
   for (std::uint32_t i = 0; i < due.size(); ++i) {
     if (!scene->needs_host(i)) continue;
     host_due.push_back(i);
-    ray_rows[i].out = out_lanes;
+    ray_rows[i].results = out_lanes;
   }
   host_scans += host_due.size();
 }

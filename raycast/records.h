@@ -1,6 +1,7 @@
 #ifndef RAYCAST_RECORDS_H
 #define RAYCAST_RECORDS_H
-// Records shared by host and device for ray casting. Read by both compilers.
+// Records and constants of ray casting, for host and device. cmake/records.awk writes the accessors of kernels from the
+// structs.
 //
 // A lane is one invocation with four adjacent beams of one sensor, so that each loaded segment serves four beams. A
 // list holds the segments that the beams of one sector of directions may meet, near to far, in chunks of four.
@@ -8,7 +9,6 @@
 #define SF_SECTORS 32
 #define SF_CHUNK 4
 #define SF_BEAMS_PER_LANE 4
-#define SF_ROW_TEXELS 5
 #define SF_NO_HIT 0xFFFFFFFFu
 
 // Flags of a lane, shifted by the beam's place in the lane: the beam grazes its surface; 32 bits could not certify its
@@ -37,7 +37,7 @@
 
 namespace sf::raycast {
 
-/// One due sensor: its pose and tables. Five texels of 16 bytes.
+/// One sensor that is due: where it looks from and which tables serve it.
 struct RayRow {
   float offset_x;  ///< [m] sensor relative to the centre of its cell
   float offset_y;
@@ -46,7 +46,7 @@ struct RayRow {
   std::uint32_t walls;    ///< first of SF_SECTORS list heads
   std::uint32_t movers;   ///< first of SF_SECTORS list heads
   std::uint32_t beams;    ///< first lane in the beam tables
-  std::uint32_t out;      ///< first lane in the result tables
+  std::uint32_t results;  ///< first lane in the result tables
   double origin_x;        ///< [m] world
   double origin_y;
   double heading_cos64;
@@ -54,7 +54,6 @@ struct RayRow {
   double range_max;  ///< [m]
   double range_min;  ///< [m]
 };
-static_assert(sizeof(RayRow) == SF_ROW_TEXELS * 16);
 
 /// One sector's list. Like chunks and entries it is a texel: all share one table.
 struct ListHead {
@@ -63,7 +62,6 @@ struct ListHead {
   std::uint32_t back_facing;  ///< [chunks] of back-facing segments, which follow: they decide only ties at corners
   std::uint32_t base;         ///< texel of the walls' entries
 };
-static_assert(sizeof(ListHead) == 16);
 
 /// Four entries of a list.
 struct ListChunk {
@@ -71,7 +69,6 @@ struct ListChunk {
   std::uint32_t mover;              ///< 0: walls; else 1 + the row of the mover in `MoverRow`
   std::uint16_t entries[SF_CHUNK];  ///< relative to the first entry of the walls or the mover
 };
-static_assert(sizeof(ListChunk) == 16);
 
 /// Pose and outline of a mover at one height: two texels.
 struct MoverRow {
@@ -80,27 +77,38 @@ struct MoverRow {
   std::uint32_t base;       ///< texel of its outline's entries
   std::uint32_t first_row;  ///< of its exact segments
 };
-static_assert(sizeof(MoverRow) == 32);
 
 /// A segment for the 32-bit search, seen from its right, in the frame of the cell or the mover.
 struct ListEntry {
   float x, y;    ///< [m] middle
   float ex, ey;  ///< [m] from the middle to its end
 };
-static_assert(sizeof(ListEntry) == 16);
 
 /// A segment for the 64-bit intersection: two texels.
 struct ExactSegment {
   double ax, ay, bx, by;  ///< [m] world
 };
-static_assert(sizeof(ExactSegment) == 32);
+
+/// The ranges of a lane's beams [m].
+struct LaneRanges {
+  double range[SF_BEAMS_PER_LANE];
+};
+
+/// What a lane's beams hit: `Segment::model`, or SF_NO_HIT.
+struct LaneHits {
+  std::uint32_t model[SF_BEAMS_PER_LANE];
+};
+
+/// A unit vector.
+struct BeamDirection {
+  double cos, sin;
+};
 
 /// The beams of one invocation: two words.
 struct Lane {
   std::uint32_t row;   ///< row of the due sensor
   std::uint32_t lane;  ///< within the sensor
 };
-static_assert(sizeof(Lane) == 8);
 
 }  // namespace sf::raycast
 

@@ -3,7 +3,7 @@
 // The lane edge sensor: the distance along a fixed bearing of the robot to a line fitted to the points in which a scan
 // meets road markings. docs/laneedge.md defines all terms.
 //
-// Records shared by host and device. Read by both compilers.
+// Records for host and device: cmake/records.awk writes the accessors of kernels from the structs.
 
 // Tag of a hit, from the filtered scene (sensors/lane_markings/filtered_scene.h) or the raster: two flags, then the row
 // in the ascending table of pixel sizes. Row 0: an exact outline without pixels.
@@ -11,8 +11,6 @@
 #define SF_TAG_MOVER 2u
 #define SF_TAG_BITS 2
 
-#define SF_EDGE_TEXELS 6
-#define SF_READING_TEXELS 3
 #define SF_EDGE_PACKED 1u
 #define SF_EDGE_SINGLE 2u
 #define SF_EDGE_CAST 4u
@@ -21,8 +19,6 @@
 #define SF_NOWHERE 1e18
 // The row of a point's pixel size, in the last bits of its x, which change x by a relative 6e-14.
 #define SF_GRAIN_MASK 0xFFu
-
-#define SF_RASTER_TEXELS 5
 
 #ifdef __cplusplus
 
@@ -47,11 +43,21 @@ struct EdgeRow {
   double angle_sigma;         ///< [rad]
   double distance_max;        ///< [m] a farther edge is out of sight
   std::uint32_t noise;        ///< first lane of its normal deviates
-  std::uint32_t out;          ///< row of its reading
-  float noise_share;          ///< 1: ranges have noise; 0: they have none
+  std::uint32_t reading;      ///< row of its reading
+  float noise_share;          ///< 1: ranges are disturbed; 0: they are not
   float range_max;            ///< [m]
 };
-static_assert(sizeof(EdgeRow) == SF_EDGE_TEXELS * 16);
+
+/// What a beam met, in the sensor's frame. The grain is in the last bits of x.
+struct EdgePoint {
+  double x, y;  ///< [m]
+};
+
+/// A pixel size, which points name by its row.
+struct Grain {
+  double size;  ///< [m]
+  double spare;
+};
 
 /// One due sensor for the road raster.
 struct RasterRow {
@@ -68,7 +74,6 @@ struct RasterRow {
   std::uint32_t columns, rows;  ///< [blocks] of the raster
   std::uint32_t spare;
 };
-static_assert(sizeof(RasterRow) == SF_RASTER_TEXELS * 16);
 
 /// The loops of one invocation together stay below the 65 535 iterations after which older Mesa silently ends them.
 inline constexpr std::uint32_t kMostEdgeSamples = 1'024;
@@ -82,7 +87,6 @@ struct EdgeReading {
   double gain = 0.0;    ///< [-] error of the distance per error of its points, at most; SF_NO_GAIN: unknown
   double others = 0.0;  ///< points off the line
 };
-static_assert(sizeof(EdgeReading) == SF_READING_TEXELS * 16);
 
 }  // namespace sf::sensors
 

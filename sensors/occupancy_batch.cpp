@@ -105,8 +105,8 @@ void MapBatch::Tables::assign_blocks() {
     if (maps::is_empty(share.cells)) continue;
     table[i] = row_of(map, share.scan, scans[i].X_WS);
     table[i].box_right = static_cast<std::uint32_t>(share.cells.high.column / 4);
-    add_strips(i, share.cells, false, table[i].flat);
-    add_strips(i, share.cells, true, table[i].steep);
+    add_strips(i, share.cells, false, table[i].flat_strips);
+    add_strips(i, share.cells, true, table[i].steep_strips);
     add_words(map.plan.odds ? log_odds_words : plain, i, share);
   }
   for (MapDispatch* dispatch : {&strips, &plain.dispatch, &log_odds_words.dispatch})

@@ -1,13 +1,12 @@
 #ifndef SENSORS_OCCUPANCY_RECORDS_H
 #define SENSORS_OCCUPANCY_RECORDS_H
-// Records shared by host and device for occupancy maps. Read by both compilers.
+// Records of occupancy maps, for host and device. cmake/records.awk writes the accessors of kernels.
 //
 // A line that is longer along columns than along rows ("flat") covers one cell of each column that it crosses, other
 // lines ("steep") one cell of each row. So cells are covered strip by strip: a flat strip is 32 cells of one column, a
 // steep strip 32 cells of one row. Lanes form blocks of eight neighbours: eight strips, or eight words of a map.
 
 #define SF_MAP_BLOCK 8
-#define SF_MAP_ROW_TEXELS 7
 #define SF_ODDS_TEXELS 2 /* a word's sixteen log odds, 16 bits each */
 #define SF_STRIP 32
 #define SF_STEEP 0x80000000u  /* in MapBlock::row, of a block of steep strips */
@@ -26,9 +25,8 @@ struct StripTable {
   std::uint32_t low;    ///< column of flat, row of steep strips
   std::uint32_t chunk;  ///< first chunk, in SF_STRIP rows (columns)
 };
-static_assert(sizeof(StripTable) == 16);
 
-/// One scan with its map. Seven texels of 16 bytes.
+/// One scan and the map that it is entered into.
 struct MapRow {
   std::uint32_t words;         ///< the map's first word in the table of all maps
   std::uint32_t word_columns;  ///< words per row of the map
@@ -50,10 +48,9 @@ struct MapRow {
   std::int32_t miss;
   std::int32_t limit;
   std::uint32_t spare3;
-  StripTable flat;
-  StripTable steep;
+  StripTable flat_strips;
+  StripTable steep_strips;
 };
-static_assert(sizeof(MapRow) == SF_MAP_ROW_TEXELS * 16);
 
 /// The line of a beam.
 struct BeamLine {
@@ -61,7 +58,6 @@ struct BeamLine {
   float reach;  ///< [cells] signed length along the line, offset by SF_STEEP_REACH for steep lines; 0: only the
                 ///< sensor's cell
 };
-static_assert(sizeof(BeamLine) == 8);
 
 /// Eight words of one map, or eight strips: two words.
 struct MapBlock {
@@ -69,7 +65,6 @@ struct MapBlock {
   std::uint32_t place;  ///< low 16 bits: first column (of words, or of cells) or first row; high 16 bits: row of words,
                         ///< or chunk
 };
-static_assert(sizeof(MapBlock) == 8);
 
 }  // namespace sf::sensors
 

@@ -34,7 +34,7 @@ MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<M
   plan(std::move(plans));
   assign_layout();
   rows = std::make_unique<gpu::Buffer>(device, "due maps", Role::upload, Texel::u32x4,
-                                       SF_MAP_ROW_TEXELS * (all.size() + 1));
+                                       gpu::texels_of<MapRow>(all.size() + 1));
   lines = std::make_unique<gpu::Buffer>(device, "lines of beams", Role::upload, Texel::f32x4, all_lines + 1);
   rows->host<MapRow>()[all.size()] = MapRow{};  // for lanes without work
   ends.resize(2 * all_lines);

@@ -2,79 +2,68 @@
 #extension GL_GOOGLE_include_directive : require
 // Casts every beam of all due sensors.
 
-#include "raycast/records.h"
+#include "shaders/raycast/records.glsl"
 
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const bool kMovers = true;   // the world has movers
-layout(constant_id = 1) const bool kSinglePrecision = false;  // ranges in 32 bits where these are accurate enough
-layout(constant_id = 2) const bool kTexels = false;  // results exceed the limit of storage buffers, which are faster
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;            // SF_ROW_TEXELS per sensor: RayRow
-layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;              // two words per lane: Lane
-layout(binding = 2, r32f) uniform readonly imageBuffer bearings;             // middle bearing of each lane [sectors]
-layout(binding = 3, rgba32ui) uniform readonly uimageBuffer directions;      // one texel per beam: cosine, sine
+layout(constant_id = 0) const bool kMovers = true;   // there are some
+layout(constant_id = 1) const bool kSinglePrecision = false;  // ranges are measured in 32 bits where these are close enough
+layout(constant_id = 2) const bool kTexels = false;  // results are too large for storage buffers, which are faster
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;            // RayRow of each sensor
+layout(binding = 1, r32ui) uniform readonly uimageBuffer lanes;              // Lane of each lane
+layout(binding = 2, r32f) uniform readonly imageBuffer bearings;             // a lane's middle bearing [sectors]
+layout(binding = 3, rgba32ui) uniform readonly uimageBuffer directions;      // BeamDirection of each beam
 layout(binding = 4, rgba32ui) uniform readonly uimageBuffer lists;           // ListHead, ListEntry, ListChunk
 layout(binding = 5, r32ui) uniform readonly uimageBuffer segment_ids;              // exact segment of each entry
-layout(binding = 6, rgba32ui) uniform readonly uimageBuffer mover_rows;          // two texels per mover and height: MoverRow
-layout(binding = 7, rgba32ui) uniform readonly uimageBuffer segments;        // two texels per segment: ExactSegment
-layout(binding = 8, r32ui) uniform readonly uimageBuffer models;             // `Segment::model` of each segment
-layout(binding = 9, rgba32ui) uniform writeonly uimageBuffer range_texels;   // two texels per lane: four doubles [m]
-layout(binding = 10, rgba32ui) uniform writeonly uimageBuffer hit_texels;    // one texel per lane: four models
-layout(binding = 11, r32ui) uniform writeonly uimageBuffer flag_texels;   // one word per lane: SF_UNCERTAIN, SF_GRAZING
-layout(binding = 12) writeonly buffer Ranges { uvec4 ranges[]; };            // the same tables
-layout(binding = 13) writeonly buffer Hits { uvec4 hits[]; };
+layout(binding = 6, rgba32ui) uniform readonly uimageBuffer mover_rows;          // MoverRow of each mover and height
+layout(binding = 7, rgba32ui) uniform readonly uimageBuffer segments;        // ExactSegment of each segment
+layout(binding = 8, r32ui) uniform readonly uimageBuffer models;             // what a beam reports that meets the segment
+layout(binding = 9, rgba32ui) uniform writeonly uimageBuffer range_texels;   // LaneRanges of each lane
+layout(binding = 10, rgba32ui) uniform writeonly uimageBuffer hit_texels;    // LaneHits of each lane
+layout(binding = 11, r32ui) uniform writeonly uimageBuffer flag_texels;   // a word a lane: SF_DOUBT, SF_GRAZES
+layout(binding = 12) writeonly buffer Ranges { uvec4 ranges[][2]; };         // the same tables
+layout(binding = 13) writeonly buffer Hits { uvec4 hits[][1]; };
 layout(binding = 14) writeonly buffer BeamFlags { uint beam_flags[]; };
 
 #include "shaders/lib/intersect.glsl"
 #include "shaders/lib/list_search.glsl"
 
 Beam64 exact_beam(int slot, dvec2 origin, dvec2 heading) {
-  const uvec4 words = imageLoad(directions, slot);
-  const double c = packDouble2x32(words.xy);
-  const double s = packDouble2x32(words.zw);
-  precise double x = heading.x * c - heading.y * s;
-  precise double y = heading.y * c + heading.x * s;
+  const BeamDirection bearing = load_BeamDirection(directions, slot);
+  precise double x = heading.x * bearing.cos - heading.y * bearing.sin;
+  precise double y = heading.y * bearing.cos + heading.x * bearing.sin;
   return Beam64(origin, dvec2(x, y));
 }
 
 uint model_of(uint row) { return row == SF_NO_HIT ? SF_NO_HIT : imageLoad(models, int(row)).x; }
 
-void store(int lane, uvec4 two, uvec4 more, uvec4 hit_models, uint flags) {
+void store(int lane, LaneRanges lane_ranges, LaneHits lane_hits, uint flags) {
   if (kTexels) {
-    imageStore(range_texels, 2 * lane, two);
-    imageStore(range_texels, 2 * lane + 1, more);
-    imageStore(hit_texels, lane, hit_models);
+    store_LaneRanges(range_texels, lane, lane_ranges);
+    store_LaneHits(hit_texels, lane, lane_hits);
     imageStore(flag_texels, lane, uvec4(flags));
   } else {
-    ranges[2 * lane] = two;
-    ranges[2 * lane + 1] = more;
-    hits[lane] = hit_models;
+    ranges[lane] = encode_LaneRanges(lane_ranges);
+    hits[lane] = encode_LaneHits(lane_hits);
     beam_flags[lane] = flags;
   }
 }
 
 void main() {
   const int lane = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
-  const int row = SF_ROW_TEXELS * int(imageLoad(lanes, 2 * lane).x);
-  const int own = int(imageLoad(lanes, 2 * lane + 1).x);
-
-  const vec4 view = uintBitsToFloat(imageLoad(rows, row));
-  const uvec4 tables = imageLoad(rows, row + 1);
-  const uvec4 origin_words = imageLoad(rows, row + 2);
-  const uvec4 heading_words = imageLoad(rows, row + 3);
-  const uvec4 range_words = imageLoad(rows, row + 4);
-  const dvec2 origin = dvec2(packDouble2x32(origin_words.xy), packDouble2x32(origin_words.zw));
-  const dvec2 heading = dvec2(packDouble2x32(heading_words.xy), packDouble2x32(heading_words.zw));
-  const double range_max = packDouble2x32(range_words.xy);
-  const double range_min = packDouble2x32(range_words.zw);
-  const float band = view.w;
-  const int lane_beams = int(tables.z) + own;
+  const Lane due = load_Lane(lanes, lane);
+  const RayRow row = load_RayRow(rows, int(due.row));
+  const vec2 offset = vec2(row.offset_x, row.offset_y);
+  const dvec2 origin = dvec2(row.origin_x, row.origin_y);
+  const dvec2 heading = dvec2(row.heading_cos64, row.heading_sin64);
+  const double range_max = row.range_max;
+  const int lane_beams = int(row.beams + due.lane);
   Beam64 beams[SF_BEAMS_PER_LANE];
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) beams[i] = exact_beam(SF_BEAMS_PER_LANE * lane_beams + i, origin, heading);
 
-  // Search in 32 bits. Initially the end of the range is the nearest.
-  const int sector = int(floor(view.z + imageLoad(bearings, lane_beams).x)) & (SF_SECTORS - 1);
-  const uvec4 walls = imageLoad(lists, int(tables.x) + sector);
-  const uvec4 movers = kMovers ? imageLoad(lists, int(tables.y) + sector) : uvec4(0u);
+  // Search in 32 bits. At first the end of the range is the nearest.
+  const int sector = int(floor(row.heading_sectors + imageLoad(bearings, lane_beams).x)) & (SF_SECTORS - 1);
+  const ListHead walls = load_ListHead(lists, int(row.walls) + sector);
+  const ListHead movers = decode_ListHead(kMovers ? imageLoad(lists, int(row.movers) + sector) : uvec4(0u));
   const float farthest = 1.0 / float(range_max);
   Search s;
   s.dx = vec4(dvec4(beams[0].direction.x, beams[1].direction.x, beams[2].direction.x, beams[3].direction.x));
@@ -84,7 +73,7 @@ void main() {
   s.others = vec4(0.0);
   s.entry = ivec4(-1);
   s.first_row = ivec4(0);
-  search_lists(walls, movers, view.xy, origin, band, s);
+  search_lists(walls, movers, offset, origin, row.band, s);
 
   ClosestHit closest[SF_BEAMS_PER_LANE];
   uint pending = 0u;  // uncertain beams
@@ -95,10 +84,10 @@ void main() {
   }
   uint flags = SF_UNCERTAIN * pending;
 
-  // An uncertain beam is intersected with every entry up to the range found so far in 64 bits, beam by beam.
-  int at = int(walls.x);
-  int facing_end = at + int(walls.y);
-  int end = facing_end + int(walls.z);
+  // A beam in doubt meets every entry that is not farther than what 64 bits have found; one beam after another.
+  int at = int(walls.first);
+  int facing_end = at + int(walls.count);
+  int end = facing_end + int(walls.back_facing);
   int k = 0;
   bool movers_left = kMovers;
   ClosestHit found = ClosestHit(range_max, SF_NO_HIT, vec3(0.0));
@@ -106,7 +95,7 @@ void main() {
     const int now = findLSB(pending);
     const dvec2 direction = now < 2 ? (now == 0 ? beams[0].direction : beams[1].direction)
                                     : (now == 2 ? beams[2].direction : beams[3].direction);
-    const Chunk chunk = chunk_of(at < end ? imageLoad(lists, at) : uvec4(0u), view.xy, int(walls.w), origin);
+    const Chunk chunk = chunk_of(at < end ? imageLoad(lists, at) : uvec4(0u), offset, int(walls.base), origin);
     const bool far = at >= end || double(chunk.nearest) > found.range;
     const int entry = k < 2 ? (k == 0 ? chunk.entries.x : chunk.entries.y) : (k == 2 ? chunk.entries.z : chunk.entries.w);
     const uint name = far ? SF_NO_HIT : imageLoad(segment_ids, entry).x;
@@ -117,10 +106,11 @@ void main() {
     k = chunk_done ? 0 : k;
     const bool list_done = at >= end;
     const bool beam_done = list_done && !movers_left;
-    const uvec4 next = beam_done ? walls : movers;
-    at = list_done ? int(next.x) : at;
-    facing_end = list_done ? int(next.x + next.y) : facing_end;
-    end = list_done ? int(next.x + next.y + next.z) : end;
+    const uint next = beam_done ? walls.first : movers.first;
+    const uint next_facing = next + (beam_done ? walls.count : movers.count);
+    at = list_done ? int(next) : at;
+    facing_end = list_done ? int(next_facing) : facing_end;
+    end = list_done ? int(next_facing + (beam_done ? walls.back_facing : movers.back_facing)) : end;
     movers_left = list_done ? beam_done && kMovers : movers_left;
     flags |= beam_done && grazes(found, float(SF_MIN_SINE)) ? SF_GRAZING << now : 0u;
     for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
@@ -138,10 +128,10 @@ void main() {
       const float t = range_single(closest[i].id, beams[i], float(range_max));
       closest[i].range = t >= 0.0 ? min(double(t), range_max) : closest[i].range;
     }
-    closest[i].range = max(closest[i].range, range_min);
+    closest[i].range = max(closest[i].range, row.range_min);
   }
-  store(int(tables.w) + own, uvec4(unpackDouble2x32(closest[0].range), unpackDouble2x32(closest[1].range)),
-        uvec4(unpackDouble2x32(closest[2].range), unpackDouble2x32(closest[3].range)),
-        uvec4(model_of(closest[0].id), model_of(closest[1].id), model_of(closest[2].id), model_of(closest[3].id)),
+  store(int(row.results + due.lane),
+        LaneRanges(dvec4(closest[0].range, closest[1].range, closest[2].range, closest[3].range)),
+        LaneHits(uvec4(model_of(closest[0].id), model_of(closest[1].id), model_of(closest[2].id), model_of(closest[3].id))),
         flags);
 }

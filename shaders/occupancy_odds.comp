@@ -3,15 +3,15 @@
 // Occupancy maps with log odds: log odds per cell, and the states that follow from them (maps/grid_update.h).
 
 #include "maps/grid.h"
-#include "sensors/occupancy_records.h"
+#include "shaders/sensors/occupancy_records.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;   // SF_MAP_ROW_TEXELS per map: MapRow
-layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;    // two words per eight lanes: MapBlock
-layout(binding = 2, r32ui) uniform readonly uimageBuffer strips;    // written by occupancy_strips.comp
-layout(binding = 3, r32ui) uniform readonly uimageBuffer hit_words;    // one word per lane: bit 2 k where a beam ended in cell k
-layout(binding = 4, r32ui) uniform writeonly uimageBuffer words;    // of all maps, and a last one for lanes without work
-layout(binding = 5, rgba32ui) uniform uimageBuffer odds;            // SF_ODDS_TEXELS per word
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;   // MapRow of each map
+layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;    // MapBlock of eight lanes
+layout(binding = 2, r32ui) uniform readonly uimageBuffer strips;    // what occupancy_strips.comp wrote
+layout(binding = 3, r32ui) uniform readonly uimageBuffer hit_words;    // a word a lane: bit 2 k where a beam ended in cell k
+layout(binding = 4, r32ui) uniform writeonly uimageBuffer words;    // of all maps, and a last one that is nobody's
+layout(binding = 5, rgba32ui) uniform uimageBuffer odds;            // SF_ODDS_TEXELS for each of these words
 
 #include "shaders/lib/cover.glsl"
 
@@ -35,9 +35,10 @@ Weighed weigh(uint pair, uint freed, uint occupied, ivec3 rule) {
 
 void main() {
   const int lane = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
-  const int row = SF_MAP_ROW_TEXELS * int(imageLoad(blocks, 2 * (lane / SF_MAP_BLOCK)).x);
-  const WordUpdate share = cover_word(lane, row);
-  const ivec3 rule = ivec3(imageLoad(rows, row + 4).xyz);
+  const MapBlock block = load_MapBlock(blocks, lane / SF_MAP_BLOCK);
+  const MapRow map = load_MapRow(rows, int(block.row));
+  const WordUpdate share = cover_word(lane, block, map);
+  const ivec3 rule = ivec3(map.hit, map.miss, map.limit);
   const int word = share.word < 0 ? imageSize(words) - 1 : share.word;
   uint states = 0u;
   for (int half_word = 0; half_word < SF_ODDS_TEXELS; ++half_word) {

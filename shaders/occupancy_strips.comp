@@ -8,40 +8,34 @@
 // floor: with n <= 1023, rounding of the slope and of the product are below 1.3e-4 together, and 1 / (2 n) is above
 // 4.8e-4.
 
-#include "sensors/occupancy_records.h"
+#include "shaders/sensors/occupancy_records.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;     // SF_MAP_ROW_TEXELS per scan: MapRow
-layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;      // two words per eight lanes: MapBlock
-layout(binding = 2, rgba32f) uniform readonly imageBuffer lines;      // one texel per two beams: slope, reach; slope, reach (BeamLine)
-layout(binding = 3, r32ui) uniform writeonly uimageBuffer strips;     // one word per lane: bit k for its k-th cell
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer rows;     // MapRow of each scan
+layout(binding = 1, r32ui) uniform readonly uimageBuffer blocks;      // MapBlock of eight lanes
+layout(binding = 2, rgba32f) uniform readonly imageBuffer lines;      // a texel for two beams: slope, reach; slope, reach (LinePair)
+layout(binding = 3, r32ui) uniform writeonly uimageBuffer strips;     // a word a lane: bit k for its k-th cell
 
 #include "shaders/lib/candidates.glsl"
 
 void main() {
   const int lane = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
-  const uint named = imageLoad(blocks, 2 * (lane / SF_MAP_BLOCK)).x;
-  const uint place = imageLoad(blocks, 2 * (lane / SF_MAP_BLOCK) + 1).x;
-  const bool flat_strip = (named & SF_STEEP) == 0u;
-  const int row = SF_MAP_ROW_TEXELS * int(named & ~SF_STEEP);
-  const uvec4 map = imageLoad(rows, row);
-  const uvec4 scan = imageLoad(rows, row + 1);
-  const vec4 look = uintBitsToFloat(imageLoad(rows, row + 2));
-  const vec4 fan = uintBitsToFloat(imageLoad(rows, row + 3));
+  const MapBlock block = load_MapBlock(blocks, lane / SF_MAP_BLOCK);
+  const bool flat_strip = (block.row & SF_STEEP) == 0u;
+  const MapRow map = load_MapRow(rows, int(block.row & ~SF_STEEP));
 
-  // The strip relative to the sensor's cell: `offset` along the lines, cells [side, side + 32) across.
-  const int at = int(place & 0xFFFFu) + lane % SF_MAP_BLOCK;
-  const int across = SF_STRIP * int(place >> 16);
-  const int offset = at - int(flat_strip ? scan.y : scan.z);
-  const int side = across - int(flat_strip ? scan.z : scan.y);
+  // The strip from the sensor's cell: `offset` along the lines, cells [side, side + 32) across.
+  const int at = int(block.place & 0xFFFFu) + lane % SF_MAP_BLOCK;
+  const int across = SF_STRIP * int(block.place >> 16);
+  const int offset = at - (flat_strip ? map.column : map.row);
+  const int side = across - (flat_strip ? map.row : map.column);
   const bool back = offset < 0;
   const int i = abs(offset);
   const int low = max(side, -i);  // no line is farther to the side than along
   const int high = min(side + SF_STRIP - 1, i);
 
-  // A covered cell's middle lies within half a cell along and one across from the beam itself: half for the end's cell,
-  // half for rounding.
-  const vec2 within = flat_strip ? look.xy : look.yx;
+  // A covered cell's middle lies within half a cell along and one across from the beam itself: half for the end's cell, half for rounding.
+  const vec2 within = flat_strip ? vec2(map.within_x, map.within_y) : vec2(map.within_y, map.within_x);
   const float along = float(i) - (back ? -within.x : within.x);
   const float y_low = float(low) - 1.01 - within.y;
   const float y_high = float(high) + 1.01 - within.y;
@@ -49,12 +43,12 @@ void main() {
   const float a_high = bearing_of(vec2(along + (y_high > 0.0 ? -0.51 : 0.51), y_high));
   const float axis = flat_strip ? (back ? PI : 0.0) : (back ? 0.5 * PI : -0.5 * PI);
   const bool turned = flat_strip != back;  // the strip's cells count clockwise
-  const float middle = axis + (turned ? -0.5 : 0.5) * (a_low + a_high) - look.z;
+  const float middle = axis + (turned ? -0.5 : 0.5) * (a_low + a_high) - map.heading;
   const float bearing = middle - 2.0 * PI * round(middle * (0.5 / PI));
-  const int pairs = int(map.w);
-  const Candidates c = candidates(bearing, 0.5 * (a_high - a_low), i <= 1, fan, pairs);
+  const int pairs = int(map.pairs);
+  const Candidates c = candidates(bearing, 0.5 * (a_high - a_low), i <= 1, map);
 
-  const int first_pair = int(scan.x);
+  const int first_pair = int(map.lines);
   const float nearest = float(i) + (flat_strip ? 0.0 : SF_STEEP_REACH);
   const float farthest = flat_strip ? SF_STEEP_REACH : 2.0 * SF_STEEP_REACH;
   const int total = i > 0 && low <= high ? count_of(c, pairs) : 0;

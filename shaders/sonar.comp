@@ -2,17 +2,17 @@
 #extension GL_GOOGLE_include_directive : require
 // Sonar: the nearest surface that returns an echo in each cone, for all firing transducers, in one dispatch.
 
-#include "sensors/cones/records.h"
-#include "raycast/records.h"
+#include "shaders/sensors/cones/records.glsl"
+#include "shaders/raycast/records.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, rgba32ui) uniform readonly uimageBuffer cones;       // SF_CONE_TEXELS per cone: ConeRow
-layout(binding = 1, rgba32ui) uniform readonly uimageBuffer ranges;      // two texels per lane: four doubles [m]
-layout(binding = 2, rgba32ui) uniform readonly uimageBuffer hits;        // one texel per lane: rows of reflectors, or models
-layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer echoes;     // one texel per cone: ConeEcho
-layout(binding = 4, rgba32ui) uniform readonly uimageBuffer directions;  // one texel per beam: cosine and sine of its bearing
-layout(binding = 5, rgba32ui) uniform readonly uimageBuffer reflectors;       // one texel per surface: ReflectorDirection
-layout(binding = 6, rgba32f) uniform readonly imageBuffer headings;      // one texel per mover, the first for static surfaces: cosine, sine
+layout(binding = 0, rgba32ui) uniform readonly uimageBuffer cones;       // ConeRow of each cone
+layout(binding = 1, rgba32ui) uniform readonly uimageBuffer ranges;      // LaneRanges of each lane
+layout(binding = 2, rgba32ui) uniform readonly uimageBuffer hits;        // LaneHits of each lane: rows of faces, or models
+layout(binding = 3, rgba32ui) uniform writeonly uimageBuffer echoes;     // ConeEcho of each cone
+layout(binding = 4, rgba32ui) uniform readonly uimageBuffer directions;  // BeamDirection of each beam
+layout(binding = 5, rgba32ui) uniform readonly uimageBuffer reflectors;  // ReflectorDirection of each surface
+layout(binding = 6, rgba32f) uniform readonly imageBuffer headings;      // a texel a mover, the first stands still: cosine, sine
 
 vec2 turned(vec2 by, vec2 v) {
   precise float x = by.x * v.x - by.y * v.y;
@@ -23,10 +23,10 @@ vec2 turned(vec2 by, vec2 v) {
 // At a flat angle of incidence a smooth surface reflects sound away from the sonar.
 bool returns_echo(int beam, uint hit, vec2 heading, float min_cosine) {
   const bool any = min_cosine <= 0.0;
-  const uvec4 bearing = imageLoad(directions, beam);
-  const uvec4 face = imageLoad(reflectors, any || hit == SF_NO_HIT ? 0 : int(hit));
-  const vec2 look = turned(heading, vec2(float(packDouble2x32(bearing.xy)), float(packDouble2x32(bearing.zw))));
-  const vec2 along = turned(imageLoad(headings, int(face.z)).xy, uintBitsToFloat(face.xy));
+  const BeamDirection bearing = load_BeamDirection(directions, beam);
+  const ReflectorDirection face = load_ReflectorDirection(reflectors, any || hit == SF_NO_HIT ? 0 : int(hit));
+  const vec2 look = turned(heading, vec2(float(bearing.cos), float(bearing.sin)));
+  const vec2 along = turned(imageLoad(headings, int(face.heading)).xy, vec2(face.along_x, face.along_y));
   precise float cosine = look.x * along.y - look.y * along.x;
   return any || abs(cosine) >= min_cosine;
 }

@@ -210,13 +210,13 @@ TEST(Layering, HeavyLibrariesAreInFewSources) {
 
 TEST(Layering, KernelsReadSharedHeadersOnly) {
   // A header that both compilers read says so with a guard, since GLSL has no `#pragma once`, and includes nothing.
-  static const std::regex kOurs("#\\s*include\\s*\"((raycast|sensors|maps|base)/[^\"]+)\"");
+  static const std::regex kOurs("#\\s*include\\s*\"(shaders/)?((raycast|sensors|maps|base)/[^\"]+)\\.(h|glsl)\"");
   for (const Source& source : read_sources()) {
     if (module_of(source.path) != "shaders") continue;
     for (std::sregex_iterator m(source.text.begin(), source.text.end(), kOurs), end; m != end; ++m) {
-      const std::string header = read(fs::path(SF_SOURCE_DIR) / (*m)[1].str());
-      EXPECT_NE(header.find("#ifndef"), std::string::npos) << source.path << " includes " << (*m)[1];
-      EXPECT_EQ(header.find("#pragma once"), std::string::npos) << source.path << " includes " << (*m)[1];
+      const std::string header = read(fs::path(SF_SOURCE_DIR) / ((*m)[2].str() + ".h"));
+      EXPECT_NE(header.find("#ifndef"), std::string::npos) << source.path << " includes " << (*m)[2];
+      EXPECT_EQ(header.find("#pragma once"), std::string::npos) << source.path << " includes " << (*m)[2];
     }
   }
 }

@@ -64,7 +64,7 @@ ConeCaster::ConeCaster(const SensorContext& context, const Plan& plan, const Ref
       caster_(context, plan.incidence ? reflectors.world : context.world, plan.scanners),
       kernel_(context.device, kernel.name, kernel.spirv, kernel.uses_incidence ? 7 : 4),
       rows_(context.device, "cones", gpu::Role::upload, gpu::Texel::u32x4,
-            SF_CONE_TEXELS * padded(plan.scanners.size() + 1)),
+            gpu::texels_of<ConeRow>(padded(plan.scanners.size() + 1))),
       echoes_(context.device, "echoes", gpu::Role::download, gpu::Texel::u32x4, padded(plan.scanners.size() + 1)),
       groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
       reflectors_(context.device, "faces", gpu::Role::upload, gpu::Texel::u32x4, reflectors.rows.size() + 1),

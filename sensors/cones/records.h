@@ -1,8 +1,7 @@
 #ifndef SENSORS_CONES_RECORDS_H
 #define SENSORS_CONES_RECORDS_H
-// Records shared by host and device for cones of beams, whose nearest echo is a reading. Read by both compilers.
-
-#define SF_CONE_TEXELS 2
+// Records of cones of beams, whose nearest echo is a reading, for host and device. cmake/records.awk writes the
+// accessors of kernels.
 
 #ifdef __cplusplus
 
@@ -19,7 +18,6 @@ struct ConeRow {
   float heading_cos, heading_sin;
   double range_max;  ///< [m] range without an echo
 };
-static_assert(sizeof(ConeRow) == SF_CONE_TEXELS * 16);
 
 /// The nearest echo of a cone.
 struct ConeEcho {
@@ -27,7 +25,6 @@ struct ConeEcho {
   std::uint32_t hit;  ///< `Segment::model` in the cast, or SF_NO_HIT
   std::uint32_t spare;
 };
-static_assert(sizeof(ConeEcho) == 16);
 
 /// Direction of a surface.
 struct ReflectorDirection {
@@ -35,7 +32,6 @@ struct ReflectorDirection {
   std::uint32_t heading;   ///< row of the headings: 0: static; 1 + mover
   std::uint32_t spare;
 };
-static_assert(sizeof(ReflectorDirection) == 16);
 
 }  // namespace sf::sensors
 

@@ -78,12 +78,14 @@ EdgeFit::EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edge
       plan_(plan(context, edges)),
       kernel_(context.device, "line through points", laneedge_comp_spv, 6),
       maker_(context.device, "points of paint", laneedge_points_comp_spv, 7),
-      rows_(context.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4, SF_EDGE_TEXELS * padded(edges.size())),
+      rows_(context.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4,
+            gpu::texels_of<EdgeRow>(padded(edges.size()))),
       directions_(context.device, "bearings", gpu::Role::upload, gpu::Texel::u32x4,
                   SF_BEAMS_PER_LANE * std::size_t{plan_.direction_lanes}),
       normals_(context.device, "normal deviates", gpu::Role::upload, gpu::Texel::f32x4, plan_.noise_lanes),
       grains_(context.device, "sizes of pixels", gpu::Role::upload, gpu::Texel::u32x4, grains.size()),
-      readings_(context.device, "readings", gpu::Role::download, gpu::Texel::u32x4, SF_READING_TEXELS * edges.size()),
+      readings_(context.device, "readings", gpu::Role::download, gpu::Texel::u32x4,
+                gpu::texels_of<EdgeReading>(edges.size())),
       groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
       points_(context.device, "points", gpu::Role::download, gpu::Texel::u32x4,
               SF_BEAMS_PER_LANE * (std::size_t{plan_.lanes} + 1)),
@@ -137,7 +139,7 @@ bool EdgeFit::write_rows(std::span<const std::uint32_t> lanes) {
   for (std::size_t i = 0; i < due_.size(); ++i) {
     rows[i] = plan_.rows[due_[i].row];
     rows[i].lane = lanes[i];
-    rows[i].out = static_cast<std::uint32_t>(i);
+    rows[i].reading = static_cast<std::uint32_t>(i);
     written_.push_back(due_[i].row);
   }
   const auto counts = groups_.host<std::uint32_t>();

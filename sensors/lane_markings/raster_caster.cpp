@@ -45,7 +45,7 @@ RasterCaster::RasterCaster(const SensorContext& context, const MarkingRaster& ra
       with_casts_(with_casts),
       kernel_(context.device, "paint raster", marking_raster_comp_spv, 11),
       place_(context.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4,
-             SF_RASTER_TEXELS * caster.scanners().size()),
+             gpu::texels_of<RasterRow>(caster.scanners().size())),
       groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
       directory_(context.device, "blocks of the raster", gpu::Role::upload, gpu::Texel::u32, raster.directory().size()),
       blocks_(context.device, "raster of the paint", gpu::Role::upload, gpu::Texel::u32, raster.blocks().size() + 4) {

@@ -1,9 +1,9 @@
 #ifndef SENSORS_MAGNETIC_FIELD_RECORDS_H
 #define SENSORS_MAGNETIC_FIELD_RECORDS_H
-// Records shared by host and device for sums of magnetic fields. Read by both compilers.
+// Records of sums of magnets' fields, for host and device. cmake/records.awk writes the accessors of kernels.
 //
-// An item is the work of one lane: a group of up to SF_FIELD_POINTS neighbouring points, and a run of spans of magnets.
-// Each magnet is loaded once for all points of the group.
+// An item is one lane's work: up to SF_FIELD_POINTS places that lie together, and a run of spans of magnets. Each
+// magnet that is loaded serves all of its places.
 
 #define SF_FIELD_POINTS 5  // the number of elements of the thesis' array
 #define SF_FIELD_UNROLL 2  // magnets per loop iteration
@@ -20,7 +20,6 @@ struct DipoleRow {
   float moment;          ///< [A m^2]; 0: no field
   float inverse_radius;  ///< [1/m] inside the radius the field is that at the radius
 };
-static_assert(sizeof(DipoleRow) == 32);
 
 /// A point of a group: two texels.
 struct FieldPointRow {
@@ -28,23 +27,20 @@ struct FieldPointRow {
   double cutoff_squared;  ///< [m^2] magnets farther away along the ground are ignored; read from the group's first
                           ///< point
 };
-static_assert(sizeof(FieldPointRow) == 32);
 
 /// Work of one lane: one texel.
 struct FieldItem {
-  std::uint32_t first;  ///< first span
-  std::uint32_t end;    ///< behind the last span
-  std::uint32_t group;  ///< index of the group of SF_FIELD_POINTS points
-  std::uint32_t out;    ///< index of the group of SF_FIELD_POINTS results
+  std::uint32_t first;  ///< span
+  std::uint32_t end;    ///< span behind the last one
+  std::uint32_t group;  ///< of SF_FIELD_POINTS places
+  std::uint32_t sums;   ///< of SF_FIELD_POINTS results
 };
-static_assert(sizeof(FieldItem) == 16);
 
 /// A contiguous range of magnets in their table: two words.
 struct MagnetSpan {
   std::uint32_t first;
   std::uint32_t end;  ///< behind the last one; > first
 };
-static_assert(sizeof(MagnetSpan) == 8);
 
 /// The field of an item's magnets at one of its points, world frame: two texels. The device omits the factor mu0 / 4
 /// pi.
@@ -52,7 +48,6 @@ struct FieldSum {
   double x = 0.0, y = 0.0, z = 0.0;  ///< [T]
   double magnitudes = 0.0;           ///< [T] sum of the magnitudes of the magnets' fields; 0 unless requested
 };
-static_assert(sizeof(FieldSum) == 32);
 
 }  // namespace sf::sensors
 

@@ -29,19 +29,20 @@ int candidate(Candidates c, int j) {
   return j < c.count ? c.first + j : j < c.count + c.low ? j - c.count : c.high + (j - c.count - c.low);
 }
 
-// Candidates within `wide` of `bearing` (in [-pi, pi], sensor frame), or all pairs. `fan` holds half_fov, per_radian,
-// slack and round of a MapRow, in pairs: pair p holds beams 2 p and 2 p + 1, half a pair apart.
-Candidates candidates(float bearing, float wide, bool all, vec4 fan, int pairs) {
+// Within `wide` of `bearing` (in [-pi, pi], in the sensor's frame), or all. In pairs of beams of the
+// scan: pair p holds beams 2 p and 2 p + 1, half a pair apart.
+Candidates candidates(float bearing, float wide, bool all, MapRow scan) {
+  const int pairs = int(scan.pairs);
   const float last = float(pairs);
-  const float reach = wide + fan.z;
-  const float low = (bearing - reach + fan.x) * fan.y - 0.5;
-  const float high = (bearing + reach + fan.x) * fan.y;
+  const float reach = wide + scan.slack;
+  const float low = (bearing - reach + scan.half_fov) * scan.per_radian - 0.5;
+  const float high = (bearing + reach + scan.half_fov) * scan.per_radian;
   const int first = all ? 0 : int(ceil(clamp(low, 0.0, last)));
   const int end = all ? pairs : int(floor(clamp(high, -1.0, last - 1.0))) + 1;
   Candidates c;
   c.first = first;
   c.count = max(end - first, 0);
-  c.low = all ? 0 : int(floor(clamp(high - fan.w, -1.0, last - 1.0))) + 1;
-  c.high = all ? pairs : int(ceil(clamp(low + fan.w, 0.0, last)));
+  c.low = all ? 0 : int(floor(clamp(high - scan.round, -1.0, last - 1.0))) + 1;
+  c.high = all ? pairs : int(ceil(clamp(low + scan.round, 0.0, last)));
   return c;
 }

@@ -1,32 +1,26 @@
-// The nearest echo of every due cone of beams. The including shader declares the tables cones (SF_CONE_TEXELS per cone:
-// ConeRow), ranges, hits and echoes, and the function `returns_echo`, which decides whether a hit returns its echo.
+// The nearest echo of every cone of beams that is due. The kernel declares the tables cones, ranges, hits and echoes; and `returns_echo`, which says whether what a beam met sends its echo back.
 
 void main() {
   const int at = int(gl_GlobalInvocationID.x);
-  const uvec4 where = imageLoad(cones, SF_CONE_TEXELS * at);
-  const uvec4 rest = imageLoad(cones, SF_CONE_TEXELS * at + 1);
-  const vec2 heading = uintBitsToFloat(rest.xy);
-  const float min_cosine = uintBitsToFloat(where.w);
+  const ConeRow cone = load_ConeRow(cones, at);
+  const vec2 heading = vec2(cone.heading_cos, cone.heading_sin);
 
-  // Unused places of a lane repeat a beam.
-  double nearest = packDouble2x32(rest.zw);
+  // Places of a lane without a beam repeat one.
+  double nearest = cone.range_max;
   uint met = SF_NO_HIT;
-  const int lanes = int(where.y);
+  const int lanes = int(cone.lanes);
   int own = 0;
   while (own < lanes) {
-    const int lane = int(where.x) + own;
-    const uvec4 two = imageLoad(ranges, 2 * lane);
-    const uvec4 more = imageLoad(ranges, 2 * lane + 1);
-    const uvec4 hit = imageLoad(hits, lane);
-    const double range[SF_BEAMS_PER_LANE] = double[SF_BEAMS_PER_LANE](
-        packDouble2x32(two.xy), packDouble2x32(two.zw), packDouble2x32(more.xy), packDouble2x32(more.zw));
+    const int lane = int(cone.lane) + own;
+    const dvec4 range = load_LaneRanges(ranges, lane).range;
+    const uvec4 hit = load_LaneHits(hits, lane).model;
     for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
-      const int beam = SF_BEAMS_PER_LANE * (int(where.z) + own) + i;
-      const bool nearer = hit[i] != SF_NO_HIT && range[i] < nearest && returns_echo(beam, hit[i], heading, min_cosine);
+      const int beam = SF_BEAMS_PER_LANE * (int(cone.directions) + own) + i;
+      const bool nearer = hit[i] != SF_NO_HIT && range[i] < nearest && returns_echo(beam, hit[i], heading, cone.min_cosine);
       nearest = nearer ? range[i] : nearest;
       met = nearer ? hit[i] : met;
     }
     ++own;
   }
-  imageStore(echoes, at, uvec4(unpackDouble2x32(nearest), met, 0u));
+  store_ConeEcho(echoes, at, ConeEcho(nearest, met, 0u));
 }

@@ -1,6 +1,6 @@
 // Effect of a scan on one word's cells, from the strips that cross it and the ends that the host has marked.
 //
-// The including shader declares the tables rows (MapRow), blocks (MapBlock), strips and hit_words.
+// The caller declares the tables strips and hit_words.
 
 struct WordUpdate {
   int word;        // in the table of all maps; -1: no work for this lane
@@ -8,30 +8,26 @@ struct WordUpdate {
   uint occupied;   // bit 2 k of cell k
 };
 
-// Four bits of each of the four consecutive strips that cross a word, starting at `at`; the word's cells begin at
-// `across` in them.
-uvec4 nibbles(uvec4 table, int at, int across, bool inside) {
-  const int first = int(table.x) + (across / SF_STRIP - int(table.w)) * int(table.y) + at - int(table.z);
+// Strips of which four cross a word one after the other, from `at` on; the word's cells begin at `across` in them. Four bits of each.
+uvec4 nibbles(StripTable table, int at, int across, bool inside) {
+  const int first = int(table.first) + (across / SF_STRIP - int(table.chunk)) * int(table.pitch) + at - int(table.low);
   const int safe = inside ? first : 0;
   const uvec4 four = uvec4(imageLoad(strips, safe).x, imageLoad(strips, safe + 1).x, imageLoad(strips, safe + 2).x,
                            imageLoad(strips, safe + 3).x);
   return (four >> uint(across & (SF_STRIP - 1))) & 15u;
 }
 
-WordUpdate cover_word(int lane, int row) {
-  const uint place = imageLoad(blocks, 2 * (lane / SF_MAP_BLOCK) + 1).x;
-  const uvec4 map = imageLoad(rows, row);
-  const ivec2 at = ivec2(int(place & 0xFFFFu) + lane % SF_MAP_BLOCK, int(place >> 16));
-  const bool inside = at.x < int(map.z);
+WordUpdate cover_word(int lane, MapBlock block, MapRow map) {
+  const ivec2 at = ivec2(int(block.place & 0xFFFFu) + lane % SF_MAP_BLOCK, int(block.place >> 16));
+  const bool inside = at.x < int(map.box_right);
 
-  // Flat strips are columns: bit k is row k, at bit 8 k of the word. Steep ones are rows: bit k is column k, at bit 2
-  // k.
-  const uvec4 columns = nibbles(imageLoad(rows, row + 5), 4 * at.x, 4 * at.y, inside);
-  const uvec4 lines = nibbles(imageLoad(rows, row + 6), 4 * at.y, 4 * at.x, inside);
+  // Flat strips are columns: bit k is row k, which lies at 8 k. Steep ones are rows: bit k is column k, at 2 k.
+  const uvec4 columns = nibbles(map.flat_strips, 4 * at.x, 4 * at.y, inside);
+  const uvec4 lines = nibbles(map.steep_strips, 4 * at.y, 4 * at.x, inside);
   const uvec4 down = (columns & 1u) | (columns & 2u) << 7 | (columns & 4u) << 14 | (columns & 8u) << 21;
   const uvec4 pairs = (lines | lines << 2) & 0x33u;
   const uvec4 over = (pairs | pairs << 1) & 0x55u;
   const uint freed = down.x | down.y << 2 | down.z << 4 | down.w << 6 | over.x | over.y << 8 | over.z << 16 | over.w << 24;
-  return WordUpdate(inside ? int(map.x + uint(at.y) * map.y) + at.x : -1, inside ? freed : 0u,
+  return WordUpdate(inside ? int(map.words + uint(at.y) * map.word_columns) + at.x : -1, inside ? freed : 0u,
                inside ? imageLoad(hit_words, lane).x : 0u);
 }

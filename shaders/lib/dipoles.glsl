@@ -7,7 +7,7 @@
 // doubles its 23 bits: a 64-bit root and division cost four times as much. Every operation is `precise` and in a fixed
 // order: host and device results are equal bit by bit.
 
-#include "sensors/magnetic_field/records.h"
+#include "shaders/sensors/magnetic_field/records.glsl"
 
 layout(local_size_x = 32) in;
 layout(binding = 0, rgba32ui) uniform readonly uimageBuffer items;     // FieldItem
@@ -21,27 +21,13 @@ layout(binding = 4, rgba32ui) uniform writeonly uimageBuffer results;  // FieldS
 // [m^2] least square with a finite 32-bit inverse root.
 #define SF_LEAST 1e-37
 
-struct Place {
-  double x, y, z;
-};
-
-struct Sum {
-  double x, y, z, magnitudes;
-};
-
-struct Dipole {
-  double x, y, z, moment, inverse_radius;
-};
-
-Dipole dipole_at(int row, bool counts) {
-  const uvec4 p = imageLoad(dipoles, 2 * row);
-  const uvec4 q = imageLoad(dipoles, 2 * row + 1);
-  const float moment = counts ? uintBitsToFloat(q.z) : 0.0;
-  return Dipole(packDouble2x32(p.xy), packDouble2x32(p.zw), packDouble2x32(q.xy), double(moment),
-                double(uintBitsToFloat(q.w)));
+DipoleRow dipole_at(int row, bool counts) {
+  DipoleRow m = load_DipoleRow(dipoles, row);
+  m.moment = counts ? m.moment : 0.0;
+  return m;
 }
 
-void add(Dipole m, Place p, double cutoff_squared, inout Sum sum) {
+void add(DipoleRow m, FieldPointRow p, double cutoff_squared, inout FieldSum sum) {
   precise double dx = p.x - m.x;
   precise double dy = p.y - m.y;
   precise double dz = (p.z - m.z) + SF_ABOVE;
@@ -53,8 +39,8 @@ void add(Dipole m, Place p, double cutoff_squared, inout Sum sum) {
   precise double rough = double(rough32);
   precise double one = squared * rough * rough;
   precise double inverse = rough * (1.5LF - 0.5LF * one);
-  precise double bounded = inverse < m.inverse_radius ? inverse : m.inverse_radius;
-  precise double scale = m.moment * bounded * (bounded * bounded);
+  precise double bounded = inverse < double(m.inverse_radius) ? inverse : double(m.inverse_radius);
+  precise double scale = double(m.moment) * bounded * (bounded * bounded);
   scale = along <= cutoff_squared ? scale : 0.0LF;
 
   precise double uz = dz * inverse;
@@ -78,38 +64,31 @@ void add(Dipole m, Place p, double cutoff_squared, inout Sum sum) {
 
 void main() {
   const int lane = int((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x);
-  const uvec4 item = imageLoad(items, lane);
-  const int first = SF_FIELD_POINTS * int(item.z);
-  const double cutoff_squared = packDouble2x32(imageLoad(places, 2 * first + 1).zw);
-  Place at[SF_FIELD_POINTS];
-  precise Sum sums[SF_FIELD_POINTS];
+  const FieldItem item = load_FieldItem(items, lane);
+  FieldPointRow at[SF_FIELD_POINTS];
+  precise FieldSum sums[SF_FIELD_POINTS];
   for (int i = 0; i < SF_FIELD_POINTS; ++i) {
-    const uvec4 p = imageLoad(places, 2 * (first + i));
-    const uvec4 q = imageLoad(places, 2 * (first + i) + 1);
-    at[i] = Place(packDouble2x32(p.xy), packDouble2x32(p.zw), packDouble2x32(q.xy));
-    sums[i] = Sum(0.0LF, 0.0LF, 0.0LF, 0.0LF);
+    at[i] = load_FieldPointRow(places, SF_FIELD_POINTS * int(item.group) + i);
+    sums[i] = FieldSum(0.0LF, 0.0LF, 0.0LF, 0.0LF);
   }
 
-  // One loop over all spans, so that lanes with short spans do not wait for others at each of them.
-  int span = int(item.x);
-  const int end = int(item.y);
-  int magnet = int(imageLoad(spans, 2 * span).x);
-  int last = int(imageLoad(spans, 2 * span + 1).x);
-  while (span < end) {
+  // One loop over all spans, so that lanes with short ones do not wait for others at each.
+  int at_span = int(item.first);
+  MagnetSpan span = load_MagnetSpan(spans, at_span);
+  int magnet = int(span.first);
+  while (at_span < int(item.end)) {
     for (int k = 0; k < SF_FIELD_UNROLL; ++k) {
-      const Dipole m = dipole_at(magnet + k, magnet + k < last);
-      for (int i = 0; i < SF_FIELD_POINTS; ++i) add(m, at[i], cutoff_squared, sums[i]);
+      const DipoleRow m = dipole_at(magnet + k, magnet + k < int(span.end));
+      for (int i = 0; i < SF_FIELD_POINTS; ++i) add(m, at[i], at[0].cutoff_squared, sums[i]);
     }
     magnet += SF_FIELD_UNROLL;
-    const bool done = magnet >= last;
-    span += done ? 1 : 0;
-    magnet = done ? int(imageLoad(spans, 2 * span).x) : magnet;
-    last = done ? int(imageLoad(spans, 2 * span + 1).x) : last;
+    const bool done = magnet >= int(span.end);
+    at_span += done ? 1 : 0;
+    span = load_MagnetSpan(spans, at_span);
+    magnet = done ? int(span.first) : magnet;
   }
 
   for (int i = 0; i < SF_FIELD_POINTS; ++i) {
-    const int out_row = 2 * (SF_FIELD_POINTS * int(item.w) + i);
-    imageStore(results, out_row, uvec4(unpackDouble2x32(sums[i].x), unpackDouble2x32(sums[i].y)));
-    imageStore(results, out_row + 1, uvec4(unpackDouble2x32(sums[i].z), unpackDouble2x32(sums[i].magnitudes)));
+    store_FieldSum(results, SF_FIELD_POINTS * int(item.sums) + i, sums[i]);
   }
 }

@@ -26,11 +26,11 @@ struct Points {
 Points points_of(EdgeFan fan, int own) {
   Points p;
   for (int i = 0; i < SF_BEAMS_PER_LANE; ++i) {
-    const uvec4 words = imageLoad(points, fan.first + SF_BEAMS_PER_LANE * own + i);
-    p.x[i] = packDouble2x32(words.xy);
-    p.y[i] = packDouble2x32(words.zw);
+    const EdgePoint point = load_EdgePoint(points, fan.first + SF_BEAMS_PER_LANE * own + i);
+    p.x[i] = point.x;
+    p.y[i] = point.y;
     p.w[i] = p.x[i] < double(SF_NOWHERE) ? 1.0 : 0.0;
-    p.grain[i] = p.x[i] < double(SF_NOWHERE) ? words.x & SF_GRAIN_MASK : 0u;
+    p.grain[i] = p.x[i] < double(SF_NOWHERE) ? unpackDouble2x32(point.x).x & SF_GRAIN_MASK : 0u;
   }
   return p;
 }
@@ -147,28 +147,19 @@ double noise_across(Line line, double range_sigma, double range_proportional, do
 }
 
 void main() {
-  const int at = SF_EDGE_TEXELS * int(imageLoad(order, int(gl_GlobalInvocationID.x)).x);
-  const uvec4 where = imageLoad(rows, at);
-  const uvec4 e_words = imageLoad(rows, at + 1);
-  const uvec4 noises = imageLoad(rows, at + 3);
-  const uvec4 others = imageLoad(rows, at + 4);
-  const uvec4 last = imageLoad(rows, at + 5);
-  const double ex = packDouble2x32(e_words.xy), ey = packDouble2x32(e_words.zw);
-  const double range_sigma = packDouble2x32(noises.xy), range_proportional = packDouble2x32(noises.zw);
-  const double angle_sigma = packDouble2x32(others.xy), distance_max = packDouble2x32(others.zw);
-  const bool packed = (where.w & SF_EDGE_PACKED) != 0u;
-  const bool single = (where.w & SF_EDGE_SINGLE) != 0u;
-  const int beams = int(where.z);
+  const EdgeRow row = load_EdgeRow(rows, int(imageLoad(order, int(gl_GlobalInvocationID.x)).x));
+  const bool packed = (row.flags & SF_EDGE_PACKED) != 0u;
+  const bool single = (row.flags & SF_EDGE_SINGLE) != 0u;
+  const int beams = int(row.beams);
   const int lanes = packed ? (beams + SF_BEAMS_PER_LANE - 1) / SF_BEAMS_PER_LANE : beams;
-  const EdgeFan fan = EdgeFan(SF_BEAMS_PER_LANE * int(where.x), lanes, packed);
+  const EdgeFan fan = EdgeFan(SF_BEAMS_PER_LANE * int(row.lane), lanes, packed);
 
   // All points.
   uint grain_row;
   const Moments all = moments_of_all(fan, grain_row);
-  const uvec4 grain_words = imageLoad(grains, int(grain_row));
-  const double grain = packDouble2x32(grain_words.xy);
+  const double grain = load_Grain(grains, int(grain_row)).size;
   Line line = line_through(all);
-  double noise = sqrt(noise_across(line, range_sigma, range_proportional, angle_sigma));
+  double noise = sqrt(noise_across(line, row.range_sigma, row.range_proportional, row.angle_sigma));
   const double source = tolerance(grain, noise);
   LineMoments trend = trend_near(fan, lanes, line, 1e30);
   Parabola curvature = parabola_of(trend);
@@ -186,28 +177,28 @@ void main() {
     line = third;
     trend = third_trend;
     curvature = parabola_of(third_trend);
-    noise = sqrt(noise_across(third, range_sigma, range_proportional, angle_sigma));
+    noise = sqrt(noise_across(third, row.range_sigma, row.range_proportional, row.angle_sigma));
   }
 
   const double floor_of_noise = 9.313225746154785e-10;
   const PointError point_error = PointError(grain, noise > floor_of_noise ? noise : floor_of_noise);
-  const LineFit fitted = fit_at(line, trend, curvature, point_error, ex, ey, distance_max);
+  const LineFit fitted = fit_at(line, trend, curvature, point_error, row.perpendicular_x, row.perpendicular_y, row.distance_max);
 
   // The range of a single beam is the reading.
   const Points start = points_of(fan, 0);
   precise double first = sqrt(start.x[0] * start.x[0] + start.y[0] * start.y[0]);
-  precise double spread = range_proportional * first;
-  precise double along_ray = sqrt(range_sigma * range_sigma + spread * spread + grain * grain / 12.0);
+  precise double spread = row.range_proportional * first;
+  precise double along_ray = sqrt(row.range_sigma * row.range_sigma + spread * spread + grain * grain / 12.0);
   const double nan = packDouble2x32(uvec2(0u, 0x7ff80000u));
-  const bool seen = single ? start.w[0] > 0.0 : fitted.seen;
-  const double distance = single ? first : fitted.distance;
-  const double sigma = single ? along_ray : fitted.sigma;
-  const double points = single ? start.w[0] : fitted.points;
-  const double residual = single ? 0.0 : fitted.residual;
   precise double left_over = all.n - fitted.points;
-  const int out_row = SF_READING_TEXELS * int(last.y);
-  imageStore(readings, out_row, uvec4(unpackDouble2x32(seen ? distance : nan), unpackDouble2x32(points)));
-  imageStore(readings, out_row + 1, uvec4(unpackDouble2x32(seen ? residual : 0.0), unpackDouble2x32(seen ? sigma : nan)));
-  imageStore(readings, out_row + 2, uvec4(unpackDouble2x32(single ? 1.0 : fitted.gain), unpackDouble2x32(single ? 0.0 : left_over)));
-  imageStore(mixtures, int(last.y), uvec4(mixed ? 1u : 0u));
+  EdgeReading reading;
+  const bool seen = single ? start.w[0] > 0.0 : fitted.seen;
+  reading.distance = !seen ? nan : single ? first : fitted.distance;
+  reading.points = single ? start.w[0] : fitted.points;
+  reading.residual = single || !seen ? 0.0 : fitted.residual;
+  reading.sigma = !seen ? nan : single ? along_ray : fitted.sigma;
+  reading.gain = single ? 1.0 : fitted.gain;
+  reading.others = single ? 0.0 : left_over;
+  store_EdgeReading(readings, int(row.reading), reading);
+  imageStore(mixtures, int(row.reading), uvec4(mixed ? 1u : 0u));
 }

@@ -17,20 +17,12 @@ bool grazes(ClosestHit d, float least) {
   return d.id != SF_NO_HIT && d.incidence.x * d.incidence.x < least * least * dot(d.incidence.yz, d.incidence.yz);
 }
 
-// End points of a segment [m]; any values for SF_NO_HIT.
-struct Ends {
-  double ax, ay, bx, by;
-};
-
-Ends ends_of(uint id) {
-  const int row = 2 * int(id == SF_NO_HIT ? 0u : id);
-  const uvec4 a = imageLoad(segments, row), b = imageLoad(segments, row + 1);
-  return Ends(packDouble2x32(a.xy), packDouble2x32(a.zw), packDouble2x32(b.xy), packDouble2x32(b.zw));
-}
+// A segment; of SF_NO_HIT, any.
+ExactSegment segment_at(uint id) { return load_ExactSegment(segments, int(id == SF_NO_HIT ? 0u : id)); }
 
 // Every segment that shares an end uses the same doubles for it, so no beam passes between two neighbours.
 void intersect(uint id, Beam64 beam, inout ClosestHit best) {
-  const Ends s = ends_of(id);
+  const ExactSegment s = segment_at(id);
 
   precise double wax = s.ax - beam.origin.x;
   precise double way = s.ay - beam.origin.y;
@@ -58,7 +50,7 @@ void intersect(uint id, Beam64 beam, inout ClosestHit best) {
 
 // [m] range of a beam that certainly meets segment `id`, as in `intersect`; `range_max` for SF_NO_HIT.
 double exact_range(uint id, Beam64 beam, double range_max) {
-  const Ends s = ends_of(id);
+  const ExactSegment s = segment_at(id);
   precise double wax = s.ax - beam.origin.x;
   precise double way = s.ay - beam.origin.y;
   precise double ex = s.bx - s.ax;
@@ -72,7 +64,7 @@ double exact_range(uint id, Beam64 beam, double range_max) {
 // [m] range of a beam that meets segment `id`, in 32 bits; negative where these are not accurate enough.
 // raycast/intersect.h has the bound.
 float range_single(uint id, Beam64 beam, float range_max) {
-  const Ends s = ends_of(id);
+  const ExactSegment s = segment_at(id);
   precise float wx = float(s.ax - beam.origin.x), wy = float(s.ay - beam.origin.y);
   precise float ex = float(s.bx - s.ax), ey = float(s.by - s.ay);
   precise float dx = float(beam.direction.x), dy = float(beam.direction.y);

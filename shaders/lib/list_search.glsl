@@ -24,30 +24,27 @@ struct Chunk {
 };
 
 Chunk chunk_of(uvec4 words, vec2 offset, int base, dvec2 origin) {
+  const ListChunk chunk = decode_ListChunk(words);
   vec4 frame = vec4(-offset, 1.0, 0.0);
   int first_row = 0;
   if (kMovers) {
-    const bool is_wall = words.y == 0u;
-    const int place = 2 * (is_wall ? 0 : int(words.y) - 1);
-    const uvec4 at = imageLoad(mover_rows, place);
-    const uvec4 rest = imageLoad(mover_rows, place + 1);
-    const vec2 moved = vec2(dvec2(packDouble2x32(at.xy), packDouble2x32(at.zw)) - origin);
-    frame = is_wall ? frame : vec4(moved, uintBitsToFloat(rest.xy));
-    base = is_wall ? base : int(rest.z);
-    first_row = is_wall ? 0 : int(rest.w);
+    const bool is_wall = chunk.mover == 0u;
+    const MoverRow mover = load_MoverRow(mover_rows, is_wall ? 0 : int(chunk.mover) - 1);
+    const vec2 moved = vec2(dvec2(mover.x, mover.y) - origin);
+    frame = is_wall ? frame : vec4(moved, mover.cos, mover.sin);
+    base = is_wall ? base : int(mover.base);
+    first_row = is_wall ? 0 : int(mover.first_row);
   }
-  const uvec2 pairs = words.zw;
-  const ivec4 entries = base + ivec4(pairs.x & 0xFFFFu, pairs.x >> 16, pairs.y & 0xFFFFu, pairs.y >> 16);
-  return Chunk(uintBitsToFloat(words.x), entries, frame, first_row);
+  return Chunk(chunk.nearest, base + ivec4(chunk.entries), frame, first_row);
 }
 
 vec2 turned(vec2 by, vec2 v) { return kMovers ? vec2(by.x * v.x - by.y * v.y, by.y * v.x + by.x * v.y) : v; }
 
 void search_chunk(Chunk chunk, float band, inout Search s) {
   for (int k = 0; k < SF_CHUNK; ++k) {
-    const vec4 entry = uintBitsToFloat(imageLoad(lists, chunk.entries[k]));
-    const vec2 w = chunk.frame.xy + turned(chunk.frame.zw, entry.xy);
-    const vec2 e = turned(chunk.frame.zw, entry.zw);
+    const ListEntry entry = load_ListEntry(lists, chunk.entries[k]);
+    const vec2 w = chunk.frame.xy + turned(chunk.frame.zw, vec2(entry.x, entry.y));
+    const vec2 e = turned(chunk.frame.zw, vec2(entry.ex, entry.ey));
     const float len = abs(e.x) + abs(e.y);
     const float error_margin = band * len;
     const float ahead = e.x * w.y - e.y * w.x;
@@ -76,27 +73,27 @@ void search_chunk(Chunk chunk, float band, inout Search s) {
 // True where every beam has a certain hit nearer than `nearest` [m].
 bool all_nearer(Search s, float nearest) { return all(greaterThan(nearest * s.low, vec4(1.0001))); }
 
-// Searches the walls, then the movers, until no remaining entry can be nearer. One loop for both: lavapipe runs the
-// body of a loop once more after the last lane has left it.
-void search_lists(uvec4 walls, uvec4 movers, vec2 offset, dvec2 origin, float band, inout Search s) {
-  bool at_walls = walls.y > 0u;
-  int at = int(at_walls ? walls.x : movers.x);
-  int end = at + int(at_walls ? walls.y : movers.y);
-  const uvec4 first_mover = kMovers ? imageLoad(lists, int(movers.x)) : uvec4(0u);
+// Searches the walls, then the movers, until nothing that is left can be nearer. One loop for both: lavapipe runs a
+// loop's body once more, in vain, after the last lane has left.
+void search_lists(ListHead walls, ListHead movers, vec2 offset, dvec2 origin, float band, inout Search s) {
+  bool at_walls = walls.count > 0u;
+  int at = int(at_walls ? walls.first : movers.first);
+  int end = at + int(at_walls ? walls.count : movers.count);
+  const uvec4 first_mover = kMovers ? imageLoad(lists, int(movers.first)) : uvec4(0u);
   uvec4 words = at_walls ? imageLoad(lists, at) : first_mover;
   bool more = at < end;
   while (more) {
-    search_chunk(chunk_of(words, offset, int(walls.w), origin), band, s);
+    search_chunk(chunk_of(words, offset, int(walls.base), origin), band, s);
     ++at;
     words = imageLoad(lists, at);
-    more = at < end && !all_nearer(s, uintBitsToFloat(words.x));
+    more = at < end && !all_nearer(s, decode_ListChunk(words).nearest);
     if (kMovers) {
       const bool turn = !more && at_walls;
       at_walls = at_walls && !turn;
-      at = turn ? int(movers.x) : at;
-      end = turn ? int(movers.x + movers.y) : end;
+      at = turn ? int(movers.first) : at;
+      end = turn ? int(movers.first + movers.count) : end;
       words = turn ? first_mover : words;
-      more = more || (turn && movers.y > 0u && !all_nearer(s, uintBitsToFloat(first_mover.x)));
+      more = more || (turn && movers.count > 0u && !all_nearer(s, decode_ListChunk(first_mover).nearest));
     }
   }
 }
