@@ -89,8 +89,9 @@ struct Farm::State {
   std::span<const base::ReadingBlock> advance(std::int64_t now, std::span<const base::Report> reports, bool between);
   bool find_due(std::int64_t now);
   void prepare();
-  void run();
+  void submit();
   void collect(SensorPipeline& pipeline, std::int64_t now, bool reuse);
+  void append(const SensorPipeline& pipeline);
   /// @param reuse whether cached readings may be used
   void measure(std::int64_t now, bool reuse);
   void add_to_hash(std::span<const base::ReadingBlock> readings);
@@ -137,11 +138,11 @@ void Farm::State::prepare() {
   batch.end();
 }
 
-void Farm::State::run() {
+void Farm::State::submit() {
   if (std::none_of(pipelines.begin(), pipelines.end(), [](const SensorPipeline& s) { return s.needs_device(); }))
     return;
   for (SensorPipeline& pipeline : pipelines) pipeline.add_copies(batch);
-  batch.run();
+  batch.submit();
   ++stats.batches;
 }
 
@@ -154,22 +155,37 @@ void Farm::State::measure(std::int64_t now, bool reuse) {
   watch.lap(stats.place_s);
   prepare();
   watch.lap(stats.lists_s);
-  run();
+  submit();
   watch.lap(stats.device_s);
-  for (SensorPipeline& pipeline : pipelines)
-    if (!pipeline.derived()) collect(pipeline, now, reuse);
+  // Readings that need no device are taken while it runs.
+  const auto collect_all = [&](bool from_device) {
+    for (SensorPipeline& pipeline : pipelines)
+      if (!pipeline.derived() && pipeline.needs_device() == from_device) collect(pipeline, now, reuse);
+  };
+  collect_all(false);
+  watch.lap(stats.collect_s);
+  batch.wait();
+  watch.lap(stats.device_s);
+  collect_all(true);
+  for (const SensorPipeline& pipeline : pipelines)
+    if (!pipeline.derived()) append(pipeline);
   const std::size_t measured = blocks.size();
   for (SensorPipeline& pipeline : pipelines) {
     if (!pipeline.derived()) continue;
     pipeline.backend->observe(std::span(blocks).first(measured));
     collect(pipeline, now, reuse);
+    append(pipeline);
   }
   watch.lap(stats.collect_s);
 }
 
 void Farm::State::collect(SensorPipeline& pipeline, std::int64_t now, bool reuse) {
-  stats.reused += pipeline.collect(now, poses, blocks);
-  if (reuse) pipeline.store(blocks);
+  stats.reused += pipeline.collect(now, poses);
+  if (reuse) pipeline.store();
+}
+
+void Farm::State::append(const SensorPipeline& pipeline) {
+  blocks.insert(blocks.end(), pipeline.blocks.begin(), pipeline.blocks.end());
 }
 
 /// The values of a reading as sent, from which the hash is computed.

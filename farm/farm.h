@@ -48,7 +48,7 @@ struct FarmStats {
   sensors::SensorStats work;  ///< of all sensor types
   double place_s = 0.0;       ///< [s] host: outlines of the movers
   double lists_s = 0.0;       ///< [s] host: lists of candidate walls
-  double device_s = 0.0;      ///< [s] from submission to completion
+  double device_s = 0.0;      ///< [s] host: preparation of the submission and the wait for its end
   double collect_s = 0.0;     ///< [s] host: noise, interpolation, delivery
 };
 

@@ -11,6 +11,7 @@ SensorPipeline::SensorPipeline(const sensors::SensorContext& context, const sens
   for (const sensors::SensorSpec& row : g.rows) next.push_back(due_time(0, row.rate, row.phase));
   due.reserve(g.rows.size());
   to_measure.reserve(g.rows.size());
+  blocks.reserve(g.rows.size());
 }
 
 std::uint64_t SensorPipeline::find_due(std::int64_t now, std::span<const std::uint32_t> subscribed) {
@@ -74,20 +75,19 @@ void SensorPipeline::add_copies(gpu::Batch& batch) {
   uploaded = idle;
 }
 
-std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Pose> poses,
-                                    std::vector<base::ReadingBlock>& blocks) {
-  const std::size_t first = blocks.size();
+std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Pose> poses) {
+  blocks.clear();
   backend->collect(blocks);
   // Reused readings are inserted among the measured ones, from the last one backwards.
   const std::size_t again = due.size() - to_measure.size();
-  blocks.resize(first + due.size());
+  blocks.resize(due.size());
   std::size_t fresh = to_measure.size();
   for (std::size_t i = due.size(); again > 0 && i-- > 0;) {
     const bool measured = fresh > 0 && to_measure[fresh - 1].row == due[i].row;
-    blocks[first + i] = measured ? blocks[first + --fresh] : cache.reading(due[i].row);
+    blocks[i] = measured ? blocks[--fresh] : cache.reading(due[i].row);
   }
   for (std::size_t i = 0; i < due.size(); ++i) {
-    base::ReadingBlock& block = blocks[first + i];
+    base::ReadingBlock& block = blocks[i];
     block.time = now;
     block.sequence = static_cast<std::uint32_t>(due[i].sequence);
     block.X_WM = poses[block.mover];
@@ -95,8 +95,8 @@ std::size_t SensorPipeline::collect(std::int64_t now, std::span<const base::Pose
   return again;
 }
 
-void SensorPipeline::store(std::span<const base::ReadingBlock> blocks) {
-  std::size_t i = blocks.size() - due.size();
+void SensorPipeline::store() {
+  std::size_t i = 0;
   std::size_t measured = 0;
   for (const sensors::DueSample& d : due) {
     if (measured < to_measure.size() && to_measure[measured].row == d.row) {

@@ -20,6 +20,7 @@ struct SensorPipeline {
   std::vector<std::int64_t> next;      ///< [ns] per row: due time of the next one
   std::vector<sensors::DueSample> due;
   std::vector<sensors::DueSample> to_measure;  ///< due sensors without a reusable reading
+  std::vector<base::ReadingBlock> blocks;      ///< readings of all due sensors, in order
   bool active = false;                         ///< its kernels are recorded in the batch, from its first measurement on
   bool idle = true;                            ///< the backend was last prepared without due sensors
   bool uploaded = true;  ///< the device's tables are up to date with that, as far as the kernels are recorded
@@ -41,10 +42,10 @@ struct SensorPipeline {
   /// The batch has work for this sensor type.
   bool needs_device() const { return !to_measure.empty() && backend->on_device(); }
   void add_copies(gpu::Batch& batch);
-  /// Appends the readings of all due sensors, in order. @return number of reused ones
-  std::size_t collect(std::int64_t now, std::span<const base::Pose> poses, std::vector<base::ReadingBlock>& blocks);
-  /// Offers the measured readings that `collect` appended last to the cache.
-  void store(std::span<const base::ReadingBlock> blocks);
+  /// Fills `blocks`. @return number of reused readings
+  std::size_t collect(std::int64_t now, std::span<const base::Pose> poses);
+  /// Offers the measured readings of `blocks` to the cache.
+  void store();
 };
 
 }  // namespace sf::farm

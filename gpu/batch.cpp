@@ -1,6 +1,7 @@
 #include "gpu/batch.h"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -26,6 +27,7 @@ struct Batch::Vk {
   VkFence done = VK_NULL_HANDLE;
   std::vector<Copy> ups;
   std::vector<Copy> downs;
+  bool submitted = false;
 
   VkCommandBuffer run() const { return commands[1]; }
 };
@@ -71,6 +73,7 @@ Batch::Batch(Device& device) : vk_(std::make_unique<Vk>()) {
 }
 
 Batch::~Batch() {
+  wait();
   vkDestroyFence(vk_->device->device, vk_->done, nullptr);
   vkDestroyCommandPool(vk_->device->device, vk_->pool, nullptr);
 }
@@ -111,7 +114,8 @@ void Batch::download(const Buffer& table, std::size_t offset, std::size_t size) 
   if (b.staging.buffer && size > 0) vk_->downs.push_back({b.table.buffer, b.staging.buffer, {offset, offset, size}});
 }
 
-void Batch::run() {
+void Batch::submit() {
+  SF_CHECK(!vk_->submitted, "a batch is submitted again before it was waited for");
   std::array<VkCommandBuffer, 3> used{};
   std::uint32_t count = 0;
   const auto add_copies = [&](std::vector<Copy>& copies, VkCommandBuffer commands, bool before) {
@@ -133,6 +137,11 @@ void Batch::run() {
   submit.commandBufferCount = count;
   submit.pCommandBuffers = used.data();
   check_vk(vkQueueSubmit(vk_->device->queue, 1, &submit, vk_->done), "vkQueueSubmit");
+  vk_->submitted = true;
+}
+
+void Batch::wait() {
+  if (!std::exchange(vk_->submitted, false)) return;
   check_vk(vkWaitForFences(vk_->device->device, 1, &vk_->done, VK_TRUE, UINT64_MAX), "vkWaitForFences");
   check_vk(vkResetFences(vk_->device->device, 1, &vk_->done), "vkResetFences");
 }

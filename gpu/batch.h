@@ -1,5 +1,5 @@
 #pragma once
-// One submission and one wait per tick: uploads, kernels, downloads.
+// One submit and one wait per tick: copies up, kernels, copies down. The host may work in between.
 
 #include <cstddef>
 #include <memory>
@@ -30,8 +30,11 @@ class Batch {
   void upload(const Buffer& table, std::size_t offset, std::size_t size);
   void download(const Buffer& table, std::size_t offset, std::size_t size);
 
-  /// Submits all copies and kernels once and waits for their end.
-  void run();
+  /// Submits all of it once. Its tables belong to the device until `wait` returns.
+  void submit();
+  /// Waits for what was submitted; nothing: at once.
+  void wait();
+  void run() { submit(), wait(); }
 
   struct Vk;
 
