@@ -1,7 +1,9 @@
 #include "gpu/kernel.h"
 
 #include <algorithm>
-#include <array>
+#include <cstring>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -15,12 +17,14 @@ namespace {
 constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
 constexpr VkDescriptorType kBuffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 
-void make_layout(Kernel::Vk& vk, std::uint32_t tables) {
-  std::vector<VkDescriptorSetLayoutBinding> bindings(tables);
-  for (std::uint32_t i = 0; i < tables; ++i)
-    bindings[i] = {i, i < vk.texels ? kTexels : kBuffer, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+VkDescriptorType type_of(const KernelTable& table) { return table.is_buffer ? kBuffer : kTexels; }
+
+void make_layout(Kernel::Vk& vk) {
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (const KernelTable& table : vk.declared.tables)
+    bindings.push_back({table.binding, type_of(table), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
   VkDescriptorSetLayoutCreateInfo set{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
-  set.bindingCount = tables;
+  set.bindingCount = static_cast<std::uint32_t>(bindings.size());
   set.pBindings = bindings.data();
   check_vk(vkCreateDescriptorSetLayout(vk.device->device, &set, nullptr, &vk.tables), "vkCreateDescriptorSetLayout");
 
@@ -30,12 +34,13 @@ void make_layout(Kernel::Vk& vk, std::uint32_t tables) {
   check_vk(vkCreatePipelineLayout(vk.device->device, &layout, nullptr, &vk.layout), "vkCreatePipelineLayout");
 }
 
-void make_set(Kernel::Vk& vk, std::uint32_t tables) {
-  const VkDescriptorPoolSize sizes[] = {{kTexels, vk.texels}, {kBuffer, tables - vk.texels}};
+void make_set(Kernel::Vk& vk) {
+  std::vector<VkDescriptorPoolSize> sizes;
+  for (const KernelTable& table : vk.declared.tables) sizes.push_back({type_of(table), 1});
   VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   pool.maxSets = 1;
-  pool.poolSizeCount = tables > vk.texels ? 2 : 1;
-  pool.pPoolSizes = sizes;
+  pool.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
+  pool.pPoolSizes = sizes.data();
   check_vk(vkCreateDescriptorPool(vk.device->device, &pool, nullptr, &vk.pool), "vkCreateDescriptorPool");
   VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
   allocate.descriptorPool = vk.pool;
@@ -68,28 +73,40 @@ void make_pipeline(Kernel::Vk& vk, std::span<const std::uint32_t> spirv, std::sp
 
 }  // namespace
 
-std::uint32_t group_size_of(std::span<const std::uint32_t> spirv) {
+KernelInterface interface_of(std::span<const std::uint32_t> spirv) {
   // SPIR-V: five words of header, then instructions whose first word is (word count << 16 | opcode).
-  constexpr std::uint32_t kExecutionMode = 16;
-  constexpr std::uint32_t kLocalSize = 17;
+  constexpr std::uint32_t kName = 5, kExecutionMode = 16, kVariable = 59, kDecorate = 71;
+  constexpr std::uint32_t kLocalSize = 17, kBinding = 33, kStorageBuffer = 12;
+  KernelInterface found;
+  std::map<std::uint32_t, std::string> names;
+  std::map<std::uint32_t, std::uint32_t> bindings;
   for (std::size_t at = 5; at < spirv.size();) {
-    const std::uint32_t words = spirv[at] >> 16;
-    if (words == 0 || words > spirv.size() - at) return 0;
-    if ((spirv[at] & 0xFFFFu) == kExecutionMode && words >= 6 && spirv[at + 2] == kLocalSize) return spirv[at + 3];
+    const std::uint32_t words = spirv[at] >> 16, opcode = spirv[at] & 0xFFFFu;
+    if (words == 0 || words > spirv.size() - at) return {};
+    const auto op = spirv.subspan(at, words);
+    if (opcode == kExecutionMode && words >= 6 && op[2] == kLocalSize && found.group_size == 0)
+      found.group_size = op[3];
+    if (opcode == kName && words >= 3) {
+      const auto* const text = reinterpret_cast<const char*>(&op[2]);
+      names[op[1]].assign(text, strnlen(text, 4 * (words - 2)));
+    }
+    if (opcode == kDecorate && words >= 4 && op[2] == kBinding) bindings[op[1]] = op[3];
+    // Names and decorations come before what they are of.
+    if (opcode == kVariable && words >= 4 && bindings.count(op[2]) > 0)
+      found.tables.push_back({names[op[2]], bindings[op[2]], op[3] == kStorageBuffer});
     at += words;
   }
-  return 0;
+  return found;
 }
 
-Kernel::Kernel(Device& device, std::string_view name, std::span<const std::uint32_t> spirv, std::uint32_t tables,
-               std::uint32_t buffers, std::span<const std::uint32_t> constants)
+Kernel::Kernel(Device& device, std::string_view name, std::span<const std::uint32_t> spirv,
+               std::span<const std::uint32_t> constants)
     : vk_(std::make_unique<Vk>()) {
   vk_->device = &device.vk();
-  vk_->group_size = group_size_of(spirv);
-  vk_->texels = tables - buffers;
-  SF_CHECK(vk_->group_size > 0, "a SPIR-V module without LocalSize");
-  make_layout(*vk_, tables);
-  make_set(*vk_, tables);
+  vk_->declared = interface_of(spirv);
+  SF_CHECK(vk_->declared.group_size > 0, "a SPIR-V module without LocalSize");
+  make_layout(*vk_);
+  make_set(*vk_);
   make_pipeline(*vk_, spirv, constants);
   vk_->device->add_allocation(vk_.get(), name, spirv.size_bytes(), true);
 }
@@ -103,22 +120,28 @@ Kernel::~Kernel() {
   vkDestroyDescriptorSetLayout(device, vk_->tables, nullptr);
 }
 
-void Kernel::bind(std::span<Buffer* const> tables) {
+void Kernel::bind(const std::vector<TableBinding>& tables) {
+  const std::vector<KernelTable>& declared = vk_->declared.tables;
+  SF_CHECK(tables.size() == declared.size(),
+           std::to_string(tables.size()) + " tables for a kernel that declares " + std::to_string(declared.size()));
   std::vector<VkWriteDescriptorSet> writes(tables.size(), {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET});
   std::vector<VkDescriptorBufferInfo> buffers(tables.size());
   for (std::size_t i = 0; i < tables.size(); ++i) {
+    const auto named = std::ranges::find(tables, declared[i].name, &TableBinding::name);
+    SF_CHECK(named != tables.end(), "no table for the kernel's '" + declared[i].name + "'");
+    const Buffer::Vk& table = named->table->vk();
     const std::size_t most = vk_->device->properties.limits.maxStorageBufferRange;
-    buffers[i] = {tables[i]->vk().table.buffer, 0, std::min(tables[i]->bytes(), most)};
+    buffers[i] = {table.table.buffer, 0, std::min(named->table->bytes(), most)};
     writes[i].dstSet = vk_->set;
-    writes[i].dstBinding = static_cast<std::uint32_t>(i);
+    writes[i].dstBinding = declared[i].binding;
     writes[i].descriptorCount = 1;
-    writes[i].descriptorType = i < vk_->texels ? kTexels : kBuffer;
+    writes[i].descriptorType = type_of(declared[i]);
     writes[i].pBufferInfo = &buffers[i];
-    writes[i].pTexelBufferView = &tables[i]->vk().view;
+    writes[i].pTexelBufferView = &table.view;
   }
   vkUpdateDescriptorSets(vk_->device->device, static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
 }
 
-std::uint32_t Kernel::group_size() const { return vk_->group_size; }
+std::uint32_t Kernel::group_size() const { return vk_->declared.group_size; }
 
 }  // namespace sf::gpu

@@ -4,31 +4,54 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "gpu/buffer.h"
 #include "gpu/device.h"
 
 namespace sf::gpu {
 
-/// Binding i of descriptor set 0 is the i-th table of `bind`: an `imageBuffer` in the table's texel format, or a
-/// `buffer`.
+/// A table as the kernel's source declares it.
+struct KernelTable {
+  std::string name;
+  std::uint32_t binding = 0;  ///< of descriptor set 0
+  bool is_buffer = false;     ///< a `buffer`; else an `imageBuffer` of the table's texel
+};
+
+/// What a SPIR-V module declares.
+struct KernelInterface {
+  std::uint32_t group_size = 0;  ///< LocalSize x of its entry point; 0: it has none
+  std::vector<KernelTable> tables;
+};
+KernelInterface interface_of(std::span<const std::uint32_t> spirv);
+
+struct TableBinding {
+  std::string_view name;  ///< as the kernel declares it
+  const Buffer* table;
+};
+
 class Kernel {
  public:
-  /// @param name for Device::allocations
-  /// @param spirv words of a module with one entry point `main`; its group size is read from the module
-  /// @param buffers number of tables, the last ones, that are bound as storage buffers, up to the device's size limit
-  /// @param constants values of the module's constant_ids from 0 on, one word each
-  Kernel(Device& device, std::string_view name, std::span<const std::uint32_t> spirv, std::uint32_t tables,
-         std::uint32_t buffers = 0, std::span<const std::uint32_t> constants = {});
+  /// @param name what it computes, for Device::allocations
+  /// @param spirv words of a module with one entry point `main`; its group size and tables are read from the module.
+  /// @param constants of the module, from constant_id 0 on: one word each
+  Kernel(Device& device, std::string_view name, std::span<const std::uint32_t> spirv,
+         std::span<const std::uint32_t> constants = {});
   ~Kernel();
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
-  /// Sets the tables of the dispatches recorded next. Tables must outlive these dispatches.
-  void bind(std::span<Buffer* const> tables);
+  /// Which tables the next recorded dispatches use: all that the kernel declares, in any order, as much of each
+  /// `buffer` as the device bears. Tables must outlive those dispatches.
+  void bind(const std::vector<TableBinding>& tables);
 
   std::uint32_t group_size() const;  ///< invocations along x per group
+  /// So many invocations or more: whole groups.
+  std::size_t padded(std::size_t invocations) const {
+    return (invocations + group_size() - 1) / group_size() * group_size();
+  }
 
   struct Vk;
   Vk& vk() const { return *vk_; }
@@ -36,8 +59,5 @@ class Kernel {
  private:
   std::unique_ptr<Vk> vk_;
 };
-
-/// LocalSize x of a SPIR-V module's entry point; 0 without one.
-std::uint32_t group_size_of(std::span<const std::uint32_t> spirv);
 
 }  // namespace sf::gpu

@@ -13,8 +13,7 @@ struct Kernel::Vk {
   VkDescriptorSet set = VK_NULL_HANDLE;
   VkPipelineLayout layout = VK_NULL_HANDLE;
   VkPipeline pipeline = VK_NULL_HANDLE;
-  std::uint32_t group_size = 0;
-  std::uint32_t texels = 0;  ///< bindings before the buffers
+  KernelInterface declared;
 };
 
 }  // namespace sf::gpu

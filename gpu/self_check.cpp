@@ -14,15 +14,14 @@ std::string self_check(Device& device) { return self_check(device, self_check_co
 
 std::string self_check(Device& device, std::span<const std::uint32_t> spirv) {
   const std::vector<Operands> rows = operands();
-  Kernel kernel(device, "self-check", spirv, 2);
+  Kernel kernel(device, "self-check", spirv);
   Buffer in(device, "operands", Role::upload, Texel::u32x4, rows.size());
   Buffer out(device, "results", Role::download, Texel::u32x4, rows.size() * operations().size() / 2);
   Buffer counts(device, "group counts", Role::upload, Texel::u32, 4);
   std::memcpy(in.host<std::uint32_t>().data(), rows.data(), rows.size() * sizeof(Operands));
   counts.host<std::uint32_t>()[0] = static_cast<std::uint32_t>(rows.size()) / kernel.group_size();
   counts.host<std::uint32_t>()[1] = counts.host<std::uint32_t>()[2] = 1;
-  Buffer* const tables[] = {&in, &out};
-  kernel.bind(tables);
+  kernel.bind({{"operands", &in}, {"results", &out}});
 
   Batch batch(device);
   batch.begin();

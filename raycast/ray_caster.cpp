@@ -116,6 +116,6 @@ gpu::Buffer& RayCaster::directions64() { return *t_->directions64; }
 gpu::Buffer& RayCaster::beam_flags() { return *t_->beam_flags; }
 gpu::Buffer& RayCaster::lanes() { return *t_->exact.lanes; }
 gpu::Buffer& RayCaster::groups() { return *t_->exact.groups; }
-std::uint32_t RayCaster::group_size() const { return kLanesPerGroup; }
+std::uint32_t RayCaster::group_size() const { return t_->lanes_per_group; }
 
 }  // namespace sf::raycast

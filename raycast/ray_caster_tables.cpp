@@ -40,7 +40,8 @@ using BeamTableKey = std::tuple<double, std::uint32_t, std::uint32_t>;
 }  // namespace
 
 RayCaster::Tables::Tables(const SensorContext& context, const world::World& world, std::vector<Scanner> f)
-    : thread_pool(context.thread_pool),
+    : lanes_per_group(gpu::interface_of(laser_comp_spv).group_size),
+      thread_pool(context.thread_pool),
       seed(context.seed),
       noise(context.noise),
       configs(world),
@@ -126,16 +127,16 @@ void RayCaster::Tables::make_tables(gpu::Device& device, std::size_t largest_buf
 void RayCaster::Tables::make_pass(gpu::Device& device, CastDispatch& pass, bool is_single) {
   using gpu::Role;
   using gpu::Texel;
-  // Lanes are padded to whole groups, and large numbers of groups to whole rows of groups.
-  const std::size_t most_groups = out_lanes / kLanesPerGroup + 1;
-  const std::size_t padded = (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * kLanesPerGroup;
+  // Lanes are padded to whole groups, and groups to whole rows of groups where there are many.
+  const std::size_t most_groups = out_lanes / lanes_per_group + 1;
+  const std::size_t padded =
+      (most_groups > kGroupsAcross ? most_groups + kGroupsAcross : most_groups) * lanes_per_group;
   pass.lanes = std::make_unique<gpu::Buffer>(device, "whose beams", Role::upload, Texel::u32, 2 * padded);
   pass.groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);
   if (!scene) return;
   const std::uint32_t constants[] = {scene->has_movers(), is_single, texel_results};
   pass.kernel =
-      std::make_unique<gpu::Kernel>(device, is_single ? "laser in 32 bits" : "laser", laser_comp_spv, 15, 3, constants);
-  SF_CHECK(pass.kernel->group_size() == kLanesPerGroup, "groups of lanes are counted as of 64");
+      std::make_unique<gpu::Kernel>(device, is_single ? "laser in 32 bits" : "laser", laser_comp_spv, constants);
 }
 
 void RayCaster::Tables::write_all_beams() {
@@ -179,7 +180,7 @@ void RayCaster::Tables::write_lanes(CastDispatch& pass, bool is_single) {
     for (std::uint32_t lane = 0; lane < scanner_rows[due[i].row].plan.lanes(); ++lane) table[at++] = {i, lane};
   }
   const auto due_lanes = static_cast<std::uint32_t>(at);
-  const std::uint32_t group = kLanesPerGroup;
+  const std::uint32_t group = lanes_per_group;
   const std::uint32_t needed = (due_lanes + group - 1) / group;
   const std::uint32_t across = std::min(needed, kGroupsAcross);
   const std::uint32_t down = across > 0 ? (needed + across - 1) / across : 0;
@@ -373,13 +374,21 @@ void RayCaster::Tables::find_host_due() {
 }
 
 void RayCaster::Tables::bind(CastDispatch& pass) {
-  gpu::Buffer* const results[] = {ranges.get(), hits.get(), beam_flags.get()};
-  gpu::Buffer* const tables[] = {rows.get(),           pass.lanes.get(),   mid_bearings.get(),
-                                 directions64.get(),   &scene->lists(),    &scene->segment_ids(),
-                                 &scene->mover_rows(), &scene->segments(), &scene->models(),
-                                 results[0],           results[1],         results[2],
-                                 results[0],           results[1],         results[2]};
-  pass.kernel->bind(tables);
+  pass.kernel->bind({{"rows", rows.get()},
+                     {"lanes", pass.lanes.get()},
+                     {"bearings", mid_bearings.get()},
+                     {"directions", directions64.get()},
+                     {"lists", &scene->lists()},
+                     {"segment_ids", &scene->segment_ids()},
+                     {"mover_rows", &scene->mover_rows()},
+                     {"segments", &scene->segments()},
+                     {"models", &scene->models()},
+                     {"range_texels", ranges.get()},
+                     {"hit_texels", hits.get()},
+                     {"flag_texels", beam_flags.get()},
+                     {"ranges", ranges.get()},
+                     {"hits", hits.get()},
+                     {"beam_flags", beam_flags.get()}});
 }
 
 void RayCaster::Tables::bind() {

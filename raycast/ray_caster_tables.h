@@ -14,10 +14,7 @@
 
 namespace sf::raycast {
 
-/// Work-group size of all dispatches over lanes.
-inline constexpr std::uint32_t kLanesPerGroup = 64;
-
-/// Value of `shared` for scanners without a shared view.
+/// Of fans that share no view.
 inline constexpr std::uint32_t kNotShared = 0xFFFFFFFFu;
 
 /// One host scan, for one scanner or a shared view.
@@ -45,6 +42,7 @@ struct CastDispatch {
 };
 
 struct RayCaster::Tables {
+  std::uint32_t lanes_per_group;  ///< of each dispatch over lanes
   base::ThreadPool& thread_pool;
   std::uint64_t seed;
   bool noise;

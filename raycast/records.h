@@ -9,6 +9,7 @@
 #define SF_SECTORS 32
 #define SF_CHUNK 4
 #define SF_BEAMS_PER_LANE 4
+#define SF_LANES_PER_GROUP 64  // of every kernel that is dispatched over lanes
 #define SF_NO_HIT 0xFFFFFFFFu
 
 // Flags of a lane, shifted by the beam's place in the lane: the beam grazes its surface; 32 bits could not certify its

@@ -44,7 +44,7 @@ MapBatch::Tables::Tables(gpu::Device& device, base::ThreadPool& w, std::vector<M
   std::size_t most = 0;
   for (std::uint32_t i = 0; i < all.size(); ++i)
     if (!on_host.has(i)) most += strip_blocks(all[i].plan.grid);
-  const std::size_t lanes = make_dispatch(device, "strips of a map", strips, occupancy_strips_comp_spv, 4, most);
+  const std::size_t lanes = make_dispatch(device, "strips of a map", strips, occupancy_strips_comp_spv, most);
   covered = std::make_unique<gpu::Buffer>(device, "covered cells", Role::download, Texel::u32, lanes);
   make_words(device, "map", plain, occupancy_comp_spv, false);
   if (std::any_of(all.begin(), all.end(), [](const MapLayout& map) { return map.plan.odds.has_value(); })) {
@@ -83,9 +83,8 @@ void MapBatch::Tables::assign_layout() {
 
 /// @return lanes, in whole groups
 std::size_t MapBatch::Tables::make_dispatch(gpu::Device& device, const char* name, MapDispatch& dispatch,
-                                            std::span<const std::uint32_t> spirv, std::uint32_t tables,
-                                            std::size_t most_blocks) {
-  dispatch.kernel = std::make_unique<gpu::Kernel>(device, name, spirv, tables);
+                                            std::span<const std::uint32_t> spirv, std::size_t most_blocks) {
+  dispatch.kernel = std::make_unique<gpu::Kernel>(device, name, spirv);
   // Padded to whole groups, and to whole rows of groups where there are many.
   const std::size_t group = dispatch.kernel->group_size() / SF_MAP_BLOCK;
   const std::size_t groups = most_blocks / group + 1;
@@ -100,21 +99,25 @@ void MapBatch::Tables::make_words(gpu::Device& device, const char* name, MapWord
   std::size_t most = 0;
   for (std::uint32_t i = 0; i < all.size(); ++i)
     if (!on_host.has(i) && all[i].plan.odds.has_value() == has_log_odds) most += word_blocks(all[i].plan.grid);
-  const std::size_t lanes = make_dispatch(device, name, part.dispatch, spirv, has_log_odds ? 6 : 5, most);
+  const std::size_t lanes = make_dispatch(device, name, part.dispatch, spirv, most);
   part.hit_words = std::make_unique<gpu::Buffer>(device, "struck cells", Role::upload, Texel::u32, lanes);
 }
 
 void MapBatch::Tables::record() {
-  gpu::Buffer* const first[] = {rows.get(), strips.blocks.get(), lines.get(), covered.get()};
-  strips.kernel->bind(first);
+  strips.kernel->bind(
+      {{"rows", rows.get()}, {"blocks", strips.blocks.get()}, {"lines", lines.get()}, {"strips", covered.get()}});
   batch.begin();
   batch.dispatch(*strips.kernel, *strips.groups, 0);
   batch.barrier();
   for (MapWords* part : {&plain, &log_odds_words}) {
     if (!part->dispatch.kernel) continue;
-    gpu::Buffer* const tables[] = {
-        rows.get(), part->dispatch.blocks.get(), covered.get(), part->hit_words.get(), words.get(), odds.get()};
-    part->dispatch.kernel->bind(std::span(tables).first(part == &plain ? 5 : 6));
+    std::vector<gpu::TableBinding> tables{{"rows", rows.get()},
+                                          {"blocks", part->dispatch.blocks.get()},
+                                          {"strips", covered.get()},
+                                          {"hit_words", part->hit_words.get()},
+                                          {"words", words.get()}};
+    if (part == &log_odds_words) tables.push_back({"odds", odds.get()});
+    part->dispatch.kernel->bind(tables);
     batch.dispatch(*part->dispatch.kernel, *part->dispatch.groups, 0);
   }
   batch.end();

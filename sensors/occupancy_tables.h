@@ -82,7 +82,7 @@ struct MapBatch::Tables {
   void plan(std::vector<MapPlan> plans);
   void assign_layout();
   std::size_t make_dispatch(gpu::Device& device, const char* name, MapDispatch& dispatch,
-                            std::span<const std::uint32_t> spirv, std::uint32_t tables, std::size_t most_blocks);
+                            std::span<const std::uint32_t> spirv, std::size_t most_blocks);
   void make_words(gpu::Device& device, const char* name, MapWords& part, std::span<const std::uint32_t> spirv,
                   bool has_log_odds);
   void record();

@@ -4,7 +4,7 @@
 
 #include "shaders/raycast/records.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = SF_LANES_PER_GROUP) in;
 layout(constant_id = 0) const bool kMovers = true;   // there are some
 layout(constant_id = 1) const bool kSinglePrecision = false;  // ranges are measured in 32 bits where these are close enough
 layout(constant_id = 2) const bool kTexels = false;  // results are too large for storage buffers, which are faster
@@ -20,9 +20,9 @@ layout(binding = 8, r32ui) uniform readonly uimageBuffer models;             // 
 layout(binding = 9, rgba32ui) uniform writeonly uimageBuffer range_texels;   // LaneRanges of each lane
 layout(binding = 10, rgba32ui) uniform writeonly uimageBuffer hit_texels;    // LaneHits of each lane
 layout(binding = 11, r32ui) uniform writeonly uimageBuffer flag_texels;   // a word a lane: SF_DOUBT, SF_GRAZES
-layout(binding = 12) writeonly buffer Ranges { uvec4 ranges[][2]; };         // the same tables
-layout(binding = 13) writeonly buffer Hits { uvec4 hits[][1]; };
-layout(binding = 14) writeonly buffer BeamFlags { uint beam_flags[]; };
+layout(binding = 12) writeonly buffer Ranges { uvec4 lane[][2]; } ranges;         // the same tables
+layout(binding = 13) writeonly buffer Hits { uvec4 lane[][1]; } hits;
+layout(binding = 14) writeonly buffer BeamFlags { uint lane[]; } beam_flags;
 
 #include "shaders/lib/intersect.glsl"
 #include "shaders/lib/list_search.glsl"
@@ -42,9 +42,9 @@ void store(int lane, LaneRanges lane_ranges, LaneHits lane_hits, uint flags) {
     store_LaneHits(hit_texels, lane, lane_hits);
     imageStore(flag_texels, lane, uvec4(flags));
   } else {
-    ranges[lane] = encode_LaneRanges(lane_ranges);
-    hits[lane] = encode_LaneHits(lane_hits);
-    beam_flags[lane] = flags;
+    ranges.lane[lane] = encode_LaneRanges(lane_ranges);
+    hits.lane[lane] = encode_LaneHits(lane_hits);
+    beam_flags.lane[lane] = flags;
   }
 }
 

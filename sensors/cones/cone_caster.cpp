@@ -10,8 +10,7 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr std::uint32_t kGroup = 64;
-constexpr std::size_t kMostCones = std::size_t{32'768} * kGroup;
+constexpr std::size_t kMostGroups = 32'768;
 
 /// Approximately a unit vector.
 struct Direction {
@@ -19,8 +18,6 @@ struct Direction {
 };
 
 Direction turned(Direction by, Direction v) { return {by.x * v.x - by.y * v.y, by.x * v.y + by.y * v.x}; }
-
-std::size_t padded(std::size_t cones) { return (cones + kGroup - 1) / kGroup * kGroup; }
 
 raycast::Scanner scanner_of(const ConeArray& array, std::size_t transducer) {
   world::Laser beams;
@@ -33,7 +30,8 @@ raycast::Scanner scanner_of(const ConeArray& array, std::size_t transducer) {
 
 }  // namespace
 
-ConeCaster::Plan ConeCaster::plan(const world::World& world, const std::vector<ConeArray>& arrays) {
+ConeCaster::Plan ConeCaster::plan(const world::World& world, const std::vector<ConeArray>& arrays,
+                                  std::size_t most_cones) {
   Plan plan;
   for (const ConeArray& array : arrays) {
     plan.first.push_back(static_cast<std::uint32_t>(plan.scanners.size()));
@@ -43,15 +41,16 @@ ConeCaster::Plan ConeCaster::plan(const world::World& world, const std::vector<C
       plan.min_cosines.push_back(static_cast<float>(array.min_cosine));
     }
   }
-  if (plan.scanners.size() > kMostCones)
+  if (plan.scanners.size() > most_cones)
     throw base::InputError(world.file, 0,
                            "the world has " + std::to_string(plan.scanners.size()) +
-                               " transducers of one type; at most " + std::to_string(kMostCones) + " are supported");
+                               " transducers of one kind; at most " + std::to_string(most_cones) + " are supported");
   return plan;
 }
 
 ConeCaster::ConeCaster(const SensorContext& context, const std::vector<ConeArray>& arrays, const ConeKernel& kernel)
-    : ConeCaster(context, plan(context.world, arrays), kernel) {}
+    : ConeCaster(context, plan(context.world, arrays, kMostGroups * gpu::interface_of(kernel.spirv).group_size),
+                 kernel) {}
 
 ConeCaster::ConeCaster(const SensorContext& context, const Plan& plan, const ConeKernel& kernel)
     : ConeCaster(context, plan, plan.incidence ? reflectors_of(context.world) : Reflectors{}, kernel) {}
@@ -62,19 +61,22 @@ ConeCaster::ConeCaster(const SensorContext& context, const Plan& plan, const Ref
       first_cones_(plan.first),
       min_cosines_(plan.min_cosines),
       caster_(context, plan.incidence ? reflectors.world : context.world, plan.scanners),
-      kernel_(context.device, kernel.name, kernel.spirv, kernel.uses_incidence ? 7 : 4),
+      kernel_(context.device, kernel.name, kernel.spirv),
       rows_(context.device, "cones", gpu::Role::upload, gpu::Texel::u32x4,
-            gpu::texels_of<ConeRow>(padded(plan.scanners.size() + 1))),
-      echoes_(context.device, "echoes", gpu::Role::download, gpu::Texel::u32x4, padded(plan.scanners.size() + 1)),
+            gpu::texels_of<ConeRow>(kernel_.padded(plan.scanners.size() + 1))),
+      echoes_(context.device, "echoes", gpu::Role::download, gpu::Texel::u32x4,
+              kernel_.padded(plan.scanners.size() + 1)),
       groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
       reflectors_(context.device, "faces", gpu::Role::upload, gpu::Texel::u32x4, reflectors.rows.size() + 1),
       headings_(context.device, "headings", gpu::Role::upload, gpu::Texel::f32x4, context.world.movers.size() + 1),
       incidence_(plan.incidence) {
-  SF_CHECK(kernel_.group_size() == kGroup, "groups of cones are counted as of 64");
-  SF_CHECK(kernel.uses_incidence || !incidence_, "this kernel ignores the angle of incidence");
-  gpu::Buffer* const tables[] = {&rows_,       &caster_.ranges(), &caster_.hits(), &echoes_, &caster_.directions64(),
-                                 &reflectors_, &headings_};
-  kernel_.bind(std::span(tables).first(kernel.uses_incidence ? 7 : 4));
+  SF_CHECK(kernel.uses_incidence || !incidence_, "this kernel hears all angles");
+  std::vector<gpu::TableBinding> tables{
+      {"cones", &rows_}, {"ranges", &caster_.ranges()}, {"hits", &caster_.hits()}, {"echoes", &echoes_}};
+  if (kernel.uses_incidence)
+    tables.insert(tables.end(),
+                  {{"directions", &caster_.directions64()}, {"reflectors", &reflectors_}, {"headings", &headings_}});
+  kernel_.bind(tables);
   std::memset(groups_.host<std::uint32_t>().data(), 0, groups_.bytes());
   std::memset(reflectors_.host<std::uint32_t>().data(), 0, reflectors_.bytes());
   std::copy(reflectors.rows.begin(), reflectors.rows.end(), reflectors_.host<ReflectorDirection>().begin());
@@ -102,9 +104,9 @@ bool ConeCaster::prepare(std::span<const DueSample> due, std::span<const Pose> p
   });
   // Padding repeats one cone; its echoes are written behind all others.
   if (count_ > 0)
-    std::fill_n(rows.begin() + static_cast<std::ptrdiff_t>(count_), padded(count_) - count_, rows[count_ - 1]);
+    std::fill_n(rows.begin() + static_cast<std::ptrdiff_t>(count_), kernel_.padded(count_) - count_, rows[count_ - 1]);
   const auto counts = groups_.host<std::uint32_t>();
-  counts[0] = static_cast<std::uint32_t>(padded(count_) / kGroup);
+  counts[0] = static_cast<std::uint32_t>(kernel_.padded(count_) / kernel_.group_size());
   counts[1] = counts[2] = count_ > 0 ? 1 : 0;
   return again;
 }
@@ -148,7 +150,7 @@ ConeEcho ConeCaster::nearest_echo(std::size_t i) {
 
 void ConeCaster::add_copies(gpu::Batch& batch) {
   caster_.add_copies(batch, false);
-  batch.upload(rows_, 0, padded(count_) * sizeof(ConeRow));
+  batch.upload(rows_, 0, kernel_.padded(count_) * sizeof(ConeRow));
   batch.upload(groups_, 0, groups_.bytes());
   if (incidence_ || fresh_) batch.upload(headings_, 0, headings_.bytes());
   if (fresh_) batch.upload(reflectors_, 0, reflectors_.bytes());

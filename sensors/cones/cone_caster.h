@@ -55,7 +55,7 @@ class ConeCaster {
     std::vector<std::uint32_t> first;  ///< per array
     bool incidence = false;            ///< some array limits the angle of incidence
   };
-  static Plan plan(const world::World& world, const std::vector<ConeArray>& arrays);
+  static Plan plan(const world::World& world, const std::vector<ConeArray>& arrays, std::size_t most_cones);
   ConeCaster(const SensorContext& context, const Plan& plan, const ConeKernel& kernel);
   ConeCaster(const SensorContext& context, const Plan& plan, const Reflectors& reflectors, const ConeKernel& kernel);
   ConeRow row_of(std::size_t i) const;

@@ -15,10 +15,7 @@ namespace sf::sensors {
 
 namespace {
 
-constexpr std::uint32_t kGroup = 64;
-constexpr std::size_t kMostSensors = std::size_t{32'768} * kGroup;
-
-std::size_t padded(std::size_t sensors) { return (sensors + kGroup - 1) / kGroup * kGroup; }
+constexpr std::size_t kMostGroups = 32'768;
 
 /// The constant part of a sensor's row. The places in shared tables are filled in later.
 EdgeRow row_of(const LaneEdge& edge, const raycast::BeamPlan& plan, const world::LaserNoise& noise) {
@@ -42,10 +39,11 @@ EdgeRow row_of(const LaneEdge& edge, const raycast::BeamPlan& plan, const world:
 std::uint32_t edge_noise_id(std::uint32_t sensor) { return (std::uint32_t{kLaneEdge} << 16) | sensor; }
 
 EdgeFit::Plan EdgeFit::plan(const SensorContext& context, const std::vector<LaneEdge>& edges) {
-  if (edges.size() > kMostSensors)
+  const std::size_t most = kMostGroups * gpu::interface_of(laneedge_comp_spv).group_size;
+  if (edges.size() > most)
     throw base::InputError(context.world.file, 0,
                            "the world has " + std::to_string(edges.size()) + " lane edge sensors; at most " +
-                               std::to_string(kMostSensors) + " are supported");
+                               std::to_string(most) + " are supported");
   Plan plan;
   std::map<std::tuple<double, std::uint32_t, bool>, std::uint32_t> shared;
   // Sensors without noise share the first deviates, which stay 0.
@@ -76,10 +74,10 @@ EdgeFit::EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edge
       seed_(context.seed),
       edges_(edges),
       plan_(plan(context, edges)),
-      kernel_(context.device, "line through points", laneedge_comp_spv, 6),
-      maker_(context.device, "points of paint", laneedge_points_comp_spv, 7),
+      kernel_(context.device, "line through points", laneedge_comp_spv),
+      maker_(context.device, "points of paint", laneedge_points_comp_spv),
       rows_(context.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4,
-            gpu::texels_of<EdgeRow>(padded(edges.size()))),
+            gpu::texels_of<EdgeRow>(kernel_.padded(edges.size()))),
       directions_(context.device, "bearings", gpu::Role::upload, gpu::Texel::u32x4,
                   SF_BEAMS_PER_LANE * std::size_t{plan_.direction_lanes}),
       normals_(context.device, "normal deviates", gpu::Role::upload, gpu::Texel::f32x4, plan_.noise_lanes),
@@ -89,11 +87,14 @@ EdgeFit::EdgeFit(const SensorContext& context, const std::vector<LaneEdge>& edge
       groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
       points_(context.device, "points", gpu::Role::download, gpu::Texel::u32x4,
               SF_BEAMS_PER_LANE * (std::size_t{plan_.lanes} + 1)),
-      order_(context.device, "order of work", gpu::Role::upload, gpu::Texel::u32, padded(edges.size())),
+      order_(context.device, "order of work", gpu::Role::upload, gpu::Texel::u32, kernel_.padded(edges.size())),
       mixtures_(context.device, "mixtures", gpu::Role::download, gpu::Texel::u32, edges.size()) {
-  SF_CHECK(kernel_.group_size() == kGroup, "groups of the fit are counted as of 64");
-  gpu::Buffer* const fitting[] = {&rows_, &points_, &grains_, &readings_, &order_, &mixtures_};
-  kernel_.bind(fitting);
+  kernel_.bind({{"rows", &rows_},
+                {"points", &points_},
+                {"grains", &grains_},
+                {"readings", &readings_},
+                {"order", &order_},
+                {"mixtures", &mixtures_}});
   write_directions();
   std::memset(normals_.host<float>().data(), 0, normals_.bytes());
   std::memset(groups_.host<std::uint32_t>().data(), 0, groups_.bytes());
@@ -143,7 +144,7 @@ bool EdgeFit::write_rows(std::span<const std::uint32_t> lanes) {
     written_.push_back(due_[i].row);
   }
   const auto counts = groups_.host<std::uint32_t>();
-  counts[0] = static_cast<std::uint32_t>(padded(due_.size()) / kGroup);
+  counts[0] = static_cast<std::uint32_t>(kernel_.padded(due_.size()) / kernel_.group_size());
   counts[1] = 1;
   counts[2] = 1;
   return false;
@@ -156,19 +157,20 @@ void EdgeFit::write_order(bool same_due) {
   if (due_.empty()) return;
   const auto order = order_.host<std::uint32_t>();
   const auto mixtures = mixtures_.host<std::uint32_t>();
-  const std::size_t groups = padded(due_.size()) / kGroup;
+  const std::size_t size = kernel_.group_size();
+  const std::size_t groups = kernel_.padded(due_.size()) / size;
   std::size_t at = 0;
   const auto put = [&](std::uint32_t row) {
-    const std::size_t group = at / kGroup;
+    const std::size_t group = at / size;
     const std::size_t place = group % 2 == 0 ? group / 2 : (groups + 1) / 2 + group / 2;
-    order[kGroup * place + at++ % kGroup] = row;
+    order[size * place + at++ % size] = row;
   };
   std::uint32_t last = 0;
   for (const std::uint32_t mixed : {1u, 0u})
     for (std::uint32_t i = 0; i < due_.size(); ++i)
       if ((same_due ? mixtures[i] & 1u : 0u) == mixed) put(last = i);
-  // Padding repeats one row; its results are written repeatedly with equal values.
-  while (at < groups * kGroup) put(last);
+  // Padding repeats one row, which then is written more than once with the same values.
+  while (at < groups * size) put(last);
 }
 
 void EdgeFit::draw_noise(const DueSample& due) {
@@ -183,18 +185,23 @@ void EdgeFit::draw_noise(const DueSample& due) {
 }
 
 void EdgeFit::bind(gpu::Buffer& lanes, gpu::Buffer& ranges, gpu::Buffer& hits) {
-  gpu::Buffer* const making[] = {&rows_, &directions_, &normals_, &points_, &lanes, &ranges, &hits};
-  maker_.bind(making);
+  maker_.bind({{"edges", &rows_},
+               {"directions", &directions_},
+               {"normals", &normals_},
+               {"points", &points_},
+               {"lanes", &lanes},
+               {"ranges", &ranges},
+               {"hits", &hits}});
 }
 
 void EdgeFit::add_copies(gpu::Batch& batch) {
-  batch.upload(rows_, 0, padded(due_.size()) * sizeof(EdgeRow));
+  batch.upload(rows_, 0, kernel_.padded(due_.size()) * sizeof(EdgeRow));
   batch.upload(groups_, 0, groups_.bytes());
   if (fresh_) batch.upload(directions_, 0, directions_.bytes());
   if (fresh_) batch.upload(grains_, 0, grains_.bytes());
   if (fresh_ || plan_.any_noise) batch.upload(normals_, 0, normals_.bytes());
   fresh_ = false;
-  batch.upload(order_, 0, padded(due_.size()) * sizeof(std::uint32_t));
+  batch.upload(order_, 0, kernel_.padded(due_.size()) * sizeof(std::uint32_t));
   batch.download(mixtures_, 0, due_.size() * sizeof(std::uint32_t));
   batch.download(readings_, 0, due_.size() * sizeof(EdgeReading));
 }

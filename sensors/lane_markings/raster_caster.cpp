@@ -43,7 +43,7 @@ RasterCaster::RasterCaster(const SensorContext& context, const MarkingRaster& ra
       block_rows_(raster.rows()),
       tag_(tag),
       with_casts_(with_casts),
-      kernel_(context.device, "paint raster", marking_raster_comp_spv, 11),
+      kernel_(context.device, "paint raster", marking_raster_comp_spv),
       place_(context.device, "due sensors", gpu::Role::upload, gpu::Texel::u32x4,
              gpu::texels_of<RasterRow>(caster.scanners().size())),
       groups_(context.device, "group counts", gpu::Role::upload, gpu::Texel::u32, 4),
@@ -97,10 +97,17 @@ void RasterCaster::prepare(std::size_t due) {
 }
 
 void RasterCaster::bind(const PointTables& out) {
-  gpu::Buffer* const tables[] = {
-      &place_,         &caster_.lanes(), &caster_.directions64(), &directory_,  &blocks_,   &caster_.ranges(),
-      &caster_.hits(), &out.rows,        &out.directions,         &out.normals, &out.points};
-  kernel_.bind(tables);
+  kernel_.bind({{"rows", &place_},
+                {"lanes", &caster_.lanes()},
+                {"directions64", &caster_.directions64()},
+                {"directory", &directory_},
+                {"blocks", &blocks_},
+                {"ranges", &caster_.ranges()},
+                {"hits", &caster_.hits()},
+                {"edges", &out.rows},
+                {"directions", &out.directions},
+                {"normals", &out.normals},
+                {"points", &out.points}});
 }
 
 void RasterCaster::record(gpu::Batch& batch) { batch.dispatch(kernel_, groups_, 0); }

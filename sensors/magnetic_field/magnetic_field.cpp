@@ -50,8 +50,8 @@ MagneticField::Tables::Tables(const world::World& w, gpu::Device& d, base::Threa
   for (const world::Mover& mover : world.movers) moving_magnets += count_of(mover.magnets);
   const auto code = magnitudes ? std::span<const std::uint32_t>(magnetometer_magnitudes_comp_spv)
                                : std::span<const std::uint32_t>(magnetometer_comp_spv);
-  kernel = std::make_unique<gpu::Kernel>(device, magnitudes ? "magnetometer with magnitudes" : "magnetometer", code, 5);
-  // An unrolled iteration may load rows behind the last magnet; they have moment 0.
+  kernel = std::make_unique<gpu::Kernel>(device, magnitudes ? "magnetometer with magnitudes" : "magnetometer", code);
+  // A turn may load magnets behind the last one, and counts them as nothing.
   const std::size_t rows = std::size_t{fixed_magnets} + moving_magnets + SF_FIELD_UNROLL;
   dipoles = std::make_unique<gpu::Buffer>(device, "magnets", Role::upload, Texel::u32x4, 2 * rows);
   groups = std::make_unique<gpu::Buffer>(device, "group counts", Role::upload, Texel::u32, 4);

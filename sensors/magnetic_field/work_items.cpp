@@ -164,8 +164,11 @@ void MagneticField::Tables::write_items() {
 }
 
 void MagneticField::Tables::bind() {
-  gpu::Buffer* const tables[] = {items.get(), spans.get(), dipoles.get(), points.get(), results.get()};
-  kernel->bind(tables);
+  kernel->bind({{"items", items.get()},
+                {"spans", spans.get()},
+                {"dipoles", dipoles.get()},
+                {"places", points.get()},
+                {"results", results.get()}});
   bound = true;
 }
 

@@ -23,15 +23,14 @@ struct Counted {
 
 Counted count_to(std::uint32_t n) {
   Device device;
-  Kernel kernel(device, "loop", loop_comp_spv, 2);
+  Kernel kernel(device, "loop", loop_comp_spv);
   Buffer counts(device, "counts", Role::upload, Texel::u32, 64);
   Buffer sums(device, "sums", Role::download, Texel::u32x4, 64);
   Buffer groups(device, "groups", Role::upload, Texel::u32, 4);
   for (std::uint32_t& count : counts.host<std::uint32_t>()) count = n;
   for (std::uint32_t& sum : sums.host<std::uint32_t>()) sum = 0xDEADBEEFu;
   for (std::uint32_t& group : groups.host<std::uint32_t>()) group = 1;
-  Buffer* const tables[] = {&counts, &sums};
-  kernel.bind(tables);
+  kernel.bind({{"counts", &counts}, {"sums", &sums}});
   Batch batch(device);
   batch.begin();
   batch.dispatch(kernel, groups, 0);

@@ -85,12 +85,11 @@ TEST_F(Staging, PiecesTravelToTheirPlaces) {
 /// Group counts at an offset, in more than one dimension.
 TEST_F(Staging, AKernelReadsWhatWasCopiedUpAndIsCopiedDown) {
   Device device;
-  Kernel kernel(device, "loop", loop_comp_spv, 2);
+  Kernel kernel(device, "loop", loop_comp_spv);
   Buffer counts(device, "counts", Role::upload, Texel::u32, 128);
   Buffer sums(device, "sums", Role::download, Texel::u32x4, 128);
   Buffer groups(device, "groups", Role::upload, Texel::u32, 8);
-  Buffer* const tables[] = {&counts, &sums};
-  kernel.bind(tables);
+  kernel.bind({{"counts", &counts}, {"sums", &sums}});
   for (std::uint32_t i = 0; i < 128; ++i) counts.host<std::uint32_t>()[i] = i;
   fill(groups, 0);
   std::ranges::fill(groups.host<std::uint32_t>().subspan(4, 3), 1u);

@@ -102,16 +102,29 @@ TEST(Vulkan, ACallThatFailsEndsTheProgramByName) {
   EXPECT_DEATH(check_vk(VK_ERROR_DEVICE_LOST, "vkQueueSubmit"), "vkQueueSubmit gave VkResult -4");
 }
 
+TEST(Batch, SubmitAndWaitAreApart) {
+  Device device;
+  Batch batch(device);
+  batch.begin();
+  batch.end();
+  batch.wait();  // nothing was submitted
+  batch.submit();
+  EXPECT_DEATH(batch.submit(), "a batch is submitted again before it was waited for");
+  batch.wait();
+  batch.wait();
+  batch.submit();  // and given up: the destructor waits
+}
+
 TEST(Kernel, GroupSizeIsReadFromTheModule) {
-  EXPECT_EQ(group_size_of(loop_comp_spv), 64u);
-  EXPECT_EQ(group_size_of(std::span<const std::uint32_t>(loop_comp_spv).first(5)), 0u) << "a header alone";
-  EXPECT_EQ(group_size_of({}), 0u);
+  EXPECT_EQ(interface_of(loop_comp_spv).group_size, 64u);
+  EXPECT_EQ(interface_of(std::span<const std::uint32_t>(loop_comp_spv).first(5)).group_size, 0u) << "a header alone";
+  EXPECT_EQ(interface_of({}).group_size, 0u);
 }
 
 TEST(Kernel, OnlyLocalSizeIsTheGroupSize) {
   const auto size_of = [](std::vector<std::uint32_t> instructions) {
     instructions.insert(instructions.begin(), 5, 0x07230203u);
-    return group_size_of(instructions);
+    return interface_of(instructions).group_size;
   };
   constexpr std::uint32_t kMode = 6u << 16 | 16u;
   EXPECT_EQ(size_of({2u << 16 | 17u, 1u, kMode, 4u, 17u, 32u, 1u, 1u}), 32u) << "behind another instruction";
@@ -120,6 +133,25 @@ TEST(Kernel, OnlyLocalSizeIsTheGroupSize) {
   EXPECT_EQ(size_of({3u << 16 | 16u, 4u, 17u}), 0u) << "too short";
   EXPECT_EQ(size_of({kMode, 4u, 17u}), 0u) << "cut off";
   EXPECT_EQ(size_of({0u, kMode, 4u, 17u, 32u, 1u, 1u}), 0u) << "an instruction of no words";
+}
+
+TEST(Kernel, TablesAreNamedByTheModule) {
+  const std::vector<KernelTable> tables = interface_of(loop_comp_spv).tables;
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(tables[0].name, "counts");
+  EXPECT_EQ(tables[1].name, "sums");
+  EXPECT_EQ(tables[1].binding, 1u);
+  EXPECT_FALSE(tables[1].is_buffer);
+}
+
+TEST(Kernel, TablesAreBoundByName) {
+  Device device;
+  Kernel kernel(device, "loop", loop_comp_spv);
+  const Buffer counts(device, "counts", Role::upload, Texel::u32, 64);
+  const Buffer sums(device, "sums", Role::download, Texel::u32x4, 64);
+  kernel.bind({{"sums", &sums}, {"counts", &counts}});
+  EXPECT_DEATH(kernel.bind({{"sum", &sums}, {"counts", &counts}}), "no table for the kernel's 'sums'");
+  EXPECT_DEATH(kernel.bind({{"sums", &sums}}), "1 tables for a kernel that declares 2");
 }
 
 TEST(Buffer, TexelsHaveTheirSizes) {
